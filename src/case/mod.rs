@@ -1,0 +1,466 @@
+//! The case: plain data that says what to compute. It knows no solver type.
+//!
+//! A case file is TOML. [`Case`] is its resolved form: every default filled in, every quantity in base units. Angles are
+//! radians, lengths are in the unit of the geometry (metres when the free stream is dimensional).
+use serde::{Deserialize, Serialize};
+
+pub mod quantity;
+
+pub use quantity::{Angle, Density, Length, Pressure, Temperature, Time, Velocity};
+
+/// Everything a run needs to know.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Case {
+    /// One line that names the case in reports.
+    pub title: String,
+    /// Number of space dimensions, 2 or 3; taken from the bodies when absent.
+    pub dimension: Option<u8>,
+    /// Free stream.
+    pub flow: Flow,
+    /// Solid bodies, none for a case without walls.
+    #[serde(default, rename = "body")]
+    pub bodies: Vec<Body>,
+    /// Reference lengths of the load coefficients.
+    #[serde(default)]
+    pub reference: Reference,
+    /// How particles fill the domain.
+    pub cloud: Cloud,
+    /// Conditions on the sides of the domain.
+    #[serde(default)]
+    pub boundary: Sides,
+    /// Field at the start.
+    #[serde(default)]
+    pub initial: Initial,
+    /// Spatial scheme.
+    #[serde(default)]
+    pub scheme: Scheme,
+    /// Steady relaxation or time marching.
+    #[serde(default)]
+    pub time: Temporal,
+    /// Refinement that follows the solution.
+    #[serde(default)]
+    pub adapt: Adapt,
+    /// What is written, and how often.
+    #[serde(default)]
+    pub output: Output,
+    /// Reference curves that the report draws beside the result.
+    #[serde(default)]
+    pub compare: Vec<Compare>,
+}
+
+/// Free stream: either `mach` alone (nondimensional: density 1, sound speed 1) or dimensional values.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Flow {
+    /// Mach number.
+    pub mach: Option<f64>,
+    /// Speed; an alternative to `mach` when the free stream is dimensional.
+    pub velocity: Option<Velocity>,
+    /// Static pressure.
+    pub pressure: Option<Pressure>,
+    /// Static temperature.
+    pub temperature: Option<Temperature>,
+    /// Density; an alternative to `temperature`.
+    pub density: Option<Density>,
+    /// Specific gas constant, J/(kg K), 287.05 for air.
+    pub gas_constant: f64,
+    /// Ratio of specific heats.
+    pub gamma: f64,
+    /// Angle of attack, nose up positive: the flow turns from +x towards +y in 2-D, towards +z in 3-D.
+    #[serde(default)]
+    pub alpha: Angle,
+    /// Sideslip angle, 3-D only: the flow turns towards +y.
+    #[serde(default)]
+    pub beta: Angle,
+}
+
+/// One solid body: exactly one shape key, then placement.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Body {
+    /// Name used in tables of loads; `body-1`, `body-2`, … when absent.
+    pub name: Option<String>,
+    /// Geometry.
+    #[serde(flatten)]
+    pub shape: Shape,
+    /// Placement: scale first, then rotation about the origin of the shape, then translation.
+    #[serde(flatten)]
+    pub placement: Placement,
+}
+
+/// What a body is made of. In the file this is one key of the body table.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Shape {
+    /// Four digits of a NACA section, `naca = "0012"`, or a table with `digits` and `trailing_edge`.
+    Naca(Naca),
+    /// Airfoil coordinate file, `airfoil = "rae2822.dat"` (Selig, Lednicer or CSV order).
+    Airfoil(String),
+    /// Closed polygon with sharp corners, `polygon = [[0, 0], [1, 0.1], [1, -0.1]]`.
+    Polygon(Vec<[f64; 2]>),
+    /// Circle (2-D), `circle = { radius = 0.5 }`.
+    Circle {
+        /// Radius.
+        radius: Length,
+    },
+    /// Sphere (3-D), `sphere = { radius = 0.5 }`.
+    Sphere {
+        /// Radius.
+        radius: Length,
+    },
+    /// Box centred on the origin of the shape, `box = { size = [1, 1, 1] }` (two or three numbers).
+    Box {
+        /// Edge lengths.
+        size: Vec<Length>,
+    },
+    /// STL or OBJ file, `surface = "wing.stl"`.
+    Surface(String),
+}
+
+/// A NACA 4-digit section.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Naca {
+    /// Four digits.
+    pub digits: String,
+    /// How the section ends.
+    pub trailing_edge: TrailingEdge,
+}
+
+/// Trailing edge of a NACA section.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum TrailingEdge {
+    /// Last thickness coefficient −0.1036: both sides meet at x/c = 1.
+    Closed,
+    /// Last thickness coefficient −0.1015 as published: a base of 0.252 % chord for 12 %.
+    Blunt,
+    /// As published, extended to where the sides meet (x/c = 1.00893 for 12 %) and scaled back to unit chord.
+    Extended,
+}
+
+/// Placement of a body.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Placement {
+    /// Factor on every coordinate of the shape; the chord of an airfoil of unit chord.
+    pub scale: f64,
+    /// Rotation: one angle in 2-D (nose up positive about the origin of the shape), three in 3-D (about x, y, z).
+    pub rotate: Vec<Angle>,
+    /// Translation after scaling and rotation.
+    pub translate: Vec<Length>,
+}
+
+/// Reference quantities of the coefficients.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub struct Reference {
+    /// Length of the moment coefficient (and of CL, CD in 2-D); default: extent of the bodies along x.
+    pub chord: Option<Length>,
+    /// Area of the coefficients in 3-D (in units of length squared); default: frontal area of the bodies' bounding box.
+    pub area: Option<f64>,
+    /// Point about which moments are taken; default: quarter chord of the bounding box in 2-D, its centre in 3-D.
+    pub moment_point: Option<Vec<Length>>,
+}
+
+/// How particles fill the domain.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Cloud {
+    /// Particle spacing at the surface; of the whole domain when there is no body.
+    pub spacing: Length,
+    /// Half-width of the far field around the bodies; ignored when `domain` is given. Default 40 chords (2-D), 10 (3-D).
+    pub far_field: Option<Length>,
+    /// Explicit domain; its sides must be whole numbers of `coarse` cells.
+    pub domain: Option<Domain>,
+    /// Particles per level of refinement, counted away from the surface.
+    pub layers: f64,
+    /// Extra levels of refinement at sharp edges.
+    pub edge_levels: u32,
+    /// Spacing is at most this fraction of the local radius of curvature (never finer than `curvature_levels`).
+    pub curvature: f64,
+    /// Greatest number of extra levels that curvature may ask for.
+    pub curvature_levels: u32,
+    /// Boxes with their own spacing.
+    #[serde(default, rename = "box")]
+    pub boxes: Vec<RefineBox>,
+    /// Refinement behind the bodies along the free stream.
+    pub wake: Option<Wake>,
+    /// Body-fitted layers of particles next to the wall (0: none).
+    pub wall_layers: u32,
+    /// Fluid particles nearer to the wall than this fraction of the local spacing are left out.
+    pub blank: f64,
+    /// Radius of the clouds near the wall in local spacings.
+    pub radius: f64,
+    /// Random displacement of interior particles as a fraction of the local spacing (for tests of robustness).
+    pub jitter: f64,
+}
+
+/// An explicit domain.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Domain {
+    /// Corner with the smallest coordinates.
+    pub min: Vec<Length>,
+    /// Corner with the largest coordinates.
+    pub max: Vec<Length>,
+}
+
+/// A box with its own spacing.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct RefineBox {
+    /// Corner with the smallest coordinates.
+    pub min: Vec<Length>,
+    /// Corner with the largest coordinates.
+    pub max: Vec<Length>,
+    /// Largest spacing inside.
+    pub spacing: Length,
+}
+
+/// Refinement behind the bodies.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Wake {
+    /// Length behind the trailing edge.
+    pub length: Length,
+    /// Largest spacing inside.
+    pub spacing: Length,
+}
+
+/// Conditions on the sides of the domain.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub struct Sides {
+    /// Side of smallest x.
+    pub x_min: Side,
+    /// Side of largest x.
+    pub x_max: Side,
+    /// Side of smallest y.
+    pub y_min: Side,
+    /// Side of largest y.
+    pub y_max: Side,
+    /// Side of smallest z.
+    pub z_min: Side,
+    /// Side of largest z.
+    pub z_max: Side,
+}
+
+/// Condition on one side of the domain.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Side {
+    /// Free stream, with the vortex of the lift in 2-D; waves leave through the upwind flux.
+    #[default]
+    FarField,
+    /// The state of `[initial]` held for ever (supersonic inflow, exact solutions).
+    Held,
+    /// Zero normal gradient; with a static pressure when the outflow is subsonic.
+    Outflow {
+        /// Static pressure over free-stream pressure; absent: extrapolated.
+        pressure: Option<f64>,
+    },
+    /// Plane of symmetry.
+    Symmetry,
+    /// Periodic with the opposite side.
+    Periodic,
+}
+
+/// Field at the start.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Initial {
+    /// Free stream everywhere.
+    #[default]
+    FreeStream,
+    /// Two states (density, velocity along `axis`, pressure) on either side of a plane.
+    Riemann {
+        /// Left state (density, velocity, pressure).
+        left: [f64; 3],
+        /// Right state (density, velocity, pressure).
+        right: [f64; 3],
+        /// Position of the plane.
+        position: f64,
+        /// Axis across the plane, 0 for x.
+        axis: u8,
+    },
+    /// Isentropic vortex (Shu 1998) with the strength, centre and mean velocity given; density and pressure 1 far away.
+    Vortex {
+        /// Strength β.
+        strength: f64,
+        /// Centre at the start.
+        centre: [f64; 2],
+        /// Mean velocity.
+        velocity: [f64; 2],
+    },
+    /// Ringleb's flow, stagnation density and sound speed 1.
+    Ringleb,
+}
+
+/// Spatial scheme.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Scheme {
+    /// Upwind flux.
+    pub flux: Flux,
+    /// Order of the reconstruction: 1 or 2.
+    pub order: u8,
+    /// Slope limiter.
+    pub limiter: Limiter,
+    /// Relative size of second differences below which the limiter leaves a field alone.
+    pub limiter_threshold: f64,
+    /// κ of the reconstruction: 0 for steady flow, 1/3 for waves and vortices.
+    pub kappa: f64,
+    /// Exactly conservative coefficients; absent: the solver's own choice.
+    pub conservative: Option<bool>,
+}
+
+/// Upwind flux at the middle of an edge.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Flux {
+    /// Harten-Lax-van Leer with contact (Toro 1994).
+    Hllc,
+    /// Roe (1981) with a smooth entropy fix.
+    Roe,
+    /// AUSM⁺-up (Liou 2006).
+    AusmPlusUp,
+    /// Local Lax-Friedrichs.
+    Rusanov,
+}
+
+/// Slope limiter.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Limiter {
+    /// Unlimited: smooth flow only.
+    None,
+    /// Van Albada (1982) with a threshold, differentiable.
+    VanAlbada,
+    /// Venkatakrishnan's (1995) rational function on edges.
+    Venkatakrishnan,
+}
+
+/// Steady relaxation or explicit marching.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Temporal {
+    /// Relax to a steady state.
+    Steady(Steady),
+    /// March in time with an explicit Runge-Kutta method.
+    Explicit(Explicit),
+}
+
+/// Steady relaxation.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Steady {
+    /// Method.
+    pub method: SteadyMethod,
+    /// Orders of magnitude the residual must fall.
+    pub orders: f64,
+    /// Greatest number of iterations.
+    pub iterations: u32,
+    /// Courant number at the start.
+    pub cfl: f64,
+    /// Greatest Courant number.
+    pub cfl_max: f64,
+}
+
+/// Method of the steady relaxation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum SteadyMethod {
+    /// Newton's method with GMRES, preconditioned by sweeps.
+    NewtonKrylov,
+    /// Lower-upper symmetric Gauss-Seidel sweeps alone.
+    LuSgs,
+    /// Explicit Runge-Kutta with local steps: the plain reference.
+    RungeKutta,
+}
+
+/// Explicit time marching.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Explicit {
+    /// Time at which the run ends.
+    pub until: Time,
+    /// Courant number.
+    pub cfl: f64,
+    /// Runge-Kutta method.
+    pub method: RungeKutta,
+    /// Greatest number of steps.
+    pub steps: u32,
+}
+
+/// Explicit Runge-Kutta method.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum RungeKutta {
+    /// Strong-stability-preserving, three stages, third order (Shu and Osher 1988).
+    Ssprk3,
+    /// Classical, four stages, fourth order.
+    Rk4,
+}
+
+/// Refinement that follows the solution.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Adapt {
+    /// Number of refinements (0: none).
+    pub cycles: u32,
+    /// Finest spacing that adaptation may ask for; default: `cloud.spacing`.
+    pub spacing: Option<Length>,
+    /// Greatest number of particles.
+    pub particles: usize,
+    /// Sensors in use.
+    pub sensors: Vec<Sensor>,
+}
+
+/// Sensor of the adaptation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Sensor {
+    /// Jumps of pressure across an edge.
+    Shock,
+    /// Jumps of tangential velocity across an edge.
+    Shear,
+    /// Second differences of density and velocity.
+    Curvature,
+}
+
+/// What is written, and how often.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Output {
+    /// Iterations between checkpoints.
+    pub checkpoint: u32,
+    /// Time between field files in marching runs; absent: the last field only.
+    pub field_interval: Option<Time>,
+    /// Write `report.html` and pictures.
+    pub report: bool,
+}
+
+/// A reference curve of Cp against x/c.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub struct Compare {
+    /// CSV file with columns `x_c` and `Cp` (`surface` optional), relative to the case file.
+    pub file: String,
+    /// Name in the legend.
+    pub label: String,
+}
+
+impl Default for Scheme {
+    fn default() -> Self {
+        Self { flux: Flux::Hllc, order: 2, limiter: Limiter::VanAlbada, limiter_threshold: 0.02, kappa: 0.0, conservative: None }
+    }
+}
+
+impl Default for Temporal {
+    fn default() -> Self {
+        Self::Steady(Steady::default())
+    }
+}
+
+impl Default for Steady {
+    fn default() -> Self {
+        Self { method: SteadyMethod::NewtonKrylov, orders: 6.0, iterations: 2000, cfl: 10.0, cfl_max: 1e6 }
+    }
+}
+
+impl Default for Adapt {
+    fn default() -> Self {
+        Self { cycles: 0, spacing: None, particles: 2_000_000, sensors: vec![Sensor::Shock, Sensor::Curvature] }
+    }
+}
+
+impl Default for Output {
+    fn default() -> Self {
+        Self { checkpoint: 50, field_interval: None, report: true }
+    }
+}
