@@ -1,1 +1,59 @@
-//! Filled in below.
+//! The seam between space and time.
+//!
+//! Space gives a semi-discrete system dU/dt = R(t, U); time integrates it without knowing what it means. What depends on time
+//! but is not evolved (states held on the outer boundary, later positions, velocities, normals and weights of moving
+//! particles) is one value, the *frame at (t, u)*. Marching holds one frame; harmonic balance will hold one per instance.
+use crate::math::block_matrix::BlockMatrix;
+
+/// A semi-discrete system dU/dt = R(t, U): the only thing an integrator ever sees.
+pub trait System: Sync {
+    /// What depends on time but is not evolved.
+    type Frame: Clone + Send + Sync;
+    /// Storage that an evaluation needs; made once, so that evaluations do not allocate.
+    type Work: Send;
+
+    /// Number of unknowns per particle.
+    fn block(&self) -> usize;
+    /// Number of unknowns.
+    fn len(&self) -> usize;
+    /// True when there is nothing to evolve.
+    fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+    /// The frame at time `t` and state `u`.
+    fn frame(&self, t: f64, u: &[f64]) -> Self::Frame;
+    /// Brings a frame to time `t` and state `u`.
+    fn update_frame(&self, t: f64, u: &[f64], work: &mut Self::Work, frame: &mut Self::Frame);
+    /// Fresh storage.
+    fn work(&self) -> Self::Work;
+    /// du = R(t, u).
+    fn rhs(&self, frame: &Self::Frame, u: &[f64], work: &mut Self::Work, du: &mut [f64]);
+    /// Largest rate of change 1/τ of each particle: explicit steps need Δt · rate ≲ 1.
+    fn spectral_radius(&self, frame: &Self::Frame, u: &[f64], work: &mut Self::Work, rate: &mut [f64]);
+    /// Sparsity of the linearised system: for each particle the others it depends on, itself left out.
+    fn graph(&self) -> (&[u32], &[u32]);
+    /// Fills `matrix` with −∂R/∂U of the first-order scheme, which is what implicit methods are preconditioned with.
+    fn linearise(&self, frame: &Self::Frame, u: &[f64], work: &mut Self::Work, matrix: &mut BlockMatrix);
+    /// The largest fraction ≤ 1 of the update `du` that changes every particle's density and pressure moderately.
+    fn admissible_fraction(&self, u: &[f64], du: &[f64]) -> f64;
+    /// The first particle whose state is not physical, if any.
+    fn fault(&self, u: &[f64]) -> Option<Fault>;
+}
+
+/// A particle whose state is not physical.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Fault {
+    /// Index of the particle.
+    pub particle: usize,
+    /// Where it is.
+    pub place: Vec<f64>,
+    /// What is wrong with it.
+    pub reason: String,
+}
+
+impl std::fmt::Display for Fault {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let place: Vec<String> = self.place.iter().map(|c| format!("{c:.5}")).collect();
+        write!(f, "particle {} at ({}): {}", self.particle, place.join(", "), self.reason)
+    }
+}

@@ -1,1 +1,169 @@
-//! Filled in below.
+//! The cloud: where particles are, which ones each of them sees, and the operators that follow from it.
+//!
+//! Particles come in four kinds, stored one after the other: *fluid* particles in Hilbert order, *interface* particles on
+//! the surfaces, *outer* particles on the sides of the domain, and *images* of particles across planes of symmetry and
+//! periodic sides. Only fluid particles evolve; the state of the others follows from theirs.
+pub mod build;
+pub mod fill;
+pub mod interface;
+pub mod layout;
+pub mod neighbours;
+pub mod operators;
+pub mod sources;
+pub mod tree;
+
+use std::ops::Range;
+
+use crate::case::Side;
+use crate::math::Vector;
+
+pub use layout::Layout;
+pub use neighbours::Neighbours;
+pub use operators::{Edge, Operators};
+
+/// A particle on a surface.
+#[derive(Clone, Copy, Debug)]
+pub struct Interface<const D: usize> {
+    /// Unit normal into the fluid.
+    pub normal: Vector<D>,
+    /// Area times normal: these sum to zero over a closed body.
+    pub area: Vector<D>,
+    /// ∂n/∂x along the surface, zero across it: the curvature tensor, positive for a convex body.
+    pub curvature: [Vector<D>; D],
+    /// Index of the body.
+    pub body: u16,
+    /// Index of the tag (part of a body).
+    pub tag: u16,
+    /// Number of the smooth piece of surface it belongs to: pieces meet at sharp edges.
+    pub piece: u32,
+    /// Distance along the outline in 2-D, zero in 3-D.
+    pub arc: f64,
+}
+
+/// A particle on a side of the domain.
+#[derive(Clone, Copy, Debug)]
+pub struct Outer {
+    /// Condition of the side.
+    pub side: Side,
+    /// Fluid particle it copies when the side is an outflow, else itself.
+    pub source: u32,
+}
+
+/// A reflection and a shift of space: x' = sign·x + offset.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Transform<const D: usize> {
+    /// −1 along mirrored axes, else 1.
+    pub sign: Vector<D>,
+    /// Shift after the reflection.
+    pub offset: Vector<D>,
+}
+
+impl<const D: usize> Transform<D> {
+    /// Image of a point.
+    pub fn point(&self, x: &Vector<D>) -> Vector<D> {
+        Vector::from_fn(|d| self.sign[d] * x[d] + self.offset[d])
+    }
+
+    /// Image of a direction.
+    #[inline]
+    pub fn direction(&self, v: &Vector<D>) -> Vector<D> {
+        Vector::from_fn(|d| self.sign[d] * v[d])
+    }
+
+    /// The transform that undoes this one.
+    pub fn inverse(&self) -> Self {
+        Self { sign: self.sign, offset: Vector::from_fn(|d| -self.sign[d] * self.offset[d]) }
+    }
+}
+
+/// The image of a particle.
+#[derive(Clone, Copy, Debug)]
+pub struct Image {
+    /// Particle it is the image of.
+    pub source: u32,
+    /// Index of the transform.
+    pub transform: u8,
+}
+
+/// Particles and what they see.
+#[derive(Clone, Debug)]
+pub struct Cloud<const D: usize> {
+    /// Positions.
+    pub x: Vec<Vector<D>>,
+    /// Local spacings.
+    pub spacing: Vec<f64>,
+    /// Volume (area in 2-D) that a particle stands for.
+    pub volume: Vec<f64>,
+    /// Number of fluid particles: the first ones.
+    pub n_fluid: usize,
+    /// Interface particles, in the order of their indices.
+    pub interface: Vec<Interface<D>>,
+    /// Outer particles, in the order of their indices.
+    pub outer: Vec<Outer>,
+    /// Images, in the order of their indices.
+    pub images: Vec<Image>,
+    /// Transforms that images refer to.
+    pub transforms: Vec<Transform<D>>,
+    /// Distance to the surface, for fluid particles near it; infinite elsewhere.
+    pub wall_distance: Vec<f64>,
+    /// Clouds of fluid and interface particles.
+    pub neighbours: Neighbours,
+    /// Fluid particles from which the state of each interface particle is fitted.
+    pub wall_clouds: Neighbours,
+    /// The background.
+    pub tree: tree::Tree<D>,
+    /// What had to be repaired, in words.
+    pub notes: Vec<String>,
+}
+
+impl<const D: usize> Cloud<D> {
+    /// Number of particles, images included.
+    pub fn len(&self) -> usize {
+        self.x.len()
+    }
+
+    /// True when there is no particle.
+    pub fn is_empty(&self) -> bool {
+        self.x.is_empty()
+    }
+
+    /// Indices of the interface particles.
+    pub fn interface_range(&self) -> Range<usize> {
+        self.n_fluid..self.n_fluid + self.interface.len()
+    }
+
+    /// Indices of the outer particles.
+    pub fn outer_range(&self) -> Range<usize> {
+        let start = self.n_rows();
+        start..start + self.outer.len()
+    }
+
+    /// Indices of the images.
+    pub fn image_range(&self) -> Range<usize> {
+        self.n_real()..self.len()
+    }
+
+    /// Number of particles that have a cloud of their own: fluid and interface.
+    pub fn n_rows(&self) -> usize {
+        self.n_fluid + self.interface.len()
+    }
+
+    /// Number of particles without images.
+    pub fn n_real(&self) -> usize {
+        self.n_rows() + self.outer.len()
+    }
+}
+
+/// Why a cloud could not be built.
+#[derive(Debug, thiserror::Error)]
+pub enum CloudError {
+    /// The domain does not suit the spacing.
+    #[error("{0}")]
+    Layout(String),
+    /// The doctor found particles that cannot be repaired.
+    #[error("{} particles have clouds that cannot be repaired; first ones:\n{}\nhint: lower `cloud.spacing` or raise `cloud.radius`", .0.len(), .0.iter().take(5).cloned().collect::<Vec<_>>().join("\n"))]
+    Quality(Vec<String>),
+    /// Nothing is left for the fluid.
+    #[error("no fluid particle is left: the bodies fill the domain; hint: check `scale` and `cloud.far_field`")]
+    Empty,
+}

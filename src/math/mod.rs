@@ -1,4 +1,10 @@
 //! Arithmetic that knows no physics: small vectors, least squares, sparse blocks, Krylov methods, the parallel loop.
+pub mod block_matrix;
+pub mod hilbert;
+pub mod krylov;
+pub mod least_squares;
+pub mod multilevel;
+pub mod sweep;
 pub mod types;
 
 pub use types::{Bounds, Vector};

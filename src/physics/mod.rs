@@ -1,1 +1,5 @@
-//! Filled in below.
+//! Pointwise physics: no index, no slice, no particle.
+pub mod gas;
+pub mod riemann;
+
+pub use gas::{Conserved, Gas, Primitive};

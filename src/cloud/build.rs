@@ -1,0 +1,104 @@
+//! From geometry to a finished cloud.
+use super::fill::Particles;
+use super::layout::{Layout, background};
+use super::neighbours::Search;
+use super::sources::Source;
+use super::{Cloud, CloudError, Outer, Transform};
+use crate::case::{Case, Side};
+use crate::geometry::Surface;
+use crate::math::Vector;
+
+/// Height of the volume that an interface particle stands for, in spacings.
+const WALL_HEIGHT: f64 = 0.45;
+
+impl<const D: usize> Cloud<D> {
+    /// Builds the cloud of a case; `extra` are sources of refinement that follow the solution.
+    pub fn build(case: &Case, surface: Option<&Surface<D>>, extra: &[Source<D>]) -> Result<Self, CloudError> {
+        let layout = Layout::new(case, surface)?;
+        let tree = background(case, &layout, surface, extra);
+        let particles = Particles::fill(tree, &layout, &case.cloud, surface);
+        if particles.n_fluid == 0 {
+            return Err(CloudError::Empty);
+        }
+        let transforms = transforms(&layout);
+        let (neighbours, wall_clouds, images) = Search::new(&particles, surface, &transforms, case.cloud.radius).clouds();
+        let outer = outer_particles(&particles);
+        let mut cloud = Self {
+            volume: volumes(&particles),
+            x: particles.x,
+            spacing: particles.spacing,
+            n_fluid: particles.n_fluid,
+            interface: particles.interface,
+            outer,
+            images,
+            transforms,
+            wall_distance: particles.wall_distance,
+            neighbours,
+            wall_clouds,
+            tree: particles.tree,
+            notes: Vec::new(),
+        };
+        cloud.append_images();
+        Ok(cloud)
+    }
+
+    fn append_images(&mut self) {
+        for image in &self.images {
+            let k = image.source as usize;
+            self.x.push(self.transforms[image.transform as usize].point(&self.x[k]));
+            self.spacing.push(self.spacing[k]);
+            self.volume.push(self.volume[k]);
+        }
+    }
+}
+
+/// h^D for fluid particles, area times height for interface particles.
+fn volumes<const D: usize>(particles: &Particles<D>) -> Vec<f64> {
+    let mut volume: Vec<f64> = particles.spacing.iter().map(|h| h.powi(D as i32)).collect();
+    for (w, i) in particles.interface.iter().zip(particles.n_fluid..) {
+        volume[i] = WALL_HEIGHT * particles.spacing[i] * w.area.norm();
+    }
+    volume
+}
+
+/// Every product of reflections and shifts that the sides of the domain call for.
+fn transforms<const D: usize>(layout: &Layout<D>) -> Vec<Transform<D>> {
+    let identity = Transform { sign: Vector::splat(1.0), offset: Vector::ZERO };
+    let mut all = vec![identity];
+    for d in 0..D {
+        let low = layout.forest.origin[d];
+        let length = f64::from(layout.forest.roots[d]) * layout.forest.root_size;
+        let mut along = Vec::new();
+        for (end, plane) in [(0, low), (1, low + length)] {
+            match layout.sides[d][end] {
+                Side::Symmetry => along.push((-1.0, 2.0 * plane)),
+                Side::Periodic => along.push((1.0, if end == 0 { -length } else { length })),
+                _ => {}
+            }
+        }
+        for base in all.clone() {
+            for (sign, offset) in &along {
+                let mut t = base;
+                t.sign[d] = *sign;
+                t.offset[d] = *offset;
+                all.push(t);
+            }
+        }
+    }
+    all.remove(0);
+    all
+}
+
+/// Outer particles with the fluid particle that an outflow copies: the nearest one straight inward.
+fn outer_particles<const D: usize>(particles: &Particles<D>) -> Vec<Outer> {
+    let first = particles.n_rows();
+    let outer = particles.outer.iter().zip(first..).map(|((axis, end), i)| {
+        let side = particles.sides[*axis][*end];
+        let mut inward = particles.x[i];
+        inward[*axis] += particles.spacing[i] * if *end == 0 { 1.0 } else { -1.0 };
+        let leaf = particles.tree.leaf_at(&inward).node;
+        let source = particles.in_leaf(leaf).find(|k| (*k as usize) < particles.n_fluid).unwrap_or(i as u32);
+        Outer { side, source }
+    });
+    outer.collect()
+}

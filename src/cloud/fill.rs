@@ -1,0 +1,217 @@
+//! Filling the background with particles.
+//!
+//! A fluid particle sits in the middle of every leaf that lies outside the bodies and not nearer to a surface, or to an
+//! interface particle, than a fraction of its size. The leaves along the sides of the domain carry the outer particles.
+use super::interface::{Placed, place};
+use super::layout::Layout;
+use super::neighbours::NEAR;
+use super::tree::{Leaf, MAX_LEVEL, Tree};
+use super::Interface;
+use crate::case::{Cloud as Spec, Side};
+use crate::geometry::Surface;
+use crate::math::hilbert::hilbert_index;
+use crate::math::sweep::sweep;
+use crate::math::{Bounds, Vector};
+
+/// Interface particles keep this distance, in spacings, from fluid particles.
+const CLEARANCE: f64 = 0.4;
+
+/// Particles in a tree, without images.
+pub struct Particles<const D: usize> {
+    /// The background.
+    pub tree: Tree<D>,
+    /// Positions: fluid, interface, outer.
+    pub x: Vec<Vector<D>>,
+    /// Local spacings.
+    pub spacing: Vec<f64>,
+    /// Distance to the surface where it is below a few spacings, else infinite.
+    pub wall_distance: Vec<f64>,
+    /// Number of fluid particles.
+    pub n_fluid: usize,
+    /// Interface particles.
+    pub interface: Vec<Interface<D>>,
+    /// Sides that the outer particles belong to: (axis, 0 for the smallest coordinate).
+    pub outer: Vec<(usize, usize)>,
+    /// Conditions on the sides.
+    pub sides: [[Side; 2]; D],
+    centre: Vec<Vector<D>>,
+    next: Vec<u32>,
+    leaf_first: Vec<u32>,
+    leaf_index: Vec<u32>,
+}
+
+impl<const D: usize> Particles<D> {
+    /// Places all particles of a background.
+    pub fn fill(tree: Tree<D>, layout: &Layout<D>, spec: &Spec, surface: Option<&Surface<D>>) -> Self {
+        let placed = surface.map(|s| place(s, &tree)).unwrap_or_default();
+        let mut fluid = Vec::new();
+        let mut outer = Vec::new();
+        let leaves: Vec<Leaf<D>> = tree.leaves().collect();
+        let mut distance = vec![None; leaves.len()];
+        sweep(&mut distance, |k| wall_distance(&leaves[k], spec, surface));
+        for (leaf, distance) in leaves.iter().zip(&distance) {
+            let Some(distance) = distance else { continue };
+            match side_of(leaf, &tree.bounds(), &layout.sides) {
+                Some(side) => outer.push((*leaf, side)),
+                None => fluid.push((*leaf, *distance)),
+            }
+        }
+        blank_near_interface(&tree, &placed, &mut fluid);
+        let key = |leaf: &Leaf<D>| curve_position(&tree, leaf);
+        fluid.sort_by_cached_key(|(leaf, _)| key(leaf));
+        outer.sort_by_cached_key(|(leaf, _)| key(leaf));
+        Self::assemble(tree, layout, spec.jitter, (fluid, placed, outer))
+    }
+
+    #[allow(clippy::type_complexity)]
+    fn assemble(
+        tree: Tree<D>, layout: &Layout<D>, jitter: f64,
+        (fluid, placed, outer): (Vec<(Leaf<D>, f64)>, Placed<D>, Vec<(Leaf<D>, (usize, usize))>),
+    ) -> Self {
+        let n_fluid = fluid.len();
+        let outer_leaves = outer.iter().map(|(l, _)| l);
+        let centre: Vec<_> = fluid
+            .iter()
+            .map(|(l, _)| l.centre)
+            .chain(placed.x.iter().copied())
+            .chain(outer_leaves.clone().map(|l| l.centre))
+            .collect();
+        let spacing = fluid
+            .iter()
+            .map(|(l, _)| l.size)
+            .chain(placed.spacing.iter().copied())
+            .chain(outer_leaves.clone().map(|l| l.size))
+            .collect();
+        let wall_distance = fluid
+            .iter()
+            .map(|(_, d)| *d)
+            .chain(placed.x.iter().map(|_| 0.0))
+            .chain(outer_leaves.map(|_| f64::INFINITY))
+            .collect::<Vec<_>>();
+        let mut x = centre.clone();
+        for (i, (leaf, distance)) in fluid.iter().enumerate() {
+            if jitter > 0.0 && distance.is_infinite() {
+                x[i] += random_direction(tree.anchor(leaf.node)) * (jitter * leaf.size);
+            }
+        }
+        let next = placed.next.iter().map(|k| if *k == u32::MAX { *k } else { k + n_fluid as u32 }).collect();
+        let mut all = Self {
+            x,
+            spacing,
+            wall_distance,
+            n_fluid,
+            interface: placed.interface,
+            outer: outer.iter().map(|(_, side)| *side).collect(),
+            sides: layout.sides,
+            centre,
+            next,
+            leaf_first: Vec::new(),
+            leaf_index: Vec::new(),
+            tree,
+        };
+        all.index_leaves();
+        all
+    }
+
+    /// Counting sort of the particles by the leaf that holds them.
+    fn index_leaves(&mut self) {
+        let leaf: Vec<u32> = self.centre.iter().map(|x| self.tree.leaf_at(x).node).collect();
+        let mut first = vec![0u32; self.tree.n_nodes() + 1];
+        leaf.iter().for_each(|k| first[*k as usize + 1] += 1);
+        (0..self.tree.n_nodes()).for_each(|k| first[k + 1] += first[k]);
+        let mut slot = first.clone();
+        self.leaf_index = vec![0; leaf.len()];
+        for (i, k) in leaf.iter().enumerate() {
+            self.leaf_index[slot[*k as usize] as usize] = i as u32;
+            slot[*k as usize] += 1;
+        }
+        self.leaf_first = first;
+    }
+
+    /// Particles inside a leaf.
+    pub fn in_leaf(&self, node: u32) -> impl Iterator<Item = u32> + '_ {
+        let k = node as usize;
+        self.leaf_index[self.leaf_first[k] as usize..self.leaf_first[k + 1] as usize].iter().copied()
+    }
+
+    /// Middle of the leaf of a fluid or outer particle; the position of an interface particle.
+    pub fn cell_centre(&self, i: usize) -> Vector<D> {
+        self.centre[i]
+    }
+
+    /// True for interface particles.
+    #[inline]
+    pub fn is_interface(&self, i: usize) -> bool {
+        (self.n_fluid..self.n_rows()).contains(&i)
+    }
+
+    /// Fluid and interface particles.
+    pub fn n_rows(&self) -> usize {
+        self.n_fluid + self.interface.len()
+    }
+
+    /// True when two interface particles follow one another along an outline.
+    pub fn adjacent(&self, i: usize, k: usize) -> bool {
+        let next = |a: usize| self.next.get(a - self.n_fluid).map_or(usize::MAX, |n| *n as usize);
+        next(i) == k || next(k) == i
+    }
+}
+
+/// Distance from a leaf to the surface, infinite when far; `None` when the leaf is to be left empty.
+fn wall_distance<const D: usize>(leaf: &Leaf<D>, spec: &Spec, surface: Option<&Surface<D>>) -> Option<f64> {
+    let Some(surface) = surface else { return Some(f64::INFINITY) };
+    let near = surface.nearest(&leaf.centre, (NEAR + 1.0) * leaf.size);
+    if near.as_ref().is_some_and(|n| n.distance < spec.blank * leaf.size) || surface.inside(&leaf.centre) {
+        return None;
+    }
+    Some(near.map_or(f64::INFINITY, |n| n.distance))
+}
+
+/// Drops fluid leaves whose centre is too near to an interface particle.
+fn blank_near_interface<const D: usize>(tree: &Tree<D>, placed: &Placed<D>, fluid: &mut Vec<(Leaf<D>, f64)>) {
+    let mut drop = vec![false; tree.n_nodes()];
+    for (x, h) in placed.x.iter().zip(&placed.spacing) {
+        let reach = Vector::splat(CLEARANCE * h);
+        tree.overlapping(&Bounds { min: *x - reach, max: *x + reach }, |k| {
+            let leaf = tree.leaf(k);
+            drop[k as usize] |= (leaf.centre - *x).norm() < CLEARANCE * leaf.size;
+        });
+    }
+    fluid.retain(|(leaf, _)| !drop[leaf.node as usize]);
+}
+
+/// The side of the domain that a leaf lies on, unless particles exist beyond it (symmetry, periodicity).
+fn side_of<const D: usize>(leaf: &Leaf<D>, bounds: &Bounds<D>, sides: &[[Side; 2]; D]) -> Option<(usize, usize)> {
+    let mut found: Option<(usize, usize)> = None;
+    for d in 0..D {
+        for end in 0..2 {
+            let gap = if end == 0 { leaf.centre[d] - bounds.min[d] } else { bounds.max[d] - leaf.centre[d] };
+            let open = matches!(sides[d][end], Side::FarField | Side::Held | Side::Outflow { .. });
+            // where two sides meet, the one that holds a state wins over an outflow
+            let better = found.is_none_or(|f| matches!(sides[f.0][f.1], Side::Outflow { .. }));
+            if open && gap < 0.75 * leaf.size && better {
+                found = Some((d, end));
+            }
+        }
+    }
+    found
+}
+
+fn curve_position<const D: usize>(tree: &Tree<D>, leaf: &Leaf<D>) -> u64 {
+    let bits = 64 / D as u32;
+    let anchor = tree.anchor(leaf.node);
+    let need = u32::from(MAX_LEVEL) + 11;
+    let shift = need.saturating_sub(bits.min(31));
+    hilbert_index(std::array::from_fn::<u32, D, _>(|d| anchor[d] >> shift), bits.min(31))
+}
+
+/// A vector with components in [−1, 1] that depends on the cell alone.
+fn random_direction<const D: usize>(anchor: [u32; D]) -> Vector<D> {
+    let mut state = anchor.iter().fold(0x9e37_79b9_7f4a_7c15u64, |s, a| (s ^ u64::from(*a)).wrapping_mul(0xbf58_476d_1ce4_e5b9));
+    Vector::from_fn(|_| {
+        state ^= state >> 29;
+        state = state.wrapping_mul(0x94d0_49bb_1331_11eb);
+        state ^= state >> 32;
+        (state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+    })
+}

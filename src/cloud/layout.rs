@@ -1,0 +1,136 @@
+//! From the case to the background: domain, levels, sources of refinement.
+use super::CloudError;
+use super::sources::{Source, SourceBox, Sources};
+use super::tree::{Forest, Tree};
+use crate::case::{Case, Side};
+use crate::geometry::Surface;
+use crate::math::{Bounds, Vector};
+
+/// Half-width of the far field in body lengths, two and three dimensions.
+const FAR_FIELD: [f64; 2] = [40.0, 10.0];
+/// Turning angle in radians above which an edge of the surface asks for extra levels.
+const SHARP: f64 = 0.35;
+/// Greatest relative misfit of an explicit domain to whole cells.
+const MISFIT: f64 = 1e-6;
+
+/// The box of the run and its sides.
+#[derive(Clone, Debug)]
+pub struct Layout<const D: usize> {
+    /// Root cells.
+    pub forest: Forest<D>,
+    /// Conditions on the sides, [axis][0: smallest, 1: largest coordinate].
+    pub sides: [[Side; 2]; D],
+}
+
+impl<const D: usize> Layout<D> {
+    /// Lays out the domain of a case.
+    pub fn new(case: &Case, surface: Option<&Surface<D>>) -> Result<Self, CloudError> {
+        let s = &case.boundary;
+        let all = [[s.x_min, s.x_max], [s.y_min, s.y_max], [s.z_min, s.z_max]];
+        let sides: [[Side; 2]; D] = std::array::from_fn(|d| all[d]);
+        let periodic = std::array::from_fn(|d| sides[d][0] == Side::Periodic);
+        let forest = match (&case.cloud.domain, surface) {
+            (Some(domain), _) => explicit(case, domain, periodic)?,
+            (None, Some(surface)) => around(case, surface, &sides),
+            (None, None) => return Err(CloudError::Layout("a case without bodies needs `cloud.domain`".into())),
+        };
+        Ok(Self { forest, sides })
+    }
+}
+
+/// Root cells of an explicit domain: the largest power of two of the spacing that divides every side.
+fn explicit<const D: usize>(case: &Case, domain: &crate::case::Domain, periodic: [bool; D]) -> Result<Forest<D>, CloudError> {
+    let corner = |v: &[crate::case::Length]| Vector::<D>::from_fn(|d| v.get(d).map_or(0.0, |l| l.0));
+    let (min, max) = (corner(&domain.min), corner(&domain.max));
+    let spacing = case.cloud.spacing.0;
+    let cells: [f64; D] = std::array::from_fn(|d| (max[d] - min[d]) / spacing);
+    for d in 0..D {
+        if (cells[d] - cells[d].round()).abs() > MISFIT * cells[d] || cells[d] < 0.5 {
+            return Err(CloudError::Layout(format!(
+                "side {d} of `cloud.domain` is {} long, not a whole number of `cloud.spacing` = {spacing}; hint: {} cells would fit with a spacing of {}",
+                max[d] - min[d], cells[d].round().max(1.0), (max[d] - min[d]) / cells[d].round().max(1.0)
+            )));
+        }
+    }
+    let whole: [u64; D] = std::array::from_fn(|d| cells[d].round() as u64);
+    let shift = whole.iter().map(|c| c.trailing_zeros()).min().unwrap_or(0).min(10);
+    let root_size = spacing * f64::from(1u32 << shift);
+    let roots = std::array::from_fn(|d| (whole[d] >> shift) as u32);
+    if roots.iter().any(|r| *r >= 1 << 11) {
+        return Err(CloudError::Layout(format!(
+            "`cloud.domain` needs {roots:?} root cells, at most 2047 along an axis; hint: make its sides multiples of a larger power of two of the spacing"
+        )));
+    }
+    Ok(Forest { origin: min, root_size, roots, periodic })
+}
+
+/// One root cell around the bodies; planes of symmetry pass through the origin of their axis.
+fn around<const D: usize>(case: &Case, surface: &Surface<D>, sides: &[[Side; 2]; D]) -> Forest<D> {
+    let bounds = surface.bounds();
+    let length = bounds.extent().max_abs();
+    let wanted = case.cloud.far_field.map_or(FAR_FIELD[D - 2] * length, |l| l.0);
+    let spacing = case.cloud.spacing.0;
+    let half = spacing * 2f64.powf((wanted / spacing).log2().ceil());
+    let centre = bounds.centre();
+    let cut = |d: usize, end: usize| sides[d][end] == Side::Symmetry && sides[d][1 - end] != Side::Symmetry;
+    // the grid is aligned with the origin, so that a section that is symmetric about an axis gets a symmetric cloud
+    let snap = |c: f64| (c / spacing).round() * spacing;
+    let origin = Vector::from_fn(|d| match (cut(d, 0), cut(d, 1)) {
+        (true, _) => 0.0,
+        (_, true) => -half,
+        _ => snap(centre[d]) - half,
+    });
+    // where half of the space is cut off, cells of half the width fill the rest
+    let halved = (0..D).any(|d| cut(d, 0) || cut(d, 1));
+    let count = |d: usize| if !halved || cut(d, 0) || cut(d, 1) { 1 } else { 2 };
+    let root_size = if halved { half } else { 2.0 * half };
+    Forest { origin, root_size, roots: std::array::from_fn(count), periodic: [false; D] }
+}
+
+/// The background tree of a case; `extra` are sources that follow the solution.
+pub fn background<const D: usize>(
+    case: &Case, layout: &Layout<D>, surface: Option<&Surface<D>>, extra: &[Source<D>],
+) -> Tree<D> {
+    let mut points = extra.to_vec();
+    let mut boxes = user_boxes(case, surface);
+    if let Some(surface) = surface {
+        surface_sources(case, surface, &mut points);
+    } else {
+        let size = layout.forest.roots;
+        let extent = Vector::from_fn(|d| f64::from(size[d]) * layout.forest.root_size);
+        let bounds = Bounds { min: layout.forest.origin, max: layout.forest.origin + extent };
+        boxes.push(SourceBox { bounds, spacing: case.cloud.spacing.0 });
+    }
+    let sources = Sources::new(points, boxes);
+    Tree::build(&layout.forest, |x, size| sources.split(x, size))
+}
+
+fn user_boxes<const D: usize>(case: &Case, surface: Option<&Surface<D>>) -> Vec<SourceBox<D>> {
+    let corner = |v: &[crate::case::Length]| Vector::from_fn(|d| v.get(d).map_or(0.0, |l| l.0));
+    let mut boxes: Vec<_> = case
+        .cloud
+        .boxes
+        .iter()
+        .map(|b| SourceBox { bounds: Bounds { min: corner(&b.min), max: corner(&b.max) }, spacing: b.spacing.0 })
+        .collect();
+    if let (Some(wake), Some(surface)) = (&case.cloud.wake, surface) {
+        let b = surface.bounds();
+        let mut max = b.max;
+        max[0] += wake.length.0;
+        boxes.push(SourceBox { bounds: Bounds { min: b.min, max }, spacing: wake.spacing.0 });
+    }
+    boxes
+}
+
+/// Points of the surface with the spacing that the case, the curvature and sharp edges ask for.
+fn surface_sources<const D: usize>(case: &Case, surface: &Surface<D>, points: &mut Vec<Source<D>>) {
+    let cloud = &case.cloud;
+    let base = cloud.spacing.0;
+    let finest = base / f64::from(1u32 << cloud.curvature_levels);
+    surface.for_each_sample(0.5 * base, |x, radius| {
+        let spacing = (cloud.curvature * radius).clamp(finest, base);
+        points.push(Source { x: *x, spacing, layers: cloud.layers });
+    });
+    let edge = base / f64::from(1u32 << cloud.edge_levels);
+    surface.for_each_sharp_point(SHARP, edge, |x| points.push(Source { x: *x, spacing: edge, layers: cloud.layers }));
+}

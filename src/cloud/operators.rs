@@ -1,0 +1,197 @@
+//! Derivative weights and the edges of the cloud.
+//!
+//! ∇f_i = Σ_j a_ij (f_j − f_i) by a linear least-squares fit with weights 1/r² (eqs (10)-(15)). The scheme works on *edges*:
+//! pairs of particles that see one another, each with a_ij, a_ji and the antisymmetric vector s_ij = V_i a_ij − V_j a_ji that
+//! weights the upwind dissipation. On a uniform lattice s_ij = 2 V a_ij and everything reduces to one set of coefficients.
+//!
+//! Rows are cut into contiguous *parts*; an edge inside a part is visited once and serves both ends, an edge between parts
+//! is stored with both. Every part writes only its own rows, so results do not depend on the number of threads.
+use std::ops::Range;
+
+use super::neighbours::Neighbours;
+use super::{Cloud, Image, Transform};
+use crate::math::Vector;
+use crate::math::least_squares::gradient_weights;
+use crate::math::sweep::{parts, sweep};
+
+/// Rows in one part: large enough that few edges are visited twice, small enough to stay in cache and balance threads.
+const PART: usize = 1024;
+/// Marks an edge whose second end lies in the same part.
+const BOTH: u32 = 1 << 31;
+
+/// Two particles that see one another.
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+pub struct Edge<const D: usize> {
+    i: u32,
+    j: u32,
+    /// Weight a_ij of the derivative at the first end.
+    pub a_i: Vector<D>,
+    /// Weight a_ji of the derivative at the second end, zero if that has no cloud.
+    pub a_j: Vector<D>,
+    /// V_i a_ij − V_j a_ji.
+    pub s: Vector<D>,
+}
+
+impl<const D: usize> Edge<D> {
+    /// First end.
+    #[inline(always)]
+    pub fn i(&self) -> usize {
+        self.i as usize
+    }
+
+    /// Second end.
+    #[inline(always)]
+    pub fn j(&self) -> usize {
+        (self.j & !BOTH) as usize
+    }
+
+    /// True when this visit serves the second end as well.
+    #[inline(always)]
+    pub fn both(&self) -> bool {
+        self.j & BOTH != 0
+    }
+}
+
+/// Edges and derivative weights of a cloud.
+#[derive(Clone, Debug)]
+pub struct Operators<const D: usize> {
+    /// Rows of each part; fluid parts first, then interface parts.
+    pub parts: Vec<Range<usize>>,
+    /// Number of parts that hold fluid particles.
+    pub n_fluid_parts: usize,
+    /// Edges of each part.
+    edges: Vec<Edge<D>>,
+    first: Vec<u32>,
+    /// Condition number of the normal matrix of each row, infinite where the cloud determines no gradient.
+    pub condition: Vec<f64>,
+}
+
+impl<const D: usize> Operators<D> {
+    /// Fits all rows of a cloud.
+    pub fn new(cloud: &Cloud<D>) -> Self {
+        let (weights, condition) = fit_rows(cloud);
+        let lookup = Reverse::new(cloud, &weights);
+        let mut all = parts(cloud.n_fluid, PART);
+        let n_fluid_parts = all.len();
+        let start = cloud.n_fluid;
+        all.extend(parts(cloud.interface.len(), PART).into_iter().map(|p| p.start + start..p.end + start));
+        let mut lists = vec![Vec::new(); all.len()];
+        sweep(&mut lists, |k| part_edges(cloud, &weights, &lookup, &all[k]));
+        let mut first = vec![0];
+        let mut edges = Vec::with_capacity(lists.iter().map(Vec::len).sum());
+        for list in lists {
+            edges.extend(list);
+            first.push(edges.len() as u32);
+        }
+        Self { parts: all, n_fluid_parts, edges, first, condition }
+    }
+
+    /// Edges of part `k`.
+    #[inline]
+    pub fn edges(&self, k: usize) -> &[Edge<D>] {
+        &self.edges[self.first[k] as usize..self.first[k + 1] as usize]
+    }
+
+    /// Parts of fluid particles.
+    pub fn fluid_parts(&self) -> &[Range<usize>] {
+        &self.parts[..self.n_fluid_parts]
+    }
+
+    /// All edges, part after part, to rewrite the dissipation vectors.
+    pub fn edges_mut(&mut self) -> &mut [Edge<D>] {
+        &mut self.edges
+    }
+
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        self.edges.len() * size_of::<Edge<D>>() + self.condition.len() * 8
+    }
+}
+
+/// Weights of every neighbour entry and the conditioning of every row.
+fn fit_rows<const D: usize>(cloud: &Cloud<D>) -> (Vec<Vector<D>>, Vec<f64>) {
+    let mut rows = vec![(Vec::new(), f64::INFINITY); cloud.neighbours.len()];
+    sweep(&mut rows, |i| {
+        let offsets: Vec<Vector<D>> =
+            cloud.neighbours.of(i).iter().map(|j| cloud.x[*j as usize] - cloud.x[i]).collect();
+        let mut weights = Vec::with_capacity(offsets.len());
+        match gradient_weights(&offsets, &mut weights) {
+            Some(condition) => (weights, condition),
+            None => (vec![Vector::ZERO; offsets.len()], f64::INFINITY),
+        }
+    });
+    let condition = rows.iter().map(|r| r.1).collect();
+    (rows.into_iter().flat_map(|r| r.0).collect(), condition)
+}
+
+/// Finds a_ji for the entry (i, j), through images where needed.
+struct Reverse<'a, const D: usize> {
+    cloud: &'a Cloud<D>,
+    weights: &'a [Vector<D>],
+    images: std::collections::HashMap<(u32, u8), u32>,
+    inverse: Vec<Option<u8>>,
+}
+
+impl<'a, const D: usize> Reverse<'a, D> {
+    fn new(cloud: &'a Cloud<D>, weights: &'a [Vector<D>]) -> Self {
+        let first = cloud.n_real() as u32;
+        let images = cloud.images.iter().zip(first..).map(|(m, k)| ((m.source, m.transform), k)).collect();
+        let same = |a: &Transform<D>, b: &Transform<D>| a.sign == b.sign && (a.offset - b.offset).max_abs() < 1e-9;
+        let find = |t: &Transform<D>| cloud.transforms.iter().position(|o| same(o, &t.inverse())).map(|k| k as u8);
+        Self { cloud, weights, images, inverse: cloud.transforms.iter().map(find).collect() }
+    }
+
+    /// a_ji, or `None` when the second end has no cloud or does not see the first.
+    fn weight(&self, i: usize, j: usize) -> Option<Vector<D>> {
+        let c = self.cloud;
+        if j < c.n_rows() {
+            return self.entry(j, i as u32);
+        }
+        let Image { source, transform } = *c.images.get(j.checked_sub(c.n_real())?)?;
+        if source as usize >= c.n_rows() {
+            return None;
+        }
+        let back = self.inverse[transform as usize]?;
+        let mirrored = *self.images.get(&(i as u32, back))?;
+        let a = self.entry(source as usize, mirrored)?;
+        Some(c.transforms[transform as usize].direction(&a))
+    }
+
+    fn entry(&self, row: usize, j: u32) -> Option<Vector<D>> {
+        let position = self.cloud.neighbours.of(row).binary_search(&j).ok()?;
+        Some(self.weights[self.cloud.neighbours.first[row] as usize + position])
+    }
+}
+
+fn part_edges<const D: usize>(
+    cloud: &Cloud<D>, weights: &[Vector<D>], reverse: &Reverse<'_, D>, part: &Range<usize>,
+) -> Vec<Edge<D>> {
+    let mut edges = Vec::new();
+    for i in part.clone() {
+        for e in cloud.neighbours.range(i) {
+            let j = cloud.neighbours.index[e] as usize;
+            let inside = part.contains(&j);
+            if inside && j < i {
+                continue;
+            }
+            let a_i = weights[e];
+            let back = reverse.weight(i, j);
+            // an end without a cloud counts as the mirror image of this one
+            let s = match back {
+                Some(a_j) => a_i * cloud.volume[i] - a_j * cloud.volume[j],
+                None => a_i * (2.0 * cloud.volume[i]),
+            };
+            let flag = if inside { BOTH } else { 0 };
+            edges.push(Edge { i: i as u32, j: j as u32 | flag, a_i, a_j: back.unwrap_or(Vector::ZERO), s });
+        }
+    }
+    edges
+}
+
+/// Rows whose neighbours are not all fluid particles in the interior: none of their entries is missing.
+pub fn is_symmetric(neighbours: &Neighbours, n_rows: usize) -> bool {
+    (0..n_rows).all(|i| {
+        neighbours.of(i).iter().all(|j| *j as usize >= n_rows || neighbours.of(*j as usize).binary_search(&(i as u32)).is_ok())
+    })
+}

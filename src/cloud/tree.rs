@@ -1,0 +1,266 @@
+//! The background: a forest of square (cubic) cells, each the root of a quadtree (octree).
+//!
+//! Cells are addressed by integers in units of the finest possible cell, so that neighbours are found by arithmetic alone.
+//! The forest is balanced: cells that touch, corners included, differ by one level at most.
+use crate::math::{Bounds, Vector};
+
+/// Deepest level below a root.
+pub const MAX_LEVEL: u8 = 20;
+const NONE: u32 = u32::MAX;
+
+/// One cell; its children, when it has any, follow one another from `first_child`.
+#[derive(Clone, Copy, Debug)]
+struct Node<const D: usize> {
+    first_child: u32,
+    level: u8,
+    anchor: [u32; D],
+}
+
+/// A balanced forest of cells that fills a box.
+#[derive(Clone, Debug)]
+pub struct Tree<const D: usize> {
+    origin: Vector<D>,
+    root_size: f64,
+    roots: [u32; D],
+    periodic: [bool; D],
+    nodes: Vec<Node<D>>,
+}
+
+/// A cell without children.
+#[derive(Clone, Copy, Debug)]
+pub struct Leaf<const D: usize> {
+    /// Index that stays valid as long as the tree does.
+    pub node: u32,
+    /// Middle.
+    pub centre: Vector<D>,
+    /// Edge length.
+    pub size: f64,
+    /// Levels below the root.
+    pub level: u8,
+}
+
+/// The box that a tree fills and how its sides connect.
+#[derive(Clone, Copy, Debug)]
+pub struct Forest<const D: usize> {
+    /// Corner with the smallest coordinates.
+    pub origin: Vector<D>,
+    /// Edge length of the root cells.
+    pub root_size: f64,
+    /// Number of root cells along each axis.
+    pub roots: [u32; D],
+    /// Axes along which the box repeats itself.
+    pub periodic: [bool; D],
+}
+
+impl<const D: usize> Tree<D> {
+    /// Splits every cell for which `wanted(centre, size)` holds, then balances.
+    pub fn build(forest: &Forest<D>, wanted: impl Fn(&Vector<D>, f64) -> bool) -> Self {
+        let count: u32 = forest.roots.iter().product();
+        let nodes = (0..count).map(|k| Node { first_child: NONE, level: 0, anchor: root_anchor(k, &forest.roots) }).collect();
+        let mut tree = Self {
+            origin: forest.origin,
+            root_size: forest.root_size,
+            roots: forest.roots,
+            periodic: forest.periodic,
+            nodes,
+        };
+        let mut k = 0;
+        while k < tree.nodes.len() {
+            let leaf = tree.leaf(k as u32);
+            if leaf.level < MAX_LEVEL && wanted(&leaf.centre, leaf.size) {
+                tree.split(k as u32);
+            }
+            k += 1;
+        }
+        tree.balance();
+        tree
+    }
+
+    /// All cells without children.
+    pub fn leaves(&self) -> impl Iterator<Item = Leaf<D>> + '_ {
+        (0..self.nodes.len() as u32).filter(|k| self.nodes[*k as usize].first_child == NONE).map(|k| self.leaf(k))
+    }
+
+    /// Number of cells, parents included: the bound of every `Leaf::node`.
+    pub fn n_nodes(&self) -> usize {
+        self.nodes.len()
+    }
+
+    /// The box that the tree fills.
+    pub fn bounds(&self) -> Bounds<D> {
+        let extent = Vector::from_fn(|d| f64::from(self.roots[d]) * self.root_size);
+        Bounds { min: self.origin, max: self.origin + extent }
+    }
+
+    /// Axes along which the box repeats itself.
+    pub fn periodic(&self) -> [bool; D] {
+        self.periodic
+    }
+
+    /// The leaf that contains `x`; points outside are moved to the border.
+    pub fn leaf_at(&self, x: &Vector<D>) -> Leaf<D> {
+        let unit = self.unit();
+        let cell = std::array::from_fn(|d| {
+            let top = i64::from(self.roots[d]) << MAX_LEVEL;
+            (((x[d] - self.origin[d]) / unit).floor() as i64).clamp(0, top - 1)
+        });
+        self.leaf(self.find(&cell).unwrap_or(0))
+    }
+
+    /// Calls `f(node)` for every leaf that meets `cube`.
+    pub fn overlapping(&self, cube: &Bounds<D>, mut f: impl FnMut(u32)) {
+        let unit = self.unit();
+        let low: [i64; D] = std::array::from_fn(|d| ((cube.min[d] - self.origin[d]) / unit).floor() as i64);
+        let high: [i64; D] = std::array::from_fn(|d| ((cube.max[d] - self.origin[d]) / unit).floor() as i64);
+        let root = |c: i64, d: usize| (c >> MAX_LEVEL).clamp(0, i64::from(self.roots[d]) - 1);
+        let mut cell: [i64; D] = std::array::from_fn(|d| root(low[d], d));
+        loop {
+            let k = (0..D).rev().fold(0, |k, d| k * i64::from(self.roots[d]) + cell[d]);
+            self.descend(k as u32, &low, &high, &mut f);
+            let Some(d) = (0..D).find(|d| cell[*d] < root(high[*d], *d)) else { return };
+            cell[d] += 1;
+            (0..d).for_each(|e| cell[e] = root(low[e], e));
+        }
+    }
+
+    fn descend(&self, k: u32, low: &[i64; D], high: &[i64; D], f: &mut impl FnMut(u32)) {
+        let node = &self.nodes[k as usize];
+        let size = 1i64 << (MAX_LEVEL - node.level);
+        let apart = (0..D).any(|d| i64::from(node.anchor[d]) > high[d] || i64::from(node.anchor[d]) + size <= low[d]);
+        if apart {
+            return;
+        }
+        if node.first_child == NONE {
+            f(k);
+            return;
+        }
+        (0..1u32 << D).for_each(|c| self.descend(node.first_child + c, low, high, f));
+    }
+
+    fn unit(&self) -> f64 {
+        self.root_size / (1u64 << MAX_LEVEL) as f64
+    }
+
+    /// The leaf or cell with index `k`.
+    pub fn leaf(&self, k: u32) -> Leaf<D> {
+        let node = &self.nodes[k as usize];
+        let size = self.root_size / (1u64 << node.level) as f64;
+        let unit = self.unit();
+        let centre = Vector::from_fn(|d| self.origin[d] + f64::from(node.anchor[d]) * unit + 0.5 * size);
+        Leaf { node: k, centre, size, level: node.level }
+    }
+
+    /// Integer coordinates of the lower corner of cell `k`.
+    pub fn anchor(&self, k: u32) -> [u32; D] {
+        self.nodes[k as usize].anchor
+    }
+
+    /// The leaf that contains the finest cell `p`, wrapped along periodic axes.
+    fn find(&self, p: &[i64; D]) -> Option<u32> {
+        let mut q = [0u32; D];
+        for d in 0..D {
+            let top = i64::from(self.roots[d]) << MAX_LEVEL;
+            let c = if self.periodic[d] { p[d].rem_euclid(top) } else { p[d] };
+            if c < 0 || c >= top {
+                return None;
+            }
+            q[d] = c as u32;
+        }
+        let mut k = (0..D).rev().fold(0, |k, d| k * self.roots[d] + (q[d] >> MAX_LEVEL)) as usize;
+        while self.nodes[k].first_child != NONE {
+            let bit = MAX_LEVEL - 1 - self.nodes[k].level;
+            let child = (0..D).fold(0, |c, d| c | (q[d] >> bit & 1) << d);
+            k = (self.nodes[k].first_child + child) as usize;
+        }
+        Some(k as u32)
+    }
+
+    fn split(&mut self, k: u32) {
+        let node = self.nodes[k as usize];
+        self.nodes[k as usize].first_child = self.nodes.len() as u32;
+        let half = 1u32 << (MAX_LEVEL - node.level - 1);
+        for c in 0..1u32 << D {
+            let anchor = std::array::from_fn(|d| node.anchor[d] + (c >> d & 1) * half);
+            self.nodes.push(Node { first_child: NONE, level: node.level + 1, anchor });
+        }
+    }
+
+    /// Splits cells until touching leaves differ by one level at most.
+    fn balance(&mut self) {
+        let mut queue: Vec<u32> = (0..self.nodes.len() as u32).filter(|k| self.nodes[*k as usize].first_child == NONE).collect();
+        while let Some(k) = queue.pop() {
+            let node = self.nodes[k as usize];
+            if node.first_child != NONE || node.level < 2 {
+                continue;
+            }
+            let size = 1i64 << (MAX_LEVEL - node.level);
+            let mut coarse = Vec::new();
+            for_each_direction(|direction: [i64; D]| {
+                let p = std::array::from_fn(|d| i64::from(node.anchor[d]) + direction[d] * size);
+                if let Some(j) = self.find(&p)
+                    && self.nodes[j as usize].level + 1 < node.level
+                    && !coarse.contains(&j)
+                {
+                    coarse.push(j);
+                }
+            });
+            for j in coarse {
+                let first = self.nodes.len() as u32;
+                self.split(j);
+                queue.extend(first..first + (1 << D));
+                queue.push(k);
+            }
+        }
+    }
+}
+
+fn root_anchor<const D: usize>(k: u32, roots: &[u32; D]) -> [u32; D] {
+    let mut rest = k;
+    std::array::from_fn(|d| {
+        let c = rest % roots[d];
+        rest /= roots[d];
+        c << MAX_LEVEL
+    })
+}
+
+/// Calls `f` with each of the 3^D − 1 directions.
+fn for_each_direction<const D: usize>(mut f: impl FnMut([i64; D])) {
+    for code in 0..3usize.pow(D as u32) {
+        let mut rest = code;
+        let direction: [i64; D] = std::array::from_fn(|_| {
+            let c = (rest % 3) as i64 - 1;
+            rest /= 3;
+            c
+        });
+        if direction.iter().any(|c| *c != 0) {
+            f(direction);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sample() -> Tree<2> {
+        let forest = Forest { origin: Vector([-1.0, -1.0]), root_size: 1.0, roots: [2, 2], periodic: [true, false] };
+        Tree::build(&forest, |x, size| size > 0.01 && x.norm() < size)
+    }
+
+    #[test]
+    fn leaves_fill_the_box_and_touching_leaves_differ_by_one_level() {
+        let tree = sample();
+        let area: f64 = tree.leaves().map(|l| l.size * l.size).sum();
+        assert!((area - 4.0).abs() < 1e-12);
+        for leaf in tree.leaves() {
+            let reach = Vector::splat(leaf.size * 0.5001);
+            let cube = Bounds { min: leaf.centre - reach, max: leaf.centre + reach };
+            let mut touching = 0;
+            tree.overlapping(&cube, |k| {
+                touching += 1;
+                assert!(tree.leaf(k).level.abs_diff(leaf.level) <= 1);
+            });
+            assert!((4..=13).contains(&touching));
+        }
+    }
+}

@@ -1,0 +1,104 @@
+//! GMRES with right preconditioning (Saad and Schultz 1986), matrix-free.
+use super::sweep::{dot, norm};
+
+/// Storage of GMRES, reused between calls.
+pub struct Gmres {
+    basis: Vec<Vec<f64>>,
+    hessenberg: Vec<Vec<f64>>,
+    z: Vec<f64>,
+    w: Vec<f64>,
+}
+
+/// How a solve ended.
+#[derive(Clone, Copy, Debug)]
+pub struct Solved {
+    /// Iterations used.
+    pub iterations: usize,
+    /// Residual over right-hand side.
+    pub reduction: f64,
+}
+
+impl Gmres {
+    /// Storage for `n` unknowns and at most `size` basis vectors.
+    pub fn new(n: usize, size: usize) -> Self {
+        Self { basis: vec![vec![0.0; n]; size + 1], hessenberg: vec![vec![0.0; size + 1]; size], z: vec![0.0; n], w: vec![0.0; n] }
+    }
+
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        8 * self.z.len() * (self.basis.len() + 2)
+    }
+
+    /// Solves A x = b from x = 0 until the residual has fallen to `tolerance`, or the basis is full.
+    ///
+    /// `product(v, out)` is A v; `precondition(v, out)` ≈ A⁻¹ v.
+    pub fn solve(
+        &mut self, b: &[f64], x: &mut [f64], tolerance: f64, mut product: impl FnMut(&[f64], &mut [f64]),
+        mut precondition: impl FnMut(&[f64], &mut [f64]),
+    ) -> Solved {
+        let size = self.hessenberg.len();
+        x.fill(0.0);
+        let start = norm(b);
+        if start == 0.0 {
+            return Solved { iterations: 0, reduction: 0.0 };
+        }
+        self.basis[0].iter_mut().zip(b).for_each(|(v, b)| *v = b / start);
+        let mut g = vec![0.0; size + 1];
+        let mut rotations: Vec<(f64, f64)> = Vec::with_capacity(size);
+        g[0] = start;
+        let mut used = 0;
+        for k in 0..size {
+            precondition(&self.basis[k], &mut self.z);
+            product(&self.z, &mut self.w);
+            self.orthogonalise(k);
+            self.rotate(k, &mut rotations, &mut g);
+            used = k + 1;
+            if g[k + 1].abs() <= tolerance * start || self.hessenberg[k][k] == 0.0 {
+                break;
+            }
+        }
+        self.combine(used, &g);
+        precondition(&self.w, x);
+        Solved { iterations: used, reduction: g[used].abs() / start }
+    }
+
+    /// Gram-Schmidt of A z against the basis.
+    fn orthogonalise(&mut self, k: usize) {
+        for j in 0..=k {
+            let h = dot(&self.w, &self.basis[j]);
+            self.hessenberg[k][j] = h;
+            self.w.iter_mut().zip(&self.basis[j]).for_each(|(w, v)| *w -= h * v);
+        }
+        let h = norm(&self.w);
+        self.hessenberg[k][k + 1] = h;
+        let scale = if h > 0.0 { 1.0 / h } else { 0.0 };
+        self.basis[k + 1].iter_mut().zip(&self.w).for_each(|(v, w)| *v = w * scale);
+    }
+
+    fn rotate(&mut self, k: usize, rotations: &mut Vec<(f64, f64)>, g: &mut [f64]) {
+        let h = &mut self.hessenberg[k];
+        for (j, (c, s)) in rotations.iter().enumerate() {
+            (h[j], h[j + 1]) = (c * h[j] + s * h[j + 1], -s * h[j] + c * h[j + 1]);
+        }
+        let r = h[k].hypot(h[k + 1]);
+        let (c, s) = if r > 0.0 { (h[k] / r, h[k + 1] / r) } else { (1.0, 0.0) };
+        rotations.push((c, s));
+        (h[k], h[k + 1]) = (r, 0.0);
+        (g[k], g[k + 1]) = (c * g[k], -s * g[k]);
+    }
+
+    /// w = Σ y_k v_k with the triangular solve for y.
+    fn combine(&mut self, used: usize, g: &[f64]) {
+        let mut y = g[..used].to_vec();
+        for k in (0..used).rev() {
+            for j in k + 1..used {
+                y[k] -= self.hessenberg[j][k] * y[j];
+            }
+            y[k] = if self.hessenberg[k][k] != 0.0 { y[k] / self.hessenberg[k][k] } else { 0.0 };
+        }
+        self.w.fill(0.0);
+        for (y, v) in y.iter().zip(&self.basis) {
+            self.w.iter_mut().zip(v).for_each(|(w, v)| *w += y * v);
+        }
+    }
+}

@@ -1,0 +1,111 @@
+//! The parallel loop.
+//!
+//! Every loop over particles goes through this file. A loop gathers what it needs and writes its own slot, or owns one
+//! contiguous *part* of the output; sums run over chunks of a fixed size. The result is therefore the same bits for any
+//! number of threads.
+use std::ops::Range;
+
+use rayon::prelude::*;
+
+/// Particles in one chunk of a parallel loop or of a sum.
+pub const CHUNK: usize = 1024;
+
+/// Sets `out[i] = f(i)` for every `i`.
+pub fn sweep<T: Send>(out: &mut [T], f: impl Fn(usize) -> T + Sync) {
+    out.par_chunks_mut(CHUNK).enumerate().for_each(|(c, chunk)| {
+        for (k, slot) in chunk.iter_mut().enumerate() {
+            *slot = f(c * CHUNK + k);
+        }
+    });
+}
+
+/// Calls `f(i, row)` for every row of `width` values of `out`.
+pub fn sweep_rows(out: &mut [f64], width: usize, f: impl Fn(usize, &mut [f64]) + Sync) {
+    out.par_chunks_mut(CHUNK * width).enumerate().for_each(|(c, chunk)| {
+        for (k, row) in chunk.chunks_exact_mut(width).enumerate() {
+            f(c * CHUNK + k, row);
+        }
+    });
+}
+
+/// Calls `f(k, slice)` for every part `k`, where `slice` holds the rows `parts[k]` of `out`, `width` values each.
+///
+/// The parts must follow one another without gaps from row zero.
+pub fn sweep_parts<T: Send>(parts: &[Range<usize>], width: usize, out: &mut [T], f: &(impl Fn(usize, &mut [T]) + Sync)) {
+    split_parts(parts, 0, width, out, f);
+}
+
+fn split_parts<T: Send>(
+    parts: &[Range<usize>], first: usize, width: usize, out: &mut [T], f: &(impl Fn(usize, &mut [T]) + Sync),
+) {
+    match parts {
+        [] => {}
+        [_] => f(first, out),
+        _ => {
+            let (left, right) = parts.split_at(parts.len() / 2);
+            let rows = left[left.len() - 1].end - left[0].start;
+            let (a, b) = out.split_at_mut(rows * width);
+            rayon::join(|| split_parts(left, first, width, a, f), || split_parts(right, first + left.len(), width, b, f));
+        }
+    }
+}
+
+/// Cuts `0..n` into parts of about `size` rows.
+pub fn parts(n: usize, size: usize) -> Vec<Range<usize>> {
+    let count = n.div_ceil(size).max(1);
+    (0..count).map(|k| k * n / count..(k + 1) * n / count).collect()
+}
+
+/// Sum of `f(i)` over `0..n`: chunk sums of fixed size, added in order.
+pub fn sum(n: usize, f: impl Fn(usize) -> f64 + Sync) -> f64 {
+    let chunk = |c: usize| (c * CHUNK..((c + 1) * CHUNK).min(n)).map(&f).sum::<f64>();
+    pairwise(0, n.div_ceil(CHUNK), &chunk)
+}
+
+/// Sum of `value(k)` over `from..to` in a fixed tree.
+fn pairwise(from: usize, to: usize, value: &(impl Fn(usize) -> f64 + Sync)) -> f64 {
+    match to - from {
+        0 => 0.0,
+        1 => value(from),
+        n => {
+            let middle = from + n / 2;
+            let (a, b) = rayon::join(|| pairwise(from, middle, value), || pairwise(middle, to, value));
+            a + b
+        }
+    }
+}
+
+/// Inner product of two slices with a fixed order of summation.
+pub fn dot(a: &[f64], b: &[f64]) -> f64 {
+    sum(a.len(), |i| a[i] * b[i])
+}
+
+/// Euclidean norm with a fixed order of summation.
+pub fn norm(a: &[f64]) -> f64 {
+    dot(a, a).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sums_do_not_depend_on_the_number_of_threads() {
+        let values: Vec<f64> = (0..100_000).map(|i| (i as f64 * 0.7).sin()).collect();
+        let pool = |n| rayon::ThreadPoolBuilder::new().num_threads(n).build().unwrap();
+        let one = pool(1).install(|| dot(&values, &values));
+        let four = pool(4).install(|| dot(&values, &values));
+        assert_eq!(one.to_bits(), four.to_bits());
+    }
+
+    #[test]
+    fn parts_cover_every_row_once() {
+        let parts = parts(10_007, 1000);
+        let mut rows = vec![0u8; 10_007 * 2];
+        sweep_parts(&parts, 2, &mut rows, &|k, slice| {
+            assert_eq!(slice.len(), 2 * parts[k].len());
+            slice.iter_mut().for_each(|v| *v += 1);
+        });
+        assert!(rows.iter().all(|v| *v == 1));
+    }
+}

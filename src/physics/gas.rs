@@ -1,0 +1,192 @@
+//! The ideal gas and the compressible Euler equations.
+//!
+//! ∂ρ/∂t + ∇·(ρv) = 0, ∂(ρv)/∂t + ∇·(ρvv + pI) = 0, ∂(ρE)/∂t + ∇·((ρE + p)v) = 0 with p = (γ−1)ρe, E = e + v²/2: the paper's
+//! equations (1)-(3) and (6) written for conserved quantities, so that shocks stand where they should.
+use crate::math::Vector;
+
+/// Density, momentum and total energy per volume.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
+pub struct Conserved<const D: usize> {
+    /// Mass per volume.
+    pub density: f64,
+    /// Momentum per volume.
+    pub momentum: Vector<D>,
+    /// Total energy per volume.
+    pub energy: f64,
+}
+
+/// Density, velocity and pressure.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[repr(C)]
+pub struct Primitive<const D: usize> {
+    /// Mass per volume.
+    pub density: f64,
+    /// Velocity.
+    pub velocity: Vector<D>,
+    /// Static pressure.
+    pub pressure: f64,
+}
+
+/// An ideal gas with constant specific heats.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Gas {
+    /// Ratio of specific heats.
+    pub gamma: f64,
+}
+
+impl<const D: usize> Conserved<D> {
+    /// All zero.
+    pub const ZERO: Self = Self { density: 0.0, momentum: Vector::ZERO, energy: 0.0 };
+
+    /// Reads one particle from a flat slice of `D` + 2 numbers.
+    #[inline(always)]
+    pub fn load(row: &[f64]) -> Self {
+        Self { density: row[0], momentum: Vector::from_fn(|d| row[1 + d]), energy: row[D + 1] }
+    }
+
+    /// Writes one particle to a flat slice.
+    #[inline(always)]
+    pub fn store(&self, row: &mut [f64]) {
+        row[0] = self.density;
+        row[1..=D].copy_from_slice(&self.momentum.0);
+        row[D + 1] = self.energy;
+    }
+
+    /// self + s·other.
+    #[inline(always)]
+    pub fn plus(&self, s: f64, o: &Self) -> Self {
+        Self {
+            density: self.density + s * o.density,
+            momentum: self.momentum + o.momentum * s,
+            energy: self.energy + s * o.energy,
+        }
+    }
+
+    /// s·self.
+    #[inline(always)]
+    pub fn times(&self, s: f64) -> Self {
+        Self { density: self.density * s, momentum: self.momentum * s, energy: self.energy * s }
+    }
+}
+
+impl<const D: usize> Primitive<D> {
+    /// The state f(component) for each of density, velocity and pressure of one, two or three others.
+    #[inline(always)]
+    pub fn zip3(a: &Self, b: &Self, c: &Self, f: impl Fn(f64, f64, f64) -> f64) -> Self {
+        Self {
+            density: f(a.density, b.density, c.density),
+            velocity: Vector::from_fn(|d| f(a.velocity[d], b.velocity[d], c.velocity[d])),
+            pressure: f(a.pressure, b.pressure, c.pressure),
+        }
+    }
+
+    /// self − other.
+    #[inline(always)]
+    pub fn minus(&self, o: &Self) -> Self {
+        Self {
+            density: self.density - o.density,
+            velocity: self.velocity - o.velocity,
+            pressure: self.pressure - o.pressure,
+        }
+    }
+
+    /// self + s·other.
+    #[inline(always)]
+    pub fn plus(&self, s: f64, o: &Self) -> Self {
+        Self {
+            density: self.density + s * o.density,
+            velocity: self.velocity + o.velocity * s,
+            pressure: self.pressure + s * o.pressure,
+        }
+    }
+
+    /// True when density and pressure are positive and nothing is NaN or infinite.
+    pub fn is_physical(&self) -> bool {
+        self.density > 0.0 && self.pressure > 0.0 && self.velocity.is_finite() && (self.density + self.pressure).is_finite()
+    }
+}
+
+impl Gas {
+    /// Density, velocity and pressure of a conserved state — p = (γ−1)ρe, eq. (6).
+    #[doc(alias = "eq6")]
+    #[inline(always)]
+    pub fn primitive<const D: usize>(&self, u: &Conserved<D>) -> Primitive<D> {
+        let velocity = u.momentum * (1.0 / u.density);
+        let pressure = (self.gamma - 1.0) * (u.energy - 0.5 * u.momentum.dot(&velocity));
+        Primitive { density: u.density, velocity, pressure }
+    }
+
+    /// Conserved state of density, velocity and pressure.
+    #[inline(always)]
+    pub fn conserved<const D: usize>(&self, q: &Primitive<D>) -> Conserved<D> {
+        Conserved { density: q.density, momentum: q.velocity * q.density, energy: self.energy(q) }
+    }
+
+    /// Total energy per volume.
+    #[inline(always)]
+    pub fn energy<const D: usize>(&self, q: &Primitive<D>) -> f64 {
+        q.pressure / (self.gamma - 1.0) + 0.5 * q.density * q.velocity.norm_squared()
+    }
+
+    /// Speed of sound c = √(γp/ρ).
+    #[inline(always)]
+    pub fn sound_speed<const D: usize>(&self, q: &Primitive<D>) -> f64 {
+        (self.gamma * q.pressure / q.density).sqrt()
+    }
+
+    /// Flux F(q)·n of mass, momentum and energy across the area vector n — eqs (1)-(3) without stress and heat.
+    #[doc(alias = "eq1")]
+    #[doc(alias = "eq2")]
+    #[doc(alias = "eq3")]
+    #[inline(always)]
+    pub fn flux<const D: usize>(&self, q: &Primitive<D>, n: &Vector<D>) -> Conserved<D> {
+        let mass = q.density * q.velocity.dot(n);
+        Conserved {
+            density: mass,
+            momentum: q.velocity * mass + *n * q.pressure,
+            energy: (self.energy(q) + q.pressure) * q.velocity.dot(n),
+        }
+    }
+
+    /// Maximum signal speed |v·n| + c|n| across the area vector n.
+    #[inline(always)]
+    pub fn signal_speed<const D: usize>(&self, q: &Primitive<D>, n: &Vector<D>) -> f64 {
+        q.velocity.dot(n).abs() + self.sound_speed(q) * n.norm()
+    }
+
+    /// Total enthalpy per mass H = γ/(γ−1) p/ρ + v²/2.
+    #[inline(always)]
+    pub fn total_enthalpy<const D: usize>(&self, q: &Primitive<D>) -> f64 {
+        self.gamma / (self.gamma - 1.0) * q.pressure / q.density + 0.5 * q.velocity.norm_squared()
+    }
+
+    /// Entropy function p/ρ^γ.
+    #[inline(always)]
+    pub fn entropy<const D: usize>(&self, q: &Primitive<D>) -> f64 {
+        q.pressure / q.density.powf(self.gamma)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const AIR: Gas = Gas { gamma: 1.4 };
+
+    #[test]
+    fn conserved_and_primitive_are_inverse() {
+        let q = Primitive { density: 1.3, velocity: Vector([0.2, -0.7, 1.1]), pressure: 0.9 };
+        let back = AIR.primitive(&AIR.conserved(&q));
+        assert!((back.pressure - q.pressure).abs() < 1e-15 && (back.velocity - q.velocity).norm() < 1e-15);
+    }
+
+    #[test]
+    fn flux_is_linear_in_the_area_vector() {
+        let q = Primitive { density: 1.3, velocity: Vector([0.2, -0.7]), pressure: 0.9 };
+        let (a, b) = (Vector([0.3, 0.4]), Vector([-1.0, 0.2]));
+        let sum = AIR.flux(&q, &a).plus(1.0, &AIR.flux(&q, &b));
+        let whole = AIR.flux(&q, &(a + b));
+        assert!((sum.energy - whole.energy).abs() < 1e-15 && (sum.momentum - whole.momentum).norm() < 1e-15);
+    }
+}

@@ -1,0 +1,199 @@
+//! Conditions as rows of the fit.
+//!
+//! *Slip walls.* The state of an interface particle follows from the fluid particles in front of it by a quadratic fit in
+//! which the normal derivative at the wall is imposed exactly (a Neumann row taken into the fit, eqs (12)-(15)): with
+//! coordinates t along and n across the wall, f(t, n) = f_w + g n + (linear in t, quadratic in t, n). Solved once per cloud it
+//! gives f_w = Σ_k W_k f_k − g Σ_k W_k n_k. Imposed are
+//!
+//! - ∂(p/ρ^γ)/∂n = 0 and ∂H/∂n = 0: entropy and total enthalpy do not vary across the wall of a steady flow;
+//! - ∂u_t/∂n = −κ u_t: the flow at the wall is irrotational (Crocco), κ the curvature of the wall (tensor in 3-D);
+//! - ∂p/∂n = ρ κ u_t²: the centrifugal balance.
+//!
+//! *Outer sides* hold a state or copy the particle inward of them; *images* copy their source through a reflection or shift.
+use crate::cloud::Cloud;
+use crate::math::Vector;
+use crate::math::least_squares::Fit;
+use crate::math::sweep::sweep;
+use crate::physics::{Gas, Primitive};
+
+/// Sum of absolute weights above which a quadratic fit is replaced by a linear one.
+const LARGEST_AMPLIFICATION: f64 = 6.0;
+/// Rows that a quadratic fit must have beyond its coefficients.
+const SPARE_ROWS: usize = 3;
+/// Most coefficients of a constrained fit: three dimensions, quadratic.
+const MOST: usize = 9;
+
+/// Fits of all interface particles.
+#[derive(Clone, Debug, Default)]
+pub struct WallFits {
+    weight: Vec<f64>,
+    lever: Vec<f64>,
+    /// Number of fits that fell back to linear.
+    pub n_linear: usize,
+}
+
+impl WallFits {
+    /// Fits every interface particle of the cloud.
+    #[doc(alias = "eq12")]
+    pub fn new<const D: usize>(cloud: &Cloud<D>) -> Self {
+        let mut fits = vec![(Vec::new(), 0.0, false); cloud.interface.len()];
+        sweep(&mut fits, |w| fit_wall(cloud, w));
+        let lever = fits.iter().map(|f| f.1).collect();
+        let n_linear = fits.iter().filter(|f| f.2).count();
+        Self { weight: fits.into_iter().flat_map(|f| f.0).collect(), lever, n_linear }
+    }
+
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        8 * (self.weight.len() + self.lever.len())
+    }
+}
+
+/// Weights of one interface particle: (W, Σ W n, fell back to linear).
+fn fit_wall<const D: usize>(cloud: &Cloud<D>, w: usize) -> (Vec<f64>, f64, bool) {
+    let i = cloud.n_fluid + w;
+    let (h, normal) = (cloud.spacing[i], cloud.interface[w].normal);
+    let offsets: Vec<Vector<D>> = cloud.wall_clouds.of(w).iter().map(|k| cloud.x[*k as usize] - cloud.x[i]).collect();
+    let axes = tangents(&normal);
+    let mut weights = Vec::new();
+    let mut linear = false;
+    let quadratic = if D == 2 { 5 } else { 9 };
+    if offsets.len() >= quadratic + SPARE_ROWS {
+        solve_fit(&offsets, (&normal, &axes), h, quadratic, &mut weights);
+    }
+    if weights.is_empty() || weights.iter().map(|w| w.abs()).sum::<f64>() > LARGEST_AMPLIFICATION {
+        linear = true;
+        solve_fit(&offsets, (&normal, &axes), h, D, &mut weights);
+    }
+    let lever = weights.iter().zip(&offsets).map(|(w, d)| w * d.dot(&normal)).sum();
+    (weights, lever, linear)
+}
+
+/// The row that gives f_w from the values of the fluid particles; `n` coefficients, weights 1/r².
+fn solve_fit<const D: usize>(
+    offsets: &[Vector<D>], frame: (&Vector<D>, &[Vector<D>; D]), h: f64, n: usize, weights: &mut Vec<f64>,
+) {
+    let mut fit = Fit::default();
+    fit.reset(n);
+    for d in offsets {
+        fit.push(&basis(d, frame, h)[..n], h * h / d.norm_squared());
+    }
+    fit.row_of_inverse(0, weights);
+}
+
+/// Basis functions without the one whose coefficient the condition fixes: 1, tangents, then all squares and products.
+fn basis<const D: usize>(d: &Vector<D>, frame: (&Vector<D>, &[Vector<D>; D]), h: f64) -> [f64; MOST] {
+    let (normal, axes) = frame;
+    let mut c = [0.0; D];
+    (0..D - 1).for_each(|a| c[a] = d.dot(&axes[a]) / h);
+    c[D - 1] = d.dot(normal) / h;
+    let mut b = [0.0; MOST];
+    b[0] = 1.0;
+    b[1..D].copy_from_slice(&c[..D - 1]);
+    let mut k = D;
+    for p in 0..D {
+        for q in p..D {
+            b[k] = c[p] * c[q];
+            k += 1;
+        }
+    }
+    b
+}
+
+/// `D` − 1 unit vectors across the normal; the last entry is unused.
+fn tangents<const D: usize>(normal: &Vector<D>) -> [Vector<D>; D] {
+    let mut axes = [Vector::ZERO; D];
+    if D == 2 {
+        (axes[0][0], axes[0][1]) = (-normal[1], normal[0]);
+        return axes;
+    }
+    let smallest = (0..D).fold(0, |a, d| if normal[d].abs() < normal[a].abs() { d } else { a });
+    let e = Vector::axis(smallest);
+    axes[0] = (e - *normal * e.dot(normal)).unit();
+    axes[1] = Vector::from_fn(|d| {
+        let (a, b) = ((d + 1) % D, (d + 2) % D);
+        normal[a] * axes[0][b] - normal[b] * axes[0][a]
+    });
+    axes
+}
+
+/// How the pressure and the speed at the wall are found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum WallRule {
+    /// Pressure from the centrifugal balance, speed from total enthalpy.
+    Enthalpy,
+    /// Pressure from the centrifugal balance, velocity from irrotationality.
+    Irrotational,
+    /// Velocity from irrotationality, pressure from total enthalpy and entropy.
+    Bernoulli,
+}
+
+/// State of interface particle `w` on a slip wall at rest.
+pub fn slip_wall<const D: usize>(
+    cloud: &Cloud<D>, fits: &WallFits, gas: &Gas, rule: WallRule, w: usize, q: impl Fn(usize) -> Primitive<D>,
+) -> Primitive<D> {
+    let range = cloud.wall_clouds.range(w);
+    let (mut p, mut s, mut h, mut v) = (0.0, 0.0, 0.0, Vector::<D>::ZERO);
+    for (k, weight) in cloud.wall_clouds.of(w).iter().zip(&fits.weight[range]) {
+        let state = q(*k as usize);
+        p += weight * state.pressure;
+        s += weight * gas.entropy(&state);
+        h += weight * gas.total_enthalpy(&state);
+        v += state.velocity * *weight;
+    }
+    let wall = &cloud.interface[w];
+    let lever = fits.lever[w];
+    let velocity = irrotational(&v, wall, lever);
+    close_state(gas, rule, (p, s, h), velocity, lever * bending(wall, &velocity))
+}
+
+/// Solves (I − B K) u_t = v_t: the tangential velocity with slope −K u_t across the wall.
+fn irrotational<const D: usize>(v: &Vector<D>, wall: &crate::cloud::Interface<D>, lever: f64) -> Vector<D> {
+    let along = *v - wall.normal * v.dot(&wall.normal);
+    // B K is small (spacing over radius of curvature): three terms of the Neumann series
+    let apply = |u: &Vector<D>| Vector::from_fn(|r| lever * wall.curvature[r].dot(u));
+    let mut u = along;
+    for _ in 0..6 {
+        u = along + apply(&u);
+        u = u - wall.normal * u.dot(&wall.normal);
+    }
+    u
+}
+
+/// t·K·t for the direction t of the velocity.
+fn bending<const D: usize>(wall: &crate::cloud::Interface<D>, velocity: &Vector<D>) -> f64 {
+    let speed2 = velocity.norm_squared();
+    if speed2 == 0.0 {
+        return 0.0;
+    }
+    (0..D).map(|r| velocity[r] * wall.curvature[r].dot(velocity)).sum::<f64>() / speed2
+}
+
+/// Completes a wall state from the fitted (p, s, H), the velocity and `bend` = B κ.
+fn close_state<const D: usize>(gas: &Gas, rule: WallRule, fit: (f64, f64, f64), velocity: Vector<D>, bend: f64) -> Primitive<D> {
+    let (p, s, h) = fit;
+    let g = gas.gamma;
+    let ratio = g / (g - 1.0);
+    if rule == WallRule::Bernoulli {
+        // T = p/ρ from H, then ρ from s = p/ρ^γ
+        let t = (h - 0.5 * velocity.norm_squared()) / ratio;
+        let density = (t / s).powf(1.0 / (g - 1.0));
+        return Primitive { density, velocity, pressure: density * t };
+    }
+    let density = |p: f64| (p / s).powf(1.0 / g);
+    if rule == WallRule::Irrotational {
+        let mut pressure = p;
+        for _ in 0..3 {
+            pressure = p - bend * density(pressure) * velocity.norm_squared();
+        }
+        return Primitive { density: density(pressure), velocity, pressure };
+    }
+    let mut pressure = p;
+    for _ in 0..4 {
+        let rho = density(pressure);
+        pressure = p - bend * (2.0 * (h * rho - ratio * pressure)).max(0.0);
+    }
+    let rho = density(pressure);
+    let speed = (2.0 * (h - ratio * pressure / rho)).max(0.0).sqrt();
+    Primitive { density: rho, velocity: velocity.unit() * speed, pressure }
+}

@@ -1,0 +1,189 @@
+//! Linearisation of the first-order scheme.
+//!
+//! −∂R_i/∂U_i = Σ_j [−a_ij·A(q_i) + |s_ij|/(2V_i) |A|(q̄)], −∂R_i/∂U_j = a_ij·A(q_j) − |s_ij|/(2V_i) |A|(q̄), with A·n = ∂F·n/∂U
+//! and |A| Roe's matrix with rounded eigenvalues. A wall state follows the particle in front of it: its column is folded into
+//! the row with the mirror that removes the normal velocity.
+use super::fluid::{Fluid, Work};
+use crate::math::Vector;
+use crate::math::block_matrix::BlockMatrix;
+use crate::physics::riemann::rounded;
+use crate::physics::{Gas, Primitive};
+
+/// Fraction of the sound speed below which eigenvalues are rounded: keeps diagonal blocks invertible where the flow stops.
+const ROUNDING: f64 = 0.1;
+
+/// A dense block, row-major, of order D + 2 ≤ 5.
+type Block = [[f64; 5]; 5];
+
+/// ∂(F·n)/∂U at the state `q`.
+pub fn flux_jacobian<const D: usize>(gas: &Gas, q: &Primitive<D>, n: &Vector<D>) -> Block {
+    let g1 = gas.gamma - 1.0;
+    let (v, vn) = (&q.velocity, q.velocity.dot(n));
+    let (phi, h) = (0.5 * g1 * v.norm_squared(), gas.total_enthalpy(q));
+    let e = D + 1;
+    let mut a = [[0.0; 5]; 5];
+    for d in 0..D {
+        a[0][1 + d] = n[d];
+        a[1 + d][0] = n[d] * phi - v[d] * vn;
+        for c in 0..D {
+            a[1 + d][1 + c] = v[d] * n[c] - g1 * v[c] * n[d];
+        }
+        a[1 + d][1 + d] += vn;
+        a[1 + d][e] = g1 * n[d];
+        a[e][1 + d] = h * n[d] - g1 * v[d] * vn;
+    }
+    a[e][0] = vn * (phi - h);
+    a[e][e] = gas.gamma * vn;
+    a
+}
+
+/// |A| across the unit normal `n` at the state `q`, eigenvalues rounded off below a fraction of the sound speed.
+///
+/// With |λ| of the shear and entropy waves taken out, the rest is a matrix of rank two (Turkel 1999, eq. 3.14).
+pub fn dissipation_matrix<const D: usize>(gas: &Gas, q: &Primitive<D>, n: &Vector<D>) -> Block {
+    let c = gas.sound_speed(q);
+    let g1 = gas.gamma - 1.0;
+    let (v, vn) = (&q.velocity, q.velocity.dot(n));
+    let fix = |x: f64| rounded(x.abs(), ROUNDING * c);
+    let (l1, l2, l3) = (fix(vn), fix(vn + c), fix(vn - c));
+    let a = 0.5 * (l2 + l3) - l1;
+    let b = 0.5 * (l2 - l3) / c;
+    let (phi, h, e) = (0.5 * v.norm_squared(), gas.total_enthalpy(q), D + 1);
+    // rows: pressure change / c² and normal momentum change; columns: what they carry
+    let mut pressure = [0.0; 5];
+    let mut normal = [0.0; 5];
+    pressure[0] = g1 * phi;
+    normal[0] = -vn;
+    let mut carry = [0.0; 5];
+    let mut push = [0.0; 5];
+    carry[0] = 1.0;
+    for d in 0..D {
+        pressure[1 + d] = -g1 * v[d];
+        normal[1 + d] = n[d];
+        carry[1 + d] = v[d];
+        push[1 + d] = n[d];
+    }
+    pressure[e] = g1;
+    carry[e] = h;
+    push[e] = vn;
+    let mut m = [[0.0; 5]; 5];
+    for r in 0..D + 2 {
+        for k in 0..D + 2 {
+            m[r][k] = a * (carry[r] * pressure[k] / (c * c) + push[r] * normal[k])
+                + b * (push[r] * pressure[k] + carry[r] * normal[k]);
+        }
+        m[r][r] += l1;
+    }
+    m
+}
+
+/// Fills `matrix` from the states in `work`.
+pub fn assemble<const D: usize>(fluid: &Fluid<D>, work: &Work<D>, matrix: &mut BlockMatrix) {
+    let op = &fluid.operators;
+    matrix.assemble(|k, rows| {
+        for edge in op.edges(k) {
+            let (i, j) = (edge.i(), edge.j());
+            let (qi, qj) = (&work.state[i], &work.state[j]);
+            let size = edge.s.norm();
+            let m = edge.s * (1.0 / size.max(f64::MIN_POSITIVE));
+            let mean = Primitive::zip3(qi, qj, qj, |a, b, _| 0.5 * (a + b));
+            let spread = dissipation_matrix(&fluid.gas, &mean, &m);
+            let one_sided = [(i, j, edge.a_i), (j, i, edge.a_j)];
+            for (row, column, a) in one_sided.into_iter().take(if edge.both() { 2 } else { 1 }) {
+                let scale = 0.5 * size / fluid.cloud.volume[row];
+                let a = match fluid.conservative {
+                    true if row == i => edge.s * (0.5 / fluid.cloud.volume[row]),
+                    true => edge.s * (-0.5 / fluid.cloud.volume[row]),
+                    false => a,
+                };
+                let own = flux_jacobian(&fluid.gas, &work.state[row], &a);
+                add_block::<D>(rows.block(row, row), |r, c| scale * spread[r][c] - own[r][c]);
+                let other = flux_jacobian(&fluid.gas, &work.state[column], &a);
+                let coupling = |r: usize, c: usize| other[r][c] - scale * spread[r][c];
+                if column < fluid.cloud.n_fluid {
+                    add_block::<D>(rows.block(row, column), coupling);
+                } else if fluid.cloud.interface_range().contains(&column) {
+                    let normal = fluid.cloud.interface[column - fluid.cloud.n_fluid].normal;
+                    add_block::<D>(rows.block(row, row), |r, c| folded(&coupling, &normal, r, c));
+                } else if column >= fluid.cloud.n_real() {
+                    let image = fluid.cloud.images[column - fluid.cloud.n_real()];
+                    let source = image.source as usize;
+                    let sign = fluid.cloud.transforms[image.transform as usize].sign;
+                    let flip = |c: usize| if (1..=D).contains(&c) { sign[c - 1] } else { 1.0 };
+                    if source < fluid.cloud.n_fluid {
+                        let target = if source == row { row } else { source };
+                        add_block::<D>(rows.block(row, target), |r, c| coupling(r, c) * flip(c));
+                    }
+                }
+            }
+        }
+    });
+}
+
+/// Entry (r, c) of coupling · P, where P removes the normal velocity of the particle in front of the wall.
+fn folded<const D: usize>(coupling: &impl Fn(usize, usize) -> f64, normal: &Vector<D>, r: usize, c: usize) -> f64 {
+    if !(1..=D).contains(&c) {
+        return coupling(r, c);
+    }
+    let along: f64 = (0..D).map(|d| coupling(r, 1 + d) * normal[d]).sum();
+    coupling(r, c) - along * normal[c - 1]
+}
+
+fn add_block<const D: usize>(block: Option<&mut [f32]>, f: impl Fn(usize, usize) -> f64) {
+    let Some(block) = block else { return };
+    let n = D + 2;
+    for c in 0..n {
+        for r in 0..n {
+            block[c * n + r] += f(r, c) as f32;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::physics::Conserved;
+    use crate::physics::riemann::flux_roe;
+
+    const AIR: Gas = Gas { gamma: 1.4 };
+
+    fn bump(u: &Conserved<3>, k: usize, h: f64) -> Primitive<3> {
+        let mut row = [0.0; 5];
+        u.store(&mut row);
+        row[k] += h;
+        AIR.primitive(&Conserved::load(&row))
+    }
+
+    fn difference(f: impl Fn(f64) -> Conserved<3>) -> [f64; 5] {
+        let h = 1e-6;
+        let d = f(h).plus(-1.0, &f(-h)).times(0.5 / h);
+        let mut row = [0.0; 5];
+        d.store(&mut row);
+        row
+    }
+
+    #[test]
+    fn jacobian_is_the_derivative_of_the_flux() {
+        let q = Primitive { density: 1.2, velocity: Vector([0.3, -0.5, 0.2]), pressure: 0.8 };
+        let (n, u) = (Vector([0.2, 0.7, -0.4]), AIR.conserved(&q));
+        let a = flux_jacobian(&AIR, &q, &n);
+        for k in 0..5 {
+            let d = difference(|h| AIR.flux(&bump(&u, k, h), &n));
+            (0..5).for_each(|r| assert!((a[r][k] - d[r]).abs() < 1e-8, "{r} {k}"));
+        }
+    }
+
+    #[test]
+    fn dissipation_matrix_is_that_of_the_roe_flux() {
+        let q = Primitive { density: 1.2, velocity: Vector([0.6, -0.5, 0.2]), pressure: 0.8 };
+        let (n, u) = (Vector([0.6, 0.0, 0.8]), AIR.conserved(&q));
+        let m = dissipation_matrix(&AIR, &q, &n);
+        for k in 0..5 {
+            let d = difference(|h| {
+                let r = bump(&u, k, h);
+                flux_roe(&AIR, &q, &r, &n).plus(-0.5, &AIR.flux(&r, &n)).times(-2.0)
+            });
+            (0..5).for_each(|r| assert!((m[r][k] - d[r]).abs() < 1e-5, "{r} {k} {} {}", m[r][k], d[r]));
+        }
+    }
+}

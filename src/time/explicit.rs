@@ -1,0 +1,130 @@
+//! Explicit Runge-Kutta methods for marching in time.
+use super::{Step, TimeError};
+use crate::math::sweep::sweep;
+use crate::system::System;
+
+/// Coefficients in the form u_s = Σ_r α_r u_r + β Δt R(u_{s−1}): here α on the start and on the last stage only.
+#[derive(Clone, Copy, Debug)]
+struct Stage {
+    start: f64,
+    last: f64,
+    step: f64,
+    time: f64,
+}
+
+/// Three stages, third order, strong-stability-preserving (Shu and Osher 1988).
+const SSPRK3: [Stage; 3] = [
+    Stage { start: 0.0, last: 1.0, step: 1.0, time: 0.0 },
+    Stage { start: 0.75, last: 0.25, step: 0.25, time: 1.0 },
+    Stage { start: 1.0 / 3.0, last: 2.0 / 3.0, step: 2.0 / 3.0, time: 0.5 },
+];
+
+/// Method of an explicit march.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Method {
+    /// Strong-stability-preserving, third order.
+    Ssprk3,
+    /// Classical, fourth order.
+    Rk4,
+}
+
+/// A march from `t` to `until` with steps limited by the Courant number.
+pub struct Explicit<'a, S: System> {
+    system: &'a S,
+    method: Method,
+    cfl: f64,
+    until: f64,
+    /// Time reached.
+    pub time: f64,
+    /// Steps taken.
+    pub iteration: u32,
+    /// State.
+    pub u: Vec<f64>,
+    frame: S::Frame,
+    work: S::Work,
+    start: Vec<f64>,
+    du: Vec<f64>,
+    sum: Vec<f64>,
+    rate: Vec<f64>,
+}
+
+impl<'a, S: System> Explicit<'a, S> {
+    /// Prepares a march from the state `u` at time `time`.
+    pub fn new(system: &'a S, method: Method, (cfl, until): (f64, f64), (time, iteration, u): (f64, u32, Vec<f64>)) -> Self {
+        let n = u.len();
+        let frame = system.frame(time, &u);
+        Self {
+            system, method, cfl, until, time, iteration,
+            frame,
+            work: system.work(),
+            start: vec![0.0; n],
+            du: vec![0.0; n],
+            sum: vec![0.0; if method == Method::Rk4 { n } else { 0 }],
+            rate: vec![0.0; n / system.block()],
+            u,
+        }
+    }
+
+    /// True when the end is reached.
+    pub fn finished(&self) -> bool {
+        self.time >= self.until
+    }
+
+    /// Storage of the system, holding the last evaluation.
+    pub fn work(&mut self) -> (&S::Frame, &mut S::Work) {
+        (&self.frame, &mut self.work)
+    }
+
+    /// One time step.
+    pub fn advance(&mut self) -> Result<Step, TimeError> {
+        self.system.spectral_radius(&self.frame, &self.u, &mut self.work, &mut self.rate);
+        let fastest = self.rate.iter().fold(0.0f64, |m, r| m.max(*r));
+        let left = self.until - self.time;
+        let mut dt = (self.cfl / fastest).min(left);
+        if dt < left && 2.0 * dt > left {
+            dt = 0.5 * left;
+        }
+        self.start.copy_from_slice(&self.u);
+        match self.method {
+            Method::Ssprk3 => SSPRK3.iter().for_each(|s| self.stage(s, dt)),
+            Method::Rk4 => self.classical(dt),
+        }
+        self.time = if dt == left { self.until } else { self.time + dt };
+        self.iteration += 1;
+        self.system.update_frame(self.time, &self.u, &mut self.work, &mut self.frame);
+        if let Some(fault) = self.system.fault(&self.u) {
+            self.u.copy_from_slice(&self.start);
+            let hint = "lower `time.explicit.cfl`, or use a stronger limiter";
+            return Err(TimeError::Fault { fault, iteration: self.iteration, hint });
+        }
+        Ok(Step { iteration: self.iteration, time: self.time, cfl: self.cfl, residual: 1.0, linear: 0 })
+    }
+
+    fn evaluate(&mut self, t: f64) {
+        self.system.update_frame(t, &self.u, &mut self.work, &mut self.frame);
+        self.system.rhs(&self.frame, &self.u, &mut self.work, &mut self.du);
+    }
+
+    fn stage(&mut self, s: &Stage, dt: f64) {
+        self.evaluate(self.time + s.time * dt);
+        let (start, du, u) = (&self.start, &self.du, &mut self.u);
+        combine(u, |k, last| s.start * start[k] + s.last * last + s.step * dt * du[k]);
+    }
+
+    fn classical(&mut self, dt: f64) {
+        self.sum.fill(0.0);
+        for (weight, at, ahead) in [(1.0, 0.0, 0.5), (2.0, 0.5, 0.5), (2.0, 0.5, 1.0), (1.0, 1.0, 0.0)] {
+            self.evaluate(self.time + at * dt);
+            let (start, du) = (&self.start, &self.du);
+            combine(&mut self.sum, |k, s| s + weight * du[k]);
+            combine(&mut self.u, |k, _| start[k] + ahead * dt * du[k]);
+        }
+        let (start, sum) = (&self.start, &self.sum);
+        sweep(&mut self.u, |k| start[k] + dt / 6.0 * sum[k]);
+    }
+}
+
+/// x[k] = f(k, x[k]).
+fn combine(x: &mut [f64], f: impl Fn(usize, f64) -> f64 + Sync) {
+    crate::math::sweep::sweep_rows(x, 1, |k, row| row[0] = f(k, row[0]));
+}

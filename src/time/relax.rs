@@ -1,0 +1,278 @@
+//! Relaxation to a steady state, R(u) = 0.
+//!
+//! Newton's method on the pseudo-time step (1/Δτ + J) δu = R(u), J = −∂R/∂u, with Δτ = CFL/rate particle by particle. J v is
+//! a difference of residuals; GMRES solves, preconditioned by sweeps over the first-order linearisation on a hierarchy of
+//! levels (Knoll and Keyes 2004). The Courant number follows the residual (Mulder and van Leer 1985). Steps that make a
+//! state unphysical or the residual jump are taken back and tried again with a smaller one. The same loop with the linear
+//! solve replaced by the sweeps alone is the LU-SGS method; with neither it is explicit Runge-Kutta with local steps.
+use super::{Step, TimeError};
+use crate::math::block_matrix::BlockMatrix;
+use crate::math::krylov::Gmres;
+use crate::math::multilevel::{Cycle, Multilevel};
+use crate::math::sweep::sum;
+use crate::system::System;
+
+/// How a steady state is approached.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Method {
+    /// Newton-GMRES.
+    NewtonKrylov,
+    /// Sweeps alone.
+    Sweeps,
+    /// Explicit five-stage Runge-Kutta with local steps (Jameson 1991).
+    RungeKutta,
+}
+
+/// Numbers that steer the relaxation; the defaults serve every case.
+#[derive(Clone, Copy, Debug)]
+pub struct Control {
+    /// Method.
+    pub method: Method,
+    /// Courant number at the start.
+    pub cfl: f64,
+    /// Greatest Courant number.
+    pub cfl_max: f64,
+    /// Greatest growth of the Courant number in one step.
+    pub growth: f64,
+    /// Reduction asked of each linear solve.
+    pub tolerance: f64,
+    /// Basis vectors of GMRES.
+    pub basis: usize,
+    /// Rows a group of the hierarchy.
+    pub group: usize,
+    /// Visits of the levels.
+    pub cycle: Cycle,
+}
+
+/// Largest ratio of residuals of successive accepted steps.
+const LARGEST_JUMP: f64 = 4.0;
+/// Courant number below which the relaxation gives up.
+const SMALLEST_CFL: f64 = 1e-3;
+/// Smallest fraction of a step that is worth taking.
+const SMALLEST_FRACTION: f64 = 0.05;
+/// Courant number of the explicit method.
+const EXPLICIT_CFL: f64 = 1.5;
+/// Stages of the explicit method.
+const STAGES: [f64; 5] = [0.25, 1.0 / 6.0, 0.375, 0.5, 1.0];
+
+/// A relaxation in progress.
+pub struct Relax<'a, S: System> {
+    system: &'a S,
+    control: Control,
+    /// Iterations done.
+    pub iteration: u32,
+    /// Courant number of the next step.
+    pub cfl: f64,
+    /// Size of the first residual.
+    pub first_norm: f64,
+    /// Size of the last residual.
+    pub norm: f64,
+    /// State.
+    pub u: Vec<f64>,
+    frame: S::Frame,
+    work: S::Work,
+    residual: Vec<f64>,
+    trial: Vec<f64>,
+    trial_residual: Vec<f64>,
+    scale: Vec<f64>,
+    rate: Vec<f64>,
+    step: Vec<f64>,
+    levels: Option<Multilevel>,
+    gmres: Option<Gmres>,
+    /// Linear iterations so far.
+    pub linear: u32,
+}
+
+/// What a relaxation needs to go on where it stopped.
+#[derive(Clone, Debug)]
+pub struct Resume {
+    /// Iterations done.
+    pub iteration: u32,
+    /// Courant number.
+    pub cfl: f64,
+    /// Size of the first residual.
+    pub first_norm: f64,
+    /// Linear iterations done.
+    pub linear: u32,
+    /// Time scales of the particles that the residual is measured with.
+    pub scale: Vec<f64>,
+}
+
+impl<'a, S: System> Relax<'a, S> {
+    /// Starts from the state `u`, or goes on from `resume`.
+    pub fn new(system: &'a S, control: Control, u: Vec<f64>, resume: Option<Resume>) -> Self {
+        let n = u.len();
+        let mut work = system.work();
+        let frame = system.frame(0.0, &u);
+        let mut rate = vec![0.0; n / system.block()];
+        system.spectral_radius(&frame, &u, &mut work, &mut rate);
+        let implicit = control.method != Method::RungeKutta;
+        let matrix = |first: &[u32], index: &[u32]| BlockMatrix::new(system.block(), n / system.block(), first, index);
+        let levels = implicit.then(|| {
+            let (first, index) = system.graph();
+            Multilevel::new(matrix(first, index), control.group, control.cycle)
+        });
+        let basis = (control.method == Method::NewtonKrylov).then(|| Gmres::new(n, control.basis));
+        let scale = match &resume {
+            Some(r) => r.scale.clone(),
+            None => rate.iter().map(|r| 1.0 / r).collect(),
+        };
+        let mut all = Self {
+            system, control, frame, work, rate, scale, u, levels,
+            iteration: resume.as_ref().map_or(0, |r| r.iteration),
+            cfl: resume.as_ref().map_or(control.cfl, |r| r.cfl),
+            linear: resume.as_ref().map_or(0, |r| r.linear),
+            first_norm: 0.0,
+            norm: 0.0,
+            residual: vec![0.0; n],
+            trial: vec![0.0; n],
+            trial_residual: vec![0.0; n],
+            step: vec![0.0; n],
+            gmres: basis,
+        };
+        all.system.rhs(&all.frame, &all.u, &mut all.work, &mut all.residual);
+        all.norm = all.norm_of(&all.residual);
+        all.first_norm = resume.map_or(all.norm.max(f64::MIN_POSITIVE), |r| r.first_norm);
+        all
+    }
+
+    /// What a later run needs, beside the state, to go on to the same bits.
+    pub fn resume(&self) -> Resume {
+        Resume { iteration: self.iteration, cfl: self.cfl, first_norm: self.first_norm, linear: self.linear, scale: self.scale.clone() }
+    }
+
+    /// Residual over its first value.
+    pub fn drop(&self) -> f64 {
+        self.norm / self.first_norm
+    }
+
+    /// Storage of the system.
+    pub fn work(&mut self) -> (&S::Frame, &mut S::Work) {
+        (&self.frame, &mut self.work)
+    }
+
+    /// The residual R(u) of the last accepted state.
+    pub fn residual(&self) -> &[f64] {
+        &self.residual
+    }
+
+    /// Bytes held by the implicit machinery.
+    pub fn bytes(&self) -> usize {
+        8 * (5 * self.u.len() + 2 * self.rate.len())
+            + self.levels.as_ref().map_or(0, Multilevel::bytes)
+            + self.gmres.as_ref().map_or(0, Gmres::bytes)
+    }
+
+    /// Root mean square over particles of the change that the residual would make in one local time.
+    fn norm_of(&self, r: &[f64]) -> f64 {
+        let (n, scale) = (self.system.block(), &self.scale);
+        // the first unknown of each particle (density) stands for all
+        (sum(scale.len(), |i| (r[i * n] * scale[i]).powi(2)) / scale.len() as f64).sqrt()
+    }
+
+    /// One accepted step.
+    pub fn advance(&mut self) -> Result<Step, TimeError> {
+        self.iteration += 1;
+        loop {
+            if self.control.method == Method::RungeKutta { self.explicit_step() } else { self.implicit_step() }
+            let fraction = self.system.admissible_fraction(&self.u, &self.step);
+            if fraction > SMALLEST_FRACTION && self.accept(fraction) {
+                break;
+            }
+            self.cfl *= 0.2;
+            if self.cfl < SMALLEST_CFL {
+                let particle = self.worst();
+                return Err(TimeError::Stalled { iteration: self.iteration, cfl: self.cfl, particle });
+            }
+        }
+        Ok(Step {
+            iteration: self.iteration, time: 0.0, cfl: self.cfl, residual: self.drop(), linear: self.linear,
+        })
+    }
+
+    /// Takes the step times `fraction` if the new residual is sound; sets the next Courant number.
+    fn accept(&mut self, fraction: f64) -> bool {
+        let (u, step) = (&self.u, &self.step);
+        crate::math::sweep::sweep(&mut self.trial, |k| u[k] + fraction * step[k]);
+        if self.system.fault(&self.trial).is_some() {
+            return false;
+        }
+        let mut frame = self.frame.clone();
+        self.system.update_frame(0.0, &self.trial, &mut self.work, &mut frame);
+        self.system.rhs(&frame, &self.trial, &mut self.work, &mut self.trial_residual);
+        let norm = self.norm_of(&self.trial_residual);
+        if !norm.is_finite() || norm > LARGEST_JUMP * self.norm {
+            return false;
+        }
+        self.frame = frame;
+        std::mem::swap(&mut self.u, &mut self.trial);
+        std::mem::swap(&mut self.residual, &mut self.trial_residual);
+        let ratio = (self.norm / norm.max(f64::MIN_POSITIVE)).clamp(0.5, self.control.growth);
+        let grow = if fraction == 1.0 { ratio.max(1.0 + 0.5 * (self.control.growth - 1.0)) } else { 1.0 };
+        self.cfl = (self.cfl * if ratio < 1.0 { ratio.max(0.8) } else { grow }).min(self.control.cfl_max);
+        self.norm = norm;
+        true
+    }
+
+    fn implicit_step(&mut self) {
+        let Some(levels) = self.levels.as_mut() else { return };
+        self.system.spectral_radius(&self.frame, &self.u, &mut self.work, &mut self.rate);
+        let cfl = self.cfl;
+        let shift: Vec<f64> = self.rate.iter().map(|r| r / cfl).collect();
+        self.system.linearise(&self.frame, &self.u, &mut self.work, levels.finest());
+        levels.finest().shift(&shift);
+        levels.refresh();
+        let Some(gmres) = self.gmres.as_mut() else {
+            levels.apply(&self.residual, &mut self.step);
+            self.linear += 1;
+            return;
+        };
+        let n = self.system.block();
+        let size = (sum(self.u.len(), |k| self.u[k] * self.u[k]) / self.u.len() as f64).sqrt();
+        let (system, frame, work, u, residual) = (self.system, &self.frame, &mut self.work, &self.u, &self.residual);
+        let (trial, scale) = (&mut self.trial, &self.scale);
+        // rows are scaled by the local time, so that small particles do not rule the norm
+        let b: Vec<f64> = residual.iter().enumerate().map(|(k, r)| r * scale[k / n]).collect();
+        let mut unscaled = vec![0.0; b.len()];
+        let product = |v: &[f64], out: &mut [f64]| {
+            let length = (sum(v.len(), |k| v[k] * v[k]) / v.len() as f64).sqrt();
+            if length == 0.0 {
+                return out.fill(0.0);
+            }
+            let eps = 1e-7 * (1.0 + size) / length;
+            crate::math::sweep::sweep(trial, |k| u[k] + eps * v[k]);
+            system.rhs(frame, trial, work, out);
+            crate::math::sweep::sweep_rows(out, 1, |k, o| {
+                o[0] = ((residual[k] - o[0]) / eps + shift[k / n] * v[k]) * scale[k / n];
+            });
+        };
+        let precondition = |r: &[f64], z: &mut [f64]| {
+            crate::math::sweep::sweep(&mut unscaled, |k| r[k] / scale[k / n]);
+            levels.apply(&unscaled, z);
+        };
+        let solved = gmres.solve(&b, &mut self.step, self.control.tolerance, product, precondition);
+        self.linear += solved.iterations as u32;
+    }
+
+    fn explicit_step(&mut self) {
+        self.system.spectral_radius(&self.frame, &self.u, &mut self.work, &mut self.rate);
+        let n = self.system.block();
+        self.trial_residual.copy_from_slice(&self.residual);
+        for (k, stage) in STAGES.iter().enumerate() {
+            let (rate, u, r) = (&self.rate, &self.u, &self.trial_residual);
+            let cfl = EXPLICIT_CFL.min(self.cfl);
+            crate::math::sweep::sweep(&mut self.step, |k| stage * cfl / rate[k / n] * r[k]);
+            if k + 1 < STAGES.len() {
+                let step = &self.step;
+                crate::math::sweep::sweep(&mut self.trial, |k| u[k] + step[k]);
+                self.system.rhs(&self.frame, &self.trial, &mut self.work, &mut self.trial_residual);
+            }
+        }
+    }
+
+    fn worst(&self) -> usize {
+        let n = self.system.block();
+        let size = |i: usize| (self.residual[i * n] * self.scale[i]).abs();
+        (0..self.scale.len()).fold(0, |w, i| if size(i) > size(w) { i } else { w })
+    }
+}
