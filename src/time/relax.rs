@@ -44,6 +44,18 @@ pub struct Control {
     pub cycle: Cycle,
 }
 
+/// Drop of the residual below which the flow counts as settled.
+const SETTLED: f64 = 0.02;
+/// Iterations without a new smallest residual after which the flow counts as settled.
+const PATIENCE: u32 = 10;
+/// Fewest iterations of sweeps alone before patience is counted.
+const SHORTEST_START: u32 = 20;
+/// Courant number below which Newton's method is given up for a while.
+const LOST_CFL: f64 = 5.0;
+/// Courant number with which either phase begins.
+const RESTART_CFL: f64 = 20.0;
+/// Greatest Courant number of sweeps alone.
+const START_CFL_MAX: f64 = 200.0;
 /// Largest ratio of residuals of successive accepted steps.
 const LARGEST_JUMP: f64 = 4.0;
 /// Courant number below which the relaxation gives up.
@@ -54,6 +66,25 @@ const SMALLEST_FRACTION: f64 = 0.05;
 const EXPLICIT_CFL: f64 = 1.5;
 /// Stages of the explicit method.
 const STAGES: [f64; 5] = [0.25, 1.0 / 6.0, 0.375, 0.5, 1.0];
+
+/// Which of the two ways a Newton-Krylov relaxation is going, and how well.
+#[derive(Clone, Copy, Debug)]
+pub struct Phase {
+    /// Newton's method rather than sweeps alone.
+    pub newton: bool,
+    /// Iterations in this phase.
+    pub age: u32,
+    /// Smallest residual in this phase.
+    pub best: f64,
+    /// When that was.
+    pub best_age: u32,
+}
+
+impl Default for Phase {
+    fn default() -> Self {
+        Self { newton: false, age: 0, best: f64::INFINITY, best_age: 0 }
+    }
+}
 
 /// A relaxation in progress.
 pub struct Relax<'a, S: System> {
@@ -77,6 +108,7 @@ pub struct Relax<'a, S: System> {
     scale: Vec<f64>,
     rate: Vec<f64>,
     step: Vec<f64>,
+    phase: Phase,
     levels: Option<Multilevel>,
     gmres: Option<Gmres>,
     /// Linear iterations so far.
@@ -94,6 +126,8 @@ pub struct Resume {
     pub first_norm: f64,
     /// Linear iterations done.
     pub linear: u32,
+    /// Phase of the relaxation.
+    pub phase: Phase,
     /// Time scales of the particles that the residual is measured with.
     pub scale: Vec<f64>,
 }
@@ -122,6 +156,7 @@ impl<'a, S: System> Relax<'a, S> {
             iteration: resume.as_ref().map_or(0, |r| r.iteration),
             cfl: resume.as_ref().map_or(control.cfl, |r| r.cfl),
             linear: resume.as_ref().map_or(0, |r| r.linear),
+            phase: resume.as_ref().map_or(Phase::default(), |r| r.phase),
             first_norm: 0.0,
             norm: 0.0,
             residual: vec![0.0; n],
@@ -138,7 +173,7 @@ impl<'a, S: System> Relax<'a, S> {
 
     /// What a later run needs, beside the state, to go on to the same bits.
     pub fn resume(&self) -> Resume {
-        Resume { iteration: self.iteration, cfl: self.cfl, first_norm: self.first_norm, linear: self.linear, scale: self.scale.clone() }
+        Resume { iteration: self.iteration, cfl: self.cfl, first_norm: self.first_norm, linear: self.linear, phase: self.phase, scale: self.scale.clone() }
     }
 
     /// Residual over its first value.
@@ -185,9 +220,32 @@ impl<'a, S: System> Relax<'a, S> {
                 return Err(TimeError::Stalled { iteration: self.iteration, cfl: self.cfl, particle });
             }
         }
+        self.choose_phase();
         Ok(Step {
             iteration: self.iteration, time: 0.0, cfl: self.cfl, residual: self.drop(), linear: self.linear,
         })
+    }
+
+    /// Newton's method once the flow has taken shape; back to sweeps alone when its steps become small.
+    ///
+    /// While shocks travel the linearisation of the second-order scheme is indefinite and Newton crawls, but the first-order
+    /// operator still moves them; near the solution it is the other way round.
+    fn choose_phase(&mut self) {
+        if self.control.method != Method::NewtonKrylov {
+            return;
+        }
+        let drop = self.drop();
+        let phase = &mut self.phase;
+        phase.age += 1;
+        if self.norm < 0.98 * phase.best {
+            (phase.best, phase.best_age) = (self.norm, phase.age);
+        }
+        let settled = drop < SETTLED || (phase.age > SHORTEST_START && phase.age > phase.best_age + PATIENCE);
+        let lost = phase.newton && self.cfl < LOST_CFL && phase.age > SHORTEST_START;
+        if (!phase.newton && settled) || lost {
+            *phase = Phase { newton: !phase.newton, age: 0, best: self.norm, best_age: 0 };
+            self.cfl = self.cfl.clamp(RESTART_CFL, START_CFL_MAX);
+        }
     }
 
     /// Takes the step times `fraction` if the new residual is sound; sets the next Courant number.
@@ -209,9 +267,14 @@ impl<'a, S: System> Relax<'a, S> {
         std::mem::swap(&mut self.residual, &mut self.trial_residual);
         let ratio = (self.norm / norm.max(f64::MIN_POSITIVE)).clamp(0.5, self.control.growth);
         let grow = if fraction == 1.0 { ratio.max(1.0 + 0.5 * (self.control.growth - 1.0)) } else { 1.0 };
-        self.cfl = (self.cfl * if ratio < 1.0 { ratio.max(0.8) } else { grow }).min(self.control.cfl_max);
+        self.cfl = (self.cfl * if ratio < 1.0 { ratio.max(0.8) } else { grow }).min(self.largest_cfl());
         self.norm = norm;
         true
+    }
+
+    fn largest_cfl(&self) -> f64 {
+        let start = self.control.method == Method::NewtonKrylov && !self.phase.newton;
+        if start { self.control.cfl_max.min(START_CFL_MAX) } else { self.control.cfl_max }
     }
 
     fn implicit_step(&mut self) {
@@ -222,7 +285,7 @@ impl<'a, S: System> Relax<'a, S> {
         self.system.linearise(&self.frame, &self.u, &mut self.work, levels.finest());
         levels.finest().shift(&shift);
         levels.refresh();
-        let Some(gmres) = self.gmres.as_mut() else {
+        let Some(gmres) = self.gmres.as_mut().filter(|_| self.phase.newton) else {
             levels.apply(&self.residual, &mut self.step);
             self.linear += 1;
             return;
