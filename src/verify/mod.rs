@@ -1,0 +1,11 @@
+//! Verification: what a case claims, how a result is measured, and whether the claim holds.
+//!
+//! A folder of `verification/` holds a case, its authority, reference curves and `claim.toml`. This module is the pure part:
+//! [`claim`] reads the claims and judges values, [`metrics`] turns samples into values, [`curve`] reads reference tables.
+//! It opens no file and runs nothing; the walker does both.
+pub mod claim;
+pub mod curve;
+pub mod metrics;
+
+pub use claim::{Claim, ClaimError, ClaimFile, ClaimRow, Kind, Metric, Study};
+pub use curve::{Curve, Table};
