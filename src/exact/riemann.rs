@@ -108,6 +108,16 @@ impl RiemannProblem {
         Ok(Self { left, right, gamma, star: Star { pressure, velocity, density_left, density_right } })
     }
 
+    /// The state on the left.
+    pub fn left(&self) -> State {
+        self.left
+    }
+
+    /// The state on the right.
+    pub fn right(&self) -> State {
+        self.right
+    }
+
     /// The star state.
     pub fn star(&self) -> Star {
         self.star

@@ -16,6 +16,9 @@
 //!
 //! Kinds: `relative` |v − r| ≤ t|r| · `absolute` |v − r| ≤ t · `range` r = [low, high], low ≤ v ≤ high · `at_most` v ≤ r ·
 //! `at_least` v ≥ r. A value that is not a number fails every claim.
+//!
+//! Claims whose metric needs a study (`order`, `extrapolated_…`) use the reruns of `[study]`; all others use the case as it
+//! stands. The quick subset judges the `fast` cases, without extrapolations: those rerun a case at its finest spacing.
 use std::fmt;
 use toml::{Table, Value};
 
@@ -53,13 +56,22 @@ pub struct Claim {
     /// Reference curve in the same folder, for metrics that compare curves.
     pub file: Option<String>,
     /// Named exact solution, for metrics that compare with one.
-    pub exact: Option<String>,
+    pub exact: Option<Exact>,
     /// Another case folder whose result is the reference, for metrics that compare two runs.
     pub other: Option<String>,
     /// Box of samples or wall particles the metric is restricted to: corners of smallest and largest coordinates.
     pub region: Option<[Vec<f64>; 2]>,
     /// Two pressures (over the free stream's) on either side of a wave or front.
     pub levels: Option<[f64; 2]>,
+}
+
+/// A body whose wall pressure is known exactly.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Exact {
+    /// Circle in subcritical flow.
+    Circle,
+    /// Sphere in subcritical flow.
+    Sphere,
 }
 
 /// How a value is compared with its reference.
@@ -295,7 +307,8 @@ fn parse_claim(table: &Table, number: usize, problems: &mut Vec<String>) -> Opti
         keys.problem("has no `source`\nhint: name author, year and place of the reference");
     }
     let label = keys.string("label");
-    let (file, exact, other) = (keys.string("file"), keys.string("exact"), keys.string("other"));
+    let (file, other) = (keys.string("file"), keys.string("other"));
+    let exact = parse_exact(&mut keys);
     let region = parse_region(&mut keys);
     let levels = keys.numbers("levels").and_then(|v| <[f64; 2]>::try_from(v).ok());
     if table.contains_key("levels") && levels.is_none() {
@@ -355,6 +368,19 @@ fn parse_kind(keys: &mut Keys<'_, '_>) -> Option<Kind> {
         keys.problem("relative to a `reference` of 0\nhint: use `kind = \"absolute\"`");
     }
     Some(Kind::Relative { reference, tolerance })
+}
+
+fn parse_exact(keys: &mut Keys<'_, '_>) -> Option<Exact> {
+    let name = keys.string("exact")?;
+    match name.as_str() {
+        "circle" => Some(Exact::Circle),
+        "sphere" => Some(Exact::Sphere),
+        _ => {
+            let hint = suggestion(&name, ["circle", "sphere"].into_iter());
+            keys.problem(&format!("unknown exact solution `{name}`\nhint: {hint}"));
+            None
+        }
+    }
 }
 
 fn parse_region(keys: &mut Keys<'_, '_>) -> Option<[Vec<f64>; 2]> {
@@ -494,6 +520,35 @@ mod tests {
         assert_eq!(file.claims[0].kind, Kind::Relative { reference: 0.28451, tolerance: 0.01 });
         assert_eq!(file.claims[1].judge("a", 0.021).metric, "cd (wave drag)");
         assert_eq!(file.claims[1].region, Some([vec![0.0, 0.0], vec![1.0, 1.0]]));
+    }
+
+    #[test]
+    fn every_case_of_the_project_is_readable() {
+        let root = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("verification");
+        let mut cases = 0;
+        for entry in std::fs::read_dir(root).unwrap() {
+            let folder = entry.unwrap().path();
+            if !folder.is_dir() {
+                continue;
+            }
+            cases += 1;
+            let read = |name: &str| {
+                std::fs::read_to_string(folder.join(name)).unwrap_or_else(|e| panic!("{folder:?} {name}: {e}"))
+            };
+            let file = ClaimFile::parse(&read("claim.toml")).unwrap_or_else(|e| panic!("{folder:?}: {e}"));
+            assert!(read("case.toml").parse::<Table>().is_ok(), "{folder:?}");
+            assert!(read("README.md").contains("**Authority"), "{folder:?}");
+            for claim in &file.claims {
+                if let Some(curve) = &claim.file {
+                    let table = crate::verify::Table::parse(&read(curve)).unwrap();
+                    assert!(table.only("surface", "upper").curve("x_c", "Cp").is_ok(), "{folder:?} {curve}");
+                }
+                if let Some(other) = &claim.other {
+                    assert!(folder.with_file_name(other).is_dir(), "{folder:?} {other}");
+                }
+            }
+        }
+        assert!(cases >= 20, "{cases}");
     }
 
     #[test]

@@ -130,6 +130,17 @@ pub fn richardson(spacings: &[f64; 3], values: &[f64; 3]) -> Option<Extrapolatio
     Some(Extrapolation { order, limit: extrapolate(&[h2, h3], &[f2, f3], order)? })
 }
 
+/// Limit of a quantity over any number of spacings, coarse to fine: Richardson's from the three finest where the values
+/// approach from one side, the finest value (without order) where they do not.
+pub fn limit(spacings: &[f64], values: &[f64]) -> Option<(f64, Option<f64>)> {
+    let n = spacings.len().min(values.len());
+    let finest = *values[..n].last()?;
+    let three = (n >= 3)
+        .then(|| richardson(&std::array::from_fn(|i| spacings[n - 3 + i]), &std::array::from_fn(|i| values[n - 3 + i])))
+        .flatten();
+    Some(three.map_or((finest, None), |e| (e.limit, Some(e.order))))
+}
+
 /// The limit f0 of f0 + C h^p from two spacings and a known order.
 pub fn extrapolate(spacings: &[f64; 2], values: &[f64; 2], order: f64) -> Option<f64> {
     let ratio = (spacings[0] / spacings[1]).powf(order);
@@ -221,7 +232,7 @@ fn fit_plane(rows: &[[f64; 3]], values: &[f64]) -> Option<[f64; 3]> {
     } else {
         let determinant = s11 * s22 - s12 * s12;
         // the determinant is relative: two columns that are parallel to round-off define no plane
-        if !(determinant > 1e-12 * s11 * s22) || n < 3.0 {
+        if determinant <= 1e-12 * s11 * s22 || n < 3.0 {
             return None;
         }
         ((s1v * s22 - s2v * s12) / determinant, (s2v * s11 - s1v * s12) / determinant)
@@ -273,6 +284,9 @@ mod tests {
         assert_eq!(richardson(&h, &[1.0, 1.1, 1.05]), None, "values that swing have no limit");
         assert_eq!(richardson(&h, &[1.0, 1.0, 1.0]), None);
         assert_eq!(observed_order(&[0.1, 0.05], &[0.0, 1.0]), None);
+        assert_eq!(limit(&h, &[1.0, 1.1, 1.05]), Some((1.05, None)));
+        assert!((limit(&h, &h.map(|h| 1.0 + h * h)).unwrap().0 - 1.0).abs() < 1e-9);
+        assert_eq!(limit(&[], &[]), None);
         assert!((extrapolate(&[2.0, 1.0], &[1.4, 1.1], 2.0).unwrap() - 1.0).abs() < 1e-12);
     }
 
