@@ -98,6 +98,14 @@ mod tests {
         }
     }
 
+    #[test] // the numbers of verification/diamond_m2
+    fn diamond_of_ten_degrees() {
+        let d = Diamond::new(2.0, 10_f64.to_radians().tan(), 0.0, 1.4).unwrap();
+        assert!((d.upper_front.pressure - 1.706579).abs() < 1e-6 && (d.upper_front.mach - 1.640522).abs() < 1e-6);
+        assert!((d.lower_rear.pressure - 0.550785).abs() < 1e-6 && (d.lower_rear.mach - 2.371701).abs() < 1e-6);
+        assert!((d.drag - 0.072785).abs() < 1e-6 && d.lift.abs() < 1e-15);
+    }
+
     #[test]
     fn detached_and_meaningless_diamonds_are_refused() {
         assert!(matches!(Diamond::new(1.5, 0.4, 0.0, 1.4), Err(Error::Detached { .. })));
