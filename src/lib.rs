@@ -8,6 +8,7 @@ pub mod system;
 pub mod geometry;
 pub mod physics;
 pub mod exact;
+pub mod verify;
 pub mod cloud;
 pub mod scheme;
 pub mod time;
