@@ -196,10 +196,10 @@ impl History {
             let found = found.chars().take(80).collect();
             return Err(FileError::Header { path: path.to_path_buf(), found, expected: header });
         }
-        let kept = lines.take_while(|line| complete_row(line, columns.len()).is_some_and(|row| keep(&row)));
+        let mut kept = lines.take_while(|line| complete_row(line, columns.len()).is_some_and(|row| keep(&row)));
         write_atomic(path, |w| {
             writeln!(w, "{header}")?;
-            kept.map(|line| writeln!(w, "{}", line.trim_end())).collect()
+            kept.try_for_each(|line| writeln!(w, "{}", line.trim_end()))
         })?;
         Self::open(path, columns.len())
     }

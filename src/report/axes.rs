@@ -73,7 +73,11 @@ fn log_ticks(min: f64, max: f64, count: usize) -> Vec<Tick> {
     let (first, last) = ((min.log10() - 1e-9).ceil() as i32, (max.log10() + 1e-9).floor() as i32);
     let stride = ((last - first) as f64 / count.max(1) as f64).ceil().max(1.0) as i32;
     let decades = (first..=last).filter(|k| k.rem_euclid(stride) == 0);
-    decades.map(|k| Tick { value: 10.0_f64.powi(k), label: format!("1e{k}").replace('-', "\u{2212}") }).collect()
+    decades.map(|k| Tick { value: 10.0_f64.powi(k), label: power_of_ten(k) }).collect()
+}
+
+fn power_of_ten(k: i32) -> String {
+    if k == 0 { "1".to_owned() } else { format!("1e{k}").replace('-', "\u{2212}") }
 }
 
 /// The smallest of 1, 2, 5, 10, … ≥ `rough`.
@@ -172,7 +176,7 @@ mod tests {
     fn ticks_are_round() {
         assert_eq!(labels(Scale { from: 0.0, to: 1.0, log: false }), ["0", "0.2", "0.4", "0.6", "0.8", "1.0"]);
         assert_eq!(labels(Scale { from: 1.2, to: -1.3, log: false }), ["−1.0", "−0.5", "0", "0.5", "1.0"]);
-        assert_eq!(labels(Scale { from: 1e-4, to: 1.0, log: true }), ["1e−4", "1e−3", "1e−2", "1e−1", "1e0"]);
+        assert_eq!(labels(Scale { from: 1e-4, to: 1.0, log: true }), ["1e−4", "1e−3", "1e−2", "1e−1", "1"]);
         assert_eq!(labels(Scale { from: 0.0, to: 4e6, log: false })[1], "1e6");
     }
 

@@ -106,7 +106,8 @@ fn sequential(s: f64) -> Colour {
 fn diverging(s: f64) -> Colour {
     let departure = (2.0 * s - 1.0).abs();
     let hue = if s < 0.5 { 255.0_f64 } else { 30.0 }.to_radians();
-    let chroma = 0.15 * departure.powf(0.9);
+    // Chroma rises faster than lightness falls, so that weak departures already show their side.
+    let chroma = 0.17 * departure.powf(0.75);
     oklab(0.965 - 0.545 * departure, chroma * hue.cos(), chroma * hue.sin())
 }
 

@@ -7,6 +7,9 @@
 /// Grid units to the em: text of size s pixels has capitals of 14 s / 20 pixels.
 pub(crate) const EM: f64 = 20.0;
 
+/// Added to every advance width: text on a screen wants air between letters.
+const TRACKING: f64 = 0.6;
+
 /// Segments per full turn of an arc; text is at most a few dozen pixels tall.
 const SEGMENTS_PER_TURN: f64 = 32.0;
 
@@ -126,7 +129,7 @@ const MISSING: (char, f64, &str) = ('\u{fffd}', 9.0, "M 1.4 0 L 1.4 14 L 7.6 14 
 
 /// Width of `text` in ems.
 pub(crate) fn width(text: &str) -> f64 {
-    text.chars().map(|c| glyph(c).1).sum::<f64>() / EM
+    text.chars().map(|c| glyph(c).1 + TRACKING).sum::<f64>() / EM
 }
 
 /// The strokes of `text` in ems, y up, starting at the origin.
@@ -138,7 +141,7 @@ pub(crate) fn strokes(text: &str) -> Vec<Vec<[f64; 2]>> {
         for stroke in outline(commands) {
             all.push(stroke.iter().map(|p| [(p[0] + pen) / EM, p[1] / EM]).collect());
         }
-        pen += advance;
+        pen += advance + TRACKING;
     }
     all
 }

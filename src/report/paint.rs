@@ -12,7 +12,7 @@ use super::font;
 /// Stroke width of text over its size.
 const TEXT_WEIGHT: f64 = 0.075;
 /// The same for bold text.
-const BOLD_WEIGHT: f64 = 0.11;
+const BOLD_WEIGHT: f64 = 0.1;
 /// More pixels than any screen shows; a guard against absurd sizes.
 const MAX_SIDE: f64 = 16384.0;
 

@@ -10,6 +10,8 @@ use crate::math::{Bounds, Vector};
 const LONG_SIDE: f64 = 820.0;
 /// A plot area is never higher than this.
 const TALL_SIDE: f64 = 640.0;
+/// Opaque: the overlapping ends of its segments would show otherwise.
+const CONTOUR: Pen = Pen::new(Colour::rgb(62, 68, 78), 0.7);
 /// Pixels of PNG per unit of canvas.
 const SHARPNESS: f64 = 2.0;
 
@@ -80,6 +82,7 @@ pub fn raster_png(raster: &Raster, style: &PictureStyle) -> Result<Vec<u8>, Repo
     if raster.values.len() != expected || expected == 0 {
         return Err(ReportError::Shape { what: "a raster", found: raster.values.len(), expected: expected.max(1) });
     }
+    let raster = &if style.outlines.is_empty() { raster.clone() } else { bled(raster) };
     let (mut canvas, frame) = sheet(raster.window, style.title)?;
     let range = style.range.unwrap_or_else(|| robust_range(&raster.values));
     canvas.rectangle(frame.area, Some(Colour::BODY), None);
@@ -160,6 +163,25 @@ pub(super) fn robust_range(values: &[f64]) -> [f64; 2] {
     }
 }
 
+/// The raster with its field continued a few pixels into bodies, whose exact outlines are drawn over it: no steps of
+/// pixels show along a wall.
+fn bled(raster: &Raster) -> Raster {
+    const PIXELS: usize = 3;
+    let (width, height) = (raster.width, raster.height);
+    let mut values = raster.values.clone();
+    for _ in 0..PIXELS {
+        let before = values.clone();
+        for (at, value) in values.iter_mut().enumerate().filter(|(_, value)| !value.is_finite()) {
+            let (k, l) = (at % width, at / width);
+            let beside = [(k.wrapping_sub(1), l), (k + 1, l), (k, l.wrapping_sub(1)), (k, l + 1)];
+            let known = beside.iter().filter(|(k, l)| *k < width && *l < height).map(|(k, l)| before[l * width + k]);
+            let (n, sum) = known.filter(|v| v.is_finite()).fold((0, 0.0), |(n, sum), v| (n + 1, sum + v));
+            *value = if n > 0 { sum / f64::from(n) } else { f64::NAN };
+        }
+    }
+    Raster { values, ..raster.clone() }
+}
+
 fn coloured(raster: &Raster, map: Colormap, range: [f64; 2]) -> Bitmap {
     let mut rgba = Vec::with_capacity(4 * raster.values.len());
     for row in raster.values.chunks(raster.width).rev() {
@@ -179,7 +201,7 @@ fn draw_contour(canvas: &mut Canvas, frame: &Frame, raster: &Raster, level: f64)
         frame.place(x, raster.window.min[1] + (p[1] + 0.5) * pixel[1])
     };
     for [a, b] in contour::segments(&raster.values, raster.width, level) {
-        canvas.line(vec![at(a), at(b)], Pen::new(Colour::INK.faded(150), 0.8));
+        canvas.line(vec![at(a), at(b)], CONTOUR);
     }
 }
 

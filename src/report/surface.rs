@@ -18,7 +18,7 @@ const SHARPNESS: f64 = 2.0;
 /// Discs reach this far beyond their own area, so that no gaps open between them.
 const OVERLAP: f64 = 1.5;
 /// Share of the light that comes from everywhere.
-const AMBIENT: f64 = 0.42;
+const AMBIENT: f64 = 0.6;
 
 /// A surface with a value to show.
 #[derive(Clone, Copy, Debug)]

@@ -21,7 +21,7 @@
     if (axis.log && b - a > 1) {
       const stride = Math.max(1, Math.ceil((b - a) / count));
       const all = [];
-      for (let k = Math.ceil(a / stride) * stride; k <= b; k += stride) all.push([k, minus("1e" + k)]);
+      for (let k = Math.ceil(a / stride) * stride; k <= b; k += stride) all.push([k, k === 0 ? "1" : minus("1e" + k)]);
       return all;
     }
     const [p, q] = [backward(axis, a), backward(axis, b)];
