@@ -17,7 +17,7 @@ pub(super) fn number(value: f64) -> String {
         "0".to_owned()
     } else if !value.is_finite() {
         return "–".to_owned();
-    } else if (1e-3..1e7).contains(&size) {
+    } else if (1e-4..1e7).contains(&size) {
         let decimals = (4.0 - size.log10().floor()).clamp(0.0, 6.0) as usize;
         format!("{value:.decimals$}")
     } else {
@@ -48,7 +48,7 @@ fn code_spans(text: &str) -> String {
 
 pub(super) fn loads(run: &RunFolder) -> String {
     let mut html = match run.table("loads.csv") {
-        Ok(table) => load_table(&table),
+        Ok(table) => run_table(&table, 2),
         Err(reason) => word(&reason),
     };
     let Ok(summary) = run.json("summary.json") else { return html };
@@ -72,24 +72,24 @@ pub(super) fn loads(run: &RunFolder) -> String {
     html
 }
 
-/// Loads per body and tag: text columns as they are, numbers for reading.
-fn load_table(table: &Table) -> String {
-    let columns: Vec<&str> = table
-        .columns
-        .iter()
-        .map(|c| match c.as_str() {
-            "cl" => "CL",
-            "cd" => "CD",
-            "cm" => "CM",
-            other => other,
-        })
-        .collect();
-    let entry = |text: &String| text.parse::<f64>().map_or_else(|_| text.clone(), number);
-    let rows = table
-        .rows
-        .iter()
-        .map(|row| row.iter().enumerate().map(|(k, text)| if k < 2 { text.clone() } else { entry(text) }).collect());
-    table_html(&columns, rows)
+/// A table of a run as it is, with numbers for reading; the first `text_columns` are names even when they are digits.
+fn run_table(table: &Table, text_columns: usize) -> String {
+    let columns: Vec<String> = table.columns.iter().map(|name| heading(name)).collect();
+    let columns: Vec<&str> = columns.iter().map(String::as_str).collect();
+    let entry = |(k, text): (usize, &String)| match text.parse::<f64>() {
+        Ok(value) if k >= text_columns => plain_or_number(value),
+        _ => text.clone(),
+    };
+    table_html(&columns, table.rows.iter().map(|row| row.iter().enumerate().map(entry).collect()))
+}
+
+/// `change_cl` as a heading: `change CL`.
+fn heading(column: &str) -> String {
+    let word = |word| match word {
+        "cl" | "cd" | "cm" => word.to_uppercase(),
+        other => other.to_owned(),
+    };
+    column.split('_').map(word).collect::<Vec<_>>().join(" ")
 }
 
 /// A table; a column is set as numbers when its entries look like them.
@@ -185,10 +185,7 @@ pub(super) fn convergence(run: &RunFolder) -> String {
     };
     if let Ok(table) = run.table("adapt.csv") {
         html.push_str("<h3>Refinement</h3>\n");
-        let columns: Vec<String> = table.columns.iter().map(|c| c.replace('_', " ")).collect();
-        let columns: Vec<&str> = columns.iter().map(String::as_str).collect();
-        let entry = |text: &String| text.parse::<f64>().map_or_else(|_| text.clone(), plain_or_number);
-        html.push_str(&table_html(&columns, table.rows.iter().map(|row| row.iter().map(entry).collect())));
+        html.push_str(&run_table(&table, 0));
     }
     html
 }
@@ -250,7 +247,8 @@ pub(super) fn doctor(run: &RunFolder) -> String {
         Err(reason) => return word(&reason) + &pictures,
     };
     let neighbours = doctor.get("neighbours");
-    let range = ["min", "mean", "max"].map(|key| number_of(neighbours.and_then(|n| n.get(key))));
+    let of = |key: &str| neighbours.and_then(|n| n.get(key)).and_then(Value::as_f64);
+    let range = ["min", "mean", "max"].map(|key| of(key).map_or("–".to_owned(), plain_or_number));
     let whole = |key: &str| doctor.get(key).and_then(Value::as_f64).map_or("–".to_owned(), grouped);
     let facts = [
         ("Particles", whole("particles")),
@@ -278,7 +276,7 @@ fn histogram(entry: &Value) -> String {
         entry.get(key).and_then(Value::as_array).into_iter().flatten().map(|v| v.as_f64().unwrap_or(f64::NAN)).collect()
     };
     let text = |key: &str| entry.get(key).and_then(Value::as_str).unwrap_or_default();
-    let unit = if text("unit").is_empty() { String::new() } else { format!(" ({})", text("unit")) };
+    let unit = if ["", "1"].contains(&text("unit")) { String::new() } else { format!(" ({})", text("unit")) };
     let (x, y) = (numbers("edges"), numbers("counts"));
     chart_html(&Chart {
         title: text("name").to_owned(),
