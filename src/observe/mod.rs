@@ -1,1 +1,8 @@
-//! Filled in below.
+//! What a run leaves behind: tables, field files and checkpoints. Takes slices, knows no solver type.
+pub mod checkpoint;
+pub mod table;
+pub mod vtk;
+
+pub use checkpoint::{Array, Checkpoint, CheckpointError, Field};
+pub use table::{FileError, History, write_atomic};
+pub use vtk::{Cells, Column, Facets, VtkError};

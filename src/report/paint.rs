@@ -1,0 +1,158 @@
+//! Paints a canvas as PNG.
+use tiny_skia::{
+    FillRule, FilterQuality, LineCap, LineJoin, Mask, Paint, PathBuilder, Pixmap, PixmapPaint, Stroke, StrokeDash,
+    Transform,
+};
+
+use super::ReportError;
+use super::canvas::{Anchor, Area, Bitmap, Canvas, Item, Pen, Text};
+use super::colour::Colour;
+use super::font;
+
+/// Stroke width of text over its size.
+const TEXT_WEIGHT: f64 = 0.075;
+/// The same for bold text.
+const BOLD_WEIGHT: f64 = 0.1;
+/// More pixels than any screen shows; a guard against absurd sizes.
+const MAX_SIDE: f64 = 16384.0;
+
+pub(super) fn png(canvas: &Canvas, scale: f64) -> Result<Vec<u8>, ReportError> {
+    let size = [canvas.width * scale, canvas.height * scale];
+    let too_large = || ReportError::Size { width: size[0], height: size[1] };
+    if !size.iter().all(|s| (1.0..=MAX_SIDE).contains(s)) {
+        return Err(too_large());
+    }
+    let mut sheet = Pixmap::new(size[0].round() as u32, size[1].round() as u32).ok_or_else(too_large)?;
+    sheet.fill(tiny_skia::Color::WHITE);
+    let mut painter = Painter { scale, clip: None, mask: None, sheet };
+    canvas.items.iter().for_each(|item| painter.item(item));
+    painter.sheet.encode_png().map_err(|e| ReportError::Png(e.to_string()))
+}
+
+pub(super) fn bitmap_png(bitmap: &Bitmap) -> Result<Vec<u8>, ReportError> {
+    let size = ReportError::Size { width: bitmap.width as f64, height: bitmap.height as f64 };
+    let pixmap = pixmap_of(bitmap).ok_or(size)?;
+    pixmap.encode_png().map_err(|e| ReportError::Png(e.to_string()))
+}
+
+fn pixmap_of(bitmap: &Bitmap) -> Option<Pixmap> {
+    let mut pixmap = Pixmap::new(u32::try_from(bitmap.width).ok()?, u32::try_from(bitmap.height).ok()?)?;
+    for (to, from) in pixmap.pixels_mut().iter_mut().zip(bitmap.rgba.as_chunks::<4>().0) {
+        *to = tiny_skia::ColorU8::from_rgba(from[0], from[1], from[2], from[3]).premultiply();
+    }
+    Some(pixmap)
+}
+
+struct Painter {
+    scale: f64,
+    clip: Option<Area>,
+    mask: Option<Mask>,
+    sheet: Pixmap,
+}
+
+impl Painter {
+    fn item(&mut self, item: &Item) {
+        match item {
+            Item::Path { points, closed, fill, pen, clip } => {
+                self.set_clip(*clip);
+                self.shape(&mut |path| add_chain(path, points, *closed), *fill, *pen);
+            }
+            Item::Discs { centres, radius, fill, pen, clip } => {
+                self.set_clip(*clip);
+                // One path for all would merge overlapping discs into one outline; draw them one by one.
+                for c in centres.iter().filter(|c| c[0].is_finite() && c[1].is_finite()) {
+                    let mut disc = |path: &mut PathBuilder| path.push_circle(c[0] as f32, c[1] as f32, *radius as f32);
+                    self.shape(&mut disc, *fill, *pen);
+                }
+            }
+            Item::Text(text) => {
+                self.set_clip(None);
+                self.text(text);
+            }
+            Item::Picture { bitmap, area } => self.picture(bitmap, *area),
+        }
+    }
+
+    fn set_clip(&mut self, clip: Option<Area>) {
+        if clip == self.clip {
+            return;
+        }
+        self.clip = clip;
+        self.mask = clip.and_then(|a| {
+            let mut mask = Mask::new(self.sheet.width(), self.sheet.height())?;
+            let area = tiny_skia::Rect::from_xywh(a.x as f32, a.y as f32, a.width as f32, a.height as f32)?;
+            mask.fill_path(&PathBuilder::from_rect(area), FillRule::Winding, true, self.transform());
+            Some(mask)
+        });
+    }
+
+    fn transform(&self) -> Transform {
+        Transform::from_scale(self.scale as f32, self.scale as f32)
+    }
+
+    fn shape(&mut self, build: &mut dyn FnMut(&mut PathBuilder), fill: Option<Colour>, pen: Option<Pen>) {
+        let mut builder = PathBuilder::new();
+        build(&mut builder);
+        let Some(path) = builder.finish() else { return };
+        let transform = self.transform();
+        if let Some(colour) = fill {
+            self.sheet.fill_path(&path, &paint(colour), FillRule::EvenOdd, transform, self.mask.as_ref());
+        }
+        if let Some(pen) = pen {
+            let stroke = Stroke {
+                width: pen.width as f32,
+                line_cap: LineCap::Round,
+                line_join: LineJoin::Round,
+                dash: if pen.dashed { StrokeDash::new(vec![5.0, 4.0], 0.0) } else { None },
+                ..Stroke::default()
+            };
+            self.sheet.stroke_path(&path, &paint(pen.colour), &stroke, transform, self.mask.as_ref());
+        }
+    }
+
+    fn text(&mut self, text: &Text) {
+        let shift = match text.anchor {
+            Anchor::Start => 0.0,
+            Anchor::Middle => -0.5,
+            Anchor::End => -1.0,
+        } * font::width(&text.text);
+        let [x, y] = text.at;
+        let place = |p: &[f64; 2]| {
+            let (along, up) = ((p[0] + shift) * text.size, p[1] * text.size);
+            if text.upright { [x - up, y - along] } else { [x + along, y - up] }
+        };
+        let weight = if text.bold { BOLD_WEIGHT } else { TEXT_WEIGHT };
+        let strokes: Vec<Vec<[f64; 2]>> =
+            font::strokes(&text.text).iter().map(|s| s.iter().map(place).collect()).collect();
+        let mut all = |path: &mut PathBuilder| strokes.iter().for_each(|s| add_chain(path, s, false));
+        self.shape(&mut all, None, Some(Pen::new(text.colour, weight * text.size)));
+    }
+
+    fn picture(&mut self, bitmap: &Bitmap, area: Area) {
+        let Some(pixmap) = pixmap_of(bitmap) else { return };
+        let stretch = [area.width / bitmap.width as f64, area.height / bitmap.height as f64];
+        let transform = self
+            .transform()
+            .pre_translate(area.x as f32, area.y as f32)
+            .pre_scale(stretch[0] as f32, stretch[1] as f32);
+        let paint = PixmapPaint { quality: FilterQuality::Bilinear, ..PixmapPaint::default() };
+        self.sheet.draw_pixmap(0, 0, pixmap.as_ref(), &paint, transform, None);
+    }
+}
+
+fn paint(colour: Colour) -> Paint<'static> {
+    let mut paint = Paint::default();
+    paint.set_color_rgba8(colour.r, colour.g, colour.b, colour.a);
+    paint.anti_alias = true;
+    paint
+}
+
+fn add_chain(path: &mut PathBuilder, points: &[[f64; 2]], closed: bool) {
+    let mut finite = points.iter().filter(|p| p[0].is_finite() && p[1].is_finite());
+    let Some(first) = finite.next() else { return };
+    path.move_to(first[0] as f32, first[1] as f32);
+    finite.for_each(|p| path.line_to(p[0] as f32, p[1] as f32));
+    if closed {
+        path.close();
+    }
+}

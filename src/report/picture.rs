@@ -1,0 +1,390 @@
+//! Flow pictures: a field on a raster of pixels, and the particles themselves.
+use super::ReportError;
+use super::axes::{Frame, Scale, TITLE_SIZE, tick_text};
+use super::canvas::{Anchor, Area, Bitmap, Canvas, Pen, Text};
+use super::colour::{CURVES, Colormap, Colour};
+use super::contour;
+use crate::math::{Bounds, Vector};
+
+/// Longest side of a plot area in pixels.
+const LONG_SIDE: f64 = 820.0;
+/// A plot area is never higher than this.
+const TALL_SIDE: f64 = 640.0;
+/// Opaque: the overlapping ends of its segments would show otherwise.
+const CONTOUR: Pen = Pen::new(Colour::rgb(62, 68, 78), 0.7);
+/// Pixels of PNG per unit of canvas.
+const SHARPNESS: f64 = 2.0;
+
+/// A field sampled at the centres of equal pixels.
+#[derive(Clone, Debug)]
+pub struct Raster {
+    /// Pixels in a row.
+    pub width: usize,
+    /// Rows.
+    pub height: usize,
+    /// What the raster covers, from border to border.
+    pub window: Bounds<2>,
+    /// Values row by row, the first row at the smallest y; NaN inside a body and outside the flow.
+    pub values: Vec<f64>,
+}
+
+/// How a field is shown.
+#[derive(Clone, Debug)]
+pub struct PictureStyle<'a> {
+    /// Title.
+    pub title: &'a str,
+    /// Quantity and unit, beside the colour bar.
+    pub quantity: &'a str,
+    /// Labels of the axes.
+    pub axes: [&'a str; 2],
+    /// Colours.
+    pub map: Colormap,
+    /// Values at the ends of the colour bar; absent: nearly all of the field (outliers of 0.2 % are cut).
+    pub range: Option<[f64; 2]>,
+    /// Values of contour lines.
+    pub contours: &'a [f64],
+    /// Bodies: closed polygons.
+    pub outlines: &'a [Vec<Vector<2>>],
+}
+
+/// What the colour of a particle says.
+#[derive(Clone, Copy, Debug)]
+pub enum Dots<'a> {
+    /// Level of refinement, one colour each.
+    Level(&'a [u32]),
+    /// A value on a colour scale.
+    Value {
+        /// One value per particle.
+        values: &'a [f64],
+        /// Quantity and unit.
+        quantity: &'a str,
+        /// Colours.
+        map: Colormap,
+    },
+}
+
+/// A cloud of particles.
+#[derive(Clone, Debug)]
+pub struct Scatter<'a> {
+    /// Positions.
+    pub points: &'a [Vector<2>],
+    /// Meaning of the colours, one entry per position.
+    pub dots: Dots<'a>,
+    /// Interface particles with their normals.
+    pub interface: &'a [(Vector<2>, Vector<2>)],
+    /// Bodies: closed polygons.
+    pub outlines: &'a [Vec<Vector<2>>],
+}
+
+/// Draws a field with a colour bar, axes, contour lines and bodies, as PNG.
+pub fn raster_png(raster: &Raster, style: &PictureStyle) -> Result<Vec<u8>, ReportError> {
+    let expected = raster.width.saturating_mul(raster.height);
+    if raster.values.len() != expected || expected == 0 {
+        return Err(ReportError::Shape { what: "a raster", found: raster.values.len(), expected: expected.max(1) });
+    }
+    let raster = &if style.outlines.is_empty() { raster.clone() } else { bled(raster) };
+    let (mut canvas, frame) = sheet(raster.window, style.title)?;
+    let range = style.range.unwrap_or_else(|| robust_range(&raster.values));
+    canvas.rectangle(frame.area, Some(Colour::BODY), None);
+    canvas.picture(coloured(raster, style.map, range), frame.area);
+    canvas.clip(Some(frame.area));
+    for level in style.contours {
+        draw_contour(&mut canvas, &frame, raster, *level);
+    }
+    draw_outlines(&mut canvas, &frame, style.outlines, Some(Colour::BODY));
+    canvas.clip(None);
+    frame.border(&mut canvas, style.axes[0], style.axes[1]);
+    colour_bar(&mut canvas, frame.area, style.map, range, style.quantity);
+    canvas.png(SHARPNESS)
+}
+
+/// Draws the particles inside `window`, interface particles with their normals, as PNG.
+pub fn scatter_png(scatter: &Scatter, window: Bounds<2>, title: &str) -> Result<Vec<u8>, ReportError> {
+    let found = match scatter.dots {
+        Dots::Level(levels) => levels.len(),
+        Dots::Value { values, .. } => values.len(),
+    };
+    if found != scatter.points.len() {
+        return Err(ReportError::Shape { what: "the colour of particles", found, expected: scatter.points.len() });
+    }
+    let (mut canvas, frame) = sheet(window, title)?;
+    let seen: Vec<usize> = (0..found).filter(|i| window.contains(&scatter.points[*i])).collect();
+    // Dots cover a third of the area when evenly spread, and stay visible without merging.
+    let spacing = (frame.area.width * frame.area.height / seen.len().max(1) as f64).sqrt();
+    let radius = (0.28 * spacing).clamp(0.7, 4.5);
+    canvas.clip(Some(frame.area));
+    draw_outlines(&mut canvas, &frame, scatter.outlines, Some(Colour::BODY));
+    match scatter.dots {
+        Dots::Level(levels) => draw_levels(&mut canvas, &frame, scatter.points, levels, (&seen, radius)),
+        Dots::Value { values, quantity, map } => {
+            let shown: Vec<f64> = seen.iter().map(|i| values[*i]).collect();
+            let range = robust_range(&shown);
+            for i in &seen {
+                let colour = map.colour(values[*i], range);
+                canvas.discs(vec![place(&frame, &scatter.points[*i])], radius, Some(colour), None);
+            }
+            colour_bar(&mut canvas, frame.area, map, range, quantity);
+        }
+    }
+    draw_interface(&mut canvas, &frame, scatter.interface, window, radius);
+    canvas.clip(None);
+    frame.border(&mut canvas, "x", "y");
+    canvas.png(SHARPNESS)
+}
+
+/// A sheet with a title and a frame of the proportions of `window`.
+fn sheet(window: Bounds<2>, title: &str) -> Result<(Canvas, Frame), ReportError> {
+    let extent = window.extent();
+    if !(extent[0] > 0.0 && extent[1] > 0.0 && extent.is_finite()) {
+        return Err(ReportError::Window { min: window.min.0, max: window.max.0 });
+    }
+    let scale = (LONG_SIDE / extent[0]).min(TALL_SIDE / extent[1]);
+    // A very slender window is stretched rather than drawn as a line.
+    let area = Area { x: 82.0, y: 46.0, width: (extent[0] * scale).max(120.0), height: (extent[1] * scale).max(120.0) };
+    let mut canvas = Canvas::new(area.x + area.width + 110.0, area.y + area.height + 62.0);
+    canvas.text(Text { bold: true, ..Text::new(title, [area.x, 28.0], TITLE_SIZE) });
+    let scale = |d: usize| Scale { from: window.min[d], to: window.max[d], log: false };
+    Ok((canvas, Frame { area, x: scale(0), y: scale(1) }))
+}
+
+fn place(frame: &Frame, x: &Vector<2>) -> [f64; 2] {
+    frame.place(x[0], x[1])
+}
+
+/// The range of all but the 0.2 % smallest and largest values: one bad particle must not bleach a picture.
+pub(super) fn robust_range(values: &[f64]) -> [f64; 2] {
+    let mut sorted: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
+    sorted.sort_by(f64::total_cmp);
+    let cut = sorted.len() / 500;
+    match (sorted.get(cut), sorted.iter().rev().nth(cut)) {
+        (Some(low), Some(high)) if low < high => [*low, *high],
+        (Some(low), _) => [low - 0.5, low + 0.5],
+        _ => [0.0, 1.0],
+    }
+}
+
+/// The raster with its field continued a few pixels into bodies, whose exact outlines are drawn over it: no steps of
+/// pixels show along a wall.
+fn bled(raster: &Raster) -> Raster {
+    const PIXELS: usize = 3;
+    let (width, height) = (raster.width, raster.height);
+    let mut values = raster.values.clone();
+    for _ in 0..PIXELS {
+        let before = values.clone();
+        for (at, value) in values.iter_mut().enumerate().filter(|(_, value)| !value.is_finite()) {
+            let (k, l) = (at % width, at / width);
+            let beside = [(k.wrapping_sub(1), l), (k + 1, l), (k, l.wrapping_sub(1)), (k, l + 1)];
+            let known = beside.iter().filter(|(k, l)| *k < width && *l < height).map(|(k, l)| before[l * width + k]);
+            let (n, sum) = known.filter(|v| v.is_finite()).fold((0, 0.0), |(n, sum), v| (n + 1, sum + v));
+            *value = if n > 0 { sum / f64::from(n) } else { f64::NAN };
+        }
+    }
+    Raster { values, ..raster.clone() }
+}
+
+fn coloured(raster: &Raster, map: Colormap, range: [f64; 2]) -> Bitmap {
+    let mut rgba = Vec::with_capacity(4 * raster.values.len());
+    for row in raster.values.chunks(raster.width).rev() {
+        for value in row {
+            let c = if value.is_finite() { map.colour(*value, range) } else { Colour::BODY };
+            rgba.extend([c.r, c.g, c.b, c.a]);
+        }
+    }
+    Bitmap { width: raster.width, height: raster.height, rgba }
+}
+
+fn draw_contour(canvas: &mut Canvas, frame: &Frame, raster: &Raster, level: f64) {
+    let extent = raster.window.extent();
+    let pixel = [extent[0] / raster.width as f64, extent[1] / raster.height as f64];
+    let at = |p: [f64; 2]| {
+        let x = raster.window.min[0] + (p[0] + 0.5) * pixel[0];
+        frame.place(x, raster.window.min[1] + (p[1] + 0.5) * pixel[1])
+    };
+    for [a, b] in contour::segments(&raster.values, raster.width, level) {
+        canvas.line(vec![at(a), at(b)], CONTOUR);
+    }
+}
+
+fn draw_outlines(canvas: &mut Canvas, frame: &Frame, outlines: &[Vec<Vector<2>>], fill: Option<Colour>) {
+    for outline in outlines {
+        let places = outline.iter().map(|x| place(frame, x)).collect();
+        canvas.polygon(places, fill, Some(Pen::new(Colour::INK, 1.2)));
+    }
+}
+
+/// One colour per level, finest first, with a legend beside the plot.
+fn draw_levels(canvas: &mut Canvas, frame: &Frame, points: &[Vector<2>], levels: &[u32], seen: (&[usize], f64)) {
+    let (seen, radius) = seen;
+    let mut present: Vec<u32> = seen.iter().map(|i| levels[*i]).collect();
+    present.sort_unstable();
+    present.dedup();
+    let range = [present.first().map_or(0.0, |l| f64::from(*l)), present.last().map_or(1.0, |l| f64::from(*l))];
+    // The pale end of the scale is lost on paper: use seven eighths of it.
+    let range = [range[0], range[1] + 0.15 * (range[1] - range[0]).max(1.0)];
+    let (left, mut y) = (frame.area.x + frame.area.width + 18.0, frame.area.y + 12.0);
+    let clip = Some(frame.area);
+    canvas.text(Text::new("level", [left, y], 12.5));
+    for level in present {
+        let colour = Colormap::Sequential.colour(f64::from(level), range);
+        let dots = seen.iter().filter(|i| levels[**i] == level).map(|i| place(frame, &points[*i])).collect();
+        canvas.clip(clip);
+        canvas.discs(dots, radius, Some(colour), None);
+        canvas.clip(None);
+        y += 19.0;
+        canvas.discs(vec![[left + 5.0, y - 4.0]], 4.5, Some(colour), None);
+        canvas.text(tick_text(level.to_string(), [left + 17.0, y], Anchor::Start));
+    }
+    canvas.clip(clip);
+}
+
+fn draw_interface(
+    canvas: &mut Canvas,
+    frame: &Frame,
+    interface: &[(Vector<2>, Vector<2>)],
+    window: Bounds<2>,
+    radius: f64,
+) {
+    let colour = CURVES[1];
+    let seen = interface.iter().filter(|(x, _)| window.contains(x));
+    let mut centres = Vec::new();
+    for (x, normal) in seen {
+        let [a, n] = [place(frame, x), normal.unit().0];
+        let length = 4.5 * radius.max(1.5);
+        canvas.line(vec![a, [a[0] + length * n[0], a[1] - length * n[1]]], Pen::new(colour, 0.45 * radius.max(1.5)));
+        centres.push(a);
+    }
+    canvas.discs(centres, radius.max(1.2), Some(colour), None);
+}
+
+/// A labelled colour bar to the right of `area`.
+pub(super) fn colour_bar(canvas: &mut Canvas, area: Area, map: Colormap, range: [f64; 2], quantity: &str) {
+    let height = area.height.min(420.0);
+    let bar = Area { x: area.x + area.width + 20.0, y: area.y + 0.5 * (area.height - height), width: 15.0, height };
+    let steps = 256;
+    let value = |k: usize| range[1] + (range[0] - range[1]) * (k as f64 + 0.5) / steps as f64;
+    let rgba = (0..steps).map(|k| map.colour(value(k), range)).flat_map(|c| [c.r, c.g, c.b, 255]).collect();
+    canvas.picture(Bitmap { width: 1, height: steps, rgba }, bar);
+    canvas.rectangle(bar, None, Some(Pen::new(Colour::INK, 1.0)));
+    let scale = Scale { from: range[0], to: range[1], log: false };
+    let right = bar.x + bar.width;
+    for tick in scale.ticks((height / 45.0).clamp(2.0, 7.0) as usize) {
+        let y = bar.y + (1.0 - scale.fraction(tick.value)) * height;
+        canvas.line(vec![[right, y], [right + 4.0, y]], Pen::new(Colour::INK, 1.0));
+        canvas.text(tick_text(tick.label, [right + 8.0, y + 4.2], Anchor::Start));
+    }
+    canvas.text(Text::new(quantity, [bar.x, bar.y - 8.0], 13.0));
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+
+    /// Keeps a picture in the folder named by `ALULA_PICTURES`, to look at; does nothing without it.
+    pub(crate) fn keep(name: &str, bytes: &[u8]) {
+        if let Some(folder) = std::env::var_os("ALULA_PICTURES") {
+            std::fs::write(std::path::Path::new(&folder).join(name), bytes).unwrap();
+        }
+    }
+
+    fn ellipse() -> Vec<Vector<2>> {
+        let angle = |k: u32| std::f64::consts::TAU * f64::from(k) / 200.0;
+        (0..200).map(|k| Vector([0.5 + 0.5 * angle(k).cos(), 0.06 * angle(k).sin()])).collect()
+    }
+
+    fn sample(width: usize, height: usize) -> Raster {
+        let window = Bounds { min: Vector([-0.5, -0.6]), max: Vector([1.5, 0.7]) };
+        let value = |i: usize| {
+            let x = -0.5 + 2.0 * ((i % width) as f64 + 0.5) / width as f64;
+            let y = -0.6 + 1.3 * ((i / width) as f64 + 0.5) / height as f64;
+            let inside = ((x - 0.5) / 0.5).powi(2) + (y / 0.06).powi(2) < 1.0;
+            let bump = (-((x - 0.45) / 0.3).powi(2) - ((y - 0.15) / 0.3).powi(2)).exp();
+            let shock = if x < 0.62 || y < 0.0 { 1.0 } else { 0.35 };
+            if inside {
+                f64::NAN
+            } else {
+                0.8 + 0.5 * bump * shock - 0.5 * (-((x / 0.1).powi(2) + (y / 0.1).powi(2))).exp()
+            }
+        };
+        Raster { width, height, window, values: (0..width * height).map(value).collect() }
+    }
+
+    #[test]
+    fn a_field_becomes_a_picture() {
+        let contours = [0.9, 1.0, 1.1, 1.2];
+        let mut style = PictureStyle {
+            title: "Mach number, NACA 0012, M = 0.8, α = 1.25°",
+            quantity: "Mach",
+            axes: ["x/c", "y/c"],
+            map: Colormap::Sequential,
+            range: None,
+            contours: &contours,
+            outlines: &[ellipse()],
+        };
+        keep("raster.png", &raster_png(&sample(400, 260), &style).unwrap());
+        style.map = Colormap::Diverging { centre: 1.0 };
+        style.contours = &contours[1..2];
+        keep("raster-diverging.png", &raster_png(&sample(400, 260), &style).unwrap());
+    }
+
+    #[test]
+    fn a_cloud_becomes_a_picture() {
+        let mut points = Vec::new();
+        let mut levels = Vec::new();
+        for level in 0..4_u32 {
+            let h = 0.08 / f64::from(1 << level);
+            for k in 0..(2.0 / h) as usize {
+                for l in 0..(1.2 / h) as usize {
+                    let x = Vector([-0.5 + (k as f64 + 0.5) * h, -0.6 + (l as f64 + 0.5) * h]);
+                    let distance = (((x[0] - 0.5) / 0.5).powi(2) + (x[1] / 0.06).powi(2)).sqrt() - 1.0;
+                    let wanted = if distance < 1.2 {
+                        3
+                    } else if distance < 3.0 {
+                        2
+                    } else if distance < 5.0 {
+                        1
+                    } else {
+                        0
+                    };
+                    if distance > 0.05 && wanted == level {
+                        points.push(x);
+                        levels.push(level);
+                    }
+                }
+            }
+        }
+        let interface: Vec<_> = ellipse().iter().map(|x| (*x, Vector([(x[0] - 0.5) / 0.25, x[1] / 0.0036]))).collect();
+        let outlines = [ellipse()];
+        let dots = Dots::Level(&levels);
+        let scatter = Scatter { points: &points, dots, interface: &interface, outlines: &outlines };
+        let window = Bounds { min: Vector([-0.1, -0.25]), max: Vector([0.5, 0.25]) };
+        keep("scatter.png", &scatter_png(&scatter, window, "Particles near the leading edge").unwrap());
+        let values: Vec<f64> = points.iter().map(|x| x[0]).collect();
+        let dots = Dots::Value { values: &values, quantity: "x", map: Colormap::Sequential };
+        let scatter = Scatter { dots, ..scatter };
+        keep("scatter-value.png", &scatter_png(&scatter, window, "Particles by value").unwrap());
+        let scatter = Scatter { dots: Dots::Level(&[]), ..scatter };
+        assert!(scatter_png(&scatter, window, "").is_err());
+    }
+
+    #[test]
+    fn impossible_pictures_are_errors() {
+        let style = PictureStyle {
+            title: "",
+            quantity: "",
+            axes: ["", ""],
+            map: Colormap::Sequential,
+            range: None,
+            contours: &[0.0, f64::NAN],
+            outlines: &[],
+        };
+        let mut raster = sample(4, 3);
+        raster.values = vec![f64::NAN; 12];
+        assert!(raster_png(&raster, &style).is_ok(), "a field of nothing is a grey picture");
+        raster.values.pop();
+        assert!(matches!(raster_png(&raster, &style), Err(ReportError::Shape { found: 11, expected: 12, .. })));
+        let mut raster = sample(4, 3);
+        raster.window = Bounds::EMPTY;
+        assert!(matches!(raster_png(&raster, &style), Err(ReportError::Window { .. })));
+        assert_eq!(robust_range(&[2.0; 5]), [1.5, 2.5]);
+    }
+}
