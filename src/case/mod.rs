@@ -4,12 +4,22 @@
 //! radians, lengths are in the unit of the geometry (metres when the free stream is dimensional).
 use serde::{Deserialize, Serialize};
 
+mod check;
+mod draft;
+mod error;
+mod flow;
+mod keys;
 pub mod quantity;
+mod read;
+mod schema;
 
+pub use error::{CaseError, CaseErrors};
+pub use flow::FreeStreamScales;
 pub use quantity::{Angle, Density, Length, Pressure, Temperature, Time, Velocity};
+pub use read::read;
 
 /// Everything a run needs to know.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Case {
     /// One line that names the case in reports.
     pub title: String,
@@ -49,7 +59,7 @@ pub struct Case {
 }
 
 /// Free stream: either `mach` alone (nondimensional: density 1, sound speed 1) or dimensional values.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Flow {
     /// Mach number.
     pub mach: Option<f64>,
@@ -74,7 +84,7 @@ pub struct Flow {
 }
 
 /// One solid body: exactly one shape key, then placement.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Body {
     /// Name used in tables of loads; `body-1`, `body-2`, … when absent.
     pub name: Option<String>,
@@ -87,7 +97,7 @@ pub struct Body {
 }
 
 /// What a body is made of. In the file this is one key of the body table.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Shape {
     /// Four digits of a NACA section, `naca = "0012"`, or a table with `digits` and `trailing_edge`.
@@ -116,7 +126,7 @@ pub enum Shape {
 }
 
 /// A NACA 4-digit section.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Naca {
     /// Four digits.
     pub digits: String,
@@ -137,7 +147,7 @@ pub enum TrailingEdge {
 }
 
 /// Placement of a body.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Placement {
     /// Factor on every coordinate of the shape; the chord of an airfoil of unit chord.
     pub scale: f64,
@@ -148,7 +158,7 @@ pub struct Placement {
 }
 
 /// Reference quantities of the coefficients.
-#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Reference {
     /// Length of the moment coefficient (and of CL, CD in 2-D); default: extent of the bodies along x.
     pub chord: Option<Length>,
@@ -159,7 +169,7 @@ pub struct Reference {
 }
 
 /// How particles fill the domain.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Cloud {
     /// Particle spacing at the surface; of the whole domain when there is no body.
     pub spacing: Length,
@@ -191,7 +201,7 @@ pub struct Cloud {
 }
 
 /// An explicit domain.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Domain {
     /// Corner with the smallest coordinates.
     pub min: Vec<Length>,
@@ -200,7 +210,7 @@ pub struct Domain {
 }
 
 /// A box with its own spacing.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RefineBox {
     /// Corner with the smallest coordinates.
     pub min: Vec<Length>,
@@ -211,7 +221,7 @@ pub struct RefineBox {
 }
 
 /// Refinement behind the bodies.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Wake {
     /// Length behind the trailing edge.
     pub length: Length,
@@ -220,7 +230,7 @@ pub struct Wake {
 }
 
 /// Conditions on the sides of the domain.
-#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Sides {
     /// Side of smallest x.
     pub x_min: Side,
@@ -257,7 +267,7 @@ pub enum Side {
 }
 
 /// Field at the start.
-#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Initial {
     /// Free stream everywhere.
@@ -288,7 +298,7 @@ pub enum Initial {
 }
 
 /// Spatial scheme.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Scheme {
     /// Upwind flux.
     pub flux: Flux,
@@ -331,7 +341,7 @@ pub enum Limiter {
 }
 
 /// Steady relaxation or explicit marching.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Temporal {
     /// Relax to a steady state.
@@ -341,7 +351,7 @@ pub enum Temporal {
 }
 
 /// Steady relaxation.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Steady {
     /// Method.
     pub method: SteadyMethod,
@@ -368,7 +378,7 @@ pub enum SteadyMethod {
 }
 
 /// Explicit time marching.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Explicit {
     /// Time at which the run ends.
     pub until: Time,
@@ -391,7 +401,7 @@ pub enum RungeKutta {
 }
 
 /// Refinement that follows the solution.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Adapt {
     /// Number of refinements (0: none).
     pub cycles: u32,
@@ -416,7 +426,7 @@ pub enum Sensor {
 }
 
 /// What is written, and how often.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Output {
     /// Iterations between checkpoints.
     pub checkpoint: u32,
@@ -427,7 +437,7 @@ pub struct Output {
 }
 
 /// A reference curve of Cp against x/c.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Compare {
     /// CSV file with columns `x_c` and `Cp` (`surface` optional), relative to the case file.
     pub file: String,
@@ -437,7 +447,14 @@ pub struct Compare {
 
 impl Default for Scheme {
     fn default() -> Self {
-        Self { flux: Flux::Hllc, order: 2, limiter: Limiter::VanAlbada, limiter_threshold: 0.02, kappa: 0.0, conservative: None }
+        Self {
+            flux: Flux::Hllc,
+            order: 2,
+            limiter: Limiter::VanAlbada,
+            limiter_threshold: 0.02,
+            kappa: 0.0,
+            conservative: None,
+        }
     }
 }
 
