@@ -259,7 +259,7 @@ fn sides(draft: &mut Draft<'_>, d: usize) {
 }
 
 fn one_side(draft: &mut Draft<'_>, side: &str, axis: usize, d: usize) {
-    if axis >= d && draft.given(side) {
+    if axis >= d && draft.given(side) && draft.get(side).is_some() && !is(draft, side, "far_field") {
         draft.fail_key(side, format!("`{side}` needs a 3-D case")).hint("a 2-D domain has the sides of x and y only");
         return;
     }

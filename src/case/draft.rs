@@ -63,7 +63,7 @@ impl<'t> Draft<'t> {
 
     /// The value at `path`, none when it is absent or wrong.
     pub(super) fn get(&self, path: &str) -> Option<&Value> {
-        self.tree.pointer(&format!("/{}", path.replace('.', "/").replace('[', "/").replace(']', "")))
+        self.tree.pointer(&format!("/{}", path.replace(['.', '['], "/").replace(']', "")))
     }
 
     /// The number at `path`.

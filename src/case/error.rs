@@ -6,6 +6,8 @@ use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
 
 /// Longest piece of the file repeated in a message.
 const LONGEST_QUOTE: usize = 48;
+/// Longest list of what is allowed that is shown beside a hint.
+const LONGEST_LABEL: usize = 72;
 
 /// One mistake in a case file.
 #[derive(Clone, Debug, PartialEq)]
@@ -105,6 +107,7 @@ impl CaseErrors {
     fn block(&self, error: &CaseError, line: &str, renderer: &Renderer) -> String {
         let place = byte_of(line, error.column)..byte_of(line, error.end_column);
         let label = error.allowed.as_ref().map(|a| format!("allowed: {a}"));
+        let label = label.filter(|l| error.hint.is_none() || l.chars().count() <= LONGEST_LABEL);
         let snippet = Snippet::source(line)
             .line_start(error.line)
             .path(self.name.as_str())

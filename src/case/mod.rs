@@ -11,12 +11,20 @@ mod flow;
 mod keys;
 pub mod quantity;
 mod read;
+mod reference;
 mod schema;
+mod templates;
+#[cfg(test)]
+mod tests;
+mod write;
 
 pub use error::{CaseError, CaseErrors};
 pub use flow::FreeStreamScales;
 pub use quantity::{Angle, Density, Length, Pressure, Temperature, Time, Velocity};
 pub use read::read;
+pub use reference::{reference_markdown, schema};
+pub use templates::{TEMPLATES, template};
+pub use write::write;
 
 /// Everything a run needs to know.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

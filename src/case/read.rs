@@ -53,7 +53,12 @@ impl Reader<'_> {
         let mut seen = BTreeSet::new();
         for (key, item) in document.iter() {
             let Some(field) = table.field(key.get_ref()) else {
-                self.unknown(table, key.get_ref(), key.span(), path);
+                if let Some(meant) = self.unknown(table, key.get_ref(), key.span(), path)
+                    && !document.contains_key(meant)
+                {
+                    // What the misspelt key was to say is not missing as well.
+                    self.draft.place(&join(path, meant), key.span(), item.span());
+                }
                 continue;
             };
             let here = join(path, field.key);
@@ -213,7 +218,7 @@ impl Reader<'_> {
         for (key, item) in document.iter() {
             let here = join(path, key.get_ref());
             let Some(variant) = variants.iter().find(|v| v.name == key.get_ref().as_ref()) else {
-                let message = format!("unknown key `{}` in `[{path}]`", quote(key.get_ref()));
+                let message = format!("unknown key `{}` {}", quote(key.get_ref()), inside(path));
                 let hint = closest(key.get_ref(), names.iter().copied()).map(|n| format!("did you mean `{n}`?"));
                 self.draft.fail_at(&here, key.span(), message).allowed(one_of(names.iter().copied())).hint = hint;
                 continue;
@@ -263,26 +268,26 @@ impl Reader<'_> {
         None
     }
 
-    fn unknown(&mut self, table: &'static Table, key: &str, span: Span<usize>, path: &str) {
-        let hint = match closest(key, table.fields.iter().flat_map(|f| [Some(f.key), f.alias]).flatten()) {
+    /// Tells an unknown key; returns the one that was probably meant.
+    fn unknown(&mut self, table: &'static Table, key: &str, span: Span<usize>, path: &str) -> Option<&'static str> {
+        let meant = closest(key, table.fields.iter().flat_map(|f| [Some(f.key), f.alias]).flatten());
+        let hint = match meant {
             Some(name) => Some(format!("did you mean `{name}`?")),
             None => home_of(key, &CASE, "").map(|home| format!("`{key}` belongs in `[{home}]`")),
         };
-        let place = if path.is_empty() { "in the file".to_owned() } else { format!("in `[{path}]`") };
-        let message = format!("unknown key `{}` {place}", quote(key));
+        let message = format!("unknown key `{}` {}", quote(key), inside(path));
         let allowed = one_of(table.fields.iter().map(|f| f.key));
         self.draft.fail_at(&join(path, key), span, message).allowed(allowed).hint = hint;
+        table.field(meant?).map(|f| f.key)
     }
 
     fn missing(&mut self, field: &Field, path: &str) {
-        if !self.complete || !matches!(field.default, Absent::Required) {
+        let place = join(path, field.key);
+        if !self.complete || !matches!(field.default, Absent::Required) || self.draft.given(&place) {
             return;
         }
-        let (what, place) = (if matches!(field.kind, Kind::Table(_)) { "table" } else { "key" }, join(path, field.key));
-        let message = match path {
-            "" => format!("missing {what} `{}`", field.key),
-            _ => format!("missing {what} `{}` in `[{path}]`", field.key),
-        };
+        let what = if matches!(field.kind, Kind::Table(_)) { "table" } else { "key" };
+        let message = format!("missing {what} `{}` {}", field.key, inside(path));
         let hint = format!("add `{}` ({}): {}", field.key, field.kind.words(), lower(field.doc));
         self.draft.fail(&place, message).hint(hint);
     }
@@ -311,6 +316,15 @@ fn type_of(value: &DeValue<'_>) -> &'static str {
 
 fn join(path: &str, key: &str) -> String {
     if path.is_empty() { key.to_owned() } else { format!("{path}.{key}") }
+}
+
+/// "in `[cloud]`", "in `body[0]`" or "in the file".
+fn inside(path: &str) -> String {
+    match path {
+        "" => "in the file".to_owned(),
+        path if path.ends_with(']') => format!("in `{path}`"),
+        path => format!("in `[{path}]`"),
+    }
 }
 
 fn lower(doc: &str) -> String {
