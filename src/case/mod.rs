@@ -1,6 +1,6 @@
 //! The case: plain data that says what to compute. It knows no solver type.
 //!
-//! A case file is TOML. [`Case`] is its resolved form: every default filled in, every quantity in base units. Angles are
+//! A case file is TOML; [`read()`] tells all its mistakes at once, [`write()`] is its inverse. [`Case`] is its resolved form: every default filled in, every quantity in base units. Angles are
 //! radians, lengths are in the unit of the geometry (metres when the free stream is dimensional).
 use serde::{Deserialize, Serialize};
 
@@ -31,7 +31,7 @@ pub use write::write;
 pub struct Case {
     /// One line that names the case in reports.
     pub title: String,
-    /// Number of space dimensions, 2 or 3; taken from the bodies when absent.
+    /// Number of space dimensions, 2 or 3; taken from the bodies or the domain when absent: [`read()`] always fills it in.
     pub dimension: Option<u8>,
     /// Free stream.
     pub flow: Flow,
@@ -81,7 +81,7 @@ pub struct Flow {
     pub density: Option<Density>,
     /// Specific gas constant, J/(kg K), 287.05 for air.
     pub gas_constant: f64,
-    /// Ratio of specific heats.
+    /// Ratio of specific heats, 1.4 for air.
     pub gamma: f64,
     /// Angle of attack, nose up positive: the flow turns from +x towards +y in 2-D, towards +z in 3-D.
     #[serde(default)]
@@ -94,7 +94,7 @@ pub struct Flow {
 /// One solid body: exactly one shape key, then placement.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Body {
-    /// Name used in tables of loads; `body-1`, `body-2`, … when absent.
+    /// Name used in tables of loads; [`read()`] fills in `body-1`, `body-2`, … when absent.
     pub name: Option<String>,
     /// Geometry.
     #[serde(flatten)]
@@ -159,9 +159,10 @@ pub enum TrailingEdge {
 pub struct Placement {
     /// Factor on every coordinate of the shape; the chord of an airfoil of unit chord.
     pub scale: f64,
-    /// Rotation: one angle in 2-D (nose up positive about the origin of the shape), three in 3-D (about x, y, z).
+    /// Rotation: one angle in 2-D (nose up positive about the origin of the shape), three in 3-D (about x, y, z); empty:
+    /// none.
     pub rotate: Vec<Angle>,
-    /// Translation after scaling and rotation.
+    /// Translation after scaling and rotation; empty: none.
     pub translate: Vec<Length>,
 }
 
@@ -185,26 +186,27 @@ pub struct Cloud {
     pub far_field: Option<Length>,
     /// Explicit domain; its sides must be whole numbers of `coarse` cells.
     pub domain: Option<Domain>,
-    /// Particles per level of refinement, counted away from the surface.
+    /// Particles per level of refinement, counted away from the surface; default 6.
     pub layers: f64,
-    /// Extra levels of refinement at sharp edges.
+    /// Extra levels of refinement at sharp edges; default 2.
     pub edge_levels: u32,
-    /// Spacing is at most this fraction of the local radius of curvature (never finer than `curvature_levels`).
+    /// Spacing is at most this fraction of the local radius of curvature (never finer than `curvature_levels`);
+    /// default 0.25.
     pub curvature: f64,
-    /// Greatest number of extra levels that curvature may ask for.
+    /// Greatest number of extra levels that curvature may ask for; default 2.
     pub curvature_levels: u32,
     /// Boxes with their own spacing.
     #[serde(default, rename = "box")]
     pub boxes: Vec<RefineBox>,
     /// Refinement behind the bodies along the free stream.
     pub wake: Option<Wake>,
-    /// Body-fitted layers of particles next to the wall (0: none).
+    /// Body-fitted layers of particles next to the wall; default 0 (none).
     pub wall_layers: u32,
-    /// Fluid particles nearer to the wall than this fraction of the local spacing are left out.
+    /// Fluid particles nearer to the wall than this fraction of the local spacing are left out; default 0.4.
     pub blank: f64,
-    /// Radius of the clouds near the wall in local spacings.
+    /// Radius of the clouds near the wall in local spacings; default 1.6.
     pub radius: f64,
-    /// Random displacement of interior particles as a fraction of the local spacing (for tests of robustness).
+    /// Random displacement of interior particles as a fraction of the local spacing (for tests of robustness); default 0.
     pub jitter: f64,
 }
 

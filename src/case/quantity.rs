@@ -62,14 +62,12 @@ pub enum QuantityError {
         allowed: String,
     },
     /// An angle without unit.
-    #[error("{dimension} `{text}` has no unit; allowed: {allowed}")]
+    #[error("{dimension} `{text}` has no unit")]
     Missing {
         /// What was written.
         text: String,
         /// What was asked for.
         dimension: &'static str,
-        /// Units that could have been written.
-        allowed: String,
     },
 }
 
@@ -77,6 +75,11 @@ impl Dimension {
     /// Symbols of the allowed units, `deg, rad, …`.
     pub fn symbols(&self) -> String {
         self.units.iter().map(|u| u.symbol).collect::<Vec<_>>().join(", ")
+    }
+
+    /// The unit of the example.
+    pub fn usual(&self) -> &'static str {
+        self.example.rsplit(' ').next().unwrap_or_default()
     }
 
     /// Value in base units of `text`, for example `1.25 deg`.
@@ -95,7 +98,7 @@ impl Dimension {
     pub fn plain(&self, value: f64) -> Result<f64, QuantityError> {
         if self.needs_unit && value != 0.0 {
             let text = value.to_string();
-            return Err(QuantityError::Missing { text, dimension: self.name, allowed: self.symbols() });
+            return Err(QuantityError::Missing { text, dimension: self.name });
         }
         finite(value, &value.to_string())
     }
@@ -242,7 +245,7 @@ mod tests {
         assert_eq!("0.3".parse::<Length>().unwrap().0, 0.3);
         assert_eq!("0".parse::<Angle>().unwrap().0, 0.0);
         let error = "1.25".parse::<Angle>().unwrap_err();
-        assert_eq!(error.to_string(), "an angle `1.25` has no unit; allowed: rad, deg, °, mrad");
+        assert_eq!(error.to_string(), "an angle `1.25` has no unit");
     }
 
     #[test]

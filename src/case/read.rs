@@ -130,7 +130,10 @@ impl Reader<'_> {
 
     fn bad_quantity(&mut self, kind: &Kind, error: &str, item: &Item<'_>, path: &str) -> Option<Value> {
         let message = format!("`{path}`: {error}");
-        self.draft.fail_at(path, item.span(), message).allowed(kind.words());
+        let error = self.draft.fail_at(path, item.span(), message).allowed(kind.words());
+        if let (Kind::Quantity(dimension, _), Some(x)) = (kind, number(item.get_ref())) {
+            error.hint(format!("write `\"{x} {}\"` with one of the units {}", dimension.usual(), dimension.symbols()));
+        }
         None
     }
 

@@ -268,14 +268,16 @@ impl Kind {
 
 impl List {
     fn words(&self) -> String {
-        let item = self.item.words();
-        let item = item.strip_prefix("a ").or_else(|| item.strip_prefix("an ")).unwrap_or(&item);
+        let words = self.item.words();
+        let item = words.as_str();
+        let item = item.strip_prefix("a ").or_else(|| item.strip_prefix("an ")).unwrap_or(item);
         let count = match (self.min, self.max) {
             (min, max) if min == max => format!("{min} values"),
             (min, usize::MAX) => format!("{min} or more values"),
             (min, max) => format!("{min} to {max} values"),
         };
-        format!("a list of {count} ({item})")
+        let list = format!("a list of {count} ({item})");
+        if self.single { format!("{words} or {list}") } else { list }
     }
 }
 

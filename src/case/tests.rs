@@ -93,6 +93,7 @@ fn all_mistakes_are_told_at_once_with_their_places() {
             "case.toml:2:8",
             "allowed: greater than 0",
             "an angle `1.25` has no unit",
+            "hint: write `\"1.25 deg\"` with one of the units rad, deg, °, mrad",
             "did you mean `naca`?",
             "did you mean `spacing`?",
             "case.toml:8:9",
@@ -246,8 +247,6 @@ fn piece() -> impl Strategy<Value = String> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 200, ..ProptestConfig::default() })]
-
     #[test]
     fn mutated_cases_never_panic(which in 0..3_usize, edits in prop::collection::vec((any::<u16>(), 0..12_u8, piece()), 1..6)) {
         let mut text = template(TEMPLATES[which].0).unwrap();
