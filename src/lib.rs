@@ -25,3 +25,5 @@ pub mod observe;
 pub mod report;
 
 pub mod verify;
+
+pub mod run;
