@@ -44,11 +44,11 @@ pub(super) struct Mark {
 /// Repairs are appended to `notes`; `file` names the source.
 pub(super) fn airfoil(file: &str, marks: Vec<Mark>, notes: &mut Vec<String>) -> Result<Shell<2>, GeometryError> {
     let (mut marks, base) = closed_loop(file, marks, notes)?;
+    refuse_crossing(file, &marks)?;
     if orient(file, &mut marks, notes)? && !base {
         // The trailing edge stays first.
         marks.rotate_right(1);
     }
-    refuse_crossing(file, &marks)?;
     let points: Vec<Vector<2>> = marks.iter().map(|m| m.point).collect();
     let corners = corners(&points, base);
     let chord = extent(&points);
@@ -88,8 +88,8 @@ pub(super) fn polygon(
         let what = format!("has {} distinct points; an outline needs at least 3", marks.len());
         return Err(GeometryError::refused(name, what, "list the corners once around the body"));
     }
-    orient(name, &mut marks, notes)?;
     refuse_crossing(name, &marks)?;
+    orient(name, &mut marks, notes)?;
     Ok(Shell { crease, ..straight_shell(&marks) })
 }
 
