@@ -226,24 +226,3 @@ fn wrong_bodies_are_refused_by_name() {
     let x = Vector([0.0, 0.0]);
     assert!(!empty.inside(&x) && empty.nearest(&x, 1.0).is_none() && !empty.crosses(&x, &Vector([1.0, 0.0])));
 }
-
-/// Timing by hand: `cargo test --release --lib geometry -- --ignored --nocapture`.
-#[test]
-#[ignore = "a measurement, not a check"]
-fn a_million_nearest_points() {
-    let surface = single(primitive::sphere(1.0));
-    let mut random = Random::new();
-    let points: Vec<Vector<3>> =
-        (0..1_000_000).map(|_| random.point::<3>(1.0).unit() * (1.0 + 0.1 * random.number())).collect();
-    for within in [0.1, f64::INFINITY] {
-        let start = std::time::Instant::now();
-        let sum: f64 = points.iter().filter_map(|x| surface.nearest(x, within)).map(|n| n.distance).sum();
-        println!("{} triangles, within {within}: {:?} ({sum})", surface.elements.len(), start.elapsed());
-    }
-    let start = std::time::Instant::now();
-    let count = points.iter().filter(|x| surface.inside(x)).count();
-    println!("inside: {:?} ({count})", start.elapsed());
-    let start = std::time::Instant::now();
-    let count = points.iter().filter(|x| surface.crosses(x, &(**x * 0.98))).count();
-    println!("crosses: {:?} ({count})", start.elapsed());
-}
