@@ -21,7 +21,8 @@ impl<const D: usize> Cloud<D> {
             return Err(CloudError::Empty);
         }
         let transforms = transforms(&layout);
-        let (neighbours, wall_clouds, images) = Search::new(&particles, surface, &transforms, case.cloud.radius).clouds();
+        let (neighbours, wall_clouds, images) =
+            Search::new(&particles, surface, &transforms, case.cloud.radius).clouds();
         let outer = outer_particles(&particles);
         let mut cloud = Self {
             volume: volumes(&particles),

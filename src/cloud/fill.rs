@@ -2,11 +2,11 @@
 //!
 //! A fluid particle sits in the middle of every leaf that lies outside the bodies and not nearer to a surface, or to an
 //! interface particle, than a fraction of its size. The leaves along the sides of the domain carry the outer particles.
+use super::Interface;
 use super::interface::{Placed, place};
 use super::layout::Layout;
 use super::neighbours::NEAR;
 use super::tree::{Leaf, MAX_LEVEL, Tree};
-use super::Interface;
 use crate::case::{Cloud as Spec, Side};
 use crate::geometry::Surface;
 use crate::math::hilbert::hilbert_index;
@@ -81,7 +81,9 @@ impl<const D: usize> Particles<D> {
 
     #[allow(clippy::type_complexity)]
     fn assemble(
-        tree: Tree<D>, layout: &Layout<D>, jitter: f64,
+        tree: Tree<D>,
+        layout: &Layout<D>,
+        jitter: f64,
         (fluid, placed, outer): (Vec<(Leaf<D>, f64)>, Placed<D>, Vec<(Leaf<D>, (usize, usize))>),
     ) -> Self {
         let n_fluid = fluid.len();
@@ -221,7 +223,8 @@ fn curve_position<const D: usize>(tree: &Tree<D>, leaf: &Leaf<D>) -> u64 {
 
 /// A vector with components in [−1, 1] that depends on the cell alone.
 fn random_direction<const D: usize>(anchor: [u32; D]) -> Vector<D> {
-    let mut state = anchor.iter().fold(0x9e37_79b9_7f4a_7c15u64, |s, a| (s ^ u64::from(*a)).wrapping_mul(0xbf58_476d_1ce4_e5b9));
+    let mut state =
+        anchor.iter().fold(0x9e37_79b9_7f4a_7c15u64, |s, a| (s ^ u64::from(*a)).wrapping_mul(0xbf58_476d_1ce4_e5b9));
     Vector::from_fn(|_| {
         state ^= state >> 29;
         state = state.wrapping_mul(0x94d0_49bb_1331_11eb);

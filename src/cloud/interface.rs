@@ -51,14 +51,15 @@ fn outline<const D: usize>(surface: &Surface<D>, tree: &Tree<D>) -> Placed<D> {
 
 /// One piece: `chain` lists its elements in order.
 fn outline_piece<const D: usize>(
-    surface: &Surface<D>, tree: &Tree<D>, chain: &crate::geometry::Chain, piece: u32, placed: &mut Placed<D>,
+    surface: &Surface<D>,
+    tree: &Tree<D>,
+    chain: &crate::geometry::Chain,
+    piece: u32,
+    placed: &mut Placed<D>,
 ) {
     let lengths: Vec<f64> = chain.elements.iter().map(|e| surface.element_area_vector(*e).norm()).collect();
-    let mut h: Vec<f64> = chain
-        .elements
-        .iter()
-        .map(|e| tree.leaf_at(&surface.element_point(*e, &half()).0).size)
-        .collect();
+    let mut h: Vec<f64> =
+        chain.elements.iter().map(|e| tree.leaf_at(&surface.element_point(*e, &half()).0).size).collect();
     limit_growth(&mut h, &lengths, chain.closed);
     let steps: Vec<f64> = lengths.iter().zip(&h).map(|(l, h)| l / (OUTLINE_SPACING * h)).collect();
     let total: f64 = steps.iter().sum();
@@ -80,9 +81,23 @@ fn outline_piece<const D: usize>(
         let (body, tag) = (element.body, element.tag);
         placed.x.push(here.x);
         placed.spacing.push(h[here.position]);
-        placed.interface.push(Interface { normal: here.normal, area, curvature, body, tag, piece, arc: arc + 0.5 * chord.norm() });
+        placed.interface.push(Interface {
+            normal: here.normal,
+            area,
+            curvature,
+            body,
+            tag,
+            piece,
+            arc: arc + 0.5 * chord.norm(),
+        });
         let last = k + 1 == n;
-        placed.next.push(if !last { first + k as u32 + 1 } else if chain.closed { first } else { u32::MAX });
+        placed.next.push(if !last {
+            first + k as u32 + 1
+        } else if chain.closed {
+            first
+        } else {
+            u32::MAX
+        });
         arc += chord.norm();
         corner = end;
     }

@@ -84,7 +84,10 @@ pub struct Search<'a, const D: usize> {
 impl<'a, const D: usize> Search<'a, D> {
     /// Prepares a search; `radius` is the ball of the near-wall rule in spacings.
     pub fn new(
-        particles: &'a Particles<D>, surface: Option<&'a Surface<D>>, transforms: &'a [Transform<D>], radius: f64,
+        particles: &'a Particles<D>,
+        surface: Option<&'a Surface<D>>,
+        transforms: &'a [Transform<D>],
+        radius: f64,
     ) -> Self {
         Self { particles, surface, transforms, radius }
     }
@@ -94,7 +97,9 @@ impl<'a, const D: usize> Search<'a, D> {
     pub fn clouds(&self) -> (Neighbours, Neighbours, Vec<Image>) {
         let n_rows = self.particles.n_rows();
         let mut rows: Vec<Vec<Seen>> = vec![Vec::new(); n_rows + self.particles.interface.len()];
-        sweep(&mut rows, |i| if i < n_rows { self.cloud_of(i) } else { self.fluid_in_front(i - n_rows + self.particles.n_fluid) });
+        sweep(&mut rows, |i| {
+            if i < n_rows { self.cloud_of(i) } else { self.fluid_in_front(i - n_rows + self.particles.n_fluid) }
+        });
         let mut images: Vec<Seen> = rows.iter().flatten().filter(|s| s.1 != IDENTITY).copied().collect();
         images.sort_unstable();
         images.dedup();

@@ -56,7 +56,8 @@ impl<const D: usize> Tree<D> {
     /// Splits every cell for which `wanted(centre, size)` holds, then balances.
     pub fn build(forest: &Forest<D>, wanted: impl Fn(&Vector<D>, f64) -> bool) -> Self {
         let count: u32 = forest.roots.iter().product();
-        let nodes = (0..count).map(|k| Node { first_child: NONE, level: 0, anchor: root_anchor(k, &forest.roots) }).collect();
+        let nodes =
+            (0..count).map(|k| Node { first_child: NONE, level: 0, anchor: root_anchor(k, &forest.roots) }).collect();
         let mut tree = Self {
             origin: forest.origin,
             root_size: forest.root_size,
@@ -187,7 +188,8 @@ impl<const D: usize> Tree<D> {
 
     /// Splits cells until touching leaves differ by one level at most.
     fn balance(&mut self) {
-        let mut queue: Vec<u32> = (0..self.nodes.len() as u32).filter(|k| self.nodes[*k as usize].first_child == NONE).collect();
+        let mut queue: Vec<u32> =
+            (0..self.nodes.len() as u32).filter(|k| self.nodes[*k as usize].first_child == NONE).collect();
         while let Some(k) = queue.pop() {
             let node = self.nodes[k as usize];
             if node.first_child != NONE || node.level < 2 {

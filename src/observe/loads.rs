@@ -128,7 +128,11 @@ mod tests {
 
     fn axes() -> LoadAxes {
         LoadAxes {
-            dimension: 2, drag: [1.0, 0.0, 0.0], lift: [0.0, 1.0, 0.0], moment_point: [0.25, 0.0, 0.0], force_scale: 0.5,
+            dimension: 2,
+            drag: [1.0, 0.0, 0.0],
+            lift: [0.0, 1.0, 0.0],
+            moment_point: [0.25, 0.0, 0.0],
+            force_scale: 0.5,
             chord: 1.0,
         }
     }
@@ -144,7 +148,12 @@ mod tests {
     #[test]
     fn uniform_flow_through_a_closed_box_makes_no_load() {
         let side = |x: [f64; 3], area: [f64; 3]| Patch {
-            x, area, density: 1.2, velocity: [0.5, 0.1, 0.0], excess: 0.0, enthalpy: 3.0,
+            x,
+            area,
+            density: 1.2,
+            velocity: [0.5, 0.1, 0.0],
+            excess: 0.0,
+            enthalpy: 3.0,
         };
         let patches = [
             side([1.0, 0.0, 0.0], [2.0, 0.0, 0.0]),

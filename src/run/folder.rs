@@ -25,7 +25,9 @@ pub(super) fn create(case: &Case, places: &Places) -> Result<(), RunError> {
         )));
     }
     fs::create_dir_all(out.join("pictures")).map_err(|e| {
-        RunError::Folder(format!("cannot make the run folder `{named}`: {e}\nhint: choose a writable place with `--out`"))
+        RunError::Folder(format!(
+            "cannot make the run folder `{named}`: {e}\nhint: choose a writable place with `--out`"
+        ))
     })?;
     write_atomic(&out.join("case.toml"), |w| w.write_all(write(case).as_bytes()))?;
     let input = fs::canonicalize(&places.input).unwrap_or_else(|_| places.input.clone());

@@ -153,7 +153,10 @@ pub fn resume(out: &Path, monitor: &mut dyn Monitor) -> Result<Outcome, RunError
 }
 
 /// Builds the cloud of a case without running it.
-pub fn build_cloud<const D: usize>(case: &Case, input: &Path) -> Result<(Option<Surface<D>>, Cloud<D>, Vec<String>), RunError> {
+pub fn build_cloud<const D: usize>(
+    case: &Case,
+    input: &Path,
+) -> Result<(Option<Surface<D>>, Cloud<D>, Vec<String>), RunError> {
     let (surface, notes) = setup::surface::<D>(case, input)?;
     let cloud = Cloud::build(case, surface.as_ref(), &[])?;
     Ok((surface, cloud, notes))
@@ -161,7 +164,10 @@ pub fn build_cloud<const D: usize>(case: &Case, input: &Path) -> Result<(Option<
 
 /// All stages of a run.
 fn drive<const D: usize>(
-    case: &Case, places: &Places, mut saved: Option<persist::Saved>, monitor: &mut dyn Monitor,
+    case: &Case,
+    places: &Places,
+    mut saved: Option<persist::Saved>,
+    monitor: &mut dyn Monitor,
 ) -> Result<Outcome, RunError> {
     let clock = summary::Clock::start();
     let (surface, notes) = setup::surface::<D>(case, &places.input)?;

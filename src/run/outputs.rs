@@ -42,8 +42,13 @@ struct Names {
 
 /// Writes all files of a run and returns its summary.
 pub(super) fn write_all<const D: usize>(
-    case: &Case, places: &Places, solver: &Solver<D>, state: &[f64], surface: Option<&Surface<D>>,
-    journal: &mut Journal<'_>, clock: &Clock,
+    case: &Case,
+    places: &Places,
+    solver: &Solver<D>,
+    state: &[f64],
+    surface: Option<&Surface<D>>,
+    journal: &mut Journal<'_>,
+    clock: &Clock,
 ) -> Result<Summary, RunError> {
     let solved = clock.wall_seconds();
     let fluid = &solver.fluid;
@@ -52,7 +57,10 @@ pub(super) fn write_all<const D: usize>(
     fluid.fill_states(&frame, state, &mut work);
     fluid.fill_gradients(&mut work);
     let frame_of_loads: LoadFrame = load_axes(case);
-    let names = surface.map_or(Names { bodies: Vec::new(), tags: Vec::new() }, |s| Names { bodies: s.bodies.clone(), tags: s.tags.clone() });
+    let names = surface.map_or(Names { bodies: Vec::new(), tags: Vec::new() }, |s| Names {
+        bodies: s.bodies.clone(),
+        tags: s.tags.clone(),
+    });
     let r = Finished { case, out: &places.out, fluid, work: &work, surface, axes: frame_of_loads.axes(fluid), names };
     let loads = r.wall_coefficients();
     let balance = r.balance();
@@ -184,7 +192,8 @@ impl<'a, const D: usize> Finished<'a, D> {
             let mut middle = b.centre();
             middle[axis] = end;
             let extent = b.extent();
-            let side = (0..D).filter(|d| *d != axis).fold(axis, |a, d| if a == axis || extent[d] > extent[a] { d } else { a });
+            let side =
+                (0..D).filter(|d| *d != axis).fold(axis, |a, d| if a == axis || extent[d] > extent[a] { d } else { a });
             if extent[side] > 0.5 * tree.leaf_at(&middle).size {
                 let half = 0.5 * (b.min[side] + b.max[side]);
                 let (mut low, mut high) = (b, b);
@@ -244,13 +253,15 @@ impl<'a, const D: usize> Finished<'a, D> {
         let mut rows = Vec::new();
         for (b, body) in self.names.bodies.iter().enumerate() {
             for (t, tag) in self.names.tags.iter().enumerate() {
-                let chosen = |w: usize| usize::from(cloud.interface[w].body) == b && usize::from(cloud.interface[w].tag) == t;
+                let chosen =
+                    |w: usize| usize::from(cloud.interface[w].body) == b && usize::from(cloud.interface[w].tag) == t;
                 if !(0..cloud.interface.len()).any(chosen) {
                     continue;
                 }
                 let load = wall_load(self.fluid, self.work, &self.axes, chosen);
                 let c = self.axes.coefficients(&load);
-                let area: f64 = (0..cloud.interface.len()).filter(|w| chosen(*w)).map(|w| cloud.interface[w].area.norm()).sum();
+                let area: f64 =
+                    (0..cloud.interface.len()).filter(|w| chosen(*w)).map(|w| cloud.interface[w].area.norm()).sum();
                 let mut row = vec![Entry::from(body.as_str()), Entry::from(tag.as_str())];
                 row.extend([c.cl, c.cd, c.cm].map(Entry::from));
                 row.extend(load.force.map(|f| Entry::from(f * units)));
@@ -268,7 +279,8 @@ impl<'a, const D: usize> Finished<'a, D> {
         let units = Units::of(self.case);
         let bounds = self.surface.map_or(Bounds { min: Vector::ZERO, max: Vector::splat(1.0) }, Surface::bounds);
         let columns = [
-            "x", "y", "z", "nx", "ny", "nz", "area", "body", "tag", "arc", "x_c", "pressure", "cp", "mach", "density", "u", "v", "w",
+            "x", "y", "z", "nx", "ny", "nz", "area", "body", "tag", "arc", "x_c", "pressure", "cp", "mach", "density",
+            "u", "v", "w",
         ];
         let rows = cloud.interface_range().zip(&cloud.interface).map(|(i, w)| {
             let q = &self.work.state[i];
@@ -280,7 +292,9 @@ impl<'a, const D: usize> Finished<'a, D> {
             let x_c = (cloud.x[i][0] - bounds.min[0]) / bounds.extent()[0];
             let mach = q.velocity.norm() / self.fluid.gas.sound_speed(q);
             let cp = pressure_coefficient(q, &free);
-            row.extend([w.arc, x_c, q.pressure * units.pressure(), cp, mach, q.density * units.density].map(Entry::from));
+            row.extend(
+                [w.arc, x_c, q.pressure * units.pressure(), cp, mach, q.density * units.density].map(Entry::from),
+            );
             row.extend((q.velocity * units.speed).to_3d().map(Entry::from));
             row
         });
@@ -289,8 +303,11 @@ impl<'a, const D: usize> Finished<'a, D> {
 
     fn write_fields(&self, time: f64) -> Result<(), RunError> {
         let all = snapshot::field(self.case, self.fluid, self.work);
-        let columns: Vec<Column<'_>> =
-            all.columns.iter().map(|(name, components, values)| Column { name, components: *components, values }).collect();
+        let columns: Vec<Column<'_>> = all
+            .columns
+            .iter()
+            .map(|(name, components, values)| Column { name, components: *components, values })
+            .collect();
         write_points(&self.out.join("field.vtu"), &all.points, &columns)?;
         write_collection(&self.out.join("field.pvd"), &[(time, "field.vtu")])?;
         let cloud = &self.fluid.cloud;
@@ -304,7 +321,8 @@ impl<'a, const D: usize> Finished<'a, D> {
             .map(|(name, n, values)| (*name, *n, values[range.start * n..range.end * n].to_vec()))
             .chain([("normal", 3, cloud.interface.iter().flat_map(|w| w.normal.to_3d()).collect())])
             .collect();
-        let columns: Vec<Column<'_>> = cut.iter().map(|(name, n, values)| Column { name, components: *n, values }).collect();
+        let columns: Vec<Column<'_>> =
+            cut.iter().map(|(name, n, values)| Column { name, components: *n, values }).collect();
         let points = &all.points[range];
         let lines = outlines(cloud);
         let facets = if D == 2 { Facets::Polylines(&lines) } else { Facets::Vertices };

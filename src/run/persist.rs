@@ -119,9 +119,14 @@ impl Saved {
             cpu_seconds: self.cpu_seconds,
             wall_seconds: self.wall_seconds,
         };
-        let field = |name: &str, data: &[f64]| Field { name: name.into(), shape: vec![data.len()], data: Array::F64(data.to_vec()) };
+        let field = |name: &str, data: &[f64]| Field {
+            name: name.into(),
+            shape: vec![data.len()],
+            data: Array::F64(data.to_vec()),
+        };
         let meta = serde_json::to_value(meta).map_err(|e| RunError::Folder(e.to_string()))?;
-        let fields = vec![field("state", &self.state), field("scale", &self.relax.scale), field("sources", &self.sources)];
+        let fields =
+            vec![field("state", &self.state), field("scale", &self.relax.scale), field("sources", &self.sources)];
         Ok(checkpoint::write(&out.join(FILE), &Checkpoint { meta, fields })?)
     }
 

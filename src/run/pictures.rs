@@ -7,8 +7,8 @@ use crate::math::sweep::sweep;
 use crate::math::{Bounds, Vector};
 use crate::physics::Primitive;
 use crate::report::{
-    Axis, Chart, Colormap, Dots, Marks, PictureStyle, Raster, Scatter, Series, Shell, SurfaceStyle, raster_png, scatter_png,
-    surface_png, write_file,
+    Axis, Chart, Colormap, Dots, Marks, PictureStyle, Raster, Scatter, Series, Shell, SurfaceStyle, raster_png,
+    scatter_png, surface_png, write_file,
 };
 use crate::scheme::probe::Probe;
 use crate::scheme::start::free_stream;
@@ -56,7 +56,9 @@ fn plane<const D: usize>(view: &View<'_, D>) -> Result<(), RunError> {
     let cp = |q: &Primitive<D>| pressure_coefficient(q, &free);
     let density = |q: &Primitive<D>| q.density;
     let states = sampled(view, &w);
-    let style = |title: &'static str, quantity: &'static str, map: Colormap, contours: &'static [f64]| (title, quantity, map, contours);
+    let style = |title: &'static str, quantity: &'static str, map: Colormap, contours: &'static [f64]| {
+        (title, quantity, map, contours)
+    };
     let mut list: Vec<(&str, (&str, &str, Colormap, &[f64]), &dyn Fn(&Primitive<D>) -> f64)> =
         vec![("mach", style("Mach number", "M", Colormap::Sequential, &[1.0]), &mach)];
     if view.surface.is_some() {
@@ -78,7 +80,8 @@ fn plane<const D: usize>(view: &View<'_, D>) -> Result<(), RunError> {
 fn sampled<const D: usize>(view: &View<'_, D>, w: &Bounds<2>) -> (usize, usize, Vec<Option<Primitive<D>>>) {
     let extent = w.extent();
     let scale = PIXELS as f64 / extent[0].max(extent[1]);
-    let (width, height) = ((extent[0] * scale).round().max(1.0) as usize, (extent[1] * scale).round().max(1.0) as usize);
+    let (width, height) =
+        ((extent[0] * scale).round().max(1.0) as usize, (extent[1] * scale).round().max(1.0) as usize);
     let probe = Probe::new(view.fluid, view.work, view.surface);
     let mut states = vec![None; width * height];
     sweep(&mut states, |k| {

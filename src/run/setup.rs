@@ -2,7 +2,7 @@
 use std::path::Path;
 
 use super::RunError;
-use crate::case::{Case, Flux, Length, Side, Steady, SteadyMethod, Temporal};
+use crate::case::{Case, Length, Steady, SteadyMethod, Temporal};
 use crate::cloud::sources::Source;
 use crate::cloud::{Cloud, Operators};
 use crate::geometry::{GeometryError, Surface, load_surface};
@@ -61,7 +61,10 @@ pub(super) struct Solver<const D: usize> {
 }
 
 /// Reads the bodies of a case; `None` when it has none.
-pub(super) fn surface<const D: usize>(case: &Case, input: &Path) -> Result<(Option<Surface<D>>, Vec<String>), GeometryError> {
+pub(super) fn surface<const D: usize>(
+    case: &Case,
+    input: &Path,
+) -> Result<(Option<Surface<D>>, Vec<String>), GeometryError> {
     if case.bodies.is_empty() {
         return Ok((None, Vec::new()));
     }
@@ -71,7 +74,11 @@ pub(super) fn surface<const D: usize>(case: &Case, input: &Path) -> Result<(Opti
 
 /// Builds the solver of one stage; `ready` is its cloud when that exists already.
 pub(super) fn solver<const D: usize>(
-    case: &Case, stage: &Stage, surface: Option<&Surface<D>>, sources: &[Source<D>], ready: Option<Cloud<D>>,
+    case: &Case,
+    stage: &Stage,
+    surface: Option<&Surface<D>>,
+    sources: &[Source<D>],
+    ready: Option<Cloud<D>>,
 ) -> Result<Solver<D>, RunError> {
     let scaled = coarsened(case, stage.factor);
     let sources = if stage.cycle > 0 { sources } else { &[] };
@@ -131,7 +138,9 @@ fn coarsened(case: &Case, factor: f64) -> Case {
 
 /// The state of the previous stage on the particles of the next one, by the solver's own fit.
 pub(super) fn transfer<const D: usize>(
-    previous: &(Solver<D>, Vec<f64>), next: &Solver<D>, surface: Option<&Surface<D>>,
+    previous: &(Solver<D>, Vec<f64>),
+    next: &Solver<D>,
+    surface: Option<&Surface<D>>,
 ) -> Vec<f64> {
     let (old, state) = (&previous.0.fluid, &previous.1);
     let mut work = old.work();
@@ -164,22 +173,10 @@ pub(super) fn control(steady: &Steady, dimension: usize) -> Control {
             SteadyMethod::LuSgs => steady.cfl_max.min(100.0),
             _ => steady.cfl_max,
         },
-        growth: 1.5,
+        growth: 2.0,
         tolerance: 0.1,
         basis: 30,
         group: if dimension == 2 { 4 } else { 8 },
         cycle: Cycle { sweeps: 2, visits: 1, levels: if steady.method == SteadyMethod::LuSgs { 1 } else { 8 } },
     }
-}
-
-/// True when the flux resolves contacts, which the report mentions.
-pub(super) fn resolves_contacts(flux: Flux) -> bool {
-    !matches!(flux, Flux::Rusanov)
-}
-
-/// True when mass or energy may cross a side of the domain.
-pub(super) fn is_open(case: &Case, dimension: usize) -> bool {
-    let b = &case.boundary;
-    let sides = [b.x_min, b.x_max, b.y_min, b.y_max, b.z_min, b.z_max];
-    sides.iter().take(2 * dimension).any(|s| !matches!(s, Side::Symmetry | Side::Periodic))
 }

@@ -3,8 +3,8 @@ use crate::case::Case;
 use crate::math::Vector;
 use crate::observe::loads::{Coefficients, Load, LoadAxes, pressure_load};
 use crate::physics::Primitive;
-use crate::scheme::{Fluid, Work};
 use crate::scheme::start::{free_stream, stream_axes};
+use crate::scheme::{Fluid, Work};
 
 /// Load axes that still need the extent of the bodies.
 #[derive(Clone, Debug)]
@@ -65,7 +65,10 @@ fn rounded(extent: f64) -> f64 {
 
 /// Load of the wall pressure on the interface particles chosen.
 pub(super) fn wall_load<const D: usize>(
-    fluid: &Fluid<D>, work: &Work<D>, axes: &LoadAxes, chosen: impl Fn(usize) -> bool,
+    fluid: &Fluid<D>,
+    work: &Work<D>,
+    axes: &LoadAxes,
+    chosen: impl Fn(usize) -> bool,
 ) -> Load {
     let cloud = &fluid.cloud;
     let far = fluid.far_field.pressure();
@@ -100,7 +103,11 @@ impl Units {
     /// The units of a case; ones when its free stream is nondimensional.
     pub(super) fn of(case: &Case) -> Self {
         let r = case.flow.reference();
-        if case.flow.is_dimensional() { Self { density: r.density, speed: r.sound_speed } } else { Self { density: 1.0, speed: 1.0 } }
+        if case.flow.is_dimensional() {
+            Self { density: r.density, speed: r.sound_speed }
+        } else {
+            Self { density: 1.0, speed: 1.0 }
+        }
     }
 
     /// Factor on pressures.

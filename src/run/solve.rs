@@ -56,7 +56,12 @@ pub(super) struct Journal<'a> {
 
 impl<'a> Journal<'a> {
     /// Opens the history of a run.
-    pub(super) fn open(case: &Case, places: &Places, saved: Option<&Saved>, monitor: &'a mut dyn Monitor) -> Result<Self, RunError> {
+    pub(super) fn open(
+        case: &Case,
+        places: &Places,
+        saved: Option<&Saved>,
+        monitor: &'a mut dyn Monitor,
+    ) -> Result<Self, RunError> {
         let path = places.out.join("history.csv");
         let history = match saved {
             Some(s) => History::resume(&path, &COLUMNS, s.iteration)?,
@@ -97,10 +102,18 @@ impl<'a> Journal<'a> {
         (self.before.0 + self.cpu.cpu_seconds(), self.before.1 + self.began.elapsed().as_secs_f64())
     }
 
-    fn record(&mut self, cycle: u32, step: &crate::time::Step, loads: Option<Coefficients>, goal: (f64, f64), n: usize) -> Result<(), RunError> {
+    fn record(
+        &mut self,
+        cycle: u32,
+        step: &crate::time::Step,
+        loads: Option<Coefficients>,
+        goal: (f64, f64),
+        n: usize,
+    ) -> Result<(), RunError> {
         let c = loads.unwrap_or_default();
         let seconds = self.seconds().1;
-        let row = [f64::from(cycle), self.iteration as f64, step.time, step.cfl, step.residual, c.cl, c.cd, c.cm, seconds];
+        let row =
+            [f64::from(cycle), self.iteration as f64, step.time, step.cfl, step.residual, c.cl, c.cd, c.cm, seconds];
         self.history.append(&row)?;
         self.monitor.tick(&Tick {
             iteration: self.iteration,
@@ -134,7 +147,12 @@ impl<'a> Journal<'a> {
 
 /// Integrates one stage; `None` when told to stop.
 pub(super) fn solve<const D: usize>(
-    case: &Case, solver: &Solver<D>, start: Start, at: &Position<'_>, last: bool, journal: &mut Journal<'_>,
+    case: &Case,
+    solver: &Solver<D>,
+    start: Start,
+    at: &Position<'_>,
+    last: bool,
+    journal: &mut Journal<'_>,
 ) -> Result<Option<Vec<f64>>, RunError> {
     match &case.time {
         Temporal::Steady(steady) => relax(steady, solver, start, at, last, journal),
@@ -143,7 +161,12 @@ pub(super) fn solve<const D: usize>(
 }
 
 fn relax<const D: usize>(
-    steady: &Steady, solver: &Solver<D>, start: Start, at: &Position<'_>, last: bool, journal: &mut Journal<'_>,
+    steady: &Steady,
+    solver: &Solver<D>,
+    start: Start,
+    at: &Position<'_>,
+    last: bool,
+    journal: &mut Journal<'_>,
 ) -> Result<Option<Vec<f64>>, RunError> {
     let fluid = &solver.fluid;
     let (u, resume) = match start {
@@ -196,7 +219,11 @@ fn relax<const D: usize>(
 }
 
 fn march<const D: usize>(
-    marching: &Marching, solver: &Solver<D>, start: Start, at: &Position<'_>, journal: &mut Journal<'_>,
+    marching: &Marching,
+    solver: &Solver<D>,
+    start: Start,
+    at: &Position<'_>,
+    journal: &mut Journal<'_>,
 ) -> Result<Option<Vec<f64>>, RunError> {
     let fluid = &solver.fluid;
     let (time, done, u) = match start {
@@ -246,7 +273,11 @@ fn bare(iteration: u32) -> Resume {
 
 /// Coefficients from wall pressure; `None` without bodies.
 fn coefficients<const D: usize>(
-    fluid: &Fluid<D>, axes: &LoadFrame, frame: &Frame<D>, state: &[f64], work: &mut Work<D>,
+    fluid: &Fluid<D>,
+    axes: &LoadFrame,
+    frame: &Frame<D>,
+    state: &[f64],
+    work: &mut Work<D>,
 ) -> Option<Coefficients> {
     if fluid.cloud.interface.is_empty() {
         return None;
@@ -260,4 +291,3 @@ pub(super) fn totals<const D: usize>(fluid: &Fluid<D>, u: &[f64]) -> Vec<f64> {
     let n = D + 2;
     (0..n).map(|c| sum(fluid.cloud.n_fluid, |i| fluid.cloud.volume[i] * u[i * n + c])).collect()
 }
-

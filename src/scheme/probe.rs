@@ -61,4 +61,3 @@ impl<'a, const D: usize> Probe<'a, D> {
 fn scaled<const D: usize>(q: &Primitive<D>, s: f64) -> Primitive<D> {
     Primitive { density: q.density * s, velocity: q.velocity * s, pressure: q.pressure * s }
 }
-

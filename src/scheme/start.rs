@@ -1,10 +1,10 @@
 //! Fields at the start, states held on the boundary, and the far field.
 use super::fluid::FarField;
 use crate::case::{Case, Initial};
+use crate::exact::GasState;
 use crate::exact::ringleb::Ringleb;
 use crate::exact::vortex::IsentropicVortex;
 use crate::exact::vortex_far_field::FarFieldVortex;
-use crate::exact::GasState;
 use crate::math::Vector;
 use crate::physics::Primitive;
 
@@ -80,7 +80,8 @@ impl<const D: usize> Stream<D> {
     /// Far field of the bodies around `centre`.
     pub fn new(case: &Case, centre: &Vector<D>) -> Self {
         let free = free_stream::<D>(case);
-        let state = GasState { density: 1.0, velocity: Vector([free.velocity[0], free.velocity[1]]), pressure: free.pressure };
+        let state =
+            GasState { density: 1.0, velocity: Vector([free.velocity[0], free.velocity[1]]), pressure: free.pressure };
         let mach = free.velocity.norm();
         let plane = D == 2 && 0.0 < mach && mach < 1.0;
         let centre = Vector([centre[0], centre[1]]);

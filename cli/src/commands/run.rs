@@ -23,7 +23,10 @@ pub(crate) fn run(args: &arguments::Run) -> Outcome {
     if args.force
         && let Err(problem) = set_aside(&out)
     {
-        output::error(&format!("cannot set `{}` aside: {problem}", out.display()), "choose another folder with `--out`");
+        output::error(
+            &format!("cannot set `{}` aside: {problem}", out.display()),
+            "choose another folder with `--out`",
+        );
         return Outcome::BadInput;
     }
     let input = args.case.parent().map_or_else(PathBuf::new, Path::to_path_buf);
@@ -85,8 +88,16 @@ fn describe(s: &Summary, out: &Path) -> String {
     }
     text += &format!(
         "{} particles, {} iterations, residual down {:.1} orders; {:.2} s of processor time ({:.3} ms per particle), {:.0} bytes per particle\nledger: mass {:.1e}, momentum {:.1e}, energy {:.1e}\nreport: {}\n",
-        s.particles, s.iterations, s.residual_drop, s.cpu_seconds, s.cpu_ms_per_particle, s.bytes_per_particle, s.ledger.mass,
-        s.ledger.momentum, s.ledger.energy, out.join("report.html").display()
+        s.particles,
+        s.iterations,
+        s.residual_drop,
+        s.cpu_seconds,
+        s.cpu_ms_per_particle,
+        s.bytes_per_particle,
+        s.ledger.mass,
+        s.ledger.momentum,
+        s.ledger.energy,
+        out.join("report.html").display()
     );
     text
 }
