@@ -7,8 +7,10 @@
 //! a consistent least-squares central flux, plus the dissipation of an upwind flux weighted by a vector that is
 //! antisymmetric across every edge, so that large implicit steps converge and shocks stand across level transitions. The
 //! last term carries the flux of the particle itself and keeps uniform flow exactly on any cloud. With *conservative*
-//! coefficients c_ij = s_ij/V_i, and what one particle loses another gains to round-off.
+//! coefficients c_ij = s_ij/V_i, and what one particle loses another gains to round-off; only pressure then acts on the
+//! pieces of wall that bound a particle.
 use crate::case::{Flux, Limiter, Side};
+use crate::cloud::operators::WallFace;
 use crate::cloud::{Cloud, Edge, Operators};
 use crate::math::Vector;
 use crate::math::block_matrix::BlockMatrix;
@@ -164,19 +166,36 @@ impl<const D: usize> Fluid<D> {
                     add(&mut out[(e.j() - start) * (D + 2)..], &to_j);
                 }
             }
+            if self.conservative {
+                self.wall_fluxes(op.wall_faces(k), work, &mut |i, to_i| add(&mut out[(i - start) * (D + 2)..], &to_i));
+            }
         });
+    }
+
+    /// Pressure on the pieces of wall that bound fluid particles: no mass and no energy passes.
+    fn wall_fluxes(&self, faces: &[WallFace<D>], work: &Work<D>, add: &mut impl FnMut(usize, Conserved<D>)) {
+        for face in faces {
+            let i = face.i as usize;
+            let push = face.area * work.state[face.wall as usize].pressure;
+            let through = Conserved { density: 0.0, momentum: push, energy: 0.0 };
+            let own = self.gas.flux(&work.state[i], &face.area);
+            add(i, through.plus(-1.0, &own).times(-1.0 / self.cloud.volume[i]));
+        }
     }
 
     /// What one edge adds to −dU/dt... of both ends: (to i, to j).
     #[inline(always)]
     fn edge_flux(&self, flux: &impl UpwindFlux<D>, limit: impl Limit, e: &Edge<D>, work: &Work<D>) -> (Conserved<D>, Conserved<D>) {
         let (i, j) = (e.i(), e.j());
+        let size = e.s.norm();
+        if self.conservative && size == 0.0 {
+            return (Conserved::ZERO, Conserved::ZERO);
+        }
         let (qi, qj) = (&work.state[i], &work.state[j]);
         let d = self.cloud.x[j] - self.cloud.x[i];
         let slopes = (&work.gradient[i], &work.gradient[j]);
         let (l, r) = self.reconstruction.states(&self.gas, limit, (qi, qj), slopes, &d);
         let gas = &self.gas;
-        let size = e.s.norm();
         let m = e.s * (1.0 / size.max(f64::MIN_POSITIVE));
         let upwind = flux(gas, &l, &r, &m);
         let (vi, vj) = (1.0 / self.cloud.volume[i], 1.0 / self.cloud.volume[j]);
@@ -194,6 +213,12 @@ impl<const D: usize> Fluid<D> {
         let to_i = central(&e.a_i, qi).plus(vi, &spread).times(-1.0);
         let to_j = if e.both() { central(&e.a_j, qj).plus(-vj, &spread).times(-1.0) } else { Conserved::ZERO };
         (to_i, to_j)
+    }
+
+    /// s/2V: what takes the place of a_ij when the coefficients are conservative.
+    #[inline(always)]
+    pub(super) fn half_face(&self, i: usize, s: &Vector<D>) -> Vector<D> {
+        *s * (0.5 / self.cloud.volume[i])
     }
 
     /// Force of the pressure on all bodies, from the wall states in `work`.
@@ -277,11 +302,19 @@ impl<const D: usize> System for Fluid<D> {
             let start = op.parts[k].start;
             out.fill(0.0);
             for e in op.edges(k) {
-                let (qi, qj) = (&work.state[e.i()], &work.state[e.j()]);
-                out[e.i() - start] += self.gas.signal_speed(qi, &e.a_i);
+                let (i, j) = (e.i(), e.j());
+                let (a_i, a_j) = match self.conservative {
+                    true => (self.half_face(i, &e.s), self.half_face(j, &e.s)),
+                    false => (e.a_i, e.a_j),
+                };
+                out[i - start] += self.gas.signal_speed(&work.state[i], &a_i);
                 if e.both() {
-                    out[e.j() - start] += self.gas.signal_speed(qj, &e.a_j);
+                    out[j - start] += self.gas.signal_speed(&work.state[j], &a_j);
                 }
+            }
+            for face in op.wall_faces(k).iter().filter(|_| self.conservative) {
+                let i = face.i as usize;
+                out[i - start] += self.gas.signal_speed(&work.state[i], &self.half_face(i, &face.area));
             }
         });
     }
