@@ -457,14 +457,7 @@ pub struct Compare {
 
 impl Default for Scheme {
     fn default() -> Self {
-        Self {
-            flux: Flux::Hllc,
-            order: 2,
-            limiter: Limiter::VanAlbada,
-            limiter_threshold: 0.02,
-            kappa: 0.0,
-            conservative: None,
-        }
+        Self { flux: Flux::Hllc, order: 2, limiter: Limiter::VanAlbada, limiter_threshold: 0.02, kappa: 0.0, conservative: None }
     }
 }
 

@@ -35,6 +35,7 @@ impl<const D: usize> Cloud<D> {
             wall_distance: particles.wall_distance,
             neighbours,
             wall_clouds,
+            leaves: particles.leaves,
             tree: particles.tree,
             notes: Vec::new(),
         };

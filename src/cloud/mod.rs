@@ -111,6 +111,8 @@ pub struct Cloud<const D: usize> {
     pub neighbours: Neighbours,
     /// Fluid particles from which the state of each interface particle is fitted.
     pub wall_clouds: Neighbours,
+    /// Which particles sit in which leaf of the background.
+    pub leaves: fill::LeafIndex,
     /// The background.
     pub tree: tree::Tree<D>,
     /// What had to be repaired, in words.

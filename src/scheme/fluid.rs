@@ -55,6 +55,8 @@ pub struct Fluid<const D: usize> {
 pub trait FarField<const D: usize>: Send + Sync {
     /// State at `x` when the bodies feel the force `force` (per unit span in 2-D).
     fn state(&self, x: &Vector<D>, force: &Vector<D>) -> Primitive<D>;
+    /// Static pressure far away.
+    fn pressure(&self) -> f64;
 }
 
 /// What depends on time but is not evolved.
@@ -224,13 +226,8 @@ impl<const D: usize> Fluid<D> {
     /// Force of the pressure on all bodies, from the wall states in `work`.
     pub fn pressure_force(&self, work: &Work<D>) -> Vector<D> {
         let walls = &work.state[self.cloud.interface_range()];
-        let far = self.far_field_pressure();
+        let far = self.far_field.pressure();
         self.cloud.interface.iter().zip(walls).fold(Vector::ZERO, |f, (w, q)| f - w.area * (q.pressure - far))
-    }
-
-    /// Static pressure far away.
-    fn far_field_pressure(&self) -> f64 {
-        self.far_field.state(&Vector::splat(f64::MAX.sqrt()), &Vector::ZERO).pressure
     }
 }
 

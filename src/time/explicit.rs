@@ -70,9 +70,9 @@ impl<'a, S: System> Explicit<'a, S> {
         self.time >= self.until
     }
 
-    /// Storage of the system, holding the last evaluation.
-    pub fn work(&mut self) -> (&S::Frame, &mut S::Work) {
-        (&self.frame, &mut self.work)
+    /// Frame, storage and state, for those who watch.
+    pub fn parts(&mut self) -> (&S::Frame, &mut S::Work, &[f64]) {
+        (&self.frame, &mut self.work, &self.u)
     }
 
     /// One time step.

@@ -133,13 +133,14 @@ pub struct Resume {
 }
 
 impl<'a, S: System> Relax<'a, S> {
-    /// Starts from the state `u`, or goes on from `resume`.
-    pub fn new(system: &'a S, control: Control, u: Vec<f64>, resume: Option<Resume>) -> Self {
+    /// Starts from the state `u`, or goes on from `resume`. The residual is measured against that of the state `origin`
+    /// (the free stream), so that a good guess counts for what it is worth.
+    pub fn new(system: &'a S, control: Control, u: Vec<f64>, origin: &[f64], resume: Option<Resume>) -> Self {
         let n = u.len();
         let mut work = system.work();
-        let frame = system.frame(0.0, &u);
+        let frame = system.frame(0.0, origin);
         let mut rate = vec![0.0; n / system.block()];
-        system.spectral_radius(&frame, &u, &mut work, &mut rate);
+        system.spectral_radius(&frame, origin, &mut work, &mut rate);
         let implicit = control.method != Method::RungeKutta;
         let matrix = |first: &[u32], index: &[u32]| BlockMatrix::new(system.block(), n / system.block(), first, index);
         let levels = implicit.then(|| {
@@ -165,9 +166,13 @@ impl<'a, S: System> Relax<'a, S> {
             step: vec![0.0; n],
             gmres: basis,
         };
+        if resume.is_none() {
+            all.system.rhs(&all.frame, origin, &mut all.work, &mut all.residual);
+        }
+        all.first_norm = resume.map_or_else(|| all.norm_of(&all.residual).max(f64::MIN_POSITIVE), |r| r.first_norm);
+        all.system.update_frame(0.0, &all.u, &mut all.work, &mut all.frame);
         all.system.rhs(&all.frame, &all.u, &mut all.work, &mut all.residual);
         all.norm = all.norm_of(&all.residual);
-        all.first_norm = resume.map_or(all.norm.max(f64::MIN_POSITIVE), |r| r.first_norm);
         all
     }
 
@@ -181,9 +186,9 @@ impl<'a, S: System> Relax<'a, S> {
         self.norm / self.first_norm
     }
 
-    /// Storage of the system.
-    pub fn work(&mut self) -> (&S::Frame, &mut S::Work) {
-        (&self.frame, &mut self.work)
+    /// Frame, storage and state, for those who watch.
+    pub fn parts(&mut self) -> (&S::Frame, &mut S::Work, &[f64]) {
+        (&self.frame, &mut self.work, &self.u)
     }
 
     /// The residual R(u) of the last accepted state.
