@@ -15,10 +15,11 @@
 //! particle: conjugate gradients with block-Jacobi (Nocedal and Wright, *Numerical Optimization*, 2nd ed., §16.2-16.3). A
 //! second, cheaper solve over the closure alone then drives its defect to round-off.
 //! Antisymmetric coefficients of this kind are those of Chiu, Wang, Hu and Jameson (SIAM J. Sci. Comput. 34, 2012).
+use super::multipliers::{MOST, Row, cholesky, conjugate_gradients};
 use super::operators::{Reverse, WallFace};
 use super::{Cloud, Operators};
 use crate::math::Vector;
-use crate::math::sweep::{sum, sweep, sweep_each, sweep_rows};
+use crate::math::sweep::{sum, sweep, sweep_rows};
 
 /// ε: square of the tolerated relative error of linear consistency against relative changes of s, in the measure of w and b.
 const SOFTNESS: f64 = 0.02;
@@ -36,18 +37,12 @@ const SHARE_FREEDOM: f64 = 0.1;
 const SHARE_POWER: i32 = 4;
 /// Reduction of the residual of the multipliers.
 const TOLERANCE: f64 = 3e-3;
-/// Most iterations for the multipliers, and for each round of the closure.
-const MOST_ITERATIONS: usize = 4000;
 /// Reduction of the closure defect in one round.
 const CLOSURE_TOLERANCE: f64 = 1e-9;
 /// Closure defect, relative to the area of a particle, that counts as round-off.
 const ROUND_OFF: f64 = 1e-14;
 /// Part of that at which iterating stops: the largest defect exceeds the root mean square.
 const FLOOR: f64 = 0.1;
-/// Smallest pivot of a block relative to its diagonal.
-const FLAT: f64 = 1e-12;
-/// Most conditions of a particle: three dimensions.
-const MOST: usize = 12;
 /// Rounds that polish the closure.
 const CLOSURE_ROUNDS: usize = 4;
 
@@ -80,7 +75,9 @@ pub fn conservative<const D: usize>(cloud: &mut Cloud<D>, operators: &mut Operat
 
 /// The same with another ε.
 pub fn conservative_with<const D: usize>(
-    cloud: &mut Cloud<D>, operators: &mut Operators<D>, softness: f64,
+    cloud: &mut Cloud<D>,
+    operators: &mut Operators<D>,
+    softness: f64,
 ) -> ConservativeReport {
     let mut problem = Problem::new(cloud, operators, softness);
     let mut multipliers = vec![Row::ZERO; problem.n_rows()];
@@ -127,57 +124,6 @@ struct Link<const D: usize> {
     weight: f64,
     offset: Vector<D>,
     kind: Kind<D>,
-}
-
-/// Multipliers, or defects, of the conditions of one particle.
-#[derive(Clone, Copy)]
-struct Row<const D: usize> {
-    /// Of the closure; for an interface particle the first component belongs to the sum of its shares.
-    closure: Vector<D>,
-    /// Of linear consistency.
-    moment: [Vector<D>; D],
-}
-
-impl<const D: usize> Row<D> {
-    const ZERO: Self = Self { closure: Vector::ZERO, moment: [Vector::ZERO; D] };
-
-    #[inline(always)]
-    fn dot(&self, o: &Self) -> f64 {
-        self.closure.dot(&o.closure) + (0..D).map(|r| self.moment[r].dot(&o.moment[r])).sum::<f64>()
-    }
-
-    #[inline(always)]
-    fn plus(&self, s: f64, o: &Self) -> Self {
-        Self {
-            closure: self.closure + o.closure * s,
-            moment: std::array::from_fn(|r| self.moment[r] + o.moment[r] * s),
-        }
-    }
-
-    /// Adds what an area vector contributes, `reach` × offset from the particle.
-    #[inline(always)]
-    fn add(&mut self, s: &Vector<D>, offset: &Vector<D>, reach: f64) {
-        self.closure += *s;
-        for r in 0..D {
-            self.moment[r] += *offset * (reach * s[r]);
-        }
-    }
-
-    fn trace(&self) -> f64 {
-        (0..D).map(|r| self.moment[r][r]).sum()
-    }
-
-    #[inline(always)]
-    fn load(x: &[f64; MOST]) -> Self {
-        let moment = std::array::from_fn(|r| Vector::from_fn(|c| x[D + r * D + c]));
-        Self { closure: Vector::from_fn(|c| x[c]), moment }
-    }
-
-    #[inline(always)]
-    fn store(&self, x: &mut [f64; MOST]) {
-        x[..D].copy_from_slice(&self.closure.0);
-        (0..D).for_each(|r| x[D + r * D..D + (r + 1) * D].copy_from_slice(&self.moment[r].0));
-    }
 }
 
 /// The unknowns: an area vector, or a share, per entry, and a volume per fluid particle.
@@ -371,7 +317,9 @@ impl<const D: usize> Problem<D> {
             match link.kind {
                 Kind::Pair if p < q => x.area[q] = -x.area[p],
                 // seen from its own image only the part across the plane is left
-                Kind::Image(t) if p == q => x.area[p] = Vector::from_fn(|d| if t[d] < 0.0 { x.area[p][d] } else { 0.0 }),
+                Kind::Image(t) if p == q => {
+                    x.area[p] = Vector::from_fn(|d| if t[d] < 0.0 { x.area[p][d] } else { 0.0 })
+                }
                 Kind::Image(t) if p < q => x.area[q] = Vector::from_fn(|d| -t[d] * x.area[p][d]),
                 _ => {}
             }
@@ -395,7 +343,9 @@ impl<const D: usize> Problem<D> {
 
     /// Raises ε around particles whose volume is too small; number of particles touched so far, zero when nothing was done.
     fn soften(&mut self, volume: &[f64]) -> usize {
-        let low: Vec<usize> = (0..self.n_fluid).filter(|i| !(volume[*i] > SMALLEST_VOLUME * self.unit[*i])).collect();
+        let low: Vec<usize> = (0..self.n_fluid)
+            .filter(|i| volume[*i].is_nan() || volume[*i] <= SMALLEST_VOLUME * self.unit[*i])
+            .collect();
         let mut touched = low.clone();
         for i in &low {
             let links = &self.links[self.range(*i)];
@@ -597,56 +547,6 @@ fn link<const D: usize>(cloud: &Cloud<D>, reverse: &Reverse<'_, D>, i: usize, p:
         _ => Kind::Open,
     };
     Link { other: source as u32, partner: partner.unwrap_or(p as u32), weight, offset, kind }
-}
-
-/// Solves A y = b for a symmetric positive A; `r` holds b − A y. Number of iterations until r·M⁻¹r ≤ `goal`.
-fn conjugate_gradients<const D: usize>(
-    y: &mut [Row<D>], r: &mut [Row<D>], goal: f64, apply: impl Fn(&[Row<D>], &mut [Row<D>]),
-    precondition: impl Fn(usize, &Row<D>) -> Row<D> + Sync,
-) -> usize {
-    let n = y.len();
-    let mut z = vec![Row::ZERO; n];
-    let mut p = vec![Row::ZERO; n];
-    let mut q = vec![Row::ZERO; n];
-    let mut last = f64::INFINITY;
-    for iteration in 0..MOST_ITERATIONS {
-        sweep(&mut z, |i| precondition(i, &r[i]));
-        let size = sum(n, |i| r[i].dot(&z[i]));
-        if !(size > goal) {
-            return iteration;
-        }
-        update(&mut p, |i, p| z[i].plus(size / last, p));
-        last = size;
-        apply(&p, &mut q);
-        let curvature = sum(n, |i| p[i].dot(&q[i]));
-        if !(curvature > 0.0) {
-            return iteration;
-        }
-        let step = size / curvature;
-        update(y, |i, y| y.plus(step, &p[i]));
-        update(r, |i, r| r.plus(-step, &q[i]));
-    }
-    MOST_ITERATIONS
-}
-
-/// x[i] = f(i, x[i]).
-fn update<T: Send>(x: &mut [T], f: impl Fn(usize, &T) -> T + Sync) {
-    sweep_each(x, |i, x| *x = f(i, x));
-}
-
-/// Cholesky factor in the lower triangle and its transpose in the upper one, the diagonal inverted; directions without
-/// stiffness are left alone.
-fn cholesky(a: &mut [f64], n: usize) {
-    for c in 0..n {
-        let s: f64 = (0..c).map(|k| a[c * n + k] * a[c * n + k]).sum();
-        let pivot = (a[c * n + c] - s).max(FLAT * a[c * n + c]).max(f64::MIN_POSITIVE);
-        a[c * n + c] = 1.0 / pivot.sqrt();
-        for r in c + 1..n {
-            let s: f64 = (0..c).map(|k| a[r * n + k] * a[c * n + k]).sum();
-            let v = (a[r * n + c] - s) * a[c * n + c];
-            (a[r * n + c], a[c * n + r]) = (v, v);
-        }
-    }
 }
 
 /// Writes the result back.

@@ -8,6 +8,7 @@ pub mod conservative;
 pub mod fill;
 pub mod interface;
 pub mod layout;
+mod multipliers;
 pub mod neighbours;
 pub mod operators;
 pub mod sources;

@@ -345,3 +345,75 @@ impl<const D: usize> System for Fluid<D> {
         Some(Fault { particle: i, place: self.cloud.x[i].0.to_vec(), reason })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cloud::conservative::conservative;
+
+    struct Still;
+    impl<const D: usize> FarField<D> for Still {
+        fn state(&self, _: &Vector<D>, _: &Vector<D>) -> Primitive<D> {
+            Primitive { density: 1.0, velocity: Vector::ZERO, pressure: 1.0 }
+        }
+        fn pressure(&self) -> f64 {
+            1.0
+        }
+    }
+
+    /// Conservative scheme on a shaken cloud of two levels inside closed sides, with a circle in it when asked for.
+    fn closed(body: &str) -> Fluid<2> {
+        let text = format!(
+            "title = \"x\"\ndimension = 2\n[flow]\nmach = 0.5\n{body}\n[cloud]\nspacing = 0.125\njitter = 0.2\n\
+             domain = {{ min = [-1.0, -1.0], max = [1.0, 1.0] }}\n\
+             [[cloud.box]]\nmin = [0.0, -1.0]\nmax = [1.0, 1.0]\nspacing = 0.0625\n\
+             [boundary]\nx_min = \"symmetry\"\nx_max = \"symmetry\"\ny_min = \"periodic\"\ny_max = \"periodic\"\n"
+        );
+        let case = crate::case::read(&text, "test").unwrap();
+        let surface = crate::geometry::load_surface::<2>(&case, std::path::Path::new(".")).unwrap().0;
+        let mut cloud = Cloud::build(&case, (!body.is_empty()).then_some(&surface), &[]).unwrap();
+        let mut operators = Operators::new(&cloud);
+        conservative(&mut cloud, &mut operators);
+        let walls = WallFits::new(&cloud);
+        let reconstruction = Reconstruction { second_order: true, kappa: 0.0, threshold: 0.02 };
+        let held = Vec::new();
+        let (gas, flux, limiter, wall_rule) = (Gas { gamma: 1.4 }, Flux::Hllc, Limiter::VanAlbada, WallRule::Irrotational);
+        let far_field = Box::new(Still);
+        Fluid { cloud, operators, walls, gas, flux, limiter, reconstruction, conservative: true, wall_rule, far_field, held }
+    }
+
+    /// Σ V R and Σ |V R| of every variable for an uneven flow, and the force on the bodies.
+    fn balance(fluid: &Fluid<2>) -> ([f64; 4], [f64; 4], Vector<2>) {
+        let mut u = vec![0.0; fluid.len()];
+        for (row, x) in u.chunks_mut(4).zip(&fluid.cloud.x) {
+            let wave = (3.0 * x[0]).sin() * (std::f64::consts::PI * x[1]).cos();
+            let velocity = Vector([0.4 * wave, 0.3 - 0.2 * wave]);
+            let q = Primitive { density: 1.0 + 0.3 * wave, velocity, pressure: 1.0 - 0.4 * wave };
+            fluid.gas.conserved(&q).store(row);
+        }
+        let (frame, mut work, mut du) = (fluid.frame(0.0, &u), fluid.work(), vec![0.0; u.len()]);
+        fluid.rhs(&frame, &u, &mut work, &mut du);
+        let mut total = ([0.0; 4], [0.0; 4]);
+        for (row, v) in du.chunks(4).zip(&fluid.cloud.volume) {
+            for k in 0..4 {
+                total.0[k] += v * row[k];
+                total.1[k] += (v * row[k]).abs();
+            }
+        }
+        (total.0, total.1, fluid.pressure_force(&work))
+    }
+
+    #[test]
+    fn what_one_particle_loses_another_gains() {
+        let (sum, size, _) = balance(&closed(""));
+        // momentum along x leaves through the planes of symmetry
+        assert!([0, 2, 3].iter().all(|k| sum[*k].abs() < 1e-13 * size[*k]), "{sum:?} {size:?}");
+    }
+
+    #[test]
+    fn the_force_on_a_body_is_what_the_fluid_loses() {
+        let (sum, size, force) = balance(&closed("[[body]]\ncircle = { radius = 0.5 }"));
+        assert!(sum[0].abs() < 1e-13 * size[0] && sum[3].abs() < 1e-13 * size[3], "{sum:?}");
+        assert!(force[1].abs() > 1e-4 && (sum[2] + force[1]).abs() < 1e-12, "{sum:?} {force:?}");
+    }
+}
