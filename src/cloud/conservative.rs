@@ -679,7 +679,7 @@ mod tests {
     #[test]
     fn spheres_cut_by_a_plane_of_symmetry_close() {
         let text = "[[body]]\nsphere = { radius = 0.5 }\n[cloud]\nspacing = 0.25\n\
-                    domain = { min = [-2.0, -2.0, 0.0], max = [2.0, 2.0, 2.0] }\n\
+                    domain = { min = [-1.0, -1.0, 0.0], max = [1.0, 1.0, 1.0] }\n\
                     [boundary]\nz_min = \"symmetry\"\n";
         let mut cloud = cloud::<3>(text);
         let (_, report) = solve(&mut cloud);

@@ -395,9 +395,9 @@ mod tests {
         fluid.rhs(&frame, &u, &mut work, &mut du);
         let mut total = ([0.0; 4], [0.0; 4]);
         for (row, v) in du.chunks(4).zip(&fluid.cloud.volume) {
-            for k in 0..4 {
-                total.0[k] += v * row[k];
-                total.1[k] += (v * row[k]).abs();
+            for (k, r) in row.iter().enumerate() {
+                total.0[k] += v * r;
+                total.1[k] += (v * r).abs();
             }
         }
         (total.0, total.1, fluid.pressure_force(&work))
