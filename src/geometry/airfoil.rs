@@ -1,0 +1,230 @@
+//! Airfoil coordinate files.
+//!
+//! Rows of numbers, separated by blanks, commas or semicolons; `#` begins a comment. The order is detected:
+//!
+//! - Selig: once around the section from trailing edge to trailing edge, in either direction;
+//! - Lednicer: a row of two counts, then both sides from the leading edge to the trailing edge; the counts may be absent;
+//! - a header with a column `surface` whose values begin with `u` or `l`;
+//! - one side only: half thickness of a symmetric section; of several thickness columns the first counts.
+//!
+//! Columns of a header are recognised by name: `x…` the first coordinate, the next one the second; `pct` in a name
+//! means percent of the chord. What was assumed is reported.
+use super::GeometryError;
+use super::outline::{self, Mark};
+use super::shell::Shell;
+use crate::math::{Bounds, Vector};
+use std::io::Read;
+
+/// Longest file that is read, bytes: a section with a million points.
+const LONGEST: u64 = 64 << 20;
+
+/// One row of coordinates.
+#[derive(Clone, Debug)]
+struct Row {
+    mark: Mark,
+    surface: String,
+}
+
+/// Columns named by a header.
+struct Columns {
+    x: usize,
+    y: usize,
+    surface: Option<usize>,
+    section: Option<usize>,
+    scale: [f64; 2],
+    half: bool,
+    names: String,
+}
+
+/// A file as read: rows with the breaks between blocks lost, and what the header said.
+struct Table {
+    rows: Vec<Row>,
+    counts: Option<[usize; 2]>,
+    columns: Option<Columns>,
+}
+
+/// The smooth shell of the section in `input`; `file` names it in messages, `notes` says what was assumed.
+pub(super) fn read(file: &str, input: impl Read, notes: &mut Vec<String>) -> Result<Shell<2>, GeometryError> {
+    let mut bytes = Vec::new();
+    let input = input.take(LONGEST).read_to_end(&mut bytes);
+    input.map_err(|source| GeometryError::Open { file: file.to_string(), source })?;
+    let table = parse(file, &String::from_utf8_lossy(&bytes))?;
+    let marks = around(file, &table, notes)?;
+    outline::airfoil(file, marks, notes)
+}
+
+fn parse(file: &str, text: &str) -> Result<Table, GeometryError> {
+    let mut table = Table { rows: Vec::new(), counts: None, columns: None };
+    let mut section: Option<String> = None;
+    for (i, line) in text.lines().enumerate() {
+        let line = line.split(['#', '!']).next().unwrap_or("").trim().trim_start_matches('\u{feff}');
+        let words: Vec<&str> = line.split(|c: char| c == ',' || c == ';' || c.is_whitespace()).collect();
+        let words: Vec<&str> = words.into_iter().filter(|w| !w.is_empty()).collect();
+        if words.is_empty() {
+            continue;
+        }
+        let before = table.rows.is_empty() && table.counts.is_none();
+        if before && table.columns.is_none() && words.iter().any(|w| number(w).is_none()) {
+            table.columns = Columns::of(&words);
+            continue;
+        }
+        let row = row(file, i + 1, &words, table.columns.as_ref())?;
+        if before && table.columns.is_none() && counts(&row).is_some() {
+            table.counts = counts(&row);
+            continue;
+        }
+        if let Some(k) = table.columns.as_ref().and_then(|c| c.section)
+            && section.get_or_insert_with(|| words[k].to_string()) != words[k]
+        {
+            let what = format!("a second section `{}` begins", words[k]);
+            return Err(GeometryError::refused(format!("{file}, line {}", i + 1), what, "give one section per file"));
+        }
+        table.rows.push(row);
+    }
+    Ok(table)
+}
+
+impl Columns {
+    /// Columns of a header, none when the line is a title.
+    fn of(words: &[&str]) -> Option<Self> {
+        let names: Vec<String> = words.iter().map(|w| w.to_lowercase()).collect();
+        let x = names.iter().position(|n| n == "x" || n.starts_with("x_") || n.starts_with("x/"))?;
+        let y = x + 1;
+        let name = names.get(y)?;
+        let find = |what: &str| names.iter().position(|n| n == what);
+        let scale = |n: &str| if n.contains("pct") { 0.01 } else { 1.0 };
+        Some(Self {
+            x,
+            y,
+            surface: find("surface"),
+            section: find("section"),
+            scale: [scale(&names[x]), scale(name)],
+            half: name.contains("thick") || names.len() > y + 1,
+            names: format!("`{}` and `{}`", words[x], words[y]),
+        })
+    }
+}
+
+fn row(file: &str, line: usize, words: &[&str], columns: Option<&Columns>) -> Result<Row, GeometryError> {
+    let refused = |what: String, hint: &str| GeometryError::refused(format!("{file}, line {line}"), what, hint);
+    let (x, y, scale) = columns.map_or((0, 1, [1.0, 1.0]), |c| (c.x, c.y, c.scale));
+    let last = columns.map_or(y, |c| y.max(c.surface.unwrap_or(0)).max(c.section.unwrap_or(0)));
+    if words.len() <= last {
+        return Err(refused(format!("has {} values", words.len()), "every row needs two coordinates, `x y`"));
+    }
+    let value = |k: usize| {
+        number(words[k]).ok_or_else(|| refused(format!("`{}` is not a finite number", words[k]), "write rows as `x y`"))
+    };
+    let point = Vector([value(x)? * scale[0], value(y)? * scale[1]]);
+    let surface = columns.and_then(|c| c.surface).map_or(String::new(), |k| words[k].to_lowercase());
+    Ok(Row { mark: Mark { point, line }, surface })
+}
+
+/// A finite number below 1e100 in magnitude, so that squares stay finite.
+fn number(word: &str) -> Option<f64> {
+    word.parse::<f64>().ok().filter(|v| v.abs() < 1e100)
+}
+
+/// The two counts of a Lednicer file: whole numbers that cannot be coordinates of a unit chord.
+fn counts(row: &Row) -> Option<[usize; 2]> {
+    let whole = |v: f64| 2.0 <= v && v <= 1e6 && v.fract() == 0.0;
+    let [a, b] = row.mark.point.0;
+    (whole(a) && whole(b)).then_some([a as usize, b as usize])
+}
+
+/// The points once around the section, from trailing edge to trailing edge, upper side first.
+fn around(file: &str, table: &Table, notes: &mut Vec<String>) -> Result<Vec<Mark>, GeometryError> {
+    let marks: Vec<Mark> = table.rows.iter().map(|r| r.mark).collect();
+    if marks.len() < 3 {
+        let what = format!("holds {} points", marks.len());
+        return Err(GeometryError::refused(file, what, "an airfoil file lists `x y` row by row"));
+    }
+    if let Some(columns) = &table.columns {
+        notes.push(format!("{file}: coordinates from columns {}", columns.names));
+        if columns.surface.is_some() {
+            return by_name(file, table);
+        }
+    }
+    if let Some([upper, lower]) = table.counts {
+        if upper + lower != marks.len() {
+            let what = format!("announces {upper} and {lower} points but holds {}", marks.len());
+            return Err(GeometryError::refused(file, what, "correct the counts in the second line or remove it"));
+        }
+        notes.push(format!("{file}: Lednicer order, {upper} and {lower} points"));
+        return Ok(join(&marks[..upper], &marks[upper..]));
+    }
+    let x: Vec<f64> = marks.iter().map(|m| m.point[0]).collect();
+    let bounds = Bounds::around(marks.iter().map(|m| &m.point));
+    let (low, range) = (bounds.min[0], bounds.extent()[0]);
+    let (front, rear) = (|v: f64| v - low < 0.25 * range, |v: f64| v - low > 0.75 * range);
+    if let Some(cut) = (1..x.len()).find(|&i| rear(x[i - 1]) && front(x[i])) {
+        notes.push(format!("{file}: Lednicer order without counts, {cut} and {} points", x.len() - cut));
+        return Ok(join(&marks[..cut], &marks[cut..]));
+    }
+    let (first, last) = (x[0], x[x.len() - 1]);
+    if (front(first) && rear(last)) || (rear(first) && front(last)) {
+        return mirrored(file, marks, notes);
+    }
+    if front(first) && front(last) {
+        notes.push(format!("{file}: once around from the leading edge"));
+        return Ok(from_the_rear(&marks));
+    }
+    let half = table.columns.as_ref().is_some_and(|c| c.half);
+    let more = if half { "; further columns are not used" } else { "" };
+    notes.push(format!("{file}: Selig order{more}"));
+    Ok(marks)
+}
+
+/// Sides by the column `surface`.
+fn by_name(file: &str, table: &Table) -> Result<Vec<Mark>, GeometryError> {
+    let side = |letter: char| -> Vec<Mark> {
+        table.rows.iter().filter(|r| r.surface.starts_with(letter)).map(|r| r.mark).collect()
+    };
+    let (upper, lower) = (side('u'), side('l'));
+    if let Some(row) = table.rows.iter().find(|r| !r.surface.starts_with(['u', 'l'])) {
+        let what = format!("`{}` is not a side", row.surface);
+        return Err(GeometryError::refused(format!("{file}, line {}", row.mark.line), what, "use `upper` or `lower`"));
+    }
+    if upper.len() < 2 || lower.len() < 2 {
+        let what = format!("has {} upper and {} lower points", upper.len(), lower.len());
+        return Err(GeometryError::refused(file, what, "give both sides, or drop the column `surface`"));
+    }
+    Ok(join(&upper, &lower))
+}
+
+/// One side given: the other is its mirror image.
+fn mirrored(file: &str, marks: Vec<Mark>, notes: &mut Vec<String>) -> Result<Vec<Mark>, GeometryError> {
+    let size = Bounds::around(marks.iter().map(|m| &m.point)).extent().max_abs();
+    if let Some(bad) = marks.iter().find(|m| m.point[1] < -1e-9 * size) {
+        let what = format!("one side only, and the half thickness {} is negative", bad.point[1]);
+        let hint = "list both sides from trailing edge to trailing edge (Selig order)";
+        return Err(GeometryError::refused(format!("{file}, line {}", bad.line), what, hint));
+    }
+    notes.push(format!("{file}: one side with {} points, taken as half thickness of a symmetric section", marks.len()));
+    let mirror: Vec<Mark> =
+        marks.iter().map(|m| Mark { point: Vector([m.point[0], -m.point[1]]), line: m.line }).collect();
+    Ok(join(&marks, &mirror))
+}
+
+/// Upper side backwards from the trailing edge, then the lower side; each may be given in either direction.
+fn join(upper: &[Mark], lower: &[Mark]) -> Vec<Mark> {
+    let from_front = |side: &[Mark]| {
+        let mut side = side.to_vec();
+        if side[0].point[0] > side[side.len() - 1].point[0] {
+            side.reverse();
+        }
+        side
+    };
+    let mut marks = from_front(upper);
+    marks.reverse();
+    marks.extend(from_front(lower));
+    marks
+}
+
+/// A closed outline that begins at the leading edge, turned to begin and end at its rearmost point.
+fn from_the_rear(marks: &[Mark]) -> Vec<Mark> {
+    let rear = (0..marks.len()).fold(0, |a, i| if marks[i].point[0] > marks[a].point[0] { i } else { a });
+    let mut turned = marks[rear..].to_vec();
+    turned.extend(&marks[..=rear]);
+    turned
+}

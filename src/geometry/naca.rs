@@ -1,0 +1,190 @@
+//! NACA 4-digit sections.
+//!
+//! Half thickness y_t(x) = 5 τ (0.2969 √x − 0.1260 x − 0.3516 x² + 0.2843 x³ − a₄ x⁴) is laid off perpendicular to a
+//! mean line of two parabolas that meet at the place of greatest camber (Jacobs, Ward, Pinkerton, NACA report 460, 1933).
+//! a₄ = 0.1015 as published leaves a base; 0.1036 closes it at x = 1. In s = √x all functions are polynomials, so the
+//! outline and its normals are exact through the leading edge.
+use super::GeometryError;
+use super::outline::{self, Sample};
+use super::shell::Shell;
+use crate::case::{Naca, TrailingEdge};
+use crate::math::Vector;
+use std::f64::consts::PI;
+
+/// Segments of each side: the chord error, largest at the nose, is 0.63/N² of the chord at any thickness.
+const SEGMENTS: usize = 3200;
+
+/// A section as a function of s = √(x / extent).
+struct Section {
+    camber: f64,
+    peak: f64,
+    thickness: f64,
+    last: f64,
+    extent: f64,
+}
+
+/// The outline of a NACA section of unit chord, leading edge at the origin.
+pub(super) fn shell(naca: &Naca) -> Result<Shell<2>, GeometryError> {
+    let section = Section::new(naca)?;
+    let s = |i: usize| (0.5 * PI * i as f64 / SEGMENTS as f64).sin();
+    let mut outline: Vec<Sample> = (0..=SEGMENTS).rev().map(|i| section.point(s(i), 1.0)).collect();
+    outline.extend((1..=SEGMENTS).map(|i| section.point(s(i), -1.0)));
+    let mut pieces = vec![outline];
+    if naca.trailing_edge == TrailingEdge::Blunt {
+        let ends = (pieces[0][2 * SEGMENTS].0, pieces[0][0].0);
+        pieces.push(outline::straight(ends.0, ends.1));
+    }
+    Ok(outline::shell_of_pieces(&pieces, outline::CORNER))
+}
+
+impl Section {
+    fn new(naca: &Naca) -> Result<Self, GeometryError> {
+        let bad = |what, hint| GeometryError::refused(format!("`naca = \"{}\"`", naca.digits), what, hint);
+        let digits: Vec<f64> = naca.digits.chars().filter_map(|c| c.to_digit(10)).map(f64::from).collect();
+        let [m, p, t1, t2] = digits[..] else {
+            return Err(bad("is not a four-digit section", "give four digits such as `0012` or `2412`"));
+        };
+        if naca.digits.len() != 4 {
+            return Err(bad("is not a four-digit section", "give four digits such as `0012` or `2412`"));
+        }
+        let thickness = 0.01 * (10.0 * t1 + t2);
+        if thickness == 0.0 {
+            return Err(bad("has no thickness", "the last two digits are the thickness in percent of the chord"));
+        }
+        if m > 0.0 && p == 0.0 {
+            return Err(bad("has camber but no place for it", "the second digit is its place in tenths of the chord"));
+        }
+        let last = if naca.trailing_edge == TrailingEdge::Closed { 0.1036 } else { 0.1015 };
+        let mut section = Self { camber: 0.01 * m, peak: 0.1 * p, thickness, last, extent: 1.0 };
+        if naca.trailing_edge == TrailingEdge::Extended {
+            section.extent = section.zero();
+        }
+        Ok(section)
+    }
+
+    /// Half thickness and its derivative with respect to s = √x.
+    fn half_thickness(&self, s: f64) -> (f64, f64) {
+        let c = [0.2969, -0.1260, -0.3516, 0.2843, -self.last];
+        let x = s * s;
+        let value = c[0] * s + x * (c[1] + x * (c[2] + x * (c[3] + x * c[4])));
+        let slope = c[0] + s * (2.0 * c[1] + x * (4.0 * c[2] + x * (6.0 * c[3] + x * 8.0 * c[4])));
+        (5.0 * self.thickness * value, 5.0 * self.thickness * slope)
+    }
+
+    /// Where the thickness vanishes behind x = 1: 1.008930411 for the published coefficients, by Newton's method.
+    fn zero(&self) -> f64 {
+        let mut s = 1.0_f64;
+        for _ in 0..20 {
+            let (value, slope) = self.half_thickness(s);
+            s -= value / slope;
+        }
+        s * s
+    }
+
+    /// Height, slope and second derivative of the mean line.
+    fn mean_line(&self, x: f64) -> (f64, f64, f64) {
+        if self.camber == 0.0 {
+            return (0.0, 0.0, 0.0);
+        }
+        let (m, p) = (self.camber, self.peak);
+        let (q, base) = if x < p { (m / (p * p), 0.0) } else { (m / ((1.0 - p) * (1.0 - p)), 1.0 - 2.0 * p) };
+        (q * (base + 2.0 * p * x - x * x), 2.0 * q * (p - x), -2.0 * q)
+    }
+
+    /// Point and outward normal at √(x / extent) on the upper (`sign` 1) or lower (−1) side.
+    fn point(&self, fraction: f64, sign: f64) -> (Vector<2>, Vector<2>) {
+        let s = fraction * self.extent.sqrt();
+        let x = s * s;
+        // The closed ends are zero by definition; rounding would leave 1e-17 and open the outline.
+        let sharp = fraction == 1.0 && (self.extent > 1.0 || self.last == 0.1036);
+        let (value, half_slope) = self.half_thickness(s);
+        let half = if sharp { 0.0 } else { value };
+        let (height, slope, bend) = self.mean_line(x);
+        let along = Vector([1.0, slope]).unit();
+        let across = Vector([-along[1], along[0]]);
+        let turning = 2.0 * s * bend / (1.0 + slope * slope);
+        let point = (Vector([x, height]) + across * (sign * half)) * (1.0 / self.extent);
+        let tangent =
+            Vector([2.0 * s, 2.0 * s * slope]) + across * (sign * half_slope) - along * (sign * half * turning);
+        // The tangent points downstream: the upper normal is on its left, the lower one on its right.
+        (point, (Vector([-tangent[1], tangent[0]]) * sign).unit())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::surface::Surface;
+    use super::*;
+
+    fn section(digits: &str, trailing_edge: TrailingEdge) -> Shell<2> {
+        shell(&Naca { digits: digits.into(), trailing_edge }).unwrap()
+    }
+
+    /// Rows `x_c, closed, open, extended` computed independently from the published polynomial.
+    const TABLE: &str = include_str!("testdata/naca0012_formula_variants.csv");
+
+    #[test]
+    fn thickness_follows_the_published_polynomial() {
+        let kinds = [TrailingEdge::Closed, TrailingEdge::Blunt, TrailingEdge::Extended];
+        for (column, kind) in kinds.into_iter().enumerate() {
+            let s = Section::new(&Naca { digits: "0012".into(), trailing_edge: kind }).unwrap();
+            for line in TABLE.lines().skip_while(|l| !l.starts_with(char::is_numeric)) {
+                let row: Vec<f64> = line.split(',').map(|v| v.parse().unwrap()).collect();
+                let (p, _) = s.point(row[0].sqrt(), 1.0);
+                assert!(
+                    (p[0] - row[0]).abs() < 1e-12 && (p[1] - row[1 + column]).abs() < 1.5e-8,
+                    "{kind:?} {row:?} {p:?}"
+                );
+            }
+        }
+    }
+
+    #[test]
+    fn the_extended_section_ends_where_the_polynomial_vanishes() {
+        let s = Section::new(&Naca { digits: "0012".into(), trailing_edge: TrailingEdge::Extended }).unwrap();
+        assert!((s.extent - 1.008930411).abs() < 1e-9);
+    }
+
+    #[test]
+    fn chords_and_normals_are_accurate() {
+        for digits in ["0012", "2412", "4424", "0003"] {
+            let shell = section(digits, TrailingEdge::Closed);
+            let surface = Surface::new(&[("wing".into(), shell)]);
+            for (e, element) in surface.elements.iter().enumerate() {
+                let (x, _) = surface.element_point(e as u32, &[0.5, 0.5]);
+                let near = super::super::surface::Nearest {
+                    point: x,
+                    normal: element.normals[0],
+                    distance: 0.0,
+                    element: e as u32,
+                    weights: [0.5; 2],
+                };
+                assert!((surface.project(&near).point - x).norm() < 1e-7, "{digits} {x:?}");
+                let n = surface.element_area_vector(e as u32).unit();
+                assert!(
+                    (n - element.normals[0]).norm() < 3e-3 && (n - element.normals[1]).norm() < 3e-3,
+                    "{digits} {x:?}"
+                );
+            }
+            assert_eq!(surface.sharp.len(), 1, "{digits}");
+            assert!(surface.intersection().is_none());
+        }
+    }
+
+    #[test]
+    fn nose_radius_is_the_published_one() {
+        let surface = Surface::new(&[("wing".into(), section("0012", TrailingEdge::Blunt))]);
+        let nose = surface.nearest(&Vector([-0.1, 0.0]), 1.0).unwrap();
+        // 1.1019 τ² (Abbott and von Doenhoff 1959, p. 113)
+        assert!((surface.radius[nose.element as usize] / (1.1019 * 0.0144) - 1.0).abs() < 1e-3);
+        assert_eq!(surface.sharp.len(), 2);
+    }
+
+    #[test]
+    fn bad_digits_are_refused() {
+        for digits in ["", "12", "0000", "2012", "23012", "00a2", "00-12"] {
+            let naca = Naca { digits: digits.into(), trailing_edge: TrailingEdge::Closed };
+            assert!(shell(&naca).is_err(), "{digits}");
+        }
+    }
+}

@@ -1,0 +1,254 @@
+//! Smooth closed outlines in the plane from points.
+//!
+//! The points of an airfoil become a closed curve: pieces between corners, each a cubic spline (see [`super::spline`]),
+//! sampled so densely that chords stay within 5e-8 of the chord length of the curve. The leading edge lies inside a
+//! piece, so nothing breaks there. Where consecutive chords turn by more than 35° there is a corner, except at a rounded
+//! nose: near the leading edge coarse points turn by more than that, but their neighbours turn too, while beside a sharp
+//! nose they hardly do.
+use super::GeometryError;
+use super::shell::{Exact, Shell};
+use super::simplex;
+use super::spline::{End, Spline};
+use super::surface::Surface;
+use crate::math::Vector;
+use std::f64::consts::PI;
+
+/// Turning angle of a sharp corner of an airfoil, radians (35°).
+pub(super) const CORNER: f64 = 35.0 * PI / 180.0;
+/// Points nearer than this fraction of the chord are one point.
+const SAME: f64 = 1e-9;
+/// A trailing edge open by less than this fraction of the chord is closed: it is below the digits of coordinate files.
+const CLOSED: f64 = 1e-6;
+/// A trailing edge open by more than this fraction of the chord is a mistake: bases are below a tenth of the chord.
+const OPEN: f64 = 0.2;
+/// Greatest distance of a chord from the curve, in chords.
+const SAGITTA: f64 = 5e-8;
+/// Segments are no longer than the chord over this number.
+const SEGMENTS: f64 = 1500.0;
+/// The nose is what lies within this fraction of the chord from the leading edge.
+const NOSE: f64 = 0.1;
+/// Next to a sharp nose the outline turns by less than this fraction of the turn at the nose.
+const SHARP_NOSE: f64 = 0.05;
+
+/// A point of the outline with its outward normal.
+pub(super) type Sample = (Vector<2>, Vector<2>);
+
+/// A point of an outline and the line of the file that it stands in.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Mark {
+    pub(super) point: Vector<2>,
+    pub(super) line: usize,
+}
+
+/// The smooth shell through `marks`, which run around the section from the trailing edge to the trailing edge.
+/// Repairs are appended to `notes`; `file` names the source.
+pub(super) fn airfoil(file: &str, marks: Vec<Mark>, notes: &mut Vec<String>) -> Result<Shell<2>, GeometryError> {
+    let (mut marks, base) = closed_loop(file, marks, notes)?;
+    if orient(file, &mut marks, notes)? && !base {
+        // The trailing edge stays first.
+        marks.rotate_right(1);
+    }
+    refuse_crossing(file, &marks)?;
+    let points: Vec<Vector<2>> = marks.iter().map(|m| m.point).collect();
+    let corners = corners(&points, base);
+    let chord = extent(&points);
+    let ends = if base { "with a blunt base" } else { "with a sharp trailing edge" };
+    let extra = corners.len().saturating_sub(if base { 2 } else { 1 });
+    let more = if extra > 0 { format!(" and {extra} more corners") } else { String::new() };
+    notes.push(format!("{file}: {} points, chord {chord:.6}, {ends}{more}", points.len()));
+    let pieces = pieces(&points, &corners, chord);
+    let shell = shell_of_pieces(&pieces, CORNER);
+    match Surface::new(&[(String::new(), shell.clone())]).intersection() {
+        None => Ok(shell),
+        Some((x, _)) => Err(GeometryError::refused(
+            file,
+            format!("the smooth outline crosses itself at ({:.6}, {:.6})", x[0], x[1]),
+            "add points there, or remove uneven ones",
+        )),
+    }
+}
+
+/// A shell of straight sides between `points`; every turn above `crease` is a sharp corner.
+pub(super) fn polygon(
+    name: &str,
+    points: &[Vector<2>],
+    crease: f64,
+    notes: &mut Vec<String>,
+) -> Result<Shell<2>, GeometryError> {
+    let mut marks: Vec<Mark> = points.iter().enumerate().map(|(i, p)| Mark { point: *p, line: i + 1 }).collect();
+    if let Some(bad) = marks.iter().find(|m| !m.point.is_finite()) {
+        return Err(GeometryError::refused(name, format!("point {} is not finite", bad.line), "check its numbers"));
+    }
+    let size = extent(points);
+    drop_repeated(name, &mut marks, size, notes);
+    if marks.len() > 1 && (marks[0].point - marks[marks.len() - 1].point).norm() <= SAME * size {
+        marks.pop();
+    }
+    if marks.len() < 3 {
+        let what = format!("has {} distinct points; an outline needs at least 3", marks.len());
+        return Err(GeometryError::refused(name, what, "list the corners once around the body"));
+    }
+    orient(name, &mut marks, notes)?;
+    refuse_crossing(name, &marks)?;
+    Ok(Shell { crease, ..straight_shell(&marks) })
+}
+
+/// A straight piece between two corners of a counter-clockwise outline.
+pub(super) fn straight(from: Vector<2>, to: Vector<2>) -> Vec<Sample> {
+    let normal = right_of(to - from);
+    vec![(from, normal), (to, normal)]
+}
+
+/// Joins pieces, each of which begins where the one before ends, into a closed counter-clockwise shell.
+pub(super) fn shell_of_pieces(pieces: &[Vec<Sample>], crease: f64) -> Shell<2> {
+    let vertices: Vec<Vector<2>> = pieces.iter().flat_map(|p| p[..p.len() - 1].iter().map(|s| s.0)).collect();
+    let normals = pieces.iter().flat_map(|p| p.windows(2).map(|s| [s[0].1, s[1].1])).collect();
+    let n = vertices.len() as u32;
+    let elements = (0..n).map(|i| [i, (i + 1) % n]).collect();
+    let (tags, tag_names) = (Vec::new(), Vec::new());
+    Shell { vertices, elements, normals: Some(normals), tags, tag_names, exact: Exact::None, crease }
+}
+
+/// Removes repeated points and decides how the trailing edge ends: the distinct points, and true for a blunt base.
+fn closed_loop(file: &str, mut marks: Vec<Mark>, notes: &mut Vec<String>) -> Result<(Vec<Mark>, bool), GeometryError> {
+    let chord = extent(&marks.iter().map(|m| m.point).collect::<Vec<_>>());
+    drop_repeated(file, &mut marks, chord, notes);
+    if marks.len() < 5 {
+        let what = format!("has {} distinct points; a smooth outline needs at least 5", marks.len());
+        return Err(GeometryError::refused(file, what, "use `polygon` for outlines with straight sides"));
+    }
+    let (first, last) = (marks[0], marks[marks.len() - 1]);
+    let gap = (first.point - last.point).norm() / chord;
+    if gap > OPEN {
+        let what = format!("the outline begins at {} and ends at {}", at(&first), at(&last));
+        let hint = "both ends must be the trailing edge: check the order of the points";
+        return Err(GeometryError::refused(file, what, hint));
+    }
+    if gap > CLOSED {
+        return Ok((marks, true));
+    }
+    if gap > SAME {
+        notes.push(format!("{file}: the trailing edge was open by {gap:.1e} chords and is closed"));
+        marks[0].point = (first.point + last.point) * 0.5;
+    }
+    marks.pop();
+    Ok((marks, false))
+}
+
+/// Removes points that repeat the one before.
+fn drop_repeated(file: &str, marks: &mut Vec<Mark>, size: f64, notes: &mut Vec<String>) {
+    let before = marks.len();
+    marks.dedup_by(|b, a| (b.point - a.point).norm() <= SAME * size);
+    if marks.len() < before {
+        notes.push(format!("{file}: {} repeated points are left out", before - marks.len()));
+    }
+}
+
+/// Turns a clockwise outline round and says whether it did; refuses one without area.
+fn orient(file: &str, marks: &mut [Mark], notes: &mut Vec<String>) -> Result<bool, GeometryError> {
+    let origin = marks[0].point;
+    let twice = (1..marks.len() - 1)
+        .map(|i| {
+            let (u, v) = (marks[i].point - origin, marks[i + 1].point - origin);
+            u[0] * v[1] - u[1] * v[0]
+        })
+        .sum::<f64>();
+    let size = extent(&marks.iter().map(|m| m.point).collect::<Vec<_>>());
+    if !(twice.abs() > SAME * size * size) {
+        return Err(GeometryError::refused(file, "the outline encloses no area", "check the second coordinate"));
+    }
+    if twice < 0.0 {
+        notes.push(format!("{file}: the points run clockwise and are taken in reverse order"));
+        marks.reverse();
+    }
+    Ok(twice < 0.0)
+}
+
+fn refuse_crossing(file: &str, marks: &[Mark]) -> Result<(), GeometryError> {
+    let Some((x, [e, f])) = Surface::new(&[(String::new(), straight_shell(marks))]).intersection() else {
+        return Ok(());
+    };
+    let side = |e: u32| {
+        let (a, b) = (&marks[e as usize], &marks[(e as usize + 1) % marks.len()]);
+        format!("from {} to {}", at(a), at(b))
+    };
+    let what = format!("the outline crosses itself at ({:.6}, {:.6}): {} and {}", x[0], x[1], side(e), side(f));
+    Err(GeometryError::refused(file, what, "check the order of these points"))
+}
+
+fn straight_shell(marks: &[Mark]) -> Shell<2> {
+    let n = marks.len() as u32;
+    Shell {
+        vertices: marks.iter().map(|m| m.point).collect(),
+        elements: (0..n).map(|i| [i, (i + 1) % n]).collect(),
+        normals: None,
+        tags: Vec::new(),
+        tag_names: Vec::new(),
+        exact: Exact::None,
+        crease: CORNER,
+    }
+}
+
+/// Indices of the corners of a closed outline that begins at the trailing edge; with a base its two ends are corners.
+fn corners(points: &[Vector<2>], base: bool) -> Vec<usize> {
+    let n = points.len();
+    let turn = |i: usize| {
+        let (before, here, after) = (points[(i + n - 1) % n], points[i % n], points[(i + 1) % n]);
+        simplex::angle_between(&(here - before).unit(), &(after - here).unit())
+    };
+    let tail = if base { (points[0] + points[n - 1]) * 0.5 } else { points[0] };
+    let nose = (0..n).fold(0, |a, i| if (points[i] - tail).norm() > (points[a] - tail).norm() { i } else { a });
+    let chord = (points[nose] - tail).norm();
+    let sharp = |i: usize| {
+        let around = turn(i + n - 1).max(turn(i + 1));
+        let rounded = (points[i] - points[nose]).norm() < NOSE * chord && around > SHARP_NOSE * turn(i);
+        turn(i) > CORNER && !rounded
+    };
+    (0..n).filter(|&i| sharp(i) || (base && (i == 0 || i == n - 1))).collect()
+}
+
+/// Spline pieces between corners; an outline without corners is one piece whose ends share a tangent.
+fn pieces(points: &[Vector<2>], corners: &[usize], chord: f64) -> Vec<Vec<Sample>> {
+    let n = points.len();
+    if corners.is_empty() {
+        let along = End::Along((points[1] - points[n - 1]).unit());
+        let ring = (0..=n).map(|i| points[i % n]).collect();
+        return vec![sample(&Spline::new(ring, along, along), chord)];
+    }
+    let piece = |(k, &start): (usize, &usize)| {
+        let next = if k + 1 < corners.len() { corners[k + 1] } else { corners[0] + n };
+        let part: Vec<Vector<2>> = (start..=next).map(|i| points[i % n]).collect();
+        sample(&Spline::new(part, End::Natural, End::Natural), chord)
+    };
+    corners.iter().enumerate().map(piece).collect()
+}
+
+/// Points and outward normals along a spline, dense enough for [`SAGITTA`] and [`SEGMENTS`].
+fn sample(spline: &Spline, chord: f64) -> Vec<Sample> {
+    let mut samples = Vec::new();
+    let mut push = |i: usize, s: f64| {
+        let (point, tangent) = spline.at(i, s);
+        samples.push((point, right_of(tangent)));
+    };
+    for i in 0..spline.intervals() {
+        let bend = (spline.sagitta(i) / (SAGITTA * chord)).sqrt();
+        let parts = bend.max(spline.chord(i) * SEGMENTS / chord).ceil().max(1.0);
+        (0..parts as usize).for_each(|k| push(i, k as f64 / parts));
+    }
+    push(spline.intervals() - 1, 1.0);
+    samples
+}
+
+/// Unit normal on the right of a direction: outward for counter-clockwise outlines.
+fn right_of(direction: Vector<2>) -> Vector<2> {
+    Vector([direction[1], -direction[0]]).unit()
+}
+
+/// Longest side of the box around the points.
+fn extent(points: &[Vector<2>]) -> f64 {
+    if points.is_empty() { 0.0 } else { crate::math::Bounds::around(points).extent().max_abs() }
+}
+
+fn at(mark: &Mark) -> String {
+    format!("({}, {}) in line {}", mark.point[0], mark.point[1], mark.line)
+}

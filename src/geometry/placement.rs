@@ -1,0 +1,73 @@
+//! Placement of bodies: scale, rotate about the origin of the shape, translate.
+//!
+//! In 2-D a positive angle lifts the nose when the flow comes along +x, which is a clockwise turn. In 3-D the angles turn
+//! about x, then y, then z, right-handed: a positive turn about y lifts the nose (z up).
+use super::GeometryError;
+use super::shell::{Exact, Shell};
+use crate::case::Placement;
+use crate::math::Vector;
+
+/// Moves `shell` where `placement` says; `body` names it in messages.
+pub(super) fn place<const D: usize>(
+    body: &str,
+    shell: &mut Shell<D>,
+    placement: &Placement,
+) -> Result<(), GeometryError> {
+    let bad = |what: String, hint: &str| GeometryError::refused(format!("body `{body}`"), what, hint);
+    let scale = placement.scale;
+    if !(0.0 < scale && scale < 1e50) {
+        return Err(bad(format!("`scale` is {scale}"), "use a positive number"));
+    }
+    let angles: Vec<f64> = placement.rotate.iter().map(|a| a.0).collect();
+    let shift: Vec<f64> = placement.translate.iter().map(|l| l.0).collect();
+    if !(shift.is_empty() || shift.len() == D) || shift.iter().any(|v| !v.is_finite()) {
+        return Err(bad(format!("`translate` is {shift:?}"), &format!("give {D} finite numbers")));
+    }
+    let wanted = if D == 2 { 1 } else { 3 };
+    if !(angles.is_empty() || angles.len() == wanted) || angles.iter().any(|v| !v.is_finite()) {
+        let hint = if D == 2 { "give one angle, nose up positive" } else { "give three angles, about x, y and z" };
+        return Err(bad(format!("`rotate` is {angles:?}"), hint));
+    }
+    let turn = |x: &Vector<D>| rotated(x, &angles);
+    let shift = Vector::from_fn(|d| shift.get(d).copied().unwrap_or(0.0));
+    let moved = |x: &Vector<D>| turn(x) * scale + shift;
+    shell.vertices.iter_mut().for_each(|v| *v = moved(v));
+    for normal in shell.normals.iter_mut().flatten().flatten() {
+        *normal = turn(normal);
+    }
+    if let Exact::Ball { centre, radius } = &mut shell.exact {
+        (*centre, *radius) = (moved(centre), *radius * scale);
+    }
+    Ok(())
+}
+
+fn rotated<const D: usize>(x: &Vector<D>, angles: &[f64]) -> Vector<D> {
+    let mut x = *x;
+    for (axis, angle) in angles.iter().enumerate() {
+        // In the plane the turn is clockwise, in space right-handed about `axis`.
+        let (i, j, angle) = if D == 2 { (0, 1, -angle) } else { ((axis + 1) % 3, (axis + 2) % 3, *angle) };
+        let (sin, cos) = angle.sin_cos();
+        (x[i], x[j]) = (cos * x[i] - sin * x[j], sin * x[i] + cos * x[j]);
+    }
+    x
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::PI;
+
+    #[test]
+    fn positive_angles_lift_the_nose() {
+        let nose = rotated(&Vector([-1.0, 0.0]), &[0.1]);
+        assert!((nose - Vector([-0.1_f64.cos(), 0.1_f64.sin()])).norm() < 1e-15);
+        let nose = rotated(&Vector([-1.0, 0.0, 0.0]), &[0.0, 0.1, 0.0]);
+        assert!((nose - Vector([-0.1_f64.cos(), 0.0, 0.1_f64.sin()])).norm() < 1e-15);
+    }
+
+    #[test]
+    fn rotations_in_space_follow_the_order_x_y_z() {
+        let x = rotated(&Vector([0.0, 1.0, 0.0]), &[0.5 * PI, 0.5 * PI, 0.0]);
+        assert!((x - Vector([1.0, 0.0, 0.0])).norm() < 1e-15, "{x:?}");
+    }
+}

@@ -1,0 +1,140 @@
+//! Circles, spheres and boxes, and a writer of STL files.
+//!
+//! A circle is a regular polygon and a sphere a subdivided icosahedron (each triangle into four, new vertices moved onto
+//! the sphere); both carry their exact shape, so places and normals on them are exact. Boxes have flat sides and creases.
+use super::shell::{Exact, Shell};
+use crate::math::Vector;
+use std::collections::HashMap;
+use std::f64::consts::PI;
+use std::io::{self, Write};
+
+/// Segments of a circle: chords stay within 7e-8 radii of it.
+const SEGMENTS: u32 = 8192;
+/// Subdivisions of the icosahedron: 81 920 triangles within 5e-5 radii of the sphere.
+const SUBDIVISIONS: u32 = 6;
+/// Greatest subdivision of [`icosphere`], 21 million triangles.
+const MOST_SUBDIVISIONS: u32 = 10;
+/// Turning angle of the edges of primitives, radians (40°).
+const CREASE: f64 = 40.0 * PI / 180.0;
+
+/// A circle about the origin.
+pub(super) fn circle(radius: f64) -> Shell<2> {
+    let direction = |i: u32| {
+        let angle = 2.0 * PI * f64::from(i % SEGMENTS) / f64::from(SEGMENTS);
+        Vector([angle.cos(), angle.sin()])
+    };
+    Shell {
+        vertices: (0..SEGMENTS).map(|i| direction(i) * radius).collect(),
+        elements: (0..SEGMENTS).map(|i| [i, (i + 1) % SEGMENTS]).collect(),
+        normals: Some((0..SEGMENTS).map(|i| [direction(i), direction(i + 1)]).collect()),
+        tags: Vec::new(),
+        tag_names: Vec::new(),
+        exact: Exact::Ball { centre: Vector::ZERO, radius },
+        crease: CREASE,
+    }
+}
+
+/// A sphere about the origin.
+pub(super) fn sphere(radius: f64) -> Shell<3> {
+    icosphere(radius, SUBDIVISIONS)
+}
+
+/// A sphere about the origin from an icosahedron subdivided `subdivisions` times (at most 10): 20·4ⁿ triangles.
+pub fn icosphere(radius: f64, subdivisions: u32) -> Shell<3> {
+    let (mut vertices, mut elements) = icosahedron();
+    for _ in 0..subdivisions.min(MOST_SUBDIVISIONS) {
+        elements = subdivide(&mut vertices, &elements);
+    }
+    Shell {
+        normals: Some(elements.iter().map(|e| e.map(|v| vertices[v as usize])).collect()),
+        vertices: vertices.iter().map(|v| *v * radius).collect(),
+        elements,
+        tags: Vec::new(),
+        tag_names: Vec::new(),
+        exact: Exact::Ball { centre: Vector::ZERO, radius },
+        crease: CREASE,
+    }
+}
+
+/// Unit icosahedron: the corners of three golden rectangles.
+fn icosahedron() -> (Vec<Vector<3>>, Vec<[u32; 3]>) {
+    let golden = 0.5 * (1.0 + 5.0_f64.sqrt());
+    let mut vertices = Vec::new();
+    for axis in 0..3 {
+        for (a, b) in [(1.0, golden), (-1.0, golden), (1.0, -golden), (-1.0, -golden)] {
+            let mut v = Vector::ZERO;
+            v[axis] = a;
+            v[(axis + 1) % 3] = b;
+            vertices.push(v.unit());
+        }
+    }
+    let edge = 2.0 / (1.0 + golden * golden).sqrt();
+    let adjacent = |a: usize, b: usize| ((vertices[a] - vertices[b]).norm() - edge).abs() < 0.1;
+    let mut elements = Vec::new();
+    for a in 0..12 {
+        for b in a + 1..12 {
+            for c in (b + 1..12).filter(|&c| adjacent(a, b) && adjacent(b, c) && adjacent(c, a)) {
+                let n = super::simplex::area_vector(&[vertices[a], vertices[b], vertices[c]]);
+                let (b, c) = if n.dot(&vertices[a]) > 0.0 { (b, c) } else { (c, b) };
+                elements.push([a as u32, b as u32, c as u32]);
+            }
+        }
+    }
+    (vertices, elements)
+}
+
+/// Four triangles for each; new vertices lie on the unit sphere.
+fn subdivide(vertices: &mut Vec<Vector<3>>, elements: &[[u32; 3]]) -> Vec<[u32; 3]> {
+    let mut middles: HashMap<(u32, u32), u32> = HashMap::new();
+    let mut middle = |a: u32, b: u32| {
+        *middles.entry((a.min(b), a.max(b))).or_insert_with(|| {
+            vertices.push((vertices[a as usize] + vertices[b as usize]).unit());
+            vertices.len() as u32 - 1
+        })
+    };
+    let mut finer = Vec::with_capacity(4 * elements.len());
+    for &[a, b, c] in elements {
+        let (ab, bc, ca) = (middle(a, b), middle(b, c), middle(c, a));
+        finer.extend([[a, ab, ca], [ab, b, bc], [ca, bc, c], [ab, bc, ca]]);
+    }
+    finer
+}
+
+/// Corners of a rectangle centred on the origin, counter-clockwise.
+pub(super) fn rectangle(size: [f64; 2]) -> Vec<Vector<2>> {
+    let (a, b) = (0.5 * size[0], 0.5 * size[1]);
+    vec![Vector([-a, -b]), Vector([a, -b]), Vector([a, b]), Vector([-a, b])]
+}
+
+/// A box centred on the origin.
+pub(super) fn cuboid(size: [f64; 3]) -> Shell<3> {
+    let corner = |i: u32| Vector::from_fn(|d| size[d] * if i >> d & 1 == 1 { 0.5 } else { -0.5 });
+    let side = |axis: u32| {
+        let (u, v) = (1 << ((axis + 1) % 3), 1 << ((axis + 2) % 3));
+        let high = 1 << axis;
+        [[0, u + v, u], [0, v, u + v], [high, high + u, high + u + v], [high, high + u + v, high + v]]
+    };
+    Shell {
+        vertices: (0..8).map(corner).collect(),
+        elements: (0..3).flat_map(side).collect(),
+        normals: None,
+        tags: Vec::new(),
+        tag_names: Vec::new(),
+        exact: Exact::None,
+        crease: CREASE,
+    }
+}
+
+/// Writes a shell as a binary STL file (single precision, as the format demands).
+pub fn write_stl(out: &mut impl Write, shell: &Shell<3>) -> io::Result<()> {
+    let single = |x: &Vector<3>| stl_io::Vector::new(x.0.map(|c| c as f32));
+    let triangles: Vec<stl_io::Triangle> = shell
+        .all_corners()
+        .iter()
+        .map(|c| stl_io::Triangle {
+            normal: single(&super::simplex::area_vector(c).unit()),
+            vertices: [single(&c[0]), single(&c[1]), single(&c[2])],
+        })
+        .collect();
+    stl_io::write_stl(out, triangles.iter())
+}

@@ -1,0 +1,330 @@
+//! From a soup of triangles to a closed, consistently oriented shell.
+//!
+//! Vertices are welded, degenerate and repeated triangles dropped, needles resolved by splitting the triangle on their
+//! long side, orientation made consistent by a flood across edges with exactly two triangles, and each closed component
+//! turned outward by the sign of its volume. What cannot be mended safely is refused with its place: holes, edges with an
+//! odd number of triangles, one-sided surfaces, self-intersections.
+use super::GeometryError;
+use super::mesh::Soup;
+use super::shell::{Exact, Facet, Shell, facets, root, unite};
+use super::simplex;
+use super::surface::Surface;
+use crate::math::{Bounds, Vector};
+use std::collections::{BTreeMap, HashMap, HashSet};
+use std::f64::consts::PI;
+
+/// Vertices nearer than these fractions of the body's diagonal are one; the second, above the rounding of single
+/// precision, is tried only when the first leaves open edges.
+const WELD: [f64; 2] = [1e-9, 1e-6];
+/// Triangles lower than this fraction of the diagonal are needles.
+const NEEDLE: f64 = 1e-9;
+/// Holes smaller than this fraction of the diagonal are left to the winding number.
+const GAP: f64 = 1e-3;
+/// Turning angle of sharp edges, radians (40°).
+const CREASE: f64 = 40.0 * PI / 180.0;
+/// Rounds of needle removal; each resolves every needle that does not touch another.
+const ROUNDS: usize = 16;
+
+/// Makes a shell of the triangles of `file`; what was mended is appended to `notes`.
+pub(super) fn shell(file: &str, soup: &Soup, notes: &mut Vec<String>) -> Result<Shell<3>, GeometryError> {
+    let mut shell = weld(file, soup, notes)?;
+    split_needles(file, &mut shell, notes);
+    orient(file, &mut shell, notes)?;
+    check_edges(file, &shell, notes)?;
+    match Surface::new(&[(String::new(), shell.clone())]).intersection() {
+        None => Ok(shell),
+        Some((x, [e, f])) => {
+            let part = |e: u32| shell.tags.get(e as usize).and_then(|&t| shell.tag_names.get(usize::from(t)));
+            let parts = match (part(e), part(f)) {
+                (Some(a), Some(b)) if a != b => format!("parts `{a}` and `{b}` intersect"),
+                _ => "the surface crosses itself".to_string(),
+            };
+            let hint = "unite overlapping parts before the export";
+            Err(GeometryError::refused(file, format!("{parts} at {}", at(&x)), hint))
+        }
+    }
+}
+
+/// Welds with the smallest tolerance that closes the surface.
+fn weld(file: &str, soup: &Soup, notes: &mut Vec<String>) -> Result<Shell<3>, GeometryError> {
+    let size = Bounds::around(soup.triangles.iter().flatten()).extent().norm();
+    if !(size > 0.0) || soup.triangles.len() > u32::MAX as usize / 3 {
+        let what = format!("{} triangles of extent {size} are no surface", soup.triangles.len());
+        return Err(GeometryError::refused(file, what, "check the export"));
+    }
+    let open = |shell: &Shell<3>| runs(&facets(&shell.elements)).filter(|run| run.len() == 1).count();
+    let mut mended = Vec::new();
+    let mut best = welded(soup, WELD[0] * size, file, &mut mended);
+    let gaps = open(&best);
+    if gaps > 0 {
+        let mut wider = Vec::new();
+        let second = welded(soup, WELD[1] * size, file, &mut wider);
+        if open(&second) < gaps {
+            wider.push(format!(
+                "{file}: vertices up to {:.1e} apart are joined to close {gaps} open edges",
+                WELD[1] * size
+            ));
+            (best, mended) = (second, wider);
+        }
+    }
+    notes.append(&mut mended);
+    if best.elements.is_empty() {
+        return Err(GeometryError::refused(file, "all triangles are degenerate", "check the export"));
+    }
+    Ok(best)
+}
+
+/// Shell with vertices nearer than `tolerance` joined, without degenerate and repeated triangles.
+fn welded(soup: &Soup, tolerance: f64, file: &str, notes: &mut Vec<String>) -> Shell<3> {
+    let mut welder = Welder { cell: 4.0 * tolerance, tolerance, cells: HashMap::new(), vertices: Vec::new() };
+    let (mut elements, mut tags) = (Vec::new(), Vec::new());
+    let mut seen: HashSet<[u32; 3]> = HashSet::with_capacity(soup.triangles.len());
+    let (mut degenerate, mut repeated) = (0, 0);
+    for (triangle, &tag) in soup.triangles.iter().zip(&soup.tags) {
+        let element = triangle.map(|x| welder.vertex(&x));
+        let mut key = element;
+        key.sort_unstable();
+        if key[0] == key[1] || key[1] == key[2] {
+            degenerate += 1;
+        } else if !seen.insert(key) {
+            repeated += 1;
+        } else {
+            elements.push(element);
+            tags.push(tag);
+        }
+    }
+    for (count, kind) in [(degenerate, "degenerate"), (repeated, "repeated")] {
+        if count > 0 {
+            notes.push(format!("{file}: {count} {kind} triangles are left out"));
+        }
+    }
+    Shell {
+        vertices: welder.vertices,
+        elements,
+        normals: None,
+        tags,
+        tag_names: soup.names.clone(),
+        exact: Exact::None,
+        crease: CREASE,
+    }
+}
+
+/// Joins near points with a hashed grid of cells four tolerances wide: a ball of one tolerance meets few cells.
+struct Welder {
+    cell: f64,
+    tolerance: f64,
+    cells: HashMap<[i64; 3], Vec<u32>>,
+    vertices: Vec<Vector<3>>,
+}
+
+impl Welder {
+    fn key(&self, x: &Vector<3>, shift: &Vector<3>) -> [i64; 3] {
+        std::array::from_fn(|d| ((x[d] + shift[d]) / self.cell).floor() as i64)
+    }
+
+    fn vertex(&mut self, x: &Vector<3>) -> u32 {
+        let home = self.key(x, &Vector::ZERO);
+        for corner in 0..8_u32 {
+            let shift = Vector::from_fn(|d| if corner >> d & 1 == 1 { self.tolerance } else { -self.tolerance });
+            let key = self.key(x, &shift);
+            let near = |v: &&u32| (self.vertices[**v as usize] - *x).norm() <= self.tolerance;
+            if let Some(&v) = self.cells.get(&key).and_then(|cell| cell.iter().find(near)) {
+                return v;
+            }
+            if corner == 0 && key == home && self.key(x, &Vector::splat(self.tolerance)) == home {
+                break;
+            }
+        }
+        let v = self.vertices.len() as u32;
+        self.vertices.push(*x);
+        self.cells.entry(home).or_default().push(v);
+        v
+    }
+}
+
+/// A needle a-b-c with b on the side a-c opens a crack when dropped; instead the triangle beyond a-c is split at b.
+fn split_needles(file: &str, shell: &mut Shell<3>, notes: &mut Vec<String>) {
+    let size = Bounds::around(&shell.vertices).extent().norm();
+    let mut resolved = 0;
+    for _ in 0..ROUNDS {
+        let before = shell.elements.len();
+        let dropped = split_needles_once(shell, NEEDLE * size);
+        resolved += dropped.len();
+        if dropped.is_empty() {
+            break;
+        }
+        let keep: Vec<bool> =
+            (0..shell.elements.len()).map(|e| e >= before || !dropped.contains(&(e as u32))).collect();
+        let (mut e, mut t) = (keep.iter(), keep.iter());
+        shell.elements.retain(|_| *e.next().unwrap_or(&true));
+        shell.tags.retain(|_| *t.next().unwrap_or(&true));
+    }
+    if resolved > 0 {
+        notes.push(format!("{file}: {resolved} needle triangles are merged into their neighbours"));
+    }
+}
+
+/// Splits the neighbours of needles that touch no other change of this round; gives the needles to drop.
+fn split_needles_once(shell: &mut Shell<3>, height: f64) -> HashSet<u32> {
+    let needles: Vec<(u32, usize)> =
+        (0..shell.elements.len()).filter_map(|e| Some((e as u32, needle_tip(&shell.corners(e), height)?))).collect();
+    let (mut dropped, mut touched) = (HashSet::new(), HashSet::new());
+    if needles.is_empty() {
+        return dropped;
+    }
+    let all = facets(&shell.elements);
+    for (e, tip) in needles {
+        let [v, w] = [1, 2].map(|k| shell.elements[e as usize][(tip + k) % 3]);
+        let edge = [v.min(w), v.max(w)];
+        let first = all.partition_point(|f| f.vertices < edge);
+        let across: Vec<&Facet> =
+            all[first..].iter().take_while(|f| f.vertices == edge).filter(|f| f.element != e).collect();
+        let [other] = across[..] else { continue };
+        if touched.contains(&e) || touched.contains(&other.element) {
+            continue;
+        }
+        touched.extend([e, other.element]);
+        let old = shell.elements[other.element as usize];
+        let b = shell.elements[e as usize][tip];
+        let (mut first_half, mut second_half) = (old, old);
+        first_half[(other.opposite + 1) % 3] = b;
+        second_half[(other.opposite + 2) % 3] = b;
+        if old.contains(&b) {
+            // Both triangles fold onto the same three vertices: they enclose nothing.
+            dropped.insert(other.element);
+        } else {
+            shell.elements[other.element as usize] = first_half;
+            shell.elements.push(second_half);
+            let tag = shell.tags[other.element as usize];
+            shell.tags.push(tag);
+        }
+        dropped.insert(e);
+    }
+    dropped
+}
+
+/// Corner opposite the longest side when the triangle is lower than `height` over it.
+fn needle_tip(c: &[Vector<3>; 3], height: f64) -> Option<usize> {
+    let side = |k: usize| (c[(k + 2) % 3] - c[(k + 1) % 3]).norm();
+    let tip = (0..3).fold(0, |a, k| if side(k) > side(a) { k } else { a });
+    (2.0 * simplex::area_vector(c).norm() <= height * side(tip)).then_some(tip)
+}
+
+/// Consistent orientation within components, outward by the sign of their volume.
+fn orient(file: &str, shell: &mut Shell<3>, notes: &mut Vec<String>) -> Result<(), GeometryError> {
+    let n = shell.elements.len();
+    let neighbours = neighbours(shell);
+    let mut component = vec![u32::MAX; n];
+    let mut flipped = vec![false; n];
+    let mut changed = 0;
+    for seed in 0..n {
+        if component[seed] != u32::MAX {
+            continue;
+        }
+        component[seed] = seed as u32;
+        let mut members = vec![seed];
+        let mut next = 0;
+        while let Some(&e) = members.get(next) {
+            next += 1;
+            for &(f, same) in &neighbours[e] {
+                if component[f] == u32::MAX {
+                    component[f] = seed as u32;
+                    flipped[f] = flipped[e] ^ same;
+                    members.push(f);
+                } else if flipped[f] != flipped[e] ^ same {
+                    let what = format!("the surface has one side only near {}", at(&shell.corners(e)[0]));
+                    return Err(GeometryError::refused(file, what, "remove the twisted part"));
+                }
+            }
+        }
+        let outward = volume(shell, &members, &flipped) >= 0.0;
+        for &e in &members {
+            flipped[e] ^= !outward;
+            changed += usize::from(flipped[e]);
+        }
+    }
+    for e in (0..n).filter(|&e| flipped[e]) {
+        shell.elements[e].swap(1, 2);
+    }
+    if changed > 0 {
+        notes.push(format!("{file}: {changed} of {n} triangles are turned to face outward"));
+    }
+    Ok(())
+}
+
+/// For each element those across its edges with two triangles, and whether both run along the edge in the same sense,
+/// which means that one must be turned.
+fn neighbours(shell: &Shell<3>) -> Vec<Vec<(usize, bool)>> {
+    let all = facets(&shell.elements);
+    let mut neighbours = vec![Vec::new(); shell.elements.len()];
+    for run in runs(&all).filter(|run| run.len() == 2) {
+        let forward = |f: &Facet| shell.elements[f.element as usize][(f.opposite + 1) % 3] == f.vertices[0];
+        let same = forward(&run[0]) == forward(&run[1]);
+        let (e, f) = (run[0].element as usize, run[1].element as usize);
+        neighbours[e].push((f, same));
+        neighbours[f].push((e, same));
+    }
+    neighbours
+}
+
+/// Signed volume of a component about its first corner.
+fn volume(shell: &Shell<3>, members: &[usize], flipped: &[bool]) -> f64 {
+    let origin = shell.corners(members[0])[0];
+    let flux = |e: usize| {
+        let c = shell.corners(e);
+        let value = (c[0] - origin).dot(&simplex::area_vector(&c));
+        if flipped[e] { -value } else { value }
+    };
+    members.iter().map(|&e| flux(e)).sum()
+}
+
+/// Refuses edges with an odd number of triangles unless they border tiny holes.
+fn check_edges(file: &str, shell: &Shell<3>, notes: &mut Vec<String>) -> Result<(), GeometryError> {
+    let all = facets(&shell.elements);
+    let middle = |f: &Facet| (shell.vertices[f.vertices[0] as usize] + shell.vertices[f.vertices[1] as usize]) * 0.5;
+    let crowded: Vec<&[Facet]> = runs(&all).filter(|run| run.len() > 2).collect();
+    if let Some(odd) = crowded.iter().find(|run| run.len() % 2 == 1) {
+        let what = format!("{} triangles meet at the edge near {}", odd.len(), at(&middle(&odd[0])));
+        return Err(GeometryError::refused(file, what, "remove inner walls and fins without thickness"));
+    }
+    if let Some(run) = crowded.first() {
+        let place = at(&middle(&run[0]));
+        notes.push(format!("{file}: closed parts touch along {} edges, the first near {place}", crowded.len()));
+    }
+    let open: Vec<Facet> = runs(&all).filter(|run| run.len() == 1).map(|run| run[0]).collect();
+    if open.is_empty() {
+        return Ok(());
+    }
+    let holes = holes(shell, &open);
+    let size = Bounds::around(&shell.vertices).extent().norm();
+    let places: Vec<String> = holes.iter().take(3).map(|h| at(&h.centre())).collect();
+    let what = format!("{} open edges in {} holes, the first near {}", open.len(), holes.len(), places.join(", "));
+    if holes.iter().any(|h| h.extent().norm() > GAP * size) {
+        return Err(GeometryError::refused(file, what, "close the surface; it must bound a volume"));
+    }
+    notes.push(format!("{file}: {what}; all are tiny and count as closed"));
+    Ok(())
+}
+
+/// Boxes around the groups of connected open edges, largest first.
+fn holes(shell: &Shell<3>, open: &[Facet]) -> Vec<Bounds<3>> {
+    let mut group: Vec<u32> = (0..shell.vertices.len() as u32).collect();
+    open.iter().for_each(|f| unite(&mut group, f.vertices[0], f.vertices[1]));
+    let mut boxes: BTreeMap<u32, Bounds<3>> = BTreeMap::new();
+    for v in open.iter().flat_map(|f| f.vertices) {
+        let entry = boxes.entry(root(&mut group, v)).or_insert(Bounds::EMPTY);
+        *entry = entry.grown(&shell.vertices[v as usize]);
+    }
+    let mut boxes: Vec<Bounds<3>> = boxes.into_values().collect();
+    boxes.sort_by(|a, b| b.extent().norm().total_cmp(&a.extent().norm()));
+    boxes
+}
+
+/// Groups of facets with the same vertices.
+fn runs(facets: &[Facet]) -> impl Iterator<Item = &[Facet]> {
+    facets.chunk_by(|a, b| a.vertices == b.vertices)
+}
+
+fn at(x: &Vector<3>) -> String {
+    format!("({:.6}, {:.6}, {:.6})", x[0], x[1], x[2])
+}

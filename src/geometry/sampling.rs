@@ -1,0 +1,117 @@
+//! Walking over a surface: what the cloud needs to know where to be fine and where interface particles go.
+use super::surface::{Element, Surface};
+use crate::math::Vector;
+
+/// A smooth piece of outline: elements in order, each starting where the one before ends.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Chain {
+    /// Elements.
+    pub elements: Vec<u32>,
+    /// True when the last element leads back to the first without a sharp corner.
+    pub closed: bool,
+}
+
+impl<const D: usize> Surface<D> {
+    /// One element.
+    pub fn element(&self, element: u32) -> &Element<D> {
+        &self.elements[element as usize]
+    }
+
+    /// The outlines of a 2-D surface cut at sharp corners; empty in 3-D.
+    pub fn chains(&self) -> Vec<Chain> {
+        if D != 2 {
+            return Vec::new();
+        }
+        let n = self.elements.len();
+        let mut starts_at = vec![u32::MAX; self.vertices.len()];
+        self.elements.iter().zip(0u32..).for_each(|(e, k)| starts_at[e.vertices[0] as usize] = k);
+        let follower = |e: u32| starts_at[self.elements[e as usize].vertices[D - 1] as usize];
+        let mut sharp = vec![false; n];
+        self.sharp.iter().for_each(|c| sharp[self.after_corner(&c.elements) as usize] = true);
+        let mut used = vec![false; n];
+        let mut chains = Vec::new();
+        let heads = (0..n as u32).filter(|e| sharp[*e as usize]);
+        for head in heads.chain(0..n as u32).collect::<Vec<_>>() {
+            let mut elements = Vec::new();
+            let mut e = head;
+            while e != u32::MAX && !used[e as usize] && (elements.is_empty() || !sharp[e as usize]) {
+                used[e as usize] = true;
+                elements.push(e);
+                e = follower(e);
+            }
+            if !elements.is_empty() {
+                chains.push(Chain { closed: e == head && !sharp[head as usize], elements });
+            }
+        }
+        chains
+    }
+
+    /// Of the two elements at a corner the one that starts there.
+    fn after_corner(&self, pair: &[u32; 2]) -> u32 {
+        let [a, b] = *pair;
+        let (first, second) = (&self.elements[a as usize].vertices, &self.elements[b as usize].vertices);
+        if first[D - 1] == second[0] { b } else { a }
+    }
+
+    /// Calls `f(x, radius of curvature)` at points of the surface no farther apart than about `size`.
+    pub fn for_each_sample(&self, size: f64, mut f: impl FnMut(&Vector<D>, f64)) {
+        for e in 0..self.elements.len() as u32 {
+            let radius = self.radius[e as usize];
+            self.subdivide(e, &|_| size, &mut |x, _, _| f(x, radius));
+        }
+    }
+
+    /// Calls `f(x)` along edges that turn by more than `angle` radians, at most `spacing` apart.
+    pub fn for_each_sharp_point(&self, angle: f64, spacing: f64, mut f: impl FnMut(&Vector<D>)) {
+        for edge in self.sharp.iter().filter(|e| e.turn.abs() > angle) {
+            let along = edge.ends[1] - edge.ends[0];
+            let n = (along.norm() / spacing).ceil().max(1.0) as usize;
+            (0..=n).for_each(|k| f(&(edge.ends[0] + along * (k as f64 / n as f64))));
+        }
+    }
+
+    /// Calls `f(x, normal, area vector, element)` for pieces of the surface no larger than `size(x)`.
+    pub fn for_each_piece(
+        &self, size: impl Fn(&Vector<D>) -> f64, mut f: impl FnMut(&Vector<D>, &Vector<D>, &Vector<D>, u32),
+    ) {
+        for e in 0..self.elements.len() as u32 {
+            self.subdivide(e, &size, &mut |x, normal, area| f(x, normal, area, e));
+        }
+    }
+
+    /// Cuts an element in halves across its longest side until it is small enough; points lie on the shape itself.
+    fn subdivide(
+        &self, e: u32, size: &dyn Fn(&Vector<D>) -> f64, f: &mut dyn FnMut(&Vector<D>, &Vector<D>, &Vector<D>),
+    ) {
+        let corners = self.corners(e);
+        let whole = self.element_area_vector(e);
+        let identity: [[f64; D]; D] = std::array::from_fn(|r| std::array::from_fn(|c| if r == c { 1.0 } else { 0.0 }));
+        let mut stack = vec![(identity, 1.0)];
+        while let Some((w, share)) = stack.pop() {
+            let at = |w: &[f64; D]| (0..D).fold(Vector::ZERO, |x, k| x + corners[k] * w[k]);
+            let middle: [f64; D] = std::array::from_fn(|c| (0..D).map(|r| w[r][c]).sum::<f64>() / D as f64);
+            let mut longest = (0, 1, 0.0);
+            for a in 0..D {
+                for b in a + 1..D {
+                    let l = (at(&w[a]) - at(&w[b])).norm();
+                    if l > longest.2 {
+                        longest = (a, b, l);
+                    }
+                }
+            }
+            if longest.2 > size(&at(&middle)) {
+                let half: [f64; D] = std::array::from_fn(|c| 0.5 * (w[longest.0][c] + w[longest.1][c]));
+                for replaced in [longest.0, longest.1] {
+                    let mut child = w;
+                    child[replaced] = half;
+                    stack.push((child, 0.5 * share));
+                }
+                continue;
+            }
+            let (point, normal) = self.element_point(e, &middle);
+            let nearest = super::surface::Nearest { point, normal, distance: 0.0, element: e, weights: middle };
+            let shape = self.project(&nearest);
+            f(&shape.point, &shape.normal, &(whole * share));
+        }
+    }
+}

@@ -1,0 +1,224 @@
+//! The discretised surface of all bodies: what the cloud of particles is built around.
+//!
+//! A surface consists of segments (2-D) or triangles (3-D) with outward unit normals at their corners. It answers four
+//! questions quickly: which point is nearest, does a segment cross the surface, is a point inside a body, and what are the
+//! exact place, normal and curvature at a point.
+//!
+//! Inside means that the generalised winding number exceeds one half (Jacobson, Kavan, Sorkine-Hornung 2013), which also
+//! holds for surfaces with gaps. Area and volume follow from the area vectors: V = Σ x·A / D.
+use super::shell::{Edge, Exact, Shell};
+use super::simplex;
+use super::tree::Tree;
+use crate::math::{Bounds, Vector};
+
+/// One segment (2-D) or triangle (3-D).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Element<const D: usize> {
+    /// Vertex indices, counter-clockwise seen from the fluid (2-D: along a counter-clockwise outline).
+    pub vertices: [u32; D],
+    /// Outward unit normals at the corners: continuous across smooth facets, different on both sides of a crease.
+    pub normals: [Vector<D>; D],
+    /// Index into [`Surface::bodies`].
+    pub body: u16,
+    /// Index into [`Surface::tags`].
+    pub tag: u16,
+}
+
+/// The point of the surface nearest to a query point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Nearest<const D: usize> {
+    /// Nearest point of the element.
+    pub point: Vector<D>,
+    /// Interpolated outward unit normal.
+    pub normal: Vector<D>,
+    /// Distance from the query point.
+    pub distance: f64,
+    /// Element.
+    pub element: u32,
+    /// Barycentric weights of `point` in the element.
+    pub weights: [f64; D],
+}
+
+/// A point of the shape that the elements stand for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Projection<const D: usize> {
+    /// Point.
+    pub point: Vector<D>,
+    /// Outward unit normal.
+    pub normal: Vector<D>,
+    /// Normal curvature of largest magnitude, positive where the body is convex; zero on a flat wall.
+    pub curvature: f64,
+}
+
+/// The surface of all bodies of a case.
+#[derive(Clone, Debug)]
+pub struct Surface<const D: usize> {
+    /// Vertices.
+    pub vertices: Vec<Vector<D>>,
+    /// Elements, grouped by body.
+    pub elements: Vec<Element<D>>,
+    /// Names of the bodies.
+    pub bodies: Vec<String>,
+    /// Names of tagged parts; a body without parts is its own tag.
+    pub tags: Vec<String>,
+    /// Smallest radius of curvature of every element, infinite where flat.
+    pub radius: Vec<f64>,
+    /// Signed curvature of largest magnitude of every element, positive where the body is convex.
+    pub curvature: Vec<f64>,
+    /// Sharp edges: corners in 2-D, crease segments in 3-D.
+    pub sharp: Vec<Edge<D>>,
+    /// Exact shape of every body where known.
+    pub exact: Vec<Exact<D>>,
+    tree: Tree<D>,
+    bounds: Bounds<D>,
+}
+
+impl<const D: usize> Surface<D> {
+    /// Joins the named shells of all bodies.
+    pub fn new(shells: &[(String, Shell<D>)]) -> Self {
+        let mut surface = Self {
+            vertices: Vec::new(),
+            elements: Vec::new(),
+            bodies: Vec::new(),
+            tags: Vec::new(),
+            radius: Vec::new(),
+            curvature: Vec::new(),
+            sharp: Vec::new(),
+            exact: Vec::new(),
+            tree: Tree::new(&[]),
+            bounds: Bounds::EMPTY,
+        };
+        for (name, shell) in shells {
+            surface.add(name, shell);
+        }
+        let corners: Vec<_> = (0..surface.elements.len()).map(|e| surface.corners(e as u32)).collect();
+        surface.tree = Tree::new(&corners);
+        surface.bounds = corners.iter().fold(Bounds::EMPTY, |b: Bounds<D>, c| b.union(&simplex::bounds(c)));
+        surface.radius = surface.curvature.iter().map(|k| 1.0 / k.abs()).collect();
+        surface
+    }
+
+    fn add(&mut self, name: &str, shell: &Shell<D>) {
+        let (vertex, element, body) =
+            (self.vertices.len() as u32, self.elements.len() as u32, self.bodies.len() as u16);
+        let features = shell.features();
+        let names = if shell.tag_names.is_empty() { vec![name.to_string()] } else { shell.tag_names.clone() };
+        let tags: Vec<u16> = names.iter().map(|n| self.tag(n)).collect();
+        self.vertices.extend(&shell.vertices);
+        self.elements.extend(shell.elements.iter().enumerate().map(|(e, vertices)| Element {
+            vertices: vertices.map(|v| v + vertex),
+            normals: features.normals[e],
+            body,
+            tag: tags[shell.tags.get(e).map_or(0, |&t| usize::from(t)).min(tags.len() - 1)],
+        }));
+        self.sharp.extend(features.edges.iter().map(|edge| Edge {
+            elements: edge.elements.map(|e| e + element),
+            body,
+            ..*edge
+        }));
+        self.curvature.extend(features.curvature);
+        self.exact.push(shell.exact);
+        self.bodies.push(name.to_string());
+    }
+
+    fn tag(&mut self, name: &str) -> u16 {
+        let found = self.tags.iter().position(|t| t == name).unwrap_or_else(|| {
+            self.tags.push(name.to_string());
+            self.tags.len() - 1
+        });
+        found.min(usize::from(u16::MAX)) as u16
+    }
+
+    /// Corner points of an element.
+    pub fn corners(&self, element: u32) -> [Vector<D>; D] {
+        self.elements[element as usize].vertices.map(|v| self.vertices[v as usize])
+    }
+
+    /// The point of the surface nearest to `x`, if it is nearer than `within`.
+    pub fn nearest(&self, x: &Vector<D>, within: f64) -> Option<Nearest<D>> {
+        let hit = self.tree.nearest(x, within)?;
+        let (point, normal) = self.element_point(hit.element, &hit.weights);
+        let distance = hit.distance_squared.sqrt();
+        Some(Nearest { point, normal, distance, element: hit.element, weights: hit.weights })
+    }
+
+    /// True when the open segment from `a` to `b` crosses an element. End points on the surface (within 1e-9 of the
+    /// segment's length) do not count: a chord through a body between two points of its wall crosses nothing.
+    pub fn crosses(&self, a: &Vector<D>, b: &Vector<D>) -> bool {
+        self.tree.crosses(a, b)
+    }
+
+    /// True when `x` lies inside a body; reliable for surfaces with small gaps too.
+    pub fn inside(&self, x: &Vector<D>) -> bool {
+        self.bounds.contains(x) && self.winding(x) > 0.5
+    }
+
+    /// Generalised winding number: near 1 inside, near 0 outside.
+    pub fn winding(&self, x: &Vector<D>) -> f64 {
+        self.tree.winding(x)
+    }
+
+    /// Smallest box around all elements.
+    pub fn bounds(&self) -> Bounds<D> {
+        self.bounds
+    }
+
+    /// Total area (2-D: length of the outlines).
+    pub fn area(&self) -> f64 {
+        (0..self.elements.len()).map(|e| self.element_area_vector(e as u32).norm()).sum()
+    }
+
+    /// Enclosed volume (2-D: area).
+    pub fn volume(&self) -> f64 {
+        let centre = self.bounds.centre();
+        let flux = |e: u32| (simplex::centroid(&self.corners(e)) - centre).dot(&self.element_area_vector(e));
+        (0..self.elements.len()).map(|e| flux(e as u32)).sum::<f64>() / D as f64
+    }
+
+    /// Outward normal times area (2-D: length) of an element.
+    pub fn element_area_vector(&self, element: u32) -> Vector<D> {
+        simplex::area_vector(&self.corners(element))
+    }
+
+    /// Point of an element with barycentric `weights` and the interpolated outward unit normal there.
+    pub fn element_point(&self, element: u32, weights: &[f64; D]) -> (Vector<D>, Vector<D>) {
+        let normal = simplex::blend(&self.elements[element as usize].normals, weights).unit();
+        (simplex::blend(&self.corners(element), weights), normal)
+    }
+
+    /// Point, normal and curvature of the shape behind the elements: exact on circles and spheres, elsewhere on the cubic
+    /// patch through the corners of the element with their normals (in 2-D fourth-order accurate along the outline).
+    pub fn project(&self, nearest: &Nearest<D>) -> Projection<D> {
+        let element = &self.elements[nearest.element as usize];
+        if let Exact::Ball { centre, radius } = self.exact[usize::from(element.body)] {
+            let normal = (nearest.point - centre).unit();
+            return Projection { point: centre + normal * radius, normal, curvature: 1.0 / radius };
+        }
+        Projection {
+            point: simplex::curved_point(&self.corners(nearest.element), &element.normals, &nearest.weights),
+            normal: nearest.normal,
+            curvature: self.curvature[nearest.element as usize],
+        }
+    }
+
+    /// First place where elements without a common vertex intersect, with both elements: a self-intersection of a body,
+    /// or an overlap of two.
+    pub fn intersection(&self) -> Option<(Vector<D>, [u32; 2])> {
+        (0..self.elements.len() as u32).find_map(|e| {
+            let corners = self.corners(e);
+            let mut found = None;
+            self.tree.overlapping(&simplex::bounds(&corners), |f, other| {
+                if f > e && !self.neighbours(e, f) {
+                    found = simplex::intersection(&corners, other).map(|x| (x, [e, f]));
+                }
+                found.is_some()
+            });
+            found
+        })
+    }
+
+    fn neighbours(&self, e: u32, f: u32) -> bool {
+        let other = &self.elements[f as usize].vertices;
+        self.elements[e as usize].vertices.iter().any(|v| other.contains(v))
+    }
+}
