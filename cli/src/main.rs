@@ -1,2 +1,17 @@
-//! The `alula` command.
-fn main() {}
+//! The `alula` command: arguments in, exit codes out. It owns all printing; the computing is in the library.
+use std::process::ExitCode;
+
+use clap::Parser;
+
+mod arguments;
+mod commands;
+#[allow(dead_code, reason = "interface of the run loop")]
+mod interrupt;
+mod outcome;
+mod output;
+#[allow(dead_code, reason = "interface of the run loop")]
+mod progress;
+
+fn main() -> ExitCode {
+    commands::dispatch(arguments::Cli::parse()).into()
+}

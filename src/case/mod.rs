@@ -1,19 +1,37 @@
 //! The case: plain data that says what to compute. It knows no solver type.
 //!
-//! A case file is TOML. [`Case`] is its resolved form: every default filled in, every quantity in base units. Angles are
+//! A case file is TOML; [`read()`] tells all its mistakes at once, [`write()`] is its inverse. [`Case`] is its resolved form: every default filled in, every quantity in base units. Angles are
 //! radians, lengths are in the unit of the geometry (metres when the free stream is dimensional).
 use serde::{Deserialize, Serialize};
 
+mod check;
+mod draft;
+mod error;
+mod flow;
+mod keys;
 pub mod quantity;
+mod read;
+mod reference;
+mod schema;
+mod templates;
+#[cfg(test)]
+mod tests;
+mod write;
 
+pub use error::{CaseError, CaseErrors};
+pub use flow::FreeStreamScales;
 pub use quantity::{Angle, Density, Length, Pressure, Temperature, Time, Velocity};
+pub use read::read;
+pub use reference::{reference_markdown, schema};
+pub use templates::{TEMPLATES, template};
+pub use write::write;
 
 /// Everything a run needs to know.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Case {
     /// One line that names the case in reports.
     pub title: String,
-    /// Number of space dimensions, 2 or 3; taken from the bodies when absent.
+    /// Number of space dimensions, 2 or 3; taken from the bodies or the domain when absent: [`read()`] always fills it in.
     pub dimension: Option<u8>,
     /// Free stream.
     pub flow: Flow,
@@ -49,7 +67,7 @@ pub struct Case {
 }
 
 /// Free stream: either `mach` alone (nondimensional: density 1, sound speed 1) or dimensional values.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Flow {
     /// Mach number.
     pub mach: Option<f64>,
@@ -63,7 +81,7 @@ pub struct Flow {
     pub density: Option<Density>,
     /// Specific gas constant, J/(kg K), 287.05 for air.
     pub gas_constant: f64,
-    /// Ratio of specific heats.
+    /// Ratio of specific heats, 1.4 for air.
     pub gamma: f64,
     /// Angle of attack, nose up positive: the flow turns from +x towards +y in 2-D, towards +z in 3-D.
     #[serde(default)]
@@ -74,9 +92,9 @@ pub struct Flow {
 }
 
 /// One solid body: exactly one shape key, then placement.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Body {
-    /// Name used in tables of loads; `body-1`, `body-2`, … when absent.
+    /// Name used in tables of loads; [`read()`] fills in `body-1`, `body-2`, … when absent.
     pub name: Option<String>,
     /// Geometry.
     #[serde(flatten)]
@@ -87,7 +105,7 @@ pub struct Body {
 }
 
 /// What a body is made of. In the file this is one key of the body table.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Shape {
     /// Four digits of a NACA section, `naca = "0012"`, or a table with `digits` and `trailing_edge`.
@@ -116,7 +134,7 @@ pub enum Shape {
 }
 
 /// A NACA 4-digit section.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Naca {
     /// Four digits.
     pub digits: String,
@@ -137,18 +155,19 @@ pub enum TrailingEdge {
 }
 
 /// Placement of a body.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Placement {
     /// Factor on every coordinate of the shape; the chord of an airfoil of unit chord.
     pub scale: f64,
-    /// Rotation: one angle in 2-D (nose up positive about the origin of the shape), three in 3-D (about x, y, z).
+    /// Rotation: one angle in 2-D (nose up positive about the origin of the shape), three in 3-D (about x, y, z); empty:
+    /// none.
     pub rotate: Vec<Angle>,
-    /// Translation after scaling and rotation.
+    /// Translation after scaling and rotation; empty: none.
     pub translate: Vec<Length>,
 }
 
 /// Reference quantities of the coefficients.
-#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Reference {
     /// Length of the moment coefficient (and of CL, CD in 2-D); default: extent of the bodies along x.
     pub chord: Option<Length>,
@@ -159,7 +178,7 @@ pub struct Reference {
 }
 
 /// How particles fill the domain.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Cloud {
     /// Particle spacing at the surface; of the whole domain when there is no body.
     pub spacing: Length,
@@ -167,31 +186,32 @@ pub struct Cloud {
     pub far_field: Option<Length>,
     /// Explicit domain; its sides must be whole numbers of `coarse` cells.
     pub domain: Option<Domain>,
-    /// Particles per level of refinement, counted away from the surface.
+    /// Particles per level of refinement, counted away from the surface; default 6.
     pub layers: f64,
-    /// Extra levels of refinement at sharp edges.
+    /// Extra levels of refinement at sharp edges; default 2.
     pub edge_levels: u32,
-    /// Spacing is at most this fraction of the local radius of curvature (never finer than `curvature_levels`).
+    /// Spacing is at most this fraction of the local radius of curvature (never finer than `curvature_levels`);
+    /// default 0.25.
     pub curvature: f64,
-    /// Greatest number of extra levels that curvature may ask for.
+    /// Greatest number of extra levels that curvature may ask for; default 2.
     pub curvature_levels: u32,
     /// Boxes with their own spacing.
     #[serde(default, rename = "box")]
     pub boxes: Vec<RefineBox>,
     /// Refinement behind the bodies along the free stream.
     pub wake: Option<Wake>,
-    /// Body-fitted layers of particles next to the wall (0: none).
+    /// Body-fitted layers of particles next to the wall; default 0 (none).
     pub wall_layers: u32,
-    /// Fluid particles nearer to the wall than this fraction of the local spacing are left out.
+    /// Fluid particles nearer to the wall than this fraction of the local spacing are left out; default 0.4.
     pub blank: f64,
-    /// Radius of the clouds near the wall in local spacings.
+    /// Radius of the clouds near the wall in local spacings; default 1.6.
     pub radius: f64,
-    /// Random displacement of interior particles as a fraction of the local spacing (for tests of robustness).
+    /// Random displacement of interior particles as a fraction of the local spacing (for tests of robustness); default 0.
     pub jitter: f64,
 }
 
 /// An explicit domain.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Domain {
     /// Corner with the smallest coordinates.
     pub min: Vec<Length>,
@@ -200,7 +220,7 @@ pub struct Domain {
 }
 
 /// A box with its own spacing.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RefineBox {
     /// Corner with the smallest coordinates.
     pub min: Vec<Length>,
@@ -211,7 +231,7 @@ pub struct RefineBox {
 }
 
 /// Refinement behind the bodies.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Wake {
     /// Length behind the trailing edge.
     pub length: Length,
@@ -220,7 +240,7 @@ pub struct Wake {
 }
 
 /// Conditions on the sides of the domain.
-#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Sides {
     /// Side of smallest x.
     pub x_min: Side,
@@ -257,7 +277,7 @@ pub enum Side {
 }
 
 /// Field at the start.
-#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Initial {
     /// Free stream everywhere.
@@ -288,7 +308,7 @@ pub enum Initial {
 }
 
 /// Spatial scheme.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Scheme {
     /// Upwind flux.
     pub flux: Flux,
@@ -331,7 +351,7 @@ pub enum Limiter {
 }
 
 /// Steady relaxation or explicit marching.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Temporal {
     /// Relax to a steady state.
@@ -341,7 +361,7 @@ pub enum Temporal {
 }
 
 /// Steady relaxation.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Steady {
     /// Method.
     pub method: SteadyMethod,
@@ -368,7 +388,7 @@ pub enum SteadyMethod {
 }
 
 /// Explicit time marching.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Explicit {
     /// Time at which the run ends.
     pub until: Time,
@@ -391,7 +411,7 @@ pub enum RungeKutta {
 }
 
 /// Refinement that follows the solution.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Adapt {
     /// Number of refinements (0: none).
     pub cycles: u32,
@@ -416,7 +436,7 @@ pub enum Sensor {
 }
 
 /// What is written, and how often.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Output {
     /// Iterations between checkpoints.
     pub checkpoint: u32,
@@ -427,7 +447,7 @@ pub struct Output {
 }
 
 /// A reference curve of Cp against x/c.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Compare {
     /// CSV file with columns `x_c` and `Cp` (`surface` optional), relative to the case file.
     pub file: String,
@@ -437,7 +457,14 @@ pub struct Compare {
 
 impl Default for Scheme {
     fn default() -> Self {
-        Self { flux: Flux::Hllc, order: 2, limiter: Limiter::VanAlbada, limiter_threshold: 0.02, kappa: 0.0, conservative: None }
+        Self {
+            flux: Flux::Hllc,
+            order: 2,
+            limiter: Limiter::VanAlbada,
+            limiter_threshold: 0.02,
+            kappa: 0.0,
+            conservative: None,
+        }
     }
 }
 

@@ -1,9 +1,272 @@
-//! Quantities with units: placeholder, see the case module.
+//! Quantities with units.
+//!
+//! A case file writes `"1.25 deg"` or `"35 kPa"`; everything behind it sees a plain number in base units, because one
+//! conversion at the border is easier to check than factors inside formulas. A value x with unit (a, b) is a·x + b in the
+//! base unit; b differs from zero for temperature scales only. Factors are exact by definition: international yard and
+//! pound agreement (1959) for foot and pound, CGPM (1901) for standard gravity 9.806 65 m/s².
+//!
+//! A plain number means the base unit, except for angles: degrees taken for radians give a wrong but plausible flow, so
+//! an angle needs its unit unless it is zero.
+use std::fmt;
+use std::str::FromStr;
+
 use serde::{Deserialize, Serialize};
-macro_rules! q { ($($n:ident),*) => { $(
-/// A quantity in base units.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(transparent)]
-pub struct $n(pub f64);
-)* } }
-q!(Angle, Density, Length, Pressure, Temperature, Time, Velocity);
+
+/// A unit: its symbol, and what makes `factor * value + offset` a number in the base unit.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Unit {
+    /// How the unit is written.
+    pub symbol: &'static str,
+    /// Size in base units.
+    pub factor: f64,
+    /// Position of the zero of the scale in base units.
+    pub offset: f64,
+}
+
+/// A physical dimension: the units it may be written in, the base unit first.
+#[derive(Debug, PartialEq)]
+pub struct Dimension {
+    /// Name in messages.
+    pub name: &'static str,
+    /// Allowed units, the base unit first.
+    pub units: &'static [Unit],
+    /// A plain number other than zero is refused.
+    pub needs_unit: bool,
+    /// A value to show in messages.
+    pub example: &'static str,
+}
+
+/// Why a text is no quantity.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum QuantityError {
+    /// The text does not begin with a number.
+    #[error("`{text}` does not begin with a number")]
+    Number {
+        /// What was written.
+        text: String,
+    },
+    /// The number is infinite, NaN or too large.
+    #[error("`{text}` is not a finite number")]
+    Infinite {
+        /// What was written.
+        text: String,
+    },
+    /// The unit is unknown.
+    #[error("`{unit}` is no unit of {dimension}; allowed: {allowed}")]
+    Unit {
+        /// What stands behind the number.
+        unit: String,
+        /// What was asked for.
+        dimension: &'static str,
+        /// Units that could have been written.
+        allowed: String,
+    },
+    /// An angle without unit.
+    #[error("{dimension} `{text}` has no unit")]
+    Missing {
+        /// What was written.
+        text: String,
+        /// What was asked for.
+        dimension: &'static str,
+    },
+}
+
+impl Dimension {
+    /// Symbols of the allowed units, `deg, rad, …`.
+    pub fn symbols(&self) -> String {
+        self.units.iter().map(|u| u.symbol).collect::<Vec<_>>().join(", ")
+    }
+
+    /// The unit of the example.
+    pub fn usual(&self) -> &'static str {
+        self.example.rsplit(' ').next().unwrap_or_default()
+    }
+
+    /// Value in base units of `text`, for example `1.25 deg`.
+    pub fn parse(&self, text: &str) -> Result<f64, QuantityError> {
+        let trimmed = text.trim();
+        let (number, symbol) = trimmed.split_at(number_length(trimmed));
+        let value: f64 = number.parse().map_err(|_| QuantityError::Number { text: text.to_owned() })?;
+        if symbol.trim().is_empty() {
+            return self.plain(value);
+        }
+        let unit = self.unit(symbol.trim())?;
+        finite(unit.factor * value + unit.offset, text)
+    }
+
+    /// Value in base units of a plain number.
+    pub fn plain(&self, value: f64) -> Result<f64, QuantityError> {
+        if self.needs_unit && value != 0.0 {
+            let text = value.to_string();
+            return Err(QuantityError::Missing { text, dimension: self.name });
+        }
+        finite(value, &value.to_string())
+    }
+
+    fn unit(&self, symbol: &str) -> Result<&Unit, QuantityError> {
+        self.units.iter().find(|u| u.symbol == symbol).ok_or_else(|| QuantityError::Unit {
+            unit: symbol.to_owned(),
+            dimension: self.name,
+            allowed: self.symbols(),
+        })
+    }
+}
+
+fn finite(value: f64, text: &str) -> Result<f64, QuantityError> {
+    if value.is_finite() { Ok(value) } else { Err(QuantityError::Infinite { text: text.to_owned() }) }
+}
+
+/// Length of the number at the start of `text`; an `e` belongs to it only when digits follow.
+fn number_length(text: &str) -> usize {
+    let bytes = text.as_bytes();
+    let digit = |i: usize| bytes.get(i).is_some_and(u8::is_ascii_digit);
+    let sign = |i: usize| matches!(bytes.get(i), Some(b'+' | b'-'));
+    let mut end = usize::from(sign(0));
+    while digit(end) || bytes.get(end) == Some(&b'.') {
+        end += 1;
+    }
+    if matches!(bytes.get(end), Some(b'e' | b'E')) && (digit(end + 1) || (sign(end + 1) && digit(end + 2))) {
+        end += 2;
+        while digit(end) {
+            end += 1;
+        }
+    }
+    end
+}
+
+const fn unit(symbol: &'static str, factor: f64) -> Unit {
+    Unit { symbol, factor, offset: 0.0 }
+}
+
+/// One degree in radians.
+pub(crate) const DEGREE: f64 = std::f64::consts::PI / 180.0;
+/// One international foot in metres.
+const FOOT: f64 = 0.3048;
+/// One avoirdupois pound in kilograms.
+const POUND: f64 = 0.453_592_37;
+/// Standard gravity in m/s².
+const GRAVITY: f64 = 9.806_65;
+/// 0 degC in kelvin.
+const ICE_POINT: f64 = 273.15;
+/// One degree Rankine in kelvin.
+const RANKINE: f64 = 5.0 / 9.0;
+
+macro_rules! quantities {
+    ($($name:ident, $text:literal, $needs_unit:literal, $example:literal, [$($unit:expr),+ $(,)?];)*) => { $(
+        #[doc = concat!("A quantity: ", $text, " in base units.")]
+        #[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd, Serialize, Deserialize)]
+        #[serde(transparent)]
+        pub struct $name(pub f64);
+
+        impl $name {
+            /// Units this quantity may be written in.
+            pub const DIMENSION: &'static Dimension = &Dimension {
+                name: $text,
+                units: &[$($unit),+],
+                needs_unit: $needs_unit,
+                example: $example,
+            };
+        }
+
+        impl FromStr for $name {
+            type Err = QuantityError;
+
+            fn from_str(text: &str) -> Result<Self, QuantityError> {
+                Self::DIMENSION.parse(text).map(Self)
+            }
+        }
+
+        impl fmt::Display for $name {
+            fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+                write!(f, "{} {}", self.0, Self::DIMENSION.units[0].symbol)
+            }
+        }
+    )* };
+}
+
+quantities! {
+    Angle, "an angle", true, "1.25 deg", [
+        unit("rad", 1.0), unit("deg", DEGREE), unit("°", DEGREE), unit("mrad", 1e-3),
+    ];
+    Length, "a length", false, "0.3 m", [
+        unit("m", 1.0), unit("mm", 1e-3), unit("cm", 1e-2), unit("km", 1e3), unit("um", 1e-6),
+        unit("in", FOOT / 12.0), unit("ft", FOOT),
+    ];
+    Pressure, "a pressure", false, "35 kPa", [
+        unit("Pa", 1.0), unit("hPa", 1e2), unit("kPa", 1e3), unit("MPa", 1e6), unit("mbar", 1e2), unit("bar", 1e5),
+        unit("atm", 101_325.0), unit("psi", POUND * GRAVITY * 144.0 / (FOOT * FOOT)),
+        unit("psf", POUND * GRAVITY / (FOOT * FOOT)),
+    ];
+    Temperature, "a temperature", false, "288.15 K", [
+        unit("K", 1.0), Unit { symbol: "degC", factor: 1.0, offset: ICE_POINT },
+        Unit { symbol: "°C", factor: 1.0, offset: ICE_POINT },
+        Unit { symbol: "degF", factor: RANKINE, offset: ICE_POINT - 32.0 * RANKINE }, unit("degR", RANKINE),
+    ];
+    Density, "a density", false, "1.225 kg/m3", [
+        unit("kg/m3", 1.0), unit("kg/m^3", 1.0), unit("g/cm3", 1e3), unit("lb/ft3", POUND / (FOOT * FOOT * FOOT)),
+        unit("slug/ft3", POUND * GRAVITY / (FOOT * FOOT * FOOT * FOOT)),
+    ];
+    Velocity, "a speed", false, "240 m/s", [
+        unit("m/s", 1.0), unit("km/h", 1.0 / 3.6), unit("km/s", 1e3), unit("ft/s", FOOT),
+        unit("mph", 5280.0 * FOOT / 3600.0), unit("kn", 1852.0 / 3600.0), unit("kt", 1852.0 / 3600.0),
+    ];
+    Time, "a time", false, "20 ms", [
+        unit("s", 1.0), unit("ms", 1e-3), unit("us", 1e-6), unit("min", 60.0), unit("h", 3600.0),
+    ];
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn close(value: f64, expected: f64) {
+        assert!((value - expected).abs() <= 1e-12 * expected.abs(), "{value} is not {expected}");
+    }
+
+    #[test]
+    fn units_become_base_units() {
+        close("1.25 deg".parse::<Angle>().unwrap().0, 1.25_f64.to_radians());
+        close("-3°".parse::<Angle>().unwrap().0, -3.0_f64.to_radians());
+        close("12 ft".parse::<Length>().unwrap().0, 3.6576);
+        close("35kPa".parse::<Pressure>().unwrap().0, 35e3);
+        close("15 degC".parse::<Temperature>().unwrap().0, 288.15);
+        close("59 degF".parse::<Temperature>().unwrap().0, 288.15);
+        close("100 km/h".parse::<Velocity>().unwrap().0, 100.0 / 3.6);
+        close("20 ms".parse::<Time>().unwrap().0, 0.02);
+        close("1e3 m".parse::<Length>().unwrap().0, 1000.0);
+        close("14.695948775513 psi".parse::<Pressure>().unwrap().0, 101_325.0);
+        // sea level of the standard atmosphere (1976) in slug/ft3
+        assert!(("0.0023769 slug/ft3".parse::<Density>().unwrap().0 - 1.225).abs() < 1e-4);
+    }
+
+    #[test]
+    fn plain_numbers_are_base_units_but_angles_need_theirs() {
+        assert_eq!("0.3".parse::<Length>().unwrap().0, 0.3);
+        assert_eq!("0".parse::<Angle>().unwrap().0, 0.0);
+        let error = "1.25".parse::<Angle>().unwrap_err();
+        assert_eq!(error.to_string(), "an angle `1.25` has no unit");
+    }
+
+    #[test]
+    fn wrong_units_list_the_allowed_ones() {
+        let error = "20 minutes".parse::<Time>().unwrap_err();
+        assert_eq!(error.to_string(), "`minutes` is no unit of a time; allowed: s, ms, us, min, h");
+        assert!("fast".parse::<Velocity>().is_err());
+        assert!("1e999 m".parse::<Length>().is_err());
+        assert!("".parse::<Length>().is_err());
+    }
+
+    proptest! {
+        #[test]
+        fn any_text_is_refused_without_panic(text in "\\PC{0,12}") {
+            let _ = text.parse::<Length>();
+            let _ = text.parse::<Angle>();
+        }
+
+        #[test]
+        fn numbers_survive(value in proptest::num::f64::NORMAL) {
+            prop_assert_eq!(format!("{value:?} m").parse::<Length>().unwrap().0, value);
+        }
+    }
+}

@@ -1,0 +1,190 @@
+//! What can be typed.
+use std::num::NonZeroUsize;
+use std::path::PathBuf;
+
+use alula::case::TEMPLATES;
+use clap::builder::{PossibleValue, PossibleValuesParser};
+use clap::{Args, Parser, Subcommand};
+use clap_complete::Shell;
+
+const EXIT_CODES: &str = "\
+Exit codes:
+    0  done
+    1  the run failed, diverged or did not converge
+    2  wrong arguments, case or files
+  130  interrupted; the last checkpoint is kept
+
+Signals during a run:
+  Ctrl-C, SIGTERM  finish the iteration, write a checkpoint, stop; a second one stops at once
+  SIGUSR1          write a checkpoint and go on";
+
+/// Aeroelastic loads from a surface file, without a mesh.
+#[derive(Debug, Parser)]
+#[command(name = "alula", version, about, after_help = EXIT_CODES, arg_required_else_help = true)]
+pub(crate) struct Cli {
+    #[command(subcommand)]
+    pub(crate) command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Compute a case and write fields, loads and a report.
+    #[command(after_help = EXIT_CODES)]
+    Run(Run),
+    /// Write a commented case file to start from.
+    New(New),
+    /// Read a case file and tell all its mistakes at once.
+    Check(Check),
+    /// Fill the domain with particles and judge the cloud, without computing a flow.
+    Cloud(Cloud),
+    /// Go on with a run from its last checkpoint.
+    #[command(after_help = EXIT_CODES)]
+    Resume(Resume),
+    /// Write the report of a run again.
+    Report(Report),
+    /// Compare the solver with theory and experiment.
+    Verify(Verify),
+    /// Print the JSON schema of the case file, for editors.
+    Schema(Schema),
+    /// Print completions for a shell.
+    Completions(Completions),
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Run {
+    /// Case file.
+    pub(crate) case: PathBuf,
+    /// Folder for the results; default: the name of the case without its extension.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) threads: Threads,
+    #[command(flatten)]
+    pub(crate) verbosity: Verbosity,
+    /// Replace the results of an earlier run.
+    #[arg(long)]
+    pub(crate) force: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct New {
+    /// What the case is about.
+    #[arg(value_parser = templates())]
+    pub(crate) template: String,
+    /// File to write; `-` prints it. Default: the name of the template with `.toml`.
+    pub(crate) path: Option<PathBuf>,
+    /// Replace an existing file.
+    #[arg(long)]
+    pub(crate) force: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Check {
+    /// Case file.
+    pub(crate) case: PathBuf,
+    /// Print the case with all defaults filled in.
+    #[arg(long)]
+    pub(crate) resolved: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Cloud {
+    /// Case file.
+    pub(crate) case: PathBuf,
+    /// Folder for the particle file; default: the name of the case without its extension.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) threads: Threads,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Resume {
+    /// Folder of the run.
+    pub(crate) run: PathBuf,
+    #[command(flatten)]
+    pub(crate) threads: Threads,
+    #[command(flatten)]
+    pub(crate) verbosity: Verbosity,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Report {
+    /// Folder of the run.
+    pub(crate) run: PathBuf,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Verify {
+    /// Only cases whose name contains this text.
+    pub(crate) filter: Option<String>,
+    /// Print one JSON object a line.
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Only cases that take seconds.
+    #[arg(long)]
+    pub(crate) fast: bool,
+    #[command(flatten)]
+    pub(crate) threads: Threads,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Schema {
+    /// Print the reference page in Markdown instead.
+    #[arg(long)]
+    pub(crate) markdown: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Completions {
+    /// Shell to complete in.
+    pub(crate) shell: Shell,
+}
+
+#[derive(Clone, Copy, Debug, Args)]
+pub(crate) struct Threads {
+    /// Number of threads; default: one for each core. Results do not depend on it.
+    #[arg(long, value_name = "N")]
+    pub(crate) threads: Option<NonZeroUsize>,
+}
+
+#[derive(Clone, Copy, Debug, Args)]
+pub(crate) struct Verbosity {
+    /// Print one JSON object a line instead of text.
+    #[arg(long)]
+    pub(crate) json: bool,
+    /// Print errors only.
+    #[arg(long, short, conflicts_with = "json")]
+    pub(crate) quiet: bool,
+}
+
+fn templates() -> PossibleValuesParser {
+    PossibleValuesParser::new(TEMPLATES.map(|(name, about)| PossibleValue::new(name).help(about)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn arguments_are_consistent() {
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn what_is_typed_arrives() {
+        let cli = Cli::try_parse_from(["alula", "run", "a.toml", "--out", "o", "--threads", "3", "--json", "--force"]);
+        let Command::Run(run) = cli.unwrap().command else { panic!() };
+        assert_eq!((run.threads.threads.map(NonZeroUsize::get), run.verbosity.json, run.force), (Some(3), true, true));
+        assert!(Cli::try_parse_from(["alula", "run", "a.toml", "--threads", "0"]).is_err());
+        assert!(Cli::try_parse_from(["alula", "run", "a.toml", "--json", "--quiet"]).is_err());
+        assert!(Cli::try_parse_from(["alula", "new", "wing"]).is_err());
+        assert!(Cli::try_parse_from(["alula", "verify", "naca", "--fast"]).is_ok());
+    }
+
+    #[test]
+    fn help_tells_the_exit_codes() {
+        assert!(Cli::command().render_help().to_string().contains("130  interrupted"));
+    }
+}

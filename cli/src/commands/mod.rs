@@ -1,0 +1,93 @@
+//! One file for each command.
+use std::path::Path;
+
+use alula::case::{Case, read};
+
+use crate::arguments::{Cli, Command, Threads};
+use crate::outcome::Outcome;
+use crate::output;
+
+mod check;
+mod cloud;
+mod completions;
+mod new;
+mod report;
+mod resume;
+mod run;
+mod schema;
+mod verify;
+
+/// Does what was typed.
+pub(crate) fn dispatch(cli: Cli) -> Outcome {
+    match cli.command {
+        Command::Run(args) => threaded(args.threads, || run::run(&args)),
+        Command::New(args) => new::new(&args),
+        Command::Check(args) => check::check(&args),
+        Command::Cloud(args) => threaded(args.threads, || cloud::cloud(&args)),
+        Command::Resume(args) => threaded(args.threads, || resume::resume(&args)),
+        Command::Report(args) => report::report(&args),
+        Command::Verify(args) => threaded(args.threads, || verify::verify(&args)),
+        Command::Schema(args) => schema::schema(&args),
+        Command::Completions(args) => completions::completions(&args),
+    }
+}
+
+/// Runs `command` with the global pool of threads sized as asked.
+fn threaded(threads: Threads, command: impl FnOnce() -> Outcome) -> Outcome {
+    if let Some(n) = threads.threads
+        && let Err(problem) = rayon::ThreadPoolBuilder::new().num_threads(n.get()).build_global()
+    {
+        output::error(&format!("cannot start {n} threads: {problem}"), "use a smaller number with `--threads`");
+        return Outcome::BadInput;
+    }
+    command()
+}
+
+/// The case in the file at `path`; its mistakes go to stderr.
+fn load(path: &Path) -> Result<Case, Outcome> {
+    let name = path.display().to_string();
+    let text = match std::fs::read(path) {
+        Ok(bytes) => String::from_utf8(bytes).map_err(|_| {
+            output::error(
+                &format!("`{name}` is not UTF-8 text"),
+                "a case file is TOML; start from `alula new airfoil`",
+            );
+            Outcome::BadInput
+        })?,
+        Err(problem) => {
+            output::error(
+                &format!("cannot read `{name}`: {problem}"),
+                "`alula new airfoil` writes a case to start from",
+            );
+            return Err(Outcome::BadInput);
+        }
+    };
+    read(&text, &name).map_err(|mistakes| {
+        output::message(&mistakes.render(output::colour()));
+        Outcome::BadInput
+    })
+}
+
+/// Says that a command has no body yet.
+fn unavailable(command: &str) -> Outcome {
+    output::error(&format!("`alula {command}` is not available in this version"), "`alula check` and `alula new` are");
+    Outcome::Failed
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn files_that_are_no_cases_are_bad_input() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("case.toml");
+        assert_eq!(load(&path).unwrap_err(), Outcome::BadInput);
+        std::fs::write(&path, [0xff, 0xfe]).unwrap();
+        assert_eq!(load(&path).unwrap_err(), Outcome::BadInput);
+        std::fs::write(&path, "mach = 1").unwrap();
+        assert_eq!(load(&path).unwrap_err(), Outcome::BadInput);
+        std::fs::write(&path, alula::case::template("sphere").unwrap()).unwrap();
+        assert!(load(&path).is_ok());
+    }
+}

@@ -1,0 +1,7 @@
+//! `alula report`.
+use crate::arguments;
+use crate::outcome::Outcome;
+
+pub(crate) fn report(_args: &arguments::Report) -> Outcome {
+    super::unavailable("report")
+}

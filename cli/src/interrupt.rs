@@ -1,0 +1,69 @@
+//! Signals that a run listens to.
+//!
+//! SIGINT and SIGTERM ask the run to finish its iteration, write a checkpoint and stop; a second one ends the process at
+//! once. SIGUSR1 asks for a checkpoint now. Handlers only set flags: the run loop looks at them between iterations.
+use std::io;
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use signal_hook::consts::{SIGINT, SIGTERM};
+use signal_hook::flag;
+
+use crate::outcome::Outcome;
+
+/// Flags set by signals.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Interrupt {
+    /// Finish the iteration, write a checkpoint and stop.
+    pub(crate) stop: Arc<AtomicBool>,
+    /// Write a checkpoint and go on.
+    pub(crate) checkpoint: Arc<AtomicBool>,
+}
+
+impl Interrupt {
+    /// Starts listening; call it once, before the run.
+    pub(crate) fn install() -> io::Result<Self> {
+        let flags = Self::default();
+        for signal in [SIGINT, SIGTERM] {
+            // In this order: the first signal finds `stop` unset and sets it, the second finds it set and exits.
+            flag::register_conditional_shutdown(signal, Outcome::Interrupted as i32, Arc::clone(&flags.stop))?;
+            flag::register(signal, Arc::clone(&flags.stop))?;
+        }
+        #[cfg(unix)]
+        flag::register(signal_hook::consts::SIGUSR1, Arc::clone(&flags.checkpoint))?;
+        Ok(flags)
+    }
+
+    /// True when the run shall stop after this iteration.
+    pub(crate) fn stopping(&self) -> bool {
+        self.stop.load(Ordering::Relaxed)
+    }
+
+    /// True once for every request of a checkpoint.
+    pub(crate) fn take_checkpoint(&self) -> bool {
+        self.checkpoint.swap(false, Ordering::Relaxed)
+    }
+
+    /// What to tell after an interrupted run in the folder `run`.
+    pub(crate) fn farewell(run: &Path, iteration: u64) -> String {
+        format!("interrupted after iteration {iteration}; go on with `alula resume {}`", run.display())
+    }
+}
+
+#[cfg(all(test, unix))]
+mod tests {
+    use super::*;
+    use signal_hook::{consts::SIGUSR1, low_level::raise};
+
+    #[test]
+    fn signals_set_their_flags_once() {
+        let flags = Interrupt::install().unwrap();
+        assert!(!flags.stopping() && !flags.take_checkpoint());
+        raise(SIGUSR1).unwrap();
+        assert!(flags.take_checkpoint() && !flags.take_checkpoint() && !flags.stopping());
+        raise(SIGINT).unwrap();
+        assert!(flags.stopping());
+        assert!(Interrupt::farewell(Path::new("out"), 7).ends_with("`alula resume out`"));
+    }
+}

@@ -1,0 +1,372 @@
+//! What a run says while it computes.
+//!
+//! On a terminal: one line that is drawn over, with the history of the residual as a sparkline. In a pipe: plain lines,
+//! at most one a second, and one whenever the residual has fallen by two more orders. With `--json`: one object an
+//! iteration. Text goes to stderr, JSON to stdout; a reader that goes away silences the progress, never the run.
+use std::io::{self, IsTerminal, Write};
+use std::time::{Duration, Instant};
+
+use indicatif::{ProgressBar, ProgressStyle};
+use serde_json::{Value, json};
+
+use crate::arguments::Verbosity;
+
+/// Least time between two plain lines.
+const LINE_INTERVAL: Duration = Duration::from_secs(1);
+/// Orders of magnitude that earn a plain line of their own.
+const LINE_ORDERS: f64 = 2.0;
+/// Greatest number of values behind the sparkline, twice its width.
+const HISTORY: usize = 2 * SPARKS;
+/// Width of the sparkline.
+const SPARKS: usize = 16;
+
+/// What is known after an iteration.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Tick {
+    /// Iterations so far.
+    pub(crate) iteration: u64,
+    /// Orders of magnitude the residual has fallen.
+    pub(crate) orders: f64,
+    /// Norm of the residual.
+    pub(crate) residual: f64,
+    /// Courant number.
+    pub(crate) cfl: f64,
+    /// Coefficients of lift, drag and moment.
+    pub(crate) loads: Option<[f64; 3]>,
+    /// Iterations a second.
+    pub(crate) rate: f64,
+    /// Number of particles.
+    pub(crate) particles: usize,
+    /// Seconds left, as far as one can tell.
+    pub(crate) eta: Option<f64>,
+}
+
+/// Tells the progress of a run.
+pub(crate) struct Progress {
+    voice: Voice,
+    started: Instant,
+    throttle: Throttle,
+    history: History,
+    /// The last tick, as long as it has not been told.
+    untold: Option<Tick>,
+}
+
+enum Voice {
+    Silent,
+    Bar(ProgressBar),
+    Lines(Box<dyn Write + Send>),
+    Json(Box<dyn Write + Send>),
+}
+
+impl Progress {
+    /// The voice that suits the arguments and the terminal.
+    pub(crate) fn new(verbosity: Verbosity) -> Self {
+        if verbosity.json {
+            return Self::json(Box::new(io::stdout()));
+        }
+        if verbosity.quiet {
+            return Self::with(Voice::Silent);
+        }
+        if io::stderr().is_terminal() {
+            let style = ProgressStyle::with_template("{spinner} {wide_msg}");
+            let style = style.unwrap_or_else(|_| ProgressStyle::default_spinner());
+            return Self::with(Voice::Bar(ProgressBar::new_spinner().with_style(style)));
+        }
+        Self::lines(Box::new(io::stderr()))
+    }
+
+    /// Plain lines into `sink`.
+    pub(crate) fn lines(sink: Box<dyn Write + Send>) -> Self {
+        Self::with(Voice::Lines(sink))
+    }
+
+    /// JSON lines into `sink`.
+    pub(crate) fn json(sink: Box<dyn Write + Send>) -> Self {
+        Self::with(Voice::Json(sink))
+    }
+
+    fn with(voice: Voice) -> Self {
+        let (throttle, history) = (Throttle::default(), History::default());
+        Self { voice, started: Instant::now(), throttle, history, untold: None }
+    }
+
+    /// Tells an iteration.
+    pub(crate) fn tick(&mut self, tick: &Tick) {
+        match &self.voice {
+            Voice::Silent => {}
+            Voice::Json(_) => self.event("iteration", fields(tick)),
+            Voice::Bar(bar) => {
+                self.history.push(tick.residual);
+                bar.set_message(bar_text(tick, &self.history));
+                bar.tick();
+            }
+            Voice::Lines(_) if self.throttle.due(self.started.elapsed(), tick.orders) => {
+                self.untold = None;
+                self.say(&line_text(tick));
+            }
+            Voice::Lines(_) => self.untold = Some(tick.clone()),
+        }
+    }
+
+    /// Tells something else: an object `{"event": name, ...}` with `--json`, nothing otherwise.
+    pub(crate) fn event(&mut self, name: &str, fields: Value) {
+        if !matches!(self.voice, Voice::Json(_)) {
+            return;
+        }
+        let mut object = json!({ "event": name });
+        if let (Some(object), Value::Object(fields)) = (object.as_object_mut(), fields) {
+            object.extend(fields);
+        }
+        self.say(&object.to_string());
+    }
+
+    /// Tells a sentence to humans, above the line that is drawn over; nothing with `--json` or `--quiet`.
+    pub(crate) fn note(&mut self, text: &str) {
+        match &self.voice {
+            Voice::Bar(bar) => bar.suspend(|| crate::output::message(text)),
+            Voice::Lines(_) => self.say(text),
+            Voice::Silent | Voice::Json(_) => {}
+        }
+    }
+
+    /// Tells the last iteration and leaves the line.
+    pub(crate) fn finish(&mut self) {
+        if let Some(tick) = self.untold.take() {
+            self.say(&line_text(&tick));
+        }
+        if let Voice::Bar(bar) = &self.voice {
+            bar.abandon();
+        }
+    }
+
+    /// Writes a line; a closed pipe silences everything that follows.
+    fn say(&mut self, text: &str) {
+        let (Voice::Lines(sink) | Voice::Json(sink)) = &mut self.voice else { return };
+        if writeln!(sink, "{text}").and_then(|()| sink.flush()).is_err() {
+            self.voice = Voice::Silent;
+        }
+    }
+}
+
+fn fields(tick: &Tick) -> Value {
+    json!({
+        "iteration": tick.iteration,
+        "orders": tick.orders,
+        "residual": tick.residual,
+        "cfl": tick.cfl,
+        "loads": tick.loads,
+        "rate": tick.rate,
+        "particles": tick.particles,
+        "eta": tick.eta,
+    })
+}
+
+fn line_text(tick: &Tick) -> String {
+    let mut text = format!(
+        "iteration {:>6}  residual {:.3e}  orders {:5.2}  cfl {:.1e}",
+        tick.iteration, tick.residual, tick.orders, tick.cfl
+    );
+    if let Some([lift, drag, moment]) = tick.loads {
+        text.push_str(&format!("  CL {lift:8.5}  CD {drag:8.5}  CM {moment:8.5}"));
+    }
+    text + &format!("  {}", pace(tick))
+}
+
+fn bar_text(tick: &Tick, history: &History) -> String {
+    let (sparks, orders) = (history.sparkline(), tick.orders);
+    let mut text = format!("{}  {sparks} {:.2e} ({orders:.1} orders)", tick.iteration, tick.residual);
+    if let Some([lift, drag, moment]) = tick.loads {
+        text.push_str(&format!("  CL {lift:.4} CD {drag:.4} CM {moment:.4}"));
+    }
+    text + &format!("  cfl {:.0e}  {}  {} particles", tick.cfl, pace(tick), tick.particles)
+}
+
+fn pace(tick: &Tick) -> String {
+    let rate = if tick.rate >= 10.0 { format!("{:.0}/s", tick.rate) } else { format!("{:.2}/s", tick.rate) };
+    match tick.eta.filter(|eta| eta.is_finite() && *eta >= 0.0) {
+        Some(eta) => format!("{rate}  {} left", clock(eta)),
+        None => rate,
+    }
+}
+
+/// Seconds as `0:42` or `1:02:03`.
+fn clock(seconds: f64) -> String {
+    let s = seconds.round() as u64;
+    let (hours, minutes, seconds) = (s / 3600, s / 60 % 60, s % 60);
+    if hours > 0 { format!("{hours}:{minutes:02}:{seconds:02}") } else { format!("{minutes}:{seconds:02}") }
+}
+
+/// Decides which iterations earn a plain line.
+#[derive(Default)]
+struct Throttle {
+    last: Option<Duration>,
+    step: f64,
+}
+
+impl Throttle {
+    fn due(&mut self, now: Duration, orders: f64) -> bool {
+        let step = (orders / LINE_ORDERS).floor();
+        let fell = step > self.step;
+        if self.last.is_some_and(|last| now.saturating_sub(last) < LINE_INTERVAL) && !fell {
+            return false;
+        }
+        self.last = Some(now);
+        self.step = if fell { step } else { self.step };
+        true
+    }
+}
+
+/// Logarithms of the residual; when the memory is full every second value goes and the stride doubles.
+struct History {
+    values: Vec<f64>,
+    stride: usize,
+    skipped: usize,
+}
+
+impl Default for History {
+    fn default() -> Self {
+        Self { values: Vec::with_capacity(HISTORY), stride: 1, skipped: 0 }
+    }
+}
+
+impl History {
+    fn push(&mut self, residual: f64) {
+        self.skipped += 1;
+        if self.skipped < self.stride || !residual.is_finite() || residual <= 0.0 {
+            return;
+        }
+        self.skipped = 0;
+        if self.values.len() == HISTORY {
+            let mut keep = false;
+            self.values.retain(|_| {
+                keep = !keep;
+                keep
+            });
+            self.stride *= 2;
+        }
+        self.values.push(residual.log10());
+    }
+
+    fn sparkline(&self) -> String {
+        const BARS: [char; 8] = ['▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
+        let n = self.values.len();
+        let top = self.values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let floor = self.values.iter().copied().fold(f64::INFINITY, f64::min);
+        let width = n.min(SPARKS);
+        let bar = |i: usize| {
+            let height = (self.values[i * n / width] - floor) / (top - floor).max(f64::MIN_POSITIVE);
+            BARS[((height * 7.0).round() as usize).min(7)]
+        };
+        (0..width).map(bar).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::{Arc, Mutex};
+
+    #[derive(Clone, Default)]
+    struct Page(Arc<Mutex<Vec<u8>>>);
+
+    impl Page {
+        fn text(&self) -> String {
+            String::from_utf8(self.0.lock().unwrap().clone()).unwrap()
+        }
+    }
+
+    impl Write for Page {
+        fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+            self.0.lock().unwrap().extend_from_slice(bytes);
+            Ok(bytes.len())
+        }
+        fn flush(&mut self) -> io::Result<()> {
+            Ok(())
+        }
+    }
+
+    fn tick(iteration: u64, orders: f64) -> Tick {
+        Tick {
+            iteration,
+            orders,
+            residual: 10_f64.powf(-orders),
+            cfl: 100.0,
+            loads: Some([0.35, 0.022, -0.04]),
+            rate: 8.1,
+            particles: 20_000,
+            eta: Some(3723.0),
+        }
+    }
+
+    #[test]
+    fn json_tells_every_iteration() {
+        let page = Page::default();
+        let mut progress = Progress::json(Box::new(page.clone()));
+        progress.event("start", json!({ "case": "a" }));
+        progress.tick(&tick(1, 0.0));
+        progress.tick(&Tick { residual: f64::NAN, loads: None, ..tick(2, 0.1) });
+        progress.note("for humans");
+        progress.finish();
+        let lines: Vec<Value> = page.text().lines().map(|l| serde_json::from_str(l).unwrap()).collect();
+        assert_eq!(lines.len(), 3);
+        assert_eq!(lines[0], json!({ "event": "start", "case": "a" }));
+        assert_eq!((&lines[1]["event"], &lines[1]["loads"][1]), (&json!("iteration"), &json!(0.022)));
+        assert_eq!((&lines[2]["residual"], &lines[2]["loads"]), (&Value::Null, &Value::Null));
+    }
+
+    #[test]
+    fn lines_are_few_and_end_with_the_last_iteration() {
+        let page = Page::default();
+        let mut progress = Progress::lines(Box::new(page.clone()));
+        for i in 0..=50 {
+            progress.tick(&tick(i, i as f64 / 10.0));
+        }
+        progress.finish();
+        progress.finish();
+        let text = page.text();
+        let told: Vec<&str> = text.lines().map(|l| l.split_whitespace().nth(1).unwrap()).collect();
+        assert_eq!(told, ["0", "20", "40", "50"]);
+        assert!(text.contains("CL  0.35000  CD  0.02200  CM -0.04000  8.10/s  1:02:03 left"), "{text}");
+    }
+
+    #[test]
+    fn lines_come_once_a_second() {
+        let mut throttle = Throttle::default();
+        let told = (0..40).filter(|i| throttle.due(Duration::from_millis(100 * i), 0.0)).count();
+        assert_eq!(told, 4);
+    }
+
+    #[test]
+    fn a_reader_that_goes_away_silences_the_progress() {
+        struct Closed(Arc<Mutex<usize>>);
+        impl Write for Closed {
+            fn write(&mut self, _: &[u8]) -> io::Result<usize> {
+                *self.0.lock().unwrap() += 1;
+                Err(io::ErrorKind::BrokenPipe.into())
+            }
+            fn flush(&mut self) -> io::Result<()> {
+                Ok(())
+            }
+        }
+        let tries = Arc::new(Mutex::new(0));
+        let mut progress = Progress::json(Box::new(Closed(Arc::clone(&tries))));
+        progress.tick(&tick(1, 0.0));
+        progress.tick(&tick(2, 0.0));
+        assert_eq!(*tries.lock().unwrap(), 1);
+    }
+
+    #[test]
+    fn sparkline_falls_with_the_residual() {
+        let mut history = History::default();
+        assert_eq!(history.sparkline(), "");
+        for i in 0..1000 {
+            history.push(10_f64.powf(-f64::from(i) / 100.0));
+            assert!(history.sparkline().chars().count() <= SPARKS);
+        }
+        let sparks: Vec<char> = history.sparkline().chars().collect();
+        assert_eq!((sparks[0], sparks.len()), ('█', SPARKS));
+        assert!(sparks.windows(2).all(|pair| pair[1] <= pair[0]));
+        history.push(f64::NAN);
+        assert!(bar_text(&tick(9, 3.0), &history).contains("(3.0 orders)  CL 0.3500 CD 0.0220 CM -0.0400  cfl 1e2"));
+    }
+}

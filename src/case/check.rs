@@ -1,0 +1,308 @@
+//! Contradictions: what single values cannot say.
+//!
+//! Every check looks at values that passed on their own and stays silent about absent ones, so one mistake is told once.
+use serde_json::{Value, json};
+
+use super::draft::Draft;
+use super::keys::{SHAPES, SIDES};
+use super::schema::one_of;
+
+/// Looks for all contradictions, and fills in what follows from other keys: dimension and names of bodies.
+pub(super) fn contradictions(draft: &mut Draft<'_>) {
+    bodies(draft);
+    let dimension = dimension(draft);
+    free_stream(draft);
+    if let Some(d) = dimension {
+        placements(draft, d);
+        in_dimension(draft, d);
+        initial(draft, d);
+        sides(draft, d);
+    }
+    domain(draft);
+    time(draft);
+}
+
+/// Each body has one shape, a name of its own and sensible digits.
+fn bodies(draft: &mut Draft<'_>) {
+    let mut names: Vec<String> = Vec::new();
+    for i in 0..draft.count("body") {
+        let body = format!("body[{i}]");
+        if draft.get(&body).is_none_or(Value::is_null) {
+            continue;
+        }
+        one_shape(draft, &body);
+        naca(draft, &format!("{body}.naca"));
+        polygon(draft, &format!("{body}.polygon"));
+        let name = draft.get(&format!("{body}.name")).and_then(Value::as_str).map(str::to_owned);
+        let name = name.unwrap_or_else(|| format!("body-{}", i + 1));
+        if names.contains(&name) {
+            let message = format!("two bodies are called `{name}`");
+            draft.fail(&format!("{body}.name"), message).hint("give each body a name of its own");
+        }
+        if let Some(Value::Object(table)) = draft.tree.pointer_mut(&format!("/body/{i}")) {
+            table.insert("name".to_owned(), json!(name));
+        }
+        names.push(name);
+    }
+}
+
+fn one_shape(draft: &mut Draft<'_>, body: &str) {
+    let all = SHAPES.map(|s| s.0);
+    let given: Vec<_> = all.into_iter().filter(|key| draft.given(&format!("{body}.{key}"))).collect();
+    match given[..] {
+        [] => {
+            let hint = format!("add one of {}", one_of(all.into_iter()));
+            draft.fail_key(body, format!("`{body}` has no shape")).hint(hint);
+        }
+        [_] => {}
+        [first, .., last] => {
+            let message = format!("`{body}` has {} shapes, `{first}` and `{last}`", given.len());
+            let hint = "keep one; a second body needs its own `[[body]]`";
+            draft.fail_key(&format!("{body}.{last}"), message).hint(hint);
+        }
+    }
+}
+
+/// Abbott and von Doenhoff (1959): camber, its position in tenths, thickness in hundredths of the chord.
+fn naca(draft: &mut Draft<'_>, path: &str) {
+    let Some(digits) = draft.get(&format!("{path}.digits")).and_then(Value::as_str).map(str::to_owned) else { return };
+    let place = if draft.given(&format!("{path}.digits")) { format!("{path}.digits") } else { path.to_owned() };
+    let bytes = digits.as_bytes();
+    if bytes.len() != 4 || !bytes.iter().all(u8::is_ascii_digit) {
+        let message = format!("`{digits}` is no NACA 4-digit section");
+        draft.fail(&place, message).allowed("four digits").hint("for example `naca = \"0012\"` or `naca = \"2412\"`");
+    } else if &bytes[2..] == b"00" {
+        draft
+            .fail(&place, format!("NACA {digits} has no thickness"))
+            .hint("the last two digits are the thickness in %");
+    } else if (bytes[0] == b'0') != (bytes[1] == b'0') {
+        let hint = "the first two digits are camber in % and its place in tenths: both zero or both not";
+        draft.fail(&place, format!("NACA {digits} has half a camber line")).hint(hint);
+    }
+}
+
+fn polygon(draft: &mut Draft<'_>, path: &str) {
+    let Some(points) = draft.get(path).and_then(Value::as_array).cloned() else { return };
+    let n = points.len();
+    if let Some(i) = (0..n).find(|&i| points[i] == points[(i + 1) % n]) {
+        let message = format!("corners {} and {} of `{path}` are the same point", i + 1, (i + 1) % n + 1);
+        draft.fail(path, message).hint("the polygon closes by itself: do not repeat the first corner");
+    }
+}
+
+/// Number of dimensions from the key, the bodies or the domain; they must agree.
+fn dimension(draft: &mut Draft<'_>) -> Option<usize> {
+    let mut found: Vec<(String, u64)> = Vec::new();
+    let written = draft.get("dimension").and_then(Value::as_u64).map(|d| ("dimension".to_owned(), d));
+    found.extend(written);
+    for i in 0..draft.count("body") {
+        for (key, fixed) in SHAPES {
+            let path = format!("body[{i}].{key}");
+            let d = match fixed {
+                0 => draft.count(&format!("{path}.size")) as u64,
+                d => d,
+            };
+            if draft.given(&path) && d > 0 {
+                found.push((path, d));
+            }
+        }
+    }
+    for corner in ["cloud.domain.min", "cloud.domain.max"] {
+        found.extend(draft.numbers(corner).map(|list| (corner.to_owned(), list.len() as u64)));
+    }
+    let (first, d) = found.first().cloned()?;
+    for (path, other) in found.iter().filter(|(_, other)| *other != d) {
+        draft
+            .fail_key(path, format!("`{path}` is {other}-D, but `{first}` is {d}-D"))
+            .hint("a case is all 2-D or all 3-D");
+    }
+    let agreed = found.iter().all(|(_, other)| *other == d);
+    if let Some(tree) = draft.tree.as_object_mut().filter(|_| agreed) {
+        tree.insert("dimension".to_owned(), json!(d));
+    }
+    agreed.then_some(d as usize)
+}
+
+/// `mach` or `velocity`; none or two of pressure, temperature and density.
+fn free_stream(draft: &mut Draft<'_>) {
+    let states = ["flow.pressure", "flow.temperature", "flow.density"];
+    let given: Vec<_> = states.into_iter().filter(|key| draft.given(key)).collect();
+    let hint = "give two of `pressure`, `temperature` and `density`; the third follows from the gas law";
+    match given[..] {
+        [only] => {
+            draft.fail_key(only, format!("`{only}` alone does not fix a dimensional free stream")).hint(hint);
+        }
+        [_, _, last] => {
+            draft.fail_key(last, "`pressure`, `temperature` and `density` contradict each other").hint(hint);
+        }
+        _ => {}
+    }
+    let (mach, velocity) = (draft.given("flow.mach"), draft.given("flow.velocity"));
+    if mach && velocity {
+        let message = "`mach` and `velocity` are both given";
+        draft.fail_key("flow.velocity", message).hint("keep one; the other follows from the sound speed");
+    } else if velocity && given.is_empty() {
+        let message = "`velocity` needs a dimensional free stream";
+        draft.fail_key("flow.velocity", message).hint(format!("use `mach`, or {hint}"));
+    } else if !mach && !velocity && needs_stream(draft) {
+        draft.fail("flow.mach", "the free stream has no speed").hint("add `mach = 0.8` to `[flow]`");
+    }
+}
+
+/// Bodies and the free stream as initial field need a speed.
+fn needs_stream(draft: &Draft<'_>) -> bool {
+    draft.given("body") || draft.get("initial").and_then(Value::as_str) == Some("free_stream")
+}
+
+/// Rotations and translations have as many components as the case has room for.
+fn placements(draft: &mut Draft<'_>, d: usize) {
+    for i in 0..draft.count("body") {
+        let rotate = format!("body[{i}].rotate");
+        let angles = if d == 2 { 1 } else { 3 };
+        let n = draft.count(&rotate);
+        if n != 0 && n != angles {
+            let message = format!("`{rotate}` has {n} angles, but a {d}-D body turns by {angles}");
+            draft.fail(&rotate, message).allowed(if d == 2 { "one angle" } else { "three angles: about x, y, z" });
+        }
+        length(draft, &format!("body[{i}].translate"), d);
+    }
+}
+
+/// Points have `d` coordinates; keys of the other dimension are absent.
+fn in_dimension(draft: &mut Draft<'_>, d: usize) {
+    length(draft, "reference.moment_point", d);
+    for i in 0..draft.count("cloud.box") {
+        length(draft, &format!("cloud.box[{i}].min"), d);
+        length(draft, &format!("cloud.box[{i}].max"), d);
+        corners(draft, &format!("cloud.box[{i}]"));
+    }
+    if d == 2 && draft.number("flow.beta").is_some_and(|beta| beta != 0.0) {
+        draft.fail("flow.beta", "`flow.beta` needs a 3-D case").hint("in 2-D only `alpha` turns the flow");
+    }
+    if d == 2 && draft.given("reference.area") {
+        let hint = "in 2-D the coefficients use `reference.chord`";
+        draft.fail_key("reference.area", "`reference.area` needs a 3-D case").hint(hint);
+    }
+}
+
+fn length(draft: &mut Draft<'_>, path: &str, d: usize) {
+    let n = draft.count(path);
+    if n != 0 && n != d {
+        draft.fail(path, format!("`{path}` has {n} coordinates in a {d}-D case")).allowed(format!("{d} values"));
+    }
+}
+
+/// `min` lies below `max` on every axis.
+fn corners(draft: &mut Draft<'_>, path: &str) {
+    let corner = |name| draft.numbers(&format!("{path}.{name}"));
+    let (Some(min), Some(max)) = (corner("min"), corner("max")) else { return };
+    if let Some((a, b)) = min.iter().zip(&max).find(|(a, b)| a >= b) {
+        let message = format!("`{path}` is empty: its `min` has {a} where its `max` has {b}");
+        draft.fail(&format!("{path}.max"), message).hint("`min` must be smaller than `max` on every axis");
+    }
+}
+
+/// A domain is there when nothing else fixes one, and holds more than one particle.
+fn domain(draft: &mut Draft<'_>) {
+    corners(draft, "cloud.domain");
+    if !draft.given("body") && !draft.given("cloud.domain") && draft.get("cloud").is_some() {
+        let hint = "add `domain = { min = [0, 0], max = [10, 10] }` to `[cloud]`, or a `[[body]]`";
+        draft.fail("cloud.domain", "a case without bodies needs `cloud.domain`").hint(hint);
+    }
+    if !draft.given("body") && draft.given("cloud.wake") {
+        draft.fail_key("cloud.wake", "`cloud.wake` needs a body").hint("use `cloud.box` to refine a place");
+    }
+    let (Some(min), Some(max)) = (draft.numbers("cloud.domain.min"), draft.numbers("cloud.domain.max")) else { return };
+    let Some(spacing) = draft.number("cloud.spacing") else { return };
+    let shortest = min.iter().zip(&max).map(|(a, b)| b - a).fold(f64::INFINITY, f64::min);
+    if 0.0 < shortest && shortest <= spacing {
+        let message = format!("`cloud.spacing` is {spacing}, but the domain is only {shortest} wide");
+        draft.fail("cloud.spacing", message).hint("choose a spacing many times smaller than the domain");
+    }
+}
+
+/// Exact solutions live in the plane, gases have density and pressure.
+fn initial(draft: &mut Draft<'_>, d: usize) {
+    let kind =
+        draft.get("initial").and_then(|v| v.as_str().or_else(|| v.as_object()?.keys().next().map(String::as_str)));
+    if let Some(kind) = kind.filter(|k| d == 3 && ["vortex", "ringleb"].contains(k)).map(str::to_owned) {
+        let hint = "use a 2-D domain: two numbers in `min` and `max`";
+        draft.fail("initial", format!("`{kind}` is a 2-D flow, but the case is 3-D")).hint(hint);
+    }
+    if let Some(axis) = draft.number("initial.riemann.axis").filter(|&a| a >= d as f64) {
+        let message = format!("`initial.riemann.axis` is {axis} in a {d}-D case");
+        draft.fail("initial.riemann.axis", message).allowed(format!("from 0 to {}", d - 1));
+    }
+    for side in ["initial.riemann.left", "initial.riemann.right"] {
+        let Some(state) = draft.numbers(side) else { continue };
+        for (i, name) in [(0, "density"), (2, "pressure")] {
+            if state.get(i).is_some_and(|x| *x <= 0.0) {
+                draft.fail(side, format!("the {name} in `{side}` is {}", state[i])).allowed("greater than 0");
+            }
+        }
+    }
+}
+
+fn sides(draft: &mut Draft<'_>, d: usize) {
+    for (axis, (low, high)) in SIDES.into_iter().enumerate() {
+        let (low, high) = (format!("boundary.{low}"), format!("boundary.{high}"));
+        for side in [&low, &high] {
+            one_side(draft, side, axis, d);
+        }
+        for (side, other) in [(&low, &high), (&high, &low)] {
+            if is(draft, side, "periodic") && draft.get(other).is_some() && !is(draft, other, "periodic") {
+                let hint = format!("add `{} = \"periodic\"` to `[boundary]`", other.trim_start_matches("boundary."));
+                draft.fail(side, format!("`{side}` is periodic, but `{other}` is not")).hint(hint);
+            }
+        }
+    }
+}
+
+fn one_side(draft: &mut Draft<'_>, side: &str, axis: usize, d: usize) {
+    if axis >= d && draft.given(side) && draft.get(side).is_some() && !is(draft, side, "far_field") {
+        draft.fail_key(side, format!("`{side}` needs a 3-D case")).hint("a 2-D domain has the sides of x and y only");
+        return;
+    }
+    for kind in ["symmetry", "periodic"] {
+        if is(draft, side, kind) && !draft.given("cloud.domain") {
+            let hint = "add `domain = { min = [...], max = [...] }` to `[cloud]`";
+            draft.fail(side, format!("a {kind} side needs `cloud.domain`: it must lie at a definite place")).hint(hint);
+        }
+    }
+    // The stream must run along a plane of symmetry; x sides are walls for the stream on purpose (impulsive start).
+    let turned = match (axis, d) {
+        (1, 2) | (2, 3) => "flow.alpha",
+        (1, 3) => "flow.beta",
+        _ => "",
+    };
+    if is(draft, side, "symmetry") && draft.number(turned).is_some_and(|angle| angle != 0.0) {
+        let hint = format!("turn the body with `rotate`, or remove `{}`", turned.trim_start_matches("flow."));
+        draft
+            .fail(side, format!("the free stream crosses the symmetry plane `{side}`: `{turned}` is not zero"))
+            .hint(hint);
+    }
+    let stream = draft.given("flow.mach") || draft.given("flow.velocity") || needs_stream(draft);
+    if axis < d && is(draft, side, "far_field") && !stream {
+        let hint = "give `held`, `outflow` or `periodic`, or add `mach` to `[flow]`";
+        draft.fail(side, format!("`{side}` is `far_field`, but the free stream has no speed")).hint(hint);
+    }
+}
+
+fn is(draft: &Draft<'_>, side: &str, word: &str) -> bool {
+    draft.get(side).and_then(Value::as_str) == Some(word)
+}
+
+fn time(draft: &mut Draft<'_>) {
+    let (cfl, most) = (draft.number("time.steady.cfl"), draft.number("time.steady.cfl_max"));
+    if let (Some(cfl), Some(most)) = (cfl, most)
+        && cfl > most
+    {
+        let message = format!("`cfl` starts at {cfl}, above `cfl_max` = {most}");
+        let place = if draft.given("time.steady.cfl") { "time.steady.cfl" } else { "time.steady.cfl_max" };
+        draft.fail(place, message).hint("raise `cfl_max` or lower `cfl`");
+    }
+    if draft.given("output.field_interval") && draft.get("time.explicit").is_none() && draft.get("time").is_some() {
+        let message = "`output.field_interval` needs a marching run";
+        draft.fail_key("output.field_interval", message).hint("add `[time.explicit]`, or remove the key");
+    }
+}

@@ -1,0 +1,117 @@
+//! A case under construction: values that passed, where they were written, and the mistakes so far.
+use std::collections::BTreeMap;
+use std::ops::Range;
+
+use serde_json::{Value, json};
+
+use super::error::{CaseError, quote};
+
+/// Values in base units with defaults, places by key path, mistakes.
+pub(super) struct Draft<'t> {
+    text: &'t str,
+    /// Spans of key and value of everything that was written.
+    places: BTreeMap<String, (Range<usize>, Range<usize>)>,
+    /// Values that passed, in the form the case is deserialised from.
+    pub(super) tree: Value,
+    /// Mistakes so far.
+    pub(super) errors: Vec<CaseError>,
+}
+
+impl<'t> Draft<'t> {
+    /// An empty draft of the case written in `text`.
+    pub(super) fn new(text: &'t str) -> Self {
+        Self { text, places: BTreeMap::new(), tree: Value::Null, errors: Vec::new() }
+    }
+
+    /// Remembers where `path` was written.
+    pub(super) fn place(&mut self, path: &str, key: Range<usize>, value: Range<usize>) {
+        self.places.insert(path.to_owned(), (key, value));
+    }
+
+    /// What is written at `span`, shortened.
+    pub(super) fn source(&self, span: Range<usize>) -> String {
+        quote(self.text.get(span).unwrap_or_default())
+    }
+
+    /// Names a case without title after its file.
+    pub(super) fn title(&mut self, name: &str) {
+        if !self.given("title")
+            && let Some(tree) = self.tree.as_object_mut()
+        {
+            let file = name.rsplit(['/', '\\']).next().unwrap_or(name);
+            let stem = file.strip_suffix(".toml").unwrap_or(file);
+            tree.insert("title".to_owned(), json!(if stem.trim().is_empty() { "untitled" } else { stem }));
+        }
+    }
+
+    /// Adds mistakes of syntax, and drops those that a broken line only causes.
+    pub(super) fn add_syntax_errors(&mut self, syntax: &[toml::de::Error]) {
+        let line = |at: usize| self.text.bytes().take(at).filter(|b| *b == b'\n').count();
+        let broken: Vec<_> = syntax.iter().map(|e| line(e.span().map_or(0, |s| s.start))).collect();
+        let mut errors = std::mem::take(&mut self.errors);
+        errors.retain(|e| !broken.contains(&line(e.span.start)));
+        self.errors = errors;
+        for error in syntax {
+            self.fail_at("", error.span().unwrap_or(0..0), format!("this is not TOML: {}", error.message()));
+        }
+    }
+
+    /// True when `path` was written in the file.
+    pub(super) fn given(&self, path: &str) -> bool {
+        self.places.contains_key(path)
+    }
+
+    /// The value at `path`, none when it is absent or wrong.
+    pub(super) fn get(&self, path: &str) -> Option<&Value> {
+        self.tree.pointer(&format!("/{}", path.replace(['.', '['], "/").replace(']', "")))
+    }
+
+    /// The number at `path`.
+    pub(super) fn number(&self, path: &str) -> Option<f64> {
+        self.get(path)?.as_f64()
+    }
+
+    /// The numbers in the list at `path`.
+    pub(super) fn numbers(&self, path: &str) -> Option<Vec<f64>> {
+        self.get(path)?.as_array()?.iter().map(Value::as_f64).collect()
+    }
+
+    /// Number of items in the list at `path`.
+    pub(super) fn count(&self, path: &str) -> usize {
+        self.get(path).and_then(Value::as_array).map_or(0, Vec::len)
+    }
+
+    /// Adds a mistake about the value at `path`, or about the table that lacks it.
+    pub(super) fn fail(&mut self, path: &str, message: impl Into<String>) -> &mut CaseError {
+        let span = match self.places.get(path) {
+            Some((_, value)) => value.clone(),
+            None => self.ancestor(path),
+        };
+        self.fail_at(path, span, message)
+    }
+
+    /// Adds a mistake about the key at `path`.
+    pub(super) fn fail_key(&mut self, path: &str, message: impl Into<String>) -> &mut CaseError {
+        let span = self.places.get(path).map_or_else(|| self.ancestor(path), |(key, _)| key.clone());
+        self.fail_at(path, span, message)
+    }
+
+    /// Adds a mistake at a place in the file.
+    pub(super) fn fail_at(&mut self, path: &str, span: Range<usize>, message: impl Into<String>) -> &mut CaseError {
+        let at = self.errors.len();
+        self.errors.push(CaseError::new(path, span, message));
+        &mut self.errors[at]
+    }
+
+    /// Place of the nearest table around `path` that was written, else the start of the file.
+    fn ancestor(&self, path: &str) -> Range<usize> {
+        let mut path = path;
+        while let Some(end) = path.rfind(['.', '[']) {
+            path = &path[..end];
+            if let Some((key, _)) = self.places.get(path) {
+                return key.clone();
+            }
+        }
+        0..0
+    }
+}

@@ -1,0 +1,416 @@
+//! The keys of the case file: the one place where names, ranges, defaults and meanings are written down.
+//!
+//! Ranges that are not plain logic come from the numerics: particles nearer to the wall than 0.3 spacings spoil the
+//! conditioning of their clouds, more than 0.6 leave a gap; fewer than 3 particles a level do not fill a cloud.
+use super::quantity::{Angle, Density, Length, Pressure, Temperature, Time, Velocity};
+use super::schema::{Absent, Field, Kind, List, Range, Table, Variant};
+
+const ANY: Kind = Kind::Number(Range::ANY);
+const POSITIVE: Kind = Kind::Number(Range::POSITIVE);
+const LENGTH: Kind = Kind::Quantity(Length::DIMENSION, Range::ANY);
+const SIZE: Kind = Kind::Quantity(Length::DIMENSION, Range::POSITIVE);
+const ANGLE: Kind = Kind::Quantity(Angle::DIMENSION, Range::ANY);
+const COUNT: Kind = Kind::Integer(1, u32::MAX as u64);
+const LEVELS: Kind = Kind::Integer(0, 16);
+const POINT: Kind = Kind::List(&List { item: LENGTH, min: 2, max: 3, single: false });
+const PLANE_POINT: Kind = Kind::List(&List { item: ANY, min: 2, max: 2, single: false });
+const STATE: Kind = Kind::List(&List { item: ANY, min: 3, max: 3, single: false });
+
+/// The whole file.
+pub(super) static CASE: Table = Table::of(&[
+    Field::optional("title", Kind::Text, "the name of the file", "One line that names the case in reports."),
+    Field::optional(
+        "dimension",
+        Kind::Integer(2, 3),
+        "taken from the bodies, else from `cloud.domain`",
+        "Number of space dimensions.",
+    ),
+    Field::defaulted(
+        "flow",
+        Kind::Table(&FLOW),
+        Absent::Filled,
+        "Free stream: `mach` alone (density 1, sound speed 1) or dimensional, from two of `pressure`, `temperature`, \
+         `density` and one of `mach`, `velocity`.",
+    ),
+    Field::defaulted("body", Kind::Tables(&BODY), Absent::Filled, "A solid body: one shape key, then its placement."),
+    Field::defaulted(
+        "reference",
+        Kind::Table(&REFERENCE),
+        Absent::Filled,
+        "Reference lengths of the load coefficients.",
+    ),
+    Field::required("cloud", Kind::Table(&CLOUD), "How particles fill the domain."),
+    Field::defaulted("boundary", Kind::Table(&BOUNDARY), Absent::Filled, "Conditions on the sides of the domain."),
+    Field::defaulted("initial", Kind::Choice(INITIAL), Absent::Word("free_stream"), "Field at the start."),
+    Field::defaulted("scheme", Kind::Table(&SCHEME), Absent::Filled, "Spatial scheme."),
+    Field::defaulted("time", Kind::Choice(TIME), Absent::Word("steady"), "Steady relaxation or time marching."),
+    Field::defaulted("adapt", Kind::Table(&ADAPT), Absent::Filled, "Refinement that follows the solution."),
+    Field::defaulted("output", Kind::Table(&OUTPUT), Absent::Filled, "What is written, and how often."),
+    Field::defaulted(
+        "compare",
+        Kind::Tables(&COMPARE),
+        Absent::Filled,
+        "A reference curve of Cp that the report draws beside the result.",
+    ),
+]);
+
+static FLOW: Table = Table::of(&[
+    Field::optional("mach", POSITIVE, "`velocity` must be given", "Mach number of the free stream."),
+    Field::optional(
+        "velocity",
+        Kind::Quantity(Velocity::DIMENSION, Range::POSITIVE),
+        "`mach` must be given",
+        "Speed of the free stream; needs a dimensional free stream.",
+    ),
+    Field::optional(
+        "pressure",
+        Kind::Quantity(Pressure::DIMENSION, Range::POSITIVE),
+        "nondimensional, or from the other two",
+        "Static pressure of the free stream.",
+    ),
+    Field::optional(
+        "temperature",
+        Kind::Quantity(Temperature::DIMENSION, Range::POSITIVE),
+        "nondimensional, or from the other two",
+        "Static temperature of the free stream.",
+    ),
+    Field::optional(
+        "density",
+        Kind::Quantity(Density::DIMENSION, Range::POSITIVE),
+        "nondimensional, or from the other two",
+        "Density of the free stream.",
+    ),
+    Field::defaulted(
+        "gas_constant",
+        POSITIVE,
+        Absent::Number(287.05),
+        "Specific gas constant, J/(kg K); the default is air.",
+    ),
+    Field::defaulted("gamma", Kind::Number(Range::above(1.0)), Absent::Number(1.4), "Ratio of specific heats."),
+    Field::defaulted(
+        "alpha",
+        ANGLE,
+        Absent::Number(0.0),
+        "Angle of attack, nose up positive: the flow turns from +x towards +y in 2-D, towards +z in 3-D.",
+    ),
+    Field::defaulted("beta", ANGLE, Absent::Number(0.0), "Sideslip angle, 3-D only: the flow turns towards +y."),
+]);
+
+/// Shape keys of a body with the dimension each of them fixes (0: by the number of lengths).
+pub(super) const SHAPES: [(&str, u64); 7] =
+    [("naca", 2), ("airfoil", 2), ("polygon", 2), ("circle", 2), ("sphere", 3), ("box", 0), ("surface", 3)];
+const SHAPE: &str = "another shape key";
+
+static BODY: Table = Table::of(&[
+    Field::optional("name", Kind::Text, "`body-1`, `body-2`, …", "Name used in tables of loads."),
+    Field::optional("naca", Kind::Table(&NACA), SHAPE, "NACA 4-digit section (2-D), `naca = \"0012\"`."),
+    Field::optional("airfoil", Kind::Text, SHAPE, "Airfoil coordinate file (2-D) in Selig, Lednicer or CSV order."),
+    Field::optional(
+        "polygon",
+        Kind::List(&List { item: PLANE_POINT, min: 3, max: usize::MAX, single: false }),
+        SHAPE,
+        "Closed polygon with sharp corners (2-D), `[[0, 0], [1, 0.1], [1, -0.1]]`.",
+    ),
+    Field::optional("circle", Kind::Table(&ROUND), SHAPE, "Circle (2-D), `circle = { radius = 0.5 }`."),
+    Field::optional("sphere", Kind::Table(&ROUND), SHAPE, "Sphere (3-D), `sphere = { radius = 0.5 }`."),
+    Field::optional(
+        "box",
+        Kind::Table(&BOX),
+        SHAPE,
+        "Box centred on the origin of the shape, `box = { size = [1, 1, 1] }`.",
+    ),
+    Field::optional("surface", Kind::Text, SHAPE, "STL or OBJ file (3-D), relative to the case file."),
+    Field::defaulted(
+        "scale",
+        POSITIVE,
+        Absent::Number(1.0),
+        "Factor on every coordinate of the shape; the chord of an airfoil of unit chord.",
+    )
+    .alias("chord"),
+    Field::defaulted(
+        "rotate",
+        Kind::List(&List { item: ANGLE, min: 0, max: 3, single: true }),
+        Absent::Filled,
+        "Rotation about the origin of the shape after scaling: one angle in 2-D (nose up positive), three in 3-D (about \
+         x, then y, then z).",
+    ),
+    Field::defaulted(
+        "translate",
+        Kind::List(&List { item: LENGTH, min: 0, max: 3, single: false }),
+        Absent::Filled,
+        "Translation after scaling and rotation.",
+    ),
+]);
+
+static NACA: Table = Table {
+    fields: &[
+        Field::required("digits", Kind::Text, "The four digits."),
+        Field::defaulted("trailing_edge", Kind::Words(TRAILING_EDGES), Absent::Word("closed"), "How the section ends."),
+    ],
+    shorthand: Some("digits"),
+};
+
+const TRAILING_EDGES: &[(&str, &str)] = &[
+    ("closed", "last thickness coefficient -0.1036: both sides meet at x/c = 1"),
+    ("blunt", "last thickness coefficient -0.1015 as published: a base of 0.252 % chord for 12 %"),
+    ("extended", "as published, extended to where the sides meet and scaled back to unit chord"),
+];
+
+static ROUND: Table = Table::of(&[Field::required("radius", SIZE, "Radius.")]);
+
+static BOX: Table = Table::of(&[Field::required(
+    "size",
+    Kind::List(&List { item: SIZE, min: 2, max: 3, single: false }),
+    "Edge lengths, two or three.",
+)]);
+
+static REFERENCE: Table = Table::of(&[
+    Field::optional(
+        "chord",
+        SIZE,
+        "extent of the bodies along x",
+        "Length of the moment coefficient (and of CL, CD in 2-D).",
+    ),
+    Field::optional(
+        "area",
+        POSITIVE,
+        "frontal area of the bounding box of the bodies",
+        "Area of the coefficients in 3-D, length squared.",
+    ),
+    Field::optional(
+        "moment_point",
+        POINT,
+        "quarter chord of the bounding box (2-D), its centre (3-D)",
+        "Point about which moments are taken.",
+    ),
+]);
+
+static CLOUD: Table = Table::of(&[
+    Field::required("spacing", SIZE, "Particle spacing at the surface; of the whole domain when there is no body."),
+    Field::optional(
+        "far_field",
+        SIZE,
+        "40 chords (2-D), 10 (3-D)",
+        "Half-width of the far field around the bodies; ignored when `domain` is given.",
+    ),
+    Field::optional(
+        "domain",
+        Kind::Table(&DOMAIN),
+        "a square or cube of half-width `far_field`; must be given when there is no body",
+        "Explicit domain.",
+    ),
+    Field::defaulted(
+        "layers",
+        Kind::Number(Range::between(3.0, 1000.0)),
+        Absent::Number(6.0),
+        "Particles per level of refinement, counted away from the surface.",
+    ),
+    Field::defaulted("edge_levels", LEVELS, Absent::Integer(2), "Extra levels of refinement at sharp edges."),
+    Field::defaulted(
+        "curvature",
+        Kind::Number(Range { min: 0.0, max: 1.0, closed: false }),
+        Absent::Number(0.25),
+        "Spacing is at most this fraction of the local radius of curvature.",
+    ),
+    Field::defaulted(
+        "curvature_levels",
+        LEVELS,
+        Absent::Integer(2),
+        "Greatest number of extra levels that curvature may ask for.",
+    ),
+    Field::defaulted("box", Kind::Tables(&REFINE), Absent::Filled, "A box with its own spacing."),
+    Field::optional("wake", Kind::Table(&WAKE), "no refinement", "Refinement behind the bodies along the free stream."),
+    Field::defaulted(
+        "wall_layers",
+        Kind::Integer(0, 64),
+        Absent::Integer(0),
+        "Body-fitted layers of particles next to the wall (0: none).",
+    ),
+    Field::defaulted(
+        "blank",
+        Kind::Number(Range::between(0.3, 0.6)),
+        Absent::Number(0.4),
+        "Fluid particles nearer to the wall than this fraction of the local spacing are left out.",
+    ),
+    Field::defaulted(
+        "radius",
+        Kind::Number(Range::between(1.0, 4.0)),
+        Absent::Number(1.6),
+        "Radius of the clouds near the wall in local spacings.",
+    ),
+    Field::defaulted(
+        "jitter",
+        Kind::Number(Range::between(0.0, 0.45)),
+        Absent::Number(0.0),
+        "Random displacement of interior particles as a fraction of the local spacing (for tests of robustness).",
+    ),
+]);
+
+static DOMAIN: Table = Table::of(&[
+    Field::required("min", POINT, "Corner with the smallest coordinates."),
+    Field::required("max", POINT, "Corner with the largest coordinates."),
+]);
+
+static REFINE: Table = Table::of(&[
+    Field::required("min", POINT, "Corner with the smallest coordinates."),
+    Field::required("max", POINT, "Corner with the largest coordinates."),
+    Field::required("spacing", SIZE, "Largest spacing inside."),
+]);
+
+static WAKE: Table = Table::of(&[
+    Field::required("length", SIZE, "Length behind the trailing edge."),
+    Field::required("spacing", SIZE, "Largest spacing inside."),
+]);
+
+/// Sides of the domain, two for each axis.
+pub(super) const SIDES: [(&str, &str); 3] = [("x_min", "x_max"), ("y_min", "y_max"), ("z_min", "z_max")];
+
+const fn side(key: &'static str, doc: &'static str) -> Field {
+    Field::defaulted(key, Kind::Choice(SIDE), Absent::Word("far_field"), doc)
+}
+
+static BOUNDARY: Table = Table::of(&[
+    side("x_min", "Side of smallest x."),
+    side("x_max", "Side of largest x."),
+    side("y_min", "Side of smallest y."),
+    side("y_max", "Side of largest y."),
+    side("z_min", "Side of smallest z."),
+    side("z_max", "Side of largest z."),
+]);
+
+const SIDE: &[Variant] = &[
+    Variant::word("far_field", "free stream, with the vortex of the lift in 2-D; waves leave"),
+    Variant::word("held", "the state of `[initial]` held for ever (supersonic inflow, exact solutions)"),
+    Variant::table("outflow", &OUTFLOW, "zero normal gradient; with a static pressure when the outflow is subsonic"),
+    Variant::word("symmetry", "plane of symmetry"),
+    Variant::word("periodic", "periodic with the opposite side"),
+];
+
+static OUTFLOW: Table =
+    Table::of(&[Field::optional("pressure", POSITIVE, "extrapolated", "Static pressure over free-stream pressure.")]);
+
+const INITIAL: &[Variant] = &[
+    Variant::word("free_stream", "free stream everywhere"),
+    Variant::table("riemann", &RIEMANN, "two states on either side of a plane"),
+    Variant::table("vortex", &VORTEX, "isentropic vortex (Shu 1998), density and pressure 1 far away, 2-D"),
+    Variant::word("ringleb", "Ringleb's flow, stagnation density and sound speed 1, 2-D"),
+];
+
+static RIEMANN: Table = Table::of(&[
+    Field::required("left", STATE, "Left state: density, velocity along `axis`, pressure."),
+    Field::required("right", STATE, "Right state: density, velocity along `axis`, pressure."),
+    Field::defaulted("position", ANY, Absent::Number(0.0), "Position of the plane."),
+    Field::defaulted("axis", Kind::Integer(0, 2), Absent::Integer(0), "Axis across the plane, 0 for x."),
+]);
+
+static VORTEX: Table = Table::of(&[
+    Field::required("strength", ANY, "Strength β."),
+    Field::required("centre", PLANE_POINT, "Centre at the start."),
+    Field::required("velocity", PLANE_POINT, "Mean velocity."),
+]);
+
+static SCHEME: Table = Table::of(&[
+    Field::defaulted("flux", Kind::Words(FLUXES), Absent::Word("hllc"), "Upwind flux at the middle of an edge."),
+    Field::defaulted("order", Kind::Integer(1, 2), Absent::Integer(2), "Order of the reconstruction."),
+    Field::defaulted("limiter", Kind::Words(LIMITERS), Absent::Word("van_albada"), "Slope limiter."),
+    Field::defaulted(
+        "limiter_threshold",
+        Kind::Number(Range::between(0.0, 1.0)),
+        Absent::Number(0.02),
+        "Relative size of second differences below which the limiter leaves a field alone.",
+    ),
+    Field::defaulted(
+        "kappa",
+        Kind::Number(Range::between(-1.0, 1.0)),
+        Absent::Number(0.0),
+        "κ of the reconstruction: 0 for steady flow, 1/3 for waves and vortices.",
+    ),
+    Field::optional("conservative", Kind::Flag, "the solver's own choice", "Exactly conservative coefficients."),
+]);
+
+const FLUXES: &[(&str, &str)] = &[
+    ("hllc", "Harten-Lax-van Leer with contact (Toro 1994)"),
+    ("roe", "Roe (1981) with a smooth entropy fix"),
+    ("ausm_plus_up", "AUSM+-up (Liou 2006)"),
+    ("rusanov", "local Lax-Friedrichs"),
+];
+
+const LIMITERS: &[(&str, &str)] = &[
+    ("none", "unlimited: smooth flow only"),
+    ("van_albada", "van Albada (1982) with a threshold, differentiable"),
+    ("venkatakrishnan", "Venkatakrishnan's (1995) rational function on edges"),
+];
+
+const TIME: &[Variant] = &[
+    Variant::table("steady", &STEADY, "relax to a steady state"),
+    Variant::table("explicit", &EXPLICIT, "march in time with an explicit Runge-Kutta method"),
+];
+
+static STEADY: Table = Table::of(&[
+    Field::defaulted("method", Kind::Words(RELAXATIONS), Absent::Word("newton_krylov"), "Method."),
+    Field::defaulted(
+        "orders",
+        Kind::Number(Range { min: 0.0, max: 16.0, closed: false }),
+        Absent::Number(6.0),
+        "Orders of magnitude the residual must fall.",
+    ),
+    Field::defaulted("iterations", COUNT, Absent::Integer(2000), "Greatest number of iterations."),
+    Field::defaulted("cfl", POSITIVE, Absent::Number(10.0), "Courant number at the start."),
+    Field::defaulted("cfl_max", POSITIVE, Absent::Number(1e6), "Greatest Courant number."),
+]);
+
+const RELAXATIONS: &[(&str, &str)] = &[
+    ("newton_krylov", "Newton's method with GMRES, preconditioned by sweeps"),
+    ("lu_sgs", "lower-upper symmetric Gauss-Seidel sweeps alone"),
+    ("runge_kutta", "explicit Runge-Kutta with local steps: the plain reference"),
+];
+
+static EXPLICIT: Table = Table::of(&[
+    Field::required("until", Kind::Quantity(Time::DIMENSION, Range::POSITIVE), "Time at which the run ends."),
+    Field::defaulted("cfl", POSITIVE, Absent::Number(0.8), "Courant number."),
+    Field::defaulted("method", Kind::Words(MARCHES), Absent::Word("ssprk3"), "Runge-Kutta method."),
+    Field::defaulted("steps", COUNT, Absent::Integer(1_000_000), "Greatest number of steps."),
+]);
+
+const MARCHES: &[(&str, &str)] = &[
+    ("ssprk3", "strong-stability-preserving, three stages, third order (Shu and Osher 1988)"),
+    ("rk4", "classical, four stages, fourth order"),
+];
+
+static ADAPT: Table = Table::of(&[
+    Field::defaulted("cycles", Kind::Integer(0, 64), Absent::Integer(0), "Number of refinements (0: none)."),
+    Field::optional("spacing", SIZE, "`cloud.spacing`", "Finest spacing that adaptation may ask for."),
+    Field::defaulted("particles", COUNT, Absent::Integer(2_000_000), "Greatest number of particles."),
+    Field::defaulted(
+        "sensors",
+        Kind::List(&List { item: Kind::Words(SENSORS), min: 1, max: 3, single: true }),
+        Absent::Words(&["shock", "curvature"]),
+        "Sensors in use.",
+    ),
+]);
+
+const SENSORS: &[(&str, &str)] = &[
+    ("shock", "jumps of pressure across an edge"),
+    ("shear", "jumps of tangential velocity across an edge"),
+    ("curvature", "second differences of density and velocity"),
+];
+
+static OUTPUT: Table = Table::of(&[
+    Field::defaulted("checkpoint", COUNT, Absent::Integer(50), "Iterations between checkpoints."),
+    Field::optional(
+        "field_interval",
+        Kind::Quantity(Time::DIMENSION, Range::POSITIVE),
+        "the last field only",
+        "Time between field files in marching runs.",
+    ),
+    Field::defaulted("report", Kind::Flag, Absent::Flag(true), "Write `report.html` and pictures."),
+]);
+
+static COMPARE: Table = Table::of(&[
+    Field::required(
+        "file",
+        Kind::Text,
+        "CSV file with columns `x_c` and `Cp` (`surface` optional), relative to the case file.",
+    ),
+    Field::defaulted("label", Kind::Text, Absent::Word("reference"), "Name in the legend."),
+]);

@@ -1,0 +1,363 @@
+//! Reading a case file: all mistakes in one go.
+//!
+//! The text becomes a spanned document, the document is walked along the table of keys (`keys.rs`), and every value that
+//! passes lands in base units in a plain tree with all defaults. Contradictions between keys are looked for in that tree
+//! (`check.rs`); a tree without mistakes is what [`Case`] is deserialised from.
+use std::collections::BTreeSet;
+use std::ops::Range as Span;
+
+use serde_json::{Map, Value, json};
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+use super::Case;
+use super::draft::Draft;
+use super::error::{CaseErrors, quote};
+use super::keys::CASE;
+use super::schema::{Absent, Field, Kind, List, Range, Table, Variant, one_of};
+
+/// Reads the text of a case file; `name` is what messages call it.
+pub fn read(text: &str, name: &str) -> Result<Case, CaseErrors> {
+    let (document, syntax) = DeTable::parse_recoverable(text);
+    let mut reader = Reader { draft: Draft::new(text), complete: syntax.is_empty() };
+    let root = reader.table(&CASE, document.get_ref(), "");
+    let mut draft = reader.draft;
+    draft.tree = Value::Object(root);
+    draft.title(name);
+    if syntax.is_empty() {
+        super::check::contradictions(&mut draft);
+    } else {
+        draft.add_syntax_errors(&syntax);
+    }
+    if draft.errors.is_empty() {
+        match serde_json::from_value(draft.tree.take()) {
+            Ok(case) => return Ok(case),
+            Err(error) => draft.fail("", format!("the case does not fit together: {error}")),
+        };
+    }
+    Err(CaseErrors::new(name, text, draft.errors))
+}
+
+struct Reader<'t> {
+    draft: Draft<'t>,
+    /// The text is TOML throughout: what is not there is really missing.
+    complete: bool,
+}
+
+type Item<'i> = Spanned<DeValue<'i>>;
+
+impl Reader<'_> {
+    /// The keys of one table with their defaults; `path` is empty for the document.
+    fn table(&mut self, table: &'static Table, document: &DeTable<'_>, path: &str) -> Map<String, Value> {
+        let mut tree = Map::new();
+        let mut seen = BTreeSet::new();
+        for (key, item) in document.iter() {
+            let Some(field) = table.field(key.get_ref()) else {
+                if let Some(meant) = self.unknown(table, key.get_ref(), key.span(), path)
+                    && !document.contains_key(meant)
+                {
+                    // What the misspelt key was to say is not missing as well.
+                    self.draft.place(&join(path, meant), key.span(), item.span());
+                }
+                continue;
+            };
+            let here = join(path, field.key);
+            if !seen.insert(field.key) {
+                let message = format!("`{here}` is given twice, also as `{}`", field.alias.unwrap_or(field.key));
+                self.draft.fail_at(&here, key.span(), message).hint(format!("keep only `{}`", field.key));
+                continue;
+            }
+            self.draft.place(&here, key.span(), item.span());
+            if let Some(value) = self.value(&field.kind, item, &here) {
+                tree.insert(field.key.to_owned(), value);
+            }
+        }
+        for field in table.fields.iter().filter(|f| !seen.contains(f.key)) {
+            match field.default_value() {
+                Some(value) => {
+                    tree.insert(field.key.to_owned(), value);
+                }
+                None => self.missing(field, path),
+            }
+        }
+        tree
+    }
+
+    fn value(&mut self, kind: &'static Kind, item: &Item<'_>, path: &str) -> Option<Value> {
+        match (kind, item.get_ref()) {
+            (Kind::Number(range), value) if number(value).is_some() => self.number(number(value)?, range, item, path),
+            (Kind::Quantity(dimension, range), value) => {
+                let parsed = match value {
+                    DeValue::String(text) => dimension.parse(text),
+                    other => match number(other) {
+                        Some(x) => dimension.plain(x),
+                        None => return self.wrong(kind, item, path),
+                    },
+                };
+                match parsed {
+                    Ok(x) => self.number(x, range, item, path),
+                    Err(error) => self.bad_quantity(kind, &error.to_string(), item, path),
+                }
+            }
+            (Kind::Integer(min, max), value) => self.whole(kind, (*min, *max), number(value), item, path),
+            (Kind::Flag, DeValue::Boolean(flag)) => Some(json!(flag)),
+            (Kind::Text, DeValue::String(text)) if !text.trim().is_empty() => Some(json!(text)),
+            (Kind::Words(words), DeValue::String(text)) => {
+                let names: Vec<_> = words.iter().map(|w| w.0).collect();
+                self.word(&names, text, item, path).map(|i| json!(names[i]))
+            }
+            (Kind::List(list), DeValue::Array(items)) => self.list(kind, list, items, item, path),
+            (Kind::List(list), _) if list.single => Some(json!([self.value(&list.item, item, path)?])),
+            (Kind::Table(table), DeValue::Table(document)) => Some(json!(self.table(table, document, path))),
+            (Kind::Table(table), _) if table.shorthand.is_some() => self.shorthand(table, item, path),
+            (Kind::Tables(table), DeValue::Array(items)) => Some(self.tables(table, items, path)),
+            (Kind::Choice(variants), DeValue::String(text)) => self.choose(variants, text, item, path),
+            (Kind::Choice(variants), DeValue::Table(document)) => self.choose_table(variants, document, item, path),
+            _ => self.wrong(kind, item, path),
+        }
+    }
+
+    fn number(&mut self, value: f64, range: &Range, item: &Item<'_>, path: &str) -> Option<Value> {
+        if range.contains(value) {
+            return Some(json!(value));
+        }
+        let written = self.draft.source(item.span());
+        let allowed = range.words().unwrap_or_else(|| "a finite number".to_owned());
+        let message = format!("`{path}` is {written}, but must be {allowed}");
+        self.draft.fail_at(path, item.span(), message).allowed(allowed);
+        None
+    }
+
+    fn bad_quantity(&mut self, kind: &Kind, error: &str, item: &Item<'_>, path: &str) -> Option<Value> {
+        let message = format!("`{path}`: {error}");
+        let error = self.draft.fail_at(path, item.span(), message).allowed(kind.words());
+        if let (Kind::Quantity(dimension, _), Some(x)) = (kind, number(item.get_ref())) {
+            error.hint(format!("write `\"{x} {}\"` with one of the units {}", dimension.usual(), dimension.symbols()));
+        }
+        None
+    }
+
+    fn whole(
+        &mut self,
+        kind: &Kind,
+        (min, max): (u64, u64),
+        value: Option<f64>,
+        item: &Item<'_>,
+        path: &str,
+    ) -> Option<Value> {
+        let Some(x) = value.filter(|x| x.fract() == 0.0) else { return self.wrong(kind, item, path) };
+        if min as f64 <= x && x <= max as f64 {
+            return Some(json!(x as u64));
+        }
+        let message = format!("`{path}` is {}, but must be {}", self.draft.source(item.span()), kind.words());
+        self.draft.fail_at(path, item.span(), message).allowed(kind.words());
+        None
+    }
+
+    fn list(
+        &mut self,
+        kind: &Kind,
+        list: &'static List,
+        items: &[Item<'_>],
+        whole: &Item<'_>,
+        path: &str,
+    ) -> Option<Value> {
+        let read: Vec<_> =
+            items.iter().enumerate().map(|(i, item)| self.value(&list.item, item, &format!("{path}[{i}]"))).collect();
+        if (list.min..=list.max).contains(&items.len()) {
+            return read.into_iter().collect::<Option<Vec<_>>>().map(Value::Array);
+        }
+        let message = format!("`{path}` has {} values, but must be {}", items.len(), kind.words());
+        self.draft.fail_at(path, whole.span(), message).allowed(kind.words());
+        None
+    }
+
+    fn tables(&mut self, table: &'static Table, items: &[Item<'_>], path: &str) -> Value {
+        let mut list = Vec::new();
+        for (i, item) in items.iter().enumerate() {
+            let here = format!("{path}[{i}]");
+            self.draft.place(&here, item.span(), item.span());
+            match item.get_ref() {
+                DeValue::Table(document) => list.push(json!(self.table(table, document, &here))),
+                _ => {
+                    let message = format!("`{here}` must be a table, not {}", type_of(item.get_ref()));
+                    self.draft.fail_at(&here, item.span(), message).allowed("a table");
+                    list.push(Value::Null);
+                }
+            }
+        }
+        Value::Array(list)
+    }
+
+    fn shorthand(&mut self, table: &'static Table, item: &Item<'_>, path: &str) -> Option<Value> {
+        let field = table.shorthand.and_then(|key| table.field(key))?;
+        let mut tree = table.defaults();
+        tree.insert(field.key.to_owned(), self.value(&field.kind, item, path)?);
+        Some(Value::Object(tree))
+    }
+
+    fn choose(&mut self, variants: &'static [Variant], text: &str, item: &Item<'_>, path: &str) -> Option<Value> {
+        let names: Vec<_> = variants.iter().map(|v| v.name).collect();
+        let variant = &variants[self.word(&names, text, item, path)?];
+        if variant.is_word() {
+            return Some(variant.bare());
+        }
+        let keys = variant.table.map_or(&[][..], |t| t.fields).iter();
+        let keys = keys.filter(|f| matches!(f.default, Absent::Required)).map(|f| format!("{} = …", f.key));
+        let hint = format!("write `{path} = {{ {text} = {{ {} }} }}`", keys.collect::<Vec<_>>().join(", "));
+        self.draft.fail_at(path, item.span(), format!("`{text}` needs a table of its own")).hint(hint);
+        None
+    }
+
+    fn choose_table(
+        &mut self,
+        variants: &'static [Variant],
+        document: &DeTable<'_>,
+        whole: &Item<'_>,
+        path: &str,
+    ) -> Option<Value> {
+        let names: Vec<_> = variants.iter().map(|v| v.name).collect();
+        let mut chosen = Vec::new();
+        for (key, item) in document.iter() {
+            let here = join(path, key.get_ref());
+            let Some(variant) = variants.iter().find(|v| v.name == key.get_ref().as_ref()) else {
+                let message = format!("unknown key `{}` {}", quote(key.get_ref()), inside(path));
+                let hint = closest(key.get_ref(), names.iter().copied()).map(|n| format!("did you mean `{n}`?"));
+                self.draft.fail_at(&here, key.span(), message).allowed(one_of(names.iter().copied())).hint = hint;
+                continue;
+            };
+            self.draft.place(&here, key.span(), item.span());
+            chosen.push((variant.name, key.span(), self.variant(variant, item, &here)));
+        }
+        if let [_, (second, span, _), ..] = &chosen[..] {
+            let message = format!("`{path}` has two alternatives: `{}` and `{second}`", chosen[0].0);
+            self.draft.fail_at(path, span.clone(), message).allowed(format!("one of {}", one_of(names.into_iter())));
+        } else if document.is_empty() {
+            let message = format!("`{path}` says nothing");
+            self.draft.fail_at(path, whole.span(), message).allowed(one_of(names.into_iter()));
+        }
+        chosen.into_iter().next()?.2
+    }
+
+    fn variant(&mut self, variant: &'static Variant, item: &Item<'_>, path: &str) -> Option<Value> {
+        match (variant.table, item.get_ref()) {
+            (Some(table), DeValue::Table(document)) => Some(json!({ variant.name: self.table(table, document, path) })),
+            (None, DeValue::Table(document)) if document.is_empty() => Some(variant.bare()),
+            (None, DeValue::Boolean(true)) => Some(variant.bare()),
+            (found, value) => {
+                let allowed = if found.is_some() { "a table" } else { "an empty table" };
+                let message = format!("`{path}` must be {allowed}, not {}", type_of(value));
+                self.draft.fail_at(path, item.span(), message).allowed(allowed);
+                None
+            }
+        }
+    }
+
+    /// Index of `text` in `names`.
+    fn word(&mut self, names: &[&str], text: &str, item: &Item<'_>, path: &str) -> Option<usize> {
+        let found = names.iter().position(|n| *n == text);
+        if found.is_none() {
+            let message = format!("`{path}` cannot be `{}`", quote(text));
+            let hint = closest(text, names.iter().copied()).map(|n| format!("did you mean `\"{n}\"`?"));
+            self.draft.fail_at(path, item.span(), message).allowed(one_of(names.iter().copied())).hint = hint;
+        }
+        found
+    }
+
+    fn wrong(&mut self, kind: &Kind, item: &Item<'_>, path: &str) -> Option<Value> {
+        let allowed = kind.words();
+        let message = format!("`{path}` must be {allowed}, not {}", type_of(item.get_ref()));
+        self.draft.fail_at(path, item.span(), message).allowed(allowed);
+        None
+    }
+
+    /// Tells an unknown key; returns the one that was probably meant.
+    fn unknown(&mut self, table: &'static Table, key: &str, span: Span<usize>, path: &str) -> Option<&'static str> {
+        let meant = closest(key, table.fields.iter().flat_map(|f| [Some(f.key), f.alias]).flatten());
+        let hint = match meant {
+            Some(name) => Some(format!("did you mean `{name}`?")),
+            None => home_of(key, &CASE, "").map(|home| format!("`{key}` belongs in `[{home}]`")),
+        };
+        let message = format!("unknown key `{}` {}", quote(key), inside(path));
+        let allowed = one_of(table.fields.iter().map(|f| f.key));
+        self.draft.fail_at(&join(path, key), span, message).allowed(allowed).hint = hint;
+        table.field(meant?).map(|f| f.key)
+    }
+
+    fn missing(&mut self, field: &Field, path: &str) {
+        let place = join(path, field.key);
+        if !self.complete || !matches!(field.default, Absent::Required) || self.draft.given(&place) {
+            return;
+        }
+        let what = if matches!(field.kind, Kind::Table(_)) { "table" } else { "key" };
+        let message = format!("missing {what} `{}` {}", field.key, inside(path));
+        let hint = format!("add `{}` ({}): {}", field.key, field.kind.words(), lower(field.doc));
+        self.draft.fail(&place, message).hint(hint);
+    }
+}
+
+/// The number that `value` is, if it is one; infinities and NaN count, so that their range error is told.
+fn number(value: &DeValue<'_>) -> Option<f64> {
+    match value {
+        DeValue::Float(x) => x.as_str().parse().ok(),
+        DeValue::Integer(n) => i128::from_str_radix(n.as_str(), n.radix()).ok().map(|n| n as f64),
+        _ => None,
+    }
+}
+
+fn type_of(value: &DeValue<'_>) -> &'static str {
+    match value {
+        DeValue::String(text) if text.trim().is_empty() => "an empty text",
+        DeValue::String(_) => "a text",
+        DeValue::Integer(_) | DeValue::Float(_) => "a number",
+        DeValue::Boolean(_) => "a truth value",
+        DeValue::Datetime(_) => "a date",
+        DeValue::Array(_) => "a list",
+        DeValue::Table(_) => "a table",
+    }
+}
+
+fn join(path: &str, key: &str) -> String {
+    if path.is_empty() { key.to_owned() } else { format!("{path}.{key}") }
+}
+
+/// "in `[cloud]`", "in `body[0]`" or "in the file".
+fn inside(path: &str) -> String {
+    match path {
+        "" => "in the file".to_owned(),
+        path if path.ends_with(']') => format!("in `{path}`"),
+        path => format!("in `[{path}]`"),
+    }
+}
+
+fn lower(doc: &str) -> String {
+    let doc = doc.trim_end_matches('.');
+    let mut chars = doc.chars();
+    chars.next().map_or_else(String::new, |c| c.to_lowercase().chain(chars).collect())
+}
+
+/// The candidate that `word` was probably meant to be.
+fn closest<'a>(word: &str, candidates: impl Iterator<Item = &'a str>) -> Option<&'a str> {
+    /// Jaro-Winkler similarity of names that still look alike.
+    const ALIKE: f64 = 0.8;
+    let word: String = word.chars().take(64).collect::<String>().to_lowercase().replace('-', "_");
+    let scored = candidates.map(|c| (strsim::jaro_winkler(&word, c), c)).filter(|(score, _)| ALIKE <= *score);
+    scored.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, c)| c)
+}
+
+/// Path of the table that has a key called `key`.
+fn home_of(key: &str, table: &'static Table, path: &str) -> Option<String> {
+    if !path.is_empty() && table.field(key).is_some() {
+        return Some(path.to_owned());
+    }
+    table.fields.iter().find_map(|field| {
+        let here = join(path, field.key);
+        match &field.kind {
+            Kind::Table(inner) | Kind::Tables(inner) => home_of(key, inner, &here),
+            Kind::Choice(variants) => {
+                variants.iter().find_map(|v| v.table.and_then(|inner| home_of(key, inner, &join(&here, v.name))))
+            }
+            _ => None,
+        }
+    })
+}

@@ -1,0 +1,291 @@
+//! The language in which the case format is described.
+//!
+//! One static table (`keys.rs`) says which keys exist, what they hold, their range, default and meaning. The reader, the
+//! writer, the JSON schema for editors and the reference page all walk this table, so they cannot disagree.
+use serde_json::{Map, Value, json};
+
+use super::quantity::Dimension;
+
+/// A table of the case file.
+pub(super) struct Table {
+    /// Keys in the order in which they are written and documented.
+    pub(super) fields: &'static [Field],
+    /// Key that a bare value stands for: `naca = "0012"` is `naca = { digits = "0012" }`.
+    pub(super) shorthand: Option<&'static str>,
+}
+
+/// One key of a table.
+pub(super) struct Field {
+    /// The key.
+    pub(super) key: &'static str,
+    /// A second spelling.
+    pub(super) alias: Option<&'static str>,
+    /// Meaning, one or two sentences.
+    pub(super) doc: &'static str,
+    /// What the key holds.
+    pub(super) kind: Kind,
+    /// What holds when the key is absent.
+    pub(super) default: Absent,
+}
+
+/// What a key holds.
+pub(super) enum Kind {
+    /// A plain number.
+    Number(Range),
+    /// A number with a unit.
+    Quantity(&'static Dimension, Range),
+    /// A whole number from .. to, ends included.
+    Integer(u64, u64),
+    /// `true` or `false`.
+    Flag,
+    /// Any text but the empty one.
+    Text,
+    /// One of several words.
+    Words(&'static [(&'static str, &'static str)]),
+    /// A list of `min` to `max` items.
+    List(&'static List),
+    /// A table.
+    Table(&'static Table),
+    /// An array of tables.
+    Tables(&'static Table),
+    /// One of several words or one-key tables.
+    Choice(&'static [Variant]),
+}
+
+/// A list of values of one kind.
+pub(super) struct List {
+    /// Kind of the items.
+    pub(super) item: Kind,
+    /// Least number of items.
+    pub(super) min: usize,
+    /// Greatest number of items.
+    pub(super) max: usize,
+    /// A bare item stands for a list of one.
+    pub(super) single: bool,
+}
+
+/// One alternative of a [`Kind::Choice`].
+pub(super) struct Variant {
+    /// The word or key.
+    pub(super) name: &'static str,
+    /// Meaning.
+    pub(super) doc: &'static str,
+    /// Keys of its table; none for a bare word.
+    pub(super) table: Option<&'static Table>,
+}
+
+/// What holds when a key is absent.
+pub(super) enum Absent {
+    /// The key must be given.
+    Required,
+    /// Nothing; the text says what that means.
+    Nothing(&'static str),
+    /// A number.
+    Number(f64),
+    /// A whole number.
+    Integer(u64),
+    /// A truth value.
+    Flag(bool),
+    /// A word or a text.
+    Word(&'static str),
+    /// A list of words.
+    Words(&'static [&'static str]),
+    /// The empty table, filled with the defaults of its keys.
+    Filled,
+}
+
+/// An interval of numbers; an infinite end is no end.
+pub(super) struct Range {
+    /// Lower end.
+    pub(super) min: f64,
+    /// Upper end.
+    pub(super) max: f64,
+    /// The lower end itself is allowed.
+    pub(super) closed: bool,
+}
+
+impl Range {
+    /// Every finite number.
+    pub(super) const ANY: Self = Self { min: f64::NEG_INFINITY, max: f64::INFINITY, closed: true };
+    /// Numbers greater than 0.
+    pub(super) const POSITIVE: Self = Self::above(0.0);
+
+    /// Numbers greater than `min`.
+    pub(super) const fn above(min: f64) -> Self {
+        Self { min, max: f64::INFINITY, closed: false }
+    }
+
+    /// Numbers from `min` to `max`, ends included.
+    pub(super) const fn between(min: f64, max: f64) -> Self {
+        Self { min, max, closed: true }
+    }
+
+    /// True when `value` lies inside.
+    pub(super) fn contains(&self, value: f64) -> bool {
+        let above = if self.closed { self.min <= value } else { self.min < value };
+        value.is_finite() && above && value <= self.max
+    }
+
+    /// The interval in words, none when every number is allowed.
+    pub(super) fn words(&self) -> Option<String> {
+        let lower = if self.closed { "at least" } else { "greater than" };
+        match (self.min.is_finite(), self.max.is_finite()) {
+            (false, false) => None,
+            (true, false) => Some(format!("{lower} {}", self.min)),
+            (false, true) => Some(format!("at most {}", self.max)),
+            (true, true) if self.closed => Some(format!("from {} to {}", self.min, self.max)),
+            (true, true) => Some(format!("{lower} {} and at most {}", self.min, self.max)),
+        }
+    }
+}
+
+impl Table {
+    /// A table whose keys are `fields`.
+    pub(super) const fn of(fields: &'static [Field]) -> Self {
+        Self { fields, shorthand: None }
+    }
+
+    /// The field called `key`, by either of its names.
+    pub(super) fn field(&self, key: &str) -> Option<&'static Field> {
+        self.fields.iter().find(|f| f.key == key || f.alias == Some(key))
+    }
+
+    /// The table of an empty document: all defaults.
+    pub(super) fn defaults(&self) -> Map<String, Value> {
+        self.fields.iter().filter_map(|f| Some((f.key.to_owned(), f.default_value()?))).collect()
+    }
+}
+
+impl Field {
+    /// A key that must be given.
+    pub(super) const fn required(key: &'static str, kind: Kind, doc: &'static str) -> Self {
+        Self { key, alias: None, doc, kind, default: Absent::Required }
+    }
+
+    /// A key that may be absent; `meaning` says what happens then.
+    pub(super) const fn optional(key: &'static str, kind: Kind, meaning: &'static str, doc: &'static str) -> Self {
+        Self { key, alias: None, doc, kind, default: Absent::Nothing(meaning) }
+    }
+
+    /// A key with a default.
+    pub(super) const fn defaulted(key: &'static str, kind: Kind, default: Absent, doc: &'static str) -> Self {
+        Self { key, alias: None, doc, kind, default }
+    }
+
+    /// The same key with a second spelling.
+    pub(super) const fn alias(mut self, alias: &'static str) -> Self {
+        self.alias = Some(alias);
+        self
+    }
+
+    /// The value when the key is absent, in the form the case is deserialised from.
+    pub(super) fn default_value(&self) -> Option<Value> {
+        Some(match &self.default {
+            Absent::Required | Absent::Nothing(_) => return None,
+            Absent::Number(x) => json!(x),
+            Absent::Integer(n) => json!(n),
+            Absent::Flag(flag) => json!(flag),
+            Absent::Words(words) => json!(words),
+            Absent::Word(word) => match &self.kind {
+                Kind::Choice(variants) => variants.iter().find(|v| v.name == *word)?.bare(),
+                _ => json!(word),
+            },
+            Absent::Filled => match &self.kind {
+                Kind::Table(table) => Value::Object(table.defaults()),
+                _ => json!([]),
+            },
+        })
+    }
+
+    /// The default in words, none when the key must be given.
+    pub(super) fn default_words(&self) -> Option<String> {
+        match &self.default {
+            Absent::Required => None,
+            Absent::Nothing(meaning) => Some((*meaning).to_owned()),
+            Absent::Number(x) => Some(format!("`{x}`")),
+            Absent::Integer(n) => Some(format!("`{n}`")),
+            Absent::Flag(flag) => Some(format!("`{flag}`")),
+            Absent::Word(word) => Some(format!("`\"{word}\"`")),
+            Absent::Words(words) => Some(format!("`{words:?}`")),
+            Absent::Filled if matches!(self.kind, Kind::Table(_)) => Some("see its keys".to_owned()),
+            Absent::Filled => Some("none".to_owned()),
+        }
+    }
+}
+
+impl Variant {
+    /// An alternative without keys.
+    pub(super) const fn word(name: &'static str, doc: &'static str) -> Self {
+        Self { name, doc, table: None }
+    }
+
+    /// An alternative with a table of keys.
+    pub(super) const fn table(name: &'static str, table: &'static Table, doc: &'static str) -> Self {
+        Self { name, doc, table: Some(table) }
+    }
+
+    /// The value of the bare word.
+    pub(super) fn bare(&self) -> Value {
+        match self.table {
+            Some(table) => json!({ self.name: table.defaults() }),
+            None => json!(self.name),
+        }
+    }
+
+    /// The bare word is enough: every key of the table has a default.
+    pub(super) fn is_word(&self) -> bool {
+        self.table.is_none_or(|t| t.fields.iter().all(|f| !matches!(f.default, Absent::Required)))
+    }
+}
+
+impl Kind {
+    /// What may be written, in words.
+    pub(super) fn words(&self) -> String {
+        let with = |what: String, range: &Range| match range.words() {
+            Some(words) => format!("{what} {words}"),
+            None => what,
+        };
+        match self {
+            Self::Number(range) => with("a number".to_owned(), range),
+            Self::Quantity(dimension, range) => {
+                with(format!("{} like `\"{}\"`", dimension.name, dimension.example), range)
+            }
+            Self::Integer(min, max) if *max >= u64::from(u32::MAX) => format!("a whole number, at least {min}"),
+            Self::Integer(min, max) => format!("a whole number from {min} to {max}"),
+            Self::Flag => "`true` or `false`".to_owned(),
+            Self::Text => "a text in quotes".to_owned(),
+            Self::Words(words) => one_of(words.iter().map(|w| w.0)),
+            Self::List(list) => list.words(),
+            Self::Table(table) => match table.shorthand.and_then(|key| table.field(key)) {
+                Some(field) => format!("{} or a table", field.kind.words()),
+                None => "a table".to_owned(),
+            },
+            Self::Tables(_) => "an array of tables".to_owned(),
+            Self::Choice(variants) => one_of(variants.iter().map(|v| v.name)),
+        }
+    }
+}
+
+impl List {
+    fn words(&self) -> String {
+        let words = self.item.words();
+        let item = words.as_str();
+        let item = item.strip_prefix("a ").or_else(|| item.strip_prefix("an ")).unwrap_or(item);
+        let count = match (self.min, self.max) {
+            (min, max) if min == max => format!("{min} values"),
+            (min, usize::MAX) => format!("{min} or more values"),
+            (min, max) => format!("{min} to {max} values"),
+        };
+        let list = format!("a list of {count} ({item})");
+        if self.single { format!("{words} or {list}") } else { list }
+    }
+}
+
+/// `\`a\`, \`b\` or \`c\``.
+pub(super) fn one_of<'a>(names: impl Iterator<Item = &'a str>) -> String {
+    let quoted: Vec<String> = names.map(|n| format!("`{n}`")).collect();
+    match quoted.split_last() {
+        Some((last, rest)) if !rest.is_empty() => format!("{} or {last}", rest.join(", ")),
+        _ => quoted.concat(),
+    }
+}

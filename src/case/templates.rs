@@ -1,0 +1,36 @@
+//! Case files to start from.
+
+/// Names of the templates with a line about each.
+pub const TEMPLATES: [(&str, &str); 3] = [
+    ("airfoil", "transonic flow over a NACA 0012 section (2-D)"),
+    ("sphere", "subsonic flow past a sphere (3-D)"),
+    ("stl", "a body from an STL or OBJ surface file (3-D)"),
+];
+
+/// The commented case file called `name`.
+pub fn template(name: &str) -> Option<String> {
+    let text = match name {
+        "airfoil" => include_str!("templates/airfoil.toml"),
+        "sphere" => include_str!("templates/sphere.toml"),
+        "stl" => include_str!("templates/stl.toml"),
+        _ => return None,
+    };
+    Some(text.to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::case::read;
+
+    #[test]
+    fn every_template_is_a_case() {
+        for (name, _) in TEMPLATES {
+            let text = template(name).unwrap();
+            let case = read(&text, name).unwrap_or_else(|e| panic!("{e}"));
+            assert_eq!(case.bodies.len(), 1);
+            assert!(text.lines().all(|line| line.len() <= 100), "{name} has long lines");
+        }
+        assert!(template("wing").is_none());
+    }
+}

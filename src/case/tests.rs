@@ -1,0 +1,274 @@
+//! What users see: whole files with mistakes, and files that must never break the reader.
+use proptest::prelude::*;
+
+use super::*;
+
+const GOOD: &str = "title = \"t\"\n[flow]\nmach = 0.8\n[[body]]\nnaca = \"0012\"\n[cloud]\nspacing = 0.01\n";
+
+/// The messages about `text`, rendered.
+fn mistakes(text: &str) -> String {
+    match read(text, "case.toml") {
+        Ok(case) => panic!("no mistake found in\n{text}\n{case:#?}"),
+        Err(errors) => errors.render(false),
+    }
+}
+
+/// `GOOD` without body, on a square domain, with `extra` behind.
+fn open(extra: &str) -> String {
+    format!("[flow]\nmach = 0.5\n[cloud]\nspacing = 0.1\ndomain = {{ min = [0, 0], max = [1, 1] }}\n{extra}\n")
+}
+
+fn assert_shows(text: &str, pieces: &[&str]) {
+    let shown = mistakes(text);
+    for piece in pieces {
+        assert!(shown.contains(piece), "`{piece}` is missing in\n{shown}\nfor\n{text}");
+    }
+    let (count, said) = (shown.matches("error: ").count(), pieces.len());
+    assert!(count <= said, "{count} mistakes told, {said} expected in\n{shown}");
+}
+
+#[test]
+fn defaults_are_the_documented_ones() {
+    let case = read(GOOD, "case.toml").unwrap();
+    assert_eq!(case.dimension, Some(2));
+    assert_eq!(case.bodies[0].name.as_deref(), Some("body-1"));
+    assert_eq!(case.bodies[0].placement, Placement { scale: 1.0, rotate: vec![], translate: vec![] });
+    assert_eq!((case.flow.gamma, case.flow.gas_constant, case.flow.alpha), (1.4, 287.05, Angle(0.0)));
+    let c = &case.cloud;
+    assert_eq!((c.layers, c.edge_levels, c.curvature, c.curvature_levels), (6.0, 2, 0.25, 2));
+    assert_eq!((c.blank, c.radius, c.jitter, c.wall_layers), (0.4, 1.6, 0.0, 0));
+    assert_eq!(case.scheme, Scheme::default());
+    assert_eq!(case.time, Temporal::default());
+    assert_eq!(case.adapt, Adapt::default());
+    assert_eq!(case.output, Output::default());
+    assert_eq!(case.boundary, Sides::default());
+    assert_eq!(case.initial, Initial::default());
+    assert_eq!(case.reference, Reference::default());
+}
+
+#[test]
+fn conveniences_mean_what_they_say() {
+    let text = "[flow]\nmach = 0.8\nalpha = \"1.25 deg\"\n[[body]]\nnaca = { digits = \"0012\", trailing_edge = \"blunt\" }\n\
+                chord = 2\nrotate = \"3 deg\"\ntranslate = [\"1 ft\", 2]\n[cloud]\nspacing = \"10 mm\"\n[boundary]\n\
+                x_min = \"held\"\nx_max = { outflow = { pressure = 0.9 } }\ny_max = \"outflow\"\n\
+                [time.explicit]\nuntil = \"20 ms\"\n[adapt]\nparticles = 2e6\n[[compare]]\nfile = \"a.csv\"\n";
+    let case = read(text, "dir/wing.toml").unwrap_or_else(|e| panic!("{e}"));
+    assert_eq!(case.title, "wing");
+    let Shape::Naca(naca) = &case.bodies[0].shape else { panic!("{:?}", case.bodies) };
+    assert_eq!((naca.digits.as_str(), naca.trailing_edge), ("0012", TrailingEdge::Blunt));
+    let placement = &case.bodies[0].placement;
+    assert_eq!((placement.scale, placement.rotate.len(), placement.translate[0].0), (2.0, 1, 0.3048));
+    assert_eq!(case.boundary.x_max, Side::Outflow { pressure: Some(0.9) });
+    assert_eq!(case.boundary.y_max, Side::Outflow { pressure: None });
+    let Temporal::Explicit(march) = &case.time else { panic!("{:?}", case.time) };
+    assert_eq!((march.until.0, march.method), (0.02, RungeKutta::Ssprk3));
+}
+
+#[test]
+fn fields_at_the_start_are_read() {
+    let vortex = open("[initial]\nvortex = { strength = 5, centre = [0, 0], velocity = [1, 0] }");
+    let vortex = read(&vortex, "c").unwrap().initial;
+    assert_eq!(vortex, Initial::Vortex { strength: 5.0, centre: [0.0, 0.0], velocity: [1.0, 0.0] });
+    for text in ["[initial]\nringleb = {}", "[initial.ringleb]"] {
+        assert_eq!(read(&open(text), "c").unwrap().initial, Initial::Ringleb);
+    }
+    let tube = "initial.riemann = { left = [1, 0, 1], right = [0.125, 0, 0.1] }\n[cloud]\nspacing = 0.01\n\
+                domain = { min = [0, 0], max = [1, 0.1] }\n[boundary]\nx_min = \"held\"\nx_max = \"outflow\"\n\
+                y_min = \"periodic\"\ny_max = \"periodic\"\n";
+    let case = read(tube, "c").unwrap_or_else(|e| panic!("{e}"));
+    assert_eq!(case.flow.reference().speed, 0.0);
+    assert_shows(
+        &tube.replace("x_min = \"held\"\n", ""),
+        &["`boundary.x_min` is `far_field`, but the free stream has"],
+    );
+}
+
+#[test]
+fn all_mistakes_are_told_at_once_with_their_places() {
+    let text = "[flow]\nmach = -1\nalpha = 1.25\n[[body]]\nnacca = \"0012\"\n[cloud]\nspacng = 0.01\nblank = 0.9\n\
+                layers = \"six\"\n[scheme]\nflux = \"hlc\"\norder = 3\n[time.steady]\nmach = 1\n";
+    assert_shows(
+        text,
+        &[
+            "case.toml:2:8",
+            "allowed: greater than 0",
+            "an angle `1.25` has no unit",
+            "hint: write `\"1.25 deg\"` with one of the units rad, deg, °, mrad",
+            "did you mean `naca`?",
+            "did you mean `spacing`?",
+            "case.toml:8:9",
+            "`cloud.blank` is 0.9, but must be from 0.3 to 0.6",
+            "`cloud.layers` must be a number from 3 to 1000, not a text",
+            "did you mean `\"hllc\"`?",
+            "`scheme.order` is 3, but must be a whole number from 1 to 2",
+            "`mach` belongs in `[flow]`",
+            "9 mistakes in `case.toml`",
+        ],
+    );
+}
+
+#[test]
+fn rendering_points_at_the_value() {
+    let shown = mistakes(&GOOD.replace("0.01", "0.01\nblank = 0.9"));
+    let expected = "error: `cloud.blank` is 0.9, but must be from 0.3 to 0.6
+ --> case.toml:8:9
+  |
+8 | blank = 0.9
+  |         ^^^ allowed: from 0.3 to 0.6
+
+1 mistake in `case.toml`";
+    assert_eq!(shown, expected);
+    assert!(read("[cloud]\nspacing = 0", "c").unwrap_err().render(true).contains("\u{1b}["));
+}
+
+#[test]
+fn broken_toml_is_told_with_the_other_mistakes() {
+    let text = "[flow]\nmach = = 0.8\n[cloud]\nspacng = 0.01\nblank = 0.9\nlayers = [1,\n";
+    let shown = mistakes(text);
+    assert!(shown.contains("case.toml:2:") && shown.contains("this is not TOML"), "{shown}");
+    assert!(shown.contains("did you mean `spacing`?") && shown.contains("case.toml:5:9"), "{shown}");
+    assert!(!shown.contains("missing"), "{shown}");
+}
+
+#[test]
+fn free_streams_that_contradict_themselves_are_refused() {
+    let flow = |keys: &str| GOOD.replace("mach = 0.8", keys);
+    assert_shows(
+        &flow("mach = 0.8\nvelocity = 1\npressure = 1\ndensity = 1"),
+        &["`mach` and `velocity` are both given"],
+    );
+    assert_shows(&flow("gamma = 1.3"), &["the free stream has no speed"]);
+    assert_shows(&flow("velocity = 1"), &["`velocity` needs a dimensional free stream"]);
+    assert_shows(&flow("mach = 1\npressure = 1"), &["`flow.pressure` alone does not fix a dimensional"]);
+    assert_shows(&flow("mach = 1\npressure = 1\ndensity = 1\ntemperature = 1"), &["contradict each other"]);
+    assert_shows(&flow("mach = 1\nbeta = \"1 deg\""), &["`flow.beta` needs a 3-D case"]);
+    assert_shows(
+        &flow("mach = nan\ngamma = 1"),
+        &["`flow.mach` is nan", "`flow.gamma` is 1, but must be greater than 1"],
+    );
+}
+
+#[test]
+fn bodies_that_contradict_themselves_are_refused() {
+    let body = |keys: &str| GOOD.replace("naca = \"0012\"", keys);
+    assert_shows(&body("naca = \"0012\"\ncircle = { radius = 1 }"), &["`body[0]` has 2 shapes, `naca` and `circle`"]);
+    assert_shows(
+        &body("naca = \"0012\"\n[[body]]\nsphere.radius = 1"),
+        &["`body[1].sphere` is 3-D, but `body[0].naca` is"],
+    );
+    assert_shows(&body("scale = 2"), &["`body[0]` has no shape"]);
+    assert_shows(&body("naca = \"23012\""), &["`23012` is no NACA 4-digit section"]);
+    assert_shows(&body("naca = \"2012\""), &["half a camber line"]);
+    assert_shows(&body("naca = \"0012\"\nrotate = [\"1 deg\", 0, 0]"), &["`body[0].rotate` has 3 angles"]);
+    assert_shows(&body("naca = \"0012\"\ntranslate = [1, 2, 3]"), &["`body[0].translate` has 3 coordinates in a 2-D"]);
+    assert_shows(&body("naca = \"0012\"\nscale = 1\nchord = 2"), &["`body[0].scale` is given twice"]);
+    assert_shows(&body("polygon = [[0, 0], [1, 0], [0, 0]]"), &["corners 3 and 1 of"]);
+    assert_shows(&body("polygon = [[0, 0], [1, 0]]"), &["has 2 values, but must be a list of 3 or more values"]);
+    let twins = "name = \"a\"\nnaca = \"0012\"\n[[body]]\nname = \"a\"\nnaca = \"0012\"";
+    assert_shows(&body(twins), &["two bodies are called `a`"]);
+    assert_shows(&format!("dimension = 3\n{GOOD}"), &["`body[0].naca` is 2-D, but `dimension` is 3-D"]);
+}
+
+#[test]
+fn domains_and_sides_that_contradict_themselves_are_refused() {
+    assert_shows(&GOOD.replace("spacing = 0.01", ""), &["missing key `spacing` in `[cloud]`"]);
+    assert_shows("[flow]\nmach = 1\n[cloud]\nspacing = 1\n", &["a case without bodies needs `cloud.domain`"]);
+    assert_shows("", &["missing table `cloud` in the file", "the free stream has no speed"]);
+    let periodic = open("[boundary]\nx_min = \"periodic\"");
+    assert_shows(&periodic, &["`boundary.x_min` is periodic, but `boundary.x_max` is not"]);
+    assert_shows(&open("[boundary]\nz_min = \"held\""), &["`boundary.z_min` needs a 3-D case"]);
+    assert_shows(&open("[boundary]\nx_min = \"inflow\""), &["allowed: `far_field`, `held`, `outflow`, `symmetry` or"]);
+    assert_shows(&open("[boundary]\nx_min = { held = {}, outflow = {} }"), &["`boundary.x_min` has two alternatives"]);
+    assert_shows(&open("").replace("max = [1, 1]", "max = [1, 0]"), &["`cloud.domain` is empty"]);
+    assert_shows(&open("").replace("spacing = 0.1", "spacing = 2"), &["the domain is only 1 wide"]);
+    let tilted = open("[boundary]\ny_min = \"symmetry\"").replace("mach = 0.5", "mach = 0.5\nalpha = \"1 deg\"");
+    assert_shows(&tilted, &["the free stream crosses the symmetry plane"]);
+    assert_shows(&format!("{GOOD}[boundary]\ny_min = \"symmetry\"\n"), &["a symmetry side needs `cloud.domain`"]);
+    let solid = open("[initial]\nringleb = {}").replace("[0, 0], max = [1, 1]", "[0, 0, 0], max = [1, 1, 1]");
+    assert_shows(&solid, &["`ringleb` is a 2-D flow, but the case is 3-D"]);
+    assert_shows(&format!("initial = \"vortex\"\n{GOOD}"), &["`vortex` needs a table of its own"]);
+    assert_shows(&open("[time.steady]\ncfl = 10\ncfl_max = 1"), &["`cfl` starts at 10, above `cfl_max` = 1"]);
+    assert_shows(&open("[output]\nfield_interval = 1"), &["`output.field_interval` needs a marching run"]);
+    assert_shows(&open("[time.explicit]\ncfl = 0"), &["missing key `until`", "`time.explicit.cfl` is 0"]);
+}
+
+/// Reads `text`; whatever is wrong must have a place inside it and a message that can be shown.
+fn survives(text: &str) {
+    let Err(errors) = read(text, "case.toml") else { return };
+    assert!(!errors.errors.is_empty());
+    for error in &errors.errors {
+        assert!(error.line >= 1 && error.column >= 1 && error.end_column >= error.column);
+        assert!(error.line <= text.matches('\n').count() + 1 && error.span.end <= text.len());
+        assert!(!error.message.contains("does not fit together"), "{}", error.message);
+    }
+    assert!(errors.render(false).contains("--> case.toml:") && !errors.render(true).is_empty());
+}
+
+fn piece() -> impl Strategy<Value = String> {
+    let pieces = [
+        "",
+        "=",
+        "[",
+        "]]",
+        "{",
+        "\"",
+        "'''",
+        "#",
+        "\n",
+        "\r",
+        ".",
+        "naca",
+        "[[body]]\n",
+        "[cloud]\n",
+        "nan",
+        "-1",
+        "é",
+        "\u{0}",
+        "1e400",
+        "0x7f",
+        "true",
+        "[boundary]\n",
+        "x_min = \"periodic\"\n",
+        "[0, 0]",
+        "1979-05-27",
+        ",",
+        "99999999999999999999",
+        "[initial.vortex]\n",
+        "[time]\n",
+        "{}",
+        "\t",
+        "\u{202e}",
+        "\u{1b}[31m",
+        "[[cloud.box]]\n",
+        "[[[[[[",
+        "[flow.mach]\n",
+    ];
+    prop_oneof![proptest::sample::select(pieces.to_vec()).prop_map(str::to_owned), "\\PC{0,6}"]
+}
+
+proptest! {
+    #[test]
+    fn mutated_cases_never_panic(which in 0..3_usize, edits in prop::collection::vec((any::<u16>(), 0..12_u8, piece()), 1..6)) {
+        let mut text = template(TEMPLATES[which].0).unwrap();
+        for (at, cut, piece) in edits {
+            let chars: Vec<char> = text.chars().collect();
+            let at = usize::from(at) % (chars.len() + 1);
+            let end = (at + usize::from(cut)).min(chars.len());
+            text = chars[..at].iter().collect::<String>() + &piece + &chars[end..].iter().collect::<String>();
+        }
+        survives(&text);
+    }
+
+    #[test]
+    fn shuffled_lines_never_panic(picks in prop::collection::vec(any::<u16>(), 0..40)) {
+        let all: String = TEMPLATES.iter().filter_map(|(name, _)| template(name)).collect();
+        let lines: Vec<&str> = all.lines().map(|l| l.trim_start_matches("# ")).collect();
+        let text: Vec<&str> = picks.iter().map(|i| lines[usize::from(*i) % lines.len()]).collect();
+        survives(&text.join("\n"));
+    }
+
+    #[test]
+    fn any_text_never_panics(text in "(\\PC|\n){0,200}") {
+        survives(&text);
+    }
+}
