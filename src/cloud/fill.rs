@@ -6,7 +6,7 @@ use super::interface::{Placed, place};
 use super::layout::Layout;
 use super::neighbours::NEAR;
 use super::tree::{Leaf, MAX_LEVEL, Tree};
-use super::Interface;
+use super::{Interface, Transform};
 use crate::case::{Cloud as Spec, Side};
 use crate::geometry::Surface;
 use crate::math::hilbert::hilbert_index;
@@ -42,13 +42,16 @@ pub struct Particles<const D: usize> {
 
 impl<const D: usize> Particles<D> {
     /// Places all particles of a background.
-    pub fn fill(tree: Tree<D>, layout: &Layout<D>, spec: &Spec, surface: Option<&Surface<D>>) -> Self {
-        let placed = surface.map(|s| place(s, &tree)).unwrap_or_default();
+    pub fn fill(
+        tree: Tree<D>, layout: &Layout<D>, transforms: &[Transform<D>], spec: &Spec, surface: Option<&Surface<D>>,
+    ) -> Self {
+        let placed = surface.map(|s| place(s, &tree, &layout.planes())).unwrap_or_default();
         let mut fluid = Vec::new();
         let mut outer = Vec::new();
         let leaves: Vec<Leaf<D>> = tree.leaves().collect();
         let mut distance = vec![None; leaves.len()];
-        sweep(&mut distance, |k| wall_distance(&leaves[k], spec, surface));
+        let walls = Walls { surface, domain: tree.bounds(), back: transforms.iter().map(Transform::inverse).collect() };
+        sweep(&mut distance, |k| walls.distance(&leaves[k], spec.blank));
         for (leaf, distance) in leaves.iter().zip(&distance) {
             let Some(distance) = distance else { continue };
             match side_of(leaf, &tree.bounds(), &layout.sides) {
@@ -157,14 +160,29 @@ impl<const D: usize> Particles<D> {
     }
 }
 
-/// Distance from a leaf to the surface, infinite when far; `None` when the leaf is to be left empty.
-fn wall_distance<const D: usize>(leaf: &Leaf<D>, spec: &Spec, surface: Option<&Surface<D>>) -> Option<f64> {
-    let Some(surface) = surface else { return Some(f64::INFINITY) };
-    let near = surface.nearest(&leaf.centre, (NEAR + 1.0) * leaf.size);
-    if near.as_ref().is_some_and(|n| n.distance < spec.blank * leaf.size) || surface.inside(&leaf.centre) {
-        return None;
+/// The surface and its images beyond the sides of the domain.
+struct Walls<'a, const D: usize> {
+    surface: Option<&'a Surface<D>>,
+    domain: Bounds<D>,
+    back: Vec<Transform<D>>,
+}
+
+impl<const D: usize> Walls<'_, D> {
+    /// Distance from a leaf to the surface, infinite when far; `None` when the leaf is to be left empty.
+    fn distance(&self, leaf: &Leaf<D>, blank: f64) -> Option<f64> {
+        let Some(surface) = self.surface else { return Some(f64::INFINITY) };
+        let reach = (NEAR + 1.0) * leaf.size;
+        let images = self.back.iter().map(|t| t.point(&leaf.centre));
+        let images = images.filter(|x| self.domain.distance_squared(x) <= reach * reach);
+        let mut distance = f64::INFINITY;
+        for x in std::iter::once(leaf.centre).chain(images) {
+            distance = surface.nearest(&x, reach.min(distance)).map_or(distance, |n| n.distance);
+            if distance < blank * leaf.size || surface.inside(&x) {
+                return None;
+            }
+        }
+        Some(distance)
     }
-    Some(near.map_or(f64::INFINITY, |n| n.distance))
 }
 
 /// Drops fluid leaves whose centre is too near to an interface particle.

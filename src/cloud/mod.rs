@@ -4,11 +4,14 @@
 //! the surfaces, *outer* particles on the sides of the domain, and *images* of particles across planes of symmetry and
 //! periodic sides. Only fluid particles evolve; the state of the others follows from theirs.
 pub mod build;
+pub mod doctor;
 pub mod fill;
+pub mod grid;
 pub mod interface;
 pub mod layout;
 pub mod neighbours;
 pub mod operators;
+pub mod repair;
 pub mod sources;
 pub mod tree;
 
@@ -17,6 +20,7 @@ use std::ops::Range;
 use crate::case::Side;
 use crate::math::Vector;
 
+pub use doctor::Diagnosis;
 pub use layout::Layout;
 pub use neighbours::Neighbours;
 pub use operators::{Edge, Operators};
@@ -70,6 +74,12 @@ impl<const D: usize> Transform<D> {
         Vector::from_fn(|d| self.sign[d] * v[d])
     }
 
+    /// True when this transform undoes another, up to round-off.
+    pub fn undoes(&self, other: &Self) -> bool {
+        let back = other.inverse();
+        self.sign == back.sign && (self.offset - back.offset).max_abs() <= 1e-9 * back.offset.max_abs()
+    }
+
     /// The transform that undoes this one.
     pub fn inverse(&self) -> Self {
         Self { sign: self.sign, offset: Vector::from_fn(|d| -self.sign[d] * self.offset[d]) }
@@ -110,6 +120,8 @@ pub struct Cloud<const D: usize> {
     pub neighbours: Neighbours,
     /// Fluid particles from which the state of each interface particle is fitted.
     pub wall_clouds: Neighbours,
+    /// Particles, in ascending order, whose reconstruction stays first order: too few neighbours around them.
+    pub first_order: Vec<u32>,
     /// The background.
     pub tree: tree::Tree<D>,
     /// What had to be repaired, in words.

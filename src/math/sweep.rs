@@ -19,6 +19,11 @@ pub fn sweep<T: Send>(out: &mut [T], f: impl Fn(usize) -> T + Sync) {
     });
 }
 
+/// Sets `out[i] = f(i)` for every `i` where each one is much work.
+pub fn sweep_each<T: Send>(out: &mut [T], f: impl Fn(usize) -> T + Sync) {
+    out.par_iter_mut().enumerate().for_each(|(i, slot)| *slot = f(i));
+}
+
 /// Calls `f(i, row)` for every row of `width` values of `out`.
 pub fn sweep_rows(out: &mut [f64], width: usize, f: impl Fn(usize, &mut [f64]) + Sync) {
     out.par_chunks_mut(CHUNK * width).enumerate().for_each(|(c, chunk)| {

@@ -131,6 +131,7 @@ impl<const D: usize> Fluid<D> {
                 }
             }
         });
+        cloud.first_order.iter().for_each(|i| rows[*i as usize] = Gradient::ZERO);
         let rows = &*rows;
         sweep(&mut rest[cloud.outer.len()..], |k| {
             let image = &cloud.images[k];
