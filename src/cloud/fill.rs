@@ -10,7 +10,7 @@ use super::{Interface, Transform};
 use crate::case::{Cloud as Spec, Side};
 use crate::geometry::Surface;
 use crate::math::hilbert::hilbert_index;
-use crate::math::sweep::sweep;
+use crate::math::sweep::{order_by_key, sweep};
 use crate::math::{Bounds, Vector};
 
 /// Interface particles keep this distance, in spacings, from fluid particles.
@@ -60,9 +60,8 @@ impl<const D: usize> Particles<D> {
             }
         }
         blank_near_interface(&tree, &placed, &mut fluid);
-        let key = |leaf: &Leaf<D>| curve_position(&tree, leaf);
-        fluid.sort_by_cached_key(|(leaf, _)| key(leaf));
-        outer.sort_by_cached_key(|(leaf, _)| key(leaf));
+        let fluid = along_curve(&tree, &fluid);
+        let outer = along_curve(&tree, &outer);
         Self::assemble(tree, layout, spec.jitter, (fluid, placed, outer))
     }
 
@@ -213,6 +212,12 @@ fn side_of<const D: usize>(leaf: &Leaf<D>, bounds: &Bounds<D>, sides: &[[Side; 2
         }
     }
     found
+}
+
+/// Leaves, with what belongs to them, in the order of a space-filling curve.
+fn along_curve<const D: usize, T: Copy + Sync>(tree: &Tree<D>, leaves: &[(Leaf<D>, T)]) -> Vec<(Leaf<D>, T)> {
+    let order = order_by_key(leaves.len(), |k| curve_position(tree, &leaves[k].0));
+    order.into_iter().map(|k| leaves[k as usize]).collect()
 }
 
 fn curve_position<const D: usize>(tree: &Tree<D>, leaf: &Leaf<D>) -> u64 {

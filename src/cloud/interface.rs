@@ -12,7 +12,7 @@ use super::Interface;
 use super::grid::Grid;
 use super::tree::Tree;
 use crate::geometry::{Chain, Surface};
-use crate::math::sweep::sweep;
+use crate::math::sweep::{order_by_key, sweep};
 use crate::math::{Bounds, Vector};
 
 /// Spacing along the outline in cells of the background (2-D).
@@ -229,6 +229,7 @@ impl<const D: usize> Walk<'_, D> {
 }
 
 /// A small piece of surface.
+#[derive(Clone, Copy)]
 struct Sample<const D: usize> {
     x: Vector<D>,
     normal: Vector<D>,
@@ -249,7 +250,7 @@ fn scatter<const D: usize>(surface: &Surface<D>, tree: &Tree<D>, planes: &[Plane
             }
         },
     );
-    sort_along_curve(&mut samples);
+    let samples = sort_along_curve(samples);
     let (mut chosen, mut owner) = pick(&samples);
     for _ in 0..LLOYD_ROUNDS {
         assign(&samples, &chosen, &mut owner);
@@ -259,11 +260,12 @@ fn scatter<const D: usize>(surface: &Surface<D>, tree: &Tree<D>, planes: &[Plane
     gather(surface, &samples, &chosen, &owner)
 }
 
-fn sort_along_curve<const D: usize>(samples: &mut [Sample<D>]) {
+fn sort_along_curve<const D: usize>(samples: Vec<Sample<D>>) -> Vec<Sample<D>> {
     let bounds = Bounds::around(samples.iter().map(|s| &s.x));
     let scale = f64::from(1u32 << 20) / (bounds.extent().max_abs() * 1.0001);
     let cell = |s: &Sample<D>| std::array::from_fn::<u32, D, _>(|d| ((s.x[d] - bounds.min[d]) * scale) as u32);
-    samples.sort_by_cached_key(|s| (crate::math::hilbert::hilbert_index(cell(s), 20), s.element));
+    let order = order_by_key(samples.len(), |k| crate::math::hilbert::hilbert_index(cell(&samples[k]), 20));
+    order.into_iter().map(|k| samples[k as usize]).collect()
 }
 
 /// Samples that keep `PICK_SPACING` between them, first come first served, and for every sample the one that is in its way.

@@ -26,6 +26,8 @@ const FIT_REACH: f64 = 3.2;
 const FIT_REACH_WIDE: f64 = 6.4;
 /// How far, in spacings, an interface particle without any fluid in sight looks for the nearest.
 const FIT_REACH_LAST: f64 = 200.0;
+/// Share of the distance to the surface that is surely free.
+const FREE: f64 = 0.99;
 /// Slack with which leaves count as touching, in spacings.
 const TOUCH: f64 = 1e-6;
 
@@ -141,6 +143,13 @@ pub struct Clouds<const D: usize> {
     pub n_crevice: usize,
 }
 
+/// Whether a line of sight is tested.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Sight {
+    Tested,
+    Granted,
+}
+
 /// Search over the particles of a tree.
 pub struct Search<'a, const D: usize> {
     particles: &'a Particles<D>,
@@ -167,7 +176,7 @@ impl<'a, const D: usize> Search<'a, D> {
     /// Clouds of all fluid and interface particles, repaired where needed.
     pub fn clouds(&self) -> Result<Clouds<D>, CloudError> {
         let p = self.particles;
-        let rows = Rows::new(p.n_rows(), |i, list| self.cloud_of(i, list));
+        let rows = self.mutual(&Rows::new(p.n_rows(), |i, list| self.cloud_of(i, list)));
         let walls = Rows::new(p.interface.len(), |w, list| self.fluid_in_front(w + p.n_fluid, list));
         let mut repair = Repair::of(self, &rows);
         let blind = (0..p.interface.len()).filter(|w| walls.of(*w).is_empty());
@@ -175,10 +184,7 @@ impl<'a, const D: usize> Search<'a, D> {
         if !repair.refused.is_empty() {
             return Err(CloudError::Quality(repair.refused));
         }
-        let mut extra = self.one_way(&rows);
-        extra.extend(&repair.extra);
-        extra.sort_unstable();
-        extra.dedup();
+        let extra = &repair.extra;
         let mut images: Vec<Seen> =
             rows.images().chain(walls.images()).chain(extra.iter().map(|e| e.1).filter(|s| s.1 != IDENTITY)).collect();
         images.sort_unstable();
@@ -189,28 +195,23 @@ impl<'a, const D: usize> Search<'a, D> {
             _ => first_image + images.binary_search(s).unwrap_or(0) as u32,
         };
         let n_crevice = (0..p.interface.len()).filter(|w| walls.of(*w).len() <= D).count();
-        let (neighbours, wall_clouds) = (rows.pack(&extra, number), walls.pack(&[], number));
+        let (neighbours, wall_clouds) = (rows.pack(extra, number), walls.pack(&[], number));
         let images = images.iter().map(|s| Image { source: s.0, transform: s.1 }).collect();
         Ok(Clouds { neighbours, wall_clouds, images, repair, n_crevice })
     }
 
-    /// Entries that make the graph symmetric where round-off, or an abrupt change of spacing, decided otherwise for the two
-    /// ends of a pair. Pairs of the regular background cannot disagree.
-    fn one_way(&self, rows: &Rows) -> Vec<(u32, Seen)> {
+    /// Drops what does not see back: lines of sight are tested at one end only, and round-off, or an abrupt change of
+    /// spacing, can decide otherwise at the other. Pairs of the regular background cannot disagree.
+    fn mutual(&self, rows: &Rows) -> Rows {
         let p = self.particles;
-        let mut extra = Rows::new(p.n_rows(), |i, list| {
+        Rows::new(p.n_rows(), |i, list| {
             let near = p.is_interface(i) || self.near(i);
-            for s in rows.of(i).iter().filter(|s| near || s.1 != IDENTITY) {
-                if self.seen_from(i, *s).is_some_and(|(k, back)| !rows.of(k as usize).contains(&back)) {
-                    list.push(*s);
-                }
-            }
-        });
-        let n = p.n_rows();
-        let missing = (0..n).flat_map(|i| extra.of(i).iter().map(move |s| (i, *s)));
-        let back = missing.filter_map(|(i, s)| self.seen_from(i, s)).collect();
-        extra.chunks.clear();
-        back
+            let agreed = |s: &&Seen| {
+                let doubtful = near || s.1 != IDENTITY || p.is_interface(s.0 as usize);
+                !doubtful || self.seen_from(i, **s).is_none_or(|(k, back)| rows.of(k as usize).contains(&back))
+            };
+            list.extend(rows.of(i).iter().filter(agreed));
+        })
     }
 
     /// The entry that particle `i` is in the row of what it sees, if that has one.
@@ -222,7 +223,7 @@ impl<'a, const D: usize> Search<'a, D> {
 
     fn cloud_of(&self, i: usize, list: &mut Vec<Seen>) {
         self.candidates(i, self.reach(i), |k, t| {
-            if self.sees(i, k as usize, t, self.radius) {
+            if self.sees(i, k as usize, t) {
                 list.push((k, t));
             }
         });
@@ -232,7 +233,7 @@ impl<'a, const D: usize> Search<'a, D> {
     pub(super) fn visible_within(&self, i: usize, radius: f64) -> Vec<Seen> {
         let mut list = Vec::new();
         self.candidates(i, radius * self.particles.spacing[i], |k, t| {
-            if self.sees_in_ball(i, k as usize, t, radius) {
+            if self.sees_in_ball(i, k as usize, t, radius, Sight::Tested) {
                 list.push((k, t));
             }
         });
@@ -326,27 +327,30 @@ impl<'a, const D: usize> Search<'a, D> {
     }
 
     /// Whether particle `i` has particle `k`, moved by transform `t`, in its cloud.
-    fn sees(&self, i: usize, k: usize, t: u8, radius: f64) -> bool {
+    fn sees(&self, i: usize, k: usize, t: u8) -> bool {
         let p = self.particles;
         let wall = p.is_interface(i) || p.is_interface(k);
         let near = wall || self.near(i) || self.near(k);
         if !wall && !self.leaves_touch(i, k, t, near) {
             return false;
         }
-        !near || self.sees_in_ball(i, k, t, radius)
+        // the end with the smaller index looks whether the way is free
+        let test = if i <= k { Sight::Tested } else { Sight::Granted };
+        !near || self.sees_in_ball(i, k, t, self.radius, test)
     }
 
     /// Whether particle `i` has particle `k` in sight, within `radius` of their mean spacing.
-    fn sees_in_ball(&self, i: usize, k: usize, t: u8, radius: f64) -> bool {
+    fn sees_in_ball(&self, i: usize, k: usize, t: u8, radius: f64, sight: Sight) -> bool {
         let p = self.particles;
         let d = self.position(k, t) - p.x[i];
         if d.norm() > radius * self.mean_spacing(i, k) {
             return false;
         }
+        let in_sight = || sight == Sight::Granted || self.in_sight(i, k, t, &d);
         match (p.is_interface(i), p.is_interface(k)) {
-            (false, false) => self.in_sight(i, k, t, &d),
-            (true, false) => self.in_front(i, &d, IDENTITY) && self.in_sight(i, k, t, &d),
-            (false, true) => self.in_front(k, &-d, t) && self.in_sight(i, k, t, &d),
+            (false, false) => in_sight(),
+            (true, false) => self.in_front(i, &d, IDENTITY) && in_sight(),
+            (false, true) => self.in_front(k, &-d, t) && in_sight(),
             (true, true) => self.walls_see(i, k, t),
         }
     }
@@ -402,9 +406,11 @@ impl<'a, const D: usize> Search<'a, D> {
         };
         let lift_k = if t == IDENTITY { lifted(k) } else { self.transforms[t as usize].direction(&lifted(k)) };
         let (a, b) = (p.x[i] + lifted(i), p.x[i] + *d + lift_k);
-        // the same order for both ends of a pair, so that both get the same answer
+        // balls around both ends are free of surface: only what they do not cover is tested
+        let way = (b - a) * (FREE / d.norm());
+        let (a, b) = (a + way * p.wall_distance[i], b - way * p.wall_distance[k]);
         if t == IDENTITY {
-            return if i < k { !self.blocked(&a, &b) } else { !self.blocked(&b, &a) };
+            return !self.blocked(&a, &b);
         }
         // the part of the way beyond the side of the domain may be blocked by the image of a body
         let back = self.transforms[t as usize].inverse();

@@ -116,25 +116,41 @@ impl<const D: usize> Tree<D> {
         let mut cell: [i64; D] = std::array::from_fn(|d| root(low[d], d));
         loop {
             let k = (0..D).rev().fold(0, |k, d| k * i64::from(self.roots[d]) + cell[d]);
-            self.descend(k as u32, &low, &high, &mut f);
+            if self.meets(k as u32, &low, &high) {
+                self.descend(k as u32, &low, &high, &mut f);
+            }
             let Some(d) = (0..D).find(|d| cell[*d] < root(high[*d], *d)) else { return };
             cell[d] += 1;
             (0..d).for_each(|e| cell[e] = root(low[e], e));
         }
     }
 
-    fn descend(&self, k: u32, low: &[i64; D], high: &[i64; D], f: &mut impl FnMut(u32)) {
+    fn meets(&self, k: u32, low: &[i64; D], high: &[i64; D]) -> bool {
         let node = &self.nodes[k as usize];
         let size = 1i64 << (MAX_LEVEL - node.level);
-        let apart = (0..D).any(|d| i64::from(node.anchor[d]) > high[d] || i64::from(node.anchor[d]) + size <= low[d]);
-        if apart {
-            return;
-        }
+        (0..D).all(|d| i64::from(node.anchor[d]) <= high[d] && i64::from(node.anchor[d]) + size > low[d])
+    }
+
+    /// Visits the leaves below cell `k`, which meets the box from `low` to `high`.
+    fn descend(&self, k: u32, low: &[i64; D], high: &[i64; D], f: &mut impl FnMut(u32)) {
+        let node = &self.nodes[k as usize];
         if node.first_child == NONE {
             f(k);
             return;
         }
-        (0..1u32 << D).for_each(|c| self.descend(node.first_child + c, low, high, f));
+        let half = 1i64 << (MAX_LEVEL - node.level - 1);
+        // bit d: no child on the lower (upper) side of axis d meets the box
+        let (mut no_lower, mut no_upper) = (0, 0);
+        for d in 0..D {
+            let middle = i64::from(node.anchor[d]) + half;
+            no_lower |= u32::from(low[d] >= middle) << d;
+            no_upper |= u32::from(high[d] < middle) << d;
+        }
+        for c in 0..1u32 << D {
+            if c & no_upper == 0 && !c & no_lower == 0 {
+                self.descend(node.first_child + c, low, high, f);
+            }
+        }
     }
 
     fn unit(&self) -> f64 {

@@ -11,6 +11,9 @@ use super::Vector;
 
 /// Condition number of the scaled normal matrix above which Cholesky is not trusted: √ of it is lost digits of the rows.
 const CHOLESKY_CONDITION: f64 = 1e8;
+/// Off-diagonal elements, relative to the trace, at which Jacobi rotations end: they converge quadratically, so that the
+/// eigenvalues are exact to round-off.
+const EIGEN_TOLERANCE: f64 = 1e-9;
 /// Ratio of smallest to largest diagonal of R below which the rows count as rank deficient.
 const RANK_TOLERANCE: f64 = 1e-10;
 
@@ -115,6 +118,7 @@ pub fn condition_symmetric<const D: usize>(m: &[[f64; D]; D]) -> f64 {
 /// Eigenvalues of a small symmetric matrix by cyclic Jacobi rotations.
 fn eigenvalues_symmetric<const D: usize>(m: &[[f64; D]; D]) -> [f64; D] {
     let mut a = *m;
+    let size: f64 = (0..D).map(|d| m[d][d].abs()).sum();
     for _ in 0..12 {
         let mut off = 0.0;
         for p in 0..D {
@@ -123,7 +127,7 @@ fn eigenvalues_symmetric<const D: usize>(m: &[[f64; D]; D]) -> [f64; D] {
                 rotate_symmetric(&mut a, p, q);
             }
         }
-        if off == 0.0 {
+        if off <= (EIGEN_TOLERANCE * size).powi(2) {
             break;
         }
     }

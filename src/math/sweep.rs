@@ -24,6 +24,14 @@ pub fn sweep_each<T: Send>(out: &mut [T], f: impl Fn(usize) -> T + Sync) {
     out.par_iter_mut().enumerate().for_each(|(i, slot)| *slot = f(i));
 }
 
+/// The numbers `0..n` in the order of `key`, ties in their own order.
+pub fn order_by_key(n: usize, key: impl Fn(usize) -> u64 + Sync) -> Vec<u32> {
+    let mut keys = vec![(0, 0); n];
+    sweep(&mut keys, |i| (key(i), i as u32));
+    keys.par_sort_unstable();
+    keys.into_iter().map(|k| k.1).collect()
+}
+
 /// Calls `f(i, row)` for every row of `width` values of `out`.
 pub fn sweep_rows(out: &mut [f64], width: usize, f: impl Fn(usize, &mut [f64]) + Sync) {
     out.par_chunks_mut(CHUNK * width).enumerate().for_each(|(c, chunk)| {
