@@ -25,7 +25,9 @@ impl<const D: usize> Cloud<D> {
         repair.moved.iter().for_each(|(i, place)| particles.x[*i as usize] = *place);
         let mut notes = repair.notes();
         if n_crevice > 0 {
-            notes.push(format!("{n_crevice} interface particles lie in crevices and take the state of the nearest fluid"));
+            notes.push(format!(
+                "{n_crevice} interface particles lie in crevices and take the state of the nearest fluid"
+            ));
         }
         let outer = outer_particles(&particles);
         let mut cloud = Self {

@@ -8,9 +8,9 @@
 //! built.
 use serde::Serialize;
 
+use super::Cloud;
 use super::grid::Grid;
 use super::repair::Sums;
-use super::Cloud;
 use crate::math::Vector;
 use crate::math::sweep::{CHUNK, sweep_each};
 
@@ -92,13 +92,43 @@ struct Measure {
 }
 
 const MEASURES: [Measure; 7] = [
-    Measure { name: "neighbours", unit: "", edges: &[0., 2., 4., 6., 8., 10., 12., 14., 16., 20., 24., 28., 32., 40., 60.], small_is_bad: true },
-    Measure { name: "condition number", unit: "", edges: &[1., 1.5, 2., 3., 5., 10., 20., 50., 100., 1e3, 1e4, 1e6], small_is_bad: false },
-    Measure { name: "one-sidedness", unit: "", edges: &[0., 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0], small_is_bad: false },
+    Measure {
+        name: "neighbours",
+        unit: "",
+        edges: &[0., 2., 4., 6., 8., 10., 12., 14., 16., 20., 24., 28., 32., 40., 60.],
+        small_is_bad: true,
+    },
+    Measure {
+        name: "condition number",
+        unit: "",
+        edges: &[1., 1.5, 2., 3., 5., 10., 20., 50., 100., 1e3, 1e4, 1e6],
+        small_is_bad: false,
+    },
+    Measure {
+        name: "one-sidedness",
+        unit: "",
+        edges: &[0., 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0],
+        small_is_bad: false,
+    },
     Measure { name: "empty sectors", unit: "", edges: &[0., 1., 2., 3., 4., 5., 6., 7., 8.], small_is_bad: false },
-    Measure { name: "nearest neighbour", unit: "spacings", edges: &[0., 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.2, 1.5], small_is_bad: true },
-    Measure { name: "angle between neighbouring normals", unit: "degrees", edges: &[0., 1., 2., 5., 10., 15., 20., 30., 45., 60., 90., 180.], small_is_bad: false },
-    Measure { name: "gap between walls", unit: "spacings", edges: &[0., 0.5, 1., 1.5, 2., 2.5, 3., 3.5, 4.], small_is_bad: true },
+    Measure {
+        name: "nearest neighbour",
+        unit: "spacings",
+        edges: &[0., 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.2, 1.5],
+        small_is_bad: true,
+    },
+    Measure {
+        name: "angle between neighbouring normals",
+        unit: "degrees",
+        edges: &[0., 1., 2., 5., 10., 15., 20., 30., 45., 60., 90., 180.],
+        small_is_bad: false,
+    },
+    Measure {
+        name: "gap between walls",
+        unit: "spacings",
+        edges: &[0., 0.5, 1., 1.5, 2., 2.5, 3., 3.5, 4.],
+        small_is_bad: true,
+    },
 ];
 const ANGLE: usize = 5;
 const GAP: usize = 6;
@@ -113,7 +143,11 @@ struct Tally {
 
 impl Tally {
     fn new() -> Self {
-        Self { counts: std::array::from_fn(|m| vec![0; MEASURES[m].edges.len() - 1]), neighbours: (usize::MAX, 0, 0), ..Self::default() }
+        Self {
+            counts: std::array::from_fn(|m| vec![0; MEASURES[m].edges.len() - 1]),
+            neighbours: (usize::MAX, 0, 0),
+            ..Self::default()
+        }
     }
 
     /// Counts `value` of measure `m` at particle `i`.
@@ -176,7 +210,12 @@ impl Diagnosis {
 fn histograms(tally: &Tally) -> Vec<Histogram> {
     let filled = MEASURES.iter().zip(&tally.counts).filter(|(_, counts)| counts.iter().any(|c| *c > 0));
     filled
-        .map(|(m, counts)| Histogram { name: m.name.into(), unit: m.unit.into(), edges: m.edges.to_vec(), counts: counts.clone() })
+        .map(|(m, counts)| Histogram {
+            name: m.name.into(),
+            unit: m.unit.into(),
+            edges: m.edges.to_vec(),
+            counts: counts.clone(),
+        })
         .collect()
 }
 
@@ -205,10 +244,13 @@ fn examine<const D: usize>(cloud: &Cloud<D>, walls: &WallGrid<'_, D>, i: usize, 
         let d = cloud.x[*j as usize] - x;
         sums.add(&d);
         nearest = nearest.min(d.norm() / (0.5 * (h + cloud.spacing[*j as usize])));
-        seen |= sectors(&match wall {
-            Some(w) => across(&d, &w.normal),
-            None => d,
-        }, wall.is_some());
+        seen |= sectors(
+            &match wall {
+                Some(w) => across(&d, &w.normal),
+                None => d,
+            },
+            wall.is_some(),
+        );
     }
     let n = row.len();
     tally.neighbours = (tally.neighbours.0.min(n), tally.neighbours.1 + n, tally.neighbours.2.max(n));
@@ -227,7 +269,13 @@ fn examine<const D: usize>(cloud: &Cloud<D>, walls: &WallGrid<'_, D>, i: usize, 
     }
 }
 
-fn examine_wall<const D: usize>(cloud: &Cloud<D>, walls: &WallGrid<'_, D>, i: usize, normal: &Vector<D>, tally: &mut Tally) {
+fn examine_wall<const D: usize>(
+    cloud: &Cloud<D>,
+    walls: &WallGrid<'_, D>,
+    i: usize,
+    normal: &Vector<D>,
+    tally: &mut Tally,
+) {
     let range = cloud.interface_range();
     let beside = cloud.neighbours.of(i).iter().map(|j| *j as usize).filter(|j| range.contains(j));
     let cosine = beside.map(|j| cloud.interface[j - cloud.n_fluid].normal.dot(normal)).fold(1.0, f64::min);
@@ -303,12 +351,19 @@ fn notes<const D: usize>(cloud: &Cloud<D>, tally: &Tally, linear_walls: usize) -
         notes.push(format!("{linear_walls} of {} wall fits fell back to linear", cloud.interface.len()));
     }
     if let Some((angle, i)) = tally.worst[ANGLE].first().filter(|w| w.0 > 30.0) {
-        notes.push(format!("neighbouring normals turn by up to {angle:.0} degrees, at {}; hint: raise `cloud.curvature_levels`", place(&cloud.x[*i])));
+        notes.push(format!(
+            "neighbouring normals turn by up to {angle:.0} degrees, at {}; hint: raise `cloud.curvature_levels`",
+            place(&cloud.x[*i])
+        ));
     }
     let cut = cloud.transforms.iter().any(|t| t.sign != Vector::splat(1.0));
     for (body, (sum, total)) in closure(cloud).into_iter().enumerate() {
         if !cut && sum.norm() > OPEN * total {
-            notes.push(format!("area vectors of body {} do not close: {:.1e} of its area is missing", body + 1, sum.norm() / total));
+            notes.push(format!(
+                "area vectors of body {} do not close: {:.1e} of its area is missing",
+                body + 1,
+                sum.norm() / total
+            ));
         }
     }
     notes

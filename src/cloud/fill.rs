@@ -43,7 +43,11 @@ pub struct Particles<const D: usize> {
 impl<const D: usize> Particles<D> {
     /// Places all particles of a background.
     pub fn fill(
-        tree: Tree<D>, layout: &Layout<D>, transforms: &[Transform<D>], spec: &Spec, surface: Option<&Surface<D>>,
+        tree: Tree<D>,
+        layout: &Layout<D>,
+        transforms: &[Transform<D>],
+        spec: &Spec,
+        surface: Option<&Surface<D>>,
     ) -> Self {
         let placed = surface.map(|s| place(s, &tree, &layout.planes())).unwrap_or_default();
         let mut fluid = Vec::new();
@@ -67,7 +71,9 @@ impl<const D: usize> Particles<D> {
 
     #[allow(clippy::type_complexity)]
     fn assemble(
-        tree: Tree<D>, layout: &Layout<D>, jitter: f64,
+        tree: Tree<D>,
+        layout: &Layout<D>,
+        jitter: f64,
         (fluid, placed, outer): (Vec<(Leaf<D>, f64)>, Placed<D>, Vec<(Leaf<D>, (usize, usize))>),
     ) -> Self {
         let n_fluid = fluid.len();
@@ -230,7 +236,8 @@ fn curve_position<const D: usize>(tree: &Tree<D>, leaf: &Leaf<D>) -> u64 {
 
 /// A vector with components in [−1, 1] that depends on the cell alone.
 fn random_direction<const D: usize>(anchor: [u32; D]) -> Vector<D> {
-    let mut state = anchor.iter().fold(0x9e37_79b9_7f4a_7c15u64, |s, a| (s ^ u64::from(*a)).wrapping_mul(0xbf58_476d_1ce4_e5b9));
+    let mut state =
+        anchor.iter().fold(0x9e37_79b9_7f4a_7c15u64, |s, a| (s ^ u64::from(*a)).wrapping_mul(0xbf58_476d_1ce4_e5b9));
     Vector::from_fn(|_| {
         state ^= state >> 29;
         state = state.wrapping_mul(0x94d0_49bb_1331_11eb);

@@ -51,7 +51,8 @@ impl<const D: usize> Grid<D> {
     pub fn near(&self, x: &Vector<D>, reach: f64, mut f: impl FnMut(u32)) {
         let x = x.to_3d();
         let bin = |d: usize, side: f64| if d < D { ((x[d] + side * reach) / self.size).floor() as i32 } else { 0 };
-        let (low, high): ([i32; 3], [i32; 3]) = (std::array::from_fn(|d| bin(d, -1.0)), std::array::from_fn(|d| bin(d, 1.0)));
+        let (low, high): ([i32; 3], [i32; 3]) =
+            (std::array::from_fn(|d| bin(d, -1.0)), std::array::from_fn(|d| bin(d, 1.0)));
         for a in low[0]..=high[0] {
             for b in low[1]..=high[1] {
                 for c in low[2]..=high[2] {

@@ -24,7 +24,7 @@ const OUTLINE_GROWTH: f64 = 0.25;
 /// Smallest distance between picked samples in cells of the background (3-D).
 const PICK_SPACING: f64 = 0.78;
 /// Size of the samples in cells (3-D).
-const SAMPLE_SIZE: f64 = 0.4;
+const SAMPLE_SIZE: f64 = 0.5;
 /// Radius of the neighbourhood in which a sample looks for its owner, and of the fit of the curvature, in cells: a cell of
 /// Lloyd's partition has a radius below 0.8.
 const AROUND: f64 = 2.0;
@@ -87,7 +87,12 @@ impl Strip {
 }
 
 /// Strips of a chain between the planes; more than one run where a plane cuts it.
-fn runs<const D: usize>(surface: &Surface<D>, tree: &Tree<D>, chain: &Chain, planes: &[Plane]) -> Vec<(Vec<Strip>, bool)> {
+fn runs<const D: usize>(
+    surface: &Surface<D>,
+    tree: &Tree<D>,
+    chain: &Chain,
+    planes: &[Plane],
+) -> Vec<(Vec<Strip>, bool)> {
     let mut runs: Vec<Vec<Strip>> = Vec::new();
     let mut open = false;
     let mut cut = false;
@@ -138,7 +143,11 @@ fn strips<const D: usize>(surface: &Surface<D>, tree: &Tree<D>, element: u32, pl
 
 /// One piece of outline.
 fn outline_piece<const D: usize>(
-    surface: &Surface<D>, tree: &Tree<D>, strips: &[Strip], (piece, closed): (u32, bool), placed: &mut Placed<D>,
+    surface: &Surface<D>,
+    tree: &Tree<D>,
+    strips: &[Strip],
+    (piece, closed): (u32, bool),
+    placed: &mut Placed<D>,
 ) {
     let area = |s: &Strip| surface.element_area_vector(s.element).norm() * (s.to - s.from);
     let lengths: Vec<f64> = strips.iter().map(area).collect();
@@ -164,9 +173,23 @@ fn outline_piece<const D: usize>(
         let (body, tag) = (element.body, element.tag);
         placed.x.push(here.x);
         placed.spacing.push(h[here.position]);
-        placed.interface.push(Interface { normal: here.normal, area, curvature, body, tag, piece, arc: arc + 0.5 * chord.norm() });
+        placed.interface.push(Interface {
+            normal: here.normal,
+            area,
+            curvature,
+            body,
+            tag,
+            piece,
+            arc: arc + 0.5 * chord.norm(),
+        });
         let last = k + 1 == n;
-        placed.next.push(if !last { first + k as u32 + 1 } else if closed { first } else { u32::MAX });
+        placed.next.push(if !last {
+            first + k as u32 + 1
+        } else if closed {
+            first
+        } else {
+            u32::MAX
+        });
         arc += chord.norm();
         corner = end;
     }

@@ -1,7 +1,7 @@
 //! From the case to the background: domain, levels, sources of refinement.
-use super::{CloudError, Transform};
 use super::sources::{Source, SourceBox, Sources};
 use super::tree::{Forest, Tree};
+use super::{CloudError, Transform};
 use crate::case::{Case, Side};
 use crate::geometry::Surface;
 use crate::math::{Bounds, Vector};
@@ -75,7 +75,11 @@ impl<const D: usize> Layout<D> {
 }
 
 /// Root cells of an explicit domain: the largest power of two of the spacing that divides every side.
-fn explicit<const D: usize>(case: &Case, domain: &crate::case::Domain, periodic: [bool; D]) -> Result<Forest<D>, CloudError> {
+fn explicit<const D: usize>(
+    case: &Case,
+    domain: &crate::case::Domain,
+    periodic: [bool; D],
+) -> Result<Forest<D>, CloudError> {
     let corner = |v: &[crate::case::Length]| Vector::<D>::from_fn(|d| v.get(d).map_or(0.0, |l| l.0));
     let (min, max) = (corner(&domain.min), corner(&domain.max));
     let spacing = case.cloud.spacing.0;
@@ -84,7 +88,9 @@ fn explicit<const D: usize>(case: &Case, domain: &crate::case::Domain, periodic:
         if (cells[d] - cells[d].round()).abs() > MISFIT * cells[d] || cells[d] < 0.5 {
             return Err(CloudError::Layout(format!(
                 "side {d} of `cloud.domain` is {} long, not a whole number of `cloud.spacing` = {spacing}; hint: {} cells would fit with a spacing of {}",
-                max[d] - min[d], cells[d].round().max(1.0), (max[d] - min[d]) / cells[d].round().max(1.0)
+                max[d] - min[d],
+                cells[d].round().max(1.0),
+                (max[d] - min[d]) / cells[d].round().max(1.0)
             )));
         }
     }
@@ -125,7 +131,10 @@ fn around<const D: usize>(case: &Case, surface: &Surface<D>, sides: &[[Side; 2];
 
 /// The background tree of a case; `extra` are sources that follow the solution.
 pub fn background<const D: usize>(
-    case: &Case, layout: &Layout<D>, surface: Option<&Surface<D>>, extra: &[Source<D>],
+    case: &Case,
+    layout: &Layout<D>,
+    surface: Option<&Surface<D>>,
+    extra: &[Source<D>],
 ) -> Tree<D> {
     let mut points = extra.to_vec();
     let mut boxes = user_boxes(case, surface);

@@ -13,6 +13,8 @@ pub mod neighbours;
 pub mod operators;
 pub mod repair;
 pub mod sources;
+#[cfg(test)]
+mod tests;
 pub mod tree;
 
 use std::ops::Range;

@@ -162,7 +162,10 @@ pub struct Search<'a, const D: usize> {
 impl<'a, const D: usize> Search<'a, D> {
     /// Prepares a search; `radius` is the ball of the near-wall rule in spacings.
     pub fn new(
-        particles: &'a Particles<D>, surface: Option<&'a Surface<D>>, transforms: &'a [Transform<D>], radius: f64,
+        particles: &'a Particles<D>,
+        surface: Option<&'a Surface<D>>,
+        transforms: &'a [Transform<D>],
+        radius: f64,
     ) -> Self {
         let find = |t: &Transform<D>| transforms.iter().position(|o| o.undoes(t)).map_or(IDENTITY, |k| k as u8);
         Self { particles, surface, transforms, inverse: transforms.iter().map(find).collect(), radius }
@@ -180,7 +183,9 @@ impl<'a, const D: usize> Search<'a, D> {
         let walls = Rows::new(p.interface.len(), |w, list| self.fluid_in_front(w + p.n_fluid, list));
         let mut repair = Repair::of(self, &rows);
         let blind = (0..p.interface.len()).filter(|w| walls.of(*w).is_empty());
-        repair.refused.extend(blind.map(|w| format!("interface particle at {:?} has no fluid in front of it", p.x[p.n_fluid + w].0)));
+        repair.refused.extend(
+            blind.map(|w| format!("interface particle at {:?} has no fluid in front of it", p.x[p.n_fluid + w].0)),
+        );
         if !repair.refused.is_empty() {
             return Err(CloudError::Quality(repair.refused));
         }

@@ -187,7 +187,10 @@ impl<'a, const D: usize> Reverse<'a, D> {
 }
 
 fn part_edges<const D: usize>(
-    cloud: &Cloud<D>, weights: &[Vector<D>], reverse: &Reverse<'_, D>, part: &Range<usize>,
+    cloud: &Cloud<D>,
+    weights: &[Vector<D>],
+    reverse: &Reverse<'_, D>,
+    part: &Range<usize>,
 ) -> Vec<Edge<D>> {
     let mut edges = Vec::new();
     for i in part.clone() {
@@ -214,6 +217,9 @@ fn part_edges<const D: usize>(
 /// Rows whose neighbours are not all fluid particles in the interior: none of their entries is missing.
 pub fn is_symmetric(neighbours: &Neighbours, n_rows: usize) -> bool {
     (0..n_rows).all(|i| {
-        neighbours.of(i).iter().all(|j| *j as usize >= n_rows || neighbours.of(*j as usize).binary_search(&(i as u32)).is_ok())
+        neighbours
+            .of(i)
+            .iter()
+            .all(|j| *j as usize >= n_rows || neighbours.of(*j as usize).binary_search(&(i as u32)).is_ok())
     })
 }

@@ -88,7 +88,9 @@ impl<const D: usize> Repair<D> {
 
     /// What was done, in words: one line a kind of treatment.
     pub fn notes(&self) -> Vec<String> {
-        let line = |n: usize, what: &str| (n > 0).then(|| format!("{n} {} {what}", if n == 1 { "particle" } else { "particles" }));
+        let line = |n: usize, what: &str| {
+            (n > 0).then(|| format!("{n} {} {what}", if n == 1 { "particle" } else { "particles" }))
+        };
         [
             line(self.widened, "had too few neighbours around and got more, within 2.4 spacings"),
             line(self.moved.len(), "moved away from a neighbour nearer than 0.3 spacings"),
@@ -125,7 +127,8 @@ fn is_sick<const D: usize>(search: &Search<'_, D>, i: usize, x: &Vector<D>, row:
 /// True when a fluid particle has a neighbour nearer than allowed.
 fn is_crowded<const D: usize>(search: &Search<'_, D>, i: usize, x: &Vector<D>, row: &[Seen]) -> bool {
     let particles = search.particles();
-    let near = |s: &Seen| (search.position(s.0 as usize, s.1) - *x).norm() < NEAREST * search.mean_spacing(i, s.0 as usize);
+    let near =
+        |s: &Seen| (search.position(s.0 as usize, s.1) - *x).norm() < NEAREST * search.mean_spacing(i, s.0 as usize);
     !particles.is_interface(i) && row.iter().any(near)
 }
 

@@ -56,7 +56,8 @@ impl<const D: usize> Tree<D> {
     /// Splits every cell for which `wanted(centre, size)` holds, then balances.
     pub fn build(forest: &Forest<D>, wanted: impl Fn(&Vector<D>, f64) -> bool) -> Self {
         let count: u32 = forest.roots.iter().product();
-        let nodes = (0..count).map(|k| Node { first_child: NONE, level: 0, anchor: root_anchor(k, &forest.roots) }).collect();
+        let nodes =
+            (0..count).map(|k| Node { first_child: NONE, level: 0, anchor: root_anchor(k, &forest.roots) }).collect();
         let mut tree = Self {
             origin: forest.origin,
             root_size: forest.root_size,
@@ -201,30 +202,30 @@ impl<const D: usize> Tree<D> {
         }
     }
 
-    /// Splits cells until touching leaves differ by one level at most.
+    /// Splits cells until touching leaves differ by one level at most: whatever touches a cell that has children must not be
+    /// larger than that cell.
     fn balance(&mut self) {
-        let mut queue: Vec<u32> = (0..self.nodes.len() as u32).filter(|k| self.nodes[*k as usize].first_child == NONE).collect();
+        let mut queue: Vec<u32> =
+            (0..self.nodes.len() as u32).filter(|k| self.nodes[*k as usize].first_child != NONE).collect();
         while let Some(k) = queue.pop() {
             let node = self.nodes[k as usize];
-            if node.first_child != NONE || node.level < 2 {
-                continue;
-            }
             let size = 1i64 << (MAX_LEVEL - node.level);
             let mut coarse = Vec::new();
             for_each_direction(|direction: [i64; D]| {
                 let p = std::array::from_fn(|d| i64::from(node.anchor[d]) + direction[d] * size);
                 if let Some(j) = self.find(&p)
-                    && self.nodes[j as usize].level + 1 < node.level
+                    && self.nodes[j as usize].level < node.level
                     && !coarse.contains(&j)
                 {
                     coarse.push(j);
                 }
             });
-            for j in coarse {
-                let first = self.nodes.len() as u32;
-                self.split(j);
-                queue.extend(first..first + (1 << D));
+            if !coarse.is_empty() {
                 queue.push(k);
+            }
+            for j in coarse {
+                self.split(j);
+                queue.push(j);
             }
         }
     }
