@@ -3,14 +3,27 @@
 //! Data flows one way: `case → geometry → cloud → (system, frame) → rhs → integrator → snapshots → observers → files →
 //! report`. The modules below stand in reading order, lowest floor first; `ARCHITECTURE.md` says which may use which.
 pub mod math;
+
 pub mod case;
+
 pub mod system;
+
 pub mod geometry;
+
 pub mod physics;
+
 pub mod exact;
-pub mod verify;
+
 pub mod cloud;
+
 pub mod scheme;
+
 pub mod time;
+
 pub mod observe;
+
 pub mod report;
+
+pub mod verify;
+
+pub mod run;

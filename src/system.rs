@@ -34,8 +34,8 @@ pub trait System: Sync {
     fn graph(&self) -> (&[u32], &[u32]);
     /// Fills `matrix` with −∂R/∂U of the first-order scheme, which is what implicit methods are preconditioned with.
     fn linearise(&self, frame: &Self::Frame, u: &[f64], work: &mut Self::Work, matrix: &mut BlockMatrix);
-    /// The largest fraction ≤ 1 of the update `du` that changes every particle's density and pressure moderately.
-    fn admissible_fraction(&self, u: &[f64], du: &[f64]) -> f64;
+    /// The largest relative change of a positive quantity (density, pressure) that the update `du` makes; infinite if NaN.
+    fn largest_change(&self, u: &[f64], du: &[f64]) -> f64;
     /// The first particle whose state is not physical, if any.
     fn fault(&self, u: &[f64]) -> Option<Fault>;
 }

@@ -11,6 +11,7 @@ mod outcome;
 mod output;
 #[allow(dead_code, reason = "interface of the run loop")]
 mod progress;
+mod watch;
 
 fn main() -> ExitCode {
     commands::dispatch(arguments::Cli::parse()).into()

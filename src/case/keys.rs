@@ -316,7 +316,7 @@ static SCHEME: Table = Table::of(&[
     Field::defaulted(
         "limiter_threshold",
         Kind::Number(Range::between(0.0, 1.0)),
-        Absent::Number(0.02),
+        Absent::Number(0.1),
         "Relative size of second differences below which the limiter leaves a field alone.",
     ),
     Field::defaulted(

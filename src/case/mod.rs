@@ -461,7 +461,7 @@ impl Default for Scheme {
             flux: Flux::Hllc,
             order: 2,
             limiter: Limiter::VanAlbada,
-            limiter_threshold: 0.02,
+            limiter_threshold: 0.1,
             kappa: 0.0,
             conservative: None,
         }

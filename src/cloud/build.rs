@@ -42,6 +42,7 @@ impl<const D: usize> Cloud<D> {
             wall_distance: particles.wall_distance,
             neighbours,
             wall_clouds,
+            leaves: particles.leaves,
             tree: particles.tree,
             first_order: repair.first_order,
             notes,

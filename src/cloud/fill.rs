@@ -36,8 +36,24 @@ pub struct Particles<const D: usize> {
     pub sides: [[Side; 2]; D],
     centre: Vec<Vector<D>>,
     next: Vec<u32>,
-    leaf_first: Vec<u32>,
-    leaf_index: Vec<u32>,
+    /// Which particles sit in which leaf.
+    pub leaves: LeafIndex,
+}
+
+/// Which particles sit in which leaf.
+#[derive(Clone, Debug, Default)]
+pub struct LeafIndex {
+    first: Vec<u32>,
+    index: Vec<u32>,
+}
+
+impl LeafIndex {
+    /// Particles in a leaf.
+    #[inline]
+    pub fn of(&self, node: u32) -> &[u32] {
+        let k = node as usize;
+        &self.index[self.first[k] as usize..self.first[k + 1] as usize]
+    }
 }
 
 impl<const D: usize> Particles<D> {
@@ -113,8 +129,7 @@ impl<const D: usize> Particles<D> {
             sides: layout.sides,
             centre,
             next,
-            leaf_first: Vec::new(),
-            leaf_index: Vec::new(),
+            leaves: LeafIndex::default(),
             tree,
         };
         all.index_leaves();
@@ -128,18 +143,17 @@ impl<const D: usize> Particles<D> {
         leaf.iter().for_each(|k| first[*k as usize + 1] += 1);
         (0..self.tree.n_nodes()).for_each(|k| first[k + 1] += first[k]);
         let mut slot = first.clone();
-        self.leaf_index = vec![0; leaf.len()];
+        self.leaves.index = vec![0; leaf.len()];
         for (i, k) in leaf.iter().enumerate() {
-            self.leaf_index[slot[*k as usize] as usize] = i as u32;
+            self.leaves.index[slot[*k as usize] as usize] = i as u32;
             slot[*k as usize] += 1;
         }
-        self.leaf_first = first;
+        self.leaves.first = first;
     }
 
     /// Particles inside a leaf.
     pub fn in_leaf(&self, node: u32) -> impl Iterator<Item = u32> + '_ {
-        let k = node as usize;
-        self.leaf_index[self.leaf_first[k] as usize..self.leaf_first[k + 1] as usize].iter().copied()
+        self.leaves.of(node).iter().copied()
     }
 
     /// Middle of the leaf of a fluid or outer particle; the position of an interface particle.

@@ -122,6 +122,8 @@ pub struct Cloud<const D: usize> {
     pub neighbours: Neighbours,
     /// Fluid particles from which the state of each interface particle is fitted.
     pub wall_clouds: Neighbours,
+    /// Which particles sit in which leaf of the background.
+    pub leaves: fill::LeafIndex,
     /// Particles, in ascending order, whose reconstruction stays first order: too few neighbours around them.
     pub first_order: Vec<u32>,
     /// The background.

@@ -68,6 +68,10 @@ fn parse(file: &str, text: &str) -> Result<Table, GeometryError> {
             table.columns = Columns::of(&words);
             continue;
         }
+        if before && words.len() == 1 {
+            // A title that is a number, `2412`.
+            continue;
+        }
         let row = row(file, i + 1, &words, table.columns.as_ref())?;
         if before && table.columns.is_none() && counts(&row).is_some() {
             table.counts = counts(&row);
@@ -127,7 +131,7 @@ fn number(word: &str) -> Option<f64> {
 
 /// The two counts of a Lednicer file: whole numbers that cannot be coordinates of a unit chord.
 fn counts(row: &Row) -> Option<[usize; 2]> {
-    let whole = |v: f64| 2.0 <= v && v <= 1e6 && v.fract() == 0.0;
+    let whole = |v: f64| (2.0..=1e6).contains(&v) && v.fract() == 0.0;
     let [a, b] = row.mark.point.0;
     (whole(a) && whole(b)).then_some([a as usize, b as usize])
 }
@@ -215,9 +219,10 @@ fn join(upper: &[Mark], lower: &[Mark]) -> Vec<Mark> {
         }
         side
     };
-    let mut marks = from_front(upper);
+    let (mut marks, lower) = (from_front(upper), from_front(lower));
+    let shared = usize::from(marks[0].point == lower[0].point);
     marks.reverse();
-    marks.extend(from_front(lower));
+    marks.extend(&lower[shared..]);
     marks
 }
 
@@ -227,4 +232,153 @@ fn from_the_rear(marks: &[Mark]) -> Vec<Mark> {
     let mut turned = marks[rear..].to_vec();
     turned.extend(&marks[..=rear]);
     turned
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::surface::Surface;
+    use super::*;
+    use proptest::prelude::*;
+
+    const RAE_2822: &str = include_str!("testdata/rae2822_agard_ar138.csv");
+    const NACA_64A010: &str = include_str!("testdata/naca64a010_bmp_design.csv");
+    const NACA_64A010_LOOP: &str = include_str!("testdata/naca64a010_isogai_su2.csv");
+    const NACA_0012: &str = include_str!("testdata/naca0012_formula_variants.csv");
+
+    fn load(text: &str) -> Result<(Surface<2>, Vec<String>), GeometryError> {
+        let mut notes = Vec::new();
+        let shell = read("wing.dat", text.as_bytes(), &mut notes)?;
+        Ok((Surface::new(&[("wing".into(), shell)]), notes))
+    }
+
+    fn error(text: &str) -> String {
+        load(text).unwrap_err().to_string()
+    }
+
+    /// Greatest distance of the file's points from the surface.
+    fn miss(surface: &Surface<2>, text: &str) -> f64 {
+        let table = parse("", text).unwrap();
+        let distance = |r: &Row| surface.nearest(&r.mark.point, 1.0).unwrap().distance;
+        table.rows.iter().map(distance).fold(0.0, f64::max)
+    }
+
+    #[test]
+    fn published_sections_load() {
+        let (rae, notes) = load(RAE_2822).unwrap();
+        assert!(rae.sharp.len() == 1 && miss(&rae, RAE_2822) < 1e-12, "{notes:?}");
+        // The convex parts bulge beyond the polygon of the published points by less than a thousandth of its area.
+        let ring = around("", &parse("", RAE_2822).unwrap(), &mut Vec::new()).unwrap();
+        let twice = |w: &[Mark]| w[0].point[0] * w[1].point[1] - w[1].point[0] * w[0].point[1];
+        let polygon = 0.5 * ring.windows(2).map(twice).sum::<f64>();
+        assert!((0.0..1e-3).contains(&(rae.volume() / polygon - 1.0)), "{} {polygon}", rae.volume());
+        assert!((rae.bounds().extent()[1] - 0.122).abs() < 1e-4, "height of the box around the section");
+        let (design, notes) = load(NACA_64A010).unwrap();
+        assert!(notes.iter().any(|n| n.contains("wavy")), "four decimals: {notes:?}");
+        assert!(design.sharp.len() == 2 && miss(&design, NACA_64A010) < 1e-12, "{notes:?}");
+        assert!(notes.iter().any(|n| n.contains("half thickness")), "{notes:?}");
+        assert!((design.bounds().extent()[1] - 0.1).abs() < 1e-4);
+        let (ring, notes) = load(NACA_64A010_LOOP).unwrap();
+        assert!(ring.sharp.len() == 1 && notes.iter().any(|n| n.contains("Selig")), "{notes:?}");
+        // Nose radius of 64A010: 0.687 % chord (Abbott and von Doenhoff 1959, appendix III).
+        let nose = ring.nearest(&Vector([-0.1, 0.0]), 1.0).unwrap();
+        assert!(
+            (ring.radius[nose.element as usize] / 0.00687 - 1.0).abs() < 0.2,
+            "{}",
+            ring.radius[nose.element as usize]
+        );
+    }
+
+    #[test]
+    fn the_spline_recovers_the_formula() {
+        let (surface, notes) = load(NACA_0012).unwrap();
+        assert!(notes.iter().any(|n| n.contains("`x_c` and `z_closed`")), "{notes:?}");
+        let thickness =
+            |x: f64| 0.6 * (0.2969 * x.sqrt() - 0.1260 * x - 0.3516 * x * x + 0.2843 * x.powi(3) - 0.1036 * x.powi(4));
+        let mut worst = 0.0_f64;
+        for i in 0..4000 {
+            let x = (0.5 * std::f64::consts::PI * f64::from(i) / 4000.0).sin().powi(2);
+            worst = worst.max(surface.nearest(&Vector([x, thickness(x)]), 1.0).unwrap().distance);
+        }
+        // 81 points over half the section, eight digits.
+        assert!(worst < 2e-6, "{worst}");
+        let nose = surface.nearest(&Vector([-0.1, 0.0]), 1.0).unwrap();
+        assert!((surface.radius[nose.element as usize] / 0.015867 - 1.0).abs() < 0.02);
+    }
+
+    /// Points of a symmetric section of half thickness 0.1 sin(πx) without its nose rounded: upper side front to rear.
+    fn lens(i: usize, n: usize) -> (f64, f64) {
+        let x = i as f64 / n as f64;
+        (x, 0.2 * x * (1.0 - x))
+    }
+
+    fn rows(points: impl Iterator<Item = (f64, f64)>) -> String {
+        points.map(|(x, y)| format!("{x} {y}\n")).collect()
+    }
+
+    #[test]
+    fn every_order_gives_the_same_outline() {
+        let (front, rear) = ((0..=40).map(|i| lens(i, 40)), (0..=40).rev().map(|i| lens(i, 40)));
+        let flip = |(x, y): (f64, f64)| (x, -y);
+        let upper_lower = rows(front.clone()) + "\n" + &rows(front.clone().map(flip));
+        let orders = [
+            "lens\n".to_string() + &rows(rear.clone().chain(front.clone().skip(1).map(flip))),
+            "lens\n".to_string() + &rows(rear.clone().map(flip).chain(front.clone().skip(1))),
+            "lens\n 41. 41.\n\n".to_string() + &upper_lower,
+            upper_lower.clone(),
+            rows(front.clone().chain(rear.map(flip).skip(1))),
+            rows(front.clone()),
+            "x,y\r\n".to_string() + &rows(front).replace(' ', ",").replace('\n', "\r\n"),
+        ];
+        let areas: Vec<f64> = orders.iter().map(|text| load(text).unwrap().0.volume()).collect();
+        assert!(areas.iter().all(|a| (a - 0.4 / 6.0).abs() < 1e-5), "{areas:?}");
+        let (sharp, _) = load(&orders[0]).unwrap();
+        assert_eq!(sharp.sharp.len(), 2, "the nose of a lens is sharp");
+        let noted = |k: usize, word: &str| load(&orders[k]).unwrap().1.iter().any(|n| n.contains(word));
+        assert!(noted(1, "clockwise") && noted(2, "41 and 41") && noted(3, "without counts") && noted(5, "symmetric"));
+    }
+
+    #[test]
+    fn an_ellipse_without_corners_stays_smooth() {
+        let angle = |i: usize| 2.0 * std::f64::consts::PI * i as f64 / 80.0;
+        let text = rows((0..=80).map(|i| (0.5 + 0.5 * angle(i).cos(), 0.2 * angle(i).sin())));
+        let (surface, _) = load(&text).unwrap();
+        assert!(surface.sharp.is_empty() && (surface.volume() / (0.1 * std::f64::consts::PI) - 1.0).abs() < 1e-4);
+    }
+
+    #[test]
+    fn mistakes_are_refused_with_their_place() {
+        assert!(error("").contains("holds 0 points"));
+        assert!(error("a\n1 0\n0.5 x\n0 0").contains("wing.dat, line 3: `x` is not a finite number"));
+        assert!(error("a\n1 0\n0.5\n0 0").contains("line 3: has 1 values"));
+        assert!(error("a\n3 4\n0 0\n0.5 0.1\n1 0\n").contains("announces 3 and 4 points but holds 3"));
+        assert!(error("0 0\n0.5 0.1\n0.7 -0.1\n1 0").contains("line 3: one side only"));
+        assert!(error("1 0\n0.5 0.1\n0 0\n0.5 -0.1\n0.8 0.3\n1 0").contains("crosses itself at"));
+        assert!(error("1 0\n0.8 0\n0.5 0\n0 0\n0.5 0\n1 0").contains("no area"));
+        assert!(error("surface,x_c,z_c\nupper,0,0\nmiddle,1,0\nlower,1,0").contains("`middle` is not a side"));
+        assert!(error("section,x_c,z_c\n0,1,0\n0,0,0.1\n1,1,0").contains("one section per file"));
+    }
+
+    proptest! {
+        #[test]
+        fn no_bytes_panic(bytes in proptest::collection::vec(any::<u8>(), 0..400)) {
+            let _ = read("x.dat", bytes.as_slice(), &mut Vec::new());
+        }
+
+        #[test]
+        fn no_mutation_panics(place in 0..3000_usize, byte in any::<u8>(), cut in 0..3000_usize, drop in 0..60_usize) {
+            let mut bytes = RAE_2822.as_bytes().to_vec();
+            let place = place % bytes.len();
+            bytes[place] = byte;
+            bytes.drain(place..(place + drop).min(bytes.len()));
+            bytes.truncate(cut.max(300));
+            let _ = read("x.dat", bytes.as_slice(), &mut Vec::new());
+        }
+
+        #[test]
+        fn no_numbers_panic(v in proptest::collection::vec((-3..4_i32, -3..4_i32), 3..12), scale in -200..200_i32) {
+            let unit = 10_f64.powi(scale);
+            let text = rows(v.iter().map(|(x, y)| (f64::from(*x) * unit, f64::from(*y) * unit)));
+            let _ = read("x.dat", text.as_bytes(), &mut Vec::new());
+        }
+    }
 }

@@ -13,7 +13,7 @@ mod outline;
 mod placement;
 mod primitive;
 mod repair;
-pub mod sampling;
+mod sampling;
 mod shell;
 mod simplex;
 mod spline;
@@ -22,8 +22,8 @@ mod surface;
 mod tests;
 mod tree;
 
-pub use sampling::Chain;
 pub use primitive::{icosphere, write_stl};
+pub use sampling::Chain;
 pub use shell::{Edge, Exact, Shell};
 pub use surface::{Element, Nearest, Projection, Surface};
 

@@ -17,6 +17,8 @@ use std::f64::consts::PI;
 pub(super) const CORNER: f64 = 35.0 * PI / 180.0;
 /// Points nearer than this fraction of the chord are one point.
 const SAME: f64 = 1e-9;
+/// Outlines smaller than this are refused: squares of lengths would underflow.
+const SMALLEST: f64 = 1e-100;
 /// A trailing edge open by less than this fraction of the chord is closed: it is below the digits of coordinate files.
 const CLOSED: f64 = 1e-6;
 /// A trailing edge open by more than this fraction of the chord is a mistake: bases are below a tenth of the chord.
@@ -25,6 +27,8 @@ const OPEN: f64 = 0.2;
 const SAGITTA: f64 = 5e-8;
 /// Segments are no longer than the chord over this number.
 const SEGMENTS: f64 = 1500.0;
+/// Most segments between two points: a nose given by a few points needs a thousand, wild data would ask for millions.
+const PARTS: f64 = 1024.0;
 /// The nose is what lies within this fraction of the chord from the leading edge.
 const NOSE: f64 = 0.1;
 /// Next to a sharp nose the outline turns by less than this fraction of the turn at the nose.
@@ -44,11 +48,11 @@ pub(super) struct Mark {
 /// Repairs are appended to `notes`; `file` names the source.
 pub(super) fn airfoil(file: &str, marks: Vec<Mark>, notes: &mut Vec<String>) -> Result<Shell<2>, GeometryError> {
     let (mut marks, base) = closed_loop(file, marks, notes)?;
+    refuse_crossing(file, &marks)?;
     if orient(file, &mut marks, notes)? && !base {
         // The trailing edge stays first.
         marks.rotate_right(1);
     }
-    refuse_crossing(file, &marks)?;
     let points: Vec<Vector<2>> = marks.iter().map(|m| m.point).collect();
     let corners = corners(&points, base);
     let chord = extent(&points);
@@ -58,14 +62,16 @@ pub(super) fn airfoil(file: &str, marks: Vec<Mark>, notes: &mut Vec<String>) -> 
     notes.push(format!("{file}: {} points, chord {chord:.6}, {ends}{more}", points.len()));
     let pieces = pieces(&points, &corners, chord);
     let shell = shell_of_pieces(&pieces, CORNER);
-    match Surface::new(&[(String::new(), shell.clone())]).intersection() {
-        None => Ok(shell),
-        Some((x, _)) => Err(GeometryError::refused(
-            file,
-            format!("the smooth outline crosses itself at ({:.6}, {:.6})", x[0], x[1]),
-            "add points there, or remove uneven ones",
-        )),
+    let surface = Surface::new(&[(String::new(), shell.clone())]);
+    if let Some((x, _)) = surface.intersection() {
+        let what = format!("the smooth outline crosses itself at ({:.6}, {:.6})", x[0], x[1]);
+        return Err(GeometryError::refused(file, what, "add points there, or remove uneven ones"));
     }
+    let waves = surface.curvature.windows(2).filter(|k| k[0] * k[1] < 0.0).count();
+    if waves > points.len() / 4 {
+        notes.push(format!("{file}: the curvature is wavy, {waves} changes of sign: the points carry few digits"));
+    }
+    Ok(shell)
 }
 
 /// A shell of straight sides between `points`; every turn above `crease` is a sharp corner.
@@ -88,8 +94,8 @@ pub(super) fn polygon(
         let what = format!("has {} distinct points; an outline needs at least 3", marks.len());
         return Err(GeometryError::refused(name, what, "list the corners once around the body"));
     }
-    orient(name, &mut marks, notes)?;
     refuse_crossing(name, &marks)?;
+    orient(name, &mut marks, notes)?;
     Ok(Shell { crease, ..straight_shell(&marks) })
 }
 
@@ -154,7 +160,8 @@ fn orient(file: &str, marks: &mut [Mark], notes: &mut Vec<String>) -> Result<boo
         })
         .sum::<f64>();
     let size = extent(&marks.iter().map(|m| m.point).collect::<Vec<_>>());
-    if !(twice.abs() > SAME * size * size) {
+    let flat = twice.abs() <= SAME * size * size;
+    if flat || size < SMALLEST || !twice.is_finite() {
         return Err(GeometryError::refused(file, "the outline encloses no area", "check the second coordinate"));
     }
     if twice < 0.0 {
@@ -232,7 +239,7 @@ fn sample(spline: &Spline, chord: f64) -> Vec<Sample> {
     };
     for i in 0..spline.intervals() {
         let bend = (spline.sagitta(i) / (SAGITTA * chord)).sqrt();
-        let parts = bend.max(spline.chord(i) * SEGMENTS / chord).ceil().max(1.0);
+        let parts = bend.max(spline.chord(i) * SEGMENTS / chord).ceil().clamp(1.0, PARTS);
         (0..parts as usize).for_each(|k| push(i, k as f64 / parts));
     }
     push(spline.intervals() - 1, 1.0);

@@ -16,6 +16,8 @@ use std::f64::consts::PI;
 /// Vertices nearer than these fractions of the body's diagonal are one; the second, above the rounding of single
 /// precision, is tried only when the first leaves open edges.
 const WELD: [f64; 2] = [1e-9, 1e-6];
+/// Surfaces smaller than this are refused: squares of areas would underflow.
+const SMALLEST: f64 = 1e-50;
 /// Triangles lower than this fraction of the diagonal are needles.
 const NEEDLE: f64 = 1e-9;
 /// Holes smaller than this fraction of the diagonal are left to the winding number.
@@ -48,7 +50,7 @@ pub(super) fn shell(file: &str, soup: &Soup, notes: &mut Vec<String>) -> Result<
 /// Welds with the smallest tolerance that closes the surface.
 fn weld(file: &str, soup: &Soup, notes: &mut Vec<String>) -> Result<Shell<3>, GeometryError> {
     let size = Bounds::around(soup.triangles.iter().flatten()).extent().norm();
-    if !(size > 0.0) || soup.triangles.len() > u32::MAX as usize / 3 {
+    if size < SMALLEST || !size.is_finite() || soup.triangles.len() > u32::MAX as usize / 3 {
         let what = format!("{} triangles of extent {size} are no surface", soup.triangles.len());
         return Err(GeometryError::refused(file, what, "check the export"));
     }
@@ -327,4 +329,230 @@ fn runs(facets: &[Facet]) -> impl Iterator<Item = &[Facet]> {
 
 fn at(x: &Vector<3>) -> String {
     format!("({:.6}, {:.6}, {:.6})", x[0], x[1], x[2])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::mesh;
+    use super::super::primitive::{cuboid, icosphere, write_stl};
+    use super::*;
+    use proptest::prelude::*;
+
+    type Loaded = Result<(Surface<3>, Vec<String>), GeometryError>;
+
+    fn load(file: &str, bytes: &[u8]) -> Loaded {
+        let mut notes = Vec::new();
+        let shell = shell(file, &mesh::read(file, bytes)?, &mut notes)?;
+        Ok((Surface::new(&[("body".into(), shell)]), notes))
+    }
+
+    fn soup(shells: &[&Shell<3>]) -> Soup {
+        let triangles: Vec<_> = shells.iter().flat_map(|s| s.all_corners()).collect();
+        Soup { tags: vec![0; triangles.len()], names: vec!["all".into()], triangles }
+    }
+
+    fn mend(soup: &Soup) -> Loaded {
+        let mut notes = Vec::new();
+        let shell = shell("body.stl", soup, &mut notes)?;
+        Ok((Surface::new(&[("body".into(), shell)]), notes))
+    }
+
+    fn stl(subdivisions: u32) -> Vec<u8> {
+        let mut bytes = Vec::new();
+        write_stl(&mut bytes, &icosphere(1.0, subdivisions)).unwrap();
+        bytes
+    }
+
+    fn moved(shell: &Shell<3>, by: [f64; 3]) -> Shell<3> {
+        let mut shell = shell.clone();
+        shell.vertices.iter_mut().for_each(|v| *v += Vector(by));
+        shell
+    }
+
+    #[test]
+    fn a_sphere_survives_the_round_trip() {
+        let bytes = stl(4);
+        assert_eq!(bytes, stl(4), "the file is the same every time");
+        let (surface, notes) = load("ball.stl", &bytes).unwrap();
+        assert!(notes.is_empty() && surface.elements.len() == 5120 && surface.vertices.len() == 2562, "{notes:?}");
+        assert!((surface.volume() / icosphere_volume(4) - 1.0).abs() < 1e-6 && surface.sharp.is_empty());
+    }
+
+    fn icosphere_volume(subdivisions: u32) -> f64 {
+        Surface::new(&[(String::new(), icosphere(1.0, subdivisions))]).volume()
+    }
+
+    #[test]
+    fn flipped_and_repeated_triangles_are_mended() {
+        let mut soup = soup(&[&icosphere(1.0, 3)]);
+        for k in (0..soup.triangles.len()).step_by(3) {
+            soup.triangles[k].swap(0, 1);
+        }
+        let copies: Vec<_> = soup.triangles.iter().step_by(10).copied().collect();
+        soup.triangles.extend(&copies);
+        let point = soup.triangles[0][0];
+        soup.triangles.push([point, point, soup.triangles[0][1]]);
+        soup.tags.resize(soup.triangles.len(), 0);
+        let (surface, notes) = mend(&soup).unwrap();
+        assert!((surface.volume() / icosphere_volume(3) - 1.0).abs() < 1e-12);
+        assert!(notes.len() == 3 && notes.iter().any(|n| n.contains("128 repeated")), "{notes:?}");
+        assert!(notes.iter().any(|n| n.contains("427 of 1280 triangles are turned")), "{notes:?}");
+    }
+
+    #[test]
+    fn inward_bodies_are_turned_and_cavities_are_solid() {
+        let mut inside_out = icosphere(1.0, 2);
+        inside_out.elements.iter_mut().for_each(|e| e.swap(0, 1));
+        let (surface, notes) = mend(&soup(&[&inside_out, &moved(&icosphere(1.0, 2), [3.0, 0.0, 0.0])])).unwrap();
+        assert!((surface.volume() / icosphere_volume(2) - 2.0).abs() < 1e-12 && notes.len() == 1, "{notes:?}");
+        let (hollow, _) = mend(&soup(&[&icosphere(0.5, 2), &icosphere(1.0, 2)])).unwrap();
+        assert!(hollow.inside(&Vector::ZERO) && hollow.inside(&Vector([0.7, 0.0, 0.0])));
+    }
+
+    #[test]
+    fn missing_triangles_are_refused() {
+        let mut all = soup(&[&icosphere(1.0, 3)]);
+        all.triangles.truncate(1278);
+        let error = mend(&all).unwrap_err().to_string();
+        assert!(error.contains("open edges in ") && error.contains("the first near ("), "{error}");
+    }
+
+    #[test]
+    fn a_pinhole_is_allowed() {
+        let mut shell = icosphere(1.0, 2);
+        // A vertex surrounded by a pulled-in ring, its own triangles missing.
+        let tip = 0_u32;
+        let centre = shell.vertices[0];
+        let ring: HashSet<u32> = shell.elements.iter().filter(|e| e.contains(&tip)).flatten().copied().collect();
+        for v in ring {
+            shell.vertices[v as usize] = centre + (shell.vertices[v as usize] - centre) * 1e-4;
+        }
+        shell.elements.retain(|e| !e.contains(&tip));
+        let (surface, notes) = mend(&soup(&[&shell])).unwrap();
+        assert!(notes.iter().any(|n| n.contains("in 1 holes") && n.contains("tiny")), "{notes:?}");
+        assert!(surface.inside(&(centre * 0.9)) && !surface.inside(&(centre * 1.1)));
+    }
+
+    #[test]
+    fn single_precision_cracks_are_welded() {
+        let mut all = soup(&[&icosphere(1.0, 3)]);
+        for (k, triangle) in all.triangles.iter_mut().enumerate() {
+            triangle[0] = triangle[0] * (1.0 + 1e-7 * (k % 3) as f64);
+        }
+        let (surface, notes) = mend(&all).unwrap();
+        assert!(surface.vertices.len() == 642 && notes.iter().any(|n| n.contains("joined")), "{notes:?}");
+    }
+
+    #[test]
+    fn needles_are_merged_without_a_crack() {
+        let mut all = soup(&[&cuboid([1.0, 1.0, 1.0])]);
+        let [a, b, c] = all.triangles[0];
+        let middle = (a + b) * 0.5;
+        all.triangles[0] = [a, middle, c];
+        all.triangles.push([middle, b, c]);
+        all.triangles.push([a, b, middle]);
+        all.tags.extend([0, 0]);
+        let (surface, notes) = mend(&all).unwrap();
+        assert!(surface.elements.len() == 14 && (surface.volume() - 1.0).abs() < 1e-12, "{notes:?}");
+        assert!(notes.iter().any(|n| n.contains("1 needle")), "{notes:?}");
+        assert_eq!(surface.intersection(), None);
+    }
+
+    #[test]
+    fn intersections_and_fins_are_refused() {
+        let overlap = soup(&[&icosphere(1.0, 2), &moved(&icosphere(1.0, 2), [0.5, 0.1, 0.2])]);
+        assert!(mend(&overlap).unwrap_err().to_string().contains("crosses itself at ("));
+        let mut fin = soup(&[&cuboid([1.0, 1.0, 1.0])]);
+        let [a, b, _] = fin.triangles[0];
+        fin.triangles.push([a, b, Vector([-2.0, -3.0, -4.0])]);
+        fin.tags.push(0);
+        assert!(mend(&fin).unwrap_err().to_string().contains("3 triangles meet at the edge near"));
+    }
+
+    fn text(shell: &Shell<3>, name: &str) -> String {
+        let vertex = |v: &Vector<3>| format!("  vertex {} {} {}\n", v[0], v[1], v[2]);
+        let facet = |c: &[Vector<3>; 3]| {
+            let vertices: String = c.iter().map(vertex).collect();
+            format!(" facet normal 0 0 0\n  outer loop\n{vertices}  endloop\n endfacet\n")
+        };
+        let facets: String = shell.all_corners().iter().map(facet).collect();
+        format!("solid {name}\n{facets}endsolid {name}\n")
+    }
+
+    #[test]
+    fn solids_and_groups_become_tags() {
+        let (first, second) = (cuboid([1.0, 1.0, 1.0]), moved(&cuboid([1.0, 2.0, 1.0]), [3.0, 0.0, 0.0]));
+        let (surface, _) = load("two.stl", (text(&first, "left wing") + &text(&second, "right")).as_bytes()).unwrap();
+        assert!(
+            surface.tags == ["left wing", "right"] && surface.elements[0].tag == 0 && surface.elements[23].tag == 1
+        );
+        assert!((surface.volume() - 3.0).abs() < 1e-12 && surface.sharp.len() == 24);
+        let vertices: String = first.vertices.iter().map(|v| format!("v {} {} {}\n", v[0], v[1], v[2])).collect();
+        let faces = "g lower\nf 1 3 4 2\ng rest\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
+        let (surface, notes) = load("box.obj", (vertices + faces).as_bytes()).unwrap();
+        assert!((surface.volume() - 1.0).abs() < 1e-12 && surface.tags == ["lower", "rest"], "{notes:?}");
+        assert_eq!(surface.sharp.len(), 12);
+    }
+
+    #[test]
+    fn broken_files_are_refused_with_their_place() {
+        let error = |file: &str, bytes: &[u8]| load(file, bytes).unwrap_err().to_string();
+        let whole = stl(1);
+        assert!(error("a.stl", &whole[..1000]).contains("announces 80 triangles, 4084 bytes, but holds 1000 bytes"));
+        assert!(error("a.stl", b"nothing").contains("no STL file"));
+        let box_text = text(&cuboid([1.0, 1.0, 1.0]), "box");
+        let cut = box_text[..200].rfind('\n').unwrap();
+        assert!(error("a.stl", &box_text.as_bytes()[..cut]).contains("cut short"));
+        assert!(error("a.stl", box_text.replace("0.5 0.5", "0.5 oops").as_bytes()).contains("is not a vertex"));
+        assert!(error("a.stl", b"solid\nendsolid\n").contains("holds no triangles"));
+        assert!(
+            error("a.obj", b"v 0 0 0\nv 1 0 0\nv oops\n").contains("a.obj, line 3"),
+            "{}",
+            error("a.obj", b"v oops")
+        );
+        assert!(error("a.step", b"").contains("neither"));
+        let mut named = whole.clone();
+        named[..5].copy_from_slice(b"solid");
+        assert!(load("a.stl", &named).is_ok(), "binary files may begin with `solid`");
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig::with_cases(64))]
+        #[test]
+        fn no_bytes_panic(bytes in proptest::collection::vec(any::<u8>(), 0..300), solid in any::<bool>()) {
+            let head: &[u8] = if solid { b"solid x\n facet\n" } else { b"" };
+            let bytes = [head, &bytes].concat();
+            let _ = load("x.stl", &bytes);
+            let _ = load("x.obj", &bytes);
+        }
+
+        #[test]
+        fn no_mutated_binary_panics(changes in proptest::collection::vec((80..4084_usize, any::<u8>()), 1..20), cut in 0..6000_usize) {
+            let mut bytes = stl(1);
+            changes.iter().for_each(|(at, byte)| bytes[*at] = *byte);
+            bytes.truncate(cut);
+            let _ = load("x.stl", &bytes);
+        }
+
+        #[test]
+        fn no_mutated_text_panics(at in 0..2000_usize, byte in any::<u8>(), drop in 0..40_usize) {
+            let mut bytes = text(&cuboid([1.0, 1.0, 1.0]), "box").into_bytes();
+            let at = at % bytes.len();
+            bytes[at] = byte;
+            bytes.drain(at..(at + drop).min(bytes.len()));
+            let _ = load("x.stl", &bytes);
+        }
+
+        #[test]
+        fn no_lines_of_obj_panic(lines in proptest::collection::vec("(v|f|g|o|vn|l|p|usemtl|mtllib)( -?[0-9]{1,2}(/[0-9]?)?(/[0-9])?){0,5}", 0..20)) {
+            let _ = load("x.obj", lines.join("\n").as_bytes());
+        }
+
+        #[test]
+        fn no_integer_soup_panics(v in proptest::collection::vec(proptest::array::uniform9(-2..3_i32), 1..12)) {
+            let triangle = |c: &[i32; 9]| [0, 3, 6].map(|k| Vector([c[k], c[k + 1], c[k + 2]].map(f64::from)));
+            let triangles: Vec<_> = v.iter().map(triangle).collect();
+            let _ = mend(&Soup { tags: vec![0; triangles.len()], names: vec![], triangles });
+        }
+    }
 }

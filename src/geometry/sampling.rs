@@ -72,7 +72,9 @@ impl<const D: usize> Surface<D> {
 
     /// Calls `f(x, normal, area vector, element)` for pieces of the surface no larger than `size(x)`.
     pub fn for_each_piece(
-        &self, size: impl Fn(&Vector<D>) -> f64, mut f: impl FnMut(&Vector<D>, &Vector<D>, &Vector<D>, u32),
+        &self,
+        size: impl Fn(&Vector<D>) -> f64,
+        mut f: impl FnMut(&Vector<D>, &Vector<D>, &Vector<D>, u32),
     ) {
         for e in 0..self.elements.len() as u32 {
             self.subdivide(e, &size, &mut |x, normal, area| f(x, normal, area, e));
@@ -81,7 +83,10 @@ impl<const D: usize> Surface<D> {
 
     /// Cuts an element in halves across its longest side until it is small enough; points lie on the shape itself.
     fn subdivide(
-        &self, e: u32, size: &dyn Fn(&Vector<D>) -> f64, f: &mut dyn FnMut(&Vector<D>, &Vector<D>, &Vector<D>),
+        &self,
+        e: u32,
+        size: &dyn Fn(&Vector<D>) -> f64,
+        f: &mut dyn FnMut(&Vector<D>, &Vector<D>, &Vector<D>),
     ) {
         let corners = self.corners(e);
         let whole = self.element_area_vector(e);

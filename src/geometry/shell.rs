@@ -1,8 +1,10 @@
 //! The skin of one body: vertices and elements, and what follows from them: creases, smooth normals, curvature.
 //!
 //! Two elements meet at a facet: a vertex in 2-D, an edge in 3-D. A facet is a crease where the normals of its elements
-//! turn by more than the crease angle. The smooth normal at a corner is the mean, weighted by area and corner angle, over
-//! the elements that are reached around the vertex without stepping over a crease (Thürmer and Wüthrich 1998).
+//! turn by more than the crease angle. The smooth normal at a corner is a mean over the
+//! elements that are reached around the vertex without stepping over a crease, weighted so that it is exact for vertices
+//! on a sphere however they are connected (N. Max, J. Graphics Tools 4(2), 1999): area over the squared lengths of the
+//! two sides at the corner.
 use super::simplex::{self, Corners};
 use crate::math::{Bounds, Vector};
 
@@ -126,7 +128,7 @@ impl<const D: usize> Shell<D> {
             let c = self.corners(e);
             let area = simplex::area_vector(&c);
             for k in 0..D {
-                sum[root(&mut group, (e * D + k) as u32) as usize] += area * simplex::corner_angle(&c, k);
+                sum[root(&mut group, (e * D + k) as u32) as usize] += area * simplex::corner_weight(&c, k);
             }
         }
         let mut normal = |e: usize, k: usize| sum[root(&mut group, (e * D + k) as u32) as usize].unit();

@@ -224,12 +224,11 @@ fn largest_eigenvalue([e, f, g]: [f64; 3]) -> f64 {
     if mean >= 0.0 { mean + spread } else { mean - spread }
 }
 
-/// Interior angle at corner `k`; a segment has none, its corners count alike.
-pub(super) fn corner_angle<const D: usize>(c: &Corners<D>, k: usize) -> f64 {
-    if D == 2 {
-        return 1.0;
-    }
-    angle_between(&(c[(k + 1) % D] - c[k]).unit(), &(c[(k + 2) % D] - c[k]).unit())
+/// Weight of the area vector in the mean normal at corner `k` (Max 1999); in 2-D the inverse square of the length, which
+/// is exact for points on a circle.
+pub(super) fn corner_weight<const D: usize>(c: &Corners<D>, k: usize) -> f64 {
+    let side = |j: usize| (c[(k + j) % D] - c[k]).norm_squared();
+    ratio(1.0, if D == 2 { side(1) } else { side(1) * side(2) })
 }
 
 /// Angle between unit vectors, accurate near 0 and π.

@@ -10,9 +10,9 @@ use crate::math::{Bounds, Vector};
 const LEAF: usize = 4;
 /// Entries of the traversal stack: depth is below 33 for fewer than 2³² elements, each level leaves one entry behind.
 const STACK: usize = 64;
-/// A node is far when its distance exceeds its reach by this factor. Barill et al. use 2; the error of the sum is then
-/// below 0.05, far from what would confuse 0 with 1.
-const FAR: f64 = 2.5;
+/// A node is far when its distance exceeds its reach by this factor. Barill et al. use 2; with 3 the error
+/// of the sum stays below 0.1 (tested), far from what would confuse 0 with 1.
+const FAR: f64 = 3.0;
 
 /// A node: inner (`count` = 0, children at the next index and at `right`) or leaf.
 #[derive(Clone, Debug)]
@@ -31,11 +31,21 @@ struct Dipole<const D: usize> {
     reach: f64,
 }
 
+/// The disc around an element in its plane: a cheap lower bound of the distance. Boxes around slanted elements are thick,
+/// so near a curved surface ten elements pass the test of their box for one that passes this.
+#[derive(Clone, Debug)]
+struct Disc<const D: usize> {
+    centre: Vector<D>,
+    normal: Vector<D>,
+    radius: f64,
+}
+
 /// Tree over elements. Corners are stored in leaf order, so that a leaf is one read.
 #[derive(Clone, Debug)]
 pub(super) struct Tree<const D: usize> {
     nodes: Vec<Node<D>>,
     dipoles: Vec<Dipole<D>>,
+    discs: Vec<Disc<D>>,
     corners: Vec<Corners<D>>,
     order: Vec<u32>,
 }
@@ -52,12 +62,14 @@ impl<const D: usize> Tree<D> {
     pub(super) fn new(elements: &[Corners<D>]) -> Self {
         let mut items: Vec<(u32, Vector<D>)> =
             elements.iter().enumerate().map(|(e, c)| (e as u32, simplex::centroid(c))).collect();
-        let mut tree = Self { nodes: Vec::new(), dipoles: Vec::new(), corners: Vec::new(), order: Vec::new() };
+        let (nodes, dipoles) = (Vec::new(), Vec::new());
+        let mut tree = Self { nodes, dipoles, discs: Vec::new(), corners: Vec::new(), order: Vec::new() };
         if !items.is_empty() {
             tree.split(elements, &mut items, 0);
         }
         tree.order = items.iter().map(|item| item.0).collect();
         tree.corners = tree.order.iter().map(|&e| elements[e as usize]).collect();
+        tree.discs = tree.corners.iter().map(Disc::around).collect();
         tree
     }
 
@@ -114,6 +126,9 @@ impl<const D: usize> Tree<D> {
     #[inline]
     fn nearest_in_leaf(&self, node: &Node<D>, x: &Vector<D>, best: &mut f64, hit: &mut Option<Hit<D>>) {
         for slot in node.first as usize..(node.first + node.count) as usize {
+            if self.discs[slot].distance_squared(x) > *best {
+                continue;
+            }
             let corners = &self.corners[slot];
             let weights = simplex::closest(x, corners);
             let distance_squared = (simplex::blend(corners, &weights) - *x).norm_squared();
@@ -191,6 +206,26 @@ impl<const D: usize> Tree<D> {
             }
         }
         sum
+    }
+}
+
+impl<const D: usize> Disc<D> {
+    fn around(c: &Corners<D>) -> Self {
+        let centre = simplex::centroid(c);
+        let radius = c.iter().fold(0.0_f64, |r, p| r.max((*p - centre).norm()));
+        Self { centre, normal: simplex::area_vector(c).unit(), radius }
+    }
+
+    /// Square of the distance from `x` to the disc, from below: height above the plane and distance beyond the rim.
+    #[inline]
+    fn distance_squared(&self, x: &Vector<D>) -> f64 {
+        // Rounding must not put the disc farther away than its element.
+        const BELOW: f64 = 1.0 - 1e-9;
+        let offset = *x - self.centre;
+        let height = offset.dot(&self.normal);
+        let height2 = height * height;
+        let beyond = (offset.norm_squared() - height2).max(0.0).sqrt() - self.radius;
+        (height2 + beyond.max(0.0) * beyond.max(0.0)) * BELOW
     }
 }
 

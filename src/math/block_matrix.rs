@@ -41,7 +41,15 @@ impl BlockMatrix {
         let size = block * block;
         let value_parts = parts.iter().map(|p| first[p.start] as usize..first[p.end] as usize).collect();
         let n = first.len() - 1;
-        Self { block, value: vec![0.0; column.len() * size], inverse: vec![0.0; n * size], first, column, parts, value_parts }
+        Self {
+            block,
+            value: vec![0.0; column.len() * size],
+            inverse: vec![0.0; n * size],
+            first,
+            column,
+            parts,
+            value_parts,
+        }
     }
 
     /// Number of rows.

@@ -21,7 +21,12 @@ pub struct Solved {
 impl Gmres {
     /// Storage for `n` unknowns and at most `size` basis vectors.
     pub fn new(n: usize, size: usize) -> Self {
-        Self { basis: vec![vec![0.0; n]; size + 1], hessenberg: vec![vec![0.0; size + 1]; size], z: vec![0.0; n], w: vec![0.0; n] }
+        Self {
+            basis: vec![vec![0.0; n]; size + 1],
+            hessenberg: vec![vec![0.0; size + 1]; size],
+            z: vec![0.0; n],
+            w: vec![0.0; n],
+        }
     }
 
     /// Bytes held.
@@ -33,7 +38,11 @@ impl Gmres {
     ///
     /// `product(v, out)` is A v; `precondition(v, out)` ≈ A⁻¹ v.
     pub fn solve(
-        &mut self, b: &[f64], x: &mut [f64], tolerance: f64, mut product: impl FnMut(&[f64], &mut [f64]),
+        &mut self,
+        b: &[f64],
+        x: &mut [f64],
+        tolerance: f64,
+        mut product: impl FnMut(&[f64], &mut [f64]),
         mut precondition: impl FnMut(&[f64], &mut [f64]),
     ) -> Solved {
         let size = self.hessenberg.len();

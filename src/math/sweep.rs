@@ -44,12 +44,21 @@ pub fn sweep_rows(out: &mut [f64], width: usize, f: impl Fn(usize, &mut [f64]) +
 /// Calls `f(k, slice)` for every part `k`, where `slice` holds the rows `parts[k]` of `out`, `width` values each.
 ///
 /// The parts must follow one another without gaps from row zero.
-pub fn sweep_parts<T: Send>(parts: &[Range<usize>], width: usize, out: &mut [T], f: &(impl Fn(usize, &mut [T]) + Sync)) {
+pub fn sweep_parts<T: Send>(
+    parts: &[Range<usize>],
+    width: usize,
+    out: &mut [T],
+    f: &(impl Fn(usize, &mut [T]) + Sync),
+) {
     split_parts(parts, 0, width, out, f);
 }
 
 fn split_parts<T: Send>(
-    parts: &[Range<usize>], first: usize, width: usize, out: &mut [T], f: &(impl Fn(usize, &mut [T]) + Sync),
+    parts: &[Range<usize>],
+    first: usize,
+    width: usize,
+    out: &mut [T],
+    f: &(impl Fn(usize, &mut [T]) + Sync),
 ) {
     match parts {
         [] => {}
@@ -58,7 +67,10 @@ fn split_parts<T: Send>(
             let (left, right) = parts.split_at(parts.len() / 2);
             let rows = left[left.len() - 1].end - left[0].start;
             let (a, b) = out.split_at_mut(rows * width);
-            rayon::join(|| split_parts(left, first, width, a, f), || split_parts(right, first + left.len(), width, b, f));
+            rayon::join(
+                || split_parts(left, first, width, a, f),
+                || split_parts(right, first + left.len(), width, b, f),
+            );
         }
     }
 }
@@ -86,6 +98,11 @@ fn pairwise(from: usize, to: usize, value: &(impl Fn(usize) -> f64 + Sync)) -> f
             a + b
         }
     }
+}
+
+/// Largest of `f(i)` over `0..n`, at least zero.
+pub fn maximum(n: usize, f: impl Fn(usize) -> f64 + Sync + Send) -> f64 {
+    (0..n).into_par_iter().with_min_len(CHUNK).map(f).reduce(|| 0.0, f64::max)
 }
 
 /// Inner product of two slices with a fixed order of summation.

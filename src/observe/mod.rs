@@ -1,6 +1,8 @@
 //! What a run leaves behind: tables, field files and checkpoints. Takes slices, knows no solver type.
 pub mod checkpoint;
+pub mod loads;
 pub mod table;
+pub mod usage;
 pub mod vtk;
 
 pub use checkpoint::{Array, Checkpoint, CheckpointError, Field};

@@ -103,7 +103,10 @@ impl<const D: usize> Primitive<D> {
 
     /// True when density and pressure are positive and nothing is NaN or infinite.
     pub fn is_physical(&self) -> bool {
-        self.density > 0.0 && self.pressure > 0.0 && self.velocity.is_finite() && (self.density + self.pressure).is_finite()
+        self.density > 0.0
+            && self.pressure > 0.0
+            && self.velocity.is_finite()
+            && (self.density + self.pressure).is_finite()
     }
 }
 

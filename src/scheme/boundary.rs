@@ -83,7 +83,11 @@ fn is_sound(weights: &[f64]) -> bool {
 
 /// The row that gives f_w from the values of the fluid particles; `n` coefficients, weights 1/r².
 fn solve_fit<const D: usize>(
-    offsets: &[Vector<D>], frame: (&Vector<D>, &[Vector<D>; D]), h: f64, n: usize, weights: &mut Vec<f64>,
+    offsets: &[Vector<D>],
+    frame: (&Vector<D>, &[Vector<D>; D]),
+    h: f64,
+    n: usize,
+    weights: &mut Vec<f64>,
 ) {
     let mut fit = Fit::default();
     fit.reset(n);
@@ -142,7 +146,12 @@ pub enum WallRule {
 
 /// State of interface particle `w` on a slip wall at rest.
 pub fn slip_wall<const D: usize>(
-    cloud: &Cloud<D>, fits: &WallFits, gas: &Gas, rule: WallRule, w: usize, q: impl Fn(usize) -> Primitive<D>,
+    cloud: &Cloud<D>,
+    fits: &WallFits,
+    gas: &Gas,
+    rule: WallRule,
+    w: usize,
+    q: impl Fn(usize) -> Primitive<D>,
 ) -> Primitive<D> {
     let range = cloud.wall_clouds.range(w);
     let (mut p, mut s, mut h, mut v) = (0.0, 0.0, 0.0, Vector::<D>::ZERO);
@@ -182,7 +191,13 @@ fn bending<const D: usize>(wall: &crate::cloud::Interface<D>, velocity: &Vector<
 }
 
 /// Completes a wall state from the fitted (p, s, H), the velocity and `bend` = B κ.
-fn close_state<const D: usize>(gas: &Gas, rule: WallRule, fit: (f64, f64, f64), velocity: Vector<D>, bend: f64) -> Primitive<D> {
+fn close_state<const D: usize>(
+    gas: &Gas,
+    rule: WallRule,
+    fit: (f64, f64, f64),
+    velocity: Vector<D>,
+    bend: f64,
+) -> Primitive<D> {
     let (p, s, h) = fit;
     let g = gas.gamma;
     let ratio = g / (g - 1.0);

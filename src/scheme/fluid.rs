@@ -12,16 +12,13 @@ use crate::case::{Flux, Limiter, Side};
 use crate::cloud::{Cloud, Edge, Operators};
 use crate::math::Vector;
 use crate::math::block_matrix::BlockMatrix;
-use crate::math::sweep::{sweep, sweep_parts};
+use crate::math::sweep::{maximum, sweep, sweep_parts};
 use crate::physics::riemann::{flux_ausm_plus_up, flux_hllc, flux_roe, flux_rusanov};
 use crate::physics::{Conserved, Gas, Primitive};
 use crate::system::{Fault, System};
 
 use super::boundary::{WallFits, WallRule, slip_wall};
 use super::reconstruct::{Gradient, Limit, Reconstruction, Unlimited, VanAlbada, Venkatakrishnan};
-
-/// Largest change of density and pressure in one implicit step, as a fraction of their value.
-const LARGEST_CHANGE: f64 = 0.3;
 
 /// The compressible Euler equations on a cloud.
 pub struct Fluid<const D: usize> {
@@ -53,6 +50,8 @@ pub struct Fluid<const D: usize> {
 pub trait FarField<const D: usize>: Send + Sync {
     /// State at `x` when the bodies feel the force `force` (per unit span in 2-D).
     fn state(&self, x: &Vector<D>, force: &Vector<D>) -> Primitive<D>;
+    /// Static pressure far away.
+    fn pressure(&self) -> f64;
 }
 
 /// What depends on time but is not evolved.
@@ -170,7 +169,13 @@ impl<const D: usize> Fluid<D> {
 
     /// What one edge adds to −dU/dt... of both ends: (to i, to j).
     #[inline(always)]
-    fn edge_flux(&self, flux: &impl UpwindFlux<D>, limit: impl Limit, e: &Edge<D>, work: &Work<D>) -> (Conserved<D>, Conserved<D>) {
+    fn edge_flux(
+        &self,
+        flux: &impl UpwindFlux<D>,
+        limit: impl Limit,
+        e: &Edge<D>,
+        work: &Work<D>,
+    ) -> (Conserved<D>, Conserved<D>) {
         let (i, j) = (e.i(), e.j());
         let (qi, qj) = (&work.state[i], &work.state[j]);
         let d = self.cloud.x[j] - self.cloud.x[i];
@@ -200,18 +205,16 @@ impl<const D: usize> Fluid<D> {
     /// Force of the pressure on all bodies, from the wall states in `work`.
     pub fn pressure_force(&self, work: &Work<D>) -> Vector<D> {
         let walls = &work.state[self.cloud.interface_range()];
-        let far = self.far_field_pressure();
+        let far = self.far_field.pressure();
         self.cloud.interface.iter().zip(walls).fold(Vector::ZERO, |f, (w, q)| f - w.area * (q.pressure - far))
-    }
-
-    /// Static pressure far away.
-    fn far_field_pressure(&self) -> f64 {
-        self.far_field.state(&Vector::splat(f64::MAX.sqrt()), &Vector::ZERO).pressure
     }
 }
 
 /// A numerical flux across a unit normal.
-pub trait UpwindFlux<const D: usize>: Fn(&Gas, &Primitive<D>, &Primitive<D>, &Vector<D>) -> Conserved<D> + Sync {}
+pub trait UpwindFlux<const D: usize>:
+    Fn(&Gas, &Primitive<D>, &Primitive<D>, &Vector<D>) -> Conserved<D> + Sync
+{
+}
 impl<const D: usize, T: Fn(&Gas, &Primitive<D>, &Primitive<D>, &Vector<D>) -> Conserved<D> + Sync> UpwindFlux<D> for T {}
 
 #[inline(always)]
@@ -296,16 +299,14 @@ impl<const D: usize> System for Fluid<D> {
         super::jacobian::assemble(self, work, matrix);
     }
 
-    fn admissible_fraction(&self, u: &[f64], du: &[f64]) -> f64 {
-        let n = self.cloud.n_fluid;
-        let mut fraction = vec![1.0f64; n];
-        sweep(&mut fraction, |i| {
+    fn largest_change(&self, u: &[f64], du: &[f64]) -> f64 {
+        let change = |i: usize| {
             let (a, b) = (Conserved::<D>::load(&u[i * (D + 2)..]), Conserved::load(&du[i * (D + 2)..]));
             let (old, new) = (self.gas.primitive(&a), self.gas.primitive(&a.plus(1.0, &b)));
-            let change = ((new.density / old.density - 1.0).abs()).max((new.pressure / old.pressure - 1.0).abs());
-            if change.is_finite() { (LARGEST_CHANGE / change).min(1.0) } else { 0.0 }
-        });
-        fraction.iter().fold(1.0, |m, f| m.min(*f))
+            let change = (new.density / old.density - 1.0).abs().max((new.pressure / old.pressure - 1.0).abs());
+            if change.is_finite() { change } else { f64::INFINITY }
+        };
+        maximum(self.cloud.n_fluid, change)
     }
 
     fn fault(&self, u: &[f64]) -> Option<Fault> {

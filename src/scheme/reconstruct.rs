@@ -53,14 +53,15 @@ pub trait Limit: Copy + Sync {
     fn factor(self, a: f64, b: f64, eps: f64) -> f64;
 }
 
-/// Van Albada, van Leer and Roberts (1982), rounded to a cubic where it leaves zero so that it is differentiable.
+/// Van Albada, van Leer and Roberts (1982) in a form that never reaches zero, s = m/(m + (a − b)²) with
+/// m = ε + (a² + b²)/2: differentiable everywhere, so that residuals fall through shocks.
 #[derive(Clone, Copy)]
 pub struct VanAlbada;
 impl Limit for VanAlbada {
     #[inline(always)]
     fn factor(self, a: f64, b: f64, eps: f64) -> f64 {
-        let s = ((2.0 * a * b + eps) / (a * a + b * b + eps)).max(0.0);
-        s * s * (3.0 - 2.0 * s)
+        let m = eps + 0.5 * (a * a + b * b);
+        m / (m + (a - b) * (a - b))
     }
 }
 
@@ -102,7 +103,12 @@ impl Reconstruction {
     /// States on both sides of the middle of the edge d = x_j − x_i.
     #[inline(always)]
     pub fn states<const D: usize, L: Limit>(
-        &self, gas: &Gas, limit: L, ends: (&Primitive<D>, &Primitive<D>), slopes: (&Gradient<D>, &Gradient<D>), d: &Vector<D>,
+        &self,
+        gas: &Gas,
+        limit: L,
+        ends: (&Primitive<D>, &Primitive<D>),
+        slopes: (&Gradient<D>, &Gradient<D>),
+        d: &Vector<D>,
     ) -> (Primitive<D>, Primitive<D>) {
         let (qi, qj) = ends;
         if !self.second_order {
@@ -126,7 +132,11 @@ impl Reconstruction {
     /// s/4 [(1 − κs) a + (1 + κs) b] for every variable.
     #[inline(always)]
     fn increment<const D: usize, L: Limit>(
-        &self, limit: L, slope: &Primitive<D>, dq: &Primitive<D>, eps: (f64, f64, f64),
+        &self,
+        limit: L,
+        slope: &Primitive<D>,
+        dq: &Primitive<D>,
+        eps: (f64, f64, f64),
     ) -> Primitive<D> {
         let one = |g: f64, b: f64, eps: f64| {
             let a = 2.0 * g - b;

@@ -50,11 +50,21 @@ pub struct Explicit<'a, S: System> {
 
 impl<'a, S: System> Explicit<'a, S> {
     /// Prepares a march from the state `u` at time `time`.
-    pub fn new(system: &'a S, method: Method, (cfl, until): (f64, f64), (time, iteration, u): (f64, u32, Vec<f64>)) -> Self {
+    pub fn new(
+        system: &'a S,
+        method: Method,
+        (cfl, until): (f64, f64),
+        (time, iteration, u): (f64, u32, Vec<f64>),
+    ) -> Self {
         let n = u.len();
         let frame = system.frame(time, &u);
         Self {
-            system, method, cfl, until, time, iteration,
+            system,
+            method,
+            cfl,
+            until,
+            time,
+            iteration,
             frame,
             work: system.work(),
             start: vec![0.0; n],
@@ -70,9 +80,9 @@ impl<'a, S: System> Explicit<'a, S> {
         self.time >= self.until
     }
 
-    /// Storage of the system, holding the last evaluation.
-    pub fn work(&mut self) -> (&S::Frame, &mut S::Work) {
-        (&self.frame, &mut self.work)
+    /// Frame, storage and state, for those who watch.
+    pub fn parts(&mut self) -> (&S::Frame, &mut S::Work, &[f64]) {
+        (&self.frame, &mut self.work, &self.u)
     }
 
     /// One time step.

@@ -31,7 +31,9 @@ pub enum TimeError {
         hint: &'static str,
     },
     /// The steady relaxation cannot get on.
-    #[error("the relaxation stopped at iteration {iteration}: every step down to a Courant number of {cfl:.1e} was rejected; the largest residual is at particle {particle}\nhint: lower `time.steady.cfl`, or refine the cloud there")]
+    #[error(
+        "the relaxation stopped at iteration {iteration}: every step down to a Courant number of {cfl:.1e} was rejected; the largest residual is at particle {particle}\nhint: lower `time.steady.cfl`, or refine the cloud there"
+    )]
     Stalled {
         /// Iteration.
         iteration: u32,

@@ -45,7 +45,7 @@ pub struct Control {
 }
 
 /// Drop of the residual below which the flow counts as settled.
-const SETTLED: f64 = 0.02;
+const SETTLED: f64 = 3e-3;
 /// Iterations without a new smallest residual after which the flow counts as settled.
 const PATIENCE: u32 = 10;
 /// Fewest iterations of sweeps alone before patience is counted.
@@ -56,10 +56,16 @@ const LOST_CFL: f64 = 5.0;
 const RESTART_CFL: f64 = 20.0;
 /// Greatest Courant number of sweeps alone.
 const START_CFL_MAX: f64 = 200.0;
-/// Largest ratio of residuals of successive accepted steps.
-const LARGEST_JUMP: f64 = 4.0;
+/// Largest ratio of residuals of successive steps while shocks travel.
+const START_JUMP: f64 = 4.0;
+/// Largest ratio of residuals of successive Newton steps.
+const NEWTON_JUMP: f64 = 1.1;
+/// Step lengths that are tried before the Courant number is lowered: 1, 1/2, 1/4.
+const SHORTER_STEPS: i32 = 3;
 /// Courant number below which the relaxation gives up.
 const SMALLEST_CFL: f64 = 1e-3;
+/// Largest relative change of density and pressure in one step.
+const LARGEST_CHANGE: f64 = 0.3;
 /// Smallest fraction of a step that is worth taking.
 const SMALLEST_FRACTION: f64 = 0.05;
 /// Courant number of the explicit method.
@@ -133,13 +139,14 @@ pub struct Resume {
 }
 
 impl<'a, S: System> Relax<'a, S> {
-    /// Starts from the state `u`, or goes on from `resume`.
-    pub fn new(system: &'a S, control: Control, u: Vec<f64>, resume: Option<Resume>) -> Self {
+    /// Starts from the state `u`, or goes on from `resume`. The residual is measured against that of the state `origin`
+    /// (the free stream), so that a good guess counts for what it is worth.
+    pub fn new(system: &'a S, control: Control, u: Vec<f64>, origin: &[f64], resume: Option<Resume>) -> Self {
         let n = u.len();
         let mut work = system.work();
-        let frame = system.frame(0.0, &u);
+        let frame = system.frame(0.0, origin);
         let mut rate = vec![0.0; n / system.block()];
-        system.spectral_radius(&frame, &u, &mut work, &mut rate);
+        system.spectral_radius(&frame, origin, &mut work, &mut rate);
         let implicit = control.method != Method::RungeKutta;
         let matrix = |first: &[u32], index: &[u32]| BlockMatrix::new(system.block(), n / system.block(), first, index);
         let levels = implicit.then(|| {
@@ -152,7 +159,14 @@ impl<'a, S: System> Relax<'a, S> {
             None => rate.iter().map(|r| 1.0 / r).collect(),
         };
         let mut all = Self {
-            system, control, frame, work, rate, scale, u, levels,
+            system,
+            control,
+            frame,
+            work,
+            rate,
+            scale,
+            u,
+            levels,
             iteration: resume.as_ref().map_or(0, |r| r.iteration),
             cfl: resume.as_ref().map_or(control.cfl, |r| r.cfl),
             linear: resume.as_ref().map_or(0, |r| r.linear),
@@ -165,15 +179,26 @@ impl<'a, S: System> Relax<'a, S> {
             step: vec![0.0; n],
             gmres: basis,
         };
+        if resume.is_none() {
+            all.system.rhs(&all.frame, origin, &mut all.work, &mut all.residual);
+        }
+        all.first_norm = resume.map_or_else(|| all.norm_of(&all.residual).max(f64::MIN_POSITIVE), |r| r.first_norm);
+        all.system.update_frame(0.0, &all.u, &mut all.work, &mut all.frame);
         all.system.rhs(&all.frame, &all.u, &mut all.work, &mut all.residual);
         all.norm = all.norm_of(&all.residual);
-        all.first_norm = resume.map_or(all.norm.max(f64::MIN_POSITIVE), |r| r.first_norm);
         all
     }
 
     /// What a later run needs, beside the state, to go on to the same bits.
     pub fn resume(&self) -> Resume {
-        Resume { iteration: self.iteration, cfl: self.cfl, first_norm: self.first_norm, linear: self.linear, phase: self.phase, scale: self.scale.clone() }
+        Resume {
+            iteration: self.iteration,
+            cfl: self.cfl,
+            first_norm: self.first_norm,
+            linear: self.linear,
+            phase: self.phase,
+            scale: self.scale.clone(),
+        }
     }
 
     /// Residual over its first value.
@@ -181,9 +206,9 @@ impl<'a, S: System> Relax<'a, S> {
         self.norm / self.first_norm
     }
 
-    /// Storage of the system.
-    pub fn work(&mut self) -> (&S::Frame, &mut S::Work) {
-        (&self.frame, &mut self.work)
+    /// Frame, storage and state, for those who watch.
+    pub fn parts(&mut self) -> (&S::Frame, &mut S::Work, &[f64]) {
+        (&self.frame, &mut self.work, &self.u)
     }
 
     /// The residual R(u) of the last accepted state.
@@ -209,9 +234,14 @@ impl<'a, S: System> Relax<'a, S> {
     pub fn advance(&mut self) -> Result<Step, TimeError> {
         self.iteration += 1;
         loop {
-            if self.control.method == Method::RungeKutta { self.explicit_step() } else { self.implicit_step() }
-            let fraction = self.system.admissible_fraction(&self.u, &self.step);
-            if fraction > SMALLEST_FRACTION && self.accept(fraction) {
+            if self.control.method == Method::RungeKutta {
+                self.explicit_step()
+            } else {
+                self.implicit_step()
+            }
+            let change = self.system.largest_change(&self.u, &self.step);
+            let fraction = (LARGEST_CHANGE / change).min(1.0);
+            if fraction > SMALLEST_FRACTION && self.search(fraction) {
                 break;
             }
             self.cfl *= 0.2;
@@ -221,9 +251,7 @@ impl<'a, S: System> Relax<'a, S> {
             }
         }
         self.choose_phase();
-        Ok(Step {
-            iteration: self.iteration, time: 0.0, cfl: self.cfl, residual: self.drop(), linear: self.linear,
-        })
+        Ok(Step { iteration: self.iteration, time: 0.0, cfl: self.cfl, residual: self.drop(), linear: self.linear })
     }
 
     /// Newton's method once the flow has taken shape; back to sweeps alone when its steps become small.
@@ -248,8 +276,16 @@ impl<'a, S: System> Relax<'a, S> {
         }
     }
 
-    /// Takes the step times `fraction` if the new residual is sound; sets the next Courant number.
-    fn accept(&mut self, fraction: f64) -> bool {
+    /// Takes the step times `fraction`, or a shorter one when Newton's method overshoots.
+    fn search(&mut self, fraction: f64) -> bool {
+        if !self.phase.newton {
+            return self.accept(fraction, START_JUMP);
+        }
+        (0..SHORTER_STEPS).any(|k| self.accept(fraction * 0.5f64.powi(k), NEWTON_JUMP))
+    }
+
+    /// Takes the step times `fraction` if the new residual is at most `jump` times the old one; sets the next Courant number.
+    fn accept(&mut self, fraction: f64, jump: f64) -> bool {
         let (u, step) = (&self.u, &self.step);
         crate::math::sweep::sweep(&mut self.trial, |k| u[k] + fraction * step[k]);
         if self.system.fault(&self.trial).is_some() {
@@ -259,17 +295,33 @@ impl<'a, S: System> Relax<'a, S> {
         self.system.update_frame(0.0, &self.trial, &mut self.work, &mut frame);
         self.system.rhs(&frame, &self.trial, &mut self.work, &mut self.trial_residual);
         let norm = self.norm_of(&self.trial_residual);
-        if !norm.is_finite() || norm > LARGEST_JUMP * self.norm {
+        if !norm.is_finite() || norm > jump * self.norm {
             return false;
         }
         self.frame = frame;
         std::mem::swap(&mut self.u, &mut self.trial);
         std::mem::swap(&mut self.residual, &mut self.trial_residual);
-        let ratio = (self.norm / norm.max(f64::MIN_POSITIVE)).clamp(0.5, self.control.growth);
-        let grow = if fraction == 1.0 { ratio.max(1.0 + 0.5 * (self.control.growth - 1.0)) } else { 1.0 };
-        self.cfl = (self.cfl * if ratio < 1.0 { ratio.max(0.8) } else { grow }).min(self.largest_cfl());
+        self.cfl = self.next_cfl(fraction, self.norm / norm.max(f64::MIN_POSITIVE));
         self.norm = norm;
         true
+    }
+
+    /// The Courant number after an accepted step that divided the residual by `ratio`.
+    fn next_cfl(&self, fraction: f64, ratio: f64) -> f64 {
+        let growth = self.control.growth;
+        let factor = match (self.phase.newton, fraction == 1.0) {
+            (true, true) => ratio.clamp(0.5, growth),
+            (true, false) => ratio.clamp(0.5, 1.0),
+            (false, true) => {
+                if ratio < 1.0 {
+                    ratio.max(0.8)
+                } else {
+                    ratio.clamp(1.0 + 0.5 * (growth - 1.0), growth)
+                }
+            }
+            (false, false) => ratio.clamp(0.8, 1.0),
+        };
+        (self.cfl * factor).min(self.largest_cfl())
     }
 
     fn largest_cfl(&self) -> f64 {

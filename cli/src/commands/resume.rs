@@ -1,7 +1,11 @@
 //! `alula resume`.
 use crate::arguments;
 use crate::outcome::Outcome;
+use crate::watch::Watch;
 
-pub(crate) fn resume(_args: &arguments::Resume) -> Outcome {
-    super::unavailable("resume")
+/// Goes on with an interrupted run.
+pub(crate) fn resume(args: &arguments::Resume) -> Outcome {
+    let mut watch = Watch::new(args.verbosity);
+    let ended = alula::run::resume(&args.run, &mut watch);
+    super::run::tell(ended, &args.run, &mut watch, args.verbosity)
 }

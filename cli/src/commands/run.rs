@@ -1,10 +1,121 @@
 //! `alula run`.
-use crate::arguments;
-use crate::outcome::Outcome;
+use std::fs;
+use std::path::{Path, PathBuf};
 
+use alula::run::{self, Outcome as Ended, Places, RunError, Summary};
+
+use crate::arguments::{self, Verbosity};
+use crate::interrupt::Interrupt;
+use crate::outcome::Outcome;
+use crate::output;
+use crate::watch::Watch;
+
+/// Folder for runs that name none.
+const RUNS: &str = "runs";
+
+/// Computes a case.
 pub(crate) fn run(args: &arguments::Run) -> Outcome {
-    match super::load(&args.case) {
-        Ok(_) => super::unavailable("run"),
-        Err(outcome) => outcome,
+    let case = match super::load(&args.case) {
+        Ok(case) => case,
+        Err(outcome) => return outcome,
+    };
+    let out = args.out.clone().unwrap_or_else(|| run::fresh_folder(Path::new(RUNS), &name_of(&args.case)));
+    if args.force
+        && let Err(problem) = set_aside(&out)
+    {
+        output::error(
+            &format!("cannot set `{}` aside: {problem}", out.display()),
+            "choose another folder with `--out`",
+        );
+        return Outcome::BadInput;
     }
+    let input = args.case.parent().map_or_else(PathBuf::new, Path::to_path_buf);
+    let mut watch = Watch::new(args.verbosity);
+    let ended = run::run(&case, &Places { input, out: out.clone() }, &mut watch);
+    tell(ended, &out, &mut watch, args.verbosity)
+}
+
+/// Says how a run ended.
+pub(crate) fn tell(ended: Result<Ended, RunError>, out: &Path, watch: &mut Watch, verbosity: Verbosity) -> Outcome {
+    watch.progress().finish();
+    match ended {
+        Ok(Ended::Finished(summary)) => finished(&summary, out, verbosity),
+        Ok(Ended::Interrupted { iteration }) => {
+            output::message(&format!("{}\n", Interrupt::farewell(out, iteration)));
+            Outcome::Interrupted
+        }
+        Err(problem) => {
+            let text = problem.to_string();
+            let (what, hint) = text.split_once("\nhint: ").unwrap_or((&text, ""));
+            output::error(what, hint);
+            match problem {
+                RunError::Time { .. } => Outcome::Failed,
+                _ => Outcome::BadInput,
+            }
+        }
+    }
+}
+
+fn finished(summary: &Summary, out: &Path, verbosity: Verbosity) -> Outcome {
+    if verbosity.json {
+        let line = serde_json::to_string(summary).unwrap_or_default();
+        output::data(&format!("{line}\n"));
+    } else if !verbosity.quiet {
+        output::data(&describe(summary, out));
+    }
+    if summary.converged {
+        return Outcome::Done;
+    }
+    let hint = "raise `time.steady.iterations`, or look at the residual in the report";
+    output::error(&format!("not converged: the residual fell {:.1} orders", summary.residual_drop), hint);
+    Outcome::Failed
+}
+
+fn describe(s: &Summary, out: &Path) -> String {
+    let (a, b) = (&s.loads, &s.loads_momentum_balance);
+    let mut text = String::new();
+    if a.cl != 0.0 || a.cd != 0.0 {
+        text += &format!(
+            "                      CL         CD         CM\nwall pressure   {:9.5}  {:9.5}  {:9.5}\nmomentum        {:9.5}  {:9.5}  {:9.5}\n",
+            a.cl, a.cd, a.cm, b.cl, b.cd, b.cm
+        );
+    }
+    if let Some(c) = &s.adapt_change {
+        text += &format!("last adaptation {:+9.5}  {:+9.5}  {:+9.5}\n", c.cl, c.cd, c.cm);
+    }
+    if let Some(e) = s.error_l2_density {
+        text += &format!("error of density (L2, exact solution) {e:.3e}\n");
+    }
+    text += &format!(
+        "{} particles, {} iterations, residual down {:.1} orders; {:.2} s of processor time ({:.3} ms per particle), {:.0} bytes per particle\nledger: mass {:.1e}, momentum {:.1e}, energy {:.1e}\nreport: {}\n",
+        s.particles,
+        s.iterations,
+        s.residual_drop,
+        s.cpu_seconds,
+        s.cpu_ms_per_particle,
+        s.bytes_per_particle,
+        s.ledger.mass,
+        s.ledger.momentum,
+        s.ledger.energy,
+        out.join("report.html").display()
+    );
+    text
+}
+
+/// Name of a run after its case file: the file's own, or that of its folder when the file is called `case.toml`.
+pub(crate) fn name_of(case: &Path) -> String {
+    let stem = |p: &Path| p.file_stem().map(|s| s.to_string_lossy().into_owned());
+    let own = stem(case).unwrap_or_else(|| "run".into());
+    let folder = case.parent().and_then(Path::file_name).map(|s| s.to_string_lossy().into_owned());
+    if own == "case" { folder.unwrap_or(own) } else { own }
+}
+
+/// Renames an existing run folder, so that nothing is lost.
+fn set_aside(out: &Path) -> std::io::Result<()> {
+    if !out.exists() {
+        return Ok(());
+    }
+    let parent = out.parent().unwrap_or(Path::new(""));
+    let name = out.file_name().map_or_else(|| "run".into(), |n| n.to_string_lossy().into_owned());
+    fs::rename(out, run::fresh_folder(parent, &format!("{name}.replaced")))
 }

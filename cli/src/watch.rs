@@ -1,0 +1,68 @@
+//! Between a run and its user: progress out, signals in.
+use std::time::Instant;
+
+use alula::run::{Monitor, Tick};
+
+use crate::arguments::Verbosity;
+use crate::interrupt::Interrupt;
+use crate::progress::{self, Progress};
+
+/// Shows progress and passes signals on.
+pub(crate) struct Watch {
+    progress: Progress,
+    interrupt: Interrupt,
+    quiet: bool,
+    began: Instant,
+    first: Option<u64>,
+}
+
+impl Watch {
+    /// A watch with the verbosity asked for.
+    pub(crate) fn new(verbosity: Verbosity) -> Self {
+        Self {
+            progress: Progress::new(verbosity),
+            interrupt: Interrupt::install().unwrap_or_default(),
+            quiet: verbosity.quiet,
+            began: Instant::now(),
+            first: None,
+        }
+    }
+
+    /// The line that shows progress, to close it and to print events.
+    pub(crate) fn progress(&mut self) -> &mut Progress {
+        &mut self.progress
+    }
+}
+
+impl Monitor for Watch {
+    fn tick(&mut self, tick: &Tick) {
+        let first = *self.first.get_or_insert(tick.iteration.saturating_sub(1));
+        let seconds = self.began.elapsed().as_secs_f64();
+        let share = (tick.reached / tick.goal).clamp(0.0, 1.0);
+        let eta = (share > 0.02 && share < 1.0).then(|| seconds * (1.0 - share) / share);
+        self.progress.tick(&progress::Tick {
+            iteration: tick.iteration,
+            orders: -tick.residual.max(f64::MIN_POSITIVE).log10(),
+            residual: tick.residual,
+            cfl: tick.cfl,
+            loads: tick.loads,
+            rate: (tick.iteration - first) as f64 / seconds.max(1e-9),
+            particles: tick.particles,
+            eta,
+        });
+    }
+
+    fn note(&mut self, text: &str) {
+        if !self.quiet {
+            self.progress.note(text);
+        }
+    }
+
+    fn stop(&self) -> bool {
+        self.interrupt.stopping()
+    }
+
+    fn checkpoint(&self) -> bool {
+        self.interrupt.take_checkpoint()
+    }
+}

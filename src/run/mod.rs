@@ -1,0 +1,231 @@
+//! From a case to a run folder: the only place that chooses between dimensions, physics and integrators.
+//!
+//! A run is a list of *stages*: coarse clouds that give a steady case its start, the cloud of the case, then one cloud for
+//! each cycle of adaptation. Every stage builds its cloud, takes over the state of the one before by the solver's own fit,
+//! and integrates. Checkpoints hold what a stage cannot rebuild from the case: its sources of refinement, the state, and
+//! where the integrator stands; a killed run goes on to the same bits.
+mod folder;
+mod outputs;
+mod persist;
+mod pictures;
+mod setup;
+mod snapshot;
+mod solve;
+pub mod summary;
+
+use std::path::{Path, PathBuf};
+
+use crate::case::{Case, Temporal};
+use crate::cloud::sources::Source;
+use crate::cloud::{Cloud, CloudError};
+use crate::geometry::{GeometryError, Surface, dimension};
+use crate::observe::{CheckpointError, FileError, VtkError};
+use crate::report::ReportError;
+use crate::scheme::adapt;
+use crate::scheme::start::StartError;
+use crate::system::System;
+use crate::time::TimeError;
+
+pub use folder::fresh_folder;
+pub use snapshot::Snapshot;
+pub use summary::Summary;
+
+use setup::{Solver, Stage};
+
+/// What a run tells while it goes, and what it is told.
+pub trait Monitor {
+    /// After every iteration.
+    fn tick(&mut self, tick: &Tick);
+    /// Something worth a line.
+    fn note(&mut self, text: &str);
+    /// True when the run should write a checkpoint and stop.
+    fn stop(&self) -> bool {
+        false
+    }
+    /// True when a checkpoint should be written now.
+    fn checkpoint(&self) -> bool {
+        false
+    }
+}
+
+/// A monitor that says nothing.
+pub struct Silent;
+impl Monitor for Silent {
+    fn tick(&mut self, _: &Tick) {}
+    fn note(&mut self, _: &str) {}
+}
+
+/// State of a run after an iteration.
+#[derive(Clone, Copy, Debug)]
+pub struct Tick {
+    /// Iterations over all stages.
+    pub iteration: u64,
+    /// Orders of magnitude to go in all (steady) or fraction of the time (marching), and reached.
+    pub goal: f64,
+    /// Reached of `goal`.
+    pub reached: f64,
+    /// Residual over its first value.
+    pub residual: f64,
+    /// Courant number.
+    pub cfl: f64,
+    /// CL, CD, CM when there are bodies.
+    pub loads: Option<[f64; 3]>,
+    /// Number of fluid particles.
+    pub particles: usize,
+}
+
+/// How a run ended.
+#[derive(Debug)]
+pub enum Outcome {
+    /// It ran to its end.
+    Finished(Box<Summary>),
+    /// It was told to stop; a checkpoint is written.
+    Interrupted {
+        /// Iteration at which it stopped.
+        iteration: u64,
+    },
+}
+
+/// Why a run failed.
+#[derive(Debug, thiserror::Error)]
+pub enum RunError {
+    /// Geometry.
+    #[error(transparent)]
+    Geometry(#[from] GeometryError),
+    /// Cloud.
+    #[error(transparent)]
+    Cloud(#[from] CloudError),
+    /// Initial field.
+    #[error(transparent)]
+    Start(#[from] StartError),
+    /// Integration.
+    #[error("{source}\nthe last good state is in `{checkpoint}`")]
+    Time {
+        /// Why.
+        source: TimeError,
+        /// Checkpoint with the last good state.
+        checkpoint: String,
+    },
+    /// A file could not be written or read.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// A field file could not be written.
+    #[error(transparent)]
+    Vtk(#[from] VtkError),
+    /// A checkpoint could not be written or read.
+    #[error(transparent)]
+    Checkpoint(#[from] CheckpointError),
+    /// A picture or the report could not be written.
+    #[error(transparent)]
+    Report(#[from] ReportError),
+    /// The run folder is not usable.
+    #[error("{0}")]
+    Folder(String),
+}
+
+/// Where a run reads and writes.
+#[derive(Clone, Debug)]
+pub struct Places {
+    /// Folder that file names in the case refer to.
+    pub input: PathBuf,
+    /// Run folder.
+    pub out: PathBuf,
+}
+
+/// Runs a case into a fresh folder.
+pub fn run(case: &Case, places: &Places, monitor: &mut dyn Monitor) -> Result<Outcome, RunError> {
+    folder::create(case, places)?;
+    match dimension(case) {
+        2 => drive::<2>(case, places, None, monitor),
+        _ => drive::<3>(case, places, None, monitor),
+    }
+}
+
+/// Goes on with an interrupted or killed run.
+pub fn resume(out: &Path, monitor: &mut dyn Monitor) -> Result<Outcome, RunError> {
+    let (case, input) = folder::read_case(out)?;
+    let places = Places { input, out: out.to_path_buf() };
+    let saved = persist::Saved::read(out)?;
+    match dimension(&case) {
+        2 => drive::<2>(&case, &places, Some(saved), monitor),
+        _ => drive::<3>(&case, &places, Some(saved), monitor),
+    }
+}
+
+/// Builds the cloud of a case without running it.
+pub fn build_cloud<const D: usize>(
+    case: &Case,
+    input: &Path,
+) -> Result<(Option<Surface<D>>, Cloud<D>, Vec<String>), RunError> {
+    let (surface, notes) = setup::surface::<D>(case, input)?;
+    let cloud = Cloud::build(case, surface.as_ref(), &[])?;
+    Ok((surface, cloud, notes))
+}
+
+/// All stages of a run.
+fn drive<const D: usize>(
+    case: &Case,
+    places: &Places,
+    mut saved: Option<persist::Saved>,
+    monitor: &mut dyn Monitor,
+) -> Result<Outcome, RunError> {
+    let clock = summary::Clock::start();
+    let (surface, notes) = setup::surface::<D>(case, &places.input)?;
+    notes.iter().for_each(|n| monitor.note(n));
+    let mut full = match &saved {
+        Some(_) => None,
+        None => Some(Cloud::build(case, surface.as_ref(), &[])?),
+    };
+    let stages = match &saved {
+        Some(s) => s.stages.clone(),
+        None => setup::stages(case, full.as_ref().map_or(0, |c| c.n_fluid), D),
+    };
+    let mut journal = solve::Journal::open(case, places, saved.as_ref(), monitor)?;
+    journal.note(&describe(&stages, full.as_ref().map_or(0, |c| c.n_fluid)));
+    let mut previous: Option<(Solver<D>, Vec<f64>)> = None;
+    let first = saved.as_ref().map_or(0, |s| s.stage);
+    let mut sources: Vec<Source<D>> = saved.as_ref().map_or_else(Vec::new, persist::Saved::sources);
+    for (k, stage) in stages.iter().enumerate().skip(first) {
+        let ready = if stage.is_plain() { full.take() } else { None };
+        let solver = setup::solver(case, stage, surface.as_ref(), &sources, ready)?;
+        let start = match (saved.take(), previous.take()) {
+            (Some(s), _) => solve::Start::Resume(s),
+            (None, Some(p)) => solve::Start::Fresh(setup::transfer(&p, &solver, surface.as_ref())),
+            (None, None) => solve::Start::Fresh(solver.initial.clone()),
+        };
+        let at = persist::Position { stage: k, stages: &stages, sources: &persist::flatten(&sources) };
+        let last = k + 1 == stages.len();
+        let Some(state) = solve::solve(case, &solver, start, &at, last, &mut journal)? else {
+            return Ok(Outcome::Interrupted { iteration: journal.iteration() });
+        };
+        if stages.get(k + 1).is_some_and(|s| s.cycle > 0) {
+            sources = adapted(case, &solver, &state);
+        }
+        previous = Some((solver, state));
+    }
+    let Some((solver, state)) = previous else { return Err(RunError::Folder("the checkpoint names no stage".into())) };
+    let summary = outputs::write_all(case, places, &solver, &state, surface.as_ref(), &mut journal, &clock)?;
+    Ok(Outcome::Finished(Box::new(summary)))
+}
+
+fn describe(stages: &[Stage], n: usize) -> String {
+    let coarse = stages.iter().filter(|s| s.factor > 1.0).count();
+    let cycles = stages.iter().filter(|s| s.cycle > 0).count();
+    format!("{n} fluid particles; {coarse} coarser clouds for the start, {cycles} cycles of adaptation")
+}
+
+/// Sources of refinement for the next cycle.
+fn adapted<const D: usize>(case: &Case, solver: &Solver<D>, state: &[f64]) -> Vec<Source<D>> {
+    let fluid = &solver.fluid;
+    let mut work = fluid.work();
+    let frame = fluid.frame(0.0, state);
+    fluid.fill_states(&frame, state, &mut work);
+    fluid.fill_gradients(&mut work);
+    let finest = case.adapt.spacing.unwrap_or(case.cloud.spacing).0;
+    adapt::sources(fluid, &work, &case.adapt.sensors, finest)
+}
+
+/// True for cases that march in time.
+fn marches(case: &Case) -> bool {
+    matches!(case.time, Temporal::Explicit(_))
+}

@@ -1,0 +1,347 @@
+//! What a finished run leaves behind.
+use std::path::Path;
+
+use super::setup::Solver;
+use super::snapshot::{self, LoadFrame, Units, load_axes, pressure_coefficient, wall_load};
+use super::solve::{Journal, totals};
+use super::summary::{Clock, Ledger, Summary};
+use super::{Places, RunError, marches};
+use crate::case::{Case, Initial};
+use crate::geometry::Surface;
+use crate::math::{Bounds, Vector};
+use crate::observe::loads::{Balance, Coefficients, LoadAxes, Patch, momentum_balance};
+use crate::observe::table::{Entry, write_csv, write_json};
+use crate::observe::usage::peak_bytes;
+use crate::observe::vtk::{Column, Facets, write_collection, write_points, write_surface};
+use crate::report;
+use crate::scheme::probe::Probe;
+use crate::scheme::start::free_stream;
+use crate::scheme::{Fluid, Work};
+use crate::system::System;
+use crate::verify::truth::FieldTruth;
+
+/// Margin of the box of the momentum balance around the bodies, in body lengths.
+const MARGIN: f64 = 0.4;
+
+/// Everything that the writers need.
+struct Finished<'a, const D: usize> {
+    case: &'a Case,
+    out: &'a Path,
+    fluid: &'a Fluid<D>,
+    work: &'a Work<D>,
+    surface: Option<&'a Surface<D>>,
+    axes: LoadAxes,
+    names: Names,
+}
+
+/// Names of bodies and tags.
+struct Names {
+    bodies: Vec<String>,
+    tags: Vec<String>,
+}
+
+/// Writes all files of a run and returns its summary.
+pub(super) fn write_all<const D: usize>(
+    case: &Case,
+    places: &Places,
+    solver: &Solver<D>,
+    state: &[f64],
+    surface: Option<&Surface<D>>,
+    journal: &mut Journal<'_>,
+    clock: &Clock,
+) -> Result<Summary, RunError> {
+    let solved = clock.wall_seconds();
+    let fluid = &solver.fluid;
+    let mut work = fluid.work();
+    let frame = fluid.frame(journal.time, state);
+    fluid.fill_states(&frame, state, &mut work);
+    fluid.fill_gradients(&mut work);
+    let frame_of_loads: LoadFrame = load_axes(case);
+    let names = surface.map_or(Names { bodies: Vec::new(), tags: Vec::new() }, |s| Names {
+        bodies: s.bodies.clone(),
+        tags: s.tags.clone(),
+    });
+    let r = Finished { case, out: &places.out, fluid, work: &work, surface, axes: frame_of_loads.axes(fluid), names };
+    let loads = r.wall_coefficients();
+    let balance = r.balance();
+    let through = r.axes.coefficients(&balance.load);
+    let ledger = if marches(case) {
+        drift(fluid, state, &journal.start_totals)
+    } else {
+        r.steady_ledger(&balance, &loads, &through)
+    };
+    let (cpu, wall) = journal.seconds();
+    let n = fluid.cloud.n_real();
+    let summary = Summary {
+        event: "summary",
+        case: case.title.clone(),
+        run: places.out.display().to_string(),
+        particles: n,
+        iterations: journal.iteration(),
+        residual_drop: if marches(case) { 0.0 } else { -journal.drop.log10() },
+        converged: journal.converged,
+        cpu_seconds: cpu,
+        wall_seconds: wall,
+        peak_bytes: peak_bytes(),
+        loads,
+        loads_momentum_balance: through,
+        ledger,
+        time: journal.time,
+        bytes_per_particle: bytes(fluid, journal.bytes) as f64 / n as f64,
+        cpu_ms_per_particle: 1e3 * cpu / n as f64,
+        linear_iterations: journal.linear,
+        error_l2_density: r.exact_error(journal.time),
+        adapt_change: last_change(&journal.cycles),
+        phases: vec![("solve".into(), solved), ("files so far".into(), clock.wall_seconds() - solved)],
+    };
+    r.write_tables(&journal.cycles, &summary)?;
+    r.write_fields(journal.time)?;
+    if case.output.report {
+        super::pictures::write(&r.view())?;
+        report::write_report(&places.out)?;
+    }
+    Ok(summary)
+}
+
+/// What the pictures are drawn from.
+pub(super) struct View<'a, const D: usize> {
+    pub(super) case: &'a Case,
+    pub(super) out: &'a Path,
+    pub(super) fluid: &'a Fluid<D>,
+    pub(super) work: &'a Work<D>,
+    pub(super) surface: Option<&'a Surface<D>>,
+}
+
+fn bytes<const D: usize>(fluid: &Fluid<D>, integrator: usize) -> usize {
+    let cloud = &fluid.cloud;
+    let rows = cloud.neighbours.index.len() * 4 + cloud.neighbours.first.len() * 4;
+    let points = cloud.len() * (8 * D + 8 + 8) + cloud.n_fluid * 8;
+    let states = cloud.len() * (8 * (D + 2) + 8 * D * (D + 2)) + 2 * 8 * fluid.len();
+    rows + points + states + fluid.operators.bytes() + fluid.walls.bytes() + integrator
+}
+
+fn last_change(cycles: &[[f64; 5]]) -> Option<Coefficients> {
+    let [.., a, b] = cycles else { return None };
+    Some(Coefficients { cl: b[2] - a[2], cd: b[3] - a[3], cm: b[4] - a[4] })
+}
+
+/// Relative change of the totals of a march.
+fn drift<const D: usize>(fluid: &Fluid<D>, state: &[f64], start: &[f64]) -> Ledger {
+    let end = totals(fluid, state);
+    if start.len() != end.len() {
+        return Ledger::default();
+    }
+    let relative = |c: usize| (end[c] - start[c]) / start[c].abs().max(f64::MIN_POSITIVE);
+    let momentum = (1..=D).map(|c| (end[c] - start[c]).abs()).fold(0.0, f64::max) / start[0];
+    Ledger { mass: relative(0), momentum, energy: relative(D + 1) }
+}
+
+impl<'a, const D: usize> Finished<'a, D> {
+    fn view(&self) -> View<'a, D> {
+        View { case: self.case, out: self.out, fluid: self.fluid, work: self.work, surface: self.surface }
+    }
+
+    fn wall_coefficients(&self) -> Coefficients {
+        if self.fluid.cloud.interface.is_empty() {
+            return Coefficients::default();
+        }
+        self.axes.coefficients(&wall_load(self.fluid, self.work, &self.axes, |_| true))
+    }
+
+    /// Fluxes through a box around the bodies, by the solver's own fit.
+    fn balance(&self) -> Balance {
+        let Some(surface) = self.surface else { return Balance::default() };
+        let bounds = surface.bounds();
+        let domain = self.fluid.cloud.tree.bounds();
+        let margin = MARGIN * bounds.extent().max_abs();
+        let clamp = |v: Vector<D>| Vector::from_fn(|d| v[d].clamp(domain.min[d], domain.max[d]));
+        let outer = bounds.padded(margin);
+        let region = Bounds { min: clamp(outer.min), max: clamp(outer.max) };
+        let probe = Probe::new(self.fluid, self.work, None);
+        momentum_balance(&self.axes, &self.patches(&probe, &region))
+    }
+
+    fn patches(&self, probe: &Probe<'_, D>, region: &Bounds<D>) -> Vec<Patch> {
+        let mut patches = Vec::new();
+        let far = self.fluid.far_field.pressure();
+        for axis in 0..D {
+            for (end, sign) in [(region.min[axis], -1.0), (region.max[axis], 1.0)] {
+                let mut place = |x: Vector<D>, size: f64| {
+                    let Some(q) = probe.at(&x) else { return };
+                    let area: Vector<D> = Vector::axis(axis) * (sign * size);
+                    patches.push(Patch {
+                        x: x.to_3d(),
+                        area: area.to_3d(),
+                        density: q.density,
+                        velocity: q.velocity.to_3d(),
+                        excess: q.pressure - far,
+                        enthalpy: self.fluid.gas.total_enthalpy(&q),
+                    });
+                };
+                self.tile(region, axis, end, &mut place);
+            }
+        }
+        patches
+    }
+
+    /// Calls `f(middle, area)` for tiles of one face of the box, about half a local spacing wide.
+    fn tile(&self, region: &Bounds<D>, axis: usize, end: f64, f: &mut dyn FnMut(Vector<D>, f64)) {
+        let tree = &self.fluid.cloud.tree;
+        let mut stack = vec![*region];
+        while let Some(b) = stack.pop() {
+            let mut middle = b.centre();
+            middle[axis] = end;
+            let extent = b.extent();
+            let side =
+                (0..D).filter(|d| *d != axis).fold(axis, |a, d| if a == axis || extent[d] > extent[a] { d } else { a });
+            if extent[side] > 0.5 * tree.leaf_at(&middle).size {
+                let half = 0.5 * (b.min[side] + b.max[side]);
+                let (mut low, mut high) = (b, b);
+                (low.max[side], high.min[side]) = (half, half);
+                stack.extend([low, high]);
+            } else {
+                f(middle, (0..D).filter(|d| *d != axis).map(|d| extent[d]).product());
+            }
+        }
+    }
+
+    fn steady_ledger(&self, balance: &Balance, wall: &Coefficients, through: &Coefficients) -> Ledger {
+        let over = |net: f64, scale: f64| if scale > 0.0 { net / scale } else { 0.0 };
+        Ledger {
+            mass: over(balance.mass, balance.mass_in),
+            momentum: (wall.cl - through.cl).hypot(wall.cd - through.cd),
+            energy: over(balance.energy, balance.energy_in),
+        }
+    }
+
+    /// Error of the density against the exact solution that the case starts from, when it has one.
+    fn exact_error(&self, time: f64) -> Option<f64> {
+        if matches!(self.case.initial, Initial::FreeStream) {
+            return None;
+        }
+        let cloud = &self.fluid.cloud;
+        let extent = cloud.tree.bounds().extent();
+        let period = Some(Vector([extent[0], extent[1]]));
+        let truth = FieldTruth::new(&self.case.initial, self.case.flow.gamma, period).ok()??;
+        let (mut sum, mut volume) = (0.0, 0.0);
+        for i in 0..cloud.n_fluid {
+            let exact = truth.state(&Vector([cloud.x[i][0], cloud.x[i][1]]), time).ok()?;
+            let error = self.work.state[i].density - exact.density;
+            sum += cloud.volume[i] * error * error;
+            volume += cloud.volume[i];
+        }
+        Some((sum / volume).sqrt())
+    }
+
+    fn write_tables(&self, cycles: &[[f64; 5]], summary: &Summary) -> Result<(), RunError> {
+        write_json(&self.out.join("summary.json"), summary)?;
+        write_json(&self.out.join("ledger.json"), &summary.ledger)?;
+        self.write_loads()?;
+        self.write_surface_csv()?;
+        let rows = cycles.iter().enumerate().map(|(k, c)| {
+            let before = if k > 0 { cycles[k - 1] } else { *c };
+            let numbers = [c[0], c[1], c[2], c[3], c[4], c[2] - before[2], c[3] - before[3]];
+            numbers.iter().map(|v| Entry::from(*v)).collect()
+        });
+        let columns = ["cycle", "particles", "cl", "cd", "cm", "change_cl", "change_cd"];
+        Ok(write_csv(&self.out.join("adapt.csv"), &columns, rows)?)
+    }
+
+    fn write_loads(&self) -> Result<(), RunError> {
+        let cloud = &self.fluid.cloud;
+        let units = Units::of(self.case).pressure();
+        let mut rows = Vec::new();
+        for (b, body) in self.names.bodies.iter().enumerate() {
+            for (t, tag) in self.names.tags.iter().enumerate() {
+                let chosen =
+                    |w: usize| usize::from(cloud.interface[w].body) == b && usize::from(cloud.interface[w].tag) == t;
+                if !(0..cloud.interface.len()).any(chosen) {
+                    continue;
+                }
+                let load = wall_load(self.fluid, self.work, &self.axes, chosen);
+                let c = self.axes.coefficients(&load);
+                let area: f64 =
+                    (0..cloud.interface.len()).filter(|w| chosen(*w)).map(|w| cloud.interface[w].area.norm()).sum();
+                let mut row = vec![Entry::from(body.as_str()), Entry::from(tag.as_str())];
+                row.extend([c.cl, c.cd, c.cm].map(Entry::from));
+                row.extend(load.force.map(|f| Entry::from(f * units)));
+                row.push(Entry::from(area));
+                rows.push(row);
+            }
+        }
+        let columns = ["body", "tag", "cl", "cd", "cm", "fx", "fy", "fz", "area"];
+        Ok(write_csv(&self.out.join("loads.csv"), &columns, rows)?)
+    }
+
+    fn write_surface_csv(&self) -> Result<(), RunError> {
+        let cloud = &self.fluid.cloud;
+        let free = free_stream::<D>(self.case);
+        let units = Units::of(self.case);
+        let bounds = self.surface.map_or(Bounds { min: Vector::ZERO, max: Vector::splat(1.0) }, Surface::bounds);
+        let columns = [
+            "x", "y", "z", "nx", "ny", "nz", "area", "body", "tag", "arc", "x_c", "pressure", "cp", "mach", "density",
+            "u", "v", "w",
+        ];
+        let rows = cloud.interface_range().zip(&cloud.interface).map(|(i, w)| {
+            let q = &self.work.state[i];
+            let mut row: Vec<Entry> = cloud.x[i].to_3d().map(Entry::from).to_vec();
+            row.extend(w.normal.to_3d().map(Entry::from));
+            row.push(Entry::from(w.area.norm()));
+            row.push(Entry::from(self.names.bodies.get(usize::from(w.body)).map_or("", String::as_str)));
+            row.push(Entry::from(self.names.tags.get(usize::from(w.tag)).map_or("", String::as_str)));
+            let x_c = (cloud.x[i][0] - bounds.min[0]) / bounds.extent()[0];
+            let mach = q.velocity.norm() / self.fluid.gas.sound_speed(q);
+            let cp = pressure_coefficient(q, &free);
+            row.extend(
+                [w.arc, x_c, q.pressure * units.pressure(), cp, mach, q.density * units.density].map(Entry::from),
+            );
+            row.extend((q.velocity * units.speed).to_3d().map(Entry::from));
+            row
+        });
+        Ok(write_csv(&self.out.join("surface.csv"), &columns, rows.collect::<Vec<_>>())?)
+    }
+
+    fn write_fields(&self, time: f64) -> Result<(), RunError> {
+        let all = snapshot::field(self.case, self.fluid, self.work);
+        let columns: Vec<Column<'_>> = all
+            .columns
+            .iter()
+            .map(|(name, components, values)| Column { name, components: *components, values })
+            .collect();
+        write_points(&self.out.join("field.vtu"), &all.points, &columns)?;
+        write_collection(&self.out.join("field.pvd"), &[(time, "field.vtu")])?;
+        let cloud = &self.fluid.cloud;
+        if cloud.interface.is_empty() {
+            return Ok(());
+        }
+        let range = cloud.interface_range();
+        let cut: Vec<(&str, usize, Vec<f64>)> = all
+            .columns
+            .iter()
+            .map(|(name, n, values)| (*name, *n, values[range.start * n..range.end * n].to_vec()))
+            .chain([("normal", 3, cloud.interface.iter().flat_map(|w| w.normal.to_3d()).collect())])
+            .collect();
+        let columns: Vec<Column<'_>> =
+            cut.iter().map(|(name, n, values)| Column { name, components: *n, values }).collect();
+        let points = &all.points[range];
+        let lines = outlines(cloud);
+        let facets = if D == 2 { Facets::Polylines(&lines) } else { Facets::Vertices };
+        Ok(write_surface(&self.out.join("surface.vtp"), points, facets, &columns, &[])?)
+    }
+}
+
+/// Interface particles of each smooth piece of outline, in order.
+fn outlines<const D: usize>(cloud: &crate::cloud::Cloud<D>) -> Vec<Vec<u32>> {
+    let mut lines: Vec<Vec<u32>> = Vec::new();
+    let mut piece = u32::MAX;
+    for (k, w) in cloud.interface.iter().enumerate() {
+        if w.piece != piece {
+            lines.push(Vec::new());
+            piece = w.piece;
+        }
+        if let Some(line) = lines.last_mut() {
+            line.push(k as u32);
+        }
+    }
+    lines
+}

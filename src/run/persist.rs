@@ -1,0 +1,165 @@
+//! Checkpoints: what a stage cannot rebuild from the case.
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+use super::RunError;
+use super::setup::Stage;
+use crate::cloud::sources::Source;
+use crate::math::Vector;
+use crate::observe::checkpoint::{self, Array, Checkpoint, Field};
+use crate::time::relax::{Phase, Resume};
+
+/// Name of the checkpoint in the run folder.
+pub(super) const FILE: &str = "checkpoint.alula";
+
+/// Where a run stands among its stages.
+pub(super) struct Position<'a> {
+    /// Index of the stage.
+    pub(super) stage: usize,
+    /// All stages.
+    pub(super) stages: &'a [Stage],
+    /// Sources of refinement, flat.
+    pub(super) sources: &'a [f64],
+}
+
+/// Numbers of a checkpoint that are not arrays.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct Meta {
+    stage: usize,
+    stages: Vec<Stage>,
+    iteration: u64,
+    stage_iteration: u32,
+    time_bits: u64,
+    cfl_bits: u64,
+    first_norm_bits: u64,
+    linear: u32,
+    newton: bool,
+    phase_age: u32,
+    phase_best_bits: u64,
+    phase_best_age: u32,
+    start_totals_bits: Vec<u64>,
+    cycles: Vec<[f64; 5]>,
+    cpu_seconds: f64,
+    wall_seconds: f64,
+}
+
+/// A checkpoint in memory.
+#[derive(Clone, Debug)]
+pub(super) struct Saved {
+    /// Index of the stage.
+    pub(super) stage: usize,
+    /// All stages.
+    pub(super) stages: Vec<Stage>,
+    /// Iterations over all stages.
+    pub(super) iteration: u64,
+    /// Physical time.
+    pub(super) time: f64,
+    /// State.
+    pub(super) state: Vec<f64>,
+    /// Where the relaxation stands.
+    pub(super) relax: Resume,
+    /// Totals of the conserved quantities when the march began.
+    pub(super) start_totals: Vec<f64>,
+    /// Finished cycles: cycle, particles, CL, CD, CM.
+    pub(super) cycles: Vec<[f64; 5]>,
+    /// Processor time spent before.
+    pub(super) cpu_seconds: f64,
+    /// Wall time spent before.
+    pub(super) wall_seconds: f64,
+    sources: Vec<f64>,
+}
+
+/// Sources of refinement as numbers.
+pub(super) fn flatten<const D: usize>(sources: &[Source<D>]) -> Vec<f64> {
+    sources.iter().flat_map(|s| s.x.0.into_iter().chain([s.spacing, s.layers])).collect()
+}
+
+impl Saved {
+    /// A checkpoint of the present moment.
+    pub(super) fn new(at: &Position<'_>, iteration: u64, time: f64, state: &[f64], relax: Resume) -> Self {
+        Self {
+            stage: at.stage,
+            stages: at.stages.to_vec(),
+            iteration,
+            time,
+            state: state.to_vec(),
+            relax,
+            start_totals: Vec::new(),
+            cycles: Vec::new(),
+            cpu_seconds: 0.0,
+            wall_seconds: 0.0,
+            sources: at.sources.to_vec(),
+        }
+    }
+
+    /// Sources of refinement of the stage.
+    pub(super) fn sources<const D: usize>(&self) -> Vec<Source<D>> {
+        let source = |row: &[f64]| Source { x: Vector::from_fn(|d| row[d]), spacing: row[D], layers: row[D + 1] };
+        self.sources.chunks_exact(D + 2).map(source).collect()
+    }
+
+    /// Writes the checkpoint of a run folder.
+    pub(super) fn write(&self, out: &Path) -> Result<(), RunError> {
+        let meta = Meta {
+            stage: self.stage,
+            stages: self.stages.clone(),
+            iteration: self.iteration,
+            stage_iteration: self.relax.iteration,
+            time_bits: self.time.to_bits(),
+            cfl_bits: self.relax.cfl.to_bits(),
+            first_norm_bits: self.relax.first_norm.to_bits(),
+            linear: self.relax.linear,
+            newton: self.relax.phase.newton,
+            phase_age: self.relax.phase.age,
+            phase_best_bits: self.relax.phase.best.to_bits(),
+            phase_best_age: self.relax.phase.best_age,
+            start_totals_bits: self.start_totals.iter().map(|v| v.to_bits()).collect(),
+            cycles: self.cycles.clone(),
+            cpu_seconds: self.cpu_seconds,
+            wall_seconds: self.wall_seconds,
+        };
+        let field = |name: &str, data: &[f64]| Field {
+            name: name.into(),
+            shape: vec![data.len()],
+            data: Array::F64(data.to_vec()),
+        };
+        let meta = serde_json::to_value(meta).map_err(|e| RunError::Folder(e.to_string()))?;
+        let fields =
+            vec![field("state", &self.state), field("scale", &self.relax.scale), field("sources", &self.sources)];
+        Ok(checkpoint::write(&out.join(FILE), &Checkpoint { meta, fields })?)
+    }
+
+    /// Reads the checkpoint of a run folder.
+    pub(super) fn read(out: &Path) -> Result<Self, RunError> {
+        let file = checkpoint::read(&out.join(FILE))?;
+        let wrong = |e: serde_json::Error| RunError::Folder(format!("`{FILE}` was written by another version: {e}"));
+        let m: Meta = serde_json::from_value(file.meta.clone()).map_err(wrong)?;
+        let phase = Phase {
+            newton: m.newton,
+            age: m.phase_age,
+            best: f64::from_bits(m.phase_best_bits),
+            best_age: m.phase_best_age,
+        };
+        Ok(Self {
+            stage: m.stage,
+            stages: m.stages,
+            iteration: m.iteration,
+            time: f64::from_bits(m.time_bits),
+            state: file.f64("state")?.to_vec(),
+            relax: Resume {
+                iteration: m.stage_iteration,
+                cfl: f64::from_bits(m.cfl_bits),
+                first_norm: f64::from_bits(m.first_norm_bits),
+                linear: m.linear,
+                phase,
+                scale: file.f64("scale")?.to_vec(),
+            },
+            start_totals: m.start_totals_bits.iter().map(|b| f64::from_bits(*b)).collect(),
+            cycles: m.cycles,
+            cpu_seconds: m.cpu_seconds,
+            wall_seconds: m.wall_seconds,
+            sources: file.f64("sources")?.to_vec(),
+        })
+    }
+}

@@ -1,0 +1,149 @@
+//! Pictures of a run, drawn through the solver's own fit.
+use super::RunError;
+use super::outputs::View;
+use super::snapshot::pressure_coefficient;
+use crate::geometry::Surface;
+use crate::math::sweep::sweep;
+use crate::math::{Bounds, Vector};
+use crate::physics::Primitive;
+use crate::report::{
+    Axis, Chart, Colormap, Dots, Marks, PictureStyle, Raster, Scatter, Series, Shell, SurfaceStyle, raster_png,
+    scatter_png, surface_png, write_file,
+};
+use crate::scheme::probe::Probe;
+use crate::scheme::start::free_stream;
+
+/// Pixels along the longer side of a flow picture.
+const PIXELS: usize = 900;
+/// Margin of flow pictures around the bodies in body lengths.
+const MARGIN: f64 = 0.6;
+
+/// Draws all pictures of a run.
+pub(super) fn write<const D: usize>(view: &View<'_, D>) -> Result<(), RunError> {
+    if D == 2 { plane(view) } else { space(view) }
+}
+
+fn window<const D: usize>(view: &View<'_, D>, margin: f64) -> Bounds<2> {
+    let all = view.fluid.cloud.tree.bounds();
+    let b = view.surface.map_or(all, |s| s.bounds().padded(margin * s.bounds().extent().max_abs()));
+    let pick = |v: Vector<D>| Vector([v[0], v[1]]);
+    Bounds { min: pick(b.min.max(&all.min)), max: pick(b.max.min(&all.max)) }
+}
+
+fn outlines<const D: usize>(surface: Option<&Surface<D>>) -> Vec<Vec<Vector<2>>> {
+    let Some(surface) = surface else { return Vec::new() };
+    let mut all: Vec<(u16, Vec<Vector<2>>)> = Vec::new();
+    for chain in surface.chains() {
+        let body = surface.element(chain.elements[0]).body;
+        let points = chain.elements.iter().map(|e| {
+            let p = surface.corners(*e)[0];
+            Vector([p[0], p[1]])
+        });
+        match all.last_mut() {
+            Some((b, line)) if *b == body => line.extend(points),
+            _ => all.push((body, points.collect())),
+        }
+    }
+    all.into_iter().map(|(_, line)| line).collect()
+}
+
+fn plane<const D: usize>(view: &View<'_, D>) -> Result<(), RunError> {
+    let outlines = outlines(view.surface);
+    let w = window(view, MARGIN);
+    let free = free_stream::<D>(view.case);
+    let gas = view.fluid.gas;
+    let mach = |q: &Primitive<D>| q.velocity.norm() / gas.sound_speed(q);
+    let cp = |q: &Primitive<D>| pressure_coefficient(q, &free);
+    let density = |q: &Primitive<D>| q.density;
+    let states = sampled(view, &w);
+    let style = |title: &'static str, quantity: &'static str, map: Colormap, contours: &'static [f64]| {
+        (title, quantity, map, contours)
+    };
+    let mut list: Vec<(&str, (&str, &str, Colormap, &[f64]), &dyn Fn(&Primitive<D>) -> f64)> =
+        vec![("mach", style("Mach number", "M", Colormap::Sequential, &[1.0]), &mach)];
+    if view.surface.is_some() {
+        list.push(("cp", style("Pressure coefficient", "Cp", Colormap::Diverging { centre: 0.0 }, &[]), &cp));
+    } else {
+        list.push(("density", style("Density", "density", Colormap::Sequential, &[]), &density));
+    }
+    for (name, (title, quantity, map, contours), value) in list {
+        let values = states.2.iter().map(|q| q.as_ref().map_or(f64::NAN, value)).collect();
+        let raster = Raster { width: states.0, height: states.1, window: w, values };
+        let style = PictureStyle { title, quantity, axes: ["x", "y"], map, range: None, contours, outlines: &outlines };
+        write_file(&view.out.join(format!("pictures/{name}.png")), &raster_png(&raster, &style)?)?;
+    }
+    cloud_picture(view, &outlines)?;
+    curves(view)
+}
+
+/// States on a grid of pixels: (width, height, states, `None` inside bodies).
+fn sampled<const D: usize>(view: &View<'_, D>, w: &Bounds<2>) -> (usize, usize, Vec<Option<Primitive<D>>>) {
+    let extent = w.extent();
+    let scale = PIXELS as f64 / extent[0].max(extent[1]);
+    let (width, height) =
+        ((extent[0] * scale).round().max(1.0) as usize, (extent[1] * scale).round().max(1.0) as usize);
+    let probe = Probe::new(view.fluid, view.work, view.surface);
+    let mut states = vec![None; width * height];
+    sweep(&mut states, |k| {
+        let mut x = Vector::ZERO;
+        x[0] = w.min[0] + ((k % width) as f64 + 0.5) / scale;
+        x[1] = w.min[1] + ((k / width) as f64 + 0.5) / scale;
+        if view.surface.is_some_and(|s| s.inside(&x)) { None } else { probe.at(&x) }
+    });
+    (width, height, states)
+}
+
+fn cloud_picture<const D: usize>(view: &View<'_, D>, outlines: &[Vec<Vector<2>>]) -> Result<(), RunError> {
+    let cloud = &view.fluid.cloud;
+    let flat = |x: &Vector<D>| Vector([x[0], x[1]]);
+    let points: Vec<Vector<2>> = cloud.x[..cloud.n_fluid].iter().map(flat).collect();
+    let finest = cloud.spacing[..cloud.n_fluid].iter().fold(f64::INFINITY, |m, h| m.min(*h));
+    let levels: Vec<u32> = cloud.spacing[..cloud.n_fluid].iter().map(|h| (h / finest).log2().round() as u32).collect();
+    let interface: Vec<_> =
+        cloud.interface_range().zip(&cloud.interface).map(|(i, w)| (flat(&cloud.x[i]), flat(&w.normal))).collect();
+    let scatter = Scatter { points: &points, dots: Dots::Level(&levels), interface: &interface, outlines };
+    let png = scatter_png(&scatter, window(view, 0.12), "Particles")?;
+    Ok(write_file(&view.out.join("pictures/cloud.png"), &png)?)
+}
+
+/// Cp along the chord.
+fn curves<const D: usize>(view: &View<'_, D>) -> Result<(), RunError> {
+    let Some(surface) = view.surface else { return Ok(()) };
+    let cloud = &view.fluid.cloud;
+    let free = free_stream::<D>(view.case);
+    let b = surface.bounds();
+    let mut series = Vec::new();
+    for (k, name) in surface.bodies.iter().enumerate() {
+        let own = || cloud.interface_range().zip(&cloud.interface).filter(|(_, w)| usize::from(w.body) == k);
+        let x = own().map(|(i, _)| (cloud.x[i][0] - b.min[0]) / b.extent()[0]).collect();
+        let y = own().map(|(i, _)| pressure_coefficient(&view.work.state[i], &free)).collect();
+        series.push(Series { name: name.clone(), marks: Marks::Dots, x, y });
+    }
+    let chart = Chart { title: "Pressure on the wall".into(), x: Axis::linear("x/c"), y: Axis::reversed("Cp"), series };
+    write_file(&view.out.join("pictures/cp-chord.svg"), chart.svg()?.as_bytes())?;
+    Ok(write_file(&view.out.join("pictures/cp-chord.png"), &chart.png()?)?)
+}
+
+fn space<const D: usize>(view: &View<'_, D>) -> Result<(), RunError> {
+    if view.surface.is_none() {
+        return Ok(());
+    }
+    let cloud = &view.fluid.cloud;
+    let free = free_stream::<D>(view.case);
+    let solid = |v: &Vector<D>| Vector(v.to_3d());
+    let points: Vec<Vector<3>> = cloud.x[cloud.interface_range()].iter().map(solid).collect();
+    let normals: Vec<Vector<3>> = cloud.interface.iter().map(|w| solid(&w.normal)).collect();
+    let areas: Vec<f64> = cloud.interface.iter().map(|w| w.area.norm()).collect();
+    let values: Vec<f64> = cloud.interface_range().map(|i| pressure_coefficient(&view.work.state[i], &free)).collect();
+    let shell = Shell::Splats { points: &points, normals: &normals, areas: &areas, values: &values };
+    let style = SurfaceStyle {
+        title: "Pressure coefficient",
+        quantity: "Cp",
+        map: Colormap::Diverging { centre: 0.0 },
+        range: None,
+        direction: Vector([1.0, 0.8, -0.6]),
+        up: Vector([0.0, 0.0, 1.0]),
+    };
+    write_file(&view.out.join("pictures/cp.png"), &surface_png(&shell, &style)?)?;
+    curves(view)
+}

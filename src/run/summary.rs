@@ -1,0 +1,89 @@
+//! The last line of a run, and what it cost.
+use std::time::Instant;
+
+use serde::Serialize;
+
+use crate::observe::loads::Coefficients;
+
+/// What a run found and what it took.
+#[derive(Clone, Debug, Serialize)]
+pub struct Summary {
+    /// Always `summary`.
+    pub event: &'static str,
+    /// Title of the case.
+    pub case: String,
+    /// Run folder.
+    pub run: String,
+    /// Particles, images left out.
+    pub particles: usize,
+    /// Iterations over all stages.
+    pub iterations: u64,
+    /// Orders of magnitude that the residual of the last stage fell.
+    pub residual_drop: f64,
+    /// True when the goal was reached.
+    pub converged: bool,
+    /// Processor time.
+    pub cpu_seconds: f64,
+    /// Wall time.
+    pub wall_seconds: f64,
+    /// Greatest memory of the process; 0 where the system does not tell.
+    pub peak_bytes: u64,
+    /// Loads from wall pressure.
+    pub loads: Coefficients,
+    /// Loads from the momentum balance over a box around the bodies.
+    pub loads_momentum_balance: Coefficients,
+    /// Conservation.
+    pub ledger: Ledger,
+    /// Physical time at the end of a march.
+    pub time: f64,
+    /// Bytes per particle: cloud, operators, state and integrator.
+    pub bytes_per_particle: f64,
+    /// Processor milliseconds per particle.
+    pub cpu_ms_per_particle: f64,
+    /// Linear iterations of the last stage.
+    pub linear_iterations: u32,
+    /// Volume-weighted root mean square error of density, where the case has an exact solution.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub error_l2_density: Option<f64>,
+    /// Change of the loads in the last cycle of adaptation.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub adapt_change: Option<Coefficients>,
+    /// Where the time went: name and wall seconds.
+    pub phases: Vec<(String, f64)>,
+}
+
+/// What was lost, relative. Marching: change of the totals, what crossed open sides not counted as lost. Steady: net flux
+/// through the box around the bodies over the flux that enters it.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub struct Ledger {
+    /// Mass.
+    pub mass: f64,
+    /// Momentum: difference of the two load evaluations, in coefficients.
+    pub momentum: f64,
+    /// Energy.
+    pub energy: f64,
+}
+
+/// Processor and wall time.
+#[derive(Clone, Copy, Debug)]
+pub struct Clock {
+    wall: Instant,
+    cpu: f64,
+}
+
+impl Clock {
+    /// Starts now.
+    pub fn start() -> Self {
+        Self { wall: Instant::now(), cpu: crate::observe::usage::cpu_seconds() }
+    }
+
+    /// Wall seconds since the start.
+    pub fn wall_seconds(&self) -> f64 {
+        self.wall.elapsed().as_secs_f64()
+    }
+
+    /// Processor seconds since the start.
+    pub fn cpu_seconds(&self) -> f64 {
+        crate::observe::usage::cpu_seconds() - self.cpu
+    }
+}

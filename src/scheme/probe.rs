@@ -1,0 +1,63 @@
+//! The solution between particles.
+//!
+//! At a point x every particle nearby offers its own linear fit q_k + ∇q_k·(x − x_k); the offers are blended with compact
+//! weights (a partition of unity), so that pictures, transfers and integrals see the solver's fit and nothing else.
+use super::fluid::{Fluid, Work};
+use crate::geometry::Surface;
+use crate::math::{Bounds, Vector};
+use crate::physics::Primitive;
+
+/// Radius of the weights in cells of the background.
+const RADIUS: f64 = 1.5;
+
+/// A solution that can be asked anywhere.
+pub struct Probe<'a, const D: usize> {
+    fluid: &'a Fluid<D>,
+    work: &'a Work<D>,
+    surface: Option<&'a Surface<D>>,
+}
+
+impl<'a, const D: usize> Probe<'a, D> {
+    /// Looks at the states and gradients in `work`, which must be filled.
+    pub fn new(fluid: &'a Fluid<D>, work: &'a Work<D>, surface: Option<&'a Surface<D>>) -> Self {
+        Self { fluid, work, surface }
+    }
+
+    /// State at `x`; `None` where no particle is near.
+    pub fn at(&self, x: &Vector<D>) -> Option<Primitive<D>> {
+        let cloud = &self.fluid.cloud;
+        let reach = RADIUS * cloud.tree.leaf_at(x).size;
+        let cube = Bounds { min: *x - Vector::splat(reach), max: *x + Vector::splat(reach) };
+        let mut sum: Option<Primitive<D>> = None;
+        let mut weight = 0.0;
+        cloud.tree.overlapping(&cube, |node| {
+            for k in cloud.leaves.of(node) {
+                let k = *k as usize;
+                let d = *x - cloud.x[k];
+                let w = (1.0 - d.norm() / reach).max(0.0).powi(2);
+                if w > 0.0 && self.in_sight(k, x) {
+                    let offer = self.offer(k, &d);
+                    sum = Some(sum.map_or_else(|| scaled(&offer, w), |s| s.plus(w, &offer)));
+                    weight += w;
+                }
+            }
+        });
+        sum.map(|s| scaled(&s, 1.0 / weight))
+    }
+
+    fn offer(&self, k: usize, d: &Vector<D>) -> Primitive<D> {
+        let q = &self.work.state[k];
+        let linear = q.plus(1.0, &self.work.gradient[k].along(d));
+        if linear.density > 0.0 && linear.pressure > 0.0 { linear } else { *q }
+    }
+
+    fn in_sight(&self, k: usize, x: &Vector<D>) -> bool {
+        let cloud = &self.fluid.cloud;
+        let near = cloud.wall_distance[k] < RADIUS * 2.0 * cloud.spacing[k];
+        !near || self.surface.is_none_or(|s| !s.crosses(&cloud.x[k], x))
+    }
+}
+
+fn scaled<const D: usize>(q: &Primitive<D>, s: f64) -> Primitive<D> {
+    Primitive { density: q.density * s, velocity: q.velocity * s, pressure: q.pressure * s }
+}
