@@ -191,9 +191,9 @@ pub struct Cloud {
     /// Extra levels of refinement at sharp edges; default 2.
     pub edge_levels: u32,
     /// Spacing is at most this fraction of the local radius of curvature (never finer than `curvature_levels`);
-    /// default 0.25.
+    /// default 0.125.
     pub curvature: f64,
-    /// Greatest number of extra levels that curvature may ask for; default 2.
+    /// Greatest number of extra levels that curvature may ask for; default 3.
     pub curvature_levels: u32,
     /// Boxes with their own spacing.
     #[serde(default, rename = "box")]

@@ -7,6 +7,7 @@ use super::solve::{Journal, totals};
 use super::summary::{Clock, Ledger, Summary};
 use super::{Places, RunError, marches};
 use crate::case::{Case, Initial};
+use crate::cloud::Diagnosis;
 use crate::geometry::Surface;
 use crate::math::{Bounds, Vector};
 use crate::observe::loads::{Balance, Coefficients, LoadAxes, Patch, momentum_balance};
@@ -236,6 +237,7 @@ impl<'a, const D: usize> Finished<'a, D> {
     fn write_tables(&self, cycles: &[[f64; 5]], summary: &Summary) -> Result<(), RunError> {
         write_json(&self.out.join("summary.json"), summary)?;
         write_json(&self.out.join("ledger.json"), &summary.ledger)?;
+        write_json(&self.out.join("doctor.json"), &Diagnosis::of(&self.fluid.cloud, self.fluid.walls.n_linear))?;
         self.write_loads()?;
         self.write_surface_csv()?;
         let rows = cycles.iter().enumerate().map(|(k, c)| {
