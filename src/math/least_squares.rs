@@ -80,7 +80,7 @@ fn cofactor<const D: usize>(m: &[[f64; D]; D], r: usize, c: usize) -> f64 {
     let at = |i: usize, j: usize| m[(r + i) % D][(c + j) % D];
     match D {
         1 => 1.0,
-        2 => at(1, 1) * if (r + c) % 2 == 0 { 1.0 } else { -1.0 },
+        2 => at(1, 1) * if (r + c).is_multiple_of(2) { 1.0 } else { -1.0 },
         _ => at(1, 1) * at(2, 2) - at(1, 2) * at(2, 1),
     }
 }
