@@ -130,7 +130,9 @@ fn rotate_symmetric<const D: usize>(a: &mut [[f64; D]; D], p: usize, q: usize) {
     }
 }
 
-/// A fit with `n` coefficients to rows that are added one by one.
+/// A fit with `n` coefficients to rows that are added one by one: f = c_0 b_0(x) + … + c_n b_n(x), eq. (11) for the basis
+/// 1, x, y, z.
+#[doc(alias = "eq11")]
 #[derive(Clone, Debug, Default)]
 pub struct Fit {
     n: usize,
