@@ -5,7 +5,8 @@
 //! particles) is one value, the *frame at (t, u)*. Marching holds one frame; harmonic balance will hold one per instance.
 use crate::math::block_matrix::BlockMatrix;
 
-/// A semi-discrete system dU/dt = R(t, U): the only thing an integrator ever sees.
+/// A semi-discrete system dU/dt = R(t, U), eq. (16): the only thing an integrator ever sees.
+#[doc(alias = "eq16")]
 pub trait System: Sync {
     /// What depends on time but is not evolved.
     type Frame: Clone + Send + Sync;

@@ -119,7 +119,6 @@ impl BlockMatrix {
     }
 
     fn half_sweep<const N: usize>(&self, b: &[f32], x: &mut [f32], old: &[f32], forward: bool) {
-        let old = &*old;
         sweep_parts(&self.parts, N, x, &|k, own| {
             let part = self.parts[k].clone();
             let mut row = |i: usize| {

@@ -103,7 +103,7 @@ fn cofactor<const D: usize>(m: &[[f64; D]; D], r: usize, c: usize) -> f64 {
     let at = |i: usize, j: usize| m[(r + i) % D][(c + j) % D];
     match D {
         1 => 1.0,
-        2 => at(1, 1) * if (r + c) % 2 == 0 { 1.0 } else { -1.0 },
+        2 => at(1, 1) * if (r + c).is_multiple_of(2) { 1.0 } else { -1.0 },
         _ => at(1, 1) * at(2, 2) - at(1, 2) * at(2, 1),
     }
 }
@@ -154,7 +154,9 @@ fn rotate_symmetric<const D: usize>(a: &mut [[f64; D]; D], p: usize, q: usize) {
     }
 }
 
-/// A fit with `n` coefficients to rows that are added one by one.
+/// A fit with `n` coefficients to rows that are added one by one: f = c_0 b_0(x) + … + c_n b_n(x), eq. (11) for the basis
+/// 1, x, y, z.
+#[doc(alias = "eq11")]
 #[derive(Clone, Debug, Default)]
 pub struct Fit {
     n: usize,

@@ -45,8 +45,7 @@ struct Names {
 pub(super) fn write_all<const D: usize>(
     case: &Case,
     places: &Places,
-    solver: &Solver<D>,
-    state: &[f64],
+    (solver, state): &(Solver<D>, Vec<f64>),
     surface: Option<&Surface<D>>,
     journal: &mut Journal<'_>,
     clock: &Clock,

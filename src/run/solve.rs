@@ -23,7 +23,7 @@ pub(super) enum Start {
     /// From a state.
     Fresh(Vec<f64>),
     /// Where a checkpoint stands.
-    Resume(Saved),
+    Resume(Box<Saved>),
 }
 
 /// Everything that accompanies the stages of a run.
@@ -137,7 +137,7 @@ impl<'a> Journal<'a> {
     }
 
     fn due(&self, iteration: u32) -> bool {
-        self.monitor.checkpoint() || iteration % self.every == 0
+        self.monitor.checkpoint() || iteration.is_multiple_of(self.every)
     }
 
     fn failed(&self, source: TimeError) -> RunError {
