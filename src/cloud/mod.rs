@@ -4,9 +4,11 @@
 //! the surfaces, *outer* particles on the sides of the domain, and *images* of particles across planes of symmetry and
 //! periodic sides. Only fluid particles evolve; the state of the others follows from theirs.
 pub mod build;
+pub mod conservative;
 pub mod fill;
 pub mod interface;
 pub mod layout;
+mod multipliers;
 pub mod neighbours;
 pub mod operators;
 pub mod sources;

@@ -175,7 +175,8 @@ impl<'a, const D: usize> Search<'a, D> {
         visit(&x, IDENTITY);
         for (t, transform) in self.transforms.iter().enumerate() {
             let back = transform.inverse().point(&x);
-            if domain.distance_squared(&back) <= reach * reach {
+            // the corner of the cube may reach into the domain where its faces do not
+            if domain.distance_squared(&back) <= D as f64 * reach * reach {
                 visit(&back, t as u8);
             }
         }

@@ -65,13 +65,26 @@ pub struct Operators<const D: usize> {
     first: Vec<u32>,
     /// Condition number of the normal matrix of each row, infinite where the cloud determines no gradient.
     pub condition: Vec<f64>,
+    walls: Vec<WallFace<D>>,
+    wall_first: Vec<u32>,
+}
+
+/// A piece of wall that bounds the volume of one fluid particle; only conservative coefficients need it.
+#[derive(Clone, Copy, Debug)]
+pub struct WallFace<const D: usize> {
+    /// Fluid particle.
+    pub i: u32,
+    /// Interface particle, or image of one, whose pressure acts on it.
+    pub wall: u32,
+    /// Area vector, out of the fluid.
+    pub area: Vector<D>,
 }
 
 impl<const D: usize> Operators<D> {
     /// Fits all rows of a cloud.
     pub fn new(cloud: &Cloud<D>) -> Self {
         let (weights, condition) = fit_rows(cloud);
-        let lookup = Reverse::new(cloud, &weights);
+        let lookup = Reverse::new(cloud);
         let mut all = parts(cloud.n_fluid, PART);
         let n_fluid_parts = all.len();
         let start = cloud.n_fluid;
@@ -84,7 +97,8 @@ impl<const D: usize> Operators<D> {
             edges.extend(list);
             first.push(edges.len() as u32);
         }
-        Self { parts: all, n_fluid_parts, edges, first, condition }
+        let wall_first = vec![0; n_fluid_parts + 1];
+        Self { parts: all, n_fluid_parts, edges, first, condition, walls: Vec::new(), wall_first }
     }
 
     /// Edges of part `k`.
@@ -103,9 +117,23 @@ impl<const D: usize> Operators<D> {
         &mut self.edges
     }
 
+    /// Pieces of wall of fluid part `k`; none unless the coefficients are conservative.
+    #[inline]
+    pub fn wall_faces(&self, k: usize) -> &[WallFace<D>] {
+        &self.walls[self.wall_first[k] as usize..self.wall_first[k + 1] as usize]
+    }
+
+    /// Replaces the pieces of wall; they must be sorted by fluid particle.
+    pub(super) fn set_wall_faces(&mut self, walls: Vec<WallFace<D>>) {
+        let before = |i: usize| walls.partition_point(|f| (f.i as usize) < i) as u32;
+        let ends = self.parts[..self.n_fluid_parts].iter().map(|p| before(p.end));
+        self.wall_first = std::iter::once(0).chain(ends).collect();
+        self.walls = walls;
+    }
+
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        self.edges.len() * size_of::<Edge<D>>() + self.condition.len() * 8
+        self.walls.len() * size_of::<WallFace<D>>() + self.edges.len() * size_of::<Edge<D>>() + self.condition.len() * 8
     }
 }
 
@@ -125,28 +153,28 @@ fn fit_rows<const D: usize>(cloud: &Cloud<D>) -> (Vec<Vector<D>>, Vec<f64>) {
     (rows.into_iter().flat_map(|r| r.0).collect(), condition)
 }
 
-/// Finds a_ji for the entry (i, j), through images where needed.
-struct Reverse<'a, const D: usize> {
+/// Finds the entry (j, i) that belongs to the entry (i, j), through images where needed.
+pub(super) struct Reverse<'a, const D: usize> {
     cloud: &'a Cloud<D>,
-    weights: &'a [Vector<D>],
     images: std::collections::HashMap<(u32, u8), u32>,
     inverse: Vec<Option<u8>>,
 }
 
 impl<'a, const D: usize> Reverse<'a, D> {
-    fn new(cloud: &'a Cloud<D>, weights: &'a [Vector<D>]) -> Self {
+    pub(super) fn new(cloud: &'a Cloud<D>) -> Self {
         let first = cloud.n_real() as u32;
         let images = cloud.images.iter().zip(first..).map(|(m, k)| ((m.source, m.transform), k)).collect();
         let same = |a: &Transform<D>, b: &Transform<D>| a.sign == b.sign && (a.offset - b.offset).max_abs() < 1e-9;
         let find = |t: &Transform<D>| cloud.transforms.iter().position(|o| same(o, &t.inverse())).map(|k| k as u8);
-        Self { cloud, weights, images, inverse: cloud.transforms.iter().map(find).collect() }
+        Self { cloud, images, inverse: cloud.transforms.iter().map(find).collect() }
     }
 
-    /// a_ji, or `None` when the second end has no cloud or does not see the first.
-    fn weight(&self, i: usize, j: usize) -> Option<Vector<D>> {
+    /// Position of that entry among all neighbour entries, and the transform that brings its vectors to the first end;
+    /// `None` when the second end has no cloud or does not see the first.
+    pub(super) fn position(&self, i: usize, j: usize) -> Option<(usize, Option<u8>)> {
         let c = self.cloud;
         if j < c.n_rows() {
-            return self.entry(j, i as u32);
+            return self.entry(j, i as u32).map(|e| (e, None));
         }
         let Image { source, transform } = *c.images.get(j.checked_sub(c.n_real())?)?;
         if source as usize >= c.n_rows() {
@@ -154,13 +182,12 @@ impl<'a, const D: usize> Reverse<'a, D> {
         }
         let back = self.inverse[transform as usize]?;
         let mirrored = *self.images.get(&(i as u32, back))?;
-        let a = self.entry(source as usize, mirrored)?;
-        Some(c.transforms[transform as usize].direction(&a))
+        self.entry(source as usize, mirrored).map(|e| (e, Some(transform)))
     }
 
-    fn entry(&self, row: usize, j: u32) -> Option<Vector<D>> {
+    fn entry(&self, row: usize, j: u32) -> Option<usize> {
         let position = self.cloud.neighbours.of(row).binary_search(&j).ok()?;
-        Some(self.weights[self.cloud.neighbours.first[row] as usize + position])
+        Some(self.cloud.neighbours.first[row] as usize + position)
     }
 }
 
@@ -179,7 +206,11 @@ fn part_edges<const D: usize>(
                 continue;
             }
             let a_i = weights[e];
-            let back = reverse.weight(i, j);
+            let turn = |(e, t): (usize, Option<u8>)| match t {
+                Some(t) => cloud.transforms[t as usize].direction(&weights[e]),
+                None => weights[e],
+            };
+            let back = reverse.position(i, j).map(turn);
             // an end without a cloud counts as the mirror image of this one
             let s = match back {
                 Some(a_j) => a_i * cloud.volume[i] - a_j * cloud.volume[j],

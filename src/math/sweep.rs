@@ -19,6 +19,13 @@ pub fn sweep<T: Send>(out: &mut [T], f: impl Fn(usize) -> T + Sync) {
     });
 }
 
+/// Calls `f(i, slot)` for every slot of `out`.
+pub fn sweep_each<T: Send>(out: &mut [T], f: impl Fn(usize, &mut T) + Sync) {
+    out.par_chunks_mut(CHUNK).enumerate().for_each(|(c, chunk)| {
+        chunk.iter_mut().enumerate().for_each(|(k, slot)| f(c * CHUNK + k, slot));
+    });
+}
+
 /// Calls `f(i, row)` for every row of `width` values of `out`.
 pub fn sweep_rows(out: &mut [f64], width: usize, f: impl Fn(usize, &mut [f64]) + Sync) {
     out.par_chunks_mut(CHUNK * width).enumerate().for_each(|(c, chunk)| {

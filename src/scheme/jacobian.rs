@@ -81,6 +81,13 @@ pub fn dissipation_matrix<const D: usize>(gas: &Gas, q: &Primitive<D>, n: &Vecto
 pub fn assemble<const D: usize>(fluid: &Fluid<D>, work: &Work<D>, matrix: &mut BlockMatrix) {
     let op = &fluid.operators;
     matrix.assemble(|k, rows| {
+        if fluid.conservative {
+            for face in op.wall_faces(k) {
+                let i = face.i as usize;
+                let push = wall_jacobian(&fluid.gas, &work.state[i], &fluid.half_face(i, &face.area));
+                add_block::<D>(rows.block(i, i), |r, c| 2.0 * push[r][c]);
+            }
+        }
         for edge in op.edges(k) {
             let (i, j) = (edge.i(), edge.j());
             let (qi, qj) = (&work.state[i], &work.state[j]);
@@ -92,8 +99,8 @@ pub fn assemble<const D: usize>(fluid: &Fluid<D>, work: &Work<D>, matrix: &mut B
             for (row, column, a) in one_sided.into_iter().take(if edge.both() { 2 } else { 1 }) {
                 let scale = 0.5 * size / fluid.cloud.volume[row];
                 let a = match fluid.conservative {
-                    true if row == i => edge.s * (0.5 / fluid.cloud.volume[row]),
-                    true => edge.s * (-0.5 / fluid.cloud.volume[row]),
+                    true if row == i => fluid.half_face(row, &edge.s),
+                    true => -fluid.half_face(row, &edge.s),
                     false => a,
                 };
                 let own = flux_jacobian(&fluid.gas, &work.state[row], &a);
@@ -118,6 +125,20 @@ pub fn assemble<const D: usize>(fluid: &Fluid<D>, work: &Work<D>, matrix: &mut B
             }
         }
     });
+}
+
+/// −∂/∂U of (0, pressure · n, 0) − F·n, the wall pressure taken to be that of the particle.
+fn wall_jacobian<const D: usize>(gas: &Gas, q: &Primitive<D>, n: &Vector<D>) -> Block {
+    let mut m = flux_jacobian(gas, q, n).map(|row| row.map(|x| -x));
+    let g1 = gas.gamma - 1.0;
+    for d in 0..D {
+        m[1 + d][0] += n[d] * 0.5 * g1 * q.velocity.norm_squared();
+        for c in 0..D {
+            m[1 + d][1 + c] -= n[d] * g1 * q.velocity[c];
+        }
+        m[1 + d][D + 1] += n[d] * g1;
+    }
+    m
 }
 
 /// Entry (r, c) of coupling · P, where P removes the normal velocity of the particle in front of the wall.

@@ -1,0 +1,117 @@
+//! Multipliers of the conditions on conservative coefficients, and the conjugate gradients that find them.
+//!
+//! The system is symmetric and positive (semi-definite, but consistent, in a domain without open sides); its diagonal
+//! blocks, one a particle, are factorised once and serve as preconditioner.
+use crate::math::Vector;
+use crate::math::sweep::{sum, sweep, sweep_each};
+
+/// Most iterations of one solve.
+const MOST_ITERATIONS: usize = 4000;
+/// Smallest pivot of a block relative to its diagonal.
+const FLAT: f64 = 1e-12;
+/// Most conditions of a particle: three dimensions.
+pub(super) const MOST: usize = 12;
+
+/// Multipliers, or defects, of the conditions of one particle.
+#[derive(Clone, Copy)]
+pub(super) struct Row<const D: usize> {
+    /// Of the closure; for an interface particle the first component belongs to the sum of its shares.
+    pub(super) closure: Vector<D>,
+    /// Of linear consistency.
+    pub(super) moment: [Vector<D>; D],
+}
+
+impl<const D: usize> Row<D> {
+    pub(super) const ZERO: Self = Self { closure: Vector::ZERO, moment: [Vector::ZERO; D] };
+
+    #[inline(always)]
+    pub(super) fn dot(&self, o: &Self) -> f64 {
+        self.closure.dot(&o.closure) + (0..D).map(|r| self.moment[r].dot(&o.moment[r])).sum::<f64>()
+    }
+
+    #[inline(always)]
+    pub(super) fn plus(&self, s: f64, o: &Self) -> Self {
+        Self {
+            closure: self.closure + o.closure * s,
+            moment: std::array::from_fn(|r| self.moment[r] + o.moment[r] * s),
+        }
+    }
+
+    /// Adds what an area vector contributes, `reach` × offset from the particle.
+    #[inline(always)]
+    pub(super) fn add(&mut self, s: &Vector<D>, offset: &Vector<D>, reach: f64) {
+        self.closure += *s;
+        for r in 0..D {
+            self.moment[r] += *offset * (reach * s[r]);
+        }
+    }
+
+    pub(super) fn trace(&self) -> f64 {
+        (0..D).map(|r| self.moment[r][r]).sum()
+    }
+
+    #[inline(always)]
+    pub(super) fn load(x: &[f64; MOST]) -> Self {
+        let moment = std::array::from_fn(|r| Vector::from_fn(|c| x[D + r * D + c]));
+        Self { closure: Vector::from_fn(|c| x[c]), moment }
+    }
+
+    #[inline(always)]
+    pub(super) fn store(&self, x: &mut [f64; MOST]) {
+        x[..D].copy_from_slice(&self.closure.0);
+        (0..D).for_each(|r| x[D + r * D..D + (r + 1) * D].copy_from_slice(&self.moment[r].0));
+    }
+}
+
+/// Solves A y = b for a symmetric positive A; `r` holds b − A y. Number of iterations until r·M⁻¹r ≤ `goal`.
+pub(super) fn conjugate_gradients<const D: usize>(
+    y: &mut [Row<D>],
+    r: &mut [Row<D>],
+    goal: f64,
+    apply: impl Fn(&[Row<D>], &mut [Row<D>]),
+    precondition: impl Fn(usize, &Row<D>) -> Row<D> + Sync,
+) -> usize {
+    let n = y.len();
+    let mut z = vec![Row::ZERO; n];
+    let mut p = vec![Row::ZERO; n];
+    let mut q = vec![Row::ZERO; n];
+    let mut last = f64::INFINITY;
+    for iteration in 0..MOST_ITERATIONS {
+        sweep(&mut z, |i| precondition(i, &r[i]));
+        let size = sum(n, |i| r[i].dot(&z[i]));
+        if size.is_nan() || size <= goal {
+            return iteration;
+        }
+        update(&mut p, |i, p| z[i].plus(size / last, p));
+        last = size;
+        apply(&p, &mut q);
+        let curvature = sum(n, |i| p[i].dot(&q[i]));
+        if curvature.is_nan() || curvature <= 0.0 {
+            return iteration;
+        }
+        let step = size / curvature;
+        update(y, |i, y| y.plus(step, &p[i]));
+        update(r, |i, r| r.plus(-step, &q[i]));
+    }
+    MOST_ITERATIONS
+}
+
+/// x[i] = f(i, x[i]).
+fn update<T: Send>(x: &mut [T], f: impl Fn(usize, &T) -> T + Sync) {
+    sweep_each(x, |i, x| *x = f(i, x));
+}
+
+/// Cholesky factor in the lower triangle and its transpose in the upper one, the diagonal inverted; directions without
+/// stiffness are left alone.
+pub(super) fn cholesky(a: &mut [f64], n: usize) {
+    for c in 0..n {
+        let s: f64 = (0..c).map(|k| a[c * n + k] * a[c * n + k]).sum();
+        let pivot = (a[c * n + c] - s).max(FLAT * a[c * n + c]).max(f64::MIN_POSITIVE);
+        a[c * n + c] = 1.0 / pivot.sqrt();
+        for r in c + 1..n {
+            let s: f64 = (0..c).map(|k| a[r * n + k] * a[c * n + k]).sum();
+            let v = (a[r * n + c] - s) * a[c * n + c];
+            (a[r * n + c], a[c * n + r]) = (v, v);
+        }
+    }
+}
