@@ -18,6 +18,13 @@ Signals during a run:
   Ctrl-C, SIGTERM  finish the iteration, write a checkpoint, stop; a second one stops at once
   SIGUSR1          write a checkpoint and go on";
 
+const VERIFY_CODES: &str = "\
+Exit codes:
+    0  every claim holds
+    1  a claim fails
+    2  wrong arguments or folders
+  130  interrupted";
+
 /// Aeroelastic loads from a surface file, without a mesh.
 #[derive(Debug, Parser)]
 #[command(name = "alula", version, about, after_help = EXIT_CODES, arg_required_else_help = true)]
@@ -43,6 +50,7 @@ pub(crate) enum Command {
     /// Write the report of a run again.
     Report(Report),
     /// Compare the solver with theory and experiment.
+    #[command(after_help = VERIFY_CODES)]
     Verify(Verify),
     /// Print the JSON schema of the case file, for editors.
     Schema(Schema),
@@ -124,6 +132,9 @@ pub(crate) struct Verify {
     /// Only cases that take seconds.
     #[arg(long)]
     pub(crate) fast: bool,
+    /// Folder of the cases; default: `verification` here or above.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) folder: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) threads: Threads,
 }

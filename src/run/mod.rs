@@ -5,6 +5,7 @@
 //! and integrates. Checkpoints hold what a stage cannot rebuild from the case: its sources of refinement, the state, and
 //! where the integrator stands; a killed run goes on to the same bits.
 mod folder;
+mod measure;
 mod outputs;
 mod persist;
 mod pictures;
@@ -12,6 +13,7 @@ mod setup;
 mod snapshot;
 mod solve;
 pub mod summary;
+pub mod verify;
 
 use std::path::{Path, PathBuf};
 
@@ -38,6 +40,8 @@ pub trait Monitor {
     fn tick(&mut self, tick: &Tick);
     /// Something worth a line.
     fn note(&mut self, text: &str);
+    /// The solution, once, at the end.
+    fn solution(&mut self, _: &Snapshot) {}
     /// True when the run should write a checkpoint and stop.
     fn stop(&self) -> bool {
         false

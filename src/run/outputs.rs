@@ -2,7 +2,7 @@
 use std::path::Path;
 
 use super::setup::Solver;
-use super::snapshot::{self, LoadFrame, Units, load_axes, pressure_coefficient, wall_load};
+use super::snapshot::{self, LoadFrame, Snapshot, Units, load_axes, pressure_coefficient, wall_load};
 use super::solve::{Journal, totals};
 use super::summary::{Clock, Ledger, Summary};
 use super::{Places, RunError, marches};
@@ -95,7 +95,9 @@ pub(super) fn write_all<const D: usize>(
         phases: vec![("solve".into(), solved), ("files so far".into(), clock.wall_seconds() - solved)],
     };
     r.write_tables(&journal.cycles, &summary)?;
-    r.write_fields(journal.time)?;
+    let all = snapshot::field(r.case, r.fluid, r.work);
+    journal.show(&all);
+    r.write_fields(&all, journal.time)?;
     if case.output.report {
         super::pictures::write(&r.view())?;
         report::write_report(&places.out)?;
@@ -302,8 +304,7 @@ impl<'a, const D: usize> Finished<'a, D> {
         Ok(write_csv(&self.out.join("surface.csv"), &columns, rows.collect::<Vec<_>>())?)
     }
 
-    fn write_fields(&self, time: f64) -> Result<(), RunError> {
-        let all = snapshot::field(self.case, self.fluid, self.work);
+    fn write_fields(&self, all: &Snapshot, time: f64) -> Result<(), RunError> {
         let columns: Vec<Column<'_>> = all
             .columns
             .iter()

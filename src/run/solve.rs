@@ -2,7 +2,7 @@
 
 use super::persist::{FILE, Position, Saved};
 use super::setup::{Solver, control};
-use super::snapshot::{LoadFrame, load_axes};
+use super::snapshot::{LoadFrame, Snapshot, load_axes};
 use super::{Monitor, Places, RunError, Tick};
 use crate::case::{Case, Explicit as Marching, RungeKutta, Steady, Temporal};
 use crate::math::sweep::sum;
@@ -95,6 +95,11 @@ impl<'a> Journal<'a> {
     /// Says a line.
     pub(super) fn note(&mut self, text: &str) {
         self.monitor.note(text);
+    }
+
+    /// Hands over the solution.
+    pub(super) fn show(&mut self, field: &Snapshot) {
+        self.monitor.solution(field);
     }
 
     /// Processor and wall seconds, those before a restart included.

@@ -2,13 +2,15 @@
 //!
 //! A folder of `verification/` holds a case, its authority, reference curves and `claim.toml`. This module is the pure part:
 //! [`claim`] reads the claims and judges values, [`metrics`] turns samples into values, [`curve`] reads reference tables, [`truth`] finds exact
-//! solutions by name.
-//! It opens no file and runs nothing; the walker does both.
+//! solutions by name, [`wall`] holds the wall of a result.
+//! It opens no file and runs nothing; `run::verify` does both.
 pub mod claim;
 pub mod curve;
 pub mod metrics;
 pub mod truth;
+pub mod wall;
 
 pub use claim::{Claim, ClaimError, ClaimFile, ClaimRow, Exact, Kind, Metric, Study};
 pub use curve::{Curve, Table};
 pub use truth::{FieldTruth, WallTruth};
+pub use wall::Wall;

@@ -1,0 +1,203 @@
+//! What is measured of a finished run: the value of each metric of [`crate::verify`].
+use std::path::Path;
+
+use super::snapshot::Units;
+use super::{Snapshot, Summary};
+use crate::case::Case;
+use crate::math::{Bounds, Vector};
+use crate::physics::{Gas, Primitive};
+use crate::scheme::start::free_stream;
+use crate::verify::metrics;
+use crate::verify::wall::{Wall, contains};
+use crate::verify::{Claim, Curve, FieldTruth, Metric, Table, WallTruth};
+
+/// Part of the chord in which shocks are looked for: away from the suction peak and the trailing edge.
+const SHOCK_WINDOW: (f64, f64) = (0.05, 0.95);
+
+/// A finished run, ready to be measured.
+pub(super) struct Measured {
+    /// The case as it ran.
+    pub(super) case: Case,
+    /// Its last line.
+    pub(super) summary: Summary,
+    /// Its solution.
+    pub(super) field: Snapshot,
+    /// Its wall, empty without bodies.
+    pub(super) wall: Wall,
+}
+
+/// A value, or why there is none.
+pub(super) type Value = Result<f64, String>;
+
+impl Measured {
+    /// The metric of `claim`, that needs one run only (and `other` where the claim names another case).
+    pub(super) fn value(&self, claim: &Claim, folder: &Path, other: Option<&Self>) -> Value {
+        let s = &self.summary;
+        match claim.metric {
+            Metric::Cl | Metric::ExtrapolatedCl => Ok(s.loads.cl),
+            Metric::Cd | Metric::ExtrapolatedCd => Ok(s.loads.cd),
+            Metric::Cm => Ok(s.loads.cm),
+            Metric::ClMomentum => Ok(s.loads_momentum_balance.cl),
+            Metric::CdMomentum => Ok(s.loads_momentum_balance.cd),
+            Metric::ResidualDrop => Ok(s.residual_drop),
+            Metric::Converged => Ok(f64::from(u8::from(s.converged))),
+            Metric::Particles => Ok(s.particles as f64),
+            Metric::MassDrift => Ok(s.ledger.mass.abs()),
+            Metric::EnergyDrift => Ok(s.ledger.energy.abs()),
+            Metric::ErrorL2Density | Metric::Order => {
+                s.error_l2_density.ok_or_else(|| "the case starts from no exact solution".into())
+            }
+            Metric::CpRms => {
+                metrics::root_mean_square(&self.cp_differences(claim, folder, other)?, None).ok_or_else(no_wall)
+            }
+            Metric::CpMaxDifference => {
+                let differences = self.cp_differences(claim, folder, other)?;
+                metrics::max_difference(&differences, &vec![0.0; differences.len()]).ok_or_else(no_wall)
+            }
+            Metric::ShockUpper => self.shock(claim, true),
+            Metric::ShockLower => self.shock(claim, false),
+            Metric::PanelPressure => self.panel_pressure(claim),
+            Metric::FreeStreamDeviation => self.free_stream_deviation(),
+            Metric::ShockPositionError => self.shock_position_error(),
+            Metric::WaveAngle => self.wave_angle(claim),
+        }
+    }
+
+    /// Cp of the wall particles in the region less the reference there.
+    fn cp_differences(&self, claim: &Claim, folder: &Path, other: Option<&Self>) -> Result<Vec<f64>, String> {
+        let wall = &self.wall;
+        let chosen = wall.within(claim.region.as_ref());
+        if let Some(file) = &claim.file {
+            return self.differences_to_file(&chosen, &folder.join(file));
+        }
+        if let Some(exact) = claim.exact {
+            let flow = &self.case.flow;
+            let truth = WallTruth::new(exact, flow.reference().mach, flow.gamma).map_err(|e| e.to_string())?;
+            let centre = Bounds::around(&wall.x).centre();
+            let stream = self.stream().velocity;
+            let at = |i: usize| truth.pressure_coefficient(&(wall.x[i] - centre), &stream);
+            return Ok(chosen.iter().map(|&i| wall.cp[i] - at(i)).collect());
+        }
+        let Some(other) = other else { return Err("the claim names no `file`, `exact` or `other`".into()) };
+        let at = |i: usize| other.wall.pressure_coefficient(&wall.x[i], &wall.normal[i]);
+        chosen.iter().map(|&i| Ok(wall.cp[i] - at(i).ok_or_else(no_wall)?)).collect()
+    }
+
+    fn differences_to_file(&self, chosen: &[usize], path: &Path) -> Result<Vec<f64>, String> {
+        let problem = |e: &dyn std::fmt::Display| format!("`{}`: {e}", path.display());
+        let text = std::fs::read_to_string(path).map_err(|e| problem(&e))?;
+        let table = Table::parse(&text).map_err(|e| problem(&e))?;
+        let curve = |side: &str| -> Result<Curve, String> {
+            table.only("surface", side).curve("x_c", "Cp").map_err(|e| problem(&e))
+        };
+        let mut differences = Vec::with_capacity(chosen.len());
+        for (upper, name) in [(true, "upper"), (false, "lower")] {
+            let reference = curve(name)?;
+            let side = self.wall.side(chosen, upper);
+            differences.extend(side.iter().map(|&i| self.wall.cp[i] - reference.at(self.wall.x_c[i])));
+        }
+        Ok(differences)
+    }
+
+    fn shock(&self, claim: &Claim, upper: bool) -> Value {
+        let side = self.wall.side(&self.wall.within(claim.region.as_ref()), upper);
+        let take = |column: &[f64]| side.iter().map(|&i| column[i]).collect::<Vec<f64>>();
+        metrics::shock_position(&take(&self.wall.x_c), &take(&self.wall.cp), SHOCK_WINDOW)
+            .ok_or_else(|| "the wall pressure rises nowhere".into())
+    }
+
+    fn panel_pressure(&self, claim: &Claim) -> Value {
+        let chosen = self.wall.within(claim.region.as_ref());
+        let pressure: Vec<f64> = chosen.iter().map(|&i| self.over_free_pressure(self.wall.cp[i])).collect();
+        let areas: Vec<f64> = chosen.iter().map(|&i| self.wall.area[i]).collect();
+        metrics::weighted_mean(&pressure, Some(&areas)).ok_or_else(no_wall)
+    }
+
+    /// p/p∞ = 1 + γ M² Cp/2.
+    fn over_free_pressure(&self, cp: f64) -> f64 {
+        let flow = &self.case.flow;
+        1.0 + 0.5 * flow.gamma * flow.reference().mach.powi(2) * cp
+    }
+
+    /// Free stream in units of the solver.
+    fn stream(&self) -> Primitive<3> {
+        if self.case.dimension == Some(3) {
+            return free_stream::<3>(&self.case);
+        }
+        let q = free_stream::<2>(&self.case);
+        Primitive { density: q.density, velocity: Vector(q.velocity.to_3d()), pressure: q.pressure }
+    }
+
+    /// Greatest change of ρ, ρv, E over ρ∞, ρ∞c∞, E∞, in the fluid.
+    fn free_stream_deviation(&self) -> Value {
+        let free = self.stream();
+        let gas = Gas { gamma: self.case.flow.gamma };
+        let units = Units::of(&self.case);
+        let (density, velocity) = (self.column("density")?, self.column("velocity")?);
+        let pressure = self.column("pressure")?;
+        let expected = gas.conserved(&free);
+        let mut greatest: f64 = 0.0;
+        for i in self.fluid()? {
+            let found = gas.conserved(&Primitive {
+                density: density[i] / units.density,
+                velocity: Vector::<3>::from_fn(|d| velocity[3 * i + d] / units.speed),
+                pressure: pressure[i] / units.pressure(),
+            });
+            let deviation = [
+                (found.density - expected.density) / expected.density,
+                (found.momentum - expected.momentum).max_abs() / (expected.density * gas.sound_speed(&free)),
+                (found.energy - expected.energy) / expected.energy,
+            ];
+            if deviation.iter().any(|d| !d.is_finite()) {
+                return Err("the solution is not finite".into());
+            }
+            greatest = deviation.iter().fold(greatest, |g, d| g.max(d.abs()));
+        }
+        Ok(greatest)
+    }
+
+    /// |place of the shock − exact| in spacings of the case.
+    fn shock_position_error(&self) -> Value {
+        let truth = FieldTruth::new(&self.case.initial, self.case.flow.gamma, None).map_err(|e| e.to_string())?;
+        let Some(FieldTruth::Riemann { axis, .. }) = truth else {
+            return Err("the case starts from no Riemann problem".into());
+        };
+        let exact = truth.and_then(|t| t.shock(self.summary.time));
+        let (place, levels) = exact.ok_or("the exact solution has no shock")?;
+        let pressure = self.column("pressure")?;
+        let fluid = self.fluid()?;
+        let x: Vec<f64> = fluid.iter().map(|&i| self.field.points[i][axis.min(2)]).collect();
+        let p: Vec<f64> = fluid.iter().map(|&i| pressure[i]).collect();
+        let everywhere = (f64::NEG_INFINITY, f64::INFINITY);
+        let found = metrics::front_position(&x, &p, levels, everywhere).ok_or("the solution has no shock")?;
+        Ok((found - place).abs() / self.case.cloud.spacing.0)
+    }
+
+    fn wave_angle(&self, claim: &Claim) -> Value {
+        let (Some([low, high]), Some(levels)) = (&claim.region, claim.levels) else {
+            return Err("the claim names no `region` and `levels`".into());
+        };
+        let cp = self.column("cp")?;
+        let inside = self.fluid()?.into_iter().filter(|&i| contains(low, high, &self.field.points[i]));
+        let samples: Vec<[f64; 3]> = inside
+            .map(|i| [self.field.points[i][0], self.field.points[i][1], self.over_free_pressure(cp[i])])
+            .collect();
+        let angle = metrics::wave_angle(&samples, levels).ok_or("the samples hold no wave")?;
+        Ok(angle.to_degrees())
+    }
+
+    /// Fluid particles of the field.
+    fn fluid(&self) -> Result<Vec<usize>, String> {
+        let kind = self.column("kind")?;
+        Ok((0..kind.len()).filter(|&i| kind[i] == 0.0).collect())
+    }
+
+    fn column(&self, name: &str) -> Result<&[f64], String> {
+        let found = self.field.columns.iter().find(|(n, ..)| *n == name);
+        found.map(|(_, _, values)| values.as_slice()).ok_or_else(|| format!("the solution has no `{name}`"))
+    }
+}
+
+fn no_wall() -> String {
+    "there are no wall particles to compare".into()
+}

@@ -1,0 +1,327 @@
+//! The walk through `verification/`: every folder is a case with claims; each case runs, each claim is judged.
+//!
+//! Claims share runs: one for each case and spacing, kept until the walk ends, so that a claim may compare its case with
+//! another one. Runs write into a scratch folder that goes with the walk. A case that does not run fails its claims, with
+//! the reason in the place of the source, and the walk goes on.
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use super::measure::{Measured, Value};
+use super::{Monitor, Outcome, Places, RunError, Snapshot, Tick};
+use crate::case::{Case, read};
+use crate::verify::wall::Wall;
+use crate::verify::{Claim, ClaimFile, ClaimRow, Metric, Study, metrics};
+
+/// Name of the folder of all cases.
+const FOLDER: &str = "verification";
+/// Files of one case.
+const FILES: [&str; 2] = ["case.toml", "claim.toml"];
+
+/// Why a walk cannot begin.
+#[derive(Debug, thiserror::Error)]
+pub enum WalkError {
+    /// No folder of cases.
+    #[error("no folder `{FOLDER}` here or above\nhint: name one with `--folder`")]
+    Nowhere,
+    /// A folder or file that cannot be read.
+    #[error("cannot read `{path}`: {problem}\nhint: each case needs the files `case.toml` and `claim.toml`")]
+    Unreadable {
+        /// The file.
+        path: String,
+        /// What the system says.
+        problem: std::io::Error,
+    },
+    /// A file with mistakes.
+    #[error("`{path}`: {problem}")]
+    Mistakes {
+        /// The file.
+        path: String,
+        /// The mistakes.
+        problem: String,
+    },
+    /// Nothing to do.
+    #[error("no case is called so\nhint: `{folder}` holds {names}")]
+    NoCase {
+        /// The folder of all cases.
+        folder: String,
+        /// What there is.
+        names: String,
+    },
+}
+
+/// A folder with a case and what it claims.
+#[derive(Clone, Debug)]
+pub struct Folder {
+    /// Name of the folder.
+    pub name: String,
+    /// The folder.
+    pub path: PathBuf,
+    /// The case.
+    pub case: Case,
+    /// The claims.
+    pub claims: ClaimFile,
+}
+
+/// What to judge.
+#[derive(Clone, Debug, Default)]
+pub struct Selection {
+    /// Only cases whose name contains this.
+    pub filter: Option<String>,
+    /// Only the quick subset, without extrapolations.
+    pub fast: bool,
+}
+
+/// The folder `verification` in `from` or above it.
+pub fn find(from: &Path) -> Result<PathBuf, WalkError> {
+    from.ancestors().map(|a| a.join(FOLDER)).find(|p| p.is_dir()).ok_or(WalkError::Nowhere)
+}
+
+/// A walk through the cases of a folder.
+pub struct Walk {
+    folders: Vec<Folder>,
+    chosen: Vec<usize>,
+    fast: bool,
+    runs: BTreeMap<(String, u64), Result<Measured, String>>,
+}
+
+impl Walk {
+    /// Reads all cases and claims under `root`; mistakes in any of them end the walk before it begins.
+    pub fn new(root: &Path, selection: &Selection) -> Result<Self, WalkError> {
+        let entries = fs::read_dir(root).map_err(|e| unreadable(root, e))?;
+        let mut paths: Vec<PathBuf> = entries.filter_map(|e| Some(e.ok()?.path())).filter(|p| p.is_dir()).collect();
+        paths.sort();
+        let folders: Vec<Folder> = paths.iter().map(|p| Folder::read(p)).collect::<Result<_, _>>()?;
+        let wanted = |f: &Folder| selection.filter.as_ref().is_none_or(|text| f.name.contains(text.as_str()));
+        let chosen: Vec<usize> = (0..folders.len())
+            .filter(|&k| wanted(&folders[k]) && (!selection.fast || folders[k].claims.fast))
+            .collect();
+        if chosen.is_empty() {
+            let names = folders.iter().map(|f| format!("`{}`", f.name)).collect::<Vec<_>>().join(", ");
+            return Err(WalkError::NoCase { folder: root.display().to_string(), names });
+        }
+        Ok(Self { folders, chosen, fast: selection.fast, runs: BTreeMap::new() })
+    }
+
+    /// The cases to judge.
+    pub fn cases(&self) -> impl Iterator<Item = &Folder> {
+        self.chosen.iter().map(|&k| &self.folders[k])
+    }
+
+    /// Number of cases to judge.
+    pub fn len(&self) -> usize {
+        self.chosen.len()
+    }
+
+    /// True when there is nothing to judge.
+    pub fn is_empty(&self) -> bool {
+        self.chosen.is_empty()
+    }
+
+    /// Judges the claims of case `k` of those chosen; `None` when the monitor says stop.
+    pub fn judge(&mut self, k: usize, monitor: &mut dyn Monitor) -> Option<Vec<ClaimRow>> {
+        let folder = self.folders[*self.chosen.get(k)?].clone();
+        let fast = self.fast;
+        let claims = folder.claims.claims.iter().filter(|c| !(fast && is_extrapolation(c.metric)));
+        let mut rows = Vec::new();
+        for claim in claims {
+            rows.push(row(claim, &folder.name, self.measure(claim, &folder, monitor)));
+            if monitor.stop() {
+                return None;
+            }
+        }
+        Some(rows)
+    }
+
+    fn measure(&mut self, claim: &Claim, folder: &Folder, monitor: &mut dyn Monitor) -> Value {
+        if !claim.metric.needs_study() {
+            let other = match &claim.other {
+                Some(name) => Some(self.other(name, monitor)?),
+                None => None,
+            };
+            let key = self.ensure(folder, &folder.case, monitor);
+            let other = other.and_then(|key| self.runs.get(&key)?.as_ref().ok());
+            return self.at(&key)?.value(claim, &folder.path, other);
+        }
+        let Some(study) = &folder.claims.study else { return Err("there is no `[study]`".into()) };
+        let mut values = Vec::new();
+        for &spacing in &study.spacings {
+            let key = self.ensure(folder, &respaced(&folder.case, spacing, study), monitor);
+            values.push(self.at(&key)?.value(claim, &folder.path, None)?);
+        }
+        let found = match claim.metric {
+            Metric::Order => metrics::observed_order(&study.spacings, &values),
+            _ => metrics::limit(&study.spacings, &values).map(|(limit, _)| limit),
+        };
+        found.ok_or_else(|| format!("the values {values:?} have no order or limit"))
+    }
+
+    /// Runs the case that a claim compares with.
+    fn other(&mut self, name: &str, monitor: &mut dyn Monitor) -> Result<(String, u64), String> {
+        let found = self.folders.iter().find(|f| f.name == name).cloned();
+        let folder = found.ok_or_else(|| format!("there is no case `{name}`"))?;
+        let key = self.ensure(&folder, &folder.case, monitor);
+        self.at(&key)?;
+        Ok(key)
+    }
+
+    fn at(&self, key: &(String, u64)) -> Result<&Measured, String> {
+        match self.runs.get(key) {
+            Some(Ok(run)) => Ok(run),
+            Some(Err(problem)) => Err(problem.clone()),
+            None => Err("the case did not run".into()),
+        }
+    }
+
+    /// Runs a case at its spacing unless that has been done.
+    fn ensure(&mut self, folder: &Folder, case: &Case, monitor: &mut dyn Monitor) -> (String, u64) {
+        let key = (folder.name.clone(), case.cloud.spacing.0.to_bits());
+        if !self.runs.contains_key(&key) && !monitor.stop() {
+            let spacing = case.cloud.spacing.0;
+            monitor.note(&format!("{} at spacing {spacing}", folder.name));
+            let run = run(folder, case, monitor);
+            if let Ok(m) = &run {
+                let s = &m.summary;
+                let (n, it) = (s.particles, s.iterations);
+                monitor.note(&format!("{}: {n} particles, {it} iterations, {:.1} s", folder.name, s.wall_seconds));
+            }
+            self.runs.insert(key.clone(), run);
+        }
+        key
+    }
+}
+
+impl Folder {
+    /// Reads one case with its claims.
+    pub fn read(path: &Path) -> Result<Self, WalkError> {
+        let [case, claims] = FILES.map(|name| path.join(name));
+        let text = |p: &Path| fs::read_to_string(p).map_err(|e| unreadable(p, e));
+        let wrong = |p: &Path, problem: String| WalkError::Mistakes { path: p.display().to_string(), problem };
+        let claims_read = ClaimFile::parse(&text(&claims)?).map_err(|e| wrong(&claims, e.to_string()))?;
+        let case_read = read(&text(&case)?, &case.display().to_string()).map_err(|e| wrong(&case, e.to_string()))?;
+        let name = path.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
+        Ok(Self { name, path: path.to_path_buf(), case: case_read, claims: claims_read })
+    }
+}
+
+fn unreadable(path: &Path, problem: std::io::Error) -> WalkError {
+    WalkError::Unreadable { path: path.display().to_string(), problem }
+}
+
+fn is_extrapolation(metric: Metric) -> bool {
+    matches!(metric, Metric::ExtrapolatedCl | Metric::ExtrapolatedCd)
+}
+
+fn row(claim: &Claim, case: &str, value: Value) -> ClaimRow {
+    match value {
+        Ok(value) => claim.judge(case, value),
+        Err(problem) => {
+            let first = problem.replace('\n', "; ");
+            ClaimRow { source: format!("no value: {first}"), ..claim.judge(case, f64::NAN) }
+        }
+    }
+}
+
+/// The case at another spacing.
+fn respaced(case: &Case, spacing: f64, study: &Study) -> Case {
+    let mut case = case.clone();
+    let factor = spacing / case.cloud.spacing.0;
+    case.cloud.spacing.0 = spacing;
+    if study.scale_boxes {
+        case.cloud.boxes.iter_mut().for_each(|b| b.spacing.0 *= factor);
+    }
+    case
+}
+
+/// Runs a case in a scratch folder and keeps what can be measured.
+fn run(folder: &Folder, case: &Case, monitor: &mut dyn Monitor) -> Result<Measured, String> {
+    let mut case = case.clone();
+    case.output.report = false;
+    let scratch = tempfile::tempdir().map_err(|e| format!("cannot make a scratch folder: {e}"))?;
+    let places = Places { input: folder.path.clone(), out: scratch.path().join("run") };
+    let mut keeper = Keeper { monitor, field: None };
+    let ended = super::run(&case, &places, &mut keeper).map_err(|e| reason(&e))?;
+    let Outcome::Finished(summary) = ended else { return Err("the run was interrupted".into()) };
+    let field = keeper.field.take().ok_or("the run left no solution")?;
+    let wall = if case.bodies.is_empty() {
+        Wall::default()
+    } else {
+        let text = fs::read_to_string(places.out.join("surface.csv")).map_err(|e| format!("`surface.csv`: {e}"))?;
+        Wall::parse(&text).map_err(|e| format!("`surface.csv`: {e}"))?
+    };
+    Ok(Measured { case, summary: *summary, field, wall })
+}
+
+/// What went wrong, without the scratch folder that is gone.
+fn reason(problem: &RunError) -> String {
+    match problem {
+        RunError::Time { source, .. } => source.to_string(),
+        other => other.to_string(),
+    }
+}
+
+/// Keeps the solution and passes on the rest.
+struct Keeper<'a> {
+    monitor: &'a mut dyn Monitor,
+    field: Option<Snapshot>,
+}
+
+impl Monitor for Keeper<'_> {
+    fn tick(&mut self, tick: &Tick) {
+        self.monitor.tick(tick);
+    }
+    fn note(&mut self, _: &str) {}
+    fn solution(&mut self, field: &Snapshot) {
+        self.field = Some(field.clone());
+    }
+    fn stop(&self) -> bool {
+        self.monitor.stop()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::run::Silent;
+
+    const CASE: &str = "title = \"still\"\ndimension = 2\n[flow]\nmach = 0.5\n[cloud]\nspacing = 0.25\n\
+        domain = { min = [0.0, 0.0], max = [1.0, 1.0] }\n[time.explicit]\nuntil = 0.1\ncfl = 0.5\nmethod = \"ssprk3\"\n";
+
+    fn write(root: &Path, name: &str, claims: &str) {
+        let folder = root.join(name);
+        fs::create_dir_all(&folder).unwrap();
+        fs::write(folder.join("case.toml"), CASE).unwrap();
+        fs::write(folder.join("claim.toml"), claims).unwrap();
+    }
+
+    #[test]
+    fn claims_are_judged_and_reasons_given() {
+        let root = tempfile::tempdir().unwrap();
+        let claim = |metric: &str, bound: f64| {
+            format!("[[claim]]\nmetric = \"{metric}\"\nkind = \"at_most\"\nreference = {bound}\nsource = \"s\"\n")
+        };
+        let three = claim("free_stream_deviation", 1e-12) + &claim("particles", 1.0) + &claim("shock_upper", 1.0);
+        write(root.path(), "a", &three);
+        write(root.path(), "b", &format!("fast = true\n{}", claim("cp_max_difference", 1.0)));
+        let mut walk = Walk::new(root.path(), &Selection { filter: Some("a".into()), fast: false }).unwrap();
+        assert_eq!(walk.len(), 1);
+        let rows = walk.judge(0, &mut Silent).unwrap();
+        assert_eq!(rows.iter().map(|r| r.pass).collect::<Vec<_>>(), [true, false, false], "{rows:?}");
+        assert!(rows[2].value.is_nan() && rows[2].source.starts_with("no value: "), "{rows:?}");
+        let mut fast = Walk::new(root.path(), &Selection { filter: None, fast: true }).unwrap();
+        assert_eq!(fast.cases().map(|f| f.name.as_str()).collect::<Vec<_>>(), ["b"]);
+        assert!(!fast.judge(0, &mut Silent).unwrap()[0].pass);
+    }
+
+    #[test]
+    fn bad_folders_end_the_walk_before_it_begins() {
+        let root = tempfile::tempdir().unwrap();
+        assert!(matches!(
+            Walk::new(&root.path().join("none"), &Selection::default()),
+            Err(WalkError::Unreadable { .. })
+        ));
+        assert!(matches!(Walk::new(root.path(), &Selection::default()), Err(WalkError::NoCase { .. })));
+        write(root.path(), "a", "");
+        assert!(matches!(Walk::new(root.path(), &Selection::default()), Err(WalkError::Mistakes { .. })));
+    }
+}

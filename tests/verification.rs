@@ -1,0 +1,38 @@
+//! The quick subset of `verification/`: every claim of every case marked `fast` must hold.
+use std::path::Path;
+
+use alula::run::Silent;
+use alula::run::verify::{Selection, Walk};
+use alula::verify::ClaimRow;
+
+fn describe(r: &ClaimRow) -> String {
+    format!("{} {}: {} against {} ({})", r.case, r.metric, r.value, r.reference, r.source)
+}
+
+#[test]
+fn quick_claims_hold() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("verification");
+    let mut walk = Walk::new(&root, &Selection { filter: None, fast: true }).unwrap();
+    let mut failed = Vec::new();
+    for k in 0..walk.len() {
+        let rows = walk.judge(k, &mut Silent).unwrap();
+        assert!(!rows.is_empty());
+        failed.extend(rows.iter().filter(|r| !r.pass).map(describe));
+    }
+    assert!(failed.is_empty(), "{} claims fail:\n{}", failed.len(), failed.join("\n"));
+}
+
+#[test]
+fn every_folder_is_in_order() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("verification");
+    let walk = Walk::new(&root, &Selection::default()).unwrap();
+    for folder in walk.cases() {
+        let name = &folder.name;
+        assert!(folder.path.join("README.md").is_file(), "{name} has no README.md");
+        for claim in &folder.claims.claims {
+            let file = claim.file.as_ref().map(|f| folder.path.join(f));
+            assert!(file.is_none_or(|f| f.is_file()), "{name} names a missing curve");
+            assert!(claim.other.as_ref().is_none_or(|o| root.join(o).is_dir()), "{name} names a missing case");
+        }
+    }
+}
