@@ -221,12 +221,6 @@ static CLOUD: Table = Table::of(&[
     Field::defaulted("box", Kind::Tables(&REFINE), Absent::Filled, "A box with its own spacing."),
     Field::optional("wake", Kind::Table(&WAKE), "no refinement", "Refinement behind the bodies along the free stream."),
     Field::defaulted(
-        "wall_layers",
-        Kind::Integer(0, 64),
-        Absent::Integer(0),
-        "Body-fitted layers of particles next to the wall (0: none).",
-    ),
-    Field::defaulted(
         "blank",
         Kind::Number(Range::between(0.3, 0.6)),
         Absent::Number(0.4),

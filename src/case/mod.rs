@@ -200,8 +200,6 @@ pub struct Cloud {
     pub boxes: Vec<RefineBox>,
     /// Refinement behind the bodies along the free stream.
     pub wake: Option<Wake>,
-    /// Body-fitted layers of particles next to the wall; default 0 (none).
-    pub wall_layers: u32,
     /// Fluid particles nearer to the wall than this fraction of the local spacing are left out; default 0.4.
     pub blank: f64,
     /// Radius of the clouds near the wall in local spacings; default 1.6.

@@ -5,6 +5,7 @@
 //! and integrates. Checkpoints hold what a stage cannot rebuild from the case: its sources of refinement, the state, and
 //! where the integrator stands; a killed run goes on to the same bits.
 mod folder;
+mod inspect;
 mod measure;
 mod outputs;
 mod persist;
@@ -29,6 +30,7 @@ use crate::system::System;
 use crate::time::TimeError;
 
 pub use folder::fresh_folder;
+pub use inspect::{CloudReport, inspect};
 pub use snapshot::Snapshot;
 pub use summary::Summary;
 

@@ -95,6 +95,11 @@ fn sampled<const D: usize>(view: &View<'_, D>, w: &Bounds<2>) -> (usize, usize, 
     (width, height, states)
 }
 
+/// Draws the particles near the bodies (plane clouds).
+pub(super) fn write_cloud<const D: usize>(view: &View<'_, D>) -> Result<(), RunError> {
+    if D == 2 { cloud_picture(view, &outlines(view.surface)) } else { Ok(()) }
+}
+
 fn cloud_picture<const D: usize>(view: &View<'_, D>, outlines: &[Vec<Vector<2>>]) -> Result<(), RunError> {
     let cloud = &view.fluid.cloud;
     let flat = |x: &Vector<D>| Vector([x[0], x[1]]);
