@@ -1,9 +1,13 @@
 //! GMRES with right preconditioning (Saad and Schultz 1986), matrix-free.
-use super::sweep::{dot, norm};
+//!
+//! Basis vectors are kept in single precision, sums are made in double: the linear systems of an implicit step are solved to
+//! a few per cent, and the basis is the largest array of a run.
+use super::sweep::{norm, sum};
 
 /// Storage of GMRES, reused between calls.
 pub struct Gmres {
-    basis: Vec<Vec<f64>>,
+    basis: Vec<Vec<f32>>,
+    v: Vec<f64>,
     hessenberg: Vec<Vec<f64>>,
     z: Vec<f64>,
     w: Vec<f64>,
@@ -23,6 +27,7 @@ impl Gmres {
     pub fn new(n: usize, size: usize) -> Self {
         Self {
             basis: vec![vec![0.0; n]; size + 1],
+            v: vec![0.0; n],
             hessenberg: vec![vec![0.0; size + 1]; size],
             z: vec![0.0; n],
             w: vec![0.0; n],
@@ -31,7 +36,7 @@ impl Gmres {
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        8 * self.z.len() * (self.basis.len() + 2)
+        self.z.len() * (4 * self.basis.len() + 8 * 3)
     }
 
     /// Solves A x = b from x = 0 until the residual has fallen to `tolerance`, or the basis is full.
@@ -51,13 +56,14 @@ impl Gmres {
         if start == 0.0 {
             return Solved { iterations: 0, reduction: 0.0 };
         }
-        self.basis[0].iter_mut().zip(b).for_each(|(v, b)| *v = b / start);
+        self.basis[0].iter_mut().zip(b).for_each(|(v, b)| *v = (b / start) as f32);
         let mut g = vec![0.0; size + 1];
         let mut rotations: Vec<(f64, f64)> = Vec::with_capacity(size);
         g[0] = start;
         let mut used = 0;
         for k in 0..size {
-            precondition(&self.basis[k], &mut self.z);
+            self.v.iter_mut().zip(&self.basis[k]).for_each(|(v, b)| *v = f64::from(*b));
+            precondition(&self.v, &mut self.z);
             product(&self.z, &mut self.w);
             self.orthogonalise(k);
             self.rotate(k, &mut rotations, &mut g);
@@ -74,14 +80,14 @@ impl Gmres {
     /// Gram-Schmidt of A z against the basis.
     fn orthogonalise(&mut self, k: usize) {
         for j in 0..=k {
-            let h = dot(&self.w, &self.basis[j]);
+            let h = mixed_dot(&self.w, &self.basis[j]);
             self.hessenberg[k][j] = h;
-            self.w.iter_mut().zip(&self.basis[j]).for_each(|(w, v)| *w -= h * v);
+            self.w.iter_mut().zip(&self.basis[j]).for_each(|(w, v)| *w -= h * f64::from(*v));
         }
         let h = norm(&self.w);
         self.hessenberg[k][k + 1] = h;
         let scale = if h > 0.0 { 1.0 / h } else { 0.0 };
-        self.basis[k + 1].iter_mut().zip(&self.w).for_each(|(v, w)| *v = w * scale);
+        self.basis[k + 1].iter_mut().zip(&self.w).for_each(|(v, w)| *v = (w * scale) as f32);
     }
 
     fn rotate(&mut self, k: usize, rotations: &mut Vec<(f64, f64)>, g: &mut [f64]) {
@@ -107,7 +113,11 @@ impl Gmres {
         }
         self.w.fill(0.0);
         for (y, v) in y.iter().zip(&self.basis) {
-            self.w.iter_mut().zip(v).for_each(|(w, v)| *w += y * v);
+            self.w.iter_mut().zip(v).for_each(|(w, v)| *w += y * f64::from(*v));
         }
     }
+}
+
+fn mixed_dot(a: &[f64], b: &[f32]) -> f64 {
+    sum(a.len(), |i| a[i] * f64::from(b[i]))
 }

@@ -115,7 +115,11 @@ pub(super) fn solver<const D: usize>(
             threshold: scheme.limiter_threshold,
         },
         conservative,
-        wall_rule: match std::env::var("RULE").as_deref() { Ok("0") => WallRule::Enthalpy, Ok("2") => WallRule::Bernoulli, _ => WallRule::Irrotational },
+        wall_rule: match std::env::var("RULE").as_deref() {
+            Ok("0") => WallRule::Enthalpy,
+            Ok("2") => WallRule::Bernoulli,
+            _ => WallRule::Irrotational,
+        },
         far_field: Box::new(Stream::new(case, &centre)),
         held,
         cloud,
@@ -183,7 +187,7 @@ pub(super) fn control(steady: &Steady, dimension: usize) -> Control {
         },
         growth: 2.0,
         tolerance: 0.1,
-        basis: 30,
+        basis: 16,
         group: if dimension == 2 { 4 } else { 8 },
         cycle: Cycle { sweeps: 2, visits: 1, levels: if steady.method == SteadyMethod::LuSgs { 1 } else { 8 } },
     }
