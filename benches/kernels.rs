@@ -2,6 +2,7 @@
 //!
 //!     RAYON_NUM_THREADS=1 cargo bench -p alula
 //!     RAYON_NUM_THREADS=2 cargo bench -p alula -- residual
+#![allow(clippy::unwrap_used, reason = "it may stop anywhere")]
 use std::path::Path;
 
 use alula::case::{Case, read};

@@ -1,4 +1,5 @@
 //! The command as its users meet it: files, exit codes, signals, bad days.
+#![allow(clippy::unwrap_used, reason = "it may stop anywhere")]
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
@@ -96,7 +97,7 @@ fn told(output: &Output) -> String {
 /// A moment that differs from run to run, below `limit` milliseconds.
 fn random_moment(limit: u32) -> Duration {
     let now = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).unwrap();
-    Duration::from_millis(u64::from(now.subsec_nanos() / 1000 % limit))
+    Duration::from_millis(u64::from(now.subsec_micros() % limit))
 }
 
 /// The results of two runs are the same to the last bit; histories up to the seconds they took.
