@@ -2,6 +2,7 @@
 //!
 //!     RAYON_NUM_THREADS=1 cargo bench -p alula
 //!     RAYON_NUM_THREADS=2 cargo bench -p alula -- residual
+#![allow(clippy::unwrap_used, reason = "it may stop anywhere")]
 use std::path::Path;
 
 use alula::case::{Case, read};
@@ -40,7 +41,7 @@ fn solver<const D: usize>() -> (Fluid<D>, Vec<f64>) {
     let (fluid, mut u) = alula::run::build_solver::<D>(&case::<D>(), Path::new("")).unwrap();
     for (x, row) in fluid.cloud.x.iter().zip(u.chunks_exact_mut(D + 2)) {
         let wave = (7.0 * x[0] + 5.0 * x[1]).sin();
-        let velocity = Vector::from_fn(|d| if d == 0 { 0.6 + 0.1 * wave } else { 0.05 * wave });
+        let velocity = Vector::<D>::from_fn(|d| if d == 0 { 0.6 + 0.1 * wave } else { 0.05 * wave });
         let q = Primitive { density: 1.0 + 0.1 * wave, velocity, pressure: (1.0 - 0.1 * wave) / 1.4 };
         fluid.gas.conserved(&q).store(row);
     }

@@ -1,4 +1,6 @@
 //! Observed order on an exact solution.
+#![allow(clippy::unwrap_used, reason = "a test may stop anywhere")]
+
 mod common;
 
 use alula::exact::vortex::IsentropicVortex;

@@ -2,6 +2,7 @@
 //!
 //! The sources are read as text; a cheap parser is enough because `rustfmt` fixes their layout. Generated pages of the book
 //! are compared with what is committed: `ALULA_WRITE=1 cargo test --test tidy` brings them up to date.
+#![allow(clippy::unwrap_used, reason = "it may stop anywhere")]
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -321,10 +322,19 @@ fn coded() -> BTreeMap<usize, Vec<(String, String)>> {
             };
             let item = lines[k..].iter().find(|l| !l.starts_with('#') && !l.starts_with("//")).unwrap();
             let number = number.parse().unwrap_or_else(|_| panic!("{path}: `{line}`"));
-            found.entry(number).or_default().push((path.clone(), name_of(item)));
+            let block = text.lines().take(k).filter(|l| l.starts_with("impl") || *l == "}").last();
+            let owner = block.filter(|l| l.starts_with("impl")).map_or_else(String::new, owner_of);
+            found.entry(number).or_default().push((path.clone(), owner + &name_of(item)));
         }
     }
     found
+}
+
+/// `Type::` of an `impl` line.
+fn owner_of(line: &str) -> String {
+    let name = line.split(" for ").last().unwrap_or_default().trim_start_matches("impl");
+    let name = if name.starts_with('<') { name.split_once("> ").map_or(name, |(_, n)| n) } else { name };
+    name.trim().chars().take_while(|c| c.is_alphanumeric()).collect::<String>() + "::"
 }
 
 /// Name of the item that a line declares.

@@ -2,7 +2,7 @@
 //!
 //! `.vtu` holds particles (one vertex cell each) or any one kind of linear cell, `.vtp` holds a surface, `.pvd` lists the
 //! files of a series with their times. Arrays stand behind the XML in an appended block: little-endian, cut into pieces
-//! of [`BLOCK`] bytes, each compressed with zlib. Per array the block starts with four-word bookkeeping of 64 bits
+//! of `BLOCK` bytes, each compressed with zlib. Per array the block starts with four-word bookkeeping of 64 bits
 //! (number of pieces, size of a piece, size of a shorter last piece, compressed sizes). Format: VTK User's Guide, "VTK
 //! File Formats", XML formats, compressed appended data.
 //!

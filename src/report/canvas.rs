@@ -1,4 +1,4 @@
-//! A sheet of shapes and text that prints itself as SVG or, through [`super::paint`], as PNG.
+//! A sheet of shapes and text that prints itself as SVG or, through `paint`, as PNG.
 //!
 //! Coordinates are pixels, y down. Charts and pictures draw on a canvas once and get both formats.
 use std::fmt::Write as _;

@@ -47,12 +47,12 @@ pub(crate) fn case(text: &str) -> Case {
 
 /// The equations of a case and its state at the start.
 pub(crate) fn solver<const D: usize>(text: &str) -> (Fluid<D>, Vec<f64>) {
-    alula::run::build_solver(&case(text), Path::new("")).unwrap()
+    alula::run::build_solver(&case(text), Path::new("")).unwrap_or_else(|e| panic!("{e}"))
 }
 
 /// Runs `f` on a pool of `n` threads.
 pub(crate) fn with_threads<T: Send>(n: usize, f: impl FnOnce() -> T + Send) -> T {
-    rayon::ThreadPoolBuilder::new().num_threads(n).build().unwrap().install(f)
+    rayon::ThreadPoolBuilder::new().num_threads(n).build().unwrap_or_else(|e| panic!("{e}")).install(f)
 }
 
 /// Largest absolute value; infinite when one is NaN.
