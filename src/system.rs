@@ -5,7 +5,8 @@
 //! particles) is one value, the *frame at (t, u)*. Marching holds one frame; harmonic balance will hold one per instance.
 use crate::math::block_matrix::BlockMatrix;
 
-/// A semi-discrete system dU/dt = R(t, U): the only thing an integrator ever sees.
+/// A semi-discrete system dU/dt = R(t, U), eq. (16): the only thing an integrator ever sees.
+#[doc(alias = "eq16")]
 pub trait System: Sync {
     /// What depends on time but is not evolved.
     type Frame: Clone + Send + Sync;
@@ -32,6 +33,8 @@ pub trait System: Sync {
     fn spectral_radius(&self, frame: &Self::Frame, u: &[f64], work: &mut Self::Work, rate: &mut [f64]);
     /// Sparsity of the linearised system: for each particle the others it depends on, itself left out.
     fn graph(&self) -> (&[u32], &[u32]);
+    /// Consecutive particles that are assembled and swept together: the same for any number of threads.
+    fn parts(&self) -> &[std::ops::Range<usize>];
     /// Fills `matrix` with −∂R/∂U of the first-order scheme, which is what implicit methods are preconditioned with.
     fn linearise(&self, frame: &Self::Frame, u: &[f64], work: &mut Self::Work, matrix: &mut BlockMatrix);
     /// The largest relative change of a positive quantity (density, pressure) that the update `du` makes; infinite if NaN.

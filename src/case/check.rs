@@ -264,7 +264,9 @@ fn one_side(draft: &mut Draft<'_>, side: &str, axis: usize, d: usize) {
         return;
     }
     for kind in ["symmetry", "periodic"] {
-        if is(draft, side, kind) && !draft.given("cloud.domain") {
+        // around bodies a plane of symmetry passes through the origin of its axis
+        let placed = draft.given("cloud.domain") || (kind == "symmetry" && draft.given("body"));
+        if is(draft, side, kind) && !placed {
             let hint = "add `domain = { min = [...], max = [...] }` to `[cloud]`";
             draft.fail(side, format!("a {kind} side needs `cloud.domain`: it must lie at a definite place")).hint(hint);
         }

@@ -209,23 +209,17 @@ static CLOUD: Table = Table::of(&[
     Field::defaulted(
         "curvature",
         Kind::Number(Range { min: 0.0, max: 1.0, closed: false }),
-        Absent::Number(0.25),
+        Absent::Number(0.125),
         "Spacing is at most this fraction of the local radius of curvature.",
     ),
     Field::defaulted(
         "curvature_levels",
         LEVELS,
-        Absent::Integer(2),
+        Absent::Integer(3),
         "Greatest number of extra levels that curvature may ask for.",
     ),
     Field::defaulted("box", Kind::Tables(&REFINE), Absent::Filled, "A box with its own spacing."),
     Field::optional("wake", Kind::Table(&WAKE), "no refinement", "Refinement behind the bodies along the free stream."),
-    Field::defaulted(
-        "wall_layers",
-        Kind::Integer(0, 64),
-        Absent::Integer(0),
-        "Body-fitted layers of particles next to the wall (0: none).",
-    ),
     Field::defaulted(
         "blank",
         Kind::Number(Range::between(0.3, 0.6)),

@@ -191,17 +191,15 @@ pub struct Cloud {
     /// Extra levels of refinement at sharp edges; default 2.
     pub edge_levels: u32,
     /// Spacing is at most this fraction of the local radius of curvature (never finer than `curvature_levels`);
-    /// default 0.25.
+    /// default 0.125.
     pub curvature: f64,
-    /// Greatest number of extra levels that curvature may ask for; default 2.
+    /// Greatest number of extra levels that curvature may ask for; default 3.
     pub curvature_levels: u32,
     /// Boxes with their own spacing.
     #[serde(default, rename = "box")]
     pub boxes: Vec<RefineBox>,
     /// Refinement behind the bodies along the free stream.
     pub wake: Option<Wake>,
-    /// Body-fitted layers of particles next to the wall; default 0 (none).
-    pub wall_layers: u32,
     /// Fluid particles nearer to the wall than this fraction of the local spacing are left out; default 0.4.
     pub blank: f64,
     /// Radius of the clouds near the wall in local spacings; default 1.6.

@@ -36,7 +36,7 @@ fn defaults_are_the_documented_ones() {
     assert_eq!((case.flow.gamma, case.flow.gas_constant, case.flow.alpha), (1.4, 287.05, Angle(0.0)));
     let c = &case.cloud;
     assert_eq!((c.layers, c.edge_levels, c.curvature, c.curvature_levels), (6.0, 2, 0.25, 2));
-    assert_eq!((c.blank, c.radius, c.jitter, c.wall_layers), (0.4, 1.6, 0.0, 0));
+    assert_eq!((c.blank, c.radius, c.jitter), (0.4, 1.6, 0.0));
     assert_eq!(case.scheme, Scheme::default());
     assert_eq!(case.time, Temporal::default());
     assert_eq!(case.adapt, Adapt::default());

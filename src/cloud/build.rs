@@ -1,12 +1,11 @@
 //! From geometry to a finished cloud.
 use super::fill::Particles;
 use super::layout::{Layout, background};
-use super::neighbours::Search;
+use super::neighbours::{Clouds, Search};
 use super::sources::Source;
-use super::{Cloud, CloudError, Outer, Transform};
-use crate::case::{Case, Side};
+use super::{Cloud, CloudError, Outer};
+use crate::case::Case;
 use crate::geometry::Surface;
-use crate::math::Vector;
 
 /// Height of the volume that an interface particle stands for, in spacings.
 const WALL_HEIGHT: f64 = 0.45;
@@ -16,13 +15,20 @@ impl<const D: usize> Cloud<D> {
     pub fn build(case: &Case, surface: Option<&Surface<D>>, extra: &[Source<D>]) -> Result<Self, CloudError> {
         let layout = Layout::new(case, surface)?;
         let tree = background(case, &layout, surface, extra);
-        let particles = Particles::fill(tree, &layout, &case.cloud, surface);
+        let transforms = layout.transforms();
+        let mut particles = Particles::fill(tree, &layout, &transforms, &case.cloud, surface);
         if particles.n_fluid == 0 {
             return Err(CloudError::Empty);
         }
-        let transforms = transforms(&layout);
-        let (neighbours, wall_clouds, images) =
-            Search::new(&particles, surface, &transforms, case.cloud.radius).clouds();
+        let found = Search::new(&particles, surface, &transforms, case.cloud.radius).clouds()?;
+        let Clouds { neighbours, wall_clouds, images, repair, n_crevice } = found;
+        repair.moved.iter().for_each(|(i, place)| particles.x[*i as usize] = *place);
+        let mut notes = repair.notes();
+        if n_crevice > 0 {
+            notes.push(format!(
+                "{n_crevice} interface particles lie in crevices and take the state of the nearest fluid"
+            ));
+        }
         let outer = outer_particles(&particles);
         let mut cloud = Self {
             volume: volumes(&particles),
@@ -38,7 +44,8 @@ impl<const D: usize> Cloud<D> {
             wall_clouds,
             leaves: particles.leaves,
             tree: particles.tree,
-            notes: Vec::new(),
+            first_order: repair.first_order,
+            notes,
         };
         cloud.append_images();
         Ok(cloud)
@@ -61,34 +68,6 @@ fn volumes<const D: usize>(particles: &Particles<D>) -> Vec<f64> {
         volume[i] = WALL_HEIGHT * particles.spacing[i] * w.area.norm();
     }
     volume
-}
-
-/// Every product of reflections and shifts that the sides of the domain call for.
-fn transforms<const D: usize>(layout: &Layout<D>) -> Vec<Transform<D>> {
-    let identity = Transform { sign: Vector::splat(1.0), offset: Vector::ZERO };
-    let mut all = vec![identity];
-    for d in 0..D {
-        let low = layout.forest.origin[d];
-        let length = f64::from(layout.forest.roots[d]) * layout.forest.root_size;
-        let mut along = Vec::new();
-        for (end, plane) in [(0, low), (1, low + length)] {
-            match layout.sides[d][end] {
-                Side::Symmetry => along.push((-1.0, 2.0 * plane)),
-                Side::Periodic => along.push((1.0, if end == 0 { -length } else { length })),
-                _ => {}
-            }
-        }
-        for base in all.clone() {
-            for (sign, offset) in &along {
-                let mut t = base;
-                t.sign[d] = *sign;
-                t.offset[d] = *offset;
-                all.push(t);
-            }
-        }
-    }
-    all.remove(0);
-    all
 }
 
 /// Outer particles with the fluid particle that an outflow copies: the nearest one straight inward.

@@ -2,15 +2,15 @@
 //!
 //! A fluid particle sits in the middle of every leaf that lies outside the bodies and not nearer to a surface, or to an
 //! interface particle, than a fraction of its size. The leaves along the sides of the domain carry the outer particles.
-use super::Interface;
 use super::interface::{Placed, place};
 use super::layout::Layout;
 use super::neighbours::NEAR;
 use super::tree::{Leaf, MAX_LEVEL, Tree};
+use super::{Interface, Transform};
 use crate::case::{Cloud as Spec, Side};
 use crate::geometry::Surface;
 use crate::math::hilbert::hilbert_index;
-use crate::math::sweep::sweep;
+use crate::math::sweep::{order_by_key, sweep};
 use crate::math::{Bounds, Vector};
 
 /// Interface particles keep this distance, in spacings, from fluid particles.
@@ -58,13 +58,20 @@ impl LeafIndex {
 
 impl<const D: usize> Particles<D> {
     /// Places all particles of a background.
-    pub fn fill(tree: Tree<D>, layout: &Layout<D>, spec: &Spec, surface: Option<&Surface<D>>) -> Self {
-        let placed = surface.map(|s| place(s, &tree)).unwrap_or_default();
+    pub fn fill(
+        tree: Tree<D>,
+        layout: &Layout<D>,
+        transforms: &[Transform<D>],
+        spec: &Spec,
+        surface: Option<&Surface<D>>,
+    ) -> Self {
+        let placed = surface.map(|s| place(s, &tree, &layout.planes())).unwrap_or_default();
         let mut fluid = Vec::new();
         let mut outer = Vec::new();
         let leaves: Vec<Leaf<D>> = tree.leaves().collect();
         let mut distance = vec![None; leaves.len()];
-        sweep(&mut distance, |k| wall_distance(&leaves[k], spec, surface));
+        let walls = Walls { surface, domain: tree.bounds(), back: transforms.iter().map(Transform::inverse).collect() };
+        sweep(&mut distance, |k| walls.distance(&leaves[k], spec.blank));
         for (leaf, distance) in leaves.iter().zip(&distance) {
             let Some(distance) = distance else { continue };
             match side_of(leaf, &tree.bounds(), &layout.sides) {
@@ -73,9 +80,8 @@ impl<const D: usize> Particles<D> {
             }
         }
         blank_near_interface(&tree, &placed, &mut fluid);
-        let key = |leaf: &Leaf<D>| curve_position(&tree, leaf);
-        fluid.sort_by_cached_key(|(leaf, _)| key(leaf));
-        outer.sort_by_cached_key(|(leaf, _)| key(leaf));
+        let fluid = along_curve(&tree, &fluid);
+        let outer = along_curve(&tree, &outer);
         Self::assemble(tree, layout, spec.jitter, (fluid, placed, outer))
     }
 
@@ -173,14 +179,29 @@ impl<const D: usize> Particles<D> {
     }
 }
 
-/// Distance from a leaf to the surface, infinite when far; `None` when the leaf is to be left empty.
-fn wall_distance<const D: usize>(leaf: &Leaf<D>, spec: &Spec, surface: Option<&Surface<D>>) -> Option<f64> {
-    let Some(surface) = surface else { return Some(f64::INFINITY) };
-    let near = surface.nearest(&leaf.centre, (NEAR + 1.0) * leaf.size);
-    if near.as_ref().is_some_and(|n| n.distance < spec.blank * leaf.size) || surface.inside(&leaf.centre) {
-        return None;
+/// The surface and its images beyond the sides of the domain.
+struct Walls<'a, const D: usize> {
+    surface: Option<&'a Surface<D>>,
+    domain: Bounds<D>,
+    back: Vec<Transform<D>>,
+}
+
+impl<const D: usize> Walls<'_, D> {
+    /// Distance from a leaf to the surface, infinite when far; `None` when the leaf is to be left empty.
+    fn distance(&self, leaf: &Leaf<D>, blank: f64) -> Option<f64> {
+        let Some(surface) = self.surface else { return Some(f64::INFINITY) };
+        let reach = (NEAR + 1.0) * leaf.size;
+        let images = self.back.iter().map(|t| t.point(&leaf.centre));
+        let images = images.filter(|x| self.domain.distance_squared(x) <= reach * reach);
+        let mut distance = f64::INFINITY;
+        for x in std::iter::once(leaf.centre).chain(images) {
+            distance = surface.nearest(&x, reach.min(distance)).map_or(distance, |n| n.distance);
+            if distance < blank * leaf.size || surface.inside(&x) {
+                return None;
+            }
+        }
+        Some(distance)
     }
-    Some(near.map_or(f64::INFINITY, |n| n.distance))
 }
 
 /// Drops fluid leaves whose centre is too near to an interface particle.
@@ -211,6 +232,12 @@ fn side_of<const D: usize>(leaf: &Leaf<D>, bounds: &Bounds<D>, sides: &[[Side; 2
         }
     }
     found
+}
+
+/// Leaves, with what belongs to them, in the order of a space-filling curve.
+fn along_curve<const D: usize, T: Copy + Sync>(tree: &Tree<D>, leaves: &[(Leaf<D>, T)]) -> Vec<(Leaf<D>, T)> {
+    let order = order_by_key(leaves.len(), |k| curve_position(tree, &leaves[k].0));
+    order.into_iter().map(|k| leaves[k as usize]).collect()
 }
 
 fn curve_position<const D: usize>(tree: &Tree<D>, leaf: &Leaf<D>) -> u64 {

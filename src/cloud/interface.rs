@@ -1,22 +1,35 @@
 //! Interface particles: where the surface meets the cloud.
 //!
+//! Surfaces end where the domain does: a plane of symmetry cuts a body in halves of which one is filled.
+//!
 //! In 2-D they follow the outline at a spacing proportional to the local size of the background, half a spacing away from
 //! sharp edges; area vectors are chords between the midpoints of neighbours, so that they sum to zero exactly. In 3-D they
 //! are picked from dense samples of the surface (no two nearer than 0.78 h) and moved to the middle of what they stand for
 //! (Lloyd 1982, eight rounds); their area vectors are sums of the samples' and close as well as the surface does.
+use std::collections::BTreeMap;
+
 use super::Interface;
+use super::grid::Grid;
 use super::tree::Tree;
-use crate::geometry::Surface;
+use crate::geometry::{Chain, Surface};
+use crate::math::sweep::{order_by_key, sweep};
 use crate::math::{Bounds, Vector};
 
 /// Spacing along the outline in cells of the background (2-D).
 const OUTLINE_SPACING: f64 = 0.85;
+/// Longest stretch of outline, in cells, over which the spacing counts as constant.
+const LONGEST_STRIP: f64 = 0.5;
 /// Steepest growth of the spacing along the outline.
 const OUTLINE_GROWTH: f64 = 0.25;
 /// Smallest distance between picked samples in cells of the background (3-D).
 const PICK_SPACING: f64 = 0.78;
 /// Size of the samples in cells (3-D).
-const SAMPLE_SIZE: f64 = 0.3;
+const SAMPLE_SIZE: f64 = 0.5;
+/// Radius of the neighbourhood in which a sample looks for its owner, and of the fit of the curvature, in cells: a cell of
+/// Lloyd's partition has a radius below 0.8.
+const AROUND: f64 = 2.0;
+/// Samples nearer to the side of the domain, in cells, are left out: the cap that closes half a body is no wall.
+const ON_PLANE: f64 = 1e-6;
 /// Rounds of Lloyd's iteration.
 const LLOYD_ROUNDS: usize = 8;
 /// Samples whose normals differ more (cosine) belong to different particles.
@@ -35,49 +48,128 @@ pub struct Placed<const D: usize> {
     pub next: Vec<u32>,
 }
 
-/// Places interface particles on every body.
-pub fn place<const D: usize>(surface: &Surface<D>, tree: &Tree<D>) -> Placed<D> {
-    if D == 2 { outline(surface, tree) } else { scatter(surface, tree) }
+/// A plane that ends the domain: axis, sign of the outward normal, coordinate.
+pub type Plane = (usize, f64, f64);
+
+/// Places interface particles on every body, as far as it lies inside `planes`.
+pub fn place<const D: usize>(surface: &Surface<D>, tree: &Tree<D>, planes: &[Plane]) -> Placed<D> {
+    if D == 2 { outline(surface, tree, planes) } else { scatter(surface, tree, planes) }
 }
 
 /// 2-D: one smooth piece of outline after the other.
-fn outline<const D: usize>(surface: &Surface<D>, tree: &Tree<D>) -> Placed<D> {
+fn outline<const D: usize>(surface: &Surface<D>, tree: &Tree<D>, planes: &[Plane]) -> Placed<D> {
     let mut placed = Placed::default();
-    for (piece, chain) in surface.chains().iter().enumerate() {
-        outline_piece(surface, tree, chain, piece as u32, &mut placed);
+    let mut piece = 0;
+    for chain in surface.chains() {
+        for (strips, closed) in runs(surface, tree, &chain, planes) {
+            outline_piece(surface, tree, &strips, (piece, closed), &mut placed);
+            piece += 1;
+        }
     }
     placed
 }
 
-/// One piece: `chain` lists its elements in order.
+/// Part of an element of the outline, no longer than half a cell of the background: from one barycentric weight to another.
+#[derive(Clone, Copy, Debug)]
+struct Strip {
+    element: u32,
+    from: f64,
+    to: f64,
+}
+
+impl Strip {
+    fn at<const D: usize>(&self, surface: &Surface<D>, fraction: f64) -> (Vector<D>, Vector<D>) {
+        let f = self.from + fraction * (self.to - self.from);
+        let mut weights = [0.0; D];
+        (weights[0], weights[1]) = (1.0 - f, f);
+        surface.element_point(self.element, &weights)
+    }
+}
+
+/// Strips of a chain between the planes; more than one run where a plane cuts it.
+fn runs<const D: usize>(
+    surface: &Surface<D>,
+    tree: &Tree<D>,
+    chain: &Chain,
+    planes: &[Plane],
+) -> Vec<(Vec<Strip>, bool)> {
+    let mut runs: Vec<Vec<Strip>> = Vec::new();
+    let mut open = false;
+    let mut cut = false;
+    for element in &chain.elements {
+        for strip in strips(surface, tree, *element, planes) {
+            let x = strip.at(surface, 0.5).0;
+            let slack = ON_PLANE * tree.leaf_at(&x).size;
+            let inside = planes.iter().all(|p| p.1 * (x[p.0] - p.2) < -slack);
+            cut |= !inside;
+            match runs.last_mut() {
+                Some(run) if inside && open => run.push(strip),
+                _ if inside => runs.push(vec![strip]),
+                _ => {}
+            }
+            open = inside;
+        }
+    }
+    // the walk around a closed outline began inside a run
+    let starts_inside = runs.first().is_some_and(|r| r[0].element == chain.elements[0] && r[0].from == 0.0);
+    if cut && chain.closed && open && starts_inside && runs.len() > 1 {
+        let first = runs.remove(0);
+        runs.last_mut().into_iter().for_each(|r| r.extend(&first));
+    }
+    runs.into_iter().map(|run| (run, chain.closed && !cut)).collect()
+}
+
+/// Halves an element, after cutting it at the planes, until its parts are short.
+fn strips<const D: usize>(surface: &Surface<D>, tree: &Tree<D>, element: u32, planes: &[Plane]) -> Vec<Strip> {
+    let whole = Strip { element, from: 0.0, to: 1.0 };
+    let (a, b) = (whole.at(surface, 0.0).0, whole.at(surface, 1.0).0);
+    let crossing = planes.iter().map(|p| (p.2 - a[p.0]) / (b[p.0] - a[p.0]));
+    let mut cuts: Vec<f64> = crossing.filter(|f| (1e-9..1.0 - 1e-9).contains(f)).chain([0.0, 1.0]).collect();
+    cuts.sort_by(f64::total_cmp);
+    let length = (b - a).norm();
+    let mut done = Vec::new();
+    let mut stack: Vec<Strip> = cuts.windows(2).rev().map(|w| Strip { element, from: w[0], to: w[1] }).collect();
+    while let Some(strip) = stack.pop() {
+        if (strip.to - strip.from) * length <= LONGEST_STRIP * tree.leaf_at(&strip.at(surface, 0.5).0).size {
+            done.push(strip);
+            continue;
+        }
+        let middle = 0.5 * (strip.from + strip.to);
+        stack.push(Strip { from: middle, ..strip });
+        stack.push(Strip { to: middle, ..strip });
+    }
+    done
+}
+
+/// One piece of outline.
 fn outline_piece<const D: usize>(
     surface: &Surface<D>,
     tree: &Tree<D>,
-    chain: &crate::geometry::Chain,
-    piece: u32,
+    strips: &[Strip],
+    (piece, closed): (u32, bool),
     placed: &mut Placed<D>,
 ) {
-    let lengths: Vec<f64> = chain.elements.iter().map(|e| surface.element_area_vector(*e).norm()).collect();
-    let mut h: Vec<f64> =
-        chain.elements.iter().map(|e| tree.leaf_at(&surface.element_point(*e, &half()).0).size).collect();
-    limit_growth(&mut h, &lengths, chain.closed);
+    let area = |s: &Strip| surface.element_area_vector(s.element).norm() * (s.to - s.from);
+    let lengths: Vec<f64> = strips.iter().map(area).collect();
+    let mut h: Vec<f64> = strips.iter().map(|s| tree.leaf_at(&s.at(surface, 0.5).0).size).collect();
+    limit_growth(&mut h, &lengths, closed);
     let steps: Vec<f64> = lengths.iter().zip(&h).map(|(l, h)| l / (OUTLINE_SPACING * h)).collect();
     let total: f64 = steps.iter().sum();
-    let n = (total.round() as usize).max(if chain.closed { 4 } else { 2 });
-    let walk = Walk { surface, chain, steps: &steps, scale: total / n as f64 };
+    let n = (total.round() as usize).max(if closed { 4 } else { 2 });
+    let mut walk = Walk { surface, strips, steps: &steps, scale: total / n as f64, passed: 0.0, position: 0 };
     let first = placed.x.len() as u32;
-    let mut corner = walk.at(0.0);
+    let mut corner = walk.to(0.0);
     let mut arc = 0.0;
     for k in 0..n {
-        let here = walk.at(k as f64 + 0.5);
-        let end = walk.at(k as f64 + 1.0);
+        let here = walk.to(k as f64 + 0.5);
+        let end = walk.to(k as f64 + 1.0);
         let chord = end.x - corner.x;
         // the fluid lies to the left or right of the walk as the normals say
         let mut area = Vector::ZERO;
         (area[0], area[1]) = (chord[1], -chord[0]);
         let area = if area.dot(&here.normal) >= 0.0 { area } else { -area };
         let curvature = rank_one(&(end.normal - corner.normal), &chord);
-        let element = surface.element(here.element);
+        let element = surface.element(strips[here.position].element);
         let (body, tag) = (element.body, element.tag);
         placed.x.push(here.x);
         placed.spacing.push(h[here.position]);
@@ -93,7 +185,7 @@ fn outline_piece<const D: usize>(
         let last = k + 1 == n;
         placed.next.push(if !last {
             first + k as u32 + 1
-        } else if chain.closed {
+        } else if closed {
             first
         } else {
             u32::MAX
@@ -101,10 +193,6 @@ fn outline_piece<const D: usize>(
         arc += chord.norm();
         corner = end;
     }
-}
-
-fn half<const D: usize>() -> [f64; D] {
-    [1.0 / D as f64; D]
 }
 
 /// The tensor ∂n/∂x that turns the chord into the change of the normal, along the chord only.
@@ -133,39 +221,38 @@ fn limit_growth(h: &mut [f64], lengths: &[f64], closed: bool) {
     }
 }
 
+/// A walk along strips, forward only.
 struct Walk<'a, const D: usize> {
     surface: &'a Surface<D>,
-    chain: &'a crate::geometry::Chain,
+    strips: &'a [Strip],
     steps: &'a [f64],
     scale: f64,
+    passed: f64,
+    position: usize,
 }
 
 struct Stop<const D: usize> {
     x: Vector<D>,
     normal: Vector<D>,
-    element: u32,
     position: usize,
 }
 
 impl<const D: usize> Walk<'_, D> {
     /// The point after `k` particle spacings.
-    fn at(&self, k: f64) -> Stop<D> {
-        let mut rest = k * self.scale;
-        let mut position = 0;
-        while position + 1 < self.steps.len() && rest > self.steps[position] {
-            rest -= self.steps[position];
-            position += 1;
+    fn to(&mut self, k: f64) -> Stop<D> {
+        let target = k * self.scale;
+        while self.position + 1 < self.steps.len() && target - self.passed > self.steps[self.position] {
+            self.passed += self.steps[self.position];
+            self.position += 1;
         }
-        let fraction = (rest / self.steps[position]).clamp(0.0, 1.0);
-        let element = self.chain.elements[position];
-        let mut weights = [0.0; D];
-        (weights[0], weights[1]) = (1.0 - fraction, fraction);
-        let (x, normal) = self.surface.element_point(element, &weights);
-        Stop { x, normal, element, position }
+        let fraction = ((target - self.passed) / self.steps[self.position]).clamp(0.0, 1.0);
+        let (x, normal) = self.strips[self.position].at(self.surface, fraction);
+        Stop { x, normal, position: self.position }
     }
 }
 
 /// A small piece of surface.
+#[derive(Clone, Copy)]
 struct Sample<const D: usize> {
     x: Vector<D>,
     normal: Vector<D>,
@@ -175,69 +262,107 @@ struct Sample<const D: usize> {
 }
 
 /// 3-D: dense samples, greedy pick, Lloyd.
-fn scatter<const D: usize>(surface: &Surface<D>, tree: &Tree<D>) -> Placed<D> {
+fn scatter<const D: usize>(surface: &Surface<D>, tree: &Tree<D>, planes: &[Plane]) -> Placed<D> {
     let mut samples = Vec::new();
     surface.for_each_piece(
         |x| SAMPLE_SIZE * tree.leaf_at(x).size,
         |x, normal, area, element| {
-            samples.push(Sample { x: *x, normal: *normal, area: *area, spacing: tree.leaf_at(x).size, element });
+            let spacing = tree.leaf_at(x).size;
+            if planes.iter().all(|p| p.1 * (x[p.0] - p.2) < -ON_PLANE * spacing) {
+                samples.push(Sample { x: *x, normal: *normal, area: *area, spacing, element });
+            }
         },
     );
-    sort_along_curve(&mut samples);
-    let mut chosen = pick(&samples);
-    let mut owner = Vec::new();
+    let samples = sort_along_curve(samples);
+    let (mut chosen, mut owner) = pick(&samples);
     for _ in 0..LLOYD_ROUNDS {
-        owner = assign(&samples, &chosen);
+        assign(&samples, &chosen, &mut owner);
         recentre(&samples, &owner, &mut chosen);
     }
-    owner = if chosen.is_empty() { owner } else { assign(&samples, &chosen) };
+    assign(&samples, &chosen, &mut owner);
     gather(surface, &samples, &chosen, &owner)
 }
 
-fn sort_along_curve<const D: usize>(samples: &mut [Sample<D>]) {
+fn sort_along_curve<const D: usize>(samples: Vec<Sample<D>>) -> Vec<Sample<D>> {
     let bounds = Bounds::around(samples.iter().map(|s| &s.x));
     let scale = f64::from(1u32 << 20) / (bounds.extent().max_abs() * 1.0001);
     let cell = |s: &Sample<D>| std::array::from_fn::<u32, D, _>(|d| ((s.x[d] - bounds.min[d]) * scale) as u32);
-    samples.sort_by_cached_key(|s| (crate::math::hilbert::hilbert_index(cell(s), 20), s.element));
+    let order = order_by_key(samples.len(), |k| crate::math::hilbert::hilbert_index(cell(&samples[k]), 20));
+    order.into_iter().map(|k| samples[k as usize]).collect()
 }
 
-/// Samples that keep `PICK_SPACING` between them, first come first served.
-fn pick<const D: usize>(samples: &[Sample<D>]) -> Vec<usize> {
-    let mut grid = Grid::new(samples.iter().fold(0.0f64, |m, s| m.max(s.spacing)));
+/// Samples that keep `PICK_SPACING` between them, first come first served, and for every sample the one that is in its way.
+fn pick<const D: usize>(samples: &[Sample<D>]) -> (Vec<usize>, Vec<u32>) {
+    // one grid for every spacing, so that bins fit all queries
+    let mut grids: BTreeMap<u64, Grid<D>> = BTreeMap::new();
+    for s in samples {
+        grids.entry(s.spacing.to_bits()).or_insert_with(|| Grid::new(2.0 * PICK_SPACING * s.spacing));
+    }
     let mut chosen: Vec<usize> = Vec::new();
+    let mut owner = vec![0; samples.len()];
     for (k, s) in samples.iter().enumerate() {
         let r = PICK_SPACING * s.spacing;
-        let mut free = true;
-        grid.near(&s.x, |j| {
+        let mut best = (r * r, u32::MAX);
+        grids[&s.spacing.to_bits()].near(&s.x, r, |j| {
             let o = &samples[chosen[j as usize]];
-            free &= (o.x - s.x).norm_squared() > r * r || o.normal.dot(&s.normal) < SAME_SIDE;
+            let d = (o.x - s.x).norm_squared();
+            if d <= best.0 && o.normal.dot(&s.normal) >= SAME_SIDE {
+                best = (d, j);
+            }
         });
-        if free {
-            grid.insert(&s.x, chosen.len() as u32);
+        owner[k] = best.1;
+        if best.1 == u32::MAX {
+            owner[k] = chosen.len() as u32;
+            grids.values_mut().for_each(|g| g.insert(&s.x, chosen.len() as u32));
             chosen.push(k);
         }
     }
-    chosen
+    (chosen, owner)
 }
 
-/// The chosen sample nearest to each sample, on the same side of thin bodies.
-fn assign<const D: usize>(samples: &[Sample<D>], chosen: &[usize]) -> Vec<u32> {
-    let mut grid = Grid::new(samples.iter().fold(0.0f64, |m, s| m.max(s.spacing)));
-    chosen.iter().enumerate().for_each(|(j, k)| grid.insert(&samples[*k].x, j as u32));
-    let mut owner = vec![0u32; samples.len()];
-    crate::math::sweep::sweep(&mut owner, |k| {
+/// Makes `owner` the chosen sample nearest to each sample, on the same side of thin bodies: its owner so far or one of the
+/// others around that.
+fn assign<const D: usize>(samples: &[Sample<D>], chosen: &[usize], owner: &mut [u32]) {
+    let around = around(samples, chosen);
+    let old = owner.to_vec();
+    sweep(owner, |k| {
         let s = &samples[k];
-        let mut best = (f64::INFINITY, 0);
-        grid.near(&s.x, |j| {
-            let o = &samples[chosen[j as usize]];
+        let mut best = (f64::INFINITY, old[k]);
+        for j in std::iter::once(&old[k]).chain(&around[old[k] as usize]) {
+            let o = &samples[chosen[*j as usize]];
             let r = (o.x - s.x).norm_squared();
-            if o.normal.dot(&s.normal) >= SAME_SIDE && (r, j) < best {
-                best = (r, j);
+            if o.normal.dot(&s.normal) >= SAME_SIDE && (r, *j) < best {
+                best = (r, *j);
             }
-        });
+        }
         best.1
     });
-    owner
+}
+
+/// For each chosen sample the others within `AROUND` spacings of it.
+fn around<const D: usize>(samples: &[Sample<D>], chosen: &[usize]) -> Vec<Vec<u32>> {
+    let mut grids: BTreeMap<u64, Grid<D>> = BTreeMap::new();
+    for k in chosen {
+        let s = &samples[*k];
+        grids.entry(s.spacing.to_bits()).or_insert_with(|| Grid::new(AROUND * s.spacing));
+    }
+    for (k, j) in chosen.iter().zip(0..) {
+        grids.values_mut().for_each(|g| g.insert(&samples[*k].x, j));
+    }
+    let mut around = vec![Vec::new(); chosen.len()];
+    sweep(&mut around, |j| {
+        let s = &samples[chosen[j]];
+        let r = AROUND * s.spacing;
+        let mut list = Vec::new();
+        grids[&s.spacing.to_bits()].near(&s.x, r, |m| {
+            if m as usize != j && (samples[chosen[m as usize]].x - s.x).norm_squared() < r * r {
+                list.push(m);
+            }
+        });
+        list.sort_unstable();
+        list
+    });
+    around
 }
 
 /// Moves each chosen sample to the one nearest to the centre of its set.
@@ -263,23 +388,20 @@ fn gather<const D: usize>(surface: &Surface<D>, samples: &[Sample<D>], chosen: &
     let mut placed = Placed::default();
     let mut area = vec![Vector::<D>::ZERO; chosen.len()];
     samples.iter().zip(owner).for_each(|(s, o)| area[*o as usize] += s.area);
-    let mut grid = Grid::new(samples.iter().fold(0.0f64, |m, s| m.max(s.spacing)) * 1.5);
-    chosen.iter().enumerate().for_each(|(j, k)| grid.insert(&samples[*k].x, j as u32));
+    let around = around(samples, chosen);
+    let mut curvature = vec![[Vector::ZERO; D]; chosen.len()];
+    sweep(&mut curvature, |j| {
+        let s = &samples[chosen[j]];
+        let others = around[j].iter().map(|m| &samples[chosen[*m as usize]]).filter(|o| o.normal.dot(&s.normal) > 0.5);
+        shape_operator(&s.normal, &others.map(|o| (o.x - s.x, o.normal - s.normal)).collect::<Vec<_>>())
+    });
     for (j, k) in chosen.iter().enumerate() {
         let s = &samples[*k];
         let element = surface.element(s.element);
-        let mut around = Vec::new();
-        grid.near(&s.x, |m| {
-            let o = &samples[chosen[m as usize]];
-            let d = o.x - s.x;
-            if m as usize != j && d.norm() < 2.0 * s.spacing && o.normal.dot(&s.normal) > 0.5 {
-                around.push((d, o.normal - s.normal));
-            }
-        });
-        let curvature = shape_operator(&s.normal, &around);
         placed.x.push(s.x);
         placed.spacing.push(s.spacing);
         let (body, tag) = (element.body, element.tag);
+        let curvature = curvature[j];
         placed.interface.push(Interface { normal: s.normal, area: area[j], curvature, body, tag, piece: 0, arc: 0.0 });
         placed.next.push(u32::MAX);
     }
@@ -303,34 +425,4 @@ fn shape_operator<const D: usize>(normal: &Vector<D>, around: &[(Vector<D>, Vect
         (0..D).for_each(|r| k[r] += *w * c[r]);
     }
     k
-}
-
-/// Points in square bins.
-struct Grid {
-    size: f64,
-    bins: std::collections::HashMap<[i32; 3], Vec<u32>>,
-}
-
-impl Grid {
-    fn new(size: f64) -> Self {
-        Self { size, bins: std::collections::HashMap::new() }
-    }
-
-    fn bin<const D: usize>(&self, x: &Vector<D>) -> [i32; 3] {
-        x.to_3d().map(|c| (c / self.size).floor() as i32)
-    }
-
-    fn insert<const D: usize>(&mut self, x: &Vector<D>, k: u32) {
-        let bin = self.bin(x);
-        self.bins.entry(bin).or_default().push(k);
-    }
-
-    /// Every point in the bins around `x`.
-    fn near<const D: usize>(&self, x: &Vector<D>, mut f: impl FnMut(u32)) {
-        let bin = self.bin(x);
-        for code in 0..27 {
-            let b = [bin[0] + code % 3 - 1, bin[1] + code / 3 % 3 - 1, bin[2] + code / 9 - 1];
-            self.bins.get(&b).into_iter().flatten().for_each(|k| f(*k));
-        }
-    }
 }

@@ -1,7 +1,7 @@
 //! From the case to the background: domain, levels, sources of refinement.
-use super::CloudError;
 use super::sources::{Source, SourceBox, Sources};
 use super::tree::{Forest, Tree};
+use super::{CloudError, Transform};
 use crate::case::{Case, Side};
 use crate::geometry::Surface;
 use crate::math::{Bounds, Vector};
@@ -35,6 +35,42 @@ impl<const D: usize> Layout<D> {
             (None, None) => return Err(CloudError::Layout("a case without bodies needs `cloud.domain`".into())),
         };
         Ok(Self { forest, sides })
+    }
+
+    /// Sides that end the domain: axis, sign of the outward normal, coordinate.
+    pub fn planes(&self) -> Vec<(usize, f64, f64)> {
+        let low = |d: usize| self.forest.origin[d];
+        let high = |d: usize| low(d) + f64::from(self.forest.roots[d]) * self.forest.root_size;
+        let closed = (0..D).filter(|d| self.sides[*d][0] != Side::Periodic);
+        closed.flat_map(|d| [(d, -1.0, low(d)), (d, 1.0, high(d))]).collect()
+    }
+
+    /// Every product of reflections and shifts that the sides of the domain call for.
+    pub fn transforms(&self) -> Vec<Transform<D>> {
+        let identity = Transform { sign: Vector::splat(1.0), offset: Vector::ZERO };
+        let mut all = vec![identity];
+        for d in 0..D {
+            let low = self.forest.origin[d];
+            let length = f64::from(self.forest.roots[d]) * self.forest.root_size;
+            let mut along = Vec::new();
+            for (end, plane) in [(0, low), (1, low + length)] {
+                match self.sides[d][end] {
+                    Side::Symmetry => along.push((-1.0, 2.0 * plane)),
+                    Side::Periodic => along.push((1.0, if end == 0 { -length } else { length })),
+                    _ => {}
+                }
+            }
+            for base in all.clone() {
+                for (sign, offset) in &along {
+                    let mut t = base;
+                    t.sign[d] = *sign;
+                    t.offset[d] = *offset;
+                    all.push(t);
+                }
+            }
+        }
+        all.remove(0);
+        all
     }
 }
 

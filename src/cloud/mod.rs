@@ -5,13 +5,18 @@
 //! periodic sides. Only fluid particles evolve; the state of the others follows from theirs.
 pub mod build;
 pub mod conservative;
+pub mod doctor;
 pub mod fill;
+pub mod grid;
 pub mod interface;
 pub mod layout;
 mod multipliers;
 pub mod neighbours;
 pub mod operators;
+pub mod repair;
 pub mod sources;
+#[cfg(test)]
+mod tests;
 pub mod tree;
 
 use std::ops::Range;
@@ -19,6 +24,7 @@ use std::ops::Range;
 use crate::case::Side;
 use crate::math::Vector;
 
+pub use doctor::Diagnosis;
 pub use layout::Layout;
 pub use neighbours::Neighbours;
 pub use operators::{Edge, Operators};
@@ -72,6 +78,12 @@ impl<const D: usize> Transform<D> {
         Vector::from_fn(|d| self.sign[d] * v[d])
     }
 
+    /// True when this transform undoes another, up to round-off.
+    pub fn undoes(&self, other: &Self) -> bool {
+        let back = other.inverse();
+        self.sign == back.sign && (self.offset - back.offset).max_abs() <= 1e-9 * back.offset.max_abs()
+    }
+
     /// The transform that undoes this one.
     pub fn inverse(&self) -> Self {
         Self { sign: self.sign, offset: Vector::from_fn(|d| -self.sign[d] * self.offset[d]) }
@@ -114,6 +126,8 @@ pub struct Cloud<const D: usize> {
     pub wall_clouds: Neighbours,
     /// Which particles sit in which leaf of the background.
     pub leaves: fill::LeafIndex,
+    /// Particles, in ascending order, whose reconstruction stays first order: too few neighbours around them.
+    pub first_order: Vec<u32>,
     /// The background.
     pub tree: tree::Tree<D>,
     /// What had to be repaired, in words.

@@ -3,7 +3,7 @@
 //! The system is symmetric and positive (semi-definite, but consistent, in a domain without open sides); its diagonal
 //! blocks, one a particle, are factorised once and serve as preconditioner.
 use crate::math::Vector;
-use crate::math::sweep::{sum, sweep, sweep_each};
+use crate::math::sweep::{sum, sweep, sweep_slots};
 
 /// Most iterations of one solve.
 const MOST_ITERATIONS: usize = 4000;
@@ -98,7 +98,7 @@ pub(super) fn conjugate_gradients<const D: usize>(
 
 /// x[i] = f(i, x[i]).
 fn update<T: Send>(x: &mut [T], f: impl Fn(usize, &T) -> T + Sync) {
-    sweep_each(x, |i, x| *x = f(i, x));
+    sweep_slots(x, |i, x| *x = f(i, x));
 }
 
 /// Cholesky factor in the lower triangle and its transpose in the upper one, the diagonal inverted; directions without

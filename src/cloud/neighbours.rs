@@ -6,9 +6,10 @@
 //! segment that crosses a surface joins nothing, an interface particle sees only what lies in front of it, and in 2-D it
 //! sees of its own kind just the two neighbours along the outline, none across a sharp edge.
 use super::fill::Particles;
-use super::{Image, Transform};
+use super::repair::Repair;
+use super::{CloudError, Image, Transform};
 use crate::geometry::Surface;
-use crate::math::sweep::sweep;
+use crate::math::sweep::{CHUNK, sweep_each};
 use crate::math::{Bounds, Vector};
 
 /// Pairs with a member nearer than this many spacings to a wall follow the ball rule.
@@ -21,6 +22,12 @@ const FACING: f64 = 0.2;
 const LIFT: f64 = 1e-3;
 /// Radius of the fit that gives the state of an interface particle, in spacings: two rings of fluid particles.
 const FIT_REACH: f64 = 3.2;
+/// The same for interface particles in crevices, where that leaves fewer than D + 1.
+const FIT_REACH_WIDE: f64 = 6.4;
+/// How far, in spacings, an interface particle without any fluid in sight looks for the nearest.
+const FIT_REACH_LAST: f64 = 200.0;
+/// Share of the distance to the surface that is surely free.
+const FREE: f64 = 0.99;
 /// Slack with which leaves count as touching, in spacings.
 const TOUCH: f64 = 1e-6;
 
@@ -55,29 +62,100 @@ impl Neighbours {
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
-
-    /// Packs rows.
-    pub fn from_rows(rows: &[Vec<u32>]) -> Self {
-        let mut first = Vec::with_capacity(rows.len() + 1);
-        let mut index = Vec::with_capacity(rows.iter().map(Vec::len).sum());
-        first.push(0);
-        for row in rows {
-            index.extend_from_slice(row);
-            first.push(index.len() as u32);
-        }
-        Self { first, index }
-    }
 }
 
 /// A neighbour before images have numbers: particle and transform (`IDENTITY` for itself).
-type Seen = (u32, u8);
+pub(super) type Seen = (u32, u8);
 const IDENTITY: u8 = u8::MAX;
+
+/// Rows before images have numbers, in chunks of `CHUNK` rows that are filled in parallel.
+pub(super) struct Rows {
+    chunks: Vec<(Vec<u32>, Vec<Seen>)>,
+}
+
+impl Rows {
+    /// Calls `fill(i, list)` for every row; it appends what row `i` sees.
+    fn new(n: usize, fill: impl Fn(usize, &mut Vec<Seen>) + Sync) -> Self {
+        let mut chunks = vec![(Vec::new(), Vec::new()); n.div_ceil(CHUNK)];
+        sweep_each(&mut chunks, |c| {
+            let (mut first, mut list) = (vec![0], Vec::new());
+            for i in c * CHUNK..n.min((c + 1) * CHUNK) {
+                fill(i, &mut list);
+                first.push(list.len() as u32);
+            }
+            (first, list)
+        });
+        Self { chunks }
+    }
+
+    /// What row `i` sees.
+    pub(super) fn of(&self, i: usize) -> &[Seen] {
+        let (first, list) = &self.chunks[i / CHUNK];
+        &list[first[i % CHUNK] as usize..first[i % CHUNK + 1] as usize]
+    }
+
+    /// Everything seen through a transform.
+    fn images(&self) -> impl Iterator<Item = Seen> + '_ {
+        self.chunks.iter().flat_map(|(_, list)| list).filter(|s| s.1 != IDENTITY).copied()
+    }
+
+    /// Final rows: `number` gives the index of what is seen, `extra` holds sorted entries to join rows.
+    fn pack(self, extra: &[(u32, Seen)], number: impl Fn(&Seen) -> u32 + Sync) -> Neighbours {
+        let mut numbered: Vec<(Vec<u32>, Vec<u32>)> = vec![(Vec::new(), Vec::new()); self.chunks.len()];
+        sweep_each(&mut numbered, |c| {
+            let rows = self.chunks[c].0.len() - 1;
+            let (mut counts, mut index) = (Vec::with_capacity(rows), Vec::with_capacity(self.chunks[c].1.len()));
+            for i in c * CHUNK..c * CHUNK + rows {
+                let start = index.len();
+                let own = extra.partition_point(|e| (e.0 as usize) < i)..extra.partition_point(|e| e.0 as usize <= i);
+                index.extend(self.of(i).iter().chain(extra[own].iter().map(|e| &e.1)).map(&number));
+                index[start..].sort_unstable();
+                counts.push((index.len() - start) as u32);
+            }
+            (counts, index)
+        });
+        let mut all = Neighbours { first: vec![0], index: Vec::new() };
+        all.index.reserve_exact(numbered.iter().map(|n| n.1.len()).sum());
+        all.first.reserve_exact(numbered.iter().map(|n| n.0.len()).sum());
+        let mut end = 0;
+        for (counts, index) in numbered {
+            all.index.extend(index);
+            all.first.extend(counts.iter().map(|n| {
+                end += n;
+                end
+            }));
+        }
+        all
+    }
+}
+
+/// What a search finds.
+pub struct Clouds<const D: usize> {
+    /// Clouds of fluid and interface particles.
+    pub neighbours: Neighbours,
+    /// Fluid particles from which the state of each interface particle is fitted.
+    pub wall_clouds: Neighbours,
+    /// Images that either of them sees.
+    pub images: Vec<Image>,
+    /// What had to be repaired.
+    pub repair: Repair<D>,
+    /// Number of interface particles with too little fluid in front of them for an ordinary fit.
+    pub n_crevice: usize,
+}
+
+/// Whether a line of sight is tested.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Sight {
+    Tested,
+    Granted,
+}
 
 /// Search over the particles of a tree.
 pub struct Search<'a, const D: usize> {
     particles: &'a Particles<D>,
     surface: Option<&'a Surface<D>>,
     transforms: &'a [Transform<D>],
+    inverse: Vec<u8>,
     radius: f64,
 }
 
@@ -89,58 +167,124 @@ impl<'a, const D: usize> Search<'a, D> {
         transforms: &'a [Transform<D>],
         radius: f64,
     ) -> Self {
-        Self { particles, surface, transforms, radius }
+        let find = |t: &Transform<D>| transforms.iter().position(|o| o.undoes(t)).map_or(IDENTITY, |k| k as u8);
+        Self { particles, surface, transforms, inverse: transforms.iter().map(find).collect(), radius }
     }
 
-    /// Clouds of all fluid and interface particles, the wider ones from which the state of the interface particles is
-    /// fitted, and the images that either of them sees.
-    pub fn clouds(&self) -> (Neighbours, Neighbours, Vec<Image>) {
-        let n_rows = self.particles.n_rows();
-        let mut rows: Vec<Vec<Seen>> = vec![Vec::new(); n_rows + self.particles.interface.len()];
-        sweep(&mut rows, |i| {
-            if i < n_rows { self.cloud_of(i) } else { self.fluid_in_front(i - n_rows + self.particles.n_fluid) }
-        });
-        let mut images: Vec<Seen> = rows.iter().flatten().filter(|s| s.1 != IDENTITY).copied().collect();
+    /// The particles searched.
+    pub(super) fn particles(&self) -> &Particles<D> {
+        self.particles
+    }
+
+    /// Clouds of all fluid and interface particles, repaired where needed.
+    pub fn clouds(&self) -> Result<Clouds<D>, CloudError> {
+        let p = self.particles;
+        let rows = self.mutual(&Rows::new(p.n_rows(), |i, list| self.cloud_of(i, list)));
+        let walls = Rows::new(p.interface.len(), |w, list| self.fluid_in_front(w + p.n_fluid, list));
+        let mut repair = Repair::of(self, &rows);
+        let blind = (0..p.interface.len()).filter(|w| walls.of(*w).is_empty());
+        repair.refused.extend(
+            blind.map(|w| format!("interface particle at {:?} has no fluid in front of it", p.x[p.n_fluid + w].0)),
+        );
+        if !repair.refused.is_empty() {
+            return Err(CloudError::Quality(repair.refused));
+        }
+        let extra = &repair.extra;
+        let mut images: Vec<Seen> =
+            rows.images().chain(walls.images()).chain(extra.iter().map(|e| e.1).filter(|s| s.1 != IDENTITY)).collect();
         images.sort_unstable();
         images.dedup();
-        let first_image = self.particles.x.len() as u32;
-        let mut numbered: Vec<Vec<u32>> = vec![Vec::new(); rows.len()];
-        sweep(&mut numbered, |i| {
-            let number = |s: &Seen| match s.1 {
-                IDENTITY => s.0,
-                _ => first_image + images.binary_search(s).unwrap_or(0) as u32,
-            };
-            let mut row: Vec<u32> = rows[i].iter().map(number).collect();
-            row.sort_unstable();
-            row
-        });
+        let first_image = p.x.len() as u32;
+        let number = |s: &Seen| match s.1 {
+            IDENTITY => s.0,
+            _ => first_image + images.binary_search(s).unwrap_or(0) as u32,
+        };
+        let n_crevice = (0..p.interface.len()).filter(|w| walls.of(*w).len() <= D).count();
+        let (neighbours, wall_clouds) = (rows.pack(extra, number), walls.pack(&[], number));
         let images = images.iter().map(|s| Image { source: s.0, transform: s.1 }).collect();
-        (Neighbours::from_rows(&numbered[..n_rows]), Neighbours::from_rows(&numbered[n_rows..]), images)
+        Ok(Clouds { neighbours, wall_clouds, images, repair, n_crevice })
     }
 
-    fn cloud_of(&self, i: usize) -> Vec<Seen> {
-        let mut row = Vec::with_capacity(if D == 2 { 12 } else { 32 });
+    /// Drops what does not see back: lines of sight are tested at one end only, and round-off, or an abrupt change of
+    /// spacing, can decide otherwise at the other. Pairs of the regular background cannot disagree.
+    fn mutual(&self, rows: &Rows) -> Rows {
+        let p = self.particles;
+        Rows::new(p.n_rows(), |i, list| {
+            let near = p.is_interface(i) || self.near(i);
+            let agreed = |s: &&Seen| {
+                let doubtful = near || s.1 != IDENTITY || p.is_interface(s.0 as usize);
+                !doubtful || self.seen_from(i, **s).is_none_or(|(k, back)| rows.of(k as usize).contains(&back))
+            };
+            list.extend(rows.of(i).iter().filter(agreed));
+        })
+    }
+
+    /// The entry that particle `i` is in the row of what it sees, if that has one.
+    pub(super) fn seen_from(&self, i: usize, s: Seen) -> Option<(u32, Seen)> {
+        let back = if s.1 == IDENTITY { IDENTITY } else { self.inverse[s.1 as usize] };
+        let known = (s.0 as usize) < self.particles.n_rows() && (s.1 == IDENTITY || back != IDENTITY);
+        known.then_some((s.0, (i as u32, back)))
+    }
+
+    fn cloud_of(&self, i: usize, list: &mut Vec<Seen>) {
         self.candidates(i, self.reach(i), |k, t| {
             if self.sees(i, k as usize, t) {
-                row.push((k, t));
+                list.push((k, t));
             }
         });
-        row
     }
 
-    /// Fluid particles in front of the interface particle `i`, in sight.
-    fn fluid_in_front(&self, i: usize) -> Vec<Seen> {
-        let p = self.particles;
-        let radius = FIT_REACH * p.spacing[i];
-        let mut row = Vec::new();
-        self.candidates(i, radius, |k, t| {
-            let d = self.position(k as usize, t) - p.x[i];
-            let fluid = (k as usize) < p.n_fluid;
-            if fluid && d.norm() < radius && self.in_front(i, &d, IDENTITY) && self.in_sight(i, k as usize, &d) {
-                row.push((k, t));
+    /// Everything in sight of particle `i` within `radius` spacings, whatever the leaves.
+    pub(super) fn visible_within(&self, i: usize, radius: f64) -> Vec<Seen> {
+        let mut list = Vec::new();
+        self.candidates(i, radius * self.particles.spacing[i], |k, t| {
+            if self.sees_in_ball(i, k as usize, t, radius, Sight::Tested) {
+                list.push((k, t));
             }
         });
-        row
+        list
+    }
+
+    /// Fluid particles in front of the interface particle `i`, in sight; farther ones where there are too few.
+    fn fluid_in_front(&self, i: usize, list: &mut Vec<Seen>) {
+        let start = list.len();
+        for (reach, least) in [(FIT_REACH, D + 1), (FIT_REACH_WIDE, 1)] {
+            list.truncate(start);
+            self.fluid_within(i, reach, |s, d| {
+                if self.in_front(i, d, IDENTITY) && self.in_sight(i, s.0 as usize, s.1, d) {
+                    list.push(s);
+                }
+            });
+            if list.len() - start >= least {
+                return;
+            }
+        }
+        list.extend(self.nearest_fluid(i));
+    }
+
+    /// The D fluid particles nearest to an interface particle so deep in a crevice that it has none in sight.
+    fn nearest_fluid(&self, i: usize) -> Vec<Seen> {
+        let mut found = Vec::new();
+        let mut reach = FIT_REACH_WIDE;
+        while found.len() < D && reach < FIT_REACH_LAST {
+            found.clear();
+            self.fluid_within(i, reach, |s, d| found.push((d.norm_squared(), s)));
+            reach *= 2.0;
+        }
+        found.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));
+        found.into_iter().take(D).map(|f| f.1).collect()
+    }
+
+    /// Calls `f` for every fluid particle within `reach` spacings of particle `i`, with the offset to it.
+    fn fluid_within(&self, i: usize, reach: f64, mut f: impl FnMut(Seen, &Vector<D>)) {
+        let p = self.particles;
+        let radius = reach * p.spacing[i];
+        self.candidates(i, radius, |k, t| {
+            let d = self.position(k as usize, t) - p.x[i];
+            if (k as usize) < p.n_fluid && d.norm() < radius {
+                f((k, t), &d);
+            }
+        });
     }
 
     fn reach(&self, i: usize) -> f64 {
@@ -152,7 +296,13 @@ impl<'a, const D: usize> Search<'a, D> {
         self.particles.wall_distance[i] < NEAR * self.particles.spacing[i]
     }
 
-    fn position(&self, k: usize, t: u8) -> Vector<D> {
+    /// Mean spacing of two particles.
+    pub(super) fn mean_spacing(&self, i: usize, k: usize) -> f64 {
+        0.5 * (self.particles.spacing[i] + self.particles.spacing[k])
+    }
+
+    /// Position of particle `k` moved by transform `t`.
+    pub(super) fn position(&self, k: usize, t: u8) -> Vector<D> {
         let x = self.particles.x[k];
         if t == IDENTITY { x } else { self.transforms[t as usize].point(&x) }
     }
@@ -185,16 +335,28 @@ impl<'a, const D: usize> Search<'a, D> {
     /// Whether particle `i` has particle `k`, moved by transform `t`, in its cloud.
     fn sees(&self, i: usize, k: usize, t: u8) -> bool {
         let p = self.particles;
-        let (wall_i, wall_k) = (p.is_interface(i), p.is_interface(k));
-        let near = wall_i || wall_k || self.near(i) || self.near(k);
-        let d = self.position(k, t) - p.x[i];
-        if near && d.norm() > 0.5 * self.radius * (p.spacing[i] + p.spacing[k]) {
+        let wall = p.is_interface(i) || p.is_interface(k);
+        let near = wall || self.near(i) || self.near(k);
+        if !wall && !self.leaves_touch(i, k, t, near) {
             return false;
         }
-        match (wall_i, wall_k) {
-            (false, false) => self.leaves_touch(i, k, t, near) && (!near || self.in_sight(i, k, &d)),
-            (true, false) => self.in_front(i, &d, IDENTITY) && self.in_sight(i, k, &d),
-            (false, true) => self.in_front(k, &-d, t) && self.in_sight(k, i, &-d),
+        // the end with the smaller index looks whether the way is free
+        let test = if i <= k { Sight::Tested } else { Sight::Granted };
+        !near || self.sees_in_ball(i, k, t, self.radius, test)
+    }
+
+    /// Whether particle `i` has particle `k` in sight, within `radius` of their mean spacing.
+    fn sees_in_ball(&self, i: usize, k: usize, t: u8, radius: f64, sight: Sight) -> bool {
+        let p = self.particles;
+        let d = self.position(k, t) - p.x[i];
+        if d.norm() > radius * self.mean_spacing(i, k) {
+            return false;
+        }
+        let in_sight = || sight == Sight::Granted || self.in_sight(i, k, t, &d);
+        match (p.is_interface(i), p.is_interface(k)) {
+            (false, false) => in_sight(),
+            (true, false) => self.in_front(i, &d, IDENTITY) && in_sight(),
+            (false, true) => self.in_front(k, &-d, t) && in_sight(),
             (true, true) => self.walls_see(i, k, t),
         }
     }
@@ -224,29 +386,45 @@ impl<'a, const D: usize> Search<'a, D> {
         d.dot(&normal) > GRAZING * d.norm()
     }
 
+    /// In 2-D neighbours along the outline, or a particle and its own image beyond a plane of symmetry that cuts the outline.
     fn walls_see(&self, i: usize, k: usize, t: u8) -> bool {
         let p = self.particles;
-        let (a, b) = (&p.interface[i - p.n_fluid], &p.interface[k - p.n_fluid]);
-        if D == 2 {
-            return t == IDENTITY && p.adjacent(i, k);
+        if D == 2 && (if t == IDENTITY { !p.adjacent(i, k) } else { i != k }) {
+            return false;
         }
+        if D == 2 && t == IDENTITY {
+            return true;
+        }
+        let (a, b) = (&p.interface[i - p.n_fluid], &p.interface[k - p.n_fluid]);
         let normal = if t == IDENTITY { b.normal } else { self.transforms[t as usize].direction(&b.normal) };
         a.normal.dot(&normal) > FACING
     }
 
-    /// No surface between particle `i` and the point at `d` from it; the pair is tested in one direction only.
-    fn in_sight(&self, i: usize, k: usize, d: &Vector<D>) -> bool {
-        let Some(surface) = self.surface else { return true };
+    /// No surface between particle `i` and particle `k` moved by `t`, at `d` from it.
+    fn in_sight(&self, i: usize, k: usize, t: u8, d: &Vector<D>) -> bool {
         let p = self.particles;
-        let r = d.norm();
-        if p.wall_distance[i] + p.wall_distance[k] > r {
+        if self.surface.is_none() || p.wall_distance[i] + p.wall_distance[k] > d.norm() {
             return true;
         }
         let lifted = |w: usize| match p.is_interface(w) {
             true => p.interface[w - p.n_fluid].normal * (LIFT * p.spacing[w]),
             false => Vector::ZERO,
         };
-        let (a, b) = (p.x[i] + lifted(i), p.x[i] + *d);
-        if i < k { !surface.crosses(&a, &b) } else { !surface.crosses(&b, &a) }
+        let lift_k = if t == IDENTITY { lifted(k) } else { self.transforms[t as usize].direction(&lifted(k)) };
+        let (a, b) = (p.x[i] + lifted(i), p.x[i] + *d + lift_k);
+        // balls around both ends are free of surface: only what they do not cover is tested
+        let way = (b - a) * (FREE / d.norm());
+        let (a, b) = (a + way * p.wall_distance[i], b - way * p.wall_distance[k]);
+        if t == IDENTITY {
+            return !self.blocked(&a, &b);
+        }
+        // the part of the way beyond the side of the domain may be blocked by the image of a body
+        let back = self.transforms[t as usize].inverse();
+        !self.blocked(&a, &b) && !self.blocked(&back.point(&a), &back.point(&b))
+    }
+
+    /// True when a surface lies between two points.
+    pub(super) fn blocked(&self, a: &Vector<D>, b: &Vector<D>) -> bool {
+        self.surface.is_some_and(|s| s.crosses(a, b))
     }
 }

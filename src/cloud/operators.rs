@@ -11,11 +11,13 @@ use std::ops::Range;
 use super::neighbours::Neighbours;
 use super::{Cloud, Image, Transform};
 use crate::math::Vector;
-use crate::math::least_squares::gradient_weights;
-use crate::math::sweep::{parts, sweep};
+use crate::math::least_squares::{bounded_gradient_weights, gradient_weights};
+use crate::math::sweep::{CHUNK, parts, sweep_each};
 
 /// Rows in one part: large enough that few edges are visited twice, small enough to stay in cache and balance threads.
-const PART: usize = 1024;
+const PART: [usize; 2] = [1024, 4096];
+/// Parts that a large cloud has at least.
+const MANY_PARTS: usize = 128;
 /// Marks an edge whose second end lies in the same part.
 const BOTH: u32 = 1 << 31;
 
@@ -85,12 +87,13 @@ impl<const D: usize> Operators<D> {
     pub fn new(cloud: &Cloud<D>) -> Self {
         let (weights, condition) = fit_rows(cloud);
         let lookup = Reverse::new(cloud);
-        let mut all = parts(cloud.n_fluid, PART);
+        let size = (cloud.n_fluid / MANY_PARTS).clamp(PART[0], PART[1]);
+        let mut all = parts(cloud.n_fluid, size);
         let n_fluid_parts = all.len();
         let start = cloud.n_fluid;
-        all.extend(parts(cloud.interface.len(), PART).into_iter().map(|p| p.start + start..p.end + start));
+        all.extend(parts(cloud.interface.len(), size).into_iter().map(|p| p.start + start..p.end + start));
         let mut lists = vec![Vec::new(); all.len()];
-        sweep(&mut lists, |k| part_edges(cloud, &weights, &lookup, &all[k]));
+        sweep_each(&mut lists, |k| part_edges(cloud, &weights, &lookup, &all[k]));
         let mut first = vec![0];
         let mut edges = Vec::with_capacity(lists.iter().map(Vec::len).sum());
         for list in lists {
@@ -139,18 +142,37 @@ impl<const D: usize> Operators<D> {
 
 /// Weights of every neighbour entry and the conditioning of every row.
 fn fit_rows<const D: usize>(cloud: &Cloud<D>) -> (Vec<Vector<D>>, Vec<f64>) {
-    let mut rows = vec![(Vec::new(), f64::INFINITY); cloud.neighbours.len()];
-    sweep(&mut rows, |i| {
-        let offsets: Vec<Vector<D>> =
-            cloud.neighbours.of(i).iter().map(|j| cloud.x[*j as usize] - cloud.x[i]).collect();
-        let mut weights = Vec::with_capacity(offsets.len());
-        match gradient_weights(&offsets, &mut weights) {
-            Some(condition) => (weights, condition),
-            None => (vec![Vector::ZERO; offsets.len()], f64::INFINITY),
+    let n = cloud.neighbours.len();
+    let mut chunks = vec![(Vec::new(), Vec::new()); n.div_ceil(CHUNK)];
+    sweep_each(&mut chunks, |c| {
+        let rows = c * CHUNK..n.min((c + 1) * CHUNK);
+        let entries = cloud.neighbours.first[rows.end] - cloud.neighbours.first[rows.start];
+        let (mut all, mut conditions) = (Vec::with_capacity(entries as usize), Vec::with_capacity(CHUNK));
+        let (mut offsets, mut weights) = (Vec::new(), Vec::new());
+        for i in rows {
+            offsets.clear();
+            offsets.extend(cloud.neighbours.of(i).iter().map(|j| cloud.x[*j as usize] - cloud.x[i]));
+            conditions.push(fit_row(cloud, i, &offsets, &mut weights));
+            all.extend_from_slice(&weights);
         }
+        (all, conditions)
     });
-    let condition = rows.iter().map(|r| r.1).collect();
-    (rows.into_iter().flat_map(|r| r.0).collect(), condition)
+    let mut weights = Vec::with_capacity(cloud.neighbours.index.len());
+    let mut condition = Vec::with_capacity(n);
+    for (w, c) in chunks {
+        weights.extend(w);
+        condition.extend(c);
+    }
+    (weights, condition)
+}
+
+/// Weights of row `i`; those of a first-order row are bounded whatever the neighbours.
+fn fit_row<const D: usize>(cloud: &Cloud<D>, i: usize, offsets: &[Vector<D>], weights: &mut Vec<Vector<D>>) -> f64 {
+    let condition = gradient_weights(offsets, weights);
+    if condition.is_none() || cloud.first_order.binary_search(&(i as u32)).is_ok() {
+        bounded_gradient_weights(offsets, weights);
+    }
+    condition.unwrap_or(f64::INFINITY)
 }
 
 /// Finds the entry (j, i) that belongs to the entry (i, j), through images where needed.

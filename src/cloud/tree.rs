@@ -117,25 +117,41 @@ impl<const D: usize> Tree<D> {
         let mut cell: [i64; D] = std::array::from_fn(|d| root(low[d], d));
         loop {
             let k = (0..D).rev().fold(0, |k, d| k * i64::from(self.roots[d]) + cell[d]);
-            self.descend(k as u32, &low, &high, &mut f);
+            if self.meets(k as u32, &low, &high) {
+                self.descend(k as u32, &low, &high, &mut f);
+            }
             let Some(d) = (0..D).find(|d| cell[*d] < root(high[*d], *d)) else { return };
             cell[d] += 1;
             (0..d).for_each(|e| cell[e] = root(low[e], e));
         }
     }
 
-    fn descend(&self, k: u32, low: &[i64; D], high: &[i64; D], f: &mut impl FnMut(u32)) {
+    fn meets(&self, k: u32, low: &[i64; D], high: &[i64; D]) -> bool {
         let node = &self.nodes[k as usize];
         let size = 1i64 << (MAX_LEVEL - node.level);
-        let apart = (0..D).any(|d| i64::from(node.anchor[d]) > high[d] || i64::from(node.anchor[d]) + size <= low[d]);
-        if apart {
-            return;
-        }
+        (0..D).all(|d| i64::from(node.anchor[d]) <= high[d] && i64::from(node.anchor[d]) + size > low[d])
+    }
+
+    /// Visits the leaves below cell `k`, which meets the box from `low` to `high`.
+    fn descend(&self, k: u32, low: &[i64; D], high: &[i64; D], f: &mut impl FnMut(u32)) {
+        let node = &self.nodes[k as usize];
         if node.first_child == NONE {
             f(k);
             return;
         }
-        (0..1u32 << D).for_each(|c| self.descend(node.first_child + c, low, high, f));
+        let half = 1i64 << (MAX_LEVEL - node.level - 1);
+        // bit d: no child on the lower (upper) side of axis d meets the box
+        let (mut no_lower, mut no_upper) = (0, 0);
+        for d in 0..D {
+            let middle = i64::from(node.anchor[d]) + half;
+            no_lower |= u32::from(low[d] >= middle) << d;
+            no_upper |= u32::from(high[d] < middle) << d;
+        }
+        for c in 0..1u32 << D {
+            if c & no_upper == 0 && !c & no_lower == 0 {
+                self.descend(node.first_child + c, low, high, f);
+            }
+        }
     }
 
     fn unit(&self) -> f64 {
@@ -186,31 +202,30 @@ impl<const D: usize> Tree<D> {
         }
     }
 
-    /// Splits cells until touching leaves differ by one level at most.
+    /// Splits cells until touching leaves differ by one level at most: whatever touches a cell that has children must not be
+    /// larger than that cell.
     fn balance(&mut self) {
         let mut queue: Vec<u32> =
-            (0..self.nodes.len() as u32).filter(|k| self.nodes[*k as usize].first_child == NONE).collect();
+            (0..self.nodes.len() as u32).filter(|k| self.nodes[*k as usize].first_child != NONE).collect();
         while let Some(k) = queue.pop() {
             let node = self.nodes[k as usize];
-            if node.first_child != NONE || node.level < 2 {
-                continue;
-            }
             let size = 1i64 << (MAX_LEVEL - node.level);
             let mut coarse = Vec::new();
             for_each_direction(|direction: [i64; D]| {
                 let p = std::array::from_fn(|d| i64::from(node.anchor[d]) + direction[d] * size);
                 if let Some(j) = self.find(&p)
-                    && self.nodes[j as usize].level + 1 < node.level
+                    && self.nodes[j as usize].level < node.level
                     && !coarse.contains(&j)
                 {
                     coarse.push(j);
                 }
             });
-            for j in coarse {
-                let first = self.nodes.len() as u32;
-                self.split(j);
-                queue.extend(first..first + (1 << D));
+            if !coarse.is_empty() {
                 queue.push(k);
+            }
+            for j in coarse {
+                self.split(j);
+                queue.push(j);
             }
         }
     }

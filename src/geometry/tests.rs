@@ -183,7 +183,7 @@ fn body(shape: Shape, rotate: Vec<f64>, translate: Vec<f64>) -> Body {
 
 fn case(bodies: Vec<Body>) -> Case {
     let text = r#"{"title":"t","flow":{"mach":0.5,"gas_constant":287.05,"gamma":1.4},"cloud":{"spacing":0.1,"layers":4,
-        "edge_levels":0,"curvature":0.1,"curvature_levels":0,"wall_layers":0,"blank":0.5,"radius":2,"jitter":0}}"#;
+        "edge_levels":0,"curvature":0.1,"curvature_levels":0,"blank":0.5,"radius":2,"jitter":0}}"#;
     Case { bodies, ..serde_json::from_str(text).unwrap() }
 }
 

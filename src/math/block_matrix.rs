@@ -24,7 +24,10 @@ pub struct BlockMatrix {
 
 impl BlockMatrix {
     /// A matrix with `n` rows whose row i couples to the columns `index[first[i]..first[i + 1]]` below `n`, and to itself.
-    pub fn new(block: usize, n: usize, first: &[u32], index: &[u32]) -> Self {
+    ///
+    /// `parts` are the consecutive rows that are assembled and swept together.
+    pub fn new(block: usize, parts: &[Range<usize>], first: &[u32], index: &[u32]) -> Self {
+        let n = parts.last().map_or(0, |p| p.end);
         let mut own_first = vec![0u32];
         let mut column = Vec::with_capacity(index.len() + n);
         for i in 0..n {
@@ -33,8 +36,7 @@ impl BlockMatrix {
             column.extend(row.iter().filter(|j| (**j as usize) < n && **j as usize != i));
             own_first.push(column.len() as u32);
         }
-        let parts = parts(n, PART);
-        Self::from_pattern(block, own_first, column, parts)
+        Self::from_pattern(block, own_first, column, parts.to_vec())
     }
 
     fn from_pattern(block: usize, first: Vec<u32>, column: Vec<u32>, parts: Vec<Range<usize>>) -> Self {
@@ -117,7 +119,6 @@ impl BlockMatrix {
     }
 
     fn half_sweep<const N: usize>(&self, b: &[f32], x: &mut [f32], old: &[f32], forward: bool) {
-        let old = &*old;
         sweep_parts(&self.parts, N, x, &|k, own| {
             let part = self.parts[k].clone();
             let mut row = |i: usize| {

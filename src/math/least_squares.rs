@@ -11,6 +11,9 @@ use super::Vector;
 
 /// Condition number of the scaled normal matrix above which Cholesky is not trusted: √ of it is lost digits of the rows.
 const CHOLESKY_CONDITION: f64 = 1e8;
+/// Off-diagonal elements, relative to the trace, at which Jacobi rotations end: they converge quadratically, so that the
+/// eigenvalues are exact to round-off.
+const EIGEN_TOLERANCE: f64 = 1e-9;
 /// Ratio of smallest to largest diagonal of R below which the rows count as rank deficient.
 const RANK_TOLERANCE: f64 = 1e-10;
 
@@ -54,6 +57,26 @@ pub fn gradient_weights<const D: usize>(offsets: &[Vector<D>], out: &mut Vec<Vec
     Some(condition)
 }
 
+/// Share of its trace that a bounded fit adds to the diagonal of the normal matrix.
+const BOUND: f64 = 0.05;
+
+/// Weights like those of [`gradient_weights`], but bounded for any offsets: the gradient fades out along directions in which
+/// there are no neighbours. Zero for constant fields; not exact for linear ones.
+pub fn bounded_gradient_weights<const D: usize>(offsets: &[Vector<D>], out: &mut Vec<Vector<D>>) {
+    out.clear();
+    let mut m = [[0.0; D]; D];
+    for d in offsets {
+        let w = 1.0 / d.norm_squared();
+        (0..D).for_each(|r| (0..D).for_each(|c| m[r][c] += w * d[r] * d[c]));
+    }
+    (0..D).for_each(|r| m[r][r] += BOUND * offsets.len() as f64);
+    let inverse = invert_symmetric(&m).unwrap_or([[0.0; D]; D]);
+    out.extend(offsets.iter().map(|d| {
+        let w = 1.0 / d.norm_squared();
+        Vector::from_fn(|r| w * (0..D).map(|c| inverse[r][c] * d[c]).sum::<f64>())
+    }));
+}
+
 /// Inverse of a symmetric positive matrix of order 1, 2 or 3 by cofactors.
 fn invert_symmetric<const D: usize>(m: &[[f64; D]; D]) -> Option<[[f64; D]; D]> {
     let mut inverse = [[0.0; D]; D];
@@ -80,7 +103,7 @@ fn cofactor<const D: usize>(m: &[[f64; D]; D], r: usize, c: usize) -> f64 {
     let at = |i: usize, j: usize| m[(r + i) % D][(c + j) % D];
     match D {
         1 => 1.0,
-        2 => at(1, 1) * if (r + c) % 2 == 0 { 1.0 } else { -1.0 },
+        2 => at(1, 1) * if (r + c).is_multiple_of(2) { 1.0 } else { -1.0 },
         _ => at(1, 1) * at(2, 2) - at(1, 2) * at(2, 1),
     }
 }
@@ -95,6 +118,7 @@ pub fn condition_symmetric<const D: usize>(m: &[[f64; D]; D]) -> f64 {
 /// Eigenvalues of a small symmetric matrix by cyclic Jacobi rotations.
 fn eigenvalues_symmetric<const D: usize>(m: &[[f64; D]; D]) -> [f64; D] {
     let mut a = *m;
+    let size: f64 = (0..D).map(|d| m[d][d].abs()).sum();
     for _ in 0..12 {
         let mut off = 0.0;
         for p in 0..D {
@@ -103,7 +127,7 @@ fn eigenvalues_symmetric<const D: usize>(m: &[[f64; D]; D]) -> [f64; D] {
                 rotate_symmetric(&mut a, p, q);
             }
         }
-        if off == 0.0 {
+        if off <= (EIGEN_TOLERANCE * size).powi(2) {
             break;
         }
     }
@@ -130,7 +154,9 @@ fn rotate_symmetric<const D: usize>(a: &mut [[f64; D]; D], p: usize, q: usize) {
     }
 }
 
-/// A fit with `n` coefficients to rows that are added one by one.
+/// A fit with `n` coefficients to rows that are added one by one: f = c_0 b_0(x) + … + c_n b_n(x), eq. (11) for the basis
+/// 1, x, y, z.
+#[doc(alias = "eq11")]
 #[derive(Clone, Debug, Default)]
 pub struct Fit {
     n: usize,
@@ -366,6 +392,15 @@ mod tests {
     fn particles_on_a_plane_determine_no_gradient() {
         let d: Vec<_> = cloud(9, 3).iter().map(|d| Vector([d[0], d[1], 0.0])).collect();
         assert!(gradient_weights(&d, &mut Vec::new()).is_none());
+    }
+
+    #[test]
+    fn bounded_weights_of_particles_on_a_line_see_the_slope_along_it() {
+        let d = [Vector([1.0, 0.0, 0.0]), Vector([-2.0, 0.0, 0.0])];
+        let mut w = Vec::new();
+        bounded_gradient_weights(&d, &mut w);
+        let g = d.iter().zip(&w).fold(Vector::ZERO, |g, (d, w)| g + *w * d[0]);
+        assert!((0.9..=1.0).contains(&g[0]) && g[1] == 0.0 && g[2] == 0.0, "{g:?}");
     }
 
     /// Quadratic in three variables: every factorisation reproduces the value at the centre.

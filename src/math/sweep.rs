@@ -20,10 +20,23 @@ pub fn sweep<T: Send>(out: &mut [T], f: impl Fn(usize) -> T + Sync) {
 }
 
 /// Calls `f(i, slot)` for every slot of `out`.
-pub fn sweep_each<T: Send>(out: &mut [T], f: impl Fn(usize, &mut T) + Sync) {
+pub fn sweep_slots<T: Send>(out: &mut [T], f: impl Fn(usize, &mut T) + Sync) {
     out.par_chunks_mut(CHUNK).enumerate().for_each(|(c, chunk)| {
         chunk.iter_mut().enumerate().for_each(|(k, slot)| f(c * CHUNK + k, slot));
     });
+}
+
+/// Sets `out[i] = f(i)` for every `i` where each one is much work.
+pub fn sweep_each<T: Send>(out: &mut [T], f: impl Fn(usize) -> T + Sync) {
+    out.par_iter_mut().enumerate().for_each(|(i, slot)| *slot = f(i));
+}
+
+/// The numbers `0..n` in the order of `key`, ties in their own order.
+pub fn order_by_key(n: usize, key: impl Fn(usize) -> u64 + Sync) -> Vec<u32> {
+    let mut keys = vec![(0, 0); n];
+    sweep(&mut keys, |i| (key(i), i as u32));
+    keys.par_sort_unstable();
+    keys.into_iter().map(|k| k.1).collect()
 }
 
 /// Calls `f(i, row)` for every row of `width` values of `out`.

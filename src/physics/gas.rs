@@ -4,7 +4,8 @@
 //! equations (1)-(3) and (6) written for conserved quantities, so that shocks stand where they should.
 use crate::math::Vector;
 
-/// Density, momentum and total energy per volume.
+/// Density, momentum and total energy per volume: Q of eq. (17).
+#[doc(alias = "eq17")]
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct Conserved<const D: usize> {
@@ -177,7 +178,7 @@ mod tests {
 
     const AIR: Gas = Gas { gamma: 1.4 };
 
-    #[test]
+    #[test] // eq6, eq17
     fn conserved_and_primitive_are_inverse() {
         let q = Primitive { density: 1.3, velocity: Vector([0.2, -0.7, 1.1]), pressure: 0.9 };
         let back = AIR.primitive(&AIR.conserved(&q));

@@ -5,6 +5,7 @@
 //! and integrates. Checkpoints hold what a stage cannot rebuild from the case: its sources of refinement, the state, and
 //! where the integrator stands; a killed run goes on to the same bits.
 mod folder;
+mod inspect;
 mod measure;
 mod outputs;
 mod persist;
@@ -23,12 +24,13 @@ use crate::cloud::{Cloud, CloudError};
 use crate::geometry::{GeometryError, Surface, dimension};
 use crate::observe::{CheckpointError, FileError, VtkError};
 use crate::report::ReportError;
-use crate::scheme::adapt;
 use crate::scheme::start::StartError;
+use crate::scheme::{Fluid, adapt};
 use crate::system::System;
 use crate::time::TimeError;
 
 pub use folder::fresh_folder;
+pub use inspect::{CloudReport, inspect};
 pub use snapshot::Snapshot;
 pub use summary::Summary;
 
@@ -166,6 +168,14 @@ pub fn build_cloud<const D: usize>(
     Ok((surface, cloud, notes))
 }
 
+/// Builds the equations of a case on its own cloud, and the state at the start, without running it.
+pub fn build_solver<const D: usize>(case: &Case, input: &Path) -> Result<(Fluid<D>, Vec<f64>), RunError> {
+    let (surface, _) = setup::surface::<D>(case, input)?;
+    let plain = Stage { factor: 1.0, cycle: 0 };
+    let solver = setup::solver(case, &plain, surface.as_ref(), &[], None)?;
+    Ok((solver.fluid, solver.initial))
+}
+
 /// All stages of a run.
 fn drive<const D: usize>(
     case: &Case,
@@ -193,7 +203,7 @@ fn drive<const D: usize>(
         let ready = if stage.is_plain() { full.take() } else { None };
         let solver = setup::solver(case, stage, surface.as_ref(), &sources, ready)?;
         let start = match (saved.take(), previous.take()) {
-            (Some(s), _) => solve::Start::Resume(s),
+            (Some(s), _) => solve::Start::Resume(Box::new(s)),
             (None, Some(p)) => solve::Start::Fresh(setup::transfer(&p, &solver, surface.as_ref())),
             (None, None) => solve::Start::Fresh(solver.initial.clone()),
         };
@@ -207,8 +217,8 @@ fn drive<const D: usize>(
         }
         previous = Some((solver, state));
     }
-    let Some((solver, state)) = previous else { return Err(RunError::Folder("the checkpoint names no stage".into())) };
-    let summary = outputs::write_all(case, places, &solver, &state, surface.as_ref(), &mut journal, &clock)?;
+    let Some(solved) = previous else { return Err(RunError::Folder("the checkpoint names no stage".into())) };
+    let summary = outputs::write_all(case, places, &solved, surface.as_ref(), &mut journal, &clock)?;
     Ok(Outcome::Finished(Box::new(summary)))
 }
 

@@ -7,6 +7,7 @@ use super::solve::{Journal, totals};
 use super::summary::{Clock, Ledger, Summary};
 use super::{Places, RunError, marches};
 use crate::case::{Case, Initial};
+use crate::cloud::Diagnosis;
 use crate::geometry::Surface;
 use crate::math::{Bounds, Vector};
 use crate::observe::loads::{Balance, Coefficients, LoadAxes, Patch, momentum_balance};
@@ -44,8 +45,7 @@ struct Names {
 pub(super) fn write_all<const D: usize>(
     case: &Case,
     places: &Places,
-    solver: &Solver<D>,
-    state: &[f64],
+    (solver, state): &(Solver<D>, Vec<f64>),
     surface: Option<&Surface<D>>,
     journal: &mut Journal<'_>,
     clock: &Clock,
@@ -87,7 +87,7 @@ pub(super) fn write_all<const D: usize>(
         loads_momentum_balance: through,
         ledger,
         time: journal.time,
-        bytes_per_particle: bytes(fluid, journal.bytes) as f64 / n as f64,
+        bytes_per_particle: bytes_of(fluid, journal.bytes) as f64 / n as f64,
         cpu_ms_per_particle: 1e3 * cpu / n as f64,
         linear_iterations: journal.linear,
         error_l2_density: r.exact_error(journal.time),
@@ -114,7 +114,8 @@ pub(super) struct View<'a, const D: usize> {
     pub(super) surface: Option<&'a Surface<D>>,
 }
 
-fn bytes<const D: usize>(fluid: &Fluid<D>, integrator: usize) -> usize {
+/// Bytes of a solver, its state and its integrator.
+pub(super) fn bytes_of<const D: usize>(fluid: &Fluid<D>, integrator: usize) -> usize {
     let cloud = &fluid.cloud;
     let rows = cloud.neighbours.index.len() * 4 + cloud.neighbours.first.len() * 4;
     let points = cloud.len() * (8 * D + 8 + 8) + cloud.n_fluid * 8;
@@ -238,6 +239,7 @@ impl<'a, const D: usize> Finished<'a, D> {
     fn write_tables(&self, cycles: &[[f64; 5]], summary: &Summary) -> Result<(), RunError> {
         write_json(&self.out.join("summary.json"), summary)?;
         write_json(&self.out.join("ledger.json"), &summary.ledger)?;
+        write_json(&self.out.join("doctor.json"), &Diagnosis::of(&self.fluid.cloud, self.fluid.walls.n_linear))?;
         self.write_loads()?;
         self.write_surface_csv()?;
         let rows = cycles.iter().enumerate().map(|(k, c)| {
@@ -329,6 +331,26 @@ impl<'a, const D: usize> Finished<'a, D> {
         let facets = if D == 2 { Facets::Polylines(&lines) } else { Facets::Vertices };
         Ok(write_surface(&self.out.join("surface.vtp"), points, facets, &columns, &[])?)
     }
+}
+
+/// Writes the field of one moment of a march, and the list of all so far.
+pub(super) fn write_series<const D: usize>(
+    case: &Case, out: &Path, fluid: &Fluid<D>, work: &Work<D>, time: f64, interval: f64,
+) -> Result<(), RunError> {
+    let all = snapshot::field(case, fluid, work);
+    let columns: Vec<Column<'_>> =
+        all.columns.iter().map(|(name, components, values)| Column { name, components: *components, values }).collect();
+    let number = (time / interval).floor() as u64;
+    write_points(&out.join(series_name(number)), &all.points, &columns)?;
+    // times are those of the multiples of the interval that each file follows within one step
+    let files: Vec<(f64, String)> =
+        (1..=number).map(|k| (k as f64 * interval, series_name(k))).filter(|(_, f)| out.join(f).exists()).collect();
+    let listed: Vec<(f64, &str)> = files.iter().map(|(t, f)| (*t, f.as_str())).collect();
+    Ok(write_collection(&out.join("series.pvd"), &listed)?)
+}
+
+fn series_name(number: u64) -> String {
+    format!("field-{number:05}.vtu")
 }
 
 /// Interface particles of each smooth piece of outline, in order.

@@ -18,6 +18,9 @@ const PIXELS: usize = 900;
 /// Margin of flow pictures around the bodies in body lengths.
 const MARGIN: f64 = 0.6;
 
+/// A flow picture: file name, (title, quantity, colours, contours), value of a state.
+type Drawn<'a, const D: usize> = (&'a str, (&'a str, &'a str, Colormap, &'a [f64]), &'a dyn Fn(&Primitive<D>) -> f64);
+
 /// Draws all pictures of a run.
 pub(super) fn write<const D: usize>(view: &View<'_, D>) -> Result<(), RunError> {
     if D == 2 { plane(view) } else { space(view) }
@@ -59,8 +62,7 @@ fn plane<const D: usize>(view: &View<'_, D>) -> Result<(), RunError> {
     let style = |title: &'static str, quantity: &'static str, map: Colormap, contours: &'static [f64]| {
         (title, quantity, map, contours)
     };
-    let mut list: Vec<(&str, (&str, &str, Colormap, &[f64]), &dyn Fn(&Primitive<D>) -> f64)> =
-        vec![("mach", style("Mach number", "M", Colormap::Sequential, &[1.0]), &mach)];
+    let mut list: Vec<Drawn<'_, D>> = vec![("mach", style("Mach number", "M", Colormap::Sequential, &[1.0]), &mach)];
     if view.surface.is_some() {
         list.push(("cp", style("Pressure coefficient", "Cp", Colormap::Diverging { centre: 0.0 }, &[]), &cp));
     } else {
@@ -91,6 +93,11 @@ fn sampled<const D: usize>(view: &View<'_, D>, w: &Bounds<2>) -> (usize, usize, 
         if view.surface.is_some_and(|s| s.inside(&x)) { None } else { probe.at(&x) }
     });
     (width, height, states)
+}
+
+/// Draws the particles near the bodies (plane clouds).
+pub(super) fn write_cloud<const D: usize>(view: &View<'_, D>) -> Result<(), RunError> {
+    if D == 2 { cloud_picture(view, &outlines(view.surface)) } else { Ok(()) }
 }
 
 fn cloud_picture<const D: usize>(view: &View<'_, D>, outlines: &[Vec<Vector<2>>]) -> Result<(), RunError> {

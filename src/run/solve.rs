@@ -1,5 +1,6 @@
 //! One stage from its start to its end: the integrator, watched.
 
+use super::outputs;
 use super::persist::{FILE, Position, Saved};
 use super::setup::{Solver, control};
 use super::snapshot::{LoadFrame, Snapshot, load_axes};
@@ -23,7 +24,7 @@ pub(super) enum Start {
     /// From a state.
     Fresh(Vec<f64>),
     /// Where a checkpoint stands.
-    Resume(Saved),
+    Resume(Box<Saved>),
 }
 
 /// Everything that accompanies the stages of a run.
@@ -31,7 +32,10 @@ pub(super) struct Journal<'a> {
     monitor: &'a mut dyn Monitor,
     history: History,
     out: std::path::PathBuf,
+    case: Case,
     axes: LoadFrame,
+    /// Time between field files of a march.
+    interval: Option<f64>,
     iteration: u64,
     began: std::time::Instant,
     before: (f64, f64),
@@ -71,7 +75,9 @@ impl<'a> Journal<'a> {
             monitor,
             history,
             out: places.out.clone(),
+            case: case.clone(),
             axes: load_axes(case),
+            interval: case.output.field_interval.map(|t| t.0),
             iteration: saved.map_or(0, |s| s.iteration),
             began: std::time::Instant::now(),
             before: saved.map_or((0.0, 0.0), |s| (s.cpu_seconds, s.wall_seconds)),
@@ -142,7 +148,7 @@ impl<'a> Journal<'a> {
     }
 
     fn due(&self, iteration: u32) -> bool {
-        self.monitor.checkpoint() || iteration % self.every == 0
+        self.monitor.checkpoint() || iteration.is_multiple_of(self.every)
     }
 
     fn failed(&self, source: TimeError) -> RunError {
@@ -246,6 +252,7 @@ fn march<const D: usize>(
     if done == 0 {
         journal.save(at, 0.0, &explicit.u, bare(0))?;
     }
+    let mut before = explicit.time;
     while !explicit.finished() && explicit.iteration < marching.steps {
         let step = match explicit.advance() {
             Ok(step) => step,
@@ -258,6 +265,14 @@ fn march<const D: usize>(
         let (frame, work, state) = explicit.parts();
         let loads = coefficients(fluid, &journal.axes, frame, state, work);
         journal.record(0, &step, loads, (marching.until.0, step.time), fluid.cloud.n_fluid)?;
+        if let Some(interval) = journal.interval
+            && (explicit.time / interval).floor() > (before / interval).floor()
+        {
+            let (frame, work, state) = explicit.parts();
+            fluid.fill_states(frame, state, work);
+            outputs::write_series(&journal.case, &journal.out, fluid, work, frame.time, interval)?;
+        }
+        before = explicit.time;
         if journal.due(explicit.iteration) {
             journal.save(at, explicit.time, &explicit.u, bare(explicit.iteration))?;
         }

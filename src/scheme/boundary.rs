@@ -18,6 +18,8 @@ use crate::physics::{Gas, Primitive};
 
 /// Sum of absolute weights above which a quadratic fit is replaced by a linear one.
 const LARGEST_AMPLIFICATION: f64 = 6.0;
+/// Round-off of the sum of weights, which is one.
+const CONSTANT_TOLERANCE: f64 = 1e-9;
 /// Rows that a quadratic fit must have beyond its coefficients.
 const SPARE_ROWS: usize = 3;
 /// Most coefficients of a constrained fit: three dimensions, quadratic.
@@ -61,12 +63,22 @@ fn fit_wall<const D: usize>(cloud: &Cloud<D>, w: usize) -> (Vec<f64>, f64, bool)
     if offsets.len() >= quadratic + SPARE_ROWS {
         solve_fit(&offsets, (&normal, &axes), h, quadratic, &mut weights);
     }
-    if weights.is_empty() || weights.iter().map(|w| w.abs()).sum::<f64>() > LARGEST_AMPLIFICATION {
+    if !is_sound(&weights) {
         linear = true;
         solve_fit(&offsets, (&normal, &axes), h, D, &mut weights);
     }
+    // a crevice: too little fluid for a slope, or all of it far away
+    if offsets.len() <= D || !is_sound(&weights) {
+        solve_fit(&offsets, (&normal, &axes), h, 1, &mut weights);
+    }
     let lever = weights.iter().zip(&offsets).map(|(w, d)| w * d.dot(&normal)).sum();
     (weights, lever, linear)
+}
+
+/// Weights that reproduce constants, which a rank-deficient fit need not do, without amplifying differences.
+fn is_sound(weights: &[f64]) -> bool {
+    let (sum, size) = weights.iter().fold((0.0, 0.0), |(sum, size), w| (sum + w, size + w.abs()));
+    (sum - 1.0f64).abs() < CONSTANT_TOLERANCE && size <= LARGEST_AMPLIFICATION
 }
 
 /// The row that gives f_w from the values of the fluid particles; `n` coefficients, weights 1/r².

@@ -132,6 +132,7 @@ impl<const D: usize> Fluid<D> {
                 }
             }
         });
+        cloud.first_order.iter().for_each(|i| rows[*i as usize] = Gradient::ZERO);
         let rows = &*rows;
         sweep(&mut rest[cloud.outer.len()..], |k| {
             let image = &cloud.images[k];
@@ -324,6 +325,10 @@ impl<const D: usize> System for Fluid<D> {
 
     fn graph(&self) -> (&[u32], &[u32]) {
         (&self.cloud.neighbours.first, &self.cloud.neighbours.index)
+    }
+
+    fn parts(&self) -> &[std::ops::Range<usize>] {
+        self.operators.fluid_parts()
     }
 
     fn linearise(&self, frame: &Frame<D>, u: &[f64], work: &mut Work<D>, matrix: &mut BlockMatrix) {

@@ -148,7 +148,7 @@ impl<'a, S: System> Relax<'a, S> {
         let mut rate = vec![0.0; n / system.block()];
         system.spectral_radius(&frame, origin, &mut work, &mut rate);
         let implicit = control.method != Method::RungeKutta;
-        let matrix = |first: &[u32], index: &[u32]| BlockMatrix::new(system.block(), n / system.block(), first, index);
+        let matrix = |first: &[u32], index: &[u32]| BlockMatrix::new(system.block(), system.parts(), first, index);
         let levels = implicit.then(|| {
             let (first, index) = system.graph();
             Multilevel::new(matrix(first, index), control.group, control.cycle)

@@ -1,15 +1,28 @@
 //! `alula check`.
+use std::path::{Path, PathBuf};
+
 use alula::case::write;
+use alula::run::{self, Places};
 
 use crate::arguments;
 use crate::outcome::Outcome;
 use crate::output;
 
-/// Reads a case and tells its mistakes, or that there are none.
+/// Reads a case, builds its cloud, and tells what a run would meet and take.
 pub(crate) fn check(args: &arguments::Check) -> Outcome {
-    match super::load(&args.case) {
-        Ok(case) if args.resolved => output::data(&write(&case)),
-        Ok(case) => output::data(&format!("{}: no mistakes in `{}`\n", args.case.display(), case.title)),
-        Err(outcome) => outcome,
+    let case = match super::load(&args.case) {
+        Ok(case) => case,
+        Err(outcome) => return outcome,
+    };
+    if args.resolved {
+        return output::data(&write(&case));
+    }
+    let input = args.case.parent().map_or_else(PathBuf::new, Path::to_path_buf);
+    match run::inspect(&case, &Places { input, out: PathBuf::new() }, false) {
+        Ok(report) => {
+            let title = format!("{}: no mistakes in `{}`\n", args.case.display(), case.title);
+            output::data(&(title + &super::cloud::describe(&report)))
+        }
+        Err(problem) => super::refuse(&problem),
     }
 }

@@ -1,10 +1,52 @@
 //! `alula cloud`.
+use std::path::{Path, PathBuf};
+
+use alula::run::{self, CloudReport, Places};
+
+use super::run::name_of;
 use crate::arguments;
 use crate::outcome::Outcome;
+use crate::output;
 
+/// Builds the cloud of a case and writes it with its pictures and its diagnosis.
 pub(crate) fn cloud(args: &arguments::Cloud) -> Outcome {
-    match super::load(&args.case) {
-        Ok(_) => super::unavailable("cloud"),
-        Err(outcome) => outcome,
+    let case = match super::load(&args.case) {
+        Ok(case) => case,
+        Err(outcome) => return outcome,
+    };
+    let out = args.out.clone().unwrap_or_else(|| run::fresh_folder(Path::new("runs"), &format!("{}-cloud", name_of(&args.case))));
+    let input = args.case.parent().map_or_else(PathBuf::new, Path::to_path_buf);
+    match run::inspect(&case, &Places { input, out: out.clone() }, true) {
+        Ok(report) => {
+            let done = output::data(&describe(&report));
+            output::message(&format!("written to {}\n", out.display()));
+            done
+        }
+        Err(problem) => super::refuse(&problem),
+    }
+}
+
+/// What is known of a cloud before a run.
+pub(crate) fn describe(r: &CloudReport) -> String {
+    let mut text = format!(
+        "particles      {} ({} fluid, {} interface, {} outer)\nneighbours     {} least, {:.1} mean, {} most\nspacing        {:.3e} finest, {:.3e} coarsest\nconditioning   {:.1} worst (1 is best)\n",
+        r.particles, r.fluid, r.interface, r.outer, r.neighbours.0, r.neighbours.1, r.neighbours.2, r.spacing.0, r.spacing.1,
+        r.worst_condition
+    );
+    text += &format!(
+        "built in       {:.2} s\nmemory         about {:.0} MB\ntime           about {}\n",
+        r.seconds,
+        r.memory_bytes as f64 / 1e6,
+        readable(r.expected_seconds)
+    );
+    r.notes.iter().for_each(|n| text += &format!("note: {n}\n"));
+    text
+}
+
+fn readable(seconds: f64) -> String {
+    match seconds {
+        s if s < 90.0 => format!("{s:.0} s"),
+        s if s < 5400.0 => format!("{:.0} min", s / 60.0),
+        s => format!("{:.1} h", s / 3600.0),
     }
 }

@@ -68,10 +68,12 @@ fn load(path: &Path) -> Result<Case, Outcome> {
     })
 }
 
-/// Says that a command has no body yet.
-fn unavailable(command: &str) -> Outcome {
-    output::error(&format!("`alula {command}` is not available in this version"), "`alula check` and `alula new` are");
-    Outcome::Failed
+/// Tells why a case cannot be computed.
+fn refuse(problem: &alula::run::RunError) -> Outcome {
+    let text = problem.to_string();
+    let (what, hint) = text.split_once("\nhint: ").unwrap_or((&text, ""));
+    output::error(what, hint);
+    Outcome::BadInput
 }
 
 #[cfg(test)]

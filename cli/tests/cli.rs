@@ -1,0 +1,263 @@
+//! The command as its users meet it: files, exit codes, signals, bad days.
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Output, Stdio};
+use std::time::{Duration, Instant};
+
+use serde_json::Value;
+
+/// What the last line of `run --json` promises, in order.
+const PROMISED: [&str; 13] = [
+    "event",
+    "case",
+    "run",
+    "particles",
+    "iterations",
+    "residual_drop",
+    "converged",
+    "cpu_seconds",
+    "wall_seconds",
+    "peak_bytes",
+    "loads",
+    "loads_momentum_balance",
+    "ledger",
+];
+/// What it may add.
+const EXTRA: [&str; 7] = [
+    "time",
+    "bytes_per_particle",
+    "cpu_ms_per_particle",
+    "linear_iterations",
+    "error_l2_density",
+    "adapt_change",
+    "phases",
+];
+/// Longest wait for anything.
+const PATIENCE: Duration = Duration::from_secs(120);
+
+/// A circle in a slow stream: a steady case of a second.
+const CIRCLE: &str = "title = \"circle\"\n[flow]\nmach = 0.3\n[[body]]\ncircle = { radius = 0.5 }\n[cloud]\n\
+    spacing = 0.03125\nfar_field = 8.0\n[scheme]\nlimiter = \"none\"\n[output]\ncheckpoint = 1\nreport = false\n";
+
+/// A vortex in a periodic square: a march of some hundred steps.
+const VORTEX: &str = "title = \"vortex\"\ndimension = 2\n[flow]\nmach = 1.1952286093343936\nalpha = \"45 deg\"\n[cloud]\n\
+    spacing = 0.15625\ndomain = { min = [0.0, 0.0], max = [10.0, 10.0] }\n[boundary]\nx_min = \"periodic\"\n\
+    x_max = \"periodic\"\ny_min = \"periodic\"\ny_max = \"periodic\"\n[initial.vortex]\nstrength = 5.0\n\
+    centre = [5.0, 5.0]\nvelocity = [1.0, 1.0]\n[scheme]\nlimiter = \"none\"\n[time.explicit]\nuntil = 3.0\ncfl = 0.5\n\
+    [output]\ncheckpoint = 1\nreport = false\n";
+
+/// A folder with a case in it.
+struct Desk {
+    folder: tempfile::TempDir,
+}
+
+impl Desk {
+    fn new(case: &str) -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("case.toml"), case).unwrap();
+        Self { folder }
+    }
+
+    fn path(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    fn command(&self, args: &[&str]) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_alula"));
+        command.args(args).current_dir(self.folder.path()).stdout(Stdio::piped()).stderr(Stdio::piped());
+        command
+    }
+
+    fn alula(&self, args: &[&str]) -> Output {
+        self.command(args).output().unwrap()
+    }
+
+    /// A run that is on its way: its first checkpoint exists.
+    fn begun(&self, out: &str) -> Child {
+        let mut child = self.command(&["run", "case.toml", "--out", out, "--quiet"]).spawn().unwrap();
+        let checkpoint = self.path(out).join("checkpoint.alula");
+        let began = Instant::now();
+        while !checkpoint.exists() && child.try_wait().unwrap().is_none() {
+            assert!(began.elapsed() < PATIENCE, "no checkpoint");
+            std::thread::sleep(Duration::from_millis(2));
+        }
+        child
+    }
+}
+
+fn code(output: &Output) -> Option<i32> {
+    output.status.code()
+}
+
+fn told(output: &Output) -> String {
+    String::from_utf8_lossy(&output.stderr).into_owned()
+}
+
+/// A moment that differs from run to run, below `limit` milliseconds.
+fn random_moment(limit: u32) -> Duration {
+    let now = std::time::SystemTime::now().duration_since(std::time::UNIX_EPOCH).unwrap();
+    Duration::from_millis(u64::from(now.subsec_nanos() / 1000 % limit))
+}
+
+/// The results of two runs are the same to the last bit; histories up to the seconds they took.
+fn assert_same_results(a: &Path, b: &Path, what: &str) {
+    for name in ["field.vtu", "loads.csv", "surface.csv", "ledger.json"] {
+        let bytes = |folder: &Path| std::fs::read(folder.join(name)).unwrap();
+        assert!(bytes(a) == bytes(b), "{what}: `{name}` differs");
+    }
+    let history = |folder: &Path| {
+        let text = std::fs::read_to_string(folder.join("history.csv")).unwrap();
+        text.lines().map(|l| l.rsplit_once(',').unwrap().0.to_string()).collect::<Vec<_>>()
+    };
+    assert_eq!(history(a), history(b), "{what}: the histories differ");
+}
+
+#[test]
+fn a_run_goes_to_its_end_and_the_summary_keeps_its_promise() {
+    let desk = Desk::new(CIRCLE);
+    let output = desk.alula(&["run", "case.toml", "--out", "out", "--json"]);
+    assert_eq!(code(&output), Some(0), "{}", told(&output));
+    let lines = String::from_utf8(output.stdout).unwrap();
+    assert!(lines.lines().all(|l| serde_json::from_str::<Value>(l).is_ok()), "a line is not JSON");
+    let summary: Value = serde_json::from_str(lines.lines().last().unwrap()).unwrap();
+    let keys: Vec<&str> = summary.as_object().unwrap().keys().map(String::as_str).collect();
+    assert_eq!(keys[..PROMISED.len()], PROMISED);
+    assert!(keys[PROMISED.len()..].iter().all(|k| EXTRA.contains(k)), "{keys:?}");
+    let inner = |key: &str| summary[key].as_object().unwrap().keys().cloned().collect::<Vec<_>>();
+    assert_eq!(inner("loads"), ["cl", "cd", "cm"]);
+    assert_eq!(inner("loads_momentum_balance"), ["cl", "cd", "cm"]);
+    assert_eq!(inner("ledger"), ["mass", "momentum", "energy"]);
+    assert!(summary["event"] == "summary" && summary["converged"] == true && summary["case"] == "circle");
+    assert!(summary["residual_drop"].as_f64().unwrap() >= 6.0);
+    for name in ["case.toml", "history.csv", "loads.csv", "ledger.json", "surface.csv", "surface.vtp", "field.vtu"] {
+        assert!(desk.path("out").join(name).is_file(), "no `{name}`");
+    }
+}
+
+#[test]
+fn an_earlier_run_is_kept() {
+    let desk = Desk::new(CIRCLE);
+    std::fs::create_dir(desk.path("out")).unwrap();
+    std::fs::write(desk.path("out/case.toml"), "mine").unwrap();
+    let output = desk.alula(&["run", "case.toml", "--out", "out"]);
+    let text = told(&output);
+    assert_eq!(code(&output), Some(2));
+    for word in ["`out` holds an earlier run", "--out", "alula resume out", "--force"] {
+        assert!(text.contains(word), "{text}");
+    }
+    assert_eq!(std::fs::read_to_string(desk.path("out/case.toml")).unwrap(), "mine");
+}
+
+#[test]
+fn a_place_that_cannot_be_written_is_named() {
+    let desk = Desk::new(CIRCLE);
+    std::fs::write(desk.path("file"), "").unwrap();
+    let output = desk.alula(&["run", "case.toml", "--out", "file/out"]);
+    assert!(code(&output) == Some(2) && told(&output).contains("`file/out`"), "{}", told(&output));
+    assert!(told(&output).contains("hint: "), "{}", told(&output));
+}
+
+#[cfg(unix)]
+#[test]
+fn a_read_only_folder_is_named() {
+    use std::os::unix::fs::PermissionsExt;
+    let desk = Desk::new(CIRCLE);
+    std::fs::create_dir(desk.path("locked")).unwrap();
+    std::fs::set_permissions(desk.path("locked"), PermissionsExt::from_mode(0o555)).unwrap();
+    if std::fs::write(desk.path("locked/probe"), "").is_ok() {
+        return; // the superuser may write everywhere
+    }
+    let output = desk.alula(&["run", "case.toml", "--out", "locked/out"]);
+    assert!(code(&output) == Some(2) && told(&output).contains("`locked/out`"), "{}", told(&output));
+    assert!(told(&output).contains("writable"), "{}", told(&output));
+}
+
+#[test]
+fn mistakes_in_a_case_are_told_with_a_caret() {
+    let desk = Desk::new(&CIRCLE.replace("mach = 0.3", "mach = \"fast\"").replace("limiter", "limitter"));
+    for command in ["run", "check"] {
+        let output = desk.alula(&[command, "case.toml"]);
+        let text = told(&output);
+        assert_eq!(code(&output), Some(2), "{text}");
+        for word in ["case.toml", "^", "limitter", "`limiter`", "mach"] {
+            assert!(text.contains(word), "no {word} in {text}");
+        }
+    }
+    assert!(!desk.path("runs").exists(), "a bad case leaves nothing behind");
+    assert_eq!(code(&desk.alula(&["run", "missing.toml"])), Some(2));
+    assert_eq!(code(&desk.alula(&["run", "case.toml", "--nonsense"])), Some(2));
+}
+
+/// Kills runs of a case at random moments and goes on with them.
+fn survives_being_killed(case: &str) {
+    let desk = Desk::new(case);
+    let whole = desk.alula(&["run", "case.toml", "--out", "whole", "--quiet"]);
+    assert_eq!(code(&whole), Some(0), "{}", told(&whole));
+    let mut moment = random_moment(300);
+    for attempt in 0..20 {
+        let out = format!("out-{attempt}");
+        let mut child = desk.begun(&out);
+        std::thread::sleep(moment);
+        child.kill().unwrap();
+        if child.wait().unwrap().success() {
+            moment /= 2; // too late: it had finished
+            continue;
+        }
+        let output = desk.alula(&["resume", &out, "--quiet", "--threads", "2"]);
+        assert_eq!(code(&output), Some(0), "killed after {moment:?}: {}", told(&output));
+        assert_same_results(&desk.path("whole"), &desk.path(&out), &format!("killed after {moment:?}"));
+        return;
+    }
+    panic!("every run finished before it could be killed");
+}
+
+#[test]
+fn a_killed_relaxation_goes_on_to_the_same_bits() {
+    survives_being_killed(CIRCLE);
+}
+
+#[test]
+fn a_killed_march_goes_on_to_the_same_bits() {
+    survives_being_killed(VORTEX);
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupted_run_says_how_to_go_on() {
+    let desk = Desk::new(VORTEX);
+    let whole = desk.alula(&["run", "case.toml", "--out", "whole", "--quiet"]);
+    assert_eq!(code(&whole), Some(0), "{}", told(&whole));
+    let child = desk.begun("out");
+    let signal = Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+    assert!(signal.success());
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(code(&output), Some(130), "{}", told(&output));
+    assert!(told(&output).contains("`alula resume out`"), "{}", told(&output));
+    let output = desk.alula(&["resume", "out", "--quiet"]);
+    assert_eq!(code(&output), Some(0), "{}", told(&output));
+    assert_same_results(&desk.path("whole"), &desk.path("out"), "interrupted");
+}
+
+#[test]
+fn a_damaged_checkpoint_is_refused() {
+    let desk = Desk::new(CIRCLE);
+    let mut child = desk.begun("out");
+    child.kill().unwrap();
+    child.wait().unwrap();
+    let path = desk.path("out/checkpoint.alula");
+    let good = std::fs::read(&path).unwrap();
+    let mut flipped = good.clone();
+    flipped[good.len() / 2] ^= 0x10;
+    for (what, bytes) in [("a flipped bit", &flipped[..]), ("a short file", &good[..good.len() / 3]), ("nothing", &[])]
+    {
+        std::fs::write(&path, bytes).unwrap();
+        let output = desk.alula(&["resume", "out"]);
+        let text = told(&output);
+        assert_eq!(code(&output), Some(2), "{what}: {text}");
+        assert!(text.contains("checkpoint.alula"), "{what}: {text}");
+    }
+    std::fs::remove_file(&path).unwrap();
+    let output = desk.alula(&["resume", "out"]);
+    assert!(code(&output) == Some(2) && told(&output).contains("checkpoint.alula"), "{}", told(&output));
+    let output = desk.alula(&["resume", "nowhere"]);
+    assert!(code(&output) == Some(2) && told(&output).contains("`nowhere` is not a run folder"), "{}", told(&output));
+}

@@ -1,0 +1,41 @@
+# `just` lists the recipes, `just check` is what CI runs.
+
+_default:
+    @just --list
+
+# everything that CI runs
+check:
+    .ci/run
+
+# format the sources
+fmt:
+    cargo fmt --all
+
+# warnings are errors
+lint:
+    cargo fmt --all --check
+    cargo clippy --workspace --all-targets -- -D warnings
+
+# all tests
+test:
+    cargo test --workspace
+
+# bring the generated pages of the book up to date
+book:
+    ALULA_WRITE=1 cargo test --test tidy
+
+# particles a second of the kernels, one thread
+bench *filter:
+    RAYON_NUM_THREADS=1 cargo bench -p alula -- {{filter}}
+
+# documentation of the library
+doc:
+    cargo doc --workspace --no-deps --open
+
+# the case of the README
+run case="cases/naca0012-transonic/case.toml":
+    cargo run --release -- run {{case}}
+
+# licences, advisories and sources of the dependencies
+deny:
+    cargo deny check

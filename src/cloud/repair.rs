@@ -1,0 +1,250 @@
+//! Repair of clouds that would spoil a run, before the run starts.
+//!
+//! The least-squares gradient of a particle needs neighbours that surround it, at a fair distance. A row of the neighbour
+//! graph is *sick* when it has fewer than D + 2 entries, when its normal matrix M = Σ d dᵀ/|d|² has a condition number above
+//! 10³, or, for a fluid particle, when all it sees lies to one side: |Σ d/|d|²| / Σ 1/|d| above 0.9. Also sick is a fluid
+//! particle nearer than 0.3 spacings to another: its weights 1/|d| would outweigh all others. Treated in this order:
+//!
+//! 1. *wider*: everything in sight within 2.4 spacings joins the row, and the particle joins the rows of the new ones;
+//! 2. *nudged*: a fluid particle moves straight away from what is too near;
+//! 3. *first order*: a bounded gradient for the fluxes (see `Operators`), none for the reconstruction;
+//! 4. refused, if a fluid particle is left with fewer than D neighbours.
+//!
+//! A row that is not sick is not touched: healthy clouds keep every bit.
+use super::fill::Particles;
+use super::neighbours::{Rows, Search, Seen};
+use crate::math::Vector;
+use crate::math::least_squares::condition_symmetric;
+use crate::math::sweep::sweep;
+
+/// Condition number of the normal matrix above which a row is sick.
+pub const WORST_CONDITION: f64 = 1e3;
+/// One-sidedness above which the row of a fluid particle is sick; a corner of the body gives 0.6, a cone of 25° 0.9.
+pub const WORST_ONE_SIDED: f64 = 0.9;
+/// Distance to the nearest neighbour, in spacings, below which a fluid particle is sick (measured: 0.03 diverges).
+pub const NEAREST: f64 = 0.3;
+/// Radius of a widened row in spacings.
+const WIDE: f64 = 2.4;
+/// Distance, in spacings, to which a particle is nudged away from its nearest neighbour.
+const NUDGE: f64 = 0.36;
+
+/// What was done to a cloud.
+#[derive(Clone, Debug, Default)]
+pub struct Repair<const D: usize> {
+    /// Entries that join rows: (row, what it sees), sorted.
+    pub extra: Vec<(u32, Seen)>,
+    /// Particles that moved, with their new places.
+    pub moved: Vec<(u32, Vector<D>)>,
+    /// Rows of first order, ascending.
+    pub first_order: Vec<u32>,
+    /// Places that cannot be repaired, in words.
+    pub refused: Vec<String>,
+    /// Number of rows that were widened with success.
+    pub widened: usize,
+}
+
+impl<const D: usize> Repair<D> {
+    /// Examines every row and treats the sick ones.
+    pub(super) fn of(search: &Search<'_, D>, rows: &Rows) -> Self {
+        let particles = search.particles();
+        let mut sick = vec![false; particles.n_rows()];
+        sweep(&mut sick, |i| is_sick(search, i, &particles.x[i], rows.of(i)));
+        let mut repair = Self::default();
+        for i in (0..sick.len()).filter(|i| sick[*i]) {
+            repair.treat(search, rows, i);
+        }
+        repair.extra.sort_unstable();
+        repair.extra.dedup();
+        repair.extra.retain(|(row, seen)| !rows.of(*row as usize).contains(seen));
+        repair
+    }
+
+    fn treat(&mut self, search: &Search<'_, D>, rows: &Rows, i: usize) {
+        let particles = search.particles();
+        let mut row = rows.of(i).to_vec();
+        if !is_well_spread(&offsets(search, &particles.x[i], &row), particles.is_interface(i)) {
+            let wide = search.visible_within(i, WIDE);
+            if wide.len() > row.len() {
+                self.extra.extend(wide.iter().map(|s| (i as u32, *s)));
+                self.extra.extend(wide.iter().filter_map(|s| search.seen_from(i, *s)));
+                row = wide;
+            }
+        }
+        let mut x = particles.x[i];
+        if is_crowded(search, i, &x, &row)
+            && let Some(place) = nudged(search, i, &row)
+        {
+            self.moved.push((i as u32, place));
+            x = place;
+        }
+        if row.len() < D && !particles.is_interface(i) {
+            self.refused.push(complaint(particles, i, row.len()));
+        } else if is_well_spread(&offsets(search, &x, &row), particles.is_interface(i)) {
+            self.widened += usize::from(row.len() > rows.of(i).len());
+        } else {
+            self.first_order.push(i as u32);
+        }
+    }
+
+    /// What was done, in words: one line a kind of treatment.
+    pub fn notes(&self) -> Vec<String> {
+        let line = |n: usize, what: &str| {
+            (n > 0).then(|| format!("{n} {} {what}", if n == 1 { "particle" } else { "particles" }))
+        };
+        [
+            line(self.widened, "had too few neighbours around and got more, within 2.4 spacings"),
+            line(self.moved.len(), "moved away from a neighbour nearer than 0.3 spacings"),
+            line(self.first_order.len(), "fell back to first order: too few neighbours around"),
+        ]
+        .into_iter()
+        .flatten()
+        .collect()
+    }
+}
+
+fn complaint<const D: usize>(particles: &Particles<D>, i: usize, n: usize) -> String {
+    let place: Vec<String> = particles.x[i].0.iter().map(|c| format!("{c:.5}")).collect();
+    format!("particle {i} at ({}) sees {n} others; a gradient needs at least {D}", place.join(", "))
+}
+
+fn offsets<const D: usize>(search: &Search<'_, D>, x: &Vector<D>, row: &[Seen]) -> Vec<Vector<D>> {
+    row.iter().map(|s| search.position(s.0 as usize, s.1) - *x).collect()
+}
+
+fn is_sick<const D: usize>(search: &Search<'_, D>, i: usize, x: &Vector<D>, row: &[Seen]) -> bool {
+    let particles = search.particles();
+    let nearest = (!particles.is_interface(i)).then_some(NEAREST * particles.spacing[i]);
+    let mut sums = Sums::default();
+    let mut crowded = false;
+    for s in row {
+        let d = search.position(s.0 as usize, s.1) - *x;
+        crowded |= nearest.is_some_and(|r| d.norm_squared() < r * r);
+        sums.add(&d);
+    }
+    crowded && is_crowded(search, i, x, row) || !sums.is_well_spread(particles.is_interface(i))
+}
+
+/// True when a fluid particle has a neighbour nearer than allowed.
+fn is_crowded<const D: usize>(search: &Search<'_, D>, i: usize, x: &Vector<D>, row: &[Seen]) -> bool {
+    let particles = search.particles();
+    let near =
+        |s: &Seen| (search.position(s.0 as usize, s.1) - *x).norm() < NEAREST * search.mean_spacing(i, s.0 as usize);
+    !particles.is_interface(i) && row.iter().any(near)
+}
+
+/// The place away from the nearest neighbour, if that is in sight and not crowded as well.
+fn nudged<const D: usize>(search: &Search<'_, D>, i: usize, row: &[Seen]) -> Option<Vector<D>> {
+    let x = search.particles().x[i];
+    let distance = |s: &Seen| (search.position(s.0 as usize, s.1) - x).norm_squared();
+    let worst = row.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
+    let away = x - search.position(worst.0 as usize, worst.1);
+    let place = x + away.unit() * (NUDGE * search.mean_spacing(i, worst.0 as usize) - away.norm());
+    let free = !is_crowded(search, i, &place, row) && !search.blocked(&x, &place);
+    (free && away.norm() > 0.0).then_some(place)
+}
+
+/// Sums over a row from which its health follows.
+#[derive(Clone, Copy, Debug)]
+pub struct Sums<const D: usize> {
+    /// Σ d dᵀ/|d|²; its trace is the number of neighbours.
+    pub matrix: [[f64; D]; D],
+    side: Vector<D>,
+    reach: f64,
+    n: usize,
+}
+
+impl<const D: usize> Default for Sums<D> {
+    fn default() -> Self {
+        Self { matrix: [[0.0; D]; D], side: Vector::ZERO, reach: 0.0, n: 0 }
+    }
+}
+
+impl<const D: usize> Sums<D> {
+    /// Adds a neighbour at offset `d`.
+    #[inline]
+    pub fn add(&mut self, d: &Vector<D>) {
+        let w = 1.0 / d.norm_squared();
+        let v = *d * w;
+        for r in 0..D {
+            for c in 0..D {
+                self.matrix[r][c] += v[r] * d[c];
+            }
+        }
+        self.side += v;
+        self.reach += w.sqrt();
+        self.n += 1;
+    }
+
+    /// |Σ w d| / Σ w|d| with w = 1/|d|²: 0 when surrounded, 1 when everything lies in one direction.
+    pub fn one_sided(&self) -> f64 {
+        if self.n > 0 { self.side.norm() / self.reach } else { 1.0 }
+    }
+
+    /// Condition number of the normal matrix.
+    pub fn condition(&self) -> f64 {
+        condition_symmetric(&self.matrix)
+    }
+
+    /// Upper bound of the condition number without eigenvalues: with the trace n, the other eigenvalues multiply to at most
+    /// (n/(D−1))^(D−1), so that λ_min ≥ det·((D−1)/n)^(D−1).
+    fn condition_bound(&self) -> f64 {
+        let m = &self.matrix;
+        let n = self.n as f64;
+        let minor = |r: usize, s: usize| m[r][r] * m[s][s] - m[r][s] * m[s][r];
+        if D == 2 {
+            return n * n / minor(0, 1);
+        }
+        let det = m[0][0] * minor(1, 2) - m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0])
+            + m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
+        n * n * n / (4.0 * det)
+    }
+
+    fn is_well_spread(&self, interface: bool) -> bool {
+        let bound = self.condition_bound();
+        self.n >= D + 2 - usize::from(interface)
+            && (interface || self.one_sided() < WORST_ONE_SIDED)
+            && (0.0 < bound && bound < WORST_CONDITION || self.condition() < WORST_CONDITION)
+    }
+}
+
+fn is_well_spread<const D: usize>(offsets: &[Vector<D>], interface: bool) -> bool {
+    let mut sums = Sums::default();
+    offsets.iter().for_each(|d| sums.add(d));
+    sums.is_well_spread(interface)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sums<const D: usize>(offsets: &[[f64; D]]) -> Sums<D> {
+        let mut sums = Sums::default();
+        offsets.iter().for_each(|d| sums.add(&Vector(*d)));
+        sums
+    }
+
+    #[test]
+    fn a_lattice_is_healthy_and_a_line_is_not() {
+        let lattice = sums(&[[1.0, 0.0], [-1.0, 0.0], [0.0, 1.0], [0.0, -1.0]]);
+        assert!(lattice.is_well_spread(false) && lattice.one_sided() < 1e-15 && lattice.condition() == 1.0);
+        let line = sums(&[[1.0, 0.0], [-1.0, 0.0], [2.0, 0.01], [-2.0, 0.0], [3.0, 0.0]]);
+        assert!(!line.is_well_spread(false) && line.condition() > WORST_CONDITION);
+        let cone = sums(&[[1.0, 0.1, 0.0], [1.0, -0.1, 0.0], [1.0, 0.0, 0.1], [1.0, 0.0, -0.1], [2.0, 0.0, 0.0]]);
+        assert!(!cone.is_well_spread(false) && cone.one_sided() > 0.99);
+    }
+
+    #[test]
+    fn the_bound_lies_above_the_condition_number() {
+        let mut state = 7u64;
+        let mut next = || {
+            state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+            (state >> 11) as f64 / (1u64 << 53) as f64 - 0.5
+        };
+        for _ in 0..200 {
+            let a = sums::<2>(&std::array::from_fn::<_, 4, _>(|_| [next(), next()]));
+            let b = sums::<3>(&std::array::from_fn::<_, 5, _>(|_| [next(), next(), next()]));
+            assert!(a.condition() <= a.condition_bound() * (1.0 + 1e-9));
+            assert!(b.condition() <= b.condition_bound() * (1.0 + 1e-9));
+        }
+    }
+}

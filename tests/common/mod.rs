@@ -1,0 +1,61 @@
+//! Cases and solvers that several tests share.
+#![allow(dead_code, reason = "each test uses its own part")]
+use std::path::Path;
+
+use alula::case::{Case, read};
+use alula::scheme::Fluid;
+
+/// Uniform stream on a jittered cloud with two levels, plane or solid.
+pub(crate) fn two_levels(dimension: usize) -> String {
+    let list = |v: f64| vec![v.to_string(); dimension].join(", ");
+    let box_at = |low: f64, high: f64| format!("min = [{}]\nmax = [{}]", list(low), list(high));
+    let spacing = if dimension == 2 { 0.0625 } else { 0.125 };
+    let angles = if dimension == 2 { "alpha = \"7 deg\"" } else { "alpha = \"7 deg\"\nbeta = \"-4 deg\"" };
+    format!(
+        "title = \"two levels\"\ndimension = {dimension}\n[flow]\nmach = 0.6\n{angles}\n[cloud]\nspacing = {spacing}\n\
+         jitter = 0.2\n[cloud.domain]\n{}\n[[cloud.box]]\n{}\nspacing = {}\n[time.explicit]\nuntil = 1.0\n",
+        box_at(0.0, 1.0),
+        box_at(0.25, 0.75),
+        0.5 * spacing
+    )
+}
+
+/// A circle or a sphere in a stream.
+pub(crate) fn round_body(dimension: usize) -> String {
+    let (body, spacing, reach) = if dimension == 2 { ("circle", 0.0625, 4.0) } else { ("sphere", 0.125, 2.0) };
+    format!(
+        "title = \"round\"\n[flow]\nmach = 0.3\n[[body]]\n{body} = {{ radius = 0.5 }}\n[cloud]\nspacing = {spacing}\n\
+         far_field = {reach}\n[scheme]\nlimiter = \"none\"\n"
+    )
+}
+
+/// Isentropic vortex in a periodic square, carried along its diagonal.
+pub(crate) fn vortex(spacing: f64, until: f64) -> String {
+    format!(
+        "title = \"vortex\"\ndimension = 2\n[flow]\nmach = 1.1952286093343936\nalpha = \"45 deg\"\n[cloud]\n\
+         spacing = {spacing}\ndomain = {{ min = [0.0, 0.0], max = [10.0, 10.0] }}\n[boundary]\nx_min = \"periodic\"\n\
+         x_max = \"periodic\"\ny_min = \"periodic\"\ny_max = \"periodic\"\n[initial.vortex]\nstrength = 5.0\n\
+         centre = [5.0, 5.0]\nvelocity = [1.0, 1.0]\n[scheme]\nlimiter = \"none\"\nkappa = 0.3333333333333333\n\
+         [time.explicit]\nuntil = {until}\ncfl = 0.5\n"
+    )
+}
+
+/// Reads a case.
+pub(crate) fn case(text: &str) -> Case {
+    read(text, "case.toml").unwrap_or_else(|e| panic!("{e}"))
+}
+
+/// The equations of a case and its state at the start.
+pub(crate) fn solver<const D: usize>(text: &str) -> (Fluid<D>, Vec<f64>) {
+    alula::run::build_solver(&case(text), Path::new("")).unwrap()
+}
+
+/// Runs `f` on a pool of `n` threads.
+pub(crate) fn with_threads<T: Send>(n: usize, f: impl FnOnce() -> T + Send) -> T {
+    rayon::ThreadPoolBuilder::new().num_threads(n).build().unwrap().install(f)
+}
+
+/// Largest absolute value; infinite when one is NaN.
+pub(crate) fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
+    values.into_iter().fold(0.0, |m, v| if v.is_nan() { f64::INFINITY } else { m.max(v.abs()) })
+}

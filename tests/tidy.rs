@@ -1,0 +1,418 @@
+//! The rules of the house: floors, files, printing, lengths, equations, words.
+//!
+//! The sources are read as text; a cheap parser is enough because `rustfmt` fixes their layout. Generated pages of the book
+//! are compared with what is committed: `ALULA_WRITE=1 cargo test --test tidy` brings them up to date.
+use std::collections::BTreeMap;
+use std::fmt::Write as _;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// Modules by floor: each may use strictly lower floors only.
+const FLOORS: [(&str, u8); 14] = [
+    ("math", 0),
+    ("case", 0),
+    ("system", 1),
+    ("geometry", 1),
+    ("physics", 1),
+    ("exact", 1),
+    ("cloud", 2),
+    ("time", 2),
+    ("scheme", 3),
+    ("observe", 4),
+    ("report", 5),
+    ("verify", 5),
+    ("run", 6),
+    ("lib", 7),
+];
+
+/// Modules that may use less than their floor allows.
+const NARROW: [(&str, &[&str]); 7] = [
+    ("system", &["math"]),
+    ("physics", &["math"]),
+    ("exact", &["math"]),
+    ("time", &["math", "system"]),
+    ("observe", &["math", "case"]),
+    ("report", &["math", "case", "observe"]),
+    ("verify", &["math", "case", "exact"]),
+];
+
+/// Who may open files.
+const OPENS_FILES: [&str; 5] = ["src/case/", "src/observe/", "src/report/", "src/geometry/mod.rs", "src/run/folder.rs"];
+/// Who may contain `unsafe`: nobody so far.
+const UNSAFE: [&str; 0] = [];
+/// Who may start threads.
+const PARALLEL: [&str; 1] = ["src/math/sweep.rs"];
+/// Longest file, tests left out.
+const LONGEST_FILE: usize = 600;
+/// Longest line of a hand-written Markdown table or of a message is free; of code `rustfmt` decides.
+const EQUATIONS: [&str; 32] = [
+    "conservation of mass",
+    "conservation of momentum",
+    "conservation of energy",
+    "strain rate",
+    "stress of a Newtonian fluid",
+    "p = (γ − 1) ρ e",
+    "split of the Cauchy stress",
+    "hypoelastic pressure",
+    "deviatoric stress",
+    "normal equations of the linear fit, values given (Dirichlet)",
+    "linear fit f = a₀ + a₁x + a₂y + a₃z",
+    "∂f/∂n = 0 on the interface (Neumann)",
+    "the Neumann condition as a row: a·n = 0",
+    "overdetermined system of values and Neumann rows",
+    "normal equations with Neumann rows",
+    "∂Q/∂t + R = 0",
+    "Q = (ρ, u, e)",
+    "R as internal and external parts",
+    "Fourier series of Q",
+    "Fourier series of R",
+    "series put into the equations",
+    "harmonics sorted",
+    "ωA Q̂ + R̂ = 0",
+    "vectors of Fourier coefficients",
+    "matrix A",
+    "vectors of time instances",
+    "Q̃ = E⁻¹ Q̂",
+    "Q̂ = E Q̃",
+    "ωD Q̃ + R̃ = 0, D = E⁻¹ A E",
+    "matrix E⁻¹",
+    "matrix E",
+    "∂Q̃/∂τ + ωD Q̃ + R̃ = 0",
+];
+
+fn root() -> PathBuf {
+    PathBuf::from(env!("CARGO_MANIFEST_DIR"))
+}
+
+fn read(path: &str) -> String {
+    std::fs::read_to_string(root().join(path)).unwrap_or_else(|e| panic!("{path}: {e}"))
+}
+
+/// All files under `folder` whose name ends in `suffix`, sorted, relative to the root.
+fn files(folder: &str, suffix: &str) -> Vec<String> {
+    let mut found = Vec::new();
+    let mut stack = vec![root().join(folder)];
+    while let Some(place) = stack.pop() {
+        for entry in std::fs::read_dir(&place).unwrap().map(|e| e.unwrap().path()) {
+            if entry.is_dir() {
+                stack.push(entry);
+            } else if entry.to_string_lossy().ends_with(suffix) {
+                found.push(entry.strip_prefix(root()).unwrap().to_string_lossy().replace('\\', "/"));
+            }
+        }
+    }
+    found.sort();
+    found
+}
+
+/// Source without its tests and without comments.
+fn code(path: &str) -> String {
+    let text = read(path);
+    if path.ends_with("/tests.rs") {
+        return String::new();
+    }
+    let body = text.split("\n#[cfg(test)]\nmod tests {").next().unwrap_or_default();
+    let lines = body.lines().map(|l| l.split("//").next().unwrap_or_default());
+    lines.collect::<Vec<_>>().join("\n")
+}
+
+fn module_of(path: &str) -> &str {
+    let inner = path.trim_start_matches("src/");
+    inner.split('/').next().unwrap_or_default().trim_end_matches(".rs")
+}
+
+fn floor(module: &str) -> u8 {
+    let known = FLOORS.iter().find(|(m, _)| *m == module);
+    known.unwrap_or_else(|| panic!("`{module}` has no floor: add it to tests/tidy.rs and to ARCHITECTURE.md")).1
+}
+
+/// Modules named after `crate::`, also in braces.
+fn uses(text: &str) -> Vec<String> {
+    let word = |s: &str| s.trim().chars().take_while(|c| c.is_ascii_lowercase() || *c == '_').collect::<String>();
+    let mut found = Vec::new();
+    for part in text.split("crate::").skip(1) {
+        match part.strip_prefix('{') {
+            Some(list) => found.extend(top_level(list).iter().map(|s| word(s))),
+            None => found.push(word(part)),
+        }
+    }
+    found.retain(|m| !m.is_empty());
+    found
+}
+
+/// Parts of `a, b::{c, d}, e}` at the outer level.
+fn top_level(list: &str) -> Vec<String> {
+    let mut parts = vec![String::new()];
+    let mut depth = 0;
+    for c in list.chars() {
+        match c {
+            '{' => depth += 1,
+            '}' if depth == 0 => break,
+            '}' => depth -= 1,
+            ',' if depth == 0 => {
+                parts.push(String::new());
+                continue;
+            }
+            _ => {}
+        }
+        parts.last_mut().unwrap().push(c);
+    }
+    parts
+}
+
+fn assert_none(problems: &[String], rule: &str) {
+    assert!(problems.is_empty(), "{rule}:\n  {}", problems.join("\n  "));
+}
+
+#[test]
+fn modules_use_lower_floors_only() {
+    let mut problems = Vec::new();
+    for path in files("src", ".rs") {
+        let own = module_of(&path);
+        for used in uses(&code(&path)).into_iter().filter(|u| u != own) {
+            let narrow = NARROW.iter().find(|(m, _)| *m == own);
+            let allowed = narrow.is_none_or(|(_, list)| list.contains(&used.as_str()));
+            if floor(&used) >= floor(own) || !allowed {
+                problems.push(format!("{path} uses `{used}`"));
+            }
+        }
+    }
+    assert_none(&problems, "a module may use strictly lower floors only (ARCHITECTURE.md)");
+    assert_eq!(uses("use crate::{a::B, c::{d, e}, f}; crate::g::h()"), ["a", "c", "f", "g"]);
+}
+
+#[test]
+fn files_are_opened_where_it_is_allowed() {
+    let words = ["std::fs", "File::", "OpenOptions", "TcpStream", "std::net"];
+    let mut problems = offenders("src", &words, &OPENS_FILES);
+    problems.retain(|p| !p.contains("ClaimFile::"));
+    assert_none(&problems, "only case, observe, report, geometry::load_surface and run::folder open files");
+}
+
+#[test]
+fn only_the_command_prints() {
+    let words = ["println!", "print!(", "eprintln!", "eprint!(", "stdout()", "stderr()"];
+    assert_none(&offenders("src", &words, &[]), "the library does not print");
+}
+
+#[test]
+fn nothing_is_unsafe_and_only_sweeps_are_parallel() {
+    assert_none(&offenders("src", &["unsafe "], &UNSAFE), "`unsafe` needs an audit");
+    let words = ["rayon::", "thread::spawn"];
+    assert_none(&offenders("src", &words, &PARALLEL), "every parallel loop is in math::sweep");
+}
+
+#[test]
+fn integrators_know_no_physics_and_physics_no_particles() {
+    let words = ["density", "Primitive", "Conserved", "pressure"];
+    let mut problems = offenders("src/time", &words, &[]);
+    problems.extend(offenders("src/physics", &["usize]", "particle", "neighbour"], &[]));
+    problems.retain(|p| !p.contains("hint"));
+    assert_none(&problems, "time names no physics, physics no particles");
+}
+
+/// Lines of code outside the places allowed that hold one of the words.
+fn offenders(folder: &str, words: &[&str], allowed: &[&str]) -> Vec<String> {
+    let mut found = Vec::new();
+    for path in files(folder, ".rs").into_iter().filter(|p| !allowed.iter().any(|a| p.starts_with(a))) {
+        for line in code(&path).lines().filter(|l| words.iter().any(|w| l.contains(w))) {
+            found.push(format!("{path}: {}", line.trim()));
+        }
+    }
+    found
+}
+
+#[test]
+fn files_are_short() {
+    let mut long = Vec::new();
+    for path in files("src", ".rs").into_iter().chain(files("cli/src", ".rs")) {
+        let n = code(&path).lines().count();
+        if n > LONGEST_FILE {
+            long.push(format!("{path}: {n} lines"));
+        }
+    }
+    assert_none(&long, "a file has at most 600 lines without its tests");
+}
+
+#[test]
+fn every_file_says_what_it_is() {
+    let all = files("src", ".rs").into_iter().chain(files("cli/src", ".rs")).chain(files("tests", ".rs"));
+    let silent: Vec<String> = all.filter(|p| !read(p).starts_with("//!")).collect();
+    assert_none(&silent, "a file starts with its page, `//! ...`");
+}
+
+#[test]
+fn the_project_has_its_papers() {
+    let papers = [
+        "README.md",
+        "ARCHITECTURE.md",
+        "CHANGELOG.md",
+        "LICENSE-MIT",
+        "LICENSE-APACHE",
+        "justfile",
+        "deny.toml",
+        "clippy.toml",
+        "rustfmt.toml",
+        "book/SUMMARY.md",
+        ".ci/run",
+    ];
+    let missing: Vec<String> = papers.iter().filter(|p| !root().join(p).is_file()).map(|p| (*p).to_string()).collect();
+    assert_none(&missing, "missing papers");
+    let summary = read("book/SUMMARY.md");
+    let pages = summary.split("](").skip(1).filter_map(|s| s.split(')').next());
+    let lost: Vec<String> = pages.filter(|p| !root().join("book").join(p).is_file()).map(str::to_string).collect();
+    assert_none(&lost, "pages that book/SUMMARY.md names but do not exist");
+    let version = read("Cargo.toml").lines().find_map(|l| l.strip_prefix("version = \"")).map(str::to_string).unwrap();
+    assert!(read("CHANGELOG.md").contains(version.trim_end_matches('"')), "CHANGELOG.md does not name {version}");
+}
+
+#[test]
+fn architecture_names_every_module_on_its_floor() {
+    let text = read("ARCHITECTURE.md");
+    for (module, floor) in FLOORS.iter().filter(|(m, _)| *m != "lib") {
+        let line = text.lines().find(|l| l.starts_with(&format!("{floor}  ")));
+        let line = line.unwrap_or_else(|| panic!("ARCHITECTURE.md has no floor {floor}"));
+        assert!(line.split(|c: char| !c.is_alphanumeric()).any(|w| w == *module), "floor {floor} lacks `{module}`");
+    }
+}
+
+#[test]
+fn no_machine_paths_or_registries() {
+    // spelt in pieces, so that this file passes its own test
+    let folders = ["/wo#rk/", "/ro#ot/", "/ho#me/", "/tm#p/", "/Use#rs/"].map(|w| w.replace('#', ""));
+    let hosts = ["crates#.io", "pypi#.org", "files.python#hosted"].map(|w| w.replace('#', ""));
+    let mut found = Vec::new();
+    for path in tracked().into_iter().filter(|p| p != "Cargo.lock") {
+        let Ok(text) = std::fs::read_to_string(root().join(&path)) else { continue };
+        for (k, line) in text.lines().enumerate() {
+            if folders.iter().chain(&hosts).any(|w| line.contains(w.as_str())) {
+                found.push(format!("{path}:{}: {}", k + 1, line.trim()));
+            }
+        }
+    }
+    assert_none(&found, "machine paths and registry hosts do not belong in the project");
+}
+
+/// Tracked files; all files of the main folders where there is no git.
+fn tracked() -> Vec<String> {
+    let listed = Command::new("git").args(["ls-files", "-z"]).current_dir(root()).output();
+    if let Ok(out) = listed
+        && out.status.success()
+        && !out.stdout.is_empty()
+    {
+        return String::from_utf8_lossy(&out.stdout)
+            .split('\0')
+            .filter(|p| !p.is_empty())
+            .map(str::to_string)
+            .collect();
+    }
+    ["src", "cli", "tests", "benches", "book", "cases", "verification"].iter().flat_map(|f| files(f, "")).collect()
+}
+
+/// Where an equation stands: file and the name of what carries it.
+fn coded() -> BTreeMap<usize, Vec<(String, String)>> {
+    let mut found: BTreeMap<usize, Vec<(String, String)>> = BTreeMap::new();
+    for path in files("src", ".rs") {
+        let text = read(&path);
+        let lines: Vec<&str> = text.lines().map(str::trim).collect();
+        for (k, line) in lines.iter().enumerate() {
+            let Some(number) = line.strip_prefix("#[doc(alias = \"eq").and_then(|l| l.strip_suffix("\")]")) else {
+                continue;
+            };
+            let item = lines[k..].iter().find(|l| !l.starts_with('#') && !l.starts_with("//")).unwrap();
+            let number = number.parse().unwrap_or_else(|_| panic!("{path}: `{line}`"));
+            found.entry(number).or_default().push((path.clone(), name_of(item)));
+        }
+    }
+    found
+}
+
+/// Name of the item that a line declares.
+fn name_of(line: &str) -> String {
+    let words: Vec<&str> = line.split(|c: char| !c.is_alphanumeric() && c != '_').filter(|w| !w.is_empty()).collect();
+    let at = words.iter().position(|w| ["fn", "struct", "trait", "enum", "const", "type"].contains(w));
+    words
+        .get(at.map_or(0, |k| if words[k] == "const" && words.get(k + 1) == Some(&"fn") { k + 2 } else { k + 1 }))
+        .map_or_else(String::new, ToString::to_string)
+}
+
+/// Tests by the equations they name in the comment beside `#[test]`: `#[test] // eq10, eq15`.
+fn proofs() -> BTreeMap<usize, Vec<String>> {
+    let mut found: BTreeMap<usize, Vec<String>> = BTreeMap::new();
+    for path in files("src", ".rs").into_iter().chain(files("tests", ".rs")) {
+        let text = read(&path);
+        let lines: Vec<&str> = text.lines().map(str::trim).collect();
+        for (k, line) in lines.iter().enumerate() {
+            let Some(comment) = line.strip_prefix("#[test] //") else { continue };
+            let Some(item) = lines[k..].iter().find(|l| l.starts_with("fn ")) else { continue };
+            for word in comment.split([',', ' ', ':', ';']) {
+                if let Some(n) = word.strip_prefix("eq").and_then(|n| n.parse().ok()) {
+                    found.entry(n).or_default().push(name_of(item));
+                }
+            }
+        }
+    }
+    found
+}
+
+fn excuses() -> BTreeMap<usize, String> {
+    let table: toml::Table = toml::from_str(&read("book/equations-not-coded.toml")).unwrap();
+    let number = |key: &str| key.strip_prefix("eq").and_then(|n| n.parse().ok()).unwrap_or_else(|| panic!("`{key}`"));
+    table.iter().map(|(key, reason)| (number(key), reason.as_str().unwrap().to_string())).collect()
+}
+
+#[test]
+fn every_equation_is_coded_once_and_proven_or_excused() {
+    let (coded, proofs, excuses) = (coded(), proofs(), excuses());
+    let mut problems = Vec::new();
+    for n in 1..=EQUATIONS.len() {
+        match (coded.get(&n).map_or(0, Vec::len), excuses.get(&n)) {
+            (1, None) if proofs.contains_key(&n) => {}
+            (1, None) => problems.push(format!("eq{n} has no test: write `#[test] // eq{n}` beside one")),
+            (1, Some(_)) => problems.push(format!("eq{n} is coded and excused")),
+            (0, Some(reason)) if reason.len() > 10 => {}
+            (0, _) => problems.push(format!("eq{n} is neither coded nor excused")),
+            (k, _) => problems.push(format!("eq{n} stands {k} times")),
+        }
+    }
+    problems.extend(coded.keys().chain(excuses.keys()).filter(|n| **n > EQUATIONS.len()).map(|n| format!("eq{n}?")));
+    assert_none(&problems, "each equation stands exactly once in src/, with a test, or is excused");
+    fresh("book/equations.md", &equations_page(&coded, &proofs, &excuses));
+}
+
+fn equations_page(
+    coded: &BTreeMap<usize, Vec<(String, String)>>,
+    proofs: &BTreeMap<usize, Vec<String>>,
+    excuses: &BTreeMap<usize, String>,
+) -> String {
+    let mut page = String::from(
+        "# Equations of the paper\n\n<!-- generated by tests/tidy.rs -->\n\nNumbers are those of Hu, Kamakoti, Xue, Wang, Li, Attar and Vedula, AIAA 2010-7604. A function that realises an equation\ncarries its number: search the documentation for `eq10`.\n\n| eq. | statement | function | test |\n|---|---|---|---|\n",
+    );
+    for (n, statement) in (1..).zip(EQUATIONS) {
+        let row = match coded.get(&n).and_then(|places| places.first()) {
+            Some((path, name)) => {
+                let tests: Vec<String> = proofs.get(&n).into_iter().flatten().map(|t| format!("`{t}`")).collect();
+                format!("`{name}` in `{path}` | {}", tests.join(", "))
+            }
+            None => format!("not coded: {} | ", excuses.get(&n).map_or("", String::as_str)),
+        };
+        let _ = writeln!(page, "| {n} | {statement} | {row} |");
+    }
+    page
+}
+
+#[test]
+fn the_reference_of_the_case_file_is_fresh() {
+    fresh("book/reference/case.md", &alula::case::reference_markdown());
+}
+
+/// Compares a generated page with the committed one, or writes it when `ALULA_WRITE` is set.
+fn fresh(path: &str, page: &str) {
+    let place = root().join(path);
+    if std::env::var_os("ALULA_WRITE").is_some() {
+        std::fs::create_dir_all(place.parent().unwrap_or(Path::new("."))).unwrap();
+        std::fs::write(&place, page).unwrap();
+    }
+    let committed = std::fs::read_to_string(&place).unwrap_or_default();
+    assert!(committed == page, "`{path}` is stale; hint: `ALULA_WRITE=1 cargo test --test tidy`");
+}
