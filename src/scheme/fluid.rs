@@ -134,7 +134,13 @@ impl<const D: usize> Fluid<D> {
         });
         cloud.first_order.iter().for_each(|i| rows[*i as usize] = Gradient::ZERO);
         let rows = &*rows;
-        sweep(&mut rest[cloud.outer.len()..], |k| {
+        let (outer, images) = rest.split_at_mut(cloud.outer.len());
+        // a held state that varies along the side also varies across it: without a slope the edge flux is of first order
+        sweep(outer, |k| match cloud.outer[k].side {
+            Side::Held => rows.get(cloud.outer[k].source as usize).copied().unwrap_or(Gradient::ZERO),
+            _ => Gradient::ZERO,
+        });
+        sweep(images, |k| {
             let image = &cloud.images[k];
             let t = &cloud.transforms[image.transform as usize];
             rows.get(image.source as usize).map_or(Gradient::ZERO, |g| Gradient {
