@@ -20,7 +20,7 @@ fn main() {
     divan::main();
 }
 
-/// A square or a cube filled with displaced particles, with a finer half: 5·2^14 particles in 2-D, 72·2^10 in 3-D.
+/// A square or a cube filled with displaced particles on two levels: about 52,000 in 2-D, 78,000 in 3-D.
 fn case<const D: usize>() -> Case {
     let (spacing, half) = if D == 2 { (0.0078125, "0.25, 0.0") } else { (0.03125, "0.75, 0.0, 0.0") };
     let list = |v: f64| vec![v.to_string(); D].join(", ");
