@@ -143,5 +143,5 @@ fn write<const D: usize>(
     write_points(&places.out.join("cloud.vtu"), &points, &columns)?;
     write_json(&places.out.join("doctor.json"), &Diagnosis::of(cloud, fluid.walls.n_linear))?;
     let view = View { case, out: &places.out, fluid, work, surface };
-    Ok(pictures::write_cloud(&view)?)
+    pictures::write_cloud(&view)
 }

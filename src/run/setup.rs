@@ -120,7 +120,7 @@ pub(super) fn solver<const D: usize>(
             Ok("2") => WallRule::Bernoulli,
             _ => WallRule::Irrotational,
         },
-        far_field: Box::new(Stream::new(case, &centre)),
+        far_field: Box::new(Stream::new(case, &centre, surface.is_some_and(|s| !s.sharp.is_empty()))),
         held,
         cloud,
         operators,

@@ -77,13 +77,14 @@ pub struct Stream<const D: usize> {
 }
 
 impl<const D: usize> Stream<D> {
-    /// Far field of the bodies around `centre`.
-    pub fn new(case: &Case, centre: &Vector<D>) -> Self {
+    /// Far field of the bodies around `centre`. The vortex is left out when `lifting` is false: on a body without a sharp
+    /// edge nothing determines the circulation, and a far field that follows it would let it grow.
+    pub fn new(case: &Case, centre: &Vector<D>, lifting: bool) -> Self {
         let free = free_stream::<D>(case);
         let state =
             GasState { density: 1.0, velocity: Vector([free.velocity[0], free.velocity[1]]), pressure: free.pressure };
         let mach = free.velocity.norm();
-        let plane = D == 2 && 0.0 < mach && mach < 1.0;
+        let plane = lifting && D == 2 && 0.0 < mach && mach < 1.0;
         let centre = Vector([centre[0], centre[1]]);
         let vortex = plane.then(|| FarFieldVortex::new(state, case.flow.gamma, 0.0, centre).ok()).flatten();
         Self { free, lift: stream_axes::<D>(case).1, vortex }
