@@ -89,7 +89,12 @@ fn look<const D: usize>(case: &Case, places: &Places, files: bool) -> Result<Clo
 }
 
 /// Residual evaluations that the run will spend.
-fn evaluations<const D: usize>(case: &Case, fluid: &crate::scheme::Fluid<D>, frame: &crate::scheme::Frame<D>, u: &[f64]) -> f64 {
+fn evaluations<const D: usize>(
+    case: &Case,
+    fluid: &crate::scheme::Fluid<D>,
+    frame: &crate::scheme::Frame<D>,
+    u: &[f64],
+) -> f64 {
     match &case.time {
         Temporal::Steady(_) => EVALUATIONS * f64::from(1 + case.adapt.cycles),
         Temporal::Explicit(e) => {
@@ -115,7 +120,10 @@ fn integrator_bytes<const D: usize>(case: &Case, fluid: &crate::scheme::Fluid<D>
 }
 
 fn write<const D: usize>(
-    case: &Case, places: &Places, solver: &setup::Solver<D>, work: &mut crate::scheme::Work<D>,
+    case: &Case,
+    places: &Places,
+    solver: &setup::Solver<D>,
+    work: &mut crate::scheme::Work<D>,
     surface: Option<&crate::geometry::Surface<D>>,
 ) -> Result<(), RunError> {
     super::folder::create(case, places)?;

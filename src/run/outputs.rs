@@ -335,7 +335,12 @@ impl<'a, const D: usize> Finished<'a, D> {
 
 /// Writes the field of one moment of a march, and the list of all so far.
 pub(super) fn write_series<const D: usize>(
-    case: &Case, out: &Path, fluid: &Fluid<D>, work: &Work<D>, time: f64, interval: f64,
+    case: &Case,
+    out: &Path,
+    fluid: &Fluid<D>,
+    work: &Work<D>,
+    time: f64,
+    interval: f64,
 ) -> Result<(), RunError> {
     let all = snapshot::field(case, fluid, work);
     let columns: Vec<Column<'_>> =

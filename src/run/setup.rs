@@ -115,7 +115,11 @@ pub(super) fn solver<const D: usize>(
             threshold: scheme.limiter_threshold,
         },
         conservative,
-        wall_rule: match std::env::var("RULE").as_deref() { Ok("0") => WallRule::Enthalpy, Ok("2") => WallRule::Bernoulli, _ => WallRule::Irrotational },
+        wall_rule: match std::env::var("RULE").as_deref() {
+            Ok("0") => WallRule::Enthalpy,
+            Ok("2") => WallRule::Bernoulli,
+            _ => WallRule::Irrotational,
+        },
         far_field: Box::new(Stream::new(case, &centre)),
         held,
         cloud,

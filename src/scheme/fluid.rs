@@ -392,9 +392,22 @@ mod tests {
         let walls = WallFits::new(&cloud);
         let reconstruction = Reconstruction { second_order: true, kappa: 0.0, threshold: 0.02 };
         let held = Vec::new();
-        let (gas, flux, limiter, wall_rule) = (Gas { gamma: 1.4 }, Flux::Hllc, Limiter::VanAlbada, WallRule::Irrotational);
+        let (gas, flux, limiter, wall_rule) =
+            (Gas { gamma: 1.4 }, Flux::Hllc, Limiter::VanAlbada, WallRule::Irrotational);
         let far_field = Box::new(Still);
-        Fluid { cloud, operators, walls, gas, flux, limiter, reconstruction, conservative: true, wall_rule, far_field, held }
+        Fluid {
+            cloud,
+            operators,
+            walls,
+            gas,
+            flux,
+            limiter,
+            reconstruction,
+            conservative: true,
+            wall_rule,
+            far_field,
+            held,
+        }
     }
 
     /// Σ V R and Σ |V R| of every variable for an uneven flow, and the force on the bodies.

@@ -14,7 +14,10 @@ pub(crate) fn cloud(args: &arguments::Cloud) -> Outcome {
         Ok(case) => case,
         Err(outcome) => return outcome,
     };
-    let out = args.out.clone().unwrap_or_else(|| run::fresh_folder(Path::new("runs"), &format!("{}-cloud", name_of(&args.case))));
+    let out = args
+        .out
+        .clone()
+        .unwrap_or_else(|| run::fresh_folder(Path::new("runs"), &format!("{}-cloud", name_of(&args.case))));
     let input = args.case.parent().map_or_else(PathBuf::new, Path::to_path_buf);
     match run::inspect(&case, &Places { input, out: out.clone() }, true) {
         Ok(report) => {
@@ -30,7 +33,15 @@ pub(crate) fn cloud(args: &arguments::Cloud) -> Outcome {
 pub(crate) fn describe(r: &CloudReport) -> String {
     let mut text = format!(
         "particles      {} ({} fluid, {} interface, {} outer)\nneighbours     {} least, {:.1} mean, {} most\nspacing        {:.3e} finest, {:.3e} coarsest\nconditioning   {:.1} worst (1 is best)\n",
-        r.particles, r.fluid, r.interface, r.outer, r.neighbours.0, r.neighbours.1, r.neighbours.2, r.spacing.0, r.spacing.1,
+        r.particles,
+        r.fluid,
+        r.interface,
+        r.outer,
+        r.neighbours.0,
+        r.neighbours.1,
+        r.neighbours.2,
+        r.spacing.0,
+        r.spacing.1,
         r.worst_condition
     );
     text += &format!(
