@@ -11,7 +11,7 @@ use crate::math::multilevel::Cycle;
 use crate::math::{Bounds, Vector};
 use crate::physics::{Conserved, Gas};
 use crate::scheme::Fluid;
-use crate::scheme::boundary::{WallFits, WallRule};
+use crate::scheme::boundary::WallFits;
 use crate::scheme::probe::Probe;
 use crate::scheme::reconstruct::Reconstruction;
 use crate::scheme::start::{Stream, initial};
@@ -115,11 +115,6 @@ pub(super) fn solver<const D: usize>(
             threshold: scheme.limiter_threshold,
         },
         conservative,
-        wall_rule: match std::env::var("RULE").as_deref() {
-            Ok("0") => WallRule::Enthalpy,
-            Ok("2") => WallRule::Bernoulli,
-            _ => WallRule::Irrotational,
-        },
         far_field: Box::new(Stream::new(case, &centre, surface.is_some_and(|s| !s.sharp.is_empty()))),
         held,
         cloud,

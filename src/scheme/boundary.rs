@@ -5,7 +5,7 @@
 //! coordinates t along and n across the wall, f(t, n) = f_w + g n + (linear in t, quadratic in t, n). Solved once per cloud it
 //! gives f_w = Σ_k W_k f_k − g Σ_k W_k n_k. Imposed are
 //!
-//! - ∂(p/ρ^γ)/∂n = 0 and ∂H/∂n = 0: entropy and total enthalpy do not vary across the wall of a steady flow;
+//! - ∂(p/ρ^γ)/∂n = 0: entropy does not vary across the wall;
 //! - ∂u_t/∂n = −κ u_t: the flow at the wall is irrotational (Crocco), κ the curvature of the wall (tensor in 3-D);
 //! - ∂p/∂n = ρ κ u_t²: the centrifugal balance.
 //!
@@ -22,6 +22,8 @@ const LARGEST_AMPLIFICATION: f64 = 6.0;
 const CONSTANT_TOLERANCE: f64 = 1e-9;
 /// Rows that a quadratic fit must have beyond its coefficients.
 const SPARE_ROWS: usize = 3;
+/// Smallest fraction of the lowest pressure and entropy in front of a wall that its state may have.
+const FLOOR: f64 = 0.2;
 /// Most coefficients of a constrained fit: three dimensions, quadratic.
 const MOST: usize = 9;
 
@@ -133,45 +135,45 @@ fn tangents<const D: usize>(normal: &Vector<D>) -> [Vector<D>; D] {
     axes
 }
 
-/// How the pressure and the speed at the wall are found.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum WallRule {
-    /// Pressure from the centrifugal balance, speed from total enthalpy.
-    Enthalpy,
-    /// Pressure from the centrifugal balance, velocity from irrotationality.
-    Irrotational,
-    /// Velocity from irrotationality, pressure from total enthalpy and entropy.
-    Bernoulli,
-}
-
 /// State of interface particle `w` on a slip wall at rest.
+///
+/// Extrapolation may not bring pressure or entropy below a fraction of the lowest value in front of the wall.
 pub fn slip_wall<const D: usize>(
     cloud: &Cloud<D>,
     fits: &WallFits,
     gas: &Gas,
-    rule: WallRule,
     w: usize,
     q: impl Fn(usize) -> Primitive<D>,
 ) -> Primitive<D> {
     let range = cloud.wall_clouds.range(w);
-    let (mut p, mut s, mut h, mut v) = (0.0, 0.0, 0.0, Vector::<D>::ZERO);
+    let (mut p, mut s, mut v) = (0.0, 0.0, Vector::<D>::ZERO);
+    let mut lowest = (f64::INFINITY, f64::INFINITY);
     for (k, weight) in cloud.wall_clouds.of(w).iter().zip(&fits.weight[range]) {
         let state = q(*k as usize);
+        let entropy = gas.entropy(&state);
         p += weight * state.pressure;
-        s += weight * gas.entropy(&state);
-        h += weight * gas.total_enthalpy(&state);
+        s += weight * entropy;
         v += state.velocity * *weight;
+        lowest = (lowest.0.min(state.pressure), lowest.1.min(entropy));
     }
     let wall = &cloud.interface[w];
     let lever = fits.lever[w];
     let velocity = irrotational(&v, wall, lever);
-    close_state(gas, rule, (p, s, h), velocity, lever * bending(wall, &velocity))
+    let s = s.max(FLOOR * lowest.1);
+    let density = |p: f64| (p / s).powf(1.0 / gas.gamma);
+    // ∂p/∂n = ρ κ u²: the density follows the pressure at constant entropy, three rounds settle it
+    let pull = lever * bending(wall, &velocity) * velocity.norm_squared();
+    let mut pressure = p.max(FLOOR * lowest.0);
+    for _ in 0..3 {
+        pressure = (p - pull * density(pressure)).max(FLOOR * lowest.0);
+    }
+    Primitive { density: density(pressure), velocity, pressure }
 }
 
 /// Solves (I − B K) u_t = v_t: the tangential velocity with slope −K u_t across the wall.
 fn irrotational<const D: usize>(v: &Vector<D>, wall: &crate::cloud::Interface<D>, lever: f64) -> Vector<D> {
     let along = *v - wall.normal * v.dot(&wall.normal);
-    // B K is small (spacing over radius of curvature): three terms of the Neumann series
+    // B K is small (spacing over radius of curvature): six terms of the Neumann series are plenty
     let apply = |u: &Vector<D>| Vector::from_fn(|r| lever * wall.curvature[r].dot(u));
     let mut u = along;
     for _ in 0..6 {
@@ -188,39 +190,4 @@ fn bending<const D: usize>(wall: &crate::cloud::Interface<D>, velocity: &Vector<
         return 0.0;
     }
     (0..D).map(|r| velocity[r] * wall.curvature[r].dot(velocity)).sum::<f64>() / speed2
-}
-
-/// Completes a wall state from the fitted (p, s, H), the velocity and `bend` = B κ.
-fn close_state<const D: usize>(
-    gas: &Gas,
-    rule: WallRule,
-    fit: (f64, f64, f64),
-    velocity: Vector<D>,
-    bend: f64,
-) -> Primitive<D> {
-    let (p, s, h) = fit;
-    let g = gas.gamma;
-    let ratio = g / (g - 1.0);
-    if rule == WallRule::Bernoulli {
-        // T = p/ρ from H, then ρ from s = p/ρ^γ
-        let t = (h - 0.5 * velocity.norm_squared()) / ratio;
-        let density = (t / s).powf(1.0 / (g - 1.0));
-        return Primitive { density, velocity, pressure: density * t };
-    }
-    let density = |p: f64| (p / s).powf(1.0 / g);
-    if rule == WallRule::Irrotational {
-        let mut pressure = p;
-        for _ in 0..3 {
-            pressure = p - bend * density(pressure) * velocity.norm_squared();
-        }
-        return Primitive { density: density(pressure), velocity, pressure };
-    }
-    let mut pressure = p;
-    for _ in 0..4 {
-        let rho = density(pressure);
-        pressure = p - bend * (2.0 * (h * rho - ratio * pressure)).max(0.0);
-    }
-    let rho = density(pressure);
-    let speed = (2.0 * (h - ratio * pressure / rho)).max(0.0).sqrt();
-    Primitive { density: rho, velocity: velocity.unit() * speed, pressure }
 }

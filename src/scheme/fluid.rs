@@ -19,7 +19,7 @@ use crate::physics::riemann::{flux_ausm_plus_up, flux_hllc, flux_roe, flux_rusan
 use crate::physics::{Conserved, Gas, Primitive};
 use crate::system::{Fault, System};
 
-use super::boundary::{WallFits, WallRule, slip_wall};
+use super::boundary::{WallFits, slip_wall};
 use super::reconstruct::{Gradient, Limit, Reconstruction, Unlimited, VanAlbada, Venkatakrishnan};
 
 /// The compressible Euler equations on a cloud.
@@ -40,8 +40,6 @@ pub struct Fluid<const D: usize> {
     pub reconstruction: Reconstruction,
     /// Exactly conservative coefficients.
     pub conservative: bool,
-    /// How wall states are closed.
-    pub wall_rule: WallRule,
     /// State of the far field.
     pub far_field: Box<dyn FarField<D>>,
     /// States held on the outer particles that hold one.
@@ -89,7 +87,7 @@ impl<const D: usize> Fluid<D> {
             self.image_state(&fluid[image.source as usize], image.transform)
         };
         let (walls, rest) = rest.split_at_mut(cloud.interface.len());
-        sweep(walls, |w| slip_wall(cloud, &self.walls, &self.gas, self.wall_rule, w, seen));
+        sweep(walls, |w| slip_wall(cloud, &self.walls, &self.gas, w, seen));
         let walls = &*walls;
         let (outer, images) = rest.split_at_mut(cloud.outer.len());
         sweep(outer, |k| self.outer_state(&frame.outer[k], &cloud.outer[k], fluid));
@@ -392,22 +390,9 @@ mod tests {
         let walls = WallFits::new(&cloud);
         let reconstruction = Reconstruction { second_order: true, kappa: 0.0, threshold: 0.02 };
         let held = Vec::new();
-        let (gas, flux, limiter, wall_rule) =
-            (Gas { gamma: 1.4 }, Flux::Hllc, Limiter::VanAlbada, WallRule::Irrotational);
+        let (gas, flux, limiter) = (Gas { gamma: 1.4 }, Flux::Hllc, Limiter::VanAlbada);
         let far_field = Box::new(Still);
-        Fluid {
-            cloud,
-            operators,
-            walls,
-            gas,
-            flux,
-            limiter,
-            reconstruction,
-            conservative: true,
-            wall_rule,
-            far_field,
-            held,
-        }
+        Fluid { cloud, operators, walls, gas, flux, limiter, reconstruction, conservative: true, far_field, held }
     }
 
     /// Σ V R and Σ |V R| of every variable for an uneven flow, and the force on the bodies.
