@@ -8,6 +8,7 @@ use super::sweep::{norm, sum};
 pub struct Gmres {
     basis: Vec<Vec<f32>>,
     v: Vec<f64>,
+    rest: Vec<f64>,
     hessenberg: Vec<Vec<f64>>,
     z: Vec<f64>,
     w: Vec<f64>,
@@ -28,6 +29,7 @@ impl Gmres {
         Self {
             basis: vec![vec![0.0; n]; size + 1],
             v: vec![0.0; n],
+            rest: vec![0.0; n],
             hessenberg: vec![vec![0.0; size + 1]; size],
             z: vec![0.0; n],
             w: vec![0.0; n],
@@ -36,27 +38,51 @@ impl Gmres {
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        self.z.len() * (4 * self.basis.len() + 8 * 3)
+        self.z.len() * (4 * self.basis.len() + 8 * 4)
     }
 
-    /// Solves A x = b from x = 0 until the residual has fallen to `tolerance`, or the basis is full.
+    /// Solves A x = b from x = 0 until the residual has fallen to `tolerance`, starting again with an empty basis at most
+    /// `restarts` times.
     ///
     /// `product(v, out)` is A v; `precondition(v, out)` ≈ A⁻¹ v.
     pub fn solve(
         &mut self,
-        b: &[f64],
-        x: &mut [f64],
-        tolerance: f64,
+        (b, x): (&[f64], &mut [f64]),
+        (tolerance, restarts): (f64, usize),
         mut product: impl FnMut(&[f64], &mut [f64]),
         mut precondition: impl FnMut(&[f64], &mut [f64]),
     ) -> Solved {
-        let size = self.hessenberg.len();
         x.fill(0.0);
         let start = norm(b);
-        if start == 0.0 {
-            return Solved { iterations: 0, reduction: 0.0 };
+        let mut solved = Solved { iterations: 0, reduction: if start > 0.0 { 1.0 } else { 0.0 } };
+        self.rest.copy_from_slice(b);
+        for cycle in 0..=restarts {
+            if solved.reduction <= tolerance {
+                break;
+            }
+            if cycle > 0 {
+                product(x, &mut self.w);
+                self.rest.iter_mut().zip(&self.w).zip(b).for_each(|((r, w), b)| *r = b - w);
+            }
+            let (used, size) = self.cycle(tolerance * start, &mut product, &mut precondition);
+            precondition(&self.w, &mut self.z);
+            x.iter_mut().zip(&self.z).for_each(|(x, z)| *x += z);
+            solved = Solved { iterations: solved.iterations + used, reduction: size / start };
         }
-        self.basis[0].iter_mut().zip(b).for_each(|(v, b)| *v = (b / start) as f32);
+        solved
+    }
+
+    /// One basis for the right-hand side in `rest`; leaves the combination of basis vectors in `w`. Returns the number of
+    /// vectors and the size of the residual.
+    fn cycle(
+        &mut self,
+        goal: f64,
+        product: &mut impl FnMut(&[f64], &mut [f64]),
+        precondition: &mut impl FnMut(&[f64], &mut [f64]),
+    ) -> (usize, f64) {
+        let size = self.hessenberg.len();
+        let start = norm(&self.rest);
+        self.basis[0].iter_mut().zip(&self.rest).for_each(|(v, r)| *v = (r / start) as f32);
         let mut g = vec![0.0; size + 1];
         let mut rotations: Vec<(f64, f64)> = Vec::with_capacity(size);
         g[0] = start;
@@ -68,13 +94,12 @@ impl Gmres {
             self.orthogonalise(k);
             self.rotate(k, &mut rotations, &mut g);
             used = k + 1;
-            if g[k + 1].abs() <= tolerance * start || self.hessenberg[k][k] == 0.0 {
+            if g[k + 1].abs() <= goal || self.hessenberg[k][k] == 0.0 {
                 break;
             }
         }
         self.combine(used, &g);
-        precondition(&self.w, x);
-        Solved { iterations: used, reduction: g[used].abs() / start }
+        (used, g[used].abs())
     }
 
     /// Gram-Schmidt of A z against the basis.

@@ -70,6 +70,8 @@ const LARGEST_CHANGE: f64 = 0.3;
 const SMALLEST_FRACTION: f64 = 0.05;
 /// Courant number of the explicit method.
 const EXPLICIT_CFL: f64 = 1.5;
+/// Times that GMRES starts again with an empty basis.
+const RESTARTS: usize = 2;
 /// Stages of the explicit method.
 const STAGES: [f64; 5] = [0.25, 1.0 / 6.0, 0.375, 0.5, 1.0];
 
@@ -365,7 +367,7 @@ impl<'a, S: System> Relax<'a, S> {
             crate::math::sweep::sweep(&mut unscaled, |k| r[k] / scale[k / n]);
             levels.apply(&unscaled, z);
         };
-        let solved = gmres.solve(&b, &mut self.step, self.control.tolerance, product, precondition);
+        let solved = gmres.solve((&b, &mut self.step), (self.control.tolerance, RESTARTS), product, precondition);
         self.linear += solved.iterations as u32;
     }
 
