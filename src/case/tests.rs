@@ -35,7 +35,7 @@ fn defaults_are_the_documented_ones() {
     assert_eq!(case.bodies[0].placement, Placement { scale: 1.0, rotate: vec![], translate: vec![] });
     assert_eq!((case.flow.gamma, case.flow.gas_constant, case.flow.alpha), (1.4, 287.05, Angle(0.0)));
     let c = &case.cloud;
-    assert_eq!((c.layers, c.edge_levels, c.curvature, c.curvature_levels), (6.0, 2, 0.25, 2));
+    assert_eq!((c.layers, c.edge_levels, c.curvature, c.curvature_levels), (6.0, 2, 0.125, 3));
     assert_eq!((c.blank, c.radius, c.jitter), (0.4, 1.6, 0.0));
     assert_eq!(case.scheme, Scheme::default());
     assert_eq!(case.time, Temporal::default());
@@ -183,7 +183,9 @@ fn domains_and_sides_that_contradict_themselves_are_refused() {
     assert_shows(&open("").replace("spacing = 0.1", "spacing = 2"), &["the domain is only 1 wide"]);
     let tilted = open("[boundary]\ny_min = \"symmetry\"").replace("mach = 0.5", "mach = 0.5\nalpha = \"1 deg\"");
     assert_shows(&tilted, &["the free stream crosses the symmetry plane"]);
-    assert_shows(&format!("{GOOD}[boundary]\ny_min = \"symmetry\"\n"), &["a symmetry side needs `cloud.domain`"]);
+    assert_shows(&format!("{GOOD}[boundary]\ny_min = \"periodic\"\n"), &["a periodic side needs `cloud.domain`"]);
+    let half = GOOD.replace("alpha", "# alpha");
+    assert!(read(&format!("{half}[boundary]\ny_min = \"symmetry\"\n"), "case.toml").is_ok());
     let solid = open("[initial]\nringleb = {}").replace("[0, 0], max = [1, 1]", "[0, 0, 0], max = [1, 1, 1]");
     assert_shows(&solid, &["`ringleb` is a 2-D flow, but the case is 3-D"]);
     assert_shows(&format!("initial = \"vortex\"\n{GOOD}"), &["`vortex` needs a table of its own"]);

@@ -182,7 +182,7 @@ pub(super) fn control(steady: &Steady, dimension: usize) -> Control {
         },
         growth: 2.0,
         tolerance: 0.1,
-        basis: 12,
+        basis: 30,
         group: if dimension == 2 { 4 } else { 8 },
         cycle: Cycle { sweeps: 2, visits: 1, levels: if steady.method == SteadyMethod::LuSgs { 1 } else { 8 } },
     }
