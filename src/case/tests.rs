@@ -183,7 +183,10 @@ fn domains_and_sides_that_contradict_themselves_are_refused() {
     assert_shows(&open("").replace("spacing = 0.1", "spacing = 2"), &["the domain is only 1 wide"]);
     let tilted = open("[boundary]\ny_min = \"symmetry\"").replace("mach = 0.5", "mach = 0.5\nalpha = \"1 deg\"");
     assert_shows(&tilted, &["the free stream crosses the symmetry plane"]);
-    assert_shows(&format!("{GOOD}[boundary]\ny_min = \"periodic\"\n"), &["a periodic side needs `cloud.domain`"]);
+    assert_shows(
+        &format!("{GOOD}[boundary]\ny_min = \"periodic\"\n"),
+        &["a periodic side needs `cloud.domain`", "`boundary.y_min` is periodic, but"],
+    );
     let half = GOOD.replace("alpha", "# alpha");
     assert!(read(&format!("{half}[boundary]\ny_min = \"symmetry\"\n"), "case.toml").is_ok());
     let solid = open("[initial]\nringleb = {}").replace("[0, 0], max = [1, 1]", "[0, 0, 0], max = [1, 1, 1]");
