@@ -191,8 +191,9 @@ fn relax<const D: usize>(
         journal.save(at, 0.0, &relax.u, relax.resume())?;
     }
     let cycle = at.stages[at.stage].cycle;
-    let mut reached = false;
-    while relax.iteration < steady.iterations {
+    // a checkpoint may have been written by the very iteration that reached the goal
+    let mut reached = !fresh && relax.drop() <= 10f64.powf(-orders);
+    while !reached && relax.iteration < steady.iterations {
         let step = match relax.advance() {
             Ok(step) => step,
             Err(e) => {
