@@ -1,11 +1,12 @@
-//! Sparse matrices of small dense blocks, in single precision: what implicit steps are preconditioned with.
+//! Sparse matrices of small dense blocks: what implicit steps are preconditioned with.
 //!
-//! Rows are particles. The blocks of a row follow one another, its diagonal block first; each block is stored column by
-//! column. Sweeps are Gauss-Seidel inside fixed parts of consecutive rows and Jacobi between them, so that the result does
+//! Rows are particles. Each block is stored column by column, diagonal blocks in single precision, the others with the upper
+//! half of its bits (8 bits of significand): they only steer the linear solver, and sweeps run as fast as blocks are read.
+//! What rounding takes from a block goes to the diagonal of its row. Sweeps are Gauss-Seidel inside fixed parts of consecutive rows and Jacobi between them, so that the result does
 //! not depend on the number of threads.
 use std::ops::Range;
 
-use super::sweep::{parts, sweep_parts};
+use super::sweep::{parts, sweep_parts, sweep_two_parts};
 
 /// Rows in one part of a Gauss-Seidel sweep.
 const PART: usize = 1024;
@@ -16,10 +17,43 @@ pub struct BlockMatrix {
     block: usize,
     first: Vec<u32>,
     column: Vec<u32>,
-    value: Vec<f32>,
+    value: Vec<u16>,
+    diagonal: Vec<f32>,
     inverse: Vec<f32>,
     parts: Vec<Range<usize>>,
     value_parts: Vec<Range<usize>>,
+}
+
+/// An approximate solution of A x = b and the sums that its sweeps share.
+#[derive(Clone, Debug, Default)]
+pub struct Sweeps {
+    /// Right-hand side.
+    pub b: Vec<f32>,
+    /// Solution.
+    pub x: Vec<f32>,
+    /// Scratch: solution before a half-sweep, or b − A x.
+    pub r: Vec<f32>,
+    /// Sums over the columns of the same part on one side of the diagonal: those that the last half-sweep went through.
+    side: Vec<f32>,
+}
+
+impl Sweeps {
+    /// Storage for the rows of `matrix`.
+    pub fn new(matrix: &BlockMatrix) -> Self {
+        let zero = vec![0.0; matrix.n_rows() * matrix.block];
+        Self { b: zero.clone(), x: zero.clone(), r: zero.clone(), side: zero }
+    }
+
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        16 * self.b.len()
+    }
+
+    /// Sets the solution to zero.
+    pub fn clear(&mut self) {
+        self.x.fill(0.0);
+        self.side.fill(0.0);
+    }
 }
 
 impl BlockMatrix {
@@ -29,23 +63,25 @@ impl BlockMatrix {
     pub fn new(block: usize, parts: &[Range<usize>], first: &[u32], index: &[u32]) -> Self {
         let n = parts.last().map_or(0, |p| p.end);
         let mut own_first = vec![0u32];
-        let mut column = Vec::with_capacity(index.len() + n);
+        let mut column = Vec::new();
         for i in 0..n {
-            column.push(i as u32);
             let row = &index[first[i] as usize..first[i + 1] as usize];
             column.extend(row.iter().filter(|j| (**j as usize) < n && **j as usize != i));
             own_first.push(column.len() as u32);
         }
+        column.shrink_to_fit();
         Self::from_pattern(block, own_first, column, parts.to_vec())
     }
 
+    /// `column` holds the columns of each row beside its own, in ascending order.
     fn from_pattern(block: usize, first: Vec<u32>, column: Vec<u32>, parts: Vec<Range<usize>>) -> Self {
         let size = block * block;
         let value_parts = parts.iter().map(|p| first[p.start] as usize..first[p.end] as usize).collect();
         let n = first.len() - 1;
         Self {
             block,
-            value: vec![0.0; column.len() * size],
+            value: vec![0; column.len() * size],
+            diagonal: vec![0.0; n * size],
             inverse: vec![0.0; n * size],
             first,
             column,
@@ -66,7 +102,7 @@ impl BlockMatrix {
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        4 * (self.value.len() + self.inverse.len() + self.column.len() + self.first.len())
+        2 * self.value.len() + 4 * (2 * self.inverse.len() + self.column.len() + self.first.len())
     }
 
     /// Parts in which rows are assembled and swept.
@@ -74,167 +110,274 @@ impl BlockMatrix {
         &self.parts
     }
 
-    /// Calls `f(k, rows)` for every part; `rows` gives write access to the blocks of the rows of part `k`.
+    /// Calls `f(k, rows)` for every part; `rows` adds to the blocks of the rows of part `k`, which are zero at first.
     pub fn assemble(&mut self, f: impl Fn(usize, &mut Rows<'_>) + Sync) {
         let (first, column, block, parts) = (&self.first, &self.column, self.block, &self.parts);
-        sweep_parts(&self.value_parts, block * block, &mut self.value, &|k, value| {
-            value.fill(0.0);
-            let base = first[parts[k].start] as usize;
-            f(k, &mut Rows { first, column, value, base, size: block * block });
+        let size = block * block;
+        let values = (self.value_parts.as_slice(), size, self.value.as_mut_slice());
+        let diagonals = (parts.as_slice(), size, self.diagonal.as_mut_slice());
+        sweep_two_parts(values, diagonals, &|k, value, diagonal| {
+            value.fill(0);
+            diagonal.fill(0.0);
+            let start = parts[k].start;
+            f(k, &mut Rows { first, column, value, diagonal, start, block });
         });
     }
 
     /// Adds `shift[i]` to the diagonal of row i.
     pub fn shift(&mut self, shift: &[f64]) {
         let n = self.block;
-        for (i, s) in shift.iter().enumerate() {
-            let start = self.first[i] as usize * n * n;
-            (0..n).for_each(|d| self.value[start + d * (n + 1)] += *s as f32);
+        for (s, diagonal) in shift.iter().zip(self.diagonal.chunks_exact_mut(n * n)) {
+            (0..n).for_each(|d| diagonal[d * (n + 1)] += *s as f32);
         }
     }
 
     /// Inverts the diagonal blocks: needed before a sweep.
     pub fn invert_diagonal(&mut self) {
         let size = self.block * self.block;
-        let (first, value, block, parts) = (&self.first, &self.value, self.block, &self.parts);
+        let (diagonal, block, parts) = (&self.diagonal, self.block, &self.parts);
         sweep_parts(parts, size, &mut self.inverse, &|k, out| {
             for (i, inverse) in parts[k].clone().zip(out.chunks_exact_mut(size)) {
-                let start = first[i] as usize * size;
-                invert(block, &value[start..start + size], inverse);
+                invert(block, &diagonal[i * size..(i + 1) * size], inverse);
             }
         });
     }
 
-    /// One forward and one backward sweep for A x = b, starting from `x`; `old` is scratch of the same length.
-    pub fn symmetric_sweep(&self, b: &[f32], x: &mut [f32], old: &mut [f32]) {
-        for forward in [true, false] {
-            old.copy_from_slice(x);
-            match self.block {
-                4 => self.half_sweep::<4>(b, x, old, forward),
-                5 => self.half_sweep::<5>(b, x, old, forward),
-                3 => self.half_sweep::<3>(b, x, old, forward),
-                _ => self.half_sweep::<1>(b, x, old, forward),
-            }
-        }
-    }
-
-    fn half_sweep<const N: usize>(&self, b: &[f32], x: &mut [f32], old: &[f32], forward: bool) {
-        sweep_parts(&self.parts, N, x, &|k, own| {
-            let part = self.parts[k].clone();
-            let mut row = |i: usize| {
-                let mut r = load::<N>(b, i);
-                for e in self.first[i] as usize + 1..self.first[i + 1] as usize {
-                    let j = self.column[e] as usize;
-                    let xj = if part.contains(&j) { load::<N>(own, j - part.start) } else { load::<N>(old, j) };
-                    subtract::<N>(&self.value[e * N * N..(e + 1) * N * N], &xj, &mut r);
-                }
-                let mut y = [0.0; N];
-                subtract::<N>(&self.inverse[i * N * N..(i + 1) * N * N], &r, &mut y);
-                let at = (i - part.start) * N;
-                (0..N).for_each(|c| own[at + c] = -y[c]);
-            };
-            if forward { part.clone().for_each(&mut row) } else { part.clone().rev().for_each(&mut row) }
-        });
-    }
-
-    /// r = b − A x.
-    pub fn residual(&self, b: &[f32], x: &[f32], r: &mut [f32]) {
+    /// One forward and one backward sweep for A x = b, starting from `s.x`.
+    ///
+    /// The forward sweep needs the sums over the columns after the diagonal, which the backward sweep before it has formed,
+    /// and the other way round (Conrad and Wallach 1979): each half-sweep goes through half of the blocks.
+    pub fn symmetric_sweep(&self, s: &mut Sweeps) {
         match self.block {
-            4 => self.residual_of::<4>(b, x, r),
-            5 => self.residual_of::<5>(b, x, r),
-            3 => self.residual_of::<3>(b, x, r),
-            _ => self.residual_of::<1>(b, x, r),
+            4 => self.both_sweeps::<4>(s),
+            5 => self.both_sweeps::<5>(s),
+            3 => self.both_sweeps::<3>(s),
+            _ => self.both_sweeps::<1>(s),
         }
     }
 
-    fn residual_of<const N: usize>(&self, b: &[f32], x: &[f32], r: &mut [f32]) {
-        sweep_parts(&self.parts, N, r, &|k, out| {
-            for (i, row) in self.parts[k].clone().zip(out.chunks_exact_mut(N)) {
+    fn both_sweeps<const N: usize>(&self, s: &mut Sweeps) {
+        for forward in [true, false] {
+            s.r.copy_from_slice(&s.x);
+            let (b, old) = (&s.b, &s.r);
+            let outputs = ((self.parts.as_slice(), N, s.x.as_mut_slice()), (self.parts.as_slice(), N, &mut s.side[..]));
+            sweep_two_parts(outputs.0, outputs.1, &|k, x, side| {
+                let part = self.parts[k].clone();
+                let row = |i: usize| self.relax_row::<N>(i, &part, (b, old), forward, (x, side));
+                if forward { part.clone().for_each(row) } else { part.clone().rev().for_each(row) }
+            });
+        }
+    }
+
+    /// x_i = A_ii⁻¹ (b_i − Σ_j A_ij x_j).
+    #[inline(always)]
+    fn relax_row<const N: usize>(
+        &self,
+        i: usize,
+        part: &Range<usize>,
+        (b, old): (&[f32], &[f32]),
+        forward: bool,
+        (x, side): (&mut [f32], &mut [f32]),
+    ) {
+        let at = (i - part.start) * N;
+        let (below, inside, above) = self.split_row(i, part);
+        let middle = inside.start + self.column[inside.clone()].partition_point(|j| (*j as usize) < i);
+        let mut r = load::<N>(b, i);
+        for e in below.chain(above) {
+            subtract::<N>(self.off_diagonal(e), &load::<N>(old, self.column[e] as usize), &mut r);
+        }
+        let swept = if forward { inside.start..middle } else { middle..inside.end };
+        let mut sum = [0.0; N];
+        for e in swept {
+            subtract::<N>(self.off_diagonal(e), &load::<N>(x, self.column[e] as usize - part.start), &mut sum);
+        }
+        (0..N).for_each(|c| r[c] += side[at + c] + sum[c]);
+        side[at..at + N].copy_from_slice(&sum);
+        let mut y = [0.0; N];
+        multiply::<N>(&self.inverse[i * N * N..(i + 1) * N * N], &r, &mut y);
+        x[at..at + N].copy_from_slice(&y);
+    }
+
+    /// Entries of row `i` before, in and after its part.
+    #[inline(always)]
+    fn split_row(&self, i: usize, part: &Range<usize>) -> (Range<usize>, Range<usize>, Range<usize>) {
+        let (start, end) = (self.first[i] as usize, self.first[i + 1] as usize);
+        let row = &self.column[start..end];
+        let from = start + row.iter().take_while(|j| (**j as usize) < part.start).count();
+        let to = end - row.iter().rev().take_while(|j| (**j as usize) >= part.end).count();
+        (start..from, from..to.max(from), to.max(from)..end)
+    }
+
+    #[inline(always)]
+    fn off_diagonal(&self, e: usize) -> &[u16] {
+        let size = self.block * self.block;
+        &self.value[e * size..(e + 1) * size]
+    }
+
+    /// s.r = b − A x; and what a sweep needs to know of `s.x` after it was changed.
+    pub fn residual(&self, s: &mut Sweeps) {
+        match self.block {
+            4 => self.residual_of::<4>(s),
+            5 => self.residual_of::<5>(s),
+            3 => self.residual_of::<3>(s),
+            _ => self.residual_of::<1>(s),
+        }
+    }
+
+    fn residual_of<const N: usize>(&self, s: &mut Sweeps) {
+        let (b, x, side) = (&s.b, &s.x, &s.side);
+        sweep_parts(&self.parts, N, &mut s.r, &|k, out| {
+            let part = self.parts[k].clone();
+            for (i, row) in part.clone().zip(out.chunks_exact_mut(N)) {
+                let (below, inside, above) = self.split_row(i, &part);
+                let middle = inside.start + self.column[inside.clone()].partition_point(|j| (*j as usize) < i);
                 let mut sum = load::<N>(b, i);
-                for e in self.first[i] as usize..self.first[i + 1] as usize {
-                    let xj = load::<N>(x, self.column[e] as usize);
-                    subtract::<N>(&self.value[e * N * N..(e + 1) * N * N], &xj, &mut sum);
+                for e in below.chain(inside.start..middle).chain(above) {
+                    subtract::<N>(self.off_diagonal(e), &load::<N>(x, self.column[e] as usize), &mut sum);
+                }
+                let mut own = [0.0; N];
+                multiply::<N>(&self.diagonal[i * N * N..(i + 1) * N * N], &load::<N>(x, i), &mut own);
+                // what the backward sweep summed after the diagonal still holds
+                (0..N).for_each(|c| row[c] = sum[c] + side[i * N + c] - own[c]);
+            }
+        });
+    }
+
+    /// Forms the sums that a forward sweep starts from, after `s.x` was changed from outside.
+    pub fn restart(&self, s: &mut Sweeps) {
+        match self.block {
+            4 => self.restart_of::<4>(s),
+            5 => self.restart_of::<5>(s),
+            3 => self.restart_of::<3>(s),
+            _ => self.restart_of::<1>(s),
+        }
+    }
+
+    fn restart_of<const N: usize>(&self, s: &mut Sweeps) {
+        let x = &s.x;
+        sweep_parts(&self.parts, N, &mut s.side, &|k, out| {
+            let part = self.parts[k].clone();
+            for (i, row) in part.clone().zip(out.chunks_exact_mut(N)) {
+                let (_, inside, _) = self.split_row(i, &part);
+                let middle = inside.start + self.column[inside.clone()].partition_point(|j| (*j as usize) < i);
+                let mut sum = [0.0; N];
+                for e in middle..inside.end {
+                    subtract::<N>(self.off_diagonal(e), &load::<N>(x, self.column[e] as usize), &mut sum);
                 }
                 row.copy_from_slice(&sum);
             }
         });
     }
 
-    /// The pattern of the matrix that couples groups of rows, and where each block of this one goes.
+    /// The pattern of the matrix that couples groups of rows, and where each off-diagonal block of this one goes:
+    /// `u32::MAX` for the diagonal.
     pub fn coarse(&self, group: &[u32], n_groups: usize) -> (Self, Vec<u32>) {
         let mut members: Vec<Vec<u32>> = vec![Vec::new(); n_groups];
         group.iter().enumerate().for_each(|(i, g)| members[*g as usize].push(i as u32));
         let mut first = vec![0u32];
         let mut column: Vec<u32> = Vec::new();
-        let mut target = vec![0u32; self.column.len()];
-        let mut place = vec![u32::MAX; n_groups];
+        let mut target = vec![u32::MAX; self.column.len()];
+        let mut own: Vec<u32> = Vec::new();
         for (g, rows) in members.iter().enumerate() {
-            let start = column.len() as u32;
-            column.push(g as u32);
-            place[g] = start;
-            for i in rows {
-                for e in self.first[*i as usize] as usize..self.first[*i as usize + 1] as usize {
-                    let c = group[self.column[e] as usize];
-                    if place[c as usize] == u32::MAX || place[c as usize] < start {
-                        place[c as usize] = column.len() as u32;
-                        column.push(c);
-                    }
-                    target[e] = place[c as usize];
+            let entries = |i: &u32| self.first[*i as usize] as usize..self.first[*i as usize + 1] as usize;
+            own.clear();
+            own.extend(
+                rows.iter().flat_map(entries).map(|e| group[self.column[e] as usize]).filter(|c| *c != g as u32),
+            );
+            own.sort_unstable();
+            own.dedup();
+            let start = column.len();
+            for e in rows.iter().flat_map(entries) {
+                if let Ok(k) = own.binary_search(&group[self.column[e] as usize]) {
+                    target[e] = (start + k) as u32;
                 }
             }
+            column.extend_from_slice(&own);
             first.push(column.len() as u32);
         }
         let parts = parts(n_groups, PART);
         (Self::from_pattern(self.block, first, column, parts), target)
     }
 
-    /// Adds the blocks of `fine` into this matrix; `target` says where each goes.
-    pub fn gather(&mut self, fine: &Self, target: &[u32]) {
+    /// Sums the blocks of `fine` into this matrix; `group` and `target` say where each goes.
+    pub fn gather(&mut self, fine: &Self, group: &[u32], target: &[u32]) {
         let size = self.block * self.block;
-        self.value.fill(0.0);
-        for (e, t) in target.iter().enumerate() {
-            let from = &fine.value[e * size..(e + 1) * size];
-            let to = &mut self.value[*t as usize * size..(*t as usize + 1) * size];
-            to.iter_mut().zip(from).for_each(|(a, b)| *a += b);
+        self.value.fill(0);
+        self.diagonal.fill(0.0);
+        for (i, g) in group.iter().enumerate() {
+            let own = &mut self.diagonal[*g as usize * size..(*g as usize + 1) * size];
+            own.iter_mut().zip(&fine.diagonal[i * size..(i + 1) * size]).for_each(|(a, b)| *a += b);
+            for e in fine.first[i] as usize..fine.first[i + 1] as usize {
+                let from = fine.off_diagonal(e);
+                if target[e] == u32::MAX {
+                    own.iter_mut().zip(from).for_each(|(a, b)| *a += widen(*b));
+                } else {
+                    let to = &mut self.value[target[e] as usize * size..(target[e] as usize + 1) * size];
+                    to.iter_mut().zip(from).zip(own.iter_mut()).for_each(|((a, b), d)| *d += add(a, widen(*b)));
+                }
+            }
         }
     }
 
-    /// Columns of row `i`, itself first.
+    /// Columns of row `i` beside its own, in ascending order.
     pub fn columns(&self, i: usize) -> &[u32] {
         &self.column[self.first[i] as usize..self.first[i + 1] as usize]
     }
-
-    /// Size of the coupling of entry `k` of row `i`.
-    pub fn strength(&self, i: usize, k: usize) -> f32 {
-        let size = self.block * self.block;
-        let e = self.first[i] as usize + k;
-        self.value[e * size..(e + 1) * size].iter().map(|v| v * v).sum()
-    }
 }
 
-/// Write access to the blocks of the rows of one part.
+/// Adds to the blocks of the rows of one part.
 pub struct Rows<'a> {
     first: &'a [u32],
     column: &'a [u32],
-    value: &'a mut [f32],
-    base: usize,
-    size: usize,
+    value: &'a mut [u16],
+    diagonal: &'a mut [f32],
+    start: usize,
+    block: usize,
 }
 
 impl Rows<'_> {
-    /// The block that couples row `i` to column `j`, or `None` when the pattern has none.
-    #[inline]
-    pub fn block(&mut self, i: usize, j: usize) -> Option<&mut [f32]> {
-        let start = self.first[i] as usize;
-        let e = if i == j {
-            start
-        } else {
-            let row = &self.column[start + 1..self.first[i + 1] as usize];
-            start + 1 + row.binary_search(&(j as u32)).ok()?
-        };
-        let at = (e - self.base) * self.size;
-        Some(&mut self.value[at..at + self.size])
+    /// Adds `f(r, c)` to the block that couples row `i` to column `j`; does nothing when the pattern has none.
+    #[inline(always)]
+    pub fn add(&mut self, i: usize, j: usize, f: impl Fn(usize, usize) -> f64) {
+        let n = self.block;
+        let at = (i - self.start) * n * n;
+        let own = &mut self.diagonal[at..at + n * n];
+        if i == j {
+            (0..n).for_each(|c| (0..n).for_each(|r| own[c * n + r] += f(r, c) as f32));
+            return;
+        }
+        let row = self.first[i] as usize..self.first[i + 1] as usize;
+        let Ok(k) = self.column[row.clone()].binary_search(&(j as u32)) else { return };
+        let at = (row.start + k - self.first[self.start] as usize) * n * n;
+        let block = &mut self.value[at..at + n * n];
+        for c in 0..n {
+            for r in 0..n {
+                own[c * n + r] += add(&mut block[c * n + r], f(r, c) as f32);
+            }
+        }
     }
+}
+
+/// Adds `x` to a number in half the bits and returns what was lost, so that it can go to the diagonal: sums of rows, which
+/// rule the slow modes, then stay exact.
+#[inline(always)]
+fn add(half: &mut u16, x: f32) -> f32 {
+    let exact = widen(*half) + x;
+    *half = narrow(exact);
+    exact - widen(*half)
+}
+
+/// The upper half of the bits of a number, rounded to even.
+#[inline(always)]
+fn narrow(x: f32) -> u16 {
+    let bits = x.to_bits();
+    (bits.wrapping_add(0x7fff + ((bits >> 16) & 1)) >> 16) as u16
+}
+
+/// The number whose upper half this is.
+#[inline(always)]
+fn widen(half: u16) -> f32 {
+    f32::from_bits(u32::from(half) << 16)
 }
 
 #[inline(always)]
@@ -246,10 +389,22 @@ fn load<const N: usize>(x: &[f32], i: usize) -> [f32; N] {
 
 /// r ← r − B x for a block stored by columns.
 #[inline(always)]
-fn subtract<const N: usize>(block: &[f32], x: &[f32; N], r: &mut [f32; N]) {
+fn subtract<const N: usize>(block: &[u16], x: &[f32; N], r: &mut [f32; N]) {
+    let block = &block[..N * N];
     for c in 0..N {
         for k in 0..N {
-            r[k] -= block[c * N + k] * x[c];
+            r[k] -= widen(block[c * N + k]) * x[c];
+        }
+    }
+}
+
+/// r ← r + B x for a block stored by columns.
+#[inline(always)]
+fn multiply<const N: usize>(block: &[f32], x: &[f32; N], r: &mut [f32; N]) {
+    let block = &block[..N * N];
+    for c in 0..N {
+        for k in 0..N {
+            r[k] += block[c * N + k] * x[c];
         }
     }
 }

@@ -2,7 +2,10 @@
 //!
 //! Basis vectors are kept in single precision, sums are made in double: the linear systems of an implicit step are solved to
 //! a few per cent, and the basis is the largest array of a run.
-use super::sweep::{norm, sum};
+use super::sweep::{norm, sum_each, sweep, sweep_chunks};
+
+/// Part of a vector that must be left by a pass of Gram-Schmidt for the rest to be orthogonal enough.
+const ENOUGH_LEFT: f64 = 0.1;
 
 /// Storage of GMRES, reused between calls.
 pub struct Gmres {
@@ -82,13 +85,15 @@ impl Gmres {
     ) -> (usize, f64) {
         let size = self.hessenberg.len();
         let start = norm(&self.rest);
-        self.basis[0].iter_mut().zip(&self.rest).for_each(|(v, r)| *v = (r / start) as f32);
+        let rest = &self.rest;
+        sweep(&mut self.basis[0], |i| (rest[i] / start) as f32);
         let mut g = vec![0.0; size + 1];
         let mut rotations: Vec<(f64, f64)> = Vec::with_capacity(size);
         g[0] = start;
         let mut used = 0;
         for k in 0..size {
-            self.v.iter_mut().zip(&self.basis[k]).for_each(|(v, b)| *v = f64::from(*b));
+            let direction = &self.basis[k];
+            sweep(&mut self.v, |i| f64::from(direction[i]));
             precondition(&self.v, &mut self.z);
             product(&self.z, &mut self.w);
             self.orthogonalise(k);
@@ -102,17 +107,28 @@ impl Gmres {
         (used, g[used].abs())
     }
 
-    /// Gram-Schmidt of A z against the basis.
+    /// Gram-Schmidt of A z against the basis; once more where the first pass left little of it.
+    ///
+    /// The classical form reads each chunk of the basis once for all products, the modified form once for each.
     fn orthogonalise(&mut self, k: usize) {
-        for j in 0..=k {
-            let h = mixed_dot(&self.w, &self.basis[j]);
-            self.hessenberg[k][j] = h;
-            self.w.iter_mut().zip(&self.basis[j]).for_each(|(w, v)| *w -= h * f64::from(*v));
+        let column = &mut self.hessenberg[k];
+        column[..=k].fill(0.0);
+        let mut before = norm(&self.w);
+        let mut after = before;
+        for _ in 0..2 {
+            let h = products(&self.w, &self.basis[..=k]);
+            column.iter_mut().zip(&h).for_each(|(c, h)| *c += h);
+            combine(&mut self.w, &self.basis[..=k], |j| -h[j]);
+            after = norm(&self.w);
+            if after > ENOUGH_LEFT * before {
+                break;
+            }
+            before = after;
         }
-        let h = norm(&self.w);
-        self.hessenberg[k][k + 1] = h;
-        let scale = if h > 0.0 { 1.0 / h } else { 0.0 };
-        self.basis[k + 1].iter_mut().zip(&self.w).for_each(|(v, w)| *v = (w * scale) as f32);
+        column[k + 1] = after;
+        let scale = if after > 0.0 { 1.0 / after } else { 0.0 };
+        let w = &self.w;
+        sweep(&mut self.basis[k + 1], |i| (w[i] * scale) as f32);
     }
 
     fn rotate(&mut self, k: usize, rotations: &mut Vec<(f64, f64)>, g: &mut [f64]) {
@@ -137,12 +153,25 @@ impl Gmres {
             y[k] = if self.hessenberg[k][k] != 0.0 { y[k] / self.hessenberg[k][k] } else { 0.0 };
         }
         self.w.fill(0.0);
-        for (y, v) in y.iter().zip(&self.basis) {
-            self.w.iter_mut().zip(v).for_each(|(w, v)| *w += y * f64::from(*v));
-        }
+        combine(&mut self.w, &self.basis[..used], |j| y[j]);
     }
 }
 
-fn mixed_dot(a: &[f64], b: &[f32]) -> f64 {
-    sum(a.len(), |i| a[i] * f64::from(b[i]))
+/// Inner products of `w` with all vectors of the basis.
+fn products(w: &[f64], basis: &[Vec<f32>]) -> Vec<f64> {
+    sum_each(w.len(), basis.len(), |range, out| {
+        for (out, v) in out.iter_mut().zip(basis) {
+            *out = w[range.clone()].iter().zip(&v[range.clone()]).map(|(a, b)| a * f64::from(*b)).sum();
+        }
+    })
+}
+
+/// w ← w + Σ_j y_j v_j.
+fn combine(w: &mut [f64], basis: &[Vec<f32>], y: impl Fn(usize) -> f64 + Sync) {
+    sweep_chunks(w, |range, out| {
+        for (j, v) in basis.iter().enumerate() {
+            let y = y(j);
+            out.iter_mut().zip(&v[range.clone()]).for_each(|(w, v)| *w += y * f64::from(*v));
+        }
+    });
 }

@@ -3,7 +3,8 @@
 //! Rows are gathered into groups of a few strongly coupled neighbours; the matrix of the groups is the sum of the blocks of
 //! their members (Galerkin with piecewise-constant transfer; Lallemand, Steve and Dervieux 1992). For the first-order upwind
 //! operator this is again a first-order upwind operator on a coarser cloud.
-use super::block_matrix::BlockMatrix;
+use super::block_matrix::{BlockMatrix, Sweeps};
+use super::sweep::sweep;
 
 /// Rows at which coarsening stops.
 const COARSEST: usize = 60;
@@ -25,9 +26,7 @@ struct Level {
     matrix: BlockMatrix,
     group: Vec<u32>,
     target: Vec<u32>,
-    b: Vec<f32>,
-    x: Vec<f32>,
-    r: Vec<f32>,
+    sweeps: Sweeps,
 }
 
 /// A matrix and its coarser versions.
@@ -68,22 +67,24 @@ impl Multilevel {
             let fine = &mut fine[k];
             fine.matrix.invert_diagonal();
             if let Some(coarse) = coarse.first_mut() {
-                coarse.matrix.gather(&fine.matrix, &fine.target);
+                coarse.matrix.gather(&fine.matrix, &fine.group, &fine.target);
             }
         }
     }
 
     /// z ≈ A⁻¹ r.
     pub fn apply(&mut self, r: &[f64], z: &mut [f64]) {
-        self.levels[0].b.iter_mut().zip(r).for_each(|(b, r)| *b = *r as f32);
-        self.levels[0].x.fill(0.0);
+        let finest = &mut self.levels[0].sweeps;
+        sweep(&mut finest.b, |k| r[k] as f32);
+        finest.clear();
         cycle(&mut self.levels, self.cycle);
-        z.iter_mut().zip(&self.levels[0].x).for_each(|(z, x)| *z = f64::from(*x));
+        let x = &self.levels[0].sweeps.x;
+        sweep(z, |k| f64::from(x[k]));
     }
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        self.levels.iter().map(|l| l.matrix.bytes() + 4 * (l.group.len() + l.target.len() + 3 * l.b.len())).sum()
+        self.levels.iter().map(|l| l.matrix.bytes() + l.sweeps.bytes() + 4 * (l.group.len() + l.target.len())).sum()
     }
 
     /// Rows of each level.
@@ -93,8 +94,7 @@ impl Multilevel {
 }
 
 fn level(matrix: BlockMatrix) -> Level {
-    let n = matrix.n_rows() * matrix.block();
-    Level { group: Vec::new(), target: Vec::new(), b: vec![0.0; n], x: vec![0.0; n], r: vec![0.0; n], matrix }
+    Level { group: Vec::new(), target: Vec::new(), sweeps: Sweeps::new(&matrix), matrix }
 }
 
 fn cycle(levels: &mut [Level], how: Cycle) {
@@ -102,28 +102,31 @@ fn cycle(levels: &mut [Level], how: Cycle) {
     let bottom = coarse.is_empty();
     let sweeps = if bottom && how.levels > 1 { COARSEST_SWEEPS } else { how.sweeps };
     for _ in 0..sweeps {
-        fine.matrix.symmetric_sweep(&fine.b, &mut fine.x, &mut fine.r);
+        fine.matrix.symmetric_sweep(&mut fine.sweeps);
     }
     if bottom {
         return;
     }
-    fine.matrix.residual(&fine.b, &fine.x, &mut fine.r);
+    fine.matrix.residual(&mut fine.sweeps);
     let n = fine.matrix.block();
-    let next = &mut coarse[0];
+    let next = &mut coarse[0].sweeps;
     next.b.fill(0.0);
-    for (i, g) in fine.group.iter().enumerate() {
-        (0..n).for_each(|c| next.b[*g as usize * n + c] += fine.r[i * n + c]);
+    for (r, g) in fine.sweeps.r.chunks_exact(n).zip(&fine.group) {
+        let at = *g as usize * n;
+        next.b[at..at + n].iter_mut().zip(r).for_each(|(b, r)| *b += r);
     }
-    next.x.fill(0.0);
+    next.clear();
     for _ in 0..how.visits {
         cycle(coarse, how);
     }
-    let next = &coarse[0];
-    for (i, g) in fine.group.iter().enumerate() {
-        (0..n).for_each(|c| fine.x[i * n + c] += next.x[*g as usize * n + c]);
+    let next = &coarse[0].sweeps;
+    for (x, g) in fine.sweeps.x.chunks_exact_mut(n).zip(&fine.group) {
+        let at = *g as usize * n;
+        x.iter_mut().zip(&next.x[at..at + n]).for_each(|(x, c)| *x += c);
     }
+    fine.matrix.restart(&mut fine.sweeps);
     for _ in 0..sweeps {
-        fine.matrix.symmetric_sweep(&fine.b, &mut fine.x, &mut fine.r);
+        fine.matrix.symmetric_sweep(&mut fine.sweeps);
     }
 }
 
@@ -139,11 +142,11 @@ fn groups(matrix: &BlockMatrix, size: usize) -> (Vec<u32>, usize) {
             continue;
         }
         near.clear();
-        near.extend(matrix.columns(i)[1..].iter().filter(|j| group[**j as usize] == FREE));
+        near.extend(matrix.columns(i).iter().filter(|j| group[**j as usize] == FREE));
         near.sort_unstable_by_key(|j| (j.abs_diff(i as u32), *j));
         if near.is_empty() && size > 1 {
             // a lone row joins the group of its nearest neighbour
-            if let Some(j) = matrix.columns(i)[1..].iter().min_by_key(|j| (j.abs_diff(i as u32), **j)) {
+            if let Some(j) = matrix.columns(i).iter().min_by_key(|j| (j.abs_diff(i as u32), **j)) {
                 group[i] = group[*j as usize];
                 continue;
             }

@@ -82,6 +82,43 @@ fn split_parts<T: Send>(
     }
 }
 
+/// Parts, values a row, and the output they cut.
+pub type Cut<'a, T> = (&'a [Range<usize>], usize, &'a mut [T]);
+
+/// [`sweep_parts`] with two outputs that are cut into the same number of parts.
+pub fn sweep_two_parts<T: Send, U: Send>(
+    a: Cut<'_, T>,
+    b: Cut<'_, U>,
+    f: &(impl Fn(usize, &mut [T], &mut [U]) + Sync),
+) {
+    split_two_parts(0, a, b, f);
+}
+
+fn split_two_parts<T: Send, U: Send>(
+    first: usize,
+    a: Cut<'_, T>,
+    b: Cut<'_, U>,
+    f: &(impl Fn(usize, &mut [T], &mut [U]) + Sync),
+) {
+    match a.0.len() {
+        0 => {}
+        1 => f(first, a.2, b.2),
+        n => {
+            let ((a_left, a_right), (b_left, b_right)) = (halve(a), halve(b));
+            rayon::join(
+                || split_two_parts(first, a_left, b_left, f),
+                || split_two_parts(first + n / 2, a_right, b_right, f),
+            );
+        }
+    }
+}
+
+fn halve<T>((parts, width, out): Cut<'_, T>) -> (Cut<'_, T>, Cut<'_, T>) {
+    let (left, right) = parts.split_at(parts.len() / 2);
+    let (a, b) = out.split_at_mut((right[0].start - left[0].start) * width);
+    ((left, width, a), (right, width, b))
+}
+
 /// Cuts `0..n` into parts of about `size` rows.
 pub fn parts(n: usize, size: usize) -> Vec<Range<usize>> {
     let count = n.div_ceil(size).max(1);
@@ -105,6 +142,23 @@ fn pairwise(from: usize, to: usize, value: &(impl Fn(usize) -> f64 + Sync)) -> f
             a + b
         }
     }
+}
+
+/// `width` sums at once: `f` sets those of a range of indices; chunks of fixed size are added in order.
+pub fn sum_each(n: usize, width: usize, f: impl Fn(Range<usize>, &mut [f64]) + Sync) -> Vec<f64> {
+    let mut chunks = vec![0.0; n.div_ceil(CHUNK) * width];
+    chunks
+        .par_chunks_exact_mut(width.max(1))
+        .enumerate()
+        .for_each(|(c, out)| f(c * CHUNK..n.min((c + 1) * CHUNK), out));
+    let mut total = vec![0.0; width];
+    chunks.chunks_exact(width.max(1)).for_each(|c| total.iter_mut().zip(c).for_each(|(t, c)| *t += c));
+    total
+}
+
+/// Calls `f(range, slots)` for consecutive slots of `out`, a chunk at a time.
+pub fn sweep_chunks<T: Send>(out: &mut [T], f: impl Fn(Range<usize>, &mut [T]) + Sync) {
+    out.par_chunks_mut(CHUNK).enumerate().for_each(|(c, chunk)| f(c * CHUNK..c * CHUNK + chunk.len(), chunk));
 }
 
 /// Largest of `f(i)` over `0..n`, at least zero.

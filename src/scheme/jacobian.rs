@@ -85,7 +85,7 @@ pub fn assemble<const D: usize>(fluid: &Fluid<D>, work: &Work<D>, matrix: &mut B
             for face in op.wall_faces(k) {
                 let i = face.i as usize;
                 let push = wall_jacobian(&fluid.gas, &work.state[i], &fluid.half_face(i, &face.area));
-                add_block::<D>(rows.block(i, i), |r, c| 2.0 * push[r][c]);
+                rows.add(i, i, |r, c| 2.0 * push[r][c]);
             }
         }
         for edge in op.edges(k) {
@@ -104,14 +104,14 @@ pub fn assemble<const D: usize>(fluid: &Fluid<D>, work: &Work<D>, matrix: &mut B
                     false => a,
                 };
                 let own = flux_jacobian(&fluid.gas, &work.state[row], &a);
-                add_block::<D>(rows.block(row, row), |r, c| scale * spread[r][c] - own[r][c]);
+                rows.add(row, row, |r, c| scale * spread[r][c] - own[r][c]);
                 let other = flux_jacobian(&fluid.gas, &work.state[column], &a);
                 let coupling = |r: usize, c: usize| other[r][c] - scale * spread[r][c];
                 if column < fluid.cloud.n_fluid {
-                    add_block::<D>(rows.block(row, column), coupling);
+                    rows.add(row, column, coupling);
                 } else if fluid.cloud.interface_range().contains(&column) {
                     let normal = fluid.cloud.interface[column - fluid.cloud.n_fluid].normal;
-                    add_block::<D>(rows.block(row, row), |r, c| folded(&coupling, &normal, r, c));
+                    rows.add(row, row, |r, c| folded(&coupling, &normal, r, c));
                 } else if column >= fluid.cloud.n_real() {
                     let image = fluid.cloud.images[column - fluid.cloud.n_real()];
                     let source = image.source as usize;
@@ -119,7 +119,7 @@ pub fn assemble<const D: usize>(fluid: &Fluid<D>, work: &Work<D>, matrix: &mut B
                     let flip = |c: usize| if (1..=D).contains(&c) { sign[c - 1] } else { 1.0 };
                     if source < fluid.cloud.n_fluid {
                         let target = if source == row { row } else { source };
-                        add_block::<D>(rows.block(row, target), |r, c| coupling(r, c) * flip(c));
+                        rows.add(row, target, |r, c| coupling(r, c) * flip(c));
                     }
                 }
             }
@@ -148,16 +148,6 @@ fn folded<const D: usize>(coupling: &impl Fn(usize, usize) -> f64, normal: &Vect
     }
     let along: f64 = (0..D).map(|d| coupling(r, 1 + d) * normal[d]).sum();
     coupling(r, c) - along * normal[c - 1]
-}
-
-fn add_block<const D: usize>(block: Option<&mut [f32]>, f: impl Fn(usize, usize) -> f64) {
-    let Some(block) = block else { return };
-    let n = D + 2;
-    for c in 0..n {
-        for r in 0..n {
-            block[c * n + r] += f(r, c) as f32;
-        }
-    }
 }
 
 #[cfg(test)]
