@@ -10,6 +10,8 @@ pub mod system;
 
 pub mod geometry;
 
+pub mod motion;
+
 pub mod physics;
 
 pub mod exact;

@@ -9,11 +9,12 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// Modules by floor: each may use strictly lower floors only.
-const FLOORS: [(&str, u8); 14] = [
+const FLOORS: [(&str, u8); 15] = [
     ("math", 0),
     ("case", 0),
     ("system", 1),
     ("geometry", 1),
+    ("motion", 1),
     ("physics", 1),
     ("exact", 1),
     ("cloud", 2),
@@ -27,8 +28,9 @@ const FLOORS: [(&str, u8); 14] = [
 ];
 
 /// Modules that may use less than their floor allows.
-const NARROW: [(&str, &[&str]); 7] = [
+const NARROW: [(&str, &[&str]); 8] = [
     ("system", &["math"]),
+    ("motion", &["math", "case"]),
     ("physics", &["math"]),
     ("exact", &["math"]),
     ("time", &["math", "system"]),

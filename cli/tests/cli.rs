@@ -189,6 +189,18 @@ fn mistakes_in_a_case_are_told_with_a_caret() {
     assert_eq!(code(&desk.alula(&["run", "case.toml", "--nonsense"])), Some(2));
 }
 
+#[test]
+fn what_cannot_be_computed_yet_is_checked_but_not_run() {
+    let desk = Desk::new(SECTION);
+    let output = desk.alula(&["new", "pitching"]);
+    assert_eq!(code(&output), Some(0), "{}", told(&output));
+    assert_eq!(code(&desk.alula(&["check", "pitching.toml"])), Some(0));
+    let output = desk.alula(&["run", "pitching.toml"]);
+    let text = told(&output);
+    assert!(code(&output) == Some(2) && text.contains("moving bodies") && text.contains("hint: "), "{text}");
+    assert!(!desk.path("runs").exists(), "a refused case leaves nothing behind");
+}
+
 /// Kills runs of a case at random moments and goes on with them.
 fn survives_being_killed(case: &str) {
     let desk = Desk::new(case);

@@ -20,6 +20,8 @@ pub(super) fn contradictions(draft: &mut Draft<'_>) {
     }
     domain(draft);
     time(draft);
+    super::motion_check::contradictions(draft, dimension);
+    super::motion_check::viscosity(draft);
 }
 
 /// Each body has one shape, a name of its own and sensible digits.
@@ -128,7 +130,10 @@ fn free_stream(draft: &mut Draft<'_>) {
     let states = ["flow.pressure", "flow.temperature", "flow.density"];
     let given: Vec<_> = states.into_iter().filter(|key| draft.given(key)).collect();
     let hint = "give two of `pressure`, `temperature` and `density`; the third follows from the gas law";
+    let viscous = draft.given("flow.reynolds");
     match given[..] {
+        // Sutherland's law asks for the temperature of a stream that needs no other units
+        ["flow.temperature"] if viscous => {}
         [only] => {
             draft.fail_key(only, format!("`{only}` alone does not fix a dimensional free stream")).hint(hint);
         }
@@ -295,16 +300,47 @@ fn is(draft: &Draft<'_>, side: &str, word: &str) -> bool {
 }
 
 fn time(draft: &mut Draft<'_>) {
-    let (cfl, most) = (draft.number("time.steady.cfl"), draft.number("time.steady.cfl_max"));
+    for table in ["time.steady", "time.dual"] {
+        courant_numbers(draft, table);
+    }
+    for table in ["time.explicit", "time.dual"] {
+        if draft.get(table).is_some() {
+            one_of_two(draft, table, "until", "periods");
+        }
+    }
+    if draft.get("time.dual").is_some() {
+        one_of_two(draft, "time.dual", "steps_per_period", "step");
+    }
+    let marches = draft.get("time.explicit").or(draft.get("time.dual")).is_some();
+    if draft.given("output.field_interval") && !marches && draft.get("time").is_some() {
+        let message = "`output.field_interval` needs a marching run";
+        draft.fail_key("output.field_interval", message).hint("add `[time.explicit]`, or remove the key");
+    }
+}
+
+fn courant_numbers(draft: &mut Draft<'_>, table: &str) {
+    let (first, last) = (format!("{table}.cfl"), format!("{table}.cfl_max"));
+    let (cfl, most) = (draft.number(&first), draft.number(&last));
     if let (Some(cfl), Some(most)) = (cfl, most)
         && cfl > most
     {
         let message = format!("`cfl` starts at {cfl}, above `cfl_max` = {most}");
-        let place = if draft.given("time.steady.cfl") { "time.steady.cfl" } else { "time.steady.cfl_max" };
+        let place = if draft.given(&first) { &first } else { &last };
         draft.fail(place, message).hint("raise `cfl_max` or lower `cfl`");
     }
-    if draft.given("output.field_interval") && draft.get("time.explicit").is_none() && draft.get("time").is_some() {
-        let message = "`output.field_interval` needs a marching run";
-        draft.fail_key("output.field_interval", message).hint("add `[time.explicit]`, or remove the key");
+}
+
+/// One of two keys that say the same in different terms.
+fn one_of_two(draft: &mut Draft<'_>, table: &str, one: &str, other: &str) {
+    let (first, second) = (format!("{table}.{one}"), format!("{table}.{other}"));
+    match (draft.given(&first), draft.given(&second)) {
+        (true, true) => {
+            draft.fail_key(&second, format!("`{one}` and `{other}` are both given")).hint("keep one");
+        }
+        (false, false) => {
+            let message = format!("`[{table}]` has neither `{one}` nor `{other}`");
+            draft.fail(&first, message).hint(format!("add `{one} = …`, or `{other} = …` in terms of the motion"));
+        }
+        _ => {}
     }
 }

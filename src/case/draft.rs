@@ -61,6 +61,12 @@ impl<'t> Draft<'t> {
         self.places.contains_key(path)
     }
 
+    /// True when the value at `path` was written with a unit.
+    pub(super) fn has_unit(&self, path: &str) -> bool {
+        let written = self.places.get(path).and_then(|(_, value)| self.text.get(value.clone())).unwrap_or_default();
+        written.contains(['"', '\'']) && written.contains(|c: char| c.is_alphabetic() && !matches!(c, 'e' | 'E'))
+    }
+
     /// The value at `path`, none when it is absent or wrong.
     pub(super) fn get(&self, path: &str) -> Option<&Value> {
         self.tree.pointer(&format!("/{}", path.replace(['.', '['], "/").replace(']', "")))
@@ -86,6 +92,24 @@ impl<'t> Draft<'t> {
         let span = match self.places.get(path) {
             Some((_, value)) => value.clone(),
             None => self.ancestor(path),
+        };
+        self.fail_at(path, span, message)
+    }
+
+    /// Adds a mistake about the bytes `part` of the text that is the value at `path`.
+    pub(super) fn fail_within(&mut self, path: &str, part: Range<usize>, message: impl Into<String>) -> &mut CaseError {
+        let whole = self.places.get(path).map_or(0..0, |(_, value)| value.clone());
+        let inner = self.get(path).and_then(Value::as_str).unwrap_or_default();
+        // a text with escapes is not written as it reads: then the whole value is pointed at
+        let written = self.text.get(whole.clone()).unwrap_or_default();
+        let span = match written.find(inner) {
+            Some(start) if !inner.is_empty() => {
+                let start = whole.start + start;
+                // nothing can be shown behind the end: the last character stands for it
+                let end = (start + part.end).max(start + 1);
+                (start + part.start).min(end - 1)..end
+            }
+            _ => whole,
         };
         self.fail_at(path, span, message)
     }

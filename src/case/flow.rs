@@ -1,7 +1,52 @@
 //! Scales of the free stream.
 //!
 //! A perfect gas: p = ρ R T, c = √(γ p/ρ), V = M c. Without dimensional values ρ = 1 and c = 1, hence p = 1/γ.
-use super::Flow;
+use serde::{Deserialize, Serialize};
+
+use super::{Body, Flow, Temperature};
+
+/// Sutherland's constant of air, K (U.S. Standard Atmosphere, 1976).
+const SUTHERLAND: f64 = 110.4;
+/// Temperature of a free stream that states none, K (U.S. Standard Atmosphere, 1976, sea level).
+const SEA_LEVEL: f64 = 288.15;
+/// Prandtl number of air.
+const PRANDTL: f64 = 0.72;
+
+/// How viscosity depends on temperature.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ViscosityLaw {
+    /// Sutherland's law.
+    Sutherland,
+    /// No dependence.
+    Constant,
+}
+
+/// Condition of the gas on the surface of a body.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Wall {
+    /// The gas slides along the surface.
+    Slip,
+    /// The gas sticks to the surface, no heat passes.
+    Adiabatic,
+    /// The gas sticks to a surface of given temperature.
+    Temperature {
+        /// In kelvin when the free stream is dimensional, else over that of the free stream.
+        value: Temperature,
+    },
+}
+
+/// Viscosity and heat conduction of the gas, in the units of the solver.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Viscous {
+    /// Dynamic viscosity μ∞ of the free stream.
+    pub viscosity: f64,
+    /// S/T∞ of Sutherland's law μ/μ∞ = θ^1.5 (1 + S/T∞)/(θ + S/T∞), θ = T/T∞; `None`: constant viscosity.
+    pub sutherland: Option<f64>,
+    /// Prandtl number μ c_p/λ.
+    pub prandtl: f64,
+}
 
 /// The free stream in numbers: dimensional when the case is, else in units of its density and sound speed.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,6 +89,42 @@ impl Flow {
         [self.pressure.is_some(), self.temperature.is_some(), self.density.is_some()].iter().filter(|g| **g).count() > 1
     }
 
+    /// True when the gas has viscosity.
+    pub fn is_viscous(&self) -> bool {
+        self.reynolds.is_some() || self.viscosity.is_some()
+    }
+
+    /// Viscosity and heat conduction, `None` for an inviscid gas; `chord` is the reference chord.
+    pub fn viscous(&self, chord: f64) -> Option<Viscous> {
+        let scales = self.reference();
+        let length = self.reynolds_length.map_or(chord, |l| l.0);
+        let from_reynolds = self.reynolds.map(|re| scales.density * scales.speed * length / re);
+        let sutherland = self.sutherland.map_or(SUTHERLAND, |s| s.0) / self.kelvin();
+        Some(Viscous {
+            viscosity: self.viscosity.map(|mu| mu.0).or(from_reynolds)?,
+            sutherland: (self.viscosity_law != Some(ViscosityLaw::Constant)).then_some(sutherland),
+            prandtl: self.prandtl.unwrap_or(PRANDTL),
+        })
+    }
+
+    /// Condition on the surface of `body`.
+    pub fn wall(&self, body: &Body) -> Wall {
+        body.wall.unwrap_or(if self.is_viscous() { Wall::Adiabatic } else { Wall::Slip })
+    }
+
+    /// Temperature of the free stream in kelvin, 288.15 K when the case states none.
+    pub fn kelvin(&self) -> f64 {
+        let from_gas_law = || {
+            let (density, pressure) = self.state();
+            pressure / (density * self.gas_constant)
+        };
+        match self.temperature {
+            Some(t) => t.0,
+            None if self.is_dimensional() => from_gas_law(),
+            None => SEA_LEVEL,
+        }
+    }
+
     /// Density and pressure.
     fn state(&self) -> (f64, f64) {
         let r = self.gas_constant;
@@ -61,8 +142,29 @@ mod tests {
     use crate::case::read;
 
     fn scales(flow: &str) -> super::FreeStreamScales {
+        stream(flow).reference()
+    }
+
+    fn stream(flow: &str) -> super::Flow {
         let text = format!("[flow]\n{flow}\n[cloud]\nspacing = 0.1\n[[body]]\nnaca = \"0012\"\n");
-        read(&text, "case.toml").unwrap().flow.reference()
+        read(&text, "case.toml").unwrap_or_else(|e| panic!("{e}")).flow
+    }
+
+    #[test]
+    fn viscosity_follows_from_the_reynolds_number() {
+        assert_eq!(stream("mach = 0.5").viscous(1.0), None);
+        let v = stream("mach = 0.5\nreynolds = 5000").viscous(2.0).unwrap();
+        assert!((v.viscosity - 2e-4).abs() < 1e-18 && v.prandtl == 0.72);
+        assert!((v.sutherland.unwrap() - 110.4 / 288.15).abs() < 1e-15);
+        let v =
+            stream("mach = 0.5\nreynolds = 5000\nreynolds_length = 1\ntemperature = \"200 K\"").viscous(2.0).unwrap();
+        assert!((v.viscosity - 1e-4).abs() < 1e-18 && (v.sutherland.unwrap() - 0.552).abs() < 1e-15);
+        let air = "mach = 0.5\npressure = 101325\ntemperature = \"15 degC\"\nviscosity = \"1.8e-5 Pa s\"\n\
+                   viscosity_law = \"constant\"\nprandtl = 0.7";
+        let v = stream(air).viscous(1.0).unwrap();
+        assert_eq!((v.viscosity, v.sutherland, v.prandtl), (1.8e-5, None, 0.7));
+        let air = stream("mach = 0.5\npressure = 101325\ndensity = 1.225\nreynolds = 1e6");
+        assert!((air.kelvin() - 288.15).abs() < 0.01 && air.viscous(1.0).unwrap().viscosity > 1e-4);
     }
 
     #[test]

@@ -2,17 +2,19 @@
 //!
 //! Ranges that are not plain logic come from the numerics: particles nearer to the wall than 0.3 spacings spoil the
 //! conditioning of their clouds, more than 0.6 leave a gap; fewer than 3 particles a level do not fill a cloud.
-use super::quantity::{Angle, Density, Length, Pressure, Temperature, Time, Velocity};
+use super::motion_keys::{BODY_MOTION, MOTION, WALL};
+use super::quantity::{Angle, Density, Length, Pressure, Temperature, Time, Velocity, Viscosity};
 use super::schema::{Absent, Field, Kind, List, Range, Table, Variant};
+use super::time_keys::TIME;
 
 const ANY: Kind = Kind::Number(Range::ANY);
-const POSITIVE: Kind = Kind::Number(Range::POSITIVE);
-const LENGTH: Kind = Kind::Quantity(Length::DIMENSION, Range::ANY);
-const SIZE: Kind = Kind::Quantity(Length::DIMENSION, Range::POSITIVE);
-const ANGLE: Kind = Kind::Quantity(Angle::DIMENSION, Range::ANY);
-const COUNT: Kind = Kind::Integer(1, u32::MAX as u64);
+pub(super) const POSITIVE: Kind = Kind::Number(Range::POSITIVE);
+pub(super) const LENGTH: Kind = Kind::Quantity(Length::DIMENSION, Range::ANY);
+pub(super) const SIZE: Kind = Kind::Quantity(Length::DIMENSION, Range::POSITIVE);
+pub(super) const ANGLE: Kind = Kind::Quantity(Angle::DIMENSION, Range::ANY);
+pub(super) const COUNT: Kind = Kind::Integer(1, u32::MAX as u64);
 const LEVELS: Kind = Kind::Integer(0, 16);
-const POINT: Kind = Kind::List(&List { item: LENGTH, min: 2, max: 3, single: false });
+pub(super) const POINT: Kind = Kind::List(&List { item: LENGTH, min: 2, max: 3, single: false });
 const PLANE_POINT: Kind = Kind::List(&List { item: ANY, min: 2, max: 2, single: false });
 const STATE: Kind = Kind::List(&List { item: ANY, min: 3, max: 3, single: false });
 
@@ -31,6 +33,13 @@ pub(super) static CASE: Table = Table::of(&[
         Absent::Filled,
         "Free stream: `mach` alone (density 1, sound speed 1) or dimensional, from two of `pressure`, `temperature`, \
          `density` and one of `mach`, `velocity`.",
+    ),
+    Field::optional(
+        "motion",
+        Kind::Table(&MOTION),
+        "only bodies with a `motion` of their own move",
+        "Motion of particles and of every body without a `motion` of its own (of the whole cloud when there is no body). \
+         All parts add up: x = R(θ)(X − pivot) + pivot + d.",
     ),
     Field::defaulted("body", Kind::Tables(&BODY), Absent::Filled, "A solid body: one shape key, then its placement."),
     Field::defaulted(
@@ -94,7 +103,37 @@ static FLOW: Table = Table::of(&[
         "Angle of attack, nose up positive: the flow turns from +x towards +y in 2-D, towards +z in 3-D.",
     ),
     Field::defaulted("beta", ANGLE, Absent::Number(0.0), "Sideslip angle, 3-D only: the flow turns towards +y."),
+    Field::optional(
+        "reynolds",
+        POSITIVE,
+        "no viscosity, or from `viscosity`",
+        "Reynolds number ρ∞ U∞ L/μ∞ with L = `reynolds_length`.",
+    ),
+    Field::optional("reynolds_length", SIZE, "the reference chord", "Length of the Reynolds number."),
+    Field::optional(
+        "viscosity",
+        Kind::Quantity(Viscosity::DIMENSION, Range::POSITIVE),
+        "no viscosity, or from `reynolds`",
+        "Dynamic viscosity of the free stream; needs a dimensional free stream.",
+    ),
+    Field::optional(
+        "viscosity_law",
+        Kind::Words(VISCOSITY_LAWS),
+        "`\"sutherland\"`",
+        "How the viscosity depends on temperature.",
+    ),
+    Field::optional(
+        "sutherland",
+        Kind::Quantity(Temperature::DIMENSION, Range::POSITIVE),
+        "110.4 K, air",
+        "Constant S of Sutherland's law. The law needs the temperature of the free stream: `temperature`, which may stand \
+         alone for this purpose, else 288.15 K.",
+    ),
+    Field::optional("prandtl", POSITIVE, "0.72, air", "Prandtl number."),
 ]);
+
+const VISCOSITY_LAWS: &[(&str, &str)] =
+    &[("sutherland", "μ/μ∞ = (T/T∞)^1.5 (T∞ + S)/(T + S)"), ("constant", "the same everywhere")];
 
 /// Shape keys of a body with the dimension each of them fixes (0: by the number of lengths).
 pub(super) const SHAPES: [(&str, u64); 7] =
@@ -111,8 +150,8 @@ static BODY: Table = Table::of(&[
         SHAPE,
         "Closed polygon with sharp corners (2-D), `[[0, 0], [1, 0.1], [1, -0.1]]`.",
     ),
-    Field::optional("circle", Kind::Table(&ROUND), SHAPE, "Circle (2-D), `circle = { radius = 0.5 }`."),
-    Field::optional("sphere", Kind::Table(&ROUND), SHAPE, "Sphere (3-D), `sphere = { radius = 0.5 }`."),
+    Field::optional("circle", Kind::Table(&CIRCLE), SHAPE, "Circle (2-D), `circle = { radius = 0.5 }`."),
+    Field::optional("sphere", Kind::Table(&SPHERE), SHAPE, "Sphere (3-D), `sphere = { radius = 0.5 }`."),
     Field::optional(
         "box",
         Kind::Table(&BOX),
@@ -140,6 +179,19 @@ static BODY: Table = Table::of(&[
         Absent::Filled,
         "Translation after scaling and rotation.",
     ),
+    Field::optional(
+        "wall",
+        Kind::Choice(WALL),
+        "`\"slip\"` without viscosity, `\"adiabatic\"` with",
+        "Condition of the gas on the surface, `wall = { temperature = \"300 K\" }`.",
+    ),
+    Field::optional(
+        "motion",
+        Kind::Table(&BODY_MOTION),
+        "that of `[motion]`",
+        "Motion of this body in place of that of `[motion]`, whose frequency it takes when it has none; `motion = {}` keeps \
+         the body at rest.",
+    ),
 ]);
 
 static NACA: Table = Table {
@@ -156,7 +208,9 @@ const TRAILING_EDGES: &[(&str, &str)] = &[
     ("extended", "as published, extended to where the sides meet and scaled back to unit chord"),
 ];
 
-static ROUND: Table = Table::of(&[Field::required("radius", SIZE, "Radius.")]);
+static CIRCLE: Table = Table::of(&[Field::required("radius", SIZE, "Radius.")]);
+
+static SPHERE: Table = Table::of(&[Field::required("radius", SIZE, "Radius.")]);
 
 static BOX: Table = Table::of(&[Field::required(
     "size",
@@ -333,42 +387,6 @@ const LIMITERS: &[(&str, &str)] = &[
     ("none", "unlimited: smooth flow only"),
     ("van_albada", "van Albada (1982) with a threshold, differentiable"),
     ("venkatakrishnan", "Venkatakrishnan's (1995) rational function on edges"),
-];
-
-const TIME: &[Variant] = &[
-    Variant::table("steady", &STEADY, "relax to a steady state"),
-    Variant::table("explicit", &EXPLICIT, "march in time with an explicit Runge-Kutta method"),
-];
-
-static STEADY: Table = Table::of(&[
-    Field::defaulted("method", Kind::Words(RELAXATIONS), Absent::Word("newton_krylov"), "Method."),
-    Field::defaulted(
-        "orders",
-        Kind::Number(Range { min: 0.0, max: 16.0, closed: false }),
-        Absent::Number(6.0),
-        "Orders of magnitude the residual must fall.",
-    ),
-    Field::defaulted("iterations", COUNT, Absent::Integer(2000), "Greatest number of iterations."),
-    Field::defaulted("cfl", POSITIVE, Absent::Number(10.0), "Courant number at the start."),
-    Field::defaulted("cfl_max", POSITIVE, Absent::Number(1e6), "Greatest Courant number."),
-]);
-
-const RELAXATIONS: &[(&str, &str)] = &[
-    ("newton_krylov", "Newton's method with GMRES, preconditioned by sweeps"),
-    ("lu_sgs", "lower-upper symmetric Gauss-Seidel sweeps alone"),
-    ("runge_kutta", "explicit Runge-Kutta with local steps: the plain reference"),
-];
-
-static EXPLICIT: Table = Table::of(&[
-    Field::required("until", Kind::Quantity(Time::DIMENSION, Range::POSITIVE), "Time at which the run ends."),
-    Field::defaulted("cfl", POSITIVE, Absent::Number(0.8), "Courant number."),
-    Field::defaulted("method", Kind::Words(MARCHES), Absent::Word("ssprk3"), "Runge-Kutta method."),
-    Field::defaulted("steps", COUNT, Absent::Integer(1_000_000), "Greatest number of steps."),
-]);
-
-const MARCHES: &[(&str, &str)] = &[
-    ("ssprk3", "strong-stability-preserving, three stages, third order (Shu and Osher 1988)"),
-    ("rk4", "classical, four stages, fourth order"),
 ];
 
 static ADAPT: Table = Table::of(&[

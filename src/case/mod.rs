@@ -8,7 +8,11 @@ mod check;
 mod draft;
 mod error;
 mod flow;
+pub mod formula;
 mod keys;
+mod motion;
+mod motion_check;
+mod motion_keys;
 pub mod quantity;
 mod read;
 mod reference;
@@ -16,14 +20,20 @@ mod schema;
 mod templates;
 #[cfg(test)]
 mod tests;
+mod time;
+mod time_keys;
 mod write;
 
 pub use error::{CaseError, CaseErrors};
-pub use flow::FreeStreamScales;
-pub use quantity::{Angle, Density, Length, Pressure, Temperature, Time, Velocity};
+pub use flow::{FreeStreamScales, ViscosityLaw, Viscous, Wall};
+pub use motion::{
+    BodyMotion, Motion, MotionFormula, MotionTable, ParticleMotion, Pitch, Plunge, Rotation, Translation,
+};
+pub use quantity::{Angle, Density, Frequency, Length, Pressure, Rate, Temperature, Time, Velocity, Viscosity};
 pub use read::read;
 pub use reference::{reference_markdown, schema};
 pub use templates::{TEMPLATES, template};
+pub use time::{Dual, Explicit, RungeKutta, Steady, SteadyMethod, Temporal};
 pub use write::write;
 
 /// Everything a run needs to know.
@@ -35,6 +45,8 @@ pub struct Case {
     pub dimension: Option<u8>,
     /// Free stream.
     pub flow: Flow,
+    /// Motion of bodies and particles; absent: only bodies with a motion of their own move.
+    pub motion: Option<Motion>,
     /// Solid bodies, none for a case without walls.
     #[serde(default, rename = "body")]
     pub bodies: Vec<Body>,
@@ -89,6 +101,18 @@ pub struct Flow {
     /// Sideslip angle, 3-D only: the flow turns towards +y.
     #[serde(default)]
     pub beta: Angle,
+    /// Reynolds number of `reynolds_length`; absent, as `viscosity`: no viscosity.
+    pub reynolds: Option<f64>,
+    /// Length of the Reynolds number; absent: the reference chord.
+    pub reynolds_length: Option<Length>,
+    /// Dynamic viscosity of the free stream, an alternative to `reynolds` when the free stream is dimensional.
+    pub viscosity: Option<Viscosity>,
+    /// How viscosity depends on temperature; absent: Sutherland's law.
+    pub viscosity_law: Option<ViscosityLaw>,
+    /// Constant of Sutherland's law; absent: 110.4 K, air.
+    pub sutherland: Option<Temperature>,
+    /// Prandtl number; absent: 0.72, air.
+    pub prandtl: Option<f64>,
 }
 
 /// One solid body: exactly one shape key, then placement.
@@ -102,6 +126,10 @@ pub struct Body {
     /// Placement: scale first, then rotation about the origin of the shape, then translation.
     #[serde(flatten)]
     pub placement: Placement,
+    /// Condition of the gas on the surface; absent: slip without viscosity, adiabatic with.
+    pub wall: Option<Wall>,
+    /// Motion of its own, in place of that of `[motion]`; an empty one keeps the body at rest.
+    pub motion: Option<BodyMotion>,
 }
 
 /// What a body is made of. In the file this is one key of the body table.
@@ -348,66 +376,6 @@ pub enum Limiter {
     Venkatakrishnan,
 }
 
-/// Steady relaxation or explicit marching.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Temporal {
-    /// Relax to a steady state.
-    Steady(Steady),
-    /// March in time with an explicit Runge-Kutta method.
-    Explicit(Explicit),
-}
-
-/// Steady relaxation.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Steady {
-    /// Method.
-    pub method: SteadyMethod,
-    /// Orders of magnitude the residual must fall.
-    pub orders: f64,
-    /// Greatest number of iterations.
-    pub iterations: u32,
-    /// Courant number at the start.
-    pub cfl: f64,
-    /// Greatest Courant number.
-    pub cfl_max: f64,
-}
-
-/// Method of the steady relaxation.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum SteadyMethod {
-    /// Newton's method with GMRES, preconditioned by sweeps.
-    NewtonKrylov,
-    /// Lower-upper symmetric Gauss-Seidel sweeps alone.
-    LuSgs,
-    /// Explicit Runge-Kutta with local steps: the plain reference.
-    RungeKutta,
-}
-
-/// Explicit time marching.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Explicit {
-    /// Time at which the run ends.
-    pub until: Time,
-    /// Courant number.
-    pub cfl: f64,
-    /// Runge-Kutta method.
-    pub method: RungeKutta,
-    /// Greatest number of steps.
-    pub steps: u32,
-}
-
-/// Explicit Runge-Kutta method.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum RungeKutta {
-    /// Strong-stability-preserving, three stages, third order (Shu and Osher 1988).
-    Ssprk3,
-    /// Classical, four stages, fourth order.
-    Rk4,
-}
-
 /// Refinement that follows the solution.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Adapt {
@@ -463,18 +431,6 @@ impl Default for Scheme {
             kappa: 0.0,
             conservative: None,
         }
-    }
-}
-
-impl Default for Temporal {
-    fn default() -> Self {
-        Self::Steady(Steady::default())
-    }
-}
-
-impl Default for Steady {
-    fn default() -> Self {
-        Self { method: SteadyMethod::NewtonKrylov, orders: 6.0, iterations: 2000, cfl: 10.0, cfl_max: 1e6 }
     }
 }
 

@@ -5,8 +5,9 @@
 //! base unit; b differs from zero for temperature scales only. Factors are exact by definition: international yard and
 //! pound agreement (1959) for foot and pound, CGPM (1901) for standard gravity 9.806 65 m/s².
 //!
-//! A plain number means the base unit, except for angles: degrees taken for radians give a wrong but plausible flow, so
-//! an angle needs its unit unless it is zero.
+//! A plain number means the base unit, except for angles and frequencies: degrees taken for radians, or hertz for radians
+//! a second, give a wrong but plausible flow, so they need their unit unless they are zero.
+use std::f64::consts::TAU;
 use std::fmt;
 use std::str::FromStr;
 
@@ -79,7 +80,7 @@ impl Dimension {
 
     /// The unit of the example.
     pub fn usual(&self) -> &'static str {
-        self.example.rsplit(' ').next().unwrap_or_default()
+        self.example.split_once(' ').map_or("", |(_, unit)| unit)
     }
 
     /// Value in base units of `text`, for example `1.25 deg`.
@@ -213,6 +214,16 @@ quantities! {
     Time, "a time", false, "20 ms", [
         unit("s", 1.0), unit("ms", 1e-3), unit("us", 1e-6), unit("min", 60.0), unit("h", 3600.0),
     ];
+    Frequency, "a frequency", true, "5 Hz", [
+        unit("rad/s", 1.0), unit("Hz", TAU), unit("kHz", 1e3 * TAU), unit("rpm", TAU / 60.0),
+    ];
+    Rate, "an angular rate", false, "10 deg/s", [
+        unit("rad/s", 1.0), unit("deg/s", DEGREE), unit("rpm", TAU / 60.0), unit("Hz", TAU),
+    ];
+    Viscosity, "a viscosity", false, "1.8e-5 Pa s", [
+        unit("Pa s", 1.0), unit("Pa.s", 1.0), unit("kg/m/s", 1.0), unit("mPa s", 1e-3), unit("uPa s", 1e-6),
+        unit("P", 0.1), unit("cP", 1e-3),
+    ];
 }
 
 #[cfg(test)]
@@ -234,6 +245,10 @@ mod tests {
         close("59 degF".parse::<Temperature>().unwrap().0, 288.15);
         close("100 km/h".parse::<Velocity>().unwrap().0, 100.0 / 3.6);
         close("20 ms".parse::<Time>().unwrap().0, 0.02);
+        close("60 rpm".parse::<Rate>().unwrap().0, std::f64::consts::TAU);
+        close("5 Hz".parse::<Frequency>().unwrap().0, 10.0 * std::f64::consts::PI);
+        close("1.8e-5 Pa s".parse::<Viscosity>().unwrap().0, 1.8e-5);
+        assert_eq!(Viscosity::DIMENSION.usual(), "Pa s");
         close("1e3 m".parse::<Length>().unwrap().0, 1000.0);
         close("14.695948775513 psi".parse::<Pressure>().unwrap().0, 101_325.0);
         // sea level of the standard atmosphere (1976) in slug/ft3

@@ -244,6 +244,9 @@ impl Reader<'_> {
             (Some(table), DeValue::Table(document)) => Some(json!({ variant.name: self.table(table, document, path) })),
             (None, DeValue::Table(document)) if document.is_empty() => Some(variant.bare()),
             (None, DeValue::Boolean(true)) => Some(variant.bare()),
+            (Some(table), _) if table.shorthand.is_some() => {
+                Some(json!({ variant.name: self.shorthand(table, item, path)? }))
+            }
             (found, value) => {
                 let allowed = if found.is_some() { "a table" } else { "an empty table" };
                 let message = format!("`{path}` must be {allowed}, not {}", type_of(value));
@@ -337,7 +340,7 @@ fn lower(doc: &str) -> String {
 }
 
 /// The candidate that `word` was probably meant to be.
-fn closest<'a>(word: &str, candidates: impl Iterator<Item = &'a str>) -> Option<&'a str> {
+pub(super) fn closest<'a>(word: &str, candidates: impl Iterator<Item = &'a str>) -> Option<&'a str> {
     /// Jaro-Winkler similarity of names that still look alike.
     const ALIKE: f64 = 0.8;
     let word: String = word.chars().take(64).collect::<String>().to_lowercase().replace('-', "_");

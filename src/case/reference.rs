@@ -125,12 +125,14 @@ fn variant_schemas(variant: &Variant) -> Vec<Value> {
 pub fn reference_markdown() -> String {
     let mut page = String::from(
         "# Case file\n\nA case file is TOML. Quantities may carry a unit (`\"1.25 deg\"`, `\"35 kPa\"`); a plain number is \
-         in base units, except for angles, which need their unit unless they are zero. Keys without default must be \
+         in base units, except for angles and \
+         frequencies, which need their unit unless they are zero. Keys without default must be \
          given. Unknown keys are mistakes.\n\n## Top level\n\n",
     );
     key_table(&CASE, &mut page);
+    let mut told = Vec::new();
     for field in CASE.fields {
-        sections(field, field.key, &mut page);
+        sections(field, field.key, &mut told, &mut page);
     }
     page.push_str("## Units\n\n| quantity | units, the base unit first |\n|---|---|\n");
     for dimension in dimensions() {
@@ -140,44 +142,53 @@ pub fn reference_markdown() -> String {
     page
 }
 
-fn dimensions() -> [&'static Dimension; 7] {
-    use super::quantity::{Angle, Density, Length, Pressure, Temperature, Time, Velocity};
+fn dimensions() -> [&'static Dimension; 10] {
+    use super::quantity::{Angle, Density, Frequency, Length, Pressure, Rate, Temperature, Time, Velocity, Viscosity};
     [
         Angle::DIMENSION,
         Length::DIMENSION,
         Time::DIMENSION,
+        Frequency::DIMENSION,
+        Rate::DIMENSION,
         Velocity::DIMENSION,
         Pressure::DIMENSION,
         Temperature::DIMENSION,
         Density::DIMENSION,
+        Viscosity::DIMENSION,
     ]
 }
 
-/// A section for every table below `field`.
-fn sections(field: &Field, path: &str, page: &mut String) {
+/// A section for every table below `field` that has none in `told`: tables with several places (the conditions on the
+/// sides of the domain, the parts of a motion) are described at the first.
+fn sections(field: &'static Field, path: &str, told: &mut Vec<&'static Table>, page: &mut String) {
     match &field.kind {
-        Kind::Table(table) => section(&format!("[{path}]"), field.doc, table, path, page),
-        Kind::Tables(table) => section(&format!("[[{path}]]"), field.doc, table, path, page),
+        Kind::Table(table) => section(&format!("[{path}]"), (field.doc, table), path, told, page),
+        Kind::Tables(table) => section(&format!("[[{path}]]"), (field.doc, table), path, told, page),
         Kind::Choice(variants) => {
             for variant in *variants {
                 let Some(table) = variant.table else { continue };
-                section(&format!("[{path}.{}]", variant.name), &sentence(variant.doc), table, path, page);
+                section(&format!("[{path}.{}]", variant.name), (&sentence(variant.doc), table), path, told, page);
             }
         }
         _ => {}
     }
 }
 
-fn section(header: &str, doc: &str, table: &Table, path: &str, page: &mut String) {
+fn section(
+    header: &str,
+    (doc, table): (&str, &'static Table),
+    path: &str,
+    told: &mut Vec<&'static Table>,
+    page: &mut String,
+) {
+    if told.iter().any(|t| std::ptr::eq(*t, table)) {
+        return;
+    }
+    told.push(table);
     page.push_str(&format!("## `{header}`\n\n{doc}\n\n"));
     key_table(table, page);
-    let mut sides_told = false;
     for field in table.fields {
-        // The sides of the domain share one set of conditions: one section serves them all.
-        if matches!(field.kind, Kind::Choice(_)) && std::mem::replace(&mut sides_told, true) {
-            continue;
-        }
-        sections(field, &format!("{path}.{}", field.key), page);
+        sections(field, &format!("{path}.{}", field.key), told, page);
     }
 }
 

@@ -74,6 +74,9 @@ fn inline(kind: &Kind, value: &Value) -> String {
         (Kind::Quantity(dimension, _), Value::Number(x)) if *dimension == Angle::DIMENSION => {
             angle(x.as_f64().unwrap_or_default())
         }
+        (Kind::Quantity(dimension, _), Value::Number(x)) if dimension.needs_unit => {
+            format!("\"{:?} {}\"", x.as_f64().unwrap_or_default(), dimension.units[0].symbol)
+        }
         (Kind::List(list), Value::Array(items)) => bracket(items.iter().map(|v| inline(&list.item, v))),
         (Kind::Table(table), Value::Object(keys)) => braces(table, keys),
         (Kind::Tables(table), Value::Array(items)) => {
@@ -132,6 +135,8 @@ initial = { riemann = { left = [1, 0.1, 1], right = [0.125, 0, 0.1], axis = 1, p
 velocity = "100 km/h"
 temperature = "15 degC"
 density = "1.225 kg/m3"
+viscosity = "1.8e-5 Pa s"
+sutherland = "111 K"
 alpha = "1.25 deg"
 [[body]]
 naca = { digits = "2412", trailing_edge = "extended" }
@@ -142,6 +147,17 @@ rotate = "-3.3333333333333333 deg"
 translate = ["1 ft", "-12 in"]
 [[body]]
 box = { size = [1, "3 mm"] }
+wall = { temperature = "300 K" }
+[body.motion]
+frequency = "5 Hz"
+plunge = { amplitude = "1 mm", phase = "90 deg", direction = [1, 1] }
+table = { time = [0, 1e-3], x = [0, "1 mm"] }
+[motion]
+particles = "deforming"
+pivot = [0, 0]
+formula = { angle = "2 * deg * sin(3*t)" }
+rotation = "10 rpm"
+translation = ["1 m/s", 0]
 [cloud]
 spacing = "2 mm"
 domain = { min = [-10, -10], max = [10, 10] }

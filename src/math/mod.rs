@@ -1,6 +1,7 @@
 //! Arithmetic that knows no physics: small vectors, least squares, sparse blocks, Krylov methods, the parallel loop.
 pub mod block_matrix;
 pub mod hilbert;
+pub mod jet;
 pub mod krylov;
 pub mod least_squares;
 pub mod multilevel;

@@ -97,11 +97,13 @@ fn evaluations<const D: usize>(
 ) -> f64 {
     match &case.time {
         Temporal::Steady(_) => EVALUATIONS * f64::from(1 + case.adapt.cycles),
+        // no estimate yet: the steps depend on the period of the motion
+        Temporal::Dual(_) => 0.0,
         Temporal::Explicit(e) => {
             let mut rate = vec![0.0; fluid.cloud.n_fluid];
             fluid.spectral_radius(frame, u, &mut fluid.work(), &mut rate);
             let fastest = rate.iter().fold(0.0f64, |m, r| m.max(*r));
-            3.5 * e.until.0 * fastest / e.cfl
+            3.5 * e.end(None).unwrap_or_default() * fastest / e.cfl
         }
     }
 }
@@ -111,7 +113,7 @@ fn integrator_bytes<const D: usize>(case: &Case, fluid: &crate::scheme::Fluid<D>
     let n = fluid.len();
     match &case.time {
         Temporal::Explicit(_) => 3 * 8 * n,
-        Temporal::Steady(_) => {
+        Temporal::Steady(_) | Temporal::Dual(_) => {
             let block = D + 2;
             let entries = fluid.cloud.neighbours.index.len() + fluid.cloud.n_fluid;
             8 * entries * block * block * 4 / 6 + 4 * 17 * n + 8 * 8 * n

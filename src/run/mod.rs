@@ -127,6 +127,9 @@ pub enum RunError {
     /// The run folder is not usable.
     #[error("{0}")]
     Folder(String),
+    /// The case asks for something that can be written down but not yet computed.
+    #[error("{0}")]
+    Unsupported(String),
 }
 
 /// Where a run reads and writes.
@@ -140,6 +143,7 @@ pub struct Places {
 
 /// Runs a case into a fresh folder.
 pub fn run(case: &Case, places: &Places, monitor: &mut dyn Monitor) -> Result<Outcome, RunError> {
+    setup::supported(case)?;
     folder::create(case, places)?;
     match dimension(case) {
         2 => drive::<2>(case, places, None, monitor),
@@ -170,6 +174,7 @@ pub fn build_cloud<const D: usize>(
 
 /// Builds the equations of a case on its own cloud, and the state at the start, without running it.
 pub fn build_solver<const D: usize>(case: &Case, input: &Path) -> Result<(Fluid<D>, Vec<f64>), RunError> {
+    setup::supported(case)?;
     let (surface, _) = setup::surface::<D>(case, input)?;
     let plain = Stage { factor: 1.0, cycle: 0 };
     let solver = setup::solver(case, &plain, surface.as_ref(), &[], None)?;
@@ -241,5 +246,5 @@ fn adapted<const D: usize>(case: &Case, solver: &Solver<D>, state: &[f64]) -> Ve
 
 /// True for cases that march in time.
 fn marches(case: &Case) -> bool {
-    matches!(case.time, Temporal::Explicit(_))
+    matches!(case.time, Temporal::Explicit(_) | Temporal::Dual(_))
 }

@@ -24,6 +24,25 @@ const START: [[usize; 2]; 2] = [[2_500, 9_000], [15_000, 80_000]];
 /// Exactly conservative coefficients unless the case says otherwise: they cost a few per cent of a run.
 const CONSERVATIVE: bool = true;
 
+/// Refuses what a case file can say but the solver cannot compute yet; each line goes when its solver comes.
+pub(super) fn supported(case: &Case) -> Result<(), RunError> {
+    let dual = matches!(case.time, Temporal::Dual(_));
+    let periodic = matches!(&case.time, Temporal::Explicit(e) if e.until.is_none() || e.periodic_tolerance.is_some());
+    let asks = [
+        (case.moves(), "moving bodies and particles (`motion`)"),
+        (dual, "implicit marching (`[time.dual]`)"),
+        (periodic, "periods of a motion (`periods`, `periodic_tolerance`)"),
+        (case.flow.is_viscous(), "viscosity (`reynolds`, `viscosity`)"),
+    ];
+    let missing: Vec<&str> = asks.iter().filter(|a| a.0).map(|a| a.1).collect();
+    if missing.is_empty() {
+        return Ok(());
+    }
+    let list = missing.join(", ");
+    let hint = "`alula check` and `alula cloud` accept the case; `alula run` does not yet";
+    Err(RunError::Unsupported(format!("this version cannot compute {list}\nhint: {hint}")))
+}
+
 /// One cloud of a run.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub(super) struct Stage {

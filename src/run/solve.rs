@@ -168,6 +168,7 @@ pub(super) fn solve<const D: usize>(
     match &case.time {
         Temporal::Steady(steady) => relax(steady, solver, start, at, last, journal),
         Temporal::Explicit(marching) => march(marching, solver, start, at, journal),
+        Temporal::Dual(_) => Err(RunError::Unsupported("implicit marching cannot be computed yet".into())),
     }
 }
 
@@ -238,6 +239,9 @@ fn march<const D: usize>(
     journal: &mut Journal<'_>,
 ) -> Result<Option<Vec<f64>>, RunError> {
     let fluid = &solver.fluid;
+    let Some(until) = marching.end(None) else {
+        return Err(RunError::Unsupported("periods of a motion cannot be counted yet".into()));
+    };
     let (time, done, u) = match start {
         Start::Fresh(u) => (0.0, 0, u),
         Start::Resume(s) => (s.time, s.relax.iteration, s.state),
@@ -249,7 +253,7 @@ fn march<const D: usize>(
         RungeKutta::Ssprk3 => Method::Ssprk3,
         RungeKutta::Rk4 => Method::Rk4,
     };
-    let mut explicit = Explicit::new(fluid, method, (marching.cfl, marching.until.0), (time, done, u));
+    let mut explicit = Explicit::new(fluid, method, (marching.cfl, until), (time, done, u));
     if done == 0 {
         journal.save(at, 0.0, &explicit.u, bare(0))?;
     }
@@ -265,7 +269,7 @@ fn march<const D: usize>(
         journal.iteration += 1;
         let (frame, work, state) = explicit.parts();
         let loads = coefficients(fluid, &journal.axes, frame, state, work);
-        journal.record(0, &step, loads, (marching.until.0, step.time), fluid.cloud.n_fluid)?;
+        journal.record(0, &step, loads, (until, step.time), fluid.cloud.n_fluid)?;
         if let Some(interval) = journal.interval
             && (explicit.time / interval).floor() > (before / interval).floor()
         {

@@ -1,0 +1,175 @@
+//! Motion of bodies and particles, as data.
+//!
+//! A motion is a sum: angles add up to θ(t) about one axis through the pivot, displacements to d(t), and a point X of the
+//! body as placed is at x(t) = R(θ)(X − pivot) + pivot + d. Sines are amplitude·sin(ωt + phase): α = α_m + α_0 sin ωt of
+//! the AGARD cases, with the mean α_m from `flow.alpha` or `rotate`. Angles are nose up positive, plunge is up positive.
+use serde::{Deserialize, Serialize};
+
+use super::{Angle, Case, Flow, Frequency, Length, Rate, Time, Velocity};
+
+/// The table `[motion]`: how particles follow, and the motion of every body without one of its own.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Motion {
+    /// How particles follow the bodies.
+    pub particles: ParticleMotion,
+    /// Motion of every body without one of its own; of the cloud when there is no body.
+    #[serde(flatten)]
+    pub law: BodyMotion,
+}
+
+/// How particles follow.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ParticleMotion {
+    /// The whole cloud moves as one with the body.
+    Rigid,
+    /// The displacement of the surface is spread into the cloud and fades out towards the far field.
+    #[default]
+    Deforming,
+    /// Particles travel with the fluid.
+    Lagrangian,
+}
+
+/// Motion of one body; all its parts add up, none: at rest.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct BodyMotion {
+    /// Frequency of pitch and plunge.
+    pub frequency: Option<Frequency>,
+    /// Reduced frequency k = ωL/U∞ instead.
+    pub reduced_frequency: Option<f64>,
+    /// Length L of the reduced frequency; absent: half the reference chord.
+    pub reduced_length: Option<Length>,
+    /// Period 2π/ω instead.
+    pub period: Option<Time>,
+    /// Point about which the body turns, as placed at the start; it travels with the displacement.
+    pub pivot: Option<Vec<Length>>,
+    /// Axis of the turn in 3-D, right-handed; absent: +y, nose up positive for a stream along +x with lift along +z.
+    pub axis: Option<Vec<f64>>,
+    /// Sine in angle.
+    pub pitch: Option<Pitch>,
+    /// Sine in displacement.
+    pub plunge: Option<Plunge>,
+    /// Steady rotation.
+    pub rotation: Option<Rotation>,
+    /// Steady translation.
+    pub translation: Option<Translation>,
+    /// Tabulated displacement and angle.
+    pub table: Option<MotionTable>,
+    /// Formulas in time.
+    pub formula: Option<MotionFormula>,
+}
+
+/// θ(t) = amplitude·sin(ωt + phase), nose up positive.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Pitch {
+    /// Amplitude.
+    pub amplitude: Angle,
+    /// Phase at t = 0.
+    pub phase: Angle,
+}
+
+/// d(t) = amplitude·sin(ωt + phase)·direction.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Plunge {
+    /// Amplitude of the displacement.
+    pub amplitude: Length,
+    /// Phase at t = 0.
+    pub phase: Angle,
+    /// Direction of positive displacement, made a unit vector; absent: up, +y in 2-D and +z in 3-D.
+    pub direction: Option<Vec<f64>>,
+}
+
+/// θ(t) = rate·t.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Rotation {
+    /// Rate, of the sign of pitch.
+    pub rate: Rate,
+}
+
+/// d(t) = velocity·t.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Translation {
+    /// Velocity.
+    pub velocity: Vec<Velocity>,
+}
+
+/// Displacement and angle at times, joined by cubic splines.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct MotionTable {
+    /// CSV file instead of the lists, columns `time` and any of `x`, `y`, `z`, `angle_deg`, `angle_rad`.
+    pub file: Option<String>,
+    /// Times, rising.
+    pub time: Option<Vec<Time>>,
+    /// Displacements along x.
+    pub x: Option<Vec<Length>>,
+    /// Displacements along y.
+    pub y: Option<Vec<Length>>,
+    /// Displacements along z.
+    pub z: Option<Vec<Length>>,
+    /// Angles.
+    pub angle: Option<Vec<Angle>>,
+    /// The table repeats; else it begins and ends at rest and holds its ends.
+    pub periodic: bool,
+}
+
+/// Formulas in `t` for displacements and angle (radians).
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct MotionFormula {
+    /// Displacement along x.
+    pub x: Option<String>,
+    /// Displacement along y.
+    pub y: Option<String>,
+    /// Displacement along z.
+    pub z: Option<String>,
+    /// Angle in radians.
+    pub angle: Option<String>,
+}
+
+impl BodyMotion {
+    /// True when no part moves anything.
+    pub fn is_still(&self) -> bool {
+        self.pitch.is_none()
+            && self.plunge.is_none()
+            && self.rotation.is_none()
+            && self.translation.is_none()
+            && self.table.is_none()
+            && self.formula.is_none()
+    }
+
+    /// Angular frequency ω of this table alone; `chord` is the reference chord, of which k takes half by default.
+    fn own_angular_frequency(&self, flow: &Flow, chord: f64) -> Option<f64> {
+        if let Some(k) = self.reduced_frequency {
+            let length = self.reduced_length.map_or(0.5 * chord, |l| l.0);
+            return Some(k * flow.reference().speed / length);
+        }
+        self.frequency.map(|f| f.0).or(self.period.map(|t| std::f64::consts::TAU / t.0))
+    }
+}
+
+impl Case {
+    /// Motion of body number `body`: its own, else that of `[motion]`; `None` when it is at rest.
+    pub fn motion_of(&self, body: usize) -> Option<&BodyMotion> {
+        let own = self.bodies.get(body).and_then(|b| b.motion.as_ref());
+        own.or(self.motion.as_ref().map(|m| &m.law)).filter(|law| !law.is_still())
+    }
+
+    /// Angular frequency of `law` in the units of the solver: its own, else that of `[motion]`.
+    pub fn angular_frequency(&self, law: &BodyMotion, chord: f64) -> Option<f64> {
+        let general = || self.motion.as_ref().and_then(|m| m.law.own_angular_frequency(&self.flow, chord));
+        law.own_angular_frequency(&self.flow, chord).or_else(general)
+    }
+
+    /// How particles follow.
+    pub fn particles(&self) -> ParticleMotion {
+        self.motion.as_ref().map(|m| m.particles).unwrap_or_default()
+    }
+
+    /// True when particles move: a body does, the whole cloud does, or they travel with the fluid.
+    pub fn moves(&self) -> bool {
+        let general = self.motion.as_ref();
+        let alone = self.bodies.is_empty() && general.is_some_and(|m| !m.law.is_still());
+        alone
+            || general.is_some_and(|m| m.particles == ParticleMotion::Lagrangian)
+            || (0..self.bodies.len()).any(|i| self.motion_of(i).is_some())
+    }
+}

@@ -1,0 +1,134 @@
+//! How a case goes on in time, as data.
+use serde::{Deserialize, Serialize};
+
+use super::Time;
+
+/// Steady relaxation or time marching.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Temporal {
+    /// Relax to a steady state.
+    Steady(Steady),
+    /// March in time with an explicit Runge-Kutta method.
+    Explicit(Explicit),
+    /// March in time with implicit steps, each relaxed in a pseudo time.
+    Dual(Dual),
+}
+
+/// Steady relaxation.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Steady {
+    /// Method.
+    pub method: SteadyMethod,
+    /// Orders of magnitude the residual must fall.
+    pub orders: f64,
+    /// Greatest number of iterations.
+    pub iterations: u32,
+    /// Courant number at the start.
+    pub cfl: f64,
+    /// Greatest Courant number.
+    pub cfl_max: f64,
+}
+
+/// Method of the steady relaxation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum SteadyMethod {
+    /// Newton's method with GMRES, preconditioned by sweeps.
+    NewtonKrylov,
+    /// Lower-upper symmetric Gauss-Seidel sweeps alone.
+    LuSgs,
+    /// Explicit Runge-Kutta with local steps: the plain reference.
+    RungeKutta,
+}
+
+/// Explicit time marching; [`read()`](super::read()) sees to it that one of `until` and `periods` is there.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Explicit {
+    /// Time at which the run ends.
+    pub until: Option<Time>,
+    /// Number of periods of the motion instead.
+    pub periods: Option<f64>,
+    /// Courant number.
+    pub cfl: f64,
+    /// Runge-Kutta method.
+    pub method: RungeKutta,
+    /// Greatest number of steps.
+    pub steps: u32,
+    /// The run ends when mean and first harmonic of the loads change less from one period to the next.
+    pub periodic_tolerance: Option<f64>,
+}
+
+/// Explicit Runge-Kutta method.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum RungeKutta {
+    /// Strong-stability-preserving, three stages, third order (Shu and Osher 1988).
+    Ssprk3,
+    /// Classical, four stages, fourth order.
+    Rk4,
+}
+
+/// Implicit time marching; one of `step` and `steps_per_period`, and one of `until` and `periods`, is there.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Dual {
+    /// Step in time.
+    pub step: Option<Time>,
+    /// Number of steps in a period of the motion instead.
+    pub steps_per_period: Option<u32>,
+    /// Time at which the run ends.
+    pub until: Option<Time>,
+    /// Number of periods of the motion instead.
+    pub periods: Option<f64>,
+    /// Order of the backward difference, 1 or 2.
+    pub order: u8,
+    /// Orders of magnitude the residual must fall within a step.
+    pub orders: f64,
+    /// Greatest number of iterations within a step.
+    pub inner_iterations: u32,
+    /// Relative error of a step that the step size is fitted to; absent: fixed steps.
+    pub adaptive: Option<f64>,
+    /// The run ends when mean and first harmonic of the loads change less from one period to the next.
+    pub periodic_tolerance: Option<f64>,
+    /// Method of the relaxation within a step.
+    pub method: SteadyMethod,
+    /// Courant number of the pseudo time at the start of a step.
+    pub cfl: f64,
+    /// Greatest Courant number of the pseudo time.
+    pub cfl_max: f64,
+}
+
+impl Explicit {
+    /// Time at which the run ends; `None` when it counts periods of a motion that has none.
+    pub fn end(&self, period: Option<f64>) -> Option<f64> {
+        end(self.until, self.periods, period)
+    }
+}
+
+impl Dual {
+    /// Time at which the run ends; `None` when it counts periods of a motion that has none.
+    pub fn end(&self, period: Option<f64>) -> Option<f64> {
+        end(self.until, self.periods, period)
+    }
+
+    /// Step in time, the first one when steps are adaptive.
+    pub fn step_length(&self, period: Option<f64>) -> Option<f64> {
+        self.step.map(|s| s.0).or(Some(period? / f64::from(self.steps_per_period?)))
+    }
+}
+
+fn end(until: Option<Time>, periods: Option<f64>, period: Option<f64>) -> Option<f64> {
+    until.map(|t| t.0).or(Some(periods? * period?))
+}
+
+impl Default for Temporal {
+    fn default() -> Self {
+        Self::Steady(Steady::default())
+    }
+}
+
+impl Default for Steady {
+    fn default() -> Self {
+        Self { method: SteadyMethod::NewtonKrylov, orders: 6.0, iterations: 2000, cfl: 10.0, cfl_max: 1e6 }
+    }
+}

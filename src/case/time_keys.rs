@@ -1,0 +1,105 @@
+//! The keys of `[time]`.
+use super::keys::{COUNT, POSITIVE};
+use super::quantity::Time;
+use super::schema::{Absent, Field, Kind, Range, Table, Variant};
+
+pub(super) const TIME: &[Variant] = &[
+    Variant::table("steady", &STEADY, "relax to a steady state"),
+    Variant::table("explicit", &EXPLICIT, "march in time with an explicit Runge-Kutta method"),
+    Variant::table("dual", &DUAL, "march in time with implicit steps, each relaxed in a pseudo time"),
+];
+
+const METHOD: Field =
+    Field::defaulted("method", Kind::Words(RELAXATIONS), Absent::Word("newton_krylov"), "Method of the relaxation.");
+const CFL: Field = Field::defaulted("cfl", POSITIVE, Absent::Number(10.0), "Courant number at the start.");
+const CFL_MAX: Field = Field::defaulted("cfl_max", POSITIVE, Absent::Number(1e6), "Greatest Courant number.");
+const ORDERS: Kind = Kind::Number(Range { min: 0.0, max: 16.0, closed: false });
+
+static STEADY: Table = Table::of(&[
+    METHOD,
+    Field::defaulted("orders", ORDERS, Absent::Number(6.0), "Orders of magnitude the residual must fall."),
+    Field::defaulted("iterations", COUNT, Absent::Integer(2000), "Greatest number of iterations."),
+    CFL,
+    CFL_MAX,
+]);
+
+const RELAXATIONS: &[(&str, &str)] = &[
+    ("newton_krylov", "Newton's method with GMRES, preconditioned by sweeps"),
+    ("lu_sgs", "lower-upper symmetric Gauss-Seidel sweeps alone"),
+    ("runge_kutta", "explicit Runge-Kutta with local steps: the plain reference"),
+];
+
+const UNTIL: Field = Field::optional(
+    "until",
+    Kind::Quantity(Time::DIMENSION, Range::POSITIVE),
+    "`periods` must be given",
+    "Time at which the run ends.",
+);
+const PERIODS: Field = Field::optional(
+    "periods",
+    POSITIVE,
+    "`until` must be given",
+    "Number of periods of the motion after which the run ends.",
+);
+const PERIODIC_TOLERANCE: Field = Field::optional(
+    "periodic_tolerance",
+    Kind::Number(Range { min: 0.0, max: 1.0, closed: false }),
+    "the run goes to its end",
+    "The run ends earlier when mean and first harmonic of the loads change by less than this part of the first harmonic \
+     from one period to the next.",
+);
+
+static EXPLICIT: Table = Table::of(&[
+    UNTIL,
+    PERIODS,
+    Field::defaulted("cfl", POSITIVE, Absent::Number(0.8), "Courant number."),
+    Field::defaulted("method", Kind::Words(MARCHES), Absent::Word("ssprk3"), "Runge-Kutta method."),
+    Field::defaulted("steps", COUNT, Absent::Integer(1_000_000), "Greatest number of steps."),
+    PERIODIC_TOLERANCE,
+]);
+
+const MARCHES: &[(&str, &str)] = &[
+    ("ssprk3", "strong-stability-preserving, three stages, third order (Shu and Osher 1988)"),
+    ("rk4", "classical, four stages, fourth order"),
+];
+
+static DUAL: Table = Table::of(&[
+    Field::optional(
+        "steps_per_period",
+        // fewer steps do not resolve a sine
+        Kind::Integer(4, 1_000_000),
+        "`step` must be given",
+        "Number of steps in a period of the motion.",
+    ),
+    Field::optional(
+        "step",
+        Kind::Quantity(Time::DIMENSION, Range::POSITIVE),
+        "`steps_per_period` must be given",
+        "Step in time.",
+    ),
+    PERIODS,
+    UNTIL,
+    Field::defaulted(
+        "order",
+        Kind::Integer(1, 2),
+        Absent::Integer(2),
+        "Order of the backward difference in time; the first step is of first order.",
+    ),
+    Field::defaulted(
+        "orders",
+        ORDERS,
+        Absent::Number(2.0),
+        "Orders of magnitude the residual must fall within a step.",
+    ),
+    Field::defaulted("inner_iterations", COUNT, Absent::Integer(50), "Greatest number of iterations within a step."),
+    Field::optional(
+        "adaptive",
+        Kind::Number(Range { min: 0.0, max: 0.1, closed: false }),
+        "fixed steps",
+        "Relative error of a step to which the size of the steps is fitted.",
+    ),
+    PERIODIC_TOLERANCE,
+    METHOD,
+    CFL,
+    CFL_MAX,
+]);

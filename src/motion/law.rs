@@ -1,0 +1,159 @@
+//! The motion of one body, and of several.
+//!
+//! x(t) = R(θ(t)) (X − p) + p + d(t): the body turns by θ about an axis a through its pivot p, which travels with the
+//! displacement d; X is the place before any motion. With the part of v = X − p along the axis kept (P v = a (a·v)) and the
+//! turned one from Rodrigues' formula, R v = P v + cos θ (v − P v) + sin θ (a × v). In the plane a points away from the
+//! reader: positive angles are clockwise, nose up for a stream along +x. In space the default is a = +y, nose up for lift
+//! along +z. θ and d are sums of [`Course`]s; velocity and acceleration follow from the same lines by [`Jet`]s.
+use super::course::{Course, Repeat, common, total, total_with_rates};
+use super::pose::RigidPose;
+use crate::math::Vector;
+use crate::math::jet::{Jet, Scalar};
+
+/// Motion of one body.
+#[derive(Clone, Debug)]
+pub struct Law<const D: usize> {
+    pivot: Vector<D>,
+    /// Rows of P: projection onto the axis, zero in the plane.
+    along: [Vector<D>; D],
+    /// Rows of the matrix of a ×.
+    across: [Vector<D>; D],
+    turn: Vec<Course>,
+    shift: Vec<[Course; D]>,
+}
+
+/// Where a point is, how fast it moves, and how it speeds up.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Kinematics<const D: usize> {
+    /// Position.
+    pub position: Vector<D>,
+    /// Velocity.
+    pub velocity: Vector<D>,
+    /// Acceleration.
+    pub acceleration: Vector<D>,
+}
+
+impl<const D: usize> Law<D> {
+    /// At rest.
+    pub fn fixed() -> Self {
+        Self::about(Vector::ZERO, None)
+    }
+
+    /// At rest so far, with a pivot and (in space) an axis; without one the axis is +y.
+    pub fn about(pivot: Vector<D>, axis: Option<[f64; 3]>) -> Self {
+        let a = Vector(if D == 2 { [0.0, 0.0, -1.0] } else { axis.unwrap_or([0.0, 1.0, 0.0]) }).unit();
+        let cross = [[0.0, -a[2], a[1]], [a[2], 0.0, -a[0]], [-a[1], a[0], 0.0]];
+        Self {
+            pivot,
+            along: std::array::from_fn(|i| Vector::from_fn(|j| a[i] * a[j])),
+            across: std::array::from_fn(|i| Vector::from_fn(|j| cross[i][j])),
+            turn: Vec::new(),
+            shift: Vec::new(),
+        }
+    }
+
+    /// Adds an angle.
+    pub fn with_angle(mut self, course: Course) -> Self {
+        self.turn.push(course);
+        self
+    }
+
+    /// Adds a displacement.
+    pub fn with_shift(mut self, courses: [Course; D]) -> Self {
+        self.shift.push(courses);
+        self
+    }
+
+    /// Adds `course` times `direction` as displacement, for courses that are proportional to a factor.
+    pub(super) fn with_shift_along(self, direction: &Vector<D>, course: impl Fn(f64) -> Course) -> Self {
+        self.with_shift(std::array::from_fn(|d| course(direction[d])))
+    }
+
+    /// Place of `x`, written once for all scalars.
+    fn place<S: Scalar>(&self, t: S, x: &Vector<D>) -> [S; D] {
+        let angle = total(&self.turn, t);
+        let (sine, cosine) = (angle.sin(), angle.cos());
+        let arm = *x - self.pivot;
+        let shift = self.shift_at(t);
+        std::array::from_fn(|d| {
+            let kept = self.along[d].dot(&arm);
+            S::constant(self.pivot[d] + kept)
+                + shift[d]
+                + cosine * S::constant(arm[d] - kept)
+                + sine * S::constant(self.across[d].dot(&arm))
+        })
+    }
+
+    fn shift_at<S: Scalar>(&self, t: S) -> [S; D] {
+        std::array::from_fn(|d| self.shift.iter().fold(S::constant(0.0), |sum, courses| sum + courses[d].at(t)))
+    }
+
+    /// Rotation and shift at time `t`.
+    pub fn pose(&self, t: f64) -> RigidPose<D> {
+        if self.is_fixed() {
+            return RigidPose::identity();
+        }
+        let origin = Vector(self.place(t, &self.pivot));
+        let columns: [Vector<D>; D] =
+            std::array::from_fn(|j| Vector(self.place(t, &(self.pivot + Vector::axis(j)))) - origin);
+        let rotation: [Vector<D>; D] = std::array::from_fn(|i| Vector::from_fn(|j| columns[j][i]));
+        let turned = Vector::from_fn(|d| rotation[d].dot(&self.pivot));
+        RigidPose { rotation, shift: origin - turned }
+    }
+
+    /// Position, velocity and acceleration at time `t` of the point that was at `x` before any motion.
+    pub fn kinematics(&self, t: f64, x: &Vector<D>) -> Kinematics<D> {
+        let place = self.place(Jet::variable(t), x);
+        Kinematics {
+            position: Vector(place.map(|p| p.value)),
+            velocity: Vector(place.map(|p| p.first)),
+            acceleration: Vector(place.map(|p| p.second)),
+        }
+    }
+
+    /// Velocity at time `t` of the point that was at `x` before any motion.
+    pub fn velocity(&self, t: f64, x: &Vector<D>) -> Vector<D> {
+        self.kinematics(t, x).velocity
+    }
+
+    /// Angle θ, its rate and its acceleration, nose up positive.
+    pub fn angle(&self, t: f64) -> Jet {
+        total_with_rates(&self.turn, t)
+    }
+
+    /// Displacement d of the pivot.
+    pub fn displacement(&self, t: f64) -> Vector<D> {
+        Vector(self.shift_at(t))
+    }
+
+    /// Point about which the body turns, before any motion.
+    pub fn pivot(&self) -> Vector<D> {
+        self.pivot
+    }
+
+    /// True when nothing moves.
+    pub fn is_fixed(&self) -> bool {
+        self.turn.is_empty() && self.shift.is_empty()
+    }
+
+    /// True when the body turns.
+    pub fn turns(&self) -> bool {
+        !self.turn.is_empty()
+    }
+
+    /// True when all numbers of the law are finite at time `t`.
+    pub fn is_finite(&self, t: f64) -> bool {
+        let k = self.kinematics(t, &self.pivot);
+        let angle = self.angle(t);
+        k.position.is_finite() && k.velocity.is_finite() && angle.value.is_finite() && angle.first.is_finite()
+    }
+
+    /// How the motion repeats; a steady rotation does after each turn.
+    pub fn repeat(&self) -> Repeat {
+        let turns = self.turn.iter().map(|course| match course {
+            Course::Steady(rate) if *rate != 0.0 => Repeat::Every(std::f64::consts::TAU / rate.abs()),
+            other => other.repeat(),
+        });
+        common(turns.chain(self.shift.iter().flatten().map(Course::repeat)))
+    }
+}

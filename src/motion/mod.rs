@@ -1,0 +1,224 @@
+//! Motion of bodies: x(t), and from it v(t).
+//!
+//! [`Motions`] holds one [`Law`] for each body; a [`RigidPose`] is where a law has got to. Velocities are never written
+//! down a second time: marching takes differences of positions, with the formula it uses for the state, and what needs the
+//! velocity at an instant gets it by differentiating the same law (`math::jet`).
+mod course;
+mod law;
+mod pose;
+mod samples;
+mod spline;
+#[cfg(test)]
+mod tests;
+
+pub use course::{Course, Repeat};
+pub use law::{Kinematics, Law};
+pub use pose::RigidPose;
+pub use spline::Spline;
+
+use crate::case::formula::{Formula, FormulaError};
+use crate::case::{BodyMotion, Case, MotionFormula, MotionTable};
+use crate::math::Vector;
+
+/// Reads the text of a file that a case names.
+pub type ReadFile<'a> = &'a dyn Fn(&str) -> std::io::Result<String>;
+
+/// The motion of every body of a case.
+#[derive(Clone, Debug)]
+pub struct Motions<const D: usize> {
+    bodies: Vec<Law<D>>,
+    general: Law<D>,
+}
+
+/// Why a motion cannot be built.
+#[derive(Debug, thiserror::Error)]
+pub enum MotionError {
+    /// The file of a table cannot be read.
+    #[error("cannot read the motion table `{file}`: {source}")]
+    File {
+        /// Its name.
+        file: String,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// The file of a table holds no table.
+    #[error(
+        "motion table `{file}`: {problem}\nhint: give columns `time` and any of `x`, `y`, `z`, `angle_deg`, `angle_rad`"
+    )]
+    Table {
+        /// Its name.
+        file: String,
+        /// What is wrong.
+        problem: String,
+    },
+    /// A formula cannot be read.
+    #[error("formula `{text}`: {source}")]
+    Formula {
+        /// The formula.
+        text: String,
+        /// Why.
+        source: FormulaError,
+    },
+    /// A law has no finite place at the start.
+    #[error(
+        "the motion of {body} is not finite at t = 0\nhint: look for divisions by zero, `ln` and `sqrt` in its formulas"
+    )]
+    NotFinite {
+        /// Whose.
+        body: String,
+    },
+    /// A law turns a body about no point.
+    #[error("the motion of {body} turns, but has no pivot\nhint: add `pivot` to its motion")]
+    Pivot {
+        /// Whose.
+        body: String,
+    },
+}
+
+impl<const D: usize> Motions<D> {
+    /// `n` bodies at rest.
+    pub fn fixed(n: usize) -> Self {
+        Self { bodies: vec![Law::fixed(); n], general: Law::fixed() }
+    }
+
+    /// The motions of `case`; `chord` is its reference chord, `read` opens the files it names.
+    pub fn new(case: &Case, chord: f64, read: ReadFile<'_>) -> Result<Self, MotionError> {
+        let build = |motion: Option<&BodyMotion>, whose: String| match motion {
+            Some(motion) => Builder { case, chord, read, motion, whose: &whose }.law(),
+            None => Ok(Law::fixed()),
+        };
+        let named = |i: usize| case.bodies[i].name.clone().unwrap_or_else(|| format!("body {}", i + 1));
+        let bodies = (0..case.bodies.len())
+            .map(|i| build(case.motion_of(i), format!("`{}`", named(i))))
+            .collect::<Result<_, _>>()?;
+        let general = build(case.motion.as_ref().map(|m| &m.law), "`[motion]`".to_owned())?;
+        Ok(Self { bodies, general })
+    }
+
+    /// Motion of body number `body`.
+    pub fn of(&self, body: usize) -> &Law<D> {
+        &self.bodies[body]
+    }
+
+    /// Number of bodies.
+    pub fn len(&self) -> usize {
+        self.bodies.len()
+    }
+
+    /// True when there are no bodies.
+    pub fn is_empty(&self) -> bool {
+        self.bodies.is_empty()
+    }
+
+    /// What a rigid cloud follows: the motion of the bodies, which is one, or that of `[motion]` without bodies.
+    pub fn cloud(&self) -> &Law<D> {
+        self.bodies.first().unwrap_or(&self.general)
+    }
+
+    /// True when a body or the cloud moves.
+    pub fn moves(&self) -> bool {
+        self.laws().any(|law| !law.is_fixed())
+    }
+
+    /// The common period of all motions; `None` when some never repeats, or nothing moves.
+    pub fn period(&self) -> Option<f64> {
+        match course::common(self.laws().map(Law::repeat)) {
+            Repeat::Every(period) => Some(period),
+            Repeat::Constant | Repeat::Never => None,
+        }
+    }
+
+    fn laws(&self) -> impl Iterator<Item = &Law<D>> {
+        let alone = self.bodies.is_empty().then_some(&self.general);
+        self.bodies.iter().chain(alone)
+    }
+}
+
+/// What the law of one body is made from.
+struct Builder<'a> {
+    case: &'a Case,
+    chord: f64,
+    read: ReadFile<'a>,
+    motion: &'a BodyMotion,
+    whose: &'a str,
+}
+
+impl Builder<'_> {
+    fn law<const D: usize>(&self) -> Result<Law<D>, MotionError> {
+        let motion = self.motion;
+        let pivot = motion.pivot.as_ref().map(|p| Vector::from_fn(|d| p[d].0));
+        let axis = motion.axis.as_ref().map(|a| [a[0], a[1], a[2]]);
+        let mut law = Law::about(pivot.unwrap_or(Vector::ZERO), axis);
+        let omega = self.case.angular_frequency(motion, self.chord).unwrap_or(0.0);
+        let sine = |amplitude: f64, phase: f64| Course::Sine { amplitude, omega, phase };
+        if let Some(pitch) = &motion.pitch {
+            law = law.with_angle(sine(pitch.amplitude.0, pitch.phase.0));
+        }
+        if let Some(plunge) = &motion.plunge {
+            let up = Vector::axis(D - 1);
+            let direction = plunge.direction.as_ref().map_or(up, |v| Vector::from_fn(|d| v[d]).unit());
+            law = law.with_shift_along(&direction, |c| sine(plunge.amplitude.0 * c, plunge.phase.0));
+        }
+        if let Some(rotation) = &motion.rotation {
+            law = law.with_angle(Course::Steady(rotation.rate.0));
+        }
+        if let Some(translation) = &motion.translation {
+            law = law.with_shift(std::array::from_fn(|d| Course::Steady(translation.velocity[d].0)));
+        }
+        if let Some(table) = &motion.table {
+            law = self.table(table, law)?;
+        }
+        if let Some(formula) = &motion.formula {
+            law = formulas(formula, omega, law)?;
+        }
+        // only a table file can turn a body unseen by the reader of the case
+        if pivot.is_none() && law.turns() {
+            return Err(MotionError::Pivot { body: self.whose.to_owned() });
+        }
+        if !law.is_finite(0.0) {
+            return Err(MotionError::NotFinite { body: self.whose.to_owned() });
+        }
+        Ok(law)
+    }
+
+    /// Adds the splines through a table.
+    fn table<const D: usize>(&self, table: &MotionTable, law: Law<D>) -> Result<Law<D>, MotionError> {
+        let samples = match &table.file {
+            None => samples::Samples::of(table),
+            Some(file) => {
+                let text = (self.read)(file).map_err(|source| MotionError::File { file: file.clone(), source })?;
+                let problem = |problem| MotionError::Table { file: file.clone(), problem };
+                samples::Samples::parse(&text, table.periodic, D).map_err(problem)?
+            }
+        };
+        let spline = |values: &Vec<f64>| Course::Spline(Spline::new(&samples.time, values, table.periodic));
+        let law = match &samples.angle {
+            Some(angle) => law.with_angle(spline(angle)),
+            None => law,
+        };
+        if samples.shift.iter().all(Option::is_none) {
+            return Ok(law);
+        }
+        Ok(law.with_shift(std::array::from_fn(|d| samples.shift[d].as_ref().map_or(Course::Steady(0.0), spline))))
+    }
+}
+
+/// Adds formulas.
+fn formulas<const D: usize>(formula: &MotionFormula, omega: f64, law: Law<D>) -> Result<Law<D>, MotionError> {
+    let course = |text: &Option<String>| match text {
+        None => Ok(None),
+        Some(text) => match Formula::parse(text) {
+            Ok(formula) => Ok(Some(Course::Formula(formula, omega))),
+            Err(source) => Err(MotionError::Formula { text: text.clone(), source }),
+        },
+    };
+    let law = match course(&formula.angle)? {
+        Some(angle) => law.with_angle(angle),
+        None => law,
+    };
+    let shift = [course(&formula.x)?, course(&formula.y)?, course(&formula.z)?];
+    if shift.iter().all(Option::is_none) {
+        return Ok(law);
+    }
+    Ok(law.with_shift(std::array::from_fn(|d| shift[d].clone().unwrap_or(Course::Steady(0.0)))))
+}
