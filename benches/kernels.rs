@@ -11,7 +11,7 @@ use alula::math::Vector;
 use alula::math::multilevel::Cycle;
 use alula::physics::Primitive;
 use alula::scheme::Fluid;
-use alula::system::System;
+use alula::system::{Moment, System};
 use alula::time::relax::{Control, Method, Relax};
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
@@ -39,7 +39,7 @@ fn case<const D: usize>() -> Case {
 /// The equations with a state that is smooth but nowhere uniform, so that the limiter has work.
 fn solver<const D: usize>() -> (Fluid<D>, Vec<f64>) {
     let (fluid, mut u) = alula::run::build_solver::<D>(&case::<D>(), Path::new("")).unwrap();
-    for (x, row) in fluid.cloud.x.iter().zip(u.chunks_exact_mut(D + 2)) {
+    for (x, row) in fluid.shape.cloud.x.iter().zip(u.chunks_exact_mut(D + 2)) {
         let wave = (7.0 * x[0] + 5.0 * x[1]).sin();
         let velocity = Vector::<D>::from_fn(|d| if d == 0 { 0.6 + 0.1 * wave } else { 0.05 * wave });
         let q = Primitive { density: 1.0 + 0.1 * wave, velocity, pressure: (1.0 - 0.1 * wave) / 1.4 };
@@ -52,9 +52,9 @@ fn solver<const D: usize>() -> (Fluid<D>, Vec<f64>) {
 #[divan::bench(consts = [2, 3])]
 fn residual<const D: usize>(bencher: Bencher<'_, '_>) {
     let (fluid, u) = solver::<D>();
-    let (frame, mut work, mut du) = (fluid.frame(0.0, &u), fluid.work(), vec![0.0; u.len()]);
+    let (frame, mut work, mut du) = (fluid.frame(&Moment::At { time: 0.0 }, &u), fluid.work(), vec![0.0; u.len()]);
     bencher
-        .counter(ItemsCount::new(fluid.cloud.n_fluid))
+        .counter(ItemsCount::new(fluid.shape.cloud.n_fluid))
         .bench_local(|| fluid.rhs(black_box(&frame), black_box(&u), &mut work, &mut du));
 }
 
@@ -63,8 +63,9 @@ fn residual<const D: usize>(bencher: Bencher<'_, '_>) {
 fn gradient<const D: usize>(bencher: Bencher<'_, '_>) {
     let (fluid, u) = solver::<D>();
     let mut work = fluid.work();
-    fluid.fill_states(&fluid.frame(0.0, &u), &u, &mut work);
-    bencher.counter(ItemsCount::new(fluid.cloud.n_fluid)).bench_local(|| fluid.fill_gradients(&mut work));
+    let frame = fluid.frame(&Moment::At { time: 0.0 }, &u);
+    fluid.fill_states(&frame, &u, &mut work);
+    bencher.counter(ItemsCount::new(fluid.shape.cloud.n_fluid)).bench_local(|| fluid.fill_gradients(&frame, &mut work));
 }
 
 /// From the case to particles with neighbours.
@@ -86,7 +87,7 @@ fn weights<const D: usize>(bencher: Bencher<'_, '_>) {
 #[divan::bench(consts = [2, 3], sample_count = 5, sample_size = 1)]
 fn implicit_step<const D: usize>(bencher: Bencher<'_, '_>) {
     let (fluid, u) = solver::<D>();
-    let origin = fluid.cloud.x[..fluid.cloud.n_fluid].iter().flat_map(|_| u[..D + 2].to_vec()).collect::<Vec<_>>();
+    let origin = fluid.shape.cloud.x[..fluid.shape.cloud.n_fluid].iter().flat_map(|_| u[..D + 2].to_vec()).collect::<Vec<_>>();
     let control = Control {
         method: Method::NewtonKrylov,
         cfl: 20.0,
@@ -102,6 +103,6 @@ fn implicit_step<const D: usize>(bencher: Bencher<'_, '_>) {
         resume.phase.newton = true;
         Relax::new(&fluid, control, u.clone(), &origin, Some(resume))
     };
-    let counter = ItemsCount::new(fluid.cloud.n_fluid);
+    let counter = ItemsCount::new(fluid.shape.cloud.n_fluid);
     bencher.with_inputs(start).counter(counter).bench_local_values(|mut relax| relax.advance().map(|s| s.linear));
 }

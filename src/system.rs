@@ -1,9 +1,45 @@
 //! The seam between space and time.
 //!
 //! Space gives a semi-discrete system dU/dt = R(t, U); time integrates it without knowing what it means. What depends on time
-//! but is not evolved (states held on the outer boundary, later positions, velocities, normals and weights of moving
-//! particles) is one value, the *frame at (t, u)*. Marching holds one frame; harmonic balance will hold one per instance.
+//! but is not evolved (states held on the outer boundary, positions, velocities, normals and weights of moving particles) is
+//! one value, the *frame at (t, u)*. Marching holds one frame; harmonic balance will hold one per instance.
 use crate::math::block_matrix::BlockMatrix;
+
+/// A moment at which a frame is wanted, and how velocities follow from positions there.
+#[derive(Clone, Copy, Debug)]
+pub enum Moment<'a> {
+    /// A time at which everything is looked at as if it stood still: steady flow.
+    At {
+        /// Time.
+        time: f64,
+    },
+    /// Part of the way through a step: particles go straight from where they are at its start to where they are at its end.
+    Within {
+        /// Time at the start of the step.
+        start: f64,
+        /// Length of the step.
+        step: f64,
+        /// Part of the step that has passed, 0 to 1.
+        fraction: f64,
+    },
+    /// A time at which ∂/∂t is a difference formula: Σ c_k f(t_k).
+    By {
+        /// Time.
+        time: f64,
+        /// Coefficients and times of the formula.
+        rate: &'a [(f64, f64)],
+    },
+}
+
+impl Moment<'_> {
+    /// The time.
+    pub fn time(&self) -> f64 {
+        match self {
+            Self::At { time } | Self::By { time, .. } => *time,
+            Self::Within { start, step, fraction } => start + step * fraction,
+        }
+    }
+}
 
 /// A semi-discrete system dU/dt = R(t, U), eq. (16): the only thing an integrator ever sees.
 #[doc(alias = "eq16")]
@@ -21,10 +57,12 @@ pub trait System: Sync {
     fn is_empty(&self) -> bool {
         self.len() == 0
     }
-    /// The frame at time `t` and state `u`.
-    fn frame(&self, t: f64, u: &[f64]) -> Self::Frame;
-    /// Brings a frame to time `t` and state `u`.
-    fn update_frame(&self, t: f64, u: &[f64], work: &mut Self::Work, frame: &mut Self::Frame);
+    /// The frame at a moment and at the state `u`.
+    fn frame(&self, moment: &Moment<'_>, u: &[f64]) -> Self::Frame;
+    /// Brings the particles of a frame to a moment; does nothing when they never move.
+    fn place(&self, moment: &Moment<'_>, frame: &mut Self::Frame);
+    /// Brings what follows the state (the far field) to the state `u`.
+    fn follow(&self, u: &[f64], work: &mut Self::Work, frame: &mut Self::Frame);
     /// Fresh storage.
     fn work(&self) -> Self::Work;
     /// du = R(t, u).
@@ -40,7 +78,7 @@ pub trait System: Sync {
     /// The largest relative change of a positive quantity (density, pressure) that the update `du` makes; infinite if NaN.
     fn largest_change(&self, u: &[f64], du: &[f64]) -> f64;
     /// The first particle whose state is not physical, if any.
-    fn fault(&self, u: &[f64]) -> Option<Fault>;
+    fn fault(&self, frame: &Self::Frame, u: &[f64]) -> Option<Fault>;
 }
 
 /// A particle whose state is not physical.

@@ -6,8 +6,9 @@ mod common;
 use alula::math::Vector;
 use alula::math::multilevel::Cycle;
 use alula::physics::Primitive;
-use alula::system::System;
+use alula::system::{Moment, System};
 use alula::time::explicit::{Explicit, Method};
+use alula::time::{March, Past};
 use alula::time::relax::{self, Control, Relax};
 use common::{largest, round_body, solver, two_levels, vortex, with_threads};
 
@@ -17,7 +18,7 @@ const ROUND_OFF: f64 = 1e-12;
 fn uniform_residual<const D: usize>() -> f64 {
     let (fluid, u) = solver::<D>(&two_levels(D));
     let (mut work, mut du) = (fluid.work(), vec![0.0; u.len()]);
-    fluid.rhs(&fluid.frame(0.0, &u), &u, &mut work, &mut du);
+    fluid.rhs(&fluid.frame(&Moment::At { time: 0.0 }, &u), &u, &mut work, &mut du);
     largest(du)
 }
 
@@ -32,7 +33,7 @@ fn rest_residual<const D: usize>() -> f64 {
     let (fluid, mut u) = solver::<D>(&round_body(D));
     let rest = Primitive { density: 1.0, velocity: Vector::ZERO, pressure: 1.0 / fluid.gas.gamma };
     u.chunks_exact_mut(D + 2).for_each(|row| fluid.gas.conserved(&rest).store(row));
-    let mut frame = fluid.frame(0.0, &u);
+    let mut frame = fluid.frame(&Moment::At { time: 0.0 }, &u);
     frame.outer.fill(rest);
     let (mut work, mut du) = (fluid.work(), vec![0.0; u.len()]);
     fluid.rhs(&frame, &u, &mut work, &mut du);
@@ -52,11 +53,11 @@ fn bits(u: &[f64]) -> Vec<u64> {
 /// State after `steps` explicit steps of the vortex.
 fn marched(steps: usize) -> Vec<u64> {
     let (fluid, u) = solver::<2>(&vortex(0.15625, 5.0));
-    let mut march = Explicit::new(&fluid, Method::Ssprk3, (0.5, 5.0), (0.0, 0, u));
+    let mut march = Explicit::new(&fluid, Method::Ssprk3, (0.5, 5.0), (Past::default(), u));
     for _ in 0..steps {
         march.advance().unwrap();
     }
-    bits(&march.u)
+    bits(march.parts().2)
 }
 
 #[test]

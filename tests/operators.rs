@@ -7,7 +7,7 @@ use alula::math::Vector;
 use alula::math::least_squares::{Fit, Method};
 use alula::physics::Primitive;
 use alula::scheme::Fluid;
-use alula::system::System;
+use alula::system::{Moment, System};
 use common::{largest, round_body, solver, two_levels};
 
 /// Round-off of a derivative over a spacing of some hundredths.
@@ -29,9 +29,10 @@ fn linear<const D: usize>(x: &Vector<D>) -> Primitive<D> {
 /// Largest error of the gradient of a linear field over all particles with a cloud.
 fn gradient_error<const D: usize>(fluid: &Fluid<D>) -> f64 {
     let mut work = fluid.work();
-    work.state = fluid.cloud.x.iter().map(linear).collect();
-    fluid.fill_gradients(&mut work);
-    largest(work.gradient[..fluid.cloud.n_fluid].iter().flat_map(|g| {
+    let still = fluid.frame(&Moment::At { time: 0.0 }, &vec![1.0; fluid.len()]);
+    work.state = fluid.shape.cloud.x.iter().map(linear).collect();
+    fluid.fill_gradients(&still, &mut work);
+    largest(work.gradient[..fluid.shape.cloud.n_fluid].iter().flat_map(|g| {
         let velocity = (0..D).map(|d| (g.velocity[d] - slope(1 + d)).max_abs());
         velocity.chain([(g.density - slope(0)).max_abs(), (g.pressure - slope(4)).max_abs()]).collect::<Vec<_>>()
     }))
@@ -92,13 +93,13 @@ fn wall_states_obey_the_neumann_condition() {
     let (fluid, _) = solver::<2>(text);
     // gas at rest whose pressure varies along the upper face only: ∂p/∂n = 0 there
     let field = |x: &Vector<2>| Primitive::<2> { density: 1.0, velocity: Vector::ZERO, pressure: 1.0 + 0.1 * x[0] };
-    let cloud = &fluid.cloud;
+    let cloud = &fluid.shape.cloud;
     let mut u = vec![0.0; fluid.len()];
     for (x, row) in cloud.x.iter().zip(u.chunks_exact_mut(4)) {
         fluid.gas.conserved(&field(x)).store(row);
     }
     let mut work = fluid.work();
-    fluid.fill_states(&fluid.frame(0.0, &u), &u, &mut work);
+    fluid.fill_states(&fluid.frame(&Moment::At { time: 0.0 }, &u), &u, &mut work);
     let on_face = |x: &Vector<2>| x[1] > 0.499 && x[0].abs() < 0.2;
     let face: Vec<usize> = cloud.interface_range().filter(|i| on_face(&cloud.x[*i])).collect();
     let error = largest(face.iter().map(|i| work.state[*i].pressure - field(&cloud.x[*i]).pressure));

@@ -48,6 +48,18 @@ pub struct Interface<const D: usize> {
     pub arc: f64,
 }
 
+impl<const D: usize> Interface<D> {
+    /// Turns its vectors by the rotation with these rows.
+    pub fn turn(&mut self, rotation: &[Vector<D>; D]) {
+        let turned = |v: &Vector<D>| Vector::from_fn(|i| rotation[i].dot(v));
+        self.normal = turned(&self.normal);
+        self.area = turned(&self.area);
+        // R K Rᵀ
+        let half: [Vector<D>; D] = std::array::from_fn(|j| Vector::from_fn(|i| rotation[j].dot(&self.curvature[i])));
+        self.curvature = std::array::from_fn(|i| Vector::from_fn(|j| rotation[i].dot(&half[j])));
+    }
+}
+
 /// A particle on a side of the domain.
 #[derive(Clone, Copy, Debug)]
 pub struct Outer {

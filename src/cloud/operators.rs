@@ -12,7 +12,7 @@ use super::neighbours::Neighbours;
 use super::{Cloud, Image, Transform};
 use crate::math::Vector;
 use crate::math::least_squares::{bounded_gradient_weights, gradient_weights};
-use crate::math::sweep::{CHUNK, parts, sweep_each};
+use crate::math::sweep::{CHUNK, parts, sweep_each, sweep_parts};
 
 /// Rows in one part: large enough that few edges are visited twice, small enough to stay in cache and balance threads.
 const PART: [usize; 2] = [1024, 4096];
@@ -102,6 +102,33 @@ impl<const D: usize> Operators<D> {
         }
         let wall_first = vec![0; n_fluid_parts + 1];
         Self { parts: all, n_fluid_parts, edges, first, condition, walls: Vec::new(), wall_first }
+    }
+
+    /// Fits the weights anew to the positions of `cloud`, whose lists are those of the fit before; volumes stay. The
+    /// coefficients that come out are not conservative.
+    pub fn refit(&mut self, cloud: &Cloud<D>) {
+        let (weights, condition) = fit_rows(cloud);
+        self.condition = condition;
+        self.walls.clear();
+        self.wall_first.fill(0);
+        let lookup = Reverse::new(cloud);
+        let first = &self.first;
+        let parts: Vec<Range<usize>> = (0..self.parts.len()).map(|k| first[k] as usize..first[k + 1] as usize).collect();
+        sweep_parts(&parts, 1, &mut self.edges, &|_, edges| {
+            for e in edges {
+                let (i, j) = (e.i(), e.j());
+                let Some(own) = lookup.entry(i, j as u32) else { continue };
+                (e.a_i, e.a_j, e.s) = edge_vectors(cloud, &weights, &lookup, (i, j, own));
+            }
+        });
+    }
+
+    /// Turns all vectors.
+    pub fn turn(&mut self, turned: impl Fn(&Vector<D>) -> Vector<D>) {
+        for e in &mut self.edges {
+            (e.a_i, e.a_j, e.s) = (turned(&e.a_i), turned(&e.a_j), turned(&e.s));
+        }
+        self.walls.iter_mut().for_each(|w| w.area = turned(&w.area));
     }
 
     /// Edges of part `k`.
@@ -213,6 +240,25 @@ impl<'a, const D: usize> Reverse<'a, D> {
     }
 }
 
+/// a_ij, a_ji and s_ij of the pair (i, j) whose neighbour entry is number `e`.
+fn edge_vectors<const D: usize>(
+    cloud: &Cloud<D>,
+    weights: &[Vector<D>],
+    reverse: &Reverse<'_, D>,
+    (i, j, e): (usize, usize, usize),
+) -> (Vector<D>, Vector<D>, Vector<D>) {
+    let a_i = weights[e];
+    let turn = |(e, t): (usize, Option<u8>)| match t {
+        Some(t) => cloud.transforms[t as usize].direction(&weights[e]),
+        None => weights[e],
+    };
+    // an end without a cloud counts as the mirror image of this one
+    match reverse.position(i, j).map(turn) {
+        Some(a_j) => (a_i, a_j, a_i * cloud.volume[i] - a_j * cloud.volume[j]),
+        None => (a_i, Vector::ZERO, a_i * (2.0 * cloud.volume[i])),
+    }
+}
+
 fn part_edges<const D: usize>(
     cloud: &Cloud<D>,
     weights: &[Vector<D>],
@@ -227,19 +273,9 @@ fn part_edges<const D: usize>(
             if inside && j < i {
                 continue;
             }
-            let a_i = weights[e];
-            let turn = |(e, t): (usize, Option<u8>)| match t {
-                Some(t) => cloud.transforms[t as usize].direction(&weights[e]),
-                None => weights[e],
-            };
-            let back = reverse.position(i, j).map(turn);
-            // an end without a cloud counts as the mirror image of this one
-            let s = match back {
-                Some(a_j) => a_i * cloud.volume[i] - a_j * cloud.volume[j],
-                None => a_i * (2.0 * cloud.volume[i]),
-            };
+            let (a_i, a_j, s) = edge_vectors(cloud, weights, reverse, (i, j, e));
             let flag = if inside { BOTH } else { 0 };
-            edges.push(Edge { i: i as u32, j: j as u32 | flag, a_i, a_j: back.unwrap_or(Vector::ZERO), s });
+            edges.push(Edge { i: i as u32, j: j as u32 | flag, a_i, a_j, s });
         }
     }
     edges

@@ -8,7 +8,7 @@ use crate::cloud::Diagnosis;
 use crate::geometry::dimension;
 use crate::observe::table::write_json;
 use crate::observe::vtk::{Column, write_points};
-use crate::system::System;
+use crate::system::{Moment, System};
 
 /// Residual evaluations of a typical steady run, per particle, and their growth with the number of particles.
 const EVALUATIONS: f64 = 1200.0;
@@ -53,16 +53,17 @@ pub fn inspect(case: &Case, places: &Places, files: bool) -> Result<CloudReport,
 fn look<const D: usize>(case: &Case, places: &Places, files: bool) -> Result<CloudReport, RunError> {
     let began = Instant::now();
     let (surface, mut notes) = setup::surface::<D>(case, &places.input)?;
-    let stage = setup::Stage { factor: 1.0, cycle: 0 };
-    let solver = setup::solver(case, &stage, surface.as_ref(), &[], None)?;
+    let motions = setup::motions(case, &places.input, surface.as_ref())?;
+    let stage = setup::Stage { factor: 1.0, cycle: 0, march: false };
+    let solver = setup::solver(case, &stage, surface.as_ref(), (&[], &motions), None)?;
     let seconds = began.elapsed().as_secs_f64();
     let (fluid, u) = (&solver.fluid, &solver.initial);
     let (mut work, mut du) = (fluid.work(), vec![0.0; u.len()]);
-    let frame = fluid.frame(0.0, u);
+    let frame = fluid.frame(&Moment::At { time: 0.0 }, u);
     let timer = Instant::now();
     (0..TIMED).for_each(|_| fluid.rhs(&frame, u, &mut work, &mut du));
     let evaluation = timer.elapsed().as_secs_f64() / f64::from(TIMED);
-    let cloud = &fluid.cloud;
+    let cloud = &fluid.shape.cloud;
     let counts: Vec<usize> = (0..cloud.n_rows()).map(|i| cloud.neighbours.of(i).len()).collect();
     notes.extend(cloud.notes.iter().cloned());
     let report = CloudReport {
@@ -76,7 +77,7 @@ fn look<const D: usize>(case: &Case, places: &Places, files: bool) -> Result<Clo
             counts.iter().copied().max().unwrap_or(0),
         ),
         spacing: cloud.spacing.iter().fold((f64::INFINITY, 0.0), |(l, h), s| (s.min(l), s.max(h))),
-        worst_condition: fluid.operators.condition.iter().fold(0.0, |m, c| c.max(m)),
+        worst_condition: fluid.shape.operators.condition.iter().fold(0.0, |m, c| c.max(m)),
         seconds,
         memory_bytes: bytes_of(fluid, integrator_bytes(case, fluid)),
         expected_seconds: evaluation * evaluations(case, fluid, &frame, u),
@@ -100,7 +101,7 @@ fn evaluations<const D: usize>(
         // no estimate yet: the steps depend on the period of the motion
         Temporal::Dual(_) => 0.0,
         Temporal::Explicit(e) => {
-            let mut rate = vec![0.0; fluid.cloud.n_fluid];
+            let mut rate = vec![0.0; fluid.shape.cloud.n_fluid];
             fluid.spectral_radius(frame, u, &mut fluid.work(), &mut rate);
             let fastest = rate.iter().fold(0.0f64, |m, r| m.max(*r));
             3.5 * e.end(None).unwrap_or_default() * fastest / e.cfl
@@ -115,7 +116,7 @@ fn integrator_bytes<const D: usize>(case: &Case, fluid: &crate::scheme::Fluid<D>
         Temporal::Explicit(_) => 3 * 8 * n,
         Temporal::Steady(_) | Temporal::Dual(_) => {
             let block = D + 2;
-            let entries = fluid.cloud.neighbours.index.len() + fluid.cloud.n_fluid;
+            let entries = fluid.shape.cloud.neighbours.index.len() + fluid.shape.cloud.n_fluid;
             8 * entries * block * block * 4 / 6 + 4 * 17 * n + 8 * 8 * n
         }
     }
@@ -130,12 +131,12 @@ fn write<const D: usize>(
 ) -> Result<(), RunError> {
     super::folder::create(case, places)?;
     let fluid = &solver.fluid;
-    let frame = fluid.frame(0.0, &solver.initial);
+    let frame = fluid.frame(&Moment::At { time: 0.0 }, &solver.initial);
     fluid.fill_states(&frame, &solver.initial, work);
-    let cloud = &fluid.cloud;
+    let cloud = &fluid.shape.cloud;
     let n = cloud.n_real();
     let points: Vec<[f64; 3]> = cloud.x[..n].iter().map(crate::math::Vector::to_3d).collect();
-    let mut condition = fluid.operators.condition.clone();
+    let mut condition = fluid.shape.operators.condition.clone();
     condition.resize(n, 1.0);
     let columns = [
         Column { name: "spacing", components: 1, values: &cloud.spacing[..n] },
@@ -143,7 +144,7 @@ fn write<const D: usize>(
         Column { name: "condition", components: 1, values: &condition },
     ];
     write_points(&places.out.join("cloud.vtu"), &points, &columns)?;
-    write_json(&places.out.join("doctor.json"), &Diagnosis::of(cloud, fluid.walls.n_linear))?;
+    write_json(&places.out.join("doctor.json"), &Diagnosis::of(cloud, fluid.shape.walls.n_linear))?;
     let view = View { case, out: &places.out, fluid, work, surface };
     pictures::write_cloud(&view)
 }

@@ -26,7 +26,7 @@ use crate::observe::{CheckpointError, FileError, VtkError};
 use crate::report::ReportError;
 use crate::scheme::start::StartError;
 use crate::scheme::{Fluid, adapt};
-use crate::system::System;
+use crate::system::{Moment, System};
 use crate::time::TimeError;
 
 pub use folder::fresh_folder;
@@ -176,8 +176,9 @@ pub fn build_cloud<const D: usize>(
 pub fn build_solver<const D: usize>(case: &Case, input: &Path) -> Result<(Fluid<D>, Vec<f64>), RunError> {
     setup::supported(case)?;
     let (surface, _) = setup::surface::<D>(case, input)?;
-    let plain = Stage { factor: 1.0, cycle: 0 };
-    let solver = setup::solver(case, &plain, surface.as_ref(), &[], None)?;
+    let motions = setup::motions(case, input, surface.as_ref())?;
+    let plain = Stage { factor: 1.0, cycle: 0, march: false };
+    let solver = setup::solver(case, &plain, surface.as_ref(), (&[], &motions), None)?;
     Ok((solver.fluid, solver.initial))
 }
 
@@ -191,6 +192,7 @@ fn drive<const D: usize>(
     let clock = summary::Clock::start();
     let (surface, notes) = setup::surface::<D>(case, &places.input)?;
     notes.iter().for_each(|n| monitor.note(n));
+    let motions = setup::motions(case, &places.input, surface.as_ref())?;
     let mut full = match &saved {
         Some(_) => None,
         None => Some(Cloud::build(case, surface.as_ref(), &[])?),
@@ -199,30 +201,42 @@ fn drive<const D: usize>(
         Some(s) => s.stages.clone(),
         None => setup::stages(case, full.as_ref().map_or(0, |c| c.n_fluid), D),
     };
-    let mut journal = solve::Journal::open(case, places, saved.as_ref(), monitor)?;
+    let mut journal = solve::Journal::open(case, places, saved.as_ref(), (motions.period(), monitor))?;
     journal.note(&describe(&stages, full.as_ref().map_or(0, |c| c.n_fluid)));
     let mut previous: Option<(Solver<D>, Vec<f64>)> = None;
+    let mut last_frame = None;
     let first = saved.as_ref().map_or(0, |s| s.stage);
     let mut sources: Vec<Source<D>> = saved.as_ref().map_or_else(Vec::new, persist::Saved::sources);
     for (k, stage) in stages.iter().enumerate().skip(first) {
         let ready = if stage.is_plain() { full.take() } else { None };
-        let solver = setup::solver(case, stage, surface.as_ref(), &sources, ready)?;
-        let start = match (saved.take(), previous.take()) {
-            (Some(s), _) => solve::Start::Resume(Box::new(s)),
-            (None, Some(p)) => solve::Start::Fresh(setup::transfer(&p, &solver, surface.as_ref())),
-            (None, None) => solve::Start::Fresh(solver.initial.clone()),
+        let same = k > 0 && stage.shares_cloud(&stages[k - 1]);
+        let build = || setup::solver(case, stage, surface.as_ref(), (&sources, &motions), ready);
+        let (solver, start) = match (saved.take(), previous.take()) {
+            (Some(s), _) => (build()?, solve::Start::Resume(Box::new(s))),
+            (None, Some((solver, state))) if same => (solver, solve::Start::Fresh(state)),
+            (None, Some(p)) => {
+                let solver = build()?;
+                let state = setup::transfer(&p, &solver, surface.as_ref());
+                (solver, solve::Start::Fresh(state))
+            }
+            (None, None) => {
+                let solver = build()?;
+                let state = solver.initial.clone();
+                (solver, solve::Start::Fresh(state))
+            }
         };
         let at = persist::Position { stage: k, stages: &stages, sources: &persist::flatten(&sources) };
         let last = k + 1 == stages.len();
-        let Some(state) = solve::solve(case, &solver, start, &at, last, &mut journal)? else {
+        let Some((state, frame)) = solve::solve(case, &solver, start, &at, last, &mut journal)? else {
             return Ok(Outcome::Interrupted { iteration: journal.iteration() });
         };
         if stages.get(k + 1).is_some_and(|s| s.cycle > 0) {
             sources = adapted(case, &solver, &state);
         }
+        last_frame = Some(frame);
         previous = Some((solver, state));
     }
-    let Some(solved) = previous else { return Err(RunError::Folder("the checkpoint names no stage".into())) };
+    let Some(solved) = previous.zip(last_frame) else { return Err(RunError::Folder("the checkpoint names no stage".into())) };
     let summary = outputs::write_all(case, places, &solved, surface.as_ref(), &mut journal, &clock)?;
     Ok(Outcome::Finished(Box::new(summary)))
 }
@@ -237,14 +251,14 @@ fn describe(stages: &[Stage], n: usize) -> String {
 fn adapted<const D: usize>(case: &Case, solver: &Solver<D>, state: &[f64]) -> Vec<Source<D>> {
     let fluid = &solver.fluid;
     let mut work = fluid.work();
-    let frame = fluid.frame(0.0, state);
+    let frame = fluid.frame(&Moment::At { time: 0.0 }, state);
     fluid.fill_states(&frame, state, &mut work);
-    fluid.fill_gradients(&mut work);
+    fluid.fill_gradients(&frame, &mut work);
     let finest = case.adapt.spacing.unwrap_or(case.cloud.spacing).0;
     adapt::sources(fluid, &work, &case.adapt.sensors, finest)
 }
 
 /// True for cases that march in time.
 fn marches(case: &Case) -> bool {
-    matches!(case.time, Temporal::Explicit(_) | Temporal::Dual(_))
+    !matches!(case.time, Temporal::Steady(_))
 }

@@ -3,7 +3,7 @@ use std::path::Path;
 
 use super::setup::Solver;
 use super::snapshot::{self, LoadFrame, Snapshot, Units, load_axes, pressure_coefficient, wall_load};
-use super::solve::{Journal, totals};
+use super::solve::{Journal, NEARLY, totals};
 use super::summary::{Clock, Ledger, Summary};
 use super::{Places, RunError, marches};
 use crate::case::{Case, Initial};
@@ -17,7 +17,7 @@ use crate::observe::vtk::{Column, Facets, write_collection, write_points, write_
 use crate::report;
 use crate::scheme::probe::Probe;
 use crate::scheme::start::free_stream;
-use crate::scheme::{Fluid, Work};
+use crate::scheme::{Fluid, Frame, Work};
 use crate::system::System;
 use crate::verify::truth::FieldTruth;
 
@@ -45,23 +45,23 @@ struct Names {
 pub(super) fn write_all<const D: usize>(
     case: &Case,
     places: &Places,
-    (solver, state): &(Solver<D>, Vec<f64>),
+    ((solver, state), frame): &((Solver<D>, Vec<f64>), Frame<D>),
     surface: Option<&Surface<D>>,
     journal: &mut Journal<'_>,
     clock: &Clock,
 ) -> Result<Summary, RunError> {
     let solved = clock.wall_seconds();
-    let fluid = &solver.fluid;
-    let mut work = fluid.work();
-    let frame = fluid.frame(journal.time, state);
-    fluid.fill_states(&frame, state, &mut work);
-    fluid.fill_gradients(&mut work);
+    let mut work = solver.fluid.work();
+    solver.fluid.fill_states(frame, state, &mut work);
+    solver.fluid.fill_gradients(frame, &mut work);
+    let seen = solver.fluid.seen(frame, &work);
+    let (fluid, work) = seen.as_ref().map_or((&solver.fluid, &work), |(fluid, work)| (fluid, work));
     let frame_of_loads: LoadFrame = load_axes(case);
     let names = surface.map_or(Names { bodies: Vec::new(), tags: Vec::new() }, |s| Names {
         bodies: s.bodies.clone(),
         tags: s.tags.clone(),
     });
-    let r = Finished { case, out: &places.out, fluid, work: &work, surface, axes: frame_of_loads.axes(fluid), names };
+    let r = Finished { case, out: &places.out, fluid, work, surface, axes: frame_of_loads.axes(fluid), names };
     let loads = r.wall_coefficients();
     let balance = r.balance();
     let through = r.axes.coefficients(&balance.load);
@@ -71,7 +71,7 @@ pub(super) fn write_all<const D: usize>(
         r.steady_ledger(&balance, &loads, &through)
     };
     let (cpu, wall) = journal.seconds();
-    let n = fluid.cloud.n_real();
+    let n = fluid.shape.cloud.n_real();
     let summary = Summary {
         event: "summary",
         case: case.title.clone(),
@@ -116,11 +116,11 @@ pub(super) struct View<'a, const D: usize> {
 
 /// Bytes of a solver, its state and its integrator.
 pub(super) fn bytes_of<const D: usize>(fluid: &Fluid<D>, integrator: usize) -> usize {
-    let cloud = &fluid.cloud;
+    let cloud = &fluid.shape.cloud;
     let rows = cloud.neighbours.index.len() * 4 + cloud.neighbours.first.len() * 4;
     let points = cloud.len() * (8 * D + 8 + 8) + cloud.n_fluid * 8;
     let states = cloud.len() * (8 * (D + 2) + 8 * D * (D + 2)) + 2 * 8 * fluid.len();
-    rows + points + states + fluid.operators.bytes() + fluid.walls.bytes() + integrator
+    rows + points + states + fluid.shape.operators.bytes() + fluid.shape.walls.bytes() + integrator
 }
 
 fn last_change(cycles: &[[f64; 5]]) -> Option<Coefficients> {
@@ -145,7 +145,7 @@ impl<'a, const D: usize> Finished<'a, D> {
     }
 
     fn wall_coefficients(&self) -> Coefficients {
-        if self.fluid.cloud.interface.is_empty() {
+        if self.fluid.shape.cloud.interface.is_empty() {
             return Coefficients::default();
         }
         self.axes.coefficients(&wall_load(self.fluid, self.work, &self.axes, |_| true))
@@ -155,7 +155,7 @@ impl<'a, const D: usize> Finished<'a, D> {
     fn balance(&self) -> Balance {
         let Some(surface) = self.surface else { return Balance::default() };
         let bounds = surface.bounds();
-        let domain = self.fluid.cloud.tree.bounds();
+        let domain = self.fluid.shape.cloud.tree.bounds();
         let margin = MARGIN * bounds.extent().max_abs();
         let clamp = |v: Vector<D>| Vector::from_fn(|d| v[d].clamp(domain.min[d], domain.max[d]));
         let outer = bounds.padded(margin);
@@ -189,7 +189,7 @@ impl<'a, const D: usize> Finished<'a, D> {
 
     /// Calls `f(middle, area)` for tiles of one face of the box, about half a local spacing wide.
     fn tile(&self, region: &Bounds<D>, axis: usize, end: f64, f: &mut dyn FnMut(Vector<D>, f64)) {
-        let tree = &self.fluid.cloud.tree;
+        let tree = &self.fluid.shape.cloud.tree;
         let mut stack = vec![*region];
         while let Some(b) = stack.pop() {
             let mut middle = b.centre();
@@ -222,7 +222,7 @@ impl<'a, const D: usize> Finished<'a, D> {
         if matches!(self.case.initial, Initial::FreeStream) {
             return None;
         }
-        let cloud = &self.fluid.cloud;
+        let cloud = &self.fluid.shape.cloud;
         let extent = cloud.tree.bounds().extent();
         let period = Some(Vector([extent[0], extent[1]]));
         let truth = FieldTruth::new(&self.case.initial, self.case.flow.gamma, period).ok()??;
@@ -239,7 +239,7 @@ impl<'a, const D: usize> Finished<'a, D> {
     fn write_tables(&self, cycles: &[[f64; 5]], summary: &Summary) -> Result<(), RunError> {
         write_json(&self.out.join("summary.json"), summary)?;
         write_json(&self.out.join("ledger.json"), &summary.ledger)?;
-        write_json(&self.out.join("doctor.json"), &Diagnosis::of(&self.fluid.cloud, self.fluid.walls.n_linear))?;
+        write_json(&self.out.join("doctor.json"), &Diagnosis::of(&self.fluid.shape.cloud, self.fluid.shape.walls.n_linear))?;
         self.write_loads()?;
         self.write_surface_csv()?;
         let rows = cycles.iter().enumerate().map(|(k, c)| {
@@ -252,7 +252,7 @@ impl<'a, const D: usize> Finished<'a, D> {
     }
 
     fn write_loads(&self) -> Result<(), RunError> {
-        let cloud = &self.fluid.cloud;
+        let cloud = &self.fluid.shape.cloud;
         let units = Units::of(self.case).pressure();
         let mut rows = Vec::new();
         for (b, body) in self.names.bodies.iter().enumerate() {
@@ -278,7 +278,7 @@ impl<'a, const D: usize> Finished<'a, D> {
     }
 
     fn write_surface_csv(&self) -> Result<(), RunError> {
-        let cloud = &self.fluid.cloud;
+        let cloud = &self.fluid.shape.cloud;
         let free = free_stream::<D>(self.case);
         let units = Units::of(self.case);
         let bounds = self.surface.map_or(Bounds { min: Vector::ZERO, max: Vector::splat(1.0) }, Surface::bounds);
@@ -293,7 +293,7 @@ impl<'a, const D: usize> Finished<'a, D> {
             row.push(Entry::from(w.area.norm()));
             row.push(Entry::from(self.names.bodies.get(usize::from(w.body)).map_or("", String::as_str)));
             row.push(Entry::from(self.names.tags.get(usize::from(w.tag)).map_or("", String::as_str)));
-            let x_c = (cloud.x[i][0] - bounds.min[0]) / bounds.extent()[0];
+            let x_c = (self.fluid.reference().cloud.x[i][0] - bounds.min[0]) / bounds.extent()[0];
             let mach = q.velocity.norm() / self.fluid.gas.sound_speed(q);
             let cp = pressure_coefficient(q, &free);
             row.extend(
@@ -313,7 +313,7 @@ impl<'a, const D: usize> Finished<'a, D> {
             .collect();
         write_points(&self.out.join("field.vtu"), &all.points, &columns)?;
         write_collection(&self.out.join("field.pvd"), &[(time, "field.vtu")])?;
-        let cloud = &self.fluid.cloud;
+        let cloud = &self.fluid.shape.cloud;
         if cloud.interface.is_empty() {
             return Ok(());
         }
@@ -338,14 +338,15 @@ pub(super) fn write_series<const D: usize>(
     case: &Case,
     out: &Path,
     fluid: &Fluid<D>,
-    work: &Work<D>,
-    time: f64,
+    (frame, work): (&Frame<D>, &Work<D>),
     interval: f64,
 ) -> Result<(), RunError> {
-    let all = snapshot::field(case, fluid, work);
+    let seen = fluid.seen(frame, work);
+    let (fluid, work) = seen.as_ref().map_or((fluid, work), |(fluid, work)| (fluid, work));
+    let (all, time) = (snapshot::field(case, fluid, work), frame.time);
     let columns: Vec<Column<'_>> =
         all.columns.iter().map(|(name, components, values)| Column { name, components: *components, values }).collect();
-    let number = (time / interval).floor() as u64;
+    let number = (time / interval + NEARLY).floor() as u64;
     write_points(&out.join(series_name(number)), &all.points, &columns)?;
     // times are those of the multiples of the interval that each file follows within one step
     let files: Vec<(f64, String)> =

@@ -8,6 +8,7 @@ use super::setup::Stage;
 use crate::cloud::sources::Source;
 use crate::math::Vector;
 use crate::observe::checkpoint::{self, Array, Checkpoint, Field};
+use crate::time::Past;
 use crate::time::relax::{Phase, Resume};
 
 /// Name of the checkpoint in the run folder.
@@ -42,6 +43,8 @@ struct Meta {
     cycles: Vec<[f64; 5]>,
     cpu_seconds: f64,
     wall_seconds: f64,
+    #[serde(default)]
+    steps: [u64; 3],
 }
 
 /// A checkpoint in memory.
@@ -67,6 +70,8 @@ pub(super) struct Saved {
     pub(super) cpu_seconds: f64,
     /// Wall time spent before.
     pub(super) wall_seconds: f64,
+    /// Where an implicit march stands.
+    pub(super) past: Past,
     sources: Vec<f64>,
 }
 
@@ -89,6 +94,7 @@ impl Saved {
             cycles: Vec::new(),
             cpu_seconds: 0.0,
             wall_seconds: 0.0,
+            past: Past::default(),
             sources: at.sources.to_vec(),
         }
     }
@@ -118,6 +124,7 @@ impl Saved {
             cycles: self.cycles.clone(),
             cpu_seconds: self.cpu_seconds,
             wall_seconds: self.wall_seconds,
+            steps: [self.past.last.to_bits(), self.past.next.to_bits(), u64::from(self.past.unconverged)],
         };
         let field = |name: &str, data: &[f64]| Field {
             name: name.into(),
@@ -126,7 +133,7 @@ impl Saved {
         };
         let meta = serde_json::to_value(meta).map_err(|e| RunError::Folder(e.to_string()))?;
         let fields =
-            vec![field("state", &self.state), field("scale", &self.relax.scale), field("sources", &self.sources)];
+            vec![field("state", &self.state), field("scale", &self.relax.scale), field("before", &self.past.before), field("sources", &self.sources)];
         Ok(checkpoint::write(&out.join(FILE), &Checkpoint { meta, fields })?)
     }
 
@@ -159,6 +166,14 @@ impl Saved {
             cycles: m.cycles,
             cpu_seconds: m.cpu_seconds,
             wall_seconds: m.wall_seconds,
+            past: Past {
+                time: f64::from_bits(m.time_bits),
+                iteration: m.stage_iteration,
+                last: f64::from_bits(m.steps[0]),
+                next: f64::from_bits(m.steps[1]),
+                before: file.f64("before")?.to_vec(),
+                unconverged: m.steps[2] as u32,
+            },
             sources: file.f64("sources")?.to_vec(),
         })
     }

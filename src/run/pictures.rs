@@ -2,7 +2,6 @@
 use super::RunError;
 use super::outputs::View;
 use super::snapshot::pressure_coefficient;
-use crate::geometry::Surface;
 use crate::math::sweep::sweep;
 use crate::math::{Bounds, Vector};
 use crate::physics::Primitive;
@@ -27,19 +26,19 @@ pub(super) fn write<const D: usize>(view: &View<'_, D>) -> Result<(), RunError> 
 }
 
 fn window<const D: usize>(view: &View<'_, D>, margin: f64) -> Bounds<2> {
-    let all = view.fluid.cloud.tree.bounds();
+    let all = view.fluid.shape.cloud.tree.bounds();
     let b = view.surface.map_or(all, |s| s.bounds().padded(margin * s.bounds().extent().max_abs()));
     let pick = |v: Vector<D>| Vector([v[0], v[1]]);
     Bounds { min: pick(b.min.max(&all.min)), max: pick(b.max.min(&all.max)) }
 }
 
-fn outlines<const D: usize>(surface: Option<&Surface<D>>) -> Vec<Vec<Vector<2>>> {
-    let Some(surface) = surface else { return Vec::new() };
+fn outlines<const D: usize>(view: &View<'_, D>) -> Vec<Vec<Vector<2>>> {
+    let Some(surface) = view.surface else { return Vec::new() };
     let mut all: Vec<(u16, Vec<Vector<2>>)> = Vec::new();
     for chain in surface.chains() {
         let body = surface.element(chain.elements[0]).body;
         let points = chain.elements.iter().map(|e| {
-            let p = surface.corners(*e)[0];
+            let p = view.fluid.carried(usize::from(body), &surface.corners(*e)[0]);
             Vector([p[0], p[1]])
         });
         match all.last_mut() {
@@ -51,7 +50,7 @@ fn outlines<const D: usize>(surface: Option<&Surface<D>>) -> Vec<Vec<Vector<2>>>
 }
 
 fn plane<const D: usize>(view: &View<'_, D>) -> Result<(), RunError> {
-    let outlines = outlines(view.surface);
+    let outlines = outlines(view);
     let w = window(view, MARGIN);
     let free = free_stream::<D>(view.case);
     let gas = view.fluid.gas;
@@ -90,18 +89,18 @@ fn sampled<const D: usize>(view: &View<'_, D>, w: &Bounds<2>) -> (usize, usize, 
         let mut x = Vector::ZERO;
         x[0] = w.min[0] + ((k % width) as f64 + 0.5) / scale;
         x[1] = w.min[1] + ((k / width) as f64 + 0.5) / scale;
-        if view.surface.is_some_and(|s| s.inside(&x)) { None } else { probe.at(&x) }
+        if view.surface.is_some_and(|s| s.inside(&view.fluid.origin(&x))) { None } else { probe.at(&x) }
     });
     (width, height, states)
 }
 
 /// Draws the particles near the bodies (plane clouds).
 pub(super) fn write_cloud<const D: usize>(view: &View<'_, D>) -> Result<(), RunError> {
-    if D == 2 { cloud_picture(view, &outlines(view.surface)) } else { Ok(()) }
+    if D == 2 { cloud_picture(view, &outlines(view)) } else { Ok(()) }
 }
 
 fn cloud_picture<const D: usize>(view: &View<'_, D>, outlines: &[Vec<Vector<2>>]) -> Result<(), RunError> {
-    let cloud = &view.fluid.cloud;
+    let cloud = &view.fluid.shape.cloud;
     let flat = |x: &Vector<D>| Vector([x[0], x[1]]);
     let points: Vec<Vector<2>> = cloud.x[..cloud.n_fluid].iter().map(flat).collect();
     let finest = cloud.spacing[..cloud.n_fluid].iter().fold(f64::INFINITY, |m, h| m.min(*h));
@@ -116,13 +115,13 @@ fn cloud_picture<const D: usize>(view: &View<'_, D>, outlines: &[Vec<Vector<2>>]
 /// Cp along the chord.
 fn curves<const D: usize>(view: &View<'_, D>) -> Result<(), RunError> {
     let Some(surface) = view.surface else { return Ok(()) };
-    let cloud = &view.fluid.cloud;
+    let cloud = &view.fluid.shape.cloud;
     let free = free_stream::<D>(view.case);
     let b = surface.bounds();
     let mut series = Vec::new();
     for (k, name) in surface.bodies.iter().enumerate() {
         let own = || cloud.interface_range().zip(&cloud.interface).filter(|(_, w)| usize::from(w.body) == k);
-        let x = own().map(|(i, _)| (cloud.x[i][0] - b.min[0]) / b.extent()[0]).collect();
+        let x = own().map(|(i, _)| (view.fluid.reference().cloud.x[i][0] - b.min[0]) / b.extent()[0]).collect();
         let y = own().map(|(i, _)| pressure_coefficient(&view.work.state[i], &free)).collect();
         series.push(Series { name: name.clone(), marks: Marks::Dots, x, y });
     }
@@ -135,7 +134,7 @@ fn space<const D: usize>(view: &View<'_, D>) -> Result<(), RunError> {
     if view.surface.is_none() {
         return Ok(());
     }
-    let cloud = &view.fluid.cloud;
+    let cloud = &view.fluid.shape.cloud;
     let free = free_stream::<D>(view.case);
     let solid = |v: &Vector<D>| Vector(v.to_3d());
     let points: Vec<Vector<3>> = cloud.x[cloud.interface_range()].iter().map(solid).collect();

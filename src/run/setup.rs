@@ -1,8 +1,9 @@
 //! From case to solver: surface, stages, cloud, fluid, state at the start.
 use std::path::Path;
+use std::sync::Arc;
 
 use super::RunError;
-use crate::case::{Case, Length, Steady, SteadyMethod, Temporal};
+use crate::case::{Case, Dual, Length, ParticleMotion, Steady, SteadyMethod, Temporal};
 use crate::cloud::conservative::conservative as conserve;
 use crate::cloud::sources::Source;
 use crate::cloud::{Cloud, Operators};
@@ -10,12 +11,14 @@ use crate::geometry::{GeometryError, Surface, load_surface};
 use crate::math::multilevel::Cycle;
 use crate::math::{Bounds, Vector};
 use crate::physics::{Conserved, Gas};
-use crate::scheme::Fluid;
-use crate::scheme::boundary::WallFits;
+use crate::motion::{Law, Motions};
+use crate::scheme::blend::Blend;
+use crate::scheme::{Carriage, Fluid, Shape};
 use crate::scheme::probe::Probe;
 use crate::scheme::reconstruct::Reconstruction;
 use crate::scheme::start::{Stream, initial};
-use crate::system::System;
+use crate::system::{Moment, System};
+use crate::time::dual::Plan;
 use crate::time::relax::{Control, Method};
 
 /// Particles above which a steady case is started on one coarser cloud, and on two; in 2-D and 3-D.
@@ -24,14 +27,18 @@ const START: [[usize; 2]; 2] = [[2_500, 9_000], [15_000, 80_000]];
 /// Exactly conservative coefficients unless the case says otherwise: they cost a few per cent of a run.
 const CONSERVATIVE: bool = true;
 
+/// Greatest number of iterations of the relaxation before a march.
+const PRELUDE_ITERATIONS: u32 = 500;
+
 /// Refuses what a case file can say but the solver cannot compute yet; each line goes when its solver comes.
 pub(super) fn supported(case: &Case) -> Result<(), RunError> {
-    let dual = matches!(case.time, Temporal::Dual(_));
-    let periodic = matches!(&case.time, Temporal::Explicit(e) if e.until.is_none() || e.periodic_tolerance.is_some());
+    let lagrangian = case.moves() && case.particles() == ParticleMotion::Lagrangian;
+    let bare = case.moves() && case.bodies.is_empty() && case.particles() == ParticleMotion::Deforming;
+    let balanced = case.moves() && case.scheme.conservative == Some(true) && case.particles() != ParticleMotion::Rigid;
     let asks = [
-        (case.moves(), "moving bodies and particles (`motion`)"),
-        (dual, "implicit marching (`[time.dual]`)"),
-        (periodic, "periods of a motion (`periods`, `periodic_tolerance`)"),
+        (lagrangian, "particles that travel with the fluid (`particles = \"lagrangian\"`)"),
+        (bare, "a deforming cloud without bodies (`particles = \"deforming\"`)"),
+        (balanced, "conservative coefficients on a cloud that deforms (`conservative = true`)"),
         (case.flow.is_viscous(), "viscosity (`reynolds`, `viscosity`)"),
     ];
     let missing: Vec<&str> = asks.iter().filter(|a| a.0).map(|a| a.1).collect();
@@ -50,6 +57,9 @@ pub(super) struct Stage {
     pub(super) factor: f64,
     /// Cycle of adaptation, 0 before any.
     pub(super) cycle: u32,
+    /// Marches in time; else relaxes to a steady state.
+    #[serde(default)]
+    pub(super) march: bool,
 }
 
 impl Stage {
@@ -57,21 +67,34 @@ impl Stage {
     pub(super) fn is_plain(&self) -> bool {
         self.factor == 1.0 && self.cycle == 0
     }
+
+    /// True when both stand on the same cloud.
+    pub(super) fn shares_cloud(&self, other: &Self) -> bool {
+        self.factor == other.factor && self.cycle == other.cycle
+    }
 }
 
 /// The stages of a case whose own cloud has `n` fluid particles.
 pub(super) fn stages(case: &Case, n: usize, dimension: usize) -> Vec<Stage> {
     let mut all = Vec::new();
-    if matches!(case.time, Temporal::Steady(_)) && !case.bodies.is_empty() {
+    let relaxes = !matches!(case.time, Temporal::Explicit(_)) && !case.bodies.is_empty();
+    let steady = |factor: f64, cycle: u32| Stage { factor, cycle, march: false };
+    if relaxes {
         let limits = START[dimension - 2];
         if n > limits[1] {
-            all.push(Stage { factor: 4.0, cycle: 0 });
+            all.push(steady(4.0, 0));
         }
         if n > limits[0] {
-            all.push(Stage { factor: 2.0, cycle: 0 });
+            all.push(steady(2.0, 0));
         }
     }
-    all.extend((0..=case.adapt.cycles).map(|cycle| Stage { factor: 1.0, cycle }));
+    if relaxes || matches!(case.time, Temporal::Steady(_)) {
+        all.extend((0..=case.adapt.cycles).map(|cycle| steady(1.0, cycle)));
+    }
+    if super::marches(case) {
+        let cycle = all.last().map_or(0, |s: &Stage| s.cycle);
+        all.push(Stage { factor: 1.0, cycle, march: true });
+    }
     all
 }
 
@@ -100,7 +123,7 @@ pub(super) fn solver<const D: usize>(
     case: &Case,
     stage: &Stage,
     surface: Option<&Surface<D>>,
-    sources: &[Source<D>],
+    (sources, motions): (&[Source<D>], &Motions<D>),
     ready: Option<Cloud<D>>,
 ) -> Result<Solver<D>, RunError> {
     let scaled = coarsened(case, stage.factor);
@@ -110,14 +133,13 @@ pub(super) fn solver<const D: usize>(
         None => Cloud::build(&scaled, surface, sources)?,
     };
     let field = initial::<D>(case)?;
-    let conservative = case.scheme.conservative.unwrap_or(CONSERVATIVE);
+    // weights that are fitted anew as particles move are not conservative, and linear fields count for more than balances
+    let conservative = case.scheme.conservative.unwrap_or(CONSERVATIVE && !case.moves());
     let mut operators = Operators::new(&cloud);
     if conservative {
         conserve(&mut cloud, &mut operators);
     }
-    let walls = WallFits::new(&cloud);
     let gas = Gas { gamma: case.flow.gamma };
-    let held = cloud.x[cloud.outer_range()].iter().map(&field).collect();
     let mut u = vec![0.0; cloud.n_fluid * (D + 2)];
     for (x, row) in cloud.x.iter().zip(u.chunks_exact_mut(D + 2)) {
         gas.conserved(&field(x)).store(row);
@@ -134,13 +156,39 @@ pub(super) fn solver<const D: usize>(
             threshold: scheme.limiter_threshold,
         },
         conservative,
-        far_field: Box::new(Stream::new(case, &centre, surface.is_some_and(|s| !s.sharp.is_empty()))),
-        held,
-        cloud,
-        operators,
-        walls,
+        far_field: Arc::new(Stream::new(case, &centre, surface.is_some_and(|s| !s.sharp.is_empty()))),
+        held: field,
+        carriage: carriage(case, &cloud, motions),
+        before: None,
+        shape: Arc::new(Shape::new(cloud, operators)),
     };
     Ok(Solver { fluid, initial: u })
+}
+
+/// How the particles of a cloud follow the bodies.
+fn carriage<const D: usize>(case: &Case, cloud: &Cloud<D>, motions: &Motions<D>) -> Carriage<D> {
+    if !motions.moves() {
+        return Carriage::Still;
+    }
+    match case.particles() {
+        ParticleMotion::Rigid => Carriage::Rigid(motions.cloud().clone()),
+        _ => {
+            let laws: Vec<Law<D>> = (0..motions.len()).map(|b| motions.of(b).clone()).collect();
+            Carriage::Along { path: Arc::new(Blend::new(cloud, &laws)), laws }
+        }
+    }
+}
+
+/// The motions of a case.
+pub(super) fn motions<const D: usize>(
+    case: &Case,
+    input: &Path,
+    surface: Option<&Surface<D>>,
+) -> Result<Motions<D>, RunError> {
+    let extent = surface.map_or(1.0, |s| s.bounds().extent()[0]);
+    let chord = case.reference.chord.map_or(extent, |c| c.0);
+    let read = |name: &str| std::fs::read_to_string(input.join(name));
+    Motions::new(case, chord, &read).map_err(|e| RunError::Folder(e.to_string()))
 }
 
 /// Quarter chord of the bodies.
@@ -170,12 +218,12 @@ pub(super) fn transfer<const D: usize>(
 ) -> Vec<f64> {
     let (old, state) = (&previous.0.fluid, &previous.1);
     let mut work = old.work();
-    let frame = old.frame(0.0, state);
+    let frame = old.frame(&Moment::At { time: 0.0 }, state);
     old.fill_states(&frame, state, &mut work);
-    old.fill_gradients(&mut work);
+    old.fill_gradients(&frame, &mut work);
     let probe = Probe::new(old, &work, surface);
     let mut u = next.initial.clone();
-    let cloud = &next.fluid.cloud;
+    let cloud = &next.fluid.shape.cloud;
     crate::math::sweep::sweep_rows(&mut u, D + 2, |i, row| {
         let found = probe.at(&cloud.x[i]).filter(crate::physics::Primitive::is_physical);
         if let Some(q) = found {
@@ -184,6 +232,30 @@ pub(super) fn transfer<const D: usize>(
         }
     });
     u
+}
+
+/// The relaxation that gives a march its start.
+pub(super) fn prelude(dual: &Dual) -> Steady {
+    Steady { method: dual.method, iterations: PRELUDE_ITERATIONS, ..Steady::default() }
+}
+
+/// Numbers of an implicit march.
+pub(super) fn plan(dual: &Dual, period: Option<f64>) -> Result<Plan, RunError> {
+    let wrong = || RunError::Folder("`[time.dual]` counts periods of a motion that has none".into());
+    Ok(Plan {
+        until: dual.end(period).ok_or_else(wrong)?,
+        step: dual.step_length(period).ok_or_else(wrong)?,
+        order: dual.order,
+        orders: dual.orders,
+        iterations: dual.inner_iterations,
+        adaptive: dual.adaptive,
+    })
+}
+
+/// Numbers of the relaxation within a step in time.
+pub(super) fn inner_control(dual: &Dual, dimension: usize) -> Control {
+    let steady = Steady { cfl: dual.cfl, cfl_max: dual.cfl_max, ..prelude(dual) };
+    control(&steady, dimension)
 }
 
 /// Numbers of the steady relaxation.

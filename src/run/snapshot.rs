@@ -4,7 +4,7 @@ use crate::math::Vector;
 use crate::observe::loads::{Coefficients, Load, LoadAxes, pressure_load};
 use crate::physics::Primitive;
 use crate::scheme::start::{free_stream, stream_axes};
-use crate::scheme::{Fluid, Work};
+use crate::scheme::{Fluid, Frame, Work};
 
 /// Load axes that still need the extent of the bodies.
 #[derive(Clone, Debug)]
@@ -20,7 +20,8 @@ pub(super) fn load_axes(case: &Case) -> LoadFrame {
 impl LoadFrame {
     /// Axes for the bodies of `fluid`, in the units of the solver.
     pub(super) fn axes<const D: usize>(&self, fluid: &Fluid<D>) -> LoadAxes {
-        let walls = &fluid.cloud.x[fluid.cloud.interface_range()];
+        let reference = &fluid.reference().cloud;
+        let walls = &reference.x[reference.interface_range()];
         let bounds = crate::math::Bounds::around(walls);
         let extent = bounds.extent();
         let reference = &self.case.reference;
@@ -36,6 +37,8 @@ impl LoadFrame {
         if let Some(p) = &reference.moment_point {
             point = Vector::from_fn(|d| p.get(d).map_or(0.0, |l| l.0));
         }
+        // the point of the moment travels with the first body
+        let point = fluid.carried(0, &point);
         let (drag, lift) = stream_axes::<D>(&self.case);
         let speed = free_stream::<D>(&self.case).velocity.norm();
         LoadAxes {
@@ -48,10 +51,23 @@ impl LoadFrame {
         }
     }
 
-    /// Coefficients of all bodies from the wall states in `work`.
-    pub(super) fn wall_coefficients<const D: usize>(&self, fluid: &Fluid<D>, work: &Work<D>) -> Coefficients {
-        let axes = self.axes(fluid);
-        axes.coefficients(&wall_load(fluid, work, &axes, |_| true))
+    /// Coefficients of all bodies from the wall states in `work`, which are those of `frame`.
+    pub(super) fn coefficients_in<const D: usize>(
+        &self,
+        fluid: &Fluid<D>,
+        frame: &Frame<D>,
+        work: &Work<D>,
+    ) -> Coefficients {
+        let mut axes = self.axes(fluid);
+        let carried = fluid.carriage.body(0, frame.time).point(&Vector::from_fn(|d| axes.moment_point[d]));
+        axes.moment_point = carried.to_3d();
+        let (cloud, far) = (&frame.shape.cloud, fluid.far_field.pressure());
+        let mut load = Load::default();
+        for (i, wall) in cloud.interface_range().zip(&cloud.interface) {
+            let push = frame.outward(&(wall.area * (far - work.state[i].pressure)));
+            axes.add(&mut load, &frame.place(i).to_3d(), &push.to_3d());
+        }
+        axes.coefficients(&load)
     }
 }
 
@@ -70,7 +86,7 @@ pub(super) fn wall_load<const D: usize>(
     axes: &LoadAxes,
     chosen: impl Fn(usize) -> bool,
 ) -> Load {
-    let cloud = &fluid.cloud;
+    let cloud = &fluid.shape.cloud;
     let far = fluid.far_field.pressure();
     let (mut points, mut areas, mut excess) = (Vec::new(), Vec::new(), Vec::new());
     for (w, i) in cloud.interface_range().enumerate().filter(|(w, _)| chosen(*w)) {
@@ -124,7 +140,7 @@ pub(super) fn pressure_coefficient<const D: usize>(q: &Primitive<D>, free: &Prim
 
 /// All particles without images, with everything that a field file holds.
 pub(super) fn field<const D: usize>(case: &Case, fluid: &Fluid<D>, work: &Work<D>) -> Snapshot {
-    let cloud = &fluid.cloud;
+    let cloud = &fluid.shape.cloud;
     let n = cloud.n_real();
     let (free, units) = (free_stream::<D>(case), Units::of(case));
     let column = |f: &dyn Fn(usize) -> f64| (0..n).map(f).collect::<Vec<f64>>();

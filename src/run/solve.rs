@@ -2,15 +2,17 @@
 
 use super::outputs;
 use super::persist::{FILE, Position, Saved};
-use super::setup::{Solver, control};
+use super::setup::{Solver, control, inner_control, plan, prelude};
 use super::snapshot::{LoadFrame, Snapshot, load_axes};
 use super::{Monitor, Places, RunError, Tick};
-use crate::case::{Case, Explicit as Marching, RungeKutta, Steady, Temporal};
+use crate::case::{self, Case, Explicit as Marching, RungeKutta, Steady, Temporal};
 use crate::math::sweep::sum;
 use crate::observe::History;
 use crate::observe::loads::Coefficients;
 use crate::scheme::{Fluid, Frame, Work};
-use crate::time::TimeError;
+use crate::motion::Law;
+use crate::time::dual::Dual;
+use crate::time::{March, Past, TimeError};
 use crate::time::explicit::{Explicit, Method};
 use crate::time::relax::{Phase, Relax, Resume};
 
@@ -18,6 +20,8 @@ use crate::time::relax::{Phase, Relax, Resume};
 const EARLY_ORDERS: f64 = 3.5;
 /// Columns of `history.csv`.
 const COLUMNS: [&str; 9] = ["cycle", "iteration", "time", "cfl", "residual", "cl", "cd", "cm", "seconds"];
+/// More of them when something moves: iterations within the step, angle and displacement of the first body that moves.
+const MOVING: [&str; 5] = ["inner", "angle_deg", "shift_x", "shift_y", "shift_z"];
 
 /// Where a stage starts.
 pub(super) enum Start {
@@ -26,6 +30,9 @@ pub(super) enum Start {
     /// Where a checkpoint stands.
     Resume(Box<Saved>),
 }
+
+/// Part of an interval by which a time may fall short of a multiple of it.
+pub(super) const NEARLY: f64 = 1e-6;
 
 /// Everything that accompanies the stages of a run.
 pub(super) struct Journal<'a> {
@@ -56,6 +63,10 @@ pub(super) struct Journal<'a> {
     pub(super) bytes: usize,
     /// Linear iterations of the last stage.
     pub(super) linear: u32,
+    /// Steps in time that did not reach their goal.
+    pub(super) unconverged: u32,
+    /// Period of the motion.
+    period: Option<f64>,
 }
 
 impl<'a> Journal<'a> {
@@ -64,12 +75,13 @@ impl<'a> Journal<'a> {
         case: &Case,
         places: &Places,
         saved: Option<&Saved>,
-        monitor: &'a mut dyn Monitor,
+        (period, monitor): (Option<f64>, &'a mut dyn Monitor),
     ) -> Result<Self, RunError> {
         let path = places.out.join("history.csv");
+        let columns: Vec<&str> = COLUMNS.into_iter().chain(MOVING.into_iter().filter(|_| case.moves())).collect();
         let history = match saved {
-            Some(s) => History::resume(&path, &COLUMNS, s.iteration)?,
-            None => History::create(&path, &COLUMNS)?,
+            Some(s) => History::resume(&path, &columns, s.iteration)?,
+            None => History::create(&path, &columns)?,
         };
         Ok(Self {
             monitor,
@@ -90,6 +102,8 @@ impl<'a> Journal<'a> {
             time: saved.map_or(0.0, |s| s.time),
             bytes: 0,
             linear: 0,
+            unconverged: saved.map_or(0, |s| s.past.unconverged),
+            period,
         })
     }
 
@@ -113,18 +127,38 @@ impl<'a> Journal<'a> {
         (self.before.0 + self.cpu.cpu_seconds(), self.before.1 + self.began.elapsed().as_secs_f64())
     }
 
-    fn record(
+    /// True when a period has just ended whose loads differ from those of the period before by less than `tolerance`.
+    fn is_periodic(&self, time: f64, before: f64, tolerance: f64) -> bool {
+        let Some(period) = self.period else { return false };
+        let ended = (time / period + NEARLY).floor() > (before / period + NEARLY).floor();
+        ended && time / period > 1.5 && self.change(period).is_some_and(|c| c < tolerance)
+    }
+
+    /// Largest change of mean and first harmonic of the loads between the last two periods.
+    fn change(&self, period: f64) -> Option<f64> {
+        let _ = period;
+        None
+    }
+
+    fn record<const D: usize>(
         &mut self,
-        cycle: u32,
+        (cycle, inner): (u32, u32),
         step: &crate::time::Step,
         loads: Option<Coefficients>,
         goal: (f64, f64),
-        n: usize,
+        fluid: &Fluid<D>,
     ) -> Result<(), RunError> {
         let c = loads.unwrap_or_default();
         let seconds = self.seconds().1;
         let row =
             [f64::from(cycle), self.iteration as f64, step.time, step.cfl, step.residual, c.cl, c.cd, c.cm, seconds];
+        let mut row = row.to_vec();
+        if self.case.moves() {
+            let still = || (0.0, [0.0; 3]);
+            let at = |law: &Law<D>| (law.angle(step.time).value, law.displacement(step.time).to_3d());
+            let (angle, shift) = fluid.carriage.law().map_or_else(still, at);
+            row.extend([f64::from(inner), angle.to_degrees(), shift[0], shift[1], shift[2]]);
+        }
         self.history.append(&row)?;
         self.monitor.tick(&Tick {
             iteration: self.iteration,
@@ -133,7 +167,7 @@ impl<'a> Journal<'a> {
             residual: step.residual,
             cfl: step.cfl,
             loads: loads.map(|c| [c.cl, c.cd, c.cm]),
-            particles: n,
+            particles: fluid.shape.cloud.n_fluid,
         });
         Ok(())
     }
@@ -147,6 +181,18 @@ impl<'a> Journal<'a> {
         saved.write(&self.out)
     }
 
+    /// Writes a checkpoint of a march.
+    fn keep<const D: usize>(&self, at: &Position<'_>, marcher: &mut impl March<Fluid<D>>) -> Result<(), RunError> {
+        let past = marcher.past().clone();
+        let (cpu, wall) = self.seconds();
+        let mut saved = Saved::new(at, self.iteration, past.time, marcher.parts().2, bare(past.iteration));
+        (saved.cpu_seconds, saved.wall_seconds) = (cpu, wall);
+        saved.cycles = self.cycles.clone();
+        saved.start_totals = self.start_totals.clone();
+        saved.past = past;
+        saved.write(&self.out)
+    }
+
     fn due(&self, iteration: u32) -> bool {
         self.monitor.checkpoint() || iteration.is_multiple_of(self.every)
     }
@@ -156,6 +202,9 @@ impl<'a> Journal<'a> {
     }
 }
 
+/// State and frame at the end of a stage; `None` when told to stop.
+pub(super) type Solved<const D: usize> = Result<Option<(Vec<f64>, Frame<D>)>, RunError>;
+
 /// Integrates one stage; `None` when told to stop.
 pub(super) fn solve<const D: usize>(
     case: &Case,
@@ -164,11 +213,13 @@ pub(super) fn solve<const D: usize>(
     at: &Position<'_>,
     last: bool,
     journal: &mut Journal<'_>,
-) -> Result<Option<Vec<f64>>, RunError> {
+) -> Solved<D> {
+    let marches = at.stages[at.stage].march;
     match &case.time {
         Temporal::Steady(steady) => relax(steady, solver, start, at, last, journal),
-        Temporal::Explicit(marching) => march(marching, solver, start, at, journal),
-        Temporal::Dual(_) => Err(RunError::Unsupported("implicit marching cannot be computed yet".into())),
+        Temporal::Dual(dual) if !marches => relax(&prelude(dual), solver, start, at, false, journal),
+        Temporal::Dual(dual) => march_implicitly(dual, solver, start, at, journal),
+        Temporal::Explicit(marching) => march_explicitly(marching, solver, start, at, journal),
     }
 }
 
@@ -179,7 +230,7 @@ fn relax<const D: usize>(
     at: &Position<'_>,
     last: bool,
     journal: &mut Journal<'_>,
-) -> Result<Option<Vec<f64>>, RunError> {
+) -> Solved<D> {
     let fluid = &solver.fluid;
     let (u, resume) = match start {
         Start::Fresh(u) => (u, None),
@@ -205,7 +256,7 @@ fn relax<const D: usize>(
         journal.iteration += 1;
         let (frame, work, state) = relax.parts();
         let loads = coefficients(fluid, &journal.axes, frame, state, work);
-        journal.record(cycle, &step, loads, (orders, -step.residual.log10()), fluid.cloud.n_fluid)?;
+        journal.record((cycle, 0), &step, loads, (orders, -step.residual.log10()), fluid)?;
         if journal.due(relax.iteration) {
             journal.save(at, 0.0, &relax.u, relax.resume())?;
         }
@@ -223,72 +274,107 @@ fn relax<const D: usize>(
     let (frame, work, state) = relax.parts();
     let loads = coefficients(fluid, &journal.axes, frame, state, work).unwrap_or_default();
     if at.stages[at.stage].factor == 1.0 {
-        journal.cycles.push([f64::from(cycle), fluid.cloud.n_real() as f64, loads.cl, loads.cd, loads.cm]);
+        journal.cycles.push([f64::from(cycle), fluid.shape.cloud.n_real() as f64, loads.cl, loads.cd, loads.cm]);
     }
     if last {
         journal.save(at, 0.0, &relax.u, relax.resume())?;
     }
-    Ok(Some(relax.u))
+    let (frame, _, state) = relax.parts();
+    Ok(Some((state.to_vec(), frame.clone())))
 }
 
-fn march<const D: usize>(
+/// Where a march begins: (what it goes on from, state).
+fn beginning<const D: usize>(start: Start, fluid: &Fluid<D>, journal: &mut Journal<'_>) -> (Past, Vec<f64>) {
+    let (past, u) = match start {
+        Start::Fresh(u) => (Past::default(), u),
+        Start::Resume(s) => (s.past, s.state),
+    };
+    if past.iteration == 0 && journal.start_totals.is_empty() {
+        journal.start_totals = totals(fluid, &u);
+    }
+    (past, u)
+}
+
+fn march_explicitly<const D: usize>(
     marching: &Marching,
     solver: &Solver<D>,
     start: Start,
     at: &Position<'_>,
     journal: &mut Journal<'_>,
-) -> Result<Option<Vec<f64>>, RunError> {
+) -> Solved<D> {
     let fluid = &solver.fluid;
-    let Some(until) = marching.end(None) else {
-        return Err(RunError::Unsupported("periods of a motion cannot be counted yet".into()));
+    let Some(until) = marching.end(journal.period) else {
+        return Err(RunError::Folder("`[time.explicit]` counts periods of a motion that has none".into()));
     };
-    let (time, done, u) = match start {
-        Start::Fresh(u) => (0.0, 0, u),
-        Start::Resume(s) => (s.time, s.relax.iteration, s.state),
-    };
-    if done == 0 && journal.start_totals.is_empty() {
-        journal.start_totals = totals(fluid, &u);
-    }
+    let begin = beginning(start, fluid, journal);
     let method = match marching.method {
         RungeKutta::Ssprk3 => Method::Ssprk3,
         RungeKutta::Rk4 => Method::Rk4,
     };
-    let mut explicit = Explicit::new(fluid, method, (marching.cfl, until), (time, done, u));
-    if done == 0 {
-        journal.save(at, 0.0, &explicit.u, bare(0))?;
+    let explicit = Explicit::new(fluid, method, (marching.cfl, until), begin);
+    march(explicit, (until, marching.steps, marching.periodic_tolerance), fluid, at, journal)
+}
+
+fn march_implicitly<const D: usize>(
+    dual: &case::Dual,
+    solver: &Solver<D>,
+    start: Start,
+    at: &Position<'_>,
+    journal: &mut Journal<'_>,
+) -> Solved<D> {
+    let fluid = &solver.fluid;
+    let plan = plan(dual, journal.period)?;
+    let (past, u) = beginning(start, fluid, journal);
+    let marcher = Dual::new(fluid, inner_control(dual, D), plan, u, past);
+    march(marcher, (plan.until, u32::MAX, dual.periodic_tolerance), fluid, at, journal)
+}
+
+/// Steps until the end, a limit on their number, or a periodic state.
+fn march<'a, const D: usize>(
+    mut marcher: impl March<Fluid<D>> + 'a,
+    (until, limit, tolerance): (f64, u32, Option<f64>),
+    fluid: &Fluid<D>,
+    at: &Position<'_>,
+    journal: &mut Journal<'_>,
+) -> Solved<D> {
+    if marcher.past().iteration == 0 {
+        journal.keep(at, &mut marcher)?;
     }
-    let mut before = explicit.time;
-    while !explicit.finished() && explicit.iteration < marching.steps {
-        let step = match explicit.advance() {
+    let mut periodic = false;
+    while !marcher.finished() && !periodic && marcher.past().iteration < limit {
+        let before = marcher.past().time;
+        let step = match marcher.advance() {
             Ok(step) => step,
             Err(e) => {
-                journal.save(at, explicit.time, &explicit.u, bare(explicit.iteration - 1))?;
+                journal.keep(at, &mut marcher)?;
                 return Err(journal.failed(e));
             }
         };
         journal.iteration += 1;
-        let (frame, work, state) = explicit.parts();
+        let inner = marcher.inner();
+        let (frame, work, state) = marcher.parts();
         let loads = coefficients(fluid, &journal.axes, frame, state, work);
-        journal.record(0, &step, loads, (until, step.time), fluid.cloud.n_fluid)?;
+        journal.record((0, inner), &step, loads, (until, step.time), fluid)?;
         if let Some(interval) = journal.interval
-            && (explicit.time / interval).floor() > (before / interval).floor()
+            && (step.time / interval + NEARLY).floor() > (before / interval + NEARLY).floor()
         {
-            let (frame, work, state) = explicit.parts();
-            fluid.fill_states(frame, state, work);
-            outputs::write_series(&journal.case, &journal.out, fluid, work, frame.time, interval)?;
+            outputs::write_series(&journal.case, &journal.out, fluid, (frame, work), interval)?;
         }
-        before = explicit.time;
-        if journal.due(explicit.iteration) {
-            journal.save(at, explicit.time, &explicit.u, bare(explicit.iteration))?;
+        periodic = tolerance.is_some_and(|t| journal.is_periodic(step.time, before, t));
+        if journal.due(step.iteration) {
+            journal.keep(at, &mut marcher)?;
         }
-        if journal.monitor.stop() && !explicit.finished() {
-            journal.save(at, explicit.time, &explicit.u, bare(explicit.iteration))?;
+        if journal.monitor.stop() && !marcher.finished() && !periodic {
+            journal.keep(at, &mut marcher)?;
             return Ok(None);
         }
     }
-    (journal.time, journal.converged) = (explicit.time, explicit.finished());
-    journal.save(at, explicit.time, &explicit.u, bare(explicit.iteration))?;
-    Ok(Some(explicit.u))
+    (journal.time, journal.converged) = (marcher.past().time, marcher.finished() || periodic);
+    (journal.bytes, journal.linear, journal.unconverged) =
+        (marcher.bytes(), marcher.linear(), marcher.past().unconverged);
+    journal.keep(at, &mut marcher)?;
+    let (frame, _, state) = marcher.parts();
+    Ok(Some((state.to_vec(), frame.clone())))
 }
 
 /// Where a march stands, in the terms of a relaxation.
@@ -304,15 +390,15 @@ fn coefficients<const D: usize>(
     state: &[f64],
     work: &mut Work<D>,
 ) -> Option<Coefficients> {
-    if fluid.cloud.interface.is_empty() {
+    if fluid.shape.cloud.interface.is_empty() {
         return None;
     }
     fluid.fill_states(frame, state, work);
-    Some(axes.wall_coefficients(fluid, work))
+    Some(axes.coefficients_in(fluid, frame, work))
 }
 
 /// Totals of mass, momentum and energy over the fluid particles.
 pub(super) fn totals<const D: usize>(fluid: &Fluid<D>, u: &[f64]) -> Vec<f64> {
     let n = D + 2;
-    (0..n).map(|c| sum(fluid.cloud.n_fluid, |i| fluid.cloud.volume[i] * u[i * n + c])).collect()
+    (0..n).map(|c| sum(fluid.shape.cloud.n_fluid, |i| fluid.shape.cloud.volume[i] * u[i * n + c])).collect()
 }

@@ -7,7 +7,7 @@
 //!
 //! - ∂(p/ρ^γ)/∂n = 0: entropy does not vary across the wall;
 //! - ∂u_t/∂n = −κ u_t: the flow at the wall is irrotational (Crocco), κ the curvature of the wall (tensor in 3-D);
-//! - ∂p/∂n = ρ κ u_t²: the centrifugal balance.
+//! - ∂p/∂n = ρ κ u_t²: the centrifugal balance; walls that move add the rate of rotation and the acceleration.
 //!
 //! *Outer sides* hold a state or copy the particle inward of them; *images* copy their source through a reflection or shift.
 use crate::cloud::Cloud;
@@ -135,20 +135,39 @@ fn tangents<const D: usize>(normal: &Vector<D>) -> [Vector<D>; D] {
     axes
 }
 
-/// State of interface particle `w` on a slip wall at rest.
+/// How a wall moves near an interface particle, beside its velocity.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WallMotion<const D: usize> {
+    /// Rows of ∂w/∂x, the rate of rotation.
+    pub spin: [Vector<D>; D],
+    /// Acceleration.
+    pub acceleration: Vector<D>,
+}
+
+impl<const D: usize> WallMotion<D> {
+    /// A wall that does not move.
+    pub const AT_REST: Self = Self { spin: [Vector::ZERO; D], acceleration: Vector::ZERO };
+}
+
+/// State of interface particle `w` on a slip wall that moves with `velocity` and `motion`.
+///
+/// With r = v − w the velocity along the wall, G = ∂w/∂x, K the curvature and a_w the acceleration of the wall:
+///
+/// - the flow at the wall is irrotational: ∂v_t/∂n = Gᵀn − K r, tangential part;
+/// - momentum across the wall: ∂p/∂n = ρ [r·K r − 2 n·G r − n·a_w].
 ///
 /// Extrapolation may not bring pressure or entropy below a fraction of the lowest value in front of the wall.
 pub fn slip_wall<const D: usize>(
-    cloud: &Cloud<D>,
-    fits: &WallFits,
+    shape: (&Cloud<D>, &WallFits),
     gas: &Gas,
     w: usize,
+    (velocity, motion): (Vector<D>, Option<&WallMotion<D>>),
     q: impl Fn(usize) -> Primitive<D>,
 ) -> Primitive<D> {
-    let range = cloud.wall_clouds.range(w);
+    let (cloud, fits) = shape;
     let (mut p, mut s, mut v) = (0.0, 0.0, Vector::<D>::ZERO);
     let mut lowest = (f64::INFINITY, f64::INFINITY);
-    for (k, weight) in cloud.wall_clouds.of(w).iter().zip(&fits.weight[range]) {
+    for (k, weight) in cloud.wall_clouds.of(w).iter().zip(&fits.weight[cloud.wall_clouds.range(w)]) {
         let state = q(*k as usize);
         let entropy = gas.entropy(&state);
         p += weight * state.pressure;
@@ -156,38 +175,41 @@ pub fn slip_wall<const D: usize>(
         v += state.velocity * *weight;
         lowest = (lowest.0.min(state.pressure), lowest.1.min(entropy));
     }
-    let wall = &cloud.interface[w];
-    let lever = fits.lever[w];
-    let velocity = irrotational(&v, wall, lever);
+    let (wall, lever) = (&cloud.interface[w], fits.lever[w]);
+    let spin = |v: &Vector<D>| motion.map_or(Vector::ZERO, |m| Vector::from_fn(|i| m.spin[i].dot(v)));
+    let normal = &wall.normal;
+    // Gᵀn = −G n for a rigid rotation
+    let along = along_wall(&(v - velocity + spin(normal) * lever), normal);
+    let relative = irrotational(&along, wall, lever);
     let s = s.max(FLOOR * lowest.1);
     let density = |p: f64| (p / s).powf(1.0 / gas.gamma);
-    // ∂p/∂n = ρ κ u²: the density follows the pressure at constant entropy, three rounds settle it
-    let pull = lever * bending(wall, &velocity) * velocity.norm_squared();
+    let inertia = motion.map_or(0.0, |m| 2.0 * normal.dot(&spin(&relative)) + normal.dot(&m.acceleration));
+    let pull = lever * (bending(wall, &relative) - inertia);
+    // the density follows the pressure at constant entropy, three rounds settle it
     let mut pressure = p.max(FLOOR * lowest.0);
     for _ in 0..3 {
         pressure = (p - pull * density(pressure)).max(FLOOR * lowest.0);
     }
-    Primitive { density: density(pressure), velocity, pressure }
+    let across = *normal * velocity.dot(normal);
+    Primitive { density: density(pressure), velocity: relative + along_wall(&velocity, normal) + across, pressure }
 }
 
-/// Solves (I − B K) u_t = v_t: the tangential velocity with slope −K u_t across the wall.
-fn irrotational<const D: usize>(v: &Vector<D>, wall: &crate::cloud::Interface<D>, lever: f64) -> Vector<D> {
-    let along = *v - wall.normal * v.dot(&wall.normal);
+fn along_wall<const D: usize>(v: &Vector<D>, normal: &Vector<D>) -> Vector<D> {
+    *v - *normal * v.dot(normal)
+}
+
+/// Solves (I − B K) r = `along`: the tangential velocity with slope −K r across the wall.
+fn irrotational<const D: usize>(along: &Vector<D>, wall: &crate::cloud::Interface<D>, lever: f64) -> Vector<D> {
     // B K is small (spacing over radius of curvature): six terms of the Neumann series are plenty
     let apply = |u: &Vector<D>| Vector::from_fn(|r| lever * wall.curvature[r].dot(u));
-    let mut u = along;
+    let mut u = *along;
     for _ in 0..6 {
-        u = along + apply(&u);
-        u = u - wall.normal * u.dot(&wall.normal);
+        u = along_wall(&(*along + apply(&u)), &wall.normal);
     }
     u
 }
 
-/// t·K·t for the direction t of the velocity.
-fn bending<const D: usize>(wall: &crate::cloud::Interface<D>, velocity: &Vector<D>) -> f64 {
-    let speed2 = velocity.norm_squared();
-    if speed2 == 0.0 {
-        return 0.0;
-    }
-    (0..D).map(|r| velocity[r] * wall.curvature[r].dot(velocity)).sum::<f64>() / speed2
+/// r·K r.
+fn bending<const D: usize>(wall: &crate::cloud::Interface<D>, r: &Vector<D>) -> f64 {
+    (0..D).map(|d| r[d] * wall.curvature[d].dot(r)).sum()
 }

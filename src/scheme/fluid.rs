@@ -9,27 +9,35 @@
 //! last term carries the flux of the particle itself and keeps uniform flow exactly on any cloud. With *conservative*
 //! coefficients c_ij = s_ij/V_i, and what one particle loses another gains to round-off; only pressure then acts on the
 //! pieces of wall that bound a particle.
+//!
+//! On particles that move with w_i, F is the flux through a surface that moves along, F_w(q)·n = F(q)·n − (w·n) U, always
+//! with the velocity of the particle whose equation it is: with the least-squares coefficients this is w_i·∇U exactly, so
+//! that uniform flow and linear fields at rest stay what they are. The dissipation of an edge uses the mean of both ends.
+use std::sync::Arc;
+
 use crate::case::{Flux, Limiter, Side};
+use crate::cloud::Edge;
 use crate::cloud::operators::WallFace;
-use crate::cloud::{Cloud, Edge, Operators};
 use crate::math::Vector;
 use crate::math::block_matrix::BlockMatrix;
-use crate::math::sweep::{maximum, sweep, sweep_parts};
+use crate::math::sweep::{maximum, sweep, sweep_parts, sweep_slots};
 use crate::physics::riemann::{flux_ausm_plus_up, flux_hllc, flux_roe, flux_rusanov};
 use crate::physics::{Conserved, Gas, Primitive};
-use crate::system::{Fault, System};
+use crate::system::{Fault, Moment, System};
 
-use super::boundary::{WallFits, slip_wall};
+use super::boundary::slip_wall;
 use super::reconstruct::{Gradient, Limit, Reconstruction, Unlimited, VanAlbada, Venkatakrishnan};
+use super::shape::{Carriage, Frame, Shape};
+use super::start::Field;
 
 /// The compressible Euler equations on a cloud.
 pub struct Fluid<const D: usize> {
-    /// Particles.
-    pub cloud: Cloud<D>,
-    /// Weights and edges.
-    pub operators: Operators<D>,
-    /// Fits of the interface particles.
-    pub walls: WallFits,
+    /// Particles, weights and fits before any motion.
+    pub shape: Arc<Shape<D>>,
+    /// How particles move.
+    pub carriage: Carriage<D>,
+    /// Where the particles come from, when this is a view of a moving cloud at one time.
+    pub before: Option<Before<D>>,
     /// The gas.
     pub gas: Gas,
     /// Upwind flux.
@@ -41,9 +49,18 @@ pub struct Fluid<const D: usize> {
     /// Exactly conservative coefficients.
     pub conservative: bool,
     /// State of the far field.
-    pub far_field: Box<dyn FarField<D>>,
-    /// States held on the outer particles that hold one.
-    pub held: Vec<Primitive<D>>,
+    pub far_field: Arc<dyn FarField<D>>,
+    /// The field at the start, which some sides hold for ever.
+    pub held: Field<D>,
+}
+
+/// A moving cloud before any motion, and the time at which it is looked at.
+#[derive(Clone)]
+pub struct Before<const D: usize> {
+    /// Particles before any motion.
+    pub shape: Arc<Shape<D>>,
+    /// Time.
+    pub time: f64,
 }
 
 /// What the far field is, given the force on the bodies.
@@ -52,15 +69,6 @@ pub trait FarField<const D: usize>: Send + Sync {
     fn state(&self, x: &Vector<D>, force: &Vector<D>) -> Primitive<D>;
     /// Static pressure far away.
     fn pressure(&self) -> f64;
-}
-
-/// What depends on time but is not evolved.
-#[derive(Clone, Debug)]
-pub struct Frame<const D: usize> {
-    /// Time.
-    pub time: f64,
-    /// States of the outer particles.
-    pub outer: Vec<Primitive<D>>,
 }
 
 /// Storage of an evaluation.
@@ -72,11 +80,43 @@ pub struct Work<const D: usize> {
 }
 
 impl<const D: usize> Fluid<D> {
-    /// Fills `work.state` for every particle from the evolved ones.
+    /// A view of a moving cloud as it stands in `frame`: particles where they are, states in the axes of the case, for
+    /// those who watch. `None` when nothing moves and the fluid is its own view.
+    pub fn seen(&self, frame: &Frame<D>, work: &Work<D>) -> Option<(Self, Work<D>)> {
+        if self.carriage.is_still() {
+            return None;
+        }
+        let (shape, turn) = (&frame.shape, |v: &Vector<D>| frame.outward(v));
+        let shape = frame.turn.as_ref().map_or_else(|| Arc::clone(shape), |pose| Arc::new(shape.carried(pose)));
+        let state = work.state.iter().map(|q| Primitive { velocity: turn(&q.velocity), ..*q }).collect();
+        let gradient = work.gradient.iter().map(|g| g.turned(&turn)).collect();
+        let before = Some(Before { shape: Arc::clone(&self.shape), time: frame.time });
+        let (far_field, held) = (Arc::clone(&self.far_field), Arc::clone(&self.held));
+        let seen = Self { shape, before, far_field, held, carriage: self.carriage.clone(), ..*self };
+        Some((seen, Work { state, gradient }))
+    }
+
+    /// Particles before any motion.
+    pub fn reference(&self) -> &Shape<D> {
+        self.before.as_ref().map_or(&self.shape, |b| &b.shape)
+    }
+
+    /// The place before any motion of what is at `x`.
+    pub fn origin(&self, x: &Vector<D>) -> Vector<D> {
+        self.before.as_ref().map_or(*x, |b| self.carriage.origin(x, b.time))
+    }
+
+    /// Where the point `x` of body number `body` is.
+    pub fn carried(&self, body: usize, x: &Vector<D>) -> Vector<D> {
+        self.before.as_ref().map_or(*x, |b| self.carriage.body(body, b.time).point(x))
+    }
+
+    /// Fills `work.state` for every particle from the evolved ones, in the axes of `frame.shape`.
     pub fn fill_states(&self, frame: &Frame<D>, u: &[f64], work: &mut Work<D>) {
-        let cloud = &self.cloud;
+        let (cloud, fits) = (&frame.shape.cloud, &frame.shape.walls);
         let (fluid, rest) = work.state.split_at_mut(cloud.n_fluid);
-        sweep(fluid, |i| self.gas.primitive(&Conserved::load(&u[i * (D + 2)..])));
+        let inward = |q: Primitive<D>| Primitive { velocity: frame.inward(&q.velocity), ..q };
+        sweep(fluid, |i| inward(self.gas.primitive(&Conserved::load(&u[i * (D + 2)..]))));
         let fluid = &*fluid;
         let first_image = cloud.n_real();
         let seen = |k: usize| {
@@ -87,10 +127,11 @@ impl<const D: usize> Fluid<D> {
             self.image_state(&fluid[image.source as usize], image.transform)
         };
         let (walls, rest) = rest.split_at_mut(cloud.interface.len());
-        sweep(walls, |w| slip_wall(cloud, &self.walls, &self.gas, w, seen));
+        let moved = |w: usize| (frame.velocity_of(cloud.n_fluid + w), frame.walls.get(w));
+        sweep(walls, |w| slip_wall((cloud, fits), &self.gas, w, moved(w), seen));
         let walls = &*walls;
         let (outer, images) = rest.split_at_mut(cloud.outer.len());
-        sweep(outer, |k| self.outer_state(&frame.outer[k], &cloud.outer[k], fluid));
+        sweep(outer, |k| self.outer_state(&inward(frame.outer[k]), &cloud.outer[k], fluid));
         let outer = &*outer;
         sweep(images, |k| {
             let image = &cloud.images[k];
@@ -105,7 +146,7 @@ impl<const D: usize> Fluid<D> {
     }
 
     fn image_state(&self, q: &Primitive<D>, transform: u8) -> Primitive<D> {
-        Primitive { velocity: self.cloud.transforms[transform as usize].direction(&q.velocity), ..*q }
+        Primitive { velocity: self.shape.cloud.transforms[transform as usize].direction(&q.velocity), ..*q }
     }
 
     fn outer_state(&self, held: &Primitive<D>, outer: &crate::cloud::Outer, fluid: &[Primitive<D>]) -> Primitive<D> {
@@ -115,8 +156,8 @@ impl<const D: usize> Fluid<D> {
     }
 
     /// Fills `work.gradient` from `work.state`.
-    pub fn fill_gradients(&self, work: &mut Work<D>) {
-        let (cloud, op) = (&self.cloud, &self.operators);
+    pub fn fill_gradients(&self, frame: &Frame<D>, work: &mut Work<D>) {
+        let (cloud, op) = (&frame.shape.cloud, &frame.shape.operators);
         let state = &work.state;
         let (rows, rest) = work.gradient.split_at_mut(cloud.n_rows());
         sweep_parts(&op.parts, 1, rows, &|k, out| {
@@ -149,52 +190,93 @@ impl<const D: usize> Fluid<D> {
         });
     }
 
-    fn rhs_with_limiter(&self, flux: impl UpwindFlux<D>, work: &Work<D>, du: &mut [f64]) {
+    fn rhs_with_limiter(&self, flux: impl UpwindFlux<D>, frame: &Frame<D>, work: &Work<D>, du: &mut [f64]) {
         match self.limiter {
-            Limiter::None => self.fluxes(flux, Unlimited, work, du),
-            Limiter::VanAlbada => self.fluxes(flux, VanAlbada, work, du),
-            Limiter::Venkatakrishnan => self.fluxes(flux, Venkatakrishnan, work, du),
+            Limiter::None => self.fluxes(flux, Unlimited, (frame, work), du),
+            Limiter::VanAlbada => self.fluxes(flux, VanAlbada, (frame, work), du),
+            Limiter::Venkatakrishnan => self.fluxes(flux, Venkatakrishnan, (frame, work), du),
         }
     }
 
     /// Sums the edge fluxes of every fluid particle.
-    fn fluxes(&self, flux: impl UpwindFlux<D>, limit: impl Limit, work: &Work<D>, du: &mut [f64]) {
-        let op = &self.operators;
+    fn fluxes(&self, flux: impl UpwindFlux<D>, limit: impl Limit, at: (&Frame<D>, &Work<D>), du: &mut [f64]) {
+        let frame = at.0;
+        let op = &frame.shape.operators;
         sweep_parts(op.fluid_parts(), D + 2, du, &|k, out| {
             let start = op.parts[k].start;
             out.fill(0.0);
             for e in op.edges(k) {
-                let (to_i, to_j) = self.edge_flux(&flux, limit, e, work);
+                let (to_i, to_j) = self.edge_flux(&flux, limit, e, at);
                 add(&mut out[(e.i() - start) * (D + 2)..], &to_i);
                 if e.both() {
                     add(&mut out[(e.j() - start) * (D + 2)..], &to_j);
                 }
             }
             if self.conservative {
-                self.wall_fluxes(op.wall_faces(k), work, &mut |i, to_i| add(&mut out[(i - start) * (D + 2)..], &to_i));
+                let faces = op.wall_faces(k);
+                self.wall_fluxes(faces, at, &mut |i, to_i| add(&mut out[(i - start) * (D + 2)..], &to_i));
+            }
+            if frame.turn.is_some() {
+                out.chunks_exact_mut(D + 2).for_each(|row| {
+                    let momentum = frame.outward(&Vector::from_fn(|d| row[1 + d]));
+                    row[1..=D].copy_from_slice(&momentum.0);
+                });
             }
         });
     }
 
-    /// Pressure on the pieces of wall that bound fluid particles: no mass and no energy passes.
-    fn wall_fluxes(&self, faces: &[WallFace<D>], work: &Work<D>, add: &mut impl FnMut(usize, Conserved<D>)) {
+    /// Pressure on the pieces of wall that bound fluid particles: no mass passes, and energy only where the wall moves.
+    fn wall_fluxes(
+        &self,
+        faces: &[WallFace<D>],
+        (frame, work): (&Frame<D>, &Work<D>),
+        add: &mut impl FnMut(usize, Conserved<D>),
+    ) {
         for face in faces {
-            let i = face.i as usize;
-            let push = face.area * work.state[face.wall as usize].pressure;
-            let through = Conserved { density: 0.0, momentum: push, energy: 0.0 };
-            let own = self.gas.flux(&work.state[i], &face.area);
-            add(i, through.plus(-1.0, &own).times(-1.0 / self.cloud.volume[i]));
+            let (i, wall) = (face.i as usize, &work.state[face.wall as usize]);
+            let (own, moved) = (frame.velocity_of(i), frame.velocity_of(face.wall as usize));
+            let push = face.area * wall.pressure;
+            let pressed = Conserved { density: 0.0, momentum: push, energy: push.dot(&moved) };
+            let through = match frame.moves() {
+                true => pressed.plus((moved - own).dot(&face.area), &self.gas.conserved(wall)),
+                false => pressed,
+            };
+            let own = self.flux_past(&work.state[i], &face.area, &own);
+            add(i, through.plus(-1.0, &own).times(-1.0 / frame.shape.cloud.volume[i]));
         }
     }
 
-    /// What one edge adds to −dU/dt... of both ends: (to i, to j).
+    /// F_w(q)·n = F(q)·n − (w·n) U(q): flux through an area that moves with `w`.
+    #[inline(always)]
+    fn flux_past(&self, q: &Primitive<D>, n: &Vector<D>, w: &Vector<D>) -> Conserved<D> {
+        let still = self.gas.flux(q, n);
+        let passed = w.dot(n);
+        if passed == 0.0 { still } else { still.plus(-passed, &self.gas.conserved(q)) }
+    }
+
+    /// The upwind flux through an area that moves with `w`, by way of the axes in which it rests.
+    #[inline(always)]
+    fn upwind_past(
+        &self,
+        flux: &impl UpwindFlux<D>,
+        (l, r): (&Primitive<D>, &Primitive<D>),
+        m: &Vector<D>,
+        w: &Vector<D>,
+    ) -> Conserved<D> {
+        let seen = |q: &Primitive<D>| Primitive { velocity: q.velocity - *w, ..*q };
+        let f = flux(&self.gas, &seen(l), &seen(r), m);
+        let energy = f.energy + w.dot(&f.momentum) + 0.5 * w.norm_squared() * f.density;
+        Conserved { momentum: f.momentum + *w * f.density, energy, ..f }
+    }
+
+    /// What one edge adds to dU/dt of both ends: (to i, to j).
     #[inline(always)]
     fn edge_flux(
         &self,
         flux: &impl UpwindFlux<D>,
         limit: impl Limit,
         e: &Edge<D>,
-        work: &Work<D>,
+        (frame, work): (&Frame<D>, &Work<D>),
     ) -> (Conserved<D>, Conserved<D>) {
         let (i, j) = (e.i(), e.j());
         let size = e.s.norm();
@@ -202,13 +284,18 @@ impl<const D: usize> Fluid<D> {
             return (Conserved::ZERO, Conserved::ZERO);
         }
         let (qi, qj) = (&work.state[i], &work.state[j]);
-        let d = self.cloud.x[j] - self.cloud.x[i];
+        let cloud = &frame.shape.cloud;
+        let d = cloud.x[j] - cloud.x[i];
         let slopes = (&work.gradient[i], &work.gradient[j]);
         let (l, r) = self.reconstruction.states(&self.gas, limit, (qi, qj), slopes, &d);
         let gas = &self.gas;
         let m = e.s * (1.0 / size.max(f64::MIN_POSITIVE));
+        let (vi, vj) = (1.0 / cloud.volume[i], 1.0 / cloud.volume[j]);
+        if frame.moves() {
+            let speeds = (frame.velocity[i], frame.velocity[j]);
+            return self.moving_edge_flux(flux, e, (qi, qj), (&l, &r), speeds, (size, vi, vj));
+        }
         let upwind = flux(gas, &l, &r, &m);
-        let (vi, vj) = (1.0 / self.cloud.volume[i], 1.0 / self.cloud.volume[j]);
         if self.conservative {
             let through = upwind.times(size);
             let to_i = through.plus(-1.0, &gas.flux(qi, &e.s)).times(-vi);
@@ -225,18 +312,52 @@ impl<const D: usize> Fluid<D> {
         (to_i, to_j)
     }
 
-    /// s/2V: what takes the place of a_ij when the coefficients are conservative.
-    #[inline(always)]
-    pub(super) fn half_face(&self, i: usize, s: &Vector<D>) -> Vector<D> {
-        *s * (0.5 / self.cloud.volume[i])
+    /// The same on particles that move.
+    #[inline]
+    fn moving_edge_flux(
+        &self,
+        flux: &impl UpwindFlux<D>,
+        e: &Edge<D>,
+        (qi, qj): (&Primitive<D>, &Primitive<D>),
+        (l, r): (&Primitive<D>, &Primitive<D>),
+        (wi, wj): (Vector<D>, Vector<D>),
+        (size, vi, vj): (f64, f64, f64),
+    ) -> (Conserved<D>, Conserved<D>) {
+        let m = e.s * (1.0 / size.max(f64::MIN_POSITIVE));
+        let w = (wi + wj) * 0.5;
+        let upwind = self.upwind_past(flux, (l, r), &m, &w);
+        if self.conservative {
+            let through = upwind.times(size);
+            let mean = self.gas.conserved(l).plus(1.0, &self.gas.conserved(r)).times(0.5);
+            let seen = |own: &Vector<D>| through.plus((w - *own).dot(&e.s), &mean);
+            let to_i = seen(&wi).plus(-1.0, &self.flux_past(qi, &e.s, &wi)).times(-vi);
+            let to_j = seen(&wj).plus(-1.0, &self.flux_past(qj, &e.s, &wj)).times(vj);
+            return (to_i, to_j);
+        }
+        let mean = self.flux_past(l, &m, &w).plus(1.0, &self.flux_past(r, &m, &w));
+        let spread = upwind.plus(-0.5, &mean).times(size);
+        let central = |a: &Vector<D>, own: &Primitive<D>, w: &Vector<D>| {
+            self.flux_past(l, a, w).plus(1.0, &self.flux_past(r, a, w)).plus(-2.0, &self.flux_past(own, a, w))
+        };
+        let to_i = central(&e.a_i, qi, &wi).plus(vi, &spread).times(-1.0);
+        let to_j = if e.both() { central(&e.a_j, qj, &wj).plus(-vj, &spread).times(-1.0) } else { Conserved::ZERO };
+        (to_i, to_j)
     }
 
-    /// Force of the pressure on all bodies, from the wall states in `work`.
-    pub fn pressure_force(&self, work: &Work<D>) -> Vector<D> {
-        let walls = &work.state[self.cloud.interface_range()];
+    /// Force of the pressure on all bodies in the axes of the case, from the wall states in `work`.
+    pub fn pressure_force(&self, frame: &Frame<D>, work: &Work<D>) -> Vector<D> {
+        let cloud = &frame.shape.cloud;
+        let walls = &work.state[cloud.interface_range()];
         let far = self.far_field.pressure();
-        self.cloud.interface.iter().zip(walls).fold(Vector::ZERO, |f, (w, q)| f - w.area * (q.pressure - far))
+        let force = cloud.interface.iter().zip(walls).fold(Vector::ZERO, |f, (w, q)| f - w.area * (q.pressure - far));
+        frame.outward(&force)
     }
+}
+
+/// s/2V: what takes the place of a_ij when the coefficients are conservative.
+#[inline(always)]
+pub(super) fn half_face<const D: usize>(volume: f64, s: &Vector<D>) -> Vector<D> {
+    *s * (0.5 / volume)
 }
 
 /// A numerical flux across a unit normal.
@@ -264,80 +385,104 @@ impl<const D: usize> System for Fluid<D> {
     }
 
     fn len(&self) -> usize {
-        self.cloud.n_fluid * (D + 2)
+        self.shape.cloud.n_fluid * (D + 2)
     }
 
-    fn frame(&self, t: f64, u: &[f64]) -> Frame<D> {
-        let mut frame = Frame { time: t, outer: self.held.clone() };
-        self.update_frame(t, u, &mut self.work(), &mut frame);
+    fn frame(&self, moment: &Moment<'_>, u: &[f64]) -> Frame<D> {
+        let cloud = &self.shape.cloud;
+        let mut frame = Frame {
+            time: moment.time(),
+            shape: Arc::clone(&self.shape),
+            turn: None,
+            velocity: Vec::new(),
+            walls: Vec::new(),
+            outer: cloud.x[cloud.outer_range()].iter().map(|x| (self.held)(x)).collect(),
+        };
+        self.place(moment, &mut frame);
+        self.follow(u, &mut self.work(), &mut frame);
         frame
     }
 
-    fn update_frame(&self, t: f64, u: &[f64], work: &mut Work<D>, frame: &mut Frame<D>) {
-        frame.time = t;
+    fn place(&self, moment: &Moment<'_>, frame: &mut Frame<D>) {
+        self.carriage.place(&self.shape, moment, frame);
+        if matches!(moment, Moment::At { .. }) {
+            frame.velocity.clear();
+            frame.walls.clear();
+        }
+    }
+
+    fn follow(&self, u: &[f64], work: &mut Work<D>, frame: &mut Frame<D>) {
         self.fill_states(frame, u, work);
-        let force = self.pressure_force(work);
-        let first = self.cloud.n_rows();
-        sweep(&mut frame.outer, |k| match self.cloud.outer[k].side {
-            Side::FarField => self.far_field.state(&self.cloud.x[first + k], &force),
-            _ => self.held[k],
+        let force = self.pressure_force(frame, work);
+        let first = self.shape.cloud.n_rows();
+        let mut outer = std::mem::take(&mut frame.outer);
+        let still = self.carriage.is_still();
+        sweep_slots(&mut outer, |k, q| match self.shape.cloud.outer[k].side {
+            Side::FarField => *q = self.far_field.state(&frame.place(first + k), &force),
+            _ if still => {}
+            _ => *q = (self.held)(&frame.place(first + k)),
         });
+        frame.outer = outer;
     }
 
     fn work(&self) -> Work<D> {
         let blank = Primitive { density: 1.0, velocity: Vector::ZERO, pressure: 1.0 };
-        let n = self.cloud.len();
+        let n = self.shape.cloud.len();
         Work { state: vec![blank; n], gradient: vec![Gradient::ZERO; n] }
     }
 
     fn rhs(&self, frame: &Frame<D>, u: &[f64], work: &mut Work<D>, du: &mut [f64]) {
         self.fill_states(frame, u, work);
         if self.reconstruction.second_order {
-            self.fill_gradients(work);
+            self.fill_gradients(frame, work);
         }
         match self.flux {
-            Flux::Hllc => self.rhs_with_limiter(flux_hllc::<D>, work, du),
-            Flux::Roe => self.rhs_with_limiter(flux_roe::<D>, work, du),
-            Flux::AusmPlusUp => self.rhs_with_limiter(flux_ausm_plus_up::<D>, work, du),
-            Flux::Rusanov => self.rhs_with_limiter(flux_rusanov::<D>, work, du),
+            Flux::Hllc => self.rhs_with_limiter(flux_hllc::<D>, frame, work, du),
+            Flux::Roe => self.rhs_with_limiter(flux_roe::<D>, frame, work, du),
+            Flux::AusmPlusUp => self.rhs_with_limiter(flux_ausm_plus_up::<D>, frame, work, du),
+            Flux::Rusanov => self.rhs_with_limiter(flux_rusanov::<D>, frame, work, du),
         }
     }
 
     fn spectral_radius(&self, frame: &Frame<D>, u: &[f64], work: &mut Work<D>, rate: &mut [f64]) {
         self.fill_states(frame, u, work);
-        let op = &self.operators;
+        let (op, volume) = (&frame.shape.operators, &frame.shape.cloud.volume);
+        let speed = |i: usize, a: &Vector<D>| {
+            let q = &work.state[i];
+            self.gas.signal_speed(&Primitive { velocity: q.velocity - frame.velocity_of(i), ..*q }, a)
+        };
         sweep_parts(op.fluid_parts(), 1, rate, &|k, out| {
             let start = op.parts[k].start;
             out.fill(0.0);
             for e in op.edges(k) {
                 let (i, j) = (e.i(), e.j());
                 let (a_i, a_j) = match self.conservative {
-                    true => (self.half_face(i, &e.s), self.half_face(j, &e.s)),
+                    true => (half_face(volume[i], &e.s), half_face(volume[j], &e.s)),
                     false => (e.a_i, e.a_j),
                 };
-                out[i - start] += self.gas.signal_speed(&work.state[i], &a_i);
+                out[i - start] += speed(i, &a_i);
                 if e.both() {
-                    out[j - start] += self.gas.signal_speed(&work.state[j], &a_j);
+                    out[j - start] += speed(j, &a_j);
                 }
             }
             for face in op.wall_faces(k).iter().filter(|_| self.conservative) {
                 let i = face.i as usize;
-                out[i - start] += self.gas.signal_speed(&work.state[i], &self.half_face(i, &face.area));
+                out[i - start] += speed(i, &half_face(volume[i], &face.area));
             }
         });
     }
 
     fn graph(&self) -> (&[u32], &[u32]) {
-        (&self.cloud.neighbours.first, &self.cloud.neighbours.index)
+        (&self.shape.cloud.neighbours.first, &self.shape.cloud.neighbours.index)
     }
 
     fn parts(&self) -> &[std::ops::Range<usize>] {
-        self.operators.fluid_parts()
+        self.shape.operators.fluid_parts()
     }
 
     fn linearise(&self, frame: &Frame<D>, u: &[f64], work: &mut Work<D>, matrix: &mut BlockMatrix) {
         self.fill_states(frame, u, work);
-        super::jacobian::assemble(self, work, matrix);
+        super::jacobian::assemble(self, frame, work, matrix);
     }
 
     fn largest_change(&self, u: &[f64], du: &[f64]) -> f64 {
@@ -347,21 +492,22 @@ impl<const D: usize> System for Fluid<D> {
             let change = (new.density / old.density - 1.0).abs().max((new.pressure / old.pressure - 1.0).abs());
             if change.is_finite() { change } else { f64::INFINITY }
         };
-        maximum(self.cloud.n_fluid, change)
+        maximum(self.shape.cloud.n_fluid, change)
     }
 
-    fn fault(&self, u: &[f64]) -> Option<Fault> {
+    fn fault(&self, frame: &Frame<D>, u: &[f64]) -> Option<Fault> {
         let bad = |i: &usize| !self.gas.primitive(&Conserved::<D>::load(&u[i * (D + 2)..])).is_physical();
-        let i = (0..self.cloud.n_fluid).find(bad)?;
+        let i = (0..self.shape.cloud.n_fluid).find(bad)?;
         let q = self.gas.primitive(&Conserved::<D>::load(&u[i * (D + 2)..]));
         let reason = format!("density {:.4e}, pressure {:.4e} (both must be positive)", q.density, q.pressure);
-        Some(Fault { particle: i, place: self.cloud.x[i].0.to_vec(), reason })
+        Some(Fault { particle: i, place: frame.place(i).0.to_vec(), reason })
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::cloud::{Cloud, Operators};
     use crate::cloud::conservative::conservative;
 
     struct Still;
@@ -387,33 +533,34 @@ mod tests {
         let mut cloud = Cloud::build(&case, (!body.is_empty()).then_some(&surface), &[]).unwrap();
         let mut operators = Operators::new(&cloud);
         conservative(&mut cloud, &mut operators);
-        let walls = WallFits::new(&cloud);
+        let shape = Arc::new(Shape::new(cloud, operators));
         let reconstruction = Reconstruction { second_order: true, kappa: 0.0, threshold: 0.02 };
-        let held = Vec::new();
+        let held: Field<2> = Arc::new(|x| Still.state(x, &Vector::ZERO));
+        let carriage = Carriage::Still;
         let (gas, flux, limiter) = (Gas { gamma: 1.4 }, Flux::Hllc, Limiter::VanAlbada);
-        let far_field = Box::new(Still);
-        Fluid { cloud, operators, walls, gas, flux, limiter, reconstruction, conservative: true, far_field, held }
+        let far_field = Arc::new(Still);
+        Fluid { shape, carriage, before: None, gas, flux, limiter, reconstruction, conservative: true, far_field, held }
     }
 
     /// Σ V R and Σ |V R| of every variable for an uneven flow, and the force on the bodies.
     fn balance(fluid: &Fluid<2>) -> ([f64; 4], [f64; 4], Vector<2>) {
         let mut u = vec![0.0; fluid.len()];
-        for (row, x) in u.chunks_mut(4).zip(&fluid.cloud.x) {
+        for (row, x) in u.chunks_mut(4).zip(&fluid.shape.cloud.x) {
             let wave = (3.0 * x[0]).sin() * (std::f64::consts::PI * x[1]).cos();
             let velocity = Vector([0.4 * wave, 0.3 - 0.2 * wave]);
             let q = Primitive { density: 1.0 + 0.3 * wave, velocity, pressure: 1.0 - 0.4 * wave };
             fluid.gas.conserved(&q).store(row);
         }
-        let (frame, mut work, mut du) = (fluid.frame(0.0, &u), fluid.work(), vec![0.0; u.len()]);
+        let (frame, mut work, mut du) = (fluid.frame(&Moment::At { time: 0.0 }, &u), fluid.work(), vec![0.0; u.len()]);
         fluid.rhs(&frame, &u, &mut work, &mut du);
         let mut total = ([0.0; 4], [0.0; 4]);
-        for (row, v) in du.chunks(4).zip(&fluid.cloud.volume) {
+        for (row, v) in du.chunks(4).zip(&fluid.shape.cloud.volume) {
             for (k, r) in row.iter().enumerate() {
                 total.0[k] += v * r;
                 total.1[k] += (v * r).abs();
             }
         }
-        (total.0, total.1, fluid.pressure_force(&work))
+        (total.0, total.1, fluid.pressure_force(&frame, &work))
     }
 
     #[test]

@@ -3,9 +3,10 @@
 //! −∂R_i/∂U_i = Σ_j [−a_ij·A(q_i) + |s_ij|/(2V_i) |A|(q̄)], −∂R_i/∂U_j = a_ij·A(q_j) − |s_ij|/(2V_i) |A|(q̄), with A·n = ∂F·n/∂U
 //! and |A| Roe's matrix with rounded eigenvalues. A wall state follows the particle in front of it: its column is folded into
 //! the row with the mirror that removes the normal velocity.
-use super::fluid::{Fluid, Work};
+use super::fluid::{Fluid, Work, half_face};
+use super::shape::Frame;
 use crate::math::Vector;
-use crate::math::block_matrix::BlockMatrix;
+use crate::math::block_matrix::{BlockMatrix, Rows};
 use crate::physics::riemann::rounded;
 use crate::physics::{Gas, Primitive};
 
@@ -37,15 +38,15 @@ pub fn flux_jacobian<const D: usize>(gas: &Gas, q: &Primitive<D>, n: &Vector<D>)
     a
 }
 
-/// |A| across the unit normal `n` at the state `q`, eigenvalues rounded off below a fraction of the sound speed.
+/// |A − drift| across the unit normal `n` at the state `q`, eigenvalues rounded off below a fraction of the sound speed.
 ///
 /// With |λ| of the shear and entropy waves taken out, the rest is a matrix of rank two (Turkel 1999, eq. 3.14).
-pub fn dissipation_matrix<const D: usize>(gas: &Gas, q: &Primitive<D>, n: &Vector<D>) -> Block {
+pub fn dissipation_matrix<const D: usize>(gas: &Gas, q: &Primitive<D>, n: &Vector<D>, drift: f64) -> Block {
     let c = gas.sound_speed(q);
     let g1 = gas.gamma - 1.0;
     let (v, vn) = (&q.velocity, q.velocity.dot(n));
     let fix = |x: f64| rounded(x.abs(), ROUNDING * c);
-    let (l1, l2, l3) = (fix(vn), fix(vn + c), fix(vn - c));
+    let (l1, l2, l3) = (fix(vn - drift), fix(vn - drift + c), fix(vn - drift - c));
     let a = 0.5 * (l2 + l3) - l1;
     let b = 0.5 * (l2 - l3) / c;
     let (phi, h, e) = (0.5 * v.norm_squared(), gas.total_enthalpy(q), D + 1);
@@ -78,14 +79,21 @@ pub fn dissipation_matrix<const D: usize>(gas: &Gas, q: &Primitive<D>, n: &Vecto
 }
 
 /// Fills `matrix` from the states in `work`.
-pub fn assemble<const D: usize>(fluid: &Fluid<D>, work: &Work<D>, matrix: &mut BlockMatrix) {
-    let op = &fluid.operators;
+pub fn assemble<const D: usize>(fluid: &Fluid<D>, frame: &Frame<D>, work: &Work<D>, matrix: &mut BlockMatrix) {
+    let (op, cloud) = (&frame.shape.operators, &frame.shape.cloud);
+    let past = |q: usize, a: &Vector<D>, w: &Vector<D>| {
+        let mut m = flux_jacobian(&fluid.gas, &work.state[q], a);
+        (0..D + 2).for_each(|k| m[k][k] -= w.dot(a));
+        m
+    };
     matrix.assemble(|k, rows| {
         if fluid.conservative {
             for face in op.wall_faces(k) {
                 let i = face.i as usize;
-                let push = wall_jacobian(&fluid.gas, &work.state[i], &fluid.half_face(i, &face.area));
-                rows.add(i, i, |r, c| 2.0 * push[r][c]);
+                let half = half_face(cloud.volume[i], &face.area);
+                let mut push = wall_jacobian(&fluid.gas, &work.state[i], &half);
+                (0..D + 2).for_each(|k| push[k][k] += frame.velocity_of(i).dot(&half));
+                add(rows, frame, (i, i), |r, c| 2.0 * push[r][c]);
             }
         }
         for edge in op.edges(k) {
@@ -94,37 +102,74 @@ pub fn assemble<const D: usize>(fluid: &Fluid<D>, work: &Work<D>, matrix: &mut B
             let size = edge.s.norm();
             let m = edge.s * (1.0 / size.max(f64::MIN_POSITIVE));
             let mean = Primitive::zip3(qi, qj, qj, |a, b, _| 0.5 * (a + b));
-            let spread = dissipation_matrix(&fluid.gas, &mean, &m);
+            let drift = 0.5 * (frame.velocity_of(i) + frame.velocity_of(j)).dot(&m);
+            let spread = dissipation_matrix(&fluid.gas, &mean, &m, drift);
             let one_sided = [(i, j, edge.a_i), (j, i, edge.a_j)];
             for (row, column, a) in one_sided.into_iter().take(if edge.both() { 2 } else { 1 }) {
-                let scale = 0.5 * size / fluid.cloud.volume[row];
+                let scale = 0.5 * size / cloud.volume[row];
                 let a = match fluid.conservative {
-                    true if row == i => fluid.half_face(row, &edge.s),
-                    true => -fluid.half_face(row, &edge.s),
+                    true if row == i => half_face(cloud.volume[row], &edge.s),
+                    true => -half_face(cloud.volume[row], &edge.s),
                     false => a,
                 };
-                let own = flux_jacobian(&fluid.gas, &work.state[row], &a);
-                rows.add(row, row, |r, c| scale * spread[r][c] - own[r][c]);
-                let other = flux_jacobian(&fluid.gas, &work.state[column], &a);
+                let w = frame.velocity_of(row);
+                let own = past(row, &a, &w);
+                add(rows, frame, (row, row), |r, c| scale * spread[r][c] - own[r][c]);
+                let other = past(column, &a, &w);
                 let coupling = |r: usize, c: usize| other[r][c] - scale * spread[r][c];
-                if column < fluid.cloud.n_fluid {
-                    rows.add(row, column, coupling);
-                } else if fluid.cloud.interface_range().contains(&column) {
-                    let normal = fluid.cloud.interface[column - fluid.cloud.n_fluid].normal;
-                    rows.add(row, row, |r, c| folded(&coupling, &normal, r, c));
-                } else if column >= fluid.cloud.n_real() {
-                    let image = fluid.cloud.images[column - fluid.cloud.n_real()];
-                    let source = image.source as usize;
-                    let sign = fluid.cloud.transforms[image.transform as usize].sign;
-                    let flip = |c: usize| if (1..=D).contains(&c) { sign[c - 1] } else { 1.0 };
-                    if source < fluid.cloud.n_fluid {
-                        let target = if source == row { row } else { source };
-                        rows.add(row, target, |r, c| coupling(r, c) * flip(c));
-                    }
-                }
+                couple(rows, frame, (row, column), coupling);
             }
         }
     });
+}
+
+/// Adds the block of `column` to `row`, through walls and images to the particle that rules them.
+fn couple<const D: usize>(
+    rows: &mut Rows<'_>,
+    frame: &Frame<D>,
+    (row, column): (usize, usize),
+    coupling: impl Fn(usize, usize) -> f64,
+) {
+    let cloud = &frame.shape.cloud;
+    if column < cloud.n_fluid {
+        add(rows, frame, (row, column), coupling);
+    } else if cloud.interface_range().contains(&column) {
+        let normal = cloud.interface[column - cloud.n_fluid].normal;
+        add(rows, frame, (row, row), |r, c| folded(&coupling, &normal, r, c));
+    } else if column >= cloud.n_real() {
+        let image = cloud.images[column - cloud.n_real()];
+        let sign = cloud.transforms[image.transform as usize].sign;
+        let flip = |c: usize| if (1..=D).contains(&c) { sign[c - 1] } else { 1.0 };
+        if (image.source as usize) < cloud.n_fluid {
+            add(rows, frame, (row, image.source as usize), |r, c| coupling(r, c) * flip(c));
+        }
+    }
+}
+
+/// Adds a block to the matrix, turned into the axes of the case.
+#[inline(always)]
+fn add<const D: usize>(
+    rows: &mut Rows<'_>,
+    frame: &Frame<D>,
+    (row, column): (usize, usize),
+    f: impl Fn(usize, usize) -> f64,
+) {
+    let Some(turn) = &frame.turn else { return rows.add(row, column, f) };
+    let r = &turn.rotation;
+    let mut half = [[0.0; 5]; 5];
+    let mut whole = [[0.0; 5]; 5];
+    let momentum = |k: usize| (1..=D).contains(&k);
+    for k in 0..D + 2 {
+        for c in 0..D + 2 {
+            half[k][c] = if momentum(k) { (0..D).map(|d| r[k - 1][d] * f(1 + d, c)).sum() } else { f(k, c) };
+        }
+    }
+    for k in 0..D + 2 {
+        for c in 0..D + 2 {
+            whole[k][c] = if momentum(c) { (0..D).map(|d| half[k][1 + d] * r[c - 1][d]).sum() } else { half[k][c] };
+        }
+    }
+    rows.add(row, column, |k, c| whole[k][c]);
 }
 
 /// −∂/∂U of (0, pressure · n, 0) − F·n, the wall pressure taken to be that of the particle.
@@ -188,7 +233,7 @@ mod tests {
     fn dissipation_matrix_is_that_of_the_roe_flux() {
         let q = Primitive { density: 1.2, velocity: Vector([0.6, -0.5, 0.2]), pressure: 0.8 };
         let (n, u) = (Vector([0.6, 0.0, 0.8]), AIR.conserved(&q));
-        let m = dissipation_matrix(&AIR, &q, &n);
+        let m = dissipation_matrix(&AIR, &q, &n, 0.0);
         for k in 0..5 {
             let d = difference(|h| {
                 let r = bump(&u, k, h);

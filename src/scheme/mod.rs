@@ -1,10 +1,13 @@
 //! The discrete equations on a cloud.
 pub mod adapt;
+pub mod blend;
 pub mod boundary;
 pub mod fluid;
 pub mod jacobian;
 pub mod probe;
 pub mod reconstruct;
+pub mod shape;
 pub mod start;
 
-pub use fluid::{Fluid, Frame, Work};
+pub use fluid::{Fluid, Work};
+pub use shape::{Carriage, Frame, Shape};

@@ -25,7 +25,9 @@ impl<'a, const D: usize> Probe<'a, D> {
 
     /// State at `x`; `None` where no particle is near.
     pub fn at(&self, x: &Vector<D>) -> Option<Primitive<D>> {
-        let cloud = &self.fluid.cloud;
+        // the background knows particles where they were before any motion
+        let cloud = &self.fluid.reference().cloud;
+        let (place, x) = (x, &self.fluid.origin(x));
         let reach = RADIUS * cloud.tree.leaf_at(x).size;
         let cube = Bounds { min: *x - Vector::splat(reach), max: *x + Vector::splat(reach) };
         let mut sum: Option<Primitive<D>> = None;
@@ -36,7 +38,7 @@ impl<'a, const D: usize> Probe<'a, D> {
                 let d = *x - cloud.x[k];
                 let w = (1.0 - d.norm() / reach).max(0.0).powi(2);
                 if w > 0.0 && self.in_sight(k, x) {
-                    let offer = self.offer(k, &d);
+                    let offer = self.offer(k, &(*place - self.fluid.shape.cloud.x[k]));
                     sum = Some(sum.map_or_else(|| scaled(&offer, w), |s| s.plus(w, &offer)));
                     weight += w;
                 }
@@ -52,7 +54,7 @@ impl<'a, const D: usize> Probe<'a, D> {
     }
 
     fn in_sight(&self, k: usize, x: &Vector<D>) -> bool {
-        let cloud = &self.fluid.cloud;
+        let cloud = &self.fluid.reference().cloud;
         let near = cloud.wall_distance[k] < RADIUS * 2.0 * cloud.spacing[k];
         !near || self.surface.is_none_or(|s| !s.crosses(&cloud.x[k], x))
     }

@@ -36,6 +36,19 @@ impl<const D: usize> Gradient<D> {
         self.pressure += *a * dq.pressure;
     }
 
+    /// The same gradient in turned axes.
+    pub fn turned(&self, turn: &impl Fn(&Vector<D>) -> Vector<D>) -> Self {
+        // rows of R G Rᵀ: turn the derivative of each component, then mix the components
+        let half: [Vector<D>; D] = std::array::from_fn(|c| turn(&self.velocity[c]));
+        let column = |d: usize| turn(&Vector::from_fn(|c| half[c][d]));
+        let columns: [Vector<D>; D] = std::array::from_fn(column);
+        Self {
+            density: turn(&self.density),
+            velocity: std::array::from_fn(|c| Vector::from_fn(|d| columns[d][c])),
+            pressure: turn(&self.pressure),
+        }
+    }
+
     /// Change of the state along `d`.
     #[inline(always)]
     pub fn along(&self, d: &Vector<D>) -> Primitive<D> {

@@ -9,7 +9,7 @@ use crate::math::Vector;
 use crate::physics::Primitive;
 
 /// A field of states.
-pub type Field<const D: usize> = Box<dyn Fn(&Vector<D>) -> Primitive<D> + Sync>;
+pub type Field<const D: usize> = std::sync::Arc<dyn Fn(&Vector<D>) -> Primitive<D> + Send + Sync>;
 
 /// Why a field cannot be set up.
 #[derive(Debug, thiserror::Error)]
@@ -46,10 +46,10 @@ pub fn initial<const D: usize>(case: &Case) -> Result<Field<D>, StartError> {
     };
     let wrong = |e: crate::exact::Error| StartError(e.to_string());
     match &case.initial {
-        Initial::FreeStream => Ok(Box::new(move |_| free)),
+        Initial::FreeStream => Ok(std::sync::Arc::new(move |_| free)),
         Initial::Riemann { left, right, position, axis } => {
             let (left, right, position, axis) = (*left, *right, *position, *axis as usize);
-            Ok(Box::new(move |x| {
+            Ok(std::sync::Arc::new(move |x| {
                 let [density, velocity, pressure] = if x[axis] < position { left } else { right };
                 Primitive { density, velocity: Vector::axis(axis) * velocity, pressure }
             }))
@@ -60,11 +60,11 @@ pub fn initial<const D: usize>(case: &Case) -> Result<Field<D>, StartError> {
             if let Some(domain) = &case.cloud.domain {
                 vortex = vortex.periodic(Vector::from_fn(|d| domain.max[d].0 - domain.min[d].0));
             }
-            Ok(Box::new(move |x| lift(vortex.state(&planar(x), 0.0))))
+            Ok(std::sync::Arc::new(move |x| lift(vortex.state(&planar(x), 0.0))))
         }
         Initial::Ringleb => {
             let flow = Ringleb::new(gamma).map_err(wrong)?;
-            Ok(Box::new(move |x| flow.state(&planar(x)).map_or(free, lift)))
+            Ok(std::sync::Arc::new(move |x| flow.state(&planar(x)).map_or(free, lift)))
         }
     }
 }

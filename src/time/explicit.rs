@@ -1,7 +1,7 @@
 //! Explicit Runge-Kutta methods for marching in time.
-use super::{Step, TimeError};
+use super::{March, Past, Step, TimeError};
 use crate::math::sweep::sweep;
-use crate::system::System;
+use crate::system::{Moment, System};
 
 /// Coefficients in the form u_s = Σ_r α_r u_r + β Δt R(u_{s−1}): here α on the start and on the last stage only.
 #[derive(Clone, Copy, Debug)]
@@ -34,12 +34,8 @@ pub struct Explicit<'a, S: System> {
     method: Method,
     cfl: f64,
     until: f64,
-    /// Time reached.
-    pub time: f64,
-    /// Steps taken.
-    pub iteration: u32,
-    /// State.
-    pub u: Vec<f64>,
+    past: Past,
+    u: Vec<f64>,
     frame: S::Frame,
     work: S::Work,
     start: Vec<f64>,
@@ -54,17 +50,21 @@ impl<'a, S: System> Explicit<'a, S> {
         system: &'a S,
         method: Method,
         (cfl, until): (f64, f64),
-        (time, iteration, u): (f64, u32, Vec<f64>),
+        (past, u): (Past, Vec<f64>),
     ) -> Self {
         let n = u.len();
-        let frame = system.frame(time, &u);
+        let (end, step) = (past.time, past.last);
+        let moment = match step > 0.0 {
+            true => Moment::Within { start: end - step, step, fraction: 1.0 },
+            false => Moment::At { time: end },
+        };
+        let frame = system.frame(&moment, &u);
         Self {
             system,
             method,
             cfl,
             until,
-            time,
-            iteration,
+            past,
             frame,
             work: system.work(),
             start: vec![0.0; n],
@@ -75,22 +75,70 @@ impl<'a, S: System> Explicit<'a, S> {
         }
     }
 
-    /// True when the end is reached.
-    pub fn finished(&self) -> bool {
-        self.time >= self.until
+    /// The longest stable step, given how fast particles move now.
+    fn step_length(&mut self) -> f64 {
+        self.system.spectral_radius(&self.frame, &self.u, &mut self.work, &mut self.rate);
+        self.cfl / self.rate.iter().fold(0.0f64, |m, r| m.max(*r))
     }
 
-    /// Frame, storage and state, for those who watch.
-    pub fn parts(&mut self) -> (&S::Frame, &mut S::Work, &[f64]) {
+    fn evaluate(&mut self, dt: f64, fraction: f64) {
+        self.system.place(&Moment::Within { start: self.past.time, step: dt, fraction }, &mut self.frame);
+        self.system.follow(&self.u, &mut self.work, &mut self.frame);
+        self.system.rhs(&self.frame, &self.u, &mut self.work, &mut self.du);
+    }
+
+    fn stage(&mut self, s: &Stage, dt: f64) {
+        self.evaluate(dt, s.time);
+        let (start, du, u) = (&self.start, &self.du, &mut self.u);
+        combine(u, |k, last| s.start * start[k] + s.last * last + s.step * dt * du[k]);
+    }
+
+    fn classical(&mut self, dt: f64) {
+        self.sum.fill(0.0);
+        for (weight, at, ahead) in [(1.0, 0.0, 0.5), (2.0, 0.5, 0.5), (2.0, 0.5, 1.0), (1.0, 1.0, 0.0)] {
+            self.evaluate(dt, at);
+            let (start, du) = (&self.start, &self.du);
+            combine(&mut self.sum, |k, s| s + weight * du[k]);
+            combine(&mut self.u, |k, _| start[k] + ahead * dt * du[k]);
+        }
+        let (start, sum) = (&self.start, &self.sum);
+        sweep(&mut self.u, |k| start[k] + dt / 6.0 * sum[k]);
+    }
+}
+
+impl<S: System> March<S> for Explicit<'_, S> {
+    fn finished(&self) -> bool {
+        self.past.time >= self.until
+    }
+
+    fn parts(&mut self) -> (&S::Frame, &mut S::Work, &[f64]) {
         (&self.frame, &mut self.work, &self.u)
     }
 
-    /// One time step.
-    pub fn advance(&mut self) -> Result<Step, TimeError> {
-        self.system.spectral_radius(&self.frame, &self.u, &mut self.work, &mut self.rate);
-        let fastest = self.rate.iter().fold(0.0f64, |m, r| m.max(*r));
-        let left = self.until - self.time;
-        let mut dt = (self.cfl / fastest).min(left);
+    fn past(&self) -> &Past {
+        &self.past
+    }
+
+    fn inner(&self) -> u32 {
+        0
+    }
+
+    fn linear(&self) -> u32 {
+        0
+    }
+
+    fn bytes(&self) -> usize {
+        8 * (3 * self.u.len() + self.sum.len() + self.rate.len())
+    }
+
+    fn advance(&mut self) -> Result<Step, TimeError> {
+        let mut longest = self.step_length();
+        // velocities of particles are those of the step before; in the first step there is none, nor after a restart
+        let moment = Moment::Within { start: self.past.time, step: longest, fraction: 0.0 };
+        self.system.place(&moment, &mut self.frame);
+        longest = longest.min(self.step_length());
+        let left = self.until - self.past.time;
+        let mut dt = longest.min(left);
         if dt < left && 2.0 * dt > left {
             dt = 0.5 * left;
         }
@@ -99,38 +147,19 @@ impl<'a, S: System> Explicit<'a, S> {
             Method::Ssprk3 => SSPRK3.iter().for_each(|s| self.stage(s, dt)),
             Method::Rk4 => self.classical(dt),
         }
-        self.time = if dt == left { self.until } else { self.time + dt };
-        self.iteration += 1;
-        self.system.update_frame(self.time, &self.u, &mut self.work, &mut self.frame);
-        if let Some(fault) = self.system.fault(&self.u) {
+        self.system.place(&Moment::Within { start: self.past.time, step: dt, fraction: 1.0 }, &mut self.frame);
+        self.past.time = if dt == left { self.until } else { self.past.time + dt };
+        self.past.last = dt;
+        self.past.iteration += 1;
+        self.system.follow(&self.u, &mut self.work, &mut self.frame);
+        if let Some(fault) = self.system.fault(&self.frame, &self.u) {
             self.u.copy_from_slice(&self.start);
+            self.past.iteration -= 1;
+            self.past.time -= dt;
             let hint = "lower `time.explicit.cfl`, or use a stronger limiter";
-            return Err(TimeError::Fault { fault, iteration: self.iteration, hint });
+            return Err(TimeError::Fault { fault, iteration: self.past.iteration + 1, hint });
         }
-        Ok(Step { iteration: self.iteration, time: self.time, cfl: self.cfl, residual: 1.0, linear: 0 })
-    }
-
-    fn evaluate(&mut self, t: f64) {
-        self.system.update_frame(t, &self.u, &mut self.work, &mut self.frame);
-        self.system.rhs(&self.frame, &self.u, &mut self.work, &mut self.du);
-    }
-
-    fn stage(&mut self, s: &Stage, dt: f64) {
-        self.evaluate(self.time + s.time * dt);
-        let (start, du, u) = (&self.start, &self.du, &mut self.u);
-        combine(u, |k, last| s.start * start[k] + s.last * last + s.step * dt * du[k]);
-    }
-
-    fn classical(&mut self, dt: f64) {
-        self.sum.fill(0.0);
-        for (weight, at, ahead) in [(1.0, 0.0, 0.5), (2.0, 0.5, 0.5), (2.0, 0.5, 1.0), (1.0, 1.0, 0.0)] {
-            self.evaluate(self.time + at * dt);
-            let (start, du) = (&self.start, &self.du);
-            combine(&mut self.sum, |k, s| s + weight * du[k]);
-            combine(&mut self.u, |k, _| start[k] + ahead * dt * du[k]);
-        }
-        let (start, sum) = (&self.start, &self.sum);
-        sweep(&mut self.u, |k| start[k] + dt / 6.0 * sum[k]);
+        Ok(Step { iteration: self.past.iteration, time: self.past.time, cfl: self.cfl, residual: 1.0, linear: 0 })
     }
 }
 

@@ -1,6 +1,9 @@
 //! Integrators: they know a [`System`](crate::system::System) and nothing of what it means.
+pub mod dual;
 pub mod explicit;
 pub mod relax;
+
+use crate::system::System;
 
 /// What one call of an integrator did.
 #[derive(Clone, Copy, Debug, Default)]
@@ -15,6 +18,41 @@ pub struct Step {
     pub residual: f64,
     /// Linear iterations spent.
     pub linear: u32,
+}
+
+/// What a march needs, beside the state, to go on where it stopped.
+#[derive(Clone, Debug, Default)]
+pub struct Past {
+    /// Time reached.
+    pub time: f64,
+    /// Steps taken.
+    pub iteration: u32,
+    /// Length of the step before.
+    pub last: f64,
+    /// Length of the next step.
+    pub next: f64,
+    /// State one step ago; empty at the start, and for methods that need none.
+    pub before: Vec<f64>,
+    /// Steps that did not reach their goal.
+    pub unconverged: u32,
+}
+
+/// A method that marches in time.
+pub trait March<S: System> {
+    /// One step.
+    fn advance(&mut self) -> Result<Step, TimeError>;
+    /// True when the end is reached.
+    fn finished(&self) -> bool;
+    /// Frame, storage and state, for those who watch.
+    fn parts(&mut self) -> (&S::Frame, &mut S::Work, &[f64]);
+    /// Where the march stands.
+    fn past(&self) -> &Past;
+    /// Iterations within the last step.
+    fn inner(&self) -> u32;
+    /// Linear iterations so far.
+    fn linear(&self) -> u32;
+    /// Bytes held.
+    fn bytes(&self) -> usize;
 }
 
 /// Why an integration stopped early.

@@ -10,7 +10,7 @@ use crate::math::block_matrix::BlockMatrix;
 use crate::math::krylov::Gmres;
 use crate::math::multilevel::{Cycle, Multilevel};
 use crate::math::sweep::sum;
-use crate::system::System;
+use crate::system::{Moment, System};
 
 /// How a steady state is approached.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -72,6 +72,8 @@ const SMALLEST_FRACTION: f64 = 0.05;
 const EXPLICIT_CFL: f64 = 1.5;
 /// Times that GMRES starts again with an empty basis.
 const RESTARTS: usize = 0;
+/// Scaled residual that is round-off: a relative change of the density in one local time.
+const ROUND_OFF: f64 = 1e-14;
 /// Stages of the explicit method.
 const STAGES: [f64; 5] = [0.25, 1.0 / 6.0, 0.375, 0.5, 1.0];
 
@@ -119,8 +121,18 @@ pub struct Relax<'a, S: System> {
     phase: Phase,
     levels: Option<Multilevel>,
     gmres: Option<Gmres>,
+    time: Option<TimeTerm>,
     /// Linear iterations so far.
     pub linear: u32,
+}
+
+/// ∂U/∂t as a difference formula, rate·U + rest: what a step in time adds to the equations that are relaxed.
+#[derive(Clone, Debug)]
+pub struct TimeTerm {
+    /// Coefficient of the state that is sought.
+    pub rate: f64,
+    /// Contribution of the states before it.
+    pub rest: Vec<f64>,
 }
 
 /// What a relaxation needs to go on where it stopped.
@@ -146,7 +158,7 @@ impl<'a, S: System> Relax<'a, S> {
     pub fn new(system: &'a S, control: Control, u: Vec<f64>, origin: &[f64], resume: Option<Resume>) -> Self {
         let n = u.len();
         let mut work = system.work();
-        let frame = system.frame(0.0, origin);
+        let frame = system.frame(&Moment::At { time: 0.0 }, origin);
         let mut rate = vec![0.0; n / system.block()];
         system.spectral_radius(&frame, origin, &mut work, &mut rate);
         let implicit = control.method != Method::RungeKutta;
@@ -180,15 +192,50 @@ impl<'a, S: System> Relax<'a, S> {
             trial_residual: vec![0.0; n],
             step: vec![0.0; n],
             gmres: basis,
+            time: None,
         };
         if resume.is_none() {
             all.system.rhs(&all.frame, origin, &mut all.work, &mut all.residual);
         }
         all.first_norm = resume.map_or_else(|| all.norm_of(&all.residual).max(f64::MIN_POSITIVE), |r| r.first_norm);
-        all.system.update_frame(0.0, &all.u, &mut all.work, &mut all.frame);
+        all.system.follow(&all.u, &mut all.work, &mut all.frame);
         all.system.rhs(&all.frame, &all.u, &mut all.work, &mut all.residual);
         all.norm = all.norm_of(&all.residual);
         all
+    }
+
+    /// Brings the frame to a moment.
+    pub fn look(&mut self, moment: &Moment<'_>) {
+        self.system.place(moment, &mut self.frame);
+        self.system.follow(&self.u, &mut self.work, &mut self.frame);
+    }
+
+    /// True when the state `u` is physical.
+    pub fn is_sound(&self, u: &[f64]) -> bool {
+        self.system.fault(&self.frame, u).is_none()
+    }
+
+    /// Turns to the equations of a step in time, R(U) − rate·U − rest = 0 in the frame of `moment`, from the guess in `u`.
+    ///
+    /// The residual is measured against the size of ∂U/∂t, or against itself at the guess if that is larger.
+    pub fn begin_step(&mut self, moment: &Moment<'_>, term: TimeTerm) {
+        self.system.place(moment, &mut self.frame);
+        self.system.follow(&self.u, &mut self.work, &mut self.frame);
+        self.system.spectral_radius(&self.frame, &self.u, &mut self.work, &mut self.rate);
+        let rate = &self.rate;
+        crate::math::sweep::sweep(&mut self.scale, |i| 1.0 / (rate[i] + term.rate));
+        self.system.rhs(&self.frame, &self.u, &mut self.work, &mut self.residual);
+        let u = &self.u;
+        crate::math::sweep::sweep(&mut self.trial, |k| term.rate * u[k] + term.rest[k]);
+        let change = self.norm_of(&self.trial);
+        let trial = &self.trial;
+        crate::math::sweep::sweep_rows(&mut self.residual, 1, |k, r| r[0] -= trial[k]);
+        self.norm = self.norm_of(&self.residual);
+        self.first_norm = self.norm.max(change).max(f64::MIN_POSITIVE);
+        self.cfl = self.control.cfl;
+        self.iteration = 0;
+        self.phase = Phase { newton: self.control.method == Method::NewtonKrylov, ..Phase::default() };
+        self.time = Some(term);
     }
 
     /// What a later run needs, beside the state, to go on to the same bits.
@@ -216,6 +263,11 @@ impl<'a, S: System> Relax<'a, S> {
     /// The residual R(u) of the last accepted state.
     pub fn residual(&self) -> &[f64] {
         &self.residual
+    }
+
+    /// Residual over its first value below which round-off rules: a state that does not change cannot do better.
+    pub fn settled(&self) -> bool {
+        self.norm <= ROUND_OFF
     }
 
     /// Bytes held by the implicit machinery.
@@ -261,7 +313,7 @@ impl<'a, S: System> Relax<'a, S> {
     /// While shocks travel the linearisation of the second-order scheme is indefinite and Newton crawls, but the first-order
     /// operator still moves them; near the solution it is the other way round.
     fn choose_phase(&mut self) {
-        if self.control.method != Method::NewtonKrylov {
+        if self.control.method != Method::NewtonKrylov || self.time.is_some() {
             return;
         }
         let drop = self.drop();
@@ -290,12 +342,17 @@ impl<'a, S: System> Relax<'a, S> {
     fn accept(&mut self, fraction: f64, jump: f64) -> bool {
         let (u, step) = (&self.u, &self.step);
         crate::math::sweep::sweep(&mut self.trial, |k| u[k] + fraction * step[k]);
-        if self.system.fault(&self.trial).is_some() {
+        if self.system.fault(&self.frame, &self.trial).is_some() {
             return false;
         }
         let mut frame = self.frame.clone();
-        self.system.update_frame(0.0, &self.trial, &mut self.work, &mut frame);
+        self.system.follow(&self.trial, &mut self.work, &mut frame);
         self.system.rhs(&frame, &self.trial, &mut self.work, &mut self.trial_residual);
+        if let Some(term) = &self.time {
+            let trial = &self.trial;
+            let change = |k: usize| term.rate * trial[k] + term.rest[k];
+            crate::math::sweep::sweep_rows(&mut self.trial_residual, 1, |k, r| r[0] -= change(k));
+        }
         let norm = self.norm_of(&self.trial_residual);
         if !norm.is_finite() || norm > jump * self.norm {
             return false;
@@ -335,7 +392,8 @@ impl<'a, S: System> Relax<'a, S> {
         let Some(levels) = self.levels.as_mut() else { return };
         self.system.spectral_radius(&self.frame, &self.u, &mut self.work, &mut self.rate);
         let cfl = self.cfl;
-        let shift: Vec<f64> = self.rate.iter().map(|r| r / cfl).collect();
+        let rate = self.time.as_ref().map_or(0.0, |t| t.rate);
+        let shift: Vec<f64> = self.rate.iter().map(|r| r / cfl + rate).collect();
         self.system.linearise(&self.frame, &self.u, &mut self.work, levels.finest());
         levels.finest().shift(&shift);
         levels.refresh();
@@ -347,7 +405,7 @@ impl<'a, S: System> Relax<'a, S> {
         let n = self.system.block();
         let size = (sum(self.u.len(), |k| self.u[k] * self.u[k]) / self.u.len() as f64).sqrt();
         let (system, frame, work, u, residual) = (self.system, &self.frame, &mut self.work, &self.u, &self.residual);
-        let (trial, scale) = (&mut self.trial, &self.scale);
+        let (trial, scale, time) = (&mut self.trial, &self.scale, self.time.as_ref());
         // rows are scaled by the local time, so that small particles do not rule the norm
         let b: Vec<f64> = residual.iter().enumerate().map(|(k, r)| r * scale[k / n]).collect();
         let mut unscaled = vec![0.0; b.len()];
@@ -359,8 +417,10 @@ impl<'a, S: System> Relax<'a, S> {
             let eps = 1e-7 * (1.0 + size) / length;
             crate::math::sweep::sweep(trial, |k| u[k] + eps * v[k]);
             system.rhs(frame, trial, work, out);
+            // the residual holds the time term at u, which is the same in both; its change is in the shift
+            let base = |k: usize| residual[k] + time.map_or(0.0, |t| t.rate * u[k] + t.rest[k]);
             crate::math::sweep::sweep_rows(out, 1, |k, o| {
-                o[0] = ((residual[k] - o[0]) / eps + shift[k / n] * v[k]) * scale[k / n];
+                o[0] = ((base(k) - o[0]) / eps + shift[k / n] * v[k]) * scale[k / n];
             });
         };
         let precondition = |r: &[f64], z: &mut [f64]| {

@@ -1,0 +1,124 @@
+//! Particles that follow moving bodies and stay where they are far away.
+//!
+//! A particle at X before any motion is at x(t) = X + Σ_b φ_b(X) (P_b(t) X − X), with P_b the motion of body b. With one body
+//! φ = ψ(d), d the distance to it: 1 near the body, 0 far from it, a quintic in between, so that two derivatives are
+//! continuous. Several bodies share by inverse distance (Shepard 1968): φ_b = ψ(d_b) d_b⁻³ / Σ_c d_c⁻³. On the surface of a
+//! body its own φ is 1. All x(t) are linear in the poses, so differences of positions are exact.
+use crate::cloud::Cloud;
+use crate::math::sweep::sweep_slots;
+use crate::math::{Bounds, Vector};
+use crate::motion::{Law, RigidPose};
+
+use super::shape::{Path, Places};
+
+/// Distance in body lengths within which particles move as the body does.
+const INNER: f64 = 1.0;
+/// Distance in body lengths beyond which particles rest.
+const OUTER: f64 = 8.0;
+/// Greatest part of the way to the sides of the domain.
+const REACH: f64 = 0.9;
+/// Power of the distance in the shares of several bodies.
+const POWER: i32 = 3;
+/// Points on a body that distances are measured from: blending needs no more.
+const SAMPLES: usize = 2000;
+/// Rounds in which the place before any motion is found.
+const ROUNDS: usize = 60;
+
+/// One body.
+struct Body<const D: usize> {
+    law: Law<D>,
+    points: Vec<Vector<D>>,
+    inner: f64,
+    outer: f64,
+}
+
+/// Motion of the bodies spread into the cloud.
+pub struct Blend<const D: usize> {
+    bodies: Vec<Body<D>>,
+    /// φ of each particle and body.
+    share: Vec<f32>,
+}
+
+impl<const D: usize> Blend<D> {
+    /// Spreads the motion of the bodies, one law for each.
+    pub fn new(cloud: &Cloud<D>, laws: &[Law<D>]) -> Self {
+        let bodies: Vec<Body<D>> = laws.iter().enumerate().map(|(b, law)| body(cloud, b, law)).collect();
+        let mut all = Self { share: vec![0.0; cloud.n_real() * bodies.len()], bodies };
+        let n = all.bodies.len();
+        let mut rows: Vec<Vec<f64>> = vec![Vec::new(); cloud.n_real()];
+        sweep_slots(&mut rows, |i, row| *row = all.own_shares(cloud, i));
+        for (i, row) in rows.iter().enumerate() {
+            all.share[i * n..(i + 1) * n].iter_mut().zip(row).for_each(|(s, r)| *s = *r as f32);
+        }
+        all
+    }
+
+    /// Shares of particle `i`: on a surface just its own body counts.
+    fn own_shares(&self, cloud: &Cloud<D>, i: usize) -> Vec<f64> {
+        if cloud.interface_range().contains(&i) {
+            let own = usize::from(cloud.interface[i - cloud.n_fluid].body);
+            return (0..self.bodies.len()).map(|b| f64::from(u8::from(b == own))).collect();
+        }
+        self.shares(&cloud.x[i])
+    }
+
+    fn shares(&self, x: &Vector<D>) -> Vec<f64> {
+        let distance: Vec<f64> = self.bodies.iter().map(|b| b.distance(x)).collect();
+        let near = |d: f64| d.max(f64::MIN_POSITIVE).powi(-POWER).min(1e30);
+        let total: f64 = distance.iter().map(|d| near(*d)).sum();
+        self.bodies.iter().zip(&distance).map(|(b, d)| b.fade(*d) * near(*d) / total).collect()
+    }
+}
+
+impl<const D: usize> Body<D> {
+    fn distance(&self, x: &Vector<D>) -> f64 {
+        self.points.iter().map(|p| (*p - *x).norm_squared()).fold(f64::INFINITY, f64::min).sqrt()
+    }
+
+    /// ψ(d).
+    fn fade(&self, d: f64) -> f64 {
+        let s = ((d - self.inner) / (self.outer - self.inner)).clamp(0.0, 1.0);
+        1.0 - s * s * s * (10.0 - 15.0 * s + 6.0 * s * s)
+    }
+}
+
+fn body<const D: usize>(cloud: &Cloud<D>, b: usize, law: &Law<D>) -> Body<D> {
+    let first = cloud.n_fluid;
+    let own = cloud.interface.iter().enumerate().filter(|(_, w)| usize::from(w.body) == b);
+    let all: Vec<Vector<D>> = own.map(|(w, _)| cloud.x[first + w]).collect();
+    let every = all.len().div_ceil(SAMPLES).max(1);
+    let bounds = Bounds::around(&all);
+    let length = bounds.extent().max_abs();
+    let domain = cloud.tree.bounds();
+    // sides that cut through the body (planes of symmetry) do not hold it back
+    let gaps = (0..D).flat_map(|d| [bounds.min[d] - domain.min[d], domain.max[d] - bounds.max[d]]);
+    let room = gaps.filter(|g| *g > 0.1 * length).fold(f64::INFINITY, f64::min);
+    let outer = (OUTER * length).min(REACH * room);
+    let points = all.into_iter().step_by(every).collect();
+    Body { law: law.clone(), points, inner: (INNER * length).min(0.25 * outer), outer }
+}
+
+fn blended<const D: usize>(x: &Vector<D>, poses: &[RigidPose<D>], share: impl Iterator<Item = f64>) -> Vector<D> {
+    poses.iter().zip(share).filter(|(_, s)| *s > 0.0).fold(*x, |sum, (pose, s)| sum + (pose.point(x) - *x) * s)
+}
+
+impl<const D: usize> Path<D> for Blend<D> {
+    fn at(&self, t: f64) -> Places<'_, D> {
+        let poses: Vec<RigidPose<D>> = self.bodies.iter().map(|b| b.law.pose(t)).collect();
+        let n = self.bodies.len();
+        Box::new(move |i, x| blended(x, &poses, self.share[i * n..(i + 1) * n].iter().map(|s| f64::from(*s))))
+    }
+
+    fn origin(&self, x: &Vector<D>, t: f64) -> Vector<D> {
+        let poses: Vec<RigidPose<D>> = self.bodies.iter().map(|b| b.law.pose(t)).collect();
+        let mut before = *x;
+        for _ in 0..ROUNDS {
+            let miss = *x - blended(&before, &poses, self.shares(&before).into_iter());
+            before += miss;
+            if miss.max_abs() < 1e-12 {
+                break;
+            }
+        }
+        before
+    }
+}

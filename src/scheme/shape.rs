@@ -1,0 +1,279 @@
+//! The cloud at one time, and how it gets there.
+//!
+//! A [`Shape`] is what the scheme knows of the cloud: positions, weights, fits at the walls. A [`Frame`] is the shape at a
+//! time with the velocities of its particles. A cloud at rest shares one shape for ever; a rigid one keeps it and turns the
+//! axes that states are looked at in; any other motion moves the particles and fits their weights anew on the same lists.
+//!
+//! Velocities come from positions: with the difference formula that time marching or harmonic balance applies to the state,
+//! w = Σ c_k x(t_k), or, within a step of an explicit method, along straight lines x = (1 − θ) x(t) + θ x(t + Δt). Uniform
+//! flow and a linear field at rest are then kept to round-off, whatever the motion.
+use std::sync::Arc;
+
+use super::boundary::{WallFits, WallMotion};
+use crate::cloud::{Cloud, Operators};
+use crate::math::Vector;
+use crate::math::sweep::{sweep, sweep_slots};
+use crate::motion::{Law, RigidPose};
+use crate::physics::Primitive;
+use crate::system::Moment;
+
+/// The cloud with the operators that follow from positions.
+#[derive(Clone, Debug)]
+pub struct Shape<const D: usize> {
+    /// Particles.
+    pub cloud: Cloud<D>,
+    /// Weights and edges.
+    pub operators: Operators<D>,
+    /// Fits of the interface particles.
+    pub walls: WallFits,
+}
+
+impl<const D: usize> Shape<D> {
+    /// Fits all weights of a cloud.
+    pub fn new(cloud: Cloud<D>, operators: Operators<D>) -> Self {
+        let walls = WallFits::new(&cloud);
+        Self { cloud, operators, walls }
+    }
+
+    /// The shape carried off by a rigid motion.
+    pub fn carried(&self, pose: &RigidPose<D>) -> Self {
+        let mut moved = self.clone();
+        moved.cloud.x.iter_mut().for_each(|x| *x = pose.point(x));
+        for w in &mut moved.cloud.interface {
+            w.turn(&pose.rotation);
+        }
+        moved.operators.turn(|v| pose.direction(v));
+        moved
+    }
+}
+
+/// What depends on time but is not evolved.
+#[derive(Clone, Debug)]
+pub struct Frame<const D: usize> {
+    /// Time.
+    pub time: f64,
+    /// The cloud in the axes that states are looked at in.
+    pub shape: Arc<Shape<D>>,
+    /// From those axes to those of the case, when they differ.
+    pub turn: Option<RigidPose<D>>,
+    /// Velocities of all particles in the axes of `shape`; empty when nothing moves.
+    pub velocity: Vec<Vector<D>>,
+    /// Spin and acceleration of the wall at each interface particle; empty when nothing moves.
+    pub walls: Vec<WallMotion<D>>,
+    /// States of the outer particles, in the axes of the case.
+    pub outer: Vec<Primitive<D>>,
+}
+
+impl<const D: usize> Frame<D> {
+    /// Velocity of particle `i`.
+    #[inline(always)]
+    pub fn velocity_of(&self, i: usize) -> Vector<D> {
+        if self.velocity.is_empty() { Vector::ZERO } else { self.velocity[i] }
+    }
+
+    /// True when particles move.
+    #[inline(always)]
+    pub fn moves(&self) -> bool {
+        !self.velocity.is_empty()
+    }
+
+    /// A direction in the axes of `shape`, seen in those of the case.
+    #[inline(always)]
+    pub fn outward(&self, v: &Vector<D>) -> Vector<D> {
+        self.turn.as_ref().map_or(*v, |t| t.direction(v))
+    }
+
+    /// A direction in the axes of the case, seen in those of `shape`.
+    #[inline(always)]
+    pub fn inward(&self, v: &Vector<D>) -> Vector<D> {
+        self.turn.as_ref().map_or(*v, |t| t.inverse_direction(v))
+    }
+
+    /// Place of particle `i` in the axes of the case.
+    pub fn place(&self, i: usize) -> Vector<D> {
+        let x = &self.shape.cloud.x[i];
+        self.turn.as_ref().map_or(*x, |t| t.point(x))
+    }
+}
+
+/// Where particle number `i`, at `x` before any motion, is at one time.
+pub type Places<'a, const D: usize> = Box<dyn Fn(usize, &Vector<D>) -> Vector<D> + Send + Sync + 'a>;
+
+/// Places of particles as a function of time and of their place before any motion.
+pub trait Path<const D: usize>: Send + Sync {
+    /// Places at time `t`.
+    fn at(&self, t: f64) -> Places<'_, D>;
+    /// The place before any motion of what is at `x` at time `t`.
+    fn origin(&self, x: &Vector<D>, t: f64) -> Vector<D>;
+}
+
+/// How particles move.
+#[derive(Clone)]
+pub enum Carriage<const D: usize> {
+    /// Not at all.
+    Still,
+    /// As one with a body.
+    Rigid(Law<D>),
+    /// Along paths of their own, the walls with their bodies.
+    Along {
+        /// Places of the particles.
+        path: Arc<dyn Path<D>>,
+        /// Motion of each body.
+        laws: Vec<Law<D>>,
+    },
+}
+
+impl<const D: usize> Carriage<D> {
+    /// Brings `frame` to a moment; `origin` is the shape before any motion.
+    pub fn place(&self, origin: &Arc<Shape<D>>, moment: &Moment<'_>, frame: &mut Frame<D>) {
+        frame.time = moment.time();
+        match self {
+            Self::Still => {}
+            Self::Rigid(law) => place_rigid(law, origin, moment, frame),
+            Self::Along { path, laws } => {
+                place_along(path.as_ref(), origin, moment, frame);
+                turn_walls(laws, origin, moment.time(), frame);
+            }
+        }
+    }
+
+    /// The place before any motion of what is at `x` at time `t`.
+    pub fn origin(&self, x: &Vector<D>, t: f64) -> Vector<D> {
+        match self {
+            Self::Still => *x,
+            Self::Rigid(law) => law.pose(t).inverse_point(x),
+            Self::Along { path, .. } => path.origin(x, t),
+        }
+    }
+
+    /// Pose of a body at time `t`.
+    pub fn body(&self, body: usize, t: f64) -> RigidPose<D> {
+        match self {
+            Self::Still => RigidPose::identity(),
+            Self::Rigid(law) => law.pose(t),
+            Self::Along { laws, .. } => laws.get(body).map_or_else(RigidPose::identity, |law| law.pose(t)),
+        }
+    }
+
+    /// Motion of the first body: the one that angles and displacements in histories belong to.
+    pub fn law(&self) -> Option<&Law<D>> {
+        match self {
+            Self::Still => None,
+            Self::Rigid(law) => Some(law),
+            Self::Along { laws, .. } => laws.iter().find(|law| !law.is_fixed()).or(laws.first()),
+        }
+    }
+
+    /// True when nothing moves.
+    pub fn is_still(&self) -> bool {
+        matches!(self, Self::Still)
+    }
+}
+
+/// Turns the axes; the difference formula applies to poses, which positions are affine in.
+fn place_rigid<const D: usize>(law: &Law<D>, origin: &Arc<Shape<D>>, moment: &Moment<'_>, frame: &mut Frame<D>) {
+    let t = moment.time();
+    let pose = law.pose(t);
+    let x = &origin.cloud.x;
+    frame.velocity.resize(x.len(), Vector::ZERO);
+    match moment {
+        Moment::By { rate, .. } => {
+            let poses: Vec<(f64, RigidPose<D>)> = rate.iter().map(|(c, t)| (*c, law.pose(*t))).collect();
+            let rows = std::array::from_fn(|r| poses.iter().fold(Vector::ZERO, |s, (c, p)| s + p.rotation[r] * *c));
+            let shift = poses.iter().fold(Vector::ZERO, |s, (c, p)| s + p.shift * *c);
+            let drift = RigidPose { rotation: rows, shift };
+            sweep(&mut frame.velocity, |i| pose.inverse_direction(&drift.point(&x[i])));
+        }
+        Moment::At { .. } | Moment::Within { .. } => {
+            sweep(&mut frame.velocity, |i| pose.inverse_direction(&law.velocity(t, &x[i])));
+        }
+    }
+    let gradient = rotation_rate(law, t);
+    let inward = |v: &Vector<D>| pose.inverse_direction(v);
+    // Rᵀ G R: the rate of rotation seen in the axes of the body
+    let columns: [Vector<D>; D] =
+        std::array::from_fn(|j| inward(&times(&gradient, &pose.direction(&Vector::axis(j)))));
+    let spin = std::array::from_fn(|i| Vector::from_fn(|j| columns[j][i]));
+    let first = origin.cloud.n_fluid;
+    let still = WallMotion { spin, acceleration: Vector::ZERO };
+    frame.walls.resize(origin.cloud.interface.len(), still);
+    sweep(&mut frame.walls, |w| WallMotion { spin, acceleration: inward(&law.kinematics(t, &x[first + w]).acceleration) });
+    frame.turn = Some(pose);
+}
+
+/// ∂w/∂x of a rigid motion in the axes of the case: Ṙ Rᵀ.
+fn rotation_rate<const D: usize>(law: &Law<D>, t: f64) -> [Vector<D>; D] {
+    let pose = law.pose(t);
+    let base = law.velocity(t, &Vector::ZERO);
+    let rates: [Vector<D>; D] = std::array::from_fn(|k| law.velocity(t, &Vector::axis(k)) - base);
+    // rates[k] is column k of Ṙ
+    std::array::from_fn(|i| Vector::from_fn(|j| (0..D).map(|k| rates[k][i] * pose.rotation[j][k]).sum()))
+}
+
+fn times<const D: usize>(rows: &[Vector<D>; D], v: &Vector<D>) -> Vector<D> {
+    Vector::from_fn(|i| rows[i].dot(v))
+}
+
+/// Moves the particles and fits their weights anew.
+fn place_along<const D: usize>(
+    path: &dyn Path<D>,
+    origin: &Arc<Shape<D>>,
+    moment: &Moment<'_>,
+    frame: &mut Frame<D>,
+) {
+    let reference = &origin.cloud;
+    let n = reference.n_real();
+    frame.velocity.resize(reference.len(), Vector::ZERO);
+    let shape = Arc::make_mut(&mut frame.shape);
+    let before = |i: usize| &reference.x[i];
+    let (x, w) = (&mut shape.cloud.x[..n], &mut frame.velocity[..n]);
+    match moment {
+        Moment::At { time } => {
+            let now = path.at(*time);
+            sweep(x, |i| now(i, before(i)));
+            sweep(w, |_| Vector::ZERO);
+        }
+        Moment::By { time, rate } => {
+            let now = path.at(*time);
+            sweep(x, |i| now(i, before(i)));
+            let terms: Vec<(f64, Places<'_, D>)> = rate.iter().map(|(c, t)| (*c, path.at(*t))).collect();
+            sweep(w, |i| terms.iter().fold(Vector::ZERO, |s, (c, place)| s + place(i, before(i)) * *c));
+        }
+        Moment::Within { start, step, fraction } => {
+            let (from, to) = (path.at(*start), path.at(start + step));
+            sweep(w, |i| (to(i, before(i)) - from(i, before(i))) * (1.0 / step));
+            let w = &*w;
+            sweep(x, |i| from(i, before(i)) + w[i] * (fraction * step));
+        }
+    }
+    for (k, image) in reference.images.iter().enumerate() {
+        let (t, s) = (&reference.transforms[image.transform as usize], image.source as usize);
+        shape.cloud.x[n + k] = t.point(&shape.cloud.x[s]);
+        frame.velocity[n + k] = t.direction(&frame.velocity[s]);
+    }
+}
+
+/// Turns the surface vectors with the bodies and fits all weights to where particles are.
+fn turn_walls<const D: usize>(laws: &[Law<D>], origin: &Arc<Shape<D>>, t: f64, frame: &mut Frame<D>) {
+    let reference = &origin.cloud;
+    let shape = Arc::make_mut(&mut frame.shape);
+    let poses: Vec<RigidPose<D>> = laws.iter().map(|l| l.pose(t)).collect();
+    let rates: Vec<[Vector<D>; D]> = laws.iter().map(|l| rotation_rate(l, t)).collect();
+    let body = |w: usize| usize::from(reference.interface[w].body);
+    sweep_slots(&mut shape.cloud.interface, |w, slot| {
+        *slot = reference.interface[w];
+        if let Some(pose) = poses.get(body(w)) {
+            slot.turn(&pose.rotation);
+        }
+    });
+    frame.walls.resize(reference.interface.len(), WallMotion::AT_REST);
+    sweep(&mut frame.walls, |w| match laws.get(body(w)) {
+        Some(law) => WallMotion {
+            spin: rates[body(w)],
+            acceleration: law.kinematics(t, &reference.x[reference.n_fluid + w]).acceleration,
+        },
+        None => WallMotion::AT_REST,
+    });
+    shape.operators.refit(&shape.cloud);
+    shape.walls = WallFits::new(&shape.cloud);
+}

@@ -1,0 +1,199 @@
+//! Implicit marching: backward differences, each step relaxed in a pseudo time (Jameson, AIAA 91-1596).
+//!
+//! R(U) − ∂U/∂t = 0 with ∂U/∂t = Σ c_k U(t_k): the first-order formula in the first step, then the second-order one of three
+//! times, written for steps of unequal length. Positions of particles are differenced with the same formula as the state.
+use super::relax::{Control, Relax, TimeTerm};
+use super::{March, Past, Step, TimeError};
+use crate::math::sweep::{sum, sweep};
+use crate::system::{Moment, System};
+
+/// Greatest ratio of successive steps.
+const GROWTH: f64 = 1.5;
+/// Smallest ratio of successive steps.
+const SHRINK: f64 = 0.3;
+/// Fraction of the step that the error estimate asks for that is taken.
+const SAFETY: f64 = 0.9;
+/// Residual over its start above which a step that ran out of iterations is refused.
+const HOPELESS: f64 = 1.0;
+
+/// How to march.
+#[derive(Clone, Copy, Debug)]
+pub struct Plan {
+    /// Time at which the march ends.
+    pub until: f64,
+    /// Length of the (first) step.
+    pub step: f64,
+    /// Order of the difference formula, 1 or 2.
+    pub order: u8,
+    /// Orders of magnitude the residual must fall within a step.
+    pub orders: f64,
+    /// Greatest number of iterations within a step.
+    pub iterations: u32,
+    /// Relative error of a step that its length is fitted to; `None`: fixed steps.
+    pub adaptive: Option<f64>,
+}
+
+/// An implicit march.
+pub struct Dual<'a, S: System> {
+    relax: Relax<'a, S>,
+    plan: Plan,
+    past: Past,
+    start: Vec<f64>,
+    inner: u32,
+}
+
+impl<'a, S: System> Dual<'a, S> {
+    /// Prepares a march from the state `u`.
+    pub fn new(system: &'a S, control: Control, plan: Plan, u: Vec<f64>, past: Past) -> Self {
+        let start = u.clone();
+        let relax = Relax::new(system, control, u, &start, None);
+        let past = Past { next: if past.next > 0.0 { past.next } else { plan.step }, ..past };
+        let mut all = Self { relax, plan, past, start, inner: 0 };
+        let (time, last) = (all.past.time, all.past.last);
+        if last > 0.0 {
+            let formula = all.formula_at(time, last, last);
+            all.relax.look(&Moment::By { time, rate: &formula });
+        } else {
+            all.relax.look(&Moment::At { time });
+        }
+        all
+    }
+}
+
+impl<S: System> March<S> for Dual<'_, S> {
+    fn finished(&self) -> bool {
+        self.past.time >= self.plan.until
+    }
+
+    fn parts(&mut self) -> (&S::Frame, &mut S::Work, &[f64]) {
+        self.relax.parts()
+    }
+
+    fn past(&self) -> &Past {
+        &self.past
+    }
+
+    fn inner(&self) -> u32 {
+        self.inner
+    }
+
+    fn linear(&self) -> u32 {
+        self.relax.linear
+    }
+
+    fn bytes(&self) -> usize {
+        self.relax.bytes() + 8 * 3 * self.start.len()
+    }
+
+    fn advance(&mut self) -> Result<Step, TimeError> {
+        self.start.copy_from_slice(&self.relax.u);
+        let mut dt = self.next_length();
+        loop {
+            let error = self.step(dt)?;
+            let Some(tolerance) = self.plan.adaptive else { break };
+            let wanted = SAFETY * (tolerance / error.max(f64::MIN_POSITIVE)).powf(1.0 / 3.0);
+            let again = wanted < SHRINK.max(0.7) && dt > 1e-3 * self.plan.step && self.second_order();
+            self.past.next = dt * wanted.clamp(SHRINK, GROWTH);
+            if !again {
+                break;
+            }
+            dt = self.past.next;
+            self.relax.u.copy_from_slice(&self.start);
+        }
+        let end = self.past.time + dt;
+        // steps of fixed length add up without gathering round-off
+        let near = (end - self.plan.until).abs() < 1e-9 * dt;
+        self.past.time = if near { self.plan.until } else { end };
+        self.past.last = dt;
+        self.past.iteration += 1;
+        std::mem::swap(&mut self.past.before, &mut self.start);
+        self.start.resize(self.relax.u.len(), 0.0);
+        Ok(Step {
+            iteration: self.past.iteration,
+            time: self.past.time,
+            cfl: self.relax.cfl,
+            residual: self.relax.drop(),
+            linear: self.relax.linear,
+        })
+    }
+}
+
+impl<S: System> Dual<'_, S> {
+    fn second_order(&self) -> bool {
+        self.plan.order == 2 && !self.past.before.is_empty()
+    }
+
+    fn next_length(&self) -> f64 {
+        let left = self.plan.until - self.past.time;
+        if self.plan.adaptive.is_none() {
+            return self.plan.step.min(left);
+        }
+        let dt = self.past.next.min(left);
+        if dt < left && 2.0 * dt > left { 0.5 * left } else { dt }
+    }
+
+    /// Coefficients and times of ∂/∂t at `end`, after steps of length `last` and `dt`.
+    fn formula_at(&self, end: f64, last: f64, dt: f64) -> Vec<(f64, f64)> {
+        if !self.second_order() {
+            return vec![(1.0 / dt, end), (-1.0 / dt, end - dt)];
+        }
+        let r = dt / last;
+        vec![
+            ((1.0 + 2.0 * r) / (1.0 + r) / dt, end),
+            (-(1.0 + r) / dt, end - dt),
+            (r * r / (1.0 + r) / dt, end - dt - last),
+        ]
+    }
+
+    /// Solves one step and returns its relative error estimate, zero where there is none.
+    fn step(&mut self, dt: f64) -> Result<f64, TimeError> {
+        let formula = self.formula_at(self.past.time + dt, self.past.last, dt);
+        let (start, before) = (&self.start, &self.past.before);
+        let mut rest = vec![0.0; start.len()];
+        let old = |k: usize| formula.get(2).map_or(0.0, |c| c.0 * before[k]);
+        sweep(&mut rest, |k| formula[1].0 * start[k] + old(k));
+        let ratio = dt / self.past.last;
+        let guess: Option<Vec<f64>> = self.second_order().then(|| {
+            let mut guess = vec![0.0; start.len()];
+            sweep(&mut guess, |k| start[k] + ratio * (start[k] - before[k]));
+            guess
+        });
+        if let Some(guess) = guess.as_ref().filter(|g| self.relax.is_sound(g)) {
+            self.relax.u.copy_from_slice(guess);
+        }
+        let moment = Moment::By { time: self.past.time + dt, rate: &formula };
+        self.relax.begin_step(&moment, TimeTerm { rate: formula[0].0, rest });
+        self.solve()?;
+        // the predictor is of the same order with another constant: 1/3 of the difference for equal steps
+        let error = guess.map_or(0.0, |g| {
+            let u = &self.relax.u;
+            let (change, size) = (sum(u.len(), |k| (u[k] - g[k]).powi(2)), sum(u.len(), |k| u[k] * u[k]));
+            (change / size).sqrt() / 3.0
+        });
+        Ok(error)
+    }
+
+    fn solve(&mut self) -> Result<(), TimeError> {
+        let goal = 10f64.powf(-self.plan.orders);
+        self.inner = 0;
+        while self.relax.drop() > goal && !self.relax.settled() {
+            if self.inner >= self.plan.iterations {
+                self.past.unconverged += 1;
+                break;
+            }
+            match self.relax.advance() {
+                Ok(_) => self.inner += 1,
+                // a limiter that flips keeps the residual from falling further: the step is as good as it gets
+                Err(TimeError::Stalled { .. }) if self.relax.drop() < HOPELESS => {
+                    self.past.unconverged += 1;
+                    break;
+                }
+                Err(e) => {
+                    self.relax.u.copy_from_slice(&self.start);
+                    return Err(e);
+                }
+            }
+        }
+        Ok(())
+    }
+}
