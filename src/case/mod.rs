@@ -16,6 +16,7 @@ mod schema;
 mod templates;
 #[cfg(test)]
 mod tests;
+mod verdict;
 mod write;
 
 pub use error::{CaseError, CaseErrors};
@@ -24,6 +25,7 @@ pub use quantity::{Angle, Density, Length, Pressure, Temperature, Time, Velocity
 pub use read::read;
 pub use reference::{reference_markdown, schema};
 pub use templates::{TEMPLATES, template};
+pub use verdict::ClaimRow;
 pub use write::write;
 
 /// Everything a run needs to know.

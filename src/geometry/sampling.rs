@@ -103,10 +103,11 @@ impl<const D: usize> Surface<D> {
         while let Some((w, share)) = stack.pop() {
             let at = |w: &[f64; D]| (0..D).fold(Vector::ZERO, |x, k| x + corners[k] * w[k]);
             let middle: [f64; D] = std::array::from_fn(|c| (0..D).map(|r| w[r][c]).sum::<f64>() / D as f64);
+            let points = w.map(|w| at(&w));
             let mut longest = (0, 1, 0.0);
             for a in 0..D {
                 for b in a + 1..D {
-                    let l = (at(&w[a]) - at(&w[b])).norm();
+                    let l = (points[a] - points[b]).norm();
                     if l > longest.2 {
                         longest = (a, b, l);
                     }
