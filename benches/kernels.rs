@@ -1,12 +1,16 @@
 //! Speed of the kernels in particles a second (`item/s` in the table).
 //!
-//!     RAYON_NUM_THREADS=1 cargo bench -p alula
-//!     RAYON_NUM_THREADS=2 cargo bench -p alula -- residual
+//!     cargo bench -p alula
+//!     cargo bench -p alula -- residual
+//!
+//! What is measured with a number of threads runs once on one and once on two of them: the rates give the speed-up. All else
+//! uses as many as the machine has, or `RAYON_NUM_THREADS`. Last come the bytes that a particle takes while it marches in time.
 #![allow(clippy::unwrap_used, reason = "it may stop anywhere")]
 use std::path::Path;
 
 use alula::case::{Case, read};
 use alula::cloud::{Cloud, Operators};
+use alula::geometry::load_surface;
 use alula::math::Vector;
 use alula::math::multilevel::Cycle;
 use alula::physics::Primitive;
@@ -16,8 +20,38 @@ use alula::time::relax::{Control, Method, Relax};
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
 
+/// Threads in the measurements that compare them.
+const THREADS: [usize; 2] = [1, 2];
+
 fn main() {
     divan::main();
+    if std::env::args().all(|a| a != "--list" && a != "--test") {
+        print_bytes::<2>();
+        print_bytes::<3>();
+    }
+}
+
+/// Prints the bytes per particle of the edges and of all that an explicit march holds.
+#[allow(clippy::print_stdout, reason = "a benchmark prints")]
+fn print_bytes<const D: usize>() {
+    let cloud = Cloud::<D>::build(&case::<D>(), None, &[]).unwrap();
+    let operators = Operators::new(&cloud);
+    let n = cloud.n_fluid as f64;
+    let points = cloud.len() * (size_of::<Vector<D>>() + 2 * size_of::<f64>());
+    let rows = 4 * (cloud.neighbours.first.len() + cloud.neighbours.index.len());
+    // state, start and rate of change; state and gradients of the primitive variables; signal speed
+    let march = 8 * cloud.len() * (3 * (D + 2) + (D + 2) * (1 + D) + 1);
+    let all = points + rows + operators.bytes() + march;
+    println!(
+        "{D}-D bytes per particle: edges {:.0}, explicit march {:.0}",
+        operators.bytes() as f64 / n,
+        all as f64 / n
+    );
+}
+
+/// A pool of this many threads.
+fn pool(threads: usize) -> rayon::ThreadPool {
+    rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap()
 }
 
 /// A square or a cube filled with displaced particles on two levels: about 52,000 in 2-D, 78,000 in 3-D.
@@ -49,13 +83,14 @@ fn solver<const D: usize>() -> (Fluid<D>, Vec<f64>) {
 }
 
 /// Fluxes with reconstruction and limiter: R(u).
-#[divan::bench(consts = [2, 3])]
-fn residual<const D: usize>(bencher: Bencher<'_, '_>) {
+#[divan::bench(consts = [2, 3], args = THREADS)]
+fn residual<const D: usize>(bencher: Bencher<'_, '_>, threads: usize) {
     let (fluid, u) = solver::<D>();
+    let pool = pool(threads);
     let (frame, mut work, mut du) = (fluid.frame(&Moment::At { time: 0.0 }, &u), fluid.work(), vec![0.0; u.len()]);
     bencher
         .counter(ItemsCount::new(fluid.shape.cloud.n_fluid))
-        .bench_local(|| fluid.rhs(black_box(&frame), black_box(&u), &mut work, &mut du));
+        .bench_local(|| pool.install(|| fluid.rhs(black_box(&frame), black_box(&u), &mut work, &mut du)));
 }
 
 /// Gradients of all primitive variables.
@@ -69,25 +104,40 @@ fn gradient<const D: usize>(bencher: Bencher<'_, '_>) {
 }
 
 /// From the case to particles with neighbours.
-#[divan::bench(consts = [2, 3], sample_count = 10)]
-fn cloud<const D: usize>(bencher: Bencher<'_, '_>) {
-    let case = case::<D>();
+#[divan::bench(consts = [2, 3], args = THREADS, sample_count = 10)]
+fn cloud<const D: usize>(bencher: Bencher<'_, '_>, threads: usize) {
+    let (case, pool) = (case::<D>(), pool(threads));
     let n = Cloud::<D>::build(&case, None, &[]).unwrap().n_fluid;
-    bencher.counter(ItemsCount::new(n)).bench_local(|| Cloud::<D>::build(black_box(&case), None, &[]).unwrap());
+    let build = || Cloud::<D>::build(black_box(&case), None, &[]).unwrap();
+    bencher.counter(ItemsCount::new(n)).bench_local(|| pool.install(build));
+}
+
+/// The same around a sphere: interface particles, lines of sight, balls near the wall.
+#[divan::bench(args = THREADS, sample_count = 5)]
+fn cloud_around_sphere(bencher: Bencher<'_, '_>, threads: usize) {
+    let text = "title = \"bench\"\n[flow]\nmach = 0.3\n[[body]]\nsphere = { radius = 0.5 }\n\
+                [cloud]\nspacing = 0.025\nfar_field = 10.0\nlayers = 12.0\n[time.steady]\norders = 6\n";
+    let case = read(text, "bench.toml").unwrap_or_else(|e| panic!("{e}"));
+    let surface = load_surface::<3>(&case, Path::new("")).unwrap().0;
+    let build = || Cloud::<3>::build(black_box(&case), Some(&surface), &[]).unwrap();
+    let pool = pool(threads);
+    bencher.counter(ItemsCount::new(build().n_fluid)).bench_local(|| pool.install(build));
 }
 
 /// Least-squares weights and edges.
-#[divan::bench(consts = [2, 3], sample_count = 20)]
-fn weights<const D: usize>(bencher: Bencher<'_, '_>) {
+#[divan::bench(consts = [2, 3], args = THREADS, sample_count = 20)]
+fn weights<const D: usize>(bencher: Bencher<'_, '_>, threads: usize) {
     let cloud = Cloud::<D>::build(&case::<D>(), None, &[]).unwrap();
-    bencher.counter(ItemsCount::new(cloud.n_fluid)).bench_local(|| Operators::new(black_box(&cloud)));
+    let pool = pool(threads);
+    bencher.counter(ItemsCount::new(cloud.n_fluid)).bench_local(|| pool.install(|| Operators::new(black_box(&cloud))));
 }
 
 /// One Newton step: linearisation, preconditioner, GMRES, line search.
 #[divan::bench(consts = [2, 3], sample_count = 5, sample_size = 1)]
 fn implicit_step<const D: usize>(bencher: Bencher<'_, '_>) {
     let (fluid, u) = solver::<D>();
-    let origin = fluid.shape.cloud.x[..fluid.shape.cloud.n_fluid].iter().flat_map(|_| u[..D + 2].to_vec()).collect::<Vec<_>>();
+    let origin =
+        fluid.shape.cloud.x[..fluid.shape.cloud.n_fluid].iter().flat_map(|_| u[..D + 2].to_vec()).collect::<Vec<_>>();
     let control = Control {
         method: Method::NewtonKrylov,
         cfl: 20.0,

@@ -8,8 +8,8 @@ use alula::math::multilevel::Cycle;
 use alula::physics::Primitive;
 use alula::system::{Moment, System};
 use alula::time::explicit::{Explicit, Method};
-use alula::time::{March, Past};
 use alula::time::relax::{self, Control, Relax};
+use alula::time::{March, Past};
 use common::{largest, round_body, solver, two_levels, vortex, with_threads};
 
 /// Round-off of fluxes of order one over a spacing of some hundredths.

@@ -30,10 +30,8 @@ const SPACING: f64 = 0.125;
 /// A random cloud of two levels in a box whose sides hold the field at the start.
 fn boxed<const D: usize>() -> (Fluid<D>, Vec<f64>) {
     let list = |v: f64| vec![v.to_string(); D].join(", ");
-    let sides: String = ["x", "y", "z"][..D]
-        .iter()
-        .map(|a| format!("{a}_min = \"held\"\n{a}_max = \"held\"\n"))
-        .collect();
+    let sides: String =
+        ["x", "y", "z"][..D].iter().map(|a| format!("{a}_min = \"held\"\n{a}_max = \"held\"\n")).collect();
     let half = if D == 2 { "0.5, 0.0" } else { "0.5, 0.0, 0.0" };
     let case = format!(
         "title = \"box\"\ndimension = {D}\n[flow]\nmach = 0.6\nalpha = \"7 deg\"\n[cloud]\nspacing = {SPACING}\n\

@@ -22,6 +22,7 @@ mod templates;
 mod tests;
 mod time;
 mod time_keys;
+mod verdict;
 mod write;
 
 pub use error::{CaseError, CaseErrors};
@@ -34,6 +35,7 @@ pub use read::read;
 pub use reference::{reference_markdown, schema};
 pub use templates::{TEMPLATES, template};
 pub use time::{Dual, Explicit, RungeKutta, Steady, SteadyMethod, Temporal};
+pub use verdict::ClaimRow;
 pub use write::write;
 
 /// Everything a run needs to know.

@@ -15,11 +15,12 @@
 //! particle: conjugate gradients with block-Jacobi (Nocedal and Wright, *Numerical Optimization*, 2nd ed., §16.2-16.3). A
 //! second, cheaper solve over the closure alone then drives its defect to round-off.
 //! Antisymmetric coefficients of this kind are those of Chiu, Wang, Hu and Jameson (SIAM J. Sci. Comput. 34, 2012).
+use super::links::{ITSELF, Kind, Link, links, sweep_entries};
 use super::multipliers::{MOST, Row, cholesky, conjugate_gradients};
-use super::operators::{Reverse, WallFace};
+use super::operators::WallFace;
 use super::{Cloud, Operators};
 use crate::math::Vector;
-use crate::math::sweep::{sum, sweep, sweep_rows};
+use crate::math::sweep::{sum, sweep, sweep_rows, sweep_slots};
 
 /// ε: square of the tolerated relative error of linear consistency against relative changes of s, in the measure of w and b.
 const SOFTNESS: f64 = 0.02;
@@ -31,8 +32,6 @@ const SOFTEN_ROUNDS: usize = 4;
 const SMALLEST_VOLUME: f64 = 0.2;
 /// b: how freely volumes move, relative to h^2D.
 const VOLUME_FREEDOM: f64 = 1.0;
-/// How freely shares β of a wall area move.
-const SHARE_FREEDOM: f64 = 0.1;
 /// Power of the distance in the first guess of the shares.
 const SHARE_POWER: i32 = 4;
 /// Reduction of the residual of the multipliers.
@@ -83,47 +82,20 @@ pub fn conservative_with<const D: usize>(
     let mut multipliers = vec![Row::ZERO; problem.n_rows()];
     let mut iterations = problem.solve(&mut multipliers);
     let mut n_softened = 0;
-    let mut x = problem.recover(&multipliers);
     for _ in 0..SOFTEN_ROUNDS {
-        let softened = problem.soften(&x.volume);
+        let softened = problem.soften(&problem.volumes(&multipliers));
         if softened == 0 {
             break;
         }
         n_softened = softened;
         iterations += problem.solve(&mut multipliers);
-        x = problem.recover(&multipliers);
     }
+    let mut x = problem.recover(multipliers);
     problem.fix_shares(&mut x);
     let polish_iterations = problem.close(&mut x);
     let report = ConservativeReport { iterations, polish_iterations, n_softened, softness, ..problem.judge(&x) };
     store(cloud, operators, &problem, &x);
     report
-}
-
-/// What stands at the other end of a neighbour entry.
-#[derive(Clone, Copy)]
-enum Kind<const D: usize> {
-    /// A fluid particle.
-    Pair,
-    /// The image of a fluid particle under a transform with these signs.
-    Image(Vector<D>),
-    /// A particle on a side of the domain.
-    Open,
-    /// An interface particle, or the image of one, with this area vector (out of the fluid).
-    Wall(Vector<D>),
-}
-
-/// A neighbour entry of a fluid particle.
-#[derive(Clone, Copy)]
-struct Link<const D: usize> {
-    /// Row at the other end.
-    other: u32,
-    /// Entry of that row that is the same unknown; its own number when there is none.
-    partner: u32,
-    /// w of the objective.
-    weight: f64,
-    offset: Vector<D>,
-    kind: Kind<D>,
 }
 
 /// The unknowns: an area vector, or a share, per entry, and a volume per fluid particle.
@@ -136,6 +108,10 @@ struct Problem<const D: usize> {
     n_fluid: usize,
     first: Vec<u32>,
     links: Vec<Link<D>>,
+    /// Area vectors of the interface particles, out of the fluid.
+    walls: Vec<Vector<D>>,
+    /// Signs of the transforms.
+    signs: Vec<Vector<D>>,
     guess: Unknowns<D>,
     /// Spacing^D, the unit of the volumes.
     unit: Vec<f64>,
@@ -143,12 +119,15 @@ struct Problem<const D: usize> {
     softened: Vec<bool>,
     /// Entries (row, entry) that share each wall.
     sharers: Vec<Vec<(u32, u32)>>,
+    /// Lower triangles of the factorised blocks, row after row.
     blocks: Vec<f64>,
 }
 
 impl<const D: usize> Problem<D> {
     /// Number of conditions of a fluid particle.
     const WIDTH: usize = D + D * D;
+    /// Elements of a lower triangle of that order.
+    const TRIANGLE: usize = Self::WIDTH * (Self::WIDTH + 1) / 2;
 
     fn new(cloud: &Cloud<D>, operators: &Operators<D>, softness: f64) -> Self {
         let n_fluid = cloud.n_fluid;
@@ -181,7 +160,10 @@ impl<const D: usize> Problem<D> {
         let guess = Unknowns { area, volume: cloud.volume[..n_fluid].to_vec() };
         let softness = vec![softness; n_fluid];
         let softened = vec![false; n_fluid];
-        let mut all = Self { n_fluid, first, links, guess, unit, softness, softened, sharers, blocks: Vec::new() };
+        let walls = cloud.interface.iter().map(|w| -w.area).collect();
+        let signs = cloud.transforms.iter().map(|t| t.sign).collect();
+        let blocks = Vec::new();
+        let mut all = Self { n_fluid, first, links, walls, signs, guess, unit, softness, softened, sharers, blocks };
         all.guess_shares();
         all
     }
@@ -194,15 +176,20 @@ impl<const D: usize> Problem<D> {
         self.first[i] as usize..self.first[i + 1] as usize
     }
 
+    /// Area vector of the interface particle, or image of one, at the other end of an entry.
+    fn wall(&self, link: &Link<D>) -> Vector<D> {
+        let Kind::Wall(transform) = link.kind else { return Vector::ZERO };
+        let a = self.walls[link.other as usize - self.n_fluid];
+        if transform == ITSELF { a } else { Vector::from_fn(|d| self.signs[transform as usize][d] * a[d]) }
+    }
+
     /// First guess of the shares of every wall: inverse powers of the distance. An entry holds s_iw = −β_iw A_w.
     fn guess_shares(&mut self) {
         for sharers in &self.sharers {
             let weight = |p: u32| self.links[p as usize].offset.norm().powi(-SHARE_POWER);
             let total: f64 = sharers.iter().map(|s| weight(s.1)).sum();
             for (_, p) in sharers {
-                if let Kind::Wall(a) = self.links[*p as usize].kind {
-                    self.guess.area[*p as usize] = a * (weight(*p) / total);
-                }
+                self.guess.area[*p as usize] = self.wall(&self.links[*p as usize]) * (weight(*p) / total);
             }
         }
     }
@@ -212,7 +199,7 @@ impl<const D: usize> Problem<D> {
     fn change(&self, i: usize, link: &Link<D>, y: &[Row<D>]) -> Vector<D> {
         let own = &y[i];
         let d = &link.offset;
-        match &link.kind {
+        match link.kind {
             Kind::Pair => {
                 let other = &y[link.other as usize];
                 Vector::from_fn(|r| {
@@ -220,7 +207,7 @@ impl<const D: usize> Problem<D> {
                 }) * link.weight
             }
             Kind::Image(t) => {
-                let other = &y[link.other as usize];
+                let (other, t) = (&y[link.other as usize], &self.signs[t as usize]);
                 let back = Vector::from_fn(|c| t[c] * d[c]);
                 Vector::from_fn(|r| {
                     own.closure[r] - t[r] * other.closure[r]
@@ -234,18 +221,14 @@ impl<const D: usize> Problem<D> {
 
     #[inline(never)]
     fn wall_change(&self, i: usize, link: &Link<D>, y: &[Row<D>]) -> Vector<D> {
-        let Kind::Wall(a) = link.kind else { return Vector::ZERO };
+        let a = self.wall(link);
         let along = Vector::from_fn(|r| y[i].closure[r] + y[i].moment[r].dot(&link.offset)).dot(&a);
         a * (link.weight * (along + y[link.other as usize].closure[0]))
     }
 
-    fn reach(link: &Link<D>) -> f64 {
-        if let Kind::Wall(_) = link.kind { 1.0 } else { 0.5 }
-    }
-
     /// The share that belongs to an area vector of a wall entry.
-    fn share(link: &Link<D>, area: &Vector<D>) -> f64 {
-        let Kind::Wall(a) = link.kind else { return 0.0 };
+    fn share(&self, link: &Link<D>, area: &Vector<D>) -> f64 {
+        let a = self.wall(link);
         area.dot(&a) / a.norm_squared().max(f64::MIN_POSITIVE)
     }
 
@@ -256,13 +239,13 @@ impl<const D: usize> Problem<D> {
             if i >= self.n_fluid {
                 let shares = self.sharers[i - self.n_fluid].iter().map(|(k, p)| {
                     let link = &self.links[*p as usize];
-                    Self::share(link, &self.wall_change(*k as usize, link, y))
+                    self.share(link, &self.wall_change(*k as usize, link, y))
                 });
                 row.closure[0] = shares.sum();
                 return row;
             }
             for link in &self.links[self.range(i)] {
-                row.add(&self.change(i, link, y), &link.offset, Self::reach(link));
+                row.add(&self.change(i, link, y), &link.offset, link.reach());
             }
             let volume = self.volume_freedom(i) * y[i].trace();
             let soft = self.softness[i] * self.unit[i] * self.unit[i];
@@ -283,29 +266,31 @@ impl<const D: usize> Problem<D> {
         let mut row = Row::ZERO;
         if i >= self.n_fluid {
             let sharers = self.sharers[i - self.n_fluid].iter();
-            let total: f64 = sharers.map(|(_, p)| Self::share(&self.links[*p as usize], &x.area[*p as usize])).sum();
+            let total: f64 = sharers.map(|(_, p)| self.share(&self.links[*p as usize], &x.area[*p as usize])).sum();
             row.closure[0] = if self.sharers[i - self.n_fluid].is_empty() { 0.0 } else { total - 1.0 };
             return row;
         }
         for p in self.range(i) {
             let link = &self.links[p];
-            row.add(&x.area[p], &link.offset, Self::reach(link));
+            row.add(&x.area[p], &link.offset, link.reach());
         }
         (0..D).for_each(|r| row.moment[r][r] -= x.volume[i]);
         row
     }
 
-    /// The unknowns that belong to multipliers. Each pair is computed at one end and copied to the other.
-    fn recover(&self, y: &[Row<D>]) -> Unknowns<D> {
-        let mut area = self.guess.area.clone();
-        for i in 0..self.n_fluid {
-            for p in self.range(i) {
-                area[p] += self.change(i, &self.links[p], y);
-            }
-        }
+    /// The volumes that belong to multipliers.
+    fn volumes(&self, y: &[Row<D>]) -> Vec<f64> {
         let mut volume = vec![0.0; self.n_fluid];
         sweep(&mut volume, |i| self.guess.volume[i] - self.volume_freedom(i) * y[i].trace());
-        let mut x = Unknowns { area, volume };
+        volume
+    }
+
+    /// Turns the guess into the unknowns that belong to multipliers. Each pair is computed at one end and copied to the other.
+    fn recover(&mut self, y: Vec<Row<D>>) -> Unknowns<D> {
+        self.blocks = Vec::new();
+        let mut area = std::mem::take(&mut self.guess.area);
+        sweep_entries(&self.first, &mut area, |i, p, area| *area += self.change(i, &self.links[p], &y));
+        let mut x = Unknowns { area, volume: self.volumes(&y) };
         self.mirror(&mut x);
         x
     }
@@ -318,9 +303,10 @@ impl<const D: usize> Problem<D> {
                 Kind::Pair if p < q => x.area[q] = -x.area[p],
                 // seen from its own image only the part across the plane is left
                 Kind::Image(t) if p == q => {
+                    let t = &self.signs[t as usize];
                     x.area[p] = Vector::from_fn(|d| if t[d] < 0.0 { x.area[p][d] } else { 0.0 })
                 }
-                Kind::Image(t) if p < q => x.area[q] = Vector::from_fn(|d| -t[d] * x.area[p][d]),
+                Kind::Image(t) if p < q => x.area[q] = Vector::from_fn(|d| -self.signs[t as usize][d] * x.area[p][d]),
                 _ => {}
             }
         }
@@ -329,15 +315,12 @@ impl<const D: usize> Problem<D> {
     /// Conjugate gradients for the multipliers, from those in `y`.
     fn solve(&mut self, y: &mut [Row<D>]) -> usize {
         self.factorise();
-        let n = self.n_rows();
-        let mut work = vec![Row::ZERO; n];
-        self.apply(y, &mut work);
-        let mut r = vec![Row::ZERO; n];
-        sweep(&mut r, |i| Row::ZERO.plus(-1.0, &self.defect(i, &self.guess)).plus(-1.0, &work[i]));
-        let mut start = vec![Row::ZERO; n];
-        sweep(&mut start, |i| Row::ZERO.plus(-1.0, &self.defect(i, &self.guess)));
-        let size = |r: &[Row<D>]| sum(n, |i| r[i].dot(&self.precondition(i, &r[i])));
-        let goal = TOLERANCE * TOLERANCE * size(&start);
+        let start = |i: usize| Row::ZERO.plus(-1.0, &self.defect(i, &self.guess));
+        let mut r = vec![Row::ZERO; self.n_rows()];
+        self.apply(y, &mut r);
+        sweep_slots(&mut r, |i, r| *r = start(i).plus(-1.0, r));
+        let size = |r: Row<D>, i: usize| r.dot(&self.precondition(i, &r));
+        let goal = TOLERANCE * TOLERANCE * sum(self.n_rows(), |i| size(start(i), i));
         conjugate_gradients(y, &mut r, goal, |y, out| self.apply(y, out), |i, r| self.precondition(i, r))
     }
 
@@ -365,9 +348,7 @@ impl<const D: usize> Problem<D> {
         for (w, sharers) in self.sharers.iter().enumerate() {
             let excess = self.defect(self.n_fluid + w, x).closure[0] / sharers.len().max(1) as f64;
             for (_, p) in sharers {
-                if let Kind::Wall(a) = self.links[*p as usize].kind {
-                    x.area[*p as usize] -= a * excess;
-                }
+                x.area[*p as usize] -= self.wall(&self.links[*p as usize]) * excess;
             }
         }
     }
@@ -400,11 +381,7 @@ impl<const D: usize> Problem<D> {
                 });
             };
             iterations += conjugate_gradients(&mut y, &mut r, goal, laplacian, precondition);
-            for i in 0..self.n_fluid {
-                for p in self.range(i) {
-                    x.area[p] += self.closure_change(i, &self.links[p], &y);
-                }
-            }
+            sweep_entries(&self.first, &mut x.area, |i, p, area| *area += self.closure_change(i, &self.links[p], &y));
             self.mirror(x);
         }
         iterations
@@ -415,7 +392,10 @@ impl<const D: usize> Problem<D> {
         let own = y[i].closure;
         match link.kind {
             Kind::Pair => (own - y[link.other as usize].closure) * link.weight,
-            Kind::Image(t) => Vector::from_fn(|d| own[d] - t[d] * y[link.other as usize].closure[d]) * link.weight,
+            Kind::Image(t) => {
+                let t = &self.signs[t as usize];
+                Vector::from_fn(|d| own[d] - t[d] * y[link.other as usize].closure[d]) * link.weight
+            }
             Kind::Open => own * link.weight,
             Kind::Wall(_) => Vector::ZERO,
         }
@@ -450,10 +430,18 @@ impl<const D: usize> Problem<D> {
     /// Cholesky factors of the diagonal blocks.
     fn factorise(&mut self) {
         let m = Self::WIDTH;
-        let mut blocks = vec![0.0; self.n_rows() * m * m];
-        sweep_rows(&mut blocks, m * m, |i, block| {
-            self.diagonal(i, block);
-            cholesky(block, m);
+        let mut blocks = std::mem::take(&mut self.blocks);
+        blocks.resize(self.n_rows() * Self::TRIANGLE, 0.0);
+        sweep_rows(&mut blocks, Self::TRIANGLE, |i, triangle| {
+            let mut block = [0.0; MOST * MOST];
+            self.diagonal(i, &mut block[..m * m]);
+            cholesky(&mut block, m);
+            let mut rest = triangle;
+            for r in 0..m {
+                let (row, below) = rest.split_at_mut(r + 1);
+                row.copy_from_slice(&block[r * m..=r * m + r]);
+                rest = below;
+            }
         });
         self.blocks = blocks;
     }
@@ -477,10 +465,13 @@ impl<const D: usize> Problem<D> {
             let e = Row::load(&column);
             let mut out = Row::ZERO;
             for link in &self.links[self.range(i)] {
-                let reach = Self::reach(link);
+                let reach = link.reach();
                 let s = Vector::from_fn(|r| e.closure[r] + reach * e.moment[r].dot(&link.offset));
                 let s = match link.kind {
-                    Kind::Wall(a) => a * (link.weight * s.dot(&a)),
+                    Kind::Wall(_) => {
+                        let a = self.wall(link);
+                        a * (link.weight * s.dot(&a))
+                    }
                     _ => s * link.weight,
                 };
                 out.add(&s, &link.offset, reach);
@@ -497,56 +488,20 @@ impl<const D: usize> Problem<D> {
     #[inline(always)]
     fn precondition(&self, i: usize, r: &Row<D>) -> Row<D> {
         let m = Self::WIDTH;
-        let l = &self.blocks[i * m * m..(i + 1) * m * m];
+        let l = &self.blocks[i * Self::TRIANGLE..(i + 1) * Self::TRIANGLE];
+        let at = |r: usize, c: usize| l[r * (r + 1) / 2 + c];
         let mut x = [0.0; MOST];
         r.store(&mut x);
         for a in 0..m {
-            let s: f64 = (0..a).map(|b| l[a * m + b] * x[b]).sum();
-            x[a] = (x[a] - s) * l[a * m + a];
+            let s: f64 = (0..a).map(|b| at(a, b) * x[b]).sum();
+            x[a] = (x[a] - s) * at(a, a);
         }
         for a in (0..m).rev() {
-            let s: f64 = (a + 1..m).map(|b| l[a * m + b] * x[b]).sum();
-            x[a] = (x[a] - s) * l[a * m + a];
+            let s: f64 = (a + 1..m).map(|b| at(b, a) * x[b]).sum();
+            x[a] = (x[a] - s) * at(a, a);
         }
         Row::load(&x)
     }
-}
-
-impl<const D: usize> Link<D> {
-    fn is_wall(&self) -> bool {
-        matches!(self.kind, Kind::Wall(_))
-    }
-}
-
-/// Classifies the neighbour entries of all fluid particles.
-fn links<const D: usize>(cloud: &Cloud<D>) -> Vec<Link<D>> {
-    let reverse = Reverse::new(cloud);
-    let mut rows = vec![Vec::new(); cloud.n_fluid];
-    sweep(&mut rows, |i| cloud.neighbours.range(i).map(|p| link(cloud, &reverse, i, p)).collect());
-    rows.into_iter().flatten().collect()
-}
-
-fn link<const D: usize>(cloud: &Cloud<D>, reverse: &Reverse<'_, D>, i: usize, p: usize) -> Link<D> {
-    let j = cloud.neighbours.index[p] as usize;
-    let offset = cloud.x[j] - cloud.x[i];
-    let image = j.checked_sub(cloud.n_real()).and_then(|k| cloud.images.get(k));
-    let source = image.map_or(j, |m| m.source as usize);
-    let sign = image.map(|m| cloud.transforms[m.transform as usize].sign);
-    let partner = reverse.position(i, j).map(|(e, _)| e as u32);
-    let spacing = 0.5 * (cloud.spacing[i] + cloud.spacing[j]);
-    let face = spacing.powi(D as i32) / offset.norm();
-    let mut weight = face * face;
-    let kind = match (sign, partner) {
-        _ if cloud.interface_range().contains(&source) => {
-            let area = -cloud.interface[source - cloud.n_fluid].area;
-            weight = SHARE_FREEDOM;
-            Kind::Wall(sign.map_or(area, |t| Vector::from_fn(|d| t[d] * area[d])))
-        }
-        (None, Some(_)) => Kind::Pair,
-        (Some(t), Some(_)) => Kind::Image(t),
-        _ => Kind::Open,
-    };
-    Link { other: source as u32, partner: partner.unwrap_or(p as u32), weight, offset, kind }
 }
 
 /// Writes the result back.
@@ -580,6 +535,7 @@ fn store<const D: usize>(cloud: &mut Cloud<D>, operators: &mut Operators<D>, pro
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::cloud::operators::Reverse;
     use std::collections::HashMap;
 
     fn cloud<const D: usize>(text: &str) -> Cloud<D> {

@@ -10,11 +10,13 @@ use super::{Interface, Transform};
 use crate::case::{Cloud as Spec, Side};
 use crate::geometry::Surface;
 use crate::math::hilbert::hilbert_index;
-use crate::math::sweep::{order_by_key, sweep};
+use crate::math::sweep::{CHUNK, order_by_key, parts, sweep_parts};
 use crate::math::{Bounds, Vector};
 
 /// Interface particles keep this distance, in spacings, from fluid particles.
 const CLEARANCE: f64 = 0.4;
+/// Share of the sum of two radii below which balls surely overlap.
+const FREE: f64 = 0.999;
 
 /// Particles in a tree, without images.
 pub struct Particles<const D: usize> {
@@ -48,6 +50,20 @@ pub struct LeafIndex {
 }
 
 impl LeafIndex {
+    /// Counting sort of the particles by the leaf that holds them.
+    fn new(leaf_of: &[u32], n_nodes: usize) -> Self {
+        let mut first = vec![0u32; n_nodes + 1];
+        leaf_of.iter().for_each(|k| first[*k as usize + 1] += 1);
+        (0..n_nodes).for_each(|k| first[k + 1] += first[k]);
+        let mut slot = first.clone();
+        let mut index = vec![0; leaf_of.len()];
+        for (i, k) in leaf_of.iter().enumerate() {
+            index[slot[*k as usize] as usize] = i as u32;
+            slot[*k as usize] += 1;
+        }
+        Self { first, index }
+    }
+
     /// Particles in a leaf.
     #[inline]
     pub fn of(&self, node: u32) -> &[u32] {
@@ -70,8 +86,19 @@ impl<const D: usize> Particles<D> {
         let mut outer = Vec::new();
         let leaves: Vec<Leaf<D>> = tree.leaves().collect();
         let mut distance = vec![None; leaves.len()];
-        let walls = Walls { surface, domain: tree.bounds(), back: transforms.iter().map(Transform::inverse).collect() };
-        sweep(&mut distance, |k| walls.distance(&leaves[k], spec.blank));
+        let walls = Walls {
+            surface,
+            closed: surface.is_some_and(Surface::is_closed),
+            domain: tree.bounds(),
+            back: transforms.iter().map(Transform::inverse).collect(),
+        };
+        let chunks = parts(leaves.len(), CHUNK);
+        sweep_parts(&chunks, 1, &mut distance, &|k, slots| {
+            let mut last = None;
+            for (leaf, slot) in leaves[chunks[k].clone()].iter().zip(slots) {
+                *slot = walls.distance(leaf, spec.blank, &mut last);
+            }
+        });
         for (leaf, distance) in leaves.iter().zip(&distance) {
             let Some(distance) = distance else { continue };
             match side_of(leaf, &tree.bounds(), &layout.sides) {
@@ -118,8 +145,10 @@ impl<const D: usize> Particles<D> {
                 x[i] += random_direction(tree.anchor(leaf.node)) * (jitter * leaf.size);
             }
         }
+        let leaf_of = fluid.iter().map(|(l, _)| l.node).chain(placed.x.iter().map(|x| tree.leaf_at(x).node));
+        let leaf_of: Vec<u32> = leaf_of.chain(outer.iter().map(|(l, _)| l.node)).collect();
         let next = placed.next.iter().map(|k| if *k == u32::MAX { *k } else { k + n_fluid as u32 }).collect();
-        let mut all = Self {
+        Self {
             x,
             spacing,
             wall_distance,
@@ -129,26 +158,9 @@ impl<const D: usize> Particles<D> {
             sides: layout.sides,
             centre,
             next,
-            leaves: LeafIndex::default(),
+            leaves: LeafIndex::new(&leaf_of, tree.n_nodes()),
             tree,
-        };
-        all.index_leaves();
-        all
-    }
-
-    /// Counting sort of the particles by the leaf that holds them.
-    fn index_leaves(&mut self) {
-        let leaf: Vec<u32> = self.centre.iter().map(|x| self.tree.leaf_at(x).node).collect();
-        let mut first = vec![0u32; self.tree.n_nodes() + 1];
-        leaf.iter().for_each(|k| first[*k as usize + 1] += 1);
-        (0..self.tree.n_nodes()).for_each(|k| first[k + 1] += first[k]);
-        let mut slot = first.clone();
-        self.leaves.index = vec![0; leaf.len()];
-        for (i, k) in leaf.iter().enumerate() {
-            self.leaves.index[slot[*k as usize] as usize] = i as u32;
-            slot[*k as usize] += 1;
         }
-        self.leaves.first = first;
     }
 
     /// Particles inside a leaf.
@@ -182,13 +194,18 @@ impl<const D: usize> Particles<D> {
 /// The surface and its images beyond the sides of the domain.
 struct Walls<'a, const D: usize> {
     surface: Option<&'a Surface<D>>,
+    closed: bool,
     domain: Bounds<D>,
     back: Vec<Transform<D>>,
 }
 
+/// A ball without surface in it: centre, radius, and whether it lies inside a body.
+type Ball<const D: usize> = (Vector<D>, f64, bool);
+
 impl<const D: usize> Walls<'_, D> {
-    /// Distance from a leaf to the surface, infinite when far; `None` when the leaf is to be left empty.
-    fn distance(&self, leaf: &Leaf<D>, blank: f64) -> Option<f64> {
+    /// Distance from a leaf to the surface, infinite when far; `None` when the leaf is to be left empty. `last` is the ball
+    /// around the leaf that was looked at before.
+    fn distance(&self, leaf: &Leaf<D>, blank: f64, last: &mut Option<Ball<D>>) -> Option<f64> {
         let Some(surface) = self.surface else { return Some(f64::INFINITY) };
         let reach = (NEAR + 1.0) * leaf.size;
         let images = self.back.iter().map(|t| t.point(&leaf.centre));
@@ -196,11 +213,20 @@ impl<const D: usize> Walls<'_, D> {
         let mut distance = f64::INFINITY;
         for x in std::iter::once(leaf.centre).chain(images) {
             distance = surface.nearest(&x, reach.min(distance)).map_or(distance, |n| n.distance);
-            if distance < blank * leaf.size || surface.inside(&x) {
+            if distance < blank * leaf.size || self.inside(surface, &x, reach.min(distance), last) {
                 return None;
             }
         }
         Some(distance)
+    }
+
+    /// Whether the ball of radius `free` around `x`, which no surface enters, lies inside a body: where it overlaps the last
+    /// one, both lie on the same side of a closed surface.
+    fn inside(&self, surface: &Surface<D>, x: &Vector<D>, free: f64, last: &mut Option<Ball<D>>) -> bool {
+        let same = last.filter(|l| self.closed && (l.0 - *x).norm() < FREE * (l.1 + free)).map(|l| l.2);
+        let inside = same.unwrap_or_else(|| surface.inside(x));
+        *last = Some((*x, free, inside));
+        inside
     }
 }
 

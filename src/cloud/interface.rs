@@ -263,14 +263,12 @@ struct Sample<const D: usize> {
 
 /// 3-D: dense samples, greedy pick, Lloyd.
 fn scatter<const D: usize>(surface: &Surface<D>, tree: &Tree<D>, planes: &[Plane]) -> Placed<D> {
-    let mut samples = Vec::new();
-    surface.for_each_piece(
+    let samples = surface.pieces(
         |x| SAMPLE_SIZE * tree.leaf_at(x).size,
         |x, normal, area, element| {
             let spacing = tree.leaf_at(x).size;
-            if planes.iter().all(|p| p.1 * (x[p.0] - p.2) < -ON_PLANE * spacing) {
-                samples.push(Sample { x: *x, normal: *normal, area: *area, spacing, element });
-            }
+            let inside = planes.iter().all(|p| p.1 * (x[p.0] - p.2) < -ON_PLANE * spacing);
+            inside.then_some(Sample { x: *x, normal: *normal, area: *area, spacing, element })
         },
     );
     let samples = sort_along_curve(samples);

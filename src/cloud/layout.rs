@@ -172,10 +172,10 @@ fn surface_sources<const D: usize>(case: &Case, surface: &Surface<D>, points: &m
     let cloud = &case.cloud;
     let base = cloud.spacing.0;
     let finest = base / f64::from(1u32 << cloud.curvature_levels);
-    surface.for_each_sample(0.5 * base, |x, radius| {
+    points.extend(surface.samples(0.5 * base, |x, radius| {
         let spacing = (cloud.curvature * radius).clamp(finest, base);
-        points.push(Source { x: *x, spacing, layers: cloud.layers });
-    });
+        Source { x: *x, spacing, layers: cloud.layers }
+    }));
     let edge = base / f64::from(1u32 << cloud.edge_levels);
     surface.for_each_sharp_point(SHARP, edge, |x| points.push(Source { x: *x, spacing: edge, layers: cloud.layers }));
 }

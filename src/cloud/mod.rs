@@ -10,6 +10,7 @@ pub mod fill;
 pub mod grid;
 pub mod interface;
 pub mod layout;
+mod links;
 mod multipliers;
 pub mod neighbours;
 pub mod operators;

@@ -74,7 +74,6 @@ pub(super) fn conjugate_gradients<const D: usize>(
     let n = y.len();
     let mut z = vec![Row::ZERO; n];
     let mut p = vec![Row::ZERO; n];
-    let mut q = vec![Row::ZERO; n];
     let mut last = f64::INFINITY;
     for iteration in 0..MOST_ITERATIONS {
         sweep(&mut z, |i| precondition(i, &r[i]));
@@ -84,14 +83,15 @@ pub(super) fn conjugate_gradients<const D: usize>(
         }
         update(&mut p, |i, p| z[i].plus(size / last, p));
         last = size;
-        apply(&p, &mut q);
-        let curvature = sum(n, |i| p[i].dot(&q[i]));
+        // A p takes the place of M⁻¹ r, which has done its work
+        apply(&p, &mut z);
+        let curvature = sum(n, |i| p[i].dot(&z[i]));
         if curvature.is_nan() || curvature <= 0.0 {
             return iteration;
         }
         let step = size / curvature;
         update(y, |i, y| y.plus(step, &p[i]));
-        update(r, |i, r| r.plus(-step, &q[i]));
+        update(r, |i, r| r.plus(-step, &z[i]));
     }
     MOST_ITERATIONS
 }
@@ -101,7 +101,7 @@ fn update<T: Send>(x: &mut [T], f: impl Fn(usize, &T) -> T + Sync) {
     sweep_slots(x, |i, x| *x = f(i, x));
 }
 
-/// Cholesky factor in the lower triangle and its transpose in the upper one, the diagonal inverted; directions without
+/// Cholesky factor in the lower triangle, the diagonal inverted; directions without
 /// stiffness are left alone.
 pub(super) fn cholesky(a: &mut [f64], n: usize) {
     for c in 0..n {
@@ -110,8 +110,7 @@ pub(super) fn cholesky(a: &mut [f64], n: usize) {
         a[c * n + c] = 1.0 / pivot.sqrt();
         for r in c + 1..n {
             let s: f64 = (0..c).map(|k| a[r * n + k] * a[c * n + k]).sum();
-            let v = (a[r * n + c] - s) * a[c * n + c];
-            (a[r * n + c], a[c * n + r]) = (v, v);
+            a[r * n + c] = (a[r * n + c] - s) * a[c * n + c];
         }
     }
 }

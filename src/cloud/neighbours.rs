@@ -5,11 +5,13 @@
 //! wall the cloud is the ball r ≤ ρ (h_i + h_j)/2, with interface particles in it. No pair reaches through a body: a
 //! segment that crosses a surface joins nothing, an interface particle sees only what lies in front of it, and in 2-D it
 //! sees of its own kind just the two neighbours along the outline, none across a sharp edge.
+use std::cell::OnceCell;
+
 use super::fill::Particles;
 use super::repair::Repair;
 use super::{CloudError, Image, Transform};
 use crate::geometry::Surface;
-use crate::math::sweep::{CHUNK, sweep_each};
+use crate::math::sweep::{CHUNK, sweep_each, sweep_parts};
 use crate::math::{Bounds, Vector};
 
 /// Pairs with a member nearer than this many spacings to a wall follow the ball rule.
@@ -30,6 +32,10 @@ const FIT_REACH_LAST: f64 = 200.0;
 const FREE: f64 = 0.99;
 /// Slack with which leaves count as touching, in spacings.
 const TOUCH: f64 = 1e-6;
+/// Height, in spacings, by which a line of sight must pass above all surface around: round-off.
+const ABOVE: f64 = 1e-9;
+/// Neighbours for which the list of a chunk has room from the start.
+const ROOM: usize = 20;
 
 /// Rows of neighbours, compressed.
 #[derive(Clone, Debug, Default)]
@@ -78,7 +84,7 @@ impl Rows {
     fn new(n: usize, fill: impl Fn(usize, &mut Vec<Seen>) + Sync) -> Self {
         let mut chunks = vec![(Vec::new(), Vec::new()); n.div_ceil(CHUNK)];
         sweep_each(&mut chunks, |c| {
-            let (mut first, mut list) = (vec![0], Vec::new());
+            let (mut first, mut list) = (vec![0], Vec::with_capacity(ROOM * CHUNK));
             for i in c * CHUNK..n.min((c + 1) * CHUNK) {
                 fill(i, &mut list);
                 first.push(list.len() as u32);
@@ -99,33 +105,50 @@ impl Rows {
         self.chunks.iter().flat_map(|(_, list)| list).filter(|s| s.1 != IDENTITY).copied()
     }
 
+    /// Removes entries (row, what it sees), sorted.
+    fn remove(&mut self, unwanted: &[(u32, Seen)]) {
+        for (c, (first, list)) in self.chunks.iter_mut().enumerate() {
+            let below = |row: usize| unwanted.partition_point(|u| (u.0 as usize) < row);
+            let own = &unwanted[below(c * CHUNK)..below((c + 1) * CHUNK)];
+            if own.is_empty() {
+                continue;
+            }
+            let old = std::mem::replace(first, vec![0]);
+            let mut kept = Vec::with_capacity(list.len());
+            for (row, ends) in (c * CHUNK..).zip(old.windows(2)) {
+                let entries = list[ends[0] as usize..ends[1] as usize].iter();
+                kept.extend(entries.filter(|s| own.binary_search(&(row as u32, **s)).is_err()));
+                first.push(kept.len() as u32);
+            }
+            *list = kept;
+        }
+    }
+
     /// Final rows: `number` gives the index of what is seen, `extra` holds sorted entries to join rows.
     fn pack(self, extra: &[(u32, Seen)], number: impl Fn(&Seen) -> u32 + Sync) -> Neighbours {
-        let mut numbered: Vec<(Vec<u32>, Vec<u32>)> = vec![(Vec::new(), Vec::new()); self.chunks.len()];
-        sweep_each(&mut numbered, |c| {
-            let rows = self.chunks[c].0.len() - 1;
-            let (mut counts, mut index) = (Vec::with_capacity(rows), Vec::with_capacity(self.chunks[c].1.len()));
-            for i in c * CHUNK..c * CHUNK + rows {
-                let start = index.len();
-                let own = extra.partition_point(|e| (e.0 as usize) < i)..extra.partition_point(|e| e.0 as usize <= i);
-                index.extend(self.of(i).iter().chain(extra[own].iter().map(|e| &e.1)).map(&number));
-                index[start..].sort_unstable();
-                counts.push((index.len() - start) as u32);
+        let joins = |i: usize| {
+            &extra[extra.partition_point(|e| (e.0 as usize) < i)..extra.partition_point(|e| e.0 as usize <= i)]
+        };
+        let mut first = vec![0u32];
+        let mut chunks = Vec::with_capacity(self.chunks.len());
+        for (ends, _) in &self.chunks {
+            let start = first[first.len() - 1];
+            for pair in ends.windows(2) {
+                let row = first.len() - 1;
+                first.push(first[row] + pair[1] - pair[0] + joins(row).len() as u32);
             }
-            (counts, index)
-        });
-        let mut all = Neighbours { first: vec![0], index: Vec::new() };
-        all.index.reserve_exact(numbered.iter().map(|n| n.1.len()).sum());
-        all.first.reserve_exact(numbered.iter().map(|n| n.0.len()).sum());
-        let mut end = 0;
-        for (counts, index) in numbered {
-            all.index.extend(index);
-            all.first.extend(counts.iter().map(|n| {
-                end += n;
-                end
-            }));
+            chunks.push(start as usize..first[first.len() - 1] as usize);
         }
-        all
+        let mut index = vec![0; first[first.len() - 1] as usize];
+        sweep_parts(&chunks, 1, &mut index, &|c, slots| {
+            for i in c * CHUNK..c * CHUNK + self.chunks[c].0.len() - 1 {
+                let row = &mut slots[first[i] as usize - chunks[c].start..first[i + 1] as usize - chunks[c].start];
+                let seen = self.of(i).iter().chain(joins(i).iter().map(|e| &e.1));
+                row.iter_mut().zip(seen).for_each(|(slot, s)| *slot = number(s));
+                row.sort_unstable();
+            }
+        });
+        Neighbours { first, index }
     }
 }
 
@@ -148,6 +171,32 @@ pub struct Clouds<const D: usize> {
 enum Sight {
     Tested,
     Granted,
+}
+
+/// A particle that looks around, and what it knows of the surface near it.
+struct Eye<const D: usize> {
+    i: usize,
+    reach: f64,
+    horizon: OnceCell<Option<Horizon<D>>>,
+}
+
+impl<const D: usize> Eye<D> {
+    fn new(i: usize, reach: f64) -> Self {
+        Self { i, reach, horizon: OnceCell::new() }
+    }
+}
+
+/// A plane above all surface within `bounds`: a line of sight above it is free.
+struct Horizon<const D: usize> {
+    normal: Vector<D>,
+    height: f64,
+    bounds: Bounds<D>,
+}
+
+impl<const D: usize> Horizon<D> {
+    fn is_above(&self, x: &Vector<D>) -> bool {
+        self.bounds.contains(x) && x.dot(&self.normal) > self.height
+    }
 }
 
 /// Search over the particles of a tree.
@@ -179,7 +228,9 @@ impl<'a, const D: usize> Search<'a, D> {
     /// Clouds of all fluid and interface particles, repaired where needed.
     pub fn clouds(&self) -> Result<Clouds<D>, CloudError> {
         let p = self.particles;
-        let rows = self.mutual(&Rows::new(p.n_rows(), |i, list| self.cloud_of(i, list)));
+        let mut rows = Rows::new(p.n_rows(), |i, list| self.cloud_of(i, list));
+        let unanswered = self.unanswered(&rows);
+        rows.remove(&unanswered);
         let walls = Rows::new(p.interface.len(), |w, list| self.fluid_in_front(w + p.n_fluid, list));
         let mut repair = Repair::of(self, &rows);
         let blind = (0..p.interface.len()).filter(|w| walls.of(*w).is_empty());
@@ -205,18 +256,27 @@ impl<'a, const D: usize> Search<'a, D> {
         Ok(Clouds { neighbours, wall_clouds, images, repair, n_crevice })
     }
 
-    /// Drops what does not see back: lines of sight are tested at one end only, and round-off, or an abrupt change of
+    /// Entries that are not seen back: lines of sight are tested at one end only, and round-off, or an abrupt change of
     /// spacing, can decide otherwise at the other. Pairs of the regular background cannot disagree.
-    fn mutual(&self, rows: &Rows) -> Rows {
+    fn unanswered(&self, rows: &Rows) -> Vec<(u32, Seen)> {
         let p = self.particles;
-        Rows::new(p.n_rows(), |i, list| {
-            let near = p.is_interface(i) || self.near(i);
-            let agreed = |s: &&Seen| {
-                let doubtful = near || s.1 != IDENTITY || p.is_interface(s.0 as usize);
-                !doubtful || self.seen_from(i, **s).is_none_or(|(k, back)| rows.of(k as usize).contains(&back))
-            };
-            list.extend(rows.of(i).iter().filter(agreed));
-        })
+        let n = p.n_rows();
+        let mut chunks = vec![Vec::new(); n.div_ceil(CHUNK)];
+        sweep_each(&mut chunks, |c| {
+            let mut found = Vec::new();
+            for i in c * CHUNK..n.min((c + 1) * CHUNK) {
+                let near = p.is_interface(i) || self.near(i);
+                let refused = |s: &&Seen| {
+                    let doubtful = near || s.1 != IDENTITY || p.is_interface(s.0 as usize);
+                    let back = doubtful.then(|| self.seen_from(i, **s)).flatten();
+                    back.is_some_and(|(k, back)| !rows.of(k as usize).contains(&back))
+                };
+                found.extend(rows.of(i).iter().filter(refused).map(|s| (i as u32, *s)));
+            }
+            found.sort_unstable();
+            found
+        });
+        chunks.concat()
     }
 
     /// The entry that particle `i` is in the row of what it sees, if that has one.
@@ -227,8 +287,9 @@ impl<'a, const D: usize> Search<'a, D> {
     }
 
     fn cloud_of(&self, i: usize, list: &mut Vec<Seen>) {
-        self.candidates(i, self.reach(i), |k, t| {
-            if self.sees(i, k as usize, t) {
+        let eye = Eye::new(i, self.reach(i));
+        self.candidates(i, eye.reach, |k, t| {
+            if self.sees(&eye, k as usize, t) {
                 list.push((k, t));
             }
         });
@@ -237,8 +298,9 @@ impl<'a, const D: usize> Search<'a, D> {
     /// Everything in sight of particle `i` within `radius` spacings, whatever the leaves.
     pub(super) fn visible_within(&self, i: usize, radius: f64) -> Vec<Seen> {
         let mut list = Vec::new();
-        self.candidates(i, radius * self.particles.spacing[i], |k, t| {
-            if self.sees_in_ball(i, k as usize, t, radius, Sight::Tested) {
+        let eye = Eye::new(i, radius * self.particles.spacing[i]);
+        self.candidates(i, eye.reach, |k, t| {
+            if self.sees_in_ball(&eye, k as usize, t, radius, Sight::Tested) {
                 list.push((k, t));
             }
         });
@@ -250,8 +312,9 @@ impl<'a, const D: usize> Search<'a, D> {
         let start = list.len();
         for (reach, least) in [(FIT_REACH, D + 1), (FIT_REACH_WIDE, 1)] {
             list.truncate(start);
+            let eye = Eye::new(i, reach * self.particles.spacing[i]);
             self.fluid_within(i, reach, |s, d| {
-                if self.in_front(i, d, IDENTITY) && self.in_sight(i, s.0 as usize, s.1, d) {
+                if self.in_front(i, d, IDENTITY) && self.in_sight(&eye, s.0 as usize, s.1, d) {
                     list.push(s);
                 }
             });
@@ -333,8 +396,8 @@ impl<'a, const D: usize> Search<'a, D> {
     }
 
     /// Whether particle `i` has particle `k`, moved by transform `t`, in its cloud.
-    fn sees(&self, i: usize, k: usize, t: u8) -> bool {
-        let p = self.particles;
+    fn sees(&self, eye: &Eye<D>, k: usize, t: u8) -> bool {
+        let (p, i) = (self.particles, eye.i);
         let wall = p.is_interface(i) || p.is_interface(k);
         let near = wall || self.near(i) || self.near(k);
         if !wall && !self.leaves_touch(i, k, t, near) {
@@ -342,17 +405,17 @@ impl<'a, const D: usize> Search<'a, D> {
         }
         // the end with the smaller index looks whether the way is free
         let test = if i <= k { Sight::Tested } else { Sight::Granted };
-        !near || self.sees_in_ball(i, k, t, self.radius, test)
+        !near || self.sees_in_ball(eye, k, t, self.radius, test)
     }
 
     /// Whether particle `i` has particle `k` in sight, within `radius` of their mean spacing.
-    fn sees_in_ball(&self, i: usize, k: usize, t: u8, radius: f64, sight: Sight) -> bool {
-        let p = self.particles;
+    fn sees_in_ball(&self, eye: &Eye<D>, k: usize, t: u8, radius: f64, sight: Sight) -> bool {
+        let (p, i) = (self.particles, eye.i);
         let d = self.position(k, t) - p.x[i];
         if d.norm() > radius * self.mean_spacing(i, k) {
             return false;
         }
-        let in_sight = || sight == Sight::Granted || self.in_sight(i, k, t, &d);
+        let in_sight = || sight == Sight::Granted || self.in_sight(eye, k, t, &d);
         match (p.is_interface(i), p.is_interface(k)) {
             (false, false) => in_sight(),
             (true, false) => self.in_front(i, &d, IDENTITY) && in_sight(),
@@ -400,9 +463,9 @@ impl<'a, const D: usize> Search<'a, D> {
         a.normal.dot(&normal) > FACING
     }
 
-    /// No surface between particle `i` and particle `k` moved by `t`, at `d` from it.
-    fn in_sight(&self, i: usize, k: usize, t: u8, d: &Vector<D>) -> bool {
-        let p = self.particles;
+    /// No surface between a particle and particle `k` moved by `t`, at `d` from it.
+    fn in_sight(&self, eye: &Eye<D>, k: usize, t: u8, d: &Vector<D>) -> bool {
+        let (p, i) = (self.particles, eye.i);
         if self.surface.is_none() || p.wall_distance[i] + p.wall_distance[k] > d.norm() {
             return true;
         }
@@ -416,11 +479,25 @@ impl<'a, const D: usize> Search<'a, D> {
         let way = (b - a) * (FREE / d.norm());
         let (a, b) = (a + way * p.wall_distance[i], b - way * p.wall_distance[k]);
         if t == IDENTITY {
-            return !self.blocked(&a, &b);
+            let horizon = eye.horizon.get_or_init(|| self.horizon(eye));
+            return horizon.as_ref().is_some_and(|h| h.is_above(&a) && h.is_above(&b)) || !self.blocked(&a, &b);
         }
         // the part of the way beyond the side of the domain may be blocked by the image of a body
         let back = self.transforms[t as usize].inverse();
         !self.blocked(&a, &b) && !self.blocked(&back.point(&a), &back.point(&b))
+    }
+
+    /// The plane above the surface around a particle: most lines of sight need no other test.
+    fn horizon(&self, eye: &Eye<D>) -> Option<Horizon<D>> {
+        let (p, surface) = (self.particles, self.surface?);
+        let x = p.x[eye.i];
+        let normal = match p.is_interface(eye.i) {
+            true => p.interface[eye.i - p.n_fluid].normal,
+            false => (x - surface.nearest(&x, 2.0 * eye.reach)?.point).unit(),
+        };
+        let bounds = Bounds { min: x, max: x }.padded(eye.reach);
+        let height = surface.highest(&normal, &bounds) + ABOVE * p.spacing[eye.i];
+        Some(Horizon { normal, height, bounds })
     }
 
     /// True when a surface lies between two points.

@@ -11,8 +11,8 @@ use std::ops::Range;
 use super::neighbours::Neighbours;
 use super::{Cloud, Image, Transform};
 use crate::math::Vector;
-use crate::math::least_squares::{bounded_gradient_weights, gradient_weights};
-use crate::math::sweep::{CHUNK, parts, sweep_each, sweep_parts};
+use crate::math::least_squares::{bounded_gradient_matrix, gradient_matrix, gradient_weight};
+use crate::math::sweep::{parts, sweep, sweep_each, sweep_each_slot};
 
 /// Rows in one part: large enough that few edges are visited twice, small enough to stay in cache and balance threads.
 const PART: [usize; 2] = [1024, 4096];
@@ -63,8 +63,7 @@ pub struct Operators<const D: usize> {
     /// Number of parts that hold fluid particles.
     pub n_fluid_parts: usize,
     /// Edges of each part.
-    edges: Vec<Edge<D>>,
-    first: Vec<u32>,
+    edges: Vec<Vec<Edge<D>>>,
     /// Condition number of the normal matrix of each row, infinite where the cloud determines no gradient.
     pub condition: Vec<f64>,
     walls: Vec<WallFace<D>>,
@@ -85,47 +84,36 @@ pub struct WallFace<const D: usize> {
 impl<const D: usize> Operators<D> {
     /// Fits all rows of a cloud.
     pub fn new(cloud: &Cloud<D>) -> Self {
-        let (weights, condition) = fit_rows(cloud);
+        let (inverse, condition) = fit_rows(cloud);
         let lookup = Reverse::new(cloud);
         let size = (cloud.n_fluid / MANY_PARTS).clamp(PART[0], PART[1]);
         let mut all = parts(cloud.n_fluid, size);
         let n_fluid_parts = all.len();
         let start = cloud.n_fluid;
         all.extend(parts(cloud.interface.len(), size).into_iter().map(|p| p.start + start..p.end + start));
-        let mut lists = vec![Vec::new(); all.len()];
-        sweep_each(&mut lists, |k| part_edges(cloud, &weights, &lookup, &all[k]));
-        let mut first = vec![0];
-        let mut edges = Vec::with_capacity(lists.iter().map(Vec::len).sum());
-        for list in lists {
-            edges.extend(list);
-            first.push(edges.len() as u32);
-        }
+        let mut edges = vec![Vec::new(); all.len()];
+        sweep_each(&mut edges, |k| part_edges(cloud, &inverse, &lookup, &all[k]));
         let wall_first = vec![0; n_fluid_parts + 1];
-        Self { parts: all, n_fluid_parts, edges, first, condition, walls: Vec::new(), wall_first }
+        Self { parts: all, n_fluid_parts, edges, condition, walls: Vec::new(), wall_first }
     }
 
     /// Fits the weights anew to the positions of `cloud`, whose lists are those of the fit before; volumes stay. The
     /// coefficients that come out are not conservative.
     pub fn refit(&mut self, cloud: &Cloud<D>) {
-        let (weights, condition) = fit_rows(cloud);
+        let (inverse, condition) = fit_rows(cloud);
         self.condition = condition;
         self.walls.clear();
         self.wall_first.fill(0);
         let lookup = Reverse::new(cloud);
-        let first = &self.first;
-        let parts: Vec<Range<usize>> = (0..self.parts.len()).map(|k| first[k] as usize..first[k + 1] as usize).collect();
-        sweep_parts(&parts, 1, &mut self.edges, &|_, edges| {
-            for e in edges {
-                let (i, j) = (e.i(), e.j());
-                let Some(own) = lookup.entry(i, j as u32) else { continue };
-                (e.a_i, e.a_j, e.s) = edge_vectors(cloud, &weights, &lookup, (i, j, own));
-            }
+        let parts = &self.parts;
+        sweep_each_slot(&mut self.edges, |k, edges| {
+            edges.iter_mut().for_each(|e| *e = edge(cloud, &inverse, &lookup, (e.i(), e.j()), &parts[k]));
         });
     }
 
     /// Turns all vectors.
     pub fn turn(&mut self, turned: impl Fn(&Vector<D>) -> Vector<D>) {
-        for e in &mut self.edges {
+        for e in self.edges_mut() {
             (e.a_i, e.a_j, e.s) = (turned(&e.a_i), turned(&e.a_j), turned(&e.s));
         }
         self.walls.iter_mut().for_each(|w| w.area = turned(&w.area));
@@ -134,7 +122,7 @@ impl<const D: usize> Operators<D> {
     /// Edges of part `k`.
     #[inline]
     pub fn edges(&self, k: usize) -> &[Edge<D>] {
-        &self.edges[self.first[k] as usize..self.first[k + 1] as usize]
+        &self.edges[k]
     }
 
     /// Parts of fluid particles.
@@ -143,8 +131,8 @@ impl<const D: usize> Operators<D> {
     }
 
     /// All edges, part after part, to rewrite the dissipation vectors.
-    pub fn edges_mut(&mut self) -> &mut [Edge<D>] {
-        &mut self.edges
+    pub fn edges_mut(&mut self) -> impl Iterator<Item = &mut Edge<D>> {
+        self.edges.iter_mut().flatten()
     }
 
     /// Pieces of wall of fluid part `k`; none unless the coefficients are conservative.
@@ -163,43 +151,25 @@ impl<const D: usize> Operators<D> {
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        self.walls.len() * size_of::<WallFace<D>>() + self.edges.len() * size_of::<Edge<D>>() + self.condition.len() * 8
+        let edges: usize = self.edges.iter().map(Vec::len).sum();
+        self.walls.len() * size_of::<WallFace<D>>() + edges * size_of::<Edge<D>>() + self.condition.len() * 8
     }
 }
 
-/// Weights of every neighbour entry and the conditioning of every row.
-fn fit_rows<const D: usize>(cloud: &Cloud<D>) -> (Vec<Vector<D>>, Vec<f64>) {
+/// The normal matrices, inverted, from which every weight follows, and the conditioning of every row.
+fn fit_rows<const D: usize>(cloud: &Cloud<D>) -> (Vec<[[f64; D]; D]>, Vec<f64>) {
     let n = cloud.neighbours.len();
-    let mut chunks = vec![(Vec::new(), Vec::new()); n.div_ceil(CHUNK)];
-    sweep_each(&mut chunks, |c| {
-        let rows = c * CHUNK..n.min((c + 1) * CHUNK);
-        let entries = cloud.neighbours.first[rows.end] - cloud.neighbours.first[rows.start];
-        let (mut all, mut conditions) = (Vec::with_capacity(entries as usize), Vec::with_capacity(CHUNK));
-        let (mut offsets, mut weights) = (Vec::new(), Vec::new());
-        for i in rows {
-            offsets.clear();
-            offsets.extend(cloud.neighbours.of(i).iter().map(|j| cloud.x[*j as usize] - cloud.x[i]));
-            conditions.push(fit_row(cloud, i, &offsets, &mut weights));
-            all.extend_from_slice(&weights);
-        }
-        (all, conditions)
-    });
-    let mut weights = Vec::with_capacity(cloud.neighbours.index.len());
-    let mut condition = Vec::with_capacity(n);
-    for (w, c) in chunks {
-        weights.extend(w);
-        condition.extend(c);
-    }
-    (weights, condition)
+    let mut rows = vec![([[0.0; D]; D], 0.0); n];
+    sweep(&mut rows, |i| fit_row(cloud, i));
+    rows.into_iter().unzip()
 }
 
-/// Weights of row `i`; those of a first-order row are bounded whatever the neighbours.
-fn fit_row<const D: usize>(cloud: &Cloud<D>, i: usize, offsets: &[Vector<D>], weights: &mut Vec<Vector<D>>) -> f64 {
-    let condition = gradient_weights(offsets, weights);
-    if condition.is_none() || cloud.first_order.binary_search(&(i as u32)).is_ok() {
-        bounded_gradient_weights(offsets, weights);
-    }
-    condition.unwrap_or(f64::INFINITY)
+/// Inverse normal matrix of row `i`; the weights of a first-order row are bounded whatever the neighbours.
+fn fit_row<const D: usize>(cloud: &Cloud<D>, i: usize) -> ([[f64; D]; D], f64) {
+    let offsets = || cloud.neighbours.of(i).iter().map(|j| cloud.x[*j as usize] - cloud.x[i]);
+    let (inverse, condition) = gradient_matrix(offsets()).unzip();
+    let inverse = inverse.filter(|_| cloud.first_order.binary_search(&(i as u32)).is_err());
+    (inverse.unwrap_or_else(|| bounded_gradient_matrix(offsets())), condition.unwrap_or(f64::INFINITY))
 }
 
 /// Finds the entry (j, i) that belongs to the entry (i, j), through images where needed.
@@ -240,45 +210,46 @@ impl<'a, const D: usize> Reverse<'a, D> {
     }
 }
 
-/// a_ij, a_ji and s_ij of the pair (i, j) whose neighbour entry is number `e`.
-fn edge_vectors<const D: usize>(
-    cloud: &Cloud<D>,
-    weights: &[Vector<D>],
-    reverse: &Reverse<'_, D>,
-    (i, j, e): (usize, usize, usize),
-) -> (Vector<D>, Vector<D>, Vector<D>) {
-    let a_i = weights[e];
-    let turn = |(e, t): (usize, Option<u8>)| match t {
-        Some(t) => cloud.transforms[t as usize].direction(&weights[e]),
-        None => weights[e],
-    };
-    // an end without a cloud counts as the mirror image of this one
-    match reverse.position(i, j).map(turn) {
-        Some(a_j) => (a_i, a_j, a_i * cloud.volume[i] - a_j * cloud.volume[j]),
-        None => (a_i, Vector::ZERO, a_i * (2.0 * cloud.volume[i])),
-    }
-}
-
 fn part_edges<const D: usize>(
     cloud: &Cloud<D>,
-    weights: &[Vector<D>],
+    inverse: &[[[f64; D]; D]],
     reverse: &Reverse<'_, D>,
     part: &Range<usize>,
 ) -> Vec<Edge<D>> {
-    let mut edges = Vec::new();
+    // an edge inside the part belongs to its smaller end
+    let visited = |i: usize, j: u32| !(part.start..i).contains(&(j as usize));
+    let count = |i: usize| cloud.neighbours.of(i).iter().filter(|j| visited(i, **j)).count();
+    let mut edges = Vec::with_capacity(part.clone().map(count).sum());
     for i in part.clone() {
-        for e in cloud.neighbours.range(i) {
-            let j = cloud.neighbours.index[e] as usize;
-            let inside = part.contains(&j);
-            if inside && j < i {
-                continue;
-            }
-            let (a_i, a_j, s) = edge_vectors(cloud, weights, reverse, (i, j, e));
-            let flag = if inside { BOTH } else { 0 };
-            edges.push(Edge { i: i as u32, j: j as u32 | flag, a_i, a_j, s });
-        }
+        let row = cloud.neighbours.of(i).iter().filter(|j| visited(i, **j));
+        edges.extend(row.map(|j| edge(cloud, inverse, reverse, (i, *j as usize), part)));
     }
     edges
+}
+
+fn edge<const D: usize>(
+    cloud: &Cloud<D>,
+    inverse: &[[[f64; D]; D]],
+    reverse: &Reverse<'_, D>,
+    (i, j): (usize, usize),
+    part: &Range<usize>,
+) -> Edge<D> {
+    let a_i = gradient_weight(&inverse[i], &(cloud.x[j] - cloud.x[i]));
+    let back = reverse.position(i, j).map(|(e, transform)| match transform {
+        None => gradient_weight(&inverse[j], &(cloud.x[i] - cloud.x[j])),
+        Some(t) => {
+            let source = cloud.images[j - cloud.n_real()].source as usize;
+            let d = cloud.x[cloud.neighbours.index[e] as usize] - cloud.x[source];
+            cloud.transforms[t as usize].direction(&gradient_weight(&inverse[source], &d))
+        }
+    });
+    // an end without a cloud counts as the mirror image of this one
+    let s = match back {
+        Some(a_j) => a_i * cloud.volume[i] - a_j * cloud.volume[j],
+        None => a_i * (2.0 * cloud.volume[i]),
+    };
+    let flag = if part.contains(&j) { BOTH } else { 0 };
+    Edge { i: i as u32, j: j as u32 | flag, a_i, a_j: back.unwrap_or(Vector::ZERO), s }
 }
 
 /// Rows whose neighbours are not all fluid particles in the interior: none of their entries is missing.

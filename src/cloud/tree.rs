@@ -2,6 +2,7 @@
 //!
 //! Cells are addressed by integers in units of the finest possible cell, so that neighbours are found by arithmetic alone.
 //! The forest is balanced: cells that touch, corners included, differ by one level at most.
+use crate::math::sweep::sweep;
 use crate::math::{Bounds, Vector};
 
 /// Deepest level below a root.
@@ -54,7 +55,7 @@ pub struct Forest<const D: usize> {
 
 impl<const D: usize> Tree<D> {
     /// Splits every cell for which `wanted(centre, size)` holds, then balances.
-    pub fn build(forest: &Forest<D>, wanted: impl Fn(&Vector<D>, f64) -> bool) -> Self {
+    pub fn build(forest: &Forest<D>, wanted: impl Fn(&Vector<D>, f64) -> bool + Sync) -> Self {
         let count: u32 = forest.roots.iter().product();
         let nodes =
             (0..count).map(|k| Node { first_child: NONE, level: 0, anchor: root_anchor(k, &forest.roots) }).collect();
@@ -65,13 +66,16 @@ impl<const D: usize> Tree<D> {
             periodic: forest.periodic,
             nodes,
         };
-        let mut k = 0;
-        while k < tree.nodes.len() {
-            let leaf = tree.leaf(k as u32);
-            if leaf.level < MAX_LEVEL && wanted(&leaf.centre, leaf.size) {
-                tree.split(k as u32);
-            }
-            k += 1;
+        // children follow all cells of their parents' generation
+        let mut generation = 0..tree.nodes.len();
+        while !generation.is_empty() {
+            let mut split = vec![false; generation.len()];
+            sweep(&mut split, |k| {
+                let leaf = tree.leaf((generation.start + k) as u32);
+                leaf.level < MAX_LEVEL && wanted(&leaf.centre, leaf.size)
+            });
+            generation.clone().zip(split).filter(|s| s.1).for_each(|(k, _)| tree.split(k as u32));
+            generation = generation.end..tree.nodes.len();
         }
         tree.balance();
         tree
@@ -205,21 +209,12 @@ impl<const D: usize> Tree<D> {
     /// Splits cells until touching leaves differ by one level at most: whatever touches a cell that has children must not be
     /// larger than that cell.
     fn balance(&mut self) {
-        let mut queue: Vec<u32> =
-            (0..self.nodes.len() as u32).filter(|k| self.nodes[*k as usize].first_child != NONE).collect();
+        // a cell without coarser neighbours gets none when others are split
+        let mut unbalanced = vec![false; self.nodes.len()];
+        sweep(&mut unbalanced, |k| self.nodes[k].first_child != NONE && !self.coarser(k as u32).is_empty());
+        let mut queue: Vec<u32> = (0..self.nodes.len() as u32).filter(|k| unbalanced[*k as usize]).collect();
         while let Some(k) = queue.pop() {
-            let node = self.nodes[k as usize];
-            let size = 1i64 << (MAX_LEVEL - node.level);
-            let mut coarse = Vec::new();
-            for_each_direction(|direction: [i64; D]| {
-                let p = std::array::from_fn(|d| i64::from(node.anchor[d]) + direction[d] * size);
-                if let Some(j) = self.find(&p)
-                    && self.nodes[j as usize].level < node.level
-                    && !coarse.contains(&j)
-                {
-                    coarse.push(j);
-                }
-            });
+            let coarse = self.coarser(k);
             if !coarse.is_empty() {
                 queue.push(k);
             }
@@ -228,6 +223,23 @@ impl<const D: usize> Tree<D> {
                 queue.push(j);
             }
         }
+    }
+
+    /// Leaves that touch cell `k` and are larger.
+    fn coarser(&self, k: u32) -> Vec<u32> {
+        let node = &self.nodes[k as usize];
+        let size = 1i64 << (MAX_LEVEL - node.level);
+        let mut coarse = Vec::new();
+        for_each_direction(|direction: [i64; D]| {
+            let p = std::array::from_fn(|d| i64::from(node.anchor[d]) + direction[d] * size);
+            if let Some(j) = self.find(&p)
+                && self.nodes[j as usize].level < node.level
+                && !coarse.contains(&j)
+            {
+                coarse.push(j);
+            }
+        });
+        coarse
     }
 }
 

@@ -1,6 +1,10 @@
 //! Walking over a surface: what the cloud needs to know where to be fine and where interface particles go.
 use super::surface::{Element, Surface};
 use crate::math::Vector;
+use crate::math::sweep::sweep_each;
+
+/// Elements that one task samples.
+const GROUP: usize = 256;
 
 /// A smooth piece of outline: elements in order, each starting where the one before ends.
 #[derive(Clone, Debug, PartialEq)]
@@ -53,12 +57,9 @@ impl<const D: usize> Surface<D> {
         if first[D - 1] == second[0] { b } else { a }
     }
 
-    /// Calls `f(x, radius of curvature)` at points of the surface no farther apart than about `size`.
-    pub fn for_each_sample(&self, size: f64, mut f: impl FnMut(&Vector<D>, f64)) {
-        for e in 0..self.elements.len() as u32 {
-            let radius = self.radius[e as usize];
-            self.subdivide(e, &|_| size, &mut |x, _, _| f(x, radius));
-        }
+    /// `f(x, radius of curvature)` at points of the surface no farther apart than about `size`.
+    pub fn samples<T: Clone + Send>(&self, size: f64, f: impl Fn(&Vector<D>, f64) -> T + Sync) -> Vec<T> {
+        self.pieces(|_| size, |x, _, _, e| Some(f(x, self.radius[e as usize])))
     }
 
     /// Calls `f(x)` along edges that turn by more than `angle` radians, at most `spacing` apart.
@@ -70,15 +71,22 @@ impl<const D: usize> Surface<D> {
         }
     }
 
-    /// Calls `f(x, normal, area vector, element)` for pieces of the surface no larger than `size(x)`.
-    pub fn for_each_piece(
+    /// What `f(x, normal, area vector, element)` makes of pieces of the surface no larger than `size(x)`, element by element.
+    pub fn pieces<T: Clone + Send>(
         &self,
-        size: impl Fn(&Vector<D>) -> f64,
-        mut f: impl FnMut(&Vector<D>, &Vector<D>, &Vector<D>, u32),
-    ) {
-        for e in 0..self.elements.len() as u32 {
-            self.subdivide(e, &size, &mut |x, normal, area| f(x, normal, area, e));
-        }
+        size: impl Fn(&Vector<D>) -> f64 + Sync,
+        f: impl Fn(&Vector<D>, &Vector<D>, &Vector<D>, u32) -> Option<T> + Sync,
+    ) -> Vec<T> {
+        let n = self.elements.len();
+        let mut groups = vec![Vec::new(); n.div_ceil(GROUP)];
+        sweep_each(&mut groups, |g| {
+            let mut found = Vec::new();
+            for e in (g * GROUP) as u32..n.min((g + 1) * GROUP) as u32 {
+                self.subdivide(e, &size, &mut |x, normal, area| found.extend(f(x, normal, area, e)));
+            }
+            found
+        });
+        groups.concat()
     }
 
     /// Cuts an element in halves across its longest side until it is small enough; points lie on the shape itself.
@@ -95,10 +103,11 @@ impl<const D: usize> Surface<D> {
         while let Some((w, share)) = stack.pop() {
             let at = |w: &[f64; D]| (0..D).fold(Vector::ZERO, |x, k| x + corners[k] * w[k]);
             let middle: [f64; D] = std::array::from_fn(|c| (0..D).map(|r| w[r][c]).sum::<f64>() / D as f64);
+            let points = w.map(|w| at(&w));
             let mut longest = (0, 1, 0.0);
             for a in 0..D {
                 for b in a + 1..D {
-                    let l = (at(&w[a]) - at(&w[b])).norm();
+                    let l = (points[a] - points[b]).norm();
                     if l > longest.2 {
                         longest = (a, b, l);
                     }

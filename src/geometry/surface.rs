@@ -148,6 +148,26 @@ impl<const D: usize> Surface<D> {
         self.tree.crosses(a, b)
     }
 
+    /// Height n·y along the unit vector `direction` that no element within `bounds` exceeds; −∞ when there is none.
+    pub fn highest(&self, direction: &Vector<D>, bounds: &Bounds<D>) -> f64 {
+        self.tree.highest(direction, bounds)
+    }
+
+    /// True when every side of an element belongs to a second one that runs along it the other way.
+    pub fn is_closed(&self) -> bool {
+        let mut sides = Vec::with_capacity(self.elements.len() * D);
+        for e in &self.elements {
+            let v = &e.vertices;
+            for c in 0..D {
+                let next = v[(c + 1) % D];
+                // in 2-D a side is a vertex, where one segment begins and one ends
+                sides.push(if D == 2 { (v[c], 0, c == 0) } else { (v[c].min(next), v[c].max(next), v[c] < next) });
+            }
+        }
+        sides.sort_unstable();
+        sides.chunks(2).all(|s| s.len() == 2 && (s[0].0, s[0].1) == (s[1].0, s[1].1) && s[0].2 != s[1].2)
+    }
+
     /// True when `x` lies inside a body; reliable for surfaces with small gaps too.
     pub fn inside(&self, x: &Vector<D>) -> bool {
         self.bounds.contains(x) && self.winding(x) > 0.5

@@ -153,10 +153,34 @@ impl<const D: usize> Tree<D> {
         found
     }
 
+    /// Largest height n·y along `direction` of elements whose leaf overlaps `bounds`; −∞ without any.
+    pub(super) fn highest(&self, direction: &Vector<D>, bounds: &Bounds<D>) -> f64 {
+        let mut best = f64::NEG_INFINITY;
+        let mut stack = [(0_u32, f64::INFINITY); STACK];
+        let mut depth = usize::from(!self.nodes.is_empty());
+        while depth > 0 {
+            depth -= 1;
+            let (index, top) = stack[depth];
+            let node = &self.nodes[index as usize];
+            if top <= best || !meets(&node.bounds, bounds) {
+                continue;
+            }
+            if node.count > 0 {
+                let leaf = node.first as usize..(node.first + node.count) as usize;
+                best = self.corners[leaf].iter().flatten().map(|c| direction.dot(c)).fold(best, f64::max);
+                continue;
+            }
+            let child = |k: u32| (k, support(&self.nodes[k as usize].bounds, direction));
+            let (left, right) = (child(index + 1), child(node.right));
+            (stack[depth], stack[depth + 1]) = if left.1 < right.1 { (left, right) } else { (right, left) };
+            depth += 2;
+        }
+        best
+    }
+
     /// Calls `f(element, corners)` for elements whose leaf overlaps `bounds`, until it returns true.
     pub(super) fn overlapping(&self, bounds: &Bounds<D>, f: impl FnMut(u32, &Corners<D>) -> bool) {
-        let meets = |b: &Bounds<D>| (0..D).all(|d| b.min[d] <= bounds.max[d] && bounds.min[d] <= b.max[d]);
-        self.visit(meets, f);
+        self.visit(|b| meets(b, bounds), f);
     }
 
     fn visit(&self, enter: impl Fn(&Bounds<D>) -> bool, mut f: impl FnMut(u32, &Corners<D>) -> bool) {
@@ -244,6 +268,15 @@ impl<const D: usize> Dipole<D> {
         let reach = corners.fold(0.0_f64, |r, p| r.max((*p - centre).norm_squared())).sqrt();
         Self { area, centre, reach }
     }
+}
+
+fn meets<const D: usize>(a: &Bounds<D>, b: &Bounds<D>) -> bool {
+    (0..D).all(|d| a.min[d] <= b.max[d] && b.min[d] <= a.max[d])
+}
+
+/// Largest n·y over a box.
+fn support<const D: usize>(bounds: &Bounds<D>, n: &Vector<D>) -> f64 {
+    (0..D).map(|d| (n[d] * bounds.min[d]).max(n[d] * bounds.max[d])).sum()
 }
 
 /// Separating axes of a segment (`middle` ± `half`) and a box: the coordinate axes and their products with the segment.

@@ -36,7 +36,42 @@ pub enum Method {
 #[doc(alias = "eq10")]
 pub fn gradient_weights<const D: usize>(offsets: &[Vector<D>], out: &mut Vec<Vector<D>>) -> Option<f64> {
     out.clear();
-    let mut m = [[0.0; D]; D];
+    let (inverse, condition) = gradient_matrix(offsets.iter().copied())?;
+    out.extend(offsets.iter().map(|d| gradient_weight(&inverse, d)));
+    Some(condition)
+}
+
+/// The inverse normal matrix from which [`gradient_weight`] makes every weight of a row, and its condition number.
+pub fn gradient_matrix<const D: usize>(offsets: impl Iterator<Item = Vector<D>>) -> Option<([[f64; D]; D], f64)> {
+    let m = normal_matrix(offsets).0;
+    let condition = condition_symmetric(&m);
+    if !(condition < 1.0 / RANK_TOLERANCE) {
+        return None;
+    }
+    Some((invert_symmetric(&m)?, condition))
+}
+
+/// Weight of the neighbour at offset `d` in a row with this inverse normal matrix.
+#[inline]
+pub fn gradient_weight<const D: usize>(inverse: &[[f64; D]; D], d: &Vector<D>) -> Vector<D> {
+    let w = 1.0 / d.norm_squared();
+    Vector::from_fn(|r| w * (0..D).map(|c| inverse[r][c] * d[c]).sum::<f64>())
+}
+
+/// Share of its trace that a bounded fit adds to the diagonal of the normal matrix.
+const BOUND: f64 = 0.05;
+
+/// Like [`gradient_matrix`], but weights stay bounded for any offsets: the gradient fades out along directions in which
+/// there are no neighbours. Zero for constant fields; not exact for linear ones.
+pub fn bounded_gradient_matrix<const D: usize>(offsets: impl Iterator<Item = Vector<D>>) -> [[f64; D]; D] {
+    let (mut m, n) = normal_matrix(offsets);
+    (0..D).for_each(|r| m[r][r] += BOUND * n as f64);
+    invert_symmetric(&m).unwrap_or([[0.0; D]; D])
+}
+
+/// Σ d dᵀ/|d|² and the number of offsets.
+fn normal_matrix<const D: usize>(offsets: impl Iterator<Item = Vector<D>>) -> ([[f64; D]; D], usize) {
+    let (mut m, mut n) = ([[0.0; D]; D], 0);
     for d in offsets {
         let w = 1.0 / d.norm_squared();
         for r in 0..D {
@@ -44,37 +79,9 @@ pub fn gradient_weights<const D: usize>(offsets: &[Vector<D>], out: &mut Vec<Vec
                 m[r][c] += w * d[r] * d[c];
             }
         }
+        n += 1;
     }
-    let condition = condition_symmetric(&m);
-    if !(condition < 1.0 / RANK_TOLERANCE) {
-        return None;
-    }
-    let inverse = invert_symmetric(&m)?;
-    out.extend(offsets.iter().map(|d| {
-        let w = 1.0 / d.norm_squared();
-        Vector::from_fn(|r| w * (0..D).map(|c| inverse[r][c] * d[c]).sum::<f64>())
-    }));
-    Some(condition)
-}
-
-/// Share of its trace that a bounded fit adds to the diagonal of the normal matrix.
-const BOUND: f64 = 0.05;
-
-/// Weights like those of [`gradient_weights`], but bounded for any offsets: the gradient fades out along directions in which
-/// there are no neighbours. Zero for constant fields; not exact for linear ones.
-pub fn bounded_gradient_weights<const D: usize>(offsets: &[Vector<D>], out: &mut Vec<Vector<D>>) {
-    out.clear();
-    let mut m = [[0.0; D]; D];
-    for d in offsets {
-        let w = 1.0 / d.norm_squared();
-        (0..D).for_each(|r| (0..D).for_each(|c| m[r][c] += w * d[r] * d[c]));
-    }
-    (0..D).for_each(|r| m[r][r] += BOUND * offsets.len() as f64);
-    let inverse = invert_symmetric(&m).unwrap_or([[0.0; D]; D]);
-    out.extend(offsets.iter().map(|d| {
-        let w = 1.0 / d.norm_squared();
-        Vector::from_fn(|r| w * (0..D).map(|c| inverse[r][c] * d[c]).sum::<f64>())
-    }));
+    (m, n)
 }
 
 /// Inverse of a symmetric positive matrix of order 1, 2 or 3 by cofactors.
@@ -397,9 +404,8 @@ mod tests {
     #[test]
     fn bounded_weights_of_particles_on_a_line_see_the_slope_along_it() {
         let d = [Vector([1.0, 0.0, 0.0]), Vector([-2.0, 0.0, 0.0])];
-        let mut w = Vec::new();
-        bounded_gradient_weights(&d, &mut w);
-        let g = d.iter().zip(&w).fold(Vector::ZERO, |g, (d, w)| g + *w * d[0]);
+        let inverse = bounded_gradient_matrix(d.iter().copied());
+        let g = d.iter().fold(Vector::ZERO, |g, d| g + gradient_weight(&inverse, d) * d[0]);
         assert!((0.9..=1.0).contains(&g[0]) && g[1] == 0.0 && g[2] == 0.0, "{g:?}");
     }
 

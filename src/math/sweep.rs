@@ -31,6 +31,11 @@ pub fn sweep_each<T: Send>(out: &mut [T], f: impl Fn(usize) -> T + Sync) {
     out.par_iter_mut().enumerate().for_each(|(i, slot)| *slot = f(i));
 }
 
+/// Calls `f(i, slot)` for every slot of `out` where each one is much work.
+pub fn sweep_each_slot<T: Send>(out: &mut [T], f: impl Fn(usize, &mut T) + Sync) {
+    out.par_iter_mut().enumerate().for_each(|(i, slot)| f(i, slot));
+}
+
 /// The numbers `0..n` in the order of `key`, ties in their own order.
 pub fn order_by_key(n: usize, key: impl Fn(usize) -> u64 + Sync) -> Vec<u32> {
     let mut keys = vec![(0, 0); n];

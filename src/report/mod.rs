@@ -25,7 +25,7 @@ pub use colour::Colormap;
 pub use html::write_report;
 pub use picture::{Dots, PictureStyle, Raster, Scatter, raster_png, scatter_png};
 pub use surface::{Shell, SurfaceStyle, surface_png};
-pub use verification::{ClaimRow, write_verification_page};
+pub use verification::write_verification_page;
 
 /// What can go wrong with a picture or a page.
 #[derive(Debug, thiserror::Error)]

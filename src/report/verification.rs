@@ -1,32 +1,10 @@
 //! The page of `alula verify`: claims, what was computed, and whether they hold.
 use std::path::Path;
 
-use serde::Serialize;
-
 use super::html::page;
 use super::sections::{number, table_html};
 use super::{ReportError, escape, write_file};
-
-/// One claim and its outcome.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct ClaimRow {
-    /// Case, by the name of its folder.
-    pub case: String,
-    /// What is measured.
-    pub metric: String,
-    /// Computed value.
-    pub value: f64,
-    /// Value of the authority.
-    pub reference: f64,
-    /// Distance between both, in the sense of the claim.
-    pub error: f64,
-    /// Greatest distance that still holds.
-    pub tolerance: f64,
-    /// True when the claim holds.
-    pub pass: bool,
-    /// The authority.
-    pub source: String,
-}
+use crate::case::ClaimRow;
 
 /// Writes a self-contained page with one table per case.
 pub fn write_verification_page(rows: &[ClaimRow], path: &Path) -> Result<(), ReportError> {

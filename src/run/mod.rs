@@ -236,7 +236,9 @@ fn drive<const D: usize>(
         last_frame = Some(frame);
         previous = Some((solver, state));
     }
-    let Some(solved) = previous.zip(last_frame) else { return Err(RunError::Folder("the checkpoint names no stage".into())) };
+    let Some(solved) = previous.zip(last_frame) else {
+        return Err(RunError::Folder("the checkpoint names no stage".into()));
+    };
     let summary = outputs::write_all(case, places, &solved, surface.as_ref(), &mut journal, &clock)?;
     Ok(Outcome::Finished(Box::new(summary)))
 }

@@ -239,7 +239,10 @@ impl<'a, const D: usize> Finished<'a, D> {
     fn write_tables(&self, cycles: &[[f64; 5]], summary: &Summary) -> Result<(), RunError> {
         write_json(&self.out.join("summary.json"), summary)?;
         write_json(&self.out.join("ledger.json"), &summary.ledger)?;
-        write_json(&self.out.join("doctor.json"), &Diagnosis::of(&self.fluid.shape.cloud, self.fluid.shape.walls.n_linear))?;
+        write_json(
+            &self.out.join("doctor.json"),
+            &Diagnosis::of(&self.fluid.shape.cloud, self.fluid.shape.walls.n_linear),
+        )?;
         self.write_loads()?;
         self.write_surface_csv()?;
         let rows = cycles.iter().enumerate().map(|(k, c)| {

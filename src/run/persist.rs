@@ -106,10 +106,10 @@ impl Saved {
     }
 
     /// Writes the checkpoint of a run folder.
-    pub(super) fn write(&self, out: &Path) -> Result<(), RunError> {
+    pub(super) fn write(self, out: &Path) -> Result<(), RunError> {
         let meta = Meta {
             stage: self.stage,
-            stages: self.stages.clone(),
+            stages: self.stages,
             iteration: self.iteration,
             stage_iteration: self.relax.iteration,
             time_bits: self.time.to_bits(),
@@ -121,19 +121,20 @@ impl Saved {
             phase_best_bits: self.relax.phase.best.to_bits(),
             phase_best_age: self.relax.phase.best_age,
             start_totals_bits: self.start_totals.iter().map(|v| v.to_bits()).collect(),
-            cycles: self.cycles.clone(),
+            cycles: self.cycles,
             cpu_seconds: self.cpu_seconds,
             wall_seconds: self.wall_seconds,
             steps: [self.past.last.to_bits(), self.past.next.to_bits(), u64::from(self.past.unconverged)],
         };
-        let field = |name: &str, data: &[f64]| Field {
-            name: name.into(),
-            shape: vec![data.len()],
-            data: Array::F64(data.to_vec()),
-        };
+        let field =
+            |name: &str, data: Vec<f64>| Field { name: name.into(), shape: vec![data.len()], data: Array::F64(data) };
         let meta = serde_json::to_value(meta).map_err(|e| RunError::Folder(e.to_string()))?;
-        let fields =
-            vec![field("state", &self.state), field("scale", &self.relax.scale), field("before", &self.past.before), field("sources", &self.sources)];
+        let fields = vec![
+            field("state", self.state),
+            field("scale", self.relax.scale),
+            field("before", self.past.before),
+            field("sources", self.sources),
+        ];
         Ok(checkpoint::write(&out.join(FILE), &Checkpoint { meta, fields })?)
     }
 

@@ -7,14 +7,14 @@ use super::snapshot::{LoadFrame, Snapshot, load_axes};
 use super::{Monitor, Places, RunError, Tick};
 use crate::case::{self, Case, Explicit as Marching, RungeKutta, Steady, Temporal};
 use crate::math::sweep::sum;
+use crate::motion::Law;
 use crate::observe::History;
 use crate::observe::loads::Coefficients;
 use crate::scheme::{Fluid, Frame, Work};
-use crate::motion::Law;
 use crate::time::dual::Dual;
-use crate::time::{March, Past, TimeError};
 use crate::time::explicit::{Explicit, Method};
 use crate::time::relax::{Phase, Relax, Resume};
+use crate::time::{March, Past, TimeError};
 
 /// Orders of magnitude that stages before the last one are solved to.
 const EARLY_ORDERS: f64 = 3.5;

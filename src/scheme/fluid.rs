@@ -507,8 +507,8 @@ impl<const D: usize> System for Fluid<D> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::cloud::{Cloud, Operators};
     use crate::cloud::conservative::conservative;
+    use crate::cloud::{Cloud, Operators};
 
     struct Still;
     impl<const D: usize> FarField<D> for Still {

@@ -191,13 +191,15 @@ fn place_rigid<const D: usize>(law: &Law<D>, origin: &Arc<Shape<D>>, moment: &Mo
     let gradient = rotation_rate(law, t);
     let inward = |v: &Vector<D>| pose.inverse_direction(v);
     // Rᵀ G R: the rate of rotation seen in the axes of the body
-    let columns: [Vector<D>; D] =
-        std::array::from_fn(|j| inward(&times(&gradient, &pose.direction(&Vector::axis(j)))));
+    let columns: [Vector<D>; D] = std::array::from_fn(|j| inward(&times(&gradient, &pose.direction(&Vector::axis(j)))));
     let spin = std::array::from_fn(|i| Vector::from_fn(|j| columns[j][i]));
     let first = origin.cloud.n_fluid;
     let still = WallMotion { spin, acceleration: Vector::ZERO };
     frame.walls.resize(origin.cloud.interface.len(), still);
-    sweep(&mut frame.walls, |w| WallMotion { spin, acceleration: inward(&law.kinematics(t, &x[first + w]).acceleration) });
+    sweep(&mut frame.walls, |w| WallMotion {
+        spin,
+        acceleration: inward(&law.kinematics(t, &x[first + w]).acceleration),
+    });
     frame.turn = Some(pose);
 }
 
@@ -215,12 +217,7 @@ fn times<const D: usize>(rows: &[Vector<D>; D], v: &Vector<D>) -> Vector<D> {
 }
 
 /// Moves the particles and fits their weights anew.
-fn place_along<const D: usize>(
-    path: &dyn Path<D>,
-    origin: &Arc<Shape<D>>,
-    moment: &Moment<'_>,
-    frame: &mut Frame<D>,
-) {
+fn place_along<const D: usize>(path: &dyn Path<D>, origin: &Arc<Shape<D>>, moment: &Moment<'_>, frame: &mut Frame<D>) {
     let reference = &origin.cloud;
     let n = reference.n_real();
     frame.velocity.resize(reference.len(), Vector::ZERO);

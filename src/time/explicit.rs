@@ -46,12 +46,7 @@ pub struct Explicit<'a, S: System> {
 
 impl<'a, S: System> Explicit<'a, S> {
     /// Prepares a march from the state `u` at time `time`.
-    pub fn new(
-        system: &'a S,
-        method: Method,
-        (cfl, until): (f64, f64),
-        (past, u): (Past, Vec<f64>),
-    ) -> Self {
+    pub fn new(system: &'a S, method: Method, (cfl, until): (f64, f64), (past, u): (Past, Vec<f64>)) -> Self {
         let n = u.len();
         let (end, step) = (past.time, past.last);
         let moment = match step > 0.0 {

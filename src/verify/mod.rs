@@ -7,10 +7,12 @@
 pub mod claim;
 pub mod curve;
 pub mod metrics;
+mod parse;
 pub mod truth;
 pub mod wall;
 
-pub use claim::{Claim, ClaimError, ClaimFile, ClaimRow, Exact, Kind, Metric, Study};
+pub use crate::case::ClaimRow;
+pub use claim::{Claim, ClaimError, ClaimFile, Exact, Kind, Metric, Study};
 pub use curve::{Curve, Table};
 pub use truth::{FieldTruth, WallTruth};
 pub use wall::Wall;

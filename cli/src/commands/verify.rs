@@ -1,7 +1,7 @@
 //! `alula verify`.
 use std::path::{Path, PathBuf};
 
-use alula::report::{self, write_verification_page};
+use alula::report::write_verification_page;
 use alula::run::Monitor;
 use alula::run::verify::{Selection, Walk, WalkError, find};
 use alula::verify::ClaimRow;
@@ -110,25 +110,11 @@ fn number(v: f64) -> String {
 }
 
 fn write_page(rows: &[ClaimRow], path: &Path) -> Result<(), String> {
-    let page: Vec<report::ClaimRow> = rows.iter().map(page_row).collect();
     if let Some(folder) = path.parent() {
         std::fs::create_dir_all(folder)
             .map_err(|e| format!("cannot make `{}`: {e}\nhint: work in a folder you can write to", folder.display()))?;
     }
-    write_verification_page(&page, path).map_err(|e| e.to_string())
-}
-
-fn page_row(r: &ClaimRow) -> report::ClaimRow {
-    report::ClaimRow {
-        case: r.case.clone(),
-        metric: r.metric.clone(),
-        value: r.value,
-        reference: r.reference,
-        error: r.error,
-        tolerance: r.tolerance,
-        pass: r.pass,
-        source: r.source.clone(),
-    }
+    write_verification_page(rows, path).map_err(|e| e.to_string())
 }
 
 #[cfg(test)]
