@@ -448,6 +448,9 @@ mod tests {
         assert_eq!((dual.order, dual.orders, dual.inner_iterations), (2, 2.0, 50));
         assert_eq!((dual.end(Some(2.0)), dual.step_length(Some(2.0))), (Some(6.0), Some(0.04)));
         assert_eq!((dual.end(None), dual.step_length(None)), (None, None));
+        let c = read(&march("dual]\nstep = 0.5\nuntil = 3", "translation = [1, 0]"), "c").unwrap();
+        let Temporal::Dual(dual) = &c.time else { panic!("{:?}", c.time) };
+        assert_eq!((dual.end(None), dual.step_length(None)), (Some(3.0), Some(0.5)));
     }
 
     #[test]

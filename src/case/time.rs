@@ -113,12 +113,12 @@ impl Dual {
 
     /// Step in time, the first one when steps are adaptive.
     pub fn step_length(&self, period: Option<f64>) -> Option<f64> {
-        self.step.map(|s| s.0).or(Some(period? / f64::from(self.steps_per_period?)))
+        self.step.map(|s| s.0).or_else(|| Some(period? / f64::from(self.steps_per_period?)))
     }
 }
 
 fn end(until: Option<Time>, periods: Option<f64>, period: Option<f64>) -> Option<f64> {
-    until.map(|t| t.0).or(Some(periods? * period?))
+    until.map(|t| t.0).or_else(|| Some(periods? * period?))
 }
 
 impl Default for Temporal {

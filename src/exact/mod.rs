@@ -13,15 +13,21 @@
 //! | [`ringleb`] | Ringleb's transonic hodograph flow |
 //! | [`potential`] | subcritical flow past a circle and a sphere |
 //! | [`vortex_far_field`] | point vortex in a compressible free stream |
+//! | [`piston`] | piston started at once, and oscillating: simple wave and acoustics |
+//! | [`theodorsen`] | plate that pitches and plunges in incompressible flow |
+//! | [`blasius`] | laminar boundary layer on a flat plate |
 use crate::math::Vector;
 
+pub mod blasius;
 pub mod diamond;
 pub mod expansion;
+pub mod piston;
 pub mod potential;
 pub mod riemann;
 pub mod ringleb;
 mod roots;
 pub mod shock;
+pub mod theodorsen;
 pub mod vortex;
 pub mod vortex_far_field;
 

@@ -173,6 +173,17 @@ mod tests {
     }
 
     #[test]
+    fn reads_tables_of_linear_theory() {
+        // two rows of reference/harmonics/possio_subsonic_flatplate.csv, some columns left out
+        let text = "# Possio integral equation\n# Convention: e^{+i omega t}; b=c/2\naxis,a,M,k,cl_alpha_abs,cl_alpha_phase_deg\n\
+                    quarter-chord,-0.5,0.5,0.1,5.825394482,-6.32886309\nquarter-chord,-0.5,0.5,0.3,4.781501324,8.707198056\n";
+        let table = Table::parse(text).unwrap().only("axis", "quarter-chord").only("M", "0.5");
+        let lift = table.curve("k", "cl_alpha_abs").unwrap();
+        let phase = table.only("k", "0.3").column("cl_alpha_phase_deg").unwrap();
+        assert_eq!((lift.at(0.1), phase[0]), (5.825394482, 8.707198056));
+    }
+
+    #[test]
     fn names_the_bad_line() {
         assert_eq!(Table::parse("# only\n"), Err(TableError::Empty));
         assert_eq!(Table::parse("a,b\n1,2\n1\n"), Err(TableError::Fields { line: 3, found: 1, expected: 2 }));

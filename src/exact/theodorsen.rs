@@ -1,0 +1,94 @@
+//! A thin plate that pitches and plunges in incompressible flow.
+//!
+//! Theodorsen (NACA report 496, 1935). With k = ωb/U, b half the chord, C(k) = H₁⁽²⁾/(H₁⁽²⁾ + iH₀⁽²⁾), the axis a half chords
+//! behind the middle and motions e^{+iωt}: plunge z = (displacement up)/b, pitch α nose up,
+//!
+//! c_l = π (k² z + ik α + a k² α) + 2πC [−ik z + α + (1/2 − a) ik α],
+//! c_m = (π/2) [a k² z − (1/2 − a) ik α + (1/8 + a²) k² α] + π (a + 1/2) C [−ik z + α + (1/2 − a) ik α],
+//!
+//! lift over q c, moment about the axis, nose up, over q c². Small amplitudes, no thickness, no stall, a smooth wake.
+use num_complex::Complex64;
+
+use super::Error;
+
+/// Complex coefficients of lift and moment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PlateLoads {
+    /// Lift.
+    pub lift: Complex64,
+    /// Moment about the axis, nose up.
+    pub moment: Complex64,
+}
+
+/// Theodorsen's function C(k) = F + iG.
+pub fn theodorsen(k: f64) -> Result<Complex64, Error> {
+    if !(0.0 <= k && k.is_finite()) {
+        return Err(Error::Parameter { what: "reduced frequency", value: k, range: "a number that is not negative" });
+    }
+    if k == 0.0 {
+        return Ok(Complex64::new(1.0, 0.0));
+    }
+    // Hankel functions of the second kind, J − iY
+    let first = Complex64::new(libm::j1(k), -libm::y1(k));
+    let zeroth = Complex64::new(libm::j0(k), -libm::y0(k));
+    Ok(first / (first + Complex64::i() * zeroth))
+}
+
+/// Loads of a plate with reduced frequency `k` (of half the chord) and its axis `a` half chords behind the middle
+/// (−1/2: quarter chord), for the complex amplitudes `pitch` (radians, nose up) and `plunge` (up, over half the chord).
+pub fn plate(k: f64, a: f64, pitch: Complex64, plunge: Complex64) -> Result<PlateLoads, Error> {
+    use std::f64::consts::PI;
+    let ik = Complex64::new(0.0, k);
+    // downwash at three quarters of the chord
+    let circulation = theodorsen(k)? * (-ik * plunge + pitch + (0.5 - a) * ik * pitch);
+    let lift = PI * (k * k * plunge + ik * pitch + a * k * k * pitch) + 2.0 * PI * circulation;
+    let inertia = a * k * k * plunge - (0.5 - a) * ik * pitch + (0.125 + a * a) * k * k * pitch;
+    let moment = 0.5 * PI * inertia + PI * (a + 0.5) * circulation;
+    Ok(PlateLoads { lift, moment })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const ZERO: Complex64 = Complex64::new(0.0, 0.0);
+    const ONE: Complex64 = Complex64::new(1.0, 0.0);
+
+    fn near(z: Complex64, re: f64, im: f64) {
+        assert!((z - Complex64::new(re, im)).norm() < 1e-8, "{z} is not {re} + {im} i");
+    }
+
+    #[test] // reference/computed_exact/theodorsen_sears.csv
+    fn the_function_has_the_values_of_the_table() {
+        near(theodorsen(0.1).unwrap(), 0.83192410, -0.17230223);
+        near(theodorsen(0.5).unwrap(), 0.59793606, -0.15070950);
+        near(theodorsen(1.0).unwrap(), 0.53943487, -0.10027290);
+        near(theodorsen(1e-4).unwrap(), 0.99984208, -0.00093233);
+        assert_eq!(theodorsen(0.0).unwrap(), ONE);
+        assert!((theodorsen(1e4).unwrap() - 0.5).norm() < 1e-4);
+        assert!(theodorsen(-1.0).is_err() && theodorsen(f64::NAN).is_err());
+    }
+
+    #[test] // reference/harmonics/theodorsen_incompressible.csv, axes at c/4 and c/2
+    fn plates_have_the_loads_of_the_table() {
+        let plunge = plate(0.3, -0.5, ZERO, ONE).unwrap();
+        near(plunge.lift, -0.05526525918, -1.253441049);
+        near(plunge.moment, -0.07068583471, 0.0);
+        let pitch = plate(0.3, -0.5, ONE, ZERO).unwrap();
+        near(pitch.lift, 4.374773759, 1.069223519);
+        near(pitch.moment, 0.05301437603, -0.471238898);
+        let plunge = plate(1.0, 0.0, ZERO, ONE).unwrap();
+        near(plunge.lift, 2.511559424, -3.389369256);
+        near(plunge.moment, -0.1575083075, -0.847342314);
+        let pitch = plate(1.0, 0.0, ONE, ZERO).unwrap();
+        near(pitch.lift, 3.704385871, 4.206244052);
+        near(pitch.moment, 1.122446009, -0.5192353139);
+    }
+
+    #[test]
+    fn slow_pitch_is_the_thin_section() {
+        let slow = plate(0.0, -0.5, ONE, ZERO).unwrap();
+        near(slow.lift, 2.0 * std::f64::consts::PI, 0.0);
+        near(slow.moment, 0.0, 0.0);
+    }
+}
