@@ -142,14 +142,6 @@ fn worst<const D: usize>(
         march.advance().unwrap();
     }
     let (frame, _, u) = march.parts();
-    let mut all: Vec<(f64, usize)> = (0..fluid.shape.cloud.n_fluid).map(|i| {
-        let found = fluid.gas.primitive(&Conserved::<D>::load(&u[i * (D + 2)..]));
-        let error = found.minus(&field(&frame.place(i)));
-        (error.density.abs().max(error.velocity.max_abs()).max(error.pressure.abs()), i)
-    }).collect();
-    all.sort_by(|a, b| b.0.total_cmp(&a.0));
-    eprintln!("dbg n {} first_order {:?}", fluid.shape.cloud.n_fluid, fluid.shape.cloud.first_order);
-    for (e, i) in &all[..8] { eprintln!("dbg {e:.2e} {i} {:?} {:?}", frame.place(*i), fluid.shape.cloud.x[*i]); }
     largest((0..fluid.shape.cloud.n_fluid).map(|i| {
         let found = fluid.gas.primitive(&Conserved::<D>::load(&u[i * (D + 2)..]));
         let error = found.minus(&field(&frame.place(i)));

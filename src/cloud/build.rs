@@ -6,6 +6,7 @@ use super::sources::Source;
 use super::{Cloud, CloudError, Outer};
 use crate::case::Case;
 use crate::geometry::Surface;
+use crate::math::Vector;
 
 /// Height of the volume that an interface particle stands for, in spacings.
 const WALL_HEIGHT: f64 = 0.45;
@@ -70,15 +71,23 @@ fn volumes<const D: usize>(particles: &Particles<D>) -> Vec<f64> {
     volume
 }
 
-/// Outer particles with the fluid particle that an outflow copies: the nearest one straight inward.
+/// Outer particles with the fluid particle that an outflow copies: the nearest one inward.
 fn outer_particles<const D: usize>(particles: &Particles<D>) -> Vec<Outer> {
     let first = particles.n_rows();
     let outer = particles.outer.iter().zip(first..).map(|((axis, end), i)| {
         let side = particles.sides[*axis][*end];
-        let mut inward = particles.x[i];
-        inward[*axis] += particles.spacing[i] * if *end == 0 { 1.0 } else { -1.0 };
-        let leaf = particles.tree.leaf_at(&inward).node;
-        let source = particles.in_leaf(leaf).find(|k| (*k as usize) < particles.n_fluid).unwrap_or(i as u32);
+        let (x, h) = (particles.x[i], particles.spacing[i]);
+        let centre = particles.tree.bounds().centre();
+        let toward = |d: usize| h * (centre[d] - x[d]).signum();
+        let fluid_at = |x: &Vector<D>| {
+            let leaf = particles.tree.leaf_at(x).node;
+            particles.in_leaf(leaf).find(|k| (*k as usize) < particles.n_fluid)
+        };
+        // at an edge or a corner of the domain the way straight inward leads along another side: go across it as well
+        let ways = (0..1usize << D).filter(|w| w & (1 << axis) != 0);
+        let place = |w: usize| x + Vector::from_fn(|d| if w & (1 << d) != 0 { toward(d) } else { 0.0 });
+        let fewest = |n: u32| ways.clone().filter(move |w| w.count_ones() == n);
+        let source = (1..=D as u32).flat_map(fewest).find_map(|w| fluid_at(&place(w))).unwrap_or(i as u32);
         Outer { side, source }
     });
     outer.collect()
