@@ -152,7 +152,8 @@ fn fit_rows<const D: usize>(cloud: &Cloud<D>) -> (Vec<Vector<D>>, Vec<f64>) {
         for i in rows {
             offsets.clear();
             offsets.extend(cloud.neighbours.of(i).iter().map(|j| cloud.x[*j as usize] - cloud.x[i]));
-            conditions.push(fit_row(cloud, i, &offsets, &mut weights));
+            let fit = if cloud.layers.slot(i).is_some() { fit_layer_row } else { fit_row };
+            conditions.push(fit(cloud, i, &offsets, &mut weights));
             all.extend_from_slice(&weights);
         }
         (all, conditions)
@@ -173,6 +174,28 @@ fn fit_row<const D: usize>(cloud: &Cloud<D>, i: usize, offsets: &[Vector<D>], we
         bounded_gradient_weights(offsets, weights);
     }
     condition.unwrap_or(f64::INFINITY)
+}
+
+/// Weights of a row in the layers: slopes in the space of steps, then through the metric terms that the same weights give.
+fn fit_layer_row<const D: usize>(
+    cloud: &Cloud<D>,
+    i: usize,
+    offsets: &[Vector<D>],
+    weights: &mut Vec<Vector<D>>,
+) -> f64 {
+    let steps: Vec<Vector<D>> = cloud.neighbours.of(i).iter().map(|j| cloud.offset(i, *j as usize)).collect();
+    let condition = fit_row(cloud, i, &steps, weights);
+    let mut metric = [Vector::<D>::ZERO; D];
+    for (w, d) in weights.iter().zip(offsets) {
+        (0..D).for_each(|c| metric[c] += *d * w[c]);
+    }
+    let [a, b] = [metric[0], metric[1]];
+    let det = a[0] * b[1] - a[1] * b[0];
+    weights.iter_mut().for_each(|w| {
+        let (f, g) = (w[0], w[1]);
+        (w[0], w[1]) = ((f * b[1] - g * a[1]) / det, (g * a[0] - f * b[0]) / det);
+    });
+    condition
 }
 
 /// Finds the entry (j, i) that belongs to the entry (i, j), through images where needed.
