@@ -228,6 +228,26 @@ impl<const D: usize> Columns<D> {
         }
     }
 
+    /// Moves the border between adjacent interface particles under layers from the outline to the middle of their chord: the
+    /// faces of the layers above stand on chords, and a thin layer would not cover the sagitta. Area vectors keep their sum.
+    pub(super) fn straighten(&self, placed: &mut Placed<D>) {
+        for w in 0..self.counts.len() {
+            let Some(next) = self.beside[w][1].map(|b| b as usize) else { continue };
+            let Some(step) = self.step(w, 1, 0.0).filter(|_| self.counts[w] + self.counts[next] > 0) else { continue };
+            let shift = self.x[w] + step * 0.5 - placed.end[w];
+            let [along, _] = &self.axes[w];
+            let normal = self.axes[w][1];
+            // a chord along the outline turned by a right angle, the way that takes `along` to the normal
+            let turn = along[0] * normal[1] - along[1] * normal[0];
+            let mut area = Vector::ZERO;
+            (area[0], area[1]) = (-turn * shift[1], turn * shift[0]);
+            placed.interface[w].area += area;
+            if next != w {
+                placed.interface[next].area -= area;
+            }
+        }
+    }
+
     /// Every particle of the layers: (column, layer counted from 1, position, spacing along the wall, height).
     fn each(&self) -> impl Iterator<Item = (usize, usize, Vector<D>, f64, f64)> + '_ {
         (0..self.counts.len()).flat_map(move |w| {

@@ -95,6 +95,22 @@ pub fn conservative_with<const D: usize>(
     }
     problem.fix_shares(&mut x);
     let polish_iterations = problem.close(&mut x);
+    if std::env::var("DBG2").is_ok() {
+        for i in 0..problem.n_fluid {
+            let d = problem.defect(i, &x);
+            let e = d.moment.iter().map(Vector::norm_squared).sum::<f64>().sqrt() / x.volume[i].abs();
+            if e > 0.3 {
+                println!(
+                    "AT {i} {:?} h {:.2e} slot {:?} top {:?} error {e:.2} V {:.2}",
+                    cloud.x[i],
+                    cloud.spacing[i],
+                    cloud.layers.slot(i),
+                    cloud.layers.slot(i).map(|s| cloud.layers.count(s.0)),
+                    x.volume[i] / problem.unit[i]
+                );
+            }
+        }
+    }
     let report = ConservativeReport { iterations, polish_iterations, n_softened, softness, ..problem.judge(&x) };
     store(cloud, operators, &problem, &x);
     report
@@ -177,8 +193,9 @@ impl<const D: usize> Problem<D> {
                 }
             }
         }
-        let unit: Vec<f64> = cloud.spacing[..n_fluid].iter().map(|h| h.powi(D as i32)).collect();
-        let guess = Unknowns { area, volume: cloud.volume[..n_fluid].to_vec() };
+        let mut guess = Unknowns { area, volume: cloud.volume[..n_fluid].to_vec() };
+        stand_on_wall(cloud, &first, &mut guess);
+        let unit = guess.volume.clone();
         let softness = vec![softness; n_fluid];
         let softened = vec![false; n_fluid];
         let mut all = Self { n_fluid, first, links, guess, unit, softness, softened, sharers, blocks: Vec::new() };
@@ -533,8 +550,7 @@ fn link<const D: usize>(cloud: &Cloud<D>, reverse: &Reverse<'_, D>, i: usize, p:
     let source = image.map_or(j, |m| m.source as usize);
     let sign = image.map(|m| cloud.transforms[m.transform as usize].sign);
     let partner = reverse.position(i, j).map(|(e, _)| e as u32);
-    let spacing = 0.5 * (cloud.spacing[i] + cloud.spacing[j]);
-    let face = spacing.powi(D as i32) / offset.norm();
+    let face = face_volume(cloud, i, source) / offset.norm();
     let mut weight = face * face;
     let kind = match (sign, partner) {
         _ if cloud.interface_range().contains(&source) => {
@@ -547,6 +563,32 @@ fn link<const D: usize>(cloud: &Cloud<D>, reverse: &Reverse<'_, D>, i: usize, p:
         _ => Kind::Open,
     };
     Link { other: source as u32, partner: partner.unwrap_or(p as u32), weight, offset, kind }
+}
+
+/// Volume of a cell between two particles: that of the mean spacing; in layers the harmonic mean, which the thinner decides.
+fn face_volume<const D: usize>(cloud: &Cloud<D>, i: usize, j: usize) -> f64 {
+    if cloud.layers.slot(i).or(cloud.layers.slot(j)).is_none() {
+        return (0.5 * (cloud.spacing[i] + cloud.spacing[j])).powi(D as i32);
+    }
+    2.0 / (1.0 / cloud.volume[i] + 1.0 / cloud.volume[j])
+}
+
+/// The first layer reaches down to the wall: its faces with the columns beside grow by the half layer that the interface
+/// particles stand for elsewhere, and its volumes with them.
+fn stand_on_wall<const D: usize>(cloud: &Cloud<D>, first: &[u32], guess: &mut Unknowns<D>) {
+    let at_wall = |i: usize| cloud.layers.slot(i).filter(|s| s.1 == 1).map(|s| cloud.volume[cloud.n_fluid + s.0]);
+    for i in 0..cloud.n_fluid {
+        let Some(half) = at_wall(i) else { continue };
+        guess.volume[i] += half;
+        for (p, j) in cloud.neighbours.of(i).iter().enumerate() {
+            let j = cloud.source(*j as usize).index;
+            if let Some(other) = at_wall(j) {
+                let grown = 1.0 + 0.5 * (half / cloud.volume[i] + other / cloud.volume[j]);
+                let area = &mut guess.area[first[i] as usize + p];
+                *area = *area * grown;
+            }
+        }
+    }
 }
 
 /// Writes the result back.

@@ -84,7 +84,7 @@ impl<const D: usize> Particles<D> {
         spec: &Spec,
         surface: Option<&Surface<D>>,
     ) -> Self {
-        let placed = surface.map(|s| place(s, &tree, &layout.planes())).unwrap_or_default();
+        let mut placed = surface.map(|s| place(s, &tree, &layout.planes())).unwrap_or_default();
         let mut fluid = Vec::new();
         let mut outer = Vec::new();
         let leaves: Vec<Leaf<D>> = tree.leaves().collect();
@@ -101,7 +101,10 @@ impl<const D: usize> Particles<D> {
         blank_near_interface(&tree, &placed, &mut fluid);
         let ground = surface.map(|surface| Ground { surface, tree: &tree, layout, transforms });
         let columns = spec.wall_layers.zip(ground).map(|(spec, ground)| Columns::grow(&placed, &spec, &ground));
-        columns.iter().for_each(|c| c.blank(&tree, &mut fluid));
+        columns.iter().for_each(|c| {
+            c.blank(&tree, &mut fluid);
+            c.straighten(&mut placed);
+        });
         let leaf_seat = |(leaf, distance): &(Leaf<D>, f64)| Seat {
             cell: tree.anchor(leaf.node),
             centre: leaf.centre,

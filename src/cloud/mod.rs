@@ -10,6 +10,8 @@ pub mod doctor;
 pub mod fill;
 pub mod grid;
 pub mod interface;
+#[cfg(test)]
+mod layer_tests;
 pub mod layers;
 pub mod layout;
 mod multipliers;

@@ -256,9 +256,9 @@ impl<'a, const D: usize> Search<'a, D> {
         list
     }
 
-    /// Whether particle `i` has particle `k` in sight within the radius of the near-wall rule.
-    pub(super) fn sees_within_radius(&self, i: usize, k: usize, t: u8) -> bool {
-        self.sees_in_ball(i, k, t, self.radius, Sight::Tested)
+    /// Whether particle `i` has particle `k` in sight within `wider` times the radius of the near-wall rule.
+    pub(super) fn sees_within_radius(&self, i: usize, k: usize, t: u8, wider: f64) -> bool {
+        self.sees_in_ball(i, k, t, wider * self.radius, Sight::Tested)
     }
 
     /// Half-width of a cube that holds the leaves of everything within that radius.

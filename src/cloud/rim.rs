@@ -8,7 +8,11 @@ use crate::math::Vector;
 
 /// Columns on walls whose normals differ less (cosine) do not see one another.
 const OTHER_WALL: f64 = 0.5;
-/// Layers that a wall fit uses, and columns on either side.
+/// Factor on the radius where a last layer sees nothing above it.
+const WIDER: f64 = 1.5;
+/// Rise, in layers, of what counts as above.
+const HIGHER: f64 = 0.5;
+/// Layers that a wall fit uses.
 const FIT_LAYERS: usize = 3;
 /// Columns that a wall fit uses.
 const FIT_COLUMNS: usize = 3;
@@ -30,7 +34,10 @@ impl<const D: usize> Search<'_, D> {
                 let Some(i) = self.member(c, k) else { continue };
                 let mut seen = self.cross(c, k);
                 if layers.is_rim(c, k) {
-                    self.beyond(c, i, &mut seen);
+                    self.beyond(c, i, 1.0, &mut seen);
+                }
+                if k == layers.count(c) && !self.sees_above(i, &seen) {
+                    self.beyond(c, i, WIDER, &mut seen);
                 }
                 links.extend(seen.iter().map(|s| (i as u32, *s)));
                 links.extend(seen.iter().filter_map(|s| self.seen_from(i, *s)));
@@ -77,28 +84,38 @@ impl<const D: usize> Search<'_, D> {
         seen
     }
 
-    /// What particle `i` in column `c` sees beyond its column and those beside it.
-    fn beyond(&self, c: usize, i: usize, seen: &mut Vec<Seen>) {
+    /// Whether anything lies above a particle in the last layer.
+    fn sees_above(&self, i: usize, seen: &[Seen]) -> bool {
+        let p = self.particles();
+        let rise = |s: &Seen| self.offset(i, &p.x[i], *s)[D - 1];
+        seen.iter().any(|s| rise(s) > HIGHER * p.spacing[i])
+    }
+
+    /// What particle `i` in column `c` sees beyond its column and those beside it, in a ball `wider` than usual.
+    fn beyond(&self, c: usize, i: usize, wider: f64, seen: &mut Vec<Seen>) {
         let layers = &self.particles().layers;
-        self.candidates(i, self.ball(i), |k, t| {
+        self.candidates(i, wider * self.ball(i), |k, t| {
             let visible = match layers.slot(k as usize) {
                 None => true,
                 Some((other, layer)) => self.faces(i, c, (other, layer), t),
             };
-            if visible && self.sees_within_radius(i, k as usize, t) {
+            if visible && self.sees_within_radius(i, k as usize, t, wider) {
                 seen.push((k, t));
             }
         });
     }
 
-    /// Whether both are last layers of columns on walls that face one another.
+    /// Whether two particles of columns on walls that face one another may see one another: both in the last two layers, or,
+    /// in the two columns beside a sharp edge, one of them there or at the wall.
     fn faces(&self, i: usize, c: usize, (other, layer): (usize, usize), t: u8) -> bool {
         let layers = &self.particles().layers;
         let last = |c: usize, k: usize| k > 0 && k + 2 > layers.count(c);
+        let broken = |c: usize| layers.columns[c].beside.contains(&None);
+        let Some((_, own)) = layers.slot(i) else { return false };
         let normal = self.direction(&layers.axes(other)[1], t);
-        last(other, layer)
-            && layers.slot(i).is_some_and(|(c, k)| last(c, k))
-            && normal.dot(&layers.axes(c)[1]) < OTHER_WALL
+        let (a, b) = (last(c, own), last(other, layer));
+        normal.dot(&layers.axes(c)[1]) < OTHER_WALL
+            && (a && b || broken(c) && broken(other) && (a || b || own == 0 || layer == 0))
     }
 
     /// Pairs that a widened row may have: none inside the layers but those a step away.
