@@ -16,6 +16,7 @@ use super::grid::Grid;
 use super::interface::Placed;
 use super::layers::Column;
 use super::layout::Layout;
+use super::neighbours::NEAR;
 use super::tree::{Leaf, Tree};
 use crate::case::{Side, WallLayers};
 use crate::geometry::Surface;
@@ -39,6 +40,8 @@ const HALF_WIDTH: f64 = 0.55;
 const ABOVE: f64 = 0.5;
 /// Smallest distance of a background particle to one in a layer, in mean spacings.
 const APART: f64 = 0.6;
+/// A leaf larger than this many spacings of a layer may be cut in quarters.
+const COARSE: f64 = 1.4;
 /// Distance to its own image, in spacings, up to which an interface particle has that for a neighbour.
 const ACROSS_PLANE: f64 = 1.5;
 /// Largest cosine between the normal and the way to that image.
@@ -270,25 +273,52 @@ impl<const D: usize> Columns<D> {
         self.each().map(seat).collect()
     }
 
-    /// Drops the leaves that the layers take the place of.
-    pub(super) fn blank(&self, tree: &Tree<D>, fluid: &mut Vec<(Leaf<D>, f64)>) {
-        let mut drop = vec![false; tree.n_nodes()];
-        let walls =
-            (0..self.counts.len()).filter(|w| self.counts[*w] > 0).map(|w| (w, 0, self.x[w], self.spacing(w, 0.0)));
-        for (w, k, x, h) in walls.chain(self.each().map(|(w, k, x, h, _)| (w, k, x, h))) {
-            let [along, normal] = &self.axes[w];
-            let height = |k: usize| if k == 0 { 0.0 } else { self.heights[k - 1] };
-            let above = if k == self.counts[w] { ABOVE * h } else { height(k + 1) - height(k) };
-            let reach = Vector::splat(h);
-            tree.overlapping(&Bounds { min: x - reach, max: x + reach }, |node| {
+    /// Drops the leaves that the layers take the place of. A leaf that is only too near to a layer finer than itself gives
+    /// way to those of its quarters that are not.
+    pub(super) fn blank(&self, ground: &Ground<'_, D>, blank: f64, fluid: &mut Vec<(Leaf<D>, f64)>) {
+        let tree = ground.tree;
+        let mut finest = vec![f64::INFINITY; tree.n_nodes()];
+        let mut inside = vec![false; tree.n_nodes()];
+        for cell in self.cells() {
+            let reach = Vector::splat(cell.spacing);
+            tree.overlapping(&Bounds { min: cell.x - reach, max: cell.x + reach }, |node| {
                 let leaf = tree.leaf(node);
-                let d = leaf.centre - x;
-                let up = d.dot(normal);
-                let inside = d.dot(along).abs() < HALF_WIDTH * h && 0.0 <= up && up < above;
-                drop[node as usize] |= inside || d.norm() < APART * 0.5 * (h + leaf.size);
+                let place = cell.place(&leaf);
+                inside[node as usize] |= place == Place::Inside;
+                if place != Place::Clear {
+                    finest[node as usize] = finest[node as usize].min(cell.spacing);
+                }
             });
         }
-        fluid.retain(|(leaf, _)| !drop[leaf.node as usize]);
+        let near = |leaf: &Leaf<D>| finest[leaf.node as usize].is_finite();
+        let coarse = |leaf: &&(Leaf<D>, f64)| {
+            !inside[leaf.0.node as usize] && near(&leaf.0) && leaf.0.size > COARSE * finest[leaf.0.node as usize]
+        };
+        let split: Vec<Leaf<D>> = fluid.iter().filter(coarse).flat_map(|(leaf, _)| quarters(leaf)).collect();
+        fluid.retain(|(leaf, _)| !near(leaf));
+        let cells: Vec<Cell<D>> = self.cells().collect();
+        let mut grid = Grid::new(cells.iter().fold(f64::MIN_POSITIVE, |m, c| m.max(c.spacing)));
+        cells.iter().zip(0..).for_each(|(c, k)| grid.insert(&c.x, k));
+        for leaf in split {
+            let mut clear = true;
+            grid.near(&leaf.centre, 2.0 * leaf.size, |k| clear &= cells[k as usize].place(&leaf) == Place::Clear);
+            let nearest = ground.surface.nearest(&leaf.centre, (NEAR + 1.0) * leaf.size);
+            let distance = nearest.map_or(f64::INFINITY, |n| n.distance);
+            if clear && distance >= blank * leaf.size && !ground.surface.inside(&leaf.centre) {
+                fluid.push((leaf, distance));
+            }
+        }
+    }
+
+    /// What every particle of a column takes the place of, the interface particle included.
+    fn cells(&self) -> impl Iterator<Item = Cell<D>> + '_ {
+        let walls =
+            (0..self.counts.len()).filter(|w| self.counts[*w] > 0).map(|w| (w, 0, self.x[w], self.spacing(w, 0.0)));
+        walls.chain(self.each().map(|(w, k, x, h, _)| (w, k, x, h))).map(|(w, k, x, spacing)| {
+            let height = |k: usize| if k == 0 { 0.0 } else { self.heights[k - 1] };
+            let above = if k == self.counts[w] { ABOVE * spacing } else { height(k + 1) - height(k) };
+            Cell { x, axes: self.axes[w], spacing, above }
+        })
     }
 
     /// The columns, given the numbers of the seats' particles in the order of [`seats`](Self::seats).
@@ -300,4 +330,44 @@ impl<const D: usize> Columns<D> {
         };
         (0..self.counts.len()).map(column).collect()
     }
+}
+
+/// What a particle of a column takes the place of: a box from its height up to the next.
+struct Cell<const D: usize> {
+    x: Vector<D>,
+    axes: [Vector<D>; 2],
+    spacing: f64,
+    above: f64,
+}
+
+/// Where a leaf of the background lies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Place {
+    /// In the box.
+    Inside,
+    /// Too near to the particle.
+    Near,
+    /// Neither.
+    Clear,
+}
+
+impl<const D: usize> Cell<D> {
+    fn place(&self, leaf: &Leaf<D>) -> Place {
+        let d = leaf.centre - self.x;
+        let [along, normal] = &self.axes;
+        let up = d.dot(normal);
+        if d.dot(along).abs() < HALF_WIDTH * self.spacing && 0.0 <= up && up < self.above {
+            return Place::Inside;
+        }
+        if d.norm() < APART * 0.5 * (self.spacing + leaf.size) { Place::Near } else { Place::Clear }
+    }
+}
+
+/// The leaf cut in halves along every axis.
+fn quarters<const D: usize>(leaf: &Leaf<D>) -> Vec<Leaf<D>> {
+    let part = |c: u32| {
+        let side = Vector::from_fn(|d| if c >> d & 1 == 1 { 0.25 } else { -0.25 });
+        Leaf { centre: leaf.centre + side * leaf.size, size: 0.5 * leaf.size, level: leaf.level + 1, ..*leaf }
+    };
+    (0..1 << D).map(part).collect()
 }

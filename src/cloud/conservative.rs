@@ -95,22 +95,6 @@ pub fn conservative_with<const D: usize>(
     }
     problem.fix_shares(&mut x);
     let polish_iterations = problem.close(&mut x);
-    if std::env::var("DBG2").is_ok() {
-        for i in 0..problem.n_fluid {
-            let d = problem.defect(i, &x);
-            let e = d.moment.iter().map(Vector::norm_squared).sum::<f64>().sqrt() / x.volume[i].abs();
-            if e > 0.3 {
-                println!(
-                    "AT {i} {:?} h {:.2e} slot {:?} top {:?} error {e:.2} V {:.2}",
-                    cloud.x[i],
-                    cloud.spacing[i],
-                    cloud.layers.slot(i),
-                    cloud.layers.slot(i).map(|s| cloud.layers.count(s.0)),
-                    x.volume[i] / problem.unit[i]
-                );
-            }
-        }
-    }
     let report = ConservativeReport { iterations, polish_iterations, n_softened, softness, ..problem.judge(&x) };
     store(cloud, operators, &problem, &x);
     report

@@ -100,13 +100,14 @@ impl<const D: usize> Particles<D> {
         }
         blank_near_interface(&tree, &placed, &mut fluid);
         let ground = surface.map(|surface| Ground { surface, tree: &tree, layout, transforms });
-        let columns = spec.wall_layers.zip(ground).map(|(spec, ground)| Columns::grow(&placed, &spec, &ground));
-        columns.iter().for_each(|c| {
-            c.blank(&tree, &mut fluid);
-            c.straighten(&mut placed);
+        let columns = spec.wall_layers.zip(ground).map(|(layers, ground)| {
+            let columns = Columns::grow(&placed, &layers, &ground);
+            columns.blank(&ground, spec.blank, &mut fluid);
+            columns.straighten(&mut placed);
+            columns
         });
         let leaf_seat = |(leaf, distance): &(Leaf<D>, f64)| Seat {
-            cell: tree.anchor(leaf.node),
+            cell: tree.cell_at(&leaf.centre),
             centre: leaf.centre,
             spacing: leaf.size,
             distance: *distance,

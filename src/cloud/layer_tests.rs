@@ -51,7 +51,7 @@ fn report() {
         ("square", SQUARE, 0.03),
         ("plus", PLUS, 0.03),
     ] {
-        for ratio in [0.3, 0.03, 0.005, 0.001] {
+        for ratio in [0.3, 0.1, 0.03, 0.005, 0.001] {
             let mut cloud =
                 build(body, &format!("spacing = {spacing}\nwall_layers = {{ first = {} }}", ratio * spacing));
             let mut operators = Operators::new(&cloud);

@@ -62,20 +62,6 @@ impl<const D: usize> Repair<D> {
     fn treat(&mut self, search: &Search<'_, D>, rows: &Rows, i: usize) {
         let particles = search.particles();
         let mut row = rows.of(i).to_vec();
-        if std::env::var("DBG").is_ok() {
-            println!(
-                "SICK {i} at {:?} slot {:?} row {:?}",
-                particles.x[i],
-                particles.layers.slot(i),
-                row.iter()
-                    .map(|s| (
-                        particles.layers.slot(s.0 as usize),
-                        particles.is_interface(s.0 as usize),
-                        search.offset(i, &particles.x[i], *s) * (1.0 / particles.spacing[i])
-                    ))
-                    .collect::<Vec<_>>()
-            );
-        }
         if !is_well_spread(&offsets(search, i, &particles.x[i], &row), particles.is_interface(i)) {
             let wide = search.visible_within(i, WIDE);
             if wide.len() > row.len() {

@@ -114,8 +114,7 @@ impl<const D: usize> Search<'_, D> {
         let Some((_, own)) = layers.slot(i) else { return false };
         let normal = self.direction(&layers.axes(other)[1], t);
         let (a, b) = (last(c, own), last(other, layer));
-        normal.dot(&layers.axes(c)[1]) < OTHER_WALL
-            && (a && b || broken(c) && broken(other) && (a || b || own == 0 || layer == 0))
+        normal.dot(&layers.axes(c)[1]) < OTHER_WALL && (a && b || broken(c) && broken(other) && (a || b))
     }
 
     /// Pairs that a widened row may have: none inside the layers but those a step away.
