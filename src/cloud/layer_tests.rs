@@ -42,40 +42,126 @@ fn aspect(cloud: &Cloud<2>) -> f64 {
     (0..cloud.n_fluid).map(ratio).fold(0.0, f64::max)
 }
 
+fn worst(diagnosis: &Diagnosis, measure: &str) -> f64 {
+    diagnosis.worst.iter().find(|w| w.measure == measure).map_or(0.0, |w| w.value)
+}
+
+/// Area of the interior of the domain, without the leaves that carry the outer particles and without the body.
+fn free_area(cloud: &Cloud<2>, body: f64) -> f64 {
+    let extent = cloud.tree.bounds().extent();
+    let rim: f64 = cloud.outer_range().map(|i| cloud.spacing[i] * cloud.spacing[i]).sum();
+    extent[0] * extent[1] - rim - body
+}
+
+/// Builds a cloud, checks all that must hold, and returns it with its diagnosis.
+fn check(body: &str, area: f64, (spacing, first): (f64, f64)) -> (Cloud<2>, Diagnosis) {
+    let mut cloud = build(body, &format!("spacing = {spacing}\nwall_layers = {{ first = {first} }}"));
+    let mut operators = Operators::new(&cloud);
+    assert!(slope_error(&cloud, &operators) < 1e-10);
+    let fits = WallFits::new(&cloud);
+    let diagnosis = Diagnosis::of(&cloud, fits.n_linear);
+    assert!(cloud.volume[..cloud.n_fluid].iter().all(|v| *v > 0.0));
+    let (sum, free) = (cloud.volume[..cloud.n_fluid].iter().sum::<f64>(), free_area(&cloud, area));
+    // what the volumes miss is counted against the neighbourhood of the body, not against the far field
+    assert!((sum - free).abs() < 0.05 * area.max(0.5), "{body}: {sum} {free}");
+    let report = conservative(&mut cloud, &mut operators);
+    assert!(report.closure_defect < 1e-13 && report.min_volume_ratio > 0.2 && report.n_softened == 0, "{report:?}");
+    assert!(report.linear_error_rms < 0.07, "{report:?}");
+    assert!(cloud.first_order.is_empty());
+    (cloud, diagnosis)
+}
+
 #[test]
-fn report() {
-    for (name, body, spacing) in [
-        ("circle", CIRCLE, 0.03),
-        ("naca", NACA, 0.0078125),
-        ("plate", PLATE, 0.02),
-        ("square", SQUARE, 0.03),
-        ("plus", PLUS, 0.03),
-    ] {
-        for ratio in [0.3, 0.1, 0.03, 0.005, 0.001] {
-            let mut cloud =
-                build(body, &format!("spacing = {spacing}\nwall_layers = {{ first = {} }}", ratio * spacing));
-            let mut operators = Operators::new(&cloud);
-            let error = slope_error(&cloud, &operators);
-            let fits = WallFits::new(&cloud);
-            let d = Diagnosis::of(&cloud, fits.n_linear);
-            let worst = |m: &str| d.worst.iter().find(|w| w.measure == m).map_or(0.0, |w| w.value);
-            let volume: f64 = cloud.volume[..cloud.n_fluid].iter().sum();
-            let layered: usize = cloud.layers.columns.iter().map(|c| c.particles.len()).sum();
-            let counts: Vec<usize> = cloud.layers.columns.iter().map(|c| c.particles.len()).collect();
-            println!(
-                "{name} {ratio}: n {} layered {layered} max K {} AR {:.0} error {error:.1e} cond {:.1} onesided {:.2} nearest {:.2} n {} linear {} volume {volume:.4} notes {:?} {:?}",
-                cloud.n_fluid,
-                counts.iter().max().unwrap(),
-                aspect(&cloud),
-                worst("condition number"),
-                worst("one-sidedness"),
-                worst("nearest neighbour"),
-                worst("neighbours"),
-                fits.n_linear,
-                d.notes,
-                d.repairs
-            );
-            println!("   {:?}", conservative(&mut cloud, &mut operators));
+fn layers_are_healthy_at_any_aspect_ratio() {
+    let cases = [
+        (CIRCLE, std::f64::consts::PI * 0.25, 0.03),
+        (NACA, 0.0815, 0.0078125),
+        (PLATE, 0.004, 0.02),
+        (SQUARE, 1.0, 0.03),
+        (PLUS, 5.0 * 0.16, 0.03),
+    ];
+    for (body, area, spacing) in cases {
+        for ratio in [0.1, 0.005] {
+            let (cloud, diagnosis) = check(body, area, (spacing, ratio * spacing));
+            assert!(aspect(&cloud) > 0.7 / ratio);
+            assert!(diagnosis.notes.is_empty() && diagnosis.repairs.is_empty(), "{body}: {diagnosis:?}");
+            assert!(worst(&diagnosis, "condition number") < 20.0 && worst(&diagnosis, "one-sidedness") < 0.7);
+            assert!(worst(&diagnosis, "nearest neighbour") >= 0.3);
         }
     }
+}
+
+#[test]
+fn linear_fields_are_exact_on_a_curved_wall_at_an_aspect_ratio_of_1000() {
+    let cloud = build(CIRCLE, "spacing = 0.03\nwall_layers = { first = 2.2e-5 }");
+    assert!(aspect(&cloud) > 1000.0);
+    assert!(slope_error(&cloud, &Operators::new(&cloud)) < 1e-10);
+    let fits = WallFits::new(&cloud);
+    assert_eq!(fits.n_linear, 0);
+    // heights follow the growth, and rows inside the layers are crosses
+    for column in &cloud.layers.columns {
+        let exact = |k: usize| 2.2e-5 * (1.2f64.powi(k as i32 + 1) - 1.0) / 0.2;
+        assert!(column.heights.iter().enumerate().all(|(k, h)| (h / exact(k) - 1.0).abs() < 1e-12));
+        let top = column.particles.len();
+        assert!(column.particles[..top - 2].iter().all(|i| cloud.neighbours.of(*i as usize).len() == 4));
+    }
+}
+
+#[test]
+fn adjacent_columns_differ_by_one_layer_at_most() {
+    for body in [NACA, SQUARE, PLUS] {
+        let cloud = build(body, "spacing = 0.02\nwall_layers = { first = 0.0005 }");
+        for (w, column) in cloud.layers.columns.iter().enumerate() {
+            for other in column.beside.iter().flatten() {
+                assert!(cloud.layers.count(*other as usize).abs_diff(column.particles.len()) <= 1);
+            }
+            for (k, i) in column.particles.iter().enumerate() {
+                assert_eq!(cloud.layers.slot(*i as usize), Some((w, k + 1)));
+                assert_eq!(cloud.wall_distance[*i as usize], column.heights[k]);
+            }
+        }
+    }
+}
+
+#[test]
+fn columns_stop_where_walls_face_one_another() {
+    for gap in [0.3, 0.05, 0.004] {
+        let text = format!(
+            "title = \"t\"\n[flow]\nmach = 0.5\n[[body]]\n{CIRCLE}\n[[body]]\n{CIRCLE}\ntranslate = [{}, 0]\n[cloud]\nfar_field = 4\nspacing = 0.02\nwall_layers = {{ first = 0.001 }}",
+            1.0 + gap
+        );
+        let case = crate::case::read(&text, "test").unwrap();
+        let surface = load_surface::<2>(&case, std::path::Path::new(".")).unwrap().0;
+        let cloud = Cloud::build(&case, Some(&surface), &[]).unwrap();
+        assert!(slope_error(&cloud, &Operators::new(&cloud)) < 1e-10);
+        for i in (0..cloud.n_fluid).filter(|i| cloud.layers.slot(*i).is_some()) {
+            let x = &cloud.x[i];
+            assert!(!surface.inside(x) && surface.nearest(x, 0.8 * cloud.wall_distance[i]).is_none());
+        }
+    }
+}
+
+#[test]
+fn layers_go_on_across_a_plane_of_symmetry() {
+    let text = format!(
+        "title = \"t\"\n[flow]\nmach = 0.5\n[[body]]\n{NACA}\n[cloud]\nfar_field = 4\nspacing = 0.01\nwall_layers = {{ first = 0.0003 }}\n[boundary]\ny_min = \"symmetry\""
+    );
+    let case = crate::case::read(&text, "test").unwrap();
+    let surface = load_surface::<2>(&case, std::path::Path::new(".")).unwrap().0;
+    let mut cloud = Cloud::build(&case, Some(&surface), &[]).unwrap();
+    let mut operators = Operators::new(&cloud);
+    assert!(slope_error(&cloud, &operators) < 1e-10 && cloud.notes.is_empty());
+    let nose = (0..cloud.interface.len()).find(|w| cloud.layers.columns[*w].beside.contains(&Some(*w as u32))).unwrap();
+    let second = cloud.layers.columns[nose].particles[1] as usize;
+    assert!(cloud.x[second][0] < 0.0 && cloud.neighbours.of(second).len() == 4);
+    assert!(cloud.neighbours.of(second).iter().any(|j| *j as usize >= cloud.n_real()));
+    assert!(conservative(&mut cloud, &mut operators).closure_defect < 1e-13);
+}
+
+#[test]
+fn a_number_of_layers_is_kept() {
+    let cloud = build(CIRCLE, "spacing = 0.03\nwall_layers = { first = 0.002, growth = 1.1, count = 5 }");
+    assert!(cloud.layers.columns.iter().all(|c| c.particles.len() == 5));
+    let none = build(CIRCLE, "spacing = 0.03");
+    assert!(none.layers.is_empty() && none.layers.columns.is_empty());
 }
