@@ -15,6 +15,7 @@
 //! particle: conjugate gradients with block-Jacobi (Nocedal and Wright, *Numerical Optimization*, 2nd ed., §16.2-16.3). A
 //! second, cheaper solve over the closure alone then drives its defect to round-off.
 //! Antisymmetric coefficients of this kind are those of Chiu, Wang, Hu and Jameson (SIAM J. Sci. Comput. 34, 2012).
+use super::layers::{face_volume, stand_on_wall};
 use super::multipliers::{MOST, Row, cholesky, conjugate_gradients};
 use super::operators::{Reverse, WallFace};
 use super::{Cloud, Operators};
@@ -178,7 +179,7 @@ impl<const D: usize> Problem<D> {
             }
         }
         let mut guess = Unknowns { area, volume: cloud.volume[..n_fluid].to_vec() };
-        stand_on_wall(cloud, &first, &mut guess);
+        stand_on_wall(cloud, &first, &mut guess.area, &mut guess.volume);
         let unit = guess.volume.clone();
         let softness = vec![softness; n_fluid];
         let softened = vec![false; n_fluid];
@@ -547,32 +548,6 @@ fn link<const D: usize>(cloud: &Cloud<D>, reverse: &Reverse<'_, D>, i: usize, p:
         _ => Kind::Open,
     };
     Link { other: source as u32, partner: partner.unwrap_or(p as u32), weight, offset, kind }
-}
-
-/// Volume of a cell between two particles: that of the mean spacing; in layers the harmonic mean, which the thinner decides.
-fn face_volume<const D: usize>(cloud: &Cloud<D>, i: usize, j: usize) -> f64 {
-    if cloud.layers.slot(i).or(cloud.layers.slot(j)).is_none() {
-        return (0.5 * (cloud.spacing[i] + cloud.spacing[j])).powi(D as i32);
-    }
-    2.0 / (1.0 / cloud.volume[i] + 1.0 / cloud.volume[j])
-}
-
-/// The first layer reaches down to the wall: its faces with the columns beside grow by the half layer that the interface
-/// particles stand for elsewhere, and its volumes with them.
-fn stand_on_wall<const D: usize>(cloud: &Cloud<D>, first: &[u32], guess: &mut Unknowns<D>) {
-    let at_wall = |i: usize| cloud.layers.slot(i).filter(|s| s.1 == 1).map(|s| cloud.volume[cloud.n_fluid + s.0]);
-    for i in 0..cloud.n_fluid {
-        let Some(half) = at_wall(i) else { continue };
-        guess.volume[i] += half;
-        for (p, j) in cloud.neighbours.of(i).iter().enumerate() {
-            let j = cloud.source(*j as usize).index;
-            if let Some(other) = at_wall(j) {
-                let grown = 1.0 + 0.5 * (half / cloud.volume[i] + other / cloud.volume[j]);
-                let area = &mut guess.area[first[i] as usize + p];
-                *area = *area * grown;
-            }
-        }
-    }
 }
 
 /// Writes the result back.

@@ -10,6 +10,10 @@
 //!
 //! References: Visbal and Gaitonde, J. Comput. Phys. 181 (2002), for metric terms that must be taken with the weights of the
 //! scheme; Pirzadeh, AIAA J. 34 (1996), for layers that advance together and stop where fronts meet.
+#[cfg(test)]
+mod tests;
+
+use super::Cloud;
 use crate::math::Vector;
 
 const NONE: u32 = u32::MAX;
@@ -148,5 +152,35 @@ impl<const D: usize> Layers<D> {
         let broken = column.beside.iter().any(|b| b.is_none_or(|b| self.columns[b as usize].particles.is_empty()));
         let top = column.particles.len();
         broken || k + 2 > top && k > 0
+    }
+}
+
+/// Volume of a cell between two particles: that of the mean spacing; in layers the harmonic mean, which the thinner decides.
+pub(super) fn face_volume<const D: usize>(cloud: &Cloud<D>, i: usize, j: usize) -> f64 {
+    if cloud.layers.slot(i).or(cloud.layers.slot(j)).is_none() {
+        return (0.5 * (cloud.spacing[i] + cloud.spacing[j])).powi(D as i32);
+    }
+    2.0 / (1.0 / cloud.volume[i] + 1.0 / cloud.volume[j])
+}
+
+/// The first layer reaches down to the wall: its faces with the columns beside grow by the half layer that the interface
+/// particles stand for elsewhere, and its volumes with them.
+pub(super) fn stand_on_wall<const D: usize>(
+    cloud: &Cloud<D>,
+    first: &[u32],
+    area: &mut [Vector<D>],
+    volume: &mut [f64],
+) {
+    let at_wall = |i: usize| cloud.layers.slot(i).filter(|s| s.1 == 1).map(|s| cloud.volume[cloud.n_fluid + s.0]);
+    for i in 0..cloud.n_fluid {
+        let Some(half) = at_wall(i) else { continue };
+        volume[i] += half;
+        for (p, j) in cloud.neighbours.of(i).iter().enumerate() {
+            let j = cloud.source(*j as usize).index;
+            if let Some(other) = at_wall(j) {
+                let grown = 1.0 + 0.5 * (half / cloud.volume[i] + other / cloud.volume[j]);
+                area[first[i] as usize + p] = area[first[i] as usize + p] * grown;
+            }
+        }
     }
 }

@@ -10,8 +10,6 @@ pub mod doctor;
 pub mod fill;
 pub mod grid;
 pub mod interface;
-#[cfg(test)]
-mod layer_tests;
 pub mod layers;
 pub mod layout;
 mod multipliers;

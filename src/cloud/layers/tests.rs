@@ -1,6 +1,6 @@
 //! Layers on bodies that break them: thin edges, corners, bends, other walls.
-use super::conservative::conservative;
-use super::{Cloud, Diagnosis, Operators};
+use crate::cloud::conservative::conservative;
+use crate::cloud::{Cloud, Diagnosis, Operators};
 use crate::geometry::load_surface;
 use crate::math::Vector;
 use crate::scheme::boundary::WallFits;
