@@ -8,6 +8,8 @@
 //! - come nearer than 0.6 min(Δs, 2Δn) to a column that is not adjacent, or nearer to another wall than to its own;
 //! - leave the domain.
 //!
+//! Where less than two spacings lie between two walls there are no columns at all.
+//!
 //! Then the columns are cut until neighbours differ by one layer at most. Particles of the background inside the layers, or
 //! too near to them, are left out.
 use super::Transform;
@@ -32,6 +34,10 @@ const TIGHTEST: f64 = 0.35;
 const CLEARANCE: f64 = 0.6;
 /// Distance to the nearest wall over the height in a column, below which another wall is nearer.
 const OWN_WALL: f64 = 0.8;
+/// A column needs this many spacings between its wall and the next.
+const ROOM: f64 = 2.0;
+/// Height, in spacings, at which the look for the next wall begins.
+const LIFT: f64 = 1e-3;
 /// Most layers.
 const MOST: usize = 1000;
 /// Half-width of the part of the background that a column takes the place of, in its spacings.
@@ -79,7 +85,7 @@ impl<const D: usize> Columns<D> {
         let mut columns = Self::start(placed, ground.transforms);
         let n = placed.x.len();
         let most = spec.count.map_or(MOST, |c| c as usize);
-        let mut active: Vec<bool> = (0..n).map(|w| columns.beside[w] != [None, None]).collect();
+        let mut active: Vec<bool> = (0..n).map(|w| columns.may_start(w, ground.surface)).collect();
         let bin = placed.spacing.iter().fold(0.0, |m: f64, h| m.max(*h)).max(f64::MIN_POSITIVE);
         let mut grid = Grid::new(bin);
         let mut taken: Vec<(u32, Vector<D>)> = Vec::new();
@@ -174,6 +180,12 @@ impl<const D: usize> Columns<D> {
     fn spacing(&self, w: usize, height: f64) -> f64 {
         let steps: Vec<f64> = (0..2).filter_map(|s| self.step(w, s, height)).map(|d| d.norm()).collect();
         steps.iter().sum::<f64>() / steps.len().max(1) as f64
+    }
+
+    /// Whether column `w` has one beside it, and room before the next wall.
+    fn may_start(&self, w: usize, surface: &Surface<D>) -> bool {
+        let h = self.spacing(w, 0.0);
+        self.beside[w] != [None, None] && !surface.crosses(&self.at(w, LIFT * h), &self.at(w, ROOM * h))
     }
 
     /// Whether the next particle of column `w` keeps its distance from its own wall, the adjacent columns and the sides.
