@@ -126,7 +126,7 @@ fn drift<const D: usize>(
             group: 4,
             cycle: Cycle { sweeps: 2, visits: 1, levels: 8 },
         };
-        let plan = Plan { until, step: STEP, order: 2, orders: 3.0, iterations: 5, adaptive: None };
+        let plan = Plan { until, step: STEP, order: 2, orders: 13.0, iterations: 30, adaptive: None };
         worst(&fluid, Dual::new(&fluid, control, plan, u, Past::default()), field)
     } else {
         worst(&fluid, Explicit::new(&fluid, Method::Ssprk3, (0.5, until), (Past::default(), u)), field)

@@ -181,6 +181,10 @@ fn in_dimension(draft: &mut Draft<'_>, d: usize) {
         length(draft, &format!("cloud.box[{i}].max"), d);
         corners(draft, &format!("cloud.box[{i}]"));
     }
+    if d == 3 && draft.given("cloud.wall_layers") {
+        let hint = "remove the table: in 3-D the particles at a wall are as far apart across it as along it";
+        draft.fail_key("cloud.wall_layers", "`cloud.wall_layers` needs a 2-D case").hint(hint);
+    }
     if d == 2 && draft.number("flow.beta").is_some_and(|beta| beta != 0.0) {
         draft.fail("flow.beta", "`flow.beta` needs a 3-D case").hint("in 2-D only `alpha` turns the flow");
     }
@@ -213,6 +217,9 @@ fn domain(draft: &mut Draft<'_>) {
     if !draft.given("body") && !draft.given("cloud.domain") && draft.get("cloud").is_some() {
         let hint = "add `domain = { min = [0, 0], max = [10, 10] }` to `[cloud]`, or a `[[body]]`";
         draft.fail("cloud.domain", "a case without bodies needs `cloud.domain`").hint(hint);
+    }
+    if !draft.given("body") && draft.given("cloud.wall_layers") {
+        draft.fail_key("cloud.wall_layers", "`cloud.wall_layers` needs a body").hint("layers lie along its surface");
     }
     if !draft.given("body") && draft.given("cloud.wake") {
         draft.fail_key("cloud.wake", "`cloud.wake` needs a body").hint("use `cloud.box` to refine a place");

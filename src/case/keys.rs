@@ -274,6 +274,12 @@ static CLOUD: Table = Table::of(&[
     ),
     Field::defaulted("box", Kind::Tables(&REFINE), Absent::Filled, "A box with its own spacing."),
     Field::optional("wake", Kind::Table(&WAKE), "no refinement", "Refinement behind the bodies along the free stream."),
+    Field::optional(
+        "wall_layers",
+        Kind::Table(&WALL_LAYERS),
+        "no layers",
+        "Layers of particles along the walls, thin across them (2-D).",
+    ),
     Field::defaulted(
         "blank",
         Kind::Number(Range::between(0.3, 0.6)),
@@ -308,6 +314,23 @@ static REFINE: Table = Table::of(&[
 static WAKE: Table = Table::of(&[
     Field::required("length", SIZE, "Length behind the trailing edge."),
     Field::required("spacing", SIZE, "Largest spacing inside."),
+]);
+
+/// Layers that grow faster than 1.5 leave cells of very different thickness side by side.
+static WALL_LAYERS: Table = Table::of(&[
+    Field::required("first", SIZE, "Distance of the first layer from the wall."),
+    Field::defaulted(
+        "growth",
+        Kind::Number(Range::between(1.0, 1.5)),
+        Absent::Number(1.2),
+        "Ratio of the distances between successive layers.",
+    ),
+    Field::optional(
+        "count",
+        Kind::Integer(1, 1000),
+        "until layers are as far apart as the particles of a layer",
+        "Greatest number of layers; fewer where the surface turns sharply or another wall is near.",
+    ),
 ]);
 
 /// Sides of the domain, two for each axis.

@@ -230,6 +230,8 @@ pub struct Cloud {
     pub boxes: Vec<RefineBox>,
     /// Refinement behind the bodies along the free stream.
     pub wake: Option<Wake>,
+    /// Layers of particles along the walls; default none.
+    pub wall_layers: Option<WallLayers>,
     /// Fluid particles nearer to the wall than this fraction of the local spacing are left out; default 0.4.
     pub blank: f64,
     /// Radius of the clouds near the wall in local spacings; default 1.6.
@@ -265,6 +267,17 @@ pub struct Wake {
     pub length: Length,
     /// Largest spacing inside.
     pub spacing: Length,
+}
+
+/// Layers of particles along the walls (2-D).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct WallLayers {
+    /// Distance of the first layer from the wall.
+    pub first: Length,
+    /// Ratio of the distances between successive layers; default 1.2.
+    pub growth: f64,
+    /// Greatest number of layers; absent: until they are as far apart as the particles of a layer.
+    pub count: Option<u32>,
 }
 
 /// Conditions on the sides of the domain.

@@ -163,6 +163,7 @@ spacing = "2 mm"
 domain = { min = [-10, -10], max = [10, 10] }
 box = [{ min = [0, 0], max = [1, 1], spacing = 0.1 }, { min = [-1, 0], max = [1, 1], spacing = 1e-300 }]
 wake = { length = 3, spacing = 0.1 }
+wall_layers = { first = "10 um", count = 30 }
 [boundary]
 x_min = "held"
 x_max = { outflow = { pressure = 0.9 } }

@@ -43,6 +43,7 @@ impl<const D: usize> Cloud<D> {
             wall_distance: particles.wall_distance,
             neighbours,
             wall_clouds,
+            layers: particles.layers,
             leaves: particles.leaves,
             tree: particles.tree,
             first_order: repair.first_order,
@@ -62,11 +63,14 @@ impl<const D: usize> Cloud<D> {
     }
 }
 
-/// h^D for fluid particles, area times height for interface particles.
+/// h^D for fluid particles, area times height for interface particles, spacings along and across the wall in layers.
 fn volumes<const D: usize>(particles: &Particles<D>) -> Vec<f64> {
     let mut volume: Vec<f64> = particles.spacing.iter().map(|h| h.powi(D as i32)).collect();
     for (w, i) in particles.interface.iter().zip(particles.n_fluid..) {
         volume[i] = WALL_HEIGHT * particles.spacing[i] * w.area.norm();
+    }
+    for (i, v) in volume.iter_mut().enumerate() {
+        *v = particles.layers.volume(i, particles.n_fluid, &particles.x).unwrap_or(*v);
     }
     volume
 }

@@ -15,6 +15,7 @@
 //! particle: conjugate gradients with block-Jacobi (Nocedal and Wright, *Numerical Optimization*, 2nd ed., §16.2-16.3). A
 //! second, cheaper solve over the closure alone then drives its defect to round-off.
 //! Antisymmetric coefficients of this kind are those of Chiu, Wang, Hu and Jameson (SIAM J. Sci. Comput. 34, 2012).
+use super::layers::stand_on_wall;
 use super::links::{ITSELF, Kind, Link, links, sweep_entries};
 use super::multipliers::{MOST, Row, cholesky, conjugate_gradients};
 use super::operators::WallFace;
@@ -156,8 +157,9 @@ impl<const D: usize> Problem<D> {
                 }
             }
         }
-        let unit: Vec<f64> = cloud.spacing[..n_fluid].iter().map(|h| h.powi(D as i32)).collect();
-        let guess = Unknowns { area, volume: cloud.volume[..n_fluid].to_vec() };
+        let mut guess = Unknowns { area, volume: cloud.volume[..n_fluid].to_vec() };
+        stand_on_wall(cloud, &first, &mut guess.area, &mut guess.volume);
+        let unit = guess.volume.clone();
         let softness = vec![softness; n_fluid];
         let softened = vec![false; n_fluid];
         let walls = cloud.interface.iter().map(|w| -w.area).collect();

@@ -235,19 +235,21 @@ fn findings<const D: usize>(cloud: &Cloud<D>, tally: &Tally) -> Vec<Finding> {
 /// Takes all measures of particle `i`.
 fn examine<const D: usize>(cloud: &Cloud<D>, walls: &WallGrid<'_, D>, i: usize, tally: &mut Tally) {
     let row = cloud.neighbours.of(i);
-    let (x, h) = (cloud.x[i], cloud.spacing[i]);
+    let h = cloud.spacing[i];
+    let layered = cloud.layers.slot(i).is_some();
     let wall = (i >= cloud.n_fluid).then(|| &cloud.interface[i - cloud.n_fluid]);
     let mut sums = Sums::default();
     let mut nearest = f64::INFINITY;
     let mut seen = 0u32;
     for j in row {
-        let d = cloud.x[*j as usize] - x;
+        let d = cloud.offset(i, *j as usize);
         sums.add(&d);
         nearest = nearest.min(d.norm() / (0.5 * (h + cloud.spacing[*j as usize])));
         seen |= sectors(
             &match wall {
-                Some(w) => across(&d, &w.normal),
-                None => d,
+                // in layers the last axis is the normal already
+                Some(w) if !layered => across(&d, &w.normal),
+                _ => d,
             },
             wall.is_some(),
         );

@@ -2,7 +2,9 @@
 //!
 //! A fluid particle sits in the middle of every leaf that lies outside the bodies and not nearer to a surface, or to an
 //! interface particle, than a fraction of its size. The leaves along the sides of the domain carry the outer particles.
+use super::columns::{Columns, Ground};
 use super::interface::{Placed, place};
+use super::layers::Layers;
 use super::layout::Layout;
 use super::neighbours::NEAR;
 use super::tree::{Leaf, MAX_LEVEL, Tree};
@@ -38,8 +40,27 @@ pub struct Particles<const D: usize> {
     pub sides: [[Side; 2]; D],
     centre: Vec<Vector<D>>,
     next: Vec<u32>,
+    /// Layers along the walls.
+    pub layers: Layers<D>,
     /// Which particles sit in which leaf.
     pub leaves: LeafIndex,
+}
+
+/// A place for a particle.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Seat<const D: usize> {
+    /// Integer coordinates that give its place along the space-filling curve.
+    pub(super) cell: [u32; D],
+    /// Middle of the leaf, or the place itself in a layer.
+    pub(super) centre: Vector<D>,
+    /// Size of the leaf, or distance to the adjacent columns.
+    pub(super) spacing: f64,
+    /// Leaf of the background, for particles outside the layers.
+    pub(super) node: u32,
+    /// Distance to the surface.
+    pub(super) distance: f64,
+    /// Column and layer.
+    pub(super) layer: Option<(u32, u32)>,
 }
 
 /// Which particles sit in which leaf.
@@ -81,7 +102,7 @@ impl<const D: usize> Particles<D> {
         spec: &Spec,
         surface: Option<&Surface<D>>,
     ) -> Self {
-        let placed = surface.map(|s| place(s, &tree, &layout.planes())).unwrap_or_default();
+        let mut placed = surface.map(|s| place(s, &tree, &layout.planes())).unwrap_or_default();
         let mut fluid = Vec::new();
         let mut outer = Vec::new();
         let leaves: Vec<Leaf<D>> = tree.leaves().collect();
@@ -107,49 +128,65 @@ impl<const D: usize> Particles<D> {
             }
         }
         blank_near_interface(&tree, &placed, &mut fluid);
-        let fluid = along_curve(&tree, &fluid);
-        let outer = along_curve(&tree, &outer);
-        Self::assemble(tree, layout, spec.jitter, (fluid, placed, outer))
+        let ground = surface.map(|surface| Ground { surface, tree: &tree, layout, transforms });
+        let columns = spec.wall_layers.zip(ground).map(|(layers, ground)| {
+            let columns = Columns::grow(&placed, &layers, &ground);
+            columns.blank(&ground, spec.blank, &mut fluid);
+            columns.straighten(&mut placed);
+            columns
+        });
+        let leaf_seat = |(leaf, distance): &(Leaf<D>, f64)| Seat {
+            cell: tree.cell_at(&leaf.centre),
+            centre: leaf.centre,
+            spacing: leaf.size,
+            node: leaf.node,
+            distance: *distance,
+            layer: None,
+        };
+        let seats = fluid.iter().map(leaf_seat).chain(columns.iter().flat_map(|c| c.seats(&tree))).collect::<Vec<_>>();
+        let order = order_by_key(seats.len(), |k| curve_position(seats[k].cell));
+        let seats: Vec<Seat<D>> = order.into_iter().map(|k| seats[k as usize]).collect();
+        let order = order_by_key(outer.len(), |k| curve_position(tree.anchor(outer[k].0.node)));
+        let outer: Vec<_> = order.into_iter().map(|k| outer[k as usize]).collect();
+        let layers = columns.map(|c| gather(c, &seats)).unwrap_or_default();
+        let mut all = Self::assemble(tree, layout, (seats, placed, outer), layers);
+        all.shake(spec.jitter);
+        all
     }
 
     #[allow(clippy::type_complexity)]
     fn assemble(
         tree: Tree<D>,
         layout: &Layout<D>,
-        jitter: f64,
-        (fluid, placed, outer): (Vec<(Leaf<D>, f64)>, Placed<D>, Vec<(Leaf<D>, (usize, usize))>),
+        (fluid, placed, outer): (Vec<Seat<D>>, Placed<D>, Vec<(Leaf<D>, (usize, usize))>),
+        layers: Layers<D>,
     ) -> Self {
         let n_fluid = fluid.len();
         let outer_leaves = outer.iter().map(|(l, _)| l);
         let centre: Vec<_> = fluid
             .iter()
-            .map(|(l, _)| l.centre)
+            .map(|s| s.centre)
             .chain(placed.x.iter().copied())
             .chain(outer_leaves.clone().map(|l| l.centre))
             .collect();
         let spacing = fluid
             .iter()
-            .map(|(l, _)| l.size)
+            .map(|s| s.spacing)
             .chain(placed.spacing.iter().copied())
             .chain(outer_leaves.clone().map(|l| l.size))
             .collect();
         let wall_distance = fluid
             .iter()
-            .map(|(_, d)| *d)
+            .map(|s| s.distance)
             .chain(placed.x.iter().map(|_| 0.0))
             .chain(outer_leaves.map(|_| f64::INFINITY))
             .collect::<Vec<_>>();
-        let mut x = centre.clone();
-        for (i, (leaf, distance)) in fluid.iter().enumerate() {
-            if jitter > 0.0 && distance.is_infinite() {
-                x[i] += random_direction(tree.anchor(leaf.node)) * (jitter * leaf.size);
-            }
-        }
-        let leaf_of = fluid.iter().map(|(l, _)| l.node).chain(placed.x.iter().map(|x| tree.leaf_at(x).node));
-        let leaf_of: Vec<u32> = leaf_of.chain(outer.iter().map(|(l, _)| l.node)).collect();
         let next = placed.next.iter().map(|k| if *k == u32::MAX { *k } else { k + n_fluid as u32 }).collect();
+        let seated = |s: &Seat<D>| if layers.is_empty() { s.node } else { tree.leaf_at(&s.centre).node };
+        let leaf_of = fluid.iter().map(seated).chain(placed.x.iter().map(|x| tree.leaf_at(x).node));
+        let leaf_of: Vec<u32> = leaf_of.chain(outer.iter().map(|(l, _)| l.node)).collect();
         Self {
-            x,
+            x: centre.clone(),
             spacing,
             wall_distance,
             n_fluid,
@@ -158,8 +195,19 @@ impl<const D: usize> Particles<D> {
             sides: layout.sides,
             centre,
             next,
+            layers,
             leaves: LeafIndex::new(&leaf_of, tree.n_nodes()),
             tree,
+        }
+    }
+
+    /// Moves the fluid particles far from walls at random, by `jitter` spacings at most along each axis.
+    fn shake(&mut self, jitter: f64) {
+        for i in 0..self.n_fluid {
+            if jitter > 0.0 && self.wall_distance[i].is_infinite() {
+                let cell = self.tree.anchor(self.tree.leaf_at(&self.centre[i]).node);
+                self.x[i] += random_direction(cell) * (jitter * self.spacing[i]);
+            }
         }
     }
 
@@ -260,18 +308,21 @@ fn side_of<const D: usize>(leaf: &Leaf<D>, bounds: &Bounds<D>, sides: &[[Side; 2
     found
 }
 
-/// Leaves, with what belongs to them, in the order of a space-filling curve.
-fn along_curve<const D: usize, T: Copy + Sync>(tree: &Tree<D>, leaves: &[(Leaf<D>, T)]) -> Vec<(Leaf<D>, T)> {
-    let order = order_by_key(leaves.len(), |k| curve_position(tree, &leaves[k].0));
-    order.into_iter().map(|k| leaves[k as usize]).collect()
+/// Columns with the numbers of their particles.
+fn gather<const D: usize>(columns: Columns<D>, seats: &[Seat<D>]) -> Layers<D> {
+    let mut numbers: Vec<(u32, u32, u32)> =
+        seats.iter().zip(0..).filter_map(|(s, i)| s.layer.map(|(column, layer)| (column, layer, i))).collect();
+    numbers.sort_unstable();
+    let finished = columns.finish(numbers.into_iter().map(|n| n.2));
+    Layers::new(finished, columns.axes, seats.len())
 }
 
-fn curve_position<const D: usize>(tree: &Tree<D>, leaf: &Leaf<D>) -> u64 {
+/// Position of a cell along the space-filling curve.
+fn curve_position<const D: usize>(cell: [u32; D]) -> u64 {
     let bits = 64 / D as u32;
-    let anchor = tree.anchor(leaf.node);
     let need = u32::from(MAX_LEVEL) + 11;
     let shift = need.saturating_sub(bits.min(31));
-    hilbert_index(std::array::from_fn::<u32, D, _>(|d| anchor[d] >> shift), bits.min(31))
+    hilbert_index(cell.map(|c| c >> shift), bits.min(31))
 }
 
 /// A vector with components in [−1, 1] that depends on the cell alone.

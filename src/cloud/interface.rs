@@ -46,6 +46,8 @@ pub struct Placed<const D: usize> {
     pub interface: Vec<Interface<D>>,
     /// Successor along the outline (2-D), `u32::MAX` at a sharp edge.
     pub next: Vec<u32>,
+    /// Where the stretch of outline that belongs to each particle ends (2-D).
+    pub end: Vec<Vector<D>>,
 }
 
 /// A plane that ends the domain: axis, sign of the outward normal, coordinate.
@@ -182,6 +184,7 @@ fn outline_piece<const D: usize>(
             piece,
             arc: arc + 0.5 * chord.norm(),
         });
+        placed.end.push(end.x);
         let last = k + 1 == n;
         placed.next.push(if !last {
             first + k as u32 + 1

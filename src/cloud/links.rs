@@ -1,5 +1,6 @@
 //! Neighbour entries as unknowns of the conservative coefficients.
 use super::Cloud;
+use super::layers::face_volume;
 use super::operators::Reverse;
 use crate::math::Vector;
 use crate::math::sweep::{CHUNK, parts, sweep_parts};
@@ -78,8 +79,7 @@ fn link<const D: usize>(cloud: &Cloud<D>, reverse: &Reverse<'_, D>, i: usize, p:
     let source = image.map_or(j, |m| m.source as usize);
     let transform = image.map(|m| m.transform);
     let partner = reverse.position(i, j).map(|(e, _)| e as u32);
-    let spacing = 0.5 * (cloud.spacing[i] + cloud.spacing[j]);
-    let face = spacing.powi(D as i32) / offset.norm();
+    let face = face_volume(cloud, i, source) / offset.norm();
     let mut weight = face * face;
     let kind = match (transform, partner) {
         _ if cloud.interface_range().contains(&source) => {

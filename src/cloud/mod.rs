@@ -4,17 +4,20 @@
 //! the surfaces, *outer* particles on the sides of the domain, and *images* of particles across planes of symmetry and
 //! periodic sides. Only fluid particles evolve; the state of the others follows from theirs.
 pub mod build;
+mod columns;
 pub mod conservative;
 pub mod doctor;
 pub mod fill;
 pub mod grid;
 pub mod interface;
+pub mod layers;
 pub mod layout;
 mod links;
 mod multipliers;
 pub mod neighbours;
 pub mod operators;
 pub mod repair;
+mod rim;
 pub mod sources;
 #[cfg(test)]
 mod tests;
@@ -137,6 +140,8 @@ pub struct Cloud<const D: usize> {
     pub neighbours: Neighbours,
     /// Fluid particles from which the state of each interface particle is fitted.
     pub wall_clouds: Neighbours,
+    /// Layers along the walls: a column an interface particle.
+    pub layers: layers::Layers<D>,
     /// Which particles sit in which leaf of the background.
     pub leaves: fill::LeafIndex,
     /// Particles, in ascending order, whose reconstruction stays first order: too few neighbours around them.
@@ -177,6 +182,20 @@ impl<const D: usize> Cloud<D> {
     /// Number of particles that have a cloud of their own: fluid and interface.
     pub fn n_rows(&self) -> usize {
         self.n_fluid + self.interface.len()
+    }
+
+    /// The particle that `j` is, or is the image of.
+    pub fn source(&self, j: usize) -> layers::Source {
+        match j.checked_sub(self.n_real()).and_then(|k| self.images.get(k)) {
+            Some(image) => layers::Source { index: image.source as usize, image: true },
+            None => layers::Source { index: j, image: false },
+        }
+    }
+
+    /// Offset from particle `i` to `j` in the coordinates in which the row of `i` is fitted and judged: stretched across the
+    /// wall in layers, x_j − x_i elsewhere.
+    pub fn offset(&self, i: usize, j: usize) -> Vector<D> {
+        self.layers.offset(i, self.spacing[i], self.source(j), &(self.x[j] - self.x[i]))
     }
 
     /// Number of particles without images.

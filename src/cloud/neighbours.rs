@@ -8,6 +8,7 @@
 use std::cell::OnceCell;
 
 use super::fill::Particles;
+use super::layers::Source;
 use super::repair::Repair;
 use super::{CloudError, Image, Transform};
 use crate::geometry::Surface;
@@ -72,7 +73,7 @@ impl Neighbours {
 
 /// A neighbour before images have numbers: particle and transform (`IDENTITY` for itself).
 pub(super) type Seen = (u32, u8);
-const IDENTITY: u8 = u8::MAX;
+pub(super) const IDENTITY: u8 = u8::MAX;
 
 /// Rows before images have numbers, in chunks of `CHUNK` rows that are filled in parallel.
 pub(super) struct Rows {
@@ -228,10 +229,15 @@ impl<'a, const D: usize> Search<'a, D> {
     /// Clouds of all fluid and interface particles, repaired where needed.
     pub fn clouds(&self) -> Result<Clouds<D>, CloudError> {
         let p = self.particles;
-        let mut rows = Rows::new(p.n_rows(), |i, list| self.cloud_of(i, list));
+        let links = self.links();
+        let mut rows = Rows::new(p.n_rows(), |i, list| {
+            self.cloud_of(i, list);
+            let own = links.partition_point(|l| (l.0 as usize) < i)..links.partition_point(|l| l.0 as usize <= i);
+            list.extend(links[own].iter().map(|l| l.1));
+        });
         let unanswered = self.unanswered(&rows);
         rows.remove(&unanswered);
-        let walls = Rows::new(p.interface.len(), |w, list| self.fluid_in_front(w + p.n_fluid, list));
+        let walls = Rows::new(p.interface.len(), |w, list| self.wall_cloud(w, list));
         let mut repair = Repair::of(self, &rows);
         let blind = (0..p.interface.len()).filter(|w| walls.of(*w).is_empty());
         repair.refused.extend(
@@ -286,10 +292,14 @@ impl<'a, const D: usize> Search<'a, D> {
         known.then_some((s.0, (i as u32, back)))
     }
 
+    /// What particle `i` sees, but for what lies in layers.
     fn cloud_of(&self, i: usize, list: &mut Vec<Seen>) {
+        if self.in_layers(i) {
+            return;
+        }
         let eye = Eye::new(i, self.reach(i));
         self.candidates(i, eye.reach, |k, t| {
-            if self.sees(&eye, k as usize, t) {
+            if !self.in_layers(k as usize) && self.sees(&eye, k as usize, t) {
                 list.push((k, t));
             }
         });
@@ -300,15 +310,45 @@ impl<'a, const D: usize> Search<'a, D> {
         let mut list = Vec::new();
         let eye = Eye::new(i, radius * self.particles.spacing[i]);
         self.candidates(i, eye.reach, |k, t| {
-            if self.sees_in_ball(&eye, k as usize, t, radius, Sight::Tested) {
+            let d = self.position(k as usize, t) - self.particles.x[i];
+            if self.may_join(i, (k, t), &d) && self.sees_in_ball(&eye, k as usize, t, radius, Sight::Tested) {
                 list.push((k, t));
             }
         });
         list
     }
 
+    /// Whether particle `i` has particle `k` in sight within `wider` times the radius of the near-wall rule.
+    pub(super) fn sees_within_radius(&self, i: usize, k: usize, t: u8, wider: f64) -> bool {
+        let radius = wider * self.radius;
+        self.sees_in_ball(&Eye::new(i, radius * self.particles.spacing[i]), k, t, radius, Sight::Tested)
+    }
+
+    /// Half-width of a cube that holds the leaves of everything within that radius.
+    pub(super) fn ball(&self, i: usize) -> f64 {
+        0.5 * self.radius * 3.0 * self.particles.spacing[i]
+    }
+
+    /// Transforms that reflect space.
+    pub(super) fn reflections(&self) -> impl Iterator<Item = u8> + '_ {
+        let reflects = |t: &Transform<D>| t.sign != Vector::splat(1.0);
+        self.transforms.iter().zip(0..).filter(move |(t, _)| reflects(t)).map(|(_, k)| k)
+    }
+
+    /// Direction `v` turned by transform `t`.
+    pub(super) fn direction(&self, v: &Vector<D>, t: u8) -> Vector<D> {
+        if t == IDENTITY { *v } else { self.transforms[t as usize].direction(v) }
+    }
+
+    /// Offset from particle `i`, at `x`, to what it sees, in the coordinates in which its row is fitted and judged.
+    pub(super) fn offset(&self, i: usize, x: &Vector<D>, s: Seen) -> Vector<D> {
+        let d = self.position(s.0 as usize, s.1) - *x;
+        let source = Source { index: s.0 as usize, image: s.1 != IDENTITY };
+        self.particles.layers.offset(i, self.particles.spacing[i], source, &d)
+    }
+
     /// Fluid particles in front of the interface particle `i`, in sight; farther ones where there are too few.
-    fn fluid_in_front(&self, i: usize, list: &mut Vec<Seen>) {
+    pub(super) fn fluid_in_front(&self, i: usize, list: &mut Vec<Seen>) {
         let start = list.len();
         for (reach, least) in [(FIT_REACH, D + 1), (FIT_REACH_WIDE, 1)] {
             list.truncate(start);
@@ -352,7 +392,7 @@ impl<'a, const D: usize> Search<'a, D> {
 
     fn reach(&self, i: usize) -> f64 {
         let h = self.particles.spacing[i];
-        if self.near(i) { 0.5 * self.radius * 3.0 * h } else { h * (0.5 + TOUCH) }
+        if self.near(i) { self.ball(i) } else { h * (0.5 + TOUCH) }
     }
 
     fn near(&self, i: usize) -> bool {
@@ -371,7 +411,7 @@ impl<'a, const D: usize> Search<'a, D> {
     }
 
     /// Every particle, or image, whose leaf meets the cube of half-width `reach` around particle `i`.
-    fn candidates(&self, i: usize, reach: f64, mut f: impl FnMut(u32, u8)) {
+    pub(super) fn candidates(&self, i: usize, reach: f64, mut f: impl FnMut(u32, u8)) {
         let p = self.particles;
         let x = p.cell_centre(i);
         let domain = p.tree.bounds();
@@ -442,10 +482,7 @@ impl<'a, const D: usize> Search<'a, D> {
     }
 
     fn in_front(&self, wall: usize, d: &Vector<D>, t: u8) -> bool {
-        let mut normal = self.particles.interface[wall - self.particles.n_fluid].normal;
-        if t != IDENTITY {
-            normal = self.transforms[t as usize].direction(&normal);
-        }
+        let normal = self.direction(&self.particles.interface[wall - self.particles.n_fluid].normal, t);
         d.dot(&normal) > GRAZING * d.norm()
     }
 
@@ -459,8 +496,7 @@ impl<'a, const D: usize> Search<'a, D> {
             return true;
         }
         let (a, b) = (&p.interface[i - p.n_fluid], &p.interface[k - p.n_fluid]);
-        let normal = if t == IDENTITY { b.normal } else { self.transforms[t as usize].direction(&b.normal) };
-        a.normal.dot(&normal) > FACING
+        a.normal.dot(&self.direction(&b.normal, t)) > FACING
     }
 
     /// No surface between a particle and particle `k` moved by `t`, at `d` from it.
@@ -473,8 +509,7 @@ impl<'a, const D: usize> Search<'a, D> {
             true => p.interface[w - p.n_fluid].normal * (LIFT * p.spacing[w]),
             false => Vector::ZERO,
         };
-        let lift_k = if t == IDENTITY { lifted(k) } else { self.transforms[t as usize].direction(&lifted(k)) };
-        let (a, b) = (p.x[i] + lifted(i), p.x[i] + *d + lift_k);
+        let (a, b) = (p.x[i] + lifted(i), p.x[i] + *d + self.direction(&lifted(k), t));
         // balls around both ends are free of surface: only what they do not cover is tested
         let way = (b - a) * (FREE / d.norm());
         let (a, b) = (a + way * p.wall_distance[i], b - way * p.wall_distance[k]);

@@ -166,10 +166,30 @@ fn fit_rows<const D: usize>(cloud: &Cloud<D>) -> (Vec<[[f64; D]; D]>, Vec<f64>) 
 
 /// Inverse normal matrix of row `i`; the weights of a first-order row are bounded whatever the neighbours.
 fn fit_row<const D: usize>(cloud: &Cloud<D>, i: usize) -> ([[f64; D]; D], f64) {
-    let offsets = || cloud.neighbours.of(i).iter().map(|j| cloud.x[*j as usize] - cloud.x[i]);
+    let offsets = || cloud.neighbours.of(i).iter().map(|j| cloud.offset(i, *j as usize));
     let (inverse, condition) = gradient_matrix(offsets()).unzip();
     let inverse = inverse.filter(|_| cloud.first_order.binary_search(&(i as u32)).is_err());
-    (inverse.unwrap_or_else(|| bounded_gradient_matrix(offsets())), condition.unwrap_or(f64::INFINITY))
+    let inverse = inverse.unwrap_or_else(|| bounded_gradient_matrix(offsets()));
+    let inverse = if cloud.layers.slot(i).is_some() { through_metric(cloud, i, inverse) } else { inverse };
+    (inverse, condition.unwrap_or(f64::INFINITY))
+}
+
+/// Turns slopes in the space of steps into slopes in space, through the metric terms that the same weights give.
+fn through_metric<const D: usize>(cloud: &Cloud<D>, i: usize, inverse: [[f64; D]; D]) -> [[f64; D]; D] {
+    let mut metric = [Vector::<D>::ZERO; D];
+    for j in cloud.neighbours.of(i) {
+        let weight = gradient_weight(&inverse, &cloud.offset(i, *j as usize));
+        let d = cloud.x[*j as usize] - cloud.x[i];
+        (0..D).for_each(|c| metric[c] += d * weight[c]);
+    }
+    let [a, b] = [metric[0], metric[1]];
+    let det = a[0] * b[1] - a[1] * b[0];
+    let mut turned = inverse;
+    for c in 0..D {
+        let (f, g) = (inverse[0][c], inverse[1][c]);
+        (turned[0][c], turned[1][c]) = ((f * b[1] - g * a[1]) / det, (g * a[0] - f * b[0]) / det);
+    }
+    turned
 }
 
 /// Finds the entry (j, i) that belongs to the entry (i, j), through images where needed.
@@ -234,12 +254,12 @@ fn edge<const D: usize>(
     (i, j): (usize, usize),
     part: &Range<usize>,
 ) -> Edge<D> {
-    let a_i = gradient_weight(&inverse[i], &(cloud.x[j] - cloud.x[i]));
+    let a_i = gradient_weight(&inverse[i], &cloud.offset(i, j));
     let back = reverse.position(i, j).map(|(e, transform)| match transform {
-        None => gradient_weight(&inverse[j], &(cloud.x[i] - cloud.x[j])),
+        None => gradient_weight(&inverse[j], &cloud.offset(j, i)),
         Some(t) => {
             let source = cloud.images[j - cloud.n_real()].source as usize;
-            let d = cloud.x[cloud.neighbours.index[e] as usize] - cloud.x[source];
+            let d = cloud.offset(source, cloud.neighbours.index[e] as usize);
             cloud.transforms[t as usize].direction(&gradient_weight(&inverse[source], &d))
         }
     });

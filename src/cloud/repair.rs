@@ -62,7 +62,7 @@ impl<const D: usize> Repair<D> {
     fn treat(&mut self, search: &Search<'_, D>, rows: &Rows, i: usize) {
         let particles = search.particles();
         let mut row = rows.of(i).to_vec();
-        if !is_well_spread(&offsets(search, &particles.x[i], &row), particles.is_interface(i)) {
+        if !is_well_spread(&offsets(search, i, &particles.x[i], &row), particles.is_interface(i)) {
             let wide = search.visible_within(i, WIDE);
             if wide.len() > row.len() {
                 self.extra.extend(wide.iter().map(|s| (i as u32, *s)));
@@ -79,7 +79,7 @@ impl<const D: usize> Repair<D> {
         }
         if row.len() < D && !particles.is_interface(i) {
             self.refused.push(complaint(particles, i, row.len()));
-        } else if is_well_spread(&offsets(search, &x, &row), particles.is_interface(i)) {
+        } else if is_well_spread(&offsets(search, i, &x, &row), particles.is_interface(i)) {
             self.widened += usize::from(row.len() > rows.of(i).len());
         } else {
             self.first_order.push(i as u32);
@@ -107,8 +107,8 @@ fn complaint<const D: usize>(particles: &Particles<D>, i: usize, n: usize) -> St
     format!("particle {i} at ({}) sees {n} others; a gradient needs at least {D}", place.join(", "))
 }
 
-fn offsets<const D: usize>(search: &Search<'_, D>, x: &Vector<D>, row: &[Seen]) -> Vec<Vector<D>> {
-    row.iter().map(|s| search.position(s.0 as usize, s.1) - *x).collect()
+fn offsets<const D: usize>(search: &Search<'_, D>, i: usize, x: &Vector<D>, row: &[Seen]) -> Vec<Vector<D>> {
+    row.iter().map(|s| search.offset(i, x, *s)).collect()
 }
 
 fn is_sick<const D: usize>(search: &Search<'_, D>, i: usize, x: &Vector<D>, row: &[Seen]) -> bool {
@@ -117,19 +117,19 @@ fn is_sick<const D: usize>(search: &Search<'_, D>, i: usize, x: &Vector<D>, row:
     let mut sums = Sums::default();
     let mut crowded = false;
     for s in row {
-        let d = search.position(s.0 as usize, s.1) - *x;
+        let d = search.offset(i, x, *s);
         crowded |= nearest.is_some_and(|r| d.norm_squared() < r * r);
         sums.add(&d);
     }
     crowded && is_crowded(search, i, x, row) || !sums.is_well_spread(particles.is_interface(i))
 }
 
-/// True when a fluid particle has a neighbour nearer than allowed.
+/// True when a fluid particle has a neighbour nearer than allowed; layers keep their distances by construction.
 fn is_crowded<const D: usize>(search: &Search<'_, D>, i: usize, x: &Vector<D>, row: &[Seen]) -> bool {
     let particles = search.particles();
     let near =
         |s: &Seen| (search.position(s.0 as usize, s.1) - *x).norm() < NEAREST * search.mean_spacing(i, s.0 as usize);
-    !particles.is_interface(i) && row.iter().any(near)
+    !particles.is_interface(i) && !search.in_layers(i) && row.iter().any(near)
 }
 
 /// The place away from the nearest neighbour, if that is in sight and not crowded as well.

@@ -104,12 +104,16 @@ impl<const D: usize> Tree<D> {
 
     /// The leaf that contains `x`; points outside are moved to the border.
     pub fn leaf_at(&self, x: &Vector<D>) -> Leaf<D> {
+        self.leaf(self.find(&self.cell_at(x).map(i64::from)).unwrap_or(0))
+    }
+
+    /// Integer coordinates of the finest possible cell that contains `x`; points outside are moved to the border.
+    pub fn cell_at(&self, x: &Vector<D>) -> [u32; D] {
         let unit = self.unit();
-        let cell = std::array::from_fn(|d| {
+        std::array::from_fn(|d| {
             let top = i64::from(self.roots[d]) << MAX_LEVEL;
-            (((x[d] - self.origin[d]) / unit).floor() as i64).clamp(0, top - 1)
-        });
-        self.leaf(self.find(&cell).unwrap_or(0))
+            (((x[d] - self.origin[d]) / unit).floor() as i64).clamp(0, top - 1) as u32
+        })
     }
 
     /// Calls `f(node)` for every leaf that meets `cube`.

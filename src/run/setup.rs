@@ -207,6 +207,9 @@ fn coarsened(case: &Case, factor: f64) -> Case {
     if let Some(wake) = case.cloud.wake.as_mut() {
         scale(&mut wake.spacing);
     }
+    if let Some(layers) = case.cloud.wall_layers.as_mut() {
+        scale(&mut layers.first);
+    }
     case
 }
 

@@ -57,8 +57,8 @@ impl WallFits {
 fn fit_wall<const D: usize>(cloud: &Cloud<D>, w: usize) -> (Vec<f64>, f64, bool) {
     let i = cloud.n_fluid + w;
     let (h, normal) = (cloud.spacing[i], cloud.interface[w].normal);
-    let offsets: Vec<Vector<D>> = cloud.wall_clouds.of(w).iter().map(|k| cloud.x[*k as usize] - cloud.x[i]).collect();
     let axes = tangents(&normal);
+    let (offsets, stretch) = wall_offsets(cloud, w, &axes[0]);
     let mut weights = Vec::new();
     let mut linear = false;
     let quadratic = if D == 2 { 5 } else { 9 };
@@ -73,8 +73,34 @@ fn fit_wall<const D: usize>(cloud: &Cloud<D>, w: usize) -> (Vec<f64>, f64, bool)
     if offsets.len() <= D || !is_sound(&weights) {
         solve_fit(&offsets, (&normal, &axes), h, 1, &mut weights);
     }
-    let lever = weights.iter().zip(&offsets).map(|(w, d)| w * d.dot(&normal)).sum();
+    let lever = weights.iter().zip(&offsets).map(|(w, d)| w * d.dot(&normal)).sum::<f64>() / stretch;
     (weights, lever, linear)
+}
+
+/// Offsets to the particles of a fit, and the factor by which they are stretched across the wall: where all of them lie in
+/// layers, distances along the wall and heights above it, so that a thin layer on a curved wall stays a layer.
+fn wall_offsets<const D: usize>(cloud: &Cloud<D>, w: usize, along: &Vector<D>) -> (Vec<Vector<D>>, f64) {
+    let (i, list) = (cloud.n_fluid + w, cloud.wall_clouds.of(w));
+    let normal = &cloud.interface[w].normal;
+    let layers = &cloud.layers;
+    let source = |k: &u32| cloud.source(*k as usize);
+    if layers.slot(i).is_none() || list.iter().any(|k| layers.slot(source(k).index).is_none()) {
+        return (list.iter().map(|k| cloud.x[*k as usize] - cloud.x[i]).collect(), 1.0);
+    }
+    let stretch = cloud.spacing[i] / layers.thickness(w, 0);
+    let place = |k: &u32| {
+        let s = source(k);
+        let Some((column, layer)) = layers.slot(s.index) else { return Vector::ZERO };
+        let foot = cloud.n_fluid + column;
+        let d = match s.image {
+            // the foot of the image of a column
+            true => cloud.x[*k as usize] - *normal * (cloud.x[*k as usize] - cloud.x[i]).dot(normal) - cloud.x[i],
+            false => cloud.x[foot] - cloud.x[i],
+        };
+        let sign = if d.dot(along) < 0.0 { -1.0 } else { 1.0 };
+        *along * (sign * d.norm()) + *normal * (layers.height(column, layer) * stretch)
+    };
+    (list.iter().map(place).collect(), stretch)
 }
 
 /// Weights that reproduce constants, which a rank-deficient fit need not do, without amplifying differences.

@@ -1,0 +1,386 @@
+//! Growing columns of particles on the wall normals.
+//!
+//! All columns advance together, one layer after the other, and a column stops for good where its next particle would
+//!
+//! - be as far from the last one as from those beside it: the layers have become isotropic;
+//! - lie more than twice as far from those beside it as the interface particles do: a fan around a convex bend;
+//! - lie less than 0.35 times as far from them, measured along the wall: a fold in a concave bend;
+//! - come nearer than 0.6 min(Δs, 2Δn) to a column that is not adjacent, or nearer to another wall than to its own;
+//! - leave the domain.
+//!
+//! Where less than two spacings lie between two walls there are no columns at all.
+//!
+//! Then the columns are cut until neighbours differ by one layer at most. Particles of the background inside the layers, or
+//! too near to them, are left out.
+use super::Transform;
+use super::fill::Seat;
+use super::grid::Grid;
+use super::interface::Placed;
+use super::layers::Column;
+use super::layout::Layout;
+use super::neighbours::NEAR;
+use super::tree::{Leaf, Tree};
+use crate::case::{Side, WallLayers};
+use crate::geometry::Surface;
+use crate::math::{Bounds, Vector};
+
+/// Layers stop where they are this many times as far apart as the particles of a layer.
+const ISOTROPIC: f64 = 1.0;
+/// Widest fan: spacing of a layer over that of the interface particles.
+const WIDEST: f64 = 2.0;
+/// Tightest fold: spacing of a layer along the wall over that of the interface particles.
+const TIGHTEST: f64 = 0.35;
+/// Clearance from columns that are not adjacent, in min(Δs, 2Δn).
+const CLEARANCE: f64 = 0.6;
+/// Distance to the nearest wall over the height in a column, below which another wall is nearer.
+const OWN_WALL: f64 = 0.8;
+/// A column needs this many spacings between its wall and the next.
+const ROOM: f64 = 2.0;
+/// Height, in spacings, at which the look for the next wall begins.
+const LIFT: f64 = 1e-3;
+/// Most layers.
+const MOST: usize = 1000;
+/// Half-width of the part of the background that a column takes the place of, in its spacings.
+const HALF_WIDTH: f64 = 0.55;
+/// Height above the last layer, in spacings, up to which the background is left out.
+const ABOVE: f64 = 0.5;
+/// Smallest distance of a background particle to one in a layer, in mean spacings.
+const APART: f64 = 0.6;
+/// A leaf larger than this many spacings of a layer may be cut in quarters.
+const COARSE: f64 = 1.4;
+/// Distance to its own image, in spacings, up to which an interface particle has that for a neighbour.
+const ACROSS_PLANE: f64 = 1.5;
+/// Largest cosine between the normal and the way to that image.
+const ALONG_WALL: f64 = 0.3;
+
+/// Columns over all interface particles, before the fluid particles have numbers.
+pub(super) struct Columns<const D: usize> {
+    /// Direction along the outline and normal.
+    pub axes: Vec<[Vector<D>; 2]>,
+    /// Heights of the layers, the same for all columns.
+    heights: Vec<f64>,
+    /// Number of layers of each column.
+    counts: Vec<usize>,
+    beside: Vec<[Option<u32>; 2]>,
+    x: Vec<Vector<D>>,
+    /// Offset to the interface particle on either side, through the plane of symmetry where that is an image.
+    mirrors: Vec<Option<Transform<D>>>,
+}
+
+/// What columns grow in.
+pub(super) struct Ground<'a, const D: usize> {
+    /// The bodies.
+    pub surface: &'a Surface<D>,
+    /// The background.
+    pub tree: &'a Tree<D>,
+    /// The box and its sides.
+    pub layout: &'a Layout<D>,
+    /// Its reflections and shifts.
+    pub transforms: &'a [Transform<D>],
+}
+
+impl<const D: usize> Columns<D> {
+    /// Grows columns over the interface particles of a plane case.
+    pub(super) fn grow(placed: &Placed<D>, spec: &WallLayers, ground: &Ground<'_, D>) -> Self {
+        let mut columns = Self::start(placed, ground.transforms);
+        let n = placed.x.len();
+        let most = spec.count.map_or(MOST, |c| c as usize);
+        let mut active: Vec<bool> = (0..n).map(|w| columns.may_start(w, ground.surface)).collect();
+        let bin = placed.spacing.iter().fold(0.0, |m: f64, h| m.max(*h)).max(f64::MIN_POSITIVE);
+        let mut grid = Grid::new(bin);
+        let mut taken: Vec<(u32, Vector<D>)> = Vec::new();
+        columns.x.iter().zip(0..).for_each(|(x, w)| {
+            grid.insert(x, taken.len() as u32);
+            taken.push((w, *x));
+        });
+        let (mut height, mut thickness) = (0.0, spec.first.0);
+        while columns.heights.len() < most && active.iter().any(|a| *a) {
+            height += thickness;
+            let mut next: Vec<bool> =
+                (0..n).map(|w| active[w] && columns.may_go(w, height, thickness, ground)).collect();
+            for w in (0..n).filter(|w| next[*w]) {
+                grid.insert(&columns.at(w, height), taken.len() as u32);
+                taken.push((w as u32, columns.at(w, height)));
+            }
+            let free: Vec<bool> =
+                (0..n).map(|w| next[w] && columns.is_free(w, (height, thickness), &grid, &taken)).collect();
+            next.copy_from_slice(&free);
+            columns.heights.push(height);
+            (0..n).filter(|w| next[*w]).for_each(|w| columns.counts[w] += 1);
+            active = next;
+            thickness *= spec.growth;
+        }
+        columns.cut();
+        columns
+    }
+
+    /// Interface particles with their neighbours along the outline, no layers yet.
+    fn start(placed: &Placed<D>, transforms: &[Transform<D>]) -> Self {
+        let n = placed.x.len();
+        let mut beside = vec![[None; 2]; n];
+        for (w, next) in placed.next.iter().enumerate().filter(|(_, next)| **next != u32::MAX) {
+            beside[w][1] = Some(*next);
+            beside[*next as usize][0] = Some(w as u32);
+        }
+        let mut axes = Vec::with_capacity(n);
+        for w in 0..n {
+            let normal = placed.interface[w].normal;
+            let mut along = Vector::ZERO;
+            (along[0], along[1]) = (normal[1], -normal[0]);
+            let ahead = match beside[w] {
+                [_, Some(b)] => placed.x[b as usize] - placed.x[w],
+                [Some(a), None] => placed.x[w] - placed.x[a as usize],
+                [None, None] => along,
+            };
+            axes.push([if along.dot(&ahead) >= 0.0 { along } else { -along }, normal]);
+        }
+        let mut all =
+            Self { axes, heights: Vec::new(), counts: vec![0; n], beside, x: placed.x.clone(), mirrors: vec![None; n] };
+        (0..n).for_each(|w| all.look_across_planes(w, placed.spacing[w], transforms));
+        all
+    }
+
+    /// An end of an outline at a plane of symmetry goes on with its own image.
+    fn look_across_planes(&mut self, w: usize, h: f64, transforms: &[Transform<D>]) {
+        for side in 0..2 {
+            if self.beside[w][side].is_some() || self.beside[w][1 - side].is_none() {
+                continue;
+            }
+            let sign = if side == 1 { 1.0 } else { -1.0 };
+            let [along, normal] = self.axes[w];
+            let across = |t: &&Transform<D>| {
+                let d = t.point(&self.x[w]) - self.x[w];
+                let r = d.norm();
+                t.sign != Vector::splat(1.0)
+                    && r < ACROSS_PLANE * h
+                    && d.dot(&along) * sign > 0.0
+                    && d.dot(&normal).abs() < ALONG_WALL * r
+            };
+            if let Some(t) = transforms.iter().find(across) {
+                self.beside[w][side] = Some(w as u32);
+                self.mirrors[w] = Some(*t);
+            }
+        }
+    }
+
+    /// The point of column `w` at a height.
+    fn at(&self, w: usize, height: f64) -> Vector<D> {
+        self.x[w] + self.axes[w][1] * height
+    }
+
+    /// Offset from column `w` to the adjacent one on a side, at a height.
+    fn step(&self, w: usize, side: usize, height: f64) -> Option<Vector<D>> {
+        let other = self.beside[w][side]? as usize;
+        let there = self.at(other, height);
+        let there = if other == w { self.mirrors[w].map_or(there, |t| t.point(&there)) } else { there };
+        Some(there - self.at(w, height))
+    }
+
+    /// Mean distance to the adjacent columns at a height.
+    fn spacing(&self, w: usize, height: f64) -> f64 {
+        let steps: Vec<f64> = (0..2).filter_map(|s| self.step(w, s, height)).map(|d| d.norm()).collect();
+        steps.iter().sum::<f64>() / steps.len().max(1) as f64
+    }
+
+    /// Whether column `w` has one beside it, and room before the next wall.
+    fn may_start(&self, w: usize, surface: &Surface<D>) -> bool {
+        let h = self.spacing(w, 0.0);
+        self.beside[w] != [None, None] && !surface.crosses(&self.at(w, LIFT * h), &self.at(w, ROOM * h))
+    }
+
+    /// Whether the next particle of column `w` keeps its distance from its own wall, the adjacent columns and the sides.
+    fn may_go(&self, w: usize, height: f64, thickness: f64, ground: &Ground<'_, D>) -> bool {
+        let x = self.at(w, height);
+        let along = |d: &Vector<D>, side: usize| d.dot(&self.axes[w][0]) * if side == 1 { 1.0 } else { -1.0 };
+        let in_line = (0..2).all(|side| match (self.step(w, side, 0.0), self.step(w, side, height)) {
+            (Some(d0), Some(d)) => d.norm() <= WIDEST * d0.norm() && along(&d, side) >= TIGHTEST * along(&d0, side),
+            _ => true,
+        });
+        let h = self.spacing(w, height);
+        in_line
+            && thickness <= ISOTROPIC * h
+            && self.is_inside(&x, CLEARANCE * h.min(2.0 * thickness), ground)
+            && ground.surface.nearest(&x, OWN_WALL * height).is_none()
+    }
+
+    /// Inside the domain, by `margin` from closed sides and by more than a cell from open ones.
+    fn is_inside(&self, x: &Vector<D>, margin: f64, ground: &Ground<'_, D>) -> bool {
+        let bounds = ground.tree.bounds();
+        let cell = 2.0 * ground.tree.leaf_at(x).size;
+        (0..D).all(|d| {
+            [(x[d] - bounds.min[d], 0), (bounds.max[d] - x[d], 1)].iter().all(|(gap, end)| {
+                let closed = matches!(ground.layout.sides[d][*end], Side::Symmetry | Side::Periodic);
+                *gap > if closed { 0.5 * margin } else { cell }
+            })
+        })
+    }
+
+    /// Whether the particle of column `w` at a height is clear of columns that are not adjacent.
+    fn is_free(&self, w: usize, (height, thickness): (f64, f64), grid: &Grid<D>, taken: &[(u32, Vector<D>)]) -> bool {
+        let x = self.at(w, height);
+        let reach = CLEARANCE * self.spacing(w, height).min(2.0 * thickness);
+        let mut free = true;
+        grid.near(&x, reach, |k| {
+            let (other, y) = &taken[k as usize];
+            let related = *other as usize == w || self.beside[w].contains(&Some(*other));
+            free &= related || (*y - x).norm_squared() >= reach * reach;
+        });
+        free
+    }
+
+    /// Cuts columns until adjacent ones differ by one layer at most.
+    fn cut(&mut self) {
+        let mut changed = true;
+        while changed {
+            changed = false;
+            for w in 0..self.counts.len() {
+                let least = self.beside[w].iter().flatten().map(|b| self.counts[*b as usize] + 1).min();
+                if least.is_some_and(|least| least < self.counts[w]) {
+                    self.counts[w] = least.unwrap_or(0);
+                    changed = true;
+                }
+            }
+        }
+    }
+
+    /// Moves the border between adjacent interface particles under layers from the outline to the middle of their chord: the
+    /// faces of the layers above stand on chords, and a thin layer would not cover the sagitta. Area vectors keep their sum.
+    pub(super) fn straighten(&self, placed: &mut Placed<D>) {
+        for w in 0..self.counts.len() {
+            let Some(next) = self.beside[w][1].map(|b| b as usize) else { continue };
+            let Some(step) = self.step(w, 1, 0.0).filter(|_| self.counts[w] + self.counts[next] > 0) else { continue };
+            let shift = self.x[w] + step * 0.5 - placed.end[w];
+            let [along, _] = &self.axes[w];
+            let normal = self.axes[w][1];
+            // a chord along the outline turned by a right angle, the way that takes `along` to the normal
+            let turn = along[0] * normal[1] - along[1] * normal[0];
+            let mut area = Vector::ZERO;
+            (area[0], area[1]) = (-turn * shift[1], turn * shift[0]);
+            placed.interface[w].area += area;
+            if next != w {
+                placed.interface[next].area -= area;
+            }
+        }
+    }
+
+    /// Every particle of the layers: (column, layer counted from 1, position, spacing along the wall, height).
+    fn each(&self) -> impl Iterator<Item = (usize, usize, Vector<D>, f64, f64)> + '_ {
+        (0..self.counts.len()).flat_map(move |w| {
+            (1..=self.counts[w]).map(move |k| {
+                let height = self.heights[k - 1];
+                (w, k, self.at(w, height), self.spacing(w, height), height)
+            })
+        })
+    }
+
+    /// Seats of the fluid particles in the layers.
+    pub(super) fn seats(&self, tree: &Tree<D>) -> Vec<Seat<D>> {
+        let seat = |(w, k, x, spacing, height): (usize, usize, Vector<D>, f64, f64)| Seat {
+            cell: tree.cell_at(&x),
+            centre: x,
+            spacing,
+            node: 0,
+            distance: height,
+            layer: Some((w as u32, k as u32)),
+        };
+        self.each().map(seat).collect()
+    }
+
+    /// Drops the leaves that the layers take the place of. A leaf that is only too near to a layer finer than itself gives
+    /// way to those of its quarters that are not.
+    pub(super) fn blank(&self, ground: &Ground<'_, D>, blank: f64, fluid: &mut Vec<(Leaf<D>, f64)>) {
+        let tree = ground.tree;
+        let mut finest = vec![f64::INFINITY; tree.n_nodes()];
+        let mut inside = vec![false; tree.n_nodes()];
+        for cell in self.cells() {
+            let reach = Vector::splat(cell.spacing);
+            tree.overlapping(&Bounds { min: cell.x - reach, max: cell.x + reach }, |node| {
+                let leaf = tree.leaf(node);
+                let place = cell.place(&leaf);
+                inside[node as usize] |= place == Place::Inside;
+                if place != Place::Clear {
+                    finest[node as usize] = finest[node as usize].min(cell.spacing);
+                }
+            });
+        }
+        let near = |leaf: &Leaf<D>| finest[leaf.node as usize].is_finite();
+        let coarse = |leaf: &&(Leaf<D>, f64)| {
+            !inside[leaf.0.node as usize] && near(&leaf.0) && leaf.0.size > COARSE * finest[leaf.0.node as usize]
+        };
+        let split: Vec<Leaf<D>> = fluid.iter().filter(coarse).flat_map(|(leaf, _)| quarters(leaf)).collect();
+        fluid.retain(|(leaf, _)| !near(leaf));
+        let cells: Vec<Cell<D>> = self.cells().collect();
+        let mut grid = Grid::new(cells.iter().fold(f64::MIN_POSITIVE, |m, c| m.max(c.spacing)));
+        cells.iter().zip(0..).for_each(|(c, k)| grid.insert(&c.x, k));
+        for leaf in split {
+            let mut clear = true;
+            grid.near(&leaf.centre, 2.0 * leaf.size, |k| clear &= cells[k as usize].place(&leaf) == Place::Clear);
+            let nearest = ground.surface.nearest(&leaf.centre, (NEAR + 1.0) * leaf.size);
+            let distance = nearest.map_or(f64::INFINITY, |n| n.distance);
+            if clear && distance >= blank * leaf.size && !ground.surface.inside(&leaf.centre) {
+                fluid.push((leaf, distance));
+            }
+        }
+    }
+
+    /// What every particle of a column takes the place of, the interface particle included.
+    fn cells(&self) -> impl Iterator<Item = Cell<D>> + '_ {
+        let walls =
+            (0..self.counts.len()).filter(|w| self.counts[*w] > 0).map(|w| (w, 0, self.x[w], self.spacing(w, 0.0)));
+        walls.chain(self.each().map(|(w, k, x, h, _)| (w, k, x, h))).map(|(w, k, x, spacing)| {
+            let height = |k: usize| if k == 0 { 0.0 } else { self.heights[k - 1] };
+            let above = if k == self.counts[w] { ABOVE * spacing } else { height(k + 1) - height(k) };
+            Cell { x, axes: self.axes[w], spacing, above }
+        })
+    }
+
+    /// The columns, given the numbers of the seats' particles in the order of [`seats`](Self::seats).
+    pub(super) fn finish(&self, mut numbers: impl Iterator<Item = u32>) -> Vec<Column> {
+        let column = |w: usize| Column {
+            particles: numbers.by_ref().take(self.counts[w]).collect(),
+            heights: self.heights[..self.counts[w]].to_vec(),
+            beside: self.beside[w],
+        };
+        (0..self.counts.len()).map(column).collect()
+    }
+}
+
+/// What a particle of a column takes the place of: a box from its height up to the next.
+struct Cell<const D: usize> {
+    x: Vector<D>,
+    axes: [Vector<D>; 2],
+    spacing: f64,
+    above: f64,
+}
+
+/// Where a leaf of the background lies.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Place {
+    /// In the box.
+    Inside,
+    /// Too near to the particle.
+    Near,
+    /// Neither.
+    Clear,
+}
+
+impl<const D: usize> Cell<D> {
+    fn place(&self, leaf: &Leaf<D>) -> Place {
+        let d = leaf.centre - self.x;
+        let [along, normal] = &self.axes;
+        let up = d.dot(normal);
+        if d.dot(along).abs() < HALF_WIDTH * self.spacing && 0.0 <= up && up < self.above {
+            return Place::Inside;
+        }
+        if d.norm() < APART * 0.5 * (self.spacing + leaf.size) { Place::Near } else { Place::Clear }
+    }
+}
+
+/// The leaf cut in halves along every axis.
+fn quarters<const D: usize>(leaf: &Leaf<D>) -> Vec<Leaf<D>> {
+    let part = |c: u32| {
+        let side = Vector::from_fn(|d| if c >> d & 1 == 1 { 0.25 } else { -0.25 });
+        Leaf { centre: leaf.centre + side * leaf.size, size: 0.5 * leaf.size, level: leaf.level + 1, ..*leaf }
+    };
+    (0..1 << D).map(part).collect()
+}

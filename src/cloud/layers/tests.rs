@@ -1,0 +1,167 @@
+//! Layers on bodies that break them: thin edges, corners, bends, other walls.
+use crate::cloud::conservative::conservative;
+use crate::cloud::{Cloud, Diagnosis, Operators};
+use crate::geometry::load_surface;
+use crate::math::Vector;
+use crate::scheme::boundary::WallFits;
+
+fn build(body: &str, rest: &str) -> Cloud<2> {
+    let text = format!("title = \"t\"\n[flow]\nmach = 0.5\n[[body]]\n{body}\n[cloud]\nfar_field = 4\n{rest}");
+    let case = crate::case::read(&text, "test").unwrap();
+    let surface = load_surface(&case, std::path::Path::new(".")).unwrap().0;
+    Cloud::build(&case, Some(&surface), &[]).unwrap()
+}
+
+const CIRCLE: &str = "circle = { radius = 0.5 }";
+const NACA: &str = "naca = \"0012\"";
+const PLATE: &str = "polygon = [[0, 0], [1, 0], [1, 0.004], [0, 0.004]]";
+const SQUARE: &str = "polygon = [[0, 0], [1, 0], [1, 1], [0, 1]]";
+const PLUS: &str = "polygon = [[1, 0], [2, 0], [2, 1], [3, 1], [3, 2], [2, 2], [2, 3], [1, 3], [1, 2], [0, 2], [0, 1], [1, 1]]\nscale = 0.4";
+
+/// Largest relative error of the slopes of linear fields over all rows that are not of first order.
+fn slope_error(cloud: &Cloud<2>, operators: &Operators<2>) -> f64 {
+    let mut slope = vec![[Vector::<2>::ZERO; 2]; cloud.n_rows()];
+    for k in 0..operators.parts.len() {
+        for e in operators.edges(k) {
+            let d = cloud.x[e.j()] - cloud.x[e.i()];
+            for axis in 0..2 {
+                slope[e.i()][axis] += e.a_i * d[axis];
+                if e.both() {
+                    slope[e.j()][axis] -= e.a_j * d[axis];
+                }
+            }
+        }
+    }
+    let exact = |i: &usize| cloud.first_order.binary_search(&(*i as u32)).is_err();
+    let error = |i: usize| (0..2).map(|a| (slope[i][a] - Vector::axis(a)).max_abs()).fold(0.0, f64::max);
+    (0..cloud.n_rows()).filter(exact).map(error).fold(0.0, f64::max)
+}
+
+fn aspect(cloud: &Cloud<2>) -> f64 {
+    let ratio = |i: usize| cloud.layers.slot(i).map_or(1.0, |(c, k)| cloud.spacing[i] / cloud.layers.thickness(c, k));
+    (0..cloud.n_fluid).map(ratio).fold(0.0, f64::max)
+}
+
+fn worst(diagnosis: &Diagnosis, measure: &str) -> f64 {
+    diagnosis.worst.iter().find(|w| w.measure == measure).map_or(0.0, |w| w.value)
+}
+
+/// Area of the interior of the domain, without the leaves that carry the outer particles and without the body.
+fn free_area(cloud: &Cloud<2>, body: f64) -> f64 {
+    let extent = cloud.tree.bounds().extent();
+    let rim: f64 = cloud.outer_range().map(|i| cloud.spacing[i] * cloud.spacing[i]).sum();
+    extent[0] * extent[1] - rim - body
+}
+
+/// Builds a cloud, checks all that must hold, and returns it with its diagnosis.
+fn check(body: &str, area: f64, (spacing, first): (f64, f64)) -> (Cloud<2>, Diagnosis) {
+    let mut cloud = build(body, &format!("spacing = {spacing}\nwall_layers = {{ first = {first} }}"));
+    let mut operators = Operators::new(&cloud);
+    assert!(slope_error(&cloud, &operators) < 1e-10);
+    let fits = WallFits::new(&cloud);
+    let diagnosis = Diagnosis::of(&cloud, fits.n_linear);
+    assert!(cloud.volume[..cloud.n_fluid].iter().all(|v| *v > 0.0));
+    let (sum, free) = (cloud.volume[..cloud.n_fluid].iter().sum::<f64>(), free_area(&cloud, area));
+    // what the volumes miss is counted against the neighbourhood of the body, not against the far field
+    assert!((sum - free).abs() < 0.05 * area.max(0.5), "{body}: {sum} {free}");
+    let report = conservative(&mut cloud, &mut operators);
+    assert!(report.closure_defect < 1e-13 && report.min_volume_ratio > 0.2 && report.n_softened == 0, "{report:?}");
+    assert!(report.linear_error_rms < 0.07, "{report:?}");
+    assert!(cloud.first_order.is_empty());
+    (cloud, diagnosis)
+}
+
+#[test]
+fn layers_are_healthy_at_any_aspect_ratio() {
+    let cases = [
+        (CIRCLE, std::f64::consts::PI * 0.25, 0.03),
+        (NACA, 0.0815, 0.0078125),
+        (PLATE, 0.004, 0.02),
+        (SQUARE, 1.0, 0.03),
+        (PLUS, 5.0 * 0.16, 0.03),
+    ];
+    for (body, area, spacing) in cases {
+        for ratio in [0.1, 0.005] {
+            let (cloud, diagnosis) = check(body, area, (spacing, ratio * spacing));
+            assert!(aspect(&cloud) > 0.7 / ratio);
+            assert!(diagnosis.notes.is_empty() && diagnosis.repairs.is_empty(), "{body}: {diagnosis:?}");
+            assert!(worst(&diagnosis, "condition number") < 20.0 && worst(&diagnosis, "one-sidedness") < 0.7);
+            assert!(worst(&diagnosis, "nearest neighbour") >= 0.3);
+        }
+    }
+}
+
+#[test]
+fn linear_fields_are_exact_on_a_curved_wall_at_an_aspect_ratio_of_1000() {
+    let cloud = build(CIRCLE, "spacing = 0.03\nwall_layers = { first = 2.2e-5 }");
+    assert!(aspect(&cloud) > 1000.0);
+    assert!(slope_error(&cloud, &Operators::new(&cloud)) < 1e-10);
+    let fits = WallFits::new(&cloud);
+    assert_eq!(fits.n_linear, 0);
+    // heights follow the growth, and rows inside the layers are crosses
+    for column in &cloud.layers.columns {
+        let exact = |k: usize| 2.2e-5 * (1.2f64.powi(k as i32 + 1) - 1.0) / 0.2;
+        assert!(column.heights.iter().enumerate().all(|(k, h)| (h / exact(k) - 1.0).abs() < 1e-12));
+        let top = column.particles.len();
+        assert!(column.particles[..top - 2].iter().all(|i| cloud.neighbours.of(*i as usize).len() == 4));
+    }
+}
+
+#[test]
+fn adjacent_columns_differ_by_one_layer_at_most() {
+    for body in [NACA, SQUARE, PLUS] {
+        let cloud = build(body, "spacing = 0.02\nwall_layers = { first = 0.0005 }");
+        for (w, column) in cloud.layers.columns.iter().enumerate() {
+            for other in column.beside.iter().flatten() {
+                assert!(cloud.layers.count(*other as usize).abs_diff(column.particles.len()) <= 1);
+            }
+            for (k, i) in column.particles.iter().enumerate() {
+                assert_eq!(cloud.layers.slot(*i as usize), Some((w, k + 1)));
+                assert_eq!(cloud.wall_distance[*i as usize], column.heights[k]);
+            }
+        }
+    }
+}
+
+#[test]
+fn columns_stop_where_walls_face_one_another() {
+    for gap in [0.3, 0.05, 0.004] {
+        let text = format!(
+            "title = \"t\"\n[flow]\nmach = 0.5\n[[body]]\n{CIRCLE}\n[[body]]\n{CIRCLE}\ntranslate = [{}, 0]\n[cloud]\nfar_field = 4\nspacing = 0.02\nwall_layers = {{ first = 0.001 }}",
+            1.0 + gap
+        );
+        let case = crate::case::read(&text, "test").unwrap();
+        let surface = load_surface::<2>(&case, std::path::Path::new(".")).unwrap().0;
+        let cloud = Cloud::build(&case, Some(&surface), &[]).unwrap();
+        assert!(slope_error(&cloud, &Operators::new(&cloud)) < 1e-10);
+        for i in (0..cloud.n_fluid).filter(|i| cloud.layers.slot(*i).is_some()) {
+            let x = &cloud.x[i];
+            assert!(!surface.inside(x) && surface.nearest(x, 0.8 * cloud.wall_distance[i]).is_none());
+        }
+    }
+}
+
+#[test]
+fn layers_go_on_across_a_plane_of_symmetry() {
+    let text = format!(
+        "title = \"t\"\n[flow]\nmach = 0.5\n[[body]]\n{NACA}\n[cloud]\nfar_field = 4\nspacing = 0.01\nwall_layers = {{ first = 0.0003 }}\n[boundary]\ny_min = \"symmetry\""
+    );
+    let case = crate::case::read(&text, "test").unwrap();
+    let surface = load_surface::<2>(&case, std::path::Path::new(".")).unwrap().0;
+    let mut cloud = Cloud::build(&case, Some(&surface), &[]).unwrap();
+    let mut operators = Operators::new(&cloud);
+    assert!(slope_error(&cloud, &operators) < 1e-10 && cloud.notes.is_empty());
+    let nose = (0..cloud.interface.len()).find(|w| cloud.layers.columns[*w].beside.contains(&Some(*w as u32))).unwrap();
+    let second = cloud.layers.columns[nose].particles[1] as usize;
+    assert!(cloud.x[second][0] < 0.0 && cloud.neighbours.of(second).len() == 4);
+    assert!(cloud.neighbours.of(second).iter().any(|j| *j as usize >= cloud.n_real()));
+    assert!(conservative(&mut cloud, &mut operators).closure_defect < 1e-13);
+}
+
+#[test]
+fn a_number_of_layers_is_kept() {
+    let cloud = build(CIRCLE, "spacing = 0.03\nwall_layers = { first = 0.002, growth = 1.1, count = 5 }");
+    assert!(cloud.layers.columns.iter().all(|c| c.particles.len() == 5));
+    let none = build(CIRCLE, "spacing = 0.03");
+    assert!(none.layers.is_empty() && none.layers.columns.is_empty());
+}

@@ -1,0 +1,168 @@
+//! Neighbours in the layers, and where layers meet the background.
+//!
+//! In the layers a particle sees the cross (i ± 1, k), (i, k ± 1); where the adjacent column is one layer shorter, its last
+//! particle instead. The last two layers, and every layer of a column beside a sharp edge, see the background as well:
+//! everything in sight within ρ (h_i + h_j)/2, which includes the last two layers of columns on other walls that face them.
+use super::neighbours::{IDENTITY, Search, Seen};
+use crate::math::Vector;
+
+/// Columns on walls whose normals differ less (cosine) do not see one another.
+const OTHER_WALL: f64 = 0.5;
+/// Factor on the radius where a last layer sees nothing above it.
+const WIDER: f64 = 1.5;
+/// Rise, in layers, of what counts as above.
+const HIGHER: f64 = 0.5;
+/// Layers that a wall fit uses.
+const FIT_LAYERS: usize = 3;
+/// Columns that a wall fit uses.
+const FIT_COLUMNS: usize = 3;
+/// Fewest particles of a wall fit in the layers: a quadratic one with three rows to spare.
+const FIT_LEAST: usize = 8;
+
+impl<const D: usize> Search<'_, D> {
+    /// True when particle `i` lies in a layer, or is the interface particle under one.
+    pub(super) fn in_layers(&self, i: usize) -> bool {
+        self.particles().layers.slot(i).is_some()
+    }
+
+    /// Everything that particles in layers see and are seen by, sorted.
+    pub(super) fn links(&self) -> Vec<(u32, Seen)> {
+        let layers = &self.particles().layers;
+        let mut links = Vec::new();
+        for c in (0..layers.columns.len()).filter(|c| layers.count(*c) > 0) {
+            for k in 0..=layers.count(c) {
+                let Some(i) = self.member(c, k) else { continue };
+                let mut seen = self.cross(c, k);
+                if layers.is_rim(c, k) {
+                    self.beyond(c, i, 1.0, &mut seen);
+                }
+                if k == layers.count(c) && !self.sees_above(i, &seen) {
+                    self.beyond(c, i, WIDER, &mut seen);
+                }
+                links.extend(seen.iter().map(|s| (i as u32, *s)));
+                links.extend(seen.iter().filter_map(|s| self.seen_from(i, *s)));
+            }
+        }
+        links.sort_unstable();
+        links.dedup();
+        links
+    }
+
+    /// Particle in layer `k` of a column; layer 0 is the interface particle.
+    fn member(&self, c: usize, k: usize) -> Option<usize> {
+        let p = self.particles();
+        match k.checked_sub(1) {
+            None => Some(p.n_fluid + c),
+            Some(k) => p.layers.columns[c].particles.get(k).map(|i| *i as usize),
+        }
+    }
+
+    /// Particle in layer `k` of the column on a side of column `c`, or the image of its own.
+    fn member_beside(&self, c: usize, side: usize, k: usize) -> Option<Seen> {
+        let other = self.particles().layers.columns[c].beside[side]? as usize;
+        let image = if other == c { self.plane_beside(c)? } else { IDENTITY };
+        self.member(other, k).map(|i| (i as u32, image))
+    }
+
+    /// The reflection that takes the interface particle of a column to the nearest place.
+    fn plane_beside(&self, c: usize) -> Option<u8> {
+        let i = self.particles().n_fluid + c;
+        let distance = |t: &u8| (self.position(i, *t) - self.particles().x[i]).norm();
+        self.reflections().min_by(|a, b| distance(a).total_cmp(&distance(b)))
+    }
+
+    /// The particles beside, below and above layer `k` of a column.
+    fn cross(&self, c: usize, k: usize) -> Vec<Seen> {
+        let mut seen: Vec<Seen> = [k.checked_sub(1), Some(k + 1)]
+            .into_iter()
+            .flatten()
+            .filter_map(|k| self.member(c, k))
+            .map(|i| (i as u32, IDENTITY))
+            .collect();
+        let beside = |side| self.member_beside(c, side, k).or_else(|| self.member_beside(c, side, k.checked_sub(1)?));
+        seen.extend((0..2).filter_map(beside));
+        seen
+    }
+
+    /// Whether anything lies above a particle in the last layer.
+    fn sees_above(&self, i: usize, seen: &[Seen]) -> bool {
+        let p = self.particles();
+        let rise = |s: &Seen| self.offset(i, &p.x[i], *s)[D - 1];
+        seen.iter().any(|s| rise(s) > HIGHER * p.spacing[i])
+    }
+
+    /// What particle `i` in column `c` sees beyond its column and those beside it, in a ball `wider` than usual.
+    fn beyond(&self, c: usize, i: usize, wider: f64, seen: &mut Vec<Seen>) {
+        let layers = &self.particles().layers;
+        self.candidates(i, wider * self.ball(i), |k, t| {
+            let visible = match layers.slot(k as usize) {
+                None => true,
+                Some((other, layer)) => self.faces(i, c, (other, layer), t),
+            };
+            if visible && self.sees_within_radius(i, k as usize, t, wider) {
+                seen.push((k, t));
+            }
+        });
+    }
+
+    /// Whether two particles of columns on walls that face one another may see one another: both in the last two layers, or,
+    /// in the two columns beside a sharp edge, one of them there or at the wall.
+    fn faces(&self, i: usize, c: usize, (other, layer): (usize, usize), t: u8) -> bool {
+        let layers = &self.particles().layers;
+        let last = |c: usize, k: usize| k > 0 && k + 2 > layers.count(c);
+        let broken = |c: usize| layers.columns[c].beside.contains(&None);
+        let Some((_, own)) = layers.slot(i) else { return false };
+        let normal = self.direction(&layers.axes(other)[1], t);
+        let (a, b) = (last(c, own), last(other, layer));
+        normal.dot(&layers.axes(c)[1]) < OTHER_WALL && (a && b || broken(c) && broken(other) && (a || b))
+    }
+
+    /// Pairs that a widened row may have: none inside the layers but those a step away.
+    pub(super) fn may_join(&self, i: usize, (k, t): Seen, d: &Vector<D>) -> bool {
+        let layers = &self.particles().layers;
+        let inner = |i: usize| layers.slot(i).is_some_and(|(c, k)| !layers.is_rim(c, k));
+        if !self.in_layers(i) && !self.in_layers(k as usize) {
+            return true;
+        }
+        let source = super::layers::Source { index: k as usize, image: t != IDENTITY };
+        let both = self.in_layers(i) && self.in_layers(k as usize);
+        !inner(i) && !inner(k as usize) && (!both || layers.steps(i, source, d).is_some_and(|s| s.1.abs() <= 1))
+    }
+
+    /// Fluid particles from which the state of the interface particle under column `c` is fitted; too few where the layers
+    /// are.
+    fn column_cloud(&self, c: usize) -> Vec<Seen> {
+        let layers = &self.particles().layers;
+        let mut columns = vec![(c, IDENTITY)];
+        let mut ends = [Some(c), Some(c)];
+        // a column a side, more on one side beside a sharp edge
+        while columns.len() < FIT_COLUMNS && ends != [None, None] {
+            for side in 0..2 {
+                let Some(end) = ends[side].filter(|_| columns.len() < FIT_COLUMNS) else { continue };
+                ends[side] = layers.columns[end].beside[side].map(|b| b as usize).filter(|b| *b != end);
+                let image = layers.columns[end].beside[side] == Some(end as u32) && end == c;
+                match ends[side] {
+                    Some(b) => columns.push((b, IDENTITY)),
+                    None if image => columns.extend(self.plane_beside(c).map(|t| (c, t))),
+                    None => {}
+                }
+            }
+        }
+        let of = |(c, t): &(usize, u8)| {
+            let particles = &layers.columns[*c].particles;
+            particles.iter().take(FIT_LAYERS).map(|i| (*i, *t)).collect::<Vec<_>>()
+        };
+        columns.iter().flat_map(of).collect()
+    }
+
+    /// The fluid that an interface particle takes its state from: its own layers and those beside, else all in front of it.
+    pub(super) fn wall_cloud(&self, w: usize, list: &mut Vec<Seen>) {
+        let i = w + self.particles().n_fluid;
+        let layers = if self.in_layers(i) { self.column_cloud(w) } else { Vec::new() };
+        if layers.len() >= FIT_LEAST {
+            list.extend(layers);
+        } else {
+            self.fluid_in_front(i, list);
+        }
+    }
+}
