@@ -8,6 +8,7 @@ mod folder;
 mod inspect;
 mod measure;
 mod outputs;
+pub mod periodic;
 mod persist;
 mod pictures;
 mod setup;

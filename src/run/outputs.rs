@@ -87,6 +87,8 @@ pub(super) fn write_all<const D: usize>(
         loads_momentum_balance: through,
         ledger,
         time: journal.time,
+        unconverged_steps: journal.unconverged,
+        periodic_change: journal.period.and_then(|p| journal.trace.change(p)),
         bytes_per_particle: bytes_of(fluid, journal.bytes) as f64 / n as f64,
         cpu_ms_per_particle: 1e3 * cpu / n as f64,
         linear_iterations: journal.linear,
@@ -95,6 +97,9 @@ pub(super) fn write_all<const D: usize>(
         phases: vec![("solve".into(), solved), ("files so far".into(), clock.wall_seconds() - solved)],
     };
     r.write_tables(&journal.cycles, &summary)?;
+    if let Some(period) = journal.period {
+        journal.trace.write(&places.out, period)?;
+    }
     let all = snapshot::field(r.case, r.fluid, r.work);
     journal.show(&all);
     r.write_fields(&all, journal.time)?;

@@ -1,6 +1,7 @@
 //! One stage from its start to its end: the integrator, watched.
 
 use super::outputs;
+use super::periodic::{Moment, Trace};
 use super::persist::{FILE, Position, Saved};
 use super::setup::{Solver, control, inner_control, plan, prelude};
 use super::snapshot::{LoadFrame, Snapshot, load_axes};
@@ -66,7 +67,9 @@ pub(super) struct Journal<'a> {
     /// Steps in time that did not reach their goal.
     pub(super) unconverged: u32,
     /// Period of the motion.
-    period: Option<f64>,
+    pub(super) period: Option<f64>,
+    /// Loads and motion of the march so far.
+    pub(super) trace: Trace,
 }
 
 impl<'a> Journal<'a> {
@@ -103,6 +106,7 @@ impl<'a> Journal<'a> {
             bytes: 0,
             linear: 0,
             unconverged: saved.map_or(0, |s| s.past.unconverged),
+            trace: saved.filter(|s| s.time > 0.0).map_or_else(Trace::default, |s| Trace::read(&places.out, s.time)),
             period,
         })
     }
@@ -131,13 +135,7 @@ impl<'a> Journal<'a> {
     fn is_periodic(&self, time: f64, before: f64, tolerance: f64) -> bool {
         let Some(period) = self.period else { return false };
         let ended = (time / period + NEARLY).floor() > (before / period + NEARLY).floor();
-        ended && time / period > 1.5 && self.change(period).is_some_and(|c| c < tolerance)
-    }
-
-    /// Largest change of mean and first harmonic of the loads between the last two periods.
-    fn change(&self, period: f64) -> Option<f64> {
-        let _ = period;
-        None
+        ended && time / period > 1.5 && self.trace.change(period).is_some_and(|c| c.mean.max(c.first_harmonic) < tolerance)
     }
 
     fn record<const D: usize>(
@@ -158,6 +156,9 @@ impl<'a> Journal<'a> {
             let at = |law: &Law<D>| (law.angle(step.time).value, law.displacement(step.time).to_3d());
             let (angle, shift) = fluid.carriage.law().map_or_else(still, at);
             row.extend([f64::from(inner), angle.to_degrees(), shift[0], shift[1], shift[2]]);
+            if step.time > 0.0 {
+                self.trace.push(Moment { time: step.time, loads: c, motion: [angle, shift[0], shift[1], shift[2]] });
+            }
         }
         self.history.append(&row)?;
         self.monitor.tick(&Tick {

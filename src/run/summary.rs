@@ -36,6 +36,11 @@ pub struct Summary {
     pub ledger: Ledger,
     /// Physical time at the end of a march.
     pub time: f64,
+    /// Steps in time that did not reach their goal.
+    pub unconverged_steps: u32,
+    /// How the loads of the last period differ from those of the one before, where the motion repeats.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub periodic_change: Option<super::periodic::Change>,
     /// Bytes per particle: cloud, operators, state and integrator.
     pub bytes_per_particle: f64,
     /// Processor milliseconds per particle.

@@ -1,0 +1,147 @@
+//! What a motion that repeats says about its loads: harmonics, loops, work of a cycle.
+use std::path::Path;
+
+use serde::Serialize;
+use serde_json::{Value, json};
+
+use super::RunError;
+use crate::observe::harmonics::{Harmonics, Periodicity, Window};
+use crate::observe::loads::Coefficients;
+use crate::observe::table::{Entry, write_csv, write_json};
+
+/// Harmonics that are reported.
+const HARMONICS: usize = 5;
+/// Points of a loop.
+const POINTS: usize = 256;
+/// Smallest amplitude of a motion, in radians or lengths, that loads are measured against.
+const STILL: f64 = 1e-12;
+
+/// One moment of a history.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Moment {
+    /// Time.
+    pub(super) time: f64,
+    /// Loads.
+    pub(super) loads: Coefficients,
+    /// Angle (radians, nose up) and displacement of the first body that moves.
+    pub(super) motion: [f64; 4],
+}
+
+/// The history of the loads of a march.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Trace {
+    moments: Vec<Moment>,
+}
+
+/// How the loads differ from those one period before.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub struct Change {
+    /// Periods marched.
+    pub periods: f64,
+    /// Greatest change of a mean over the first harmonic.
+    pub mean: f64,
+    /// Greatest change of a first harmonic over itself.
+    pub first_harmonic: f64,
+}
+
+impl Trace {
+    /// Adds a moment.
+    pub(super) fn push(&mut self, moment: Moment) {
+        self.moments.push(moment);
+    }
+
+    /// The part of a trace that the history of an interrupted run holds.
+    pub(super) fn read(out: &Path, until: f64) -> Self {
+        let text = std::fs::read_to_string(out.join("history.csv")).unwrap_or_default();
+        let mut lines = text.lines();
+        let header: Vec<&str> = lines.next().unwrap_or_default().split(',').collect();
+        let names = ["time", "cl", "cd", "cm", "angle_deg", "shift_x", "shift_y", "shift_z"];
+        let columns: Option<Vec<usize>> = names.iter().map(|n| header.iter().position(|h| h == n)).collect();
+        let Some(at) = columns else { return Self::default() };
+        let row = |line: &str| {
+            let values: Vec<f64> = line.split(',').map(|v| v.parse().unwrap_or(f64::NAN)).collect();
+            let get = |k: usize| values.get(at[k]).copied().unwrap_or(f64::NAN);
+            let loads = Coefficients { cl: get(1), cd: get(2), cm: get(3) };
+            Moment { time: get(0), loads, motion: [get(4).to_radians(), get(5), get(6), get(7)] }
+        };
+        // iterations before the march stand at time zero
+        Self { moments: lines.map(row).filter(|m| m.time > 0.0 && m.time <= until * (1.0 + 1e-12)).collect() }
+    }
+
+    fn column(&self, f: impl Fn(&Moment) -> f64) -> Vec<f64> {
+        self.moments.iter().map(f).collect()
+    }
+
+    /// Change over the last period; `None` while there are not two.
+    pub(super) fn change(&self, period: f64) -> Option<Change> {
+        let time = self.column(|m| m.time);
+        let loads = [self.column(|m| m.loads.cl), self.column(|m| m.loads.cm)];
+        let changes: Option<Vec<Periodicity>> = loads.iter().map(|v| Periodicity::of(&time, v, period)).collect();
+        let changes = changes?;
+        let largest = |f: fn(&Periodicity) -> f64| changes.iter().map(f).fold(0.0, f64::max);
+        Some(Change {
+            periods: time.last()? / period,
+            mean: largest(|p| p.mean),
+            first_harmonic: largest(|p| p.first),
+        })
+    }
+
+    /// Writes `harmonics.json` and `loops.csv` from the last period; nothing while there is none.
+    pub(super) fn write(&self, out: &Path, period: f64) -> Result<(), RunError> {
+        let time = self.column(|m| m.time);
+        let window = Window { period, periods: 1.0, harmonics: HARMONICS };
+        let fit = |f: &dyn Fn(&Moment) -> f64| Harmonics::fit(&time, &self.column(f), &window).ok();
+        let loads = [fit(&|m| m.loads.cl), fit(&|m| m.loads.cd), fit(&|m| m.loads.cm)];
+        let [Some(cl), Some(cd), Some(cm)] = loads else { return Ok(()) };
+        let motions: Vec<(&str, Harmonics)> = ["angle", "shift_x", "shift_y", "shift_z"]
+            .into_iter()
+            .enumerate()
+            .filter_map(|(k, name)| Some((name, fit(&|m: &Moment| m.motion[k])?)))
+            .filter(|(_, h)| h.term(1).norm() > STILL)
+            .collect();
+        let loads = [("cl", &cl), ("cd", &cd), ("cm", &cm)];
+        let about = |motion: &(&str, Harmonics)| {
+            let per = |(name, h): &(&str, &Harmonics)| ((*name).to_owned(), ratio(h, &motion.1));
+            json!({
+                "motion": motion.0,
+                "amplitude": motion.1.term(1).norm(),
+                "loads_per_motion": loads.iter().map(per).collect::<serde_json::Map<String, Value>>(),
+            })
+        };
+        let whole = json!({
+            "convention": "f(t) = mean + Re sum f_n exp(+i n omega t); ratios are first harmonic of the load over that of \
+                           the motion (radians, lengths), phase positive when the load leads; times are those of the run",
+            "omega": cl.omega,
+            "period": period,
+            "change_over_last_period": self.change(period),
+            "loads": loads.iter().map(|(n, h)| ((*n).to_owned(), series(h))).collect::<serde_json::Map<String, Value>>(),
+            "about_motion": motions.iter().map(about).collect::<Vec<_>>(),
+        });
+        write_json(&out.join("harmonics.json"), &whole)?;
+        let rows = (0..POINTS).map(|k| {
+            let t = period * k as f64 / POINTS as f64;
+            let angle = motions.iter().find(|m| m.0 == "angle").map_or(0.0, |m| m.1.at(t).to_degrees());
+            let shift = motions.iter().find(|m| m.0 != "angle").map_or(0.0, |m| m.1.at(t));
+            [k as f64 / POINTS as f64, angle, shift, cl.at(t), cd.at(t), cm.at(t)].map(Entry::from).to_vec()
+        });
+        Ok(write_csv(&out.join("loops.csv"), &["phase", "angle_deg", "shift", "cl", "cd", "cm"], rows)?)
+    }
+}
+
+/// Mean, complex harmonics and what they leave.
+fn series(h: &Harmonics) -> Value {
+    let terms: Vec<Value> = h.terms.iter().map(|c| json!({ "re": c.re, "im": c.im, "abs": c.norm() })).collect();
+    json!({ "mean": h.mean, "harmonics": terms, "remainder_rms": h.remainder })
+}
+
+/// First harmonic of a load over that of the motion, and the work of a cycle.
+fn ratio(load: &Harmonics, motion: &Harmonics) -> Value {
+    let per = load.per(motion);
+    json!({
+        "re": per.re,
+        "im": per.im,
+        "amplitude": per.norm(),
+        "phase_deg": per.arg().to_degrees(),
+        "work_per_cycle": load.work(motion),
+    })
+}
