@@ -10,8 +10,6 @@ const ENOUGH_LEFT: f64 = 0.1;
 /// Storage of GMRES, reused between calls.
 pub struct Gmres {
     basis: Vec<Vec<f32>>,
-    v: Vec<f64>,
-    rest: Vec<f64>,
     hessenberg: Vec<Vec<f64>>,
     z: Vec<f64>,
     w: Vec<f64>,
@@ -31,8 +29,6 @@ impl Gmres {
     pub fn new(n: usize, size: usize) -> Self {
         Self {
             basis: vec![vec![0.0; n]; size + 1],
-            v: vec![0.0; n],
-            rest: vec![0.0; n],
             hessenberg: vec![vec![0.0; size + 1]; size],
             z: vec![0.0; n],
             w: vec![0.0; n],
@@ -41,70 +37,46 @@ impl Gmres {
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        self.z.len() * (4 * self.basis.len() + 8 * 4)
+        self.z.len() * (4 * self.basis.len() + 8 * 2)
     }
 
-    /// Solves A x = b from x = 0 until the residual has fallen to `tolerance`, starting again with an empty basis at most
-    /// `restarts` times.
+    /// Solves A x = b from x = 0 until the residual has fallen to `tolerance` or the basis is full.
     ///
     /// `product(v, out)` is A v; `precondition(v, out)` ≈ A⁻¹ v.
     pub fn solve(
         &mut self,
         (b, x): (&[f64], &mut [f64]),
-        (tolerance, restarts): (f64, usize),
+        tolerance: f64,
         mut product: impl FnMut(&[f64], &mut [f64]),
-        mut precondition: impl FnMut(&[f64], &mut [f64]),
+        mut precondition: impl FnMut(&[f32], &mut [f64]),
     ) -> Solved {
         x.fill(0.0);
-        let start = norm(b);
-        let mut solved = Solved { iterations: 0, reduction: if start > 0.0 { 1.0 } else { 0.0 } };
-        self.rest.copy_from_slice(b);
-        for cycle in 0..=restarts {
-            if solved.reduction <= tolerance {
-                break;
-            }
-            if cycle > 0 {
-                product(x, &mut self.w);
-                self.rest.iter_mut().zip(&self.w).zip(b).for_each(|((r, w), b)| *r = b - w);
-            }
-            let (used, size) = self.cycle(tolerance * start, &mut product, &mut precondition);
-            precondition(&self.w, &mut self.z);
-            x.iter_mut().zip(&self.z).for_each(|(x, z)| *x += z);
-            solved = Solved { iterations: solved.iterations + used, reduction: size / start };
-        }
-        solved
-    }
-
-    /// One basis for the right-hand side in `rest`; leaves the combination of basis vectors in `w`. Returns the number of
-    /// vectors and the size of the residual.
-    fn cycle(
-        &mut self,
-        goal: f64,
-        product: &mut impl FnMut(&[f64], &mut [f64]),
-        precondition: &mut impl FnMut(&[f64], &mut [f64]),
-    ) -> (usize, f64) {
         let size = self.hessenberg.len();
-        let start = norm(&self.rest);
-        let rest = &self.rest;
-        sweep(&mut self.basis[0], |i| (rest[i] / start) as f32);
+        let start = norm(b);
+        if start == 0.0 {
+            return Solved { iterations: 0, reduction: 0.0 };
+        }
+        sweep(&mut self.basis[0], |i| (b[i] / start) as f32);
         let mut g = vec![0.0; size + 1];
         let mut rotations: Vec<(f64, f64)> = Vec::with_capacity(size);
         g[0] = start;
         let mut used = 0;
         for k in 0..size {
-            let direction = &self.basis[k];
-            sweep(&mut self.v, |i| f64::from(direction[i]));
-            precondition(&self.v, &mut self.z);
+            precondition(&self.basis[k], &mut self.z);
             product(&self.z, &mut self.w);
             self.orthogonalise(k);
             self.rotate(k, &mut rotations, &mut g);
             used = k + 1;
-            if g[k + 1].abs() <= goal || self.hessenberg[k][k] == 0.0 {
+            if g[k + 1].abs() <= tolerance * start || self.hessenberg[k][k] == 0.0 {
                 break;
             }
         }
         self.combine(used, &g);
-        (used, g[used].abs())
+        // the next basis vector is not needed any more: it takes the combination to the preconditioner
+        let w = &self.w;
+        sweep(&mut self.basis[used], |i| w[i] as f32);
+        precondition(&self.basis[used], x);
+        Solved { iterations: used, reduction: g[used].abs() / start }
     }
 
     /// Gram-Schmidt of A z against the basis; once more where the first pass left little of it.

@@ -72,10 +72,10 @@ impl Multilevel {
         }
     }
 
-    /// z ≈ A⁻¹ r.
-    pub fn apply(&mut self, r: &[f64], z: &mut [f64]) {
+    /// z ≈ A⁻¹ r, where `r(k)` is component k of the right-hand side.
+    pub fn apply(&mut self, r: impl Fn(usize) -> f32 + Sync, z: &mut [f64]) {
         let finest = &mut self.levels[0].sweeps;
-        sweep(&mut finest.b, |k| r[k] as f32);
+        sweep(&mut finest.b, r);
         finest.clear();
         cycle(&mut self.levels, self.cycle);
         let x = &self.levels[0].sweeps.x;

@@ -57,7 +57,7 @@ fn look<const D: usize>(case: &Case, places: &Places, files: bool) -> Result<Clo
     let stage = setup::Stage { factor: 1.0, cycle: 0, march: false };
     let solver = setup::solver(case, &stage, surface.as_ref(), (&[], &motions), None)?;
     let seconds = began.elapsed().as_secs_f64();
-    let (fluid, u) = (&solver.fluid, &solver.initial);
+    let (fluid, u) = (&solver.fluid, &solver.fluid.start());
     let (mut work, mut du) = (fluid.work(), vec![0.0; u.len()]);
     let frame = fluid.frame(&Moment::At { time: 0.0 }, u);
     let timer = Instant::now();
@@ -131,8 +131,8 @@ fn write<const D: usize>(
 ) -> Result<(), RunError> {
     super::folder::create(case, places)?;
     let fluid = &solver.fluid;
-    let frame = fluid.frame(&Moment::At { time: 0.0 }, &solver.initial);
-    fluid.fill_states(&frame, &solver.initial, work);
+    let frame = fluid.frame(&Moment::At { time: 0.0 }, &solver.fluid.start());
+    fluid.fill_states(&frame, &solver.fluid.start(), work);
     let cloud = &fluid.shape.cloud;
     let n = cloud.n_real();
     let points: Vec<[f64; 3]> = cloud.x[..n].iter().map(crate::math::Vector::to_3d).collect();

@@ -3,7 +3,9 @@ use std::path::Path;
 
 use super::snapshot::Units;
 use super::{Snapshot, Summary};
-use crate::case::Case;
+use num_complex::Complex64;
+
+use crate::case::{Case, Shape};
 use crate::math::{Bounds, Vector};
 use crate::physics::{Gas, Primitive};
 use crate::scheme::start::free_stream;
@@ -39,6 +41,10 @@ impl Measured {
             Metric::Cm => Ok(s.loads.cm),
             Metric::ClMomentum => Ok(s.loads_momentum_balance.cl),
             Metric::CdMomentum => Ok(s.loads_momentum_balance.cd),
+            Metric::LiftAmplitude => self.lift().map(|c| c.norm()),
+            Metric::LiftPhase => self.lift().map(|c| c.arg().to_degrees()),
+            Metric::ThinLiftAmplitude => self.thin_lift(other).map(|c| c.norm()),
+            Metric::ThinLiftPhase => self.thin_lift(other).map(|c| c.arg().to_degrees()),
             Metric::ResidualDrop => Ok(s.residual_drop),
             Metric::Converged => Ok(f64::from(u8::from(s.converged))),
             Metric::Particles => Ok(s.particles as f64),
@@ -61,6 +67,32 @@ impl Measured {
             Metric::ShockPositionError => self.shock_position_error(),
             Metric::WaveAngle => self.wave_angle(claim),
         }
+    }
+
+    /// First harmonic of the lift over that of the motion.
+    fn lift(&self) -> Result<Complex64, String> {
+        let first = self.summary.first_harmonics.first();
+        first.map(|h| Complex64::new(h.cl[0], h.cl[1])).ok_or_else(|| "no motion repeats in this case".into())
+    }
+
+    /// The same on a section of no thickness, along the line through this one and another.
+    fn thin_lift(&self, other: Option<&Self>) -> Result<Complex64, String> {
+        let other = other.ok_or("the claim names no `other` section")?;
+        let (own, far) = (self.thickness()?, other.thickness()?);
+        if own == far {
+            return Err("both sections are equally thick".into());
+        }
+        let slope = (other.lift()? - self.lift()?) / (far - own);
+        Ok(self.lift()? - slope * own)
+    }
+
+    /// Thickness of the NACA section in parts of the chord.
+    fn thickness(&self) -> Result<f64, String> {
+        let digits = self.case.bodies.first().and_then(|b| match &b.shape {
+            Shape::Naca(naca) => naca.digits.get(2..4)?.parse::<f64>().ok(),
+            _ => None,
+        });
+        digits.map(|d| 0.01 * d).ok_or_else(|| "the body is no NACA 4-digit section".into())
     }
 
     /// Cp of the wall particles in the region less the reference there.

@@ -180,7 +180,8 @@ pub fn build_solver<const D: usize>(case: &Case, input: &Path) -> Result<(Fluid<
     let motions = setup::motions(case, input, surface.as_ref())?;
     let plain = Stage { factor: 1.0, cycle: 0, march: false };
     let solver = setup::solver(case, &plain, surface.as_ref(), (&[], &motions), None)?;
-    Ok((solver.fluid, solver.initial))
+    let start = solver.fluid.start();
+    Ok((solver.fluid, start))
 }
 
 /// All stages of a run.
@@ -222,7 +223,7 @@ fn drive<const D: usize>(
             }
             (None, None) => {
                 let solver = build()?;
-                let state = solver.initial.clone();
+                let state = solver.fluid.start();
                 (solver, solve::Start::Fresh(state))
             }
         };

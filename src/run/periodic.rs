@@ -44,7 +44,48 @@ pub struct Change {
     pub first_harmonic: f64,
 }
 
+/// First harmonics of the loads over that of one part of the motion: real and imaginary parts.
+#[derive(Clone, Debug, Serialize)]
+pub struct FirstHarmonics {
+    /// `angle` (loads per radian) or `shift_x`, `shift_y`, `shift_z` (per length).
+    pub motion: &'static str,
+    /// Lift.
+    pub cl: [f64; 2],
+    /// Drag.
+    pub cd: [f64; 2],
+    /// Moment.
+    pub cm: [f64; 2],
+}
+
+/// Parts of the motion that are there, by name.
+type Moved = Vec<(&'static str, Harmonics)>;
+
+/// Parts of a motion.
+const PARTS: [&str; 4] = ["angle", "shift_x", "shift_y", "shift_z"];
+
 impl Trace {
+    /// Series of the loads and of the parts of the motion that are there, from the last period.
+    fn fitted(&self, period: f64) -> Option<([Harmonics; 3], Moved)> {
+        let time = self.column(|m| m.time);
+        let window = Window { period, periods: 1.0, harmonics: HARMONICS };
+        let fit = |f: &dyn Fn(&Moment) -> f64| Harmonics::fit(&time, &self.column(f), &window).ok();
+        let loads = [fit(&|m| m.loads.cl)?, fit(&|m| m.loads.cd)?, fit(&|m| m.loads.cm)?];
+        let moved = |(k, name): (usize, &'static str)| Some((name, fit(&|m: &Moment| m.motion[k])?));
+        let motions = PARTS.into_iter().enumerate().filter_map(moved).filter(|(_, h)| h.term(1).norm() > STILL);
+        Some((loads, motions.collect()))
+    }
+
+    /// First harmonics over each part of the motion; none while there is no whole period.
+    pub(super) fn first_harmonics(&self, period: f64) -> Vec<FirstHarmonics> {
+        let Some((loads, motions)) = self.fitted(period) else { return Vec::new() };
+        let over = |motion: &Harmonics| loads.each_ref().map(|h| [h.per(motion).re, h.per(motion).im]);
+        let all = motions.iter().map(|(name, motion)| {
+            let [cl, cd, cm] = over(motion);
+            FirstHarmonics { motion: name, cl, cd, cm }
+        });
+        all.collect()
+    }
+
     /// Adds a moment.
     pub(super) fn push(&mut self, moment: Moment) {
         self.moments.push(moment);
@@ -79,28 +120,14 @@ impl Trace {
         let changes: Option<Vec<Periodicity>> = loads.iter().map(|v| Periodicity::of(&time, v, period)).collect();
         let changes = changes?;
         let largest = |f: fn(&Periodicity) -> f64| changes.iter().map(f).fold(0.0, f64::max);
-        Some(Change {
-            periods: time.last()? / period,
-            mean: largest(|p| p.mean),
-            first_harmonic: largest(|p| p.first),
-        })
+        Some(Change { periods: time.last()? / period, mean: largest(|p| p.mean), first_harmonic: largest(|p| p.first) })
     }
 
     /// Writes `harmonics.json` and `loops.csv` from the last period; nothing while there is none.
     pub(super) fn write(&self, out: &Path, period: f64) -> Result<(), RunError> {
-        let time = self.column(|m| m.time);
-        let window = Window { period, periods: 1.0, harmonics: HARMONICS };
-        let fit = |f: &dyn Fn(&Moment) -> f64| Harmonics::fit(&time, &self.column(f), &window).ok();
-        let loads = [fit(&|m| m.loads.cl), fit(&|m| m.loads.cd), fit(&|m| m.loads.cm)];
-        let [Some(cl), Some(cd), Some(cm)] = loads else { return Ok(()) };
-        let motions: Vec<(&str, Harmonics)> = ["angle", "shift_x", "shift_y", "shift_z"]
-            .into_iter()
-            .enumerate()
-            .filter_map(|(k, name)| Some((name, fit(&|m: &Moment| m.motion[k])?)))
-            .filter(|(_, h)| h.term(1).norm() > STILL)
-            .collect();
+        let Some(([cl, cd, cm], motions)) = self.fitted(period) else { return Ok(()) };
         let loads = [("cl", &cl), ("cd", &cd), ("cm", &cm)];
-        let about = |motion: &(&str, Harmonics)| {
+        let about = |motion: &(&'static str, Harmonics)| {
             let per = |(name, h): &(&str, &Harmonics)| ((*name).to_owned(), ratio(h, &motion.1));
             json!({
                 "motion": motion.0,

@@ -102,8 +102,6 @@ pub(super) fn stages(case: &Case, n: usize, dimension: usize) -> Vec<Stage> {
 pub(super) struct Solver<const D: usize> {
     /// Equations.
     pub(super) fluid: Fluid<D>,
-    /// State at the start.
-    pub(super) initial: Vec<f64>,
 }
 
 /// Reads the bodies of a case; `None` when it has none.
@@ -140,10 +138,6 @@ pub(super) fn solver<const D: usize>(
         conserve(&mut cloud, &mut operators);
     }
     let gas = Gas { gamma: case.flow.gamma };
-    let mut u = vec![0.0; cloud.n_fluid * (D + 2)];
-    for (x, row) in cloud.x.iter().zip(u.chunks_exact_mut(D + 2)) {
-        gas.conserved(&field(x)).store(row);
-    }
     let scheme = &case.scheme;
     let centre = surface.map_or(Vector::ZERO, |s| vortex_centre(&s.bounds()));
     let fluid = Fluid {
@@ -162,7 +156,7 @@ pub(super) fn solver<const D: usize>(
         before: None,
         shape: Arc::new(Shape::new(cloud, operators)),
     };
-    Ok(Solver { fluid, initial: u })
+    Ok(Solver { fluid })
 }
 
 /// How the particles of a cloud follow the bodies.
@@ -225,7 +219,7 @@ pub(super) fn transfer<const D: usize>(
     old.fill_states(&frame, state, &mut work);
     old.fill_gradients(&frame, &mut work);
     let probe = Probe::new(old, &work, surface);
-    let mut u = next.initial.clone();
+    let mut u = next.fluid.start();
     let cloud = &next.fluid.shape.cloud;
     crate::math::sweep::sweep_rows(&mut u, D + 2, |i, row| {
         let found = probe.at(&cloud.x[i]).filter(crate::physics::Primitive::is_physical);

@@ -135,7 +135,9 @@ impl<'a> Journal<'a> {
     fn is_periodic(&self, time: f64, before: f64, tolerance: f64) -> bool {
         let Some(period) = self.period else { return false };
         let ended = (time / period + NEARLY).floor() > (before / period + NEARLY).floor();
-        ended && time / period > 1.5 && self.trace.change(period).is_some_and(|c| c.mean.max(c.first_harmonic) < tolerance)
+        ended
+            && time / period > 1.5
+            && self.trace.change(period).is_some_and(|c| c.mean.max(c.first_harmonic) < tolerance)
     }
 
     fn record<const D: usize>(
@@ -238,7 +240,7 @@ fn relax<const D: usize>(
         Start::Resume(s) => (s.state, Some(s.relax)),
     };
     let fresh = resume.is_none();
-    let mut relax = Relax::new(fluid, control(steady, D), u, &solver.initial, resume);
+    let mut relax = Relax::new(fluid, control(steady, D), u, &fluid.start(), resume);
     let orders = if last { steady.orders } else { steady.orders.min(EARLY_ORDERS) };
     if fresh {
         journal.save(at, 0.0, &relax.u, relax.resume())?;

@@ -41,6 +41,9 @@ pub struct Summary {
     /// How the loads of the last period differ from those of the one before, where the motion repeats.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub periodic_change: Option<super::periodic::Change>,
+    /// First harmonics of the loads per motion, where that repeats.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub first_harmonics: Vec<super::periodic::FirstHarmonics>,
     /// Bytes per particle: cloud, operators, state and integrator.
     pub bytes_per_particle: f64,
     /// Processor milliseconds per particle.

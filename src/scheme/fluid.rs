@@ -20,7 +20,7 @@ use crate::cloud::Edge;
 use crate::cloud::operators::WallFace;
 use crate::math::Vector;
 use crate::math::block_matrix::BlockMatrix;
-use crate::math::sweep::{maximum, sweep, sweep_parts, sweep_slots};
+use crate::math::sweep::{maximum, sweep, sweep_parts, sweep_rows, sweep_slots};
 use crate::physics::riemann::{flux_ausm_plus_up, flux_hllc, flux_roe, flux_rusanov};
 use crate::physics::{Conserved, Gas, Primitive};
 use crate::system::{Fault, Moment, System};
@@ -94,6 +94,14 @@ impl<const D: usize> Fluid<D> {
         let (far_field, held) = (Arc::clone(&self.far_field), Arc::clone(&self.held));
         let seen = Self { shape, before, far_field, held, carriage: self.carriage.clone(), ..*self };
         Some((seen, Work { state, gradient }))
+    }
+
+    /// The state at the start.
+    pub fn start(&self) -> Vec<f64> {
+        let cloud = &self.shape.cloud;
+        let mut u = vec![0.0; self.len()];
+        sweep_rows(&mut u, D + 2, |i, row| self.gas.conserved(&(self.held)(&cloud.x[i])).store(row));
+        u
     }
 
     /// Particles before any motion.
@@ -293,7 +301,7 @@ impl<const D: usize> Fluid<D> {
         let (vi, vj) = (1.0 / cloud.volume[i], 1.0 / cloud.volume[j]);
         if frame.moves() {
             let speeds = (frame.velocity[i], frame.velocity[j]);
-            return self.moving_edge_flux(flux, e, (qi, qj), (&l, &r), speeds, (size, vi, vj));
+            return self.moving_edge_flux(flux, e, ((qi, qj), (&l, &r)), speeds, (size, vi, vj));
         }
         let upwind = flux(gas, &l, &r, &m);
         if self.conservative {
@@ -318,8 +326,7 @@ impl<const D: usize> Fluid<D> {
         &self,
         flux: &impl UpwindFlux<D>,
         e: &Edge<D>,
-        (qi, qj): (&Primitive<D>, &Primitive<D>),
-        (l, r): (&Primitive<D>, &Primitive<D>),
+        ((qi, qj), (l, r)): ((&Primitive<D>, &Primitive<D>), (&Primitive<D>, &Primitive<D>)),
         (wi, wj): (Vector<D>, Vector<D>),
         (size, vi, vj): (f64, f64, f64),
     ) -> (Conserved<D>, Conserved<D>) {

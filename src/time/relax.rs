@@ -70,8 +70,6 @@ const LARGEST_CHANGE: f64 = 0.3;
 const SMALLEST_FRACTION: f64 = 0.05;
 /// Courant number of the explicit method.
 const EXPLICIT_CFL: f64 = 1.5;
-/// Times that GMRES starts again with an empty basis.
-const RESTARTS: usize = 0;
 /// Scaled residual that is round-off: a relative change of the density in one local time.
 const ROUND_OFF: f64 = 1e-14;
 /// Stages of the explicit method.
@@ -398,7 +396,8 @@ impl<'a, S: System> Relax<'a, S> {
         levels.finest().shift(&shift);
         levels.refresh();
         let Some(gmres) = self.gmres.as_mut().filter(|_| self.phase.newton) else {
-            levels.apply(&self.residual, &mut self.step);
+            let residual = &self.residual;
+            levels.apply(|k| residual[k] as f32, &mut self.step);
             self.linear += 1;
             return;
         };
@@ -407,8 +406,8 @@ impl<'a, S: System> Relax<'a, S> {
         let (system, frame, work, u, residual) = (self.system, &self.frame, &mut self.work, &self.u, &self.residual);
         let (trial, scale, time) = (&mut self.trial, &self.scale, self.time.as_ref());
         // rows are scaled by the local time, so that small particles do not rule the norm
-        let b: Vec<f64> = residual.iter().enumerate().map(|(k, r)| r * scale[k / n]).collect();
-        let mut unscaled = vec![0.0; b.len()];
+        let b = &mut self.trial_residual;
+        crate::math::sweep::sweep(b, |k| residual[k] * scale[k / n]);
         let product = |v: &[f64], out: &mut [f64]| {
             let length = (sum(v.len(), |k| v[k] * v[k]) / v.len() as f64).sqrt();
             if length == 0.0 {
@@ -423,11 +422,8 @@ impl<'a, S: System> Relax<'a, S> {
                 o[0] = ((base(k) - o[0]) / eps + shift[k / n] * v[k]) * scale[k / n];
             });
         };
-        let precondition = |r: &[f64], z: &mut [f64]| {
-            crate::math::sweep::sweep(&mut unscaled, |k| r[k] / scale[k / n]);
-            levels.apply(&unscaled, z);
-        };
-        let solved = gmres.solve((&b, &mut self.step), (self.control.tolerance, RESTARTS), product, precondition);
+        let precondition = |r: &[f32], z: &mut [f64]| levels.apply(|k| (f64::from(r[k]) / scale[k / n]) as f32, z);
+        let solved = gmres.solve((b, &mut self.step), self.control.tolerance, product, precondition);
         self.linear += solved.iterations as u32;
     }
 

@@ -167,6 +167,14 @@ metrics! {
     WaveAngle = "wave_angle",
     /// Mean wall pressure in `region` over free-stream pressure.
     PanelPressure = "panel_pressure",
+    /// Amplitude of the first harmonic of the lift over that of the motion: per radian, or per length.
+    LiftAmplitude = "lift_amplitude",
+    /// Phase in degrees by which that harmonic leads the motion.
+    LiftPhase = "lift_phase",
+    /// `lift_amplitude` extrapolated along a line to a section of no thickness, from this one and that of the case `other`.
+    ThinLiftAmplitude = "thin_lift_amplitude",
+    /// `lift_phase` of the same.
+    ThinLiftPhase = "thin_lift_phase",
     /// Lift coefficient extrapolated to zero spacing over the study.
     ExtrapolatedCl = "extrapolated_cl",
     /// Drag coefficient extrapolated to zero spacing over the study.
