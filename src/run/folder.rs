@@ -45,3 +45,8 @@ pub(super) fn read_case(out: &Path) -> Result<(Case, PathBuf), RunError> {
     let origin = fs::read_to_string(out.join(ORIGIN)).unwrap_or_default();
     Ok((case, PathBuf::from(origin.trim())))
 }
+
+/// Text of a file that a case or a run refers to.
+pub(super) fn text(folder: &Path, name: &str) -> std::io::Result<String> {
+    fs::read_to_string(folder.join(name))
+}

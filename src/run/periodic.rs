@@ -93,7 +93,7 @@ impl Trace {
 
     /// The part of a trace that the history of an interrupted run holds.
     pub(super) fn read(out: &Path, until: f64) -> Self {
-        let text = std::fs::read_to_string(out.join("history.csv")).unwrap_or_default();
+        let text = super::folder::text(out, "history.csv").unwrap_or_default();
         let mut lines = text.lines();
         let header: Vec<&str> = lines.next().unwrap_or_default().split(',').collect();
         let names = ["time", "cl", "cd", "cm", "angle_deg", "shift_x", "shift_y", "shift_z"];

@@ -181,7 +181,7 @@ pub(super) fn motions<const D: usize>(
 ) -> Result<Motions<D>, RunError> {
     let extent = surface.map_or(1.0, |s| s.bounds().extent()[0]);
     let chord = case.reference.chord.map_or(extent, |c| c.0);
-    let read = |name: &str| std::fs::read_to_string(input.join(name));
+    let read = |name: &str| super::folder::text(input, name);
     Motions::new(case, chord, &read).map_err(|e| RunError::Folder(e.to_string()))
 }
 

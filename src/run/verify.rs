@@ -136,7 +136,7 @@ impl Walk {
     fn measure(&mut self, claim: &Claim, folder: &Folder, monitor: &mut dyn Monitor) -> Value {
         if !claim.metric.needs_study() {
             let other = match &claim.other {
-                Some(name) => Some(self.other(name, monitor)?),
+                Some(name) => Some(self.other(name, folder, monitor)?),
                 None => None,
             };
             let key = self.ensure(folder, &folder.case, monitor);
@@ -156,10 +156,14 @@ impl Walk {
         found.ok_or_else(|| format!("the values {values:?} have no order or limit"))
     }
 
-    /// Runs the case that a claim compares with.
-    fn other(&mut self, name: &str, monitor: &mut dyn Monitor) -> Result<(String, u64), String> {
-        let found = self.folders.iter().find(|f| f.name == name).cloned();
-        let folder = found.ok_or_else(|| format!("there is no case `{name}`"))?;
+    /// Runs the case that a claim compares with: that of another folder, or another file of this one.
+    fn other(&mut self, name: &str, here: &Folder, monitor: &mut dyn Monitor) -> Result<(String, u64), String> {
+        let folder = if name.ends_with(".toml") {
+            here.beside(name).map_err(|e| e.to_string())?
+        } else {
+            let found = self.folders.iter().find(|f| f.name == name).cloned();
+            found.ok_or_else(|| format!("there is no case `{name}`"))?
+        };
         let key = self.ensure(&folder, &folder.case, monitor);
         self.at(&key)?;
         Ok(key)
@@ -201,6 +205,20 @@ impl Folder {
         let case_read = read(&text(&case)?, &case.display().to_string()).map_err(|e| wrong(&case, e.to_string()))?;
         let name = path.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
         Ok(Self { name, path: path.to_path_buf(), case: case_read, claims: claims_read })
+    }
+}
+
+impl Folder {
+    /// Another case file of the same folder.
+    fn beside(&self, file: &str) -> Result<Self, WalkError> {
+        let path = self.path.join(file);
+        let text = fs::read_to_string(&path).map_err(|e| unreadable(&path, e))?;
+        let wrong = |e: crate::case::CaseErrors| WalkError::Mistakes {
+            path: path.display().to_string(),
+            problem: e.to_string(),
+        };
+        let case = read(&text, &path.display().to_string()).map_err(wrong)?;
+        Ok(Self { name: format!("{}/{file}", self.name), case, ..self.clone() })
     }
 }
 

@@ -1,4 +1,4 @@
-//! Integrators: they know a [`System`](crate::system::System) and nothing of what it means.
+//! Integrators: they know a [`System`] and nothing of what it means.
 pub mod dual;
 pub mod explicit;
 pub mod relax;
