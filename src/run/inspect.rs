@@ -12,6 +12,8 @@ use crate::system::{Moment, System};
 
 /// Residual evaluations of a typical steady run, per particle, and their growth with the number of particles.
 const EVALUATIONS: f64 = 1200.0;
+/// The same for one implicit step in time.
+const STEP_EVALUATIONS: f64 = 110.0;
 /// Evaluations timed for the estimate.
 const TIMED: u32 = 5;
 
@@ -80,7 +82,7 @@ fn look<const D: usize>(case: &Case, places: &Places, files: bool) -> Result<Clo
         worst_condition: fluid.shape.operators.condition.iter().fold(0.0, |m, c| c.max(m)),
         seconds,
         memory_bytes: bytes_of(fluid, integrator_bytes(case, fluid)),
-        expected_seconds: evaluation * evaluations(case, fluid, &frame, u),
+        expected_seconds: evaluation * evaluations(case, fluid, &frame, (u, motions.period())),
         notes,
     };
     if files {
@@ -94,17 +96,19 @@ fn evaluations<const D: usize>(
     case: &Case,
     fluid: &crate::scheme::Fluid<D>,
     frame: &crate::scheme::Frame<D>,
-    u: &[f64],
+    (u, period): (&[f64], Option<f64>),
 ) -> f64 {
     match &case.time {
         Temporal::Steady(_) => EVALUATIONS * f64::from(1 + case.adapt.cycles),
-        // no estimate yet: the steps depend on the period of the motion
-        Temporal::Dual(_) => 0.0,
+        Temporal::Dual(dual) => {
+            let steps = dual.end(period).zip(dual.step_length(period)).map_or(0.0, |(end, step)| end / step);
+            EVALUATIONS + STEP_EVALUATIONS * steps
+        }
         Temporal::Explicit(e) => {
             let mut rate = vec![0.0; fluid.shape.cloud.n_fluid];
             fluid.spectral_radius(frame, u, &mut fluid.work(), &mut rate);
             let fastest = rate.iter().fold(0.0f64, |m, r| m.max(*r));
-            3.5 * e.end(None).unwrap_or_default() * fastest / e.cfl
+            3.5 * e.end(period).unwrap_or_default() * fastest / e.cfl
         }
     }
 }
