@@ -411,3 +411,6 @@ fn energy<const D: usize>(q: &Primitive<D>, gas: &Gas) -> [f64; 5] {
     row[D + 1] = 1.0 / q.density;
     row
 }
+
+#[cfg(test)]
+mod tests;
