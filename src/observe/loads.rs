@@ -64,6 +64,11 @@ impl LoadAxes {
     }
 }
 
+/// Sum of two loads.
+pub fn together(a: &Load, b: &Load) -> Load {
+    Load { force: std::array::from_fn(|d| a.force[d] + b.force[d]), moment: a.moment + b.moment }
+}
+
 /// Load of excess pressures on area vectors (both into the fluid).
 pub fn pressure_load(axes: &LoadAxes, points: &[[f64; 3]], areas: &[[f64; 3]], excess: &[f64]) -> Load {
     let mut load = Load::default();

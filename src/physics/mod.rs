@@ -1,5 +1,7 @@
 //! Pointwise physics: no index, no slice, no particle.
 pub mod gas;
 pub mod riemann;
+pub mod viscous;
 
 pub use gas::{Conserved, Gas, Primitive};
+pub use viscous::Newtonian;

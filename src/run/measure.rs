@@ -6,6 +6,7 @@ use super::{Snapshot, Summary};
 use num_complex::Complex64;
 
 use crate::case::{Case, Shape};
+use crate::exact::blasius::skin_friction;
 use crate::math::{Bounds, Vector};
 use crate::physics::{Gas, Primitive};
 use crate::scheme::start::free_stream;
@@ -39,6 +40,13 @@ impl Measured {
             Metric::Cl | Metric::ExtrapolatedCl => Ok(s.loads.cl),
             Metric::Cd | Metric::ExtrapolatedCd => Ok(s.loads.cd),
             Metric::Cm => Ok(s.loads.cm),
+            Metric::CdPressure => s.loads_pressure.map(|c| c.cd).ok_or_else(no_viscosity),
+            Metric::CdFriction => s.loads_friction.map(|c| c.cd).ok_or_else(no_viscosity),
+            Metric::SeparationUpper => {
+                let first = s.separation.iter().find(|p| p.upper).map(|p| p.x_c);
+                first.ok_or_else(|| "friction turns nowhere on the upper side".into())
+            }
+            Metric::CfBlasiusRms => self.blasius_difference(claim),
             Metric::ClMomentum => Ok(s.loads_momentum_balance.cl),
             Metric::CdMomentum => Ok(s.loads_momentum_balance.cd),
             Metric::LiftAmplitude => self.lift().map(|c| c.norm()),
@@ -129,6 +137,19 @@ impl Measured {
             differences.extend(side.iter().map(|&i| self.wall.cp[i] - reference.at(self.wall.x_c[i])));
         }
         Ok(differences)
+    }
+
+    /// Root mean square of cf/cf_Blasius − 1 on the wall particles in the region.
+    fn blasius_difference(&self, claim: &Claim) -> Value {
+        let flow = &self.case.flow;
+        let chord = self.case.reference.chord.map_or(1.0, |c| c.0);
+        let viscosity = flow.viscous(chord).ok_or_else(no_viscosity)?.viscosity;
+        let stream = flow.reference();
+        let unit_reynolds = stream.density * stream.speed / viscosity;
+        let chosen = self.wall.within(claim.region.as_ref());
+        let ratio = |i: &usize| Some(self.wall.cf.get(*i)? / skin_friction(unit_reynolds * self.wall.x[*i][0]) - 1.0);
+        let differences: Vec<f64> = chosen.iter().filter_map(ratio).collect();
+        metrics::root_mean_square(&differences, None).ok_or_else(no_wall)
     }
 
     fn shock(&self, claim: &Claim, upper: bool) -> Value {
@@ -228,6 +249,10 @@ impl Measured {
         let found = self.field.columns.iter().find(|(n, ..)| *n == name);
         found.map(|(_, _, values)| values.as_slice()).ok_or_else(|| format!("the solution has no `{name}`"))
     }
+}
+
+fn no_viscosity() -> String {
+    "the case has no viscosity".into()
 }
 
 fn no_wall() -> String {

@@ -5,6 +5,7 @@
 //! and integrates. Checkpoints hold what a stage cannot rebuild from the case: its sources of refinement, the state, and
 //! where the integrator stands; a killed run goes on to the same bits.
 mod folder;
+mod friction;
 mod inspect;
 mod measure;
 mod outputs;
@@ -31,6 +32,7 @@ use crate::system::{Moment, System};
 use crate::time::TimeError;
 
 pub use folder::fresh_folder;
+pub use friction::Separation;
 pub use inspect::{CloudReport, inspect};
 pub use snapshot::Snapshot;
 pub use summary::Summary;

@@ -1,6 +1,7 @@
 //! What a finished run leaves behind.
 use std::path::Path;
 
+use super::friction::{Separation, friction_load, separations, wall_friction};
 use super::setup::Solver;
 use super::snapshot::{self, LoadFrame, Snapshot, Units, load_axes, pressure_coefficient, wall_load};
 use super::solve::{Journal, NEARLY, totals};
@@ -10,7 +11,7 @@ use crate::case::{Case, Initial};
 use crate::cloud::Diagnosis;
 use crate::geometry::Surface;
 use crate::math::{Bounds, Vector};
-use crate::observe::loads::{Balance, Coefficients, LoadAxes, Patch, momentum_balance};
+use crate::observe::loads::{Balance, Coefficients, Load, LoadAxes, Patch, momentum_balance, together};
 use crate::observe::table::{Entry, write_csv, write_json};
 use crate::observe::usage::peak_bytes;
 use crate::observe::vtk::{Column, Facets, write_collection, write_points, write_surface};
@@ -62,7 +63,9 @@ pub(super) fn write_all<const D: usize>(
         tags: s.tags.clone(),
     });
     let r = Finished { case, out: &places.out, fluid, work, surface, axes: frame_of_loads.axes(fluid), names };
-    let loads = r.wall_coefficients();
+    let (pressure, friction) = r.wall_loads(|_| true);
+    let loads = r.axes.coefficients(&together(&pressure, &friction));
+    let part = |load: &Load| fluid.friction.as_ref().map(|_| r.axes.coefficients(load));
     let balance = r.balance();
     let through = r.axes.coefficients(&balance.load);
     let ledger = if marches(case) {
@@ -84,6 +87,9 @@ pub(super) fn write_all<const D: usize>(
         wall_seconds: wall,
         peak_bytes: peak_bytes(),
         loads,
+        loads_pressure: part(&pressure),
+        loads_friction: part(&friction),
+        separation: r.separations(),
         loads_momentum_balance: through,
         ledger,
         time: journal.time,
@@ -150,11 +156,23 @@ impl<'a, const D: usize> Finished<'a, D> {
         View { case: self.case, out: self.out, fluid: self.fluid, work: self.work, surface: self.surface }
     }
 
-    fn wall_coefficients(&self) -> Coefficients {
-        if self.fluid.shape.cloud.interface.is_empty() {
-            return Coefficients::default();
-        }
-        self.axes.coefficients(&wall_load(self.fluid, self.work, &self.axes, |_| true))
+    /// Loads of pressure and friction on the interface particles chosen.
+    fn wall_loads(&self, chosen: impl Fn(usize) -> bool) -> (Load, Load) {
+        let pressure = wall_load(self.fluid, self.work, &self.axes, &chosen);
+        (pressure, friction_load(self.fluid, self.work, &self.axes, &chosen))
+    }
+
+    /// Distances of the interface particles from the nose, over the extent of the bodies.
+    fn chordwise(&self) -> Vec<f64> {
+        let reference = &self.fluid.reference().cloud;
+        let bounds = self.surface.map_or(Bounds { min: Vector::ZERO, max: Vector::splat(1.0) }, Surface::bounds);
+        let x_c = |x: &Vector<D>| (x[0] - bounds.min[0]) / bounds.extent()[0];
+        reference.x[reference.interface_range()].iter().map(x_c).collect()
+    }
+
+    fn separations(&self) -> Vec<Separation> {
+        let friction = wall_friction(self.case, self.fluid, self.work);
+        friction.map_or_else(Vec::new, |f| separations(self.case, self.fluid, &f, &self.chordwise()))
     }
 
     /// Fluxes through a box around the bodies, by the solver's own fit.
@@ -271,7 +289,8 @@ impl<'a, const D: usize> Finished<'a, D> {
                 if !(0..cloud.interface.len()).any(chosen) {
                     continue;
                 }
-                let load = wall_load(self.fluid, self.work, &self.axes, chosen);
+                let (pressure, friction) = self.wall_loads(chosen);
+                let load = together(&pressure, &friction);
                 let c = self.axes.coefficients(&load);
                 let area: f64 =
                     (0..cloud.interface.len()).filter(|w| chosen(*w)).map(|w| cloud.interface[w].area.norm()).sum();
@@ -290,25 +309,31 @@ impl<'a, const D: usize> Finished<'a, D> {
         let cloud = &self.fluid.shape.cloud;
         let free = free_stream::<D>(self.case);
         let units = Units::of(self.case);
-        let bounds = self.surface.map_or(Bounds { min: Vector::ZERO, max: Vector::splat(1.0) }, Surface::bounds);
-        let columns = [
+        let friction = wall_friction(self.case, self.fluid, self.work);
+        let mut columns = vec![
             "x", "y", "z", "nx", "ny", "nz", "area", "body", "tag", "arc", "x_c", "pressure", "cp", "mach", "density",
             "u", "v", "w",
         ];
+        if friction.is_some() {
+            columns.extend(["cf", "heat_flux", "y_plus"]);
+        }
+        let chordwise = self.chordwise();
         let rows = cloud.interface_range().zip(&cloud.interface).map(|(i, w)| {
+            let k = i - cloud.n_fluid;
             let q = &self.work.state[i];
             let mut row: Vec<Entry> = cloud.x[i].to_3d().map(Entry::from).to_vec();
             row.extend(w.normal.to_3d().map(Entry::from));
             row.push(Entry::from(w.area.norm()));
             row.push(Entry::from(self.names.bodies.get(usize::from(w.body)).map_or("", String::as_str)));
             row.push(Entry::from(self.names.tags.get(usize::from(w.tag)).map_or("", String::as_str)));
-            let x_c = (self.fluid.reference().cloud.x[i][0] - bounds.min[0]) / bounds.extent()[0];
             let mach = q.velocity.norm() / self.fluid.gas.sound_speed(q);
             let cp = pressure_coefficient(q, &free);
             row.extend(
-                [w.arc, x_c, q.pressure * units.pressure(), cp, mach, q.density * units.density].map(Entry::from),
+                [w.arc, chordwise[k], q.pressure * units.pressure(), cp, mach, q.density * units.density]
+                    .map(Entry::from),
             );
             row.extend((q.velocity * units.speed).to_3d().map(Entry::from));
+            row.extend(friction.iter().flat_map(|f| [f[k].cf, f[k].heat_flux, f[k].y_plus]).map(Entry::from));
             row
         });
         Ok(write_csv(&self.out.join("surface.csv"), &columns, rows.collect::<Vec<_>>())?)

@@ -3,7 +3,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::RunError;
-use crate::case::{Case, Dual, Length, ParticleMotion, Steady, SteadyMethod, Temporal};
+use crate::case::{Body, Case, Dual, Length, ParticleMotion, Steady, SteadyMethod, Temporal, Wall};
 use crate::cloud::conservative::conservative as conserve;
 use crate::cloud::sources::Source;
 use crate::cloud::{Cloud, Operators};
@@ -11,12 +11,12 @@ use crate::geometry::{GeometryError, Surface, load_surface};
 use crate::math::multilevel::Cycle;
 use crate::math::{Bounds, Vector};
 use crate::motion::{Law, Motions};
-use crate::physics::{Conserved, Gas};
+use crate::physics::{Conserved, Gas, Newtonian};
 use crate::scheme::blend::Blend;
 use crate::scheme::probe::Probe;
 use crate::scheme::reconstruct::Reconstruction;
 use crate::scheme::start::{Stream, initial};
-use crate::scheme::{Carriage, Fluid, Shape};
+use crate::scheme::{Carriage, Contact, Fluid, Friction, Shape};
 use crate::system::{Moment, System};
 use crate::time::dual::Plan;
 use crate::time::relax::{Control, Method};
@@ -39,7 +39,6 @@ pub(super) fn supported(case: &Case) -> Result<(), RunError> {
         (lagrangian, "particles that travel with the fluid (`particles = \"lagrangian\"`)"),
         (bare, "a deforming cloud without bodies (`particles = \"deforming\"`)"),
         (balanced, "conservative coefficients on a cloud that deforms (`conservative = true`)"),
-        (case.flow.is_viscous(), "viscosity (`reynolds`, `viscosity`)"),
     ];
     let missing: Vec<&str> = asks.iter().filter(|a| a.0).map(|a| a.1).collect();
     if missing.is_empty() {
@@ -150,6 +149,7 @@ pub(super) fn solver<const D: usize>(
             threshold: scheme.limiter_threshold,
         },
         conservative,
+        friction: friction(case, surface).map(Arc::new),
         far_field: Arc::new(Stream::new(case, &centre, surface.is_some_and(|s| !s.sharp.is_empty()))),
         held: field,
         carriage: carriage(case, &cloud, motions),
@@ -157,6 +157,23 @@ pub(super) fn solver<const D: usize>(
         shape: Arc::new(Shape::new(cloud, operators)),
     };
     Ok(Solver { fluid })
+}
+
+/// Viscosity of a case in the units of the solver, and what the gas does on each body.
+fn friction<const D: usize>(case: &Case, surface: Option<&Surface<D>>) -> Option<Friction> {
+    let extent = surface.map_or(1.0, |s| s.bounds().extent()[0]);
+    let chord = case.reference.chord.map_or(extent, |c| c.0);
+    let viscous = case.flow.viscous(chord)?;
+    let scales = case.flow.reference();
+    let kelvin = if case.flow.is_dimensional() { case.flow.kelvin() } else { 1.0 };
+    let contact = |body: &Body| match case.flow.wall(body) {
+        Wall::Slip => Contact::Slip,
+        Wall::Adiabatic => Contact::Adiabatic,
+        Wall::Temperature { value } => Contact::Temperature(value.0 / kelvin),
+    };
+    let viscosity = viscous.viscosity / (scales.density * scales.sound_speed);
+    let medium = Newtonian { viscosity, sutherland: viscous.sutherland, prandtl: viscous.prandtl };
+    Some(Friction { medium, contacts: case.bodies.iter().map(contact).collect() })
 }
 
 /// How the particles of a cloud follow the bodies.

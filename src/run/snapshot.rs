@@ -1,4 +1,5 @@
 //! The solution as plain tables, in the units of the case.
+use super::friction::add_friction_in;
 use crate::case::Case;
 use crate::math::Vector;
 use crate::observe::loads::{Coefficients, Load, LoadAxes, pressure_load};
@@ -51,7 +52,7 @@ impl LoadFrame {
         }
     }
 
-    /// Coefficients of all bodies from the wall states in `work`, which are those of `frame`.
+    /// Coefficients of all bodies from the wall states, and with friction the gradients, in `work`: those of `frame`.
     pub(super) fn coefficients_in<const D: usize>(
         &self,
         fluid: &Fluid<D>,
@@ -67,6 +68,7 @@ impl LoadFrame {
             let push = frame.outward(&(wall.area * (far - work.state[i].pressure)));
             axes.add(&mut load, &frame.place(i).to_3d(), &push.to_3d());
         }
+        add_friction_in(fluid, (frame, work), &axes, &mut load);
         axes.coefficients(&load)
     }
 }

@@ -385,7 +385,7 @@ fn bare(iteration: u32) -> Resume {
     Resume { iteration, cfl: 0.0, first_norm: 1.0, linear: 0, phase: Phase::default(), scale: Vec::new() }
 }
 
-/// Coefficients from wall pressure; `None` without bodies.
+/// Coefficients from wall pressure and friction; `None` without bodies.
 fn coefficients<const D: usize>(
     fluid: &Fluid<D>,
     axes: &LoadFrame,
@@ -397,6 +397,9 @@ fn coefficients<const D: usize>(
         return None;
     }
     fluid.fill_states(frame, state, work);
+    if fluid.friction.is_some() {
+        fluid.fill_gradients(frame, work);
+    }
     Some(axes.coefficients_in(fluid, frame, work))
 }
 

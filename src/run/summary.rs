@@ -3,6 +3,7 @@ use std::time::Instant;
 
 use serde::Serialize;
 
+use super::friction::Separation;
 use crate::observe::loads::Coefficients;
 
 /// What a run found and what it took.
@@ -28,8 +29,17 @@ pub struct Summary {
     pub wall_seconds: f64,
     /// Greatest memory of the process; 0 where the system does not tell.
     pub peak_bytes: u64,
-    /// Loads from wall pressure.
+    /// Loads from wall pressure and friction.
     pub loads: Coefficients,
+    /// The part of the pressure, where the gas has viscosity.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub loads_pressure: Option<Coefficients>,
+    /// The part of the friction.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub loads_friction: Option<Coefficients>,
+    /// Where friction turns against the stream.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub separation: Vec<Separation>,
     /// Loads from the momentum balance over a box around the bodies.
     pub loads_momentum_balance: Coefficients,
     /// Conservation.

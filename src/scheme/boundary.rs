@@ -9,7 +9,10 @@
 //! - ∂u_t/∂n = −κ u_t: the flow at the wall is irrotational (Crocco), κ the curvature of the wall (tensor in 3-D);
 //! - ∂p/∂n = ρ κ u_t²: the centrifugal balance; walls that move add the rate of rotation and the acceleration.
 //!
+//! *Walls that the gas sticks to* give it their velocity and temperature or ∂θ/∂n = 0; ∂p/∂n = −ρ n·a_w.
+//!
 //! *Outer sides* hold a state or copy the particle inward of them; *images* copy their source through a reflection or shift.
+use super::viscous::lowest_two;
 use crate::cloud::Cloud;
 use crate::math::Vector;
 use crate::math::least_squares::Fit;
@@ -218,6 +221,44 @@ pub fn slip_wall<const D: usize>(
     }
     let across = *normal * velocity.dot(normal);
     Primitive { density: density(pressure), velocity: relative + along_wall(&velocity, normal) + across, pressure }
+}
+
+/// State of interface particle `w` on a wall that the gas sticks to, with ∂p/∂n = −ρ n·a_w and ∂θ/∂n = 0, or at the given
+/// temperature: parabolas through the first two layers, or the fit without layers.
+pub(super) fn stuck_wall<const D: usize>(
+    (cloud, fits): (&Cloud<D>, &WallFits),
+    gas: &Gas,
+    w: usize,
+    ((velocity, motion), temperature): ((Vector<D>, Option<&WallMotion<D>>), Option<f64>),
+    q: impl Fn(usize) -> Primitive<D>,
+) -> Primitive<D> {
+    let mut sum = (0.0, 0.0);
+    let mut lowest = (f64::INFINITY, f64::INFINITY);
+    let mut take = |k: usize, weight: f64| {
+        let state = q(k);
+        let own = (state.pressure, gas.temperature(&state));
+        sum = (sum.0 + weight * own.0, sum.1 + weight * own.1);
+        lowest = (lowest.0.min(own.0), lowest.1.min(own.1));
+    };
+    let lever = match lowest_two(cloud, w) {
+        Some(([a, b], [low, high])) => {
+            let part = low * low / (high * high - low * low);
+            take(a, 1.0 + part);
+            take(b, -part);
+            low * high / (low + high)
+        }
+        None => {
+            let weights = &fits.weight[cloud.wall_clouds.range(w)];
+            cloud.wall_clouds.of(w).iter().zip(weights).for_each(|(k, weight)| take(*k as usize, *weight));
+            fits.lever[w]
+        }
+    };
+    let (p, floor) = (sum.0, FLOOR * lowest.0);
+    let theta = temperature.unwrap_or(sum.1.max(FLOOR * lowest.1));
+    let inertia = motion.map_or(0.0, |m| cloud.interface[w].normal.dot(&m.acceleration));
+    // p_w = p + lever ρ_w n·a_w with ρ_w = γ p_w/θ
+    let pressure = (p / (1.0 - (lever * inertia * gas.gamma / theta).min(0.5))).max(floor);
+    Primitive { density: gas.gamma * pressure / theta, velocity, pressure }
 }
 
 fn along_wall<const D: usize>(v: &Vector<D>, normal: &Vector<D>) -> Vector<D> {

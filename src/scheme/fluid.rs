@@ -29,8 +29,9 @@ use super::boundary::slip_wall;
 use super::reconstruct::{Gradient, Limit, Reconstruction, Unlimited, VanAlbada, Venkatakrishnan};
 use super::shape::{Carriage, Frame, Shape};
 use super::start::Field;
+use super::viscous::Friction;
 
-/// The compressible Euler equations on a cloud.
+/// The compressible Euler equations on a cloud, with friction the Navier-Stokes equations.
 pub struct Fluid<const D: usize> {
     /// Particles, weights and fits before any motion.
     pub shape: Arc<Shape<D>>,
@@ -48,6 +49,8 @@ pub struct Fluid<const D: usize> {
     pub reconstruction: Reconstruction,
     /// Exactly conservative coefficients.
     pub conservative: bool,
+    /// Viscosity; `None` for an inviscid gas.
+    pub friction: Option<Arc<Friction>>,
     /// State of the far field.
     pub far_field: Arc<dyn FarField<D>>,
     /// The field at the start, which some sides hold for ever.
@@ -92,7 +95,8 @@ impl<const D: usize> Fluid<D> {
         let gradient = work.gradient.iter().map(|g| g.turned(&turn)).collect();
         let before = Some(Before { shape: Arc::clone(&self.shape), time: frame.time });
         let (far_field, held) = (Arc::clone(&self.far_field), Arc::clone(&self.held));
-        let seen = Self { shape, before, far_field, held, carriage: self.carriage.clone(), ..*self };
+        let (carriage, friction) = (self.carriage.clone(), self.friction.clone());
+        let seen = Self { shape, before, far_field, held, carriage, friction, ..*self };
         Some((seen, Work { state, gradient }))
     }
 
@@ -136,7 +140,11 @@ impl<const D: usize> Fluid<D> {
         };
         let (walls, rest) = rest.split_at_mut(cloud.interface.len());
         let moved = |w: usize| (frame.velocity_of(cloud.n_fluid + w), frame.walls.get(w));
-        sweep(walls, |w| slip_wall((cloud, fits), &self.gas, w, moved(w), seen));
+        let slips = |w: usize| slip_wall((cloud, fits), &self.gas, w, moved(w), seen);
+        match self.friction {
+            None => sweep(walls, slips),
+            Some(_) => sweep(walls, |w| self.stuck(&frame.shape, (w, frame), seen).unwrap_or_else(|| slips(w))),
+        }
         let walls = &*walls;
         let (outer, images) = rest.split_at_mut(cloud.outer.len());
         sweep(outer, |k| self.outer_state(&inward(frame.outer[k]), &cloud.outer[k], fluid));
@@ -375,7 +383,7 @@ pub trait UpwindFlux<const D: usize>:
 impl<const D: usize, T: Fn(&Gas, &Primitive<D>, &Primitive<D>, &Vector<D>) -> Conserved<D> + Sync> UpwindFlux<D> for T {}
 
 #[inline(always)]
-fn add<const D: usize>(row: &mut [f64], c: &Conserved<D>) {
+pub(super) fn add<const D: usize>(row: &mut [f64], c: &Conserved<D>) {
     row[0] += c.density;
     for d in 0..D {
         row[1 + d] += c.momentum[d];
@@ -440,7 +448,7 @@ impl<const D: usize> System for Fluid<D> {
 
     fn rhs(&self, frame: &Frame<D>, u: &[f64], work: &mut Work<D>, du: &mut [f64]) {
         self.fill_states(frame, u, work);
-        if self.reconstruction.second_order {
+        if self.reconstruction.second_order || self.friction.is_some() {
             self.fill_gradients(frame, work);
         }
         match self.flux {
@@ -448,6 +456,9 @@ impl<const D: usize> System for Fluid<D> {
             Flux::Roe => self.rhs_with_limiter(flux_roe::<D>, frame, work, du),
             Flux::AusmPlusUp => self.rhs_with_limiter(flux_ausm_plus_up::<D>, frame, work, du),
             Flux::Rusanov => self.rhs_with_limiter(flux_rusanov::<D>, frame, work, du),
+        }
+        if let Some(friction) = &self.friction {
+            self.add_viscous(friction, (frame, work), du);
         }
     }
 
@@ -477,6 +488,9 @@ impl<const D: usize> System for Fluid<D> {
                 out[i - start] += speed(i, &half_face(volume[i], &face.area));
             }
         });
+        if let Some(friction) = &self.friction {
+            self.add_viscous_rate(friction, (frame, work), rate);
+        }
     }
 
     fn graph(&self) -> (&[u32], &[u32]) {
@@ -551,7 +565,9 @@ mod tests {
         let carriage = Carriage::Still;
         let (gas, flux, limiter) = (Gas { gamma: 1.4 }, Flux::Hllc, Limiter::VanAlbada);
         let far_field = Arc::new(Still);
-        Fluid { shape, carriage, before: None, gas, flux, limiter, reconstruction, conservative: true, far_field, held }
+        let conservative = true;
+        let (before, friction) = (None, None);
+        Fluid { shape, carriage, before, gas, flux, limiter, reconstruction, conservative, friction, far_field, held }
     }
 
     /// Σ V R and Σ |V R| of every variable for an uneven flow, and the force on the bodies.

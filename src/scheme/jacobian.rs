@@ -5,6 +5,7 @@
 //! the row with the mirror that removes the normal velocity.
 use super::fluid::{Fluid, Work, half_face};
 use super::shape::Frame;
+use super::viscous::Contact;
 use crate::math::Vector;
 use crate::math::block_matrix::{BlockMatrix, Rows};
 use crate::physics::riemann::rounded;
@@ -14,7 +15,7 @@ use crate::physics::{Gas, Primitive};
 const ROUNDING: f64 = 0.1;
 
 /// A dense block, row-major, of order D + 2 ≤ 5.
-type Block = [[f64; 5]; 5];
+pub(super) type Block = [[f64; 5]; 5];
 
 /// ∂(F·n)/∂U at the state `q`.
 pub fn flux_jacobian<const D: usize>(gas: &Gas, q: &Primitive<D>, n: &Vector<D>) -> Block {
@@ -117,16 +118,20 @@ pub fn assemble<const D: usize>(fluid: &Fluid<D>, frame: &Frame<D>, work: &Work<
                 add(rows, frame, (row, row), |r, c| scale * spread[r][c] - own[r][c]);
                 let other = past(column, &a, &w);
                 let coupling = |r: usize, c: usize| other[r][c] - scale * spread[r][c];
-                couple(rows, frame, (row, column), coupling);
+                couple(fluid, rows, (frame, work), (row, column), coupling);
             }
+        }
+        if let Some(friction) = &fluid.friction {
+            fluid.add_viscous_blocks(friction, (frame, work), k, rows);
         }
     });
 }
 
 /// Adds the block of `column` to `row`, through walls and images to the particle that rules them.
-fn couple<const D: usize>(
+pub(super) fn couple<const D: usize>(
+    fluid: &Fluid<D>,
     rows: &mut Rows<'_>,
-    frame: &Frame<D>,
+    (frame, work): (&Frame<D>, &Work<D>),
     (row, column): (usize, usize),
     coupling: impl Fn(usize, usize) -> f64,
 ) {
@@ -134,8 +139,15 @@ fn couple<const D: usize>(
     if column < cloud.n_fluid {
         add(rows, frame, (row, column), coupling);
     } else if cloud.interface_range().contains(&column) {
-        let normal = cloud.interface[column - cloud.n_fluid].normal;
-        add(rows, frame, (row, row), |r, c| folded(&coupling, &normal, r, c));
+        let wall = &cloud.interface[column - cloud.n_fluid];
+        let slips = fluid.friction.as_ref().is_none_or(|f| f.contact(wall.body) == Contact::Slip);
+        match slips {
+            true => add(rows, frame, (row, row), |r, c| folded(&coupling, &wall.normal, r, c)),
+            false => {
+                let ends = (&work.state[row].velocity, &work.state[column].velocity);
+                add(rows, frame, (row, row), |r, c| stuck(&coupling, ends, r, c));
+            }
+        }
     } else if column >= cloud.n_real() {
         let image = cloud.images[column - cloud.n_real()];
         let sign = cloud.transforms[image.transform as usize].sign;
@@ -148,7 +160,7 @@ fn couple<const D: usize>(
 
 /// Adds a block to the matrix, turned into the axes of the case.
 #[inline(always)]
-fn add<const D: usize>(
+pub(super) fn add<const D: usize>(
     rows: &mut Rows<'_>,
     frame: &Frame<D>,
     (row, column): (usize, usize),
@@ -193,6 +205,25 @@ fn folded<const D: usize>(coupling: &impl Fn(usize, usize) -> f64, normal: &Vect
     }
     let along: f64 = (0..D).map(|d| coupling(r, 1 + d) * normal[d]).sum();
     coupling(r, c) - along * normal[c - 1]
+}
+
+/// Entry (r, c) of coupling · P, where P gives density and pressure of the particle in front of a wall, moving with v, to a
+/// state with the velocity w of the wall.
+fn stuck<const D: usize>(
+    coupling: &impl Fn(usize, usize) -> f64,
+    (v, w): (&Vector<D>, &Vector<D>),
+    r: usize,
+    c: usize,
+) -> f64 {
+    let energy = coupling(r, D + 1);
+    match c {
+        0 => {
+            let carried: f64 = (0..D).map(|d| coupling(r, 1 + d) * w[d]).sum();
+            coupling(r, 0) + carried + 0.5 * (v.norm_squared() + w.norm_squared()) * energy
+        }
+        c if c <= D => -energy * v[c - 1],
+        _ => energy,
+    }
 }
 
 #[cfg(test)]

@@ -8,6 +8,8 @@ pub mod probe;
 pub mod reconstruct;
 pub mod shape;
 pub mod start;
+pub mod viscous;
 
 pub use fluid::{Fluid, Work};
 pub use shape::{Carriage, Frame, Shape};
+pub use viscous::{Contact, Friction};

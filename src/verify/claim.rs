@@ -127,10 +127,18 @@ macro_rules! metrics {
 }
 
 metrics! {
-    /// Lift coefficient from wall pressure.
+    /// Lift coefficient from wall pressure and friction.
     Cl = "cl",
-    /// Drag coefficient from wall pressure.
+    /// Drag coefficient from wall pressure and friction.
     Cd = "cd",
+    /// Part of the drag coefficient that is due to wall pressure, where the gas has viscosity.
+    CdPressure = "cd_pressure",
+    /// Part of the drag coefficient that is due to friction.
+    CdFriction = "cd_friction",
+    /// Where friction first turns against the stream on the upper side, x/c.
+    SeparationUpper = "separation_upper",
+    /// Root mean square, in `region`, of cf over that of a laminar plate along x from the origin, less one.
+    CfBlasiusRms = "cf_blasius_rms",
     /// Moment coefficient about the reference point, nose up positive.
     Cm = "cm",
     /// Lift coefficient from the momentum through a box around the body.

@@ -25,6 +25,8 @@ pub struct Wall {
     pub x_c: Vec<f64>,
     /// Pressure coefficients.
     pub cp: Vec<f64>,
+    /// Friction coefficients; empty without viscosity.
+    pub cf: Vec<f64>,
 }
 
 impl Wall {
@@ -41,6 +43,7 @@ impl Wall {
             area: table.column("area")?,
             x_c: table.column("x_c")?,
             cp: table.column("cp")?,
+            cf: table.column("cf").unwrap_or_default(),
         })
     }
 

@@ -2,6 +2,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use alula::observe::loads::Coefficients;
 use alula::run::{self, Outcome as Ended, Places, RunError, Summary};
 
 use crate::arguments::{self, Verbosity};
@@ -75,10 +76,16 @@ fn describe(s: &Summary, out: &Path) -> String {
     let (a, b) = (&s.loads, &s.loads_momentum_balance);
     let mut text = String::new();
     if a.cl != 0.0 || a.cd != 0.0 {
-        text += &format!(
-            "                      CL         CD         CM\nwall pressure   {:9.5}  {:9.5}  {:9.5}\nmomentum        {:9.5}  {:9.5}  {:9.5}\n",
-            a.cl, a.cd, a.cm, b.cl, b.cd, b.cm
-        );
+        text += "                      CL         CD         CM\n";
+        let mut row = |name: &str, c: &Coefficients| {
+            text += &format!("{name:<16}{:9.5}  {:9.5}  {:9.5}\n", c.cl, c.cd, c.cm);
+        };
+        row("wall pressure", s.loads_pressure.as_ref().unwrap_or(a));
+        if let Some(friction) = &s.loads_friction {
+            row("wall friction", friction);
+            row("both", a);
+        }
+        row("momentum", b);
     }
     if let Some(c) = &s.adapt_change {
         text += &format!("last adaptation {:+9.5}  {:+9.5}  {:+9.5}\n", c.cl, c.cd, c.cm);

@@ -1,0 +1,148 @@
+//! Viscous stress and heat conduction of a Newtonian gas.
+//!
+//! With the strain rate ε = (∇v + ∇vᵀ)/2 the viscous part of the stress is τ = 2μ (ε − ⅓ tr ε I) (Stokes: no bulk
+//! viscosity), and heat flows along q = −μ/((γ − 1) Pr) ∇θ, θ = γp/ρ: the temperature over that of the free stream when ρ
+//! and c are in units of the free stream. The flux of mass, momentum and energy that goes with them across an area n is
+//! (0, τ·n, v·τ·n − q·n), to be subtracted from that of the inviscid gas.
+use super::{Conserved, Gas, Primitive};
+use crate::math::Vector;
+
+/// Rows ∂v_i/∂x of the velocity gradient, or any tensor.
+pub type Tensor<const D: usize> = [Vector<D>; D];
+
+/// Viscosity and heat conduction.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Newtonian {
+    /// Dynamic viscosity of the free stream over its density, its sound speed and the unit of length.
+    pub viscosity: f64,
+    /// S/T∞ of Sutherland's law; `None`: constant viscosity.
+    pub sutherland: Option<f64>,
+    /// Prandtl number μ c_p/λ.
+    pub prandtl: f64,
+}
+
+/// What viscous fluxes at one place follow from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Slopes<const D: usize> {
+    /// Velocity.
+    pub velocity: Vector<D>,
+    /// Temperature θ = γp/ρ.
+    pub temperature: f64,
+    /// Rows ∂v_i/∂x.
+    pub velocity_gradient: Tensor<D>,
+    /// ∂θ/∂x.
+    pub temperature_gradient: Vector<D>,
+}
+
+impl Gas {
+    /// Temperature over that of the free stream, θ = γp/ρ.
+    #[inline(always)]
+    pub fn temperature<const D: usize>(&self, q: &Primitive<D>) -> f64 {
+        self.gamma * q.pressure / q.density
+    }
+}
+
+/// Strain rate ε = (∇v + ∇vᵀ)/2 — eq. (4).
+#[doc(alias = "eq4")]
+#[inline(always)]
+pub fn strain_rate<const D: usize>(gradient: &Tensor<D>) -> Tensor<D> {
+    std::array::from_fn(|i| Vector::from_fn(|j| 0.5 * (gradient[i][j] + gradient[j][i])))
+}
+
+/// Viscous part of the stress at the viscosity `mu`, τ = 2μ (ε − ⅓ tr ε I); the whole is σ = τ − p I — eq. (5).
+#[doc(alias = "eq5")]
+#[inline(always)]
+pub fn viscous_stress<const D: usize>(mu: f64, gradient: &Tensor<D>) -> Tensor<D> {
+    let strain = strain_rate(gradient);
+    let third: f64 = (0..D).map(|d| strain[d][d]).sum::<f64>() / 3.0;
+    std::array::from_fn(|i| Vector::from_fn(|j| 2.0 * mu * (strain[i][j] - if i == j { third } else { 0.0 })))
+}
+
+impl Newtonian {
+    /// Viscosity at the temperature θ: μ∞ θ^1.5 (1 + S)/(θ + S), or μ∞.
+    #[inline(always)]
+    pub fn at(&self, temperature: f64) -> f64 {
+        let law = |s: f64| temperature * temperature.sqrt() * (1.0 + s) / (temperature + s);
+        self.viscosity * self.sutherland.map_or(1.0, law)
+    }
+
+    /// Conductivity of θ at the viscosity `mu`, μ/((γ − 1) Pr).
+    #[inline(always)]
+    pub fn conductivity(&self, gas: &Gas, mu: f64) -> f64 {
+        mu / ((gas.gamma - 1.0) * self.prandtl)
+    }
+
+    /// Greatest diffusivity at the state `q`, μ/ρ max(4/3, γ/Pr): the rate at which a difference over the distance h decays
+    /// is this over h².
+    #[inline(always)]
+    pub fn diffusivity<const D: usize>(&self, gas: &Gas, q: &Primitive<D>) -> f64 {
+        self.at(gas.temperature(q)) / q.density * f64::max(4.0 / 3.0, gas.gamma / self.prandtl)
+    }
+
+    /// Flux of mass, momentum and energy by stress and heat across the area vector n: (0, τ·n, v·τ·n − q·n).
+    #[inline(always)]
+    pub fn flux<const D: usize>(&self, gas: &Gas, at: &Slopes<D>, n: &Vector<D>) -> Conserved<D> {
+        let mu = self.at(at.temperature);
+        let stress = viscous_stress(mu, &at.velocity_gradient);
+        let momentum = Vector::from_fn(|i| stress[i].dot(n));
+        let heat = self.conductivity(gas, mu) * at.temperature_gradient.dot(n);
+        Conserved { density: 0.0, momentum, energy: at.velocity.dot(&momentum) + heat }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const AIR: Gas = Gas { gamma: 1.4 };
+    const MEDIUM: Newtonian = Newtonian { viscosity: 0.02, sutherland: Some(110.4 / 288.15), prandtl: 0.72 };
+    const SLOPES: Slopes<3> = Slopes {
+        velocity: Vector([0.4, -0.2, 0.1]),
+        temperature: 1.3,
+        velocity_gradient: [Vector([0.3, -1.0, 0.5]), Vector([0.7, 0.2, -0.4]), Vector([-0.6, 0.9, 0.8])],
+        temperature_gradient: Vector([0.2, -0.5, 0.3]),
+    };
+
+    #[test] // eq4
+    fn the_strain_rate_is_symmetric_and_blind_to_rotation() {
+        let strain = strain_rate(&SLOPES.velocity_gradient);
+        assert!((0..3).all(|i| (0..3).all(|j| strain[i][j] == strain[j][i])));
+        let spin = [Vector([0.0, -2.0]), Vector([2.0, 0.0])];
+        assert_eq!(strain_rate(&spin), [Vector::ZERO; 2]);
+    }
+
+    #[test] // eq5
+    fn the_stress_of_pure_shear_is_viscosity_times_rate_and_its_trace_is_zero() {
+        let shear = [Vector([0.0, 3.0]), Vector::ZERO];
+        assert_eq!(viscous_stress(0.5, &shear), [Vector([0.0, 1.5]), Vector([1.5, 0.0])]);
+        let stress = viscous_stress(0.5, &SLOPES.velocity_gradient);
+        assert!((0..3).map(|d| stress[d][d]).sum::<f64>().abs() < 1e-15);
+    }
+
+    #[test]
+    fn the_momentum_flux_does_not_depend_on_the_observer_and_energy_takes_the_work() {
+        let n = Vector([0.3, -0.4, 1.1]);
+        let drift = Vector([2.0, 1.0, -3.0]);
+        let own = MEDIUM.flux(&AIR, &SLOPES, &n);
+        let seen = MEDIUM.flux(&AIR, &Slopes { velocity: SLOPES.velocity + drift, ..SLOPES }, &n);
+        assert_eq!(own.momentum, seen.momentum);
+        assert!((seen.energy - own.energy - drift.dot(&own.momentum)).abs() < 1e-14);
+    }
+
+    #[test]
+    fn heat_flows_down_the_slope_of_temperature() {
+        let still = Slopes { velocity: Vector::ZERO, velocity_gradient: [Vector::ZERO; 3], ..SLOPES };
+        let n = Vector([1.0, 0.0, 0.0]);
+        let flux = MEDIUM.flux(&AIR, &still, &n);
+        // λ ∂T/∂x with λ = μ c_p/Pr and c_p = 1/(γ − 1) in these units
+        let expected = MEDIUM.at(1.3) / 0.72 / 0.4 * 0.2;
+        assert!((flux.energy - expected).abs() < 1e-15 && flux.momentum == Vector::ZERO);
+    }
+
+    #[test] // U.S. Standard Atmosphere (1976), table I: 1.7894e-5 at 288.15 K, 1.4216e-5 kg/(m s) at 216.65 K
+    fn sutherlands_law_agrees_with_the_standard_atmosphere() {
+        assert!((MEDIUM.at(1.0) - 0.02).abs() < 1e-17);
+        let ratio = MEDIUM.at(216.65 / 288.15) / MEDIUM.at(1.0);
+        assert!((ratio - 1.4216 / 1.7894).abs() < 1e-4, "{ratio}");
+    }
+}

@@ -1,0 +1,116 @@
+//! What the gas does to the walls it sticks to: friction, heat, separation.
+use serde::Serialize;
+
+use super::snapshot::Units;
+use crate::case::Case;
+use crate::math::Vector;
+use crate::observe::loads::{Load, LoadAxes};
+use crate::scheme::start::{free_stream, stream_axes};
+use crate::scheme::{Fluid, Frame, Work};
+
+/// A place where friction on a wall turns against the stream.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Separation {
+    /// Number of the body, from 0.
+    pub body: u16,
+    /// True on the side whose normal has a part along the lift.
+    pub upper: bool,
+    /// Distance from the nose over the extent of the bodies.
+    pub x_c: f64,
+}
+
+/// Friction on one interface particle.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct WallFriction {
+    /// Shear along the surface in the direction of the stream, over the dynamic pressure.
+    pub(super) cf: f64,
+    /// Heat into the wall per area and time, in the units of the case.
+    pub(super) heat_flux: f64,
+    /// Distance of the first particle in viscous lengths.
+    pub(super) y_plus: f64,
+}
+
+/// Load of the viscous stress on the interface particles chosen; `fluid` stands in the axes of the case.
+pub(super) fn friction_load<const D: usize>(
+    fluid: &Fluid<D>,
+    work: &Work<D>,
+    axes: &LoadAxes,
+    chosen: impl Fn(usize) -> bool,
+) -> Load {
+    let mut load = Load::default();
+    let cloud = &fluid.shape.cloud;
+    for w in (0..cloud.interface.len()).filter(|w| chosen(*w)) {
+        if let Some(at) = fluid.wall_slopes(cloud, work, w) {
+            let force = at.stress * cloud.interface[w].area.norm();
+            axes.add(&mut load, &cloud.x[cloud.n_fluid + w].to_3d(), &force.to_3d());
+        }
+    }
+    load
+}
+
+/// Adds the load of the viscous stress as it stands in `frame` to `load`.
+pub(super) fn add_friction_in<const D: usize>(
+    fluid: &Fluid<D>,
+    (frame, work): (&Frame<D>, &Work<D>),
+    axes: &LoadAxes,
+    load: &mut Load,
+) {
+    let cloud = &frame.shape.cloud;
+    for w in 0..cloud.interface.len() {
+        if let Some(at) = fluid.wall_slopes(cloud, work, w) {
+            let force = frame.outward(&at.stress) * cloud.interface[w].area.norm();
+            axes.add(load, &frame.place(cloud.n_fluid + w).to_3d(), &force.to_3d());
+        }
+    }
+}
+
+/// Friction on every interface particle; `None` for an inviscid gas.
+pub(super) fn wall_friction<const D: usize>(
+    case: &Case,
+    fluid: &Fluid<D>,
+    work: &Work<D>,
+) -> Option<Vec<WallFriction>> {
+    fluid.friction.as_ref()?;
+    let (cloud, units) = (&fluid.shape.cloud, Units::of(case));
+    let free = free_stream::<D>(case);
+    let dynamic = (0.5 * free.density * free.velocity.norm_squared()).max(f64::MIN_POSITIVE);
+    let stream = stream_axes::<D>(case).0;
+    let at = |w: usize| {
+        let Some(found) = fluid.wall_slopes(cloud, work, w) else { return WallFriction::default() };
+        let normal = &cloud.interface[w].normal;
+        let along = (stream - *normal * stream.dot(normal)).unit();
+        WallFriction {
+            cf: found.stress.dot(&along) / dynamic,
+            heat_flux: found.heat * units.pressure() * units.speed,
+            y_plus: fluid.y_plus(cloud, work, w).unwrap_or_default(),
+        }
+    };
+    Some((0..cloud.interface.len()).map(at).collect())
+}
+
+/// Where friction changes from along to against the stream on each side of each body; plane cases only. `x_c` are the
+/// distances of the interface particles from the nose.
+pub(super) fn separations<const D: usize>(
+    case: &Case,
+    fluid: &Fluid<D>,
+    friction: &[WallFriction],
+    x_c: &[f64],
+) -> Vec<Separation> {
+    let walls = &fluid.shape.cloud.interface;
+    let lift: Vector<D> = stream_axes::<D>(case).1;
+    let mut found = Vec::new();
+    let n_bodies = if D == 2 { walls.iter().map(|w| w.body + 1).max().unwrap_or(0) } else { 0 };
+    for (body, upper) in (0..n_bodies).flat_map(|b| [(b, true), (b, false)]) {
+        let on_side = |w: &usize| walls[*w].body == body && (walls[*w].normal.dot(&lift) > 0.0) == upper;
+        let mut side: Vec<usize> = (0..walls.len()).filter(on_side).collect();
+        side.sort_by(|a, b| x_c[*a].total_cmp(&x_c[*b]));
+        for pair in side.windows(2) {
+            let [a, b] = [friction[pair[0]].cf, friction[pair[1]].cf];
+            if a > 0.0 && b <= 0.0 {
+                let place = x_c[pair[0]] + (x_c[pair[1]] - x_c[pair[0]]) * a / (a - b);
+                found.push(Separation { body, upper, x_c: place });
+            }
+        }
+    }
+    found
+}

@@ -1,0 +1,416 @@
+//! Stress and heat between particles and on walls.
+//!
+//! In the middle of the edge d = x_j − x_i, with the mean ḡ of the gradients at both ends and the direction m = s_ij/|s_ij| of
+//! its face, the gradient of velocity and temperature is
+//!
+//! g = ḡ + m (Δf − ḡ·d)/(m·d),
+//!
+//! the mean, corrected so that the difference between the particles themselves counts across the face. Corrections along
+//! the edge instead of m are wrong on thin layers with neighbours across the diagonals. The viscous flux F_v(g) then goes
+//! through the face: +F_v·s_ij/V_i with conservative coefficients, else 2 a_ij·[F_v − F_v(g_i)], which both are zero in
+//! uniform flow and for uniform stress.
+//!
+//! *Walls that the gas sticks to.* The velocity of an interface particle is that of the wall, its pressure follows from
+//! ∂p/∂n = −ρ n·a_w and its temperature from ∂θ/∂n = 0 or is given (`boundary`). The wall takes the stress of the slope
+//! ∂v/∂n = (Δv₁ η₂/η₁ − Δv₂ η₁/η₂)/(η₂ − η₁), a parabola through the wall and two layers at the heights η, or without layers
+//! of the normal part of the gradient of the interface particle. The rotation of a wall is left out of that slope: it is to
+//! the shear as the thickness of the boundary layer to the radius.
+//!
+//! The linearisation keeps differences across the face alone (thin layer).
+use super::boundary::stuck_wall;
+use super::fluid::{Fluid, Work, add, half_face};
+use super::jacobian::{Block, add as add_block, couple};
+use super::reconstruct::Gradient;
+use super::shape::{Frame, Shape};
+use crate::cloud::operators::WallFace;
+use crate::cloud::{Cloud, Edge};
+use crate::math::Vector;
+use crate::math::block_matrix::Rows;
+use crate::math::sweep::sweep_parts;
+use crate::physics::viscous::Slopes;
+use crate::physics::{Conserved, Gas, Newtonian, Primitive};
+
+/// Smallest part of the length of an edge that counts as its extent across the face: keeps the correction bounded, and of
+/// the sign that damps, where a face lies along its edge.
+const SHORTEST: f64 = 0.3;
+
+/// What the gas does on the surface of a body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Contact {
+    /// It slides.
+    Slip,
+    /// It sticks, and no heat passes.
+    Adiabatic,
+    /// It sticks, at this temperature over that of the free stream.
+    Temperature(f64),
+}
+
+/// Viscosity of the gas and the walls it acts on.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Friction {
+    /// Viscosity and heat conduction.
+    pub medium: Newtonian,
+    /// One a body.
+    pub contacts: Vec<Contact>,
+}
+
+impl Friction {
+    /// Contact with the body of that number.
+    #[inline]
+    pub fn contact(&self, body: u16) -> Contact {
+        self.contacts.get(usize::from(body)).copied().unwrap_or(Contact::Slip)
+    }
+}
+
+/// Slopes of velocity and temperature along the normal of a wall.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WallSlopes<const D: usize> {
+    /// Stress of the gas on the wall without its pressure, force per area.
+    pub stress: Vector<D>,
+    /// Heat that flows from the gas into the wall, per area and time.
+    pub heat: f64,
+}
+
+/// The two particles next to the wall in the column of interface particle `w`, with their heights.
+#[inline]
+pub(super) fn lowest_two<const D: usize>(cloud: &Cloud<D>, w: usize) -> Option<([usize; 2], [f64; 2])> {
+    let column = cloud.layers.columns.get(w)?;
+    let ([a, b, ..], [low, high, ..]) = (column.particles.as_slice(), column.heights.as_slice()) else { return None };
+    Some(([*a as usize, *b as usize], [*low, *high]))
+}
+
+/// Weights of the slope at the wall of a parabola through zero there and values at two heights.
+fn slope_weights([low, high]: [f64; 2]) -> [f64; 2] {
+    [high / low / (high - low), -low / high / (high - low)]
+}
+
+/// ∇θ of θ = γp/ρ.
+#[inline(always)]
+fn temperature_gradient<const D: usize>(gas: &Gas, q: &Primitive<D>, g: &Gradient<D>) -> Vector<D> {
+    (g.pressure - g.density * (q.pressure / q.density)) * (gas.gamma / q.density)
+}
+
+/// Extent of the edge `d` across the face with the normal `m`.
+#[inline(always)]
+fn reach<const D: usize>(d: &Vector<D>, m: &Vector<D>) -> f64 {
+    m.dot(d).max(SHORTEST * d.norm())
+}
+
+/// Direction of the face of an edge.
+#[inline(always)]
+fn direction<const D: usize>(e: &Edge<D>, d: &Vector<D>) -> Vector<D> {
+    let size = e.s.norm();
+    if size > 0.0 { e.s * (1.0 / size) } else { d.unit() }
+}
+
+impl<const D: usize> Fluid<D> {
+    /// State of interface particle `w` when the gas sticks to its wall; `None` when it slides.
+    #[inline]
+    pub(super) fn stuck(
+        &self,
+        shape: &Shape<D>,
+        (w, frame): (usize, &Frame<D>),
+        q: impl Fn(usize) -> Primitive<D>,
+    ) -> Option<Primitive<D>> {
+        let temperature = match self.friction.as_ref()?.contact(shape.cloud.interface[w].body) {
+            Contact::Slip => return None,
+            Contact::Adiabatic => None,
+            Contact::Temperature(t) => Some(t),
+        };
+        let velocity = frame.velocity_of(shape.cloud.n_fluid + w);
+        let moved = (velocity, frame.walls.get(w));
+        Some(stuck_wall((&shape.cloud, &shape.walls), &self.gas, w, (moved, temperature), q))
+    }
+
+    /// What viscous fluxes at particle `i` follow from.
+    #[inline(always)]
+    fn slopes(&self, work: &Work<D>, i: usize) -> Slopes<D> {
+        let (q, g) = (&work.state[i], &work.gradient[i]);
+        Slopes {
+            velocity: q.velocity,
+            temperature: self.gas.temperature(q),
+            velocity_gradient: g.velocity,
+            temperature_gradient: temperature_gradient(&self.gas, q, g),
+        }
+    }
+
+    /// The same in the middle of an edge whose face has the normal `m`.
+    #[inline(always)]
+    fn middle(&self, (a, b): (&Slopes<D>, &Slopes<D>), d: &Vector<D>, m: &Vector<D>) -> Slopes<D> {
+        let across = 1.0 / reach(d, m);
+        let corrected = |ga: &Vector<D>, gb: &Vector<D>, change: f64| {
+            let mean = (*ga + *gb) * 0.5;
+            mean + *m * ((change - mean.dot(d)) * across)
+        };
+        let (va, vb) = (&a.velocity_gradient, &b.velocity_gradient);
+        let dv = b.velocity - a.velocity;
+        let dt = b.temperature - a.temperature;
+        Slopes {
+            velocity: (a.velocity + b.velocity) * 0.5,
+            temperature: 0.5 * (a.temperature + b.temperature),
+            velocity_gradient: std::array::from_fn(|c| corrected(&va[c], &vb[c], dv[c])),
+            temperature_gradient: corrected(&a.temperature_gradient, &b.temperature_gradient, dt),
+        }
+    }
+
+    /// Adds what stress and heat do to every fluid particle.
+    pub(super) fn add_viscous(&self, friction: &Friction, (frame, work): (&Frame<D>, &Work<D>), du: &mut [f64]) {
+        let op = &frame.shape.operators;
+        sweep_parts(op.fluid_parts(), D + 2, du, &|k, out| {
+            let start = op.parts[k].start;
+            let mut to = |i: usize, c: Conserved<D>| {
+                let turned = Conserved { momentum: frame.outward(&c.momentum), ..c };
+                add(&mut out[(i - start) * (D + 2)..], &turned);
+            };
+            for e in op.edges(k) {
+                let (to_i, to_j) = self.viscous_edge(&friction.medium, e, (frame, work));
+                to(e.i(), to_i);
+                if e.both() {
+                    to(e.j(), to_j);
+                }
+            }
+            for face in op.wall_faces(k).iter().filter(|_| self.conservative) {
+                let through = self.viscous_wall(friction, (frame, work), face);
+                to(face.i as usize, through.times(1.0 / frame.shape.cloud.volume[face.i as usize]));
+            }
+        });
+    }
+
+    /// What stress and heat along one edge add to dU/dt of both ends.
+    #[inline(always)]
+    fn viscous_edge(
+        &self,
+        medium: &Newtonian,
+        e: &Edge<D>,
+        (frame, work): (&Frame<D>, &Work<D>),
+    ) -> (Conserved<D>, Conserved<D>) {
+        if self.conservative && e.s == Vector::ZERO {
+            return (Conserved::ZERO, Conserved::ZERO);
+        }
+        let (i, j) = (e.i(), e.j());
+        let cloud = &frame.shape.cloud;
+        let d = cloud.x[j] - cloud.x[i];
+        let (a, b) = (self.slopes(work, i), self.slopes(work, j));
+        let middle = self.middle((&a, &b), &d, &direction(e, &d));
+        let flux = |at: &Slopes<D>, n: &Vector<D>| medium.flux(&self.gas, at, n);
+        if self.conservative {
+            let through = flux(&middle, &e.s);
+            return (through.times(1.0 / cloud.volume[i]), through.times(-1.0 / cloud.volume[j]));
+        }
+        let central = |own: &Slopes<D>, n: &Vector<D>| flux(&middle, n).plus(-1.0, &flux(own, n)).times(2.0);
+        let to_j = if e.both() { central(&b, &e.a_j) } else { Conserved::ZERO };
+        (central(&a, &e.a_i), to_j)
+    }
+
+    /// Flux of stress and heat through a piece of wall.
+    fn viscous_wall(
+        &self,
+        friction: &Friction,
+        (frame, work): (&Frame<D>, &Work<D>),
+        face: &WallFace<D>,
+    ) -> Conserved<D> {
+        let cloud = &frame.shape.cloud;
+        let source = cloud.source(face.wall as usize);
+        let w = source.index - cloud.n_fluid;
+        let Some(at) = self.at_wall(friction, cloud, work, w) else { return Conserved::ZERO };
+        if !source.image {
+            return friction.medium.flux(&self.gas, &at, &face.area);
+        }
+        let transform = &cloud.transforms[cloud.images[face.wall as usize - cloud.n_real()].transform as usize];
+        let through = friction.medium.flux(&self.gas, &at, &transform.direction(&face.area));
+        Conserved { momentum: transform.direction(&through.momentum), ..through }
+    }
+
+    /// Slopes on the wall of interface particle `w`; `None` where the gas slides.
+    fn at_wall(&self, friction: &Friction, cloud: &Cloud<D>, work: &Work<D>, w: usize) -> Option<Slopes<D>> {
+        let contact = friction.contact(cloud.interface[w].body);
+        if contact == Contact::Slip {
+            return None;
+        }
+        let (i, normal) = (cloud.n_fluid + w, &cloud.interface[w].normal);
+        let wall = &work.state[i];
+        let temperature = self.gas.temperature(wall);
+        let (rate, heating) = match lowest_two(cloud, w) {
+            Some((particles, heights)) => {
+                let [a, b] = slope_weights(heights);
+                let [p, q] = particles.map(|k| &work.state[k]);
+                let heat = |q: &Primitive<D>| self.gas.temperature(q) - temperature;
+                let rate = (p.velocity - wall.velocity) * a + (q.velocity - wall.velocity) * b;
+                (rate, heat(p) * a + heat(q) * b)
+            }
+            None => {
+                let g = &work.gradient[i];
+                let rate = Vector::from_fn(|c| g.velocity[c].dot(normal));
+                (rate, temperature_gradient(&self.gas, wall, g).dot(normal))
+            }
+        };
+        let heating = if contact == Contact::Adiabatic { 0.0 } else { heating };
+        Some(Slopes {
+            velocity: wall.velocity,
+            temperature,
+            velocity_gradient: std::array::from_fn(|c| *normal * rate[c]),
+            temperature_gradient: *normal * heating,
+        })
+    }
+
+    /// Stress and heat on the wall of interface particle `w`, from the states and gradients in `work`; `None` where the gas
+    /// slides.
+    pub fn wall_slopes(&self, cloud: &Cloud<D>, work: &Work<D>, w: usize) -> Option<WallSlopes<D>> {
+        let friction = self.friction.as_ref()?;
+        let at = self.at_wall(friction, cloud, work, w)?;
+        let still = Slopes { velocity: Vector::ZERO, ..at };
+        let through = friction.medium.flux(&self.gas, &still, &cloud.interface[w].normal);
+        Some(WallSlopes { stress: through.momentum, heat: through.energy })
+    }
+
+    /// Distance of the first particle from the wall in viscous lengths, y⁺ = η √(ρ |τ|)/μ; `None` where the gas slides.
+    pub fn y_plus(&self, cloud: &Cloud<D>, work: &Work<D>, w: usize) -> Option<f64> {
+        let friction = self.friction.as_ref()?;
+        let stress = self.wall_slopes(cloud, work, w)?.stress.norm();
+        let height = lowest_two(cloud, w).map_or(cloud.spacing[cloud.n_fluid + w], |(_, heights)| heights[0]);
+        let wall = &work.state[cloud.n_fluid + w];
+        Some(height * (wall.density * stress).sqrt() / friction.medium.at(self.gas.temperature(wall)))
+    }
+
+    /// Adds the rates at which viscosity and conduction even out differences between particles.
+    pub(super) fn add_viscous_rate(&self, friction: &Friction, (frame, work): (&Frame<D>, &Work<D>), rate: &mut [f64]) {
+        let (op, cloud) = (&frame.shape.operators, &frame.shape.cloud);
+        sweep_parts(op.fluid_parts(), 1, rate, &|k, out| {
+            let start = op.parts[k].start;
+            let diffusivity = |i: usize| friction.medium.diffusivity(&self.gas, &work.state[i]);
+            for e in op.edges(k) {
+                let (to_i, to_j) = self.exchange(e, cloud);
+                out[e.i() - start] += to_i * diffusivity(e.i());
+                if e.both() {
+                    out[e.j() - start] += to_j * diffusivity(e.j());
+                }
+            }
+            for face in op.wall_faces(k).iter().filter(|_| self.conservative) {
+                let i = face.i as usize;
+                out[i - start] += self.wall_exchange(cloud, face)[0].1 * diffusivity(i);
+            }
+        });
+    }
+
+    /// Area over volume and distance of the face of an edge, as each end sees it.
+    #[inline(always)]
+    fn exchange(&self, e: &Edge<D>, cloud: &Cloud<D>) -> (f64, f64) {
+        let d = cloud.x[e.j()] - cloud.x[e.i()];
+        let m = direction(e, &d);
+        let across = 2.0 / reach(&d, &m);
+        let (a_i, a_j) = match self.conservative {
+            true => (half_face(cloud.volume[e.i()], &e.s), -half_face(cloud.volume[e.j()], &e.s)),
+            false => (e.a_i, e.a_j),
+        };
+        (a_i.dot(&m).max(0.0) * across, (-a_j.dot(&m)).max(0.0) * across)
+    }
+
+    /// Particles that the slope at a piece of wall depends on, with its derivative times area over volume.
+    fn wall_exchange(&self, cloud: &Cloud<D>, face: &WallFace<D>) -> [(usize, f64); 2] {
+        let (i, wall) = (face.i as usize, face.wall as usize);
+        let size = face.area.norm();
+        let area = size / cloud.volume[i];
+        let column = wall.checked_sub(cloud.n_fluid).filter(|_| wall < cloud.n_rows());
+        if let Some((particles, heights)) = column.and_then(|w| lowest_two(cloud, w)).filter(|c| c.0[0] == i) {
+            let [a, b] = slope_weights(heights);
+            return [(particles[0], area * a), (particles[1], area * b)];
+        }
+        let normal = face.area * (1.0 / size.max(f64::MIN_POSITIVE));
+        [(i, area / reach(&(cloud.x[wall] - cloud.x[i]), &normal)), (i, 0.0)]
+    }
+
+    /// Adds −∂/∂U of the viscous terms of part `k`.
+    pub(super) fn add_viscous_blocks(
+        &self,
+        friction: &Friction,
+        (frame, work): (&Frame<D>, &Work<D>),
+        k: usize,
+        rows: &mut Rows<'_>,
+    ) {
+        let (op, cloud) = (&frame.shape.operators, &frame.shape.cloud);
+        let medium = &friction.medium;
+        let viscosity = |i: usize| medium.at(self.gas.temperature(&work.state[i]));
+        for e in op.edges(k) {
+            let (i, j) = (e.i(), e.j());
+            let (to_i, to_j) = self.exchange(e, cloud);
+            let m = direction(e, &(cloud.x[j] - cloud.x[i]));
+            let mu = 0.5 * (viscosity(i) + viscosity(j));
+            let [own, other] = [i, j].map(|q| thin_layer(&self.gas, medium, &work.state[q], &m));
+            add_block(rows, frame, (i, i), |r, c| mu * to_i * own[r][c]);
+            couple(self, rows, (frame, work), (i, j), |r, c| -mu * to_i * other[r][c]);
+            if e.both() {
+                add_block(rows, frame, (j, j), |r, c| mu * to_j * other[r][c]);
+                couple(self, rows, (frame, work), (j, i), |r, c| -mu * to_j * own[r][c]);
+            }
+        }
+        for face in op.wall_faces(k).iter().filter(|_| self.conservative) {
+            let source = cloud.source(face.wall as usize).index;
+            let contact = friction.contact(cloud.interface[source - cloud.n_fluid].body);
+            if contact == Contact::Slip {
+                continue;
+            }
+            let n = face.area.unit();
+            for (q, weight) in self.wall_exchange(cloud, face) {
+                let block =
+                    at_contact(&self.gas, medium, (&work.state[q], &work.state[source].velocity), (contact, &n));
+                add_block(rows, frame, (face.i as usize, q), |r, c| viscosity(source) * weight * block[r][c]);
+            }
+        }
+    }
+}
+
+/// ∂/∂U of (0, v + m (m·v)/3, v̄·(the same) + γ/Pr e) at the state `q`, v̄ held: what differences across a face of normal `m`
+/// exchange, over the viscosity.
+fn thin_layer<const D: usize>(gas: &Gas, medium: &Newtonian, q: &Primitive<D>, m: &Vector<D>) -> Block {
+    let mut block = motion(q, m);
+    let heat = energy(q, gas);
+    let e = D + 1;
+    for c in 0..D + 2 {
+        let work: f64 = (0..D).map(|d| q.velocity[d] * block[1 + d][c]).sum();
+        block[e][c] = work + gas.gamma / medium.prandtl * heat[c];
+    }
+    block
+}
+
+/// The same at a wall with the given velocity.
+fn at_contact<const D: usize>(
+    gas: &Gas,
+    medium: &Newtonian,
+    (q, wall): (&Primitive<D>, &Vector<D>),
+    (contact, n): (Contact, &Vector<D>),
+) -> Block {
+    let mut block = motion(q, n);
+    let heat = energy(q, gas);
+    let conducts = if contact == Contact::Adiabatic { 0.0 } else { gas.gamma / medium.prandtl };
+    for c in 0..D + 2 {
+        let work: f64 = (0..D).map(|d| wall[d] * block[1 + d][c]).sum();
+        block[D + 1][c] = work + conducts * heat[c];
+    }
+    block
+}
+
+/// ∂/∂U of v + m (m·v)/3, in the rows of momentum.
+fn motion<const D: usize>(q: &Primitive<D>, m: &Vector<D>) -> Block {
+    let mut block = [[0.0; 5]; 5];
+    let across = q.velocity.dot(m);
+    for d in 0..D {
+        block[1 + d][0] = -(q.velocity[d] + m[d] * across / 3.0) / q.density;
+        for c in 0..D {
+            block[1 + d][1 + c] = m[d] * m[c] / (3.0 * q.density);
+        }
+        block[1 + d][1 + d] += 1.0 / q.density;
+    }
+    block
+}
+
+/// ∂e/∂U of the internal energy per mass.
+fn energy<const D: usize>(q: &Primitive<D>, gas: &Gas) -> [f64; 5] {
+    let mut row = [0.0; 5];
+    row[0] = (q.velocity.norm_squared() - gas.energy(q) / q.density) / q.density;
+    (0..D).for_each(|d| row[1 + d] = -q.velocity[d] / q.density);
+    row[D + 1] = 1.0 / q.density;
+    row
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,92 @@
+use super::*;
+use crate::case::read;
+use crate::run::build_solver;
+use crate::system::{Moment, System};
+
+/// Gas in a box with a constant viscosity that a free stream of this Reynolds number has.
+fn boxed(conservative: bool) -> Fluid<2> {
+    let text = format!(
+        "[flow]\nmach = 0.5\nreynolds = 20\nreynolds_length = 1.0\nviscosity_law = \"constant\"\n[cloud]\n\
+         spacing = 0.0625\njitter = 0.15\n[cloud.domain]\nmin = [0.0, 0.0]\nmax = [1.0, 1.0]\n[scheme]\n\
+         conservative = {conservative}\n[boundary]\nx_min = \"held\"\nx_max = \"held\"\ny_min = \"held\"\n\
+         y_max = \"held\"\n[time.explicit]\nuntil = 1.0\n"
+    );
+    let case = read(&text, "case.toml").unwrap_or_else(|e| panic!("{e}"));
+    build_solver::<2>(&case, std::path::Path::new("")).unwrap().0
+}
+
+/// Viscous terms of every fluid particle for the field `q` in all particles.
+fn terms(fluid: &Fluid<2>, q: impl Fn(&Vector<2>) -> Primitive<2>) -> Vec<f64> {
+    let u = vec![1.0; fluid.len()];
+    let frame = fluid.frame(&Moment::At { time: 0.0 }, &u);
+    let mut work = fluid.work();
+    work.state.iter_mut().zip(&fluid.shape.cloud.x).for_each(|(s, x)| *s = q(x));
+    fluid.fill_gradients(&frame, &mut work);
+    // beyond the sides the slopes go on
+    let first = fluid.shape.cloud.n_rows();
+    let inner = work.gradient[0];
+    work.gradient[first..].fill(inner);
+    let mut du = vec![0.0; u.len()];
+    fluid.add_viscous(fluid.friction.as_ref().unwrap(), (&frame, &work), &mut du);
+    du
+}
+
+fn largest(du: &[f64]) -> f64 {
+    du.iter().fold(0.0, |m, v| m.max(v.abs()))
+}
+
+#[test]
+fn uniform_flow_and_rigid_rotation_feel_no_stress() {
+    for conservative in [false, true] {
+        let fluid = boxed(conservative);
+        let uniform = Primitive { density: 1.0, velocity: Vector([0.3, -0.2]), pressure: 0.8 };
+        assert_eq!(largest(&terms(&fluid, |_| uniform)), 0.0);
+        let spin = |x: &Vector<2>| Primitive { velocity: Vector([-x[1], x[0]]), ..uniform };
+        assert!(largest(&terms(&fluid, spin)) < 1e-12, "{}", largest(&terms(&fluid, spin)));
+    }
+}
+
+#[test]
+fn uniform_shear_moves_nothing_and_heats_by_dissipation() {
+    let rate = 0.7;
+    let shear = |x: &Vector<2>| Primitive { density: 1.0, velocity: Vector([rate * x[1], 0.0]), pressure: 0.8 };
+    for conservative in [false, true] {
+        let fluid = boxed(conservative);
+        let mu = fluid.friction.as_ref().unwrap().medium.viscosity;
+        let du = terms(&fluid, shear);
+        let (mut momentum, mut total, mut volume) = (0.0f64, 0.0, 0.0);
+        for (row, v) in du.chunks(4).zip(&fluid.shape.cloud.volume) {
+            momentum = momentum.max(row[1].abs()).max(row[2].abs());
+            (total, volume) = (total + v * row[3], volume + v);
+        }
+        assert!(momentum < 1e-12, "{momentum}");
+        // ∂(u τ)/∂y = μ (∂u/∂y)²
+        let heating = total / volume / (mu * rate * rate);
+        assert!((heating - 1.0).abs() < 0.02, "{heating}");
+    }
+}
+
+#[test]
+fn the_blocks_are_the_derivative_across_a_face() {
+    let gas = Gas { gamma: 1.4 };
+    let medium = Newtonian { viscosity: 1.0, sutherland: None, prandtl: 0.72 };
+    let q = Primitive { density: 1.2, velocity: Vector([0.3, -0.5, 0.2]), pressure: 0.8 };
+    let m = Vector([0.6, 0.0, 0.8]);
+    let exchanged = |s: &Primitive<3>| {
+        let v = s.velocity + m * (s.velocity.dot(&m) / 3.0);
+        let inner = s.pressure / (gas.gamma - 1.0) / s.density;
+        [0.0, v[0], v[1], v[2], q.velocity.dot(&v) + gas.gamma / medium.prandtl * inner]
+    };
+    let block = thin_layer(&gas, &medium, &q, &m);
+    let mut row = [0.0; 5];
+    gas.conserved(&q).store(&mut row);
+    for k in 0..5 {
+        let at = |h: f64| {
+            let mut u = row;
+            u[k] += h;
+            exchanged(&gas.primitive(&Conserved::load(&u)))
+        };
+        let (a, b) = (at(1e-6), at(-1e-6));
+        (0..5).for_each(|r| assert!((block[r][k] - (a[r] - b[r]) / 2e-6).abs() < 1e-8, "{r} {k}"));
+    }
+}
