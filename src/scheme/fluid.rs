@@ -309,7 +309,7 @@ impl<const D: usize> Fluid<D> {
         let (vi, vj) = (1.0 / cloud.volume[i], 1.0 / cloud.volume[j]);
         if frame.moves() {
             let speeds = (frame.velocity[i], frame.velocity[j]);
-            return self.moving_edge_flux(flux, e, ((qi, qj), (&l, &r)), speeds, (size, vi, vj));
+            return self.moving_edge_flux(flux, e, [qi, qj, &l, &r], speeds, (size, vi, vj));
         }
         let upwind = flux(gas, &l, &r, &m);
         if self.conservative {
@@ -334,7 +334,7 @@ impl<const D: usize> Fluid<D> {
         &self,
         flux: &impl UpwindFlux<D>,
         e: &Edge<D>,
-        ((qi, qj), (l, r)): ((&Primitive<D>, &Primitive<D>), (&Primitive<D>, &Primitive<D>)),
+        [qi, qj, l, r]: [&Primitive<D>; 4],
         (wi, wj): (Vector<D>, Vector<D>),
         (size, vi, vj): (f64, f64, f64),
     ) -> (Conserved<D>, Conserved<D>) {
