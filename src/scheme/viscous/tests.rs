@@ -1,3 +1,4 @@
+//! Uniform flow, rotation, shear and the linearisation.
 use super::*;
 use crate::case::read;
 use crate::run::build_solver;
