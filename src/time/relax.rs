@@ -71,7 +71,7 @@ const SMALLEST_FRACTION: f64 = 0.05;
 /// Courant number of the explicit method.
 const EXPLICIT_CFL: f64 = 1.5;
 /// Scaled residual that is round-off: a relative change of the density in one local time.
-const ROUND_OFF: f64 = 1e-14;
+const ROUND_OFF: f64 = 1e-15;
 /// Stages of the explicit method.
 const STAGES: [f64; 5] = [0.25, 1.0 / 6.0, 0.375, 0.5, 1.0];
 
