@@ -409,8 +409,8 @@ impl<const D: usize> System for Fluid<D> {
             time: moment.time(),
             shape: Arc::clone(&self.shape),
             turn: None,
-            velocity: Vec::new(),
-            walls: Vec::new(),
+            velocity: Arc::default(),
+            walls: Arc::default(),
             outer: cloud.x[cloud.outer_range()].iter().map(|x| (self.held)(x)).collect(),
         };
         self.place(moment, &mut frame);
@@ -421,8 +421,8 @@ impl<const D: usize> System for Fluid<D> {
     fn place(&self, moment: &Moment<'_>, frame: &mut Frame<D>) {
         self.carriage.place(&self.shape, moment, frame);
         if matches!(moment, Moment::At { .. }) {
-            frame.velocity.clear();
-            frame.walls.clear();
+            frame.velocity = Arc::default();
+            frame.walls = Arc::default();
         }
     }
 

@@ -57,9 +57,9 @@ pub struct Frame<const D: usize> {
     /// From those axes to those of the case, when they differ.
     pub turn: Option<RigidPose<D>>,
     /// Velocities of all particles in the axes of `shape`; empty when nothing moves.
-    pub velocity: Vec<Vector<D>>,
+    pub velocity: Arc<Vec<Vector<D>>>,
     /// Spin and acceleration of the wall at each interface particle; empty when nothing moves.
-    pub walls: Vec<WallMotion<D>>,
+    pub walls: Arc<Vec<WallMotion<D>>>,
     /// States of the outer particles, in the axes of the case.
     pub outer: Vec<Primitive<D>>,
 }
@@ -175,17 +175,18 @@ fn place_rigid<const D: usize>(law: &Law<D>, origin: &Arc<Shape<D>>, moment: &Mo
     let t = moment.time();
     let pose = law.pose(t);
     let x = &origin.cloud.x;
-    frame.velocity.resize(x.len(), Vector::ZERO);
+    let velocity = Arc::make_mut(&mut frame.velocity);
+    velocity.resize(x.len(), Vector::ZERO);
     match moment {
         Moment::By { rate, .. } => {
             let poses: Vec<(f64, RigidPose<D>)> = rate.iter().map(|(c, t)| (*c, law.pose(*t))).collect();
             let rows = std::array::from_fn(|r| poses.iter().fold(Vector::ZERO, |s, (c, p)| s + p.rotation[r] * *c));
             let shift = poses.iter().fold(Vector::ZERO, |s, (c, p)| s + p.shift * *c);
             let drift = RigidPose { rotation: rows, shift };
-            sweep(&mut frame.velocity, |i| pose.inverse_direction(&drift.point(&x[i])));
+            sweep(velocity, |i| pose.inverse_direction(&drift.point(&x[i])));
         }
         Moment::At { .. } | Moment::Within { .. } => {
-            sweep(&mut frame.velocity, |i| pose.inverse_direction(&law.velocity(t, &x[i])));
+            sweep(velocity, |i| pose.inverse_direction(&law.velocity(t, &x[i])));
         }
     }
     let gradient = rotation_rate(law, t);
@@ -195,11 +196,9 @@ fn place_rigid<const D: usize>(law: &Law<D>, origin: &Arc<Shape<D>>, moment: &Mo
     let spin = std::array::from_fn(|i| Vector::from_fn(|j| columns[j][i]));
     let first = origin.cloud.n_fluid;
     let still = WallMotion { spin, acceleration: Vector::ZERO };
-    frame.walls.resize(origin.cloud.interface.len(), still);
-    sweep(&mut frame.walls, |w| WallMotion {
-        spin,
-        acceleration: inward(&law.kinematics(t, &x[first + w]).acceleration),
-    });
+    let walls = Arc::make_mut(&mut frame.walls);
+    walls.resize(origin.cloud.interface.len(), still);
+    sweep(walls, |w| WallMotion { spin, acceleration: inward(&law.kinematics(t, &x[first + w]).acceleration) });
     frame.turn = Some(pose);
 }
 
@@ -220,10 +219,11 @@ fn times<const D: usize>(rows: &[Vector<D>; D], v: &Vector<D>) -> Vector<D> {
 fn place_along<const D: usize>(path: &dyn Path<D>, origin: &Arc<Shape<D>>, moment: &Moment<'_>, frame: &mut Frame<D>) {
     let reference = &origin.cloud;
     let n = reference.n_real();
-    frame.velocity.resize(reference.len(), Vector::ZERO);
+    let velocity = Arc::make_mut(&mut frame.velocity);
+    velocity.resize(reference.len(), Vector::ZERO);
     let shape = Arc::make_mut(&mut frame.shape);
     let before = |i: usize| &reference.x[i];
-    let (x, w) = (&mut shape.cloud.x[..n], &mut frame.velocity[..n]);
+    let (x, w) = (&mut shape.cloud.x[..n], &mut velocity[..n]);
     match moment {
         Moment::At { time } => {
             let now = path.at(*time);
@@ -246,7 +246,7 @@ fn place_along<const D: usize>(path: &dyn Path<D>, origin: &Arc<Shape<D>>, momen
     for (k, image) in reference.images.iter().enumerate() {
         let (t, s) = (&reference.transforms[image.transform as usize], image.source as usize);
         shape.cloud.x[n + k] = t.point(&shape.cloud.x[s]);
-        frame.velocity[n + k] = t.direction(&frame.velocity[s]);
+        velocity[n + k] = t.direction(&velocity[s]);
     }
 }
 
@@ -263,8 +263,9 @@ fn turn_walls<const D: usize>(laws: &[Law<D>], origin: &Arc<Shape<D>>, t: f64, f
             slot.turn(&pose.rotation);
         }
     });
-    frame.walls.resize(reference.interface.len(), WallMotion::AT_REST);
-    sweep(&mut frame.walls, |w| match laws.get(body(w)) {
+    let walls = Arc::make_mut(&mut frame.walls);
+    walls.resize(reference.interface.len(), WallMotion::AT_REST);
+    sweep(walls, |w| match laws.get(body(w)) {
         Some(law) => WallMotion {
             spin: rates[body(w)],
             acceleration: law.kinematics(t, &reference.x[reference.n_fluid + w]).acceleration,

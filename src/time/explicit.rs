@@ -128,10 +128,12 @@ impl<S: System> March<S> for Explicit<'_, S> {
 
     fn advance(&mut self) -> Result<Step, TimeError> {
         let mut longest = self.step_length();
-        // velocities of particles are those of the step before; in the first step there is none, nor after a restart
-        let moment = Moment::Within { start: self.past.time, step: longest, fraction: 0.0 };
-        self.system.place(&moment, &mut self.frame);
-        longest = longest.min(self.step_length());
+        if self.past.last == 0.0 {
+            // later on velocities of particles are those of the step before
+            let moment = Moment::Within { start: self.past.time, step: longest, fraction: 0.0 };
+            self.system.place(&moment, &mut self.frame);
+            longest = longest.min(self.step_length());
+        }
         let left = self.until - self.past.time;
         let mut dt = longest.min(left);
         if dt < left && 2.0 * dt > left {
