@@ -52,11 +52,10 @@ pub(super) fn loads(run: &RunFolder) -> String {
         Err(reason) => word(&reason),
     };
     let Ok(summary) = run.json("summary.json") else { return html };
-    let evaluations =
-        [("Pressure on the surface", "loads"), ("Momentum balance around the bodies", "loads_momentum_balance")];
+    let evaluations = [("On the surface", "loads"), ("Momentum balance around the bodies", "loads_momentum_balance")];
     let mut rows: Vec<[String; 4]> = Vec::new();
     for (label, key) in evaluations {
-        if let Some(values) = summary.get(key) {
+        if let Some(values) = summary.get(key).filter(|v| v.is_object()) {
             rows.push([
                 label.to_owned(),
                 number_of(values.get("cl")),
@@ -66,7 +65,8 @@ pub(super) fn loads(run: &RunFolder) -> String {
         }
     }
     if !rows.is_empty() {
-        html.push_str("<h3>Two evaluations of the same loads</h3>\n");
+        let title = if rows.len() == 1 { "All bodies together" } else { "Two evaluations of the same loads" };
+        html.push_str(&format!("<h3>{title}</h3>\n"));
         html.push_str(&table_html(&["", "CL", "CD", "CM"], rows.into_iter().map(Vec::from)));
     }
     html

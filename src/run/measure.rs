@@ -47,8 +47,8 @@ impl Measured {
                 first.ok_or_else(|| "friction turns nowhere on the upper side".into())
             }
             Metric::CfBlasiusRms => self.blasius_difference(claim),
-            Metric::ClMomentum => Ok(s.loads_momentum_balance.cl),
-            Metric::CdMomentum => Ok(s.loads_momentum_balance.cd),
+            Metric::ClMomentum => s.loads_momentum_balance.map(|c| c.cl).ok_or_else(no_balance),
+            Metric::CdMomentum => s.loads_momentum_balance.map(|c| c.cd).ok_or_else(no_balance),
             Metric::LiftAmplitude => self.lift().map(|c| c.norm()),
             Metric::LiftPhase => self.lift().map(|c| c.arg().to_degrees()),
             Metric::ThinLiftAmplitude => self.thin_lift(other).map(|c| c.norm()),
@@ -253,6 +253,10 @@ impl Measured {
 
 fn no_viscosity() -> String {
     "the case has no viscosity".into()
+}
+
+fn no_balance() -> String {
+    "bodies move: there is no momentum balance".into()
 }
 
 fn no_wall() -> String {

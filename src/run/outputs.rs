@@ -63,46 +63,7 @@ pub(super) fn write_all<const D: usize>(
         tags: s.tags.clone(),
     });
     let r = Finished { case, out: &places.out, fluid, work, surface, axes: frame_of_loads.axes(fluid), names };
-    let (pressure, friction) = r.wall_loads(|_| true);
-    let loads = r.axes.coefficients(&together(&pressure, &friction));
-    let part = |load: &Load| fluid.friction.as_ref().map(|_| r.axes.coefficients(load));
-    let balance = r.balance();
-    let through = r.axes.coefficients(&balance.load);
-    let ledger = if marches(case) {
-        drift(fluid, state, &journal.start_totals)
-    } else {
-        r.steady_ledger(&balance, &loads, &through)
-    };
-    let (cpu, wall) = journal.seconds();
-    let n = fluid.shape.cloud.n_real();
-    let summary = Summary {
-        event: "summary",
-        case: case.title.clone(),
-        run: places.out.display().to_string(),
-        particles: n,
-        iterations: journal.iteration(),
-        residual_drop: if marches(case) { 0.0 } else { -journal.drop.log10() },
-        converged: journal.converged,
-        cpu_seconds: cpu,
-        wall_seconds: wall,
-        peak_bytes: peak_bytes(),
-        loads,
-        loads_pressure: part(&pressure),
-        loads_friction: part(&friction),
-        separation: r.separations(),
-        loads_momentum_balance: through,
-        ledger,
-        time: journal.time,
-        unconverged_steps: journal.unconverged,
-        first_harmonics: journal.period.map_or_else(Vec::new, |p| journal.trace.first_harmonics(p)),
-        periodic_change: journal.period.and_then(|p| journal.trace.change(p)),
-        bytes_per_particle: bytes_of(fluid, journal.bytes) as f64 / n as f64,
-        cpu_ms_per_particle: 1e3 * cpu / n as f64,
-        linear_iterations: journal.linear,
-        error_l2_density: r.exact_error(journal.time),
-        adapt_change: last_change(&journal.cycles),
-        phases: vec![("solve".into(), solved), ("files so far".into(), clock.wall_seconds() - solved)],
-    };
+    let summary = r.summary(journal, state, (solved, clock));
     r.write_tables(&journal.cycles, &summary)?;
     if let Some(period) = journal.period {
         journal.trace.write(&places.out, period)?;
@@ -152,6 +113,51 @@ fn drift<const D: usize>(fluid: &Fluid<D>, state: &[f64], start: &[f64]) -> Ledg
 }
 
 impl<'a, const D: usize> Finished<'a, D> {
+    /// The last line of the run; `state` is that of the solver, `solved` the wall seconds until it was found.
+    fn summary(&self, journal: &Journal<'_>, state: &[f64], (solved, clock): (f64, &Clock)) -> Summary {
+        let (case, fluid) = (self.case, self.fluid);
+        let (pressure, friction) = self.wall_loads(|_| true);
+        let loads = self.axes.coefficients(&together(&pressure, &friction));
+        let part = |load: &Load| fluid.friction.as_ref().map(|_| self.axes.coefficients(load));
+        let balance = self.balance();
+        let through = self.axes.coefficients(&balance.load);
+        let ledger = if marches(case) {
+            drift(fluid, state, &journal.start_totals)
+        } else {
+            self.steady_ledger(&balance, &loads, &through)
+        };
+        let (cpu, wall) = journal.seconds();
+        let n = fluid.shape.cloud.n_real();
+        Summary {
+            event: "summary",
+            case: case.title.clone(),
+            run: self.out.display().to_string(),
+            particles: n,
+            iterations: journal.iteration(),
+            residual_drop: if marches(case) { 0.0 } else { -journal.drop.log10() },
+            converged: journal.converged,
+            cpu_seconds: cpu,
+            wall_seconds: wall,
+            peak_bytes: peak_bytes(),
+            loads,
+            loads_pressure: part(&pressure),
+            loads_friction: part(&friction),
+            separation: self.separations(),
+            loads_momentum_balance: (!case.moves()).then_some(through),
+            ledger,
+            time: journal.time,
+            unconverged_steps: journal.unconverged,
+            first_harmonics: journal.period.map_or_else(Vec::new, |p| journal.trace.first_harmonics(p)),
+            periodic_change: journal.period.and_then(|p| journal.trace.change(p)),
+            bytes_per_particle: bytes_of(fluid, journal.bytes) as f64 / n as f64,
+            cpu_ms_per_particle: 1e3 * cpu / n as f64,
+            linear_iterations: journal.linear,
+            error_l2_density: self.exact_error(journal.time),
+            adapt_change: last_change(&journal.cycles),
+            phases: vec![("solve".into(), solved), ("files so far".into(), clock.wall_seconds() - solved)],
+        }
+    }
+
     fn view(&self) -> View<'a, D> {
         View { case: self.case, out: self.out, fluid: self.fluid, work: self.work, surface: self.surface }
     }

@@ -16,9 +16,9 @@ const POINTS: usize = 256;
 /// Smallest amplitude of a motion, in radians or lengths, that loads are measured against.
 const STILL: f64 = 1e-12;
 
-/// One moment of a history.
+/// Loads and motion at one time.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Moment {
+pub(super) struct Sample {
     /// Time.
     pub(super) time: f64,
     /// Loads.
@@ -30,7 +30,7 @@ pub(super) struct Moment {
 /// The history of the loads of a march.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Trace {
-    moments: Vec<Moment>,
+    samples: Vec<Sample>,
 }
 
 /// How the loads differ from those one period before.
@@ -53,7 +53,7 @@ pub struct FirstHarmonics {
     pub cl: [f64; 2],
     /// Drag.
     pub cd: [f64; 2],
-    /// Moment.
+    /// Sample.
     pub cm: [f64; 2],
 }
 
@@ -68,9 +68,9 @@ impl Trace {
     fn fitted(&self, period: f64) -> Option<([Harmonics; 3], Moved)> {
         let time = self.column(|m| m.time);
         let window = Window { period, periods: 1.0, harmonics: HARMONICS };
-        let fit = |f: &dyn Fn(&Moment) -> f64| Harmonics::fit(&time, &self.column(f), &window).ok();
+        let fit = |f: &dyn Fn(&Sample) -> f64| Harmonics::fit(&time, &self.column(f), &window).ok();
         let loads = [fit(&|m| m.loads.cl)?, fit(&|m| m.loads.cd)?, fit(&|m| m.loads.cm)?];
-        let moved = |(k, name): (usize, &'static str)| Some((name, fit(&|m: &Moment| m.motion[k])?));
+        let moved = |(k, name): (usize, &'static str)| Some((name, fit(&|m: &Sample| m.motion[k])?));
         let motions = PARTS.into_iter().enumerate().filter_map(moved).filter(|(_, h)| h.term(1).norm() > STILL);
         Some((loads, motions.collect()))
     }
@@ -86,9 +86,9 @@ impl Trace {
         all.collect()
     }
 
-    /// Adds a moment.
-    pub(super) fn push(&mut self, moment: Moment) {
-        self.moments.push(moment);
+    /// Adds a sample.
+    pub(super) fn push(&mut self, sample: Sample) {
+        self.samples.push(sample);
     }
 
     /// The part of a trace that the history of an interrupted run holds.
@@ -103,14 +103,14 @@ impl Trace {
             let values: Vec<f64> = line.split(',').map(|v| v.parse().unwrap_or(f64::NAN)).collect();
             let get = |k: usize| values.get(at[k]).copied().unwrap_or(f64::NAN);
             let loads = Coefficients { cl: get(1), cd: get(2), cm: get(3) };
-            Moment { time: get(0), loads, motion: [get(4).to_radians(), get(5), get(6), get(7)] }
+            Sample { time: get(0), loads, motion: [get(4).to_radians(), get(5), get(6), get(7)] }
         };
         // iterations before the march stand at time zero
-        Self { moments: lines.map(row).filter(|m| m.time > 0.0 && m.time <= until * (1.0 + 1e-12)).collect() }
+        Self { samples: lines.map(row).filter(|m| m.time > 0.0 && m.time <= until * (1.0 + 1e-12)).collect() }
     }
 
-    fn column(&self, f: impl Fn(&Moment) -> f64) -> Vec<f64> {
-        self.moments.iter().map(f).collect()
+    fn column(&self, f: impl Fn(&Sample) -> f64) -> Vec<f64> {
+        self.samples.iter().map(f).collect()
     }
 
     /// Change over the last period; `None` while there are not two.

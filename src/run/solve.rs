@@ -1,7 +1,7 @@
 //! One stage from its start to its end: the integrator, watched.
 
 use super::outputs;
-use super::periodic::{Moment, Trace};
+use super::periodic::{Sample, Trace};
 use super::persist::{FILE, Position, Saved};
 use super::setup::{Solver, control, inner_control, plan, prelude};
 use super::snapshot::{LoadFrame, Snapshot, load_axes};
@@ -159,7 +159,7 @@ impl<'a> Journal<'a> {
             let (angle, shift) = fluid.carriage.law().map_or_else(still, at);
             row.extend([f64::from(inner), angle.to_degrees(), shift[0], shift[1], shift[2]]);
             if step.time > 0.0 {
-                self.trace.push(Moment { time: step.time, loads: c, motion: [angle, shift[0], shift[1], shift[2]] });
+                self.trace.push(Sample { time: step.time, loads: c, motion: [angle, shift[0], shift[1], shift[2]] });
             }
         }
         self.history.append(&row)?;

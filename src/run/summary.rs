@@ -40,8 +40,8 @@ pub struct Summary {
     /// Where friction turns against the stream.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub separation: Vec<Separation>,
-    /// Loads from the momentum balance over a box around the bodies.
-    pub loads_momentum_balance: Coefficients,
+    /// Loads from the momentum balance over a box around the bodies; absent while bodies move, when what the box holds changes.
+    pub loads_momentum_balance: Option<Coefficients>,
     /// Conservation.
     pub ledger: Ledger,
     /// Physical time at the end of a march.

@@ -85,7 +85,9 @@ fn describe(s: &Summary, out: &Path) -> String {
             row("wall friction", friction);
             row("both", a);
         }
-        row("momentum", b);
+        if let Some(b) = b {
+            row("momentum", b);
+        }
     }
     if let Some(c) = &s.adapt_change {
         text += &format!("last adaptation {:+9.5}  {:+9.5}  {:+9.5}\n", c.cl, c.cd, c.cm);
