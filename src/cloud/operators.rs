@@ -14,10 +14,11 @@ use crate::math::Vector;
 use crate::math::least_squares::{bounded_gradient_matrix, gradient_matrix, gradient_weight};
 use crate::math::sweep::{parts, sweep, sweep_each, sweep_each_slot};
 
-/// Rows in one part: large enough that few edges are visited twice, small enough to stay in cache and balance threads.
-const PART: [usize; 2] = [1024, 4096];
+/// Fewest and most rows in one part, in 2-D and in 3-D: large enough that few edges are visited twice (of 4,096 rows in 3-D
+/// a quarter of the edges are), small enough to stay in the second cache and to balance threads.
+const PART: [[usize; 2]; 2] = [[1024, 8192], [4096, 16384]];
 /// Parts that a large cloud has at least.
-const MANY_PARTS: usize = 128;
+const MANY_PARTS: usize = 32;
 /// Marks an edge whose second end lies in the same part.
 const BOTH: u32 = 1 << 31;
 
@@ -86,7 +87,8 @@ impl<const D: usize> Operators<D> {
     pub fn new(cloud: &Cloud<D>) -> Self {
         let (inverse, condition) = fit_rows(cloud);
         let lookup = Reverse::new(cloud);
-        let size = (cloud.n_fluid / MANY_PARTS).clamp(PART[0], PART[1]);
+        let [fewest, most] = PART[usize::from(D == 3)];
+        let size = (cloud.n_fluid / MANY_PARTS).clamp(fewest, most);
         let mut all = parts(cloud.n_fluid, size);
         let n_fluid_parts = all.len();
         let start = cloud.n_fluid;

@@ -13,8 +13,13 @@ impl<const D: usize> Vector<D> {
 
     /// The vector whose component `d` is `f(d)`.
     #[inline(always)]
-    pub fn from_fn(f: impl FnMut(usize) -> f64) -> Self {
-        Self(from_fn(f))
+    pub fn from_fn(mut f: impl FnMut(usize) -> f64) -> Self {
+        // a plain loop: the compiler does not always look through array::from_fn in large kernels
+        let mut v = [0.0; D];
+        for (d, slot) in v.iter_mut().enumerate() {
+            *slot = f(d);
+        }
+        Self(v)
     }
 
     /// The vector with every component equal to `value`.

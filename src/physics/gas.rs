@@ -72,13 +72,13 @@ impl<const D: usize> Conserved<D> {
 }
 
 impl<const D: usize> Primitive<D> {
-    /// The state f(component) for each of density, velocity and pressure of one, two or three others.
+    /// The state f(component) for each of density, velocity and pressure of two others.
     #[inline(always)]
-    pub fn zip3(a: &Self, b: &Self, c: &Self, f: impl Fn(f64, f64, f64) -> f64) -> Self {
+    pub fn zip(a: &Self, b: &Self, f: impl Fn(f64, f64) -> f64) -> Self {
         Self {
-            density: f(a.density, b.density, c.density),
-            velocity: Vector::from_fn(|d| f(a.velocity[d], b.velocity[d], c.velocity[d])),
-            pressure: f(a.pressure, b.pressure, c.pressure),
+            density: f(a.density, b.density),
+            velocity: Vector::from_fn(|d| f(a.velocity[d], b.velocity[d])),
+            pressure: f(a.pressure, b.pressure),
         }
     }
 
@@ -130,7 +130,7 @@ impl Gas {
     /// Total energy per volume.
     #[inline(always)]
     pub fn energy<const D: usize>(&self, q: &Primitive<D>) -> f64 {
-        q.pressure / (self.gamma - 1.0) + 0.5 * q.density * q.velocity.norm_squared()
+        q.pressure * (1.0 / (self.gamma - 1.0)) + 0.5 * q.density * q.velocity.norm_squared()
     }
 
     /// Speed of sound c = √(γp/ρ).

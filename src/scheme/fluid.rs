@@ -16,16 +16,16 @@
 use std::sync::Arc;
 
 use crate::case::{Flux, Limiter, Side};
-use crate::cloud::Edge;
 use crate::cloud::operators::WallFace;
 use crate::math::Vector;
 use crate::math::block_matrix::BlockMatrix;
 use crate::math::sweep::{maximum, sweep, sweep_parts, sweep_rows, sweep_slots};
-use crate::physics::riemann::{flux_ausm_plus_up, flux_hllc, flux_roe, flux_rusanov};
+use crate::physics::riemann::{AusmPlusUp, Hllc, Roe, Rusanov, UpwindFlux};
 use crate::physics::{Conserved, Gas, Primitive};
 use crate::system::{Fault, Moment, System};
 
 use super::boundary::slip_wall;
+use super::edges::{Particles, Rule, edge_fluxes};
 use super::reconstruct::{Gradient, Limit, Reconstruction, Unlimited, VanAlbada, Venkatakrishnan};
 use super::shape::{Carriage, Frame, Shape};
 use super::start::Field;
@@ -214,23 +214,30 @@ impl<const D: usize> Fluid<D> {
         }
     }
 
-    /// Sums the edge fluxes of every fluid particle.
+    /// Sums the edge fluxes of every fluid particle, weighted with volumes until the end so that no edge divides by one.
     fn fluxes(&self, flux: impl UpwindFlux<D>, limit: impl Limit, at: (&Frame<D>, &Work<D>), du: &mut [f64]) {
-        let frame = at.0;
-        let op = &frame.shape.operators;
+        let (frame, work) = at;
+        let (op, cloud) = (&frame.shape.operators, &frame.shape.cloud);
+        let (gas, reconstruction, conservative) = (self.gas, self.reconstruction, self.conservative);
+        let rule = Rule { gas, flux, limit, reconstruction, conservative };
+        let particles = Particles {
+            x: &cloud.x,
+            volume: &cloud.volume,
+            state: &work.state,
+            gradient: &work.gradient,
+            velocity: &frame.velocity,
+        };
         sweep_parts(op.fluid_parts(), D + 2, du, &|k, out| {
             let start = op.parts[k].start;
             out.fill(0.0);
-            for e in op.edges(k) {
-                let (to_i, to_j) = self.edge_flux(&flux, limit, e, at);
-                add(&mut out[(e.i() - start) * (D + 2)..], &to_i);
-                if e.both() {
-                    add(&mut out[(e.j() - start) * (D + 2)..], &to_j);
-                }
-            }
+            edge_fluxes(&rule, particles, op.edges(k), |i, change| add(&mut out[(i - start) * (D + 2)..], change));
             if self.conservative {
                 let faces = op.wall_faces(k);
                 self.wall_fluxes(faces, at, &mut |i, to_i| add(&mut out[(i - start) * (D + 2)..], &to_i));
+            }
+            for (row, volume) in out.chunks_exact_mut(D + 2).zip(&cloud.volume[start..]) {
+                let inverse = 1.0 / volume;
+                row.iter_mut().for_each(|r| *r *= inverse);
             }
             if frame.turn.is_some() {
                 out.chunks_exact_mut(D + 2).for_each(|row| {
@@ -258,7 +265,7 @@ impl<const D: usize> Fluid<D> {
                 false => pressed,
             };
             let own = self.flux_past(&work.state[i], &face.area, &own);
-            add(i, through.plus(-1.0, &own).times(-1.0 / frame.shape.cloud.volume[i]));
+            add(i, own.plus(-1.0, &through));
         }
     }
 
@@ -268,95 +275,6 @@ impl<const D: usize> Fluid<D> {
         let still = self.gas.flux(q, n);
         let passed = w.dot(n);
         if passed == 0.0 { still } else { still.plus(-passed, &self.gas.conserved(q)) }
-    }
-
-    /// The upwind flux through an area that moves with `w`, by way of the axes in which it rests.
-    #[inline(always)]
-    fn upwind_past(
-        &self,
-        flux: &impl UpwindFlux<D>,
-        (l, r): (&Primitive<D>, &Primitive<D>),
-        m: &Vector<D>,
-        w: &Vector<D>,
-    ) -> Conserved<D> {
-        let seen = |q: &Primitive<D>| Primitive { velocity: q.velocity - *w, ..*q };
-        let f = flux(&self.gas, &seen(l), &seen(r), m);
-        let energy = f.energy + w.dot(&f.momentum) + 0.5 * w.norm_squared() * f.density;
-        Conserved { momentum: f.momentum + *w * f.density, energy, ..f }
-    }
-
-    /// What one edge adds to dU/dt of both ends: (to i, to j).
-    #[inline(always)]
-    fn edge_flux(
-        &self,
-        flux: &impl UpwindFlux<D>,
-        limit: impl Limit,
-        e: &Edge<D>,
-        (frame, work): (&Frame<D>, &Work<D>),
-    ) -> (Conserved<D>, Conserved<D>) {
-        let (i, j) = (e.i(), e.j());
-        let size = e.s.norm();
-        if self.conservative && size == 0.0 {
-            return (Conserved::ZERO, Conserved::ZERO);
-        }
-        let (qi, qj) = (&work.state[i], &work.state[j]);
-        let cloud = &frame.shape.cloud;
-        let d = cloud.x[j] - cloud.x[i];
-        let slopes = (&work.gradient[i], &work.gradient[j]);
-        let (l, r) = self.reconstruction.states(&self.gas, limit, (qi, qj), slopes, &d);
-        let gas = &self.gas;
-        let m = e.s * (1.0 / size.max(f64::MIN_POSITIVE));
-        let (vi, vj) = (1.0 / cloud.volume[i], 1.0 / cloud.volume[j]);
-        if frame.moves() {
-            let speeds = (frame.velocity[i], frame.velocity[j]);
-            return self.moving_edge_flux(flux, e, [qi, qj, &l, &r], speeds, (size, vi, vj));
-        }
-        let upwind = flux(gas, &l, &r, &m);
-        if self.conservative {
-            let through = upwind.times(size);
-            let to_i = through.plus(-1.0, &gas.flux(qi, &e.s)).times(-vi);
-            let to_j = through.plus(-1.0, &gas.flux(qj, &e.s)).times(vj);
-            return (to_i, to_j);
-        }
-        let mean = gas.flux(&l, &m).plus(1.0, &gas.flux(&r, &m));
-        let spread = upwind.plus(-0.5, &mean).times(size);
-        let central = |a: &Vector<D>, own: &Primitive<D>| {
-            gas.flux(&l, a).plus(1.0, &gas.flux(&r, a)).plus(-2.0, &gas.flux(own, a))
-        };
-        let to_i = central(&e.a_i, qi).plus(vi, &spread).times(-1.0);
-        let to_j = if e.both() { central(&e.a_j, qj).plus(-vj, &spread).times(-1.0) } else { Conserved::ZERO };
-        (to_i, to_j)
-    }
-
-    /// The same on particles that move.
-    #[inline]
-    fn moving_edge_flux(
-        &self,
-        flux: &impl UpwindFlux<D>,
-        e: &Edge<D>,
-        [qi, qj, l, r]: [&Primitive<D>; 4],
-        (wi, wj): (Vector<D>, Vector<D>),
-        (size, vi, vj): (f64, f64, f64),
-    ) -> (Conserved<D>, Conserved<D>) {
-        let m = e.s * (1.0 / size.max(f64::MIN_POSITIVE));
-        let w = (wi + wj) * 0.5;
-        let upwind = self.upwind_past(flux, (l, r), &m, &w);
-        if self.conservative {
-            let through = upwind.times(size);
-            let mean = self.gas.conserved(l).plus(1.0, &self.gas.conserved(r)).times(0.5);
-            let seen = |own: &Vector<D>| through.plus((w - *own).dot(&e.s), &mean);
-            let to_i = seen(&wi).plus(-1.0, &self.flux_past(qi, &e.s, &wi)).times(-vi);
-            let to_j = seen(&wj).plus(-1.0, &self.flux_past(qj, &e.s, &wj)).times(vj);
-            return (to_i, to_j);
-        }
-        let mean = self.flux_past(l, &m, &w).plus(1.0, &self.flux_past(r, &m, &w));
-        let spread = upwind.plus(-0.5, &mean).times(size);
-        let central = |a: &Vector<D>, own: &Primitive<D>, w: &Vector<D>| {
-            self.flux_past(l, a, w).plus(1.0, &self.flux_past(r, a, w)).plus(-2.0, &self.flux_past(own, a, w))
-        };
-        let to_i = central(&e.a_i, qi, &wi).plus(vi, &spread).times(-1.0);
-        let to_j = if e.both() { central(&e.a_j, qj, &wj).plus(-vj, &spread).times(-1.0) } else { Conserved::ZERO };
-        (to_i, to_j)
     }
 
     /// Force of the pressure on all bodies in the axes of the case, from the wall states in `work`.
@@ -374,13 +292,6 @@ impl<const D: usize> Fluid<D> {
 pub(super) fn half_face<const D: usize>(volume: f64, s: &Vector<D>) -> Vector<D> {
     *s * (0.5 / volume)
 }
-
-/// A numerical flux across a unit normal.
-pub trait UpwindFlux<const D: usize>:
-    Fn(&Gas, &Primitive<D>, &Primitive<D>, &Vector<D>) -> Conserved<D> + Sync
-{
-}
-impl<const D: usize, T: Fn(&Gas, &Primitive<D>, &Primitive<D>, &Vector<D>) -> Conserved<D> + Sync> UpwindFlux<D> for T {}
 
 #[inline(always)]
 pub(super) fn add<const D: usize>(row: &mut [f64], c: &Conserved<D>) {
@@ -452,10 +363,10 @@ impl<const D: usize> System for Fluid<D> {
             self.fill_gradients(frame, work);
         }
         match self.flux {
-            Flux::Hllc => self.rhs_with_limiter(flux_hllc::<D>, frame, work, du),
-            Flux::Roe => self.rhs_with_limiter(flux_roe::<D>, frame, work, du),
-            Flux::AusmPlusUp => self.rhs_with_limiter(flux_ausm_plus_up::<D>, frame, work, du),
-            Flux::Rusanov => self.rhs_with_limiter(flux_rusanov::<D>, frame, work, du),
+            Flux::Hllc => self.rhs_with_limiter(Hllc, frame, work, du),
+            Flux::Roe => self.rhs_with_limiter(Roe, frame, work, du),
+            Flux::AusmPlusUp => self.rhs_with_limiter(AusmPlusUp, frame, work, du),
+            Flux::Rusanov => self.rhs_with_limiter(Rusanov, frame, work, du),
         }
         if let Some(friction) = &self.friction {
             self.add_viscous(friction, (frame, work), du);
@@ -620,7 +531,7 @@ mod tests {
             work.state.fill(Primitive { density: 1.2, velocity, pressure: 0.9 });
             let mut du = vec![0.0; fluid.len()];
             let still = fluid.frame(&Moment::At { time: 0.0 }, &vec![1.0; fluid.len()]);
-            fluid.rhs_with_limiter(flux_hllc::<2>, &still, &work, &mut du);
+            fluid.rhs_with_limiter(Hllc, &still, &work, &mut du);
             // in units of pressure times surface over volume: cells are a hundred times thinner than long
             let unit = |i: usize| fluid.shape.cloud.volume[i] / fluid.shape.cloud.spacing[i];
             du.iter().enumerate().map(|(k, r): (usize, &f64)| (r * unit(k / 4)).abs()).fold(0.0, f64::max)

@@ -102,7 +102,7 @@ pub fn assemble<const D: usize>(fluid: &Fluid<D>, frame: &Frame<D>, work: &Work<
             let (qi, qj) = (&work.state[i], &work.state[j]);
             let size = edge.s.norm();
             let m = edge.s * (1.0 / size.max(f64::MIN_POSITIVE));
-            let mean = Primitive::zip3(qi, qj, qj, |a, b, _| 0.5 * (a + b));
+            let mean = Primitive::zip(qi, qj, |a, b| 0.5 * (a + b));
             let drift = 0.5 * (frame.velocity_of(i) + frame.velocity_of(j)).dot(&m);
             let spread = dissipation_matrix(&fluid.gas, &mean, &m, drift);
             let one_sided = [(i, j, edge.a_i), (j, i, edge.a_j)];
@@ -230,7 +230,7 @@ fn stuck<const D: usize>(
 mod tests {
     use super::*;
     use crate::physics::Conserved;
-    use crate::physics::riemann::flux_roe;
+    use crate::physics::riemann::{Roe, UpwindFlux};
 
     const AIR: Gas = Gas { gamma: 1.4 };
 
@@ -268,7 +268,7 @@ mod tests {
         for k in 0..5 {
             let d = difference(|h| {
                 let r = bump(&u, k, h);
-                flux_roe(&AIR, &q, &r, &n).plus(-0.5, &AIR.flux(&r, &n)).times(-2.0)
+                Roe.across(&AIR, &q, &r, &n).plus(-0.5, &AIR.flux(&r, &n)).times(-2.0)
             });
             (0..5).for_each(|r| assert!((m[r][k] - d[r]).abs() < 1e-5, "{r} {k} {} {}", m[r][k], d[r]));
         }

@@ -2,6 +2,7 @@
 pub mod adapt;
 pub mod blend;
 pub mod boundary;
+pub mod edges;
 pub mod fluid;
 pub mod jacobian;
 pub mod probe;

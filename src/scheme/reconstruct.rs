@@ -62,8 +62,8 @@ impl<const D: usize> Gradient<D> {
 
 /// Slope limiter of one edge and one variable: `a` upwind, `b` central difference, `eps` the square of a small difference.
 pub trait Limit: Copy + Sync {
-    /// Factor in [0, 1].
-    fn factor(self, a: f64, b: f64, eps: f64) -> f64;
+    /// Factors in [0, 1] of both ends, which share one division where they can.
+    fn factors(self, a: [f64; 2], b: f64, eps: f64) -> [f64; 2];
 }
 
 /// Van Albada, van Leer and Roberts (1982) in a form that never reaches zero, s = m/(m + (a − b)²) with
@@ -72,9 +72,12 @@ pub trait Limit: Copy + Sync {
 pub struct VanAlbada;
 impl Limit for VanAlbada {
     #[inline(always)]
-    fn factor(self, a: f64, b: f64, eps: f64) -> f64 {
-        let m = eps + 0.5 * (a * a + b * b);
-        m / (m + (a - b) * (a - b))
+    fn factors(self, a: [f64; 2], b: f64, eps: f64) -> [f64; 2] {
+        let [c, a] = a;
+        let (top_c, top_a) = (eps + 0.5 * (c * c + b * b), eps + 0.5 * (a * a + b * b));
+        let (bottom_c, bottom_a) = (top_c + (c - b) * (c - b), top_a + (a - b) * (a - b));
+        let shared = 1.0 / (bottom_c * bottom_a);
+        [top_c * bottom_a * shared, top_a * bottom_c * shared]
     }
 }
 
@@ -82,6 +85,12 @@ impl Limit for VanAlbada {
 #[derive(Clone, Copy)]
 pub struct Venkatakrishnan;
 impl Limit for Venkatakrishnan {
+    #[inline(always)]
+    fn factors(self, a: [f64; 2], b: f64, eps: f64) -> [f64; 2] {
+        [self.factor(a[0], b, eps), self.factor(a[1], b, eps)]
+    }
+}
+impl Venkatakrishnan {
     #[inline(always)]
     fn factor(self, a: f64, b: f64, eps: f64) -> f64 {
         let (up, own) = (a * b, 0.25 * (a + b) * (a + b));
@@ -96,8 +105,8 @@ impl Limit for Venkatakrishnan {
 pub struct Unlimited;
 impl Limit for Unlimited {
     #[inline(always)]
-    fn factor(self, _: f64, _: f64, _: f64) -> f64 {
-        1.0
+    fn factors(self, _: [f64; 2], _: f64, _: f64) -> [f64; 2] {
+        [1.0; 2]
     }
 }
 
@@ -113,54 +122,50 @@ pub struct Reconstruction {
 }
 
 impl Reconstruction {
-    /// States on both sides of the middle of the edge d = x_j − x_i.
+    /// States on both sides of the middle of an edge, from the states of its ends and their slopes along it.
     #[inline(always)]
     pub fn states<const D: usize, L: Limit>(
         &self,
         gas: &Gas,
         limit: L,
         ends: (&Primitive<D>, &Primitive<D>),
-        slopes: (&Gradient<D>, &Gradient<D>),
-        d: &Vector<D>,
+        (gi, gj): (&Primitive<D>, &Primitive<D>),
     ) -> (Primitive<D>, Primitive<D>) {
         let (qi, qj) = ends;
         if !self.second_order {
             return (*qi, *qj);
         }
         let dq = qj.minus(qi);
-        let (gi, gj) = (slopes.0.along(d), slopes.1.along(d));
         let (density, pressure) = (0.5 * (qi.density + qj.density), 0.5 * (qi.pressure + qj.pressure));
         let square = self.threshold * self.threshold;
         let sound2 = gas.gamma * pressure / density;
         let eps = (square * density * density, square * sound2, square * pressure * pressure);
-        let left = self.increment(limit, &gi, &dq, eps);
-        let right = self.increment(limit, &gj, &dq, eps);
+        let mut left = Primitive { density: 0.0, velocity: Vector::ZERO, pressure: 0.0 };
+        let mut right = left;
+        [left.density, right.density] = self.increments(limit, [gi.density, gj.density], dq.density, eps.0);
+        for d in 0..D {
+            let slopes = [gi.velocity[d], gj.velocity[d]];
+            [left.velocity[d], right.velocity[d]] = self.increments(limit, slopes, dq.velocity[d], eps.1);
+        }
+        [left.pressure, right.pressure] = self.increments(limit, [gi.pressure, gj.pressure], dq.pressure, eps.2);
         let (l, r) = (qi.plus(1.0, &left), qj.plus(-1.0, &right));
         let good = |q: &Primitive<D>, own: &Primitive<D>| {
-            q.density > POSITIVE * own.density && q.pressure > POSITIVE * own.pressure
+            (q.density > POSITIVE * own.density) & (q.pressure > POSITIVE * own.pressure)
         };
-        if good(&l, qi) && good(&r, qj) { (l, r) } else { (*qi, *qj) }
+        let (all, own) = (good(&l, qi) & good(&r, qj), |a: f64, b: f64, all: bool| if all { a } else { b });
+        (Primitive::zip(&l, qi, |a, b| own(a, b, all)), Primitive::zip(&r, qj, |a, b| own(a, b, all)))
     }
 
-    /// s/4 [(1 − κs) a + (1 + κs) b] for every variable.
+    /// s/4 [(1 − κs) a + (1 + κs) b] of one variable at both ends.
     #[inline(always)]
-    fn increment<const D: usize, L: Limit>(
-        &self,
-        limit: L,
-        slope: &Primitive<D>,
-        dq: &Primitive<D>,
-        eps: (f64, f64, f64),
-    ) -> Primitive<D> {
-        let one = |g: f64, b: f64, eps: f64| {
-            let a = 2.0 * g - b;
-            let s = limit.factor(a, b, eps);
-            let k = self.kappa * s;
-            0.25 * s * ((1.0 - k) * a + (1.0 + k) * b)
-        };
-        Primitive {
-            density: one(slope.density, dq.density, eps.0),
-            velocity: Vector::from_fn(|d| one(slope.velocity[d], dq.velocity[d], eps.1)),
-            pressure: one(slope.pressure, dq.pressure, eps.2),
-        }
+    fn increments<L: Limit>(&self, limit: L, slopes: [f64; 2], dq: f64, eps: f64) -> [f64; 2] {
+        let a = [2.0 * slopes[0] - dq, 2.0 * slopes[1] - dq];
+        let s = limit.factors(a, dq, eps);
+        [self.increment(a[0], dq, s[0]), self.increment(a[1], dq, s[1])]
+    }
+
+    #[inline(always)]
+    fn increment(&self, a: f64, b: f64, s: f64) -> f64 {
+        0.25 * s * (a + b + self.kappa * s * (b - a))
     }
 }
