@@ -79,6 +79,14 @@ pub trait System: Sync {
     fn largest_change(&self, u: &[f64], du: &[f64]) -> f64;
     /// The first particle whose state is not physical, if any.
     fn fault(&self, frame: &Self::Frame, u: &[f64]) -> Option<Fault>;
+    /// The first particle that motion has brought where the cloud no longer serves, if any.
+    fn misplaced(&self, _frame: &Self::Frame) -> Option<Fault> {
+        None
+    }
+    /// Where an unknown of the state is; nothing when it has no place.
+    fn locate(&self, _frame: &Self::Frame, _particle: usize) -> Vec<f64> {
+        Vec::new()
+    }
 }
 
 /// A particle whose state is not physical.

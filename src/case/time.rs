@@ -105,6 +105,17 @@ impl Explicit {
     }
 }
 
+impl Temporal {
+    /// Time at which a march ends; `None` when it counts periods of a motion that has none, and for a steady run.
+    pub fn end(&self, period: Option<f64>) -> Option<f64> {
+        match self {
+            Self::Steady(_) => None,
+            Self::Explicit(explicit) => explicit.end(period),
+            Self::Dual(dual) => dual.end(period),
+        }
+    }
+}
+
 impl Dual {
     /// Time at which the run ends; `None` when it counts periods of a motion that has none.
     pub fn end(&self, period: Option<f64>) -> Option<f64> {

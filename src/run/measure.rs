@@ -1,6 +1,7 @@
 //! What is measured of a finished run: the value of each metric of [`crate::verify`].
 use std::path::Path;
 
+use super::periodic::FirstHarmonics;
 use super::snapshot::Units;
 use super::{Snapshot, Summary};
 use num_complex::Complex64;
@@ -51,6 +52,8 @@ impl Measured {
             Metric::CdMomentum => s.loads_momentum_balance.map(|c| c.cd).ok_or_else(no_balance),
             Metric::LiftAmplitude => self.lift().map(|c| c.norm()),
             Metric::LiftPhase => self.lift().map(|c| c.arg().to_degrees()),
+            Metric::DragAmplitude => self.drag().map(|c| c.norm()),
+            Metric::DragPhase => self.drag().map(|c| c.arg().to_degrees()),
             Metric::ThinLiftAmplitude => self.thin_lift(other).map(|c| c.norm()),
             Metric::ThinLiftPhase => self.thin_lift(other).map(|c| c.arg().to_degrees()),
             Metric::ResidualDrop => Ok(s.residual_drop),
@@ -79,8 +82,18 @@ impl Measured {
 
     /// First harmonic of the lift over that of the motion.
     fn lift(&self) -> Result<Complex64, String> {
+        self.first_harmonic(|h| h.cl)
+    }
+
+    /// First harmonic of the drag over that of the motion.
+    fn drag(&self) -> Result<Complex64, String> {
+        self.first_harmonic(|h| h.cd)
+    }
+
+    fn first_harmonic(&self, load: impl Fn(&FirstHarmonics) -> [f64; 2]) -> Result<Complex64, String> {
         let first = self.summary.first_harmonics.first();
-        first.map(|h| Complex64::new(h.cl[0], h.cl[1])).ok_or_else(|| "no motion repeats in this case".into())
+        let [re, im] = first.map(load).ok_or("no motion repeats in this case")?;
+        Ok(Complex64::new(re, im))
     }
 
     /// The same on a section of no thickness, along the line through this one and another.

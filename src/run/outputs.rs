@@ -249,7 +249,7 @@ impl<'a, const D: usize> Finished<'a, D> {
 
     /// Error of the density against the exact solution that the case starts from, when it has one.
     fn exact_error(&self, time: f64) -> Option<f64> {
-        if matches!(self.case.initial, Initial::FreeStream) {
+        if matches!(self.case.initial, Initial::FreeStream) || !self.case.bodies.is_empty() {
             return None;
         }
         let cloud = &self.fluid.shape.cloud;

@@ -3,7 +3,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::RunError;
-use crate::case::{Body, Case, Dual, Length, ParticleMotion, Steady, SteadyMethod, Temporal, Wall};
+use crate::case::{Body, Case, Dual, Initial, Length, ParticleMotion, Steady, SteadyMethod, Temporal, Wall};
 use crate::cloud::conservative::conservative as conserve;
 use crate::cloud::sources::Source;
 use crate::cloud::{Cloud, Operators};
@@ -76,7 +76,9 @@ impl Stage {
 /// The stages of a case whose own cloud has `n` fluid particles.
 pub(super) fn stages(case: &Case, n: usize, dimension: usize) -> Vec<Stage> {
     let mut all = Vec::new();
-    let relaxes = !matches!(case.time, Temporal::Explicit(_)) && !case.bodies.is_empty();
+    // a march from a given field starts from that field itself
+    let given = super::marches(case) && !matches!(case.initial, Initial::FreeStream);
+    let relaxes = !matches!(case.time, Temporal::Explicit(_)) && !case.bodies.is_empty() && !given;
     let steady = |factor: f64, cycle: u32| Stage { factor, cycle, march: false };
     if relaxes {
         let limits = START[dimension - 2];
@@ -185,7 +187,8 @@ fn carriage<const D: usize>(case: &Case, cloud: &Cloud<D>, motions: &Motions<D>)
         ParticleMotion::Rigid => Carriage::Rigid(motions.cloud().clone()),
         _ => {
             let laws: Vec<Law<D>> = (0..motions.len()).map(|b| motions.of(b).clone()).collect();
-            Carriage::Along { path: Arc::new(Blend::new(cloud, &laws)), laws }
+            let until = motions.period().or_else(|| case.time.end(None)).unwrap_or_default();
+            Carriage::Along { path: Arc::new(Blend::new(cloud, &laws, until)), laws }
         }
     }
 }

@@ -26,7 +26,9 @@ impl LoadFrame {
         let bounds = crate::math::Bounds::around(walls);
         let extent = bounds.extent();
         let reference = &self.case.reference;
-        let chord = reference.chord.map_or(rounded(extent[0]), |c| c.0);
+        // a body of which only a face across the stream lies in the domain is as long as that face is high
+        let length = if extent[0] > 0.0 { extent[0] } else { extent.max_abs() };
+        let chord = reference.chord.map_or(rounded(length), |c| c.0);
         let area = match D {
             2 => chord,
             _ => reference.area.unwrap_or(extent[1] * extent[D - 1]),

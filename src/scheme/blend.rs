@@ -13,8 +13,10 @@ use super::shape::{Path, Places};
 
 /// Distance in body lengths within which particles move as the body does.
 const INNER: f64 = 1.0;
-/// Distance in body lengths beyond which particles rest.
+/// Distance beyond which particles rest, in body lengths or, if that is more, in greatest displacements.
 const OUTER: f64 = 8.0;
+/// Times at which displacements are looked at.
+const TIMES: usize = 256;
 /// Greatest part of the way to the sides of the domain.
 const REACH: f64 = 0.9;
 /// Power of the distance in the shares of several bodies.
@@ -40,9 +42,9 @@ pub struct Blend<const D: usize> {
 }
 
 impl<const D: usize> Blend<D> {
-    /// Spreads the motion of the bodies, one law for each.
-    pub fn new(cloud: &Cloud<D>, laws: &[Law<D>]) -> Self {
-        let bodies: Vec<Body<D>> = laws.iter().enumerate().map(|(b, law)| body(cloud, b, law)).collect();
+    /// Spreads the motion of the bodies until `until`, one law for each.
+    pub fn new(cloud: &Cloud<D>, laws: &[Law<D>], until: f64) -> Self {
+        let bodies: Vec<Body<D>> = laws.iter().enumerate().map(|(b, law)| body(cloud, (b, law), until)).collect();
         let mut all = Self { share: vec![0.0; cloud.n_real() * bodies.len()], bodies };
         let n = all.bodies.len();
         let mut rows: Vec<Vec<f64>> = vec![Vec::new(); cloud.n_real()];
@@ -82,20 +84,28 @@ impl<const D: usize> Body<D> {
     }
 }
 
-fn body<const D: usize>(cloud: &Cloud<D>, b: usize, law: &Law<D>) -> Body<D> {
+fn body<const D: usize>(cloud: &Cloud<D>, (b, law): (usize, &Law<D>), until: f64) -> Body<D> {
     let first = cloud.n_fluid;
     let own = cloud.interface.iter().enumerate().filter(|(_, w)| usize::from(w.body) == b);
     let all: Vec<Vector<D>> = own.map(|(w, _)| cloud.x[first + w]).collect();
     let every = all.len().div_ceil(SAMPLES).max(1);
     let bounds = Bounds::around(&all);
     let length = bounds.extent().max_abs();
-    let domain = cloud.tree.bounds();
-    // sides that cut through the body (planes of symmetry) do not hold it back
+    // sides that cut through the body (planes of symmetry), or lie behind it, do not hold it back
+    let domain = Bounds::around(&cloud.x[..cloud.n_fluid]);
     let gaps = (0..D).flat_map(|d| [bounds.min[d] - domain.min[d], domain.max[d] - bounds.max[d]]);
     let room = gaps.filter(|g| *g > 0.1 * length).fold(f64::INFINITY, f64::min);
-    let outer = (OUTER * length).min(REACH * room);
+    let outer = (OUTER * length.max(displacement(&bounds, law, until))).min(REACH * room);
     let points = all.into_iter().step_by(every).collect();
     Body { law: law.clone(), points, inner: (INNER * length).min(0.25 * outer), outer }
+}
+
+/// How far the corners of the box around a body get from where they start, until `until`.
+fn displacement<const D: usize>(bounds: &Bounds<D>, law: &Law<D>, until: f64) -> f64 {
+    let corner = |k: usize| Vector::from_fn(|d| if k >> d & 1 == 0 { bounds.min[d] } else { bounds.max[d] });
+    let at = |k: usize| law.pose(until * k as f64 / TIMES as f64);
+    let far = |pose: RigidPose<D>| (0..1 << D).map(|k| (pose.point(&corner(k)) - corner(k)).norm()).fold(0.0, f64::max);
+    (0..=TIMES).map(|k| far(at(k))).fold(0.0, f64::max)
 }
 
 fn blended<const D: usize>(x: &Vector<D>, poses: &[RigidPose<D>], share: impl Iterator<Item = f64>) -> Vector<D> {

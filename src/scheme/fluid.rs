@@ -434,6 +434,14 @@ impl<const D: usize> System for Fluid<D> {
         let reason = format!("density {:.4e}, pressure {:.4e} (both must be positive)", q.density, q.pressure);
         Some(Fault { particle: i, place: frame.place(i).0.to_vec(), reason })
     }
+
+    fn misplaced(&self, frame: &Frame<D>) -> Option<Fault> {
+        self.squeezed(frame)
+    }
+
+    fn locate(&self, frame: &Frame<D>, particle: usize) -> Vec<f64> {
+        frame.place(particle).0.to_vec()
+    }
 }
 
 #[cfg(test)]

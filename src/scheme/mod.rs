@@ -10,6 +10,7 @@ pub mod reconstruct;
 pub mod shape;
 pub mod start;
 pub mod viscous;
+pub mod watch;
 
 pub use fluid::{Fluid, Work};
 pub use shape::{Carriage, Frame, Shape};

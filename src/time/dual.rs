@@ -3,7 +3,7 @@
 //! R(U) − ∂U/∂t = 0 with ∂U/∂t = Σ c_k U(t_k): the first-order formula in the first step, then the second-order one of three
 //! times, written for steps of unequal length. Positions of particles are differenced with the same formula as the state.
 use super::relax::{Control, Relax, TimeTerm};
-use super::{March, Past, Step, TimeError};
+use super::{CROWDED, March, Past, Step, TimeError};
 use crate::math::sweep::{sum, sweep};
 use crate::system::{Moment, System};
 
@@ -163,6 +163,10 @@ impl<S: System> Dual<'_, S> {
         }
         let moment = Moment::By { time: self.past.time + dt, rate: &formula };
         self.relax.begin_step(&moment, TimeTerm { rate: formula[0].0, rest });
+        if let Some(fault) = self.relax.misplaced() {
+            self.relax.u.copy_from_slice(&self.start);
+            return Err(TimeError::Fault { fault, iteration: self.past.iteration + 1, hint: CROWDED });
+        }
         self.solve()?;
         // the predictor is of the same order with another constant: 1/3 of the difference for equal steps
         let error = guess.map_or(0.0, |g| {

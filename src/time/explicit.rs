@@ -1,5 +1,5 @@
 //! Explicit Runge-Kutta methods for marching in time.
-use super::{March, Past, Step, TimeError};
+use super::{CROWDED, March, Past, Step, TimeError};
 use crate::math::sweep::sweep;
 use crate::system::{Moment, System};
 
@@ -149,11 +149,15 @@ impl<S: System> March<S> for Explicit<'_, S> {
         self.past.last = dt;
         self.past.iteration += 1;
         self.system.follow(&self.u, &mut self.work, &mut self.frame);
-        if let Some(fault) = self.system.fault(&self.frame, &self.u) {
+        let crowded = self.system.misplaced(&self.frame);
+        let hint = match crowded {
+            Some(_) => CROWDED,
+            None => "lower `time.explicit.cfl`, or use a stronger limiter",
+        };
+        if let Some(fault) = crowded.or_else(|| self.system.fault(&self.frame, &self.u)) {
             self.u.copy_from_slice(&self.start);
             self.past.iteration -= 1;
             self.past.time -= dt;
-            let hint = "lower `time.explicit.cfl`, or use a stronger limiter";
             return Err(TimeError::Fault { fault, iteration: self.past.iteration + 1, hint });
         }
         Ok(Step { iteration: self.past.iteration, time: self.past.time, cfl: self.cfl, residual: 1.0, linear: 0 })

@@ -55,6 +55,10 @@ pub trait March<S: System> {
     fn bytes(&self) -> usize;
 }
 
+/// What may help where motion leaves a particle without a good cloud.
+const CROWDED: &str = "bodies come too close to one another or to a side of the domain, or move too far for the particles \
+                       between them; give them more room, less motion, or `motion.particles = \"rigid\"` if there is one body";
+
 /// Why an integration stopped early.
 #[derive(Debug, thiserror::Error)]
 pub enum TimeError {
@@ -70,7 +74,7 @@ pub enum TimeError {
     },
     /// The steady relaxation cannot get on.
     #[error(
-        "the relaxation stopped at iteration {iteration}: every step down to a Courant number of {cfl:.1e} was rejected; the largest residual is at particle {particle}\nhint: lower `time.steady.cfl`, or refine the cloud there"
+        "the relaxation stopped at iteration {iteration}: every step down to a Courant number of {cfl:.1e} was rejected; the largest residual is at particle {particle}{place}\nhint: lower `time.steady.cfl`, or refine the cloud there"
     )]
     Stalled {
         /// Iteration.
@@ -79,5 +83,7 @@ pub enum TimeError {
         cfl: f64,
         /// Particle with the largest scaled residual.
         particle: usize,
+        /// Where that is.
+        place: String,
     },
 }

@@ -208,6 +208,11 @@ impl<'a, S: System> Relax<'a, S> {
         self.system.follow(&self.u, &mut self.work, &mut self.frame);
     }
 
+    /// The first particle that the frame puts where the cloud no longer serves.
+    pub fn misplaced(&self) -> Option<crate::system::Fault> {
+        self.system.misplaced(&self.frame)
+    }
+
     /// True when the state `u` is physical.
     pub fn is_sound(&self, u: &[f64]) -> bool {
         self.system.fault(&self.frame, u).is_none()
@@ -299,7 +304,10 @@ impl<'a, S: System> Relax<'a, S> {
             self.cfl *= 0.2;
             if self.cfl < SMALLEST_CFL {
                 let particle = self.worst();
-                return Err(TimeError::Stalled { iteration: self.iteration, cfl: self.cfl, particle });
+                let place: Vec<String> =
+                    self.system.locate(&self.frame, particle).iter().map(|c| format!("{c:.5}")).collect();
+                let place = if place.is_empty() { String::new() } else { format!(" at ({})", place.join(", ")) };
+                return Err(TimeError::Stalled { iteration: self.iteration, cfl: self.cfl, particle, place });
             }
         }
         self.choose_phase();

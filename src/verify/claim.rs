@@ -179,6 +179,10 @@ metrics! {
     LiftAmplitude = "lift_amplitude",
     /// Phase in degrees by which that harmonic leads the motion.
     LiftPhase = "lift_phase",
+    /// Amplitude of the first harmonic of the drag over that of the motion: per radian, or per length.
+    DragAmplitude = "drag_amplitude",
+    /// Phase in degrees by which that harmonic leads the motion.
+    DragPhase = "drag_phase",
     /// `lift_amplitude` extrapolated along a line to a section of no thickness, from this one and that of the case `other`.
     ThinLiftAmplitude = "thin_lift_amplitude",
     /// `lift_phase` of the same.

@@ -1,0 +1,55 @@
+//! A watch over clouds whose particles follow bodies: have neighbours come too close?
+//!
+//! With the weights a_ij of the cloud before any motion, F_i = Σ_j (x_j − x_i) a_ijᵀ is the gradient of the motion at a
+//! particle, and det F the volume that its surroundings keep. Where it falls to nothing particles overtake one another: a body
+//! runs into another one or into a side of the domain, or moves too far for the cloud between them.
+use crate::math::Vector;
+use crate::math::sweep::sweep_parts;
+use crate::system::Fault;
+
+use super::fluid::Fluid;
+use super::shape::{Carriage, Frame};
+
+/// Least part of its volume to which the surroundings of a particle may shrink.
+const LEAST: f64 = 0.05;
+
+impl<const D: usize> Fluid<D> {
+    /// The first particle whose surroundings have shrunk to almost nothing or folded.
+    pub(super) fn squeezed(&self, frame: &Frame<D>) -> Option<Fault> {
+        if !matches!(self.carriage, Carriage::Along { .. }) {
+            return None;
+        }
+        let (before, now) = (&self.shape, &frame.shape.cloud);
+        let op = &before.operators;
+        let mut gradient = vec![[Vector::<D>::ZERO; D]; before.cloud.n_fluid];
+        sweep_parts(op.fluid_parts(), 1, &mut gradient, &|k, out| {
+            let start = op.parts[k].start;
+            for e in op.edges(k) {
+                let d = now.x[e.j()] - now.x[e.i()];
+                for c in 0..D {
+                    out[e.i() - start][c] += e.a_i * d[c];
+                    if e.both() {
+                        out[e.j() - start][c] += e.a_j * -d[c];
+                    }
+                }
+            }
+        });
+        let exact = |i: usize| before.cloud.first_order.binary_search(&(i as u32)).is_err();
+        let volume = |i: usize| determinant(&gradient[i]);
+        let i = (0..gradient.len()).find(|i| exact(*i) && !(volume(*i) > LEAST))?;
+        let part = 100.0 * volume(i);
+        let reason = match part > 0.0 {
+            true => format!("its surroundings are squeezed to {part:.1} % of their volume (least {} %)", 100.0 * LEAST),
+            false => "the cloud folds over there: particles have overtaken their neighbours".into(),
+        };
+        Some(Fault { particle: i, place: frame.place(i).0.to_vec(), reason })
+    }
+}
+
+fn determinant<const D: usize>(m: &[Vector<D>; D]) -> f64 {
+    let minor = |r: usize, s: usize, a: usize, b: usize| m[r][a] * m[s][b] - m[r][b] * m[s][a];
+    match D {
+        2 => minor(0, 1, 0, 1),
+        _ => m[0][0] * minor(1, 2, 1, 2) - m[0][1] * minor(1, 2, 0, 2) + m[0][2] * minor(1, 2, 0, 1),
+    }
+}
