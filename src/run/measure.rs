@@ -61,7 +61,7 @@ impl Measured {
             Metric::ErrorL2Density | Metric::Order => {
                 s.error_l2_density.ok_or_else(|| "the case starts from no exact solution".into())
             }
-            Metric::CpRms => {
+            Metric::CpRms | Metric::CpRmsOrder => {
                 metrics::root_mean_square(&self.cp_differences(claim, folder, other)?, None).ok_or_else(no_wall)
             }
             Metric::CpMaxDifference => {
