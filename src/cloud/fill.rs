@@ -1,12 +1,13 @@
 //! Filling the background with particles.
 //!
 //! A fluid particle sits in the middle of every leaf that lies outside the bodies and not nearer to a surface, or to an
-//! interface particle, than a fraction of its size. The leaves along the sides of the domain carry the outer particles.
+//! interface particle, than a fraction of its size; in 3-D those next to a wall then move (see [`super::settle`]). The leaves along the sides of the domain carry the outer particles.
 use super::columns::{Columns, Ground};
 use super::interface::{Placed, place};
 use super::layers::Layers;
 use super::layout::Layout;
 use super::neighbours::NEAR;
+use super::settle::settle;
 use super::tree::{Leaf, MAX_LEVEL, Tree};
 use super::{Interface, Transform};
 use crate::case::{Cloud as Spec, Side};
@@ -17,6 +18,8 @@ use crate::math::{Bounds, Vector};
 
 /// Interface particles keep this distance, in spacings, from fluid particles.
 const CLEARANCE: f64 = 0.4;
+/// Dimension in which the particles next to a wall move: in 2-D `wall_layers` follow an outline.
+const SETTLED: usize = 3;
 /// Share of the sum of two radii below which balls surely overlap.
 const FREE: f64 = 0.999;
 
@@ -150,6 +153,9 @@ impl<const D: usize> Particles<D> {
         let outer: Vec<_> = order.into_iter().map(|k| outer[k as usize]).collect();
         let layers = columns.map(|c| gather(c, &seats)).unwrap_or_default();
         let mut all = Self::assemble(tree, layout, (seats, placed, outer), layers);
+        if let (Some(surface), SETTLED) = (surface, D) {
+            settle(&mut all, surface, transforms);
+        }
         all.shake(spec.jitter);
         all
     }

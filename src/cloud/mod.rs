@@ -18,6 +18,7 @@ pub mod neighbours;
 pub mod operators;
 pub mod repair;
 mod rim;
+mod settle;
 pub mod sources;
 #[cfg(test)]
 mod tests;

@@ -21,6 +21,7 @@ use crate::math::Vector;
 pub mod blasius;
 pub mod diamond;
 pub mod expansion;
+mod janzen_rayleigh;
 pub mod piston;
 pub mod potential;
 pub mod riemann;

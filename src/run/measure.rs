@@ -64,7 +64,7 @@ impl Measured {
             Metric::ErrorL2Density | Metric::Order => {
                 s.error_l2_density.ok_or_else(|| "the case starts from no exact solution".into())
             }
-            Metric::CpRms => {
+            Metric::CpRms | Metric::CpRmsOrder => {
                 metrics::root_mean_square(&self.cp_differences(claim, folder, other)?, None).ok_or_else(no_wall)
             }
             Metric::CpMaxDifference => {
@@ -126,7 +126,7 @@ impl Measured {
         if let Some(exact) = claim.exact {
             let flow = &self.case.flow;
             let truth = WallTruth::new(exact, flow.reference().mach, flow.gamma).map_err(|e| e.to_string())?;
-            let centre = Bounds::around(&wall.x).centre();
+            let centre = self.body_centre();
             let stream = self.stream().velocity;
             let at = |i: usize| truth.pressure_coefficient(&(wall.x[i] - centre), &stream);
             return Ok(chosen.iter().map(|&i| wall.cp[i] - at(i)).collect());
@@ -134,6 +134,15 @@ impl Measured {
         let Some(other) = other else { return Err("the claim names no `file`, `exact` or `other`".into()) };
         let at = |i: usize| other.wall.pressure_coefficient(&wall.x[i], &wall.normal[i]);
         chosen.iter().map(|&i| Ok(wall.cp[i] - at(i).ok_or_else(no_wall)?)).collect()
+    }
+
+    /// Centre of the first body. Planes of symmetry may cut it, so that its wall particles do not tell.
+    fn body_centre(&self) -> Vector<3> {
+        let place = self.case.bodies.first().map(|b| b.placement.translate.as_slice()).unwrap_or_default();
+        match self.case.bodies.first().map(|b| &b.shape) {
+            Some(Shape::Circle { .. } | Shape::Sphere { .. }) => Vector::from_fn(|d| place.get(d).map_or(0.0, |l| l.0)),
+            _ => Bounds::around(&self.wall.x).centre(),
+        }
     }
 
     fn differences_to_file(&self, chosen: &[usize], path: &Path) -> Result<Vec<f64>, String> {

@@ -150,7 +150,7 @@ impl Walk {
             values.push(self.at(&key)?.value(claim, &folder.path, None)?);
         }
         let found = match claim.metric {
-            Metric::Order => metrics::observed_order(&study.spacings, &values),
+            Metric::Order | Metric::CpRmsOrder => metrics::observed_order(&study.spacings, &values),
             _ => metrics::limit(&study.spacings, &values).map(|(limit, _)| limit),
         };
         found.ok_or_else(|| format!("the values {values:?} have no order or limit"))
@@ -247,6 +247,9 @@ fn respaced(case: &Case, spacing: f64, study: &Study) -> Case {
     case.cloud.spacing.0 = spacing;
     if study.scale_boxes {
         case.cloud.boxes.iter_mut().for_each(|b| b.spacing.0 *= factor);
+    }
+    if study.scale_layers {
+        case.cloud.layers /= factor;
     }
     case
 }

@@ -17,7 +17,7 @@
 //! Kinds: `relative` |v − r| ≤ t|r| · `absolute` |v − r| ≤ t · `range` r = [low, high], low ≤ v ≤ high · `at_most` v ≤ r ·
 //! `at_least` v ≥ r. A value that is not a number fails every claim.
 //!
-//! Claims whose metric needs a study (`order`, `extrapolated_…`) use the reruns of `[study]`; all others use the case as it
+//! Claims whose metric needs a study (`order`, `cp_rms_order`, `extrapolated_…`) use the reruns of `[study]`; all others use the case as it
 //! stands. The quick subset judges the `fast` cases, without extrapolations: those rerun a case at its finest spacing.
 use std::fmt;
 
@@ -40,10 +40,12 @@ pub struct ClaimFile {
 /// A convergence study.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Study {
-    /// Values of `cloud.spacing`, coarse to fine; all else stays.
+    /// Values of `cloud.spacing`, coarse to fine; all else stays but for what the next keys name.
     pub spacings: Vec<f64>,
     /// Also scale the spacing of `[[cloud.box]]` tables by the same factor.
     pub scale_boxes: bool,
+    /// Also divide `cloud.layers` by that factor, so that the background becomes finer everywhere and not at the bodies only.
+    pub scale_layers: bool,
 }
 
 /// One claim.
@@ -165,6 +167,8 @@ metrics! {
     FreeStreamDeviation = "free_stream_deviation",
     /// Least-squares slope of log error_l2_density against log spacing over the study.
     Order = "order",
+    /// The same slope of log cp_rms.
+    CpRmsOrder = "cp_rms_order",
     /// |Position of the right-most shock − exact| in units of `cloud.spacing`.
     ShockPositionError = "shock_position_error",
     /// |Mass at the end − expected| over mass at the start; what crossed open ends is expected.
@@ -201,7 +205,7 @@ impl Metric {
 
     /// True when the metric needs runs at several spacings.
     pub fn needs_study(self) -> bool {
-        matches!(self, Self::Order | Self::ExtrapolatedCl | Self::ExtrapolatedCd)
+        matches!(self, Self::Order | Self::CpRmsOrder | Self::ExtrapolatedCl | Self::ExtrapolatedCd)
     }
 }
 

@@ -8,12 +8,13 @@ pub(super) fn parse_study(table: &Table, problems: &mut Vec<String>) -> Option<S
     let mut keys = Keys::new(table, "study: ".into(), problems);
     let spacings = keys.numbers("spacings").unwrap_or_default();
     let scale_boxes = keys.boolean("scale_boxes").unwrap_or(false);
+    let scale_layers = keys.boolean("scale_layers").unwrap_or(false);
     let falling = spacings.windows(2).all(|w| w[1] < w[0]) && spacings.iter().all(|h| 0.0 < *h && h.is_finite());
     if spacings.len() < 2 || !falling {
         keys.problem("`spacings` must be two or more falling positive numbers\nhint: write them coarse to fine");
     }
     keys.finish();
-    (problems.len() == before).then_some(Study { spacings, scale_boxes })
+    (problems.len() == before).then_some(Study { spacings, scale_boxes, scale_layers })
 }
 
 pub(super) fn parse_claim(table: &Table, number: usize, problems: &mut Vec<String>) -> Option<Claim> {

@@ -9,7 +9,7 @@ use crate::exact::{Error, GasState};
 use crate::math::Vector;
 
 /// Exact wall pressure of a named body.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub enum WallTruth {
     /// Circle.
     Circle(CircleFlow),
