@@ -11,7 +11,7 @@
 //! φ1 = (r⁻²/3 − r⁻⁵/5 + r⁻⁸/24) P1 + (27/55 r⁻⁴ − 3/10 r⁻² − 3/10 r⁻⁵ + 3/176 r⁻⁸) P3,
 //!
 //! on the surface u/U = sin θ (3/2 + M² (551/1760 − 243/352 cos²θ)); φ2, where γ enters, adds for γ = 1.4
-//! M⁴ sin θ (0.3551 − 1.5761 cos²θ + 1.1949 cos⁴θ). All terms are computed by [`super::janzen_rayleigh`].
+//! M⁴ sin θ (0.3551 − 1.5761 cos²θ + 1.1949 cos⁴θ). All terms are computed by the module `janzen_rayleigh`.
 //!
 //! **Circle.** Surface speeds from a spectral solution of the full equation (γ = 1.4, `cylinder_subsonic_potential_surface.csv`)
 //! at M = 0.1, 0.2, 0.3, 0.35 are turned into sine series and interpolated in M², together with the exact 2 sin θ at M = 0.
