@@ -25,10 +25,10 @@ pub struct Solved {
 }
 
 impl Gmres {
-    /// Storage for `n` unknowns and at most `size` basis vectors.
+    /// Storage for `n` unknowns and at most `size` basis vectors; those are made when they are needed for the first time.
     pub fn new(n: usize, size: usize) -> Self {
         Self {
-            basis: vec![vec![0.0; n]; size + 1],
+            basis: vec![vec![0.0; n]],
             hessenberg: vec![vec![0.0; size + 1]; size],
             z: vec![0.0; n],
             w: vec![0.0; n],
@@ -99,6 +99,9 @@ impl Gmres {
         }
         column[k + 1] = after;
         let scale = if after > 0.0 { 1.0 / after } else { 0.0 };
+        if self.basis.len() == k + 1 {
+            self.basis.push(vec![0.0; self.w.len()]);
+        }
         let w = &self.w;
         sweep(&mut self.basis[k + 1], |i| (w[i] * scale) as f32);
     }

@@ -9,6 +9,7 @@ use std::path::{Path, PathBuf};
 use serde_json::Value;
 
 use super::files::RunFolder;
+use super::periodic;
 use super::sections::{self, grouped, number};
 use super::{ReportError, escape, write_file};
 
@@ -31,6 +32,7 @@ fn report(run: &RunFolder) -> String {
         ("loads", "Loads", sections::loads(run)),
         ("flow", "Flow", sections::pictures(run, false)),
         ("pressure", "Pressure on the surface", sections::pressure(run)),
+        ("motion", "Motion", periodic::motion(run)),
         ("convergence", "Convergence", sections::convergence(run)),
         ("doctor", "Cloud doctor", sections::doctor(run)),
         ("ledger", "Conservation", sections::ledger(run)),
@@ -39,6 +41,8 @@ fn report(run: &RunFolder) -> String {
         ("cite", "How to cite", sections::citation()),
         ("files", "Files", sections::files(run)),
     ];
+    let chapters: Vec<_> =
+        chapters.into_iter().filter(|(id, _, content)| *id != "motion" || !content.is_empty()).collect();
     let links: String = chapters.iter().map(|(id, name, _)| format!("<a href=\"#{id}\">{name}</a>\n")).collect();
     let mut body = format!("<header>\n<h1>{}</h1>\n{}</header>\n", escape(&title), status_line(&summary));
     body.push_str(&headline(run, &summary));

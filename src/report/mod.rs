@@ -15,6 +15,7 @@ mod files;
 mod font;
 pub mod html;
 mod paint;
+mod periodic;
 pub mod picture;
 mod sections;
 pub mod surface;

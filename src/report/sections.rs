@@ -113,10 +113,11 @@ pub(super) fn table_html(columns: &[&str], rows: impl Iterator<Item = Vec<String
 /// Pictures of the flow, or (`cloud`) those of the particles.
 pub(super) fn pictures(run: &RunFolder, cloud: bool) -> String {
     let about_cloud = |name: &str| ["cloud", "particles", "doctor"].iter().any(|start| name.starts_with(start));
+    let of_film = |name: &str| name.starts_with(super::periodic::FILM);
     let figures: String = run
         .pictures()
         .iter()
-        .filter(|(name, _)| about_cloud(name) == cloud)
+        .filter(|(name, _)| about_cloud(name) == cloud && !of_film(name))
         .map(|(name, bytes)| figure(name, bytes))
         .collect();
     match figures.is_empty() {
@@ -126,7 +127,7 @@ pub(super) fn pictures(run: &RunFolder, cloud: bool) -> String {
     }
 }
 
-fn figure(name: &str, bytes: &[u8]) -> String {
+pub(super) fn figure(name: &str, bytes: &[u8]) -> String {
     let kind = if name.ends_with(".svg") { "svg+xml" } else { "png" };
     let caption = name.rsplit_once('.').map_or(name, |(stem, _)| stem).replace(['-', '_'], " ");
     format!(
