@@ -95,6 +95,9 @@ struct Batch<const D: usize> {
     weight: [[Lanes; D]; 2],
     area: [Lanes; D],
     speed: [[Lanes; D]; 2],
+    /// States on both sides of the middle, the upwind flux there per unit of area, and the result.
+    middle: [Many<D>; 2],
+    upwind: Many<D>,
     out: [Many<D>; 2],
 }
 
@@ -105,6 +108,8 @@ impl<const D: usize> Batch<D> {
         weight: [[[0.0; LANES]; D]; 2],
         area: [[0.0; LANES]; D],
         speed: [[[0.0; LANES]; D]; 2],
+        middle: [Many::ZERO; 2],
+        upwind: Many::ZERO,
         out: [Many::ZERO; 2],
     };
 }
@@ -119,11 +124,13 @@ pub fn edge_fluxes<const D: usize, F: UpwindFlux<D>, L: Limit>(
     let mut batch = Batch::BLANK;
     for some in edges.chunks(LANES) {
         gather(rule, &particles, some, &mut batch);
+        reconstruct(rule.gas, rule.limit, rule.reconstruction, &mut batch);
+        cross(rule.gas, rule.flux, &mut batch);
         match (particles.velocity.is_empty(), rule.conservative) {
-            (true, true) => compute::<D, F, L, false, true>(rule, &mut batch),
-            (true, false) => compute::<D, F, L, false, false>(rule, &mut batch),
-            (false, true) => compute::<D, F, L, true, true>(rule, &mut batch),
-            (false, false) => compute::<D, F, L, true, false>(rule, &mut batch),
+            (true, true) => balance::<D, false, true>(rule.gas, &mut batch),
+            (true, false) => balance::<D, false, false>(rule.gas, &mut batch),
+            (false, true) => balance::<D, true, true>(rule.gas, &mut batch),
+            (false, false) => balance::<D, true, false>(rule.gas, &mut batch),
         }
         for (k, e) in some.iter().enumerate() {
             add(e.i(), &batch.out[0].conserved(k));
@@ -159,87 +166,80 @@ fn gather<const D: usize, F, L>(rule: &Rule<F, L>, p: &Particles<'_, D>, edges: 
     }
 }
 
-/// Compiled for vectors of four numbers as well as for the plainest processor; the same operations in both, so the same bits.
+// The loops below are compiled for vectors of four numbers as well as for the plainest processor: the same operations in both,
+// so the same bits.
+
+/// States on both sides of the middle of every edge.
 #[multiversion(targets("x86_64+avx2"))]
 #[allow(unsafe_code, reason = "the attribute calls the version that the processor has just been asked for")]
-fn compute<const D: usize, F: UpwindFlux<D>, L: Limit, const MOVES: bool, const CONSERVATIVE: bool>(
-    rule: &Rule<F, L>,
-    batch: &mut Batch<D>,
-) {
-    let Batch { own, slope, weight, area, speed, out } = batch;
-    let ([own_i, own_j], [out_i, out_j]) = (own, out);
+fn reconstruct<const D: usize, L: Limit>(gas: Gas, limit: L, rule: Reconstruction, batch: &mut Batch<D>) {
+    let Batch { own, slope, middle: [left, right], .. } = batch;
     for k in 0..LANES {
-        let ends = (own_i.primitive(k), own_j.primitive(k));
+        let (qi, qj) = (own[0].primitive(k), own[1].primitive(k));
         let slopes = (slope[0].primitive(k), slope[1].primitive(k));
-        let weights = (take(&weight[0], k), take(&weight[1], k));
-        let speeds = (take(&speed[0], k), take(&speed[1], k));
-        let (i, j) = rule.flux::<D, MOVES, CONSERVATIVE>(ends, slopes, &take(area, k), weights, speeds);
+        let (l, r) = rule.states(&gas, limit, (&qi, &qj), (&slopes.0, &slopes.1));
+        left.put(k, l.density, &l.velocity, l.pressure);
+        right.put(k, r.density, &r.velocity, r.pressure);
+    }
+}
+
+/// The upwind flux through an area that moves with the mean velocity of the ends, by way of the axes in which it rests.
+#[multiversion(targets("x86_64+avx2"))]
+#[allow(unsafe_code, reason = "the attribute calls the version that the processor has just been asked for")]
+fn cross<const D: usize, F: UpwindFlux<D>>(gas: Gas, flux: F, batch: &mut Batch<D>) {
+    let Batch { area, speed, middle: [left, right], upwind, .. } = batch;
+    for k in 0..LANES {
+        let m = normal(&take(area, k)).0;
+        let w = (take(&speed[0], k) + take(&speed[1], k)) * 0.5;
+        let seen = |q: Primitive<D>| Primitive { velocity: q.velocity - w, ..q };
+        let f = flux.across(&gas, &seen(left.primitive(k)), &seen(right.primitive(k)), &m);
+        let energy = f.energy + w.dot(&f.momentum) + 0.5 * w.norm_squared() * f.density;
+        upwind.put(k, f.density, &(f.momentum + w * f.density), energy);
+    }
+}
+
+/// What every edge adds to V dU/dt of both ends.
+#[multiversion(targets("x86_64+avx2"))]
+#[allow(unsafe_code, reason = "the attribute calls the version that the processor has just been asked for")]
+fn balance<const D: usize, const MOVES: bool, const CONSERVATIVE: bool>(gas: Gas, batch: &mut Batch<D>) {
+    let Batch { own, weight, area, speed, middle, upwind, out: [out_i, out_j], .. } = batch;
+    for k in 0..LANES {
+        let (qi, qj) = (own[0].primitive(k), own[1].primitive(k));
+        let (l, r) = (middle[0].primitive(k), middle[1].primitive(k));
+        let s = take(area, k);
+        let (m, size) = normal(&s);
+        let (wi, wj) = (take(&speed[0], k), take(&speed[1], k));
+        let (w, upwind) = ((wi + wj) * 0.5, upwind.conserved(k));
+        let past = |q: &Primitive<D>, n: &Vector<D>, w: &Vector<D>| match MOVES {
+            true => gas.flux(q, n).plus(-w.dot(n), &gas.conserved(q)),
+            false => gas.flux(q, n),
+        };
+        let (i, j) = if CONSERVATIVE {
+            let through = upwind.times(size);
+            let (mut seen_i, mut seen_j) = (through, through);
+            if MOVES {
+                let mean = gas.conserved(&l).plus(1.0, &gas.conserved(&r)).times(0.5);
+                seen_i = through.plus((w - wi).dot(&s), &mean);
+                seen_j = through.plus((w - wj).dot(&s), &mean);
+            }
+            (past(&qi, &s, &wi).plus(-1.0, &seen_i), seen_j.plus(-1.0, &past(&qj, &s, &wj)))
+        } else {
+            let mean = past(&l, &m, &w).plus(1.0, &past(&r, &m, &w));
+            let spread = upwind.plus(-0.5, &mean).times(size);
+            let central = |a: &Vector<D>, own: &Primitive<D>, w: &Vector<D>| {
+                past(&l, a, w).plus(1.0, &past(&r, a, w)).plus(-2.0, &past(own, a, w))
+            };
+            let (a_i, a_j) = (take(&weight[0], k), take(&weight[1], k));
+            (central(&a_i, &qi, &wi).plus(-1.0, &spread), central(&a_j, &qj, &wj).plus(1.0, &spread))
+        };
         out_i.put(k, i.density, &i.momentum, i.energy);
         out_j.put(k, j.density, &j.momentum, j.energy);
     }
 }
 
-impl<F, L: Limit> Rule<F, L> {
-    /// What one edge adds to V dU/dt of both ends.
-    #[inline(always)]
-    fn flux<const D: usize, const MOVES: bool, const CONSERVATIVE: bool>(
-        &self,
-        (qi, qj): (Primitive<D>, Primitive<D>),
-        slopes: (Primitive<D>, Primitive<D>),
-        s: &Vector<D>,
-        (a_i, a_j): (Vector<D>, Vector<D>),
-        (wi, wj): (Vector<D>, Vector<D>),
-    ) -> (Conserved<D>, Conserved<D>)
-    where
-        F: UpwindFlux<D>,
-    {
-        let gas = &self.gas;
-        let (l, r) = self.reconstruction.states(gas, self.limit, (&qi, &qj), (&slopes.0, &slopes.1));
-        let size = s.norm();
-        let m = *s * (1.0 / size.max(f64::MIN_POSITIVE));
-        let past = |q: &Primitive<D>, n: &Vector<D>, w: &Vector<D>| match MOVES {
-            true => gas.flux(q, n).plus(-w.dot(n), &gas.conserved(q)),
-            false => gas.flux(q, n),
-        };
-        let w = (wi + wj) * 0.5;
-        let upwind = match MOVES {
-            true => self.upwind_past(&l, &r, &m, &w),
-            false => self.flux.across(gas, &l, &r, &m),
-        };
-        if CONSERVATIVE {
-            let through = upwind.times(size);
-            let (to_i, to_j) = (past(&qi, s, &wi), past(&qj, s, &wj));
-            let (mut seen_i, mut seen_j) = (through, through);
-            if MOVES {
-                let mean = gas.conserved(&l).plus(1.0, &gas.conserved(&r)).times(0.5);
-                seen_i = through.plus((w - wi).dot(s), &mean);
-                seen_j = through.plus((w - wj).dot(s), &mean);
-            }
-            return (to_i.plus(-1.0, &seen_i), seen_j.plus(-1.0, &to_j));
-        }
-        let mean = past(&l, &m, &w).plus(1.0, &past(&r, &m, &w));
-        let spread = upwind.plus(-0.5, &mean).times(size);
-        let central = |a: &Vector<D>, own: &Primitive<D>, w: &Vector<D>| {
-            past(&l, a, w).plus(1.0, &past(&r, a, w)).plus(-2.0, &past(own, a, w))
-        };
-        (central(&a_i, &qi, &wi).plus(-1.0, &spread), central(&a_j, &qj, &wj).plus(1.0, &spread))
-    }
-
-    /// The upwind flux through an area that moves with `w`, by way of the axes in which it rests.
-    #[inline(always)]
-    fn upwind_past<const D: usize>(
-        &self,
-        l: &Primitive<D>,
-        r: &Primitive<D>,
-        m: &Vector<D>,
-        w: &Vector<D>,
-    ) -> Conserved<D>
-    where
-        F: UpwindFlux<D>,
-    {
-        let seen = |q: &Primitive<D>| Primitive { velocity: q.velocity - *w, ..*q };
-        let f = self.flux.across(&self.gas, &seen(l), &seen(r), m);
-        let energy = f.energy + w.dot(&f.momentum) + 0.5 * w.norm_squared() * f.density;
-        Conserved { momentum: f.momentum + *w * f.density, energy, ..f }
-    }
+/// Unit normal and size of an area; a normal of no length where there is none.
+#[inline(always)]
+fn normal<const D: usize>(s: &Vector<D>) -> (Vector<D>, f64) {
+    let size = s.norm();
+    (*s * (1.0 / size.max(f64::MIN_POSITIVE)), size)
 }
