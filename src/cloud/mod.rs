@@ -21,6 +21,7 @@ mod rim;
 pub mod sources;
 #[cfg(test)]
 mod tests;
+pub mod travel;
 pub mod tree;
 
 use std::ops::Range;
@@ -147,7 +148,7 @@ pub struct Cloud<const D: usize> {
     /// Particles, in ascending order, whose reconstruction stays first order: too few neighbours around them.
     pub first_order: Vec<u32>,
     /// The background.
-    pub tree: tree::Tree<D>,
+    pub tree: std::sync::Arc<tree::Tree<D>>,
     /// What had to be repaired, in words.
     pub notes: Vec<String>,
 }
