@@ -21,7 +21,7 @@ use super::{Cloud, CloudError, Transform};
 use crate::case::{Case, Side};
 use crate::geometry::Surface;
 use crate::math::sweep::{CHUNK, order_by_key, parts, sweep, sweep_parts};
-use crate::math::Vector;
+use crate::math::{Bounds, Vector};
 use crate::motion::RigidPose;
 
 /// Pairs nearer than this, in mean spacings, are too near.
@@ -35,6 +35,10 @@ const CLOSED_GAP: f64 = 0.2;
 /// Radius of an empty place in spacings, two and three dimensions: beyond half the diagonal of a leaf, where a regular
 /// cloud has its corners.
 const EMPTY: [f64; 2] = [0.9, 1.0];
+/// Samples of a leaf along each axis, from which volumes are counted.
+const SAMPLES: usize = 4;
+/// Distance, in leaves, beyond which a sample belongs to nobody.
+const FARTHEST: f64 = 8.0;
 /// Marks a particle that was not there before.
 pub const NEW: u32 = u32::MAX;
 
@@ -125,6 +129,55 @@ impl<const D: usize> Habitat<D> {
         }
         let from = order.iter().map(|k| kept.get(*k as usize).copied().unwrap_or(NEW)).collect();
         Ok(Renewal { cloud: self.joined(&scene, particles)?, from, removed })
+    }
+
+    /// Volumes of the fluid particles of a `cloud` just built: the part of the domain that is nearer to each than to any
+    /// other fluid or outer particle, by samples in every leaf.
+    pub fn volumes(&self, poses: &[RigidPose<D>], cloud: &Cloud<D>) -> Vec<f64> {
+        let scene = self.scene(poses);
+        let leaves: Vec<Leaf<D>> = self.tree.leaves().collect();
+        let walls = Walls::new(scene.surface.as_deref(), self.tree.bounds(), &self.transforms);
+        let mut owners: Vec<Vec<u32>> = vec![Vec::new(); leaves.len()];
+        sweep(&mut owners, |k| {
+            let (leaf, mut last) = (&leaves[k], None);
+            let step = leaf.size / SAMPLES as f64;
+            let sample = |s: usize| {
+                let part = |d: usize| (s / SAMPLES.pow(d as u32) % SAMPLES) as f64 + 0.5;
+                let x = leaf.centre + Vector::from_fn(|d| part(d) * step - 0.5 * leaf.size);
+                walls.distance((&x, leaf.size), 0.0, &mut last).map(|_| x)
+            };
+            (0..SAMPLES.pow(D as u32)).filter_map(sample).filter_map(|x| self.owner(cloud, &x, leaf.size)).collect()
+        });
+        let mut volumes = vec![0.0; cloud.n_fluid];
+        for (leaf, owners) in leaves.iter().zip(&owners) {
+            let share = (leaf.size / SAMPLES as f64).powi(D as i32);
+            owners.iter().filter(|i| (**i as usize) < cloud.n_fluid).for_each(|i| volumes[*i as usize] += share);
+        }
+        volumes
+    }
+
+    /// The fluid or outer particle nearest to `x`.
+    fn owner(&self, cloud: &Cloud<D>, x: &Vector<D>, size: f64) -> Option<u32> {
+        let mut best = (f64::INFINITY, u32::MAX);
+        let mut reach = 0.75 * size;
+        while best.0 > reach * reach && reach < FARTHEST * size {
+            for (t, place) in std::iter::once((None, *x)).chain(self.transforms.iter().map(|t| (Some(t), t.inverse().point(x)))) {
+                if t.is_some() && self.tree.bounds().distance_squared(&place) > reach * reach {
+                    continue;
+                }
+                let cube = Bounds { min: place - Vector::splat(reach), max: place + Vector::splat(reach) };
+                self.tree.overlapping(&cube, |node| {
+                    for k in cloud.leaves.of(node).iter().filter(|k| !cloud.interface_range().contains(&(**k as usize))) {
+                        let found = ((cloud.x[*k as usize] - place).norm_squared(), *k);
+                        if found < best {
+                            best = found;
+                        }
+                    }
+                });
+            }
+            reach *= 2.0;
+        }
+        (best.1 != u32::MAX).then_some(best.1)
     }
 
     /// Radius of the clouds in spacings.

@@ -33,7 +33,7 @@ use crate::math::least_squares::Fit;
 use crate::math::sweep::{maximum, sweep};
 use crate::motion::{Law, RigidPose};
 use crate::physics::Conserved;
-use crate::system::Moment;
+use crate::system::{Moment, System};
 
 /// Strength A of the shift.
 const STRENGTH: f64 = 0.1;
@@ -80,8 +80,6 @@ pub struct Turnover {
     pub lost: Vec<f64>,
     /// The same without regard to sign.
     pub exchanged: Vec<f64>,
-    /// Rows that were widened because they were sick.
-    pub widened: u64,
     /// Largest number of rows of first order in a cloud.
     pub first_order: u32,
 }
@@ -243,6 +241,42 @@ impl<const D: usize> Fluid<D> {
         let Carriage::Travel(travel) = &self.carriage else { return Ok(None) };
         let (cloud, _) = travel.habitat.cloud(&travel.poses(since), lists)?;
         Ok(Some(self.on(cloud, since, Some(places))))
+    }
+
+    /// The frame at the end of a step that led to `time`.
+    pub fn frame_after(&self, time: f64, step: f64, u: &[f64]) -> Frame<D> {
+        let moment = match step > 0.0 {
+            true => Moment::Within { start: time - step, step, fraction: 1.0 },
+            false => Moment::At { time },
+        };
+        self.frame(&moment, u)
+    }
+
+    /// Interface particles before any motion.
+    pub fn walls_before(&self) -> &[Vector<D>] {
+        match &self.carriage {
+            Carriage::Travel(travel) => travel.habitat.walls().0,
+            _ => {
+                let cloud = &self.reference().cloud;
+                &cloud.x[cloud.interface_range()]
+            }
+        }
+    }
+
+    /// Volumes for totals and means: where particles travel, the part of the domain that is nearest to each.
+    pub fn volumes(&self) -> Vec<f64> {
+        let cloud = &self.shape.cloud;
+        match &self.carriage {
+            Carriage::Travel(travel) => travel.habitat.volumes(&travel.poses(travel.since), cloud),
+            _ => cloud.volume[..cloud.n_fluid].to_vec(),
+        }
+    }
+
+    /// Writes these volumes into the cloud, for those who look at it when the march is over.
+    pub fn measure(&mut self) {
+        let volumes = self.volumes();
+        let n = volumes.len();
+        Arc::make_mut(&mut self.shape).cloud.volume[..n].copy_from_slice(&volumes);
     }
 
     fn on(&self, cloud: Cloud<D>, since: f64, places: Option<&[Vector<D>]>) -> Self {
