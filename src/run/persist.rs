@@ -70,6 +70,8 @@ pub(super) struct Roaming {
     lists: Vec<f64>,
     /// Where they are.
     places: Vec<f64>,
+    /// Their velocities in the step before.
+    ways: Vec<f64>,
     /// Time at which the cloud was built.
     since: f64,
     /// What re-clouding did so far.
@@ -80,15 +82,16 @@ impl Roaming {
     /// The particles of a march; `None` where they do not travel.
     pub(super) fn of<const D: usize>(fluid: &Fluid<D>, frame: &Frame<D>, turnover: &Turnover) -> Option<Self> {
         let Carriage::Travel(travel) = &fluid.carriage else { return None };
-        let flat = |x: &[Vector<D>]| x[..fluid.shape.cloud.n_fluid].iter().flat_map(|x| x.0).collect();
+        let flat = |x: &[Vector<D>]| x.iter().take(fluid.shape.cloud.n_fluid).flat_map(|x| x.0).collect();
         let (lists, places) = (flat(&fluid.shape.cloud.x), flat(&frame.shape.cloud.x));
-        Some(Self { lists, places, since: travel.since, turnover: turnover.clone() })
+        let ways = flat(&frame.velocity);
+        Some(Self { lists, places, ways, since: travel.since, turnover: turnover.clone() })
     }
 
     /// The equations on the cloud that was kept.
     pub(super) fn resume<const D: usize>(&self, fluid: &Fluid<D>) -> Result<Option<Fluid<D>>, CloudError> {
         let points = |v: &[f64]| v.chunks_exact(D).map(|x| Vector::from_fn(|d| x[d])).collect::<Vec<Vector<D>>>();
-        fluid.resumed((&points(&self.lists), self.since), &points(&self.places))
+        fluid.resumed((&points(&self.lists), self.since), (points(&self.places), points(&self.ways)))
     }
 
     fn counts(&self) -> Counts {
@@ -104,7 +107,7 @@ impl Roaming {
         }
     }
 
-    fn new(counts: &Counts, lists: &[f64], places: &[f64]) -> Self {
+    fn new(counts: &Counts, [lists, places, ways]: [Vec<f64>; 3]) -> Self {
         let numbers = |bits: &[u64]| bits.iter().map(|b| f64::from_bits(*b)).collect();
         let turnover = Turnover {
             renewals: counts.renewals,
@@ -114,7 +117,7 @@ impl Roaming {
             lost: numbers(&counts.lost_bits),
             exchanged: numbers(&counts.exchanged_bits),
         };
-        Self { lists: lists.to_vec(), places: places.to_vec(), since: f64::from_bits(counts.since_bits), turnover }
+        Self { lists, places, ways, since: f64::from_bits(counts.since_bits), turnover }
     }
 }
 
@@ -211,7 +214,8 @@ impl Saved {
             field("sources", self.sources),
         ];
         if let Some(roaming) = self.roaming {
-            fields.extend([field("lists", roaming.lists), field("places", roaming.places)]);
+            let parts = [("lists", roaming.lists), ("places", roaming.places), ("ways", roaming.ways)];
+            fields.extend(parts.map(|(name, data)| field(name, data)));
         }
         Ok(checkpoint::write(&out.join(FILE), &Checkpoint { meta, fields })?)
     }
@@ -228,7 +232,10 @@ impl Saved {
             best_age: m.phase_best_age,
         };
         let roaming = match &m.roaming {
-            Some(counts) => Some(Roaming::new(counts, file.f64("lists")?, file.f64("places")?)),
+            Some(counts) => {
+                let part = |name: &str| file.f64(name).map(<[f64]>::to_vec);
+                Some(Roaming::new(counts, [part("lists")?, part("places")?, part("ways")?]))
+            }
             None => None,
         };
         Ok(Self {

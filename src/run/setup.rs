@@ -192,7 +192,7 @@ fn carriage<const D: usize>(
     if case.moves() && particles == ParticleMotion::Lagrangian {
         let habitat = Arc::new(Habitat::new(case, surface, cloud)?);
         let places = Arc::new(cloud.x[..cloud.n_fluid].to_vec());
-        return Ok(Carriage::Travel(Travel { habitat, laws: laws(), places, since: 0.0 }));
+        return Ok(Carriage::Travel(Travel { habitat, laws: laws(), places, ways: Arc::default(), since: 0.0 }));
     }
     Ok(match particles {
         _ if !motions.moves() => Carriage::Still,
