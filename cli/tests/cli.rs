@@ -23,9 +23,10 @@ const PROMISED: [&str; 13] = [
     "ledger",
 ];
 /// What it may add.
-const EXTRA: [&str; 13] = [
+const EXTRA: [&str; 14] = [
     "time",
     "unconverged_steps",
+    "re_clouding",
     "first_harmonics",
     "periodic_change",
     "loads_pressure",
@@ -52,6 +53,11 @@ const VORTEX: &str = "title = \"vortex\"\ndimension = 2\n[flow]\nmach = 1.195228
     x_max = \"periodic\"\ny_min = \"periodic\"\ny_max = \"periodic\"\n[initial.vortex]\nstrength = 5.0\n\
     centre = [5.0, 5.0]\nvelocity = [1.0, 1.0]\n[scheme]\nlimiter = \"none\"\n[time.explicit]\nuntil = 3.0\ncfl = 0.5\n\
     [output]\ncheckpoint = 1\nreport = false\n";
+
+/// A cylinder that starts to swing in a stream of particles that travel: they are inserted and removed all the time.
+const CYLINDER: &str = "title = \"cylinder\"\n[flow]\nmach = 0.3\n[motion]\nparticles = \"lagrangian\"\nperiod = 4.0\n\
+    plunge = 0.1\n[[body]]\ncircle = { radius = 0.5 }\n[cloud]\nspacing = 0.0625\nfar_field = 4.0\n\
+    [time.explicit]\nuntil = 2.0\n[output]\ncheckpoint = 1\nreport = false\n";
 
 /// A folder with a case in it.
 struct Desk {
@@ -206,7 +212,7 @@ fn what_cannot_be_computed_yet_is_checked_but_not_run() {
     std::fs::write(&file, text.replace("particles = \"deforming\"", "particles = \"lagrangian\"")).unwrap();
     let output = desk.alula(&["run", "pitching.toml"]);
     let text = told(&output);
-    assert!(code(&output) == Some(2) && text.contains("travel with the fluid") && text.contains("hint: "), "{text}");
+    assert!(code(&output) == Some(2) && text.contains("implicit steps on particles that travel") && text.contains("hint: "), "{text}");
     assert!(!desk.path("runs").exists(), "a refused case leaves nothing behind");
 }
 
@@ -241,6 +247,11 @@ fn a_killed_relaxation_goes_on_to_the_same_bits() {
 #[test]
 fn a_killed_march_goes_on_to_the_same_bits() {
     survives_being_killed(VORTEX);
+}
+
+#[test]
+fn a_killed_march_of_travelling_particles_goes_on_to_the_same_bits() {
+    survives_being_killed(CYLINDER);
 }
 
 #[cfg(unix)]

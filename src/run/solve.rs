@@ -419,6 +419,9 @@ fn march<const D: usize>(
     }
     let mut periodic = false;
     while !marcher.finished() && !periodic && marcher.past().iteration < limit {
+        if fluid.is_worn(marcher.parts().0) {
+            return Ok(Pause::Worn);
+        }
         let before = marcher.past().time;
         let step = match marcher.advance() {
             Ok(step) => step,
@@ -441,13 +444,9 @@ fn march<const D: usize>(
         if journal.due(step.iteration) {
             journal.keep(at, marcher, fluid)?;
         }
-        let over = marcher.finished() || periodic;
-        if journal.monitor.stop() && !over {
+        if journal.monitor.stop() && !marcher.finished() && !periodic {
             journal.keep(at, marcher, fluid)?;
             return Ok(Pause::Stop);
-        }
-        if !over && fluid.is_worn(marcher.parts().0) {
-            return Ok(Pause::Worn);
         }
     }
     (journal.time, journal.converged) = (marcher.past().time, marcher.finished() || periodic);

@@ -225,6 +225,7 @@ impl<const D: usize> Fluid<D> {
             let well = frame.shape.operators.condition[i] < WORST_CONDITION;
             !well && then.first_order.binary_search(&(i as u32)).is_err()
         };
+        let any_sick = maximum(then.n_fluid, |i| f64::from(u8::from(sick(i)))) > 0.0;
         let apart = maximum(then.n_fluid, |i| {
             let own = now.x[i] - then.x[i];
             let far = |j: &u32| {
@@ -232,10 +233,10 @@ impl<const D: usize> Fluid<D> {
                 let d = now.x[j] - then.x[j] - own;
                 d.norm_squared() / (0.5 * (then.spacing[i] + then.spacing[j])).powi(2)
             };
-            let most = then.neighbours.of(i).iter().map(far).fold(0.0, f64::max);
-            if sick(i) { f64::INFINITY } else { most }
+            then.neighbours.of(i).iter().map(far).fold(0.0, f64::max)
         });
-        !(apart <= SLACK * SLACK)
+        // a cloud just built is as good as it gets
+        apart > SLACK * SLACK || apart.is_nan() || any_sick && apart > 0.0
     }
 
     /// The same equations on a cloud built anew where particles are in `frame`, and the state `u` on it.
