@@ -212,7 +212,10 @@ fn what_cannot_be_computed_yet_is_checked_but_not_run() {
     std::fs::write(&file, text.replace("particles = \"deforming\"", "particles = \"lagrangian\"")).unwrap();
     let output = desk.alula(&["run", "pitching.toml"]);
     let text = told(&output);
-    assert!(code(&output) == Some(2) && text.contains("implicit steps on particles that travel") && text.contains("hint: "), "{text}");
+    assert!(
+        code(&output) == Some(2) && text.contains("implicit steps on particles that travel") && text.contains("hint: "),
+        "{text}"
+    );
     assert!(!desk.path("runs").exists(), "a refused case leaves nothing behind");
 }
 

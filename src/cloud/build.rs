@@ -1,13 +1,13 @@
 //! From geometry to a finished cloud.
 use std::sync::Arc;
 
+use super::Transform;
 use super::fill::Particles;
 use super::layout::{Layout, background};
 use super::neighbours::{Clouds, Search};
 use super::sources::Source;
 use super::{Cloud, CloudError, Outer};
 use crate::case::Case;
-use super::Transform;
 use crate::geometry::Surface;
 use crate::math::Vector;
 

@@ -300,7 +300,11 @@ fn blank_near_interface<const D: usize>(tree: &Tree<D>, placed: &Placed<D>, flui
 }
 
 /// The side of the domain that a leaf lies on, unless particles exist beyond it (symmetry, periodicity).
-pub(super) fn side_of<const D: usize>(leaf: &Leaf<D>, bounds: &Bounds<D>, sides: &[[Side; 2]; D]) -> Option<(usize, usize)> {
+pub(super) fn side_of<const D: usize>(
+    leaf: &Leaf<D>,
+    bounds: &Bounds<D>,
+    sides: &[[Side; 2]; D],
+) -> Option<(usize, usize)> {
     let mut found: Option<(usize, usize)> = None;
     for d in 0..D {
         for end in 0..2 {

@@ -161,13 +161,16 @@ impl<const D: usize> Habitat<D> {
         let mut best = (f64::INFINITY, u32::MAX);
         let mut reach = 0.75 * size;
         while best.0 > reach * reach && reach < FARTHEST * size {
-            for (t, place) in std::iter::once((None, *x)).chain(self.transforms.iter().map(|t| (Some(t), t.inverse().point(x)))) {
+            for (t, place) in
+                std::iter::once((None, *x)).chain(self.transforms.iter().map(|t| (Some(t), t.inverse().point(x))))
+            {
                 if t.is_some() && self.tree.bounds().distance_squared(&place) > reach * reach {
                     continue;
                 }
                 let cube = Bounds { min: place - Vector::splat(reach), max: place + Vector::splat(reach) };
                 self.tree.overlapping(&cube, |node| {
-                    for k in cloud.leaves.of(node).iter().filter(|k| !cloud.interface_range().contains(&(**k as usize))) {
+                    for k in cloud.leaves.of(node).iter().filter(|k| !cloud.interface_range().contains(&(**k as usize)))
+                    {
                         let found = ((cloud.x[*k as usize] - place).norm_squared(), *k);
                         if found < best {
                             best = found;
@@ -274,7 +277,8 @@ impl<const D: usize> Habitat<D> {
     fn is_inside(&self, x: &Vector<D>, h: f64) -> bool {
         let bounds = self.tree.bounds();
         (0..D).all(|d| {
-            [x[d] - bounds.min[d], bounds.max[d] - x[d]].iter().zip(&self.layout.sides[d]).all(|(gap, side)| match side {
+            [x[d] - bounds.min[d], bounds.max[d] - x[d]].iter().zip(&self.layout.sides[d]).all(|(gap, side)| match side
+            {
                 Side::Periodic => *gap >= 0.0,
                 Side::Symmetry => *gap >= CLOSED_GAP * h,
                 _ => *gap >= OPEN_GAP * h,

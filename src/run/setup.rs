@@ -39,7 +39,10 @@ pub(super) fn supported(case: &Case) -> Result<(), RunError> {
     let bare = case.moves() && case.bodies.is_empty() && case.particles() == ParticleMotion::Deforming;
     let balanced = case.moves() && case.scheme.conservative == Some(true) && case.particles() != ParticleMotion::Rigid;
     let asks = [
-        (implicit, "implicit steps on particles that travel with the fluid (`particles = \"lagrangian\"`, `[time.dual]`)"),
+        (
+            implicit,
+            "implicit steps on particles that travel with the fluid (`particles = \"lagrangian\"`, `[time.dual]`)",
+        ),
         (layered, "wall layers of particles that travel with the fluid (`wall_layers`, `particles = \"lagrangian\"`)"),
         (bare, "a deforming cloud without bodies (`particles = \"deforming\"`)"),
         (balanced, "conservative coefficients on a cloud that deforms (`conservative = true`)"),

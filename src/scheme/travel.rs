@@ -16,7 +16,7 @@
 //! *Shocks.* The flux past a particle is taken with its own velocity, which makes linear fields exact; where w and U jump
 //! together, what one particle loses another does not gain: Σ (w_ij − w_i)·s_ij (U_i − U_ij) is left over, and a shock
 //! runs at a wrong speed (3 % in Sod's tube). Particles therefore keep the velocity of their last step, and are not shifted,
-//! while the gas around them is compressed at a rate −h ∇·v > 0.05 c, or has been three neighbours away: w jumps behind
+//! while the gas around them is compressed at a rate −h ∇·v > 0.1 c, or has been three neighbours away: w jumps behind
 //! the shock, where U no longer does, and the shock stays within a fraction of a spacing.
 //!
 //! *Re-clouding.* The lists of neighbours serve until two particles that see one another have moved apart or together by a
@@ -28,9 +28,9 @@
 use std::sync::Arc;
 
 use super::boundary::WallFits;
+use super::boundary::WallMotion;
 use super::fluid::{Fluid, Work};
 use super::shape::{Carriage, Frame, Shape, rotation_rate};
-use super::boundary::WallMotion;
 use crate::cloud::repair::WORST_CONDITION;
 use crate::cloud::travel::{Habitat, NEW, Renewal};
 use crate::cloud::{Cloud, CloudError, Operators};
@@ -50,7 +50,7 @@ const APART: f64 = 0.2;
 /// Share of an interface particle in the concentration: the gas reaches around it on one side only.
 const WALL_SHARE: f64 = 0.5;
 /// Rate −h ∇·v/c of compression above which there is a shock.
-const COMPRESSED: f64 = 0.05;
+const COMPRESSED: f64 = 0.1;
 /// Neighbours of neighbours, that many times, that are near a shock as well.
 const HOPS: usize = 3;
 /// Greatest distance, in spacings, that a particle goes in a step.
@@ -61,8 +61,9 @@ const SLACK: f64 = 0.25;
 const LARGEST_AMPLIFICATION: f64 = 3.0;
 /// Rows that a fit of second degree must have beyond its coefficients.
 const SPARE_ROWS: usize = 2;
-/// Part of the range of the values a state is fitted to by which it may lie outside of it.
-const MARGIN: f64 = 0.1;
+/// Part of the range of the values a state is fitted to by which it may lie outside of it: beside a smooth extremum, a
+/// parabola passes the nearest values by an eighth of the range over three spacings.
+const MARGIN: f64 = 0.3;
 
 /// How particles travel with the fluid.
 #[derive(Clone)]
@@ -458,7 +459,8 @@ impl<const D: usize> Transfer<'_, D> {
 
     /// Neighbours of a removed particle that stay.
     fn around_removed(&self, i: usize) -> Vec<Sample<D>> {
-        let stays = |j: &&u32| self.renewal.removed.binary_search(&(self.old.source(**j as usize).index as u32)).is_err();
+        let stays =
+            |j: &&u32| self.renewal.removed.binary_search(&(self.old.source(**j as usize).index as u32)).is_err();
         let row = self.old.neighbours.of(i).iter().filter(stays);
         row.map(|j| {
             let j = *j as usize;
