@@ -55,6 +55,7 @@ struct Meta {
 #[derive(Clone, Debug, Serialize, Deserialize)]
 struct Counts {
     since_bits: u64,
+    now_bits: u64,
     renewals: u32,
     inserted: u64,
     removed: u64,
@@ -68,7 +69,9 @@ struct Counts {
 pub(super) struct Roaming {
     /// Where fluid particles were when the cloud was built.
     lists: Vec<f64>,
-    /// Where they are.
+    /// Time.
+    now: f64,
+    /// Where fluid and interface particles are.
     places: Vec<f64>,
     /// Their velocities in the step before.
     ways: Vec<f64>,
@@ -82,22 +85,27 @@ impl Roaming {
     /// The particles of a march; `None` where they do not travel.
     pub(super) fn of<const D: usize>(fluid: &Fluid<D>, frame: &Frame<D>, turnover: &Turnover) -> Option<Self> {
         let Carriage::Travel(travel) = &fluid.carriage else { return None };
-        let flat = |x: &[Vector<D>]| x.iter().take(fluid.shape.cloud.n_fluid).flat_map(|x| x.0).collect();
-        let (lists, places) = (flat(&fluid.shape.cloud.x), flat(&frame.shape.cloud.x));
-        let ways = flat(&frame.velocity);
-        Some(Self { lists, places, ways, since: travel.since, turnover: turnover.clone() })
+        let flat = |x: &[Vector<D>], n: usize| x.iter().take(n).flat_map(|x| x.0).collect();
+        let cloud = &fluid.shape.cloud;
+        let lists = flat(&cloud.x, cloud.n_fluid);
+        let (places, ways) = (flat(&frame.shape.cloud.x, cloud.n_rows()), flat(&frame.velocity, cloud.n_rows()));
+        Some(Self { lists, now: frame.time, places, ways, since: travel.since, turnover: turnover.clone() })
     }
 
     /// The equations on the cloud that was kept.
     pub(super) fn resume<const D: usize>(&self, fluid: &Fluid<D>) -> Result<Option<Fluid<D>>, CloudError> {
         let points = |v: &[f64]| v.chunks_exact(D).map(|x| Vector::from_fn(|d| x[d])).collect::<Vec<Vector<D>>>();
-        fluid.resumed((&points(&self.lists), self.since), (points(&self.places), points(&self.ways)))
+        let lists = points(&self.lists);
+        // until it is built anew a march stands on the cloud of the case
+        let lists = (self.turnover.renewals > 0).then_some((&lists[..], self.since));
+        fluid.resumed(lists, (self.now, points(&self.places), points(&self.ways)))
     }
 
     fn counts(&self) -> Counts {
         let (t, bits) = (&self.turnover, |v: &[f64]| v.iter().map(|v| v.to_bits()).collect());
         Counts {
             since_bits: self.since.to_bits(),
+            now_bits: self.now.to_bits(),
             renewals: t.renewals,
             inserted: t.inserted,
             removed: t.removed,
@@ -117,7 +125,8 @@ impl Roaming {
             lost: numbers(&counts.lost_bits),
             exchanged: numbers(&counts.exchanged_bits),
         };
-        Self { lists, places, ways, since: f64::from_bits(counts.since_bits), turnover }
+        let (since, now) = (f64::from_bits(counts.since_bits), f64::from_bits(counts.now_bits));
+        Self { lists, now, places, ways, since, turnover }
     }
 }
 

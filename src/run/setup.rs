@@ -194,8 +194,15 @@ fn carriage<const D: usize>(
     let particles = case.particles();
     if case.moves() && particles == ParticleMotion::Lagrangian {
         let habitat = Arc::new(Habitat::new(case, surface, cloud)?);
-        let places = Arc::new(cloud.x[..cloud.n_fluid].to_vec());
-        return Ok(Carriage::Travel(Travel { habitat, laws: laws(), places, ways: Arc::default(), since: 0.0 }));
+        let places = Arc::new(cloud.x[..cloud.n_rows()].to_vec());
+        return Ok(Carriage::Travel(Travel {
+            habitat,
+            laws: laws(),
+            now: 0.0,
+            places,
+            ways: Arc::default(),
+            since: 0.0,
+        }));
     }
     Ok(match particles {
         _ if !motions.moves() => Carriage::Still,

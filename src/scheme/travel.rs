@@ -72,9 +72,11 @@ pub struct Travel<const D: usize> {
     pub habitat: Arc<Habitat<D>>,
     /// Motion of each body.
     pub laws: Vec<Law<D>>,
-    /// Where the fluid particles are when this system takes over.
+    /// Time at which this system takes over.
+    pub now: f64,
+    /// Where fluid and interface particles are then.
     pub places: Arc<Vec<Vector<D>>>,
-    /// Velocities of the fluid particles in the step before; empty at the start.
+    /// Their velocities in the step before; empty at the start.
     pub ways: Arc<Vec<Vector<D>>>,
     /// Time at which the cloud was built.
     pub since: f64,
@@ -119,7 +121,9 @@ impl<const D: usize> Travel<D> {
         let velocity = Arc::make_mut(&mut frame.velocity);
         velocity.resize(cloud.len(), Vector::ZERO);
         if fresh {
-            frame.base = Arc::clone(&self.places);
+            // to the bit what the system before, or a checkpoint, left
+            frame.base = Arc::new(self.places[..n].to_vec());
+            frame.time = self.now;
             velocity[..self.ways.len()].copy_from_slice(&self.ways);
         }
         let shape = Arc::make_mut(&mut frame.shape);
@@ -134,14 +138,17 @@ impl<const D: usize> Travel<D> {
             return;
         }
         sweep(&mut shape.cloud.x[..n], |i| base[i] + w[i] * passed);
-        self.place_walls(moment, &mut shape.cloud, velocity);
+        match fresh {
+            true => shape.cloud.x[n..self.places.len()].copy_from_slice(&self.places[n..]),
+            false => self.place_walls(moment, &mut shape.cloud, velocity),
+        }
         let first = cloud.n_real();
         for (k, image) in cloud.images.iter().enumerate() {
             let (t, s) = (&cloud.transforms[image.transform as usize], image.source as usize);
             shape.cloud.x[first + k] = t.point(&shape.cloud.x[s]);
             velocity[first + k] = t.direction(&velocity[s]);
         }
-        self.turn_walls(moment.time(), frame);
+        self.turn_walls(frame.time, frame);
         let shape = Arc::make_mut(&mut frame.shape);
         shape.operators.refit(&shape.cloud);
         shape.walls = WallFits::new(&shape.cloud);
@@ -255,22 +262,25 @@ impl<const D: usize> Fluid<D> {
         let u = Transfer { fluid: self, old, work, renewal: &renewal, before: u }.state(turnover)?;
         let gas = |i: usize| self.gas.primitive(&Conserved::load(&u[i * (D + 2)..])).velocity;
         let way = |(i, k): (usize, &u32)| frame.velocity.get(*k as usize).copied().unwrap_or_else(|| gas(i));
-        let ways = renewal.from.iter().enumerate().map(way).collect();
-        let places = renewal.cloud.x[..renewal.cloud.n_fluid].to_vec();
-        let fluid = self.on(renewal.cloud, frame.time, (places, ways));
+        let walls = old.interface_range().map(|w| frame.velocity_of(w));
+        let ways = renewal.from.iter().enumerate().map(way).chain(walls).collect();
+        let places = renewal.cloud.x[..renewal.cloud.n_rows()].to_vec();
+        let fluid = self.on(renewal.cloud, frame.time, (frame.time, places, ways));
         Ok(Some(Renewed { fluid, u }))
     }
 
-    /// The same equations on a cloud whose lists are those of the fluid particles at `lists` at time `since`, while these are
-    /// at `places` now and went there with velocities `ways`: what a checkpoint keeps.
+    /// The same equations on a cloud whose lists are those of the fluid particles at `lists` at time `since`, or on this cloud
+    /// without them, while fluid and interface particles are at certain places now and went there with certain velocities:
+    /// what a checkpoint keeps.
     pub fn resumed(
         &self,
-        (lists, since): (&[Vector<D>], f64),
-        (places, ways): (Vec<Vector<D>>, Vec<Vector<D>>),
-    ) -> Result<Option<Fluid<D>>, CloudError> {
+        lists: Option<(&[Vector<D>], f64)>,
+        now: (f64, Vec<Vector<D>>, Vec<Vector<D>>),
+    ) -> Result<Option<Self>, CloudError> {
         let Carriage::Travel(travel) = &self.carriage else { return Ok(None) };
+        let Some((lists, since)) = lists else { return Ok(Some(self.moved(now))) };
         let (cloud, _) = travel.habitat.cloud(&travel.poses(since), lists)?;
-        Ok(Some(self.on(cloud, since, (places, ways))))
+        Ok(Some(self.on(cloud, since, now)))
     }
 
     /// The frame at the end of a step that led to `time`.
@@ -309,12 +319,20 @@ impl<const D: usize> Fluid<D> {
         Arc::make_mut(&mut self.shape).cloud.volume[..n].copy_from_slice(&volumes);
     }
 
-    fn on(&self, cloud: Cloud<D>, since: f64, (places, ways): (Vec<Vector<D>>, Vec<Vector<D>>)) -> Self {
+    fn on(&self, cloud: Cloud<D>, since: f64, now: (f64, Vec<Vector<D>>, Vec<Vector<D>>)) -> Self {
+        let operators = Operators::new(&cloud);
+        let mut other = Self { shape: Arc::new(Shape::new(cloud, operators)), ..self.moved(now) };
+        if let Carriage::Travel(travel) = &mut other.carriage {
+            travel.since = since;
+        }
+        other
+    }
+
+    /// The same equations on the same cloud, with the particles elsewhere.
+    fn moved(&self, (now, places, ways): (f64, Vec<Vector<D>>, Vec<Vector<D>>)) -> Self {
         let Carriage::Travel(travel) = &self.carriage else { return self.copy() };
         let (places, ways) = (Arc::new(places), Arc::new(ways));
-        let carriage = Carriage::Travel(Travel { places, ways, since, ..travel.clone() });
-        let operators = Operators::new(&cloud);
-        Self { shape: Arc::new(Shape::new(cloud, operators)), carriage, ..self.copy() }
+        Self { carriage: Carriage::Travel(Travel { now, places, ways, ..travel.clone() }), ..self.copy() }
     }
 
     fn copy(&self) -> Self {
