@@ -134,11 +134,14 @@ impl<const D: usize> Habitat<D> {
         Ok(Renewal { cloud: self.joined(&scene, particles)?, from, removed })
     }
 
-    /// Volumes of the fluid particles of a `cloud` just built: the part of the domain that is nearer to each than to any
-    /// other fluid or outer particle, by samples in every leaf.
+    /// Volumes of the fluid particles of a `cloud` just built: the part of the leaves without outer particles that is nearer to
+    /// each than to any other, by samples. Their sum is that of the cloud of the case.
     pub fn volumes(&self, poses: &[RigidPose<D>], cloud: &Cloud<D>) -> Vec<f64> {
         let scene = self.scene(poses);
-        let leaves: Vec<Leaf<D>> = self.tree.leaves().collect();
+        let mut rim: Vec<u32> = self.outer.iter().map(|(leaf, _)| leaf.node).collect();
+        rim.sort_unstable();
+        let inner = |leaf: &Leaf<D>| rim.binary_search(&leaf.node).is_err();
+        let leaves: Vec<Leaf<D>> = self.tree.leaves().filter(inner).collect();
         let walls = Walls::new(scene.surface.as_deref(), self.tree.bounds(), &self.transforms);
         let mut owners: Vec<Vec<u32>> = vec![Vec::new(); leaves.len()];
         sweep(&mut owners, |k| {
@@ -154,12 +157,12 @@ impl<const D: usize> Habitat<D> {
         let mut volumes = vec![0.0; cloud.n_fluid];
         for (leaf, owners) in leaves.iter().zip(&owners) {
             let share = (leaf.size / SAMPLES as f64).powi(D as i32);
-            owners.iter().filter(|i| (**i as usize) < cloud.n_fluid).for_each(|i| volumes[*i as usize] += share);
+            owners.iter().for_each(|i| volumes[*i as usize] += share);
         }
         volumes
     }
 
-    /// The fluid or outer particle nearest to `x`.
+    /// The fluid particle nearest to `x`.
     fn owner(&self, cloud: &Cloud<D>, x: &Vector<D>, size: f64) -> Option<u32> {
         let mut best = (f64::INFINITY, u32::MAX);
         let mut reach = 0.75 * size;
@@ -172,8 +175,7 @@ impl<const D: usize> Habitat<D> {
                 }
                 let cube = Bounds { min: place - Vector::splat(reach), max: place + Vector::splat(reach) };
                 self.tree.overlapping(&cube, |node| {
-                    for k in cloud.leaves.of(node).iter().filter(|k| !cloud.interface_range().contains(&(**k as usize)))
-                    {
+                    for k in cloud.leaves.of(node).iter().filter(|k| (**k as usize) < cloud.n_fluid) {
                         let found = ((cloud.x[*k as usize] - place).norm_squared(), *k);
                         if found < best {
                             best = found;
