@@ -14,9 +14,11 @@ use alula::geometry::load_surface;
 use alula::math::Vector;
 use alula::math::multilevel::Cycle;
 use alula::physics::Primitive;
-use alula::scheme::Fluid;
+use alula::scheme::{Fluid, Turnover};
 use alula::system::{Moment, System};
+use alula::time::explicit::{self, Explicit};
 use alula::time::relax::{Control, Method, Relax};
+use alula::time::{March, Past};
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
 
@@ -130,6 +132,49 @@ fn weights<const D: usize>(bencher: Bencher<'_, '_>, threads: usize) {
     let cloud = Cloud::<D>::build(&case::<D>(), None, &[]).unwrap();
     let pool = pool(threads);
     bencher.counter(ItemsCount::new(cloud.n_fluid)).bench_local(|| pool.install(|| Operators::new(black_box(&cloud))));
+}
+
+/// The same case with particles that travel, after one step.
+fn travelling<const D: usize>() -> (Fluid<D>, Vec<f64>) {
+    let mut case = case::<D>();
+    let motion = "title = \"x\"\ndimension = 2\n[flow]\nmach = 0.5\n[motion]\nparticles = \"lagrangian\"\n[cloud]\n\
+                  spacing = 1.0\ndomain = { min = [0, 0], max = [4, 4] }\n[time.explicit]\nuntil = 1.0\n";
+    let other = read(motion, "bench.toml").unwrap_or_else(|e| panic!("{e}"));
+    (case.motion, case.time) = (other.motion, other.time);
+    let (fluid, _) = alula::run::build_solver::<D>(&case, Path::new("")).unwrap();
+    (fluid, solver::<D>().1)
+}
+
+/// A cloud of travelling particles built anew: who comes and goes, neighbours, weights, transfer.
+#[divan::bench(consts = [2, 3], args = THREADS, sample_count = 10)]
+fn re_clouding<const D: usize>(bencher: Bencher<'_, '_>, threads: usize) {
+    let (fluid, u) = travelling::<D>();
+    let (pool, frame, mut work) = (pool(threads), fluid.frame(&Moment::At { time: 0.0 }, &u), fluid.work());
+    let mut turnover = Turnover::default();
+    bencher
+        .counter(ItemsCount::new(fluid.shape.cloud.n_fluid))
+        .bench_local(|| pool.install(|| fluid.renewed(black_box(&frame), &u, &mut work, &mut turnover)).is_ok());
+}
+
+/// A whole step of three stages on particles that travel, without building the cloud anew.
+#[divan::bench(consts = [2, 3], args = THREADS, sample_count = 10, sample_size = 1)]
+fn travelling_step<const D: usize>(bencher: Bencher<'_, '_>, threads: usize) {
+    let (fluid, u) = travelling::<D>();
+    let pool = pool(threads);
+    let begin = (Past::default(), u);
+    let mut march = Explicit::new(&fluid, explicit::Method::Ssprk3, (0.1, 1e9), begin);
+    bencher
+        .counter(ItemsCount::new(fluid.shape.cloud.n_fluid))
+        .bench_local(|| pool.install(|| march.advance()).is_ok());
+}
+
+/// Weights of a cloud fitted anew on the same lists.
+#[divan::bench(consts = [2, 3], args = THREADS, sample_count = 20)]
+fn weights_anew<const D: usize>(bencher: Bencher<'_, '_>, threads: usize) {
+    let (fluid, _) = travelling::<D>();
+    let (pool, mut operators) = (pool(threads), fluid.shape.operators.clone());
+    let cloud = &fluid.shape.cloud;
+    bencher.counter(ItemsCount::new(cloud.n_fluid)).bench_local(|| pool.install(|| operators.refit(black_box(cloud))));
 }
 
 /// One Newton step: linearisation, preconditioner, GMRES, line search.

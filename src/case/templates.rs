@@ -1,11 +1,12 @@
 //! Case files to start from.
 
 /// Names of the templates with a line about each.
-pub const TEMPLATES: [(&str, &str); 4] = [
+pub const TEMPLATES: [(&str, &str); 5] = [
     ("airfoil", "transonic flow over a NACA 0012 section (2-D)"),
     ("pitching", "an airfoil that pitches about its quarter chord (2-D)"),
     ("sphere", "subsonic flow past a sphere (3-D)"),
     ("stl", "a body from an STL or OBJ surface file (3-D)"),
+    ("travelling", "a cylinder in a stream of particles that travel with the fluid (2-D)"),
 ];
 
 /// The commented case file called `name`.
@@ -15,6 +16,7 @@ pub fn template(name: &str) -> Option<String> {
         "pitching" => include_str!("templates/pitching.toml"),
         "sphere" => include_str!("templates/sphere.toml"),
         "stl" => include_str!("templates/stl.toml"),
+        "travelling" => include_str!("templates/travelling.toml"),
         _ => return None,
     };
     Some(text.to_owned())

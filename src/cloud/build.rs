@@ -1,4 +1,7 @@
 //! From geometry to a finished cloud.
+use std::sync::Arc;
+
+use super::Transform;
 use super::fill::Particles;
 use super::layout::{Layout, background};
 use super::neighbours::{Clouds, Search};
@@ -15,15 +18,20 @@ impl<const D: usize> Cloud<D> {
     /// Builds the cloud of a case; `extra` are sources of refinement that follow the solution.
     pub fn build(case: &Case, surface: Option<&Surface<D>>, extra: &[Source<D>]) -> Result<Self, CloudError> {
         let layout = Layout::new(case, surface)?;
-        let tree = background(case, &layout, surface, extra);
+        let tree = Arc::new(background(case, &layout, surface, extra));
         let transforms = layout.transforms();
         let mut particles = Particles::fill(tree, &layout, &transforms, &case.cloud, surface);
         if particles.n_fluid == 0 {
             return Err(CloudError::Empty);
         }
         let found = Search::new(&particles, surface, &transforms, case.cloud.radius).clouds()?;
+        found.repair.moved.iter().for_each(|(i, place)| particles.x[*i as usize] = *place);
+        Ok(Self::join(particles, found, transforms))
+    }
+
+    /// The cloud of particles and what a search among them found.
+    pub(super) fn join(particles: Particles<D>, found: Clouds<D>, transforms: Vec<Transform<D>>) -> Self {
         let Clouds { neighbours, wall_clouds, images, repair, n_crevice } = found;
-        repair.moved.iter().for_each(|(i, place)| particles.x[*i as usize] = *place);
         let mut notes = repair.notes();
         if n_crevice > 0 {
             notes.push(format!(
@@ -50,7 +58,7 @@ impl<const D: usize> Cloud<D> {
             notes,
         };
         cloud.append_images();
-        Ok(cloud)
+        cloud
     }
 
     fn append_images(&mut self) {

@@ -1,7 +1,10 @@
 //! Filling the background with particles.
 //!
 //! A fluid particle sits in the middle of every leaf that lies outside the bodies and not nearer to a surface, or to an
-//! interface particle, than a fraction of its size; in 3-D those next to a wall then move (module `settle`). The leaves along the sides of the domain carry the outer particles.
+//! interface particle, than a fraction of its size; in 3-D those next to a wall then move (module `settle`). The leaves along
+//! the sides of the domain carry the outer particles.
+use std::sync::Arc;
+
 use super::columns::{Columns, Ground};
 use super::interface::{Placed, place};
 use super::layers::Layers;
@@ -26,7 +29,7 @@ const FREE: f64 = 0.999;
 /// Particles in a tree, without images.
 pub struct Particles<const D: usize> {
     /// The background.
-    pub tree: Tree<D>,
+    pub tree: Arc<Tree<D>>,
     /// Positions: fluid, interface, outer.
     pub x: Vec<Vector<D>>,
     /// Local spacings.
@@ -99,7 +102,7 @@ impl LeafIndex {
 impl<const D: usize> Particles<D> {
     /// Places all particles of a background.
     pub fn fill(
-        tree: Tree<D>,
+        tree: Arc<Tree<D>>,
         layout: &Layout<D>,
         transforms: &[Transform<D>],
         spec: &Spec,
@@ -110,17 +113,12 @@ impl<const D: usize> Particles<D> {
         let mut outer = Vec::new();
         let leaves: Vec<Leaf<D>> = tree.leaves().collect();
         let mut distance = vec![None; leaves.len()];
-        let walls = Walls {
-            surface,
-            closed: surface.is_some_and(Surface::is_closed),
-            domain: tree.bounds(),
-            back: transforms.iter().map(Transform::inverse).collect(),
-        };
+        let walls = Walls::new(surface, tree.bounds(), transforms);
         let chunks = parts(leaves.len(), CHUNK);
         sweep_parts(&chunks, 1, &mut distance, &|k, slots| {
             let mut last = None;
             for (leaf, slot) in leaves[chunks[k].clone()].iter().zip(slots) {
-                *slot = walls.distance(leaf, spec.blank, &mut last);
+                *slot = walls.distance((&leaf.centre, leaf.size), spec.blank, &mut last);
             }
         });
         for (leaf, distance) in leaves.iter().zip(&distance) {
@@ -161,8 +159,8 @@ impl<const D: usize> Particles<D> {
     }
 
     #[allow(clippy::type_complexity)]
-    fn assemble(
-        tree: Tree<D>,
+    pub(super) fn assemble(
+        tree: Arc<Tree<D>>,
         layout: &Layout<D>,
         (fluid, placed, outer): (Vec<Seat<D>>, Placed<D>, Vec<(Leaf<D>, (usize, usize))>),
         layers: Layers<D>,
@@ -246,7 +244,7 @@ impl<const D: usize> Particles<D> {
 }
 
 /// The surface and its images beyond the sides of the domain.
-struct Walls<'a, const D: usize> {
+pub(super) struct Walls<'a, const D: usize> {
     surface: Option<&'a Surface<D>>,
     closed: bool,
     domain: Bounds<D>,
@@ -254,20 +252,31 @@ struct Walls<'a, const D: usize> {
 }
 
 /// A ball without surface in it: centre, radius, and whether it lies inside a body.
-type Ball<const D: usize> = (Vector<D>, f64, bool);
+pub(super) type Ball<const D: usize> = (Vector<D>, f64, bool);
 
-impl<const D: usize> Walls<'_, D> {
-    /// Distance from a leaf to the surface, infinite when far; `None` when the leaf is to be left empty. `last` is the ball
-    /// around the leaf that was looked at before.
-    fn distance(&self, leaf: &Leaf<D>, blank: f64, last: &mut Option<Ball<D>>) -> Option<f64> {
+impl<'a, const D: usize> Walls<'a, D> {
+    /// The surface, if there is one, in a domain with these images.
+    pub(super) fn new(surface: Option<&'a Surface<D>>, domain: Bounds<D>, transforms: &[Transform<D>]) -> Self {
+        let back = transforms.iter().map(Transform::inverse).collect();
+        Self { surface, closed: surface.is_some_and(Surface::is_closed), domain, back }
+    }
+
+    /// Distance from a place for a particle of spacing `size` to the surface, infinite when far; `None` when the place is to
+    /// be left empty. `last` is the ball around the place that was looked at before.
+    pub(super) fn distance(
+        &self,
+        (centre, size): (&Vector<D>, f64),
+        blank: f64,
+        last: &mut Option<Ball<D>>,
+    ) -> Option<f64> {
         let Some(surface) = self.surface else { return Some(f64::INFINITY) };
-        let reach = (NEAR + 1.0) * leaf.size;
-        let images = self.back.iter().map(|t| t.point(&leaf.centre));
+        let reach = (NEAR + 1.0) * size;
+        let images = self.back.iter().map(|t| t.point(centre));
         let images = images.filter(|x| self.domain.distance_squared(x) <= reach * reach);
         let mut distance = f64::INFINITY;
-        for x in std::iter::once(leaf.centre).chain(images) {
+        for x in std::iter::once(*centre).chain(images) {
             distance = surface.nearest(&x, reach.min(distance)).map_or(distance, |n| n.distance);
-            if distance < blank * leaf.size || self.inside(surface, &x, reach.min(distance), last) {
+            if distance < blank * size || self.inside(surface, &x, reach.min(distance), last) {
                 return None;
             }
         }
@@ -298,7 +307,11 @@ fn blank_near_interface<const D: usize>(tree: &Tree<D>, placed: &Placed<D>, flui
 }
 
 /// The side of the domain that a leaf lies on, unless particles exist beyond it (symmetry, periodicity).
-fn side_of<const D: usize>(leaf: &Leaf<D>, bounds: &Bounds<D>, sides: &[[Side; 2]; D]) -> Option<(usize, usize)> {
+pub(super) fn side_of<const D: usize>(
+    leaf: &Leaf<D>,
+    bounds: &Bounds<D>,
+    sides: &[[Side; 2]; D],
+) -> Option<(usize, usize)> {
     let mut found: Option<(usize, usize)> = None;
     for d in 0..D {
         for end in 0..2 {
@@ -324,7 +337,7 @@ fn gather<const D: usize>(columns: Columns<D>, seats: &[Seat<D>]) -> Layers<D> {
 }
 
 /// Position of a cell along the space-filling curve.
-fn curve_position<const D: usize>(cell: [u32; D]) -> u64 {
+pub(super) fn curve_position<const D: usize>(cell: [u32; D]) -> u64 {
     let bits = 64 / D as u32;
     let need = u32::from(MAX_LEVEL) + 11;
     let shift = need.saturating_sub(bits.min(31));

@@ -37,7 +37,7 @@ const LLOYD_ROUNDS: usize = 8;
 const SAME_SIDE: f64 = -0.2;
 
 /// Interface particles of all bodies.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub struct Placed<const D: usize> {
     /// Positions, on the surface.
     pub x: Vec<Vector<D>>,

@@ -22,6 +22,7 @@ mod settle;
 pub mod sources;
 #[cfg(test)]
 mod tests;
+pub mod travel;
 pub mod tree;
 
 use std::ops::Range;
@@ -148,7 +149,7 @@ pub struct Cloud<const D: usize> {
     /// Particles, in ascending order, whose reconstruction stays first order: too few neighbours around them.
     pub first_order: Vec<u32>,
     /// The background.
-    pub tree: tree::Tree<D>,
+    pub tree: std::sync::Arc<tree::Tree<D>>,
     /// What had to be repaired, in words.
     pub notes: Vec<String>,
 }

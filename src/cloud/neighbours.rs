@@ -207,6 +207,7 @@ pub struct Search<'a, const D: usize> {
     transforms: &'a [Transform<D>],
     inverse: Vec<u8>,
     radius: f64,
+    free: Option<f64>,
 }
 
 impl<'a, const D: usize> Search<'a, D> {
@@ -218,7 +219,26 @@ impl<'a, const D: usize> Search<'a, D> {
         radius: f64,
     ) -> Self {
         let find = |t: &Transform<D>| transforms.iter().position(|o| o.undoes(t)).map_or(IDENTITY, |k| k as u8);
-        Self { particles, surface, transforms, inverse: transforms.iter().map(find).collect(), radius }
+        let inverse = transforms.iter().map(find).collect();
+        Self { particles, surface, transforms, inverse, radius, free: None }
+    }
+
+    /// The same among particles that do not sit in the middle of leaves: the ball holds everywhere. In a `uniform` background
+    /// no ball is larger than that of the particle that looks.
+    pub(super) fn free(self, uniform: bool) -> Self {
+        Self { free: Some(if uniform { self.radius } else { 1.5 * self.radius }), ..self }
+    }
+
+    /// True when no particle, image or other, is nearer to `x` than `within`.
+    pub(super) fn is_empty(&self, x: &Vector<D>, within: f64) -> bool {
+        let p = self.particles;
+        let near = |k: u32, t: u8| (self.position(k as usize, t) - *x).norm() < within;
+        if p.in_leaf(p.tree.leaf_at(x).node).any(|k| near(k, IDENTITY)) {
+            return false;
+        }
+        let mut empty = true;
+        self.around(x, within, |k, t| empty &= !near(k, t));
+        empty
     }
 
     /// The particles searched.
@@ -392,7 +412,11 @@ impl<'a, const D: usize> Search<'a, D> {
 
     fn reach(&self, i: usize) -> f64 {
         let h = self.particles.spacing[i];
-        if self.near(i) { self.ball(i) } else { h * (0.5 + TOUCH) }
+        match self.free {
+            Some(reach) => reach * h,
+            None if self.near(i) => self.ball(i),
+            None => h * (0.5 + TOUCH),
+        }
     }
 
     fn near(&self, i: usize) -> bool {
@@ -412,22 +436,24 @@ impl<'a, const D: usize> Search<'a, D> {
 
     /// Every particle, or image, whose leaf meets the cube of half-width `reach` around particle `i`.
     pub(super) fn candidates(&self, i: usize, reach: f64, mut f: impl FnMut(u32, u8)) {
+        self.around(&self.particles.cell_centre(i), reach, |k, t| {
+            if k as usize != i || t != IDENTITY {
+                f(k, t);
+            }
+        });
+    }
+
+    /// The same around any place.
+    fn around(&self, x: &Vector<D>, reach: f64, mut f: impl FnMut(u32, u8)) {
         let p = self.particles;
-        let x = p.cell_centre(i);
         let domain = p.tree.bounds();
         let mut visit = |centre: &Vector<D>, t: u8| {
             let cube = Bounds { min: *centre - Vector::splat(reach), max: *centre + Vector::splat(reach) };
-            p.tree.overlapping(&cube, |node| {
-                for k in p.in_leaf(node) {
-                    if k as usize != i || t != IDENTITY {
-                        f(k, t);
-                    }
-                }
-            });
+            p.tree.overlapping(&cube, |node| p.in_leaf(node).for_each(|k| f(k, t)));
         };
-        visit(&x, IDENTITY);
+        visit(x, IDENTITY);
         for (t, transform) in self.transforms.iter().enumerate() {
-            let back = transform.inverse().point(&x);
+            let back = transform.inverse().point(x);
             // the corner of the cube may reach into the domain where its faces do not
             if domain.distance_squared(&back) <= D as f64 * reach * reach {
                 visit(&back, t as u8);
@@ -440,12 +466,13 @@ impl<'a, const D: usize> Search<'a, D> {
         let (p, i) = (self.particles, eye.i);
         let wall = p.is_interface(i) || p.is_interface(k);
         let near = wall || self.near(i) || self.near(k);
-        if !wall && !self.leaves_touch(i, k, t, near) {
+        let free = self.free.is_some();
+        if !wall && !free && !self.leaves_touch(i, k, t, near) {
             return false;
         }
         // the end with the smaller index looks whether the way is free
         let test = if i <= k { Sight::Tested } else { Sight::Granted };
-        !near || self.sees_in_ball(eye, k, t, self.radius, test)
+        !(near || free) || self.sees_in_ball(eye, k, t, self.radius, test)
     }
 
     /// Whether particle `i` has particle `k` in sight, within `radius` of their mean spacing.

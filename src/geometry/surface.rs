@@ -98,6 +98,27 @@ impl<const D: usize> Surface<D> {
         surface
     }
 
+    /// The same with every body moved rigidly; `point` and `direction` take the number of a body. Shapes known exactly are
+    /// not carried along: what is left of them are their elements.
+    pub fn moved(
+        &self,
+        point: impl Fn(u16, &Vector<D>) -> Vector<D>,
+        direction: impl Fn(u16, &Vector<D>) -> Vector<D>,
+    ) -> Self {
+        let mut moved = self.clone();
+        for (before, after) in self.elements.iter().zip(&mut moved.elements) {
+            for v in before.vertices {
+                moved.vertices[v as usize] = point(before.body, &self.vertices[v as usize]);
+            }
+            after.normals = before.normals.map(|n| direction(before.body, &n));
+        }
+        let corners: Vec<_> = (0..moved.elements.len()).map(|e| moved.corners(e as u32)).collect();
+        moved.tree = Tree::new(&corners);
+        moved.bounds = corners.iter().fold(Bounds::EMPTY, |b: Bounds<D>, c| b.union(&simplex::bounds(c)));
+        moved.exact = vec![Exact::None; self.exact.len()];
+        moved
+    }
+
     fn add(&mut self, name: &str, shell: &Shell<D>) {
         let (vertex, element, body) =
             (self.vertices.len() as u32, self.elements.len() as u32, self.bodies.len() as u16);

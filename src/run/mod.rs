@@ -115,6 +115,16 @@ pub enum RunError {
         /// Checkpoint with the last good state.
         checkpoint: String,
     },
+    /// The cloud of particles that travel with the fluid could not be built anew.
+    #[error("at time {time:.6} the cloud cannot be built anew: {source}\nthe last good state is in `{checkpoint}`")]
+    Recloud {
+        /// Time reached.
+        time: f64,
+        /// Why.
+        source: CloudError,
+        /// Checkpoint with the last good state.
+        checkpoint: String,
+    },
     /// A file could not be written or read.
     #[error(transparent)]
     File(#[from] FileError),
@@ -215,7 +225,7 @@ fn drive<const D: usize>(
         let ready = if stage.is_plain() { full.take() } else { None };
         let same = k > 0 && stage.shares_cloud(&stages[k - 1]);
         let build = || setup::solver(case, stage, surface.as_ref(), (&sources, &motions), ready);
-        let (solver, start) = match (saved.take(), previous.take()) {
+        let (mut solver, start) = match (saved.take(), previous.take()) {
             (Some(s), _) => (build()?, solve::Start::Resume(Box::new(s))),
             (None, Some((solver, state))) if same => (solver, solve::Start::Fresh(state)),
             (None, Some(p)) => {
@@ -231,7 +241,7 @@ fn drive<const D: usize>(
         };
         let at = persist::Position { stage: k, stages: &stages, sources: &persist::flatten(&sources) };
         let last = k + 1 == stages.len();
-        let Some((state, frame)) = solve::solve(case, &solver, start, &at, last, &mut journal)? else {
+        let Some((state, frame)) = solve::solve(case, &mut solver, start, &at, last, &mut journal)? else {
             return Ok(Outcome::Interrupted { iteration: journal.iteration() });
         };
         if stages.get(k + 1).is_some_and(|s| s.cycle > 0) {

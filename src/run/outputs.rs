@@ -5,7 +5,7 @@ use super::friction::{Separation, friction_load, separations, wall_friction};
 use super::setup::Solver;
 use super::snapshot::{self, LoadFrame, Snapshot, Units, load_axes, pressure_coefficient, wall_load};
 use super::solve::{Journal, NEARLY, totals};
-use super::summary::{Clock, Ledger, Summary};
+use super::summary::{Clock, Ledger, Reclouding, Summary};
 use super::{Places, RunError, marches};
 use crate::case::{Case, Initial};
 use crate::cloud::Diagnosis;
@@ -147,6 +147,7 @@ impl<'a, const D: usize> Finished<'a, D> {
             ledger,
             time: journal.time,
             unconverged_steps: journal.unconverged,
+            re_clouding: self.re_clouding(journal),
             first_harmonics: journal.period.map_or_else(Vec::new, |p| journal.trace.first_harmonics(p)),
             periodic_change: journal.period.and_then(|p| journal.trace.change(p)),
             bytes_per_particle: bytes_of(fluid, journal.bytes) as f64 / n as f64,
@@ -156,6 +157,24 @@ impl<'a, const D: usize> Finished<'a, D> {
             adapt_change: last_change(&journal.cycles),
             phases: vec![("solve".into(), solved), ("files so far".into(), clock.wall_seconds() - solved)],
         }
+    }
+
+    /// What re-clouding did, where particles travel with the fluid.
+    fn re_clouding(&self, journal: &Journal<'_>) -> Option<Reclouding> {
+        let t = &journal.turnover;
+        if t.renewals == 0 {
+            return None;
+        }
+        let start = &journal.start_totals;
+        let over = |c: usize, scale: usize| t.lost[c] / start[scale].abs().max(f64::MIN_POSITIVE);
+        let momentum = (1..=D).map(|c| over(c, 0).powi(2)).sum::<f64>().sqrt();
+        Some(Reclouding {
+            renewals: t.renewals,
+            inserted: t.inserted,
+            removed: t.removed,
+            first_order: t.first_order,
+            transfer: Ledger { mass: over(0, 0), momentum, energy: over(D + 1, D + 1) },
+        })
     }
 
     fn view(&self) -> View<'a, D> {
@@ -170,10 +189,9 @@ impl<'a, const D: usize> Finished<'a, D> {
 
     /// Distances of the interface particles from the nose, over the extent of the bodies.
     fn chordwise(&self) -> Vec<f64> {
-        let reference = &self.fluid.reference().cloud;
         let bounds = self.surface.map_or(Bounds { min: Vector::ZERO, max: Vector::splat(1.0) }, Surface::bounds);
         let x_c = |x: &Vector<D>| (x[0] - bounds.min[0]) / bounds.extent()[0];
-        reference.x[reference.interface_range()].iter().map(x_c).collect()
+        self.fluid.walls_before().iter().map(x_c).collect()
     }
 
     fn separations(&self) -> Vec<Separation> {
@@ -257,11 +275,12 @@ impl<'a, const D: usize> Finished<'a, D> {
         let period = Some(Vector([extent[0], extent[1]]));
         let truth = FieldTruth::new(&self.case.initial, self.case.flow.gamma, period).ok()??;
         let (mut sum, mut volume) = (0.0, 0.0);
+        let volumes = self.fluid.volumes();
         for i in 0..cloud.n_fluid {
             let exact = truth.state(&Vector([cloud.x[i][0], cloud.x[i][1]]), time).ok()?;
             let error = self.work.state[i].density - exact.density;
-            sum += cloud.volume[i] * error * error;
-            volume += cloud.volume[i];
+            sum += volumes[i] * error * error;
+            volume += volumes[i];
         }
         Some((sum / volume).sqrt())
     }

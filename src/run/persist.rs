@@ -5,9 +5,11 @@ use serde::{Deserialize, Serialize};
 
 use super::RunError;
 use super::setup::Stage;
+use crate::cloud::CloudError;
 use crate::cloud::sources::Source;
 use crate::math::Vector;
 use crate::observe::checkpoint::{self, Array, Checkpoint, Field};
+use crate::scheme::{Carriage, Fluid, Frame, Turnover};
 use crate::time::Past;
 use crate::time::relax::{Phase, Resume};
 
@@ -45,6 +47,87 @@ struct Meta {
     wall_seconds: f64,
     #[serde(default)]
     steps: [u64; 3],
+    #[serde(default)]
+    roaming: Option<Counts>,
+}
+
+/// What re-clouding did until a checkpoint, and the time at which the cloud was built.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+struct Counts {
+    since_bits: u64,
+    now_bits: u64,
+    renewals: u32,
+    inserted: u64,
+    removed: u64,
+    first_order: u32,
+    lost_bits: Vec<u64>,
+    exchanged_bits: Vec<u64>,
+}
+
+/// Particles that travel with the fluid.
+#[derive(Clone, Debug)]
+pub(super) struct Roaming {
+    /// Where fluid particles were when the cloud was built.
+    lists: Vec<f64>,
+    /// Time.
+    now: f64,
+    /// Where fluid and interface particles are.
+    places: Vec<f64>,
+    /// Their velocities in the step before.
+    ways: Vec<f64>,
+    /// Time at which the cloud was built.
+    since: f64,
+    /// What re-clouding did so far.
+    pub(super) turnover: Turnover,
+}
+
+impl Roaming {
+    /// The particles of a march; `None` where they do not travel.
+    pub(super) fn of<const D: usize>(fluid: &Fluid<D>, frame: &Frame<D>, turnover: &Turnover) -> Option<Self> {
+        let Carriage::Travel(travel) = &fluid.carriage else { return None };
+        let flat = |x: &[Vector<D>], n: usize| x.iter().take(n).flat_map(|x| x.0).collect();
+        let cloud = &fluid.shape.cloud;
+        let lists = flat(&cloud.x, cloud.n_fluid);
+        let (places, ways) = (flat(&frame.shape.cloud.x, cloud.n_rows()), flat(&frame.velocity, cloud.n_rows()));
+        Some(Self { lists, now: frame.time, places, ways, since: travel.since, turnover: turnover.clone() })
+    }
+
+    /// The equations on the cloud that was kept.
+    pub(super) fn resume<const D: usize>(&self, fluid: &Fluid<D>) -> Result<Option<Fluid<D>>, CloudError> {
+        let points = |v: &[f64]| v.chunks_exact(D).map(|x| Vector::from_fn(|d| x[d])).collect::<Vec<Vector<D>>>();
+        let lists = points(&self.lists);
+        // until it is built anew a march stands on the cloud of the case
+        let lists = (self.turnover.renewals > 0).then_some((&lists[..], self.since));
+        fluid.resumed(lists, (self.now, points(&self.places), points(&self.ways)))
+    }
+
+    fn counts(&self) -> Counts {
+        let (t, bits) = (&self.turnover, |v: &[f64]| v.iter().map(|v| v.to_bits()).collect());
+        Counts {
+            since_bits: self.since.to_bits(),
+            now_bits: self.now.to_bits(),
+            renewals: t.renewals,
+            inserted: t.inserted,
+            removed: t.removed,
+            first_order: t.first_order,
+            lost_bits: bits(&t.lost),
+            exchanged_bits: bits(&t.exchanged),
+        }
+    }
+
+    fn new(counts: &Counts, [lists, places, ways]: [Vec<f64>; 3]) -> Self {
+        let numbers = |bits: &[u64]| bits.iter().map(|b| f64::from_bits(*b)).collect();
+        let turnover = Turnover {
+            renewals: counts.renewals,
+            inserted: counts.inserted,
+            removed: counts.removed,
+            first_order: counts.first_order,
+            lost: numbers(&counts.lost_bits),
+            exchanged: numbers(&counts.exchanged_bits),
+        };
+        let (since, now) = (f64::from_bits(counts.since_bits), f64::from_bits(counts.now_bits));
+        Self { lists, now, places, ways, since, turnover }
+    }
 }
 
 /// A checkpoint in memory.
@@ -72,6 +155,8 @@ pub(super) struct Saved {
     pub(super) wall_seconds: f64,
     /// Where an implicit march stands.
     pub(super) past: Past,
+    /// Particles that travel with the fluid.
+    pub(super) roaming: Option<Roaming>,
     sources: Vec<f64>,
 }
 
@@ -95,6 +180,7 @@ impl Saved {
             cpu_seconds: 0.0,
             wall_seconds: 0.0,
             past: Past::default(),
+            roaming: None,
             sources: at.sources.to_vec(),
         }
     }
@@ -125,16 +211,21 @@ impl Saved {
             cpu_seconds: self.cpu_seconds,
             wall_seconds: self.wall_seconds,
             steps: [self.past.last.to_bits(), self.past.next.to_bits(), u64::from(self.past.unconverged)],
+            roaming: self.roaming.as_ref().map(Roaming::counts),
         };
         let field =
             |name: &str, data: Vec<f64>| Field { name: name.into(), shape: vec![data.len()], data: Array::F64(data) };
         let meta = serde_json::to_value(meta).map_err(|e| RunError::Folder(e.to_string()))?;
-        let fields = vec![
+        let mut fields = vec![
             field("state", self.state),
             field("scale", self.relax.scale),
             field("before", self.past.before),
             field("sources", self.sources),
         ];
+        if let Some(roaming) = self.roaming {
+            let parts = [("lists", roaming.lists), ("places", roaming.places), ("ways", roaming.ways)];
+            fields.extend(parts.map(|(name, data)| field(name, data)));
+        }
         Ok(checkpoint::write(&out.join(FILE), &Checkpoint { meta, fields })?)
     }
 
@@ -149,7 +240,15 @@ impl Saved {
             best: f64::from_bits(m.phase_best_bits),
             best_age: m.phase_best_age,
         };
+        let roaming = match &m.roaming {
+            Some(counts) => {
+                let part = |name: &str| file.f64(name).map(<[f64]>::to_vec);
+                Some(Roaming::new(counts, [part("lists")?, part("places")?, part("ways")?]))
+            }
+            None => None,
+        };
         Ok(Self {
+            roaming,
             stage: m.stage,
             stages: m.stages,
             iteration: m.iteration,

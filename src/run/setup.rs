@@ -6,6 +6,7 @@ use super::RunError;
 use crate::case::{Body, Case, Dual, Initial, Length, ParticleMotion, Steady, SteadyMethod, Temporal, Wall};
 use crate::cloud::conservative::conservative as conserve;
 use crate::cloud::sources::Source;
+use crate::cloud::travel::Habitat;
 use crate::cloud::{Cloud, Operators};
 use crate::geometry::{GeometryError, Surface, load_surface};
 use crate::math::multilevel::Cycle;
@@ -16,7 +17,7 @@ use crate::scheme::blend::Blend;
 use crate::scheme::probe::Probe;
 use crate::scheme::reconstruct::Reconstruction;
 use crate::scheme::start::{Stream, initial};
-use crate::scheme::{Carriage, Contact, Fluid, Friction, Shape};
+use crate::scheme::{Carriage, Contact, Fluid, Friction, Shape, Travel};
 use crate::system::{Moment, System};
 use crate::time::dual::Plan;
 use crate::time::relax::{Control, Method};
@@ -32,11 +33,17 @@ const PRELUDE_ITERATIONS: u32 = 500;
 
 /// Refuses what a case file can say but the solver cannot compute yet; each line goes when its solver comes.
 pub(super) fn supported(case: &Case) -> Result<(), RunError> {
-    let lagrangian = case.moves() && case.particles() == ParticleMotion::Lagrangian;
+    let travels = case.moves() && case.particles() == ParticleMotion::Lagrangian;
+    let implicit = travels && !matches!(case.time, Temporal::Explicit(_));
+    let layered = travels && case.cloud.wall_layers.is_some();
     let bare = case.moves() && case.bodies.is_empty() && case.particles() == ParticleMotion::Deforming;
     let balanced = case.moves() && case.scheme.conservative == Some(true) && case.particles() != ParticleMotion::Rigid;
     let asks = [
-        (lagrangian, "particles that travel with the fluid (`particles = \"lagrangian\"`)"),
+        (
+            implicit,
+            "implicit steps on particles that travel with the fluid (`particles = \"lagrangian\"`, `[time.dual]`)",
+        ),
+        (layered, "wall layers of particles that travel with the fluid (`wall_layers`, `particles = \"lagrangian\"`)"),
         (bare, "a deforming cloud without bodies (`particles = \"deforming\"`)"),
         (balanced, "conservative coefficients on a cloud that deforms (`conservative = true`)"),
     ];
@@ -154,7 +161,7 @@ pub(super) fn solver<const D: usize>(
         friction: friction(case, surface).map(Arc::new),
         far_field: Arc::new(Stream::new(case, &centre, surface.is_some_and(|s| !s.sharp.is_empty()))),
         held: field,
-        carriage: carriage(case, &cloud, motions),
+        carriage: carriage(case, surface, &cloud, motions)?,
         before: None,
         shape: Arc::new(Shape::new(cloud, operators)),
     };
@@ -179,18 +186,34 @@ fn friction<const D: usize>(case: &Case, surface: Option<&Surface<D>>) -> Option
 }
 
 /// How the particles of a cloud follow the bodies.
-fn carriage<const D: usize>(case: &Case, cloud: &Cloud<D>, motions: &Motions<D>) -> Carriage<D> {
-    if !motions.moves() {
-        return Carriage::Still;
+fn carriage<const D: usize>(
+    case: &Case,
+    surface: Option<&Surface<D>>,
+    cloud: &Cloud<D>,
+    motions: &Motions<D>,
+) -> Result<Carriage<D>, RunError> {
+    let laws = || (0..motions.len()).map(|b| motions.of(b).clone()).collect::<Vec<Law<D>>>();
+    let particles = case.particles();
+    if case.moves() && particles == ParticleMotion::Lagrangian {
+        let habitat = Arc::new(Habitat::new(case, surface, cloud)?);
+        let places = Arc::new(cloud.x[..cloud.n_rows()].to_vec());
+        return Ok(Carriage::Travel(Travel {
+            habitat,
+            laws: laws(),
+            now: 0.0,
+            places,
+            ways: Arc::default(),
+            since: 0.0,
+        }));
     }
-    match case.particles() {
+    Ok(match particles {
+        _ if !motions.moves() => Carriage::Still,
         ParticleMotion::Rigid => Carriage::Rigid(motions.cloud().clone()),
         _ => {
-            let laws: Vec<Law<D>> = (0..motions.len()).map(|b| motions.of(b).clone()).collect();
             let until = motions.period().or_else(|| case.time.end(None)).unwrap_or_default();
-            Carriage::Along { path: Arc::new(Blend::new(cloud, &laws, until)), laws }
+            Carriage::Along { path: Arc::new(Blend::new(cloud, &laws(), until)), laws: laws() }
         }
-    }
+    })
 }
 
 /// The motions of a case.

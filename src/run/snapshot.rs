@@ -21,9 +21,7 @@ pub(super) fn load_axes(case: &Case) -> LoadFrame {
 impl LoadFrame {
     /// Axes for the bodies of `fluid`, in the units of the solver.
     pub(super) fn axes<const D: usize>(&self, fluid: &Fluid<D>) -> LoadAxes {
-        let reference = &fluid.reference().cloud;
-        let walls = &reference.x[reference.interface_range()];
-        let bounds = crate::math::Bounds::around(walls);
+        let bounds = crate::math::Bounds::around(fluid.walls_before());
         let extent = bounds.extent();
         let reference = &self.case.reference;
         // a body of which only a face across the stream lies in the domain is as long as that face is high

@@ -2,7 +2,7 @@
 
 use super::outputs;
 use super::periodic::{Sample, Trace};
-use super::persist::{FILE, Position, Saved};
+use super::persist::{FILE, Position, Roaming, Saved};
 use super::setup::{Solver, control, inner_control, plan, prelude};
 use super::snapshot::{LoadFrame, Snapshot, load_axes};
 use super::{Monitor, Places, RunError, Tick};
@@ -11,7 +11,8 @@ use crate::math::sweep::sum;
 use crate::motion::Law;
 use crate::observe::History;
 use crate::observe::loads::Coefficients;
-use crate::scheme::{Fluid, Frame, Work};
+use crate::scheme::travel::Renewed;
+use crate::scheme::{Fluid, Frame, Turnover, Work};
 use crate::time::dual::Dual;
 use crate::time::explicit::{Explicit, Method};
 use crate::time::relax::{Phase, Relax, Resume};
@@ -70,6 +71,8 @@ pub(super) struct Journal<'a> {
     pub(super) period: Option<f64>,
     /// Loads and motion of the march so far.
     pub(super) trace: Trace,
+    /// What re-clouding did so far, where particles travel with the fluid.
+    pub(super) turnover: Turnover,
 }
 
 impl<'a> Journal<'a> {
@@ -106,6 +109,7 @@ impl<'a> Journal<'a> {
             bytes: 0,
             linear: 0,
             unconverged: saved.map_or(0, |s| s.past.unconverged),
+            turnover: saved.and_then(|s| s.roaming.as_ref()).map_or_else(Turnover::default, |r| r.turnover.clone()),
             trace: saved.filter(|s| s.time > 0.0).map_or_else(Trace::default, |s| Trace::read(&places.out, s.time)),
             period,
         })
@@ -185,10 +189,17 @@ impl<'a> Journal<'a> {
     }
 
     /// Writes a checkpoint of a march.
-    fn keep<const D: usize>(&self, at: &Position<'_>, marcher: &mut impl March<Fluid<D>>) -> Result<(), RunError> {
+    fn keep<const D: usize>(
+        &self,
+        at: &Position<'_>,
+        marcher: &mut impl March<Fluid<D>>,
+        fluid: &Fluid<D>,
+    ) -> Result<(), RunError> {
         let past = marcher.past().clone();
         let (cpu, wall) = self.seconds();
-        let mut saved = Saved::new(at, self.iteration, past.time, marcher.parts().2, bare(past.iteration));
+        let (frame, _, state) = marcher.parts();
+        let mut saved = Saved::new(at, self.iteration, past.time, state, bare(past.iteration));
+        saved.roaming = Roaming::of(fluid, frame, &self.turnover);
         (saved.cpu_seconds, saved.wall_seconds) = (cpu, wall);
         saved.cycles = self.cycles.clone();
         saved.start_totals = self.start_totals.clone();
@@ -208,10 +219,21 @@ impl<'a> Journal<'a> {
 /// State and frame at the end of a stage; `None` when told to stop.
 pub(super) type Solved<const D: usize> = Result<Option<(Vec<f64>, Frame<D>)>, RunError>;
 
-/// Integrates one stage; `None` when told to stop.
+/// Why a leg of a march ended.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Pause {
+    /// The march is over.
+    End,
+    /// The monitor said so.
+    Stop,
+    /// The cloud is to be built anew.
+    Worn,
+}
+
+/// Integrates one stage; `None` when told to stop. Where particles travel with the fluid, `solver` ends on another cloud.
 pub(super) fn solve<const D: usize>(
     case: &Case,
-    solver: &Solver<D>,
+    solver: &mut Solver<D>,
     start: Start,
     at: &Position<'_>,
     last: bool,
@@ -287,69 +309,124 @@ fn relax<const D: usize>(
 }
 
 /// Where a march begins: (what it goes on from, state).
-fn beginning<const D: usize>(start: Start, fluid: &Fluid<D>, journal: &mut Journal<'_>) -> (Past, Vec<f64>) {
+fn beginning<const D: usize>(
+    start: Start,
+    solver: &mut Solver<D>,
+    journal: &mut Journal<'_>,
+) -> Result<(Past, Vec<f64>), RunError> {
     let (past, u) = match start {
         Start::Fresh(u) => (Past::default(), u),
-        Start::Resume(s) => (s.past, s.state),
+        Start::Resume(s) => {
+            if let Some(fluid) = s.roaming.map(|r| r.resume(&solver.fluid)).transpose()?.flatten() {
+                solver.fluid = fluid;
+            }
+            (s.past, s.state)
+        }
     };
     if past.iteration == 0 && journal.start_totals.is_empty() {
-        journal.start_totals = totals(fluid, &u);
+        journal.start_totals = totals(&solver.fluid, &u);
     }
-    (past, u)
+    Ok((past, u))
 }
 
 fn march_explicitly<const D: usize>(
     marching: &Marching,
-    solver: &Solver<D>,
+    solver: &mut Solver<D>,
     start: Start,
     at: &Position<'_>,
     journal: &mut Journal<'_>,
 ) -> Solved<D> {
-    let fluid = &solver.fluid;
     let Some(until) = marching.end(journal.period) else {
         return Err(RunError::Folder("`[time.explicit]` counts periods of a motion that has none".into()));
     };
-    let begin = beginning(start, fluid, journal);
+    let mut begin = beginning(start, solver, journal)?;
     let method = match marching.method {
         RungeKutta::Ssprk3 => Method::Ssprk3,
         RungeKutta::Rk4 => Method::Rk4,
     };
-    let explicit = Explicit::new(fluid, method, (marching.cfl, until), begin);
-    march(explicit, (until, marching.steps, marching.periodic_tolerance), fluid, at, journal)
+    let goal = (until, marching.steps, marching.periodic_tolerance);
+    loop {
+        let fluid = &solver.fluid;
+        let mut marcher = Explicit::new(fluid, method, (marching.cfl, until), begin);
+        let pause = march(&mut marcher, goal, fluid, at, journal)?;
+        if pause == Pause::Stop {
+            return Ok(None);
+        }
+        let past = marcher.past().clone();
+        let Some(renewed) = renewed(&mut marcher, fluid, at, journal)? else { return Ok(Some(ended(&mut marcher))) };
+        begin = (past, renewed.u);
+        solver.fluid = renewed.fluid;
+        if pause == Pause::End {
+            solver.fluid.measure();
+            let frame = solver.fluid.frame_after(begin.0.time, begin.0.last, &begin.1);
+            return Ok(Some((begin.1, frame)));
+        }
+    }
+}
+
+/// The cloud of a march built anew; `None` where particles do not travel with the fluid.
+fn renewed<const D: usize>(
+    marcher: &mut impl March<Fluid<D>>,
+    fluid: &Fluid<D>,
+    at: &Position<'_>,
+    journal: &mut Journal<'_>,
+) -> Result<Option<Renewed<D>>, RunError> {
+    let time = marcher.past().time;
+    let (frame, work, u) = marcher.parts();
+    match fluid.renewed(frame, u, work, &mut journal.turnover) {
+        Ok(renewed) => Ok(renewed),
+        Err(source) => {
+            journal.keep(at, marcher, fluid)?;
+            Err(RunError::Recloud { time, source, checkpoint: journal.out.join(FILE).display().to_string() })
+        }
+    }
+}
+
+/// State and frame of a march that is over.
+fn ended<const D: usize>(marcher: &mut impl March<Fluid<D>>) -> (Vec<f64>, Frame<D>) {
+    let (frame, _, state) = marcher.parts();
+    (state.to_vec(), frame.clone())
 }
 
 fn march_implicitly<const D: usize>(
     dual: &case::Dual,
-    solver: &Solver<D>,
+    solver: &mut Solver<D>,
     start: Start,
     at: &Position<'_>,
     journal: &mut Journal<'_>,
 ) -> Solved<D> {
-    let fluid = &solver.fluid;
     let plan = plan(dual, journal.period)?;
-    let (past, u) = beginning(start, fluid, journal);
-    let marcher = Dual::new(fluid, inner_control(dual, D), plan, u, past);
-    march(marcher, (plan.until, u32::MAX, dual.periodic_tolerance), fluid, at, journal)
+    let (past, u) = beginning(start, solver, journal)?;
+    let fluid = &solver.fluid;
+    let mut marcher = Dual::new(fluid, inner_control(dual, D), plan, u, past);
+    let goal = (plan.until, u32::MAX, dual.periodic_tolerance);
+    match march(&mut marcher, goal, fluid, at, journal)? {
+        Pause::Stop => Ok(None),
+        Pause::End | Pause::Worn => Ok(Some(ended(&mut marcher))),
+    }
 }
 
-/// Steps until the end, a limit on their number, or a periodic state.
-fn march<'a, const D: usize>(
-    mut marcher: impl March<Fluid<D>> + 'a,
+/// Steps until the end, a limit on their number, a periodic state, or a worn cloud.
+fn march<const D: usize>(
+    marcher: &mut impl March<Fluid<D>>,
     (until, limit, tolerance): (f64, u32, Option<f64>),
     fluid: &Fluid<D>,
     at: &Position<'_>,
     journal: &mut Journal<'_>,
-) -> Solved<D> {
+) -> Result<Pause, RunError> {
     if marcher.past().iteration == 0 {
-        journal.keep(at, &mut marcher)?;
+        journal.keep(at, marcher, fluid)?;
     }
     let mut periodic = false;
     while !marcher.finished() && !periodic && marcher.past().iteration < limit {
+        if fluid.is_worn(marcher.parts().0) {
+            return Ok(Pause::Worn);
+        }
         let before = marcher.past().time;
         let step = match marcher.advance() {
             Ok(step) => step,
             Err(e) => {
-                journal.keep(at, &mut marcher)?;
+                journal.keep(at, marcher, fluid)?;
                 return Err(journal.failed(e));
             }
         };
@@ -365,19 +442,18 @@ fn march<'a, const D: usize>(
         }
         periodic = tolerance.is_some_and(|t| journal.is_periodic(step.time, before, t));
         if journal.due(step.iteration) {
-            journal.keep(at, &mut marcher)?;
+            journal.keep(at, marcher, fluid)?;
         }
         if journal.monitor.stop() && !marcher.finished() && !periodic {
-            journal.keep(at, &mut marcher)?;
-            return Ok(None);
+            journal.keep(at, marcher, fluid)?;
+            return Ok(Pause::Stop);
         }
     }
     (journal.time, journal.converged) = (marcher.past().time, marcher.finished() || periodic);
     (journal.bytes, journal.linear, journal.unconverged) =
         (marcher.bytes(), marcher.linear(), marcher.past().unconverged);
-    journal.keep(at, &mut marcher)?;
-    let (frame, _, state) = marcher.parts();
-    Ok(Some((state.to_vec(), frame.clone())))
+    journal.keep(at, marcher, fluid)?;
+    Ok(Pause::End)
 }
 
 /// Where a march stands, in the terms of a relaxation.
@@ -406,5 +482,6 @@ fn coefficients<const D: usize>(
 /// Totals of mass, momentum and energy over the fluid particles.
 pub(super) fn totals<const D: usize>(fluid: &Fluid<D>, u: &[f64]) -> Vec<f64> {
     let n = D + 2;
-    (0..n).map(|c| sum(fluid.shape.cloud.n_fluid, |i| fluid.shape.cloud.volume[i] * u[i * n + c])).collect()
+    let volume = fluid.volumes();
+    (0..n).map(|c| sum(fluid.shape.cloud.n_fluid, |i| volume[i] * u[i * n + c])).collect()
 }

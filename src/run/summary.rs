@@ -48,6 +48,9 @@ pub struct Summary {
     pub time: f64,
     /// Steps in time that did not reach their goal.
     pub unconverged_steps: u32,
+    /// What re-clouding did, where particles travel with the fluid.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub re_clouding: Option<Reclouding>,
     /// How the loads of the last period differ from those of the one before, where the motion repeats.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub periodic_change: Option<super::periodic::Change>,
@@ -68,6 +71,21 @@ pub struct Summary {
     pub adapt_change: Option<Coefficients>,
     /// Where the time went: name and wall seconds.
     pub phases: Vec<(String, f64)>,
+}
+
+/// How often the cloud of travelling particles was built anew, and what that did.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+pub struct Reclouding {
+    /// Times the cloud was built anew; the last one is for the files.
+    pub renewals: u32,
+    /// Particles inserted into holes and at sides where the gas enters.
+    pub inserted: u64,
+    /// Particles removed where they were too near to others, to a wall or to a side.
+    pub removed: u64,
+    /// Greatest number of rows that fell back to first order.
+    pub first_order: u32,
+    /// What replacing particles added to the totals, over those at the start; momentum over the mass.
+    pub transfer: Ledger,
 }
 
 /// What was lost, relative. Marching: change of the totals, what crossed open sides not counted as lost. Steady: net flux

@@ -322,6 +322,7 @@ impl<const D: usize> System for Fluid<D> {
             turn: None,
             velocity: Arc::default(),
             walls: Arc::default(),
+            base: Arc::default(),
             outer: cloud.x[cloud.outer_range()].iter().map(|x| (self.held)(x)).collect(),
         };
         self.place(moment, &mut frame);
@@ -335,6 +336,10 @@ impl<const D: usize> System for Fluid<D> {
             frame.velocity = Arc::default();
             frame.walls = Arc::default();
         }
+    }
+
+    fn set_off(&self, u: &[f64], work: &mut Work<D>, frame: &mut Frame<D>) -> f64 {
+        if matches!(self.carriage, Carriage::Travel(_)) { self.choose_ways(u, work, frame) } else { f64::INFINITY }
     }
 
     fn follow(&self, u: &[f64], work: &mut Work<D>, frame: &mut Frame<D>) {

@@ -9,9 +9,11 @@ pub mod probe;
 pub mod reconstruct;
 pub mod shape;
 pub mod start;
+pub mod travel;
 pub mod viscous;
 pub mod watch;
 
 pub use fluid::{Fluid, Work};
 pub use shape::{Carriage, Frame, Shape};
+pub use travel::{Travel, Turnover};
 pub use viscous::{Contact, Friction};

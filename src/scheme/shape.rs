@@ -10,6 +10,7 @@
 use std::sync::Arc;
 
 use super::boundary::{WallFits, WallMotion};
+use super::travel::Travel;
 use crate::cloud::{Cloud, Operators};
 use crate::math::Vector;
 use crate::math::sweep::{sweep, sweep_slots};
@@ -60,6 +61,8 @@ pub struct Frame<const D: usize> {
     pub velocity: Arc<Vec<Vector<D>>>,
     /// Spin and acceleration of the wall at each interface particle; empty when nothing moves.
     pub walls: Arc<Vec<WallMotion<D>>>,
+    /// Where fluid particles that travel were when the step began; empty for all others.
+    pub base: Arc<Vec<Vector<D>>>,
     /// States of the outer particles, in the axes of the case.
     pub outer: Vec<Primitive<D>>,
 }
@@ -121,6 +124,8 @@ pub enum Carriage<const D: usize> {
         /// Motion of each body.
         laws: Vec<Law<D>>,
     },
+    /// With the fluid.
+    Travel(Travel<D>),
 }
 
 impl<const D: usize> Carriage<D> {
@@ -134,13 +139,14 @@ impl<const D: usize> Carriage<D> {
                 place_along(path.as_ref(), origin, moment, frame);
                 turn_walls(laws, origin, moment.time(), frame);
             }
+            Self::Travel(travel) => travel.place(origin, moment, frame),
         }
     }
 
     /// The place before any motion of what is at `x` at time `t`.
     pub fn origin(&self, x: &Vector<D>, t: f64) -> Vector<D> {
         match self {
-            Self::Still => *x,
+            Self::Still | Self::Travel(_) => *x,
             Self::Rigid(law) => law.pose(t).inverse_point(x),
             Self::Along { path, .. } => path.origin(x, t),
         }
@@ -151,7 +157,9 @@ impl<const D: usize> Carriage<D> {
         match self {
             Self::Still => RigidPose::identity(),
             Self::Rigid(law) => law.pose(t),
-            Self::Along { laws, .. } => laws.get(body).map_or_else(RigidPose::identity, |law| law.pose(t)),
+            Self::Along { laws, .. } | Self::Travel(Travel { laws, .. }) => {
+                laws.get(body).map_or_else(RigidPose::identity, |law| law.pose(t))
+            }
         }
     }
 
@@ -160,7 +168,9 @@ impl<const D: usize> Carriage<D> {
         match self {
             Self::Still => None,
             Self::Rigid(law) => Some(law),
-            Self::Along { laws, .. } => laws.iter().find(|law| !law.is_fixed()).or(laws.first()),
+            Self::Along { laws, .. } | Self::Travel(Travel { laws, .. }) => {
+                laws.iter().find(|law| !law.is_fixed()).or(laws.first())
+            }
         }
     }
 
@@ -203,7 +213,7 @@ fn place_rigid<const D: usize>(law: &Law<D>, origin: &Arc<Shape<D>>, moment: &Mo
 }
 
 /// ∂w/∂x of a rigid motion in the axes of the case: Ṙ Rᵀ.
-fn rotation_rate<const D: usize>(law: &Law<D>, t: f64) -> [Vector<D>; D] {
+pub(super) fn rotation_rate<const D: usize>(law: &Law<D>, t: f64) -> [Vector<D>; D] {
     let pose = law.pose(t);
     let base = law.velocity(t, &Vector::ZERO);
     let rates: [Vector<D>; D] = std::array::from_fn(|k| law.velocity(t, &Vector::axis(k)) - base);

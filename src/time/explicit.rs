@@ -127,7 +127,8 @@ impl<S: System> March<S> for Explicit<'_, S> {
     }
 
     fn advance(&mut self) -> Result<Step, TimeError> {
-        let mut longest = self.step_length();
+        let reach = self.system.set_off(&self.u, &mut self.work, &mut self.frame);
+        let mut longest = self.step_length().min(reach);
         if self.past.last == 0.0 {
             // later on velocities of particles are those of the step before
             let moment = Moment::Within { start: self.past.time, step: longest, fraction: 0.0 };
@@ -144,7 +145,8 @@ impl<S: System> March<S> for Explicit<'_, S> {
             Method::Ssprk3 => SSPRK3.iter().for_each(|s| self.stage(s, dt)),
             Method::Rk4 => self.classical(dt),
         }
-        self.system.place(&Moment::Within { start: self.past.time, step: dt, fraction: 1.0 }, &mut self.frame);
+        let start = self.past.time;
+        self.system.place(&Moment::Within { start, step: dt, fraction: 1.0 }, &mut self.frame);
         self.past.time = if dt == left { self.until } else { self.past.time + dt };
         self.past.last = dt;
         self.past.iteration += 1;
@@ -157,7 +159,8 @@ impl<S: System> March<S> for Explicit<'_, S> {
         if let Some(fault) = crowded.or_else(|| self.system.fault(&self.frame, &self.u)) {
             self.u.copy_from_slice(&self.start);
             self.past.iteration -= 1;
-            self.past.time -= dt;
+            self.past.time = start;
+            self.system.place(&Moment::Within { start, step: dt, fraction: 0.0 }, &mut self.frame);
             return Err(TimeError::Fault { fault, iteration: self.past.iteration + 1, hint });
         }
         Ok(Step { iteration: self.past.iteration, time: self.past.time, cfl: self.cfl, residual: 1.0, linear: 0 })

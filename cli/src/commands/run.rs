@@ -95,6 +95,13 @@ fn describe(s: &Summary, out: &Path) -> String {
     if let Some(e) = s.error_l2_density {
         text += &format!("error of density (L2, exact solution) {e:.3e}\n");
     }
+    if let Some(r) = &s.re_clouding {
+        let t = &r.transfer;
+        text += &format!(
+            "cloud built anew {} times: {} particles inserted, {} removed; transfer: mass {:.1e}, momentum {:.1e}, energy {:.1e}\n",
+            r.renewals, r.inserted, r.removed, t.mass, t.momentum, t.energy
+        );
+    }
     text += &format!(
         "{} particles, {} iterations, residual down {:.1} orders; {:.2} s of processor time ({:.3} ms per particle), {:.0} bytes per particle\nledger: mass {:.1e}, momentum {:.1e}, energy {:.1e}\nreport: {}\n",
         s.particles,

@@ -1,0 +1,375 @@
+//! Clouds of particles that travel: built anew where the particles are.
+//!
+//! A [`Habitat`] is what such a cloud keeps for ever: the background, which says how large the spacing H(x) is to be, the
+//! sides of the domain with their outer particles, the bodies with their interface particles. Whatever the fluid particles
+//! do, a cloud follows from where they are, by the ball rule r ≤ ρ (h_i + h_j)/2 everywhere.
+//!
+//! Before that particles are *renewed*. One is removed that has come into a wall (or nearer than `blank` spacings), within
+//! 0.4 spacings of an interface particle, to an outer particle of an open side, or to another fluid particle (the second of
+//! the two goes); one that left through a periodic side comes back through the other. Where the background has an empty
+//! place, a middle or a corner of a leaf with no particle within 0.9 spacings (1.0 in 3-D), a particle is inserted there.
+use std::sync::Arc;
+
+use super::fill::{Ball, Particles, Seat, Walls, curve_position, side_of};
+use super::grid::Grid;
+use super::interface::{Placed, place};
+use super::layers::Layers;
+use super::layout::Layout;
+use super::neighbours::Search;
+use super::tree::{Leaf, Tree};
+use super::{Cloud, CloudError, Transform};
+use crate::case::{Case, Side};
+use crate::geometry::Surface;
+use crate::math::sweep::{CHUNK, order_by_key, parts, sweep, sweep_parts};
+use crate::math::{Bounds, Vector};
+use crate::motion::RigidPose;
+
+/// Smallest radius of the clouds in spacings: with 1.6, enough on a lattice, sheared clouds have too few neighbours (measured:
+/// six times the error of the isentropic vortex after two units of time).
+const LEAST_RADIUS: f64 = 1.8;
+/// Pairs nearer than this, in mean spacings, are too near.
+const CROWDED: f64 = 0.6;
+/// Distance, in spacings, from an interface particle within which no fluid particle stays.
+const CLEARANCE: f64 = 0.4;
+/// Distance, in spacings, from an open side within which no fluid particle stays: half a spacing from the outer particles.
+const OPEN_GAP: f64 = 1.0;
+/// The same from a plane of symmetry: the image is twice as far.
+const CLOSED_GAP: f64 = 0.2;
+/// Radius of an empty place in spacings, two and three dimensions: beyond half the diagonal of a leaf, where a regular
+/// cloud has its corners.
+const EMPTY: [f64; 2] = [0.9, 1.0];
+/// Samples of a leaf along each axis, from which volumes are counted.
+const SAMPLES: usize = 4;
+/// Distance, in leaves, beyond which a sample belongs to nobody.
+const FARTHEST: f64 = 8.0;
+/// Marks a particle that was not there before.
+pub const NEW: u32 = u32::MAX;
+
+/// What a cloud keeps while its particles travel.
+pub struct Habitat<const D: usize> {
+    tree: Arc<Tree<D>>,
+    layout: Layout<D>,
+    transforms: Vec<Transform<D>>,
+    placed: Placed<D>,
+    outer: Vec<(Leaf<D>, (usize, usize))>,
+    surface: Option<Surface<D>>,
+    radius: f64,
+    blank: f64,
+    uniform: bool,
+}
+
+/// A cloud built anew, and how its fluid particles follow from those before.
+pub struct Renewal<const D: usize> {
+    /// The cloud.
+    pub cloud: Cloud<D>,
+    /// For each fluid particle the one it was, or `NEW`.
+    pub from: Vec<u32>,
+    /// Particles of the cloud before that are gone, ascending.
+    pub removed: Vec<u32>,
+}
+
+/// The bodies as they stand at one time.
+struct Scene<'a, const D: usize> {
+    poses: &'a [RigidPose<D>],
+    surface: Option<std::borrow::Cow<'a, Surface<D>>>,
+    placed: std::borrow::Cow<'a, Placed<D>>,
+}
+
+impl<const D: usize> Habitat<D> {
+    /// What the cloud of a case, which is built already, keeps.
+    pub fn new(case: &Case, surface: Option<&Surface<D>>, cloud: &Cloud<D>) -> Result<Self, CloudError> {
+        let layout = Layout::new(case, surface)?;
+        let tree = Arc::clone(&cloud.tree);
+        let placed = surface.map(|s| place(s, &tree, &layout.planes())).unwrap_or_default();
+        let walls = Walls::new(surface, tree.bounds(), &cloud.transforms);
+        let (mut outer, mut last) = (Vec::new(), None);
+        let mut sizes = (f64::INFINITY, 0.0f64);
+        for leaf in tree.leaves() {
+            sizes = (sizes.0.min(leaf.size), sizes.1.max(leaf.size));
+            let side = side_of(&leaf, &tree.bounds(), &layout.sides);
+            let free = |last: &mut _| walls.distance((&leaf.centre, leaf.size), case.cloud.blank, last).is_some();
+            outer.extend(side.filter(|_| free(&mut last)).map(|side| (leaf, side)));
+        }
+        let order = order_by_key(outer.len(), |k| curve_position(tree.anchor(outer[k].0.node)));
+        let outer: Vec<_> = order.into_iter().map(|k| outer[k as usize]).collect();
+        let transforms = cloud.transforms.clone();
+        let (radius, blank, uniform) = (case.cloud.radius.max(LEAST_RADIUS), case.cloud.blank, sizes.0 == sizes.1);
+        Ok(Self { tree, layout, transforms, placed, outer, surface: surface.cloned(), radius, blank, uniform })
+    }
+
+    /// The cloud of fluid particles at `x` with the bodies at `poses` (none: where the case puts them), and which of `x`
+    /// each fluid particle is.
+    pub fn cloud(&self, poses: &[RigidPose<D>], x: &[Vector<D>]) -> Result<(Cloud<D>, Vec<u32>), CloudError> {
+        let scene = self.scene(poses);
+        let seats = self.seats(&scene, x);
+        let buried = seats.iter().position(Option::is_none);
+        if let Some(i) = buried {
+            let problem = format!("particle {i} at {:?} lies in a wall", x[i].0);
+            return Err(CloudError::Quality(vec![problem]));
+        }
+        let (particles, order) = self.gather(&scene, seats.into_iter().flatten().collect());
+        Ok((self.joined(&scene, particles)?, order))
+    }
+
+    /// The cloud of the fluid particles of `old`, without those that are in the way and with those that are missing.
+    pub fn renew(&self, poses: &[RigidPose<D>], old: &Cloud<D>) -> Result<Renewal<D>, CloudError> {
+        let scene = self.scene(poses);
+        let mut x = old.x[..old.n_fluid].to_vec();
+        x.iter_mut().for_each(|x| *x = self.wrapped(x));
+        let seats = self.seats(&scene, &x);
+        let mut gone: Vec<bool> = seats.iter().map(Option::is_none).collect();
+        self.thin_out(old, &mut gone);
+        let kept: Vec<u32> = (0..old.n_fluid as u32).filter(|i| !gone[*i as usize]).collect();
+        let removed = (0..old.n_fluid as u32).filter(|i| gone[*i as usize]).collect();
+        let seats: Vec<Seat<D>> = kept.iter().filter_map(|i| seats[*i as usize]).collect();
+        let (mut particles, mut order) = self.gather(&scene, seats.clone());
+        let inserted = self.missing(&scene, &particles);
+        if !inserted.is_empty() {
+            (particles, order) = self.gather(&scene, seats.into_iter().chain(inserted).collect());
+        }
+        if particles.n_fluid == 0 {
+            return Err(CloudError::Empty);
+        }
+        let from = order.iter().map(|k| kept.get(*k as usize).copied().unwrap_or(NEW)).collect();
+        Ok(Renewal { cloud: self.joined(&scene, particles)?, from, removed })
+    }
+
+    /// Volumes of the fluid particles of a `cloud` just built: the part of the leaves without outer particles that is nearer to
+    /// each than to any other, by samples. Their sum is that of the cloud of the case.
+    pub fn volumes(&self, poses: &[RigidPose<D>], cloud: &Cloud<D>) -> Vec<f64> {
+        let scene = self.scene(poses);
+        let mut rim: Vec<u32> = self.outer.iter().map(|(leaf, _)| leaf.node).collect();
+        rim.sort_unstable();
+        let inner = |leaf: &Leaf<D>| rim.binary_search(&leaf.node).is_err();
+        let leaves: Vec<Leaf<D>> = self.tree.leaves().filter(inner).collect();
+        let walls = Walls::new(scene.surface.as_deref(), self.tree.bounds(), &self.transforms);
+        let mut owners: Vec<Vec<u32>> = vec![Vec::new(); leaves.len()];
+        sweep(&mut owners, |k| {
+            let (leaf, mut last) = (&leaves[k], None);
+            let step = leaf.size / SAMPLES as f64;
+            let sample = |s: usize| {
+                let part = |d: usize| (s / SAMPLES.pow(d as u32) % SAMPLES) as f64 + 0.5;
+                let x = leaf.centre + Vector::from_fn(|d| part(d) * step - 0.5 * leaf.size);
+                walls.distance((&x, leaf.size), 0.0, &mut last).map(|_| x)
+            };
+            (0..SAMPLES.pow(D as u32)).filter_map(sample).filter_map(|x| self.owner(cloud, &x, leaf.size)).collect()
+        });
+        let mut volumes = vec![0.0; cloud.n_fluid];
+        for (leaf, owners) in leaves.iter().zip(&owners) {
+            let share = (leaf.size / SAMPLES as f64).powi(D as i32);
+            owners.iter().for_each(|i| volumes[*i as usize] += share);
+        }
+        volumes
+    }
+
+    /// The fluid particle nearest to `x`.
+    fn owner(&self, cloud: &Cloud<D>, x: &Vector<D>, size: f64) -> Option<u32> {
+        let mut best = (f64::INFINITY, u32::MAX);
+        let mut reach = 0.75 * size;
+        while best.0 > reach * reach && reach < FARTHEST * size {
+            for (t, place) in
+                std::iter::once((None, *x)).chain(self.transforms.iter().map(|t| (Some(t), t.inverse().point(x))))
+            {
+                if t.is_some() && self.tree.bounds().distance_squared(&place) > reach * reach {
+                    continue;
+                }
+                let cube = Bounds { min: place - Vector::splat(reach), max: place + Vector::splat(reach) };
+                self.tree.overlapping(&cube, |node| {
+                    for k in cloud.leaves.of(node).iter().filter(|k| (**k as usize) < cloud.n_fluid) {
+                        let found = ((cloud.x[*k as usize] - place).norm_squared(), *k);
+                        if found < best {
+                            best = found;
+                        }
+                    }
+                });
+            }
+            reach *= 2.0;
+        }
+        (best.1 != u32::MAX).then_some(best.1)
+    }
+
+    /// Radius of the clouds in spacings.
+    pub fn radius(&self) -> f64 {
+        self.radius
+    }
+
+    /// The interface particles before any motion, and what they are.
+    pub fn walls(&self) -> (&[Vector<D>], &[super::Interface<D>]) {
+        (&self.placed.x, &self.placed.interface)
+    }
+
+    fn joined(&self, scene: &Scene<'_, D>, particles: Particles<D>) -> Result<Cloud<D>, CloudError> {
+        let found = Search::new(&particles, scene.surface.as_deref(), &self.transforms, self.radius).free(self.uniform);
+        let found = found.clouds()?;
+        Ok(Cloud::join(particles, found, self.transforms.clone()))
+    }
+
+    fn scene<'a>(&'a self, poses: &'a [RigidPose<D>]) -> Scene<'a, D> {
+        use std::borrow::Cow;
+        if poses.iter().all(|p| *p == RigidPose::identity()) {
+            let surface = self.surface.as_ref().map(Cow::Borrowed);
+            return Scene { poses: &[], surface, placed: Cow::Borrowed(&self.placed) };
+        }
+        let point = |body: u16, x: &Vector<D>| poses.get(usize::from(body)).map_or(*x, |p| p.point(x));
+        let direction = |body: u16, v: &Vector<D>| poses.get(usize::from(body)).map_or(*v, |p| p.direction(v));
+        let surface = self.surface.as_ref().map(|s| Cow::Owned(s.moved(point, direction)));
+        let mut placed = self.placed.clone();
+        for (w, x) in placed.interface.iter_mut().zip(&mut placed.x) {
+            *x = point(w.body, x);
+            if let Some(pose) = poses.get(usize::from(w.body)) {
+                w.turn(&pose.rotation);
+            }
+        }
+        Scene { poses, surface, placed: Cow::Owned(placed) }
+    }
+
+    /// The spacing wanted at `x`: the background's, which travels with the bodies, averaged over a leaf.
+    fn spacing(&self, poses: &[RigidPose<D>], x: &Vector<D>) -> f64 {
+        let at = |x: &Vector<D>| {
+            let size = self.tree.leaf_at(x).size;
+            if self.uniform {
+                return size;
+            }
+            let corner = |c: u32| Vector::from_fn(|d| x[d] + if c >> d & 1 == 0 { -0.5 * size } else { 0.5 * size });
+            let sum: f64 = (0..1u32 << D).map(|c| self.tree.leaf_at(&corner(c)).size).sum();
+            sum / f64::from(1u32 << D)
+        };
+        poses.iter().map(|p| at(&p.inverse_point(x))).reduce(f64::min).unwrap_or_else(|| at(x))
+    }
+
+    /// Back through the other one of two periodic sides.
+    fn wrapped(&self, x: &Vector<D>) -> Vector<D> {
+        let (bounds, periodic) = (self.tree.bounds(), self.tree.periodic());
+        let extent = bounds.extent();
+        Vector::from_fn(|d| match periodic[d] {
+            true if x[d] < bounds.min[d] => x[d] + extent[d],
+            true if x[d] >= bounds.max[d] => x[d] - extent[d],
+            _ => x[d],
+        })
+    }
+
+    /// Room for a particle at each place; `None` beyond the sides and in walls.
+    fn seats(&self, scene: &Scene<'_, D>, x: &[Vector<D>]) -> Vec<Option<Seat<D>>> {
+        let walls = Walls::new(scene.surface.as_deref(), self.tree.bounds(), &self.transforms);
+        let mut seats = vec![None; x.len()];
+        let chunks = parts(x.len(), CHUNK);
+        sweep_parts(&chunks, 1, &mut seats, &|k, slots| {
+            let mut last = None;
+            for (x, slot) in x[chunks[k].clone()].iter().zip(slots) {
+                *slot = self.seat(scene, &walls, x, &mut last);
+            }
+        });
+        seats
+    }
+
+    fn seat(
+        &self,
+        scene: &Scene<'_, D>,
+        walls: &Walls<'_, D>,
+        x: &Vector<D>,
+        last: &mut Option<Ball<D>>,
+    ) -> Option<Seat<D>> {
+        let spacing = self.spacing(scene.poses, x);
+        if !self.is_inside(x, spacing) {
+            return None;
+        }
+        let distance = walls.distance((x, spacing), self.blank, last)?;
+        let (cell, node) = (self.tree.cell_at(x), self.tree.leaf_at(x).node);
+        Some(Seat { cell, centre: *x, spacing, node, distance, layer: None })
+    }
+
+    /// Between the sides, with room for the outer particles of open ones.
+    fn is_inside(&self, x: &Vector<D>, h: f64) -> bool {
+        let bounds = self.tree.bounds();
+        (0..D).all(|d| {
+            [x[d] - bounds.min[d], bounds.max[d] - x[d]].iter().zip(&self.layout.sides[d]).all(|(gap, side)| match side
+            {
+                Side::Periodic => *gap >= 0.0,
+                Side::Symmetry => *gap >= CLOSED_GAP * h,
+                _ => *gap >= OPEN_GAP * h,
+            })
+        })
+    }
+
+    /// Marks particles that are too near to others.
+    fn thin_out(&self, old: &Cloud<D>, gone: &mut [bool]) {
+        let walls = old.interface_range();
+        let near = |i: usize, j: u32, part: f64| {
+            let mean = 0.5 * (old.spacing[i] + old.spacing[j as usize]);
+            (old.x[j as usize] - old.x[i]).norm_squared() < (part * mean).powi(2)
+        };
+        let mut crowds = vec![Vec::new(); old.n_fluid];
+        let known = &*gone;
+        sweep(&mut crowds, |i| {
+            if known[i] {
+                return Vec::new();
+            }
+            let part = |j: u32| if walls.contains(&old.source(j as usize).index) { CLEARANCE } else { CROWDED };
+            old.neighbours.of(i).iter().copied().filter(|j| near(i, *j, part(*j))).collect()
+        });
+        for (i, crowd) in crowds.iter().enumerate().filter(|(_, c)| !c.is_empty()) {
+            let stays = |j: &u32| {
+                let s = old.source(*j as usize).index;
+                s >= old.n_fluid || s < i && !gone[s]
+            };
+            gone[i] |= crowd.iter().any(stays);
+        }
+    }
+
+    /// Particles among those that have a seat, in the order of the curve, and which seat each one has.
+    fn gather(&self, scene: &Scene<'_, D>, seats: Vec<Seat<D>>) -> (Particles<D>, Vec<u32>) {
+        let order = order_by_key(seats.len(), |k| curve_position(seats[k].cell));
+        let seats = order.iter().map(|k| seats[*k as usize]).collect();
+        let tree = Arc::clone(&self.tree);
+        let all = (seats, scene.placed.clone().into_owned(), self.outer.clone());
+        (Particles::assemble(tree, &self.layout, all, Layers::default()), order)
+    }
+
+    /// Seats at the empty places of the background.
+    fn missing(&self, scene: &Scene<'_, D>, particles: &Particles<D>) -> Vec<Seat<D>> {
+        let search = Search::new(particles, scene.surface.as_deref(), &self.transforms, self.radius);
+        let walls = Walls::new(scene.surface.as_deref(), self.tree.bounds(), &self.transforms);
+        let leaves: Vec<Leaf<D>> = self.tree.leaves().collect();
+        let mut found: Vec<Vec<Seat<D>>> = vec![Vec::new(); leaves.len()];
+        // the background travels with the bodies: its places are looked at where each of them carries it
+        let carried = |x: &Vector<D>| scene.poses.iter().map(|p| p.point(x)).collect::<Vec<_>>();
+        sweep(&mut found, |k| {
+            let Leaf { centre, size, .. } = leaves[k];
+            let mut last = None;
+            let mut seats = Vec::new();
+            for place in [centre, centre - Vector::splat(0.5 * size)] {
+                let places = if scene.poses.is_empty() { vec![place] } else { carried(&place) };
+                let seat = |x: Vector<D>| {
+                    let within = EMPTY[D - 2] * self.spacing(scene.poses, &x);
+                    let empty = self.is_inside(&x, within) && search.is_empty(&x, within);
+                    empty.then(|| self.seat(scene, &walls, &x, &mut last)).flatten()
+                };
+                seats.extend(places.into_iter().filter_map(seat));
+            }
+            seats
+        });
+        self.apart(found.into_iter().flatten())
+    }
+
+    /// Those that keep their distance from the ones before.
+    fn apart(&self, seats: impl Iterator<Item = Seat<D>>) -> Vec<Seat<D>> {
+        let seats: Vec<Seat<D>> = seats.collect();
+        let largest = seats.iter().map(|s| s.spacing).fold(f64::MIN_POSITIVE, f64::max);
+        let (mut kept, mut grid) = (Vec::new(), Grid::new(2.0 * largest));
+        let mut all: Vec<Vector<D>> = Vec::new();
+        for seat in seats {
+            let (x, reach) = (&seat.centre, EMPTY[D - 2] * seat.spacing);
+            let mut free = self.transforms.iter().all(|t| (t.point(x) - *x).norm() >= CROWDED * seat.spacing);
+            grid.near(x, reach, |k| free &= (all[k as usize] - *x).norm() >= reach);
+            if free {
+                let images = self.transforms.iter().map(|t| t.point(x));
+                for place in std::iter::once(*x).chain(images) {
+                    grid.insert(&place, all.len() as u32);
+                    all.push(place);
+                }
+                kept.push(seat);
+            }
+        }
+        kept
+    }
+}

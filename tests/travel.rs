@@ -1,0 +1,320 @@
+//! Particles that travel with the fluid, and clouds on prescribed motion.
+#![allow(clippy::unwrap_used, reason = "a test may stop anywhere")]
+
+mod common;
+
+use std::f64::consts::TAU;
+use std::sync::Arc;
+
+use alula::case::Initial;
+use alula::cloud::Cloud;
+use alula::exact::vortex::IsentropicVortex;
+use alula::math::Vector;
+use alula::math::multilevel::Cycle;
+use alula::physics::Conserved;
+use alula::scheme::shape::{Path, Places};
+use alula::scheme::{Carriage, Fluid, Turnover};
+use alula::time::dual::{Dual, Plan};
+use alula::time::explicit::{Explicit, Method};
+use alula::time::relax::{self, Control};
+use alula::time::{March, Past};
+use alula::verify::{FieldTruth, metrics};
+use common::{case, largest, solver, vortex, with_threads};
+
+/// Round-off of a hundred steps of fluxes of order one over spacings of some hundredths.
+const ROUND_OFF: f64 = 1e-12;
+
+/// The same case with particles that travel.
+fn lagrangian(case: &str) -> String {
+    format!("{case}\n[motion]\nparticles = \"lagrangian\"\n")
+}
+
+/// Where a march of travelling particles ended.
+struct End<const D: usize> {
+    fluid: Fluid<D>,
+    u: Vec<f64>,
+    past: Past,
+    turnover: Turnover,
+}
+
+/// Marches, building the cloud anew when it is worn, until the time or the number of steps is reached.
+fn march<const D: usize>((fluid, u): (Fluid<D>, Vec<f64>), (cfl, until, steps): (f64, f64, u32)) -> End<D> {
+    let mut end = End { fluid, u, past: Past::default(), turnover: Turnover::default() };
+    loop {
+        let begin = (end.past.clone(), end.u.clone());
+        let mut leg = Explicit::new(&end.fluid, Method::Ssprk3, (cfl, until), begin);
+        let mut worn = false;
+        while !leg.finished() && leg.past().iteration < steps && !worn {
+            leg.advance().unwrap();
+            worn = end.fluid.is_worn(leg.parts().0);
+        }
+        let past = leg.past().clone();
+        let (frame, work, u) = leg.parts();
+        let renewed = end.fluid.renewed(frame, u, work, &mut end.turnover).unwrap().unwrap();
+        (end.fluid, end.u, end.past) = (renewed.fluid, renewed.u, past);
+        if end.past.time >= until || end.past.iteration >= steps {
+            return end;
+        }
+    }
+}
+
+/// Root mean square of the error of the density of the vortex at time `until`, on a cloud that repeats every ten lengths.
+fn vortex_rms(cloud: &Cloud<2>, (volume, gamma): (&[f64], f64), u: &[f64], until: f64) -> f64 {
+    let exact = IsentropicVortex::new(5.0, Vector([5.0, 5.0]), Vector([1.0, 1.0]), gamma).unwrap();
+    let exact = exact.periodic(Vector([10.0, 10.0]));
+    let square = |i: usize| volume[i] * (u[4 * i] - exact.state(&cloud.x[i], until).density).powi(2);
+    ((0..cloud.n_fluid).map(square).sum::<f64>() / volume[..cloud.n_fluid].iter().sum::<f64>()).sqrt()
+}
+
+/// Stream at Mach 0.6 through a box of travelling particles on two levels, from one open side to another.
+fn stream<const D: usize>() -> (Fluid<D>, Vec<f64>) {
+    let list = |first: f64, v: f64| [vec![first.to_string()], vec![v.to_string(); D - 1]].concat().join(", ");
+    let h = if D == 2 { 0.0625 } else { 0.125 };
+    solver::<D>(&lagrangian(&format!(
+        "title = \"box\"\ndimension = {D}\n[flow]\nmach = 0.6\nalpha = \"7 deg\"\n[cloud]\nspacing = {h}\njitter = 0.2\n\
+         [cloud.domain]\nmin = [{}]\nmax = [{}]\n[[cloud.box]]\nmin = [{}]\nmax = [{}]\nspacing = {}\n\
+         [time.explicit]\nuntil = 1.0\n",
+        list(0.0, 0.0),
+        list(2.0, 1.0),
+        list(0.5, 0.0),
+        list(1.0, 1.0),
+        0.5 * h
+    )))
+}
+
+fn uniform_drift<const D: usize>() -> (f64, Turnover) {
+    let (fluid, u) = stream::<D>();
+    let state = u[..D + 2].to_vec();
+    let end = march((fluid, u), (0.5, f64::MAX, 100));
+    (largest(end.u.chunks(D + 2).flat_map(|r| r.iter().zip(&state).map(|(a, b)| a - b))), end.turnover)
+}
+
+#[test]
+fn uniform_flow_stays_uniform_on_travelling_particles() {
+    let (plane, solid) = (uniform_drift::<2>(), uniform_drift::<3>());
+    for (drift, turnover) in [plane, solid] {
+        assert!(drift <= ROUND_OFF, "{drift:e}");
+        assert!(turnover.renewals > 10 && turnover.inserted > 50 && turnover.removed > 50, "{turnover:?}");
+        assert!(largest(turnover.exchanged.iter().copied()) < ROUND_OFF, "{turnover:?}");
+    }
+}
+
+/// Gas at rest with a density that grows along every axis.
+#[test]
+fn a_linear_density_at_rest_stays_while_particles_are_shifted() {
+    let text = "title = \"box\"\ndimension = 2\n[flow]\nmach = 0.5\n[cloud]\nspacing = 0.0625\njitter = 0.3\n\
+                [cloud.domain]\nmin = [0.0, 0.0]\nmax = [1.0, 1.0]\n[boundary]\nx_min = \"held\"\nx_max = \"held\"\n\
+                y_min = \"held\"\ny_max = \"held\"\n[time.explicit]\nuntil = 1.0\n";
+    let (mut fluid, mut u) = solver::<2>(&lagrangian(text));
+    let layered = |x: &Vector<2>| alula::physics::Primitive {
+        density: 2.0 + 0.3 * x[0] + 0.4 * x[1],
+        velocity: Vector::ZERO,
+        pressure: 1.0 / 1.4,
+    };
+    fluid.held = Arc::new(layered);
+    let set = |u: &mut [f64], x: &[Vector<2>], fluid: &Fluid<2>| {
+        u.chunks_mut(4).zip(x).for_each(|(row, x)| fluid.gas.conserved(&layered(x)).store(row));
+    };
+    set(&mut u, &fluid.shape.cloud.x, &fluid);
+    let end = march((fluid, u), (0.5, f64::MAX, 100));
+    let mut exact = vec![0.0; end.u.len()];
+    set(&mut exact, &end.fluid.shape.cloud.x, &end.fluid);
+    let error = largest(end.u.iter().zip(&exact).map(|(a, b)| a - b));
+    assert!(error <= ROUND_OFF, "{error:e} {:?}", end.turnover);
+}
+
+#[test] // Shu (1998), isentropic vortex
+fn the_vortex_converges_at_second_order_on_travelling_particles() {
+    let errors = [0.3125, 0.15625, 0.078125].map(|h| {
+        let end = march(solver::<2>(&lagrangian(&vortex(h, 2.0))), (0.5, 2.0, u32::MAX));
+        let (cloud, volume) = (&end.fluid.shape.cloud, end.fluid.volumes());
+        vortex_rms(cloud, (&volume, end.fluid.gas.gamma), &end.u, 2.0)
+    });
+    let order = metrics::observed_order(&[0.3125, 0.15625, 0.078125], &errors).unwrap();
+    assert!(order >= 1.9, "order {order:.3}, errors {errors:?}");
+}
+
+/// A displacement that repeats in space and swings in time, up to 0.5 of a box of length 10.
+struct Swing;
+impl Path<2> for Swing {
+    fn at(&self, t: f64) -> Places<'_, 2> {
+        let size = 0.5 * (1.5 * t).sin();
+        Box::new(move |_, x| *x + Vector([(TAU * x[1] / 10.0).sin(), (TAU * x[0] / 10.0).cos()]) * size)
+    }
+    fn origin(&self, x: &Vector<2>, _: f64) -> Vector<2> {
+        *x
+    }
+}
+
+/// The same along straight lines at constant speed: within a step of an explicit method particles go straight, so that
+/// only on such a path the equations are smooth in time and the order of the method can be seen.
+struct Straight;
+impl Path<2> for Straight {
+    fn at(&self, t: f64) -> Places<'_, 2> {
+        Box::new(move |_, x| *x + Vector([(TAU * x[1] / 10.0).sin(), (TAU * x[0] / 10.0).cos()]) * (0.5 * t))
+    }
+    fn origin(&self, x: &Vector<2>, _: f64) -> Vector<2> {
+        *x
+    }
+}
+
+fn along(path: impl Path<2> + 'static) -> Carriage<2> {
+    Carriage::Along { path: Arc::new(path), laws: Vec::new() }
+}
+
+/// The vortex on a prescribed motion; conservative coefficients do not follow a cloud that deforms.
+fn moving_vortex(h: f64, until: f64, path: impl Path<2> + 'static) -> (Fluid<2>, Vec<f64>) {
+    let text = vortex(h, until).replace("[scheme]\n", "[scheme]\nconservative = false\n");
+    let (fluid, u) = solver::<2>(&text);
+    // both paths start from where the case puts the particles
+    (Fluid { carriage: along(path), ..fluid }, u)
+}
+
+#[test] // Shu (1998), isentropic vortex
+fn the_vortex_converges_at_second_order_on_a_cloud_that_deforms() {
+    let spacings = [0.3125, 0.15625, 0.078125];
+    let errors = spacings.map(|h| {
+        let (fluid, u) = moving_vortex(h, 1.0, Swing);
+        let mut march = Explicit::new(&fluid, Method::Ssprk3, (0.5, 1.0), (Past::default(), u));
+        while !march.finished() {
+            march.advance().unwrap();
+        }
+        let (frame, _, u) = march.parts();
+        let volume = &fluid.shape.cloud.volume;
+        vortex_rms(&frame.shape.cloud, (volume, fluid.gas.gamma), u, 1.0)
+    });
+    let order = metrics::observed_order(&spacings, &errors).unwrap();
+    assert!(order >= 1.9, "order {order:.3}, errors {errors:?}");
+}
+
+fn explicit_state(cfl: f64) -> Vec<f64> {
+    let (fluid, u) = moving_vortex(0.625, 1.0, Straight);
+    let mut march = Explicit::new(&fluid, Method::Ssprk3, (cfl, 1.0), (Past::default(), u));
+    while !march.finished() {
+        march.advance().unwrap();
+    }
+    march.parts().2.to_vec()
+}
+
+fn implicit_state(step: f64) -> Vec<f64> {
+    let (fluid, u) = moving_vortex(0.625, 1.0, Swing);
+    let control = Control {
+        method: relax::Method::NewtonKrylov,
+        cfl: 1e3,
+        cfl_max: 1e6,
+        growth: 2.0,
+        tolerance: 0.1,
+        basis: 20,
+        group: 4,
+        cycle: Cycle { sweeps: 2, visits: 1, levels: 8 },
+    };
+    let plan = Plan { until: 1.0, step, order: 2, orders: 9.0, iterations: 40, adaptive: None };
+    let mut march = Dual::new(&fluid, control, plan, u, Past::default());
+    while !march.finished() {
+        march.advance().unwrap();
+    }
+    march.parts().2.to_vec()
+}
+
+/// Order seen between two steps, the second half the first, against a much shorter one.
+fn order_in_time(state: impl Fn(f64) -> Vec<f64>, step: f64) -> f64 {
+    let exact = state(step / 16.0);
+    let error = |u: Vec<f64>| u.iter().zip(&exact).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt();
+    (error(state(step)) / error(state(0.5 * step))).log2()
+}
+
+#[test]
+fn methods_in_time_keep_their_order_on_a_cloud_that_deforms() {
+    let (third, second) = (order_in_time(explicit_state, 0.8), order_in_time(implicit_state, 0.05));
+    assert!(third >= 2.8 && second >= 1.9, "SSPRK3 {third:.2}, BDF2 {second:.2}");
+}
+
+/// Sod's tube between planes of symmetry.
+fn sod() -> String {
+    "title = \"Sod\"\ndimension = 2\n[flow]\nmach = 1.0\n[cloud]\nspacing = 0.0078125\n\
+     domain = { min = [0.0, 0.0], max = [1.0, 0.0625] }\n[boundary]\nx_min = \"symmetry\"\nx_max = \"symmetry\"\n\
+     y_min = \"symmetry\"\ny_max = \"symmetry\"\n[initial.riemann]\nleft = [1.0, 0.0, 1.0]\nright = [0.125, 0.0, 0.1]\n\
+     position = 0.5\naxis = 0\n[time.explicit]\nuntil = 0.2\n[scheme]\nconservative = false\n"
+        .to_owned()
+}
+
+/// Distance of the shock from its exact place, in spacings.
+fn shock_error(x: &[Vector<2>], u: &[f64], fluid: &Fluid<2>) -> f64 {
+    let (left, right) = ([1.0, 0.0, 1.0], [0.125, 0.0, 0.1]);
+    let start = Initial::Riemann { left, right, position: 0.5, axis: 0 };
+    let (place, levels) = FieldTruth::new(&start, 1.4, None).unwrap().unwrap().shock(0.2).unwrap();
+    let pressure = |row: &[f64]| fluid.gas.primitive(&Conserved::<2>::load(row)).pressure;
+    let (x, p): (Vec<f64>, Vec<f64>) = x.iter().zip(u.chunks(4)).map(|(x, row)| (x[0], pressure(row))).unzip();
+    (metrics::front_position(&x, &p, levels, (0.0, 1.0)).unwrap() - place) / 0.0078125
+}
+
+/// Particles that swing along the tube, thirty times as fast as the gas crosses a tenth of it.
+struct Shaken;
+impl Path<2> for Shaken {
+    fn at(&self, t: f64) -> Places<'_, 2> {
+        let size = 0.04 * (30.0 * t).sin();
+        Box::new(move |_, x| Vector([x[0] + size * (0.5 * TAU * x[0]).sin(), x[1]]))
+    }
+    fn origin(&self, x: &Vector<2>, _: f64) -> Vector<2> {
+        *x
+    }
+}
+
+fn sod_along(carriage: Carriage<2>) -> f64 {
+    let (fluid, u) = solver::<2>(&sod());
+    let fluid = Fluid { carriage, ..fluid };
+    let mut march = Explicit::new(&fluid, Method::Ssprk3, (0.5, 0.2), (Past::default(), u));
+    while !march.finished() {
+        march.advance().unwrap();
+    }
+    let (frame, _, u) = march.parts();
+    shock_error(&frame.shape.cloud.x, u, &fluid)
+}
+
+#[test] // Sod (1978), exact Riemann solution
+fn the_shock_of_sod_stands_where_it_stands_on_a_cloud_at_rest() {
+    let still = sod_along(Carriage::Still);
+    let shaken = sod_along(along(Shaken));
+    let end = march(solver::<2>(&lagrangian(&sod())), (0.5, 0.2, u32::MAX));
+    let travels = shock_error(&end.fluid.shape.cloud.x, &end.u, &end.fluid);
+    let differences = [shaken - still, travels - still];
+    assert!(differences.iter().all(|d| d.abs() <= 0.5), "{still:.3} {shaken:.3} {travels:.3} {:?}", end.turnover);
+}
+
+/// A cylinder in a stream that starts at once.
+fn cylinder() -> String {
+    lagrangian(
+        "title = \"cylinder\"\n[flow]\nmach = 0.3\n[[body]]\ncircle = { radius = 0.5 }\n[cloud]\nspacing = 0.0625\n\
+         far_field = 4.0\n[time.explicit]\nuntil = 2.0\n",
+    )
+}
+
+#[test]
+fn particles_go_around_a_body_and_leave_no_holes() {
+    let end = march(solver::<2>(&cylinder()), (0.5, 2.0, u32::MAX));
+    let cloud = &end.fluid.shape.cloud;
+    let h = 0.0625;
+    let fluid = &cloud.x[..cloud.n_fluid];
+    assert!(fluid.iter().all(|x| x.norm() > 0.5 + 0.39 * h), "a particle stands in the wall");
+    // places around the body, a few spacings deep
+    for k in 0..400 {
+        let (angle, radius) = (TAU * f64::from(k) / 100.0, 0.5 + h * (0.8 + f64::from(k % 4)));
+        let x = Vector([radius * angle.cos(), radius * angle.sin()]);
+        let nearest = cloud.x.iter().map(|y| (*y - x).norm()).fold(f64::INFINITY, f64::min);
+        assert!(nearest < 1.3 * h, "a hole of {:.2} spacings at {x:?}", nearest / h);
+    }
+    assert!(end.turnover.inserted > 20 && end.turnover.removed > 20, "{:?}", end.turnover);
+}
+
+#[test]
+fn bits_do_not_depend_on_threads() {
+    let run = || march(solver::<2>(&cylinder()), (0.5, 0.5, u32::MAX)).u;
+    let (one, three) = (with_threads(1, run), with_threads(3, run));
+    assert!(one.len() == three.len() && one.iter().zip(&three).all(|(a, b)| a.to_bits() == b.to_bits()));
+}
+
+#[test]
+fn a_case_of_travelling_particles_reads_back() {
+    let text = case(&cylinder());
+    assert!(text.moves());
+}
