@@ -414,6 +414,24 @@ pub(super) fn write_series<const D: usize>(
     Ok(write_collection(&out.join("series.pvd"), &listed)?)
 }
 
+/// Pictures of one period of a motion.
+pub(super) const FILM: u32 = 6;
+
+/// Draws the flow at the end of part number `part` of the periods of the motion; each period replaces the one before.
+pub(super) fn write_film<const D: usize>(
+    case: &Case,
+    out: &Path,
+    (fluid, surface): (&Fluid<D>, &Surface<D>),
+    (frame, work): (&Frame<D>, &mut Work<D>),
+    part: u64,
+) -> Result<(), RunError> {
+    fluid.fill_gradients(frame, work);
+    let seen = fluid.seen(frame, work);
+    let (fluid, work) = seen.as_ref().map_or((fluid, &*work), |(fluid, work)| (fluid, work));
+    let view = View { case, out, fluid, work, surface: Some(surface) };
+    super::pictures::write_film(&view, (part - 1) as u32 % FILM + 1)
+}
+
 fn series_name(number: u64) -> String {
     format!("field-{number:05}.vtu")
 }

@@ -1,6 +1,6 @@
 //! Pictures of a run, drawn through the solver's own fit.
 use super::RunError;
-use super::outputs::View;
+use super::outputs::{FILM, View};
 use super::snapshot::pressure_coefficient;
 use crate::math::sweep::sweep;
 use crate::math::{Bounds, Vector};
@@ -14,6 +14,10 @@ use crate::scheme::start::free_stream;
 
 /// Pixels along the longer side of a flow picture.
 const PIXELS: usize = 900;
+/// Pixels along the longer side of a picture of a film strip.
+const FILM_PIXELS: usize = 450;
+/// Greatest Mach number in the colours of a film strip, in that of the free stream.
+const FILM_RANGE: f64 = 2.0;
 /// Margin of flow pictures around the bodies in body lengths.
 const MARGIN: f64 = 0.6;
 
@@ -57,7 +61,7 @@ fn plane<const D: usize>(view: &View<'_, D>) -> Result<(), RunError> {
     let mach = |q: &Primitive<D>| q.velocity.norm() / gas.sound_speed(q);
     let cp = |q: &Primitive<D>| pressure_coefficient(q, &free);
     let density = |q: &Primitive<D>| q.density;
-    let states = sampled(view, &w);
+    let states = sampled(view, &w, PIXELS);
     let style = |title: &'static str, quantity: &'static str, map: Colormap, contours: &'static [f64]| {
         (title, quantity, map, contours)
     };
@@ -77,10 +81,34 @@ fn plane<const D: usize>(view: &View<'_, D>) -> Result<(), RunError> {
     curves(view)
 }
 
-/// States on a grid of pixels: (width, height, states, `None` inside bodies).
-fn sampled<const D: usize>(view: &View<'_, D>, w: &Bounds<2>) -> (usize, usize, Vec<Option<Primitive<D>>>) {
+/// Draws the Mach number at part `part` of a period, in colours that are the same for all of them.
+pub(super) fn write_film<const D: usize>(view: &View<'_, D>, part: u32) -> Result<(), RunError> {
+    let (window, gas) = (window(view, MARGIN), view.fluid.gas);
+    let (width, height, states) = sampled(view, &window, FILM_PIXELS);
+    let mach = |q: &Primitive<D>| q.velocity.norm() / gas.sound_speed(q);
+    let values = states.iter().map(|q| q.as_ref().map_or(f64::NAN, mach)).collect();
+    let title = format!("Mach number after {part}/{FILM} of the period");
+    let style = PictureStyle {
+        title: &title,
+        quantity: "M",
+        axes: ["x", "y"],
+        map: Colormap::Sequential,
+        range: Some([0.0, FILM_RANGE * view.case.flow.reference().mach]),
+        contours: &[1.0],
+        outlines: &outlines(view),
+    };
+    let png = raster_png(&Raster { width, height, window, values }, &style)?;
+    Ok(write_file(&view.out.join(format!("pictures/film-{part}.png")), &png)?)
+}
+
+/// States on a grid of pixels, `pixels` along the longer side: (width, height, states, `None` inside bodies).
+fn sampled<const D: usize>(
+    view: &View<'_, D>,
+    w: &Bounds<2>,
+    pixels: usize,
+) -> (usize, usize, Vec<Option<Primitive<D>>>) {
     let extent = w.extent();
-    let scale = PIXELS as f64 / extent[0].max(extent[1]);
+    let scale = pixels as f64 / extent[0].max(extent[1]);
     let (width, height) =
         ((extent[0] * scale).round().max(1.0) as usize, (extent[1] * scale).round().max(1.0) as usize);
     let probe = Probe::new(view.fluid, view.work, view.surface);

@@ -110,6 +110,8 @@ pub(super) fn stages(case: &Case, n: usize, dimension: usize) -> Vec<Stage> {
 pub(super) struct Solver<const D: usize> {
     /// Equations.
     pub(super) fluid: Fluid<D>,
+    /// The bodies, where pictures are drawn on the way.
+    pub(super) film: Option<Surface<D>>,
 }
 
 /// Reads the bodies of a case; `None` when it has none.
@@ -165,7 +167,8 @@ pub(super) fn solver<const D: usize>(
         before: None,
         shape: Arc::new(Shape::new(cloud, operators)),
     };
-    Ok(Solver { fluid })
+    let film = surface.filter(|_| D == 2 && case.output.report && motions.period().is_some()).cloned();
+    Ok(Solver { fluid, film })
 }
 
 /// Viscosity of a case in the units of the solver, and what the gas does on each body.

@@ -348,7 +348,7 @@ fn march_explicitly<const D: usize>(
     loop {
         let fluid = &solver.fluid;
         let mut marcher = Explicit::new(fluid, method, (marching.cfl, until), begin);
-        let pause = march(&mut marcher, goal, fluid, at, journal)?;
+        let pause = march(&mut marcher, goal, solver, at, journal)?;
         if pause == Pause::Stop {
             return Ok(None);
         }
@@ -400,7 +400,7 @@ fn march_implicitly<const D: usize>(
     let fluid = &solver.fluid;
     let mut marcher = Dual::new(fluid, inner_control(dual, D), plan, u, past);
     let goal = (plan.until, u32::MAX, dual.periodic_tolerance);
-    match march(&mut marcher, goal, fluid, at, journal)? {
+    match march(&mut marcher, goal, solver, at, journal)? {
         Pause::Stop => Ok(None),
         Pause::End | Pause::Worn => Ok(Some(ended(&mut marcher))),
     }
@@ -410,10 +410,11 @@ fn march_implicitly<const D: usize>(
 fn march<const D: usize>(
     marcher: &mut impl March<Fluid<D>>,
     (until, limit, tolerance): (f64, u32, Option<f64>),
-    fluid: &Fluid<D>,
+    solver: &Solver<D>,
     at: &Position<'_>,
     journal: &mut Journal<'_>,
 ) -> Result<Pause, RunError> {
+    let fluid = &solver.fluid;
     if marcher.past().iteration == 0 {
         journal.keep(at, marcher, fluid)?;
     }
@@ -439,6 +440,12 @@ fn march<const D: usize>(
             && (step.time / interval + NEARLY).floor() > (before / interval + NEARLY).floor()
         {
             outputs::write_series(&journal.case, &journal.out, fluid, (frame, work), interval)?;
+        }
+        if let (Some(surface), Some(period)) = (&solver.film, journal.period) {
+            let part = |t: f64| (t / period * f64::from(outputs::FILM) + NEARLY).floor() as u64;
+            if part(step.time) > part(before) {
+                outputs::write_film(&journal.case, &journal.out, (fluid, surface), (frame, work), part(step.time))?;
+            }
         }
         periodic = tolerance.is_some_and(|t| journal.is_periodic(step.time, before, t));
         if journal.due(step.iteration) {
