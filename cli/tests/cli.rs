@@ -23,11 +23,12 @@ const PROMISED: [&str; 13] = [
     "ledger",
 ];
 /// What it may add.
-const EXTRA: [&str; 13] = [
+const EXTRA: [&str; 14] = [
     "time",
     "unconverged_steps",
     "first_harmonics",
     "periodic_change",
+    "lift_cycles",
     "loads_pressure",
     "loads_friction",
     "separation",
