@@ -29,6 +29,7 @@ const EXTRA: [&str; 14] = [
     "re_clouding",
     "first_harmonics",
     "periodic_change",
+    "lift_cycles",
     "loads_pressure",
     "loads_friction",
     "separation",

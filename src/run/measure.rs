@@ -2,13 +2,14 @@
 use std::path::Path;
 
 use super::periodic::FirstHarmonics;
-use super::snapshot::Units;
+use super::snapshot::{Units, rounded};
 use super::{Snapshot, Summary};
 use num_complex::Complex64;
 
 use crate::case::{Case, Shape};
 use crate::exact::blasius::skin_friction;
 use crate::math::{Bounds, Vector};
+use crate::observe::cycles::Cycles;
 use crate::physics::{Gas, Primitive};
 use crate::scheme::start::free_stream;
 use crate::verify::metrics;
@@ -17,6 +18,9 @@ use crate::verify::{Claim, Curve, FieldTruth, Metric, Table, WallTruth};
 
 /// Part of the chord in which shocks are looked for: away from the suction peak and the trailing edge.
 const SHOCK_WINDOW: (f64, f64) = (0.05, 0.95);
+
+/// Half-width of the strip along the axis of the wake that tells where it ends, in local spacings.
+const AXIS: f64 = 2.0;
 
 /// A finished run, ready to be measured.
 pub(super) struct Measured {
@@ -54,6 +58,12 @@ impl Measured {
             Metric::LiftPhase => self.lift().map(|c| c.arg().to_degrees()),
             Metric::DragAmplitude => self.drag().map(|c| c.norm()),
             Metric::DragPhase => self.drag().map(|c| c.arg().to_degrees()),
+            Metric::Strouhal => self.cycles().map(|c| c.frequency * self.chord() / self.case.flow.reference().speed),
+            Metric::CycleSpread => self.cycles().map(|c| c.spread),
+            Metric::MeanCd => self.cycles().map(|c| c.mean_cd),
+            Metric::SwingCd => self.cycles().map(|c| c.amplitude_cd),
+            Metric::SwingCl => self.cycles().map(|c| c.amplitude_cl),
+            Metric::WakeLength => self.wake_length(),
             Metric::ThinLiftAmplitude => self.thin_lift(other).map(|c| c.norm()),
             Metric::ThinLiftPhase => self.thin_lift(other).map(|c| c.arg().to_degrees()),
             Metric::ResidualDrop => Ok(s.residual_drop),
@@ -94,6 +104,37 @@ impl Measured {
         let first = self.summary.first_harmonics.first();
         let [re, im] = first.map(load).ok_or("no motion repeats in this case")?;
         Ok(Complex64::new(re, im))
+    }
+
+    /// Last whole cycles of the lift.
+    fn cycles(&self) -> Result<Cycles, String> {
+        self.summary.lift_cycles.ok_or_else(|| "the lift does not swing through two whole cycles".into())
+    }
+
+    /// Length of the Reynolds number, and of frequencies.
+    fn chord(&self) -> f64 {
+        self.case.reference.chord.map_or_else(|| rounded(Bounds::around(&self.wall.x).extent()[0]), |c| c.0)
+    }
+
+    /// From the rear of the bodies to where the gas on their axis turns back into the stream, in chords (plane flow).
+    fn wake_length(&self) -> Value {
+        let stream = self.stream().velocity;
+        let along = stream * (1.0 / stream.norm());
+        let across = Vector([-along[1], along[0], 0.0]);
+        let centre = self.body_centre();
+        let rear = self.wall.x.iter().map(|x| (*x - centre).dot(&along)).fold(f64::NEG_INFINITY, f64::max);
+        let (velocity, spacing) = (self.column("velocity")?, self.column("spacing")?);
+        let mut samples = Vec::new();
+        for i in self.fluid()? {
+            let d = Vector(self.field.points[i]) - centre;
+            let v = Vector::<3>::from_fn(|k| velocity[3 * i + k]);
+            let (x, y) = (d.dot(&along) - rear, d.dot(&across));
+            if x > 0.0 && y.abs() <= AXIS * spacing[i] {
+                samples.push([x, y, v.dot(&along)]);
+            }
+        }
+        let end = metrics::wake_end(&samples).ok_or("no gas behind the body runs against the stream")?;
+        Ok(end / self.chord())
     }
 
     /// The same on a section of no thickness, along the line through this one and another.

@@ -5,6 +5,7 @@ use serde::Serialize;
 use serde_json::{Value, json};
 
 use super::RunError;
+use crate::observe::cycles::Cycles;
 use crate::observe::harmonics::{Harmonics, Periodicity, Window};
 use crate::observe::loads::Coefficients;
 use crate::observe::table::{Entry, write_csv, write_json};
@@ -86,6 +87,11 @@ impl Trace {
         all.collect()
     }
 
+    /// Cycles of the lift at the end of the history, whether or not a motion prescribes them.
+    pub(super) fn cycles(&self) -> Option<Cycles> {
+        Cycles::of(&self.column(|m| m.time), &self.column(|m| m.loads.cl), &self.column(|m| m.loads.cd))
+    }
+
     /// Adds a sample.
     pub(super) fn push(&mut self, sample: Sample) {
         self.samples.push(sample);
@@ -96,14 +102,17 @@ impl Trace {
         let text = super::folder::text(out, "history.csv").unwrap_or_default();
         let mut lines = text.lines();
         let header: Vec<&str> = lines.next().unwrap_or_default().split(',').collect();
-        let names = ["time", "cl", "cd", "cm", "angle_deg", "shift_x", "shift_y", "shift_z"];
-        let columns: Option<Vec<usize>> = names.iter().map(|n| header.iter().position(|h| h == n)).collect();
-        let Some(at) = columns else { return Self::default() };
+        let place = |name: &str| header.iter().position(|h| *h == name);
+        let loads: Option<Vec<usize>> = ["time", "cl", "cd", "cm"].into_iter().map(place).collect();
+        let Some(loads) = loads else { return Self::default() };
+        // bodies that stay where they are have no columns of motion
+        let motion = ["angle_deg", "shift_x", "shift_y", "shift_z"].map(place);
         let row = |line: &str| {
             let values: Vec<f64> = line.split(',').map(|v| v.parse().unwrap_or(f64::NAN)).collect();
-            let get = |k: usize| values.get(at[k]).copied().unwrap_or(f64::NAN);
-            let loads = Coefficients { cl: get(1), cd: get(2), cm: get(3) };
-            Sample { time: get(0), loads, motion: [get(4).to_radians(), get(5), get(6), get(7)] }
+            let get = |at: usize| values.get(at).copied().unwrap_or(f64::NAN);
+            let [angle, x, y, z] = motion.map(|at| at.map_or(0.0, get));
+            let coefficients = Coefficients { cl: get(loads[1]), cd: get(loads[2]), cm: get(loads[3]) };
+            Sample { time: get(loads[0]), loads: coefficients, motion: [angle.to_radians(), x, y, z] }
         };
         // iterations before the march stand at time zero
         Self { samples: lines.map(row).filter(|m| m.time > 0.0 && m.time <= until * (1.0 + 1e-12)).collect() }

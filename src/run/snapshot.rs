@@ -75,7 +75,7 @@ impl LoadFrame {
 
 /// The chord that interface particles stand on: they stay half a spacing away from sharp edges, so that their extent is a
 /// little short of a chord that is a round number.
-fn rounded(extent: f64) -> f64 {
+pub(super) fn rounded(extent: f64) -> f64 {
     let step = 10f64.powf(extent.log10().floor() - 1.0);
     let near = (extent / step).round() * step;
     if (near - extent).abs() < 0.02 * extent { near } else { extent }

@@ -157,14 +157,16 @@ impl<'a> Journal<'a> {
         let row =
             [f64::from(cycle), self.iteration as f64, step.time, step.cfl, step.residual, c.cl, c.cd, c.cm, seconds];
         let mut row = row.to_vec();
+        let mut motion = [0.0; 4];
         if self.case.moves() {
             let still = || (0.0, [0.0; 3]);
             let at = |law: &Law<D>| (law.angle(step.time).value, law.displacement(step.time).to_3d());
             let (angle, shift) = fluid.carriage.law().map_or_else(still, at);
             row.extend([f64::from(inner), angle.to_degrees(), shift[0], shift[1], shift[2]]);
-            if step.time > 0.0 {
-                self.trace.push(Sample { time: step.time, loads: c, motion: [angle, shift[0], shift[1], shift[2]] });
-            }
+            motion = [angle, shift[0], shift[1], shift[2]];
+        }
+        if step.time > 0.0 {
+            self.trace.push(Sample { time: step.time, loads: c, motion });
         }
         self.history.append(&row)?;
         self.monitor.tick(&Tick {

@@ -191,6 +191,18 @@ metrics! {
     ThinLiftAmplitude = "thin_lift_amplitude",
     /// `lift_phase` of the same.
     ThinLiftPhase = "thin_lift_phase",
+    /// Frequency of the lift over the last whole cycles of a march, times chord over speed of the stream.
+    Strouhal = "strouhal",
+    /// Longest less shortest of those cycles over their mean.
+    CycleSpread = "cycle_spread",
+    /// Mean of the drag coefficient over those cycles.
+    MeanCd = "mean_cd",
+    /// Half of greatest less smallest drag coefficient within those cycles.
+    SwingCd = "swing_cd",
+    /// Half of greatest less smallest lift coefficient within those cycles.
+    SwingCl = "swing_cl",
+    /// Length behind the body over which the gas on its axis runs against the stream, in chords.
+    WakeLength = "wake_length",
     /// Lift coefficient extrapolated to zero spacing over the study.
     ExtrapolatedCl = "extrapolated_cl",
     /// Drag coefficient extrapolated to zero spacing over the study.

@@ -9,6 +9,8 @@ use crate::math::Vector;
 const SHOCK_FOOT: f64 = 0.25;
 /// Part of the jump, on either side of its middle, whose samples locate a front.
 const FRONT_HALF_WIDTH: f64 = 0.35;
+/// Part of the length of a wake, on either side of its end, whose samples locate it.
+const WAKE_END: f64 = 0.05;
 /// Range of orders that an extrapolation may find.
 const ORDER_RANGE: (f64, f64) = (0.2, 6.0);
 
@@ -176,6 +178,21 @@ pub fn wave_angle(samples: &[[f64; 3]], levels: [f64; 2]) -> Option<f64> {
     Some(1.0_f64.atan2(fit[1]))
 }
 
+/// Greatest x at which samples (x, y, u) near the axis y = 0 pass from u < 0 to u > 0.
+///
+/// Samples on either side of the right-most crossing are fitted by x = x_0 + b u + c y²: a wake is even in y.
+pub fn wake_end(samples: &[[f64; 3]]) -> Option<f64> {
+    let take = |k: usize| samples.iter().map(|s| s[k]).collect::<Vec<f64>>();
+    if samples.iter().all(|s| s[2] >= 0.0) {
+        return None;
+    }
+    let rough = crossing(&take(0), &take(2), 0.0, (f64::NEG_INFINITY, f64::INFINITY))?;
+    let near: Vec<&[f64; 3]> = samples.iter().filter(|s| (s[0] - rough).abs() <= WAKE_END * rough.abs()).collect();
+    let rows: Vec<[f64; 3]> = near.iter().map(|s| [1.0, s[2], s[1] * s[1]]).collect();
+    let x: Vec<f64> = near.iter().map(|s| s[0]).collect();
+    Some(fit_plane(&rows, &x).map_or(rough, |fit| fit[0]))
+}
+
 /// (p − p_mid)/jump when it lies in the part of the jump that locates a front.
 fn in_front(p: f64, levels: [f64; 2]) -> Option<f64> {
     let part = (p - 0.5 * (levels[0] + levels[1])) / (levels[1] - levels[0]);
@@ -270,6 +287,17 @@ mod tests {
         assert!((drift(2.0, 2.5, 0.4) - 0.05).abs() < 1e-15);
         let points = [Vector([0.0, 0.0]), Vector([1.0, 1.0])];
         assert_eq!(inside(&points, &Vector([0.5, 0.5]), &Vector([2.0, 2.0])), vec![1]);
+    }
+
+    #[test]
+    fn the_end_of_a_wake_is_found_between_samples() {
+        let u = |x: f64, y: f64| -0.2 * x * (2.236 - x) * (1.0 - 0.1 * (x - 2.236)) + 0.8 * y * y;
+        let cell = |k: i32| [0.05 * f64::from(k / 4), 0.05 * (f64::from(k % 4) - 1.7)];
+        let samples: Vec<[f64; 3]> = (4..320).map(cell).map(|[x, y]| [x, y, u(x, y)]).collect();
+        let found = wake_end(&samples).unwrap();
+        assert!((found - 2.236).abs() < 5e-3, "{found}");
+        assert_eq!(wake_end(&[[0.1, 0.0, 0.2], [0.2, 0.0, 0.3]]), None);
+        assert_eq!(wake_end(&[]), None);
     }
 
     #[test]
