@@ -23,7 +23,7 @@ const PROMISED: [&str; 13] = [
     "ledger",
 ];
 /// What it may add.
-const EXTRA: [&str; 14] = [
+const EXTRA: [&str; 15] = [
     "time",
     "unconverged_steps",
     "re_clouding",
