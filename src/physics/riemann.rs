@@ -9,7 +9,8 @@ const ENTROPY_FIX: f64 = 0.1;
 
 /// A numerical flux across a unit normal.
 pub trait UpwindFlux<const D: usize>: Copy + Sync {
-    /// Flux from `l` to `r`. It has no branches that depend on the states, so that it can be computed for many edges at once.
+    /// Flux from `l` to `r`. Choices that depend on the states are between numbers, not between ways through the code, so that it
+    /// can be computed for many edges at once.
     fn across(self, gas: &Gas, l: &Primitive<D>, r: &Primitive<D>, n: &Vector<D>) -> Conserved<D>;
 }
 
