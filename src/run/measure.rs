@@ -14,7 +14,7 @@ use crate::physics::{Gas, Primitive};
 use crate::scheme::start::free_stream;
 use crate::verify::metrics;
 use crate::verify::wall::{Wall, contains};
-use crate::verify::{Claim, Curve, FieldTruth, Metric, Table, WallTruth};
+use crate::verify::{Claim, Curve, FieldTruth, Loops, Metric, Table, WallTruth, loops};
 
 /// Part of the chord in which shocks are looked for: away from the suction peak and the trailing edge.
 const SHOCK_WINDOW: (f64, f64) = (0.05, 0.95);
@@ -32,6 +32,8 @@ pub(super) struct Measured {
     pub(super) field: Snapshot,
     /// Its wall, empty without bodies.
     pub(super) wall: Wall,
+    /// Its loads over the last period, empty when nothing repeats.
+    pub(super) loops: Loops,
 }
 
 /// A value, or why there is none.
@@ -58,6 +60,8 @@ impl Measured {
             Metric::LiftPhase => self.lift().map(|c| c.arg().to_degrees()),
             Metric::DragAmplitude => self.drag().map(|c| c.norm()),
             Metric::DragPhase => self.drag().map(|c| c.arg().to_degrees()),
+            Metric::LiftLoopDifference => self.loop_difference(claim, folder, other, ("CL", |l| &l.cl)),
+            Metric::DragLoopDifference => self.loop_difference(claim, folder, other, ("CD", |l| &l.cd)),
             Metric::Strouhal => self.cycles().map(|c| c.frequency * self.chord() / self.case.flow.reference().speed),
             Metric::CycleSpread => self.cycles().map(|c| c.spread),
             Metric::MeanCd => self.cycles().map(|c| c.mean_cd),
@@ -104,6 +108,29 @@ impl Measured {
         let first = self.summary.first_harmonics.first();
         let [re, im] = first.map(load).ok_or("no motion repeats in this case")?;
         Ok(Complex64::new(re, im))
+    }
+
+    /// Difference of one load over the last period to a file or another case.
+    fn loop_difference(
+        &self,
+        claim: &Claim,
+        folder: &Path,
+        other: Option<&Self>,
+        (name, load): (&str, fn(&Loops) -> &Vec<f64>),
+    ) -> Value {
+        let own = load(&self.loops);
+        let found = match (&claim.file, other) {
+            (Some(file), _) => {
+                let (path, problem) = (folder.join(file), |e: &dyn std::fmt::Display| format!("`{file}`: {e}"));
+                let text = std::fs::read_to_string(path).map_err(|e| problem(&e))?;
+                let table = Table::parse(&text).map_err(|e| problem(&e))?;
+                let column = |name: &str| table.column(name).map_err(|e| problem(&e));
+                loops::greatest_difference(own, &column("phase")?, &column(name)?)
+            }
+            (None, Some(other)) => loops::loop_difference(own, load(&other.loops)),
+            (None, None) => return Err("the claim names no `file` or `other`".into()),
+        };
+        found.ok_or_else(|| "the run has no whole period of a motion that repeats".into())
     }
 
     /// Last whole cycles of the lift.

@@ -92,6 +92,21 @@ impl Trace {
         Cycles::of(&self.column(|m| m.time), &self.column(|m| m.loads.cl), &self.column(|m| m.loads.cd))
     }
 
+    /// Loads in the last period at the phase of time `t`: the cubic through the four samples around it.
+    fn loads_at(&self, t: f64, period: f64) -> [f64; 3] {
+        let end = self.samples.last().map_or(0.0, |m| m.time);
+        let t = end - (end - t).rem_euclid(period);
+        let after = self.samples.partition_point(|m| m.time < t);
+        let first = after.saturating_sub(2).min(self.samples.len().saturating_sub(4));
+        let near = &self.samples[first..(first + 4).min(self.samples.len())];
+        near.iter().enumerate().fold([0.0; 3], |sum, (k, m)| {
+            let others = near.iter().enumerate().filter(|(j, _)| *j != k);
+            let weight: f64 = others.map(|(_, o)| (t - o.time) / (m.time - o.time)).product();
+            let loads = [m.loads.cl, m.loads.cd, m.loads.cm];
+            std::array::from_fn(|c| sum[c] + weight * loads[c])
+        })
+    }
+
     /// Adds a sample.
     pub(super) fn push(&mut self, sample: Sample) {
         self.samples.push(sample);
@@ -158,7 +173,8 @@ impl Trace {
             let t = period * k as f64 / POINTS as f64;
             let angle = motions.iter().find(|m| m.0 == "angle").map_or(0.0, |m| m.1.at(t).to_degrees());
             let shift = motions.iter().find(|m| m.0 != "angle").map_or(0.0, |m| m.1.at(t));
-            [k as f64 / POINTS as f64, angle, shift, cl.at(t), cd.at(t), cm.at(t)].map(Entry::from).to_vec()
+            let [cl, cd, cm] = self.loads_at(t, period);
+            [k as f64 / POINTS as f64, angle, shift, cl, cd, cm].map(Entry::from).to_vec()
         });
         Ok(write_csv(&out.join("loops.csv"), &["phase", "angle_deg", "shift", "cl", "cd", "cm"], rows)?)
     }

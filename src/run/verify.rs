@@ -11,7 +11,7 @@ use super::measure::{Measured, Value};
 use super::{Monitor, Outcome, Places, RunError, Snapshot, Tick};
 use crate::case::{Case, read};
 use crate::verify::wall::Wall;
-use crate::verify::{Claim, ClaimFile, ClaimRow, Metric, Study, metrics};
+use crate::verify::{Claim, ClaimFile, ClaimRow, Loops, Metric, Study, metrics};
 
 /// Name of the folder of all cases.
 const FOLDER: &str = "verification";
@@ -270,7 +270,11 @@ fn run(folder: &Folder, case: &Case, monitor: &mut dyn Monitor) -> Result<Measur
         let text = fs::read_to_string(places.out.join("surface.csv")).map_err(|e| format!("`surface.csv`: {e}"))?;
         Wall::parse(&text).map_err(|e| format!("`surface.csv`: {e}"))?
     };
-    Ok(Measured { case, summary: *summary, field, wall })
+    let loops = match fs::read_to_string(places.out.join("loops.csv")) {
+        Ok(text) => Loops::parse(&text).map_err(|e| format!("`loops.csv`: {e}"))?,
+        Err(_) => Loops::default(),
+    };
+    Ok(Measured { case, summary: *summary, field, wall, loops })
 }
 
 /// What went wrong, without the scratch folder that is gone.

@@ -1,11 +1,13 @@
 //! Verification: what a case claims, how a result is measured, and whether the claim holds.
 //!
 //! A folder of `verification/` holds a case, its authority, reference curves and `claim.toml`. This module is the pure part:
-//! [`claim`] reads the claims and judges values, [`metrics`] turns samples into values, [`curve`] reads reference tables, [`truth`] finds exact
+//! [`claim`] reads the claims and judges values, [`metrics`] turns samples into values, [`curve`] reads reference tables, [`loops`] compares
+//! periods, [`truth`] finds exact
 //! solutions by name, [`wall`] holds the wall of a result.
 //! It opens no file and runs nothing; `run::verify` does both.
 pub mod claim;
 pub mod curve;
+pub mod loops;
 pub mod metrics;
 mod parse;
 pub mod truth;
@@ -14,5 +16,6 @@ pub mod wall;
 pub use crate::case::ClaimRow;
 pub use claim::{Claim, ClaimError, ClaimFile, Exact, Kind, Metric, Study};
 pub use curve::{Curve, Table};
+pub use loops::Loops;
 pub use truth::{FieldTruth, WallTruth};
 pub use wall::Wall;
