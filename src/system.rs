@@ -2,8 +2,9 @@
 //!
 //! Space gives a semi-discrete system dU/dt = R(t, U); time integrates it without knowing what it means. What depends on time
 //! but is not evolved (states held on the outer boundary, positions, velocities, normals and weights of moving particles) is
-//! one value, the *frame at (t, u)*. Marching holds one frame; harmonic balance will hold one per instance.
+//! one value, the *frame at (t, u)*. Marching holds one frame, harmonic balance one per instance.
 use crate::math::block_matrix::BlockMatrix;
+use crate::math::fourier::Instances;
 
 /// A moment at which a frame is wanted, and how velocities follow from positions there.
 #[derive(Clone, Copy, Debug)]
@@ -51,6 +52,11 @@ pub trait System: Sync {
 
     /// Number of unknowns per particle.
     fn block(&self) -> usize;
+    /// Instances of a period that the unknowns of a particle hold one after another, and the angular frequency: those of a
+    /// periodic solution.
+    fn in_time(&self) -> Option<(Instances, f64)> {
+        None
+    }
     /// Number of unknowns.
     fn len(&self) -> usize;
     /// True when there is nothing to evolve.

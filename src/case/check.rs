@@ -307,7 +307,7 @@ fn is(draft: &Draft<'_>, side: &str, word: &str) -> bool {
 }
 
 fn time(draft: &mut Draft<'_>) {
-    for table in ["time.steady", "time.dual"] {
+    for table in ["time.steady", "time.dual", "time.harmonics"] {
         courant_numbers(draft, table);
     }
     for table in ["time.explicit", "time.dual"] {

@@ -34,7 +34,7 @@ pub use quantity::{Angle, Density, Frequency, Length, Pressure, Rate, Temperatur
 pub use read::read;
 pub use reference::{reference_markdown, schema};
 pub use templates::{TEMPLATES, template};
-pub use time::{Dual, Explicit, RungeKutta, Steady, SteadyMethod, Temporal};
+pub use time::{Automatic, Dual, Explicit, HarmonicCount, Harmonics, RungeKutta, Steady, SteadyMethod, Temporal};
 pub use verdict::ClaimRow;
 pub use write::write;
 

@@ -247,6 +247,17 @@ fn in_time(draft: &mut Draft<'_>, laws: &[String]) {
         let flag = draft.get(&format!("{law}.table.periodic")).and_then(Value::as_bool) == Some(true);
         flag || draft.given(&format!("{law}.rotation")) || (moving.is_some() && has_frequency(draft, law))
     });
+    if draft.get("time.harmonics").is_some() && !repeats {
+        let hint = "give the motion a frequency, or march with `[time.dual]`";
+        draft.fail_key("time.harmonics", "`time.harmonics` needs a periodic motion").hint(hint);
+    }
+    let harmonics = draft.get("time.harmonics").is_some();
+    if let Some(tables) = lagrangian.then_some("motion.particles").filter(|_| harmonics) {
+        let hint = "use `particles = \"rigid\"` or `\"deforming\"`";
+        draft
+            .fail_key(tables, "particles that travel with the fluid never come back: nothing is periodic on them")
+            .hint(hint);
+    }
     for key in [
         "explicit.periods",
         "explicit.periodic_tolerance",

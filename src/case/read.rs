@@ -100,6 +100,8 @@ impl Reader<'_> {
                 }
             }
             (Kind::Integer(min, max), value) => self.whole(kind, (*min, *max), number(value), item, path),
+            (Kind::IntegerOr(_, _, word), DeValue::String(text)) if text.as_ref() == *word => Some(json!(word)),
+            (Kind::IntegerOr(min, max, _), value) => self.whole(kind, (*min, *max), number(value), item, path),
             (Kind::Flag, DeValue::Boolean(flag)) => Some(json!(flag)),
             (Kind::Text, DeValue::String(text)) if !text.trim().is_empty() => Some(json!(text)),
             (Kind::Words(words), DeValue::String(text)) => {
@@ -227,10 +229,14 @@ impl Reader<'_> {
                 continue;
             };
             self.draft.place(&here, key.span(), item.span());
-            chosen.push((variant.name, key.span(), self.variant(variant, item, &here)));
+            chosen.push((variant, key.span(), self.variant(variant, item, &here)));
+        }
+        if let Some(k) = chosen.iter().position(|c| c.0.rules) {
+            chosen.swap(0, k);
+            chosen.truncate(1);
         }
         if let [_, (second, span, _), ..] = &chosen[..] {
-            let message = format!("`{path}` has two alternatives: `{}` and `{second}`", chosen[0].0);
+            let message = format!("`{path}` has two alternatives: `{}` and `{}`", chosen[0].0.name, second.name);
             self.draft.fail_at(path, span.clone(), message).allowed(format!("one of {}", one_of(names.into_iter())));
         } else if document.is_empty() {
             let message = format!("`{path}` says nothing");

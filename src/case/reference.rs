@@ -61,6 +61,9 @@ fn kind_schema(kind: &Kind) -> Value {
         Kind::Number(range) => number_schema(range),
         Kind::Quantity(dimension, range) => quantity_schema(dimension, range),
         Kind::Integer(min, max) => json!({ "type": "integer", "minimum": min, "maximum": max }),
+        Kind::IntegerOr(min, max, word) => {
+            json!({ "anyOf": [{ "type": "integer", "minimum": min, "maximum": max }, { "const": word }] })
+        }
         Kind::Flag => json!({ "type": "boolean" }),
         Kind::Text => json!({ "type": "string", "minLength": 1 }),
         Kind::Words(words) => {

@@ -36,6 +36,8 @@ pub(super) enum Kind {
     Quantity(&'static Dimension, Range),
     /// A whole number from .. to, ends included.
     Integer(u64, u64),
+    /// A whole number from .. to, ends included, or this word.
+    IntegerOr(u64, u64, &'static str),
     /// `true` or `false`.
     Flag,
     /// Any text but the empty one.
@@ -72,6 +74,8 @@ pub(super) struct Variant {
     pub(super) doc: &'static str,
     /// Keys of its table; none for a bare word.
     pub(super) table: Option<&'static Table>,
+    /// Rules where others are given as well.
+    pub(super) rules: bool,
 }
 
 /// What holds when a key is absent.
@@ -216,12 +220,18 @@ impl Field {
 impl Variant {
     /// An alternative without keys.
     pub(super) const fn word(name: &'static str, doc: &'static str) -> Self {
-        Self { name, doc, table: None }
+        Self { name, doc, table: None, rules: false }
     }
 
     /// An alternative with a table of keys.
     pub(super) const fn table(name: &'static str, table: &'static Table, doc: &'static str) -> Self {
-        Self { name, doc, table: Some(table) }
+        Self { name, doc, table: Some(table), rules: false }
+    }
+
+    /// The same; where others are given beside it they are left aside.
+    pub(super) const fn ruling(mut self) -> Self {
+        self.rules = true;
+        self
     }
 
     /// The value of the bare word.
@@ -252,6 +262,7 @@ impl Kind {
             }
             Self::Integer(min, max) if *max >= u64::from(u32::MAX) => format!("a whole number, at least {min}"),
             Self::Integer(min, max) => format!("a whole number from {min} to {max}"),
+            Self::IntegerOr(min, max, word) => format!("a whole number from {min} to {max} or `\"{word}\"`"),
             Self::Flag => "`true` or `false`".to_owned(),
             Self::Text => "a text in quotes".to_owned(),
             Self::Words(words) => one_of(words.iter().map(|w| w.0)),

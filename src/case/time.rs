@@ -13,6 +13,51 @@ pub enum Temporal {
     Explicit(Explicit),
     /// March in time with implicit steps, each relaxed in a pseudo time.
     Dual(Dual),
+    /// Find the periodic solution by harmonic balance.
+    Harmonics(Harmonics),
+}
+
+/// Harmonic balance.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Harmonics {
+    /// Number of harmonics.
+    pub number: HarmonicCount,
+    /// Harmonics with which the equations are evaluated, over those that are kept.
+    pub oversample: f64,
+    /// Part that the last harmonic may have of all.
+    pub tail: f64,
+    /// Greatest number of harmonics when it is found on the way.
+    pub most: u32,
+    /// Orders of magnitude the residual must fall.
+    pub orders: f64,
+    /// Change of the loads below which the run ends as well.
+    pub tolerance: f64,
+    /// Greatest number of iterations for each number of harmonics.
+    pub iterations: u32,
+    /// Method.
+    pub method: SteadyMethod,
+    /// Courant number at the start.
+    pub cfl: f64,
+    /// Greatest Courant number.
+    pub cfl_max: f64,
+}
+
+/// A number of harmonics.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(untagged)]
+pub enum HarmonicCount {
+    /// This one.
+    Fixed(u32),
+    /// As many as it takes.
+    Auto(Automatic),
+}
+
+/// The word `auto`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Automatic {
+    /// `auto`.
+    Auto,
 }
 
 /// Steady relaxation.
@@ -109,7 +154,7 @@ impl Temporal {
     /// Time at which a march ends; `None` when it counts periods of a motion that has none, and for a steady run.
     pub fn end(&self, period: Option<f64>) -> Option<f64> {
         match self {
-            Self::Steady(_) => None,
+            Self::Steady(_) | Self::Harmonics(_) => None,
             Self::Explicit(explicit) => explicit.end(period),
             Self::Dual(dual) => dual.end(period),
         }

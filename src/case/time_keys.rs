@@ -7,7 +7,62 @@ pub(super) const TIME: &[Variant] = &[
     Variant::table("steady", &STEADY, "relax to a steady state"),
     Variant::table("explicit", &EXPLICIT, "march in time with an explicit Runge-Kutta method"),
     Variant::table("dual", &DUAL, "march in time with implicit steps, each relaxed in a pseudo time"),
+    Variant::table(
+        "harmonics",
+        &HARMONICS,
+        "find the periodic solution at once by harmonic balance, without marching; `[time] harmonics = 2` is enough, and \
+         tables of a march that stand beside it are left aside",
+    )
+    .ruling(),
 ];
+
+static HARMONICS: Table = Table {
+    fields: &[
+        Field::required(
+            "number",
+            Kind::IntegerOr(1, 16, "auto"),
+            "Number of harmonics N: the solution is held at 2N + 1 instances of the period. With `\"auto\"` there are as many \
+             as `tail` asks for.",
+        ),
+        Field::defaulted(
+            "oversample",
+            Kind::Number(Range::between(1.0, 2.0)),
+            Absent::Number(1.0),
+            "The equations are evaluated with so many times the harmonics and filtered: 1.5 or 2 where shocks move.",
+        ),
+        Field::defaulted(
+            "tail",
+            Kind::Number(Range { min: 0.0, max: 1.0, closed: false }),
+            Absent::Number(0.01),
+            "Part that the last harmonic may have of all harmonics, in the loads and in the density: above it a run warns, \
+             and `number = \"auto\"` adds two more.",
+        ),
+        Field::defaulted(
+            "most",
+            Kind::Integer(1, 16),
+            Absent::Integer(9),
+            "Greatest number of harmonics of `number = \"auto\"`.",
+        ),
+        Field::defaulted("orders", ORDERS, Absent::Number(5.0), "Orders of magnitude the residual must fall."),
+        Field::defaulted(
+            "tolerance",
+            Kind::Number(Range { min: 0.0, max: 0.1, closed: false }),
+            Absent::Number(1e-4),
+            "The run also ends when the residual has fallen by two orders and mean and harmonics of the loads have changed by \
+             less than this part of the first harmonic over five iterations.",
+        ),
+        Field::defaulted(
+            "iterations",
+            COUNT,
+            Absent::Integer(500),
+            "Greatest number of iterations for each number of harmonics.",
+        ),
+        METHOD,
+        CFL,
+        CFL_MAX,
+    ],
+    shorthand: Some("number"),
+};
 
 const METHOD: Field =
     Field::defaulted("method", Kind::Words(RELAXATIONS), Absent::Word("newton_krylov"), "Method of the relaxation.");

@@ -22,6 +22,8 @@ pub struct BlockMatrix {
     inverse: Vec<f32>,
     parts: Vec<Range<usize>>,
     value_parts: Vec<Range<usize>>,
+    /// Weight with which assemblies add to what is there; `None`: they make blocks anew.
+    weight: Option<f32>,
 }
 
 /// An approximate solution of A x = b and the sums that its sweeps share.
@@ -87,7 +89,20 @@ impl BlockMatrix {
             column,
             parts,
             value_parts,
+            weight: None,
         }
+    }
+
+    /// Makes the matrix the mean of the next `count` assemblies, until [`Self::end_mean`].
+    pub fn begin_mean(&mut self, count: usize) {
+        self.weight = Some(1.0 / count as f32);
+        self.value.fill(0);
+        self.diagonal.fill(0.0);
+    }
+
+    /// From here on assemblies make all blocks anew.
+    pub fn end_mean(&mut self) {
+        self.weight = None;
     }
 
     /// Number of rows.
@@ -113,14 +128,16 @@ impl BlockMatrix {
     /// Calls `f(k, rows)` for every part; `rows` adds to the blocks of the rows of part `k`, which are zero at first.
     pub fn assemble(&mut self, f: impl Fn(usize, &mut Rows<'_>) + Sync) {
         let (first, column, block, parts) = (&self.first, &self.column, self.block, &self.parts);
-        let size = block * block;
+        let (size, weight) = (block * block, self.weight);
         let values = (self.value_parts.as_slice(), size, self.value.as_mut_slice());
         let diagonals = (parts.as_slice(), size, self.diagonal.as_mut_slice());
         sweep_two_parts(values, diagonals, &|k, value, diagonal| {
-            value.fill(0);
-            diagonal.fill(0.0);
+            if weight.is_none() {
+                value.fill(0);
+                diagonal.fill(0.0);
+            }
             let start = parts[k].start;
-            f(k, &mut Rows { first, column, value, diagonal, start, block });
+            f(k, &mut Rows { first, column, value, diagonal, start, block, weight: weight.unwrap_or(1.0) });
         });
     }
 
@@ -138,7 +155,11 @@ impl BlockMatrix {
         let (diagonal, block, parts) = (&self.diagonal, self.block, &self.parts);
         sweep_parts(parts, size, &mut self.inverse, &|k, out| {
             for (i, inverse) in parts[k].clone().zip(out.chunks_exact_mut(size)) {
-                invert(block, &diagonal[i * size..(i + 1) * size], inverse);
+                let mut a = [0.0; 36];
+                a.iter_mut().zip(&diagonal[i * size..(i + 1) * size]).for_each(|(a, d)| *a = f64::from(*d));
+                let mut wide = [0.0; 36];
+                invert(block, &a[..size], &mut wide[..size]);
+                inverse.iter_mut().zip(&wide).for_each(|(i, w)| *i = *w as f32);
             }
         });
     }
@@ -181,7 +202,7 @@ impl BlockMatrix {
     ) {
         let at = (i - part.start) * N;
         let (below, inside, above) = self.split_row(i, part);
-        let middle = inside.start + self.column[inside.clone()].partition_point(|j| (*j as usize) < i);
+        let middle = self.middle(i, &inside);
         let mut r = load::<N>(b, i);
         for e in below.chain(above) {
             subtract::<N>(self.off_diagonal(e), &load::<N>(old, self.column[e] as usize), &mut r);
@@ -200,7 +221,7 @@ impl BlockMatrix {
 
     /// Entries of row `i` before, in and after its part.
     #[inline(always)]
-    fn split_row(&self, i: usize, part: &Range<usize>) -> (Range<usize>, Range<usize>, Range<usize>) {
+    pub(super) fn split_row(&self, i: usize, part: &Range<usize>) -> (Range<usize>, Range<usize>, Range<usize>) {
         let (start, end) = (self.first[i] as usize, self.first[i + 1] as usize);
         let row = &self.column[start..end];
         let from = start + row.iter().take_while(|j| (**j as usize) < part.start).count();
@@ -208,8 +229,32 @@ impl BlockMatrix {
         (start..from, from..to.max(from), to.max(from)..end)
     }
 
+    /// Column of entry `e`.
     #[inline(always)]
-    fn off_diagonal(&self, e: usize) -> &[u16] {
+    pub(super) fn column(&self, e: usize) -> usize {
+        self.column[e] as usize
+    }
+
+    /// The first of the entries `inside` of row `i` beyond its diagonal.
+    #[inline(always)]
+    pub(super) fn middle(&self, i: usize, inside: &Range<usize>) -> usize {
+        inside.start + self.column[inside.clone()].partition_point(|j| (*j as usize) < i)
+    }
+
+    /// Diagonal block of row `i`, by columns.
+    #[inline(always)]
+    pub(super) fn diagonal(&self, i: usize) -> &[f32] {
+        &self.diagonal[i * self.block * self.block..(i + 1) * self.block * self.block]
+    }
+
+    /// Its inverse.
+    #[inline(always)]
+    pub(super) fn inverse(&self, i: usize) -> &[f32] {
+        &self.inverse[i * self.block * self.block..(i + 1) * self.block * self.block]
+    }
+
+    #[inline(always)]
+    pub(super) fn off_diagonal(&self, e: usize) -> &[u16] {
         let size = self.block * self.block;
         &self.value[e * size..(e + 1) * size]
     }
@@ -230,7 +275,7 @@ impl BlockMatrix {
             let part = self.parts[k].clone();
             for (i, row) in part.clone().zip(out.chunks_exact_mut(N)) {
                 let (below, inside, above) = self.split_row(i, &part);
-                let middle = inside.start + self.column[inside.clone()].partition_point(|j| (*j as usize) < i);
+                let middle = self.middle(i, &inside);
                 let mut sum = load::<N>(b, i);
                 for e in below.chain(inside.start..middle).chain(above) {
                     subtract::<N>(self.off_diagonal(e), &load::<N>(x, self.column[e] as usize), &mut sum);
@@ -259,7 +304,7 @@ impl BlockMatrix {
             let part = self.parts[k].clone();
             for (i, row) in part.clone().zip(out.chunks_exact_mut(N)) {
                 let (_, inside, _) = self.split_row(i, &part);
-                let middle = inside.start + self.column[inside.clone()].partition_point(|j| (*j as usize) < i);
+                let middle = self.middle(i, &inside);
                 let mut sum = [0.0; N];
                 for e in middle..inside.end {
                     subtract::<N>(self.off_diagonal(e), &load::<N>(x, self.column[e] as usize), &mut sum);
@@ -333,6 +378,7 @@ pub struct Rows<'a> {
     diagonal: &'a mut [f32],
     start: usize,
     block: usize,
+    weight: f32,
 }
 
 impl Rows<'_> {
@@ -343,7 +389,7 @@ impl Rows<'_> {
         let at = (i - self.start) * n * n;
         let own = &mut self.diagonal[at..at + n * n];
         if i == j {
-            (0..n).for_each(|c| (0..n).for_each(|r| own[c * n + r] += f(r, c) as f32));
+            (0..n).for_each(|c| (0..n).for_each(|r| own[c * n + r] += self.weight * f(r, c) as f32));
             return;
         }
         let row = self.first[i] as usize..self.first[i + 1] as usize;
@@ -352,7 +398,7 @@ impl Rows<'_> {
         let block = &mut self.value[at..at + n * n];
         for c in 0..n {
             for r in 0..n {
-                own[c * n + r] += add(&mut block[c * n + r], f(r, c) as f32);
+                own[c * n + r] += add(&mut block[c * n + r], self.weight * f(r, c) as f32);
             }
         }
     }
@@ -381,7 +427,7 @@ fn widen(half: u16) -> f32 {
 }
 
 #[inline(always)]
-fn load<const N: usize>(x: &[f32], i: usize) -> [f32; N] {
+pub(super) fn load<const N: usize>(x: &[f32], i: usize) -> [f32; N] {
     let mut out = [0.0; N];
     out.copy_from_slice(&x[i * N..(i + 1) * N]);
     out
@@ -390,17 +436,30 @@ fn load<const N: usize>(x: &[f32], i: usize) -> [f32; N] {
 /// r ← r − B x for a block stored by columns.
 #[inline(always)]
 fn subtract<const N: usize>(block: &[u16], x: &[f32; N], r: &mut [f32; N]) {
+    subtract_wide(&widen_block::<N>(block), x, r);
+}
+
+/// The numbers of a block, by columns.
+#[inline(always)]
+pub(super) fn widen_block<const N: usize>(block: &[u16]) -> [[f32; N]; N] {
     let block = &block[..N * N];
+    std::array::from_fn(|c| std::array::from_fn(|k| widen(block[c * N + k])))
+}
+
+/// r ← r − B x.
+#[inline(always)]
+pub(super) fn subtract_wide<const N: usize>(block: &[[f32; N]; N], x: &[f32], r: &mut [f32; N]) {
+    let x = &x[..N];
     for c in 0..N {
         for k in 0..N {
-            r[k] -= widen(block[c * N + k]) * x[c];
+            r[k] -= block[c][k] * x[c];
         }
     }
 }
 
 /// r ← r + B x for a block stored by columns.
 #[inline(always)]
-fn multiply<const N: usize>(block: &[f32], x: &[f32; N], r: &mut [f32; N]) {
+pub(super) fn multiply<const N: usize>(block: &[f32], x: &[f32; N], r: &mut [f32; N]) {
     let block = &block[..N * N];
     for c in 0..N {
         for k in 0..N {
@@ -410,11 +469,11 @@ fn multiply<const N: usize>(block: &[f32], x: &[f32; N], r: &mut [f32; N]) {
 }
 
 /// Inverse of a small matrix by Gauss-Jordan elimination with row pivoting; a singular one gives the zero matrix.
-fn invert(n: usize, a: &[f32], out: &mut [f32]) {
+pub(super) fn invert(n: usize, a: &[f64], out: &mut [f64]) {
     let mut m = [[0.0f64; 12]; 6];
     for r in 0..n {
         for c in 0..n {
-            m[r][c] = f64::from(a[c * n + r]);
+            m[r][c] = a[c * n + r];
         }
         m[r][n + r] = 1.0;
     }
@@ -437,7 +496,7 @@ fn invert(n: usize, a: &[f32], out: &mut [f32]) {
     }
     for r in 0..n {
         for c in 0..n {
-            out[c * n + r] = m[r][n + c] as f32;
+            out[c * n + r] = m[r][n + c];
         }
     }
 }

@@ -134,6 +134,12 @@ impl Instances {
         })
     }
 
+    /// Weights of the values in the derivative by ωt of the interpolant, at the phase ωt; at an instance a row of D.
+    pub fn derivative_weights(&self, phase: f64) -> Vec<f64> {
+        let slope = |x: f64| -2.0 * (1..=self.harmonics).map(|m| m as f64 * (m as f64 * x).sin()).sum::<f64>();
+        (0..self.count()).map(|j| slope(phase - self.phase(j)) / self.count() as f64).collect()
+    }
+
     /// Weights of the values in the interpolant at the phase ωt.
     pub fn weights(&self, phase: f64) -> Vec<f64> {
         (0..self.count()).map(|j| kernel(self.harmonics, phase - self.phase(j)) / self.count() as f64).collect()

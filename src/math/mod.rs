@@ -1,5 +1,6 @@
 //! Arithmetic that knows no physics: small vectors, least squares, sparse blocks, Krylov methods, the parallel loop.
 pub mod block_matrix;
+pub mod circulant;
 pub mod fourier;
 pub mod hilbert;
 pub mod jet;

@@ -3,8 +3,12 @@
 //! Rows are gathered into groups of a few strongly coupled neighbours; the matrix of the groups is the sum of the blocks of
 //! their members (Galerkin with piecewise-constant transfer; Lallemand, Steve and Dervieux 1992). For the first-order upwind
 //! operator this is again a first-order upwind operator on a coarser cloud.
+//!
+//! The same hierarchy serves systems that repeat in time, harmonic by harmonic ([`super::circulant`]).
 use super::block_matrix::{BlockMatrix, Sweeps};
-use super::sweep::sweep;
+use super::circulant::Waves;
+use super::fourier::Instances;
+use super::sweep::{sweep, sweep_rows};
 
 /// Rows at which coarsening stops.
 const COARSEST: usize = 60;
@@ -27,12 +31,23 @@ struct Level {
     group: Vec<u32>,
     target: Vec<u32>,
     sweeps: Sweeps,
+    waves: Option<Waves>,
 }
 
 /// A matrix and its coarser versions.
 pub struct Multilevel {
     levels: Vec<Level>,
     cycle: Cycle,
+    times: Option<Times>,
+}
+
+/// Transforms between instances of a period and coefficients in the order of [`Waves`].
+struct Times {
+    /// Coefficient by coefficient, from values.
+    forth: Vec<f32>,
+    /// Instance by instance, from coefficients.
+    back: Vec<f64>,
+    count: usize,
 }
 
 impl Multilevel {
@@ -52,7 +67,27 @@ impl Multilevel {
             (last.group, last.target) = (group, target);
             levels.push(level(coarse));
         }
-        Self { levels, cycle }
+        Self { levels, cycle, times: None }
+    }
+
+    /// The same for (A + ∂/∂t) x = b at the instances of a period of frequency `omega`: vectors hold, for each row, the
+    /// unknowns of the first instance, then those of the second, and so on.
+    pub fn in_time(mut self, instances: Instances, omega: f64) -> Self {
+        let mut mass = vec![1.0; self.levels[0].matrix.n_rows()];
+        for k in 0..self.levels.len() {
+            let next = self.levels.get(k + 1).map_or(0, |l| l.matrix.n_rows());
+            let level = &mut self.levels[k];
+            let waves = Waves::new(&level.matrix, instances.harmonics(), omega, mass);
+            mass = waves.gathered(&level.group, next);
+            level.waves = Some(waves);
+            level.sweeps = Sweeps::default();
+        }
+        let count = instances.count();
+        let (forth, back) = (instances.to_coefficients(), instances.to_values());
+        let forth = (0..count).flat_map(|c| forth.row(sorted(c, count)).iter().map(|e| *e as f32).collect::<Vec<_>>());
+        let back = (0..count * count).map(|k| back.row(k / count)[sorted(k % count, count)]);
+        self.times = Some(Times { forth: forth.collect(), back: back.collect(), count });
+        self
     }
 
     /// The finest matrix, to be filled.
@@ -66,6 +101,9 @@ impl Multilevel {
             let (fine, coarse) = self.levels.split_at_mut(k + 1);
             let fine = &mut fine[k];
             fine.matrix.invert_diagonal();
+            if let Some(waves) = fine.waves.as_mut() {
+                waves.invert(&fine.matrix);
+            }
             if let Some(coarse) = coarse.first_mut() {
                 coarse.matrix.gather(&fine.matrix, &fine.group, &fine.target);
             }
@@ -74,6 +112,9 @@ impl Multilevel {
 
     /// z ≈ A⁻¹ r, where `r(k)` is component k of the right-hand side.
     pub fn apply(&mut self, r: impl Fn(usize) -> f32 + Sync, z: &mut [f64]) {
+        if let Some(times) = &self.times {
+            return apply_in_time(&mut self.levels, self.cycle, times, r, z);
+        }
         let finest = &mut self.levels[0].sweeps;
         sweep(&mut finest.b, r);
         finest.clear();
@@ -84,7 +125,9 @@ impl Multilevel {
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        self.levels.iter().map(|l| l.matrix.bytes() + l.sweeps.bytes() + 4 * (l.group.len() + l.target.len())).sum()
+        let waves = |l: &Level| l.waves.as_ref().map_or(0, Waves::bytes);
+        let lists = |l: &Level| 4 * (l.group.len() + l.target.len());
+        self.levels.iter().map(|l| l.matrix.bytes() + l.sweeps.bytes() + waves(l) + lists(l)).sum()
     }
 
     /// Rows of each level.
@@ -94,40 +137,124 @@ impl Multilevel {
 }
 
 fn level(matrix: BlockMatrix) -> Level {
-    Level { group: Vec::new(), target: Vec::new(), sweeps: Sweeps::new(&matrix), matrix }
+    Level { group: Vec::new(), target: Vec::new(), sweeps: Sweeps::new(&matrix), matrix, waves: None }
+}
+
+/// The place of coefficient `c` (mean, cosine, sine, cosine, ...) among mean, cosines, sines.
+fn sorted(c: usize, count: usize) -> usize {
+    match c {
+        0 => 0,
+        c if c % 2 == 1 => c.div_ceil(2),
+        c => count / 2 + c / 2,
+    }
+}
+
+fn apply_in_time(levels: &mut [Level], how: Cycle, times: &Times, r: impl Fn(usize) -> f32 + Sync, z: &mut [f64]) {
+    let (n, count) = (levels[0].matrix.block(), times.count);
+    let Some(finest) = levels[0].waves.as_mut() else { return };
+    // places inside a row: (instance or coefficient, unknown)
+    let row = |k: usize| (k / (n * count) * n * count, k / n % count, k % n);
+    sweep_rows(&mut finest.b, n * count, |i, b| {
+        let at = i * n * count;
+        b.fill(0.0);
+        for instance in 0..count {
+            for v in 0..n {
+                let value = r(at + instance * n + v);
+                (0..count).for_each(|c| b[c * n + v] += times.forth[c * count + instance] * value);
+            }
+        }
+    });
+    finest.clear();
+    cycle(levels, how);
+    let Some(finest) = levels[0].waves.as_ref() else { return };
+    sweep(z, |k| {
+        let (at, instance, v) = row(k);
+        let weights = &times.back[instance * count..(instance + 1) * count];
+        weights.iter().enumerate().map(|(c, w)| w * f64::from(finest.x[at + c * n + v])).sum()
+    });
+}
+
+impl Level {
+    fn smooth(&mut self) {
+        match self.waves.as_mut() {
+            Some(waves) => waves.symmetric_sweep(&self.matrix),
+            None => self.matrix.symmetric_sweep(&mut self.sweeps),
+        }
+    }
+
+    fn residual(&mut self) {
+        match self.waves.as_mut() {
+            Some(waves) => waves.residual(&self.matrix),
+            None => self.matrix.residual(&mut self.sweeps),
+        }
+    }
+
+    fn restart(&mut self) {
+        match self.waves.as_mut() {
+            Some(waves) => waves.restart(&self.matrix),
+            None => self.matrix.restart(&mut self.sweeps),
+        }
+    }
+
+    /// Unknowns of a row.
+    fn width(&self) -> usize {
+        self.matrix.block() * self.waves.as_ref().map_or(1, Waves::count)
+    }
+
+    /// What is left of the right-hand side.
+    fn left(&self) -> &[f32] {
+        self.waves.as_ref().map_or(&self.sweeps.r, |w| &w.r)
+    }
+
+    fn right_hand_side(&mut self) -> &mut [f32] {
+        self.waves.as_mut().map_or(&mut self.sweeps.b, |w| &mut w.b)
+    }
+
+    fn solution(&self) -> &[f32] {
+        self.waves.as_ref().map_or(&self.sweeps.x, |w| &w.x)
+    }
+
+    fn solution_mut(&mut self) -> &mut [f32] {
+        self.waves.as_mut().map_or(&mut self.sweeps.x, |w| &mut w.x)
+    }
+
+    fn clear(&mut self) {
+        match self.waves.as_mut() {
+            Some(waves) => waves.clear(),
+            None => self.sweeps.clear(),
+        }
+    }
 }
 
 fn cycle(levels: &mut [Level], how: Cycle) {
     let Some((fine, coarse)) = levels.split_first_mut() else { return };
     let bottom = coarse.is_empty();
     let sweeps = if bottom && how.levels > 1 { COARSEST_SWEEPS } else { how.sweeps };
-    for _ in 0..sweeps {
-        fine.matrix.symmetric_sweep(&mut fine.sweeps);
-    }
+    (0..sweeps).for_each(|_| fine.smooth());
     if bottom {
         return;
     }
-    fine.matrix.residual(&mut fine.sweeps);
-    let n = fine.matrix.block();
-    let next = &mut coarse[0].sweeps;
-    next.b.fill(0.0);
-    for (r, g) in fine.sweeps.r.chunks_exact(n).zip(&fine.group) {
+    fine.residual();
+    let n = fine.width();
+    let b = coarse[0].right_hand_side();
+    b.fill(0.0);
+    for (r, g) in fine.left().chunks_exact(n).zip(&fine.group) {
         let at = *g as usize * n;
-        next.b[at..at + n].iter_mut().zip(r).for_each(|(b, r)| *b += r);
+        b[at..at + n].iter_mut().zip(r).for_each(|(b, r)| *b += r);
     }
-    next.clear();
+    coarse[0].clear();
     for _ in 0..how.visits {
         cycle(coarse, how);
     }
-    let next = &coarse[0].sweeps;
-    for (x, g) in fine.sweeps.x.chunks_exact_mut(n).zip(&fine.group) {
+    let found = coarse[0].solution();
+    let group = std::mem::take(&mut fine.group);
+    for (x, g) in fine.solution_mut().chunks_exact_mut(n).zip(&group) {
         let at = *g as usize * n;
-        x.iter_mut().zip(&next.x[at..at + n]).for_each(|(x, c)| *x += c);
+        x.iter_mut().zip(&found[at..at + n]).for_each(|(x, c)| *x += c);
     }
-    fine.matrix.restart(&mut fine.sweeps);
-    for _ in 0..sweeps {
-        fine.matrix.symmetric_sweep(&mut fine.sweeps);
-    }
+    fine.group = group;
+    fine.restart();
+    (0..sweeps).for_each(|_| fine.smooth());
 }
 
 /// Groups of up to `size` rows that see one another, nearest in storage order first.

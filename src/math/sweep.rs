@@ -45,7 +45,7 @@ pub fn order_by_key(n: usize, key: impl Fn(usize) -> u64 + Sync) -> Vec<u32> {
 }
 
 /// Calls `f(i, row)` for every row of `width` values of `out`.
-pub fn sweep_rows(out: &mut [f64], width: usize, f: impl Fn(usize, &mut [f64]) + Sync) {
+pub fn sweep_rows<T: Send>(out: &mut [T], width: usize, f: impl Fn(usize, &mut [T]) + Sync) {
     out.par_chunks_mut(CHUNK * width).enumerate().for_each(|(c, chunk)| {
         for (k, row) in chunk.chunks_exact_mut(width).enumerate() {
             f(c * CHUNK + k, row);

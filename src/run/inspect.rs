@@ -3,7 +3,7 @@ use std::time::Instant;
 
 use super::outputs::{View, bytes_of};
 use super::{Places, RunError, pictures, setup};
-use crate::case::{Case, Temporal};
+use crate::case::{Case, HarmonicCount, Temporal};
 use crate::cloud::Diagnosis;
 use crate::geometry::dimension;
 use crate::observe::table::write_json;
@@ -104,6 +104,13 @@ fn evaluations<const D: usize>(
             let steps = dual.end(period).zip(dual.step_length(period)).map_or(0.0, |(end, step)| end / step);
             EVALUATIONS + STEP_EVALUATIONS * steps
         }
+        Temporal::Harmonics(h) => {
+            let count = match h.number {
+                HarmonicCount::Fixed(n) => n,
+                HarmonicCount::Auto(_) => 3,
+            };
+            EVALUATIONS * f64::from(2 + 2 * count)
+        }
         Temporal::Explicit(e) => {
             let mut rate = vec![0.0; fluid.shape.cloud.n_fluid];
             fluid.spectral_radius(frame, u, &mut fluid.work(), &mut rate);
@@ -118,7 +125,7 @@ fn integrator_bytes<const D: usize>(case: &Case, fluid: &crate::scheme::Fluid<D>
     let n = fluid.len();
     match &case.time {
         Temporal::Explicit(_) => 3 * 8 * n,
-        Temporal::Steady(_) | Temporal::Dual(_) => {
+        Temporal::Steady(_) | Temporal::Dual(_) | Temporal::Harmonics(_) => {
             let block = D + 2;
             let entries = fluid.shape.cloud.neighbours.index.len() + fluid.shape.cloud.n_fluid;
             8 * entries * block * block * 4 / 6 + 4 * 17 * n + 8 * 8 * n

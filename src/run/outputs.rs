@@ -144,6 +144,7 @@ impl<'a, const D: usize> Finished<'a, D> {
             loads_friction: part(&friction),
             separation: self.separations(),
             loads_momentum_balance: (!case.moves()).then_some(through),
+            harmonic_balance: journal.balance.clone(),
             ledger,
             time: journal.time,
             unconverged_steps: journal.unconverged,

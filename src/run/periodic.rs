@@ -107,6 +107,11 @@ impl Trace {
         })
     }
 
+    /// Forgets all samples.
+    pub(super) fn clear(&mut self) {
+        self.samples.clear();
+    }
+
     /// Adds a sample.
     pub(super) fn push(&mut self, sample: Sample) {
         self.samples.push(sample);

@@ -3,7 +3,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::RunError;
-use crate::case::{Body, Case, Dual, Initial, Length, ParticleMotion, Steady, SteadyMethod, Temporal, Wall};
+use crate::case::{Body, Case, Dual, Harmonics, Initial, Length, ParticleMotion, Steady, SteadyMethod, Temporal, Wall};
 use crate::cloud::conservative::conservative as conserve;
 use crate::cloud::sources::Source;
 use crate::cloud::travel::Habitat;
@@ -280,6 +280,17 @@ pub(super) fn transfer<const D: usize>(
 /// The relaxation that gives a march its start.
 pub(super) fn prelude(dual: &Dual) -> Steady {
     Steady { method: dual.method, iterations: PRELUDE_ITERATIONS, ..Steady::default() }
+}
+
+/// The relaxation that gives a harmonic balance its start.
+pub(super) fn harmonic_prelude(plan: &Harmonics) -> Steady {
+    Steady { method: plan.method, iterations: PRELUDE_ITERATIONS, ..Steady::default() }
+}
+
+/// Numbers of a harmonic balance.
+pub(super) fn harmonic_control(plan: &Harmonics, dimension: usize) -> Control {
+    let steady = Steady { cfl: plan.cfl, cfl_max: plan.cfl_max, ..harmonic_prelude(plan) };
+    control(&steady, dimension)
 }
 
 /// Numbers of an implicit march.

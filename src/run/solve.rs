@@ -1,9 +1,10 @@
 //! One stage from its start to its end: the integrator, watched.
 
+use super::balance::{BalanceReport, balance};
 use super::outputs;
 use super::periodic::{Sample, Trace};
 use super::persist::{FILE, Position, Roaming, Saved};
-use super::setup::{Solver, control, inner_control, plan, prelude};
+use super::setup::{Solver, control, harmonic_prelude, inner_control, plan, prelude};
 use super::snapshot::{LoadFrame, Snapshot, load_axes};
 use super::{Monitor, Places, RunError, Tick};
 use crate::case::{self, Case, Explicit as Marching, RungeKutta, Steady, Temporal};
@@ -71,6 +72,12 @@ pub(super) struct Journal<'a> {
     pub(super) period: Option<f64>,
     /// Loads and motion of the march so far.
     pub(super) trace: Trace,
+    /// Evaluations of the residual of one instance by harmonic balance.
+    pub(super) evaluations: u64,
+    /// What a harmonic balance found about itself.
+    pub(super) balance: Option<BalanceReport>,
+    /// Parts of the period and loads at the instances of a harmonic balance.
+    pub(super) instances: Vec<(f64, [f64; 3])>,
     /// What re-clouding did so far, where particles travel with the fluid.
     pub(super) turnover: Turnover,
 }
@@ -108,6 +115,9 @@ impl<'a> Journal<'a> {
             time: saved.map_or(0.0, |s| s.time),
             bytes: 0,
             linear: 0,
+            evaluations: 0,
+            balance: None,
+            instances: Vec::new(),
             unconverged: saved.map_or(0, |s| s.past.unconverged),
             turnover: saved.and_then(|s| s.roaming.as_ref()).map_or_else(Turnover::default, |r| r.turnover.clone()),
             trace: saved.filter(|s| s.time > 0.0).map_or_else(Trace::default, |s| Trace::read(&places.out, s.time)),
@@ -144,7 +154,38 @@ impl<'a> Journal<'a> {
             && self.trace.change(period).is_some_and(|c| c.mean.max(c.first_harmonic) < tolerance)
     }
 
-    fn record<const D: usize>(
+    /// The case.
+    pub(super) fn case(&self) -> &Case {
+        &self.case
+    }
+
+    /// The run folder.
+    pub(super) fn out(&self) -> &std::path::Path {
+        &self.out
+    }
+
+    /// Axes of the loads.
+    pub(super) fn axes(&self) -> &LoadFrame {
+        &self.axes
+    }
+
+    /// Time between field files.
+    pub(super) fn interval(&self) -> Option<f64> {
+        self.interval
+    }
+
+    /// Counts an iteration.
+    pub(super) fn count(&mut self) {
+        self.iteration += 1;
+    }
+
+    /// True when the run is told to stop.
+    pub(super) fn stopped(&self) -> bool {
+        self.monitor.stop()
+    }
+
+    /// Appends an iteration to the history.
+    pub(super) fn record<const D: usize>(
         &mut self,
         (cycle, inner): (u32, u32),
         step: &crate::time::Step,
@@ -157,13 +198,9 @@ impl<'a> Journal<'a> {
         let row =
             [f64::from(cycle), self.iteration as f64, step.time, step.cfl, step.residual, c.cl, c.cd, c.cm, seconds];
         let mut row = row.to_vec();
-        let mut motion = [0.0; 4];
+        let motion = if self.case.moves() { motion(fluid, step.time) } else { [0.0; 4] };
         if self.case.moves() {
-            let still = || (0.0, [0.0; 3]);
-            let at = |law: &Law<D>| (law.angle(step.time).value, law.displacement(step.time).to_3d());
-            let (angle, shift) = fluid.carriage.law().map_or_else(still, at);
-            row.extend([f64::from(inner), angle.to_degrees(), shift[0], shift[1], shift[2]]);
-            motion = [angle, shift[0], shift[1], shift[2]];
+            row.extend([f64::from(inner), motion[0].to_degrees(), motion[1], motion[2], motion[3]]);
         }
         if step.time > 0.0 {
             self.trace.push(Sample { time: step.time, loads: c, motion });
@@ -181,7 +218,7 @@ impl<'a> Journal<'a> {
         Ok(())
     }
 
-    fn save(&self, at: &Position<'_>, time: f64, state: &[f64], relax: Resume) -> Result<(), RunError> {
+    pub(super) fn save(&self, at: &Position<'_>, time: f64, state: &[f64], relax: Resume) -> Result<(), RunError> {
         let (cpu, wall) = self.seconds();
         let mut saved = Saved::new(at, self.iteration, time, state, relax);
         (saved.cpu_seconds, saved.wall_seconds) = (cpu, wall);
@@ -209,11 +246,11 @@ impl<'a> Journal<'a> {
         saved.write(&self.out)
     }
 
-    fn due(&self, iteration: u32) -> bool {
+    pub(super) fn due(&self, iteration: u32) -> bool {
         self.monitor.checkpoint() || iteration.is_multiple_of(self.every)
     }
 
-    fn failed(&self, source: TimeError) -> RunError {
+    pub(super) fn failed(&self, source: TimeError) -> RunError {
         RunError::Time { source, checkpoint: self.out.join(FILE).display().to_string() }
     }
 }
@@ -247,6 +284,8 @@ pub(super) fn solve<const D: usize>(
         Temporal::Dual(dual) if !marches => relax(&prelude(dual), solver, start, at, false, journal),
         Temporal::Dual(dual) => march_implicitly(dual, solver, start, at, journal),
         Temporal::Explicit(marching) => march_explicitly(marching, solver, start, at, journal),
+        Temporal::Harmonics(plan) if !marches => relax(&harmonic_prelude(plan), solver, start, at, false, journal),
+        Temporal::Harmonics(plan) => balance(plan, solver, start, at, journal),
     }
 }
 
@@ -471,7 +510,7 @@ fn bare(iteration: u32) -> Resume {
 }
 
 /// Coefficients from wall pressure and friction; `None` without bodies.
-fn coefficients<const D: usize>(
+pub(super) fn coefficients<const D: usize>(
     fluid: &Fluid<D>,
     axes: &LoadFrame,
     frame: &Frame<D>,
@@ -486,6 +525,14 @@ fn coefficients<const D: usize>(
         fluid.fill_gradients(frame, work);
     }
     Some(axes.coefficients_in(fluid, frame, work))
+}
+
+/// Angle (radians, nose up) and displacement of the first body that moves.
+pub(super) fn motion<const D: usize>(fluid: &Fluid<D>, time: f64) -> [f64; 4] {
+    fluid.carriage.law().map_or([0.0; 4], |law: &Law<D>| {
+        let shift = law.displacement(time).to_3d();
+        [law.angle(time).value, shift[0], shift[1], shift[2]]
+    })
 }
 
 /// Totals of mass, momentum and energy over the fluid particles.

@@ -42,6 +42,9 @@ pub struct Summary {
     pub separation: Vec<Separation>,
     /// Loads from the momentum balance over a box around the bodies; absent while bodies move, when what the box holds changes.
     pub loads_momentum_balance: Option<Coefficients>,
+    /// What a harmonic balance found about itself.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub harmonic_balance: Option<super::balance::BalanceReport>,
     /// Conservation.
     pub ledger: Ledger,
     /// Physical time at the end of a march.

@@ -1,6 +1,7 @@
 //! Integrators: they know a [`System`] and nothing of what it means.
 pub mod dual;
 pub mod explicit;
+pub mod harmonic;
 pub mod relax;
 
 use crate::system::System;

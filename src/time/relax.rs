@@ -122,6 +122,8 @@ pub struct Relax<'a, S: System> {
     time: Option<TimeTerm>,
     /// Linear iterations so far.
     pub linear: u32,
+    /// Evaluations of the residual so far.
+    pub evaluations: u64,
 }
 
 /// ∂U/∂t as a difference formula, rate·U + rest: what a step in time adds to the equations that are relaxed.
@@ -160,10 +162,16 @@ impl<'a, S: System> Relax<'a, S> {
         let mut rate = vec![0.0; n / system.block()];
         system.spectral_radius(&frame, origin, &mut work, &mut rate);
         let implicit = control.method != Method::RungeKutta;
-        let matrix = |first: &[u32], index: &[u32]| BlockMatrix::new(system.block(), system.parts(), first, index);
+        let times = system.in_time();
+        let block = system.block() / times.map_or(1, |(t, _)| t.count());
         let levels = implicit.then(|| {
             let (first, index) = system.graph();
-            Multilevel::new(matrix(first, index), control.group, control.cycle)
+            let levels =
+                Multilevel::new(BlockMatrix::new(block, system.parts(), first, index), control.group, control.cycle);
+            match times {
+                Some((instances, omega)) => levels.in_time(instances, omega),
+                None => levels,
+            }
         });
         let basis = (control.method == Method::NewtonKrylov).then(|| Gmres::new(n, control.basis));
         let scale = match &resume {
@@ -191,6 +199,7 @@ impl<'a, S: System> Relax<'a, S> {
             step: vec![0.0; n],
             gmres: basis,
             time: None,
+            evaluations: 0,
         };
         if resume.is_none() {
             all.system.rhs(&all.frame, origin, &mut all.work, &mut all.residual);
@@ -283,8 +292,11 @@ impl<'a, S: System> Relax<'a, S> {
     /// Root mean square over particles of the change that the residual would make in one local time.
     fn norm_of(&self, r: &[f64]) -> f64 {
         let (n, scale) = (self.system.block(), &self.scale);
-        // the first unknown of each particle (density) stands for all
-        (sum(scale.len(), |i| (r[i * n] * scale[i]).powi(2)) / scale.len() as f64).sqrt()
+        let instances = self.system.in_time().map_or(1, |(t, _)| t.count());
+        // the first unknown of each particle and instance (density) stands for all
+        let square = |i: usize| (0..instances).map(|k| r[i * n + k * n / instances].powi(2)).sum::<f64>();
+        let total = sum(scale.len(), |i| square(i) * scale[i].powi(2));
+        (total / (scale.len() * instances) as f64).sqrt()
     }
 
     /// One accepted step.
@@ -354,6 +366,7 @@ impl<'a, S: System> Relax<'a, S> {
         let mut frame = self.frame.clone();
         self.system.follow(&self.trial, &mut self.work, &mut frame);
         self.system.rhs(&frame, &self.trial, &mut self.work, &mut self.trial_residual);
+        self.evaluations += 1;
         if let Some(term) = &self.time {
             let trial = &self.trial;
             let change = |k: usize| term.rate * trial[k] + term.rest[k];
@@ -433,6 +446,7 @@ impl<'a, S: System> Relax<'a, S> {
         let precondition = |r: &[f32], z: &mut [f64]| levels.apply(|k| (f64::from(r[k]) / scale[k / n]) as f32, z);
         let solved = gmres.solve((b, &mut self.step), self.control.tolerance, product, precondition);
         self.linear += solved.iterations as u32;
+        self.evaluations += solved.iterations as u64;
     }
 
     fn explicit_step(&mut self) {
@@ -447,6 +461,7 @@ impl<'a, S: System> Relax<'a, S> {
                 let step = &self.step;
                 crate::math::sweep::sweep(&mut self.trial, |k| u[k] + step[k]);
                 self.system.rhs(&self.frame, &self.trial, &mut self.work, &mut self.trial_residual);
+                self.evaluations += 1;
             }
         }
     }

@@ -1,0 +1,345 @@
+//! Sweeps for linear systems that repeat in time: (A + ∂/∂t) x = b at 2N + 1 instances of a period.
+//!
+//! With one matrix A for all instances the system is block-circulant: in Fourier coefficients of time it falls apart into
+//! A x_0 = b_0 and, for each harmonic, (A + imω) z_m = r_m with z = c − is for c cos mωt + s sin mωt (Mavriplis and Mundis,
+//! AIAA 2014-0571). All harmonics share the blocks beside the diagonal, which a sweep reads once for all of them; each has
+//! its own inverse of the diagonal, S A − imωμ S with S = (A² + m²ω²μ²)⁻¹, where μ is the weight of ∂/∂t in the row: one on
+//! the finest level, the number of rows gathered on coarser ones. Sweeps run as those of [`BlockMatrix`], in the same parts.
+use std::ops::Range;
+
+use super::block_matrix::{BlockMatrix, load, multiply, subtract_wide, widen_block};
+use super::sweep::{sweep_parts, sweep_two_parts};
+
+/// Greatest number of harmonics.
+pub const MOST_HARMONICS: usize = 16;
+/// Greatest number of coefficients of a row.
+const MOST: usize = 2 * MOST_HARMONICS + 1;
+
+/// Coefficients of the solution of (A + ∂/∂t) x = b in the order mean, cosine and sine of the first harmonic, of the
+/// second, ..., and what their sweeps share.
+#[derive(Clone, Debug)]
+pub struct Waves {
+    harmonics: usize,
+    omega: f32,
+    /// Weight μ of the time derivative in each row.
+    mass: Vec<f32>,
+    /// Right-hand side.
+    pub b: Vec<f32>,
+    /// Solution.
+    pub x: Vec<f32>,
+    /// Scratch: solution before a half-sweep, or b − (A + ∂/∂t) x.
+    pub r: Vec<f32>,
+    side: Vec<f32>,
+    /// Real and negative imaginary part of (A_ii + imωμ)⁻¹ for each harmonic.
+    inverse: Vec<f32>,
+}
+
+impl Waves {
+    /// Storage for the rows of `matrix`.
+    pub fn new(matrix: &BlockMatrix, harmonics: usize, omega: f64, mass: Vec<f32>) -> Self {
+        let (n, size) = (matrix.n_rows(), matrix.block());
+        let zero = vec![0.0; n * size * (2 * harmonics + 1)];
+        let inverse = vec![0.0; n * size * size * 2 * harmonics];
+        let omega = omega as f32;
+        Self { harmonics, omega, mass, b: zero.clone(), x: zero.clone(), r: zero.clone(), side: zero, inverse }
+    }
+
+    /// Number of coefficients in time.
+    pub fn count(&self) -> usize {
+        2 * self.harmonics + 1
+    }
+
+    /// Weights of the time derivative when rows are gathered into groups.
+    pub fn gathered(&self, group: &[u32], n_groups: usize) -> Vec<f32> {
+        let mut mass = vec![0.0; n_groups];
+        group.iter().zip(&self.mass).for_each(|(g, m)| mass[*g as usize] += m);
+        mass
+    }
+
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        4 * (4 * self.b.len() + self.inverse.len() + self.mass.len())
+    }
+
+    /// Sets the solution to zero.
+    pub fn clear(&mut self) {
+        self.x.fill(0.0);
+        self.side.fill(0.0);
+    }
+
+    /// Inverts the diagonal of each harmonic: needed before a sweep, after that of the matrix.
+    pub fn invert(&mut self, matrix: &BlockMatrix) {
+        let (block, harmonics) = (matrix.block(), self.harmonics);
+        let size = block * block;
+        let (omega, mass) = (self.omega, &self.mass);
+        if harmonics == 0 {
+            return;
+        }
+        sweep_parts(matrix.parts(), 2 * harmonics * size, &mut self.inverse, &|k, out| {
+            for (i, out) in matrix.parts()[k].clone().zip(out.chunks_exact_mut(2 * harmonics * size)) {
+                for (m, out) in out.chunks_exact_mut(2 * size).enumerate() {
+                    let beta = (m + 1) as f32 * omega * mass[i];
+                    invert_shifted(block, matrix.diagonal(i), beta, out);
+                }
+            }
+        });
+    }
+
+    /// One forward and one backward sweep, starting from `x`.
+    pub fn symmetric_sweep(&mut self, matrix: &BlockMatrix) {
+        match matrix.block() {
+            4 => self.both_sweeps::<4>(matrix),
+            5 => self.both_sweeps::<5>(matrix),
+            3 => self.both_sweeps::<3>(matrix),
+            _ => self.both_sweeps::<1>(matrix),
+        }
+    }
+
+    fn both_sweeps<const N: usize>(&mut self, matrix: &BlockMatrix) {
+        let width = N * self.count();
+        for forward in [true, false] {
+            self.r.copy_from_slice(&self.x);
+            let (b, old, parts) = (&self.b, &self.r, matrix.parts());
+            let (inverse, harmonics) = (&self.inverse, self.harmonics);
+            let outputs = ((parts, width, self.x.as_mut_slice()), (parts, width, &mut self.side[..]));
+            sweep_two_parts(outputs.0, outputs.1, &|k, x, side| {
+                let part = parts[k].clone();
+                let row = |i: usize| {
+                    let own = (&inverse[i * 2 * harmonics * N * N..(i + 1) * 2 * harmonics * N * N], harmonics);
+                    relax_row::<N>(matrix, own, (i, &part), (b, old), forward, (x, side));
+                };
+                if forward { part.clone().for_each(row) } else { part.clone().rev().for_each(row) }
+            });
+        }
+    }
+
+    /// r = b − (A + ∂/∂t) x.
+    pub fn residual(&mut self, matrix: &BlockMatrix) {
+        match matrix.block() {
+            4 => self.residual_of::<4>(matrix),
+            5 => self.residual_of::<5>(matrix),
+            3 => self.residual_of::<3>(matrix),
+            _ => self.residual_of::<1>(matrix),
+        }
+    }
+
+    fn residual_of<const N: usize>(&mut self, matrix: &BlockMatrix) {
+        let (count, omega) = (self.count(), self.omega);
+        let (b, x, side, mass) = (&self.b, &self.x, &self.side, &self.mass);
+        sweep_parts(matrix.parts(), N * count, &mut self.r, &|k, out| {
+            let part = matrix.parts()[k].clone();
+            for (i, row) in part.clone().zip(out.chunks_exact_mut(N * count)) {
+                let (below, inside, above) = matrix.split_row(i, &part);
+                let middle = matrix.middle(i, &inside);
+                let mut sum = [[0.0; N]; MOST];
+                let sum = &mut sum[..count];
+                for e in below.chain(inside.start..middle).chain(above) {
+                    gather::<N>(matrix, e, &x[matrix.column(e) * count * N..], sum);
+                }
+                let at = i * count;
+                for (c, sum) in sum.iter_mut().enumerate() {
+                    let mut own = [0.0; N];
+                    multiply::<N>(matrix.diagonal(i), &load::<N>(x, at + c), &mut own);
+                    // d/dt of a cosine feeds the sine and the other way round
+                    let beta = c.div_ceil(2) as f32 * omega * mass[i];
+                    let (partner, beta) = if c % 2 == 1 { (c + 1, beta) } else { (c.max(1) - 1, -beta) };
+                    let other = load::<N>(x, at + partner);
+                    for v in 0..N {
+                        let known = b[(at + c) * N + v] + sum[v] + side[(at + c) * N + v];
+                        row[c * N + v] = known - own[v] - beta * other[v];
+                    }
+                }
+            }
+        });
+    }
+
+    /// Forms the sums that a forward sweep starts from, after `x` was changed from outside.
+    pub fn restart(&mut self, matrix: &BlockMatrix) {
+        match matrix.block() {
+            4 => self.restart_of::<4>(matrix),
+            5 => self.restart_of::<5>(matrix),
+            3 => self.restart_of::<3>(matrix),
+            _ => self.restart_of::<1>(matrix),
+        }
+    }
+
+    fn restart_of<const N: usize>(&mut self, matrix: &BlockMatrix) {
+        let count = self.count();
+        let x = &self.x;
+        sweep_parts(matrix.parts(), N * count, &mut self.side, &|k, out| {
+            let part = matrix.parts()[k].clone();
+            for (i, row) in part.clone().zip(out.chunks_exact_mut(N * count)) {
+                let (_, inside, _) = matrix.split_row(i, &part);
+                let mut sum = [[0.0; N]; MOST];
+                for e in matrix.middle(i, &inside)..inside.end {
+                    gather::<N>(matrix, e, &x[matrix.column(e) * count * N..], &mut sum[..count]);
+                }
+                row.chunks_exact_mut(N).zip(&sum).for_each(|(row, sum)| row.copy_from_slice(sum));
+            }
+        });
+    }
+}
+
+/// sum ← sum − B x for all coefficients of one neighbour.
+#[inline(always)]
+fn gather<const N: usize>(matrix: &BlockMatrix, e: usize, x: &[f32], sum: &mut [[f32; N]]) {
+    let block = widen_block::<N>(matrix.off_diagonal(e));
+    for (x, sum) in x.chunks_exact(N).zip(sum) {
+        subtract_wide::<N>(&block, x, sum);
+    }
+}
+
+/// x_i = (A_ii + ∂/∂t)⁻¹ (b_i − Σ_j A_ij x_j).
+#[inline(always)]
+fn relax_row<const N: usize>(
+    matrix: &BlockMatrix,
+    (inverse, harmonics): (&[f32], usize),
+    (i, part): (usize, &Range<usize>),
+    (b, old): (&[f32], &[f32]),
+    forward: bool,
+    (x, side): (&mut [f32], &mut [f32]),
+) {
+    let count = 2 * harmonics + 1;
+    let at = (i - part.start) * count * N;
+    let (below, inside, above) = matrix.split_row(i, part);
+    let middle = matrix.middle(i, &inside);
+    let mut r = [[0.0; N]; MOST];
+    let mut sum = [[0.0; N]; MOST];
+    for e in below.chain(above) {
+        gather::<N>(matrix, e, &old[matrix.column(e) * count * N..], &mut r[..count]);
+    }
+    let swept = if forward { inside.start..middle } else { middle..inside.end };
+    for e in swept {
+        gather::<N>(matrix, e, &x[(matrix.column(e) - part.start) * count * N..], &mut sum[..count]);
+    }
+    for c in 0..count {
+        for v in 0..N {
+            r[c][v] += b[(i * count + c) * N + v] + side[at + c * N + v] + sum[c][v];
+        }
+        side[at + c * N..at + (c + 1) * N].copy_from_slice(&sum[c]);
+    }
+    let mut y = [0.0; N];
+    multiply::<N>(matrix.inverse(i), &r[0], &mut y);
+    x[at..at + N].copy_from_slice(&y);
+    for m in 0..harmonics {
+        let own = &inverse[m * 2 * N * N..(m + 1) * 2 * N * N];
+        let (real, imaginary) = own.split_at(N * N);
+        let (rc, rs) = (&r[2 * m + 1], &r[2 * m + 2]);
+        // (P − iQ)(r_c − i r_s) = (P r_c − Q r_s) − i (P r_s + Q r_c)
+        let (mut c, mut s, mut q) = ([0.0; N], [0.0; N], [0.0; N]);
+        multiply::<N>(real, rc, &mut c);
+        multiply::<N>(imaginary, rs, &mut q);
+        multiply::<N>(real, rs, &mut s);
+        multiply::<N>(imaginary, rc, &mut s);
+        let from = at + (2 * m + 1) * N;
+        for v in 0..N {
+            x[from + v] = c[v] - q[v];
+            x[from + N + v] = s[v];
+        }
+    }
+}
+
+/// Real part and negative imaginary part of (A + iβ)⁻¹, by columns; a singular matrix gives zero.
+fn invert_shifted(n: usize, a: &[f32], beta: f32, out: &mut [f32]) {
+    let size = n * n;
+    let mut square = [0.0f64; 36];
+    let at = |r: usize, c: usize| f64::from(a[c * n + r]);
+    for r in 0..n {
+        for c in 0..n {
+            square[c * n + r] = (0..n).map(|k| at(r, k) * at(k, c)).sum();
+        }
+        square[r * n + r] += f64::from(beta).powi(2);
+    }
+    let mut inverse = [0.0f64; 36];
+    super::block_matrix::invert(n, &square[..size], &mut inverse[..size]);
+    for r in 0..n {
+        for c in 0..n {
+            let real: f64 = (0..n).map(|k| inverse[k * n + r] * at(k, c)).sum();
+            out[c * n + r] = real as f32;
+            out[size + c * n + r] = (inverse[c * n + r] * f64::from(beta)) as f32;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::fourier::Instances;
+
+    /// Rows of a chain that lean on both neighbours.
+    fn chain(n: usize) -> BlockMatrix {
+        let mut first = vec![0u32];
+        let mut index = Vec::new();
+        for i in 0..n as i64 {
+            index.extend([i - 1, i, i + 1].iter().filter(|j| (0..n as i64).contains(j)).map(|j| *j as u32));
+            first.push(index.len() as u32);
+        }
+        let parts: Vec<_> = (0..n).step_by(7).map(|s| s..(s + 7).min(n)).collect();
+        let mut matrix = BlockMatrix::new(3, &parts, &first, &index);
+        matrix.assemble(|k, rows| {
+            for i in parts[k].clone() {
+                rows.add(i, i, |r, c| if r == c { 2.5 + 0.5 * r as f64 } else { 0.25 * (r as f64 - c as f64) });
+                for j in [i.wrapping_sub(1), i + 1].into_iter().filter(|j| *j < n) {
+                    rows.add(i, j, |r, c| if r == c { -1.0 } else { 0.125 });
+                }
+            }
+        });
+        matrix.invert_diagonal();
+        matrix
+    }
+
+    #[test]
+    fn sweeps_solve_the_system_in_time() {
+        let (n, harmonics, omega) = (23, 2, 0.7);
+        let matrix = chain(n);
+        let mut waves = Waves::new(&matrix, harmonics, omega, vec![1.0; n]);
+        waves.invert(&matrix);
+        waves.b.iter_mut().enumerate().for_each(|(k, b)| *b = ((k * k) as f32 * 0.37).sin());
+        for _ in 0..40 {
+            waves.symmetric_sweep(&matrix);
+        }
+        waves.residual(&matrix);
+        assert!(waves.r.iter().all(|r| r.abs() < 1e-5), "{:?}", waves.r.iter().fold(0.0f32, |a, b| a.max(b.abs())));
+        // the same in values: A x_n + ω Σ D_nj x_j = b_n
+        let instances = Instances::of_harmonics(harmonics);
+        let count = instances.count();
+        let value = |v: &[f32], i: usize, d: usize, n: usize| -> f64 {
+            let phase = std::f64::consts::TAU * n as f64 / count as f64;
+            (0..count)
+                .map(|c| {
+                    let m = c.div_ceil(2) as f64 * phase;
+                    f64::from(v[(i * count + c) * 3 + d])
+                        * if c % 2 == 1 { m.cos() } else { m.sin() + f64::from(u8::from(c == 0)) }
+                })
+                .sum()
+        };
+        let derivative = instances.derivative(omega);
+        for i in 1..n - 1 {
+            for d in 0..3 {
+                for k in 0..count {
+                    let x = |i: usize, d: usize| value(&waves.x, i, d, k);
+                    let entry =
+                        |r: usize, c: usize| if r == c { 2.5 + 0.5 * r as f64 } else { 0.25 * (r as f64 - c as f64) };
+                    let own: f64 = (0..3).map(|c| entry(d, c) * x(i, c)).sum();
+                    let off = |j: usize| (0..3).map(|c| if c == d { -x(j, c) } else { 0.125 * x(j, c) }).sum::<f64>();
+                    let rate: f64 = (0..count).map(|j| derivative.row(k)[j] * value(&waves.x, i, d, j)).sum();
+                    let left = own + off(i - 1) + off(i + 1) + rate;
+                    assert!((left - value(&waves.b, i, d, k)).abs() < 1e-4, "{i} {d} {k}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn restarts_hold_what_sweeps_summed() {
+        let matrix = chain(20);
+        let mut waves = Waves::new(&matrix, 1, 2.0, vec![1.0; 20]);
+        waves.invert(&matrix);
+        waves.b.fill(1.0);
+        waves.symmetric_sweep(&matrix);
+        let (x, side) = (waves.x.clone(), waves.side.clone());
+        waves.restart(&matrix);
+        assert_eq!(x, waves.x);
+        assert!(side.iter().zip(&waves.side).all(|(a, b)| (a - b).abs() < 1e-6));
+    }
+}

@@ -1,0 +1,430 @@
+//! Harmonic balance of a case: from a steady flow over few harmonics to as many as are asked for.
+use std::path::Path;
+
+use num_complex::Complex64;
+use serde::Serialize;
+
+use super::RunError;
+use super::outputs;
+use super::periodic::Sample;
+use super::persist::Position;
+use super::setup::{Solver, harmonic_control};
+use super::snapshot::Units;
+use super::solve::{Journal, Solved, Start, coefficients};
+use crate::case::{Case, HarmonicCount, Harmonics};
+use crate::math::Vector;
+use crate::math::fourier::{Instances, Series};
+use crate::math::sweep::sum;
+use crate::motion::Law;
+use crate::observe::loads::Coefficients;
+use crate::observe::table::{Entry, write_csv};
+use crate::observe::vtk::{Column, write_points};
+use crate::scheme::{Carriage, Fluid, Frame};
+use crate::system::{Moment, System};
+use crate::time::harmonic::HarmonicBalance;
+use crate::time::relax::Relax;
+
+/// Harmonics at which `number = "auto"` begins, and what it adds.
+const FIRST: usize = 1;
+const MORE: usize = 2;
+/// Iterations over which loads must not change.
+const WINDOW: usize = 5;
+/// Orders by which the residual must have fallen before loads are looked at.
+const FALLEN: f64 = 2.0;
+/// Samples of the loops.
+const SAMPLES: usize = 256;
+/// Part of a length or radian by which a motion may miss itself a period later.
+const REPEATS: f64 = 1e-9;
+/// Relative error of the wall velocity above which a run warns.
+const WALL_ERROR: f64 = 0.01;
+
+/// What a harmonic balance found about itself.
+#[derive(Clone, Debug, Serialize)]
+pub struct BalanceReport {
+    /// Number of harmonics N.
+    pub harmonics: usize,
+    /// Instances at which the equations were evaluated.
+    pub instances: usize,
+    /// Part of the last harmonic in all harmonics of the loads; absent with one harmonic.
+    pub tail_loads: Option<f64>,
+    /// The same of the density, root mean square over the volume.
+    pub tail_density: Option<f64>,
+    /// |ωD x − ẋ|/|ẋ| of the walls, root mean squares over walls and instances: what the harmonics lose of the motion.
+    pub wall_velocity_error: f64,
+    /// Evaluations of the residual of one instance.
+    pub evaluations: u64,
+}
+
+/// Finds the periodic solution; `None` when told to stop. Ends with the state and frame of the first instance.
+pub(super) fn balance<const D: usize>(
+    plan: &Harmonics,
+    solver: &Solver<D>,
+    start: Start,
+    at: &Position<'_>,
+    journal: &mut Journal<'_>,
+) -> Solved<D> {
+    let fluid = &solver.fluid;
+    let Some(period) = journal.period else {
+        return Err(RunError::Folder("`[time.harmonics]` needs a periodic motion".into()));
+    };
+    repeats(&fluid.carriage, period)?;
+    let omega = std::f64::consts::TAU / period;
+    let (most, auto) = match plan.number {
+        HarmonicCount::Fixed(n) => (n as usize, false),
+        HarmonicCount::Auto(_) => (plan.most as usize, true),
+    };
+    let build = |n: usize| HarmonicBalance::new(fluid, Instances::of_harmonics(n), omega, plan.oversample);
+    let held = |u: &[f64]| u.len() / fluid.len();
+    let (mut n, mut state, mut resume) = match start {
+        Start::Resume(s) => (held(&s.state) / 2, s.state, Some(s.relax)),
+        Start::Fresh(u) => (FIRST, build(FIRST).copies(&u), None),
+    };
+    loop {
+        let balance = build(n);
+        let last = n >= most;
+        let Some(found) = converge((plan, last || auto), &balance, fluid, (state, resume.take()), at, journal)? else {
+            return Ok(None);
+        };
+        state = found;
+        let report = report(&balance, fluid, &state, journal);
+        let tail = report.tail_loads.zip(report.tail_density).map(|(a, b)| a.max(b));
+        let short = tail.is_none_or(|t| t > plan.tail);
+        if last || (auto && !short) {
+            tell(plan, &report, journal);
+            let outcome = Periodic { balance: &balance, fluid, state: &state };
+            outcome.trace(journal, period);
+            outcome.write(journal, solver, period)?;
+            journal.balance = Some(report);
+            let mut first = vec![0.0; fluid.len()];
+            balance.instance(&state, 0, &mut first);
+            let frame = balance.with_moment(0.0, |moment| fluid.frame(moment, &first));
+            return Ok(Some((first, frame)));
+        }
+        let next = if auto { (n + MORE).min(most) } else { most };
+        journal.note(&format!("{n} harmonics done, {next} follow"));
+        state = build(next).resampled(&state, Instances::of_harmonics(n));
+        n = next;
+    }
+}
+
+/// Says what a user should know of the truncation.
+fn tell(plan: &Harmonics, report: &BalanceReport, journal: &mut Journal<'_>) {
+    let n = report.harmonics;
+    if let Some(tail) = report.tail_loads.into_iter().chain(report.tail_density).reduce(f64::max)
+        && tail > plan.tail
+    {
+        journal.note(&format!(
+            "warning: the last of {n} harmonics still holds {:.1} % of them: add harmonics, or let `number = \"auto\"` do so",
+            100.0 * tail
+        ));
+    }
+    if report.wall_velocity_error > WALL_ERROR {
+        journal.note(&format!(
+            "warning: {n} harmonics miss {:.1} % of the velocity of the walls: add harmonics",
+            100.0 * report.wall_velocity_error
+        ));
+    }
+}
+
+/// Refuses motions that do not come back after a period.
+fn repeats<const D: usize>(carriage: &Carriage<D>, period: f64) -> Result<(), RunError> {
+    let laws: Vec<&Law<D>> = match carriage {
+        Carriage::Rigid(law) => vec![law],
+        Carriage::Along { laws, .. } => laws.iter().collect(),
+        Carriage::Still | Carriage::Travel(_) => Vec::new(),
+    };
+    for (body, law) in laws.iter().enumerate() {
+        for part in [0.0, 0.13, 0.41, 0.77] {
+            let (a, b) = (law.pose(part * period), law.pose((part + 1.0) * period));
+            let places = std::iter::once(Vector::ZERO).chain((0..D).map(Vector::axis));
+            let miss = places.map(|x| (a.point(&x) - b.point(&x)).norm()).fold(0.0, f64::max);
+            if miss > REPEATS {
+                let hint = "harmonic balance needs a motion that repeats; march with `[time.dual]` instead";
+                let text =
+                    format!("the motion of body {body} misses itself by {miss:.3e} after a period\nhint: {hint}");
+                return Err(RunError::Folder(text));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Loads at the instances where the equations are evaluated.
+fn loads<const D: usize>(
+    balance: &HarmonicBalance<'_, Fluid<D>>,
+    fluid: &Fluid<D>,
+    (frames, state): (&[Frame<D>], &[f64]),
+    work: &mut crate::scheme::Work<D>,
+    journal: &Journal<'_>,
+) -> Option<[Series; 3]> {
+    let mut all = [Vec::new(), Vec::new(), Vec::new()];
+    let mut one = vec![0.0; fluid.len()];
+    for (n, frame) in frames.iter().enumerate() {
+        balance.look(state, n, &mut one);
+        let c = coefficients(fluid, journal.axes(), frame, &one, work)?;
+        [c.cl, c.cd, c.cm].into_iter().zip(&mut all).for_each(|(v, all)| all.push(v));
+    }
+    let series = all.map(|values| Series::of_values(&values).ok());
+    let [a, b, c] = series;
+    Some([a?, b?, c?])
+}
+
+/// f_1, f_2, … of a series.
+fn terms(series: &Series) -> Vec<Complex64> {
+    let (c, n) = (series.coefficients(), series.instances().harmonics());
+    (1..=n).map(|m| Complex64::new(c[m], -c[n + m])).collect()
+}
+
+/// Relaxes until the residual has fallen, or the loads no longer change.
+fn converge<const D: usize>(
+    (plan, last): (&Harmonics, bool),
+    balance: &HarmonicBalance<'_, Fluid<D>>,
+    fluid: &Fluid<D>,
+    (state, resume): (Vec<f64>, Option<crate::time::relax::Resume>),
+    at: &Position<'_>,
+    journal: &mut Journal<'_>,
+) -> Result<Option<Vec<f64>>, RunError> {
+    let fresh = resume.is_none();
+    let origin = balance.copies(&fluid.start());
+    let mut relax = Relax::new(balance, harmonic_control(plan, D), state, &origin, resume);
+    drop(origin);
+    let orders = if last { plan.orders } else { plan.orders.min(FALLEN + 1.0) };
+    let goal = 10f64.powf(-orders);
+    if fresh {
+        journal.save(at, 0.0, &relax.u, relax.resume())?;
+    }
+    let mut work = fluid.work();
+    let mut recent: Vec<Vec<f64>> = Vec::new();
+    let mut reached = !fresh && relax.drop() <= goal;
+    while !reached && relax.iteration < plan.iterations {
+        let step = match relax.advance() {
+            Ok(step) => step,
+            Err(e) => {
+                journal.save(at, 0.0, &relax.u, relax.resume())?;
+                return Err(journal.failed(e));
+            }
+        };
+        journal.count();
+        let (frames, _, state) = relax.parts();
+        let series = loads(balance, fluid, (frames, state), &mut work, journal);
+        let mean = series.as_ref().map(|s| {
+            let [cl, cd, cm] = s.each_ref().map(|s| s.coefficients()[0]);
+            Coefficients { cl, cd, cm }
+        });
+        journal.record((0, 0), &step, mean, (orders, -step.residual.log10()), fluid)?;
+        if journal.due(relax.iteration) {
+            journal.save(at, 0.0, &relax.u, relax.resume())?;
+        }
+        if let Some(series) = &series {
+            recent.push(series.iter().flat_map(|s| s.coefficients().to_vec()).collect());
+        }
+        reached = step.residual <= goal || (step.residual <= 10f64.powf(-FALLEN) && still(&recent, plan.tolerance));
+        if journal.stopped() && !reached {
+            journal.save(at, 0.0, &relax.u, relax.resume())?;
+            return Ok(None);
+        }
+    }
+    (journal.drop, journal.converged) = (relax.drop(), reached);
+    (journal.bytes, journal.linear) = (relax.bytes(), relax.linear);
+    journal.evaluations += relax.evaluations * balance.times().len() as u64;
+    journal.save(at, 0.0, &relax.u, relax.resume())?;
+    Ok(Some(relax.u))
+}
+
+/// True when no mean and no harmonic of a load has changed by more than `tolerance` times the first harmonic of that load.
+fn still(recent: &[Vec<f64>], tolerance: f64) -> bool {
+    let Some(last) = recent.last().filter(|_| recent.len() > WINDOW) else { return false };
+    let count = last.len() / 3;
+    let window = &recent[recent.len() - 1 - WINDOW..];
+    // drag is of second order in the motion: lift and moment decide
+    [0, 2].iter().all(|load| {
+        let part = |v: &[f64], k: usize| v[load * count + k];
+        let first = part(last, 1).hypot(part(last, 1 + count / 2));
+        (0..count).all(|k| window.iter().all(|v| (part(v, k) - part(last, k)).abs() < tolerance * first))
+    })
+}
+
+fn report<const D: usize>(
+    balance: &HarmonicBalance<'_, Fluid<D>>,
+    fluid: &Fluid<D>,
+    state: &[f64],
+    journal: &Journal<'_>,
+) -> BalanceReport {
+    let (held, mut work) = (balance.instances(), fluid.work());
+    let frames = balance.frame(&Moment::At { time: 0.0 }, state);
+    let series = loads(balance, fluid, (&frames, state), &mut work, journal);
+    let n = held.harmonics();
+    let part = |s: &Series| {
+        let terms = terms(s);
+        let all: f64 = terms.iter().take(n).map(|t| t.norm()).sum();
+        if all > 0.0 { terms[n - 1].norm() / all } else { 0.0 }
+    };
+    let tail_loads = series.filter(|_| n > 1).map(|s| part(&s[0]).max(part(&s[2])));
+    BalanceReport {
+        harmonics: n,
+        instances: frames.len(),
+        tail_loads,
+        tail_density: (n > 1).then(|| density_tail(fluid, held, state)),
+        wall_velocity_error: wall_velocity_error(fluid, &frames),
+        evaluations: journal.evaluations,
+    }
+}
+
+/// Part of the last harmonic of the density in all of them.
+fn density_tail<const D: usize>(fluid: &Fluid<D>, held: Instances, state: &[f64]) -> f64 {
+    let (n, b) = (held.harmonics(), D + 2);
+    let forth = held.to_coefficients();
+    let volume = fluid.volumes();
+    let size = |m: usize| {
+        let square = |i: usize| {
+            let all = &state[i * b * held.count()..(i + 1) * b * held.count()];
+            let coefficient =
+                |row: usize| -> f64 { forth.row(row).iter().zip(all.chunks_exact(b)).map(|(e, u)| e * u[0]).sum() };
+            volume[i] * (coefficient(m).powi(2) + coefficient(n + m).powi(2))
+        };
+        sum(volume.len(), square).sqrt()
+    };
+    let all: f64 = (1..=n).map(size).sum();
+    if all > 0.0 { size(n) / all } else { 0.0 }
+}
+
+/// |w − ẋ|/|ẋ| of the walls.
+fn wall_velocity_error<const D: usize>(fluid: &Fluid<D>, frames: &[Frame<D>]) -> f64 {
+    let cloud = &fluid.shape.cloud;
+    let (mut miss, mut size) = (0.0, 0.0);
+    for frame in frames {
+        for (i, wall) in cloud.interface_range().zip(&cloud.interface) {
+            let law = match &fluid.carriage {
+                Carriage::Rigid(law) => Some(law),
+                Carriage::Along { laws, .. } => laws.get(usize::from(wall.body)),
+                Carriage::Still | Carriage::Travel(_) => None,
+            };
+            let Some(law) = law else { continue };
+            let exact = law.velocity(frame.time, &cloud.x[i]);
+            miss += (frame.outward(&frame.velocity_of(i)) - exact).norm().powi(2);
+            size += exact.norm().powi(2);
+        }
+    }
+    if size > 0.0 { (miss / size).sqrt() } else { 0.0 }
+}
+
+/// A converged solution.
+struct Periodic<'a, const D: usize> {
+    balance: &'a HarmonicBalance<'a, Fluid<D>>,
+    fluid: &'a Fluid<D>,
+    state: &'a [f64],
+}
+
+impl<const D: usize> Periodic<'_, D> {
+    /// Puts the loads of one period where those of the last period of a march would be.
+    fn trace(&self, journal: &mut Journal<'_>, period: f64) {
+        let frames = self.balance.frame(&Moment::At { time: 0.0 }, self.state);
+        let series = loads(self.balance, self.fluid, (&frames, self.state), &mut self.fluid.work(), journal);
+        let Some([cl, cd, cm]) = series else { return };
+        journal.trace.clear();
+        for k in 0..=SAMPLES {
+            let part = 1.0 + k as f64 / SAMPLES as f64;
+            let phase = std::f64::consts::TAU * part;
+            let loads = Coefficients { cl: cl.at(phase), cd: cd.at(phase), cm: cm.at(phase) };
+            journal.trace.push(Sample {
+                time: part * period,
+                loads,
+                motion: super::solve::motion(self.fluid, part * period),
+            });
+        }
+        journal.instances = frames
+            .iter()
+            .enumerate()
+            .map(|(n, f)| {
+                let phase = std::f64::consts::TAU * n as f64 / frames.len() as f64;
+                (f.time / period, [cl.at(phase), cd.at(phase), cm.at(phase)])
+            })
+            .collect();
+    }
+
+    /// Fields at phases, coefficients in time of walls and field.
+    fn write(&self, journal: &Journal<'_>, solver: &Solver<D>, period: f64) -> Result<(), RunError> {
+        let (case, out) = (journal.case(), journal.out());
+        let mut one = vec![0.0; self.fluid.len()];
+        let mut work = self.fluid.work();
+        let mut moment = |part: f64, work: &mut crate::scheme::Work<D>| {
+            let phase = std::f64::consts::TAU * part;
+            self.balance.at_phase(self.state, phase, &mut one);
+            let frame = self.balance.with_moment(phase, |m| self.fluid.frame(m, &one));
+            self.fluid.fill_states(&frame, &one, work);
+            self.fluid.fill_gradients(&frame, work);
+            frame
+        };
+        if let Some(interval) = journal.interval() {
+            let count = (period / interval + super::solve::NEARLY).floor() as u64;
+            for k in 1..=count {
+                let frame = moment(k as f64 * interval / period, &mut work);
+                outputs::write_series(case, out, self.fluid, (&frame, &work), interval)?;
+            }
+        }
+        if let Some(surface) = &solver.film {
+            for part in 1..=u64::from(outputs::FILM) {
+                let frame = moment(part as f64 / f64::from(outputs::FILM), &mut work);
+                outputs::write_film(case, out, (self.fluid, surface), (&frame, &mut work), part)?;
+            }
+        }
+        self.write_coefficients(case, out)
+    }
+
+    /// `field_harmonics.vtu` and `surface_harmonics.csv`: mean and complex harmonics at the particles before any motion.
+    fn write_coefficients(&self, case: &Case, out: &Path) -> Result<(), RunError> {
+        let (fluid, held) = (self.fluid, self.balance.instances());
+        let units = Units::of(case);
+        let cloud = &fluid.shape.cloud;
+        let n = held.harmonics();
+        // values of all real particles at the instances that hold the solution: density, velocity, pressure, Cp
+        let free = crate::scheme::start::free_stream::<D>(case);
+        let rows = cloud.n_real();
+        let mut values = vec![vec![Vec::with_capacity(held.count()); rows]; D + 3];
+        let (mut one, mut work) = (vec![0.0; fluid.len()], fluid.work());
+        for k in 0..held.count() {
+            self.balance.instance(self.state, k, &mut one);
+            let phase = std::f64::consts::TAU * k as f64 / held.count() as f64;
+            let frame = self.balance.with_moment(phase, |m| fluid.frame(m, &one));
+            fluid.fill_states(&frame, &one, &mut work);
+            for (i, q) in work.state[..rows].iter().enumerate() {
+                let velocity = frame.outward(&q.velocity) * units.speed;
+                values[0][i].push(q.density * units.density);
+                (0..D).for_each(|d| values[1 + d][i].push(velocity[d]));
+                values[D + 1][i].push(q.pressure * units.pressure());
+                values[D + 2][i].push(super::snapshot::pressure_coefficient(q, &free));
+            }
+        }
+        let forth = held.to_coefficients();
+        let coefficient =
+            |row: usize, values: &[f64]| -> f64 { forth.row(row).iter().zip(values).map(|(e, v)| e * v).sum() };
+        let bare = ["density", "velocity_x", "velocity_y", "velocity_z", "pressure"];
+        let names: Vec<&str> = (0..D + 2).map(|c| if c <= D { bare[c] } else { bare[4] }).collect();
+        let mut columns: Vec<(String, Vec<f64>)> = Vec::new();
+        for (name, values) in names.iter().zip(&values) {
+            let column =
+                |row: usize, sign: f64| values.iter().map(|v| sign * coefficient(row, v)).collect::<Vec<f64>>();
+            columns.push((format!("{name}_mean"), column(0, 1.0)));
+            for m in 1..=n {
+                columns.push((format!("{name}_{m}_re"), column(m, 1.0)));
+                columns.push((format!("{name}_{m}_im"), column(n + m, -1.0)));
+            }
+        }
+        let points: Vec<[f64; 3]> = cloud.x[..rows].iter().map(Vector::to_3d).collect();
+        let columns: Vec<Column<'_>> =
+            columns.iter().map(|(name, values)| Column { name, components: 1, values }).collect();
+        write_points(&out.join("field_harmonics.vtu"), &points, &columns)?;
+        let mut names = ["x", "y", "z", "area", "cp_mean"].map(String::from).to_vec();
+        names.extend((1..=n).flat_map(|m| [format!("cp_{m}_re"), format!("cp_{m}_im")]));
+        let rows = cloud.interface_range().zip(&cloud.interface).map(|(i, wall)| {
+            let cp = &values[D + 2][i];
+            let mut row = cloud.x[i].to_3d().map(Entry::from).to_vec();
+            row.push(Entry::from(wall.area.norm()));
+            row.push(Entry::from(coefficient(0, cp)));
+            row.extend((1..=n).flat_map(|m| [coefficient(m, cp), -coefficient(n + m, cp)]).map(Entry::from));
+            row
+        });
+        let names: Vec<&str> = names.iter().map(String::as_str).collect();
+        Ok(write_csv(&out.join("surface_harmonics.csv"), &names, rows.collect::<Vec<_>>())?)
+    }
+}
