@@ -59,6 +59,11 @@ pub trait System: Sync {
     }
     /// Number of unknowns.
     fn len(&self) -> usize;
+    /// How many of the unknowns of a particle (and instance), the first ones, measure the size of a residual: the density
+    /// of a gas stands for all.
+    fn measured(&self) -> usize {
+        1
+    }
     /// True when there is nothing to evolve.
     fn is_empty(&self) -> bool {
         self.len() == 0

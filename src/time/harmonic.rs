@@ -140,6 +140,10 @@ impl<S: System> System for HarmonicBalance<'_, S> {
         self.system.len() * self.held.count()
     }
 
+    fn measured(&self) -> usize {
+        self.system.measured()
+    }
+
     fn in_time(&self) -> Option<(Instances, f64)> {
         Some((self.held, self.omega))
     }

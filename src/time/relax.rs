@@ -293,8 +293,11 @@ impl<'a, S: System> Relax<'a, S> {
     fn norm_of(&self, r: &[f64]) -> f64 {
         let (n, scale) = (self.system.block(), &self.scale);
         let instances = self.system.in_time().map_or(1, |(t, _)| t.count());
-        // the first unknown of each particle and instance (density) stands for all
-        let square = |i: usize| (0..instances).map(|k| r[i * n + k * n / instances].powi(2)).sum::<f64>();
+        let (width, measured) = (n / instances, self.system.measured());
+        let square = |i: usize| {
+            let row = r[i * n..(i + 1) * n].chunks_exact(width);
+            row.map(|r| r[..measured].iter().map(|r| r * r).sum::<f64>()).sum::<f64>()
+        };
         let total = sum(scale.len(), |i| square(i) * scale[i].powi(2));
         (total / (scale.len() * instances) as f64).sqrt()
     }
