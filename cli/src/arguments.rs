@@ -49,6 +49,10 @@ pub(crate) enum Command {
     Resume(Resume),
     /// Write the report of a run again.
     Report(Report),
+    /// Compute generalised aerodynamic forces: lift and moment of plunge and pitch at a list of reduced frequencies.
+    Gaf(Gaf),
+    /// Set two runs of a periodic flow side by side: loads, harmonics, walls, cost.
+    Compare(Compare),
     /// Compare the solver with theory and experiment.
     #[command(after_help = VERIFY_CODES)]
     Verify(Verify),
@@ -120,6 +124,30 @@ pub(crate) struct Resume {
 pub(crate) struct Report {
     /// Folder of the run.
     pub(crate) run: PathBuf,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Gaf {
+    /// Case file with a table `[gaf]`.
+    pub(crate) case: PathBuf,
+    /// Folder for the matrices and the runs.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) threads: Threads,
+    #[command(flatten)]
+    pub(crate) verbosity: Verbosity,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Compare {
+    /// Folder of a run.
+    pub(crate) a: PathBuf,
+    /// Folder of the run it is measured against.
+    pub(crate) b: PathBuf,
+    /// Folder for the page and the table; default: `comparison`.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]

@@ -22,6 +22,23 @@ pub(super) fn contradictions(draft: &mut Draft<'_>) {
     time(draft);
     super::motion_check::contradictions(draft, dimension);
     super::motion_check::viscosity(draft);
+    generalised_forces(draft);
+}
+
+/// Modes have what they need.
+fn generalised_forces(draft: &mut Draft<'_>) {
+    if draft.get("gaf").is_none_or(Value::is_null) {
+        return;
+    }
+    if !draft.given("body") {
+        draft.fail_key("gaf", "`[gaf]` needs a body").hint("add a `[[body]]`");
+    }
+    let pitches = draft.get("gaf.modes").and_then(Value::as_array).is_some_and(|m| m.iter().any(|m| m == "pitch"));
+    if pitches && !draft.given("gaf.pivot") {
+        draft
+            .fail_key("gaf", "`[gaf]` pitches about no point")
+            .hint("add `pivot = [0.25, 0]`, or `modes = \"plunge\"`");
+    }
 }
 
 /// Each body has one shape, a name of its own and sensible digits.

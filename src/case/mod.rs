@@ -9,6 +9,7 @@ mod draft;
 mod error;
 mod flow;
 pub mod formula;
+mod gaf;
 mod keys;
 mod motion;
 mod motion_check;
@@ -27,6 +28,7 @@ mod write;
 
 pub use error::{CaseError, CaseErrors};
 pub use flow::{FreeStreamScales, ViscosityLaw, Viscous, Wall};
+pub use gaf::{Gaf, Mode};
 pub use motion::{
     BodyMotion, Motion, MotionFormula, MotionTable, ParticleMotion, Pitch, Plunge, Rotation, Translation,
 };
@@ -78,6 +80,8 @@ pub struct Case {
     /// Reference curves that the report draws beside the result.
     #[serde(default)]
     pub compare: Vec<Compare>,
+    /// What `alula gaf` computes.
+    pub gaf: Option<Gaf>,
 }
 
 /// Free stream: either `mach` alone (nondimensional: density 1, sound speed 1) or dimensional values.

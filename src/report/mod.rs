@@ -10,6 +10,7 @@ pub mod axes;
 pub mod canvas;
 pub mod chart;
 pub mod colour;
+pub mod compare;
 mod contour;
 mod files;
 mod font;
@@ -23,6 +24,7 @@ pub mod verification;
 
 pub use chart::{Axis, Chart, Marks, Series};
 pub use colour::Colormap;
+pub use compare::Comparison;
 pub use html::write_report;
 pub use picture::{Dots, PictureStyle, Raster, Scatter, raster_png, scatter_png};
 pub use surface::{Shell, SurfaceStyle, surface_png};

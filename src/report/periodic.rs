@@ -19,7 +19,7 @@ pub(super) fn motion(run: &RunFolder) -> String {
     let mut html = run.table("history.csv").map(|t| in_time(&t)).unwrap_or_default();
     html.push_str(&strip(run));
     if let Ok(table) = run.table("loops.csv") {
-        html.push_str(&loops(&table));
+        html.push_str(&loops(&table, run.table("instances.csv").ok().as_ref()));
     }
     if let Ok(harmonics) = run.json("harmonics.json") {
         html.push_str(&harmonics_table(&harmonics));
@@ -59,17 +59,20 @@ fn strip(run: &RunFolder) -> String {
     }
 }
 
-fn loops(table: &Table) -> String {
+fn loops(table: &Table, instances: Option<&Table>) -> String {
     let moved = |values: &Vec<f64>| values.iter().any(|v| v.abs() > STILL);
-    let angle = table.numbers("angle_deg").filter(moved).map(|x| (x, "angle, degrees"));
-    let motion = angle.or_else(|| table.numbers("shift").filter(moved).map(|x| (x, "displacement")));
-    let Some((mut x, label)) = motion else { return String::new() };
+    let angle = table.numbers("angle_deg").filter(moved).map(|x| (x, "angle_deg", "angle, degrees"));
+    let motion = angle.or_else(|| table.numbers("shift").filter(moved).map(|x| (x, "shift", "displacement")));
+    let Some((mut x, moves, label)) = motion else { return String::new() };
     // the last point is followed by the first
     x.extend(x.first().copied());
     let one = |(column, name): (&str, &str)| {
         let mut y = table.numbers(column)?;
         y.extend(y.first().copied());
-        let series = vec![Series { name: name.to_owned(), marks: Marks::Line, x: x.clone(), y }];
+        let mut series = vec![Series { name: name.to_owned(), marks: Marks::Line, x: x.clone(), y }];
+        if let Some((x, y)) = instances.and_then(|t| t.numbers(moves).zip(t.numbers(column))) {
+            series.push(Series { name: "instances".to_owned(), marks: Marks::Dots, x, y });
+        }
         let chart =
             Chart { title: format!("{name} over one period"), x: Axis::linear(label), y: Axis::linear(name), series };
         Some(chart_html(&chart))

@@ -31,6 +31,10 @@ const MORE: usize = 2;
 const WINDOW: usize = 5;
 /// Orders by which the residual must have fallen before loads are looked at.
 const FALLEN: f64 = 2.0;
+/// Iterations without a new smallest residual, smaller by the part `PROGRESS`, after which a relaxation is given up.
+const PATIENCE: u32 = 50;
+/// See `PATIENCE`.
+const PROGRESS: f64 = 0.97;
 /// Samples of the loops.
 const SAMPLES: usize = 256;
 /// Part of a length or radian by which a motion may miss itself a period later.
@@ -196,6 +200,7 @@ fn converge<const D: usize>(
     let mut work = fluid.work();
     let mut recent: Vec<Vec<f64>> = Vec::new();
     let mut reached = !fresh && relax.drop() <= goal;
+    let mut best = (f64::INFINITY, relax.iteration);
     while !reached && relax.iteration < plan.iterations {
         let step = match relax.advance() {
             Ok(step) => step,
@@ -219,6 +224,17 @@ fn converge<const D: usize>(
             recent.push(series.iter().flat_map(|s| s.coefficients().to_vec()).collect());
         }
         reached = step.residual <= goal || (step.residual <= 10f64.powf(-FALLEN) && still(&recent, plan.tolerance));
+        if step.residual < PROGRESS * best.0 {
+            best = (step.residual, relax.iteration);
+        } else if !reached && relax.iteration > best.1 + PATIENCE {
+            journal.note(&format!(
+                "the residual has not fallen for {PATIENCE} iterations at {:.2} orders: with {} harmonics the flow has no periodic \
+                 state that the relaxation can find",
+                -relax.drop().log10(),
+                balance.instances().harmonics()
+            ));
+            break;
+        }
         if journal.stopped() && !reached {
             journal.save(at, 0.0, &relax.u, relax.resume())?;
             return Ok(None);
@@ -332,19 +348,20 @@ impl<const D: usize> Periodic<'_, D> {
                 motion: super::solve::motion(self.fluid, part * period),
             });
         }
-        journal.instances = frames
-            .iter()
-            .enumerate()
-            .map(|(n, f)| {
-                let phase = std::f64::consts::TAU * n as f64 / frames.len() as f64;
-                (f.time / period, [cl.at(phase), cd.at(phase), cm.at(phase)])
-            })
-            .collect();
+        let instance = |frame: &Frame<D>| {
+            let phase = std::f64::consts::TAU * frame.time / period;
+            let [angle, x, y, z] = super::solve::motion(self.fluid, frame.time);
+            let shift = [x, y, z].into_iter().find(|s| s.abs() > 0.0).unwrap_or(0.0);
+            [frame.time / period, angle.to_degrees(), shift, cl.at(phase), cd.at(phase), cm.at(phase)]
+        };
+        journal.instances = frames.iter().map(instance).collect();
     }
 
     /// Fields at phases, coefficients in time of walls and field.
     fn write(&self, journal: &Journal<'_>, solver: &Solver<D>, period: f64) -> Result<(), RunError> {
         let (case, out) = (journal.case(), journal.out());
+        let rows = journal.instances.iter().map(|row| row.map(Entry::from).to_vec());
+        write_csv(&out.join("instances.csv"), &["phase", "angle_deg", "shift", "cl", "cd", "cm"], rows)?;
         let mut one = vec![0.0; self.fluid.len()];
         let mut work = self.fluid.work();
         let mut moment = |part: f64, work: &mut crate::scheme::Work<D>| {

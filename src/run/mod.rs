@@ -7,6 +7,7 @@
 pub mod balance;
 mod folder;
 mod friction;
+pub mod gaf;
 mod inspect;
 mod measure;
 mod outputs;

@@ -139,6 +139,7 @@ impl<'a, const D: usize> Finished<'a, D> {
             cpu_seconds: cpu,
             wall_seconds: wall,
             peak_bytes: peak_bytes(),
+            chord: self.axes.chord,
             loads,
             loads_pressure: part(&pressure),
             loads_friction: part(&friction),

@@ -76,8 +76,8 @@ pub(super) struct Journal<'a> {
     pub(super) evaluations: u64,
     /// What a harmonic balance found about itself.
     pub(super) balance: Option<BalanceReport>,
-    /// Parts of the period and loads at the instances of a harmonic balance.
-    pub(super) instances: Vec<(f64, [f64; 3])>,
+    /// Part of the period, angle, displacement and loads at the instances of a harmonic balance.
+    pub(super) instances: Vec<[f64; 6]>,
     /// What re-clouding did so far, where particles travel with the fluid.
     pub(super) turnover: Turnover,
 }

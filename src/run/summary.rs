@@ -29,6 +29,8 @@ pub struct Summary {
     pub wall_seconds: f64,
     /// Greatest memory of the process; 0 where the system does not tell.
     pub peak_bytes: u64,
+    /// Chord of the load coefficients.
+    pub chord: f64,
     /// Loads from wall pressure and friction.
     pub loads: Coefficients,
     /// The part of the pressure, where the gas has viscosity.

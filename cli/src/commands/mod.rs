@@ -9,7 +9,9 @@ use crate::output;
 
 mod check;
 mod cloud;
+mod compare;
 mod completions;
+mod gaf;
 mod new;
 mod report;
 mod resume;
@@ -25,7 +27,9 @@ pub(crate) fn dispatch(cli: Cli) -> Outcome {
         Command::Check(args) => check::check(&args),
         Command::Cloud(args) => threaded(args.threads, || cloud::cloud(&args)),
         Command::Resume(args) => threaded(args.threads, || resume::resume(&args)),
+        Command::Gaf(args) => threaded(args.threads, || gaf::gaf(&args)),
         Command::Report(args) => report::report(&args),
+        Command::Compare(args) => compare::compare(&args),
         Command::Verify(args) => threaded(args.threads, || verify::verify(&args)),
         Command::Schema(args) => schema::schema(&args),
         Command::Completions(args) => completions::completions(&args),

@@ -1,0 +1,317 @@
+//! Two runs of a periodic flow side by side: loads over the period, harmonics, walls, cost.
+//!
+//! The second run is the reference. With first harmonics Â of the first and B̂ of the second run, e_1 = |Â − B̂|/|B̂|,
+//! e_0 is the difference of the means over |B̂|, and e_∞ the greatest difference over the period over half the range of the
+//! reference. Times are those since phase zero of the motion, which is the same in both.
+use std::path::{Path, PathBuf};
+
+use num_complex::Complex64;
+use serde_json::Value;
+
+use super::chart::{Axis, Chart, Marks, Series};
+use super::files::{RunFolder, Table};
+use super::html::page;
+use super::sections::{chart_html, number, table_html};
+use super::{ReportError, escape, write_file};
+
+/// Loads: column, name.
+const LOADS: [(&str, &str); 3] = [("cl", "CL"), ("cd", "CD"), ("cm", "CM")];
+/// Harmonics in the table.
+const SHOWN: usize = 3;
+
+/// How one load of two runs differs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LoadDifference {
+    /// Name.
+    pub name: &'static str,
+    /// Means.
+    pub mean: [f64; 2],
+    /// Harmonics 1, 2, ... of both.
+    pub harmonics: Vec<[Complex64; 2]>,
+    /// Difference of the means over the first harmonic of the reference.
+    pub e0: f64,
+    /// Difference of the first harmonics (complex) over that of the reference.
+    pub e1: f64,
+    /// Greatest difference over the period over half the range of the reference.
+    pub largest: f64,
+    /// Root mean square of it.
+    pub rms: f64,
+}
+
+/// Two runs side by side.
+#[derive(Clone, Debug)]
+pub struct Comparison {
+    /// Folders.
+    pub runs: [PathBuf; 2],
+    /// Loads.
+    pub loads: Vec<LoadDifference>,
+    /// Processor seconds.
+    pub cpu: [f64; 2],
+    /// Particles.
+    pub particles: [f64; 2],
+    /// Root mean square and greatest difference of the wall pressure coefficient at the end of the period, when both runs
+    /// have the same wall particles.
+    pub wall: Option<[f64; 2]>,
+    charts: Vec<Chart>,
+}
+
+impl Comparison {
+    /// Reads two run folders; every reason why they cannot be compared is told.
+    pub fn of(a: &Path, b: &Path) -> Result<Self, String> {
+        let runs = [RunFolder::new(a), RunFolder::new(b)];
+        let read = |run: &RunFolder| {
+            let told = |e: String| format!("{}: {e}", run.path.display());
+            let summary = run.json("summary.json").map_err(told)?;
+            let harmonics = run.json("harmonics.json").map_err(told)?;
+            let loops = run.table("loops.csv").map_err(told)?;
+            Ok((summary, harmonics, loops))
+        };
+        let (first, second) = match runs.each_ref().map(read) {
+            [Ok(a), Ok(b)] => (a, b),
+            all => {
+                let problems: Vec<String> = all.into_iter().filter_map(Result::err).collect();
+                let hint = "both must be finished runs of a motion that repeats";
+                return Err(format!("{}\nhint: {hint}", problems.join("\n")));
+            }
+        };
+        let omegas = [&first.1, &second.1].map(|h| h["omega"].as_f64().unwrap_or(f64::NAN));
+        if (omegas[0] / omegas[1] - 1.0).abs() > 1e-6 || omegas.iter().any(|o| o.is_nan()) {
+            return Err(format!(
+                "the runs have the angular frequencies {} and {}\nhint: compare runs of the same motion",
+                omegas[0], omegas[1]
+            ));
+        }
+        let loads = LOADS.iter().filter_map(|load| difference(load, [&first, &second])).collect();
+        let both = |f: &dyn Fn(&Value) -> Option<f64>| [&first.0, &second.0].map(|s| f(s).unwrap_or(f64::NAN));
+        let names = [a, b].map(|p| p.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned()));
+        let instances = [runs[0].table("instances.csv").ok(), runs[1].table("instances.csv").ok()];
+        Ok(Self {
+            loads,
+            cpu: both(&|s| s["cpu_seconds"].as_f64()),
+            particles: both(&|s| s["particles"].as_f64()),
+            wall: walls(&runs),
+            charts: charts(&names, [&first.2, &second.2], &instances),
+            runs: [a.to_path_buf(), b.to_path_buf()],
+        })
+    }
+
+    /// The comparison as lines of text.
+    pub fn text(&self) -> String {
+        let mut text = format!("a = {}\nb = {} (the reference)\n\n", self.runs[0].display(), self.runs[1].display());
+        text.push_str("load       mean a      mean b      |1| a       |1| b       amplitude  phase      e0        e1        e max\n");
+        for l in &self.loads {
+            let [a, b] = l.harmonics.first().copied().unwrap_or_default();
+            text.push_str(&format!(
+                "{:<6} {:>11.5} {:>11.5} {:>11.5} {:>11.5} {:>+9.2} % {:>+7.2}° {:>8.2} % {:>7.2} % {:>7.2} %\n",
+                l.name,
+                l.mean[0],
+                l.mean[1],
+                a.norm(),
+                b.norm(),
+                100.0 * (a.norm() / b.norm() - 1.0),
+                (a / b).arg().to_degrees(),
+                100.0 * l.e0,
+                100.0 * l.e1,
+                100.0 * l.largest
+            ));
+        }
+        match self.wall {
+            Some([rms, most]) => {
+                text.push_str(&format!(
+                    "\nwall Cp at the end of the period: differs by {rms:.4} (root mean square), {most:.4} at most\n"
+                ));
+            }
+            None => text.push_str("\nwall Cp: the runs have different wall particles\n"),
+        }
+        let [a, b] = self.cpu;
+        text.push_str(&format!(
+            "processor time: {a:.1} s and {b:.1} s for {} and {} particles: a is {:.2} times as fast\n",
+            self.particles[0],
+            self.particles[1],
+            b / a
+        ));
+        text
+    }
+
+    /// The comparison as comma-separated values.
+    pub fn csv(&self) -> String {
+        let mut text =
+            "# harmonics f_n of f(t) = mean + Re sum f_n exp(+i n omega t), time from phase zero of the motion\n\
+                        load,quantity,a,b\n"
+                .to_owned();
+        for l in &self.loads {
+            text.push_str(&format!("{},mean,{},{}\n", l.name, l.mean[0], l.mean[1]));
+            for (k, [a, b]) in l.harmonics.iter().enumerate() {
+                let n = k + 1;
+                text.push_str(&format!("{0},re {n},{1},{2}\n{0},im {n},{3},{4}\n", l.name, a.re, b.re, a.im, b.im));
+            }
+            for (name, value) in [("e0", l.e0), ("e1", l.e1), ("e_max", l.largest), ("e_rms", l.rms)] {
+                text.push_str(&format!("{},{name},{value},\n", l.name));
+            }
+        }
+        text.push_str(&format!("cost,cpu_seconds,{},{}\n", self.cpu[0], self.cpu[1]));
+        text
+    }
+
+    /// Writes `comparison.html` and `comparison.csv` into a folder.
+    pub fn write(&self, folder: &Path) -> Result<PathBuf, ReportError> {
+        std::fs::create_dir_all(folder).map_err(|source| ReportError::Io {
+            action: "make",
+            path: folder.to_path_buf(),
+            source,
+        })?;
+        write_file(&folder.join("comparison.csv"), self.csv().as_bytes())?;
+        let mut body = format!(
+            "<header>\n<h1>Comparison</h1>\n<p>a = <code>{}</code>, b = <code>{}</code> (the reference)</p>\n</header>\n",
+            escape(&self.runs[0].display().to_string()),
+            escape(&self.runs[1].display().to_string())
+        );
+        body.push_str(&format!("<section>\n<h2>Loads</h2>\n{}", self.tables()));
+        self.charts.iter().for_each(|chart| body.push_str(&chart_html(chart)));
+        body.push_str("</section>\n");
+        let path = folder.join("comparison.html");
+        write_file(&path, page("Comparison", &body).as_bytes())?;
+        Ok(path)
+    }
+
+    fn tables(&self) -> String {
+        let percent = |v: f64| format!("{} %", number(100.0 * v));
+        let row = |l: &LoadDifference| {
+            let [a, b] = l.harmonics.first().copied().unwrap_or_default();
+            vec![
+                l.name.to_owned(),
+                number(l.mean[0]),
+                number(l.mean[1]),
+                number(a.norm()),
+                number(b.norm()),
+                percent(a.norm() / b.norm() - 1.0),
+                number((a / b).arg().to_degrees()),
+                percent(l.e0),
+                percent(l.e1),
+                percent(l.largest),
+            ]
+        };
+        let columns = [
+            "load",
+            "mean a",
+            "mean b",
+            "first harmonic a",
+            "first harmonic b",
+            "amplitude",
+            "phase, degrees",
+            "e0",
+            "e1",
+            "greatest",
+        ];
+        let mut html = table_html(&columns, self.loads.iter().map(row));
+        let [a, b] = self.cpu;
+        let cost = [
+            vec!["processor time, s".to_owned(), number(a), number(b)],
+            vec!["particles".to_owned(), number(self.particles[0]), number(self.particles[1])],
+            vec!["a is faster by".to_owned(), number(b / a), String::new()],
+        ];
+        html.push_str(&table_html(&["", "a", "b"], cost.into_iter()));
+        html
+    }
+}
+
+/// One load of both runs: (summary, harmonics, loops) each.
+fn difference((key, name): &(&str, &'static str), runs: [&(Value, Value, Table); 2]) -> Option<LoadDifference> {
+    let mean = runs.map(|r| r.1["loads"][key]["mean"].as_f64());
+    let mean = [mean[0]?, mean[1]?];
+    let term = |r: &(Value, Value, Table), k: usize| {
+        let h = &r.1["loads"][key]["harmonics"][k];
+        Some(Complex64::new(h["re"].as_f64()?, h["im"].as_f64()?))
+    };
+    let harmonics: Vec<[Complex64; 2]> =
+        (0..SHOWN).map_while(|k| Some([term(runs[0], k)?, term(runs[1], k)?])).collect();
+    let [a, b] = *harmonics.first()?;
+    let (x, y) = (runs[0].2.numbers(key)?, runs[1].2.numbers(key)?);
+    let low = y.iter().copied().fold(f64::INFINITY, f64::min);
+    let high = y.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let differences: Vec<f64> =
+        if x.len() == y.len() { x.iter().zip(&y).map(|(a, b)| (a - b).abs()).collect() } else { Vec::new() };
+    let half = 0.5 * (high - low);
+    let largest = differences.iter().copied().reduce(f64::max).unwrap_or(f64::NAN) / half;
+    let square = differences.iter().map(|d| d * d).sum::<f64>() / differences.len() as f64;
+    let (e0, e1) = ((mean[0] - mean[1]).abs() / b.norm(), (a - b).norm() / b.norm());
+    Some(LoadDifference { name, mean, harmonics, e0, e1, largest, rms: square.sqrt() / half })
+}
+
+/// Differences of the wall pressure where both runs have the same wall particles.
+fn walls(runs: &[RunFolder; 2]) -> Option<[f64; 2]> {
+    let tables = [runs[0].table("surface.csv").ok()?, runs[1].table("surface.csv").ok()?];
+    let column = |name: &str| Some([tables[0].numbers(name)?, tables[1].numbers(name)?]);
+    let ([x, y], [cp_a, cp_b]) = (column("x_c")?, column("cp")?);
+    let same = x.len() == y.len() && x.iter().zip(&y).all(|(a, b)| (a - b).abs() < 1e-9);
+    if !same || x.is_empty() {
+        return None;
+    }
+    let differences: Vec<f64> = cp_a.iter().zip(&cp_b).map(|(a, b)| (a - b).abs()).collect();
+    let square = differences.iter().map(|d| d * d).sum::<f64>() / differences.len() as f64;
+    Some([square.sqrt(), differences.iter().copied().fold(0.0, f64::max)])
+}
+
+fn charts(names: &[String; 2], loops: [&Table; 2], instances: &[Option<Table>; 2]) -> Vec<Chart> {
+    let moved = |values: &Vec<f64>| values.iter().any(|v| v.abs() > 0.0);
+    let angle = loops[0].numbers("angle_deg").is_some_and(|v| moved(&v));
+    let (motion, label) = if angle { ("angle_deg", "angle, degrees") } else { ("shift", "displacement") };
+    let one = |(column, name): &(&str, &str)| {
+        let mut series = Vec::new();
+        for (table, run) in loops.iter().zip(names) {
+            let (mut x, mut y) = (table.numbers(motion)?, table.numbers(column)?);
+            x.extend(x.first().copied());
+            y.extend(y.first().copied());
+            series.push(Series { name: run.clone(), marks: Marks::Line, x, y });
+        }
+        for table in instances.iter().flatten() {
+            let (x, y) = (table.numbers(motion)?, table.numbers(column)?);
+            series.push(Series { name: "instances".into(), marks: Marks::Dots, x, y });
+        }
+        let title = format!("{name} over one period");
+        Some(Chart { title, x: Axis::linear(label), y: Axis::linear(name), series })
+    };
+    LOADS.iter().filter_map(one).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::html::tests::assert_balanced;
+
+    fn run(folder: &Path, amplitude: f64, cpu: f64) {
+        std::fs::create_dir_all(folder).unwrap();
+        let write = |name: &str, text: &str| std::fs::write(folder.join(name), text).unwrap();
+        let load = format!("{{\"mean\":0.1,\"harmonics\":[{{\"re\":0.0,\"im\":-{amplitude}}}]}}");
+        write("harmonics.json", &format!("{{\"omega\":2.0,\"loads\":{{\"cl\":{load},\"cd\":{load},\"cm\":{load}}}}}"));
+        write("summary.json", &format!("{{\"cpu_seconds\":{cpu},\"particles\":100}}"));
+        let rows = (0..8).map(|k| {
+            let phase = f64::from(k) / 8.0;
+            let sine = (phase * std::f64::consts::TAU).sin();
+            let load = 0.1 + amplitude * sine;
+            format!("{phase},{sine},0,{load},{load},{load}\n")
+        });
+        write("loops.csv", &format!("phase,angle_deg,shift,cl,cd,cm\n{}", rows.collect::<String>()));
+        write("surface.csv", "x_c,cp\n0.1,1\n0.2,0.5\n");
+    }
+
+    #[test]
+    fn two_runs_are_set_side_by_side() {
+        let root = tempfile::tempdir().unwrap();
+        let (a, b) = (root.path().join("a"), root.path().join("b"));
+        run(&a, 1.01, 2.0);
+        run(&b, 1.0, 20.0);
+        let found = Comparison::of(&a, &b).unwrap();
+        assert_eq!(found.loads.len(), 3);
+        let lift = &found.loads[0];
+        assert!((lift.e1 - 0.01).abs() < 1e-12 && lift.e0 == 0.0 && (lift.largest - 0.01).abs() < 1e-12, "{lift:?}");
+        assert_eq!(found.wall, Some([0.0, 0.0]));
+        let text = found.text();
+        assert!(text.contains("10.00 times as fast") && text.contains("+1.00 %"), "{text}");
+        let page = std::fs::read_to_string(found.write(&root.path().join("c")).unwrap()).unwrap();
+        assert_balanced(&page);
+        assert!(root.path().join("c/comparison.csv").is_file());
+        let missing = Comparison::of(&a, &root.path().join("nothing")).unwrap_err();
+        assert!(missing.contains("nothing") && missing.contains("hint"), "{missing}");
+    }
+}
