@@ -48,8 +48,8 @@ static HARMONICS: Table = Table {
             "tolerance",
             Kind::Number(Range { min: 0.0, max: 0.1, closed: false }),
             Absent::Number(1e-4),
-            "The run also ends when the residual has fallen by two orders and mean and harmonics of the loads have changed by \
-             less than this part of the first harmonic over five iterations.",
+            "Mean and harmonics of lift and moment must change by less than this part of the first harmonic: in the last \
+             iteration, or over five iterations when the residual has fallen by two orders only.",
         ),
         Field::defaulted(
             "iterations",

@@ -223,7 +223,9 @@ fn converge<const D: usize>(
         if let Some(series) = &series {
             recent.push(series.iter().flat_map(|s| s.coefficients().to_vec()).collect());
         }
-        reached = step.residual <= goal || (step.residual <= 10f64.powf(-FALLEN) && still(&recent, plan.tolerance));
+        // a small motion hardly shows in the residual: its loads must have settled as well
+        reached = (step.residual <= goal && still(&recent, 1, plan.tolerance))
+            || (step.residual <= 10f64.powf(-FALLEN) && still(&recent, WINDOW, plan.tolerance));
         if step.residual < PROGRESS * best.0 {
             best = (step.residual, relax.iteration);
         } else if !reached && relax.iteration > best.1 + PATIENCE {
@@ -247,11 +249,15 @@ fn converge<const D: usize>(
     Ok(Some(relax.u))
 }
 
-/// True when no mean and no harmonic of a load has changed by more than `tolerance` times the first harmonic of that load.
-fn still(recent: &[Vec<f64>], tolerance: f64) -> bool {
-    let Some(last) = recent.last().filter(|_| recent.len() > WINDOW) else { return false };
+/// True when over a number of iterations no mean and no harmonic of a load has changed by more than `tolerance` times the
+/// first harmonic of that load; bodies without loads are always still.
+fn still(recent: &[Vec<f64>], iterations: usize, tolerance: f64) -> bool {
+    let Some(last) = recent.last() else { return true };
+    if recent.len() <= iterations {
+        return false;
+    }
     let count = last.len() / 3;
-    let window = &recent[recent.len() - 1 - WINDOW..];
+    let window = &recent[recent.len() - 1 - iterations..];
     // drag is of second order in the motion: lift and moment decide
     [0, 2].iter().all(|load| {
         let part = |v: &[f64], k: usize| v[load * count + k];
