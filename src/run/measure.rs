@@ -62,6 +62,11 @@ impl Measured {
             Metric::DragPhase => self.drag().map(|c| c.arg().to_degrees()),
             Metric::LiftLoopDifference => self.loop_difference(claim, folder, other, ("CL", |l| &l.cl)),
             Metric::DragLoopDifference => self.loop_difference(claim, folder, other, ("CD", |l| &l.cd)),
+            Metric::LiftHarmonicError => {
+                let other = other.ok_or_else(no_other)?.lift()?;
+                Ok((self.lift()? - other).norm() / other.norm())
+            }
+            Metric::LiftMeanError => self.lift_mean_error(other.ok_or_else(no_other)?),
             Metric::Strouhal => self.cycles().map(|c| c.frequency * self.chord() / self.case.flow.reference().speed),
             Metric::CycleSpread => self.cycles().map(|c| c.spread),
             Metric::MeanCd => self.cycles().map(|c| c.mean_cd),
@@ -108,6 +113,19 @@ impl Measured {
         let first = self.summary.first_harmonics.first();
         let [re, im] = first.map(load).ok_or("no motion repeats in this case")?;
         Ok(Complex64::new(re, im))
+    }
+
+    /// Difference of the means of the lift over the first harmonic of the other.
+    fn lift_mean_error(&self, other: &Self) -> Value {
+        let mean = |v: &[f64]| v.iter().sum::<f64>() / v.len().max(1) as f64;
+        let (own, far) = (&self.loops.cl, &other.loops.cl);
+        let turn = |k: usize| Complex64::cis(-std::f64::consts::TAU * k as f64 / far.len().max(1) as f64);
+        let first: Complex64 = far.iter().enumerate().map(|(k, v)| turn(k) * *v).sum();
+        let first = 2.0 * first.norm() / far.len().max(1) as f64;
+        if own.is_empty() || first == 0.0 {
+            return Err("a run has no whole period of a motion that repeats".into());
+        }
+        Ok((mean(own) - mean(far)).abs() / first)
     }
 
     /// Difference of one load over the last period to a file or another case.
@@ -339,6 +357,10 @@ impl Measured {
         let found = self.field.columns.iter().find(|(n, ..)| *n == name);
         found.map(|(_, _, values)| values.as_slice()).ok_or_else(|| format!("the solution has no `{name}`"))
     }
+}
+
+fn no_other() -> String {
+    "the claim names no `other` case".into()
 }
 
 fn no_viscosity() -> String {

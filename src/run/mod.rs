@@ -4,10 +4,10 @@
 //! each cycle of adaptation. Every stage builds its cloud, takes over the state of the one before by the solver's own fit,
 //! and integrates. Checkpoints hold what a stage cannot rebuild from the case: its sources of refinement, the state, and
 //! where the integrator stands; a killed run goes on to the same bits.
-pub mod balance;
 mod folder;
 mod friction;
 pub mod gaf;
+pub mod harmonic;
 mod inspect;
 mod measure;
 mod outputs;

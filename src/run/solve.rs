@@ -1,6 +1,6 @@
 //! One stage from its start to its end: the integrator, watched.
 
-use super::balance::{BalanceReport, balance};
+use super::harmonic::{BalanceReport, balance};
 use super::outputs;
 use super::periodic::{Sample, Trace};
 use super::persist::{FILE, Position, Roaming, Saved};

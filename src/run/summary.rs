@@ -46,7 +46,7 @@ pub struct Summary {
     pub loads_momentum_balance: Option<Coefficients>,
     /// What a harmonic balance found about itself.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub harmonic_balance: Option<super::balance::BalanceReport>,
+    pub harmonic_balance: Option<super::harmonic::BalanceReport>,
     /// Conservation.
     pub ledger: Ledger,
     /// Physical time at the end of a march.

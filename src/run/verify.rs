@@ -125,7 +125,14 @@ impl Walk {
         let claims = folder.claims.claims.iter().filter(|c| !(fast && is_extrapolation(c.metric)));
         let mut rows = Vec::new();
         for claim in claims {
-            rows.push(row(claim, &folder.name, self.measure(claim, &folder, monitor)));
+            let value = match &claim.case {
+                Some(file) => folder
+                    .beside(file)
+                    .map_err(|e| e.to_string())
+                    .and_then(|other| self.measure(claim, &other, monitor)),
+                None => self.measure(claim, &folder, monitor),
+            };
+            rows.push(row(claim, &folder.name, value));
             if monitor.stop() {
                 return None;
             }
@@ -158,7 +165,9 @@ impl Walk {
 
     /// Runs the case that a claim compares with: that of another folder, or another file of this one.
     fn other(&mut self, name: &str, here: &Folder, monitor: &mut dyn Monitor) -> Result<(String, u64), String> {
-        let folder = if name.ends_with(".toml") {
+        let folder = if name == FILES[0] {
+            Folder::read(&here.path).map_err(|e| e.to_string())?
+        } else if name.ends_with(".toml") {
             here.beside(name).map_err(|e| e.to_string())?
         } else {
             let found = self.folders.iter().find(|f| f.name == name).cloned();

@@ -63,6 +63,8 @@ pub struct Claim {
     pub file: Option<String>,
     /// Named exact solution, for metrics that compare with one.
     pub exact: Option<Exact>,
+    /// Another case file of the same folder that is measured instead of `case.toml`.
+    pub case: Option<String>,
     /// Another case folder whose result is the reference, for metrics that compare two runs.
     pub other: Option<String>,
     /// Box of samples or wall particles the metric is restricted to: corners of smallest and largest coordinates.
@@ -196,6 +198,10 @@ metrics! {
     LiftLoopDifference = "lift_loop_difference",
     /// The same of the drag (column `CD`).
     DragLoopDifference = "drag_loop_difference",
+    /// |Â_1 − B̂_1|/|B̂_1| for the first harmonics (complex) of the lift of this case and of the case `other`.
+    LiftHarmonicError = "lift_harmonic_error",
+    /// Difference of the means of the lift over the first harmonic of the case `other`.
+    LiftMeanError = "lift_mean_error",
     /// Frequency of the lift over the last whole cycles of a march, times chord over speed of the stream.
     Strouhal = "strouhal",
     /// Longest less shortest of those cycles over their mean.
