@@ -12,6 +12,8 @@ use crate::observe::table::{Entry, write_csv, write_json};
 
 /// Harmonics that are reported.
 const HARMONICS: usize = 5;
+/// Part of a period within which two times are the same.
+const SAME_TIME: f64 = 1e-9;
 /// Points of a loop.
 const POINTS: usize = 256;
 /// Smallest amplitude of a motion, in radians or lengths, that loads are measured against.
@@ -43,6 +45,19 @@ pub struct Change {
     pub mean: f64,
     /// Greatest change of a first harmonic over itself.
     pub first_harmonic: f64,
+}
+
+/// Loads over the last period of the motion.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct LastPeriod {
+    /// Mean of the lift.
+    pub mean_cl: f64,
+    /// Greatest lift.
+    pub peak_cl: f64,
+    /// Mean of the drag.
+    pub mean_cd: f64,
+    /// Greatest drag.
+    pub peak_cd: f64,
 }
 
 /// First harmonics of the loads over that of one part of the motion: real and imaginary parts.
@@ -85,6 +100,25 @@ impl Trace {
             FirstHarmonics { motion: name, cl, cd, cm }
         });
         all.collect()
+    }
+
+    /// Loads of the last period, linear in time between steps; `None` while there is no whole one.
+    pub(super) fn last_period(&self, period: f64) -> Option<LastPeriod> {
+        let time = self.column(|m| m.time);
+        let end = *time.last()?;
+        // the first sample lies one step after the start of the march
+        let first = time.partition_point(|t| *t < end - period * (1.0 + SAME_TIME));
+        if first == 0 && end < period * (1.0 - SAME_TIME) {
+            return None;
+        }
+        let (cl, cd) = (self.column(|m| m.loads.cl), self.column(|m| m.loads.cd));
+        let of = |v: &[f64]| {
+            let (t, v) = (&time[first..], &v[first..]);
+            let area: f64 = t.windows(2).zip(v.windows(2)).map(|(t, v)| 0.5 * (t[1] - t[0]) * (v[0] + v[1])).sum();
+            (area / (end - t[0]), v.iter().copied().fold(f64::NEG_INFINITY, f64::max))
+        };
+        let ((mean_cl, peak_cl), (mean_cd, peak_cd)) = (of(&cl), of(&cd));
+        (end > time[first]).then_some(LastPeriod { mean_cl, peak_cl, mean_cd, peak_cd })
     }
 
     /// Cycles of the lift at the end of the history, whether or not a motion prescribes them.

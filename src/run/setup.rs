@@ -157,6 +157,7 @@ pub(super) fn solver<const D: usize>(
         reconstruction: Reconstruction {
             second_order: scheme.order == 2,
             kappa: scheme.kappa,
+            low_mach: scheme.low_mach,
             threshold: scheme.limiter_threshold,
         },
         conservative,

@@ -484,7 +484,7 @@ mod tests {
         let mut operators = Operators::new(&cloud);
         conservative(&mut cloud, &mut operators);
         let shape = Arc::new(Shape::new(cloud, operators));
-        let reconstruction = Reconstruction { second_order: true, kappa: 0.0, threshold: 0.02 };
+        let reconstruction = Reconstruction { second_order: true, kappa: 0.0, threshold: 0.02, low_mach: false };
         let held: Field<2> = Arc::new(|x| Still.state(x, &Vector::ZERO));
         let carriage = Carriage::Still;
         let (gas, flux, limiter) = (Gas { gamma: 1.4 }, Flux::Hllc, Limiter::VanAlbada);
