@@ -226,6 +226,7 @@ impl<const D: usize> Fluid<D> {
             state: &work.state,
             gradient: &work.gradient,
             velocity: &frame.velocity,
+            outer: (cloud.outer_range().start, cloud.outer_range().end),
         };
         sweep_parts(op.fluid_parts(), D + 2, du, &|k, out| {
             let start = op.parts[k].start;
