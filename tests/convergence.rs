@@ -41,7 +41,8 @@ fn the_isentropic_vortex_converges_at_second_order() {
 /// Part of its kinetic energy that a vortex at rest of Mach number 0.01 loses until sound has crossed its box five times.
 fn slow_vortex_loss(low_mach: bool) -> f64 {
     let text = vortex(0.3125, 40.0).replace("[time", &format!("low_mach = {low_mach}\n[time"));
-    let text = text.replace("strength = 5.0", "strength = 0.05").replace("[1.0, 1.0]\n[scheme]", "[0.0, 0.0]\n[scheme]");
+    let text =
+        text.replace("strength = 5.0", "strength = 0.05").replace("[1.0, 1.0]\n[scheme]", "[0.0, 0.0]\n[scheme]");
     let (fluid, u) = solver::<2>(&text);
     let energy = |u: &[f64]| -> f64 {
         u.chunks_exact(4).zip(&fluid.shape.cloud.volume).map(|(u, v)| v * (u[1] * u[1] + u[2] * u[2]) / u[0]).sum()

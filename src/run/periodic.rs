@@ -215,3 +215,28 @@ fn ratio(load: &Harmonics, motion: &Harmonics) -> Value {
         "work_per_cycle": load.work(motion),
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_last_period_has_its_mean_and_its_peak() {
+        let mut trace = Trace::default();
+        for k in 1..=250 {
+            let t = 0.02 * f64::from(k);
+            let cl = if t > 3.0 { 0.3 + (std::f64::consts::PI * t).sin() } else { 7.0 };
+            let loads = Coefficients { cl, cd: 2.0 * cl, cm: 0.0 };
+            trace.push(Sample { time: t, loads, motion: [0.0; 4] });
+        }
+        let last = trace.last_period(2.0).unwrap();
+        assert!((last.mean_cl - 0.3).abs() < 1e-12 && (last.peak_cl - 1.3).abs() < 1e-3, "{last:?}");
+        assert!((last.mean_cd - 0.6).abs() < 1e-12 && (last.peak_cd - 2.6).abs() < 2e-3, "{last:?}");
+        assert!(
+            trace.last_period(5.0).is_some_and(|p| p.peak_cl == 7.0),
+            "the first sample is one step after the start"
+        );
+        assert_eq!(trace.last_period(5.1), None);
+        assert_eq!(Trace::default().last_period(1.0), None);
+    }
+}
