@@ -420,7 +420,8 @@ static SCHEME: Table = Table::of(&[
         "low_mach",
         Kind::Flag,
         Absent::Flag(false),
-        "The jump of the velocity across an edge counts in the upwind flux in proportion to the Mach number: for slow flow.",
+        "The jump of the velocity across an edge counts in the upwind flux in proportion to the Mach number: for slow flow, with \
+         conservative coefficients.",
     ),
     Field::optional("conservative", Kind::Flag, "the solver's own choice", "Exactly conservative coefficients."),
 ]);

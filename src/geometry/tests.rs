@@ -112,7 +112,7 @@ fn circle_and_sphere_are_exact() {
 fn an_ellipse_has_its_area_its_ends_and_its_normals() {
     let ellipse = single(primitive::ellipse([0.5, 0.06]));
     assert!((ellipse.volume() / (PI * 0.5 * 0.06) - 1.0).abs() < 1e-6 && ellipse.sharp.is_empty());
-    let ends = |d: usize| ellipse.x.iter().map(|x| x[d]).fold(0.0, f64::max);
+    let ends = |d: usize| ellipse.vertices.iter().map(|x| x[d]).fold(0.0, f64::max);
     assert!(ends(0) == 0.5 && (ends(1) - 0.06).abs() < 1e-12);
     let least = ellipse.radius.iter().fold(f64::INFINITY, |a, r| a.min(*r));
     assert!((least / (0.06 * 0.06 / 0.5) - 1.0).abs() < 1e-3, "b²/a at the ends, found {least}");

@@ -225,7 +225,7 @@ mod tests {
         let mut trace = Trace::default();
         for k in 1..=250 {
             let t = 0.02 * f64::from(k);
-            let cl = if t > 3.0 { 0.3 + (std::f64::consts::PI * t).sin() } else { 7.0 };
+            let cl = if t > 2.99 { 0.3 + (std::f64::consts::PI * t).sin() } else { 7.0 };
             let loads = Coefficients { cl, cd: 2.0 * cl, cm: 0.0 };
             trace.push(Sample { time: t, loads, motion: [0.0; 4] });
         }

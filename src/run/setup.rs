@@ -38,6 +38,7 @@ pub(super) fn supported(case: &Case) -> Result<(), RunError> {
     let layered = travels && case.cloud.wall_layers.is_some();
     let bare = case.moves() && case.bodies.is_empty() && case.particles() == ParticleMotion::Deforming;
     let balanced = case.moves() && case.scheme.conservative == Some(true) && case.particles() != ParticleMotion::Rigid;
+    let slow = case.scheme.low_mach && !conserves(case);
     let asks = [
         (
             implicit,
@@ -45,6 +46,7 @@ pub(super) fn supported(case: &Case) -> Result<(), RunError> {
         ),
         (layered, "wall layers of particles that travel with the fluid (`wall_layers`, `particles = \"lagrangian\"`)"),
         (bare, "a deforming cloud without bodies (`particles = \"deforming\"`)"),
+        (slow, "slow flow without conservative coefficients (`low_mach = true` needs `conservative = true`)"),
         (balanced, "conservative coefficients on a cloud that deforms (`conservative = true`)"),
     ];
     let missing: Vec<&str> = asks.iter().filter(|a| a.0).map(|a| a.1).collect();
@@ -54,6 +56,12 @@ pub(super) fn supported(case: &Case) -> Result<(), RunError> {
     let list = missing.join(", ");
     let hint = "`alula check` and `alula cloud` accept the case; `alula run` does not yet";
     Err(RunError::Unsupported(format!("this version cannot compute {list}\nhint: {hint}")))
+}
+
+/// Exactly conservative coefficients? Weights that are fitted anew as particles move are not conservative, and linear fields count
+/// for more there than balances.
+fn conserves(case: &Case) -> bool {
+    case.scheme.conservative.unwrap_or(CONSERVATIVE && !case.moves())
 }
 
 /// One cloud of a run.
@@ -141,8 +149,7 @@ pub(super) fn solver<const D: usize>(
         None => Cloud::build(&scaled, surface, sources)?,
     };
     let field = initial::<D>(case)?;
-    // weights that are fitted anew as particles move are not conservative, and linear fields count for more than balances
-    let conservative = case.scheme.conservative.unwrap_or(CONSERVATIVE && !case.moves());
+    let conservative = conserves(case);
     let mut operators = Operators::new(&cloud);
     if conservative {
         conserve(&mut cloud, &mut operators);
