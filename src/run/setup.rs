@@ -329,3 +329,28 @@ pub(super) fn control(steady: &Steady, dimension: usize) -> Control {
         cycle: Cycle { sweeps: 2, visits: 1, levels: if steady.method == SteadyMethod::LuSgs { 1 } else { 8 } },
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn slow_flow_is_refused_without_conservative_coefficients() {
+        let told = |more: &str| {
+            let text = format!(
+                "title = \"t\"\n[flow]\nmach = 0.1\n[[body]]\ncircle = {{ radius = 0.5 }}\n[cloud]\nspacing = 0.1\n[scheme]\n\
+                 low_mach = true\n{more}"
+            );
+            supported(&crate::case::read(&text, "t").unwrap()).map_err(|e| e.to_string())
+        };
+        assert!(told("").is_ok());
+        assert!(told("conservative = false").unwrap_err().contains("`low_mach = true` needs `conservative = true`"));
+        let moved = |particles: &str| {
+            format!(
+                "[motion]\nparticles = \"{particles}\"\nperiod = 10\nplunge = 0.1\n[time.dual]\nsteps_per_period = 20\nperiods = 1"
+            )
+        };
+        assert!(told(&moved("deforming")).is_err());
+        assert!(told(&format!("conservative = true\n{}", moved("rigid"))).is_ok());
+    }
+}
