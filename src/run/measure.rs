@@ -1,7 +1,7 @@
 //! What is measured of a finished run: the value of each metric of [`crate::verify`].
 use std::path::Path;
 
-use super::periodic::FirstHarmonics;
+use super::periodic::{FirstHarmonics, LastPeriod};
 use super::snapshot::{Units, rounded};
 use super::{Snapshot, Summary};
 use num_complex::Complex64;
@@ -67,6 +67,8 @@ impl Measured {
             Metric::MeanCd => self.cycles().map(|c| c.mean_cd),
             Metric::SwingCd => self.cycles().map(|c| c.amplitude_cd),
             Metric::SwingCl => self.cycles().map(|c| c.amplitude_cl),
+            Metric::MeanCl => self.last_period().map(|p| p.mean_cl),
+            Metric::PeakCl => self.last_period().map(|p| p.peak_cl),
             Metric::WakeLength => self.wake_length(),
             Metric::ThinLiftAmplitude => self.thin_lift(other).map(|c| c.norm()),
             Metric::ThinLiftPhase => self.thin_lift(other).map(|c| c.arg().to_degrees()),
@@ -136,6 +138,11 @@ impl Measured {
     /// Last whole cycles of the lift.
     fn cycles(&self) -> Result<Cycles, String> {
         self.summary.lift_cycles.ok_or_else(|| "the lift does not swing through two whole cycles".into())
+    }
+
+    /// Loads over the last period of the motion.
+    fn last_period(&self) -> Result<LastPeriod, String> {
+        self.summary.last_period.ok_or_else(|| "the march holds no whole period of a motion".into())
     }
 
     /// Length of the Reynolds number, and of frequencies.

@@ -149,6 +149,7 @@ impl<'a, const D: usize> Finished<'a, D> {
             unconverged_steps: journal.unconverged,
             re_clouding: self.re_clouding(journal),
             first_harmonics: journal.period.map_or_else(Vec::new, |p| journal.trace.first_harmonics(p)),
+            last_period: journal.period.and_then(|p| journal.trace.last_period(p)),
             lift_cycles: journal.trace.cycles(),
             periodic_change: journal.period.and_then(|p| journal.trace.change(p)),
             bytes_per_particle: bytes_of(fluid, journal.bytes) as f64 / n as f64,

@@ -57,6 +57,9 @@ pub struct Summary {
     /// First harmonics of the loads per motion, where that repeats.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub first_harmonics: Vec<super::periodic::FirstHarmonics>,
+    /// Mean and greatest loads of the last period of the motion.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub last_period: Option<super::periodic::LastPeriod>,
     /// Last whole cycles of the lift of a march, found from its history: a frequency that no motion prescribes.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub lift_cycles: Option<crate::observe::cycles::Cycles>,

@@ -226,6 +226,7 @@ impl<const D: usize> Fluid<D> {
             state: &work.state,
             gradient: &work.gradient,
             velocity: &frame.velocity,
+            outer: (cloud.outer_range().start, cloud.outer_range().end),
         };
         sweep_parts(op.fluid_parts(), D + 2, du, &|k, out| {
             let start = op.parts[k].start;
@@ -484,7 +485,7 @@ mod tests {
         let mut operators = Operators::new(&cloud);
         conservative(&mut cloud, &mut operators);
         let shape = Arc::new(Shape::new(cloud, operators));
-        let reconstruction = Reconstruction { second_order: true, kappa: 0.0, threshold: 0.02 };
+        let reconstruction = Reconstruction { second_order: true, kappa: 0.0, threshold: 0.02, low_mach: false };
         let held: Field<2> = Arc::new(|x| Still.state(x, &Vector::ZERO));
         let carriage = Carriage::Still;
         let (gas, flux, limiter) = (Gas { gamma: 1.4 }, Flux::Hllc, Limiter::VanAlbada);

@@ -206,6 +206,10 @@ metrics! {
     SwingCd = "swing_cd",
     /// Half of greatest less smallest lift coefficient within those cycles.
     SwingCl = "swing_cl",
+    /// Mean of the lift coefficient over the last period of the motion.
+    MeanCl = "mean_cl",
+    /// Greatest lift coefficient within that period.
+    PeakCl = "peak_cl",
     /// Length behind the body over which the gas on its axis runs against the stream, in chords.
     WakeLength = "wake_length",
     /// Lift coefficient extrapolated to zero spacing over the study.
