@@ -319,7 +319,7 @@ fn no_viscosity() -> String {
 }
 
 fn no_balance() -> String {
-    "bodies move: there is no momentum balance".into()
+    "without bodies there is no momentum balance".into()
 }
 
 fn no_wall() -> String {
