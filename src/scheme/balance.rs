@@ -1,12 +1,12 @@
 //! The force on bodies from the momentum of the gas around them, which knows nothing of the pressure on the wall.
 //!
-//! A weight φ is 1 around the bodies and falls to 0 farther out. With m = ρv − ρ∞v∞, the constant parts taken off so that
-//! uniform flow adds up to nothing on any cloud, T = ρvv − ρ∞v∞v∞ + (p − p∞)I − τ, and particles that move with w,
+//! A weight φ is 1 around the bodies and falls to 0 farther out. With the momentum m = ρ(v − v∞) beyond that of the free stream,
+//! so that uniform flow adds up to nothing on any cloud, T = m v + (p − p∞)I − τ, and particles that move with w,
 //!
-//! F = Σ_i V_i [(T − m w)·∇φ − φ (dU/dt + m ∇·w)] + Σ_walls ρ∞v∞ (w − v∞)·S − Σ_sides φ T·A:
+//! F = Σ_i V_i [(T − m w)·∇φ − φ (dm/dt + m ∇·w)] − Σ_sides φ T·A:
 //!
 //! what passes the zone in which φ falls, less what gathers inside it. It follows from the momentum equation by parts, where
-//! on the wall (v − w)·n = 0. dU/dt is the change that a particle sees, in steady flow zero; fluxes of mass and energy are
+//! on the wall (v − w)·n = 0; for moments, (v − w) × m φ is added because T is not symmetric. dm/dt is the change that a particle sees, in steady flow zero; fluxes of mass and energy are
 //! summed in the same way. Sides A of the domain count where the zone is cut by them. Volumes of particles beside a wall are not
 //! known to all digits; what they lack together follows from the walls and goes to them by area and thickness.
 use super::fluid::{Fluid, Work};
@@ -57,14 +57,14 @@ impl<const D: usize> Zone<D> {
     }
 }
 
-/// What one particle, piece of wall or piece of side adds to the balance; everything in the axes of the case.
+/// What one particle, what is missing beside a wall, or a piece of side adds to the balance; everything in the axes of the case.
 #[derive(Clone, Copy, Debug)]
 pub struct Part<const D: usize> {
     /// Where.
     pub x: Vector<D>,
     /// Force on the bodies.
     pub force: Vector<D>,
-    /// Velocity w and momentum q whose product w × q is added to the moment: particles carry their momentum with them.
+    /// Velocity v − w and weighted momentum whose product is added to the moment.
     pub carried: [Vector<D>; 2],
     /// Mass that flows outward.
     pub mass: f64,
@@ -108,7 +108,7 @@ impl<'a, const D: usize> Balance<'a, D> {
         Some(Self { fluid, frame, work, free: free_stream(case), zone })
     }
 
-    /// What the particles and the walls add. `rate` is dU/dt of the fluid particles; empty in steady flow.
+    /// What the particles add, and what lies between them and the walls. `rate` is dU/dt of the fluid particles; empty in steady flow.
     pub fn parts(&self, rate: &[f64]) -> Vec<Part<D>> {
         let (frame, cloud) = (self.frame, &self.frame.shape.cloud);
         let spread = self.spread();
@@ -116,7 +116,7 @@ impl<'a, const D: usize> Balance<'a, D> {
         let first = self.fluid.shape.cloud.interface.len();
         let gathered = |i: usize| {
             let own = if rate.is_empty() { Conserved::ZERO } else { Conserved::load(&rate[i * (D + 2)..]) };
-            own.momentum + self.momentum(i) * spread.get(i).map_or(0.0, |s| s.1)
+            own.momentum - self.free.velocity * own.density + self.momentum(i) * spread.get(i).map_or(0.0, |s| s.1)
         };
         let volume = |i: usize| volume[i] * spread.get(i).map_or(1.0, |s| s.0);
         let missing = self.missing(&volume);
@@ -124,9 +124,8 @@ impl<'a, const D: usize> Balance<'a, D> {
         sweep_slots(&mut parts, |k, part| {
             *part = match k.checked_sub(first) {
                 None => {
-                    let wall = self.wall(k);
-                    let (i, v) = (self.beside(k), missing.map_or(0.0, |m| m * self.share(k)));
-                    Part { force: wall.force - gathered(i) * v, ..wall }
+                    let v = missing.map_or(0.0, |m| m * self.share(k));
+                    Part { x: frame.place(cloud.n_fluid + k), force: gathered(self.beside(k)) * -v, ..Part::BLANK }
                 }
                 Some(i) => {
                     let x = frame.place(i);
@@ -136,7 +135,10 @@ impl<'a, const D: usize> Balance<'a, D> {
                     Part {
                         x,
                         force: (flow.0.momentum - gathered(i) * weight.0) * v,
-                        carried: [frame.outward(&frame.velocity_of(i)), self.momentum(i) * (-weight.0 * v)],
+                        carried: [
+                            frame.outward(&(self.work.state[i].velocity - frame.velocity_of(i))),
+                            self.momentum(i) * (weight.0 * v),
+                        ],
                         mass: -v * flow.0.density,
                         energy: -v * flow.0.energy,
                         passed: flow.1.map(|f| v * f.abs()),
@@ -183,46 +185,33 @@ impl<'a, const D: usize> Balance<'a, D> {
         nearest.map_or(0, |j| cloud.source(j).index)
     }
 
-    /// ρv − ρ∞v∞ in the axes of the case.
+    /// ρ(v − v∞) in the axes of the case.
     fn momentum(&self, i: usize) -> Vector<D> {
         let q = &self.work.state[i];
-        self.frame.outward(&q.velocity) * q.density - self.free.velocity * self.free.density
+        (self.frame.outward(&q.velocity) - self.free.velocity) * q.density
     }
 
-    /// (T − m w)·g at particle `i` with what belongs to mass and energy, momentum in the axes of the case; mass and energy
-    /// that pass the plane across g.
+    /// (T − m w)·g at particle `i`, momentum in the axes of the case, with the flows of mass and energy along g beyond those of
+    /// the free stream; the whole flows.
     fn fluxes(&self, i: usize, g: &Vector<D>) -> (Conserved<D>, [f64; 2]) {
-        let (frame, gas) = (self.frame, &self.fluid.gas);
-        let through = self.through(&self.work.state[i], g);
+        let (frame, gas, q) = (self.frame, &self.fluid.gas, &self.work.state[i]);
+        let free = Primitive { velocity: frame.inward(&self.free.velocity), ..self.free };
+        let (own, far) = (gas.flux(q, g), gas.flux(&free, g));
         let stress = self.fluid.viscous_flux(self.work, i, g);
-        let drift = frame.velocity_of(i).dot(g);
-        let plain = gas.flux(&self.work.state[i], g);
-        let momentum = frame.outward(&(through.momentum - stress.momentum)) - self.momentum(i) * drift;
-        let energy = through.energy - stress.energy;
-        (Conserved { density: through.density, momentum, energy }, [plain.density, plain.energy])
-    }
-
-    /// F(q)·g − F(q∞)·g in the axes of the frame.
-    fn through(&self, q: &Primitive<D>, g: &Vector<D>) -> Conserved<D> {
-        let free = Primitive { velocity: self.frame.inward(&self.free.velocity), ..self.free };
-        self.fluid.gas.flux(q, g).plus(-1.0, &self.fluid.gas.flux(&free, g))
-    }
-
-    fn wall(&self, w: usize) -> Part<D> {
-        let (frame, cloud) = (self.frame, &self.frame.shape.cloud);
-        let i = cloud.n_fluid + w;
-        let relative = frame.outward(&frame.velocity_of(i)) - self.free.velocity;
-        let passed = relative.dot(&frame.outward(&cloud.interface[w].area));
-        Part { x: frame.place(i), force: self.free.velocity * (self.free.density * passed), ..Part::BLANK }
+        let push = frame.outward(&(*g * (q.pressure - free.pressure) - stress.momentum));
+        let momentum = self.momentum(i) * (q.velocity - frame.velocity_of(i)).dot(g) + push;
+        let energy = own.energy - far.energy - stress.energy;
+        (Conserved { density: own.density - far.density, momentum, energy }, [own.density, own.energy])
     }
 
     /// What a piece of a side of the domain adds: the state there in the axes of the case, and its outward area.
     pub fn side(&self, x: Vector<D>, q: &Primitive<D>, area: &Vector<D>) -> Part<D> {
         let (gas, weight) = (&self.fluid.gas, self.zone.at(&x).0);
         let flow = gas.flux(q, area).plus(-1.0, &gas.flux(&self.free, area)).times(weight);
+        let momentum = (q.velocity - self.free.velocity) * (q.density * q.velocity.dot(area));
         Part {
             x,
-            force: -flow.momentum,
+            force: (momentum + *area * (q.pressure - self.free.pressure)) * -weight,
             carried: [Vector::ZERO; 2],
             mass: flow.density,
             energy: flow.energy,
