@@ -229,13 +229,18 @@ impl Measured {
         Ok(chosen.iter().filter_map(ratio).collect())
     }
 
-    /// Root mean square of u/U − f′(η) over the fluid particles in the region that lie in the boundary layer.
+    /// Root mean square of u/U − f′(η) over the fluid particles in the region that lie in the boundary layer, heights from the wall.
     fn blasius_profile(&self, claim: &Claim) -> Value {
         let (reynolds, stream, velocity) = (self.unit_reynolds()?, self.stream().velocity, self.column("velocity")?);
         let mut differences = Vec::new();
         for i in self.fluid()? {
             let x = &self.field.points[i];
-            let eta = x[1] * (reynolds / x[0]).sqrt();
+            let away = |w: &&Vector<3>| (w[0] - x[0]).abs();
+            let wall = self.wall.x.iter().min_by(|a, b| away(a).total_cmp(&away(b))).ok_or_else(no_wall)?;
+            let eta = (x[1] - wall[1]) * (reynolds / x[0]).sqrt();
+            if eta < 0.0 {
+                continue;
+            }
             if claim.region.as_ref().is_some_and(|[low, high]| !contains(low, high, x)) || eta > LAYER {
                 continue;
             }
