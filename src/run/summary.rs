@@ -40,7 +40,7 @@ pub struct Summary {
     /// Where friction turns against the stream.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub separation: Vec<Separation>,
-    /// Loads from the momentum balance over a box around the bodies; absent while bodies move, when what the box holds changes.
+    /// Loads from the momentum of the gas around the bodies; null without bodies.
     pub loads_momentum_balance: Option<Coefficients>,
     /// Conservation.
     pub ledger: Ledger,
@@ -95,7 +95,7 @@ pub struct Reclouding {
 }
 
 /// What was lost, relative. Marching: change of the totals, what crossed open sides not counted as lost. Steady: net flux
-/// through the box around the bodies over the flux that enters it.
+/// through a zone around the bodies over the flux that enters it.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
 pub struct Ledger {
     /// Mass.
