@@ -186,8 +186,16 @@ const VISCOSITY_LAWS: &[(&str, &str)] =
     &[("sutherland", "μ/μ∞ = (T/T∞)^1.5 (T∞ + S)/(T + S)"), ("constant", "the same everywhere")];
 
 /// Shape keys of a body with the dimension each of them fixes (0: by the number of lengths).
-pub(super) const SHAPES: [(&str, u64); 7] =
-    [("naca", 2), ("airfoil", 2), ("polygon", 2), ("circle", 2), ("sphere", 3), ("box", 0), ("surface", 3)];
+pub(super) const SHAPES: [(&str, u64); 8] = [
+    ("naca", 2),
+    ("airfoil", 2),
+    ("polygon", 2),
+    ("circle", 2),
+    ("ellipse", 2),
+    ("sphere", 3),
+    ("box", 0),
+    ("surface", 3),
+];
 const SHAPE: &str = "another shape key";
 
 static BODY: Table = Table::of(&[
@@ -201,6 +209,12 @@ static BODY: Table = Table::of(&[
         "Closed polygon with sharp corners (2-D), `[[0, 0], [1, 0.1], [1, -0.1]]`.",
     ),
     Field::optional("circle", Kind::Table(&CIRCLE), SHAPE, "Circle (2-D), `circle = { radius = 0.5 }`."),
+    Field::optional(
+        "ellipse",
+        Kind::Table(&ELLIPSE),
+        SHAPE,
+        "Ellipse (2-D) centred on the origin of the shape, `ellipse = { size = [1, 0.12] }`.",
+    ),
     Field::optional("sphere", Kind::Table(&SPHERE), SHAPE, "Sphere (3-D), `sphere = { radius = 0.5 }`."),
     Field::optional(
         "box",
@@ -259,6 +273,12 @@ const TRAILING_EDGES: &[(&str, &str)] = &[
 ];
 
 static CIRCLE: Table = Table::of(&[Field::required("radius", SIZE, "Radius.")]);
+
+static ELLIPSE: Table = Table::of(&[Field::required(
+    "size",
+    Kind::List(&List { item: SIZE, min: 2, max: 2, single: false }),
+    "Lengths of its axes along x and y.",
+)]);
 
 static SPHERE: Table = Table::of(&[Field::required("radius", SIZE, "Radius.")]);
 
@@ -445,6 +465,13 @@ static SCHEME: Table = Table::of(&[
         Kind::Number(Range::between(-1.0, 1.0)),
         Absent::Number(0.0),
         "κ of the reconstruction: 0 for steady flow, 1/3 for waves and vortices.",
+    ),
+    Field::defaulted(
+        "low_mach",
+        Kind::Flag,
+        Absent::Flag(false),
+        "The jump of the velocity across an edge counts in the upwind flux in proportion to the Mach number: for slow flow, with \
+         conservative coefficients.",
     ),
     Field::optional("conservative", Kind::Flag, "the solver's own choice", "Exactly conservative coefficients."),
 ]);

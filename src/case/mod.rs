@@ -153,6 +153,11 @@ pub enum Shape {
         /// Radius.
         radius: Length,
     },
+    /// Ellipse centred on the origin of the shape (2-D), `ellipse = { size = [1, 0.12] }`.
+    Ellipse {
+        /// Lengths of its axes along x and y.
+        size: [Length; 2],
+    },
     /// Sphere (3-D), `sphere = { radius = 0.5 }`.
     Sphere {
         /// Radius.
@@ -365,6 +370,8 @@ pub struct Scheme {
     pub limiter_threshold: f64,
     /// κ of the reconstruction: 0 for steady flow, 1/3 for waves and vortices.
     pub kappa: f64,
+    /// The jump of the normal velocity counts in the upwind flux in proportion to the Mach number.
+    pub low_mach: bool,
     /// Exactly conservative coefficients; absent: the solver's own choice.
     pub conservative: Option<bool>,
 }
@@ -448,6 +455,7 @@ impl Default for Scheme {
             limiter: Limiter::VanAlbada,
             limiter_threshold: 0.1,
             kappa: 0.0,
+            low_mach: false,
             conservative: None,
         }
     }

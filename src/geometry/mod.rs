@@ -1,7 +1,7 @@
 //! Surfaces: from a case file's bodies to one discretised surface that everything else uses.
 //!
 //! Every input becomes a [`Shell`], segments in 2-D or triangles in 3-D with outward normals: NACA formulas, airfoil
-//! coordinate files, polygons, circles, spheres, boxes, STL and OBJ files. Shells are placed and joined to a [`Surface`],
+//! coordinate files, polygons, circles, ellipses, spheres, boxes, STL and OBJ files. Shells are placed and joined to a [`Surface`],
 //! which answers nearest-point, crossing and inside questions through a tree of boxes.
 //!
 //! Limits: a surface must bound a volume (thin sheets and large holes are refused), bodies must not overlap.
@@ -75,7 +75,7 @@ enum AnyShell {
 /// Number of space dimensions of a case: as given, otherwise that of its first body, otherwise 2.
 pub fn dimension(case: &Case) -> u8 {
     let of = |body: &Body| match &body.shape {
-        Shape::Naca(_) | Shape::Airfoil(_) | Shape::Polygon(_) | Shape::Circle { .. } => 2,
+        Shape::Naca(_) | Shape::Airfoil(_) | Shape::Polygon(_) | Shape::Circle { .. } | Shape::Ellipse { .. } => 2,
         Shape::Sphere { .. } | Shape::Surface(_) => 3,
         Shape::Box { size } => {
             if size.len() == 3 {
@@ -122,6 +122,10 @@ fn load_shell(name: &str, shape: &Shape, folder: &Path, notes: &mut Vec<String>)
             AnyShell::Plane(outline::polygon(&place, &points, POLYGON_CREASE, notes)?)
         }
         Shape::Circle { radius } => AnyShell::Plane(primitive::circle(positive(&place, "radius", radius.0)?)),
+        Shape::Ellipse { size: [a, b] } => {
+            let (a, b) = (positive(&place, "size", a.0)?, positive(&place, "size", b.0)?);
+            AnyShell::Plane(primitive::ellipse([0.5 * a, 0.5 * b]))
+        }
         Shape::Sphere { radius } => AnyShell::Space(primitive::sphere(positive(&place, "radius", radius.0)?)),
         Shape::Box { size } => {
             let size: Vec<f64> = size.iter().map(|l| positive(&place, "size", l.0)).collect::<Result<_, _>>()?;

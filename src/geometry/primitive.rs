@@ -1,4 +1,4 @@
-//! Circles, spheres and boxes, and a writer of STL files.
+//! Circles, ellipses, spheres and boxes, and a writer of STL files.
 //!
 //! A circle is a regular polygon and a sphere a subdivided icosahedron (each triangle into four, new vertices moved onto
 //! the sphere); both carry their exact shape, so places and normals on them are exact. Boxes have flat sides and creases.
@@ -31,6 +31,18 @@ pub(super) fn circle(radius: f64) -> Shell<2> {
         tag_names: Vec::new(),
         exact: Exact::Ball { centre: Vector::ZERO, radius },
         crease: CREASE,
+    }
+}
+
+/// An ellipse about the origin with the half axes `half`: points at equal steps of the eccentric angle, so that they gather at its
+/// ends, with their exact normals.
+pub(super) fn ellipse(half: [f64; 2]) -> Shell<2> {
+    let (circle, [a, b]) = (circle(1.0), half);
+    Shell {
+        vertices: circle.vertices.iter().map(|x| Vector([a * x[0], b * x[1]])).collect(),
+        normals: circle.normals.map(|all| all.iter().map(|n| n.map(|n| Vector([b * n[0], a * n[1]]).unit())).collect()),
+        exact: Exact::None,
+        ..circle
     }
 }
 

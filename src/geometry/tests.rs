@@ -109,6 +109,20 @@ fn circle_and_sphere_are_exact() {
 }
 
 #[test]
+fn an_ellipse_has_its_area_its_ends_and_its_normals() {
+    let ellipse = single(primitive::ellipse([0.5, 0.06]));
+    assert!((ellipse.volume() / (PI * 0.5 * 0.06) - 1.0).abs() < 1e-6 && ellipse.sharp.is_empty());
+    let ends = |d: usize| ellipse.vertices.iter().map(|x| x[d]).fold(0.0, f64::max);
+    assert!(ends(0) == 0.5 && (ends(1) - 0.06).abs() < 1e-12);
+    let least = ellipse.radius.iter().fold(f64::INFINITY, |a, r| a.min(*r));
+    assert!((least / (0.06 * 0.06 / 0.5) - 1.0).abs() < 1e-3, "b²/a at the ends, found {least}");
+    let near = ellipse.nearest(&Vector([0.4, 0.2]), 1.0).unwrap();
+    let exact = ellipse.project(&near);
+    let gradient = Vector([exact.point[0] / 0.25, exact.point[1] / 0.0036]).unit();
+    assert!((exact.normal - gradient).norm() < 1e-6, "{:?} {gradient:?}", exact.normal);
+}
+
+#[test]
 fn curved_patches_recover_a_sphere_from_its_normals() {
     let error = |subdivisions: u32| {
         let mut shell = icosphere(1.0, subdivisions);

@@ -157,6 +157,16 @@ pub fn write_collection(path: &Path, files: &[(f64, &str)]) -> Result<(), VtkErr
     Ok(write_atomic(path, |w| w.write_all(xml.as_bytes()))?)
 }
 
+/// Times and files of a `.pvd` file that [`write_collection`] wrote.
+pub fn read_collection(text: &str) -> Vec<(f64, String)> {
+    let entry = |line: &str| {
+        let (time, rest) = line.strip_prefix("<DataSet timestep=\"")?.split_once('"')?;
+        let file = rest.split_once("file=\"")?.1.split_once('"')?.0;
+        Some((time.parse().ok()?, file.to_owned()))
+    };
+    text.lines().filter_map(entry).collect()
+}
+
 /// Cells of any kind: points of all cells one after another, and where each cell ends.
 struct Joined {
     connectivity: Vec<u32>,
@@ -331,6 +341,8 @@ mod tests {
         let series = folder.path().join("field.pvd");
         write_collection(&series, &[(0.0, "field_0.vtu"), (0.5, "field_1.vtu")]).unwrap();
         assert!(std::fs::read_to_string(&series).unwrap().contains(r#"timestep="0.5" part="0" file="field_1.vtu""#));
+        let read = read_collection(&std::fs::read_to_string(&series).unwrap());
+        assert_eq!(read, [(0.0, "field_0.vtu".to_owned()), (0.5, "field_1.vtu".to_owned())]);
     }
 
     #[test]

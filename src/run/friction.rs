@@ -40,7 +40,7 @@ pub(super) fn friction_load<const D: usize>(
     let mut load = Load::default();
     let cloud = &fluid.shape.cloud;
     for w in (0..cloud.interface.len()).filter(|w| chosen(*w)) {
-        if let Some(at) = fluid.wall_slopes(cloud, work, w) {
+        if let Some(at) = fluid.wall_slopes((cloud, fluid.walls_seen()), work, w) {
             let force = at.stress * cloud.interface[w].area.norm();
             axes.add(&mut load, &cloud.x[cloud.n_fluid + w].to_3d(), &force.to_3d());
         }
@@ -57,7 +57,7 @@ pub(super) fn add_friction_in<const D: usize>(
 ) {
     let cloud = &frame.shape.cloud;
     for w in 0..cloud.interface.len() {
-        if let Some(at) = fluid.wall_slopes(cloud, work, w) {
+        if let Some(at) = fluid.wall_slopes((cloud, &frame.walls), work, w) {
             let force = frame.outward(&at.stress) * cloud.interface[w].area.norm();
             axes.add(load, &frame.place(cloud.n_fluid + w).to_3d(), &force.to_3d());
         }
@@ -76,7 +76,9 @@ pub(super) fn wall_friction<const D: usize>(
     let dynamic = (0.5 * free.density * free.velocity.norm_squared()).max(f64::MIN_POSITIVE);
     let stream = stream_axes::<D>(case).0;
     let at = |w: usize| {
-        let Some(found) = fluid.wall_slopes(cloud, work, w) else { return WallFriction::default() };
+        let Some(found) = fluid.wall_slopes((cloud, fluid.walls_seen()), work, w) else {
+            return WallFriction::default();
+        };
         let normal = &cloud.interface[w].normal;
         let along = (stream - *normal * stream.dot(normal)).unit();
         WallFriction {

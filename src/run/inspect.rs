@@ -68,6 +68,7 @@ fn look<const D: usize>(case: &Case, places: &Places, files: bool) -> Result<Clo
     let cloud = &fluid.shape.cloud;
     let counts: Vec<usize> = (0..cloud.n_rows()).map(|i| cloud.neighbours.of(i).len()).collect();
     notes.extend(cloud.notes.iter().cloned());
+    notes.extend(super::foresee::look(case, cloud, &motions)?);
     let report = CloudReport {
         particles: cloud.n_real(),
         fluid: cloud.n_fluid,

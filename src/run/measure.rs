@@ -1,13 +1,13 @@
 //! What is measured of a finished run: the value of each metric of [`crate::verify`].
 use std::path::Path;
 
-use super::periodic::FirstHarmonics;
+use super::periodic::{FirstHarmonics, LastPeriod};
 use super::snapshot::{Units, rounded};
 use super::{Snapshot, Summary};
 use num_complex::Complex64;
 
 use crate::case::{Case, Shape};
-use crate::exact::blasius::skin_friction;
+use crate::exact::blasius::{layer, skin_friction};
 use crate::math::{Bounds, Vector};
 use crate::observe::cycles::Cycles;
 use crate::physics::{Gas, Primitive};
@@ -21,6 +21,9 @@ const SHOCK_WINDOW: (f64, f64) = (0.05, 0.95);
 
 /// Half-width of the strip along the axis of the wake that tells where it ends, in local spacings.
 const AXIS: f64 = 2.0;
+
+/// Height of the boundary layer of Blasius that profiles are compared in, in √(νx/U).
+const LAYER: f64 = 7.0;
 
 /// A finished run, ready to be measured.
 pub(super) struct Measured {
@@ -53,7 +56,14 @@ impl Measured {
                 let first = s.separation.iter().find(|p| p.upper).map(|p| p.x_c);
                 first.ok_or_else(|| "friction turns nowhere on the upper side".into())
             }
-            Metric::CfBlasiusRms => self.blasius_difference(claim),
+            Metric::CfBlasiusRms => {
+                metrics::root_mean_square(&self.blasius_differences(claim)?, None).ok_or_else(no_wall)
+            }
+            Metric::CfBlasiusMax => {
+                let differences = self.blasius_differences(claim)?;
+                metrics::max_difference(&differences, &vec![0.0; differences.len()]).ok_or_else(no_wall)
+            }
+            Metric::ProfileBlasiusRms => self.blasius_profile(claim),
             Metric::ClMomentum => s.loads_momentum_balance.map(|c| c.cl).ok_or_else(no_balance),
             Metric::CdMomentum => s.loads_momentum_balance.map(|c| c.cd).ok_or_else(no_balance),
             Metric::LiftAmplitude => self.lift().map(|c| c.norm()),
@@ -72,6 +82,8 @@ impl Measured {
             Metric::MeanCd => self.cycles().map(|c| c.mean_cd),
             Metric::SwingCd => self.cycles().map(|c| c.amplitude_cd),
             Metric::SwingCl => self.cycles().map(|c| c.amplitude_cl),
+            Metric::MeanCl => self.last_period().map(|p| p.mean_cl),
+            Metric::PeakCl => self.last_period().map(|p| p.peak_cl),
             Metric::WakeLength => self.wake_length(),
             Metric::ThinLiftAmplitude => self.thin_lift(other).map(|c| c.norm()),
             Metric::ThinLiftPhase => self.thin_lift(other).map(|c| c.arg().to_degrees()),
@@ -154,6 +166,11 @@ impl Measured {
     /// Last whole cycles of the lift.
     fn cycles(&self) -> Result<Cycles, String> {
         self.summary.lift_cycles.ok_or_else(|| "the lift does not swing through two whole cycles".into())
+    }
+
+    /// Loads over the last period of the motion.
+    fn last_period(&self) -> Result<LastPeriod, String> {
+        self.summary.last_period.ok_or_else(|| "the march holds no whole period of a motion".into())
     }
 
     /// Length of the Reynolds number, and of frequencies.
@@ -247,17 +264,42 @@ impl Measured {
         Ok(differences)
     }
 
-    /// Root mean square of cf/cf_Blasius − 1 on the wall particles in the region.
-    fn blasius_difference(&self, claim: &Claim) -> Value {
+    /// Reynolds number of a unit of length.
+    fn unit_reynolds(&self) -> Value {
         let flow = &self.case.flow;
         let chord = self.case.reference.chord.map_or(1.0, |c| c.0);
         let viscosity = flow.viscous(chord).ok_or_else(no_viscosity)?.viscosity;
         let stream = flow.reference();
-        let unit_reynolds = stream.density * stream.speed / viscosity;
+        Ok(stream.density * stream.speed / viscosity)
+    }
+
+    /// cf/cf_Blasius − 1 on the wall particles in the region.
+    fn blasius_differences(&self, claim: &Claim) -> Result<Vec<f64>, String> {
+        let reynolds = self.unit_reynolds()?;
         let chosen = self.wall.within(claim.region.as_ref());
-        let ratio = |i: &usize| Some(self.wall.cf.get(*i)? / skin_friction(unit_reynolds * self.wall.x[*i][0]) - 1.0);
-        let differences: Vec<f64> = chosen.iter().filter_map(ratio).collect();
-        metrics::root_mean_square(&differences, None).ok_or_else(no_wall)
+        let ratio = |i: &usize| Some(self.wall.cf.get(*i)? / skin_friction(reynolds * self.wall.x[*i][0]) - 1.0);
+        Ok(chosen.iter().filter_map(ratio).collect())
+    }
+
+    /// Root mean square of u/U − f′(η) over the fluid particles in the region that lie in the boundary layer, heights from the wall.
+    fn blasius_profile(&self, claim: &Claim) -> Value {
+        let (reynolds, stream, velocity) = (self.unit_reynolds()?, self.stream().velocity, self.column("velocity")?);
+        let mut differences = Vec::new();
+        for i in self.fluid()? {
+            let x = &self.field.points[i];
+            let away = |w: &&Vector<3>| (w[0] - x[0]).abs();
+            let wall = self.wall.x.iter().min_by(|a, b| away(a).total_cmp(&away(b))).ok_or_else(no_wall)?;
+            let eta = (x[1] - wall[1]) * (reynolds / x[0]).sqrt();
+            if eta < 0.0 {
+                continue;
+            }
+            if claim.region.as_ref().is_some_and(|[low, high]| !contains(low, high, x)) || eta > LAYER {
+                continue;
+            }
+            let exact = layer(eta).map_err(|e| e.to_string())?.velocity;
+            differences.push(velocity[3 * i] / stream[0] - exact);
+        }
+        metrics::root_mean_square(&differences, None).ok_or_else(|| "no particle lies in the layer".into())
     }
 
     fn shock(&self, claim: &Claim, upper: bool) -> Value {
@@ -368,7 +410,7 @@ fn no_viscosity() -> String {
 }
 
 fn no_balance() -> String {
-    "bodies move: there is no momentum balance".into()
+    "without bodies there is no momentum balance".into()
 }
 
 fn no_wall() -> String {

@@ -4,7 +4,9 @@
 //! each cycle of adaptation. Every stage builds its cloud, takes over the state of the one before by the solver's own fit,
 //! and integrates. Checkpoints hold what a stage cannot rebuild from the case: its sources of refinement, the state, and
 //! where the integrator stands; a killed run goes on to the same bits.
+mod balance;
 mod folder;
+mod foresee;
 mod friction;
 pub mod gaf;
 pub mod harmonic;
@@ -127,6 +129,9 @@ pub enum RunError {
         /// Checkpoint with the last good state.
         checkpoint: String,
     },
+    /// Bodies go where no particles can follow.
+    #[error("{0}")]
+    Motion(String),
     /// A file could not be written or read.
     #[error(transparent)]
     File(#[from] FileError),
@@ -213,6 +218,9 @@ fn drive<const D: usize>(
         Some(_) => None,
         None => Some(Cloud::build(case, surface.as_ref(), &[])?),
     };
+    if let Some(cloud) = &full {
+        foresee::look(case, cloud, &motions)?.iter().for_each(|n| monitor.note(n));
+    }
     let stages = match &saved {
         Some(s) => s.stages.clone(),
         None => setup::stages(case, full.as_ref().map_or(0, |c| c.n_fluid), D),

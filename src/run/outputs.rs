@@ -1,6 +1,7 @@
 //! What a finished run leaves behind.
 use std::path::Path;
 
+use super::balance;
 use super::friction::{Separation, friction_load, separations, wall_friction};
 use super::setup::Solver;
 use super::snapshot::{self, LoadFrame, Snapshot, Units, load_axes, pressure_coefficient, wall_load};
@@ -11,19 +12,15 @@ use crate::case::{Case, Initial};
 use crate::cloud::Diagnosis;
 use crate::geometry::Surface;
 use crate::math::{Bounds, Vector};
-use crate::observe::loads::{Balance, Coefficients, Load, LoadAxes, Patch, momentum_balance, together};
+use crate::observe::loads::{Balance, Coefficients, Load, LoadAxes, together};
 use crate::observe::table::{Entry, write_csv, write_json};
 use crate::observe::usage::peak_bytes;
-use crate::observe::vtk::{Column, Facets, write_collection, write_points, write_surface};
+use crate::observe::vtk::{Column, Facets, read_collection, write_collection, write_points, write_surface};
 use crate::report;
-use crate::scheme::probe::Probe;
 use crate::scheme::start::free_stream;
 use crate::scheme::{Fluid, Frame, Work};
 use crate::system::System;
 use crate::verify::truth::FieldTruth;
-
-/// Margin of the box of the momentum balance around the bodies, in body lengths.
-const MARGIN: f64 = 0.4;
 
 /// Everything that the writers need.
 struct Finished<'a, const D: usize> {
@@ -34,6 +31,7 @@ struct Finished<'a, const D: usize> {
     surface: Option<&'a Surface<D>>,
     axes: LoadAxes,
     names: Names,
+    balance: Option<Balance>,
 }
 
 /// Names of bodies and tags.
@@ -53,16 +51,18 @@ pub(super) fn write_all<const D: usize>(
 ) -> Result<Summary, RunError> {
     let solved = clock.wall_seconds();
     let mut work = solver.fluid.work();
+    let frame_of_loads: LoadFrame = load_axes(case);
+    let at = (frame, state.as_slice(), &mut work);
+    let balance = balance::around(case, &frame_of_loads, &solver.fluid, at, marches(case));
     solver.fluid.fill_states(frame, state, &mut work);
     solver.fluid.fill_gradients(frame, &mut work);
     let seen = solver.fluid.seen(frame, &work);
     let (fluid, work) = seen.as_ref().map_or((&solver.fluid, &work), |(fluid, work)| (fluid, work));
-    let frame_of_loads: LoadFrame = load_axes(case);
     let names = surface.map_or(Names { bodies: Vec::new(), tags: Vec::new() }, |s| Names {
         bodies: s.bodies.clone(),
         tags: s.tags.clone(),
     });
-    let r = Finished { case, out: &places.out, fluid, work, surface, axes: frame_of_loads.axes(fluid), names };
+    let r = Finished { case, out: &places.out, fluid, work, surface, axes: frame_of_loads.axes(fluid), names, balance };
     let summary = r.summary(journal, state, (solved, clock));
     r.write_tables(&journal.cycles, &summary)?;
     if let Some(period) = journal.period {
@@ -119,7 +119,7 @@ impl<'a, const D: usize> Finished<'a, D> {
         let (pressure, friction) = self.wall_loads(|_| true);
         let loads = self.axes.coefficients(&together(&pressure, &friction));
         let part = |load: &Load| fluid.friction.as_ref().map(|_| self.axes.coefficients(load));
-        let balance = self.balance();
+        let balance = self.balance.unwrap_or_default();
         let through = self.axes.coefficients(&balance.load);
         let ledger = if marches(case) {
             drift(fluid, state, &journal.start_totals)
@@ -144,13 +144,14 @@ impl<'a, const D: usize> Finished<'a, D> {
             loads_pressure: part(&pressure),
             loads_friction: part(&friction),
             separation: self.separations(),
-            loads_momentum_balance: (!case.moves()).then_some(through),
+            loads_momentum_balance: self.balance.map(|_| through),
             harmonic_balance: journal.balance.clone(),
             ledger,
             time: journal.time,
             unconverged_steps: journal.unconverged,
             re_clouding: self.re_clouding(journal),
             first_harmonics: journal.period.map_or_else(Vec::new, |p| journal.trace.first_harmonics(p)),
+            last_period: journal.period.and_then(|p| journal.trace.last_period(p)),
             lift_cycles: journal.trace.cycles(),
             periodic_change: journal.period.and_then(|p| journal.trace.change(p)),
             bytes_per_particle: bytes_of(fluid, journal.bytes) as f64 / n as f64,
@@ -202,69 +203,13 @@ impl<'a, const D: usize> Finished<'a, D> {
         friction.map_or_else(Vec::new, |f| separations(self.case, self.fluid, &f, &self.chordwise()))
     }
 
-    /// Fluxes through a box around the bodies, by the solver's own fit.
-    fn balance(&self) -> Balance {
-        let Some(surface) = self.surface else { return Balance::default() };
-        let bounds = surface.bounds();
-        let domain = self.fluid.shape.cloud.tree.bounds();
-        let margin = MARGIN * bounds.extent().max_abs();
-        let clamp = |v: Vector<D>| Vector::from_fn(|d| v[d].clamp(domain.min[d], domain.max[d]));
-        let outer = bounds.padded(margin);
-        let region = Bounds { min: clamp(outer.min), max: clamp(outer.max) };
-        let probe = Probe::new(self.fluid, self.work, None);
-        momentum_balance(&self.axes, &self.patches(&probe, &region))
-    }
-
-    fn patches(&self, probe: &Probe<'_, D>, region: &Bounds<D>) -> Vec<Patch> {
-        let mut patches = Vec::new();
-        let far = self.fluid.far_field.pressure();
-        for axis in 0..D {
-            for (end, sign) in [(region.min[axis], -1.0), (region.max[axis], 1.0)] {
-                let mut place = |x: Vector<D>, size: f64| {
-                    let Some(q) = probe.at(&x) else { return };
-                    let area: Vector<D> = Vector::axis(axis) * (sign * size);
-                    patches.push(Patch {
-                        x: x.to_3d(),
-                        area: area.to_3d(),
-                        density: q.density,
-                        velocity: q.velocity.to_3d(),
-                        excess: q.pressure - far,
-                        enthalpy: self.fluid.gas.total_enthalpy(&q),
-                    });
-                };
-                self.tile(region, axis, end, &mut place);
-            }
-        }
-        patches
-    }
-
-    /// Calls `f(middle, area)` for tiles of one face of the box, about half a local spacing wide.
-    fn tile(&self, region: &Bounds<D>, axis: usize, end: f64, f: &mut dyn FnMut(Vector<D>, f64)) {
-        let tree = &self.fluid.shape.cloud.tree;
-        let mut stack = vec![*region];
-        while let Some(b) = stack.pop() {
-            let mut middle = b.centre();
-            middle[axis] = end;
-            let extent = b.extent();
-            let side =
-                (0..D).filter(|d| *d != axis).fold(axis, |a, d| if a == axis || extent[d] > extent[a] { d } else { a });
-            if extent[side] > 0.5 * tree.leaf_at(&middle).size {
-                let half = 0.5 * (b.min[side] + b.max[side]);
-                let (mut low, mut high) = (b, b);
-                (low.max[side], high.min[side]) = (half, half);
-                stack.extend([low, high]);
-            } else {
-                f(middle, (0..D).filter(|d| *d != axis).map(|d| extent[d]).product());
-            }
-        }
-    }
-
     fn steady_ledger(&self, balance: &Balance, wall: &Coefficients, through: &Coefficients) -> Ledger {
-        let over = |net: f64, scale: f64| if scale > 0.0 { net / scale } else { 0.0 };
+        // half of what passes comes in
+        let over = |net: f64, passed: f64| if passed > 0.0 { 2.0 * net / passed } else { 0.0 };
         Ledger {
-            mass: over(balance.mass, balance.mass_in),
+            mass: over(balance.mass, balance.passed[0]),
             momentum: (wall.cl - through.cl).hypot(wall.cd - through.cd),
-            energy: over(balance.energy, balance.energy_in),
+            energy: over(balance.energy, balance.passed[1]),
         }
     }
 
@@ -410,9 +355,10 @@ pub(super) fn write_series<const D: usize>(
         all.columns.iter().map(|(name, components, values)| Column { name, components: *components, values }).collect();
     let number = (time / interval + NEARLY).floor() as u64;
     write_points(&out.join(series_name(number)), &all.points, &columns)?;
-    // times are those of the multiples of the interval that each file follows within one step
-    let files: Vec<(f64, String)> =
-        (1..=number).map(|k| (k as f64 * interval, series_name(k))).filter(|(_, f)| out.join(f).exists()).collect();
+    // a run that went on from a checkpoint writes the later ones again
+    let mut files = read_collection(&super::folder::text(out, "series.pvd").unwrap_or_default());
+    files.retain(|(t, f)| *t < time && *f != series_name(number));
+    files.push((time, series_name(number)));
     let listed: Vec<(f64, &str)> = files.iter().map(|(t, f)| (*t, f.as_str())).collect();
     Ok(write_collection(&out.join("series.pvd"), &listed)?)
 }

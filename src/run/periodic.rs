@@ -12,6 +12,8 @@ use crate::observe::table::{Entry, write_csv, write_json};
 
 /// Harmonics that are reported.
 const HARMONICS: usize = 5;
+/// Part of a period within which two times are the same.
+const SAME_TIME: f64 = 1e-9;
 /// Points of a loop.
 const POINTS: usize = 256;
 /// Smallest amplitude of a motion, in radians or lengths, that loads are measured against.
@@ -43,6 +45,19 @@ pub struct Change {
     pub mean: f64,
     /// Greatest change of a first harmonic over itself.
     pub first_harmonic: f64,
+}
+
+/// Loads over the last period of the motion.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct LastPeriod {
+    /// Mean of the lift.
+    pub mean_cl: f64,
+    /// Greatest lift.
+    pub peak_cl: f64,
+    /// Mean of the drag.
+    pub mean_cd: f64,
+    /// Greatest drag.
+    pub peak_cd: f64,
 }
 
 /// First harmonics of the loads over that of one part of the motion: real and imaginary parts.
@@ -85,6 +100,25 @@ impl Trace {
             FirstHarmonics { motion: name, cl, cd, cm }
         });
         all.collect()
+    }
+
+    /// Loads of the last period, linear in time between steps; `None` while there is no whole one.
+    pub(super) fn last_period(&self, period: f64) -> Option<LastPeriod> {
+        let time = self.column(|m| m.time);
+        let end = *time.last()?;
+        // the first sample lies one step after the start of the march
+        let first = time.partition_point(|t| *t < end - period * (1.0 + SAME_TIME));
+        if first == 0 && end < period * (1.0 - SAME_TIME) {
+            return None;
+        }
+        let (cl, cd) = (self.column(|m| m.loads.cl), self.column(|m| m.loads.cd));
+        let of = |v: &[f64]| {
+            let (t, v) = (&time[first..], &v[first..]);
+            let area: f64 = t.windows(2).zip(v.windows(2)).map(|(t, v)| 0.5 * (t[1] - t[0]) * (v[0] + v[1])).sum();
+            (area / (end - t[0]), v.iter().copied().fold(f64::NEG_INFINITY, f64::max))
+        };
+        let ((mean_cl, peak_cl), (mean_cd, peak_cd)) = (of(&cl), of(&cd));
+        (end > time[first]).then_some(LastPeriod { mean_cl, peak_cl, mean_cd, peak_cd })
     }
 
     /// Cycles of the lift at the end of the history, whether or not a motion prescribes them.
@@ -201,4 +235,29 @@ fn ratio(load: &Harmonics, motion: &Harmonics) -> Value {
         "phase_deg": per.arg().to_degrees(),
         "work_per_cycle": load.work(motion),
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_last_period_has_its_mean_and_its_peak() {
+        let mut trace = Trace::default();
+        for k in 1..=250 {
+            let t = 0.02 * f64::from(k);
+            let cl = if t > 2.99 { 0.3 + (std::f64::consts::PI * t).sin() } else { 7.0 };
+            let loads = Coefficients { cl, cd: 2.0 * cl, cm: 0.0 };
+            trace.push(Sample { time: t, loads, motion: [0.0; 4] });
+        }
+        let last = trace.last_period(2.0).unwrap();
+        assert!((last.mean_cl - 0.3).abs() < 1e-12 && (last.peak_cl - 1.3).abs() < 1e-3, "{last:?}");
+        assert!((last.mean_cd - 0.6).abs() < 1e-12 && (last.peak_cd - 2.6).abs() < 2e-3, "{last:?}");
+        assert!(
+            trace.last_period(5.0).is_some_and(|p| p.peak_cl == 7.0),
+            "the first sample is one step after the start"
+        );
+        assert_eq!(trace.last_period(5.1), None);
+        assert_eq!(Trace::default().last_period(1.0), None);
+    }
 }

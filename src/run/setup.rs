@@ -38,6 +38,7 @@ pub(super) fn supported(case: &Case) -> Result<(), RunError> {
     let layered = travels && case.cloud.wall_layers.is_some();
     let bare = case.moves() && case.bodies.is_empty() && case.particles() == ParticleMotion::Deforming;
     let balanced = case.moves() && case.scheme.conservative == Some(true) && case.particles() != ParticleMotion::Rigid;
+    let slow = case.scheme.low_mach && !conserves(case);
     let asks = [
         (
             implicit,
@@ -45,6 +46,7 @@ pub(super) fn supported(case: &Case) -> Result<(), RunError> {
         ),
         (layered, "wall layers of particles that travel with the fluid (`wall_layers`, `particles = \"lagrangian\"`)"),
         (bare, "a deforming cloud without bodies (`particles = \"deforming\"`)"),
+        (slow, "slow flow without conservative coefficients (`low_mach = true` needs `conservative = true`)"),
         (balanced, "conservative coefficients on a cloud that deforms (`conservative = true`)"),
     ];
     let missing: Vec<&str> = asks.iter().filter(|a| a.0).map(|a| a.1).collect();
@@ -54,6 +56,12 @@ pub(super) fn supported(case: &Case) -> Result<(), RunError> {
     let list = missing.join(", ");
     let hint = "`alula check` and `alula cloud` accept the case; `alula run` does not yet";
     Err(RunError::Unsupported(format!("this version cannot compute {list}\nhint: {hint}")))
+}
+
+/// Exactly conservative coefficients? Weights that are fitted anew as particles move are not conservative, and linear fields count
+/// for more there than balances.
+fn conserves(case: &Case) -> bool {
+    case.scheme.conservative.unwrap_or(CONSERVATIVE && !case.moves())
 }
 
 /// One cloud of a run.
@@ -141,8 +149,7 @@ pub(super) fn solver<const D: usize>(
         None => Cloud::build(&scaled, surface, sources)?,
     };
     let field = initial::<D>(case)?;
-    // weights that are fitted anew as particles move are not conservative, and linear fields count for more than balances
-    let conservative = case.scheme.conservative.unwrap_or(CONSERVATIVE && !case.moves());
+    let conservative = conserves(case);
     let mut operators = Operators::new(&cloud);
     if conservative {
         conserve(&mut cloud, &mut operators);
@@ -157,6 +164,7 @@ pub(super) fn solver<const D: usize>(
         reconstruction: Reconstruction {
             second_order: scheme.order == 2,
             kappa: scheme.kappa,
+            low_mach: scheme.low_mach,
             threshold: scheme.limiter_threshold,
         },
         conservative,
@@ -330,5 +338,30 @@ pub(super) fn control(steady: &Steady, dimension: usize) -> Control {
         basis: 30,
         group: if dimension == 2 { 4 } else { 8 },
         cycle: Cycle { sweeps: 2, visits: 1, levels: if steady.method == SteadyMethod::LuSgs { 1 } else { 8 } },
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn slow_flow_is_refused_without_conservative_coefficients() {
+        let told = |more: &str| {
+            let text = format!(
+                "title = \"t\"\n[flow]\nmach = 0.1\n[[body]]\ncircle = {{ radius = 0.5 }}\n[cloud]\nspacing = 0.1\n[scheme]\n\
+                 low_mach = true\n{more}"
+            );
+            supported(&crate::case::read(&text, "t").unwrap()).map_err(|e| e.to_string())
+        };
+        assert!(told("").is_ok());
+        assert!(told("conservative = false").unwrap_err().contains("`low_mach = true` needs `conservative = true`"));
+        let moved = |particles: &str| {
+            format!(
+                "[motion]\nparticles = \"{particles}\"\nperiod = 10\nplunge = 0.1\n[time.dual]\nsteps_per_period = 20\nperiods = 1"
+            )
+        };
+        assert!(told(&moved("deforming")).is_err());
+        assert!(told(&format!("conservative = true\n{}", moved("rigid"))).is_ok());
     }
 }

@@ -52,6 +52,14 @@ impl LoadFrame {
         }
     }
 
+    /// The axes at the time of `frame`: the point of the moment travels with the first body.
+    pub(super) fn axes_in<const D: usize>(&self, fluid: &Fluid<D>, frame: &Frame<D>) -> LoadAxes {
+        let mut axes = self.axes(fluid);
+        let carried = fluid.carriage.body(0, frame.time).point(&Vector::from_fn(|d| axes.moment_point[d]));
+        axes.moment_point = carried.to_3d();
+        axes
+    }
+
     /// Coefficients of all bodies from the wall states, and with friction the gradients, in `work`: those of `frame`.
     pub(super) fn coefficients_in<const D: usize>(
         &self,
@@ -59,9 +67,7 @@ impl LoadFrame {
         frame: &Frame<D>,
         work: &Work<D>,
     ) -> Coefficients {
-        let mut axes = self.axes(fluid);
-        let carried = fluid.carriage.body(0, frame.time).point(&Vector::from_fn(|d| axes.moment_point[d]));
-        axes.moment_point = carried.to_3d();
+        let axes = self.axes_in(fluid, frame);
         let (cloud, far) = (&frame.shape.cloud, fluid.far_field.pressure());
         let mut load = Load::default();
         for (i, wall) in cloud.interface_range().zip(&cloud.interface) {

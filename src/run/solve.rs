@@ -154,6 +154,22 @@ impl<'a> Journal<'a> {
             && self.trace.change(period).is_some_and(|c| c.mean.max(c.first_harmonic) < tolerance)
     }
 
+    /// True, with a note, when the loads of the last period still differ from those of the period before.
+    fn unsettled(&mut self, tolerance: f64) -> bool {
+        let Some(change) = self.period.and_then(|p| self.trace.change(p)) else { return false };
+        let largest = change.mean.max(change.first_harmonic);
+        if largest < tolerance {
+            return false;
+        }
+        self.note(&format!(
+            "the loads have not settled: after {:.4} periods mean and first harmonic still change by {largest:.1e} from one \
+             period to the next (`periodic_tolerance` {tolerance:.1e}); more `periods` may do, unless the flow has a rhythm of \
+             its own: see `lift_cycles` in `summary.json`",
+            change.periods
+        ));
+        true
+    }
+
     /// The case.
     pub(super) fn case(&self) -> &Case {
         &self.case
@@ -497,7 +513,8 @@ fn march<const D: usize>(
             return Ok(Pause::Stop);
         }
     }
-    (journal.time, journal.converged) = (marcher.past().time, marcher.finished() || periodic);
+    let settled = periodic || tolerance.is_none_or(|t| !journal.unsettled(t));
+    (journal.time, journal.converged) = (marcher.past().time, (marcher.finished() || periodic) && settled);
     (journal.bytes, journal.linear, journal.unconverged) =
         (marcher.bytes(), marcher.linear(), marcher.past().unconverged);
     journal.keep(at, marcher, fluid)?;

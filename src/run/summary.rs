@@ -42,7 +42,7 @@ pub struct Summary {
     /// Where friction turns against the stream.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub separation: Vec<Separation>,
-    /// Loads from the momentum balance over a box around the bodies; absent while bodies move, when what the box holds changes.
+    /// Loads from the momentum of the gas around the bodies; null without bodies.
     pub loads_momentum_balance: Option<Coefficients>,
     /// What a harmonic balance found about itself.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -62,6 +62,9 @@ pub struct Summary {
     /// First harmonics of the loads per motion, where that repeats.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub first_harmonics: Vec<super::periodic::FirstHarmonics>,
+    /// Mean and greatest loads of the last period of the motion.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub last_period: Option<super::periodic::LastPeriod>,
     /// Last whole cycles of the lift of a march, found from its history: a frequency that no motion prescribes.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub lift_cycles: Option<crate::observe::cycles::Cycles>,
@@ -97,7 +100,7 @@ pub struct Reclouding {
 }
 
 /// What was lost, relative. Marching: change of the totals, what crossed open sides not counted as lost. Steady: net flux
-/// through the box around the bodies over the flux that enters it.
+/// through a zone around the bodies over the flux that enters it.
 #[derive(Clone, Copy, Debug, Default, Serialize)]
 pub struct Ledger {
     /// Mass.

@@ -260,6 +260,12 @@ fn respaced(case: &Case, spacing: f64, study: &Study) -> Case {
     if study.scale_layers {
         case.cloud.layers /= factor;
     }
+    if let Some(layers) = case.cloud.wall_layers.as_mut().filter(|_| study.scale_wall_layers) {
+        layers.first.0 *= factor;
+    }
+    if let Some(wake) = case.cloud.wake.as_mut().filter(|_| study.scale_wake) {
+        wake.spacing.0 *= factor;
+    }
     case
 }
 

@@ -176,6 +176,18 @@ pub struct WallMotion<const D: usize> {
 impl<const D: usize> WallMotion<D> {
     /// A wall that does not move.
     pub const AT_REST: Self = Self { spin: [Vector::ZERO; D], acceleration: Vector::ZERO };
+
+    /// The same in axes that `turn` leads to from those of `self` and `back` from there.
+    pub(super) fn turned(
+        &self,
+        turn: impl Fn(&Vector<D>) -> Vector<D>,
+        back: impl Fn(&Vector<D>) -> Vector<D>,
+    ) -> Self {
+        let times = |v: &Vector<D>| Vector::from_fn(|i| self.spin[i].dot(v));
+        let columns: [Vector<D>; D] = std::array::from_fn(|j| turn(&times(&back(&Vector::axis(j)))));
+        let spin = std::array::from_fn(|i| Vector::from_fn(|j| columns[j][i]));
+        Self { spin, acceleration: turn(&self.acceleration) }
+    }
 }
 
 /// State of interface particle `w` on a slip wall that moves with `velocity` and `motion`.

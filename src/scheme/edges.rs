@@ -10,7 +10,7 @@ use crate::math::Vector;
 use crate::physics::riemann::UpwindFlux;
 use crate::physics::{Conserved, Gas, Primitive};
 
-use super::reconstruct::{Gradient, Limit, Reconstruction};
+use super::reconstruct::{Gradient, Limit, Reconstruction, slowed};
 
 /// Edges that are computed together: enough to fill vectors, few enough that all of it stays in the first cache.
 const LANES: usize = 16;
@@ -45,6 +45,8 @@ pub struct Particles<'a, const D: usize> {
     pub gradient: &'a [Gradient<D>],
     /// Velocities of the particles themselves; empty when none moves.
     pub velocity: &'a [Vector<D>],
+    /// The outer ones: waves leave through them, which takes the whole jump of the velocity.
+    pub outer: (usize, usize),
 }
 
 /// `D` + 2 numbers of every edge.
@@ -95,6 +97,8 @@ struct Batch<const D: usize> {
     weight: [[Lanes; D]; 2],
     area: [Lanes; D],
     speed: [[Lanes; D]; 2],
+    /// Least part of the jump of the normal velocity that counts: 1 beside outer particles.
+    whole: Lanes,
     /// States on both sides of the middle, the upwind flux there per unit of area, and the result.
     middle: [Many<D>; 2],
     upwind: Many<D>,
@@ -108,6 +112,7 @@ impl<const D: usize> Batch<D> {
         weight: [[[0.0; LANES]; D]; 2],
         area: [[0.0; LANES]; D],
         speed: [[[0.0; LANES]; D]; 2],
+        whole: [0.0; LANES],
         middle: [Many::ZERO; 2],
         upwind: Many::ZERO,
         out: [Many::ZERO; 2],
@@ -125,6 +130,9 @@ pub fn edge_fluxes<const D: usize, F: UpwindFlux<D>, L: Limit>(
     for some in edges.chunks(LANES) {
         gather(rule, &particles, some, &mut batch);
         reconstruct(rule.gas, rule.limit, rule.reconstruction, &mut batch);
+        if rule.reconstruction.low_mach {
+            slow(rule.gas, &mut batch);
+        }
         cross(rule.gas, rule.flux, &mut batch);
         match (particles.velocity.is_empty(), rule.conservative) {
             (true, true) => balance::<D, false, true>(rule.gas, &mut batch),
@@ -163,6 +171,7 @@ fn gather<const D: usize, F, L>(rule: &Rule<F, L>, p: &Particles<'_, D>, edges: 
             }
         }
         put(&mut batch.area, k, &e.s);
+        batch.whole[k] = f64::from(u8::from(p.outer.0 <= ends[1] && ends[1] < p.outer.1));
     }
 }
 
@@ -178,6 +187,22 @@ fn reconstruct<const D: usize, L: Limit>(gas: Gas, limit: L, rule: Reconstructio
         let (qi, qj) = (own[0].primitive(k), own[1].primitive(k));
         let slopes = (slope[0].primitive(k), slope[1].primitive(k));
         let (l, r) = rule.states(&gas, limit, (&qi, &qj), (&slopes.0, &slopes.1));
+        left.put(k, l.density, &l.velocity, l.pressure);
+        right.put(k, r.density, &r.velocity, r.pressure);
+    }
+}
+
+/// Scales the jump of the normal velocity with the Mach number, seen from the mean velocity of the ends.
+#[multiversion(targets("x86_64+avx2"))]
+#[allow(unsafe_code, reason = "the attribute calls the version that the processor has just been asked for")]
+fn slow<const D: usize>(gas: Gas, batch: &mut Batch<D>) {
+    let Batch { area, speed, whole, middle: [left, right], .. } = batch;
+    for k in 0..LANES {
+        let m = normal(&take(area, k)).0;
+        let w = (take(&speed[0], k) + take(&speed[1], k)) * 0.5;
+        let seen = |q: Primitive<D>, w: Vector<D>| Primitive { velocity: q.velocity - w, ..q };
+        let (l, r) = slowed(&gas, seen(left.primitive(k), w), seen(right.primitive(k), w), (&m, whole[k]));
+        let (l, r) = (seen(l, -w), seen(r, -w));
         left.put(k, l.density, &l.velocity, l.pressure);
         right.put(k, r.density, &r.velocity, r.pressure);
     }

@@ -24,7 +24,7 @@ use crate::physics::riemann::{AusmPlusUp, Hllc, Roe, Rusanov, UpwindFlux};
 use crate::physics::{Conserved, Gas, Primitive};
 use crate::system::{Fault, Moment, System};
 
-use super::boundary::slip_wall;
+use super::boundary::{WallMotion, slip_wall};
 use super::edges::{Particles, Rule, edge_fluxes};
 use super::reconstruct::{Gradient, Limit, Reconstruction, Unlimited, VanAlbada, Venkatakrishnan};
 use super::shape::{Carriage, Frame, Shape};
@@ -64,6 +64,8 @@ pub struct Before<const D: usize> {
     pub shape: Arc<Shape<D>>,
     /// Time.
     pub time: f64,
+    /// Motion of the wall at each interface particle in the axes of the case; empty when nothing moves.
+    pub walls: Arc<Vec<WallMotion<D>>>,
 }
 
 /// What the far field is, given the force on the bodies.
@@ -93,7 +95,8 @@ impl<const D: usize> Fluid<D> {
         let shape = frame.turn.as_ref().map_or_else(|| Arc::clone(shape), |pose| Arc::new(shape.carried(pose)));
         let state = work.state.iter().map(|q| Primitive { velocity: turn(&q.velocity), ..*q }).collect();
         let gradient = work.gradient.iter().map(|g| g.turned(&turn)).collect();
-        let before = Some(Before { shape: Arc::clone(&self.shape), time: frame.time });
+        let walls = frame.walls.iter().map(|w| w.turned(turn, |v| frame.inward(v))).collect();
+        let before = Some(Before { shape: Arc::clone(&self.shape), time: frame.time, walls: Arc::new(walls) });
         let (far_field, held) = (Arc::clone(&self.far_field), Arc::clone(&self.held));
         let (carriage, friction) = (self.carriage.clone(), self.friction.clone());
         let seen = Self { shape, before, far_field, held, carriage, friction, ..*self };
@@ -226,6 +229,7 @@ impl<const D: usize> Fluid<D> {
             state: &work.state,
             gradient: &work.gradient,
             velocity: &frame.velocity,
+            outer: (cloud.outer_range().start, cloud.outer_range().end),
         };
         sweep_parts(op.fluid_parts(), D + 2, du, &|k, out| {
             let start = op.parts[k].start;
@@ -484,7 +488,7 @@ mod tests {
         let mut operators = Operators::new(&cloud);
         conservative(&mut cloud, &mut operators);
         let shape = Arc::new(Shape::new(cloud, operators));
-        let reconstruction = Reconstruction { second_order: true, kappa: 0.0, threshold: 0.02 };
+        let reconstruction = Reconstruction { second_order: true, kappa: 0.0, threshold: 0.02, low_mach: false };
         let held: Field<2> = Arc::new(|x| Still.state(x, &Vector::ZERO));
         let carriage = Carriage::Still;
         let (gas, flux, limiter) = (Gas { gamma: 1.4 }, Flux::Hllc, Limiter::VanAlbada);

@@ -1,5 +1,6 @@
 //! The discrete equations on a cloud.
 pub mod adapt;
+pub mod balance;
 pub mod blend;
 pub mod boundary;
 pub mod edges;

@@ -13,11 +13,13 @@
 //! *Walls that the gas sticks to.* The velocity of an interface particle is that of the wall, its pressure follows from
 //! ∂p/∂n = −ρ n·a_w and its temperature from ∂θ/∂n = 0 or is given (`boundary`). The wall takes the stress of the slope
 //! ∂v/∂n = (Δv₁ η₂/η₁ − Δv₂ η₁/η₂)/(η₂ − η₁), a parabola through the wall and two layers at the heights η, or without layers
-//! of the normal part of the gradient of the interface particle. The rotation of a wall is left out of that slope: it is to
-//! the shear as the thickness of the boundary layer to the radius.
+//! of the normal part of the gradient of the interface particle. Along the wall the gas turns with it: ∇v = n ∂v/∂n + G (I − nn)
+//! with the rate of rotation G of the wall, so that what turns with the wall feels no stress.
 //!
 //! The linearisation keeps differences across the face alone (thin layer).
-use super::boundary::stuck_wall;
+use std::sync::Arc;
+
+use super::boundary::{WallMotion, stuck_wall};
 use super::fluid::{Fluid, Work, add, half_face};
 use super::jacobian::{Block, add as add_block, couple};
 use super::reconstruct::Gradient;
@@ -134,7 +136,13 @@ impl<const D: usize> Fluid<D> {
         }
     }
 
-    /// The same in the middle of an edge whose face has the normal `m`.
+    /// Flux of stress and heat at particle `i` across `n`; zero without viscosity.
+    pub(super) fn viscous_flux(&self, work: &Work<D>, i: usize, n: &Vector<D>) -> Conserved<D> {
+        let flux = |f: &Arc<Friction>| f.medium.flux(&self.gas, &self.slopes(work, i), n);
+        self.friction.as_ref().map_or(Conserved::ZERO, flux)
+    }
+
+    /// Slopes in the middle of an edge whose face has the normal `m`.
     #[inline(always)]
     fn middle(&self, (a, b): (&Slopes<D>, &Slopes<D>), d: &Vector<D>, m: &Vector<D>) -> Slopes<D> {
         let across = 1.0 / reach(d, m);
@@ -212,7 +220,7 @@ impl<const D: usize> Fluid<D> {
         let cloud = &frame.shape.cloud;
         let source = cloud.source(face.wall as usize);
         let w = source.index - cloud.n_fluid;
-        let Some(at) = self.at_wall(friction, cloud, work, w) else { return Conserved::ZERO };
+        let Some(at) = self.at_wall(friction, (cloud, work), w, frame.walls.get(w)) else { return Conserved::ZERO };
         if !source.image {
             return friction.medium.flux(&self.gas, &at, &face.area);
         }
@@ -221,8 +229,14 @@ impl<const D: usize> Fluid<D> {
         Conserved { momentum: transform.direction(&through.momentum), ..through }
     }
 
-    /// Slopes on the wall of interface particle `w`; `None` where the gas slides.
-    fn at_wall(&self, friction: &Friction, cloud: &Cloud<D>, work: &Work<D>, w: usize) -> Option<Slopes<D>> {
+    /// Slopes on the wall of interface particle `w` that moves with `motion`; `None` where the gas slides.
+    fn at_wall(
+        &self,
+        friction: &Friction,
+        (cloud, work): (&Cloud<D>, &Work<D>),
+        w: usize,
+        motion: Option<&WallMotion<D>>,
+    ) -> Option<Slopes<D>> {
         let contact = friction.contact(cloud.interface[w].body);
         if contact == Contact::Slip {
             return None;
@@ -248,16 +262,29 @@ impl<const D: usize> Fluid<D> {
         Some(Slopes {
             velocity: wall.velocity,
             temperature,
-            velocity_gradient: std::array::from_fn(|c| *normal * rate[c]),
+            velocity_gradient: std::array::from_fn(|c| {
+                let along = motion.map_or(Vector::ZERO, |m| m.spin[c] - *normal * m.spin[c].dot(normal));
+                *normal * rate[c] + along
+            }),
             temperature_gradient: *normal * heating,
         })
     }
 
-    /// Stress and heat on the wall of interface particle `w`, from the states and gradients in `work`; `None` where the gas
-    /// slides.
-    pub fn wall_slopes(&self, cloud: &Cloud<D>, work: &Work<D>, w: usize) -> Option<WallSlopes<D>> {
+    /// Motion of the walls of a view of a moving cloud; empty where nothing moves.
+    pub fn walls_seen(&self) -> &[WallMotion<D>] {
+        self.before.as_ref().map_or(&[], |b| &b.walls)
+    }
+
+    /// Stress and heat on the wall of interface particle `w` of a cloud whose walls move, from the states and gradients in
+    /// `work`; `None` where the gas slides.
+    pub fn wall_slopes(
+        &self,
+        (cloud, walls): (&Cloud<D>, &[WallMotion<D>]),
+        work: &Work<D>,
+        w: usize,
+    ) -> Option<WallSlopes<D>> {
         let friction = self.friction.as_ref()?;
-        let at = self.at_wall(friction, cloud, work, w)?;
+        let at = self.at_wall(friction, (cloud, work), w, walls.get(w))?;
         let still = Slopes { velocity: Vector::ZERO, ..at };
         let through = friction.medium.flux(&self.gas, &still, &cloud.interface[w].normal);
         Some(WallSlopes { stress: through.momentum, heat: through.energy })
@@ -266,7 +293,7 @@ impl<const D: usize> Fluid<D> {
     /// Distance of the first particle from the wall in viscous lengths, y⁺ = η √(ρ |τ|)/μ; `None` where the gas slides.
     pub fn y_plus(&self, cloud: &Cloud<D>, work: &Work<D>, w: usize) -> Option<f64> {
         let friction = self.friction.as_ref()?;
-        let stress = self.wall_slopes(cloud, work, w)?.stress.norm();
+        let stress = self.wall_slopes((cloud, self.walls_seen()), work, w)?.stress.norm();
         let height = lowest_two(cloud, w).map_or(cloud.spacing[cloud.n_fluid + w], |(_, heights)| heights[0]);
         let wall = &work.state[cloud.n_fluid + w];
         Some(height * (wall.density * stress).sqrt() / friction.medium.at(self.gas.temperature(wall)))

@@ -19,6 +19,18 @@ impl<const D: usize> Fluid<D> {
         if !matches!(self.carriage, Carriage::Along { .. }) {
             return None;
         }
+        let volume = self.stretch(frame);
+        let i = volume.iter().position(|v| !(*v > LEAST))?;
+        let part = 100.0 * volume[i];
+        let reason = match part > 0.0 {
+            true => format!("its surroundings are squeezed to {part:.1} % of their volume (least {} %)", 100.0 * LEAST),
+            false => "the cloud folds over there: particles have overtaken their neighbours".into(),
+        };
+        Some(Fault { particle: i, place: frame.place(i).0.to_vec(), reason })
+    }
+
+    /// Volume of the surroundings of each fluid particle over what it was before any motion.
+    pub(super) fn stretch(&self, frame: &Frame<D>) -> Vec<f64> {
         let (before, now) = (&self.shape, &frame.shape.cloud);
         let op = &before.operators;
         let mut gradient = vec![[Vector::<D>::ZERO; D]; before.cloud.n_fluid];
@@ -34,15 +46,11 @@ impl<const D: usize> Fluid<D> {
                 }
             }
         });
-        let exact = |i: usize| before.cloud.first_order.binary_search(&(i as u32)).is_err();
-        let volume = |i: usize| determinant(&gradient[i]);
-        let i = (0..gradient.len()).find(|i| exact(*i) && !(volume(*i) > LEAST))?;
-        let part = 100.0 * volume(i);
-        let reason = match part > 0.0 {
-            true => format!("its surroundings are squeezed to {part:.1} % of their volume (least {} %)", 100.0 * LEAST),
-            false => "the cloud folds over there: particles have overtaken their neighbours".into(),
-        };
-        Some(Fault { particle: i, place: frame.place(i).0.to_vec(), reason })
+        let mut volume: Vec<f64> = gradient.iter().map(determinant).collect();
+        // rows of first order do not know their surroundings
+        let unknown = before.cloud.first_order.iter().map(|i| *i as usize);
+        unknown.filter(|i| *i < gradient.len()).for_each(|i| volume[i] = 1.0);
+        volume
     }
 }
 

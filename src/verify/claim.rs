@@ -46,6 +46,10 @@ pub struct Study {
     pub scale_boxes: bool,
     /// Also divide `cloud.layers` by that factor, so that the background becomes finer everywhere and not at the bodies only.
     pub scale_layers: bool,
+    /// Also scale `first` of the wall layers.
+    pub scale_wall_layers: bool,
+    /// Also scale the spacing of the wake.
+    pub scale_wake: bool,
 }
 
 /// One claim.
@@ -143,11 +147,15 @@ metrics! {
     SeparationUpper = "separation_upper",
     /// Root mean square, in `region`, of cf over that of a laminar plate along x from the origin, less one.
     CfBlasiusRms = "cf_blasius_rms",
+    /// The greatest such difference.
+    CfBlasiusMax = "cf_blasius_max",
+    /// Root mean square of u/U less that of Blasius, over the particles in `region` below eta = 7.
+    ProfileBlasiusRms = "profile_blasius_rms",
     /// Moment coefficient about the reference point, nose up positive.
     Cm = "cm",
-    /// Lift coefficient from the momentum through a box around the body.
+    /// Lift coefficient from the momentum of the gas around the body.
     ClMomentum = "cl_momentum",
-    /// Drag coefficient from the momentum through a box around the body.
+    /// Drag coefficient from the momentum of the gas around the body.
     CdMomentum = "cd_momentum",
     /// Orders of magnitude the steady residual fell.
     ResidualDrop = "residual_drop",
@@ -212,6 +220,10 @@ metrics! {
     SwingCd = "swing_cd",
     /// Half of greatest less smallest lift coefficient within those cycles.
     SwingCl = "swing_cl",
+    /// Mean of the lift coefficient over the last period of the motion.
+    MeanCl = "mean_cl",
+    /// Greatest lift coefficient within that period.
+    PeakCl = "peak_cl",
     /// Length behind the body over which the gas on its axis runs against the stream, in chords.
     WakeLength = "wake_length",
     /// Lift coefficient extrapolated to zero spacing over the study.

@@ -9,12 +9,14 @@ pub(super) fn parse_study(table: &Table, problems: &mut Vec<String>) -> Option<S
     let spacings = keys.numbers("spacings").unwrap_or_default();
     let scale_boxes = keys.boolean("scale_boxes").unwrap_or(false);
     let scale_layers = keys.boolean("scale_layers").unwrap_or(false);
+    let scale_wall_layers = keys.boolean("scale_wall_layers").unwrap_or(false);
+    let scale_wake = keys.boolean("scale_wake").unwrap_or(false);
     let falling = spacings.windows(2).all(|w| w[1] < w[0]) && spacings.iter().all(|h| 0.0 < *h && h.is_finite());
     if spacings.len() < 2 || !falling {
         keys.problem("`spacings` must be two or more falling positive numbers\nhint: write them coarse to fine");
     }
     keys.finish();
-    (problems.len() == before).then_some(Study { spacings, scale_boxes, scale_layers })
+    (problems.len() == before).then_some(Study { spacings, scale_boxes, scale_layers, scale_wall_layers, scale_wake })
 }
 
 pub(super) fn parse_claim(table: &Table, number: usize, problems: &mut Vec<String>) -> Option<Claim> {

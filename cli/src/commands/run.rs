@@ -67,6 +67,11 @@ fn finished(summary: &Summary, out: &Path, verbosity: Verbosity) -> Outcome {
     if summary.converged {
         return Outcome::Done;
     }
+    if summary.time > 0.0 {
+        let hint = "raise `periods`, or loosen `periodic_tolerance`";
+        output::error("not converged: the loads have not become periodic", hint);
+        return Outcome::Failed;
+    }
     let hint = "raise `time.steady.iterations`, or look at the residual in the report";
     output::error(&format!("not converged: the residual fell {:.1} orders", summary.residual_drop), hint);
     Outcome::Failed

@@ -91,3 +91,39 @@ fn the_blocks_are_the_derivative_across_a_face() {
         (0..5).for_each(|r| assert!((block[r][k] - (a[r] - b[r]) / 2e-6).abs() < 1e-8, "{r} {k}"));
     }
 }
+
+/// A circle off the axis it turns about; layers when asked for. `particles` is how they move.
+fn turning(layers: &str, particles: &str) -> Fluid<2> {
+    let text = format!(
+        "[flow]\nmach = 0.1\nreynolds = 100\nviscosity_law = \"constant\"\n[[body]]\ncircle = {{ radius = 0.5 }}\n\
+         [motion]\nparticles = \"{particles}\"\npivot = [0.2, 0.3]\nrotation = 0.4\n[cloud]\n{layers}\n\
+         spacing = 0.05\ndomain = {{ min = [-3.2, -3.2], max = [3.2, 3.2] }}\n\
+         [time.dual]\nstep = 0.1\nuntil = 1.0\n"
+    );
+    let case = read(&text, "case.toml").unwrap_or_else(|e| panic!("{e}"));
+    build_solver::<2>(&case, std::path::Path::new("")).unwrap().0
+}
+
+#[test]
+fn gas_that_turns_with_a_wall_does_not_rub_on_it() {
+    for layers in ["", "wall_layers = { first = 0.005 }"] {
+        for particles in ["rigid", "deforming"] {
+            let fluid = turning(layers, particles);
+            let (h, t) = (1e-4, 0.7);
+            let rate = [(0.5 / h, t + h), (-0.5 / h, t - h)];
+            let frame = fluid.frame(&Moment::By { time: t, rate: &rate }, &vec![1.0; fluid.len()]);
+            let mut work = fluid.work();
+            let cloud = &frame.shape.cloud;
+            for (i, q) in work.state.iter_mut().enumerate() {
+                let d = frame.place(i) - Vector([0.2, 0.3]);
+                let velocity = frame.inward(&(Vector([d[1], -d[0]]) * 0.4));
+                *q = Primitive { density: 1.0, velocity, pressure: 1.0 / 1.4 };
+            }
+            fluid.fill_gradients(&frame, &mut work);
+            let mu = fluid.friction.as_ref().unwrap().medium.viscosity;
+            let stress = |w: usize| fluid.wall_slopes((cloud, &frame.walls), &work, w).unwrap().stress.norm();
+            let worst = (0..cloud.interface.len()).map(stress).fold(0.0, f64::max) / (mu * 0.4);
+            assert!(worst < 1e-6, "{layers} {particles}: {worst}");
+        }
+    }
+}

@@ -1,0 +1,100 @@
+//! Loads from the momentum of the gas around the bodies: the second evaluation that every run reports.
+use super::snapshot::LoadFrame;
+use crate::case::{Case, Side};
+use crate::math::{Bounds, Vector};
+use crate::observe::loads::Balance as Sum;
+use crate::scheme::balance::{Balance, Part};
+use crate::scheme::probe::Probe;
+use crate::scheme::{Fluid, Frame, Work};
+use crate::system::System;
+
+/// What passes the zone around the bodies at the moment of `frame`; `None` without bodies. Fills `work`. A flow that
+/// `marches` changes as the right-hand side of its equations says.
+pub(super) fn around<const D: usize>(
+    case: &Case,
+    axes: &LoadFrame,
+    fluid: &Fluid<D>,
+    (frame, state, work): (&Frame<D>, &[f64], &mut Work<D>),
+    marches: bool,
+) -> Option<Sum> {
+    if fluid.shape.cloud.interface.is_empty() {
+        return None;
+    }
+    let mut rate = Vec::new();
+    if marches {
+        rate = vec![0.0; fluid.len()];
+        fluid.rhs(frame, state, work, &mut rate);
+    }
+    fluid.fill_states(frame, state, work);
+    fluid.fill_gradients(frame, work);
+    let balance = Balance::new(case, fluid, (frame, work))?;
+    let mut sum = Sum::default();
+    let axes = axes.axes_in(fluid, frame);
+    let mut add = |p: Part<D>| {
+        axes.add(&mut sum.load, &p.x.to_3d(), &p.force.to_3d());
+        axes.turn(&mut sum.load, &p.carried[0].to_3d(), &p.carried[1].to_3d());
+        sum.mass += p.mass;
+        sum.energy += p.energy;
+        sum.passed[0] += p.passed[0];
+        sum.passed[1] += p.passed[1];
+    };
+    balance.parts(&rate).into_iter().for_each(&mut add);
+    let cut = cuts(case, fluid, &balance.zone.bounds());
+    if !cut.is_empty() {
+        let seen = fluid.seen(frame, work);
+        let (fluid, work) = seen.as_ref().map_or((fluid, &*work), |(fluid, work)| (fluid, work));
+        let probe = Probe::new(fluid, work, None);
+        for (axis, sign, region) in cut {
+            let end = if sign < 0.0 { region.min[axis] } else { region.max[axis] };
+            tile(fluid, &region, (axis, end), &mut |x, size| {
+                if let Some(q) = probe.at(&x) {
+                    add(balance.side(x, &q, &(Vector::axis(axis) * (sign * size))));
+                }
+            });
+        }
+    }
+    Some(sum)
+}
+
+/// Sides of the domain that cut the zone: axis, direction outward, and the part of the zone that lies inside. What passes one
+/// of two periodic sides comes back through the other.
+fn cuts<const D: usize>(case: &Case, fluid: &Fluid<D>, zone: &Bounds<D>) -> Vec<(usize, f64, Bounds<D>)> {
+    let domain = fluid.reference().cloud.tree.bounds();
+    let clamp = |v: &Vector<D>| Vector::from_fn(|d| v[d].clamp(domain.min[d], domain.max[d]));
+    let region = Bounds { min: clamp(&zone.min), max: clamp(&zone.max) };
+    let sides = (0..D).flat_map(|axis| [(axis, -1.0), (axis, 1.0)]);
+    let beyond = |(axis, sign): &(usize, f64)| match *sign < 0.0 {
+        true => zone.min[*axis] < domain.min[*axis],
+        false => zone.max[*axis] > domain.max[*axis],
+    };
+    let s = &case.boundary;
+    let conditions = [[s.x_min, s.x_max], [s.y_min, s.y_max], [s.z_min, s.z_max]];
+    let open = |(axis, sign): &(usize, f64)| conditions[*axis][usize::from(*sign > 0.0)] != Side::Periodic;
+    sides.filter(beyond).filter(open).map(|(axis, sign)| (axis, sign, region)).collect()
+}
+
+/// Calls `f(middle, area)` for tiles of one face of a box, about half a local spacing wide.
+fn tile<const D: usize>(
+    fluid: &Fluid<D>,
+    region: &Bounds<D>,
+    (axis, end): (usize, f64),
+    f: &mut dyn FnMut(Vector<D>, f64),
+) {
+    let tree = &fluid.reference().cloud.tree;
+    let mut stack = vec![*region];
+    while let Some(b) = stack.pop() {
+        let mut middle = b.centre();
+        middle[axis] = end;
+        let extent = b.extent();
+        let side =
+            (0..D).filter(|d| *d != axis).fold(axis, |a, d| if a == axis || extent[d] > extent[a] { d } else { a });
+        if extent[side] > 0.5 * tree.leaf_at(&middle).size {
+            let half = 0.5 * (b.min[side] + b.max[side]);
+            let (mut low, mut high) = (b, b);
+            (low.max[side], high.min[side]) = (half, half);
+            stack.extend([low, high]);
+        } else {
+            f(middle, (0..D).filter(|d| *d != axis).map(|d| extent[d]).product());
+        }
+    }
+}

@@ -1,0 +1,197 @@
+//! What the motion of bodies will ask of a cloud, told before a run.
+//!
+//! Interface particles are carried along the laws of motion to the times of the steps, or of [`TIMES`] parts of the march.
+//! Bodies that leave the domain or run into one another are refused with place and time; steps in which a body moves by more
+//! than its spacing are noted, with the number of steps that would do.
+use super::RunError;
+use crate::case::{Case, ParticleMotion, Temporal};
+use crate::cloud::Cloud;
+use crate::math::{Bounds, Vector};
+use crate::motion::Motions;
+
+/// Times at which bodies are looked at, at most.
+const TIMES: usize = 512;
+/// Points of a body that distances to others are measured from.
+const POINTS: usize = 400;
+/// Gap between two bodies that particles still fit into, in spacings of their walls.
+const GAP: f64 = 0.5;
+
+/// One body with the interface particles that lie in the domain.
+struct Body<'a, const D: usize> {
+    number: usize,
+    name: String,
+    points: Vec<(&'a Vector<D>, f64)>,
+}
+
+/// Looks at the whole march; what is worth knowing, or why it cannot be done.
+pub(super) fn look<const D: usize>(
+    case: &Case,
+    cloud: &Cloud<D>,
+    motions: &Motions<D>,
+) -> Result<Vec<String>, RunError> {
+    let period = motions.period();
+    let Some(end) = case.time.end(period).filter(|_| motions.moves() && !cloud.interface.is_empty()) else {
+        return Ok(Vec::new());
+    };
+    let bodies = bodies(case, cloud);
+    let span = period.map_or(end, |p| p.min(end));
+    if case.particles() != ParticleMotion::Rigid {
+        for k in 0..=TIMES {
+            let t = span * k as f64 / TIMES as f64;
+            stays_inside(&bodies, motions, &cloud.tree.bounds(), t)?;
+            keeps_apart(&bodies, motions, t)?;
+        }
+    }
+    Ok(longest_way(case, &bodies, motions, (period, span)).into_iter().collect())
+}
+
+fn bodies<'a, const D: usize>(case: &Case, cloud: &'a Cloud<D>) -> Vec<Body<'a, D>> {
+    let named = |b: usize| case.bodies[b].name.clone().unwrap_or_else(|| format!("body {}", b + 1));
+    let points = |b: usize| {
+        let own = cloud.interface_range().zip(&cloud.interface).filter(|(_, w)| usize::from(w.body) == b);
+        own.map(|(i, _)| (&cloud.x[i], cloud.spacing[i])).collect::<Vec<_>>()
+    };
+    (0..case.bodies.len()).map(|b| Body { number: b, name: named(b), points: points(b) }).collect()
+}
+
+fn stays_inside<const D: usize>(
+    bodies: &[Body<'_, D>],
+    motions: &Motions<D>,
+    domain: &Bounds<D>,
+    t: f64,
+) -> Result<(), RunError> {
+    for body in bodies {
+        let pose = motions.of(body.number).pose(t);
+        let out = body.points.iter().map(|(x, _)| pose.point(x)).find(|x| !domain.contains(x));
+        if let Some(x) = out {
+            return Err(RunError::Motion(format!(
+                "`{}` leaves the domain at t = {t:.4}, at {}\nhint: give it more room with `cloud.domain` or \
+                 `cloud.far_field`, less motion, or let all particles move with it, `motion.particles = \"rigid\"`",
+                body.name,
+                place(&x)
+            )));
+        }
+    }
+    Ok(())
+}
+
+fn keeps_apart<const D: usize>(bodies: &[Body<'_, D>], motions: &Motions<D>, t: f64) -> Result<(), RunError> {
+    let carried: Vec<Vec<(Vector<D>, f64)>> = bodies
+        .iter()
+        .map(|b| {
+            let (pose, every) = (motions.of(b.number).pose(t), b.points.len().div_ceil(POINTS).max(1));
+            // particles that are left out leave gaps: a point stands for all of its neighbourhood
+            b.points.iter().step_by(every).map(|(x, h)| (pose.point(x), h * every as f64)).collect()
+        })
+        .collect();
+    for (a, b) in (0..bodies.len()).flat_map(|a| (a + 1..bodies.len()).map(move |b| (a, b))) {
+        if motions.of(a).is_fixed() && motions.of(b).is_fixed() {
+            continue;
+        }
+        let [one, other] = [a, b].map(|k| Bounds::around(carried[k].iter().map(|(x, _)| x)));
+        let thick = carried[a].iter().chain(&carried[b]).fold(0.0, |m: f64, (_, h)| m.max(*h));
+        let apart = |d: usize| one.min[d] > other.max[d] + thick || other.min[d] > one.max[d] + thick;
+        if (0..D).any(apart) {
+            continue;
+        }
+        for (x, h) in &carried[a] {
+            let near = carried[b].iter().find(|(y, g)| (*x - *y).norm() < GAP * h.max(*g));
+            if near.is_some() {
+                return Err(RunError::Motion(format!(
+                    "`{}` and `{}` run into one another at t = {t:.4}, at {}\nhint: a gap must stay wider than a \
+                     spacing of the walls, here {h:.3e}: move them less, or place them farther apart",
+                    bodies[a].name,
+                    bodies[b].name,
+                    place(x)
+                )));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// A note when an implicit step carries a body farther than the spacing of its wall.
+fn longest_way<const D: usize>(
+    case: &Case,
+    bodies: &[Body<'_, D>],
+    motions: &Motions<D>,
+    (period, span): (Option<f64>, f64),
+) -> Option<String> {
+    let Temporal::Dual(dual) = &case.time else { return None };
+    let dt = dual.step_length(period).filter(|dt| dual.adaptive.is_none() && 0.0 < *dt)?;
+    let steps = ((span / dt).ceil() as usize).max(1);
+    let looked_at = (0..steps).step_by(steps.div_ceil(TIMES)).map(|k| k as f64 * dt);
+    let mut worst = (0.0, 0.0, "");
+    for t in looked_at {
+        for body in bodies {
+            let law = motions.of(body.number);
+            let (from, to) = (law.pose(t), law.pose(t + dt));
+            for (x, h) in &body.points {
+                let way = (to.point(x) - from.point(x)).norm() / h;
+                if way > worst.0 {
+                    worst = (way, t, body.name.as_str());
+                }
+            }
+        }
+    }
+    let (way, t, name) = worst;
+    if !(way > 1.0) {
+        return None;
+    }
+    let remedy = match (period, dual.steps_per_period) {
+        (Some(period), Some(_)) => format!("`steps_per_period = {}`", (period / dt * way).ceil()),
+        _ => format!("`step = {:.3e}`", dt / way),
+    };
+    Some(format!(
+        "`{name}` moves by {way:.1} spacings of its wall in the step after t = {t:.4}: waves from it are smeared in time; \
+         with {remedy} it moves by one at most"
+    ))
+}
+
+fn place<const D: usize>(x: &Vector<D>) -> String {
+    let numbers: Vec<String> = x.0.iter().map(|c| format!("{c:.4}")).collect();
+    format!("({})", numbers.join(", "))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::case::read;
+    use std::path::Path;
+
+    /// What is told of two circles, of which the second moves by `motion`.
+    fn told(motion: &str, time: &str) -> Result<Vec<String>, String> {
+        let text = format!(
+            "[flow]\nmach = 0.3\n[[body]]\nname = \"front\"\ncircle = {{ radius = 0.5 }}\n[[body]]\nname = \"rear\"\n\
+             circle = {{ radius = 0.5 }}\ntranslate = [2.0, 0.0]\n[body.motion]\n{motion}\n[cloud]\nspacing = 0.1\n\
+             domain = {{ min = [-3.2, -3.2], max = [6.4, 3.2] }}\n[time.dual]\n{time}\n"
+        );
+        let case = read(&text, "case.toml").unwrap_or_else(|e| panic!("{e}"));
+        let (surface, cloud, _) = crate::run::build_cloud::<2>(&case, Path::new("")).unwrap();
+        let motions = crate::run::setup::motions(&case, Path::new(""), surface.as_ref()).unwrap();
+        look(&case, &cloud, &motions).map_err(|e| e.to_string())
+    }
+
+    #[test]
+    fn bodies_that_leave_or_collide_are_refused_before_the_run() {
+        let message = told("translation = [0.3, 0.0]", "step = 0.1\nuntil = 20").unwrap_err();
+        assert!(message.contains("`rear` leaves the domain at t = 13.0"), "{message}");
+        let message = told("translation = [-0.3, 0.0]", "step = 0.1\nuntil = 5").unwrap_err();
+        assert!(message.contains("`front` and `rear` run into one another at t = 3.2"), "{message}");
+        assert_eq!(told("translation = [-0.3, 0.0]", "step = 0.1\nuntil = 2"), Ok(Vec::new()));
+    }
+
+    #[test]
+    fn a_step_over_more_than_a_spacing_is_told_with_its_remedy() {
+        let swing = "period = 4\nplunge = 0.5";
+        // 0.5 sin over an eighth of a period: 0.35 in the fastest step
+        let notes = told(swing, "steps_per_period = 8\nperiods = 2").unwrap();
+        assert!(notes[0].contains("`rear` moves by") && notes[0].contains("`steps_per_period = "), "{notes:?}");
+        let remedy: f64 =
+            notes[0].split("steps_per_period = ").nth(1).unwrap().split('`').next().unwrap().parse().unwrap();
+        assert_eq!(
+            told(swing, &format!("steps_per_period = {}\nperiods = 2", (1.2 * remedy).ceil())).map(|n| n.len()),
+            Ok(0)
+        );
+    }
+}

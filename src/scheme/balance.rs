@@ -1,0 +1,341 @@
+//! The force on bodies from the momentum of the gas around them, which knows nothing of the pressure on the wall.
+//!
+//! A weight φ is 1 around the bodies and falls to 0 farther out. With the momentum m = ρ(v − v∞) beyond that of the free stream,
+//! so that uniform flow adds up to nothing on any cloud, T = m v + (p − p∞)I − τ, and particles that move with w,
+//!
+//! F = Σ_i V_i [(T − m w)·∇φ − φ (dm/dt + m ∇·w)] − Σ_sides φ T·A:
+//!
+//! what passes the zone in which φ falls, less what gathers inside it. It follows from the momentum equation by parts, where
+//! on the wall (v − w)·n = 0; for moments, (v − w) × m φ is added because T is not symmetric. dm/dt is the change that a particle sees, in steady flow zero; fluxes of mass and energy are
+//! summed in the same way. Sides A of the domain count where the zone is cut by them. Volumes of particles beside a wall are not
+//! known to all digits; what they lack together follows from the walls and goes to them by area and thickness.
+use super::fluid::{Fluid, Work};
+use super::shape::{Carriage, Frame};
+use super::start::free_stream;
+use crate::case::Case;
+use crate::math::sweep::{sweep_parts, sweep_slots};
+use crate::math::{Bounds, Vector};
+use crate::physics::{Conserved, Primitive};
+
+/// Distance from the box around the bodies within which φ = 1, and beyond which it is 0, in lengths of that box.
+const ZONE: [f64; 2] = [0.1, 0.6];
+/// The same in spacings of the interface, at least: φ must fall over several particles.
+const PARTICLES: [f64; 2] = [2.0, 16.0];
+
+/// The weight φ: a product of quintics of the distance from a box along each axis.
+#[derive(Clone, Copy, Debug)]
+pub struct Zone<const D: usize> {
+    bodies: Bounds<D>,
+    reach: [f64; 2],
+}
+
+impl<const D: usize> Zone<D> {
+    /// The zone around a box with particles at the given distance on it.
+    pub fn around(bodies: Bounds<D>, spacing: f64) -> Self {
+        let length = bodies.extent().max_abs();
+        let reach = [0, 1].map(|k| (ZONE[k] * length).max(PARTICLES[k] * spacing));
+        Self { bodies, reach }
+    }
+
+    /// The box outside of which φ = 0.
+    pub fn bounds(&self) -> Bounds<D> {
+        self.bodies.padded(self.reach[1])
+    }
+
+    /// φ and ∇φ at `x`.
+    pub fn at(&self, x: &Vector<D>) -> (f64, Vector<D>) {
+        let [near, far] = self.reach;
+        let axes: [(f64, f64); D] = std::array::from_fn(|d| {
+            let (below, above) = (self.bodies.min[d] - x[d], x[d] - self.bodies.max[d]);
+            let sign = if above > below { 1.0 } else { -1.0 };
+            let s = ((above.max(below) - near) / (far - near)).clamp(0.0, 1.0);
+            let slope = -30.0 * s * s * (1.0 - s) * (1.0 - s) / (far - near);
+            (1.0 - s * s * s * (10.0 - 15.0 * s + 6.0 * s * s), sign * slope)
+        });
+        let rest = |d: usize| (0..D).filter(|k| *k != d).map(|k| axes[k].0).product::<f64>();
+        (axes.iter().map(|a| a.0).product(), Vector::from_fn(|d| axes[d].1 * rest(d)))
+    }
+}
+
+/// What one particle, what is missing beside a wall, or a piece of side adds to the balance; everything in the axes of the case.
+#[derive(Clone, Copy, Debug)]
+pub struct Part<const D: usize> {
+    /// Where.
+    pub x: Vector<D>,
+    /// Force on the bodies.
+    pub force: Vector<D>,
+    /// Velocity v − w and weighted momentum whose product is added to the moment.
+    pub carried: [Vector<D>; 2],
+    /// Mass that flows outward.
+    pub mass: f64,
+    /// Energy that flows outward.
+    pub energy: f64,
+    /// Mass and energy that pass the zone, whatever the direction.
+    pub passed: [f64; 2],
+}
+
+impl<const D: usize> Part<D> {
+    const BLANK: Self = Self {
+        x: Vector::ZERO,
+        force: Vector::ZERO,
+        carried: [Vector::ZERO; 2],
+        mass: 0.0,
+        energy: 0.0,
+        passed: [0.0; 2],
+    };
+}
+
+/// Takes the balance of a fluid at one moment.
+pub struct Balance<'a, const D: usize> {
+    fluid: &'a Fluid<D>,
+    frame: &'a Frame<D>,
+    work: &'a Work<D>,
+    free: Primitive<D>,
+    /// The weight.
+    pub zone: Zone<D>,
+}
+
+impl<'a, const D: usize> Balance<'a, D> {
+    /// States and gradients in `work` are those of `frame`; `None` without bodies.
+    pub fn new(case: &Case, fluid: &'a Fluid<D>, (frame, work): (&'a Frame<D>, &'a Work<D>)) -> Option<Self> {
+        let range = frame.shape.cloud.interface_range();
+        if range.is_empty() {
+            return None;
+        }
+        let places: Vec<Vector<D>> = range.clone().map(|i| frame.place(i)).collect();
+        let spacing = range.map(|i| frame.shape.cloud.spacing[i]).fold(0.0, f64::max);
+        let zone = Zone::around(Bounds::around(&places), spacing);
+        Some(Self { fluid, frame, work, free: free_stream(case), zone })
+    }
+
+    /// What the particles add, and what lies between them and the walls. `rate` is dU/dt of the fluid particles; empty in steady flow.
+    pub fn parts(&self, rate: &[f64]) -> Vec<Part<D>> {
+        let (frame, cloud) = (self.frame, &self.frame.shape.cloud);
+        let spread = self.spread();
+        let volume = self.fluid.volumes();
+        let first = self.fluid.shape.cloud.interface.len();
+        let gathered = |i: usize| {
+            let own = if rate.is_empty() { Conserved::ZERO } else { Conserved::load(&rate[i * (D + 2)..]) };
+            own.momentum - self.free.velocity * own.density + self.momentum(i) * spread.get(i).map_or(0.0, |s| s.1)
+        };
+        let volume = |i: usize| volume[i] * spread.get(i).map_or(1.0, |s| s.0);
+        let missing = self.missing(&volume);
+        let mut parts = vec![Part::BLANK; first + cloud.n_fluid];
+        sweep_slots(&mut parts, |k, part| {
+            *part = match k.checked_sub(first) {
+                None => {
+                    let v = missing.map_or(0.0, |m| m * self.share(k));
+                    Part { x: frame.place(cloud.n_fluid + k), force: gathered(self.beside(k)) * -v, ..Part::BLANK }
+                }
+                Some(i) => {
+                    let x = frame.place(i);
+                    let weight = self.zone.at(&x);
+                    let flow = self.fluxes(i, &frame.inward(&weight.1));
+                    let v = volume(i);
+                    Part {
+                        x,
+                        force: (flow.0.momentum - gathered(i) * weight.0) * v,
+                        carried: [
+                            frame.outward(&(self.work.state[i].velocity - frame.velocity_of(i))),
+                            self.momentum(i) * (weight.0 * v),
+                        ],
+                        mass: -v * flow.0.density,
+                        energy: -v * flow.0.energy,
+                        passed: flow.1.map(|f| v * f.abs()),
+                    }
+                }
+            };
+        });
+        parts
+    }
+
+    /// Volume that the particles beside the walls lack, over the sum of the shares of the walls: ∫ ∇·(φ x) dV is known from the
+    /// walls alone. `None` where sides of the domain cut the zone.
+    fn missing(&self, volume: &impl Fn(usize) -> f64) -> Option<f64> {
+        let (frame, cloud) = (self.frame, &self.frame.shape.cloud);
+        let (zone, domain) = (self.zone.bounds(), self.fluid.reference().cloud.tree.bounds());
+        if !(domain.contains(&zone.min) && domain.contains(&zone.max)) {
+            return None;
+        }
+        let middle = zone.centre();
+        let walls = cloud.interface_range().zip(&cloud.interface);
+        let exact: f64 = walls.map(|(i, w)| -(frame.place(i) - middle).dot(&frame.outward(&w.area))).sum();
+        let particle = |i: usize| {
+            let x = frame.place(i);
+            let (weight, slope) = self.zone.at(&x);
+            volume(i) * (weight * D as f64 + slope.dot(&(x - middle)))
+        };
+        let found: f64 = (0..cloud.n_fluid).map(particle).sum();
+        let shares: f64 = (0..cloud.interface.len()).map(|w| self.share(w)).sum();
+        Some((exact - found) / D as f64 / shares)
+    }
+
+    /// The part of interface particle `w` in volume that is missing: rows of particles are a spacing thick.
+    fn share(&self, w: usize) -> f64 {
+        let cloud = &self.frame.shape.cloud;
+        cloud.interface[w].area.norm() * cloud.spacing[cloud.n_fluid + w]
+    }
+
+    /// The fluid particle nearest to interface particle `w` of those it is fitted to.
+    fn beside(&self, w: usize) -> usize {
+        let cloud = &self.frame.shape.cloud;
+        let x = cloud.x[cloud.n_fluid + w];
+        let near = cloud.wall_clouds.of(w).iter().map(|j| *j as usize);
+        let nearest = near.min_by(|a, b| (cloud.x[*a] - x).norm_squared().total_cmp(&(cloud.x[*b] - x).norm_squared()));
+        nearest.map_or(0, |j| cloud.source(j).index)
+    }
+
+    /// ρ(v − v∞) in the axes of the case.
+    fn momentum(&self, i: usize) -> Vector<D> {
+        let q = &self.work.state[i];
+        (self.frame.outward(&q.velocity) - self.free.velocity) * q.density
+    }
+
+    /// (T − m w)·g at particle `i`, momentum in the axes of the case, with the flows of mass and energy along g beyond those of
+    /// the free stream; the whole flows.
+    fn fluxes(&self, i: usize, g: &Vector<D>) -> (Conserved<D>, [f64; 2]) {
+        let (frame, gas, q) = (self.frame, &self.fluid.gas, &self.work.state[i]);
+        let free = Primitive { velocity: frame.inward(&self.free.velocity), ..self.free };
+        let (own, far) = (gas.flux(q, g), gas.flux(&free, g));
+        let stress = self.fluid.viscous_flux(self.work, i, g);
+        let push = frame.outward(&(*g * (q.pressure - free.pressure) - stress.momentum));
+        let momentum = self.momentum(i) * (q.velocity - frame.velocity_of(i)).dot(g) + push;
+        let energy = own.energy - far.energy - stress.energy;
+        (Conserved { density: own.density - far.density, momentum, energy }, [own.density, own.energy])
+    }
+
+    /// What a piece of a side of the domain adds: the state there in the axes of the case, and its outward area.
+    pub fn side(&self, x: Vector<D>, q: &Primitive<D>, area: &Vector<D>) -> Part<D> {
+        let (gas, weight) = (&self.fluid.gas, self.zone.at(&x).0);
+        let flow = gas.flux(q, area).plus(-1.0, &gas.flux(&self.free, area)).times(weight);
+        let momentum = (q.velocity - self.free.velocity) * (q.density * q.velocity.dot(area));
+        Part {
+            x,
+            force: (momentum + *area * (q.pressure - self.free.pressure)) * -weight,
+            carried: [Vector::ZERO; 2],
+            mass: flow.density,
+            energy: flow.energy,
+            passed: [flow.density.abs(), flow.energy.abs()],
+        }
+    }
+
+    /// Volume of each fluid particle over that before any motion, and ∇·w; empty where both are as for a body.
+    fn spread(&self) -> Vec<(f64, f64)> {
+        let (frame, now) = (self.frame, &self.frame.shape);
+        let stretched = match self.fluid.carriage {
+            Carriage::Still | Carriage::Rigid(_) => return Vec::new(),
+            Carriage::Along { .. } => self.fluid.stretch(frame),
+            Carriage::Travel(_) => vec![1.0; now.cloud.n_fluid],
+        };
+        let mut divergence = vec![0.0; now.cloud.n_fluid];
+        let op = &now.operators;
+        if frame.moves() {
+            sweep_parts(op.fluid_parts(), 1, &mut divergence, &|k, out| {
+                let start = op.parts[k].start;
+                for e in op.edges(k) {
+                    let change = frame.velocity_of(e.j()) - frame.velocity_of(e.i());
+                    out[e.i() - start] += e.a_i.dot(&change);
+                    if e.both() {
+                        out[e.j() - start] -= e.a_j.dot(&change);
+                    }
+                }
+            });
+        }
+        stretched.into_iter().zip(divergence).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::case::read;
+    use crate::system::{Moment, System};
+
+    /// Rate at which body and gas turn about the pivot.
+    const OMEGA: f64 = 0.4;
+    const PIVOT: Vector<2> = Vector([0.9, 0.3]);
+    /// Step of the difference that gives particles their velocity.
+    const STEP: f64 = 1e-4;
+
+    /// A circle of radius 1/2 around the origin that turns about the pivot, in a viscous gas.
+    fn turning(spacing: f64, mach: f64) -> (Case, Fluid<2>) {
+        let text = format!(
+            "[flow]\nmach = {mach}\nalpha = \"5 deg\"\nreynolds = 100\nviscosity_law = \"constant\"\n[[body]]\ncircle = {{ radius = 0.5 }}\n\
+             [motion]\nparticles = \"deforming\"\npivot = [0.9, 0.3]\nrotation = {OMEGA}\n[cloud]\n\
+             spacing = {spacing}\njitter = 0.1\ndomain = {{ min = [-3.2, -3.2], max = [3.2, 3.2] }}\n\
+             [[cloud.box]]\nmin = [-1.6, -1.6]\nmax = [1.6, 1.6]\nspacing = {spacing}\n\
+             [time.dual]\nstep = 0.1\nuntil = 1.0\n"
+        );
+        let case = read(&text, "case.toml").unwrap_or_else(|e| panic!("{e}"));
+        let fluid = crate::run::build_solver::<2>(&case, std::path::Path::new("")).unwrap().0;
+        (case, fluid)
+    }
+
+    /// Force on the circle at time `t` in the field `q` whose momentum changes at rest in space by `change`, and the middle
+    /// of the circle.
+    fn force(
+        (case, fluid): &(Case, Fluid<2>),
+        t: f64,
+        q: impl Fn(&Vector<2>) -> Primitive<2>,
+        change: impl Fn(&Vector<2>, &Vector<2>) -> Vector<2>,
+    ) -> (Vector<2>, Vector<2>) {
+        let rate = [(0.5 / STEP, t + STEP), (-0.5 / STEP, t - STEP)];
+        let frame = fluid.frame(&Moment::By { time: t, rate: &rate }, &vec![1.0; fluid.len()]);
+        let mut work = fluid.work();
+        work.state.iter_mut().enumerate().for_each(|(i, s)| *s = q(&frame.place(i)));
+        fluid.fill_gradients(&frame, &mut work);
+        let mut du = vec![0.0; fluid.len()];
+        for (i, row) in du.chunks_mut(4).enumerate() {
+            row[1..3].copy_from_slice(&change(&frame.place(i), &frame.velocity_of(i)).0);
+        }
+        let balance = Balance::new(case, fluid, (&frame, &work)).unwrap();
+        let sum = balance.parts(&du).iter().fold(Vector::ZERO, |s, p| s + p.force);
+        let walls = frame.shape.cloud.interface_range();
+        let n = walls.len() as f64;
+        (sum, walls.map(|i| frame.place(i)).fold(Vector::ZERO, |s, x| s + x * (1.0 / n)))
+    }
+
+    #[test]
+    fn uniform_flow_makes_no_force_however_particles_move() {
+        let at = turning(0.1, 0.5);
+        let free = free_stream::<2>(&at.0);
+        let (found, _) = force(&at, 0.7, |_| free, |_, _| Vector::ZERO);
+        // velocities are differences over 2e-4 of positions with their round-off
+        assert!(found.max_abs() < 1e-12, "{found:?}");
+    }
+
+    #[test]
+    fn gas_that_turns_with_the_body_holds_it_on_its_way() {
+        let field = |x: &Vector<2>| {
+            let d = *x - PIVOT;
+            // a positive rate is nose up: clockwise
+            let velocity = Vector([d[1], -d[0]]) * OMEGA;
+            Primitive { density: 1.0, velocity, pressure: 1.0 / 1.4 + 0.5 * OMEGA * OMEGA * d.norm_squared() }
+        };
+        // particles move through a momentum that stands still in space: dm/dt = w·∇m
+        let seen = |_: &Vector<2>, w: &Vector<2>| Vector([w[1], -w[0]]) * OMEGA;
+        let mut errors = Vec::new();
+        for spacing in [0.05, 0.025] {
+            let at = turning(spacing, 1e-3);
+            let (found, middle) = force(&at, 0.7, field, seen);
+            let exact = (middle - PIVOT) * (-OMEGA * OMEGA * 0.25 * std::f64::consts::PI);
+            errors.push((found - exact).norm() / exact.norm());
+        }
+        assert!(errors[1] < 0.005 && errors[1] < 0.5 * errors[0], "{errors:?}");
+    }
+
+    #[test]
+    fn the_slope_of_the_weight_is_its_derivative() {
+        let zone = Zone::around(Bounds { min: Vector([0.0, -0.1]), max: Vector([1.0, 0.1]) }, 0.01);
+        assert_eq!(zone.at(&Vector([0.5, 0.0])), (1.0, Vector::ZERO));
+        assert_eq!(zone.at(&Vector([0.5, 0.8])).0, 0.0);
+        for x in [Vector([1.3, 0.2]), Vector([-0.3, -0.45]), Vector([0.4, 0.5])] {
+            let slope = zone.at(&x).1;
+            for d in 0..2 {
+                let step = Vector::axis(d) * 1e-6;
+                let difference = (zone.at(&(x + step)).0 - zone.at(&(x - step)).0) / 2e-6;
+                assert!((slope[d] - difference).abs() < 1e-8, "{x:?}");
+            }
+        }
+    }
+}
