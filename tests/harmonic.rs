@@ -142,6 +142,7 @@ impl<F: Fn(f64, f64, f64) -> f64 + Sync> System for Oscillator<F> {
         (&[0, 1], &[0])
     }
     fn parts(&self) -> &[std::ops::Range<usize>] {
+        #[allow(clippy::single_range_in_vec_init, reason = "one part")]
         const ONE: &[std::ops::Range<usize>] = &[0..1];
         ONE
     }
@@ -319,4 +320,77 @@ fn states_move_between_numbers_of_harmonics() {
     build(2).at_phase(&few, 1.234, &mut middle[1]);
     assert!((0..2).all(|k| (middle[0][k] - middle[1][k]).abs() < 1e-14), "{middle:?}");
     assert_eq!(build(3).copies(&[1.0, 2.0]), [1.0, 2.0].repeat(7));
+}
+
+/// A small section that pitches, by harmonic balance.
+fn section(harmonics: &str) -> alula::case::Case {
+    common::case(&format!(
+        "title = \"section\"\n[flow]\nmach = 0.4\n[[body]]\nnaca = \"0012\"\n[motion]\nparticles = \"rigid\"\n\
+         pivot = [0.25, 0.0]\npitch = \"1 deg\"\nreduced_frequency = 0.3\n[cloud]\nspacing = 0.06\nfar_field = 8.0\n\
+         edge_levels = 1\n[time]\nharmonics = {harmonics}\n[output]\nreport = false\n"
+    ))
+}
+
+/// Stops after a number of iterations.
+struct After(u64, std::cell::Cell<u64>);
+impl alula::run::Monitor for After {
+    fn tick(&mut self, _: &alula::run::Tick) {
+        self.1.set(self.1.get() + 1);
+    }
+    fn note(&mut self, _: &str) {}
+    fn stop(&self) -> bool {
+        self.1.get() >= self.0
+    }
+}
+
+fn places(root: &std::path::Path, name: &str) -> alula::run::Places {
+    alula::run::Places { input: root.to_path_buf(), out: root.join(name) }
+}
+
+#[test]
+fn an_interrupted_balance_goes_on_to_the_same_bits() {
+    let root = tempfile::tempdir().unwrap();
+    let case = section("2");
+    let whole = alula::run::run(&case, &places(root.path(), "whole"), &mut alula::run::Silent).unwrap();
+    let alula::run::Outcome::Finished(summary) = whole else { panic!("interrupted") };
+    assert!(summary.converged && summary.first_harmonics[0].cl[0] > 3.0, "{summary:?}");
+    let stopped = &mut After(summary.iterations - 2, std::cell::Cell::new(0));
+    alula::run::run(&case, &places(root.path(), "cut"), stopped).unwrap();
+    alula::run::resume(&root.path().join("cut"), &mut alula::run::Silent).unwrap();
+    let read = |name: &str, file: &str| std::fs::read(root.path().join(name).join(file)).unwrap();
+    for file in ["harmonics.json", "surface_harmonics.csv", "instances.csv", "field_harmonics.vtu"] {
+        assert_eq!(read("whole", file), read("cut", file), "{file}");
+    }
+    // from there to other numbers of harmonics, and to a march
+    let from = root.path().join("whole");
+    let more =
+        alula::run::run_from(&section("3"), &places(root.path(), "more"), &from, &mut alula::run::Silent).unwrap();
+    let alula::run::Outcome::Finished(more) = more else { panic!("interrupted") };
+    let change = more.first_harmonics[0].cl[0] - summary.first_harmonics[0].cl[0];
+    assert!(more.converged && change.abs() < 0.01, "{change}");
+    let mut other = section("1");
+    other.cloud.spacing.0 = 0.05;
+    let refused = alula::run::run_from(&other, &places(root.path(), "x"), &from, &mut alula::run::Silent).unwrap_err();
+    assert!(refused.to_string().contains("`[cloud]` differ"), "{refused}");
+}
+
+#[test]
+fn what_is_not_periodic_is_refused() {
+    let told = |text: &str, expected: &str| {
+        let problem = alula::case::read(text, "case.toml").unwrap_err().to_string();
+        assert!(problem.contains(expected), "{problem}");
+    };
+    let head =
+        "[flow]\nmach = 0.4\n[[body]]\nnaca = \"0012\"\n[cloud]\nspacing = 0.1\n[time]\nharmonics = 2\n[motion]\n";
+    told(&format!("{head}translation = [1, 0]\n"), "needs a periodic motion");
+    told(&format!("{head}plunge = 0.1\nperiod = 3\nparticles = \"lagrangian\"\n"), "never come back");
+    told(&format!("{head}plunge = 0.1\nperiod = 3\nreduced_frequency = 0.1\n"), "given twice");
+    told(
+        "[flow]\nmach = 0.4\n[[body]]\nnaca = \"0012\"\n[cloud]\nspacing = 0.1\n[time]\nharmonics = 0\n",
+        "from 1 to 16",
+    );
+    let root = tempfile::tempdir().unwrap();
+    let fading = common::case(&format!("{head}period = 3\nformula = {{ y = \"0.1*sin(omega*t)*exp(-t/9)\" }}\n"));
+    let problem = alula::run::run(&fading, &places(root.path(), "a"), &mut alula::run::Silent).unwrap_err();
+    assert!(problem.to_string().contains("misses itself"), "{problem}");
 }

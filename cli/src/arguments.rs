@@ -76,6 +76,9 @@ pub(crate) struct Run {
     /// Replace the results of an earlier run.
     #[arg(long)]
     pub(crate) force: bool,
+    /// Start from the last state of another run on the same cloud: steady, marched, or periodic with any number of harmonics.
+    #[arg(long, value_name = "RUN")]
+    pub(crate) from: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]

@@ -515,6 +515,13 @@ static OUTPUT: Table = Table::of(&[
         "the last field only",
         "Time between field files in marching runs.",
     ),
+    Field::defaulted(
+        "loop_periods",
+        COUNT,
+        Absent::Integer(1),
+        "Periods at the end of a march that loops and harmonics of the loads are the mean of: more than one where the flow has \
+         a rhythm of its own beside that of the motion.",
+    ),
     Field::defaulted("report", Kind::Flag, Absent::Flag(true), "Write `report.html` and pictures."),
 ]);
 

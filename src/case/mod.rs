@@ -434,6 +434,8 @@ pub struct Output {
     pub checkpoint: u32,
     /// Time between field files in marching runs; absent: the last field only.
     pub field_interval: Option<Time>,
+    /// Periods at the end of a march that loops and harmonics of the loads are the mean of.
+    pub loop_periods: u32,
     /// Write `report.html` and pictures.
     pub report: bool,
 }
@@ -469,6 +471,6 @@ impl Default for Adapt {
 
 impl Default for Output {
     fn default() -> Self {
-        Self { checkpoint: 50, field_interval: None, report: true }
+        Self { checkpoint: 50, field_interval: None, loop_periods: 1, report: true }
     }
 }

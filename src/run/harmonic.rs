@@ -22,7 +22,7 @@ use crate::observe::vtk::{Column, write_points};
 use crate::scheme::{Carriage, Fluid, Frame};
 use crate::system::{Moment, System};
 use crate::time::harmonic::HarmonicBalance;
-use crate::time::relax::Relax;
+use crate::time::relax::{Relax, Resume};
 
 /// Harmonics at which `number = "auto"` begins, and what it adds.
 const FIRST: usize = 1;
@@ -80,7 +80,12 @@ pub(super) fn balance<const D: usize>(
     let build = |n: usize| HarmonicBalance::new(fluid, Instances::of_harmonics(n), omega, plan.oversample);
     let held = |u: &[f64]| u.len() / fluid.len();
     let (mut n, mut state, mut resume) = match start {
-        Start::Resume(s) => (held(&s.state) / 2, s.state, Some(s.relax)),
+        Start::Resume(s) => (held(&s.state) / 2, s.state, Some((s.relax, Progress::read(&s.past.before)))),
+        Start::Fresh(u) if u.len() > fluid.len() => {
+            let from = Instances::of_harmonics(held(&u) / 2);
+            let n = if auto { from.harmonics().min(most) } else { most };
+            (n, build(n).resampled(&u, from), None)
+        }
         Start::Fresh(u) => (FIRST, build(FIRST).copies(&u), None),
     };
     loop {
@@ -184,28 +189,29 @@ fn converge<const D: usize>(
     (plan, last): (&Harmonics, bool),
     balance: &HarmonicBalance<'_, Fluid<D>>,
     fluid: &Fluid<D>,
-    (state, resume): (Vec<f64>, Option<crate::time::relax::Resume>),
+    (state, resume): (Vec<f64>, Option<(Resume, Progress)>),
     at: &Position<'_>,
     journal: &mut Journal<'_>,
 ) -> Result<Option<Vec<f64>>, RunError> {
     let fresh = resume.is_none();
+    let (resume, mut progress) = resume.unzip();
+    let progress = progress.get_or_insert_default();
     let origin = balance.copies(&fluid.start());
     let mut relax = Relax::new(balance, harmonic_control(plan, D), state, &origin, resume);
     drop(origin);
     let orders = if last { plan.orders } else { plan.orders.min(FALLEN + 1.0) };
     let goal = 10f64.powf(-orders);
     if fresh {
-        journal.save(at, 0.0, &relax.u, relax.resume())?;
+        journal.save_with(at, 0.0, (&relax.u, relax.resume()), progress.kept(&relax))?;
     }
     let mut work = fluid.work();
-    let mut recent: Vec<Vec<f64>> = Vec::new();
-    let mut reached = !fresh && relax.drop() <= goal;
-    let mut best = (f64::INFINITY, relax.iteration);
+    relax.evaluations = progress.evaluations;
+    let mut reached = !fresh && progress.reached(relax.drop(), goal, plan.tolerance);
     while !reached && relax.iteration < plan.iterations {
         let step = match relax.advance() {
             Ok(step) => step,
             Err(e) => {
-                journal.save(at, 0.0, &relax.u, relax.resume())?;
+                journal.save_with(at, 0.0, (&relax.u, relax.resume()), progress.kept(&relax))?;
                 return Err(journal.failed(e));
             }
         };
@@ -217,18 +223,17 @@ fn converge<const D: usize>(
             Coefficients { cl, cd, cm }
         });
         journal.record((0, 0), &step, mean, (orders, -step.residual.log10()), fluid)?;
-        if journal.due(relax.iteration) {
-            journal.save(at, 0.0, &relax.u, relax.resume())?;
-        }
         if let Some(series) = &series {
-            recent.push(series.iter().flat_map(|s| s.coefficients().to_vec()).collect());
+            progress.recent.push(series.iter().flat_map(|s| s.coefficients().to_vec()).collect());
         }
-        // a small motion hardly shows in the residual: its loads must have settled as well
-        reached = (step.residual <= goal && still(&recent, 1, plan.tolerance))
-            || (step.residual <= 10f64.powf(-FALLEN) && still(&recent, WINDOW, plan.tolerance));
-        if step.residual < PROGRESS * best.0 {
-            best = (step.residual, relax.iteration);
-        } else if !reached && relax.iteration > best.1 + PATIENCE {
+        if step.residual < PROGRESS * progress.best.0 {
+            progress.best = (step.residual, relax.iteration);
+        }
+        if journal.due(relax.iteration) {
+            journal.save_with(at, 0.0, (&relax.u, relax.resume()), progress.kept(&relax))?;
+        }
+        reached = progress.reached(step.residual, goal, plan.tolerance);
+        if !reached && relax.iteration > progress.best.1 + PATIENCE {
             journal.note(&format!(
                 "the residual has not fallen for {PATIENCE} iterations at {:.2} orders: with {} harmonics the flow has no periodic \
                  state that the relaxation can find",
@@ -238,15 +243,55 @@ fn converge<const D: usize>(
             break;
         }
         if journal.stopped() && !reached {
-            journal.save(at, 0.0, &relax.u, relax.resume())?;
+            journal.save_with(at, 0.0, (&relax.u, relax.resume()), progress.kept(&relax))?;
             return Ok(None);
         }
     }
     (journal.drop, journal.converged) = (relax.drop(), reached);
     (journal.bytes, journal.linear) = (relax.bytes(), relax.linear);
     journal.evaluations += relax.evaluations * balance.times().len() as u64;
-    journal.save(at, 0.0, &relax.u, relax.resume())?;
+    journal.save_with(at, 0.0, (&relax.u, relax.resume()), progress.kept(&relax))?;
     Ok(Some(relax.u))
+}
+
+/// What the end of a relaxation depends on beside its state.
+#[derive(Clone, Debug)]
+struct Progress {
+    /// Coefficients in time of the loads after each iteration, the last ones at least.
+    recent: Vec<Vec<f64>>,
+    /// Smallest residual, and when that was.
+    best: (f64, u32),
+    /// Evaluations of the residual.
+    evaluations: u64,
+}
+
+impl Default for Progress {
+    fn default() -> Self {
+        Self { recent: Vec::new(), best: (f64::INFINITY, 0), evaluations: 0 }
+    }
+}
+
+impl Progress {
+    /// As numbers for a checkpoint.
+    fn kept<S: System>(&self, relax: &Relax<'_, S>) -> Vec<f64> {
+        let window = &self.recent[self.recent.len().saturating_sub(WINDOW + 1)..];
+        let width = window.first().map_or(0, Vec::len) as f64;
+        let numbers = [self.best.0, f64::from(self.best.1), relax.evaluations as f64, width];
+        numbers.into_iter().chain(window.iter().flatten().copied()).collect()
+    }
+
+    /// From the numbers of a checkpoint.
+    fn read(kept: &[f64]) -> Self {
+        let [best, when, evaluations, width, recent @ ..] = kept else { return Self::default() };
+        let recent = recent.chunks_exact((*width as usize).max(1)).map(<[f64]>::to_vec).collect();
+        Self { recent, best: (*best, *when as u32), evaluations: *evaluations as u64 }
+    }
+
+    /// The residual has fallen far enough and the loads have settled: a small motion hardly shows in the residual.
+    fn reached(&self, residual: f64, goal: f64, tolerance: f64) -> bool {
+        (residual <= goal && still(&self.recent, 1, tolerance))
+            || (residual <= 10f64.powf(-FALLEN) && still(&self.recent, WINDOW, tolerance))
+    }
 }
 
 /// True when over a number of iterations no mean and no harmonic of a load has changed by more than `tolerance` times the

@@ -166,9 +166,57 @@ pub fn run(case: &Case, places: &Places, monitor: &mut dyn Monitor) -> Result<Ou
     setup::supported(case)?;
     folder::create(case, places)?;
     match dimension(case) {
-        2 => drive::<2>(case, places, None, monitor),
-        _ => drive::<3>(case, places, None, monitor),
+        2 => drive::<2>(case, places, Origin::Case, monitor),
+        _ => drive::<3>(case, places, Origin::Case, monitor),
     }
+}
+
+/// Runs a case into a fresh folder from the last state of another run on the same cloud: a steady flow, a march or a harmonic
+/// balance with any number of harmonics.
+pub fn run_from(case: &Case, places: &Places, from: &Path, monitor: &mut dyn Monitor) -> Result<Outcome, RunError> {
+    setup::supported(case)?;
+    let (other, _) = folder::read_case(from)?;
+    let differing: Vec<&str> = [
+        ("[cloud]", other.cloud != case.cloud),
+        ("[[body]]", other.bodies != case.bodies),
+        ("[adapt]", other.adapt != case.adapt),
+        ("[boundary]", other.boundary != case.boundary),
+        ("dimension", other.dimension != case.dimension),
+    ]
+    .into_iter()
+    .filter_map(|(name, differs)| differs.then_some(name))
+    .collect();
+    let name = from.display();
+    if !differing.is_empty() {
+        let keys = differing.join("`, `");
+        let hint = "start from a run on the same cloud, or without `--from`";
+        return Err(RunError::Folder(format!(
+            "the run `{name}` stands on another cloud: `{keys}` differ\nhint: {hint}"
+        )));
+    }
+    let saved = persist::Saved::read(from)?;
+    let last = saved.stages.get(saved.stage).is_some_and(|s| s.factor == 1.0);
+    if !last || saved.roaming.is_some() {
+        let hint = "finish it with `alula resume`; particles that travel keep a cloud of their own";
+        return Err(RunError::Folder(format!(
+            "the run `{name}` does not stand on the cloud of its case\nhint: {hint}"
+        )));
+    }
+    folder::create(case, places)?;
+    match dimension(case) {
+        2 => drive::<2>(case, places, Origin::Other(saved), monitor),
+        _ => drive::<3>(case, places, Origin::Other(saved), monitor),
+    }
+}
+
+/// What a run begins with.
+enum Origin {
+    /// The case alone.
+    Case,
+    /// Its own checkpoint.
+    Own(persist::Saved),
+    /// The last state of another run.
+    Other(persist::Saved),
 }
 
 /// Goes on with an interrupted or killed run.
@@ -177,8 +225,8 @@ pub fn resume(out: &Path, monitor: &mut dyn Monitor) -> Result<Outcome, RunError
     let places = Places { input, out: out.to_path_buf() };
     let saved = persist::Saved::read(out)?;
     match dimension(&case) {
-        2 => drive::<2>(&case, &places, Some(saved), monitor),
-        _ => drive::<3>(&case, &places, Some(saved), monitor),
+        2 => drive::<2>(&case, &places, Origin::Own(saved), monitor),
+        _ => drive::<3>(&case, &places, Origin::Own(saved), monitor),
     }
 }
 
@@ -207,9 +255,14 @@ pub fn build_solver<const D: usize>(case: &Case, input: &Path) -> Result<(Fluid<
 fn drive<const D: usize>(
     case: &Case,
     places: &Places,
-    mut saved: Option<persist::Saved>,
+    origin: Origin,
     monitor: &mut dyn Monitor,
 ) -> Result<Outcome, RunError> {
+    let (mut saved, mut other) = match origin {
+        Origin::Case => (None, None),
+        Origin::Own(saved) => (Some(saved), None),
+        Origin::Other(other) => (None, Some(other)),
+    };
     let clock = summary::Clock::start();
     let (surface, notes) = setup::surface::<D>(case, &places.input)?;
     notes.iter().for_each(|n| monitor.note(n));
@@ -221,16 +274,18 @@ fn drive<const D: usize>(
     if let Some(cloud) = &full {
         foresee::look(case, cloud, &motions)?.iter().for_each(|n| monitor.note(n));
     }
-    let stages = match &saved {
-        Some(s) => s.stages.clone(),
-        None => setup::stages(case, full.as_ref().map_or(0, |c| c.n_fluid), D),
+    let stages = match (&saved, &other) {
+        (Some(s), _) => s.stages.clone(),
+        (None, Some(o)) => vec![Stage { march: marches(case), ..o.stages[o.stage] }],
+        (None, None) => setup::stages(case, full.as_ref().map_or(0, |c| c.n_fluid), D),
     };
     let mut journal = solve::Journal::open(case, places, saved.as_ref(), (motions.period(), monitor))?;
     journal.note(&describe(&stages, full.as_ref().map_or(0, |c| c.n_fluid)));
     let mut previous: Option<(Solver<D>, Vec<f64>)> = None;
     let mut last_frame = None;
     let first = saved.as_ref().map_or(0, |s| s.stage);
-    let mut sources: Vec<Source<D>> = saved.as_ref().map_or_else(Vec::new, persist::Saved::sources);
+    let known = saved.as_ref().or(other.as_ref());
+    let mut sources: Vec<Source<D>> = known.map_or_else(Vec::new, persist::Saved::sources);
     for (k, stage) in stages.iter().enumerate().skip(first) {
         let ready = if stage.is_plain() { full.take() } else { None };
         let same = k > 0 && stage.shares_cloud(&stages[k - 1]);
@@ -245,7 +300,10 @@ fn drive<const D: usize>(
             }
             (None, None) => {
                 let solver = build()?;
-                let state = solver.fluid.start();
+                let state = match other.take() {
+                    Some(other) => setup::taken_over(case, &solver, other.state)?,
+                    None => solver.fluid.start(),
+                };
                 (solver, solve::Start::Fresh(state))
             }
         };

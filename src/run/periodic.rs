@@ -16,6 +16,8 @@ const HARMONICS: usize = 5;
 const SAME_TIME: f64 = 1e-9;
 /// Points of a loop.
 const POINTS: usize = 256;
+/// Part of a period by which a history may fall short of a whole number of them.
+const SLACK: f64 = 1e-6;
 /// Smallest amplitude of a motion, in radians or lengths, that loads are measured against.
 const STILL: f64 = 1e-12;
 
@@ -34,6 +36,8 @@ pub(super) struct Sample {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Trace {
     samples: Vec<Sample>,
+    /// Periods at the end that loops and harmonics are the mean of, at least one.
+    periods: u32,
 }
 
 /// How the loads differ from those one period before.
@@ -83,7 +87,7 @@ impl Trace {
     /// Series of the loads and of the parts of the motion that are there, from the last period.
     fn fitted(&self, period: f64) -> Option<([Harmonics; 3], Moved)> {
         let time = self.column(|m| m.time);
-        let window = Window { period, periods: 1.0, harmonics: HARMONICS };
+        let window = Window { period, periods: f64::from(self.whole(period)), harmonics: HARMONICS };
         let fit = |f: &dyn Fn(&Sample) -> f64| Harmonics::fit(&time, &self.column(f), &window).ok();
         let loads = [fit(&|m| m.loads.cl)?, fit(&|m| m.loads.cd)?, fit(&|m| m.loads.cm)?];
         let moved = |(k, name): (usize, &'static str)| Some((name, fit(&|m: &Sample| m.motion[k])?));
@@ -126,10 +130,29 @@ impl Trace {
         Cycles::of(&self.column(|m| m.time), &self.column(|m| m.loads.cl), &self.column(|m| m.loads.cd))
     }
 
-    /// Loads in the last period at the phase of time `t`: the cubic through the four samples around it.
+    /// The same samples, with loops and harmonics from the last `periods`.
+    pub(super) fn over(self, periods: u32) -> Self {
+        Self { periods, ..self }
+    }
+
+    /// Number of whole periods that loops and harmonics are the mean of.
+    fn whole(&self, period: f64) -> u32 {
+        let (first, last) = (self.samples.first(), self.samples.last());
+        let span = first.zip(last).map_or(0.0, |(a, b)| (b.time - a.time) / period + SLACK);
+        self.periods.min(span as u32).max(1)
+    }
+
+    /// Mean of the loads in the last periods at the phase of time `t`.
     fn loads_at(&self, t: f64, period: f64) -> [f64; 3] {
         let end = self.samples.last().map_or(0.0, |m| m.time);
-        let t = end - (end - t).rem_euclid(period);
+        let last = end - (end - t).rem_euclid(period);
+        let count = self.whole(period);
+        let all = (0..count).map(|p| self.loads_near(last - f64::from(p) * period));
+        all.fold([0.0; 3], |sum, loads| std::array::from_fn(|c| sum[c] + loads[c] / f64::from(count)))
+    }
+
+    /// Loads at time `t`: the cubic through the four samples around it.
+    fn loads_near(&self, t: f64) -> [f64; 3] {
         let after = self.samples.partition_point(|m| m.time < t);
         let first = after.saturating_sub(2).min(self.samples.len().saturating_sub(4));
         let near = &self.samples[first..(first + 4).min(self.samples.len())];
@@ -169,7 +192,10 @@ impl Trace {
             Sample { time: get(loads[0]), loads: coefficients, motion: [angle.to_radians(), x, y, z] }
         };
         // iterations before the march stand at time zero
-        Self { samples: lines.map(row).filter(|m| m.time > 0.0 && m.time <= until * (1.0 + 1e-12)).collect() }
+        Self {
+            periods: 1,
+            samples: lines.map(row).filter(|m| m.time > 0.0 && m.time <= until * (1.0 + 1e-12)).collect(),
+        }
     }
 
     fn column(&self, f: impl Fn(&Sample) -> f64) -> Vec<f64> {
@@ -259,5 +285,22 @@ mod tests {
         );
         assert_eq!(trace.last_period(5.1), None);
         assert_eq!(Trace::default().last_period(1.0), None);
+    }
+
+    #[test]
+    fn loops_go_through_the_samples_and_take_the_mean_of_periods() {
+        let sample = |k: i32| {
+            let time = f64::from(k) / 16.0;
+            // grows by one from period to period
+            let cl = (std::f64::consts::TAU * time).sin() + time.floor();
+            Sample { time, loads: Coefficients { cl, cd: 1.0, cm: 0.0 }, motion: [0.0; 4] }
+        };
+        let mut trace = Trace::default();
+        (1..=48).for_each(|k| trace.push(sample(k)));
+        let at = |trace: &Trace, t: f64| trace.loads_at(t, 1.0)[0];
+        assert!((at(&trace, 0.25) - 3.0).abs() < 1e-12 && (at(&trace, 7.25) - 3.0).abs() < 1e-12);
+        let two = trace.over(2);
+        assert!((at(&two, 0.25) - 2.5).abs() < 1e-12 && (two.loads_at(0.6, 1.0)[1] - 1.0).abs() < 1e-12);
+        assert_eq!((two.whole(1.0), two.over(9).whole(1.0)), (2, 2));
     }
 }

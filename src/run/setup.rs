@@ -285,6 +285,23 @@ pub(super) fn transfer<const D: usize>(
     u
 }
 
+/// The last state of another run as the start of this one. A harmonic balance takes all instances of another one; others take
+/// the first, at phase zero.
+pub(super) fn taken_over<const D: usize>(case: &Case, solver: &Solver<D>, u: Vec<f64>) -> Result<Vec<f64>, RunError> {
+    let (own, n) = (solver.fluid.len(), D + 2);
+    let count = u.len() / own.max(1);
+    if own == 0 || u.len() != count * own || count.is_multiple_of(2) {
+        let hint = "the version that wrote it may have built its cloud differently";
+        let text =
+            format!("the other run holds {} numbers where {own} of each instance are needed\nhint: {hint}", u.len());
+        return Err(RunError::Folder(text));
+    }
+    if count == 1 || matches!(case.time, Temporal::Harmonics(_)) {
+        return Ok(u);
+    }
+    Ok(u.chunks_exact(n * count).flat_map(|row| row[..n].to_vec()).collect())
+}
+
 /// The relaxation that gives a march its start.
 pub(super) fn prelude(dual: &Dual) -> Steady {
     Steady { method: dual.method, iterations: PRELUDE_ITERATIONS, ..Steady::default() }

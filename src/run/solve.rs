@@ -120,7 +120,10 @@ impl<'a> Journal<'a> {
             instances: Vec::new(),
             unconverged: saved.map_or(0, |s| s.past.unconverged),
             turnover: saved.and_then(|s| s.roaming.as_ref()).map_or_else(Turnover::default, |r| r.turnover.clone()),
-            trace: saved.filter(|s| s.time > 0.0).map_or_else(Trace::default, |s| Trace::read(&places.out, s.time)),
+            trace: saved
+                .filter(|s| s.time > 0.0)
+                .map_or_else(Trace::default, |s| Trace::read(&places.out, s.time))
+                .over(case.output.loop_periods),
             period,
         })
     }
@@ -234,9 +237,21 @@ impl<'a> Journal<'a> {
         Ok(())
     }
 
-    pub(super) fn save(&self, at: &Position<'_>, time: f64, state: &[f64], relax: Resume) -> Result<(), RunError> {
+    fn save(&self, at: &Position<'_>, time: f64, state: &[f64], relax: Resume) -> Result<(), RunError> {
+        self.save_with(at, time, (state, relax), Vec::new())
+    }
+
+    /// Writes a checkpoint of a relaxation with what its end depends on.
+    pub(super) fn save_with(
+        &self,
+        at: &Position<'_>,
+        time: f64,
+        (state, relax): (&[f64], Resume),
+        memory: Vec<f64>,
+    ) -> Result<(), RunError> {
         let (cpu, wall) = self.seconds();
         let mut saved = Saved::new(at, self.iteration, time, state, relax);
+        saved.past.before = memory;
         (saved.cpu_seconds, saved.wall_seconds) = (cpu, wall);
         saved.cycles = self.cycles.clone();
         saved.start_totals = self.start_totals.clone();

@@ -32,7 +32,11 @@ pub(crate) fn run(args: &arguments::Run) -> Outcome {
     }
     let input = args.case.parent().map_or_else(PathBuf::new, Path::to_path_buf);
     let mut watch = Watch::new(args.verbosity);
-    let ended = run::run(&case, &Places { input, out: out.clone() }, &mut watch);
+    let places = Places { input, out: out.clone() };
+    let ended = match &args.from {
+        Some(from) => run::run_from(&case, &places, from, &mut watch),
+        None => run::run(&case, &places, &mut watch),
+    };
     tell(ended, &out, &mut watch, args.verbosity)
 }
 
