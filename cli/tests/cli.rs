@@ -23,7 +23,9 @@ const PROMISED: [&str; 13] = [
     "ledger",
 ];
 /// What it may add.
-const EXTRA: [&str; 15] = [
+const EXTRA: [&str; 17] = [
+    "chord",
+    "harmonic_balance",
     "time",
     "unconverged_steps",
     "re_clouding",

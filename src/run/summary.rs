@@ -29,8 +29,6 @@ pub struct Summary {
     pub wall_seconds: f64,
     /// Greatest memory of the process; 0 where the system does not tell.
     pub peak_bytes: u64,
-    /// Chord of the load coefficients.
-    pub chord: f64,
     /// Loads from wall pressure and friction.
     pub loads: Coefficients,
     /// The part of the pressure, where the gas has viscosity.
@@ -44,11 +42,13 @@ pub struct Summary {
     pub separation: Vec<Separation>,
     /// Loads from the momentum of the gas around the bodies; null without bodies.
     pub loads_momentum_balance: Option<Coefficients>,
+    /// Conservation.
+    pub ledger: Ledger,
+    /// Chord of the load coefficients.
+    pub chord: f64,
     /// What a harmonic balance found about itself.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub harmonic_balance: Option<super::harmonic::BalanceReport>,
-    /// Conservation.
-    pub ledger: Ledger,
     /// Physical time at the end of a march.
     pub time: f64,
     /// Steps in time that did not reach their goal.

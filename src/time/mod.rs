@@ -75,7 +75,7 @@ pub enum TimeError {
     },
     /// The steady relaxation cannot get on.
     #[error(
-        "the relaxation stopped at iteration {iteration}: every step down to a Courant number of {cfl:.1e} was rejected; the largest residual is at particle {particle}{place}\nhint: lower `time.steady.cfl`, or refine the cloud there"
+        "the relaxation stopped at iteration {iteration}: every step down to a Courant number of {cfl:.1e} was rejected; the largest residual is at particle {particle}{place}\nhint: lower `cfl` in `[time]`, take shorter steps in a march, or refine the cloud there"
     )]
     Stalled {
         /// Iteration.
