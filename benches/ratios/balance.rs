@@ -1,5 +1,6 @@
 //! Harmonic balance.
 use std::path::Path;
+use std::time::Instant;
 
 use alula::math::block_matrix::BlockMatrix;
 use alula::math::fourier::Instances;
@@ -19,6 +20,8 @@ const CASE: &str = "title = \"bench\"\n[flow]\nmach = 0.7\n[[body]]\nname = \"fo
     [cloud]\nspacing = 0.0078125\n[time.dual]\nsteps_per_period = 64\nperiods = 3\n";
 /// Newton steps that the memory of either method is read after.
 const WARM: usize = 12;
+/// Iterations of the relaxation that threads are compared by.
+const SOLVED: usize = 40;
 /// Shift of the diagonal in units of the rate of a particle: what a Courant number of a hundred gives.
 const SHIFT: f64 = 0.01;
 
@@ -50,6 +53,25 @@ pub(super) fn balance() {
         tell("  bytes of an instance over those of a march", each / marching, "bar 0.6");
         println!("    bytes per particle and instance {each:.0}");
     }
+}
+
+/// Wall time of a relaxation with three instances on one thread over that on two.
+pub(super) fn threads() {
+    let (fluid, u, period) = built(&parsed(CASE), Path::new(""));
+    let balance = HarmonicBalance::new(&fluid, Instances::of_harmonics(1), std::f64::consts::TAU / period, 1.0);
+    let all = balance.copies(&u);
+    let solve = |threads: usize| {
+        let clock = Instant::now();
+        let steps = || {
+            let mut relax = Relax::new(&balance, control(), all.clone(), &all, None);
+            (0..SOLVED).for_each(|_| drop(relax.advance()));
+        };
+        crate::pool(threads).install(steps);
+        clock.elapsed().as_secs_f64()
+    };
+    let [one, two] = [1, 2].map(|n| solve(n).min(solve(n)));
+    tell("3 instances: relaxation on one thread over that on two", one / two, "bar 1.8");
+    println!("  {SOLVED} iterations on one thread take {one:.2} s");
 }
 
 fn particles(fluid: &Fluid<2>) -> f64 {

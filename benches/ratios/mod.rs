@@ -25,11 +25,12 @@ const TURNS: usize = 7;
 
 /// Runs those whose names hold one of `filters`, all when there are none.
 pub(crate) fn run(filters: &[String]) {
-    let all: [(&str, fn()); 4] = [
+    let all: [(&str, fn()); 5] = [
         ("ratios::dual_step", march::dual_step),
         ("ratios::travelling", travel::travelling),
         ("ratios::deforming", travel::deforming),
         ("ratios::balance", balance::balance),
+        ("ratios::threads", balance::threads),
     ];
     let wanted = |name: &str| filters.is_empty() || filters.iter().any(|f| name.contains(f.as_str()));
     for (name, measure) in all.into_iter().filter(|(name, _)| wanted(name)) {
