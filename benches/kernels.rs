@@ -4,8 +4,11 @@
 //!     cargo bench -p alula -- residual
 //!
 //! What is measured with a number of threads runs once on one and once on two of them: the rates give the speed-up. All else
-//! uses as many as the machine has, or `RAYON_NUM_THREADS`. Last come the bytes that a particle takes while it marches in time.
+//! uses as many as the machine has, or `RAYON_NUM_THREADS`. Last come the bytes that a particle takes while it marches in time,
+//! and [`ratios`] of times.
 #![allow(clippy::unwrap_used, reason = "it may stop anywhere")]
+mod ratios;
+
 use std::path::Path;
 
 use alula::case::{Case, read};
@@ -27,9 +30,12 @@ const THREADS: [usize; 2] = [1, 2];
 
 fn main() {
     divan::main();
-    if std::env::args().all(|a| a != "--list" && a != "--test") {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    if arguments.iter().all(|a| a != "--list" && a != "--test") {
         print_bytes::<2>();
         print_bytes::<3>();
+        let filters: Vec<String> = arguments.into_iter().filter(|a| !a.starts_with('-')).collect();
+        ratios::run(&filters);
     }
 }
 

@@ -6,10 +6,12 @@
 //! not depend on the number of threads.
 use std::ops::Range;
 
-use super::sweep::{parts, sweep_parts, sweep_two_parts};
+use super::sweep::{parts, sweep_parts, sweep_rows, sweep_two_parts};
 
-/// Rows in one part of a Gauss-Seidel sweep.
-const PART: usize = 1024;
+/// Most and fewest rows in one part of a Gauss-Seidel sweep over groups.
+const PART: [usize; 2] = [1024, 64];
+/// Parts that a matrix of groups is cut into where its rows suffice, so that threads find work on coarse levels too.
+const PARTS: usize = 12;
 
 /// A sparse matrix of square blocks.
 #[derive(Clone, Debug, Default)]
@@ -144,9 +146,9 @@ impl BlockMatrix {
     /// Adds `shift[i]` to the diagonal of row i.
     pub fn shift(&mut self, shift: &[f64]) {
         let n = self.block;
-        for (s, diagonal) in shift.iter().zip(self.diagonal.chunks_exact_mut(n * n)) {
-            (0..n).for_each(|d| diagonal[d * (n + 1)] += *s as f32);
-        }
+        sweep_rows(&mut self.diagonal, n * n, |i, diagonal| {
+            (0..n).for_each(|d| diagonal[d * (n + 1)] += shift[i] as f32);
+        });
     }
 
     /// Inverts the diagonal blocks: needed before a sweep.
@@ -340,26 +342,41 @@ impl BlockMatrix {
             column.extend_from_slice(&own);
             first.push(column.len() as u32);
         }
-        let parts = parts(n_groups, PART);
+        let parts = parts(n_groups, (n_groups / PARTS).clamp(PART[1], PART[0]));
         (Self::from_pattern(self.block, first, column, parts), target)
     }
 
-    /// Sums the blocks of `fine` into this matrix; `group` and `target` say where each goes.
-    pub fn gather(&mut self, fine: &Self, group: &[u32], target: &[u32]) {
+    /// Sums the blocks of `fine` into this matrix: `members(g)` are the rows of group g in ascending order, `target` says where
+    /// each off-diagonal block goes.
+    pub fn gather<'a>(&mut self, fine: &Self, members: impl Fn(usize) -> &'a [u32] + Sync, target: &[u32]) {
         let size = self.block * self.block;
-        self.value.fill(0);
-        self.diagonal.fill(0.0);
-        for (i, g) in group.iter().enumerate() {
-            let own = &mut self.diagonal[*g as usize * size..(*g as usize + 1) * size];
-            own.iter_mut().zip(&fine.diagonal[i * size..(i + 1) * size]).for_each(|(a, b)| *a += b);
-            for e in fine.first[i] as usize..fine.first[i + 1] as usize {
-                let from = fine.off_diagonal(e);
-                if target[e] == u32::MAX {
-                    own.iter_mut().zip(from).for_each(|(a, b)| *a += widen(*b));
-                } else {
-                    let to = &mut self.value[target[e] as usize * size..(target[e] as usize + 1) * size];
-                    to.iter_mut().zip(from).zip(own.iter_mut()).for_each(|((a, b), d)| *d += add(a, widen(*b)));
+        let (parts, value_parts) = (self.parts.as_slice(), self.value_parts.as_slice());
+        let values = (value_parts, size, self.value.as_mut_slice());
+        sweep_two_parts(values, (parts, size, self.diagonal.as_mut_slice()), &|k, value, diagonal| {
+            value.fill(0);
+            diagonal.fill(0.0);
+            let start = value_parts[k].start;
+            for (g, own) in parts[k].clone().zip(diagonal.chunks_exact_mut(size)) {
+                for i in members(g).iter().map(|i| *i as usize) {
+                    own.iter_mut().zip(&fine.diagonal[i * size..(i + 1) * size]).for_each(|(a, b)| *a += b);
+                    let entries = fine.first[i] as usize..fine.first[i + 1] as usize;
+                    fine.gather_row(entries, (target, start), value, own);
                 }
+            }
+        });
+    }
+
+    /// Adds the off-diagonal blocks `entries` to those of a group.
+    fn gather_row(&self, entries: Range<usize>, to: (&[u32], usize), value: &mut [u16], own: &mut [f32]) {
+        let (size, (target, start)) = (self.block * self.block, to);
+        for e in entries {
+            let from = self.off_diagonal(e);
+            if target[e] == u32::MAX {
+                own.iter_mut().zip(from).for_each(|(a, b)| *a += widen(*b));
+            } else {
+                let at = (target[e] as usize - start) * size;
+                let to = value[at..at + size].iter_mut();
+                to.zip(from).zip(own.iter_mut()).for_each(|((a, b), d)| *d += add(a, widen(*b)));
             }
         }
     }

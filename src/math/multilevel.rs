@@ -29,6 +29,9 @@ pub struct Cycle {
 struct Level {
     matrix: BlockMatrix,
     group: Vec<u32>,
+    /// Rows of each group one after another, and where those of a group begin.
+    member: Vec<u32>,
+    first_member: Vec<u32>,
     target: Vec<u32>,
     sweeps: Sweeps,
     waves: Option<Waves>,
@@ -64,6 +67,7 @@ impl Multilevel {
                 break;
             }
             let (coarse, target) = last.matrix.coarse(&group, n);
+            (last.member, last.first_member) = members(&group, n);
             (last.group, last.target) = (group, target);
             levels.push(level(coarse));
         }
@@ -105,7 +109,7 @@ impl Multilevel {
                 waves.invert(&fine.matrix);
             }
             if let Some(coarse) = coarse.first_mut() {
-                coarse.matrix.gather(&fine.matrix, &fine.group, &fine.target);
+                coarse.matrix.gather(&fine.matrix, |g| fine.members(g), &fine.target);
             }
         }
     }
@@ -126,7 +130,7 @@ impl Multilevel {
     /// Bytes held.
     pub fn bytes(&self) -> usize {
         let waves = |l: &Level| l.waves.as_ref().map_or(0, Waves::bytes);
-        let lists = |l: &Level| 4 * (l.group.len() + l.target.len());
+        let lists = |l: &Level| 4 * (l.group.len() + l.member.len() + l.first_member.len() + l.target.len());
         self.levels.iter().map(|l| l.matrix.bytes() + l.sweeps.bytes() + waves(l) + lists(l)).sum()
     }
 
@@ -137,7 +141,9 @@ impl Multilevel {
 }
 
 fn level(matrix: BlockMatrix) -> Level {
-    Level { group: Vec::new(), target: Vec::new(), sweeps: Sweeps::new(&matrix), matrix, waves: None }
+    let sweeps = Sweeps::new(&matrix);
+    let (group, member, first_member, target) = Default::default();
+    Level { group, member, first_member, target, sweeps, matrix, waves: None }
 }
 
 /// The place of coefficient `c` (mean, cosine, sine, cosine, ...) among mean, cosines, sines.
@@ -196,6 +202,11 @@ impl Level {
         }
     }
 
+    /// Rows of group `g` in ascending order.
+    fn members(&self, g: usize) -> &[u32] {
+        &self.member[self.first_member[g] as usize..self.first_member[g + 1] as usize]
+    }
+
     /// Unknowns of a row.
     fn width(&self) -> usize {
         self.matrix.block() * self.waves.as_ref().map_or(1, Waves::count)
@@ -236,25 +247,39 @@ fn cycle(levels: &mut [Level], how: Cycle) {
     }
     fine.residual();
     let n = fine.width();
-    let b = coarse[0].right_hand_side();
-    b.fill(0.0);
-    for (r, g) in fine.left().chunks_exact(n).zip(&fine.group) {
-        let at = *g as usize * n;
-        b[at..at + n].iter_mut().zip(r).for_each(|(b, r)| *b += r);
-    }
+    let left = fine.left();
+    sweep_rows(coarse[0].right_hand_side(), n, |g, b| {
+        b.fill(0.0);
+        for i in fine.members(g).iter().map(|i| *i as usize) {
+            b.iter_mut().zip(&left[i * n..(i + 1) * n]).for_each(|(b, r)| *b += r);
+        }
+    });
     coarse[0].clear();
     for _ in 0..how.visits {
         cycle(coarse, how);
     }
     let found = coarse[0].solution();
     let group = std::mem::take(&mut fine.group);
-    for (x, g) in fine.solution_mut().chunks_exact_mut(n).zip(&group) {
-        let at = *g as usize * n;
+    sweep_rows(fine.solution_mut(), n, |i, x| {
+        let at = group[i] as usize * n;
         x.iter_mut().zip(&found[at..at + n]).for_each(|(x, c)| *x += c);
-    }
+    });
     fine.group = group;
     fine.restart();
     (0..sweeps).for_each(|_| fine.smooth());
+}
+
+/// Rows of each of `n` groups one after another in ascending order, and where those of a group begin.
+fn members(group: &[u32], n: usize) -> (Vec<u32>, Vec<u32>) {
+    let mut first = vec![0; n + 1];
+    group.iter().for_each(|g| first[*g as usize + 1] += 1);
+    (0..n).for_each(|g| first[g + 1] += first[g]);
+    let (mut next, mut member) = (first.clone(), vec![0; group.len()]);
+    for (i, g) in group.iter().enumerate() {
+        member[next[*g as usize] as usize] = i as u32;
+        next[*g as usize] += 1;
+    }
+    (member, first)
 }
 
 /// Groups of up to `size` rows that see one another, nearest in storage order first.

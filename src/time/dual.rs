@@ -2,8 +2,9 @@
 //!
 //! R(U) − ∂U/∂t = 0 with ∂U/∂t = Σ c_k U(t_k): the first-order formula in the first step, then the second-order one of three
 //! times, written for steps of unequal length. Positions of particles are differenced with the same formula as the state.
-use super::relax::{Control, Relax, TimeTerm};
+use super::relax::{Control, Method, Relax, TimeTerm};
 use super::{CROWDED, March, Past, Step, TimeError};
+use crate::math::multilevel::Cycle;
 use crate::math::sweep::{sum, sweep};
 use crate::system::{Moment, System};
 
@@ -46,6 +47,10 @@ impl<'a, S: System> Dual<'a, S> {
     /// Prepares a march from the state `u`.
     pub fn new(system: &'a S, control: Control, plan: Plan, u: Vec<f64>, past: Past) -> Self {
         let start = u.clone();
+        // the term of time makes the matrix easy: one sweep each way does
+        let newton = control.method == Method::NewtonKrylov;
+        let sweeps = if newton { 1 } else { control.cycle.sweeps };
+        let control = Control { cycle: Cycle { sweeps, ..control.cycle }, ..control };
         let relax = Relax::new(system, control, u, &start, None);
         let past = Past { next: if past.next > 0.0 { past.next } else { plan.step }, ..past };
         let mut all = Self { relax, plan, past, start, inner: 0 };
@@ -162,7 +167,7 @@ impl<S: System> Dual<'_, S> {
             self.relax.u.copy_from_slice(guess);
         }
         let moment = Moment::By { time: self.past.time + dt, rate: &formula };
-        self.relax.begin_step(&moment, TimeTerm { rate: formula[0].0, rest });
+        self.relax.begin_step(&moment, TimeTerm { rate: formula[0].0, rest, goal: self.goal() });
         if let Some(fault) = self.relax.misplaced() {
             self.relax.u.copy_from_slice(&self.start);
             return Err(TimeError::Fault { fault, iteration: self.past.iteration + 1, hint: CROWDED });
@@ -177,8 +182,13 @@ impl<S: System> Dual<'_, S> {
         Ok(error)
     }
 
+    /// Residual over its first value at which a step ends.
+    fn goal(&self) -> f64 {
+        10f64.powf(-self.plan.orders)
+    }
+
     fn solve(&mut self) -> Result<(), TimeError> {
-        let goal = 10f64.powf(-self.plan.orders);
+        let goal = self.goal();
         self.inner = 0;
         while self.relax.drop() > goal && !self.relax.settled() {
             if self.inner >= self.plan.iterations {

@@ -72,6 +72,15 @@ const SMALLEST_FRACTION: f64 = 0.05;
 const EXPLICIT_CFL: f64 = 1.5;
 /// Scaled residual that is round-off: a relative change of the density in one local time.
 const ROUND_OFF: f64 = 1e-15;
+/// Courant number of Newton's method at the start of a step in time over that of a steady flow: the guess is good, and the
+/// term of time is a pseudo time of its own.
+const STEP_CFL: f64 = 100.0;
+/// Fall of the residual in an iteration of a step in time with which the preconditioner goes on to serve.
+const GOOD_FALL: f64 = 2.0;
+/// Part of the goal of a step in time that a linear solve aims at.
+const AIM: f64 = 0.5;
+/// Weakest reduction asked of a linear solve.
+const WEAKEST: f64 = 0.3;
 /// Stages of the explicit method.
 const STAGES: [f64; 5] = [0.25, 1.0 / 6.0, 0.375, 0.5, 1.0];
 
@@ -120,6 +129,8 @@ pub struct Relax<'a, S: System> {
     levels: Option<Multilevel>,
     gmres: Option<Gmres>,
     time: Option<TimeTerm>,
+    /// The preconditioner was made within this step in time and still serves.
+    prepared: bool,
     /// Linear iterations so far.
     pub linear: u32,
     /// Evaluations of the residual so far.
@@ -133,6 +144,8 @@ pub struct TimeTerm {
     pub rate: f64,
     /// Contribution of the states before it.
     pub rest: Vec<f64>,
+    /// Residual over its first value at which the step ends.
+    pub goal: f64,
 }
 
 /// What a relaxation needs to go on where it stopped.
@@ -199,6 +212,7 @@ impl<'a, S: System> Relax<'a, S> {
             step: vec![0.0; n],
             gmres: basis,
             time: None,
+            prepared: false,
             evaluations: 0,
         };
         if resume.is_none() {
@@ -244,9 +258,13 @@ impl<'a, S: System> Relax<'a, S> {
         crate::math::sweep::sweep_rows(&mut self.residual, 1, |k, r| r[0] -= trial[k]);
         self.norm = self.norm_of(&self.residual);
         self.first_norm = self.norm.max(change).max(f64::MIN_POSITIVE);
-        self.cfl = self.control.cfl;
+        let newton = self.control.method == Method::NewtonKrylov;
+        let start = if newton { STEP_CFL * self.control.cfl } else { self.control.cfl };
+        self.cfl = start.min(self.control.cfl_max);
         self.iteration = 0;
-        self.phase = Phase { newton: self.control.method == Method::NewtonKrylov, ..Phase::default() };
+        self.phase = Phase { newton, ..Phase::default() };
+        // made anew in each step, so that a run that is resumed between two steps goes on to the same bits
+        self.prepared = false;
         self.time = Some(term);
     }
 
@@ -317,6 +335,7 @@ impl<'a, S: System> Relax<'a, S> {
                 break;
             }
             self.cfl *= 0.2;
+            self.prepared = false;
             if self.cfl < SMALLEST_CFL {
                 let particle = self.worst();
                 let place: Vec<String> =
@@ -383,6 +402,7 @@ impl<'a, S: System> Relax<'a, S> {
         std::mem::swap(&mut self.u, &mut self.trial);
         std::mem::swap(&mut self.residual, &mut self.trial_residual);
         self.cfl = self.next_cfl(fraction, self.norm / norm.max(f64::MIN_POSITIVE));
+        self.prepared &= self.norm > GOOD_FALL * norm;
         self.norm = norm;
         true
     }
@@ -410,15 +430,40 @@ impl<'a, S: System> Relax<'a, S> {
         if start { self.control.cfl_max.min(START_CFL_MAX) } else { self.control.cfl_max }
     }
 
-    fn implicit_step(&mut self) {
-        let Some(levels) = self.levels.as_mut() else { return };
-        self.system.spectral_radius(&self.frame, &self.u, &mut self.work, &mut self.rate);
-        let cfl = self.cfl;
-        let rate = self.time.as_ref().map_or(0.0, |t| t.rate);
+    /// Makes the preconditioner, unless that of this step in time still serves; what is added to the diagonal of each row.
+    fn prepare(&mut self, levels: &mut Multilevel) -> Vec<f64> {
+        let kept = self.prepared && self.phase.newton;
+        // a step in time begins with the rates at its guess
+        if !kept && (self.time.is_none() || self.iteration > 1) {
+            self.system.spectral_radius(&self.frame, &self.u, &mut self.work, &mut self.rate);
+        }
+        let (rate, cfl) = (self.time.as_ref().map_or(0.0, |t| t.rate), self.cfl);
         let shift: Vec<f64> = self.rate.iter().map(|r| r / cfl + rate).collect();
-        self.system.linearise(&self.frame, &self.u, &mut self.work, levels.finest());
-        levels.finest().shift(&shift);
-        levels.refresh();
+        if !kept {
+            self.system.linearise(&self.frame, &self.u, &mut self.work, levels.finest());
+            levels.finest().shift(&shift);
+            levels.refresh();
+            self.prepared = self.time.is_some();
+        }
+        shift
+    }
+
+    /// Reduction asked of a linear solve: no more than a step in time still needs.
+    fn tolerance(&self) -> f64 {
+        let Some(term) = &self.time else { return self.control.tolerance };
+        (AIM * term.goal / self.drop()).min(WEAKEST).max(self.control.tolerance)
+    }
+
+    fn implicit_step(&mut self) {
+        let Some(mut levels) = self.levels.take() else { return };
+        let shift = self.prepare(&mut levels);
+        self.solve(&mut levels, &shift);
+        self.levels = Some(levels);
+    }
+
+    /// The step of Newton's method, or that of the sweeps alone.
+    fn solve(&mut self, levels: &mut Multilevel, shift: &[f64]) {
+        let tolerance = self.tolerance();
         let Some(gmres) = self.gmres.as_mut().filter(|_| self.phase.newton) else {
             let residual = &self.residual;
             levels.apply(|k| residual[k] as f32, &mut self.step);
@@ -447,7 +492,7 @@ impl<'a, S: System> Relax<'a, S> {
             });
         };
         let precondition = |r: &[f32], z: &mut [f64]| levels.apply(|k| (f64::from(r[k]) / scale[k / n]) as f32, z);
-        let solved = gmres.solve((b, &mut self.step), self.control.tolerance, product, precondition);
+        let solved = gmres.solve((b, &mut self.step), tolerance, product, precondition);
         self.linear += solved.iterations as u32;
         self.evaluations += solved.iterations as u64;
     }

@@ -1,0 +1,54 @@
+//! Implicit marching.
+use std::path::Path;
+use std::time::Instant;
+
+use alula::system::{Moment, System};
+use alula::time::dual::{Dual, Plan};
+use alula::time::relax::Relax;
+use alula::time::{March, Past};
+
+use super::{built, control, parsed, residual, tell};
+
+/// RAE 2822 in pitch and plunge: viscous, layered, rigid.
+const CASE: &str = "title = \"bench\"\n[flow]\nmach = 0.7\nreynolds = 3.1e5\ntemperature = \"288.15 K\"\n\
+    [[body]]\nname = \"rae2822\"\nairfoil = \"rae2822.dat\"\n\
+    [motion]\nparticles = \"rigid\"\npivot = [0.0, 0.0]\nreduced_frequency = 1.3192\n\
+    pitch = { amplitude = \"4 deg\", phase = \"180 deg\" }\nplunge = 0.1\n\
+    [cloud]\nspacing = 0.015625\nwall_layers = { first = 0.0003, growth = 1.25 }\nwake = { length = 1.0, spacing = 0.015625 }\n\
+    [time.dual]\nsteps_per_period = 64\nperiods = 5\n";
+/// Steps that lead past the start, and steps that are timed.
+const STEPS: [u32; 2] = [20, 32];
+/// Orders of magnitude the steady flow before the march is solved to, and greatest number of iterations for that.
+const PRELUDE: (f64, u32) = (1e-2, 80);
+
+/// A step in time over a residual, periodic state.
+pub(super) fn dual_step() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("verification/rae2822_m073_a319");
+    let (fluid, free, period) = built(&parsed(CASE), &folder);
+    let mut relax = Relax::new(&fluid, control(), free.clone(), &free, None);
+    while relax.drop() > PRELUDE.0 && relax.iteration < PRELUDE.1 && relax.advance().is_ok() {}
+    let u = relax.u.clone();
+    drop(relax);
+    let step = period / 64.0;
+    let plan = Plan { until: 1e9, step, order: 2, orders: 2.0, iterations: 20, adaptive: None };
+    let mut march = Dual::new(&fluid, control(), plan, u, Past::default());
+    (0..STEPS[0]).for_each(|_| {
+        march.advance().unwrap();
+    });
+    let (mut inner, linear) = (0, march.linear());
+    let clock = Instant::now();
+    for _ in 0..STEPS[1] {
+        march.advance().unwrap();
+        inner += march.inner();
+    }
+    let (each, steps) = (clock.elapsed().as_secs_f64() / f64::from(STEPS[1]), f64::from(STEPS[1]));
+    let (linear, time) = (march.linear() - linear, march.past().time);
+    let state = march.parts().2.to_vec();
+    let one = residual(&fluid, &Moment::By { time, rate: &[(1.0 / step, time), (-1.0 / step, time - step)] }, &state);
+    tell("dual-time step over a residual", each / one, "bar 12");
+    tell("  Newton iterations a step", f64::from(inner) / steps, "");
+    tell("  linear iterations a step", f64::from(linear) / steps, "");
+    tell("  steps that missed their goal", f64::from(march.past().unconverged), "");
+    let n = (fluid.len() / fluid.block()) as f64;
+    println!("  {n} particles, a residual takes {:.2} µs a particle", 1e6 * one / n);
+}

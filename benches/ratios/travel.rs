@@ -1,0 +1,47 @@
+//! Clouds that deform, and particles that travel.
+use std::path::Path;
+
+use alula::scheme::Turnover;
+use alula::system::{Moment, System};
+use alula::time::explicit::{Explicit, Method};
+use alula::time::{March, Past};
+
+use super::{built, parsed, residual, seconds, tell};
+
+/// NACA 0012 in pitch on a cloud that deforms.
+const DEFORMING: &str = "title = \"bench\"\n[flow]\nmach = 0.6\nalpha = \"4.86 deg\"\n\
+    [motion]\nparticles = \"deforming\"\npivot = [0.25, 0.0]\npitch = \"2.44 deg\"\nreduced_frequency = 0.081\n\
+    [[body]]\nname = \"naca0012\"\nnaca = \"0012\"\n[cloud]\nspacing = 0.015625\nlayers = 12.0\n\
+    [time.dual]\nsteps_per_period = 96\nperiods = 3\n";
+
+/// Places and weights of a deforming cloud made anew.
+pub(super) fn deforming() {
+    let (fluid, u, period) = built(&parsed(DEFORMING), Path::new(""));
+    let mut frame = fluid.frame(&Moment::At { time: 0.0 }, &u);
+    let step = period / 96.0;
+    let mut n = 0.0;
+    let anew = seconds(|| {
+        n += 1.0;
+        let time = n * step;
+        fluid.place(&Moment::By { time, rate: &[(1.0 / step, time), (-1.0 / step, time - step)] }, &mut frame);
+    });
+    let moment = Moment::By { time: step, rate: &[(1.0 / step, step), (-1.0 / step, 0.0)] };
+    tell("deforming cloud placed and fitted anew, over a residual", anew / residual(&fluid, &moment, &u), "bar 1.5");
+}
+
+/// A cloud of travelling particles built anew, and a step of three stages.
+pub(super) fn travelling() {
+    let (fluid, u) = crate::travelling::<2>();
+    let (mut work, mut turnover) = (fluid.work(), Turnover::default());
+    let moment = Moment::At { time: 0.0 };
+    let one = residual(&fluid, &moment, &u);
+    let frame = fluid.frame(&moment, &u);
+    let anew = seconds(|| drop(fluid.renewed(&frame, &u, &mut work, &mut turnover)));
+    let mut operators = fluid.shape.operators.clone();
+    let refit = seconds(|| operators.refit(&fluid.shape.cloud));
+    let mut march = Explicit::new(&fluid, Method::Ssprk3, (0.1, 1e9), (Past::default(), u.clone()));
+    let step = seconds(|| drop(march.advance()));
+    tell("travelling particles searched and fitted anew, over a residual", anew / one, "bar 4");
+    tell("weights fitted anew on the same lists", refit / one, "");
+    tell("Runge-Kutta step of three stages on particles that travel", step / one, "6.4 so far");
+}
