@@ -175,6 +175,7 @@ impl BlockMatrix {
             4 => self.both_sweeps::<4>(s),
             5 => self.both_sweeps::<5>(s),
             3 => self.both_sweeps::<3>(s),
+            2 => self.both_sweeps::<2>(s),
             _ => self.both_sweeps::<1>(s),
         }
     }
@@ -267,6 +268,7 @@ impl BlockMatrix {
             4 => self.residual_of::<4>(s),
             5 => self.residual_of::<5>(s),
             3 => self.residual_of::<3>(s),
+            2 => self.residual_of::<2>(s),
             _ => self.residual_of::<1>(s),
         }
     }
@@ -296,6 +298,7 @@ impl BlockMatrix {
             4 => self.restart_of::<4>(s),
             5 => self.restart_of::<5>(s),
             3 => self.restart_of::<3>(s),
+            2 => self.restart_of::<2>(s),
             _ => self.restart_of::<1>(s),
         }
     }

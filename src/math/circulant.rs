@@ -91,6 +91,7 @@ impl Waves {
             4 => self.both_sweeps::<4>(matrix),
             5 => self.both_sweeps::<5>(matrix),
             3 => self.both_sweeps::<3>(matrix),
+            2 => self.both_sweeps::<2>(matrix),
             _ => self.both_sweeps::<1>(matrix),
         }
     }
@@ -119,6 +120,7 @@ impl Waves {
             4 => self.residual_of::<4>(matrix),
             5 => self.residual_of::<5>(matrix),
             3 => self.residual_of::<3>(matrix),
+            2 => self.residual_of::<2>(matrix),
             _ => self.residual_of::<1>(matrix),
         }
     }
@@ -159,6 +161,7 @@ impl Waves {
             4 => self.restart_of::<4>(matrix),
             5 => self.restart_of::<5>(matrix),
             3 => self.restart_of::<3>(matrix),
+            2 => self.restart_of::<2>(matrix),
             _ => self.restart_of::<1>(matrix),
         }
     }
