@@ -134,7 +134,7 @@ impl<'a, const D: usize> Finished<'a, D> {
             run: self.out.display().to_string(),
             particles: n,
             iterations: journal.iteration(),
-            residual_drop: if marches(case) { 0.0 } else { -journal.drop.log10() },
+            residual_drop: if marches(case) && journal.balance.is_none() { 0.0 } else { -journal.drop.log10() },
             converged: journal.converged,
             cpu_seconds: cpu,
             wall_seconds: wall,
