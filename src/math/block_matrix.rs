@@ -8,10 +8,8 @@ use std::ops::Range;
 
 use super::sweep::{parts, sweep_parts, sweep_rows, sweep_two_parts};
 
-/// Most and fewest rows in one part of a Gauss-Seidel sweep over groups.
-const PART: [usize; 2] = [1024, 64];
-/// Parts that a matrix of groups is cut into where its rows suffice, so that threads find work on coarse levels too.
-const PARTS: usize = 12;
+/// Rows in one part of a Gauss-Seidel sweep.
+const PART: usize = 1024;
 
 /// A sparse matrix of square blocks.
 #[derive(Clone, Debug, Default)]
@@ -19,6 +17,8 @@ pub struct BlockMatrix {
     block: usize,
     first: Vec<u32>,
     column: Vec<u32>,
+    /// Of each row: its first entry inside its part, its first one beyond the diagonal, its first one after its part.
+    cut: Vec<[u32; 3]>,
     value: Vec<u16>,
     diagonal: Vec<f32>,
     inverse: Vec<f32>,
@@ -82,8 +82,10 @@ impl BlockMatrix {
         let size = block * block;
         let value_parts = parts.iter().map(|p| first[p.start] as usize..first[p.end] as usize).collect();
         let n = first.len() - 1;
+        let cut = parts.iter().flat_map(|p| p.clone().map(|i| cut(i, p, &first, &column))).collect();
         Self {
             block,
+            cut,
             value: vec![0; column.len() * size],
             diagonal: vec![0.0; n * size],
             inverse: vec![0.0; n * size],
@@ -119,7 +121,7 @@ impl BlockMatrix {
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        2 * self.value.len() + 4 * (2 * self.inverse.len() + self.column.len() + self.first.len())
+        2 * self.value.len() + 4 * (2 * self.inverse.len() + self.column.len() + self.first.len() + 3 * self.cut.len())
     }
 
     /// Parts in which rows are assembled and swept.
@@ -204,8 +206,8 @@ impl BlockMatrix {
         (x, side): (&mut [f32], &mut [f32]),
     ) {
         let at = (i - part.start) * N;
-        let (below, inside, above) = self.split_row(i, part);
-        let middle = self.middle(i, &inside);
+        let (below, inside, above) = self.split_row(i);
+        let middle = self.middle(i);
         let mut r = load::<N>(b, i);
         for e in below.chain(above) {
             subtract::<N>(self.off_diagonal(e), &load::<N>(old, self.column[e] as usize), &mut r);
@@ -224,12 +226,9 @@ impl BlockMatrix {
 
     /// Entries of row `i` before, in and after its part.
     #[inline(always)]
-    pub(super) fn split_row(&self, i: usize, part: &Range<usize>) -> (Range<usize>, Range<usize>, Range<usize>) {
-        let (start, end) = (self.first[i] as usize, self.first[i + 1] as usize);
-        let row = &self.column[start..end];
-        let from = start + row.iter().take_while(|j| (**j as usize) < part.start).count();
-        let to = end - row.iter().rev().take_while(|j| (**j as usize) >= part.end).count();
-        (start..from, from..to.max(from), to.max(from)..end)
+    pub(super) fn split_row(&self, i: usize) -> (Range<usize>, Range<usize>, Range<usize>) {
+        let [from, _, to] = self.cut[i].map(|e| e as usize);
+        (self.first[i] as usize..from, from..to, to..self.first[i + 1] as usize)
     }
 
     /// Column of entry `e`.
@@ -238,10 +237,10 @@ impl BlockMatrix {
         self.column[e] as usize
     }
 
-    /// The first of the entries `inside` of row `i` beyond its diagonal.
+    /// The first entry of row `i` inside its part beyond its diagonal.
     #[inline(always)]
-    pub(super) fn middle(&self, i: usize, inside: &Range<usize>) -> usize {
-        inside.start + self.column[inside.clone()].partition_point(|j| (*j as usize) < i)
+    pub(super) fn middle(&self, i: usize) -> usize {
+        self.cut[i][1] as usize
     }
 
     /// Diagonal block of row `i`, by columns.
@@ -278,8 +277,8 @@ impl BlockMatrix {
         sweep_parts(&self.parts, N, &mut s.r, &|k, out| {
             let part = self.parts[k].clone();
             for (i, row) in part.clone().zip(out.chunks_exact_mut(N)) {
-                let (below, inside, above) = self.split_row(i, &part);
-                let middle = self.middle(i, &inside);
+                let (below, inside, above) = self.split_row(i);
+                let middle = self.middle(i);
                 let mut sum = load::<N>(b, i);
                 for e in below.chain(inside.start..middle).chain(above) {
                     subtract::<N>(self.off_diagonal(e), &load::<N>(x, self.column[e] as usize), &mut sum);
@@ -308,8 +307,8 @@ impl BlockMatrix {
         sweep_parts(&self.parts, N, &mut s.side, &|k, out| {
             let part = self.parts[k].clone();
             for (i, row) in part.clone().zip(out.chunks_exact_mut(N)) {
-                let (_, inside, _) = self.split_row(i, &part);
-                let middle = self.middle(i, &inside);
+                let (_, inside, _) = self.split_row(i);
+                let middle = self.middle(i);
                 let mut sum = [0.0; N];
                 for e in middle..inside.end {
                     subtract::<N>(self.off_diagonal(e), &load::<N>(x, self.column[e] as usize), &mut sum);
@@ -345,7 +344,7 @@ impl BlockMatrix {
             column.extend_from_slice(&own);
             first.push(column.len() as u32);
         }
-        let parts = parts(n_groups, (n_groups / PARTS).clamp(PART[1], PART[0]));
+        let parts = parts(n_groups, PART);
         (Self::from_pattern(self.block, first, column, parts), target)
     }
 
@@ -388,6 +387,13 @@ impl BlockMatrix {
     pub fn columns(&self, i: usize) -> &[u32] {
         &self.column[self.first[i] as usize..self.first[i + 1] as usize]
     }
+}
+
+/// Where the entries of row `i` enter its part, pass the diagonal and leave the part.
+fn cut(i: usize, part: &Range<usize>, first: &[u32], column: &[u32]) -> [u32; 3] {
+    let row = &column[first[i] as usize..first[i + 1] as usize];
+    let below = |limit: usize| first[i] + row.partition_point(|j| (*j as usize) < limit) as u32;
+    [part.start, i, part.end].map(below)
 }
 
 /// Adds to the blocks of the rows of one part.

@@ -131,8 +131,8 @@ impl Waves {
         sweep_parts(matrix.parts(), N * count, &mut self.r, &|k, out| {
             let part = matrix.parts()[k].clone();
             for (i, row) in part.clone().zip(out.chunks_exact_mut(N * count)) {
-                let (below, inside, above) = matrix.split_row(i, &part);
-                let middle = matrix.middle(i, &inside);
+                let (below, inside, above) = matrix.split_row(i);
+                let middle = matrix.middle(i);
                 let mut sum = [[0.0; N]; MOST];
                 let sum = &mut sum[..count];
                 for e in below.chain(inside.start..middle).chain(above) {
@@ -172,9 +172,9 @@ impl Waves {
         sweep_parts(matrix.parts(), N * count, &mut self.side, &|k, out| {
             let part = matrix.parts()[k].clone();
             for (i, row) in part.clone().zip(out.chunks_exact_mut(N * count)) {
-                let (_, inside, _) = matrix.split_row(i, &part);
+                let (_, inside, _) = matrix.split_row(i);
                 let mut sum = [[0.0; N]; MOST];
-                for e in matrix.middle(i, &inside)..inside.end {
+                for e in matrix.middle(i)..inside.end {
                     gather::<N>(matrix, e, &x[matrix.column(e) * count * N..], &mut sum[..count]);
                 }
                 row.chunks_exact_mut(N).zip(&sum).for_each(|(row, sum)| row.copy_from_slice(sum));
@@ -204,8 +204,8 @@ fn relax_row<const N: usize>(
 ) {
     let count = 2 * harmonics + 1;
     let at = (i - part.start) * count * N;
-    let (below, inside, above) = matrix.split_row(i, part);
-    let middle = matrix.middle(i, &inside);
+    let (below, inside, above) = matrix.split_row(i);
+    let middle = matrix.middle(i);
     let mut r = [[0.0; N]; MOST];
     let mut sum = [[0.0; N]; MOST];
     for e in below.chain(above) {

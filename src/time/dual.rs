@@ -167,7 +167,7 @@ impl<S: System> Dual<'_, S> {
             self.relax.u.copy_from_slice(guess);
         }
         let moment = Moment::By { time: self.past.time + dt, rate: &formula };
-        self.relax.begin_step(&moment, TimeTerm { rate: formula[0].0, rest, goal: self.goal() });
+        self.relax.begin_step(&moment, TimeTerm { rate: formula[0].0, rest });
         if let Some(fault) = self.relax.misplaced() {
             self.relax.u.copy_from_slice(&self.start);
             return Err(TimeError::Fault { fault, iteration: self.past.iteration + 1, hint: CROWDED });
@@ -182,13 +182,8 @@ impl<S: System> Dual<'_, S> {
         Ok(error)
     }
 
-    /// Residual over its first value at which a step ends.
-    fn goal(&self) -> f64 {
-        10f64.powf(-self.plan.orders)
-    }
-
     fn solve(&mut self) -> Result<(), TimeError> {
-        let goal = self.goal();
+        let goal = 10f64.powf(-self.plan.orders);
         self.inner = 0;
         while self.relax.drop() > goal && !self.relax.settled() {
             if self.inner >= self.plan.iterations {

@@ -74,13 +74,9 @@ const EXPLICIT_CFL: f64 = 1.5;
 const ROUND_OFF: f64 = 1e-15;
 /// Courant number of Newton's method at the start of a step in time over that of a steady flow: the guess is good, and the
 /// term of time is a pseudo time of its own.
-const STEP_CFL: f64 = 100.0;
+const STEP_CFL: f64 = 10.0;
 /// Fall of the residual in an iteration of a step in time with which the preconditioner goes on to serve.
 const GOOD_FALL: f64 = 2.0;
-/// Part of the goal of a step in time that a linear solve aims at.
-const AIM: f64 = 0.5;
-/// Weakest reduction asked of a linear solve.
-const WEAKEST: f64 = 0.3;
 /// Stages of the explicit method.
 const STAGES: [f64; 5] = [0.25, 1.0 / 6.0, 0.375, 0.5, 1.0];
 
@@ -144,8 +140,6 @@ pub struct TimeTerm {
     pub rate: f64,
     /// Contribution of the states before it.
     pub rest: Vec<f64>,
-    /// Residual over its first value at which the step ends.
-    pub goal: f64,
 }
 
 /// What a relaxation needs to go on where it stopped.
@@ -448,12 +442,6 @@ impl<'a, S: System> Relax<'a, S> {
         shift
     }
 
-    /// Reduction asked of a linear solve: no more than a step in time still needs.
-    fn tolerance(&self) -> f64 {
-        let Some(term) = &self.time else { return self.control.tolerance };
-        (AIM * term.goal / self.drop()).min(WEAKEST).max(self.control.tolerance)
-    }
-
     fn implicit_step(&mut self) {
         let Some(mut levels) = self.levels.take() else { return };
         let shift = self.prepare(&mut levels);
@@ -463,7 +451,6 @@ impl<'a, S: System> Relax<'a, S> {
 
     /// The step of Newton's method, or that of the sweeps alone.
     fn solve(&mut self, levels: &mut Multilevel, shift: &[f64]) {
-        let tolerance = self.tolerance();
         let Some(gmres) = self.gmres.as_mut().filter(|_| self.phase.newton) else {
             let residual = &self.residual;
             levels.apply(|k| residual[k] as f32, &mut self.step);
@@ -492,7 +479,7 @@ impl<'a, S: System> Relax<'a, S> {
             });
         };
         let precondition = |r: &[f32], z: &mut [f64]| levels.apply(|k| (f64::from(r[k]) / scale[k / n]) as f32, z);
-        let solved = gmres.solve((b, &mut self.step), tolerance, product, precondition);
+        let solved = gmres.solve((b, &mut self.step), self.control.tolerance, product, precondition);
         self.linear += solved.iterations as u32;
         self.evaluations += solved.iterations as u64;
     }
