@@ -155,6 +155,11 @@ static DUAL: Table = Table::of(&[
     ),
     PERIODIC_TOLERANCE,
     METHOD,
-    CFL,
+    Field::defaulted(
+        "cfl",
+        POSITIVE,
+        Absent::Number(10.0),
+        "Courant number at the start of the relaxation before the march; each step in time begins at ten times as much.",
+    ),
     CFL_MAX,
 ]);
