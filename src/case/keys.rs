@@ -147,6 +147,13 @@ static FLOW: Table = Table::of(&[
     ),
     Field::defaulted("gamma", Kind::Number(Range::above(1.0)), Absent::Number(1.4), "Ratio of specific heats."),
     Field::defaulted(
+        "isentropic",
+        Kind::Flag,
+        Absent::Flag(false),
+        "The gas keeps the entropy of the free stream, as sound does: for periodic flow that no stream passes through, where any \
+         distribution of entropy would be a solution. Without viscosity only; shocks lose no total pressure.",
+    ),
+    Field::defaulted(
         "alpha",
         ANGLE,
         Absent::Number(0.0),

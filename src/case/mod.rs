@@ -101,6 +101,9 @@ pub struct Flow {
     pub gas_constant: f64,
     /// Ratio of specific heats, 1.4 for air.
     pub gamma: f64,
+    /// The gas keeps the entropy of the free stream.
+    #[serde(default)]
+    pub isentropic: bool,
     /// Angle of attack, nose up positive: the flow turns from +x towards +y in 2-D, towards +z in 3-D.
     #[serde(default)]
     pub alpha: Angle,

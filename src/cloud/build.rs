@@ -83,12 +83,12 @@ fn volumes<const D: usize>(particles: &Particles<D>) -> Vec<f64> {
     volume
 }
 
-/// Outer particles with the fluid particle that an outflow copies: the nearest one inward.
+/// Outer particles with the nearest fluid particle inward.
 fn outer_particles<const D: usize>(particles: &Particles<D>) -> Vec<Outer> {
     let first = particles.n_rows();
     let outer = particles.outer.iter().zip(first..).map(|((axis, end), i)| {
         let side = particles.sides[*axis][*end];
-        let (x, h) = (particles.x[i], particles.spacing[i]);
+        let (x, h) = (&particles.x[i], particles.spacing[i]);
         let centre = particles.tree.bounds().centre();
         let toward = |d: usize| h * (centre[d] - x[d]).signum();
         let fluid_at = |x: &Vector<D>| {
@@ -97,10 +97,12 @@ fn outer_particles<const D: usize>(particles: &Particles<D>) -> Vec<Outer> {
         };
         // at an edge or a corner of the domain the way straight inward leads along another side: go across it as well
         let ways = (0..1usize << D).filter(|w| w & (1 << axis) != 0);
-        let place = |w: usize| x + Vector::from_fn(|d| if w & (1 << d) != 0 { toward(d) } else { 0.0 });
+        let place = |w: usize| *x + Vector::from_fn(|d| if w & (1 << d) != 0 { toward(d) } else { 0.0 });
         let fewest = |n: u32| ways.clone().filter(move |w| w.count_ones() == n);
         let source = (1..=D as u32).flat_map(fewest).find_map(|w| fluid_at(&place(w))).unwrap_or(i as u32);
-        Outer { side, source }
+        let behind = particles.x[source as usize] * 2.0 - *x;
+        let behind = fluid_at(&behind).filter(|k| *k != source).unwrap_or(source);
+        Outer { side, source, behind, outward: (*axis as u8, *end == 1) }
     });
     outer.collect()
 }

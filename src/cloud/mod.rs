@@ -71,8 +71,20 @@ impl<const D: usize> Interface<D> {
 pub struct Outer {
     /// Condition of the side.
     pub side: Side,
-    /// Fluid particle it copies when the side is an outflow, else itself.
+    /// The nearest fluid particle inward, from which waves come; itself where there is none.
     pub source: u32,
+    /// The next one behind it; the same where there is none.
+    pub behind: u32,
+    /// Axis of the outward normal, and whether it points towards larger coordinates.
+    pub outward: (u8, bool),
+}
+
+impl Outer {
+    /// Outward unit normal of the side.
+    pub fn normal<const D: usize>(&self) -> Vector<D> {
+        let (axis, up) = self.outward;
+        Vector::axis(usize::from(axis)) * if up { 1.0 } else { -1.0 }
+    }
 }
 
 /// A reflection and a shift of space: x' = sign·x + offset.
@@ -168,6 +180,11 @@ impl<const D: usize> Cloud<D> {
     /// Indices of the interface particles.
     pub fn interface_range(&self) -> Range<usize> {
         self.n_fluid..self.n_fluid + self.interface.len()
+    }
+
+    /// Outer particle number `k`, its source and what is behind that.
+    pub fn beside(&self, k: usize) -> [usize; 3] {
+        [self.n_rows() + k, self.outer[k].source as usize, self.outer[k].behind as usize]
     }
 
     /// Indices of the outer particles.

@@ -1,5 +1,6 @@
 //! Pointwise physics: no index, no slice, no particle.
 pub mod gas;
+pub mod outgoing;
 pub mod riemann;
 pub mod viscous;
 

@@ -28,6 +28,9 @@ const START: [[usize; 2]; 2] = [[2_500, 9_000], [15_000, 80_000]];
 /// Exactly conservative coefficients unless the case says otherwise: they cost a few per cent of a run.
 const CONSERVATIVE: bool = true;
 
+/// Relative difference of entropy that counts as none.
+const ONE_ENTROPY: f64 = 1e-6;
+
 /// Greatest number of iterations of the relaxation before a march.
 const PRELUDE_ITERATIONS: u32 = 500;
 
@@ -159,6 +162,7 @@ pub(super) fn solver<const D: usize>(
     let centre = surface.map_or(Vector::ZERO, |s| vortex_centre(&s.bounds()));
     let fluid = Fluid {
         gas,
+        isentropic: case.flow.isentropic,
         flux: scheme.flux,
         limiter: scheme.limiter,
         reconstruction: Reconstruction {
@@ -175,8 +179,24 @@ pub(super) fn solver<const D: usize>(
         before: None,
         shape: Arc::new(Shape::new(cloud, operators)),
     };
+    if case.flow.isentropic {
+        at_one_entropy(&fluid)?;
+    }
     let film = surface.filter(|_| D == 2 && case.output.report && motions.period().is_some()).cloned();
     Ok(Solver { fluid, film })
+}
+
+/// Refuses a start whose entropy is not that of the free stream, which an isentropic gas has everywhere.
+fn at_one_entropy<const D: usize>(fluid: &Fluid<D>) -> Result<(), RunError> {
+    let cloud = &fluid.shape.cloud;
+    let stray = |x: &&Vector<D>| (fluid.gas.gamma * fluid.gas.entropy(&(fluid.held)(x)) - 1.0).abs() > ONE_ENTROPY;
+    let Some(x) = cloud.x[..cloud.n_fluid].iter().find(stray) else { return Ok(()) };
+    let times = fluid.gas.gamma * fluid.gas.entropy(&(fluid.held)(x));
+    Err(RunError::Unsupported(format!(
+        "the entropy p/\u{3c1}^\u{3b3} of the start is {times:.6} times that of the free stream at {:?}, but the gas is isentropic\nhint: \
+         start with p/\u{3c1}^\u{3b3} = 1/\u{3b3}, or take out `isentropic`",
+        x.0
+    )))
 }
 
 /// Viscosity of a case in the units of the solver, and what the gas does on each body.

@@ -20,6 +20,7 @@ use crate::cloud::operators::WallFace;
 use crate::math::Vector;
 use crate::math::block_matrix::BlockMatrix;
 use crate::math::sweep::{maximum, sweep, sweep_parts, sweep_rows, sweep_slots};
+use crate::physics::outgoing::outgoing;
 use crate::physics::riemann::{AusmPlusUp, Hllc, Roe, Rusanov, UpwindFlux};
 use crate::physics::{Conserved, Gas, Primitive};
 use crate::system::{Fault, Moment, System};
@@ -30,6 +31,9 @@ use super::reconstruct::{Gradient, Limit, Reconstruction, Unlimited, VanAlbada, 
 use super::shape::{Carriage, Frame, Shape};
 use super::start::Field;
 use super::viscous::Friction;
+
+/// Greatest part of the way between two particles by which a disturbance is continued to a side.
+const FURTHEST: f64 = 1.0;
 
 /// The compressible Euler equations on a cloud, with friction the Navier-Stokes equations.
 pub struct Fluid<const D: usize> {
@@ -49,6 +53,8 @@ pub struct Fluid<const D: usize> {
     pub reconstruction: Reconstruction,
     /// Exactly conservative coefficients.
     pub conservative: bool,
+    /// The gas keeps the entropy of the free stream.
+    pub isentropic: bool,
     /// Viscosity; `None` for an inviscid gas.
     pub friction: Option<Arc<Friction>>,
     /// State of the far field.
@@ -150,7 +156,7 @@ impl<const D: usize> Fluid<D> {
         }
         let walls = &*walls;
         let (outer, images) = rest.split_at_mut(cloud.outer.len());
-        sweep(outer, |k| self.outer_state(&inward(frame.outer[k]), &cloud.outer[k], fluid));
+        sweep(outer, |k| self.outer_state(frame, k, fluid));
         let outer = &*outer;
         sweep(images, |k| {
             let image = &cloud.images[k];
@@ -168,10 +174,21 @@ impl<const D: usize> Fluid<D> {
         Primitive { velocity: self.shape.cloud.transforms[transform as usize].direction(&q.velocity), ..*q }
     }
 
-    fn outer_state(&self, held: &Primitive<D>, outer: &crate::cloud::Outer, fluid: &[Primitive<D>]) -> Primitive<D> {
-        let Side::Outflow { pressure } = outer.side else { return *held };
-        let Some(inner) = fluid.get(outer.source as usize) else { return *held };
-        Primitive { pressure: pressure.map_or(inner.pressure, |p| p / self.gas.gamma), ..*inner }
+    /// State of outer particle `k`: what its side holds, with the part of what its source differs that leaves.
+    fn outer_state(&self, frame: &Frame<D>, k: usize, fluid: &[Primitive<D>]) -> Primitive<D> {
+        let cloud = &frame.shape.cloud;
+        let outer = &cloud.outer[k];
+        let [held, beside, further] = frame.outer[k].map(|q| Primitive { velocity: frame.inward(&q.velocity), ..q });
+        let Some(inner) = fluid.get(outer.source as usize) else { return held };
+        if let Side::Outflow { pressure } = outer.side {
+            return Primitive { pressure: pressure.map_or(inner.pressure, |p| p / self.gas.gamma), ..*inner };
+        }
+        let [x, near, far] = cloud.beside(k).map(|i| &cloud.x[i]);
+        let (n, moved) = (outer.normal(), frame.velocity_of(cloud.outer_range().start + k));
+        let ahead = ((*x - *near).dot(&n) / (*near - *far).dot(&n)).clamp(0.0, FURTHEST);
+        let change = inner.minus(&beside).minus(&fluid[outer.behind as usize].minus(&further));
+        let arriving = inner.plus(if ahead.is_finite() { ahead } else { 0.0 }, &change);
+        outgoing(&self.gas, &held, [&arriving, &beside], (&n, &moved))
     }
 
     /// Fills `work.gradient` from `work.state`.
@@ -327,7 +344,7 @@ impl<const D: usize> System for Fluid<D> {
             velocity: Arc::default(),
             walls: Arc::default(),
             base: Arc::default(),
-            outer: cloud.x[cloud.outer_range()].iter().map(|x| (self.held)(x)).collect(),
+            outer: (0..cloud.outer.len()).map(|k| cloud.beside(k).map(|i| (self.held)(&cloud.x[i]))).collect(),
         };
         self.place(moment, &mut frame);
         self.follow(u, &mut self.work(), &mut frame);
@@ -349,13 +366,13 @@ impl<const D: usize> System for Fluid<D> {
     fn follow(&self, u: &[f64], work: &mut Work<D>, frame: &mut Frame<D>) {
         self.fill_states(frame, u, work);
         let force = self.pressure_force(frame, work);
-        let first = self.shape.cloud.n_rows();
+        let cloud = &self.shape.cloud;
         let mut outer = std::mem::take(&mut frame.outer);
         let still = self.carriage.is_still();
-        sweep_slots(&mut outer, |k, q| match self.shape.cloud.outer[k].side {
-            Side::FarField => *q = self.far_field.state(&frame.place(first + k), &force),
+        sweep_slots(&mut outer, |k, q| match cloud.outer[k].side {
+            Side::FarField => *q = cloud.beside(k).map(|i| self.far_field.state(&frame.place(i), &force)),
             _ if still => {}
-            _ => *q = (self.held)(&frame.place(first + k)),
+            _ => *q = cloud.beside(k).map(|i| (self.held)(&frame.place(i))),
         });
         frame.outer = outer;
     }
@@ -379,6 +396,9 @@ impl<const D: usize> System for Fluid<D> {
         }
         if let Some(friction) = &self.friction {
             self.add_viscous(friction, (frame, work), du);
+        }
+        if self.isentropic {
+            self.hold_entropy(frame, work, du);
         }
     }
 
@@ -491,11 +511,24 @@ mod tests {
         let reconstruction = Reconstruction { second_order: true, kappa: 0.0, threshold: 0.02, low_mach: false };
         let held: Field<2> = Arc::new(|x| Still.state(x, &Vector::ZERO));
         let carriage = Carriage::Still;
-        let (gas, flux, limiter) = (Gas { gamma: 1.4 }, Flux::Hllc, Limiter::VanAlbada);
+        let (gas, isentropic, flux, limiter) = (Gas { gamma: 1.4 }, false, Flux::Hllc, Limiter::VanAlbada);
         let far_field = Arc::new(Still);
         let conservative = true;
         let (before, friction) = (None, None);
-        Fluid { shape, carriage, before, gas, flux, limiter, reconstruction, conservative, friction, far_field, held }
+        Fluid {
+            shape,
+            carriage,
+            before,
+            gas,
+            isentropic,
+            flux,
+            limiter,
+            reconstruction,
+            conservative,
+            friction,
+            far_field,
+            held,
+        }
     }
 
     /// Σ V R and Σ |V R| of every variable for an uneven flow, and the force on the bodies.

@@ -121,6 +121,9 @@ pub fn assemble<const D: usize>(fluid: &Fluid<D>, frame: &Frame<D>, work: &Work<
                 couple(fluid, rows, (frame, work), (row, column), coupling);
             }
         }
+        if fluid.isentropic {
+            op.parts[k].clone().for_each(|i| fluid.hold_entropy_block((frame, work), i, rows));
+        }
         if let Some(friction) = &fluid.friction {
             fluid.add_viscous_blocks(friction, (frame, work), k, rows);
         }

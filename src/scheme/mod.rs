@@ -5,6 +5,7 @@ pub mod blend;
 pub mod boundary;
 pub mod edges;
 pub mod fluid;
+mod isentropic;
 pub mod jacobian;
 pub mod probe;
 pub mod reconstruct;

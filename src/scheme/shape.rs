@@ -63,8 +63,8 @@ pub struct Frame<const D: usize> {
     pub walls: Arc<Vec<WallMotion<D>>>,
     /// Where fluid particles that travel were when the step began; empty for all others.
     pub base: Arc<Vec<Vector<D>>>,
-    /// States of the outer particles, in the axes of the case.
-    pub outer: Vec<Primitive<D>>,
+    /// States that sides hold, in the axes of the case: at each outer particle, at its source and behind that.
+    pub outer: Vec<[Primitive<D>; 3]>,
 }
 
 impl<const D: usize> Frame<D> {

@@ -1,0 +1,106 @@
+//! What leaves through a side of the domain.
+//!
+//! Along a normal n the Euler equations carry J± = u·n ± 2c/(γ − 1) at u·n ± c, and the entropy p/ρ^γ and the velocity along
+//! the side at u·n (Hirsch, Numerical Computation of Internal and External Flows 2, 1990, section 16.4). A side that holds a state
+//! swallows what arrives from within only if it goes on across it; if it ends there, a part comes back, since on a cloud no edge
+//! is normal to all waves.
+use super::{Gas, Primitive};
+use crate::math::Vector;
+
+/// Part of the speed of sound over which a wave that turns from leaving to arriving is faded out.
+const FADE: f64 = 0.1;
+/// Least part of the speed of sound held that the state may have.
+const LEAST: f64 = 0.1;
+
+/// J+, J−, p/ρ^γ and the velocity along the side.
+struct Carried<const D: usize> {
+    sound: [f64; 2],
+    entropy: f64,
+    along: Vector<D>,
+}
+
+impl<const D: usize> Carried<D> {
+    fn of(gas: &Gas, q: &Primitive<D>, n: &Vector<D>) -> Self {
+        let (across, c) = (q.velocity.dot(n), 2.0 * gas.sound_speed(q) / (gas.gamma - 1.0));
+        let along = q.velocity - *n * across;
+        Self { sound: [across + c, across - c], entropy: gas.entropy(q), along }
+    }
+
+    fn state(&self, gas: &Gas, n: &Vector<D>, least: f64) -> Primitive<D> {
+        let [up, down] = self.sound;
+        let c2 = (0.25 * (gas.gamma - 1.0) * (up - down)).max(least).powi(2);
+        let density = (c2 / (gas.gamma * self.entropy)).powf(1.0 / (gas.gamma - 1.0));
+        Primitive { density, velocity: *n * (0.5 * (up + down)) + self.along, pressure: density * c2 / gas.gamma }
+    }
+}
+
+/// The state on a side with normal `n` that moves with `w`: what it holds, with the part of the disturbance that leaves.
+/// `inner` is the state beside the side, `beside` what would be held there.
+pub fn outgoing<const D: usize>(
+    gas: &Gas,
+    held: &Primitive<D>,
+    [inner, beside]: [&Primitive<D>; 2],
+    (n, w): (&Vector<D>, &Vector<D>),
+) -> Primitive<D> {
+    let c = gas.sound_speed(held);
+    let through = (held.velocity - *w).dot(n);
+    let leaves = |speed: f64| 0.5 * (1.0 + speed / speed.hypot(FADE * c));
+    let [part_up, part_down, part] = [through + c, through - c, through].map(leaves);
+    let [before, inside, usual] = [held, inner, beside].map(|q| Carried::of(gas, q, n));
+    let after = Carried {
+        sound: [
+            before.sound[0] + part_up * (inside.sound[0] - usual.sound[0]),
+            before.sound[1] + part_down * (inside.sound[1] - usual.sound[1]),
+        ],
+        entropy: before.entropy * (inside.entropy / usual.entropy).powf(part),
+        along: before.along + (inside.along - usual.along) * part,
+    };
+    // the difference is nothing, to the bit, where nothing leaves
+    let change = after.state(gas, n, LEAST * c).minus(&before.state(gas, n, LEAST * c));
+    held.plus(1.0, &change)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const AIR: Gas = Gas { gamma: 1.4 };
+    const N: Vector<2> = Vector([0.6, 0.8]);
+    const T: Vector<2> = Vector([-0.8, 0.6]);
+
+    fn stream(mach: f64) -> Primitive<2> {
+        Primitive { density: 1.4, velocity: N * mach, pressure: 1.0 }
+    }
+
+    /// Greatest difference between what is on the side of a stream that ends in `inner` and `expected`.
+    fn error(mach: f64, inner: &Primitive<2>, expected: &Primitive<2>) -> f64 {
+        let held = stream(mach);
+        let d = outgoing(&AIR, &held, [inner, &held], (&N, &Vector::ZERO)).minus(expected);
+        d.density.abs().max(d.pressure.abs()).max(d.velocity.norm())
+    }
+
+    /// A simple wave in a stream, its velocity changed by `by` along ±n.
+    fn wave(mach: f64, by: f64, sign: f64) -> Primitive<2> {
+        let c: f64 = 1.0 + 0.2 * by;
+        Primitive { density: 1.4 * c.powf(5.0), velocity: N * (mach + sign * by), pressure: c.powf(7.0) }
+    }
+
+    #[test]
+    fn sound_leaves_one_way_and_all_leaves_with_a_supersonic_stream() {
+        for mach in [-0.5, 0.0, 0.5] {
+            let (out, back) = (wave(mach, 0.1, 1.0), wave(mach, 0.1, -1.0));
+            assert!(error(mach, &out, &out) < 1e-3, "Mach {mach}");
+            assert!(error(mach, &back, &stream(mach)) < 1e-3);
+        }
+        let swirl = |mach: f64| Primitive { density: 1.5, velocity: N * mach + T * 0.1, pressure: 1.0 };
+        assert!(error(0.5, &swirl(0.5), &swirl(0.5)) < 2e-3 && error(-0.5, &swirl(-0.5), &stream(-0.5)) < 2e-3);
+        for state in [|m| wave(m, 0.1, 1.0), |m| wave(m, 0.1, -1.0), swirl] {
+            assert!(error(2.0, &state(2.0), &state(2.0)) < 1e-3 && error(-2.0, &state(-2.0), &stream(-2.0)) < 1e-3);
+        }
+    }
+
+    #[test]
+    fn nothing_changes_to_the_bit_where_nothing_leaves() {
+        assert!([-2.0, -0.3, 0.0, 0.7].iter().all(|m| error(*m, &stream(*m), &stream(*m)) == 0.0));
+    }
+}
