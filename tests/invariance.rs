@@ -34,7 +34,7 @@ fn rest_residual<const D: usize>() -> f64 {
     let rest = Primitive { density: 1.0, velocity: Vector::ZERO, pressure: 1.0 / fluid.gas.gamma };
     u.chunks_exact_mut(D + 2).for_each(|row| fluid.gas.conserved(&rest).store(row));
     let mut frame = fluid.frame(&Moment::At { time: 0.0 }, &u);
-    frame.outer.fill(rest);
+    frame.outer.fill([rest; 3]);
     let (mut work, mut du) = (fluid.work(), vec![0.0; u.len()]);
     fluid.rhs(&frame, &u, &mut work, &mut du);
     largest(du)

@@ -5,6 +5,7 @@
 //! periodic sides. Only fluid particles evolve; the state of the others follows from theirs.
 pub mod build;
 mod columns;
+mod carry;
 pub mod conservative;
 pub mod doctor;
 pub mod fill;

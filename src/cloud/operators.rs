@@ -67,6 +67,8 @@ pub struct Operators<const D: usize> {
     edges: Vec<Vec<Edge<D>>>,
     /// Condition number of the normal matrix of each row, infinite where the cloud determines no gradient.
     pub condition: Vec<f64>,
+    /// True when what one particle loses another gains.
+    pub conservative: bool,
     walls: Vec<WallFace<D>>,
     wall_first: Vec<u32>,
 }
@@ -96,14 +98,15 @@ impl<const D: usize> Operators<D> {
         let mut edges = vec![Vec::new(); all.len()];
         sweep_each(&mut edges, |k| part_edges(cloud, &inverse, &lookup, &all[k]));
         let wall_first = vec![0; n_fluid_parts + 1];
-        Self { parts: all, n_fluid_parts, edges, condition, walls: Vec::new(), wall_first }
+        Self { parts: all, n_fluid_parts, edges, condition, conservative: false, walls: Vec::new(), wall_first }
     }
 
     /// Fits the weights anew to the positions of `cloud`, whose lists are those of the fit before; volumes stay. The
-    /// coefficients that come out are not conservative.
+    /// coefficients that come out are not conservative unless they are carried along, see [`Operators::carry`].
     pub fn refit(&mut self, cloud: &Cloud<D>) {
         let (inverse, condition) = fit_rows(cloud);
         self.condition = condition;
+        self.conservative = false;
         self.walls.clear();
         self.wall_first.fill(0);
         let lookup = Reverse::new(cloud);
@@ -119,6 +122,14 @@ impl<const D: usize> Operators<D> {
             (e.a_i, e.a_j, e.s) = (turned(&e.a_i), turned(&e.a_j), turned(&e.s));
         }
         self.walls.iter_mut().for_each(|w| w.area = turned(&w.area));
+    }
+
+    /// Area vectors s of all edges: those of `origin`, on the same lists, after `f(i, j, s)`.
+    pub(super) fn carry_edges(&mut self, origin: &Self, f: impl Fn(usize, usize, &Vector<D>) -> Vector<D> + Sync) {
+        let before = &origin.edges;
+        sweep_each_slot(&mut self.edges, |k, edges| {
+            edges.iter_mut().zip(&before[k]).for_each(|(e, o)| e.s = f(o.i(), o.j(), &o.s));
+        });
     }
 
     /// Edges of part `k`.
@@ -143,8 +154,9 @@ impl<const D: usize> Operators<D> {
         &self.walls[self.wall_first[k] as usize..self.wall_first[k + 1] as usize]
     }
 
-    /// Replaces the pieces of wall; they must be sorted by fluid particle.
+    /// Replaces the pieces of wall, sorted by fluid particle, of coefficients that are conservative from now on.
     pub(super) fn set_wall_faces(&mut self, walls: Vec<WallFace<D>>) {
+        self.conservative = true;
         let before = |i: usize| walls.partition_point(|f| (f.i as usize) < i) as u32;
         let ends = self.parts[..self.n_fluid_parts].iter().map(|p| before(p.end));
         self.wall_first = std::iter::once(0).chain(ends).collect();

@@ -89,8 +89,8 @@ mod tests {
     fn sound_leaves_one_way_and_all_leaves_with_a_supersonic_stream() {
         for mach in [-0.5, 0.0, 0.5] {
             let (out, back) = (wave(mach, 0.1, 1.0), wave(mach, 0.1, -1.0));
-            assert!(error(mach, &out, &out) < 1e-3, "Mach {mach}");
-            assert!(error(mach, &back, &stream(mach)) < 1e-3);
+            assert!(error(mach, &out, &out) < 3e-3, "Mach {mach}");
+            assert!(error(mach, &back, &stream(mach)) < 3e-3);
         }
         let swirl = |mach: f64| Primitive { density: 1.5, velocity: N * mach + T * 0.1, pressure: 1.0 };
         assert!(error(0.5, &swirl(0.5), &swirl(0.5)) < 2e-3 && error(-0.5, &swirl(-0.5), &stream(-0.5)) < 2e-3);

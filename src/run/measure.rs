@@ -43,9 +43,9 @@ pub(super) struct Measured {
 pub(super) type Value = Result<f64, String>;
 
 impl Measured {
-    /// The metric of `claim`, that needs one run only (and `other` where the claim names another case).
-    pub(super) fn value(&self, claim: &Claim, folder: &Path, other: Option<&Self>) -> Value {
-        let s = &self.summary;
+    /// The metric of `claim`, that needs one run only (and `others` where the claim names other cases).
+    pub(super) fn value(&self, claim: &Claim, folder: &Path, others: &[&Self]) -> Value {
+        let (s, other) = (&self.summary, others.first().copied());
         match claim.metric {
             Metric::Cl | Metric::ExtrapolatedCl => Ok(s.loads.cl),
             Metric::Cd | Metric::ExtrapolatedCd => Ok(s.loads.cd),
@@ -85,8 +85,11 @@ impl Measured {
             Metric::MeanCl => self.last_period().map(|p| p.mean_cl),
             Metric::PeakCl => self.last_period().map(|p| p.peak_cl),
             Metric::WakeLength => self.wake_length(),
-            Metric::ThinLiftAmplitude => self.thin_lift(other).map(|c| c.norm()),
-            Metric::ThinLiftPhase => self.thin_lift(other).map(|c| c.arg().to_degrees()),
+            Metric::DragSecondHarmonic => Ok(harmonic(&self.loops.cd, 2).norm()),
+            Metric::ThinLiftAmplitude => self.thin(others, Self::lift).map(|c| c.norm()),
+            Metric::ThinLiftPhase => self.thin(others, Self::lift).map(|c| c.arg().to_degrees()),
+            Metric::ThinMomentAmplitude => self.thin(others, Self::moment).map(|c| c.norm()),
+            Metric::ThinMomentPhase => self.thin(others, Self::moment).map(|c| c.arg().to_degrees()),
             Metric::ResidualDrop => Ok(s.residual_drop),
             Metric::Converged => Ok(f64::from(u8::from(s.converged))),
             Metric::Particles => Ok(s.particles as f64),
@@ -121,6 +124,11 @@ impl Measured {
         self.first_harmonic(|h| h.cd)
     }
 
+    /// First harmonic of the moment over that of the motion.
+    fn moment(&self) -> Result<Complex64, String> {
+        self.first_harmonic(|h| h.cm)
+    }
+
     fn first_harmonic(&self, load: impl Fn(&FirstHarmonics) -> [f64; 2]) -> Result<Complex64, String> {
         let first = self.summary.first_harmonics.first();
         let [re, im] = first.map(load).ok_or("no motion repeats in this case")?;
@@ -131,9 +139,7 @@ impl Measured {
     fn lift_mean_error(&self, other: &Self) -> Value {
         let mean = |v: &[f64]| v.iter().sum::<f64>() / v.len().max(1) as f64;
         let (own, far) = (&self.loops.cl, &other.loops.cl);
-        let turn = |k: usize| Complex64::cis(-std::f64::consts::TAU * k as f64 / far.len().max(1) as f64);
-        let first: Complex64 = far.iter().enumerate().map(|(k, v)| turn(k) * *v).sum();
-        let first = 2.0 * first.norm() / far.len().max(1) as f64;
+        let first = harmonic(far, 1).norm();
         if own.is_empty() || first == 0.0 {
             return Err("a run has no whole period of a motion that repeats".into());
         }
@@ -199,24 +205,42 @@ impl Measured {
         Ok(end / self.chord())
     }
 
-    /// The same on a section of no thickness, along the line through this one and another.
-    fn thin_lift(&self, other: Option<&Self>) -> Result<Complex64, String> {
-        let other = other.ok_or("the claim names no `other` section")?;
-        let (own, far) = (self.thickness()?, other.thickness()?);
-        if own == far {
-            return Err("both sections are equally thick".into());
+    /// A load on a section of no thickness, by the polynomial through this one and the others.
+    fn thin(&self, others: &[&Self], load: impl Fn(&Self) -> Result<Complex64, String>) -> Result<Complex64, String> {
+        if others.is_empty() {
+            return Err("the claim names no `other` section".into());
         }
-        let slope = (other.lift()? - self.lift()?) / (far - own);
-        Ok(self.lift()? - slope * own)
+        let sections: Vec<&Self> = std::iter::once(self).chain(others.iter().copied()).collect();
+        let thickness = sections.iter().map(|s| s.thickness()).collect::<Result<Vec<_>, _>>()?;
+        let mut value = Complex64::ZERO;
+        for (k, section) in sections.iter().enumerate() {
+            let rest = thickness.iter().enumerate().filter(|(j, _)| *j != k);
+            let weight: f64 = rest.map(|(_, t)| t / (t - thickness[k])).product();
+            if !weight.is_finite() {
+                return Err("two sections are equally thick".into());
+            }
+            value += load(section)? * weight;
+        }
+        Ok(value)
     }
 
-    /// Thickness of the NACA section in parts of the chord.
+    /// Thickness of the section in parts of the chord.
     fn thickness(&self) -> Result<f64, String> {
-        let digits = self.case.bodies.first().and_then(|b| match &b.shape {
-            Shape::Naca(naca) => naca.digits.get(2..4)?.parse::<f64>().ok(),
-            _ => None,
-        });
-        digits.map(|d| 0.01 * d).ok_or_else(|| "the body is no NACA 4-digit section".into())
+        let unknown = || "the body is neither a NACA 4-digit section nor a polygon".to_owned();
+        match &self.case.bodies.first().ok_or_else(unknown)?.shape {
+            Shape::Naca(naca) => {
+                let digits = naca.digits.get(2..4).and_then(|d| d.parse::<f64>().ok());
+                digits.map(|d| 0.01 * d).ok_or_else(unknown)
+            }
+            Shape::Polygon(points) => {
+                let extent = |d: usize| {
+                    let all = points.iter().map(|p| p[d]);
+                    all.clone().fold(f64::MIN, f64::max) - all.fold(f64::MAX, f64::min)
+                };
+                Ok(extent(1) / extent(0))
+            }
+            _ => Err(unknown()),
+        }
     }
 
     /// Cp of the wall particles in the region less the reference there.
@@ -399,6 +423,13 @@ impl Measured {
         let found = self.field.columns.iter().find(|(n, ..)| *n == name);
         found.map(|(_, _, values)| values.as_slice()).ok_or_else(|| format!("the solution has no `{name}`"))
     }
+}
+
+/// Harmonic `n` of samples spread evenly over a period.
+fn harmonic(samples: &[f64], n: u32) -> Complex64 {
+    let count = samples.len().max(1) as f64;
+    let turn = |k: usize| Complex64::cis(-std::f64::consts::TAU * f64::from(n) * k as f64 / count);
+    samples.iter().enumerate().map(|(k, v)| turn(k) * *v).sum::<Complex64>() * (2.0 / count)
 }
 
 fn no_other() -> String {

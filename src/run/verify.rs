@@ -142,19 +142,17 @@ impl Walk {
 
     fn measure(&mut self, claim: &Claim, folder: &Folder, monitor: &mut dyn Monitor) -> Value {
         if !claim.metric.needs_study() {
-            let other = match &claim.other {
-                Some(name) => Some(self.other(name, folder, monitor)?),
-                None => None,
-            };
+            let names = claim.other.iter().chain(&claim.third);
+            let others = names.map(|name| self.other(name, folder, monitor)).collect::<Result<Vec<_>, _>>()?;
             let key = self.ensure(folder, &folder.case, monitor);
-            let other = other.and_then(|key| self.runs.get(&key)?.as_ref().ok());
-            return self.at(&key)?.value(claim, &folder.path, other);
+            let others: Vec<_> = others.iter().filter_map(|key| self.runs.get(key)?.as_ref().ok()).collect();
+            return self.at(&key)?.value(claim, &folder.path, &others);
         }
         let Some(study) = &folder.claims.study else { return Err("there is no `[study]`".into()) };
         let mut values = Vec::new();
         for &spacing in &study.spacings {
             let key = self.ensure(folder, &respaced(&folder.case, spacing, study), monitor);
-            values.push(self.at(&key)?.value(claim, &folder.path, None)?);
+            values.push(self.at(&key)?.value(claim, &folder.path, &[])?);
         }
         let found = match claim.metric {
             Metric::Order | Metric::CpRmsOrder => metrics::observed_order(&study.spacings, &values),

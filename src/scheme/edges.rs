@@ -163,7 +163,7 @@ fn gather<const D: usize, F, L>(rule: &Rule<F, L>, p: &Particles<'_, D>, edges: 
                 let g = p.gradient[i].along(&d);
                 batch.slope[side].put(k, g.density, &g.velocity, g.pressure);
             }
-            if !rule.conservative {
+            if !rule.conservative || !p.velocity.is_empty() {
                 put(&mut batch.weight[side], k, &(*weights[side] * -p.volume[i]));
             }
             if !p.velocity.is_empty() {
@@ -235,26 +235,32 @@ fn balance<const D: usize, const MOVES: bool, const CONSERVATIVE: bool>(gas: Gas
         let (m, size) = normal(&s);
         let (wi, wj) = (take(&speed[0], k), take(&speed[1], k));
         let (w, upwind) = ((wi + wj) * 0.5, upwind.conserved(k));
+        let (a_i, a_j) = (take(&weight[0], k), take(&weight[1], k));
         let past = |q: &Primitive<D>, n: &Vector<D>, w: &Vector<D>| match MOVES {
             true => gas.flux(q, n).plus(-w.dot(n), &gas.conserved(q)),
             false => gas.flux(q, n),
         };
         let (i, j) = if CONSERVATIVE {
             let through = upwind.times(size);
-            let (mut seen_i, mut seen_j) = (through, through);
+            let (out_i, out_j) = (gas.flux(&qi, &s), gas.flux(&qj, &s));
             if MOVES {
                 let mean = gas.conserved(&l).plus(1.0, &gas.conserved(&r)).times(0.5);
-                seen_i = through.plus((w - wi).dot(&s), &mean);
-                seen_j = through.plus((w - wj).dot(&s), &mean);
+                let through = through.plus(w.dot(&s), &mean);
+                // w·∇U, by the weights that are exact for linear fields; they come as −V a
+                let swept = |own: &Primitive<D>, a: &Vector<D>, w: &Vector<D>| {
+                    mean.plus(-1.0, &gas.conserved(own)).times(-2.0 * w.dot(a))
+                };
+                let (swept_i, swept_j) = (swept(&qi, &a_i, &wi), swept(&qj, &a_j, &wj));
+                (out_i.plus(-1.0, &through).plus(1.0, &swept_i), through.plus(-1.0, &out_j).plus(1.0, &swept_j))
+            } else {
+                (out_i.plus(-1.0, &through), through.plus(-1.0, &out_j))
             }
-            (past(&qi, &s, &wi).plus(-1.0, &seen_i), seen_j.plus(-1.0, &past(&qj, &s, &wj)))
         } else {
             let mean = past(&l, &m, &w).plus(1.0, &past(&r, &m, &w));
             let spread = upwind.plus(-0.5, &mean).times(size);
             let central = |a: &Vector<D>, own: &Primitive<D>, w: &Vector<D>| {
                 past(&l, a, w).plus(1.0, &past(&r, a, w)).plus(-2.0, &past(own, a, w))
             };
-            let (a_i, a_j) = (take(&weight[0], k), take(&weight[1], k));
             (central(&a_i, &qi, &wi).plus(-1.0, &spread), central(&a_j, &qj, &wj).plus(1.0, &spread))
         };
         out_i.put(k, i.density, &i.momentum, i.energy);

@@ -10,9 +10,12 @@
 //! coefficients c_ij = s_ij/V_i, and what one particle loses another gains to round-off; only pressure then acts on the
 //! pieces of wall that bound a particle.
 //!
-//! On particles that move with w_i, F is the flux through a surface that moves along, F_w(q)·n = F(q)·n − (w·n) U, always
-//! with the velocity of the particle whose equation it is: with the least-squares coefficients this is w_i·∇U exactly, so
-//! that uniform flow and linear fields at rest stay what they are. The dissipation of an edge uses the mean of both ends.
+//! On particles that move with w_i the term w_i·∇U is added, always with the velocity of the particle whose equation it is and
+//! with the least-squares coefficients, so that uniform flow and linear fields at rest stay what they are; conservative coefficients
+//! then serve the fluxes alone, and follow the cloud as it deforms ([`Operators::carry`]). The dissipation of an edge is that of an
+//! area that moves with the mean velocity of its ends.
+//!
+//! [`Operators::carry`]: crate::cloud::Operators::carry
 use std::sync::Arc;
 
 use crate::case::{Flux, Limiter, Side};
@@ -278,24 +281,15 @@ impl<const D: usize> Fluid<D> {
     ) {
         for face in faces {
             let (i, wall) = (face.i as usize, &work.state[face.wall as usize]);
-            let (own, moved) = (frame.velocity_of(i), frame.velocity_of(face.wall as usize));
+            let moved = frame.velocity_of(face.wall as usize);
             let push = face.area * wall.pressure;
             let pressed = Conserved { density: 0.0, momentum: push, energy: push.dot(&moved) };
             let through = match frame.moves() {
-                true => pressed.plus((moved - own).dot(&face.area), &self.gas.conserved(wall)),
+                true => pressed.plus(moved.dot(&face.area), &self.gas.conserved(wall)),
                 false => pressed,
             };
-            let own = self.flux_past(&work.state[i], &face.area, &own);
-            add(i, own.plus(-1.0, &through));
+            add(i, self.gas.flux(&work.state[i], &face.area).plus(-1.0, &through));
         }
-    }
-
-    /// F_w(q)·n = F(q)·n − (w·n) U(q): flux through an area that moves with `w`.
-    #[inline(always)]
-    fn flux_past(&self, q: &Primitive<D>, n: &Vector<D>, w: &Vector<D>) -> Conserved<D> {
-        let still = self.gas.flux(q, n);
-        let passed = w.dot(n);
-        if passed == 0.0 { still } else { still.plus(-passed, &self.gas.conserved(q)) }
     }
 
     /// Force of the pressure on all bodies in the axes of the case, from the wall states in `work`.

@@ -82,9 +82,10 @@ pub fn dissipation_matrix<const D: usize>(gas: &Gas, q: &Primitive<D>, n: &Vecto
 /// Fills `matrix` from the states in `work`.
 pub fn assemble<const D: usize>(fluid: &Fluid<D>, frame: &Frame<D>, work: &Work<D>, matrix: &mut BlockMatrix) {
     let (op, cloud) = (&frame.shape.operators, &frame.shape.cloud);
-    let past = |q: usize, a: &Vector<D>, w: &Vector<D>| {
-        let mut m = flux_jacobian(&fluid.gas, &work.state[q], a);
-        (0..D + 2).for_each(|k| m[k][k] -= w.dot(a));
+    // F(q)·s and the motion of the particle, whose coefficients differ when those of the fluxes are conservative
+    let past = |q: usize, s: &Vector<D>, swept: f64| {
+        let mut m = flux_jacobian(&fluid.gas, &work.state[q], s);
+        (0..D + 2).for_each(|k| m[k][k] -= swept);
         m
     };
     matrix.assemble(|k, rows| {
@@ -93,7 +94,7 @@ pub fn assemble<const D: usize>(fluid: &Fluid<D>, frame: &Frame<D>, work: &Work<
                 let i = face.i as usize;
                 let half = half_face(cloud.volume[i], &face.area);
                 let mut push = wall_jacobian(&fluid.gas, &work.state[i], &half);
-                (0..D + 2).for_each(|k| push[k][k] += frame.velocity_of(i).dot(&half));
+                (0..D + 2).for_each(|k| push[k][k] += frame.velocity_of(face.wall as usize).dot(&half));
                 add(rows, frame, (i, i), |r, c| 2.0 * push[r][c]);
             }
         }
@@ -106,17 +107,17 @@ pub fn assemble<const D: usize>(fluid: &Fluid<D>, frame: &Frame<D>, work: &Work<
             let drift = 0.5 * (frame.velocity_of(i) + frame.velocity_of(j)).dot(&m);
             let spread = dissipation_matrix(&fluid.gas, &mean, &m, drift);
             let one_sided = [(i, j, edge.a_i), (j, i, edge.a_j)];
-            for (row, column, a) in one_sided.into_iter().take(if edge.both() { 2 } else { 1 }) {
+            for (row, column, weight) in one_sided.into_iter().take(if edge.both() { 2 } else { 1 }) {
                 let scale = 0.5 * size / cloud.volume[row];
                 let a = match fluid.conservative {
                     true if row == i => half_face(cloud.volume[row], &edge.s),
                     true => -half_face(cloud.volume[row], &edge.s),
-                    false => a,
+                    false => weight,
                 };
-                let w = frame.velocity_of(row);
-                let own = past(row, &a, &w);
+                let swept = frame.velocity_of(row).dot(&weight);
+                let own = past(row, &a, swept);
                 add(rows, frame, (row, row), |r, c| scale * spread[r][c] - own[r][c]);
-                let other = past(column, &a, &w);
+                let other = past(column, &a, swept);
                 let coupling = |r: usize, c: usize| other[r][c] - scale * spread[r][c];
                 couple(fluid, rows, (frame, work), (row, column), coupling);
             }

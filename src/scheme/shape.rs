@@ -138,6 +138,10 @@ impl<const D: usize> Carriage<D> {
             Self::Along { path, laws } => {
                 place_along(path.as_ref(), origin, moment, frame);
                 turn_walls(laws, origin, moment.time(), frame);
+                if origin.operators.conservative {
+                    let Shape { cloud, operators, .. } = Arc::make_mut(&mut frame.shape);
+                    operators.carry(cloud, &origin.operators, &origin.cloud);
+                }
             }
             Self::Travel(travel) => travel.place(origin, moment, frame),
         }

@@ -71,6 +71,8 @@ pub struct Claim {
     pub case: Option<String>,
     /// Another case folder whose result is the reference, for metrics that compare two runs.
     pub other: Option<String>,
+    /// A third one, for metrics that draw a parabola.
+    pub third: Option<String>,
     /// Box of samples or wall particles the metric is restricted to: corners of smallest and largest coordinates.
     pub region: Option<[Vec<f64>; 2]>,
     /// Two pressures (over the free stream's) on either side of a wave or front.
@@ -197,10 +199,17 @@ metrics! {
     DragAmplitude = "drag_amplitude",
     /// Phase in degrees by which that harmonic leads the motion.
     DragPhase = "drag_phase",
-    /// `lift_amplitude` extrapolated along a line to a section of no thickness, from this one and that of the case `other`.
+    /// Amplitude of the second harmonic of the drag.
+    DragSecondHarmonic = "drag_second_harmonic",
+    /// `lift_amplitude` extrapolated to a section of no thickness: along a line through this one and that of the case `other`, with
+    /// a `third` along a parabola.
     ThinLiftAmplitude = "thin_lift_amplitude",
     /// `lift_phase` of the same.
     ThinLiftPhase = "thin_lift_phase",
+    /// The same of the moment about the reference point, nose up positive.
+    ThinMomentAmplitude = "thin_moment_amplitude",
+    /// Phase in degrees by which that harmonic leads the motion.
+    ThinMomentPhase = "thin_moment_phase",
     /// Root mean square difference of the lift over the last period to that of the case `other`, over half the range of that
     /// one; with `file`, the greatest difference to its column `CL` at the phases of its column `phase`, in parts of a period.
     LiftLoopDifference = "lift_loop_difference",
@@ -392,7 +401,7 @@ mod tests {
                     let upper = table.only("surface", "upper");
                     assert!(columns.iter().all(|c| upper.column(c).is_ok()) && upper.len() > 1, "{folder:?} {curve}");
                 }
-                if let Some(other) = &claim.other {
+                for other in claim.other.iter().chain(&claim.third) {
                     let there = folder.join(other).is_file() || folder.with_file_name(other).is_dir();
                     assert!(there, "{folder:?} {other}");
                 }

@@ -29,7 +29,8 @@ pub(super) fn parse_claim(table: &Table, number: usize, problems: &mut Vec<Strin
         keys.problem("has no `source`\nhint: name author, year and place of the reference");
     }
     let label = keys.string("label");
-    let (file, other, case) = (keys.string("file"), keys.string("other"), keys.string("case"));
+    let (file, other, third) = (keys.string("file"), keys.string("other"), keys.string("third"));
+    let case = keys.string("case");
     let exact = parse_exact(&mut keys);
     let region = parse_region(&mut keys);
     let levels = keys.numbers("levels").and_then(|v| <[f64; 2]>::try_from(v).ok());
@@ -40,7 +41,7 @@ pub(super) fn parse_claim(table: &Table, number: usize, problems: &mut Vec<Strin
     if problems.len() > before {
         return None;
     }
-    Some(Claim { metric: metric?, kind: kind?, source: source?, label, file, exact, case, other, region, levels })
+    Some(Claim { metric: metric?, kind: kind?, source: source?, label, file, exact, case, other, third, region, levels })
 }
 
 fn parse_metric(keys: &mut Keys<'_, '_>) -> Option<Metric> {

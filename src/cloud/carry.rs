@@ -1,0 +1,152 @@
+//! Conservative coefficients carried along by a cloud that deforms.
+//!
+//! A displacement with the gradient F takes an area vector to cof(F) s and a volume to det(F) V (Nanson's formula; Ogden,
+//! Non-Linear Elastic Deformations, 1984, section 2.2). With F fitted at every particle and its mean over the ends of an edge, what
+//! one particle loses another still gains to round-off; areas close as they did under affine motion, and to second order under any
+//! other, because cof(F) has no divergence (Piola's identity).
+use super::Cloud;
+use super::operators::Operators;
+use crate::math::Vector;
+use crate::math::sweep::{sweep, sweep_parts};
+
+/// Rows of a matrix.
+type Matrix<const D: usize> = [Vector<D>; D];
+
+/// cof(F) v.
+fn cofactor_times<const D: usize>(f: &Matrix<D>, v: &Vector<D>) -> Vector<D> {
+    let at = |r: usize, c: usize| f[r % D][c % D];
+    Vector::from_fn(|r| {
+        let entry = |c: usize| match D {
+            2 => if (r + c).is_multiple_of(2) { at(r + 1, c + 1) } else { -at(r + 1, c + 1) },
+            _ => at(r + 1, c + 1) * at(r + 2, c + 2) - at(r + 1, c + 2) * at(r + 2, c + 1),
+        };
+        (0..D).map(|c| entry(c) * v[c]).sum()
+    })
+}
+
+/// det(F).
+fn determinant<const D: usize>(f: &Matrix<D>) -> f64 {
+    let first = Vector::from_fn(|r| f[r][0]);
+    first.dot(&cofactor_times(f, &Vector::axis(0)))
+}
+
+impl<const D: usize> Operators<D> {
+    /// Takes area vectors, pieces of wall and volumes from those of `origin`, a conservative fit of the cloud `from` that has moved
+    /// to where `cloud` is.
+    pub fn carry(&mut self, cloud: &mut Cloud<D>, origin: &Self, from: &Cloud<D>) {
+        let gradients = origin.displacement_gradients(cloud, from);
+        let at = |i: usize| seen(cloud, &gradients, i);
+        let between = |i: usize, j: usize| match at(j) {
+            Some(other) => std::array::from_fn(|r| (gradients[i][r] + other[r]) * 0.5),
+            None => gradients[i],
+        };
+        self.carry_edges(origin, |i, j, s| if i < from.n_fluid { cofactor_times(&between(i, j), s) } else { *s });
+        let faces = (0..origin.n_fluid_parts).flat_map(|k| origin.wall_faces(k));
+        let turned = |f: &super::operators::WallFace<D>| cofactor_times(&between(f.i as usize, f.wall as usize), &f.area);
+        self.set_wall_faces(faces.map(|f| super::operators::WallFace { area: turned(f), ..*f }).collect());
+        let (volume, images) = cloud.volume.split_at_mut(cloud.x.len() - cloud.images.len());
+        sweep(&mut volume[..from.n_fluid], |i| from.volume[i] * determinant(&gradients[i]));
+        for (slot, image) in images.iter_mut().zip(&cloud.images) {
+            *slot = volume[image.source as usize];
+        }
+    }
+
+    /// F = 1 + ∂(x − X)/∂X of every row, with the weights of this fit of the cloud `from` at X.
+    fn displacement_gradients(&self, cloud: &Cloud<D>, from: &Cloud<D>) -> Vec<Matrix<D>> {
+        let mut all = vec![[Vector::ZERO; D]; from.n_rows()];
+        let moved = |i: usize| cloud.x[i] - from.x[i];
+        sweep_parts(&self.parts, 1, &mut all, &|k, out| {
+            let start = self.parts[k].start;
+            out.fill(std::array::from_fn(Vector::axis));
+            for e in self.edges(k) {
+                let d = moved(e.j()) - moved(e.i());
+                (0..D).for_each(|r| out[e.i() - start][r] += e.a_i * d[r]);
+                if e.both() {
+                    (0..D).for_each(|r| out[e.j() - start][r] += e.a_j * -d[r]);
+                }
+            }
+        });
+        // a row that determines no gradient moves like the first neighbour that does
+        let bounded = |i: usize| from.first_order.binary_search(&(i as u32)).is_ok();
+        for i in from.first_order.iter().map(|i| *i as usize) {
+            let whole = |j: &&u32| (**j as usize) < from.n_rows() && !bounded(**j as usize);
+            if let Some(j) = from.neighbours.of(i).iter().find(whole) {
+                all[i] = all[*j as usize];
+            }
+        }
+        all
+    }
+}
+
+/// F of a particle with a row, or of the image of one.
+fn seen<const D: usize>(cloud: &Cloud<D>, gradients: &[Matrix<D>], i: usize) -> Option<Matrix<D>> {
+    if i < gradients.len() {
+        return Some(gradients[i]);
+    }
+    let image = cloud.images.get(i.checked_sub(cloud.n_real())?)?;
+    let sign = cloud.transforms[image.transform as usize].sign;
+    let f = gradients.get(image.source as usize)?;
+    Some(std::array::from_fn(|r| Vector::from_fn(|c| sign[r] * sign[c] * f[r][c])))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::cloud::conservative::conservative;
+
+    fn matrix3() -> Matrix<3> {
+        [Vector([1.1, 0.2, -0.3]), Vector([0.4, 0.9, 0.1]), Vector([-0.2, 0.3, 1.2])]
+    }
+
+    #[test]
+    fn a_cofactor_times_the_transpose_is_the_determinant() {
+        let (f, g) = (matrix3(), [Vector([1.1, 0.2]), Vector([-0.4, 0.9])]);
+        for k in 0..3 {
+            // F^T cof(F) = det(F) 1
+            let column = cofactor_times(&f, &Vector::axis(k));
+            let back: Vector<3> = Vector::from_fn(|c| (0..3).map(|r| f[r][c] * column[r]).sum());
+            assert!((back - Vector::axis(k) * determinant(&f)).norm() < 1e-14);
+        }
+        assert!((determinant(&f) - (1.1 * 1.05 - 0.2 * 0.5 - 0.3 * 0.3)).abs() < 1e-14);
+        assert!((determinant(&g) - 1.07).abs() < 1e-14);
+    }
+
+    /// Greatest sum of area vectors around a particle, over the sum of their sizes, after the motion `to`.
+    fn open(to: impl Fn(&Vector<2>) -> Vector<2>) -> (f64, f64) {
+        let text = "title = \"x\"\ndimension = 2\n[flow]\nmach = 0.5\n[[body]]\ncircle = { radius = 0.3 }\n[cloud]\nspacing = 0.0625\n\
+                    jitter = 0.2\ndomain = { min = [-1.0, -1.0], max = [1.0, 1.0] }\n";
+        let case = crate::case::read(text, "test").unwrap();
+        let surface = crate::geometry::load_surface::<2>(&case, std::path::Path::new(".")).unwrap().0;
+        let mut from = Cloud::build(&case, Some(&surface), &[]).unwrap();
+        let mut origin = Operators::new(&from);
+        conservative(&mut from, &mut origin);
+        let (mut cloud, mut moved) = (from.clone(), origin.clone());
+        cloud.x.iter_mut().for_each(|x| *x = to(x));
+        moved.refit(&cloud);
+        moved.carry(&mut cloud, &origin, &from);
+        let mut sums = vec![(Vector::<2>::ZERO, 0.0); cloud.len()];
+        let mut put = |i: usize, s: Vector<2>| sums[i] = (sums[i].0 + s, sums[i].1 + s.norm());
+        for k in 0..moved.n_fluid_parts {
+            for e in moved.edges(k) {
+                put(e.i(), e.s);
+                if e.both() {
+                    put(e.j(), -e.s);
+                }
+            }
+            moved.wall_faces(k).iter().for_each(|f| put(f.i as usize, f.area));
+        }
+        // edges between parts are visited from both sides; outer sides have no faces of their own
+        let inside = |i: &usize| cloud.x[*i].max_abs() < 0.85;
+        let worst = (0..cloud.n_fluid).filter(inside).map(|i| sums[i].0.norm() / sums[i].1).fold(0.0, f64::max);
+        let total = (0..cloud.n_fluid).map(|i| cloud.volume[i]).sum::<f64>();
+        (worst, total / from.volume[..from.n_fluid].iter().sum::<f64>())
+    }
+
+    #[test]
+    fn areas_stay_closed_under_affine_motion_and_nearly_so_under_any_other() {
+        let (worst, grown) = open(|x| Vector([1.2 * x[0] + 0.3 * x[1], -0.4 * x[0] + 0.9 * x[1] + 2.0]));
+        assert!(worst < 1e-13 && (grown - 1.2).abs() < 1e-13, "{worst} {grown}");
+        let (worst, _) = open(|x| *x + Vector([0.03 * (3.0 * x[1]).sin(), 0.05 * (2.0 * x[0]).cos()]));
+        assert!(worst < 2e-3, "{worst}");
+    }
+}
