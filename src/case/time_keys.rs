@@ -144,7 +144,8 @@ static DUAL: Table = Table::of(&[
         "orders",
         ORDERS,
         Absent::Number(2.0),
-        "Orders of magnitude the residual must fall within a step.",
+        "Orders of magnitude the residual must fall within a step: below the size of the change in time, or one order less \
+         below that of a state guessed through the last three.",
     ),
     Field::defaulted("inner_iterations", COUNT, Absent::Integer(50), "Greatest number of iterations within a step."),
     Field::optional(

@@ -40,13 +40,14 @@ impl Gmres {
         self.z.len() * (4 * self.basis.len() + 8 * 2)
     }
 
-    /// Solves A x = b from x = 0 until the residual has fallen to `tolerance` or the basis is full.
+    /// Solves A x = b from x = 0 until the residual has fallen to `tolerance`, after `most` iterations, or when the basis is
+    /// full.
     ///
     /// `product(v, out)` is A v; `precondition(v, out)` ≈ A⁻¹ v.
     pub fn solve(
         &mut self,
         (b, x): (&[f64], &mut [f64]),
-        tolerance: f64,
+        (tolerance, most): (f64, usize),
         mut product: impl FnMut(&[f64], &mut [f64]),
         mut precondition: impl FnMut(&[f32], &mut [f64]),
     ) -> Solved {
@@ -61,7 +62,7 @@ impl Gmres {
         let mut rotations: Vec<(f64, f64)> = Vec::with_capacity(size);
         g[0] = start;
         let mut used = 0;
-        for k in 0..size {
+        for k in 0..size.min(most.max(1)) {
             precondition(&self.basis[k], &mut self.z);
             product(&self.z, &mut self.w);
             self.orthogonalise(k);

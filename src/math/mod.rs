@@ -3,6 +3,7 @@ pub mod block_matrix;
 pub mod circulant;
 pub mod fourier;
 pub mod hilbert;
+pub mod incomplete;
 pub mod jet;
 pub mod krylov;
 pub mod least_squares;

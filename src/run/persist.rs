@@ -48,6 +48,8 @@ struct Meta {
     #[serde(default)]
     steps: [u64; 3],
     #[serde(default)]
+    broad: bool,
+    #[serde(default)]
     roaming: Option<Counts>,
 }
 
@@ -210,6 +212,7 @@ impl Saved {
             cycles: self.cycles,
             cpu_seconds: self.cpu_seconds,
             wall_seconds: self.wall_seconds,
+            broad: self.past.broad,
             steps: [self.past.last.to_bits(), self.past.next.to_bits(), u64::from(self.past.unconverged)],
             roaming: self.roaming.as_ref().map(Roaming::counts),
         };
@@ -220,6 +223,7 @@ impl Saved {
             field("state", self.state),
             field("scale", self.relax.scale),
             field("before", self.past.before),
+            field("older", self.past.older),
             field("sources", self.sources),
         ];
         if let Some(roaming) = self.roaming {
@@ -272,6 +276,8 @@ impl Saved {
                 last: f64::from_bits(m.steps[0]),
                 next: f64::from_bits(m.steps[1]),
                 before: file.f64("before")?.to_vec(),
+                older: file.f64("older").map(<[f64]>::to_vec).unwrap_or_default(),
+                broad: m.broad,
                 unconverged: m.steps[2] as u32,
             },
             sources: file.f64("sources")?.to_vec(),

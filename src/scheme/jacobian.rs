@@ -8,6 +8,7 @@ use super::shape::Frame;
 use super::viscous::Contact;
 use crate::math::Vector;
 use crate::math::block_matrix::{BlockMatrix, Rows};
+use crate::motion::RigidPose;
 use crate::physics::riemann::rounded;
 use crate::physics::{Gas, Primitive};
 
@@ -128,6 +129,9 @@ pub fn assemble<const D: usize>(fluid: &Fluid<D>, frame: &Frame<D>, work: &Work<
         if let Some(friction) = &fluid.friction {
             fluid.add_viscous_blocks(friction, (frame, work), k, rows);
         }
+        if let Some(turn) = frame.turn.as_ref().filter(|_| !rows.is_mean()) {
+            rows.map(|block| turn_block(turn, block));
+        }
     });
 }
 
@@ -162,7 +166,8 @@ pub(super) fn couple<const D: usize>(
     }
 }
 
-/// Adds a block to the matrix, turned into the axes of the case.
+/// Adds a block to the matrix. Turned into the axes of the case is each block where several assemblies are summed, else the
+/// whole part when it is complete.
 #[inline(always)]
 pub(super) fn add<const D: usize>(
     rows: &mut Rows<'_>,
@@ -170,22 +175,24 @@ pub(super) fn add<const D: usize>(
     (row, column): (usize, usize),
     f: impl Fn(usize, usize) -> f64,
 ) {
-    let Some(turn) = &frame.turn else { return rows.add(row, column, f) };
+    let Some(turn) = frame.turn.as_ref().filter(|_| rows.is_mean()) else { return rows.add(row, column, f) };
+    let mut block = [[0.0; 5]; 5];
+    (0..D + 2).for_each(|k| (0..D + 2).for_each(|c| block[k][c] = f(k, c)));
+    turn_block(turn, &mut block);
+    rows.add(row, column, |k, c| block[k][c]);
+}
+
+/// T B Tᵀ, where T turns the momentum.
+fn turn_block<const D: usize>(turn: &RigidPose<D>, block: &mut Block) {
     let r = &turn.rotation;
-    let mut half = [[0.0; 5]; 5];
-    let mut whole = [[0.0; 5]; 5];
-    let momentum = |k: usize| (1..=D).contains(&k);
-    for k in 0..D + 2 {
-        for c in 0..D + 2 {
-            half[k][c] = if momentum(k) { (0..D).map(|d| r[k - 1][d] * f(1 + d, c)).sum() } else { f(k, c) };
-        }
+    for c in 0..D + 2 {
+        let column = Vector::<D>::from_fn(|d| block[1 + d][c]);
+        (0..D).for_each(|d| block[1 + d][c] = r[d].dot(&column));
     }
-    for k in 0..D + 2 {
-        for c in 0..D + 2 {
-            whole[k][c] = if momentum(c) { (0..D).map(|d| half[k][1 + d] * r[c - 1][d]).sum() } else { half[k][c] };
-        }
+    for row in block.iter_mut().take(D + 2) {
+        let along = Vector::<D>::from_fn(|d| row[1 + d]);
+        (0..D).for_each(|d| row[1 + d] = r[d].dot(&along));
     }
-    rows.add(row, column, |k, c| whole[k][c]);
 }
 
 /// −∂/∂U of (0, pressure · n, 0) − F·n, the wall pressure taken to be that of the particle.

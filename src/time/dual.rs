@@ -16,6 +16,10 @@ const SHRINK: f64 = 0.3;
 const SAFETY: f64 = 0.9;
 /// Residual over its start above which a step that ran out of iterations is refused.
 const HOPELESS: f64 = 1.0;
+/// Bend of the last three states over their slope above which the next one is not guessed from a parabola: after a jerk.
+const STRAIGHT: f64 = 0.5;
+/// Steps after which linear systems that needed the levels are tried without them again.
+const TRY_AGAIN: u32 = 16;
 
 /// How to march.
 #[derive(Clone, Copy, Debug)]
@@ -87,7 +91,7 @@ impl<S: System> March<S> for Dual<'_, S> {
     }
 
     fn bytes(&self) -> usize {
-        self.relax.bytes() + 8 * 3 * self.start.len()
+        self.relax.bytes() + 8 * (2 * self.start.len() + self.past.before.len() + self.past.older.len())
     }
 
     fn advance(&mut self) -> Result<Step, TimeError> {
@@ -111,8 +115,7 @@ impl<S: System> March<S> for Dual<'_, S> {
         self.past.time = if near { self.plan.until } else { end };
         self.past.last = dt;
         self.past.iteration += 1;
-        std::mem::swap(&mut self.past.before, &mut self.start);
-        self.start.resize(self.relax.u.len(), 0.0);
+        self.remember();
         Ok(Step {
             iteration: self.past.iteration,
             time: self.past.time,
@@ -124,6 +127,17 @@ impl<S: System> March<S> for Dual<'_, S> {
 }
 
 impl<S: System> Dual<'_, S> {
+    /// Keeps what the next steps go on from.
+    fn remember(&mut self) {
+        let past = &mut self.past;
+        past.broad = self.relax.broad && !past.iteration.is_multiple_of(TRY_AGAIN);
+        if self.plan.adaptive.is_none() {
+            std::mem::swap(&mut past.older, &mut past.before);
+        }
+        std::mem::swap(&mut past.before, &mut self.start);
+        self.start.resize(self.relax.u.len(), 0.0);
+    }
+
     fn second_order(&self) -> bool {
         self.plan.order == 2 && !self.past.before.is_empty()
     }
@@ -157,24 +171,22 @@ impl<S: System> Dual<'_, S> {
         let mut rest = vec![0.0; start.len()];
         let old = |k: usize| formula.get(2).map_or(0.0, |c| c.0 * before[k]);
         sweep(&mut rest, |k| formula[1].0 * start[k] + old(k));
-        let ratio = dt / self.past.last;
-        let guess: Option<Vec<f64>> = self.second_order().then(|| {
-            let mut guess = vec![0.0; start.len()];
-            sweep(&mut guess, |k| start[k] + ratio * (start[k] - before[k]));
-            guess
-        });
-        if let Some(guess) = guess.as_ref().filter(|g| self.relax.is_sound(g)) {
-            self.relax.u.copy_from_slice(guess);
-        }
+        let linear = self.line(dt);
+        let smooth = self.begin_with(linear.as_deref(), dt);
         let moment = Moment::By { time: self.past.time + dt, rate: &formula };
+        self.relax.broad = self.past.broad;
         self.relax.begin_step(&moment, TimeTerm { rate: formula[0].0, rest });
+        let orders = self.plan.orders;
+        // of a guess through three states the residual is 9/2 times the truncation error of the difference formula
+        let guessed = if smooth { 10f64.powf(1.0 - orders) * self.relax.drop() } else { 0.0 };
+        self.relax.goal = 10f64.powf(-orders).max(guessed);
         if let Some(fault) = self.relax.misplaced() {
             self.relax.u.copy_from_slice(&self.start);
             return Err(TimeError::Fault { fault, iteration: self.past.iteration + 1, hint: CROWDED });
         }
         self.solve()?;
         // the predictor is of the same order with another constant: 1/3 of the difference for equal steps
-        let error = guess.map_or(0.0, |g| {
+        let error = linear.map_or(0.0, |g| {
             let u = &self.relax.u;
             let (change, size) = (sum(u.len(), |k| (u[k] - g[k]).powi(2)), sum(u.len(), |k| u[k] * u[k]));
             (change / size).sqrt() / 3.0
@@ -182,10 +194,43 @@ impl<S: System> Dual<'_, S> {
         Ok(error)
     }
 
+    /// The states of the last two steps, continued along a line.
+    fn line(&self, dt: f64) -> Option<Vec<f64>> {
+        let (start, before, ratio) = (&self.start, &self.past.before, dt / self.past.last);
+        self.second_order().then(|| {
+            let mut guess = vec![0.0; start.len()];
+            sweep(&mut guess, |k| start[k] + ratio * (start[k] - before[k]));
+            guess
+        })
+    }
+
+    /// Starts from the parabola through the last three states where it serves, or from the line through two, or from where
+    /// the state is; true for the parabola.
+    fn begin_with(&mut self, line: Option<&[f64]>, dt: f64) -> bool {
+        let Some(line) = line else { return false };
+        let (start, before, older) = (&self.start, &self.past.before, &self.past.older);
+        let even = (dt - self.past.last).abs() < 1e-9 * dt;
+        if even && older.len() == start.len() {
+            let bend = |k: usize| start[k] - 2.0 * before[k] + older[k];
+            let [slopes, bends] =
+                [sum(start.len(), |k| (start[k] - before[k]).powi(2)), sum(start.len(), |k| bend(k).powi(2))];
+            if bends < STRAIGHT * STRAIGHT * slopes {
+                sweep(&mut self.relax.u, |k| line[k] + bend(k));
+                if self.relax.is_sound(&self.relax.u) {
+                    return true;
+                }
+                self.relax.u.copy_from_slice(start);
+            }
+        }
+        if self.relax.is_sound(line) {
+            self.relax.u.copy_from_slice(line);
+        }
+        false
+    }
+
     fn solve(&mut self) -> Result<(), TimeError> {
-        let goal = 10f64.powf(-self.plan.orders);
         self.inner = 0;
-        while self.relax.drop() > goal && !self.relax.settled() {
+        while self.relax.drop() > self.relax.goal && !self.relax.settled() {
             if self.inner >= self.plan.iterations {
                 self.past.unconverged += 1;
                 break;

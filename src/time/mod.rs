@@ -34,6 +34,10 @@ pub struct Past {
     pub next: f64,
     /// State one step ago; empty at the start, and for methods that need none.
     pub before: Vec<f64>,
+    /// State two steps ago, where all steps are of one length; else empty.
+    pub older: Vec<f64>,
+    /// The linear systems of the last steps needed the levels.
+    pub broad: bool,
     /// Steps that did not reach their goal.
     pub unconverged: u32,
 }

@@ -7,6 +7,7 @@
 //! solve replaced by the sweeps alone is the LU-SGS method; with neither it is explicit Runge-Kutta with local steps.
 use super::{Step, TimeError};
 use crate::math::block_matrix::BlockMatrix;
+use crate::math::incomplete::Incomplete;
 use crate::math::krylov::Gmres;
 use crate::math::multilevel::{Cycle, Multilevel};
 use crate::math::sweep::sum;
@@ -74,7 +75,14 @@ const EXPLICIT_CFL: f64 = 1.5;
 const ROUND_OFF: f64 = 1e-15;
 /// Courant number of Newton's method at the start of a step in time over that of a steady flow: the guess is good, and the
 /// term of time is a pseudo time of its own.
-const STEP_CFL: f64 = 10.0;
+const STEP_CFL: f64 = 100.0;
+/// Part of the fall that a step in time still needs which its next linear solve is asked for.
+const SHARE: f64 = 0.6;
+/// Smallest and largest reduction asked of those solves: beyond the first, what Newton's method leaves is larger.
+const REDUCTION: [f64; 2] = [0.04, 0.5];
+/// Iterations after which a linear solve with the incomplete factorisation is given up: its step is taken, and those after
+/// it use the levels.
+const MOST_NARROW: usize = 16;
 /// Fall of the residual in an iteration of a step in time with which the preconditioner goes on to serve.
 const GOOD_FALL: f64 = 2.0;
 /// Stages of the explicit method.
@@ -123,10 +131,15 @@ pub struct Relax<'a, S: System> {
     step: Vec<f64>,
     phase: Phase,
     levels: Option<Multilevel>,
+    factors: Incomplete,
     gmres: Option<Gmres>,
     time: Option<TimeTerm>,
     /// The preconditioner was made within this step in time and still serves.
     prepared: bool,
+    /// Residual over its first value that the step in time is after.
+    pub goal: f64,
+    /// Linear systems of steps in time need the levels: the incomplete factorisation alone was too slow.
+    pub broad: bool,
     /// Linear iterations so far.
     pub linear: u32,
     /// Evaluations of the residual so far.
@@ -194,6 +207,7 @@ impl<'a, S: System> Relax<'a, S> {
             scale,
             u,
             levels,
+            factors: Incomplete::default(),
             iteration: resume.as_ref().map_or(0, |r| r.iteration),
             cfl: resume.as_ref().map_or(control.cfl, |r| r.cfl),
             linear: resume.as_ref().map_or(0, |r| r.linear),
@@ -207,6 +221,8 @@ impl<'a, S: System> Relax<'a, S> {
             gmres: basis,
             time: None,
             prepared: false,
+            goal: 0.0,
+            broad: false,
             evaluations: 0,
         };
         if resume.is_none() {
@@ -298,6 +314,7 @@ impl<'a, S: System> Relax<'a, S> {
     pub fn bytes(&self) -> usize {
         8 * (5 * self.u.len() + 2 * self.rate.len())
             + self.levels.as_ref().map_or(0, Multilevel::bytes)
+            + self.factors.bytes()
             + self.gmres.as_ref().map_or(0, Gmres::bytes)
     }
 
@@ -424,6 +441,11 @@ impl<'a, S: System> Relax<'a, S> {
         if start { self.control.cfl_max.min(START_CFL_MAX) } else { self.control.cfl_max }
     }
 
+    /// True when linear systems are preconditioned with the incomplete factorisation: the term of time couples what is near.
+    fn is_narrow(&self) -> bool {
+        self.time.is_some() && self.phase.newton && !self.broad
+    }
+
     /// Makes the preconditioner, unless that of this step in time still serves; what is added to the diagonal of each row.
     fn prepare(&mut self, levels: &mut Multilevel) -> Vec<f64> {
         let kept = self.prepared && self.phase.newton;
@@ -436,7 +458,11 @@ impl<'a, S: System> Relax<'a, S> {
         if !kept {
             self.system.linearise(&self.frame, &self.u, &mut self.work, levels.finest());
             levels.finest().shift(&shift);
-            levels.refresh();
+            if self.is_narrow() {
+                self.factors.factor(levels.finest());
+            } else {
+                levels.refresh();
+            }
             self.prepared = self.time.is_some();
         }
         shift
@@ -449,15 +475,25 @@ impl<'a, S: System> Relax<'a, S> {
         self.levels = Some(levels);
     }
 
+    /// Reduction asked of a linear solve, and the greatest number of its iterations.
+    fn asked(&self) -> (f64, usize) {
+        if self.time.is_none() {
+            return (self.control.tolerance, usize::MAX);
+        }
+        let reduction = (SHARE * self.goal / self.drop()).clamp(REDUCTION[0], REDUCTION[1]);
+        (reduction, if self.is_narrow() { MOST_NARROW } else { usize::MAX })
+    }
+
     /// The step of Newton's method, or that of the sweeps alone.
     fn solve(&mut self, levels: &mut Multilevel, shift: &[f64]) {
+        let (n, narrow) = (self.system.block(), self.is_narrow());
+        let (tolerance, most) = self.asked();
         let Some(gmres) = self.gmres.as_mut().filter(|_| self.phase.newton) else {
             let residual = &self.residual;
             levels.apply(|k| residual[k] as f32, &mut self.step);
             self.linear += 1;
             return;
         };
-        let n = self.system.block();
         let size = (sum(self.u.len(), |k| self.u[k] * self.u[k]) / self.u.len() as f64).sqrt();
         let (system, frame, work, u, residual) = (self.system, &self.frame, &mut self.work, &self.u, &self.residual);
         let (trial, scale, time) = (&mut self.trial, &self.scale, self.time.as_ref());
@@ -478,8 +514,15 @@ impl<'a, S: System> Relax<'a, S> {
                 o[0] = ((base(k) - o[0]) / eps + shift[k / n] * v[k]) * scale[k / n];
             });
         };
-        let precondition = |r: &[f32], z: &mut [f64]| levels.apply(|k| (f64::from(r[k]) / scale[k / n]) as f32, z);
-        let solved = gmres.solve((b, &mut self.step), self.control.tolerance, product, precondition);
+        let factors = &mut self.factors;
+        let precondition = |r: &[f32], z: &mut [f64]| {
+            let r = |k: usize| (f64::from(r[k]) / scale[k / n]) as f32;
+            if narrow { factors.apply(levels.finest(), r, z) } else { levels.apply(r, z) }
+        };
+        let solved = gmres.solve((b, &mut self.step), (tolerance, most), product, precondition);
+        if narrow && solved.iterations == most {
+            (self.broad, self.prepared) = (true, false);
+        }
         self.linear += solved.iterations as u32;
         self.evaluations += solved.iterations as u64;
     }
