@@ -20,6 +20,7 @@ pub mod repair;
 mod rim;
 mod settle;
 pub mod sources;
+pub mod strain;
 #[cfg(test)]
 mod tests;
 pub mod travel;
@@ -34,6 +35,7 @@ pub use doctor::Diagnosis;
 pub use layout::Layout;
 pub use neighbours::Neighbours;
 pub use operators::{Edge, Operators};
+pub use strain::Strain;
 
 /// A particle on a surface.
 #[derive(Clone, Copy, Debug)]

@@ -85,8 +85,10 @@ impl Measured {
             Metric::MeanCl => self.last_period().map(|p| p.mean_cl),
             Metric::PeakCl => self.last_period().map(|p| p.peak_cl),
             Metric::WakeLength => self.wake_length(),
-            Metric::ThinLiftAmplitude => self.thin_lift(other).map(|c| c.norm()),
-            Metric::ThinLiftPhase => self.thin_lift(other).map(|c| c.arg().to_degrees()),
+            Metric::ThinLiftAmplitude => self.thin(other, Self::lift).map(|c| c.norm()),
+            Metric::ThinLiftPhase => self.thin(other, Self::lift).map(|c| c.arg().to_degrees()),
+            Metric::ThinForceAmplitude => self.thin(other, Self::force).map(|c| c.norm()),
+            Metric::ThinForcePhase => self.thin(other, Self::force).map(|c| c.arg().to_degrees()),
             Metric::ResidualDrop => Ok(s.residual_drop),
             Metric::Converged => Ok(f64::from(u8::from(s.converged))),
             Metric::Particles => Ok(s.particles as f64),
@@ -200,23 +202,38 @@ impl Measured {
     }
 
     /// The same on a section of no thickness, along the line through this one and another.
-    fn thin_lift(&self, other: Option<&Self>) -> Result<Complex64, String> {
+    fn thin(&self, other: Option<&Self>, load: fn(&Self) -> Result<Complex64, String>) -> Result<Complex64, String> {
         let other = other.ok_or("the claim names no `other` section")?;
         let (own, far) = (self.thickness()?, other.thickness()?);
         if own == far {
             return Err("both sections are equally thick".into());
         }
-        let slope = (other.lift()? - self.lift()?) / (far - own);
-        Ok(self.lift()? - slope * own)
+        let slope = (load(other)? - load(self)?) / (far - own);
+        Ok(load(self)? - slope * own)
     }
 
-    /// Thickness of the NACA section in parts of the chord.
+    /// First harmonic of the force on the first flexible mode of `[gaf]` over that of the mode that moves.
+    fn force(&self) -> Result<Complex64, String> {
+        let name = self.case.gaf.as_ref().and_then(|g| g.flexible.first()).map(|m| m.name.clone());
+        let force = self.summary.generalised_forces.iter().find(|f| Some(&f.mode) == name.as_ref());
+        let force =
+            force.ok_or("the run has no force on a flexible mode: add `[[gaf.mode]]` and `[time] harmonics`")?;
+        let moving = self.case.motion_of(0).and_then(|law| law.modes.first());
+        let mode = moving.ok_or("no mode of `[motion]` moves the body")?;
+        Ok(force.per(mode.amplitude) * Complex64::cis(-mode.phase.0))
+    }
+
+    /// Thickness of the section in parts of the chord: of a NACA one by its digits, of others by the extent of their walls.
     fn thickness(&self) -> Result<f64, String> {
         let digits = self.case.bodies.first().and_then(|b| match &b.shape {
             Shape::Naca(naca) => naca.digits.get(2..4)?.parse::<f64>().ok(),
             _ => None,
         });
-        digits.map(|d| 0.01 * d).ok_or_else(|| "the body is no NACA 4-digit section".into())
+        if let Some(digits) = digits {
+            return Ok(0.01 * digits);
+        }
+        let extent = Bounds::around(&self.wall.x).extent();
+        if self.wall.is_empty() { Err(no_wall()) } else { Ok(extent[1] / extent[0]) }
     }
 
     /// Cp of the wall particles in the region less the reference there.

@@ -86,6 +86,10 @@ impl<S: System> March<S> for Dual<'_, S> {
         self.relax.linear
     }
 
+    fn evaluations(&self) -> u64 {
+        self.relax.evaluations
+    }
+
     fn bytes(&self) -> usize {
         self.relax.bytes() + 8 * 3 * self.start.len()
     }

@@ -201,6 +201,11 @@ metrics! {
     ThinLiftAmplitude = "thin_lift_amplitude",
     /// `lift_phase` of the same.
     ThinLiftPhase = "thin_lift_phase",
+    /// Amplitude of the first harmonic of the force on the first mode of `[[gaf.mode]]` over that of the motion, extrapolated
+    /// like the lift.
+    ThinForceAmplitude = "thin_force_amplitude",
+    /// Phase in degrees of the same.
+    ThinForcePhase = "thin_force_phase",
     /// Root mean square difference of the lift over the last period to that of the case `other`, over half the range of that
     /// one; with `file`, the greatest difference to its column `CL` at the phases of its column `phase`, in parts of a period.
     LiftLoopDifference = "lift_loop_difference",
