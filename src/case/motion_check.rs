@@ -62,10 +62,15 @@ fn frequency(draft: &mut Draft<'_>, law: &str) {
     }
     let hint = "add `reduced_frequency = 0.1`, `frequency = \"5 Hz\"` or `period = 20`";
     for part in ["pitch", "plunge", "mode"].map(|part| format!("{law}.{part}")) {
-        if draft.given(&part) {
+        if says_something(draft, &part) {
             draft.fail_key(&part, format!("`{part}` has no frequency")).hint(hint);
         }
     }
+}
+
+/// True when `part` is there, and no empty list of modes.
+fn says_something(draft: &Draft<'_>, part: &str) -> bool {
+    draft.given(part) && draft.get(part).and_then(Value::as_array).is_none_or(|list| !list.is_empty())
 }
 
 /// A frequency of its own, or that of `[motion]`.
@@ -253,8 +258,9 @@ fn together(draft: &mut Draft<'_>) {
 
 /// What moves is marched in time, and periods are counted only where something repeats.
 fn in_time(draft: &mut Draft<'_>, laws: &[String]) {
-    let moving =
-        laws.iter().find_map(|law| PARTS.iter().map(|part| format!("{law}.{part}")).find(|part| draft.given(part)));
+    let moving = laws
+        .iter()
+        .find_map(|law| PARTS.iter().map(|part| format!("{law}.{part}")).find(|part| says_something(draft, part)));
     let lagrangian = draft.get("motion.particles").and_then(Value::as_str) == Some("lagrangian");
     let mover = moving.clone().or(lagrangian.then(|| "motion.particles".to_owned()));
     if let Some(mover) = mover.filter(|_| draft.get("time.steady").is_some()) {

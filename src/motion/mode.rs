@@ -157,7 +157,7 @@ fn axes<const D: usize>(points: &[Vector<D>], centre: &Vector<D>) -> Vec<(Vector
         }
         let axis = far.unit();
         axes.push((axis, extent));
-        left.iter_mut().for_each(|x| *x = *x - axis * axis.dot(x));
+        left.iter_mut().for_each(|x| *x -= axis * axis.dot(x));
     }
     axes
 }

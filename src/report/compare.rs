@@ -136,10 +136,10 @@ impl Comparison {
             None => text.push_str("\nwall Cp: the runs have different wall particles\n"),
         }
         text.push_str(&self.fields_text());
-        text.push_str(&format!("\n{:<34}{:>12}{:>12}   a over b\n", "cost", "a", "b"));
+        text.push_str(&format!("\n{:<34}{:>12}{:>12}{:>14}\n", "cost", "a", "b", "speed-up of a"));
         for (name, [a, b]) in self.costs() {
             text.push_str(&match (a / b).is_finite() {
-                true => format!("{name:<34}{a:>12.1}{b:>12.1}   a is {:.2} times as fast\n", b / a),
+                true => format!("{name:<34}{a:>12.1}{b:>12.1}{:>14.2}\n", b / a),
                 false => format!("{name:<34}   not counted by both runs\n"),
             });
         }
@@ -204,7 +204,7 @@ impl Comparison {
         }
         let costs = [("cpu_seconds", self.cpu), ("wall_seconds", self.wall_clock), ("work_units", self.work)];
         for (name, [a, b]) in costs {
-            text.push_str(&format!("cost,{name},{a},{b}\ncost,{name} of b over a,{},\n", b / a));
+            text.push_str(&format!("cost,{name},{a},{b}\ncost,speed-up in {name},{},\n", b / a));
         }
         text
     }
@@ -283,7 +283,7 @@ impl Comparison {
         let cost = self.costs().map(|(name, [a, b])| vec![name.to_owned(), told(a), told(b), told(b / a)]);
         let particles =
             vec!["particles".to_owned(), number(self.particles[0]), number(self.particles[1]), String::new()];
-        html.push_str(&table_html(&["", "a", "b", "b over a"], cost.into_iter().chain([particles])));
+        html.push_str(&table_html(&["", "a", "b", "speed-up of a"], cost.into_iter().chain([particles])));
         html
     }
 }
@@ -380,11 +380,11 @@ mod tests {
         assert!((lift.e1 - 0.01).abs() < 1e-12 && lift.e0 == 0.0 && (lift.largest - 0.01).abs() < 1e-12, "{lift:?}");
         assert_eq!(found.wall, Some([0.0, 0.0]));
         let text = found.text();
-        assert!(text.contains("10.00 times as fast") && text.contains("+1.00 %"), "{text}");
-        assert!(text.contains("4.00 times as fast") && text.contains("wall time, s"), "{text}");
+        assert!(text.contains("20.0         10.00\n") && text.contains("+1.00 %"), "{text}");
+        assert!(text.contains("40.0          4.00\n") && text.contains("wall time, s"), "{text}");
         assert!(text.contains("fields: the runs have no field at the same phase"), "{text}");
         let csv = found.csv();
-        assert!(csv.contains("cost,work_units of b over a,4,") && csv.contains("cost,wall_seconds,NaN,NaN"), "{csv}");
+        assert!(csv.contains("cost,speed-up in work_units,4,") && csv.contains("cost,wall_seconds,NaN,NaN"), "{csv}");
         let page = std::fs::read_to_string(found.write(&root.path().join("c")).unwrap()).unwrap();
         assert_balanced(&page);
         assert!(root.path().join("c/comparison.csv").is_file());
