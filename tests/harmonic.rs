@@ -90,7 +90,7 @@ fn layered<const D: usize>(carriage: Carriage<D>, how: (usize, f64)) -> f64 {
 }
 
 fn wave<const D: usize>() -> Carriage<D> {
-    Carriage::Along { path: Arc::new(Wave), laws: Vec::new() }
+    Carriage::Along { path: Arc::new(Wave), laws: Vec::new(), skin: Arc::default() }
 }
 
 #[test] // eq32

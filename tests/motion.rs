@@ -98,7 +98,7 @@ fn pitching<const D: usize>() -> Carriage<D> {
 }
 
 fn along<const D: usize>(path: impl Path<D> + 'static) -> Carriage<D> {
-    Carriage::Along { path: Arc::new(path), laws: Vec::new() }
+    Carriage::Along { path: Arc::new(path), laws: Vec::new(), skin: Arc::default() }
 }
 
 /// Marches the field and returns the largest difference from it, where particles are then.

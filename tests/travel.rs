@@ -159,7 +159,7 @@ impl Path<2> for Straight {
 }
 
 fn along(path: impl Path<2> + 'static) -> Carriage<2> {
-    Carriage::Along { path: Arc::new(path), laws: Vec::new() }
+    Carriage::Along { path: Arc::new(path), laws: Vec::new(), skin: Arc::default() }
 }
 
 /// The vortex on a prescribed motion; conservative coefficients do not follow a cloud that deforms.

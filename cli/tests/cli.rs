@@ -23,7 +23,9 @@ const PROMISED: [&str; 13] = [
     "ledger",
 ];
 /// What it may add.
-const EXTRA: [&str; 17] = [
+const EXTRA: [&str; 19] = [
+    "work_units",
+    "generalised_forces",
     "chord",
     "harmonic_balance",
     "time",
@@ -302,4 +304,30 @@ fn a_damaged_checkpoint_is_refused() {
     assert!(code(&output) == Some(2) && told(&output).contains("checkpoint.alula"), "{}", told(&output));
     let output = desk.alula(&["resume", "nowhere"]);
     assert!(code(&output) == Some(2) && told(&output).contains("`nowhere` is not a run folder"), "{}", told(&output));
+}
+
+/// The nose, sides and tail of a section in a file.
+const SHAPE: &str = "1 0\n0.9 0.014\n0.7 0.037\n0.5 0.053\n0.3 0.06\n0.15 0.053\n0.07 0.041\n0.03 0.028\n0.01 0.017\n0 0\n\
+    0.01 -0.017\n0.03 -0.028\n0.07 -0.041\n0.15 -0.053\n0.3 -0.06\n0.5 -0.053\n0.7 -0.037\n0.9 -0.014\n1 0\n";
+
+#[test]
+fn a_run_that_reads_files_goes_on_from_any_folder() {
+    let desk = Desk::new(&SECTION.replace("naca = \"0012\"", "airfoil = \"section.dat\""));
+    std::fs::write(desk.path("section.dat"), SHAPE).unwrap();
+    let whole = desk.alula(&["run", "case.toml", "--out", "whole", "--quiet"]);
+    assert_eq!(code(&whole), Some(0), "{}", told(&whole));
+    let mut child = desk.begun("out");
+    child.kill().unwrap();
+    child.wait().unwrap();
+    let elsewhere = tempfile::tempdir().unwrap();
+    let out = desk.path("out").display().to_string();
+    let resume = || desk.command(&["resume", &out, "--quiet"]).current_dir(elsewhere.path()).output().unwrap();
+    // files that have gone are named, with the note that says where they were
+    std::fs::rename(desk.path("section.dat"), desk.path("moved.dat")).unwrap();
+    let text = told(&resume());
+    assert!(text.contains("`section.dat`") && text.contains("origin.txt"), "{text}");
+    std::fs::rename(desk.path("moved.dat"), desk.path("section.dat")).unwrap();
+    let output = resume();
+    assert_eq!(code(&output), Some(0), "{}", told(&output));
+    assert_same_results(&desk.path("whole"), &desk.path("out"), "from another folder");
 }

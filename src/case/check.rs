@@ -39,6 +39,21 @@ fn generalised_forces(draft: &mut Draft<'_>) {
             .fail_key("gaf", "`[gaf]` pitches about no point")
             .hint("add `pivot = [0.25, 0]`, or `modes = \"plunge\"`");
     }
+    if draft.count("gaf.modes") + draft.count("gaf.mode") == 0 {
+        draft.fail("gaf.modes", "`[gaf]` has no modes").hint("name rigid ones in `modes`, or add a `[[gaf.mode]]`");
+    }
+    let mut names = vec!["plunge".to_owned(), "pitch".to_owned()];
+    for place in (0..draft.count("gaf.mode")).map(|i| format!("gaf.mode[{i}].name")) {
+        let Some(name) = draft.get(&place).and_then(Value::as_str).map(str::to_owned) else { continue };
+        if !name.chars().all(|c| c.is_ascii_alphanumeric() || "-_".contains(c)) {
+            let message = format!("`{name}` cannot be the name of a mode: it names a folder and a column");
+            draft.fail(&place, message).allowed("letters, digits, `-` and `_`");
+        }
+        if names.contains(&name) {
+            draft.fail(&place, format!("two modes are called `{name}`")).hint("give each mode a name of its own");
+        }
+        names.push(name);
+    }
 }
 
 /// Each body has one shape, a name of its own and sensible digits.

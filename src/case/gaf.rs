@@ -2,8 +2,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::{
-    Angle, BodyMotion, Case, HarmonicCount, Harmonics, Length, Motion, ParticleMotion, Pitch, Plunge, SteadyMethod,
-    Temporal,
+    Angle, BodyMotion, Case, HarmonicCount, Harmonics, Length, ModeMotion, Motion, ParticleMotion, Pitch, Plunge,
+    SteadyMethod, Temporal,
 };
 
 /// The table `[gaf]`.
@@ -13,15 +13,18 @@ pub struct Gaf {
     pub reduced_frequencies: Vec<f64>,
     /// Length L; absent: half the reference chord.
     pub reduced_length: Option<Length>,
-    /// Modes, in the order of the columns.
+    /// Rigid modes, in the order of the columns.
     pub modes: Vec<Mode>,
+    /// Modes of a flexible body, behind them.
+    #[serde(default, rename = "mode")]
+    pub flexible: Vec<FlexibleMode>,
     /// Point about which the body pitches, and moments are taken.
     pub pivot: Option<Vec<Length>>,
     /// Amplitude of pitch.
     pub pitch: Angle,
     /// Amplitude of plunge.
     pub plunge: Length,
-    /// How particles follow.
+    /// How particles follow plunge and pitch.
     pub particles: ParticleMotion,
     /// Number of harmonics.
     pub harmonics: u32,
@@ -39,6 +42,26 @@ pub enum Mode {
     Pitch,
 }
 
+/// A mode of a flexible body.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FlexibleMode {
+    /// Name.
+    pub name: String,
+    /// File of its shape, see [`super::read_mode`].
+    pub file: String,
+    /// Amplitude of its coordinate.
+    pub amplitude: f64,
+}
+
+/// Any mode of `[gaf]`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum AnyMode<'a> {
+    /// Of a rigid body.
+    Rigid(Mode),
+    /// Of a flexible one.
+    Flexible(&'a FlexibleMode),
+}
+
 impl Mode {
     /// The word of the case file.
     pub fn name(self) -> &'static str {
@@ -49,23 +72,52 @@ impl Mode {
     }
 }
 
+impl AnyMode<'_> {
+    /// Its name.
+    pub fn name(&self) -> &str {
+        match self {
+            Self::Rigid(mode) => mode.name(),
+            Self::Flexible(mode) => &mode.name,
+        }
+    }
+}
+
+impl Gaf {
+    /// All modes, in the order of rows and columns.
+    pub fn all_modes(&self) -> impl Iterator<Item = AnyMode<'_>> {
+        self.modes.iter().map(|m| AnyMode::Rigid(*m)).chain(self.flexible.iter().map(AnyMode::Flexible))
+    }
+}
+
 impl Case {
-    /// The harmonic balance of one mode at reduced frequency `k`, with `factor` times the amplitude of `[gaf]`.
-    pub fn gaf_case(&self, gaf: &Gaf, mode: Mode, k: f64, factor: f64) -> Self {
+    /// The harmonic balance of one mode at reduced frequency `k`, with `factor` times the amplitude of `[gaf]`. The table stays
+    /// in the case: its modes are those that forces are computed on.
+    pub fn gaf_case(&self, gaf: &Gaf, mode: AnyMode<'_>, k: f64, factor: f64) -> Self {
         let none = Angle(0.0);
-        let pitch = Pitch { amplitude: Angle(factor * gaf.pitch.0), phase: none };
-        let plunge = Plunge { amplitude: Length(factor * gaf.plunge.0), phase: none, direction: None };
-        let law = BodyMotion {
+        let mut law = BodyMotion {
             reduced_frequency: Some(k),
             reduced_length: gaf.reduced_length,
             pivot: gaf.pivot.clone(),
-            pitch: (mode == Mode::Pitch).then_some(pitch),
-            plunge: (mode == Mode::Plunge).then_some(plunge),
             ..BodyMotion::default()
         };
+        let mut particles = gaf.particles;
+        match mode {
+            AnyMode::Rigid(Mode::Pitch) => {
+                law.pitch = Some(Pitch { amplitude: Angle(factor * gaf.pitch.0), phase: none });
+            }
+            AnyMode::Rigid(Mode::Plunge) => {
+                let amplitude = Length(factor * gaf.plunge.0);
+                law.plunge = Some(Plunge { amplitude, phase: none, direction: None });
+            }
+            AnyMode::Flexible(mode) => {
+                particles = ParticleMotion::Deforming;
+                let amplitude = factor * mode.amplitude;
+                law.modes = vec![ModeMotion { file: mode.file.clone(), amplitude, phase: none }];
+            }
+        }
         let mut case = self.clone();
         case.title = format!("{}: {} at k = {k}", self.title, mode.name());
-        case.motion = Some(Motion { particles: gaf.particles, law });
+        case.motion = Some(Motion { particles, law });
         case.reference.moment_point = gaf.pivot.clone().or(case.reference.moment_point);
         case.time = Temporal::Harmonics(Harmonics {
             number: HarmonicCount::Fixed(gaf.harmonics),
@@ -79,7 +131,6 @@ impl Case {
             cfl: 10.0,
             cfl_max: 1e6,
         });
-        case.gaf = None;
         case.output.report = false;
         case
     }

@@ -2,6 +2,7 @@
 //!
 //! Ranges that are not plain logic come from the numerics: particles nearer to the wall than 0.3 spacings spoil the
 //! conditioning of their clouds, more than 0.6 leave a gap; fewer than 3 particles a level do not fill a cloud.
+use super::gaf_keys::GAF;
 use super::motion_keys::{BODY_MOTION, MOTION, WALL};
 use super::quantity::{Angle, Density, Length, Pressure, Temperature, Time, Velocity, Viscosity};
 use super::schema::{Absent, Field, Kind, List, Range, Table, Variant};
@@ -65,53 +66,10 @@ pub(super) static CASE: Table = Table::of(&[
         "gaf",
         Kind::Table(&GAF),
         "`alula gaf` has nothing to do",
-        "Generalised aerodynamic forces: the matrix of `alula gaf`. `alula run` leaves it aside.",
+        "Generalised aerodynamic forces: the matrix of `alula gaf`. `alula run` takes the modes from it that a harmonic balance tells \
+         forces on, and leaves the rest aside.",
     ),
 ]);
-
-static GAF: Table = Table::of(&[
-    Field::required(
-        "reduced_frequencies",
-        Kind::List(&List { item: POSITIVE, min: 1, max: 64, single: true }),
-        "Reduced frequencies k = ωL/U∞.",
-    ),
-    Field::optional("reduced_length", SIZE, "half of the reference chord", "Length L of the reduced frequency."),
-    Field::defaulted(
-        "modes",
-        Kind::List(&List { item: Kind::Words(MODES), min: 1, max: 2, single: true }),
-        Absent::Words(&["plunge", "pitch"]),
-        "Modes, in the order of the columns.",
-    ),
-    Field::optional(
-        "pivot",
-        Kind::List(&List { item: Kind::Quantity(Length::DIMENSION, Range::ANY), min: 2, max: 3, single: false }),
-        "must be given for `pitch`",
-        "Point about which the body pitches and moments are taken.",
-    ),
-    Field::defaulted(
-        "pitch",
-        Kind::Quantity(Angle::DIMENSION, Range::ANY),
-        Absent::Number(0.25 * std::f64::consts::PI / 180.0),
-        "Amplitude of pitch: a quarter of a degree unless it says otherwise. It is halved once to see whether forces are linear.",
-    ),
-    Field::defaulted("plunge", SIZE, Absent::Number(0.005), "Amplitude of plunge."),
-    Field::defaulted("particles", Kind::Words(FOLLOWING), Absent::Word("rigid"), "How particles follow."),
-    Field::defaulted("harmonics", Kind::Integer(1, 16), Absent::Integer(1), "Number of harmonics."),
-    Field::defaulted(
-        "linearity",
-        POSITIVE,
-        Absent::Number(0.005),
-        "Part by which forces may change when the amplitude is halved.",
-    ),
-]);
-
-const MODES: &[(&str, &str)] =
-    &[("plunge", "displacement, up positive"), ("pitch", "angle about the pivot, nose up positive")];
-
-const FOLLOWING: &[(&str, &str)] = &[
-    ("rigid", "the whole cloud moves as one with the body"),
-    ("deforming", "the displacement of the surface is spread into the cloud, the far field stays where it is"),
-];
 
 static FLOW: Table = Table::of(&[
     Field::optional("mach", POSITIVE, "`velocity` must be given", "Mach number of the free stream."),

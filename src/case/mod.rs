@@ -10,7 +10,9 @@ mod error;
 mod flow;
 pub mod formula;
 mod gaf;
+mod gaf_keys;
 mod keys;
+mod mode_file;
 mod motion;
 mod motion_check;
 mod motion_keys;
@@ -28,9 +30,10 @@ mod write;
 
 pub use error::{CaseError, CaseErrors};
 pub use flow::{FreeStreamScales, ViscosityLaw, Viscous, Wall};
-pub use gaf::{Gaf, Mode};
+pub use gaf::{AnyMode, FlexibleMode, Gaf, Mode};
+pub use mode_file::{ModeTable, read_mode};
 pub use motion::{
-    BodyMotion, Motion, MotionFormula, MotionTable, ParticleMotion, Pitch, Plunge, Rotation, Translation,
+    BodyMotion, ModeMotion, Motion, MotionFormula, MotionTable, ParticleMotion, Pitch, Plunge, Rotation, Translation,
 };
 pub use quantity::{Angle, Density, Frequency, Length, Pressure, Rate, Temperature, Time, Velocity, Viscosity};
 pub use read::read;

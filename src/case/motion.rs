@@ -1,11 +1,11 @@
 //! Motion of bodies and particles, as data.
 //!
 //! A motion is a sum: angles add up to θ(t) about one axis through the pivot, displacements to d(t), and a point X of the
-//! body as placed is at x(t) = R(θ)(X − pivot) + pivot + d. Sines are amplitude·sin(ωt + phase): α = α_m + α_0 sin ωt of
+//! body as placed is at x(t) = R(θ)(X + Σ q φ(X) − pivot) + pivot + d, with the shapes φ and coordinates q of its modes. Sines are amplitude·sin(ωt + phase): α = α_m + α_0 sin ωt of
 //! the AGARD cases, with the mean α_m from `flow.alpha` or `rotate`. Angles are nose up positive, plunge is up positive.
 use serde::{Deserialize, Serialize};
 
-use super::{Angle, Case, Flow, Frequency, Length, Rate, Time, Velocity};
+use super::{Angle, Case, Flow, Frequency, Length, Rate, Shape, Temporal, Time, Velocity};
 
 /// The table `[motion]`: how particles follow, and the motion of every body without one of its own.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -57,6 +57,20 @@ pub struct BodyMotion {
     pub table: Option<MotionTable>,
     /// Formulas in time.
     pub formula: Option<MotionFormula>,
+    /// Modes of a flexible body.
+    #[serde(default, rename = "mode")]
+    pub modes: Vec<ModeMotion>,
+}
+
+/// q(t) = amplitude·sin(ωt + phase), and the file of the shape φ.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct ModeMotion {
+    /// CSV file of points and displacements, see [`super::read_mode`].
+    pub file: String,
+    /// Amplitude of the coordinate.
+    pub amplitude: f64,
+    /// Phase at t = 0.
+    pub phase: Angle,
 }
 
 /// θ(t) = amplitude·sin(ωt + phase), nose up positive.
@@ -134,6 +148,7 @@ impl BodyMotion {
             && self.translation.is_none()
             && self.table.is_none()
             && self.formula.is_none()
+            && self.modes.is_empty()
     }
 
     /// Angular frequency ω of this table alone; `chord` is the reference chord, of which k takes half by default.
@@ -159,9 +174,28 @@ impl Case {
         law.own_angular_frequency(&self.flow, chord).or_else(general)
     }
 
+    /// True when a body bends.
+    pub fn bends(&self) -> bool {
+        (0..self.bodies.len()).any(|i| self.motion_of(i).is_some_and(|law| !law.modes.is_empty()))
+    }
+
     /// How particles follow.
     pub fn particles(&self) -> ParticleMotion {
         self.motion.as_ref().map(|m| m.particles).unwrap_or_default()
+    }
+
+    /// Names of all files that a run reads beside the case file.
+    pub fn files(&self) -> impl Iterator<Item = &str> {
+        let shapes = self.bodies.iter().filter_map(|body| match &body.shape {
+            Shape::Airfoil(file) | Shape::Surface(file) => Some(file.as_str()),
+            _ => None,
+        });
+        let laws = self.bodies.iter().filter_map(|b| b.motion.as_ref()).chain(self.motion.as_ref().map(|m| &m.law));
+        let tables = laws.clone().filter_map(|law| law.table.as_ref()?.file.as_deref());
+        let modes = laws.flat_map(|law| &law.modes).map(|mode| mode.file.as_str());
+        let balanced = self.gaf.iter().filter(|_| matches!(self.time, Temporal::Harmonics(_)));
+        let forces = balanced.flat_map(|g| &g.flexible).map(|mode| mode.file.as_str());
+        shapes.chain(tables).chain(modes).chain(forces)
     }
 
     /// True when particles move: a body does, the whole cloud does, or they travel with the fluid.

@@ -5,7 +5,7 @@ use super::draft::Draft;
 use super::formula::Formula;
 
 const FREQUENCIES: [&str; 3] = ["frequency", "reduced_frequency", "period"];
-const PARTS: [&str; 6] = ["pitch", "plunge", "rotation", "translation", "table", "formula"];
+const PARTS: [&str; 7] = ["pitch", "plunge", "rotation", "translation", "table", "formula", "mode"];
 /// The parts that make a body turn, and where in the table.
 const TURNS: [&str; 4] = ["pitch", "rotation", "table.angle", "formula.angle"];
 const COLUMNS: [&str; 4] = ["x", "y", "z", "angle"];
@@ -24,6 +24,7 @@ pub(super) fn contradictions(draft: &mut Draft<'_>, dimension: Option<usize>) {
         turning(draft, law, dimension);
         table(draft, law);
         formulas(draft, law);
+        flexible(draft, law);
         if let Some(d) = dimension {
             in_dimension(draft, law, d);
         }
@@ -60,11 +61,16 @@ fn frequency(draft: &mut Draft<'_>, law: &str) {
         return;
     }
     let hint = "add `reduced_frequency = 0.1`, `frequency = \"5 Hz\"` or `period = 20`";
-    for part in ["pitch", "plunge"].map(|part| format!("{law}.{part}")) {
-        if draft.given(&part) {
+    for part in ["pitch", "plunge", "mode"].map(|part| format!("{law}.{part}")) {
+        if says_something(draft, &part) {
             draft.fail_key(&part, format!("`{part}` has no frequency")).hint(hint);
         }
     }
+}
+
+/// True when `part` is there, and no empty list of modes.
+fn says_something(draft: &Draft<'_>, part: &str) -> bool {
+    draft.given(part) && draft.get(part).and_then(Value::as_array).is_none_or(|list| !list.is_empty())
 }
 
 /// A frequency of its own, or that of `[motion]`.
@@ -223,6 +229,23 @@ fn formulas(draft: &mut Draft<'_>, law: &str) {
     }
 }
 
+/// Modes move bodies, and need a cloud that can follow them.
+fn flexible(draft: &mut Draft<'_>, law: &str) {
+    let mode = format!("{law}.mode");
+    if draft.count(&mode) == 0 {
+        return;
+    }
+    let particles = draft.get("motion.particles").and_then(Value::as_str).unwrap_or_default().to_owned();
+    let reason = match particles.as_str() {
+        "rigid" => "a rigid cloud cannot follow a body that bends",
+        "lagrangian" => "particles that travel with the fluid cannot follow a body that bends yet",
+        _ if !draft.given("body") => "a mode bends a body, but there is none",
+        _ => return,
+    };
+    let hint = "use `particles = \"deforming\"` in `[motion]`, and a `[[body]]`";
+    draft.fail_key(&mode, reason).allowed("`particles = \"deforming\"`").hint(hint);
+}
+
 /// A rigid cloud can follow one motion only.
 fn together(draft: &mut Draft<'_>) {
     let rigid = draft.get("motion.particles").and_then(Value::as_str) == Some("rigid");
@@ -235,8 +258,9 @@ fn together(draft: &mut Draft<'_>) {
 
 /// What moves is marched in time, and periods are counted only where something repeats.
 fn in_time(draft: &mut Draft<'_>, laws: &[String]) {
-    let moving =
-        laws.iter().find_map(|law| PARTS.iter().map(|part| format!("{law}.{part}")).find(|part| draft.given(part)));
+    let moving = laws
+        .iter()
+        .find_map(|law| PARTS.iter().map(|part| format!("{law}.{part}")).find(|part| says_something(draft, part)));
     let lagrangian = draft.get("motion.particles").and_then(Value::as_str) == Some("lagrangian");
     let mover = moving.clone().or(lagrangian.then(|| "motion.particles".to_owned()));
     if let Some(mover) = mover.filter(|_| draft.get("time.steady").is_some()) {

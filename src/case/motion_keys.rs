@@ -79,6 +79,14 @@ const FORMULA: Field = Field::optional(
      `asin`, `acos`, `atan`, `sinh`, `cosh`, `tanh`, `exp`, `ln`, `sqrt`, `abs`, `min`, `max`.",
 );
 
+const MODE: Field = Field::defaulted(
+    "mode",
+    Kind::Tables(&MODE_KEYS),
+    Absent::Filled,
+    "A mode of a flexible body: every point X goes q·φ(X) before all other parts, with the coordinate \
+     q = amplitude·sin(ωt + phase). Needs a deforming cloud.",
+);
+
 pub(super) static MOTION: Table = Table::of(&[
     Field::defaulted(
         "particles",
@@ -98,6 +106,7 @@ pub(super) static MOTION: Table = Table::of(&[
     TRANSLATION,
     TABLE,
     FORMULA,
+    MODE,
 ]);
 
 pub(super) static BODY_MOTION: Table = Table::of(&[
@@ -113,6 +122,7 @@ pub(super) static BODY_MOTION: Table = Table::of(&[
     TRANSLATION,
     TABLE,
     FORMULA,
+    MODE,
 ]);
 
 const PARTICLES: &[(&str, &str)] = &[
@@ -191,6 +201,19 @@ static TABLE_KEYS: Table = Table {
     ],
     shorthand: Some("file"),
 };
+
+pub(super) const MODE_FILE: Field = Field::required(
+    "file",
+    Kind::Text,
+    "CSV file of the shape, relative to the case file: columns `x`, `y` (`z`) of points of the body as placed, and `dx`, `dy` \
+     (`dz`), their displacements when the coordinate is one.",
+);
+
+static MODE_KEYS: Table = Table::of(&[
+    MODE_FILE,
+    Field::required("amplitude", Kind::Number(Range::ANY), "Amplitude of the coordinate."),
+    PHASE,
+]);
 
 static FORMULA_KEYS: Table = Table::of(&[
     Field::optional("x", Kind::Text, "zero", "Displacement along x, `x = \"0.1 * cos(omega * t)\"`."),

@@ -152,6 +152,9 @@ wall = { temperature = "300 K" }
 frequency = "5 Hz"
 plunge = { amplitude = "1 mm", phase = "90 deg", direction = [1, 1] }
 table = { time = [0, 1e-3], x = [0, "1 mm"] }
+[[body.motion.mode]]
+file = "bend.csv"
+amplitude = 0.1
 [motion]
 particles = "deforming"
 pivot = [0, 0]

@@ -21,6 +21,7 @@ pub mod repair;
 mod rim;
 mod settle;
 pub mod sources;
+pub mod strain;
 #[cfg(test)]
 mod tests;
 pub mod travel;
@@ -35,6 +36,7 @@ pub use doctor::Diagnosis;
 pub use layout::Layout;
 pub use neighbours::Neighbours;
 pub use operators::{Edge, Operators};
+pub use strain::Strain;
 
 /// A particle on a surface.
 #[derive(Clone, Copy, Debug)]

@@ -204,6 +204,12 @@ impl<const D: usize> Surface<D> {
         self.bounds
     }
 
+    /// Smallest box around all elements of body number `body`.
+    pub fn bounds_of(&self, body: usize) -> Bounds<D> {
+        let own = (0..self.elements.len()).filter(|e| usize::from(self.elements[*e].body) == body);
+        own.fold(Bounds::EMPTY, |b, e| b.union(&Bounds::around(&self.corners(e as u32))))
+    }
+
     /// Total area (2-D: length of the outlines).
     pub fn area(&self) -> f64 {
         (0..self.elements.len()).map(|e| self.element_area_vector(e as u32).norm()).sum()

@@ -1,6 +1,7 @@
-//! Arithmetic that knows no physics: small vectors, least squares, sparse blocks, Krylov methods, the parallel loop.
+//! Arithmetic that knows no physics: small vectors, least squares, sparse blocks and full matrices, Krylov methods, the parallel loop.
 pub mod block_matrix;
 pub mod circulant;
+pub mod dense;
 pub mod fourier;
 pub mod hilbert;
 pub mod incomplete;

@@ -1,11 +1,14 @@
 //! The motion of one body, and of several.
 //!
-//! x(t) = R(θ(t)) (X − p) + p + d(t): the body turns by θ about an axis a through its pivot p, which travels with the
-//! displacement d; X is the place before any motion. With the part of v = X − p along the axis kept (P v = a (a·v)) and the
+//! x(t) = R(θ(t)) (X + Σ q_m(t) φ_m(X) − p) + p + d(t): the body bends by its modes φ_m, as far as their coordinates q_m say, and
+//! turns by θ about an axis a through its pivot p, which travels with the displacement d; X is the place before any motion. With the part of v = X − p along the axis kept (P v = a (a·v)) and the
 //! turned one from Rodrigues' formula, R v = P v + cos θ (v − P v) + sin θ (a × v). In the plane a points away from the
 //! reader: positive angles are clockwise, nose up for a stream along +x. In space the default is a = +y, nose up for lift
 //! along +z. θ and d are sums of [`Course`]s; velocity and acceleration follow from the same lines by [`Jet`]s.
+use std::sync::Arc;
+
 use super::course::{Course, Repeat, common, total, total_with_rates};
+use super::mode::ModeShape;
 use super::pose::RigidPose;
 use crate::math::Vector;
 use crate::math::jet::{Jet, Scalar};
@@ -20,6 +23,7 @@ pub struct Law<const D: usize> {
     across: [Vector<D>; D],
     turn: Vec<Course>,
     shift: Vec<[Course; D]>,
+    modes: Vec<(Arc<ModeShape<D>>, Course)>,
 }
 
 /// Where a point is, how fast it moves, and how it speeds up.
@@ -49,6 +53,7 @@ impl<const D: usize> Law<D> {
             across: std::array::from_fn(|i| Vector::from_fn(|j| cross[i][j])),
             turn: Vec::new(),
             shift: Vec::new(),
+            modes: Vec::new(),
         }
     }
 
@@ -69,18 +74,28 @@ impl<const D: usize> Law<D> {
         self.with_shift(std::array::from_fn(|d| course(direction[d])))
     }
 
-    /// Place of `x`, written once for all scalars.
-    fn place<S: Scalar>(&self, t: S, x: &Vector<D>) -> [S; D] {
+    /// Adds a mode, whose coordinate is `course`.
+    pub fn with_mode(mut self, shape: Arc<ModeShape<D>>, course: Course) -> Self {
+        self.modes.push((shape, course));
+        self
+    }
+
+    /// Place of `x`, which the modes displace by `bends`, written once for all scalars.
+    fn place<S: Scalar>(&self, t: S, x: &Vector<D>, bends: &[Vector<D>]) -> [S; D] {
         let angle = total(&self.turn, t);
         let (sine, cosine) = (angle.sin(), angle.cos());
         let arm = *x - self.pivot;
+        let mut arm: [S; D] = std::array::from_fn(|d| S::constant(arm[d]));
+        for (bend, (_, course)) in bends.iter().zip(&self.modes) {
+            let q = course.at(t);
+            arm = std::array::from_fn(|d| arm[d] + q * S::constant(bend[d]));
+        }
+        let dot =
+            |row: &Vector<D>| (1..D).fold(S::constant(row[0]) * arm[0], |sum, d| sum + S::constant(row[d]) * arm[d]);
         let shift = self.shift_at(t);
         std::array::from_fn(|d| {
-            let kept = self.along[d].dot(&arm);
-            S::constant(self.pivot[d] + kept)
-                + shift[d]
-                + cosine * S::constant(arm[d] - kept)
-                + sine * S::constant(self.across[d].dot(&arm))
+            let kept = dot(&self.along[d]);
+            S::constant(self.pivot[d]) + kept + shift[d] + cosine * (arm[d] - kept) + sine * dot(&self.across[d])
         })
     }
 
@@ -88,22 +103,37 @@ impl<const D: usize> Law<D> {
         std::array::from_fn(|d| self.shift.iter().fold(S::constant(0.0), |sum, courses| sum + courses[d].at(t)))
     }
 
-    /// Rotation and shift at time `t`.
+    /// Rotation and shift at time `t`; modes are left aside.
     pub fn pose(&self, t: f64) -> RigidPose<D> {
-        if self.is_fixed() {
+        if self.turn.is_empty() && self.shift.is_empty() {
             return RigidPose::identity();
         }
-        let origin = Vector(self.place(t, &self.pivot));
+        let origin = Vector(self.place(t, &self.pivot, &[]));
         let columns: [Vector<D>; D] =
-            std::array::from_fn(|j| Vector(self.place(t, &(self.pivot + Vector::axis(j)))) - origin);
+            std::array::from_fn(|j| Vector(self.place(t, &(self.pivot + Vector::axis(j)), &[])) - origin);
         let rotation: [Vector<D>; D] = std::array::from_fn(|i| Vector::from_fn(|j| columns[j][i]));
         let turned = Vector::from_fn(|d| rotation[d].dot(&self.pivot));
         RigidPose { rotation, shift: origin - turned }
     }
 
+    /// Places at time `t` of points at their place before any motion.
+    pub fn places(&self, t: f64) -> impl Fn(&Vector<D>) -> Vector<D> + '_ {
+        let (pose, coordinates) = (self.pose(t), self.coordinates(t));
+        move |x| {
+            let bent = coordinates.iter().zip(self.shapes()).fold(*x, |sum, (q, shape)| sum + shape.at(x) * *q);
+            pose.point(&bent)
+        }
+    }
+
     /// Position, velocity and acceleration at time `t` of the point that was at `x` before any motion.
     pub fn kinematics(&self, t: f64, x: &Vector<D>) -> Kinematics<D> {
-        let place = self.place(Jet::variable(t), x);
+        let bends: Vec<Vector<D>> = self.shapes().map(|shape| shape.at(x)).collect();
+        self.kinematics_of(t, x, &bends)
+    }
+
+    /// The same where the displacements φ_m at `x` are known; without any the rest of the motion is left.
+    pub fn kinematics_of(&self, t: f64, x: &Vector<D>, bends: &[Vector<D>]) -> Kinematics<D> {
+        let place = self.place(Jet::variable(t), x, bends);
         Kinematics {
             position: Vector(place.map(|p| p.value)),
             velocity: Vector(place.map(|p| p.first)),
@@ -114,6 +144,26 @@ impl<const D: usize> Law<D> {
     /// Velocity at time `t` of the point that was at `x` before any motion.
     pub fn velocity(&self, t: f64, x: &Vector<D>) -> Vector<D> {
         self.kinematics(t, x).velocity
+    }
+
+    /// Shapes of the modes.
+    pub fn shapes(&self) -> impl Iterator<Item = &ModeShape<D>> {
+        self.modes.iter().map(|(shape, _)| shape.as_ref())
+    }
+
+    /// Coordinates q_m of the modes.
+    pub fn coordinates(&self, t: f64) -> Vec<f64> {
+        self.modes.iter().map(|(_, course)| course.at(t)).collect()
+    }
+
+    /// Coordinates of the modes with their rates.
+    pub fn coordinates_with_rates(&self, t: f64) -> Vec<Jet> {
+        self.modes.iter().map(|(_, course)| course.at(Jet::variable(t))).collect()
+    }
+
+    /// True when the body bends.
+    pub fn bends(&self) -> bool {
+        !self.modes.is_empty()
     }
 
     /// Angle θ, its rate and its acceleration, nose up positive.
@@ -133,7 +183,7 @@ impl<const D: usize> Law<D> {
 
     /// True when nothing moves.
     pub fn is_fixed(&self) -> bool {
-        self.turn.is_empty() && self.shift.is_empty()
+        self.turn.is_empty() && self.shift.is_empty() && self.modes.is_empty()
     }
 
     /// True when the body turns.
@@ -145,7 +195,8 @@ impl<const D: usize> Law<D> {
     pub fn is_finite(&self, t: f64) -> bool {
         let k = self.kinematics(t, &self.pivot);
         let angle = self.angle(t);
-        k.position.is_finite() && k.velocity.is_finite() && angle.value.is_finite() && angle.first.is_finite()
+        let bend = self.coordinates_with_rates(t).iter().all(|q| q.value.is_finite() && q.first.is_finite());
+        bend && k.position.is_finite() && k.velocity.is_finite() && angle.value.is_finite() && angle.first.is_finite()
     }
 
     /// How the motion repeats; a steady rotation does after each turn.
@@ -154,6 +205,7 @@ impl<const D: usize> Law<D> {
             Course::Steady(rate) if *rate != 0.0 => Repeat::Every(std::f64::consts::TAU / rate.abs()),
             other => other.repeat(),
         });
-        common(turns.chain(self.shift.iter().flatten().map(Course::repeat)))
+        let others = self.shift.iter().flatten().chain(self.modes.iter().map(|(_, course)| course));
+        common(turns.chain(others.map(Course::repeat)))
     }
 }

@@ -5,19 +5,25 @@
 //! velocity at an instant gets it by differentiating the same law (`math::jet`).
 mod course;
 mod law;
+mod mode;
 mod pose;
 mod samples;
 mod spline;
 #[cfg(test)]
 mod tests;
+mod track;
 
 pub use course::{Course, Repeat};
 pub use law::{Kinematics, Law};
+pub use mode::{Expansion, ModeShape};
 pub use pose::RigidPose;
 pub use spline::Spline;
+pub use track::Track;
+
+use std::sync::Arc;
 
 use crate::case::formula::{Formula, FormulaError};
-use crate::case::{BodyMotion, Case, MotionFormula, MotionTable};
+use crate::case::{BodyMotion, Case, CaseErrors, MotionFormula, MotionTable, Temporal, read_mode};
 use crate::math::Vector;
 
 /// Reads the text of a file that a case names.
@@ -28,6 +34,8 @@ pub type ReadFile<'a> = &'a dyn Fn(&str) -> std::io::Result<String>;
 pub struct Motions<const D: usize> {
     bodies: Vec<Law<D>>,
     general: Law<D>,
+    /// Shapes that forces are computed on.
+    forces: Vec<ModeShape<D>>,
 }
 
 /// Why a motion cannot be built.
@@ -50,6 +58,26 @@ pub enum MotionError {
         file: String,
         /// What is wrong.
         problem: String,
+    },
+    /// The file of a mode cannot be read.
+    #[error("cannot read the mode `{file}`: {source}\nhint: paths are relative to the case file")]
+    ModeFile {
+        /// Its name.
+        file: String,
+        /// Why.
+        source: std::io::Error,
+    },
+    /// The file of a mode holds no mode.
+    #[error("{0}")]
+    Mode(Box<CaseErrors>),
+    /// The points of a mode do not determine a shape.
+    #[error(
+        "mode `{file}`: its points lie too near to one another, or on both sides of a plate that is thin against its extent\n\
+         hint: keep the points of one side, and no two within a millionth of the extent"
+    )]
+    Crowded {
+        /// Its name.
+        file: String,
     },
     /// A formula cannot be read.
     #[error("formula `{text}`: {source}")]
@@ -78,7 +106,7 @@ pub enum MotionError {
 impl<const D: usize> Motions<D> {
     /// `n` bodies at rest.
     pub fn fixed(n: usize) -> Self {
-        Self { bodies: vec![Law::fixed(); n], general: Law::fixed() }
+        Self { bodies: vec![Law::fixed(); n], general: Law::fixed(), forces: Vec::new() }
     }
 
     /// The motions of `case`; `chord` is its reference chord, `read` opens the files it names.
@@ -92,12 +120,20 @@ impl<const D: usize> Motions<D> {
             .map(|i| build(case.motion_of(i), format!("`{}`", named(i))))
             .collect::<Result<_, _>>()?;
         let general = build(case.motion.as_ref().map(|m| &m.law), "`[motion]`".to_owned())?;
-        Ok(Self { bodies, general })
+        let flexible =
+            case.gaf.iter().filter(|_| matches!(case.time, Temporal::Harmonics(_))).flat_map(|g| &g.flexible);
+        let forces = flexible.map(|mode| mode_shape(&mode.file, read)).collect::<Result<_, _>>()?;
+        Ok(Self { bodies, general, forces })
     }
 
     /// Motion of body number `body`.
     pub fn of(&self, body: usize) -> &Law<D> {
         &self.bodies[body]
+    }
+
+    /// Shapes of the flexible modes of `[gaf]`, in their order, where a harmonic balance computes forces on them.
+    pub fn shapes_of_forces(&self) -> &[ModeShape<D>] {
+        &self.forces
     }
 
     /// Number of bodies.
@@ -132,6 +168,13 @@ impl<const D: usize> Motions<D> {
         let alone = self.bodies.is_empty().then_some(&self.general);
         self.bodies.iter().chain(alone)
     }
+}
+
+/// The shape of a mode from its file.
+pub fn mode_shape<const D: usize>(file: &str, read: ReadFile<'_>) -> Result<ModeShape<D>, MotionError> {
+    let text = read(file).map_err(|source| MotionError::ModeFile { file: file.to_owned(), source })?;
+    let table = read_mode(&text, file, D).map_err(|e| MotionError::Mode(Box::new(e)))?;
+    ModeShape::new(&table).ok_or_else(|| MotionError::Crowded { file: file.to_owned() })
 }
 
 /// What the law of one body is made from.
@@ -170,6 +213,10 @@ impl Builder<'_> {
         }
         if let Some(formula) = &motion.formula {
             law = formulas(formula, omega, law)?;
+        }
+        for mode in &motion.modes {
+            let shape = mode_shape(&mode.file, self.read)?;
+            law = law.with_mode(Arc::new(shape), sine(mode.amplitude, mode.phase.0));
         }
         // only a table file can turn a body unseen by the reader of the case
         if pivot.is_none() && law.turns() {

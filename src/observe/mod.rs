@@ -6,6 +6,7 @@ pub mod loads;
 pub mod table;
 pub mod usage;
 pub mod vtk;
+pub mod vtk_read;
 
 pub use checkpoint::{Array, Checkpoint, CheckpointError, Field};
 pub use table::{FileError, History, write_atomic};

@@ -1,14 +1,17 @@
-//! Two runs of a periodic flow side by side: loads over the period, harmonics, walls, cost.
+//! Two runs of a periodic flow side by side: loads over the period, harmonics, walls, fields, cost.
 //!
 //! The second run is the reference. With first harmonics Â of the first and B̂ of the second run, e_1 = |Â − B̂|/|B̂|,
 //! e_0 is the difference of the means over |B̂|, and e_∞ the greatest difference over the period over half the range of the
-//! reference. Times are those since phase zero of the motion, which is the same in both.
+//! reference. Times are those since phase zero of the motion, which is the same in both. Cost is told in seconds and in work units,
+//! evaluations of the residual of one instance on the whole cloud: a step of a march needs some, an iteration of a harmonic balance
+//! as many as there are instances.
 use std::path::{Path, PathBuf};
 
 use num_complex::Complex64;
 use serde_json::Value;
 
 use super::chart::{Axis, Chart, Marks, Series};
+use super::fields::{self, FieldDifference};
 use super::files::{RunFolder, Table};
 use super::html::page;
 use super::sections::{chart_html, number, table_html};
@@ -47,11 +50,17 @@ pub struct Comparison {
     pub loads: Vec<LoadDifference>,
     /// Processor seconds.
     pub cpu: [f64; 2],
+    /// Wall seconds.
+    pub wall_clock: [f64; 2],
+    /// Evaluations of the residual of one instance; not a number for runs that did not count them.
+    pub work: [f64; 2],
     /// Particles.
     pub particles: [f64; 2],
     /// Root mean square and greatest difference of the wall pressure coefficient at the end of the period, when both runs
     /// have the same wall particles.
     pub wall: Option<[f64; 2]>,
+    /// Differences of the fields, or why they cannot be compared.
+    pub fields: Result<Vec<FieldDifference>, String>,
     charts: Vec<Chart>,
 }
 
@@ -88,8 +97,11 @@ impl Comparison {
         Ok(Self {
             loads,
             cpu: both(&|s| s["cpu_seconds"].as_f64()),
+            wall_clock: both(&|s| s["wall_seconds"].as_f64()),
+            work: both(&|s| s["work_units"].as_f64()),
             particles: both(&|s| s["particles"].as_f64()),
             wall: walls(&runs),
+            fields: fields::differences(&runs, fields::period_of(&second.1)),
             charts: charts(&names, [&first.2, &second.2], &instances),
             runs: [a.to_path_buf(), b.to_path_buf()],
         })
@@ -123,13 +135,49 @@ impl Comparison {
             }
             None => text.push_str("\nwall Cp: the runs have different wall particles\n"),
         }
-        let [a, b] = self.cpu;
-        text.push_str(&format!(
-            "processor time: {a:.1} s and {b:.1} s for {} and {} particles: a is {:.2} times as fast\n",
-            self.particles[0],
-            self.particles[1],
-            b / a
-        ));
+        text.push_str(&self.fields_text());
+        text.push_str(&format!("\n{:<34}{:>12}{:>12}{:>14}\n", "cost", "a", "b", "speed-up of a"));
+        for (name, [a, b]) in self.costs() {
+            text.push_str(&match (a / b).is_finite() {
+                true => format!("{name:<34}{a:>12.1}{b:>12.1}{:>14.2}\n", b / a),
+                false => format!("{name:<34}   not counted by both runs\n"),
+            });
+        }
+        text.push_str(&format!("{:<34}{:>12}{:>12}\n", "particles", self.particles[0], self.particles[1]));
+        text
+    }
+
+    /// What the runs took: name and value for both.
+    fn costs(&self) -> [(&'static str, [f64; 2]); 3] {
+        [
+            ("processor time, s", self.cpu),
+            ("wall time, s", self.wall_clock),
+            ("work, evaluations of an instance", self.work),
+        ]
+    }
+
+    fn fields_text(&self) -> String {
+        let differences = match &self.fields {
+            Ok(differences) => differences,
+            Err(why) => return format!("fields: {why}\n"),
+        };
+        let mut text =
+            format!("\n{:<10}{:<14}{:>12}{:>10}{:>12}{:>10}   at\n", "field", "of", "rms", "part", "greatest", "part");
+        for d in differences {
+            text.push_str(&format!(
+                "{:<10}{:<14}{:>12.3e}{:>8.2} %{:>12.3e}{:>8.2} %   {}\n",
+                d.quantity,
+                d.at.words(),
+                d.rms,
+                100.0 * d.rms / d.scale,
+                d.largest,
+                100.0 * d.largest / d.scale,
+                d.where_it_is()
+            ));
+        }
+        text.push_str(
+            "fields over the fluid particles; parts of half the range of b, of the root mean square of a harmonic of b\n",
+        );
         text
     }
 
@@ -149,7 +197,15 @@ impl Comparison {
                 text.push_str(&format!("{},{name},{value},\n", l.name));
             }
         }
-        text.push_str(&format!("cost,cpu_seconds,{},{}\n", self.cpu[0], self.cpu[1]));
+        for d in self.fields.iter().flatten() {
+            let (name, at, [x, y, z]) = (d.quantity, d.at.words(), d.place);
+            text.push_str(&format!("{name},{at} rms,{},\n{name},{at} rms part,{},\n", d.rms, d.rms / d.scale));
+            text.push_str(&format!("{name},{at} greatest,{},\n{name},{at} place,{x} {y} {z},\n", d.largest));
+        }
+        let costs = [("cpu_seconds", self.cpu), ("wall_seconds", self.wall_clock), ("work_units", self.work)];
+        for (name, [a, b]) in costs {
+            text.push_str(&format!("cost,{name},{a},{b}\ncost,speed-up in {name},{},\n", b / a));
+        }
         text
     }
 
@@ -204,13 +260,30 @@ impl Comparison {
             "greatest",
         ];
         let mut html = table_html(&columns, self.loads.iter().map(row));
-        let [a, b] = self.cpu;
-        let cost = [
-            vec!["processor time, s".to_owned(), number(a), number(b)],
-            vec!["particles".to_owned(), number(self.particles[0]), number(self.particles[1])],
-            vec!["a is faster by".to_owned(), number(b / a), String::new()],
-        ];
-        html.push_str(&table_html(&["", "a", "b"], cost.into_iter()));
+        html.push_str("<h2>Fields</h2>\n");
+        match &self.fields {
+            Ok(differences) => {
+                let row = |d: &FieldDifference| {
+                    let parts = [d.rms, d.rms / d.scale, d.largest, d.largest / d.scale];
+                    let [rms, part, largest, most] =
+                        [number(parts[0]), percent(parts[1]), number(parts[2]), percent(parts[3])];
+                    vec![d.quantity.to_owned(), d.at.words(), rms, part, largest, most, d.where_it_is()]
+                };
+                let columns = ["field", "of", "root mean square", "part", "greatest", "part", "at"];
+                html.push_str(&table_html(&columns, differences.iter().map(row)));
+                html.push_str(
+                    "<p>Over the fluid particles; parts are those of half the range of b, for harmonics of the root mean square of \
+                     that harmonic in b.</p>\n",
+                );
+            }
+            Err(why) => html.push_str(&format!("<p>{}</p>\n", escape(why))),
+        }
+        html.push_str("<h2>Cost</h2>\n");
+        let told = |v: f64| if v.is_finite() { number(v) } else { "not counted".to_owned() };
+        let cost = self.costs().map(|(name, [a, b])| vec![name.to_owned(), told(a), told(b), told(b / a)]);
+        let particles =
+            vec!["particles".to_owned(), number(self.particles[0]), number(self.particles[1]), String::new()];
+        html.push_str(&table_html(&["", "a", "b", "speed-up of a"], cost.into_iter().chain([particles])));
         html
     }
 }
@@ -279,12 +352,12 @@ mod tests {
     use super::*;
     use crate::report::html::tests::assert_balanced;
 
-    fn run(folder: &Path, amplitude: f64, cpu: f64) {
+    fn run(folder: &Path, amplitude: f64, (cpu, work): (f64, f64)) {
         std::fs::create_dir_all(folder).unwrap();
         let write = |name: &str, text: &str| std::fs::write(folder.join(name), text).unwrap();
         let load = format!("{{\"mean\":0.1,\"harmonics\":[{{\"re\":0.0,\"im\":-{amplitude}}}]}}");
         write("harmonics.json", &format!("{{\"omega\":2.0,\"loads\":{{\"cl\":{load},\"cd\":{load},\"cm\":{load}}}}}"));
-        write("summary.json", &format!("{{\"cpu_seconds\":{cpu},\"particles\":100}}"));
+        write("summary.json", &format!("{{\"cpu_seconds\":{cpu},\"particles\":100,\"work_units\":{work}}}"));
         let rows = (0..8).map(|k| {
             let phase = f64::from(k) / 8.0;
             let sine = (phase * std::f64::consts::TAU).sin();
@@ -299,15 +372,19 @@ mod tests {
     fn two_runs_are_set_side_by_side() {
         let root = tempfile::tempdir().unwrap();
         let (a, b) = (root.path().join("a"), root.path().join("b"));
-        run(&a, 1.01, 2.0);
-        run(&b, 1.0, 20.0);
+        run(&a, 1.01, (2.0, 10.0));
+        run(&b, 1.0, (20.0, 40.0));
         let found = Comparison::of(&a, &b).unwrap();
         assert_eq!(found.loads.len(), 3);
         let lift = &found.loads[0];
         assert!((lift.e1 - 0.01).abs() < 1e-12 && lift.e0 == 0.0 && (lift.largest - 0.01).abs() < 1e-12, "{lift:?}");
         assert_eq!(found.wall, Some([0.0, 0.0]));
         let text = found.text();
-        assert!(text.contains("10.00 times as fast") && text.contains("+1.00 %"), "{text}");
+        assert!(text.contains("20.0         10.00\n") && text.contains("+1.00 %"), "{text}");
+        assert!(text.contains("40.0          4.00\n") && text.contains("wall time, s"), "{text}");
+        assert!(text.contains("fields: the runs have no field at the same phase"), "{text}");
+        let csv = found.csv();
+        assert!(csv.contains("cost,speed-up in work_units,4,") && csv.contains("cost,wall_seconds,NaN,NaN"), "{csv}");
         let page = std::fs::read_to_string(found.write(&root.path().join("c")).unwrap()).unwrap();
         assert_balanced(&page);
         assert!(root.path().join("c/comparison.csv").is_file());

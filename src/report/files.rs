@@ -75,9 +75,8 @@ impl RunFolder {
     }
 
     fn reference(&self, file: &str, label: &str) -> Result<Reference, String> {
-        let summary = self.json("summary.json").unwrap_or_default();
-        let case_file = summary.get("case").and_then(Value::as_str).map(PathBuf::from).unwrap_or_default();
-        let beside = [Some(self.path.as_path()), self.path.parent(), case_file.parent()];
+        let origin = self.text("origin.txt").map(|text| PathBuf::from(text.trim())).ok();
+        let beside = [Some(self.path.as_path()), self.path.parent(), origin.as_deref()];
         let path = beside.into_iter().flatten().map(|folder| folder.join(file)).find(|path| path.is_file());
         let path = path.ok_or_else(|| format!("the reference `{file}` was not found"))?;
         let table = Table::parse(&read_text(&path, file)?).map_err(|e| format!("`{file}` is not a table: {e}"))?;

@@ -12,6 +12,7 @@ pub mod chart;
 pub mod colour;
 pub mod compare;
 mod contour;
+pub mod fields;
 mod files;
 mod font;
 pub mod html;

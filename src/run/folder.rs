@@ -30,9 +30,16 @@ pub(super) fn create(case: &Case, places: &Places) -> Result<(), RunError> {
         ))
     })?;
     write_atomic(&out.join("case.toml"), |w| w.write_all(write(case).as_bytes()))?;
-    let input = fs::canonicalize(&places.input).unwrap_or_else(|_| places.input.clone());
+    let input = absolute(&places.input).map_err(|e| {
+        RunError::Folder(format!("the folder `{}` of the case file cannot be found again: {e}", places.input.display()))
+    })?;
     write_atomic(&out.join(ORIGIN), |w| writeln!(w, "{}", input.display()))?;
     Ok(())
+}
+
+/// The same place from any working folder; no name stands for the working folder itself.
+fn absolute(folder: &Path) -> std::io::Result<PathBuf> {
+    fs::canonicalize(if folder.as_os_str().is_empty() { Path::new(".") } else { folder })
 }
 
 /// The case of a run folder, and the folder its file names refer to.
@@ -44,6 +51,22 @@ pub(super) fn read_case(out: &Path) -> Result<(Case, PathBuf), RunError> {
     let case = read(&text, &path.display().to_string()).map_err(|e| RunError::Folder(e.to_string()))?;
     let origin = fs::read_to_string(out.join(ORIGIN)).unwrap_or_default();
     Ok((case, PathBuf::from(origin.trim())))
+}
+
+/// Refuses to go on with a case whose files are no longer where they were.
+pub(super) fn check_input(case: &Case, (input, out): (&Path, &Path)) -> Result<(), RunError> {
+    let missing: Vec<String> = case.files().filter(|f| !input.join(f).is_file()).map(|f| format!("`{f}`")).collect();
+    if missing.is_empty() {
+        return Ok(());
+    }
+    let note = out.join(ORIGIN);
+    Err(RunError::Folder(format!(
+        "the case of this run names the files {}, which are not in `{}`\nhint: put them back, or write the folder they are in now \
+         into `{}`",
+        missing.join(", "),
+        input.display(),
+        note.display()
+    )))
 }
 
 /// Text of a file that a case or a run refers to.

@@ -7,7 +7,7 @@ use super::RunError;
 use crate::case::{Case, ParticleMotion, Temporal};
 use crate::cloud::Cloud;
 use crate::math::{Bounds, Vector};
-use crate::motion::Motions;
+use crate::motion::{Motions, Track};
 
 /// Times at which bodies are looked at, at most.
 const TIMES: usize = 512;
@@ -18,9 +18,9 @@ const GAP: f64 = 0.5;
 
 /// One body with the interface particles that lie in the domain.
 struct Body<'a, const D: usize> {
-    number: usize,
     name: String,
     points: Vec<(&'a Vector<D>, f64)>,
+    track: Track<D>,
 }
 
 /// Looks at the whole march; what is worth knowing, or why it cannot be done.
@@ -33,36 +33,36 @@ pub(super) fn look<const D: usize>(
     let Some(end) = case.time.end(period).filter(|_| motions.moves() && !cloud.interface.is_empty()) else {
         return Ok(Vec::new());
     };
-    let bodies = bodies(case, cloud);
+    let bodies = bodies(case, cloud, motions);
     let span = period.map_or(end, |p| p.min(end));
     if case.particles() != ParticleMotion::Rigid {
         for k in 0..=TIMES {
             let t = span * k as f64 / TIMES as f64;
-            stays_inside(&bodies, motions, &cloud.tree.bounds(), t)?;
-            keeps_apart(&bodies, motions, t)?;
+            stays_inside(&bodies, &cloud.tree.bounds(), t)?;
+            keeps_apart(&bodies, t)?;
         }
     }
-    Ok(longest_way(case, &bodies, motions, (period, span)).into_iter().collect())
+    Ok(longest_way(case, &bodies, (period, span)).into_iter().collect())
 }
 
-fn bodies<'a, const D: usize>(case: &Case, cloud: &'a Cloud<D>) -> Vec<Body<'a, D>> {
+fn bodies<'a, const D: usize>(case: &Case, cloud: &'a Cloud<D>, motions: &Motions<D>) -> Vec<Body<'a, D>> {
     let named = |b: usize| case.bodies[b].name.clone().unwrap_or_else(|| format!("body {}", b + 1));
     let points = |b: usize| {
         let own = cloud.interface_range().zip(&cloud.interface).filter(|(_, w)| usize::from(w.body) == b);
         own.map(|(i, _)| (&cloud.x[i], cloud.spacing[i])).collect::<Vec<_>>()
     };
-    (0..case.bodies.len()).map(|b| Body { number: b, name: named(b), points: points(b) }).collect()
+    let body = |b: usize| {
+        let points = points(b);
+        let places: Vec<Vector<D>> = points.iter().map(|(x, _)| **x).collect();
+        Body { name: named(b), track: Track::new(motions.of(b), &places), points }
+    };
+    (0..case.bodies.len()).map(body).collect()
 }
 
-fn stays_inside<const D: usize>(
-    bodies: &[Body<'_, D>],
-    motions: &Motions<D>,
-    domain: &Bounds<D>,
-    t: f64,
-) -> Result<(), RunError> {
+fn stays_inside<const D: usize>(bodies: &[Body<'_, D>], domain: &Bounds<D>, t: f64) -> Result<(), RunError> {
     for body in bodies {
-        let pose = motions.of(body.number).pose(t);
-        let out = body.points.iter().map(|(x, _)| pose.point(x)).find(|x| !domain.contains(x));
+        let at = body.track.at(t);
+        let out = body.points.iter().enumerate().map(|(k, (x, _))| at(k, x)).find(|x| !domain.contains(x));
         if let Some(x) = out {
             return Err(RunError::Motion(format!(
                 "`{}` leaves the domain at t = {t:.4}, at {}\nhint: give it more room with `cloud.domain` or \
@@ -75,17 +75,17 @@ fn stays_inside<const D: usize>(
     Ok(())
 }
 
-fn keeps_apart<const D: usize>(bodies: &[Body<'_, D>], motions: &Motions<D>, t: f64) -> Result<(), RunError> {
+fn keeps_apart<const D: usize>(bodies: &[Body<'_, D>], t: f64) -> Result<(), RunError> {
     let carried: Vec<Vec<(Vector<D>, f64)>> = bodies
         .iter()
         .map(|b| {
-            let (pose, every) = (motions.of(b.number).pose(t), b.points.len().div_ceil(POINTS).max(1));
+            let (at, every) = (b.track.at(t), b.points.len().div_ceil(POINTS).max(1));
             // particles that are left out leave gaps: a point stands for all of its neighbourhood
-            b.points.iter().step_by(every).map(|(x, h)| (pose.point(x), h * every as f64)).collect()
+            b.points.iter().enumerate().step_by(every).map(|(k, (x, h))| (at(k, x), h * every as f64)).collect()
         })
         .collect();
     for (a, b) in (0..bodies.len()).flat_map(|a| (a + 1..bodies.len()).map(move |b| (a, b))) {
-        if motions.of(a).is_fixed() && motions.of(b).is_fixed() {
+        if bodies[a].track.law().is_fixed() && bodies[b].track.law().is_fixed() {
             continue;
         }
         let [one, other] = [a, b].map(|k| Bounds::around(carried[k].iter().map(|(x, _)| x)));
@@ -114,7 +114,6 @@ fn keeps_apart<const D: usize>(bodies: &[Body<'_, D>], motions: &Motions<D>, t: 
 fn longest_way<const D: usize>(
     case: &Case,
     bodies: &[Body<'_, D>],
-    motions: &Motions<D>,
     (period, span): (Option<f64>, f64),
 ) -> Option<String> {
     let Temporal::Dual(dual) = &case.time else { return None };
@@ -124,10 +123,9 @@ fn longest_way<const D: usize>(
     let mut worst = (0.0, 0.0, "");
     for t in looked_at {
         for body in bodies {
-            let law = motions.of(body.number);
-            let (from, to) = (law.pose(t), law.pose(t + dt));
-            for (x, h) in &body.points {
-                let way = (to.point(x) - from.point(x)).norm() / h;
+            let (from, to) = (body.track.at(t), body.track.at(t + dt));
+            for (k, (x, h)) in body.points.iter().enumerate() {
+                let way = (to(k, x) - from(k, x)).norm() / h;
                 if way > worst.0 {
                     worst = (way, t, body.name.as_str());
                 }

@@ -6,13 +6,16 @@ use serde::Serialize;
 use serde_json::json;
 
 use super::{Monitor, Outcome, Places, RunError, Summary, setup};
-use crate::case::{Case, Gaf, Mode};
+use crate::case::{AnyMode, Case, Gaf, Mode};
 use crate::observe::table::{Entry, write_csv, write_json};
 
 /// What files say about signs and units.
 const CONVENTION: &str = "f(t) = Re f exp(+i omega t); Cl = lift/(q c), up positive; Cm = moment/(q c^2) about the pivot, nose up \
-                          positive; columns per plunge over the length L (up positive) and per radian of pitch (nose up positive); \
-                          k = omega L/U with L as given; phase positive when the load leads the motion";
+                          positive; columns per plunge over the length L (up positive), per radian of pitch (nose up positive), \
+                          per unit of the coordinate of a flexible mode; Q_ij = work of the gas per unit of coordinate i, due to \
+                          coordinate j, over q S c (2-D: S = c), with the coordinates of the columns: the row of pitch is Cm, that \
+                          of plunge the upward force over q S times L/c; k = omega L/U with L as given; phase positive when the \
+                          load leads the motion";
 
 /// One column of the matrix at one frequency.
 #[derive(Clone, Debug, Serialize)]
@@ -20,12 +23,14 @@ pub struct Column {
     /// Reduced frequency.
     pub k: f64,
     /// Mode that moves.
-    pub mode: &'static str,
+    pub mode: String,
     /// Lift over motion: real and imaginary part.
     pub cl: [f64; 2],
     /// Moment over motion.
     pub cm: [f64; 2],
-    /// Greatest change of lift or moment, over the larger of both, when the amplitude is halved.
+    /// Generalised force on every mode over motion, see [`super::forces`].
+    pub q: Vec<[f64; 2]>,
+    /// Greatest change of lift, moment or generalised force, over the largest of them, when the amplitude is halved.
     pub nonlinearity: f64,
     /// Processor seconds of both solutions.
     pub cpu_seconds: f64,
@@ -36,6 +41,8 @@ pub struct Column {
 /// Matrices of all frequencies.
 #[derive(Clone, Debug)]
 pub struct Matrices {
+    /// Names of the modes, in the order of rows and columns.
+    pub modes: Vec<String>,
     /// Columns, frequency by frequency in the order of the case.
     pub columns: Vec<Column>,
     /// Change above which a column is told to be nonlinear.
@@ -51,9 +58,10 @@ pub fn gaf(case: &Case, places: &Places, monitor: &mut dyn Monitor) -> Result<Op
     };
     setup::supported(case)?;
     super::folder::create(case, places)?;
-    let mut matrices = Matrices { columns: Vec::new(), linearity: plan.linearity };
+    let modes = plan.all_modes().map(|m| m.name().to_owned()).collect();
+    let mut matrices = Matrices { modes, columns: Vec::new(), linearity: plan.linearity };
     for &k in &plan.reduced_frequencies {
-        for &mode in &plan.modes {
+        for mode in plan.all_modes() {
             let Some(column) = column(case, &plan, (mode, k), places, monitor)? else { return Ok(None) };
             monitor.note(&format!(
                 "k = {k}, {}: Cl {:+.4} {:+.4}i, Cm {:+.4} {:+.4}i, halved amplitude changes {:.2} %",
@@ -65,7 +73,7 @@ pub fn gaf(case: &Case, places: &Places, monitor: &mut dyn Monitor) -> Result<Op
                 100.0 * column.nonlinearity
             ));
             matrices.columns.push(column);
-            matrices.write(&plan, &places.out)?;
+            matrices.write(&plan.reduced_frequencies, &places.out)?;
         }
     }
     Ok(Some(matrices))
@@ -75,7 +83,7 @@ pub fn gaf(case: &Case, places: &Places, monitor: &mut dyn Monitor) -> Result<Op
 fn column(
     case: &Case,
     plan: &Gaf,
-    (mode, k): (Mode, f64),
+    (mode, k): (AnyMode<'_>, f64),
     places: &Places,
     monitor: &mut dyn Monitor,
 ) -> Result<Option<Column>, RunError> {
@@ -89,68 +97,79 @@ fn column(
         };
         cpu_seconds += summary.cpu_seconds;
         converged &= summary.converged;
-        found.push(loads(&summary, plan, mode)?);
+        found.push(loads(&summary, plan, (mode, factor))?);
     }
-    let (whole, half) = (found[0], found[1]);
+    let (whole, half) = (&found[0], &found[1]);
     let size = whole.iter().map(|c| c.norm()).fold(f64::MIN_POSITIVE, f64::max);
-    let change = whole.iter().zip(&half).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
-    let [cl, cm] = whole.map(|c| [c.re, c.im]);
-    Ok(Some(Column { k, mode: mode.name(), cl, cm, nonlinearity: change / size, cpu_seconds, converged }))
+    let change = whole.iter().zip(half).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
+    let parts: Vec<[f64; 2]> = whole.iter().map(|c| [c.re, c.im]).collect();
+    Ok(Some(Column {
+        k,
+        mode: mode.name().to_owned(),
+        cl: parts[0],
+        cm: parts[1],
+        q: parts[2..].to_vec(),
+        nonlinearity: change / size,
+        cpu_seconds,
+        converged,
+    }))
 }
 
-/// Lift and moment over the motion.
-fn loads(summary: &Summary, plan: &Gaf, mode: Mode) -> Result<[Complex64; 2], RunError> {
-    let part = |name: &str| match mode {
-        Mode::Pitch => name == "angle",
-        Mode::Plunge => name.starts_with("shift"),
+/// Lift, moment and generalised forces over the motion, which has `factor` times the amplitude of `[gaf]`.
+fn loads(summary: &Summary, plan: &Gaf, (mode, factor): (AnyMode<'_>, f64)) -> Result<Vec<Complex64>, RunError> {
+    let length = plan.reduced_length.map_or(0.5 * summary.chord, |l| l.0);
+    // the part of the motion, the coordinate per unit of it, the amplitude of the coordinate
+    let (part, scale, amplitude) = match mode {
+        AnyMode::Rigid(Mode::Pitch) => ("angle", 1.0, plan.pitch.0),
+        AnyMode::Rigid(Mode::Plunge) => ("shift", length, plan.plunge.0 / length),
+        AnyMode::Flexible(mode) => ("mode", 1.0, mode.amplitude),
     };
-    let found = summary.first_harmonics.iter().find(|h| part(h.motion));
+    let found = summary.first_harmonics.iter().find(|h| h.motion.starts_with(part));
     let found = found.ok_or_else(|| RunError::Folder(format!("the run of {} shows no motion", mode.name())))?;
-    // per length L rather than per unit length
-    let scale = match mode {
-        Mode::Pitch => 1.0,
-        Mode::Plunge => plan.reduced_length.map_or(0.5 * summary.chord, |l| l.0),
-    };
-    Ok([found.cl, found.cm].map(|[re, im]| Complex64::new(re, im) * scale))
+    let loads = [found.cl, found.cm].map(|[re, im]| Complex64::new(re, im) * scale);
+    let forces = summary.generalised_forces.iter().map(|f| f.per(factor * amplitude));
+    Ok(loads.into_iter().chain(forces).collect())
 }
 
 impl Matrices {
-    fn write(&self, plan: &Gaf, out: &Path) -> Result<(), RunError> {
+    /// Writes `gaf.csv`, a row for each column of the matrices, and `gaf.json`.
+    fn write(&self, frequencies: &[f64], out: &Path) -> Result<(), RunError> {
         let rows = self.columns.iter().map(|c| {
-            let mut row = vec![Entry::from(c.k), Entry::from(c.mode)];
+            let mut row = vec![Entry::from(c.k), Entry::from(c.mode.as_str())];
             for [re, im] in [c.cl, c.cm] {
                 let value = Complex64::new(re, im);
                 row.extend([re, im, value.norm(), value.arg().to_degrees()].map(Entry::from));
             }
+            row.extend(c.q.iter().flatten().map(|v| Entry::from(*v)));
             row.push(Entry::from(c.nonlinearity));
             row
         });
-        let names = [
-            "k",
-            "mode",
-            "cl_re",
-            "cl_im",
-            "cl_abs",
-            "cl_phase_deg",
-            "cm_re",
-            "cm_im",
-            "cm_abs",
-            "cm_phase_deg",
-            "nonlinearity",
-        ];
+        let parts = |load: &str| ["re", "im", "abs", "phase_deg"].map(|part| format!("{load}_{part}"));
+        let mut names: Vec<String> = ["k".into(), "mode".into()].into();
+        names.extend(["cl", "cm"].iter().flat_map(|load| parts(load)));
+        names.extend(self.modes.iter().flat_map(|m| [format!("q_{m}_re"), format!("q_{m}_im")]));
+        names.push("nonlinearity".into());
+        let names: Vec<&str> = names.iter().map(String::as_str).collect();
         write_csv(&out.join("gaf.csv"), &names, rows)?;
-        let matrix = |k: f64| {
-            let of =
-                |load: fn(&Column) -> [f64; 2]| self.columns.iter().filter(|c| c.k == k).map(load).collect::<Vec<_>>();
-            json!({ "k": k, "cl": of(|c| c.cl), "cm": of(|c| c.cm) })
-        };
         let whole = json!({
             "convention": CONVENTION,
             "rows": ["cl", "cm"],
-            "modes": plan.modes,
-            "matrices": plan.reduced_frequencies.iter().map(|k| matrix(*k)).collect::<Vec<_>>(),
+            "modes": self.modes,
+            "matrices": frequencies.iter().map(|k| self.matrix(*k)).collect::<Vec<_>>(),
             "columns": self.columns,
         });
         Ok(write_json(&out.join("gaf.json"), &whole)?)
+    }
+
+    /// Rows `cl` and `cm`, and the square matrix `q`: `q[i][j]` is the force on mode i that mode j makes.
+    fn matrix(&self, k: f64) -> serde_json::Value {
+        let columns: Vec<&Column> = self.columns.iter().filter(|c| c.k == k).collect();
+        let row = |i: usize| columns.iter().map(|c| c.q[i]).collect::<Vec<_>>();
+        json!({
+            "k": k,
+            "cl": columns.iter().map(|c| c.cl).collect::<Vec<_>>(),
+            "cm": columns.iter().map(|c| c.cm).collect::<Vec<_>>(),
+            "q": (0..self.modes.len()).map(row).collect::<Vec<_>>(),
+        })
     }
 }

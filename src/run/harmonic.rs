@@ -104,6 +104,10 @@ pub(super) fn balance<const D: usize>(
             tell(plan, &report, journal);
             let outcome = Periodic { balance: &balance, fluid, state: &state };
             outcome.trace(journal, period);
+            if let Some(forms) = &solver.forms {
+                let frames = balance.frame(&Moment::At { time: 0.0 }, &state);
+                journal.forces = forms.over_a_period(&balance, fluid, (&frames, &state));
+            }
             outcome.write(journal, solver, period)?;
             journal.balance = Some(report);
             let mut first = vec![0.0; fluid.len()];
@@ -149,6 +153,9 @@ fn repeats<const D: usize>(carriage: &Carriage<D>, period: f64) -> Result<(), Ru
             let (a, b) = (law.pose(part * period), law.pose((part + 1.0) * period));
             let places = std::iter::once(Vector::ZERO).chain((0..D).map(Vector::axis));
             let miss = places.map(|x| (a.point(&x) - b.point(&x)).norm()).fold(0.0, f64::max);
+            let (p, q) = (law.coordinates(part * period), law.coordinates((part + 1.0) * period));
+            let bend = p.iter().zip(&q).zip(law.shapes()).map(|((p, q), shape)| (p - q).abs() * shape.size());
+            let miss = bend.fold(miss, f64::max);
             if miss > REPEATS {
                 let hint = "harmonic balance needs a motion that repeats; march with `[time.dual]` instead";
                 let text =
@@ -208,6 +215,8 @@ fn converge<const D: usize>(
     }
     let mut work = fluid.work();
     relax.evaluations = progress.evaluations;
+    let instances = balance.times().len();
+    journal.work.begin(relax.evaluations);
     let mut reached = !fresh && progress.reached(relax.drop(), goal, plan.tolerance);
     while !reached && relax.iteration < plan.iterations {
         let step = match relax.advance() {
@@ -218,6 +227,7 @@ fn converge<const D: usize>(
             }
         };
         journal.count();
+        journal.work.add(relax.evaluations, instances * fluid.shape.cloud.n_fluid);
         let (frames, _, state) = relax.parts();
         let series = loads(balance, fluid, (frames, state), &mut work, journal);
         let mean = series.as_ref().map(|s| {
@@ -251,7 +261,7 @@ fn converge<const D: usize>(
     }
     (journal.drop, journal.converged) = (relax.drop(), reached);
     (journal.bytes, journal.linear) = (relax.bytes(), relax.linear);
-    journal.evaluations += relax.evaluations * balance.times().len() as u64;
+    journal.evaluations += relax.evaluations * instances as u64;
     journal.save_with(at, 0.0, (&relax.u, relax.resume()), progress.kept(&relax))?;
     Ok(Some(relax.u))
 }
@@ -404,8 +414,8 @@ impl<const D: usize> Periodic<'_, D> {
         }
         let instance = |frame: &Frame<D>| {
             let phase = std::f64::consts::TAU * frame.time / period;
-            let [angle, x, y, z] = super::solve::motion(self.fluid, frame.time);
-            let shift = [x, y, z].into_iter().find(|s| s.abs() > 0.0).unwrap_or(0.0);
+            let [angle, x, y, z, mode] = super::solve::motion(self.fluid, frame.time);
+            let shift = [x, y, z, mode].into_iter().find(|s| s.abs() > 0.0).unwrap_or(0.0);
             [frame.time / period, angle.to_degrees(), shift, cl.at(phase), cd.at(phase), cm.at(phase)]
         };
         journal.instances = frames.iter().map(instance).collect();

@@ -90,6 +90,8 @@ impl Measured {
             Metric::ThinLiftPhase => self.thin(others, Self::lift).map(|c| c.arg().to_degrees()),
             Metric::ThinMomentAmplitude => self.thin(others, Self::moment).map(|c| c.norm()),
             Metric::ThinMomentPhase => self.thin(others, Self::moment).map(|c| c.arg().to_degrees()),
+            Metric::ThinForceAmplitude => self.thin(others, Self::force).map(|c| c.norm()),
+            Metric::ThinForcePhase => self.thin(others, Self::force).map(|c| c.arg().to_degrees()),
             Metric::ResidualDrop => Ok(s.residual_drop),
             Metric::Converged => Ok(f64::from(u8::from(s.converged))),
             Metric::Particles => Ok(s.particles as f64),
@@ -224,23 +226,28 @@ impl Measured {
         Ok(value)
     }
 
-    /// Thickness of the section in parts of the chord.
+    /// First harmonic of the force on the first flexible mode of `[gaf]` over that of the mode that moves.
+    fn force(&self) -> Result<Complex64, String> {
+        let name = self.case.gaf.as_ref().and_then(|g| g.flexible.first()).map(|m| m.name.clone());
+        let force = self.summary.generalised_forces.iter().find(|f| Some(&f.mode) == name.as_ref());
+        let force =
+            force.ok_or("the run has no force on a flexible mode: add `[[gaf.mode]]` and `[time] harmonics`")?;
+        let moving = self.case.motion_of(0).and_then(|law| law.modes.first());
+        let mode = moving.ok_or("no mode of `[motion]` moves the body")?;
+        Ok(force.per(mode.amplitude) * Complex64::cis(-mode.phase.0))
+    }
+
+    /// Thickness of the section in parts of the chord: of a NACA one by its digits, of others by the extent of their walls.
     fn thickness(&self) -> Result<f64, String> {
-        let unknown = || "the body is neither a NACA 4-digit section nor a polygon".to_owned();
-        match &self.case.bodies.first().ok_or_else(unknown)?.shape {
-            Shape::Naca(naca) => {
-                let digits = naca.digits.get(2..4).and_then(|d| d.parse::<f64>().ok());
-                digits.map(|d| 0.01 * d).ok_or_else(unknown)
-            }
-            Shape::Polygon(points) => {
-                let extent = |d: usize| {
-                    let all = points.iter().map(|p| p[d]);
-                    all.clone().fold(f64::MIN, f64::max) - all.fold(f64::MAX, f64::min)
-                };
-                Ok(extent(1) / extent(0))
-            }
-            _ => Err(unknown()),
+        let digits = self.case.bodies.first().and_then(|b| match &b.shape {
+            Shape::Naca(naca) => naca.digits.get(2..4)?.parse::<f64>().ok(),
+            _ => None,
+        });
+        if let Some(digits) = digits {
+            return Ok(0.01 * digits);
         }
+        let extent = Bounds::around(&self.wall.x).extent();
+        if self.wall.is_empty() { Err(no_wall()) } else { Ok(extent[1] / extent[0]) }
     }
 
     /// Cp of the wall particles in the region less the reference there.

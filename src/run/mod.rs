@@ -6,6 +6,7 @@
 //! where the integrator stands; a killed run goes on to the same bits.
 mod balance;
 mod folder;
+pub mod forces;
 mod foresee;
 mod friction;
 pub mod gaf;
@@ -222,6 +223,7 @@ enum Origin {
 /// Goes on with an interrupted or killed run.
 pub fn resume(out: &Path, monitor: &mut dyn Monitor) -> Result<Outcome, RunError> {
     let (case, input) = folder::read_case(out)?;
+    folder::check_input(&case, (&input, out))?;
     let places = Places { input, out: out.to_path_buf() };
     let saved = persist::Saved::read(out)?;
     match dimension(&case) {

@@ -28,8 +28,8 @@ pub(super) struct Sample {
     pub(super) time: f64,
     /// Loads.
     pub(super) loads: Coefficients,
-    /// Angle (radians, nose up) and displacement of the first body that moves.
-    pub(super) motion: [f64; 4],
+    /// Angle (radians, nose up), displacement and coordinate of the first mode of the first body that moves.
+    pub(super) motion: [f64; 5],
 }
 
 /// The history of the loads of a march.
@@ -67,7 +67,7 @@ pub struct LastPeriod {
 /// First harmonics of the loads over that of one part of the motion: real and imaginary parts.
 #[derive(Clone, Debug, Serialize)]
 pub struct FirstHarmonics {
-    /// `angle` (loads per radian) or `shift_x`, `shift_y`, `shift_z` (per length).
+    /// `angle` (loads per radian), `shift_x`, `shift_y`, `shift_z` (per length) or `mode` (per unit of its coordinate).
     pub motion: &'static str,
     /// Lift.
     pub cl: [f64; 2],
@@ -81,7 +81,7 @@ pub struct FirstHarmonics {
 type Moved = Vec<(&'static str, Harmonics)>;
 
 /// Parts of a motion.
-const PARTS: [&str; 4] = ["angle", "shift_x", "shift_y", "shift_z"];
+const PARTS: [&str; 5] = ["angle", "shift_x", "shift_y", "shift_z", "mode"];
 
 impl Trace {
     /// Series of the loads and of the parts of the motion that are there, from the last period.
@@ -183,13 +183,13 @@ impl Trace {
         let loads: Option<Vec<usize>> = ["time", "cl", "cd", "cm"].into_iter().map(place).collect();
         let Some(loads) = loads else { return Self::default() };
         // bodies that stay where they are have no columns of motion
-        let motion = ["angle_deg", "shift_x", "shift_y", "shift_z"].map(place);
+        let motion = ["angle_deg", "shift_x", "shift_y", "shift_z", "mode"].map(place);
         let row = |line: &str| {
             let values: Vec<f64> = line.split(',').map(|v| v.parse().unwrap_or(f64::NAN)).collect();
             let get = |at: usize| values.get(at).copied().unwrap_or(f64::NAN);
-            let [angle, x, y, z] = motion.map(|at| at.map_or(0.0, get));
+            let [angle, x, y, z, mode] = motion.map(|at| at.map_or(0.0, get));
             let coefficients = Coefficients { cl: get(loads[1]), cd: get(loads[2]), cm: get(loads[3]) };
-            Sample { time: get(loads[0]), loads: coefficients, motion: [angle.to_radians(), x, y, z] }
+            Sample { time: get(loads[0]), loads: coefficients, motion: [angle.to_radians(), x, y, z, mode] }
         };
         // iterations before the march stand at time zero
         Self {
@@ -226,7 +226,7 @@ impl Trace {
         };
         let whole = json!({
             "convention": "f(t) = mean + Re sum f_n exp(+i n omega t); ratios are first harmonic of the load over that of \
-                           the motion (radians, lengths), phase positive when the load leads; times are those of the run",
+                           the motion (radians, lengths, coordinate of a mode), phase positive when the load leads; times are those of the run",
             "omega": cl.omega,
             "period": period,
             "change_over_last_period": self.change(period),
@@ -274,7 +274,7 @@ mod tests {
             let t = 0.02 * f64::from(k);
             let cl = if t > 2.99 { 0.3 + (std::f64::consts::PI * t).sin() } else { 7.0 };
             let loads = Coefficients { cl, cd: 2.0 * cl, cm: 0.0 };
-            trace.push(Sample { time: t, loads, motion: [0.0; 4] });
+            trace.push(Sample { time: t, loads, motion: [0.0; 5] });
         }
         let last = trace.last_period(2.0).unwrap();
         assert!((last.mean_cl - 0.3).abs() < 1e-12 && (last.peak_cl - 1.3).abs() < 1e-3, "{last:?}");
@@ -293,7 +293,7 @@ mod tests {
             let time = f64::from(k) / 16.0;
             // grows by one from period to period
             let cl = (std::f64::consts::TAU * time).sin() + time.floor();
-            Sample { time, loads: Coefficients { cl, cd: 1.0, cm: 0.0 }, motion: [0.0; 4] }
+            Sample { time, loads: Coefficients { cl, cd: 1.0, cm: 0.0 }, motion: [0.0; 5] }
         };
         let mut trace = Trace::default();
         (1..=48).for_each(|k| trace.push(sample(k)));

@@ -46,6 +46,8 @@ struct Meta {
     cpu_seconds: f64,
     wall_seconds: f64,
     #[serde(default)]
+    work: u64,
+    #[serde(default)]
     steps: [u64; 3],
     #[serde(default)]
     broad: bool,
@@ -155,6 +157,8 @@ pub(super) struct Saved {
     pub(super) cpu_seconds: f64,
     /// Wall time spent before.
     pub(super) wall_seconds: f64,
+    /// Work done before, see [`super::summary::Work`].
+    pub(super) work: u64,
     /// Where an implicit march stands.
     pub(super) past: Past,
     /// Particles that travel with the fluid.
@@ -181,6 +185,7 @@ impl Saved {
             cycles: Vec::new(),
             cpu_seconds: 0.0,
             wall_seconds: 0.0,
+            work: 0,
             past: Past::default(),
             roaming: None,
             sources: at.sources.to_vec(),
@@ -213,6 +218,7 @@ impl Saved {
             cpu_seconds: self.cpu_seconds,
             wall_seconds: self.wall_seconds,
             broad: self.past.broad,
+            work: self.work,
             steps: [self.past.last.to_bits(), self.past.next.to_bits(), u64::from(self.past.unconverged)],
             roaming: self.roaming.as_ref().map(Roaming::counts),
         };
@@ -270,6 +276,7 @@ impl Saved {
             cycles: m.cycles,
             cpu_seconds: m.cpu_seconds,
             wall_seconds: m.wall_seconds,
+            work: m.work,
             past: Past {
                 time: f64::from_bits(m.time_bits),
                 iteration: m.stage_iteration,

@@ -3,6 +3,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::RunError;
+use super::forces::Forms;
 use crate::case::{Body, Case, Dual, Harmonics, Initial, Length, ParticleMotion, Steady, SteadyMethod, Temporal, Wall};
 use crate::cloud::conservative::conservative as conserve;
 use crate::cloud::sources::Source;
@@ -11,13 +12,13 @@ use crate::cloud::{Cloud, Operators};
 use crate::geometry::{GeometryError, Surface, load_surface};
 use crate::math::multilevel::Cycle;
 use crate::math::{Bounds, Vector};
-use crate::motion::{Law, Motions};
+use crate::motion::{Law, ModeShape, Motions};
 use crate::physics::{Conserved, Gas, Newtonian};
 use crate::scheme::blend::Blend;
 use crate::scheme::probe::Probe;
 use crate::scheme::reconstruct::Reconstruction;
 use crate::scheme::start::{Stream, initial};
-use crate::scheme::{Carriage, Contact, Fluid, Friction, Shape, Travel};
+use crate::scheme::{Carriage, Contact, Fluid, Friction, Shape, Skin, Travel};
 use crate::system::{Moment, System};
 use crate::time::dual::Plan;
 use crate::time::relax::{Control, Method};
@@ -30,6 +31,14 @@ const CONSERVATIVE: bool = true;
 
 /// Relative difference of entropy that counts as none.
 const ONE_ENTROPY: f64 = 1e-6;
+
+/// Extents of a body by which the points of a mode may lie beside it.
+const OFF: f64 = 0.5;
+/// Least extent of the points of a mode over that of the body: a scale of ten, thousand or 25.4 shows.
+const SMALL: f64 = 0.2;
+
+/// Greatest one: a mode of a whole aircraft may carry a flap.
+const LARGE: f64 = 100.0;
 
 /// Greatest number of iterations of the relaxation before a march.
 const PRELUDE_ITERATIONS: u32 = 500;
@@ -123,6 +132,8 @@ pub(super) struct Solver<const D: usize> {
     pub(super) fluid: Fluid<D>,
     /// The bodies, where pictures are drawn on the way.
     pub(super) film: Option<Surface<D>>,
+    /// Modes that a harmonic balance computes forces on.
+    pub(super) forms: Option<Forms<D>>,
 }
 
 /// Reads the bodies of a case; `None` when it has none.
@@ -183,7 +194,8 @@ pub(super) fn solver<const D: usize>(
         at_one_entropy(&fluid)?;
     }
     let film = surface.filter(|_| D == 2 && case.output.report && motions.period().is_some()).cloned();
-    Ok(Solver { fluid, film })
+    let forms = Forms::of(case, &fluid, motions);
+    Ok(Solver { fluid, film, forms })
 }
 
 /// Refuses a start whose entropy is not that of the free stream, which an isentropic gas has everywhere.
@@ -242,7 +254,8 @@ fn carriage<const D: usize>(
         ParticleMotion::Rigid => Carriage::Rigid(motions.cloud().clone()),
         _ => {
             let until = motions.period().or_else(|| case.time.end(None)).unwrap_or_default();
-            Carriage::Along { path: Arc::new(Blend::new(cloud, &laws(), until)), laws: laws() }
+            let (laws, skin) = (laws(), Arc::new(Skin::new(cloud, &laws())));
+            Carriage::Along { path: Arc::new(Blend::new(cloud, &laws, until)), laws, skin }
         }
     })
 }
@@ -256,7 +269,35 @@ pub(super) fn motions<const D: usize>(
     let extent = surface.map_or(1.0, |s| s.bounds().extent()[0]);
     let chord = case.reference.chord.map_or(extent, |c| c.0);
     let read = |name: &str| super::folder::text(input, name);
-    Motions::new(case, chord, &read).map_err(|e| RunError::Folder(e.to_string()))
+    let motions = Motions::new(case, chord, &read).map_err(|e| RunError::Folder(e.to_string()))?;
+    if let Some(surface) = surface {
+        for (b, name) in surface.bodies.iter().enumerate().take(motions.len()) {
+            let bounds = surface.bounds_of(b);
+            motions.of(b).shapes().try_for_each(|shape| lies_on((&format!("`{name}`"), &bounds), shape))?;
+        }
+        let whole = surface.bounds();
+        motions.shapes_of_forces().iter().try_for_each(|shape| lies_on(("the bodies", &whole), shape))?;
+    }
+    Ok(motions)
+}
+
+/// Refuses a mode whose points lie off the body: those of another placement, or in other units.
+fn lies_on<const D: usize>((name, body): (&str, &Bounds<D>), shape: &ModeShape<D>) -> Result<(), RunError> {
+    let [min, max] = shape.corners();
+    let (points, reach) = (Bounds { min, max }, OFF * body.extent().max_abs());
+    let far = (0..D).any(|d| points.min[d] > body.max[d] + reach || points.max[d] < body.min[d] - reach);
+    let large = points.extent().max_abs() > LARGE * body.extent().max_abs();
+    let small = points.extent().max_abs() < SMALL * body.extent().max_abs() && points.extent().max_abs() > 0.0;
+    if !far && !small && !large {
+        return Ok(());
+    }
+    let place = |b: &Bounds<D>| format!("{:?} to {:?}", b.min.0, b.max.0);
+    Err(RunError::Motion(format!(
+        "the points of a mode reach from {}, but {name} from {}\nhint: points of a mode are those of the body where it is \
+         placed, in the units of the case",
+        place(&points),
+        place(body)
+    )))
 }
 
 /// Quarter chord of the bodies.

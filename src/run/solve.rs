@@ -25,6 +25,8 @@ const EARLY_ORDERS: f64 = 3.5;
 const COLUMNS: [&str; 9] = ["cycle", "iteration", "time", "cfl", "residual", "cl", "cd", "cm", "seconds"];
 /// More of them when something moves: iterations within the step, angle and displacement of the first body that moves.
 const MOVING: [&str; 5] = ["inner", "angle_deg", "shift_x", "shift_y", "shift_z"];
+/// One more when a body bends: the coordinate of the first mode of that body.
+const BENDING: &str = "mode";
 
 /// Where a stage starts.
 pub(super) enum Start {
@@ -72,10 +74,14 @@ pub(super) struct Journal<'a> {
     pub(super) period: Option<f64>,
     /// Loads and motion of the march so far.
     pub(super) trace: Trace,
+    /// Work of all stages.
+    pub(super) work: super::summary::Work,
     /// Evaluations of the residual of one instance by harmonic balance.
     pub(super) evaluations: u64,
     /// What a harmonic balance found about itself.
     pub(super) balance: Option<BalanceReport>,
+    /// Forces on the modes of `[gaf]`.
+    pub(super) forces: Vec<super::forces::GeneralisedForce>,
     /// Part of the period, angle, displacement and loads at the instances of a harmonic balance.
     pub(super) instances: Vec<[f64; 6]>,
     /// What re-clouding did so far, where particles travel with the fluid.
@@ -91,7 +97,8 @@ impl<'a> Journal<'a> {
         (period, monitor): (Option<f64>, &'a mut dyn Monitor),
     ) -> Result<Self, RunError> {
         let path = places.out.join("history.csv");
-        let columns: Vec<&str> = COLUMNS.into_iter().chain(MOVING.into_iter().filter(|_| case.moves())).collect();
+        let moving = MOVING.into_iter().filter(|_| case.moves());
+        let columns: Vec<&str> = COLUMNS.into_iter().chain(moving).chain(case.bends().then_some(BENDING)).collect();
         let history = match saved {
             Some(s) => History::resume(&path, &columns, s.iteration)?,
             None => History::create(&path, &columns)?,
@@ -115,9 +122,11 @@ impl<'a> Journal<'a> {
             time: saved.map_or(0.0, |s| s.time),
             bytes: 0,
             linear: 0,
+            work: super::summary::Work::before(saved.map_or(0, |s| s.work)),
             evaluations: 0,
             balance: None,
             instances: Vec::new(),
+            forces: Vec::new(),
             unconverged: saved.map_or(0, |s| s.past.unconverged),
             turnover: saved.and_then(|s| s.roaming.as_ref()).map_or_else(Turnover::default, |r| r.turnover.clone()),
             trace: saved
@@ -217,9 +226,12 @@ impl<'a> Journal<'a> {
         let row =
             [f64::from(cycle), self.iteration as f64, step.time, step.cfl, step.residual, c.cl, c.cd, c.cm, seconds];
         let mut row = row.to_vec();
-        let motion = if self.case.moves() { motion(fluid, step.time) } else { [0.0; 4] };
+        let motion = if self.case.moves() { motion(fluid, step.time) } else { [0.0; 5] };
         if self.case.moves() {
             row.extend([f64::from(inner), motion[0].to_degrees(), motion[1], motion[2], motion[3]]);
+        }
+        if self.case.bends() {
+            row.push(motion[4]);
         }
         if step.time > 0.0 {
             self.trace.push(Sample { time: step.time, loads: c, motion });
@@ -252,7 +264,7 @@ impl<'a> Journal<'a> {
         let (cpu, wall) = self.seconds();
         let mut saved = Saved::new(at, self.iteration, time, state, relax);
         saved.past.before = memory;
-        (saved.cpu_seconds, saved.wall_seconds) = (cpu, wall);
+        (saved.cpu_seconds, saved.wall_seconds, saved.work) = (cpu, wall, self.work.total);
         saved.cycles = self.cycles.clone();
         saved.start_totals = self.start_totals.clone();
         saved.write(&self.out)
@@ -270,7 +282,7 @@ impl<'a> Journal<'a> {
         let (frame, _, state) = marcher.parts();
         let mut saved = Saved::new(at, self.iteration, past.time, state, bare(past.iteration));
         saved.roaming = Roaming::of(fluid, frame, &self.turnover);
-        (saved.cpu_seconds, saved.wall_seconds) = (cpu, wall);
+        (saved.cpu_seconds, saved.wall_seconds, saved.work) = (cpu, wall, self.work.total);
         saved.cycles = self.cycles.clone();
         saved.start_totals = self.start_totals.clone();
         saved.past = past;
@@ -336,6 +348,7 @@ fn relax<const D: usize>(
     let fresh = resume.is_none();
     let mut relax = Relax::new(fluid, control(steady, D), u, &fluid.start(), resume);
     let orders = if last { steady.orders } else { steady.orders.min(EARLY_ORDERS) };
+    journal.work.begin(relax.evaluations);
     if fresh {
         journal.save(at, 0.0, &relax.u, relax.resume())?;
     }
@@ -351,6 +364,7 @@ fn relax<const D: usize>(
             }
         };
         journal.iteration += 1;
+        journal.work.add(relax.evaluations, fluid.shape.cloud.n_fluid);
         let (frame, work, state) = relax.parts();
         let loads = coefficients(fluid, &journal.axes, frame, state, work);
         journal.record((cycle, 0), &step, loads, (orders, -step.residual.log10()), fluid)?;
@@ -491,6 +505,7 @@ fn march<const D: usize>(
         journal.keep(at, marcher, fluid)?;
     }
     let mut periodic = false;
+    journal.work.begin(marcher.evaluations());
     while !marcher.finished() && !periodic && marcher.past().iteration < limit {
         if fluid.is_worn(marcher.parts().0) {
             return Ok(Pause::Worn);
@@ -504,6 +519,7 @@ fn march<const D: usize>(
             }
         };
         journal.iteration += 1;
+        journal.work.add(marcher.evaluations(), fluid.shape.cloud.n_fluid);
         let inner = marcher.inner();
         let (frame, work, state) = marcher.parts();
         let loads = coefficients(fluid, &journal.axes, frame, state, work);
@@ -559,11 +575,12 @@ pub(super) fn coefficients<const D: usize>(
     Some(axes.coefficients_in(fluid, frame, work))
 }
 
-/// Angle (radians, nose up) and displacement of the first body that moves.
-pub(super) fn motion<const D: usize>(fluid: &Fluid<D>, time: f64) -> [f64; 4] {
-    fluid.carriage.law().map_or([0.0; 4], |law: &Law<D>| {
+/// Angle (radians, nose up), displacement and coordinate of the first mode of the first body that moves.
+pub(super) fn motion<const D: usize>(fluid: &Fluid<D>, time: f64) -> [f64; 5] {
+    fluid.carriage.law().map_or([0.0; 5], |law: &Law<D>| {
         let shift = law.displacement(time).to_3d();
-        [law.angle(time).value, shift[0], shift[1], shift[2]]
+        let mode = law.coordinates(time).first().copied().unwrap_or(0.0);
+        [law.angle(time).value, shift[0], shift[1], shift[2], mode]
     })
 }
 

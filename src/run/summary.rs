@@ -44,11 +44,17 @@ pub struct Summary {
     pub loads_momentum_balance: Option<Coefficients>,
     /// Conservation.
     pub ledger: Ledger,
+    /// Evaluations of the residual of one instance on the cloud of the end, over all stages: those on coarser clouds count with
+    /// their part of its particles.
+    pub work_units: f64,
     /// Chord of the load coefficients.
     pub chord: f64,
     /// What a harmonic balance found about itself.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub harmonic_balance: Option<super::harmonic::BalanceReport>,
+    /// Forces on the modes of `[gaf]`.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub generalised_forces: Vec<super::forces::GeneralisedForce>,
     /// Physical time at the end of a march.
     pub time: f64,
     /// Steps in time that did not reach their goal.
@@ -109,6 +115,33 @@ pub struct Ledger {
     pub momentum: f64,
     /// Energy.
     pub energy: f64,
+}
+
+/// Work of a run: evaluations of the residual of one instance times fluid particles, over all stages.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Work {
+    /// So far.
+    pub(super) total: u64,
+    /// Evaluations of the present stage that are in it.
+    counted: u64,
+}
+
+impl Work {
+    /// What was done before a restart.
+    pub(super) fn before(total: u64) -> Self {
+        Self { total, counted: 0 }
+    }
+
+    /// A stage begins whose integrator has counted `evaluations` already.
+    pub(super) fn begin(&mut self, evaluations: u64) {
+        self.counted = evaluations;
+    }
+
+    /// The integrator has counted up to `evaluations`, each of so many particles.
+    pub(super) fn add(&mut self, evaluations: u64, particles: usize) {
+        self.total += evaluations.saturating_sub(self.counted) * particles as u64;
+        self.counted = evaluations;
+    }
 }
 
 /// Processor and wall time.

@@ -3,11 +3,12 @@
 //! A particle at X before any motion is at x(t) = X + Σ_b φ_b(X) (P_b(t) X − X), with P_b the motion of body b. With one body
 //! φ = ψ(d), d the distance to it: 1 near the body, 0 far from it, a quintic in between, so that two derivatives are
 //! continuous. Several bodies share by inverse distance (Shepard 1968): φ_b = ψ(d_b) d_b⁻³ / Σ_c d_c⁻³. On the surface of a
-//! body its own φ is 1. All x(t) are linear in the poses, so differences of positions are exact.
+//! body its own φ is 1. All x(t) are linear in the poses, so differences of positions are exact. A body that bends takes X to
+//! P_b(t) (X + Σ_m q_m(t) φ_m(X)), with its modes φ_m continued into the field by their own interpolation.
 use crate::cloud::Cloud;
 use crate::math::sweep::sweep_slots;
 use crate::math::{Bounds, Vector};
-use crate::motion::{Law, RigidPose};
+use crate::motion::{Law, RigidPose, Track};
 
 use super::shape::{Path, Places};
 
@@ -28,7 +29,8 @@ const ROUNDS: usize = 60;
 
 /// One body.
 struct Body<const D: usize> {
-    law: Law<D>,
+    /// The particles that follow it.
+    track: Track<D>,
     points: Vec<Vector<D>>,
     inner: f64,
     outer: f64,
@@ -51,6 +53,10 @@ impl<const D: usize> Blend<D> {
         sweep_slots(&mut rows, |i, row| *row = all.own_shares(cloud, i));
         for (i, row) in rows.iter().enumerate() {
             all.share[i * n..(i + 1) * n].iter_mut().zip(row).for_each(|(s, r)| *s = *r as f32);
+        }
+        let real = &cloud.x[..cloud.n_real()];
+        for (b, law) in laws.iter().enumerate() {
+            all.bodies[b].track = Track::of_those(law, real, |i| all.share[i * n + b] > 0.0);
         }
         all
     }
@@ -97,33 +103,43 @@ fn body<const D: usize>(cloud: &Cloud<D>, (b, law): (usize, &Law<D>), until: f64
     let room = gaps.filter(|g| *g > 0.1 * length).fold(f64::INFINITY, f64::min);
     let outer = (OUTER * length.max(displacement(&bounds, law, until))).min(REACH * room);
     let points = all.into_iter().step_by(every).collect();
-    Body { law: law.clone(), points, inner: (INNER * length).min(0.25 * outer), outer }
+    Body { track: Track::new(law, &[]), points, inner: (INNER * length).min(0.25 * outer), outer }
 }
 
-/// How far the corners of the box around a body get from where they start, until `until`.
+/// How far the corners of the box around a body get from where they start, until `until`, and its modes from there.
 fn displacement<const D: usize>(bounds: &Bounds<D>, law: &Law<D>, until: f64) -> f64 {
     let corner = |k: usize| Vector::from_fn(|d| if k >> d & 1 == 0 { bounds.min[d] } else { bounds.max[d] });
-    let at = |k: usize| law.pose(until * k as f64 / TIMES as f64);
     let far = |pose: RigidPose<D>| (0..1 << D).map(|k| (pose.point(&corner(k)) - corner(k)).norm()).fold(0.0, f64::max);
-    (0..=TIMES).map(|k| far(at(k))).fold(0.0, f64::max)
+    let bend =
+        |t: f64| law.coordinates(t).iter().zip(law.shapes()).map(|(q, shape)| q.abs() * shape.size()).sum::<f64>();
+    let at = |t: f64| far(law.pose(t)) + bend(t);
+    (0..=TIMES).map(|k| at(until * k as f64 / TIMES as f64)).fold(0.0, f64::max)
 }
 
-fn blended<const D: usize>(x: &Vector<D>, poses: &[RigidPose<D>], share: impl Iterator<Item = f64>) -> Vector<D> {
-    poses.iter().zip(share).filter(|(_, s)| *s > 0.0).fold(*x, |sum, (pose, s)| sum + (pose.point(x) - *x) * s)
+/// x + Σ_b φ_b (x_b − x), where body number b takes x to x_b = `carried(b)`.
+fn blended<const D: usize>(
+    x: &Vector<D>,
+    share: impl Iterator<Item = f64>,
+    carried: impl Fn(usize) -> Vector<D>,
+) -> Vector<D> {
+    share.enumerate().filter(|(_, s)| *s > 0.0).fold(*x, |sum, (b, s)| sum + (carried(b) - *x) * s)
 }
 
 impl<const D: usize> Path<D> for Blend<D> {
     fn at(&self, t: f64) -> Places<'_, D> {
-        let poses: Vec<RigidPose<D>> = self.bodies.iter().map(|b| b.law.pose(t)).collect();
+        let tracks: Vec<_> = self.bodies.iter().map(|b| b.track.at(t)).collect();
         let n = self.bodies.len();
-        Box::new(move |i, x| blended(x, &poses, self.share[i * n..(i + 1) * n].iter().map(|s| f64::from(*s))))
+        Box::new(move |i, x| {
+            let share = self.share[i * n..(i + 1) * n].iter().map(|s| f64::from(*s));
+            blended(x, share, |b| tracks[b](i, x))
+        })
     }
 
     fn origin(&self, x: &Vector<D>, t: f64) -> Vector<D> {
-        let poses: Vec<RigidPose<D>> = self.bodies.iter().map(|b| b.law.pose(t)).collect();
+        let places: Vec<_> = self.bodies.iter().map(|b| b.track.law().places(t)).collect();
         let mut before = *x;
         for _ in 0..ROUNDS {
-            let miss = *x - blended(&before, &poses, self.shares(&before).into_iter());
+            let miss = *x - blended(&before, self.shares(&before).into_iter(), |b| places[b](&before));
             before += miss;
             if miss.max_abs() < 1e-12 {
                 break;

@@ -167,7 +167,7 @@ fn tangents<const D: usize>(normal: &Vector<D>) -> [Vector<D>; D] {
 /// How a wall moves near an interface particle, beside its velocity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WallMotion<const D: usize> {
-    /// Rows of ∂w/∂x, the rate of rotation.
+    /// Rows of ∂w/∂x: the rate of rotation, and of stretching where the wall bends.
     pub spin: [Vector<D>; D],
     /// Acceleration.
     pub acceleration: Vector<D>,
@@ -219,8 +219,8 @@ pub fn slip_wall<const D: usize>(
     let (wall, lever) = (&cloud.interface[w], fits.lever[w]);
     let spin = |v: &Vector<D>| motion.map_or(Vector::ZERO, |m| Vector::from_fn(|i| m.spin[i].dot(v)));
     let normal = &wall.normal;
-    // Gᵀn = −G n for a rigid rotation
-    let along = along_wall(&(v - velocity + spin(normal) * lever), normal);
+    let slope = motion.map_or(Vector::ZERO, |m| (0..D).fold(Vector::ZERO, |sum, i| sum + m.spin[i] * normal[i]));
+    let along = along_wall(&(v - velocity - slope * lever), normal);
     let relative = irrotational(&along, wall, lever);
     let s = s.max(FLOOR * lowest.1);
     let density = |p: f64| (p / s).powf(1.0 / gas.gamma);

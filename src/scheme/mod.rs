@@ -10,6 +10,7 @@ pub mod jacobian;
 pub mod probe;
 pub mod reconstruct;
 pub mod shape;
+pub mod skin;
 pub mod start;
 pub mod travel;
 pub mod viscous;
@@ -17,5 +18,6 @@ pub mod watch;
 
 pub use fluid::{Fluid, Work};
 pub use shape::{Carriage, Frame, Shape};
+pub use skin::Skin;
 pub use travel::{Travel, Turnover};
 pub use viscous::{Contact, Friction};

@@ -10,6 +10,7 @@
 use std::sync::Arc;
 
 use super::boundary::{WallFits, WallMotion};
+use super::skin::Skin;
 use super::travel::Travel;
 use crate::cloud::{Cloud, Operators};
 use crate::math::Vector;
@@ -123,6 +124,8 @@ pub enum Carriage<const D: usize> {
         path: Arc<dyn Path<D>>,
         /// Motion of each body.
         laws: Vec<Law<D>>,
+        /// How the surfaces of bodies bend.
+        skin: Arc<Skin<D>>,
     },
     /// With the fluid.
     Travel(Travel<D>),
@@ -135,9 +138,9 @@ impl<const D: usize> Carriage<D> {
         match self {
             Self::Still => {}
             Self::Rigid(law) => place_rigid(law, origin, moment, frame),
-            Self::Along { path, laws } => {
+            Self::Along { path, laws, skin } => {
                 place_along(path.as_ref(), origin, moment, frame);
-                turn_walls(laws, origin, moment.time(), frame);
+                turn_walls((laws, skin), origin, moment.time(), frame);
                 if origin.operators.conservative {
                     let Shape { cloud, operators, .. } = Arc::make_mut(&mut frame.shape);
                     operators.carry(cloud, &origin.operators, &origin.cloud);
@@ -156,7 +159,7 @@ impl<const D: usize> Carriage<D> {
         }
     }
 
-    /// Pose of a body at time `t`.
+    /// Pose of a body at time `t`; its modes are left aside.
     pub fn body(&self, body: usize, t: f64) -> RigidPose<D> {
         match self {
             Self::Still => RigidPose::identity(),
@@ -216,11 +219,12 @@ fn place_rigid<const D: usize>(law: &Law<D>, origin: &Arc<Shape<D>>, moment: &Mo
     frame.turn = Some(pose);
 }
 
-/// ∂w/∂x of a rigid motion in the axes of the case: Ṙ Rᵀ.
+/// ∂w/∂x of the rigid part of a motion in the axes of the case: Ṙ Rᵀ.
 pub(super) fn rotation_rate<const D: usize>(law: &Law<D>, t: f64) -> [Vector<D>; D] {
     let pose = law.pose(t);
-    let base = law.velocity(t, &Vector::ZERO);
-    let rates: [Vector<D>; D] = std::array::from_fn(|k| law.velocity(t, &Vector::axis(k)) - base);
+    let velocity = |x: &Vector<D>| law.kinematics_of(t, x, &[]).velocity;
+    let base = velocity(&Vector::ZERO);
+    let rates: [Vector<D>; D] = std::array::from_fn(|k| velocity(&Vector::axis(k)) - base);
     // rates[k] is column k of Ṙ
     std::array::from_fn(|i| Vector::from_fn(|j| (0..D).map(|k| rates[k][i] * pose.rotation[j][k]).sum()))
 }
@@ -264,8 +268,13 @@ fn place_along<const D: usize>(path: &dyn Path<D>, origin: &Arc<Shape<D>>, momen
     }
 }
 
-/// Turns the surface vectors with the bodies and fits all weights to where particles are.
-fn turn_walls<const D: usize>(laws: &[Law<D>], origin: &Arc<Shape<D>>, t: f64, frame: &mut Frame<D>) {
+/// Bends and turns the surface vectors with the bodies and fits all weights to where particles are.
+fn turn_walls<const D: usize>(
+    (laws, skin): (&[Law<D>], &Skin<D>),
+    origin: &Arc<Shape<D>>,
+    t: f64,
+    frame: &mut Frame<D>,
+) {
     let reference = &origin.cloud;
     let shape = Arc::make_mut(&mut frame.shape);
     let poses: Vec<RigidPose<D>> = laws.iter().map(|l| l.pose(t)).collect();
@@ -273,18 +282,28 @@ fn turn_walls<const D: usize>(laws: &[Law<D>], origin: &Arc<Shape<D>>, t: f64, f
     let body = |w: usize| usize::from(reference.interface[w].body);
     sweep_slots(&mut shape.cloud.interface, |w, slot| {
         *slot = reference.interface[w];
-        if let Some(pose) = poses.get(body(w)) {
+        if let Some((pose, law)) = poses.get(body(w)).zip(laws.get(body(w))) {
+            if let Some(bent) = skin.bent(w, law, t) {
+                slot.deform(&bent.strain);
+            }
             slot.turn(&pose.rotation);
         }
     });
     let walls = Arc::make_mut(&mut frame.walls);
     walls.resize(reference.interface.len(), WallMotion::AT_REST);
-    sweep(walls, |w| match laws.get(body(w)) {
-        Some(law) => WallMotion {
-            spin: rates[body(w)],
-            acceleration: law.kinematics(t, &reference.x[reference.n_fluid + w]).acceleration,
-        },
-        None => WallMotion::AT_REST,
+    sweep(walls, |w| {
+        let Some(law) = laws.get(body(w)) else { return WallMotion::AT_REST };
+        let x = &reference.x[reference.n_fluid + w];
+        let (spin, pose) = (rates[body(w)], &poses[body(w)]);
+        let Some(bent) = skin.bent(w, law, t) else {
+            return WallMotion { spin, acceleration: law.kinematics_of(t, x, &[]).acceleration };
+        };
+        let stretch = WallMotion { spin: bent.rate, acceleration: Vector::ZERO };
+        let stretch = stretch.turned(|v| pose.direction(v), |v| pose.inverse_direction(v));
+        WallMotion {
+            spin: std::array::from_fn(|i| spin[i] + stretch.spin[i]),
+            acceleration: law.kinematics_of(t, x, &bent.shifts).acceleration,
+        }
     });
     shape.operators.refit(&shape.cloud);
     shape.walls = WallFits::new(&shape.cloud);

@@ -90,6 +90,10 @@ impl<S: System> March<S> for Dual<'_, S> {
         self.relax.linear
     }
 
+    fn evaluations(&self) -> u64 {
+        self.relax.evaluations
+    }
+
     fn bytes(&self) -> usize {
         self.relax.bytes() + 8 * (2 * self.start.len() + self.past.before.len() + self.past.older.len())
     }

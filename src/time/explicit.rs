@@ -42,6 +42,7 @@ pub struct Explicit<'a, S: System> {
     du: Vec<f64>,
     sum: Vec<f64>,
     rate: Vec<f64>,
+    evaluations: u64,
 }
 
 impl<'a, S: System> Explicit<'a, S> {
@@ -66,6 +67,7 @@ impl<'a, S: System> Explicit<'a, S> {
             du: vec![0.0; n],
             sum: vec![0.0; if method == Method::Rk4 { n } else { 0 }],
             rate: vec![0.0; n / system.block()],
+            evaluations: 0,
             u,
         }
     }
@@ -80,6 +82,7 @@ impl<'a, S: System> Explicit<'a, S> {
         self.system.place(&Moment::Within { start: self.past.time, step: dt, fraction }, &mut self.frame);
         self.system.follow(&self.u, &mut self.work, &mut self.frame);
         self.system.rhs(&self.frame, &self.u, &mut self.work, &mut self.du);
+        self.evaluations += 1;
     }
 
     fn stage(&mut self, s: &Stage, dt: f64) {
@@ -120,6 +123,10 @@ impl<S: System> March<S> for Explicit<'_, S> {
 
     fn linear(&self) -> u32 {
         0
+    }
+
+    fn evaluations(&self) -> u64 {
+        self.evaluations
     }
 
     fn bytes(&self) -> usize {

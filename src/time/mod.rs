@@ -56,6 +56,8 @@ pub trait March<S: System> {
     fn inner(&self) -> u32;
     /// Linear iterations so far.
     fn linear(&self) -> u32;
+    /// Evaluations of the residual since it was made.
+    fn evaluations(&self) -> u64;
     /// Bytes held.
     fn bytes(&self) -> usize;
 }

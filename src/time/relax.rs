@@ -261,6 +261,7 @@ impl<'a, S: System> Relax<'a, S> {
         let rate = &self.rate;
         crate::math::sweep::sweep(&mut self.scale, |i| 1.0 / (rate[i] + term.rate));
         self.system.rhs(&self.frame, &self.u, &mut self.work, &mut self.residual);
+        self.evaluations += 1;
         let u = &self.u;
         crate::math::sweep::sweep(&mut self.trial, |k| term.rate * u[k] + term.rest[k]);
         let change = self.norm_of(&self.trial);

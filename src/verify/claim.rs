@@ -210,6 +210,11 @@ metrics! {
     ThinMomentAmplitude = "thin_moment_amplitude",
     /// Phase in degrees by which that harmonic leads the motion.
     ThinMomentPhase = "thin_moment_phase",
+    /// Amplitude of the first harmonic of the force on the first mode of `[[gaf.mode]]` over that of the motion, extrapolated
+    /// like the lift.
+    ThinForceAmplitude = "thin_force_amplitude",
+    /// Phase in degrees of the same.
+    ThinForcePhase = "thin_force_phase",
     /// Root mean square difference of the lift over the last period to that of the case `other`, over half the range of that
     /// one; with `file`, the greatest difference to its column `CL` at the phases of its column `phase`, in parts of a period.
     LiftLoopDifference = "lift_loop_difference",

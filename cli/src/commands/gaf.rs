@@ -43,6 +43,7 @@ pub(crate) fn gaf(args: &arguments::Gaf) -> Outcome {
             100.0 * c.nonlinearity
         ));
     }
+    text.push_str(&squares(&matrices));
     text.push_str(&format!("matrices: {}\n", out.join("gaf.csv").display()));
     output::data(&text);
     let bad = |c: &&run::gaf::Column| c.nonlinearity > matrices.linearity;
@@ -61,4 +62,21 @@ pub(crate) fn gaf(args: &arguments::Gaf) -> Outcome {
         return Outcome::Failed;
     }
     Outcome::Done
+}
+
+/// The square matrix of generalised forces at each frequency.
+fn squares(matrices: &run::gaf::Matrices) -> String {
+    let mut text = String::new();
+    for columns in matrices.columns.chunks(matrices.modes.len()) {
+        let Some(first) = columns.first() else { continue };
+        text.push_str(&format!("\ngeneralised forces at k = {}, on (rows) and by (columns)\n{:<12}", first.k, ""));
+        columns.iter().for_each(|c| text.push_str(&format!("{:>20}", c.mode)));
+        text.push('\n');
+        for (i, row) in matrices.modes.iter().enumerate() {
+            text.push_str(&format!("{row:<12}"));
+            columns.iter().for_each(|c| text.push_str(&format!("{:>10.4}{:>+9.4}i", c.q[i][0], c.q[i][1])));
+            text.push('\n');
+        }
+    }
+    text
 }

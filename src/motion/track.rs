@@ -1,0 +1,43 @@
+//! Points that are asked for at many times: what the modes of their body do to them is found once.
+use super::law::Law;
+use crate::math::Vector;
+use crate::math::sweep::sweep;
+
+/// Points of one body with their displacement in each of its modes.
+#[derive(Clone, Debug)]
+pub struct Track<const D: usize> {
+    law: Law<D>,
+    /// φ of each mode at each point.
+    shifts: Vec<Vec<Vector<D>>>,
+}
+
+impl<const D: usize> Track<D> {
+    /// Points of a body that follows `law`, at their places before any motion.
+    pub fn new(law: &Law<D>, points: &[Vector<D>]) -> Self {
+        Self::of_those(law, points, |_| true)
+    }
+
+    /// The same for those points that `moves`; modes leave the others where they are.
+    pub fn of_those(law: &Law<D>, points: &[Vector<D>], moves: impl Fn(usize) -> bool + Send + Sync) -> Self {
+        let at = |shape: &super::ModeShape<D>| {
+            let mut all = vec![Vector::ZERO; points.len()];
+            sweep(&mut all, |k| if moves(k) { shape.at(&points[k]) } else { Vector::ZERO });
+            all
+        };
+        Self { law: law.clone(), shifts: law.shapes().map(at).collect() }
+    }
+
+    /// The law that the points follow.
+    pub fn law(&self) -> &Law<D> {
+        &self.law
+    }
+
+    /// Places at time `t`: of point number `k`, which is at `x` before any motion.
+    pub fn at(&self, t: f64) -> impl Fn(usize, &Vector<D>) -> Vector<D> + Send + Sync + '_ {
+        let (pose, coordinates) = (self.law.pose(t), self.law.coordinates(t));
+        move |k, x| {
+            let bend = |sum: Vector<D>, (q, shift): (&f64, &Vec<Vector<D>>)| sum + shift[k] * *q;
+            pose.point(&coordinates.iter().zip(&self.shifts).fold(*x, bend))
+        }
+    }
+}

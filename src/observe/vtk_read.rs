@@ -1,0 +1,90 @@
+//! Field files read back: those that [`super::vtk`] writes, with 64-bit numbers in compressed appended blocks.
+use std::io::Read;
+use std::path::Path;
+
+use flate2::read::ZlibDecoder;
+
+/// What stands before the arrays.
+const MARKER: &[u8] = b"<AppendedData encoding=\"raw\">\n_";
+/// Longest array that is read, bytes: a thousand million numbers.
+const LONGEST: u64 = 8 << 30;
+
+/// A field file in memory; its arrays are unpacked when they are asked for.
+pub struct FieldFile {
+    bytes: Vec<u8>,
+    /// Name and offset of each array of 64-bit numbers.
+    arrays: Vec<(String, usize)>,
+    /// Where offsets count from.
+    start: usize,
+}
+
+impl FieldFile {
+    /// Opens a file; why it cannot be read otherwise.
+    pub fn open(path: &Path) -> Result<Self, String> {
+        let bytes = std::fs::read(path).map_err(|e| e.to_string())?;
+        Self::of(bytes).ok_or_else(|| "it is no field file of this program".to_owned())
+    }
+
+    fn of(bytes: Vec<u8>) -> Option<Self> {
+        let start = bytes.windows(MARKER.len()).position(|w| w == MARKER)?;
+        let xml = std::str::from_utf8(&bytes[..start]).ok()?;
+        let part = |line: &str, key: &str| Some(line.split_once(&format!("{key}=\""))?.1.split_once('"')?.0.to_owned());
+        let array = |line: &str| Some((part(line, "Name")?, part(line, "offset")?.parse().ok()?));
+        let wide = |line: &&str| line.contains("<DataArray type=\"Float64\"");
+        let arrays = xml.lines().filter(wide).map(array).collect::<Option<_>>()?;
+        Some(Self { arrays, start: start + MARKER.len(), bytes })
+    }
+
+    /// Numbers of the array called `name`.
+    pub fn values(&self, name: &str) -> Option<Vec<f64>> {
+        let (_, offset) = self.arrays.iter().find(|(n, _)| n == name)?;
+        let block = self.bytes.get(self.start.checked_add(*offset)?..)?;
+        let word = |k: usize| Some(u64::from_le_bytes(block.get(8 * k..8 * k + 8)?.try_into().ok()?) as usize);
+        let pieces = word(0)?;
+        let mut at = 8 * (3 + pieces);
+        let mut unpacked = Vec::new();
+        for k in 0..pieces {
+            let size = word(3 + k)?;
+            let packed = block.get(at..at.checked_add(size)?)?;
+            ZlibDecoder::new(packed).take(LONGEST).read_to_end(&mut unpacked).ok()?;
+            at += size;
+        }
+        Some(
+            unpacked
+                .chunks_exact(8)
+                .map(|b| f64::from_le_bytes([b[0], b[1], b[2], b[3], b[4], b[5], b[6], b[7]]))
+                .collect(),
+        )
+    }
+
+    /// Places of the points.
+    pub fn points(&self) -> Option<Vec<[f64; 3]>> {
+        Some(self.values("Points")?.chunks_exact(3).map(|x| [x[0], x[1], x[2]]).collect())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::vtk::{Column, write_points};
+    use super::*;
+
+    #[test]
+    fn what_was_written_comes_back() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("field.vtu");
+        // more than a piece
+        let points: Vec<[f64; 3]> = (0..40_000).map(|k| [f64::from(k), 0.5, -f64::from(k).sqrt()]).collect();
+        let density: Vec<f64> = points.iter().map(|x| x[2].sin()).collect();
+        write_points(&path, &points, &[Column { name: "density", components: 1, values: &density }]).unwrap();
+        let file = FieldFile::open(&path).unwrap();
+        assert_eq!(file.points().unwrap(), points);
+        assert_eq!(file.values("density").unwrap(), density);
+        assert!(file.values("pressure").is_none());
+        let whole = std::fs::read(&path).unwrap();
+        std::fs::write(&path, &whole[..whole.len() / 2]).unwrap();
+        let cut = FieldFile::open(&path).unwrap();
+        assert!(cut.values("density").is_none());
+        std::fs::write(&path, "no field").unwrap();
+        assert!(FieldFile::open(&path).is_err() && FieldFile::open(&folder.path().join("nothing")).is_err());
+    }
+}

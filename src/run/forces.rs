@@ -1,0 +1,150 @@
+//! Generalised forces: the work of the gas on the modes of `[gaf]`.
+//!
+//! With f_w the force of pressure and friction on the piece of wall w, and x_w(t) where that is,
+//!
+//! Q_i = Σ_w f_w · ∂x_w/∂q_i / (q∞ S c), q∞ S c: dynamic pressure, reference area (2-D: chord) and chord.
+//!
+//! The coordinate of plunge is the displacement upwards over L, the length of the reduced frequency: ∂x/∂q = L e. That of pitch
+//! is the angle about the pivot, so that Q is the moment coefficient. That of a flexible mode is its own: ∂x/∂q = R φ(X). Bodies
+//! with a motion of their own do not take part.
+use num_complex::Complex64;
+use serde::Serialize;
+
+use super::snapshot::{LoadFrame, load_axes};
+use crate::case::{AnyMode, Case, Mode};
+use crate::math::Vector;
+use crate::math::fourier::Series;
+use crate::motion::Motions;
+use crate::observe::loads::{Load, LoadAxes};
+use crate::scheme::{Fluid, Frame, Work};
+use crate::system::System;
+use crate::time::harmonic::HarmonicBalance;
+
+/// Generalised force on one mode over a period.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct GeneralisedForce {
+    /// Name of the mode.
+    pub mode: String,
+    /// Mean.
+    pub mean: f64,
+    /// First harmonic, f(t) = Re f exp(iωt): real and imaginary part.
+    pub first: [f64; 2],
+}
+
+/// What a mode does to the walls.
+enum Form<const D: usize> {
+    Plunge,
+    Pitch(Vector<D>),
+    /// φ at each interface particle.
+    Bend(Vec<Vector<D>>),
+}
+
+/// The modes that forces are computed on.
+pub(super) struct Forms<const D: usize> {
+    all: Vec<(String, Form<D>)>,
+    /// Whether each interface particle takes part.
+    follows: Vec<bool>,
+    /// Length of the coordinate of plunge; absent: half the chord.
+    length: Option<f64>,
+    axes: LoadFrame,
+}
+
+impl<const D: usize> Forms<D> {
+    /// The modes of `[gaf]`; `None` where a case has none.
+    pub(super) fn of(case: &Case, fluid: &Fluid<D>, motions: &Motions<D>) -> Option<Self> {
+        let plan = case.gaf.as_ref()?;
+        let cloud = &fluid.shape.cloud;
+        let mut shapes = motions.shapes_of_forces().iter();
+        let form = |mode: AnyMode<'_>| {
+            let form = match mode {
+                AnyMode::Rigid(Mode::Plunge) => Form::Plunge,
+                AnyMode::Rigid(Mode::Pitch) => {
+                    let pivot = plan.pivot.as_ref();
+                    Form::Pitch(pivot.map_or(Vector::ZERO, |p| Vector::from_fn(|d| p[d].0)))
+                }
+                AnyMode::Flexible(_) => {
+                    let shape = shapes.next()?;
+                    Form::Bend(cloud.x[cloud.interface_range()].iter().map(|x| shape.at(x)).collect())
+                }
+            };
+            Some((mode.name().to_owned(), form))
+        };
+        let all: Option<Vec<_>> = plan.all_modes().map(form).collect();
+        let own = |body: u16| case.bodies.get(usize::from(body)).is_some_and(|b| b.motion.is_some());
+        let follows = cloud.interface.iter().map(|w| !own(w.body)).collect();
+        Some(Self { all: all?, follows, length: plan.reduced_length.map(|l| l.0), axes: load_axes(case) })
+    }
+
+    /// Forces on all modes as the flow stands in `frame`, whose states and gradients are in `work`.
+    fn at(&self, fluid: &Fluid<D>, frame: &Frame<D>, work: &Work<D>) -> Vec<f64> {
+        let axes = self.axes.axes_in(fluid, frame);
+        let forces = wall_forces(fluid, frame, work);
+        let chosen = || forces.iter().enumerate().filter(|(w, _)| self.follows[*w]);
+        let length = self.length.unwrap_or(0.5 * axes.chord);
+        let one = |(_, form): &(String, Form<D>)| {
+            let work = match form {
+                Form::Plunge => chosen().map(|(_, (_, f))| length * f[D - 1]).sum::<f64>(),
+                Form::Pitch(pivot) => {
+                    let moment_point = fluid.carriage.body(0, frame.time).point(pivot).to_3d();
+                    let axes = LoadAxes { moment_point, ..axes.clone() };
+                    let mut load = Load::default();
+                    chosen().for_each(|(_, (x, f))| axes.add(&mut load, &x.to_3d(), &f.to_3d()));
+                    load.moment
+                }
+                Form::Bend(shifts) => {
+                    let body = |w: usize| usize::from(fluid.shape.cloud.interface[w].body);
+                    let turned = |w: usize| fluid.carriage.body(body(w), frame.time).direction(&shifts[w]);
+                    chosen().map(|(w, (_, f))| turned(w).dot(f)).sum()
+                }
+            };
+            if axes.force_scale > 0.0 { work / (axes.force_scale * axes.chord) } else { 0.0 }
+        };
+        self.all.iter().map(one).collect()
+    }
+
+    /// Mean and first harmonic of all forces of a periodic solution.
+    pub(super) fn over_a_period(
+        &self,
+        balance: &HarmonicBalance<'_, Fluid<D>>,
+        fluid: &Fluid<D>,
+        (frames, state): (&[Frame<D>], &[f64]),
+    ) -> Vec<GeneralisedForce> {
+        let (mut one, mut work) = (vec![0.0; fluid.len()], fluid.work());
+        let mut values = vec![Vec::with_capacity(frames.len()); self.all.len()];
+        for (n, frame) in frames.iter().enumerate() {
+            balance.look(state, n, &mut one);
+            fluid.fill_states(frame, &one, &mut work);
+            if fluid.friction.is_some() {
+                fluid.fill_gradients(frame, &mut work);
+            }
+            values.iter_mut().zip(self.at(fluid, frame, &work)).for_each(|(all, v)| all.push(v));
+        }
+        let names = self.all.iter().map(|(name, _)| name.clone());
+        let force = |(mode, values): (String, Vec<f64>)| {
+            let series = Series::of_values(&values).ok()?;
+            let (c, n) = (series.coefficients(), series.instances().harmonics());
+            Some(GeneralisedForce { mode, mean: c[0], first: [c[1], -c[n + 1]] })
+        };
+        names.zip(values).filter_map(force).collect()
+    }
+}
+
+impl GeneralisedForce {
+    /// First harmonic over that of a coordinate that goes as amplitude · sin ωt.
+    pub(super) fn per(&self, amplitude: f64) -> Complex64 {
+        Complex64::new(self.first[0], self.first[1]) / Complex64::new(0.0, -amplitude)
+    }
+}
+
+/// Places of the interface particles and the forces on them, in the axes of the case.
+fn wall_forces<const D: usize>(fluid: &Fluid<D>, frame: &Frame<D>, work: &Work<D>) -> Vec<(Vector<D>, Vector<D>)> {
+    let (cloud, far) = (&frame.shape.cloud, fluid.far_field.pressure());
+    let one = |(w, wall): (usize, &crate::cloud::Interface<D>)| {
+        let i = cloud.n_fluid + w;
+        let push = wall.area * (far - work.state[i].pressure);
+        let rub = fluid.wall_slopes((cloud, &frame.walls), work, w);
+        let rub = rub.map_or(Vector::ZERO, |at| at.stress * wall.area.norm());
+        (frame.place(i), frame.outward(&(push + rub)))
+    };
+    cloud.interface.iter().enumerate().map(one).collect()
+}
