@@ -52,6 +52,10 @@ struct Meta {
     #[serde(default)]
     broad: bool,
     #[serde(default)]
+    served: u32,
+    #[serde(default)]
+    made_bits: u64,
+    #[serde(default)]
     roaming: Option<Counts>,
 }
 
@@ -219,6 +223,8 @@ impl Saved {
             wall_seconds: self.wall_seconds,
             broad: self.past.broad,
             work: self.work,
+            served: self.past.served,
+            made_bits: self.past.made.to_bits(),
             steps: [self.past.last.to_bits(), self.past.next.to_bits(), u64::from(self.past.unconverged)],
             roaming: self.roaming.as_ref().map(Roaming::counts),
         };
@@ -285,6 +291,8 @@ impl Saved {
                 before: file.f64("before")?.to_vec(),
                 older: file.f64("older").map(<[f64]>::to_vec).unwrap_or_default(),
                 broad: m.broad,
+                served: m.served,
+                made: f64::from_bits(m.made_bits),
                 unconverged: m.steps[2] as u32,
             },
             sources: file.f64("sources")?.to_vec(),

@@ -20,6 +20,8 @@ const HOPELESS: f64 = 1.0;
 const STRAIGHT: f64 = 0.5;
 /// Steps after which linear systems that needed the levels are tried without them again.
 const TRY_AGAIN: u32 = 16;
+/// Steps that one preconditioner serves; the states from which it can be made again are kept for as many.
+const SERVES: u32 = 3;
 
 /// How to march.
 #[derive(Clone, Copy, Debug)]
@@ -62,6 +64,7 @@ impl<'a, S: System> Dual<'a, S> {
         if last > 0.0 {
             let formula = all.formula_at(time, last, last);
             all.relax.look(&Moment::By { time, rate: &formula });
+            all.make_again();
         } else {
             all.relax.look(&Moment::At { time });
         }
@@ -134,12 +137,44 @@ impl<S: System> Dual<'_, S> {
     /// Keeps what the next steps go on from.
     fn remember(&mut self) {
         let past = &mut self.past;
+        past.served = if self.relax.still_serves() { past.served + 1 } else { 0 };
         past.broad = self.relax.broad && !past.iteration.is_multiple_of(TRY_AGAIN);
         if self.plan.adaptive.is_none() {
             std::mem::swap(&mut past.older, &mut past.before);
         }
         std::mem::swap(&mut past.before, &mut self.start);
         self.start.resize(self.relax.u.len(), 0.0);
+    }
+
+    /// Makes the preconditioner of the step of length `dt` and those after it from where this one starts.
+    fn prepare(&mut self, moment: &Moment<'_>, rate: f64, dt: f64) {
+        let known = self.is_even(dt) && !self.past.older.is_empty();
+        if !known {
+            self.past.served = 0;
+            self.relax.drop_preconditioner();
+        } else if self.past.served == 0 || self.past.served >= SERVES {
+            (self.past.served, self.past.made) = (0, moment.time());
+            self.relax.prepare_at(moment, &self.start, rate);
+        }
+    }
+
+    /// Makes the preconditioner that served when the march was interrupted.
+    fn make_again(&mut self) {
+        let (step, past) = (self.past.last, &self.past);
+        let state = match past.served {
+            1 => &past.before,
+            2 => &past.older,
+            _ => return,
+        };
+        let (time, now) = (past.made, past.time);
+        let formula = self.formula_at(time, step, step);
+        self.relax.prepare_at(&Moment::By { time, rate: &formula }, state, formula[0].0);
+        let formula = self.formula_at(now, step, step);
+        self.relax.look(&Moment::By { time: now, rate: &formula });
+    }
+
+    fn is_even(&self, dt: f64) -> bool {
+        self.plan.adaptive.is_none() && (dt - self.past.last).abs() < 1e-9 * dt
     }
 
     fn second_order(&self) -> bool {
@@ -179,6 +214,7 @@ impl<S: System> Dual<'_, S> {
         let smooth = self.begin_with(linear.as_deref(), dt);
         let moment = Moment::By { time: self.past.time + dt, rate: &formula };
         self.relax.broad = self.past.broad;
+        self.prepare(&moment, formula[0].0, dt);
         self.relax.begin_step(&moment, TimeTerm { rate: formula[0].0, rest });
         let orders = self.plan.orders;
         // of a guess through three states the residual is 9/2 times the truncation error of the difference formula
@@ -213,8 +249,7 @@ impl<S: System> Dual<'_, S> {
     fn begin_with(&mut self, line: Option<&[f64]>, dt: f64) -> bool {
         let Some(line) = line else { return false };
         let (start, before, older) = (&self.start, &self.past.before, &self.past.older);
-        let even = (dt - self.past.last).abs() < 1e-9 * dt;
-        if even && older.len() == start.len() {
+        if self.is_even(dt) && older.len() == start.len() {
             let bend = |k: usize| start[k] - 2.0 * before[k] + older[k];
             let [slopes, bends] =
                 [sum(start.len(), |k| (start[k] - before[k]).powi(2)), sum(start.len(), |k| bend(k).powi(2))];

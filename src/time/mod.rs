@@ -38,6 +38,10 @@ pub struct Past {
     pub older: Vec<f64>,
     /// The linear systems of the last steps needed the levels.
     pub broad: bool,
+    /// Steps for which the preconditioner at hand has served; 0 when the next step makes its own.
+    pub served: u32,
+    /// Time at the end of the first of those steps.
+    pub made: f64,
     /// Steps that did not reach their goal.
     pub unconverged: u32,
 }

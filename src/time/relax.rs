@@ -134,8 +134,10 @@ pub struct Relax<'a, S: System> {
     factors: Incomplete,
     gmres: Option<Gmres>,
     time: Option<TimeTerm>,
-    /// The preconditioner was made within this step in time and still serves.
+    /// The preconditioner was made for this step in time or one not long before, and still serves.
     prepared: bool,
+    /// It was made within an iteration.
+    remade: bool,
     /// Residual over its first value that the step in time is after.
     pub goal: f64,
     /// Linear systems of steps in time need the levels: the incomplete factorisation alone was too slow.
@@ -221,6 +223,7 @@ impl<'a, S: System> Relax<'a, S> {
             gmres: basis,
             time: None,
             prepared: false,
+            remade: false,
             goal: 0.0,
             broad: false,
             evaluations: 0,
@@ -251,9 +254,40 @@ impl<'a, S: System> Relax<'a, S> {
         self.system.fault(&self.frame, u).is_none()
     }
 
+    /// Makes the preconditioner of steps in time from the state `u` in the frame of `moment` with the coefficient `rate` of the
+    /// state that is sought: a function of these alone, so that a run that is resumed can make it again.
+    pub fn prepare_at(&mut self, moment: &Moment<'_>, u: &[f64], rate: f64) {
+        self.drop_preconditioner();
+        if self.control.method != Method::NewtonKrylov || self.broad {
+            return;
+        }
+        let Some(levels) = self.levels.as_mut() else { return };
+        self.system.place(moment, &mut self.frame);
+        self.system.follow(u, &mut self.work, &mut self.frame);
+        self.system.spectral_radius(&self.frame, u, &mut self.work, &mut self.rate);
+        let cfl = (STEP_CFL * self.control.cfl).min(self.control.cfl_max);
+        let shift: Vec<f64> = self.rate.iter().map(|r| r / cfl + rate).collect();
+        self.system.linearise(&self.frame, u, &mut self.work, levels.finest());
+        levels.finest().shift(&shift);
+        self.factors.factor(levels.finest());
+        self.prepared = true;
+    }
+
+    /// Has the next iteration make its preconditioner.
+    pub fn drop_preconditioner(&mut self) {
+        (self.prepared, self.remade) = (false, false);
+    }
+
+    /// True while what [`Self::prepare_at`] made serves.
+    pub fn still_serves(&self) -> bool {
+        self.prepared && !self.remade
+    }
+
     /// Turns to the equations of a step in time, R(U) − rate·U − rest = 0 in the frame of `moment`, from the guess in `u`.
     ///
     /// The residual is measured against the size of ∂U/∂t, or against itself at the guess if that is larger.
+    ///
+    /// What [`Self::prepare_at`] made goes on to serve.
     pub fn begin_step(&mut self, moment: &Moment<'_>, term: TimeTerm) {
         self.system.place(moment, &mut self.frame);
         self.system.follow(&self.u, &mut self.work, &mut self.frame);
@@ -274,8 +308,6 @@ impl<'a, S: System> Relax<'a, S> {
         self.cfl = start.min(self.control.cfl_max);
         self.iteration = 0;
         self.phase = Phase { newton, ..Phase::default() };
-        // made anew in each step, so that a run that is resumed between two steps goes on to the same bits
-        self.prepared = false;
         self.time = Some(term);
     }
 
@@ -464,7 +496,7 @@ impl<'a, S: System> Relax<'a, S> {
             } else {
                 levels.refresh();
             }
-            self.prepared = self.time.is_some();
+            (self.prepared, self.remade) = (self.time.is_some(), true);
         }
         shift
     }
@@ -522,7 +554,8 @@ impl<'a, S: System> Relax<'a, S> {
         };
         let solved = gmres.solve((b, &mut self.step), (tolerance, most), product, precondition);
         if narrow && solved.iterations == most {
-            (self.broad, self.prepared) = (true, false);
+            // one that was made for another step is first made anew
+            (self.broad, self.prepared) = (self.remade, false);
         }
         self.linear += solved.iterations as u32;
         self.evaluations += solved.iterations as u64;
