@@ -127,6 +127,7 @@ impl Case {
             orders: 5.0,
             tolerance: 1e-4,
             iterations: 500,
+            march: 0,
             method: SteadyMethod::NewtonKrylov,
             cfl: 10.0,
             cfl_max: 1e6,

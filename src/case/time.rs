@@ -34,6 +34,9 @@ pub struct Harmonics {
     pub tolerance: f64,
     /// Greatest number of iterations for each number of harmonics.
     pub iterations: u32,
+    /// Periods that are marched before, to begin from the last of them.
+    #[serde(default)]
+    pub march: u32,
     /// Method.
     pub method: SteadyMethod,
     /// Courant number at the start.

@@ -57,6 +57,13 @@ static HARMONICS: Table = Table {
             Absent::Integer(500),
             "Greatest number of iterations for each number of harmonics.",
         ),
+        Field::defaulted(
+            "march",
+            Kind::Integer(0, 1000),
+            Absent::Integer(0),
+            "Periods that are marched before in coarse implicit steps, about 36 a period; the balance begins from the last of them. \
+             For flow that separates or moves far from the steady one.",
+        ),
         METHOD,
         CFL,
         CFL_MAX,

@@ -88,6 +88,11 @@ pub(super) fn balance<const D: usize>(
             let n = if auto { from.harmonics().min(most) } else { most };
             (n, build(n).resampled(&u, from), None)
         }
+        Start::Fresh(u) if plan.march > 0 => {
+            let n = if auto { FIRST } else { most };
+            let Some(state) = super::lead::marched(plan, &build(n), fluid, u, period, journal)? else { return Ok(None) };
+            (n, state, None)
+        }
         Start::Fresh(u) => (FIRST, build(FIRST).copies(&u), None),
     };
     loop {
@@ -246,9 +251,10 @@ fn converge<const D: usize>(
         }
         reached = progress.reached(step.residual, goal, plan.tolerance);
         if !reached && relax.iteration > progress.best.1 + PATIENCE {
+            let (particle, place) = relax.worst();
             journal.note(&format!(
                 "the residual has not fallen for {PATIENCE} iterations at {:.2} orders: with {} harmonics the flow has no periodic \
-                 state that the relaxation can find",
+                 state that the relaxation can find; it is largest at particle {particle}{place}",
                 -relax.drop().log10(),
                 balance.instances().harmonics()
             ));

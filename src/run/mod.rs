@@ -11,6 +11,7 @@ mod foresee;
 mod friction;
 pub mod gaf;
 pub mod harmonic;
+mod lead;
 mod inspect;
 mod measure;
 mod outputs;

@@ -43,6 +43,9 @@ const LARGE: f64 = 100.0;
 /// Greatest number of iterations of the relaxation before a march.
 const PRELUDE_ITERATIONS: u32 = 500;
 
+/// The same where a march leads to a harmonic balance.
+const LEAD_ITERATIONS: u32 = 60;
+
 /// Refuses what a case file can say but the solver cannot compute yet; each line goes when its solver comes.
 pub(super) fn supported(case: &Case) -> Result<(), RunError> {
     let travels = case.moves() && case.particles() == ParticleMotion::Lagrangian;
@@ -70,10 +73,12 @@ pub(super) fn supported(case: &Case) -> Result<(), RunError> {
     Err(RunError::Unsupported(format!("this version cannot compute {list}\nhint: {hint}")))
 }
 
-/// Exactly conservative coefficients? Not where particles travel with the fluid and their lists are made anew again and again.
+/// Exactly conservative coefficients? Not where particles travel with the fluid and their lists are made anew again and again; and
+/// not where wall layers move: steps in time stall there with them.
 fn conserves(case: &Case) -> bool {
     let travels = case.moves() && case.particles() == ParticleMotion::Lagrangian;
-    case.scheme.conservative.unwrap_or(CONSERVATIVE && !travels)
+    let layered = case.moves() && case.cloud.wall_layers.is_some();
+    case.scheme.conservative.unwrap_or(CONSERVATIVE && !travels && !layered)
 }
 
 /// One cloud of a run.
@@ -370,7 +375,8 @@ pub(super) fn prelude(dual: &Dual) -> Steady {
 
 /// The relaxation that gives a harmonic balance its start.
 pub(super) fn harmonic_prelude(plan: &Harmonics) -> Steady {
-    Steady { method: plan.method, iterations: PRELUDE_ITERATIONS, ..Steady::default() }
+    let iterations = if plan.march > 0 { LEAD_ITERATIONS } else { PRELUDE_ITERATIONS };
+    Steady { method: plan.method, iterations, ..Steady::default() }
 }
 
 /// Numbers of a harmonic balance.

@@ -381,10 +381,7 @@ impl<'a, S: System> Relax<'a, S> {
             self.cfl *= 0.2;
             self.prepared = false;
             if self.cfl < SMALLEST_CFL {
-                let particle = self.worst();
-                let place: Vec<String> =
-                    self.system.locate(&self.frame, particle).iter().map(|c| format!("{c:.5}")).collect();
-                let place = if place.is_empty() { String::new() } else { format!(" at ({})", place.join(", ")) };
+                let (particle, place) = self.worst();
                 return Err(TimeError::Stalled { iteration: self.iteration, cfl: self.cfl, particle, place });
             }
         }
@@ -578,9 +575,13 @@ impl<'a, S: System> Relax<'a, S> {
         }
     }
 
-    fn worst(&self) -> usize {
+    /// The particle with the largest residual, and where it is.
+    pub fn worst(&self) -> (usize, String) {
         let n = self.system.block();
-        let size = |i: usize| (self.residual[i * n] * self.scale[i]).abs();
-        (0..self.scale.len()).fold(0, |w, i| if size(i) > size(w) { i } else { w })
+        let size = |i: usize| self.residual[i * n..(i + 1) * n].iter().fold(0.0, |m: f64, r| m.max(r.abs())) * self.scale[i];
+        let particle = (0..self.scale.len()).fold(0, |w, i| if size(i) > size(w) { i } else { w });
+        let place = self.system.locate(&self.frame, particle);
+        let place: Vec<String> = place.iter().map(|c| format!("{c:.5}")).collect();
+        (particle, if place.is_empty() { String::new() } else { format!(" at ({})", place.join(", ")) })
     }
 }

@@ -1,0 +1,65 @@
+//! A short march that a harmonic balance begins from.
+//!
+//! Newton's method finds the periodic solution from a guess that is near enough. Copies of a steady flow are, where the motion is
+//! mild; flow that separates, or a body whose speed is a good part of that of the stream, needs the flow of a period that has been
+//! marched. Its accuracy does not matter: steps are coarse, and a multiple of the instances, which are taken from the last period.
+use super::RunError;
+use super::setup::harmonic_control;
+use super::solve::Journal;
+use crate::case::Harmonics;
+use crate::math::sweep::sweep_rows;
+use crate::scheme::Fluid;
+use crate::system::System;
+use crate::time::dual::{Dual, Plan};
+use crate::time::harmonic::HarmonicBalance;
+use crate::time::{March, Past};
+
+/// Fewest steps of a period.
+const STEPS: usize = 36;
+/// Orders by which the residual must fall in a step.
+const ORDERS: f64 = 2.0;
+/// Greatest number of iterations of a step.
+const ITERATIONS: u32 = 20;
+
+/// The state at the instances of `balance` in the last of `plan.march` periods that begin with the state `u`; `None` when told to
+/// stop.
+pub(super) fn marched<const D: usize>(
+    plan: &Harmonics,
+    balance: &HarmonicBalance<'_, Fluid<D>>,
+    fluid: &Fluid<D>,
+    u: Vec<f64>,
+    period: f64,
+    journal: &mut Journal<'_>,
+) -> Result<Option<Vec<f64>>, RunError> {
+    let (b, count) = (fluid.block(), balance.instances().count());
+    let stride = STEPS.div_ceil(count);
+    let steps = (stride * count) as u32;
+    let step = period / f64::from(steps);
+    let until = f64::from(plan.march) * period;
+    let march = Plan { until, step, order: 2, orders: ORDERS, iterations: ITERATIONS, adaptive: None };
+    let mut all = vec![0.0; u.len() * count];
+    let mut marcher = Dual::new(fluid, harmonic_control(plan, D), march, u, Past::default());
+    journal.note(&format!("{} periods of {steps} steps are marched first", plan.march));
+    journal.work.begin(0);
+    for k in 1..=plan.march * steps {
+        marcher.advance().map_err(|e| journal.failed(e))?;
+        journal.work.add(marcher.evaluations(), fluid.shape.cloud.n_fluid);
+        if journal.stopped() {
+            return Ok(None);
+        }
+        if k.is_multiple_of(steps) {
+            let (done, of) = (k / steps, plan.march);
+            journal.note(&format!("period {done} of {of} marched, {} steps not converged", marcher.past().unconverged));
+        }
+        let last = k > (plan.march - 1) * steps;
+        if last && (k as usize).is_multiple_of(stride) {
+            // the end of the period is its beginning
+            let n = (k as usize / stride) % count;
+            let (_, _, state) = marcher.parts();
+            sweep_rows(&mut all, b * count, |i, row| {
+                row[n * b..(n + 1) * b].copy_from_slice(&state[i * b..(i + 1) * b]);
+            });
+        }
+    }
+    Ok(Some(all))
+}
