@@ -90,7 +90,9 @@ pub(super) fn balance<const D: usize>(
         }
         Start::Fresh(u) if plan.march > 0 => {
             let n = if auto { FIRST } else { most };
-            let Some(state) = super::lead::marched(plan, &build(n), fluid, u, period, journal)? else { return Ok(None) };
+            let Some(state) = super::lead::marched(plan, &build(n), fluid, u, period, journal)? else {
+                return Ok(None);
+            };
             (n, state, None)
         }
         Start::Fresh(u) => (FIRST, build(FIRST).copies(&u), None),

@@ -578,7 +578,8 @@ impl<'a, S: System> Relax<'a, S> {
     /// The particle with the largest residual, and where it is.
     pub fn worst(&self) -> (usize, String) {
         let n = self.system.block();
-        let size = |i: usize| self.residual[i * n..(i + 1) * n].iter().fold(0.0, |m: f64, r| m.max(r.abs())) * self.scale[i];
+        let size =
+            |i: usize| self.residual[i * n..(i + 1) * n].iter().fold(0.0, |m: f64, r| m.max(r.abs())) * self.scale[i];
         let particle = (0..self.scale.len()).fold(0, |w, i| if size(i) > size(w) { i } else { w });
         let place = self.system.locate(&self.frame, particle);
         let place: Vec<String> = place.iter().map(|c| format!("{c:.5}")).collect();
