@@ -374,6 +374,61 @@ fn an_interrupted_balance_goes_on_to_the_same_bits() {
     assert!(refused.to_string().contains("`[cloud]` differ"), "{refused}");
 }
 
+/// The summary of a finished run.
+fn summary(case: &alula::case::Case, at: &alula::run::Places) -> alula::run::Summary {
+    match alula::run::run(case, at, &mut alula::run::Silent).unwrap() {
+        alula::run::Outcome::Finished(summary) => *summary,
+        alula::run::Outcome::Interrupted { .. } => panic!("interrupted"),
+    }
+}
+
+/// Stops at the first note of a march.
+struct AtMarch(std::cell::Cell<bool>);
+impl alula::run::Monitor for AtMarch {
+    fn tick(&mut self, _: &alula::run::Tick) {}
+    fn note(&mut self, note: &str) {
+        self.0.set(self.0.get() || note.contains("marched first"));
+    }
+    fn stop(&self) -> bool {
+        self.0.get()
+    }
+}
+
+#[test]
+fn a_balance_that_begins_with_a_march_finds_the_same() {
+    let root = tempfile::tempdir().unwrap();
+    let direct = summary(&section("2"), &places(root.path(), "direct"));
+    let marched = section("{ number = 2, march = 1 }");
+    let whole = summary(&marched, &places(root.path(), "whole"));
+    let lift = |s: &alula::run::Summary| s.first_harmonics[0].cl;
+    let change = (0..2).map(|k| (lift(&whole)[k] - lift(&direct)[k]).abs()).fold(0.0, f64::max);
+    assert!(whole.converged && change < 2e-3, "{change}");
+    alula::run::run(&marched, &places(root.path(), "cut"), &mut AtMarch(false.into())).unwrap();
+    alula::run::resume(&root.path().join("cut"), &mut alula::run::Silent).unwrap();
+    let read = |name: &str| std::fs::read(root.path().join(name).join("instances.csv")).unwrap();
+    assert!(read("whole") == read("cut"), "a march that was interrupted ends elsewhere");
+}
+
+#[test]
+fn a_wave_leaves_through_the_end_of_a_tube() {
+    let text = "title = \"piston\"\ndimension = 2\n[flow]\nmach = 1.0\nisentropic = true\n[[body]]\nbox = { size = [0.5, 1.0] }\n\
+                translate = [-0.25, 0.0]\n[motion]\nperiod = 1.0\nformula = { x = \"0.1/omega*(1-cos(omega*t))\" }\n[reference]\n\
+                chord = 0.12\n[cloud]\nspacing = 0.02\ndomain = { min = [-0.4, -0.06], max = [0.5, 0.06] }\n[[cloud.box]]\n\
+                min = [-0.4, -0.06]\nmax = [0.5, 0.06]\nspacing = 0.02\n[boundary]\nx_min = \"symmetry\"\nx_max = \"held\"\n\
+                y_min = \"symmetry\"\ny_max = \"symmetry\"\n[initial.riemann]\nleft = [1.0, 0.0, 0.7142857142857143]\n\
+                right = [1.0, 0.0, 0.7142857142857143]\nposition = 10.0\n[scheme]\nlimiter = \"none\"\nkappa = 0.3333\n\
+                [time.harmonics]\nnumber = 3\noversample = 1.5\n[output]\nreport = false\n";
+    let root = tempfile::tempdir().unwrap();
+    let found = summary(&common::case(text), &places(root.path(), "tube"));
+    // the exact simple wave: 2 · 0.1402100/γ over the displacement 0.1/2π, behind it by 90°
+    let [re, im] = found.first_harmonics[0].cd;
+    assert!(found.converged && (im / -12.58523 - 1.0).abs() < 0.005 && re.abs() < 0.1, "{re} {im}");
+    let hot = text.replace("right = [1.0, 0.0, 0.7142857142857143]", "right = [0.9, 0.0, 0.7142857142857143]");
+    let hot = hot.replace("position = 10.0", "position = 0.3");
+    let told = alula::run::run(&common::case(&hot), &places(root.path(), "hot"), &mut alula::run::Silent).unwrap_err();
+    assert!(told.to_string().contains("the entropy"), "{told}");
+}
+
 #[test]
 fn what_is_not_periodic_is_refused() {
     let told = |text: &str, expected: &str| {
