@@ -16,7 +16,7 @@ use super::Transform;
 use super::fill::Seat;
 use super::grid::Grid;
 use super::interface::Placed;
-use super::layers::Column;
+use super::layers::{Column, End};
 use super::layout::Layout;
 use super::neighbours::NEAR;
 use super::tree::{Leaf, Tree};
@@ -61,6 +61,8 @@ pub(super) struct Columns<const D: usize> {
     heights: Vec<f64>,
     /// Number of layers of each column.
     counts: Vec<usize>,
+    /// Why each column ends there.
+    ends: Vec<End>,
     beside: Vec<[Option<u32>; 2]>,
     x: Vec<Vector<D>>,
     /// Offset to the interface particle on either side, through the plane of symmetry where that is an image.
@@ -86,6 +88,7 @@ impl<const D: usize> Columns<D> {
         let n = placed.x.len();
         let most = spec.count.map_or(MOST, |c| c as usize);
         let mut active: Vec<bool> = (0..n).map(|w| columns.may_start(w, ground.surface)).collect();
+        (0..n).filter(|w| !active[*w]).for_each(|w| columns.ends[w] = End::Meeting);
         let bin = placed.spacing.iter().fold(0.0, |m: f64, h| m.max(*h)).max(f64::MIN_POSITIVE);
         let mut grid = Grid::new(bin);
         let mut taken: Vec<(u32, Vector<D>)> = Vec::new();
@@ -96,18 +99,20 @@ impl<const D: usize> Columns<D> {
         let (mut height, mut thickness) = (0.0, spec.first.0);
         while columns.heights.len() < most && active.iter().any(|a| *a) {
             height += thickness;
-            let mut next: Vec<bool> =
-                (0..n).map(|w| active[w] && columns.may_go(w, height, thickness, ground)).collect();
-            for w in (0..n).filter(|w| next[*w]) {
-                grid.insert(&columns.at(w, height), taken.len() as u32);
-                taken.push((w as u32, columns.at(w, height)));
+            for w in (0..n).filter(|w| active[*w]).collect::<Vec<_>>() {
+                match columns.end_at(w, (height, thickness), ground) {
+                    Some(end) => (active[w], columns.ends[w]) = (false, end),
+                    None => {
+                        grid.insert(&columns.at(w, height), taken.len() as u32);
+                        taken.push((w as u32, columns.at(w, height)));
+                    }
+                }
             }
-            let free: Vec<bool> =
-                (0..n).map(|w| next[w] && columns.is_free(w, (height, thickness), &grid, &taken)).collect();
-            next.copy_from_slice(&free);
+            let free = |w: usize| columns.is_free(w, (height, thickness), &grid, &taken);
+            let blocked: Vec<usize> = (0..n).filter(|w| active[*w] && !free(*w)).collect();
+            blocked.into_iter().for_each(|w| (active[w], columns.ends[w]) = (false, End::Meeting));
             columns.heights.push(height);
-            (0..n).filter(|w| next[*w]).for_each(|w| columns.counts[w] += 1);
-            active = next;
+            (0..n).filter(|w| active[*w]).for_each(|w| columns.counts[w] += 1);
             thickness *= spec.growth;
         }
         columns.cut();
@@ -134,8 +139,15 @@ impl<const D: usize> Columns<D> {
             };
             axes.push([if along.dot(&ahead) >= 0.0 { along } else { -along }, normal]);
         }
-        let mut all =
-            Self { axes, heights: Vec::new(), counts: vec![0; n], beside, x: placed.x.clone(), mirrors: vec![None; n] };
+        let mut all = Self {
+            axes,
+            heights: Vec::new(),
+            counts: vec![0; n],
+            ends: vec![End::Planned; n],
+            beside,
+            x: placed.x.clone(),
+            mirrors: vec![None; n],
+        };
         (0..n).for_each(|w| all.look_across_planes(w, placed.spacing[w], transforms));
         all
     }
@@ -188,19 +200,27 @@ impl<const D: usize> Columns<D> {
         self.beside[w] != [None, None] && !surface.crosses(&self.at(w, LIFT * h), &self.at(w, ROOM * h))
     }
 
-    /// Whether the next particle of column `w` keeps its distance from its own wall, the adjacent columns and the sides.
-    fn may_go(&self, w: usize, height: f64, thickness: f64, ground: &Ground<'_, D>) -> bool {
+    /// Why column `w` ends before a particle at a height; `None` when that keeps its distance from its own wall, the
+    /// adjacent columns and the sides.
+    fn end_at(&self, w: usize, (height, thickness): (f64, f64), ground: &Ground<'_, D>) -> Option<End> {
         let x = self.at(w, height);
-        let along = |d: &Vector<D>, side: usize| d.dot(&self.axes[w][0]) * if side == 1 { 1.0 } else { -1.0 };
-        let in_line = (0..2).all(|side| match (self.step(w, side, 0.0), self.step(w, side, height)) {
-            (Some(d0), Some(d)) => d.norm() <= WIDEST * d0.norm() && along(&d, side) >= TIGHTEST * along(&d0, side),
-            _ => true,
-        });
         let h = self.spacing(w, height);
-        in_line
-            && thickness <= ISOTROPIC * h
-            && self.is_inside(&x, CLEARANCE * h.min(2.0 * thickness), ground)
-            && ground.surface.nearest(&x, OWN_WALL * height).is_none()
+        let along = |d: &Vector<D>, side: usize| d.dot(&self.axes[w][0]) * if side == 1 { 1.0 } else { -1.0 };
+        let steps = (0..2).filter_map(|side| Some((side, self.step(w, side, 0.0)?, self.step(w, side, height)?)));
+        let wide = |(_, d0, d): &(usize, Vector<D>, Vector<D>)| d.norm() > WIDEST * d0.norm();
+        let tight = |(side, d0, d): &(usize, Vector<D>, Vector<D>)| along(d, *side) < TIGHTEST * along(d0, *side);
+        let steps: Vec<_> = steps.collect();
+        if thickness > ISOTROPIC * h {
+            Some(End::Planned)
+        } else if steps.iter().any(wide) {
+            Some(End::Fan)
+        } else if steps.iter().any(tight) {
+            Some(End::Fold)
+        } else if !self.is_inside(&x, CLEARANCE * h.min(2.0 * thickness), ground) {
+            Some(End::Side)
+        } else {
+            ground.surface.nearest(&x, OWN_WALL * height).map(|_| End::Meeting)
+        }
     }
 
     /// Inside the domain, by `margin` from closed sides and by more than a cell from open ones.
@@ -234,9 +254,9 @@ impl<const D: usize> Columns<D> {
         while changed {
             changed = false;
             for w in 0..self.counts.len() {
-                let least = self.beside[w].iter().flatten().map(|b| self.counts[*b as usize] + 1).min();
-                if least.is_some_and(|least| least < self.counts[w]) {
-                    self.counts[w] = least.unwrap_or(0);
+                let shortest = self.beside[w].iter().flatten().map(|b| *b as usize).min_by_key(|b| self.counts[*b]);
+                if let Some(b) = shortest.filter(|b| self.counts[*b] + 1 < self.counts[w]) {
+                    (self.counts[w], self.ends[w]) = (self.counts[b] + 1, self.ends[b]);
                     changed = true;
                 }
             }
@@ -340,6 +360,7 @@ impl<const D: usize> Columns<D> {
             particles: numbers.by_ref().take(self.counts[w]).collect(),
             heights: self.heights[..self.counts[w]].to_vec(),
             beside: self.beside[w],
+            end: self.ends[w],
         };
         (0..self.counts.len()).map(column).collect()
     }

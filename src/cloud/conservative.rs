@@ -47,6 +47,10 @@ const FLOOR: f64 = 0.1;
 /// Rounds that polish the closure.
 const CLOSURE_ROUNDS: usize = 4;
 
+/// Largest linear error of coefficients that a flow can be computed with, generously: a healthy cloud has less than one. In
+/// crevices narrower than the spacing the conditions may contradict one another, and area vectors of any size come out.
+const WORST_ERROR: f64 = 1e3;
+
 /// What came out of the search for conservative coefficients.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ConservativeReport {
@@ -60,12 +64,21 @@ pub struct ConservativeReport {
     pub linear_error_rms: f64,
     /// Largest value of the same.
     pub linear_error_max: f64,
+    /// The particle where that is.
+    pub worst: usize,
     /// Smallest volume over h^D.
     pub min_volume_ratio: f64,
     /// ε that was used, before any softening.
     pub softness: f64,
     /// Particles around which linear consistency was softened to keep volumes positive.
     pub n_softened: usize,
+}
+
+impl ConservativeReport {
+    /// Whether a flow can be computed with the coefficients.
+    pub fn is_sound(&self) -> bool {
+        self.linear_error_max < WORST_ERROR && self.min_volume_ratio.is_finite()
+    }
 }
 
 /// Rewrites `edge.s`, the pieces of wall and the volumes of the fluid particles so that a flux that uses nothing else
@@ -409,13 +422,14 @@ impl<const D: usize> Problem<D> {
     }
 
     fn judge(&self, x: &Unknowns<D>) -> ConservativeReport {
-        let (mut closure, mut square, mut largest, mut volume) = (0.0f64, 0.0, 0.0f64, f64::INFINITY);
+        let (mut closure, mut square, mut largest, mut volume) = (0.0f64, 0.0, (0.0f64, 0), f64::INFINITY);
         for i in 0..self.n_fluid {
             let defect = self.defect(i, x);
             closure = closure.max(defect.closure.norm() / self.surface(i, x).max(f64::MIN_POSITIVE));
             let error = defect.moment.iter().map(Vector::norm_squared).sum::<f64>().sqrt() / x.volume[i].abs();
             square += error * error;
-            largest = largest.max(error);
+            // a number that is none counts as the largest
+            largest = if error <= largest.0 || largest.0.is_nan() { largest } else { (error, i) };
             volume = volume.min(x.volume[i] / self.unit[i]);
         }
         ConservativeReport {
@@ -423,7 +437,8 @@ impl<const D: usize> Problem<D> {
             polish_iterations: 0,
             closure_defect: closure,
             linear_error_rms: (square / self.n_fluid.max(1) as f64).sqrt(),
-            linear_error_max: largest,
+            linear_error_max: largest.0,
+            worst: largest.1,
             min_volume_ratio: volume,
             softness: 0.0,
             n_softened: 0,

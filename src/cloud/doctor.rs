@@ -9,6 +9,7 @@
 use serde::Serialize;
 
 use super::Cloud;
+use super::ends;
 use super::grid::Grid;
 use super::repair::Sums;
 use crate::math::Vector;
@@ -358,6 +359,7 @@ fn notes<const D: usize>(cloud: &Cloud<D>, tally: &Tally, linear_walls: usize) -
             place(&cloud.x[*i])
         ));
     }
+    notes.extend(ends::notes(cloud));
     let cut = cloud.transforms.iter().any(|t| t.sign != Vector::splat(1.0));
     for (body, (sum, total)) in closure(cloud).into_iter().enumerate() {
         if !cut && sum.norm() > OPEN * total {
@@ -382,7 +384,8 @@ fn closure<const D: usize>(cloud: &Cloud<D>) -> Vec<(Vector<D>, f64)> {
     sums
 }
 
-fn place<const D: usize>(x: &Vector<D>) -> String {
+/// A place as a message shows it.
+pub(super) fn place<const D: usize>(x: &Vector<D>) -> String {
     let parts: Vec<String> = x.0.iter().map(|c| format!("{c:.5}")).collect();
     format!("({})", parts.join(", "))
 }

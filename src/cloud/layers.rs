@@ -18,6 +18,22 @@ use crate::math::Vector;
 
 const NONE: u32 = u32::MAX;
 
+/// Why a column has no more layers.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum End {
+    /// As many as were asked for, or as far apart as those beside it.
+    #[default]
+    Planned,
+    /// A convex bend spreads the columns too far.
+    Fan,
+    /// A concave bend brings the columns too near to one another.
+    Fold,
+    /// Another part of a wall, or its layers.
+    Meeting,
+    /// The side of the domain.
+    Side,
+}
+
 /// The layers over one interface particle; empty where there are none.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Column {
@@ -27,6 +43,8 @@ pub struct Column {
     pub heights: Vec<f64>,
     /// Columns before and after it along the outline; its own number where that is its image across a plane of symmetry.
     pub beside: [Option<u32>; 2],
+    /// Why there are no more; that of the column beside it where that one cuts it short.
+    pub end: End,
 }
 
 /// All columns, and where each particle stands in them.

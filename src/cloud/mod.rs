@@ -8,6 +8,7 @@ mod carry;
 mod columns;
 pub mod conservative;
 pub mod doctor;
+mod ends;
 pub mod fill;
 pub mod grid;
 pub mod interface;

@@ -170,6 +170,9 @@ impl<const D: usize> Operators<D> {
     }
 }
 
+/// Volume of the metric terms over that of the straight axes of the column, below which layers are folded.
+const FOLDED: f64 = 0.05;
+
 /// The normal matrices, inverted, from which every weight follows, and the conditioning of every row.
 fn fit_rows<const D: usize>(cloud: &Cloud<D>) -> (Vec<[[f64; D]; D]>, Vec<f64>) {
     let n = cloud.neighbours.len();
@@ -183,21 +186,36 @@ fn fit_row<const D: usize>(cloud: &Cloud<D>, i: usize) -> ([[f64; D]; D], f64) {
     let offsets = || cloud.neighbours.of(i).iter().map(|j| cloud.offset(i, *j as usize));
     let (inverse, condition) = gradient_matrix(offsets()).unzip();
     let inverse = inverse.filter(|_| cloud.first_order.binary_search(&(i as u32)).is_err());
+    let exact = inverse.is_some();
     let inverse = inverse.unwrap_or_else(|| bounded_gradient_matrix(offsets()));
-    let inverse = if cloud.layers.slot(i).is_some() { through_metric(cloud, i, inverse) } else { inverse };
+    let inverse = match cloud.layers.slot(i) {
+        Some(slot) => through_metric((cloud, slot), i, inverse, exact),
+        None => inverse,
+    };
     (inverse, condition.unwrap_or(f64::INFINITY))
 }
 
-/// Turns slopes in the space of steps into slopes in space, through the metric terms that the same weights give.
-fn through_metric<const D: usize>(cloud: &Cloud<D>, i: usize, inverse: [[f64; D]; D]) -> [[f64; D]; D] {
+/// Turns slopes in the space of steps into slopes in space, through the metric terms that the same weights give. Weights of
+/// a first-order row determine no such terms, and those of layers that fold are of no use: there the straight axes of the
+/// column take their place, which keeps weights bounded.
+fn through_metric<const D: usize>(
+    (cloud, (column, layer)): (&Cloud<D>, (usize, usize)),
+    i: usize,
+    inverse: [[f64; D]; D],
+    exact: bool,
+) -> [[f64; D]; D] {
     let mut metric = [Vector::<D>::ZERO; D];
     for j in cloud.neighbours.of(i) {
         let weight = gradient_weight(&inverse, &cloud.offset(i, *j as usize));
         let d = cloud.x[*j as usize] - cloud.x[i];
         (0..D).for_each(|c| metric[c] += d * weight[c]);
     }
-    let [a, b] = [metric[0], metric[1]];
-    let det = a[0] * b[1] - a[1] * b[0];
+    let cross = |a: &Vector<D>, b: &Vector<D>| a[0] * b[1] - a[1] * b[0];
+    let [along, normal] = cloud.layers.axes(column);
+    let straight = [*along, *normal * (cloud.layers.thickness(column, layer) / cloud.spacing[i])];
+    let upright = cross(&metric[0], &metric[1]) / cross(&straight[0], &straight[1]) > FOLDED;
+    let [a, b] = if exact && upright { [metric[0], metric[1]] } else { straight };
+    let det = cross(&a, &b);
     let mut turned = inverse;
     for c in 0..D {
         let (f, g) = (inverse[0][c], inverse[1][c]);

@@ -71,7 +71,9 @@ pub(super) fn balance<const D: usize>(
 ) -> Solved<D> {
     let fluid = &solver.fluid;
     let Some(period) = journal.period else {
-        return Err(RunError::Folder("`[time.harmonics]` needs a periodic motion".into()));
+        let text = "the motion does not repeat, but `[time] harmonics` finds flows that do\nhint: take out what drifts in \
+                    `[motion]`, a translation or a formula that does not return after the period, or march with `[time.dual]`";
+        return Err(RunError::Folder(text.into()));
     };
     repeats(&fluid.carriage, period)?;
     let omega = std::f64::consts::TAU / period;
@@ -211,7 +213,8 @@ fn converge<const D: usize>(
 ) -> Result<Option<Vec<f64>>, RunError> {
     let fresh = resume.is_none();
     let (resume, mut progress) = resume.unzip();
-    let progress = progress.get_or_insert_default();
+    let progress = progress.get_or_insert_with(|| Progress { earlier: journal.evaluations, ..Progress::default() });
+    journal.evaluations = progress.earlier;
     let origin = balance.copies(&fluid.start());
     let mut relax = Relax::new(balance, harmonic_control(plan, D), state, &origin, resume);
     drop(origin);
@@ -224,8 +227,9 @@ fn converge<const D: usize>(
     relax.evaluations = progress.evaluations;
     let instances = balance.times().len();
     journal.work.begin(relax.evaluations);
-    let mut reached = !fresh && progress.reached(relax.drop(), goal, plan.tolerance);
-    while !reached && relax.iteration < plan.iterations {
+    // a checkpoint may have been written by the very iteration that ended the relaxation, or before the first one
+    let mut reached = relax.iteration > 0 && progress.reached(relax.drop(), goal, plan.tolerance);
+    while !reached && relax.iteration < plan.iterations && !progress.stalls(relax.iteration) {
         let step = match relax.advance() {
             Ok(step) => step,
             Err(e) => {
@@ -252,26 +256,28 @@ fn converge<const D: usize>(
             journal.save_with(at, 0.0, (&relax.u, relax.resume()), progress.kept(&relax))?;
         }
         reached = progress.reached(step.residual, goal, plan.tolerance);
-        if !reached && relax.iteration > progress.best.1 + PATIENCE {
-            let (particle, place) = relax.worst();
-            journal.note(&format!(
-                "the residual has not fallen for {PATIENCE} iterations at {:.2} orders: with {} harmonics the flow has no periodic \
-                 state that the relaxation can find; it is largest at particle {particle}{place}",
-                -relax.drop().log10(),
-                balance.instances().harmonics()
-            ));
-            break;
-        }
         if journal.stopped() && !reached {
             journal.save_with(at, 0.0, (&relax.u, relax.resume()), progress.kept(&relax))?;
             return Ok(None);
         }
+    }
+    if !reached && progress.stalls(relax.iteration) {
+        journal.note(&stalled(relax.drop(), balance.instances().harmonics(), &relax.worst()));
     }
     (journal.drop, journal.converged) = (relax.drop(), reached);
     (journal.bytes, journal.linear) = (relax.bytes(), relax.linear);
     journal.evaluations += relax.evaluations * instances as u64;
     journal.save_with(at, 0.0, (&relax.u, relax.resume()), progress.kept(&relax))?;
     Ok(Some(relax.u))
+}
+
+/// Says that a relaxation was given up.
+fn stalled(drop: f64, harmonics: usize, (particle, place): &(usize, String)) -> String {
+    format!(
+        "the residual has not fallen for {PATIENCE} iterations at {:.2} orders: with {harmonics} harmonics the flow has no \
+         periodic state that the relaxation can find; it is largest at particle {particle}{place}",
+        -drop.log10()
+    )
 }
 
 /// What the end of a relaxation depends on beside its state.
@@ -283,11 +289,13 @@ struct Progress {
     best: (f64, u32),
     /// Evaluations of the residual.
     evaluations: u64,
+    /// Evaluations by relaxations with fewer harmonics, of one instance.
+    earlier: u64,
 }
 
 impl Default for Progress {
     fn default() -> Self {
-        Self { recent: Vec::new(), best: (f64::INFINITY, 0), evaluations: 0 }
+        Self { recent: Vec::new(), best: (f64::INFINITY, 0), evaluations: 0, earlier: 0 }
     }
 }
 
@@ -296,15 +304,20 @@ impl Progress {
     fn kept<S: System>(&self, relax: &Relax<'_, S>) -> Vec<f64> {
         let window = &self.recent[self.recent.len().saturating_sub(WINDOW + 1)..];
         let width = window.first().map_or(0, Vec::len) as f64;
-        let numbers = [self.best.0, f64::from(self.best.1), relax.evaluations as f64, width];
+        let numbers = [self.best.0, f64::from(self.best.1), relax.evaluations as f64, self.earlier as f64, width];
         numbers.into_iter().chain(window.iter().flatten().copied()).collect()
     }
 
     /// From the numbers of a checkpoint.
     fn read(kept: &[f64]) -> Self {
-        let [best, when, evaluations, width, recent @ ..] = kept else { return Self::default() };
+        let [best, when, evaluations, earlier, width, recent @ ..] = kept else { return Self::default() };
         let recent = recent.chunks_exact((*width as usize).max(1)).map(<[f64]>::to_vec).collect();
-        Self { recent, best: (*best, *when as u32), evaluations: *evaluations as u64 }
+        Self { recent, best: (*best, *when as u32), evaluations: *evaluations as u64, earlier: *earlier as u64 }
+    }
+
+    /// No new smallest residual for too long.
+    fn stalls(&self, iteration: u32) -> bool {
+        iteration > self.best.1 + PATIENCE
     }
 
     /// The residual has fallen far enough and the loads have settled: a small motion hardly shows in the residual.

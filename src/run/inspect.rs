@@ -67,7 +67,7 @@ fn look<const D: usize>(case: &Case, places: &Places, files: bool) -> Result<Clo
     let evaluation = timer.elapsed().as_secs_f64() / f64::from(TIMED);
     let cloud = &fluid.shape.cloud;
     let counts: Vec<usize> = (0..cloud.n_rows()).map(|i| cloud.neighbours.of(i).len()).collect();
-    notes.extend(cloud.notes.iter().cloned());
+    notes.extend(cloud.notes.iter().cloned().chain(cloud.early_ends()));
     notes.extend(super::foresee::look(case, cloud, &motions)?);
     let report = CloudReport {
         particles: cloud.n_real(),

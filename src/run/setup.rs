@@ -171,7 +171,11 @@ pub(super) fn solver<const D: usize>(
     let conservative = conserves(case);
     let mut operators = Operators::new(&cloud);
     if conservative {
-        conserve(&mut cloud, &mut operators);
+        let report = conserve(&mut cloud, &mut operators);
+        // coarser clouds serve the start alone
+        if stage.factor == 1.0 && !report.is_sound() {
+            return Err(unsound(&cloud.x[report.worst]));
+        }
     }
     let gas = Gas { gamma: case.flow.gamma };
     let scheme = &case.scheme;
@@ -201,6 +205,16 @@ pub(super) fn solver<const D: usize>(
     let film = surface.filter(|_| D == 2 && case.output.report && motions.period().is_some()).cloned();
     let forms = Forms::of(case, &fluid, motions);
     Ok(Solver { fluid, film, forms })
+}
+
+/// Refuses a cloud without conservative coefficients.
+fn unsound<const D: usize>(x: &Vector<D>) -> RunError {
+    let place: Vec<String> = x.0.iter().map(|c| format!("{c:.4}")).collect();
+    RunError::Unsupported(format!(
+        "there are no conservative coefficients for the particles at ({}): mostly a crevice narrower than the spacing\nhint: \
+         refine there with a `cloud.box`, widen or round the crevice, or compute without them, `scheme.conservative = false`",
+        place.join(", ")
+    ))
 }
 
 /// Refuses a start whose entropy is not that of the free stream, which an isentropic gas has everywhere.
@@ -428,6 +442,23 @@ pub(super) fn control(steady: &Steady, dimension: usize) -> Control {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_crevice_without_conservative_coefficients_is_refused_with_its_place() {
+        let built = |more: &str| {
+            let text = format!(
+                "title = \"t\"\n[flow]\nmach = 0.3\nreynolds = 1000\n[[body]]\npolygon = [[-0.5, -0.5], [0.5, -0.5], \
+                 [0.5, 0.5], [0.079, 0.5], [0, -0.1], [-0.079, 0.5], [-0.5, 0.5]]\n[cloud]\nspacing = 0.03\nfar_field = 4\n\
+                 wall_layers = {{ first = 0.004 }}\n[scheme]\n{more}"
+            );
+            let case = crate::case::read(&text, "t").unwrap();
+            crate::run::build_solver::<2>(&case, Path::new("")).map_err(|e| e.to_string())
+        };
+        let message = built("").map(|_| ()).unwrap_err();
+        assert!(message.starts_with("there are no conservative coefficients for the particles at ("), "{message}");
+        assert!(message.contains("`scheme.conservative = false`"), "{message}");
+        assert!(built("conservative = false").is_ok());
+    }
 
     #[test]
     fn slow_flow_is_refused_without_conservative_coefficients() {

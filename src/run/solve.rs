@@ -1,5 +1,4 @@
 //! One stage from its start to its end: the integrator, watched.
-
 use super::harmonic::{BalanceReport, balance};
 use super::outputs;
 use super::periodic::{Sample, Trace};
@@ -168,7 +167,11 @@ impl<'a> Journal<'a> {
 
     /// True, with a note, when the loads of the last period still differ from those of the period before.
     fn unsettled(&mut self, tolerance: f64) -> bool {
-        let Some(change) = self.period.and_then(|p| self.trace.change(p)) else { return false };
+        let Some(period) = self.period else { return false };
+        let Some(change) = self.trace.change(period) else {
+            self.note("`periodic_tolerance` was not tested: loads are compared over the last two periods; march three or more");
+            return false;
+        };
         let largest = change.mean.max(change.first_harmonic);
         if largest < tolerance {
             return false;
@@ -234,6 +237,8 @@ impl<'a> Journal<'a> {
             row.push(motion[4]);
         }
         if step.time > 0.0 {
+            // the angle that a resumed run reads in the history, to the last bit
+            let motion = [motion[0].to_degrees().to_radians(), motion[1], motion[2], motion[3], motion[4]];
             self.trace.push(Sample { time: step.time, loads: c, motion });
         }
         self.history.append(&row)?;
@@ -354,7 +359,7 @@ fn relax<const D: usize>(
     }
     let cycle = at.stages[at.stage].cycle;
     // a checkpoint may have been written by the very iteration that reached the goal
-    let mut reached = !fresh && relax.drop() <= 10f64.powf(-orders);
+    let mut reached = relax.iteration > 0 && relax.drop() <= 10f64.powf(-orders);
     while !reached && relax.iteration < steady.iterations {
         let step = match relax.advance() {
             Ok(step) => step,
@@ -504,7 +509,10 @@ fn march<const D: usize>(
     if marcher.past().iteration == 0 {
         journal.keep(at, marcher, fluid)?;
     }
-    let mut periodic = false;
+    // a checkpoint may have been written by the very step that ended the march
+    let past = marcher.past();
+    let settled = |t: f64| journal.is_periodic(past.time, past.time - past.last, t);
+    let mut periodic = past.iteration > 0 && tolerance.is_some_and(settled);
     journal.work.begin(marcher.evaluations());
     while !marcher.finished() && !periodic && marcher.past().iteration < limit {
         if fluid.is_worn(marcher.parts().0) {
