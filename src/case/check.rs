@@ -174,9 +174,12 @@ fn free_stream(draft: &mut Draft<'_>) {
         }
         _ => {}
     }
-    if draft.get("flow.isentropic").and_then(Value::as_bool) == Some(true) && (viscous || draft.given("flow.viscosity")) {
+    if draft.get("flow.isentropic").and_then(Value::as_bool) == Some(true) && (viscous || draft.given("flow.viscosity"))
+    {
         let message = "`isentropic` and viscosity contradict each other";
-        draft.fail_key("flow.isentropic", message).hint("friction and conduction of heat make entropy: keep one of the two");
+        draft
+            .fail_key("flow.isentropic", message)
+            .hint("friction and conduction of heat make entropy: keep one of the two");
     }
     let (mach, velocity) = (draft.given("flow.mach"), draft.given("flow.velocity"));
     if mach && velocity {

@@ -17,7 +17,13 @@ fn cofactor_times<const D: usize>(f: &Matrix<D>, v: &Vector<D>) -> Vector<D> {
     let at = |r: usize, c: usize| f[r % D][c % D];
     Vector::from_fn(|r| {
         let entry = |c: usize| match D {
-            2 => if (r + c).is_multiple_of(2) { at(r + 1, c + 1) } else { -at(r + 1, c + 1) },
+            2 => {
+                if (r + c).is_multiple_of(2) {
+                    at(r + 1, c + 1)
+                } else {
+                    -at(r + 1, c + 1)
+                }
+            }
             _ => at(r + 1, c + 1) * at(r + 2, c + 2) - at(r + 1, c + 2) * at(r + 2, c + 1),
         };
         (0..D).map(|c| entry(c) * v[c]).sum()
@@ -42,7 +48,8 @@ impl<const D: usize> Operators<D> {
         };
         self.carry_edges(origin, |i, j, s| if i < from.n_fluid { cofactor_times(&between(i, j), s) } else { *s });
         let faces = (0..origin.n_fluid_parts).flat_map(|k| origin.wall_faces(k));
-        let turned = |f: &super::operators::WallFace<D>| cofactor_times(&between(f.i as usize, f.wall as usize), &f.area);
+        let turned =
+            |f: &super::operators::WallFace<D>| cofactor_times(&between(f.i as usize, f.wall as usize), &f.area);
         self.set_wall_faces(faces.map(|f| super::operators::WallFace { area: turned(f), ..*f }).collect());
         let (volume, images) = cloud.volume.split_at_mut(cloud.x.len() - cloud.images.len());
         sweep(&mut volume[..from.n_fluid], |i| from.volume[i] * determinant(&gradients[i]));

@@ -4,8 +4,8 @@
 //! the surfaces, *outer* particles on the sides of the domain, and *images* of particles across planes of symmetry and
 //! periodic sides. Only fluid particles evolve; the state of the others follows from theirs.
 pub mod build;
-mod columns;
 mod carry;
+mod columns;
 pub mod conservative;
 pub mod doctor;
 pub mod fill;

@@ -41,7 +41,19 @@ pub(super) fn parse_claim(table: &Table, number: usize, problems: &mut Vec<Strin
     if problems.len() > before {
         return None;
     }
-    Some(Claim { metric: metric?, kind: kind?, source: source?, label, file, exact, case, other, third, region, levels })
+    Some(Claim {
+        metric: metric?,
+        kind: kind?,
+        source: source?,
+        label,
+        file,
+        exact,
+        case,
+        other,
+        third,
+        region,
+        levels,
+    })
 }
 
 fn parse_metric(keys: &mut Keys<'_, '_>) -> Option<Metric> {
