@@ -321,7 +321,8 @@ impl<'a, const D: usize> Search<'a, D> {
         }
         let eye = Eye::new(i, self.reach(i));
         self.candidates(i, eye.reach, |k, t| {
-            if !self.in_layers(k as usize) && self.sees(&eye, k as usize, t) {
+            let near = self.free.is_none() || t != IDENTITY || self.within_ball(i, k as usize);
+            if near && !self.in_layers(k as usize) && self.sees(&eye, k as usize, t) {
                 list.push((k, t));
             }
         });
@@ -469,9 +470,6 @@ impl<'a, const D: usize> Search<'a, D> {
         let wall = p.is_interface(i) || p.is_interface(k);
         let near = wall || self.near(i) || self.near(k);
         let free = self.free.is_some();
-        if free && t == IDENTITY && !self.within_ball(i, k) {
-            return false;
-        }
         if !wall && !free && !self.leaves_touch(i, k, t, near) {
             return false;
         }
@@ -481,7 +479,7 @@ impl<'a, const D: usize> Search<'a, D> {
     }
 
     /// False for most pairs beyond the ball, at little cost.
-    #[inline]
+    #[inline(always)]
     fn within_ball(&self, i: usize, k: usize) -> bool {
         let p = self.particles;
         let size = p.spacing[i] + p.spacing[k];

@@ -220,7 +220,7 @@ impl<const D: usize> Habitat<D> {
         let own = self.radius * particles.spacing[i];
         let farthest = LARGER * own;
         let known = particles.wall_distance[i].min(KNOWN * particles.spacing[i]);
-        let even = || scene.poses.is_empty() && self.even[self.tree.leaf_at(&particles.x[i]).node as usize];
+        let even = || scene.poses.is_empty() && self.even[particles.leaf_of(i) as usize];
         if self.uniform || known > farthest && even() { own } else { farthest }
     }
 
