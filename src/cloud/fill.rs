@@ -50,6 +50,7 @@ pub struct Particles<const D: usize> {
     pub layers: Layers<D>,
     /// Which particles sit in which leaf.
     pub leaves: LeafIndex,
+    leaf_of: Vec<u32>,
 }
 
 /// A place for a particle.
@@ -201,6 +202,7 @@ impl<const D: usize> Particles<D> {
             next,
             layers,
             leaves: LeafIndex::new(&leaf_of, tree.n_nodes()),
+            leaf_of,
             tree,
         }
     }
@@ -218,6 +220,11 @@ impl<const D: usize> Particles<D> {
     /// Particles inside a leaf.
     pub fn in_leaf(&self, node: u32) -> impl Iterator<Item = u32> + '_ {
         self.leaves.of(node).iter().copied()
+    }
+
+    /// The leaf that particle `i` sits in.
+    pub(super) fn leaf_of(&self, i: usize) -> u32 {
+        self.leaf_of[i]
     }
 
     /// Middle of the leaf of a fluid or outer particle; the position of an interface particle.

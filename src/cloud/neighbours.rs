@@ -35,6 +35,8 @@ const FREE: f64 = 0.99;
 const TOUCH: f64 = 1e-6;
 /// Height, in spacings, by which a line of sight must pass above all surface around: round-off.
 const ABOVE: f64 = 1e-9;
+/// A quarter, and more than round-off beyond.
+const BEYOND: f64 = 0.2500001;
 /// Neighbours for which the list of a chunk has room from the start.
 const ROOM: usize = 20;
 
@@ -207,7 +209,7 @@ pub struct Search<'a, const D: usize> {
     transforms: &'a [Transform<D>],
     inverse: Vec<u8>,
     radius: f64,
-    free: Option<f64>,
+    free: Option<Vec<f64>>,
 }
 
 impl<'a, const D: usize> Search<'a, D> {
@@ -223,10 +225,10 @@ impl<'a, const D: usize> Search<'a, D> {
         Self { particles, surface, transforms, inverse, radius, free: None }
     }
 
-    /// The same among particles that do not sit in the middle of leaves: the ball holds everywhere. In a `uniform` background
-    /// no ball is larger than that of the particle that looks.
-    pub(super) fn free(self, uniform: bool) -> Self {
-        Self { free: Some(if uniform { self.radius } else { 1.5 * self.radius }), ..self }
+    /// The same among particles that do not sit in the middle of leaves: the ball holds everywhere. `reach` is how far each
+    /// fluid and interface particle has to look.
+    pub(super) fn free(self, reach: Vec<f64>) -> Self {
+        Self { free: Some(reach), ..self }
     }
 
     /// True when no particle, image or other, is nearer to `x` than `within`.
@@ -319,7 +321,8 @@ impl<'a, const D: usize> Search<'a, D> {
         }
         let eye = Eye::new(i, self.reach(i));
         self.candidates(i, eye.reach, |k, t| {
-            if !self.in_layers(k as usize) && self.sees(&eye, k as usize, t) {
+            let near = self.free.is_none() || t != IDENTITY || self.within_ball(i, k as usize);
+            if near && !self.in_layers(k as usize) && self.sees(&eye, k as usize, t) {
                 list.push((k, t));
             }
         });
@@ -412,8 +415,8 @@ impl<'a, const D: usize> Search<'a, D> {
 
     fn reach(&self, i: usize) -> f64 {
         let h = self.particles.spacing[i];
-        match self.free {
-            Some(reach) => reach * h,
+        match &self.free {
+            Some(reach) => reach[i],
             None if self.near(i) => self.ball(i),
             None => h * (0.5 + TOUCH),
         }
@@ -473,6 +476,14 @@ impl<'a, const D: usize> Search<'a, D> {
         // the end with the smaller index looks whether the way is free
         let test = if i <= k { Sight::Tested } else { Sight::Granted };
         !(near || free) || self.sees_in_ball(eye, k, t, self.radius, test)
+    }
+
+    /// False for most pairs beyond the ball, at little cost.
+    #[inline(always)]
+    fn within_ball(&self, i: usize, k: usize) -> bool {
+        let p = self.particles;
+        let size = p.spacing[i] + p.spacing[k];
+        (p.x[k] - p.x[i]).norm_squared() < BEYOND * self.radius * self.radius * size * size
     }
 
     /// Whether particle `i` has particle `k` in sight, within `radius` of their mean spacing.

@@ -11,8 +11,8 @@ use std::ops::Range;
 use super::neighbours::Neighbours;
 use super::{Cloud, Image, Transform};
 use crate::math::Vector;
-use crate::math::least_squares::{bounded_gradient_matrix, gradient_matrix, gradient_weight};
-use crate::math::sweep::{parts, sweep, sweep_each, sweep_each_slot};
+use crate::math::least_squares::{bounded_inverse, gradient_weight, normal_inverse, normal_matrix};
+use crate::math::sweep::{parts, sweep, sweep_each, sweep_each_slot, sweep_two_parts};
 
 /// Fewest and most rows in one part, in 2-D and in 3-D: large enough that few edges are visited twice (of 4,096 rows in 3-D
 /// a quarter of the edges are), small enough to stay in the second cache and to balance threads.
@@ -21,6 +21,8 @@ const PART: [[usize; 2]; 2] = [[1024, 8192], [4096, 16384]];
 const MANY_PARTS: usize = 32;
 /// Marks an edge whose second end lies in the same part.
 const BOTH: u32 = 1 << 31;
+/// Marks an edge whose second end is a particle, not an image, that sees the first.
+const SEEN_BACK: u32 = 1 << 30;
 
 /// Two particles that see one another.
 #[derive(Clone, Copy, Debug)]
@@ -46,7 +48,11 @@ impl<const D: usize> Edge<D> {
     /// Second end.
     #[inline(always)]
     pub fn j(&self) -> usize {
-        (self.j & !BOTH) as usize
+        (self.j & !(BOTH | SEEN_BACK)) as usize
+    }
+
+    fn seen_back(&self) -> bool {
+        self.j & SEEN_BACK != 0
     }
 
     /// True when this visit serves the second end as well.
@@ -87,7 +93,6 @@ pub struct WallFace<const D: usize> {
 impl<const D: usize> Operators<D> {
     /// Fits all rows of a cloud.
     pub fn new(cloud: &Cloud<D>) -> Self {
-        let (inverse, condition) = fit_rows(cloud);
         let lookup = Reverse::new(cloud);
         let [fewest, most] = PART[usize::from(D == 3)];
         let size = (cloud.n_fluid / MANY_PARTS).clamp(fewest, most);
@@ -96,24 +101,70 @@ impl<const D: usize> Operators<D> {
         let start = cloud.n_fluid;
         all.extend(parts(cloud.interface.len(), size).into_iter().map(|p| p.start + start..p.end + start));
         let mut edges = vec![Vec::new(); all.len()];
-        sweep_each(&mut edges, |k| part_edges(cloud, &inverse, &lookup, &all[k]));
-        let wall_first = vec![0; n_fluid_parts + 1];
-        Self { parts: all, n_fluid_parts, edges, condition, conservative: false, walls: Vec::new(), wall_first }
+        sweep_each(&mut edges, |k| part_edges(cloud, &lookup, &all[k]));
+        let (walls, wall_first) = (Vec::new(), vec![0; n_fluid_parts + 1]);
+        let mut operators =
+            Self { parts: all, n_fluid_parts, edges, condition: Vec::new(), conservative: false, walls, wall_first };
+        operators.fit(cloud, &lookup);
+        operators
     }
 
     /// Fits the weights anew to the positions of `cloud`, whose lists are those of the fit before; volumes stay. The
     /// coefficients that come out are not conservative unless they are carried along, see [`Operators::carry`].
     pub fn refit(&mut self, cloud: &Cloud<D>) {
-        let (inverse, condition) = fit_rows(cloud);
-        self.condition = condition;
         self.conservative = false;
         self.walls.clear();
         self.wall_first.fill(0);
-        let lookup = Reverse::new(cloud);
-        let parts = &self.parts;
+        self.fit(cloud, &Reverse::new(cloud));
+    }
+
+    fn fit(&mut self, cloud: &Cloud<D>, lookup: &Reverse<'_, D>) {
+        let inverse = match cloud.layers.is_empty() {
+            true => self.fit_by_edges(cloud),
+            false => self.fit_by_rows(cloud),
+        };
+        let (parts, plain) = (&self.parts, cloud.layers.is_empty());
         sweep_each_slot(&mut self.edges, |k, edges| {
-            edges.iter_mut().for_each(|e| *e = edge(cloud, &inverse, &lookup, (e.i(), e.j()), &parts[k]));
+            edges.iter_mut().for_each(|e| match plain && e.j() < cloud.n_real() {
+                true => e.weigh(cloud, &inverse),
+                false => *e = edge(cloud, &inverse, lookup, (e.i(), e.j()), &parts[k]),
+            });
         });
+    }
+
+    /// Inverse normal matrices, from which every weight follows, where offsets are plain differences: those of the two ends
+    /// of an edge are opposite, and add the same to both.
+    fn fit_by_edges(&mut self, cloud: &Cloud<D>) -> Vec<[[f64; D]; D]> {
+        let n = cloud.neighbours.len();
+        let mut rows = vec![[[0.0; D]; D]; n];
+        self.condition.resize(n, 0.0);
+        let (parts, edges) = (&self.parts, &self.edges);
+        let condition = self.condition.as_mut_slice();
+        sweep_two_parts((parts, 1, rows.as_mut_slice()), (parts, 1, condition), &|k, rows, condition| {
+            let start = parts[k].start;
+            for e in &edges[k] {
+                let d = cloud.x[e.j()] - cloud.x[e.i()];
+                let scaled = d * (1.0 / d.norm_squared());
+                add_product(&mut rows[e.i() - start], &scaled, &d);
+                if e.both() && e.seen_back() {
+                    add_product(&mut rows[e.j() - start], &scaled, &d);
+                }
+            }
+            for (i, (row, condition)) in parts[k].clone().zip(rows.iter_mut().zip(condition)) {
+                let count = cloud.neighbours.range(i).len();
+                (*row, *condition, _) = invert_row(cloud, i, row, count);
+            }
+        });
+        rows
+    }
+
+    /// The same on any cloud, row by row.
+    fn fit_by_rows(&mut self, cloud: &Cloud<D>) -> Vec<[[f64; D]; D]> {
+        let mut rows = vec![([[0.0; D]; D], 0.0); cloud.neighbours.len()];
+        sweep(&mut rows, |i| fit_row(cloud, i));
+        let (inverse, condition) = rows.into_iter().unzip();
+        self.condition = condition;
+        inverse
     }
 
     /// Turns all vectors.
@@ -173,26 +224,38 @@ impl<const D: usize> Operators<D> {
 /// Volume of the metric terms over that of the straight axes of the column, below which layers are folded.
 const FOLDED: f64 = 0.05;
 
-/// The normal matrices, inverted, from which every weight follows, and the conditioning of every row.
-fn fit_rows<const D: usize>(cloud: &Cloud<D>) -> (Vec<[[f64; D]; D]>, Vec<f64>) {
-    let n = cloud.neighbours.len();
-    let mut rows = vec![([[0.0; D]; D], 0.0); n];
-    sweep(&mut rows, |i| fit_row(cloud, i));
-    rows.into_iter().unzip()
+/// Inverse normal matrix and conditioning of row `i`.
+fn fit_row<const D: usize>(cloud: &Cloud<D>, i: usize) -> ([[f64; D]; D], f64) {
+    let (matrix, count) = normal_matrix(cloud.neighbours.of(i).iter().map(|j| cloud.offset(i, *j as usize)));
+    let (inverse, condition, exact) = invert_row(cloud, i, &matrix, count);
+    match cloud.layers.slot(i) {
+        Some(slot) => (through_metric((cloud, slot), i, inverse, exact), condition),
+        None => (inverse, condition),
+    }
 }
 
-/// Inverse normal matrix of row `i`; the weights of a first-order row are bounded whatever the neighbours.
-fn fit_row<const D: usize>(cloud: &Cloud<D>, i: usize) -> ([[f64; D]; D], f64) {
-    let offsets = || cloud.neighbours.of(i).iter().map(|j| cloud.offset(i, *j as usize));
-    let (inverse, condition) = gradient_matrix(offsets()).unzip();
+/// The inverse of the normal matrix of `count` neighbours, its condition number, infinite where the cloud determines no gradient,
+/// and whether it is exact for linear fields; the weights of a first-order row are bounded whatever the neighbours.
+fn invert_row<const D: usize>(
+    cloud: &Cloud<D>,
+    i: usize,
+    matrix: &[[f64; D]; D],
+    count: usize,
+) -> ([[f64; D]; D], f64, bool) {
+    let (inverse, condition) = normal_inverse(matrix).unzip();
     let inverse = inverse.filter(|_| cloud.first_order.binary_search(&(i as u32)).is_err());
     let exact = inverse.is_some();
-    let inverse = inverse.unwrap_or_else(|| bounded_gradient_matrix(offsets()));
-    let inverse = match cloud.layers.slot(i) {
-        Some(slot) => through_metric((cloud, slot), i, inverse, exact),
-        None => inverse,
-    };
-    (inverse, condition.unwrap_or(f64::INFINITY))
+    (inverse.unwrap_or_else(|| bounded_inverse(matrix, count)), condition.unwrap_or(f64::INFINITY), exact)
+}
+
+/// m ← m + a bᵀ.
+#[inline(always)]
+fn add_product<const D: usize>(m: &mut [[f64; D]; D], a: &Vector<D>, b: &Vector<D>) {
+    for r in 0..D {
+        for c in 0..D {
+            m[r][c] += a[r] * b[c];
+        }
+    }
 }
 
 /// Turns slopes in the space of steps into slopes in space, through the metric terms that the same weights give. Weights of
@@ -227,17 +290,14 @@ fn through_metric<const D: usize>(
 /// Finds the entry (j, i) that belongs to the entry (i, j), through images where needed.
 pub(super) struct Reverse<'a, const D: usize> {
     cloud: &'a Cloud<D>,
-    images: std::collections::HashMap<(u32, u8), u32>,
     inverse: Vec<Option<u8>>,
 }
 
 impl<'a, const D: usize> Reverse<'a, D> {
     pub(super) fn new(cloud: &'a Cloud<D>) -> Self {
-        let first = cloud.n_real() as u32;
-        let images = cloud.images.iter().zip(first..).map(|(m, k)| ((m.source, m.transform), k)).collect();
         let same = |a: &Transform<D>, b: &Transform<D>| a.sign == b.sign && (a.offset - b.offset).max_abs() < 1e-9;
         let find = |t: &Transform<D>| cloud.transforms.iter().position(|o| same(o, &t.inverse())).map(|k| k as u8);
-        Self { cloud, images, inverse: cloud.transforms.iter().map(find).collect() }
+        Self { cloud, inverse: cloud.transforms.iter().map(find).collect() }
     }
 
     /// Position of that entry among all neighbour entries, and the transform that brings its vectors to the first end;
@@ -252,8 +312,8 @@ impl<'a, const D: usize> Reverse<'a, D> {
             return None;
         }
         let back = self.inverse[transform as usize]?;
-        let mirrored = *self.images.get(&(i as u32, back))?;
-        self.entry(source as usize, mirrored).map(|e| (e, Some(transform)))
+        let mirrored = c.images.binary_search_by_key(&(i as u32, back), |m| (m.source, m.transform)).ok()?;
+        self.entry(source as usize, (c.n_real() + mirrored) as u32).map(|e| (e, Some(transform)))
     }
 
     fn entry(&self, row: usize, j: u32) -> Option<usize> {
@@ -262,23 +322,49 @@ impl<'a, const D: usize> Reverse<'a, D> {
     }
 }
 
-fn part_edges<const D: usize>(
-    cloud: &Cloud<D>,
-    inverse: &[[[f64; D]; D]],
-    reverse: &Reverse<'_, D>,
-    part: &Range<usize>,
-) -> Vec<Edge<D>> {
+/// Edges of a part, without weights.
+fn part_edges<const D: usize>(cloud: &Cloud<D>, reverse: &Reverse<'_, D>, part: &Range<usize>) -> Vec<Edge<D>> {
     // an edge inside the part belongs to its smaller end
     let visited = |i: usize, j: u32| !(part.start..i).contains(&(j as usize));
     let count = |i: usize| cloud.neighbours.of(i).iter().filter(|j| visited(i, **j)).count();
     let mut edges = Vec::with_capacity(part.clone().map(count).sum());
     for i in part.clone() {
         let row = cloud.neighbours.of(i).iter().filter(|j| visited(i, **j));
-        edges.extend(row.map(|j| edge(cloud, inverse, reverse, (i, *j as usize), part)));
+        edges.extend(row.map(|j| {
+            let seen_back = (*j as usize) < cloud.n_rows() && reverse.entry(*j as usize, i as u32).is_some();
+            Edge::between(i, *j as usize, part, seen_back)
+        }));
     }
     edges
 }
 
+impl<const D: usize> Edge<D> {
+    fn between(i: usize, j: usize, part: &Range<usize>, seen_back: bool) -> Self {
+        let both = if part.contains(&j) { BOTH } else { 0 };
+        let seen = if seen_back { SEEN_BACK } else { 0 };
+        let zero = Vector::ZERO;
+        Self { i: i as u32, j: j as u32 | both | seen, a_i: zero, a_j: zero, s: zero }
+    }
+
+    /// Sets the weights between particles that are no images, given the inverse normal matrices of all rows.
+    #[inline(always)]
+    fn weigh(&mut self, cloud: &Cloud<D>, inverse: &[[[f64; D]; D]]) {
+        let (i, j) = (self.i(), self.j());
+        let d = cloud.x[j] - cloud.x[i];
+        let a_i = gradient_weight(&inverse[i], &d);
+        self.a_i = a_i;
+        // an end without a cloud counts as the mirror image of this one
+        (self.a_j, self.s) = match self.seen_back() {
+            true => {
+                let a_j = gradient_weight(&inverse[j], &-d);
+                (a_j, a_i * cloud.volume[i] - a_j * cloud.volume[j])
+            }
+            false => (Vector::ZERO, a_i * (2.0 * cloud.volume[i])),
+        };
+    }
+}
+
+/// An edge with its weights, whatever its second end.
 fn edge<const D: usize>(
     cloud: &Cloud<D>,
     inverse: &[[[f64; D]; D]],
@@ -300,8 +386,8 @@ fn edge<const D: usize>(
         Some(a_j) => a_i * cloud.volume[i] - a_j * cloud.volume[j],
         None => a_i * (2.0 * cloud.volume[i]),
     };
-    let flag = if part.contains(&j) { BOTH } else { 0 };
-    Edge { i: i as u32, j: j as u32 | flag, a_i, a_j: back.unwrap_or(Vector::ZERO), s }
+    let seen_back = j < cloud.n_rows() && back.is_some();
+    Edge { a_i, a_j: back.unwrap_or(Vector::ZERO), s, ..Edge::between(i, j, part, seen_back) }
 }
 
 /// Rows whose neighbours are not all fluid particles in the interior: none of their entries is missing.

@@ -15,12 +15,12 @@ use super::grid::Grid;
 use super::interface::{Placed, place};
 use super::layers::Layers;
 use super::layout::Layout;
-use super::neighbours::Search;
+use super::neighbours::{NEAR, Search};
 use super::tree::{Leaf, Tree};
 use super::{Cloud, CloudError, Transform};
 use crate::case::{Case, Side};
 use crate::geometry::Surface;
-use crate::math::sweep::{CHUNK, order_by_key, parts, sweep, sweep_parts};
+use crate::math::sweep::{CHUNK, order_by_key, parts, sweep, sweep_each, sweep_parts};
 use crate::math::{Bounds, Vector};
 use crate::motion::RigidPose;
 
@@ -40,6 +40,10 @@ const CLOSED_GAP: f64 = 0.2;
 const EMPTY: [f64; 2] = [0.9, 1.0];
 /// Samples of a leaf along each axis, from which volumes are counted.
 const SAMPLES: usize = 4;
+/// Greatest spacing of a particle over that of one which sees it: leaves that touch differ by one level.
+const LARGER: f64 = 1.5;
+/// Distance to the wall, in spacings, up to which it is known.
+const KNOWN: f64 = NEAR + 1.0;
 /// Distance, in leaves, beyond which a sample belongs to nobody.
 const FARTHEST: f64 = 8.0;
 /// Marks a particle that was not there before.
@@ -56,6 +60,8 @@ pub struct Habitat<const D: usize> {
     radius: f64,
     blank: f64,
     uniform: bool,
+    /// For each cell of the background, true when all leaves that particles in it see are as large.
+    even: Vec<bool>,
 }
 
 /// A cloud built anew, and how its fluid particles follow from those before.
@@ -94,7 +100,10 @@ impl<const D: usize> Habitat<D> {
         let outer: Vec<_> = order.into_iter().map(|k| outer[k as usize]).collect();
         let transforms = cloud.transforms.clone();
         let (radius, blank, uniform) = (case.cloud.radius.max(LEAST_RADIUS), case.cloud.blank, sizes.0 == sizes.1);
-        Ok(Self { tree, layout, transforms, placed, outer, surface: surface.cloned(), radius, blank, uniform })
+        // from the middle of a leaf to a particle in it, to what that sees, and to what gives that its spacing
+        let even = tree.even(0.5 + LARGER * radius + 1.0);
+        let surface = surface.cloned();
+        Ok(Self { tree, layout, transforms, placed, outer, surface, radius, blank, uniform, even })
     }
 
     /// The cloud of fluid particles at `x` with the bodies at `poses` (none: where the case puts them), and which of `x`
@@ -199,9 +208,20 @@ impl<const D: usize> Habitat<D> {
     }
 
     fn joined(&self, scene: &Scene<'_, D>, particles: Particles<D>) -> Result<Cloud<D>, CloudError> {
-        let found = Search::new(&particles, scene.surface.as_deref(), &self.transforms, self.radius).free(self.uniform);
-        let found = found.clouds()?;
+        let mut reach = vec![0.0; particles.n_rows()];
+        sweep(&mut reach, |i| self.reach(scene, &particles, i));
+        let search = Search::new(&particles, scene.surface.as_deref(), &self.transforms, self.radius).free(reach);
+        let found = search.clouds()?;
         Ok(Cloud::join(particles, found, self.transforms.clone()))
+    }
+
+    /// How far particle `i` has to look: where the background is even no ball is larger than its own.
+    fn reach(&self, scene: &Scene<'_, D>, particles: &Particles<D>, i: usize) -> f64 {
+        let own = self.radius * particles.spacing[i];
+        let farthest = LARGER * own;
+        let known = particles.wall_distance[i].min(KNOWN * particles.spacing[i]);
+        let even = || scene.poses.is_empty() && self.even[particles.leaf_of(i) as usize];
+        if self.uniform || known > farthest && even() { own } else { farthest }
     }
 
     fn scene<'a>(&'a self, poses: &'a [RigidPose<D>]) -> Scene<'a, D> {
@@ -225,16 +245,19 @@ impl<const D: usize> Habitat<D> {
 
     /// The spacing wanted at `x`: the background's, which travels with the bodies, averaged over a leaf.
     fn spacing(&self, poses: &[RigidPose<D>], x: &Vector<D>) -> f64 {
-        let at = |x: &Vector<D>| {
-            let size = self.tree.leaf_at(x).size;
-            if self.uniform {
-                return size;
-            }
-            let corner = |c: u32| Vector::from_fn(|d| x[d] + if c >> d & 1 == 0 { -0.5 * size } else { 0.5 * size });
-            let sum: f64 = (0..1u32 << D).map(|c| self.tree.leaf_at(&corner(c)).size).sum();
-            sum / f64::from(1u32 << D)
-        };
+        let at = |x: &Vector<D>| self.average(&self.tree.leaf_at(x), x);
         poses.iter().map(|p| at(&p.inverse_point(x))).reduce(f64::min).unwrap_or_else(|| at(x))
+    }
+
+    /// Mean size of the leaves around the place `x` in a leaf.
+    fn average(&self, leaf: &Leaf<D>, x: &Vector<D>) -> f64 {
+        let size = leaf.size;
+        if self.uniform || self.even[leaf.node as usize] {
+            return size;
+        }
+        let corner = |c: u32| Vector::from_fn(|d| x[d] + if c >> d & 1 == 0 { -0.5 * size } else { 0.5 * size });
+        let sum: f64 = (0..1u32 << D).map(|c| self.tree.leaf_at(&corner(c)).size).sum();
+        sum / f64::from(1u32 << D)
     }
 
     /// Back through the other one of two periodic sides.
@@ -269,13 +292,13 @@ impl<const D: usize> Habitat<D> {
         x: &Vector<D>,
         last: &mut Option<Ball<D>>,
     ) -> Option<Seat<D>> {
-        let spacing = self.spacing(scene.poses, x);
+        let leaf = self.tree.leaf_at(x);
+        let spacing = if scene.poses.is_empty() { self.average(&leaf, x) } else { self.spacing(scene.poses, x) };
         if !self.is_inside(x, spacing) {
             return None;
         }
         let distance = walls.distance((x, spacing), self.blank, last)?;
-        let (cell, node) = (self.tree.cell_at(x), self.tree.leaf_at(x).node);
-        Some(Seat { cell, centre: *x, spacing, node, distance, layer: None })
+        Some(Seat { cell: self.tree.cell_at(x), centre: *x, spacing, node: leaf.node, distance, layer: None })
     }
 
     /// Between the sides, with room for the outer particles of open ones.
@@ -305,7 +328,9 @@ impl<const D: usize> Habitat<D> {
                 return Vec::new();
             }
             let part = |j: u32| if walls.contains(&old.source(j as usize).index) { CLEARANCE } else { CROWDED };
-            old.neighbours.of(i).iter().copied().filter(|j| near(i, *j, part(*j))).collect()
+            // of two fluid particles the second looks
+            let looks = |j: usize| j < i || j >= old.n_fluid;
+            old.neighbours.of(i).iter().copied().filter(|j| looks(*j as usize) && near(i, *j, part(*j))).collect()
         });
         for (i, crowd) in crowds.iter().enumerate().filter(|(_, c)| !c.is_empty()) {
             let stays = |j: &u32| {
@@ -329,26 +354,38 @@ impl<const D: usize> Habitat<D> {
     fn missing(&self, scene: &Scene<'_, D>, particles: &Particles<D>) -> Vec<Seat<D>> {
         let search = Search::new(particles, scene.surface.as_deref(), &self.transforms, self.radius);
         let walls = Walls::new(scene.surface.as_deref(), self.tree.bounds(), &self.transforms);
-        let leaves: Vec<Leaf<D>> = self.tree.leaves().collect();
-        let mut found: Vec<Vec<Seat<D>>> = vec![Vec::new(); leaves.len()];
+        let cells = parts(self.tree.n_nodes(), CHUNK);
+        let mut found: Vec<Vec<Seat<D>>> = vec![Vec::new(); cells.len()];
+        let leaves = |c: usize| cells[c].clone().filter_map(|k| self.tree.as_leaf(k as u32));
         // the background travels with the bodies: its places are looked at where each of them carries it
         let carried = |x: &Vector<D>| scene.poses.iter().map(|p| p.point(x)).collect::<Vec<_>>();
-        sweep(&mut found, |k| {
-            let Leaf { centre, size, .. } = leaves[k];
+        sweep_each(&mut found, |c| {
             let mut last = None;
+            let mut seat = |x: Vector<D>| {
+                let within = EMPTY[D - 2] * self.spacing(scene.poses, &x);
+                let empty = self.is_inside(&x, within) && search.is_empty(&x, within);
+                empty.then(|| self.seat(scene, &walls, &x, &mut last)).flatten()
+            };
             let mut seats = Vec::new();
-            for place in [centre, centre - Vector::splat(0.5 * size)] {
-                let places = if scene.poses.is_empty() { vec![place] } else { carried(&place) };
-                let seat = |x: Vector<D>| {
-                    let within = EMPTY[D - 2] * self.spacing(scene.poses, &x);
-                    let empty = self.is_inside(&x, within) && search.is_empty(&x, within);
-                    empty.then(|| self.seat(scene, &walls, &x, &mut last)).flatten()
-                };
-                seats.extend(places.into_iter().filter_map(seat));
+            for leaf in leaves(c) {
+                let places = [leaf.centre, leaf.centre - Vector::splat(0.5 * leaf.size)];
+                for place in places.into_iter().filter(|x| !self.is_taken(scene, particles, &leaf, x)) {
+                    match scene.poses.is_empty() {
+                        true => seats.extend(seat(place)),
+                        false => seats.extend(carried(&place).into_iter().filter_map(&mut seat)),
+                    }
+                }
             }
             seats
         });
         self.apart(found.into_iter().flatten())
+    }
+
+    /// True for most places of a leaf that are not empty, at little cost: a particle of the leaf itself is near.
+    fn is_taken(&self, scene: &Scene<'_, D>, particles: &Particles<D>, leaf: &Leaf<D>, x: &Vector<D>) -> bool {
+        let within = EMPTY[D - 2] * leaf.size;
+        let near = |k: u32| (particles.x[k as usize] - *x).norm() < within;
+        scene.poses.is_empty() && self.even[leaf.node as usize] && particles.in_leaf(leaf.node).any(near)
     }
 
     /// Those that keep their distance from the ones before.

@@ -86,6 +86,27 @@ impl<const D: usize> Tree<D> {
         (0..self.nodes.len() as u32).filter(|k| self.nodes[*k as usize].first_child == NONE).map(|k| self.leaf(k))
     }
 
+    /// Cell `k`, if it has no children.
+    pub fn as_leaf(&self, k: u32) -> Option<Leaf<D>> {
+        (self.nodes[k as usize].first_child == NONE).then(|| self.leaf(k))
+    }
+
+    /// For each cell, true when it is a leaf and all leaves within `reach` of its sizes around its middle are as large.
+    pub fn even(&self, reach: f64) -> Vec<bool> {
+        let bounds = self.bounds();
+        let mut even = vec![false; self.nodes.len()];
+        sweep(&mut even, |k| {
+            let Some(leaf) = self.as_leaf(k as u32) else { return false };
+            let cube = Bounds { min: leaf.centre, max: leaf.centre }.padded(reach * leaf.size);
+            let within = |d: usize| bounds.min[d] <= cube.min[d] && cube.max[d] <= bounds.max[d];
+            // what lies beyond a periodic side is not asked for
+            let mut even = (0..D).all(|d| !self.periodic[d] || within(d));
+            self.overlapping(&cube, |other| even &= self.nodes[other as usize].level == leaf.level);
+            even
+        });
+        even
+    }
+
     /// Number of cells, parents included: the bound of every `Leaf::node`.
     pub fn n_nodes(&self) -> usize {
         self.nodes.len()

@@ -6,10 +6,12 @@
 //! not depend on the number of threads.
 use std::ops::Range;
 
-use super::sweep::{parts, sweep_parts, sweep_rows, sweep_two_parts};
+use super::sweep::{copy, fill, parts, sweep_parts, sweep_rows, sweep_two_parts};
 
-/// Rows in one part of a Gauss-Seidel sweep.
-const PART: usize = 1024;
+/// Fewest and most rows in one part of a coarse matrix.
+const PART: [usize; 2] = [64, 1024];
+/// Parts that a coarse matrix has where they are not smaller than that.
+const MANY_PARTS: usize = 8;
 
 /// A sparse matrix of square blocks.
 #[derive(Clone, Debug, Default)]
@@ -55,8 +57,8 @@ impl Sweeps {
 
     /// Sets the solution to zero.
     pub fn clear(&mut self) {
-        self.x.fill(0.0);
-        self.side.fill(0.0);
+        fill(&mut self.x, 0.0);
+        fill(&mut self.side, 0.0);
     }
 }
 
@@ -100,8 +102,8 @@ impl BlockMatrix {
     /// Makes the matrix the mean of the next `count` assemblies, until [`Self::end_mean`].
     pub fn begin_mean(&mut self, count: usize) {
         self.weight = Some(1.0 / count as f32);
-        self.value.fill(0);
-        self.diagonal.fill(0.0);
+        fill(&mut self.value, 0);
+        fill(&mut self.diagonal, 0.0);
     }
 
     /// From here on assemblies make all blocks anew.
@@ -184,7 +186,7 @@ impl BlockMatrix {
 
     fn both_sweeps<const N: usize>(&self, s: &mut Sweeps) {
         for forward in [true, false] {
-            s.r.copy_from_slice(&s.x);
+            copy(&s.x, &mut s.r);
             let (b, old) = (&s.b, &s.r);
             let outputs = ((self.parts.as_slice(), N, s.x.as_mut_slice()), (self.parts.as_slice(), N, &mut s.side[..]));
             sweep_two_parts(outputs.0, outputs.1, &|k, x, side| {
@@ -349,7 +351,7 @@ impl BlockMatrix {
             column.extend_from_slice(&own);
             first.push(column.len() as u32);
         }
-        let parts = parts(n_groups, PART);
+        let parts = parts(n_groups, (n_groups / MANY_PARTS).clamp(PART[0], PART[1]));
         (Self::from_pattern(self.block, first, column, parts), target)
     }
 

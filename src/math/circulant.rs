@@ -8,7 +8,7 @@
 use std::ops::Range;
 
 use super::block_matrix::{BlockMatrix, load, multiply, subtract_wide, widen_block};
-use super::sweep::{sweep_parts, sweep_two_parts};
+use super::sweep::{copy, fill, sweep_parts, sweep_two_parts};
 
 /// Greatest number of harmonics.
 pub const MOST_HARMONICS: usize = 16;
@@ -63,8 +63,8 @@ impl Waves {
 
     /// Sets the solution to zero.
     pub fn clear(&mut self) {
-        self.x.fill(0.0);
-        self.side.fill(0.0);
+        fill(&mut self.x, 0.0);
+        fill(&mut self.side, 0.0);
     }
 
     /// Inverts the diagonal of each harmonic: needed before a sweep, after that of the matrix.
@@ -99,7 +99,7 @@ impl Waves {
     fn both_sweeps<const N: usize>(&mut self, matrix: &BlockMatrix) {
         let width = N * self.count();
         for forward in [true, false] {
-            self.r.copy_from_slice(&self.x);
+            copy(&self.x, &mut self.r);
             let (b, old, parts) = (&self.b, &self.r, matrix.parts());
             let (inverse, harmonics) = (&self.inverse, self.harmonics);
             let outputs = ((parts, width, self.x.as_mut_slice()), (parts, width, &mut self.side[..]));

@@ -2,7 +2,7 @@
 //!
 //! Basis vectors are kept in single precision, sums are made in double: the linear systems of an implicit step are solved to
 //! a few per cent, and the basis is the largest array of a run.
-use super::sweep::{norm, sum_each, sweep, sweep_chunks};
+use super::sweep::{fill, norm, sum_each, sweep, sweep_chunks};
 
 /// Part of a vector that must be left by a pass of Gram-Schmidt for the rest to be orthogonal enough.
 const ENOUGH_LEFT: f64 = 0.1;
@@ -51,7 +51,7 @@ impl Gmres {
         mut product: impl FnMut(&[f64], &mut [f64]),
         mut precondition: impl FnMut(&[f32], &mut [f64]),
     ) -> Solved {
-        x.fill(0.0);
+        fill(x, 0.0);
         let size = self.hessenberg.len();
         let start = norm(b);
         if start == 0.0 {
@@ -128,7 +128,7 @@ impl Gmres {
             }
             y[k] = if self.hessenberg[k][k] != 0.0 { y[k] / self.hessenberg[k][k] } else { 0.0 };
         }
-        self.w.fill(0.0);
+        fill(&mut self.w, 0.0);
         combine(&mut self.w, &self.basis[..used], |j| y[j]);
     }
 }

@@ -36,19 +36,20 @@ pub enum Method {
 #[doc(alias = "eq10")]
 pub fn gradient_weights<const D: usize>(offsets: &[Vector<D>], out: &mut Vec<Vector<D>>) -> Option<f64> {
     out.clear();
-    let (inverse, condition) = gradient_matrix(offsets.iter().copied())?;
+    let (inverse, condition) = normal_inverse(&normal_matrix(offsets.iter().copied()).0)?;
     out.extend(offsets.iter().map(|d| gradient_weight(&inverse, d)));
     Some(condition)
 }
 
-/// The inverse normal matrix from which [`gradient_weight`] makes every weight of a row, and its condition number.
-pub fn gradient_matrix<const D: usize>(offsets: impl Iterator<Item = Vector<D>>) -> Option<([[f64; D]; D], f64)> {
-    let m = normal_matrix(offsets).0;
-    let condition = condition_symmetric(&m);
+/// The inverse normal matrix from which [`gradient_weight`] makes every weight of a row, and its condition number; `None` when
+/// it does not determine a slope.
+#[inline]
+pub fn normal_inverse<const D: usize>(m: &[[f64; D]; D]) -> Option<([[f64; D]; D], f64)> {
+    let condition = condition_symmetric(m);
     if !(condition < 1.0 / RANK_TOLERANCE) {
         return None;
     }
-    Some((invert_symmetric(&m)?, condition))
+    Some((invert_symmetric(m)?, condition))
 }
 
 /// Weight of the neighbour at offset `d` in a row with this inverse normal matrix.
@@ -61,16 +62,16 @@ pub fn gradient_weight<const D: usize>(inverse: &[[f64; D]; D], d: &Vector<D>) -
 /// Share of its trace that a bounded fit adds to the diagonal of the normal matrix.
 const BOUND: f64 = 0.05;
 
-/// Like [`gradient_matrix`], but weights stay bounded for any offsets: the gradient fades out along directions in which
-/// there are no neighbours. Zero for constant fields; not exact for linear ones.
-pub fn bounded_gradient_matrix<const D: usize>(offsets: impl Iterator<Item = Vector<D>>) -> [[f64; D]; D] {
-    let (mut m, n) = normal_matrix(offsets);
+/// Like [`normal_inverse`] for `n` neighbours, but weights stay bounded for any offsets: the gradient fades out along
+/// directions in which there are no neighbours. Zero for constant fields; not exact for linear ones.
+pub fn bounded_inverse<const D: usize>(m: &[[f64; D]; D], n: usize) -> [[f64; D]; D] {
+    let mut m = *m;
     (0..D).for_each(|r| m[r][r] += BOUND * n as f64);
     invert_symmetric(&m).unwrap_or([[0.0; D]; D])
 }
 
 /// Σ d dᵀ/|d|² and the number of offsets.
-fn normal_matrix<const D: usize>(offsets: impl Iterator<Item = Vector<D>>) -> ([[f64; D]; D], usize) {
+pub fn normal_matrix<const D: usize>(offsets: impl Iterator<Item = Vector<D>>) -> ([[f64; D]; D], usize) {
     let (mut m, mut n) = ([[0.0; D]; D], 0);
     for d in offsets {
         let w = 1.0 / d.norm_squared();
@@ -116,10 +117,21 @@ fn cofactor<const D: usize>(m: &[[f64; D]; D], r: usize, c: usize) -> f64 {
 }
 
 /// Condition number (ratio of extreme eigenvalues) of a small symmetric positive matrix; infinite when singular.
+#[inline]
 pub fn condition_symmetric<const D: usize>(m: &[[f64; D]; D]) -> f64 {
+    if D == 2 {
+        return condition_of_two([m[0][0], m[0][1], m[1][1]]);
+    }
     let values = eigenvalues_symmetric(m);
     let (low, high) = values.iter().fold((f64::INFINITY, 0.0f64), |(l, h), v| (l.min(*v), h.max(*v)));
     if low > 0.0 { high / low } else { f64::INFINITY }
+}
+
+/// The same for [a b; b c]: the larger eigenvalue λ is half the trace and more, the other one is the determinant over it.
+fn condition_of_two([a, b, c]: [f64; 3]) -> f64 {
+    let high = 0.5 * (a + c) + (0.25 * (a - c) * (a - c) + b * b).sqrt();
+    let determinant = a * c - b * b;
+    if high > 0.0 && determinant > 0.0 { high * high / determinant } else { f64::INFINITY }
 }
 
 /// Eigenvalues of a small symmetric matrix by cyclic Jacobi rotations.
@@ -402,9 +414,20 @@ mod tests {
     }
 
     #[test]
+    fn the_condition_of_two_variables_is_the_ratio_of_eigenvalues() {
+        for m in [[[2.0, 0.3], [0.3, 1.0]], [[5.0, 0.0], [0.0, 1e-3]], [[1.0, 0.999], [0.999, 1.0]]] {
+            let [a, b] = eigenvalues_symmetric(&m);
+            let ratio = (a / b).max(b / a);
+            assert!((condition_symmetric(&m) / ratio - 1.0).abs() < 1e-9, "{m:?}");
+        }
+        assert!(condition_symmetric(&[[1.0, 2.0], [2.0, 4.0]]).is_infinite());
+    }
+
+    #[test]
     fn bounded_weights_of_particles_on_a_line_see_the_slope_along_it() {
         let d = [Vector([1.0, 0.0, 0.0]), Vector([-2.0, 0.0, 0.0])];
-        let inverse = bounded_gradient_matrix(d.iter().copied());
+        let (m, n) = normal_matrix(d.iter().copied());
+        let inverse = bounded_inverse(&m, n);
         let g = d.iter().fold(Vector::ZERO, |g, d| g + gradient_weight(&inverse, d) * d[0]);
         assert!((0.9..=1.0).contains(&g[0]) && g[1] == 0.0 && g[2] == 0.0, "{g:?}");
     }

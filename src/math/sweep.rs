@@ -166,6 +166,21 @@ pub fn sweep_chunks<T: Send>(out: &mut [T], f: impl Fn(Range<usize>, &mut [T]) +
     out.par_chunks_mut(CHUNK).enumerate().for_each(|(c, chunk)| f(c * CHUNK..c * CHUNK + chunk.len(), chunk));
 }
 
+/// Copies `from`, which is as long, to `out`.
+pub fn copy<T: Copy + Send + Sync>(from: &[T], out: &mut [T]) {
+    sweep_chunks(out, |range, out| out.copy_from_slice(&from[range]));
+}
+
+/// Sets every slot of `out` to `value`.
+pub fn fill<T: Copy + Send + Sync>(out: &mut [T], value: T) {
+    sweep_chunks(out, |_, out| out.fill(value));
+}
+
+/// The first of `0..n` for which `f` holds.
+pub fn first(n: usize, f: impl Fn(usize) -> bool + Sync + Send) -> Option<usize> {
+    (0..n).into_par_iter().with_min_len(CHUNK).find_first(|i| f(*i))
+}
+
 /// Largest of `f(i)` over `0..n`, at least zero.
 pub fn maximum(n: usize, f: impl Fn(usize) -> f64 + Sync + Send) -> f64 {
     (0..n).into_par_iter().with_min_len(CHUNK).map(f).reduce(|| 0.0, f64::max)

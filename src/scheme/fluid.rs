@@ -22,7 +22,7 @@ use crate::case::{Flux, Limiter, Side};
 use crate::cloud::operators::WallFace;
 use crate::math::Vector;
 use crate::math::block_matrix::BlockMatrix;
-use crate::math::sweep::{maximum, sweep, sweep_parts, sweep_rows, sweep_slots};
+use crate::math::sweep::{first, maximum, sweep, sweep_each, sweep_each_slot, sweep_parts, sweep_rows};
 use crate::physics::outgoing::outgoing;
 use crate::physics::riemann::{AusmPlusUp, Hllc, Roe, Rusanov, UpwindFlux};
 use crate::physics::{Conserved, Gas, Primitive};
@@ -153,13 +153,14 @@ impl<const D: usize> Fluid<D> {
         let (walls, rest) = rest.split_at_mut(cloud.interface.len());
         let moved = |w: usize| (frame.velocity_of(cloud.n_fluid + w), frame.walls.get(w));
         let slips = |w: usize| slip_wall((cloud, fits), &self.gas, w, moved(w), seen);
+        // sides and walls are few particles, each of them much work
         match self.friction {
-            None => sweep(walls, slips),
-            Some(_) => sweep(walls, |w| self.stuck(&frame.shape, (w, frame), seen).unwrap_or_else(|| slips(w))),
+            None => sweep_each(walls, slips),
+            Some(_) => sweep_each(walls, |w| self.stuck(&frame.shape, (w, frame), seen).unwrap_or_else(|| slips(w))),
         }
         let walls = &*walls;
         let (outer, images) = rest.split_at_mut(cloud.outer.len());
-        sweep(outer, |k| self.outer_state(frame, k, fluid));
+        sweep_each(outer, |k| self.outer_state(frame, k, fluid));
         let outer = &*outer;
         sweep(images, |k| {
             let image = &cloud.images[k];
@@ -363,7 +364,7 @@ impl<const D: usize> System for Fluid<D> {
         let cloud = &self.shape.cloud;
         let mut outer = std::mem::take(&mut frame.outer);
         let still = self.carriage.is_still();
-        sweep_slots(&mut outer, |k, q| match cloud.outer[k].side {
+        sweep_each_slot(&mut outer, |k, q| match cloud.outer[k].side {
             Side::FarField => *q = cloud.beside(k).map(|i| self.far_field.state(&frame.place(i), &force)),
             _ if still => {}
             _ => *q = cloud.beside(k).map(|i| (self.held)(&frame.place(i))),
@@ -399,10 +400,10 @@ impl<const D: usize> System for Fluid<D> {
     fn spectral_radius(&self, frame: &Frame<D>, u: &[f64], work: &mut Work<D>, rate: &mut [f64]) {
         self.fill_states(frame, u, work);
         let (op, volume) = (&frame.shape.operators, &frame.shape.cloud.volume);
-        let speed = |i: usize, a: &Vector<D>| {
-            let q = &work.state[i];
-            self.gas.signal_speed(&Primitive { velocity: q.velocity - frame.velocity_of(i), ..*q }, a)
-        };
+        let mut sound = vec![0.0; frame.shape.cloud.n_fluid];
+        sweep(&mut sound, |i| self.gas.sound_speed(&work.state[i]));
+        let past = |i: usize| work.state[i].velocity - frame.velocity_of(i);
+        let speed = |i: usize, a: &Vector<D>| past(i).dot(a).abs() + sound[i] * a.norm();
         sweep_parts(op.fluid_parts(), 1, rate, &|k, out| {
             let start = op.parts[k].start;
             out.fill(0.0);
@@ -451,8 +452,8 @@ impl<const D: usize> System for Fluid<D> {
     }
 
     fn fault(&self, frame: &Frame<D>, u: &[f64]) -> Option<Fault> {
-        let bad = |i: &usize| !self.gas.primitive(&Conserved::<D>::load(&u[i * (D + 2)..])).is_physical();
-        let i = (0..self.shape.cloud.n_fluid).find(bad)?;
+        let bad = |i: usize| !self.gas.primitive(&Conserved::<D>::load(&u[i * (D + 2)..])).is_physical();
+        let i = first(self.shape.cloud.n_fluid, bad)?;
         let q = self.gas.primitive(&Conserved::<D>::load(&u[i * (D + 2)..]));
         let reason = format!("density {:.4e}, pressure {:.4e} (both must be positive)", q.density, q.pressure);
         Some(Fault { particle: i, place: frame.place(i).0.to_vec(), reason })

@@ -36,7 +36,7 @@ use crate::cloud::travel::{Habitat, NEW, Renewal};
 use crate::cloud::{Cloud, CloudError, Operators};
 use crate::math::Vector;
 use crate::math::least_squares::Fit;
-use crate::math::sweep::{maximum, sweep, sweep_slots};
+use crate::math::sweep::{first, maximum, sweep, sweep_each, sweep_parts, sweep_slots};
 use crate::motion::{Law, RigidPose};
 use crate::physics::{Conserved, Gas, Primitive};
 use crate::system::{Moment, System};
@@ -143,11 +143,11 @@ impl<const D: usize> Travel<D> {
             false => self.place_walls(moment, &mut shape.cloud, velocity),
         }
         let first = cloud.n_real();
-        for (k, image) in cloud.images.iter().enumerate() {
-            let (t, s) = (&cloud.transforms[image.transform as usize], image.source as usize);
-            shape.cloud.x[first + k] = t.point(&shape.cloud.x[s]);
-            velocity[first + k] = t.direction(&velocity[s]);
-        }
+        let image = |k: usize| (&cloud.transforms[cloud.images[k].transform as usize], cloud.images[k].source as usize);
+        let (x, x_images) = shape.cloud.x.split_at_mut(first);
+        sweep(x_images, |k| image(k).0.point(&x[image(k).1]));
+        let (w, w_images) = velocity.split_at_mut(first);
+        sweep(w_images, |k| image(k).0.direction(&w[image(k).1]));
         self.turn_walls(frame.time, frame);
         let shape = Arc::make_mut(&mut frame.shape);
         shape.operators.refit(&shape.cloud);
@@ -209,13 +209,14 @@ impl<const D: usize> Fluid<D> {
         let velocity = Arc::make_mut(&mut frame.velocity);
         velocity.resize(cloud.len(), Vector::ZERO);
         let state = &work.state;
-        let near = shocked(cloud, &self.gas, state);
+        let around = around(&frame.shape, state, radius);
+        let near = shocked(cloud, &self.gas, (state, &around));
         sweep_slots(&mut velocity[..n], |i, w| {
-            if near[i] && known {
+            if known && near.get(i).is_some_and(|near| *near) {
                 return;
             }
             let c = self.gas.sound_speed(&state[i]);
-            let shift = shift(cloud, i, radius) * STRENGTH;
+            let shift = around[i].shift * STRENGTH;
             let size = shift.norm();
             *w = state[i].velocity + shift * (c * if size > FASTEST { FASTEST / size } else { 1.0 });
         });
@@ -233,18 +234,20 @@ impl<const D: usize> Fluid<D> {
             let well = frame.shape.operators.condition[i] < WORST_CONDITION;
             !well && then.first_order.binary_search(&(i as u32)).is_err()
         };
-        let any_sick = maximum(then.n_fluid, |i| f64::from(u8::from(sick(i)))) > 0.0;
-        let apart = maximum(then.n_fluid, |i| {
-            let own = now.x[i] - then.x[i];
-            let far = |j: &u32| {
-                let j = *j as usize;
-                let d = now.x[j] - then.x[j] - own;
-                d.norm_squared() / (0.5 * (then.spacing[i] + then.spacing[j])).powi(2)
-            };
-            then.neighbours.of(i).iter().map(far).fold(0.0, f64::max)
-        });
+        let operators = &self.shape.operators;
         // a cloud just built is as good as it gets
-        apart > SLACK * SLACK || apart.is_nan() || any_sick && apart > 0.0
+        let moved = |i: usize| f64::from(u8::from(now.x[i] != then.x[i]));
+        let mut apart = vec![false; operators.fluid_parts().len()];
+        sweep_each(&mut apart, |k| {
+            operators.edges(k).iter().any(|e| {
+                let (i, j) = (e.i(), e.j());
+                let d = (now.x[j] - now.x[i]) - (then.x[j] - then.x[i]);
+                let slack = 0.5 * SLACK * (then.spacing[i] + then.spacing[j]);
+                // positions that are no numbers count as apart
+                !(d.norm_squared() <= slack * slack)
+            })
+        });
+        apart.contains(&true) || first(then.n_fluid, sick).is_some() && maximum(then.n_fluid, moved) > 0.0
     }
 
     /// The same equations on a cloud built anew where particles are in `frame`, and the state `u` on it.
@@ -348,47 +351,94 @@ impl<const D: usize> Fluid<D> {
     }
 }
 
-/// True for particles near a shock: where the gas is compressed hard, and a few neighbours around.
-fn shocked<const D: usize>(cloud: &Cloud<D>, gas: &Gas, state: &[Primitive<D>]) -> Vec<bool> {
-    let n = cloud.n_fluid;
-    let mut near = vec![false; n];
-    sweep(&mut near, |i| {
-        let row = cloud.neighbours.of(i);
-        let approach = |j: &u32| {
-            let (j, d) = (*j as usize, cloud.x[*j as usize] - cloud.x[i]);
-            (state[i].velocity - state[j].velocity).dot(&d) / d.norm_squared()
-        };
-        let divergence = -row.iter().map(approach).sum::<f64>() * D as f64 / row.len().max(1) as f64;
-        -divergence * cloud.spacing[i] > COMPRESSED * gas.sound_speed(&state[i])
+/// Sums over the neighbours of a particle.
+#[derive(Clone, Copy)]
+struct Around<const D: usize> {
+    /// −Σ_j ω_j f(q_ij) d_ij/|d_ij|: away from where particles are dense.
+    shift: Vector<D>,
+    /// Σ_j (v_i − v_j)·d_ij/|d_ij|².
+    approach: f64,
+}
+
+/// What particles find around them; the two ends of an edge find the same, or its opposite.
+fn around<const D: usize>(shape: &Shape<D>, state: &[Primitive<D>], radius: f64) -> Vec<Around<D>> {
+    let (cloud, op) = (&shape.cloud, &shape.operators);
+    let blank = Around { shift: Vector::ZERO, approach: 0.0 };
+    let mut all = vec![blank; cloud.n_fluid];
+    let (walls, crowding) = (cloud.interface_range(), Crowding::new(radius));
+    sweep_parts(op.fluid_parts(), 1, &mut all, &|k, out| {
+        let start = op.parts[k].start;
+        for e in op.edges(k) {
+            let (i, j) = (e.i(), e.j());
+            let d = cloud.x[j] - cloud.x[i];
+            let (h_i, h_j, r) = (cloud.spacing[i], cloud.spacing[j], d.norm());
+            let inverse = 2.0 / (h_i + h_j);
+            let push = d * (crowding.at(r * inverse) / r);
+            let approach = (state[i].velocity - state[j].velocity).dot(&d) / (r * r);
+            let is_wall = j >= cloud.n_fluid && walls.contains(&cloud.source(j).index);
+            let share = if is_wall { WALL_SHARE } else { 1.0 };
+            let own = &mut out[i - start];
+            own.shift -= push * (share * (h_j * inverse).powi(D as i32));
+            own.approach += approach;
+            if e.both() {
+                let other = &mut out[j - start];
+                other.shift += push * (h_i * inverse).powi(D as i32);
+                other.approach += approach;
+            }
+        }
     });
+    all
+}
+
+/// f(q) of the shift.
+struct Crowding {
+    radius: f64,
+    kernel_scale: f64,
+    slope_scale: f64,
+}
+
+impl Crowding {
+    fn new(radius: f64) -> Self {
+        let unit = 1.0 / radius;
+        Self { radius, kernel_scale: 1.0 / Self::kernel(unit), slope_scale: 1.0 / Self::slope(unit) }
+    }
+
+    fn kernel(q: f64) -> f64 {
+        (1.0 - q).powi(4) * (1.0 + 4.0 * q)
+    }
+
+    fn slope(q: f64) -> f64 {
+        q * (1.0 - q).powi(3)
+    }
+
+    /// f at a distance of `r` mean spacings.
+    #[inline(always)]
+    fn at(&self, r: f64) -> f64 {
+        let q = (r / self.radius).min(1.0);
+        let apart = 1.0 + APART * (Self::kernel(q) * self.kernel_scale).powi(4);
+        apart * Self::slope(q) * self.slope_scale
+    }
+}
+
+/// True for particles near a shock: where the gas is compressed hard, and a few neighbours around; empty when there is none.
+fn shocked<const D: usize>(cloud: &Cloud<D>, gas: &Gas, (state, around): (&[Primitive<D>], &[Around<D>])) -> Vec<bool> {
+    let n = cloud.n_fluid;
+    let compressed = |i: usize| {
+        let count = cloud.neighbours.range(i).len().max(1);
+        let divergence = -around[i].approach * D as f64 / count as f64;
+        -divergence * cloud.spacing[i] > COMPRESSED * gas.sound_speed(&state[i])
+    };
+    if first(n, compressed).is_none() {
+        return Vec::new();
+    }
+    let mut near = vec![false; n];
+    sweep(&mut near, compressed);
     for _ in 0..HOPS {
         let before = near.clone();
         let beside = |j: &u32| before.get(cloud.source(*j as usize).index).copied().unwrap_or(false);
         sweep(&mut near, |i| before[i] || cloud.neighbours.of(i).iter().any(beside));
     }
     near
-}
-
-/// −Σ_j ω_j f(q_ij) d_ij/|d_ij|: away from where particles are dense.
-fn shift<const D: usize>(cloud: &Cloud<D>, i: usize, radius: f64) -> Vector<D> {
-    let kernel = |q: f64| (1.0 - q).powi(4) * (1.0 + 4.0 * q);
-    let slope = |q: f64| q * (1.0 - q).powi(3);
-    let unit = 1.0 / radius;
-    let (kernel_scale, slope_scale) = (1.0 / kernel(unit), 1.0 / slope(unit));
-    let walls = cloud.interface_range();
-    let mut sum = Vector::ZERO;
-    for j in cloud.neighbours.of(i) {
-        let j = *j as usize;
-        let d = cloud.x[j] - cloud.x[i];
-        let r = d.norm();
-        let mean = 0.5 * (cloud.spacing[i] + cloud.spacing[j]);
-        let q = (r / (radius * mean)).min(1.0);
-        let volume = (cloud.spacing[j] / mean).powi(D as i32);
-        let share = if walls.contains(&cloud.source(j).index) { WALL_SHARE } else { 1.0 };
-        let apart = 1.0 + APART * (kernel(q) * kernel_scale).powi(4);
-        sum -= d * (share * volume * apart * slope(q) * slope_scale / r);
-    }
-    sum
 }
 
 /// The state on a renewed cloud.
