@@ -93,7 +93,7 @@ mod tests {
             assert!(error(mach, &back, &stream(mach)) < 3e-3);
         }
         let swirl = |mach: f64| Primitive { density: 1.5, velocity: N * mach + T * 0.1, pressure: 1.0 };
-        assert!(error(0.5, &swirl(0.5), &swirl(0.5)) < 2e-3 && error(-0.5, &swirl(-0.5), &stream(-0.5)) < 2e-3);
+        assert!(error(0.5, &swirl(0.5), &swirl(0.5)) < 3e-3 && error(-0.5, &swirl(-0.5), &stream(-0.5)) < 3e-3);
         for state in [|m| wave(m, 0.1, 1.0), |m| wave(m, 0.1, -1.0), swirl] {
             assert!(error(2.0, &state(2.0), &state(2.0)) < 1e-3 && error(-2.0, &state(-2.0), &stream(-2.0)) < 1e-3);
         }
