@@ -1,9 +1,10 @@
 //! What leaves through a side of the domain.
 //!
-//! Along a normal n the Euler equations carry J± = u·n ± 2c/(γ − 1) at u·n ± c, and the entropy p/ρ^γ and the velocity along
-//! the side at u·n (Hirsch, Numerical Computation of Internal and External Flows 2, 1990, section 16.4). A side that holds a state
-//! swallows what arrives from within only if it goes on across it; if it ends there, a part comes back, since on a cloud no edge
-//! is normal to all waves.
+//! Along a normal n the Euler equations carry sound at u·n ± c, and the entropy p/ρ^γ and the velocity along the side at u·n
+//! (Hirsch, Numerical Computation of Internal and External Flows 2, 1990, section 16.4). Sound is told by J± = u·n ± 2a/(γ − 1) with
+//! the speed a of sound that the gas held would have at the pressure at hand: constant across the waves of the other way and across
+//! layers of other entropy. A side that holds a state swallows what arrives from within only if it goes on across it; if it ends
+//! there, a part comes back, since on a cloud no edge is normal to all waves.
 use super::{Gas, Primitive};
 use crate::math::Vector;
 
@@ -12,7 +13,7 @@ const FADE: f64 = 0.1;
 /// Least part of the speed of sound held that the state may have.
 const LEAST: f64 = 0.1;
 
-/// J+, J−, p/ρ^γ and the velocity along the side.
+/// J₊, J₋, p/ρ^γ and the velocity along the side.
 struct Carried<const D: usize> {
     sound: [f64; 2],
     entropy: f64,
@@ -20,17 +21,24 @@ struct Carried<const D: usize> {
 }
 
 impl<const D: usize> Carried<D> {
-    fn of(gas: &Gas, q: &Primitive<D>, n: &Vector<D>) -> Self {
-        let (across, c) = (q.velocity.dot(n), 2.0 * gas.sound_speed(q) / (gas.gamma - 1.0));
-        let along = q.velocity - *n * across;
-        Self { sound: [across + c, across - c], entropy: gas.entropy(q), along }
+    /// Exponent of p in a.
+    fn exponent(gas: &Gas) -> f64 {
+        0.5 * (gas.gamma - 1.0) / gas.gamma
     }
 
-    fn state(&self, gas: &Gas, n: &Vector<D>, least: f64) -> Primitive<D> {
+    fn of(gas: &Gas, held: &Primitive<D>, q: &Primitive<D>, n: &Vector<D>) -> Self {
+        let across = q.velocity.dot(n);
+        let a = gas.sound_speed(held) * (q.pressure / held.pressure).powf(Self::exponent(gas));
+        let up = 2.0 * a / (gas.gamma - 1.0);
+        Self { sound: [across + up, across - up], entropy: gas.entropy(q), along: q.velocity - *n * across }
+    }
+
+    fn state(&self, gas: &Gas, held: &Primitive<D>, n: &Vector<D>) -> Primitive<D> {
         let [up, down] = self.sound;
-        let c2 = (0.25 * (gas.gamma - 1.0) * (up - down)).max(least).powi(2);
-        let density = (c2 / (gas.gamma * self.entropy)).powf(1.0 / (gas.gamma - 1.0));
-        Primitive { density, velocity: *n * (0.5 * (up + down)) + self.along, pressure: density * c2 / gas.gamma }
+        let a = (0.25 * (gas.gamma - 1.0) * (up - down) / gas.sound_speed(held)).max(LEAST);
+        let pressure = held.pressure * a.powf(1.0 / Self::exponent(gas));
+        let density = (pressure / self.entropy).powf(1.0 / gas.gamma);
+        Primitive { density, velocity: *n * (0.5 * (up + down)) + self.along, pressure }
     }
 }
 
@@ -46,7 +54,7 @@ pub fn outgoing<const D: usize>(
     let through = (held.velocity - *w).dot(n);
     let leaves = |speed: f64| 0.5 * (1.0 + speed / speed.hypot(FADE * c));
     let [part_up, part_down, part] = [through + c, through - c, through].map(leaves);
-    let [before, inside, usual] = [held, inner, beside].map(|q| Carried::of(gas, q, n));
+    let [before, inside, usual] = [held, inner, beside].map(|q| Carried::of(gas, held, q, n));
     let after = Carried {
         sound: [
             before.sound[0] + part_up * (inside.sound[0] - usual.sound[0]),
@@ -56,7 +64,7 @@ pub fn outgoing<const D: usize>(
         along: before.along + (inside.along - usual.along) * part,
     };
     // the difference is nothing, to the bit, where nothing leaves
-    let change = after.state(gas, n, LEAST * c).minus(&before.state(gas, n, LEAST * c));
+    let change = after.state(gas, held, n).minus(&before.state(gas, held, n));
     held.plus(1.0, &change)
 }
 

@@ -192,6 +192,7 @@ impl<const D: usize> Fluid<D> {
         let ahead = ((*x - *near).dot(&n) / (*near - *far).dot(&n)).clamp(0.0, FURTHEST);
         let change = inner.minus(&beside).minus(&fluid[outer.behind as usize].minus(&further));
         let arriving = inner.plus(if ahead.is_finite() { ahead } else { 0.0 }, &change);
+        let arriving = if arriving.is_physical() { arriving } else { *inner };
         outgoing(&self.gas, &held, [&arriving, &beside], (&n, &moved))
     }
 
