@@ -447,5 +447,5 @@ fn what_is_not_periodic_is_refused() {
     let root = tempfile::tempdir().unwrap();
     let fading = common::case(&format!("{head}period = 3\nformula = {{ y = \"0.1*sin(omega*t)*exp(-t/9)\" }}\n"));
     let problem = alula::run::run(&fading, &places(root.path(), "a"), &mut alula::run::Silent).unwrap_err();
-    assert!(problem.to_string().contains("needs a periodic motion"), "{problem}");
+    assert!(problem.to_string().contains("does not repeat"), "{problem}");
 }
