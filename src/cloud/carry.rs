@@ -5,8 +5,9 @@
 //! one particle loses another still gains to round-off; areas close as they did under affine motion, and to second order under any
 //! other, because cof(F) has no divergence (Piola's identity).
 use super::Cloud;
-use super::operators::Operators;
+use super::operators::{Operators, WallFace};
 use crate::math::Vector;
+use crate::math::square::{cofactors, determinant, times};
 use crate::math::sweep::{sweep, sweep_parts};
 
 /// Rows of a matrix.
@@ -14,26 +15,7 @@ type Matrix<const D: usize> = [Vector<D>; D];
 
 /// cof(F) v.
 fn cofactor_times<const D: usize>(f: &Matrix<D>, v: &Vector<D>) -> Vector<D> {
-    let at = |r: usize, c: usize| f[r % D][c % D];
-    Vector::from_fn(|r| {
-        let entry = |c: usize| match D {
-            2 => {
-                if (r + c).is_multiple_of(2) {
-                    at(r + 1, c + 1)
-                } else {
-                    -at(r + 1, c + 1)
-                }
-            }
-            _ => at(r + 1, c + 1) * at(r + 2, c + 2) - at(r + 1, c + 2) * at(r + 2, c + 1),
-        };
-        (0..D).map(|c| entry(c) * v[c]).sum()
-    })
-}
-
-/// det(F).
-fn determinant<const D: usize>(f: &Matrix<D>) -> f64 {
-    let first = Vector::from_fn(|r| f[r][0]);
-    first.dot(&cofactor_times(f, &Vector::axis(0)))
+    times(&cofactors(f), v)
 }
 
 impl<const D: usize> Operators<D> {
@@ -48,9 +30,8 @@ impl<const D: usize> Operators<D> {
         };
         self.carry_edges(origin, |i, j, s| if i < from.n_fluid { cofactor_times(&between(i, j), s) } else { *s });
         let faces = (0..origin.n_fluid_parts).flat_map(|k| origin.wall_faces(k));
-        let turned =
-            |f: &super::operators::WallFace<D>| cofactor_times(&between(f.i as usize, f.wall as usize), &f.area);
-        self.set_wall_faces(faces.map(|f| super::operators::WallFace { area: turned(f), ..*f }).collect());
+        let turned = |f: &WallFace<D>| cofactor_times(&between(f.i as usize, f.wall as usize), &f.area);
+        self.set_wall_faces(faces.map(|f| WallFace { area: turned(f), ..*f }).collect());
         let (volume, images) = cloud.volume.split_at_mut(cloud.x.len() - cloud.images.len());
         sweep(&mut volume[..from.n_fluid], |i| from.volume[i] * determinant(&gradients[i]));
         for (slot, image) in images.iter_mut().zip(&cloud.images) {
@@ -59,7 +40,7 @@ impl<const D: usize> Operators<D> {
     }
 
     /// F = 1 + ∂(x − X)/∂X of every row, with the weights of this fit of the cloud `from` at X.
-    fn displacement_gradients(&self, cloud: &Cloud<D>, from: &Cloud<D>) -> Vec<Matrix<D>> {
+    pub fn displacement_gradients(&self, cloud: &Cloud<D>, from: &Cloud<D>) -> Vec<Matrix<D>> {
         let mut all = vec![[Vector::ZERO; D]; from.n_rows()];
         let moved = |i: usize| cloud.x[i] - from.x[i];
         sweep_parts(&self.parts, 1, &mut all, &|k, out| {
@@ -100,23 +81,6 @@ fn seen<const D: usize>(cloud: &Cloud<D>, gradients: &[Matrix<D>], i: usize) -> 
 mod tests {
     use super::*;
     use crate::cloud::conservative::conservative;
-
-    fn matrix3() -> Matrix<3> {
-        [Vector([1.1, 0.2, -0.3]), Vector([0.4, 0.9, 0.1]), Vector([-0.2, 0.3, 1.2])]
-    }
-
-    #[test]
-    fn a_cofactor_times_the_transpose_is_the_determinant() {
-        let (f, g) = (matrix3(), [Vector([1.1, 0.2]), Vector([-0.4, 0.9])]);
-        for k in 0..3 {
-            // F^T cof(F) = det(F) 1
-            let column = cofactor_times(&f, &Vector::axis(k));
-            let back: Vector<3> = Vector::from_fn(|c| (0..3).map(|r| f[r][c] * column[r]).sum());
-            assert!((back - Vector::axis(k) * determinant(&f)).norm() < 1e-14);
-        }
-        assert!((determinant(&f) - (1.1 * 1.05 - 0.2 * 0.5 - 0.3 * 0.3)).abs() < 1e-14);
-        assert!((determinant(&g) - 1.07).abs() < 1e-14);
-    }
 
     /// Greatest sum of area vectors around a particle, over the sum of their sizes, after the motion `to`.
     fn open(to: impl Fn(&Vector<2>) -> Vector<2>) -> (f64, f64) {

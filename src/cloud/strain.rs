@@ -5,6 +5,7 @@
 //! curvature tensor of the deformed surface: exact for any map with two derivatives.
 use super::Interface;
 use crate::math::Vector;
+use crate::math::square::{cofactors, determinant, times};
 
 /// First and second derivatives of a map at one point.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -16,27 +17,14 @@ pub struct Strain<const D: usize> {
 }
 
 impl<const D: usize> Strain<D> {
-    /// Rows of cof F: the derivatives of det F by the entries of F.
-    fn cofactors(&self) -> [Vector<D>; D] {
-        let f = &self.map;
-        if D == 2 {
-            let sign = |i: usize, j: usize| if i == j { 1.0 } else { -1.0 };
-            return std::array::from_fn(|i| Vector::from_fn(|j| sign(i, j) * f[1 - i][1 - j]));
-        }
-        let at = |i: usize, j: usize| f[i % 3][j % 3];
-        std::array::from_fn(|i| {
-            Vector::from_fn(|j| at(i + 1, j + 1) * at(i + 2, j + 2) - at(i + 1, j + 2) * at(i + 2, j + 1))
-        })
-    }
-
     /// det F.
     pub fn determinant(&self) -> f64 {
-        self.map[0].dot(&self.cofactors()[0])
+        determinant(&self.map)
     }
 
     /// Rows of F⁻¹.
     pub fn inverse(&self) -> [Vector<D>; D] {
-        let (cofactors, part) = (self.cofactors(), 1.0 / self.determinant());
+        let (cofactors, part) = (cofactors(&self.map), 1.0 / self.determinant());
         std::array::from_fn(|i| Vector::from_fn(|j| cofactors[j][i] * part))
     }
 }
@@ -44,9 +32,9 @@ impl<const D: usize> Strain<D> {
 impl<const D: usize> Interface<D> {
     /// Carries its vectors and its curvature along the map.
     pub fn deform(&mut self, strain: &Strain<D>) {
-        let (cofactors, inverse) = (strain.cofactors(), strain.inverse());
+        let (cofactors, inverse) = (cofactors(&strain.map), strain.inverse());
         let part = 1.0 / strain.determinant();
-        let lifted = |v: &Vector<D>| Vector::from_fn(|i| cofactors[i].dot(v));
+        let lifted = |v: &Vector<D>| times(&cofactors, v);
         self.area = lifted(&self.area);
         let m = lifted(&self.normal) * part;
         let size = m.norm();

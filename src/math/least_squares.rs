@@ -8,6 +8,7 @@
 //! The normal equations are tried first (Cholesky); when their conditioning asks for it, the rows are factorised (QR), and
 //! when these are rank deficient too the pseudo-inverse is taken (SVD by one-sided Jacobi rotations, Demmel 1997 §5.4.3).
 use super::Vector;
+use super::square::cofactor;
 
 /// Condition number of the scaled normal matrix above which Cholesky is not trusted: √ of it is lost digits of the rows.
 const CHOLESKY_CONDITION: f64 = 1e8;
@@ -101,19 +102,10 @@ fn invert_symmetric<const D: usize>(m: &[[f64; D]; D]) -> Option<[[f64; D]; D]> 
     }
     for r in 0..D {
         for c in 0..D {
-            inverse[c][r] = cofactor(m, r, c) / det;
+            inverse[c][r] = cofactor::<D>(|i, j| m[i][j], r, c) / det;
         }
     }
     Some(inverse)
-}
-
-fn cofactor<const D: usize>(m: &[[f64; D]; D], r: usize, c: usize) -> f64 {
-    let at = |i: usize, j: usize| m[(r + i) % D][(c + j) % D];
-    match D {
-        1 => 1.0,
-        2 => at(1, 1) * if (r + c).is_multiple_of(2) { 1.0 } else { -1.0 },
-        _ => at(1, 1) * at(2, 2) - at(1, 2) * at(2, 1),
-    }
 }
 
 /// Condition number (ratio of extreme eigenvalues) of a small symmetric positive matrix; infinite when singular.

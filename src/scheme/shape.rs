@@ -14,6 +14,7 @@ use super::skin::Skin;
 use super::travel::Travel;
 use crate::cloud::{Cloud, Operators};
 use crate::math::Vector;
+use crate::math::square::times;
 use crate::math::sweep::{sweep, sweep_slots};
 use crate::motion::{Law, RigidPose};
 use crate::physics::Primitive;
@@ -227,10 +228,6 @@ pub(super) fn rotation_rate<const D: usize>(law: &Law<D>, t: f64) -> [Vector<D>;
     let rates: [Vector<D>; D] = std::array::from_fn(|k| velocity(&Vector::axis(k)) - base);
     // rates[k] is column k of Ṙ
     std::array::from_fn(|i| Vector::from_fn(|j| (0..D).map(|k| rates[k][i] * pose.rotation[j][k]).sum()))
-}
-
-fn times<const D: usize>(rows: &[Vector<D>; D], v: &Vector<D>) -> Vector<D> {
-    Vector::from_fn(|i| rows[i].dot(v))
 }
 
 /// Moves the particles and fits their weights anew.

@@ -1,10 +1,9 @@
 //! A watch over clouds whose particles follow bodies: have neighbours come too close?
 //!
-//! With the weights a_ij of the cloud before any motion, F_i = Σ_j (x_j − x_i) a_ijᵀ is the gradient of the motion at a
+//! Fitted with the weights of the cloud before any motion, F_i = 1 + ∂(x − X)/∂X is the gradient of the motion at a
 //! particle, and det F the volume that its surroundings keep. Where it falls to nothing particles overtake one another: a body
 //! runs into another one or into a side of the domain, or moves too far for the cloud between them.
-use crate::math::Vector;
-use crate::math::sweep::sweep_parts;
+use crate::math::square::determinant;
 use crate::system::Fault;
 
 use super::fluid::Fluid;
@@ -32,32 +31,11 @@ impl<const D: usize> Fluid<D> {
     /// Volume of the surroundings of each fluid particle over what it was before any motion.
     pub(super) fn stretch(&self, frame: &Frame<D>) -> Vec<f64> {
         let (before, now) = (&self.shape, &frame.shape.cloud);
-        let op = &before.operators;
-        let mut gradient = vec![[Vector::<D>::ZERO; D]; before.cloud.n_fluid];
-        sweep_parts(op.fluid_parts(), 1, &mut gradient, &|k, out| {
-            let start = op.parts[k].start;
-            for e in op.edges(k) {
-                let d = now.x[e.j()] - now.x[e.i()];
-                for c in 0..D {
-                    out[e.i() - start][c] += e.a_i * d[c];
-                    if e.both() {
-                        out[e.j() - start][c] += e.a_j * -d[c];
-                    }
-                }
-            }
-        });
-        let mut volume: Vec<f64> = gradient.iter().map(determinant).collect();
+        let gradients = before.operators.displacement_gradients(now, &before.cloud);
+        let mut volume: Vec<f64> = gradients[..before.cloud.n_fluid].iter().map(determinant).collect();
         // rows of first order do not know their surroundings
         let unknown = before.cloud.first_order.iter().map(|i| *i as usize);
-        unknown.filter(|i| *i < gradient.len()).for_each(|i| volume[i] = 1.0);
+        unknown.filter(|i| *i < before.cloud.n_fluid).for_each(|i| volume[i] = 1.0);
         volume
-    }
-}
-
-fn determinant<const D: usize>(m: &[Vector<D>; D]) -> f64 {
-    let minor = |r: usize, s: usize, a: usize, b: usize| m[r][a] * m[s][b] - m[r][b] * m[s][a];
-    match D {
-        2 => minor(0, 1, 0, 1),
-        _ => m[0][0] * minor(1, 2, 1, 2) - m[0][1] * minor(1, 2, 0, 2) + m[0][2] * minor(1, 2, 0, 1),
     }
 }
