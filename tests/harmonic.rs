@@ -14,8 +14,9 @@ use alula::physics::Primitive;
 use alula::scheme::shape::{Path, Places};
 use alula::scheme::{Carriage, Fluid};
 use alula::system::{Fault, Moment, System};
+use alula::time::control::{Control, Method};
 use alula::time::harmonic::HarmonicBalance;
-use alula::time::relax::{Control, Method, Relax};
+use alula::time::relax::Relax;
 use common::{largest, solver};
 
 /// Round-off of fluxes of order one, in changes of the state within one local time.
@@ -407,6 +408,18 @@ fn a_balance_that_begins_with_a_march_finds_the_same() {
     alula::run::resume(&root.path().join("cut"), &mut alula::run::Silent).unwrap();
     let read = |name: &str| std::fs::read(root.path().join(name).join("instances.csv")).unwrap();
     assert!(read("whole") == read("cut"), "a march that was interrupted ends elsewhere");
+}
+
+#[test]
+fn a_march_from_the_balance_stays_with_it() {
+    let root = tempfile::tempdir().unwrap();
+    let found = summary(&section("{ number = 2, check = 1 }"), &places(root.path(), "out"));
+    let after = found.harmonic_balance.and_then(|b| b.march).unwrap();
+    let lift = after.cl.unwrap();
+    assert_eq!((after.periods, after.unconverged), (1, 0));
+    assert!(lift.first_harmonic < 3e-3 && lift.mean.abs() < 1e-3, "{lift:?}");
+    // the drag of a section without mean lift has twice the frequency of the motion
+    assert!(after.cd.is_none() && after.cm.is_some());
 }
 
 #[test]

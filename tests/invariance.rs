@@ -7,8 +7,9 @@ use alula::math::Vector;
 use alula::math::multilevel::Cycle;
 use alula::physics::Primitive;
 use alula::system::{Moment, System};
+use alula::time::control::Control;
 use alula::time::explicit::{Explicit, Method};
-use alula::time::relax::{self, Control, Relax};
+use alula::time::relax::{self, Relax};
 use alula::time::{March, Past};
 use common::{largest, round_body, solver, two_levels, vortex, with_threads};
 

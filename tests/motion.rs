@@ -12,9 +12,10 @@ use alula::physics::{Conserved, Primitive};
 use alula::scheme::shape::{Path, Places};
 use alula::scheme::{Carriage, Fluid};
 use alula::system::{Moment, System};
+use alula::time::control::Control;
 use alula::time::dual::{Dual, Plan};
 use alula::time::explicit::{Explicit, Method};
-use alula::time::relax::{self, Control};
+use alula::time::relax;
 use alula::time::{March, Past};
 use common::{largest, solver};
 

@@ -17,7 +17,7 @@ const CASE: &str = "title = \"bench\"\n[flow]\nmach = 0.7\nreynolds = 3.1e5\ntem
     [cloud]\nspacing = 0.015625\nwall_layers = { first = 0.0003, growth = 1.25 }\nwake = { length = 1.0, spacing = 0.015625 }\n\
     [time.dual]\nsteps_per_period = 64\nperiods = 5\n";
 /// Steps that lead past the start, and steps that are timed.
-const STEPS: [u32; 2] = [20, 32];
+const STEPS: [u32; 2] = [192, 64];
 /// Orders of magnitude the steady flow before the march is solved to, and greatest number of iterations for that.
 const PRELUDE: (f64, u32) = (1e-2, 80);
 

@@ -18,7 +18,7 @@ use alula::math::multilevel::Cycle;
 use alula::motion::Motions;
 use alula::scheme::Fluid;
 use alula::system::{Moment, System};
-use alula::time::relax::{Control, Method};
+use alula::time::control::{Control, Method};
 
 /// Times each side is measured.
 const TURNS: usize = 7;

@@ -128,6 +128,7 @@ impl Case {
             tolerance: 1e-4,
             iterations: 500,
             march: 0,
+            check: 0,
             method: SteadyMethod::NewtonKrylov,
             cfl: 10.0,
             cfl_max: 1e6,

@@ -37,6 +37,9 @@ pub struct Harmonics {
     /// Periods that are marched before, to begin from the last of them.
     #[serde(default)]
     pub march: u32,
+    /// Periods that are marched afterwards, to tell how far a march ends from the balance.
+    #[serde(default)]
+    pub check: u32,
     /// Method.
     pub method: SteadyMethod,
     /// Courant number at the start.

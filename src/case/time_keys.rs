@@ -64,6 +64,13 @@ static HARMONICS: Table = Table {
             "Periods that are marched before in coarse implicit steps, about 36 a period; the balance begins from the last of them. \
              For flow that separates or moves far from the steady one.",
         ),
+        Field::defaulted(
+            "check",
+            Kind::Integer(0, 1000),
+            Absent::Integer(0),
+            "Periods that are marched afterwards, in implicit steps of 1/128 period from the balance; the run tells by how much the \
+             loads of the last of them differ.",
+        ),
         METHOD,
         CFL,
         CFL_MAX,

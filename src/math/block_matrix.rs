@@ -415,34 +415,6 @@ pub struct Rows<'a> {
 }
 
 impl Rows<'_> {
-    /// True when the blocks become the mean of several assemblies.
-    pub fn is_mean(&self) -> bool {
-        self.weight != 1.0
-    }
-
-    /// Replaces every block of the part by what `f` makes of it; blocks are given and taken by rows.
-    pub fn map(&mut self, f: impl Fn(&mut [[f64; 5]; 5])) {
-        let (n, size) = (self.block, self.block * self.block);
-        let base = self.first[self.start] as usize;
-        let mut wide = [[0.0; 5]; 5];
-        for (k, own) in self.diagonal.chunks_exact_mut(size).enumerate() {
-            (0..size).for_each(|m| wide[m % n][m / n] = f64::from(own[m]));
-            f(&mut wide);
-            (0..size).for_each(|m| own[m] = wide[m % n][m / n] as f32);
-            let i = self.start + k;
-            let row = (self.first[i] as usize - base) * size..(self.first[i + 1] as usize - base) * size;
-            for block in self.value[row].chunks_exact_mut(size) {
-                (0..size).for_each(|m| wide[m % n][m / n] = f64::from(widen(block[m])));
-                f(&mut wide);
-                for m in 0..size {
-                    let exact = wide[m % n][m / n] as f32;
-                    block[m] = narrow(exact);
-                    own[m] += exact - widen(block[m]);
-                }
-            }
-        }
-    }
-
     /// Adds `f(r, c)` to the block that couples row `i` to column `j`; does nothing when the pattern has none.
     #[inline(always)]
     pub fn add(&mut self, i: usize, j: usize, f: impl Fn(usize, usize) -> f64) {

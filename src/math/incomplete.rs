@@ -5,8 +5,10 @@
 //! D_i = A_ii − Σ_{j<i} A_ij D_j⁻¹ A_ji.
 //!
 //! Along a line of particles, where nothing is left out, that is the exact solution: the stiff coupling across thin layers is
-//! followed at the price of two half-sweeps. Blocks between the parts of the matrix are left out, so that parts are
-//! independent of one another.
+//! followed at the price of two half-sweeps. Blocks between the parts of the matrix are left out of the factors, so that parts are
+//! independent of one another; a second solve for what the first one left takes them in.
+use std::ops::Range;
+
 use super::block_matrix::{BlockMatrix, invert, load, multiply, subtract, widen_block};
 use super::sweep::{sweep, sweep_parts};
 
@@ -14,20 +16,22 @@ use super::sweep::{sweep, sweep_parts};
 #[derive(Clone, Debug, Default)]
 pub struct Incomplete {
     inverse: Vec<f32>,
-    x: Vec<f32>,
+    first: Vec<f32>,
+    second: Vec<f32>,
 }
 
 impl Incomplete {
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        4 * (self.inverse.len() + self.x.len())
+        4 * (self.inverse.len() + self.first.len() + self.second.len())
     }
 
     /// Forms the pivots of `matrix`.
     pub fn factor(&mut self, matrix: &BlockMatrix) {
         let n = matrix.block();
         self.inverse.resize(matrix.n_rows() * n * n, 0.0);
-        self.x.resize(matrix.n_rows() * n, 0.0);
+        self.first.resize(matrix.n_rows() * n, 0.0);
+        self.second.resize(matrix.n_rows() * n, 0.0);
         match n {
             4 => self.factor_blocks::<4>(matrix),
             5 => self.factor_blocks::<5>(matrix),
@@ -51,22 +55,21 @@ impl Incomplete {
         });
     }
 
-    /// z ≈ A⁻¹ r, where `r(k)` is component k of the right-hand side and `matrix` the one that was factored.
+    /// z ≈ A⁻¹ r, where `r(k)` is component k of the right-hand side and `matrix` the one that was factored: solved once with
+    /// the factors, and once more for what is left, blocks between parts included.
     pub fn apply(&mut self, matrix: &BlockMatrix, r: impl Fn(usize) -> f32 + Sync, z: &mut [f64]) {
         match matrix.block() {
-            4 => self.solve::<4>(matrix, r),
-            5 => self.solve::<5>(matrix, r),
-            3 => self.solve::<3>(matrix, r),
-            2 => self.solve::<2>(matrix, r),
-            _ => self.solve::<1>(matrix, r),
+            4 => self.solve::<4>(matrix, r, z),
+            5 => self.solve::<5>(matrix, r, z),
+            3 => self.solve::<3>(matrix, r, z),
+            2 => self.solve::<2>(matrix, r, z),
+            _ => self.solve::<1>(matrix, r, z),
         }
-        let x = &self.x;
-        sweep(z, |k| f64::from(x[k]));
     }
 
-    fn solve<const N: usize>(&mut self, matrix: &BlockMatrix, b: impl Fn(usize) -> f32 + Sync) {
-        let (parts, inverse) = (matrix.parts(), &self.inverse);
-        sweep_parts(parts, N, &mut self.x, &|k, x| {
+    fn solve<const N: usize>(&mut self, matrix: &BlockMatrix, b: impl Fn(usize) -> f32 + Sync, z: &mut [f64]) {
+        let (parts, inverse, first) = (matrix.parts(), &self.inverse, &mut self.first);
+        sweep_parts(parts, N, first, &|k, x| {
             let start = parts[k].start;
             for i in parts[k].clone() {
                 let (_, inside, _) = matrix.split_row(i);
@@ -76,16 +79,52 @@ impl Incomplete {
                 }
                 add_pivoted::<N>(inverse, i, &r, [0.0; N], &mut x[(i - start) * N..]);
             }
-            for i in parts[k].clone().rev() {
-                let (_, inside, _) = matrix.split_row(i);
-                let mut r = [0.0; N];
-                for e in matrix.middle(i)..inside.end {
-                    subtract::<N>(matrix.off_diagonal(e), &load::<N>(x, matrix.column(e) - start), &mut r);
-                }
-                let own = load::<N>(x, i - start);
-                add_pivoted::<N>(inverse, i, &r, own, &mut x[(i - start) * N..]);
-            }
+            backward::<N>(matrix, inverse, &parts[k], x);
         });
+        let first = &*first;
+        sweep_parts(parts, N, &mut self.second, &|k, y| {
+            let start = parts[k].start;
+            for i in parts[k].clone() {
+                let (below, inside, above) = matrix.split_row(i);
+                let mut r = std::array::from_fn(|c| b(i * N + c));
+                let own = load::<N>(first, i);
+                subtract_single::<N>(matrix.diagonal(i), &own, &mut r);
+                for e in below.chain(matrix.middle(i)..inside.end).chain(above) {
+                    subtract::<N>(matrix.off_diagonal(e), &load::<N>(first, matrix.column(e)), &mut r);
+                }
+                // what is left of the right-hand side and what the forward solve takes from it, at once
+                for e in inside.start..matrix.middle(i) {
+                    let j = matrix.column(e);
+                    let (x, y) = (load::<N>(first, j), load::<N>(y, j - start));
+                    subtract::<N>(matrix.off_diagonal(e), &std::array::from_fn(|c| x[c] + y[c]), &mut r);
+                }
+                add_pivoted::<N>(inverse, i, &r, [0.0; N], &mut y[(i - start) * N..]);
+            }
+            backward::<N>(matrix, inverse, &parts[k], y);
+        });
+        let second = &self.second;
+        sweep(z, |k| f64::from(first[k] + second[k]));
+    }
+}
+
+/// x ← (D + U)⁻¹ D x on the rows of one part.
+fn backward<const N: usize>(matrix: &BlockMatrix, inverse: &[f32], part: &Range<usize>, x: &mut [f32]) {
+    for i in part.clone().rev() {
+        let (_, inside, _) = matrix.split_row(i);
+        let mut r = [0.0; N];
+        for e in matrix.middle(i)..inside.end {
+            subtract::<N>(matrix.off_diagonal(e), &load::<N>(x, matrix.column(e) - part.start), &mut r);
+        }
+        let own = load::<N>(x, i - part.start);
+        add_pivoted::<N>(inverse, i, &r, own, &mut x[(i - part.start) * N..]);
+    }
+}
+
+/// r ← r − A x, where the block A is held by columns in single precision.
+#[inline(always)]
+fn subtract_single<const N: usize>(a: &[f32], x: &[f32; N], r: &mut [f32; N]) {
+    for c in 0..N {
+        (0..N).for_each(|k| r[k] -= a[c * N + k] * x[c]);
     }
 }
 

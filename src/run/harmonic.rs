@@ -5,12 +5,14 @@ use num_complex::Complex64;
 use serde::Serialize;
 
 use super::RunError;
+use super::aftermath::{Aftermath, marched_on};
+use super::journal::Journal;
 use super::outputs;
 use super::periodic::Sample;
 use super::persist::Position;
 use super::setup::{Solver, harmonic_control};
 use super::snapshot::Units;
-use super::solve::{Journal, Solved, Start, coefficients};
+use super::solve::{Solved, Start, coefficients};
 use crate::case::{Case, HarmonicCount, Harmonics};
 use crate::math::Vector;
 use crate::math::fourier::{Instances, Series};
@@ -59,6 +61,8 @@ pub struct BalanceReport {
     pub wall_velocity_error: f64,
     /// Evaluations of the residual of one instance.
     pub evaluations: u64,
+    /// How far a march from there ends from it, where `check` asks for one.
+    pub march: Option<Aftermath>,
 }
 
 /// Finds the periodic solution; `None` when told to stop. Ends with the state and frame of the first instance.
@@ -112,7 +116,14 @@ pub(super) fn balance<const D: usize>(
         if last || (auto && !short) {
             tell(plan, &report, journal);
             let outcome = Periodic { balance: &balance, fluid, state: &state };
-            outcome.trace(journal, period);
+            let mut report = report;
+            if let Some(series) = outcome.trace(journal, period).filter(|_| plan.check > 0) {
+                let Some(found) = marched_on(plan, &balance, fluid, (&state, &series), period, journal)? else {
+                    return Ok(None);
+                };
+                journal.note(&found.told());
+                report.march = Some(found);
+            }
             if let Some(forms) = &solver.forms {
                 let frames = balance.frame(&Moment::At { time: 0.0 }, &state);
                 journal.forces = forms.over_a_period(&balance, fluid, (&frames, &state));
@@ -368,6 +379,7 @@ fn report<const D: usize>(
         tail_density: (n > 1).then(|| density_tail(fluid, held, state)),
         wall_velocity_error: wall_velocity_error(fluid, &frames),
         evaluations: journal.evaluations,
+        march: None,
     }
 }
 
@@ -417,11 +429,11 @@ struct Periodic<'a, const D: usize> {
 }
 
 impl<const D: usize> Periodic<'_, D> {
-    /// Puts the loads of one period where those of the last period of a march would be.
-    fn trace(&self, journal: &mut Journal<'_>, period: f64) {
+    /// Puts the loads of one period where those of the last period of a march would be; gives their series.
+    fn trace(&self, journal: &mut Journal<'_>, period: f64) -> Option<[Series; 3]> {
         let frames = self.balance.frame(&Moment::At { time: 0.0 }, self.state);
         let series = loads(self.balance, self.fluid, (&frames, self.state), &mut self.fluid.work(), journal);
-        let Some([cl, cd, cm]) = series else { return };
+        let [cl, cd, cm] = series?;
         journal.trace.clear();
         for k in 0..=SAMPLES {
             let part = 1.0 + k as f64 / SAMPLES as f64;
@@ -430,16 +442,17 @@ impl<const D: usize> Periodic<'_, D> {
             journal.trace.push(Sample {
                 time: part * period,
                 loads,
-                motion: super::solve::motion(self.fluid, part * period),
+                motion: super::journal::motion(self.fluid, part * period),
             });
         }
         let instance = |frame: &Frame<D>| {
             let phase = std::f64::consts::TAU * frame.time / period;
-            let [angle, x, y, z, mode] = super::solve::motion(self.fluid, frame.time);
+            let [angle, x, y, z, mode] = super::journal::motion(self.fluid, frame.time);
             let shift = [x, y, z, mode].into_iter().find(|s| s.abs() > 0.0).unwrap_or(0.0);
             [frame.time / period, angle.to_degrees(), shift, cl.at(phase), cd.at(phase), cm.at(phase)]
         };
         journal.instances = frames.iter().map(instance).collect();
+        Some([cl, cd, cm])
     }
 
     /// Fields at phases, coefficients in time of walls and field.
@@ -458,7 +471,7 @@ impl<const D: usize> Periodic<'_, D> {
             frame
         };
         if let Some(interval) = journal.interval() {
-            let count = (period / interval + super::solve::NEARLY).floor() as u64;
+            let count = (period / interval + super::journal::NEARLY).floor() as u64;
             for k in 1..=count {
                 let frame = moment(k as f64 * interval / period, &mut work);
                 outputs::write_series(case, out, self.fluid, (&frame, &work), interval)?;

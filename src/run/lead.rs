@@ -4,8 +4,8 @@
 //! mild; flow that separates, or a body whose speed is a good part of that of the stream, needs the flow of a period that has been
 //! marched. Its accuracy does not matter: steps are coarse, and a multiple of the instances, which are taken from the last period.
 use super::RunError;
+use super::journal::Journal;
 use super::setup::harmonic_control;
-use super::solve::Journal;
 use crate::case::Harmonics;
 use crate::math::sweep::sweep_rows;
 use crate::scheme::Fluid;

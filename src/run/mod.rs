@@ -4,6 +4,7 @@
 //! each cycle of adaptation. Every stage builds its cloud, takes over the state of the one before by the solver's own fit,
 //! and integrates. Checkpoints hold what a stage cannot rebuild from the case: its sources of refinement, the state, and
 //! where the integrator stands; a killed run goes on to the same bits.
+pub mod aftermath;
 mod balance;
 mod folder;
 pub mod forces;
@@ -12,6 +13,7 @@ mod friction;
 pub mod gaf;
 pub mod harmonic;
 mod inspect;
+mod journal;
 mod lead;
 mod measure;
 mod outputs;
@@ -282,7 +284,7 @@ fn drive<const D: usize>(
         (None, Some(o)) => vec![Stage { march: marches(case), ..o.stages[o.stage] }],
         (None, None) => setup::stages(case, full.as_ref().map_or(0, |c| c.n_fluid), D),
     };
-    let mut journal = solve::Journal::open(case, places, saved.as_ref(), (motions.period(), monitor))?;
+    let mut journal = journal::Journal::open(case, places, saved.as_ref(), (motions.period(), monitor))?;
     journal.note(&describe(&stages, full.as_ref().map_or(0, |c| c.n_fluid)));
     let mut previous: Option<(Solver<D>, Vec<f64>)> = None;
     let mut last_frame = None;

@@ -3,9 +3,10 @@ use std::path::Path;
 
 use super::balance;
 use super::friction::{Separation, friction_load, separations, wall_friction};
+use super::journal::{Journal, NEARLY};
 use super::setup::Solver;
 use super::snapshot::{self, LoadFrame, Snapshot, Units, load_axes, pressure_coefficient, wall_load};
-use super::solve::{Journal, NEARLY, totals};
+use super::solve::totals;
 use super::summary::{Clock, Ledger, Reclouding, Summary};
 use super::{Places, RunError, marches};
 use crate::case::{Case, Initial};

@@ -20,8 +20,8 @@ use crate::scheme::reconstruct::Reconstruction;
 use crate::scheme::start::{Stream, initial};
 use crate::scheme::{Carriage, Contact, Fluid, Friction, Shape, Skin, Travel};
 use crate::system::{Moment, System};
+use crate::time::control::{Control, Method};
 use crate::time::dual::Plan;
-use crate::time::relax::{Control, Method};
 
 /// Particles above which a steady case is started on one coarser cloud, and on two; in 2-D and 3-D.
 const START: [[usize; 2]; 2] = [[2_500, 9_000], [15_000, 80_000]];

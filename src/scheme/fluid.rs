@@ -23,7 +23,6 @@ use crate::cloud::operators::WallFace;
 use crate::math::Vector;
 use crate::math::block_matrix::BlockMatrix;
 use crate::math::sweep::{first, maximum, sweep, sweep_each, sweep_each_slot, sweep_parts, sweep_rows};
-use crate::physics::outgoing::outgoing;
 use crate::physics::riemann::{AusmPlusUp, Hllc, Roe, Rusanov, UpwindFlux};
 use crate::physics::{Conserved, Gas, Primitive};
 use crate::system::{Fault, Moment, System};
@@ -34,9 +33,6 @@ use super::reconstruct::{Gradient, Limit, Reconstruction, Unlimited, VanAlbada, 
 use super::shape::{Carriage, Frame, Shape};
 use super::start::Field;
 use super::viscous::Friction;
-
-/// Greatest part of the way between two particles by which a disturbance is continued to a side.
-const FURTHEST: f64 = 1.0;
 
 /// The compressible Euler equations on a cloud, with friction the Navier-Stokes equations.
 pub struct Fluid<const D: usize> {
@@ -178,24 +174,6 @@ impl<const D: usize> Fluid<D> {
         Primitive { velocity: self.shape.cloud.transforms[transform as usize].direction(&q.velocity), ..*q }
     }
 
-    /// State of outer particle `k`: what its side holds, with the part of what its source differs that leaves.
-    fn outer_state(&self, frame: &Frame<D>, k: usize, fluid: &[Primitive<D>]) -> Primitive<D> {
-        let cloud = &frame.shape.cloud;
-        let outer = &cloud.outer[k];
-        let [held, beside, further] = frame.outer[k].map(|q| Primitive { velocity: frame.inward(&q.velocity), ..q });
-        let Some(inner) = fluid.get(outer.source as usize) else { return held };
-        if let Side::Outflow { pressure } = outer.side {
-            return Primitive { pressure: pressure.map_or(inner.pressure, |p| p / self.gas.gamma), ..*inner };
-        }
-        let [x, near, far] = cloud.beside(k).map(|i| &cloud.x[i]);
-        let (n, moved) = (outer.normal(), frame.velocity_of(cloud.outer_range().start + k));
-        let ahead = ((*x - *near).dot(&n) / (*near - *far).dot(&n)).clamp(0.0, FURTHEST);
-        let change = inner.minus(&beside).minus(&fluid[outer.behind as usize].minus(&further));
-        let arriving = inner.plus(if ahead.is_finite() { ahead } else { 0.0 }, &change);
-        let arriving = if arriving.is_physical() { arriving } else { *inner };
-        outgoing(&self.gas, &held, [&arriving, &beside], (&n, &moved))
-    }
-
     /// Fills `work.gradient` from `work.state`.
     pub fn fill_gradients(&self, frame: &Frame<D>, work: &mut Work<D>) {
         let (cloud, op) = (&frame.shape.cloud, &frame.shape.operators);
@@ -266,10 +244,7 @@ impl<const D: usize> Fluid<D> {
                 row.iter_mut().for_each(|r| *r *= inverse);
             }
             if frame.turn.is_some() {
-                out.chunks_exact_mut(D + 2).for_each(|row| {
-                    let momentum = frame.outward(&Vector::from_fn(|d| row[1 + d]));
-                    row[1..=D].copy_from_slice(&momentum.0);
-                });
+                out.chunks_exact_mut(D + 2).for_each(|row| turn_momentum(frame, row));
             }
         });
     }
@@ -302,6 +277,12 @@ impl<const D: usize> Fluid<D> {
         let force = cloud.interface.iter().zip(walls).fold(Vector::ZERO, |f, (w, q)| f - w.area * (q.pressure - far));
         frame.outward(&force)
     }
+}
+
+/// Brings the momentum of a particle from the axes of a rigid cloud to those of the case.
+fn turn_momentum<const D: usize>(frame: &Frame<D>, row: &mut [f64]) {
+    let momentum = frame.outward(&Vector::from_fn(|d| row[1 + d]));
+    row[1..=D].copy_from_slice(&momentum.0);
 }
 
 /// s/2V: what takes the place of a_ij when the coefficients are conservative.
@@ -440,6 +421,23 @@ impl<const D: usize> System for Fluid<D> {
     fn linearise(&self, frame: &Frame<D>, u: &[f64], work: &mut Work<D>, matrix: &mut BlockMatrix) {
         self.fill_states(frame, u, work);
         super::jacobian::assemble(self, frame, work, matrix);
+    }
+
+    fn inward(&self, frame: &Frame<D>, v: impl Fn(usize) -> f32, k: usize) -> f32 {
+        let (i, c) = (k / (D + 2), k % (D + 2));
+        match &frame.turn {
+            Some(turn) if (1..=D).contains(&c) => {
+                let along = |d: usize| turn.rotation[d][c - 1] as f32 * v(i * (D + 2) + 1 + d);
+                (0..D).map(along).sum()
+            }
+            _ => v(k),
+        }
+    }
+
+    fn outward(&self, frame: &Frame<D>, v: &mut [f64]) {
+        if frame.turn.is_some() {
+            sweep_rows(v, D + 2, |_, row| turn_momentum(frame, row));
+        }
     }
 
     fn largest_change(&self, u: &[f64], du: &[f64]) -> f64 {

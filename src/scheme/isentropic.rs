@@ -9,7 +9,6 @@
 //!
 //! In smooth flow the equation of energy asks for the same, so that S_E is as small as the error of the scheme.
 use super::fluid::{Fluid, Work, add};
-use super::jacobian;
 use super::shape::Frame;
 use crate::math::Vector;
 use crate::math::block_matrix::Rows;
@@ -47,6 +46,6 @@ impl<const D: usize> Fluid<D> {
             c if c <= D => q.velocity[c - 1],
             _ => -1.0,
         };
-        jacobian::add(rows, frame, (i, i), |r, c| if r == D + 1 { -rate * slope(c) } else { 0.0 });
+        rows.add(i, i, |r, c| if r == D + 1 { -rate * slope(c) } else { 0.0 });
     }
 }

@@ -8,7 +8,6 @@ use super::shape::Frame;
 use super::viscous::Contact;
 use crate::math::Vector;
 use crate::math::block_matrix::{BlockMatrix, Rows};
-use crate::motion::RigidPose;
 use crate::physics::riemann::rounded;
 use crate::physics::{Gas, Primitive};
 
@@ -96,7 +95,7 @@ pub fn assemble<const D: usize>(fluid: &Fluid<D>, frame: &Frame<D>, work: &Work<
                 let half = half_face(cloud.volume[i], &face.area);
                 let mut push = wall_jacobian(&fluid.gas, &work.state[i], &half);
                 (0..D + 2).for_each(|k| push[k][k] += frame.velocity_of(face.wall as usize).dot(&half));
-                add(rows, frame, (i, i), |r, c| 2.0 * push[r][c]);
+                rows.add(i, i, |r, c| 2.0 * push[r][c]);
             }
         }
         for edge in op.edges(k) {
@@ -117,7 +116,7 @@ pub fn assemble<const D: usize>(fluid: &Fluid<D>, frame: &Frame<D>, work: &Work<
                 };
                 let swept = frame.velocity_of(row).dot(&weight);
                 let own = past(row, &a, swept);
-                add(rows, frame, (row, row), |r, c| scale * spread[r][c] - own[r][c]);
+                rows.add(row, row, |r, c| scale * spread[r][c] - own[r][c]);
                 let other = past(column, &a, swept);
                 let coupling = |r: usize, c: usize| other[r][c] - scale * spread[r][c];
                 couple(fluid, rows, (frame, work), (row, column), coupling);
@@ -128,9 +127,6 @@ pub fn assemble<const D: usize>(fluid: &Fluid<D>, frame: &Frame<D>, work: &Work<
         }
         if let Some(friction) = &fluid.friction {
             fluid.add_viscous_blocks(friction, (frame, work), k, rows);
-        }
-        if let Some(turn) = frame.turn.as_ref().filter(|_| !rows.is_mean()) {
-            rows.map(|block| turn_block(turn, block));
         }
     });
 }
@@ -145,15 +141,15 @@ pub(super) fn couple<const D: usize>(
 ) {
     let cloud = &frame.shape.cloud;
     if column < cloud.n_fluid {
-        add(rows, frame, (row, column), coupling);
+        rows.add(row, column, coupling);
     } else if cloud.interface_range().contains(&column) {
         let wall = &cloud.interface[column - cloud.n_fluid];
         let slips = fluid.friction.as_ref().is_none_or(|f| f.contact(wall.body) == Contact::Slip);
         match slips {
-            true => add(rows, frame, (row, row), |r, c| folded(&coupling, &wall.normal, r, c)),
+            true => rows.add(row, row, |r, c| folded(&coupling, &wall.normal, r, c)),
             false => {
                 let ends = (&work.state[row].velocity, &work.state[column].velocity);
-                add(rows, frame, (row, row), |r, c| stuck(&coupling, ends, r, c));
+                rows.add(row, row, |r, c| stuck(&coupling, ends, r, c));
             }
         }
     } else if column >= cloud.n_real() {
@@ -161,37 +157,8 @@ pub(super) fn couple<const D: usize>(
         let sign = cloud.transforms[image.transform as usize].sign;
         let flip = |c: usize| if (1..=D).contains(&c) { sign[c - 1] } else { 1.0 };
         if (image.source as usize) < cloud.n_fluid {
-            add(rows, frame, (row, image.source as usize), |r, c| coupling(r, c) * flip(c));
+            rows.add(row, image.source as usize, |r, c| coupling(r, c) * flip(c));
         }
-    }
-}
-
-/// Adds a block to the matrix. Turned into the axes of the case is each block where several assemblies are summed, else the
-/// whole part when it is complete.
-#[inline(always)]
-pub(super) fn add<const D: usize>(
-    rows: &mut Rows<'_>,
-    frame: &Frame<D>,
-    (row, column): (usize, usize),
-    f: impl Fn(usize, usize) -> f64,
-) {
-    let Some(turn) = frame.turn.as_ref().filter(|_| rows.is_mean()) else { return rows.add(row, column, f) };
-    let mut block = [[0.0; 5]; 5];
-    (0..D + 2).for_each(|k| (0..D + 2).for_each(|c| block[k][c] = f(k, c)));
-    turn_block(turn, &mut block);
-    rows.add(row, column, |k, c| block[k][c]);
-}
-
-/// T B Tᵀ, where T turns the momentum.
-fn turn_block<const D: usize>(turn: &RigidPose<D>, block: &mut Block) {
-    let r = &turn.rotation;
-    for c in 0..D + 2 {
-        let column = Vector::<D>::from_fn(|d| block[1 + d][c]);
-        (0..D).for_each(|d| block[1 + d][c] = r[d].dot(&column));
-    }
-    for row in block.iter_mut().take(D + 2) {
-        let along = Vector::<D>::from_fn(|d| row[1 + d]);
-        (0..D).for_each(|d| row[1 + d] = r[d].dot(&along));
     }
 }
 

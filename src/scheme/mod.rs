@@ -10,6 +10,7 @@ pub mod jacobian;
 pub mod probe;
 pub mod reconstruct;
 pub mod shape;
+mod sides;
 pub mod skin;
 pub mod start;
 pub mod travel;

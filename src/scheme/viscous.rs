@@ -21,7 +21,7 @@ use std::sync::Arc;
 
 use super::boundary::{WallMotion, stuck_wall};
 use super::fluid::{Fluid, Work, add, half_face};
-use super::jacobian::{Block, add as add_block, couple};
+use super::jacobian::{Block, couple};
 use super::reconstruct::Gradient;
 use super::shape::{Frame, Shape};
 use crate::cloud::operators::WallFace;
@@ -363,10 +363,10 @@ impl<const D: usize> Fluid<D> {
             let m = direction(e, &(cloud.x[j] - cloud.x[i]));
             let mu = 0.5 * (viscosity(i) + viscosity(j));
             let [own, other] = [i, j].map(|q| thin_layer(&self.gas, medium, &work.state[q], &m));
-            add_block(rows, frame, (i, i), |r, c| mu * to_i * own[r][c]);
+            rows.add(i, i, |r, c| mu * to_i * own[r][c]);
             couple(self, rows, (frame, work), (i, j), |r, c| -mu * to_i * other[r][c]);
             if e.both() {
-                add_block(rows, frame, (j, j), |r, c| mu * to_j * other[r][c]);
+                rows.add(j, j, |r, c| mu * to_j * other[r][c]);
                 couple(self, rows, (frame, work), (j, i), |r, c| -mu * to_j * own[r][c]);
             }
         }
@@ -380,7 +380,7 @@ impl<const D: usize> Fluid<D> {
             for (q, weight) in self.wall_exchange(cloud, face) {
                 let block =
                     at_contact(&self.gas, medium, (&work.state[q], &work.state[source].velocity), (contact, &n));
-                add_block(rows, frame, (face.i as usize, q), |r, c| viscosity(source) * weight * block[r][c]);
+                rows.add(face.i as usize, q, |r, c| viscosity(source) * weight * block[r][c]);
             }
         }
     }

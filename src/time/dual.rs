@@ -2,7 +2,8 @@
 //!
 //! R(U) − ∂U/∂t = 0 with ∂U/∂t = Σ c_k U(t_k): the first-order formula in the first step, then the second-order one of three
 //! times, written for steps of unequal length. Positions of particles are differenced with the same formula as the state.
-use super::relax::{Control, Method, Relax, TimeTerm};
+use super::control::{Control, Method};
+use super::relax::{Relax, TimeTerm};
 use super::{CROWDED, March, Past, Step, TimeError};
 use crate::math::multilevel::Cycle;
 use crate::math::sweep::{sum, sweep};

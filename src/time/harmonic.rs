@@ -105,6 +105,12 @@ impl<'a, S: System> HarmonicBalance<'a, S> {
         if self.held == self.seen { self.instance(u, n, out) } else { self.combine(u, self.up.row(n), out) }
     }
 
+    /// The instance of those where R is evaluated that is nearest to instance `n` of those that hold the solution.
+    fn beside(&self, n: usize) -> usize {
+        let (held, seen) = (self.held.count(), self.seen.count());
+        (2 * n * seen + held) / (2 * held) % seen
+    }
+
     /// The moment of phase ωt, velocities from positions at the instances by the operator of the state.
     pub fn with_moment<T>(&self, phase: f64, f: impl FnOnce(&Moment<'_>) -> T) -> T {
         let times = self.seen.times(self.omega);
@@ -238,6 +244,24 @@ impl<S: System> System for HarmonicBalance<'_, S> {
             self.system.linearise(frame, &work.u, &mut work.work, matrix);
         }
         matrix.end_mean();
+    }
+
+    fn inward(&self, frame: &Self::Frame, v: impl Fn(usize) -> f32, k: usize) -> f32 {
+        let (b, count) = (self.system.block(), self.held.count());
+        let (i, n, c) = (k / (b * count), k / b % count, k % b);
+        let start = (i * count + n) * b;
+        self.system.inward(&frame[self.beside(n)], |k| v(start + k - i * b), i * b + c)
+    }
+
+    fn outward(&self, frame: &Self::Frame, v: &mut [f64]) {
+        let (b, count) = (self.system.block(), self.held.count());
+        let mut one = vec![0.0; self.system.len()];
+        for n in 0..count {
+            self.instance(v, n, &mut one);
+            self.system.outward(&frame[self.beside(n)], &mut one);
+            let one = &one;
+            sweep_rows(v, b * count, |i, row| row[n * b..(n + 1) * b].copy_from_slice(&one[i * b..(i + 1) * b]));
+        }
     }
 
     fn largest_change(&self, u: &[f64], du: &[f64]) -> f64 {

@@ -1,4 +1,5 @@
 //! Integrators: they know a [`System`] and nothing of what it means.
+pub mod control;
 pub mod dual;
 pub mod explicit;
 pub mod harmonic;

@@ -5,45 +5,14 @@
 //! levels (Knoll and Keyes 2004). The Courant number follows the residual (Mulder and van Leer 1985). Steps that make a
 //! state unphysical or the residual jump are taken back and tried again with a smaller one. The same loop with the linear
 //! solve replaced by the sweeps alone is the LU-SGS method; with neither it is explicit Runge-Kutta with local steps.
+use super::control::{Control, Method};
 use super::{Step, TimeError};
 use crate::math::block_matrix::BlockMatrix;
 use crate::math::incomplete::Incomplete;
 use crate::math::krylov::Gmres;
-use crate::math::multilevel::{Cycle, Multilevel};
+use crate::math::multilevel::Multilevel;
 use crate::math::sweep::sum;
 use crate::system::{Moment, System};
-
-/// How a steady state is approached.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Method {
-    /// Newton-GMRES.
-    NewtonKrylov,
-    /// Sweeps alone.
-    Sweeps,
-    /// Explicit five-stage Runge-Kutta with local steps (Jameson 1991).
-    RungeKutta,
-}
-
-/// Numbers that steer the relaxation; the defaults serve every case.
-#[derive(Clone, Copy, Debug)]
-pub struct Control {
-    /// Method.
-    pub method: Method,
-    /// Courant number at the start.
-    pub cfl: f64,
-    /// Greatest Courant number.
-    pub cfl_max: f64,
-    /// Greatest growth of the Courant number in one step.
-    pub growth: f64,
-    /// Reduction asked of each linear solve.
-    pub tolerance: f64,
-    /// Basis vectors of GMRES.
-    pub basis: usize,
-    /// Rows a group of the hierarchy.
-    pub group: usize,
-    /// Visits of the levels.
-    pub cycle: Cycle,
-}
 
 /// Drop of the residual below which the flow counts as settled.
 const SETTLED: f64 = 3e-3;
@@ -75,7 +44,7 @@ const EXPLICIT_CFL: f64 = 1.5;
 const ROUND_OFF: f64 = 1e-15;
 /// Courant number of Newton's method at the start of a step in time over that of a steady flow: the guess is good, and the
 /// term of time is a pseudo time of its own.
-const STEP_CFL: f64 = 100.0;
+const STEP_CFL: f64 = 1000.0;
 /// Part of the fall that a step in time still needs which its next linear solve is asked for.
 const SHARE: f64 = 0.6;
 /// Smallest and largest reduction asked of those solves: beyond the first, what Newton's method leaves is larger.
@@ -83,6 +52,8 @@ const REDUCTION: [f64; 2] = [0.04, 0.5];
 /// Iterations after which a linear solve with the incomplete factorisation is given up: its step is taken, and those after
 /// it use the levels.
 const MOST_NARROW: usize = 16;
+/// Iterations of a linear solve up to which its preconditioner goes on to serve in the next step.
+const EASY: usize = 4;
 /// Fall of the residual in an iteration of a step in time with which the preconditioner goes on to serve.
 const GOOD_FALL: f64 = 2.0;
 /// Stages of the explicit method.
@@ -138,6 +109,8 @@ pub struct Relax<'a, S: System> {
     prepared: bool,
     /// It was made within an iteration.
     remade: bool,
+    /// Iterations of the longest linear solve of this step in time.
+    longest: usize,
     /// Residual over its first value that the step in time is after.
     pub goal: f64,
     /// Linear systems of steps in time need the levels: the incomplete factorisation alone was too slow.
@@ -224,6 +197,7 @@ impl<'a, S: System> Relax<'a, S> {
             time: None,
             prepared: false,
             remade: false,
+            longest: 0,
             goal: 0.0,
             broad: false,
             evaluations: 0,
@@ -280,7 +254,7 @@ impl<'a, S: System> Relax<'a, S> {
 
     /// True while what [`Self::prepare_at`] made serves.
     pub fn still_serves(&self) -> bool {
-        self.prepared && !self.remade
+        self.prepared && !self.remade && self.longest <= EASY
     }
 
     /// Turns to the equations of a step in time, R(U) − rate·U − rest = 0 in the frame of `moment`, from the guess in `u`.
@@ -306,7 +280,7 @@ impl<'a, S: System> Relax<'a, S> {
         let newton = self.control.method == Method::NewtonKrylov;
         let start = if newton { STEP_CFL * self.control.cfl } else { self.control.cfl };
         self.cfl = start.min(self.control.cfl_max);
-        self.iteration = 0;
+        (self.iteration, self.longest) = (0, 0);
         self.phase = Phase { newton, ..Phase::default() };
         self.time = Some(term);
     }
@@ -321,6 +295,11 @@ impl<'a, S: System> Relax<'a, S> {
             phase: self.phase,
             scale: self.scale.clone(),
         }
+    }
+
+    /// Iterations of Newton's method on a steady state since the residual was last smallest.
+    pub fn resting(&self) -> u32 {
+        if self.phase.newton && self.phase.best_age > 0 { self.phase.age - self.phase.best_age } else { 0 }
     }
 
     /// Residual over its first value.
@@ -520,7 +499,8 @@ impl<'a, S: System> Relax<'a, S> {
         let (tolerance, most) = self.asked();
         let Some(gmres) = self.gmres.as_mut().filter(|_| self.phase.newton) else {
             let residual = &self.residual;
-            levels.apply(|k| residual[k] as f32, &mut self.step);
+            levels.apply(|k| self.system.inward(&self.frame, |k| residual[k] as f32, k), &mut self.step);
+            self.system.outward(&self.frame, &mut self.step);
             self.linear += 1;
             return;
         };
@@ -547,13 +527,20 @@ impl<'a, S: System> Relax<'a, S> {
         let factors = &mut self.factors;
         let precondition = |r: &[f32], z: &mut [f64]| {
             let r = |k: usize| (f64::from(r[k]) / scale[k / n]) as f32;
-            if narrow { factors.apply(levels.finest(), r, z) } else { levels.apply(r, z) }
+            let r = |k: usize| system.inward(frame, r, k);
+            if narrow {
+                factors.apply(levels.finest(), r, z)
+            } else {
+                levels.apply(r, z)
+            }
+            system.outward(frame, z);
         };
         let solved = gmres.solve((b, &mut self.step), (tolerance, most), product, precondition);
         if narrow && solved.iterations == most {
             // one that was made for another step is first made anew
             (self.broad, self.prepared) = (self.remade, false);
         }
+        self.longest = self.longest.max(solved.iterations);
         self.linear += solved.iterations as u32;
         self.evaluations += solved.iterations as u64;
     }

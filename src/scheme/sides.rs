@@ -1,0 +1,33 @@
+//! States of the particles on the open sides of the domain.
+//!
+//! A side holds a state: that of the far field, or that of the start. What differs from it near the side leaves as waves do
+//! ([`crate::physics::outgoing`]): the disturbance of the last particle is continued along the line through it and the one
+//! behind it, and the part of it that moves outwards is added to what is held.
+use super::fluid::Fluid;
+use super::shape::Frame;
+use crate::case::Side;
+use crate::physics::Primitive;
+use crate::physics::outgoing::outgoing;
+
+/// Greatest part of the way between two particles by which a disturbance is continued to a side.
+const FURTHEST: f64 = 1.0;
+
+impl<const D: usize> Fluid<D> {
+    /// State of outer particle `k`: what its side holds, with the part of what its source differs that leaves.
+    pub(super) fn outer_state(&self, frame: &Frame<D>, k: usize, fluid: &[Primitive<D>]) -> Primitive<D> {
+        let cloud = &frame.shape.cloud;
+        let outer = &cloud.outer[k];
+        let [held, beside, further] = frame.outer[k].map(|q| Primitive { velocity: frame.inward(&q.velocity), ..q });
+        let Some(inner) = fluid.get(outer.source as usize) else { return held };
+        if let Side::Outflow { pressure } = outer.side {
+            return Primitive { pressure: pressure.map_or(inner.pressure, |p| p / self.gas.gamma), ..*inner };
+        }
+        let [x, near, far] = cloud.beside(k).map(|i| &cloud.x[i]);
+        let (n, moved) = (outer.normal(), frame.velocity_of(cloud.outer_range().start + k));
+        let ahead = ((*x - *near).dot(&n) / (*near - *far).dot(&n)).clamp(0.0, FURTHEST);
+        let change = inner.minus(&beside).minus(&fluid[outer.behind as usize].minus(&further));
+        let arriving = inner.plus(if ahead.is_finite() { ahead } else { 0.0 }, &change);
+        let arriving = if arriving.is_physical() { arriving } else { *inner };
+        outgoing(&self.gas, &held, [&arriving, &beside], (&n, &moved))
+    }
+}

@@ -1,0 +1,34 @@
+//! How a relaxation is steered: its method, Courant numbers and linear solver.
+use crate::math::multilevel::Cycle;
+
+/// How a steady state is approached.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Method {
+    /// Newton-GMRES.
+    NewtonKrylov,
+    /// Sweeps alone.
+    Sweeps,
+    /// Explicit five-stage Runge-Kutta with local steps (Jameson 1991).
+    RungeKutta,
+}
+
+/// Numbers that steer the relaxation; the defaults serve every case.
+#[derive(Clone, Copy, Debug)]
+pub struct Control {
+    /// Method.
+    pub method: Method,
+    /// Courant number at the start.
+    pub cfl: f64,
+    /// Greatest Courant number.
+    pub cfl_max: f64,
+    /// Greatest growth of the Courant number in one step.
+    pub growth: f64,
+    /// Reduction asked of each linear solve.
+    pub tolerance: f64,
+    /// Basis vectors of GMRES.
+    pub basis: usize,
+    /// Rows a group of the hierarchy.
+    pub group: usize,
+    /// Visits of the levels.
+    pub cycle: Cycle,
+}
