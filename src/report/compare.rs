@@ -175,6 +175,11 @@ impl Comparison {
                 d.where_it_is()
             ));
         }
+        if differences.iter().any(|d| d.carried) {
+            text.push_str(
+                "the runs have different particles: values of a are carried to those of b by least squares\n",
+            );
+        }
         text.push_str(
             "fields over the fluid particles; parts of half the range of b, of the root mean square of a harmonic of b\n",
         );

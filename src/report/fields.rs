@@ -1,4 +1,5 @@
-//! The fields of two runs at the same particles: at phases of the period that both have, and harmonic by harmonic.
+//! The fields of two runs at the particles of the second: at phases of the period that both have, and harmonic by harmonic.
+//! Where the first has other particles, its values are carried there ([`super::transfer`]).
 //!
 //! Differences are those of the fluid particles, each counted once. Root mean square and greatest difference are told as they
 //! are and over half the range of the reference, those of a harmonic over the root mean square of that harmonic in the reference.
@@ -8,6 +9,7 @@ use num_complex::Complex64;
 use serde_json::Value;
 
 use super::files::RunFolder;
+use super::transfer::Transfer;
 use crate::observe::vtk::read_collection;
 use crate::observe::vtk_read::FieldFile;
 
@@ -35,6 +37,8 @@ pub struct FieldDifference {
     pub place: [f64; 3],
     /// What both are counted against: half the range of the reference, root mean square of its harmonic.
     pub scale: f64,
+    /// The runs have different particles: the values of the first were carried to those of the second.
+    pub carried: bool,
 }
 
 /// Which part of a period a difference belongs to.
@@ -94,13 +98,14 @@ fn phases(run: &RunFolder, period: f64) -> Vec<(f64, String)> {
 
 fn at_phase(paths: [&Path; 2], phase: f64) -> Result<Vec<FieldDifference>, String> {
     let [a, b] = open(paths)?;
-    let (points, fluid) = same_particles(&a, &b)?;
+    let both = Both::new(&a, &b)?;
+    let fluid = &both.fluid;
     let one = |quantity: &'static str| {
-        let (x, y) = (a.values(quantity)?, b.values(quantity)?);
+        let (x, y) = (both.carried(a.values(quantity)?), b.values(quantity)?);
         let (low, high) =
             fluid.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |r, i| (r.0.min(y[*i]), r.1.max(y[*i])));
         let size = |i: usize| (x[i] - y[i]).abs();
-        Some(collected(quantity, At::Phase(phase), (&points, &fluid), size, 0.5 * (high - low)))
+        Some(both.collected(quantity, At::Phase(phase), size, 0.5 * (high - low)))
     };
     QUANTITIES
         .into_iter()
@@ -113,11 +118,10 @@ fn at_phase(paths: [&Path; 2], phase: f64) -> Result<Vec<FieldDifference>, Strin
 fn harmonics(runs: &[RunFolder; 2]) -> Vec<FieldDifference> {
     let path = |k: usize| runs[k].path.join("field_harmonics.vtu");
     let Ok([a, b]) = open([&path(0), &path(1)]) else { return Vec::new() };
-    let Ok((points, all)) = same_particles(&a, &b) else { return Vec::new() };
+    let Ok(mut both) = Both::new(&a, &b) else { return Vec::new() };
     // the file has no kinds: fluid particles come first
     let n_fluid = FieldFile::open(&runs[1].path.join("field.vtu")).ok().and_then(|f| f.values("kind"));
-    let n_fluid = n_fluid.map_or(all.len(), |kind| kind.iter().take_while(|k| **k == 0.0).count());
-    let fluid = &all[..n_fluid.min(all.len())];
+    both.fluid.truncate(n_fluid.map_or(usize::MAX, |kind| kind.iter().take_while(|k| **k == 0.0).count()));
     let one = |quantity: &'static str, n: usize| {
         let term = |file: &FieldFile| -> Option<Vec<Complex64>> {
             if n == 0 {
@@ -126,9 +130,9 @@ fn harmonics(runs: &[RunFolder; 2]) -> Vec<FieldDifference> {
             let (re, im) = (file.values(&format!("{quantity}_{n}_re"))?, file.values(&format!("{quantity}_{n}_im"))?);
             Some(re.into_iter().zip(im).map(|(re, im)| Complex64::new(re, im)).collect())
         };
-        let (x, y) = (term(&a)?, term(&b)?);
-        let scale = root_mean_square(fluid, |i| y[i].norm());
-        Some(collected(quantity, At::Harmonic(n), (&points, fluid), |i| (x[i] - y[i]).norm(), scale))
+        let (x, y) = (both.carried(term(&a)?), term(&b)?);
+        let scale = root_mean_square(&both.fluid, |i| y[i].norm());
+        Some(both.collected(quantity, At::Harmonic(n), |i| (x[i] - y[i]).norm(), scale))
     };
     QUANTITIES.into_iter().flat_map(|q| (0..=MOST).map_while(move |n| one(q, n))).collect()
 }
@@ -138,38 +142,48 @@ fn open(paths: [&Path; 2]) -> Result<[FieldFile; 2], String> {
     Ok([read(paths[0])?, read(paths[1])?])
 }
 
-/// Places of the particles of two files, and the numbers of those that are fluid, when both have the same.
-fn same_particles(a: &FieldFile, b: &FieldFile) -> Result<(Vec<[f64; 3]>, Vec<usize>), String> {
-    let broken = || "a field file is cut short".to_owned();
-    let (x, y) = (a.points().ok_or_else(broken)?, b.points().ok_or_else(broken)?);
-    if x.len() != y.len() {
-        return Err(format!("the runs have different particles: {} and {}", x.len(), y.len()));
+/// The particles of two files.
+struct Both {
+    /// Places of those of the second.
+    points: Vec<[f64; 3]>,
+    /// Those that are fluid.
+    fluid: Vec<usize>,
+    /// From the first to the second, where they are not the same.
+    transfer: Option<Transfer>,
+}
+
+impl Both {
+    fn new(a: &FieldFile, b: &FieldFile) -> Result<Self, String> {
+        let broken = || "a field file is cut short".to_owned();
+        let (x, y) = (a.points().ok_or_else(broken)?, b.points().ok_or_else(broken)?);
+        let far = |p: &[f64; 3], q: &[f64; 3]| (0..3).map(|d| (p[d] - q[d]).abs()).fold(0.0, f64::max);
+        let extent = y.first().map_or(0.0, |first| y.iter().map(|p| far(p, first)).fold(0.0, f64::max));
+        let apart = x.iter().zip(&y).map(|(p, q)| far(p, q)).fold(0.0, f64::max);
+        let same = x.len() == y.len() && apart <= SAME_PLACE * extent;
+        let transfer = if same { None } else { Some(Transfer::new(&x, &y).ok_or_else(broken)?) };
+        let kind = b.values("kind").unwrap_or_else(|| vec![0.0; y.len()]);
+        let fluid = (0..y.len()).filter(|i| kind[*i] == 0.0).collect();
+        Ok(Self { points: y, fluid, transfer })
     }
-    let far = |p: &[f64; 3], q: &[f64; 3]| (0..3).map(|d| (p[d] - q[d]).abs()).fold(0.0, f64::max);
-    let extent = y.first().map_or(0.0, |first| y.iter().map(|p| far(p, first)).fold(0.0, f64::max));
-    let apart = x.iter().zip(&y).map(|(p, q)| far(p, q)).fold(0.0, f64::max);
-    if apart > SAME_PLACE * extent {
-        return Err(format!("the runs have their particles in different places, up to {apart:.2e} apart"));
+
+    /// Values of the first file at the particles of the second.
+    fn carried<T: Copy + std::ops::Add<Output = T> + std::ops::Mul<f64, Output = T>>(&self, values: Vec<T>) -> Vec<T> {
+        match &self.transfer {
+            Some(transfer) => transfer.of(&values),
+            None => values,
+        }
     }
-    let kind = b.values("kind").unwrap_or_else(|| vec![0.0; y.len()]);
-    let fluid = (0..y.len()).filter(|i| kind[*i] == 0.0).collect();
-    Ok((y, fluid))
+
+    fn collected(&self, quantity: &'static str, at: At, size: impl Fn(usize) -> f64, scale: f64) -> FieldDifference {
+        let most = self.fluid.iter().copied().max_by(|i, j| size(*i).total_cmp(&size(*j)));
+        let (largest, place) = most.map_or((f64::NAN, [f64::NAN; 3]), |i| (size(i), self.points[i]));
+        let (rms, carried) = (root_mean_square(&self.fluid, size), self.transfer.is_some());
+        FieldDifference { quantity, at, rms, largest, place, scale, carried }
+    }
 }
 
 fn root_mean_square(chosen: &[usize], size: impl Fn(usize) -> f64) -> f64 {
     (chosen.iter().map(|i| size(*i).powi(2)).sum::<f64>() / chosen.len() as f64).sqrt()
-}
-
-fn collected(
-    quantity: &'static str,
-    at: At,
-    (points, fluid): (&[[f64; 3]], &[usize]),
-    size: impl Fn(usize) -> f64,
-    scale: f64,
-) -> FieldDifference {
-    let most = fluid.iter().copied().max_by(|i, j| size(*i).total_cmp(&size(*j)));
-    let (largest, place) = most.map_or((f64::NAN, [f64::NAN; 3]), |i| (size(i), points[i]));
-    FieldDifference { quantity, at, rms: root_mean_square(fluid, size), largest, place, scale }
 }
 
 impl FieldDifference {
@@ -227,6 +241,7 @@ mod tests {
         let found = differences(&late, 2.0).unwrap();
         assert!(found.iter().all(|d| matches!(d.at, At::Harmonic(_))), "{found:?}");
         let apart = [run(&at("e"), 0.0, 3.5, 0.01), run(&at("f"), 8.0, 3.0, 0.0)];
-        assert!(differences(&apart, 2.0).unwrap_err().contains("different places"));
+        let found = differences(&apart, 2.0).unwrap();
+        assert!(found.iter().all(|d| d.carried) && (0.4..0.5).contains(&found[0].largest), "{found:?}");
     }
 }

@@ -21,6 +21,7 @@ mod periodic;
 pub mod picture;
 mod sections;
 pub mod surface;
+mod transfer;
 pub mod verification;
 
 pub use chart::{Axis, Chart, Marks, Series};
