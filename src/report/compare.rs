@@ -230,6 +230,9 @@ impl Comparison {
         body.push_str(&format!("<section>\n<h2>Loads</h2>\n{}", self.tables()));
         self.charts.iter().for_each(|chart| body.push_str(&chart_html(chart)));
         body.push_str("</section>\n");
+        for (chart, (column, _)) in self.charts.iter().zip(LOADS) {
+            write_file(&folder.join(format!("loop-{column}.svg")), chart.svg()?.as_bytes())?;
+        }
         let path = folder.join("comparison.html");
         write_file(&path, page("Comparison", &body).as_bytes())?;
         Ok(path)

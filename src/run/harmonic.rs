@@ -35,6 +35,8 @@ const WINDOW: usize = 5;
 const PRESENT: f64 = 1e-3;
 /// Orders by which the residual must have fallen before loads are looked at.
 const FALLEN: f64 = 2.0;
+/// Least change of the loads that ends a relaxation with fewer harmonics than are wanted.
+const EARLY_TOLERANCE: f64 = 3e-3;
 /// Iterations without a new smallest residual, smaller by the part `PROGRESS`, after which a relaxation is given up.
 const PATIENCE: u32 = 50;
 /// See `PATIENCE`.
@@ -114,26 +116,8 @@ pub(super) fn balance<const D: usize>(
         let tail = report.tail_loads.zip(report.tail_density).map(|(a, b)| a.max(b));
         let short = tail.is_none_or(|t| t > plan.tail);
         if last || (auto && !short) {
-            tell(plan, &report, journal);
             let outcome = Periodic { balance: &balance, fluid, state: &state };
-            let mut report = report;
-            if let Some(series) = outcome.trace(journal, period).filter(|_| plan.check > 0) {
-                let Some(found) = marched_on(plan, &balance, fluid, (&state, &series), period, journal)? else {
-                    return Ok(None);
-                };
-                journal.note(&found.told());
-                report.march = Some(found);
-            }
-            if let Some(forms) = &solver.forms {
-                let frames = balance.frame(&Moment::At { time: 0.0 }, &state);
-                journal.forces = forms.over_a_period(&balance, fluid, (&frames, &state));
-            }
-            outcome.write(journal, solver, period)?;
-            journal.balance = Some(report);
-            let mut first = vec![0.0; fluid.len()];
-            balance.instance(&state, 0, &mut first);
-            let frame = balance.with_moment(0.0, |moment| fluid.frame(moment, &first));
-            return Ok(Some((first, frame)));
+            return outcome.finish((plan, report), solver, period, journal);
         }
         let next = if auto { (n + MORE).min(most) } else { most };
         journal.note(&format!("{n} harmonics done, {next} follow"));
@@ -231,6 +215,7 @@ fn converge<const D: usize>(
     drop(origin);
     let orders = if last { plan.orders } else { plan.orders.min(FALLEN + 1.0) };
     let goal = 10f64.powf(-orders);
+    let tolerance = if last { plan.tolerance } else { plan.tolerance.max(EARLY_TOLERANCE) };
     if fresh {
         journal.save_with(at, 0.0, (&relax.u, relax.resume()), progress.kept(&relax))?;
     }
@@ -239,7 +224,7 @@ fn converge<const D: usize>(
     let instances = balance.times().len();
     journal.work.begin(relax.evaluations);
     // a checkpoint may have been written by the very iteration that ended the relaxation, or before the first one
-    let mut reached = relax.iteration > 0 && progress.reached(relax.drop(), goal, plan.tolerance);
+    let mut reached = relax.iteration > 0 && progress.reached(relax.drop(), goal, tolerance);
     while !reached && relax.iteration < plan.iterations && !progress.stalls(relax.iteration) {
         let step = match relax.advance() {
             Ok(step) => step,
@@ -266,7 +251,7 @@ fn converge<const D: usize>(
         if journal.due(relax.iteration) {
             journal.save_with(at, 0.0, (&relax.u, relax.resume()), progress.kept(&relax))?;
         }
-        reached = progress.reached(step.residual, goal, plan.tolerance);
+        reached = progress.reached(step.residual, goal, tolerance);
         if journal.stopped() && !reached {
             journal.save_with(at, 0.0, (&relax.u, relax.resume()), progress.kept(&relax))?;
             return Ok(None);
@@ -429,6 +414,35 @@ struct Periodic<'a, const D: usize> {
 }
 
 impl<const D: usize> Periodic<'_, D> {
+    /// Tells, checks and writes what was found; state and frame of the first instance, `None` when told to stop.
+    fn finish(
+        &self,
+        (plan, mut report): (&Harmonics, BalanceReport),
+        solver: &Solver<D>,
+        period: f64,
+        journal: &mut Journal<'_>,
+    ) -> Solved<D> {
+        let (balance, fluid) = (self.balance, self.fluid);
+        tell(plan, &report, journal);
+        if let Some(series) = self.trace(journal, period).filter(|_| plan.check > 0) {
+            let Some(found) = marched_on(plan, balance, fluid, (self.state, &series), period, journal)? else {
+                return Ok(None);
+            };
+            journal.note(&found.told());
+            report.march = Some(found);
+        }
+        if let Some(forms) = &solver.forms {
+            let frames = balance.frame(&Moment::At { time: 0.0 }, self.state);
+            journal.forces = forms.over_a_period(balance, fluid, (&frames, self.state));
+        }
+        self.write(journal, solver, period)?;
+        journal.balance = Some(report);
+        let mut first = vec![0.0; fluid.len()];
+        balance.instance(self.state, 0, &mut first);
+        let frame = balance.with_moment(0.0, |moment| fluid.frame(moment, &first));
+        Ok(Some((first, frame)))
+    }
+
     /// Puts the loads of one period where those of the last period of a march would be; gives their series.
     fn trace(&self, journal: &mut Journal<'_>, period: f64) -> Option<[Series; 3]> {
         let frames = self.balance.frame(&Moment::At { time: 0.0 }, self.state);

@@ -45,6 +45,7 @@ pub use inspect::{CloudReport, inspect};
 pub use snapshot::Snapshot;
 pub use summary::Summary;
 
+use persist::Saved;
 use setup::{Solver, Stage};
 
 /// What a run tells while it goes, and what it is told.
@@ -256,6 +257,32 @@ pub fn build_solver<const D: usize>(case: &Case, input: &Path) -> Result<(Fluid<
     Ok((solver.fluid, start))
 }
 
+/// Solver of a stage, and where it starts: at a checkpoint, from the stage before it, from another run, or from the start of the
+/// case. `same`: the stage before has its cloud.
+fn begun<const D: usize>(
+    case: &Case,
+    build: impl FnOnce() -> Result<Solver<D>, RunError>,
+    (saved, previous, other): (Option<Saved>, Option<(Solver<D>, Vec<f64>)>, &mut Option<Saved>),
+    same: bool,
+    surface: Option<&Surface<D>>,
+) -> Result<(Solver<D>, solve::Start), RunError> {
+    if let Some((solver, state)) = previous.filter(|_| saved.is_none()) {
+        if same {
+            return Ok((solver, solve::Start::Fresh(state)));
+        }
+        let next = build()?;
+        let state = setup::transfer(&(solver, state), &next, surface);
+        return Ok((next, solve::Start::Fresh(state)));
+    }
+    let solver = build()?;
+    let start = match (saved, other.take()) {
+        (Some(saved), _) => solve::Start::Resume(Box::new(saved)),
+        (None, Some(other)) => solve::Start::Fresh(setup::taken_over(case, &solver, other.state)?),
+        (None, None) => solve::Start::Fresh(solver.fluid.start()),
+    };
+    Ok((solver, start))
+}
+
 /// All stages of a run.
 fn drive<const D: usize>(
     case: &Case,
@@ -295,23 +322,8 @@ fn drive<const D: usize>(
         let ready = if stage.is_plain() { full.take() } else { None };
         let same = k > 0 && stage.shares_cloud(&stages[k - 1]);
         let build = || setup::solver(case, stage, surface.as_ref(), (&sources, &motions), ready);
-        let (mut solver, start) = match (saved.take(), previous.take()) {
-            (Some(s), _) => (build()?, solve::Start::Resume(Box::new(s))),
-            (None, Some((solver, state))) if same => (solver, solve::Start::Fresh(state)),
-            (None, Some(p)) => {
-                let solver = build()?;
-                let state = setup::transfer(&p, &solver, surface.as_ref());
-                (solver, solve::Start::Fresh(state))
-            }
-            (None, None) => {
-                let solver = build()?;
-                let state = match other.take() {
-                    Some(other) => setup::taken_over(case, &solver, other.state)?,
-                    None => solver.fluid.start(),
-                };
-                (solver, solve::Start::Fresh(state))
-            }
-        };
+        let from = (saved.take(), previous.take(), &mut other);
+        let (mut solver, start) = begun(case, build, from, same, surface.as_ref())?;
         let at = persist::Position { stage: k, stages: &stages, sources: &persist::flatten(&sources) };
         let last = k + 1 == stages.len();
         let Some((state, frame)) = solve::solve(case, &mut solver, start, &at, last, &mut journal)? else {
