@@ -61,7 +61,7 @@ pub struct Comparison {
     pub wall: Option<[f64; 2]>,
     /// Differences of the fields, or why they cannot be compared.
     pub fields: Result<Vec<FieldDifference>, String>,
-    charts: Vec<Chart>,
+    charts: Vec<(&'static str, Chart)>,
 }
 
 impl Comparison {
@@ -228,9 +228,9 @@ impl Comparison {
             escape(&self.runs[1].display().to_string())
         );
         body.push_str(&format!("<section>\n<h2>Loads</h2>\n{}", self.tables()));
-        self.charts.iter().for_each(|chart| body.push_str(&chart_html(chart)));
+        self.charts.iter().for_each(|(_, chart)| body.push_str(&chart_html(chart)));
         body.push_str("</section>\n");
-        for (chart, (column, _)) in self.charts.iter().zip(LOADS) {
+        for (column, chart) in &self.charts {
             write_file(&folder.join(format!("loop-{column}.svg")), chart.svg()?.as_bytes())?;
         }
         let path = folder.join("comparison.html");
@@ -333,11 +333,11 @@ fn walls(runs: &[RunFolder; 2]) -> Option<[f64; 2]> {
     Some([square.sqrt(), differences.iter().copied().fold(0.0, f64::max)])
 }
 
-fn charts(names: &[String; 2], loops: [&Table; 2], instances: &[Option<Table>; 2]) -> Vec<Chart> {
+fn charts(names: &[String; 2], loops: [&Table; 2], instances: &[Option<Table>; 2]) -> Vec<(&'static str, Chart)> {
     let moved = |values: &Vec<f64>| values.iter().any(|v| v.abs() > 0.0);
     let angle = loops[0].numbers("angle_deg").is_some_and(|v| moved(&v));
     let (motion, label) = if angle { ("angle_deg", "angle, degrees") } else { ("shift", "displacement") };
-    let one = |(column, name): &(&str, &str)| {
+    let one = |(column, name): &(&'static str, &str)| {
         let mut series = Vec::new();
         for (table, run) in loops.iter().zip(names) {
             let (mut x, mut y) = (table.numbers(motion)?, table.numbers(column)?);
@@ -350,7 +350,7 @@ fn charts(names: &[String; 2], loops: [&Table; 2], instances: &[Option<Table>; 2
             series.push(Series { name: "instances".into(), marks: Marks::Dots, x, y });
         }
         let title = format!("{name} over one period");
-        Some(Chart { title, x: Axis::linear(label), y: Axis::linear(name), series })
+        Some((*column, Chart { title, x: Axis::linear(label), y: Axis::linear(name), series }))
     };
     LOADS.iter().filter_map(one).collect()
 }
