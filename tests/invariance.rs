@@ -7,9 +7,9 @@ use alula::math::Vector;
 use alula::math::multilevel::Cycle;
 use alula::physics::Primitive;
 use alula::system::{Moment, System};
-use alula::time::control::Control;
+use alula::time::control::{self, Control};
 use alula::time::explicit::{Explicit, Method};
-use alula::time::relax::{self, Relax};
+use alula::time::relax::Relax;
 use alula::time::{March, Past};
 use common::{largest, round_body, solver, two_levels, vortex, with_threads};
 
@@ -71,7 +71,7 @@ fn one_and_two_threads_march_to_the_same_bits() {
 fn relaxed<const D: usize>(steps: usize) -> Vec<u64> {
     let (fluid, u) = solver::<D>(&round_body(D));
     let control = Control {
-        method: relax::Method::NewtonKrylov,
+        method: control::Method::NewtonKrylov,
         cfl: 5.0,
         cfl_max: 1e6,
         growth: 2.0,

@@ -12,10 +12,9 @@ use alula::physics::{Conserved, Primitive};
 use alula::scheme::shape::{Path, Places};
 use alula::scheme::{Carriage, Fluid};
 use alula::system::{Moment, System};
-use alula::time::control::Control;
+use alula::time::control::{self, Control};
 use alula::time::dual::{Dual, Plan};
 use alula::time::explicit::{Explicit, Method};
-use alula::time::relax;
 use alula::time::{March, Past};
 use common::{largest, solver};
 
@@ -118,7 +117,7 @@ fn drift<const D: usize>(
     let until = STEP * f64::from(STEPS);
     if implicit {
         let control = Control {
-            method: relax::Method::NewtonKrylov,
+            method: control::Method::NewtonKrylov,
             cfl: 1e3,
             cfl_max: 1e6,
             growth: 2.0,

@@ -14,10 +14,9 @@ use alula::math::multilevel::Cycle;
 use alula::physics::Conserved;
 use alula::scheme::shape::{Path, Places};
 use alula::scheme::{Carriage, Fluid, Turnover};
-use alula::time::control::Control;
+use alula::time::control::{self, Control};
 use alula::time::dual::{Dual, Plan};
 use alula::time::explicit::{Explicit, Method};
-use alula::time::relax;
 use alula::time::{March, Past};
 use alula::verify::{FieldTruth, metrics};
 use common::{case, largest, solver, vortex, with_threads};
@@ -200,7 +199,7 @@ fn explicit_state(cfl: f64) -> Vec<f64> {
 fn implicit_state(step: f64) -> Vec<f64> {
     let (fluid, u) = moving_vortex(0.625, 1.0, Swing);
     let control = Control {
-        method: relax::Method::NewtonKrylov,
+        method: control::Method::NewtonKrylov,
         cfl: 1e3,
         cfl_max: 1e6,
         growth: 2.0,

@@ -257,12 +257,15 @@ pub fn build_solver<const D: usize>(case: &Case, input: &Path) -> Result<(Fluid<
     Ok((solver.fluid, start))
 }
 
+/// Solver and state at the end of a stage.
+type Stood<const D: usize> = (Solver<D>, Vec<f64>);
+
 /// Solver of a stage, and where it starts: at a checkpoint, from the stage before it, from another run, or from the start of the
 /// case. `same`: the stage before has its cloud.
 fn begun<const D: usize>(
     case: &Case,
     build: impl FnOnce() -> Result<Solver<D>, RunError>,
-    (saved, previous, other): (Option<Saved>, Option<(Solver<D>, Vec<f64>)>, &mut Option<Saved>),
+    (saved, previous, other): (Option<Saved>, Option<Stood<D>>, &mut Option<Saved>),
     same: bool,
     surface: Option<&Surface<D>>,
 ) -> Result<(Solver<D>, solve::Start), RunError> {
@@ -313,7 +316,7 @@ fn drive<const D: usize>(
     };
     let mut journal = journal::Journal::open(case, places, saved.as_ref(), (motions.period(), monitor))?;
     journal.note(&describe(&stages, full.as_ref().map_or(0, |c| c.n_fluid)));
-    let mut previous: Option<(Solver<D>, Vec<f64>)> = None;
+    let mut previous: Option<Stood<D>> = None;
     let mut last_frame = None;
     let first = saved.as_ref().map_or(0, |s| s.stage);
     let known = saved.as_ref().or(other.as_ref());
