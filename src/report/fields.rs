@@ -1,5 +1,5 @@
 //! The fields of two runs at the particles of the second: at phases of the period that both have, and harmonic by harmonic.
-//! Where the first has other particles, its values are carried there ([`super::transfer`]).
+//! Where the first has other particles, its values are carried there by least squares.
 //!
 //! Differences are those of the fluid particles, each counted once. Root mean square and greatest difference are told as they
 //! are and over half the range of the reference, those of a harmonic over the root mean square of that harmonic in the reference.
