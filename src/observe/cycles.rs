@@ -1,8 +1,9 @@
 //! Cycles that a load goes through of itself: vortex shedding, buffet.
 //!
 //! Where nothing prescribes a period it is found from the history. A cycle begins where the lift rises through its mean;
-//! the crossing lies between two steps, linear in time. Ripples are no cycles: a crossing counts only after the lift has been
-//! below its mean by a part of its deviation. The first half of the history, in which the cycle builds up, is left out, and
+//! the crossing lies between two steps, linear in time. Ripples and jerks are no cycles: the lift is averaged over a part of the
+//! period of the largest peak of its spectrum, and a crossing counts only after it has been below its mean by a part of its
+//! deviation. The first half of the history, in which the cycle builds up, is left out, and
 //! the last whole cycles give frequency, means and amplitudes. Their spread tells how regular the cycle is.
 use serde::Serialize;
 
@@ -12,6 +13,10 @@ const MOST: usize = 6;
 const LEAST: usize = 2;
 /// Part of the root mean square deviation by which the lift must have been below its mean before a crossing counts.
 const RIPPLE: f64 = 0.5;
+/// Part of the period of the largest peak of the spectrum on either side over which the lift is averaged.
+const REACH: f64 = 1.0 / 16.0;
+/// Bins in time of the spectrum.
+const BINS: usize = 1024;
 /// Root mean square deviation of the lift below which it does not move.
 const STILL: f64 = 1e-6;
 
@@ -47,9 +52,14 @@ impl Cycles {
         let (start, end) = (*time.first()?, *time.last()?);
         let (cl, cd) = (History { time, values: lift }, History { time, values: drag });
         let late = (0.5 * (start + end), end);
-        let first = cl.crossings(late, cl.mean(late))?;
+        let reach = REACH / cl.dominant(late)?;
+        let even = cl.averaged(reach);
+        let seen = History { time, values: &even };
+        // nearer to the end the average has one side only
+        let late = (late.0, end - reach);
+        let first = seen.crossings(late, seen.mean(late))?;
         // the mean of whole cycles is nearer to the middle of the lift than that of half the history
-        let begins = cl.crossings(late, cl.mean((*first.first()?, *first.last()?)))?;
+        let begins = seen.crossings(late, seen.mean((*first.first()?, *first.last()?)))?;
         let begins = &begins[begins.len().saturating_sub(MOST + 1)..];
         let cycles = begins.len().saturating_sub(1);
         if cycles < LEAST {
@@ -96,6 +106,52 @@ impl History<'_> {
         0.5 * (range.1 - range.0)
     }
 
+    /// Integral over time from the first sample to each.
+    fn integral(&self) -> Vec<f64> {
+        let mut sum = 0.0;
+        let pieces = self.time.windows(2).zip(self.values.windows(2)).map(|(t, v)| 0.5 * (t[1] - t[0]) * (v[0] + v[1]));
+        let rest = pieces.map(|piece| {
+            sum += piece;
+            sum
+        });
+        std::iter::once(0.0).chain(rest).collect()
+    }
+
+    /// Integral from the first sample to the time `t`, given those to each sample.
+    fn integral_to(&self, t: f64, integral: &[f64]) -> f64 {
+        let k = self.time.partition_point(|s| *s <= t).clamp(1, self.time.len() - 1) - 1;
+        integral[k] + 0.5 * (t - self.time[k]) * (self.values[k] + self.at(k, t))
+    }
+
+    /// Frequency of the largest peak of the spectrum of a window; `None` where there is none.
+    fn dominant(&self, (from, to): (f64, f64)) -> Option<f64> {
+        if self.time.len() < 2 {
+            return None;
+        }
+        let (integral, width) = (self.integral(), (to - from) / BINS as f64);
+        let edge = |k: usize| self.integral_to(from + width * k as f64, &integral);
+        let bins: Vec<f64> = (0..BINS).map(|k| (edge(k + 1) - edge(k)) / width).collect();
+        let mean = bins.iter().sum::<f64>() / BINS as f64;
+        let power = |m: usize| {
+            let turn = |k: usize| std::f64::consts::TAU * (k * m % BINS) as f64 / BINS as f64;
+            let all = bins.iter().enumerate().map(|(k, b)| ((b - mean) * turn(k).cos(), (b - mean) * turn(k).sin()));
+            let (c, s) = all.fold((0.0, 0.0), |sum, term| (sum.0 + term.0, sum.1 + term.1));
+            c * c + s * s
+        };
+        let peak = (1..BINS / 4).map(|m| (m, power(m))).max_by(|a, b| a.1.total_cmp(&b.1))?;
+        (peak.1.is_finite() && peak.1 > 0.0).then(|| peak.0 as f64 / (to - from))
+    }
+
+    /// Means over `reach` on both sides of each sample, as far as the history goes.
+    fn averaged(&self, reach: f64) -> Vec<f64> {
+        let (integral, last) = (self.integral(), self.time.len() - 1);
+        let mean = |t: &f64| {
+            let (from, to) = ((t - reach).max(self.time[0]), (t + reach).min(self.time[last]));
+            (self.integral_to(to, &integral) - self.integral_to(from, &integral)) / (to - from)
+        };
+        self.time.iter().map(mean).collect()
+    }
+
     /// Times in the window at which the history rises through `level`; `None` where it is still or not finite.
     fn crossings(&self, window: (f64, f64), level: f64) -> Option<Vec<f64>> {
         let (n, squares) = self.within(window).fold((0.0, 0.0), |(n, s), v| (n + 1.0, s + (v - level).powi(2)));
@@ -105,7 +161,8 @@ impl History<'_> {
         }
         let mut below = false;
         let mut times = Vec::new();
-        for k in self.time.partition_point(|t| *t < window.0)..self.time.len() - 1 {
+        let end = self.time.partition_point(|t| *t <= window.1).min(self.time.len());
+        for k in self.time.partition_point(|t| *t < window.0)..end.saturating_sub(1) {
             let (a, b) = (self.values[k] - level, self.values[k + 1] - level);
             below |= a < -RIPPLE * deviation;
             if below && a < 0.0 && b >= 0.0 {
@@ -149,6 +206,14 @@ mod tests {
         let (time, lift) = history(1200, |t| (TAU * t / PERIOD).sin());
         let c = Cycles::of(&time, &lift, &lift).unwrap();
         assert!((c.frequency * PERIOD - 1.0).abs() < 1e-5 && c.spread < 1e-3 && c.mean_cl.abs() < 1e-3, "{c:?}");
+    }
+
+    #[test]
+    fn jerks_are_no_cycles() {
+        let (time, mut lift) = history(1200, |t| 0.1 + 0.7 * (TAU * t / PERIOD).sin());
+        lift.iter_mut().enumerate().filter(|(k, _)| k % 37 < 2).for_each(|(k, v)| *v += 1.5 - (k % 5) as f64);
+        let c = Cycles::of(&time, &lift, &lift).unwrap();
+        assert!((c.frequency * PERIOD - 1.0).abs() < 1e-2 && c.cycles == MOST && c.spread < 0.1, "{c:?}");
     }
 
     #[test]
