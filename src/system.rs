@@ -90,13 +90,11 @@ pub trait System: Sync {
     fn parts(&self) -> &[std::ops::Range<usize>];
     /// Fills `matrix` with −∂R/∂U of the first-order scheme, which is what implicit methods are preconditioned with.
     fn linearise(&self, frame: &Self::Frame, u: &[f64], work: &mut Self::Work, matrix: &mut BlockMatrix);
-    /// Component `k` of a vector like the state, whose components are `v`, in the axes of that matrix: those of a rigid cloud,
-    /// so that the matrix goes on to serve while it turns.
-    fn inward(&self, _frame: &Self::Frame, v: impl Fn(usize) -> f32, k: usize) -> f32 {
-        v(k)
-    }
-    /// Brings a vector back from the axes of that matrix.
-    fn outward(&self, _frame: &Self::Frame, _v: &mut [f64]) {}
+    /// Brings the unknowns of a particle into the axes of that matrix: those of a rigid cloud, so that the matrix goes on to
+    /// serve while it turns.
+    fn inward(&self, _frame: &Self::Frame, _row: &mut [f32]) {}
+    /// Brings them back from there.
+    fn outward(&self, _frame: &Self::Frame, _row: &mut [f64]) {}
     /// The largest relative change of a positive quantity (density, pressure) that the update `du` makes; infinite if NaN.
     fn largest_change(&self, u: &[f64], du: &[f64]) -> f64;
     /// The first particle whose state is not physical, if any.

@@ -100,7 +100,7 @@ fn preconditioner<S: System>(system: &S, u: &[f64]) -> (f64, f64) {
         levels.refresh();
     });
     let mut z = vec![0.0; u.len()];
-    (seconds(|| levels.apply(|k| (k as f32 * 0.1).sin(), &mut z)), made)
+    (seconds(|| levels.apply(|i, row| row.fill((i as f32 * 0.1).sin()), &mut z)), made)
 }
 
 /// Bytes of the cloud, its operators and the storage of one residual.

@@ -55,9 +55,9 @@ impl Incomplete {
         });
     }
 
-    /// z ≈ A⁻¹ r, where `r(k)` is component k of the right-hand side and `matrix` the one that was factored: solved once with
+    /// z ≈ A⁻¹ r, where `r(i, row)` sets row i of the right-hand side and `matrix` is the one that was factored: solved once with
     /// the factors, and once more for what is left, blocks between parts included.
-    pub fn apply(&mut self, matrix: &BlockMatrix, r: impl Fn(usize) -> f32 + Sync, z: &mut [f64]) {
+    pub fn apply(&mut self, matrix: &BlockMatrix, r: impl Fn(usize, &mut [f32]) + Sync, z: &mut [f64]) {
         match matrix.block() {
             4 => self.solve::<4>(matrix, r, z),
             5 => self.solve::<5>(matrix, r, z),
@@ -67,13 +67,14 @@ impl Incomplete {
         }
     }
 
-    fn solve<const N: usize>(&mut self, matrix: &BlockMatrix, b: impl Fn(usize) -> f32 + Sync, z: &mut [f64]) {
+    fn solve<const N: usize>(&mut self, matrix: &BlockMatrix, b: impl Fn(usize, &mut [f32]) + Sync, z: &mut [f64]) {
         let (parts, inverse, first) = (matrix.parts(), &self.inverse, &mut self.first);
         sweep_parts(parts, N, first, &|k, x| {
             let start = parts[k].start;
             for i in parts[k].clone() {
                 let (_, inside, _) = matrix.split_row(i);
-                let mut r = std::array::from_fn(|c| b(i * N + c));
+                let mut r = [0.0; N];
+                b(i, &mut r);
                 for e in inside.start..matrix.middle(i) {
                     subtract::<N>(matrix.off_diagonal(e), &load::<N>(x, matrix.column(e) - start), &mut r);
                 }
@@ -86,9 +87,9 @@ impl Incomplete {
             let start = parts[k].start;
             for i in parts[k].clone() {
                 let (below, inside, above) = matrix.split_row(i);
-                let mut r = std::array::from_fn(|c| b(i * N + c));
-                let own = load::<N>(first, i);
-                subtract_single::<N>(matrix.diagonal(i), &own, &mut r);
+                let mut r = [0.0; N];
+                b(i, &mut r);
+                multiply::<N>(matrix.diagonal(i), &load::<N>(first, i).map(|x| -x), &mut r);
                 for e in below.chain(matrix.middle(i)..inside.end).chain(above) {
                     subtract::<N>(matrix.off_diagonal(e), &load::<N>(first, matrix.column(e)), &mut r);
                 }
@@ -117,14 +118,6 @@ fn backward<const N: usize>(matrix: &BlockMatrix, inverse: &[f32], part: &Range<
         }
         let own = load::<N>(x, i - part.start);
         add_pivoted::<N>(inverse, i, &r, own, &mut x[(i - part.start) * N..]);
-    }
-}
-
-/// r ← r − A x, where the block A is held by columns in single precision.
-#[inline(always)]
-fn subtract_single<const N: usize>(a: &[f32], x: &[f32; N], r: &mut [f32; N]) {
-    for c in 0..N {
-        (0..N).for_each(|k| r[k] -= a[c * N + k] * x[c]);
     }
 }
 
@@ -194,7 +187,7 @@ mod tests {
         let mut factors = Incomplete::default();
         factors.factor(&matrix);
         let mut z = vec![0.0; 2 * n];
-        factors.apply(&matrix, |k| -sweeps.r[k], &mut z);
+        factors.apply(&matrix, |i, row| (0..2).for_each(|c| row[c] = -sweeps.r[2 * i + c]), &mut z);
         assert!(z.iter().zip(&wanted).all(|(z, w)| (z - f64::from(*w)).abs() < 1e-4), "{z:?}");
     }
 }

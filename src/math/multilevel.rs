@@ -6,7 +6,7 @@
 //!
 //! The same hierarchy serves systems that repeat in time, harmonic by harmonic ([`super::circulant`]).
 use super::block_matrix::{BlockMatrix, Sweeps};
-use super::circulant::Waves;
+use super::circulant::{MOST_HARMONICS, Waves};
 use super::fourier::Instances;
 use super::sweep::{sweep, sweep_rows};
 
@@ -14,6 +14,9 @@ use super::sweep::{sweep, sweep_rows};
 const COARSEST: usize = 60;
 /// Sweeps on the coarsest level.
 const COARSEST_SWEEPS: usize = 8;
+
+/// Unknowns of a row at all instances of a period, at most.
+const MOST_VALUES: usize = 6 * (2 * MOST_HARMONICS + 1);
 
 /// How a cycle visits the levels.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -114,13 +117,14 @@ impl Multilevel {
         }
     }
 
-    /// z ≈ A⁻¹ r, where `r(k)` is component k of the right-hand side.
-    pub fn apply(&mut self, r: impl Fn(usize) -> f32 + Sync, z: &mut [f64]) {
+    /// z ≈ A⁻¹ r, where `r(i, row)` sets row i of the right-hand side.
+    pub fn apply(&mut self, r: impl Fn(usize, &mut [f32]) + Sync, z: &mut [f64]) {
         if let Some(times) = &self.times {
             return apply_in_time(&mut self.levels, self.cycle, times, r, z);
         }
+        let n = self.levels[0].matrix.block();
         let finest = &mut self.levels[0].sweeps;
-        sweep(&mut finest.b, r);
+        sweep_rows(&mut finest.b, n, r);
         finest.clear();
         cycle(&mut self.levels, self.cycle);
         let x = &self.levels[0].sweeps.x;
@@ -155,17 +159,18 @@ fn sorted(c: usize, count: usize) -> usize {
     }
 }
 
-fn apply_in_time(levels: &mut [Level], how: Cycle, times: &Times, r: impl Fn(usize) -> f32 + Sync, z: &mut [f64]) {
+fn apply_in_time(levels: &mut [Level], how: Cycle, times: &Times, r: impl Fn(usize, &mut [f32]) + Sync, z: &mut [f64]) {
     let (n, count) = (levels[0].matrix.block(), times.count);
     let Some(finest) = levels[0].waves.as_mut() else { return };
     // places inside a row: (instance or coefficient, unknown)
     let row = |k: usize| (k / (n * count) * n * count, k / n % count, k % n);
     sweep_rows(&mut finest.b, n * count, |i, b| {
-        let at = i * n * count;
+        let mut values = [0.0; MOST_VALUES];
+        r(i, &mut values[..n * count]);
         b.fill(0.0);
         for instance in 0..count {
             for v in 0..n {
-                let value = r(at + instance * n + v);
+                let value = values[instance * n + v];
                 (0..count).for_each(|c| b[c * n + v] += times.forth[c * count + instance] * value);
             }
         }

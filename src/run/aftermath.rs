@@ -3,11 +3,12 @@
 //! The states of the balance at the start of a period and at the two steps before it are what the second-order formula in time
 //! goes on from: the march has no start of its own to forget. It solves the same equations in space with another error in time,
 //! and leaves the balance where the flow has a rhythm of its own or waves that the harmonics cannot hold.
-use num_complex::Complex64;
 use serde::Serialize;
 
 use super::RunError;
+use super::harmonic::terms;
 use super::journal::Journal;
+use super::lead::even_steps;
 use super::setup::harmonic_control;
 use super::solve::coefficients;
 use crate::case::Harmonics as Asked;
@@ -16,16 +17,12 @@ use crate::observe::harmonics::{Harmonics, Window};
 use crate::observe::loads::Coefficients;
 use crate::scheme::Fluid;
 use crate::system::System;
-use crate::time::dual::{Dual, Plan};
+use crate::time::dual::Dual;
 use crate::time::harmonic::HarmonicBalance;
 use crate::time::{March, Past};
 
 /// Steps of a period: the formula in time then errs by less than .1 % in the first harmonic.
 const STEPS: u32 = 128;
-/// Orders by which the residual must fall in a step.
-const ORDERS: f64 = 2.0;
-/// Greatest number of iterations of a step.
-const ITERATIONS: u32 = 20;
 /// First harmonic over the largest one above which a load counts.
 const PRESENT: f64 = 1e-2;
 
@@ -66,14 +63,13 @@ pub(super) fn marched_on<const D: usize>(
 ) -> Result<Option<Aftermath>, RunError> {
     let step = period / f64::from(STEPS);
     let until = f64::from(1 + plan.check) * period;
-    let march = Plan { until, step, order: 2, orders: ORDERS, iterations: ITERATIONS, adaptive: None };
-    let at = |steps: f64| {
+    let at = |before: f64| {
         let mut one = vec![0.0; fluid.len()];
-        balance.at_phase(state, -steps * step / period * std::f64::consts::TAU, &mut one);
+        balance.at_phase(state, -before * step / period * std::f64::consts::TAU, &mut one);
         one
     };
     let past = Past { time: period, last: step, next: step, before: at(1.0), older: at(2.0), ..Past::default() };
-    let mut marcher = Dual::new(fluid, harmonic_control(plan, D), march, at(0.0), past);
+    let mut marcher = Dual::new(fluid, harmonic_control(plan, D), even_steps(step, until), at(0.0), past);
     journal.note(&format!("{} periods of {STEPS} steps are marched from the balance", plan.check));
     journal.work.begin(0);
     let (mut time, mut loads) = (Vec::new(), Vec::<Coefficients>::new());
@@ -92,7 +88,7 @@ pub(super) fn marched_on<const D: usize>(
     }
     let window = Window { period, periods: 1.0, harmonics: balance.instances().harmonics() };
     let values: [fn(&Coefficients) -> f64; 3] = [|c| c.cl, |c| c.cd, |c| c.cm];
-    let held = series.each_ref().map(first_harmonic);
+    let held = series.each_ref().map(|s| terms(s)[0]);
     let largest = held.iter().fold(0.0, |m: f64, h| m.max(h.norm()));
     let [cl, cd, cm] = std::array::from_fn(|k| {
         let values: Vec<f64> = loads.iter().map(values[k]).collect();
@@ -105,12 +101,6 @@ pub(super) fn marched_on<const D: usize>(
     });
     let unconverged = marcher.past().unconverged;
     Ok(Some(Aftermath { periods: plan.check, steps_per_period: STEPS, unconverged, cl, cd, cm }))
-}
-
-/// f_1 of a series.
-fn first_harmonic(series: &Series) -> Complex64 {
-    let (c, n) = (series.coefficients(), series.instances().harmonics());
-    Complex64::new(c[1], -c[n + 1])
 }
 
 impl Aftermath {

@@ -192,7 +192,7 @@ fn loads<const D: usize>(
 }
 
 /// f_1, f_2, … of a series.
-fn terms(series: &Series) -> Vec<Complex64> {
+pub(super) fn terms(series: &Series) -> Vec<Complex64> {
     let (c, n) = (series.coefficients(), series.instances().harmonics());
     (1..=n).map(|m| Complex64::new(c[m], -c[n + m])).collect()
 }

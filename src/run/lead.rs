@@ -21,6 +21,11 @@ const ORDERS: f64 = 2.0;
 /// Greatest number of iterations of a step.
 const ITERATIONS: u32 = 20;
 
+/// Steps of one length beside a harmonic balance.
+pub(super) fn even_steps(step: f64, until: f64) -> Plan {
+    Plan { until, step, order: 2, orders: ORDERS, iterations: ITERATIONS, adaptive: None }
+}
+
 /// The state at the instances of `balance` in the last of `plan.march` periods that begin with the state `u`; `None` when told to
 /// stop.
 pub(super) fn marched<const D: usize>(
@@ -36,7 +41,7 @@ pub(super) fn marched<const D: usize>(
     let steps = (stride * count) as u32;
     let step = period / f64::from(steps);
     let until = f64::from(plan.march) * period;
-    let march = Plan { until, step, order: 2, orders: ORDERS, iterations: ITERATIONS, adaptive: None };
+    let march = even_steps(step, until);
     let mut all = vec![0.0; u.len() * count];
     let mut marcher = Dual::new(fluid, harmonic_control(plan, D), march, u, Past::default());
     journal.note(&format!("{} periods of {steps} steps are marched first", plan.march));

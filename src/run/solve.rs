@@ -85,7 +85,8 @@ fn relax<const D: usize>(
     let cycle = at.stages[at.stage].cycle;
     // a checkpoint may have been written by the very iteration that reached the goal
     let mut reached = relax.iteration > 0 && relax.drop() <= 10f64.powf(-orders);
-    while !reached && relax.iteration < steady.iterations {
+    let rests = |relax: &Relax<'_, Fluid<D>>| !last && relax.resting() >= PATIENCE;
+    while !reached && relax.iteration < steady.iterations && !rests(&relax) {
         let step = match relax.advance() {
             Ok(step) => step,
             Err(e) => {
@@ -105,18 +106,16 @@ fn relax<const D: usize>(
         if reached {
             break;
         }
-        if !last && relax.resting() >= PATIENCE {
-            journal.note(&format!(
-                "the flow before the motion has not come nearer to a steady one for {PATIENCE} iterations, at {:.1} orders: it is \
-                 unsteady by itself, and the run goes on from there",
-                -step.residual.log10()
-            ));
-            break;
-        }
-        if journal.stopped() {
+        if journal.stopped() && !rests(&relax) {
             journal.save(at, 0.0, &relax.u, relax.resume())?;
             return Ok(None);
         }
+    }
+    if !reached && rests(&relax) {
+        let orders = -relax.drop().log10();
+        journal.note(&format!(
+            "the flow has not come nearer to a steady one for {PATIENCE} iterations, at {orders:.1} orders: the run goes on from there"
+        ));
     }
     (journal.drop, journal.converged) = (relax.drop(), reached);
     (journal.bytes, journal.linear) = (relax.bytes(), relax.linear);
@@ -265,17 +264,7 @@ fn march<const D: usize>(
         let (frame, work, state) = marcher.parts();
         let loads = coefficients(fluid, journal.axes(), frame, state, work);
         journal.record((0, inner), &step, loads, (until, step.time), fluid)?;
-        if let Some(interval) = journal.interval()
-            && (step.time / interval + NEARLY).floor() > (before / interval + NEARLY).floor()
-        {
-            outputs::write_series(journal.case(), journal.out(), fluid, (frame, work), interval)?;
-        }
-        if let (Some(surface), Some(period)) = (&solver.film, journal.period) {
-            let part = |t: f64| (t / period * f64::from(outputs::FILM) + NEARLY).floor() as u64;
-            if part(step.time) > part(before) {
-                outputs::write_film(journal.case(), journal.out(), (fluid, surface), (frame, work), part(step.time))?;
-            }
-        }
+        write_due(solver, (frame, work), (before, step.time), journal)?;
         periodic = tolerance.is_some_and(|t| journal.is_periodic(step.time, before, t));
         if journal.due(step.iteration) {
             journal.keep(at, marcher, fluid)?;
@@ -291,6 +280,29 @@ fn march<const D: usize>(
         (marcher.bytes(), marcher.linear(), marcher.past().unconverged);
     journal.keep(at, marcher, fluid)?;
     Ok(Pause::End)
+}
+
+/// Writes the files of the field and of the film that fall into a step.
+fn write_due<const D: usize>(
+    solver: &Solver<D>,
+    (frame, work): (&Frame<D>, &mut Work<D>),
+    (before, now): (f64, f64),
+    journal: &Journal<'_>,
+) -> Result<(), RunError> {
+    let (case, out, fluid) = (journal.case(), journal.out(), &solver.fluid);
+    let passed = |t: f64, interval: f64| (t / interval + NEARLY).floor() as u64;
+    if let Some(interval) = journal.interval()
+        && passed(now, interval) > passed(before, interval)
+    {
+        outputs::write_series(case, out, fluid, (frame, work), interval)?;
+    }
+    if let (Some(surface), Some(period)) = (&solver.film, journal.period) {
+        let part = |t: f64| passed(t, period / f64::from(outputs::FILM));
+        if part(now) > part(before) {
+            outputs::write_film(case, out, (fluid, surface), (frame, work), part(now))?;
+        }
+    }
+    Ok(())
 }
 
 /// Coefficients from wall pressure and friction; `None` without bodies.

@@ -423,20 +423,16 @@ impl<const D: usize> System for Fluid<D> {
         super::jacobian::assemble(self, frame, work, matrix);
     }
 
-    fn inward(&self, frame: &Frame<D>, v: impl Fn(usize) -> f32, k: usize) -> f32 {
-        let (i, c) = (k / (D + 2), k % (D + 2));
-        match &frame.turn {
-            Some(turn) if (1..=D).contains(&c) => {
-                let along = |d: usize| turn.rotation[d][c - 1] as f32 * v(i * (D + 2) + 1 + d);
-                (0..D).map(along).sum()
-            }
-            _ => v(k),
+    fn inward(&self, frame: &Frame<D>, row: &mut [f32]) {
+        if frame.turn.is_some() {
+            let momentum = frame.inward(&Vector::from_fn(|d| f64::from(row[1 + d])));
+            (0..D).for_each(|d| row[1 + d] = momentum[d] as f32);
         }
     }
 
-    fn outward(&self, frame: &Frame<D>, v: &mut [f64]) {
+    fn outward(&self, frame: &Frame<D>, row: &mut [f64]) {
         if frame.turn.is_some() {
-            sweep_rows(v, D + 2, |_, row| turn_momentum(frame, row));
+            turn_momentum(frame, row);
         }
     }
 

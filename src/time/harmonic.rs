@@ -246,22 +246,14 @@ impl<S: System> System for HarmonicBalance<'_, S> {
         matrix.end_mean();
     }
 
-    fn inward(&self, frame: &Self::Frame, v: impl Fn(usize) -> f32, k: usize) -> f32 {
-        let (b, count) = (self.system.block(), self.held.count());
-        let (i, n, c) = (k / (b * count), k / b % count, k % b);
-        let start = (i * count + n) * b;
-        self.system.inward(&frame[self.beside(n)], |k| v(start + k - i * b), i * b + c)
+    fn inward(&self, frame: &Self::Frame, row: &mut [f32]) {
+        let instances = row.chunks_exact_mut(self.system.block()).enumerate();
+        instances.for_each(|(n, row)| self.system.inward(&frame[self.beside(n)], row));
     }
 
-    fn outward(&self, frame: &Self::Frame, v: &mut [f64]) {
-        let (b, count) = (self.system.block(), self.held.count());
-        let mut one = vec![0.0; self.system.len()];
-        for n in 0..count {
-            self.instance(v, n, &mut one);
-            self.system.outward(&frame[self.beside(n)], &mut one);
-            let one = &one;
-            sweep_rows(v, b * count, |i, row| row[n * b..(n + 1) * b].copy_from_slice(&one[i * b..(i + 1) * b]));
-        }
+    fn outward(&self, frame: &Self::Frame, row: &mut [f64]) {
+        let instances = row.chunks_exact_mut(self.system.block()).enumerate();
+        instances.for_each(|(n, row)| self.system.outward(&frame[self.beside(n)], row));
     }
 
     fn largest_change(&self, u: &[f64], du: &[f64]) -> f64 {

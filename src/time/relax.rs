@@ -299,7 +299,7 @@ impl<'a, S: System> Relax<'a, S> {
 
     /// Iterations of Newton's method on a steady state since the residual was last smallest.
     pub fn resting(&self) -> u32 {
-        if self.phase.newton && self.phase.best_age > 0 { self.phase.age - self.phase.best_age } else { 0 }
+        if self.phase.newton { self.phase.age - self.phase.best_age } else { 0 }
     }
 
     /// Residual over its first value.
@@ -499,8 +499,13 @@ impl<'a, S: System> Relax<'a, S> {
         let (tolerance, most) = self.asked();
         let Some(gmres) = self.gmres.as_mut().filter(|_| self.phase.newton) else {
             let residual = &self.residual;
-            levels.apply(|k| self.system.inward(&self.frame, |k| residual[k] as f32, k), &mut self.step);
-            self.system.outward(&self.frame, &mut self.step);
+            let (system, frame) = (self.system, &self.frame);
+            let right = |i: usize, row: &mut [f32]| {
+                row.iter_mut().zip(&residual[i * n..]).for_each(|(row, r)| *row = *r as f32);
+                system.inward(frame, row);
+            };
+            levels.apply(right, &mut self.step);
+            crate::math::sweep::sweep_rows(&mut self.step, n, |_, row| system.outward(frame, row));
             self.linear += 1;
             return;
         };
@@ -526,14 +531,16 @@ impl<'a, S: System> Relax<'a, S> {
         };
         let factors = &mut self.factors;
         let precondition = |r: &[f32], z: &mut [f64]| {
-            let r = |k: usize| (f64::from(r[k]) / scale[k / n]) as f32;
-            let r = |k: usize| system.inward(frame, r, k);
+            let right = |i: usize, row: &mut [f32]| {
+                row.iter_mut().zip(&r[i * n..]).for_each(|(row, r)| *row = (f64::from(*r) / scale[i]) as f32);
+                system.inward(frame, row);
+            };
             if narrow {
-                factors.apply(levels.finest(), r, z)
+                factors.apply(levels.finest(), right, z)
             } else {
-                levels.apply(r, z)
+                levels.apply(right, z)
             }
-            system.outward(frame, z);
+            crate::math::sweep::sweep_rows(z, n, |_, row| system.outward(frame, row));
         };
         let solved = gmres.solve((b, &mut self.step), (tolerance, most), product, precondition);
         if narrow && solved.iterations == most {
