@@ -158,9 +158,9 @@ fn re_clouding<const D: usize>(bencher: Bencher<'_, '_>, threads: usize) {
     let (fluid, u) = travelling::<D>();
     let (pool, frame, mut work) = (pool(threads), fluid.frame(&Moment::At { time: 0.0 }, &u), fluid.work());
     let mut turnover = Turnover::default();
-    bencher
-        .counter(ItemsCount::new(fluid.shape.cloud.n_fluid))
-        .bench_local(|| pool.install(|| fluid.renewed(black_box(&frame), &u, &mut work, &mut turnover)).is_ok());
+    bencher.counter(ItemsCount::new(fluid.shape.cloud.n_fluid)).bench_local(|| {
+        pool.install(|| fluid.renewed(black_box(&frame), (&u, [&[], &[]]), &mut work, &mut turnover)).is_ok()
+    });
 }
 
 /// A whole step of three stages on particles that travel, without building the cloud anew.

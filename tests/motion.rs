@@ -127,7 +127,7 @@ fn drift<const D: usize>(
             cycle: Cycle { sweeps: 2, visits: 1, levels: 8 },
         };
         let plan = Plan { until, step: STEP, order: 2, orders: 13.0, iterations: 30, adaptive: None };
-        worst(&fluid, Dual::new(&fluid, control, plan, u, Past::default()), field)
+        worst(&fluid, Dual::new(&fluid, control, plan, (Past::default(), u)), field)
     } else {
         worst(&fluid, Explicit::new(&fluid, Method::Ssprk3, (0.5, until), (Past::default(), u)), field)
     }

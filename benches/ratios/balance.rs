@@ -115,7 +115,7 @@ fn bytes(fluid: &Fluid<2>) -> usize {
 /// Bytes per particle of a march that has taken a few steps.
 fn marching_bytes(fluid: &Fluid<2>, u: &[f64], step: f64) -> f64 {
     let plan = Plan { until: 1e9, step, order: 2, orders: 2.0, iterations: 20, adaptive: None };
-    let mut march = Dual::new(fluid, control(), plan, u.to_vec(), Past::default());
+    let mut march = Dual::new(fluid, control(), plan, (Past::default(), u.to_vec()));
     (0..3).for_each(|_| drop(march.advance()));
     let velocity = 8 * 2 * fluid.shape.cloud.len();
     (bytes(fluid) + velocity + march.bytes()) as f64 / particles(fluid)

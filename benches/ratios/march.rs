@@ -31,7 +31,7 @@ pub(super) fn dual_step() {
     drop(relax);
     let step = period / 64.0;
     let plan = Plan { until: 1e9, step, order: 2, orders: 2.0, iterations: 20, adaptive: None };
-    let mut march = Dual::new(&fluid, control(), plan, u, Past::default());
+    let mut march = Dual::new(&fluid, control(), plan, (Past::default(), u));
     (0..STEPS[0]).for_each(|_| {
         march.advance().unwrap();
     });

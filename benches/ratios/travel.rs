@@ -36,7 +36,7 @@ pub(super) fn travelling() {
     let moment = Moment::At { time: 0.0 };
     let one = residual(&fluid, &moment, &u);
     let frame = fluid.frame(&moment, &u);
-    let anew = seconds(|| drop(fluid.renewed(&frame, &u, &mut work, &mut turnover)));
+    let anew = seconds(|| drop(fluid.renewed(&frame, (&u, [&[], &[]]), &mut work, &mut turnover)));
     let mut operators = fluid.shape.operators.clone();
     let refit = seconds(|| operators.refit(&fluid.shape.cloud));
     let mut march = Explicit::new(&fluid, Method::Ssprk3, (0.1, 1e9), (Past::default(), u.clone()));

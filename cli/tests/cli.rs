@@ -216,11 +216,14 @@ fn what_cannot_be_computed_yet_is_checked_but_not_run() {
     assert_eq!(code(&desk.alula(&["check", "pitching.toml"])), Some(0));
     let file = desk.path("pitching.toml");
     let text = std::fs::read_to_string(&file).unwrap();
-    std::fs::write(&file, text.replace("particles = \"deforming\"", "particles = \"lagrangian\"")).unwrap();
+    let text = text.replace("particles = \"deforming\"", "particles = \"lagrangian\"");
+    std::fs::write(&file, format!("{text}\n[scheme]\nconservative = true\n")).unwrap();
     let output = desk.alula(&["run", "pitching.toml"]);
     let text = told(&output);
     assert!(
-        code(&output) == Some(2) && text.contains("implicit steps on particles that travel") && text.contains("hint: "),
+        code(&output) == Some(2)
+            && text.contains("conservative coefficients of particles that travel")
+            && text.contains("hint: "),
         "{text}"
     );
     assert!(!desk.path("runs").exists(), "a refused case leaves nothing behind");
@@ -262,6 +265,11 @@ fn a_killed_march_goes_on_to_the_same_bits() {
 #[test]
 fn a_killed_march_of_travelling_particles_goes_on_to_the_same_bits() {
     survives_being_killed(CYLINDER);
+}
+
+#[test]
+fn a_killed_implicit_march_of_travelling_particles_goes_on_to_the_same_bits() {
+    survives_being_killed(&CYLINDER.replace("[time.explicit]", "[time.dual]\nstep = 0.1"));
 }
 
 #[cfg(unix)]

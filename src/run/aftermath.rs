@@ -69,7 +69,7 @@ pub(super) fn marched_on<const D: usize>(
         one
     };
     let past = Past { time: period, last: step, next: step, before: at(1.0), older: at(2.0), ..Past::default() };
-    let mut marcher = Dual::new(fluid, harmonic_control(plan, D), even_steps(step, until), at(0.0), past);
+    let mut marcher = Dual::new(fluid, harmonic_control(plan, D), even_steps(step, until), (past, at(0.0)));
     journal.note(&format!("{} periods of {STEPS} steps are marched from the balance", plan.check));
     journal.work.begin(0);
     let (mut time, mut loads) = (Vec::new(), Vec::<Coefficients>::new());

@@ -263,7 +263,7 @@ impl<'a> Journal<'a> {
     pub(super) fn keep<const D: usize>(
         &self,
         at: &Position<'_>,
-        marcher: &mut impl March<Fluid<D>>,
+        marcher: &mut dyn March<Fluid<D>>,
         fluid: &Fluid<D>,
     ) -> Result<(), RunError> {
         let past = marcher.past().clone();

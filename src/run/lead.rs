@@ -43,7 +43,7 @@ pub(super) fn marched<const D: usize>(
     let until = f64::from(plan.march) * period;
     let march = even_steps(step, until);
     let mut all = vec![0.0; u.len() * count];
-    let mut marcher = Dual::new(fluid, harmonic_control(plan, D), march, u, Past::default());
+    let mut marcher = Dual::new(fluid, harmonic_control(plan, D), march, (Past::default(), u));
     journal.note(&format!("{} periods of {steps} steps are marched first", plan.march));
     journal.work.begin(0);
     for k in 1..=plan.march * steps {

@@ -9,7 +9,7 @@ use crate::cloud::CloudError;
 use crate::cloud::sources::Source;
 use crate::math::Vector;
 use crate::observe::checkpoint::{self, Array, Checkpoint, Field};
-use crate::scheme::{Carriage, Fluid, Frame, Turnover};
+use crate::scheme::{Carriage, Fluid, Frame, Stand, Turnover};
 use crate::time::Past;
 use crate::time::relax::{Phase, Resume};
 
@@ -81,8 +81,10 @@ pub(super) struct Roaming {
     now: f64,
     /// Where fluid and interface particles are.
     places: Vec<f64>,
-    /// Their velocities in the step before.
-    ways: Vec<f64>,
+    /// Their velocities, by the formula that serves the state.
+    velocity: Vec<f64>,
+    /// The straight course of fluid particles in the step before.
+    course: Vec<f64>,
     /// Time at which the cloud was built.
     since: f64,
     /// What re-clouding did so far.
@@ -96,8 +98,10 @@ impl Roaming {
         let flat = |x: &[Vector<D>], n: usize| x.iter().take(n).flat_map(|x| x.0).collect();
         let cloud = &fluid.shape.cloud;
         let lists = flat(&cloud.x, cloud.n_fluid);
-        let (places, ways) = (flat(&frame.shape.cloud.x, cloud.n_rows()), flat(&frame.velocity, cloud.n_rows()));
-        Some(Self { lists, now: frame.time, places, ways, since: travel.since, turnover: turnover.clone() })
+        let (places, velocity) = (flat(&frame.shape.cloud.x, cloud.n_rows()), flat(&frame.velocity, cloud.n_rows()));
+        let course = flat(&frame.way.course, cloud.n_fluid);
+        let (now, since, turnover) = (frame.time, travel.since, turnover.clone());
+        Some(Self { lists, now, places, velocity, course, since, turnover })
     }
 
     /// The equations on the cloud that was kept.
@@ -106,7 +110,8 @@ impl Roaming {
         let lists = points(&self.lists);
         // until it is built anew a march stands on the cloud of the case
         let lists = (self.turnover.renewals > 0).then_some((&lists[..], self.since));
-        fluid.resumed(lists, (self.now, points(&self.places), points(&self.ways)))
+        let [places, velocity, course] = [&self.places, &self.velocity, &self.course].map(|v| points(v));
+        fluid.resumed(lists, Stand { now: self.now, places, velocity, course })
     }
 
     fn counts(&self) -> Counts {
@@ -123,7 +128,7 @@ impl Roaming {
         }
     }
 
-    fn new(counts: &Counts, [lists, places, ways]: [Vec<f64>; 3]) -> Self {
+    fn new(counts: &Counts, [lists, places, velocity, course]: [Vec<f64>; 4]) -> Self {
         let numbers = |bits: &[u64]| bits.iter().map(|b| f64::from_bits(*b)).collect();
         let turnover = Turnover {
             renewals: counts.renewals,
@@ -134,7 +139,7 @@ impl Roaming {
             exchanged: numbers(&counts.exchanged_bits),
         };
         let (since, now) = (f64::from_bits(counts.since_bits), f64::from_bits(counts.now_bits));
-        Self { lists, now, places, ways, since, turnover }
+        Self { lists, now, places, velocity, course, since, turnover }
     }
 }
 
@@ -239,7 +244,8 @@ impl Saved {
             field("sources", self.sources),
         ];
         if let Some(roaming) = self.roaming {
-            let parts = [("lists", roaming.lists), ("places", roaming.places), ("ways", roaming.ways)];
+            let Roaming { lists, places, velocity, course, .. } = roaming;
+            let parts = [("lists", lists), ("places", places), ("velocity", velocity), ("course", course)];
             fields.extend(parts.map(|(name, data)| field(name, data)));
         }
         Ok(checkpoint::write(&out.join(FILE), &Checkpoint { meta, fields })?)
@@ -259,7 +265,7 @@ impl Saved {
         let roaming = match &m.roaming {
             Some(counts) => {
                 let part = |name: &str| file.f64(name).map(<[f64]>::to_vec);
-                Some(Roaming::new(counts, [part("lists")?, part("places")?, part("ways")?]))
+                Some(Roaming::new(counts, [part("lists")?, part("places")?, part("velocity")?, part("course")?]))
             }
             None => None,
         };

@@ -18,7 +18,7 @@ use crate::scheme::blend::Blend;
 use crate::scheme::probe::Probe;
 use crate::scheme::reconstruct::Reconstruction;
 use crate::scheme::start::{Stream, initial};
-use crate::scheme::{Carriage, Contact, Fluid, Friction, Shape, Skin, Travel};
+use crate::scheme::{Carriage, Contact, Fluid, Friction, Shape, Skin, Stand, Travel};
 use crate::system::{Moment, System};
 use crate::time::control::{Control, Method};
 use crate::time::dual::Plan;
@@ -49,16 +49,11 @@ const LEAD_ITERATIONS: u32 = 60;
 /// Refuses what a case file can say but the solver cannot compute yet; each line goes when its solver comes.
 pub(super) fn supported(case: &Case) -> Result<(), RunError> {
     let travels = case.moves() && case.particles() == ParticleMotion::Lagrangian;
-    let implicit = travels && !matches!(case.time, Temporal::Explicit(_));
     let layered = travels && case.cloud.wall_layers.is_some();
     let bare = case.moves() && case.bodies.is_empty() && case.particles() == ParticleMotion::Deforming;
     let balanced = travels && case.scheme.conservative == Some(true);
     let slow = case.scheme.low_mach && !conserves(case);
     let asks = [
-        (
-            implicit,
-            "implicit steps on particles that travel with the fluid (`particles = \"lagrangian\"`, `[time.dual]`)",
-        ),
         (layered, "wall layers of particles that travel with the fluid (`wall_layers`, `particles = \"lagrangian\"`)"),
         (bare, "a deforming cloud without bodies (`particles = \"deforming\"`)"),
         (slow, "slow flow without conservative coefficients (`low_mach = true` needs `conservative = true`)"),
@@ -258,13 +253,11 @@ fn carriage<const D: usize>(
     let particles = case.particles();
     if case.moves() && particles == ParticleMotion::Lagrangian {
         let habitat = Arc::new(Habitat::new(case, surface, cloud)?);
-        let places = Arc::new(cloud.x[..cloud.n_rows()].to_vec());
+        let places = cloud.x[..cloud.n_rows()].to_vec();
         return Ok(Carriage::Travel(Travel {
             habitat,
             laws: laws(),
-            now: 0.0,
-            places,
-            ways: Arc::default(),
+            stand: Arc::new(Stand { places, ..Stand::default() }),
             since: 0.0,
         }));
     }

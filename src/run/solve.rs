@@ -10,7 +10,8 @@ use crate::math::sweep::sum;
 use crate::observe::loads::Coefficients;
 use crate::scheme::travel::Renewed;
 use crate::scheme::{Fluid, Frame, Work};
-use crate::time::dual::Dual;
+use crate::time::control::Control;
+use crate::time::dual::{self, Dual};
 use crate::time::explicit::{Explicit, Method};
 use crate::time::relax::Relax;
 use crate::time::{March, Past};
@@ -162,26 +163,59 @@ fn march_explicitly<const D: usize>(
     let Some(until) = marching.end(journal.period) else {
         return Err(RunError::Folder("`[time.explicit]` counts periods of a motion that has none".into()));
     };
-    let mut begin = beginning(start, solver, journal)?;
     let method = match marching.method {
         RungeKutta::Ssprk3 => Method::Ssprk3,
         RungeKutta::Rk4 => Method::Rk4,
     };
     let goal = (until, marching.steps, marching.periodic_tolerance);
+    march_on(&Plan::Explicit(method, (marching.cfl, until)), goal, (solver, start), at, journal)
+}
+
+/// How to march.
+enum Plan {
+    Dual(Control, dual::Plan),
+    Explicit(Method, (f64, f64)),
+}
+
+impl Plan {
+    fn marcher<'a, const D: usize>(
+        &self,
+        fluid: &'a Fluid<D>,
+        begin: (Past, Vec<f64>),
+    ) -> Box<dyn March<Fluid<D>> + 'a> {
+        match *self {
+            Self::Dual(control, plan) => Box::new(Dual::new(fluid, control, plan, begin)),
+            Self::Explicit(method, until) => Box::new(Explicit::new(fluid, method, until, begin)),
+        }
+    }
+}
+
+/// Marches to the end; where particles travel, the cloud is built anew on the way.
+fn march_on<const D: usize>(
+    plan: &Plan,
+    goal: (f64, u32, Option<f64>),
+    (solver, start): (&mut Solver<D>, Start),
+    at: &Position<'_>,
+    journal: &mut Journal<'_>,
+) -> Solved<D> {
+    let mut begin = beginning(start, solver, journal)?;
     loop {
         let fluid = &solver.fluid;
-        let mut marcher = Explicit::new(fluid, method, (marching.cfl, until), begin);
-        let pause = march(&mut marcher, goal, solver, at, journal)?;
+        let mut owned = plan.marcher(fluid, begin);
+        let marcher = owned.as_mut();
+        let pause = march(marcher, goal, solver, at, journal)?;
         if pause == Pause::Stop {
             return Ok(None);
         }
-        let past = marcher.past().clone();
-        let Some(renewed) = renewed(&mut marcher, fluid, at, journal)? else { return Ok(Some(ended(&mut marcher))) };
+        let mut past = marcher.past().clone();
+        let Some(renewed) = renewed(marcher, fluid, at, journal)? else { return Ok(Some(ended(marcher))) };
+        [past.before, past.older] = renewed.past;
         begin = (past, renewed.u);
+        drop(owned);
         solver.fluid = renewed.fluid;
         if pause == Pause::End {
             solver.fluid.measure();
-            let frame = solver.fluid.frame_after(begin.0.time, begin.0.last, &begin.1);
+            let frame = solver.fluid.frame_after(&begin.1);
             return Ok(Some((begin.1, frame)));
         }
     }
@@ -189,14 +223,15 @@ fn march_explicitly<const D: usize>(
 
 /// The cloud of a march built anew; `None` where particles do not travel with the fluid.
 fn renewed<const D: usize>(
-    marcher: &mut impl March<Fluid<D>>,
+    marcher: &mut dyn March<Fluid<D>>,
     fluid: &Fluid<D>,
     at: &Position<'_>,
     journal: &mut Journal<'_>,
 ) -> Result<Option<Renewed<D>>, RunError> {
     let time = marcher.past().time;
+    let past = marcher.past().clone();
     let (frame, work, u) = marcher.parts();
-    match fluid.renewed(frame, u, work, &mut journal.turnover) {
+    match fluid.renewed(frame, (u, [&past.before, &past.older]), work, &mut journal.turnover) {
         Ok(renewed) => Ok(renewed),
         Err(source) => {
             journal.keep(at, marcher, fluid)?;
@@ -206,7 +241,7 @@ fn renewed<const D: usize>(
 }
 
 /// State and frame of a march that is over.
-fn ended<const D: usize>(marcher: &mut impl March<Fluid<D>>) -> (Vec<f64>, Frame<D>) {
+fn ended<const D: usize>(marcher: &mut dyn March<Fluid<D>>) -> (Vec<f64>, Frame<D>) {
     let (frame, _, state) = marcher.parts();
     (state.to_vec(), frame.clone())
 }
@@ -219,19 +254,13 @@ fn march_implicitly<const D: usize>(
     journal: &mut Journal<'_>,
 ) -> Solved<D> {
     let plan = plan(dual, journal.period)?;
-    let (past, u) = beginning(start, solver, journal)?;
-    let fluid = &solver.fluid;
-    let mut marcher = Dual::new(fluid, inner_control(dual, D), plan, u, past);
     let goal = (plan.until, u32::MAX, dual.periodic_tolerance);
-    match march(&mut marcher, goal, solver, at, journal)? {
-        Pause::Stop => Ok(None),
-        Pause::End | Pause::Worn => Ok(Some(ended(&mut marcher))),
-    }
+    march_on(&Plan::Dual(inner_control(dual, D), plan), goal, (solver, start), at, journal)
 }
 
 /// Steps until the end, a limit on their number, a periodic state, or a worn cloud.
 fn march<const D: usize>(
-    marcher: &mut impl March<Fluid<D>>,
+    marcher: &mut dyn March<Fluid<D>>,
     (until, limit, tolerance): (f64, u32, Option<f64>),
     solver: &Solver<D>,
     at: &Position<'_>,

@@ -30,7 +30,7 @@ use crate::system::{Fault, Moment, System};
 use super::boundary::{WallMotion, slip_wall};
 use super::edges::{Particles, Rule, edge_fluxes};
 use super::reconstruct::{Gradient, Limit, Reconstruction, Unlimited, VanAlbada, Venkatakrishnan};
-use super::shape::{Carriage, Frame, Shape};
+use super::shape::{Carriage, Frame, Shape, Way};
 use super::start::Field;
 use super::viscous::Friction;
 
@@ -320,7 +320,7 @@ impl<const D: usize> System for Fluid<D> {
             turn: None,
             velocity: Arc::default(),
             walls: Arc::default(),
-            base: Arc::default(),
+            way: Way::default(),
             outer: (0..cloud.outer.len()).map(|k| cloud.beside(k).map(|i| (self.held)(&cloud.x[i]))).collect(),
         };
         self.place(moment, &mut frame);

@@ -63,8 +63,8 @@ pub struct Frame<const D: usize> {
     pub velocity: Arc<Vec<Vector<D>>>,
     /// Spin and acceleration of the wall at each interface particle; empty when nothing moves.
     pub walls: Arc<Vec<WallMotion<D>>>,
-    /// Where fluid particles that travel were when the step began; empty for all others.
-    pub base: Arc<Vec<Vector<D>>>,
+    /// How fluid particles that travel go through the step; empty for all others.
+    pub way: Way<D>,
     /// States that sides hold, in the axes of the case: at each outer particle, at its source and behind that.
     pub outer: Vec<[Primitive<D>; 3]>,
 }
@@ -99,6 +99,23 @@ impl<const D: usize> Frame<D> {
         let x = &self.shape.cloud.x[i];
         self.turn.as_ref().map_or(*x, |t| t.point(x))
     }
+}
+
+/// How fluid particles that travel go through a step.
+#[derive(Clone, Debug, Default)]
+pub struct Way<const D: usize> {
+    /// True once they have chosen where they go; until then they stand where the step before led.
+    pub off: bool,
+    /// Time at which the step began.
+    pub since: f64,
+    /// Where they were then.
+    pub base: Arc<Vec<Vector<D>>>,
+    /// Their straight course in it.
+    pub course: Arc<Vec<Vector<D>>>,
+    /// Their course in the step before.
+    pub before: Arc<Vec<Vector<D>>>,
+    /// Velocities of all particles when the step began.
+    pub velocity: Arc<Vec<Vector<D>>>,
 }
 
 /// Where particle number `i`, at `x` before any motion, is at one time.

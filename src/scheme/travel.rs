@@ -21,24 +21,21 @@
 //!
 //! *Re-clouding.* The lists of neighbours serve until two particles that see one another have moved apart or together by a
 //! quarter of their spacing, or a row of the cloud gets sick. Then the cloud is built anew where the particles are
-//! ([`crate::cloud::travel`]). Particles that stay keep their state; one that is inserted gets it by a least-squares fit of
-//! second degree through those around it, of the conserved quantities, held within the values it is fitted to. Linear fields are
-//! transferred exactly. A particle that is inserted takes its volume from those around it in the proportions of its fit, one
-//! that is removed leaves its volume to them: what is lost is V (fit − U) of each removed particle, which is added up.
+//! ([`crate::cloud::travel`]), and `transfer` takes the state over.
 use std::sync::Arc;
 
 use super::boundary::WallFits;
 use super::boundary::WallMotion;
 use super::fluid::{Fluid, Work};
-use super::shape::{Carriage, Frame, Shape, rotation_rate};
+use super::shape::{Carriage, Frame, Shape, Way, rotation_rate};
+use super::transfer::{Transfer, Turnover};
 use crate::cloud::repair::WORST_CONDITION;
-use crate::cloud::travel::{Habitat, NEW, Renewal};
+use crate::cloud::travel::Habitat;
 use crate::cloud::{Cloud, CloudError, Operators};
 use crate::math::Vector;
-use crate::math::least_squares::Fit;
-use crate::math::sweep::{first, maximum, sweep, sweep_each, sweep_parts, sweep_slots};
+use crate::math::sweep::{first, maximum, sweep, sweep_each, sweep_parts};
 use crate::motion::{Law, RigidPose};
-use crate::physics::{Conserved, Gas, Primitive};
+use crate::physics::{Gas, Primitive};
 use crate::system::{Moment, System};
 
 /// Strength A of the shift.
@@ -53,18 +50,10 @@ const WALL_SHARE: f64 = 0.5;
 const COMPRESSED: f64 = 0.1;
 /// Neighbours of neighbours, that many times, that are near a shock as well.
 const HOPS: usize = 3;
-/// Greatest distance, in spacings, that a particle goes in a step.
+/// Part of the distance between two particles by which they may move relative to one another in a step.
 const REACH: f64 = 0.5;
 /// Distance, in mean spacings, by which neighbours may move relative to one another before lists are made anew.
 const SLACK: f64 = 0.25;
-/// Sum of absolute weights above which a fit of a state is replaced by one of lower degree.
-const LARGEST_AMPLIFICATION: f64 = 3.0;
-/// Rows that a fit of second degree must have beyond its coefficients.
-const SPARE_ROWS: usize = 2;
-/// Part of the range of the values a state is fitted to by which it may lie outside of it: beside a smooth extremum, a
-/// parabola passes the nearest values by an eighth of the range over three spacings.
-const MARGIN: f64 = 0.3;
-
 /// How particles travel with the fluid.
 #[derive(Clone)]
 pub struct Travel<const D: usize> {
@@ -72,31 +61,23 @@ pub struct Travel<const D: usize> {
     pub habitat: Arc<Habitat<D>>,
     /// Motion of each body.
     pub laws: Vec<Law<D>>,
-    /// Time at which this system takes over.
-    pub now: f64,
-    /// Where fluid and interface particles are then.
-    pub places: Arc<Vec<Vector<D>>>,
-    /// Their velocities in the step before; empty at the start.
-    pub ways: Arc<Vec<Vector<D>>>,
+    /// Where particles are when this system takes over.
+    pub stand: Arc<Stand<D>>,
     /// Time at which the cloud was built.
     pub since: f64,
 }
 
-/// What re-clouding has done so far.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Turnover {
-    /// Times the cloud was built anew.
-    pub renewals: u32,
-    /// Particles inserted.
-    pub inserted: u64,
-    /// Particles removed.
-    pub removed: u64,
-    /// What that took from the totals of the conserved quantities.
-    pub lost: Vec<f64>,
-    /// The same without regard to sign.
-    pub exchanged: Vec<f64>,
-    /// Largest number of rows of first order in a cloud.
-    pub first_order: u32,
+/// Where particles that travel are, and how they came there.
+#[derive(Clone, Debug, Default)]
+pub struct Stand<const D: usize> {
+    /// Time.
+    pub now: f64,
+    /// Places of fluid and interface particles.
+    pub places: Vec<Vector<D>>,
+    /// Their velocities, by the formula that serves the state; empty at the start.
+    pub velocity: Vec<Vector<D>>,
+    /// The straight course of fluid particles in the step before; empty at the start.
+    pub course: Vec<Vector<D>>,
 }
 
 /// A fluid on its renewed cloud, with its state.
@@ -105,6 +86,8 @@ pub struct Renewed<const D: usize> {
     pub fluid: Fluid<D>,
     /// State.
     pub u: Vec<f64>,
+    /// States one and two steps ago, as far as they were known.
+    pub past: [Vec<f64>; 2],
 }
 
 impl<const D: usize> Travel<D> {
@@ -116,38 +99,51 @@ impl<const D: usize> Travel<D> {
     /// Brings `frame` to a moment. Fluid particles go from where the step began with the velocities they then chose.
     pub(super) fn place(&self, origin: &Arc<Shape<D>>, moment: &Moment<'_>, frame: &mut Frame<D>) {
         let cloud = &origin.cloud;
-        let n = cloud.n_fluid;
-        let fresh = frame.base.len() != n;
+        let (n, stand) = (cloud.n_fluid, &self.stand);
+        let fresh = frame.way.base.len() != n;
         let velocity = Arc::make_mut(&mut frame.velocity);
         velocity.resize(cloud.len(), Vector::ZERO);
         if fresh {
             // to the bit what the system before, or a checkpoint, left
-            frame.base = Arc::new(self.places[..n].to_vec());
-            frame.time = self.now;
-            velocity[..self.ways.len()].copy_from_slice(&self.ways);
+            let (base, course) = (Arc::new(stand.places[..n].to_vec()), Arc::new(stand.course.clone()));
+            frame.way = Way { since: stand.now, base, course, ..Way::default() };
+            frame.time = stand.now;
         }
-        let shape = Arc::make_mut(&mut frame.shape);
+        let way = &mut frame.way;
         let passed = match moment {
-            Moment::Within { step, fraction, .. } if !fresh => fraction * step,
+            Moment::Within { step, fraction, .. } if way.off => fraction * step,
+            Moment::By { time, .. } if way.off => time - way.since,
             _ => 0.0,
         };
-        let (base, w) = (&frame.base, &*velocity);
+        let (off, back) = (way.off, way.off && passed == 0.0 && matches!(moment, Moment::By { .. }));
+        match moment {
+            _ if !off => velocity[..stand.velocity.len()].copy_from_slice(&stand.velocity),
+            Moment::By { rate, .. } if !back => differentiate(way, rate, &mut velocity[..n]),
+            _ => {}
+        }
+        let shape = Arc::make_mut(&mut frame.shape);
+        let (base, course) = (&frame.way.base, &frame.way.course);
+        let ahead = |i: usize| if passed > 0.0 { base[i] + course[i] * passed } else { base[i] };
         let fixed = self.laws.iter().all(Law::is_fixed);
-        let away = maximum(n, |i| (base[i] + w[i] * passed - shape.cloud.x[i]).max_abs());
+        let away = maximum(n, |i| (ahead(i) - shape.cloud.x[i]).max_abs());
+        sweep(&mut shape.cloud.x[..n], ahead);
+        match off {
+            true => self.place_walls(moment, &mut shape.cloud, velocity),
+            false => shape.cloud.x[n..stand.places.len()].copy_from_slice(&stand.places[n..]),
+        }
+        if back {
+            // as if the step had never begun
+            *velocity = (*frame.way.velocity).clone();
+            (frame.way.off, frame.way.course) = (false, Arc::clone(&frame.way.before));
+        }
+        show_images(cloud, velocity);
         if fixed && away == 0.0 && frame.walls.len() == cloud.interface.len() {
             return;
-        }
-        sweep(&mut shape.cloud.x[..n], |i| base[i] + w[i] * passed);
-        match fresh {
-            true => shape.cloud.x[n..self.places.len()].copy_from_slice(&self.places[n..]),
-            false => self.place_walls(moment, &mut shape.cloud, velocity),
         }
         let first = cloud.n_real();
         let image = |k: usize| (&cloud.transforms[cloud.images[k].transform as usize], cloud.images[k].source as usize);
         let (x, x_images) = shape.cloud.x.split_at_mut(first);
         sweep(x_images, |k| image(k).0.point(&x[image(k).1]));
-        let (w, w_images) = velocity.split_at_mut(first);
-        sweep(w_images, |k| image(k).0.direction(&w[image(k).1]));
         self.turn_walls(frame.time, frame);
         let shape = Arc::make_mut(&mut frame.shape);
         shape.operators.refit(&shape.cloud);
@@ -165,10 +161,15 @@ impl<const D: usize> Travel<D> {
             Moment::At { time } | Moment::By { time, .. } => (*time, *time, 1.0, 0.0),
         };
         let (from, to) = (self.poses(from), self.poses(to));
+        let terms: Vec<(f64, Vec<RigidPose<D>>)> = match moment {
+            Moment::By { rate, .. } => rate.iter().map(|(c, t)| (*c, self.poses(*t))).collect(),
+            _ => vec![(1.0 / step, to), (-1.0 / step, from.clone())],
+        };
         for (k, (x, wall)) in before.iter().zip(interface).enumerate() {
             let (i, body) = (cloud.n_fluid + k, usize::from(wall.body));
-            let Some((from, to)) = from.get(body).zip(to.get(body)) else { continue };
-            velocity[i] = (to.point(x) - from.point(x)) * (1.0 / step);
+            let Some(from) = from.get(body) else { continue };
+            let place = |(c, poses): &(f64, Vec<RigidPose<D>>)| poses[body].point(x) * *c;
+            velocity[i] = terms.iter().map(place).fold(Vector::ZERO, |s, v| s + v);
             cloud.x[i] = from.point(x) + velocity[i] * (fraction * step);
         }
     }
@@ -204,24 +205,29 @@ impl<const D: usize> Fluid<D> {
             Carriage::Travel(travel) => travel.habitat.radius(),
             _ => return f64::INFINITY,
         };
-        frame.base = Arc::new(cloud.x[..n].to_vec());
-        let known = frame.moves();
-        let velocity = Arc::make_mut(&mut frame.velocity);
-        velocity.resize(cloud.len(), Vector::ZERO);
         let state = &work.state;
         let around = around(&frame.shape, state, radius);
         let near = shocked(cloud, &self.gas, (state, &around));
-        sweep_slots(&mut velocity[..n], |i, w| {
-            if known && near.get(i).is_some_and(|near| *near) {
-                return;
+        let before = Arc::clone(&frame.way.course);
+        let mut course = vec![Vector::ZERO; n];
+        sweep(&mut course, |i| {
+            if let Some(before) = before.get(i).filter(|_| near.get(i).is_some_and(|near| *near)) {
+                return *before;
             }
             let c = self.gas.sound_speed(&state[i]);
             let shift = around[i].shift * STRENGTH;
             let size = shift.norm();
-            *w = state[i].velocity + shift * (c * if size > FASTEST { FASTEST / size } else { 1.0 });
+            state[i].velocity + shift * (c * if size > FASTEST { FASTEST / size } else { 1.0 })
         });
-        let fastest = maximum(n, |i| velocity[i].norm() / cloud.spacing[i]);
-        REACH / fastest.max(f64::MIN_POSITIVE)
+        let (base, course) = (Arc::new(cloud.x[..n].to_vec()), Arc::new(course));
+        let velocity = Arc::make_mut(&mut frame.velocity);
+        velocity.resize(cloud.len(), Vector::ZERO);
+        let now = Arc::new(velocity.clone());
+        velocity[..n].copy_from_slice(&course);
+        show_images(cloud, velocity);
+        let reach = reach(&frame.shape, velocity);
+        frame.way = Way { off: true, since: frame.time, base, course, before, velocity: now };
+        reach
     }
 
     /// True when the cloud should be built anew: lists no longer hold what is near, or a row is sick.
@@ -254,7 +260,7 @@ impl<const D: usize> Fluid<D> {
     pub fn renewed(
         &self,
         frame: &Frame<D>,
-        u: &[f64],
+        (u, past): (&[f64], [&[f64]; 2]),
         work: &mut Work<D>,
         turnover: &mut Turnover,
     ) -> Result<Option<Renewed<D>>, CloudError> {
@@ -262,37 +268,40 @@ impl<const D: usize> Fluid<D> {
         self.fill_states(frame, u, work);
         let old = &frame.shape.cloud;
         let renewal = travel.habitat.renew(&travel.poses(frame.time), old)?;
-        let u = Transfer { fluid: self, old, work, renewal: &renewal, before: u }.state(turnover)?;
-        let gas = |i: usize| self.gas.primitive(&Conserved::load(&u[i * (D + 2)..])).velocity;
-        let way = |(i, k): (usize, &u32)| frame.velocity.get(*k as usize).copied().unwrap_or_else(|| gas(i));
+        let transfer = Transfer { fluid: self, old, work, renewal: &renewal, before: u };
+        let state = transfer.state(turnover)?;
+        let lines = transfer.lines();
+        let past = past.map(|p| transfer.past(p, &state, &lines));
         let walls = old.interface_range().map(|w| frame.velocity_of(w));
-        let ways = renewal.from.iter().enumerate().map(way).chain(walls).collect();
+        let velocity = transfer.directions(&frame.velocity, &lines).into_iter().chain(walls).collect();
+        let course = transfer.directions(&frame.way.course, &lines);
         let places = renewal.cloud.x[..renewal.cloud.n_rows()].to_vec();
-        let fluid = self.on(renewal.cloud, frame.time, (frame.time, places, ways));
-        Ok(Some(Renewed { fluid, u }))
+        let stand = Stand { now: frame.time, places, velocity, course };
+        let fluid = self.on(renewal.cloud, frame.time, stand);
+        Ok(Some(Renewed { fluid, u: state, past }))
     }
 
     /// The same equations on a cloud whose lists are those of the fluid particles at `lists` at time `since`, or on this cloud
     /// without them, while fluid and interface particles are at certain places now and went there with certain velocities:
     /// what a checkpoint keeps.
-    pub fn resumed(
-        &self,
-        lists: Option<(&[Vector<D>], f64)>,
-        now: (f64, Vec<Vector<D>>, Vec<Vector<D>>),
-    ) -> Result<Option<Self>, CloudError> {
+    pub fn resumed(&self, lists: Option<(&[Vector<D>], f64)>, stand: Stand<D>) -> Result<Option<Self>, CloudError> {
         let Carriage::Travel(travel) = &self.carriage else { return Ok(None) };
-        let Some((lists, since)) = lists else { return Ok(Some(self.moved(now))) };
+        let Some((lists, since)) = lists else { return Ok(Some(self.moved(stand))) };
         let (cloud, _) = travel.habitat.cloud(&travel.poses(since), lists)?;
-        Ok(Some(self.on(cloud, since, now)))
+        Ok(Some(self.on(cloud, since, stand)))
     }
 
-    /// The frame at the end of a step that led to `time`.
-    pub fn frame_after(&self, time: f64, step: f64, u: &[f64]) -> Frame<D> {
-        let moment = match step > 0.0 {
-            true => Moment::Within { start: time - step, step, fraction: 1.0 },
-            false => Moment::At { time },
-        };
-        self.frame(&moment, u)
+    /// The frame in which this system takes over.
+    pub fn frame_after(&self, u: &[f64]) -> Frame<D> {
+        let (time, rate) = (self.stood(), &[]);
+        self.frame(&Moment::By { time, rate }, u)
+    }
+
+    fn stood(&self) -> f64 {
+        match &self.carriage {
+            Carriage::Travel(travel) => travel.stand.now,
+            _ => 0.0,
+        }
     }
 
     /// Interface particles before any motion.
@@ -322,9 +331,9 @@ impl<const D: usize> Fluid<D> {
         Arc::make_mut(&mut self.shape).cloud.volume[..n].copy_from_slice(&volumes);
     }
 
-    fn on(&self, cloud: Cloud<D>, since: f64, now: (f64, Vec<Vector<D>>, Vec<Vector<D>>)) -> Self {
+    fn on(&self, cloud: Cloud<D>, since: f64, stand: Stand<D>) -> Self {
         let operators = Operators::new(&cloud);
-        let mut other = Self { shape: Arc::new(Shape::new(cloud, operators)), ..self.moved(now) };
+        let mut other = Self { shape: Arc::new(Shape::new(cloud, operators)), ..self.moved(stand) };
         if let Carriage::Travel(travel) = &mut other.carriage {
             travel.since = since;
         }
@@ -332,10 +341,9 @@ impl<const D: usize> Fluid<D> {
     }
 
     /// The same equations on the same cloud, with the particles elsewhere.
-    fn moved(&self, (now, places, ways): (f64, Vec<Vector<D>>, Vec<Vector<D>>)) -> Self {
+    fn moved(&self, stand: Stand<D>) -> Self {
         let Carriage::Travel(travel) = &self.carriage else { return self.copy() };
-        let (places, ways) = (Arc::new(places), Arc::new(ways));
-        Self { carriage: Carriage::Travel(Travel { now, places, ways, ..travel.clone() }), ..self.copy() }
+        Self { carriage: Carriage::Travel(Travel { stand: Arc::new(stand), ..travel.clone() }), ..self.copy() }
     }
 
     fn copy(&self) -> Self {
@@ -349,6 +357,41 @@ impl<const D: usize> Fluid<D> {
             ..*self
         }
     }
+}
+
+/// Velocities of a difference formula for particles that went straight, in this step and in the one before.
+fn differentiate<const D: usize>(way: &Way<D>, rate: &[(f64, f64)], velocity: &mut [Vector<D>]) {
+    let passed = |k: usize| rate[k - 1].1 - rate[k].1;
+    let now = rate[0].0 * passed(1);
+    match rate.get(2) {
+        // c₀ x(t₀) + c₁ x(t₁) + c₂ x(t₂) with Σ c = 0
+        Some((c, _)) => {
+            let then = -c * passed(2);
+            sweep(velocity, |i| way.course[i] * now + way.before[i] * then);
+        }
+        None => sweep(velocity, |i| way.course[i] * now),
+    }
+}
+
+/// Brings images to the velocities of their sources.
+fn show_images<const D: usize>(cloud: &Cloud<D>, velocity: &mut [Vector<D>]) {
+    let (own, images) = velocity.split_at_mut(cloud.n_real());
+    sweep(images, |k| {
+        let image = &cloud.images[k];
+        cloud.transforms[image.transform as usize].direction(&own[image.source as usize])
+    });
+}
+
+/// The time in which no two particles that see one another move relative to one another by more than the part [`REACH`] of
+/// their distance.
+fn reach<const D: usize>(shape: &Shape<D>, velocity: &[Vector<D>]) -> f64 {
+    let (x, op) = (&shape.cloud.x, &shape.operators);
+    let mut fastest = vec![0.0; op.fluid_parts().len()];
+    sweep_each(&mut fastest, |k| {
+        let rate = |i: usize, j: usize| (velocity[i] - velocity[j]).norm() / (x[i] - x[j]).norm();
+        op.edges(k).iter().map(|e| rate(e.i(), e.j())).fold(0.0, f64::max)
+    });
+    REACH / fastest.iter().fold(f64::MIN_POSITIVE, |m: f64, r| m.max(*r))
 }
 
 /// Sums over the neighbours of a particle.
@@ -439,158 +482,4 @@ fn shocked<const D: usize>(cloud: &Cloud<D>, gas: &Gas, (state, around): (&[Prim
         sweep(&mut near, |i| before[i] || cloud.neighbours.of(i).iter().any(beside));
     }
     near
-}
-
-/// The state on a renewed cloud.
-struct Transfer<'a, const D: usize> {
-    fluid: &'a Fluid<D>,
-    old: &'a Cloud<D>,
-    work: &'a Work<D>,
-    renewal: &'a Renewal<D>,
-    before: &'a [f64],
-}
-
-/// A place and a state nearby.
-type Sample<const D: usize> = (Vector<D>, Conserved<D>);
-
-impl<const D: usize> Transfer<'_, D> {
-    fn state(&self, turnover: &mut Turnover) -> Result<Vec<f64>, CloudError> {
-        let cloud = &self.renewal.cloud;
-        let n = D + 2;
-        let mut u = vec![0.0; n * cloud.n_fluid];
-        let from = &self.renewal.from;
-        crate::math::sweep::sweep_rows(&mut u, n, |i, row| match from[i] {
-            NEW => row.fill(f64::NAN),
-            k => row.copy_from_slice(&self.before[k as usize * n..(k as usize + 1) * n]),
-        });
-        let mut inserted = 0;
-        for i in (0..cloud.n_fluid).filter(|i| from[*i] == NEW) {
-            let value = self.fitted(&self.around_new(i), cloud.spacing[i]).ok_or_else(|| {
-                let problem = format!("nothing is near particle {i} at {:?}, which fills a hole", cloud.x[i].0);
-                CloudError::Quality(vec![problem])
-            })?;
-            value.store(&mut u[i * n..(i + 1) * n]);
-            inserted += 1;
-        }
-        self.count(inserted, turnover);
-        Ok(u)
-    }
-
-    /// Adds to the account of what was done.
-    fn count(&self, inserted: u64, turnover: &mut Turnover) {
-        let n = D + 2;
-        turnover.renewals += 1;
-        turnover.inserted += inserted;
-        turnover.removed += self.renewal.removed.len() as u64;
-        turnover.lost.resize(n, 0.0);
-        turnover.exchanged.resize(n, 0.0);
-        turnover.first_order = turnover.first_order.max(self.renewal.cloud.first_order.len() as u32);
-        for i in &self.renewal.removed {
-            let i = *i as usize;
-            let Some(fit) = self.fitted(&self.around_removed(i), self.old.spacing[i]) else { continue };
-            let volume = self.old.spacing[i].powi(D as i32);
-            let mut row = vec![0.0; n];
-            fit.plus(-1.0, &Conserved::load(&self.before[i * n..])).store(&mut row);
-            for (c, r) in row.iter().enumerate() {
-                turnover.lost[c] += volume * r;
-                turnover.exchanged[c] += (volume * r).abs();
-            }
-        }
-    }
-
-    /// Neighbours of a new particle, and theirs, that were there before.
-    fn around_new(&self, i: usize) -> Vec<Sample<D>> {
-        let cloud = &self.renewal.cloud;
-        let own = cloud.neighbours.of(i);
-        let rows = own.iter().filter(|j| (**j as usize) < cloud.n_rows());
-        let mut list: Vec<u32> = rows.flat_map(|j| cloud.neighbours.of(*j as usize)).chain(own).copied().collect();
-        list.sort_unstable();
-        list.dedup();
-        list.into_iter().filter_map(|j| Some((cloud.x[j as usize] - cloud.x[i], self.known(j as usize)?))).collect()
-    }
-
-    /// State of particle `j` of the new cloud, if it was there before.
-    fn known(&self, j: usize) -> Option<Conserved<D>> {
-        let (cloud, old) = (&self.renewal.cloud, self.old);
-        let source = cloud.source(j).index;
-        let before = match self.renewal.from.get(source) {
-            Some(&NEW) => return None,
-            Some(k) => *k as usize,
-            None => source - cloud.n_fluid + old.n_fluid,
-        };
-        let mut q = self.work.state[before];
-        if let Some(image) = j.checked_sub(cloud.n_real()).map(|k| cloud.images[k]) {
-            q.velocity = cloud.transforms[image.transform as usize].direction(&q.velocity);
-        }
-        Some(self.fluid.gas.conserved(&q))
-    }
-
-    /// Neighbours of a removed particle that stay.
-    fn around_removed(&self, i: usize) -> Vec<Sample<D>> {
-        let stays =
-            |j: &&u32| self.renewal.removed.binary_search(&(self.old.source(**j as usize).index as u32)).is_err();
-        let row = self.old.neighbours.of(i).iter().filter(stays);
-        row.map(|j| {
-            let j = *j as usize;
-            (self.old.x[j] - self.old.x[i], self.fluid.gas.conserved(&self.work.state[j]))
-        })
-        .collect()
-    }
-
-    /// Value at the middle of the samples; `None` without any.
-    fn fitted(&self, samples: &[Sample<D>], h: f64) -> Option<Conserved<D>> {
-        let quadratic = 1 + D + D * (D + 1) / 2;
-        let mut weights = Vec::new();
-        for (degree, least) in [(quadratic, quadratic + SPARE_ROWS), (1 + D, D + 2), (1, 1)] {
-            if samples.len() < least {
-                continue;
-            }
-            weigh(samples, h, degree, &mut weights);
-            let sum: f64 = weights.iter().sum();
-            let size: f64 = weights.iter().map(|w| w.abs()).sum();
-            let sound = (sum - 1.0).abs() < 1e-9 && size <= LARGEST_AMPLIFICATION;
-            if !sound && degree > 1 {
-                continue;
-            }
-            // differences from the nearest sample keep a uniform state to the last bit
-            let nearest = samples.iter().min_by(|a, b| a.0.norm_squared().total_cmp(&b.0.norm_squared()))?.1;
-            let fit = samples.iter().zip(&weights).fold(nearest, |s, ((_, u), w)| s.plus(*w, &u.plus(-1.0, &nearest)));
-            if degree == 1 || self.is_within(&fit, samples) {
-                return Some(fit);
-            }
-        }
-        None
-    }
-
-    /// True when density and pressure lie within those of the samples, or nearly so.
-    fn is_within(&self, u: &Conserved<D>, samples: &[Sample<D>]) -> bool {
-        let gas = &self.fluid.gas;
-        let of = |u: &Conserved<D>| {
-            let q = gas.primitive(u);
-            [q.density, q.pressure]
-        };
-        let all: Vec<[f64; 2]> = samples.iter().map(|s| of(&s.1)).collect();
-        let found = of(u);
-        (0..2).all(|k| {
-            let (low, high) = all.iter().fold((f64::INFINITY, 0.0f64), |(l, h), v| (l.min(v[k]), h.max(v[k])));
-            let slack = MARGIN * (high - low);
-            // round-off of a uniform state
-            let slack = slack.max(1e-12 * high);
-            found[k] > 0.0 && low - slack <= found[k] && found[k] <= high + slack
-        })
-    }
-}
-
-/// Weights of the value at the middle of the samples, by a fit with `degree` coefficients.
-fn weigh<const D: usize>(samples: &[Sample<D>], h: f64, degree: usize, weights: &mut Vec<f64>) {
-    let mut fit = Fit::default();
-    fit.reset(degree);
-    for (d, _) in samples {
-        let x = *d * (1.0 / h);
-        let mut basis = vec![1.0];
-        basis.extend(x.0);
-        basis.extend((0..D).flat_map(|r| (r..D).map(move |c| (r, c))).map(|(r, c)| x[r] * x[c]));
-        fit.push(&basis[..degree], 1.0 / x.norm_squared().max(f64::MIN_POSITIVE));
-    }
-    fit.row_of_inverse(0, weights);
 }

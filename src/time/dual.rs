@@ -19,6 +19,8 @@ const SAFETY: f64 = 0.9;
 const HOPELESS: f64 = 1.0;
 /// Bend of the last three states over their slope above which the next one is not guessed from a parabola: after a jerk.
 const STRAIGHT: f64 = 0.5;
+/// Part of a step by which a time may fall short of the end of one.
+const NEARLY: f64 = 1e-6;
 /// Steps after which linear systems that needed the levels are tried without them again.
 const TRY_AGAIN: u32 = 16;
 /// Steps that one preconditioner serves; the states from which it can be made again are kept for as many.
@@ -48,11 +50,13 @@ pub struct Dual<'a, S: System> {
     past: Past,
     start: Vec<f64>,
     inner: u32,
+    /// Longest step of particles that follow the state; infinite where none do.
+    reach: f64,
 }
 
 impl<'a, S: System> Dual<'a, S> {
     /// Prepares a march from the state `u`.
-    pub fn new(system: &'a S, control: Control, plan: Plan, u: Vec<f64>, past: Past) -> Self {
+    pub fn new(system: &'a S, control: Control, plan: Plan, (past, u): (Past, Vec<f64>)) -> Self {
         let start = u.clone();
         // the term of time makes the matrix easy: one sweep each way does
         let newton = control.method == Method::NewtonKrylov;
@@ -60,7 +64,7 @@ impl<'a, S: System> Dual<'a, S> {
         let control = Control { cycle: Cycle { sweeps, ..control.cycle }, ..control };
         let relax = Relax::new(system, control, u, &start, None);
         let past = Past { next: if past.next > 0.0 { past.next } else { plan.step }, ..past };
-        let mut all = Self { relax, plan, past, start, inner: 0 };
+        let mut all = Self { relax, plan, past, start, inner: 0, reach: f64::INFINITY };
         let (time, last) = (all.past.time, all.past.last);
         if last > 0.0 {
             let formula = all.formula_at(time, last, last);
@@ -104,6 +108,7 @@ impl<S: System> March<S> for Dual<'_, S> {
 
     fn advance(&mut self) -> Result<Step, TimeError> {
         self.start.copy_from_slice(&self.relax.u);
+        self.reach = self.relax.set_off();
         let mut dt = self.next_length();
         loop {
             let error = self.step(dt)?;
@@ -149,7 +154,8 @@ impl<S: System> Dual<'_, S> {
 
     /// Makes the preconditioner of the step of length `dt` and those after it from where this one starts.
     fn prepare(&mut self, moment: &Moment<'_>, rate: f64, dt: f64) {
-        let known = self.is_even(dt) && !self.past.older.is_empty();
+        // where particles were some steps ago, a run that is resumed no longer knows
+        let known = self.is_even(dt) && !self.past.older.is_empty() && self.reach == f64::INFINITY;
         if !known {
             self.past.served = 0;
             self.relax.drop_preconditioner();
@@ -185,10 +191,22 @@ impl<S: System> Dual<'_, S> {
     fn next_length(&self) -> f64 {
         let left = self.plan.until - self.past.time;
         if self.plan.adaptive.is_none() {
-            return self.plan.step.min(left);
+            return self.shortened(self.plan.step.min(left));
         }
-        let dt = self.past.next.min(left);
+        let dt = self.past.next.min(left).min(self.reach);
         if dt < left && 2.0 * dt > left { 0.5 * left } else { dt }
+    }
+
+    /// The step `dt`, or where particles cannot go as far an equal part of what is left to the end of it.
+    fn shortened(&self, dt: f64) -> f64 {
+        if self.reach == f64::INFINITY {
+            return dt;
+        }
+        let (time, step) = (self.past.time, self.plan.step);
+        let ahead = ((time / step + NEARLY).floor() + 1.0) * step;
+        let dt = dt.min(ahead - time);
+        let longest = if self.past.last > 0.0 { self.reach.min(GROWTH * self.past.last) } else { self.reach };
+        dt / (dt / longest - NEARLY).ceil().max(1.0)
     }
 
     /// Coefficients and times of ∂/∂t at `end`, after steps of length `last` and `dt`.
@@ -222,7 +240,7 @@ impl<S: System> Dual<'_, S> {
         let guessed = if smooth { 10f64.powf(1.0 - orders) * self.relax.drop() } else { 0.0 };
         self.relax.goal = 10f64.powf(-orders).max(guessed);
         if let Some(fault) = self.relax.misplaced() {
-            self.relax.u.copy_from_slice(&self.start);
+            self.go_back();
             return Err(TimeError::Fault { fault, iteration: self.past.iteration + 1, hint: CROWDED });
         }
         self.solve()?;
@@ -268,6 +286,15 @@ impl<S: System> Dual<'_, S> {
         false
     }
 
+    /// Puts state and particles where the step began.
+    fn go_back(&mut self) {
+        self.relax.u.copy_from_slice(&self.start);
+        if self.reach < f64::INFINITY {
+            let (time, last) = (self.past.time, self.past.last.max(f64::MIN_POSITIVE));
+            self.relax.look(&Moment::By { time, rate: &self.formula_at(time, last, last) });
+        }
+    }
+
     fn solve(&mut self) -> Result<(), TimeError> {
         self.inner = 0;
         while self.relax.drop() > self.relax.goal && !self.relax.settled() {
@@ -283,7 +310,7 @@ impl<S: System> Dual<'_, S> {
                     break;
                 }
                 Err(e) => {
-                    self.relax.u.copy_from_slice(&self.start);
+                    self.go_back();
                     return Err(e);
                 }
             }

@@ -218,6 +218,11 @@ impl<'a, S: System> Relax<'a, S> {
         self.system.follow(&self.u, &mut self.work, &mut self.frame);
     }
 
+    /// Lets particles that follow the state choose where they go; see [`System::set_off`].
+    pub fn set_off(&mut self) -> f64 {
+        self.system.set_off(&self.u, &mut self.work, &mut self.frame)
+    }
+
     /// The first particle that the frame puts where the cloud no longer serves.
     pub fn misplaced(&self) -> Option<crate::system::Fault> {
         self.system.misplaced(&self.frame)

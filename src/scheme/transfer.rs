@@ -1,0 +1,276 @@
+//! The state of particles that travel, on a cloud built anew where they are.
+//!
+//! Particles that stay keep their state. One that is inserted gets it by a least-squares fit of second degree through those
+//! around it, of the conserved quantities, held within the values it is fitted to. Linear fields are transferred exactly. A
+//! particle that is inserted takes its volume from those around it in the proportions of its fit, one that is removed leaves
+//! its volume to them: what is lost is V (fit − U) of each removed particle, which is added up.
+//!
+//! *Where it came from.* The course of a new particle is a fit of first degree of the courses of those around it, and its
+//! state some steps ago is its present one less the same fit of their changes: U(t − Δt) at x − w Δt, so that a linear field
+//! at rest stays one for a difference formula of any number of times.
+use super::fluid::{Fluid, Work};
+use crate::cloud::travel::{NEW, Renewal};
+use crate::cloud::{Cloud, CloudError};
+use crate::math::Vector;
+use crate::math::least_squares::Fit;
+use crate::physics::Conserved;
+
+/// Sum of absolute weights above which a fit of a state is replaced by one of lower degree.
+const LARGEST_AMPLIFICATION: f64 = 3.0;
+/// Rows that a fit of second degree must have beyond its coefficients.
+const SPARE_ROWS: usize = 2;
+/// Part of the range of the values a state is fitted to by which it may lie outside of it: beside a smooth extremum, a
+/// parabola passes the nearest values by an eighth of the range over three spacings.
+const MARGIN: f64 = 0.3;
+
+/// What re-clouding has done so far.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Turnover {
+    /// Times the cloud was built anew.
+    pub renewals: u32,
+    /// Particles inserted.
+    pub inserted: u64,
+    /// Particles removed.
+    pub removed: u64,
+    /// What that took from the totals of the conserved quantities.
+    pub lost: Vec<f64>,
+    /// The same without regard to sign.
+    pub exchanged: Vec<f64>,
+    /// Largest number of rows of first order in a cloud.
+    pub first_order: u32,
+}
+
+/// The state on a renewed cloud.
+pub(super) struct Transfer<'a, const D: usize> {
+    pub(super) fluid: &'a Fluid<D>,
+    pub(super) old: &'a Cloud<D>,
+    pub(super) work: &'a Work<D>,
+    pub(super) renewal: &'a Renewal<D>,
+    pub(super) before: &'a [f64],
+}
+
+/// What a particle takes over from one that was there before: its index, the image it is seen as, its weight.
+pub(super) struct Share {
+    from: usize,
+    transform: Option<u8>,
+    weight: f64,
+}
+
+/// A place and a state nearby.
+type Sample<const D: usize> = (Vector<D>, Conserved<D>);
+
+impl<const D: usize> Transfer<'_, D> {
+    pub(super) fn state(&self, turnover: &mut Turnover) -> Result<Vec<f64>, CloudError> {
+        let cloud = &self.renewal.cloud;
+        let n = D + 2;
+        let mut u = vec![0.0; n * cloud.n_fluid];
+        let from = &self.renewal.from;
+        crate::math::sweep::sweep_rows(&mut u, n, |i, row| match from[i] {
+            NEW => row.fill(f64::NAN),
+            k => row.copy_from_slice(&self.before[k as usize * n..(k as usize + 1) * n]),
+        });
+        let mut inserted = 0;
+        for i in (0..cloud.n_fluid).filter(|i| from[*i] == NEW) {
+            let value = self.fitted(&self.around_new(i), cloud.spacing[i]).ok_or_else(|| {
+                let problem = format!("nothing is near particle {i} at {:?}, which fills a hole", cloud.x[i].0);
+                CloudError::Quality(vec![problem])
+            })?;
+            value.store(&mut u[i * n..(i + 1) * n]);
+            inserted += 1;
+        }
+        self.count(inserted, turnover);
+        Ok(u)
+    }
+
+    /// For each new particle, in order, what it takes of where others came from: a fit of first degree.
+    pub(super) fn lines(&self) -> Vec<Vec<Share>> {
+        let cloud = &self.renewal.cloud;
+        let share = |j: usize| {
+            let transform = j.checked_sub(cloud.n_real()).map(|k| cloud.images[k].transform);
+            let from = *self.renewal.from.get(cloud.source(j).index).filter(|k| **k != NEW)? as usize;
+            Some((cloud.x[j], Share { from, transform, weight: 0.0 }))
+        };
+        let line = |i: usize| {
+            let (x, mut shares): (Vec<Vector<D>>, Vec<Share>) =
+                self.near(i).into_iter().filter_map(|j| share(j as usize)).map(|(x, s)| (x - cloud.x[i], s)).unzip();
+            let mut weights = Vec::new();
+            for (degree, least) in [(1 + D, D + 2), (1, 1)] {
+                if x.len() >= least && weigh(&x, cloud.spacing[i], degree, &mut weights) {
+                    shares.iter_mut().zip(&weights).for_each(|(s, w)| s.weight = *w);
+                    break;
+                }
+            }
+            shares
+        };
+        (0..cloud.n_fluid).filter(|i| self.renewal.from[*i] == NEW).map(line).collect()
+    }
+
+    /// Vectors of the fluid particles; none of none.
+    pub(super) fn directions(&self, before: &[Vector<D>], lines: &[Vec<Share>]) -> Vec<Vector<D>> {
+        let transforms = &self.renewal.cloud.transforms;
+        let seen =
+            |s: &Share| s.transform.map_or(before[s.from], |t| transforms[t as usize].direction(&before[s.from]));
+        let fitted = |line: &Vec<Share>| {
+            let first = line.first().map_or(Vector::ZERO, seen);
+            line.iter().fold(first, |v, s| v + (seen(s) - first) * s.weight)
+        };
+        let mut lines = lines.iter();
+        let mut of = |k: &u32| match *k {
+            NEW => lines.next().map_or(Vector::ZERO, fitted),
+            k => before[k as usize],
+        };
+        if before.is_empty() { Vec::new() } else { self.renewal.from.iter().map(&mut of).collect() }
+    }
+
+    /// A state of steps ago, known as `then` on the cloud before, on the renewed one, where the state now is `now`: new
+    /// particles changed as those around them did. None of none.
+    pub(super) fn past(&self, then: &[f64], now: &[f64], lines: &[Vec<Share>]) -> Vec<f64> {
+        let n = D + 2;
+        let load = |u: &[f64], k: usize| Conserved::<D>::load(&u[k * n..]);
+        let change = |s: &Share| {
+            let mut change = load(self.before, s.from).plus(-1.0, &load(then, s.from));
+            if let Some(t) = s.transform {
+                change.momentum = self.renewal.cloud.transforms[t as usize].direction(&change.momentum);
+            }
+            change
+        };
+        let mut lines = lines.iter();
+        let mut past = if then.is_empty() { Vec::new() } else { now.to_vec() };
+        for (i, (k, row)) in self.renewal.from.iter().zip(past.chunks_exact_mut(n)).enumerate() {
+            match *k {
+                NEW => {
+                    let line = lines.next().into_iter().flatten();
+                    line.fold(load(now, i), |u, s| u.plus(-s.weight, &change(s))).store(row);
+                }
+                k => row.copy_from_slice(&then[k as usize * n..(k as usize + 1) * n]),
+            }
+        }
+        past
+    }
+
+    /// Adds to the account of what was done.
+    fn count(&self, inserted: u64, turnover: &mut Turnover) {
+        let n = D + 2;
+        turnover.renewals += 1;
+        turnover.inserted += inserted;
+        turnover.removed += self.renewal.removed.len() as u64;
+        turnover.lost.resize(n, 0.0);
+        turnover.exchanged.resize(n, 0.0);
+        turnover.first_order = turnover.first_order.max(self.renewal.cloud.first_order.len() as u32);
+        for i in &self.renewal.removed {
+            let i = *i as usize;
+            let Some(fit) = self.fitted(&self.around_removed(i), self.old.spacing[i]) else { continue };
+            let volume = self.old.spacing[i].powi(D as i32);
+            let mut row = vec![0.0; n];
+            fit.plus(-1.0, &Conserved::load(&self.before[i * n..])).store(&mut row);
+            for (c, r) in row.iter().enumerate() {
+                turnover.lost[c] += volume * r;
+                turnover.exchanged[c] += (volume * r).abs();
+            }
+        }
+    }
+
+    /// Neighbours of a new particle, and theirs, that were there before.
+    fn around_new(&self, i: usize) -> Vec<Sample<D>> {
+        let cloud = &self.renewal.cloud;
+        let sample = |j: u32| Some((cloud.x[j as usize] - cloud.x[i], self.known(j as usize)?));
+        self.near(i).into_iter().filter_map(sample).collect()
+    }
+
+    /// Neighbours of particle `i` of the new cloud, and theirs.
+    fn near(&self, i: usize) -> Vec<u32> {
+        let cloud = &self.renewal.cloud;
+        let own = cloud.neighbours.of(i);
+        let rows = own.iter().filter(|j| (**j as usize) < cloud.n_rows());
+        let mut list: Vec<u32> = rows.flat_map(|j| cloud.neighbours.of(*j as usize)).chain(own).copied().collect();
+        list.sort_unstable();
+        list.dedup();
+        list
+    }
+
+    /// State of particle `j` of the new cloud, if it was there before.
+    fn known(&self, j: usize) -> Option<Conserved<D>> {
+        let (cloud, old) = (&self.renewal.cloud, self.old);
+        let source = cloud.source(j).index;
+        let before = match self.renewal.from.get(source) {
+            Some(&NEW) => return None,
+            Some(k) => *k as usize,
+            None => source - cloud.n_fluid + old.n_fluid,
+        };
+        let mut q = self.work.state[before];
+        if let Some(image) = j.checked_sub(cloud.n_real()).map(|k| cloud.images[k]) {
+            q.velocity = cloud.transforms[image.transform as usize].direction(&q.velocity);
+        }
+        Some(self.fluid.gas.conserved(&q))
+    }
+
+    /// Neighbours of a removed particle that stay.
+    fn around_removed(&self, i: usize) -> Vec<Sample<D>> {
+        let stays =
+            |j: &&u32| self.renewal.removed.binary_search(&(self.old.source(**j as usize).index as u32)).is_err();
+        let row = self.old.neighbours.of(i).iter().filter(stays);
+        row.map(|j| {
+            let j = *j as usize;
+            (self.old.x[j] - self.old.x[i], self.fluid.gas.conserved(&self.work.state[j]))
+        })
+        .collect()
+    }
+
+    /// Value at the middle of the samples; `None` without any.
+    fn fitted(&self, samples: &[Sample<D>], h: f64) -> Option<Conserved<D>> {
+        let quadratic = 1 + D + D * (D + 1) / 2;
+        let x: Vec<Vector<D>> = samples.iter().map(|s| s.0).collect();
+        let mut weights = Vec::new();
+        for (degree, least) in [(quadratic, quadratic + SPARE_ROWS), (1 + D, D + 2), (1, 1)] {
+            if samples.len() < least {
+                continue;
+            }
+            if !weigh(&x, h, degree, &mut weights) {
+                continue;
+            }
+            // differences from the nearest sample keep a uniform state to the last bit
+            let nearest = samples.iter().min_by(|a, b| a.0.norm_squared().total_cmp(&b.0.norm_squared()))?.1;
+            let fit = samples.iter().zip(&weights).fold(nearest, |s, ((_, u), w)| s.plus(*w, &u.plus(-1.0, &nearest)));
+            if degree == 1 || self.is_within(&fit, samples) {
+                return Some(fit);
+            }
+        }
+        None
+    }
+
+    /// True when density and pressure lie within those of the samples, or nearly so.
+    fn is_within(&self, u: &Conserved<D>, samples: &[Sample<D>]) -> bool {
+        let gas = &self.fluid.gas;
+        let of = |u: &Conserved<D>| {
+            let q = gas.primitive(u);
+            [q.density, q.pressure]
+        };
+        let all: Vec<[f64; 2]> = samples.iter().map(|s| of(&s.1)).collect();
+        let found = of(u);
+        (0..2).all(|k| {
+            let (low, high) = all.iter().fold((f64::INFINITY, 0.0f64), |(l, h), v| (l.min(v[k]), h.max(v[k])));
+            let slack = MARGIN * (high - low);
+            // round-off of a uniform state
+            let slack = slack.max(1e-12 * high);
+            found[k] > 0.0 && low - slack <= found[k] && found[k] <= high + slack
+        })
+    }
+}
+
+/// Weights of the value in the middle of samples at `places` from there, by a fit with `degree` coefficients; false if they
+/// amplify too much, which a mean never does.
+fn weigh<const D: usize>(places: &[Vector<D>], h: f64, degree: usize, weights: &mut Vec<f64>) -> bool {
+    let mut fit = Fit::default();
+    fit.reset(degree);
+    for d in places {
+        let x = *d * (1.0 / h);
+        let mut basis = vec![1.0];
+        basis.extend(x.0);
+        basis.extend((0..D).flat_map(|r| (r..D).map(move |c| (r, c))).map(|(r, c)| x[r] * x[c]));
+        fit.push(&basis[..degree], 1.0 / x.norm_squared().max(f64::MIN_POSITIVE));
+    }
+    fit.row_of_inverse(0, weights);
+    let sum: f64 = weights.iter().sum();
+    let size: f64 = weights.iter().map(|w| w.abs()).sum();
+    degree == 1 || (sum - 1.0).abs() < 1e-9 && size <= LARGEST_AMPLIFICATION
+}
