@@ -72,9 +72,9 @@ pub trait System: Sync {
     fn frame(&self, moment: &Moment<'_>, u: &[f64]) -> Self::Frame;
     /// Brings the particles of a frame to a moment; does nothing when they never move.
     fn place(&self, moment: &Moment<'_>, frame: &mut Self::Frame);
-    /// Lets particles that follow the state choose where they go in the step that begins; the longest step they can take,
-    /// infinite where none follow it.
-    fn set_off(&self, _u: &[f64], _work: &mut Self::Work, _frame: &mut Self::Frame) -> f64 {
+    /// Lets particles that follow the state choose where they go in the step that begins, which is meant to be as long as
+    /// `step`; the longest step they can take, infinite where none follow it.
+    fn set_off(&self, _step: f64, _u: &[f64], _work: &mut Self::Work, _frame: &mut Self::Frame) -> f64 {
         f64::INFINITY
     }
     /// Brings what follows the state (the far field) to the state `u`.

@@ -30,6 +30,7 @@ const EXTRA: [&str; 19] = [
     "harmonic_balance",
     "time",
     "unconverged_steps",
+    "halved_steps",
     "re_clouding",
     "first_harmonics",
     "periodic_change",

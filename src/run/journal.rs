@@ -53,6 +53,8 @@ pub(super) struct Journal<'a> {
     pub(super) linear: u32,
     /// Steps in time that did not reach their goal.
     pub(super) unconverged: u32,
+    /// Times a step in time was halved because its equations could not be solved.
+    pub(super) halved: u32,
     /// Period of the motion.
     pub(super) period: Option<f64>,
     /// Loads and motion of the march so far.
@@ -111,6 +113,7 @@ impl<'a> Journal<'a> {
             instances: Vec::new(),
             forces: Vec::new(),
             unconverged: saved.map_or(0, |s| s.past.unconverged),
+            halved: saved.map_or(0, |s| s.past.halved),
             turnover: saved.and_then(|s| s.roaming.as_ref()).map_or_else(Turnover::default, |r| r.turnover.clone()),
             trace: saved
                 .filter(|s| s.time > 0.0)

@@ -152,6 +152,7 @@ impl<'a, const D: usize> Finished<'a, D> {
             ledger,
             time: journal.time,
             unconverged_steps: journal.unconverged,
+            halved_steps: journal.halved,
             re_clouding: self.re_clouding(journal),
             first_harmonics: journal.period.map_or_else(Vec::new, |p| journal.trace.first_harmonics(p)),
             last_period: journal.period.and_then(|p| journal.trace.last_period(p)),

@@ -56,6 +56,8 @@ struct Meta {
     #[serde(default)]
     made_bits: u64,
     #[serde(default)]
+    halved: u32,
+    #[serde(default)]
     roaming: Option<Counts>,
 }
 
@@ -230,6 +232,7 @@ impl Saved {
             work: self.work,
             served: self.past.served,
             made_bits: self.past.made.to_bits(),
+            halved: self.past.halved,
             steps: [self.past.last.to_bits(), self.past.next.to_bits(), u64::from(self.past.unconverged)],
             roaming: self.roaming.as_ref().map(Roaming::counts),
         };
@@ -300,6 +303,7 @@ impl Saved {
                 served: m.served,
                 made: f64::from_bits(m.made_bits),
                 unconverged: m.steps[2] as u32,
+                halved: m.halved,
             },
             sources: file.f64("sources")?.to_vec(),
         })

@@ -305,8 +305,11 @@ fn march<const D: usize>(
     }
     let settled = periodic || tolerance.is_none_or(|t| !journal.unsettled(t));
     (journal.time, journal.converged) = (marcher.past().time, (marcher.finished() || periodic) && settled);
-    (journal.bytes, journal.linear, journal.unconverged) =
-        (marcher.bytes(), marcher.linear(), marcher.past().unconverged);
+    (journal.bytes, journal.linear) = (marcher.bytes(), marcher.linear());
+    (journal.unconverged, journal.halved) = (marcher.past().unconverged, marcher.past().halved);
+    if journal.halved > 0 {
+        journal.note(&format!("steps in time were halved {} times, where Newton's method stalled", journal.halved));
+    }
     journal.keep(at, marcher, fluid)?;
     Ok(Pause::End)
 }

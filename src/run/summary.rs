@@ -59,6 +59,8 @@ pub struct Summary {
     pub time: f64,
     /// Steps in time that did not reach their goal.
     pub unconverged_steps: u32,
+    /// Times a step in time was halved because its equations could not be solved.
+    pub halved_steps: u32,
     /// What re-clouding did, where particles travel with the fluid.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub re_clouding: Option<Reclouding>,

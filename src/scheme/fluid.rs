@@ -336,8 +336,12 @@ impl<const D: usize> System for Fluid<D> {
         }
     }
 
-    fn set_off(&self, u: &[f64], work: &mut Work<D>, frame: &mut Frame<D>) -> f64 {
-        if matches!(self.carriage, Carriage::Travel(_)) { self.choose_ways(u, work, frame) } else { f64::INFINITY }
+    fn set_off(&self, step: f64, u: &[f64], work: &mut Work<D>, frame: &mut Frame<D>) -> f64 {
+        if matches!(self.carriage, Carriage::Travel(_)) {
+            self.choose_ways(step, u, work, frame)
+        } else {
+            f64::INFINITY
+        }
     }
 
     fn follow(&self, u: &[f64], work: &mut Work<D>, frame: &mut Frame<D>) {

@@ -11,7 +11,7 @@
 //!
 //! with the kernel W = (1 − q)⁴ (1 + 4q) of Wendland, whose slope is −20 q (1 − q)³, on the neighbours of the particle;
 //! q₀ = 1/ρ is the place of a neighbour one spacing away, R = 0.2 keeps pairs apart (Monaghan 2000). It vanishes on even
-//! clouds and is never faster than 0.2 c.
+//! clouds and is never faster than 0.2 c, nor, where the length of the step is known beforehand, farther than 0.1 h in a step.
 //!
 //! *Shocks.* The flux past a particle is taken with its own velocity, which makes linear fields exact; where w and U jump
 //! together, what one particle loses another does not gain: Σ (w_ij − w_i)·s_ij (U_i − U_ij) is left over, and a shock
@@ -42,6 +42,8 @@ use crate::system::{Moment, System};
 const STRENGTH: f64 = 0.1;
 /// Greatest shift velocity over the sound speed.
 const FASTEST: f64 = 0.2;
+/// Greatest shift in a step, in spacings.
+const FARTHEST: f64 = 0.1;
 /// Strength R of the term that keeps pairs apart.
 const APART: f64 = 0.2;
 /// Share of an interface particle in the concentration: the gas reaches around it on one side only.
@@ -196,8 +198,8 @@ impl<const D: usize> Travel<D> {
 }
 
 impl<const D: usize> Fluid<D> {
-    /// Chooses where particles go in the step that begins; the longest step they can take.
-    pub(super) fn choose_ways(&self, u: &[f64], work: &mut Work<D>, frame: &mut Frame<D>) -> f64 {
+    /// Chooses where particles go in the step that begins and is meant to last `step`; the longest step they can take.
+    pub(super) fn choose_ways(&self, step: f64, u: &[f64], work: &mut Work<D>, frame: &mut Frame<D>) -> f64 {
         self.fill_states(frame, u, work);
         let cloud = &frame.shape.cloud;
         let n = cloud.n_fluid;
@@ -214,10 +216,9 @@ impl<const D: usize> Fluid<D> {
             if let Some(before) = before.get(i).filter(|_| near.get(i).is_some_and(|near| *near)) {
                 return *before;
             }
-            let c = self.gas.sound_speed(&state[i]);
-            let shift = around[i].shift * STRENGTH;
-            let size = shift.norm();
-            state[i].velocity + shift * (c * if size > FASTEST { FASTEST / size } else { 1.0 })
+            let (c, shift) = (self.gas.sound_speed(&state[i]), around[i].shift * STRENGTH);
+            let greatest = (FASTEST * c).min(FARTHEST * cloud.spacing[i] / step);
+            state[i].velocity + shift * c.min(greatest / shift.norm())
         });
         let (base, course) = (Arc::new(cloud.x[..n].to_vec()), Arc::new(course));
         let velocity = Arc::make_mut(&mut frame.velocity);

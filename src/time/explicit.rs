@@ -134,7 +134,7 @@ impl<S: System> March<S> for Explicit<'_, S> {
     }
 
     fn advance(&mut self) -> Result<Step, TimeError> {
-        let reach = self.system.set_off(&self.u, &mut self.work, &mut self.frame);
+        let reach = self.system.set_off(0.0, &self.u, &mut self.work, &mut self.frame);
         let mut longest = self.step_length().min(reach);
         if self.past.last == 0.0 {
             // later on velocities of particles are those of the step before

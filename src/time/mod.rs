@@ -45,6 +45,8 @@ pub struct Past {
     pub made: f64,
     /// Steps that did not reach their goal.
     pub unconverged: u32,
+    /// Times a step was halved because its equations could not be solved.
+    pub halved: u32,
 }
 
 /// A method that marches in time.

@@ -219,8 +219,8 @@ impl<'a, S: System> Relax<'a, S> {
     }
 
     /// Lets particles that follow the state choose where they go; see [`System::set_off`].
-    pub fn set_off(&mut self) -> f64 {
-        self.system.set_off(&self.u, &mut self.work, &mut self.frame)
+    pub fn set_off(&mut self, step: f64) -> f64 {
+        self.system.set_off(step, &self.u, &mut self.work, &mut self.frame)
     }
 
     /// The first particle that the frame puts where the cloud no longer serves.
