@@ -15,8 +15,8 @@ const GROWTH: f64 = 1.5;
 const SHRINK: f64 = 0.3;
 /// Fraction of the step that the error estimate asks for that is taken.
 const SAFETY: f64 = 0.9;
-/// Residual over its start above which a step that ran out of iterations is refused.
-const HOPELESS: f64 = 1.0;
+/// Residual over its start above which a step that ran out of iterations, or stalled, is refused.
+const HOPELESS: f64 = 0.3;
 /// Bend of the last three states over their slope above which the next one is not guessed from a parabola: after a jerk.
 const STRAIGHT: f64 = 0.5;
 /// Greatest ratio of successive steps of a march with fixed ones, where some were cut: BDF2 takes 2.4.
@@ -313,11 +313,9 @@ impl<S: System> Dual<'_, S> {
     fn solve(&mut self) -> Result<(), TimeError> {
         self.inner = 0;
         while self.relax.drop() > self.relax.goal && !self.relax.settled() {
-            if self.inner >= self.plan.iterations {
-                self.past.unconverged += 1;
-                break;
-            }
-            match self.relax.advance() {
+            let over = self.inner >= self.plan.iterations;
+            let tried = if over { Err(self.relax.stalled()) } else { self.relax.advance() };
+            match tried {
                 Ok(_) => self.inner += 1,
                 // a limiter that flips keeps the residual from falling further: the step is as good as it gets
                 Err(TimeError::Stalled { .. }) if self.relax.drop() < HOPELESS => {

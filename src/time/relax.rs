@@ -365,12 +365,17 @@ impl<'a, S: System> Relax<'a, S> {
             self.cfl *= 0.2;
             self.prepared = false;
             if self.cfl < SMALLEST_CFL {
-                let (particle, place) = self.worst();
-                return Err(TimeError::Stalled { iteration: self.iteration, cfl: self.cfl, particle, place });
+                return Err(self.stalled());
             }
         }
         self.choose_phase();
         Ok(Step { iteration: self.iteration, time: 0.0, cfl: self.cfl, residual: self.drop(), linear: self.linear })
+    }
+
+    /// What to say where it cannot go on.
+    pub fn stalled(&self) -> TimeError {
+        let (particle, place) = self.worst();
+        TimeError::Stalled { iteration: self.iteration, cfl: self.cfl, particle, place }
     }
 
     /// Newton's method once the flow has taken shape; back to sweeps alone when its steps become small.

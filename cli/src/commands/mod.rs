@@ -36,11 +36,11 @@ pub(crate) fn dispatch(cli: Cli) -> Outcome {
     }
 }
 
-/// Runs `command` with the global pool of threads sized as asked.
+/// Runs `command` in a pool of threads sized as asked. This thread is one of them: loops do not wait for another to wake up.
 fn threaded(threads: Threads, command: impl FnOnce() -> Outcome) -> Outcome {
-    if let Some(n) = threads.threads
-        && let Err(problem) = rayon::ThreadPoolBuilder::new().num_threads(n.get()).build_global()
-    {
+    let n = threads.threads.map_or(0, std::num::NonZero::get);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(n).use_current_thread();
+    if let Err(problem) = pool.build_global() {
         output::error(&format!("cannot start {n} threads: {problem}"), "use a smaller number with `--threads`");
         return Outcome::BadInput;
     }
