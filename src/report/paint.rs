@@ -129,15 +129,39 @@ impl Painter {
     }
 
     fn picture(&mut self, bitmap: &Bitmap, area: Area) {
-        let Some(pixmap) = pixmap_of(bitmap) else { return };
-        let stretch = [area.width / bitmap.width as f64, area.height / bitmap.height as f64];
-        let transform = self
-            .transform()
-            .pre_translate(area.x as f32, area.y as f32)
-            .pre_scale(stretch[0] as f32, stretch[1] as f32);
-        let paint = PixmapPaint { quality: FilterQuality::Bilinear, ..PixmapPaint::default() };
-        self.sheet.draw_pixmap(0, 0, pixmap.as_ref(), &paint, transform, None);
+        let from = |v: f64| (v * self.scale).round().max(0.0) as usize;
+        let (x, y) = (from(area.x), from(area.y));
+        let (width, height) = (from(area.x + area.width) - x, from(area.y + area.height) - y);
+        let Some(pixmap) = pixmap_of(&stretched(bitmap, width, height)) else { return };
+        let paint = PixmapPaint { quality: FilterQuality::Nearest, ..PixmapPaint::default() };
+        self.sheet.draw_pixmap(x as i32, y as i32, pixmap.as_ref(), &paint, Transform::identity(), None);
     }
+}
+
+/// The bitmap in other numbers of pixels, linear between the centres of its own.
+fn stretched(bitmap: &Bitmap, width: usize, height: usize) -> Bitmap {
+    const ONE: u32 = 256;
+    // the two pixels on either side of the centre of each new one, and the share of the second
+    let between = |old: usize, new: usize| -> Vec<(usize, usize, u32)> {
+        let place = |k: usize| ((k as f64 + 0.5) * old as f64 / new as f64 - 0.5).clamp(0.0, old as f64 - 1.0);
+        let split = |p: f64| (p as usize, (p as usize + 1).min(old - 1), (p.fract() * f64::from(ONE)) as u32);
+        (0..new).map(|k| split(place(k))).collect()
+    };
+    let pixels = bitmap.rgba.as_chunks::<4>().0;
+    let mix = |a: [u8; 4], b: [u8; 4], t: u32| -> [u32; 4] {
+        std::array::from_fn(|c| u32::from(a[c]) * (ONE - t) + u32::from(b[c]) * t)
+    };
+    let columns = between(bitmap.width, width);
+    let mut rgba = Vec::with_capacity(4 * width * height);
+    for (low, high, up) in between(bitmap.height, height) {
+        let row = |r: usize| &pixels[r * bitmap.width..(r + 1) * bitmap.width];
+        let (below, above) = (row(low), row(high));
+        for &(left, right, along) in &columns {
+            let (a, b) = (mix(below[left], below[right], along), mix(above[left], above[right], along));
+            rgba.extend((0..4).map(|c| ((a[c] * (ONE - up) + b[c] * up) / (ONE * ONE)) as u8));
+        }
+    }
+    Bitmap { width, height, rgba }
 }
 
 fn paint(colour: Colour) -> Paint<'static> {

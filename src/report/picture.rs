@@ -12,7 +12,7 @@ const LONG_SIDE: f64 = 820.0;
 const TALL_SIDE: f64 = 640.0;
 /// Opaque: the overlapping ends of its segments would show otherwise.
 const CONTOUR: Pen = Pen::new(Colour::rgb(62, 68, 78), 0.7);
-/// Pixels of PNG per unit of canvas.
+/// Pixels of PNG per unit of canvas, at most.
 const SHARPNESS: f64 = 2.0;
 
 /// A field sampled at the centres of equal pixels.
@@ -95,7 +95,9 @@ pub fn raster_png(raster: &Raster, style: &PictureStyle) -> Result<Vec<u8>, Repo
     canvas.clip(None);
     frame.border(&mut canvas, style.axes[0], style.axes[1]);
     colour_bar(&mut canvas, frame.area, style.map, range, style.quantity);
-    canvas.png(SHARPNESS)
+    // a coarse raster does not become sharper in more pixels
+    let pixels = 2.0 * raster.width as f64 / frame.area.width;
+    canvas.png(pixels.clamp(1.0, SHARPNESS))
 }
 
 /// Draws the particles inside `window`, interface particles with their normals, as PNG.

@@ -43,6 +43,9 @@ const LARGE: f64 = 100.0;
 /// Greatest number of iterations of the relaxation before a march.
 const PRELUDE_ITERATIONS: u32 = 500;
 
+/// Orders of magnitude of that relaxation: the motion soon moves loads by more than what is left.
+const PRELUDE_ORDERS: f64 = 3.0;
+
 /// The same where a march leads to a harmonic balance.
 const LEAD_ITERATIONS: u32 = 60;
 
@@ -377,13 +380,13 @@ pub(super) fn taken_over<const D: usize>(case: &Case, solver: &Solver<D>, u: Vec
 
 /// The relaxation that gives a march its start.
 pub(super) fn prelude(dual: &Dual) -> Steady {
-    Steady { method: dual.method, iterations: PRELUDE_ITERATIONS, ..Steady::default() }
+    Steady { method: dual.method, iterations: PRELUDE_ITERATIONS, orders: PRELUDE_ORDERS, ..Steady::default() }
 }
 
 /// The relaxation that gives a harmonic balance its start.
 pub(super) fn harmonic_prelude(plan: &Harmonics) -> Steady {
     let iterations = if plan.march > 0 { LEAD_ITERATIONS } else { PRELUDE_ITERATIONS };
-    Steady { method: plan.method, iterations, ..Steady::default() }
+    Steady { method: plan.method, iterations, orders: PRELUDE_ORDERS, ..Steady::default() }
 }
 
 /// Numbers of a harmonic balance.

@@ -19,7 +19,7 @@ use crate::time::{March, Past};
 /// Orders of magnitude that stages before the last one are solved to.
 const EARLY_ORDERS: f64 = 3.5;
 /// Iterations without a new smallest residual after which a stage before the last one has given what it can.
-const PATIENCE: u32 = 60;
+const PATIENCE: u32 = 20;
 
 /// Where a stage starts.
 pub(super) enum Start {

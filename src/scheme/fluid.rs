@@ -23,6 +23,7 @@ use crate::cloud::operators::WallFace;
 use crate::math::Vector;
 use crate::math::block_matrix::BlockMatrix;
 use crate::math::sweep::{first, maximum, sweep, sweep_each, sweep_each_slot, sweep_parts, sweep_rows};
+use crate::motion::RigidPose;
 use crate::physics::riemann::{AusmPlusUp, Hllc, Roe, Rusanov, UpwindFlux};
 use crate::physics::{Conserved, Gas, Primitive};
 use crate::system::{Fault, Moment, System};
@@ -69,6 +70,8 @@ pub struct Before<const D: usize> {
     pub shape: Arc<Shape<D>>,
     /// Time.
     pub time: f64,
+    /// The motion of all particles as one, where that is what they do.
+    pub pose: Option<RigidPose<D>>,
     /// Motion of the wall at each interface particle in the axes of the case; empty when nothing moves.
     pub walls: Arc<Vec<WallMotion<D>>>,
 }
@@ -101,7 +104,8 @@ impl<const D: usize> Fluid<D> {
         let state = work.state.iter().map(|q| Primitive { velocity: turn(&q.velocity), ..*q }).collect();
         let gradient = work.gradient.iter().map(|g| g.turned(&turn)).collect();
         let walls = frame.walls.iter().map(|w| w.turned(turn, |v| frame.inward(v))).collect();
-        let before = Some(Before { shape: Arc::clone(&self.shape), time: frame.time, walls: Arc::new(walls) });
+        let (shape_before, pose) = (Arc::clone(&self.shape), frame.turn.clone());
+        let before = Some(Before { shape: shape_before, time: frame.time, pose, walls: Arc::new(walls) });
         let (far_field, held) = (Arc::clone(&self.far_field), Arc::clone(&self.held));
         let (carriage, friction) = (self.carriage.clone(), self.friction.clone());
         let seen = Self { shape, before, far_field, held, carriage, friction, ..*self };
@@ -123,7 +127,8 @@ impl<const D: usize> Fluid<D> {
 
     /// The place before any motion of what is at `x`.
     pub fn origin(&self, x: &Vector<D>) -> Vector<D> {
-        self.before.as_ref().map_or(*x, |b| self.carriage.origin(x, b.time))
+        let carried = |b: &Before<D>| self.carriage.origin(x, b.time);
+        self.before.as_ref().map_or(*x, |b| b.pose.as_ref().map_or_else(|| carried(b), |p| p.inverse_point(x)))
     }
 
     /// Where the point `x` of body number `body` is.
