@@ -36,6 +36,11 @@ pub fn sweep_each_slot<T: Send>(out: &mut [T], f: impl Fn(usize, &mut T) + Sync)
     out.par_iter_mut().enumerate().for_each(|(i, slot)| f(i, slot));
 }
 
+/// Calls `f(c, chunk)` for every chunk of `width` values of `out` where each one is much work.
+pub fn sweep_each_chunk<T: Send>(out: &mut [T], width: usize, f: impl Fn(usize, &mut [T]) + Sync) {
+    out.par_chunks_mut(width).enumerate().for_each(|(c, chunk)| f(c, chunk));
+}
+
 /// The numbers `0..n` in the order of `key`, ties in their own order.
 pub fn order_by_key(n: usize, key: impl Fn(usize) -> u64 + Sync) -> Vec<u32> {
     let mut keys = vec![(0, 0); n];

@@ -1,8 +1,5 @@
 //! Paints a canvas as PNG.
-use tiny_skia::{
-    FillRule, FilterQuality, LineCap, LineJoin, Mask, Paint, PathBuilder, Pixmap, PixmapPaint, Stroke, StrokeDash,
-    Transform,
-};
+use tiny_skia::{FillRule, LineCap, LineJoin, Mask, Paint, PathBuilder, Pixmap, Stroke, StrokeDash, Transform};
 
 use super::ReportError;
 use super::canvas::{Anchor, Area, Bitmap, Canvas, Item, Pen, Text};
@@ -26,13 +23,33 @@ pub(super) fn png(canvas: &Canvas, scale: f64) -> Result<Vec<u8>, ReportError> {
     sheet.fill(tiny_skia::Color::WHITE);
     let mut painter = Painter { scale, clip: None, mask: None, sheet };
     canvas.items.iter().for_each(|item| painter.item(item));
-    painter.sheet.encode_png().map_err(|e| ReportError::Png(e.to_string()))
+    encoded(&painter.sheet)
 }
 
 pub(super) fn bitmap_png(bitmap: &Bitmap) -> Result<Vec<u8>, ReportError> {
     let size = ReportError::Size { width: bitmap.width as f64, height: bitmap.height as f64 };
     let pixmap = pixmap_of(bitmap).ok_or(size)?;
-    pixmap.encode_png().map_err(|e| ReportError::Png(e.to_string()))
+    encoded(&pixmap)
+}
+
+/// The picture as a file: quickly written rather than as small as can be.
+fn encoded(pixmap: &Pixmap) -> Result<Vec<u8>, ReportError> {
+    let wrong = |e: png::EncodingError| ReportError::Png(e.to_string());
+    let opaque = pixmap.pixels().iter().all(|p| p.is_opaque());
+    let colours = pixmap.pixels().iter().map(|p| p.demultiply());
+    let bytes: Vec<u8> = match opaque {
+        true => colours.flat_map(|c| [c.red(), c.green(), c.blue()]).collect(),
+        false => colours.flat_map(|c| [c.red(), c.green(), c.blue(), c.alpha()]).collect(),
+    };
+    let mut file = Vec::new();
+    let mut encoder = png::Encoder::new(&mut file, pixmap.width(), pixmap.height());
+    encoder.set_color(if opaque { png::ColorType::Rgb } else { png::ColorType::Rgba });
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_compression(png::Compression::Fast);
+    let mut writer = encoder.write_header().map_err(wrong)?;
+    writer.write_image_data(&bytes).map_err(wrong)?;
+    writer.finish().map_err(wrong)?;
+    Ok(file)
 }
 
 fn pixmap_of(bitmap: &Bitmap) -> Option<Pixmap> {
@@ -132,9 +149,22 @@ impl Painter {
         let from = |v: f64| (v * self.scale).round().max(0.0) as usize;
         let (x, y) = (from(area.x), from(area.y));
         let (width, height) = (from(area.x + area.width) - x, from(area.y + area.height) - y);
-        let Some(pixmap) = pixmap_of(&stretched(bitmap, width, height)) else { return };
-        let paint = PixmapPaint { quality: FilterQuality::Nearest, ..PixmapPaint::default() };
-        self.sheet.draw_pixmap(x as i32, y as i32, pixmap.as_ref(), &paint, Transform::identity(), None);
+        let across = self.sheet.width() as usize;
+        let width = width.min(across.saturating_sub(x));
+        let rows = self.sheet.pixels_mut().chunks_exact_mut(across).skip(y);
+        if width == 0 || bitmap.rgba.is_empty() {
+            return;
+        }
+        for (to, from) in rows.zip(stretched(bitmap, width, height).rgba.chunks_exact(4 * width)) {
+            for (to, from) in to[x..x + width].iter_mut().zip(from.as_chunks::<4>().0) {
+                // what lies beneath shows through
+                let under = [to.red(), to.green(), to.blue()].map(|c| u32::from(c) * (255 - u32::from(from[3])) / 255);
+                let over = tiny_skia::ColorU8::from_rgba(from[0], from[1], from[2], from[3]).premultiply();
+                let [r, g, b] = [over.red(), over.green(), over.blue()];
+                let sum = |a: u8, k: usize| a.saturating_add(under[k] as u8);
+                *to = tiny_skia::ColorU8::from_rgba(sum(r, 0), sum(g, 1), sum(b, 2), 255).premultiply();
+            }
+        }
     }
 }
 

@@ -2,14 +2,14 @@
 use super::RunError;
 use super::outputs::{FILM, View};
 use super::snapshot::pressure_coefficient;
-use crate::math::sweep::sweep;
+use crate::math::sweep::sweep_each_chunk;
 use crate::math::{Bounds, Vector};
 use crate::physics::Primitive;
 use crate::report::{
     Axis, Chart, Colormap, Dots, Marks, PictureStyle, Raster, Scatter, Series, Shell, SurfaceStyle, raster_png,
     scatter_png, surface_png, write_file,
 };
-use crate::scheme::probe::Probe;
+use crate::scheme::probe::{Near, Probe};
 use crate::scheme::start::free_stream;
 
 /// Pixels along the longer side of a flow picture.
@@ -113,11 +113,15 @@ fn sampled<const D: usize>(
         ((extent[0] * scale).round().max(1.0) as usize, (extent[1] * scale).round().max(1.0) as usize);
     let probe = Probe::new(view.fluid, view.work, view.surface);
     let mut states = vec![None; width * height];
-    sweep(&mut states, |k| {
+    sweep_each_chunk(&mut states, width, |row, states| {
+        let mut near = Near::default();
         let mut x = Vector::ZERO;
-        x[0] = w.min[0] + ((k % width) as f64 + 0.5) / scale;
-        x[1] = w.min[1] + ((k / width) as f64 + 0.5) / scale;
-        if view.surface.is_some_and(|s| s.inside(&view.fluid.origin(&x))) { None } else { probe.at(&x) }
+        x[1] = w.min[1] + (row as f64 + 0.5) / scale;
+        for (k, state) in states.iter_mut().enumerate() {
+            x[0] = w.min[0] + (k as f64 + 0.5) / scale;
+            let solid = view.surface.is_some_and(|s| s.inside(&view.fluid.origin(&x)));
+            *state = if solid { None } else { probe.beside(&x, &mut near) };
+        }
     });
     (width, height, states)
 }

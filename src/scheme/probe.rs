@@ -10,6 +10,13 @@ use crate::physics::Primitive;
 /// Radius of the weights in cells of the background.
 const RADIUS: f64 = 1.5;
 
+/// Particles that reach into one leaf of the background.
+#[derive(Clone, Debug, Default)]
+pub struct Near<const D: usize> {
+    leaf: Option<u32>,
+    list: Vec<u32>,
+}
+
 /// A solution that can be asked anywhere.
 pub struct Probe<'a, const D: usize> {
     fluid: &'a Fluid<D>,
@@ -25,25 +32,35 @@ impl<'a, const D: usize> Probe<'a, D> {
 
     /// State at `x`; `None` where no particle is near.
     pub fn at(&self, x: &Vector<D>) -> Option<Primitive<D>> {
+        self.beside(x, &mut Near::default())
+    }
+
+    /// The same where points are asked one after another that are mostly in the leaf of the one before.
+    pub fn beside(&self, x: &Vector<D>, near: &mut Near<D>) -> Option<Primitive<D>> {
         // the background knows particles where they were before any motion
         let cloud = &self.fluid.reference().cloud;
         let (place, x) = (x, &self.fluid.origin(x));
-        let reach = RADIUS * cloud.tree.leaf_at(x).size;
-        let cube = Bounds { min: *x - Vector::splat(reach), max: *x + Vector::splat(reach) };
+        let leaf = cloud.tree.leaf_at(x);
+        let reach = RADIUS * leaf.size;
+        if near.leaf != Some(leaf.node) {
+            near.leaf = Some(leaf.node);
+            near.list.clear();
+            let corner = Vector::splat(0.5 * leaf.size + reach);
+            let cube = Bounds { min: leaf.centre - corner, max: leaf.centre + corner };
+            cloud.tree.overlapping(&cube, |node| near.list.extend(cloud.leaves.of(node)));
+        }
         let mut sum: Option<Primitive<D>> = None;
         let mut weight = 0.0;
-        cloud.tree.overlapping(&cube, |node| {
-            for k in cloud.leaves.of(node) {
-                let k = *k as usize;
-                let d = *x - cloud.x[k];
-                let w = (1.0 - d.norm() / reach).max(0.0).powi(2);
-                if w > 0.0 && self.in_sight(k, x) {
-                    let offer = self.offer(k, &(*place - self.fluid.shape.cloud.x[k]));
-                    sum = Some(sum.map_or_else(|| scaled(&offer, w), |s| s.plus(w, &offer)));
-                    weight += w;
-                }
+        for k in &near.list {
+            let k = *k as usize;
+            let d = *x - cloud.x[k];
+            let w = (1.0 - d.norm() / reach).max(0.0).powi(2);
+            if w > 0.0 && self.in_sight(k, x) {
+                let offer = self.offer(k, &(*place - self.fluid.shape.cloud.x[k]));
+                sum = Some(sum.map_or_else(|| scaled(&offer, w), |s| s.plus(w, &offer)));
+                weight += w;
             }
-        });
+        }
         sum.map(|s| scaled(&s, 1.0 / weight))
     }
 
