@@ -23,7 +23,7 @@ const PROMISED: [&str; 13] = [
     "ledger",
 ];
 /// What it may add.
-const EXTRA: [&str; 19] = [
+const EXTRA: [&str; 21] = [
     "work_units",
     "generalised_forces",
     "chord",
@@ -31,6 +31,7 @@ const EXTRA: [&str; 19] = [
     "time",
     "unconverged_steps",
     "halved_steps",
+    "momentum_of_period",
     "re_clouding",
     "first_harmonics",
     "periodic_change",

@@ -435,6 +435,7 @@ impl<const D: usize> Periodic<'_, D> {
             let frames = balance.frame(&Moment::At { time: 0.0 }, self.state);
             journal.forces = forms.over_a_period(balance, fluid, (&frames, self.state));
         }
+        self.compare(journal)?;
         self.write(journal, solver, period)?;
         journal.balance = Some(report);
         let mut first = vec![0.0; fluid.len()];
@@ -467,6 +468,20 @@ impl<const D: usize> Periodic<'_, D> {
         };
         journal.instances = frames.iter().map(instance).collect();
         Some([cl, cd, cm])
+    }
+
+    /// Loads at the instances, evaluated twice.
+    fn compare(&self, journal: &mut Journal<'_>) -> Result<(), RunError> {
+        let (fluid, held) = (self.fluid, self.balance.instances());
+        let (mut one, mut work) = (vec![0.0; fluid.len()], fluid.work());
+        for k in 0..held.count() {
+            self.balance.instance(self.state, k, &mut one);
+            let phase = std::f64::consts::TAU * k as f64 / held.count() as f64;
+            let frame = self.balance.with_moment(phase, |m| fluid.frame(m, &one));
+            // a run that is interrupted now does this again
+            journal.compare((1, frame.time), fluid, (&frame, &one, &mut work))?;
+        }
+        Ok(())
     }
 
     /// Fields at phases, coefficients in time of walls and field.

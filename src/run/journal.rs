@@ -1,14 +1,16 @@
 //! What accompanies a run from stage to stage: the history, checkpoints, loads in time, and what the end of it is told from.
+use super::balance;
 use super::harmonic::BalanceReport;
 use super::periodic::{Sample, Trace};
 use super::persist::{FILE, Position, Roaming, Saved};
 use super::snapshot::{LoadFrame, Snapshot, load_axes};
+use super::twice::Twofold;
 use super::{Monitor, Places, RunError, Tick};
 use crate::case::Case;
 use crate::motion::Law;
 use crate::observe::History;
 use crate::observe::loads::Coefficients;
-use crate::scheme::{Fluid, Turnover};
+use crate::scheme::{Fluid, Frame, Turnover, Work};
 use crate::time::relax::{Phase, Resume};
 use crate::time::{March, TimeError};
 
@@ -71,6 +73,8 @@ pub(super) struct Journal<'a> {
     pub(super) instances: Vec<[f64; 6]>,
     /// What re-clouding did so far, where particles travel with the fluid.
     pub(super) turnover: Turnover,
+    /// Loads evaluated twice, where the motion repeats.
+    pub(super) twofold: Twofold,
 }
 
 impl<'a> Journal<'a> {
@@ -88,8 +92,13 @@ impl<'a> Journal<'a> {
             Some(s) => History::resume(&path, &columns, s.iteration)?,
             None => History::create(&path, &columns)?,
         };
+        let twofold = match period.filter(|_| case.moves() && !case.bodies.is_empty()) {
+            Some(_) => Twofold::open(&places.out, saved.map(|s| s.iteration))?,
+            None => Twofold::default(),
+        };
         Ok(Self {
             monitor,
+            twofold,
             history,
             out: places.out.clone(),
             case: case.clone(),
@@ -170,6 +179,24 @@ impl<'a> Journal<'a> {
             change.periods
         ));
         true
+    }
+
+    /// Keeps the loads of a moment, by both evaluations, as of some iterations ahead.
+    pub(super) fn compare<const D: usize>(
+        &mut self,
+        (ahead, time): (u64, f64),
+        fluid: &Fluid<D>,
+        (frame, state, work): (&Frame<D>, &[f64], &mut Work<D>),
+    ) -> Result<(), RunError> {
+        if !self.twofold.is_open() {
+            return Ok(());
+        }
+        let Some(sum) = balance::around(&self.case, &self.axes, fluid, (frame, state, &mut *work), true) else {
+            return Ok(());
+        };
+        let walls = self.axes.coefficients_in(fluid, frame, work);
+        let around = self.axes.axes_in(fluid, frame).coefficients(&sum.load);
+        Ok(self.twofold.push((self.iteration + ahead, time), &walls, &around)?)
     }
 
     /// The case.

@@ -24,6 +24,7 @@ mod setup;
 mod snapshot;
 mod solve;
 pub mod summary;
+pub mod twice;
 pub mod verify;
 
 use std::path::{Path, PathBuf};

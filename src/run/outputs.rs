@@ -155,6 +155,7 @@ impl<'a, const D: usize> Finished<'a, D> {
             halved_steps: journal.halved,
             re_clouding: self.re_clouding(journal),
             first_harmonics: journal.period.map_or_else(Vec::new, |p| journal.trace.first_harmonics(p)),
+            momentum_of_period: journal.period.and_then(|p| journal.twofold.last(p)),
             last_period: journal.period.and_then(|p| journal.trace.last_period(p)),
             lift_cycles: journal.trace.cycles(),
             periodic_change: journal.period.and_then(|p| journal.trace.change(p)),

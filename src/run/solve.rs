@@ -4,6 +4,7 @@ use super::journal::{Journal, NEARLY};
 use super::persist::{FILE, Position, Saved};
 use super::setup::{Solver, control, harmonic_prelude, inner_control, plan, prelude};
 use super::snapshot::LoadFrame;
+use super::twice::MOMENTS;
 use super::{RunError, outputs};
 use crate::case::{self, Case, Explicit as Marching, RungeKutta, Steady, Temporal};
 use crate::math::sweep::sum;
@@ -293,6 +294,10 @@ fn march<const D: usize>(
         let (frame, work, state) = marcher.parts();
         let loads = coefficients(fluid, journal.axes(), frame, state, work);
         journal.record((0, inner), &step, loads, (until, step.time), fluid)?;
+        let parts = journal.period.map(|p| p / f64::from(MOMENTS));
+        if parts.is_some_and(|part| passed(step.time, part) > passed(before, part)) {
+            journal.compare((0, step.time), fluid, (frame, state, &mut *work))?;
+        }
         write_due(solver, (frame, work), (before, step.time), journal)?;
         periodic = tolerance.is_some_and(|t| journal.is_periodic(step.time, before, t));
         if journal.due(step.iteration) {
@@ -314,6 +319,11 @@ fn march<const D: usize>(
     Ok(Pause::End)
 }
 
+/// Whole intervals that have passed at `t`.
+fn passed(t: f64, interval: f64) -> u64 {
+    (t / interval + NEARLY).floor() as u64
+}
+
 /// Writes the files of the field and of the film that fall into a step.
 fn write_due<const D: usize>(
     solver: &Solver<D>,
@@ -322,7 +332,6 @@ fn write_due<const D: usize>(
     journal: &Journal<'_>,
 ) -> Result<(), RunError> {
     let (case, out, fluid) = (journal.case(), journal.out(), &solver.fluid);
-    let passed = |t: f64, interval: f64| (t / interval + NEARLY).floor() as u64;
     if let Some(interval) = journal.interval()
         && passed(now, interval) > passed(before, interval)
     {

@@ -70,6 +70,9 @@ pub struct Summary {
     /// First harmonics of the loads per motion, where that repeats.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub first_harmonics: Vec<super::periodic::FirstHarmonics>,
+    /// Loads of the last period by momentum balance, against those on the walls.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub momentum_of_period: Option<super::twice::Twice>,
     /// Mean and greatest loads of the last period of the motion.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub last_period: Option<super::periodic::LastPeriod>,

@@ -104,7 +104,7 @@ impl<const D: usize> Fluid<D> {
         let state = work.state.iter().map(|q| Primitive { velocity: turn(&q.velocity), ..*q }).collect();
         let gradient = work.gradient.iter().map(|g| g.turned(&turn)).collect();
         let walls = frame.walls.iter().map(|w| w.turned(turn, |v| frame.inward(v))).collect();
-        let (shape_before, pose) = (Arc::clone(&self.shape), frame.turn.clone());
+        let (shape_before, pose) = (Arc::clone(&self.shape), frame.turn);
         let before = Some(Before { shape: shape_before, time: frame.time, pose, walls: Arc::new(walls) });
         let (far_field, held) = (Arc::clone(&self.far_field), Arc::clone(&self.held));
         let (carriage, friction) = (self.carriage.clone(), self.friction.clone());

@@ -98,6 +98,12 @@ fn describe(s: &Summary, out: &Path) -> String {
             row("momentum", b);
         }
     }
+    if let Some(t) = &s.momentum_of_period {
+        text += &format!(
+            "over the last period momentum and walls differ by CL {:.1e}, CD {:.1e}, CM {:.1e} (rms at {} moments; ranges {:.3}, {:.3}, {:.3})\n",
+            t.cl.rms, t.cd.rms, t.cm.rms, t.moments, t.cl.range, t.cd.range, t.cm.range
+        );
+    }
     if let Some(c) = &s.adapt_change {
         text += &format!("last adaptation {:+9.5}  {:+9.5}  {:+9.5}\n", c.cl, c.cd, c.cm);
     }
