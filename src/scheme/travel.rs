@@ -102,16 +102,15 @@ impl<const D: usize> Travel<D> {
     pub(super) fn place(&self, origin: &Arc<Shape<D>>, moment: &Moment<'_>, frame: &mut Frame<D>) {
         let cloud = &origin.cloud;
         let (n, stand) = (cloud.n_fluid, &self.stand);
-        let fresh = frame.way.base.len() != n;
-        let velocity = Arc::make_mut(&mut frame.velocity);
-        velocity.resize(cloud.len(), Vector::ZERO);
-        if fresh {
+        if frame.way.base.len() != n {
             // to the bit what the system before, or a checkpoint, left
             let (base, course) = (Arc::new(stand.places[..n].to_vec()), Arc::new(stand.course.clone()));
             frame.way = Way { since: stand.now, base, course, ..Way::default() };
             frame.time = stand.now;
         }
-        let way = &mut frame.way;
+        let velocity = Arc::make_mut(&mut frame.velocity);
+        velocity.resize(cloud.len(), Vector::ZERO);
+        let way = &frame.way;
         let passed = match moment {
             Moment::Within { step, fraction, .. } if way.off => fraction * step,
             Moment::By { time, .. } if way.off => time - way.since,
@@ -142,10 +141,11 @@ impl<const D: usize> Travel<D> {
         if fixed && away == 0.0 && frame.walls.len() == cloud.interface.len() {
             return;
         }
-        let first = cloud.n_real();
-        let image = |k: usize| (&cloud.transforms[cloud.images[k].transform as usize], cloud.images[k].source as usize);
-        let (x, x_images) = shape.cloud.x.split_at_mut(first);
-        sweep(x_images, |k| image(k).0.point(&x[image(k).1]));
+        let (x, images) = shape.cloud.x.split_at_mut(cloud.n_real());
+        sweep(images, |k| {
+            let image = &cloud.images[k];
+            cloud.transforms[image.transform as usize].point(&x[image.source as usize])
+        });
         self.turn_walls(frame.time, frame);
         let shape = Arc::make_mut(&mut frame.shape);
         shape.operators.refit(&shape.cloud);
