@@ -119,8 +119,8 @@ impl<S: System> March<S> for Dual<'_, S> {
             let error = match self.step(dt) {
                 Err(TimeError::Stalled { .. }) if dt > SHORTEST * self.plan.step => {
                     self.past.halved += 1;
-                    dt *= 0.5;
-                    self.reach = self.relax.set_off(dt);
+                    self.reach = self.relax.set_off(0.5 * dt);
+                    dt = self.within_reach(0.5 * dt);
                     continue;
                 }
                 tried => tried?,
