@@ -46,12 +46,14 @@ fn tell(what: &str, ratio: f64, bar: &str) {
 
 /// Smallest time of one call of `f`, in seconds.
 fn seconds(mut f: impl FnMut()) -> f64 {
-    let once = |f: &mut dyn FnMut()| {
-        let clock = Instant::now();
-        f();
-        clock.elapsed().as_secs_f64()
-    };
     (0..TURNS).map(|_| once(&mut f)).fold(f64::INFINITY, f64::min)
+}
+
+/// Time of one call of `f`, in seconds.
+fn once(f: impl FnOnce()) -> f64 {
+    let clock = Instant::now();
+    f();
+    clock.elapsed().as_secs_f64()
 }
 
 /// Smallest time of one residual at the start of a march.

@@ -8,9 +8,10 @@ use multiversion::multiversion;
 use crate::cloud::Edge;
 use crate::math::Vector;
 use crate::physics::riemann::UpwindFlux;
-use crate::physics::{Conserved, Gas, Primitive};
+use crate::physics::{Conserved, Gas, Newtonian, Primitive};
 
 use super::reconstruct::{Gradient, Limit, Reconstruction, slowed};
+use super::viscous::{direction, middle, slopes};
 
 /// Edges that are computed together: enough to fill vectors, few enough that all of it stays in the first cache.
 const LANES: usize = 16;
@@ -30,6 +31,8 @@ pub struct Rule<F, L> {
     pub reconstruction: Reconstruction,
     /// Exactly conservative coefficients.
     pub conservative: bool,
+    /// Viscosity and heat conduction.
+    pub medium: Option<Newtonian>,
 }
 
 /// What particles hold.
@@ -103,6 +106,39 @@ struct Batch<const D: usize> {
     middle: [Many<D>; 2],
     upwind: Many<D>,
     out: [Many<D>; 2],
+    /// The edge from one end to the other, and the gradients at both; for stress and heat alone.
+    along: [Lanes; D],
+    gradient: [Slope<D>; 2],
+}
+
+/// Gradients of density, velocity and pressure of every edge.
+struct Slope<const D: usize> {
+    density: [Lanes; D],
+    velocity: [[Lanes; D]; D],
+    pressure: [Lanes; D],
+}
+
+impl<const D: usize> Slope<D> {
+    const ZERO: Self =
+        Self { density: [[0.0; LANES]; D], velocity: [[[0.0; LANES]; D]; D], pressure: [[0.0; LANES]; D] };
+
+    #[inline(always)]
+    fn take(&self, k: usize) -> Gradient<D> {
+        Gradient {
+            density: take(&self.density, k),
+            velocity: std::array::from_fn(|c| take(&self.velocity[c], k)),
+            pressure: take(&self.pressure, k),
+        }
+    }
+
+    #[inline(always)]
+    fn put(&mut self, k: usize, g: &Gradient<D>) {
+        put(&mut self.density, k, &g.density);
+        for c in 0..D {
+            put(&mut self.velocity[c], k, &g.velocity[c]);
+        }
+        put(&mut self.pressure, k, &g.pressure);
+    }
 }
 
 impl<const D: usize> Batch<D> {
@@ -116,6 +152,8 @@ impl<const D: usize> Batch<D> {
         middle: [Many::ZERO; 2],
         upwind: Many::ZERO,
         out: [Many::ZERO; 2],
+        along: [[0.0; LANES]; D],
+        gradient: [Slope::ZERO; 2],
     };
 }
 
@@ -140,6 +178,12 @@ pub fn edge_fluxes<const D: usize, F: UpwindFlux<D>, L: Limit>(
             (false, true) => balance::<D, true, true>(rule.gas, &mut batch),
             (false, false) => balance::<D, true, false>(rule.gas, &mut batch),
         }
+        if let Some(medium) = rule.medium {
+            match rule.conservative {
+                true => rub::<D, true>(rule.gas, medium, &mut batch),
+                false => rub::<D, false>(rule.gas, medium, &mut batch),
+            }
+        }
         for (k, e) in some.iter().enumerate() {
             add(e.i(), &batch.out[0].conserved(k));
             if e.both() {
@@ -159,6 +203,9 @@ fn gather<const D: usize, F, L>(rule: &Rule<F, L>, p: &Particles<'_, D>, edges: 
             let i = ends[side];
             let q = &p.state[i];
             batch.own[side].put(k, q.density, &q.velocity, q.pressure);
+            if rule.medium.is_some() {
+                batch.gradient[side].put(k, &p.gradient[i]);
+            }
             if rule.reconstruction.second_order {
                 let g = p.gradient[i].along(&d);
                 batch.slope[side].put(k, g.density, &g.velocity, g.pressure);
@@ -171,6 +218,7 @@ fn gather<const D: usize, F, L>(rule: &Rule<F, L>, p: &Particles<'_, D>, edges: 
             }
         }
         put(&mut batch.area, k, &e.s);
+        put(&mut batch.along, k, &d);
         batch.whole[k] = f64::from(u8::from(p.outer.0 <= ends[1] && ends[1] < p.outer.1));
     }
 }
@@ -236,10 +284,6 @@ fn balance<const D: usize, const MOVES: bool, const CONSERVATIVE: bool>(gas: Gas
         let (wi, wj) = (take(&speed[0], k), take(&speed[1], k));
         let (w, upwind) = ((wi + wj) * 0.5, upwind.conserved(k));
         let (a_i, a_j) = (take(&weight[0], k), take(&weight[1], k));
-        let past = |q: &Primitive<D>, n: &Vector<D>, w: &Vector<D>| match MOVES {
-            true => gas.flux(q, n).plus(-w.dot(n), &gas.conserved(q)),
-            false => gas.flux(q, n),
-        };
         let (i, j) = if CONSERVATIVE {
             let through = upwind.times(size);
             let (out_i, out_j) = (gas.flux(&qi, &s), gas.flux(&qj, &s));
@@ -247,22 +291,63 @@ fn balance<const D: usize, const MOVES: bool, const CONSERVATIVE: bool>(gas: Gas
                 let mean = gas.conserved(&l).plus(1.0, &gas.conserved(&r)).times(0.5);
                 let through = through.plus(w.dot(&s), &mean);
                 // w·∇U, by the weights that are exact for linear fields; they come as −V a
-                let swept = |own: &Primitive<D>, a: &Vector<D>, w: &Vector<D>| {
-                    mean.plus(-1.0, &gas.conserved(own)).times(-2.0 * w.dot(a))
-                };
-                let (swept_i, swept_j) = (swept(&qi, &a_i, &wi), swept(&qj, &a_j, &wj));
+                let swept_i = mean.plus(-1.0, &gas.conserved(&qi)).times(-2.0 * wi.dot(&a_i));
+                let swept_j = mean.plus(-1.0, &gas.conserved(&qj)).times(-2.0 * wj.dot(&a_j));
                 (out_i.plus(-1.0, &through).plus(1.0, &swept_i), through.plus(-1.0, &out_j).plus(1.0, &swept_j))
             } else {
                 (out_i.plus(-1.0, &through), through.plus(-1.0, &out_j))
             }
         } else {
-            let mean = past(&l, &m, &w).plus(1.0, &past(&r, &m, &w));
-            let spread = upwind.plus(-0.5, &mean).times(size);
-            let central = |a: &Vector<D>, own: &Primitive<D>, w: &Vector<D>| {
-                past(&l, a, w).plus(1.0, &past(&r, a, w)).plus(-2.0, &past(own, a, w))
-            };
-            (central(&a_i, &qi, &wi).plus(-1.0, &spread), central(&a_j, &qj, &wj).plus(1.0, &spread))
+            let spread = upwind.plus(-0.5, &both::<D, MOVES>(&gas, (&l, &r), &m, &w)).times(size);
+            let central_i =
+                both::<D, MOVES>(&gas, (&l, &r), &a_i, &wi).plus(-2.0, &past::<D, MOVES>(&gas, &qi, &a_i, &wi));
+            let central_j =
+                both::<D, MOVES>(&gas, (&l, &r), &a_j, &wj).plus(-2.0, &past::<D, MOVES>(&gas, &qj, &a_j, &wj));
+            (central_i.plus(-1.0, &spread), central_j.plus(1.0, &spread))
         };
+        out_i.put(k, i.density, &i.momentum, i.energy);
+        out_j.put(k, j.density, &j.momentum, j.energy);
+    }
+}
+
+/// Flux of the state `q` through an area `n` that moves with `w`.
+#[inline(always)]
+fn past<const D: usize, const MOVES: bool>(gas: &Gas, q: &Primitive<D>, n: &Vector<D>, w: &Vector<D>) -> Conserved<D> {
+    if MOVES { gas.flux(q, n).plus(-w.dot(n), &gas.conserved(q)) } else { gas.flux(q, n) }
+}
+
+/// The same of two states together.
+#[inline(always)]
+fn both<const D: usize, const MOVES: bool>(
+    gas: &Gas,
+    (l, r): (&Primitive<D>, &Primitive<D>),
+    n: &Vector<D>,
+    w: &Vector<D>,
+) -> Conserved<D> {
+    past::<D, MOVES>(gas, l, n, w).plus(1.0, &past::<D, MOVES>(gas, r, n, w))
+}
+
+/// What stress and heat along every edge add to V dU/dt of both ends.
+#[multiversion(targets("x86_64+avx2"))]
+#[allow(unsafe_code, reason = "the attribute calls the version that the processor has just been asked for")]
+fn rub<const D: usize, const CONSERVATIVE: bool>(gas: Gas, medium: Newtonian, batch: &mut Batch<D>) {
+    let Batch { own, weight, area, along, gradient, out: [out_i, out_j], .. } = batch;
+    for k in 0..LANES {
+        let (s, d) = (take(area, k), take(along, k));
+        let a = slopes(&gas, &own[0].primitive(k), &gradient[0].take(k));
+        let b = slopes(&gas, &own[1].primitive(k), &gradient[1].take(k));
+        let middle = middle((&a, &b), &d, &direction(&s, &d));
+        let (i, j) = if CONSERVATIVE {
+            let through = medium.flux(&gas, &middle, &s);
+            (through, through.times(-1.0))
+        } else {
+            // weights come as −V a
+            let (n_i, n_j) = (take(&weight[0], k), take(&weight[1], k));
+            let past_i = medium.flux(&gas, &a, &n_i).plus(-1.0, &medium.flux(&gas, &middle, &n_i));
+            let past_j = medium.flux(&gas, &b, &n_j).plus(-1.0, &medium.flux(&gas, &middle, &n_j));
+            (past_i.times(2.0), past_j.times(2.0))
+        };
+        let (i, j) = (out_i.conserved(k).plus(1.0, &i), out_j.conserved(k).plus(1.0, &j));
         out_i.put(k, i.density, &i.momentum, i.energy);
         out_j.put(k, j.density, &j.momentum, j.energy);
     }

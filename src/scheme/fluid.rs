@@ -227,7 +227,8 @@ impl<const D: usize> Fluid<D> {
         let (frame, work) = at;
         let (op, cloud) = (&frame.shape.operators, &frame.shape.cloud);
         let (gas, reconstruction, conservative) = (self.gas, self.reconstruction, self.conservative);
-        let rule = Rule { gas, flux, limit, reconstruction, conservative };
+        let medium = self.friction.as_ref().map(|f| f.medium);
+        let rule = Rule { gas, flux, limit, reconstruction, conservative, medium };
         let particles = Particles {
             x: &cloud.x,
             volume: &cloud.volume,
@@ -239,10 +240,11 @@ impl<const D: usize> Fluid<D> {
         sweep_parts(op.fluid_parts(), D + 2, du, &|k, out| {
             let start = op.parts[k].start;
             out.fill(0.0);
-            edge_fluxes(&rule, particles, op.edges(k), |i, change| add(&mut out[(i - start) * (D + 2)..], change));
+            let mut to = |i: usize, change: &Conserved<D>| add(&mut out[(i - start) * (D + 2)..], change);
+            edge_fluxes(&rule, particles, op.edges(k), &mut to);
             if self.conservative {
-                let faces = op.wall_faces(k);
-                self.wall_fluxes(faces, at, &mut |i, to_i| add(&mut out[(i - start) * (D + 2)..], &to_i));
+                self.wall_fluxes(op.wall_faces(k), at, &mut to);
+                self.viscous_walls(op.wall_faces(k), at, &mut to);
             }
             for (row, volume) in out.chunks_exact_mut(D + 2).zip(&cloud.volume[start..]) {
                 let inverse = 1.0 / volume;
@@ -259,7 +261,7 @@ impl<const D: usize> Fluid<D> {
         &self,
         faces: &[WallFace<D>],
         (frame, work): (&Frame<D>, &Work<D>),
-        add: &mut impl FnMut(usize, Conserved<D>),
+        mut add: impl FnMut(usize, &Conserved<D>),
     ) {
         for face in faces {
             let (i, wall) = (face.i as usize, &work.state[face.wall as usize]);
@@ -270,7 +272,7 @@ impl<const D: usize> Fluid<D> {
                 true => pressed.plus(moved.dot(&face.area), &self.gas.conserved(wall)),
                 false => pressed,
             };
-            add(i, self.gas.flux(&work.state[i], &face.area).plus(-1.0, &through));
+            add(i, &self.gas.flux(&work.state[i], &face.area).plus(-1.0, &through));
         }
     }
 
@@ -379,9 +381,6 @@ impl<const D: usize> System for Fluid<D> {
             Flux::Roe => self.rhs_with_limiter(Roe, frame, work, du),
             Flux::AusmPlusUp => self.rhs_with_limiter(AusmPlusUp, frame, work, du),
             Flux::Rusanov => self.rhs_with_limiter(Rusanov, frame, work, du),
-        }
-        if let Some(friction) = &self.friction {
-            self.add_viscous(friction, (frame, work), du);
         }
         if self.isentropic {
             self.hold_entropy(frame, work, du);

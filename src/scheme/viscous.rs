@@ -20,7 +20,7 @@
 use std::sync::Arc;
 
 use super::boundary::{WallMotion, stuck_wall};
-use super::fluid::{Fluid, Work, add, half_face};
+use super::fluid::{Fluid, Work, half_face};
 use super::jacobian::{Block, couple};
 use super::reconstruct::Gradient;
 use super::shape::{Frame, Shape};
@@ -98,11 +98,41 @@ fn reach<const D: usize>(d: &Vector<D>, m: &Vector<D>) -> f64 {
     m.dot(d).max(SHORTEST * d.norm())
 }
 
-/// Direction of the face of an edge.
+/// Direction of the face `s` of the edge `d`.
 #[inline(always)]
-fn direction<const D: usize>(e: &Edge<D>, d: &Vector<D>) -> Vector<D> {
-    let size = e.s.norm();
-    if size > 0.0 { e.s * (1.0 / size) } else { d.unit() }
+pub(super) fn direction<const D: usize>(s: &Vector<D>, d: &Vector<D>) -> Vector<D> {
+    let face = if s.norm_squared() > 0.0 { s } else { d };
+    *face * (1.0 / face.norm())
+}
+
+/// What viscous fluxes follow from at a particle with the state `q` and the gradient `g`.
+#[inline(always)]
+pub(super) fn slopes<const D: usize>(gas: &Gas, q: &Primitive<D>, g: &Gradient<D>) -> Slopes<D> {
+    Slopes {
+        velocity: q.velocity,
+        temperature: gas.temperature(q),
+        velocity_gradient: g.velocity,
+        temperature_gradient: temperature_gradient(gas, q, g),
+    }
+}
+
+/// Slopes in the middle of the edge `d` whose face has the normal `m`.
+#[inline(always)]
+pub(super) fn middle<const D: usize>((a, b): (&Slopes<D>, &Slopes<D>), d: &Vector<D>, m: &Vector<D>) -> Slopes<D> {
+    let across = 1.0 / reach(d, m);
+    let corrected = |ga: &Vector<D>, gb: &Vector<D>, change: f64| {
+        let mean = (*ga + *gb) * 0.5;
+        mean + *m * ((change - mean.dot(d)) * across)
+    };
+    let (va, vb) = (&a.velocity_gradient, &b.velocity_gradient);
+    let dv = b.velocity - a.velocity;
+    let dt = b.temperature - a.temperature;
+    Slopes {
+        velocity: (a.velocity + b.velocity) * 0.5,
+        temperature: 0.5 * (a.temperature + b.temperature),
+        velocity_gradient: std::array::from_fn(|c| corrected(&va[c], &vb[c], dv[c])),
+        temperature_gradient: corrected(&a.temperature_gradient, &b.temperature_gradient, dt),
+    }
 }
 
 impl<const D: usize> Fluid<D> {
@@ -124,90 +154,22 @@ impl<const D: usize> Fluid<D> {
         Some(stuck_wall((&shape.cloud, &shape.walls), &self.gas, w, (moved, temperature), q))
     }
 
-    /// What viscous fluxes at particle `i` follow from.
-    #[inline(always)]
-    fn slopes(&self, work: &Work<D>, i: usize) -> Slopes<D> {
-        let (q, g) = (&work.state[i], &work.gradient[i]);
-        Slopes {
-            velocity: q.velocity,
-            temperature: self.gas.temperature(q),
-            velocity_gradient: g.velocity,
-            temperature_gradient: temperature_gradient(&self.gas, q, g),
-        }
-    }
-
     /// Flux of stress and heat at particle `i` across `n`; zero without viscosity.
     pub(super) fn viscous_flux(&self, work: &Work<D>, i: usize, n: &Vector<D>) -> Conserved<D> {
-        let flux = |f: &Arc<Friction>| f.medium.flux(&self.gas, &self.slopes(work, i), n);
+        let flux =
+            |f: &Arc<Friction>| f.medium.flux(&self.gas, &slopes(&self.gas, &work.state[i], &work.gradient[i]), n);
         self.friction.as_ref().map_or(Conserved::ZERO, flux)
     }
 
-    /// Slopes in the middle of an edge whose face has the normal `m`.
-    #[inline(always)]
-    fn middle(&self, (a, b): (&Slopes<D>, &Slopes<D>), d: &Vector<D>, m: &Vector<D>) -> Slopes<D> {
-        let across = 1.0 / reach(d, m);
-        let corrected = |ga: &Vector<D>, gb: &Vector<D>, change: f64| {
-            let mean = (*ga + *gb) * 0.5;
-            mean + *m * ((change - mean.dot(d)) * across)
-        };
-        let (va, vb) = (&a.velocity_gradient, &b.velocity_gradient);
-        let dv = b.velocity - a.velocity;
-        let dt = b.temperature - a.temperature;
-        Slopes {
-            velocity: (a.velocity + b.velocity) * 0.5,
-            temperature: 0.5 * (a.temperature + b.temperature),
-            velocity_gradient: std::array::from_fn(|c| corrected(&va[c], &vb[c], dv[c])),
-            temperature_gradient: corrected(&a.temperature_gradient, &b.temperature_gradient, dt),
-        }
-    }
-
-    /// Adds what stress and heat do to every fluid particle.
-    pub(super) fn add_viscous(&self, friction: &Friction, (frame, work): (&Frame<D>, &Work<D>), du: &mut [f64]) {
-        let op = &frame.shape.operators;
-        sweep_parts(op.fluid_parts(), D + 2, du, &|k, out| {
-            let start = op.parts[k].start;
-            let mut to = |i: usize, c: Conserved<D>| {
-                let turned = Conserved { momentum: frame.outward(&c.momentum), ..c };
-                add(&mut out[(i - start) * (D + 2)..], &turned);
-            };
-            for e in op.edges(k) {
-                let (to_i, to_j) = self.viscous_edge(&friction.medium, e, (frame, work));
-                to(e.i(), to_i);
-                if e.both() {
-                    to(e.j(), to_j);
-                }
-            }
-            for face in op.wall_faces(k).iter().filter(|_| self.conservative) {
-                let through = self.viscous_wall(friction, (frame, work), face);
-                to(face.i as usize, through.times(1.0 / frame.shape.cloud.volume[face.i as usize]));
-            }
-        });
-    }
-
-    /// What stress and heat along one edge add to dU/dt of both ends.
-    #[inline(always)]
-    fn viscous_edge(
+    /// Calls `add(i, change)` with what stress and heat through every piece of wall add to V dU/dt of the particle there.
+    pub(super) fn viscous_walls(
         &self,
-        medium: &Newtonian,
-        e: &Edge<D>,
-        (frame, work): (&Frame<D>, &Work<D>),
-    ) -> (Conserved<D>, Conserved<D>) {
-        if self.conservative && e.s == Vector::ZERO {
-            return (Conserved::ZERO, Conserved::ZERO);
-        }
-        let (i, j) = (e.i(), e.j());
-        let cloud = &frame.shape.cloud;
-        let d = cloud.x[j] - cloud.x[i];
-        let (a, b) = (self.slopes(work, i), self.slopes(work, j));
-        let middle = self.middle((&a, &b), &d, &direction(e, &d));
-        let flux = |at: &Slopes<D>, n: &Vector<D>| medium.flux(&self.gas, at, n);
-        if self.conservative {
-            let through = flux(&middle, &e.s);
-            return (through.times(1.0 / cloud.volume[i]), through.times(-1.0 / cloud.volume[j]));
-        }
-        let central = |own: &Slopes<D>, n: &Vector<D>| flux(&middle, n).plus(-1.0, &flux(own, n)).times(2.0);
-        let to_j = if e.both() { central(&b, &e.a_j) } else { Conserved::ZERO };
-        (central(&a, &e.a_i), to_j)
+        faces: &[WallFace<D>],
+        at: (&Frame<D>, &Work<D>),
+        mut add: impl FnMut(usize, &Conserved<D>),
+    ) {
+        let Some(friction) = &self.friction else { return };
+        faces.iter().for_each(|face| add(face.i as usize, &self.viscous_wall(friction, at, face)));
     }
 
     /// Flux of stress and heat through a piece of wall.
@@ -323,7 +285,7 @@ impl<const D: usize> Fluid<D> {
     #[inline(always)]
     fn exchange(&self, e: &Edge<D>, cloud: &Cloud<D>) -> (f64, f64) {
         let d = cloud.x[e.j()] - cloud.x[e.i()];
-        let m = direction(e, &d);
+        let m = direction(&e.s, &d);
         let across = 2.0 / reach(&d, &m);
         let (a_i, a_j) = match self.conservative {
             true => (half_face(cloud.volume[e.i()], &e.s), -half_face(cloud.volume[e.j()], &e.s)),
@@ -360,7 +322,7 @@ impl<const D: usize> Fluid<D> {
         for e in op.edges(k) {
             let (i, j) = (e.i(), e.j());
             let (to_i, to_j) = self.exchange(e, cloud);
-            let m = direction(e, &(cloud.x[j] - cloud.x[i]));
+            let m = direction(&e.s, &(cloud.x[j] - cloud.x[i]));
             let mu = 0.5 * (viscosity(i) + viscosity(j));
             let [own, other] = [i, j].map(|q| thin_layer(&self.gas, medium, &work.state[q], &m));
             rows.add(i, i, |r, c| mu * to_i * own[r][c]);
