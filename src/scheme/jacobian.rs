@@ -6,6 +6,9 @@
 use super::fluid::{Fluid, Work, half_face};
 use super::shape::Frame;
 use super::viscous::Contact;
+use multiversion::multiversion;
+
+use crate::cloud::Edge;
 use crate::math::Vector;
 use crate::math::block_matrix::{BlockMatrix, Rows};
 use crate::physics::riemann::rounded;
@@ -18,6 +21,7 @@ const ROUNDING: f64 = 0.1;
 pub(super) type Block = [[f64; 5]; 5];
 
 /// ∂(F·n)/∂U at the state `q`.
+#[inline(always)]
 pub fn flux_jacobian<const D: usize>(gas: &Gas, q: &Primitive<D>, n: &Vector<D>) -> Block {
     let g1 = gas.gamma - 1.0;
     let (v, vn) = (&q.velocity, q.velocity.dot(n));
@@ -42,6 +46,7 @@ pub fn flux_jacobian<const D: usize>(gas: &Gas, q: &Primitive<D>, n: &Vector<D>)
 /// |A − drift| across the unit normal `n` at the state `q`, eigenvalues rounded off below a fraction of the sound speed.
 ///
 /// With |λ| of the shear and entropy waves taken out, the rest is a matrix of rank two (Turkel 1999, eq. 3.14).
+#[inline(always)]
 pub fn dissipation_matrix<const D: usize>(gas: &Gas, q: &Primitive<D>, n: &Vector<D>, drift: f64) -> Block {
     let c = gas.sound_speed(q);
     let g1 = gas.gamma - 1.0;
@@ -82,13 +87,8 @@ pub fn dissipation_matrix<const D: usize>(gas: &Gas, q: &Primitive<D>, n: &Vecto
 /// Fills `matrix` from the states in `work`.
 pub fn assemble<const D: usize>(fluid: &Fluid<D>, frame: &Frame<D>, work: &Work<D>, matrix: &mut BlockMatrix) {
     let (op, cloud) = (&frame.shape.operators, &frame.shape.cloud);
-    // F(q)·s and the motion of the particle, whose coefficients differ when those of the fluxes are conservative
-    let past = |q: usize, s: &Vector<D>, swept: f64| {
-        let mut m = flux_jacobian(&fluid.gas, &work.state[q], s);
-        (0..D + 2).for_each(|k| m[k][k] -= swept);
-        m
-    };
     matrix.assemble(|k, rows| {
+        edge_blocks(fluid, (frame, work), op.edges(k), rows);
         if fluid.conservative {
             for face in op.wall_faces(k) {
                 let i = face.i as usize;
@@ -97,41 +97,75 @@ pub fn assemble<const D: usize>(fluid: &Fluid<D>, frame: &Frame<D>, work: &Work<
                 (0..D + 2).for_each(|k| push[k][k] += frame.velocity_of(face.wall as usize).dot(&half));
                 rows.add(i, i, |r, c| 2.0 * push[r][c]);
             }
-        }
-        for edge in op.edges(k) {
-            let (i, j) = (edge.i(), edge.j());
-            let (qi, qj) = (&work.state[i], &work.state[j]);
-            let size = edge.s.norm();
-            let m = edge.s * (1.0 / size.max(f64::MIN_POSITIVE));
-            let mean = Primitive::zip(qi, qj, |a, b| 0.5 * (a + b));
-            let drift = 0.5 * (frame.velocity_of(i) + frame.velocity_of(j)).dot(&m);
-            let spread = dissipation_matrix(&fluid.gas, &mean, &m, drift);
-            let one_sided = [(i, j, edge.a_i), (j, i, edge.a_j)];
-            for (row, column, weight) in one_sided.into_iter().take(if edge.both() { 2 } else { 1 }) {
-                let scale = 0.5 * size / cloud.volume[row];
-                let a = match fluid.conservative {
-                    true if row == i => half_face(cloud.volume[row], &edge.s),
-                    true => -half_face(cloud.volume[row], &edge.s),
-                    false => weight,
-                };
-                let swept = frame.velocity_of(row).dot(&weight);
-                let own = past(row, &a, swept);
-                rows.add(row, row, |r, c| scale * spread[r][c] - own[r][c]);
-                let other = past(column, &a, swept);
-                let coupling = |r: usize, c: usize| other[r][c] - scale * spread[r][c];
-                couple(fluid, rows, (frame, work), (row, column), coupling);
-            }
+            fluid.add_viscous_walls((frame, work), op.wall_faces(k), rows);
         }
         if fluid.isentropic {
             op.parts[k].clone().for_each(|i| fluid.hold_entropy_block((frame, work), i, rows));
         }
-        if let Some(friction) = &fluid.friction {
-            fluid.add_viscous_blocks(friction, (frame, work), k, rows);
-        }
     });
 }
 
+/// One end of an edge as the row of a matrix: its number, that of the other end, the weight of its derivative, and its area over
+/// volume and distance for what viscosity exchanges.
+type End<const D: usize> = (usize, usize, Vector<D>, f64);
+
+/// Adds the blocks of the edges of a part.
+#[multiversion(targets("x86_64+avx2"))]
+#[allow(unsafe_code, reason = "the attribute calls the version that the processor has just been asked for")]
+fn edge_blocks<const D: usize>(fluid: &Fluid<D>, at: (&Frame<D>, &Work<D>), edges: &[Edge<D>], rows: &mut Rows<'_>) {
+    let (frame, work) = at;
+    let cloud = &frame.shape.cloud;
+    for edge in edges {
+        let (i, j) = (edge.i(), edge.j());
+        let (qi, qj) = (&work.state[i], &work.state[j]);
+        let size = edge.s.norm();
+        let m = edge.s * (1.0 / size.max(f64::MIN_POSITIVE));
+        let mean = Primitive::zip(qi, qj, |a, b| 0.5 * (a + b));
+        let drift = 0.5 * (frame.velocity_of(i) + frame.velocity_of(j)).dot(&m);
+        let spread = dissipation_matrix(&fluid.gas, &mean, &m, drift);
+        let (exchange, layers) = fluid.viscous_edge(work, edge, cloud);
+        let (a_i, a_j) = match fluid.conservative {
+            true => (half_face(cloud.volume[i], &edge.s), -half_face(cloud.volume[j], &edge.s)),
+            false => (edge.a_i, edge.a_j),
+        };
+        let end: End<D> = (i, j, edge.a_i, exchange.0);
+        one_sided(fluid, at, (end, &a_i, 0.5 * size), (&spread, &layers[0], &layers[1]), rows);
+        if edge.both() {
+            let end: End<D> = (j, i, edge.a_j, exchange.1);
+            one_sided(fluid, at, (end, &a_j, 0.5 * size), (&spread, &layers[1], &layers[0]), rows);
+        }
+    }
+}
+
+/// Adds the blocks of one end of an edge whose flux has the coefficient `a`: `layers` are those of viscosity, its own and that
+/// of the other end.
+#[inline(always)]
+fn one_sided<const D: usize>(
+    fluid: &Fluid<D>,
+    (frame, work): (&Frame<D>, &Work<D>),
+    ((row, column, weight, exchange), a, half): (End<D>, &Vector<D>, f64),
+    (spread, own_layer, other_layer): (&Block, &Block, &Block),
+    rows: &mut Rows<'_>,
+) {
+    let scale = half / frame.shape.cloud.volume[row];
+    // F(q)·a and the motion of the particle, whose coefficients differ when those of the fluxes are conservative
+    let swept = frame.velocity_of(row).dot(&weight);
+    let mut own = flux_jacobian(&fluid.gas, &work.state[row], a);
+    let mut other = flux_jacobian(&fluid.gas, &work.state[column], a);
+    for r in 0..D + 2 {
+        own[r][r] -= swept;
+        other[r][r] -= swept;
+        for c in 0..D + 2 {
+            own[r][c] = scale * spread[r][c] - own[r][c] + exchange * own_layer[r][c];
+            other[r][c] -= scale * spread[r][c] + exchange * other_layer[r][c];
+        }
+    }
+    rows.add_sized(D + 2, (row, row), |r, c| own[r][c]);
+    couple(fluid, rows, (frame, work), (row, column), |r, c| other[r][c]);
+}
+
 /// Adds the block of `column` to `row`, through walls and images to the particle that rules them.
+#[inline(always)]
 pub(super) fn couple<const D: usize>(
     fluid: &Fluid<D>,
     rows: &mut Rows<'_>,
@@ -141,7 +175,7 @@ pub(super) fn couple<const D: usize>(
 ) {
     let cloud = &frame.shape.cloud;
     if column < cloud.n_fluid {
-        rows.add(row, column, coupling);
+        rows.add_sized(D + 2, (row, column), coupling);
     } else if cloud.interface_range().contains(&column) {
         let wall = &cloud.interface[column - cloud.n_fluid];
         let slips = fluid.friction.as_ref().is_none_or(|f| f.contact(wall.body) == Contact::Slip);

@@ -21,7 +21,7 @@ use std::sync::Arc;
 
 use super::boundary::{WallMotion, stuck_wall};
 use super::fluid::{Fluid, Work, half_face};
-use super::jacobian::{Block, couple};
+use super::jacobian::Block;
 use super::reconstruct::Gradient;
 use super::shape::{Frame, Shape};
 use crate::cloud::operators::WallFace;
@@ -308,41 +308,42 @@ impl<const D: usize> Fluid<D> {
         [(i, area / reach(&(cloud.x[wall] - cloud.x[i]), &normal)), (i, 0.0)]
     }
 
-    /// Adds −∂/∂U of the viscous terms of part `k`.
-    pub(super) fn add_viscous_blocks(
+    /// Viscosity times area over volume and distance of an edge, as each end sees it, and what [`thin_layer`] gives for both ends.
+    #[inline(always)]
+    pub(super) fn viscous_edge(&self, work: &Work<D>, e: &Edge<D>, cloud: &Cloud<D>) -> ((f64, f64), [Block; 2]) {
+        let mut layers = [[[0.0; 5]; 5]; 2];
+        let Some(friction) = &self.friction else { return ((0.0, 0.0), layers) };
+        let (medium, ends) = (&friction.medium, [&work.state[e.i()], &work.state[e.j()]]);
+        let mu = 0.5 * (medium.at(self.gas.temperature(ends[0])) + medium.at(self.gas.temperature(ends[1])));
+        let m = direction(&e.s, &(cloud.x[e.j()] - cloud.x[e.i()]));
+        let (to_i, to_j) = self.exchange(e, cloud);
+        for side in 0..2 {
+            thin_layer(&self.gas, medium, ends[side], &m, &mut layers[side]);
+        }
+        ((mu * to_i, mu * to_j), layers)
+    }
+
+    /// Adds −∂/∂U of stress and heat on pieces of wall.
+    pub(super) fn add_viscous_walls(
         &self,
-        friction: &Friction,
         (frame, work): (&Frame<D>, &Work<D>),
-        k: usize,
+        faces: &[WallFace<D>],
         rows: &mut Rows<'_>,
     ) {
-        let (op, cloud) = (&frame.shape.operators, &frame.shape.cloud);
-        let medium = &friction.medium;
-        let viscosity = |i: usize| medium.at(self.gas.temperature(&work.state[i]));
-        for e in op.edges(k) {
-            let (i, j) = (e.i(), e.j());
-            let (to_i, to_j) = self.exchange(e, cloud);
-            let m = direction(&e.s, &(cloud.x[j] - cloud.x[i]));
-            let mu = 0.5 * (viscosity(i) + viscosity(j));
-            let [own, other] = [i, j].map(|q| thin_layer(&self.gas, medium, &work.state[q], &m));
-            rows.add(i, i, |r, c| mu * to_i * own[r][c]);
-            couple(self, rows, (frame, work), (i, j), |r, c| -mu * to_i * other[r][c]);
-            if e.both() {
-                rows.add(j, j, |r, c| mu * to_j * other[r][c]);
-                couple(self, rows, (frame, work), (j, i), |r, c| -mu * to_j * own[r][c]);
-            }
-        }
-        for face in op.wall_faces(k).iter().filter(|_| self.conservative) {
+        let Some(friction) = &self.friction else { return };
+        let (cloud, medium) = (&frame.shape.cloud, &friction.medium);
+        for face in faces {
             let source = cloud.source(face.wall as usize).index;
             let contact = friction.contact(cloud.interface[source - cloud.n_fluid].body);
             if contact == Contact::Slip {
                 continue;
             }
             let n = face.area.unit();
+            let viscosity = medium.at(self.gas.temperature(&work.state[source]));
             for (q, weight) in self.wall_exchange(cloud, face) {
                 let block =
                     at_contact(&self.gas, medium, (&work.state[q], &work.state[source].velocity), (contact, &n));
-                rows.add(face.i as usize, q, |r, c| viscosity(source) * weight * block[r][c]);
+                rows.add(face.i as usize, q, |r, c| viscosity * weight * block[r][c]);
             }
         }
     }
@@ -350,15 +351,15 @@ impl<const D: usize> Fluid<D> {
 
 /// ∂/∂U of (0, v + m (m·v)/3, v̄·(the same) + γ/Pr e) at the state `q`, v̄ held: what differences across a face of normal `m`
 /// exchange, over the viscosity.
-fn thin_layer<const D: usize>(gas: &Gas, medium: &Newtonian, q: &Primitive<D>, m: &Vector<D>) -> Block {
-    let mut block = motion(q, m);
+#[inline(always)]
+fn thin_layer<const D: usize>(gas: &Gas, medium: &Newtonian, q: &Primitive<D>, m: &Vector<D>, block: &mut Block) {
+    motion(q, m, block);
     let heat = energy(q, gas);
     let e = D + 1;
     for c in 0..D + 2 {
         let work: f64 = (0..D).map(|d| q.velocity[d] * block[1 + d][c]).sum();
         block[e][c] = work + gas.gamma / medium.prandtl * heat[c];
     }
-    block
 }
 
 /// The same at a wall with the given velocity.
@@ -368,7 +369,8 @@ fn at_contact<const D: usize>(
     (q, wall): (&Primitive<D>, &Vector<D>),
     (contact, n): (Contact, &Vector<D>),
 ) -> Block {
-    let mut block = motion(q, n);
+    let mut block = [[0.0; 5]; 5];
+    motion(q, n, &mut block);
     let heat = energy(q, gas);
     let conducts = if contact == Contact::Adiabatic { 0.0 } else { gas.gamma / medium.prandtl };
     for c in 0..D + 2 {
@@ -378,9 +380,9 @@ fn at_contact<const D: usize>(
     block
 }
 
-/// ∂/∂U of v + m (m·v)/3, in the rows of momentum.
-fn motion<const D: usize>(q: &Primitive<D>, m: &Vector<D>) -> Block {
-    let mut block = [[0.0; 5]; 5];
+/// ∂/∂U of v + m (m·v)/3, in the rows of momentum of a block that is zero.
+#[inline(always)]
+fn motion<const D: usize>(q: &Primitive<D>, m: &Vector<D>, block: &mut Block) {
     let across = q.velocity.dot(m);
     for d in 0..D {
         block[1 + d][0] = -(q.velocity[d] + m[d] * across / 3.0) / q.density;
@@ -389,10 +391,10 @@ fn motion<const D: usize>(q: &Primitive<D>, m: &Vector<D>) -> Block {
         }
         block[1 + d][1 + d] += 1.0 / q.density;
     }
-    block
 }
 
 /// ∂e/∂U of the internal energy per mass.
+#[inline(always)]
 fn energy<const D: usize>(q: &Primitive<D>, gas: &Gas) -> [f64; 5] {
     let mut row = [0.0; 5];
     row[0] = (q.velocity.norm_squared() - gas.energy(q) / q.density) / q.density;
