@@ -9,7 +9,7 @@
 //! independent of one another; a second solve for what the first one left takes them in.
 use std::ops::Range;
 
-use super::block_matrix::{BlockMatrix, invert, load, multiply, subtract, widen_block};
+use super::block_matrix::{Apart, BlockMatrix, invert, load, multiply, widen_block};
 use super::sweep::{sweep, sweep_parts};
 
 /// Inverse pivots of a matrix, and the storage of a solution.
@@ -73,11 +73,12 @@ impl Incomplete {
             let start = parts[k].start;
             for i in parts[k].clone() {
                 let (_, inside, _) = matrix.split_row(i);
-                let mut r = [0.0; N];
+                let (mut r, mut sum) = ([0.0; N], Apart::ZERO);
                 b(i, &mut r);
                 for e in inside.start..matrix.middle(i) {
-                    subtract::<N>(matrix.off_diagonal(e), &load::<N>(x, matrix.column(e) - start), &mut r);
+                    sum.subtract(matrix.off_diagonal(e), &x[(matrix.column(e) - start) * N..]);
                 }
+                let r = sum.added_to(&r);
                 add_pivoted::<N>(inverse, i, &r, [0.0; N], &mut x[(i - start) * N..]);
             }
             backward::<N>(matrix, inverse, &parts[k], x);
@@ -87,18 +88,19 @@ impl Incomplete {
             let start = parts[k].start;
             for i in parts[k].clone() {
                 let (below, inside, above) = matrix.split_row(i);
-                let mut r = [0.0; N];
+                let (mut r, mut sum) = ([0.0; N], Apart::ZERO);
                 b(i, &mut r);
                 multiply::<N>(matrix.diagonal(i), &load::<N>(first, i).map(|x| -x), &mut r);
                 for e in below.chain(matrix.middle(i)..inside.end).chain(above) {
-                    subtract::<N>(matrix.off_diagonal(e), &load::<N>(first, matrix.column(e)), &mut r);
+                    sum.subtract(matrix.off_diagonal(e), &first[matrix.column(e) * N..]);
                 }
                 // what is left of the right-hand side and what the forward solve takes from it, at once
                 for e in inside.start..matrix.middle(i) {
                     let j = matrix.column(e);
                     let (x, y) = (load::<N>(first, j), load::<N>(y, j - start));
-                    subtract::<N>(matrix.off_diagonal(e), &std::array::from_fn(|c| x[c] + y[c]), &mut r);
+                    sum.subtract(matrix.off_diagonal(e), &std::array::from_fn::<f32, N, _>(|c| x[c] + y[c]));
                 }
+                let r = sum.added_to(&r);
                 add_pivoted::<N>(inverse, i, &r, [0.0; N], &mut y[(i - start) * N..]);
             }
             backward::<N>(matrix, inverse, &parts[k], y);
@@ -112,12 +114,12 @@ impl Incomplete {
 fn backward<const N: usize>(matrix: &BlockMatrix, inverse: &[f32], part: &Range<usize>, x: &mut [f32]) {
     for i in part.clone().rev() {
         let (_, inside, _) = matrix.split_row(i);
-        let mut r = [0.0; N];
+        let mut sum = Apart::<N>::ZERO;
         for e in matrix.middle(i)..inside.end {
-            subtract::<N>(matrix.off_diagonal(e), &load::<N>(x, matrix.column(e) - part.start), &mut r);
+            sum.subtract(matrix.off_diagonal(e), &x[(matrix.column(e) - part.start) * N..]);
         }
         let own = load::<N>(x, i - part.start);
-        add_pivoted::<N>(inverse, i, &r, own, &mut x[(i - part.start) * N..]);
+        add_pivoted::<N>(inverse, i, &sum.added_to(&[0.0; N]), own, &mut x[(i - part.start) * N..]);
     }
 }
 

@@ -2,7 +2,7 @@
 //!
 //! Basis vectors are kept in single precision, sums are made in double: the linear systems of an implicit step are solved to
 //! a few per cent, and the basis is the largest array of a run.
-use super::sweep::{fill, norm, sum_each, sweep, sweep_chunks};
+use super::sweep::{abreast, fill, norm, sum_each, sweep, sweep_chunks};
 
 /// Part of a vector that must be left by a pass of Gram-Schmidt for the rest to be orthogonal enough.
 const ENOUGH_LEFT: f64 = 0.1;
@@ -137,7 +137,8 @@ impl Gmres {
 fn products(w: &[f64], basis: &[Vec<f32>]) -> Vec<f64> {
     sum_each(w.len(), basis.len(), |range, out| {
         for (out, v) in out.iter_mut().zip(basis) {
-            *out = w[range.clone()].iter().zip(&v[range.clone()]).map(|(a, b)| a * f64::from(*b)).sum();
+            let (w, v) = (&w[range.clone()], &v[range.clone()]);
+            *out = abreast(0..w.len(), |k| w[k] * f64::from(v[k]));
         }
     })
 }

@@ -137,8 +137,25 @@ pub fn parts(n: usize, size: usize) -> Vec<Range<usize>> {
 
 /// Sum of `f(i)` over `0..n`: chunk sums of fixed size, added in order.
 pub fn sum(n: usize, f: impl Fn(usize) -> f64 + Sync) -> f64 {
-    let chunk = |c: usize| (c * CHUNK..((c + 1) * CHUNK).min(n)).map(&f).sum::<f64>();
+    let chunk = |c: usize| abreast(c * CHUNK..((c + 1) * CHUNK).min(n), &f);
     pairwise(0, n.div_ceil(CHUNK), &chunk)
+}
+
+/// Sum of `f(i)` over a range, every eighth term together: additions that need not wait for one another.
+#[inline(always)]
+pub fn abreast(range: Range<usize>, f: impl Fn(usize) -> f64) -> f64 {
+    let mut sums = [0.0; 8];
+    let whole = range.start + range.len() / 8 * 8;
+    for start in (range.start..whole).step_by(8) {
+        for (k, sum) in sums.iter_mut().enumerate() {
+            *sum += f(start + k);
+        }
+    }
+    for (i, sum) in (whole..range.end).zip(&mut sums) {
+        *sum += f(i);
+    }
+    let [a, b, c, d, e, f, g, h] = sums;
+    ((a + b) + (c + d)) + ((e + f) + (g + h))
 }
 
 /// Sum of `value(k)` over `from..to` in a fixed tree.

@@ -524,19 +524,24 @@ impl<'a, S: System> Relax<'a, S> {
         let (trial, scale, time) = (&mut self.trial, &self.scale, self.time.as_ref());
         // rows are scaled by the local time, so that small particles do not rule the norm
         let b = &mut self.trial_residual;
-        crate::math::sweep::sweep(b, |k| residual[k] * scale[k / n]);
+        crate::math::sweep::sweep_rows(b, n, |i, b| {
+            b.iter_mut().zip(&residual[i * n..]).for_each(|(b, r)| *b = r * scale[i]);
+        });
         let product = |v: &[f64], out: &mut [f64]| {
             let length = (sum(v.len(), |k| v[k] * v[k]) / v.len() as f64).sqrt();
             if length == 0.0 {
                 return out.fill(0.0);
             }
             let eps = 1e-7 * (1.0 + size) / length;
+            let inverse = 1.0 / eps;
             crate::math::sweep::sweep(trial, |k| u[k] + eps * v[k]);
             system.rhs(frame, trial, work, out);
             // the residual holds the time term at u, which is the same in both; its change is in the shift
             let base = |k: usize| residual[k] + time.map_or(0.0, |t| t.rate * u[k] + t.rest[k]);
-            crate::math::sweep::sweep_rows(out, 1, |k, o| {
-                o[0] = ((base(k) - o[0]) / eps + shift[k / n] * v[k]) * scale[k / n];
+            crate::math::sweep::sweep_rows(out, n, |i, out| {
+                for (k, o) in (i * n..).zip(out) {
+                    *o = ((base(k) - *o) * inverse + shift[i] * v[k]) * scale[i];
+                }
             });
         };
         let factors = &mut self.factors;
@@ -569,7 +574,10 @@ impl<'a, S: System> Relax<'a, S> {
         for (k, stage) in STAGES.iter().enumerate() {
             let (rate, u, r) = (&self.rate, &self.u, &self.trial_residual);
             let cfl = EXPLICIT_CFL.min(self.cfl);
-            crate::math::sweep::sweep(&mut self.step, |k| stage * cfl / rate[k / n] * r[k]);
+            crate::math::sweep::sweep_rows(&mut self.step, n, |i, step| {
+                let length = stage * cfl / rate[i];
+                step.iter_mut().zip(&r[i * n..]).for_each(|(step, r)| *step = length * r);
+            });
             if k + 1 < STAGES.len() {
                 let step = &self.step;
                 crate::math::sweep::sweep(&mut self.trial, |k| u[k] + step[k]);
