@@ -6,6 +6,8 @@
 //! not depend on the number of threads.
 use std::ops::Range;
 
+use multiversion::multiversion;
+
 use super::sweep::{copy, fill, parts, sweep_parts, sweep_rows, sweep_two_parts};
 
 /// Fewest and most rows in one part of a coarse matrix.
@@ -190,9 +192,7 @@ impl BlockMatrix {
             let (b, old) = (&s.b, &s.r);
             let outputs = ((self.parts.as_slice(), N, s.x.as_mut_slice()), (self.parts.as_slice(), N, &mut s.side[..]));
             sweep_two_parts(outputs.0, outputs.1, &|k, x, side| {
-                let part = self.parts[k].clone();
-                let row = |i: usize| self.relax_row::<N>(i, &part, (b, old), forward, (x, side));
-                if forward { part.clone().for_each(row) } else { part.clone().rev().for_each(row) }
+                relax_part::<N>(self, &self.parts[k], (b, old), forward, (x, side));
             });
         }
     }
@@ -393,6 +393,22 @@ impl BlockMatrix {
     /// Columns of row `i` beside its own, in ascending order.
     pub fn columns(&self, i: usize) -> &[u32] {
         &self.column[self.first[i] as usize..self.first[i + 1] as usize]
+    }
+}
+
+/// A half-sweep over one part.
+#[multiversion(targets("x86_64+avx2"))]
+#[allow(unsafe_code, reason = "the attribute calls the version that the processor has just been asked for")]
+fn relax_part<const N: usize>(
+    matrix: &BlockMatrix,
+    part: &Range<usize>,
+    (b, old): (&[f32], &[f32]),
+    forward: bool,
+    (x, side): (&mut [f32], &mut [f32]),
+) {
+    for k in 0..part.len() {
+        let i = if forward { part.start + k } else { part.end - 1 - k };
+        matrix.relax_row::<N>(i, part, (b, old), forward, (x, side));
     }
 }
 

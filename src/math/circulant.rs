@@ -7,6 +7,8 @@
 //! the finest level, the number of rows gathered on coarser ones. Sweeps run as those of [`BlockMatrix`], in the same parts.
 use std::ops::Range;
 
+use multiversion::multiversion;
+
 use super::block_matrix::{BlockMatrix, load, multiply, subtract_wide, widen_block};
 use super::sweep::{copy, fill, sweep_parts, sweep_two_parts};
 
@@ -87,29 +89,28 @@ impl Waves {
 
     /// One forward and one backward sweep, starting from `x`.
     pub fn symmetric_sweep(&mut self, matrix: &BlockMatrix) {
-        match matrix.block() {
-            4 => self.both_sweeps::<4>(matrix),
-            5 => self.both_sweeps::<5>(matrix),
-            3 => self.both_sweeps::<3>(matrix),
-            2 => self.both_sweeps::<2>(matrix),
-            _ => self.both_sweeps::<1>(matrix),
+        match (matrix.block(), self.count()) {
+            (4, 3) => self.both_sweeps::<4, 3>(matrix),
+            (4, 5) => self.both_sweeps::<4, 5>(matrix),
+            (4, 7) => self.both_sweeps::<4, 7>(matrix),
+            (4, _) => self.both_sweeps::<4, MOST>(matrix),
+            (5, 3) => self.both_sweeps::<5, 3>(matrix),
+            (5, 5) => self.both_sweeps::<5, 5>(matrix),
+            (5, _) => self.both_sweeps::<5, MOST>(matrix),
+            (3, _) => self.both_sweeps::<3, MOST>(matrix),
+            (2, _) => self.both_sweeps::<2, MOST>(matrix),
+            _ => self.both_sweeps::<1, MOST>(matrix),
         }
     }
 
-    fn both_sweeps<const N: usize>(&mut self, matrix: &BlockMatrix) {
+    fn both_sweeps<const N: usize, const COUNT: usize>(&mut self, matrix: &BlockMatrix) {
         let width = N * self.count();
         for forward in [true, false] {
             copy(&self.x, &mut self.r);
-            let (b, old, parts) = (&self.b, &self.r, matrix.parts());
-            let (inverse, harmonics) = (&self.inverse, self.harmonics);
+            let (known, parts) = ((&self.b[..], &self.r[..], &self.inverse[..], self.harmonics), matrix.parts());
             let outputs = ((parts, width, self.x.as_mut_slice()), (parts, width, &mut self.side[..]));
             sweep_two_parts(outputs.0, outputs.1, &|k, x, side| {
-                let part = parts[k].clone();
-                let row = |i: usize| {
-                    let own = (&inverse[i * 2 * harmonics * N * N..(i + 1) * 2 * harmonics * N * N], harmonics);
-                    relax_row::<N>(matrix, own, (i, &part), (b, old), forward, (x, side));
-                };
-                if forward { part.clone().for_each(row) } else { part.clone().rev().for_each(row) }
+                relax_part::<N, COUNT>(matrix, known, &parts[k], forward, (x, side));
             });
         }
     }
@@ -192,9 +193,26 @@ fn gather<const N: usize>(matrix: &BlockMatrix, e: usize, x: &[f32], sum: &mut [
     }
 }
 
-/// x_i = (A_ii + ∂/∂t)⁻¹ (b_i − Σ_j A_ij x_j).
+/// A half-sweep over one part; right-hand side, solution before, inverse diagonals and number of harmonics are known.
+#[multiversion(targets("x86_64+avx2"))]
+#[allow(unsafe_code, reason = "the attribute calls the version that the processor has just been asked for")]
+fn relax_part<const N: usize, const COUNT: usize>(
+    matrix: &BlockMatrix,
+    (b, old, inverse, harmonics): (&[f32], &[f32], &[f32], usize),
+    part: &Range<usize>,
+    forward: bool,
+    (x, side): (&mut [f32], &mut [f32]),
+) {
+    for k in 0..part.len() {
+        let i = if forward { part.start + k } else { part.end - 1 - k };
+        let own = (&inverse[i * 2 * harmonics * N * N..(i + 1) * 2 * harmonics * N * N], harmonics);
+        relax_row::<N, COUNT>(matrix, own, (i, part), (b, old), forward, (x, side));
+    }
+}
+
+/// x_i = (A_ii + ∂/∂t)⁻¹ (b_i − Σ_j A_ij x_j), for `COUNT` coefficients or, with [`MOST`], any number up to that.
 #[inline(always)]
-fn relax_row<const N: usize>(
+fn relax_row<const N: usize, const COUNT: usize>(
     matrix: &BlockMatrix,
     (inverse, harmonics): (&[f32], usize),
     (i, part): (usize, &Range<usize>),
@@ -202,12 +220,12 @@ fn relax_row<const N: usize>(
     forward: bool,
     (x, side): (&mut [f32], &mut [f32]),
 ) {
-    let count = 2 * harmonics + 1;
+    let count = if COUNT == MOST { 2 * harmonics + 1 } else { COUNT };
     let at = (i - part.start) * count * N;
     let (below, inside, above) = matrix.split_row(i);
     let middle = matrix.middle(i);
-    let mut r = [[0.0; N]; MOST];
-    let mut sum = [[0.0; N]; MOST];
+    let mut r = [[0.0; N]; COUNT];
+    let mut sum = [[0.0; N]; COUNT];
     for e in below.chain(above) {
         gather::<N>(matrix, e, &old[matrix.column(e) * count * N..], &mut r[..count]);
     }

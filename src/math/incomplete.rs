@@ -9,6 +9,8 @@
 //! independent of one another; a second solve for what the first one left takes them in.
 use std::ops::Range;
 
+use multiversion::multiversion;
+
 use super::block_matrix::{Apart, BlockMatrix, invert, load, multiply, widen_block};
 use super::sweep::{sweep, sweep_parts};
 
@@ -68,49 +70,72 @@ impl Incomplete {
     }
 
     fn solve<const N: usize>(&mut self, matrix: &BlockMatrix, b: impl Fn(usize, &mut [f32]) + Sync, z: &mut [f64]) {
-        let (parts, inverse, first) = (matrix.parts(), &self.inverse, &mut self.first);
-        sweep_parts(parts, N, first, &|k, x| {
-            let start = parts[k].start;
-            for i in parts[k].clone() {
-                let (_, inside, _) = matrix.split_row(i);
-                let (mut r, mut sum) = ([0.0; N], Apart::ZERO);
-                b(i, &mut r);
-                for e in inside.start..matrix.middle(i) {
-                    sum.subtract(matrix.off_diagonal(e), &x[(matrix.column(e) - start) * N..]);
-                }
-                let r = sum.added_to(&r);
-                add_pivoted::<N>(inverse, i, &r, [0.0; N], &mut x[(i - start) * N..]);
-            }
-            backward::<N>(matrix, inverse, &parts[k], x);
-        });
-        let first = &*first;
-        sweep_parts(parts, N, &mut self.second, &|k, y| {
-            let start = parts[k].start;
-            for i in parts[k].clone() {
-                let (below, inside, above) = matrix.split_row(i);
-                let (mut r, mut sum) = ([0.0; N], Apart::ZERO);
-                b(i, &mut r);
-                multiply::<N>(matrix.diagonal(i), &load::<N>(first, i).map(|x| -x), &mut r);
-                for e in below.chain(matrix.middle(i)..inside.end).chain(above) {
-                    sum.subtract(matrix.off_diagonal(e), &first[matrix.column(e) * N..]);
-                }
-                // what is left of the right-hand side and what the forward solve takes from it, at once
-                for e in inside.start..matrix.middle(i) {
-                    let j = matrix.column(e);
-                    let (x, y) = (load::<N>(first, j), load::<N>(y, j - start));
-                    sum.subtract(matrix.off_diagonal(e), &std::array::from_fn::<f32, N, _>(|c| x[c] + y[c]));
-                }
-                let r = sum.added_to(&r);
-                add_pivoted::<N>(inverse, i, &r, [0.0; N], &mut y[(i - start) * N..]);
-            }
-            backward::<N>(matrix, inverse, &parts[k], y);
-        });
+        let (parts, inverse, first) = (matrix.parts(), &self.inverse[..], &mut self.first);
+        sweep_parts(parts, N, first, &|k, x| solve_part::<N>(matrix, inverse, &parts[k], &b, x));
+        let first = &first[..];
+        sweep_parts(parts, N, &mut self.second, &|k, y| correct_part::<N>(matrix, (inverse, first), &parts[k], &b, y));
         let second = &self.second;
         sweep(z, |k| f64::from(first[k] + second[k]));
     }
 }
 
+/// x ← (D + U)⁻¹ D (D + L)⁻¹ b on the rows of one part.
+#[multiversion(targets("x86_64+avx2"))]
+#[allow(unsafe_code, reason = "the attribute calls the version that the processor has just been asked for")]
+fn solve_part<const N: usize>(
+    matrix: &BlockMatrix,
+    inverse: &[f32],
+    part: &Range<usize>,
+    b: &impl Fn(usize, &mut [f32]),
+    x: &mut [f32],
+) {
+    let start = part.start;
+    for i in part.clone() {
+        let (_, inside, _) = matrix.split_row(i);
+        let (mut r, mut sum) = ([0.0; N], Apart::ZERO);
+        b(i, &mut r);
+        for e in inside.start..matrix.middle(i) {
+            sum.subtract(matrix.off_diagonal(e), &x[(matrix.column(e) - start) * N..]);
+        }
+        let r = sum.added_to(&r);
+        add_pivoted::<N>(inverse, i, &r, [0.0; N], &mut x[(i - start) * N..]);
+    }
+    backward::<N>(matrix, inverse, part, x);
+}
+
+/// The same for what the solution `first` has left of the right-hand side.
+#[multiversion(targets("x86_64+avx2"))]
+#[allow(unsafe_code, reason = "the attribute calls the version that the processor has just been asked for")]
+fn correct_part<const N: usize>(
+    matrix: &BlockMatrix,
+    (inverse, first): (&[f32], &[f32]),
+    part: &Range<usize>,
+    b: &impl Fn(usize, &mut [f32]),
+    y: &mut [f32],
+) {
+    let start = part.start;
+    for i in part.clone() {
+        let (below, inside, above) = matrix.split_row(i);
+        let (mut r, mut sum) = ([0.0; N], Apart::ZERO);
+        b(i, &mut r);
+        multiply::<N>(matrix.diagonal(i), &load::<N>(first, i).map(|x| -x), &mut r);
+        for e in below.chain(matrix.middle(i)..inside.end).chain(above) {
+            sum.subtract(matrix.off_diagonal(e), &first[matrix.column(e) * N..]);
+        }
+        // what is left of the right-hand side and what the forward solve takes from it, at once
+        for e in inside.start..matrix.middle(i) {
+            let j = matrix.column(e);
+            let (x, y) = (load::<N>(first, j), load::<N>(y, j - start));
+            sum.subtract(matrix.off_diagonal(e), &std::array::from_fn::<f32, N, _>(|c| x[c] + y[c]));
+        }
+        let r = sum.added_to(&r);
+        add_pivoted::<N>(inverse, i, &r, [0.0; N], &mut y[(i - start) * N..]);
+    }
+    backward::<N>(matrix, inverse, part, y);
+}
+
 /// x ← (D + U)⁻¹ D x on the rows of one part.
+#[inline(always)]
 fn backward<const N: usize>(matrix: &BlockMatrix, inverse: &[f32], part: &Range<usize>, x: &mut [f32]) {
     for i in part.clone().rev() {
         let (_, inside, _) = matrix.split_row(i);
