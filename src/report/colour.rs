@@ -4,6 +4,7 @@
 //! distances look equally different: lightness grows at a constant rate along the sequential scale, and falls at a
 //! constant rate on both sides of the middle of the diverging one.
 use std::f64::consts::PI;
+use std::sync::LazyLock;
 
 /// A colour with opacity, 0 to 255 each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -78,14 +79,28 @@ impl Colormap {
     /// The colour of `value` on a scale over `range`; values outside get the colour of the end.
     pub fn colour(&self, value: f64, range: [f64; 2]) -> Colour {
         match self {
-            Self::Sequential => sequential(fraction(value, range)),
+            Self::Sequential => looked_up(&SEQUENTIAL, fraction(value, range)),
             Self::Diverging { centre } => {
                 // Both arms share one rate, so that equal departures look equally strong.
                 let reach = (range[1] - centre).abs().max((centre - range[0]).abs());
-                diverging(fraction(value, [centre - reach, centre + reach]))
+                looked_up(&DIVERGING, fraction(value, [centre - reach, centre + reach]))
             }
         }
     }
+}
+
+/// Steps into which a scale is divided: finer than colours can tell.
+const STEPS: usize = 4096;
+static SEQUENTIAL: LazyLock<Vec<Colour>> = LazyLock::new(|| steps(sequential));
+static DIVERGING: LazyLock<Vec<Colour>> = LazyLock::new(|| steps(diverging));
+
+fn steps(colour: fn(f64) -> Colour) -> Vec<Colour> {
+    (0..=STEPS).map(|k| colour(k as f64 / STEPS as f64)).collect()
+}
+
+/// The colour at the fraction `s` of a scale.
+fn looked_up(scale: &[Colour], s: f64) -> Colour {
+    scale[(s * STEPS as f64).round() as usize]
 }
 
 fn fraction(value: f64, range: [f64; 2]) -> f64 {

@@ -214,7 +214,7 @@ impl<const D: usize> Fluid<D> {
         });
     }
 
-    fn rhs_with_limiter(&self, flux: impl UpwindFlux<D>, frame: &Frame<D>, work: &Work<D>, du: &mut [f64]) {
+    pub(super) fn rhs_with_limiter(&self, flux: impl UpwindFlux<D>, frame: &Frame<D>, work: &Work<D>, du: &mut [f64]) {
         match self.limiter {
             Limiter::None => self.fluxes(flux, Unlimited, (frame, work), du),
             Limiter::VanAlbada => self.fluxes(flux, VanAlbada, (frame, work), du),
