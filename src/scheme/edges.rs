@@ -180,8 +180,8 @@ pub fn edge_fluxes<const D: usize, F: UpwindFlux<D>, L: Limit>(
         }
         if let Some(medium) = rule.medium {
             match rule.conservative {
-                true => rub::<D, true>(rule.gas, medium, &mut batch),
-                false => rub::<D, false>(rule.gas, medium, &mut batch),
+                true => shear::<D, true>(rule.gas, medium, &mut batch),
+                false => shear::<D, false>(rule.gas, medium, &mut batch),
             }
         }
         for (k, e) in some.iter().enumerate() {
@@ -330,7 +330,7 @@ fn both<const D: usize, const MOVES: bool>(
 /// What stress and heat along every edge add to V dU/dt of both ends.
 #[multiversion(targets("x86_64+avx2"))]
 #[allow(unsafe_code, reason = "the attribute calls the version that the processor has just been asked for")]
-fn rub<const D: usize, const CONSERVATIVE: bool>(gas: Gas, medium: Newtonian, batch: &mut Batch<D>) {
+fn shear<const D: usize, const CONSERVATIVE: bool>(gas: Gas, medium: Newtonian, batch: &mut Batch<D>) {
     let Batch { own, weight, area, along, gradient, out: [out_i, out_j], .. } = batch;
     for k in 0..LANES {
         let (s, d) = (take(area, k), take(along, k));
