@@ -43,5 +43,5 @@ pub(super) fn travelling() {
     let step = seconds(|| drop(march.advance()));
     tell("travelling particles searched and fitted anew, over a residual", anew / one, "bar 4");
     tell("weights fitted anew on the same lists", refit / one, "");
-    tell("Runge-Kutta step of three stages on particles that travel", step / one, "6.4 so far");
+    tell("Runge-Kutta step of three stages on particles that travel", step / one, "");
 }
