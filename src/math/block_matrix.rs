@@ -210,14 +210,15 @@ impl BlockMatrix {
         let at = (i - part.start) * N;
         let (below, inside, above) = self.split_row(i);
         let middle = self.middle(i);
-        let (mut outside, mut swept) = (Apart::ZERO, Apart::ZERO);
+        let mut r = load::<N>(b, i);
         for e in below.chain(above) {
-            outside.subtract(self.off_diagonal(e), &old[self.column[e] as usize * N..]);
+            subtract::<N>(self.off_diagonal(e), &load::<N>(old, self.column[e] as usize), &mut r);
         }
-        for e in if forward { inside.start..middle } else { middle..inside.end } {
-            swept.subtract(self.off_diagonal(e), &x[(self.column[e] as usize - part.start) * N..]);
+        let swept = if forward { inside.start..middle } else { middle..inside.end };
+        let mut sum = [0.0; N];
+        for e in swept {
+            subtract::<N>(self.off_diagonal(e), &load::<N>(x, self.column[e] as usize - part.start), &mut sum);
         }
-        let (mut r, sum) = (outside.added_to(&load::<N>(b, i)), swept.added_to(&[0.0; N]));
         (0..N).for_each(|c| r[c] += side[at + c] + sum[c]);
         side[at..at + N].copy_from_slice(&sum);
         let mut y = [0.0; N];
@@ -285,11 +286,10 @@ impl BlockMatrix {
             for (i, row) in part.clone().zip(out.chunks_exact_mut(N)) {
                 let (below, inside, above) = self.split_row(i);
                 let middle = self.middle(i);
-                let mut sum = Apart::ZERO;
+                let mut sum = load::<N>(b, i);
                 for e in below.chain(inside.start..middle).chain(above) {
-                    sum.subtract(self.off_diagonal(e), &x[self.column[e] as usize * N..]);
+                    subtract::<N>(self.off_diagonal(e), &load::<N>(x, self.column[e] as usize), &mut sum);
                 }
-                let sum = sum.added_to(&load::<N>(b, i));
                 let mut own = [0.0; N];
                 multiply::<N>(&self.diagonal[i * N * N..(i + 1) * N * N], &load::<N>(x, i), &mut own);
                 // what the backward sweep summed after the diagonal still holds
@@ -316,11 +316,11 @@ impl BlockMatrix {
             for (i, row) in part.clone().zip(out.chunks_exact_mut(N)) {
                 let (_, inside, _) = self.split_row(i);
                 let middle = self.middle(i);
-                let mut sum = Apart::ZERO;
+                let mut sum = [0.0; N];
                 for e in middle..inside.end {
-                    sum.subtract(self.off_diagonal(e), &x[self.column[e] as usize * N..]);
+                    subtract::<N>(self.off_diagonal(e), &load::<N>(x, self.column[e] as usize), &mut sum);
                 }
-                row.copy_from_slice(&sum.added_to(&[0.0; N]));
+                row.copy_from_slice(&sum);
             }
         });
     }
@@ -487,34 +487,10 @@ pub(super) fn load<const N: usize>(x: &[f32], i: usize) -> [f32; N] {
     out
 }
 
-/// A sum of products with blocks, one column of the blocks apart from the other: additions that need not wait for one another.
-#[derive(Clone, Copy)]
-pub(super) struct Apart<const N: usize>([[f32; N]; N]);
-
-impl<const N: usize> Apart<N> {
-    /// Nothing yet.
-    pub(super) const ZERO: Self = Self([[0.0; N]; N]);
-
-    /// Takes B x away.
-    #[inline(always)]
-    pub(super) fn subtract(&mut self, block: &[u16], x: &[f32]) {
-        let (block, x) = (&block[..N * N], &x[..N]);
-        for c in 0..N {
-            for k in 0..N {
-                self.0[c][k] -= widen(block[c * N + k]) * x[c];
-            }
-        }
-    }
-
-    /// r and all that was taken away.
-    #[inline(always)]
-    pub(super) fn added_to(&self, r: &[f32; N]) -> [f32; N] {
-        let mut out = *r;
-        for column in &self.0 {
-            (0..N).for_each(|k| out[k] += column[k]);
-        }
-        out
-    }
+/// r ← r − B x for a block stored by columns.
+#[inline(always)]
+pub(super) fn subtract<const N: usize>(block: &[u16], x: &[f32; N], r: &mut [f32; N]) {
+    subtract_wide(&widen_block::<N>(block), x, r);
 }
 
 /// The numbers of a block, by columns.

@@ -11,7 +11,7 @@ use std::ops::Range;
 
 use multiversion::multiversion;
 
-use super::block_matrix::{Apart, BlockMatrix, invert, load, multiply, widen_block};
+use super::block_matrix::{BlockMatrix, invert, load, multiply, subtract, widen_block};
 use super::sweep::{sweep, sweep_parts};
 
 /// Inverse pivots of a matrix, and the storage of a solution.
@@ -92,12 +92,11 @@ fn solve_part<const N: usize>(
     let start = part.start;
     for i in part.clone() {
         let (_, inside, _) = matrix.split_row(i);
-        let (mut r, mut sum) = ([0.0; N], Apart::ZERO);
+        let mut r = [0.0; N];
         b(i, &mut r);
         for e in inside.start..matrix.middle(i) {
-            sum.subtract(matrix.off_diagonal(e), &x[(matrix.column(e) - start) * N..]);
+            subtract::<N>(matrix.off_diagonal(e), &load::<N>(x, matrix.column(e) - start), &mut r);
         }
-        let r = sum.added_to(&r);
         add_pivoted::<N>(inverse, i, &r, [0.0; N], &mut x[(i - start) * N..]);
     }
     backward::<N>(matrix, inverse, part, x);
@@ -116,19 +115,18 @@ fn correct_part<const N: usize>(
     let start = part.start;
     for i in part.clone() {
         let (below, inside, above) = matrix.split_row(i);
-        let (mut r, mut sum) = ([0.0; N], Apart::ZERO);
+        let mut r = [0.0; N];
         b(i, &mut r);
         multiply::<N>(matrix.diagonal(i), &load::<N>(first, i).map(|x| -x), &mut r);
         for e in below.chain(matrix.middle(i)..inside.end).chain(above) {
-            sum.subtract(matrix.off_diagonal(e), &first[matrix.column(e) * N..]);
+            subtract::<N>(matrix.off_diagonal(e), &load::<N>(first, matrix.column(e)), &mut r);
         }
         // what is left of the right-hand side and what the forward solve takes from it, at once
         for e in inside.start..matrix.middle(i) {
             let j = matrix.column(e);
             let (x, y) = (load::<N>(first, j), load::<N>(y, j - start));
-            sum.subtract(matrix.off_diagonal(e), &std::array::from_fn::<f32, N, _>(|c| x[c] + y[c]));
+            subtract::<N>(matrix.off_diagonal(e), &std::array::from_fn(|c| x[c] + y[c]), &mut r);
         }
-        let r = sum.added_to(&r);
         add_pivoted::<N>(inverse, i, &r, [0.0; N], &mut y[(i - start) * N..]);
     }
     backward::<N>(matrix, inverse, part, y);
@@ -139,12 +137,12 @@ fn correct_part<const N: usize>(
 fn backward<const N: usize>(matrix: &BlockMatrix, inverse: &[f32], part: &Range<usize>, x: &mut [f32]) {
     for i in part.clone().rev() {
         let (_, inside, _) = matrix.split_row(i);
-        let mut sum = Apart::<N>::ZERO;
+        let mut r = [0.0; N];
         for e in matrix.middle(i)..inside.end {
-            sum.subtract(matrix.off_diagonal(e), &x[(matrix.column(e) - part.start) * N..]);
+            subtract::<N>(matrix.off_diagonal(e), &load::<N>(x, matrix.column(e) - part.start), &mut r);
         }
         let own = load::<N>(x, i - part.start);
-        add_pivoted::<N>(inverse, i, &sum.added_to(&[0.0; N]), own, &mut x[(i - part.start) * N..]);
+        add_pivoted::<N>(inverse, i, &r, own, &mut x[(i - part.start) * N..]);
     }
 }
 

@@ -3,11 +3,11 @@
 //! −∂R_i/∂U_i = Σ_j [−a_ij·A(q_i) + |s_ij|/(2V_i) |A|(q̄)], −∂R_i/∂U_j = a_ij·A(q_j) − |s_ij|/(2V_i) |A|(q̄), with A·n = ∂F·n/∂U
 //! and |A| Roe's matrix with rounded eigenvalues. A wall state follows the particle in front of it: its column is folded into
 //! the row with the mirror that removes the normal velocity.
+use multiversion::multiversion;
+
 use super::fluid::{Fluid, Work, half_face};
 use super::shape::Frame;
 use super::viscous::Contact;
-use multiversion::multiversion;
-
 use crate::cloud::Edge;
 use crate::math::Vector;
 use crate::math::block_matrix::{BlockMatrix, Rows};
@@ -105,9 +105,18 @@ pub fn assemble<const D: usize>(fluid: &Fluid<D>, frame: &Frame<D>, work: &Work<
     });
 }
 
-/// One end of an edge as the row of a matrix: its number, that of the other end, the weight of its derivative, and its area over
-/// volume and distance for what viscosity exchanges.
-type End<const D: usize> = (usize, usize, Vector<D>, f64);
+/// One end of an edge as the row of a matrix.
+struct End<const D: usize> {
+    row: usize,
+    /// The other end.
+    column: usize,
+    /// Weight of the derivative.
+    weight: Vector<D>,
+    /// Coefficient of the flux; the same but where coefficients are conservative.
+    face: Vector<D>,
+    /// Viscosity times area over volume and distance.
+    exchange: f64,
+}
 
 /// Adds the blocks of the edges of a part.
 #[multiversion(targets("x86_64+avx2"))]
@@ -128,36 +137,36 @@ fn edge_blocks<const D: usize>(fluid: &Fluid<D>, at: (&Frame<D>, &Work<D>), edge
             true => (half_face(cloud.volume[i], &edge.s), -half_face(cloud.volume[j], &edge.s)),
             false => (edge.a_i, edge.a_j),
         };
-        let end: End<D> = (i, j, edge.a_i, exchange.0);
-        one_sided(fluid, at, (end, &a_i, 0.5 * size), (&spread, &layers[0], &layers[1]), rows);
+        let end = End { row: i, column: j, weight: edge.a_i, face: a_i, exchange: exchange.0 };
+        one_sided(fluid, at, &end, (0.5 * size, &spread), (&layers[0], &layers[1]), rows);
         if edge.both() {
-            let end: End<D> = (j, i, edge.a_j, exchange.1);
-            one_sided(fluid, at, (end, &a_j, 0.5 * size), (&spread, &layers[1], &layers[0]), rows);
+            let end = End { row: j, column: i, weight: edge.a_j, face: a_j, exchange: exchange.1 };
+            one_sided(fluid, at, &end, (0.5 * size, &spread), (&layers[1], &layers[0]), rows);
         }
     }
 }
 
-/// Adds the blocks of one end of an edge whose flux has the coefficient `a`: `layers` are those of viscosity, its own and that
-/// of the other end.
+/// Adds the blocks of one end of an edge; `layers` are what viscosity exchanges, of its own state and of the other.
 #[inline(always)]
 fn one_sided<const D: usize>(
     fluid: &Fluid<D>,
     (frame, work): (&Frame<D>, &Work<D>),
-    ((row, column, weight, exchange), a, half): (End<D>, &Vector<D>, f64),
-    (spread, own_layer, other_layer): (&Block, &Block, &Block),
+    end: &End<D>,
+    (half, spread): (f64, &Block),
+    layers: (&Block, &Block),
     rows: &mut Rows<'_>,
 ) {
+    let (row, column) = (end.row, end.column);
     let scale = half / frame.shape.cloud.volume[row];
-    // F(q)·a and the motion of the particle, whose coefficients differ when those of the fluxes are conservative
-    let swept = frame.velocity_of(row).dot(&weight);
-    let mut own = flux_jacobian(&fluid.gas, &work.state[row], a);
-    let mut other = flux_jacobian(&fluid.gas, &work.state[column], a);
+    let swept = frame.velocity_of(row).dot(&end.weight);
+    let mut own = flux_jacobian(&fluid.gas, &work.state[row], &end.face);
+    let mut other = flux_jacobian(&fluid.gas, &work.state[column], &end.face);
     for r in 0..D + 2 {
         own[r][r] -= swept;
         other[r][r] -= swept;
         for c in 0..D + 2 {
-            own[r][c] = scale * spread[r][c] - own[r][c] + exchange * own_layer[r][c];
-            other[r][c] -= scale * spread[r][c] + exchange * other_layer[r][c];
+            own[r][c] = scale * spread[r][c] - own[r][c] + end.exchange * layers.0[r][c];
+            other[r][c] -= scale * spread[r][c] + end.exchange * layers.1[r][c];
         }
     }
     rows.add_sized(D + 2, (row, row), |r, c| own[r][c]);
