@@ -58,7 +58,17 @@ impl<const D: usize> Cloud<D> {
             notes,
         };
         cloud.append_images();
+        cloud.note_mixed_rows();
         cloud
+    }
+
+    fn note_mixed_rows(&mut self) {
+        let mut layers = std::mem::take(&mut self.layers);
+        layers.note_mixed(|layers, i| {
+            let step = |j: usize| layers.steps(i, self.source(j), &(self.x[j] - self.x[i]));
+            self.neighbours.of(i).iter().any(|j| step(*j as usize).is_none())
+        });
+        self.layers = layers;
     }
 
     fn append_images(&mut self) {

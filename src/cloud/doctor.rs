@@ -237,7 +237,7 @@ fn findings<const D: usize>(cloud: &Cloud<D>, tally: &Tally) -> Vec<Finding> {
 fn examine<const D: usize>(cloud: &Cloud<D>, walls: &WallGrid<'_, D>, i: usize, tally: &mut Tally) {
     let row = cloud.neighbours.of(i);
     let h = cloud.spacing[i];
-    let layered = cloud.layers.slot(i).is_some();
+    let layered = cloud.layers.in_steps(i).is_some();
     let wall = (i >= cloud.n_fluid).then(|| &cloud.interface[i - cloud.n_fluid]);
     let mut sums = Sums::default();
     let mut nearest = f64::INFINITY;
@@ -245,7 +245,8 @@ fn examine<const D: usize>(cloud: &Cloud<D>, walls: &WallGrid<'_, D>, i: usize, 
     for j in row {
         let d = cloud.offset(i, *j as usize);
         sums.add(&d);
-        nearest = nearest.min(d.norm() / (0.5 * (h + cloud.spacing[*j as usize])));
+        let apart = cloud.judged_offset(i, *j as usize).norm();
+        nearest = nearest.min(apart / (0.5 * (h + cloud.spacing[*j as usize])));
         seen |= sectors(
             &match wall {
                 // in layers the last axis is the normal already

@@ -5,8 +5,9 @@
 //! neighbours are a cross, (i ± 1, k) and (i, k ± 1), and fits are made in the space of these numbers: slopes f_ξ, f_η by
 //! least squares over the offsets (±1, 0), (0, ±1), the metric terms x_ξ, x_η with the same weights, and then
 //! ∇f = J⁻¹ (f_ξ, f_η) with the rows x_ξ, x_η of J. That is exact for linear fields at any aspect ratio and any curvature of
-//! the wall, and |det J| is the volume. Where the layers end the neighbours come from the background as well; their offsets
-//! are taken in the straight axes (t, n) of the column and stretched by the ratio of the spacings along and across the wall.
+//! the wall, and |det J| is the volume. Where the layers end the neighbours come from the background as well, and fits are made
+//! in space as everywhere else: behind a sharp edge a neighbour that is many layers lower would count for the slope across the
+//! wall alone, nothing would be left of what comes along it, and gas that flows back around the edge would heap up there.
 //!
 //! References: Visbal and Gaitonde, J. Comput. Phys. 181 (2002), for metric terms that must be taken with the weights of the
 //! scheme; Pirzadeh, AIAA J. 34 (1996), for layers that advance together and stop where fronts meet.
@@ -54,6 +55,8 @@ pub struct Layers<const D: usize> {
     pub columns: Vec<Column>,
     axes: Vec<[Vector<D>; 2]>,
     slots: Vec<(u32, u32)>,
+    /// Particles in layers whose neighbours do not all stand in the same or an adjacent column.
+    mixed: Vec<bool>,
 }
 
 /// The particle that a neighbour is, or is the image of.
@@ -79,7 +82,7 @@ impl<const D: usize> Layers<D> {
                 slots[*i as usize] = (w as u32, k);
             }
         }
-        Self { columns, axes, slots }
+        Self { columns, axes, slots, mixed: Vec::new() }
     }
 
     /// True when no particle lies in a layer.
@@ -132,8 +135,20 @@ impl<const D: usize> Layers<D> {
         }
     }
 
-    /// Offset `d` from particle `i`, with spacing `h`, to a neighbour, in the coordinates in which its row is fitted and
-    /// judged: along and across the wall, both in parts of `h`; `d` itself outside the layers.
+    /// Notes which rows see more than layers; `beyond(i)` tells it of a particle that stands in a layer.
+    pub(super) fn note_mixed(&mut self, beyond: impl Fn(&Self, usize) -> bool) {
+        let mixed = (0..self.slots.len()).map(|i| self.slot(i).is_some() && beyond(self, i)).collect();
+        self.mixed = mixed;
+    }
+
+    /// Column and layer of particle `i` if its row is fitted in the space of those numbers.
+    #[inline]
+    pub fn in_steps(&self, i: usize) -> Option<(usize, usize)> {
+        self.slot(i).filter(|_| self.mixed.get(i) != Some(&true))
+    }
+
+    /// Offset `d` from particle `i`, with spacing `h`, to a neighbour, as distances are judged in layers: along and across the
+    /// wall, both in parts of `h`; `d` itself outside the layers.
     pub fn offset(&self, i: usize, h: f64, other: Source, d: &Vector<D>) -> Vector<D> {
         let Some((c, k)) = self.slot(i) else { return *d };
         let mut steps = Vector::ZERO;

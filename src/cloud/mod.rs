@@ -215,9 +215,17 @@ impl<const D: usize> Cloud<D> {
         }
     }
 
-    /// Offset from particle `i` to `j` in the coordinates in which the row of `i` is fitted and judged: stretched across the
-    /// wall in layers, x_j − x_i elsewhere.
+    /// Offset from particle `i` to `j` in the coordinates in which the row of `i` is fitted: steps along and across the wall
+    /// inside layers, x_j − x_i elsewhere.
     pub fn offset(&self, i: usize, j: usize) -> Vector<D> {
+        match self.layers.in_steps(i) {
+            Some(_) => self.judged_offset(i, j),
+            None => self.x[j] - self.x[i],
+        }
+    }
+
+    /// The same as distances are judged, where layers end as well: stretched across the wall like the layers.
+    pub fn judged_offset(&self, i: usize, j: usize) -> Vector<D> {
         self.layers.offset(i, self.spacing[i], self.source(j), &(self.x[j] - self.x[i]))
     }
 

@@ -228,7 +228,7 @@ const FOLDED: f64 = 0.05;
 fn fit_row<const D: usize>(cloud: &Cloud<D>, i: usize) -> ([[f64; D]; D], f64) {
     let (matrix, count) = normal_matrix(cloud.neighbours.of(i).iter().map(|j| cloud.offset(i, *j as usize)));
     let (inverse, condition, exact) = invert_row(cloud, i, &matrix, count);
-    match cloud.layers.slot(i) {
+    match cloud.layers.in_steps(i) {
         Some(slot) => (through_metric((cloud, slot), i, inverse, exact), condition),
         None => (inverse, condition),
     }

@@ -18,6 +18,10 @@ const PIXELS: usize = 900;
 const FILM_PIXELS: usize = 450;
 /// Greatest Mach number in the colours of a film strip, in that of the free stream.
 const FILM_RANGE: f64 = 2.0;
+/// Pixels from one that is computed by the fit to the next, at most.
+const LARGEST_STEP: usize = 4;
+/// Size of the background over that distance from which on pixels between are means.
+const COARSE: f64 = 3.0;
 /// Margin of flow pictures around the bodies in body lengths.
 const MARGIN: f64 = 0.6;
 
@@ -109,21 +113,84 @@ fn sampled<const D: usize>(
 ) -> (usize, usize, Vec<Option<Primitive<D>>>) {
     let extent = w.extent();
     let scale = pixels as f64 / extent[0].max(extent[1]);
-    let (width, height) =
-        ((extent[0] * scale).round().max(1.0) as usize, (extent[1] * scale).round().max(1.0) as usize);
-    let probe = Probe::new(view.fluid, view.work, view.surface);
-    let mut states = vec![None; width * height];
-    sweep_each_chunk(&mut states, width, |row, states| {
-        let mut near = Near::default();
-        let mut x = Vector::ZERO;
-        x[1] = w.min[1] + (row as f64 + 0.5) / scale;
-        for (k, state) in states.iter_mut().enumerate() {
-            x[0] = w.min[0] + (k as f64 + 0.5) / scale;
-            let solid = view.surface.is_some_and(|s| s.inside(&view.fluid.origin(&x)));
-            *state = if solid { None } else { probe.beside(&x, &mut near) };
+    let size = [0, 1].map(|d| (extent[d] * scale).round().max(1.0) as usize);
+    let grid =
+        Grid { view, probe: Probe::new(view.fluid, view.work, view.surface), from: w.min, pixel: 1.0 / scale, size };
+    (size[0], size[1], grid.states(1))
+}
+
+/// Pixels of a picture.
+struct Grid<'a, const D: usize> {
+    view: &'a View<'a, D>,
+    probe: Probe<'a, D>,
+    /// Lowest corner.
+    from: Vector<2>,
+    pixel: f64,
+    /// Pixels in a row, and rows.
+    size: [usize; 2],
+}
+
+impl<const D: usize> Grid<'_, D> {
+    /// Every `step`th pixel of every `step`th row.
+    fn count(&self, step: usize) -> [usize; 2] {
+        self.size.map(|n| (n - 1) / step + 1)
+    }
+
+    /// The states there: between pixels of twice that step by their mean where particles are far apart, else by the fit.
+    fn states(&self, step: usize) -> Vec<Option<Primitive<D>>> {
+        let coarse = if step < LARGEST_STEP { self.states(2 * step) } else { Vec::new() };
+        let [across, rows] = self.count(step);
+        let mut states = vec![None; across * rows];
+        sweep_each_chunk(&mut states, across, |row, states| {
+            let mut near = Near::default();
+            for (k, state) in states.iter_mut().enumerate() {
+                let x = self.place([k, row].map(|c| c * step));
+                *state = match self.between(&coarse, 2 * step, [k, row], &x) {
+                    None => self.fitted(&x, &mut near),
+                    known => known,
+                };
+            }
+        });
+        states
+    }
+
+    fn place(&self, pixel: [usize; 2]) -> Vector<D> {
+        Vector::from_fn(|d| if d < 2 { self.from[d] + (pixel[d] as f64 + 0.5) * self.pixel } else { 0.0 })
+    }
+
+    fn fitted(&self, x: &Vector<D>, near: &mut Near<D>) -> Option<Primitive<D>> {
+        let solid = self.view.surface.is_some_and(|s| s.inside(&self.view.fluid.origin(x)));
+        if solid { None } else { self.probe.beside(x, near) }
+    }
+
+    /// The mean of the `coarse` pixels, `step` apart, around the one that is `at` half steps; `None` where particles are near one
+    /// another or one of them is solid.
+    fn between(
+        &self,
+        coarse: &[Option<Primitive<D>>],
+        step: usize,
+        at: [usize; 2],
+        x: &Vector<D>,
+    ) -> Option<Primitive<D>> {
+        let ([across, rows], [k, row]) = (self.count(step), at);
+        let corner =
+            |k: usize, row: usize| (k < across && row < rows).then(|| coarse.get(row * across + k).copied()?)?;
+        let (low, high) = ([k / 2, row / 2], [k.div_ceil(2), row.div_ceil(2)]);
+        if low == high {
+            return corner(k / 2, row / 2);
         }
-    });
-    (width, height, states)
+        let reference = &self.view.fluid.reference().cloud.tree;
+        if reference.leaf_at(&self.view.fluid.origin(x)).size < COARSE * step as f64 * self.pixel {
+            return None;
+        }
+        let [a, b] = [corner(low[0], low[1])?, corner(high[0], high[1])?];
+        let [c, d] = [corner(low[0], high[1])?, corner(high[0], low[1])?];
+        Some(Primitive::zip(
+            &Primitive::zip(&a, &b, f64::midpoint),
+            &Primitive::zip(&c, &d, f64::midpoint),
+            f64::midpoint,
+        ))
+    }
 }
 
 /// Draws the particles near the bodies (plane clouds).

@@ -253,3 +253,22 @@ fn the_end_of_columns_is_told_with_its_reason() {
     assert!(ends(CIRCLE).iter().all(|e| *e == End::Planned));
     assert!(ends(PLUS).contains(&End::Meeting));
 }
+
+/// Behind a sharp edge the gas may come back around it: the last column must see it as what comes along the wall.
+#[test]
+fn the_last_column_before_a_sharp_edge_looks_both_ways() {
+    let cloud = build(NACA, "spacing = 0.015625\nwall_layers = { first = 0.0003 }");
+    let operators = Operators::new(&cloud);
+    let mut shares = Vec::new();
+    for (c, column) in cloud.layers.columns.iter().enumerate().filter(|(_, c)| c.beside.contains(&None)) {
+        let (i, along) = (column.particles[0] as usize, cloud.layers.axes(c)[0]);
+        let edges = (0..operators.fluid_parts().len()).flat_map(|k| operators.edges(k));
+        let rows = edges
+            .flat_map(|e| [(e.i(), e.j(), e.a_i), (e.j(), e.i(), e.a_j)].into_iter().take(1 + usize::from(e.both())));
+        let behind = rows.filter(|(own, other, _)| *own == i && cloud.layers.slot(*other).is_none());
+        let share: f64 = behind.map(|(_, j, a)| a.dot(&along) * (cloud.x[j] - cloud.x[i]).dot(&along)).sum();
+        shares.push(share);
+    }
+    // the rest of the slope along the wall is that towards the column before it
+    assert!(shares.len() == 2 && shares.iter().all(|s| (0.3..0.7).contains(s)), "{shares:?}");
+}
