@@ -155,13 +155,13 @@ fn place(frame: &Frame, x: &Vector<2>) -> [f64; 2] {
 
 /// The range of all but the 0.2 % smallest and largest values: one bad particle must not bleach a picture.
 pub(super) fn robust_range(values: &[f64]) -> [f64; 2] {
-    let mut sorted: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
-    sorted.sort_by(f64::total_cmp);
-    let cut = sorted.len() / 500;
-    match (sorted.get(cut), sorted.iter().rev().nth(cut)) {
-        (Some(low), Some(high)) if low < high => [*low, *high],
-        (Some(low), _) => [low - 0.5, low + 0.5],
-        _ => [0.0, 1.0],
+    let mut finite: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
+    let cut = finite.len() / 500;
+    let Some(last) = finite.len().checked_sub(1 + cut) else { return [0.0, 1.0] };
+    let mut ranked = |k: usize| *finite.select_nth_unstable_by(k, f64::total_cmp).1;
+    match [ranked(cut), ranked(last)] {
+        [low, high] if low < high => [low, high],
+        [low, _] => [low - 0.5, low + 0.5],
     }
 }
 

@@ -489,28 +489,28 @@ impl<const D: usize> Periodic<'_, D> {
         let (case, out) = (journal.case(), journal.out());
         let rows = journal.instances.iter().map(|row| row.map(Entry::from).to_vec());
         write_csv(&out.join("instances.csv"), &["phase", "angle_deg", "shift", "cl", "cd", "cm"], rows)?;
-        let mut one = vec![0.0; self.fluid.len()];
-        let mut work = self.fluid.work();
-        let mut moment = |part: f64, work: &mut crate::scheme::Work<D>| {
+        let moment = |part: f64| {
             let phase = std::f64::consts::TAU * part;
+            let (mut one, mut work) = (vec![0.0; self.fluid.len()], self.fluid.work());
             self.balance.at_phase(self.state, phase, &mut one);
             let frame = self.balance.with_moment(phase, |m| self.fluid.frame(m, &one));
-            self.fluid.fill_states(&frame, &one, work);
-            self.fluid.fill_gradients(&frame, work);
-            frame
+            self.fluid.fill_states(&frame, &one, &mut work);
+            self.fluid.fill_gradients(&frame, &mut work);
+            (frame, work)
         };
         if let Some(interval) = journal.interval() {
             let count = (period / interval + super::journal::NEARLY).floor() as u64;
             for k in 1..=count {
-                let frame = moment(k as f64 * interval / period, &mut work);
+                let (frame, work) = moment(k as f64 * interval / period);
                 outputs::write_series(case, out, self.fluid, (&frame, &work), interval)?;
             }
         }
         if let Some(surface) = &solver.film {
-            for part in 1..=u64::from(outputs::FILM) {
-                let frame = moment(part as f64 / f64::from(outputs::FILM), &mut work);
-                outputs::write_film(case, out, (self.fluid, surface), (&frame, &mut work), part)?;
-            }
+            let parts = u64::from(outputs::FILM);
+            super::pictures::together(parts as usize, |k| {
+                let (frame, mut work) = moment((k + 1) as f64 / parts as f64);
+                outputs::write_film(case, out, (self.fluid, surface), (&frame, &mut work), k as u64 + 1)
+            })?;
         }
         self.write_coefficients(case, out)
     }

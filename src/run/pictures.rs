@@ -2,7 +2,7 @@
 use super::RunError;
 use super::outputs::{FILM, View};
 use super::snapshot::pressure_coefficient;
-use crate::math::sweep::sweep_each_chunk;
+use crate::math::sweep::{sweep_each, sweep_each_chunk};
 use crate::math::{Bounds, Vector};
 use crate::physics::Primitive;
 use crate::report::{
@@ -26,7 +26,8 @@ const COARSE: f64 = 3.0;
 const MARGIN: f64 = 0.6;
 
 /// A flow picture: file name, (title, quantity, colours, contours), value of a state.
-type Drawn<'a, const D: usize> = (&'a str, (&'a str, &'a str, Colormap, &'a [f64]), &'a dyn Fn(&Primitive<D>) -> f64);
+type Drawn<'a, const D: usize> = (&'a str, (&'a str, &'a str, Colormap, &'a [f64]), Value<'a, D>);
+type Value<'a, const D: usize> = &'a (dyn Fn(&Primitive<D>) -> f64 + Sync);
 
 /// Draws all pictures of a run.
 pub(super) fn write<const D: usize>(view: &View<'_, D>) -> Result<(), RunError> {
@@ -69,20 +70,31 @@ fn plane<const D: usize>(view: &View<'_, D>) -> Result<(), RunError> {
     let style = |title: &'static str, quantity: &'static str, map: Colormap, contours: &'static [f64]| {
         (title, quantity, map, contours)
     };
-    let mut list: Vec<Drawn<'_, D>> = vec![("mach", style("Mach number", "M", Colormap::Sequential, &[1.0]), &mach)];
-    if view.surface.is_some() {
-        list.push(("cp", style("Pressure coefficient", "Cp", Colormap::Diverging { centre: 0.0 }, &[]), &cp));
+    let second: Drawn<'_, D> = if view.surface.is_some() {
+        ("cp", style("Pressure coefficient", "Cp", Colormap::Diverging { centre: 0.0 }, &[]), &cp)
     } else {
-        list.push(("density", style("Density", "density", Colormap::Sequential, &[]), &density));
-    }
-    for (name, (title, quantity, map, contours), value) in list {
+        ("density", style("Density", "density", Colormap::Sequential, &[]), &density)
+    };
+    let fields = [("mach", style("Mach number", "M", Colormap::Sequential, &[1.0]), &mach as Value<'_, D>), second];
+    let field = |(name, (title, quantity, map, contours), value): &Drawn<'_, D>| -> Result<(), RunError> {
         let values = states.2.iter().map(|q| q.as_ref().map_or(f64::NAN, value)).collect();
         let raster = Raster { width: states.0, height: states.1, window: w, values };
-        let style = PictureStyle { title, quantity, axes: ["x", "y"], map, range: None, contours, outlines: &outlines };
-        write_file(&view.out.join(format!("pictures/{name}.png")), &raster_png(&raster, &style)?)?;
-    }
-    cloud_picture(view, &outlines)?;
-    curves(view)
+        let style =
+            PictureStyle { title, quantity, axes: ["x", "y"], map: *map, range: None, contours, outlines: &outlines };
+        Ok(write_file(&view.out.join(format!("pictures/{name}.png")), &raster_png(&raster, &style)?)?)
+    };
+    together(4, |k| match k {
+        0 | 1 => field(&fields[k]),
+        2 => cloud_picture(view, &outlines),
+        _ => curves(view),
+    })
+}
+
+/// Does `n` things side by side; the first error in their order.
+pub(super) fn together(n: usize, task: impl Fn(usize) -> Result<(), RunError> + Sync) -> Result<(), RunError> {
+    let mut done: Vec<Result<(), RunError>> = (0..n).map(|_| Ok(())).collect();
+    sweep_each(&mut done, task);
+    done.into_iter().collect()
 }
 
 /// Draws the Mach number at part `part` of a period, in colours that are the same for all of them.
@@ -145,7 +157,7 @@ impl<const D: usize> Grid<'_, D> {
             let mut near = Near::default();
             for (k, state) in states.iter_mut().enumerate() {
                 let x = self.place([k, row].map(|c| c * step));
-                *state = match self.between(&coarse, 2 * step, [k, row], &x) {
+                *state = match self.between((&coarse, 2 * step), [k, row], &x, &mut near) {
                     None => self.fitted(&x, &mut near),
                     known => known,
                 };
@@ -167,10 +179,10 @@ impl<const D: usize> Grid<'_, D> {
     /// another or one of them is solid.
     fn between(
         &self,
-        coarse: &[Option<Primitive<D>>],
-        step: usize,
+        (coarse, step): (&[Option<Primitive<D>>], usize),
         at: [usize; 2],
         x: &Vector<D>,
+        near: &mut Near<D>,
     ) -> Option<Primitive<D>> {
         let ([across, rows], [k, row]) = (self.count(step), at);
         let corner =
@@ -179,8 +191,7 @@ impl<const D: usize> Grid<'_, D> {
         if low == high {
             return corner(k / 2, row / 2);
         }
-        let reference = &self.view.fluid.reference().cloud.tree;
-        if reference.leaf_at(&self.view.fluid.origin(x)).size < COARSE * step as f64 * self.pixel {
+        if coarse.is_empty() || self.probe.spacing(x, near) < COARSE * step as f64 * self.pixel {
             return None;
         }
         let [a, b] = [corner(low[0], low[1])?, corner(high[0], high[1])?];

@@ -3,6 +3,7 @@
 //! At a point x every particle nearby offers its own linear fit q_k + ∇q_k·(x − x_k); the offers are blended with compact
 //! weights (a partition of unity), so that pictures, transfers and integrals see the solver's fit and nothing else.
 use super::fluid::{Fluid, Work};
+use crate::cloud::tree::{Leaf, Tree};
 use crate::geometry::Surface;
 use crate::math::{Bounds, Vector};
 use crate::physics::Primitive;
@@ -10,11 +11,23 @@ use crate::physics::Primitive;
 /// Radius of the weights in cells of the background.
 const RADIUS: f64 = 1.5;
 
-/// Particles that reach into one leaf of the background.
+/// The leaf of the background that was asked about last, and the particles that reach into one that was.
 #[derive(Clone, Debug, Default)]
 pub struct Near<const D: usize> {
-    leaf: Option<u32>,
+    leaf: Option<Leaf<D>>,
+    listed: Option<u32>,
     list: Vec<u32>,
+}
+
+impl<const D: usize> Near<D> {
+    /// The leaf that holds `x`.
+    #[inline]
+    fn leaf(&mut self, tree: &Tree<D>, x: &Vector<D>) -> Leaf<D> {
+        match &self.leaf {
+            Some(leaf) if (*x - leaf.centre).max_abs() < 0.5 * leaf.size => *leaf,
+            _ => *self.leaf.insert(tree.leaf_at(x)),
+        }
+    }
 }
 
 /// A solution that can be asked anywhere.
@@ -30,6 +43,11 @@ impl<'a, const D: usize> Probe<'a, D> {
         Self { fluid, work, surface }
     }
 
+    /// Size of the background at `x`: about the distance between particles there.
+    pub fn spacing(&self, x: &Vector<D>, near: &mut Near<D>) -> f64 {
+        near.leaf(&self.fluid.reference().cloud.tree, &self.fluid.origin(x)).size
+    }
+
     /// State at `x`; `None` where no particle is near.
     pub fn at(&self, x: &Vector<D>) -> Option<Primitive<D>> {
         self.beside(x, &mut Near::default())
@@ -40,10 +58,10 @@ impl<'a, const D: usize> Probe<'a, D> {
         // the background knows particles where they were before any motion
         let cloud = &self.fluid.reference().cloud;
         let (place, x) = (x, &self.fluid.origin(x));
-        let leaf = cloud.tree.leaf_at(x);
+        let leaf = near.leaf(&cloud.tree, x);
         let reach = RADIUS * leaf.size;
-        if near.leaf != Some(leaf.node) {
-            near.leaf = Some(leaf.node);
+        if near.listed != Some(leaf.node) {
+            near.listed = Some(leaf.node);
             near.list.clear();
             let corner = Vector::splat(0.5 * leaf.size + reach);
             let cube = Bounds { min: leaf.centre - corner, max: leaf.centre + corner };
