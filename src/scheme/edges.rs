@@ -31,6 +31,8 @@ pub struct Rule<F, L> {
     pub reconstruction: Reconstruction,
     /// Exactly conservative coefficients.
     pub conservative: bool,
+    /// Those also for what a moving particle passes.
+    pub by_faces: bool,
     /// Viscosity and heat conduction.
     pub medium: Option<Newtonian>,
 }
@@ -173,10 +175,10 @@ pub fn edge_fluxes<const D: usize, F: UpwindFlux<D>, L: Limit>(
         }
         cross(rule.gas, rule.flux, &mut batch);
         match (particles.velocity.is_empty(), rule.conservative) {
-            (true, true) => balance::<D, false, true>(rule.gas, &mut batch),
-            (true, false) => balance::<D, false, false>(rule.gas, &mut batch),
-            (false, true) => balance::<D, true, true>(rule.gas, &mut batch),
-            (false, false) => balance::<D, true, false>(rule.gas, &mut batch),
+            (true, true) => balance::<D, false, true>(rule.gas, rule.by_faces, &mut batch),
+            (true, false) => balance::<D, false, false>(rule.gas, rule.by_faces, &mut batch),
+            (false, true) => balance::<D, true, true>(rule.gas, rule.by_faces, &mut batch),
+            (false, false) => balance::<D, true, false>(rule.gas, rule.by_faces, &mut batch),
         }
         if let Some(medium) = rule.medium {
             match rule.conservative {
@@ -274,7 +276,11 @@ fn cross<const D: usize, F: UpwindFlux<D>>(gas: Gas, flux: F, batch: &mut Batch<
 /// What every edge adds to V dU/dt of both ends.
 #[multiversion(targets("x86_64+avx2"))]
 #[allow(unsafe_code, reason = "the attribute calls the version that the processor has just been asked for")]
-fn balance<const D: usize, const MOVES: bool, const CONSERVATIVE: bool>(gas: Gas, batch: &mut Batch<D>) {
+fn balance<const D: usize, const MOVES: bool, const CONSERVATIVE: bool>(
+    gas: Gas,
+    by_faces: bool,
+    batch: &mut Batch<D>,
+) {
     let Batch { own, weight, area, speed, middle, upwind, out: [out_i, out_j], .. } = batch;
     for k in 0..LANES {
         let (qi, qj) = (own[0].primitive(k), own[1].primitive(k));
@@ -290,9 +296,10 @@ fn balance<const D: usize, const MOVES: bool, const CONSERVATIVE: bool>(gas: Gas
             if MOVES {
                 let mean = gas.conserved(&l).plus(1.0, &gas.conserved(&r)).times(0.5);
                 let through = through.plus(w.dot(&s), &mean);
-                // w·∇U, by the weights that are exact for linear fields; they come as −V a
-                let swept_i = mean.plus(-1.0, &gas.conserved(&qi)).times(-2.0 * wi.dot(&a_i));
-                let swept_j = mean.plus(-1.0, &gas.conserved(&qj)).times(-2.0 * wj.dot(&a_j));
+                // w·∇U: by the weights that are exact for linear fields, which come as −V a, or by those of the fluxes
+                let (n_i, n_j) = if by_faces { (s, -s) } else { (a_i * -2.0, a_j * -2.0) };
+                let swept_i = mean.plus(-1.0, &gas.conserved(&qi)).times(wi.dot(&n_i));
+                let swept_j = mean.plus(-1.0, &gas.conserved(&qj)).times(wj.dot(&n_j));
                 (out_i.plus(-1.0, &through).plus(1.0, &swept_i), through.plus(-1.0, &out_j).plus(1.0, &swept_j))
             } else {
                 (out_i.plus(-1.0, &through), through.plus(-1.0, &out_j))

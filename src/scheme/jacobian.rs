@@ -110,8 +110,8 @@ struct End<const D: usize> {
     row: usize,
     /// The other end.
     column: usize,
-    /// Weight of the derivative.
-    weight: Vector<D>,
+    /// Coefficient of what the particle itself passes.
+    passed: Vector<D>,
     /// Coefficient of the flux; the same but where coefficients are conservative.
     face: Vector<D>,
     /// Viscosity times area over volume and distance.
@@ -123,7 +123,7 @@ struct End<const D: usize> {
 #[allow(unsafe_code, reason = "the attribute calls the version that the processor has just been asked for")]
 fn edge_blocks<const D: usize>(fluid: &Fluid<D>, at: (&Frame<D>, &Work<D>), edges: &[Edge<D>], rows: &mut Rows<'_>) {
     let (frame, work) = at;
-    let cloud = &frame.shape.cloud;
+    let (cloud, by_faces) = (&frame.shape.cloud, fluid.passes_by_faces());
     for edge in edges {
         let (i, j) = (edge.i(), edge.j());
         let (qi, qj) = (&work.state[i], &work.state[j]);
@@ -137,10 +137,11 @@ fn edge_blocks<const D: usize>(fluid: &Fluid<D>, at: (&Frame<D>, &Work<D>), edge
             true => (half_face(cloud.volume[i], &edge.s), -half_face(cloud.volume[j], &edge.s)),
             false => (edge.a_i, edge.a_j),
         };
-        let end = End { row: i, column: j, weight: edge.a_i, face: a_i, exchange: exchange.0 };
+        let passed = if by_faces { [a_i, a_j] } else { [edge.a_i, edge.a_j] };
+        let end = End { row: i, column: j, passed: passed[0], face: a_i, exchange: exchange.0 };
         one_sided(fluid, at, &end, (0.5 * size, &spread), (&layers[0], &layers[1]), rows);
         if edge.both() {
-            let end = End { row: j, column: i, weight: edge.a_j, face: a_j, exchange: exchange.1 };
+            let end = End { row: j, column: i, passed: passed[1], face: a_j, exchange: exchange.1 };
             one_sided(fluid, at, &end, (0.5 * size, &spread), (&layers[1], &layers[0]), rows);
         }
     }
@@ -158,7 +159,7 @@ fn one_sided<const D: usize>(
 ) {
     let (row, column) = (end.row, end.column);
     let scale = half / frame.shape.cloud.volume[row];
-    let swept = frame.velocity_of(row).dot(&end.weight);
+    let swept = frame.velocity_of(row).dot(&end.passed);
     let mut own = flux_jacobian(&fluid.gas, &work.state[row], &end.face);
     let mut other = flux_jacobian(&fluid.gas, &work.state[column], &end.face);
     for r in 0..D + 2 {
