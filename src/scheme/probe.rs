@@ -1,7 +1,9 @@
 //! The solution between particles.
 //!
 //! At a point x every particle nearby offers its own linear fit q_k + ∇q_k·(x − x_k); the offers are blended with compact
-//! weights (a partition of unity), so that pictures, transfers and integrals see the solver's fit and nothing else.
+//! weights (a partition of unity), so that pictures, transfers and integrals see the solver's fit and nothing else. Particles in
+//! wall layers look as far across the wall as their layers are thick: the slope of a boundary layer holds no farther. There
+//! they count more than those outside the layers, in proportion to the square of length over thickness.
 use super::fluid::{Fluid, Work};
 use crate::cloud::tree::{Leaf, Tree};
 use crate::geometry::Surface;
@@ -71,8 +73,7 @@ impl<'a, const D: usize> Probe<'a, D> {
         let mut weight = 0.0;
         for k in &near.list {
             let k = *k as usize;
-            let d = *x - cloud.x[k];
-            let w = (1.0 - d.norm() / reach).max(0.0).powi(2);
+            let w = self.weight(k, &(*x - cloud.x[k]), reach);
             if w > 0.0 && self.in_sight(k, x) {
                 let offer = self.offer(k, &(*place - self.fluid.shape.cloud.x[k]));
                 sum = Some(sum.map_or_else(|| scaled(&offer, w), |s| s.plus(w, &offer)));
@@ -80,6 +81,18 @@ impl<'a, const D: usize> Probe<'a, D> {
             }
         }
         sum.map(|s| scaled(&s, 1.0 / weight))
+    }
+
+    /// Weight of particle `k` at the offset `d` from it.
+    fn weight(&self, k: usize, d: &Vector<D>, reach: f64) -> f64 {
+        let cloud = &self.fluid.reference().cloud;
+        let Some((column, layer)) = cloud.layers.slot(k) else {
+            return (1.0 - d.norm() / reach).max(0.0).powi(2);
+        };
+        let stretch = (cloud.spacing[k] / cloud.layers.thickness(column, layer)).max(1.0);
+        let across = d.dot(&cloud.layers.axes(column)[1]);
+        let distance = (d.norm_squared() + across * across * (stretch * stretch - 1.0)).sqrt();
+        (stretch * (1.0 - distance / reach).max(0.0)).powi(2)
     }
 
     fn offer(&self, k: usize, d: &Vector<D>) -> Primitive<D> {
@@ -97,4 +110,34 @@ impl<'a, const D: usize> Probe<'a, D> {
 
 fn scaled<const D: usize>(q: &Primitive<D>, s: f64) -> Primitive<D> {
     Primitive { density: q.density * s, velocity: q.velocity * s, pressure: q.pressure * s }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::system::{Moment, System};
+
+    #[test]
+    fn a_boundary_layer_has_no_jet_beside_it() {
+        const THICKNESS: f64 = 0.02;
+        let text = "[flow]\nmach = 0.3\nreynolds = 1e4\n[[body]]\ncircle = { radius = 0.5 }\n[cloud]\nspacing = 0.02\nfar_field = 4\n\
+                    wall_layers = { first = 0.001 }\n";
+        let case = crate::case::read(text, "case.toml").unwrap();
+        let fluid = crate::run::build_solver::<2>(&case, std::path::Path::new("")).unwrap().0;
+        let exact = |x: &Vector<2>| 1.0 - (-(x.norm() - 0.5) / THICKNESS).exp();
+        let frame = fluid.frame(&Moment::At { time: 0.0 }, &vec![1.0; fluid.len()]);
+        let mut work = fluid.work();
+        for (q, x) in work.state.iter_mut().zip(&fluid.shape.cloud.x) {
+            *q = Primitive { density: 1.0, velocity: Vector([exact(x), 0.0]), pressure: 0.7 };
+        }
+        fluid.fill_gradients(&frame, &mut work);
+        let probe = Probe::new(&fluid, &work, None);
+        for angle in [0.3f64, 1.1, 2.5] {
+            for k in 1..200 {
+                let x = Vector([angle.cos(), angle.sin()]) * (0.5 + 0.001 * f64::from(k));
+                let found = probe.at(&x).unwrap().velocity[0];
+                assert!(found < 1.01 && (found - exact(&x)).abs() < 0.03, "{found} for {} at {x:?}", exact(&x));
+            }
+        }
+    }
 }
