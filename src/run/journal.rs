@@ -11,7 +11,8 @@ use crate::motion::Law;
 use crate::observe::History;
 use crate::observe::loads::Coefficients;
 use crate::scheme::{Fluid, Frame, Turnover, Work};
-use crate::time::relax::{Phase, Resume};
+use crate::time::control::Phase;
+use crate::time::relax::Resume;
 use crate::time::{March, TimeError};
 
 /// Columns of `history.csv`.

@@ -11,7 +11,8 @@ use crate::math::Vector;
 use crate::observe::checkpoint::{self, Array, Checkpoint, Field};
 use crate::scheme::{Carriage, Fluid, Frame, Stand, Turnover};
 use crate::time::Past;
-use crate::time::relax::{Phase, Resume};
+use crate::time::control::Phase;
+use crate::time::relax::Resume;
 
 /// Name of the checkpoint in the run folder.
 pub(super) const FILE: &str = "checkpoint.alula";

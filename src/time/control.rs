@@ -32,3 +32,22 @@ pub struct Control {
     /// Visits of the levels.
     pub cycle: Cycle,
 }
+
+/// Which of the two ways a Newton-Krylov relaxation is going, and how well.
+#[derive(Clone, Copy, Debug)]
+pub struct Phase {
+    /// Newton's method rather than sweeps alone.
+    pub newton: bool,
+    /// Iterations in this phase.
+    pub age: u32,
+    /// Smallest residual in this phase.
+    pub best: f64,
+    /// When that was.
+    pub best_age: u32,
+}
+
+impl Default for Phase {
+    fn default() -> Self {
+        Self { newton: false, age: 0, best: f64::INFINITY, best_age: 0 }
+    }
+}

@@ -17,6 +17,9 @@ const SHRINK: f64 = 0.3;
 const SAFETY: f64 = 0.9;
 /// Residual over its start above which a step that ran out of iterations, or stalled, is refused.
 const HOPELESS: f64 = 0.3;
+/// Relative change of density or pressure of a particle above which such a step is refused as well: a state that runs away at one
+/// particle hardly shows in the residual of all of them.
+const RUNAWAY: f64 = 0.5;
 /// Bend of the last three states over their slope above which the next one is not guessed from a parabola: after a jerk.
 const STRAIGHT: f64 = 0.5;
 /// Greatest ratio of successive steps of a march with fixed ones, where some were cut: BDF2 takes 2.4.
@@ -318,7 +321,9 @@ impl<S: System> Dual<'_, S> {
             match tried {
                 Ok(_) => self.inner += 1,
                 // a limiter that flips keeps the residual from falling further: the step is as good as it gets
-                Err(TimeError::Stalled { .. }) if self.relax.drop() < HOPELESS => {
+                Err(TimeError::Stalled { .. })
+                    if self.relax.drop() < HOPELESS && self.relax.changed_since(&self.start) < RUNAWAY =>
+                {
                     self.past.unconverged += 1;
                     break;
                 }

@@ -5,7 +5,7 @@
 //! levels (Knoll and Keyes 2004). The Courant number follows the residual (Mulder and van Leer 1985). Steps that make a
 //! state unphysical or the residual jump are taken back and tried again with a smaller one. The same loop with the linear
 //! solve replaced by the sweeps alone is the LU-SGS method; with neither it is explicit Runge-Kutta with local steps.
-use super::control::{Control, Method};
+use super::control::{Control, Method, Phase};
 use super::{Step, TimeError};
 use crate::math::block_matrix::BlockMatrix;
 use crate::math::incomplete::Incomplete;
@@ -58,25 +58,6 @@ const EASY: usize = 4;
 const GOOD_FALL: f64 = 2.0;
 /// Stages of the explicit method.
 const STAGES: [f64; 5] = [0.25, 1.0 / 6.0, 0.375, 0.5, 1.0];
-
-/// Which of the two ways a Newton-Krylov relaxation is going, and how well.
-#[derive(Clone, Copy, Debug)]
-pub struct Phase {
-    /// Newton's method rather than sweeps alone.
-    pub newton: bool,
-    /// Iterations in this phase.
-    pub age: u32,
-    /// Smallest residual in this phase.
-    pub best: f64,
-    /// When that was.
-    pub best_age: u32,
-}
-
-impl Default for Phase {
-    fn default() -> Self {
-        Self { newton: false, age: 0, best: f64::INFINITY, best_age: 0 }
-    }
-}
 
 /// A relaxation in progress.
 pub struct Relax<'a, S: System> {
@@ -226,6 +207,13 @@ impl<'a, S: System> Relax<'a, S> {
     /// The first particle that the frame puts where the cloud no longer serves.
     pub fn misplaced(&self) -> Option<crate::system::Fault> {
         self.system.misplaced(&self.frame)
+    }
+
+    /// Largest relative change of density and pressure since the state was `before`.
+    pub fn changed_since(&mut self, before: &[f64]) -> f64 {
+        let u = &self.u;
+        crate::math::sweep::sweep(&mut self.trial, |k| u[k] - before[k]);
+        self.system.largest_change(before, &self.trial)
     }
 
     /// True when the state `u` is physical.
