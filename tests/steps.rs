@@ -8,10 +8,12 @@ use alula::time::control::{Control, Method};
 use alula::time::dual::{Dual, Plan};
 use alula::time::{March, Past, TimeError};
 
-/// u' = −u, which between two times only steps no longer than `longest` can solve.
+/// u' = −u, which between two times only steps no longer than `longest` can solve. A change of the state counts `sharp` times as
+/// the greatest change at one particle.
 struct Decay {
     hard: std::ops::Range<f64>,
     longest: f64,
+    sharp: f64,
 }
 
 impl System for Decay {
@@ -56,7 +58,7 @@ impl System for Decay {
         matrix.assemble(|_, rows| rows.add(0, 0, |_, _| 1.0));
     }
     fn largest_change(&self, _: &[f64], du: &[f64]) -> f64 {
-        1e-3 * du[0].abs()
+        self.sharp * du[0].abs()
     }
     fn fault(&self, (time, step): &(f64, f64), _: &[f64]) -> Option<Fault> {
         let refused = self.hard.contains(time) && *step > self.longest;
@@ -65,7 +67,11 @@ impl System for Decay {
 }
 
 fn march(longest: f64) -> Result<(Vec<f64>, f64, u32), TimeError> {
-    let system = Decay { hard: 0.95..1.25, longest };
+    march_with(Decay { hard: 0.95..1.25, longest, sharp: 1e-3 }, 20)
+}
+
+/// Times of the steps, the last state, and how often steps were halved.
+fn march_with(system: Decay, iterations: u32) -> Result<(Vec<f64>, f64, u32), TimeError> {
     let control = Control {
         method: Method::NewtonKrylov,
         cfl: 1e3,
@@ -76,7 +82,7 @@ fn march(longest: f64) -> Result<(Vec<f64>, f64, u32), TimeError> {
         group: 4,
         cycle: Cycle { sweeps: 2, visits: 1, levels: 2 },
     };
-    let plan = Plan { until: 2.0, step: 0.1, order: 2, orders: 9.0, iterations: 20, adaptive: None };
+    let plan = Plan { until: 2.0, step: 0.1, order: 2, orders: 9.0, iterations, adaptive: None };
     let mut march = Dual::new(&system, control, plan, (Past::default(), vec![1.0]));
     let mut times = Vec::new();
     while !march.finished() {
@@ -100,4 +106,14 @@ fn a_step_that_cannot_be_solved_is_halved_and_leads_back_to_the_times_asked_for(
 #[test]
 fn a_march_gives_up_where_no_step_can_be_solved() {
     assert!(matches!(march(0.0), Err(TimeError::Stalled { .. })));
+}
+
+#[test]
+fn a_step_that_ends_early_is_refused_where_a_particle_runs_away() {
+    // the first step needs more than two iterations, of which the first two leave a sixth of its residual
+    let all = 0.0..0.0;
+    let (times, _, halved) = march_with(Decay { hard: all.clone(), longest: 1.0, sharp: 8.0 }, 2).unwrap();
+    assert!(halved > 0 && times[0] < 0.06, "{times:?}");
+    let (times, _, halved) = march_with(Decay { hard: all, longest: 1.0, sharp: 5.0 }, 2).unwrap();
+    assert!(halved == 0 && times.len() == 20, "{times:?}");
 }
