@@ -72,7 +72,7 @@ pub(super) fn supported(case: &Case) -> Result<(), RunError> {
 }
 
 /// Exactly conservative coefficients? Not where particles travel with the fluid and their lists are made anew again and again; and
-/// not where wall layers move: weights that are exact for linear fields follow the loads closer there.
+/// not where wall layers move: weights that are exact for linear fields serve as well or better there.
 fn conserves(case: &Case) -> bool {
     let travels = case.moves() && case.particles() == ParticleMotion::Lagrangian;
     let layered = case.moves() && case.cloud.wall_layers.is_some();
