@@ -17,7 +17,7 @@ use alula::geometry::load_surface;
 use alula::math::Vector;
 use alula::math::multilevel::Cycle;
 use alula::physics::Primitive;
-use alula::scheme::{Fluid, Turnover};
+use alula::scheme::{Fluid, RemapLedger};
 use alula::system::{Moment, System};
 use alula::time::control::{Control, Method};
 use alula::time::explicit::{self, Explicit};
@@ -157,7 +157,7 @@ fn travelling<const D: usize>() -> (Fluid<D>, Vec<f64>) {
 fn re_clouding<const D: usize>(bencher: Bencher<'_, '_>, threads: usize) {
     let (fluid, u) = travelling::<D>();
     let (pool, frame, mut work) = (pool(threads), fluid.frame(&Moment::At { time: 0.0 }, &u), fluid.work());
-    let mut turnover = Turnover::default();
+    let mut turnover = RemapLedger::default();
     bencher.counter(ItemsCount::new(fluid.shape.cloud.n_fluid)).bench_local(|| {
         pool.install(|| fluid.renewed(black_box(&frame), (&u, [&[], &[]]), &mut work, &mut turnover)).is_ok()
     });

@@ -9,10 +9,10 @@ use alula::math::Vector;
 use alula::math::block_matrix::BlockMatrix;
 use alula::math::fourier::{Instances, Series};
 use alula::math::multilevel::Cycle;
-use alula::motion::{Course, Law};
+use alula::motion::{BodyMotion, TimeFunction};
 use alula::physics::Primitive;
 use alula::scheme::shape::{Path, Places};
-use alula::scheme::{Carriage, Fluid};
+use alula::scheme::{CloudMotion, Fluid};
 use alula::system::{Fault, Moment, System};
 use alula::time::control::{Control, Method};
 use alula::time::harmonic::HarmonicBalance;
@@ -48,14 +48,14 @@ impl<const D: usize> Path<D> for Wave {
     }
 }
 
-fn pitching<const D: usize>() -> Carriage<D> {
-    let sine = Course::Sine { amplitude: 0.5, omega: 4.0, phase: 0.3 };
-    Carriage::Rigid(Law::about(Vector::splat(0.4), None).with_angle(sine))
+fn pitching<const D: usize>() -> CloudMotion<D> {
+    let sine = TimeFunction::Sine { amplitude: 0.5, omega: 4.0, phase: 0.3 };
+    CloudMotion::Rigid(BodyMotion::about(Vector::splat(0.4), None).with_angle(sine))
 }
 
 /// Largest residual of a field that does not change in time, scaled by local times.
 fn residual<const D: usize>(
-    carriage: Carriage<D>,
+    carriage: CloudMotion<D>,
     field: Arc<dyn Fn(&Vector<D>) -> Primitive<D> + Send + Sync>,
     (harmonics, oversample): (usize, f64),
 ) -> f64 {
@@ -78,11 +78,11 @@ fn residual<const D: usize>(
     largest(du.iter().enumerate().map(|(k, r)| r / rate[k / (b * count)]))
 }
 
-fn uniform<const D: usize>(carriage: Carriage<D>, how: (usize, f64)) -> f64 {
+fn uniform<const D: usize>(carriage: CloudMotion<D>, how: (usize, f64)) -> f64 {
     residual(carriage, boxed::<D>().held, how)
 }
 
-fn layered<const D: usize>(carriage: Carriage<D>, how: (usize, f64)) -> f64 {
+fn layered<const D: usize>(carriage: CloudMotion<D>, how: (usize, f64)) -> f64 {
     let field = |x: &Vector<D>| {
         let density = 2.0 + (0..D).map(|d| (0.3 + 0.1 * d as f64) * x[d]).sum::<f64>();
         Primitive { density, velocity: Vector::ZERO, pressure: 1.0 / 1.4 }
@@ -90,8 +90,8 @@ fn layered<const D: usize>(carriage: Carriage<D>, how: (usize, f64)) -> f64 {
     residual(carriage, Arc::new(field), how)
 }
 
-fn wave<const D: usize>() -> Carriage<D> {
-    Carriage::Along { path: Arc::new(Wave), laws: Vec::new(), skin: Arc::default() }
+fn wave<const D: usize>() -> CloudMotion<D> {
+    CloudMotion::Along { path: Arc::new(Wave), laws: Vec::new(), skin: Arc::default() }
 }
 
 #[test] // eq32

@@ -7,10 +7,10 @@ use std::sync::Arc;
 
 use alula::math::Vector;
 use alula::math::multilevel::Cycle;
-use alula::motion::{Course, Law};
+use alula::motion::{BodyMotion, TimeFunction};
 use alula::physics::{Conserved, Primitive};
 use alula::scheme::shape::{Path, Places};
-use alula::scheme::{Carriage, Fluid};
+use alula::scheme::{CloudMotion, Fluid};
 use alula::system::{Moment, System};
 use alula::time::control::{self, Control};
 use alula::time::dual::{Dual, Plan};
@@ -92,18 +92,18 @@ impl<const D: usize> Path<D> for Walk {
     }
 }
 
-fn pitching<const D: usize>() -> Carriage<D> {
-    let sine = Course::Sine { amplitude: 0.5, omega: 9.0, phase: 0.3 };
-    Carriage::Rigid(Law::about(Vector::splat(0.4), None).with_angle(sine))
+fn pitching<const D: usize>() -> CloudMotion<D> {
+    let sine = TimeFunction::Sine { amplitude: 0.5, omega: 9.0, phase: 0.3 };
+    CloudMotion::Rigid(BodyMotion::about(Vector::splat(0.4), None).with_angle(sine))
 }
 
-fn along<const D: usize>(path: impl Path<D> + 'static) -> Carriage<D> {
-    Carriage::Along { path: Arc::new(path), laws: Vec::new(), skin: Arc::default() }
+fn along<const D: usize>(path: impl Path<D> + 'static) -> CloudMotion<D> {
+    CloudMotion::Along { path: Arc::new(path), laws: Vec::new(), skin: Arc::default() }
 }
 
 /// Marches the field and returns the largest difference from it, where particles are then.
 fn drift<const D: usize>(
-    carriage: Carriage<D>,
+    carriage: CloudMotion<D>,
     field: &dyn Fn(&Vector<D>) -> Primitive<D>,
     (fluid, held): (Fluid<D>, alula::scheme::start::Field<D>),
     implicit: bool,
@@ -149,14 +149,14 @@ fn worst<const D: usize>(
     }))
 }
 
-fn uniform_drift<const D: usize>(carriage: Carriage<D>, implicit: bool) -> f64 {
+fn uniform_drift<const D: usize>(carriage: CloudMotion<D>, implicit: bool) -> f64 {
     let (fluid, _) = boxed::<D>();
     let held = Arc::clone(&fluid.held);
     let field = Arc::clone(&held);
     drift(carriage, &*field, (fluid, held), implicit)
 }
 
-fn layered_drift<const D: usize>(carriage: Carriage<D>, implicit: bool) -> f64 {
+fn layered_drift<const D: usize>(carriage: CloudMotion<D>, implicit: bool) -> f64 {
     let (fluid, _) = boxed::<D>();
     drift(carriage, &layered::<D>, (fluid, Arc::new(layered::<D>)), implicit)
 }

@@ -13,7 +13,7 @@ use alula::math::Vector;
 use alula::math::multilevel::Cycle;
 use alula::physics::Conserved;
 use alula::scheme::shape::{Path, Places};
-use alula::scheme::{Carriage, Fluid, Turnover};
+use alula::scheme::{CloudMotion, Fluid, RemapLedger};
 use alula::time::control::{self, Control};
 use alula::time::dual::{Dual, Plan};
 use alula::time::explicit::{Explicit, Method};
@@ -34,7 +34,7 @@ struct End<const D: usize> {
     fluid: Fluid<D>,
     u: Vec<f64>,
     past: Past,
-    turnover: Turnover,
+    turnover: RemapLedger,
 }
 
 /// How to march.
@@ -65,7 +65,7 @@ fn implicit(step: f64, until: f64, orders: f64) -> Plan {
 
 /// Marches, building the cloud anew when it is worn, until the time or the number of steps is reached.
 fn march<const D: usize>((fluid, u): (Fluid<D>, Vec<f64>), (how, until, steps): (How, f64, u32)) -> End<D> {
-    let mut end = End { fluid, u, past: Past::default(), turnover: Turnover::default() };
+    let mut end = End { fluid, u, past: Past::default(), turnover: RemapLedger::default() };
     loop {
         let begin = (end.past.clone(), end.u.clone());
         let mut leg: Box<dyn March<Fluid<D>>> = match how {
@@ -117,7 +117,7 @@ fn stream<const D: usize>() -> (Fluid<D>, Vec<f64>) {
     )))
 }
 
-fn uniform_drift<const D: usize>(how: How) -> (f64, Turnover) {
+fn uniform_drift<const D: usize>(how: How) -> (f64, RemapLedger) {
     let (fluid, u) = stream::<D>();
     let state = u[..D + 2].to_vec();
     let end = march((fluid, u), (how, 1e3, 100));
@@ -136,7 +136,7 @@ fn uniform_flow_stays_uniform_on_travelling_particles() {
 }
 
 /// Gas at rest with a density that grows along every axis.
-fn layered_drift(how: How) -> (f64, Turnover) {
+fn layered_drift(how: How) -> (f64, RemapLedger) {
     let text = "title = \"box\"\ndimension = 2\n[flow]\nmach = 0.5\n[cloud]\nspacing = 0.0625\njitter = 0.3\n\
                 [cloud.domain]\nmin = [0.0, 0.0]\nmax = [1.0, 1.0]\n[boundary]\nx_min = \"held\"\nx_max = \"held\"\n\
                 y_min = \"held\"\ny_max = \"held\"\n[time.explicit]\nuntil = 1.0\n";
@@ -214,8 +214,8 @@ impl Path<2> for Straight {
     }
 }
 
-fn along(path: impl Path<2> + 'static) -> Carriage<2> {
-    Carriage::Along { path: Arc::new(path), laws: Vec::new(), skin: Arc::default() }
+fn along(path: impl Path<2> + 'static) -> CloudMotion<2> {
+    CloudMotion::Along { path: Arc::new(path), laws: Vec::new(), skin: Arc::default() }
 }
 
 /// The vortex on a prescribed motion; conservative coefficients do not follow a cloud that deforms.
@@ -305,7 +305,7 @@ impl Path<2> for Shaken {
     }
 }
 
-fn sod_along(carriage: Carriage<2>) -> f64 {
+fn sod_along(carriage: CloudMotion<2>) -> f64 {
     let (fluid, u) = solver::<2>(&sod());
     let fluid = Fluid { carriage, ..fluid };
     let mut march = Explicit::new(&fluid, Method::Ssprk3, (0.5, 0.2), (Past::default(), u));
@@ -318,7 +318,7 @@ fn sod_along(carriage: Carriage<2>) -> f64 {
 
 #[test] // Sod (1978), exact Riemann solution
 fn the_shock_of_sod_stands_where_it_stands_on_a_cloud_at_rest() {
-    let still = sod_along(Carriage::Still);
+    let still = sod_along(CloudMotion::Still);
     let shaken = sod_along(along(Shaken));
     let end = march(solver::<2>(&lagrangian(&sod())), (Courant(0.5), 0.2, u32::MAX));
     let travels = shock_error(&end.fluid.shape.cloud.x, &end.u, &end.fluid);

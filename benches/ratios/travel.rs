@@ -1,7 +1,7 @@
 //! Clouds that deform, and particles that travel.
 use std::path::Path;
 
-use alula::scheme::Turnover;
+use alula::scheme::RemapLedger;
 use alula::system::{Moment, System};
 use alula::time::explicit::{Explicit, Method};
 use alula::time::{March, Past};
@@ -32,7 +32,7 @@ pub(super) fn deforming() {
 /// A cloud of travelling particles built anew, and a step of three stages.
 pub(super) fn travelling() {
     let (fluid, u) = crate::travelling::<2>();
-    let (mut work, mut turnover) = (fluid.work(), Turnover::default());
+    let (mut work, mut turnover) = (fluid.work(), RemapLedger::default());
     let moment = Moment::At { time: 0.0 };
     let one = residual(&fluid, &moment, &u);
     let frame = fluid.frame(&moment, &u);

@@ -2,7 +2,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::{
-    Angle, BodyMotion, Case, HarmonicCount, Harmonics, Length, ModeMotion, Motion, ParticleMotion, Pitch, Plunge,
+    Angle, BodyMotionSpec, Case, HarmonicCount, Harmonics, Length, ModeMotion, Motion, ParticleMotion, Pitch, Plunge,
     SteadyMethod, Temporal,
 };
 
@@ -94,11 +94,11 @@ impl Case {
     /// in the case: its modes are those that forces are computed on.
     pub fn gaf_case(&self, gaf: &Gaf, mode: AnyMode<'_>, k: f64, factor: f64) -> Self {
         let none = Angle(0.0);
-        let mut law = BodyMotion {
+        let mut law = BodyMotionSpec {
             reduced_frequency: Some(k),
             reduced_length: gaf.reduced_length,
             pivot: gaf.pivot.clone(),
-            ..BodyMotion::default()
+            ..BodyMotionSpec::default()
         };
         let mut particles = gaf.particles;
         match mode {

@@ -33,7 +33,8 @@ pub use flow::{FreeStreamScales, ViscosityLaw, Viscous, Wall};
 pub use gaf::{AnyMode, FlexibleMode, Gaf, Mode};
 pub use mode_file::{ModeTable, read_mode};
 pub use motion::{
-    BodyMotion, ModeMotion, Motion, MotionFormula, MotionTable, ParticleMotion, Pitch, Plunge, Rotation, Translation,
+    BodyMotionSpec, ModeMotion, Motion, MotionFormula, MotionTable, ParticleMotion, Pitch, Plunge, Rotation,
+    Translation,
 };
 pub use quantity::{Angle, Density, Frequency, Length, Pressure, Rate, Temperature, Time, Velocity, Viscosity};
 pub use read::read;
@@ -141,7 +142,7 @@ pub struct Body {
     /// Condition of the gas on the surface; absent: slip without viscosity, adiabatic with.
     pub wall: Option<Wall>,
     /// Motion of its own, in place of that of `[motion]`; an empty one keeps the body at rest.
-    pub motion: Option<BodyMotion>,
+    pub motion: Option<BodyMotionSpec>,
 }
 
 /// What a body is made of. In the file this is one key of the body table.

@@ -14,7 +14,7 @@ pub struct Motion {
     pub particles: ParticleMotion,
     /// Motion of every body without one of its own; of the cloud when there is no body.
     #[serde(flatten)]
-    pub law: BodyMotion,
+    pub law: BodyMotionSpec,
 }
 
 /// How particles follow.
@@ -32,7 +32,7 @@ pub enum ParticleMotion {
 
 /// Motion of one body; all its parts add up, none: at rest.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct BodyMotion {
+pub struct BodyMotionSpec {
     /// Frequency of pitch and plunge.
     pub frequency: Option<Frequency>,
     /// Reduced frequency k = ωL/U∞ instead.
@@ -139,7 +139,7 @@ pub struct MotionFormula {
     pub angle: Option<String>,
 }
 
-impl BodyMotion {
+impl BodyMotionSpec {
     /// True when no part moves anything.
     pub fn is_still(&self) -> bool {
         self.pitch.is_none()
@@ -163,13 +163,13 @@ impl BodyMotion {
 
 impl Case {
     /// Motion of body number `body`: its own, else that of `[motion]`; `None` when it is at rest.
-    pub fn motion_of(&self, body: usize) -> Option<&BodyMotion> {
+    pub fn motion_of(&self, body: usize) -> Option<&BodyMotionSpec> {
         let own = self.bodies.get(body).and_then(|b| b.motion.as_ref());
         own.or(self.motion.as_ref().map(|m| &m.law)).filter(|law| !law.is_still())
     }
 
     /// Angular frequency of `law` in the units of the solver: its own, else that of `[motion]`.
-    pub fn angular_frequency(&self, law: &BodyMotion, chord: f64) -> Option<f64> {
+    pub fn angular_frequency(&self, law: &BodyMotionSpec, chord: f64) -> Option<f64> {
         let general = || self.motion.as_ref().and_then(|m| m.law.own_angular_frequency(&self.flow, chord));
         law.own_angular_frequency(&self.flow, chord).or_else(general)
     }

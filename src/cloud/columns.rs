@@ -13,7 +13,7 @@
 //! Then the columns are cut until neighbours differ by one layer at most. Particles of the background inside the layers, or
 //! too near to them, are left out.
 use super::Transform;
-use super::fill::Seat;
+use super::fill::ParticleSite;
 use super::grid::Grid;
 use super::interface::Placed;
 use super::layers::{Column, End};
@@ -70,7 +70,7 @@ pub(super) struct Columns<const D: usize> {
 }
 
 /// What columns grow in.
-pub(super) struct Ground<'a, const D: usize> {
+pub(super) struct LayerContext<'a, const D: usize> {
     /// The bodies.
     pub surface: &'a Surface<D>,
     /// The background.
@@ -83,7 +83,7 @@ pub(super) struct Ground<'a, const D: usize> {
 
 impl<const D: usize> Columns<D> {
     /// Grows columns over the interface particles of a plane case.
-    pub(super) fn grow(placed: &Placed<D>, spec: &WallLayers, ground: &Ground<'_, D>) -> Self {
+    pub(super) fn grow(placed: &Placed<D>, spec: &WallLayers, ground: &LayerContext<'_, D>) -> Self {
         let mut columns = Self::start(placed, ground.transforms);
         let n = placed.x.len();
         let most = spec.count.map_or(MOST, |c| c as usize);
@@ -202,7 +202,7 @@ impl<const D: usize> Columns<D> {
 
     /// Why column `w` ends before a particle at a height; `None` when that keeps its distance from its own wall, the
     /// adjacent columns and the sides.
-    fn end_at(&self, w: usize, (height, thickness): (f64, f64), ground: &Ground<'_, D>) -> Option<End> {
+    fn end_at(&self, w: usize, (height, thickness): (f64, f64), ground: &LayerContext<'_, D>) -> Option<End> {
         let x = self.at(w, height);
         let h = self.spacing(w, height);
         let along = |d: &Vector<D>, side: usize| d.dot(&self.axes[w][0]) * if side == 1 { 1.0 } else { -1.0 };
@@ -224,7 +224,7 @@ impl<const D: usize> Columns<D> {
     }
 
     /// Inside the domain, by `margin` from closed sides and by more than a cell from open ones.
-    fn is_inside(&self, x: &Vector<D>, margin: f64, ground: &Ground<'_, D>) -> bool {
+    fn is_inside(&self, x: &Vector<D>, margin: f64, ground: &LayerContext<'_, D>) -> bool {
         let bounds = ground.tree.bounds();
         let cell = 2.0 * ground.tree.leaf_at(x).size;
         (0..D).all(|d| {
@@ -294,8 +294,8 @@ impl<const D: usize> Columns<D> {
     }
 
     /// Seats of the fluid particles in the layers.
-    pub(super) fn seats(&self, tree: &Tree<D>) -> Vec<Seat<D>> {
-        let seat = |(w, k, x, spacing, height): (usize, usize, Vector<D>, f64, f64)| Seat {
+    pub(super) fn seats(&self, tree: &Tree<D>) -> Vec<ParticleSite<D>> {
+        let seat = |(w, k, x, spacing, height): (usize, usize, Vector<D>, f64, f64)| ParticleSite {
             cell: tree.cell_at(&x),
             centre: x,
             spacing,
@@ -308,7 +308,7 @@ impl<const D: usize> Columns<D> {
 
     /// Drops the leaves that the layers take the place of. A leaf that is only too near to a layer finer than itself gives
     /// way to those of its quarters that are not.
-    pub(super) fn blank(&self, ground: &Ground<'_, D>, blank: f64, fluid: &mut Vec<(Leaf<D>, f64)>) {
+    pub(super) fn blank(&self, ground: &LayerContext<'_, D>, blank: f64, fluid: &mut Vec<(Leaf<D>, f64)>) {
         let tree = ground.tree;
         let mut finest = vec![f64::INFINITY; tree.n_nodes()];
         let mut inside = vec![false; tree.n_nodes()];

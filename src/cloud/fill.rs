@@ -5,7 +5,7 @@
 //! the sides of the domain carry the outer particles.
 use std::sync::Arc;
 
-use super::columns::{Columns, Ground};
+use super::columns::{Columns, LayerContext};
 use super::interface::{Placed, place};
 use super::layers::Layers;
 use super::layout::Layout;
@@ -55,7 +55,7 @@ pub struct Particles<const D: usize> {
 
 /// A place for a particle.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Seat<const D: usize> {
+pub(super) struct ParticleSite<const D: usize> {
     /// Integer coordinates that give its place along the space-filling curve.
     pub(super) cell: [u32; D],
     /// Middle of the leaf, or the place itself in a layer.
@@ -130,14 +130,14 @@ impl<const D: usize> Particles<D> {
             }
         }
         blank_near_interface(&tree, &placed, &mut fluid);
-        let ground = surface.map(|surface| Ground { surface, tree: &tree, layout, transforms });
+        let ground = surface.map(|surface| LayerContext { surface, tree: &tree, layout, transforms });
         let columns = spec.wall_layers.zip(ground).map(|(layers, ground)| {
             let columns = Columns::grow(&placed, &layers, &ground);
             columns.blank(&ground, spec.blank, &mut fluid);
             columns.straighten(&mut placed);
             columns
         });
-        let leaf_seat = |(leaf, distance): &(Leaf<D>, f64)| Seat {
+        let leaf_seat = |(leaf, distance): &(Leaf<D>, f64)| ParticleSite {
             cell: tree.cell_at(&leaf.centre),
             centre: leaf.centre,
             spacing: leaf.size,
@@ -147,7 +147,7 @@ impl<const D: usize> Particles<D> {
         };
         let seats = fluid.iter().map(leaf_seat).chain(columns.iter().flat_map(|c| c.seats(&tree))).collect::<Vec<_>>();
         let order = order_by_key(seats.len(), |k| curve_position(seats[k].cell));
-        let seats: Vec<Seat<D>> = order.into_iter().map(|k| seats[k as usize]).collect();
+        let seats: Vec<ParticleSite<D>> = order.into_iter().map(|k| seats[k as usize]).collect();
         let order = order_by_key(outer.len(), |k| curve_position(tree.anchor(outer[k].0.node)));
         let outer: Vec<_> = order.into_iter().map(|k| outer[k as usize]).collect();
         let layers = columns.map(|c| gather(c, &seats)).unwrap_or_default();
@@ -163,7 +163,7 @@ impl<const D: usize> Particles<D> {
     pub(super) fn assemble(
         tree: Arc<Tree<D>>,
         layout: &Layout<D>,
-        (fluid, placed, outer): (Vec<Seat<D>>, Placed<D>, Vec<(Leaf<D>, (usize, usize))>),
+        (fluid, placed, outer): (Vec<ParticleSite<D>>, Placed<D>, Vec<(Leaf<D>, (usize, usize))>),
         layers: Layers<D>,
     ) -> Self {
         let n_fluid = fluid.len();
@@ -187,7 +187,7 @@ impl<const D: usize> Particles<D> {
             .chain(outer_leaves.map(|_| f64::INFINITY))
             .collect::<Vec<_>>();
         let next = placed.next.iter().map(|k| if *k == u32::MAX { *k } else { k + n_fluid as u32 }).collect();
-        let seated = |s: &Seat<D>| if layers.is_empty() { s.node } else { tree.leaf_at(&s.centre).node };
+        let seated = |s: &ParticleSite<D>| if layers.is_empty() { s.node } else { tree.leaf_at(&s.centre).node };
         let leaf_of = fluid.iter().map(seated).chain(placed.x.iter().map(|x| tree.leaf_at(x).node));
         let leaf_of: Vec<u32> = leaf_of.chain(outer.iter().map(|(l, _)| l.node)).collect();
         Self {
@@ -335,7 +335,7 @@ pub(super) fn side_of<const D: usize>(
 }
 
 /// Columns with the numbers of their particles.
-fn gather<const D: usize>(columns: Columns<D>, seats: &[Seat<D>]) -> Layers<D> {
+fn gather<const D: usize>(columns: Columns<D>, seats: &[ParticleSite<D>]) -> Layers<D> {
     let mut numbers: Vec<(u32, u32, u32)> =
         seats.iter().zip(0..).filter_map(|(s, i)| s.layer.map(|(column, layer)| (column, layer, i))).collect();
     numbers.sort_unstable();

@@ -1,6 +1,6 @@
 //! Clouds of particles that travel: built anew where the particles are.
 //!
-//! A [`Habitat`] is what such a cloud keeps for ever: the background, which says how large the spacing H(x) is to be, the
+//! A [`BackgroundDomain`] is what such a cloud keeps for ever: the background, which says how large the spacing H(x) is to be, the
 //! sides of the domain with their outer particles, the bodies with their interface particles. Whatever the fluid particles
 //! do, a cloud follows from where they are, by the ball rule r ≤ ρ (h_i + h_j)/2 everywhere.
 //!
@@ -10,7 +10,7 @@
 //! place, a middle or a corner of a leaf with no particle within 0.9 spacings (1.0 in 3-D), a particle is inserted there.
 use std::sync::Arc;
 
-use super::fill::{Ball, Particles, Seat, Walls, curve_position, side_of};
+use super::fill::{Ball, ParticleSite, Particles, Walls, curve_position, side_of};
 use super::grid::Grid;
 use super::interface::{Placed, place};
 use super::layers::Layers;
@@ -50,7 +50,7 @@ const FARTHEST: f64 = 8.0;
 pub const NEW: u32 = u32::MAX;
 
 /// What a cloud keeps while its particles travel.
-pub struct Habitat<const D: usize> {
+pub struct BackgroundDomain<const D: usize> {
     tree: Arc<Tree<D>>,
     layout: Layout<D>,
     transforms: Vec<Transform<D>>,
@@ -65,7 +65,7 @@ pub struct Habitat<const D: usize> {
 }
 
 /// A cloud built anew, and how its fluid particles follow from those before.
-pub struct Renewal<const D: usize> {
+pub struct Recloud<const D: usize> {
     /// The cloud.
     pub cloud: Cloud<D>,
     /// For each fluid particle the one it was, or `NEW`.
@@ -81,7 +81,7 @@ struct Scene<'a, const D: usize> {
     placed: std::borrow::Cow<'a, Placed<D>>,
 }
 
-impl<const D: usize> Habitat<D> {
+impl<const D: usize> BackgroundDomain<D> {
     /// What the cloud of a case, which is built already, keeps.
     pub fn new(case: &Case, surface: Option<&Surface<D>>, cloud: &Cloud<D>) -> Result<Self, CloudError> {
         let layout = Layout::new(case, surface)?;
@@ -121,7 +121,7 @@ impl<const D: usize> Habitat<D> {
     }
 
     /// The cloud of the fluid particles of `old`, without those that are in the way and with those that are missing.
-    pub fn renew(&self, poses: &[RigidPose<D>], old: &Cloud<D>) -> Result<Renewal<D>, CloudError> {
+    pub fn renew(&self, poses: &[RigidPose<D>], old: &Cloud<D>) -> Result<Recloud<D>, CloudError> {
         let scene = self.scene(poses);
         let mut x = old.x[..old.n_fluid].to_vec();
         x.iter_mut().for_each(|x| *x = self.wrapped(x));
@@ -130,7 +130,7 @@ impl<const D: usize> Habitat<D> {
         self.thin_out(old, &mut gone);
         let kept: Vec<u32> = (0..old.n_fluid as u32).filter(|i| !gone[*i as usize]).collect();
         let removed = (0..old.n_fluid as u32).filter(|i| gone[*i as usize]).collect();
-        let seats: Vec<Seat<D>> = kept.iter().filter_map(|i| seats[*i as usize]).collect();
+        let seats: Vec<ParticleSite<D>> = kept.iter().filter_map(|i| seats[*i as usize]).collect();
         let (mut particles, mut order) = self.gather(&scene, seats.clone());
         let inserted = self.missing(&scene, &particles);
         if !inserted.is_empty() {
@@ -140,7 +140,7 @@ impl<const D: usize> Habitat<D> {
             return Err(CloudError::Empty);
         }
         let from = order.iter().map(|k| kept.get(*k as usize).copied().unwrap_or(NEW)).collect();
-        Ok(Renewal { cloud: self.joined(&scene, particles)?, from, removed })
+        Ok(Recloud { cloud: self.joined(&scene, particles)?, from, removed })
     }
 
     /// Volumes of the fluid particles of a `cloud` just built: the part of the leaves without outer particles that is nearer to
@@ -272,7 +272,7 @@ impl<const D: usize> Habitat<D> {
     }
 
     /// Room for a particle at each place; `None` beyond the sides and in walls.
-    fn seats(&self, scene: &Scene<'_, D>, x: &[Vector<D>]) -> Vec<Option<Seat<D>>> {
+    fn seats(&self, scene: &Scene<'_, D>, x: &[Vector<D>]) -> Vec<Option<ParticleSite<D>>> {
         let walls = Walls::new(scene.surface.as_deref(), self.tree.bounds(), &self.transforms);
         let mut seats = vec![None; x.len()];
         let chunks = parts(x.len(), CHUNK);
@@ -291,14 +291,14 @@ impl<const D: usize> Habitat<D> {
         walls: &Walls<'_, D>,
         x: &Vector<D>,
         last: &mut Option<Ball<D>>,
-    ) -> Option<Seat<D>> {
+    ) -> Option<ParticleSite<D>> {
         let leaf = self.tree.leaf_at(x);
         let spacing = if scene.poses.is_empty() { self.average(&leaf, x) } else { self.spacing(scene.poses, x) };
         if !self.is_inside(x, spacing) {
             return None;
         }
         let distance = walls.distance((x, spacing), self.blank, last)?;
-        Some(Seat { cell: self.tree.cell_at(x), centre: *x, spacing, node: leaf.node, distance, layer: None })
+        Some(ParticleSite { cell: self.tree.cell_at(x), centre: *x, spacing, node: leaf.node, distance, layer: None })
     }
 
     /// Between the sides, with room for the outer particles of open ones.
@@ -342,7 +342,7 @@ impl<const D: usize> Habitat<D> {
     }
 
     /// Particles among those that have a seat, in the order of the curve, and which seat each one has.
-    fn gather(&self, scene: &Scene<'_, D>, seats: Vec<Seat<D>>) -> (Particles<D>, Vec<u32>) {
+    fn gather(&self, scene: &Scene<'_, D>, seats: Vec<ParticleSite<D>>) -> (Particles<D>, Vec<u32>) {
         let order = order_by_key(seats.len(), |k| curve_position(seats[k].cell));
         let seats = order.iter().map(|k| seats[*k as usize]).collect();
         let tree = Arc::clone(&self.tree);
@@ -351,11 +351,11 @@ impl<const D: usize> Habitat<D> {
     }
 
     /// Seats at the empty places of the background.
-    fn missing(&self, scene: &Scene<'_, D>, particles: &Particles<D>) -> Vec<Seat<D>> {
+    fn missing(&self, scene: &Scene<'_, D>, particles: &Particles<D>) -> Vec<ParticleSite<D>> {
         let search = Search::new(particles, scene.surface.as_deref(), &self.transforms, self.radius);
         let walls = Walls::new(scene.surface.as_deref(), self.tree.bounds(), &self.transforms);
         let cells = parts(self.tree.n_nodes(), CHUNK);
-        let mut found: Vec<Vec<Seat<D>>> = vec![Vec::new(); cells.len()];
+        let mut found: Vec<Vec<ParticleSite<D>>> = vec![Vec::new(); cells.len()];
         let leaves = |c: usize| cells[c].clone().filter_map(|k| self.tree.as_leaf(k as u32));
         // the background travels with the bodies: its places are looked at where each of them carries it
         let carried = |x: &Vector<D>| scene.poses.iter().map(|p| p.point(x)).collect::<Vec<_>>();
@@ -389,8 +389,8 @@ impl<const D: usize> Habitat<D> {
     }
 
     /// Those that keep their distance from the ones before.
-    fn apart(&self, seats: impl Iterator<Item = Seat<D>>) -> Vec<Seat<D>> {
-        let seats: Vec<Seat<D>> = seats.collect();
+    fn apart(&self, seats: impl Iterator<Item = ParticleSite<D>>) -> Vec<ParticleSite<D>> {
+        let seats: Vec<ParticleSite<D>> = seats.collect();
         let largest = seats.iter().map(|s| s.spacing).fold(f64::MIN_POSITIVE, f64::max);
         let (mut kept, mut grid) = (Vec::new(), Grid::new(2.0 * largest));
         let mut all: Vec<Vector<D>> = Vec::new();

@@ -20,7 +20,7 @@ const MOST: usize = 2 * MOST_HARMONICS + 1;
 /// Coefficients of the solution of (A + ∂/∂t) x = b in the order mean, cosine and sine of the first harmonic, of the
 /// second, ..., and what their sweeps share.
 #[derive(Clone, Debug)]
-pub struct Waves {
+pub struct HarmonicSweeps {
     harmonics: usize,
     omega: f32,
     /// Weight μ of the time derivative in each row.
@@ -36,7 +36,7 @@ pub struct Waves {
     inverse: Vec<f32>,
 }
 
-impl Waves {
+impl HarmonicSweeps {
     /// Storage for the rows of `matrix`.
     pub fn new(matrix: &BlockMatrix, harmonics: usize, omega: f64, mass: Vec<f32>) -> Self {
         let (n, size) = (matrix.n_rows(), matrix.block());
@@ -313,7 +313,7 @@ mod tests {
     fn sweeps_solve_the_system_in_time() {
         let (n, harmonics, omega) = (23, 2, 0.7);
         let matrix = chain(n);
-        let mut waves = Waves::new(&matrix, harmonics, omega, vec![1.0; n]);
+        let mut waves = HarmonicSweeps::new(&matrix, harmonics, omega, vec![1.0; n]);
         waves.invert(&matrix);
         waves.b.iter_mut().enumerate().for_each(|(k, b)| *b = ((k * k) as f32 * 0.37).sin());
         for _ in 0..40 {
@@ -354,7 +354,7 @@ mod tests {
     #[test]
     fn restarts_hold_what_sweeps_summed() {
         let matrix = chain(20);
-        let mut waves = Waves::new(&matrix, 1, 2.0, vec![1.0; 20]);
+        let mut waves = HarmonicSweeps::new(&matrix, 1, 2.0, vec![1.0; 20]);
         waves.invert(&matrix);
         waves.b.fill(1.0);
         waves.symmetric_sweep(&matrix);

@@ -6,7 +6,7 @@
 //!
 //! The same hierarchy serves systems that repeat in time, harmonic by harmonic ([`super::circulant`]).
 use super::block_matrix::{BlockMatrix, Sweeps};
-use super::circulant::{MOST_HARMONICS, Waves};
+use super::circulant::{HarmonicSweeps, MOST_HARMONICS};
 use super::fourier::Instances;
 use super::sweep::{sweep, sweep_rows};
 
@@ -37,7 +37,7 @@ struct Level {
     first_member: Vec<u32>,
     target: Vec<u32>,
     sweeps: Sweeps,
-    waves: Option<Waves>,
+    waves: Option<HarmonicSweeps>,
 }
 
 /// A matrix and its coarser versions.
@@ -47,7 +47,7 @@ pub struct Multilevel {
     times: Option<Times>,
 }
 
-/// Transforms between instances of a period and coefficients in the order of [`Waves`].
+/// Transforms between instances of a period and coefficients in the order of [`HarmonicSweeps`].
 struct Times {
     /// Coefficient by coefficient, from values.
     forth: Vec<f32>,
@@ -84,7 +84,7 @@ impl Multilevel {
         for k in 0..self.levels.len() {
             let next = self.levels.get(k + 1).map_or(0, |l| l.matrix.n_rows());
             let level = &mut self.levels[k];
-            let waves = Waves::new(&level.matrix, instances.harmonics(), omega, mass);
+            let waves = HarmonicSweeps::new(&level.matrix, instances.harmonics(), omega, mass);
             mass = waves.gathered(&level.group, next);
             level.waves = Some(waves);
             level.sweeps = Sweeps::default();
@@ -133,7 +133,7 @@ impl Multilevel {
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        let waves = |l: &Level| l.waves.as_ref().map_or(0, Waves::bytes);
+        let waves = |l: &Level| l.waves.as_ref().map_or(0, HarmonicSweeps::bytes);
         let lists = |l: &Level| 4 * (l.group.len() + l.member.len() + l.first_member.len() + l.target.len());
         self.levels.iter().map(|l| l.matrix.bytes() + l.sweeps.bytes() + waves(l) + lists(l)).sum()
     }
@@ -214,7 +214,7 @@ impl Level {
 
     /// Unknowns of a row.
     fn width(&self) -> usize {
-        self.matrix.block() * self.waves.as_ref().map_or(1, Waves::count)
+        self.matrix.block() * self.waves.as_ref().map_or(1, HarmonicSweeps::count)
     }
 
     /// What is left of the right-hand side.

@@ -14,7 +14,7 @@ const SAMPLES: usize = 29;
 
 /// A scalar function of time.
 #[derive(Clone, Debug)]
-pub enum Course {
+pub enum TimeFunction {
     /// amplitude·sin(ωt + phase).
     Sine {
         /// Amplitude.
@@ -43,7 +43,7 @@ pub enum Repeat {
     Never,
 }
 
-impl Course {
+impl TimeFunction {
     /// Value at time `t`.
     pub fn at<S: Scalar>(&self, t: S) -> S {
         match self {
@@ -186,12 +186,12 @@ fn least_multiple(a: f64, b: f64) -> Option<f64> {
 }
 
 /// Value and two derivatives of a sum of courses.
-pub(super) fn total<S: Scalar>(courses: &[Course], t: S) -> S {
+pub(super) fn total<S: Scalar>(courses: &[TimeFunction], t: S) -> S {
     courses.iter().fold(S::constant(0.0), |sum, course| sum + course.at(t))
 }
 
 /// Value, rate and acceleration of a sum of courses.
-pub(super) fn total_with_rates(courses: &[Course], t: f64) -> Jet {
+pub(super) fn total_with_rates(courses: &[TimeFunction], t: f64) -> Jet {
     total(courses, Jet::variable(t))
 }
 
@@ -199,8 +199,8 @@ pub(super) fn total_with_rates(courses: &[Course], t: f64) -> Jet {
 mod tests {
     use super::*;
 
-    fn formula(text: &str, omega: f64) -> Course {
-        Course::Formula(Formula::parse(text).unwrap(), omega)
+    fn formula(text: &str, omega: f64) -> TimeFunction {
+        TimeFunction::Formula(Formula::parse(text).unwrap(), omega)
     }
 
     #[test]
@@ -241,9 +241,9 @@ mod tests {
 
     #[test]
     fn periods_are_found() {
-        let every = |c: &Course| c.repeat();
-        assert_eq!(every(&Course::Sine { amplitude: 1.0, omega: TAU, phase: 0.3 }), Repeat::Every(1.0));
-        assert_eq!(every(&Course::Steady(1.0)), Repeat::Never);
+        let every = |c: &TimeFunction| c.repeat();
+        assert_eq!(every(&TimeFunction::Sine { amplitude: 1.0, omega: TAU, phase: 0.3 }), Repeat::Every(1.0));
+        assert_eq!(every(&TimeFunction::Steady(1.0)), Repeat::Never);
         assert_eq!(every(&formula("sin(omega*t) + cos(3*omega*t)^2", TAU)), Repeat::Every(1.0));
         assert_eq!(every(&formula("sin(omega*t/2)", TAU)), Repeat::Never);
         assert_eq!(every(&formula("t", TAU)), Repeat::Never);

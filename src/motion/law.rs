@@ -4,10 +4,10 @@
 //! turns by θ about an axis a through its pivot p, which travels with the displacement d; X is the place before any motion. With the part of v = X − p along the axis kept (P v = a (a·v)) and the
 //! turned one from Rodrigues' formula, R v = P v + cos θ (v − P v) + sin θ (a × v). In the plane a points away from the
 //! reader: positive angles are clockwise, nose up for a stream along +x. In space the default is a = +y, nose up for lift
-//! along +z. θ and d are sums of [`Course`]s; velocity and acceleration follow from the same lines by [`Jet`]s.
+//! along +z. θ and d are sums of [`TimeFunction`]s; velocity and acceleration follow from the same lines by [`Jet`]s.
 use std::sync::Arc;
 
-use super::course::{Course, Repeat, common, total, total_with_rates};
+use super::course::{Repeat, TimeFunction, common, total, total_with_rates};
 use super::mode::ModeShape;
 use super::pose::RigidPose;
 use crate::math::Vector;
@@ -15,15 +15,15 @@ use crate::math::jet::{Jet, Scalar};
 
 /// Motion of one body.
 #[derive(Clone, Debug)]
-pub struct Law<const D: usize> {
+pub struct BodyMotion<const D: usize> {
     pivot: Vector<D>,
     /// Rows of P: projection onto the axis, zero in the plane.
     along: [Vector<D>; D],
     /// Rows of the matrix of a ×.
     across: [Vector<D>; D],
-    turn: Vec<Course>,
-    shift: Vec<[Course; D]>,
-    modes: Vec<(Arc<ModeShape<D>>, Course)>,
+    turn: Vec<TimeFunction>,
+    shift: Vec<[TimeFunction; D]>,
+    modes: Vec<(Arc<ModeShape<D>>, TimeFunction)>,
 }
 
 /// Where a point is, how fast it moves, and how it speeds up.
@@ -37,7 +37,7 @@ pub struct Kinematics<const D: usize> {
     pub acceleration: Vector<D>,
 }
 
-impl<const D: usize> Law<D> {
+impl<const D: usize> BodyMotion<D> {
     /// At rest.
     pub fn fixed() -> Self {
         Self::about(Vector::ZERO, None)
@@ -58,24 +58,24 @@ impl<const D: usize> Law<D> {
     }
 
     /// Adds an angle.
-    pub fn with_angle(mut self, course: Course) -> Self {
+    pub fn with_angle(mut self, course: TimeFunction) -> Self {
         self.turn.push(course);
         self
     }
 
     /// Adds a displacement.
-    pub fn with_shift(mut self, courses: [Course; D]) -> Self {
+    pub fn with_shift(mut self, courses: [TimeFunction; D]) -> Self {
         self.shift.push(courses);
         self
     }
 
     /// Adds `course` times `direction` as displacement, for courses that are proportional to a factor.
-    pub(super) fn with_shift_along(self, direction: &Vector<D>, course: impl Fn(f64) -> Course) -> Self {
+    pub(super) fn with_shift_along(self, direction: &Vector<D>, course: impl Fn(f64) -> TimeFunction) -> Self {
         self.with_shift(std::array::from_fn(|d| course(direction[d])))
     }
 
     /// Adds a mode, whose coordinate is `course`.
-    pub fn with_mode(mut self, shape: Arc<ModeShape<D>>, course: Course) -> Self {
+    pub fn with_mode(mut self, shape: Arc<ModeShape<D>>, course: TimeFunction) -> Self {
         self.modes.push((shape, course));
         self
     }
@@ -202,10 +202,10 @@ impl<const D: usize> Law<D> {
     /// How the motion repeats; a steady rotation does after each turn.
     pub fn repeat(&self) -> Repeat {
         let turns = self.turn.iter().map(|course| match course {
-            Course::Steady(rate) if *rate != 0.0 => Repeat::Every(std::f64::consts::TAU / rate.abs()),
+            TimeFunction::Steady(rate) if *rate != 0.0 => Repeat::Every(std::f64::consts::TAU / rate.abs()),
             other => other.repeat(),
         });
         let others = self.shift.iter().flatten().chain(self.modes.iter().map(|(_, course)| course));
-        common(turns.chain(others.map(Course::repeat)))
+        common(turns.chain(others.map(TimeFunction::repeat)))
     }
 }

@@ -1,6 +1,6 @@
 //! Motion of bodies: x(t), and from it v(t).
 //!
-//! [`Motions`] holds one [`Law`] for each body; a [`RigidPose`] is where a law has got to. Velocities are never written
+//! [`Motions`] holds one [`BodyMotion`] for each body; a [`RigidPose`] is where a law has got to. Velocities are never written
 //! down a second time: marching takes differences of positions, with the formula it uses for the state, and what needs the
 //! velocity at an instant gets it by differentiating the same law (`math::jet`).
 mod course;
@@ -13,17 +13,17 @@ mod spline;
 mod tests;
 mod track;
 
-pub use course::{Course, Repeat};
-pub use law::{Kinematics, Law};
+pub use course::{Repeat, TimeFunction};
+pub use law::{BodyMotion, Kinematics};
 pub use mode::{Expansion, ModeShape};
 pub use pose::RigidPose;
 pub use spline::Spline;
-pub use track::Track;
+pub use track::PointTrajectory;
 
 use std::sync::Arc;
 
 use crate::case::formula::{Formula, FormulaError};
-use crate::case::{BodyMotion, Case, CaseErrors, MotionFormula, MotionTable, Temporal, read_mode};
+use crate::case::{BodyMotionSpec, Case, CaseErrors, MotionFormula, MotionTable, Temporal, read_mode};
 use crate::math::Vector;
 
 /// Reads the text of a file that a case names.
@@ -32,8 +32,8 @@ pub type ReadFile<'a> = &'a dyn Fn(&str) -> std::io::Result<String>;
 /// The motion of every body of a case.
 #[derive(Clone, Debug)]
 pub struct Motions<const D: usize> {
-    bodies: Vec<Law<D>>,
-    general: Law<D>,
+    bodies: Vec<BodyMotion<D>>,
+    general: BodyMotion<D>,
     /// Shapes that forces are computed on.
     forces: Vec<ModeShape<D>>,
 }
@@ -106,14 +106,14 @@ pub enum MotionError {
 impl<const D: usize> Motions<D> {
     /// `n` bodies at rest.
     pub fn fixed(n: usize) -> Self {
-        Self { bodies: vec![Law::fixed(); n], general: Law::fixed(), forces: Vec::new() }
+        Self { bodies: vec![BodyMotion::fixed(); n], general: BodyMotion::fixed(), forces: Vec::new() }
     }
 
     /// The motions of `case`; `chord` is its reference chord, `read` opens the files it names.
     pub fn new(case: &Case, chord: f64, read: ReadFile<'_>) -> Result<Self, MotionError> {
-        let build = |motion: Option<&BodyMotion>, whose: String| match motion {
+        let build = |motion: Option<&BodyMotionSpec>, whose: String| match motion {
             Some(motion) => Builder { case, chord, read, motion, whose: &whose }.law(),
-            None => Ok(Law::fixed()),
+            None => Ok(BodyMotion::fixed()),
         };
         let named = |i: usize| case.bodies[i].name.clone().unwrap_or_else(|| format!("body {}", i + 1));
         let bodies = (0..case.bodies.len())
@@ -127,7 +127,7 @@ impl<const D: usize> Motions<D> {
     }
 
     /// Motion of body number `body`.
-    pub fn of(&self, body: usize) -> &Law<D> {
+    pub fn of(&self, body: usize) -> &BodyMotion<D> {
         &self.bodies[body]
     }
 
@@ -147,7 +147,7 @@ impl<const D: usize> Motions<D> {
     }
 
     /// What a rigid cloud follows: the motion of the bodies, which is one, or that of `[motion]` without bodies.
-    pub fn cloud(&self) -> &Law<D> {
+    pub fn cloud(&self) -> &BodyMotion<D> {
         self.bodies.first().unwrap_or(&self.general)
     }
 
@@ -158,13 +158,13 @@ impl<const D: usize> Motions<D> {
 
     /// The common period of all motions; `None` when some never repeats, or nothing moves.
     pub fn period(&self) -> Option<f64> {
-        match course::common(self.laws().map(Law::repeat)) {
+        match course::common(self.laws().map(BodyMotion::repeat)) {
             Repeat::Every(period) => Some(period),
             Repeat::Constant | Repeat::Never => None,
         }
     }
 
-    fn laws(&self) -> impl Iterator<Item = &Law<D>> {
+    fn laws(&self) -> impl Iterator<Item = &BodyMotion<D>> {
         let alone = self.bodies.is_empty().then_some(&self.general);
         self.bodies.iter().chain(alone)
     }
@@ -182,18 +182,18 @@ struct Builder<'a> {
     case: &'a Case,
     chord: f64,
     read: ReadFile<'a>,
-    motion: &'a BodyMotion,
+    motion: &'a BodyMotionSpec,
     whose: &'a str,
 }
 
 impl Builder<'_> {
-    fn law<const D: usize>(&self) -> Result<Law<D>, MotionError> {
+    fn law<const D: usize>(&self) -> Result<BodyMotion<D>, MotionError> {
         let motion = self.motion;
         let pivot = motion.pivot.as_ref().map(|p| Vector::from_fn(|d| p[d].0));
         let axis = motion.axis.as_ref().map(|a| [a[0], a[1], a[2]]);
-        let mut law = Law::about(pivot.unwrap_or(Vector::ZERO), axis);
+        let mut law = BodyMotion::about(pivot.unwrap_or(Vector::ZERO), axis);
         let omega = self.case.angular_frequency(motion, self.chord).unwrap_or(0.0);
-        let sine = |amplitude: f64, phase: f64| Course::Sine { amplitude, omega, phase };
+        let sine = |amplitude: f64, phase: f64| TimeFunction::Sine { amplitude, omega, phase };
         if let Some(pitch) = &motion.pitch {
             law = law.with_angle(sine(pitch.amplitude.0, pitch.phase.0));
         }
@@ -203,10 +203,10 @@ impl Builder<'_> {
             law = law.with_shift_along(&direction, |c| sine(plunge.amplitude.0 * c, plunge.phase.0));
         }
         if let Some(rotation) = &motion.rotation {
-            law = law.with_angle(Course::Steady(rotation.rate.0));
+            law = law.with_angle(TimeFunction::Steady(rotation.rate.0));
         }
         if let Some(translation) = &motion.translation {
-            law = law.with_shift(std::array::from_fn(|d| Course::Steady(translation.velocity[d].0)));
+            law = law.with_shift(std::array::from_fn(|d| TimeFunction::Steady(translation.velocity[d].0)));
         }
         if let Some(table) = &motion.table {
             law = self.table(table, law)?;
@@ -229,7 +229,7 @@ impl Builder<'_> {
     }
 
     /// Adds the splines through a table.
-    fn table<const D: usize>(&self, table: &MotionTable, law: Law<D>) -> Result<Law<D>, MotionError> {
+    fn table<const D: usize>(&self, table: &MotionTable, law: BodyMotion<D>) -> Result<BodyMotion<D>, MotionError> {
         let samples = match &table.file {
             None => samples::Samples::of(table),
             Some(file) => {
@@ -238,7 +238,7 @@ impl Builder<'_> {
                 samples::Samples::parse(&text, table.periodic, D).map_err(problem)?
             }
         };
-        let spline = |values: &Vec<f64>| Course::Spline(Spline::new(&samples.time, values, table.periodic));
+        let spline = |values: &Vec<f64>| TimeFunction::Spline(Spline::new(&samples.time, values, table.periodic));
         let law = match &samples.angle {
             Some(angle) => law.with_angle(spline(angle)),
             None => law,
@@ -246,16 +246,20 @@ impl Builder<'_> {
         if samples.shift.iter().all(Option::is_none) {
             return Ok(law);
         }
-        Ok(law.with_shift(std::array::from_fn(|d| samples.shift[d].as_ref().map_or(Course::Steady(0.0), spline))))
+        Ok(law.with_shift(std::array::from_fn(|d| samples.shift[d].as_ref().map_or(TimeFunction::Steady(0.0), spline))))
     }
 }
 
 /// Adds formulas.
-fn formulas<const D: usize>(formula: &MotionFormula, omega: f64, law: Law<D>) -> Result<Law<D>, MotionError> {
+fn formulas<const D: usize>(
+    formula: &MotionFormula,
+    omega: f64,
+    law: BodyMotion<D>,
+) -> Result<BodyMotion<D>, MotionError> {
     let course = |text: &Option<String>| match text {
         None => Ok(None),
         Some(text) => match Formula::parse(text) {
-            Ok(formula) => Ok(Some(Course::Formula(formula, omega))),
+            Ok(formula) => Ok(Some(TimeFunction::Formula(formula, omega))),
             Err(source) => Err(MotionError::Formula { text: text.clone(), source }),
         },
     };
@@ -267,5 +271,5 @@ fn formulas<const D: usize>(formula: &MotionFormula, omega: f64, law: Law<D>) ->
     if shift.iter().all(Option::is_none) {
         return Ok(law);
     }
-    Ok(law.with_shift(std::array::from_fn(|d| shift[d].clone().unwrap_or(Course::Steady(0.0)))))
+    Ok(law.with_shift(std::array::from_fn(|d| shift[d].clone().unwrap_or(TimeFunction::Steady(0.0)))))
 }

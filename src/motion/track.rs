@@ -1,24 +1,24 @@
 //! Points that are asked for at many times: what the modes of their body do to them is found once.
-use super::law::Law;
+use super::law::BodyMotion;
 use crate::math::Vector;
 use crate::math::sweep::sweep;
 
 /// Points of one body with their displacement in each of its modes.
 #[derive(Clone, Debug)]
-pub struct Track<const D: usize> {
-    law: Law<D>,
+pub struct PointTrajectory<const D: usize> {
+    law: BodyMotion<D>,
     /// φ of each mode at each point.
     shifts: Vec<Vec<Vector<D>>>,
 }
 
-impl<const D: usize> Track<D> {
+impl<const D: usize> PointTrajectory<D> {
     /// Points of a body that follows `law`, at their places before any motion.
-    pub fn new(law: &Law<D>, points: &[Vector<D>]) -> Self {
+    pub fn new(law: &BodyMotion<D>, points: &[Vector<D>]) -> Self {
         Self::of_those(law, points, |_| true)
     }
 
     /// The same for those points that `moves`; modes leave the others where they are.
-    pub fn of_those(law: &Law<D>, points: &[Vector<D>], moves: impl Fn(usize) -> bool + Send + Sync) -> Self {
+    pub fn of_those(law: &BodyMotion<D>, points: &[Vector<D>], moves: impl Fn(usize) -> bool + Send + Sync) -> Self {
         let at = |shape: &super::ModeShape<D>| {
             let mut all = vec![Vector::ZERO; points.len()];
             sweep(&mut all, |k| if moves(k) { shape.at(&points[k]) } else { Vector::ZERO });
@@ -28,7 +28,7 @@ impl<const D: usize> Track<D> {
     }
 
     /// The law that the points follow.
-    pub fn law(&self) -> &Law<D> {
+    pub fn law(&self) -> &BodyMotion<D> {
         &self.law
     }
 

@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use super::RunError;
 use super::harmonic::terms;
-use super::journal::Journal;
+use super::journal::RunRecorder;
 use super::lead::even_steps;
 use super::setup::harmonic_control;
 use super::solve::coefficients;
@@ -59,7 +59,7 @@ pub(super) fn marched_on<const D: usize>(
     fluid: &Fluid<D>,
     (state, series): (&[f64], &[Series; 3]),
     period: f64,
-    journal: &mut Journal<'_>,
+    journal: &mut RunRecorder<'_>,
 ) -> Result<Option<Aftermath>, RunError> {
     let step = period / f64::from(STEPS);
     let until = f64::from(1 + plan.check) * period;

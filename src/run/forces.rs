@@ -40,7 +40,7 @@ enum Form<const D: usize> {
 }
 
 /// The modes that forces are computed on.
-pub(super) struct Forms<const D: usize> {
+pub(super) struct ForceModes<const D: usize> {
     all: Vec<(String, Form<D>)>,
     /// Whether each interface particle takes part.
     follows: Vec<bool>,
@@ -49,7 +49,7 @@ pub(super) struct Forms<const D: usize> {
     axes: LoadFrame,
 }
 
-impl<const D: usize> Forms<D> {
+impl<const D: usize> ForceModes<D> {
     /// The modes of `[gaf]`; `None` where a case has none.
     pub(super) fn of(case: &Case, fluid: &Fluid<D>, motions: &Motions<D>) -> Option<Self> {
         let plan = case.gaf.as_ref()?;

@@ -7,7 +7,7 @@ use super::RunError;
 use crate::case::{Case, ParticleMotion, Temporal};
 use crate::cloud::Cloud;
 use crate::math::{Bounds, Vector};
-use crate::motion::{Motions, Track};
+use crate::motion::{Motions, PointTrajectory};
 
 /// Times at which bodies are looked at, at most.
 const TIMES: usize = 512;
@@ -20,7 +20,7 @@ const GAP: f64 = 0.5;
 struct Body<'a, const D: usize> {
     name: String,
     points: Vec<(&'a Vector<D>, f64)>,
-    track: Track<D>,
+    track: PointTrajectory<D>,
 }
 
 /// Looks at the whole march; what is worth knowing, or why it cannot be done.
@@ -54,7 +54,7 @@ fn bodies<'a, const D: usize>(case: &Case, cloud: &'a Cloud<D>, motions: &Motion
     let body = |b: usize| {
         let points = points(b);
         let places: Vec<Vector<D>> = points.iter().map(|(x, _)| **x).collect();
-        Body { name: named(b), track: Track::new(motions.of(b), &places), points }
+        Body { name: named(b), track: PointTrajectory::new(motions.of(b), &places), points }
     };
     (0..case.bodies.len()).map(body).collect()
 }

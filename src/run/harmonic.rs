@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use super::RunError;
 use super::aftermath::{Aftermath, marched_on};
-use super::journal::Journal;
+use super::journal::RunRecorder;
 use super::outputs;
 use super::periodic::Sample;
 use super::persist::Position;
@@ -17,11 +17,11 @@ use crate::case::{Case, HarmonicCount, Harmonics};
 use crate::math::Vector;
 use crate::math::fourier::{Instances, Series};
 use crate::math::sweep::sum;
-use crate::motion::Law;
+use crate::motion::BodyMotion;
 use crate::observe::loads::Coefficients;
 use crate::observe::table::{Entry, write_csv};
 use crate::observe::vtk::{Column, write_points};
-use crate::scheme::{Carriage, Fluid, Frame};
+use crate::scheme::{CloudMotion, Fluid, Frame};
 use crate::system::{Moment, System};
 use crate::time::harmonic::HarmonicBalance;
 use crate::time::relax::{Relax, Resume};
@@ -73,7 +73,7 @@ pub(super) fn balance<const D: usize>(
     solver: &Solver<D>,
     start: Start,
     at: &Position<'_>,
-    journal: &mut Journal<'_>,
+    journal: &mut RunRecorder<'_>,
 ) -> Solved<D> {
     let fluid = &solver.fluid;
     let Some(period) = journal.period else {
@@ -127,7 +127,7 @@ pub(super) fn balance<const D: usize>(
 }
 
 /// Says what a user should know of the truncation.
-fn tell(plan: &Harmonics, report: &BalanceReport, journal: &mut Journal<'_>) {
+fn tell(plan: &Harmonics, report: &BalanceReport, journal: &mut RunRecorder<'_>) {
     let n = report.harmonics;
     if let Some(tail) = report.tail_loads.into_iter().chain(report.tail_density).reduce(f64::max)
         && tail > plan.tail
@@ -146,11 +146,11 @@ fn tell(plan: &Harmonics, report: &BalanceReport, journal: &mut Journal<'_>) {
 }
 
 /// Refuses motions that do not come back after a period.
-fn repeats<const D: usize>(carriage: &Carriage<D>, period: f64) -> Result<(), RunError> {
-    let laws: Vec<&Law<D>> = match carriage {
-        Carriage::Rigid(law) => vec![law],
-        Carriage::Along { laws, .. } => laws.iter().collect(),
-        Carriage::Still | Carriage::Travel(_) => Vec::new(),
+fn repeats<const D: usize>(carriage: &CloudMotion<D>, period: f64) -> Result<(), RunError> {
+    let laws: Vec<&BodyMotion<D>> = match carriage {
+        CloudMotion::Rigid(law) => vec![law],
+        CloudMotion::Along { laws, .. } => laws.iter().collect(),
+        CloudMotion::Still | CloudMotion::Travel(_) => Vec::new(),
     };
     for (body, law) in laws.iter().enumerate() {
         for part in [0.0, 0.13, 0.41, 0.77] {
@@ -177,7 +177,7 @@ fn loads<const D: usize>(
     fluid: &Fluid<D>,
     (frames, state): (&[Frame<D>], &[f64]),
     work: &mut crate::scheme::Work<D>,
-    journal: &Journal<'_>,
+    journal: &RunRecorder<'_>,
 ) -> Option<[Series; 3]> {
     let mut all = [Vec::new(), Vec::new(), Vec::new()];
     let mut one = vec![0.0; fluid.len()];
@@ -204,7 +204,7 @@ fn converge<const D: usize>(
     fluid: &Fluid<D>,
     (state, resume): (Vec<f64>, Option<(Resume, Progress)>),
     at: &Position<'_>,
-    journal: &mut Journal<'_>,
+    journal: &mut RunRecorder<'_>,
 ) -> Result<Option<Vec<f64>>, RunError> {
     let fresh = resume.is_none();
     let (resume, mut progress) = resume.unzip();
@@ -345,7 +345,7 @@ fn report<const D: usize>(
     balance: &HarmonicBalance<'_, Fluid<D>>,
     fluid: &Fluid<D>,
     state: &[f64],
-    journal: &Journal<'_>,
+    journal: &RunRecorder<'_>,
 ) -> BalanceReport {
     let (held, mut work) = (balance.instances(), fluid.work());
     let frames = balance.frame(&Moment::At { time: 0.0 }, state);
@@ -393,9 +393,9 @@ fn wall_velocity_error<const D: usize>(fluid: &Fluid<D>, frames: &[Frame<D>]) ->
     for frame in frames {
         for (i, wall) in cloud.interface_range().zip(&cloud.interface) {
             let law = match &fluid.carriage {
-                Carriage::Rigid(law) => Some(law),
-                Carriage::Along { laws, .. } => laws.get(usize::from(wall.body)),
-                Carriage::Still | Carriage::Travel(_) => None,
+                CloudMotion::Rigid(law) => Some(law),
+                CloudMotion::Along { laws, .. } => laws.get(usize::from(wall.body)),
+                CloudMotion::Still | CloudMotion::Travel(_) => None,
             };
             let Some(law) = law else { continue };
             let exact = law.velocity(frame.time, &cloud.x[i]);
@@ -420,7 +420,7 @@ impl<const D: usize> Periodic<'_, D> {
         (plan, mut report): (&Harmonics, BalanceReport),
         solver: &Solver<D>,
         period: f64,
-        journal: &mut Journal<'_>,
+        journal: &mut RunRecorder<'_>,
     ) -> Solved<D> {
         let (balance, fluid) = (self.balance, self.fluid);
         tell(plan, &report, journal);
@@ -445,7 +445,7 @@ impl<const D: usize> Periodic<'_, D> {
     }
 
     /// Puts the loads of one period where those of the last period of a march would be; gives their series.
-    fn trace(&self, journal: &mut Journal<'_>, period: f64) -> Option<[Series; 3]> {
+    fn trace(&self, journal: &mut RunRecorder<'_>, period: f64) -> Option<[Series; 3]> {
         let frames = self.balance.frame(&Moment::At { time: 0.0 }, self.state);
         let series = loads(self.balance, self.fluid, (&frames, self.state), &mut self.fluid.work(), journal);
         let [cl, cd, cm] = series?;
@@ -471,7 +471,7 @@ impl<const D: usize> Periodic<'_, D> {
     }
 
     /// Loads at the instances, evaluated twice.
-    fn compare(&self, journal: &mut Journal<'_>) -> Result<(), RunError> {
+    fn compare(&self, journal: &mut RunRecorder<'_>) -> Result<(), RunError> {
         let (fluid, held) = (self.fluid, self.balance.instances());
         let (mut one, mut work) = (vec![0.0; fluid.len()], fluid.work());
         for k in 0..held.count() {
@@ -485,7 +485,7 @@ impl<const D: usize> Periodic<'_, D> {
     }
 
     /// Fields at phases, coefficients in time of walls and field.
-    fn write(&self, journal: &Journal<'_>, solver: &Solver<D>, period: f64) -> Result<(), RunError> {
+    fn write(&self, journal: &RunRecorder<'_>, solver: &Solver<D>, period: f64) -> Result<(), RunError> {
         let (case, out) = (journal.case(), journal.out());
         let rows = journal.instances.iter().map(|row| row.map(Entry::from).to_vec());
         write_csv(&out.join("instances.csv"), &["phase", "angle_deg", "shift", "cl", "cd", "cm"], rows)?;

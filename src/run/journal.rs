@@ -2,15 +2,15 @@
 use super::balance;
 use super::harmonic::BalanceReport;
 use super::periodic::{Sample, Trace};
-use super::persist::{FILE, Position, Roaming, Saved};
+use super::persist::{FILE, LagrangianCheckpoint, Position, Saved};
 use super::snapshot::{LoadFrame, Snapshot, load_axes};
 use super::twice::Twofold;
 use super::{Monitor, Places, RunError, Tick};
 use crate::case::Case;
-use crate::motion::Law;
+use crate::motion::BodyMotion;
 use crate::observe::History;
 use crate::observe::loads::Coefficients;
-use crate::scheme::{Fluid, Frame, Turnover, Work};
+use crate::scheme::{Fluid, Frame, RemapLedger, Work};
 use crate::time::control::Phase;
 use crate::time::relax::Resume;
 use crate::time::{March, TimeError};
@@ -26,7 +26,7 @@ const BENDING: &str = "mode";
 pub(super) const NEARLY: f64 = 1e-6;
 
 /// Everything that accompanies the stages of a run.
-pub(super) struct Journal<'a> {
+pub(super) struct RunRecorder<'a> {
     monitor: &'a mut dyn Monitor,
     history: History,
     out: std::path::PathBuf,
@@ -73,12 +73,12 @@ pub(super) struct Journal<'a> {
     /// Part of the period, angle, displacement and loads at the instances of a harmonic balance.
     pub(super) instances: Vec<[f64; 6]>,
     /// What re-clouding did so far, where particles travel with the fluid.
-    pub(super) turnover: Turnover,
+    pub(super) turnover: RemapLedger,
     /// Loads evaluated twice, where the motion repeats.
     pub(super) twofold: Twofold,
 }
 
-impl<'a> Journal<'a> {
+impl<'a> RunRecorder<'a> {
     /// Opens the history of a run.
     pub(super) fn open(
         case: &Case,
@@ -124,7 +124,7 @@ impl<'a> Journal<'a> {
             forces: Vec::new(),
             unconverged: saved.map_or(0, |s| s.past.unconverged),
             halved: saved.map_or(0, |s| s.past.halved),
-            turnover: saved.and_then(|s| s.roaming.as_ref()).map_or_else(Turnover::default, |r| r.turnover.clone()),
+            turnover: saved.and_then(|s| s.roaming.as_ref()).map_or_else(RemapLedger::default, |r| r.turnover.clone()),
             trace: saved
                 .filter(|s| s.time > 0.0)
                 .map_or_else(Trace::default, |s| Trace::read(&places.out, s.time))
@@ -301,7 +301,7 @@ impl<'a> Journal<'a> {
         let (cpu, wall) = self.seconds();
         let (frame, _, state) = marcher.parts();
         let mut saved = Saved::new(at, self.iteration, past.time, state, bare(past.iteration));
-        saved.roaming = Roaming::of(fluid, frame, &self.turnover);
+        saved.roaming = LagrangianCheckpoint::of(fluid, frame, &self.turnover);
         (saved.cpu_seconds, saved.wall_seconds, saved.work) = (cpu, wall, self.work.total);
         saved.cycles = self.cycles.clone();
         saved.start_totals = self.start_totals.clone();
@@ -320,7 +320,7 @@ impl<'a> Journal<'a> {
 
 /// Angle (radians, nose up), displacement and coordinate of the first mode of the first body that moves.
 pub(super) fn motion<const D: usize>(fluid: &Fluid<D>, time: f64) -> [f64; 5] {
-    fluid.carriage.law().map_or([0.0; 5], |law: &Law<D>| {
+    fluid.carriage.law().map_or([0.0; 5], |law: &BodyMotion<D>| {
         let shift = law.displacement(time).to_3d();
         let mode = law.coordinates(time).first().copied().unwrap_or(0.0);
         [law.angle(time).value, shift[0], shift[1], shift[2], mode]

@@ -4,7 +4,7 @@
 //! mild; flow that separates, or a body whose speed is a good part of that of the stream, needs the flow of a period that has been
 //! marched. Its accuracy does not matter: steps are coarse, and a multiple of the instances, which are taken from the last period.
 use super::RunError;
-use super::journal::Journal;
+use super::journal::RunRecorder;
 use super::setup::harmonic_control;
 use crate::case::Harmonics;
 use crate::math::sweep::sweep_rows;
@@ -34,7 +34,7 @@ pub(super) fn marched<const D: usize>(
     fluid: &Fluid<D>,
     u: Vec<f64>,
     period: f64,
-    journal: &mut Journal<'_>,
+    journal: &mut RunRecorder<'_>,
 ) -> Result<Option<Vec<f64>>, RunError> {
     let (b, count) = (fluid.block(), balance.instances().count());
     let stride = STEPS.div_ceil(count);

@@ -315,7 +315,7 @@ fn drive<const D: usize>(
         (None, Some(o)) => vec![Stage { march: marches(case), ..o.stages[o.stage] }],
         (None, None) => setup::stages(case, full.as_ref().map_or(0, |c| c.n_fluid), D),
     };
-    let mut journal = journal::Journal::open(case, places, saved.as_ref(), (motions.period(), monitor))?;
+    let mut journal = journal::RunRecorder::open(case, places, saved.as_ref(), (motions.period(), monitor))?;
     journal.note(&describe(&stages, full.as_ref().map_or(0, |c| c.n_fluid)));
     let mut previous: Option<Stood<D>> = None;
     let mut last_frame = None;

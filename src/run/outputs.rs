@@ -3,7 +3,7 @@ use std::path::Path;
 
 use super::balance;
 use super::friction::{Separation, friction_load, separations, wall_friction};
-use super::journal::{Journal, NEARLY};
+use super::journal::{NEARLY, RunRecorder};
 use super::setup::Solver;
 use super::snapshot::{self, LoadFrame, Snapshot, Units, load_axes, pressure_coefficient, wall_load};
 use super::solve::totals;
@@ -47,7 +47,7 @@ pub(super) fn write_all<const D: usize>(
     places: &Places,
     ((solver, state), frame): &((Solver<D>, Vec<f64>), Frame<D>),
     surface: Option<&Surface<D>>,
-    journal: &mut Journal<'_>,
+    journal: &mut RunRecorder<'_>,
     clock: &Clock,
 ) -> Result<Summary, RunError> {
     let solved = clock.wall_seconds();
@@ -115,7 +115,7 @@ fn drift<const D: usize>(fluid: &Fluid<D>, state: &[f64], start: &[f64]) -> Ledg
 
 impl<'a, const D: usize> Finished<'a, D> {
     /// The last line of the run; `state` is that of the solver, `solved` the wall seconds until it was found.
-    fn summary(&self, journal: &Journal<'_>, state: &[f64], (solved, clock): (f64, &Clock)) -> Summary {
+    fn summary(&self, journal: &RunRecorder<'_>, state: &[f64], (solved, clock): (f64, &Clock)) -> Summary {
         let (case, fluid) = (self.case, self.fluid);
         let (pressure, friction) = self.wall_loads(|_| true);
         let loads = self.axes.coefficients(&together(&pressure, &friction));
@@ -169,7 +169,7 @@ impl<'a, const D: usize> Finished<'a, D> {
     }
 
     /// What re-clouding did, where particles travel with the fluid.
-    fn re_clouding(&self, journal: &Journal<'_>) -> Option<Reclouding> {
+    fn re_clouding(&self, journal: &RunRecorder<'_>) -> Option<Reclouding> {
         let t = &journal.turnover;
         if t.renewals == 0 {
             return None;

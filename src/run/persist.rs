@@ -9,7 +9,7 @@ use crate::cloud::CloudError;
 use crate::cloud::sources::Source;
 use crate::math::Vector;
 use crate::observe::checkpoint::{self, Array, Checkpoint, Field};
-use crate::scheme::{Carriage, Fluid, Frame, Stand, Turnover};
+use crate::scheme::{CloudMotion, Fluid, Frame, ParticleKinematics, RemapLedger};
 use crate::time::Past;
 use crate::time::control::Phase;
 use crate::time::relax::Resume;
@@ -77,7 +77,7 @@ struct Counts {
 
 /// Particles that travel with the fluid.
 #[derive(Clone, Debug)]
-pub(super) struct Roaming {
+pub(super) struct LagrangianCheckpoint {
     /// Where fluid particles were when the cloud was built.
     lists: Vec<f64>,
     /// Time.
@@ -91,13 +91,13 @@ pub(super) struct Roaming {
     /// Time at which the cloud was built.
     since: f64,
     /// What re-clouding did so far.
-    pub(super) turnover: Turnover,
+    pub(super) turnover: RemapLedger,
 }
 
-impl Roaming {
+impl LagrangianCheckpoint {
     /// The particles of a march; `None` where they do not travel.
-    pub(super) fn of<const D: usize>(fluid: &Fluid<D>, frame: &Frame<D>, turnover: &Turnover) -> Option<Self> {
-        let Carriage::Travel(travel) = &fluid.carriage else { return None };
+    pub(super) fn of<const D: usize>(fluid: &Fluid<D>, frame: &Frame<D>, turnover: &RemapLedger) -> Option<Self> {
+        let CloudMotion::Travel(travel) = &fluid.carriage else { return None };
         let flat = |x: &[Vector<D>], n: usize| x.iter().take(n).flat_map(|x| x.0).collect();
         let cloud = &fluid.shape.cloud;
         let lists = flat(&cloud.x, cloud.n_fluid);
@@ -114,7 +114,7 @@ impl Roaming {
         // until it is built anew a march stands on the cloud of the case
         let lists = (self.turnover.renewals > 0).then_some((&lists[..], self.since));
         let [places, velocity, course] = [&self.places, &self.velocity, &self.course].map(|v| points(v));
-        fluid.resumed(lists, Stand { now: self.now, places, velocity, course })
+        fluid.resumed(lists, ParticleKinematics { now: self.now, places, velocity, course })
     }
 
     fn counts(&self) -> Counts {
@@ -133,7 +133,7 @@ impl Roaming {
 
     fn new(counts: &Counts, [lists, places, velocity, course]: [Vec<f64>; 4]) -> Self {
         let numbers = |bits: &[u64]| bits.iter().map(|b| f64::from_bits(*b)).collect();
-        let turnover = Turnover {
+        let turnover = RemapLedger {
             renewals: counts.renewals,
             inserted: counts.inserted,
             removed: counts.removed,
@@ -174,7 +174,7 @@ pub(super) struct Saved {
     /// Where an implicit march stands.
     pub(super) past: Past,
     /// Particles that travel with the fluid.
-    pub(super) roaming: Option<Roaming>,
+    pub(super) roaming: Option<LagrangianCheckpoint>,
     sources: Vec<f64>,
 }
 
@@ -235,7 +235,7 @@ impl Saved {
             made_bits: self.past.made.to_bits(),
             halved: self.past.halved,
             steps: [self.past.last.to_bits(), self.past.next.to_bits(), u64::from(self.past.unconverged)],
-            roaming: self.roaming.as_ref().map(Roaming::counts),
+            roaming: self.roaming.as_ref().map(LagrangianCheckpoint::counts),
         };
         let field =
             |name: &str, data: Vec<f64>| Field { name: name.into(), shape: vec![data.len()], data: Array::F64(data) };
@@ -248,7 +248,7 @@ impl Saved {
             field("sources", self.sources),
         ];
         if let Some(roaming) = self.roaming {
-            let Roaming { lists, places, velocity, course, .. } = roaming;
+            let LagrangianCheckpoint { lists, places, velocity, course, .. } = roaming;
             let parts = [("lists", lists), ("places", places), ("velocity", velocity), ("course", course)];
             fields.extend(parts.map(|(name, data)| field(name, data)));
         }
@@ -269,7 +269,10 @@ impl Saved {
         let roaming = match &m.roaming {
             Some(counts) => {
                 let part = |name: &str| file.f64(name).map(<[f64]>::to_vec);
-                Some(Roaming::new(counts, [part("lists")?, part("places")?, part("velocity")?, part("course")?]))
+                Some(LagrangianCheckpoint::new(
+                    counts,
+                    [part("lists")?, part("places")?, part("velocity")?, part("course")?],
+                ))
             }
             None => None,
         };

@@ -3,22 +3,24 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::RunError;
-use super::forces::Forms;
+use super::forces::ForceModes;
 use crate::case::{Body, Case, Dual, Harmonics, Initial, Length, ParticleMotion, Steady, SteadyMethod, Temporal, Wall};
 use crate::cloud::conservative::conservative as conserve;
 use crate::cloud::sources::Source;
-use crate::cloud::travel::Habitat;
+use crate::cloud::travel::BackgroundDomain;
 use crate::cloud::{Cloud, Operators};
 use crate::geometry::{GeometryError, Surface, load_surface};
 use crate::math::multilevel::Cycle;
 use crate::math::{Bounds, Vector};
-use crate::motion::{Law, ModeShape, Motions};
+use crate::motion::{BodyMotion, ModeShape, Motions};
 use crate::physics::{Conserved, Gas, Newtonian};
-use crate::scheme::blend::Blend;
+use crate::scheme::blend::MotionBlending;
 use crate::scheme::probe::Probe;
 use crate::scheme::reconstruct::Reconstruction;
 use crate::scheme::start::{Stream, initial};
-use crate::scheme::{Carriage, Contact, Fluid, Friction, Shape, Skin, Stand, Travel};
+use crate::scheme::{
+    CloudMotion, DeformingSurface, Discretisation, Fluid, ParticleKinematics, Travel, ViscousModel, WallCondition,
+};
 use crate::system::{Moment, System};
 use crate::time::control::{Control, Method};
 use crate::time::dual::Plan;
@@ -136,7 +138,7 @@ pub(super) struct Solver<const D: usize> {
     /// The bodies, where pictures are drawn on the way.
     pub(super) film: Option<Surface<D>>,
     /// Modes that a harmonic balance computes forces on.
-    pub(super) forms: Option<Forms<D>>,
+    pub(super) forms: Option<ForceModes<D>>,
 }
 
 /// Reads the bodies of a case; `None` when it has none.
@@ -195,13 +197,13 @@ pub(super) fn solver<const D: usize>(
         held: field,
         carriage: carriage(case, surface, &cloud, motions)?,
         before: None,
-        shape: Arc::new(Shape::new(cloud, operators)),
+        shape: Arc::new(Discretisation::new(cloud, operators)),
     };
     if case.flow.isentropic {
         at_one_entropy(&fluid)?;
     }
     let film = surface.filter(|_| D == 2 && case.output.report && motions.period().is_some()).cloned();
-    let forms = Forms::of(case, &fluid, motions);
+    let forms = ForceModes::of(case, &fluid, motions);
     Ok(Solver { fluid, film, forms })
 }
 
@@ -229,20 +231,20 @@ fn at_one_entropy<const D: usize>(fluid: &Fluid<D>) -> Result<(), RunError> {
 }
 
 /// Viscosity of a case in the units of the solver, and what the gas does on each body.
-fn friction<const D: usize>(case: &Case, surface: Option<&Surface<D>>) -> Option<Friction> {
+fn friction<const D: usize>(case: &Case, surface: Option<&Surface<D>>) -> Option<ViscousModel> {
     let extent = surface.map_or(1.0, |s| s.bounds().extent()[0]);
     let chord = case.reference.chord.map_or(extent, |c| c.0);
     let viscous = case.flow.viscous(chord)?;
     let scales = case.flow.reference();
     let kelvin = if case.flow.is_dimensional() { case.flow.kelvin() } else { 1.0 };
     let contact = |body: &Body| match case.flow.wall(body) {
-        Wall::Slip => Contact::Slip,
-        Wall::Adiabatic => Contact::Adiabatic,
-        Wall::Temperature { value } => Contact::Temperature(value.0 / kelvin),
+        Wall::Slip => WallCondition::Slip,
+        Wall::Adiabatic => WallCondition::Adiabatic,
+        Wall::Temperature { value } => WallCondition::Temperature(value.0 / kelvin),
     };
     let viscosity = viscous.viscosity / (scales.density * scales.sound_speed);
     let medium = Newtonian { viscosity, sutherland: viscous.sutherland, prandtl: viscous.prandtl };
-    Some(Friction { medium, contacts: case.bodies.iter().map(contact).collect() })
+    Some(ViscousModel { medium, contacts: case.bodies.iter().map(contact).collect() })
 }
 
 /// How the particles of a cloud follow the bodies.
@@ -251,26 +253,26 @@ fn carriage<const D: usize>(
     surface: Option<&Surface<D>>,
     cloud: &Cloud<D>,
     motions: &Motions<D>,
-) -> Result<Carriage<D>, RunError> {
-    let laws = || (0..motions.len()).map(|b| motions.of(b).clone()).collect::<Vec<Law<D>>>();
+) -> Result<CloudMotion<D>, RunError> {
+    let laws = || (0..motions.len()).map(|b| motions.of(b).clone()).collect::<Vec<BodyMotion<D>>>();
     let particles = case.particles();
     if case.moves() && particles == ParticleMotion::Lagrangian {
-        let habitat = Arc::new(Habitat::new(case, surface, cloud)?);
+        let habitat = Arc::new(BackgroundDomain::new(case, surface, cloud)?);
         let places = cloud.x[..cloud.n_rows()].to_vec();
-        return Ok(Carriage::Travel(Travel {
+        return Ok(CloudMotion::Travel(Travel {
             habitat,
             laws: laws(),
-            stand: Arc::new(Stand { places, ..Stand::default() }),
+            stand: Arc::new(ParticleKinematics { places, ..ParticleKinematics::default() }),
             since: 0.0,
         }));
     }
     Ok(match particles {
-        _ if !motions.moves() => Carriage::Still,
-        ParticleMotion::Rigid => Carriage::Rigid(motions.cloud().clone()),
+        _ if !motions.moves() => CloudMotion::Still,
+        ParticleMotion::Rigid => CloudMotion::Rigid(motions.cloud().clone()),
         _ => {
             let until = motions.period().or_else(|| case.time.end(None)).unwrap_or_default();
-            let (laws, skin) = (laws(), Arc::new(Skin::new(cloud, &laws())));
-            Carriage::Along { path: Arc::new(Blend::new(cloud, &laws, until)), laws, skin }
+            let (laws, skin) = (laws(), Arc::new(DeformingSurface::new(cloud, &laws())));
+            CloudMotion::Along { path: Arc::new(MotionBlending::new(cloud, &laws, until)), laws, skin }
         }
     })
 }

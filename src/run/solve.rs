@@ -1,6 +1,6 @@
 //! One stage from its start to its end: the integrator, watched.
 use super::harmonic::balance;
-use super::journal::{Journal, NEARLY};
+use super::journal::{NEARLY, RunRecorder};
 use super::persist::{FILE, Position, Saved};
 use super::setup::{Solver, control, harmonic_prelude, inner_control, plan, prelude};
 use super::snapshot::LoadFrame;
@@ -9,7 +9,7 @@ use super::{RunError, outputs};
 use crate::case::{self, Case, Explicit as Marching, RungeKutta, Steady, Temporal};
 use crate::math::sweep::sum;
 use crate::observe::loads::Coefficients;
-use crate::scheme::travel::Renewed;
+use crate::scheme::travel::Reclouded;
 use crate::scheme::{Fluid, Frame, Work};
 use crate::time::control::Control;
 use crate::time::dual::{self, Dual};
@@ -51,7 +51,7 @@ pub(super) fn solve<const D: usize>(
     start: Start,
     at: &Position<'_>,
     last: bool,
-    journal: &mut Journal<'_>,
+    journal: &mut RunRecorder<'_>,
 ) -> Solved<D> {
     let marches = at.stages[at.stage].march;
     match &case.time {
@@ -70,7 +70,7 @@ fn relax<const D: usize>(
     start: Start,
     at: &Position<'_>,
     last: bool,
-    journal: &mut Journal<'_>,
+    journal: &mut RunRecorder<'_>,
 ) -> Solved<D> {
     let fluid = &solver.fluid;
     let (u, resume) = match start {
@@ -137,7 +137,7 @@ fn relax<const D: usize>(
 fn beginning<const D: usize>(
     start: Start,
     solver: &mut Solver<D>,
-    journal: &mut Journal<'_>,
+    journal: &mut RunRecorder<'_>,
 ) -> Result<(Past, Vec<f64>), RunError> {
     let (past, u) = match start {
         Start::Fresh(u) => (Past::default(), u),
@@ -159,7 +159,7 @@ fn march_explicitly<const D: usize>(
     solver: &mut Solver<D>,
     start: Start,
     at: &Position<'_>,
-    journal: &mut Journal<'_>,
+    journal: &mut RunRecorder<'_>,
 ) -> Solved<D> {
     let Some(until) = marching.end(journal.period) else {
         return Err(RunError::Folder("`[time.explicit]` counts periods of a motion that has none".into()));
@@ -197,7 +197,7 @@ fn march_on<const D: usize>(
     goal: (f64, u32, Option<f64>),
     (solver, start): (&mut Solver<D>, Start),
     at: &Position<'_>,
-    journal: &mut Journal<'_>,
+    journal: &mut RunRecorder<'_>,
 ) -> Solved<D> {
     let mut begin = beginning(start, solver, journal)?;
     loop {
@@ -227,8 +227,8 @@ fn renewed<const D: usize>(
     marcher: &mut dyn March<Fluid<D>>,
     fluid: &Fluid<D>,
     at: &Position<'_>,
-    journal: &mut Journal<'_>,
-) -> Result<Option<Renewed<D>>, RunError> {
+    journal: &mut RunRecorder<'_>,
+) -> Result<Option<Reclouded<D>>, RunError> {
     let time = marcher.past().time;
     let past = marcher.past().clone();
     let (frame, work, u) = marcher.parts();
@@ -252,7 +252,7 @@ fn march_implicitly<const D: usize>(
     solver: &mut Solver<D>,
     start: Start,
     at: &Position<'_>,
-    journal: &mut Journal<'_>,
+    journal: &mut RunRecorder<'_>,
 ) -> Solved<D> {
     let plan = plan(dual, journal.period)?;
     let goal = (plan.until, u32::MAX, dual.periodic_tolerance);
@@ -265,7 +265,7 @@ fn march<const D: usize>(
     (until, limit, tolerance): (f64, u32, Option<f64>),
     solver: &Solver<D>,
     at: &Position<'_>,
-    journal: &mut Journal<'_>,
+    journal: &mut RunRecorder<'_>,
 ) -> Result<Pause, RunError> {
     let fluid = &solver.fluid;
     if marcher.past().iteration == 0 {
@@ -329,7 +329,7 @@ fn write_due<const D: usize>(
     solver: &Solver<D>,
     (frame, work): (&Frame<D>, &mut Work<D>),
     (before, now): (f64, f64),
-    journal: &Journal<'_>,
+    journal: &RunRecorder<'_>,
 ) -> Result<(), RunError> {
     let (case, out, fluid) = (journal.case(), journal.out(), &solver.fluid);
     if let Some(interval) = journal.interval()

@@ -10,7 +10,7 @@
 //! summed in the same way. Sides A of the domain count where the zone is cut by them. Volumes of particles beside a wall are not
 //! known to all digits; what they lack together follows from the walls and goes to them by area and thickness.
 use super::fluid::{Fluid, Work};
-use super::shape::{Carriage, Frame};
+use super::shape::{CloudMotion, Frame};
 use super::start::free_stream;
 use crate::case::Case;
 use crate::math::sweep::{sweep_parts, sweep_slots};
@@ -223,9 +223,9 @@ impl<'a, const D: usize> Balance<'a, D> {
     fn spread(&self) -> Vec<(f64, f64)> {
         let (frame, now) = (self.frame, &self.frame.shape);
         let stretched = match self.fluid.carriage {
-            Carriage::Still | Carriage::Rigid(_) => return Vec::new(),
-            Carriage::Along { .. } => self.fluid.stretch(frame),
-            Carriage::Travel(_) => vec![1.0; now.cloud.n_fluid],
+            CloudMotion::Still | CloudMotion::Rigid(_) => return Vec::new(),
+            CloudMotion::Along { .. } => self.fluid.stretch(frame),
+            CloudMotion::Travel(_) => vec![1.0; now.cloud.n_fluid],
         };
         let mut divergence = vec![0.0; now.cloud.n_fluid];
         let op = &now.operators;

@@ -8,7 +8,7 @@
 use crate::cloud::Cloud;
 use crate::math::sweep::sweep_slots;
 use crate::math::{Bounds, Vector};
-use crate::motion::{Law, RigidPose, Track};
+use crate::motion::{BodyMotion, PointTrajectory, RigidPose};
 
 use super::shape::{Path, Places};
 
@@ -30,22 +30,22 @@ const ROUNDS: usize = 60;
 /// One body.
 struct Body<const D: usize> {
     /// The particles that follow it.
-    track: Track<D>,
+    track: PointTrajectory<D>,
     points: Vec<Vector<D>>,
     inner: f64,
     outer: f64,
 }
 
 /// Motion of the bodies spread into the cloud.
-pub struct Blend<const D: usize> {
+pub struct MotionBlending<const D: usize> {
     bodies: Vec<Body<D>>,
     /// φ of each particle and body.
     share: Vec<f32>,
 }
 
-impl<const D: usize> Blend<D> {
+impl<const D: usize> MotionBlending<D> {
     /// Spreads the motion of the bodies until `until`, one law for each.
-    pub fn new(cloud: &Cloud<D>, laws: &[Law<D>], until: f64) -> Self {
+    pub fn new(cloud: &Cloud<D>, laws: &[BodyMotion<D>], until: f64) -> Self {
         let bodies: Vec<Body<D>> = laws.iter().enumerate().map(|(b, law)| body(cloud, (b, law), until)).collect();
         let mut all = Self { share: vec![0.0; cloud.n_real() * bodies.len()], bodies };
         let n = all.bodies.len();
@@ -56,7 +56,7 @@ impl<const D: usize> Blend<D> {
         }
         let real = &cloud.x[..cloud.n_real()];
         for (b, law) in laws.iter().enumerate() {
-            all.bodies[b].track = Track::of_those(law, real, |i| all.share[i * n + b] > 0.0);
+            all.bodies[b].track = PointTrajectory::of_those(law, real, |i| all.share[i * n + b] > 0.0);
         }
         all
     }
@@ -90,7 +90,7 @@ impl<const D: usize> Body<D> {
     }
 }
 
-fn body<const D: usize>(cloud: &Cloud<D>, (b, law): (usize, &Law<D>), until: f64) -> Body<D> {
+fn body<const D: usize>(cloud: &Cloud<D>, (b, law): (usize, &BodyMotion<D>), until: f64) -> Body<D> {
     let first = cloud.n_fluid;
     let own = cloud.interface.iter().enumerate().filter(|(_, w)| usize::from(w.body) == b);
     let all: Vec<Vector<D>> = own.map(|(w, _)| cloud.x[first + w]).collect();
@@ -103,11 +103,11 @@ fn body<const D: usize>(cloud: &Cloud<D>, (b, law): (usize, &Law<D>), until: f64
     let room = gaps.filter(|g| *g > 0.1 * length).fold(f64::INFINITY, f64::min);
     let outer = (OUTER * length.max(displacement(&bounds, law, until))).min(REACH * room);
     let points = all.into_iter().step_by(every).collect();
-    Body { track: Track::new(law, &[]), points, inner: (INNER * length).min(0.25 * outer), outer }
+    Body { track: PointTrajectory::new(law, &[]), points, inner: (INNER * length).min(0.25 * outer), outer }
 }
 
 /// How far the corners of the box around a body get from where they start, until `until`, and its modes from there.
-fn displacement<const D: usize>(bounds: &Bounds<D>, law: &Law<D>, until: f64) -> f64 {
+fn displacement<const D: usize>(bounds: &Bounds<D>, law: &BodyMotion<D>, until: f64) -> f64 {
     let corner = |k: usize| Vector::from_fn(|d| if k >> d & 1 == 0 { bounds.min[d] } else { bounds.max[d] });
     let far = |pose: RigidPose<D>| (0..1 << D).map(|k| (pose.point(&corner(k)) - corner(k)).norm()).fold(0.0, f64::max);
     let bend =
@@ -125,7 +125,7 @@ fn blended<const D: usize>(
     share.enumerate().filter(|(_, s)| *s > 0.0).fold(*x, |sum, (b, s)| sum + (carried(b) - *x) * s)
 }
 
-impl<const D: usize> Path<D> for Blend<D> {
+impl<const D: usize> Path<D> for MotionBlending<D> {
     fn at(&self, t: f64) -> Places<'_, D> {
         let tracks: Vec<_> = self.bodies.iter().map(|b| b.track.at(t)).collect();
         let n = self.bodies.len();

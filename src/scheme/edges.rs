@@ -20,7 +20,7 @@ type Lanes = [f64; LANES];
 
 /// What the fluxes need to know of the scheme.
 #[derive(Clone, Copy)]
-pub struct Rule<F, L> {
+pub struct FluxScheme<F, L> {
     /// Gas.
     pub gas: Gas,
     /// Upwind flux.
@@ -55,13 +55,13 @@ pub struct Particles<'a, const D: usize> {
 }
 
 /// `D` + 2 numbers of every edge.
-struct Many<const D: usize> {
+struct StateLanes<const D: usize> {
     first: Lanes,
     vector: [Lanes; D],
     last: Lanes,
 }
 
-impl<const D: usize> Many<D> {
+impl<const D: usize> StateLanes<D> {
     const ZERO: Self = Self { first: [0.0; LANES], vector: [[0.0; LANES]; D], last: [0.0; LANES] };
 
     #[inline(always)]
@@ -96,8 +96,8 @@ fn put<const D: usize>(lanes: &mut [Lanes; D], k: usize, v: &Vector<D>) {
 
 /// Some edges with what their ends hold, and what they add to V dU/dt of both.
 struct Batch<const D: usize> {
-    own: [Many<D>; 2],
-    slope: [Many<D>; 2],
+    own: [StateLanes<D>; 2],
+    slope: [StateLanes<D>; 2],
     /// −V a of either end, the area vector s, and the velocities of the ends.
     weight: [[Lanes; D]; 2],
     area: [Lanes; D],
@@ -105,9 +105,9 @@ struct Batch<const D: usize> {
     /// Least part of the jump of the normal velocity that counts: 1 beside outer particles.
     whole: Lanes,
     /// States on both sides of the middle, the upwind flux there per unit of area, and the result.
-    middle: [Many<D>; 2],
-    upwind: Many<D>,
-    out: [Many<D>; 2],
+    middle: [StateLanes<D>; 2],
+    upwind: StateLanes<D>,
+    out: [StateLanes<D>; 2],
     /// The edge from one end to the other, and the gradients at both; for stress and heat alone.
     along: [Lanes; D],
     gradient: [Slope<D>; 2],
@@ -145,15 +145,15 @@ impl<const D: usize> Slope<D> {
 
 impl<const D: usize> Batch<D> {
     const BLANK: Self = Self {
-        own: [Many::ZERO; 2],
-        slope: [Many::ZERO; 2],
+        own: [StateLanes::ZERO; 2],
+        slope: [StateLanes::ZERO; 2],
         weight: [[[0.0; LANES]; D]; 2],
         area: [[0.0; LANES]; D],
         speed: [[[0.0; LANES]; D]; 2],
         whole: [0.0; LANES],
-        middle: [Many::ZERO; 2],
-        upwind: Many::ZERO,
-        out: [Many::ZERO; 2],
+        middle: [StateLanes::ZERO; 2],
+        upwind: StateLanes::ZERO,
+        out: [StateLanes::ZERO; 2],
         along: [[0.0; LANES]; D],
         gradient: [Slope::ZERO; 2],
     };
@@ -161,7 +161,7 @@ impl<const D: usize> Batch<D> {
 
 /// Calls `add(i, change)` with what every edge adds to V dU/dt of its ends, one edge after the other.
 pub fn edge_fluxes<const D: usize, F: UpwindFlux<D>, L: Limit>(
-    rule: &Rule<F, L>,
+    rule: &FluxScheme<F, L>,
     particles: Particles<'_, D>,
     edges: &[Edge<D>],
     mut add: impl FnMut(usize, &Conserved<D>),
@@ -196,7 +196,12 @@ pub fn edge_fluxes<const D: usize, F: UpwindFlux<D>, L: Limit>(
 }
 
 #[inline(always)]
-fn gather<const D: usize, F, L>(rule: &Rule<F, L>, p: &Particles<'_, D>, edges: &[Edge<D>], batch: &mut Batch<D>) {
+fn gather<const D: usize, F, L>(
+    rule: &FluxScheme<F, L>,
+    p: &Particles<'_, D>,
+    edges: &[Edge<D>],
+    batch: &mut Batch<D>,
+) {
     for (k, e) in edges.iter().enumerate() {
         let ends = [e.i(), e.j()];
         let d = p.x[ends[1]] - p.x[ends[0]];

@@ -33,18 +33,18 @@ use crate::physics::{Conserved, Gas, Primitive};
 use crate::system::{Fault, Moment, System};
 
 use super::boundary::{WallMotion, slip_wall};
-use super::edges::{Particles, Rule, edge_fluxes};
+use super::edges::{FluxScheme, Particles, edge_fluxes};
 use super::reconstruct::{Gradient, Limit, Reconstruction, Unlimited, VanAlbada, Venkatakrishnan};
-use super::shape::{Carriage, Frame, Shape, Way};
+use super::shape::{CloudMotion, Discretisation, Frame, LagrangianStep};
 use super::start::Field;
-use super::viscous::Friction;
+use super::viscous::ViscousModel;
 
 /// The compressible Euler equations on a cloud, with friction the Navier-Stokes equations.
 pub struct Fluid<const D: usize> {
     /// Particles, weights and fits before any motion.
-    pub shape: Arc<Shape<D>>,
+    pub shape: Arc<Discretisation<D>>,
     /// How particles move.
-    pub carriage: Carriage<D>,
+    pub carriage: CloudMotion<D>,
     /// Where the particles come from, when this is a view of a moving cloud at one time.
     pub before: Option<Before<D>>,
     /// The gas.
@@ -60,7 +60,7 @@ pub struct Fluid<const D: usize> {
     /// The gas keeps the entropy of the free stream.
     pub isentropic: bool,
     /// Viscosity; `None` for an inviscid gas.
-    pub friction: Option<Arc<Friction>>,
+    pub friction: Option<Arc<ViscousModel>>,
     /// State of the far field.
     pub far_field: Arc<dyn FarField<D>>,
     /// The field at the start, which some sides hold for ever.
@@ -71,7 +71,7 @@ pub struct Fluid<const D: usize> {
 #[derive(Clone)]
 pub struct Before<const D: usize> {
     /// Particles before any motion.
-    pub shape: Arc<Shape<D>>,
+    pub shape: Arc<Discretisation<D>>,
     /// Time.
     pub time: f64,
     /// The motion of all particles as one, where that is what they do.
@@ -125,7 +125,7 @@ impl<const D: usize> Fluid<D> {
     }
 
     /// Particles before any motion.
-    pub fn reference(&self) -> &Shape<D> {
+    pub fn reference(&self) -> &Discretisation<D> {
         self.before.as_ref().map_or(&self.shape, |b| &b.shape)
     }
 
@@ -239,7 +239,8 @@ impl<const D: usize> Fluid<D> {
         let (op, cloud) = (&frame.shape.operators, &frame.shape.cloud);
         let (gas, reconstruction, conservative) = (self.gas, self.reconstruction, self.conservative);
         let medium = self.friction.as_ref().map(|f| f.medium);
-        let rule = Rule { gas, flux, limit, reconstruction, conservative, by_faces: self.passes_by_faces(), medium };
+        let rule =
+            FluxScheme { gas, flux, limit, reconstruction, conservative, by_faces: self.passes_by_faces(), medium };
         let particles = Particles {
             x: &cloud.x,
             volume: &cloud.volume,
@@ -340,7 +341,7 @@ impl<const D: usize> System for Fluid<D> {
             turn: None,
             velocity: Arc::default(),
             walls: Arc::default(),
-            way: Way::default(),
+            way: LagrangianStep::default(),
             outer: (0..cloud.outer.len()).map(|k| cloud.beside(k).map(|i| (self.held)(&cloud.x[i]))).collect(),
         };
         self.place(moment, &mut frame);
@@ -357,7 +358,7 @@ impl<const D: usize> System for Fluid<D> {
     }
 
     fn set_off(&self, step: f64, u: &[f64], work: &mut Work<D>, frame: &mut Frame<D>) -> f64 {
-        if matches!(self.carriage, Carriage::Travel(_)) {
+        if matches!(self.carriage, CloudMotion::Travel(_)) {
             self.choose_ways(step, u, work, frame)
         } else {
             f64::INFINITY

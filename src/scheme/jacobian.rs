@@ -7,7 +7,7 @@ use multiversion::multiversion;
 
 use super::fluid::{Fluid, Work, half_face};
 use super::shape::Frame;
-use super::viscous::Contact;
+use super::viscous::WallCondition;
 use crate::cloud::Edge;
 use crate::math::Vector;
 use crate::math::block_matrix::{BlockMatrix, Rows};
@@ -188,7 +188,7 @@ pub(super) fn couple<const D: usize>(
         rows.add_sized(D + 2, (row, column), coupling);
     } else if cloud.interface_range().contains(&column) {
         let wall = &cloud.interface[column - cloud.n_fluid];
-        let slips = fluid.friction.as_ref().is_none_or(|f| f.contact(wall.body) == Contact::Slip);
+        let slips = fluid.friction.as_ref().is_none_or(|f| f.contact(wall.body) == WallCondition::Slip);
         match slips {
             true => rows.add(row, row, |r, c| folded(&coupling, &wall.normal, r, c)),
             false => {

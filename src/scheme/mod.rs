@@ -19,8 +19,8 @@ pub mod viscous;
 pub mod watch;
 
 pub use fluid::{Fluid, Work};
-pub use shape::{Carriage, Frame, Shape};
-pub use skin::Skin;
-pub use transfer::Turnover;
-pub use travel::{Stand, Travel};
-pub use viscous::{Contact, Friction};
+pub use shape::{CloudMotion, Discretisation, Frame};
+pub use skin::DeformingSurface;
+pub use transfer::RemapLedger;
+pub use travel::{ParticleKinematics, Travel};
+pub use viscous::{ViscousModel, WallCondition};

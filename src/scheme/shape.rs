@@ -1,6 +1,6 @@
 //! The cloud at one time, and how it gets there.
 //!
-//! A [`Shape`] is what the scheme knows of the cloud: positions, weights, fits at the walls. A [`Frame`] is the shape at a
+//! A [`Discretisation`] is what the scheme knows of the cloud: positions, weights, fits at the walls. A [`Frame`] is the shape at a
 //! time with the velocities of its particles. A cloud at rest shares one shape for ever; a rigid one keeps it and turns the
 //! axes that states are looked at in; any other motion moves the particles and fits their weights anew on the same lists.
 //!
@@ -10,19 +10,19 @@
 use std::sync::Arc;
 
 use super::boundary::{WallFits, WallMotion};
-use super::skin::Skin;
+use super::skin::DeformingSurface;
 use super::travel::Travel;
 use crate::cloud::{Cloud, Operators};
 use crate::math::Vector;
 use crate::math::square::times;
 use crate::math::sweep::{sweep, sweep_slots};
-use crate::motion::{Law, RigidPose};
+use crate::motion::{BodyMotion, RigidPose};
 use crate::physics::Primitive;
 use crate::system::Moment;
 
 /// The cloud with the operators that follow from positions.
 #[derive(Clone, Debug)]
-pub struct Shape<const D: usize> {
+pub struct Discretisation<const D: usize> {
     /// Particles.
     pub cloud: Cloud<D>,
     /// Weights and edges.
@@ -31,7 +31,7 @@ pub struct Shape<const D: usize> {
     pub walls: WallFits,
 }
 
-impl<const D: usize> Shape<D> {
+impl<const D: usize> Discretisation<D> {
     /// Fits all weights of a cloud.
     pub fn new(cloud: Cloud<D>, operators: Operators<D>) -> Self {
         let walls = WallFits::new(&cloud);
@@ -56,7 +56,7 @@ pub struct Frame<const D: usize> {
     /// Time.
     pub time: f64,
     /// The cloud in the axes that states are looked at in.
-    pub shape: Arc<Shape<D>>,
+    pub shape: Arc<Discretisation<D>>,
     /// From those axes to those of the case, when they differ.
     pub turn: Option<RigidPose<D>>,
     /// Velocities of all particles in the axes of `shape`; empty when nothing moves.
@@ -64,7 +64,7 @@ pub struct Frame<const D: usize> {
     /// Spin and acceleration of the wall at each interface particle; empty when nothing moves.
     pub walls: Arc<Vec<WallMotion<D>>>,
     /// How fluid particles that travel go through the step; empty for all others.
-    pub way: Way<D>,
+    pub way: LagrangianStep<D>,
     /// States that sides hold, in the axes of the case: at each outer particle, at its source and behind that.
     pub outer: Vec<[Primitive<D>; 3]>,
 }
@@ -103,7 +103,7 @@ impl<const D: usize> Frame<D> {
 
 /// How fluid particles that travel go through a step.
 #[derive(Clone, Debug, Default)]
-pub struct Way<const D: usize> {
+pub struct LagrangianStep<const D: usize> {
     /// True once they have chosen where they go; until then they stand where the step before led.
     pub off: bool,
     /// Time at which the step began.
@@ -131,27 +131,27 @@ pub trait Path<const D: usize>: Send + Sync {
 
 /// How particles move.
 #[derive(Clone)]
-pub enum Carriage<const D: usize> {
+pub enum CloudMotion<const D: usize> {
     /// Not at all.
     Still,
     /// As one with a body.
-    Rigid(Law<D>),
+    Rigid(BodyMotion<D>),
     /// Along paths of their own, the walls with their bodies.
     Along {
         /// Places of the particles.
         path: Arc<dyn Path<D>>,
         /// Motion of each body.
-        laws: Vec<Law<D>>,
+        laws: Vec<BodyMotion<D>>,
         /// How the surfaces of bodies bend.
-        skin: Arc<Skin<D>>,
+        skin: Arc<DeformingSurface<D>>,
     },
     /// With the fluid.
     Travel(Travel<D>),
 }
 
-impl<const D: usize> Carriage<D> {
+impl<const D: usize> CloudMotion<D> {
     /// Brings `frame` to a moment; `origin` is the shape before any motion.
-    pub fn place(&self, origin: &Arc<Shape<D>>, moment: &Moment<'_>, frame: &mut Frame<D>) {
+    pub fn place(&self, origin: &Arc<Discretisation<D>>, moment: &Moment<'_>, frame: &mut Frame<D>) {
         frame.time = moment.time();
         match self {
             Self::Still => {}
@@ -160,7 +160,7 @@ impl<const D: usize> Carriage<D> {
                 place_along(path.as_ref(), origin, moment, frame);
                 turn_walls((laws, skin), origin, moment.time(), frame);
                 if origin.operators.conservative {
-                    let Shape { cloud, operators, .. } = Arc::make_mut(&mut frame.shape);
+                    let Discretisation { cloud, operators, .. } = Arc::make_mut(&mut frame.shape);
                     operators.carry(cloud, &origin.operators, &origin.cloud);
                 }
             }
@@ -189,7 +189,7 @@ impl<const D: usize> Carriage<D> {
     }
 
     /// Motion of the first body: the one that angles and displacements in histories belong to.
-    pub fn law(&self) -> Option<&Law<D>> {
+    pub fn law(&self) -> Option<&BodyMotion<D>> {
         match self {
             Self::Still => None,
             Self::Rigid(law) => Some(law),
@@ -206,7 +206,12 @@ impl<const D: usize> Carriage<D> {
 }
 
 /// Turns the axes; the difference formula applies to poses, which positions are affine in.
-fn place_rigid<const D: usize>(law: &Law<D>, origin: &Arc<Shape<D>>, moment: &Moment<'_>, frame: &mut Frame<D>) {
+fn place_rigid<const D: usize>(
+    law: &BodyMotion<D>,
+    origin: &Arc<Discretisation<D>>,
+    moment: &Moment<'_>,
+    frame: &mut Frame<D>,
+) {
     let t = moment.time();
     let pose = law.pose(t);
     let x = &origin.cloud.x;
@@ -238,7 +243,7 @@ fn place_rigid<const D: usize>(law: &Law<D>, origin: &Arc<Shape<D>>, moment: &Mo
 }
 
 /// ∂w/∂x of the rigid part of a motion in the axes of the case: Ṙ Rᵀ.
-pub(super) fn rotation_rate<const D: usize>(law: &Law<D>, t: f64) -> [Vector<D>; D] {
+pub(super) fn rotation_rate<const D: usize>(law: &BodyMotion<D>, t: f64) -> [Vector<D>; D] {
     let pose = law.pose(t);
     let velocity = |x: &Vector<D>| law.kinematics_of(t, x, &[]).velocity;
     let base = velocity(&Vector::ZERO);
@@ -248,7 +253,12 @@ pub(super) fn rotation_rate<const D: usize>(law: &Law<D>, t: f64) -> [Vector<D>;
 }
 
 /// Moves the particles and fits their weights anew.
-fn place_along<const D: usize>(path: &dyn Path<D>, origin: &Arc<Shape<D>>, moment: &Moment<'_>, frame: &mut Frame<D>) {
+fn place_along<const D: usize>(
+    path: &dyn Path<D>,
+    origin: &Arc<Discretisation<D>>,
+    moment: &Moment<'_>,
+    frame: &mut Frame<D>,
+) {
     let reference = &origin.cloud;
     let n = reference.n_real();
     let velocity = Arc::make_mut(&mut frame.velocity);
@@ -284,8 +294,8 @@ fn place_along<const D: usize>(path: &dyn Path<D>, origin: &Arc<Shape<D>>, momen
 
 /// Bends and turns the surface vectors with the bodies and fits all weights to where particles are.
 fn turn_walls<const D: usize>(
-    (laws, skin): (&[Law<D>], &Skin<D>),
-    origin: &Arc<Shape<D>>,
+    (laws, skin): (&[BodyMotion<D>], &DeformingSurface<D>),
+    origin: &Arc<Discretisation<D>>,
     t: f64,
     frame: &mut Frame<D>,
 ) {

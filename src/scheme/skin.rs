@@ -5,16 +5,16 @@
 use crate::cloud::{Cloud, Strain};
 use crate::math::Vector;
 use crate::math::sweep::sweep_slots;
-use crate::motion::{Expansion, Law};
+use crate::motion::{BodyMotion, Expansion};
 
 /// The modes of the bodies at every interface particle; empty where no body bends.
 #[derive(Clone, Debug, Default)]
-pub struct Skin<const D: usize> {
+pub struct DeformingSurface<const D: usize> {
     modes: Vec<Vec<Expansion<D>>>,
 }
 
 /// How the surface at one interface particle is deformed at one time.
-pub(super) struct Bent<const D: usize> {
+pub(super) struct SurfaceStrain<const D: usize> {
     /// The map and its second derivatives.
     pub(super) strain: Strain<D>,
     /// Rows of Ḟ F⁻¹.
@@ -23,10 +23,10 @@ pub(super) struct Bent<const D: usize> {
     pub(super) shifts: Vec<Vector<D>>,
 }
 
-impl<const D: usize> Skin<D> {
+impl<const D: usize> DeformingSurface<D> {
     /// The surfaces of bodies that follow `laws`.
-    pub fn new(cloud: &Cloud<D>, laws: &[Law<D>]) -> Self {
-        if !laws.iter().any(Law::bends) {
+    pub fn new(cloud: &Cloud<D>, laws: &[BodyMotion<D>]) -> Self {
+        if !laws.iter().any(BodyMotion::bends) {
             return Self::default();
         }
         let mut modes = vec![Vec::new(); cloud.interface.len()];
@@ -39,7 +39,7 @@ impl<const D: usize> Skin<D> {
     }
 
     /// The surface at interface particle `w` at time `t`; `None` where it does not bend.
-    pub(super) fn bent(&self, w: usize, law: &Law<D>, t: f64) -> Option<Bent<D>> {
+    pub(super) fn bent(&self, w: usize, law: &BodyMotion<D>, t: f64) -> Option<SurfaceStrain<D>> {
         let modes = self.modes.get(w).filter(|m| !m.is_empty())?;
         let mut strain = Strain { map: std::array::from_fn(Vector::axis), second: [[Vector::ZERO; D]; D] };
         let mut rates = [Vector::ZERO; D];
@@ -53,6 +53,6 @@ impl<const D: usize> Skin<D> {
         let inverse = strain.inverse();
         // row i of Ḟ times F⁻¹
         let rate = std::array::from_fn(|i| (0..D).fold(Vector::ZERO, |sum, k| sum + inverse[k] * rates[i][k]));
-        Some(Bent { strain, rate, shifts: modes.iter().map(|m| m.value).collect() })
+        Some(SurfaceStrain { strain, rate, shifts: modes.iter().map(|m| m.value).collect() })
     }
 }

@@ -9,7 +9,7 @@
 //! state some steps ago is its present one less the same fit of their changes: U(t − Δt) at x − w Δt, so that a linear field
 //! at rest stays one for a difference formula of any number of times.
 use super::fluid::{Fluid, Work};
-use crate::cloud::travel::{NEW, Renewal};
+use crate::cloud::travel::{NEW, Recloud};
 use crate::cloud::{Cloud, CloudError};
 use crate::math::Vector;
 use crate::math::least_squares::Fit;
@@ -25,7 +25,7 @@ const MARGIN: f64 = 0.3;
 
 /// What re-clouding has done so far.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Turnover {
+pub struct RemapLedger {
     /// Times the cloud was built anew.
     pub renewals: u32,
     /// Particles inserted.
@@ -45,7 +45,7 @@ pub(super) struct Transfer<'a, const D: usize> {
     pub(super) fluid: &'a Fluid<D>,
     pub(super) old: &'a Cloud<D>,
     pub(super) work: &'a Work<D>,
-    pub(super) renewal: &'a Renewal<D>,
+    pub(super) renewal: &'a Recloud<D>,
     pub(super) before: &'a [f64],
 }
 
@@ -60,7 +60,7 @@ pub(super) struct Share {
 type Sample<const D: usize> = (Vector<D>, Conserved<D>);
 
 impl<const D: usize> Transfer<'_, D> {
-    pub(super) fn state(&self, turnover: &mut Turnover) -> Result<Vec<f64>, CloudError> {
+    pub(super) fn state(&self, turnover: &mut RemapLedger) -> Result<Vec<f64>, CloudError> {
         let cloud = &self.renewal.cloud;
         let n = D + 2;
         let mut u = vec![0.0; n * cloud.n_fluid];
@@ -149,7 +149,7 @@ impl<const D: usize> Transfer<'_, D> {
     }
 
     /// Adds to the account of what was done.
-    fn count(&self, inserted: u64, turnover: &mut Turnover) {
+    fn count(&self, inserted: u64, turnover: &mut RemapLedger) {
         let n = D + 2;
         turnover.renewals += 1;
         turnover.inserted += inserted;

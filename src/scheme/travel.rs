@@ -27,14 +27,14 @@ use std::sync::Arc;
 use super::boundary::WallFits;
 use super::boundary::WallMotion;
 use super::fluid::{Fluid, Work};
-use super::shape::{Carriage, Frame, Shape, Way, rotation_rate};
-use super::transfer::{Transfer, Turnover};
+use super::shape::{CloudMotion, Discretisation, Frame, LagrangianStep, rotation_rate};
+use super::transfer::{RemapLedger, Transfer};
 use crate::cloud::repair::WORST_CONDITION;
-use crate::cloud::travel::Habitat;
+use crate::cloud::travel::BackgroundDomain;
 use crate::cloud::{Cloud, CloudError, Operators};
 use crate::math::Vector;
 use crate::math::sweep::{first, maximum, sweep, sweep_each, sweep_parts};
-use crate::motion::{Law, RigidPose};
+use crate::motion::{BodyMotion, RigidPose};
 use crate::physics::{Gas, Primitive};
 use crate::system::{Moment, System};
 
@@ -60,18 +60,18 @@ const SLACK: f64 = 0.25;
 #[derive(Clone)]
 pub struct Travel<const D: usize> {
     /// What the cloud keeps.
-    pub habitat: Arc<Habitat<D>>,
+    pub habitat: Arc<BackgroundDomain<D>>,
     /// Motion of each body.
-    pub laws: Vec<Law<D>>,
+    pub laws: Vec<BodyMotion<D>>,
     /// Where particles are when this system takes over.
-    pub stand: Arc<Stand<D>>,
+    pub stand: Arc<ParticleKinematics<D>>,
     /// Time at which the cloud was built.
     pub since: f64,
 }
 
 /// Where particles that travel are, and how they came there.
 #[derive(Clone, Debug, Default)]
-pub struct Stand<const D: usize> {
+pub struct ParticleKinematics<const D: usize> {
     /// Time.
     pub now: f64,
     /// Places of fluid and interface particles.
@@ -83,7 +83,7 @@ pub struct Stand<const D: usize> {
 }
 
 /// A fluid on its renewed cloud, with its state.
-pub struct Renewed<const D: usize> {
+pub struct Reclouded<const D: usize> {
     /// Equations.
     pub fluid: Fluid<D>,
     /// State.
@@ -99,13 +99,13 @@ impl<const D: usize> Travel<D> {
     }
 
     /// Brings `frame` to a moment. Fluid particles go from where the step began with the velocities they then chose.
-    pub(super) fn place(&self, origin: &Arc<Shape<D>>, moment: &Moment<'_>, frame: &mut Frame<D>) {
+    pub(super) fn place(&self, origin: &Arc<Discretisation<D>>, moment: &Moment<'_>, frame: &mut Frame<D>) {
         let cloud = &origin.cloud;
         let (n, stand) = (cloud.n_fluid, &self.stand);
         if frame.way.base.len() != n {
             // to the bit what the system before, or a checkpoint, left
             let (base, course) = (Arc::new(stand.places[..n].to_vec()), Arc::new(stand.course.clone()));
-            frame.way = Way { since: stand.now, base, course, ..Way::default() };
+            frame.way = LagrangianStep { since: stand.now, base, course, ..LagrangianStep::default() };
             frame.time = stand.now;
         }
         let velocity = Arc::make_mut(&mut frame.velocity);
@@ -125,7 +125,7 @@ impl<const D: usize> Travel<D> {
         let shape = Arc::make_mut(&mut frame.shape);
         let (base, course) = (&frame.way.base, &frame.way.course);
         let ahead = |i: usize| if passed > 0.0 { base[i] + course[i] * passed } else { base[i] };
-        let fixed = self.laws.iter().all(Law::is_fixed);
+        let fixed = self.laws.iter().all(BodyMotion::is_fixed);
         let away = maximum(n, |i| (ahead(i) - shape.cloud.x[i]).max_abs());
         sweep(&mut shape.cloud.x[..n], ahead);
         match off {
@@ -155,7 +155,7 @@ impl<const D: usize> Travel<D> {
     /// Interface particles stay on their bodies.
     fn place_walls(&self, moment: &Moment<'_>, cloud: &mut Cloud<D>, velocity: &mut [Vector<D>]) {
         let (before, interface) = self.habitat.walls();
-        if self.laws.iter().all(Law::is_fixed) {
+        if self.laws.iter().all(BodyMotion::is_fixed) {
             return;
         }
         let (from, to, step, fraction) = match moment {
@@ -181,7 +181,7 @@ impl<const D: usize> Travel<D> {
         let (before, interface) = self.habitat.walls();
         let walls = Arc::make_mut(&mut frame.walls);
         walls.resize(interface.len(), WallMotion::AT_REST);
-        if self.laws.iter().all(Law::is_fixed) {
+        if self.laws.iter().all(BodyMotion::is_fixed) {
             return;
         }
         let cloud = &mut Arc::make_mut(&mut frame.shape).cloud;
@@ -204,7 +204,7 @@ impl<const D: usize> Fluid<D> {
         let cloud = &frame.shape.cloud;
         let n = cloud.n_fluid;
         let radius = match &self.carriage {
-            Carriage::Travel(travel) => travel.habitat.radius(),
+            CloudMotion::Travel(travel) => travel.habitat.radius(),
             _ => return f64::INFINITY,
         };
         let state = &work.state;
@@ -227,13 +227,13 @@ impl<const D: usize> Fluid<D> {
         velocity[..n].copy_from_slice(&course);
         show_images(cloud, velocity);
         let reach = reach(&frame.shape, velocity);
-        frame.way = Way { off: true, since: frame.time, base, course, before, velocity: now };
+        frame.way = LagrangianStep { off: true, since: frame.time, base, course, before, velocity: now };
         reach
     }
 
     /// True when the cloud should be built anew: lists no longer hold what is near, or a row is sick.
     pub fn is_worn(&self, frame: &Frame<D>) -> bool {
-        if !matches!(self.carriage, Carriage::Travel(_)) {
+        if !matches!(self.carriage, CloudMotion::Travel(_)) {
             return false;
         }
         let (then, now) = (&self.shape.cloud, &frame.shape.cloud);
@@ -263,9 +263,9 @@ impl<const D: usize> Fluid<D> {
         frame: &Frame<D>,
         (u, past): (&[f64], [&[f64]; 2]),
         work: &mut Work<D>,
-        turnover: &mut Turnover,
-    ) -> Result<Option<Renewed<D>>, CloudError> {
-        let Carriage::Travel(travel) = &self.carriage else { return Ok(None) };
+        turnover: &mut RemapLedger,
+    ) -> Result<Option<Reclouded<D>>, CloudError> {
+        let CloudMotion::Travel(travel) = &self.carriage else { return Ok(None) };
         self.fill_states(frame, u, work);
         let old = &frame.shape.cloud;
         let renewal = travel.habitat.renew(&travel.poses(frame.time), old)?;
@@ -277,16 +277,20 @@ impl<const D: usize> Fluid<D> {
         let velocity = transfer.directions(&frame.velocity, &lines).into_iter().chain(walls).collect();
         let course = transfer.directions(&frame.way.course, &lines);
         let places = renewal.cloud.x[..renewal.cloud.n_rows()].to_vec();
-        let stand = Stand { now: frame.time, places, velocity, course };
+        let stand = ParticleKinematics { now: frame.time, places, velocity, course };
         let fluid = self.on(renewal.cloud, frame.time, stand);
-        Ok(Some(Renewed { fluid, u: state, past }))
+        Ok(Some(Reclouded { fluid, u: state, past }))
     }
 
     /// The same equations on a cloud whose lists are those of the fluid particles at `lists` at time `since`, or on this cloud
     /// without them, while fluid and interface particles are at certain places now and went there with certain velocities:
     /// what a checkpoint keeps.
-    pub fn resumed(&self, lists: Option<(&[Vector<D>], f64)>, stand: Stand<D>) -> Result<Option<Self>, CloudError> {
-        let Carriage::Travel(travel) = &self.carriage else { return Ok(None) };
+    pub fn resumed(
+        &self,
+        lists: Option<(&[Vector<D>], f64)>,
+        stand: ParticleKinematics<D>,
+    ) -> Result<Option<Self>, CloudError> {
+        let CloudMotion::Travel(travel) = &self.carriage else { return Ok(None) };
         let Some((lists, since)) = lists else { return Ok(Some(self.moved(stand))) };
         let (cloud, _) = travel.habitat.cloud(&travel.poses(since), lists)?;
         Ok(Some(self.on(cloud, since, stand)))
@@ -300,7 +304,7 @@ impl<const D: usize> Fluid<D> {
 
     fn stood(&self) -> f64 {
         match &self.carriage {
-            Carriage::Travel(travel) => travel.stand.now,
+            CloudMotion::Travel(travel) => travel.stand.now,
             _ => 0.0,
         }
     }
@@ -308,7 +312,7 @@ impl<const D: usize> Fluid<D> {
     /// Interface particles before any motion.
     pub fn walls_before(&self) -> &[Vector<D>] {
         match &self.carriage {
-            Carriage::Travel(travel) => travel.habitat.walls().0,
+            CloudMotion::Travel(travel) => travel.habitat.walls().0,
             _ => {
                 let cloud = &self.reference().cloud;
                 &cloud.x[cloud.interface_range()]
@@ -320,7 +324,7 @@ impl<const D: usize> Fluid<D> {
     pub fn volumes(&self) -> Vec<f64> {
         let cloud = &self.shape.cloud;
         match &self.carriage {
-            Carriage::Travel(travel) => travel.habitat.volumes(&travel.poses(travel.since), cloud),
+            CloudMotion::Travel(travel) => travel.habitat.volumes(&travel.poses(travel.since), cloud),
             _ => cloud.volume[..cloud.n_fluid].to_vec(),
         }
     }
@@ -332,19 +336,19 @@ impl<const D: usize> Fluid<D> {
         Arc::make_mut(&mut self.shape).cloud.volume[..n].copy_from_slice(&volumes);
     }
 
-    fn on(&self, cloud: Cloud<D>, since: f64, stand: Stand<D>) -> Self {
+    fn on(&self, cloud: Cloud<D>, since: f64, stand: ParticleKinematics<D>) -> Self {
         let operators = Operators::new(&cloud);
-        let mut other = Self { shape: Arc::new(Shape::new(cloud, operators)), ..self.moved(stand) };
-        if let Carriage::Travel(travel) = &mut other.carriage {
+        let mut other = Self { shape: Arc::new(Discretisation::new(cloud, operators)), ..self.moved(stand) };
+        if let CloudMotion::Travel(travel) = &mut other.carriage {
             travel.since = since;
         }
         other
     }
 
     /// The same equations on the same cloud, with the particles elsewhere.
-    fn moved(&self, stand: Stand<D>) -> Self {
-        let Carriage::Travel(travel) = &self.carriage else { return self.copy() };
-        Self { carriage: Carriage::Travel(Travel { stand: Arc::new(stand), ..travel.clone() }), ..self.copy() }
+    fn moved(&self, stand: ParticleKinematics<D>) -> Self {
+        let CloudMotion::Travel(travel) = &self.carriage else { return self.copy() };
+        Self { carriage: CloudMotion::Travel(Travel { stand: Arc::new(stand), ..travel.clone() }), ..self.copy() }
     }
 
     fn copy(&self) -> Self {
@@ -361,7 +365,7 @@ impl<const D: usize> Fluid<D> {
 }
 
 /// Velocities of a difference formula for particles that went straight, in this step and in the one before.
-fn differentiate<const D: usize>(way: &Way<D>, rate: &[(f64, f64)], velocity: &mut [Vector<D>]) {
+fn differentiate<const D: usize>(way: &LagrangianStep<D>, rate: &[(f64, f64)], velocity: &mut [Vector<D>]) {
     let passed = |k: usize| rate[k - 1].1 - rate[k].1;
     let now = rate[0].0 * passed(1);
     match rate.get(2) {
@@ -385,7 +389,7 @@ fn show_images<const D: usize>(cloud: &Cloud<D>, velocity: &mut [Vector<D>]) {
 
 /// The time in which no two particles that see one another move relative to one another by more than the part [`REACH`] of
 /// their distance.
-fn reach<const D: usize>(shape: &Shape<D>, velocity: &[Vector<D>]) -> f64 {
+fn reach<const D: usize>(shape: &Discretisation<D>, velocity: &[Vector<D>]) -> f64 {
     let (x, op) = (&shape.cloud.x, &shape.operators);
     let mut fastest = vec![0.0; op.fluid_parts().len()];
     sweep_each(&mut fastest, |k| {
@@ -405,7 +409,7 @@ struct Around<const D: usize> {
 }
 
 /// What particles find around them; the two ends of an edge find the same, or its opposite.
-fn around<const D: usize>(shape: &Shape<D>, state: &[Primitive<D>], radius: f64) -> Vec<Around<D>> {
+fn around<const D: usize>(shape: &Discretisation<D>, state: &[Primitive<D>], radius: f64) -> Vec<Around<D>> {
     let (cloud, op) = (&shape.cloud, &shape.operators);
     let blank = Around { shift: Vector::ZERO, approach: 0.0 };
     let mut all = vec![blank; cloud.n_fluid];

@@ -23,7 +23,7 @@ use super::boundary::{WallMotion, stuck_wall};
 use super::fluid::{Fluid, Work, half_face};
 use super::jacobian::Block;
 use super::reconstruct::Gradient;
-use super::shape::{Frame, Shape};
+use super::shape::{Discretisation, Frame};
 use crate::cloud::operators::WallFace;
 use crate::cloud::{Cloud, Edge};
 use crate::math::Vector;
@@ -38,7 +38,7 @@ const SHORTEST: f64 = 0.3;
 
 /// What the gas does on the surface of a body.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Contact {
+pub enum WallCondition {
     /// It slides.
     Slip,
     /// It sticks, and no heat passes.
@@ -49,18 +49,18 @@ pub enum Contact {
 
 /// Viscosity of the gas and the walls it acts on.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Friction {
+pub struct ViscousModel {
     /// Viscosity and heat conduction.
     pub medium: Newtonian,
     /// One a body.
-    pub contacts: Vec<Contact>,
+    pub contacts: Vec<WallCondition>,
 }
 
-impl Friction {
+impl ViscousModel {
     /// Contact with the body of that number.
     #[inline]
-    pub fn contact(&self, body: u16) -> Contact {
-        self.contacts.get(usize::from(body)).copied().unwrap_or(Contact::Slip)
+    pub fn contact(&self, body: u16) -> WallCondition {
+        self.contacts.get(usize::from(body)).copied().unwrap_or(WallCondition::Slip)
     }
 }
 
@@ -140,14 +140,14 @@ impl<const D: usize> Fluid<D> {
     #[inline]
     pub(super) fn stuck(
         &self,
-        shape: &Shape<D>,
+        shape: &Discretisation<D>,
         (w, frame): (usize, &Frame<D>),
         q: impl Fn(usize) -> Primitive<D>,
     ) -> Option<Primitive<D>> {
         let temperature = match self.friction.as_ref()?.contact(shape.cloud.interface[w].body) {
-            Contact::Slip => return None,
-            Contact::Adiabatic => None,
-            Contact::Temperature(t) => Some(t),
+            WallCondition::Slip => return None,
+            WallCondition::Adiabatic => None,
+            WallCondition::Temperature(t) => Some(t),
         };
         let velocity = frame.velocity_of(shape.cloud.n_fluid + w);
         let moved = (velocity, frame.walls.get(w));
@@ -157,7 +157,7 @@ impl<const D: usize> Fluid<D> {
     /// Flux of stress and heat at particle `i` across `n`; zero without viscosity.
     pub(super) fn viscous_flux(&self, work: &Work<D>, i: usize, n: &Vector<D>) -> Conserved<D> {
         let flux =
-            |f: &Arc<Friction>| f.medium.flux(&self.gas, &slopes(&self.gas, &work.state[i], &work.gradient[i]), n);
+            |f: &Arc<ViscousModel>| f.medium.flux(&self.gas, &slopes(&self.gas, &work.state[i], &work.gradient[i]), n);
         self.friction.as_ref().map_or(Conserved::ZERO, flux)
     }
 
@@ -175,7 +175,7 @@ impl<const D: usize> Fluid<D> {
     /// Flux of stress and heat through a piece of wall.
     fn viscous_wall(
         &self,
-        friction: &Friction,
+        friction: &ViscousModel,
         (frame, work): (&Frame<D>, &Work<D>),
         face: &WallFace<D>,
     ) -> Conserved<D> {
@@ -194,13 +194,13 @@ impl<const D: usize> Fluid<D> {
     /// Slopes on the wall of interface particle `w` that moves with `motion`; `None` where the gas slides.
     fn at_wall(
         &self,
-        friction: &Friction,
+        friction: &ViscousModel,
         (cloud, work): (&Cloud<D>, &Work<D>),
         w: usize,
         motion: Option<&WallMotion<D>>,
     ) -> Option<Slopes<D>> {
         let contact = friction.contact(cloud.interface[w].body);
-        if contact == Contact::Slip {
+        if contact == WallCondition::Slip {
             return None;
         }
         let (i, normal) = (cloud.n_fluid + w, &cloud.interface[w].normal);
@@ -220,7 +220,7 @@ impl<const D: usize> Fluid<D> {
                 (rate, temperature_gradient(&self.gas, wall, g).dot(normal))
             }
         };
-        let heating = if contact == Contact::Adiabatic { 0.0 } else { heating };
+        let heating = if contact == WallCondition::Adiabatic { 0.0 } else { heating };
         Some(Slopes {
             velocity: wall.velocity,
             temperature,
@@ -262,7 +262,12 @@ impl<const D: usize> Fluid<D> {
     }
 
     /// Adds the rates at which viscosity and conduction even out differences between particles.
-    pub(super) fn add_viscous_rate(&self, friction: &Friction, (frame, work): (&Frame<D>, &Work<D>), rate: &mut [f64]) {
+    pub(super) fn add_viscous_rate(
+        &self,
+        friction: &ViscousModel,
+        (frame, work): (&Frame<D>, &Work<D>),
+        rate: &mut [f64],
+    ) {
         let (op, cloud) = (&frame.shape.operators, &frame.shape.cloud);
         sweep_parts(op.fluid_parts(), 1, rate, &|k, out| {
             let start = op.parts[k].start;
@@ -335,7 +340,7 @@ impl<const D: usize> Fluid<D> {
         for face in faces {
             let source = cloud.source(face.wall as usize).index;
             let contact = friction.contact(cloud.interface[source - cloud.n_fluid].body);
-            if contact == Contact::Slip {
+            if contact == WallCondition::Slip {
                 continue;
             }
             let n = face.area.unit();
@@ -367,12 +372,12 @@ fn at_contact<const D: usize>(
     gas: &Gas,
     medium: &Newtonian,
     (q, wall): (&Primitive<D>, &Vector<D>),
-    (contact, n): (Contact, &Vector<D>),
+    (contact, n): (WallCondition, &Vector<D>),
 ) -> Block {
     let mut block = [[0.0; 5]; 5];
     motion(q, n, &mut block);
     let heat = energy(q, gas);
-    let conducts = if contact == Contact::Adiabatic { 0.0 } else { gas.gamma / medium.prandtl };
+    let conducts = if contact == WallCondition::Adiabatic { 0.0 } else { gas.gamma / medium.prandtl };
     for c in 0..D + 2 {
         let work: f64 = (0..D).map(|d| wall[d] * block[1 + d][c]).sum();
         block[D + 1][c] = work + conducts * heat[c];

@@ -7,7 +7,7 @@ use crate::math::square::determinant;
 use crate::system::Fault;
 
 use super::fluid::Fluid;
-use super::shape::{Carriage, Frame};
+use super::shape::{CloudMotion, Frame};
 
 /// Least part of its volume to which the surroundings of a particle may shrink.
 const LEAST: f64 = 0.05;
@@ -15,7 +15,7 @@ const LEAST: f64 = 0.05;
 impl<const D: usize> Fluid<D> {
     /// The first particle whose surroundings have shrunk to almost nothing or folded.
     pub(super) fn squeezed(&self, frame: &Frame<D>) -> Option<Fault> {
-        if !matches!(self.carriage, Carriage::Along { .. }) {
+        if !matches!(self.carriage, CloudMotion::Along { .. }) {
             return None;
         }
         let volume = self.stretch(frame);

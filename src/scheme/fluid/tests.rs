@@ -31,10 +31,10 @@ fn with_cloud(body: &str, keys: &str) -> Fluid<2> {
     let mut cloud = Cloud::build(&case, (!body.is_empty()).then_some(&surface), &[]).unwrap();
     let mut operators = Operators::new(&cloud);
     conservative(&mut cloud, &mut operators);
-    let shape = Arc::new(Shape::new(cloud, operators));
+    let shape = Arc::new(Discretisation::new(cloud, operators));
     let reconstruction = Reconstruction { second_order: true, kappa: 0.0, threshold: 0.02, low_mach: false };
     let held: Field<2> = Arc::new(|x| Still.state(x, &Vector::ZERO));
-    let carriage = Carriage::Still;
+    let carriage = CloudMotion::Still;
     let (gas, isentropic, flux, limiter) = (Gas { gamma: 1.4 }, false, Flux::Hllc, Limiter::VanAlbada);
     let far_field = Arc::new(Still);
     let conservative = true;
