@@ -82,7 +82,7 @@ fn case<const D: usize>() -> Case {
 /// The equations with a state that is smooth but nowhere uniform, so that the limiter has work.
 fn solver<const D: usize>() -> (Fluid<D>, Vec<f64>) {
     let (fluid, mut u) = alula::run::build_solver::<D>(&case::<D>(), Path::new("")).unwrap();
-    for (x, row) in fluid.shape.cloud.x.iter().zip(u.chunks_exact_mut(D + 2)) {
+    for (x, row) in fluid.discretisation.cloud.x.iter().zip(u.chunks_exact_mut(D + 2)) {
         let wave = (7.0 * x[0] + 5.0 * x[1]).sin();
         let velocity = Vector::<D>::from_fn(|d| if d == 0 { 0.6 + 0.1 * wave } else { 0.05 * wave });
         let q = Primitive { density: 1.0 + 0.1 * wave, velocity, pressure: (1.0 - 0.1 * wave) / 1.4 };
@@ -98,7 +98,7 @@ fn residual<const D: usize>(bencher: Bencher<'_, '_>, threads: usize) {
     let pool = pool(threads);
     let (frame, mut work, mut du) = (fluid.frame(&Moment::At { time: 0.0 }, &u), fluid.work(), vec![0.0; u.len()]);
     bencher
-        .counter(ItemsCount::new(fluid.shape.cloud.n_fluid))
+        .counter(ItemsCount::new(fluid.discretisation.cloud.n_fluid))
         .bench_local(|| pool.install(|| fluid.rhs(black_box(&frame), black_box(&u), &mut work, &mut du)));
 }
 
@@ -109,7 +109,9 @@ fn gradient<const D: usize>(bencher: Bencher<'_, '_>) {
     let mut work = fluid.work();
     let frame = fluid.frame(&Moment::At { time: 0.0 }, &u);
     fluid.fill_states(&frame, &u, &mut work);
-    bencher.counter(ItemsCount::new(fluid.shape.cloud.n_fluid)).bench_local(|| fluid.fill_gradients(&frame, &mut work));
+    bencher
+        .counter(ItemsCount::new(fluid.discretisation.cloud.n_fluid))
+        .bench_local(|| fluid.fill_gradients(&frame, &mut work));
 }
 
 /// From the case to particles with neighbours.
@@ -157,9 +159,9 @@ fn travelling<const D: usize>() -> (Fluid<D>, Vec<f64>) {
 fn re_clouding<const D: usize>(bencher: Bencher<'_, '_>, threads: usize) {
     let (fluid, u) = travelling::<D>();
     let (pool, frame, mut work) = (pool(threads), fluid.frame(&Moment::At { time: 0.0 }, &u), fluid.work());
-    let mut turnover = RemapLedger::default();
-    bencher.counter(ItemsCount::new(fluid.shape.cloud.n_fluid)).bench_local(|| {
-        pool.install(|| fluid.renewed(black_box(&frame), (&u, [&[], &[]]), &mut work, &mut turnover)).is_ok()
+    let mut ledger = RemapLedger::default();
+    bencher.counter(ItemsCount::new(fluid.discretisation.cloud.n_fluid)).bench_local(|| {
+        pool.install(|| fluid.reclouded(black_box(&frame), (&u, [&[], &[]]), &mut work, &mut ledger)).is_ok()
     });
 }
 
@@ -171,7 +173,7 @@ fn travelling_step<const D: usize>(bencher: Bencher<'_, '_>, threads: usize) {
     let begin = (Past::default(), u);
     let mut march = Explicit::new(&fluid, explicit::Method::Ssprk3, (0.1, 1e9), begin);
     bencher
-        .counter(ItemsCount::new(fluid.shape.cloud.n_fluid))
+        .counter(ItemsCount::new(fluid.discretisation.cloud.n_fluid))
         .bench_local(|| pool.install(|| march.advance()).is_ok());
 }
 
@@ -179,8 +181,8 @@ fn travelling_step<const D: usize>(bencher: Bencher<'_, '_>, threads: usize) {
 #[divan::bench(consts = [2, 3], args = THREADS, sample_count = 20)]
 fn weights_anew<const D: usize>(bencher: Bencher<'_, '_>, threads: usize) {
     let (fluid, _) = travelling::<D>();
-    let (pool, mut operators) = (pool(threads), fluid.shape.operators.clone());
-    let cloud = &fluid.shape.cloud;
+    let (pool, mut operators) = (pool(threads), fluid.discretisation.operators.clone());
+    let cloud = &fluid.discretisation.cloud;
     bencher.counter(ItemsCount::new(cloud.n_fluid)).bench_local(|| pool.install(|| operators.refit(black_box(cloud))));
 }
 
@@ -188,8 +190,10 @@ fn weights_anew<const D: usize>(bencher: Bencher<'_, '_>, threads: usize) {
 #[divan::bench(consts = [2, 3], sample_count = 5, sample_size = 1)]
 fn implicit_step<const D: usize>(bencher: Bencher<'_, '_>) {
     let (fluid, u) = solver::<D>();
-    let origin =
-        fluid.shape.cloud.x[..fluid.shape.cloud.n_fluid].iter().flat_map(|_| u[..D + 2].to_vec()).collect::<Vec<_>>();
+    let origin = fluid.discretisation.cloud.x[..fluid.discretisation.cloud.n_fluid]
+        .iter()
+        .flat_map(|_| u[..D + 2].to_vec())
+        .collect::<Vec<_>>();
     let control = Control {
         method: Method::NewtonKrylov,
         cfl: 20.0,
@@ -205,6 +209,6 @@ fn implicit_step<const D: usize>(bencher: Bencher<'_, '_>) {
         resume.phase.newton = true;
         Relax::new(&fluid, control, u.clone(), &origin, Some(resume))
     };
-    let counter = ItemsCount::new(fluid.shape.cloud.n_fluid);
+    let counter = ItemsCount::new(fluid.discretisation.cloud.n_fluid);
     bencher.with_inputs(start).counter(counter).bench_local_values(|mut relax| relax.advance().map(|s| s.linear));
 }

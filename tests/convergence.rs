@@ -20,7 +20,7 @@ fn vortex_error(spacing: f64, until: f64, low_mach: bool) -> f64 {
     }
     let exact = IsentropicVortex::new(5.0, Vector([5.0, 5.0]), Vector([1.0, 1.0]), fluid.gas.gamma).unwrap();
     let exact = exact.periodic(Vector([10.0, 10.0]));
-    let (cloud, u) = (&fluid.shape.cloud, march.parts().2);
+    let (cloud, u) = (&fluid.discretisation.cloud, march.parts().2);
     let square = |i: usize| {
         let found = fluid.gas.primitive(&Conserved::<2>::load(&u[4 * i..])).density;
         cloud.volume[i] * (found - exact.state(&cloud.x[i], until).density).powi(2)
@@ -45,7 +45,10 @@ fn slow_vortex_loss(low_mach: bool) -> f64 {
         text.replace("strength = 5.0", "strength = 0.05").replace("[1.0, 1.0]\n[scheme]", "[0.0, 0.0]\n[scheme]");
     let (fluid, u) = solver::<2>(&text);
     let energy = |u: &[f64]| -> f64 {
-        u.chunks_exact(4).zip(&fluid.shape.cloud.volume).map(|(u, v)| v * (u[1] * u[1] + u[2] * u[2]) / u[0]).sum()
+        u.chunks_exact(4)
+            .zip(&fluid.discretisation.cloud.volume)
+            .map(|(u, v)| v * (u[1] * u[1] + u[2] * u[2]) / u[0])
+            .sum()
     };
     let before = energy(&u);
     let mut march = Explicit::new(&fluid, Method::Ssprk3, (0.5, 40.0), (Past::default(), u));

@@ -11,7 +11,7 @@ use alula::math::fourier::{Instances, Series};
 use alula::math::multilevel::Cycle;
 use alula::motion::{BodyMotion, TimeFunction};
 use alula::physics::Primitive;
-use alula::scheme::shape::{Path, Places};
+use alula::scheme::discretisation::{Path, Places};
 use alula::scheme::{CloudMotion, Fluid};
 use alula::system::{Fault, Moment, System};
 use alula::time::control::{Control, Method};
@@ -55,12 +55,12 @@ fn pitching<const D: usize>() -> CloudMotion<D> {
 
 /// Largest residual of a field that does not change in time, scaled by local times.
 fn residual<const D: usize>(
-    carriage: CloudMotion<D>,
+    cloud_motion: CloudMotion<D>,
     field: Arc<dyn Fn(&Vector<D>) -> Primitive<D> + Send + Sync>,
     (harmonics, oversample): (usize, f64),
 ) -> f64 {
     let held = Arc::clone(&field) as alula::scheme::start::Field<D>;
-    let fluid = Fluid { carriage, held, ..boxed::<D>() };
+    let fluid = Fluid { cloud_motion, held, ..boxed::<D>() };
     let balance = HarmonicBalance::new(&fluid, Instances::of_harmonics(harmonics), 4.0, oversample);
     let (b, count) = (D + 2, 2 * harmonics + 1);
     let mut u = vec![1.0; balance.len()];
@@ -72,26 +72,27 @@ fn residual<const D: usize>(
         }
     }
     let frame = balance.frame(&Moment::At { time: 0.0 }, &u);
-    let (mut work, mut du, mut rate) = (balance.work(), vec![0.0; u.len()], vec![0.0; fluid.shape.cloud.n_fluid]);
+    let (mut work, mut du, mut rate) =
+        (balance.work(), vec![0.0; u.len()], vec![0.0; fluid.discretisation.cloud.n_fluid]);
     balance.rhs(&frame, &u, &mut work, &mut du);
     balance.spectral_radius(&frame, &u, &mut work, &mut rate);
     largest(du.iter().enumerate().map(|(k, r)| r / rate[k / (b * count)]))
 }
 
-fn uniform<const D: usize>(carriage: CloudMotion<D>, how: (usize, f64)) -> f64 {
-    residual(carriage, boxed::<D>().held, how)
+fn uniform<const D: usize>(cloud_motion: CloudMotion<D>, how: (usize, f64)) -> f64 {
+    residual(cloud_motion, boxed::<D>().held, how)
 }
 
-fn layered<const D: usize>(carriage: CloudMotion<D>, how: (usize, f64)) -> f64 {
+fn layered<const D: usize>(cloud_motion: CloudMotion<D>, how: (usize, f64)) -> f64 {
     let field = |x: &Vector<D>| {
         let density = 2.0 + (0..D).map(|d| (0.3 + 0.1 * d as f64) * x[d]).sum::<f64>();
         Primitive { density, velocity: Vector::ZERO, pressure: 1.0 / 1.4 }
     };
-    residual(carriage, Arc::new(field), how)
+    residual(cloud_motion, Arc::new(field), how)
 }
 
 fn wave<const D: usize>() -> CloudMotion<D> {
-    CloudMotion::Along { path: Arc::new(Wave), laws: Vec::new(), skin: Arc::default() }
+    CloudMotion::Along { path: Arc::new(Wave), laws: Vec::new(), deforming_surface: Arc::default() }
 }
 
 #[test] // eq32

@@ -110,7 +110,7 @@ fn walls_bend_with_their_mode_and_normals_with_the_walls() {
     let case = read(&plate(motion), "plate.toml").unwrap_or_else(|e| panic!("{e}"));
     let (fluid, u) = build_solver::<2>(&case, folder.path()).unwrap_or_else(|e| panic!("{e}"));
     let frame = fluid.frame(&Moment::At { time: 1.0 }, &u);
-    let (before, now) = (&fluid.shape.cloud, &frame.shape.cloud);
+    let (before, now) = (&fluid.discretisation.cloud, &frame.discretisation.cloud);
     let (sine, cosine) = 20f64.to_radians().sin_cos();
     for (i, wall) in now.interface_range().zip(&now.interface) {
         // bent upwards, then turned nose up about the quarter chord
@@ -169,7 +169,7 @@ fn a_sphere_that_is_stretched_is_an_ellipsoid() {
     let case = read(text, "sphere.toml").unwrap_or_else(|e| panic!("{e}"));
     let (fluid, u) = build_solver::<3>(&case, folder.path()).unwrap_or_else(|e| panic!("{e}"));
     let frame = fluid.frame(&Moment::At { time: 1.0 }, &u);
-    let (before, now) = (&fluid.shape.cloud, &frame.shape.cloud);
+    let (before, now) = (&fluid.discretisation.cloud, &frame.discretisation.cloud);
     let mut closed = [Vector::ZERO; 2];
     for (i, wall) in now.interface_range().zip(&now.interface) {
         let x = before.x[i];

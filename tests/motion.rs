@@ -9,7 +9,7 @@ use alula::math::Vector;
 use alula::math::multilevel::Cycle;
 use alula::motion::{BodyMotion, TimeFunction};
 use alula::physics::{Conserved, Primitive};
-use alula::scheme::shape::{Path, Places};
+use alula::scheme::discretisation::{Path, Places};
 use alula::scheme::{CloudMotion, Fluid};
 use alula::system::{Moment, System};
 use alula::time::control::{self, Control};
@@ -98,17 +98,17 @@ fn pitching<const D: usize>() -> CloudMotion<D> {
 }
 
 fn along<const D: usize>(path: impl Path<D> + 'static) -> CloudMotion<D> {
-    CloudMotion::Along { path: Arc::new(path), laws: Vec::new(), skin: Arc::default() }
+    CloudMotion::Along { path: Arc::new(path), laws: Vec::new(), deforming_surface: Arc::default() }
 }
 
 /// Marches the field and returns the largest difference from it, where particles are then.
 fn drift<const D: usize>(
-    carriage: CloudMotion<D>,
+    cloud_motion: CloudMotion<D>,
     field: &dyn Fn(&Vector<D>) -> Primitive<D>,
     (fluid, held): (Fluid<D>, alula::scheme::start::Field<D>),
     implicit: bool,
 ) -> f64 {
-    let fluid = Fluid { carriage, held, ..fluid };
+    let fluid = Fluid { cloud_motion, held, ..fluid };
     let frame = fluid.frame(&Moment::At { time: 0.0 }, &vec![1.0; fluid.len()]);
     let mut u = vec![0.0; fluid.len()];
     for (i, row) in u.chunks_exact_mut(D + 2).enumerate() {
@@ -142,23 +142,23 @@ fn worst<const D: usize>(
         march.advance().unwrap();
     }
     let (frame, _, u) = march.parts();
-    largest((0..fluid.shape.cloud.n_fluid).map(|i| {
+    largest((0..fluid.discretisation.cloud.n_fluid).map(|i| {
         let found = fluid.gas.primitive(&Conserved::<D>::load(&u[i * (D + 2)..]));
         let error = found.minus(&field(&frame.place(i)));
         error.density.abs().max(error.velocity.max_abs()).max(error.pressure.abs())
     }))
 }
 
-fn uniform_drift<const D: usize>(carriage: CloudMotion<D>, implicit: bool) -> f64 {
+fn uniform_drift<const D: usize>(cloud_motion: CloudMotion<D>, implicit: bool) -> f64 {
     let (fluid, _) = boxed::<D>();
     let held = Arc::clone(&fluid.held);
     let field = Arc::clone(&held);
-    drift(carriage, &*field, (fluid, held), implicit)
+    drift(cloud_motion, &*field, (fluid, held), implicit)
 }
 
-fn layered_drift<const D: usize>(carriage: CloudMotion<D>, implicit: bool) -> f64 {
+fn layered_drift<const D: usize>(cloud_motion: CloudMotion<D>, implicit: bool) -> f64 {
     let (fluid, _) = boxed::<D>();
-    drift(carriage, &layered::<D>, (fluid, Arc::new(layered::<D>)), implicit)
+    drift(cloud_motion, &layered::<D>, (fluid, Arc::new(layered::<D>)), implicit)
 }
 
 #[test]

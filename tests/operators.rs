@@ -30,9 +30,9 @@ fn linear<const D: usize>(x: &Vector<D>) -> Primitive<D> {
 fn gradient_error<const D: usize>(fluid: &Fluid<D>) -> f64 {
     let mut work = fluid.work();
     let still = fluid.frame(&Moment::At { time: 0.0 }, &vec![1.0; fluid.len()]);
-    work.state = fluid.shape.cloud.x.iter().map(linear).collect();
+    work.state = fluid.discretisation.cloud.x.iter().map(linear).collect();
     fluid.fill_gradients(&still, &mut work);
-    largest(work.gradient[..fluid.shape.cloud.n_fluid].iter().flat_map(|g| {
+    largest(work.gradient[..fluid.discretisation.cloud.n_fluid].iter().flat_map(|g| {
         let velocity = (0..D).map(|d| (g.velocity[d] - slope(1 + d)).max_abs());
         velocity.chain([(g.density - slope(0)).max_abs(), (g.pressure - slope(4)).max_abs()]).collect::<Vec<_>>()
     }))
@@ -93,7 +93,7 @@ fn wall_states_obey_the_neumann_condition() {
     let (fluid, _) = solver::<2>(text);
     // gas at rest whose pressure varies along the upper face only: ∂p/∂n = 0 there
     let field = |x: &Vector<2>| Primitive::<2> { density: 1.0, velocity: Vector::ZERO, pressure: 1.0 + 0.1 * x[0] };
-    let cloud = &fluid.shape.cloud;
+    let cloud = &fluid.discretisation.cloud;
     let mut u = vec![0.0; fluid.len()];
     for (x, row) in cloud.x.iter().zip(u.chunks_exact_mut(4)) {
         fluid.gas.conserved(&field(x)).store(row);

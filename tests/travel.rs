@@ -12,7 +12,7 @@ use alula::exact::vortex::IsentropicVortex;
 use alula::math::Vector;
 use alula::math::multilevel::Cycle;
 use alula::physics::Conserved;
-use alula::scheme::shape::{Path, Places};
+use alula::scheme::discretisation::{Path, Places};
 use alula::scheme::{CloudMotion, Fluid, RemapLedger};
 use alula::time::control::{self, Control};
 use alula::time::dual::{Dual, Plan};
@@ -34,7 +34,7 @@ struct End<const D: usize> {
     fluid: Fluid<D>,
     u: Vec<f64>,
     past: Past,
-    turnover: RemapLedger,
+    ledger: RemapLedger,
 }
 
 /// How to march.
@@ -65,7 +65,7 @@ fn implicit(step: f64, until: f64, orders: f64) -> Plan {
 
 /// Marches, building the cloud anew when it is worn, until the time or the number of steps is reached.
 fn march<const D: usize>((fluid, u): (Fluid<D>, Vec<f64>), (how, until, steps): (How, f64, u32)) -> End<D> {
-    let mut end = End { fluid, u, past: Past::default(), turnover: RemapLedger::default() };
+    let mut end = End { fluid, u, past: Past::default(), ledger: RemapLedger::default() };
     loop {
         let begin = (end.past.clone(), end.u.clone());
         let mut leg: Box<dyn March<Fluid<D>>> = match how {
@@ -83,10 +83,10 @@ fn march<const D: usize>((fluid, u): (Fluid<D>, Vec<f64>), (how, until, steps): 
         let past = leg.past().clone();
         let (frame, work, u) = leg.parts();
         let known = [&past.before[..], &past.older];
-        let renewed = end.fluid.renewed(frame, (u, known), work, &mut end.turnover).unwrap().unwrap();
+        let reclouded = end.fluid.reclouded(frame, (u, known), work, &mut end.ledger).unwrap().unwrap();
         drop(leg);
-        let [before, older] = renewed.past;
-        (end.fluid, end.u, end.past) = (renewed.fluid, renewed.u, Past { before, older, ..past });
+        let [before, older] = reclouded.past;
+        (end.fluid, end.u, end.past) = (reclouded.fluid, reclouded.u, Past { before, older, ..past });
         if end.past.time >= until || end.past.iteration >= steps {
             return end;
         }
@@ -121,17 +121,17 @@ fn uniform_drift<const D: usize>(how: How) -> (f64, RemapLedger) {
     let (fluid, u) = stream::<D>();
     let state = u[..D + 2].to_vec();
     let end = march((fluid, u), (how, 1e3, 100));
-    (largest(end.u.chunks(D + 2).flat_map(|r| r.iter().zip(&state).map(|(a, b)| a - b))), end.turnover)
+    (largest(end.u.chunks(D + 2).flat_map(|r| r.iter().zip(&state).map(|(a, b)| a - b))), end.ledger)
 }
 
 #[test]
 fn uniform_flow_stays_uniform_on_travelling_particles() {
     let implicit = [uniform_drift::<2>(Step(0.03)), uniform_drift::<3>(Step(0.06))];
     let explicit = [uniform_drift::<2>(Courant(0.5)), uniform_drift::<3>(Courant(0.5))];
-    for (drift, turnover) in implicit.into_iter().chain(explicit) {
+    for (drift, ledger) in implicit.into_iter().chain(explicit) {
         assert!(drift <= ROUND_OFF, "{drift:e}");
-        assert!(turnover.renewals > 10 && turnover.inserted > 50 && turnover.removed > 50, "{turnover:?}");
-        assert!(largest(turnover.exchanged.iter().copied()) < ROUND_OFF, "{turnover:?}");
+        assert!(ledger.renewals > 10 && ledger.inserted > 50 && ledger.removed > 50, "{ledger:?}");
+        assert!(largest(ledger.exchanged.iter().copied()) < ROUND_OFF, "{ledger:?}");
     }
 }
 
@@ -150,25 +150,25 @@ fn layered_drift(how: How) -> (f64, RemapLedger) {
     let set = |u: &mut [f64], x: &[Vector<2>], fluid: &Fluid<2>| {
         u.chunks_mut(4).zip(x).for_each(|(row, x)| fluid.gas.conserved(&layered(x)).store(row));
     };
-    set(&mut u, &fluid.shape.cloud.x, &fluid);
+    set(&mut u, &fluid.discretisation.cloud.x, &fluid);
     let end = march((fluid, u), (how, 1e3, 100));
     let mut exact = vec![0.0; end.u.len()];
-    set(&mut exact, &end.fluid.shape.cloud.x, &end.fluid);
-    (largest(end.u.iter().zip(&exact).map(|(a, b)| a - b)), end.turnover)
+    set(&mut exact, &end.fluid.discretisation.cloud.x, &end.fluid);
+    (largest(end.u.iter().zip(&exact).map(|(a, b)| a - b)), end.ledger)
 }
 
 #[test]
 fn a_linear_density_at_rest_stays_while_particles_are_shifted() {
     for how in [Courant(0.5), Step(0.03)] {
-        let (error, turnover) = layered_drift(how);
-        assert!(error <= ROUND_OFF, "{error:e} {turnover:?}");
+        let (error, ledger) = layered_drift(how);
+        assert!(error <= ROUND_OFF, "{error:e} {ledger:?}");
     }
 }
 
 /// Error of the vortex at time 2 on travelling particles.
 fn travelling_vortex(h: f64, how: How) -> f64 {
     let end = march(solver::<2>(&lagrangian(&vortex(h, 2.0))), (how, 2.0, u32::MAX));
-    let (cloud, volume) = (&end.fluid.shape.cloud, end.fluid.volumes());
+    let (cloud, volume) = (&end.fluid.discretisation.cloud, end.fluid.volumes());
     vortex_rms(cloud, (&volume, end.fluid.gas.gamma), &end.u, 2.0)
 }
 
@@ -215,7 +215,7 @@ impl Path<2> for Straight {
 }
 
 fn along(path: impl Path<2> + 'static) -> CloudMotion<2> {
-    CloudMotion::Along { path: Arc::new(path), laws: Vec::new(), skin: Arc::default() }
+    CloudMotion::Along { path: Arc::new(path), laws: Vec::new(), deforming_surface: Arc::default() }
 }
 
 /// The vortex on a prescribed motion; conservative coefficients do not follow a cloud that deforms.
@@ -223,7 +223,7 @@ fn moving_vortex(h: f64, until: f64, path: impl Path<2> + 'static) -> (Fluid<2>,
     let text = vortex(h, until).replace("[scheme]\n", "[scheme]\nconservative = false\n");
     let (fluid, u) = solver::<2>(&text);
     // both paths start from where the case puts the particles
-    (Fluid { carriage: along(path), ..fluid }, u)
+    (Fluid { cloud_motion: along(path), ..fluid }, u)
 }
 
 #[test] // Shu (1998), isentropic vortex
@@ -236,8 +236,8 @@ fn the_vortex_converges_at_second_order_on_a_cloud_that_deforms() {
             march.advance().unwrap();
         }
         let (frame, _, u) = march.parts();
-        let volume = &fluid.shape.cloud.volume;
-        vortex_rms(&frame.shape.cloud, (volume, fluid.gas.gamma), u, 1.0)
+        let volume = &fluid.discretisation.cloud.volume;
+        vortex_rms(&frame.discretisation.cloud, (volume, fluid.gas.gamma), u, 1.0)
     });
     let order = metrics::observed_order(&spacings, &errors).unwrap();
     assert!(order >= 1.9, "order {order:.3}, errors {errors:?}");
@@ -305,15 +305,15 @@ impl Path<2> for Shaken {
     }
 }
 
-fn sod_along(carriage: CloudMotion<2>) -> f64 {
+fn sod_along(cloud_motion: CloudMotion<2>) -> f64 {
     let (fluid, u) = solver::<2>(&sod());
-    let fluid = Fluid { carriage, ..fluid };
+    let fluid = Fluid { cloud_motion, ..fluid };
     let mut march = Explicit::new(&fluid, Method::Ssprk3, (0.5, 0.2), (Past::default(), u));
     while !march.finished() {
         march.advance().unwrap();
     }
     let (frame, _, u) = march.parts();
-    shock_error(&frame.shape.cloud.x, u, &fluid)
+    shock_error(&frame.discretisation.cloud.x, u, &fluid)
 }
 
 #[test] // Sod (1978), exact Riemann solution
@@ -321,9 +321,9 @@ fn the_shock_of_sod_stands_where_it_stands_on_a_cloud_at_rest() {
     let still = sod_along(CloudMotion::Still);
     let shaken = sod_along(along(Shaken));
     let end = march(solver::<2>(&lagrangian(&sod())), (Courant(0.5), 0.2, u32::MAX));
-    let travels = shock_error(&end.fluid.shape.cloud.x, &end.u, &end.fluid);
+    let travels = shock_error(&end.fluid.discretisation.cloud.x, &end.u, &end.fluid);
     let differences = [shaken - still, travels - still];
-    assert!(differences.iter().all(|d| d.abs() <= 0.5), "{still:.3} {shaken:.3} {travels:.3} {:?}", end.turnover);
+    assert!(differences.iter().all(|d| d.abs() <= 0.5), "{still:.3} {shaken:.3} {travels:.3} {:?}", end.ledger);
 }
 
 /// A cylinder in a stream that starts at once.
@@ -337,7 +337,7 @@ fn cylinder() -> String {
 #[test]
 fn particles_go_around_a_body_and_leave_no_holes() {
     let end = march(solver::<2>(&cylinder()), (Courant(0.5), 2.0, u32::MAX));
-    let cloud = &end.fluid.shape.cloud;
+    let cloud = &end.fluid.discretisation.cloud;
     let h = 0.0625;
     let fluid = &cloud.x[..cloud.n_fluid];
     assert!(fluid.iter().all(|x| x.norm() > 0.5 + 0.39 * h), "a particle stands in the wall");
@@ -348,7 +348,7 @@ fn particles_go_around_a_body_and_leave_no_holes() {
         let nearest = cloud.x.iter().map(|y| (*y - x).norm()).fold(f64::INFINITY, f64::min);
         assert!(nearest < 1.3 * h, "a hole of {:.2} spacings at {x:?}", nearest / h);
     }
-    assert!(end.turnover.inserted > 20 && end.turnover.removed > 20, "{:?}", end.turnover);
+    assert!(end.ledger.inserted > 20 && end.ledger.removed > 20, "{:?}", end.ledger);
 }
 
 #[test]

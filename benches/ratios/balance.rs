@@ -48,7 +48,8 @@ pub(super) fn balance() {
         tell("  linearisation and refresh of all over residuals of one", refreshed / one, "");
         let mut relax = Relax::new(&balance, control(), all.clone(), &all, None);
         (0..WARM).for_each(|_| drop(relax.advance()));
-        let held = bytes(&fluid) + 8 * 2 * u.len() + 8 * frame.len() * 2 * fluid.shape.cloud.len() + relax.bytes();
+        let held =
+            bytes(&fluid) + 8 * 2 * u.len() + 8 * frame.len() * 2 * fluid.discretisation.cloud.len() + relax.bytes();
         let each = held as f64 / count / particles(&fluid);
         tell("  bytes of an instance over those of a march", each / marching, "bar 0.6");
         println!("    bytes per particle and instance {each:.0}");
@@ -105,11 +106,11 @@ fn preconditioner<S: System>(system: &S, u: &[f64]) -> (f64, f64) {
 
 /// Bytes of the cloud, its operators and the storage of one residual.
 fn bytes(fluid: &Fluid<2>) -> usize {
-    let cloud = &fluid.shape.cloud;
+    let cloud = &fluid.discretisation.cloud;
     let points = cloud.len() * (size_of::<[f64; 2]>() + 2 * size_of::<f64>());
     let rows = 4 * (cloud.neighbours.first.len() + cloud.neighbours.index.len());
     // states and gradients of the primitive variables
-    points + rows + fluid.shape.operators.bytes() + 8 * cloud.len() * 4 * (1 + 2)
+    points + rows + fluid.discretisation.operators.bytes() + 8 * cloud.len() * 4 * (1 + 2)
 }
 
 /// Bytes per particle of a march that has taken a few steps.
@@ -117,6 +118,6 @@ fn marching_bytes(fluid: &Fluid<2>, u: &[f64], step: f64) -> f64 {
     let plan = Plan { until: 1e9, step, order: 2, orders: 2.0, iterations: 20, adaptive: None };
     let mut march = Dual::new(fluid, control(), plan, (Past::default(), u.to_vec()));
     (0..3).for_each(|_| drop(march.advance()));
-    let velocity = 8 * 2 * fluid.shape.cloud.len();
+    let velocity = 8 * 2 * fluid.discretisation.cloud.len();
     (bytes(fluid) + velocity + march.bytes()) as f64 / particles(fluid)
 }

@@ -32,13 +32,13 @@ pub(super) fn deforming() {
 /// A cloud of travelling particles built anew, and a step of three stages.
 pub(super) fn travelling() {
     let (fluid, u) = crate::travelling::<2>();
-    let (mut work, mut turnover) = (fluid.work(), RemapLedger::default());
+    let (mut work, mut ledger) = (fluid.work(), RemapLedger::default());
     let moment = Moment::At { time: 0.0 };
     let one = residual(&fluid, &moment, &u);
     let frame = fluid.frame(&moment, &u);
-    let anew = seconds(|| drop(fluid.renewed(&frame, (&u, [&[], &[]]), &mut work, &mut turnover)));
-    let mut operators = fluid.shape.operators.clone();
-    let refit = seconds(|| operators.refit(&fluid.shape.cloud));
+    let anew = seconds(|| drop(fluid.reclouded(&frame, (&u, [&[], &[]]), &mut work, &mut ledger)));
+    let mut operators = fluid.discretisation.operators.clone();
+    let refit = seconds(|| operators.refit(&fluid.discretisation.cloud));
     let mut march = Explicit::new(&fluid, Method::Ssprk3, (0.1, 1e9), (Past::default(), u.clone()));
     let step = seconds(|| drop(march.advance()));
     tell("travelling particles searched and fitted anew, over a residual", anew / one, "bar 4");

@@ -3,7 +3,7 @@
 //! The grammar is that of a desk calculator: `+ - * / ^`, parentheses, functions of one or two arguments, the names `t`
 //! (time), `omega` (angular frequency of the motion), `pi`, `e` and `deg` (one degree in radians). A power binds tighter
 //! than a sign, −t² is −(t²), and groups from the right. [`Formula::parse`] only builds the tree; what evaluates it
-//! chooses the numbers, so that derivatives come from the same tree (`motion::course`).
+//! chooses the numbers, so that derivatives come from the same tree (`motion::time_function`).
 use std::ops::Range;
 
 use super::quantity::DEGREE;

@@ -83,11 +83,11 @@ pub(super) struct LayerContext<'a, const D: usize> {
 
 impl<const D: usize> Columns<D> {
     /// Grows columns over the interface particles of a plane case.
-    pub(super) fn grow(placed: &Placed<D>, spec: &WallLayers, ground: &LayerContext<'_, D>) -> Self {
-        let mut columns = Self::start(placed, ground.transforms);
+    pub(super) fn grow(placed: &Placed<D>, spec: &WallLayers, context: &LayerContext<'_, D>) -> Self {
+        let mut columns = Self::start(placed, context.transforms);
         let n = placed.x.len();
         let most = spec.count.map_or(MOST, |c| c as usize);
-        let mut active: Vec<bool> = (0..n).map(|w| columns.may_start(w, ground.surface)).collect();
+        let mut active: Vec<bool> = (0..n).map(|w| columns.may_start(w, context.surface)).collect();
         (0..n).filter(|w| !active[*w]).for_each(|w| columns.ends[w] = End::Meeting);
         let bin = placed.spacing.iter().fold(0.0, |m: f64, h| m.max(*h)).max(f64::MIN_POSITIVE);
         let mut grid = Grid::new(bin);
@@ -100,7 +100,7 @@ impl<const D: usize> Columns<D> {
         while columns.heights.len() < most && active.iter().any(|a| *a) {
             height += thickness;
             for w in (0..n).filter(|w| active[*w]).collect::<Vec<_>>() {
-                match columns.end_at(w, (height, thickness), ground) {
+                match columns.end_at(w, (height, thickness), context) {
                     Some(end) => (active[w], columns.ends[w]) = (false, end),
                     None => {
                         grid.insert(&columns.at(w, height), taken.len() as u32);
@@ -202,7 +202,7 @@ impl<const D: usize> Columns<D> {
 
     /// Why column `w` ends before a particle at a height; `None` when that keeps its distance from its own wall, the
     /// adjacent columns and the sides.
-    fn end_at(&self, w: usize, (height, thickness): (f64, f64), ground: &LayerContext<'_, D>) -> Option<End> {
+    fn end_at(&self, w: usize, (height, thickness): (f64, f64), context: &LayerContext<'_, D>) -> Option<End> {
         let x = self.at(w, height);
         let h = self.spacing(w, height);
         let along = |d: &Vector<D>, side: usize| d.dot(&self.axes[w][0]) * if side == 1 { 1.0 } else { -1.0 };
@@ -216,20 +216,20 @@ impl<const D: usize> Columns<D> {
             Some(End::Fan)
         } else if steps.iter().any(tight) {
             Some(End::Fold)
-        } else if !self.is_inside(&x, CLEARANCE * h.min(2.0 * thickness), ground) {
+        } else if !self.is_inside(&x, CLEARANCE * h.min(2.0 * thickness), context) {
             Some(End::Side)
         } else {
-            ground.surface.nearest(&x, OWN_WALL * height).map(|_| End::Meeting)
+            context.surface.nearest(&x, OWN_WALL * height).map(|_| End::Meeting)
         }
     }
 
     /// Inside the domain, by `margin` from closed sides and by more than a cell from open ones.
-    fn is_inside(&self, x: &Vector<D>, margin: f64, ground: &LayerContext<'_, D>) -> bool {
-        let bounds = ground.tree.bounds();
-        let cell = 2.0 * ground.tree.leaf_at(x).size;
+    fn is_inside(&self, x: &Vector<D>, margin: f64, context: &LayerContext<'_, D>) -> bool {
+        let bounds = context.tree.bounds();
+        let cell = 2.0 * context.tree.leaf_at(x).size;
         (0..D).all(|d| {
             [(x[d] - bounds.min[d], 0), (bounds.max[d] - x[d], 1)].iter().all(|(gap, end)| {
-                let closed = matches!(ground.layout.sides[d][*end], Side::Symmetry | Side::Periodic);
+                let closed = matches!(context.layout.sides[d][*end], Side::Symmetry | Side::Periodic);
                 *gap > if closed { 0.5 * margin } else { cell }
             })
         })
@@ -294,8 +294,8 @@ impl<const D: usize> Columns<D> {
     }
 
     /// Seats of the fluid particles in the layers.
-    pub(super) fn seats(&self, tree: &Tree<D>) -> Vec<ParticleSite<D>> {
-        let seat = |(w, k, x, spacing, height): (usize, usize, Vector<D>, f64, f64)| ParticleSite {
+    pub(super) fn sites(&self, tree: &Tree<D>) -> Vec<ParticleSite<D>> {
+        let site = |(w, k, x, spacing, height): (usize, usize, Vector<D>, f64, f64)| ParticleSite {
             cell: tree.cell_at(&x),
             centre: x,
             spacing,
@@ -303,13 +303,13 @@ impl<const D: usize> Columns<D> {
             distance: height,
             layer: Some((w as u32, k as u32)),
         };
-        self.each().map(seat).collect()
+        self.each().map(site).collect()
     }
 
     /// Drops the leaves that the layers take the place of. A leaf that is only too near to a layer finer than itself gives
     /// way to those of its quarters that are not.
-    pub(super) fn blank(&self, ground: &LayerContext<'_, D>, blank: f64, fluid: &mut Vec<(Leaf<D>, f64)>) {
-        let tree = ground.tree;
+    pub(super) fn blank(&self, context: &LayerContext<'_, D>, blank: f64, fluid: &mut Vec<(Leaf<D>, f64)>) {
+        let tree = context.tree;
         let mut finest = vec![f64::INFINITY; tree.n_nodes()];
         let mut inside = vec![false; tree.n_nodes()];
         for cell in self.cells() {
@@ -335,9 +335,9 @@ impl<const D: usize> Columns<D> {
         for leaf in split {
             let mut clear = true;
             grid.near(&leaf.centre, 2.0 * leaf.size, |k| clear &= cells[k as usize].place(&leaf) == Place::Clear);
-            let nearest = ground.surface.nearest(&leaf.centre, (NEAR + 1.0) * leaf.size);
+            let nearest = context.surface.nearest(&leaf.centre, (NEAR + 1.0) * leaf.size);
             let distance = nearest.map_or(f64::INFINITY, |n| n.distance);
-            if clear && distance >= blank * leaf.size && !ground.surface.inside(&leaf.centre) {
+            if clear && distance >= blank * leaf.size && !context.surface.inside(&leaf.centre) {
                 fluid.push((leaf, distance));
             }
         }
@@ -354,7 +354,7 @@ impl<const D: usize> Columns<D> {
         })
     }
 
-    /// The columns, given the numbers of the seats' particles in the order of [`seats`](Self::seats).
+    /// The columns, given the numbers of the seats' particles in the order of [`sites`](Self::seats).
     pub(super) fn finish(&self, mut numbers: impl Iterator<Item = u32>) -> Vec<Column> {
         let column = |w: usize| Column {
             particles: numbers.by_ref().take(self.counts[w]).collect(),

@@ -15,8 +15,8 @@
 //! particle: conjugate gradients with block-Jacobi (Nocedal and Wright, *Numerical Optimization*, 2nd ed., §16.2-16.3). A
 //! second, cheaper solve over the closure alone then drives its defect to round-off.
 //! Antisymmetric coefficients of this kind are those of Chiu, Wang, Hu and Jameson (SIAM J. Sci. Comput. 34, 2012).
+use super::coefficient_unknowns::{ITSELF, Kind, Link, links, sweep_entries};
 use super::layers::stand_on_wall;
-use super::links::{ITSELF, Kind, Link, links, sweep_entries};
 use super::multipliers::{MOST, Row, cholesky, conjugate_gradients};
 use super::operators::WallFace;
 use super::{Cloud, Operators};

@@ -1,7 +1,7 @@
 //! Filling the background with particles.
 //!
 //! A fluid particle sits in the middle of every leaf that lies outside the bodies and not nearer to a surface, or to an
-//! interface particle, than a fraction of its size; in 3-D those next to a wall then move (module `settle`). The leaves along
+//! interface particle, than a fraction of its size; in 3-D those next to a wall then move (module `near_wall_smoothing`). The leaves along
 //! the sides of the domain carry the outer particles.
 use std::sync::Arc;
 
@@ -9,8 +9,8 @@ use super::columns::{Columns, LayerContext};
 use super::interface::{Placed, place};
 use super::layers::Layers;
 use super::layout::Layout;
+use super::near_wall_smoothing::settle;
 use super::neighbours::NEAR;
-use super::settle::settle;
 use super::tree::{Leaf, MAX_LEVEL, Tree};
 use super::{Interface, Transform};
 use crate::case::{Cloud as Spec, Side};
@@ -130,14 +130,14 @@ impl<const D: usize> Particles<D> {
             }
         }
         blank_near_interface(&tree, &placed, &mut fluid);
-        let ground = surface.map(|surface| LayerContext { surface, tree: &tree, layout, transforms });
-        let columns = spec.wall_layers.zip(ground).map(|(layers, ground)| {
-            let columns = Columns::grow(&placed, &layers, &ground);
-            columns.blank(&ground, spec.blank, &mut fluid);
+        let context = surface.map(|surface| LayerContext { surface, tree: &tree, layout, transforms });
+        let columns = spec.wall_layers.zip(context).map(|(layers, context)| {
+            let columns = Columns::grow(&placed, &layers, &context);
+            columns.blank(&context, spec.blank, &mut fluid);
             columns.straighten(&mut placed);
             columns
         });
-        let leaf_seat = |(leaf, distance): &(Leaf<D>, f64)| ParticleSite {
+        let leaf_site = |(leaf, distance): &(Leaf<D>, f64)| ParticleSite {
             cell: tree.cell_at(&leaf.centre),
             centre: leaf.centre,
             spacing: leaf.size,
@@ -145,13 +145,13 @@ impl<const D: usize> Particles<D> {
             distance: *distance,
             layer: None,
         };
-        let seats = fluid.iter().map(leaf_seat).chain(columns.iter().flat_map(|c| c.seats(&tree))).collect::<Vec<_>>();
-        let order = order_by_key(seats.len(), |k| curve_position(seats[k].cell));
-        let seats: Vec<ParticleSite<D>> = order.into_iter().map(|k| seats[k as usize]).collect();
+        let sites = fluid.iter().map(leaf_site).chain(columns.iter().flat_map(|c| c.sites(&tree))).collect::<Vec<_>>();
+        let order = order_by_key(sites.len(), |k| curve_position(sites[k].cell));
+        let sites: Vec<ParticleSite<D>> = order.into_iter().map(|k| sites[k as usize]).collect();
         let order = order_by_key(outer.len(), |k| curve_position(tree.anchor(outer[k].0.node)));
         let outer: Vec<_> = order.into_iter().map(|k| outer[k as usize]).collect();
-        let layers = columns.map(|c| gather(c, &seats)).unwrap_or_default();
-        let mut all = Self::assemble(tree, layout, (seats, placed, outer), layers);
+        let layers = columns.map(|c| gather(c, &sites)).unwrap_or_default();
+        let mut all = Self::assemble(tree, layout, (sites, placed, outer), layers);
         if let (Some(surface), SETTLED) = (surface, D) {
             settle(&mut all, surface, transforms);
         }
@@ -187,8 +187,8 @@ impl<const D: usize> Particles<D> {
             .chain(outer_leaves.map(|_| f64::INFINITY))
             .collect::<Vec<_>>();
         let next = placed.next.iter().map(|k| if *k == u32::MAX { *k } else { k + n_fluid as u32 }).collect();
-        let seated = |s: &ParticleSite<D>| if layers.is_empty() { s.node } else { tree.leaf_at(&s.centre).node };
-        let leaf_of = fluid.iter().map(seated).chain(placed.x.iter().map(|x| tree.leaf_at(x).node));
+        let node_of = |s: &ParticleSite<D>| if layers.is_empty() { s.node } else { tree.leaf_at(&s.centre).node };
+        let leaf_of = fluid.iter().map(node_of).chain(placed.x.iter().map(|x| tree.leaf_at(x).node));
         let leaf_of: Vec<u32> = leaf_of.chain(outer.iter().map(|(l, _)| l.node)).collect();
         Self {
             x: centre.clone(),
@@ -335,12 +335,12 @@ pub(super) fn side_of<const D: usize>(
 }
 
 /// Columns with the numbers of their particles.
-fn gather<const D: usize>(columns: Columns<D>, seats: &[ParticleSite<D>]) -> Layers<D> {
+fn gather<const D: usize>(columns: Columns<D>, sites: &[ParticleSite<D>]) -> Layers<D> {
     let mut numbers: Vec<(u32, u32, u32)> =
-        seats.iter().zip(0..).filter_map(|(s, i)| s.layer.map(|(column, layer)| (column, layer, i))).collect();
+        sites.iter().zip(0..).filter_map(|(s, i)| s.layer.map(|(column, layer)| (column, layer, i))).collect();
     numbers.sort_unstable();
     let finished = columns.finish(numbers.into_iter().map(|n| n.2));
-    Layers::new(finished, columns.axes, seats.len())
+    Layers::new(finished, columns.axes, sites.len())
 }
 
 /// Position of a cell along the space-filling curve.

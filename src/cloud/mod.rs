@@ -4,23 +4,23 @@
 //! the surfaces, *outer* particles on the sides of the domain, and *images* of particles across planes of symmetry and
 //! periodic sides. Only fluid particles evolve; the state of the others follows from theirs.
 pub mod build;
-mod carry;
+mod coefficient_unknowns;
 mod columns;
 pub mod conservative;
-pub mod doctor;
-mod ends;
 pub mod fill;
 pub mod grid;
 pub mod interface;
+mod layer_interface;
+mod layer_termination;
 pub mod layers;
 pub mod layout;
-mod links;
+mod metric_update;
 mod multipliers;
+mod near_wall_smoothing;
 pub mod neighbours;
 pub mod operators;
+pub mod quality;
 pub mod repair;
-mod rim;
-mod settle;
 pub mod sources;
 pub mod strain;
 #[cfg(test)]
@@ -33,10 +33,10 @@ use std::ops::Range;
 use crate::case::Side;
 use crate::math::Vector;
 
-pub use doctor::Diagnosis;
 pub use layout::Layout;
 pub use neighbours::Neighbours;
 pub use operators::{Edge, Operators};
+pub use quality::Diagnosis;
 pub use strain::Strain;
 
 /// A particle on a surface.

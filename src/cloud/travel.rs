@@ -110,31 +110,31 @@ impl<const D: usize> BackgroundDomain<D> {
     /// each fluid particle is.
     pub fn cloud(&self, poses: &[RigidPose<D>], x: &[Vector<D>]) -> Result<(Cloud<D>, Vec<u32>), CloudError> {
         let scene = self.scene(poses);
-        let seats = self.seats(&scene, x);
-        let buried = seats.iter().position(Option::is_none);
+        let sites = self.sites(&scene, x);
+        let buried = sites.iter().position(Option::is_none);
         if let Some(i) = buried {
             let problem = format!("particle {i} at {:?} lies in a wall", x[i].0);
             return Err(CloudError::Quality(vec![problem]));
         }
-        let (particles, order) = self.gather(&scene, seats.into_iter().flatten().collect());
+        let (particles, order) = self.gather(&scene, sites.into_iter().flatten().collect());
         Ok((self.joined(&scene, particles)?, order))
     }
 
     /// The cloud of the fluid particles of `old`, without those that are in the way and with those that are missing.
-    pub fn renew(&self, poses: &[RigidPose<D>], old: &Cloud<D>) -> Result<Recloud<D>, CloudError> {
+    pub fn recloud(&self, poses: &[RigidPose<D>], old: &Cloud<D>) -> Result<Recloud<D>, CloudError> {
         let scene = self.scene(poses);
         let mut x = old.x[..old.n_fluid].to_vec();
         x.iter_mut().for_each(|x| *x = self.wrapped(x));
-        let seats = self.seats(&scene, &x);
-        let mut gone: Vec<bool> = seats.iter().map(Option::is_none).collect();
+        let sites = self.sites(&scene, &x);
+        let mut gone: Vec<bool> = sites.iter().map(Option::is_none).collect();
         self.thin_out(old, &mut gone);
         let kept: Vec<u32> = (0..old.n_fluid as u32).filter(|i| !gone[*i as usize]).collect();
         let removed = (0..old.n_fluid as u32).filter(|i| gone[*i as usize]).collect();
-        let seats: Vec<ParticleSite<D>> = kept.iter().filter_map(|i| seats[*i as usize]).collect();
-        let (mut particles, mut order) = self.gather(&scene, seats.clone());
+        let sites: Vec<ParticleSite<D>> = kept.iter().filter_map(|i| sites[*i as usize]).collect();
+        let (mut particles, mut order) = self.gather(&scene, sites.clone());
         let inserted = self.missing(&scene, &particles);
         if !inserted.is_empty() {
-            (particles, order) = self.gather(&scene, seats.into_iter().chain(inserted).collect());
+            (particles, order) = self.gather(&scene, sites.into_iter().chain(inserted).collect());
         }
         if particles.n_fluid == 0 {
             return Err(CloudError::Empty);
@@ -272,20 +272,20 @@ impl<const D: usize> BackgroundDomain<D> {
     }
 
     /// Room for a particle at each place; `None` beyond the sides and in walls.
-    fn seats(&self, scene: &Scene<'_, D>, x: &[Vector<D>]) -> Vec<Option<ParticleSite<D>>> {
+    fn sites(&self, scene: &Scene<'_, D>, x: &[Vector<D>]) -> Vec<Option<ParticleSite<D>>> {
         let walls = Walls::new(scene.surface.as_deref(), self.tree.bounds(), &self.transforms);
-        let mut seats = vec![None; x.len()];
+        let mut sites = vec![None; x.len()];
         let chunks = parts(x.len(), CHUNK);
-        sweep_parts(&chunks, 1, &mut seats, &|k, slots| {
+        sweep_parts(&chunks, 1, &mut sites, &|k, slots| {
             let mut last = None;
             for (x, slot) in x[chunks[k].clone()].iter().zip(slots) {
-                *slot = self.seat(scene, &walls, x, &mut last);
+                *slot = self.site(scene, &walls, x, &mut last);
             }
         });
-        seats
+        sites
     }
 
-    fn seat(
+    fn site(
         &self,
         scene: &Scene<'_, D>,
         walls: &Walls<'_, D>,
@@ -342,11 +342,11 @@ impl<const D: usize> BackgroundDomain<D> {
     }
 
     /// Particles among those that have a seat, in the order of the curve, and which seat each one has.
-    fn gather(&self, scene: &Scene<'_, D>, seats: Vec<ParticleSite<D>>) -> (Particles<D>, Vec<u32>) {
-        let order = order_by_key(seats.len(), |k| curve_position(seats[k].cell));
-        let seats = order.iter().map(|k| seats[*k as usize]).collect();
+    fn gather(&self, scene: &Scene<'_, D>, sites: Vec<ParticleSite<D>>) -> (Particles<D>, Vec<u32>) {
+        let order = order_by_key(sites.len(), |k| curve_position(sites[k].cell));
+        let sites = order.iter().map(|k| sites[*k as usize]).collect();
         let tree = Arc::clone(&self.tree);
-        let all = (seats, scene.placed.clone().into_owned(), self.outer.clone());
+        let all = (sites, scene.placed.clone().into_owned(), self.outer.clone());
         (Particles::assemble(tree, &self.layout, all, Layers::default()), order)
     }
 
@@ -361,22 +361,22 @@ impl<const D: usize> BackgroundDomain<D> {
         let carried = |x: &Vector<D>| scene.poses.iter().map(|p| p.point(x)).collect::<Vec<_>>();
         sweep_each(&mut found, |c| {
             let mut last = None;
-            let mut seat = |x: Vector<D>| {
+            let mut site = |x: Vector<D>| {
                 let within = EMPTY[D - 2] * self.spacing(scene.poses, &x);
                 let empty = self.is_inside(&x, within) && search.is_empty(&x, within);
-                empty.then(|| self.seat(scene, &walls, &x, &mut last)).flatten()
+                empty.then(|| self.site(scene, &walls, &x, &mut last)).flatten()
             };
-            let mut seats = Vec::new();
+            let mut sites = Vec::new();
             for leaf in leaves(c) {
                 let places = [leaf.centre, leaf.centre - Vector::splat(0.5 * leaf.size)];
                 for place in places.into_iter().filter(|x| !self.is_taken(scene, particles, &leaf, x)) {
                     match scene.poses.is_empty() {
-                        true => seats.extend(seat(place)),
-                        false => seats.extend(carried(&place).into_iter().filter_map(&mut seat)),
+                        true => sites.extend(site(place)),
+                        false => sites.extend(carried(&place).into_iter().filter_map(&mut site)),
                     }
                 }
             }
-            seats
+            sites
         });
         self.apart(found.into_iter().flatten())
     }
@@ -389,14 +389,14 @@ impl<const D: usize> BackgroundDomain<D> {
     }
 
     /// Those that keep their distance from the ones before.
-    fn apart(&self, seats: impl Iterator<Item = ParticleSite<D>>) -> Vec<ParticleSite<D>> {
-        let seats: Vec<ParticleSite<D>> = seats.collect();
-        let largest = seats.iter().map(|s| s.spacing).fold(f64::MIN_POSITIVE, f64::max);
+    fn apart(&self, sites: impl Iterator<Item = ParticleSite<D>>) -> Vec<ParticleSite<D>> {
+        let sites: Vec<ParticleSite<D>> = sites.collect();
+        let largest = sites.iter().map(|s| s.spacing).fold(f64::MIN_POSITIVE, f64::max);
         let (mut kept, mut grid) = (Vec::new(), Grid::new(2.0 * largest));
         let mut all: Vec<Vector<D>> = Vec::new();
-        for seat in seats {
-            let (x, reach) = (&seat.centre, EMPTY[D - 2] * seat.spacing);
-            let mut free = self.transforms.iter().all(|t| (t.point(x) - *x).norm() >= CROWDED * seat.spacing);
+        for site in sites {
+            let (x, reach) = (&site.centre, EMPTY[D - 2] * site.spacing);
+            let mut free = self.transforms.iter().all(|t| (t.point(x) - *x).norm() >= CROWDED * site.spacing);
             grid.near(x, reach, |k| free &= (all[k as usize] - *x).norm() >= reach);
             if free {
                 let images = self.transforms.iter().map(|t| t.point(x));
@@ -404,7 +404,7 @@ impl<const D: usize> BackgroundDomain<D> {
                     grid.insert(&place, all.len() as u32);
                     all.push(place);
                 }
-                kept.push(seat);
+                kept.push(site);
             }
         }
         kept

@@ -313,14 +313,18 @@ mod tests {
     fn sweeps_solve_the_system_in_time() {
         let (n, harmonics, omega) = (23, 2, 0.7);
         let matrix = chain(n);
-        let mut waves = HarmonicSweeps::new(&matrix, harmonics, omega, vec![1.0; n]);
-        waves.invert(&matrix);
-        waves.b.iter_mut().enumerate().for_each(|(k, b)| *b = ((k * k) as f32 * 0.37).sin());
+        let mut harmonic_sweeps = HarmonicSweeps::new(&matrix, harmonics, omega, vec![1.0; n]);
+        harmonic_sweeps.invert(&matrix);
+        harmonic_sweeps.b.iter_mut().enumerate().for_each(|(k, b)| *b = ((k * k) as f32 * 0.37).sin());
         for _ in 0..40 {
-            waves.symmetric_sweep(&matrix);
+            harmonic_sweeps.symmetric_sweep(&matrix);
         }
-        waves.residual(&matrix);
-        assert!(waves.r.iter().all(|r| r.abs() < 1e-5), "{:?}", waves.r.iter().fold(0.0f32, |a, b| a.max(b.abs())));
+        harmonic_sweeps.residual(&matrix);
+        assert!(
+            harmonic_sweeps.r.iter().all(|r| r.abs() < 1e-5),
+            "{:?}",
+            harmonic_sweeps.r.iter().fold(0.0f32, |a, b| a.max(b.abs()))
+        );
         // the same in values: A x_n + ω Σ D_nj x_j = b_n
         let instances = Instances::of_harmonics(harmonics);
         let count = instances.count();
@@ -338,14 +342,14 @@ mod tests {
         for i in 1..n - 1 {
             for d in 0..3 {
                 for k in 0..count {
-                    let x = |i: usize, d: usize| value(&waves.x, i, d, k);
+                    let x = |i: usize, d: usize| value(&harmonic_sweeps.x, i, d, k);
                     let entry =
                         |r: usize, c: usize| if r == c { 2.5 + 0.5 * r as f64 } else { 0.25 * (r as f64 - c as f64) };
                     let own: f64 = (0..3).map(|c| entry(d, c) * x(i, c)).sum();
                     let off = |j: usize| (0..3).map(|c| if c == d { -x(j, c) } else { 0.125 * x(j, c) }).sum::<f64>();
-                    let rate: f64 = (0..count).map(|j| derivative.row(k)[j] * value(&waves.x, i, d, j)).sum();
+                    let rate: f64 = (0..count).map(|j| derivative.row(k)[j] * value(&harmonic_sweeps.x, i, d, j)).sum();
                     let left = own + off(i - 1) + off(i + 1) + rate;
-                    assert!((left - value(&waves.b, i, d, k)).abs() < 1e-4, "{i} {d} {k}");
+                    assert!((left - value(&harmonic_sweeps.b, i, d, k)).abs() < 1e-4, "{i} {d} {k}");
                 }
             }
         }
@@ -354,13 +358,13 @@ mod tests {
     #[test]
     fn restarts_hold_what_sweeps_summed() {
         let matrix = chain(20);
-        let mut waves = HarmonicSweeps::new(&matrix, 1, 2.0, vec![1.0; 20]);
-        waves.invert(&matrix);
-        waves.b.fill(1.0);
-        waves.symmetric_sweep(&matrix);
-        let (x, side) = (waves.x.clone(), waves.side.clone());
-        waves.restart(&matrix);
-        assert_eq!(x, waves.x);
-        assert!(side.iter().zip(&waves.side).all(|(a, b)| (a - b).abs() < 1e-6));
+        let mut harmonic_sweeps = HarmonicSweeps::new(&matrix, 1, 2.0, vec![1.0; 20]);
+        harmonic_sweeps.invert(&matrix);
+        harmonic_sweeps.b.fill(1.0);
+        harmonic_sweeps.symmetric_sweep(&matrix);
+        let (x, side) = (harmonic_sweeps.x.clone(), harmonic_sweeps.side.clone());
+        harmonic_sweeps.restart(&matrix);
+        assert_eq!(x, harmonic_sweeps.x);
+        assert!(side.iter().zip(&harmonic_sweeps.side).all(|(a, b)| (a - b).abs() < 1e-6));
     }
 }

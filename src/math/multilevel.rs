@@ -37,7 +37,7 @@ struct Level {
     first_member: Vec<u32>,
     target: Vec<u32>,
     sweeps: Sweeps,
-    waves: Option<HarmonicSweeps>,
+    harmonic_sweeps: Option<HarmonicSweeps>,
 }
 
 /// A matrix and its coarser versions.
@@ -84,9 +84,9 @@ impl Multilevel {
         for k in 0..self.levels.len() {
             let next = self.levels.get(k + 1).map_or(0, |l| l.matrix.n_rows());
             let level = &mut self.levels[k];
-            let waves = HarmonicSweeps::new(&level.matrix, instances.harmonics(), omega, mass);
-            mass = waves.gathered(&level.group, next);
-            level.waves = Some(waves);
+            let harmonic_sweeps = HarmonicSweeps::new(&level.matrix, instances.harmonics(), omega, mass);
+            mass = harmonic_sweeps.gathered(&level.group, next);
+            level.harmonic_sweeps = Some(harmonic_sweeps);
             level.sweeps = Sweeps::default();
         }
         let count = instances.count();
@@ -108,8 +108,8 @@ impl Multilevel {
             let (fine, coarse) = self.levels.split_at_mut(k + 1);
             let fine = &mut fine[k];
             fine.matrix.invert_diagonal();
-            if let Some(waves) = fine.waves.as_mut() {
-                waves.invert(&fine.matrix);
+            if let Some(harmonic_sweeps) = fine.harmonic_sweeps.as_mut() {
+                harmonic_sweeps.invert(&fine.matrix);
             }
             if let Some(coarse) = coarse.first_mut() {
                 coarse.matrix.gather(&fine.matrix, |g| fine.members(g), &fine.target);
@@ -133,9 +133,9 @@ impl Multilevel {
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        let waves = |l: &Level| l.waves.as_ref().map_or(0, HarmonicSweeps::bytes);
+        let harmonic_sweeps = |l: &Level| l.harmonic_sweeps.as_ref().map_or(0, HarmonicSweeps::bytes);
         let lists = |l: &Level| 4 * (l.group.len() + l.member.len() + l.first_member.len() + l.target.len());
-        self.levels.iter().map(|l| l.matrix.bytes() + l.sweeps.bytes() + waves(l) + lists(l)).sum()
+        self.levels.iter().map(|l| l.matrix.bytes() + l.sweeps.bytes() + harmonic_sweeps(l) + lists(l)).sum()
     }
 
     /// Rows of each level.
@@ -147,7 +147,7 @@ impl Multilevel {
 fn level(matrix: BlockMatrix) -> Level {
     let sweeps = Sweeps::new(&matrix);
     let (group, member, first_member, target) = Default::default();
-    Level { group, member, first_member, target, sweeps, matrix, waves: None }
+    Level { group, member, first_member, target, sweeps, matrix, harmonic_sweeps: None }
 }
 
 /// The place of coefficient `c` (mean, cosine, sine, cosine, ...) among mean, cosines, sines.
@@ -161,7 +161,7 @@ fn sorted(c: usize, count: usize) -> usize {
 
 fn apply_in_time(levels: &mut [Level], how: Cycle, times: &Times, r: impl Fn(usize, &mut [f32]) + Sync, z: &mut [f64]) {
     let (n, count) = (levels[0].matrix.block(), times.count);
-    let Some(finest) = levels[0].waves.as_mut() else { return };
+    let Some(finest) = levels[0].harmonic_sweeps.as_mut() else { return };
     // places inside a row: (instance or coefficient, unknown)
     let row = |k: usize| (k / (n * count) * n * count, k / n % count, k % n);
     sweep_rows(&mut finest.b, n * count, |i, b| {
@@ -177,7 +177,7 @@ fn apply_in_time(levels: &mut [Level], how: Cycle, times: &Times, r: impl Fn(usi
     });
     finest.clear();
     cycle(levels, how);
-    let Some(finest) = levels[0].waves.as_ref() else { return };
+    let Some(finest) = levels[0].harmonic_sweeps.as_ref() else { return };
     sweep(z, |k| {
         let (at, instance, v) = row(k);
         let weights = &times.back[instance * count..(instance + 1) * count];
@@ -187,22 +187,22 @@ fn apply_in_time(levels: &mut [Level], how: Cycle, times: &Times, r: impl Fn(usi
 
 impl Level {
     fn smooth(&mut self) {
-        match self.waves.as_mut() {
-            Some(waves) => waves.symmetric_sweep(&self.matrix),
+        match self.harmonic_sweeps.as_mut() {
+            Some(harmonic_sweeps) => harmonic_sweeps.symmetric_sweep(&self.matrix),
             None => self.matrix.symmetric_sweep(&mut self.sweeps),
         }
     }
 
     fn residual(&mut self) {
-        match self.waves.as_mut() {
-            Some(waves) => waves.residual(&self.matrix),
+        match self.harmonic_sweeps.as_mut() {
+            Some(harmonic_sweeps) => harmonic_sweeps.residual(&self.matrix),
             None => self.matrix.residual(&mut self.sweeps),
         }
     }
 
     fn restart(&mut self) {
-        match self.waves.as_mut() {
-            Some(waves) => waves.restart(&self.matrix),
+        match self.harmonic_sweeps.as_mut() {
+            Some(harmonic_sweeps) => harmonic_sweeps.restart(&self.matrix),
             None => self.matrix.restart(&mut self.sweeps),
         }
     }
@@ -214,29 +214,29 @@ impl Level {
 
     /// Unknowns of a row.
     fn width(&self) -> usize {
-        self.matrix.block() * self.waves.as_ref().map_or(1, HarmonicSweeps::count)
+        self.matrix.block() * self.harmonic_sweeps.as_ref().map_or(1, HarmonicSweeps::count)
     }
 
     /// What is left of the right-hand side.
     fn left(&self) -> &[f32] {
-        self.waves.as_ref().map_or(&self.sweeps.r, |w| &w.r)
+        self.harmonic_sweeps.as_ref().map_or(&self.sweeps.r, |w| &w.r)
     }
 
     fn right_hand_side(&mut self) -> &mut [f32] {
-        self.waves.as_mut().map_or(&mut self.sweeps.b, |w| &mut w.b)
+        self.harmonic_sweeps.as_mut().map_or(&mut self.sweeps.b, |w| &mut w.b)
     }
 
     fn solution(&self) -> &[f32] {
-        self.waves.as_ref().map_or(&self.sweeps.x, |w| &w.x)
+        self.harmonic_sweeps.as_ref().map_or(&self.sweeps.x, |w| &w.x)
     }
 
     fn solution_mut(&mut self) -> &mut [f32] {
-        self.waves.as_mut().map_or(&mut self.sweeps.x, |w| &mut w.x)
+        self.harmonic_sweeps.as_mut().map_or(&mut self.sweeps.x, |w| &mut w.x)
     }
 
     fn clear(&mut self) {
-        match self.waves.as_mut() {
-            Some(waves) => waves.clear(),
+        match self.harmonic_sweeps.as_mut() {
+            Some(harmonic_sweeps) => harmonic_sweeps.clear(),
             None => self.sweeps.clear(),
         }
     }

@@ -7,9 +7,9 @@
 //! along +z. θ and d are sums of [`TimeFunction`]s; velocity and acceleration follow from the same lines by [`Jet`]s.
 use std::sync::Arc;
 
-use super::course::{Repeat, TimeFunction, common, total, total_with_rates};
 use super::mode::ModeShape;
 use super::pose::RigidPose;
+use super::time_function::{Repeat, TimeFunction, common, total, total_with_rates};
 use crate::math::Vector;
 use crate::math::jet::{Jet, Scalar};
 
@@ -58,25 +58,25 @@ impl<const D: usize> BodyMotion<D> {
     }
 
     /// Adds an angle.
-    pub fn with_angle(mut self, course: TimeFunction) -> Self {
-        self.turn.push(course);
+    pub fn with_angle(mut self, function: TimeFunction) -> Self {
+        self.turn.push(function);
         self
     }
 
     /// Adds a displacement.
-    pub fn with_shift(mut self, courses: [TimeFunction; D]) -> Self {
-        self.shift.push(courses);
+    pub fn with_shift(mut self, functions: [TimeFunction; D]) -> Self {
+        self.shift.push(functions);
         self
     }
 
-    /// Adds `course` times `direction` as displacement, for courses that are proportional to a factor.
-    pub(super) fn with_shift_along(self, direction: &Vector<D>, course: impl Fn(f64) -> TimeFunction) -> Self {
-        self.with_shift(std::array::from_fn(|d| course(direction[d])))
+    /// Adds `function` times `direction` as displacement, for courses that are proportional to a factor.
+    pub(super) fn with_shift_along(self, direction: &Vector<D>, function: impl Fn(f64) -> TimeFunction) -> Self {
+        self.with_shift(std::array::from_fn(|d| function(direction[d])))
     }
 
-    /// Adds a mode, whose coordinate is `course`.
-    pub fn with_mode(mut self, shape: Arc<ModeShape<D>>, course: TimeFunction) -> Self {
-        self.modes.push((shape, course));
+    /// Adds a mode, whose coordinate is `function`.
+    pub fn with_mode(mut self, shape: Arc<ModeShape<D>>, function: TimeFunction) -> Self {
+        self.modes.push((shape, function));
         self
     }
 
@@ -86,8 +86,8 @@ impl<const D: usize> BodyMotion<D> {
         let (sine, cosine) = (angle.sin(), angle.cos());
         let arm = *x - self.pivot;
         let mut arm: [S; D] = std::array::from_fn(|d| S::constant(arm[d]));
-        for (bend, (_, course)) in bends.iter().zip(&self.modes) {
-            let q = course.at(t);
+        for (bend, (_, function)) in bends.iter().zip(&self.modes) {
+            let q = function.at(t);
             arm = std::array::from_fn(|d| arm[d] + q * S::constant(bend[d]));
         }
         let dot =
@@ -100,7 +100,7 @@ impl<const D: usize> BodyMotion<D> {
     }
 
     fn shift_at<S: Scalar>(&self, t: S) -> [S; D] {
-        std::array::from_fn(|d| self.shift.iter().fold(S::constant(0.0), |sum, courses| sum + courses[d].at(t)))
+        std::array::from_fn(|d| self.shift.iter().fold(S::constant(0.0), |sum, functions| sum + functions[d].at(t)))
     }
 
     /// Rotation and shift at time `t`; modes are left aside.
@@ -153,12 +153,12 @@ impl<const D: usize> BodyMotion<D> {
 
     /// Coordinates q_m of the modes.
     pub fn coordinates(&self, t: f64) -> Vec<f64> {
-        self.modes.iter().map(|(_, course)| course.at(t)).collect()
+        self.modes.iter().map(|(_, function)| function.at(t)).collect()
     }
 
     /// Coordinates of the modes with their rates.
     pub fn coordinates_with_rates(&self, t: f64) -> Vec<Jet> {
-        self.modes.iter().map(|(_, course)| course.at(Jet::variable(t))).collect()
+        self.modes.iter().map(|(_, function)| function.at(Jet::variable(t))).collect()
     }
 
     /// True when the body bends.
@@ -201,11 +201,11 @@ impl<const D: usize> BodyMotion<D> {
 
     /// How the motion repeats; a steady rotation does after each turn.
     pub fn repeat(&self) -> Repeat {
-        let turns = self.turn.iter().map(|course| match course {
+        let turns = self.turn.iter().map(|function| match function {
             TimeFunction::Steady(rate) if *rate != 0.0 => Repeat::Every(std::f64::consts::TAU / rate.abs()),
             other => other.repeat(),
         });
-        let others = self.shift.iter().flatten().chain(self.modes.iter().map(|(_, course)| course));
+        let others = self.shift.iter().flatten().chain(self.modes.iter().map(|(_, function)| function));
         common(turns.chain(others.map(TimeFunction::repeat)))
     }
 }

@@ -3,22 +3,22 @@
 //! [`Motions`] holds one [`BodyMotion`] for each body; a [`RigidPose`] is where a law has got to. Velocities are never written
 //! down a second time: marching takes differences of positions, with the formula it uses for the state, and what needs the
 //! velocity at an instant gets it by differentiating the same law (`math::jet`).
-mod course;
 mod law;
 mod mode;
+mod point_trajectory;
 mod pose;
 mod samples;
 mod spline;
 #[cfg(test)]
 mod tests;
-mod track;
+mod time_function;
 
-pub use course::{Repeat, TimeFunction};
 pub use law::{BodyMotion, Kinematics};
 pub use mode::{Expansion, ModeShape};
+pub use point_trajectory::PointTrajectory;
 pub use pose::RigidPose;
 pub use spline::Spline;
-pub use track::PointTrajectory;
+pub use time_function::{Repeat, TimeFunction};
 
 use std::sync::Arc;
 
@@ -158,7 +158,7 @@ impl<const D: usize> Motions<D> {
 
     /// The common period of all motions; `None` when some never repeats, or nothing moves.
     pub fn period(&self) -> Option<f64> {
-        match course::common(self.laws().map(BodyMotion::repeat)) {
+        match time_function::common(self.laws().map(BodyMotion::repeat)) {
             Repeat::Every(period) => Some(period),
             Repeat::Constant | Repeat::Never => None,
         }

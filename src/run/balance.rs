@@ -17,7 +17,7 @@ pub(super) fn around<const D: usize>(
     (frame, state, work): (&Frame<D>, &[f64], &mut Work<D>),
     marches: bool,
 ) -> Option<Sum> {
-    if fluid.shape.cloud.interface.is_empty() {
+    if fluid.discretisation.cloud.interface.is_empty() {
         return None;
     }
     let mut rate = Vec::new();

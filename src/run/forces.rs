@@ -53,7 +53,7 @@ impl<const D: usize> ForceModes<D> {
     /// The modes of `[gaf]`; `None` where a case has none.
     pub(super) fn of(case: &Case, fluid: &Fluid<D>, motions: &Motions<D>) -> Option<Self> {
         let plan = case.gaf.as_ref()?;
-        let cloud = &fluid.shape.cloud;
+        let cloud = &fluid.discretisation.cloud;
         let mut shapes = motions.shapes_of_forces().iter();
         let form = |mode: AnyMode<'_>| {
             let form = match mode {
@@ -85,15 +85,15 @@ impl<const D: usize> ForceModes<D> {
             let work = match form {
                 Form::Plunge => chosen().map(|(_, (_, f))| length * f[D - 1]).sum::<f64>(),
                 Form::Pitch(pivot) => {
-                    let moment_point = fluid.carriage.body(0, frame.time).point(pivot).to_3d();
+                    let moment_point = fluid.cloud_motion.body(0, frame.time).point(pivot).to_3d();
                     let axes = LoadAxes { moment_point, ..axes.clone() };
                     let mut load = Load::default();
                     chosen().for_each(|(_, (x, f))| axes.add(&mut load, &x.to_3d(), &f.to_3d()));
                     load.moment
                 }
                 Form::Bend(shifts) => {
-                    let body = |w: usize| usize::from(fluid.shape.cloud.interface[w].body);
-                    let turned = |w: usize| fluid.carriage.body(body(w), frame.time).direction(&shifts[w]);
+                    let body = |w: usize| usize::from(fluid.discretisation.cloud.interface[w].body);
+                    let turned = |w: usize| fluid.cloud_motion.body(body(w), frame.time).direction(&shifts[w]);
                     chosen().map(|(w, (_, f))| turned(w).dot(f)).sum()
                 }
             };
@@ -114,7 +114,7 @@ impl<const D: usize> ForceModes<D> {
         for (n, frame) in frames.iter().enumerate() {
             balance.look(state, n, &mut one);
             fluid.fill_states(frame, &one, &mut work);
-            if fluid.friction.is_some() {
+            if fluid.viscous_model.is_some() {
                 fluid.fill_gradients(frame, &mut work);
             }
             values.iter_mut().zip(self.at(fluid, frame, &work)).for_each(|(all, v)| all.push(v));
@@ -138,7 +138,7 @@ impl GeneralisedForce {
 
 /// Places of the interface particles and the forces on them, in the axes of the case.
 fn wall_forces<const D: usize>(fluid: &Fluid<D>, frame: &Frame<D>, work: &Work<D>) -> Vec<(Vector<D>, Vector<D>)> {
-    let (cloud, far) = (&frame.shape.cloud, fluid.far_field.pressure());
+    let (cloud, far) = (&frame.discretisation.cloud, fluid.far_field.pressure());
     let one = |(w, wall): (usize, &crate::cloud::Interface<D>)| {
         let i = cloud.n_fluid + w;
         let push = wall.area * (far - work.state[i].pressure);

@@ -38,7 +38,7 @@ pub(super) fn friction_load<const D: usize>(
     chosen: impl Fn(usize) -> bool,
 ) -> Load {
     let mut load = Load::default();
-    let cloud = &fluid.shape.cloud;
+    let cloud = &fluid.discretisation.cloud;
     for w in (0..cloud.interface.len()).filter(|w| chosen(*w)) {
         if let Some(at) = fluid.wall_slopes((cloud, fluid.walls_seen()), work, w) {
             let force = at.stress * cloud.interface[w].area.norm();
@@ -55,7 +55,7 @@ pub(super) fn add_friction_in<const D: usize>(
     axes: &LoadAxes,
     load: &mut Load,
 ) {
-    let cloud = &frame.shape.cloud;
+    let cloud = &frame.discretisation.cloud;
     for w in 0..cloud.interface.len() {
         if let Some(at) = fluid.wall_slopes((cloud, &frame.walls), work, w) {
             let force = frame.outward(&at.stress) * cloud.interface[w].area.norm();
@@ -70,8 +70,8 @@ pub(super) fn wall_friction<const D: usize>(
     fluid: &Fluid<D>,
     work: &Work<D>,
 ) -> Option<Vec<WallFriction>> {
-    fluid.friction.as_ref()?;
-    let (cloud, units) = (&fluid.shape.cloud, Units::of(case));
+    fluid.viscous_model.as_ref()?;
+    let (cloud, units) = (&fluid.discretisation.cloud, Units::of(case));
     let free = free_stream::<D>(case);
     let dynamic = (0.5 * free.density * free.velocity.norm_squared()).max(f64::MIN_POSITIVE);
     let stream = stream_axes::<D>(case).0;
@@ -98,7 +98,7 @@ pub(super) fn separations<const D: usize>(
     friction: &[WallFriction],
     x_c: &[f64],
 ) -> Vec<Separation> {
-    let walls = &fluid.shape.cloud.interface;
+    let walls = &fluid.discretisation.cloud.interface;
     let lift: Vector<D> = stream_axes::<D>(case).1;
     let mut found = Vec::new();
     let n_bodies = if D == 2 { walls.iter().map(|w| w.body + 1).max().unwrap_or(0) } else { 0 };

@@ -5,11 +5,11 @@ use num_complex::Complex64;
 use serde::Serialize;
 
 use super::RunError;
-use super::aftermath::{Aftermath, marched_on};
-use super::journal::RunRecorder;
+use super::marching_check::{Aftermath, marched_on};
 use super::outputs;
 use super::periodic::Sample;
 use super::persist::Position;
+use super::run_recorder::RunRecorder;
 use super::setup::{Solver, harmonic_control};
 use super::snapshot::Units;
 use super::solve::{Solved, Start, coefficients};
@@ -73,15 +73,15 @@ pub(super) fn balance<const D: usize>(
     solver: &Solver<D>,
     start: Start,
     at: &Position<'_>,
-    journal: &mut RunRecorder<'_>,
+    recorder: &mut RunRecorder<'_>,
 ) -> Solved<D> {
     let fluid = &solver.fluid;
-    let Some(period) = journal.period else {
+    let Some(period) = recorder.period else {
         let text = "the motion does not repeat, but `[time] harmonics` finds flows that do\nhint: take out what drifts in \
                     `[motion]`, a translation or a formula that does not return after the period, or march with `[time.dual]`";
         return Err(RunError::Folder(text.into()));
     };
-    repeats(&fluid.carriage, period)?;
+    repeats(&fluid.cloud_motion, period)?;
     let omega = std::f64::consts::TAU / period;
     let (most, auto) = match plan.number {
         HarmonicCount::Fixed(n) => (n as usize, false),
@@ -98,7 +98,7 @@ pub(super) fn balance<const D: usize>(
         }
         Start::Fresh(u) if plan.march > 0 => {
             let n = if auto { FIRST } else { most };
-            let Some(state) = super::lead::marched(plan, &build(n), fluid, u, period, journal)? else {
+            let Some(state) = super::marching_start::marched(plan, &build(n), fluid, u, period, recorder)? else {
                 return Ok(None);
             };
             (n, state, None)
@@ -108,37 +108,37 @@ pub(super) fn balance<const D: usize>(
     loop {
         let balance = build(n);
         let last = n >= most;
-        let Some(found) = converge((plan, last || auto), &balance, fluid, (state, resume.take()), at, journal)? else {
+        let Some(found) = converge((plan, last || auto), &balance, fluid, (state, resume.take()), at, recorder)? else {
             return Ok(None);
         };
         state = found;
-        let report = report(&balance, fluid, &state, journal);
+        let report = report(&balance, fluid, &state, recorder);
         let tail = report.tail_loads.zip(report.tail_density).map(|(a, b)| a.max(b));
         let short = tail.is_none_or(|t| t > plan.tail);
         if last || (auto && !short) {
             let outcome = Periodic { balance: &balance, fluid, state: &state };
-            return outcome.finish((plan, report), solver, period, journal);
+            return outcome.finish((plan, report), solver, period, recorder);
         }
         let next = if auto { (n + MORE).min(most) } else { most };
-        journal.note(&format!("{n} harmonics done, {next} follow"));
+        recorder.note(&format!("{n} harmonics done, {next} follow"));
         state = build(next).resampled(&state, Instances::of_harmonics(n));
         n = next;
     }
 }
 
 /// Says what a user should know of the truncation.
-fn tell(plan: &Harmonics, report: &BalanceReport, journal: &mut RunRecorder<'_>) {
+fn tell(plan: &Harmonics, report: &BalanceReport, recorder: &mut RunRecorder<'_>) {
     let n = report.harmonics;
     if let Some(tail) = report.tail_loads.into_iter().chain(report.tail_density).reduce(f64::max)
         && tail > plan.tail
     {
-        journal.note(&format!(
+        recorder.note(&format!(
             "warning: the last of {n} harmonics still holds {:.1} % of them: add harmonics, or let `number = \"auto\"` do so",
             100.0 * tail
         ));
     }
     if report.wall_velocity_error > WALL_ERROR {
-        journal.note(&format!(
+        recorder.note(&format!(
             "warning: {n} harmonics miss {:.1} % of the velocity of the walls: add harmonics",
             100.0 * report.wall_velocity_error
         ));
@@ -146,8 +146,8 @@ fn tell(plan: &Harmonics, report: &BalanceReport, journal: &mut RunRecorder<'_>)
 }
 
 /// Refuses motions that do not come back after a period.
-fn repeats<const D: usize>(carriage: &CloudMotion<D>, period: f64) -> Result<(), RunError> {
-    let laws: Vec<&BodyMotion<D>> = match carriage {
+fn repeats<const D: usize>(cloud_motion: &CloudMotion<D>, period: f64) -> Result<(), RunError> {
+    let laws: Vec<&BodyMotion<D>> = match cloud_motion {
         CloudMotion::Rigid(law) => vec![law],
         CloudMotion::Along { laws, .. } => laws.iter().collect(),
         CloudMotion::Still | CloudMotion::Travel(_) => Vec::new(),
@@ -177,13 +177,13 @@ fn loads<const D: usize>(
     fluid: &Fluid<D>,
     (frames, state): (&[Frame<D>], &[f64]),
     work: &mut crate::scheme::Work<D>,
-    journal: &RunRecorder<'_>,
+    recorder: &RunRecorder<'_>,
 ) -> Option<[Series; 3]> {
     let mut all = [Vec::new(), Vec::new(), Vec::new()];
     let mut one = vec![0.0; fluid.len()];
     for (n, frame) in frames.iter().enumerate() {
         balance.look(state, n, &mut one);
-        let c = coefficients(fluid, journal.axes(), frame, &one, work)?;
+        let c = coefficients(fluid, recorder.axes(), frame, &one, work)?;
         [c.cl, c.cd, c.cm].into_iter().zip(&mut all).for_each(|(v, all)| all.push(v));
     }
     let series = all.map(|values| Series::of_values(&values).ok());
@@ -204,12 +204,12 @@ fn converge<const D: usize>(
     fluid: &Fluid<D>,
     (state, resume): (Vec<f64>, Option<(Resume, Progress)>),
     at: &Position<'_>,
-    journal: &mut RunRecorder<'_>,
+    recorder: &mut RunRecorder<'_>,
 ) -> Result<Option<Vec<f64>>, RunError> {
     let fresh = resume.is_none();
     let (resume, mut progress) = resume.unzip();
-    let progress = progress.get_or_insert_with(|| Progress { earlier: journal.evaluations, ..Progress::default() });
-    journal.evaluations = progress.earlier;
+    let progress = progress.get_or_insert_with(|| Progress { earlier: recorder.evaluations, ..Progress::default() });
+    recorder.evaluations = progress.earlier;
     let origin = balance.copies(&fluid.start());
     let mut relax = Relax::new(balance, harmonic_control(plan, D), state, &origin, resume);
     drop(origin);
@@ -217,53 +217,53 @@ fn converge<const D: usize>(
     let goal = 10f64.powf(-orders);
     let tolerance = if last { plan.tolerance } else { plan.tolerance.max(EARLY_TOLERANCE) };
     if fresh {
-        journal.save_with(at, 0.0, (&relax.u, relax.resume()), progress.kept(&relax))?;
+        recorder.save_with(at, 0.0, (&relax.u, relax.resume()), progress.kept(&relax))?;
     }
     let mut work = fluid.work();
     relax.evaluations = progress.evaluations;
     let instances = balance.times().len();
-    journal.work.begin(relax.evaluations);
+    recorder.work.begin(relax.evaluations);
     // a checkpoint may have been written by the very iteration that ended the relaxation, or before the first one
     let mut reached = relax.iteration > 0 && progress.reached(relax.drop(), goal, tolerance);
     while !reached && relax.iteration < plan.iterations && !progress.stalls(relax.iteration) {
         let step = match relax.advance() {
             Ok(step) => step,
             Err(e) => {
-                journal.save_with(at, 0.0, (&relax.u, relax.resume()), progress.kept(&relax))?;
-                return Err(journal.failed(e));
+                recorder.save_with(at, 0.0, (&relax.u, relax.resume()), progress.kept(&relax))?;
+                return Err(recorder.failed(e));
             }
         };
-        journal.count();
-        journal.work.add(relax.evaluations, instances * fluid.shape.cloud.n_fluid);
+        recorder.count();
+        recorder.work.add(relax.evaluations, instances * fluid.discretisation.cloud.n_fluid);
         let (frames, _, state) = relax.parts();
-        let series = loads(balance, fluid, (frames, state), &mut work, journal);
+        let series = loads(balance, fluid, (frames, state), &mut work, recorder);
         let mean = series.as_ref().map(|s| {
             let [cl, cd, cm] = s.each_ref().map(|s| s.coefficients()[0]);
             Coefficients { cl, cd, cm }
         });
-        journal.record((0, 0), &step, mean, (orders, -step.residual.log10()), fluid)?;
+        recorder.record((0, 0), &step, mean, (orders, -step.residual.log10()), fluid)?;
         if let Some(series) = &series {
             progress.recent.push(series.iter().flat_map(|s| s.coefficients().to_vec()).collect());
         }
         if step.residual < PROGRESS * progress.best.0 {
             progress.best = (step.residual, relax.iteration);
         }
-        if journal.due(relax.iteration) {
-            journal.save_with(at, 0.0, (&relax.u, relax.resume()), progress.kept(&relax))?;
+        if recorder.due(relax.iteration) {
+            recorder.save_with(at, 0.0, (&relax.u, relax.resume()), progress.kept(&relax))?;
         }
         reached = progress.reached(step.residual, goal, tolerance);
-        if journal.stopped() && !reached {
-            journal.save_with(at, 0.0, (&relax.u, relax.resume()), progress.kept(&relax))?;
+        if recorder.stopped() && !reached {
+            recorder.save_with(at, 0.0, (&relax.u, relax.resume()), progress.kept(&relax))?;
             return Ok(None);
         }
     }
     if !reached && progress.stalls(relax.iteration) {
-        journal.note(&stalled(relax.drop(), balance.instances().harmonics(), &relax.worst()));
+        recorder.note(&stalled(relax.drop(), balance.instances().harmonics(), &relax.worst()));
     }
-    (journal.drop, journal.converged) = (relax.drop(), reached);
-    (journal.bytes, journal.linear) = (relax.bytes(), relax.linear);
-    journal.evaluations += relax.evaluations * instances as u64;
-    journal.save_with(at, 0.0, (&relax.u, relax.resume()), progress.kept(&relax))?;
+    (recorder.drop, recorder.converged) = (relax.drop(), reached);
+    (recorder.bytes, recorder.linear) = (relax.bytes(), relax.linear);
+    recorder.evaluations += relax.evaluations * instances as u64;
+    recorder.save_with(at, 0.0, (&relax.u, relax.resume()), progress.kept(&relax))?;
     Ok(Some(relax.u))
 }
 
@@ -345,11 +345,11 @@ fn report<const D: usize>(
     balance: &HarmonicBalance<'_, Fluid<D>>,
     fluid: &Fluid<D>,
     state: &[f64],
-    journal: &RunRecorder<'_>,
+    recorder: &RunRecorder<'_>,
 ) -> BalanceReport {
     let (held, mut work) = (balance.instances(), fluid.work());
     let frames = balance.frame(&Moment::At { time: 0.0 }, state);
-    let series = loads(balance, fluid, (&frames, state), &mut work, journal);
+    let series = loads(balance, fluid, (&frames, state), &mut work, recorder);
     let n = held.harmonics();
     let part = |s: &Series| {
         let terms = terms(s);
@@ -363,7 +363,7 @@ fn report<const D: usize>(
         tail_loads,
         tail_density: (n > 1).then(|| density_tail(fluid, held, state)),
         wall_velocity_error: wall_velocity_error(fluid, &frames),
-        evaluations: journal.evaluations,
+        evaluations: recorder.evaluations,
         march: None,
     }
 }
@@ -388,11 +388,11 @@ fn density_tail<const D: usize>(fluid: &Fluid<D>, held: Instances, state: &[f64]
 
 /// |w − ẋ|/|ẋ| of the walls.
 fn wall_velocity_error<const D: usize>(fluid: &Fluid<D>, frames: &[Frame<D>]) -> f64 {
-    let cloud = &fluid.shape.cloud;
+    let cloud = &fluid.discretisation.cloud;
     let (mut miss, mut size) = (0.0, 0.0);
     for frame in frames {
         for (i, wall) in cloud.interface_range().zip(&cloud.interface) {
-            let law = match &fluid.carriage {
+            let law = match &fluid.cloud_motion {
                 CloudMotion::Rigid(law) => Some(law),
                 CloudMotion::Along { laws, .. } => laws.get(usize::from(wall.body)),
                 CloudMotion::Still | CloudMotion::Travel(_) => None,
@@ -420,24 +420,24 @@ impl<const D: usize> Periodic<'_, D> {
         (plan, mut report): (&Harmonics, BalanceReport),
         solver: &Solver<D>,
         period: f64,
-        journal: &mut RunRecorder<'_>,
+        recorder: &mut RunRecorder<'_>,
     ) -> Solved<D> {
         let (balance, fluid) = (self.balance, self.fluid);
-        tell(plan, &report, journal);
-        if let Some(series) = self.trace(journal, period).filter(|_| plan.check > 0) {
-            let Some(found) = marched_on(plan, balance, fluid, (self.state, &series), period, journal)? else {
+        tell(plan, &report, recorder);
+        if let Some(series) = self.trace(recorder, period).filter(|_| plan.check > 0) {
+            let Some(found) = marched_on(plan, balance, fluid, (self.state, &series), period, recorder)? else {
                 return Ok(None);
             };
-            journal.note(&found.told());
+            recorder.note(&found.told());
             report.march = Some(found);
         }
-        if let Some(forms) = &solver.forms {
+        if let Some(force_modes) = &solver.force_modes {
             let frames = balance.frame(&Moment::At { time: 0.0 }, self.state);
-            journal.forces = forms.over_a_period(balance, fluid, (&frames, self.state));
+            recorder.forces = force_modes.over_a_period(balance, fluid, (&frames, self.state));
         }
-        self.compare(journal)?;
-        self.write(journal, solver, period)?;
-        journal.balance = Some(report);
+        self.compare(recorder)?;
+        self.write(recorder, solver, period)?;
+        recorder.balance = Some(report);
         let mut first = vec![0.0; fluid.len()];
         balance.instance(self.state, 0, &mut first);
         let frame = balance.with_moment(0.0, |moment| fluid.frame(moment, &first));
@@ -445,33 +445,33 @@ impl<const D: usize> Periodic<'_, D> {
     }
 
     /// Puts the loads of one period where those of the last period of a march would be; gives their series.
-    fn trace(&self, journal: &mut RunRecorder<'_>, period: f64) -> Option<[Series; 3]> {
+    fn trace(&self, recorder: &mut RunRecorder<'_>, period: f64) -> Option<[Series; 3]> {
         let frames = self.balance.frame(&Moment::At { time: 0.0 }, self.state);
-        let series = loads(self.balance, self.fluid, (&frames, self.state), &mut self.fluid.work(), journal);
+        let series = loads(self.balance, self.fluid, (&frames, self.state), &mut self.fluid.work(), recorder);
         let [cl, cd, cm] = series?;
-        journal.trace.clear();
+        recorder.trace.clear();
         for k in 0..=SAMPLES {
             let part = 1.0 + k as f64 / SAMPLES as f64;
             let phase = std::f64::consts::TAU * part;
             let loads = Coefficients { cl: cl.at(phase), cd: cd.at(phase), cm: cm.at(phase) };
-            journal.trace.push(Sample {
+            recorder.trace.push(Sample {
                 time: part * period,
                 loads,
-                motion: super::journal::motion(self.fluid, part * period),
+                motion: super::run_recorder::motion(self.fluid, part * period),
             });
         }
         let instance = |frame: &Frame<D>| {
             let phase = std::f64::consts::TAU * frame.time / period;
-            let [angle, x, y, z, mode] = super::journal::motion(self.fluid, frame.time);
+            let [angle, x, y, z, mode] = super::run_recorder::motion(self.fluid, frame.time);
             let shift = [x, y, z, mode].into_iter().find(|s| s.abs() > 0.0).unwrap_or(0.0);
             [frame.time / period, angle.to_degrees(), shift, cl.at(phase), cd.at(phase), cm.at(phase)]
         };
-        journal.instances = frames.iter().map(instance).collect();
+        recorder.instances = frames.iter().map(instance).collect();
         Some([cl, cd, cm])
     }
 
     /// Loads at the instances, evaluated twice.
-    fn compare(&self, journal: &mut RunRecorder<'_>) -> Result<(), RunError> {
+    fn compare(&self, recorder: &mut RunRecorder<'_>) -> Result<(), RunError> {
         let (fluid, held) = (self.fluid, self.balance.instances());
         let (mut one, mut work) = (vec![0.0; fluid.len()], fluid.work());
         for k in 0..held.count() {
@@ -479,15 +479,15 @@ impl<const D: usize> Periodic<'_, D> {
             let phase = std::f64::consts::TAU * k as f64 / held.count() as f64;
             let frame = self.balance.with_moment(phase, |m| fluid.frame(m, &one));
             // a run that is interrupted now does this again
-            journal.compare((1, frame.time), fluid, (&frame, &one, &mut work))?;
+            recorder.compare((1, frame.time), fluid, (&frame, &one, &mut work))?;
         }
         Ok(())
     }
 
     /// Fields at phases, coefficients in time of walls and field.
-    fn write(&self, journal: &RunRecorder<'_>, solver: &Solver<D>, period: f64) -> Result<(), RunError> {
-        let (case, out) = (journal.case(), journal.out());
-        let rows = journal.instances.iter().map(|row| row.map(Entry::from).to_vec());
+    fn write(&self, recorder: &RunRecorder<'_>, solver: &Solver<D>, period: f64) -> Result<(), RunError> {
+        let (case, out) = (recorder.case(), recorder.out());
+        let rows = recorder.instances.iter().map(|row| row.map(Entry::from).to_vec());
         write_csv(&out.join("instances.csv"), &["phase", "angle_deg", "shift", "cl", "cd", "cm"], rows)?;
         let moment = |part: f64| {
             let phase = std::f64::consts::TAU * part;
@@ -498,8 +498,8 @@ impl<const D: usize> Periodic<'_, D> {
             self.fluid.fill_gradients(&frame, &mut work);
             (frame, work)
         };
-        if let Some(interval) = journal.interval() {
-            let count = (period / interval + super::journal::NEARLY).floor() as u64;
+        if let Some(interval) = recorder.interval() {
+            let count = (period / interval + super::run_recorder::NEARLY).floor() as u64;
             for k in 1..=count {
                 let (frame, work) = moment(k as f64 * interval / period);
                 outputs::write_series(case, out, self.fluid, (&frame, &work), interval)?;
@@ -519,7 +519,7 @@ impl<const D: usize> Periodic<'_, D> {
     fn write_coefficients(&self, case: &Case, out: &Path) -> Result<(), RunError> {
         let (fluid, held) = (self.fluid, self.balance.instances());
         let units = Units::of(case);
-        let cloud = &fluid.shape.cloud;
+        let cloud = &fluid.discretisation.cloud;
         let n = held.harmonics();
         // values of all real particles at the instances that hold the solution: density, velocity, pressure, Cp
         let free = crate::scheme::start::free_stream::<D>(case);

@@ -65,10 +65,10 @@ fn look<const D: usize>(case: &Case, places: &Places, files: bool) -> Result<Clo
     let timer = Instant::now();
     (0..TIMED).for_each(|_| fluid.rhs(&frame, u, &mut work, &mut du));
     let evaluation = timer.elapsed().as_secs_f64() / f64::from(TIMED);
-    let cloud = &fluid.shape.cloud;
+    let cloud = &fluid.discretisation.cloud;
     let counts: Vec<usize> = (0..cloud.n_rows()).map(|i| cloud.neighbours.of(i).len()).collect();
     notes.extend(cloud.notes.iter().cloned().chain(cloud.early_ends()));
-    notes.extend(super::foresee::look(case, cloud, &motions)?);
+    notes.extend(super::motion_feasibility::check(case, cloud, &motions)?);
     let report = CloudReport {
         particles: cloud.n_real(),
         fluid: cloud.n_fluid,
@@ -80,7 +80,7 @@ fn look<const D: usize>(case: &Case, places: &Places, files: bool) -> Result<Clo
             counts.iter().copied().max().unwrap_or(0),
         ),
         spacing: cloud.spacing.iter().fold((f64::INFINITY, 0.0), |(l, h), s| (s.min(l), s.max(h))),
-        worst_condition: fluid.shape.operators.condition.iter().fold(0.0, |m, c| c.max(m)),
+        worst_condition: fluid.discretisation.operators.condition.iter().fold(0.0, |m, c| c.max(m)),
         seconds,
         memory_bytes: bytes_of(fluid, integrator_bytes(case, fluid)),
         expected_seconds: evaluation * evaluations(case, fluid, &frame, (u, motions.period())),
@@ -113,7 +113,7 @@ fn evaluations<const D: usize>(
             EVALUATIONS * f64::from(2 + 2 * count)
         }
         Temporal::Explicit(e) => {
-            let mut rate = vec![0.0; fluid.shape.cloud.n_fluid];
+            let mut rate = vec![0.0; fluid.discretisation.cloud.n_fluid];
             fluid.spectral_radius(frame, u, &mut fluid.work(), &mut rate);
             let fastest = rate.iter().fold(0.0f64, |m, r| m.max(*r));
             3.5 * e.end(period).unwrap_or_default() * fastest / e.cfl
@@ -128,7 +128,7 @@ fn integrator_bytes<const D: usize>(case: &Case, fluid: &crate::scheme::Fluid<D>
         Temporal::Explicit(_) => 3 * 8 * n,
         Temporal::Steady(_) | Temporal::Dual(_) | Temporal::Harmonics(_) => {
             let block = D + 2;
-            let entries = fluid.shape.cloud.neighbours.index.len() + fluid.shape.cloud.n_fluid;
+            let entries = fluid.discretisation.cloud.neighbours.index.len() + fluid.discretisation.cloud.n_fluid;
             8 * entries * block * block * 4 / 6 + 4 * 17 * n + 8 * 8 * n
         }
     }
@@ -145,10 +145,10 @@ fn write<const D: usize>(
     let fluid = &solver.fluid;
     let frame = fluid.frame(&Moment::At { time: 0.0 }, &solver.fluid.start());
     fluid.fill_states(&frame, &solver.fluid.start(), work);
-    let cloud = &fluid.shape.cloud;
+    let cloud = &fluid.discretisation.cloud;
     let n = cloud.n_real();
     let points: Vec<[f64; 3]> = cloud.x[..n].iter().map(crate::math::Vector::to_3d).collect();
-    let mut condition = fluid.shape.operators.condition.clone();
+    let mut condition = fluid.discretisation.operators.condition.clone();
     condition.resize(n, 1.0);
     let columns = [
         Column { name: "spacing", components: 1, values: &cloud.spacing[..n] },
@@ -156,7 +156,7 @@ fn write<const D: usize>(
         Column { name: "condition", components: 1, values: &condition },
     ];
     write_points(&places.out.join("cloud.vtu"), &points, &columns)?;
-    write_json(&places.out.join("doctor.json"), &Diagnosis::of(cloud, fluid.shape.walls.n_linear))?;
+    write_json(&places.out.join("doctor.json"), &Diagnosis::of(cloud, fluid.discretisation.walls.n_linear))?;
     let view = View { case, out: &places.out, fluid, work, surface };
     pictures::write_cloud(&view)
 }

@@ -4,27 +4,27 @@
 //! each cycle of adaptation. Every stage builds its cloud, takes over the state of the one before by the solver's own fit,
 //! and integrates. Checkpoints hold what a stage cannot rebuild from the case: its sources of refinement, the state, and
 //! where the integrator stands; a killed run goes on to the same bits.
-pub mod aftermath;
 mod balance;
 mod folder;
 pub mod forces;
-mod foresee;
 mod friction;
 pub mod gaf;
 pub mod harmonic;
 mod inspect;
-mod journal;
-mod lead;
+pub mod load_crosscheck;
+pub mod marching_check;
+mod marching_start;
 mod measure;
+mod motion_feasibility;
 mod outputs;
 pub mod periodic;
 mod persist;
 mod pictures;
+mod run_recorder;
 mod setup;
 mod snapshot;
 mod solve;
 pub mod summary;
-pub mod twice;
 pub mod verify;
 
 use std::path::{Path, PathBuf};
@@ -202,7 +202,7 @@ pub fn run_from(case: &Case, places: &Places, from: &Path, monitor: &mut dyn Mon
     }
     let saved = persist::Saved::read(from)?;
     let last = saved.stages.get(saved.stage).is_some_and(|s| s.factor == 1.0);
-    if !last || saved.roaming.is_some() {
+    if !last || saved.lagrangian.is_some() {
         let hint = "finish it with `alula resume`; particles that travel keep a cloud of their own";
         return Err(RunError::Folder(format!(
             "the run `{name}` does not stand on the cloud of its case\nhint: {hint}"
@@ -308,15 +308,15 @@ fn drive<const D: usize>(
         None => Some(Cloud::build(case, surface.as_ref(), &[])?),
     };
     if let Some(cloud) = &full {
-        foresee::look(case, cloud, &motions)?.iter().for_each(|n| monitor.note(n));
+        motion_feasibility::check(case, cloud, &motions)?.iter().for_each(|n| monitor.note(n));
     }
     let stages = match (&saved, &other) {
         (Some(s), _) => s.stages.clone(),
         (None, Some(o)) => vec![Stage { march: marches(case), ..o.stages[o.stage] }],
         (None, None) => setup::stages(case, full.as_ref().map_or(0, |c| c.n_fluid), D),
     };
-    let mut journal = journal::RunRecorder::open(case, places, saved.as_ref(), (motions.period(), monitor))?;
-    journal.note(&describe(&stages, full.as_ref().map_or(0, |c| c.n_fluid)));
+    let mut recorder = run_recorder::RunRecorder::open(case, places, saved.as_ref(), (motions.period(), monitor))?;
+    recorder.note(&describe(&stages, full.as_ref().map_or(0, |c| c.n_fluid)));
     let mut previous: Option<Stood<D>> = None;
     let mut last_frame = None;
     let first = saved.as_ref().map_or(0, |s| s.stage);
@@ -330,8 +330,8 @@ fn drive<const D: usize>(
         let (mut solver, start) = begun(case, build, from, same, surface.as_ref())?;
         let at = persist::Position { stage: k, stages: &stages, sources: &persist::flatten(&sources) };
         let last = k + 1 == stages.len();
-        let Some((state, frame)) = solve::solve(case, &mut solver, start, &at, last, &mut journal)? else {
-            return Ok(Outcome::Interrupted { iteration: journal.iteration() });
+        let Some((state, frame)) = solve::solve(case, &mut solver, start, &at, last, &mut recorder)? else {
+            return Ok(Outcome::Interrupted { iteration: recorder.iteration() });
         };
         if stages.get(k + 1).is_some_and(|s| s.cycle > 0) {
             sources = adapted(case, &solver, &state);
@@ -342,7 +342,7 @@ fn drive<const D: usize>(
     let Some(solved) = previous.zip(last_frame) else {
         return Err(RunError::Folder("the checkpoint names no stage".into()));
     };
-    let summary = outputs::write_all(case, places, &solved, surface.as_ref(), &mut journal, &clock)?;
+    let summary = outputs::write_all(case, places, &solved, surface.as_ref(), &mut recorder, &clock)?;
     Ok(Outcome::Finished(Box::new(summary)))
 }
 

@@ -3,7 +3,7 @@ use std::path::Path;
 
 use super::balance;
 use super::friction::{Separation, friction_load, separations, wall_friction};
-use super::journal::{NEARLY, RunRecorder};
+use super::run_recorder::{NEARLY, RunRecorder};
 use super::setup::Solver;
 use super::snapshot::{self, LoadFrame, Snapshot, Units, load_axes, pressure_coefficient, wall_load};
 use super::solve::totals;
@@ -47,7 +47,7 @@ pub(super) fn write_all<const D: usize>(
     places: &Places,
     ((solver, state), frame): &((Solver<D>, Vec<f64>), Frame<D>),
     surface: Option<&Surface<D>>,
-    journal: &mut RunRecorder<'_>,
+    recorder: &mut RunRecorder<'_>,
     clock: &Clock,
 ) -> Result<Summary, RunError> {
     let solved = clock.wall_seconds();
@@ -64,14 +64,14 @@ pub(super) fn write_all<const D: usize>(
         tags: s.tags.clone(),
     });
     let r = Finished { case, out: &places.out, fluid, work, surface, axes: frame_of_loads.axes(fluid), names, balance };
-    let summary = r.summary(journal, state, (solved, clock));
-    r.write_tables(&journal.cycles, &summary)?;
-    if let Some(period) = journal.period {
-        journal.trace.write(&places.out, period)?;
+    let summary = r.summary(recorder, state, (solved, clock));
+    r.write_tables(&recorder.cycles, &summary)?;
+    if let Some(period) = recorder.period {
+        recorder.trace.write(&places.out, period)?;
     }
     let all = snapshot::field(r.case, r.fluid, r.work);
-    journal.show(&all);
-    r.write_fields(&all, journal.time)?;
+    recorder.show(&all);
+    r.write_fields(&all, recorder.time)?;
     if case.output.report {
         super::pictures::write(&r.view())?;
         report::write_report(&places.out)?;
@@ -90,11 +90,11 @@ pub(super) struct View<'a, const D: usize> {
 
 /// Bytes of a solver, its state and its integrator.
 pub(super) fn bytes_of<const D: usize>(fluid: &Fluid<D>, integrator: usize) -> usize {
-    let cloud = &fluid.shape.cloud;
+    let cloud = &fluid.discretisation.cloud;
     let rows = cloud.neighbours.index.len() * 4 + cloud.neighbours.first.len() * 4;
     let points = cloud.len() * (8 * D + 8 + 8) + cloud.n_fluid * 8;
     let states = cloud.len() * (8 * (D + 2) + 8 * D * (D + 2)) + 2 * 8 * fluid.len();
-    rows + points + states + fluid.shape.operators.bytes() + fluid.shape.walls.bytes() + integrator
+    rows + points + states + fluid.discretisation.operators.bytes() + fluid.discretisation.walls.bytes() + integrator
 }
 
 fn last_change(cycles: &[[f64; 5]]) -> Option<Coefficients> {
@@ -115,66 +115,66 @@ fn drift<const D: usize>(fluid: &Fluid<D>, state: &[f64], start: &[f64]) -> Ledg
 
 impl<'a, const D: usize> Finished<'a, D> {
     /// The last line of the run; `state` is that of the solver, `solved` the wall seconds until it was found.
-    fn summary(&self, journal: &RunRecorder<'_>, state: &[f64], (solved, clock): (f64, &Clock)) -> Summary {
+    fn summary(&self, recorder: &RunRecorder<'_>, state: &[f64], (solved, clock): (f64, &Clock)) -> Summary {
         let (case, fluid) = (self.case, self.fluid);
         let (pressure, friction) = self.wall_loads(|_| true);
         let loads = self.axes.coefficients(&together(&pressure, &friction));
-        let part = |load: &Load| fluid.friction.as_ref().map(|_| self.axes.coefficients(load));
+        let part = |load: &Load| fluid.viscous_model.as_ref().map(|_| self.axes.coefficients(load));
         let balance = self.balance.unwrap_or_default();
         let through = self.axes.coefficients(&balance.load);
         let ledger = if marches(case) {
-            drift(fluid, state, &journal.start_totals)
+            drift(fluid, state, &recorder.start_totals)
         } else {
             self.steady_ledger(&balance, &loads, &through)
         };
-        let (cpu, wall) = journal.seconds();
-        let n = fluid.shape.cloud.n_real();
+        let (cpu, wall) = recorder.seconds();
+        let n = fluid.discretisation.cloud.n_real();
         Summary {
             event: "summary",
             case: case.title.clone(),
             run: self.out.display().to_string(),
             particles: n,
-            iterations: journal.iteration(),
-            residual_drop: if marches(case) && journal.balance.is_none() { 0.0 } else { -journal.drop.log10() },
-            converged: journal.converged,
+            iterations: recorder.iteration(),
+            residual_drop: if marches(case) && recorder.balance.is_none() { 0.0 } else { -recorder.drop.log10() },
+            converged: recorder.converged,
             cpu_seconds: cpu,
             wall_seconds: wall,
             peak_bytes: peak_bytes(),
-            work_units: journal.work.total as f64 / self.fluid.shape.cloud.n_fluid as f64,
+            work_units: recorder.work.total as f64 / self.fluid.discretisation.cloud.n_fluid as f64,
             chord: self.axes.chord,
             loads,
             loads_pressure: part(&pressure),
             loads_friction: part(&friction),
             separation: self.separations(),
             loads_momentum_balance: self.balance.map(|_| through),
-            harmonic_balance: journal.balance.clone(),
-            generalised_forces: journal.forces.clone(),
+            harmonic_balance: recorder.balance.clone(),
+            generalised_forces: recorder.forces.clone(),
             ledger,
-            time: journal.time,
-            unconverged_steps: journal.unconverged,
-            halved_steps: journal.halved,
-            re_clouding: self.re_clouding(journal),
-            first_harmonics: journal.period.map_or_else(Vec::new, |p| journal.trace.first_harmonics(p)),
-            momentum_of_period: journal.period.and_then(|p| journal.twofold.last(p)),
-            last_period: journal.period.and_then(|p| journal.trace.last_period(p)),
-            lift_cycles: journal.trace.cycles(),
-            periodic_change: journal.period.and_then(|p| journal.trace.change(p)),
-            bytes_per_particle: bytes_of(fluid, journal.bytes) as f64 / n as f64,
+            time: recorder.time,
+            unconverged_steps: recorder.unconverged,
+            halved_steps: recorder.halved,
+            re_clouding: self.re_clouding(recorder),
+            first_harmonics: recorder.period.map_or_else(Vec::new, |p| recorder.trace.first_harmonics(p)),
+            momentum_of_period: recorder.period.and_then(|p| recorder.twofold.last(p)),
+            last_period: recorder.period.and_then(|p| recorder.trace.last_period(p)),
+            lift_cycles: recorder.trace.cycles(),
+            periodic_change: recorder.period.and_then(|p| recorder.trace.change(p)),
+            bytes_per_particle: bytes_of(fluid, recorder.bytes) as f64 / n as f64,
             cpu_ms_per_particle: 1e3 * cpu / n as f64,
-            linear_iterations: journal.linear,
-            error_l2_density: self.exact_error(journal.time),
-            adapt_change: last_change(&journal.cycles),
+            linear_iterations: recorder.linear,
+            error_l2_density: self.exact_error(recorder.time),
+            adapt_change: last_change(&recorder.cycles),
             phases: vec![("solve".into(), solved), ("files so far".into(), clock.wall_seconds() - solved)],
         }
     }
 
     /// What re-clouding did, where particles travel with the fluid.
-    fn re_clouding(&self, journal: &RunRecorder<'_>) -> Option<Reclouding> {
-        let t = &journal.turnover;
+    fn re_clouding(&self, recorder: &RunRecorder<'_>) -> Option<Reclouding> {
+        let t = &recorder.ledger;
         if t.renewals == 0 {
             return None;
         }
-        let start = &journal.start_totals;
+        let start = &recorder.start_totals;
         let over = |c: usize, scale: usize| t.lost[c] / start[scale].abs().max(f64::MIN_POSITIVE);
         let momentum = (1..=D).map(|c| over(c, 0).powi(2)).sum::<f64>().sqrt();
         Some(Reclouding {
@@ -223,7 +223,7 @@ impl<'a, const D: usize> Finished<'a, D> {
         if matches!(self.case.initial, Initial::FreeStream) || !self.case.bodies.is_empty() {
             return None;
         }
-        let cloud = &self.fluid.shape.cloud;
+        let cloud = &self.fluid.discretisation.cloud;
         let extent = cloud.tree.bounds().extent();
         let period = Some(Vector([extent[0], extent[1]]));
         let truth = FieldTruth::new(&self.case.initial, self.case.flow.gamma, period).ok()??;
@@ -243,7 +243,7 @@ impl<'a, const D: usize> Finished<'a, D> {
         write_json(&self.out.join("ledger.json"), &summary.ledger)?;
         write_json(
             &self.out.join("doctor.json"),
-            &Diagnosis::of(&self.fluid.shape.cloud, self.fluid.shape.walls.n_linear),
+            &Diagnosis::of(&self.fluid.discretisation.cloud, self.fluid.discretisation.walls.n_linear),
         )?;
         self.write_loads()?;
         self.write_surface_csv()?;
@@ -257,7 +257,7 @@ impl<'a, const D: usize> Finished<'a, D> {
     }
 
     fn write_loads(&self) -> Result<(), RunError> {
-        let cloud = &self.fluid.shape.cloud;
+        let cloud = &self.fluid.discretisation.cloud;
         let units = Units::of(self.case).pressure();
         let mut rows = Vec::new();
         for (b, body) in self.names.bodies.iter().enumerate() {
@@ -284,7 +284,7 @@ impl<'a, const D: usize> Finished<'a, D> {
     }
 
     fn write_surface_csv(&self) -> Result<(), RunError> {
-        let cloud = &self.fluid.shape.cloud;
+        let cloud = &self.fluid.discretisation.cloud;
         let free = free_stream::<D>(self.case);
         let units = Units::of(self.case);
         let friction = wall_friction(self.case, self.fluid, self.work);
@@ -325,7 +325,7 @@ impl<'a, const D: usize> Finished<'a, D> {
             .collect();
         write_points(&self.out.join("field.vtu"), &all.points, &columns)?;
         write_collection(&self.out.join("field.pvd"), &[(time, "field.vtu")])?;
-        let cloud = &self.fluid.shape.cloud;
+        let cloud = &self.fluid.discretisation.cloud;
         if cloud.interface.is_empty() {
             return Ok(());
         }

@@ -91,20 +91,21 @@ pub(super) struct LagrangianCheckpoint {
     /// Time at which the cloud was built.
     since: f64,
     /// What re-clouding did so far.
-    pub(super) turnover: RemapLedger,
+    pub(super) ledger: RemapLedger,
 }
 
 impl LagrangianCheckpoint {
     /// The particles of a march; `None` where they do not travel.
-    pub(super) fn of<const D: usize>(fluid: &Fluid<D>, frame: &Frame<D>, turnover: &RemapLedger) -> Option<Self> {
-        let CloudMotion::Travel(travel) = &fluid.carriage else { return None };
+    pub(super) fn of<const D: usize>(fluid: &Fluid<D>, frame: &Frame<D>, ledger: &RemapLedger) -> Option<Self> {
+        let CloudMotion::Travel(travel) = &fluid.cloud_motion else { return None };
         let flat = |x: &[Vector<D>], n: usize| x.iter().take(n).flat_map(|x| x.0).collect();
-        let cloud = &fluid.shape.cloud;
+        let cloud = &fluid.discretisation.cloud;
         let lists = flat(&cloud.x, cloud.n_fluid);
-        let (places, velocity) = (flat(&frame.shape.cloud.x, cloud.n_rows()), flat(&frame.velocity, cloud.n_rows()));
-        let course = flat(&frame.way.course, cloud.n_fluid);
-        let (now, since, turnover) = (frame.time, travel.since, turnover.clone());
-        Some(Self { lists, now, places, velocity, course, since, turnover })
+        let (places, velocity) =
+            (flat(&frame.discretisation.cloud.x, cloud.n_rows()), flat(&frame.velocity, cloud.n_rows()));
+        let course = flat(&frame.lagrangian_step.course, cloud.n_fluid);
+        let (now, since, ledger) = (frame.time, travel.since, ledger.clone());
+        Some(Self { lists, now, places, velocity, course, since, ledger })
     }
 
     /// The equations on the cloud that was kept.
@@ -112,13 +113,13 @@ impl LagrangianCheckpoint {
         let points = |v: &[f64]| v.chunks_exact(D).map(|x| Vector::from_fn(|d| x[d])).collect::<Vec<Vector<D>>>();
         let lists = points(&self.lists);
         // until it is built anew a march stands on the cloud of the case
-        let lists = (self.turnover.renewals > 0).then_some((&lists[..], self.since));
+        let lists = (self.ledger.renewals > 0).then_some((&lists[..], self.since));
         let [places, velocity, course] = [&self.places, &self.velocity, &self.course].map(|v| points(v));
         fluid.resumed(lists, ParticleKinematics { now: self.now, places, velocity, course })
     }
 
     fn counts(&self) -> Counts {
-        let (t, bits) = (&self.turnover, |v: &[f64]| v.iter().map(|v| v.to_bits()).collect());
+        let (t, bits) = (&self.ledger, |v: &[f64]| v.iter().map(|v| v.to_bits()).collect());
         Counts {
             since_bits: self.since.to_bits(),
             now_bits: self.now.to_bits(),
@@ -133,7 +134,7 @@ impl LagrangianCheckpoint {
 
     fn new(counts: &Counts, [lists, places, velocity, course]: [Vec<f64>; 4]) -> Self {
         let numbers = |bits: &[u64]| bits.iter().map(|b| f64::from_bits(*b)).collect();
-        let turnover = RemapLedger {
+        let ledger = RemapLedger {
             renewals: counts.renewals,
             inserted: counts.inserted,
             removed: counts.removed,
@@ -142,7 +143,7 @@ impl LagrangianCheckpoint {
             exchanged: numbers(&counts.exchanged_bits),
         };
         let (since, now) = (f64::from_bits(counts.since_bits), f64::from_bits(counts.now_bits));
-        Self { lists, now, places, velocity, course, since, turnover }
+        Self { lists, now, places, velocity, course, since, ledger }
     }
 }
 
@@ -174,7 +175,7 @@ pub(super) struct Saved {
     /// Where an implicit march stands.
     pub(super) past: Past,
     /// Particles that travel with the fluid.
-    pub(super) roaming: Option<LagrangianCheckpoint>,
+    pub(super) lagrangian: Option<LagrangianCheckpoint>,
     sources: Vec<f64>,
 }
 
@@ -199,7 +200,7 @@ impl Saved {
             wall_seconds: 0.0,
             work: 0,
             past: Past::default(),
-            roaming: None,
+            lagrangian: None,
             sources: at.sources.to_vec(),
         }
     }
@@ -235,7 +236,7 @@ impl Saved {
             made_bits: self.past.made.to_bits(),
             halved: self.past.halved,
             steps: [self.past.last.to_bits(), self.past.next.to_bits(), u64::from(self.past.unconverged)],
-            roaming: self.roaming.as_ref().map(LagrangianCheckpoint::counts),
+            roaming: self.lagrangian.as_ref().map(LagrangianCheckpoint::counts),
         };
         let field =
             |name: &str, data: Vec<f64>| Field { name: name.into(), shape: vec![data.len()], data: Array::F64(data) };
@@ -247,8 +248,8 @@ impl Saved {
             field("older", self.past.older),
             field("sources", self.sources),
         ];
-        if let Some(roaming) = self.roaming {
-            let LagrangianCheckpoint { lists, places, velocity, course, .. } = roaming;
+        if let Some(lagrangian) = self.lagrangian {
+            let LagrangianCheckpoint { lists, places, velocity, course, .. } = lagrangian;
             let parts = [("lists", lists), ("places", places), ("velocity", velocity), ("course", course)];
             fields.extend(parts.map(|(name, data)| field(name, data)));
         }
@@ -266,7 +267,7 @@ impl Saved {
             best: f64::from_bits(m.phase_best_bits),
             best_age: m.phase_best_age,
         };
-        let roaming = match &m.roaming {
+        let lagrangian = match &m.roaming {
             Some(counts) => {
                 let part = |name: &str| file.f64(name).map(<[f64]>::to_vec);
                 Some(LagrangianCheckpoint::new(
@@ -277,7 +278,7 @@ impl Saved {
             None => None,
         };
         Ok(Self {
-            roaming,
+            lagrangian,
             stage: m.stage,
             stages: m.stages,
             iteration: m.iteration,

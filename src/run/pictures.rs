@@ -35,7 +35,7 @@ pub(super) fn write<const D: usize>(view: &View<'_, D>) -> Result<(), RunError> 
 }
 
 fn window<const D: usize>(view: &View<'_, D>, margin: f64) -> Bounds<2> {
-    let all = view.fluid.shape.cloud.tree.bounds();
+    let all = view.fluid.discretisation.cloud.tree.bounds();
     let b = view.surface.map_or(all, |s| s.bounds().padded(margin * s.bounds().extent().max_abs()));
     let pick = |v: Vector<D>| Vector([v[0], v[1]]);
     Bounds { min: pick(b.min.max(&all.min)), max: pick(b.max.min(&all.max)) }
@@ -210,7 +210,7 @@ pub(super) fn write_cloud<const D: usize>(view: &View<'_, D>) -> Result<(), RunE
 }
 
 fn cloud_picture<const D: usize>(view: &View<'_, D>, outlines: &[Vec<Vector<2>>]) -> Result<(), RunError> {
-    let cloud = &view.fluid.shape.cloud;
+    let cloud = &view.fluid.discretisation.cloud;
     let flat = |x: &Vector<D>| Vector([x[0], x[1]]);
     let points: Vec<Vector<2>> = cloud.x[..cloud.n_fluid].iter().map(flat).collect();
     let finest = cloud.spacing[..cloud.n_fluid].iter().fold(f64::INFINITY, |m, h| m.min(*h));
@@ -225,7 +225,7 @@ fn cloud_picture<const D: usize>(view: &View<'_, D>, outlines: &[Vec<Vector<2>>]
 /// Cp along the chord.
 fn curves<const D: usize>(view: &View<'_, D>) -> Result<(), RunError> {
     let Some(surface) = view.surface else { return Ok(()) };
-    let cloud = &view.fluid.shape.cloud;
+    let cloud = &view.fluid.discretisation.cloud;
     let free = free_stream::<D>(view.case);
     let b = surface.bounds();
     let mut series = Vec::new();
@@ -244,7 +244,7 @@ fn space<const D: usize>(view: &View<'_, D>) -> Result<(), RunError> {
     if view.surface.is_none() {
         return Ok(());
     }
-    let cloud = &view.fluid.shape.cloud;
+    let cloud = &view.fluid.discretisation.cloud;
     let free = free_stream::<D>(view.case);
     let solid = |v: &Vector<D>| Vector(v.to_3d());
     let points: Vec<Vector<3>> = cloud.x[cloud.interface_range()].iter().map(solid).collect();

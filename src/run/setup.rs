@@ -14,7 +14,7 @@ use crate::math::multilevel::Cycle;
 use crate::math::{Bounds, Vector};
 use crate::motion::{BodyMotion, ModeShape, Motions};
 use crate::physics::{Conserved, Gas, Newtonian};
-use crate::scheme::blend::MotionBlending;
+use crate::scheme::motion_blending::MotionBlending;
 use crate::scheme::probe::Probe;
 use crate::scheme::reconstruct::Reconstruction;
 use crate::scheme::start::{Stream, initial};
@@ -138,7 +138,7 @@ pub(super) struct Solver<const D: usize> {
     /// The bodies, where pictures are drawn on the way.
     pub(super) film: Option<Surface<D>>,
     /// Modes that a harmonic balance computes forces on.
-    pub(super) forms: Option<ForceModes<D>>,
+    pub(super) force_modes: Option<ForceModes<D>>,
 }
 
 /// Reads the bodies of a case; `None` when it has none.
@@ -192,19 +192,19 @@ pub(super) fn solver<const D: usize>(
             threshold: scheme.limiter_threshold,
         },
         conservative,
-        friction: friction(case, surface).map(Arc::new),
+        viscous_model: viscous_model(case, surface).map(Arc::new),
         far_field: Arc::new(Stream::new(case, &centre, surface.is_some_and(|s| !s.sharp.is_empty()))),
         held: field,
-        carriage: carriage(case, surface, &cloud, motions)?,
+        cloud_motion: cloud_motion(case, surface, &cloud, motions)?,
         before: None,
-        shape: Arc::new(Discretisation::new(cloud, operators)),
+        discretisation: Arc::new(Discretisation::new(cloud, operators)),
     };
     if case.flow.isentropic {
         at_one_entropy(&fluid)?;
     }
     let film = surface.filter(|_| D == 2 && case.output.report && motions.period().is_some()).cloned();
-    let forms = ForceModes::of(case, &fluid, motions);
-    Ok(Solver { fluid, film, forms })
+    let force_modes = ForceModes::of(case, &fluid, motions);
+    Ok(Solver { fluid, film, force_modes })
 }
 
 /// Refuses a cloud without conservative coefficients.
@@ -219,7 +219,7 @@ fn unsound<const D: usize>(x: &Vector<D>) -> RunError {
 
 /// Refuses a start whose entropy is not that of the free stream, which an isentropic gas has everywhere.
 fn at_one_entropy<const D: usize>(fluid: &Fluid<D>) -> Result<(), RunError> {
-    let cloud = &fluid.shape.cloud;
+    let cloud = &fluid.discretisation.cloud;
     let stray = |x: &&Vector<D>| (fluid.gas.gamma * fluid.gas.entropy(&(fluid.held)(x)) - 1.0).abs() > ONE_ENTROPY;
     let Some(x) = cloud.x[..cloud.n_fluid].iter().find(stray) else { return Ok(()) };
     let times = fluid.gas.gamma * fluid.gas.entropy(&(fluid.held)(x));
@@ -231,24 +231,24 @@ fn at_one_entropy<const D: usize>(fluid: &Fluid<D>) -> Result<(), RunError> {
 }
 
 /// Viscosity of a case in the units of the solver, and what the gas does on each body.
-fn friction<const D: usize>(case: &Case, surface: Option<&Surface<D>>) -> Option<ViscousModel> {
+fn viscous_model<const D: usize>(case: &Case, surface: Option<&Surface<D>>) -> Option<ViscousModel> {
     let extent = surface.map_or(1.0, |s| s.bounds().extent()[0]);
     let chord = case.reference.chord.map_or(extent, |c| c.0);
     let viscous = case.flow.viscous(chord)?;
     let scales = case.flow.reference();
     let kelvin = if case.flow.is_dimensional() { case.flow.kelvin() } else { 1.0 };
-    let contact = |body: &Body| match case.flow.wall(body) {
+    let wall_condition = |body: &Body| match case.flow.wall(body) {
         Wall::Slip => WallCondition::Slip,
         Wall::Adiabatic => WallCondition::Adiabatic,
         Wall::Temperature { value } => WallCondition::Temperature(value.0 / kelvin),
     };
     let viscosity = viscous.viscosity / (scales.density * scales.sound_speed);
     let medium = Newtonian { viscosity, sutherland: viscous.sutherland, prandtl: viscous.prandtl };
-    Some(ViscousModel { medium, contacts: case.bodies.iter().map(contact).collect() })
+    Some(ViscousModel { medium, wall_conditions: case.bodies.iter().map(wall_condition).collect() })
 }
 
 /// How the particles of a cloud follow the bodies.
-fn carriage<const D: usize>(
+fn cloud_motion<const D: usize>(
     case: &Case,
     surface: Option<&Surface<D>>,
     cloud: &Cloud<D>,
@@ -257,12 +257,12 @@ fn carriage<const D: usize>(
     let laws = || (0..motions.len()).map(|b| motions.of(b).clone()).collect::<Vec<BodyMotion<D>>>();
     let particles = case.particles();
     if case.moves() && particles == ParticleMotion::Lagrangian {
-        let habitat = Arc::new(BackgroundDomain::new(case, surface, cloud)?);
+        let domain = Arc::new(BackgroundDomain::new(case, surface, cloud)?);
         let places = cloud.x[..cloud.n_rows()].to_vec();
         return Ok(CloudMotion::Travel(Travel {
-            habitat,
+            domain,
             laws: laws(),
-            stand: Arc::new(ParticleKinematics { places, ..ParticleKinematics::default() }),
+            kinematics: Arc::new(ParticleKinematics { places, ..ParticleKinematics::default() }),
             since: 0.0,
         }));
     }
@@ -271,8 +271,8 @@ fn carriage<const D: usize>(
         ParticleMotion::Rigid => CloudMotion::Rigid(motions.cloud().clone()),
         _ => {
             let until = motions.period().or_else(|| case.time.end(None)).unwrap_or_default();
-            let (laws, skin) = (laws(), Arc::new(DeformingSurface::new(cloud, &laws())));
-            CloudMotion::Along { path: Arc::new(MotionBlending::new(cloud, &laws, until)), laws, skin }
+            let (laws, deforming_surface) = (laws(), Arc::new(DeformingSurface::new(cloud, &laws())));
+            CloudMotion::Along { path: Arc::new(MotionBlending::new(cloud, &laws, until)), laws, deforming_surface }
         }
     })
 }
@@ -352,7 +352,7 @@ pub(super) fn transfer<const D: usize>(
     old.fill_gradients(&frame, &mut work);
     let probe = Probe::new(old, &work, surface);
     let mut u = next.fluid.start();
-    let cloud = &next.fluid.shape.cloud;
+    let cloud = &next.fluid.discretisation.cloud;
     crate::math::sweep::sweep_rows(&mut u, D + 2, |i, row| {
         let found = probe.at(&cloud.x[i]).filter(crate::physics::Primitive::is_physical);
         if let Some(q) = found {

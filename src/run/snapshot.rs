@@ -55,7 +55,7 @@ impl LoadFrame {
     /// The axes at the time of `frame`: the point of the moment travels with the first body.
     pub(super) fn axes_in<const D: usize>(&self, fluid: &Fluid<D>, frame: &Frame<D>) -> LoadAxes {
         let mut axes = self.axes(fluid);
-        let carried = fluid.carriage.body(0, frame.time).point(&Vector::from_fn(|d| axes.moment_point[d]));
+        let carried = fluid.cloud_motion.body(0, frame.time).point(&Vector::from_fn(|d| axes.moment_point[d]));
         axes.moment_point = carried.to_3d();
         axes
     }
@@ -68,7 +68,7 @@ impl LoadFrame {
         work: &Work<D>,
     ) -> Coefficients {
         let axes = self.axes_in(fluid, frame);
-        let (cloud, far) = (&frame.shape.cloud, fluid.far_field.pressure());
+        let (cloud, far) = (&frame.discretisation.cloud, fluid.far_field.pressure());
         let mut load = Load::default();
         for (i, wall) in cloud.interface_range().zip(&cloud.interface) {
             let push = frame.outward(&(wall.area * (far - work.state[i].pressure)));
@@ -94,7 +94,7 @@ pub(super) fn wall_load<const D: usize>(
     axes: &LoadAxes,
     chosen: impl Fn(usize) -> bool,
 ) -> Load {
-    let cloud = &fluid.shape.cloud;
+    let cloud = &fluid.discretisation.cloud;
     let far = fluid.far_field.pressure();
     let (mut points, mut areas, mut excess) = (Vec::new(), Vec::new(), Vec::new());
     for (w, i) in cloud.interface_range().enumerate().filter(|(w, _)| chosen(*w)) {
@@ -148,7 +148,7 @@ pub(super) fn pressure_coefficient<const D: usize>(q: &Primitive<D>, free: &Prim
 
 /// All particles without images, with everything that a field file holds.
 pub(super) fn field<const D: usize>(case: &Case, fluid: &Fluid<D>, work: &Work<D>) -> Snapshot {
-    let cloud = &fluid.shape.cloud;
+    let cloud = &fluid.discretisation.cloud;
     let n = cloud.n_real();
     let (free, units) = (free_stream::<D>(case), Units::of(case));
     let column = |f: &dyn Fn(usize) -> f64| (0..n).map(f).collect::<Vec<f64>>();

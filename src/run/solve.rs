@@ -1,10 +1,10 @@
 //! One stage from its start to its end: the integrator, watched.
 use super::harmonic::balance;
-use super::journal::{NEARLY, RunRecorder};
+use super::load_crosscheck::MOMENTS;
 use super::persist::{FILE, Position, Saved};
+use super::run_recorder::{NEARLY, RunRecorder};
 use super::setup::{Solver, control, harmonic_prelude, inner_control, plan, prelude};
 use super::snapshot::LoadFrame;
-use super::twice::MOMENTS;
 use super::{RunError, outputs};
 use crate::case::{self, Case, Explicit as Marching, RungeKutta, Steady, Temporal};
 use crate::math::sweep::sum;
@@ -51,16 +51,16 @@ pub(super) fn solve<const D: usize>(
     start: Start,
     at: &Position<'_>,
     last: bool,
-    journal: &mut RunRecorder<'_>,
+    recorder: &mut RunRecorder<'_>,
 ) -> Solved<D> {
     let marches = at.stages[at.stage].march;
     match &case.time {
-        Temporal::Steady(steady) => relax(steady, solver, start, at, last, journal),
-        Temporal::Dual(dual) if !marches => relax(&prelude(dual), solver, start, at, false, journal),
-        Temporal::Dual(dual) => march_implicitly(dual, solver, start, at, journal),
-        Temporal::Explicit(marching) => march_explicitly(marching, solver, start, at, journal),
-        Temporal::Harmonics(plan) if !marches => relax(&harmonic_prelude(plan), solver, start, at, false, journal),
-        Temporal::Harmonics(plan) => balance(plan, solver, start, at, journal),
+        Temporal::Steady(steady) => relax(steady, solver, start, at, last, recorder),
+        Temporal::Dual(dual) if !marches => relax(&prelude(dual), solver, start, at, false, recorder),
+        Temporal::Dual(dual) => march_implicitly(dual, solver, start, at, recorder),
+        Temporal::Explicit(marching) => march_explicitly(marching, solver, start, at, recorder),
+        Temporal::Harmonics(plan) if !marches => relax(&harmonic_prelude(plan), solver, start, at, false, recorder),
+        Temporal::Harmonics(plan) => balance(plan, solver, start, at, recorder),
     }
 }
 
@@ -70,7 +70,7 @@ fn relax<const D: usize>(
     start: Start,
     at: &Position<'_>,
     last: bool,
-    journal: &mut RunRecorder<'_>,
+    recorder: &mut RunRecorder<'_>,
 ) -> Solved<D> {
     let fluid = &solver.fluid;
     let (u, resume) = match start {
@@ -80,9 +80,9 @@ fn relax<const D: usize>(
     let fresh = resume.is_none();
     let mut relax = Relax::new(fluid, control(steady, D), u, &fluid.start(), resume);
     let orders = if last { steady.orders } else { steady.orders.min(EARLY_ORDERS) };
-    journal.work.begin(relax.evaluations);
+    recorder.work.begin(relax.evaluations);
     if fresh {
-        journal.save(at, 0.0, &relax.u, relax.resume())?;
+        recorder.save(at, 0.0, &relax.u, relax.resume())?;
     }
     let cycle = at.stages[at.stage].cycle;
     // a checkpoint may have been written by the very iteration that reached the goal
@@ -92,42 +92,48 @@ fn relax<const D: usize>(
         let step = match relax.advance() {
             Ok(step) => step,
             Err(e) => {
-                journal.save(at, 0.0, &relax.u, relax.resume())?;
-                return Err(journal.failed(e));
+                recorder.save(at, 0.0, &relax.u, relax.resume())?;
+                return Err(recorder.failed(e));
             }
         };
-        journal.count();
-        journal.work.add(relax.evaluations, fluid.shape.cloud.n_fluid);
+        recorder.count();
+        recorder.work.add(relax.evaluations, fluid.discretisation.cloud.n_fluid);
         let (frame, work, state) = relax.parts();
-        let loads = coefficients(fluid, journal.axes(), frame, state, work);
-        journal.record((cycle, 0), &step, loads, (orders, -step.residual.log10()), fluid)?;
-        if journal.due(relax.iteration) {
-            journal.save(at, 0.0, &relax.u, relax.resume())?;
+        let loads = coefficients(fluid, recorder.axes(), frame, state, work);
+        recorder.record((cycle, 0), &step, loads, (orders, -step.residual.log10()), fluid)?;
+        if recorder.due(relax.iteration) {
+            recorder.save(at, 0.0, &relax.u, relax.resume())?;
         }
         reached = step.residual <= 10f64.powf(-orders);
         if reached {
             break;
         }
-        if journal.stopped() && !rests(&relax) {
-            journal.save(at, 0.0, &relax.u, relax.resume())?;
+        if recorder.stopped() && !rests(&relax) {
+            recorder.save(at, 0.0, &relax.u, relax.resume())?;
             return Ok(None);
         }
     }
     if !reached && rests(&relax) {
         let orders = -relax.drop().log10();
-        journal.note(&format!(
+        recorder.note(&format!(
             "the flow has not come nearer to a steady one for {PATIENCE} iterations, at {orders:.1} orders: the run goes on from there"
         ));
     }
-    (journal.drop, journal.converged) = (relax.drop(), reached);
-    (journal.bytes, journal.linear) = (relax.bytes(), relax.linear);
+    (recorder.drop, recorder.converged) = (relax.drop(), reached);
+    (recorder.bytes, recorder.linear) = (relax.bytes(), relax.linear);
     let (frame, work, state) = relax.parts();
-    let loads = coefficients(fluid, journal.axes(), frame, state, work).unwrap_or_default();
+    let loads = coefficients(fluid, recorder.axes(), frame, state, work).unwrap_or_default();
     if at.stages[at.stage].factor == 1.0 {
-        journal.cycles.push([f64::from(cycle), fluid.shape.cloud.n_real() as f64, loads.cl, loads.cd, loads.cm]);
+        recorder.cycles.push([
+            f64::from(cycle),
+            fluid.discretisation.cloud.n_real() as f64,
+            loads.cl,
+            loads.cd,
+            loads.cm,
+        ]);
     }
     if last {
-        journal.save(at, 0.0, &relax.u, relax.resume())?;
+        recorder.save(at, 0.0, &relax.u, relax.resume())?;
     }
     let (frame, _, state) = relax.parts();
     Ok(Some((state.to_vec(), frame.clone())))
@@ -137,19 +143,19 @@ fn relax<const D: usize>(
 fn beginning<const D: usize>(
     start: Start,
     solver: &mut Solver<D>,
-    journal: &mut RunRecorder<'_>,
+    recorder: &mut RunRecorder<'_>,
 ) -> Result<(Past, Vec<f64>), RunError> {
     let (past, u) = match start {
         Start::Fresh(u) => (Past::default(), u),
         Start::Resume(s) => {
-            if let Some(fluid) = s.roaming.map(|r| r.resume(&solver.fluid)).transpose()?.flatten() {
+            if let Some(fluid) = s.lagrangian.map(|r| r.resume(&solver.fluid)).transpose()?.flatten() {
                 solver.fluid = fluid;
             }
             (s.past, s.state)
         }
     };
-    if past.iteration == 0 && journal.start_totals.is_empty() {
-        journal.start_totals = totals(&solver.fluid, &u);
+    if past.iteration == 0 && recorder.start_totals.is_empty() {
+        recorder.start_totals = totals(&solver.fluid, &u);
     }
     Ok((past, u))
 }
@@ -159,9 +165,9 @@ fn march_explicitly<const D: usize>(
     solver: &mut Solver<D>,
     start: Start,
     at: &Position<'_>,
-    journal: &mut RunRecorder<'_>,
+    recorder: &mut RunRecorder<'_>,
 ) -> Solved<D> {
-    let Some(until) = marching.end(journal.period) else {
+    let Some(until) = marching.end(recorder.period) else {
         return Err(RunError::Folder("`[time.explicit]` counts periods of a motion that has none".into()));
     };
     let method = match marching.method {
@@ -169,7 +175,7 @@ fn march_explicitly<const D: usize>(
         RungeKutta::Rk4 => Method::Rk4,
     };
     let goal = (until, marching.steps, marching.periodic_tolerance);
-    march_on(&Plan::Explicit(method, (marching.cfl, until)), goal, (solver, start), at, journal)
+    march_on(&Plan::Explicit(method, (marching.cfl, until)), goal, (solver, start), at, recorder)
 }
 
 /// How to march.
@@ -197,23 +203,23 @@ fn march_on<const D: usize>(
     goal: (f64, u32, Option<f64>),
     (solver, start): (&mut Solver<D>, Start),
     at: &Position<'_>,
-    journal: &mut RunRecorder<'_>,
+    recorder: &mut RunRecorder<'_>,
 ) -> Solved<D> {
-    let mut begin = beginning(start, solver, journal)?;
+    let mut begin = beginning(start, solver, recorder)?;
     loop {
         let fluid = &solver.fluid;
         let mut owned = plan.marcher(fluid, begin);
         let marcher = owned.as_mut();
-        let pause = march(marcher, goal, solver, at, journal)?;
+        let pause = march(marcher, goal, solver, at, recorder)?;
         if pause == Pause::Stop {
             return Ok(None);
         }
         let mut past = marcher.past().clone();
-        let Some(renewed) = renewed(marcher, fluid, at, journal)? else { return Ok(Some(ended(marcher))) };
-        [past.before, past.older] = renewed.past;
-        begin = (past, renewed.u);
+        let Some(reclouded) = reclouded(marcher, fluid, at, recorder)? else { return Ok(Some(ended(marcher))) };
+        [past.before, past.older] = reclouded.past;
+        begin = (past, reclouded.u);
         drop(owned);
-        solver.fluid = renewed.fluid;
+        solver.fluid = reclouded.fluid;
         if pause == Pause::End {
             solver.fluid.measure();
             let frame = solver.fluid.frame_after(&begin.1);
@@ -223,20 +229,20 @@ fn march_on<const D: usize>(
 }
 
 /// The cloud of a march built anew; `None` where particles do not travel with the fluid.
-fn renewed<const D: usize>(
+fn reclouded<const D: usize>(
     marcher: &mut dyn March<Fluid<D>>,
     fluid: &Fluid<D>,
     at: &Position<'_>,
-    journal: &mut RunRecorder<'_>,
+    recorder: &mut RunRecorder<'_>,
 ) -> Result<Option<Reclouded<D>>, RunError> {
     let time = marcher.past().time;
     let past = marcher.past().clone();
     let (frame, work, u) = marcher.parts();
-    match fluid.renewed(frame, (u, [&past.before, &past.older]), work, &mut journal.turnover) {
-        Ok(renewed) => Ok(renewed),
+    match fluid.reclouded(frame, (u, [&past.before, &past.older]), work, &mut recorder.ledger) {
+        Ok(reclouded) => Ok(reclouded),
         Err(source) => {
-            journal.keep(at, marcher, fluid)?;
-            Err(RunError::Recloud { time, source, checkpoint: journal.out().join(FILE).display().to_string() })
+            recorder.keep(at, marcher, fluid)?;
+            Err(RunError::Recloud { time, source, checkpoint: recorder.out().join(FILE).display().to_string() })
         }
     }
 }
@@ -252,11 +258,11 @@ fn march_implicitly<const D: usize>(
     solver: &mut Solver<D>,
     start: Start,
     at: &Position<'_>,
-    journal: &mut RunRecorder<'_>,
+    recorder: &mut RunRecorder<'_>,
 ) -> Solved<D> {
-    let plan = plan(dual, journal.period)?;
+    let plan = plan(dual, recorder.period)?;
     let goal = (plan.until, u32::MAX, dual.periodic_tolerance);
-    march_on(&Plan::Dual(inner_control(dual, D), plan), goal, (solver, start), at, journal)
+    march_on(&Plan::Dual(inner_control(dual, D), plan), goal, (solver, start), at, recorder)
 }
 
 /// Steps until the end, a limit on their number, a periodic state, or a worn cloud.
@@ -265,17 +271,17 @@ fn march<const D: usize>(
     (until, limit, tolerance): (f64, u32, Option<f64>),
     solver: &Solver<D>,
     at: &Position<'_>,
-    journal: &mut RunRecorder<'_>,
+    recorder: &mut RunRecorder<'_>,
 ) -> Result<Pause, RunError> {
     let fluid = &solver.fluid;
     if marcher.past().iteration == 0 {
-        journal.keep(at, marcher, fluid)?;
+        recorder.keep(at, marcher, fluid)?;
     }
     // a checkpoint may have been written by the very step that ended the march
     let past = marcher.past();
-    let settled = |t: f64| journal.is_periodic(past.time, past.time - past.last, t);
+    let settled = |t: f64| recorder.is_periodic(past.time, past.time - past.last, t);
     let mut periodic = past.iteration > 0 && tolerance.is_some_and(settled);
-    journal.work.begin(marcher.evaluations());
+    recorder.work.begin(marcher.evaluations());
     while !marcher.finished() && !periodic && marcher.past().iteration < limit {
         if fluid.is_worn(marcher.parts().0) {
             return Ok(Pause::Worn);
@@ -284,38 +290,38 @@ fn march<const D: usize>(
         let step = match marcher.advance() {
             Ok(step) => step,
             Err(e) => {
-                journal.keep(at, marcher, fluid)?;
-                return Err(journal.failed(e));
+                recorder.keep(at, marcher, fluid)?;
+                return Err(recorder.failed(e));
             }
         };
-        journal.count();
-        journal.work.add(marcher.evaluations(), fluid.shape.cloud.n_fluid);
+        recorder.count();
+        recorder.work.add(marcher.evaluations(), fluid.discretisation.cloud.n_fluid);
         let inner = marcher.inner();
         let (frame, work, state) = marcher.parts();
-        let loads = coefficients(fluid, journal.axes(), frame, state, work);
-        journal.record((0, inner), &step, loads, (until, step.time), fluid)?;
-        let parts = journal.period.map(|p| p / f64::from(MOMENTS));
+        let loads = coefficients(fluid, recorder.axes(), frame, state, work);
+        recorder.record((0, inner), &step, loads, (until, step.time), fluid)?;
+        let parts = recorder.period.map(|p| p / f64::from(MOMENTS));
         if parts.is_some_and(|part| passed(step.time, part) > passed(before, part)) {
-            journal.compare((0, step.time), fluid, (frame, state, &mut *work))?;
+            recorder.compare((0, step.time), fluid, (frame, state, &mut *work))?;
         }
-        write_due(solver, (frame, work), (before, step.time), journal)?;
-        periodic = tolerance.is_some_and(|t| journal.is_periodic(step.time, before, t));
-        if journal.due(step.iteration) {
-            journal.keep(at, marcher, fluid)?;
+        write_due(solver, (frame, work), (before, step.time), recorder)?;
+        periodic = tolerance.is_some_and(|t| recorder.is_periodic(step.time, before, t));
+        if recorder.due(step.iteration) {
+            recorder.keep(at, marcher, fluid)?;
         }
-        if journal.stopped() && !marcher.finished() && !periodic {
-            journal.keep(at, marcher, fluid)?;
+        if recorder.stopped() && !marcher.finished() && !periodic {
+            recorder.keep(at, marcher, fluid)?;
             return Ok(Pause::Stop);
         }
     }
-    let settled = periodic || tolerance.is_none_or(|t| !journal.unsettled(t));
-    (journal.time, journal.converged) = (marcher.past().time, (marcher.finished() || periodic) && settled);
-    (journal.bytes, journal.linear) = (marcher.bytes(), marcher.linear());
-    (journal.unconverged, journal.halved) = (marcher.past().unconverged, marcher.past().halved);
-    if journal.halved > 0 {
-        journal.note(&format!("steps in time were halved {} times, where Newton's method stalled", journal.halved));
+    let settled = periodic || tolerance.is_none_or(|t| !recorder.unsettled(t));
+    (recorder.time, recorder.converged) = (marcher.past().time, (marcher.finished() || periodic) && settled);
+    (recorder.bytes, recorder.linear) = (marcher.bytes(), marcher.linear());
+    (recorder.unconverged, recorder.halved) = (marcher.past().unconverged, marcher.past().halved);
+    if recorder.halved > 0 {
+        recorder.note(&format!("steps in time were halved {} times, where Newton's method stalled", recorder.halved));
     }
-    journal.keep(at, marcher, fluid)?;
+    recorder.keep(at, marcher, fluid)?;
     Ok(Pause::End)
 }
 
@@ -329,15 +335,15 @@ fn write_due<const D: usize>(
     solver: &Solver<D>,
     (frame, work): (&Frame<D>, &mut Work<D>),
     (before, now): (f64, f64),
-    journal: &RunRecorder<'_>,
+    recorder: &RunRecorder<'_>,
 ) -> Result<(), RunError> {
-    let (case, out, fluid) = (journal.case(), journal.out(), &solver.fluid);
-    if let Some(interval) = journal.interval()
+    let (case, out, fluid) = (recorder.case(), recorder.out(), &solver.fluid);
+    if let Some(interval) = recorder.interval()
         && passed(now, interval) > passed(before, interval)
     {
         outputs::write_series(case, out, fluid, (frame, work), interval)?;
     }
-    if let (Some(surface), Some(period)) = (&solver.film, journal.period) {
+    if let (Some(surface), Some(period)) = (&solver.film, recorder.period) {
         let part = |t: f64| passed(t, period / f64::from(outputs::FILM));
         if part(now) > part(before) {
             outputs::write_film(case, out, (fluid, surface), (frame, work), part(now))?;
@@ -354,11 +360,11 @@ pub(super) fn coefficients<const D: usize>(
     state: &[f64],
     work: &mut Work<D>,
 ) -> Option<Coefficients> {
-    if fluid.shape.cloud.interface.is_empty() {
+    if fluid.discretisation.cloud.interface.is_empty() {
         return None;
     }
     fluid.fill_states(frame, state, work);
-    if fluid.friction.is_some() {
+    if fluid.viscous_model.is_some() {
         fluid.fill_gradients(frame, work);
     }
     Some(axes.coefficients_in(fluid, frame, work))
@@ -368,5 +374,5 @@ pub(super) fn coefficients<const D: usize>(
 pub(super) fn totals<const D: usize>(fluid: &Fluid<D>, u: &[f64]) -> Vec<f64> {
     let n = D + 2;
     let volume = fluid.volumes();
-    (0..n).map(|c| sum(fluid.shape.cloud.n_fluid, |i| volume[i] * u[i * n + c])).collect()
+    (0..n).map(|c| sum(fluid.discretisation.cloud.n_fluid, |i| volume[i] * u[i * n + c])).collect()
 }

@@ -21,9 +21,9 @@ const LAYERS: f64 = 4.0;
 
 /// Sources of refinement from the solution in `work`, none finer than `finest`.
 pub fn sources<const D: usize>(fluid: &Fluid<D>, work: &Work<D>, sensors: &[Sensor], finest: f64) -> Vec<Source<D>> {
-    let n = fluid.shape.cloud.n_fluid;
+    let n = fluid.discretisation.cloud.n_fluid;
     let mut size = vec![0.0f64; n];
-    let op = &fluid.shape.operators;
+    let op = &fluid.discretisation.operators;
     sweep_parts(op.fluid_parts(), 1, &mut size, &|k, out| {
         let start = op.parts[k].start;
         for e in op.edges(k) {
@@ -37,9 +37,13 @@ pub fn sources<const D: usize>(fluid: &Fluid<D>, work: &Work<D>, sensors: &[Sens
         }
     });
     let want = |i: usize| {
-        let h = fluid.shape.cloud.spacing[i];
+        let h = fluid.discretisation.cloud.spacing[i];
         let spacing = if size[i] > 1.0 { 0.5 * h } else { h };
-        (size[i] > KEEP).then(|| Source { x: fluid.shape.cloud.x[i], spacing: spacing.max(finest), layers: LAYERS })
+        (size[i] > KEEP).then(|| Source {
+            x: fluid.discretisation.cloud.x[i],
+            spacing: spacing.max(finest),
+            layers: LAYERS,
+        })
     };
     (0..n).filter_map(want).collect()
 }
@@ -47,7 +51,7 @@ pub fn sources<const D: usize>(fluid: &Fluid<D>, work: &Work<D>, sensors: &[Sens
 /// One sensor across one edge, in units of its threshold.
 fn measure<const D: usize>(fluid: &Fluid<D>, work: &Work<D>, sensor: Sensor, i: usize, j: usize) -> f64 {
     let (a, b) = (&work.state[i], &work.state[j]);
-    let d = fluid.shape.cloud.x[j] - fluid.shape.cloud.x[i];
+    let d = fluid.discretisation.cloud.x[j] - fluid.discretisation.cloud.x[i];
     let sound = fluid.gas.sound_speed(a);
     match sensor {
         Sensor::Shock => (a.pressure - b.pressure).abs() / (0.5 * (a.pressure + b.pressure)) / SHOCK,

@@ -9,8 +9,8 @@
 //! on the wall (v − w)·n = 0; for moments, (v − w) × m φ is added because T is not symmetric. dm/dt is the change that a particle sees, in steady flow zero; fluxes of mass and energy are
 //! summed in the same way. Sides A of the domain count where the zone is cut by them. Volumes of particles beside a wall are not
 //! known to all digits; what they lack together follows from the walls and goes to them by area and thickness.
+use super::discretisation::{CloudMotion, Frame};
 use super::fluid::{Fluid, Work};
-use super::shape::{CloudMotion, Frame};
 use super::start::free_stream;
 use crate::case::Case;
 use crate::math::sweep::{sweep_parts, sweep_slots};
@@ -98,22 +98,22 @@ pub struct Balance<'a, const D: usize> {
 impl<'a, const D: usize> Balance<'a, D> {
     /// States and gradients in `work` are those of `frame`; `None` without bodies.
     pub fn new(case: &Case, fluid: &'a Fluid<D>, (frame, work): (&'a Frame<D>, &'a Work<D>)) -> Option<Self> {
-        let range = frame.shape.cloud.interface_range();
+        let range = frame.discretisation.cloud.interface_range();
         if range.is_empty() {
             return None;
         }
         let places: Vec<Vector<D>> = range.clone().map(|i| frame.place(i)).collect();
-        let spacing = range.map(|i| frame.shape.cloud.spacing[i]).fold(0.0, f64::max);
+        let spacing = range.map(|i| frame.discretisation.cloud.spacing[i]).fold(0.0, f64::max);
         let zone = Zone::around(Bounds::around(&places), spacing);
         Some(Self { fluid, frame, work, free: free_stream(case), zone })
     }
 
     /// What the particles add, and what lies between them and the walls. `rate` is dU/dt of the fluid particles; empty in steady flow.
     pub fn parts(&self, rate: &[f64]) -> Vec<Part<D>> {
-        let (frame, cloud) = (self.frame, &self.frame.shape.cloud);
+        let (frame, cloud) = (self.frame, &self.frame.discretisation.cloud);
         let spread = self.spread();
         let volume = self.fluid.volumes();
-        let first = self.fluid.shape.cloud.interface.len();
+        let first = self.fluid.discretisation.cloud.interface.len();
         let gathered = |i: usize| {
             let own = if rate.is_empty() { Conserved::ZERO } else { Conserved::load(&rate[i * (D + 2)..]) };
             own.momentum - self.free.velocity * own.density + self.momentum(i) * spread.get(i).map_or(0.0, |s| s.1)
@@ -152,7 +152,7 @@ impl<'a, const D: usize> Balance<'a, D> {
     /// Volume that the particles beside the walls lack, over the sum of the shares of the walls: ∫ ∇·(φ x) dV is known from the
     /// walls alone. `None` where sides of the domain cut the zone.
     fn missing(&self, volume: &impl Fn(usize) -> f64) -> Option<f64> {
-        let (frame, cloud) = (self.frame, &self.frame.shape.cloud);
+        let (frame, cloud) = (self.frame, &self.frame.discretisation.cloud);
         let (zone, domain) = (self.zone.bounds(), self.fluid.reference().cloud.tree.bounds());
         if !(domain.contains(&zone.min) && domain.contains(&zone.max)) {
             return None;
@@ -172,13 +172,13 @@ impl<'a, const D: usize> Balance<'a, D> {
 
     /// The part of interface particle `w` in volume that is missing: rows of particles are a spacing thick.
     fn share(&self, w: usize) -> f64 {
-        let cloud = &self.frame.shape.cloud;
+        let cloud = &self.frame.discretisation.cloud;
         cloud.interface[w].area.norm() * cloud.spacing[cloud.n_fluid + w]
     }
 
     /// The fluid particle nearest to interface particle `w` of those it is fitted to.
     fn beside(&self, w: usize) -> usize {
-        let cloud = &self.frame.shape.cloud;
+        let cloud = &self.frame.discretisation.cloud;
         let x = cloud.x[cloud.n_fluid + w];
         let near = cloud.wall_clouds.of(w).iter().map(|j| *j as usize);
         let nearest = near.min_by(|a, b| (cloud.x[*a] - x).norm_squared().total_cmp(&(cloud.x[*b] - x).norm_squared()));
@@ -221,8 +221,8 @@ impl<'a, const D: usize> Balance<'a, D> {
 
     /// Volume of each fluid particle over that before any motion, and ∇·w; empty where both are as for a body.
     fn spread(&self) -> Vec<(f64, f64)> {
-        let (frame, now) = (self.frame, &self.frame.shape);
-        let stretched = match self.fluid.carriage {
+        let (frame, now) = (self.frame, &self.frame.discretisation);
+        let stretched = match self.fluid.cloud_motion {
             CloudMotion::Still | CloudMotion::Rigid(_) => return Vec::new(),
             CloudMotion::Along { .. } => self.fluid.stretch(frame),
             CloudMotion::Travel(_) => vec![1.0; now.cloud.n_fluid],
@@ -290,7 +290,7 @@ mod tests {
         }
         let balance = Balance::new(case, fluid, (&frame, &work)).unwrap();
         let sum = balance.parts(&du).iter().fold(Vector::ZERO, |s, p| s + p.force);
-        let walls = frame.shape.cloud.interface_range();
+        let walls = frame.discretisation.cloud.interface_range();
         let n = walls.len() as f64;
         (sum, walls.map(|i| frame.place(i)).fold(Vector::ZERO, |s, x| s + x * (1.0 / n)))
     }

@@ -54,31 +54,31 @@ pub struct Particles<'a, const D: usize> {
     pub outer: (usize, usize),
 }
 
-/// `D` + 2 numbers of every edge.
+/// The `D` + 2 numbers of a state or a flux of every edge: density, velocity or momentum, pressure or energy.
 struct StateLanes<const D: usize> {
-    first: Lanes,
+    density: Lanes,
     vector: [Lanes; D],
-    last: Lanes,
+    energy: Lanes,
 }
 
 impl<const D: usize> StateLanes<D> {
-    const ZERO: Self = Self { first: [0.0; LANES], vector: [[0.0; LANES]; D], last: [0.0; LANES] };
+    const ZERO: Self = Self { density: [0.0; LANES], vector: [[0.0; LANES]; D], energy: [0.0; LANES] };
 
     #[inline(always)]
     fn primitive(&self, k: usize) -> Primitive<D> {
-        Primitive { density: self.first[k], velocity: take(&self.vector, k), pressure: self.last[k] }
+        Primitive { density: self.density[k], velocity: take(&self.vector, k), pressure: self.energy[k] }
     }
 
     #[inline(always)]
     fn conserved(&self, k: usize) -> Conserved<D> {
-        Conserved { density: self.first[k], momentum: take(&self.vector, k), energy: self.last[k] }
+        Conserved { density: self.density[k], momentum: take(&self.vector, k), energy: self.energy[k] }
     }
 
     #[inline(always)]
-    fn put(&mut self, k: usize, first: f64, vector: &Vector<D>, last: f64) {
-        self.first[k] = first;
+    fn put(&mut self, k: usize, density: f64, vector: &Vector<D>, energy: f64) {
+        self.density[k] = density;
         put(&mut self.vector, k, vector);
-        self.last[k] = last;
+        self.energy[k] = energy;
     }
 }
 

@@ -33,18 +33,18 @@ use crate::physics::{Conserved, Gas, Primitive};
 use crate::system::{Fault, Moment, System};
 
 use super::boundary::{WallMotion, slip_wall};
+use super::discretisation::{CloudMotion, Discretisation, Frame, LagrangianStep};
 use super::edges::{FluxScheme, Particles, edge_fluxes};
 use super::reconstruct::{Gradient, Limit, Reconstruction, Unlimited, VanAlbada, Venkatakrishnan};
-use super::shape::{CloudMotion, Discretisation, Frame, LagrangianStep};
 use super::start::Field;
 use super::viscous::ViscousModel;
 
 /// The compressible Euler equations on a cloud, with friction the Navier-Stokes equations.
 pub struct Fluid<const D: usize> {
     /// Particles, weights and fits before any motion.
-    pub shape: Arc<Discretisation<D>>,
+    pub discretisation: Arc<Discretisation<D>>,
     /// How particles move.
-    pub carriage: CloudMotion<D>,
+    pub cloud_motion: CloudMotion<D>,
     /// Where the particles come from, when this is a view of a moving cloud at one time.
     pub before: Option<Before<D>>,
     /// The gas.
@@ -60,7 +60,7 @@ pub struct Fluid<const D: usize> {
     /// The gas keeps the entropy of the free stream.
     pub isentropic: bool,
     /// Viscosity; `None` for an inviscid gas.
-    pub friction: Option<Arc<ViscousModel>>,
+    pub viscous_model: Option<Arc<ViscousModel>>,
     /// State of the far field.
     pub far_field: Arc<dyn FarField<D>>,
     /// The field at the start, which some sides hold for ever.
@@ -71,7 +71,7 @@ pub struct Fluid<const D: usize> {
 #[derive(Clone)]
 pub struct Before<const D: usize> {
     /// Particles before any motion.
-    pub shape: Arc<Discretisation<D>>,
+    pub discretisation: Arc<Discretisation<D>>,
     /// Time.
     pub time: f64,
     /// The motion of all particles as one, where that is what they do.
@@ -100,25 +100,29 @@ impl<const D: usize> Fluid<D> {
     /// A view of a moving cloud as it stands in `frame`: particles where they are, states in the axes of the case, for
     /// those who watch. `None` when nothing moves and the fluid is its own view.
     pub fn seen(&self, frame: &Frame<D>, work: &Work<D>) -> Option<(Self, Work<D>)> {
-        if self.carriage.is_still() {
+        if self.cloud_motion.is_still() {
             return None;
         }
-        let (shape, turn) = (&frame.shape, |v: &Vector<D>| frame.outward(v));
-        let shape = frame.turn.as_ref().map_or_else(|| Arc::clone(shape), |pose| Arc::new(shape.carried(pose)));
+        let (discretisation, turn) = (&frame.discretisation, |v: &Vector<D>| frame.outward(v));
+        let discretisation = frame
+            .turn
+            .as_ref()
+            .map_or_else(|| Arc::clone(discretisation), |pose| Arc::new(discretisation.carried(pose)));
         let state = work.state.iter().map(|q| Primitive { velocity: turn(&q.velocity), ..*q }).collect();
         let gradient = work.gradient.iter().map(|g| g.turned(&turn)).collect();
         let walls = frame.walls.iter().map(|w| w.turned(turn, |v| frame.inward(v))).collect();
-        let (shape_before, pose) = (Arc::clone(&self.shape), frame.turn);
-        let before = Some(Before { shape: shape_before, time: frame.time, pose, walls: Arc::new(walls) });
+        let (discretisation_before, pose) = (Arc::clone(&self.discretisation), frame.turn);
+        let before =
+            Some(Before { discretisation: discretisation_before, time: frame.time, pose, walls: Arc::new(walls) });
         let (far_field, held) = (Arc::clone(&self.far_field), Arc::clone(&self.held));
-        let (carriage, friction) = (self.carriage.clone(), self.friction.clone());
-        let seen = Self { shape, before, far_field, held, carriage, friction, ..*self };
+        let (cloud_motion, viscous_model) = (self.cloud_motion.clone(), self.viscous_model.clone());
+        let seen = Self { discretisation, before, far_field, held, cloud_motion, viscous_model, ..*self };
         Some((seen, Work { state, gradient }))
     }
 
     /// The state at the start.
     pub fn start(&self) -> Vec<f64> {
-        let cloud = &self.shape.cloud;
+        let cloud = &self.discretisation.cloud;
         let mut u = vec![0.0; self.len()];
         sweep_rows(&mut u, D + 2, |i, row| self.gas.conserved(&(self.held)(&cloud.x[i])).store(row));
         u
@@ -126,23 +130,23 @@ impl<const D: usize> Fluid<D> {
 
     /// Particles before any motion.
     pub fn reference(&self) -> &Discretisation<D> {
-        self.before.as_ref().map_or(&self.shape, |b| &b.shape)
+        self.before.as_ref().map_or(&self.discretisation, |b| &b.discretisation)
     }
 
     /// The place before any motion of what is at `x`.
     pub fn origin(&self, x: &Vector<D>) -> Vector<D> {
-        let carried = |b: &Before<D>| self.carriage.origin(x, b.time);
+        let carried = |b: &Before<D>| self.cloud_motion.origin(x, b.time);
         self.before.as_ref().map_or(*x, |b| b.pose.as_ref().map_or_else(|| carried(b), |p| p.inverse_point(x)))
     }
 
     /// Where the point `x` of body number `body` is.
     pub fn carried(&self, body: usize, x: &Vector<D>) -> Vector<D> {
-        self.before.as_ref().map_or(*x, |b| self.carriage.body(body, b.time).point(x))
+        self.before.as_ref().map_or(*x, |b| self.cloud_motion.body(body, b.time).point(x))
     }
 
-    /// Fills `work.state` for every particle from the evolved ones, in the axes of `frame.shape`.
+    /// Fills `work.state` for every particle from the evolved ones, in the axes of `frame.discretisation`.
     pub fn fill_states(&self, frame: &Frame<D>, u: &[f64], work: &mut Work<D>) {
-        let (cloud, fits) = (&frame.shape.cloud, &frame.shape.walls);
+        let (cloud, fits) = (&frame.discretisation.cloud, &frame.discretisation.walls);
         let (fluid, rest) = work.state.split_at_mut(cloud.n_fluid);
         let inward = |q: Primitive<D>| Primitive { velocity: frame.inward(&q.velocity), ..q };
         sweep(fluid, |i| inward(self.gas.primitive(&Conserved::load(&u[i * (D + 2)..]))));
@@ -159,9 +163,11 @@ impl<const D: usize> Fluid<D> {
         let moved = |w: usize| (frame.velocity_of(cloud.n_fluid + w), frame.walls.get(w));
         let slips = |w: usize| slip_wall((cloud, fits), &self.gas, w, moved(w), seen);
         // sides and walls are few particles, each of them much work
-        match self.friction {
+        match self.viscous_model {
             None => sweep_each(walls, slips),
-            Some(_) => sweep_each(walls, |w| self.stuck(&frame.shape, (w, frame), seen).unwrap_or_else(|| slips(w))),
+            Some(_) => {
+                sweep_each(walls, |w| self.stuck(&frame.discretisation, (w, frame), seen).unwrap_or_else(|| slips(w)))
+            }
         }
         let walls = &*walls;
         let (outer, images) = rest.split_at_mut(cloud.outer.len());
@@ -180,12 +186,12 @@ impl<const D: usize> Fluid<D> {
     }
 
     fn image_state(&self, q: &Primitive<D>, transform: u8) -> Primitive<D> {
-        Primitive { velocity: self.shape.cloud.transforms[transform as usize].direction(&q.velocity), ..*q }
+        Primitive { velocity: self.discretisation.cloud.transforms[transform as usize].direction(&q.velocity), ..*q }
     }
 
     /// Fills `work.gradient` from `work.state`.
     pub fn fill_gradients(&self, frame: &Frame<D>, work: &mut Work<D>) {
-        let (cloud, op) = (&frame.shape.cloud, &frame.shape.operators);
+        let (cloud, op) = (&frame.discretisation.cloud, &frame.discretisation.operators);
         let state = &work.state;
         let (rows, rest) = work.gradient.split_at_mut(cloud.n_rows());
         sweep_parts(&op.parts, 1, rows, &|k, out| {
@@ -230,15 +236,15 @@ impl<const D: usize> Fluid<D> {
     /// exact for linear fields, and with both of them a false flow through the layers, the difference times w, makes steps in
     /// time fail where w is large.
     pub(super) fn passes_by_faces(&self) -> bool {
-        self.conservative && !self.shape.cloud.layers.is_empty()
+        self.conservative && !self.discretisation.cloud.layers.is_empty()
     }
 
     /// Sums the edge fluxes of every fluid particle, weighted with volumes until the end so that no edge divides by one.
     fn fluxes(&self, flux: impl UpwindFlux<D>, limit: impl Limit, at: (&Frame<D>, &Work<D>), du: &mut [f64]) {
         let (frame, work) = at;
-        let (op, cloud) = (&frame.shape.operators, &frame.shape.cloud);
+        let (op, cloud) = (&frame.discretisation.operators, &frame.discretisation.cloud);
         let (gas, reconstruction, conservative) = (self.gas, self.reconstruction, self.conservative);
-        let medium = self.friction.as_ref().map(|f| f.medium);
+        let medium = self.viscous_model.as_ref().map(|f| f.medium);
         let rule =
             FluxScheme { gas, flux, limit, reconstruction, conservative, by_faces: self.passes_by_faces(), medium };
         let particles = Particles {
@@ -292,7 +298,7 @@ impl<const D: usize> Fluid<D> {
 
     /// Force of the pressure on all bodies in the axes of the case, from the wall states in `work`.
     pub fn pressure_force(&self, frame: &Frame<D>, work: &Work<D>) -> Vector<D> {
-        let cloud = &frame.shape.cloud;
+        let cloud = &frame.discretisation.cloud;
         let walls = &work.state[cloud.interface_range()];
         let far = self.far_field.pressure();
         let force = cloud.interface.iter().zip(walls).fold(Vector::ZERO, |f, (w, q)| f - w.area * (q.pressure - far));
@@ -330,18 +336,18 @@ impl<const D: usize> System for Fluid<D> {
     }
 
     fn len(&self) -> usize {
-        self.shape.cloud.n_fluid * (D + 2)
+        self.discretisation.cloud.n_fluid * (D + 2)
     }
 
     fn frame(&self, moment: &Moment<'_>, u: &[f64]) -> Frame<D> {
-        let cloud = &self.shape.cloud;
+        let cloud = &self.discretisation.cloud;
         let mut frame = Frame {
             time: moment.time(),
-            shape: Arc::clone(&self.shape),
+            discretisation: Arc::clone(&self.discretisation),
             turn: None,
             velocity: Arc::default(),
             walls: Arc::default(),
-            way: LagrangianStep::default(),
+            lagrangian_step: LagrangianStep::default(),
             outer: (0..cloud.outer.len()).map(|k| cloud.beside(k).map(|i| (self.held)(&cloud.x[i]))).collect(),
         };
         self.place(moment, &mut frame);
@@ -350,7 +356,7 @@ impl<const D: usize> System for Fluid<D> {
     }
 
     fn place(&self, moment: &Moment<'_>, frame: &mut Frame<D>) {
-        self.carriage.place(&self.shape, moment, frame);
+        self.cloud_motion.place(&self.discretisation, moment, frame);
         if matches!(moment, Moment::At { .. }) {
             frame.velocity = Arc::default();
             frame.walls = Arc::default();
@@ -358,7 +364,7 @@ impl<const D: usize> System for Fluid<D> {
     }
 
     fn set_off(&self, step: f64, u: &[f64], work: &mut Work<D>, frame: &mut Frame<D>) -> f64 {
-        if matches!(self.carriage, CloudMotion::Travel(_)) {
+        if matches!(self.cloud_motion, CloudMotion::Travel(_)) {
             self.choose_ways(step, u, work, frame)
         } else {
             f64::INFINITY
@@ -368,9 +374,9 @@ impl<const D: usize> System for Fluid<D> {
     fn follow(&self, u: &[f64], work: &mut Work<D>, frame: &mut Frame<D>) {
         self.fill_states(frame, u, work);
         let force = self.pressure_force(frame, work);
-        let cloud = &self.shape.cloud;
+        let cloud = &self.discretisation.cloud;
         let mut outer = std::mem::take(&mut frame.outer);
-        let still = self.carriage.is_still();
+        let still = self.cloud_motion.is_still();
         sweep_each_slot(&mut outer, |k, q| match cloud.outer[k].side {
             Side::FarField => *q = cloud.beside(k).map(|i| self.far_field.state(&frame.place(i), &force)),
             _ if still => {}
@@ -381,13 +387,13 @@ impl<const D: usize> System for Fluid<D> {
 
     fn work(&self) -> Work<D> {
         let blank = Primitive { density: 1.0, velocity: Vector::ZERO, pressure: 1.0 };
-        let n = self.shape.cloud.len();
+        let n = self.discretisation.cloud.len();
         Work { state: vec![blank; n], gradient: vec![Gradient::ZERO; n] }
     }
 
     fn rhs(&self, frame: &Frame<D>, u: &[f64], work: &mut Work<D>, du: &mut [f64]) {
         self.fill_states(frame, u, work);
-        if self.reconstruction.second_order || self.friction.is_some() {
+        if self.reconstruction.second_order || self.viscous_model.is_some() {
             self.fill_gradients(frame, work);
         }
         match self.flux {
@@ -403,8 +409,8 @@ impl<const D: usize> System for Fluid<D> {
 
     fn spectral_radius(&self, frame: &Frame<D>, u: &[f64], work: &mut Work<D>, rate: &mut [f64]) {
         self.fill_states(frame, u, work);
-        let (op, volume) = (&frame.shape.operators, &frame.shape.cloud.volume);
-        let mut sound = vec![0.0; frame.shape.cloud.n_fluid];
+        let (op, volume) = (&frame.discretisation.operators, &frame.discretisation.cloud.volume);
+        let mut sound = vec![0.0; frame.discretisation.cloud.n_fluid];
         sweep(&mut sound, |i| self.gas.sound_speed(&work.state[i]));
         let past = |i: usize| work.state[i].velocity - frame.velocity_of(i);
         let speed = |i: usize, a: &Vector<D>| past(i).dot(a).abs() + sound[i] * a.norm();
@@ -427,17 +433,17 @@ impl<const D: usize> System for Fluid<D> {
                 out[i - start] += speed(i, &half_face(volume[i], &face.area));
             }
         });
-        if let Some(friction) = &self.friction {
-            self.add_viscous_rate(friction, (frame, work), rate);
+        if let Some(viscous_model) = &self.viscous_model {
+            self.add_viscous_rate(viscous_model, (frame, work), rate);
         }
     }
 
     fn graph(&self) -> (&[u32], &[u32]) {
-        (&self.shape.cloud.neighbours.first, &self.shape.cloud.neighbours.index)
+        (&self.discretisation.cloud.neighbours.first, &self.discretisation.cloud.neighbours.index)
     }
 
     fn parts(&self) -> &[std::ops::Range<usize>] {
-        self.shape.operators.fluid_parts()
+        self.discretisation.operators.fluid_parts()
     }
 
     fn linearise(&self, frame: &Frame<D>, u: &[f64], work: &mut Work<D>, matrix: &mut BlockMatrix) {
@@ -465,12 +471,12 @@ impl<const D: usize> System for Fluid<D> {
             let change = (new.density / old.density - 1.0).abs().max((new.pressure / old.pressure - 1.0).abs());
             if change.is_finite() { change } else { f64::INFINITY }
         };
-        maximum(self.shape.cloud.n_fluid, change)
+        maximum(self.discretisation.cloud.n_fluid, change)
     }
 
     fn fault(&self, frame: &Frame<D>, u: &[f64]) -> Option<Fault> {
         let bad = |i: usize| !self.gas.primitive(&Conserved::<D>::load(&u[i * (D + 2)..])).is_physical();
-        let i = first(self.shape.cloud.n_fluid, bad)?;
+        let i = first(self.discretisation.cloud.n_fluid, bad)?;
         let q = self.gas.primitive(&Conserved::<D>::load(&u[i * (D + 2)..]));
         let reason = format!("density {:.4e}, pressure {:.4e} (both must be positive)", q.density, q.pressure);
         Some(Fault { particle: i, place: frame.place(i).0.to_vec(), reason })

@@ -8,8 +8,8 @@
 //! S_E = (c/h) (p∞ (ρ/ρ∞)^γ − p)/(γ − 1).
 //!
 //! In smooth flow the equation of energy asks for the same, so that S_E is as small as the error of the scheme.
+use super::discretisation::Frame;
 use super::fluid::{Fluid, Work, add};
-use super::shape::Frame;
 use crate::math::Vector;
 use crate::math::block_matrix::Rows;
 use crate::math::sweep::sweep_rows;
@@ -18,7 +18,7 @@ use crate::physics::Conserved;
 impl<const D: usize> Fluid<D> {
     /// Rate c/h of particle `i`.
     fn drawn(&self, frame: &Frame<D>, work: &Work<D>, i: usize) -> f64 {
-        self.gas.sound_speed(&work.state[i]) / frame.shape.cloud.spacing[i]
+        self.gas.sound_speed(&work.state[i]) / frame.discretisation.cloud.spacing[i]
     }
 
     /// p∞ (ρ/ρ∞)^γ, in units in which ρ∞ = 1 and p∞ = 1/γ.

@@ -5,8 +5,8 @@
 //! the row with the mirror that removes the normal velocity.
 use multiversion::multiversion;
 
+use super::discretisation::Frame;
 use super::fluid::{Fluid, Work, half_face};
-use super::shape::Frame;
 use super::viscous::WallCondition;
 use crate::cloud::Edge;
 use crate::math::Vector;
@@ -86,7 +86,7 @@ pub fn dissipation_matrix<const D: usize>(gas: &Gas, q: &Primitive<D>, n: &Vecto
 
 /// Fills `matrix` from the states in `work`.
 pub fn assemble<const D: usize>(fluid: &Fluid<D>, frame: &Frame<D>, work: &Work<D>, matrix: &mut BlockMatrix) {
-    let (op, cloud) = (&frame.shape.operators, &frame.shape.cloud);
+    let (op, cloud) = (&frame.discretisation.operators, &frame.discretisation.cloud);
     matrix.assemble(|k, rows| {
         edge_blocks(fluid, (frame, work), op.edges(k), rows);
         if fluid.conservative {
@@ -123,7 +123,7 @@ struct End<const D: usize> {
 #[allow(unsafe_code, reason = "the attribute calls the version that the processor has just been asked for")]
 fn edge_blocks<const D: usize>(fluid: &Fluid<D>, at: (&Frame<D>, &Work<D>), edges: &[Edge<D>], rows: &mut Rows<'_>) {
     let (frame, work) = at;
-    let (cloud, by_faces) = (&frame.shape.cloud, fluid.passes_by_faces());
+    let (cloud, by_faces) = (&frame.discretisation.cloud, fluid.passes_by_faces());
     for edge in edges {
         let (i, j) = (edge.i(), edge.j());
         let (qi, qj) = (&work.state[i], &work.state[j]);
@@ -158,7 +158,7 @@ fn one_sided<const D: usize>(
     rows: &mut Rows<'_>,
 ) {
     let (row, column) = (end.row, end.column);
-    let scale = half / frame.shape.cloud.volume[row];
+    let scale = half / frame.discretisation.cloud.volume[row];
     let swept = frame.velocity_of(row).dot(&end.passed);
     let mut own = flux_jacobian(&fluid.gas, &work.state[row], &end.face);
     let mut other = flux_jacobian(&fluid.gas, &work.state[column], &end.face);
@@ -183,12 +183,12 @@ pub(super) fn couple<const D: usize>(
     (row, column): (usize, usize),
     coupling: impl Fn(usize, usize) -> f64,
 ) {
-    let cloud = &frame.shape.cloud;
+    let cloud = &frame.discretisation.cloud;
     if column < cloud.n_fluid {
         rows.add_sized(D + 2, (row, column), coupling);
     } else if cloud.interface_range().contains(&column) {
         let wall = &cloud.interface[column - cloud.n_fluid];
-        let slips = fluid.friction.as_ref().is_none_or(|f| f.contact(wall.body) == WallCondition::Slip);
+        let slips = fluid.viscous_model.as_ref().is_none_or(|f| f.wall_condition(wall.body) == WallCondition::Slip);
         match slips {
             true => rows.add(row, row, |r, c| folded(&coupling, &wall.normal, r, c)),
             false => {

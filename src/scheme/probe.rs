@@ -75,7 +75,7 @@ impl<'a, const D: usize> Probe<'a, D> {
             let k = *k as usize;
             let w = self.weight(k, &(*x - cloud.x[k]), reach);
             if w > 0.0 && self.in_sight(k, x) {
-                let offer = self.offer(k, &(*place - self.fluid.shape.cloud.x[k]));
+                let offer = self.offer(k, &(*place - self.fluid.discretisation.cloud.x[k]));
                 sum = Some(sum.map_or_else(|| scaled(&offer, w), |s| s.plus(w, &offer)));
                 weight += w;
             }
@@ -127,7 +127,7 @@ mod tests {
         let exact = |x: &Vector<2>| 1.0 - (-(x.norm() - 0.5) / THICKNESS).exp();
         let frame = fluid.frame(&Moment::At { time: 0.0 }, &vec![1.0; fluid.len()]);
         let mut work = fluid.work();
-        for (q, x) in work.state.iter_mut().zip(&fluid.shape.cloud.x) {
+        for (q, x) in work.state.iter_mut().zip(&fluid.discretisation.cloud.x) {
             *q = Primitive { density: 1.0, velocity: Vector([exact(x), 0.0]), pressure: 0.7 };
         }
         fluid.fill_gradients(&frame, &mut work);

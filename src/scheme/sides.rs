@@ -3,8 +3,8 @@
 //! A side holds a state: that of the far field, or that of the start. What differs from it near the side leaves as waves do
 //! ([`crate::physics::outgoing`]): the disturbance of the last particle is continued along the line through it and the one
 //! behind it, and the part of it that moves outwards is added to what is held.
+use super::discretisation::Frame;
 use super::fluid::Fluid;
-use super::shape::Frame;
 use crate::case::Side;
 use crate::physics::Primitive;
 use crate::physics::outgoing::outgoing;
@@ -15,7 +15,7 @@ const FURTHEST: f64 = 1.0;
 impl<const D: usize> Fluid<D> {
     /// State of outer particle `k`: what its side holds, with the part of what its source differs that leaves.
     pub(super) fn outer_state(&self, frame: &Frame<D>, k: usize, fluid: &[Primitive<D>]) -> Primitive<D> {
-        let cloud = &frame.shape.cloud;
+        let cloud = &frame.discretisation.cloud;
         let outer = &cloud.outer[k];
         let [held, beside, further] = frame.outer[k].map(|q| Primitive { velocity: frame.inward(&q.velocity), ..q });
         let Some(inner) = fluid.get(outer.source as usize) else { return held };

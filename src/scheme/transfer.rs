@@ -45,7 +45,7 @@ pub(super) struct Transfer<'a, const D: usize> {
     pub(super) fluid: &'a Fluid<D>,
     pub(super) old: &'a Cloud<D>,
     pub(super) work: &'a Work<D>,
-    pub(super) renewal: &'a Recloud<D>,
+    pub(super) recloud: &'a Recloud<D>,
     pub(super) before: &'a [f64],
 }
 
@@ -60,11 +60,11 @@ pub(super) struct Share {
 type Sample<const D: usize> = (Vector<D>, Conserved<D>);
 
 impl<const D: usize> Transfer<'_, D> {
-    pub(super) fn state(&self, turnover: &mut RemapLedger) -> Result<Vec<f64>, CloudError> {
-        let cloud = &self.renewal.cloud;
+    pub(super) fn state(&self, ledger: &mut RemapLedger) -> Result<Vec<f64>, CloudError> {
+        let cloud = &self.recloud.cloud;
         let n = D + 2;
         let mut u = vec![0.0; n * cloud.n_fluid];
-        let from = &self.renewal.from;
+        let from = &self.recloud.from;
         crate::math::sweep::sweep_rows(&mut u, n, |i, row| match from[i] {
             NEW => row.fill(f64::NAN),
             k => row.copy_from_slice(&self.before[k as usize * n..(k as usize + 1) * n]),
@@ -78,16 +78,16 @@ impl<const D: usize> Transfer<'_, D> {
             value.store(&mut u[i * n..(i + 1) * n]);
             inserted += 1;
         }
-        self.count(inserted, turnover);
+        self.count(inserted, ledger);
         Ok(u)
     }
 
     /// For each new particle, in order, what it takes of where others came from: a fit of first degree.
     pub(super) fn lines(&self) -> Vec<Vec<Share>> {
-        let cloud = &self.renewal.cloud;
+        let cloud = &self.recloud.cloud;
         let share = |j: usize| {
             let transform = j.checked_sub(cloud.n_real()).map(|k| cloud.images[k].transform);
-            let from = *self.renewal.from.get(cloud.source(j).index).filter(|k| **k != NEW)? as usize;
+            let from = *self.recloud.from.get(cloud.source(j).index).filter(|k| **k != NEW)? as usize;
             Some((cloud.x[j], Share { from, transform, weight: 0.0 }))
         };
         let line = |i: usize| {
@@ -102,12 +102,12 @@ impl<const D: usize> Transfer<'_, D> {
             }
             shares
         };
-        (0..cloud.n_fluid).filter(|i| self.renewal.from[*i] == NEW).map(line).collect()
+        (0..cloud.n_fluid).filter(|i| self.recloud.from[*i] == NEW).map(line).collect()
     }
 
     /// Vectors of the fluid particles; none of none.
     pub(super) fn directions(&self, before: &[Vector<D>], lines: &[Vec<Share>]) -> Vec<Vector<D>> {
-        let transforms = &self.renewal.cloud.transforms;
+        let transforms = &self.recloud.cloud.transforms;
         let seen =
             |s: &Share| s.transform.map_or(before[s.from], |t| transforms[t as usize].direction(&before[s.from]));
         let fitted = |line: &Vec<Share>| {
@@ -119,7 +119,7 @@ impl<const D: usize> Transfer<'_, D> {
             NEW => lines.next().map_or(Vector::ZERO, fitted),
             k => before[k as usize],
         };
-        if before.is_empty() { Vec::new() } else { self.renewal.from.iter().map(&mut of).collect() }
+        if before.is_empty() { Vec::new() } else { self.recloud.from.iter().map(&mut of).collect() }
     }
 
     /// A state of steps ago, known as `then` on the cloud before, on the renewed one, where the state now is `now`: new
@@ -130,13 +130,13 @@ impl<const D: usize> Transfer<'_, D> {
         let change = |s: &Share| {
             let mut change = load(self.before, s.from).plus(-1.0, &load(then, s.from));
             if let Some(t) = s.transform {
-                change.momentum = self.renewal.cloud.transforms[t as usize].direction(&change.momentum);
+                change.momentum = self.recloud.cloud.transforms[t as usize].direction(&change.momentum);
             }
             change
         };
         let mut lines = lines.iter();
         let mut past = if then.is_empty() { Vec::new() } else { now.to_vec() };
-        for (i, (k, row)) in self.renewal.from.iter().zip(past.chunks_exact_mut(n)).enumerate() {
+        for (i, (k, row)) in self.recloud.from.iter().zip(past.chunks_exact_mut(n)).enumerate() {
             match *k {
                 NEW => {
                     let line = lines.next().into_iter().flatten();
@@ -149,37 +149,37 @@ impl<const D: usize> Transfer<'_, D> {
     }
 
     /// Adds to the account of what was done.
-    fn count(&self, inserted: u64, turnover: &mut RemapLedger) {
+    fn count(&self, inserted: u64, ledger: &mut RemapLedger) {
         let n = D + 2;
-        turnover.renewals += 1;
-        turnover.inserted += inserted;
-        turnover.removed += self.renewal.removed.len() as u64;
-        turnover.lost.resize(n, 0.0);
-        turnover.exchanged.resize(n, 0.0);
-        turnover.first_order = turnover.first_order.max(self.renewal.cloud.first_order.len() as u32);
-        for i in &self.renewal.removed {
+        ledger.renewals += 1;
+        ledger.inserted += inserted;
+        ledger.removed += self.recloud.removed.len() as u64;
+        ledger.lost.resize(n, 0.0);
+        ledger.exchanged.resize(n, 0.0);
+        ledger.first_order = ledger.first_order.max(self.recloud.cloud.first_order.len() as u32);
+        for i in &self.recloud.removed {
             let i = *i as usize;
             let Some(fit) = self.fitted(&self.around_removed(i), self.old.spacing[i]) else { continue };
             let volume = self.old.spacing[i].powi(D as i32);
             let mut row = vec![0.0; n];
             fit.plus(-1.0, &Conserved::load(&self.before[i * n..])).store(&mut row);
             for (c, r) in row.iter().enumerate() {
-                turnover.lost[c] += volume * r;
-                turnover.exchanged[c] += (volume * r).abs();
+                ledger.lost[c] += volume * r;
+                ledger.exchanged[c] += (volume * r).abs();
             }
         }
     }
 
     /// Neighbours of a new particle, and theirs, that were there before.
     fn around_new(&self, i: usize) -> Vec<Sample<D>> {
-        let cloud = &self.renewal.cloud;
+        let cloud = &self.recloud.cloud;
         let sample = |j: u32| Some((cloud.x[j as usize] - cloud.x[i], self.known(j as usize)?));
         self.near(i).into_iter().filter_map(sample).collect()
     }
 
     /// Neighbours of particle `i` of the new cloud, and theirs.
     fn near(&self, i: usize) -> Vec<u32> {
-        let cloud = &self.renewal.cloud;
+        let cloud = &self.recloud.cloud;
         let own = cloud.neighbours.of(i);
         let rows = own.iter().filter(|j| (**j as usize) < cloud.n_rows());
         let mut list: Vec<u32> = rows.flat_map(|j| cloud.neighbours.of(*j as usize)).chain(own).copied().collect();
@@ -190,9 +190,9 @@ impl<const D: usize> Transfer<'_, D> {
 
     /// State of particle `j` of the new cloud, if it was there before.
     fn known(&self, j: usize) -> Option<Conserved<D>> {
-        let (cloud, old) = (&self.renewal.cloud, self.old);
+        let (cloud, old) = (&self.recloud.cloud, self.old);
         let source = cloud.source(j).index;
-        let before = match self.renewal.from.get(source) {
+        let before = match self.recloud.from.get(source) {
             Some(&NEW) => return None,
             Some(k) => *k as usize,
             None => source - cloud.n_fluid + old.n_fluid,
@@ -207,7 +207,7 @@ impl<const D: usize> Transfer<'_, D> {
     /// Neighbours of a removed particle that stay.
     fn around_removed(&self, i: usize) -> Vec<Sample<D>> {
         let stays =
-            |j: &&u32| self.renewal.removed.binary_search(&(self.old.source(**j as usize).index as u32)).is_err();
+            |j: &&u32| self.recloud.removed.binary_search(&(self.old.source(**j as usize).index as u32)).is_err();
         let row = self.old.neighbours.of(i).iter().filter(stays);
         row.map(|j| {
             let j = *j as usize;

@@ -26,8 +26,8 @@ use std::sync::Arc;
 
 use super::boundary::WallFits;
 use super::boundary::WallMotion;
+use super::discretisation::{CloudMotion, Discretisation, Frame, LagrangianStep, rotation_rate};
 use super::fluid::{Fluid, Work};
-use super::shape::{CloudMotion, Discretisation, Frame, LagrangianStep, rotation_rate};
 use super::transfer::{RemapLedger, Transfer};
 use crate::cloud::repair::WORST_CONDITION;
 use crate::cloud::travel::BackgroundDomain;
@@ -60,11 +60,11 @@ const SLACK: f64 = 0.25;
 #[derive(Clone)]
 pub struct Travel<const D: usize> {
     /// What the cloud keeps.
-    pub habitat: Arc<BackgroundDomain<D>>,
+    pub domain: Arc<BackgroundDomain<D>>,
     /// Motion of each body.
     pub laws: Vec<BodyMotion<D>>,
     /// Where particles are when this system takes over.
-    pub stand: Arc<ParticleKinematics<D>>,
+    pub kinematics: Arc<ParticleKinematics<D>>,
     /// Time at which the cloud was built.
     pub since: f64,
 }
@@ -101,60 +101,62 @@ impl<const D: usize> Travel<D> {
     /// Brings `frame` to a moment. Fluid particles go from where the step began with the velocities they then chose.
     pub(super) fn place(&self, origin: &Arc<Discretisation<D>>, moment: &Moment<'_>, frame: &mut Frame<D>) {
         let cloud = &origin.cloud;
-        let (n, stand) = (cloud.n_fluid, &self.stand);
-        if frame.way.base.len() != n {
+        let (n, kinematics) = (cloud.n_fluid, &self.kinematics);
+        if frame.lagrangian_step.base.len() != n {
             // to the bit what the system before, or a checkpoint, left
-            let (base, course) = (Arc::new(stand.places[..n].to_vec()), Arc::new(stand.course.clone()));
-            frame.way = LagrangianStep { since: stand.now, base, course, ..LagrangianStep::default() };
-            frame.time = stand.now;
+            let (base, course) = (Arc::new(kinematics.places[..n].to_vec()), Arc::new(kinematics.course.clone()));
+            frame.lagrangian_step = LagrangianStep { since: kinematics.now, base, course, ..LagrangianStep::default() };
+            frame.time = kinematics.now;
         }
         let velocity = Arc::make_mut(&mut frame.velocity);
         velocity.resize(cloud.len(), Vector::ZERO);
-        let way = &frame.way;
+        let lagrangian_step = &frame.lagrangian_step;
         let passed = match moment {
-            Moment::Within { step, fraction, .. } if way.off => fraction * step,
-            Moment::By { time, .. } if way.off => time - way.since,
+            Moment::Within { step, fraction, .. } if lagrangian_step.off => fraction * step,
+            Moment::By { time, .. } if lagrangian_step.off => time - lagrangian_step.since,
             _ => 0.0,
         };
-        let (off, back) = (way.off, way.off && passed == 0.0 && matches!(moment, Moment::By { .. }));
+        let (off, back) =
+            (lagrangian_step.off, lagrangian_step.off && passed == 0.0 && matches!(moment, Moment::By { .. }));
         match moment {
-            _ if !off => velocity[..stand.velocity.len()].copy_from_slice(&stand.velocity),
-            Moment::By { rate, .. } if !back => differentiate(way, rate, &mut velocity[..n]),
+            _ if !off => velocity[..kinematics.velocity.len()].copy_from_slice(&kinematics.velocity),
+            Moment::By { rate, .. } if !back => differentiate(lagrangian_step, rate, &mut velocity[..n]),
             _ => {}
         }
-        let shape = Arc::make_mut(&mut frame.shape);
-        let (base, course) = (&frame.way.base, &frame.way.course);
+        let discretisation = Arc::make_mut(&mut frame.discretisation);
+        let (base, course) = (&frame.lagrangian_step.base, &frame.lagrangian_step.course);
         let ahead = |i: usize| if passed > 0.0 { base[i] + course[i] * passed } else { base[i] };
         let fixed = self.laws.iter().all(BodyMotion::is_fixed);
-        let away = maximum(n, |i| (ahead(i) - shape.cloud.x[i]).max_abs());
-        sweep(&mut shape.cloud.x[..n], ahead);
+        let away = maximum(n, |i| (ahead(i) - discretisation.cloud.x[i]).max_abs());
+        sweep(&mut discretisation.cloud.x[..n], ahead);
         match off {
-            true => self.place_walls(moment, &mut shape.cloud, velocity),
-            false => shape.cloud.x[n..stand.places.len()].copy_from_slice(&stand.places[n..]),
+            true => self.place_walls(moment, &mut discretisation.cloud, velocity),
+            false => discretisation.cloud.x[n..kinematics.places.len()].copy_from_slice(&kinematics.places[n..]),
         }
         if back {
             // as if the step had never begun
-            *velocity = (*frame.way.velocity).clone();
-            (frame.way.off, frame.way.course) = (false, Arc::clone(&frame.way.before));
+            *velocity = (*frame.lagrangian_step.velocity).clone();
+            (frame.lagrangian_step.off, frame.lagrangian_step.course) =
+                (false, Arc::clone(&frame.lagrangian_step.before));
         }
         show_images(cloud, velocity);
         if fixed && away == 0.0 && frame.walls.len() == cloud.interface.len() {
             return;
         }
-        let (x, images) = shape.cloud.x.split_at_mut(cloud.n_real());
+        let (x, images) = discretisation.cloud.x.split_at_mut(cloud.n_real());
         sweep(images, |k| {
             let image = &cloud.images[k];
             cloud.transforms[image.transform as usize].point(&x[image.source as usize])
         });
         self.turn_walls(frame.time, frame);
-        let shape = Arc::make_mut(&mut frame.shape);
-        shape.operators.refit(&shape.cloud);
-        shape.walls = WallFits::new(&shape.cloud);
+        let discretisation = Arc::make_mut(&mut frame.discretisation);
+        discretisation.operators.refit(&discretisation.cloud);
+        discretisation.walls = WallFits::new(&discretisation.cloud);
     }
 
     /// Interface particles stay on their bodies.
     fn place_walls(&self, moment: &Moment<'_>, cloud: &mut Cloud<D>, velocity: &mut [Vector<D>]) {
-        let (before, interface) = self.habitat.walls();
+        let (before, interface) = self.domain.walls();
         if self.laws.iter().all(BodyMotion::is_fixed) {
             return;
         }
@@ -178,13 +180,13 @@ impl<const D: usize> Travel<D> {
 
     /// Surface vectors, spin and acceleration of the walls at time `t`.
     fn turn_walls(&self, t: f64, frame: &mut Frame<D>) {
-        let (before, interface) = self.habitat.walls();
+        let (before, interface) = self.domain.walls();
         let walls = Arc::make_mut(&mut frame.walls);
         walls.resize(interface.len(), WallMotion::AT_REST);
         if self.laws.iter().all(BodyMotion::is_fixed) {
             return;
         }
-        let cloud = &mut Arc::make_mut(&mut frame.shape).cloud;
+        let cloud = &mut Arc::make_mut(&mut frame.discretisation).cloud;
         let rates: Vec<[Vector<D>; D]> = self.laws.iter().map(|l| rotation_rate(l, t)).collect();
         let poses = self.poses(t);
         for (k, (x, wall)) in before.iter().zip(interface).enumerate() {
@@ -201,16 +203,16 @@ impl<const D: usize> Fluid<D> {
     /// Chooses where particles go in the step that begins and is meant to last `step`; the longest step they can take.
     pub(super) fn choose_ways(&self, step: f64, u: &[f64], work: &mut Work<D>, frame: &mut Frame<D>) -> f64 {
         self.fill_states(frame, u, work);
-        let cloud = &frame.shape.cloud;
+        let cloud = &frame.discretisation.cloud;
         let n = cloud.n_fluid;
-        let radius = match &self.carriage {
-            CloudMotion::Travel(travel) => travel.habitat.radius(),
+        let radius = match &self.cloud_motion {
+            CloudMotion::Travel(travel) => travel.domain.radius(),
             _ => return f64::INFINITY,
         };
         let state = &work.state;
-        let around = around(&frame.shape, state, radius);
+        let around = around(&frame.discretisation, state, radius);
         let near = shocked(cloud, &self.gas, (state, &around));
-        let before = Arc::clone(&frame.way.course);
+        let before = Arc::clone(&frame.lagrangian_step.course);
         let mut course = vec![Vector::ZERO; n];
         sweep(&mut course, |i| {
             if let Some(before) = before.get(i).filter(|_| near.get(i).is_some_and(|near| *near)) {
@@ -226,22 +228,22 @@ impl<const D: usize> Fluid<D> {
         let now = Arc::new(velocity.clone());
         velocity[..n].copy_from_slice(&course);
         show_images(cloud, velocity);
-        let reach = reach(&frame.shape, velocity);
-        frame.way = LagrangianStep { off: true, since: frame.time, base, course, before, velocity: now };
+        let reach = reach(&frame.discretisation, velocity);
+        frame.lagrangian_step = LagrangianStep { off: true, since: frame.time, base, course, before, velocity: now };
         reach
     }
 
     /// True when the cloud should be built anew: lists no longer hold what is near, or a row is sick.
     pub fn is_worn(&self, frame: &Frame<D>) -> bool {
-        if !matches!(self.carriage, CloudMotion::Travel(_)) {
+        if !matches!(self.cloud_motion, CloudMotion::Travel(_)) {
             return false;
         }
-        let (then, now) = (&self.shape.cloud, &frame.shape.cloud);
+        let (then, now) = (&self.discretisation.cloud, &frame.discretisation.cloud);
         let sick = |i: usize| {
-            let well = frame.shape.operators.condition[i] < WORST_CONDITION;
+            let well = frame.discretisation.operators.condition[i] < WORST_CONDITION;
             !well && then.first_order.binary_search(&(i as u32)).is_err()
         };
-        let operators = &self.shape.operators;
+        let operators = &self.discretisation.operators;
         // a cloud just built is as good as it gets
         let moved = |i: usize| f64::from(u8::from(now.x[i] != then.x[i]));
         let mut apart = vec![false; operators.fluid_parts().len()];
@@ -258,27 +260,27 @@ impl<const D: usize> Fluid<D> {
     }
 
     /// The same equations on a cloud built anew where particles are in `frame`, and the state `u` on it.
-    pub fn renewed(
+    pub fn reclouded(
         &self,
         frame: &Frame<D>,
         (u, past): (&[f64], [&[f64]; 2]),
         work: &mut Work<D>,
-        turnover: &mut RemapLedger,
+        ledger: &mut RemapLedger,
     ) -> Result<Option<Reclouded<D>>, CloudError> {
-        let CloudMotion::Travel(travel) = &self.carriage else { return Ok(None) };
+        let CloudMotion::Travel(travel) = &self.cloud_motion else { return Ok(None) };
         self.fill_states(frame, u, work);
-        let old = &frame.shape.cloud;
-        let renewal = travel.habitat.renew(&travel.poses(frame.time), old)?;
-        let transfer = Transfer { fluid: self, old, work, renewal: &renewal, before: u };
-        let state = transfer.state(turnover)?;
+        let old = &frame.discretisation.cloud;
+        let recloud = travel.domain.recloud(&travel.poses(frame.time), old)?;
+        let transfer = Transfer { fluid: self, old, work, recloud: &recloud, before: u };
+        let state = transfer.state(ledger)?;
         let lines = transfer.lines();
         let past = past.map(|p| transfer.past(p, &state, &lines));
         let walls = old.interface_range().map(|w| frame.velocity_of(w));
         let velocity = transfer.directions(&frame.velocity, &lines).into_iter().chain(walls).collect();
-        let course = transfer.directions(&frame.way.course, &lines);
-        let places = renewal.cloud.x[..renewal.cloud.n_rows()].to_vec();
-        let stand = ParticleKinematics { now: frame.time, places, velocity, course };
-        let fluid = self.on(renewal.cloud, frame.time, stand);
+        let course = transfer.directions(&frame.lagrangian_step.course, &lines);
+        let places = recloud.cloud.x[..recloud.cloud.n_rows()].to_vec();
+        let kinematics = ParticleKinematics { now: frame.time, places, velocity, course };
+        let fluid = self.on(recloud.cloud, frame.time, kinematics);
         Ok(Some(Reclouded { fluid, u: state, past }))
     }
 
@@ -288,12 +290,12 @@ impl<const D: usize> Fluid<D> {
     pub fn resumed(
         &self,
         lists: Option<(&[Vector<D>], f64)>,
-        stand: ParticleKinematics<D>,
+        kinematics: ParticleKinematics<D>,
     ) -> Result<Option<Self>, CloudError> {
-        let CloudMotion::Travel(travel) = &self.carriage else { return Ok(None) };
-        let Some((lists, since)) = lists else { return Ok(Some(self.moved(stand))) };
-        let (cloud, _) = travel.habitat.cloud(&travel.poses(since), lists)?;
-        Ok(Some(self.on(cloud, since, stand)))
+        let CloudMotion::Travel(travel) = &self.cloud_motion else { return Ok(None) };
+        let Some((lists, since)) = lists else { return Ok(Some(self.moved(kinematics))) };
+        let (cloud, _) = travel.domain.cloud(&travel.poses(since), lists)?;
+        Ok(Some(self.on(cloud, since, kinematics)))
     }
 
     /// The frame in which this system takes over.
@@ -303,16 +305,16 @@ impl<const D: usize> Fluid<D> {
     }
 
     fn stood(&self) -> f64 {
-        match &self.carriage {
-            CloudMotion::Travel(travel) => travel.stand.now,
+        match &self.cloud_motion {
+            CloudMotion::Travel(travel) => travel.kinematics.now,
             _ => 0.0,
         }
     }
 
     /// Interface particles before any motion.
     pub fn walls_before(&self) -> &[Vector<D>] {
-        match &self.carriage {
-            CloudMotion::Travel(travel) => travel.habitat.walls().0,
+        match &self.cloud_motion {
+            CloudMotion::Travel(travel) => travel.domain.walls().0,
             _ => {
                 let cloud = &self.reference().cloud;
                 &cloud.x[cloud.interface_range()]
@@ -322,9 +324,9 @@ impl<const D: usize> Fluid<D> {
 
     /// Volumes for totals and means: where particles travel, the part of the domain that is nearest to each.
     pub fn volumes(&self) -> Vec<f64> {
-        let cloud = &self.shape.cloud;
-        match &self.carriage {
-            CloudMotion::Travel(travel) => travel.habitat.volumes(&travel.poses(travel.since), cloud),
+        let cloud = &self.discretisation.cloud;
+        match &self.cloud_motion {
+            CloudMotion::Travel(travel) => travel.domain.volumes(&travel.poses(travel.since), cloud),
             _ => cloud.volume[..cloud.n_fluid].to_vec(),
         }
     }
@@ -333,30 +335,34 @@ impl<const D: usize> Fluid<D> {
     pub fn measure(&mut self) {
         let volumes = self.volumes();
         let n = volumes.len();
-        Arc::make_mut(&mut self.shape).cloud.volume[..n].copy_from_slice(&volumes);
+        Arc::make_mut(&mut self.discretisation).cloud.volume[..n].copy_from_slice(&volumes);
     }
 
-    fn on(&self, cloud: Cloud<D>, since: f64, stand: ParticleKinematics<D>) -> Self {
+    fn on(&self, cloud: Cloud<D>, since: f64, kinematics: ParticleKinematics<D>) -> Self {
         let operators = Operators::new(&cloud);
-        let mut other = Self { shape: Arc::new(Discretisation::new(cloud, operators)), ..self.moved(stand) };
-        if let CloudMotion::Travel(travel) = &mut other.carriage {
+        let mut other =
+            Self { discretisation: Arc::new(Discretisation::new(cloud, operators)), ..self.moved(kinematics) };
+        if let CloudMotion::Travel(travel) = &mut other.cloud_motion {
             travel.since = since;
         }
         other
     }
 
     /// The same equations on the same cloud, with the particles elsewhere.
-    fn moved(&self, stand: ParticleKinematics<D>) -> Self {
-        let CloudMotion::Travel(travel) = &self.carriage else { return self.copy() };
-        Self { carriage: CloudMotion::Travel(Travel { stand: Arc::new(stand), ..travel.clone() }), ..self.copy() }
+    fn moved(&self, kinematics: ParticleKinematics<D>) -> Self {
+        let CloudMotion::Travel(travel) = &self.cloud_motion else { return self.copy() };
+        Self {
+            cloud_motion: CloudMotion::Travel(Travel { kinematics: Arc::new(kinematics), ..travel.clone() }),
+            ..self.copy()
+        }
     }
 
     fn copy(&self) -> Self {
         Self {
-            shape: Arc::clone(&self.shape),
-            carriage: self.carriage.clone(),
+            discretisation: Arc::clone(&self.discretisation),
+            cloud_motion: self.cloud_motion.clone(),
             before: self.before.clone(),
-            friction: self.friction.clone(),
+            viscous_model: self.viscous_model.clone(),
             far_field: Arc::clone(&self.far_field),
             held: Arc::clone(&self.held),
             ..*self
@@ -365,16 +371,16 @@ impl<const D: usize> Fluid<D> {
 }
 
 /// Velocities of a difference formula for particles that went straight, in this step and in the one before.
-fn differentiate<const D: usize>(way: &LagrangianStep<D>, rate: &[(f64, f64)], velocity: &mut [Vector<D>]) {
+fn differentiate<const D: usize>(lagrangian_step: &LagrangianStep<D>, rate: &[(f64, f64)], velocity: &mut [Vector<D>]) {
     let passed = |k: usize| rate[k - 1].1 - rate[k].1;
     let now = rate[0].0 * passed(1);
     match rate.get(2) {
         // c₀ x(t₀) + c₁ x(t₁) + c₂ x(t₂) with Σ c = 0
         Some((c, _)) => {
             let then = -c * passed(2);
-            sweep(velocity, |i| way.course[i] * now + way.before[i] * then);
+            sweep(velocity, |i| lagrangian_step.course[i] * now + lagrangian_step.before[i] * then);
         }
-        None => sweep(velocity, |i| way.course[i] * now),
+        None => sweep(velocity, |i| lagrangian_step.course[i] * now),
     }
 }
 
@@ -389,8 +395,8 @@ fn show_images<const D: usize>(cloud: &Cloud<D>, velocity: &mut [Vector<D>]) {
 
 /// The time in which no two particles that see one another move relative to one another by more than the part [`REACH`] of
 /// their distance.
-fn reach<const D: usize>(shape: &Discretisation<D>, velocity: &[Vector<D>]) -> f64 {
-    let (x, op) = (&shape.cloud.x, &shape.operators);
+fn reach<const D: usize>(discretisation: &Discretisation<D>, velocity: &[Vector<D>]) -> f64 {
+    let (x, op) = (&discretisation.cloud.x, &discretisation.operators);
     let mut fastest = vec![0.0; op.fluid_parts().len()];
     sweep_each(&mut fastest, |k| {
         let rate = |i: usize, j: usize| (velocity[i] - velocity[j]).norm() / (x[i] - x[j]).norm();
@@ -409,8 +415,8 @@ struct Around<const D: usize> {
 }
 
 /// What particles find around them; the two ends of an edge find the same, or its opposite.
-fn around<const D: usize>(shape: &Discretisation<D>, state: &[Primitive<D>], radius: f64) -> Vec<Around<D>> {
-    let (cloud, op) = (&shape.cloud, &shape.operators);
+fn around<const D: usize>(discretisation: &Discretisation<D>, state: &[Primitive<D>], radius: f64) -> Vec<Around<D>> {
+    let (cloud, op) = (&discretisation.cloud, &discretisation.operators);
     let blank = Around { shift: Vector::ZERO, approach: 0.0 };
     let mut all = vec![blank; cloud.n_fluid];
     let (walls, crowding) = (cloud.interface_range(), Crowding::new(radius));

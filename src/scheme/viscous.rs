@@ -20,10 +20,10 @@
 use std::sync::Arc;
 
 use super::boundary::{WallMotion, stuck_wall};
+use super::discretisation::{Discretisation, Frame};
 use super::fluid::{Fluid, Work, half_face};
 use super::jacobian::Block;
 use super::reconstruct::Gradient;
-use super::shape::{Discretisation, Frame};
 use crate::cloud::operators::WallFace;
 use crate::cloud::{Cloud, Edge};
 use crate::math::Vector;
@@ -53,14 +53,14 @@ pub struct ViscousModel {
     /// Viscosity and heat conduction.
     pub medium: Newtonian,
     /// One a body.
-    pub contacts: Vec<WallCondition>,
+    pub wall_conditions: Vec<WallCondition>,
 }
 
 impl ViscousModel {
     /// Contact with the body of that number.
     #[inline]
-    pub fn contact(&self, body: u16) -> WallCondition {
-        self.contacts.get(usize::from(body)).copied().unwrap_or(WallCondition::Slip)
+    pub fn wall_condition(&self, body: u16) -> WallCondition {
+        self.wall_conditions.get(usize::from(body)).copied().unwrap_or(WallCondition::Slip)
     }
 }
 
@@ -140,25 +140,25 @@ impl<const D: usize> Fluid<D> {
     #[inline]
     pub(super) fn stuck(
         &self,
-        shape: &Discretisation<D>,
+        discretisation: &Discretisation<D>,
         (w, frame): (usize, &Frame<D>),
         q: impl Fn(usize) -> Primitive<D>,
     ) -> Option<Primitive<D>> {
-        let temperature = match self.friction.as_ref()?.contact(shape.cloud.interface[w].body) {
+        let temperature = match self.viscous_model.as_ref()?.wall_condition(discretisation.cloud.interface[w].body) {
             WallCondition::Slip => return None,
             WallCondition::Adiabatic => None,
             WallCondition::Temperature(t) => Some(t),
         };
-        let velocity = frame.velocity_of(shape.cloud.n_fluid + w);
+        let velocity = frame.velocity_of(discretisation.cloud.n_fluid + w);
         let moved = (velocity, frame.walls.get(w));
-        Some(stuck_wall((&shape.cloud, &shape.walls), &self.gas, w, (moved, temperature), q))
+        Some(stuck_wall((&discretisation.cloud, &discretisation.walls), &self.gas, w, (moved, temperature), q))
     }
 
     /// Flux of stress and heat at particle `i` across `n`; zero without viscosity.
     pub(super) fn viscous_flux(&self, work: &Work<D>, i: usize, n: &Vector<D>) -> Conserved<D> {
         let flux =
             |f: &Arc<ViscousModel>| f.medium.flux(&self.gas, &slopes(&self.gas, &work.state[i], &work.gradient[i]), n);
-        self.friction.as_ref().map_or(Conserved::ZERO, flux)
+        self.viscous_model.as_ref().map_or(Conserved::ZERO, flux)
     }
 
     /// Calls `add(i, change)` with what stress and heat through every piece of wall add to V dU/dt of the particle there.
@@ -168,39 +168,41 @@ impl<const D: usize> Fluid<D> {
         at: (&Frame<D>, &Work<D>),
         mut add: impl FnMut(usize, &Conserved<D>),
     ) {
-        let Some(friction) = &self.friction else { return };
-        faces.iter().for_each(|face| add(face.i as usize, &self.viscous_wall(friction, at, face)));
+        let Some(viscous_model) = &self.viscous_model else { return };
+        faces.iter().for_each(|face| add(face.i as usize, &self.viscous_wall(viscous_model, at, face)));
     }
 
     /// Flux of stress and heat through a piece of wall.
     fn viscous_wall(
         &self,
-        friction: &ViscousModel,
+        viscous_model: &ViscousModel,
         (frame, work): (&Frame<D>, &Work<D>),
         face: &WallFace<D>,
     ) -> Conserved<D> {
-        let cloud = &frame.shape.cloud;
+        let cloud = &frame.discretisation.cloud;
         let source = cloud.source(face.wall as usize);
         let w = source.index - cloud.n_fluid;
-        let Some(at) = self.at_wall(friction, (cloud, work), w, frame.walls.get(w)) else { return Conserved::ZERO };
+        let Some(at) = self.at_wall(viscous_model, (cloud, work), w, frame.walls.get(w)) else {
+            return Conserved::ZERO;
+        };
         if !source.image {
-            return friction.medium.flux(&self.gas, &at, &face.area);
+            return viscous_model.medium.flux(&self.gas, &at, &face.area);
         }
         let transform = &cloud.transforms[cloud.images[face.wall as usize - cloud.n_real()].transform as usize];
-        let through = friction.medium.flux(&self.gas, &at, &transform.direction(&face.area));
+        let through = viscous_model.medium.flux(&self.gas, &at, &transform.direction(&face.area));
         Conserved { momentum: transform.direction(&through.momentum), ..through }
     }
 
     /// Slopes on the wall of interface particle `w` that moves with `motion`; `None` where the gas slides.
     fn at_wall(
         &self,
-        friction: &ViscousModel,
+        viscous_model: &ViscousModel,
         (cloud, work): (&Cloud<D>, &Work<D>),
         w: usize,
         motion: Option<&WallMotion<D>>,
     ) -> Option<Slopes<D>> {
-        let contact = friction.contact(cloud.interface[w].body);
-        if contact == WallCondition::Slip {
+        let wall_condition = viscous_model.wall_condition(cloud.interface[w].body);
+        if wall_condition == WallCondition::Slip {
             return None;
         }
         let (i, normal) = (cloud.n_fluid + w, &cloud.interface[w].normal);
@@ -220,7 +222,7 @@ impl<const D: usize> Fluid<D> {
                 (rate, temperature_gradient(&self.gas, wall, g).dot(normal))
             }
         };
-        let heating = if contact == WallCondition::Adiabatic { 0.0 } else { heating };
+        let heating = if wall_condition == WallCondition::Adiabatic { 0.0 } else { heating };
         Some(Slopes {
             velocity: wall.velocity,
             temperature,
@@ -245,33 +247,33 @@ impl<const D: usize> Fluid<D> {
         work: &Work<D>,
         w: usize,
     ) -> Option<WallSlopes<D>> {
-        let friction = self.friction.as_ref()?;
-        let at = self.at_wall(friction, (cloud, work), w, walls.get(w))?;
+        let viscous_model = self.viscous_model.as_ref()?;
+        let at = self.at_wall(viscous_model, (cloud, work), w, walls.get(w))?;
         let still = Slopes { velocity: Vector::ZERO, ..at };
-        let through = friction.medium.flux(&self.gas, &still, &cloud.interface[w].normal);
+        let through = viscous_model.medium.flux(&self.gas, &still, &cloud.interface[w].normal);
         Some(WallSlopes { stress: through.momentum, heat: through.energy })
     }
 
     /// Distance of the first particle from the wall in viscous lengths, y⁺ = η √(ρ |τ|)/μ; `None` where the gas slides.
     pub fn y_plus(&self, cloud: &Cloud<D>, work: &Work<D>, w: usize) -> Option<f64> {
-        let friction = self.friction.as_ref()?;
+        let viscous_model = self.viscous_model.as_ref()?;
         let stress = self.wall_slopes((cloud, self.walls_seen()), work, w)?.stress.norm();
         let height = lowest_two(cloud, w).map_or(cloud.spacing[cloud.n_fluid + w], |(_, heights)| heights[0]);
         let wall = &work.state[cloud.n_fluid + w];
-        Some(height * (wall.density * stress).sqrt() / friction.medium.at(self.gas.temperature(wall)))
+        Some(height * (wall.density * stress).sqrt() / viscous_model.medium.at(self.gas.temperature(wall)))
     }
 
     /// Adds the rates at which viscosity and conduction even out differences between particles.
     pub(super) fn add_viscous_rate(
         &self,
-        friction: &ViscousModel,
+        viscous_model: &ViscousModel,
         (frame, work): (&Frame<D>, &Work<D>),
         rate: &mut [f64],
     ) {
-        let (op, cloud) = (&frame.shape.operators, &frame.shape.cloud);
+        let (op, cloud) = (&frame.discretisation.operators, &frame.discretisation.cloud);
         sweep_parts(op.fluid_parts(), 1, rate, &|k, out| {
             let start = op.parts[k].start;
-            let diffusivity = |i: usize| friction.medium.diffusivity(&self.gas, &work.state[i]);
+            let diffusivity = |i: usize| viscous_model.medium.diffusivity(&self.gas, &work.state[i]);
             for e in op.edges(k) {
                 let (to_i, to_j) = self.exchange(e, cloud);
                 out[e.i() - start] += to_i * diffusivity(e.i());
@@ -317,8 +319,8 @@ impl<const D: usize> Fluid<D> {
     #[inline(always)]
     pub(super) fn viscous_edge(&self, work: &Work<D>, e: &Edge<D>, cloud: &Cloud<D>) -> ((f64, f64), [Block; 2]) {
         let mut layers = [[[0.0; 5]; 5]; 2];
-        let Some(friction) = &self.friction else { return ((0.0, 0.0), layers) };
-        let (medium, ends) = (&friction.medium, [&work.state[e.i()], &work.state[e.j()]]);
+        let Some(viscous_model) = &self.viscous_model else { return ((0.0, 0.0), layers) };
+        let (medium, ends) = (&viscous_model.medium, [&work.state[e.i()], &work.state[e.j()]]);
         let mu = 0.5 * (medium.at(self.gas.temperature(ends[0])) + medium.at(self.gas.temperature(ends[1])));
         let m = direction(&e.s, &(cloud.x[e.j()] - cloud.x[e.i()]));
         let (to_i, to_j) = self.exchange(e, cloud);
@@ -335,19 +337,19 @@ impl<const D: usize> Fluid<D> {
         faces: &[WallFace<D>],
         rows: &mut Rows<'_>,
     ) {
-        let Some(friction) = &self.friction else { return };
-        let (cloud, medium) = (&frame.shape.cloud, &friction.medium);
+        let Some(viscous_model) = &self.viscous_model else { return };
+        let (cloud, medium) = (&frame.discretisation.cloud, &viscous_model.medium);
         for face in faces {
             let source = cloud.source(face.wall as usize).index;
-            let contact = friction.contact(cloud.interface[source - cloud.n_fluid].body);
-            if contact == WallCondition::Slip {
+            let wall_condition = viscous_model.wall_condition(cloud.interface[source - cloud.n_fluid].body);
+            if wall_condition == WallCondition::Slip {
                 continue;
             }
             let n = face.area.unit();
             let viscosity = medium.at(self.gas.temperature(&work.state[source]));
             for (q, weight) in self.wall_exchange(cloud, face) {
                 let block =
-                    at_contact(&self.gas, medium, (&work.state[q], &work.state[source].velocity), (contact, &n));
+                    at_contact(&self.gas, medium, (&work.state[q], &work.state[source].velocity), (wall_condition, &n));
                 rows.add(face.i as usize, q, |r, c| viscosity * weight * block[r][c]);
             }
         }
@@ -372,12 +374,12 @@ fn at_contact<const D: usize>(
     gas: &Gas,
     medium: &Newtonian,
     (q, wall): (&Primitive<D>, &Vector<D>),
-    (contact, n): (WallCondition, &Vector<D>),
+    (wall_condition, n): (WallCondition, &Vector<D>),
 ) -> Block {
     let mut block = [[0.0; 5]; 5];
     motion(q, n, &mut block);
     let heat = energy(q, gas);
-    let conducts = if contact == WallCondition::Adiabatic { 0.0 } else { gas.gamma / medium.prandtl };
+    let conducts = if wall_condition == WallCondition::Adiabatic { 0.0 } else { gas.gamma / medium.prandtl };
     for c in 0..D + 2 {
         let work: f64 = (0..D).map(|d| wall[d] * block[1 + d][c]).sum();
         block[D + 1][c] = work + conducts * heat[c];

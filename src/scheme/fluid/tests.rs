@@ -31,17 +31,17 @@ fn with_cloud(body: &str, keys: &str) -> Fluid<2> {
     let mut cloud = Cloud::build(&case, (!body.is_empty()).then_some(&surface), &[]).unwrap();
     let mut operators = Operators::new(&cloud);
     conservative(&mut cloud, &mut operators);
-    let shape = Arc::new(Discretisation::new(cloud, operators));
+    let discretisation = Arc::new(Discretisation::new(cloud, operators));
     let reconstruction = Reconstruction { second_order: true, kappa: 0.0, threshold: 0.02, low_mach: false };
     let held: Field<2> = Arc::new(|x| Still.state(x, &Vector::ZERO));
-    let carriage = CloudMotion::Still;
+    let cloud_motion = CloudMotion::Still;
     let (gas, isentropic, flux, limiter) = (Gas { gamma: 1.4 }, false, Flux::Hllc, Limiter::VanAlbada);
     let far_field = Arc::new(Still);
     let conservative = true;
-    let (before, friction) = (None, None);
+    let (before, viscous_model) = (None, None);
     Fluid {
-        shape,
-        carriage,
+        discretisation,
+        cloud_motion,
         before,
         gas,
         isentropic,
@@ -49,7 +49,7 @@ fn with_cloud(body: &str, keys: &str) -> Fluid<2> {
         limiter,
         reconstruction,
         conservative,
-        friction,
+        viscous_model,
         far_field,
         held,
     }
@@ -58,7 +58,7 @@ fn with_cloud(body: &str, keys: &str) -> Fluid<2> {
 /// Σ V R and Σ |V R| of every variable for an uneven flow, and the force on the bodies.
 fn balance(fluid: &Fluid<2>) -> ([f64; 4], [f64; 4], Vector<2>) {
     let mut u = vec![0.0; fluid.len()];
-    for (row, x) in u.chunks_mut(4).zip(&fluid.shape.cloud.x) {
+    for (row, x) in u.chunks_mut(4).zip(&fluid.discretisation.cloud.x) {
         let wave = (3.0 * x[0]).sin() * (std::f64::consts::PI * x[1]).cos();
         let velocity = Vector([0.4 * wave, 0.3 - 0.2 * wave]);
         let q = Primitive { density: 1.0 + 0.3 * wave, velocity, pressure: 1.0 - 0.4 * wave };
@@ -67,7 +67,7 @@ fn balance(fluid: &Fluid<2>) -> ([f64; 4], [f64; 4], Vector<2>) {
     let (frame, mut work, mut du) = (fluid.frame(&Moment::At { time: 0.0 }, &u), fluid.work(), vec![0.0; u.len()]);
     fluid.rhs(&frame, &u, &mut work, &mut du);
     let mut total = ([0.0; 4], [0.0; 4]);
-    for (row, v) in du.chunks(4).zip(&fluid.shape.cloud.volume) {
+    for (row, v) in du.chunks(4).zip(&fluid.discretisation.cloud.volume) {
         for (k, r) in row.iter().enumerate() {
             total.0[k] += v * r;
             total.1[k] += (v * r).abs();
@@ -99,7 +99,7 @@ fn the_force_on_a_body_is_what_the_fluid_loses() {
 fn in_layers_it_does_not_matter_who_moves() {
     let fluid = with_cloud(CIRCLE, LAYERS);
     assert!(fluid.passes_by_faces());
-    let cloud = &fluid.shape.cloud;
+    let cloud = &fluid.discretisation.cloud;
     let density = |w: Vector<2>| {
         let mut frame = fluid.frame(&Moment::At { time: 0.0 }, &vec![1.0; fluid.len()]);
         frame.velocity = Arc::new(vec![w; cloud.len()]);
@@ -124,7 +124,7 @@ fn in_layers_it_does_not_matter_who_moves() {
 #[test]
 fn uniform_flow_stays_uniform_in_layers() {
     let mut fluid = with_cloud(CIRCLE, LAYERS);
-    assert!(!fluid.shape.cloud.layers.is_empty());
+    assert!(!fluid.discretisation.cloud.layers.is_empty());
     let mut worst = |conservative: bool, velocity: Vector<2>| {
         fluid.conservative = conservative;
         let mut work = fluid.work();
@@ -133,7 +133,7 @@ fn uniform_flow_stays_uniform_in_layers() {
         let still = fluid.frame(&Moment::At { time: 0.0 }, &vec![1.0; fluid.len()]);
         fluid.rhs_with_limiter(Hllc, &still, &work, &mut du);
         // in units of pressure times surface over volume: cells are a hundred times thinner than long
-        let unit = |i: usize| fluid.shape.cloud.volume[i] / fluid.shape.cloud.spacing[i];
+        let unit = |i: usize| fluid.discretisation.cloud.volume[i] / fluid.discretisation.cloud.spacing[i];
         du.iter().enumerate().map(|(k, r): (usize, &f64)| (r * unit(k / 4)).abs()).fold(0.0, f64::max)
     };
     assert!(worst(false, Vector([0.3, -0.2])) < 1e-14);

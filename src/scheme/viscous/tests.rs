@@ -21,10 +21,10 @@ fn terms(fluid: &mut Fluid<2>, q: impl Fn(&Vector<2>) -> Primitive<2>) -> Vec<f6
     let u = vec![1.0; fluid.len()];
     let frame = fluid.frame(&Moment::At { time: 0.0 }, &u);
     let mut work = fluid.work();
-    work.state.iter_mut().zip(&fluid.shape.cloud.x).for_each(|(s, x)| *s = q(x));
+    work.state.iter_mut().zip(&fluid.discretisation.cloud.x).for_each(|(s, x)| *s = q(x));
     fluid.fill_gradients(&frame, &mut work);
     // beyond the sides the slopes go on
-    let first = fluid.shape.cloud.n_rows();
+    let first = fluid.discretisation.cloud.n_rows();
     let inner = work.gradient[0];
     work.gradient[first..].fill(inner);
     let fluxes = |fluid: &Fluid<2>| {
@@ -33,9 +33,9 @@ fn terms(fluid: &mut Fluid<2>, q: impl Fn(&Vector<2>) -> Primitive<2>) -> Vec<f6
         du
     };
     let all = fluxes(fluid);
-    let friction = fluid.friction.take();
+    let viscous_model = fluid.viscous_model.take();
     let without = fluxes(fluid);
-    fluid.friction = friction;
+    fluid.viscous_model = viscous_model;
     all.iter().zip(without).map(|(a, b)| a - b).collect()
 }
 
@@ -60,10 +60,10 @@ fn uniform_shear_moves_nothing_and_heats_by_dissipation() {
     let shear = |x: &Vector<2>| Primitive { density: 1.0, velocity: Vector([rate * x[1], 0.0]), pressure: 0.8 };
     for conservative in [false, true] {
         let mut fluid = boxed(conservative);
-        let mu = fluid.friction.as_ref().unwrap().medium.viscosity;
+        let mu = fluid.viscous_model.as_ref().unwrap().medium.viscosity;
         let du = terms(&mut fluid, shear);
         let (mut momentum, mut total, mut volume) = (0.0f64, 0.0, 0.0);
-        for (row, v) in du.chunks(4).zip(&fluid.shape.cloud.volume) {
+        for (row, v) in du.chunks(4).zip(&fluid.discretisation.cloud.volume) {
             momentum = momentum.max(row[1].abs()).max(row[2].abs());
             (total, volume) = (total + v * row[3], volume + v);
         }
@@ -121,14 +121,14 @@ fn gas_that_turns_with_a_wall_does_not_rub_on_it() {
             let rate = [(0.5 / h, t + h), (-0.5 / h, t - h)];
             let frame = fluid.frame(&Moment::By { time: t, rate: &rate }, &vec![1.0; fluid.len()]);
             let mut work = fluid.work();
-            let cloud = &frame.shape.cloud;
+            let cloud = &frame.discretisation.cloud;
             for (i, q) in work.state.iter_mut().enumerate() {
                 let d = frame.place(i) - Vector([0.2, 0.3]);
                 let velocity = frame.inward(&(Vector([d[1], -d[0]]) * 0.4));
                 *q = Primitive { density: 1.0, velocity, pressure: 1.0 / 1.4 };
             }
             fluid.fill_gradients(&frame, &mut work);
-            let mu = fluid.friction.as_ref().unwrap().medium.viscosity;
+            let mu = fluid.viscous_model.as_ref().unwrap().medium.viscosity;
             let stress = |w: usize| fluid.wall_slopes((cloud, &frame.walls), &work, w).unwrap().stress.norm();
             let worst = (0..cloud.interface.len()).map(stress).fold(0.0, f64::max) / (mu * 0.4);
             assert!(worst < 1e-6, "{layers} {particles}: {worst}");

@@ -10,7 +10,7 @@
 use std::sync::Arc;
 
 use super::boundary::{WallFits, WallMotion};
-use super::skin::DeformingSurface;
+use super::deforming_surface::DeformingSurface;
 use super::travel::Travel;
 use crate::cloud::{Cloud, Operators};
 use crate::math::Vector;
@@ -56,15 +56,15 @@ pub struct Frame<const D: usize> {
     /// Time.
     pub time: f64,
     /// The cloud in the axes that states are looked at in.
-    pub shape: Arc<Discretisation<D>>,
+    pub discretisation: Arc<Discretisation<D>>,
     /// From those axes to those of the case, when they differ.
     pub turn: Option<RigidPose<D>>,
-    /// Velocities of all particles in the axes of `shape`; empty when nothing moves.
+    /// Velocities of all particles in the axes of `discretisation`; empty when nothing moves.
     pub velocity: Arc<Vec<Vector<D>>>,
     /// Spin and acceleration of the wall at each interface particle; empty when nothing moves.
     pub walls: Arc<Vec<WallMotion<D>>>,
     /// How fluid particles that travel go through the step; empty for all others.
-    pub way: LagrangianStep<D>,
+    pub lagrangian_step: LagrangianStep<D>,
     /// States that sides hold, in the axes of the case: at each outer particle, at its source and behind that.
     pub outer: Vec<[Primitive<D>; 3]>,
 }
@@ -82,13 +82,13 @@ impl<const D: usize> Frame<D> {
         !self.velocity.is_empty()
     }
 
-    /// A direction in the axes of `shape`, seen in those of the case.
+    /// A direction in the axes of `discretisation`, seen in those of the case.
     #[inline(always)]
     pub fn outward(&self, v: &Vector<D>) -> Vector<D> {
         self.turn.as_ref().map_or(*v, |t| t.direction(v))
     }
 
-    /// A direction in the axes of the case, seen in those of `shape`.
+    /// A direction in the axes of the case, seen in those of `discretisation`.
     #[inline(always)]
     pub fn inward(&self, v: &Vector<D>) -> Vector<D> {
         self.turn.as_ref().map_or(*v, |t| t.inverse_direction(v))
@@ -96,7 +96,7 @@ impl<const D: usize> Frame<D> {
 
     /// Place of particle `i` in the axes of the case.
     pub fn place(&self, i: usize) -> Vector<D> {
-        let x = &self.shape.cloud.x[i];
+        let x = &self.discretisation.cloud.x[i];
         self.turn.as_ref().map_or(*x, |t| t.point(x))
     }
 }
@@ -143,7 +143,7 @@ pub enum CloudMotion<const D: usize> {
         /// Motion of each body.
         laws: Vec<BodyMotion<D>>,
         /// How the surfaces of bodies bend.
-        skin: Arc<DeformingSurface<D>>,
+        deforming_surface: Arc<DeformingSurface<D>>,
     },
     /// With the fluid.
     Travel(Travel<D>),
@@ -156,11 +156,11 @@ impl<const D: usize> CloudMotion<D> {
         match self {
             Self::Still => {}
             Self::Rigid(law) => place_rigid(law, origin, moment, frame),
-            Self::Along { path, laws, skin } => {
+            Self::Along { path, laws, deforming_surface } => {
                 place_along(path.as_ref(), origin, moment, frame);
-                turn_walls((laws, skin), origin, moment.time(), frame);
+                turn_walls((laws, deforming_surface), origin, moment.time(), frame);
                 if origin.operators.conservative {
-                    let Discretisation { cloud, operators, .. } = Arc::make_mut(&mut frame.shape);
+                    let Discretisation { cloud, operators, .. } = Arc::make_mut(&mut frame.discretisation);
                     operators.carry(cloud, &origin.operators, &origin.cloud);
                 }
             }
@@ -263,9 +263,9 @@ fn place_along<const D: usize>(
     let n = reference.n_real();
     let velocity = Arc::make_mut(&mut frame.velocity);
     velocity.resize(reference.len(), Vector::ZERO);
-    let shape = Arc::make_mut(&mut frame.shape);
+    let discretisation = Arc::make_mut(&mut frame.discretisation);
     let before = |i: usize| &reference.x[i];
-    let (x, w) = (&mut shape.cloud.x[..n], &mut velocity[..n]);
+    let (x, w) = (&mut discretisation.cloud.x[..n], &mut velocity[..n]);
     match moment {
         Moment::At { time } => {
             let now = path.at(*time);
@@ -287,28 +287,28 @@ fn place_along<const D: usize>(
     }
     for (k, image) in reference.images.iter().enumerate() {
         let (t, s) = (&reference.transforms[image.transform as usize], image.source as usize);
-        shape.cloud.x[n + k] = t.point(&shape.cloud.x[s]);
+        discretisation.cloud.x[n + k] = t.point(&discretisation.cloud.x[s]);
         velocity[n + k] = t.direction(&velocity[s]);
     }
 }
 
 /// Bends and turns the surface vectors with the bodies and fits all weights to where particles are.
 fn turn_walls<const D: usize>(
-    (laws, skin): (&[BodyMotion<D>], &DeformingSurface<D>),
+    (laws, deforming_surface): (&[BodyMotion<D>], &DeformingSurface<D>),
     origin: &Arc<Discretisation<D>>,
     t: f64,
     frame: &mut Frame<D>,
 ) {
     let reference = &origin.cloud;
-    let shape = Arc::make_mut(&mut frame.shape);
+    let discretisation = Arc::make_mut(&mut frame.discretisation);
     let poses: Vec<RigidPose<D>> = laws.iter().map(|l| l.pose(t)).collect();
     let rates: Vec<[Vector<D>; D]> = laws.iter().map(|l| rotation_rate(l, t)).collect();
     let body = |w: usize| usize::from(reference.interface[w].body);
-    sweep_slots(&mut shape.cloud.interface, |w, slot| {
+    sweep_slots(&mut discretisation.cloud.interface, |w, slot| {
         *slot = reference.interface[w];
         if let Some((pose, law)) = poses.get(body(w)).zip(laws.get(body(w))) {
-            if let Some(bent) = skin.bent(w, law, t) {
-                slot.deform(&bent.strain);
+            if let Some(surface_strain) = deforming_surface.surface_strain(w, law, t) {
+                slot.deform(&surface_strain.strain);
             }
             slot.turn(&pose.rotation);
         }
@@ -319,16 +319,16 @@ fn turn_walls<const D: usize>(
         let Some(law) = laws.get(body(w)) else { return WallMotion::AT_REST };
         let x = &reference.x[reference.n_fluid + w];
         let (spin, pose) = (rates[body(w)], &poses[body(w)]);
-        let Some(bent) = skin.bent(w, law, t) else {
+        let Some(surface_strain) = deforming_surface.surface_strain(w, law, t) else {
             return WallMotion { spin, acceleration: law.kinematics_of(t, x, &[]).acceleration };
         };
-        let stretch = WallMotion { spin: bent.rate, acceleration: Vector::ZERO };
+        let stretch = WallMotion { spin: surface_strain.rate, acceleration: Vector::ZERO };
         let stretch = stretch.turned(|v| pose.direction(v), |v| pose.inverse_direction(v));
         WallMotion {
             spin: std::array::from_fn(|i| spin[i] + stretch.spin[i]),
-            acceleration: law.kinematics_of(t, x, &bent.shifts).acceleration,
+            acceleration: law.kinematics_of(t, x, &surface_strain.shifts).acceleration,
         }
     });
-    shape.operators.refit(&shape.cloud);
-    shape.walls = WallFits::new(&shape.cloud);
+    discretisation.operators.refit(&discretisation.cloud);
+    discretisation.walls = WallFits::new(&discretisation.cloud);
 }

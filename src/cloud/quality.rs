@@ -9,8 +9,8 @@
 use serde::Serialize;
 
 use super::Cloud;
-use super::ends;
 use super::grid::Grid;
+use super::layer_termination;
 use super::repair::Sums;
 use crate::math::Vector;
 use crate::math::sweep::{CHUNK, sweep_each};
@@ -360,7 +360,7 @@ fn notes<const D: usize>(cloud: &Cloud<D>, tally: &Tally, linear_walls: usize) -
             place(&cloud.x[*i])
         ));
     }
-    notes.extend(ends::notes(cloud));
+    notes.extend(layer_termination::notes(cloud));
     let cut = cloud.transforms.iter().any(|t| t.sign != Vector::splat(1.0));
     for (body, (sum, total)) in closure(cloud).into_iter().enumerate() {
         if !cut && sum.norm() > OPEN * total {

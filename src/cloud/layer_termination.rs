@@ -4,8 +4,8 @@
 //! are still much thinner than long, a shear layer beyond them sees the plain background. For every reason there is one note:
 //! how many columns, the place of the worst, how many layers it has, and what helps.
 use super::Cloud;
-use super::doctor::place;
 use super::layers::{Column, End};
+use super::quality::place;
 
 /// Last distance between layers over the distance to the columns beside it, below which a column ends early.
 const EARLY: f64 = 0.5;

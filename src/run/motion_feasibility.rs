@@ -20,11 +20,11 @@ const GAP: f64 = 0.5;
 struct Body<'a, const D: usize> {
     name: String,
     points: Vec<(&'a Vector<D>, f64)>,
-    track: PointTrajectory<D>,
+    trajectory: PointTrajectory<D>,
 }
 
 /// Looks at the whole march; what is worth knowing, or why it cannot be done.
-pub(super) fn look<const D: usize>(
+pub(super) fn check<const D: usize>(
     case: &Case,
     cloud: &Cloud<D>,
     motions: &Motions<D>,
@@ -54,14 +54,14 @@ fn bodies<'a, const D: usize>(case: &Case, cloud: &'a Cloud<D>, motions: &Motion
     let body = |b: usize| {
         let points = points(b);
         let places: Vec<Vector<D>> = points.iter().map(|(x, _)| **x).collect();
-        Body { name: named(b), track: PointTrajectory::new(motions.of(b), &places), points }
+        Body { name: named(b), trajectory: PointTrajectory::new(motions.of(b), &places), points }
     };
     (0..case.bodies.len()).map(body).collect()
 }
 
 fn stays_inside<const D: usize>(bodies: &[Body<'_, D>], domain: &Bounds<D>, t: f64) -> Result<(), RunError> {
     for body in bodies {
-        let at = body.track.at(t);
+        let at = body.trajectory.at(t);
         let out = body.points.iter().enumerate().map(|(k, (x, _))| at(k, x)).find(|x| !domain.contains(x));
         if let Some(x) = out {
             return Err(RunError::Motion(format!(
@@ -79,13 +79,13 @@ fn keeps_apart<const D: usize>(bodies: &[Body<'_, D>], t: f64) -> Result<(), Run
     let carried: Vec<Vec<(Vector<D>, f64)>> = bodies
         .iter()
         .map(|b| {
-            let (at, every) = (b.track.at(t), b.points.len().div_ceil(POINTS).max(1));
+            let (at, every) = (b.trajectory.at(t), b.points.len().div_ceil(POINTS).max(1));
             // particles that are left out leave gaps: a point stands for all of its neighbourhood
             b.points.iter().enumerate().step_by(every).map(|(k, (x, h))| (at(k, x), h * every as f64)).collect()
         })
         .collect();
     for (a, b) in (0..bodies.len()).flat_map(|a| (a + 1..bodies.len()).map(move |b| (a, b))) {
-        if bodies[a].track.law().is_fixed() && bodies[b].track.law().is_fixed() {
+        if bodies[a].trajectory.law().is_fixed() && bodies[b].trajectory.law().is_fixed() {
             continue;
         }
         let [one, other] = [a, b].map(|k| Bounds::around(carried[k].iter().map(|(x, _)| x)));
@@ -123,7 +123,7 @@ fn longest_way<const D: usize>(
     let mut worst = (0.0, 0.0, "");
     for t in looked_at {
         for body in bodies {
-            let (from, to) = (body.track.at(t), body.track.at(t + dt));
+            let (from, to) = (body.trajectory.at(t), body.trajectory.at(t + dt));
             for (k, (x, h)) in body.points.iter().enumerate() {
                 let way = (to(k, x) - from(k, x)).norm() / h;
                 if way > worst.0 {
@@ -167,7 +167,7 @@ mod tests {
         let case = read(&text, "case.toml").unwrap_or_else(|e| panic!("{e}"));
         let (surface, cloud, _) = crate::run::build_cloud::<2>(&case, Path::new("")).unwrap();
         let motions = crate::run::setup::motions(&case, Path::new(""), surface.as_ref()).unwrap();
-        look(&case, &cloud, &motions).map_err(|e| e.to_string())
+        check(&case, &cloud, &motions).map_err(|e| e.to_string())
     }
 
     #[test]

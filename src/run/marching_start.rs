@@ -4,7 +4,7 @@
 //! mild; flow that separates, or a body whose speed is a good part of that of the stream, needs the flow of a period that has been
 //! marched. Its accuracy does not matter: steps are coarse, and a multiple of the instances, which are taken from the last period.
 use super::RunError;
-use super::journal::RunRecorder;
+use super::run_recorder::RunRecorder;
 use super::setup::harmonic_control;
 use crate::case::Harmonics;
 use crate::math::sweep::sweep_rows;
@@ -34,7 +34,7 @@ pub(super) fn marched<const D: usize>(
     fluid: &Fluid<D>,
     u: Vec<f64>,
     period: f64,
-    journal: &mut RunRecorder<'_>,
+    recorder: &mut RunRecorder<'_>,
 ) -> Result<Option<Vec<f64>>, RunError> {
     let (b, count) = (fluid.block(), balance.instances().count());
     let stride = STEPS.div_ceil(count);
@@ -44,17 +44,18 @@ pub(super) fn marched<const D: usize>(
     let march = even_steps(step, until);
     let mut all = vec![0.0; u.len() * count];
     let mut marcher = Dual::new(fluid, harmonic_control(plan, D), march, (Past::default(), u));
-    journal.note(&format!("{} periods of {steps} steps are marched first", plan.march));
-    journal.work.begin(0);
+    recorder.note(&format!("{} periods of {steps} steps are marched first", plan.march));
+    recorder.work.begin(0);
     for k in 1..=plan.march * steps {
-        marcher.advance().map_err(|e| journal.failed(e))?;
-        journal.work.add(marcher.evaluations(), fluid.shape.cloud.n_fluid);
-        if journal.stopped() {
+        marcher.advance().map_err(|e| recorder.failed(e))?;
+        recorder.work.add(marcher.evaluations(), fluid.discretisation.cloud.n_fluid);
+        if recorder.stopped() {
             return Ok(None);
         }
         if k.is_multiple_of(steps) {
             let (done, of) = (k / steps, plan.march);
-            journal.note(&format!("period {done} of {of} marched, {} steps not converged", marcher.past().unconverged));
+            recorder
+                .note(&format!("period {done} of {of} marched, {} steps not converged", marcher.past().unconverged));
         }
         let last = k > (plan.march - 1) * steps;
         if last && (k as usize).is_multiple_of(stride) {

@@ -39,7 +39,7 @@ impl<const D: usize> DeformingSurface<D> {
     }
 
     /// The surface at interface particle `w` at time `t`; `None` where it does not bend.
-    pub(super) fn bent(&self, w: usize, law: &BodyMotion<D>, t: f64) -> Option<SurfaceStrain<D>> {
+    pub(super) fn surface_strain(&self, w: usize, law: &BodyMotion<D>, t: f64) -> Option<SurfaceStrain<D>> {
         let modes = self.modes.get(w).filter(|m| !m.is_empty())?;
         let mut strain = Strain { map: std::array::from_fn(Vector::axis), second: [[Vector::ZERO; D]; D] };
         let mut rates = [Vector::ZERO; D];

@@ -186,13 +186,13 @@ fn least_multiple(a: f64, b: f64) -> Option<f64> {
 }
 
 /// Value and two derivatives of a sum of courses.
-pub(super) fn total<S: Scalar>(courses: &[TimeFunction], t: S) -> S {
-    courses.iter().fold(S::constant(0.0), |sum, course| sum + course.at(t))
+pub(super) fn total<S: Scalar>(functions: &[TimeFunction], t: S) -> S {
+    functions.iter().fold(S::constant(0.0), |sum, function| sum + function.at(t))
 }
 
 /// Value, rate and acceleration of a sum of courses.
-pub(super) fn total_with_rates(courses: &[TimeFunction], t: f64) -> Jet {
-    total(courses, Jet::variable(t))
+pub(super) fn total_with_rates(functions: &[TimeFunction], t: f64) -> Jet {
+    total(functions, Jet::variable(t))
 }
 
 #[cfg(test)]
@@ -229,10 +229,10 @@ mod tests {
         let h = 1e-4;
         for name in Formula::vocabulary().skip(5) {
             let text = if ["min", "max"].contains(&name) { format!("{name}(t, 0.3)") } else { format!("{name}(t)") };
-            let course = formula(&text, 1.0);
+            let function = formula(&text, 1.0);
             for t in [0.21, 0.47, 0.8] {
-                let (a, b, c) = (course.at(t - h), course.at(t), course.at(t + h));
-                let jet = course.at(Jet::variable(t));
+                let (a, b, c) = (function.at(t - h), function.at(t), function.at(t + h));
+                let jet = function.at(Jet::variable(t));
                 assert!((jet.first - (c - a) / (2.0 * h)).abs() < 1e-6, "{text} {t} {jet:?}");
                 assert!((jet.second - (c - 2.0 * b + a) / (h * h)).abs() < 1e-5, "{text} {t} {jet:?}");
             }

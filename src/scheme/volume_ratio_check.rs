@@ -6,8 +6,8 @@
 use crate::math::square::determinant;
 use crate::system::Fault;
 
+use super::discretisation::{CloudMotion, Frame};
 use super::fluid::Fluid;
-use super::shape::{CloudMotion, Frame};
 
 /// Least part of its volume to which the surroundings of a particle may shrink.
 const LEAST: f64 = 0.05;
@@ -15,7 +15,7 @@ const LEAST: f64 = 0.05;
 impl<const D: usize> Fluid<D> {
     /// The first particle whose surroundings have shrunk to almost nothing or folded.
     pub(super) fn squeezed(&self, frame: &Frame<D>) -> Option<Fault> {
-        if !matches!(self.carriage, CloudMotion::Along { .. }) {
+        if !matches!(self.cloud_motion, CloudMotion::Along { .. }) {
             return None;
         }
         let volume = self.stretch(frame);
@@ -30,7 +30,7 @@ impl<const D: usize> Fluid<D> {
 
     /// Volume of the surroundings of each fluid particle over what it was before any motion.
     pub(super) fn stretch(&self, frame: &Frame<D>) -> Vec<f64> {
-        let (before, now) = (&self.shape, &frame.shape.cloud);
+        let (before, now) = (&self.discretisation, &frame.discretisation.cloud);
         let gradients = before.operators.displacement_gradients(now, &before.cloud);
         let mut volume: Vec<f64> = gradients[..before.cloud.n_fluid].iter().map(determinant).collect();
         // rows of first order do not know their surroundings

@@ -7,8 +7,8 @@ use serde::Serialize;
 
 use super::RunError;
 use super::harmonic::terms;
-use super::journal::RunRecorder;
-use super::lead::even_steps;
+use super::marching_start::even_steps;
+use super::run_recorder::RunRecorder;
 use super::setup::harmonic_control;
 use super::solve::coefficients;
 use crate::case::Harmonics as Asked;
@@ -59,7 +59,7 @@ pub(super) fn marched_on<const D: usize>(
     fluid: &Fluid<D>,
     (state, series): (&[f64], &[Series; 3]),
     period: f64,
-    journal: &mut RunRecorder<'_>,
+    recorder: &mut RunRecorder<'_>,
 ) -> Result<Option<Aftermath>, RunError> {
     let step = period / f64::from(STEPS);
     let until = f64::from(1 + plan.check) * period;
@@ -70,19 +70,19 @@ pub(super) fn marched_on<const D: usize>(
     };
     let past = Past { time: period, last: step, next: step, before: at(1.0), older: at(2.0), ..Past::default() };
     let mut marcher = Dual::new(fluid, harmonic_control(plan, D), even_steps(step, until), (past, at(0.0)));
-    journal.note(&format!("{} periods of {STEPS} steps are marched from the balance", plan.check));
-    journal.work.begin(0);
+    recorder.note(&format!("{} periods of {STEPS} steps are marched from the balance", plan.check));
+    recorder.work.begin(0);
     let (mut time, mut loads) = (Vec::new(), Vec::<Coefficients>::new());
     loop {
         time.push(marcher.past().time);
         let (frame, work, state) = marcher.parts();
-        loads.push(coefficients(fluid, journal.axes(), frame, state, work).unwrap_or_default());
+        loads.push(coefficients(fluid, recorder.axes(), frame, state, work).unwrap_or_default());
         if marcher.finished() {
             break;
         }
-        marcher.advance().map_err(|e| journal.failed(e))?;
-        journal.work.add(marcher.evaluations(), fluid.shape.cloud.n_fluid);
-        if journal.stopped() {
+        marcher.advance().map_err(|e| recorder.failed(e))?;
+        recorder.work.add(marcher.evaluations(), fluid.discretisation.cloud.n_fluid);
+        if recorder.stopped() {
             return Ok(None);
         }
     }

@@ -84,7 +84,7 @@ impl Twofold {
     pub(super) fn last(&self, period: f64) -> Option<Twice> {
         let end = self.rows.last()?[1];
         let rows: Vec<&[f64; 8]> =
-            self.rows.iter().filter(|r| r[1] > end - period * (1.0 - super::journal::NEARLY)).collect();
+            self.rows.iter().filter(|r| r[1] > end - period * (1.0 - super::run_recorder::NEARLY)).collect();
         let n = rows.len() as f64;
         let apart = |c: usize| {
             let difference = |r: &&[f64; 8]| r[c + 3] - r[c];

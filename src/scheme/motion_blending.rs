@@ -10,7 +10,7 @@ use crate::math::sweep::sweep_slots;
 use crate::math::{Bounds, Vector};
 use crate::motion::{BodyMotion, PointTrajectory, RigidPose};
 
-use super::shape::{Path, Places};
+use super::discretisation::{Path, Places};
 
 /// Distance in body lengths within which particles move as the body does.
 const INNER: f64 = 1.0;
@@ -30,7 +30,7 @@ const ROUNDS: usize = 60;
 /// One body.
 struct Body<const D: usize> {
     /// The particles that follow it.
-    track: PointTrajectory<D>,
+    trajectory: PointTrajectory<D>,
     points: Vec<Vector<D>>,
     inner: f64,
     outer: f64,
@@ -56,7 +56,7 @@ impl<const D: usize> MotionBlending<D> {
         }
         let real = &cloud.x[..cloud.n_real()];
         for (b, law) in laws.iter().enumerate() {
-            all.bodies[b].track = PointTrajectory::of_those(law, real, |i| all.share[i * n + b] > 0.0);
+            all.bodies[b].trajectory = PointTrajectory::of_those(law, real, |i| all.share[i * n + b] > 0.0);
         }
         all
     }
@@ -103,7 +103,7 @@ fn body<const D: usize>(cloud: &Cloud<D>, (b, law): (usize, &BodyMotion<D>), unt
     let room = gaps.filter(|g| *g > 0.1 * length).fold(f64::INFINITY, f64::min);
     let outer = (OUTER * length.max(displacement(&bounds, law, until))).min(REACH * room);
     let points = all.into_iter().step_by(every).collect();
-    Body { track: PointTrajectory::new(law, &[]), points, inner: (INNER * length).min(0.25 * outer), outer }
+    Body { trajectory: PointTrajectory::new(law, &[]), points, inner: (INNER * length).min(0.25 * outer), outer }
 }
 
 /// How far the corners of the box around a body get from where they start, until `until`, and its modes from there.
@@ -127,16 +127,16 @@ fn blended<const D: usize>(
 
 impl<const D: usize> Path<D> for MotionBlending<D> {
     fn at(&self, t: f64) -> Places<'_, D> {
-        let tracks: Vec<_> = self.bodies.iter().map(|b| b.track.at(t)).collect();
+        let trajectories: Vec<_> = self.bodies.iter().map(|b| b.trajectory.at(t)).collect();
         let n = self.bodies.len();
         Box::new(move |i, x| {
             let share = self.share[i * n..(i + 1) * n].iter().map(|s| f64::from(*s));
-            blended(x, share, |b| tracks[b](i, x))
+            blended(x, share, |b| trajectories[b](i, x))
         })
     }
 
     fn origin(&self, x: &Vector<D>, t: f64) -> Vector<D> {
-        let places: Vec<_> = self.bodies.iter().map(|b| b.track.law().places(t)).collect();
+        let places: Vec<_> = self.bodies.iter().map(|b| b.trajectory.law().places(t)).collect();
         let mut before = *x;
         for _ in 0..ROUNDS {
             let miss = *x - blended(&before, self.shares(&before).into_iter(), |b| places[b](&before));

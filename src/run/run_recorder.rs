@@ -1,10 +1,10 @@
 //! What accompanies a run from stage to stage: the history, checkpoints, loads in time, and what the end of it is told from.
 use super::balance;
 use super::harmonic::BalanceReport;
+use super::load_crosscheck::Twofold;
 use super::periodic::{Sample, Trace};
 use super::persist::{FILE, LagrangianCheckpoint, Position, Saved};
 use super::snapshot::{LoadFrame, Snapshot, load_axes};
-use super::twice::Twofold;
 use super::{Monitor, Places, RunError, Tick};
 use crate::case::Case;
 use crate::motion::BodyMotion;
@@ -73,7 +73,7 @@ pub(super) struct RunRecorder<'a> {
     /// Part of the period, angle, displacement and loads at the instances of a harmonic balance.
     pub(super) instances: Vec<[f64; 6]>,
     /// What re-clouding did so far, where particles travel with the fluid.
-    pub(super) turnover: RemapLedger,
+    pub(super) ledger: RemapLedger,
     /// Loads evaluated twice, where the motion repeats.
     pub(super) twofold: Twofold,
 }
@@ -124,7 +124,7 @@ impl<'a> RunRecorder<'a> {
             forces: Vec::new(),
             unconverged: saved.map_or(0, |s| s.past.unconverged),
             halved: saved.map_or(0, |s| s.past.halved),
-            turnover: saved.and_then(|s| s.roaming.as_ref()).map_or_else(RemapLedger::default, |r| r.turnover.clone()),
+            ledger: saved.and_then(|s| s.lagrangian.as_ref()).map_or_else(RemapLedger::default, |r| r.ledger.clone()),
             trace: saved
                 .filter(|s| s.time > 0.0)
                 .map_or_else(Trace::default, |s| Trace::read(&places.out, s.time))
@@ -264,7 +264,7 @@ impl<'a> RunRecorder<'a> {
             residual: step.residual,
             cfl: step.cfl,
             loads: loads.map(|c| [c.cl, c.cd, c.cm]),
-            particles: fluid.shape.cloud.n_fluid,
+            particles: fluid.discretisation.cloud.n_fluid,
         });
         Ok(())
     }
@@ -301,7 +301,7 @@ impl<'a> RunRecorder<'a> {
         let (cpu, wall) = self.seconds();
         let (frame, _, state) = marcher.parts();
         let mut saved = Saved::new(at, self.iteration, past.time, state, bare(past.iteration));
-        saved.roaming = LagrangianCheckpoint::of(fluid, frame, &self.turnover);
+        saved.lagrangian = LagrangianCheckpoint::of(fluid, frame, &self.ledger);
         (saved.cpu_seconds, saved.wall_seconds, saved.work) = (cpu, wall, self.work.total);
         saved.cycles = self.cycles.clone();
         saved.start_totals = self.start_totals.clone();
@@ -320,7 +320,7 @@ impl<'a> RunRecorder<'a> {
 
 /// Angle (radians, nose up), displacement and coordinate of the first mode of the first body that moves.
 pub(super) fn motion<const D: usize>(fluid: &Fluid<D>, time: f64) -> [f64; 5] {
-    fluid.carriage.law().map_or([0.0; 5], |law: &BodyMotion<D>| {
+    fluid.cloud_motion.law().map_or([0.0; 5], |law: &BodyMotion<D>| {
         let shift = law.displacement(time).to_3d();
         let mode = law.coordinates(time).first().copied().unwrap_or(0.0);
         [law.angle(time).value, shift[0], shift[1], shift[2], mode]
