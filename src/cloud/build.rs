@@ -31,7 +31,7 @@ impl<const D: usize> Cloud<D> {
 
     /// The cloud of particles and what a search among them found.
     pub(super) fn join(particles: Particles<D>, found: Clouds<D>, transforms: Vec<Transform<D>>) -> Self {
-        let Clouds { neighbours, wall_clouds, images, repair, n_crevice } = found;
+        let Clouds { neighbours, wall_stencils, ghosts, repair, n_crevice } = found;
         let mut notes = repair.notes();
         if n_crevice > 0 {
             notes.push(format!(
@@ -46,18 +46,18 @@ impl<const D: usize> Cloud<D> {
             n_fluid: particles.n_fluid,
             interface: particles.interface,
             outer,
-            images,
+            ghosts,
             transforms,
             wall_distance: particles.wall_distance,
             neighbours,
-            wall_clouds,
+            wall_stencils,
             layers: particles.layers,
             leaves: particles.leaves,
             tree: particles.tree,
             first_order: repair.first_order,
             notes,
         };
-        cloud.append_images();
+        cloud.append_ghosts();
         cloud.note_mixed_rows();
         cloud
     }
@@ -71,8 +71,8 @@ impl<const D: usize> Cloud<D> {
         self.layers = layers;
     }
 
-    fn append_images(&mut self) {
-        for image in &self.images {
+    fn append_ghosts(&mut self) {
+        for image in &self.ghosts {
             let k = image.source as usize;
             self.x.push(self.transforms[image.transform as usize].point(&self.x[k]));
             self.spacing.push(self.spacing[k]);

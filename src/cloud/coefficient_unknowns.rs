@@ -75,7 +75,7 @@ pub(super) fn links<const D: usize>(cloud: &Cloud<D>) -> Vec<Link<D>> {
 fn link<const D: usize>(cloud: &Cloud<D>, reverse: &Reverse<'_, D>, i: usize, p: usize) -> Link<D> {
     let j = cloud.neighbours.index[p] as usize;
     let offset = cloud.x[j] - cloud.x[i];
-    let image = j.checked_sub(cloud.n_real()).and_then(|k| cloud.images.get(k));
+    let image = j.checked_sub(cloud.n_real()).and_then(|k| cloud.ghosts.get(k));
     let source = image.map_or(j, |m| m.source as usize);
     let transform = image.map(|m| m.transform);
     let partner = reverse.position(i, j).map(|(e, _)| e as u32);

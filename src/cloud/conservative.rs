@@ -545,7 +545,7 @@ fn store<const D: usize>(cloud: &mut Cloud<D>, operators: &mut Operators<D>, pro
     }
     cloud.volume[..problem.n_fluid].copy_from_slice(&x.volume);
     let first = cloud.n_real();
-    for (k, image) in cloud.images.iter().enumerate() {
+    for (k, image) in cloud.ghosts.iter().enumerate() {
         cloud.volume[first + k] = cloud.volume[image.source as usize];
     }
 }

@@ -9,7 +9,7 @@ use super::columns::{Columns, LayerContext};
 use super::interface::{Placed, place};
 use super::layers::Layers;
 use super::layout::Layout;
-use super::near_wall_smoothing::settle;
+use super::near_wall_smoothing::smooth_near_wall;
 use super::neighbours::NEAR;
 use super::tree::{Leaf, MAX_LEVEL, Tree};
 use super::{Interface, Transform};
@@ -153,7 +153,7 @@ impl<const D: usize> Particles<D> {
         let layers = columns.map(|c| gather(c, &sites)).unwrap_or_default();
         let mut all = Self::assemble(tree, layout, (sites, placed, outer), layers);
         if let (Some(surface), SETTLED) = (surface, D) {
-            settle(&mut all, surface, transforms);
+            smooth_near_wall(&mut all, surface, transforms);
         }
         all.shake(spec.jitter);
         all

@@ -21,7 +21,7 @@ fn cofactor_times<const D: usize>(f: &Matrix<D>, v: &Vector<D>) -> Vector<D> {
 impl<const D: usize> Operators<D> {
     /// Takes area vectors, pieces of wall and volumes from those of `origin`, a conservative fit of the cloud `from` that has moved
     /// to where `cloud` is.
-    pub fn carry(&mut self, cloud: &mut Cloud<D>, origin: &Self, from: &Cloud<D>) {
+    pub fn metric_update(&mut self, cloud: &mut Cloud<D>, origin: &Self, from: &Cloud<D>) {
         let gradients = origin.displacement_gradients(cloud, from);
         let at = |i: usize| seen(cloud, &gradients, i);
         let between = |i: usize, j: usize| match at(j) {
@@ -32,9 +32,9 @@ impl<const D: usize> Operators<D> {
         let faces = (0..origin.n_fluid_parts).flat_map(|k| origin.wall_faces(k));
         let turned = |f: &WallFace<D>| cofactor_times(&between(f.i as usize, f.wall as usize), &f.area);
         self.set_wall_faces(faces.map(|f| WallFace { area: turned(f), ..*f }).collect());
-        let (volume, images) = cloud.volume.split_at_mut(cloud.x.len() - cloud.images.len());
+        let (volume, ghosts) = cloud.volume.split_at_mut(cloud.x.len() - cloud.ghosts.len());
         sweep(&mut volume[..from.n_fluid], |i| from.volume[i] * determinant(&gradients[i]));
-        for (slot, image) in images.iter_mut().zip(&cloud.images) {
+        for (slot, image) in ghosts.iter_mut().zip(&cloud.ghosts) {
             *slot = volume[image.source as usize];
         }
     }
@@ -71,7 +71,7 @@ fn seen<const D: usize>(cloud: &Cloud<D>, gradients: &[Matrix<D>], i: usize) -> 
     if i < gradients.len() {
         return Some(gradients[i]);
     }
-    let image = cloud.images.get(i.checked_sub(cloud.n_real())?)?;
+    let image = cloud.ghosts.get(i.checked_sub(cloud.n_real())?)?;
     let sign = cloud.transforms[image.transform as usize].sign;
     let f = gradients.get(image.source as usize)?;
     Some(std::array::from_fn(|r| Vector::from_fn(|c| sign[r] * sign[c] * f[r][c])))
@@ -94,7 +94,7 @@ mod tests {
         let (mut cloud, mut moved) = (from.clone(), origin.clone());
         cloud.x.iter_mut().for_each(|x| *x = to(x));
         moved.refit(&cloud);
-        moved.carry(&mut cloud, &origin, &from);
+        moved.metric_update(&mut cloud, &origin, &from);
         let mut sums = vec![(Vector::<2>::ZERO, 0.0); cloud.len()];
         let mut put = |i: usize, s: Vector<2>| sums[i] = (sums[i].0 + s, sums[i].1 + s.norm());
         for k in 0..moved.n_fluid_parts {

@@ -1,7 +1,7 @@
 //! The cloud: where particles are, which ones each of them sees, and the operators that follow from it.
 //!
 //! Particles come in four kinds, stored one after the other: *fluid* particles in Hilbert order, *interface* particles on
-//! the surfaces, *outer* particles on the sides of the domain, and *images* of particles across planes of symmetry and
+//! the surfaces, *outer* particles on the sides of the domain, and *ghosts*, images of particles across planes of symmetry and
 //! periodic sides. Only fluid particles evolve; the state of the others follows from theirs.
 pub mod build;
 mod coefficient_unknowns;
@@ -124,9 +124,9 @@ impl<const D: usize> Transform<D> {
     }
 }
 
-/// The image of a particle.
+/// A ghost: the image of a particle.
 #[derive(Clone, Copy, Debug)]
-pub struct Image {
+pub struct Ghost {
     /// Particle it is the image of.
     pub source: u32,
     /// Index of the transform.
@@ -148,16 +148,16 @@ pub struct Cloud<const D: usize> {
     pub interface: Vec<Interface<D>>,
     /// Outer particles, in the order of their indices.
     pub outer: Vec<Outer>,
-    /// Images, in the order of their indices.
-    pub images: Vec<Image>,
-    /// Transforms that images refer to.
+    /// Ghost particles, images of others, in the order of their indices.
+    pub ghosts: Vec<Ghost>,
+    /// Transforms that ghosts refer to.
     pub transforms: Vec<Transform<D>>,
     /// Distance to the surface, for fluid particles near it; infinite elsewhere.
     pub wall_distance: Vec<f64>,
     /// Clouds of fluid and interface particles.
     pub neighbours: Neighbours,
     /// Fluid particles from which the state of each interface particle is fitted.
-    pub wall_clouds: Neighbours,
+    pub wall_stencils: Neighbours,
     /// Layers along the walls: a column an interface particle.
     pub layers: layers::Layers<D>,
     /// Which particles sit in which leaf of the background.
@@ -171,7 +171,7 @@ pub struct Cloud<const D: usize> {
 }
 
 impl<const D: usize> Cloud<D> {
-    /// Number of particles, images included.
+    /// Number of particles, ghosts included.
     pub fn len(&self) -> usize {
         self.x.len()
     }
@@ -197,8 +197,8 @@ impl<const D: usize> Cloud<D> {
         start..start + self.outer.len()
     }
 
-    /// Indices of the images.
-    pub fn image_range(&self) -> Range<usize> {
+    /// Indices of the ghosts.
+    pub fn ghost_range(&self) -> Range<usize> {
         self.n_real()..self.len()
     }
 
@@ -209,7 +209,7 @@ impl<const D: usize> Cloud<D> {
 
     /// The particle that `j` is, or is the image of.
     pub fn source(&self, j: usize) -> layers::Source {
-        match j.checked_sub(self.n_real()).and_then(|k| self.images.get(k)) {
+        match j.checked_sub(self.n_real()).and_then(|k| self.ghosts.get(k)) {
             Some(image) => layers::Source { index: image.source as usize, image: true },
             None => layers::Source { index: j, image: false },
         }
@@ -229,7 +229,7 @@ impl<const D: usize> Cloud<D> {
         self.layers.offset(i, self.spacing[i], self.source(j), &(self.x[j] - self.x[i]))
     }
 
-    /// Number of particles without images.
+    /// Number of particles without ghosts.
     pub fn n_real(&self) -> usize {
         self.n_rows() + self.outer.len()
     }

@@ -52,7 +52,11 @@ struct Foot<const D: usize> {
 }
 
 /// Moves the rows of fluid particles next to the walls.
-pub(super) fn settle<const D: usize>(all: &mut Particles<D>, surface: &Surface<D>, transforms: &[Transform<D>]) {
+pub(super) fn smooth_near_wall<const D: usize>(
+    all: &mut Particles<D>,
+    surface: &Surface<D>,
+    transforms: &[Transform<D>],
+) {
     let mut moved = vec![None; all.n_fluid];
     let walls = Walls { surface, transforms };
     sweep(&mut moved, |i| place(all, &walls, i));

@@ -10,7 +10,7 @@ use std::cell::OnceCell;
 use super::fill::Particles;
 use super::layers::Source;
 use super::repair::Repair;
-use super::{CloudError, Image, Transform};
+use super::{CloudError, Ghost, Transform};
 use crate::geometry::Surface;
 use crate::math::sweep::{CHUNK, sweep_each, sweep_parts};
 use crate::math::{Bounds, Vector};
@@ -104,7 +104,7 @@ impl Rows {
     }
 
     /// Everything seen through a transform.
-    fn images(&self) -> impl Iterator<Item = Seen> + '_ {
+    fn ghosts(&self) -> impl Iterator<Item = Seen> + '_ {
         self.chunks.iter().flat_map(|(_, list)| list).filter(|s| s.1 != IDENTITY).copied()
     }
 
@@ -160,9 +160,9 @@ pub struct Clouds<const D: usize> {
     /// Clouds of fluid and interface particles.
     pub neighbours: Neighbours,
     /// Fluid particles from which the state of each interface particle is fitted.
-    pub wall_clouds: Neighbours,
+    pub wall_stencils: Neighbours,
     /// Images that either of them sees.
-    pub images: Vec<Image>,
+    pub ghosts: Vec<Ghost>,
     /// What had to be repaired.
     pub repair: Repair<D>,
     /// Number of interface particles with too little fluid in front of them for an ordinary fit.
@@ -269,19 +269,19 @@ impl<'a, const D: usize> Search<'a, D> {
             return Err(CloudError::Quality(repair.refused));
         }
         let extra = &repair.extra;
-        let mut images: Vec<Seen> =
-            rows.images().chain(walls.images()).chain(extra.iter().map(|e| e.1).filter(|s| s.1 != IDENTITY)).collect();
-        images.sort_unstable();
-        images.dedup();
-        let first_image = p.x.len() as u32;
+        let mut ghosts: Vec<Seen> =
+            rows.ghosts().chain(walls.ghosts()).chain(extra.iter().map(|e| e.1).filter(|s| s.1 != IDENTITY)).collect();
+        ghosts.sort_unstable();
+        ghosts.dedup();
+        let first_ghost = p.x.len() as u32;
         let number = |s: &Seen| match s.1 {
             IDENTITY => s.0,
-            _ => first_image + images.binary_search(s).unwrap_or(0) as u32,
+            _ => first_ghost + ghosts.binary_search(s).unwrap_or(0) as u32,
         };
         let n_crevice = (0..p.interface.len()).filter(|w| walls.of(*w).len() <= D).count();
-        let (neighbours, wall_clouds) = (rows.pack(extra, number), walls.pack(&[], number));
-        let images = images.iter().map(|s| Image { source: s.0, transform: s.1 }).collect();
-        Ok(Clouds { neighbours, wall_clouds, images, repair, n_crevice })
+        let (neighbours, wall_stencils) = (rows.pack(extra, number), walls.pack(&[], number));
+        let ghosts = ghosts.iter().map(|s| Ghost { source: s.0, transform: s.1 }).collect();
+        Ok(Clouds { neighbours, wall_stencils, ghosts, repair, n_crevice })
     }
 
     /// Entries that are not seen back: lines of sight are tested at one end only, and round-off, or an abrupt change of

@@ -9,7 +9,7 @@
 use std::ops::Range;
 
 use super::neighbours::Neighbours;
-use super::{Cloud, Image, Transform};
+use super::{Cloud, Ghost, Transform};
 use crate::math::Vector;
 use crate::math::least_squares::{bounded_inverse, gradient_weight, normal_inverse, normal_matrix};
 use crate::math::sweep::{parts, sweep, sweep_each, sweep_each_slot, sweep_two_parts};
@@ -110,7 +110,7 @@ impl<const D: usize> Operators<D> {
     }
 
     /// Fits the weights anew to the positions of `cloud`, whose lists are those of the fit before; volumes stay. The
-    /// coefficients that come out are not conservative unless they are carried along, see [`Operators::carry`].
+    /// coefficients that come out are not conservative unless they are carried along, see [`Operators::metric_update`].
     pub fn refit(&mut self, cloud: &Cloud<D>) {
         self.conservative = false;
         self.walls.clear();
@@ -307,12 +307,12 @@ impl<'a, const D: usize> Reverse<'a, D> {
         if j < c.n_rows() {
             return self.entry(j, i as u32).map(|e| (e, None));
         }
-        let Image { source, transform } = *c.images.get(j.checked_sub(c.n_real())?)?;
+        let Ghost { source, transform } = *c.ghosts.get(j.checked_sub(c.n_real())?)?;
         if source as usize >= c.n_rows() {
             return None;
         }
         let back = self.inverse[transform as usize]?;
-        let mirrored = c.images.binary_search_by_key(&(i as u32, back), |m| (m.source, m.transform)).ok()?;
+        let mirrored = c.ghosts.binary_search_by_key(&(i as u32, back), |m| (m.source, m.transform)).ok()?;
         self.entry(source as usize, (c.n_real() + mirrored) as u32).map(|e| (e, Some(transform)))
     }
 
@@ -376,7 +376,7 @@ fn edge<const D: usize>(
     let back = reverse.position(i, j).map(|(e, transform)| match transform {
         None => gradient_weight(&inverse[j], &cloud.offset(j, i)),
         Some(t) => {
-            let source = cloud.images[j - cloud.n_real()].source as usize;
+            let source = cloud.ghosts[j - cloud.n_real()].source as usize;
             let d = cloud.offset(source, cloud.neighbours.index[e] as usize);
             cloud.transforms[t as usize].direction(&gradient_weight(&inverse[source], &d))
         }

@@ -20,7 +20,7 @@ fn cloud<const D: usize>(text: &str) -> (Cloud<D>, Surface<D>) {
 /// The particle that `j` is, or is the image of, and the transform.
 fn source<const D: usize>(cloud: &Cloud<D>, j: u32) -> (usize, Option<u8>) {
     match (j as usize).checked_sub(cloud.n_real()) {
-        Some(k) => (cloud.images[k].source as usize, Some(cloud.images[k].transform)),
+        Some(k) => (cloud.ghosts[k].source as usize, Some(cloud.ghosts[k].transform)),
         None => (j as usize, None),
     }
 }

@@ -5,7 +5,7 @@ use num_complex::Complex64;
 use serde::Serialize;
 
 use super::RunError;
-use super::marching_check::{Aftermath, marched_on};
+use super::marching_check::{MarchingCheck, marched_on};
 use super::outputs;
 use super::periodic::Sample;
 use super::persist::Position;
@@ -64,7 +64,7 @@ pub struct BalanceReport {
     /// Evaluations of the residual of one instance.
     pub evaluations: u64,
     /// How far a march from there ends from it, where `check` asks for one.
-    pub march: Option<Aftermath>,
+    pub march: Option<MarchingCheck>,
 }
 
 /// Finds the periodic solution; `None` when told to stop. Ends with the state and frame of the first instance.

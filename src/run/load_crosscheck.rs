@@ -27,7 +27,7 @@ pub struct Apart {
 
 /// Loads of the last period by momentum balance, against those on the walls.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct Twice {
+pub struct LoadCrosscheck {
     /// Moments at which both were evaluated: of a march, or the instances of a harmonic balance.
     pub moments: usize,
     /// Lift.
@@ -81,7 +81,7 @@ impl Twofold {
     }
 
     /// The moments of the last period; `None` without any.
-    pub(super) fn last(&self, period: f64) -> Option<Twice> {
+    pub(super) fn last(&self, period: f64) -> Option<LoadCrosscheck> {
         let end = self.rows.last()?[1];
         let rows: Vec<&[f64; 8]> =
             self.rows.iter().filter(|r| r[1] > end - period * (1.0 - super::run_recorder::NEARLY)).collect();
@@ -96,7 +96,7 @@ impl Twofold {
                 range: high - low,
             }
         };
-        Some(Twice { moments: rows.len(), cl: apart(2), cd: apart(3), cm: apart(4) })
+        Some(LoadCrosscheck { moments: rows.len(), cl: apart(2), cd: apart(3), cm: apart(4) })
     }
 }
 

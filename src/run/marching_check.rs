@@ -28,7 +28,7 @@ const PRESENT: f64 = 1e-2;
 
 /// How far a march from a harmonic balance ends from it.
 #[derive(Clone, Debug, Serialize)]
-pub struct Aftermath {
+pub struct MarchingCheck {
     /// Periods marched.
     pub periods: u32,
     /// Steps of each.
@@ -60,7 +60,7 @@ pub(super) fn marched_on<const D: usize>(
     (state, series): (&[f64], &[Series; 3]),
     period: f64,
     recorder: &mut RunRecorder<'_>,
-) -> Result<Option<Aftermath>, RunError> {
+) -> Result<Option<MarchingCheck>, RunError> {
     let step = period / f64::from(STEPS);
     let until = f64::from(1 + plan.check) * period;
     let at = |before: f64| {
@@ -100,10 +100,10 @@ pub(super) fn marched_on<const D: usize>(
         })
     });
     let unconverged = marcher.past().unconverged;
-    Ok(Some(Aftermath { periods: plan.check, steps_per_period: STEPS, unconverged, cl, cd, cm }))
+    Ok(Some(MarchingCheck { periods: plan.check, steps_per_period: STEPS, unconverged, cl, cd, cm }))
 }
 
-impl Aftermath {
+impl MarchingCheck {
     /// A line for those who watch.
     pub(super) fn told(&self) -> String {
         let named = [("lift", self.cl), ("drag", self.cd), ("moment", self.cm)];

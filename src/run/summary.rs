@@ -72,7 +72,7 @@ pub struct Summary {
     pub first_harmonics: Vec<super::periodic::FirstHarmonics>,
     /// Loads of the last period by momentum balance, against those on the walls.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub momentum_of_period: Option<super::load_crosscheck::Twice>,
+    pub momentum_of_period: Option<super::load_crosscheck::LoadCrosscheck>,
     /// Mean and greatest loads of the last period of the motion.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub last_period: Option<super::periodic::LastPeriod>,

@@ -180,7 +180,7 @@ impl<'a, const D: usize> Balance<'a, D> {
     fn beside(&self, w: usize) -> usize {
         let cloud = &self.frame.discretisation.cloud;
         let x = cloud.x[cloud.n_fluid + w];
-        let near = cloud.wall_clouds.of(w).iter().map(|j| *j as usize);
+        let near = cloud.wall_stencils.of(w).iter().map(|j| *j as usize);
         let nearest = near.min_by(|a, b| (cloud.x[*a] - x).norm_squared().total_cmp(&(cloud.x[*b] - x).norm_squared()));
         nearest.map_or(0, |j| cloud.source(j).index)
     }

@@ -34,7 +34,7 @@ const MOST: usize = 9;
 #[derive(Clone, Debug, Default)]
 pub struct WallFits {
     weight: Vec<f64>,
-    lever: Vec<f64>,
+    normal_offset: Vec<f64>,
     /// Number of fits that fell back to linear.
     pub n_linear: usize,
 }
@@ -45,14 +45,14 @@ impl WallFits {
     pub fn new<const D: usize>(cloud: &Cloud<D>) -> Self {
         let mut fits = vec![(Vec::new(), 0.0, false); cloud.interface.len()];
         sweep(&mut fits, |w| fit_wall(cloud, w));
-        let lever = fits.iter().map(|f| f.1).collect();
+        let normal_offset = fits.iter().map(|f| f.1).collect();
         let n_linear = fits.iter().filter(|f| f.2).count();
-        Self { weight: fits.into_iter().flat_map(|f| f.0).collect(), lever, n_linear }
+        Self { weight: fits.into_iter().flat_map(|f| f.0).collect(), normal_offset, n_linear }
     }
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        8 * (self.weight.len() + self.lever.len())
+        8 * (self.weight.len() + self.normal_offset.len())
     }
 }
 
@@ -76,14 +76,14 @@ fn fit_wall<const D: usize>(cloud: &Cloud<D>, w: usize) -> (Vec<f64>, f64, bool)
     if offsets.len() <= D || !is_sound(&weights) {
         solve_fit(&offsets, (&normal, &axes), h, 1, &mut weights);
     }
-    let lever = weights.iter().zip(&offsets).map(|(w, d)| w * d.dot(&normal)).sum::<f64>() / stretch;
-    (weights, lever, linear)
+    let normal_offset = weights.iter().zip(&offsets).map(|(w, d)| w * d.dot(&normal)).sum::<f64>() / stretch;
+    (weights, normal_offset, linear)
 }
 
 /// Offsets to the particles of a fit, and the factor by which they are stretched across the wall: where all of them lie in
 /// layers, distances along the wall and heights above it, so that a thin layer on a curved wall stays a layer.
 fn wall_offsets<const D: usize>(cloud: &Cloud<D>, w: usize, along: &Vector<D>) -> (Vec<Vector<D>>, f64) {
-    let (i, list) = (cloud.n_fluid + w, cloud.wall_clouds.of(w));
+    let (i, list) = (cloud.n_fluid + w, cloud.wall_stencils.of(w));
     let normal = &cloud.interface[w].normal;
     let layers = &cloud.layers;
     let source = |k: &u32| cloud.source(*k as usize);
@@ -168,14 +168,14 @@ fn tangents<const D: usize>(normal: &Vector<D>) -> [Vector<D>; D] {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WallMotion<const D: usize> {
     /// Rows of ∂w/∂x: the rate of rotation, and of stretching where the wall bends.
-    pub spin: [Vector<D>; D],
+    pub wall_velocity_gradient: [Vector<D>; D],
     /// Acceleration.
     pub acceleration: Vector<D>,
 }
 
 impl<const D: usize> WallMotion<D> {
     /// A wall that does not move.
-    pub const AT_REST: Self = Self { spin: [Vector::ZERO; D], acceleration: Vector::ZERO };
+    pub const AT_REST: Self = Self { wall_velocity_gradient: [Vector::ZERO; D], acceleration: Vector::ZERO };
 
     /// The same in axes that `turn` leads to from those of `self` and `back` from there.
     pub(super) fn turned(
@@ -183,10 +183,10 @@ impl<const D: usize> WallMotion<D> {
         turn: impl Fn(&Vector<D>) -> Vector<D>,
         back: impl Fn(&Vector<D>) -> Vector<D>,
     ) -> Self {
-        let times = |v: &Vector<D>| Vector::from_fn(|i| self.spin[i].dot(v));
+        let times = |v: &Vector<D>| Vector::from_fn(|i| self.wall_velocity_gradient[i].dot(v));
         let columns: [Vector<D>; D] = std::array::from_fn(|j| turn(&times(&back(&Vector::axis(j)))));
-        let spin = std::array::from_fn(|i| Vector::from_fn(|j| columns[j][i]));
-        Self { spin, acceleration: turn(&self.acceleration) }
+        let wall_velocity_gradient = std::array::from_fn(|i| Vector::from_fn(|j| columns[j][i]));
+        Self { wall_velocity_gradient, acceleration: turn(&self.acceleration) }
     }
 }
 
@@ -208,7 +208,7 @@ pub fn slip_wall<const D: usize>(
     let (cloud, fits) = shape;
     let (mut p, mut s, mut v) = (0.0, 0.0, Vector::<D>::ZERO);
     let mut lowest = (f64::INFINITY, f64::INFINITY);
-    for (k, weight) in cloud.wall_clouds.of(w).iter().zip(&fits.weight[cloud.wall_clouds.range(w)]) {
+    for (k, weight) in cloud.wall_stencils.of(w).iter().zip(&fits.weight[cloud.wall_stencils.range(w)]) {
         let state = q(*k as usize);
         let entropy = gas.entropy(&state);
         p += weight * state.pressure;
@@ -216,16 +216,18 @@ pub fn slip_wall<const D: usize>(
         v += state.velocity * *weight;
         lowest = (lowest.0.min(state.pressure), lowest.1.min(entropy));
     }
-    let (wall, lever) = (&cloud.interface[w], fits.lever[w]);
-    let spin = |v: &Vector<D>| motion.map_or(Vector::ZERO, |m| Vector::from_fn(|i| m.spin[i].dot(v)));
+    let (wall, normal_offset) = (&cloud.interface[w], fits.normal_offset[w]);
+    let gradient_times =
+        |v: &Vector<D>| motion.map_or(Vector::ZERO, |m| Vector::from_fn(|i| m.wall_velocity_gradient[i].dot(v)));
     let normal = &wall.normal;
-    let slope = motion.map_or(Vector::ZERO, |m| (0..D).fold(Vector::ZERO, |sum, i| sum + m.spin[i] * normal[i]));
-    let along = along_wall(&(v - velocity - slope * lever), normal);
-    let relative = irrotational(&along, wall, lever);
+    let slope = motion
+        .map_or(Vector::ZERO, |m| (0..D).fold(Vector::ZERO, |sum, i| sum + m.wall_velocity_gradient[i] * normal[i]));
+    let along = along_wall(&(v - velocity - slope * normal_offset), normal);
+    let relative = irrotational(&along, wall, normal_offset);
     let s = s.max(FLOOR * lowest.1);
     let density = |p: f64| (p / s).powf(1.0 / gas.gamma);
-    let inertia = motion.map_or(0.0, |m| 2.0 * normal.dot(&spin(&relative)) + normal.dot(&m.acceleration));
-    let pull = lever * (bending(wall, &relative) - inertia);
+    let inertia = motion.map_or(0.0, |m| 2.0 * normal.dot(&gradient_times(&relative)) + normal.dot(&m.acceleration));
+    let pull = normal_offset * (bending(wall, &relative) - inertia);
     // the density follows the pressure at constant entropy, three rounds settle it
     let mut pressure = p.max(FLOOR * lowest.0);
     for _ in 0..3 {
@@ -237,7 +239,7 @@ pub fn slip_wall<const D: usize>(
 
 /// State of interface particle `w` on a wall that the gas sticks to, with ∂p/∂n = −ρ n·a_w and ∂θ/∂n = 0, or at the given
 /// temperature: parabolas through the first two layers, or the fit without layers.
-pub(super) fn stuck_wall<const D: usize>(
+pub(super) fn no_slip_wall<const D: usize>(
     (cloud, fits): (&Cloud<D>, &WallFits),
     gas: &Gas,
     w: usize,
@@ -252,7 +254,7 @@ pub(super) fn stuck_wall<const D: usize>(
         sum = (sum.0 + weight * own.0, sum.1 + weight * own.1);
         lowest = (lowest.0.min(own.0), lowest.1.min(own.1));
     };
-    let lever = match lowest_two(cloud, w) {
+    let normal_offset = match lowest_two(cloud, w) {
         Some(([a, b], [low, high])) => {
             let part = low * low / (high * high - low * low);
             take(a, 1.0 + part);
@@ -260,16 +262,16 @@ pub(super) fn stuck_wall<const D: usize>(
             low * high / (low + high)
         }
         None => {
-            let weights = &fits.weight[cloud.wall_clouds.range(w)];
-            cloud.wall_clouds.of(w).iter().zip(weights).for_each(|(k, weight)| take(*k as usize, *weight));
-            fits.lever[w]
+            let weights = &fits.weight[cloud.wall_stencils.range(w)];
+            cloud.wall_stencils.of(w).iter().zip(weights).for_each(|(k, weight)| take(*k as usize, *weight));
+            fits.normal_offset[w]
         }
     };
     let (p, floor) = (sum.0, FLOOR * lowest.0);
     let theta = temperature.unwrap_or(sum.1.max(FLOOR * lowest.1));
     let inertia = motion.map_or(0.0, |m| cloud.interface[w].normal.dot(&m.acceleration));
-    // p_w = p + lever ρ_w n·a_w with ρ_w = γ p_w/θ
-    let pressure = (p / (1.0 - (lever * inertia * gas.gamma / theta).min(0.5))).max(floor);
+    // p_w = p + normal_offset ρ_w n·a_w with ρ_w = γ p_w/θ
+    let pressure = (p / (1.0 - (normal_offset * inertia * gas.gamma / theta).min(0.5))).max(floor);
     Primitive { density: gas.gamma * pressure / theta, velocity, pressure }
 }
 
@@ -278,9 +280,9 @@ fn along_wall<const D: usize>(v: &Vector<D>, normal: &Vector<D>) -> Vector<D> {
 }
 
 /// Solves (I − B K) r = `along`: the tangential velocity with slope −K r across the wall.
-fn irrotational<const D: usize>(along: &Vector<D>, wall: &crate::cloud::Interface<D>, lever: f64) -> Vector<D> {
+fn irrotational<const D: usize>(along: &Vector<D>, wall: &crate::cloud::Interface<D>, normal_offset: f64) -> Vector<D> {
     // B K is small (spacing over radius of curvature): six terms of the Neumann series are plenty
-    let apply = |u: &Vector<D>| Vector::from_fn(|r| lever * wall.curvature[r].dot(u));
+    let apply = |u: &Vector<D>| Vector::from_fn(|r| normal_offset * wall.curvature[r].dot(u));
     let mut u = *along;
     for _ in 0..6 {
         u = along_wall(&(*along + apply(&u)), &wall.normal);

@@ -161,7 +161,7 @@ impl<const D: usize> CloudMotion<D> {
                 turn_walls((laws, deforming_surface), origin, moment.time(), frame);
                 if origin.operators.conservative {
                     let Discretisation { cloud, operators, .. } = Arc::make_mut(&mut frame.discretisation);
-                    operators.carry(cloud, &origin.operators, &origin.cloud);
+                    operators.metric_update(cloud, &origin.operators, &origin.cloud);
                 }
             }
             Self::Travel(travel) => travel.place(origin, moment, frame),
@@ -233,12 +233,15 @@ fn place_rigid<const D: usize>(
     let inward = |v: &Vector<D>| pose.inverse_direction(v);
     // Rᵀ G R: the rate of rotation seen in the axes of the body
     let columns: [Vector<D>; D] = std::array::from_fn(|j| inward(&times(&gradient, &pose.direction(&Vector::axis(j)))));
-    let spin = std::array::from_fn(|i| Vector::from_fn(|j| columns[j][i]));
+    let wall_velocity_gradient = std::array::from_fn(|i| Vector::from_fn(|j| columns[j][i]));
     let first = origin.cloud.n_fluid;
-    let still = WallMotion { spin, acceleration: Vector::ZERO };
+    let still = WallMotion { wall_velocity_gradient, acceleration: Vector::ZERO };
     let walls = Arc::make_mut(&mut frame.walls);
     walls.resize(origin.cloud.interface.len(), still);
-    sweep(walls, |w| WallMotion { spin, acceleration: inward(&law.kinematics(t, &x[first + w]).acceleration) });
+    sweep(walls, |w| WallMotion {
+        wall_velocity_gradient,
+        acceleration: inward(&law.kinematics(t, &x[first + w]).acceleration),
+    });
     frame.turn = Some(pose);
 }
 
@@ -285,7 +288,7 @@ fn place_along<const D: usize>(
             sweep(x, |i| from(i, before(i)) + w[i] * (fraction * step));
         }
     }
-    for (k, image) in reference.images.iter().enumerate() {
+    for (k, image) in reference.ghosts.iter().enumerate() {
         let (t, s) = (&reference.transforms[image.transform as usize], image.source as usize);
         discretisation.cloud.x[n + k] = t.point(&discretisation.cloud.x[s]);
         velocity[n + k] = t.direction(&velocity[s]);
@@ -318,14 +321,16 @@ fn turn_walls<const D: usize>(
     sweep(walls, |w| {
         let Some(law) = laws.get(body(w)) else { return WallMotion::AT_REST };
         let x = &reference.x[reference.n_fluid + w];
-        let (spin, pose) = (rates[body(w)], &poses[body(w)]);
+        let (wall_velocity_gradient, pose) = (rates[body(w)], &poses[body(w)]);
         let Some(surface_strain) = deforming_surface.surface_strain(w, law, t) else {
-            return WallMotion { spin, acceleration: law.kinematics_of(t, x, &[]).acceleration };
+            return WallMotion { wall_velocity_gradient, acceleration: law.kinematics_of(t, x, &[]).acceleration };
         };
-        let stretch = WallMotion { spin: surface_strain.rate, acceleration: Vector::ZERO };
+        let stretch = WallMotion { wall_velocity_gradient: surface_strain.rate, acceleration: Vector::ZERO };
         let stretch = stretch.turned(|v| pose.direction(v), |v| pose.inverse_direction(v));
         WallMotion {
-            spin: std::array::from_fn(|i| spin[i] + stretch.spin[i]),
+            wall_velocity_gradient: std::array::from_fn(|i| {
+                wall_velocity_gradient[i] + stretch.wall_velocity_gradient[i]
+            }),
             acceleration: law.kinematics_of(t, x, &surface_strain.shifts).acceleration,
         }
     });

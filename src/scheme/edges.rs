@@ -10,7 +10,7 @@ use crate::math::Vector;
 use crate::physics::riemann::UpwindFlux;
 use crate::physics::{Conserved, Gas, Newtonian, Primitive};
 
-use super::reconstruct::{Gradient, Limit, Reconstruction, slowed};
+use super::reconstruct::{Gradient, Limit, Reconstruction, low_mach_correction};
 use super::viscous::{direction, middle, slopes};
 
 /// Edges that are computed together: enough to fill vectors, few enough that all of it stays in the first cache.
@@ -161,29 +161,29 @@ impl<const D: usize> Batch<D> {
 
 /// Calls `add(i, change)` with what every edge adds to V dU/dt of its ends, one edge after the other.
 pub fn edge_fluxes<const D: usize, F: UpwindFlux<D>, L: Limit>(
-    rule: &FluxScheme<F, L>,
+    scheme: &FluxScheme<F, L>,
     particles: Particles<'_, D>,
     edges: &[Edge<D>],
     mut add: impl FnMut(usize, &Conserved<D>),
 ) {
     let mut batch = Batch::BLANK;
     for some in edges.chunks(LANES) {
-        gather(rule, &particles, some, &mut batch);
-        reconstruct(rule.gas, rule.limit, rule.reconstruction, &mut batch);
-        if rule.reconstruction.low_mach {
-            slow(rule.gas, &mut batch);
+        gather(scheme, &particles, some, &mut batch);
+        reconstruct(scheme.gas, scheme.limit, scheme.reconstruction, &mut batch);
+        if scheme.reconstruction.low_mach {
+            low_mach_corrections(scheme.gas, &mut batch);
         }
-        cross(rule.gas, rule.flux, &mut batch);
-        match (particles.velocity.is_empty(), rule.conservative) {
-            (true, true) => balance::<D, false, true>(rule.gas, rule.by_faces, &mut batch),
-            (true, false) => balance::<D, false, false>(rule.gas, rule.by_faces, &mut batch),
-            (false, true) => balance::<D, true, true>(rule.gas, rule.by_faces, &mut batch),
-            (false, false) => balance::<D, true, false>(rule.gas, rule.by_faces, &mut batch),
+        upwind_fluxes(scheme.gas, scheme.flux, &mut batch);
+        match (particles.velocity.is_empty(), scheme.conservative) {
+            (true, true) => accumulate_residual::<D, false, true>(scheme.gas, scheme.by_faces, &mut batch),
+            (true, false) => accumulate_residual::<D, false, false>(scheme.gas, scheme.by_faces, &mut batch),
+            (false, true) => accumulate_residual::<D, true, true>(scheme.gas, scheme.by_faces, &mut batch),
+            (false, false) => accumulate_residual::<D, true, false>(scheme.gas, scheme.by_faces, &mut batch),
         }
-        if let Some(medium) = rule.medium {
-            match rule.conservative {
-                true => shear::<D, true>(rule.gas, medium, &mut batch),
-                false => shear::<D, false>(rule.gas, medium, &mut batch),
+        if let Some(medium) = scheme.medium {
+            match scheme.conservative {
+                true => viscous_fluxes::<D, true>(scheme.gas, medium, &mut batch),
+                false => viscous_fluxes::<D, false>(scheme.gas, medium, &mut batch),
             }
         }
         for (k, e) in some.iter().enumerate() {
@@ -197,7 +197,7 @@ pub fn edge_fluxes<const D: usize, F: UpwindFlux<D>, L: Limit>(
 
 #[inline(always)]
 fn gather<const D: usize, F, L>(
-    rule: &FluxScheme<F, L>,
+    scheme: &FluxScheme<F, L>,
     p: &Particles<'_, D>,
     edges: &[Edge<D>],
     batch: &mut Batch<D>,
@@ -210,14 +210,14 @@ fn gather<const D: usize, F, L>(
             let i = ends[side];
             let q = &p.state[i];
             batch.own[side].put(k, q.density, &q.velocity, q.pressure);
-            if rule.medium.is_some() {
+            if scheme.medium.is_some() {
                 batch.gradient[side].put(k, &p.gradient[i]);
             }
-            if rule.reconstruction.second_order {
+            if scheme.reconstruction.second_order {
                 let g = p.gradient[i].along(&d);
                 batch.slope[side].put(k, g.density, &g.velocity, g.pressure);
             }
-            if !rule.conservative || !p.velocity.is_empty() {
+            if !scheme.conservative || !p.velocity.is_empty() {
                 put(&mut batch.weight[side], k, &(*weights[side] * -p.volume[i]));
             }
             if !p.velocity.is_empty() {
@@ -236,12 +236,12 @@ fn gather<const D: usize, F, L>(
 /// States on both sides of the middle of every edge.
 #[multiversion(targets("x86_64+avx2"))]
 #[allow(unsafe_code, reason = "the attribute calls the version that the processor has just been asked for")]
-fn reconstruct<const D: usize, L: Limit>(gas: Gas, limit: L, rule: Reconstruction, batch: &mut Batch<D>) {
+fn reconstruct<const D: usize, L: Limit>(gas: Gas, limit: L, reconstruction: Reconstruction, batch: &mut Batch<D>) {
     let Batch { own, slope, middle: [left, right], .. } = batch;
     for k in 0..LANES {
         let (qi, qj) = (own[0].primitive(k), own[1].primitive(k));
         let slopes = (slope[0].primitive(k), slope[1].primitive(k));
-        let (l, r) = rule.states(&gas, limit, (&qi, &qj), (&slopes.0, &slopes.1));
+        let (l, r) = reconstruction.states(&gas, limit, (&qi, &qj), (&slopes.0, &slopes.1));
         left.put(k, l.density, &l.velocity, l.pressure);
         right.put(k, r.density, &r.velocity, r.pressure);
     }
@@ -250,13 +250,13 @@ fn reconstruct<const D: usize, L: Limit>(gas: Gas, limit: L, rule: Reconstructio
 /// Scales the jump of the normal velocity with the Mach number, seen from the mean velocity of the ends.
 #[multiversion(targets("x86_64+avx2"))]
 #[allow(unsafe_code, reason = "the attribute calls the version that the processor has just been asked for")]
-fn slow<const D: usize>(gas: Gas, batch: &mut Batch<D>) {
+fn low_mach_corrections<const D: usize>(gas: Gas, batch: &mut Batch<D>) {
     let Batch { area, speed, whole, middle: [left, right], .. } = batch;
     for k in 0..LANES {
         let m = normal(&take(area, k)).0;
         let w = (take(&speed[0], k) + take(&speed[1], k)) * 0.5;
         let seen = |q: Primitive<D>, w: Vector<D>| Primitive { velocity: q.velocity - w, ..q };
-        let (l, r) = slowed(&gas, seen(left.primitive(k), w), seen(right.primitive(k), w), (&m, whole[k]));
+        let (l, r) = low_mach_correction(&gas, seen(left.primitive(k), w), seen(right.primitive(k), w), (&m, whole[k]));
         let (l, r) = (seen(l, -w), seen(r, -w));
         left.put(k, l.density, &l.velocity, l.pressure);
         right.put(k, r.density, &r.velocity, r.pressure);
@@ -266,7 +266,7 @@ fn slow<const D: usize>(gas: Gas, batch: &mut Batch<D>) {
 /// The upwind flux through an area that moves with the mean velocity of the ends, by way of the axes in which it rests.
 #[multiversion(targets("x86_64+avx2"))]
 #[allow(unsafe_code, reason = "the attribute calls the version that the processor has just been asked for")]
-fn cross<const D: usize, F: UpwindFlux<D>>(gas: Gas, flux: F, batch: &mut Batch<D>) {
+fn upwind_fluxes<const D: usize, F: UpwindFlux<D>>(gas: Gas, flux: F, batch: &mut Batch<D>) {
     let Batch { area, speed, middle: [left, right], upwind, .. } = batch;
     for k in 0..LANES {
         let m = normal(&take(area, k)).0;
@@ -281,7 +281,7 @@ fn cross<const D: usize, F: UpwindFlux<D>>(gas: Gas, flux: F, batch: &mut Batch<
 /// What every edge adds to V dU/dt of both ends.
 #[multiversion(targets("x86_64+avx2"))]
 #[allow(unsafe_code, reason = "the attribute calls the version that the processor has just been asked for")]
-fn balance<const D: usize, const MOVES: bool, const CONSERVATIVE: bool>(
+fn accumulate_residual<const D: usize, const MOVES: bool, const CONSERVATIVE: bool>(
     gas: Gas,
     by_faces: bool,
     batch: &mut Batch<D>,
@@ -311,10 +311,10 @@ fn balance<const D: usize, const MOVES: bool, const CONSERVATIVE: bool>(
             }
         } else {
             let spread = upwind.plus(-0.5, &both::<D, MOVES>(&gas, (&l, &r), &m, &w)).times(size);
-            let central_i =
-                both::<D, MOVES>(&gas, (&l, &r), &a_i, &wi).plus(-2.0, &past::<D, MOVES>(&gas, &qi, &a_i, &wi));
-            let central_j =
-                both::<D, MOVES>(&gas, (&l, &r), &a_j, &wj).plus(-2.0, &past::<D, MOVES>(&gas, &qj, &a_j, &wj));
+            let central_i = both::<D, MOVES>(&gas, (&l, &r), &a_i, &wi)
+                .plus(-2.0, &relative_flux::<D, MOVES>(&gas, &qi, &a_i, &wi));
+            let central_j = both::<D, MOVES>(&gas, (&l, &r), &a_j, &wj)
+                .plus(-2.0, &relative_flux::<D, MOVES>(&gas, &qj, &a_j, &wj));
             (central_i.plus(-1.0, &spread), central_j.plus(1.0, &spread))
         };
         out_i.put(k, i.density, &i.momentum, i.energy);
@@ -324,7 +324,12 @@ fn balance<const D: usize, const MOVES: bool, const CONSERVATIVE: bool>(
 
 /// Flux of the state `q` through an area `n` that moves with `w`.
 #[inline(always)]
-fn past<const D: usize, const MOVES: bool>(gas: &Gas, q: &Primitive<D>, n: &Vector<D>, w: &Vector<D>) -> Conserved<D> {
+fn relative_flux<const D: usize, const MOVES: bool>(
+    gas: &Gas,
+    q: &Primitive<D>,
+    n: &Vector<D>,
+    w: &Vector<D>,
+) -> Conserved<D> {
     if MOVES { gas.flux(q, n).plus(-w.dot(n), &gas.conserved(q)) } else { gas.flux(q, n) }
 }
 
@@ -336,13 +341,13 @@ fn both<const D: usize, const MOVES: bool>(
     n: &Vector<D>,
     w: &Vector<D>,
 ) -> Conserved<D> {
-    past::<D, MOVES>(gas, l, n, w).plus(1.0, &past::<D, MOVES>(gas, r, n, w))
+    relative_flux::<D, MOVES>(gas, l, n, w).plus(1.0, &relative_flux::<D, MOVES>(gas, r, n, w))
 }
 
 /// What stress and heat along every edge add to V dU/dt of both ends.
 #[multiversion(targets("x86_64+avx2"))]
 #[allow(unsafe_code, reason = "the attribute calls the version that the processor has just been asked for")]
-fn shear<const D: usize, const CONSERVATIVE: bool>(gas: Gas, medium: Newtonian, batch: &mut Batch<D>) {
+fn viscous_fluxes<const D: usize, const CONSERVATIVE: bool>(gas: Gas, medium: Newtonian, batch: &mut Batch<D>) {
     let Batch { own, weight, area, along, gradient, out: [out_i, out_j], .. } = batch;
     for k in 0..LANES {
         let (s, d) = (take(area, k), take(along, k));

@@ -12,11 +12,11 @@
 //!
 //! On particles that move with w_i the term w_i·∇U is added, always with the velocity of the particle whose equation it is and
 //! with the least-squares coefficients, so that uniform flow and linear fields at rest stay what they are; conservative coefficients
-//! then serve the fluxes alone, and follow the cloud as it deforms ([`Operators::carry`]). On clouds with wall layers they serve
+//! then serve the fluxes alone, and follow the cloud as it deforms ([`Operators::metric_update`]). On clouds with wall layers they serve
 //! both: the gas beside a wall moves with it, and what is left of v − w must not be the difference of two sums with different
 //! weights. The dissipation of an edge is that of an area that moves with the mean velocity of its ends.
 //!
-//! [`Operators::carry`]: crate::cloud::Operators::carry
+//! [`Operators::metric_update`]: crate::cloud::Operators::metric_update
 #[cfg(test)]
 mod tests;
 
@@ -151,12 +151,12 @@ impl<const D: usize> Fluid<D> {
         let inward = |q: Primitive<D>| Primitive { velocity: frame.inward(&q.velocity), ..q };
         sweep(fluid, |i| inward(self.gas.primitive(&Conserved::load(&u[i * (D + 2)..]))));
         let fluid = &*fluid;
-        let first_image = cloud.n_real();
+        let first_ghost = cloud.n_real();
         let seen = |k: usize| {
             if k < cloud.n_fluid {
                 return fluid[k];
             }
-            let image = &cloud.images[k - first_image];
+            let image = &cloud.ghosts[k - first_ghost];
             self.image_state(&fluid[image.source as usize], image.transform)
         };
         let (walls, rest) = rest.split_at_mut(cloud.interface.len());
@@ -165,16 +165,16 @@ impl<const D: usize> Fluid<D> {
         // sides and walls are few particles, each of them much work
         match self.viscous_model {
             None => sweep_each(walls, slips),
-            Some(_) => {
-                sweep_each(walls, |w| self.stuck(&frame.discretisation, (w, frame), seen).unwrap_or_else(|| slips(w)))
-            }
+            Some(_) => sweep_each(walls, |w| {
+                self.no_slip_state(&frame.discretisation, (w, frame), seen).unwrap_or_else(|| slips(w))
+            }),
         }
         let walls = &*walls;
-        let (outer, images) = rest.split_at_mut(cloud.outer.len());
+        let (outer, ghosts) = rest.split_at_mut(cloud.outer.len());
         sweep_each(outer, |k| self.outer_state(frame, k, fluid));
         let outer = &*outer;
-        sweep(images, |k| {
-            let image = &cloud.images[k];
+        sweep(ghosts, |k| {
+            let image = &cloud.ghosts[k];
             let s = image.source as usize;
             let source = match s {
                 s if s < cloud.n_fluid => &fluid[s],
@@ -207,14 +207,14 @@ impl<const D: usize> Fluid<D> {
         });
         cloud.first_order.iter().for_each(|i| rows[*i as usize] = Gradient::ZERO);
         let rows = &*rows;
-        let (outer, images) = rest.split_at_mut(cloud.outer.len());
+        let (outer, ghosts) = rest.split_at_mut(cloud.outer.len());
         // a held state that varies along the side also varies across it: without a slope the edge flux is of first order
         sweep(outer, |k| match cloud.outer[k].side {
             Side::Held => rows.get(cloud.outer[k].source as usize).copied().unwrap_or(Gradient::ZERO),
             _ => Gradient::ZERO,
         });
-        sweep(images, |k| {
-            let image = &cloud.images[k];
+        sweep(ghosts, |k| {
+            let image = &cloud.ghosts[k];
             let t = &cloud.transforms[image.transform as usize];
             rows.get(image.source as usize).map_or(Gradient::ZERO, |g| Gradient {
                 density: t.direction(&g.density),
@@ -245,7 +245,7 @@ impl<const D: usize> Fluid<D> {
         let (op, cloud) = (&frame.discretisation.operators, &frame.discretisation.cloud);
         let (gas, reconstruction, conservative) = (self.gas, self.reconstruction, self.conservative);
         let medium = self.viscous_model.as_ref().map(|f| f.medium);
-        let rule =
+        let scheme =
             FluxScheme { gas, flux, limit, reconstruction, conservative, by_faces: self.passes_by_faces(), medium };
         let particles = Particles {
             x: &cloud.x,
@@ -259,7 +259,7 @@ impl<const D: usize> Fluid<D> {
             let start = op.parts[k].start;
             out.fill(0.0);
             let mut to = |i: usize, change: &Conserved<D>| add(&mut out[(i - start) * (D + 2)..], change);
-            edge_fluxes(&rule, particles, op.edges(k), &mut to);
+            edge_fluxes(&scheme, particles, op.edges(k), &mut to);
             if self.conservative {
                 self.wall_fluxes(op.wall_faces(k), at, &mut to);
                 self.viscous_walls(op.wall_faces(k), at, &mut to);
@@ -483,7 +483,7 @@ impl<const D: usize> System for Fluid<D> {
     }
 
     fn misplaced(&self, frame: &Frame<D>) -> Option<Fault> {
-        self.squeezed(frame)
+        self.volume_ratio_check(frame)
     }
 
     fn locate(&self, frame: &Frame<D>, particle: usize) -> Vec<f64> {

@@ -193,11 +193,11 @@ pub(super) fn couple<const D: usize>(
             true => rows.add(row, row, |r, c| folded(&coupling, &wall.normal, r, c)),
             false => {
                 let ends = (&work.state[row].velocity, &work.state[column].velocity);
-                rows.add(row, row, |r, c| stuck(&coupling, ends, r, c));
+                rows.add(row, row, |r, c| no_slip_entry(&coupling, ends, r, c));
             }
         }
     } else if column >= cloud.n_real() {
-        let image = cloud.images[column - cloud.n_real()];
+        let image = cloud.ghosts[column - cloud.n_real()];
         let sign = cloud.transforms[image.transform as usize].sign;
         let flip = |c: usize| if (1..=D).contains(&c) { sign[c - 1] } else { 1.0 };
         if (image.source as usize) < cloud.n_fluid {
@@ -231,7 +231,7 @@ fn folded<const D: usize>(coupling: &impl Fn(usize, usize) -> f64, normal: &Vect
 
 /// Entry (r, c) of coupling · P, where P gives density and pressure of the particle in front of a wall, moving with v, to a
 /// state with the velocity w of the wall.
-fn stuck<const D: usize>(
+fn no_slip_entry<const D: usize>(
     coupling: &impl Fn(usize, usize) -> f64,
     (v, w): (&Vector<D>, &Vector<D>),
     r: usize,

@@ -119,7 +119,7 @@ pub struct Reconstruction {
     pub kappa: f64,
     /// Relative difference below which the limiter does not act.
     pub threshold: f64,
-    /// Jumps of the normal velocity are scaled with the Mach number, see [`slowed`].
+    /// Jumps of the normal velocity are scaled with the Mach number, see [`low_mach_correction`].
     pub low_mach: bool,
 }
 
@@ -130,7 +130,7 @@ pub struct Reconstruction {
 /// (Thornber, Mosedale, Drikakis, Youngs and Williams 2008, J. Comput. Phys. 227; Rieper 2011, J. Comput. Phys. 230). The jump
 /// along the edge's face, which is damped with the speed of the flow, stays as it is.
 #[inline(always)]
-pub fn slowed<const D: usize>(
+pub fn low_mach_correction<const D: usize>(
     gas: &Gas,
     l: Primitive<D>,
     r: Primitive<D>,
@@ -207,15 +207,15 @@ mod tests {
         let (n, t) = (Vector([0.6, 0.8]), Vector([-0.8, 0.6]));
         for mach in [1e-3, 0.1, 0.5, 1.0, 3.0] {
             let [l, r] = pair(mach);
-            let (a, b) = slowed(&AIR, l, r, (&n, 0.0));
+            let (a, b) = low_mach_correction(&AIR, l, r, (&n, 0.0));
             let (before, after) = (r.velocity - l.velocity, b.velocity - a.velocity);
             assert!((after.dot(&n) - mach.min(1.0) * before.dot(&n)).abs() < 1e-15, "Mach {mach}");
             assert!((after.dot(&t) - before.dot(&t)).abs() < 1e-15);
             assert!((a.velocity + b.velocity - l.velocity - r.velocity).norm() < 1e-15, "the mean is kept");
             assert!(a.density == l.density && b.pressure == r.pressure);
-            let same = slowed(&AIR, l, l, (&n, 0.0));
+            let same = low_mach_correction(&AIR, l, l, (&n, 0.0));
             assert!(same == (l, l), "consistent");
-            assert!(slowed(&AIR, l, r, (&n, 1.0)) == (l, r), "waves leave");
+            assert!(low_mach_correction(&AIR, l, r, (&n, 1.0)) == (l, r), "waves leave");
         }
     }
 }

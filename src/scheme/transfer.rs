@@ -86,7 +86,7 @@ impl<const D: usize> Transfer<'_, D> {
     pub(super) fn lines(&self) -> Vec<Vec<Share>> {
         let cloud = &self.recloud.cloud;
         let share = |j: usize| {
-            let transform = j.checked_sub(cloud.n_real()).map(|k| cloud.images[k].transform);
+            let transform = j.checked_sub(cloud.n_real()).map(|k| cloud.ghosts[k].transform);
             let from = *self.recloud.from.get(cloud.source(j).index).filter(|k| **k != NEW)? as usize;
             Some((cloud.x[j], Share { from, transform, weight: 0.0 }))
         };
@@ -198,7 +198,7 @@ impl<const D: usize> Transfer<'_, D> {
             None => source - cloud.n_fluid + old.n_fluid,
         };
         let mut q = self.work.state[before];
-        if let Some(image) = j.checked_sub(cloud.n_real()).map(|k| cloud.images[k]) {
+        if let Some(image) = j.checked_sub(cloud.n_real()).map(|k| cloud.ghosts[k]) {
             q.velocity = cloud.transforms[image.transform as usize].direction(&q.velocity);
         }
         Some(self.fluid.gas.conserved(&q))

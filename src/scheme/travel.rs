@@ -139,13 +139,13 @@ impl<const D: usize> Travel<D> {
             (frame.lagrangian_step.off, frame.lagrangian_step.course) =
                 (false, Arc::clone(&frame.lagrangian_step.before));
         }
-        show_images(cloud, velocity);
+        set_ghost_velocities(cloud, velocity);
         if fixed && away == 0.0 && frame.walls.len() == cloud.interface.len() {
             return;
         }
-        let (x, images) = discretisation.cloud.x.split_at_mut(cloud.n_real());
-        sweep(images, |k| {
-            let image = &cloud.images[k];
+        let (x, ghosts) = discretisation.cloud.x.split_at_mut(cloud.n_real());
+        sweep(ghosts, |k| {
+            let image = &cloud.ghosts[k];
             cloud.transforms[image.transform as usize].point(&x[image.source as usize])
         });
         self.turn_walls(frame.time, frame);
@@ -194,7 +194,8 @@ impl<const D: usize> Travel<D> {
             let Some(law) = self.laws.get(body) else { continue };
             cloud.interface[k] = *wall;
             cloud.interface[k].turn(&poses[body].rotation);
-            walls[k] = WallMotion { spin: rates[body], acceleration: law.kinematics(t, x).acceleration };
+            walls[k] =
+                WallMotion { wall_velocity_gradient: rates[body], acceleration: law.kinematics(t, x).acceleration };
         }
     }
 }
@@ -227,7 +228,7 @@ impl<const D: usize> Fluid<D> {
         velocity.resize(cloud.len(), Vector::ZERO);
         let now = Arc::new(velocity.clone());
         velocity[..n].copy_from_slice(&course);
-        show_images(cloud, velocity);
+        set_ghost_velocities(cloud, velocity);
         let reach = reach(&frame.discretisation, velocity);
         frame.lagrangian_step = LagrangianStep { off: true, since: frame.time, base, course, before, velocity: now };
         reach
@@ -385,10 +386,10 @@ fn differentiate<const D: usize>(lagrangian_step: &LagrangianStep<D>, rate: &[(f
 }
 
 /// Brings images to the velocities of their sources.
-fn show_images<const D: usize>(cloud: &Cloud<D>, velocity: &mut [Vector<D>]) {
-    let (own, images) = velocity.split_at_mut(cloud.n_real());
-    sweep(images, |k| {
-        let image = &cloud.images[k];
+fn set_ghost_velocities<const D: usize>(cloud: &Cloud<D>, velocity: &mut [Vector<D>]) {
+    let (own, ghosts) = velocity.split_at_mut(cloud.n_real());
+    sweep(ghosts, |k| {
+        let image = &cloud.ghosts[k];
         cloud.transforms[image.transform as usize].direction(&own[image.source as usize])
     });
 }

@@ -19,7 +19,7 @@
 //! The linearisation keeps differences across the face alone (thin layer).
 use std::sync::Arc;
 
-use super::boundary::{WallMotion, stuck_wall};
+use super::boundary::{WallMotion, no_slip_wall};
 use super::discretisation::{Discretisation, Frame};
 use super::fluid::{Fluid, Work, half_face};
 use super::jacobian::Block;
@@ -138,7 +138,7 @@ pub(super) fn middle<const D: usize>((a, b): (&Slopes<D>, &Slopes<D>), d: &Vecto
 impl<const D: usize> Fluid<D> {
     /// State of interface particle `w` when the gas sticks to its wall; `None` when it slides.
     #[inline]
-    pub(super) fn stuck(
+    pub(super) fn no_slip_state(
         &self,
         discretisation: &Discretisation<D>,
         (w, frame): (usize, &Frame<D>),
@@ -151,7 +151,7 @@ impl<const D: usize> Fluid<D> {
         };
         let velocity = frame.velocity_of(discretisation.cloud.n_fluid + w);
         let moved = (velocity, frame.walls.get(w));
-        Some(stuck_wall((&discretisation.cloud, &discretisation.walls), &self.gas, w, (moved, temperature), q))
+        Some(no_slip_wall((&discretisation.cloud, &discretisation.walls), &self.gas, w, (moved, temperature), q))
     }
 
     /// Flux of stress and heat at particle `i` across `n`; zero without viscosity.
@@ -188,7 +188,7 @@ impl<const D: usize> Fluid<D> {
         if !source.image {
             return viscous_model.medium.flux(&self.gas, &at, &face.area);
         }
-        let transform = &cloud.transforms[cloud.images[face.wall as usize - cloud.n_real()].transform as usize];
+        let transform = &cloud.transforms[cloud.ghosts[face.wall as usize - cloud.n_real()].transform as usize];
         let through = viscous_model.medium.flux(&self.gas, &at, &transform.direction(&face.area));
         Conserved { momentum: transform.direction(&through.momentum), ..through }
     }
@@ -227,7 +227,9 @@ impl<const D: usize> Fluid<D> {
             velocity: wall.velocity,
             temperature,
             velocity_gradient: std::array::from_fn(|c| {
-                let along = motion.map_or(Vector::ZERO, |m| m.spin[c] - *normal * m.spin[c].dot(normal));
+                let along = motion.map_or(Vector::ZERO, |m| {
+                    m.wall_velocity_gradient[c] - *normal * m.wall_velocity_gradient[c].dot(normal)
+                });
                 *normal * rate[c] + along
             }),
             temperature_gradient: *normal * heating,

@@ -14,7 +14,7 @@ const LEAST: f64 = 0.05;
 
 impl<const D: usize> Fluid<D> {
     /// The first particle whose surroundings have shrunk to almost nothing or folded.
-    pub(super) fn squeezed(&self, frame: &Frame<D>) -> Option<Fault> {
+    pub(super) fn volume_ratio_check(&self, frame: &Frame<D>) -> Option<Fault> {
         if !matches!(self.cloud_motion, CloudMotion::Along { .. }) {
             return None;
         }

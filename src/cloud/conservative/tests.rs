@@ -65,7 +65,7 @@ fn clouds_close_and_pairs_are_antisymmetric_through_images() {
             rows[*i] += *s;
             let (entry, transform) = reverse.position(*i, *j).unwrap();
             let back = cloud.neighbours.index[entry] as usize;
-            let k = if *j < cloud.n_fluid { *j } else { cloud.images[*j - cloud.n_real()].source as usize };
+            let k = if *j < cloud.n_fluid { *j } else { cloud.ghosts[*j - cloud.n_real()].source as usize };
             let turned = match transform {
                 Some(t) => cloud.transforms[t as usize].direction(&areas[&(k, back)]),
                 None => areas[&(k, back)],
