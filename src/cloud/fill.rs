@@ -1,8 +1,8 @@
 //! Filling the background with particles.
 //!
 //! A fluid particle sits in the middle of every leaf that lies outside the bodies and not nearer to a surface, or to an
-//! interface particle, than a fraction of its size; in 3-D those next to a wall then move (module `near_wall_smoothing`). The leaves along
-//! the sides of the domain carry the outer particles.
+//! interface particle, than a fraction of its size; in 3-D those next to a wall then move (module `near_wall_smoothing`). The
+//! leaves along the sides of the domain carry the outer particles.
 use std::sync::Arc;
 
 use super::columns::{Columns, LayerContext};

@@ -12,8 +12,8 @@
 //!
 //! On particles that move with w_i the term w_i·∇U is added, always with the velocity of the particle whose equation it is and
 //! with the least-squares coefficients, so that uniform flow and linear fields at rest stay what they are; conservative coefficients
-//! then serve the fluxes alone, and follow the cloud as it deforms ([`Operators::metric_update`]). On clouds with wall layers they serve
-//! both: the gas beside a wall moves with it, and what is left of v − w must not be the difference of two sums with different
+//! then serve the fluxes alone, and follow the cloud as it deforms ([`Operators::metric_update`]). On clouds with wall layers
+//! they serve both: the gas beside a wall moves with it, and what is left of v − w must not be the difference of two sums with different
 //! weights. The dissipation of an edge is that of an area that moves with the mean velocity of its ends.
 //!
 //! [`Operators::metric_update`]: crate::cloud::Operators::metric_update
