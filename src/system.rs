@@ -1,20 +1,119 @@
 //! The seam between space and time.
 //!
-//! Space gives a semi-discrete system dU/dt = R(t, U); time integrates it without knowing what it means. What depends on time
-//! but is not evolved (states held on the outer boundary, positions, velocities, normals and weights of moving particles) is
-//! one value, the *frame at (t, u)*. Marching holds one frame, harmonic balance one per instance.
-use crate::math::block_matrix::BlockMatrix;
-use crate::math::fourier::Instances;
+//! Space gives a semi-discrete system dU/dt = R(t, U); time integrates it without knowing what it means. The unknowns are one
+//! flat slice that is cut into *fields*: the gas, a structure's coordinates, later turbulence and solids. What depends on time
+//! and state but is not evolved (states held on the outer boundary, positions, velocities, normals and weights of moving
+//! particles) is one value, the *frame at (t, U)*. Marching holds one frame, harmonic balance one per time instance.
+//!
+//! Particles move where prescribed motions or unknown *coordinates* of bodies put them. Their velocities follow from positions
+//! by the difference formula of the state itself, Σ c_k x(t_k, U_k): an [`Instant`] carries that formula with times and
+//! coordinates, so that uniform flow stays uniform to round-off whatever moves the cloud.
+//!
+//! How the linear systems of an implicit method are preconditioned is a thing of its own, [`Preconditioner`].
+use std::ops::Range;
 
-/// A moment at which a frame is wanted, and how velocities follow from positions there.
+use crate::math::fourier::Instances;
+use crate::math::multilevel::Cycle;
+
+/// Unknowns of one kind: `rows` rows of `block` values each.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Field {
+    /// What they are.
+    pub name: &'static str,
+    /// Rows: particles of a cloud, coordinates of a structure.
+    pub rows: usize,
+    /// Unknowns of a row, those of all instances of a period one after another.
+    pub block: usize,
+    /// How many of the unknowns of a row (and instance), the first ones, measure the size of a residual: the density of a gas
+    /// stands for all.
+    pub measured: usize,
+    /// Instances of a period that a row holds; one unless the solution is periodic in time.
+    pub instances: usize,
+}
+
+impl Field {
+    /// A field whose residual is measured by all its unknowns.
+    pub const fn new(name: &'static str, rows: usize, block: usize) -> Self {
+        Self { name, rows, block, measured: block, instances: 1 }
+    }
+
+    /// The same, measured by the first `measured` unknowns of each row.
+    pub const fn measured_by(self, measured: usize) -> Self {
+        Self { measured, ..self }
+    }
+
+    /// The same at a number of instances of a period.
+    pub const fn at_instances(self, count: usize) -> Self {
+        Self { block: self.block * count, instances: self.instances * count, ..self }
+    }
+
+    /// Unknowns.
+    pub const fn len(&self) -> usize {
+        self.rows * self.block
+    }
+
+    /// True when there are none.
+    pub const fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+}
+
+/// A field with the place of its unknowns and rows among those of all fields.
+#[derive(Clone, Debug)]
+pub struct Placed {
+    /// The field.
+    pub field: Field,
+    /// Its unknowns in the state.
+    pub unknowns: Range<usize>,
+    /// Its rows among all rows.
+    pub rows: Range<usize>,
+}
+
+/// The fields one after another, as the state holds them.
+pub fn placed(fields: &[Field]) -> impl Iterator<Item = Placed> + '_ {
+    let (mut unknown, mut row) = (0, 0);
+    fields.iter().map(move |field| {
+        let placed = Placed { field: *field, unknowns: unknown..unknown + field.len(), rows: row..row + field.rows };
+        (unknown, row) = (placed.unknowns.end, placed.rows.end);
+        placed
+    })
+}
+
+/// Unknowns of all fields.
+pub fn unknowns(fields: &[Field]) -> usize {
+    fields.iter().map(Field::len).sum()
+}
+
+/// Rows of all fields.
+pub fn rows(fields: &[Field]) -> usize {
+    fields.iter().map(|f| f.rows).sum()
+}
+
+/// One term c f(t) of a difference formula for ∂f/∂t.
 #[derive(Clone, Copy, Debug)]
-pub enum Moment<'a> {
-    /// A time at which everything is looked at as if it stood still: steady flow.
-    At {
-        /// Time.
-        time: f64,
-    },
-    /// Part of the way through a step: particles go straight from where they are at its start to where they are at its end.
+pub struct Term<'a> {
+    /// Coefficient c.
+    pub coefficient: f64,
+    /// Time t.
+    pub time: f64,
+    /// The unknowns that place the frame at that time, see [`System::placing`]; empty where motion is prescribed.
+    pub coordinates: &'a [f64],
+}
+
+impl Term<'_> {
+    /// A term of a formula in time alone.
+    pub const fn of_time(coefficient: f64, time: f64) -> Self {
+        Self { coefficient, time, coordinates: &[] }
+    }
+}
+
+/// How velocities follow from positions.
+#[derive(Clone, Copy, Debug)]
+pub enum Rate<'a> {
+    /// Everything is looked at as if it stood still: steady flow.
+    Still,
+    /// Part of the way through a step of an explicit method: particles go straight from where they are at its start to where
+    /// they are at its end; bodies with coordinates of their own move at the rates that these have.
     Within {
         /// Time at the start of the step.
         start: f64,
@@ -23,97 +122,221 @@ pub enum Moment<'a> {
         /// Part of the step that has passed, 0 to 1.
         fraction: f64,
     },
-    /// A time at which ∂/∂t is a difference formula: Σ c_k f(t_k).
-    By {
-        /// Time.
-        time: f64,
-        /// Coefficients and times of the formula.
-        rate: &'a [(f64, f64)],
-    },
+    /// By a difference formula; its first term is that of the time at which the frame is wanted, where it has one.
+    Formula(&'a [Term<'a>]),
 }
 
-impl Moment<'_> {
-    /// The time.
-    pub fn time(&self) -> f64 {
-        match self {
-            Self::At { time } | Self::By { time, .. } => *time,
-            Self::Within { start, step, fraction } => start + step * fraction,
-        }
+/// A time at which a frame is wanted.
+#[derive(Clone, Copy, Debug)]
+pub struct Instant<'a> {
+    /// Time.
+    pub time: f64,
+    /// The unknowns that place the frame then, see [`System::placing`].
+    pub coordinates: &'a [f64],
+    /// How velocities follow.
+    pub rate: Rate<'a>,
+}
+
+impl<'a> Instant<'a> {
+    /// A time at which everything stands still.
+    pub const fn still(time: f64) -> Self {
+        Self { time, coordinates: &[], rate: Rate::Still }
+    }
+
+    /// Part `fraction` of the way through the step of length `step` that begins at `start`.
+    pub fn within(start: f64, step: f64, fraction: f64) -> Self {
+        Self { time: start + step * fraction, coordinates: &[], rate: Rate::Within { start, step, fraction } }
+    }
+
+    /// A time at which ∂/∂t is `formula`.
+    pub const fn formula(time: f64, formula: &'a [Term<'a>]) -> Self {
+        Self { time, coordinates: &[], rate: Rate::Formula(formula) }
+    }
+
+    /// The same with the unknowns that place the frame.
+    pub const fn with(self, coordinates: &'a [f64]) -> Self {
+        Self { coordinates, ..self }
     }
 }
 
 /// A semi-discrete system dU/dt = R(t, U), eq. (16): the only thing an integrator ever sees.
 #[doc(alias = "eq16")]
 pub trait System: Sync {
-    /// What depends on time but is not evolved.
+    /// What depends on time and state but is not evolved.
     type Frame: Clone + Send + Sync;
     /// Storage that an evaluation needs; made once, so that evaluations do not allocate.
     type Work: Send;
 
-    /// Number of unknowns per particle.
-    fn block(&self) -> usize;
-    /// Instances of a period that the unknowns of a particle hold one after another, and the angular frequency: those of a
-    /// periodic solution.
-    fn in_time(&self) -> Option<(Instances, f64)> {
-        None
-    }
+    /// What the unknowns are, in the order in which the state holds them.
+    fn fields(&self) -> &[Field];
     /// Number of unknowns.
-    fn len(&self) -> usize;
-    /// How many of the unknowns of a particle (and instance), the first ones, measure the size of a residual: the density
-    /// of a gas stands for all.
-    fn measured(&self) -> usize {
-        1
+    fn len(&self) -> usize {
+        unknowns(self.fields())
     }
     /// True when there is nothing to evolve.
     fn is_empty(&self) -> bool {
         self.len() == 0
     }
-    /// The frame at a moment and at the state `u`.
-    fn frame(&self, moment: &Moment<'_>, u: &[f64]) -> Self::Frame;
-    /// Brings the particles of a frame to a moment; does nothing when they never move.
-    fn place(&self, moment: &Moment<'_>, frame: &mut Self::Frame);
-    /// Lets particles that follow the state choose where they go in the step that begins, which is meant to be as long as
-    /// `step`; the longest step they can take, infinite where none follow it.
-    fn set_off(&self, _step: f64, _u: &[f64], _work: &mut Self::Work, _frame: &mut Self::Frame) -> f64 {
-        f64::INFINITY
+    /// The unknowns that frames depend on: coordinates of bodies. Whole fields; empty where all motion is prescribed.
+    fn placing(&self) -> Range<usize> {
+        0..0
     }
-    /// Brings what follows the state (the far field) to the state `u`.
-    fn follow(&self, u: &[f64], work: &mut Self::Work, frame: &mut Self::Frame);
     /// Fresh storage.
     fn work(&self) -> Self::Work;
+    /// The frame at an instant and at the state `u`.
+    fn frame(&self, at: &Instant<'_>, u: &[f64]) -> Self::Frame;
+    /// Brings the particles of a frame to an instant; does nothing when they never move.
+    fn place(&self, at: &Instant<'_>, frame: &mut Self::Frame);
+    /// Brings the states of the boundary that follow the state (the far field) to the state `u`.
+    fn update_boundary_state(&self, u: &[f64], work: &mut Self::Work, frame: &mut Self::Frame);
+    /// Lets particles that travel with the state choose where they go in the step that begins, which is meant to be as long as
+    /// `step`; the longest step they can take, infinite where none do.
+    fn plan_lagrangian_step(&self, _step: f64, _u: &[f64], _work: &mut Self::Work, _frame: &mut Self::Frame) -> f64 {
+        f64::INFINITY
+    }
     /// du = R(t, u).
     fn rhs(&self, frame: &Self::Frame, u: &[f64], work: &mut Self::Work, du: &mut [f64]);
-    /// Largest rate of change 1/τ of each particle: explicit steps need Δt · rate ≲ 1.
-    fn spectral_radius(&self, frame: &Self::Frame, u: &[f64], work: &mut Self::Work, rate: &mut [f64]);
-    /// Sparsity of the linearised system: for each particle the others it depends on, itself left out.
-    fn graph(&self) -> (&[u32], &[u32]);
-    /// Consecutive particles that are assembled and swept together: the same for any number of threads.
-    fn parts(&self) -> &[std::ops::Range<usize>];
-    /// Fills `matrix` with −∂R/∂U of the first-order scheme, which is what implicit methods are preconditioned with.
-    fn linearise(&self, frame: &Self::Frame, u: &[f64], work: &mut Self::Work, matrix: &mut BlockMatrix);
-    /// Brings the unknowns of a particle into the axes of that matrix: those of a rigid cloud, so that the matrix goes on to
-    /// serve while it turns.
-    fn inward(&self, _frame: &Self::Frame, _row: &mut [f32]) {}
-    /// Brings them back from there.
-    fn outward(&self, _frame: &Self::Frame, _row: &mut [f64]) {}
-    /// The largest relative change of a positive quantity (density, pressure) that the update `du` makes; infinite if NaN.
+    /// Largest rate of change 1/τ of each row: explicit steps need Δt · rate ≲ 1.
+    fn rates(&self, frame: &Self::Frame, u: &[f64], work: &mut Self::Work, rate: &mut [f64]);
+    /// The largest relative change of a positive quantity (density, pressure) that the update `du` makes, or of a coordinate in
+    /// its unit; infinite if NaN.
     fn largest_change(&self, u: &[f64], du: &[f64]) -> f64;
-    /// The first particle whose state is not physical, if any.
-    fn fault(&self, frame: &Self::Frame, u: &[f64]) -> Option<Fault>;
-    /// The first particle that motion has brought where the cloud no longer serves, if any.
-    fn misplaced(&self, _frame: &Self::Frame) -> Option<Fault> {
-        None
+    /// Refuses a state that is not physical.
+    fn check(&self, frame: &Self::Frame, u: &[f64]) -> Result<(), Fault>;
+    /// Refuses a frame whose particles motion has brought where the cloud no longer serves.
+    fn check_frame(&self, _frame: &Self::Frame) -> Result<(), Fault> {
+        Ok(())
     }
-    /// Where an unknown of the state is; nothing when it has no place.
-    fn locate(&self, _frame: &Self::Frame, _particle: usize) -> Vec<f64> {
+    /// Where a row of the state is; nothing when it has no place.
+    fn locate(&self, _frame: &Self::Frame, _row: usize) -> Vec<f64> {
         Vec::new()
     }
 }
 
-/// A particle whose state is not physical.
+/// What an implicit method needs besides.
+pub trait Implicit: System {
+    /// How its linear systems are preconditioned.
+    type Preconditioner: Preconditioner<Self>;
+
+    /// An empty preconditioner; for all instances of a period at once where a `period` is given.
+    fn preconditioner(&self, plan: &Hierarchy, period: Option<Period>) -> Self::Preconditioner;
+}
+
+/// How a preconditioner may spread over a cloud.
+#[derive(Clone, Copy, Debug)]
+pub struct Hierarchy {
+    /// Rows that are gathered into one of the next coarser level.
+    pub group: usize,
+    /// Visits of the levels.
+    pub cycle: Cycle,
+}
+
+/// Instances of a period of a solution that is periodic in time.
+#[derive(Clone, Copy, Debug)]
+pub struct Period {
+    /// The instances.
+    pub instances: Instances,
+    /// Angular frequency.
+    pub omega: f64,
+}
+
+/// How far the unknowns of a linear system feel one another.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Reach {
+    /// As far as their neighbours: a short step in time.
+    #[default]
+    Near,
+    /// Across the cloud.
+    Far,
+}
+
+/// What is added to −∂R/∂U in a linear system.
+#[derive(Clone, Copy, Debug)]
+pub struct Shift<'a> {
+    /// 1/Δτ + c of every row, c the coefficient of the state sought in the formula of ∂/∂t.
+    pub rows: &'a [f64],
+    /// How far the system reaches.
+    pub reach: Reach,
+}
+
+/// The right-hand side of a linear system, in single or double precision; rows scaled by `scale` where it is not empty.
+#[derive(Clone, Copy, Debug)]
+pub enum RightHandSide<'a> {
+    /// Divided by the scale of each row.
+    Scaled {
+        /// Values.
+        values: &'a [f32],
+        /// Scale of each row.
+        scale: &'a [f64],
+    },
+    /// As it is.
+    Plain(&'a [f64]),
+}
+
+impl RightHandSide<'_> {
+    /// Row `i`, which begins at unknown number `at`.
+    #[inline(always)]
+    pub fn row(&self, i: usize, at: usize, row: &mut [f32]) {
+        match self {
+            Self::Scaled { values, scale } => {
+                row.iter_mut().zip(&values[at..]).for_each(|(row, r)| *row = (f64::from(*r) / scale[i]) as f32);
+            }
+            Self::Plain(values) => row.iter_mut().zip(&values[at..]).for_each(|(row, r)| *row = *r as f32),
+        }
+    }
+
+    /// The same in double precision.
+    pub fn row_in_full(&self, i: usize, at: usize, row: &mut [f64]) {
+        match self {
+            Self::Scaled { values, scale } => {
+                row.iter_mut().zip(&values[at..]).for_each(|(row, r)| *row = f64::from(*r) / scale[i]);
+            }
+            Self::Plain(values) => row.iter_mut().zip(&values[at..]).for_each(|(row, r)| *row = *r),
+        }
+    }
+
+    /// The part of it that belongs to one field.
+    pub fn of<'b>(&'b self, field: &Placed) -> RightHandSide<'b> {
+        match self {
+            Self::Scaled { values, scale } => RightHandSide::Scaled {
+                values: &values[field.unknowns.clone()],
+                scale: &scale[field.rows.clone()],
+            },
+            Self::Plain(values) => RightHandSide::Plain(&values[field.unknowns.clone()]),
+        }
+    }
+}
+
+/// Approximate inverses of shift − ∂R/∂U, one after another: made from one or several points, applied many times, made again
+/// when the integrator asks for it.
+///
+/// In harmonic balance the instances of a row are tied together by ∂/∂t, which belongs to the preconditioner as well: lagging
+/// it outside diverges.
+pub trait Preconditioner<S: System + ?Sized>: Send {
+    /// Begins anew with the mean of the linearisations at `points` points.
+    fn begin(&mut self, points: usize);
+    /// Adds the linearisation at the state `u`.
+    fn add(&mut self, system: &S, frame: &S::Frame, u: &[f64], work: &mut S::Work);
+    /// Completes it with what is added to −∂R/∂U.
+    fn finish(&mut self, shift: &Shift<'_>);
+    /// z ≈ (shift − ∂R/∂U)⁻¹ r, in the frames at hand: one when marching, one for each instance that the unknowns hold in a
+    /// periodic solution. They may have moved on since it was made.
+    fn apply(&mut self, system: &S, frames: &[&S::Frame], r: &RightHandSide<'_>, z: &mut [f64]);
+    /// Bytes held.
+    fn bytes(&self) -> usize;
+
+    /// Makes it at one point.
+    fn update(&mut self, system: &S, at: (&S::Frame, &[f64]), work: &mut S::Work, shift: &Shift<'_>) {
+        self.begin(1);
+        self.add(system, at.0, at.1, work);
+        self.finish(shift);
+    }
+}
+
+/// A row whose state is not physical.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fault {
-    /// Index of the particle.
+    /// Index of the row.
     pub particle: usize,
     /// Where it is.
     pub place: Vec<f64>,
@@ -124,6 +347,9 @@ pub struct Fault {
 impl std::fmt::Display for Fault {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let place: Vec<String> = self.place.iter().map(|c| format!("{c:.5}")).collect();
-        write!(f, "particle {} at ({}): {}", self.particle, place.join(", "), self.reason)
+        match place.is_empty() {
+            true => write!(f, "{}", self.reason),
+            false => write!(f, "particle {} at ({}): {}", self.particle, place.join(", "), self.reason),
+        }
     }
 }

@@ -46,6 +46,67 @@ fn less<const M: usize>(a: [f64; M], factor: f64, b: &[f64; M]) -> [f64; M] {
     std::array::from_fn(|m| a[m] - factor * b[m])
 }
 
+/// A matrix that has been factored once, to be solved with many times.
+#[derive(Clone, Debug, Default)]
+pub struct Factors {
+    n: usize,
+    /// L below the diagonal, U on it and above, rows in the order of `order`.
+    rows: Vec<f64>,
+    order: Vec<usize>,
+}
+
+impl Factors {
+    /// Factors the matrix whose rows stand one after another; `None` when it is singular to round-off.
+    pub fn new(n: usize, mut rows: Vec<f64>) -> Option<Self> {
+        let mut order: Vec<usize> = (0..n).collect();
+        let (mut smallest, mut largest) = (f64::INFINITY, 0.0f64);
+        for k in 0..n {
+            let size = |i: usize| rows[i * n + k].abs();
+            let pivot = (k + 1..n).fold(k, |best, i| if size(i) > size(best) { i } else { best });
+            (smallest, largest) = (smallest.min(size(pivot)), largest.max(size(pivot)));
+            if !(smallest > SINGULAR * largest) {
+                return None;
+            }
+            if pivot != k {
+                (0..n).for_each(|j| rows.swap(k * n + j, pivot * n + j));
+                order.swap(k, pivot);
+            }
+            let (above, below) = rows.split_at_mut((k + 1) * n);
+            let row = &above[k * n..];
+            for other in below.chunks_exact_mut(n) {
+                other[k] /= row[k];
+                let factor = other[k];
+                other[k + 1..].iter_mut().zip(&row[k + 1..]).for_each(|(a, b)| *a -= factor * b);
+            }
+        }
+        Some(Self { n, rows, order })
+    }
+
+    /// Number of equations.
+    pub fn len(&self) -> usize {
+        self.n
+    }
+
+    /// True when there are none.
+    pub fn is_empty(&self) -> bool {
+        self.n == 0
+    }
+
+    /// x = A⁻¹ b.
+    pub fn solve(&self, b: &[f64], x: &mut [f64]) {
+        let n = self.n;
+        for i in 0..n {
+            let known = self.rows[i * n..i * n + i].iter().zip(&x[..i]).map(|(l, x)| l * x).sum::<f64>();
+            x[i] = b[self.order[i]] - known;
+        }
+        for i in (0..n).rev() {
+            let row = &self.rows[i * n..(i + 1) * n];
+            let known = row[i + 1..].iter().zip(&x[i + 1..n]).map(|(u, x)| u * x).sum::<f64>();
+            x[i] = (x[i] - known) / row[i];
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -62,6 +123,19 @@ mod tests {
         assert!(solve(&mut matrix, &mut right));
         let error = right.iter().zip(&exact).map(|(a, b)| (a[0] - b[0]).abs().max((a[1] - b[1]).abs()));
         assert!(error.fold(0.0, f64::max) < 1e-10);
+    }
+
+    #[test]
+    fn factors_solve_what_elimination_solves() {
+        let n = 23;
+        let entry = |k: usize| ((7 * (k / n) + 3 * (k % n) * (k % n)) as f64).sin() * f64::from(k % (n + 1) != 0);
+        let matrix: Vec<f64> = (0..n * n).map(entry).collect();
+        let exact: Vec<f64> = (0..n).map(|i| 1.0 + i as f64).collect();
+        let b: Vec<f64> = (0..n).map(|i| (0..n).map(|j| matrix[i * n + j] * exact[j]).sum()).collect();
+        let mut x = vec![0.0; n];
+        Factors::new(n, matrix).unwrap().solve(&b, &mut x);
+        assert!(x.iter().zip(&exact).all(|(a, b)| (a - b).abs() < 1e-9), "{x:?}");
+        assert!(Factors::new(2, vec![1.0, 2.0, 2.0, 4.0]).is_none());
     }
 
     #[test]

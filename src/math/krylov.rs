@@ -15,6 +15,14 @@ pub struct Gmres {
     w: Vec<f64>,
 }
 
+/// A linear system by what it does to vectors.
+pub struct System<A, P> {
+    /// `product(v, out)`: out = A v.
+    pub product: A,
+    /// `precondition(v, out)`: out ≈ A⁻¹ v.
+    pub precondition: P,
+}
+
 /// How a solve ended.
 #[derive(Clone, Copy, Debug)]
 pub struct Solved {
@@ -43,14 +51,13 @@ impl Gmres {
     /// Solves A x = b from x = 0 until the residual has fallen to `tolerance`, after `most` iterations, or when the basis is
     /// full.
     ///
-    /// `product(v, out)` is A v; `precondition(v, out)` ≈ A⁻¹ v.
     pub fn solve(
         &mut self,
         (b, x): (&[f64], &mut [f64]),
         (tolerance, most): (f64, usize),
-        mut product: impl FnMut(&[f64], &mut [f64]),
-        mut precondition: impl FnMut(&[f32], &mut [f64]),
+        system: System<impl FnMut(&[f64], &mut [f64]), impl FnMut(&[f32], &mut [f64])>,
     ) -> Solved {
+        let System { mut product, mut precondition } = system;
         fill(x, 0.0);
         let size = self.hessenberg.len();
         let start = norm(b);

@@ -4,10 +4,11 @@
 //! times, written for steps of unequal length. Positions of particles are differenced with the same formula as the state.
 use super::control::{Control, Method};
 use super::relax::{Relax, TimeTerm};
+use super::formula::Formula;
 use super::{CROWDED, March, Past, Step, TimeError};
 use crate::math::multilevel::Cycle;
 use crate::math::sweep::{sum, sweep};
-use crate::system::{Moment, System};
+use crate::system::{Implicit, Instant, Reach};
 
 /// Greatest ratio of successive steps.
 const GROWTH: f64 = 1.5;
@@ -51,7 +52,8 @@ pub struct Plan {
 }
 
 /// An implicit march.
-pub struct Dual<'a, S: System> {
+pub struct Dual<'a, S: Implicit> {
+    system: &'a S,
     relax: Relax<'a, S>,
     plan: Plan,
     past: Past,
@@ -61,7 +63,7 @@ pub struct Dual<'a, S: System> {
     reach: f64,
 }
 
-impl<'a, S: System> Dual<'a, S> {
+impl<'a, S: Implicit> Dual<'a, S> {
     /// Prepares a march from the state `u`.
     pub fn new(system: &'a S, control: Control, plan: Plan, (past, u): (Past, Vec<f64>)) -> Self {
         let start = u.clone();
@@ -71,20 +73,18 @@ impl<'a, S: System> Dual<'a, S> {
         let control = Control { cycle: Cycle { sweeps, ..control.cycle }, ..control };
         let relax = Relax::new(system, control, u, &start, None);
         let past = Past { next: if past.next > 0.0 { past.next } else { plan.step }, ..past };
-        let mut all = Self { relax, plan, past, start, inner: 0, reach: f64::INFINITY };
-        let (time, last) = (all.past.time, all.past.last);
-        if last > 0.0 {
-            let formula = all.formula_at(time, last, last);
-            all.relax.look(&Moment::By { time, rate: &formula });
+        let mut all = Self { system, relax, plan, past, start, inner: 0, reach: f64::INFINITY };
+        if all.past.last > 0.0 {
+            all.set_frame_after_step();
             all.make_again();
         } else {
-            all.relax.look(&Moment::At { time });
+            all.relax.set_frame(&Instant::still(all.past.time).with(&all.start[system.placing()]));
         }
         all
     }
 }
 
-impl<S: System> March<S> for Dual<'_, S> {
+impl<S: Implicit> March<S> for Dual<'_, S> {
     fn finished(&self) -> bool {
         self.past.time >= self.plan.until
     }
@@ -116,13 +116,13 @@ impl<S: System> March<S> for Dual<'_, S> {
     fn advance(&mut self) -> Result<Step, TimeError> {
         self.start.copy_from_slice(&self.relax.u);
         let planned = self.planned();
-        self.reach = self.relax.set_off(planned);
+        self.reach = self.relax.plan_lagrangian_step(planned);
         let mut dt = self.within_reach(planned);
         loop {
             let error = match self.step(dt) {
                 Err(TimeError::Stalled { .. }) if dt > SHORTEST * self.plan.step => {
                     self.past.halved += 1;
-                    self.reach = self.relax.set_off(0.5 * dt);
+                    self.reach = self.relax.plan_lagrangian_step(0.5 * dt);
                     dt = self.within_reach(0.5 * dt);
                     continue;
                 }
@@ -156,12 +156,13 @@ impl<S: System> March<S> for Dual<'_, S> {
     }
 }
 
-impl<S: System> Dual<'_, S> {
+impl<S: Implicit> Dual<'_, S> {
     /// Keeps what the next steps go on from; `even` if the last two steps were of one length.
     fn remember(&mut self, even: bool) {
         let past = &mut self.past;
         past.served = if self.relax.still_serves() { past.served + 1 } else { 0 };
-        past.broad = self.relax.broad && !past.iteration.is_multiple_of(TRY_AGAIN);
+        let far = self.relax.reach() == Reach::Far && !past.iteration.is_multiple_of(TRY_AGAIN);
+        past.reach = if far { Reach::Far } else { Reach::Near };
         if self.plan.adaptive.is_none() {
             std::mem::swap(&mut past.older, &mut past.before);
         }
@@ -173,31 +174,39 @@ impl<S: System> Dual<'_, S> {
     }
 
     /// Makes the preconditioner of the step of length `dt` and those after it from where this one starts.
-    fn prepare(&mut self, moment: &Moment<'_>, rate: f64, dt: f64) {
+    fn prepare(&mut self, formula: &Formula, end: f64, dt: f64) {
         // where particles were some steps ago, a run that is resumed no longer knows
         let known = self.is_even(dt) && !self.past.older.is_empty() && self.reach == f64::INFINITY;
         if !known {
             self.past.served = 0;
             self.relax.drop_preconditioner();
         } else if self.past.served == 0 || self.past.served >= SERVES {
-            (self.past.served, self.past.made) = (0, moment.time());
-            self.relax.prepare_at(moment, &self.start, rate);
+            (self.past.served, self.past.made) = (0, end);
+            make_ahead(self.system, &mut self.relax, formula, (&self.start, end));
         }
     }
 
     /// Makes the preconditioner that served when the march was interrupted.
     fn make_again(&mut self) {
-        let (step, past) = (self.past.last, &self.past);
-        let state = match past.served {
-            1 => &past.before,
-            2 => &past.older,
+        let (step, made) = (self.past.last, self.past.made);
+        let state = match self.past.served {
+            1 => &self.past.before,
+            2 => &self.past.older,
             _ => return,
         };
-        let (time, now) = (past.made, past.time);
-        let formula = self.formula_at(time, step, step);
-        self.relax.prepare_at(&Moment::By { time, rate: &formula }, state, formula[0].0);
-        let formula = self.formula_at(now, step, step);
-        self.relax.look(&Moment::By { time: now, rate: &formula });
+        make_ahead(self.system, &mut self.relax, &self.formula_at(made, step, step), (state, made));
+        self.set_frame_after_step();
+    }
+
+    /// Brings the frame to where the last step ended.
+    fn set_frame_after_step(&mut self) {
+        let placing = self.system.placing();
+        let (time, last) = (self.past.time, self.past.last.max(f64::MIN_POSITIVE));
+        let before = self.past.before.get(placing.clone()).unwrap_or_default();
+        let older = self.past.older.get(placing.clone()).unwrap_or(before);
+        let formula = self.formula_at(time, last, last).with_past(&[before, older]);
+        let now = self.relax.u[placing].to_vec();
+        formula.at(&now, |at| self.relax.set_frame(at));
     }
 
     fn is_even(&self, dt: f64) -> bool {
@@ -227,37 +236,34 @@ impl<S: System> Dual<'_, S> {
         dt / (dt / longest - NEARLY).ceil().max(1.0)
     }
 
-    /// Coefficients and times of ∂/∂t at `end`, after steps of length `last` and `dt`.
-    fn formula_at(&self, end: f64, last: f64, dt: f64) -> Vec<(f64, f64)> {
-        if !self.second_order() {
-            return vec![(1.0 / dt, end), (-1.0 / dt, end - dt)];
+    /// ∂/∂t at `end`, after steps of length `last` and `dt`.
+    fn formula_at(&self, end: f64, last: f64, dt: f64) -> Formula {
+        match self.second_order() {
+            true => Formula::second_order(end, dt, last),
+            false => Formula::first_order(end, dt),
         }
-        let r = dt / last;
-        vec![
-            ((1.0 + 2.0 * r) / (1.0 + r) / dt, end),
-            (-(1.0 + r) / dt, end - dt),
-            (r * r / (1.0 + r) / dt, end - dt - last),
-        ]
     }
 
     /// Solves one step and returns its relative error estimate, zero where there is none.
     fn step(&mut self, dt: f64) -> Result<f64, TimeError> {
-        let formula = self.formula_at(self.past.time + dt, self.past.last, dt);
-        let (start, before) = (&self.start, &self.past.before);
+        let end = self.past.time + dt;
+        let (start, before, placing) = (&self.start, &self.past.before, self.system.placing());
+        let past = [&start[placing.clone()], before.get(placing).unwrap_or_default()];
+        let formula = self.formula_at(end, self.past.last, dt).with_past(&past);
         let mut rest = vec![0.0; start.len()];
-        let old = |k: usize| formula.get(2).map_or(0.0, |c| c.0 * before[k]);
-        sweep(&mut rest, |k| formula[1].0 * start[k] + old(k));
+        let [last, older] = [formula.coefficient(1), formula.coefficient(2)];
+        let old = |k: usize| if older != 0.0 { older * before[k] } else { 0.0 };
+        sweep(&mut rest, |k| last * start[k] + old(k));
         let linear = self.line(dt);
         let smooth = self.begin_with(linear.as_deref(), dt);
-        let moment = Moment::By { time: self.past.time + dt, rate: &formula };
-        self.relax.broad = self.past.broad;
-        self.prepare(&moment, formula[0].0, dt);
-        self.relax.begin_step(&moment, TimeTerm { rate: formula[0].0, rest });
+        self.relax.set_reach(self.past.reach);
+        self.prepare(&formula, end, dt);
+        self.relax.begin_step(TimeTerm { formula, rest });
         let orders = self.plan.orders;
         // of a guess through three states the residual is 9/2 times the truncation error of the difference formula
         let guessed = if smooth { 10f64.powf(1.0 - orders) * self.relax.drop() } else { 0.0 };
         self.relax.goal = 10f64.powf(-orders).max(guessed);
-        if let Some(fault) = self.relax.misplaced() {
+        if let Err(fault) = self.relax.check_frame() {
             self.go_back();
             return Err(TimeError::Fault { fault, iteration: self.past.iteration + 1, hint: CROWDED });
         }
@@ -308,8 +314,7 @@ impl<S: System> Dual<'_, S> {
     fn go_back(&mut self) {
         self.relax.u.copy_from_slice(&self.start);
         if self.reach < f64::INFINITY {
-            let (time, last) = (self.past.time, self.past.last.max(f64::MIN_POSITIVE));
-            self.relax.look(&Moment::By { time, rate: &self.formula_at(time, last, last) });
+            self.set_frame_after_step();
         }
     }
 
@@ -334,5 +339,20 @@ impl<S: System> Dual<'_, S> {
             }
         }
         Ok(())
+    }
+}
+
+/// Makes a preconditioner from the state `state` for the step that ends at `end`: a function of these alone. Bodies that have
+/// coordinates of their own stand where that state puts them.
+fn make_ahead<S: Implicit>(
+    system: &S,
+    relax: &mut Relax<'_, S>,
+    formula: &Formula,
+    (state, end): (&[f64], f64),
+) {
+    let (placing, rate) = (system.placing(), formula.coefficient(0));
+    match placing.is_empty() {
+        true => formula.at(&[], |at| relax.prepare_at(at, state, rate)),
+        false => relax.prepare_at(&Instant::within(end, 0.0, 0.0).with(&state[placing]), state, rate),
     }
 }

@@ -1,7 +1,7 @@
 //! Explicit Runge-Kutta methods for marching in time.
 use super::{CROWDED, March, Past, Step, TimeError};
 use crate::math::sweep::sweep;
-use crate::system::{Moment, System};
+use crate::system::{Instant, System, rows};
 
 /// Coefficients in the form u_s = Σ_r α_r u_r + β Δt R(u_{s−1}): here α on the start and on the last stage only.
 #[derive(Clone, Copy, Debug)]
@@ -50,11 +50,11 @@ impl<'a, S: System> Explicit<'a, S> {
     pub fn new(system: &'a S, method: Method, (cfl, until): (f64, f64), (past, u): (Past, Vec<f64>)) -> Self {
         let n = u.len();
         let (end, step) = (past.time, past.last);
-        let moment = match step > 0.0 {
-            true => Moment::Within { start: end - step, step, fraction: 1.0 },
-            false => Moment::At { time: end },
+        let at = match step > 0.0 {
+            true => Instant::within(end - step, step, 1.0),
+            false => Instant::still(end),
         };
-        let frame = system.frame(&moment, &u);
+        let frame = system.frame(&at.with(&u[system.placing()]), &u);
         Self {
             system,
             method,
@@ -66,7 +66,7 @@ impl<'a, S: System> Explicit<'a, S> {
             start: vec![0.0; n],
             du: vec![0.0; n],
             sum: vec![0.0; if method == Method::Rk4 { n } else { 0 }],
-            rate: vec![0.0; n / system.block()],
+            rate: vec![0.0; rows(system.fields())],
             evaluations: 0,
             u,
         }
@@ -74,15 +74,21 @@ impl<'a, S: System> Explicit<'a, S> {
 
     /// The longest stable step, given how fast particles move now.
     fn step_length(&mut self) -> f64 {
-        self.system.spectral_radius(&self.frame, &self.u, &mut self.work, &mut self.rate);
+        self.system.rates(&self.frame, &self.u, &mut self.work, &mut self.rate);
         self.cfl / self.rate.iter().fold(0.0f64, |m, r| m.max(*r))
     }
 
     fn evaluate(&mut self, dt: f64, fraction: f64) {
-        self.system.place(&Moment::Within { start: self.past.time, step: dt, fraction }, &mut self.frame);
-        self.system.follow(&self.u, &mut self.work, &mut self.frame);
+        self.place(dt, fraction);
+        self.system.update_boundary_state(&self.u, &mut self.work, &mut self.frame);
         self.system.rhs(&self.frame, &self.u, &mut self.work, &mut self.du);
         self.evaluations += 1;
+    }
+
+    /// Brings the frame to part of the way through the step of length `dt` that begins now.
+    fn place(&mut self, dt: f64, fraction: f64) {
+        let at = Instant::within(self.past.time, dt, fraction).with(&self.u[self.system.placing()]);
+        self.system.place(&at, &mut self.frame);
     }
 
     fn stage(&mut self, s: &Stage, dt: f64) {
@@ -134,12 +140,11 @@ impl<S: System> March<S> for Explicit<'_, S> {
     }
 
     fn advance(&mut self) -> Result<Step, TimeError> {
-        let reach = self.system.set_off(0.0, &self.u, &mut self.work, &mut self.frame);
+        let reach = self.system.plan_lagrangian_step(0.0, &self.u, &mut self.work, &mut self.frame);
         let mut longest = self.step_length().min(reach);
         if self.past.last == 0.0 {
             // later on velocities of particles are those of the step before
-            let moment = Moment::Within { start: self.past.time, step: longest, fraction: 0.0 };
-            self.system.place(&moment, &mut self.frame);
+            self.place(longest, 0.0);
             longest = longest.min(self.step_length());
         }
         let left = self.until - self.past.time;
@@ -153,21 +158,21 @@ impl<S: System> March<S> for Explicit<'_, S> {
             Method::Rk4 => self.classical(dt),
         }
         let start = self.past.time;
-        self.system.place(&Moment::Within { start, step: dt, fraction: 1.0 }, &mut self.frame);
+        self.place(dt, 1.0);
         self.past.time = if dt == left { self.until } else { self.past.time + dt };
         self.past.last = dt;
         self.past.iteration += 1;
-        self.system.follow(&self.u, &mut self.work, &mut self.frame);
-        let crowded = self.system.misplaced(&self.frame);
+        self.system.update_boundary_state(&self.u, &mut self.work, &mut self.frame);
+        let crowded = self.system.check_frame(&self.frame).err();
         let hint = match crowded {
             Some(_) => CROWDED,
             None => "lower `time.explicit.cfl`, or use a stronger limiter",
         };
-        if let Some(fault) = crowded.or_else(|| self.system.fault(&self.frame, &self.u)) {
+        if let Some(fault) = crowded.or_else(|| self.system.check(&self.frame, &self.u).err()) {
             self.u.copy_from_slice(&self.start);
             self.past.iteration -= 1;
             self.past.time = start;
-            self.system.place(&Moment::Within { start, step: dt, fraction: 0.0 }, &mut self.frame);
+            self.place(dt, 0.0);
             return Err(TimeError::Fault { fault, iteration: self.past.iteration + 1, hint });
         }
         Ok(Step { iteration: self.past.iteration, time: self.past.time, cfl: self.cfl, residual: 1.0, linear: 0 })

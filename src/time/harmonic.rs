@@ -9,14 +9,19 @@
 //!
 //! *Oversampling* evaluates R at more instances than there are unknowns, on the interpolated state, and keeps the harmonics
 //! up to N of what it finds: products of high harmonics are then not mistaken for low ones.
-use crate::math::block_matrix::BlockMatrix;
+use std::ops::Range;
+
 use crate::math::fourier::{Instances, Matrix};
 use crate::math::sweep::sweep_rows;
-use crate::system::{Fault, Moment, System};
+use crate::system::{
+    Fault, Field, Hierarchy, Implicit, Instant, Period, Placed, Preconditioner, RightHandSide, Shift, System, Term, placed,
+};
 
 /// The equations of a periodic solution.
 pub struct HarmonicBalance<'a, S: System> {
     system: &'a S,
+    fields: Vec<Field>,
+    placing: Range<usize>,
     held: Instances,
     seen: Instances,
     omega: f64,
@@ -38,8 +43,12 @@ impl<'a, S: System> HarmonicBalance<'a, S> {
     pub fn new(system: &'a S, held: Instances, omega: f64, oversample: f64) -> Self {
         let harmonics = (oversample.max(1.0) * held.harmonics() as f64).ceil() as usize;
         let seen = Instances::of_harmonics(harmonics);
-        let derivative = held.derivative(omega);
-        Self { system, held, seen, omega, derivative, up: held.resample(&seen), down: seen.resample(&held) }
+        let (derivative, count) = (held.derivative(omega), held.count());
+        let fields: Vec<Field> = system.fields().iter().map(|f| f.at_instances(count)).collect();
+        let placing = system.placing();
+        let placing = placing.start * count..placing.end * count;
+        let (up, down) = (held.resample(&seen), seen.resample(&held));
+        Self { system, fields, placing, held, seen, omega, derivative, up, down }
     }
 
     /// Instances that hold the solution.
@@ -54,23 +63,22 @@ impl<'a, S: System> HarmonicBalance<'a, S> {
 
     /// A state of all instances that are copies of `u`.
     pub fn copies(&self, u: &[f64]) -> Vec<f64> {
-        let (b, count) = (self.system.block(), self.held.count());
-        let mut all = vec![0.0; u.len() * count];
-        sweep_rows(&mut all, b * count, |i, row| {
-            row.chunks_exact_mut(b).for_each(|r| r.copy_from_slice(&u[i * b..(i + 1) * b]));
+        let mut all = vec![0.0; u.len() * self.held.count()];
+        self.rows_of(self.held, &mut all, |b, one, row| {
+            row.chunks_exact_mut(b).for_each(|r| r.copy_from_slice(&u[one..one + b]));
         });
         all
     }
 
     /// The state `u`, given at the instances of `from`, at those of this one: exact interpolation, or the part it can hold.
     pub fn resampled(&self, u: &[f64], from: Instances) -> Vec<f64> {
-        let (b, old, count) = (self.system.block(), from.count(), self.held.count());
+        let (old, count) = (from.count(), self.held.count());
         let matrix = from.resample(&self.held);
         let mut all = vec![0.0; u.len() / old * count];
-        sweep_rows(&mut all, b * count, |i, row| {
+        self.rows_of(self.held, &mut all, |b, one, row| {
             for (n, r) in row.chunks_exact_mut(b).enumerate() {
                 for (v, r) in r.iter_mut().enumerate() {
-                    *r = (0..old).map(|j| matrix.row(n)[j] * u[i * b * old + j * b + v]).sum();
+                    *r = (0..old).map(|j| matrix.row(n)[j] * u[one * old + j * b + v]).sum();
                 }
             }
         });
@@ -84,25 +92,43 @@ impl<'a, S: System> HarmonicBalance<'a, S> {
 
     /// Σ_j weights_j U_j.
     pub fn combine(&self, u: &[f64], weights: &[f64], out: &mut [f64]) {
-        let (b, count) = (self.system.block(), self.held.count());
-        sweep_rows(out, b, |i, row| {
-            let all = &u[i * b * count..(i + 1) * b * count];
-            row.fill(0.0);
-            for (w, u) in weights.iter().zip(all.chunks_exact(b)) {
-                row.iter_mut().zip(u).for_each(|(r, u)| *r += w * u);
-            }
-        });
+        let count = self.held.count();
+        for at in placed(self.system.fields()) {
+            let all = &u[at.unknowns.start * count..at.unknowns.end * count];
+            combine_rows(all, at.field.block, weights, &mut out[at.unknowns]);
+        }
     }
 
     /// Instance `n` of those that hold the solution, to the bit.
     pub fn instance(&self, u: &[f64], n: usize, out: &mut [f64]) {
-        let (b, count) = (self.system.block(), self.held.count());
-        sweep_rows(out, b, |i, row| row.copy_from_slice(&u[(i * count + n) * b..(i * count + n + 1) * b]));
+        let count = self.held.count();
+        for at in placed(self.system.fields()) {
+            let (b, all) = (at.field.block, &u[at.unknowns.start * count..at.unknowns.end * count]);
+            sweep_rows(&mut out[at.unknowns], b, |i, row| {
+                row.copy_from_slice(&all[(i * count + n) * b..(i * count + n + 1) * b]);
+            });
+        }
+    }
+
+    /// Puts the state `one` where instance `n` of those that hold the solution is.
+    pub fn set_instance(&self, one: &[f64], n: usize, u: &mut [f64]) {
+        self.rows_of(self.held, u, |b, at, row| row[n * b..(n + 1) * b].copy_from_slice(&one[at..at + b]));
     }
 
     /// State at instance `n` of those where R is evaluated.
     pub fn look(&self, u: &[f64], n: usize, out: &mut [f64]) {
         if self.held == self.seen { self.instance(u, n, out) } else { self.combine(u, self.up.row(n), out) }
+    }
+
+    /// Calls `f(b, one, row)` for each row of all fields: the unknowns of one instance, the first of them in a state of one
+    /// instance, and the row.
+    fn rows_of(&self, instances: Instances, all: &mut [f64], f: impl Fn(usize, usize, &mut [f64]) + Sync) {
+        let count = instances.count();
+        for at in placed(self.system.fields()) {
+            let (b, first) = (at.field.block, at.unknowns.start);
+            let rows = &mut all[at.unknowns.start * count..at.unknowns.end * count];
+            sweep_rows(rows, b * count, |i, row| f(b, first + i * b, row));
+        }
     }
 
     /// The instance of those where R is evaluated that is nearest to instance `n` of those that hold the solution.
@@ -111,17 +137,44 @@ impl<'a, S: System> HarmonicBalance<'a, S> {
         (2 * n * seen + held) / (2 * held) % seen
     }
 
-    /// The moment of phase ωt, velocities from positions at the instances by the operator of the state.
-    pub fn with_moment<T>(&self, phase: f64, f: impl FnOnce(&Moment<'_>) -> T) -> T {
-        let times = self.seen.times(self.omega);
-        let weights = self.seen.derivative_weights(phase);
-        let rate: Vec<(f64, f64)> = weights.iter().zip(&times).map(|(w, t)| (w * self.omega, *t)).collect();
-        f(&Moment::By { time: phase / self.omega, rate: &rate })
+    /// The instant of phase ωt in the solution `u`, velocities from positions at the instances by the operator of the state.
+    pub fn with_instant<T>(&self, u: &[f64], phase: f64, f: impl FnOnce(&Instant<'_>) -> T) -> T {
+        let now = self.coordinates(u, &self.held.weights(phase));
+        self.instant(&self.coordinates_seen(&u[self.placing.clone()]), (phase, &now), f)
     }
 
-    /// A moment for each instance where R is evaluated.
-    fn phases(&self) -> impl Iterator<Item = f64> + '_ {
-        self.times().into_iter().map(|t| t * self.omega)
+    /// The coordinates that place frames, Σ_j weights_j q_j.
+    fn coordinates(&self, u: &[f64], weights: &[f64]) -> Vec<f64> {
+        self.coordinates_of(&u[self.placing.clone()], weights)
+    }
+
+    fn coordinates_of(&self, q: &[f64], weights: &[f64]) -> Vec<f64> {
+        let (placing, count) = (self.system.placing(), self.held.count());
+        let mut out = vec![0.0; placing.len()];
+        for at in placed(self.system.fields()).filter(|at| inside(at, &placing)) {
+            let own = at.unknowns.start - placing.start..at.unknowns.end - placing.start;
+            combine_rows(&q[own.start * count..own.end * count], at.field.block, weights, &mut out[own]);
+        }
+        out
+    }
+
+    /// Those at all instances where R is evaluated.
+    fn coordinates_seen(&self, q: &[f64]) -> Vec<Vec<f64>> {
+        (0..self.seen.count()).map(|n| self.coordinates_of(q, self.up.row(n))).collect()
+    }
+
+    fn instant<T>(&self, seen: &[Vec<f64>], (phase, now): (f64, &[f64]), f: impl FnOnce(&Instant<'_>) -> T) -> T {
+        let times = self.seen.times(self.omega);
+        let weights = self.seen.derivative_weights(phase);
+        let terms: Vec<Term<'_>> = (0..times.len())
+            .map(|n| Term { coefficient: weights[n] * self.omega, time: times[n], coordinates: &seen[n] })
+            .collect();
+        f(&Instant::formula(phase / self.omega, &terms).with(now))
+    }
+
+    /// Phases of the instances where R is evaluated.
+    fn phases(&self) -> Vec<f64> {
+        self.times().into_iter().map(|t| t * self.omega).collect()
     }
 
     /// Calls `f` with the state of every instance where R is evaluated.
@@ -134,47 +187,33 @@ impl<'a, S: System> HarmonicBalance<'a, S> {
     }
 }
 
+/// True when a field is one of those that place frames.
+fn inside(at: &Placed, placing: &Range<usize>) -> bool {
+    placing.start <= at.unknowns.start && at.unknowns.end <= placing.end && !at.unknowns.is_empty()
+}
+
+/// Rows of `b` unknowns: Σ_j weights_j of those at all instances.
+fn combine_rows(all: &[f64], b: usize, weights: &[f64], out: &mut [f64]) {
+    let count = weights.len();
+    sweep_rows(out, b, |i, row| {
+        let all = &all[i * b * count..(i + 1) * b * count];
+        row.fill(0.0);
+        for (w, u) in weights.iter().zip(all.chunks_exact(b)) {
+            row.iter_mut().zip(u).for_each(|(r, u)| *r += w * u);
+        }
+    });
+}
+
 impl<S: System> System for HarmonicBalance<'_, S> {
     type Frame = Vec<S::Frame>;
     type Work = Work<S>;
 
-    fn block(&self) -> usize {
-        self.system.block() * self.held.count()
+    fn fields(&self) -> &[Field] {
+        &self.fields
     }
 
-    fn len(&self) -> usize {
-        self.system.len() * self.held.count()
-    }
-
-    fn measured(&self) -> usize {
-        self.system.measured()
-    }
-
-    fn in_time(&self) -> Option<(Instances, f64)> {
-        Some((self.held, self.omega))
-    }
-
-    fn frame(&self, _: &Moment<'_>, u: &[f64]) -> Self::Frame {
-        let mut one = vec![0.0; self.system.len()];
-        let phases = self.phases().enumerate();
-        let frame = |(n, phase): (usize, f64)| {
-            self.look(u, n, &mut one);
-            self.with_moment(phase, |moment| self.system.frame(moment, &one))
-        };
-        phases.map(frame).collect()
-    }
-
-    fn place(&self, _: &Moment<'_>, frame: &mut Self::Frame) {
-        for (phase, frame) in self.phases().zip(frame) {
-            self.with_moment(phase, |moment| self.system.place(moment, frame));
-        }
-    }
-
-    fn follow(&self, u: &[f64], work: &mut Self::Work, frame: &mut Self::Frame) {
-        for (n, frame) in frame.iter_mut().enumerate() {
-            self.look(u, n, &mut work.u);
-            self.system.follow(&work.u, &mut work.work, frame);
-        }
+    fn placing(&self) -> Range<usize> {
+        self.placing.clone()
     }
 
     fn work(&self) -> Self::Work {
@@ -182,12 +221,35 @@ impl<S: System> System for HarmonicBalance<'_, S> {
         Work { work: self.system.work(), u: zero.clone(), du: zero }
     }
 
+    fn frame(&self, _: &Instant<'_>, u: &[f64]) -> Self::Frame {
+        let mut one = vec![0.0; self.system.len()];
+        let seen = self.coordinates_seen(&u[self.placing.clone()]);
+        let frame = |(n, phase): (usize, f64)| {
+            self.look(u, n, &mut one);
+            self.instant(&seen, (phase, &seen[n]), |at| self.system.frame(at, &one))
+        };
+        self.phases().into_iter().enumerate().map(frame).collect()
+    }
+
+    fn place(&self, at: &Instant<'_>, frame: &mut Self::Frame) {
+        let seen = self.coordinates_seen(at.coordinates);
+        for (n, (phase, frame)) in self.phases().into_iter().zip(frame).enumerate() {
+            self.instant(&seen, (phase, &seen[n]), |at| self.system.place(at, frame));
+        }
+    }
+
+    fn update_boundary_state(&self, u: &[f64], work: &mut Self::Work, frame: &mut Self::Frame) {
+        for (n, frame) in frame.iter_mut().enumerate() {
+            self.look(u, n, &mut work.u);
+            self.system.update_boundary_state(&work.u, &mut work.work, frame);
+        }
+    }
+
     #[doc(alias = "eq32")]
     fn rhs(&self, frame: &Self::Frame, u: &[f64], work: &mut Self::Work, du: &mut [f64]) {
-        let (b, count) = (self.system.block(), self.held.count());
-        let derivative = &self.derivative;
-        sweep_rows(du, b * count, |i, row| {
-            let all = &u[i * b * count..(i + 1) * b * count];
+        let (derivative, count) = (&self.derivative, self.held.count());
+        self.rows_of(self.held, du, |b, one, row| {
+            let all = &u[one * count..(one + b) * count];
             for (n, row) in row.chunks_exact_mut(b).enumerate() {
                 row.fill(0.0);
                 for (d, u) in derivative.row(n).iter().zip(all.chunks_exact(b)) {
@@ -199,61 +261,33 @@ impl<S: System> System for HarmonicBalance<'_, S> {
         for (n, frame) in frame.iter().enumerate() {
             self.look(u, n, &mut work.u);
             self.system.rhs(frame, &work.u, &mut work.work, &mut work.du);
-            let one = &work.du;
-            sweep_rows(du, b * count, |i, row| {
-                let one = &one[i * b..(i + 1) * b];
+            let found = &work.du;
+            self.rows_of(self.held, du, |b, one, row| {
+                let found = &found[one..one + b];
                 if same {
-                    row[n * b..(n + 1) * b].iter_mut().zip(one).for_each(|(r, d)| *r += d);
+                    row[n * b..(n + 1) * b].iter_mut().zip(found).for_each(|(r, d)| *r += d);
                     return;
                 }
                 for (k, row) in row.chunks_exact_mut(b).enumerate() {
                     let weight = self.down.row(k)[n];
-                    row.iter_mut().zip(one).for_each(|(r, d)| *r += weight * d);
+                    row.iter_mut().zip(found).for_each(|(r, d)| *r += weight * d);
                 }
             });
         }
     }
 
-    fn spectral_radius(&self, frame: &Self::Frame, u: &[f64], work: &mut Self::Work, rate: &mut [f64]) {
+    fn rates(&self, frame: &Self::Frame, u: &[f64], work: &mut Self::Work, rate: &mut [f64]) {
         // the derivative in time turns states by at most ωN
         rate.fill(0.0);
         let mut one = vec![0.0; rate.len()];
         for (n, frame) in frame.iter().enumerate() {
             self.look(u, n, &mut work.u);
-            self.system.spectral_radius(frame, &work.u, &mut work.work, &mut one);
+            self.system.rates(frame, &work.u, &mut work.work, &mut one);
             let one = &one;
             sweep_rows(rate, 1, |i, r| r[0] = r[0].max(one[i]));
         }
         let turn = self.omega * self.held.harmonics() as f64;
         sweep_rows(rate, 1, |_, r| r[0] += turn);
-    }
-
-    fn graph(&self) -> (&[u32], &[u32]) {
-        self.system.graph()
-    }
-
-    fn parts(&self) -> &[std::ops::Range<usize>] {
-        self.system.parts()
-    }
-
-    /// The mean of the linearisations of all instances; ∂/∂t is added by the hierarchy that solves with it.
-    fn linearise(&self, frame: &Self::Frame, u: &[f64], work: &mut Self::Work, matrix: &mut BlockMatrix) {
-        matrix.begin_mean(frame.len());
-        for (n, frame) in frame.iter().enumerate() {
-            self.look(u, n, &mut work.u);
-            self.system.linearise(frame, &work.u, &mut work.work, matrix);
-        }
-        matrix.end_mean();
-    }
-
-    fn inward(&self, frame: &Self::Frame, row: &mut [f32]) {
-        let instances = row.chunks_exact_mut(self.system.block()).enumerate();
-        instances.for_each(|(n, row)| self.system.inward(&frame[self.beside(n)], row));
-    }
-
-    fn outward(&self, frame: &Self::Frame, row: &mut [f64]) {
-        let instances = row.chunks_exact_mut(self.system.block()).enumerate();
-        instances.for_each(|(n, row)| self.system.outward(&frame[self.beside(n)], row));
     }
 
     fn largest_change(&self, u: &[f64], du: &[f64]) -> f64 {
@@ -265,25 +299,73 @@ impl<S: System> System for HarmonicBalance<'_, S> {
         })
     }
 
-    fn fault(&self, frame: &Self::Frame, u: &[f64]) -> Option<Fault> {
-        let mut found = None;
+    fn check(&self, frame: &Self::Frame, u: &[f64]) -> Result<(), Fault> {
+        let mut found = Ok(());
         self.each(u, |n, one| {
-            if found.is_none() {
+            if found.is_ok() {
                 let period = 100.0 * n as f64 / self.seen.count() as f64;
-                found = self
-                    .system
-                    .fault(&frame[n], one)
-                    .map(|fault| Fault { reason: format!("{} at {period:.0} % of the period", fault.reason), ..fault });
+                found = self.system.check(&frame[n], one).map_err(|fault| Fault {
+                    reason: format!("{} at {period:.0} % of the period", fault.reason),
+                    ..fault
+                });
             }
         });
         found
     }
 
-    fn misplaced(&self, frame: &Self::Frame) -> Option<Fault> {
-        frame.iter().find_map(|f| self.system.misplaced(f))
+    fn check_frame(&self, frame: &Self::Frame) -> Result<(), Fault> {
+        frame.iter().try_for_each(|f| self.system.check_frame(f))
     }
 
-    fn locate(&self, frame: &Self::Frame, particle: usize) -> Vec<f64> {
-        frame.first().map_or_else(Vec::new, |f| self.system.locate(f, particle))
+    fn locate(&self, frame: &Self::Frame, row: usize) -> Vec<f64> {
+        frame.first().map_or_else(Vec::new, |f| self.system.locate(f, row))
+    }
+}
+
+/// The preconditioner of a system for all instances of a period: made from the mean of the linearisations of all instances.
+pub struct InTime<P> {
+    inner: P,
+    instances: usize,
+}
+
+impl<'a, S: Implicit> Implicit for HarmonicBalance<'a, S> {
+    type Preconditioner = InTime<S::Preconditioner>;
+
+    fn preconditioner(&self, plan: &Hierarchy, _: Option<Period>) -> Self::Preconditioner {
+        let period = Period { instances: self.held, omega: self.omega };
+        InTime { inner: self.system.preconditioner(plan, Some(period)), instances: self.seen.count() }
+    }
+}
+
+impl<'a, S: Implicit> Preconditioner<HarmonicBalance<'a, S>> for InTime<S::Preconditioner> {
+    fn begin(&mut self, points: usize) {
+        self.inner.begin(points * self.instances);
+    }
+
+    fn add(&mut self, balance: &HarmonicBalance<'a, S>, frame: &Vec<S::Frame>, u: &[f64], work: &mut Work<S>) {
+        for (n, frame) in frame.iter().enumerate() {
+            balance.look(u, n, &mut work.u);
+            self.inner.add(balance.system, frame, &work.u, &mut work.work);
+        }
+    }
+
+    fn finish(&mut self, shift: &Shift<'_>) {
+        self.inner.finish(shift);
+    }
+
+    fn apply(
+        &mut self,
+        balance: &HarmonicBalance<'a, S>,
+        frames: &[&Vec<S::Frame>],
+        r: &RightHandSide<'_>,
+        z: &mut [f64],
+    ) {
+        let near = |n: usize| frames.iter().map(move |f| &f[balance.beside(n)]);
+        let all: Vec<&S::Frame> = (0..balance.held.count()).flat_map(near).collect();
+        self.inner.apply(balance.system, &all, r, z);
+    }
+
+    fn bytes(&self) -> usize {
+        self.inner.bytes()
     }
 }

@@ -2,10 +2,14 @@
 pub mod control;
 pub mod dual;
 pub mod explicit;
+pub mod formula;
+pub mod full;
 pub mod harmonic;
+mod norm;
+mod preconditioning;
 pub mod relax;
 
-use crate::system::System;
+use crate::system::{Reach, System};
 
 /// What one call of an integrator did.
 #[derive(Clone, Copy, Debug, Default)]
@@ -37,8 +41,8 @@ pub struct Past {
     pub before: Vec<f64>,
     /// State two steps ago, where all steps are of one length; else empty.
     pub older: Vec<f64>,
-    /// The linear systems of the last steps needed the levels.
-    pub broad: bool,
+    /// How far the linear systems of the last steps reached.
+    pub reach: Reach,
     /// Steps for which the preconditioner at hand has served; 0 when the next step makes its own.
     pub served: u32,
     /// Time at the end of the first of those steps.

@@ -5,14 +5,18 @@
 //! levels (Knoll and Keyes 2004). The Courant number follows the residual (Mulder and van Leer 1985). Steps that make a
 //! state unphysical or the residual jump are taken back and tried again with a smaller one. The same loop with the linear
 //! solve replaced by the sweeps alone is the LU-SGS method; with neither it is explicit Runge-Kutta with local steps.
+mod newton;
+
+use newton::{put, sweep_fields};
+
 use super::control::{Control, Method, Phase};
+use super::formula::Formula;
+use super::norm::{norm, weigh};
+use super::preconditioning::Preconditioning;
 use super::{Step, TimeError};
-use crate::math::block_matrix::BlockMatrix;
-use crate::math::incomplete::Incomplete;
 use crate::math::krylov::Gmres;
-use crate::math::multilevel::Multilevel;
-use crate::math::sweep::sum;
-use crate::system::{Moment, System};
+use crate::math::sweep::{sweep, sweep_rows};
+use crate::system::{Fault, Hierarchy, Implicit, Instant, Reach, placed, rows};
 
 /// Drop of the residual below which the flow counts as settled.
 const SETTLED: f64 = 3e-3;
@@ -45,22 +49,13 @@ const ROUND_OFF: f64 = 1e-15;
 /// Courant number of Newton's method at the start of a step in time over that of a steady flow: the guess is good, and the
 /// term of time is a pseudo time of its own.
 const STEP_CFL: f64 = 1000.0;
-/// Part of the fall that a step in time still needs which its next linear solve is asked for.
-const SHARE: f64 = 0.6;
-/// Smallest and largest reduction asked of those solves: beyond the first, what Newton's method leaves is larger.
-const REDUCTION: [f64; 2] = [0.04, 0.5];
-/// Iterations after which a linear solve with the incomplete factorisation is given up: its step is taken, and those after
-/// it use the levels.
-const MOST_NARROW: usize = 16;
-/// Iterations of a linear solve up to which its preconditioner goes on to serve in the next step.
-const EASY: usize = 4;
 /// Fall of the residual in an iteration of a step in time with which the preconditioner goes on to serve.
 const GOOD_FALL: f64 = 2.0;
 /// Stages of the explicit method.
 const STAGES: [f64; 5] = [0.25, 1.0 / 6.0, 0.375, 0.5, 1.0];
 
 /// A relaxation in progress.
-pub struct Relax<'a, S: System> {
+pub struct Relax<'a, S: Implicit> {
     system: &'a S,
     control: Control,
     /// Iterations done.
@@ -74,41 +69,43 @@ pub struct Relax<'a, S: System> {
     /// State.
     pub u: Vec<f64>,
     frame: S::Frame,
+    /// Frame beside that of the state, where frames depend on the state.
+    beside: Option<S::Frame>,
     work: S::Work,
     residual: Vec<f64>,
     trial: Vec<f64>,
     trial_residual: Vec<f64>,
+    /// Local time of each row, weighted so that all fields count alike.
     scale: Vec<f64>,
     rate: Vec<f64>,
+    shift: Vec<f64>,
     step: Vec<f64>,
     phase: Phase,
-    levels: Option<Multilevel>,
-    factors: Incomplete,
+    preconditioning: Option<Preconditioning<S::Preconditioner>>,
     gmres: Option<Gmres>,
     time: Option<TimeTerm>,
-    /// The preconditioner was made for this step in time or one not long before, and still serves.
-    prepared: bool,
-    /// It was made within an iteration.
-    remade: bool,
-    /// Iterations of the longest linear solve of this step in time.
-    longest: usize,
     /// Residual over its first value that the step in time is after.
     pub goal: f64,
-    /// Linear systems of steps in time need the levels: the incomplete factorisation alone was too slow.
-    pub broad: bool,
     /// Linear iterations so far.
     pub linear: u32,
     /// Evaluations of the residual so far.
     pub evaluations: u64,
 }
 
-/// ∂U/∂t as a difference formula, rate·U + rest: what a step in time adds to the equations that are relaxed.
+/// ∂U/∂t as a difference formula, c·U + rest: what a step in time adds to the equations that are relaxed.
 #[derive(Clone, Debug)]
 pub struct TimeTerm {
-    /// Coefficient of the state that is sought.
-    pub rate: f64,
-    /// Contribution of the states before it.
+    /// The formula, with the coordinates of bodies at its times.
+    pub formula: Formula,
+    /// Contribution of the states before the one that is sought.
     pub rest: Vec<f64>,
+}
+
+impl TimeTerm {
+    /// Coefficient of the state that is sought.
+    fn rate(&self) -> f64 {
+        self.formula.coefficient(0)
+    }
 }
 
 /// What a relaxation needs to go on where it stopped.
@@ -124,31 +121,22 @@ pub struct Resume {
     pub linear: u32,
     /// Phase of the relaxation.
     pub phase: Phase,
-    /// Time scales of the particles that the residual is measured with.
+    /// Time scales of the rows that the residual is measured with.
     pub scale: Vec<f64>,
 }
 
-impl<'a, S: System> Relax<'a, S> {
+impl<'a, S: Implicit> Relax<'a, S> {
     /// Starts from the state `u`, or goes on from `resume`. The residual is measured against that of the state `origin`
     /// (the free stream), so that a good guess counts for what it is worth.
     pub fn new(system: &'a S, control: Control, u: Vec<f64>, origin: &[f64], resume: Option<Resume>) -> Self {
         let n = u.len();
         let mut work = system.work();
-        let frame = system.frame(&Moment::At { time: 0.0 }, origin);
-        let mut rate = vec![0.0; n / system.block()];
-        system.spectral_radius(&frame, origin, &mut work, &mut rate);
+        let frame = system.frame(&Instant::still(0.0).with(&origin[system.placing()]), origin);
+        let mut rate = vec![0.0; rows(system.fields())];
+        system.rates(&frame, origin, &mut work, &mut rate);
         let implicit = control.method != Method::RungeKutta;
-        let times = system.in_time();
-        let block = system.block() / times.map_or(1, |(t, _)| t.count());
-        let levels = implicit.then(|| {
-            let (first, index) = system.graph();
-            let levels =
-                Multilevel::new(BlockMatrix::new(block, system.parts(), first, index), control.group, control.cycle);
-            match times {
-                Some((instances, omega)) => levels.in_time(instances, omega),
-                None => levels,
-            }
-        });
+        let hierarchy = Hierarchy { group: control.group, cycle: control.cycle };
+        let preconditioning = implicit.then(|| Preconditioning::new(system.preconditioner(&hierarchy, None)));
         let basis = (control.method == Method::NewtonKrylov).then(|| Gmres::new(n, control.basis));
         let scale = match &resume {
             Some(r) => r.scale.clone(),
@@ -158,12 +146,13 @@ impl<'a, S: System> Relax<'a, S> {
             system,
             control,
             frame,
+            beside: None,
             work,
+            shift: vec![0.0; rate.len()],
             rate,
             scale,
             u,
-            levels,
-            factors: Incomplete::default(),
+            preconditioning,
             iteration: resume.as_ref().map_or(0, |r| r.iteration),
             cfl: resume.as_ref().map_or(control.cfl, |r| r.cfl),
             linear: resume.as_ref().map_or(0, |r| r.linear),
@@ -176,104 +165,134 @@ impl<'a, S: System> Relax<'a, S> {
             step: vec![0.0; n],
             gmres: basis,
             time: None,
-            prepared: false,
-            remade: false,
-            longest: 0,
             goal: 0.0,
-            broad: false,
             evaluations: 0,
         };
-        if resume.is_none() {
-            all.system.rhs(&all.frame, origin, &mut all.work, &mut all.residual);
-        }
-        all.first_norm = resume.map_or_else(|| all.norm_of(&all.residual).max(f64::MIN_POSITIVE), |r| r.first_norm);
-        all.system.follow(&all.u, &mut all.work, &mut all.frame);
-        all.system.rhs(&all.frame, &all.u, &mut all.work, &mut all.residual);
-        all.norm = all.norm_of(&all.residual);
+        all.measure_from(origin, resume.map(|r| r.first_norm));
         all
     }
 
-    /// Brings the frame to a moment.
-    pub fn look(&mut self, moment: &Moment<'_>) {
-        self.system.place(moment, &mut self.frame);
-        self.system.follow(&self.u, &mut self.work, &mut self.frame);
+    /// Finds the residual of the state and what it is measured against: `known`, or that of `origin`.
+    fn measure_from(&mut self, origin: &[f64], known: Option<f64>) {
+        let system = self.system;
+        if known.is_none() {
+            system.rhs(&self.frame, origin, &mut self.work, &mut self.trial_residual);
+        }
+        if self.moves() {
+            system.place(&Instant::still(0.0).with(&self.u[system.placing()]), &mut self.frame);
+        }
+        system.update_boundary_state(&self.u, &mut self.work, &mut self.frame);
+        system.rhs(&self.frame, &self.u, &mut self.work, &mut self.residual);
+        if known.is_none() {
+            weigh(system.fields(), &mut self.scale, &[&self.trial_residual, &self.residual]);
+        }
+        self.first_norm = known.unwrap_or_else(|| self.norm_of(&self.trial_residual).max(f64::MIN_POSITIVE));
+        self.norm = self.norm_of(&self.residual);
     }
 
-    /// Lets particles that follow the state choose where they go; see [`System::set_off`].
-    pub fn set_off(&mut self, step: f64) -> f64 {
-        self.system.set_off(step, &self.u, &mut self.work, &mut self.frame)
+    /// True when frames depend on the state.
+    fn moves(&self) -> bool {
+        !self.system.placing().is_empty()
     }
 
-    /// The first particle that the frame puts where the cloud no longer serves.
-    pub fn misplaced(&self) -> Option<crate::system::Fault> {
-        self.system.misplaced(&self.frame)
+    /// Brings the frame to an instant.
+    pub fn set_frame(&mut self, at: &Instant<'_>) {
+        self.system.place(at, &mut self.frame);
+        self.system.update_boundary_state(&self.u, &mut self.work, &mut self.frame);
+    }
+
+    /// Lets particles that travel choose where they go; see [`System::plan_lagrangian_step`].
+    pub fn plan_lagrangian_step(&mut self, step: f64) -> f64 {
+        self.system.plan_lagrangian_step(step, &self.u, &mut self.work, &mut self.frame)
+    }
+
+    /// Refuses a frame that puts particles where the cloud no longer serves.
+    pub fn check_frame(&self) -> Result<(), Fault> {
+        self.system.check_frame(&self.frame)
     }
 
     /// Largest relative change of density and pressure since the state was `before`.
     pub fn changed_since(&mut self, before: &[f64]) -> f64 {
         let u = &self.u;
-        crate::math::sweep::sweep(&mut self.trial, |k| u[k] - before[k]);
+        sweep(&mut self.trial, |k| u[k] - before[k]);
         self.system.largest_change(before, &self.trial)
     }
 
     /// True when the state `u` is physical.
     pub fn is_sound(&self, u: &[f64]) -> bool {
-        self.system.fault(&self.frame, u).is_none()
+        self.system.check(&self.frame, u).is_ok()
     }
 
-    /// Makes the preconditioner of steps in time from the state `u` in the frame of `moment` with the coefficient `rate` of the
+    /// How far the linear systems of steps in time reach.
+    pub fn reach(&self) -> Reach {
+        self.preconditioning.as_ref().map_or(Reach::Near, |p| p.reach)
+    }
+
+    /// Says how far they reach.
+    pub fn set_reach(&mut self, reach: Reach) {
+        if let Some(p) = self.preconditioning.as_mut() {
+            p.reach = reach;
+        }
+    }
+
+    /// Makes the preconditioner of steps in time from the state `u` in the frame of `at` with the coefficient `rate` of the
     /// state that is sought: a function of these alone, so that a run that is resumed can make it again.
-    pub fn prepare_at(&mut self, moment: &Moment<'_>, u: &[f64], rate: f64) {
-        self.drop_preconditioner();
-        if self.control.method != Method::NewtonKrylov || self.broad {
+    pub fn prepare_at(&mut self, at: &Instant<'_>, u: &[f64], rate: f64) {
+        let Some(preconditioning) = self.preconditioning.as_mut() else { return };
+        preconditioning.drop();
+        if self.control.method != Method::NewtonKrylov || preconditioning.reach == Reach::Far {
             return;
         }
-        let Some(levels) = self.levels.as_mut() else { return };
-        self.system.place(moment, &mut self.frame);
-        self.system.follow(u, &mut self.work, &mut self.frame);
-        self.system.spectral_radius(&self.frame, u, &mut self.work, &mut self.rate);
+        self.system.place(at, &mut self.frame);
+        self.system.update_boundary_state(u, &mut self.work, &mut self.frame);
+        self.system.rates(&self.frame, u, &mut self.work, &mut self.rate);
         let cfl = (STEP_CFL * self.control.cfl).min(self.control.cfl_max);
-        let shift: Vec<f64> = self.rate.iter().map(|r| r / cfl + rate).collect();
-        self.system.linearise(&self.frame, u, &mut self.work, levels.finest());
-        levels.finest().shift(&shift);
-        self.factors.factor(levels.finest());
-        self.prepared = true;
+        let rates = &self.rate;
+        sweep(&mut self.shift, |i| rates[i] / cfl + rate);
+        preconditioning.make_ahead(self.system, (&self.frame, u), &mut self.work, &self.shift);
     }
 
     /// Has the next iteration make its preconditioner.
     pub fn drop_preconditioner(&mut self) {
-        (self.prepared, self.remade) = (false, false);
+        if let Some(p) = self.preconditioning.as_mut() {
+            p.drop();
+        }
     }
 
     /// True while what [`Self::prepare_at`] made serves.
     pub fn still_serves(&self) -> bool {
-        self.prepared && !self.remade && self.longest <= EASY
+        self.preconditioning.as_ref().is_some_and(Preconditioning::still_serves)
     }
 
-    /// Turns to the equations of a step in time, R(U) − rate·U − rest = 0 in the frame of `moment`, from the guess in `u`.
+    /// Turns to the equations of a step in time, R(U) − c·U − rest = 0 at the end of the step, from the guess in `u`.
     ///
     /// The residual is measured against the size of ∂U/∂t, or against itself at the guess if that is larger.
     ///
     /// What [`Self::prepare_at`] made goes on to serve.
-    pub fn begin_step(&mut self, moment: &Moment<'_>, term: TimeTerm) {
-        self.system.place(moment, &mut self.frame);
-        self.system.follow(&self.u, &mut self.work, &mut self.frame);
-        self.system.spectral_radius(&self.frame, &self.u, &mut self.work, &mut self.rate);
-        let rate = &self.rate;
-        crate::math::sweep::sweep(&mut self.scale, |i| 1.0 / (rate[i] + term.rate));
-        self.system.rhs(&self.frame, &self.u, &mut self.work, &mut self.residual);
+    pub fn begin_step(&mut self, term: TimeTerm) {
+        let (system, placing) = (self.system, self.system.placing());
+        term.formula.at(&self.u[placing], |at| system.place(at, &mut self.frame));
+        system.update_boundary_state(&self.u, &mut self.work, &mut self.frame);
+        system.rates(&self.frame, &self.u, &mut self.work, &mut self.rate);
+        let (rate, coefficient) = (&self.rate, term.rate());
+        sweep(&mut self.scale, |i| 1.0 / (rate[i] + coefficient));
+        system.rhs(&self.frame, &self.u, &mut self.work, &mut self.residual);
         self.evaluations += 1;
         let u = &self.u;
-        crate::math::sweep::sweep(&mut self.trial, |k| term.rate * u[k] + term.rest[k]);
-        let change = self.norm_of(&self.trial);
+        sweep(&mut self.trial, |k| coefficient * u[k] + term.rest[k]);
         let trial = &self.trial;
-        crate::math::sweep::sweep_rows(&mut self.residual, 1, |k, r| r[0] -= trial[k]);
+        sweep_rows(&mut self.residual, 1, |k, r| r[0] -= trial[k]);
+        weigh(system.fields(), &mut self.scale, &[&self.trial, &self.residual]);
+        let change = self.norm_of(&self.trial);
         self.norm = self.norm_of(&self.residual);
         self.first_norm = self.norm.max(change).max(f64::MIN_POSITIVE);
         let newton = self.control.method == Method::NewtonKrylov;
         let start = if newton { STEP_CFL * self.control.cfl } else { self.control.cfl };
         self.cfl = start.min(self.control.cfl_max);
-        (self.iteration, self.longest) = (0, 0);
+        self.iteration = 0;
+        if let Some(p) = self.preconditioning.as_mut() {
+            p.begin_step();
+        }
         self.phase = Phase { newton, ..Phase::default() };
         self.time = Some(term);
     }
@@ -317,23 +336,14 @@ impl<'a, S: System> Relax<'a, S> {
 
     /// Bytes held by the implicit machinery.
     pub fn bytes(&self) -> usize {
-        8 * (5 * self.u.len() + 2 * self.rate.len())
-            + self.levels.as_ref().map_or(0, Multilevel::bytes)
-            + self.factors.bytes()
+        8 * (5 * self.u.len() + 3 * self.rate.len())
+            + self.preconditioning.as_ref().map_or(0, Preconditioning::bytes::<S>)
             + self.gmres.as_ref().map_or(0, Gmres::bytes)
     }
 
-    /// Root mean square over particles of the change that the residual would make in one local time.
+    /// Root mean square over rows of the change that the residual would make in one local time.
     fn norm_of(&self, r: &[f64]) -> f64 {
-        let (n, scale) = (self.system.block(), &self.scale);
-        let instances = self.system.in_time().map_or(1, |(t, _)| t.count());
-        let (width, measured) = (n / instances, self.system.measured());
-        let square = |i: usize| {
-            let row = r[i * n..(i + 1) * n].chunks_exact(width);
-            row.map(|r| r[..measured].iter().map(|r| r * r).sum::<f64>()).sum::<f64>()
-        };
-        let total = sum(scale.len(), |i| square(i) * scale[i].powi(2));
-        (total / (scale.len() * instances) as f64).sqrt()
+        norm(self.system.fields(), r, &self.scale)
     }
 
     /// One accepted step.
@@ -351,13 +361,19 @@ impl<'a, S: System> Relax<'a, S> {
                 break;
             }
             self.cfl *= 0.2;
-            self.prepared = false;
+            self.give_up_preconditioner();
             if self.cfl < SMALLEST_CFL {
                 return Err(self.stalled());
             }
         }
         self.choose_phase();
         Ok(Step { iteration: self.iteration, time: 0.0, cfl: self.cfl, residual: self.drop(), linear: self.linear })
+    }
+
+    fn give_up_preconditioner(&mut self) {
+        if let Some(p) = self.preconditioning.as_mut() {
+            p.give_up();
+        }
     }
 
     /// What to say where it cannot go on.
@@ -399,30 +415,51 @@ impl<'a, S: System> Relax<'a, S> {
     /// Takes the step times `fraction` if the new residual is at most `jump` times the old one; sets the next Courant number.
     fn accept(&mut self, fraction: f64, jump: f64) -> bool {
         let (u, step) = (&self.u, &self.step);
-        crate::math::sweep::sweep(&mut self.trial, |k| u[k] + fraction * step[k]);
-        if self.system.fault(&self.frame, &self.trial).is_some() {
+        sweep(&mut self.trial, |k| u[k] + fraction * step[k]);
+        if self.system.check(&self.frame, &self.trial).is_err() {
             return false;
         }
-        let mut frame = self.frame.clone();
-        self.system.follow(&self.trial, &mut self.work, &mut frame);
+        let mut frame = self.frame_of_trial();
+        self.system.update_boundary_state(&self.trial, &mut self.work, &mut frame);
         self.system.rhs(&frame, &self.trial, &mut self.work, &mut self.trial_residual);
         self.evaluations += 1;
         if let Some(term) = &self.time {
-            let trial = &self.trial;
-            let change = |k: usize| term.rate * trial[k] + term.rest[k];
-            crate::math::sweep::sweep_rows(&mut self.trial_residual, 1, |k, r| r[0] -= change(k));
+            let (trial, rate) = (&self.trial, term.rate());
+            let change = |k: usize| rate * trial[k] + term.rest[k];
+            sweep_rows(&mut self.trial_residual, 1, |k, r| r[0] -= change(k));
         }
         let norm = self.norm_of(&self.trial_residual);
         if !norm.is_finite() || norm > jump * self.norm {
+            self.keep_beside(frame);
             return false;
         }
-        self.frame = frame;
+        let old = std::mem::replace(&mut self.frame, frame);
+        self.keep_beside(old);
         std::mem::swap(&mut self.u, &mut self.trial);
         std::mem::swap(&mut self.residual, &mut self.trial_residual);
         self.cfl = self.next_cfl(fraction, self.norm / norm.max(f64::MIN_POSITIVE));
-        self.prepared &= self.norm > GOOD_FALL * norm;
+        if !(self.norm > GOOD_FALL * norm) {
+            self.give_up_preconditioner();
+        }
         self.norm = norm;
         true
+    }
+
+    /// The frame of the state in `trial`.
+    fn frame_of_trial(&mut self) -> S::Frame {
+        if !self.moves() {
+            return self.frame.clone();
+        }
+        let mut frame = self.beside.take().unwrap_or_else(|| self.frame.clone());
+        put(self.system, self.time.as_ref(), &self.trial, &mut frame);
+        frame
+    }
+
+    /// Keeps a frame that is of no more use, so that the next one need not be made.
+    fn keep_beside(&mut self, frame: S::Frame) {
+        if self.moves() {
+            self.beside = Some(frame);
+        }
     }
 
     /// The Courant number after an accepted step that divided the residual by `ratio`.
@@ -448,141 +485,39 @@ impl<'a, S: System> Relax<'a, S> {
         if start { self.control.cfl_max.min(START_CFL_MAX) } else { self.control.cfl_max }
     }
 
-    /// True when linear systems are preconditioned with the incomplete factorisation: the term of time couples what is near.
-    fn is_narrow(&self) -> bool {
-        self.time.is_some() && self.phase.newton && !self.broad
-    }
-
-    /// Makes the preconditioner, unless that of this step in time still serves; what is added to the diagonal of each row.
-    fn prepare(&mut self, levels: &mut Multilevel) -> Vec<f64> {
-        let kept = self.prepared && self.phase.newton;
-        // a step in time begins with the rates at its guess
-        if !kept && (self.time.is_none() || self.iteration > 1) {
-            self.system.spectral_radius(&self.frame, &self.u, &mut self.work, &mut self.rate);
-        }
-        let (rate, cfl) = (self.time.as_ref().map_or(0.0, |t| t.rate), self.cfl);
-        let shift: Vec<f64> = self.rate.iter().map(|r| r / cfl + rate).collect();
-        if !kept {
-            self.system.linearise(&self.frame, &self.u, &mut self.work, levels.finest());
-            levels.finest().shift(&shift);
-            if self.is_narrow() {
-                self.factors.factor(levels.finest());
-            } else {
-                levels.refresh();
-            }
-            (self.prepared, self.remade) = (self.time.is_some(), true);
-        }
-        shift
-    }
-
-    fn implicit_step(&mut self) {
-        let Some(mut levels) = self.levels.take() else { return };
-        let shift = self.prepare(&mut levels);
-        self.solve(&mut levels, &shift);
-        self.levels = Some(levels);
-    }
-
-    /// Reduction asked of a linear solve, and the greatest number of its iterations.
-    fn asked(&self) -> (f64, usize) {
-        if self.time.is_none() {
-            return (self.control.tolerance, usize::MAX);
-        }
-        let reduction = (SHARE * self.goal / self.drop()).clamp(REDUCTION[0], REDUCTION[1]);
-        (reduction, if self.is_narrow() { MOST_NARROW } else { usize::MAX })
-    }
-
-    /// The step of Newton's method, or that of the sweeps alone.
-    fn solve(&mut self, levels: &mut Multilevel, shift: &[f64]) {
-        let (n, narrow) = (self.system.block(), self.is_narrow());
-        let (tolerance, most) = self.asked();
-        let Some(gmres) = self.gmres.as_mut().filter(|_| self.phase.newton) else {
-            let residual = &self.residual;
-            let (system, frame) = (self.system, &self.frame);
-            let right = |i: usize, row: &mut [f32]| {
-                row.iter_mut().zip(&residual[i * n..]).for_each(|(row, r)| *row = *r as f32);
-                system.inward(frame, row);
-            };
-            levels.apply(right, &mut self.step);
-            crate::math::sweep::sweep_rows(&mut self.step, n, |_, row| system.outward(frame, row));
-            self.linear += 1;
-            return;
-        };
-        let size = (sum(self.u.len(), |k| self.u[k] * self.u[k]) / self.u.len() as f64).sqrt();
-        let (system, frame, work, u, residual) = (self.system, &self.frame, &mut self.work, &self.u, &self.residual);
-        let (trial, scale, time) = (&mut self.trial, &self.scale, self.time.as_ref());
-        // rows are scaled by the local time, so that small particles do not rule the norm
-        let b = &mut self.trial_residual;
-        crate::math::sweep::sweep_rows(b, n, |i, b| {
-            b.iter_mut().zip(&residual[i * n..]).for_each(|(b, r)| *b = r * scale[i]);
-        });
-        let product = |v: &[f64], out: &mut [f64]| {
-            let length = (sum(v.len(), |k| v[k] * v[k]) / v.len() as f64).sqrt();
-            if length == 0.0 {
-                return out.fill(0.0);
-            }
-            let eps = 1e-7 * (1.0 + size) / length;
-            let inverse = 1.0 / eps;
-            crate::math::sweep::sweep(trial, |k| u[k] + eps * v[k]);
-            system.rhs(frame, trial, work, out);
-            // the residual holds the time term at u, which is the same in both; its change is in the shift
-            let base = |k: usize| residual[k] + time.map_or(0.0, |t| t.rate * u[k] + t.rest[k]);
-            crate::math::sweep::sweep_rows(out, n, |i, out| {
-                for (k, o) in (i * n..).zip(out) {
-                    *o = ((base(k) - *o) * inverse + shift[i] * v[k]) * scale[i];
-                }
-            });
-        };
-        let factors = &mut self.factors;
-        let precondition = |r: &[f32], z: &mut [f64]| {
-            let right = |i: usize, row: &mut [f32]| {
-                row.iter_mut().zip(&r[i * n..]).for_each(|(row, r)| *row = (f64::from(*r) / scale[i]) as f32);
-                system.inward(frame, row);
-            };
-            if narrow {
-                factors.apply(levels.finest(), right, z)
-            } else {
-                levels.apply(right, z)
-            }
-            crate::math::sweep::sweep_rows(z, n, |_, row| system.outward(frame, row));
-        };
-        let solved = gmres.solve((b, &mut self.step), (tolerance, most), product, precondition);
-        if narrow && solved.iterations == most {
-            // one that was made for another step is first made anew
-            (self.broad, self.prepared) = (self.remade, false);
-        }
-        self.longest = self.longest.max(solved.iterations);
-        self.linear += solved.iterations as u32;
-        self.evaluations += solved.iterations as u64;
-    }
-
     fn explicit_step(&mut self) {
-        self.system.spectral_radius(&self.frame, &self.u, &mut self.work, &mut self.rate);
-        let n = self.system.block();
+        self.system.rates(&self.frame, &self.u, &mut self.work, &mut self.rate);
         self.trial_residual.copy_from_slice(&self.residual);
         for (k, stage) in STAGES.iter().enumerate() {
             let (rate, u, r) = (&self.rate, &self.u, &self.trial_residual);
             let cfl = EXPLICIT_CFL.min(self.cfl);
-            crate::math::sweep::sweep_rows(&mut self.step, n, |i, step| {
+            sweep_fields(self.system, &mut self.step, |i, at, step| {
                 let length = stage * cfl / rate[i];
-                step.iter_mut().zip(&r[i * n..]).for_each(|(step, r)| *step = length * r);
+                step.iter_mut().zip(&r[at..]).for_each(|(step, r)| *step = length * r);
             });
             if k + 1 < STAGES.len() {
                 let step = &self.step;
-                crate::math::sweep::sweep(&mut self.trial, |k| u[k] + step[k]);
+                sweep(&mut self.trial, |k| u[k] + step[k]);
                 self.system.rhs(&self.frame, &self.trial, &mut self.work, &mut self.trial_residual);
                 self.evaluations += 1;
             }
         }
     }
 
-    /// The particle with the largest residual, and where it is.
+    /// The row with the largest residual, and where it is.
     pub fn worst(&self) -> (usize, String) {
-        let n = self.system.block();
-        let size =
-            |i: usize| self.residual[i * n..(i + 1) * n].iter().fold(0.0, |m: f64, r| m.max(r.abs())) * self.scale[i];
-        let particle = (0..self.scale.len()).fold(0, |w, i| if size(i) > size(w) { i } else { w });
-        let place = self.system.locate(&self.frame, particle);
+        let mut worst = (0, -1.0);
+        for at in placed(self.system.fields()) {
+            let (n, r, scale) = (at.field.block, &self.residual[at.unknowns], &self.scale[at.rows.clone()]);
+            for (i, row) in r.chunks_exact(n).enumerate() {
+                let size = row.iter().fold(0.0, |m: f64, r| m.max(r.abs())) * scale[i];
+                if size > worst.1 {
+                    worst = (at.rows.start + i, size);
+                }
+            }
+        }
+        let place = self.system.locate(&self.frame, worst.0);
         let place: Vec<String> = place.iter().map(|c| format!("{c:.5}")).collect();
-        (particle, if place.is_empty() { String::new() } else { format!(" at ({})", place.join(", ")) })
+        (worst.0, if place.is_empty() { String::new() } else { format!(" at ({})", place.join(", ")) })
     }
 }

@@ -1,0 +1,115 @@
+//! Linear systems of few unknowns: the matrix by differences, solved by elimination.
+//!
+//! −∂R/∂U column by column, as a mean over the points that are added; with the instances of a period,
+//! (shift − ∂R/∂U) ⊗ 1 + ωD, which ties them together. For structures, oscillators and the like.
+use crate::math::dense::Factors;
+use crate::system::{Period, Placed, Preconditioner, RightHandSide, Shift, System, placed};
+
+/// Change of an unknown over its size that derivatives are taken with: the cube root of round-off, for central differences.
+const CHANGE: f64 = 6e-6;
+
+/// A full matrix and its factors.
+pub struct Full {
+    fields: Vec<Placed>,
+    n: usize,
+    period: Option<Period>,
+    points: f64,
+    matrix: Vec<f64>,
+    factors: Option<Factors>,
+    right: Vec<f64>,
+}
+
+impl Full {
+    /// An empty one for `system`.
+    pub fn new<S: System>(system: &S, period: Option<Period>) -> Self {
+        let fields: Vec<Placed> = placed(system.fields()).collect();
+        let n = system.len();
+        let count = period.map_or(1, |p| p.instances.count());
+        Self {
+            fields,
+            n,
+            period,
+            points: 1.0,
+            matrix: vec![0.0; n * n],
+            factors: None,
+            right: vec![0.0; n * count],
+        }
+    }
+
+    /// Adds the matrix −∂R/∂U, rows one after another.
+    pub fn add_matrix(&mut self, matrix: &[f64]) {
+        self.matrix.iter_mut().zip(matrix).for_each(|(m, a)| *m += a / self.points);
+    }
+
+    /// Row and place of unknown `k` of one instance among those of all: its row, and the unknown at instance `n`.
+    fn place(&self, k: usize, n: usize, count: usize) -> (usize, usize) {
+        let at = self.fields.iter().find(|at| at.unknowns.contains(&k));
+        at.map_or((0, 0), |at| {
+            let (b, own) = (at.field.block, k - at.unknowns.start);
+            (at.rows.start + own / b, (at.unknowns.start + own / b * b) * count + n * b + own % b)
+        })
+    }
+}
+
+impl<S: System> Preconditioner<S> for Full {
+    fn begin(&mut self, points: usize) {
+        self.points = points as f64;
+        self.matrix.fill(0.0);
+    }
+
+    fn add(&mut self, system: &S, frame: &S::Frame, u: &[f64], work: &mut S::Work) {
+        let n = self.n;
+        let (mut ahead, mut behind, mut state) = (vec![0.0; n], vec![0.0; n], u.to_vec());
+        let mut matrix = vec![0.0; n * n];
+        for k in 0..n {
+            let change = CHANGE * (1.0 + u[k].abs());
+            state[k] = u[k] + change;
+            system.rhs(frame, &state, work, &mut ahead);
+            state[k] = u[k] - change;
+            system.rhs(frame, &state, work, &mut behind);
+            state[k] = u[k];
+            (0..n).for_each(|i| matrix[i * n + k] = (behind[i] - ahead[i]) / (2.0 * change));
+        }
+        self.add_matrix(&matrix);
+    }
+
+    fn finish(&mut self, shift: &Shift<'_>) {
+        let count = self.period.map_or(1, |p| p.instances.count());
+        let size = self.n * count;
+        let mut all = vec![0.0; size * size];
+        for i in 0..self.n {
+            for n in 0..count {
+                let (row, at) = self.place(i, n, count);
+                (0..self.n).for_each(|j| all[at * size + self.place(j, n, count).1] += self.matrix[i * self.n + j]);
+                all[at * size + at] += shift.rows[row];
+            }
+            if let Some(period) = &self.period {
+                let derivative = period.instances.derivative(period.omega);
+                for n in 0..count {
+                    let at = self.place(i, n, count).1;
+                    (0..count).for_each(|m| all[at * size + self.place(i, m, count).1] += derivative.row(n)[m]);
+                }
+            }
+        }
+        self.factors = Factors::new(size, all);
+    }
+
+    fn apply(&mut self, _: &S, _: &[&S::Frame], r: &RightHandSide<'_>, z: &mut [f64]) {
+        let count = self.period.map_or(1, |p| p.instances.count());
+        for at in &self.fields {
+            let b = at.field.block * count;
+            for i in 0..at.field.rows {
+                let first = at.unknowns.start * count + i * b;
+                r.row_in_full(at.rows.start + i, first, &mut self.right[first..first + b]);
+            }
+        }
+        match &self.factors {
+            Some(factors) => factors.solve(&self.right, z),
+            None => z.copy_from_slice(&self.right),
+        }
+    }
+
+    fn bytes(&self) -> usize {
+        8 * (self.matrix.len() + self.right.len() + self.factors.as_ref().map_or(0, |f| f.len() * f.len()))
+    }
+}

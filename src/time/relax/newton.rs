@@ -1,0 +1,135 @@
+//! One step of a relaxation: the linear system (1/Δτ + c − ∂R/∂U) δU = R(U) − ∂U/∂t.
+//!
+//! Products with the matrix are differences of residuals (Knoll and Keyes 2004); where bodies move with the state, the frame
+//! moves with the difference, so that the feedback of motion on the gas is part of the product. GMRES solves to as much as
+//! Newton's method can use.
+use super::super::preconditioning::Preconditioning;
+use super::{Relax, TimeTerm};
+use crate::math::krylov::{Gmres, System as Linear};
+use crate::math::sweep::{sum, sweep, sweep_rows};
+use crate::system::{Implicit, Instant, Reach, RightHandSide, Shift, System, placed};
+
+/// Part of the fall that a step in time still needs which its next linear solve is asked for.
+const SHARE: f64 = 0.6;
+/// Smallest and largest reduction asked of those solves: beyond the first, what Newton's method leaves is larger.
+const REDUCTION: [f64; 2] = [0.04, 0.5];
+
+impl<S: Implicit> Relax<'_, S> {
+    /// How far the linear system at hand reaches: a step in time couples what is near.
+    fn system_reach(&self) -> Reach {
+        if self.time.is_some() && self.phase.newton { self.reach() } else { Reach::Far }
+    }
+
+    /// Makes the preconditioner, unless that of this step in time still serves, and what is added to the diagonal of each row.
+    fn prepare(&mut self, preconditioning: &mut Preconditioning<S::Preconditioner>) {
+        let kept = preconditioning.is_kept() && self.phase.newton;
+        // a step in time begins with the rates at its guess
+        if !kept && (self.time.is_none() || self.iteration > 1) {
+            self.system.rates(&self.frame, &self.u, &mut self.work, &mut self.rate);
+        }
+        let (rate, cfl) = (self.time.as_ref().map_or(0.0, TimeTerm::rate), self.cfl);
+        let rates = &self.rate;
+        sweep(&mut self.shift, |i| rates[i] / cfl + rate);
+        if !kept {
+            let reach = self.system_reach();
+            let (shift, keep) = (Shift { rows: &self.shift, reach }, self.time.is_some());
+            preconditioning.make(self.system, (&self.frame, &self.u), &mut self.work, (&shift, keep));
+        }
+    }
+
+    /// The step of Newton's method, or of the preconditioner alone.
+    pub(super) fn implicit_step(&mut self) {
+        let reach = self.system_reach();
+        let Some(mut preconditioning) = self.preconditioning.take() else { return };
+        self.prepare(&mut preconditioning);
+        match self.gmres.take() {
+            Some(mut gmres) if self.phase.newton => {
+                let iterations = self.newton_step(&mut gmres, &mut preconditioning, reach);
+                preconditioning.served(reach, iterations);
+                self.gmres = Some(gmres);
+            }
+            gmres => {
+                let right = RightHandSide::Plain(&self.residual);
+                preconditioning.apply(self.system, &self.frame, &right, &mut self.step);
+                self.linear += 1;
+                self.gmres = gmres;
+            }
+        }
+        self.preconditioning = Some(preconditioning);
+    }
+
+    /// Reduction asked of a linear solve, and the greatest number of its iterations.
+    fn asked(&self, reach: Reach) -> (f64, usize) {
+        if self.time.is_none() {
+            return (self.control.tolerance, usize::MAX);
+        }
+        let reduction = (SHARE * self.goal / self.drop()).clamp(REDUCTION[0], REDUCTION[1]);
+        (reduction, Preconditioning::<S::Preconditioner>::most(reach))
+    }
+
+    /// The step of Newton's method; the iterations that it took.
+    fn newton_step(
+        &mut self,
+        gmres: &mut Gmres,
+        preconditioning: &mut Preconditioning<S::Preconditioner>,
+        reach: Reach,
+    ) -> usize {
+        let goal = self.asked(reach);
+        let size = (sum(self.u.len(), |k| self.u[k] * self.u[k]) / self.u.len() as f64).sqrt();
+        let moves = self.moves();
+        let mut beside = moves.then(|| self.beside.take().unwrap_or_else(|| self.frame.clone()));
+        let (system, frame, work, u, residual) = (self.system, &self.frame, &mut self.work, &self.u, &self.residual);
+        let (trial, scale, shift, time) = (&mut self.trial, &self.scale, &self.shift, self.time.as_ref());
+        // rows are scaled by the local time, so that small particles do not rule the norm
+        sweep_fields(system, &mut self.trial_residual, |i, at, b| {
+            b.iter_mut().zip(&residual[at..]).for_each(|(b, r)| *b = r * scale[i]);
+        });
+        let product = |v: &[f64], out: &mut [f64]| {
+            let length = (sum(v.len(), |k| v[k] * v[k]) / v.len() as f64).sqrt();
+            if length == 0.0 {
+                return out.fill(0.0);
+            }
+            let eps = 1e-7 * (1.0 + size) / length;
+            let inverse = 1.0 / eps;
+            sweep(trial, |k| u[k] + eps * v[k]);
+            if let Some(beside) = beside.as_mut() {
+                put(system, time, trial, beside);
+                system.update_boundary_state(u, work, beside);
+            }
+            system.rhs(beside.as_ref().unwrap_or(frame), trial, work, out);
+            // the residual holds the time term at u, which is the same in both; its change is in the shift
+            let base = |k: usize| residual[k] + time.map_or(0.0, |t| t.rate() * u[k] + t.rest[k]);
+            sweep_fields(system, out, |i, at, out| {
+                for (k, o) in (at..).zip(out) {
+                    *o = ((base(k) - *o) * inverse + shift[i] * v[k]) * scale[i];
+                }
+            });
+        };
+        let precondition = |r: &[f32], z: &mut [f64]| {
+            preconditioning.apply(system, frame, &RightHandSide::Scaled { values: r, scale }, z);
+        };
+        let linear = Linear { product, precondition };
+        let solved = gmres.solve((&self.trial_residual, &mut self.step), goal, linear);
+        self.beside = beside;
+        self.linear += solved.iterations as u32;
+        self.evaluations += solved.iterations as u64;
+        solved.iterations
+    }
+}
+
+/// Brings a frame to where the state `u` puts it.
+pub(super) fn put<S: System>(system: &S, time: Option<&TimeTerm>, u: &[f64], frame: &mut S::Frame) {
+    let coordinates = &u[system.placing()];
+    match time {
+        Some(term) => term.formula.at(coordinates, |at| system.place(at, frame)),
+        None => system.place(&Instant::still(0.0).with(coordinates), frame),
+    }
+}
+
+/// Calls `f` with every row of all fields: its number, the number of its first unknown, and its slots of `out`.
+pub(super) fn sweep_fields<S: System>(system: &S, out: &mut [f64], f: impl Fn(usize, usize, &mut [f64]) + Sync) {
+    for at in placed(system.fields()) {
+        let (row, unknown, n) = (at.rows.start, at.unknowns.start, at.field.block);
+        sweep_rows(&mut out[at.unknowns], n, |i, out| f(row + i, unknown + i * n, out));
+    }
+}
