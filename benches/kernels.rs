@@ -18,7 +18,7 @@ use alula::math::Vector;
 use alula::math::multilevel::Cycle;
 use alula::physics::Primitive;
 use alula::scheme::{Fluid, RemapLedger};
-use alula::system::{Moment, System};
+use alula::system::{Instant, System};
 use alula::time::control::{Control, Method};
 use alula::time::explicit::{self, Explicit};
 use alula::time::relax::Relax;
@@ -96,7 +96,7 @@ fn solver<const D: usize>() -> (Fluid<D>, Vec<f64>) {
 fn residual<const D: usize>(bencher: Bencher<'_, '_>, threads: usize) {
     let (fluid, u) = solver::<D>();
     let pool = pool(threads);
-    let (frame, mut work, mut du) = (fluid.frame(&Moment::At { time: 0.0 }, &u), fluid.work(), vec![0.0; u.len()]);
+    let (frame, mut work, mut du) = (fluid.frame(&Instant::still(0.0), &u), fluid.work(), vec![0.0; u.len()]);
     bencher
         .counter(ItemsCount::new(fluid.discretisation.cloud.n_fluid))
         .bench_local(|| pool.install(|| fluid.rhs(black_box(&frame), black_box(&u), &mut work, &mut du)));
@@ -107,7 +107,7 @@ fn residual<const D: usize>(bencher: Bencher<'_, '_>, threads: usize) {
 fn gradient<const D: usize>(bencher: Bencher<'_, '_>) {
     let (fluid, u) = solver::<D>();
     let mut work = fluid.work();
-    let frame = fluid.frame(&Moment::At { time: 0.0 }, &u);
+    let frame = fluid.frame(&Instant::still(0.0), &u);
     fluid.fill_states(&frame, &u, &mut work);
     bencher
         .counter(ItemsCount::new(fluid.discretisation.cloud.n_fluid))
@@ -158,7 +158,7 @@ fn travelling<const D: usize>() -> (Fluid<D>, Vec<f64>) {
 #[divan::bench(consts = [2, 3], args = THREADS, sample_count = 10)]
 fn re_clouding<const D: usize>(bencher: Bencher<'_, '_>, threads: usize) {
     let (fluid, u) = travelling::<D>();
-    let (pool, frame, mut work) = (pool(threads), fluid.frame(&Moment::At { time: 0.0 }, &u), fluid.work());
+    let (pool, frame, mut work) = (pool(threads), fluid.frame(&Instant::still(0.0), &u), fluid.work());
     let mut ledger = RemapLedger::default();
     bencher.counter(ItemsCount::new(fluid.discretisation.cloud.n_fluid)).bench_local(|| {
         pool.install(|| fluid.reclouded(black_box(&frame), (&u, [&[], &[]]), &mut work, &mut ledger)).is_ok()

@@ -298,10 +298,9 @@ impl RightHandSide<'_> {
     /// The part of it that belongs to one field.
     pub fn of<'b>(&'b self, field: &Placed) -> RightHandSide<'b> {
         match self {
-            Self::Scaled { values, scale } => RightHandSide::Scaled {
-                values: &values[field.unknowns.clone()],
-                scale: &scale[field.rows.clone()],
-            },
+            Self::Scaled { values, scale } => {
+                RightHandSide::Scaled { values: &values[field.unknowns.clone()], scale: &scale[field.rows.clone()] }
+            }
             Self::Plain(values) => RightHandSide::Plain(&values[field.unknowns.clone()]),
         }
     }

@@ -6,15 +6,15 @@ mod common;
 use std::sync::Arc;
 
 use alula::math::Vector;
-use alula::math::block_matrix::BlockMatrix;
 use alula::math::fourier::{Instances, Series};
 use alula::math::multilevel::Cycle;
 use alula::motion::{BodyMotion, TimeFunction};
 use alula::physics::Primitive;
 use alula::scheme::discretisation::{Path, Places};
 use alula::scheme::{CloudMotion, Fluid};
-use alula::system::{Fault, Moment, System};
+use alula::system::{Fault, Field, Hierarchy, Implicit, Instant, Period, System};
 use alula::time::control::{Control, Method};
+use alula::time::full::Full;
 use alula::time::harmonic::HarmonicBalance;
 use alula::time::relax::Relax;
 use common::{largest, solver};
@@ -65,17 +65,17 @@ fn residual<const D: usize>(
     let (b, count) = (D + 2, 2 * harmonics + 1);
     let mut u = vec![1.0; balance.len()];
     let exact = HarmonicBalance::new(&fluid, Instances::of_harmonics(harmonics), 4.0, 1.0);
-    let frames = exact.frame(&Moment::At { time: 0.0 }, &u);
+    let frames = exact.frame(&Instant::still(0.0), &u);
     for (i, row) in u.chunks_exact_mut(b * count).enumerate() {
         for (frame, row) in frames.iter().zip(row.chunks_exact_mut(b)) {
             fluid.gas.conserved(&field(&frame.place(i))).store(row);
         }
     }
-    let frame = balance.frame(&Moment::At { time: 0.0 }, &u);
+    let frame = balance.frame(&Instant::still(0.0), &u);
     let (mut work, mut du, mut rate) =
         (balance.work(), vec![0.0; u.len()], vec![0.0; fluid.discretisation.cloud.n_fluid]);
     balance.rhs(&frame, &u, &mut work, &mut du);
-    balance.spectral_radius(&frame, &u, &mut work, &mut rate);
+    balance.rates(&frame, &u, &mut work, &mut rate);
     largest(du.iter().enumerate().map(|(k, r)| r / rate[k / (b * count)]))
 }
 
@@ -117,56 +117,39 @@ impl<F: Fn(f64, f64, f64) -> f64 + Sync> System for Oscillator<F> {
     type Frame = f64;
     type Work = ();
 
-    fn block(&self) -> usize {
-        2
+    fn fields(&self) -> &[Field] {
+        const ONE: [Field; 1] = [Field::new("oscillator", 1, 2)];
+        &ONE
     }
-    fn len(&self) -> usize {
-        2
+    fn frame(&self, at: &Instant<'_>, _: &[f64]) -> f64 {
+        at.time
     }
-    fn measured(&self) -> usize {
-        2
+    fn place(&self, at: &Instant<'_>, frame: &mut f64) {
+        *frame = at.time;
     }
-    fn frame(&self, moment: &Moment<'_>, _: &[f64]) -> f64 {
-        moment.time()
-    }
-    fn place(&self, moment: &Moment<'_>, frame: &mut f64) {
-        *frame = moment.time();
-    }
-    fn follow(&self, _: &[f64], (): &mut (), _: &mut f64) {}
+    fn update_boundary_state(&self, _: &[f64], (): &mut (), _: &mut f64) {}
     fn work(&self) {}
     fn rhs(&self, t: &f64, u: &[f64], (): &mut (), du: &mut [f64]) {
         (du[0], du[1]) = ((self.0)(u[1], u[0], *t), u[0]);
     }
-    fn spectral_radius(&self, _: &f64, _: &[f64], (): &mut (), rate: &mut [f64]) {
+    fn rates(&self, _: &f64, _: &[f64], (): &mut (), rate: &mut [f64]) {
         rate.fill(2.0);
-    }
-    fn graph(&self) -> (&[u32], &[u32]) {
-        (&[0, 1], &[0])
-    }
-    fn parts(&self) -> &[std::ops::Range<usize>] {
-        #[allow(clippy::single_range_in_vec_init, reason = "one part")]
-        const ONE: &[std::ops::Range<usize>] = &[0..1];
-        ONE
-    }
-    fn linearise(&self, t: &f64, u: &[f64], (): &mut (), matrix: &mut BlockMatrix) {
-        let slope = |k: usize| {
-            let mut v = [u[0], u[1]];
-            v[k] += 1e-6;
-            ((self.0)(v[1], v[0], *t) - (self.0)(u[1], u[0], *t)) / 1e-6
-        };
-        matrix.assemble(|_, rows| {
-            rows.add(0, 0, |r, c| match (r, c) {
-                (1, 0) => -1.0,
-                (0, c) => -slope(c),
-                _ => 0.0,
-            });
-        });
     }
     fn largest_change(&self, _: &[f64], du: &[f64]) -> f64 {
         du.iter().fold(0.0, |m: f64, d| if d.is_finite() { m.max(1e-3 * d.abs()) } else { f64::INFINITY })
     }
-    fn fault(&self, _: &f64, u: &[f64]) -> Option<Fault> {
-        u.iter().any(|v| !v.is_finite()).then(|| Fault { particle: 0, place: Vec::new(), reason: "infinite".into() })
+    fn check(&self, _: &f64, u: &[f64]) -> Result<(), Fault> {
+        if u.iter().all(|v| v.is_finite()) {
+            return Ok(());
+        }
+        Err(Fault { particle: 0, place: Vec::new(), reason: "infinite".into() })
+    }
+}
+
+impl<F: Fn(f64, f64, f64) -> f64 + Sync> Implicit for Oscillator<F> {
+    type Preconditioner = Full;
+    fn preconditioner(&self, _: &Hierarchy, period: Option<Period>) -> Full {
+        Full::new(self, period)
     }
 }
 
@@ -209,7 +192,7 @@ fn newton(mut x: Vec<f64>, f: impl Fn(&[f64]) -> Vec<f64>) -> Option<Vec<f64>> {
 }
 
 fn equations<S: System>(balance: &HarmonicBalance<'_, S>, u: &[f64]) -> Vec<f64> {
-    let frame = balance.frame(&Moment::At { time: 0.0 }, u);
+    let frame = balance.frame(&Instant::still(0.0), u);
     let mut du = vec![0.0; u.len()];
     balance.rhs(&frame, u, &mut balance.work(), &mut du);
     du

@@ -6,7 +6,7 @@ mod common;
 use alula::math::Vector;
 use alula::math::multilevel::Cycle;
 use alula::physics::Primitive;
-use alula::system::{Moment, System};
+use alula::system::{Instant, System};
 use alula::time::control::{self, Control};
 use alula::time::explicit::{Explicit, Method};
 use alula::time::relax::Relax;
@@ -19,7 +19,7 @@ const ROUND_OFF: f64 = 1e-12;
 fn uniform_residual<const D: usize>() -> f64 {
     let (fluid, u) = solver::<D>(&two_levels(D));
     let (mut work, mut du) = (fluid.work(), vec![0.0; u.len()]);
-    fluid.rhs(&fluid.frame(&Moment::At { time: 0.0 }, &u), &u, &mut work, &mut du);
+    fluid.rhs(&fluid.frame(&Instant::still(0.0), &u), &u, &mut work, &mut du);
     largest(du)
 }
 
@@ -34,7 +34,7 @@ fn rest_residual<const D: usize>() -> f64 {
     let (fluid, mut u) = solver::<D>(&round_body(D));
     let rest = Primitive { density: 1.0, velocity: Vector::ZERO, pressure: 1.0 / fluid.gas.gamma };
     u.chunks_exact_mut(D + 2).for_each(|row| fluid.gas.conserved(&rest).store(row));
-    let mut frame = fluid.frame(&Moment::At { time: 0.0 }, &u);
+    let mut frame = fluid.frame(&Instant::still(0.0), &u);
     frame.outer.fill([rest; 3]);
     let (mut work, mut du) = (fluid.work(), vec![0.0; u.len()]);
     fluid.rhs(&frame, &u, &mut work, &mut du);

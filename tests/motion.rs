@@ -11,7 +11,7 @@ use alula::motion::{BodyMotion, TimeFunction};
 use alula::physics::{Conserved, Primitive};
 use alula::scheme::discretisation::{Path, Places};
 use alula::scheme::{CloudMotion, Fluid};
-use alula::system::{Moment, System};
+use alula::system::{Instant, System};
 use alula::time::control::{self, Control};
 use alula::time::dual::{Dual, Plan};
 use alula::time::explicit::{Explicit, Method};
@@ -109,7 +109,7 @@ fn drift<const D: usize>(
     implicit: bool,
 ) -> f64 {
     let fluid = Fluid { cloud_motion, held, ..fluid };
-    let frame = fluid.frame(&Moment::At { time: 0.0 }, &vec![1.0; fluid.len()]);
+    let frame = fluid.frame(&Instant::still(0.0), &vec![1.0; fluid.len()]);
     let mut u = vec![0.0; fluid.len()];
     for (i, row) in u.chunks_exact_mut(D + 2).enumerate() {
         fluid.gas.conserved(&field(&frame.place(i))).store(row);

@@ -7,7 +7,7 @@ use alula::math::Vector;
 use alula::math::least_squares::{Fit, Method};
 use alula::physics::Primitive;
 use alula::scheme::Fluid;
-use alula::system::{Moment, System};
+use alula::system::{Instant, System};
 use common::{largest, round_body, solver, two_levels};
 
 /// Round-off of a derivative over a spacing of some hundredths.
@@ -29,7 +29,7 @@ fn linear<const D: usize>(x: &Vector<D>) -> Primitive<D> {
 /// Largest error of the gradient of a linear field over all particles with a cloud.
 fn gradient_error<const D: usize>(fluid: &Fluid<D>) -> f64 {
     let mut work = fluid.work();
-    let still = fluid.frame(&Moment::At { time: 0.0 }, &vec![1.0; fluid.len()]);
+    let still = fluid.frame(&Instant::still(0.0), &vec![1.0; fluid.len()]);
     work.state = fluid.discretisation.cloud.x.iter().map(linear).collect();
     fluid.fill_gradients(&still, &mut work);
     largest(work.gradient[..fluid.discretisation.cloud.n_fluid].iter().flat_map(|g| {
@@ -99,7 +99,7 @@ fn wall_states_obey_the_neumann_condition() {
         fluid.gas.conserved(&field(x)).store(row);
     }
     let mut work = fluid.work();
-    fluid.fill_states(&fluid.frame(&Moment::At { time: 0.0 }, &u), &u, &mut work);
+    fluid.fill_states(&fluid.frame(&Instant::still(0.0), &u), &u, &mut work);
     let on_face = |x: &Vector<2>| x[1] > 0.499 && x[0].abs() < 0.2;
     let face: Vec<usize> = cloud.interface_range().filter(|i| on_face(&cloud.x[*i])).collect();
     let error = largest(face.iter().map(|i| work.state[*i].pressure - field(&cloud.x[*i]).pressure));

@@ -1,11 +1,11 @@
 //! Steps in time whose equations cannot be solved.
 #![allow(clippy::unwrap_used, reason = "a test may stop anywhere")]
 
-use alula::math::block_matrix::BlockMatrix;
 use alula::math::multilevel::Cycle;
-use alula::system::{Fault, Moment, System};
+use alula::system::{Fault, Field, Hierarchy, Implicit, Instant, Period, Rate, System};
 use alula::time::control::{Control, Method};
 use alula::time::dual::{Dual, Plan};
+use alula::time::full::Full;
 use alula::time::{March, Past, TimeError};
 
 /// u' = −u, which between two times only steps no longer than `longest` can solve. A change of the state counts `sharp` times as
@@ -21,48 +21,42 @@ impl System for Decay {
     type Frame = (f64, f64);
     type Work = ();
 
-    fn block(&self) -> usize {
-        1
+    fn fields(&self) -> &[Field] {
+        const ONE: [Field; 1] = [Field::new("u", 1, 1)];
+        &ONE
     }
-    fn len(&self) -> usize {
-        1
-    }
-    fn frame(&self, moment: &Moment<'_>, _: &[f64]) -> (f64, f64) {
+    fn frame(&self, at: &Instant<'_>, _: &[f64]) -> (f64, f64) {
         let mut frame = (0.0, 0.0);
-        self.place(moment, &mut frame);
+        self.place(at, &mut frame);
         frame
     }
-    fn place(&self, moment: &Moment<'_>, frame: &mut (f64, f64)) {
-        *frame = (moment.time(), 0.0);
-        if let Moment::By { rate, .. } = moment {
-            frame.1 = rate[0].1 - rate[1].1;
+    fn place(&self, at: &Instant<'_>, frame: &mut (f64, f64)) {
+        *frame = (at.time, 0.0);
+        if let Rate::Formula(rate) = at.rate {
+            frame.1 = rate[0].time - rate[1].time;
         }
     }
-    fn follow(&self, _: &[f64], (): &mut (), _: &mut (f64, f64)) {}
+    fn update_boundary_state(&self, _: &[f64], (): &mut (), _: &mut (f64, f64)) {}
     fn work(&self) {}
     fn rhs(&self, _: &(f64, f64), u: &[f64], (): &mut (), du: &mut [f64]) {
         du[0] = -u[0];
     }
-    fn spectral_radius(&self, _: &(f64, f64), _: &[f64], (): &mut (), rate: &mut [f64]) {
+    fn rates(&self, _: &(f64, f64), _: &[f64], (): &mut (), rate: &mut [f64]) {
         rate.fill(1.0);
-    }
-    fn graph(&self) -> (&[u32], &[u32]) {
-        (&[0, 1], &[0])
-    }
-    fn parts(&self) -> &[std::ops::Range<usize>] {
-        #[allow(clippy::single_range_in_vec_init, reason = "one part")]
-        const ONE: &[std::ops::Range<usize>] = &[0..1];
-        ONE
-    }
-    fn linearise(&self, _: &(f64, f64), _: &[f64], (): &mut (), matrix: &mut BlockMatrix) {
-        matrix.assemble(|_, rows| rows.add(0, 0, |_, _| 1.0));
     }
     fn largest_change(&self, _: &[f64], du: &[f64]) -> f64 {
         self.sharp * du[0].abs()
     }
-    fn fault(&self, (time, step): &(f64, f64), _: &[f64]) -> Option<Fault> {
+    fn check(&self, (time, step): &(f64, f64), _: &[f64]) -> Result<(), Fault> {
         let refused = self.hard.contains(time) && *step > self.longest;
-        refused.then(|| Fault { particle: 0, place: Vec::new(), reason: "refused".into() })
+        if refused { Err(Fault { particle: 0, place: Vec::new(), reason: "refused".into() }) } else { Ok(()) }
+    }
+}
+
+impl Implicit for Decay {
+    type Preconditioner = Full;
+    fn preconditioner(&self, _: &Hierarchy, period: Option<Period>) -> Full {
+        Full::new(self, period)
     }
 }
 

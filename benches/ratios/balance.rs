@@ -1,12 +1,11 @@
 //! Harmonic balance.
 use std::path::Path;
-use std::time::Instant;
+use std::time;
 
-use alula::math::block_matrix::BlockMatrix;
 use alula::math::fourier::Instances;
-use alula::math::multilevel::Multilevel;
 use alula::scheme::Fluid;
-use alula::system::{Moment, System};
+use alula::system::{Hierarchy, Implicit, Instant, Preconditioner, Reach, RightHandSide, Shift, System, Term, rows};
+use alula::time::control::Control;
 use alula::time::dual::{Dual, Plan};
 use alula::time::harmonic::HarmonicBalance;
 use alula::time::relax::Relax;
@@ -30,16 +29,17 @@ pub(super) fn balance() {
     let (fluid, u, period) = built(&parsed(CASE), Path::new(""));
     let omega = std::f64::consts::TAU / period;
     let step = period / 64.0;
-    let one = residual(&fluid, &Moment::By { time: 0.0, rate: &[(1.0 / step, 0.0), (-1.0 / step, -step)] }, &u);
+    let formula = [Term::of_time(1.0 / step, 0.0), Term::of_time(-1.0 / step, -step)];
+    let one = residual(&fluid, &Instant::formula(0.0, &formula), &u);
     let (steady, _) = preconditioner(&fluid, &u);
-    println!("  {} particles, a residual takes {:.1} ms", fluid.len() / fluid.block(), 1e3 * one);
+    println!("  {} particles, a residual takes {:.1} ms", fluid.discretisation.cloud.n_fluid, 1e3 * one);
     tell("preconditioner of one state over a residual", steady / one, "");
     let marching = marching_bytes(&fluid, &u, period / 64.0);
     println!("  bytes per particle of an implicit march: {marching:.0}");
     for harmonics in [1, 2, 3] {
         let balance = HarmonicBalance::new(&fluid, Instances::of_harmonics(harmonics), omega, 1.0);
         let (count, all) = ((2 * harmonics + 1) as f64, balance.copies(&u));
-        let (frame, mut work, mut du) = (balance.frame(&Moment::At { time: 0.0 }, &all), balance.work(), all.clone());
+        let (frame, mut work, mut du) = (balance.frame(&Instant::still(0.0), &all), balance.work(), all.clone());
         let rhs = seconds(|| balance.rhs(&frame, &all, &mut work, &mut du));
         let (applied, refreshed) = preconditioner(&balance, &all);
         let name = format!("{count} instances: residual of all over as many of one");
@@ -62,7 +62,7 @@ pub(super) fn threads() {
     let balance = HarmonicBalance::new(&fluid, Instances::of_harmonics(1), std::f64::consts::TAU / period, 1.0);
     let all = balance.copies(&u);
     let solve = |threads: usize| {
-        let clock = Instant::now();
+        let clock = time::Instant::now();
         let steps = || {
             let mut relax = Relax::new(&balance, control(), all.clone(), &all, None);
             (0..SOLVED).for_each(|_| drop(relax.advance()));
@@ -76,32 +76,22 @@ pub(super) fn threads() {
 }
 
 fn particles(fluid: &Fluid<2>) -> f64 {
-    (fluid.len() / fluid.block()) as f64
+    fluid.discretisation.cloud.n_fluid as f64
 }
 
 /// Times of one application of the preconditioner, and of making it.
-fn preconditioner<S: System>(system: &S, u: &[f64]) -> (f64, f64) {
-    let (first, index) = system.graph();
-    let times = system.in_time();
-    let block = system.block() / times.map_or(1, |(t, _)| t.count());
-    let matrix = BlockMatrix::new(block, system.parts(), first, index);
-    let control = control();
-    let levels = Multilevel::new(matrix, control.group, control.cycle);
-    let mut levels = match times {
-        Some((instances, omega)) => levels.in_time(instances, omega),
-        None => levels,
-    };
-    let (frame, mut work) = (system.frame(&Moment::At { time: 0.0 }, u), system.work());
-    let mut rate = vec![0.0; u.len() / system.block()];
-    system.spectral_radius(&frame, u, &mut work, &mut rate);
+fn preconditioner<S: Implicit>(system: &S, u: &[f64]) -> (f64, f64) {
+    let Control { group, cycle, .. } = control();
+    let mut inner = system.preconditioner(&Hierarchy { group, cycle }, None);
+    let (frame, mut work) = (system.frame(&Instant::still(0.0), u), system.work());
+    let mut rate = vec![0.0; rows(system.fields())];
+    system.rates(&frame, u, &mut work, &mut rate);
     rate.iter_mut().for_each(|r| *r *= SHIFT);
-    let made = seconds(|| {
-        system.linearise(&frame, u, &mut work, levels.finest());
-        levels.finest().shift(&rate);
-        levels.refresh();
-    });
+    let shift = Shift { rows: &rate, reach: Reach::Far };
+    let made = seconds(|| inner.update(system, (&frame, u), &mut work, &shift));
+    let right: Vec<f64> = (0..u.len()).map(|k| (k as f64 * 0.1).sin()).collect();
     let mut z = vec![0.0; u.len()];
-    (seconds(|| levels.apply(|i, row| row.fill((i as f32 * 0.1).sin()), &mut z)), made)
+    (seconds(|| inner.apply(system, &[&frame], &RightHandSide::Plain(&right), &mut z)), made)
 }
 
 /// Bytes of the cloud, its operators and the storage of one residual.

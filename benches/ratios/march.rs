@@ -1,7 +1,7 @@
 //! Implicit marching.
 use std::path::Path;
 
-use alula::system::{Moment, System};
+use alula::system::{Instant, System, Term};
 use alula::time::dual::{Dual, Plan};
 use alula::time::relax::Relax;
 use alula::time::{March, Past};
@@ -36,7 +36,10 @@ pub(super) fn dual_step() {
     });
     let (mut inner, linear, mut spent, mut one) = (0, march.linear(), 0.0, 0.0);
     let time = march.past().time;
-    let frame = fluid.frame(&Moment::By { time, rate: &[(1.0 / step, time), (-1.0 / step, time - step)] }, &free);
+    let frame = fluid.frame(
+        &Instant::formula(time, &[Term::of_time(1.0 / step, time), Term::of_time(-1.0 / step, time - step)]),
+        &free,
+    );
     let (mut work, mut du) = (fluid.work(), vec![0.0; free.len()]);
     for _ in 0..STEPS[1] {
         // in turns: the clock of a processor changes within seconds
@@ -50,6 +53,6 @@ pub(super) fn dual_step() {
     tell("  Newton iterations a step", f64::from(inner) / steps, "");
     tell("  linear iterations a step", f64::from(linear) / steps, "");
     tell("  steps that missed their goal", f64::from(march.past().unconverged), "");
-    let n = (fluid.len() / fluid.block()) as f64;
+    let n = fluid.discretisation.cloud.n_fluid as f64;
     println!("  {n} particles, a residual takes {:.2} µs a particle", 1e6 * one / steps / n);
 }

@@ -11,13 +11,13 @@ mod march;
 mod travel;
 
 use std::path::Path;
-use std::time::Instant;
+use std::time;
 
 use alula::case::{Case, read};
 use alula::math::multilevel::Cycle;
 use alula::motion::Motions;
 use alula::scheme::Fluid;
-use alula::system::{Moment, System};
+use alula::system::{Instant, System};
 use alula::time::control::{Control, Method};
 
 /// Times each side is measured.
@@ -51,13 +51,13 @@ fn seconds(mut f: impl FnMut()) -> f64 {
 
 /// Time of one call of `f`, in seconds.
 fn once(f: impl FnOnce()) -> f64 {
-    let clock = Instant::now();
+    let clock = time::Instant::now();
     f();
     clock.elapsed().as_secs_f64()
 }
 
 /// Smallest time of one residual at the start of a march.
-fn residual<const D: usize>(fluid: &Fluid<D>, moment: &Moment<'_>, u: &[f64]) -> f64 {
+fn residual<const D: usize>(fluid: &Fluid<D>, moment: &Instant<'_>, u: &[f64]) -> f64 {
     let (frame, mut work, mut du) = (fluid.frame(moment, u), fluid.work(), vec![0.0; u.len()]);
     seconds(|| fluid.rhs(&frame, u, &mut work, &mut du))
 }

@@ -2,7 +2,7 @@
 use std::path::Path;
 
 use alula::scheme::RemapLedger;
-use alula::system::{Moment, System};
+use alula::system::{Instant, System, Term};
 use alula::time::explicit::{Explicit, Method};
 use alula::time::{March, Past};
 
@@ -17,15 +17,19 @@ const DEFORMING: &str = "title = \"bench\"\n[flow]\nmach = 0.6\nalpha = \"4.86 d
 /// Places and weights of a deforming cloud made anew.
 pub(super) fn deforming() {
     let (fluid, u, period) = built(&parsed(DEFORMING), Path::new(""));
-    let mut frame = fluid.frame(&Moment::At { time: 0.0 }, &u);
+    let mut frame = fluid.frame(&Instant::still(0.0), &u);
     let step = period / 96.0;
     let mut n = 0.0;
     let anew = seconds(|| {
         n += 1.0;
         let time = n * step;
-        fluid.place(&Moment::By { time, rate: &[(1.0 / step, time), (-1.0 / step, time - step)] }, &mut frame);
+        fluid.place(
+            &Instant::formula(time, &[Term::of_time(1.0 / step, time), Term::of_time(-1.0 / step, time - step)]),
+            &mut frame,
+        );
     });
-    let moment = Moment::By { time: step, rate: &[(1.0 / step, step), (-1.0 / step, 0.0)] };
+    let formula = [Term::of_time(1.0 / step, step), Term::of_time(-1.0 / step, 0.0)];
+    let moment = Instant::formula(step, &formula);
     tell("deforming cloud placed and fitted anew, over a residual", anew / residual(&fluid, &moment, &u), "bar 1.5");
 }
 
@@ -33,7 +37,7 @@ pub(super) fn deforming() {
 pub(super) fn travelling() {
     let (fluid, u) = crate::travelling::<2>();
     let (mut work, mut ledger) = (fluid.work(), RemapLedger::default());
-    let moment = Moment::At { time: 0.0 };
+    let moment = Instant::still(0.0);
     let one = residual(&fluid, &moment, &u);
     let frame = fluid.frame(&moment, &u);
     let anew = seconds(|| drop(fluid.reclouded(&frame, (&u, [&[], &[]]), &mut work, &mut ledger)));

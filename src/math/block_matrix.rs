@@ -8,6 +8,7 @@ use std::ops::Range;
 
 use multiversion::multiversion;
 
+use super::blocks::with_block;
 use super::sweep::{copy, fill, parts, sweep_parts, sweep_rows, sweep_two_parts};
 
 /// Fewest and most rows in one part of a coarse matrix.
@@ -68,7 +69,12 @@ impl BlockMatrix {
     /// A matrix with `n` rows whose row i couples to the columns `index[first[i]..first[i + 1]]` below `n`, and to itself.
     ///
     /// `parts` are the consecutive rows that are assembled and swept together.
+    ///
+    /// # Panics
+    ///
+    /// Where no kernel serves blocks of that order, see [`super::blocks`].
     pub fn new(block: usize, parts: &[Range<usize>], first: &[u32], index: &[u32]) -> Self {
+        super::blocks::assert_served(block);
         let n = parts.last().map_or(0, |p| p.end);
         let mut own_first = vec![0u32];
         let mut column = Vec::new();
@@ -177,13 +183,7 @@ impl BlockMatrix {
     /// The forward sweep needs the sums over the columns after the diagonal, which the backward sweep before it has formed,
     /// and the other way round (Conrad and Wallach 1979): each half-sweep goes through half of the blocks.
     pub fn symmetric_sweep(&self, s: &mut Sweeps) {
-        match self.block {
-            4 => self.both_sweeps::<4>(s),
-            5 => self.both_sweeps::<5>(s),
-            3 => self.both_sweeps::<3>(s),
-            2 => self.both_sweeps::<2>(s),
-            _ => self.both_sweeps::<1>(s),
-        }
+        with_block!(self.block, N => self.both_sweeps::<N>(s))
     }
 
     fn both_sweeps<const N: usize>(&self, s: &mut Sweeps) {
@@ -270,13 +270,7 @@ impl BlockMatrix {
 
     /// s.r = b − A x; and what a sweep needs to know of `s.x` after it was changed.
     pub fn residual(&self, s: &mut Sweeps) {
-        match self.block {
-            4 => self.residual_of::<4>(s),
-            5 => self.residual_of::<5>(s),
-            3 => self.residual_of::<3>(s),
-            2 => self.residual_of::<2>(s),
-            _ => self.residual_of::<1>(s),
-        }
+        with_block!(self.block, N => self.residual_of::<N>(s))
     }
 
     fn residual_of<const N: usize>(&self, s: &mut Sweeps) {
@@ -300,13 +294,7 @@ impl BlockMatrix {
 
     /// Forms the sums that a forward sweep starts from, after `s.x` was changed from outside.
     pub fn restart(&self, s: &mut Sweeps) {
-        match self.block {
-            4 => self.restart_of::<4>(s),
-            5 => self.restart_of::<5>(s),
-            3 => self.restart_of::<3>(s),
-            2 => self.restart_of::<2>(s),
-            _ => self.restart_of::<1>(s),
-        }
+        with_block!(self.block, N => self.restart_of::<N>(s))
     }
 
     fn restart_of<const N: usize>(&self, s: &mut Sweeps) {

@@ -10,6 +10,7 @@ use std::ops::Range;
 use multiversion::multiversion;
 
 use super::block_matrix::{BlockMatrix, load, multiply, subtract_wide, widen_block};
+use super::blocks::with_block;
 use super::sweep::{copy, fill, sweep_parts, sweep_two_parts};
 
 /// Greatest number of harmonics.
@@ -93,13 +94,9 @@ impl HarmonicSweeps {
             (4, 3) => self.both_sweeps::<4, 3>(matrix),
             (4, 5) => self.both_sweeps::<4, 5>(matrix),
             (4, 7) => self.both_sweeps::<4, 7>(matrix),
-            (4, _) => self.both_sweeps::<4, MOST>(matrix),
             (5, 3) => self.both_sweeps::<5, 3>(matrix),
             (5, 5) => self.both_sweeps::<5, 5>(matrix),
-            (5, _) => self.both_sweeps::<5, MOST>(matrix),
-            (3, _) => self.both_sweeps::<3, MOST>(matrix),
-            (2, _) => self.both_sweeps::<2, MOST>(matrix),
-            _ => self.both_sweeps::<1, MOST>(matrix),
+            (block, _) => with_block!(block, N => self.both_sweeps::<N, MOST>(matrix)),
         }
     }
 
@@ -117,13 +114,7 @@ impl HarmonicSweeps {
 
     /// r = b − (A + ∂/∂t) x.
     pub fn residual(&mut self, matrix: &BlockMatrix) {
-        match matrix.block() {
-            4 => self.residual_of::<4>(matrix),
-            5 => self.residual_of::<5>(matrix),
-            3 => self.residual_of::<3>(matrix),
-            2 => self.residual_of::<2>(matrix),
-            _ => self.residual_of::<1>(matrix),
-        }
+        with_block!(matrix.block(), N => self.residual_of::<N>(matrix))
     }
 
     fn residual_of<const N: usize>(&mut self, matrix: &BlockMatrix) {
@@ -158,13 +149,7 @@ impl HarmonicSweeps {
 
     /// Forms the sums that a forward sweep starts from, after `x` was changed from outside.
     pub fn restart(&mut self, matrix: &BlockMatrix) {
-        match matrix.block() {
-            4 => self.restart_of::<4>(matrix),
-            5 => self.restart_of::<5>(matrix),
-            3 => self.restart_of::<3>(matrix),
-            2 => self.restart_of::<2>(matrix),
-            _ => self.restart_of::<1>(matrix),
-        }
+        with_block!(matrix.block(), N => self.restart_of::<N>(matrix))
     }
 
     fn restart_of<const N: usize>(&mut self, matrix: &BlockMatrix) {

@@ -12,6 +12,7 @@ use std::ops::Range;
 use multiversion::multiversion;
 
 use super::block_matrix::{BlockMatrix, invert, load, multiply, subtract, widen_block};
+use super::blocks::with_block;
 use super::sweep::{sweep, sweep_parts};
 
 /// Inverse pivots of a matrix, and the storage of a solution.
@@ -34,13 +35,7 @@ impl Incomplete {
         self.inverse.resize(matrix.n_rows() * n * n, 0.0);
         self.first.resize(matrix.n_rows() * n, 0.0);
         self.second.resize(matrix.n_rows() * n, 0.0);
-        match n {
-            4 => self.factor_blocks::<4>(matrix),
-            5 => self.factor_blocks::<5>(matrix),
-            3 => self.factor_blocks::<3>(matrix),
-            2 => self.factor_blocks::<2>(matrix),
-            _ => self.factor_blocks::<1>(matrix),
-        }
+        with_block!(n, N => self.factor_blocks::<N>(matrix));
     }
 
     fn factor_blocks<const N: usize>(&mut self, matrix: &BlockMatrix) {
@@ -60,20 +55,14 @@ impl Incomplete {
     /// z ≈ A⁻¹ r, where `r(i, row)` sets row i of the right-hand side and `matrix` is the one that was factored: solved once with
     /// the factors, and once more for what is left, blocks between parts included.
     pub fn apply(&mut self, matrix: &BlockMatrix, r: impl Fn(usize, &mut [f32]) + Sync, z: &mut [f64]) {
-        match matrix.block() {
-            4 => self.solve::<4>(matrix, r, z),
-            5 => self.solve::<5>(matrix, r, z),
-            3 => self.solve::<3>(matrix, r, z),
-            2 => self.solve::<2>(matrix, r, z),
-            _ => self.solve::<1>(matrix, r, z),
-        }
+        with_block!(matrix.block(), N => self.solve::<N>(matrix, &r, z));
     }
 
-    fn solve<const N: usize>(&mut self, matrix: &BlockMatrix, b: impl Fn(usize, &mut [f32]) + Sync, z: &mut [f64]) {
+    fn solve<const N: usize>(&mut self, matrix: &BlockMatrix, b: &(impl Fn(usize, &mut [f32]) + Sync), z: &mut [f64]) {
         let (parts, inverse, first) = (matrix.parts(), &self.inverse[..], &mut self.first);
-        sweep_parts(parts, N, first, &|k, x| solve_part::<N>(matrix, inverse, &parts[k], &b, x));
+        sweep_parts(parts, N, first, &|k, x| solve_part::<N>(matrix, inverse, &parts[k], b, x));
         let first = &first[..];
-        sweep_parts(parts, N, &mut self.second, &|k, y| correct_part::<N>(matrix, (inverse, first), &parts[k], &b, y));
+        sweep_parts(parts, N, &mut self.second, &|k, y| correct_part::<N>(matrix, (inverse, first), &parts[k], b, y));
         let second = &self.second;
         sweep(z, |k| f64::from(first[k] + second[k]));
     }

@@ -1,5 +1,6 @@
 //! Arithmetic that knows no physics: small vectors, least squares, sparse blocks and full matrices, Krylov methods, the parallel loop.
 pub mod block_matrix;
+pub mod blocks;
 pub mod circulant;
 pub mod dense;
 pub mod fourier;

@@ -144,7 +144,7 @@ fn wall_forces<const D: usize>(fluid: &Fluid<D>, frame: &Frame<D>, work: &Work<D
         let push = wall.area * (far - work.state[i].pressure);
         let rub = fluid.wall_slopes((cloud, &frame.walls), work, w);
         let rub = rub.map_or(Vector::ZERO, |at| at.stress * wall.area.norm());
-        (frame.place(i), frame.outward(&(push + rub)))
+        (frame.place(i), frame.to_inertial_axes(&(push + rub)))
     };
     cloud.interface.iter().enumerate().map(one).collect()
 }

@@ -58,7 +58,7 @@ pub(super) fn add_friction_in<const D: usize>(
     let cloud = &frame.discretisation.cloud;
     for w in 0..cloud.interface.len() {
         if let Some(at) = fluid.wall_slopes((cloud, &frame.walls), work, w) {
-            let force = frame.outward(&at.stress) * cloud.interface[w].area.norm();
+            let force = frame.to_inertial_axes(&at.stress) * cloud.interface[w].area.norm();
             axes.add(load, &frame.place(cloud.n_fluid + w).to_3d(), &force.to_3d());
         }
     }

@@ -22,7 +22,7 @@ use crate::observe::loads::Coefficients;
 use crate::observe::table::{Entry, write_csv};
 use crate::observe::vtk::{Column, write_points};
 use crate::scheme::{CloudMotion, Fluid, Frame};
-use crate::system::{Moment, System};
+use crate::system::{Implicit, Instant, System};
 use crate::time::harmonic::HarmonicBalance;
 use crate::time::relax::{Relax, Resume};
 
@@ -297,7 +297,7 @@ impl Default for Progress {
 
 impl Progress {
     /// As numbers for a checkpoint.
-    fn kept<S: System>(&self, relax: &Relax<'_, S>) -> Vec<f64> {
+    fn kept<S: Implicit>(&self, relax: &Relax<'_, S>) -> Vec<f64> {
         let window = &self.recent[self.recent.len().saturating_sub(WINDOW + 1)..];
         let width = window.first().map_or(0, Vec::len) as f64;
         let numbers = [self.best.0, f64::from(self.best.1), relax.evaluations as f64, self.earlier as f64, width];
@@ -348,7 +348,7 @@ fn report<const D: usize>(
     recorder: &RunRecorder<'_>,
 ) -> BalanceReport {
     let (held, mut work) = (balance.instances(), fluid.work());
-    let frames = balance.frame(&Moment::At { time: 0.0 }, state);
+    let frames = balance.frame(&Instant::still(0.0), state);
     let series = loads(balance, fluid, (&frames, state), &mut work, recorder);
     let n = held.harmonics();
     let part = |s: &Series| {
@@ -399,7 +399,7 @@ fn wall_velocity_error<const D: usize>(fluid: &Fluid<D>, frames: &[Frame<D>]) ->
             };
             let Some(law) = law else { continue };
             let exact = law.velocity(frame.time, &cloud.x[i]);
-            miss += (frame.outward(&frame.velocity_of(i)) - exact).norm().powi(2);
+            miss += (frame.to_inertial_axes(&frame.velocity_of(i)) - exact).norm().powi(2);
             size += exact.norm().powi(2);
         }
     }
@@ -432,7 +432,7 @@ impl<const D: usize> Periodic<'_, D> {
             report.march = Some(found);
         }
         if let Some(force_modes) = &solver.force_modes {
-            let frames = balance.frame(&Moment::At { time: 0.0 }, self.state);
+            let frames = balance.frame(&Instant::still(0.0), self.state);
             recorder.forces = force_modes.over_a_period(balance, fluid, (&frames, self.state));
         }
         self.compare(recorder)?;
@@ -440,13 +440,13 @@ impl<const D: usize> Periodic<'_, D> {
         recorder.balance = Some(report);
         let mut first = vec![0.0; fluid.len()];
         balance.instance(self.state, 0, &mut first);
-        let frame = balance.with_moment(0.0, |moment| fluid.frame(moment, &first));
+        let frame = balance.with_instant(self.state, 0.0, |at| fluid.frame(at, &first));
         Ok(Some((first, frame)))
     }
 
     /// Puts the loads of one period where those of the last period of a march would be; gives their series.
     fn trace(&self, recorder: &mut RunRecorder<'_>, period: f64) -> Option<[Series; 3]> {
-        let frames = self.balance.frame(&Moment::At { time: 0.0 }, self.state);
+        let frames = self.balance.frame(&Instant::still(0.0), self.state);
         let series = loads(self.balance, self.fluid, (&frames, self.state), &mut self.fluid.work(), recorder);
         let [cl, cd, cm] = series?;
         recorder.trace.clear();
@@ -477,7 +477,7 @@ impl<const D: usize> Periodic<'_, D> {
         for k in 0..held.count() {
             self.balance.instance(self.state, k, &mut one);
             let phase = std::f64::consts::TAU * k as f64 / held.count() as f64;
-            let frame = self.balance.with_moment(phase, |m| fluid.frame(m, &one));
+            let frame = self.balance.with_instant(self.state, phase, |at| fluid.frame(at, &one));
             // a run that is interrupted now does this again
             recorder.compare((1, frame.time), fluid, (&frame, &one, &mut work))?;
         }
@@ -493,7 +493,7 @@ impl<const D: usize> Periodic<'_, D> {
             let phase = std::f64::consts::TAU * part;
             let (mut one, mut work) = (vec![0.0; self.fluid.len()], self.fluid.work());
             self.balance.at_phase(self.state, phase, &mut one);
-            let frame = self.balance.with_moment(phase, |m| self.fluid.frame(m, &one));
+            let frame = self.balance.with_instant(self.state, phase, |at| self.fluid.frame(at, &one));
             self.fluid.fill_states(&frame, &one, &mut work);
             self.fluid.fill_gradients(&frame, &mut work);
             (frame, work)
@@ -529,10 +529,10 @@ impl<const D: usize> Periodic<'_, D> {
         for k in 0..held.count() {
             self.balance.instance(self.state, k, &mut one);
             let phase = std::f64::consts::TAU * k as f64 / held.count() as f64;
-            let frame = self.balance.with_moment(phase, |m| fluid.frame(m, &one));
+            let frame = self.balance.with_instant(self.state, phase, |at| fluid.frame(at, &one));
             fluid.fill_states(&frame, &one, &mut work);
             for (i, q) in work.state[..rows].iter().enumerate() {
-                let velocity = frame.outward(&q.velocity) * units.speed;
+                let velocity = frame.to_inertial_axes(&q.velocity) * units.speed;
                 values[0][i].push(q.density * units.density);
                 (0..D).for_each(|d| values[1 + d][i].push(velocity[d]));
                 values[D + 1][i].push(q.pressure * units.pressure());

@@ -1,5 +1,5 @@
 //! A cloud without a run: what `check` and `cloud` tell.
-use std::time::Instant;
+use std::time;
 
 use super::outputs::{View, bytes_of};
 use super::{Places, RunError, pictures, setup};
@@ -8,7 +8,7 @@ use crate::cloud::Diagnosis;
 use crate::geometry::dimension;
 use crate::observe::table::write_json;
 use crate::observe::vtk::{Column, write_points};
-use crate::system::{Moment, System};
+use crate::system::{Instant, System};
 
 /// Residual evaluations of a typical steady run, per particle, and their growth with the number of particles.
 const EVALUATIONS: f64 = 1200.0;
@@ -53,7 +53,7 @@ pub fn inspect(case: &Case, places: &Places, files: bool) -> Result<CloudReport,
 }
 
 fn look<const D: usize>(case: &Case, places: &Places, files: bool) -> Result<CloudReport, RunError> {
-    let began = Instant::now();
+    let began = time::Instant::now();
     let (surface, mut notes) = setup::surface::<D>(case, &places.input)?;
     let motions = setup::motions(case, &places.input, surface.as_ref())?;
     let stage = setup::Stage { factor: 1.0, cycle: 0, march: false };
@@ -61,8 +61,8 @@ fn look<const D: usize>(case: &Case, places: &Places, files: bool) -> Result<Clo
     let seconds = began.elapsed().as_secs_f64();
     let (fluid, u) = (&solver.fluid, &solver.fluid.start());
     let (mut work, mut du) = (fluid.work(), vec![0.0; u.len()]);
-    let frame = fluid.frame(&Moment::At { time: 0.0 }, u);
-    let timer = Instant::now();
+    let frame = fluid.frame(&Instant::still(0.0), u);
+    let timer = time::Instant::now();
     (0..TIMED).for_each(|_| fluid.rhs(&frame, u, &mut work, &mut du));
     let evaluation = timer.elapsed().as_secs_f64() / f64::from(TIMED);
     let cloud = &fluid.discretisation.cloud;
@@ -114,7 +114,7 @@ fn evaluations<const D: usize>(
         }
         Temporal::Explicit(e) => {
             let mut rate = vec![0.0; fluid.discretisation.cloud.n_fluid];
-            fluid.spectral_radius(frame, u, &mut fluid.work(), &mut rate);
+            fluid.rates(frame, u, &mut fluid.work(), &mut rate);
             let fastest = rate.iter().fold(0.0f64, |m, r| m.max(*r));
             3.5 * e.end(period).unwrap_or_default() * fastest / e.cfl
         }
@@ -143,7 +143,7 @@ fn write<const D: usize>(
 ) -> Result<(), RunError> {
     super::folder::create(case, places)?;
     let fluid = &solver.fluid;
-    let frame = fluid.frame(&Moment::At { time: 0.0 }, &solver.fluid.start());
+    let frame = fluid.frame(&Instant::still(0.0), &solver.fluid.start());
     fluid.fill_states(&frame, &solver.fluid.start(), work);
     let cloud = &fluid.discretisation.cloud;
     let n = cloud.n_real();

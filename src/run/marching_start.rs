@@ -7,9 +7,7 @@ use super::RunError;
 use super::run_recorder::RunRecorder;
 use super::setup::harmonic_control;
 use crate::case::Harmonics;
-use crate::math::sweep::sweep_rows;
 use crate::scheme::Fluid;
-use crate::system::System;
 use crate::time::dual::{Dual, Plan};
 use crate::time::harmonic::HarmonicBalance;
 use crate::time::{March, Past};
@@ -36,7 +34,7 @@ pub(super) fn marched<const D: usize>(
     period: f64,
     recorder: &mut RunRecorder<'_>,
 ) -> Result<Option<Vec<f64>>, RunError> {
-    let (b, count) = (fluid.block(), balance.instances().count());
+    let count = balance.instances().count();
     let stride = STEPS.div_ceil(count);
     let steps = (stride * count) as u32;
     let step = period / f64::from(steps);
@@ -62,9 +60,7 @@ pub(super) fn marched<const D: usize>(
             // the end of the period is its beginning
             let n = (k as usize / stride) % count;
             let (_, _, state) = marcher.parts();
-            sweep_rows(&mut all, b * count, |i, row| {
-                row[n * b..(n + 1) * b].copy_from_slice(&state[i * b..(i + 1) * b]);
-            });
+            balance.set_instance(state, n, &mut all);
         }
     }
     Ok(Some(all))

@@ -37,7 +37,7 @@ use crate::observe::{CheckpointError, FileError, VtkError};
 use crate::report::ReportError;
 use crate::scheme::start::StartError;
 use crate::scheme::{Fluid, adapt};
-use crate::system::{Moment, System};
+use crate::system::{Instant, System};
 use crate::time::TimeError;
 
 pub use folder::fresh_folder;
@@ -356,7 +356,7 @@ fn describe(stages: &[Stage], n: usize) -> String {
 fn adapted<const D: usize>(case: &Case, solver: &Solver<D>, state: &[f64]) -> Vec<Source<D>> {
     let fluid = &solver.fluid;
     let mut work = fluid.work();
-    let frame = fluid.frame(&Moment::At { time: 0.0 }, state);
+    let frame = fluid.frame(&Instant::still(0.0), state);
     fluid.fill_states(&frame, state, &mut work);
     fluid.fill_gradients(&frame, &mut work);
     let finest = case.adapt.spacing.unwrap_or(case.cloud.spacing).0;

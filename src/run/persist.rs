@@ -10,6 +10,7 @@ use crate::cloud::sources::Source;
 use crate::math::Vector;
 use crate::observe::checkpoint::{self, Array, Checkpoint, Field};
 use crate::scheme::{CloudMotion, Fluid, Frame, ParticleKinematics, RemapLedger};
+use crate::system::Reach;
 use crate::time::Past;
 use crate::time::control::Phase;
 use crate::time::relax::Resume;
@@ -230,7 +231,7 @@ impl Saved {
             cycles: self.cycles,
             cpu_seconds: self.cpu_seconds,
             wall_seconds: self.wall_seconds,
-            broad: self.past.broad,
+            broad: self.past.reach == Reach::Far,
             work: self.work,
             served: self.past.served,
             made_bits: self.past.made.to_bits(),
@@ -304,7 +305,7 @@ impl Saved {
                 next: f64::from_bits(m.steps[1]),
                 before: file.f64("before")?.to_vec(),
                 older: file.f64("older").map(<[f64]>::to_vec).unwrap_or_default(),
-                broad: m.broad,
+                reach: if m.broad { Reach::Far } else { Reach::Near },
                 served: m.served,
                 made: f64::from_bits(m.made_bits),
                 unconverged: m.steps[2] as u32,

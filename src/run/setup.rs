@@ -21,7 +21,7 @@ use crate::scheme::start::{Stream, initial};
 use crate::scheme::{
     CloudMotion, DeformingSurface, Discretisation, Fluid, ParticleKinematics, Travel, ViscousModel, WallCondition,
 };
-use crate::system::{Moment, System};
+use crate::system::{Instant, System};
 use crate::time::control::{Control, Method};
 use crate::time::dual::Plan;
 
@@ -181,6 +181,7 @@ pub(super) fn solver<const D: usize>(
     let scheme = &case.scheme;
     let centre = surface.map_or(Vector::ZERO, |s| vortex_centre(&s.bounds()));
     let fluid = Fluid {
+        fields: Fluid::unknowns(&cloud),
         gas,
         isentropic: case.flow.isentropic,
         flux: scheme.flux,
@@ -347,7 +348,7 @@ pub(super) fn transfer<const D: usize>(
 ) -> Vec<f64> {
     let (old, state) = (&previous.0.fluid, &previous.1);
     let mut work = old.work();
-    let frame = old.frame(&Moment::At { time: 0.0 }, state);
+    let frame = old.frame(&Instant::still(0.0), state);
     old.fill_states(&frame, state, &mut work);
     old.fill_gradients(&frame, &mut work);
     let probe = Probe::new(old, &work, surface);

@@ -71,7 +71,7 @@ impl LoadFrame {
         let (cloud, far) = (&frame.discretisation.cloud, fluid.far_field.pressure());
         let mut load = Load::default();
         for (i, wall) in cloud.interface_range().zip(&cloud.interface) {
-            let push = frame.outward(&(wall.area * (far - work.state[i].pressure)));
+            let push = frame.to_inertial_axes(&(wall.area * (far - work.state[i].pressure)));
             axes.add(&mut load, &frame.place(i).to_3d(), &push.to_3d());
         }
         add_friction_in(fluid, (frame, work), &axes, &mut load);

@@ -130,13 +130,13 @@ impl<'a, const D: usize> Balance<'a, D> {
                 Some(i) => {
                     let x = frame.place(i);
                     let weight = self.zone.at(&x);
-                    let flow = self.fluxes(i, &frame.inward(&weight.1));
+                    let flow = self.fluxes(i, &frame.to_body_axes(&weight.1));
                     let v = volume(i);
                     Part {
                         x,
                         force: (flow.0.momentum - gathered(i) * weight.0) * v,
                         carried: [
-                            frame.outward(&(self.work.state[i].velocity - frame.velocity_of(i))),
+                            frame.to_inertial_axes(&(self.work.state[i].velocity - frame.velocity_of(i))),
                             self.momentum(i) * (weight.0 * v),
                         ],
                         mass: -v * flow.0.density,
@@ -159,7 +159,7 @@ impl<'a, const D: usize> Balance<'a, D> {
         }
         let middle = zone.centre();
         let walls = cloud.interface_range().zip(&cloud.interface);
-        let exact: f64 = walls.map(|(i, w)| -(frame.place(i) - middle).dot(&frame.outward(&w.area))).sum();
+        let exact: f64 = walls.map(|(i, w)| -(frame.place(i) - middle).dot(&frame.to_inertial_axes(&w.area))).sum();
         let particle = |i: usize| {
             let x = frame.place(i);
             let (weight, slope) = self.zone.at(&x);
@@ -188,17 +188,17 @@ impl<'a, const D: usize> Balance<'a, D> {
     /// ρ(v − v∞) in the axes of the case.
     fn momentum(&self, i: usize) -> Vector<D> {
         let q = &self.work.state[i];
-        (self.frame.outward(&q.velocity) - self.free.velocity) * q.density
+        (self.frame.to_inertial_axes(&q.velocity) - self.free.velocity) * q.density
     }
 
     /// (T − m w)·g at particle `i`, momentum in the axes of the case, with the flows of mass and energy along g beyond those of
     /// the free stream; the whole flows.
     fn fluxes(&self, i: usize, g: &Vector<D>) -> (Conserved<D>, [f64; 2]) {
         let (frame, gas, q) = (self.frame, &self.fluid.gas, &self.work.state[i]);
-        let free = Primitive { velocity: frame.inward(&self.free.velocity), ..self.free };
+        let free = Primitive { velocity: frame.to_body_axes(&self.free.velocity), ..self.free };
         let (own, far) = (gas.flux(q, g), gas.flux(&free, g));
         let stress = self.fluid.viscous_flux(self.work, i, g);
-        let push = frame.outward(&(*g * (q.pressure - free.pressure) - stress.momentum));
+        let push = frame.to_inertial_axes(&(*g * (q.pressure - free.pressure) - stress.momentum));
         let momentum = self.momentum(i) * (q.velocity - frame.velocity_of(i)).dot(g) + push;
         let energy = own.energy - far.energy - stress.energy;
         (Conserved { density: own.density - far.density, momentum, energy }, [own.density, own.energy])
@@ -249,7 +249,7 @@ impl<'a, const D: usize> Balance<'a, D> {
 mod tests {
     use super::*;
     use crate::case::read;
-    use crate::system::{Moment, System};
+    use crate::system::{Instant, System, Term};
 
     /// Rate at which body and gas turn about the pivot.
     const OMEGA: f64 = 0.4;
@@ -279,8 +279,8 @@ mod tests {
         q: impl Fn(&Vector<2>) -> Primitive<2>,
         change: impl Fn(&Vector<2>, &Vector<2>) -> Vector<2>,
     ) -> (Vector<2>, Vector<2>) {
-        let rate = [(0.5 / STEP, t + STEP), (-0.5 / STEP, t - STEP)];
-        let frame = fluid.frame(&Moment::By { time: t, rate: &rate }, &vec![1.0; fluid.len()]);
+        let rate = [Term::of_time(0.5 / STEP, t + STEP), Term::of_time(-0.5 / STEP, t - STEP)];
+        let frame = fluid.frame(&Instant::formula(t, &rate), &vec![1.0; fluid.len()]);
         let mut work = fluid.work();
         work.state.iter_mut().enumerate().for_each(|(i, s)| *s = q(&frame.place(i)));
         fluid.fill_gradients(&frame, &mut work);

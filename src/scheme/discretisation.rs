@@ -18,7 +18,7 @@ use crate::math::square::times;
 use crate::math::sweep::{sweep, sweep_slots};
 use crate::motion::{BodyMotion, RigidPose};
 use crate::physics::Primitive;
-use crate::system::Moment;
+use crate::system::{Instant, Rate};
 
 /// The cloud with the operators that follow from positions.
 #[derive(Clone, Debug)]
@@ -84,13 +84,13 @@ impl<const D: usize> Frame<D> {
 
     /// A direction in the axes of `discretisation`, seen in those of the case.
     #[inline(always)]
-    pub fn outward(&self, v: &Vector<D>) -> Vector<D> {
+    pub fn to_inertial_axes(&self, v: &Vector<D>) -> Vector<D> {
         self.turn.as_ref().map_or(*v, |t| t.direction(v))
     }
 
     /// A direction in the axes of the case, seen in those of `discretisation`.
     #[inline(always)]
-    pub fn inward(&self, v: &Vector<D>) -> Vector<D> {
+    pub fn to_body_axes(&self, v: &Vector<D>) -> Vector<D> {
         self.turn.as_ref().map_or(*v, |t| t.inverse_direction(v))
     }
 
@@ -151,20 +151,20 @@ pub enum CloudMotion<const D: usize> {
 
 impl<const D: usize> CloudMotion<D> {
     /// Brings `frame` to a moment; `origin` is the shape before any motion.
-    pub fn place(&self, origin: &Arc<Discretisation<D>>, moment: &Moment<'_>, frame: &mut Frame<D>) {
-        frame.time = moment.time();
+    pub fn place(&self, origin: &Arc<Discretisation<D>>, at: &Instant<'_>, frame: &mut Frame<D>) {
+        frame.time = at.time;
         match self {
             Self::Still => {}
-            Self::Rigid(law) => place_rigid(law, origin, moment, frame),
+            Self::Rigid(law) => place_rigid(law, origin, at, frame),
             Self::Along { path, laws, deforming_surface } => {
-                place_along(path.as_ref(), origin, moment, frame);
-                turn_walls((laws, deforming_surface), origin, moment.time(), frame);
+                place_along(path.as_ref(), origin, at, frame);
+                turn_walls((laws, deforming_surface), origin, at.time, frame);
                 if origin.operators.conservative {
                     let Discretisation { cloud, operators, .. } = Arc::make_mut(&mut frame.discretisation);
                     operators.metric_update(cloud, &origin.operators, &origin.cloud);
                 }
             }
-            Self::Travel(travel) => travel.place(origin, moment, frame),
+            Self::Travel(travel) => travel.place(origin, at, frame),
         }
     }
 
@@ -209,23 +209,23 @@ impl<const D: usize> CloudMotion<D> {
 fn place_rigid<const D: usize>(
     law: &BodyMotion<D>,
     origin: &Arc<Discretisation<D>>,
-    moment: &Moment<'_>,
+    at: &Instant<'_>,
     frame: &mut Frame<D>,
 ) {
-    let t = moment.time();
+    let t = at.time;
     let pose = law.pose(t);
     let x = &origin.cloud.x;
     let velocity = Arc::make_mut(&mut frame.velocity);
     velocity.resize(x.len(), Vector::ZERO);
-    match moment {
-        Moment::By { rate, .. } => {
-            let poses: Vec<(f64, RigidPose<D>)> = rate.iter().map(|(c, t)| (*c, law.pose(*t))).collect();
+    match at.rate {
+        Rate::Formula(rate) => {
+            let poses: Vec<(f64, RigidPose<D>)> = rate.iter().map(|r| (r.coefficient, law.pose(r.time))).collect();
             let rows = std::array::from_fn(|r| poses.iter().fold(Vector::ZERO, |s, (c, p)| s + p.rotation[r] * *c));
             let shift = poses.iter().fold(Vector::ZERO, |s, (c, p)| s + p.shift * *c);
             let drift = RigidPose { rotation: rows, shift };
             sweep(velocity, |i| pose.inverse_direction(&drift.point(&x[i])));
         }
-        Moment::At { .. } | Moment::Within { .. } => {
+        Rate::Still | Rate::Within { .. } => {
             sweep(velocity, |i| pose.inverse_direction(&law.velocity(t, &x[i])));
         }
     }
@@ -259,7 +259,7 @@ pub(super) fn rotation_rate<const D: usize>(law: &BodyMotion<D>, t: f64) -> [Vec
 fn place_along<const D: usize>(
     path: &dyn Path<D>,
     origin: &Arc<Discretisation<D>>,
-    moment: &Moment<'_>,
+    at: &Instant<'_>,
     frame: &mut Frame<D>,
 ) {
     let reference = &origin.cloud;
@@ -269,20 +269,20 @@ fn place_along<const D: usize>(
     let discretisation = Arc::make_mut(&mut frame.discretisation);
     let before = |i: usize| &reference.x[i];
     let (x, w) = (&mut discretisation.cloud.x[..n], &mut velocity[..n]);
-    match moment {
-        Moment::At { time } => {
-            let now = path.at(*time);
+    match at.rate {
+        Rate::Still => {
+            let now = path.at(at.time);
             sweep(x, |i| now(i, before(i)));
             sweep(w, |_| Vector::ZERO);
         }
-        Moment::By { time, rate } => {
-            let now = path.at(*time);
+        Rate::Formula(rate) => {
+            let now = path.at(at.time);
             sweep(x, |i| now(i, before(i)));
-            let terms: Vec<(f64, Places<'_, D>)> = rate.iter().map(|(c, t)| (*c, path.at(*t))).collect();
+            let terms: Vec<(f64, Places<'_, D>)> = rate.iter().map(|r| (r.coefficient, path.at(r.time))).collect();
             sweep(w, |i| terms.iter().fold(Vector::ZERO, |s, (c, place)| s + place(i, before(i)) * *c));
         }
-        Moment::Within { start, step, fraction } => {
-            let (from, to) = (path.at(*start), path.at(start + step));
+        Rate::Within { start, step, fraction } => {
+            let (from, to) = (path.at(start), path.at(start + step));
             sweep(w, |i| (to(i, before(i)) - from(i, before(i))) * (1.0 / step));
             let w = &*w;
             sweep(x, |i| from(i, before(i)) + w[i] * (fraction * step));

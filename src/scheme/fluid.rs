@@ -23,18 +23,19 @@ mod tests;
 use std::sync::Arc;
 
 use crate::case::{Flux, Limiter, Side};
+use crate::cloud::Cloud;
 use crate::cloud::operators::WallFace;
 use crate::math::Vector;
-use crate::math::block_matrix::BlockMatrix;
 use crate::math::sweep::{first, maximum, sweep, sweep_each, sweep_each_slot, sweep_parts, sweep_rows};
 use crate::motion::RigidPose;
 use crate::physics::riemann::{AusmPlusUp, Hllc, Roe, Rusanov, UpwindFlux};
 use crate::physics::{Conserved, Gas, Primitive};
-use crate::system::{Fault, Moment, System};
+use crate::system::{Fault, Field as Unknowns, Instant, Rate, System};
 
 use super::boundary::{WallMotion, slip_wall};
 use super::discretisation::{CloudMotion, Discretisation, Frame, LagrangianStep};
 use super::edges::{FluxScheme, Particles, edge_fluxes};
+use super::preconditioner::to_inertial_axes;
 use super::reconstruct::{Gradient, Limit, Reconstruction, Unlimited, VanAlbada, Venkatakrishnan};
 use super::start::Field;
 use super::viscous::ViscousModel;
@@ -65,6 +66,8 @@ pub struct Fluid<const D: usize> {
     pub far_field: Arc<dyn FarField<D>>,
     /// The field at the start, which some sides hold for ever.
     pub held: Field<D>,
+    /// The unknowns: density, momentum and energy of every fluid particle.
+    pub fields: [Unknowns; 1],
 }
 
 /// A moving cloud before any motion, and the time at which it is looked at.
@@ -103,14 +106,14 @@ impl<const D: usize> Fluid<D> {
         if self.cloud_motion.is_still() {
             return None;
         }
-        let (discretisation, turn) = (&frame.discretisation, |v: &Vector<D>| frame.outward(v));
+        let (discretisation, turn) = (&frame.discretisation, |v: &Vector<D>| frame.to_inertial_axes(v));
         let discretisation = frame
             .turn
             .as_ref()
             .map_or_else(|| Arc::clone(discretisation), |pose| Arc::new(discretisation.carried(pose)));
         let state = work.state.iter().map(|q| Primitive { velocity: turn(&q.velocity), ..*q }).collect();
         let gradient = work.gradient.iter().map(|g| g.turned(&turn)).collect();
-        let walls = frame.walls.iter().map(|w| w.turned(turn, |v| frame.inward(v))).collect();
+        let walls = frame.walls.iter().map(|w| w.turned(turn, |v| frame.to_body_axes(v))).collect();
         let (discretisation_before, pose) = (Arc::clone(&self.discretisation), frame.turn);
         let before =
             Some(Before { discretisation: discretisation_before, time: frame.time, pose, walls: Arc::new(walls) });
@@ -118,6 +121,11 @@ impl<const D: usize> Fluid<D> {
         let (cloud_motion, viscous_model) = (self.cloud_motion.clone(), self.viscous_model.clone());
         let seen = Self { discretisation, before, far_field, held, cloud_motion, viscous_model, ..*self };
         Some((seen, Work { state, gradient }))
+    }
+
+    /// The unknowns on a cloud: density, momentum and energy of every fluid particle; density measures a residual.
+    pub fn unknowns(cloud: &Cloud<D>) -> [Unknowns; 1] {
+        [Unknowns::new("gas", cloud.n_fluid, D + 2).measured_by(1)]
     }
 
     /// The state at the start.
@@ -148,7 +156,7 @@ impl<const D: usize> Fluid<D> {
     pub fn fill_states(&self, frame: &Frame<D>, u: &[f64], work: &mut Work<D>) {
         let (cloud, fits) = (&frame.discretisation.cloud, &frame.discretisation.walls);
         let (fluid, rest) = work.state.split_at_mut(cloud.n_fluid);
-        let inward = |q: Primitive<D>| Primitive { velocity: frame.inward(&q.velocity), ..q };
+        let inward = |q: Primitive<D>| Primitive { velocity: frame.to_body_axes(&q.velocity), ..q };
         sweep(fluid, |i| inward(self.gas.primitive(&Conserved::load(&u[i * (D + 2)..]))));
         let fluid = &*fluid;
         let first_ghost = cloud.n_real();
@@ -269,7 +277,7 @@ impl<const D: usize> Fluid<D> {
                 row.iter_mut().for_each(|r| *r *= inverse);
             }
             if frame.turn.is_some() {
-                out.chunks_exact_mut(D + 2).for_each(|row| turn_momentum(frame, row));
+                out.chunks_exact_mut(D + 2).for_each(|row| to_inertial_axes(frame, row));
             }
         });
     }
@@ -302,14 +310,8 @@ impl<const D: usize> Fluid<D> {
         let walls = &work.state[cloud.interface_range()];
         let far = self.far_field.pressure();
         let force = cloud.interface.iter().zip(walls).fold(Vector::ZERO, |f, (w, q)| f - w.area * (q.pressure - far));
-        frame.outward(&force)
+        frame.to_inertial_axes(&force)
     }
-}
-
-/// Brings the momentum of a particle from the axes of a rigid cloud to those of the case.
-fn turn_momentum<const D: usize>(frame: &Frame<D>, row: &mut [f64]) {
-    let momentum = frame.outward(&Vector::from_fn(|d| row[1 + d]));
-    row[1..=D].copy_from_slice(&momentum.0);
 }
 
 /// s/2V: what takes the place of a_ij when the coefficients are conservative.
@@ -331,18 +333,14 @@ impl<const D: usize> System for Fluid<D> {
     type Frame = Frame<D>;
     type Work = Work<D>;
 
-    fn block(&self) -> usize {
-        D + 2
+    fn fields(&self) -> &[Unknowns] {
+        &self.fields
     }
 
-    fn len(&self) -> usize {
-        self.discretisation.cloud.n_fluid * (D + 2)
-    }
-
-    fn frame(&self, moment: &Moment<'_>, u: &[f64]) -> Frame<D> {
+    fn frame(&self, at: &Instant<'_>, u: &[f64]) -> Frame<D> {
         let cloud = &self.discretisation.cloud;
         let mut frame = Frame {
-            time: moment.time(),
+            time: at.time,
             discretisation: Arc::clone(&self.discretisation),
             turn: None,
             velocity: Arc::default(),
@@ -350,20 +348,20 @@ impl<const D: usize> System for Fluid<D> {
             lagrangian_step: LagrangianStep::default(),
             outer: (0..cloud.outer.len()).map(|k| cloud.beside(k).map(|i| (self.held)(&cloud.x[i]))).collect(),
         };
-        self.place(moment, &mut frame);
-        self.follow(u, &mut self.work(), &mut frame);
+        self.place(at, &mut frame);
+        self.update_boundary_state(u, &mut self.work(), &mut frame);
         frame
     }
 
-    fn place(&self, moment: &Moment<'_>, frame: &mut Frame<D>) {
-        self.cloud_motion.place(&self.discretisation, moment, frame);
-        if matches!(moment, Moment::At { .. }) {
+    fn place(&self, at: &Instant<'_>, frame: &mut Frame<D>) {
+        self.cloud_motion.place(&self.discretisation, at, frame);
+        if matches!(at.rate, Rate::Still) {
             frame.velocity = Arc::default();
             frame.walls = Arc::default();
         }
     }
 
-    fn set_off(&self, step: f64, u: &[f64], work: &mut Work<D>, frame: &mut Frame<D>) -> f64 {
+    fn plan_lagrangian_step(&self, step: f64, u: &[f64], work: &mut Work<D>, frame: &mut Frame<D>) -> f64 {
         if matches!(self.cloud_motion, CloudMotion::Travel(_)) {
             self.choose_ways(step, u, work, frame)
         } else {
@@ -371,7 +369,7 @@ impl<const D: usize> System for Fluid<D> {
         }
     }
 
-    fn follow(&self, u: &[f64], work: &mut Work<D>, frame: &mut Frame<D>) {
+    fn update_boundary_state(&self, u: &[f64], work: &mut Work<D>, frame: &mut Frame<D>) {
         self.fill_states(frame, u, work);
         let force = self.pressure_force(frame, work);
         let cloud = &self.discretisation.cloud;
@@ -407,7 +405,7 @@ impl<const D: usize> System for Fluid<D> {
         }
     }
 
-    fn spectral_radius(&self, frame: &Frame<D>, u: &[f64], work: &mut Work<D>, rate: &mut [f64]) {
+    fn rates(&self, frame: &Frame<D>, u: &[f64], work: &mut Work<D>, rate: &mut [f64]) {
         self.fill_states(frame, u, work);
         let (op, volume) = (&frame.discretisation.operators, &frame.discretisation.cloud.volume);
         let mut sound = vec![0.0; frame.discretisation.cloud.n_fluid];
@@ -438,32 +436,6 @@ impl<const D: usize> System for Fluid<D> {
         }
     }
 
-    fn graph(&self) -> (&[u32], &[u32]) {
-        (&self.discretisation.cloud.neighbours.first, &self.discretisation.cloud.neighbours.index)
-    }
-
-    fn parts(&self) -> &[std::ops::Range<usize>] {
-        self.discretisation.operators.fluid_parts()
-    }
-
-    fn linearise(&self, frame: &Frame<D>, u: &[f64], work: &mut Work<D>, matrix: &mut BlockMatrix) {
-        self.fill_states(frame, u, work);
-        super::jacobian::assemble(self, frame, work, matrix);
-    }
-
-    fn inward(&self, frame: &Frame<D>, row: &mut [f32]) {
-        if frame.turn.is_some() {
-            let momentum = frame.inward(&Vector::from_fn(|d| f64::from(row[1 + d])));
-            (0..D).for_each(|d| row[1 + d] = momentum[d] as f32);
-        }
-    }
-
-    fn outward(&self, frame: &Frame<D>, row: &mut [f64]) {
-        if frame.turn.is_some() {
-            turn_momentum(frame, row);
-        }
-    }
-
     fn largest_change(&self, u: &[f64], du: &[f64]) -> f64 {
         let change = |i: usize| {
             let (a, b) = (Conserved::<D>::load(&u[i * (D + 2)..]), Conserved::load(&du[i * (D + 2)..]));
@@ -474,16 +446,16 @@ impl<const D: usize> System for Fluid<D> {
         maximum(self.discretisation.cloud.n_fluid, change)
     }
 
-    fn fault(&self, frame: &Frame<D>, u: &[f64]) -> Option<Fault> {
+    fn check(&self, frame: &Frame<D>, u: &[f64]) -> Result<(), Fault> {
         let bad = |i: usize| !self.gas.primitive(&Conserved::<D>::load(&u[i * (D + 2)..])).is_physical();
-        let i = first(self.discretisation.cloud.n_fluid, bad)?;
+        let Some(i) = first(self.discretisation.cloud.n_fluid, bad) else { return Ok(()) };
         let q = self.gas.primitive(&Conserved::<D>::load(&u[i * (D + 2)..]));
         let reason = format!("density {:.4e}, pressure {:.4e} (both must be positive)", q.density, q.pressure);
-        Some(Fault { particle: i, place: frame.place(i).0.to_vec(), reason })
+        Err(Fault { particle: i, place: frame.place(i).0.to_vec(), reason })
     }
 
-    fn misplaced(&self, frame: &Frame<D>) -> Option<Fault> {
-        self.volume_ratio_check(frame)
+    fn check_frame(&self, frame: &Frame<D>) -> Result<(), Fault> {
+        self.volume_ratio_check(frame).map_or(Ok(()), Err)
     }
 
     fn locate(&self, frame: &Frame<D>, particle: usize) -> Vec<f64> {

@@ -9,6 +9,7 @@ pub mod fluid;
 mod isentropic;
 pub mod jacobian;
 pub mod motion_blending;
+pub mod preconditioner;
 pub mod probe;
 pub mod reconstruct;
 mod sides;

@@ -11,8 +11,8 @@ use crate::math::multilevel::Multilevel;
 use crate::math::sweep::sweep_rows;
 use crate::system::{Hierarchy, Implicit, Period, Preconditioner, Reach, RightHandSide, Shift};
 
+use super::discretisation::Frame;
 use super::fluid::{Fluid, Work};
-use super::shape::Frame;
 
 /// The linearisation of a gas, and what approximates its inverse.
 pub struct FluidPreconditioner {
@@ -27,7 +27,7 @@ impl<const D: usize> Implicit for Fluid<D> {
     type Preconditioner = FluidPreconditioner;
 
     fn preconditioner(&self, plan: &Hierarchy, period: Option<Period>) -> FluidPreconditioner {
-        let (discretisation, block) = (&self.shape, D + 2);
+        let (discretisation, block) = (&self.discretisation, D + 2);
         let neighbours = &discretisation.cloud.neighbours;
         let parts = discretisation.operators.fluid_parts();
         let matrix = BlockMatrix::new(block, parts, &neighbours.first, &neighbours.index);
@@ -93,7 +93,7 @@ impl<const D: usize> Preconditioner<Fluid<D>> for FluidPreconditioner {
 /// Brings the unknowns of a particle into the axes of a rigid cloud.
 fn to_body_axes<const D: usize>(frame: &Frame<D>, row: &mut [f32]) {
     if frame.turn.is_some() {
-        let momentum = frame.inward(&Vector::from_fn(|d| f64::from(row[1 + d])));
+        let momentum = frame.to_body_axes(&Vector::from_fn(|d| f64::from(row[1 + d])));
         (0..D).for_each(|d| row[1 + d] = momentum[d] as f32);
     }
 }
@@ -101,7 +101,7 @@ fn to_body_axes<const D: usize>(frame: &Frame<D>, row: &mut [f32]) {
 /// Brings the momentum of a particle from the axes of a rigid cloud to those of the case.
 pub(super) fn to_inertial_axes<const D: usize>(frame: &Frame<D>, row: &mut [f64]) {
     if frame.turn.is_some() {
-        let momentum = frame.outward(&Vector::from_fn(|d| row[1 + d]));
+        let momentum = frame.to_inertial_axes(&Vector::from_fn(|d| row[1 + d]));
         row[1..=D].copy_from_slice(&momentum.0);
     }
 }

@@ -115,7 +115,7 @@ fn scaled<const D: usize>(q: &Primitive<D>, s: f64) -> Primitive<D> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::system::{Moment, System};
+    use crate::system::{Instant, System};
 
     #[test]
     fn a_boundary_layer_has_no_jet_beside_it() {
@@ -125,7 +125,7 @@ mod tests {
         let case = crate::case::read(text, "case.toml").unwrap();
         let fluid = crate::run::build_solver::<2>(&case, std::path::Path::new("")).unwrap().0;
         let exact = |x: &Vector<2>| 1.0 - (-(x.norm() - 0.5) / THICKNESS).exp();
-        let frame = fluid.frame(&Moment::At { time: 0.0 }, &vec![1.0; fluid.len()]);
+        let frame = fluid.frame(&Instant::still(0.0), &vec![1.0; fluid.len()]);
         let mut work = fluid.work();
         for (q, x) in work.state.iter_mut().zip(&fluid.discretisation.cloud.x) {
             *q = Primitive { density: 1.0, velocity: Vector([exact(x), 0.0]), pressure: 0.7 };

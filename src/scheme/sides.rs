@@ -17,7 +17,8 @@ impl<const D: usize> Fluid<D> {
     pub(super) fn outer_state(&self, frame: &Frame<D>, k: usize, fluid: &[Primitive<D>]) -> Primitive<D> {
         let cloud = &frame.discretisation.cloud;
         let outer = &cloud.outer[k];
-        let [held, beside, further] = frame.outer[k].map(|q| Primitive { velocity: frame.inward(&q.velocity), ..q });
+        let [held, beside, further] =
+            frame.outer[k].map(|q| Primitive { velocity: frame.to_body_axes(&q.velocity), ..q });
         let Some(inner) = fluid.get(outer.source as usize) else { return held };
         if let Side::Outflow { pressure } = outer.side {
             return Primitive { pressure: pressure.map_or(inner.pressure, |p| p / self.gas.gamma), ..*inner };

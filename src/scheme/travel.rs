@@ -36,7 +36,7 @@ use crate::math::Vector;
 use crate::math::sweep::{first, maximum, sweep, sweep_each, sweep_parts};
 use crate::motion::{BodyMotion, RigidPose};
 use crate::physics::{Gas, Primitive};
-use crate::system::{Moment, System};
+use crate::system::{Instant, Rate, System, Term};
 
 /// Strength A of the shift.
 const STRENGTH: f64 = 0.1;
@@ -99,7 +99,7 @@ impl<const D: usize> Travel<D> {
     }
 
     /// Brings `frame` to a moment. Fluid particles go from where the step began with the velocities they then chose.
-    pub(super) fn place(&self, origin: &Arc<Discretisation<D>>, moment: &Moment<'_>, frame: &mut Frame<D>) {
+    pub(super) fn place(&self, origin: &Arc<Discretisation<D>>, at: &Instant<'_>, frame: &mut Frame<D>) {
         let cloud = &origin.cloud;
         let (n, kinematics) = (cloud.n_fluid, &self.kinematics);
         if frame.lagrangian_step.base.len() != n {
@@ -111,16 +111,16 @@ impl<const D: usize> Travel<D> {
         let velocity = Arc::make_mut(&mut frame.velocity);
         velocity.resize(cloud.len(), Vector::ZERO);
         let lagrangian_step = &frame.lagrangian_step;
-        let passed = match moment {
-            Moment::Within { step, fraction, .. } if lagrangian_step.off => fraction * step,
-            Moment::By { time, .. } if lagrangian_step.off => time - lagrangian_step.since,
+        let passed = match at.rate {
+            Rate::Within { step, fraction, .. } if lagrangian_step.off => fraction * step,
+            Rate::Formula(_) if lagrangian_step.off => at.time - lagrangian_step.since,
             _ => 0.0,
         };
         let (off, back) =
-            (lagrangian_step.off, lagrangian_step.off && passed == 0.0 && matches!(moment, Moment::By { .. }));
-        match moment {
+            (lagrangian_step.off, lagrangian_step.off && passed == 0.0 && matches!(at.rate, Rate::Formula(_)));
+        match at.rate {
             _ if !off => velocity[..kinematics.velocity.len()].copy_from_slice(&kinematics.velocity),
-            Moment::By { rate, .. } if !back => differentiate(lagrangian_step, rate, &mut velocity[..n]),
+            Rate::Formula(rate) if !back => differentiate(lagrangian_step, rate, &mut velocity[..n]),
             _ => {}
         }
         let discretisation = Arc::make_mut(&mut frame.discretisation);
@@ -130,7 +130,7 @@ impl<const D: usize> Travel<D> {
         let away = maximum(n, |i| (ahead(i) - discretisation.cloud.x[i]).max_abs());
         sweep(&mut discretisation.cloud.x[..n], ahead);
         match off {
-            true => self.place_walls(moment, &mut discretisation.cloud, velocity),
+            true => self.place_walls(at, &mut discretisation.cloud, velocity),
             false => discretisation.cloud.x[n..kinematics.places.len()].copy_from_slice(&kinematics.places[n..]),
         }
         if back {
@@ -155,18 +155,18 @@ impl<const D: usize> Travel<D> {
     }
 
     /// Interface particles stay on their bodies.
-    fn place_walls(&self, moment: &Moment<'_>, cloud: &mut Cloud<D>, velocity: &mut [Vector<D>]) {
+    fn place_walls(&self, at: &Instant<'_>, cloud: &mut Cloud<D>, velocity: &mut [Vector<D>]) {
         let (before, interface) = self.domain.walls();
         if self.laws.iter().all(BodyMotion::is_fixed) {
             return;
         }
-        let (from, to, step, fraction) = match moment {
-            Moment::Within { start, step, fraction } => (*start, start + step, *step, *fraction),
-            Moment::At { time } | Moment::By { time, .. } => (*time, *time, 1.0, 0.0),
+        let (from, to, step, fraction) = match at.rate {
+            Rate::Within { start, step, fraction } => (start, start + step, step, fraction),
+            Rate::Still | Rate::Formula(_) => (at.time, at.time, 1.0, 0.0),
         };
         let (from, to) = (self.poses(from), self.poses(to));
-        let terms: Vec<(f64, Vec<RigidPose<D>>)> = match moment {
-            Moment::By { rate, .. } => rate.iter().map(|(c, t)| (*c, self.poses(*t))).collect(),
+        let terms: Vec<(f64, Vec<RigidPose<D>>)> = match at.rate {
+            Rate::Formula(rate) => rate.iter().map(|r| (r.coefficient, self.poses(r.time))).collect(),
             _ => vec![(1.0 / step, to), (-1.0 / step, from.clone())],
         };
         for (k, (x, wall)) in before.iter().zip(interface).enumerate() {
@@ -301,8 +301,7 @@ impl<const D: usize> Fluid<D> {
 
     /// The frame in which this system takes over.
     pub fn frame_after(&self, u: &[f64]) -> Frame<D> {
-        let (time, rate) = (self.stood(), &[]);
-        self.frame(&Moment::By { time, rate }, u)
+        self.frame(&Instant::formula(self.stood(), &[]), u)
     }
 
     fn stood(&self) -> f64 {
@@ -341,8 +340,9 @@ impl<const D: usize> Fluid<D> {
 
     fn on(&self, cloud: Cloud<D>, since: f64, kinematics: ParticleKinematics<D>) -> Self {
         let operators = Operators::new(&cloud);
-        let mut other =
-            Self { discretisation: Arc::new(Discretisation::new(cloud, operators)), ..self.moved(kinematics) };
+        let fields = Self::unknowns(&cloud);
+        let discretisation = Arc::new(Discretisation::new(cloud, operators));
+        let mut other = Self { fields, discretisation, ..self.moved(kinematics) };
         if let CloudMotion::Travel(travel) = &mut other.cloud_motion {
             travel.since = since;
         }
@@ -372,13 +372,13 @@ impl<const D: usize> Fluid<D> {
 }
 
 /// Velocities of a difference formula for particles that went straight, in this step and in the one before.
-fn differentiate<const D: usize>(lagrangian_step: &LagrangianStep<D>, rate: &[(f64, f64)], velocity: &mut [Vector<D>]) {
-    let passed = |k: usize| rate[k - 1].1 - rate[k].1;
-    let now = rate[0].0 * passed(1);
+fn differentiate<const D: usize>(lagrangian_step: &LagrangianStep<D>, rate: &[Term<'_>], velocity: &mut [Vector<D>]) {
+    let passed = |k: usize| rate[k - 1].time - rate[k].time;
+    let now = rate[0].coefficient * passed(1);
     match rate.get(2) {
         // c₀ x(t₀) + c₁ x(t₁) + c₂ x(t₂) with Σ c = 0
-        Some((c, _)) => {
-            let then = -c * passed(2);
+        Some(last) => {
+            let then = -last.coefficient * passed(2);
             sweep(velocity, |i| lagrangian_step.course[i] * now + lagrangian_step.before[i] * then);
         }
         None => sweep(velocity, |i| lagrangian_step.course[i] * now),

@@ -3,8 +3,8 @@
 //! R(U) − ∂U/∂t = 0 with ∂U/∂t = Σ c_k U(t_k): the first-order formula in the first step, then the second-order one of three
 //! times, written for steps of unequal length. Positions of particles are differenced with the same formula as the state.
 use super::control::{Control, Method};
-use super::relax::{Relax, TimeTerm};
 use super::formula::Formula;
+use super::relax::{Relax, TimeTerm};
 use super::{CROWDED, March, Past, Step, TimeError};
 use crate::math::multilevel::Cycle;
 use crate::math::sweep::{sum, sweep};
@@ -194,7 +194,8 @@ impl<S: Implicit> Dual<'_, S> {
             2 => &self.past.older,
             _ => return,
         };
-        make_ahead(self.system, &mut self.relax, &self.formula_at(made, step, step), (state, made));
+        let formula = self.formula_at(made, step, step);
+        make_ahead(self.system, &mut self.relax, &formula, (state, made));
         self.set_frame_after_step();
     }
 
@@ -344,12 +345,7 @@ impl<S: Implicit> Dual<'_, S> {
 
 /// Makes a preconditioner from the state `state` for the step that ends at `end`: a function of these alone. Bodies that have
 /// coordinates of their own stand where that state puts them.
-fn make_ahead<S: Implicit>(
-    system: &S,
-    relax: &mut Relax<'_, S>,
-    formula: &Formula,
-    (state, end): (&[f64], f64),
-) {
+fn make_ahead<S: Implicit>(system: &S, relax: &mut Relax<'_, S>, formula: &Formula, (state, end): (&[f64], f64)) {
     let (placing, rate) = (system.placing(), formula.coefficient(0));
     match placing.is_empty() {
         true => formula.at(&[], |at| relax.prepare_at(at, state, rate)),

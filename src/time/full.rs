@@ -25,15 +25,7 @@ impl Full {
         let fields: Vec<Placed> = placed(system.fields()).collect();
         let n = system.len();
         let count = period.map_or(1, |p| p.instances.count());
-        Self {
-            fields,
-            n,
-            period,
-            points: 1.0,
-            matrix: vec![0.0; n * n],
-            factors: None,
-            right: vec![0.0; n * count],
-        }
+        Self { fields, n, period, points: 1.0, matrix: vec![0.0; n * n], factors: None, right: vec![0.0; n * count] }
     }
 
     /// Adds the matrix −∂R/∂U, rows one after another.

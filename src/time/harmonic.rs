@@ -14,7 +14,8 @@ use std::ops::Range;
 use crate::math::fourier::{Instances, Matrix};
 use crate::math::sweep::sweep_rows;
 use crate::system::{
-    Fault, Field, Hierarchy, Implicit, Instant, Period, Placed, Preconditioner, RightHandSide, Shift, System, Term, placed,
+    Fault, Field, Hierarchy, Implicit, Instant, Period, Placed, Preconditioner, RightHandSide, Shift, System, Term,
+    placed,
 };
 
 /// The equations of a periodic solution.

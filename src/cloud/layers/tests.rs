@@ -5,7 +5,7 @@ use crate::geometry::load_surface;
 use crate::math::Vector;
 use crate::physics::Primitive;
 use crate::scheme::boundary::WallFits;
-use crate::system::{Moment, System};
+use crate::system::{Instant, System};
 
 fn build(body: &str, rest: &str) -> Cloud<2> {
     let text = format!("title = \"t\"\n[flow]\nmach = 0.5\n[[body]]\n{body}\n[cloud]\nfar_field = 4\n{rest}");
@@ -190,7 +190,7 @@ fn rest_residual(body: &str, rest: &str) -> f64 {
     let (fluid, mut u) = crate::run::build_solver::<2>(&case, std::path::Path::new(".")).unwrap();
     let still = Primitive { density: 1.0, velocity: Vector::ZERO, pressure: 1.0 / fluid.gas.gamma };
     u.chunks_exact_mut(4).for_each(|row| fluid.gas.conserved(&still).store(row));
-    let mut frame = fluid.frame(&Moment::At { time: 0.0 }, &u);
+    let mut frame = fluid.frame(&Instant::still(0.0), &u);
     frame.outer.fill([still; 3]);
     let (mut work, mut du) = (fluid.work(), vec![0.0; u.len()]);
     fluid.rhs(&frame, &u, &mut work, &mut du);

@@ -40,6 +40,7 @@ fn with_cloud(body: &str, keys: &str) -> Fluid<2> {
     let conservative = true;
     let (before, viscous_model) = (None, None);
     Fluid {
+        fields: Fluid::unknowns(&discretisation.cloud),
         discretisation,
         cloud_motion,
         before,
@@ -64,7 +65,7 @@ fn balance(fluid: &Fluid<2>) -> ([f64; 4], [f64; 4], Vector<2>) {
         let q = Primitive { density: 1.0 + 0.3 * wave, velocity, pressure: 1.0 - 0.4 * wave };
         fluid.gas.conserved(&q).store(row);
     }
-    let (frame, mut work, mut du) = (fluid.frame(&Moment::At { time: 0.0 }, &u), fluid.work(), vec![0.0; u.len()]);
+    let (frame, mut work, mut du) = (fluid.frame(&Instant::still(0.0), &u), fluid.work(), vec![0.0; u.len()]);
     fluid.rhs(&frame, &u, &mut work, &mut du);
     let mut total = ([0.0; 4], [0.0; 4]);
     for (row, v) in du.chunks(4).zip(&fluid.discretisation.cloud.volume) {
@@ -101,7 +102,7 @@ fn in_layers_it_does_not_matter_who_moves() {
     assert!(fluid.passes_by_faces());
     let cloud = &fluid.discretisation.cloud;
     let density = |w: Vector<2>| {
-        let mut frame = fluid.frame(&Moment::At { time: 0.0 }, &vec![1.0; fluid.len()]);
+        let mut frame = fluid.frame(&Instant::still(0.0), &vec![1.0; fluid.len()]);
         frame.velocity = Arc::new(vec![w; cloud.len()]);
         let mut work = fluid.work();
         for (q, x) in work.state.iter_mut().zip(&cloud.x) {
@@ -130,7 +131,7 @@ fn uniform_flow_stays_uniform_in_layers() {
         let mut work = fluid.work();
         work.state.fill(Primitive { density: 1.2, velocity, pressure: 0.9 });
         let mut du = vec![0.0; fluid.len()];
-        let still = fluid.frame(&Moment::At { time: 0.0 }, &vec![1.0; fluid.len()]);
+        let still = fluid.frame(&Instant::still(0.0), &vec![1.0; fluid.len()]);
         fluid.rhs_with_limiter(Hllc, &still, &work, &mut du);
         // in units of pressure times surface over volume: cells are a hundred times thinner than long
         let unit = |i: usize| fluid.discretisation.cloud.volume[i] / fluid.discretisation.cloud.spacing[i];

@@ -2,7 +2,7 @@
 use super::*;
 use crate::case::read;
 use crate::run::build_solver;
-use crate::system::{Moment, System};
+use crate::system::{Instant, System, Term};
 
 /// Gas in a box with a constant viscosity that a free stream of this Reynolds number has.
 fn boxed(conservative: bool) -> Fluid<2> {
@@ -19,7 +19,7 @@ fn boxed(conservative: bool) -> Fluid<2> {
 /// What viscosity adds to the fluxes of every fluid particle for the field `q` in all particles.
 fn terms(fluid: &mut Fluid<2>, q: impl Fn(&Vector<2>) -> Primitive<2>) -> Vec<f64> {
     let u = vec![1.0; fluid.len()];
-    let frame = fluid.frame(&Moment::At { time: 0.0 }, &u);
+    let frame = fluid.frame(&Instant::still(0.0), &u);
     let mut work = fluid.work();
     work.state.iter_mut().zip(&fluid.discretisation.cloud.x).for_each(|(s, x)| *s = q(x));
     fluid.fill_gradients(&frame, &mut work);
@@ -118,13 +118,13 @@ fn gas_that_turns_with_a_wall_does_not_rub_on_it() {
         for particles in ["rigid", "deforming"] {
             let fluid = turning(layers, particles);
             let (h, t) = (1e-4, 0.7);
-            let rate = [(0.5 / h, t + h), (-0.5 / h, t - h)];
-            let frame = fluid.frame(&Moment::By { time: t, rate: &rate }, &vec![1.0; fluid.len()]);
+            let rate = [Term::of_time(0.5 / h, t + h), Term::of_time(-0.5 / h, t - h)];
+            let frame = fluid.frame(&Instant::formula(t, &rate), &vec![1.0; fluid.len()]);
             let mut work = fluid.work();
             let cloud = &frame.discretisation.cloud;
             for (i, q) in work.state.iter_mut().enumerate() {
                 let d = frame.place(i) - Vector([0.2, 0.3]);
-                let velocity = frame.inward(&(Vector([d[1], -d[0]]) * 0.4));
+                let velocity = frame.to_body_axes(&(Vector([d[1], -d[0]]) * 0.4));
                 *q = Primitive { density: 1.0, velocity, pressure: 1.0 / 1.4 };
             }
             fluid.fill_gradients(&frame, &mut work);
