@@ -7,6 +7,7 @@ use std::sync::Arc;
 
 use alula::math::Vector;
 use alula::math::fourier::{Instances, Series};
+use alula::math::jet::Jet;
 use alula::math::multilevel::Cycle;
 use alula::motion::{BodyMotion, TimeFunction};
 use alula::physics::Primitive;
@@ -38,12 +39,12 @@ fn boxed<const D: usize>() -> Fluid<D> {
 /// Displacement by a wave, up to 10 % of the box, of frequency 4.
 struct Wave;
 impl<const D: usize> Path<D> for Wave {
-    fn at(&self, t: f64) -> Places<'_, D> {
+    fn at(&self, t: f64, _: &[Jet]) -> Places<'_, D> {
         Box::new(move |_, x| {
             *x + Vector::from_fn(|d| 0.1 * (3.0 * x[(d + 1) % D] + d as f64).sin() * (4.0 * t + d as f64).sin())
         })
     }
-    fn origin(&self, x: &Vector<D>, _: f64) -> Vector<D> {
+    fn origin(&self, x: &Vector<D>, _: f64, _: &[Jet]) -> Vector<D> {
         *x
     }
 }

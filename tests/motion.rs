@@ -6,6 +6,7 @@ mod common;
 use std::sync::Arc;
 
 use alula::math::Vector;
+use alula::math::jet::Jet;
 use alula::math::multilevel::Cycle;
 use alula::motion::{BodyMotion, TimeFunction};
 use alula::physics::{Conserved, Primitive};
@@ -54,12 +55,12 @@ fn layered<const D: usize>(x: &Vector<D>) -> Primitive<D> {
 /// Displacement by a wave, up to 10 % of the box.
 struct Wave;
 impl<const D: usize> Path<D> for Wave {
-    fn at(&self, t: f64) -> Places<'_, D> {
+    fn at(&self, t: f64, _: &[Jet]) -> Places<'_, D> {
         Box::new(move |_, x| {
             *x + Vector::from_fn(|d| 0.1 * (3.0 * x[(d + 1) % D] + d as f64).sin() * (4.0 * t + d as f64).sin())
         })
     }
-    fn origin(&self, x: &Vector<D>, _: f64) -> Vector<D> {
+    fn origin(&self, x: &Vector<D>, _: f64, _: &[Jet]) -> Vector<D> {
         *x
     }
 }
@@ -80,14 +81,14 @@ impl Walk {
     }
 }
 impl<const D: usize> Path<D> for Walk {
-    fn at(&self, t: f64) -> Places<'_, D> {
+    fn at(&self, t: f64, _: &[Jet]) -> Places<'_, D> {
         let (step, part) = ((t / STEP).floor(), (t / STEP).rem_euclid(1.0));
         Box::new(move |i, x| {
             let (a, b) = (Self::offset::<D>(i, step as i64), Self::offset::<D>(i, step as i64 + 1));
             *x + a * (1.0 - part) + b * part
         })
     }
-    fn origin(&self, x: &Vector<D>, _: f64) -> Vector<D> {
+    fn origin(&self, x: &Vector<D>, _: f64, _: &[Jet]) -> Vector<D> {
         *x
     }
 }

@@ -10,6 +10,7 @@ use alula::case::Initial;
 use alula::cloud::Cloud;
 use alula::exact::vortex::IsentropicVortex;
 use alula::math::Vector;
+use alula::math::jet::Jet;
 use alula::math::multilevel::Cycle;
 use alula::physics::Conserved;
 use alula::scheme::discretisation::{Path, Places};
@@ -193,11 +194,11 @@ fn implicit_steps_of_travelling_particles_are_of_second_order() {
 /// A displacement that repeats in space and swings in time, up to 0.5 of a box of length 10.
 struct Swing;
 impl Path<2> for Swing {
-    fn at(&self, t: f64) -> Places<'_, 2> {
+    fn at(&self, t: f64, _: &[Jet]) -> Places<'_, 2> {
         let size = 0.5 * (1.5 * t).sin();
         Box::new(move |_, x| *x + Vector([(TAU * x[1] / 10.0).sin(), (TAU * x[0] / 10.0).cos()]) * size)
     }
-    fn origin(&self, x: &Vector<2>, _: f64) -> Vector<2> {
+    fn origin(&self, x: &Vector<2>, _: f64, _: &[Jet]) -> Vector<2> {
         *x
     }
 }
@@ -206,10 +207,10 @@ impl Path<2> for Swing {
 /// only on such a path the equations are smooth in time and the order of the method can be seen.
 struct Straight;
 impl Path<2> for Straight {
-    fn at(&self, t: f64) -> Places<'_, 2> {
+    fn at(&self, t: f64, _: &[Jet]) -> Places<'_, 2> {
         Box::new(move |_, x| *x + Vector([(TAU * x[1] / 10.0).sin(), (TAU * x[0] / 10.0).cos()]) * (0.5 * t))
     }
-    fn origin(&self, x: &Vector<2>, _: f64) -> Vector<2> {
+    fn origin(&self, x: &Vector<2>, _: f64, _: &[Jet]) -> Vector<2> {
         *x
     }
 }
@@ -296,11 +297,11 @@ fn shock_error(x: &[Vector<2>], u: &[f64], fluid: &Fluid<2>) -> f64 {
 /// Particles that swing along the tube, thirty times as fast as the gas crosses a tenth of it.
 struct Shaken;
 impl Path<2> for Shaken {
-    fn at(&self, t: f64) -> Places<'_, 2> {
+    fn at(&self, t: f64, _: &[Jet]) -> Places<'_, 2> {
         let size = 0.04 * (30.0 * t).sin();
         Box::new(move |_, x| Vector([x[0] + size * (0.5 * TAU * x[0]).sin(), x[1]]))
     }
-    fn origin(&self, x: &Vector<2>, _: f64) -> Vector<2> {
+    fn origin(&self, x: &Vector<2>, _: f64, _: &[Jet]) -> Vector<2> {
         *x
     }
 }

@@ -10,6 +10,7 @@ pub mod jet;
 pub mod krylov;
 pub mod least_squares;
 pub mod multilevel;
+pub mod rotation;
 pub mod square;
 pub mod sweep;
 pub mod types;

@@ -5,13 +5,16 @@
 //! turned one from Rodrigues' formula, R v = P v + cos θ (v − P v) + sin θ (a × v). In the plane a points away from the
 //! reader: positive angles are clockwise, nose up for a stream along +x. In space the default is a = +y, nose up for lift
 //! along +z. θ and d are sums of [`TimeFunction`]s; velocity and acceleration follow from the same lines by [`Jet`]s.
+use std::borrow::Cow;
 use std::sync::Arc;
 
+use super::freedom::{Freedom, Role};
 use super::mode::ModeShape;
 use super::pose::RigidPose;
 use super::time_function::{Repeat, TimeFunction, common, total, total_with_rates};
 use crate::math::Vector;
 use crate::math::jet::{Jet, Scalar};
+use crate::math::rotation::rotate;
 
 /// Motion of one body.
 #[derive(Clone, Debug)]
@@ -24,6 +27,10 @@ pub struct BodyMotion<const D: usize> {
     turn: Vec<TimeFunction>,
     shift: Vec<[TimeFunction; D]>,
     modes: Vec<(Arc<ModeShape<D>>, TimeFunction)>,
+    /// Rotation vector θ of a body that turns freely in space; empty for all others.
+    attitude: Vec<TimeFunction>,
+    /// How coordinates that are unknowns move the body.
+    freedom: Option<Arc<Freedom<D>>>,
 }
 
 /// Where a point is, how fast it moves, and how it speeds up.
@@ -54,7 +61,52 @@ impl<const D: usize> BodyMotion<D> {
             turn: Vec::new(),
             shift: Vec::new(),
             modes: Vec::new(),
+            attitude: Vec::new(),
+            freedom: None,
         }
+    }
+
+    /// Hands the body over to coordinates that are unknowns: it stands at rest until they are known, see [`Self::momentary`]. A
+    /// coordinate of the role [`Role::Mode`] moves the next of `shapes`.
+    pub fn with_freedom(mut self, freedom: Freedom<D>, shapes: Vec<Arc<ModeShape<D>>>) -> Self {
+        let ease = TimeFunction::Steady(0.0);
+        self.modes = shapes.into_iter().map(|shape| (shape, ease.clone())).collect();
+        self.freedom = Some(Arc::new(freedom));
+        self
+    }
+
+    /// How coordinates that are unknowns move the body, where they do.
+    pub fn freedom(&self) -> Option<&Freedom<D>> {
+        self.freedom.as_deref()
+    }
+
+    /// The motion about the time `about`, at which coordinates that are unknowns, and their rates, are `jets`: position, velocity
+    /// and acceleration at that time are those of the body. A prescribed motion is its own.
+    pub fn momentary(&self, about: f64, jets: &[Jet]) -> Cow<'_, Self> {
+        let Some(freedom) = &self.freedom else { return Cow::Borrowed(self) };
+        let mut now = Self { freedom: None, ..self.clone() };
+        let mut attitude = [Jet::constant(0.0); 3];
+        for (role, jet) in freedom.moves(jets) {
+            let function = TimeFunction::Momentary { about, jet };
+            match role {
+                Role::Turn => now.turn.push(function),
+                Role::Shift(direction) => {
+                    let along = |d: usize| TimeFunction::Momentary { about, jet: jet * Jet::constant(direction[d]) };
+                    now.shift.push(std::array::from_fn(along));
+                }
+                Role::Attitude(k) => attitude[*k] = jet,
+                Role::Mode(m) => now.modes[*m].1 = function,
+                Role::Flap { sine, cosine } => {
+                    now.modes[*sine].1 = TimeFunction::Momentary { about, jet: jet.sin() };
+                    let stretch = jet.cos() - Jet::constant(1.0);
+                    now.modes[*cosine].1 = TimeFunction::Momentary { about, jet: stretch };
+                }
+            }
+        }
+        if freedom.turns_in_space() {
+            now.attitude = attitude.map(|jet| TimeFunction::Momentary { about, jet }).to_vec();
+        }
+        Cow::Owned(now)
     }
 
     /// Adds an angle.
@@ -90,13 +142,25 @@ impl<const D: usize> BodyMotion<D> {
             let q = function.at(t);
             arm = std::array::from_fn(|d| arm[d] + q * S::constant(bend[d]));
         }
+        let shift = self.shift_at(t);
+        if !self.attitude.is_empty() {
+            let turned = self.turned_freely(t, arm);
+            return std::array::from_fn(|d| S::constant(self.pivot[d]) + shift[d] + turned[d]);
+        }
         let dot =
             |row: &Vector<D>| (1..D).fold(S::constant(row[0]) * arm[0], |sum, d| sum + S::constant(row[d]) * arm[d]);
-        let shift = self.shift_at(t);
         std::array::from_fn(|d| {
             let kept = dot(&self.along[d]);
             S::constant(self.pivot[d]) + kept + shift[d] + cosine * (arm[d] - kept) + sine * dot(&self.across[d])
         })
+    }
+
+    /// The arm turned by the rotation vector.
+    fn turned_freely<S: Scalar>(&self, t: S, arm: [S; D]) -> [S; D] {
+        let theta: [S; 3] = std::array::from_fn(|k| self.attitude[k].at(t));
+        let arm: [S; 3] = std::array::from_fn(|d| if d < D { arm[d] } else { S::constant(0.0) });
+        let turned = rotate(&theta, &arm);
+        std::array::from_fn(|d| turned[d])
     }
 
     fn shift_at<S: Scalar>(&self, t: S) -> [S; D] {
@@ -105,7 +169,7 @@ impl<const D: usize> BodyMotion<D> {
 
     /// Rotation and shift at time `t`; modes are left aside.
     pub fn pose(&self, t: f64) -> RigidPose<D> {
-        if self.turn.is_empty() && self.shift.is_empty() {
+        if self.turn.is_empty() && self.shift.is_empty() && self.attitude.is_empty() {
             return RigidPose::identity();
         }
         let origin = Vector(self.place(t, &self.pivot, &[]));
@@ -183,12 +247,14 @@ impl<const D: usize> BodyMotion<D> {
 
     /// True when nothing moves.
     pub fn is_fixed(&self) -> bool {
-        self.turn.is_empty() && self.shift.is_empty() && self.modes.is_empty()
+        let rests = self.turn.is_empty() && self.shift.is_empty() && self.attitude.is_empty();
+        rests && self.modes.is_empty() && self.freedom.is_none()
     }
 
     /// True when the body turns.
     pub fn turns(&self) -> bool {
-        !self.turn.is_empty()
+        let freely = self.freedom.as_ref().is_some_and(|f| f.turns());
+        freely || !self.turn.is_empty() || !self.attitude.is_empty()
     }
 
     /// True when all numbers of the law are finite at time `t`.

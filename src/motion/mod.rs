@@ -3,6 +3,7 @@
 //! [`Motions`] holds one [`BodyMotion`] for each body; a [`RigidPose`] is where a law has got to. Velocities are never written
 //! down a second time: marching takes differences of positions, with the formula it uses for the state, and what needs the
 //! velocity at an instant gets it by differentiating the same law (`math::jet`).
+mod freedom;
 mod law;
 mod mode;
 mod point_trajectory;
@@ -13,8 +14,9 @@ mod spline;
 mod tests;
 mod time_function;
 
+pub use freedom::{Freedom, Role, positions};
 pub use law::{BodyMotion, Kinematics};
-pub use mode::{Expansion, ModeShape};
+pub use mode::{Expansion, Hinge, ModeShape};
 pub use point_trajectory::PointTrajectory;
 pub use pose::RigidPose;
 pub use spline::Spline;

@@ -35,6 +35,51 @@ pub struct ModeShape<const D: usize> {
     size: f64,
     /// Corners of the box around the points of the file.
     corners: [Vector<D>; 2],
+    /// A part behind a hinge that moves against the rest.
+    hinge: Option<Hinge<D>>,
+}
+
+/// φ = w(X) M (X − l): what lies behind a hinge at l moves linearly about it, w rising from 0 to 1 along x over the blend,
+/// w = s²(3 − 2s).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hinge<const D: usize> {
+    /// The hinge l.
+    pub place: Vector<D>,
+    /// Length of the blend, half of it on either side of the hinge.
+    pub blend: f64,
+    /// Rows of M.
+    pub rows: [Vector<D>; D],
+}
+
+impl<const D: usize> Hinge<D> {
+    /// w with its first and second derivative along x.
+    fn weight(&self, x: &Vector<D>) -> [f64; 3] {
+        let s = (x[0] - self.place[0]) / self.blend.max(f64::MIN_POSITIVE) + 0.5;
+        if s <= 0.0 {
+            return [0.0; 3];
+        }
+        if s >= 1.0 {
+            return [1.0, 0.0, 0.0];
+        }
+        [s * s * (3.0 - 2.0 * s), 6.0 * s * (1.0 - s) / self.blend, (6.0 - 12.0 * s) / self.blend.powi(2)]
+    }
+
+    fn moved(&self, x: &Vector<D>) -> Vector<D> {
+        let arm = *x - self.place;
+        Vector::from_fn(|i| self.rows[i].dot(&arm))
+    }
+
+    /// Adds φ and its derivatives.
+    fn expand(&self, x: &Vector<D>, at: &mut Expansion<D>) {
+        let ([w, slope, bend], moved, along) = (self.weight(x), self.moved(x), Vector::<D>::axis(0));
+        for i in 0..D {
+            at.gradient[i] += self.rows[i] * w + along * (moved[i] * slope);
+            for j in 0..D {
+                at.second[i][j] += along * (self.rows[i][j] * slope);
+            }
+            at.second[i][0] += self.rows[i] * slope + along * (moved[i] * bend);
+        }
+    }
 }
 
 /// A mode at one point.
@@ -64,13 +109,29 @@ impl<const D: usize> ModeShape<D> {
         let size = shifts.iter().map(Vector::norm).fold(0.0, f64::max);
         let corners = [bounds.min, bounds.max];
         let (offset, slope) = linear(&points, &shifts, (&centre, &axes));
-        let mut shape = Self { centre, offset, slope, knots: Vec::new(), weights: Vec::new(), within, size, corners };
+        let mut shape =
+            Self { centre, offset, slope, knots: Vec::new(), weights: Vec::new(), within, size, corners, hinge: None };
         let rest: Vec<Vector<D>> = points.iter().zip(&shifts).map(|(x, u)| *u - shape.at(x)).collect();
         if rest.iter().all(|r| r.max_abs() <= LINEAR * size) {
             return Some(shape);
         }
         shape.interpolate(&points, &rest, &axes)?;
         Some(shape)
+    }
+
+    /// What lies behind a hinge moves against the rest; `size` is about how far.
+    pub fn hinged(hinge: Hinge<D>, size: f64) -> Self {
+        Self {
+            centre: hinge.place,
+            offset: Vector::ZERO,
+            slope: [Vector::ZERO; D],
+            knots: Vec::new(),
+            weights: Vec::new(),
+            within: std::array::from_fn(Vector::axis),
+            size,
+            corners: [hinge.place; 2],
+            hinge: Some(hinge),
+        }
     }
 
     /// Adds what takes the displacements `rest` at the points.
@@ -110,7 +171,8 @@ impl<const D: usize> ModeShape<D> {
     /// φ at `x`.
     pub fn at(&self, x: &Vector<D>) -> Vector<D> {
         let (arm, place) = (*x - self.centre, self.projected(x));
-        let linear = self.offset + Vector::from_fn(|i| self.slope[i].dot(&arm));
+        let behind = self.hinge.as_ref().map_or(Vector::ZERO, |h| h.moved(x) * h.weight(x)[0]);
+        let linear = self.offset + Vector::from_fn(|i| self.slope[i].dot(&arm)) + behind;
         self.knots.iter().zip(&self.weights).fold(linear, |sum, (knot, w)| {
             let square = (place - *knot).norm_squared();
             sum + *w * (square * square.sqrt())
@@ -130,6 +192,9 @@ impl<const D: usize> ModeShape<D> {
                 at.gradient[i] += d * (3.0 * r * w[i]);
                 (0..D).for_each(|j| at.second[i][j] += bend[j] * w[i]);
             }
+        }
+        if let Some(hinge) = &self.hinge {
+            hinge.expand(x, &mut at);
         }
         at
     }

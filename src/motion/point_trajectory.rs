@@ -1,6 +1,7 @@
 //! Points that are asked for at many times: what the modes of their body do to them is found once.
 use super::law::BodyMotion;
 use crate::math::Vector;
+use crate::math::jet::Jet;
 use crate::math::sweep::sweep;
 
 /// Points of one body with their displacement in each of its modes.
@@ -34,7 +35,13 @@ impl<const D: usize> PointTrajectory<D> {
 
     /// Places at time `t`: of point number `k`, which is at `x` before any motion.
     pub fn at(&self, t: f64) -> impl Fn(usize, &Vector<D>) -> Vector<D> + Send + Sync + '_ {
-        let (pose, coordinates) = (self.law.pose(t), self.law.coordinates(t));
+        self.with(t, &[])
+    }
+
+    /// The same where the coordinates of bodies that are unknowns are `jets`.
+    pub fn with(&self, t: f64, jets: &[Jet]) -> impl Fn(usize, &Vector<D>) -> Vector<D> + Send + Sync + use<'_, D> {
+        let law = self.law.momentary(t, jets);
+        let (pose, coordinates) = (law.pose(t), law.coordinates(t));
         move |k, x| {
             let bend = |sum: Vector<D>, (q, shift): (&f64, &Vec<Vector<D>>)| sum + shift[k] * *q;
             pose.point(&coordinates.iter().zip(&self.shifts).fold(*x, bend))

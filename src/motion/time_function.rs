@@ -30,6 +30,13 @@ pub enum TimeFunction {
     Spline(Spline),
     /// A formula in t and ω.
     Formula(Formula, f64),
+    /// value + rate (t − about) + acceleration (t − about)²/2: a coordinate that is an unknown, as it is at one time.
+    Momentary {
+        /// Time.
+        about: f64,
+        /// Value, rate and acceleration then.
+        jet: Jet,
+    },
 }
 
 /// How a function of time repeats.
@@ -53,6 +60,11 @@ impl TimeFunction {
             Self::Steady(rate) => t * S::constant(*rate),
             Self::Spline(spline) => spline.at(t),
             Self::Formula(formula, omega) => evaluate(formula, t, *omega),
+            Self::Momentary { about, jet } => {
+                let passed = t - S::constant(*about);
+                let half = S::constant(0.5 * jet.second) * passed * passed;
+                S::constant(jet.value) + S::constant(jet.first) * passed + half
+            }
         }
     }
 
@@ -65,7 +77,7 @@ impl TimeFunction {
             Self::Spline(spline) => spline.period().map_or(Repeat::Never, Repeat::Every),
             Self::Formula(formula, _) if !formula.contains(&Formula::Time) => Repeat::Constant,
             Self::Formula(_, omega) if *omega > 0.0 && self.repeats_after(TAU / omega) => Repeat::Every(TAU / omega),
-            Self::Formula(..) => Repeat::Never,
+            Self::Formula(..) | Self::Momentary { .. } => Repeat::Never,
         }
     }
 

@@ -85,7 +85,7 @@ impl<const D: usize> ForceModes<D> {
             let work = match form {
                 Form::Plunge => chosen().map(|(_, (_, f))| length * f[D - 1]).sum::<f64>(),
                 Form::Pitch(pivot) => {
-                    let moment_point = fluid.cloud_motion.body(0, frame.time).point(pivot).to_3d();
+                    let moment_point = fluid.cloud_motion.body(0, frame.time, &frame.jets).point(pivot).to_3d();
                     let axes = LoadAxes { moment_point, ..axes.clone() };
                     let mut load = Load::default();
                     chosen().for_each(|(_, (x, f))| axes.add(&mut load, &x.to_3d(), &f.to_3d()));
@@ -93,7 +93,8 @@ impl<const D: usize> ForceModes<D> {
                 }
                 Form::Bend(shifts) => {
                     let body = |w: usize| usize::from(fluid.discretisation.cloud.interface[w].body);
-                    let turned = |w: usize| fluid.cloud_motion.body(body(w), frame.time).direction(&shifts[w]);
+                    let turned =
+                        |w: usize| fluid.cloud_motion.body(body(w), frame.time, &frame.jets).direction(&shifts[w]);
                     chosen().map(|(w, (_, f))| turned(w).dot(f)).sum()
                 }
             };

@@ -55,7 +55,8 @@ impl LoadFrame {
     /// The axes at the time of `frame`: the point of the moment travels with the first body.
     pub(super) fn axes_in<const D: usize>(&self, fluid: &Fluid<D>, frame: &Frame<D>) -> LoadAxes {
         let mut axes = self.axes(fluid);
-        let carried = fluid.cloud_motion.body(0, frame.time).point(&Vector::from_fn(|d| axes.moment_point[d]));
+        let carried =
+            fluid.cloud_motion.body(0, frame.time, &frame.jets).point(&Vector::from_fn(|d| axes.moment_point[d]));
         axes.moment_point = carried.to_3d();
         axes
     }

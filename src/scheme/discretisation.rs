@@ -14,11 +14,12 @@ use super::deforming_surface::DeformingSurface;
 use super::travel::Travel;
 use crate::cloud::{Cloud, Operators};
 use crate::math::Vector;
+use crate::math::jet::Jet;
 use crate::math::square::times;
 use crate::math::sweep::{sweep, sweep_slots};
-use crate::motion::{BodyMotion, RigidPose};
+use crate::motion::{BodyMotion, RigidPose, positions};
 use crate::physics::Primitive;
-use crate::system::{Instant, Rate};
+use crate::system::{Instant, Rate, Term};
 
 /// The cloud with the operators that follow from positions.
 #[derive(Clone, Debug)]
@@ -65,6 +66,8 @@ pub struct Frame<const D: usize> {
     pub walls: Arc<Vec<WallMotion<D>>>,
     /// How fluid particles that travel go through the step; empty for all others.
     pub lagrangian_step: LagrangianStep<D>,
+    /// Coordinates of bodies that are unknowns, with rates and accelerations; empty where all motion is prescribed.
+    pub jets: Vec<Jet>,
     /// States that sides hold, in the axes of the case: at each outer particle, at its source and behind that.
     pub outer: Vec<[Primitive<D>; 3]>,
 }
@@ -123,10 +126,10 @@ pub type Places<'a, const D: usize> = Box<dyn Fn(usize, &Vector<D>) -> Vector<D>
 
 /// Places of particles as a function of time and of their place before any motion.
 pub trait Path<const D: usize>: Send + Sync {
-    /// Places at time `t`.
-    fn at(&self, t: f64) -> Places<'_, D>;
-    /// The place before any motion of what is at `x` at time `t`.
-    fn origin(&self, x: &Vector<D>, t: f64) -> Vector<D>;
+    /// Places at time `t`, at which coordinates of bodies that are unknowns are `jets`.
+    fn at(&self, t: f64, jets: &[Jet]) -> Places<'_, D>;
+    /// The place before any motion of what is at `x` then.
+    fn origin(&self, x: &Vector<D>, t: f64, jets: &[Jet]) -> Vector<D>;
 }
 
 /// How particles move.
@@ -153,12 +156,14 @@ impl<const D: usize> CloudMotion<D> {
     /// Brings `frame` to a moment; `origin` is the shape before any motion.
     pub fn place(&self, origin: &Arc<Discretisation<D>>, at: &Instant<'_>, frame: &mut Frame<D>) {
         frame.time = at.time;
+        frame.jets = jets(at);
         match self {
             Self::Still => {}
             Self::Rigid(law) => place_rigid(law, origin, at, frame),
             Self::Along { path, laws, deforming_surface } => {
                 place_along(path.as_ref(), origin, at, frame);
-                turn_walls((laws, deforming_surface), origin, at.time, frame);
+                let laws: Vec<_> = laws.iter().map(|l| l.momentary(at.time, &frame.jets).into_owned()).collect();
+                turn_walls((&laws, deforming_surface), origin, at.time, frame);
                 if origin.operators.conservative {
                     let Discretisation { cloud, operators, .. } = Arc::make_mut(&mut frame.discretisation);
                     operators.metric_update(cloud, &origin.operators, &origin.cloud);
@@ -168,22 +173,23 @@ impl<const D: usize> CloudMotion<D> {
         }
     }
 
-    /// The place before any motion of what is at `x` at time `t`.
-    pub fn origin(&self, x: &Vector<D>, t: f64) -> Vector<D> {
+    /// The place before any motion of what is at `x` at time `t`, at which coordinates that are unknowns are `jets`.
+    pub fn origin(&self, x: &Vector<D>, t: f64, jets: &[Jet]) -> Vector<D> {
         match self {
             Self::Still | Self::Travel(_) => *x,
-            Self::Rigid(law) => law.pose(t).inverse_point(x),
-            Self::Along { path, .. } => path.origin(x, t),
+            Self::Rigid(law) => law.momentary(t, jets).pose(t).inverse_point(x),
+            Self::Along { path, .. } => path.origin(x, t, jets),
         }
     }
 
-    /// Pose of a body at time `t`; its modes are left aside.
-    pub fn body(&self, body: usize, t: f64) -> RigidPose<D> {
+    /// Pose of a body at time `t`, at which coordinates that are unknowns are `jets`; its modes are left aside.
+    pub fn body(&self, body: usize, t: f64, jets: &[Jet]) -> RigidPose<D> {
+        let pose = |law: &BodyMotion<D>| law.momentary(t, jets).pose(t);
         match self {
             Self::Still => RigidPose::identity(),
-            Self::Rigid(law) => law.pose(t),
+            Self::Rigid(law) => pose(law),
             Self::Along { laws, .. } | Self::Travel(Travel { laws, .. }) => {
-                laws.get(body).map_or_else(RigidPose::identity, |law| law.pose(t))
+                laws.get(body).map_or_else(RigidPose::identity, pose)
             }
         }
     }
@@ -213,13 +219,15 @@ fn place_rigid<const D: usize>(
     frame: &mut Frame<D>,
 ) {
     let t = at.time;
+    let (law, template) = (law.momentary(t, &frame.jets), law);
+    let law = law.as_ref();
     let pose = law.pose(t);
     let x = &origin.cloud.x;
     let velocity = Arc::make_mut(&mut frame.velocity);
     velocity.resize(x.len(), Vector::ZERO);
     match at.rate {
         Rate::Formula(rate) => {
-            let poses: Vec<(f64, RigidPose<D>)> = rate.iter().map(|r| (r.coefficient, law.pose(r.time))).collect();
+            let poses: Vec<(f64, RigidPose<D>)> = rate.iter().map(|r| (r.coefficient, pose_of(template, r))).collect();
             let rows = std::array::from_fn(|r| poses.iter().fold(Vector::ZERO, |s, (c, p)| s + p.rotation[r] * *c));
             let shift = poses.iter().fold(Vector::ZERO, |s, (c, p)| s + p.shift * *c);
             let drift = RigidPose { rotation: rows, shift };
@@ -243,6 +251,32 @@ fn place_rigid<const D: usize>(
         acceleration: inward(&law.kinematics(t, &x[first + w]).acceleration),
     });
     frame.turn = Some(pose);
+}
+
+/// Coordinates of bodies that are unknowns, with rates and accelerations: by the formula that serves all positions.
+fn jets(at: &Instant<'_>) -> Vec<Jet> {
+    let mut all = positions(at.coordinates);
+    match at.rate {
+        Rate::Still => {}
+        Rate::Within { .. } => {
+            all.iter_mut().zip(at.coordinates.chunks_exact(2)).for_each(|(jet, pair)| jet.first = pair[1]);
+        }
+        Rate::Formula(terms) => {
+            for (k, jet) in all.iter_mut().enumerate() {
+                let difference = |part: usize| {
+                    let term = |t: &Term<'_>| t.coefficient * t.coordinates.get(2 * k + part).copied().unwrap_or(0.0);
+                    terms.iter().map(term).sum()
+                };
+                (jet.first, jet.second) = (difference(0), difference(1));
+            }
+        }
+    }
+    all
+}
+
+/// Where a body is at a time of a formula.
+fn pose_of<const D: usize>(law: &BodyMotion<D>, term: &Term<'_>) -> RigidPose<D> {
+    law.momentary(term.time, &positions(term.coordinates)).pose(term.time)
 }
 
 /// ∂w/∂x of the rigid part of a motion in the axes of the case: Ṙ Rᵀ.
@@ -271,18 +305,19 @@ fn place_along<const D: usize>(
     let (x, w) = (&mut discretisation.cloud.x[..n], &mut velocity[..n]);
     match at.rate {
         Rate::Still => {
-            let now = path.at(at.time);
+            let now = path.at(at.time, &frame.jets);
             sweep(x, |i| now(i, before(i)));
             sweep(w, |_| Vector::ZERO);
         }
         Rate::Formula(rate) => {
-            let now = path.at(at.time);
+            let now = path.at(at.time, &frame.jets);
             sweep(x, |i| now(i, before(i)));
-            let terms: Vec<(f64, Places<'_, D>)> = rate.iter().map(|r| (r.coefficient, path.at(r.time))).collect();
+            let terms: Vec<(f64, Places<'_, D>)> =
+                rate.iter().map(|r| (r.coefficient, path.at(r.time, &positions(r.coordinates)))).collect();
             sweep(w, |i| terms.iter().fold(Vector::ZERO, |s, (c, place)| s + place(i, before(i)) * *c));
         }
         Rate::Within { start, step, fraction } => {
-            let (from, to) = (path.at(start), path.at(start + step));
+            let (from, to) = (path.at(start, &frame.jets), path.at(start + step, &frame.jets));
             sweep(w, |i| (to(i, before(i)) - from(i, before(i))) * (1.0 / step));
             let w = &*w;
             sweep(x, |i| from(i, before(i)) + w[i] * (fraction * step));

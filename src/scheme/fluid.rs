@@ -26,6 +26,7 @@ use crate::case::{Flux, Limiter, Side};
 use crate::cloud::Cloud;
 use crate::cloud::operators::WallFace;
 use crate::math::Vector;
+use crate::math::jet::Jet;
 use crate::math::sweep::{first, maximum, sweep, sweep_each, sweep_each_slot, sweep_parts, sweep_rows};
 use crate::motion::RigidPose;
 use crate::physics::riemann::{AusmPlusUp, Hllc, Roe, Rusanov, UpwindFlux};
@@ -77,6 +78,8 @@ pub struct Before<const D: usize> {
     pub discretisation: Arc<Discretisation<D>>,
     /// Time.
     pub time: f64,
+    /// Coordinates of bodies that are unknowns.
+    pub jets: Vec<Jet>,
     /// The motion of all particles as one, where that is what they do.
     pub pose: Option<RigidPose<D>>,
     /// Motion of the wall at each interface particle in the axes of the case; empty when nothing moves.
@@ -115,8 +118,13 @@ impl<const D: usize> Fluid<D> {
         let gradient = work.gradient.iter().map(|g| g.turned(&turn)).collect();
         let walls = frame.walls.iter().map(|w| w.turned(turn, |v| frame.to_body_axes(v))).collect();
         let (discretisation_before, pose) = (Arc::clone(&self.discretisation), frame.turn);
-        let before =
-            Some(Before { discretisation: discretisation_before, time: frame.time, pose, walls: Arc::new(walls) });
+        let before = Some(Before {
+            discretisation: discretisation_before,
+            time: frame.time,
+            jets: frame.jets.clone(),
+            pose,
+            walls: Arc::new(walls),
+        });
         let (far_field, held) = (Arc::clone(&self.far_field), Arc::clone(&self.held));
         let (cloud_motion, viscous_model) = (self.cloud_motion.clone(), self.viscous_model.clone());
         let seen = Self { discretisation, before, far_field, held, cloud_motion, viscous_model, ..*self };
@@ -143,13 +151,13 @@ impl<const D: usize> Fluid<D> {
 
     /// The place before any motion of what is at `x`.
     pub fn origin(&self, x: &Vector<D>) -> Vector<D> {
-        let carried = |b: &Before<D>| self.cloud_motion.origin(x, b.time);
+        let carried = |b: &Before<D>| self.cloud_motion.origin(x, b.time, &b.jets);
         self.before.as_ref().map_or(*x, |b| b.pose.as_ref().map_or_else(|| carried(b), |p| p.inverse_point(x)))
     }
 
     /// Where the point `x` of body number `body` is.
     pub fn carried(&self, body: usize, x: &Vector<D>) -> Vector<D> {
-        self.before.as_ref().map_or(*x, |b| self.cloud_motion.body(body, b.time).point(x))
+        self.before.as_ref().map_or(*x, |b| self.cloud_motion.body(body, b.time, &b.jets).point(x))
     }
 
     /// Fills `work.state` for every particle from the evolved ones, in the axes of `frame.discretisation`.
@@ -343,6 +351,7 @@ impl<const D: usize> System for Fluid<D> {
             time: at.time,
             discretisation: Arc::clone(&self.discretisation),
             turn: None,
+            jets: Vec::new(),
             velocity: Arc::default(),
             walls: Arc::default(),
             lagrangian_step: LagrangianStep::default(),

@@ -6,6 +6,7 @@
 //! body its own φ is 1. All x(t) are linear in the poses, so differences of positions are exact. A body that bends takes X to
 //! P_b(t) (X + Σ_m q_m(t) φ_m(X)), with its modes φ_m continued into the field by their own interpolation.
 use crate::cloud::Cloud;
+use crate::math::jet::Jet;
 use crate::math::sweep::sweep_slots;
 use crate::math::{Bounds, Vector};
 use crate::motion::{BodyMotion, PointTrajectory, RigidPose};
@@ -126,8 +127,8 @@ fn blended<const D: usize>(
 }
 
 impl<const D: usize> Path<D> for MotionBlending<D> {
-    fn at(&self, t: f64) -> Places<'_, D> {
-        let trajectories: Vec<_> = self.bodies.iter().map(|b| b.trajectory.at(t)).collect();
+    fn at(&self, t: f64, jets: &[Jet]) -> Places<'_, D> {
+        let trajectories: Vec<_> = self.bodies.iter().map(|b| b.trajectory.with(t, jets)).collect();
         let n = self.bodies.len();
         Box::new(move |i, x| {
             let share = self.share[i * n..(i + 1) * n].iter().map(|s| f64::from(*s));
@@ -135,8 +136,9 @@ impl<const D: usize> Path<D> for MotionBlending<D> {
         })
     }
 
-    fn origin(&self, x: &Vector<D>, t: f64) -> Vector<D> {
-        let places: Vec<_> = self.bodies.iter().map(|b| b.trajectory.law().places(t)).collect();
+    fn origin(&self, x: &Vector<D>, t: f64, jets: &[Jet]) -> Vector<D> {
+        let laws: Vec<_> = self.bodies.iter().map(|b| b.trajectory.law().momentary(t, jets)).collect();
+        let places: Vec<_> = laws.iter().map(|law| law.places(t)).collect();
         let mut before = *x;
         for _ in 0..ROUNDS {
             let miss = *x - blended(&before, self.shares(&before).into_iter(), |b| places[b](&before));
