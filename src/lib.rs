@@ -12,6 +12,8 @@ pub mod geometry;
 
 pub mod motion;
 
+pub mod structure;
+
 pub mod physics;
 
 pub mod exact;

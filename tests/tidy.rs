@@ -9,12 +9,13 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// Modules by floor: each may use strictly lower floors only.
-const FLOORS: [(&str, u8); 15] = [
+const FLOORS: [(&str, u8); 16] = [
     ("math", 0),
     ("case", 0),
     ("system", 1),
     ("geometry", 1),
     ("motion", 1),
+    ("structure", 1),
     ("physics", 1),
     ("exact", 1),
     ("cloud", 2),
@@ -28,9 +29,10 @@ const FLOORS: [(&str, u8); 15] = [
 ];
 
 /// Modules that may use less than their floor allows.
-const NARROW: [(&str, &[&str]); 8] = [
+const NARROW: [(&str, &[&str]); 9] = [
     ("system", &["math"]),
     ("motion", &["math", "case"]),
+    ("structure", &["math", "case"]),
     ("physics", &["math"]),
     ("exact", &["math"]),
     ("time", &["math", "system"]),

@@ -102,6 +102,18 @@ impl Formula {
         }
     }
 
+    /// The number at time `t` with the angular frequency `omega`.
+    pub fn value(&self, t: f64, omega: f64) -> f64 {
+        match self {
+            Self::Number(x) => *x,
+            Self::Time => t,
+            Self::Omega => omega,
+            Self::Negative(a) => -a.value(t, omega),
+            Self::Call(function, a) => function.value(a.value(t, omega)),
+            Self::Pair(operation, a, b) => operation.value(a.value(t, omega), b.value(t, omega)),
+        }
+    }
+
     /// True when some part of the formula satisfies `wanted`.
     pub fn contains(&self, wanted: &Self) -> bool {
         self == wanted
@@ -115,6 +127,42 @@ impl Formula {
     /// All names that a formula may use.
     pub fn vocabulary() -> impl Iterator<Item = &'static str> {
         NAMES.into_iter().chain(FUNCTIONS.map(|f| f.0)).chain(PAIRS.map(|f| f.0))
+    }
+}
+
+impl Function {
+    /// The function at `x`.
+    pub fn value(self, x: f64) -> f64 {
+        match self {
+            Self::Sin => x.sin(),
+            Self::Cos => x.cos(),
+            Self::Tan => x.tan(),
+            Self::Asin => x.asin(),
+            Self::Acos => x.acos(),
+            Self::Atan => x.atan(),
+            Self::Sinh => x.sinh(),
+            Self::Cosh => x.cosh(),
+            Self::Tanh => x.tanh(),
+            Self::Exp => x.exp(),
+            Self::Ln => x.ln(),
+            Self::Sqrt => x.sqrt(),
+            Self::Abs => x.abs(),
+        }
+    }
+}
+
+impl Operation {
+    /// The result for the arguments `x` and `y`.
+    pub fn value(self, x: f64, y: f64) -> f64 {
+        match self {
+            Self::Add => x + y,
+            Self::Subtract => x - y,
+            Self::Multiply => x * y,
+            Self::Divide => x / y,
+            Self::Power => x.powf(y),
+            Self::Min => x.min(y),
+            Self::Max => x.max(y),
+        }
     }
 }
 
@@ -323,6 +371,14 @@ mod tests {
         same("1e-3*t + .5E2", "0.001 * t + 50.");
         assert!(Formula::parse("sin(omega*t)").unwrap().contains(&Formula::Omega));
         assert!(!Formula::parse("max(t, pi)").unwrap().contains(&Formula::Omega));
+    }
+
+    #[test]
+    fn numbers_come_out_of_formulas() {
+        let value = |text: &str| Formula::parse(text).unwrap().value(0.5, 3.0);
+        assert_eq!(value("-t^2 + 2*omega - max(1, t)/4"), -0.25 + 6.0 - 0.25);
+        assert_eq!(value("sin(omega*t) + exp(-t)*sqrt(abs(t - 1))"), 1.5f64.sin() + (-0.5f64).exp() * 0.5f64.sqrt());
+        assert_eq!(value("90*deg"), std::f64::consts::FRAC_PI_2);
     }
 
     #[test]

@@ -13,6 +13,7 @@ pub mod multilevel;
 pub mod rotation;
 pub mod square;
 pub mod sweep;
+pub mod symmetric;
 pub mod types;
 
 pub use types::{Bounds, Vector};
