@@ -19,6 +19,7 @@ pub mod physics;
 pub mod exact;
 
 pub mod cloud;
+pub mod coupling;
 
 pub mod scheme;
 

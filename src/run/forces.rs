@@ -139,13 +139,7 @@ impl GeneralisedForce {
 
 /// Places of the interface particles and the forces on them, in the axes of the case.
 fn wall_forces<const D: usize>(fluid: &Fluid<D>, frame: &Frame<D>, work: &Work<D>) -> Vec<(Vector<D>, Vector<D>)> {
-    let (cloud, far) = (&frame.discretisation.cloud, fluid.far_field.pressure());
-    let one = |(w, wall): (usize, &crate::cloud::Interface<D>)| {
-        let i = cloud.n_fluid + w;
-        let push = wall.area * (far - work.state[i].pressure);
-        let rub = fluid.wall_slopes((cloud, &frame.walls), work, w);
-        let rub = rub.map_or(Vector::ZERO, |at| at.stress * wall.area.norm());
-        (frame.place(i), frame.to_inertial_axes(&(push + rub)))
-    };
-    cloud.interface.iter().enumerate().map(one).collect()
+    let cloud = &frame.discretisation.cloud;
+    let one = |w: usize| (frame.place(cloud.n_fluid + w), fluid.wall_force(frame, work, w));
+    (0..cloud.interface.len()).map(one).collect()
 }

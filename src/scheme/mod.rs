@@ -8,6 +8,7 @@ pub mod edges;
 pub mod fluid;
 mod isentropic;
 pub mod jacobian;
+mod loads;
 pub mod motion_blending;
 pub mod preconditioner;
 pub mod probe;

@@ -14,7 +14,6 @@
 mod force;
 mod placement;
 mod planar;
-mod rotation;
 mod spatial;
 mod spring;
 #[cfg(test)]
@@ -27,7 +26,7 @@ pub use spatial::RigidBody;
 pub use spring::Spring;
 
 use crate::math::jet::{Jet, Scalar};
-use crate::math::{Vector, dense, symmetric};
+use crate::math::{Vector, dense, rotation, symmetric};
 use placement::{Effect, TurnedFlap};
 
 /// Right-hand sides that are solved for at once.

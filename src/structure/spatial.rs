@@ -2,17 +2,17 @@
 //!
 //! Coordinates are the displacement d of the pivot p (`surge`, `sway`, `plunge` along x, y, z) and the rotation vector θ (`roll`,
 //! `pitch`, `yaw`: its components along x, y, z; `pitch` alone is nose up positive for a stream along x with lift along z). A
-//! point X of the body as placed goes to p + d + R(θ)(X − p); see [`super::rotation`] for R and T. Rotations are exact up to just under one
+//! point X of the body as placed goes to p + d + R(θ)(X − p); see [`crate::math::rotation`] for R and T. Rotations are exact up to just under one
 //! full turn from where the body was placed: there the rotation vector loses its meaning, and [`super::Structure::fault`] says so.
 //!
 //! With mass m, first moment s about the pivot and inertia tensor J about the pivot in axes of the body, ω = T θ' and Newton's and Euler's
 //! laws, the latter projected on θ,
 //!
 //! m (d'' − g) + R(ω'×s + ω×(ω×s)) = Q_d, Tᵀ[J ω' + ω×Jω + s×Rᵀ(d'' − g)] = Q_θ.
-use super::rotation::{
+use crate::math::jet::Scalar;
+use crate::math::rotation::{
     Triple, body_acceleration, body_rate, constants, cross, dot, generalised_moment, rotate, rotate_back, sum,
 };
-use crate::math::jet::Scalar;
 
 /// Names of the coordinates, in their order.
 pub(super) const NAMES: [&str; 6] = ["surge", "sway", "plunge", "roll", "pitch", "yaw"];

@@ -3,7 +3,7 @@
 //! −∂R/∂U column by column, as a mean over the points that are added; with the instances of a period,
 //! (shift − ∂R/∂U) ⊗ 1 + ωD, which ties them together. For structures, oscillators and the like.
 use crate::math::dense::Factors;
-use crate::system::{Period, Placed, Preconditioner, RightHandSide, Shift, System, placed};
+use crate::system::{Field, Period, Placed, Preconditioner, RightHandSide, Shift, System, placed, unknowns};
 
 /// Change of an unknown over its size that derivatives are taken with: the cube root of round-off, for central differences.
 const CHANGE: f64 = 6e-6;
@@ -22,15 +22,69 @@ pub struct Full {
 impl Full {
     /// An empty one for `system`.
     pub fn new<S: System>(system: &S, period: Option<Period>) -> Self {
-        let fields: Vec<Placed> = placed(system.fields()).collect();
-        let n = system.len();
+        Self::of_fields(system.fields(), period)
+    }
+
+    /// An empty one for the unknowns of `fields`.
+    pub fn of_fields(fields: &[Field], period: Option<Period>) -> Self {
+        let n = unknowns(fields);
         let count = period.map_or(1, |p| p.instances.count());
+        let fields = placed(fields).collect();
         Self { fields, n, period, points: 1.0, matrix: vec![0.0; n * n], factors: None, right: vec![0.0; n * count] }
     }
 
-    /// Adds the matrix −∂R/∂U, rows one after another.
+    /// Begins anew with the mean of `points` matrices.
+    pub fn clear(&mut self, points: usize) {
+        self.points = points as f64;
+        self.matrix.fill(0.0);
+    }
+
+    /// Adds a matrix −∂R/∂U, rows one after another.
     pub fn add_matrix(&mut self, matrix: &[f64]) {
         self.matrix.iter_mut().zip(matrix).for_each(|(m, a)| *m += a / self.points);
+    }
+
+    /// Factors the sum of the matrix, the shift of every row and the derivative in time.
+    pub fn complete(&mut self, shift: &[f64]) {
+        let count = self.period.map_or(1, |p| p.instances.count());
+        let size = self.n * count;
+        let mut all = vec![0.0; size * size];
+        for i in 0..self.n {
+            for n in 0..count {
+                let (row, at) = self.place(i, n, count);
+                (0..self.n).for_each(|j| all[at * size + self.place(j, n, count).1] += self.matrix[i * self.n + j]);
+                all[at * size + at] += shift[row];
+            }
+            if let Some(period) = &self.period {
+                let derivative = period.instances.derivative(period.omega);
+                for n in 0..count {
+                    let at = self.place(i, n, count).1;
+                    (0..count).for_each(|m| all[at * size + self.place(i, m, count).1] += derivative.row(n)[m]);
+                }
+            }
+        }
+        self.factors = Factors::new(size, all);
+    }
+
+    /// z = A⁻¹ r; r itself where the matrix is singular.
+    pub fn solve(&mut self, r: &RightHandSide<'_>, z: &mut [f64]) {
+        let count = self.period.map_or(1, |p| p.instances.count());
+        for at in &self.fields {
+            let b = at.field.block * count;
+            for i in 0..at.field.rows {
+                let first = at.unknowns.start * count + i * b;
+                r.row_in_full(at.rows.start + i, first, &mut self.right[first..first + b]);
+            }
+        }
+        match &self.factors {
+            Some(factors) => factors.solve(&self.right, z),
+            None => z.copy_from_slice(&self.right),
+        }
+    }
+
+    /// Bytes held.
+    pub fn held(&self) -> usize {
+        8 * (self.matrix.len() + self.right.len() + self.factors.as_ref().map_or(0, |f| f.len() * f.len()))
     }
 
     /// Row and place of unknown `k` of one instance among those of all: its row, and the unknown at instance `n`.
@@ -45,8 +99,7 @@ impl Full {
 
 impl<S: System> Preconditioner<S> for Full {
     fn begin(&mut self, points: usize) {
-        self.points = points as f64;
-        self.matrix.fill(0.0);
+        self.clear(points);
     }
 
     fn add(&mut self, system: &S, frame: &S::Frame, u: &[f64], work: &mut S::Work) {
@@ -66,42 +119,14 @@ impl<S: System> Preconditioner<S> for Full {
     }
 
     fn finish(&mut self, shift: &Shift<'_>) {
-        let count = self.period.map_or(1, |p| p.instances.count());
-        let size = self.n * count;
-        let mut all = vec![0.0; size * size];
-        for i in 0..self.n {
-            for n in 0..count {
-                let (row, at) = self.place(i, n, count);
-                (0..self.n).for_each(|j| all[at * size + self.place(j, n, count).1] += self.matrix[i * self.n + j]);
-                all[at * size + at] += shift.rows[row];
-            }
-            if let Some(period) = &self.period {
-                let derivative = period.instances.derivative(period.omega);
-                for n in 0..count {
-                    let at = self.place(i, n, count).1;
-                    (0..count).for_each(|m| all[at * size + self.place(i, m, count).1] += derivative.row(n)[m]);
-                }
-            }
-        }
-        self.factors = Factors::new(size, all);
+        self.complete(shift.rows);
     }
 
     fn apply(&mut self, _: &S, _: &[&S::Frame], r: &RightHandSide<'_>, z: &mut [f64]) {
-        let count = self.period.map_or(1, |p| p.instances.count());
-        for at in &self.fields {
-            let b = at.field.block * count;
-            for i in 0..at.field.rows {
-                let first = at.unknowns.start * count + i * b;
-                r.row_in_full(at.rows.start + i, first, &mut self.right[first..first + b]);
-            }
-        }
-        match &self.factors {
-            Some(factors) => factors.solve(&self.right, z),
-            None => z.copy_from_slice(&self.right),
-        }
+        self.solve(r, z);
     }
 
     fn bytes(&self) -> usize {
-        8 * (self.matrix.len() + self.right.len() + self.factors.as_ref().map_or(0, |f| f.len() * f.len()))
+        self.held()
     }
 }

@@ -1,0 +1,204 @@
+//! Gas and structures as one system.
+//!
+//! U = [gas | q₀, q₀', q₁, q₁', …]: the states of all fluid particles, then the coordinates of all structures, each with its rate.
+//! The coordinates place the bodies, and with them the cloud; its velocities follow from positions by the formula that
+//! serves the state. The gas acts on the structures by the virtual work of pressure and friction on the walls,
+//! Q_k = Σ_w F_w · ∂x_w/∂q_k. Steady runs, implicit marching and harmonic balance are those of any other [`System`]: each Newton
+//! iteration solves for gas and coordinates together, and nothing is left to iterate between them.
+//!
+//! In a steady flow there is no time for inertia: the coordinates go to where springs and gas are at rest with one another,
+//! dq/dτ = M⁻¹(Q + f − F(q))/ω, dq'/dτ = −ω q', with ω the highest natural frequency.
+mod bodies;
+mod preconditioner;
+
+pub use bodies::{Attached, body_motion};
+pub use preconditioner::CoupledPreconditioner;
+
+use std::ops::Range;
+
+use crate::math::jet::Jet;
+use crate::math::sweep::sweep_rows;
+use crate::scheme::{self, Fluid};
+use crate::structure::Energy;
+use crate::system::{Fault, Field, Instant, Rate, System, unknowns};
+
+/// Rate of a structure that nothing holds, in units of the case: what local times are measured with then.
+const SLOWEST: f64 = 1e-6;
+
+/// A gas with the structures that it flows around.
+pub struct Coupled<const D: usize> {
+    fluid: Fluid<D>,
+    bodies: Vec<Attached<D>>,
+    fields: Vec<Field>,
+    /// Highest natural frequency of the structures.
+    fastest: f64,
+}
+
+/// The gas and its cloud, and whether time stands still.
+#[derive(Clone, Debug)]
+pub struct Frame<const D: usize> {
+    /// The gas.
+    pub gas: scheme::Frame<D>,
+    /// Steady flow: the structures go to their equilibrium.
+    pub steady: bool,
+}
+
+/// Storage of an evaluation.
+pub struct Work<const D: usize> {
+    /// That of the gas.
+    pub gas: scheme::Work<D>,
+    /// Generalised forces of the gas on all coordinates.
+    pub load: Vec<f64>,
+}
+
+/// What passes between gas and structures, and what the structures hold.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Exchange {
+    /// Generalised forces of the gas on all coordinates.
+    pub load: Vec<f64>,
+    /// Power of the gas on the structures, Σ Q q'.
+    pub power: f64,
+    /// Power of the pressure on the walls as the equations of the gas have it, Σ F·w with the velocities of the cloud.
+    pub wall_power: f64,
+    /// Energy of each structure.
+    pub energy: Vec<Energy>,
+}
+
+impl<const D: usize> Coupled<D> {
+    /// The gas `fluid`, whose bodies move as [`body_motion`] has it, with the structures `bodies` in the order of their coordinates.
+    pub fn new(fluid: Fluid<D>, bodies: Vec<Attached<D>>) -> Self {
+        let count = bodies.iter().map(|b| b.structure.len()).sum();
+        let fields = vec![fluid.fields()[0], Field::new("structure", count, 2)];
+        let fastest = bodies.iter().map(Attached::fastest).fold(SLOWEST, f64::max);
+        Self { fluid, bodies, fields, fastest }
+    }
+
+    /// The gas.
+    pub fn fluid(&self) -> &Fluid<D> {
+        &self.fluid
+    }
+
+    /// The structures.
+    pub fn bodies(&self) -> &[Attached<D>] {
+        &self.bodies
+    }
+
+    /// Number of coordinates of all structures.
+    pub fn n_coordinates(&self) -> usize {
+        self.fields[1].rows
+    }
+
+    /// Unknowns of the gas.
+    pub fn gas_range(&self) -> Range<usize> {
+        0..self.fields[0].len()
+    }
+
+    /// The state in which the gas is `gas` and the structures are where they begin.
+    pub fn start(&self, gas: &[f64]) -> Vec<f64> {
+        gas.iter().copied().chain(self.bodies.iter().flat_map(Attached::initial)).collect()
+    }
+
+    /// Generalised forces of the walls whose states are in `work`, for coordinates with the unknowns `u` of the structures.
+    fn loads(&self, frame: &scheme::Frame<D>, work: &scheme::Work<D>, u: &[f64], load: &mut [f64]) {
+        load.fill(0.0);
+        for body in &self.bodies {
+            body.add_loads(&self.fluid, (frame, work), u, &mut load[body.range()]);
+        }
+    }
+
+    /// What passes between gas and structures at the state `u`, whose wall states an evaluation has left in `work`.
+    pub fn exchange(&self, frame: &Frame<D>, u: &[f64], work: &Work<D>) -> Exchange {
+        let u = &u[self.placing()];
+        let mut load = vec![0.0; self.n_coordinates()];
+        self.loads(&frame.gas, &work.gas, u, &mut load);
+        let power = load.iter().zip(u.chunks_exact(2)).map(|(q, pair)| q * pair[1]).sum();
+        let cloud = &frame.gas.discretisation.cloud;
+        let at = |w: usize| frame.gas.to_inertial_axes(&frame.gas.velocity_of(cloud.n_fluid + w));
+        let attached = |w: &usize| self.bodies.iter().any(|b| b.body == usize::from(cloud.interface[*w].body));
+        let walls = (0..cloud.interface.len()).filter(attached);
+        let wall_power = walls.map(|w| self.fluid.wall_force(&frame.gas, &work.gas, w).dot(&at(w))).sum();
+        let energy = self.bodies.iter().map(|b| b.energy(u)).collect();
+        Exchange { load, power, wall_power, energy }
+    }
+
+    /// Coordinates, with their rates and accelerations, that the frame stands at.
+    pub fn coordinates(frame: &Frame<D>) -> &[Jet] {
+        &frame.gas.jets
+    }
+}
+
+impl<const D: usize> System for Coupled<D> {
+    type Frame = Frame<D>;
+    type Work = Work<D>;
+
+    fn fields(&self) -> &[Field] {
+        &self.fields
+    }
+
+    fn placing(&self) -> Range<usize> {
+        self.fields[0].len()..unknowns(&self.fields)
+    }
+
+    fn work(&self) -> Work<D> {
+        Work { gas: self.fluid.work(), load: vec![0.0; self.n_coordinates()] }
+    }
+
+    fn frame(&self, at: &Instant<'_>, u: &[f64]) -> Frame<D> {
+        let gas = self.fluid.frame(at, &u[self.gas_range()]);
+        Frame { gas, steady: matches!(at.rate, Rate::Still) }
+    }
+
+    fn place(&self, at: &Instant<'_>, frame: &mut Frame<D>) {
+        self.fluid.place(at, &mut frame.gas);
+        frame.steady = matches!(at.rate, Rate::Still);
+    }
+
+    fn update_boundary_state(&self, u: &[f64], work: &mut Work<D>, frame: &mut Frame<D>) {
+        self.fluid.update_boundary_state(&u[self.gas_range()], &mut work.gas, &mut frame.gas);
+    }
+
+    fn rhs(&self, frame: &Frame<D>, u: &[f64], work: &mut Work<D>, du: &mut [f64]) {
+        let ((gas, u), (gas_change, change)) =
+            (u.split_at(self.fields[0].len()), du.split_at_mut(self.fields[0].len()));
+        self.fluid.rhs(&frame.gas, gas, &mut work.gas, gas_change);
+        self.loads(&frame.gas, &work.gas, u, &mut work.load);
+        for body in &self.bodies {
+            let (own, load) = (2 * body.first..2 * body.range().end, &work.load[body.range()]);
+            match frame.steady {
+                true => body.towards_rest(&u[own.clone()], load, self.fastest, &mut change[own]),
+                false => body.rates(frame.gas.time, &u[own.clone()], load, &mut change[own]),
+            }
+        }
+    }
+
+    fn rates(&self, frame: &Frame<D>, u: &[f64], work: &mut Work<D>, rate: &mut [f64]) {
+        let (gas, own) = rate.split_at_mut(self.fields[0].rows);
+        self.fluid.rates(&frame.gas, &u[self.gas_range()], &mut work.gas, gas);
+        sweep_rows(own, 1, |_, r| r[0] = self.fastest);
+    }
+
+    fn largest_change(&self, u: &[f64], du: &[f64]) -> f64 {
+        let gas = self.gas_range();
+        let own = du[self.placing()].chunks_exact(2).zip(self.bodies.iter().flat_map(|b| &b.units));
+        let largest = own.map(|(pair, unit)| pair[0].abs() / unit);
+        largest.fold(self.fluid.largest_change(&u[gas.clone()], &du[gas]), |m, c| {
+            if c.is_finite() { m.max(c) } else { f64::INFINITY }
+        })
+    }
+
+    fn check(&self, frame: &Frame<D>, u: &[f64]) -> Result<(), Fault> {
+        self.bodies.iter().try_for_each(|b| b.check(&u[self.placing()], self.fields[0].rows))?;
+        self.fluid.check(&frame.gas, &u[self.gas_range()])
+    }
+
+    fn check_frame(&self, frame: &Frame<D>) -> Result<(), Fault> {
+        self.fluid.check_frame(&frame.gas)
+    }
+
+    fn locate(&self, frame: &Frame<D>, row: usize) -> Vec<f64> {
+        match row < self.fields[0].rows {
+            true => self.fluid.locate(&frame.gas, row),
+            false => Vec::new(),
+        }
+    }
+}
