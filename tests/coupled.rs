@@ -6,13 +6,16 @@ mod common;
 use std::sync::Arc;
 
 use alula::coupling::{Attached, Coupled, body_motion};
+use alula::math::fourier::{Instances, Series};
 use alula::math::multilevel::Cycle;
 use alula::scheme::motion_blending::MotionBlending;
 use alula::scheme::{CloudMotion, DeformingSurface, Fluid};
-use alula::structure::{Coordinate, InertiaLaw, Model, PlanarBody, Spring, Structure};
-use alula::system::System;
+use alula::structure::{Coordinate, ForceHistory, InertiaLaw, Model, PlanarBody, Spring, Structure};
+use alula::system::{Instant, System};
 use alula::time::control::{Control, Method};
 use alula::time::dual::{Dual, Plan};
+use alula::time::harmonic::HarmonicBalance;
+use alula::time::relax::Relax;
 use alula::time::{March, Past};
 use common::solver;
 
@@ -99,4 +102,86 @@ fn a_piston_on_a_spring_radiates_sound() {
     }
     println!("worst {worst}, inner {inner}, linear {}, evaluations {}", march.linear(), march.evaluations());
     assert!(worst < 0.02, "{worst}");
+}
+
+/// A stream in a box without a body, on a cloud that plunge and pitch of a structure carry along.
+fn carried_stream() -> (Coupled<2>, Vec<f64>) {
+    let case = "title = \"box\"\ndimension = 2\n[flow]\nmach = 0.6\nalpha = \"7 deg\"\n[cloud]\nspacing = 0.125\njitter = 0.2\n\
+        [cloud.domain]\nmin = [0.0, 0.0]\nmax = [1.0, 1.0]\n[scheme]\nconservative = false\n[boundary]\nx_min = \"held\"\n\
+        x_max = \"held\"\ny_min = \"held\"\ny_max = \"held\"\n";
+    let spring = |name: &str, initial: f64| coordinate(name, 9.0, initial);
+    let structure =
+        Structure::new(planar(1.0, 0.1, 0.3, [0.3, 0.4]), vec![spring("plunge", 0.1), spring("pitch", 0.2)]);
+    coupled(case, structure.unwrap(), true)
+}
+
+/// Largest difference of the gas from a uniform stream.
+fn strayed(system: &Coupled<2>, u: &[f64], uniform: &[f64]) -> f64 {
+    common::largest(system.gas_range().map(|k| u[k] - uniform[k]))
+}
+
+#[test]
+fn a_stream_stays_uniform_on_a_cloud_that_unknown_coordinates_move() {
+    let (system, u) = carried_stream();
+    let plan = Plan { until: 1.0, step: 0.05, order: 2, orders: 8.0, iterations: 30, adaptive: None };
+    let mut march = Dual::new(&system, CONTROL, plan, (Past::default(), u.clone()));
+    while !march.finished() {
+        march.advance().unwrap();
+        let now = march.parts().2;
+        assert!(strayed(&system, now, &u) < 1e-12);
+    }
+    // the structure has gone its way: M q'' + K q = 0
+    let first = system.placing().start;
+    assert!((march.parts().2[first] - u[first]).abs() > 0.1);
+
+    // at the instances of a period, whatever the coordinates are
+    let balance = HarmonicBalance::new(&system, Instances::of_harmonics(2), 3.0, 1.0);
+    let mut all = balance.copies(&u);
+    for (k, q) in all[balance.placing()].iter_mut().enumerate() {
+        *q += 0.1 * (k as f64).sin();
+    }
+    let (frame, mut work, mut du) =
+        (balance.frame(&Instant::still(0.0).with(&all[balance.placing()]), &all), balance.work(), all.clone());
+    balance.rhs(&frame, &all, &mut work, &mut du);
+    let gas = 0..balance.placing().start;
+    // fluxes of order one over spacings of a tenth
+    assert!(common::largest(du[gas].iter().copied()) < 1e-11);
+}
+
+#[test]
+fn a_coupled_march_goes_on_to_the_same_bits() {
+    let (system, u) = carried_stream();
+    let plan = Plan { until: 0.5, step: 0.05, order: 2, orders: 4.0, iterations: 30, adaptive: None };
+    let march = |steps: u32, from: (Past, Vec<f64>)| {
+        let mut march = Dual::new(&system, CONTROL, plan, from);
+        (0..steps).for_each(|_| drop(march.advance().unwrap()));
+        (march.past().clone(), march.parts().2.to_vec())
+    };
+    let (_, whole) = march(10, (Past::default(), u.clone()));
+    for k in 1..10 {
+        let part = march(k, (Past::default(), u.clone()));
+        assert_eq!(march(10 - k, part).1, whole, "stopped after {k} steps");
+    }
+}
+
+#[test] // (k − m ω² + A ρ c ω cot(ωL/c)) x̂ = F: a closed tube of length L
+fn a_forced_piston_in_a_closed_tube_swings_as_acoustics_have_it() {
+    const AREA: f64 = 0.06;
+    let (omega, length, mass, spring, force) = (6.0, 1.4, 0.05, 3.0, 1e-4);
+    let cosine = ForceHistory::Cosine { amplitude: force, omega, phase: 0.0 };
+    let forced = Coordinate { force: cosine, ..coordinate("surge", spring, 0.0) };
+    let structure = Structure::new(planar(mass, 0.0, 1.0, [0.0, 0.0]), vec![forced]).unwrap();
+    let (system, u) = coupled(TUBE, structure, false);
+    let balance = HarmonicBalance::new(&system, Instances::of_harmonics(1), omega, 1.0);
+    let all = balance.copies(&u);
+    let mut relax = Relax::new(&balance, CONTROL, all.clone(), &all, None);
+    while relax.drop() > 1e-6 && relax.iteration < 60 {
+        relax.advance().unwrap();
+    }
+    let q: Vec<f64> = relax.u[balance.placing()].chunks_exact(2).map(|pair| pair[0]).collect();
+    let series = Series::of_values(&q).unwrap();
+    let exact = force / (spring - mass * omega * omega + AREA * omega / (omega * length).tan());
+    println!("{:?} of {exact}, {} iterations, {} linear", series.coefficients(), relax.iteration, relax.linear);
+    assert!((series.coefficients()[1] / exact - 1.0).abs() < 0.01, "{:?} of {exact}", series.coefficients());
+    assert!(series.coefficients()[2].abs() < 0.01 * exact.abs());
 }

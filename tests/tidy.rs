@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// Modules by floor: each may use strictly lower floors only.
-const FLOORS: [(&str, u8); 16] = [
+const FLOORS: [(&str, u8); 17] = [
     ("math", 0),
     ("case", 0),
     ("system", 1),
@@ -21,6 +21,7 @@ const FLOORS: [(&str, u8); 16] = [
     ("cloud", 2),
     ("time", 2),
     ("scheme", 3),
+    ("coupling", 4),
     ("observe", 4),
     ("report", 5),
     ("verify", 5),

@@ -182,7 +182,7 @@ impl<S: Implicit> Dual<'_, S> {
             self.relax.drop_preconditioner();
         } else if self.past.served == 0 || self.past.served >= SERVES {
             (self.past.served, self.past.made) = (0, end);
-            make_ahead(self.system, &mut self.relax, formula, (&self.start, end));
+            make_ahead(self.system, &mut self.relax, formula, (&self.start, end, dt));
         }
     }
 
@@ -195,7 +195,7 @@ impl<S: Implicit> Dual<'_, S> {
             _ => return,
         };
         let formula = self.formula_at(made, step, step);
-        make_ahead(self.system, &mut self.relax, &formula, (state, made));
+        make_ahead(self.system, &mut self.relax, &formula, (state, made, step));
         self.set_frame_after_step();
     }
 
@@ -345,10 +345,15 @@ impl<S: Implicit> Dual<'_, S> {
 
 /// Makes a preconditioner from the state `state` for the step that ends at `end`: a function of these alone. Bodies that have
 /// coordinates of their own stand where that state puts them.
-fn make_ahead<S: Implicit>(system: &S, relax: &mut Relax<'_, S>, formula: &Formula, (state, end): (&[f64], f64)) {
+fn make_ahead<S: Implicit>(
+    system: &S,
+    relax: &mut Relax<'_, S>,
+    formula: &Formula,
+    (state, end, dt): (&[f64], f64, f64),
+) {
     let (placing, rate) = (system.placing(), formula.coefficient(0));
     match placing.is_empty() {
         true => formula.at(&[], |at| relax.prepare_at(at, state, rate)),
-        false => relax.prepare_at(&Instant::within(end, 0.0, 0.0).with(&state[placing]), state, rate),
+        false => relax.prepare_at(&Instant::within(end, dt, 0.0).with(&state[placing]), state, rate),
     }
 }

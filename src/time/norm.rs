@@ -29,20 +29,21 @@ fn square(field: &Field, r: &[f64], i: usize) -> f64 {
 }
 
 /// Multiplies the local times of all fields but the first by what makes each field count as the first does, where `residuals`
-/// are those that the fields have at first.
+/// are those that the fields have at first; a field never counts less than in its own units.
 pub(super) fn weigh(fields: &[Field], scale: &mut [f64], residuals: &[&[f64]]) {
     let size = |at: &Placed, scale: &[f64]| {
+        let count = (at.field.rows * at.field.instances) as f64;
         let one = |r: &&[f64]| {
             let (r, scale) = (&r[at.unknowns.clone()], &scale[at.rows.clone()]);
-            sum(at.field.rows, |i| square(&at.field, r, i) * scale[i].powi(2)).sqrt()
+            (sum(at.field.rows, |i| square(&at.field, r, i) * scale[i].powi(2)) / count).sqrt()
         };
-        let least = NOTHING * ((at.field.rows * at.field.instances) as f64).sqrt();
-        residuals.iter().map(one).fold(least, f64::max)
+        (residuals.iter().map(one).fold(NOTHING, f64::max), count)
     };
     let mut all = placed(fields);
-    let Some(reference) = all.next().map(|at| size(&at, scale)) else { return };
+    let Some((reference, count)) = all.next().map(|at| size(&at, scale)) else { return };
     for at in all {
-        let weight = reference / size(&at, scale);
+        let (own, own_count) = size(&at, scale);
+        let weight = (reference / own).max(1.0) * (count / own_count).sqrt();
         scale[at.rows].iter_mut().for_each(|s| *s *= weight);
     }
 }
