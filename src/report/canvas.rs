@@ -243,6 +243,10 @@ fn svg_text(svg: &mut String, text: &Text) {
         r#"<text x="{x:.2}" y="{y:.2}" font-size="{}" fill="{}" text-anchor="{anchor}"{weight}{turn}>{}</text>"#,
         text.size,
         text.colour.hex(),
-        super::escape(&text.text)
+        escape(&text.text)
     );
+}
+
+fn escape(text: &str) -> String {
+    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }

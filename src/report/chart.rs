@@ -79,7 +79,30 @@ impl Axis {
     }
 }
 
+impl Series {
+    /// Numbers under a name; an empty one has no entry in the legend.
+    pub fn new(name: &str, marks: Marks, x: Vec<f64>, y: Vec<f64>) -> Self {
+        Self { name: name.to_owned(), marks, x, y }
+    }
+
+    /// The same with the first point once more at the end.
+    pub fn closed(mut self) -> Self {
+        self.x.extend(self.x.first().copied());
+        self.y.extend(self.y.first().copied());
+        self
+    }
+}
+
 impl Chart {
+    /// Leaves out points evenly where a series has more than `most`.
+    pub(super) fn thin(&mut self, most: usize) {
+        for series in self.series.iter_mut().filter(|s| s.marks != Marks::Bars) {
+            let stride = series.x.len().div_ceil(most).max(1);
+            let thinned = |values: &[f64]| values.iter().copied().step_by(stride).collect();
+            (series.x, series.y) = (thinned(&series.x), thinned(&series.y));
+        }
+    }
+
     /// The chart as a stand-alone SVG document.
     pub fn svg(&self) -> Result<String, ReportError> {
         self.draw().svg()
@@ -168,7 +191,7 @@ fn draw_series(canvas: &mut Canvas, frame: &Frame, series: &Series, colour: Colo
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::html::tests::assert_balanced;
+    use crate::report::overview::tests::assert_balanced;
     use crate::report::picture::tests::keep;
 
     fn pressure() -> Chart {

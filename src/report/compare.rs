@@ -10,15 +10,14 @@ use std::path::{Path, PathBuf};
 use num_complex::Complex64;
 use serde_json::Value;
 
-use super::chart::{Axis, Chart, Marks, Series};
+use super::chart::Chart;
 use super::fields::{self, FieldDifference};
-use super::files::{RunFolder, Table};
-use super::html::page;
-use super::sections::{chart_html, number, table_html};
-use super::{ReportError, escape, write_file};
+use super::files::{LOADS, Load, RunFolder};
+use super::page::{Block, Page, Section, Table};
+use super::periodic::{Period, loop_charts};
+use super::sections::number;
+use super::{ReportError, write_file};
 
-/// Loads: column, name.
-const LOADS: [(&str, &str); 3] = [("cl", "CL"), ("cd", "CD"), ("cm", "CM")];
 /// Harmonics in the table.
 const SHOWN: usize = 3;
 
@@ -41,6 +40,26 @@ pub struct LoadDifference {
     pub rms: f64,
 }
 
+/// What a finished run of a motion that repeats left behind.
+struct Finished {
+    summary: Value,
+    harmonics: Value,
+    period: Period,
+}
+
+impl Finished {
+    fn of(run: &RunFolder) -> Result<Self, String> {
+        let told = |e: String| format!("{}: {e}", run.path.display());
+        let name = run.path.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
+        let (loops, instances) = (run.table("loops.csv").map_err(told)?, run.table("instances.csv").ok());
+        Ok(Self {
+            summary: run.json("summary.json").map_err(told)?,
+            harmonics: run.json("harmonics.json").map_err(told)?,
+            period: Period { name, loops, instances },
+        })
+    }
+}
+
 /// Two runs side by side.
 #[derive(Clone, Debug)]
 pub struct Comparison {
@@ -61,48 +80,38 @@ pub struct Comparison {
     pub wall: Option<[f64; 2]>,
     /// Differences of the fields, or why they cannot be compared.
     pub fields: Result<Vec<FieldDifference>, String>,
-    charts: Vec<(&'static str, Chart)>,
+    charts: Vec<(Load, Chart)>,
 }
 
 impl Comparison {
     /// Reads two run folders; every reason why they cannot be compared is told.
     pub fn of(a: &Path, b: &Path) -> Result<Self, String> {
-        let runs = [RunFolder::new(a), RunFolder::new(b)];
-        let read = |run: &RunFolder| {
-            let told = |e: String| format!("{}: {e}", run.path.display());
-            let summary = run.json("summary.json").map_err(told)?;
-            let harmonics = run.json("harmonics.json").map_err(told)?;
-            let loops = run.table("loops.csv").map_err(told)?;
-            Ok((summary, harmonics, loops))
-        };
-        let (first, second) = match runs.each_ref().map(read) {
-            [Ok(a), Ok(b)] => (a, b),
+        let folders = [RunFolder::new(a), RunFolder::new(b)];
+        let runs = match folders.each_ref().map(Finished::of) {
+            [Ok(a), Ok(b)] => [a, b],
             all => {
                 let problems: Vec<String> = all.into_iter().filter_map(Result::err).collect();
                 let hint = "both must be finished runs of a motion that repeats";
                 return Err(format!("{}\nhint: {hint}", problems.join("\n")));
             }
         };
-        let omegas = [&first.1, &second.1].map(|h| h["omega"].as_f64().unwrap_or(f64::NAN));
+        let omegas = runs.each_ref().map(|run| run.harmonics["omega"].as_f64().unwrap_or(f64::NAN));
         if (omegas[0] / omegas[1] - 1.0).abs() > 1e-6 || omegas.iter().any(|o| o.is_nan()) {
             return Err(format!(
                 "the runs have the angular frequencies {} and {}\nhint: compare runs of the same motion",
                 omegas[0], omegas[1]
             ));
         }
-        let loads = LOADS.iter().filter_map(|load| difference(load, [&first, &second])).collect();
-        let both = |f: &dyn Fn(&Value) -> Option<f64>| [&first.0, &second.0].map(|s| f(s).unwrap_or(f64::NAN));
-        let names = [a, b].map(|p| p.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned()));
-        let instances = [runs[0].table("instances.csv").ok(), runs[1].table("instances.csv").ok()];
+        let both = |key: &str| runs.each_ref().map(|run| run.summary[key].as_f64().unwrap_or(f64::NAN));
         Ok(Self {
-            loads,
-            cpu: both(&|s| s["cpu_seconds"].as_f64()),
-            wall_clock: both(&|s| s["wall_seconds"].as_f64()),
-            work: both(&|s| s["work_units"].as_f64()),
-            particles: both(&|s| s["particles"].as_f64()),
-            wall: walls(&runs),
-            fields: fields::differences(&runs, fields::period_of(&second.1)),
-            charts: charts(&names, [&first.2, &second.2], &instances),
+            loads: LOADS.iter().filter_map(|load| difference(load, &runs)).collect(),
+            cpu: both("cpu_seconds"),
+            wall_clock: both("wall_seconds"),
+            work: both("work_units"),
+            particles: both("particles"),
+            wall: walls(&folders),
+            fields: fields::differences(&folders, fields::period_of(&runs[1].harmonics)),
+            charts: loop_charts(&runs.map(|run| run.period)),
             runs: [a.to_path_buf(), b.to_path_buf()],
         })
     }
@@ -222,24 +231,32 @@ impl Comparison {
             source,
         })?;
         write_file(&folder.join("comparison.csv"), self.csv().as_bytes())?;
-        let mut body = format!(
-            "<header>\n<h1>Comparison</h1>\n<p>a = <code>{}</code>, b = <code>{}</code> (the reference)</p>\n</header>\n",
-            escape(&self.runs[0].display().to_string()),
-            escape(&self.runs[1].display().to_string())
-        );
-        body.push_str(&format!("<section>\n<h2>Loads</h2>\n{}", self.tables()));
-        self.charts.iter().for_each(|(_, chart)| body.push_str(&chart_html(chart)));
-        body.push_str("</section>\n");
-        for (column, chart) in &self.charts {
-            write_file(&folder.join(format!("loop-{column}.svg")), chart.svg()?.as_bytes())?;
+        for (load, chart) in &self.charts {
+            write_file(&folder.join(format!("loop-{}.svg", load.column)), chart.svg()?.as_bytes())?;
         }
         let path = folder.join("comparison.html");
-        write_file(&path, page("Comparison", &body).as_bytes())?;
+        write_file(&path, self.page().html()?.as_bytes())?;
         Ok(path)
     }
 
-    fn tables(&self) -> String {
-        let percent = |v: f64| format!("{} %", number(100.0 * v));
+    fn page(&self) -> Page {
+        let [a, b] = self.runs.each_ref().map(|run| run.display());
+        let charts = self.charts.iter().map(|(_, chart)| Block::chart(chart.clone()));
+        let loads = std::iter::once(Block::Table(self.loads_table())).chain(charts).collect();
+        let fields = self.fields.as_ref().map(|differences| fields_blocks(differences));
+        Page {
+            title: "Comparison".to_owned(),
+            lead: Some(format!("a = `{a}`, b = `{b}` (the reference)")),
+            sections: vec![
+                Section::new("", "Loads", Ok(loads)),
+                Section::new("", "Fields", fields.or_else(|why| Ok(vec![Block::Text(why.clone())]))),
+                Section::new("", "Cost", Ok(vec![Block::Table(self.costs_table())])),
+            ],
+            ..Page::default()
+        }
+    }
+
+    fn loads_table(&self) -> Table {
         let row = |l: &LoadDifference| {
             let [a, b] = l.harmonics.first().copied().unwrap_or_default();
             vec![
@@ -267,47 +284,45 @@ impl Comparison {
             "e1",
             "greatest",
         ];
-        let mut html = table_html(&columns, self.loads.iter().map(row));
-        html.push_str("<h2>Fields</h2>\n");
-        match &self.fields {
-            Ok(differences) => {
-                let row = |d: &FieldDifference| {
-                    let parts = [d.rms, d.rms / d.scale, d.largest, d.largest / d.scale];
-                    let [rms, part, largest, most] =
-                        [number(parts[0]), percent(parts[1]), number(parts[2]), percent(parts[3])];
-                    vec![d.quantity.to_owned(), d.at.words(), rms, part, largest, most, d.where_it_is()]
-                };
-                let columns = ["field", "of", "root mean square", "part", "greatest", "part", "at"];
-                html.push_str(&table_html(&columns, differences.iter().map(row)));
-                html.push_str(
-                    "<p>Over the fluid particles; parts are those of half the range of b, for harmonics of the root mean square of \
-                     that harmonic in b.</p>\n",
-                );
-            }
-            Err(why) => html.push_str(&format!("<p>{}</p>\n", escape(why))),
-        }
-        html.push_str("<h2>Cost</h2>\n");
+        Table::new(&columns, self.loads.iter().map(row))
+    }
+
+    fn costs_table(&self) -> Table {
         let told = |v: f64| if v.is_finite() { number(v) } else { "not counted".to_owned() };
         let cost = self.costs().map(|(name, [a, b])| vec![name.to_owned(), told(a), told(b), told(b / a)]);
-        let particles =
-            vec!["particles".to_owned(), number(self.particles[0]), number(self.particles[1]), String::new()];
-        html.push_str(&table_html(&["", "a", "b", "speed-up of a"], cost.into_iter().chain([particles])));
-        html
+        let [a, b] = self.particles.map(number);
+        let particles = vec!["particles".to_owned(), a, b, String::new()];
+        Table::new(&["", "a", "b", "speed-up of a"], cost.into_iter().chain([particles]))
     }
 }
 
-/// One load of both runs: (summary, harmonics, loops) each.
-fn difference((key, name): &(&str, &'static str), runs: [&(Value, Value, Table); 2]) -> Option<LoadDifference> {
-    let mean = runs.map(|r| r.1["loads"][key]["mean"].as_f64());
-    let mean = [mean[0]?, mean[1]?];
-    let term = |r: &(Value, Value, Table), k: usize| {
-        let h = &r.1["loads"][key]["harmonics"][k];
+fn percent(v: f64) -> String {
+    format!("{} %", number(100.0 * v))
+}
+
+fn fields_blocks(differences: &[FieldDifference]) -> Vec<Block> {
+    let row = |d: &FieldDifference| {
+        let sizes = [number(d.rms), percent(d.rms / d.scale), number(d.largest), percent(d.largest / d.scale)];
+        [d.quantity.to_owned(), d.at.words()].into_iter().chain(sizes).chain([d.where_it_is()]).collect()
+    };
+    let columns = ["field", "of", "root mean square", "part", "greatest", "part", "at"];
+    let text = "Over the fluid particles; parts are those of half the range of b, for harmonics of the root mean square of \
+                that harmonic in b.";
+    vec![Block::Table(Table::new(&columns, differences.iter().map(row))), Block::Text(text.to_owned())]
+}
+
+/// One load of both runs.
+fn difference(load: &Load, runs: &[Finished; 2]) -> Option<LoadDifference> {
+    let own = runs.each_ref().map(|run| &run.harmonics["loads"][load.column]);
+    let mean = [own[0]["mean"].as_f64()?, own[1]["mean"].as_f64()?];
+    let term = |load: &Value, k: usize| {
+        let h = &load["harmonics"][k];
         Some(Complex64::new(h["re"].as_f64()?, h["im"].as_f64()?))
     };
-    let harmonics: Vec<[Complex64; 2]> =
-        (0..SHOWN).map_while(|k| Some([term(runs[0], k)?, term(runs[1], k)?])).collect();
+    let harmonics: Vec<[Complex64; 2]> = (0..SHOWN).map_while(|k| Some([term(own[0], k)?, term(own[1], k)?])).collect();
     let [a, b] = *harmonics.first()?;
-    let (x, y) = (runs[0].2.numbers(key)?, runs[1].2.numbers(key)?);
+    let [x, y] = runs.each_ref().map(|run| run.period.loops.numbers(load.column));
+    let (x, y) = (x?, y?);
     let low = y.iter().copied().fold(f64::INFINITY, f64::min);
     let high = y.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let differences: Vec<f64> =
@@ -316,7 +331,7 @@ fn difference((key, name): &(&str, &'static str), runs: [&(Value, Value, Table);
     let largest = differences.iter().copied().reduce(f64::max).unwrap_or(f64::NAN) / half;
     let square = differences.iter().map(|d| d * d).sum::<f64>() / differences.len() as f64;
     let (e0, e1) = ((mean[0] - mean[1]).abs() / b.norm(), (a - b).norm() / b.norm());
-    Some(LoadDifference { name, mean, harmonics, e0, e1, largest, rms: square.sqrt() / half })
+    Some(LoadDifference { name: load.name, mean, harmonics, e0, e1, largest, rms: square.sqrt() / half })
 }
 
 /// Differences of the wall pressure where both runs have the same wall particles.
@@ -333,32 +348,10 @@ fn walls(runs: &[RunFolder; 2]) -> Option<[f64; 2]> {
     Some([square.sqrt(), differences.iter().copied().fold(0.0, f64::max)])
 }
 
-fn charts(names: &[String; 2], loops: [&Table; 2], instances: &[Option<Table>; 2]) -> Vec<(&'static str, Chart)> {
-    let moved = |values: &Vec<f64>| values.iter().any(|v| v.abs() > 0.0);
-    let angle = loops[0].numbers("angle_deg").is_some_and(|v| moved(&v));
-    let (motion, label) = if angle { ("angle_deg", "angle, degrees") } else { ("shift", "displacement") };
-    let one = |(column, name): &(&'static str, &str)| {
-        let mut series = Vec::new();
-        for (table, run) in loops.iter().zip(names) {
-            let (mut x, mut y) = (table.numbers(motion)?, table.numbers(column)?);
-            x.extend(x.first().copied());
-            y.extend(y.first().copied());
-            series.push(Series { name: run.clone(), marks: Marks::Line, x, y });
-        }
-        for table in instances.iter().flatten() {
-            let (x, y) = (table.numbers(motion)?, table.numbers(column)?);
-            series.push(Series { name: "instances".into(), marks: Marks::Dots, x, y });
-        }
-        let title = format!("{name} over one period");
-        Some((*column, Chart { title, x: Axis::linear(label), y: Axis::linear(name), series }))
-    };
-    LOADS.iter().filter_map(one).collect()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::report::html::tests::assert_balanced;
+    use crate::report::overview::tests::assert_balanced;
 
     fn run(folder: &Path, amplitude: f64, (cpu, work): (f64, f64)) {
         std::fs::create_dir_all(folder).unwrap();

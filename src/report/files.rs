@@ -3,22 +3,28 @@ use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 
+use super::chart::{Marks, Series};
+
 /// A run folder. Every reader gives what is there or says, for the page, why it is not.
 pub(super) struct RunFolder {
     pub(super) path: PathBuf,
 }
 
-/// A table of comma-separated values; lines that begin with `#` are comments.
-pub(super) struct Table {
-    pub(super) columns: Vec<String>,
-    pub(super) rows: Vec<Vec<String>>,
+/// A load of a run: its column in files, its name on pages.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Load {
+    pub(super) column: &'static str,
+    pub(super) name: &'static str,
 }
 
-/// A reference curve of Cp against x/c.
-pub(super) struct Reference {
-    pub(super) label: String,
-    pub(super) x: Vec<f64>,
-    pub(super) cp: Vec<f64>,
+/// The loads of all bodies together.
+pub(super) const LOADS: [Load; 3] =
+    [Load { column: "cl", name: "CL" }, Load { column: "cd", name: "CD" }, Load { column: "cm", name: "CM" }];
+
+/// A table of comma-separated values; lines that begin with `#` are comments.
+pub(super) struct Csv {
+    pub(super) columns: Vec<String>,
+    pub(super) rows: Vec<Vec<String>>,
 }
 
 impl RunFolder {
@@ -34,8 +40,8 @@ impl RunFolder {
         serde_json::from_str(&self.text(name)?).map_err(|e| format!("`{name}` is not valid JSON: {e}"))
     }
 
-    pub(super) fn table(&self, name: &str) -> Result<Table, String> {
-        Table::parse(&self.text(name)?).map_err(|e| format!("`{name}` is not a table: {e}"))
+    pub(super) fn table(&self, name: &str) -> Result<Csv, String> {
+        Csv::parse(&self.text(name)?).map_err(|e| format!("`{name}` is not a table: {e}"))
     }
 
     /// Pictures as (file name, bytes), by name.
@@ -57,9 +63,9 @@ impl RunFolder {
         files
     }
 
-    /// Reference curves named under `[[compare]]` in the case, and words about those that cannot be read. A file is
+    /// Reference curves of Cp named under `[[compare]]` in the case, and words about those that cannot be read. A file is
     /// looked for beside the run and beside the case file.
-    pub(super) fn references(&self) -> (Vec<Reference>, Vec<String>) {
+    pub(super) fn references(&self) -> (Vec<Series>, Vec<String>) {
         let case = self.text("case.toml").ok().and_then(|text| text.parse::<toml::Table>().ok()).unwrap_or_default();
         let entries = case.get("compare").and_then(|c| c.as_array()).cloned().unwrap_or_default();
         let (mut found, mut missing) = (Vec::new(), Vec::new());
@@ -74,20 +80,20 @@ impl RunFolder {
         (found, missing)
     }
 
-    fn reference(&self, file: &str, label: &str) -> Result<Reference, String> {
+    fn reference(&self, file: &str, label: &str) -> Result<Series, String> {
         let origin = self.text("origin.txt").map(|text| PathBuf::from(text.trim())).ok();
         let beside = [Some(self.path.as_path()), self.path.parent(), origin.as_deref()];
         let path = beside.into_iter().flatten().map(|folder| folder.join(file)).find(|path| path.is_file());
         let path = path.ok_or_else(|| format!("the reference `{file}` was not found"))?;
-        let table = Table::parse(&read_text(&path, file)?).map_err(|e| format!("`{file}` is not a table: {e}"))?;
+        let table = Csv::parse(&read_text(&path, file)?).map_err(|e| format!("`{file}` is not a table: {e}"))?;
         match (table.numbers("x_c"), table.numbers("cp")) {
-            (Some(x), Some(cp)) => Ok(Reference { label: label.to_owned(), x, cp }),
+            (Some(x), Some(cp)) => Ok(Series::new(label, Marks::Rings, x, cp)),
             _ => Err(format!("the reference `{file}` has no columns `x_c` and `Cp`")),
         }
     }
 }
 
-impl Table {
+impl Csv {
     pub(super) fn parse(text: &str) -> Result<Self, csv::Error> {
         let mut reader = csv::ReaderBuilder::new()
             .comment(Some(b'#'))
@@ -100,15 +106,40 @@ impl Table {
         Ok(Self { columns, rows })
     }
 
+    fn position(&self, name: &str) -> Option<usize> {
+        self.columns.iter().position(|c| c.eq_ignore_ascii_case(name))
+    }
+
     /// The entries of a column, by its name in any case.
     pub(super) fn column(&self, name: &str) -> Option<Vec<&str>> {
-        let at = self.columns.iter().position(|c| c.eq_ignore_ascii_case(name))?;
+        let at = self.position(name)?;
         Some(self.rows.iter().map(|row| row.get(at).map_or("", String::as_str)).collect())
     }
 
     /// A column as numbers; what is not one is NaN.
     pub(super) fn numbers(&self, name: &str) -> Option<Vec<f64>> {
         Some(self.column(name)?.iter().map(|entry| entry.parse().unwrap_or(f64::NAN)).collect())
+    }
+
+    /// Column `y` against column `x` as a line; `None` when one of them is missing or holds no number.
+    pub(super) fn curve(&self, x: &str, y: &str, name: &str) -> Option<Series> {
+        let known = |values: &Vec<f64>| values.iter().any(|v| v.is_finite());
+        Some(Series::new(name, Marks::Line, self.numbers(x).filter(known)?, self.numbers(y).filter(known)?))
+    }
+
+    /// One curve for each load that is there.
+    pub(super) fn loads(&self, x: &str) -> Vec<Series> {
+        LOADS.iter().filter_map(|load| self.curve(x, load.column, load.name)).collect()
+    }
+
+    /// Counts the rows in the column `name`, from 1, in place of what it held.
+    pub(super) fn number_rows(&mut self, name: &str) {
+        let at = self.position(name).unwrap_or(self.columns.len());
+        self.columns.resize(self.columns.len().max(at + 1), name.to_owned());
+        for (k, row) in self.rows.iter_mut().enumerate() {
+            row.resize(row.len().max(at + 1), String::new());
+            row[at] = (k + 1).to_string();
+        }
     }
 }
 

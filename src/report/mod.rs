@@ -2,7 +2,7 @@
 //!
 //! Nothing here knows the solver: pictures are made of rasters, points and triangles, the page is made of the files in
 //! the run folder. [`canvas`] is a sheet that prints itself as SVG or PNG; [`chart`], [`picture`] and [`surface`] draw on
-//! it; [`html`] gathers everything into `report.html`; [`verification`] lists claims and whether they hold.
+//! it; `overview` gathers everything into `report.html`; [`verification`] lists claims and whether they hold.
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
@@ -15,7 +15,8 @@ mod contour;
 pub mod fields;
 mod files;
 mod font;
-pub mod html;
+mod overview;
+mod page;
 mod paint;
 mod periodic;
 pub mod picture;
@@ -27,7 +28,7 @@ pub mod verification;
 pub use chart::{Axis, Chart, Marks, Series};
 pub use colour::Colormap;
 pub use compare::Comparison;
-pub use html::write_report;
+pub use overview::write_report;
 pub use picture::{Dots, PictureStyle, Raster, Scatter, raster_png, scatter_png};
 pub use surface::{Shell, SurfaceStyle, surface_png};
 pub use verification::write_verification_page;
@@ -79,6 +80,9 @@ pub enum ReportError {
         /// Number of points.
         points: usize,
     },
+    /// A template that cannot be filled.
+    #[error("cannot write a page: {0}")]
+    Page(#[from] askama::Error),
     /// The encoder refused.
     #[error("cannot encode a picture as PNG: {0}")]
     Png(String),
@@ -96,9 +100,4 @@ pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), ReportError> {
     file.write_all(bytes).map_err(failed)?;
     file.persist(path).map_err(|e| failed(e.error))?;
     Ok(())
-}
-
-/// Text that may stand between tags or in a quoted attribute.
-pub(crate) fn escape(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;").replace('"', "&quot;")
 }

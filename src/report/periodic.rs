@@ -2,8 +2,9 @@
 use serde_json::Value;
 
 use super::chart::{Axis, Chart, Marks, Series};
-use super::files::{RunFolder, Table};
-use super::sections::{chart_html, figure, number, table_html};
+use super::files::{Csv, LOADS, Load, RunFolder};
+use super::page::{Block, Table};
+use super::sections::{number_of, pictures_of};
 
 /// What the pictures of the film strip begin with.
 pub(super) const FILM: &str = "film";
@@ -11,95 +12,81 @@ pub(super) const FILM: &str = "film";
 const STILL: f64 = 1e-12;
 /// Harmonics in the table.
 const SHOWN: usize = 3;
-/// Loads: column, name.
-const LOADS: [(&str, &str); 3] = [("cl", "CL"), ("cd", "CD"), ("cm", "CM")];
+
+/// One period of a run.
+pub(super) struct Period {
+    /// Name in legends.
+    pub(super) name: String,
+    /// Motion and loads at phases of the period.
+    pub(super) loops: Csv,
+    /// The same at the instances of a harmonic balance.
+    pub(super) instances: Option<Csv>,
+}
 
 /// Nothing for a run in which nothing marched.
-pub(super) fn motion(run: &RunFolder) -> String {
-    let mut html = run.table("history.csv").map(|t| in_time(&t)).unwrap_or_default();
-    html.push_str(&strip(run));
-    if let Ok(table) = run.table("loops.csv") {
-        html.push_str(&loops(&table, run.table("instances.csv").ok().as_ref()));
+pub(super) fn motion(run: &RunFolder) -> Vec<Block> {
+    let mut blocks: Vec<Block> = run.table("history.csv").ok().and_then(in_time).into_iter().collect();
+    let film = pictures_of(run, |name| name.starts_with(FILM));
+    blocks.extend(film.into_iter().flat_map(|strip| [Block::Heading("Last period".to_owned()), strip]));
+    if let Ok(loops) = run.table("loops.csv") {
+        let period = Period { name: String::new(), loops, instances: run.table("instances.csv").ok() };
+        blocks.extend(loop_charts(&[period]).into_iter().map(|(_, chart)| Block::chart(chart)));
     }
     if let Ok(harmonics) = run.json("harmonics.json") {
-        html.push_str(&harmonics_table(&harmonics));
+        blocks.extend([Block::Heading("Harmonics".to_owned()), Block::Table(harmonics_table(&harmonics))]);
     }
-    html
+    blocks
 }
 
-fn in_time(history: &Table) -> String {
-    let Some(time) = history.numbers("time") else { return String::new() };
-    let kept: Vec<usize> = (0..time.len()).filter(|k| time[*k] > 0.0).collect();
-    if kept.len() < 2 {
-        return String::new();
-    }
-    let pick =
-        |values: Vec<f64>| -> Vec<f64> { kept.iter().map(|k| values.get(*k).copied().unwrap_or(f64::NAN)).collect() };
-    let x = pick(time);
-    let curve = |(column, name): (&str, &str)| {
-        let y = pick(history.numbers(column)?);
-        Some(Series { name: name.to_owned(), marks: Marks::Line, x: x.clone(), y })
+/// Loads of the rows that are later than the beginning.
+fn in_time(mut history: Csv) -> Option<Block> {
+    let time = history.numbers("time")?;
+    let mut late = time.iter().map(|t| *t > 0.0);
+    history.rows.retain(|_| late.next().unwrap_or(false));
+    let (x, y) = (Axis::linear("time"), Axis::linear("coefficient"));
+    let chart = Chart { title: "Loads in time".into(), x, y, series: history.loads("time") };
+    (history.rows.len() > 1).then(|| Block::chart(chart))
+}
+
+/// Each load against the motion, for one run or more; nothing when the first one stands still.
+pub(super) fn loop_charts(runs: &[Period]) -> Vec<(Load, Chart)> {
+    let moved = |motion: &str| {
+        let values = runs.first().and_then(|run| run.loops.numbers(motion));
+        values.is_some_and(|values| values.iter().any(|v| v.abs() > STILL))
     };
-    let series: Vec<Series> = LOADS.into_iter().filter_map(curve).collect();
-    let y = Axis::linear("coefficient");
-    chart_html(&Chart { title: "Loads in time".into(), x: Axis::linear("time"), y, series })
-}
-
-/// Pictures of one period, one beside the other.
-fn strip(run: &RunFolder) -> String {
-    let frames: String = run
-        .pictures()
-        .iter()
-        .filter(|(name, _)| name.starts_with(FILM))
-        .map(|(name, bytes)| figure(name, bytes))
-        .collect();
-    match frames.is_empty() {
-        true => String::new(),
-        false => format!("<h3>Last period</h3>\n<div class=\"pictures\">\n{frames}</div>\n"),
-    }
-}
-
-fn loops(table: &Table, instances: Option<&Table>) -> String {
-    let moved = |values: &Vec<f64>| values.iter().any(|v| v.abs() > STILL);
-    let angle = table.numbers("angle_deg").filter(moved).map(|x| (x, "angle_deg", "angle, degrees"));
-    let motion = angle.or_else(|| table.numbers("shift").filter(moved).map(|x| (x, "shift", "displacement")));
-    let Some((mut x, moves, label)) = motion else { return String::new() };
-    // the last point is followed by the first
-    x.extend(x.first().copied());
-    let one = |(column, name): (&str, &str)| {
-        let mut y = table.numbers(column)?;
-        y.extend(y.first().copied());
-        let mut series = vec![Series { name: name.to_owned(), marks: Marks::Line, x: x.clone(), y }];
-        if let Some((x, y)) = instances.and_then(|t| t.numbers(moves).zip(t.numbers(column))) {
-            series.push(Series { name: "instances".to_owned(), marks: Marks::Dots, x, y });
-        }
-        let chart =
-            Chart { title: format!("{name} over one period"), x: Axis::linear(label), y: Axis::linear(name), series };
-        Some(chart_html(&chart))
+    let motions = [("angle_deg", "angle, degrees"), ("shift", "displacement")];
+    let Some((motion, label)) = motions.into_iter().find(|(motion, _)| moved(motion)) else { return Vec::new() };
+    let one = |load: Load| {
+        let name = |run: &Period| if runs.len() > 1 { run.name.clone() } else { load.name.to_owned() };
+        let lines = runs.iter().filter_map(|run| Some(run.loops.curve(motion, load.column, &name(run))?.closed()));
+        let dots = runs.iter().filter_map(|run| run.instances.as_ref()?.curve(motion, load.column, "instances"));
+        let series: Vec<Series> = lines.chain(dots.map(|s| Series { marks: Marks::Dots, ..s })).collect();
+        let title = format!("{} over one period", load.name);
+        (load, Chart { title, x: Axis::linear(label), y: Axis::linear(load.name), series })
     };
-    LOADS.into_iter().filter_map(one).collect()
+    LOADS.into_iter().map(one).filter(|(_, chart)| !chart.series.is_empty()).collect()
 }
 
-fn harmonics_table(all: &Value) -> String {
-    let mut columns = vec!["load".to_owned(), "mean".to_owned()];
-    columns.extend((1..=SHOWN).map(|k| format!("|harmonic {k}|")));
-    columns.extend(["over the motion".to_owned(), "ahead of it, degrees".to_owned()]);
-    let names: Vec<&str> = columns.iter().map(String::as_str).collect();
-    let value = |v: &Value| v.as_f64().map_or_else(|| "–".to_owned(), number);
-    let row = |(key, name): (&str, &str)| {
-        let load = &all["loads"][key];
-        let first = &all["about_motion"][0]["loads_per_motion"][key];
-        let mut row = vec![name.to_owned(), value(&load["mean"])];
-        row.extend((0..SHOWN).map(|k| value(&load["harmonics"][k]["abs"])));
-        row.extend([value(&first["amplitude"]), value(&first["phase_deg"])]);
-        row
+fn harmonics_table(all: &Value) -> Table {
+    let harmonics: Vec<String> = (1..=SHOWN).map(|k| format!("|harmonic {k}|")).collect();
+    let mut columns = vec!["load", "mean"];
+    columns.extend(harmonics.iter().map(String::as_str));
+    columns.extend(["over the motion", "ahead of it, degrees"]);
+    let row = |load: &Load| {
+        let own = &all["loads"][load.column];
+        let first = &all["about_motion"][0]["loads_per_motion"][load.column];
+        let mut values = vec![&own["mean"]];
+        values.extend((0..SHOWN).map(|k| &own["harmonics"][k]["abs"]));
+        values.extend([&first["amplitude"], &first["phase_deg"]]);
+        std::iter::once(load.name.to_owned()).chain(values.into_iter().map(number_of)).collect()
     };
-    format!("<h3>Harmonics</h3>\n{}", table_html(&names, LOADS.into_iter().map(row)))
+    Table::new(&columns, LOADS.iter().map(row))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::report::page::{Page, Section};
 
     #[test]
     fn a_period_becomes_loops_harmonics_and_a_strip() {
@@ -110,7 +97,8 @@ mod tests {
         std::fs::write(at("history.csv"), "time,cl,cd,cm\n0,9,9,9\n1,1,2,3\n2,2,3,4\n").unwrap();
         std::fs::write(at("loops.csv"), "phase,angle_deg,shift,cl,cd,cm\n0,0,0,1,2,3\n0.5,1,0,2,3,4\n").unwrap();
         std::fs::write(at("harmonics.json"), r#"{"loads":{"cl":{"mean":0.5,"harmonics":[{"abs":0.25}]}}}"#).unwrap();
-        let page = motion(&RunFolder::new(folder.path()));
+        let section = Section::new("motion", "Motion", Ok(motion(&RunFolder::new(folder.path()))));
+        let page = Page { sections: vec![section], ..Page::default() }.html().unwrap();
         for part in ["Loads in time", "CL over one period", "angle, degrees", "Last period", "Harmonics", "0.25"] {
             assert!(page.contains(part), "{part}: {page}");
         }

@@ -1,68 +1,48 @@
 //! The report: one page that opens anywhere, offline, for ever.
 //!
-//! Everything stands in the page itself: style, script, pictures, data of the charts. The page asks nothing from any
-//! network. Its top line gives the loads with three measures of their error: the difference between the pressure on the
-//! surface and the balance of momentum around the bodies, the change by the last refinement, and the difference from a
-//! reference where the run knows one.
+//! Its top gives the loads with three measures of their error: the difference between the pressure on the surface and the
+//! balance of momentum around the bodies, the change by the last refinement, and the difference from a reference where the
+//! run knows one.
 use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 
-use super::files::RunFolder;
-use super::periodic;
+use super::files::{LOADS, Load, RunFolder};
+use super::page::{Card, Fact, Page, Section, Status};
 use super::sections::{self, grouped, number};
-use super::{ReportError, escape, write_file};
-
-const STYLE: &str = include_str!("assets/report.css");
-const SCRIPT: &str = include_str!("assets/chart.js");
+use super::{ReportError, periodic, write_file};
 
 /// Writes `report.html` into a run folder from the files that are there, and gives its path.
 pub fn write_report(run: &Path) -> Result<PathBuf, ReportError> {
     // The only failures: no folder to read, or no room to write. Whatever is missing in it becomes a word on the page.
     std::fs::read_dir(run).map_err(|source| ReportError::Io { action: "read", path: run.to_path_buf(), source })?;
     let path = run.join("report.html");
-    write_file(&path, report(&RunFolder::new(run)).as_bytes())?;
+    write_file(&path, report(&RunFolder::new(run)).html()?.as_bytes())?;
     Ok(path)
 }
 
-fn report(run: &RunFolder) -> String {
+fn report(run: &RunFolder) -> Page {
     let summary = run.json("summary.json").unwrap_or_default();
-    let title = case_title(run, &summary);
-    let chapters = [
-        ("loads", "Loads", sections::loads(run)),
-        ("flow", "Flow", sections::pictures(run, false)),
-        ("pressure", "Pressure on the surface", sections::pressure(run)),
-        ("motion", "Motion", periodic::motion(run)),
-        ("convergence", "Convergence", sections::convergence(run)),
-        ("doctor", "Cloud doctor", sections::doctor(run)),
-        ("ledger", "Conservation", sections::ledger(run)),
-        ("cost", "Time and memory", sections::timings(run)),
-        ("case", "Case", sections::case(run)),
-        ("cite", "How to cite", sections::citation()),
-        ("files", "Files", sections::files(run)),
+    let sections = [
+        Section::new("loads", "Loads", sections::loads(run)),
+        Section::new("flow", "Flow", sections::pictures(run)),
+        Section::new("pressure", "Pressure on the surface", sections::pressure(run)),
+        Section::new("motion", "Motion", Ok(periodic::motion(run))),
+        Section::new("convergence", "Convergence", Ok(sections::convergence(run))),
+        Section::new("doctor", "Cloud doctor", Ok(sections::doctor(run))),
+        Section::new("ledger", "Conservation", sections::ledger(run)),
+        Section::new("cost", "Time and memory", sections::timings(run)),
+        Section::new("case", "Case", sections::case(run)),
+        Section::new("cite", "How to cite", Ok(sections::citation())),
+        Section::new("files", "Files", Ok(sections::files(run))),
     ];
-    let chapters: Vec<_> =
-        chapters.into_iter().filter(|(id, _, content)| *id != "motion" || !content.is_empty()).collect();
-    let links: String = chapters.iter().map(|(id, name, _)| format!("<a href=\"#{id}\">{name}</a>\n")).collect();
-    let mut body = format!("<header>\n<h1>{}</h1>\n{}</header>\n", escape(&title), status_line(&summary));
-    body.push_str(&headline(run, &summary));
-    body.push_str(&format!("<nav>\n{links}</nav>\n"));
-    for (id, name, content) in chapters {
-        body.push_str(&format!("<section id=\"{id}\">\n<h2>{name}</h2>\n{content}</section>\n"));
+    Page {
+        title: case_title(run, &summary),
+        status: Some(status(&summary)),
+        cards: cards(run, &summary),
+        sections: sections.into_iter().filter(|s| !s.blocks.is_empty()).collect(),
+        ..Page::default()
     }
-    page(&title, &body)
-}
-
-/// A whole page around `body`.
-pub(super) fn page(title: &str, body: &str) -> String {
-    format!(
-        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\"/>\n\
-         <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n\
-         <meta name=\"color-scheme\" content=\"light dark\"/>\n<title>{}</title>\n<style>\n{STYLE}</style>\n</head>\n\
-         <body>\n<main>\n{body}<footer>Alula {}</footer>\n</main>\n<script>\n{SCRIPT}</script>\n</body>\n</html>\n",
-        escape(title),
-        env!("CARGO_PKG_VERSION")
-    )
 }
 
 fn case_title(run: &RunFolder, summary: &Value) -> String {
@@ -73,27 +53,21 @@ fn case_title(run: &RunFolder, summary: &Value) -> String {
 }
 
 /// One line: converged or not, particles, iterations.
-fn status_line(summary: &Value) -> String {
+fn status(summary: &Value) -> Status {
     let get = |key: &str| summary.get(key).and_then(Value::as_f64);
     let (class, verdict) = match summary.get("converged").and_then(Value::as_bool) {
         Some(true) => ("good", "converged"),
         Some(false) => ("bad", "not converged"),
         None => ("unknown", "no summary"),
     };
-    let mut facts = Vec::new();
-    if let Some(n) = get("particles") {
-        facts.push(format!("{} particles", grouped(n)));
-    }
-    if let Some(n) = get("iterations") {
-        facts.push(format!("{} iterations", grouped(n)));
-    }
-    if let Some(drop) = get("residual_drop").filter(|d| *d > 0.0) {
-        facts.push(format!("residual down by {} orders", orders(drop)));
-    }
-    if let Some(run) = summary.get("run").and_then(Value::as_str) {
-        facts.push(run.to_owned());
-    }
-    format!("<p class=\"status\"><span class=\"{class}\">{verdict}</span> {}</p>\n", escape(&facts.join(" · ")))
+    let facts = [
+        get("particles").map(|n| format!("{} particles", grouped(n))),
+        get("iterations").map(|n| format!("{} iterations", grouped(n))),
+        get("residual_drop").filter(|d| *d > 0.0).map(|d| format!("residual down by {} orders", orders(d))),
+        summary.get("run").and_then(Value::as_str).map(str::to_owned),
+    ];
+    let facts = facts.into_iter().flatten().collect::<Vec<_>>().join(" · ");
+    Status { class, verdict: verdict.to_owned(), facts }
 }
 
 /// `residual_drop` counts orders of magnitude; a fraction below 1 is the ratio itself.
@@ -102,31 +76,22 @@ fn orders(drop: f64) -> String {
 }
 
 /// The three coefficients with their errors.
-fn headline(run: &RunFolder, summary: &Value) -> String {
-    let refinement = last_refinement(run);
-    let cards: String = [("cl", "CL"), ("cd", "CD"), ("cm", "CM")]
-        .into_iter()
-        .zip(refinement)
-        .map(|((key, name), change)| card(summary, key, name, change))
-        .collect();
-    format!("<div class=\"cards\">\n{cards}</div>\n")
+fn cards(run: &RunFolder, summary: &Value) -> Vec<Card> {
+    let refinements = last_refinement(run);
+    LOADS.iter().zip(refinements).map(|(load, change)| card(summary, load, change)).collect()
 }
 
-fn card(summary: &Value, key: &str, name: &str, refinement: Option<f64>) -> String {
-    let of = |table: &str| summary.get(table).and_then(|t| t.get(key)).and_then(Value::as_f64);
+fn card(summary: &Value, load: &Load, refinement: Option<f64>) -> Card {
+    let of = |table: &str| summary.get(table).and_then(|t| t.get(load.column)).and_then(Value::as_f64);
     let value = of("loads");
     let difference = |other: Option<f64>| value.zip(other).map(|(a, b)| a - b);
-    let line = |label: &str, change: Option<f64>| {
-        let text = change.map_or("–".to_owned(), |c| signed(c, value));
-        format!("<div><dt>{label}</dt><dd>{text}</dd></div>\n")
-    };
-    format!(
-        "<div class=\"card\"><h2>{name}</h2><p class=\"value\">{}</p>\n<dl>\n{}{}{}</dl></div>\n",
-        value.map_or("–".to_owned(), number),
-        line("against momentum balance", difference(of("loads_momentum_balance"))),
-        line("change by last refinement", refinement),
-        line("against reference", difference(of("reference")))
-    )
+    let fact = |name: &str, change: Option<f64>| Fact::new(name, change.map_or("–".to_owned(), |c| signed(c, value)));
+    let facts = vec![
+        fact("against momentum balance", difference(of("loads_momentum_balance"))),
+        fact("change by last refinement", refinement),
+        fact("against reference", difference(of("reference"))),
+    ];
+    Card { name: load.name, value: value.map_or("–".to_owned(), number), facts }
 }
 
 /// A difference with its sign, and in per cent of `whole` where that means something.
@@ -152,7 +117,7 @@ fn signed(change: f64, whole: Option<f64>) -> String {
 /// Change of CL, CD and CM from the last but one row of `adapt.csv` to the last.
 fn last_refinement(run: &RunFolder) -> [Option<f64>; 3] {
     let Ok(table) = run.table("adapt.csv") else { return [None; 3] };
-    ["cl", "cd", "cm"].map(|name| match table.numbers(name).as_deref() {
+    LOADS.map(|load| match table.numbers(load.column).as_deref() {
         Some([.., before, last]) => Some(last - before).filter(|change| change.is_finite()),
         _ => None,
     })
@@ -272,7 +237,7 @@ pub(crate) mod tests {
         for text in [
             "0.35213",
             "CFL3D, 80 chords",
-            "&lt;Euler&gt;",
+            "&#60;Euler&#62;",
             "10.2514/6.2010-7604",
             "+0.001930 (0.55 %)",
             "48\u{202f}211",
