@@ -1,6 +1,8 @@
 //! Scales, ticks and the frame of a plot.
 //!
 //! Linear ticks stand at multiples of 1, 2 or 5 times a power of ten; logarithmic ticks at powers of ten.
+use serde::Serialize;
+
 use super::canvas::{Anchor, Area, Canvas, Pen, Text};
 use super::colour::Colour;
 
@@ -10,9 +12,13 @@ pub(crate) const TICK_SIZE: f64 = 12.0;
 pub(crate) const LABEL_SIZE: f64 = 13.5;
 /// Size of titles in pixels.
 pub(crate) const TITLE_SIZE: f64 = 16.0;
+/// From the plot to the label beside it: room for tick labels of eight characters.
+const LABEL_ROOM: f64 = 62.0;
+/// Pixels from one tick to the next, at least: beside one another, above one another.
+const TICK_ROOM: [f64; 2] = [80.0, 50.0];
 
 /// A map from values to a side of a plot: `from` stands at its beginning, `to` at its end.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Scale {
     /// Value at the left or the bottom.
     pub from: f64,
@@ -51,6 +57,12 @@ impl Scale {
         } else {
             (value - self.from) / (self.to - self.from)
         }
+    }
+
+    /// The scale over `factor` times as much, about its middle.
+    fn widened(self, factor: f64) -> Self {
+        let (middle, half) = (0.5 * (self.from + self.to), 0.5 * factor * (self.to - self.from));
+        Self { from: middle - half, to: middle + half, ..self }
     }
 
     /// About `count` round values on the scale.
@@ -103,7 +115,7 @@ fn label(value: f64, step: f64) -> String {
 }
 
 /// A plot area with a scale on each side.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize)]
 pub struct Frame {
     /// Where curves are drawn.
     pub area: Area,
@@ -120,42 +132,56 @@ impl Frame {
         [left + self.x.fraction(x) * width, top + (1.0 - self.y.fraction(y)) * height]
     }
 
+    /// The frame with one of its linear scales widened until a unit is as long on both.
+    pub fn with_equal_units(self) -> Self {
+        let pixels = |length: f64, scale: Scale| length / (scale.to - scale.from).abs();
+        let ratio = pixels(self.area.width, self.x) / pixels(self.area.height, self.y);
+        match ratio > 1.0 {
+            true => Self { x: self.x.widened(ratio), ..self },
+            false => Self { y: self.y.widened(1.0 / ratio), ..self },
+        }
+    }
+
+    /// Ticks below, each with its place from the left.
+    fn ticks_below(&self) -> impl Iterator<Item = (f64, Tick)> {
+        let ticks = self.x.ticks((self.area.width / TICK_ROOM[0]).clamp(5.0, 10.0) as usize);
+        ticks.into_iter().map(|tick| (self.area.x + self.x.fraction(tick.value) * self.area.width, tick))
+    }
+
+    /// Ticks beside, each with its place from the top.
+    fn ticks_beside(&self) -> impl Iterator<Item = (f64, Tick)> {
+        let ticks = self.y.ticks((self.area.height / TICK_ROOM[1]).clamp(4.0, 6.0) as usize);
+        ticks.into_iter().map(|tick| (self.area.y + (1.0 - self.y.fraction(tick.value)) * self.area.height, tick))
+    }
+
     /// Draws grid lines at the ticks; under everything else.
     pub fn grid(&self, canvas: &mut Canvas) {
         let Area { x, y, width, height } = self.area;
         let pen = Pen::new(Colour::GRID, 1.0);
-        for tick in self.x.ticks(8) {
-            let at = x + self.x.fraction(tick.value) * width;
-            canvas.line(vec![[at, y], [at, y + height]], pen);
-        }
-        for tick in self.y.ticks(6) {
-            let at = y + (1.0 - self.y.fraction(tick.value)) * height;
-            canvas.line(vec![[x, at], [x + width, at]], pen);
-        }
+        canvas.layer("grid", None);
+        self.ticks_below().for_each(|(at, _)| canvas.line(vec![[at, y], [at, y + height]], pen));
+        self.ticks_beside().for_each(|(at, _)| canvas.line(vec![[x, at], [x + width, at]], pen));
     }
 
     /// Draws the border, ticks and labels; over everything else.
     pub fn border(&self, canvas: &mut Canvas, x_label: &str, y_label: &str) {
         let Area { x, y, width, height } = self.area;
-        let ink = Pen::new(Colour::INK, 1.0);
-        canvas.rectangle(self.area, None, Some(ink));
-        let bottom = y + height;
-        for tick in self.x.ticks(8) {
-            let at = x + self.x.fraction(tick.value) * width;
+        let (bottom, ink) = (y + height, Pen::new(Colour::INK, 1.0));
+        canvas.layer("ticks", None);
+        for (at, tick) in self.ticks_below() {
             canvas.line(vec![[at, bottom], [at, bottom + 4.0]], ink);
             canvas.text(tick_text(tick.label, [at, bottom + 8.0 + TICK_SIZE * 0.8], Anchor::Middle));
         }
-        let mut widest = 0.0_f64;
-        for tick in self.y.ticks(6) {
-            let at = y + (1.0 - self.y.fraction(tick.value)) * height;
-            widest = widest.max(super::font::width(&tick.label) * TICK_SIZE);
+        for (at, tick) in self.ticks_beside() {
             canvas.line(vec![[x - 4.0, at], [x, at]], ink);
             canvas.text(tick_text(tick.label, [x - 8.0, at + TICK_SIZE * 0.35], Anchor::End));
         }
+        canvas.layer("border", None);
+        canvas.rectangle(self.area, None, Some(ink));
         let middle = [x + 0.5 * width, y + 0.5 * height];
         let below = Text::new(x_label, [middle[0], bottom + 20.0 + TICK_SIZE + LABEL_SIZE * 0.6], LABEL_SIZE);
         canvas.text(Text { anchor: Anchor::Middle, ..below });
-        let beside = Text::new(y_label, [x - 20.0 - widest, middle[1]], LABEL_SIZE);
+        let beside = Text::new(y_label, [x - LABEL_ROOM, middle[1]], LABEL_SIZE);
         canvas.text(Text { anchor: Anchor::Middle, upright: true, ..beside });
     }
 }
@@ -178,6 +204,14 @@ mod tests {
         assert_eq!(labels(Scale { from: 1.2, to: -1.3, log: false }), ["−1.0", "−0.5", "0", "0.5", "1.0"]);
         assert_eq!(labels(Scale { from: 1e-4, to: 1.0, log: true }), ["1e−4", "1e−3", "1e−2", "1e−1", "1"]);
         assert_eq!(labels(Scale { from: 0.0, to: 4e6, log: false })[1], "1e6");
+    }
+
+    #[test]
+    fn a_unit_can_be_as_long_on_both_sides() {
+        let area = Area { x: 0.0, y: 0.0, width: 400.0, height: 100.0 };
+        let [x, y] = [[0.0, 2.0], [3.0, 1.0]].map(|[from, to]| Scale { from, to, log: false });
+        let frame = Frame { area, x, y }.with_equal_units();
+        assert_eq!([frame.x.from, frame.x.to, frame.y.from, frame.y.to], [-3.0, 5.0, 3.0, 1.0]);
     }
 
     #[test]

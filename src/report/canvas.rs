@@ -1,15 +1,20 @@
-//! A sheet of shapes and text that prints itself as SVG or, through `paint`, as PNG.
+//! A sheet of shapes and words: charts and pictures are drawn on it once, as a list that two thin writers take.
 //!
-//! Coordinates are pixels, y down. Charts and pictures draw on a canvas once and get both formats.
+//! The template `sheet.svg` writes the list as SVG, `paint` paints it as PNG. Coordinates are pixels, y down. A sheet has layers,
+//! one above the other; a layer may show inside an area only. A point that is not finite lifts the pen.
 use std::fmt::Write as _;
 
-use base64::Engine as _;
+use askama::Template;
+use serde::Serialize;
 
 use super::ReportError;
 use super::colour::Colour;
 
+/// Between two pieces of one path.
+pub(crate) const LIFTED: [f64; 2] = [f64::NAN; 2];
+
 /// An axis-aligned rectangle on a canvas.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Area {
     /// Left side.
     pub x: f64,
@@ -19,6 +24,14 @@ pub struct Area {
     pub width: f64,
     /// Height.
     pub height: f64,
+}
+
+impl Area {
+    /// Corners, one after another around it.
+    pub fn corners(&self) -> [[f64; 2]; 4] {
+        let (right, bottom) = (self.x + self.width, self.y + self.height);
+        [[self.x, self.y], [right, self.y], [right, bottom], [self.x, bottom]]
+    }
 }
 
 /// A line on a canvas.
@@ -48,6 +61,17 @@ pub enum Anchor {
     Middle,
     /// The end.
     End,
+}
+
+impl Anchor {
+    /// In the words of SVG.
+    fn word(self) -> &'static str {
+        match self {
+            Self::Start => "start",
+            Self::Middle => "middle",
+            Self::End => "end",
+        }
+    }
 }
 
 /// A text on a canvas.
@@ -88,66 +112,121 @@ pub struct Bitmap {
     pub rgba: Vec<u8>,
 }
 
+impl Bitmap {
+    /// The picture as an address that holds all of it.
+    fn address(&self) -> askama::Result<String> {
+        let png = super::paint::bitmap_png(self).map_err(askama::Error::custom)?;
+        Ok(super::data_address("png", &png))
+    }
+}
+
 /// Something drawn.
 #[derive(Clone, Debug)]
 pub(crate) enum Item {
-    Path { points: Vec<[f64; 2]>, closed: bool, fill: Option<Colour>, pen: Option<Pen>, clip: Option<Area> },
-    Discs { centres: Vec<[f64; 2]>, radius: f64, fill: Option<Colour>, pen: Option<Pen>, clip: Option<Area> },
+    Path { outline: Outline, fill: Option<Colour>, pen: Option<Pen> },
+    Discs { centres: Vec<[f64; 2]>, radius: f64, fill: Option<Colour>, pen: Option<Pen> },
     Text(Text),
     Picture { bitmap: Bitmap, area: Area },
 }
 
-/// A sheet to draw on.
+/// Chains of segments.
 #[derive(Clone, Debug)]
+pub(crate) struct Outline {
+    pub(crate) points: Vec<[f64; 2]>,
+    /// The last point of each chain is joined to its first.
+    pub(crate) closed: bool,
+}
+
+impl Outline {
+    /// The chains, one after another.
+    pub(crate) fn chains(&self) -> impl Iterator<Item = &[[f64; 2]]> {
+        self.points.split(|p| !finite(p)).filter(|chain| !chain.is_empty())
+    }
+
+    /// In the words of SVG.
+    fn commands(&self) -> String {
+        let mut path = String::new();
+        for chain in self.chains() {
+            for (k, [x, y]) in chain.iter().enumerate() {
+                let _ = write!(path, "{}{x:.2} {y:.2}", if k == 0 { 'M' } else { 'L' });
+            }
+            path.push_str(if self.closed { "Z" } else { "" });
+        }
+        path
+    }
+}
+
+fn finite(p: &[f64; 2]) -> bool {
+    p[0].is_finite() && p[1].is_finite()
+}
+
+/// Things drawn one after another.
+#[derive(Clone, Debug)]
+pub(crate) struct Layer {
+    /// How scripts find it.
+    pub(crate) name: &'static str,
+    /// Where it shows; absent: everywhere.
+    pub(crate) clip: Option<Area>,
+    pub(crate) items: Vec<Item>,
+}
+
+/// A sheet to draw on.
+#[derive(Clone, Debug, Template)]
+#[template(path = "sheet.svg")]
 pub struct Canvas {
     /// Width in pixels.
     pub width: f64,
     /// Height in pixels.
     pub height: f64,
-    pub(crate) items: Vec<Item>,
-    clip: Option<Area>,
+    pub(crate) layers: Vec<Layer>,
 }
 
 impl Canvas {
-    /// A white sheet.
+    /// A white sheet with one layer.
     pub fn new(width: f64, height: f64) -> Self {
-        Self { width, height, items: Vec::new(), clip: None }
+        Self { width, height, layers: vec![Layer { name: "sheet", clip: None, items: Vec::new() }] }
     }
 
-    /// What is drawn from now on shows inside `area` only; `None` lifts the restriction. Text is never cut.
-    pub fn clip(&mut self, area: Option<Area>) {
-        self.clip = area;
+    /// Begins a layer above all others; with `clip` it shows inside that area only.
+    pub fn layer(&mut self, name: &'static str, clip: Option<Area>) {
+        self.layers.push(Layer { name, clip, items: Vec::new() });
+    }
+
+    fn draw(&mut self, item: Item) {
+        if let Some(layer) = self.layers.last_mut() {
+            layer.items.push(item);
+        }
     }
 
     /// An open chain of segments.
     pub fn line(&mut self, points: Vec<[f64; 2]>, pen: Pen) {
-        self.items.push(Item::Path { points, closed: false, fill: None, pen: Some(pen), clip: self.clip });
+        self.draw(Item::Path { outline: Outline { points, closed: false }, fill: None, pen: Some(pen) });
     }
 
     /// A closed shape.
     pub fn polygon(&mut self, points: Vec<[f64; 2]>, fill: Option<Colour>, pen: Option<Pen>) {
-        self.items.push(Item::Path { points, closed: true, fill, pen, clip: self.clip });
+        self.draw(Item::Path { outline: Outline { points, closed: true }, fill, pen });
     }
 
     /// A rectangle.
     pub fn rectangle(&mut self, area: Area, fill: Option<Colour>, pen: Option<Pen>) {
-        let (right, bottom) = (area.x + area.width, area.y + area.height);
-        self.polygon(vec![[area.x, area.y], [right, area.y], [right, bottom], [area.x, bottom]], fill, pen);
+        self.polygon(area.corners().to_vec(), fill, pen);
     }
 
     /// Equal discs.
-    pub fn discs(&mut self, centres: Vec<[f64; 2]>, radius: f64, fill: Option<Colour>, pen: Option<Pen>) {
-        self.items.push(Item::Discs { centres, radius, fill, pen, clip: self.clip });
+    pub fn discs(&mut self, mut centres: Vec<[f64; 2]>, radius: f64, fill: Option<Colour>, pen: Option<Pen>) {
+        centres.retain(finite);
+        self.draw(Item::Discs { centres, radius, fill, pen });
     }
 
     /// Words.
     pub fn text(&mut self, text: Text) {
-        self.items.push(Item::Text(text));
+        self.draw(Item::Text(text));
     }
 
     /// A picture stretched over `area`.
     pub fn picture(&mut self, bitmap: Bitmap, area: Area) {
-        self.items.push(Item::Picture { bitmap, area });
+        self.draw(Item::Picture { bitmap, area });
     }
 
     /// The sheet as PNG with `scale` pixels per unit.
@@ -157,96 +236,6 @@ impl Canvas {
 
     /// The sheet as a stand-alone SVG document.
     pub fn svg(&self) -> Result<String, ReportError> {
-        let (w, h) = (self.width, self.height);
-        let mut svg = format!(
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {w} {h}\" width=\"{w}\" height=\"{h}\" \
-             font-family=\"Inter, Helvetica, Arial, sans-serif\">\n<rect width=\"{w}\" height=\"{h}\" fill=\"#ffffff\"/>\n"
-        );
-        for (k, item) in self.items.iter().enumerate() {
-            svg_item(&mut svg, k, item)?;
-        }
-        svg.push_str("</svg>\n");
-        Ok(svg)
+        Ok(self.render()?)
     }
-}
-
-fn svg_item(svg: &mut String, k: usize, item: &Item) -> Result<(), ReportError> {
-    match item {
-        Item::Path { points, closed, fill, pen, clip } => {
-            let mut path = String::new();
-            for (i, p) in points.iter().filter(|p| p[0].is_finite() && p[1].is_finite()).enumerate() {
-                let _ = write!(path, "{}{:.2} {:.2}", if i == 0 { 'M' } else { 'L' }, p[0], p[1]);
-            }
-            let end = if *closed { "Z" } else { "" };
-            let clip = svg_clip(svg, k, *clip);
-            let _ = writeln!(svg, r#"<path d="{path}{end}"{}{clip}/>"#, svg_style(*fill, *pen));
-        }
-        Item::Discs { centres, radius, fill, pen, clip } => {
-            let clip = svg_clip(svg, k, *clip);
-            let _ = writeln!(svg, "<g{}{clip}>", svg_style(*fill, *pen));
-            for c in centres.iter().filter(|c| c[0].is_finite() && c[1].is_finite()) {
-                let _ = writeln!(svg, r#"<circle cx="{:.2}" cy="{:.2}" r="{radius:.2}"/>"#, c[0], c[1]);
-            }
-            svg.push_str("</g>\n");
-        }
-        Item::Text(text) => svg_text(svg, text),
-        Item::Picture { bitmap, area } => {
-            let data = base64::engine::general_purpose::STANDARD.encode(super::paint::bitmap_png(bitmap)?);
-            let Area { x, y, width, height } = area;
-            let _ = writeln!(
-                svg,
-                r#"<image x="{x}" y="{y}" width="{width}" height="{height}" preserveAspectRatio="none" href="data:image/png;base64,{data}"/>"#
-            );
-        }
-    }
-    Ok(())
-}
-
-fn svg_clip(svg: &mut String, k: usize, clip: Option<Area>) -> String {
-    let Some(Area { x, y, width, height }) = clip else { return String::new() };
-    let _ =
-        writeln!(svg, r#"<clipPath id="clip{k}"><rect x="{x}" y="{y}" width="{width}" height="{height}"/></clipPath>"#);
-    format!(r#" clip-path="url(#clip{k})""#)
-}
-
-fn svg_style(fill: Option<Colour>, pen: Option<Pen>) -> String {
-    let mut style = match fill {
-        Some(c) => format!(r#" fill="{}" fill-opacity="{:.3}""#, c.hex(), f64::from(c.a) / 255.0),
-        None => r#" fill="none""#.to_owned(),
-    };
-    if let Some(pen) = pen {
-        let opacity = f64::from(pen.colour.a) / 255.0;
-        let _ = write!(
-            style,
-            r#" stroke="{}" stroke-opacity="{opacity:.3}" stroke-width="{}" stroke-linejoin="round""#,
-            pen.colour.hex(),
-            pen.width
-        );
-        if pen.dashed {
-            style.push_str(r#" stroke-dasharray="5 4""#);
-        }
-    }
-    style
-}
-
-fn svg_text(svg: &mut String, text: &Text) {
-    let anchor = match text.anchor {
-        Anchor::Start => "start",
-        Anchor::Middle => "middle",
-        Anchor::End => "end",
-    };
-    let [x, y] = text.at;
-    let turn = if text.upright { format!(r#" transform="rotate(-90 {x:.2} {y:.2})""#) } else { String::new() };
-    let weight = if text.bold { r#" font-weight="600""# } else { "" };
-    let _ = writeln!(
-        svg,
-        r#"<text x="{x:.2}" y="{y:.2}" font-size="{}" fill="{}" text-anchor="{anchor}"{weight}{turn}>{}</text>"#,
-        text.size,
-        text.colour.hex(),
-        escape(&text.text)
-    );
-}
-
-fn escape(text: &str) -> String {
-    text.replace('&', "&amp;").replace('<', "&lt;").replace('>', "&gt;")
 }

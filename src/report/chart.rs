@@ -1,15 +1,49 @@
-//! Charts: curves, dots and bars against a pair of axes, as SVG, PNG or data for the interactive page.
+//! Charts: curves, dots and bars against a pair of axes, drawn once for SVG, PNG and the page.
+//!
+//! Curves are parametric: points are joined in their order, so that histories, loops and phase planes are drawn alike. A value
+//! that is not a number interrupts its curve.
 use serde::Serialize;
 
 use super::ReportError;
 use super::axes::{Frame, Scale, TITLE_SIZE};
-use super::canvas::{Anchor, Area, Canvas, Pen, Text};
+use super::canvas::{Area, Canvas, LIFTED, Pen, Text};
 use super::colour::{CURVES, Colour};
+use super::font;
 
-/// Size of the sheet in pixels.
-const SHEET: [f64; 2] = [760.0, 470.0];
+/// From the borders of a sheet to the plot.
+const LEFT: f64 = 82.0;
+const RIGHT: f64 = 22.0;
+const TOP: f64 = 46.0;
+const BOTTOM: f64 = 60.0;
+/// Baseline of the title.
+const TITLE_LINE: f64 = 28.0;
 /// Size of legend texts in pixels.
 const LEGEND_SIZE: f64 = 12.5;
+/// Height of a row of the legend.
+const LEGEND_ROW: f64 = 18.0;
+/// Letters of other fonts are wider than ours, at most about this much.
+const OTHER_FONTS: f64 = 1.15;
+/// Room for the mark of an entry of the legend, and between one entry and the next.
+const LEGEND_MARK: f64 = 26.0;
+const LEGEND_GAP: f64 = 16.0;
+
+/// Size of a sheet in pixels.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Size {
+    /// Width.
+    pub width: f64,
+    /// Height.
+    pub height: f64,
+}
+
+impl Size {
+    /// A file of its own.
+    pub const FILE: Self = Self { width: 760.0, height: 470.0 };
+    /// As wide as a page.
+    pub const PAGE: Self = Self { width: 960.0, height: 430.0 };
+    /// One of several beside one another.
+    pub const SMALL: Self = Self { width: 480.0, height: 310.0 };
+}
 
 /// One side of a chart.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
@@ -20,6 +54,8 @@ pub struct Axis {
     pub log: bool,
     /// Largest value at the bottom or the left: pressure coefficients.
     pub reversed: bool,
+    /// A unit is as long as on the other axis: shapes and paths in the plane. Both must be linear.
+    pub equal: bool,
 }
 
 /// How a series is drawn.
@@ -28,6 +64,8 @@ pub struct Axis {
 pub enum Marks {
     /// Joined by straight lines.
     Line,
+    /// Joined by dashes: theory and fits.
+    Dashes,
     /// Separate dots: computed values in no order along a curve.
     Dots,
     /// Separate rings: measurements and other references.
@@ -70,12 +108,17 @@ impl Axis {
 
     /// A logarithmic axis.
     pub fn log(label: &str) -> Self {
-        Self { label: label.to_owned(), log: true, reversed: false }
+        Self { label: label.to_owned(), log: true, ..Self::default() }
+    }
+
+    /// A linear axis on which a unit is as long as on the other one.
+    pub fn equal(label: &str) -> Self {
+        Self { label: label.to_owned(), equal: true, ..Self::default() }
     }
 
     /// An axis with the largest value at the bottom.
     pub fn reversed(label: &str) -> Self {
-        Self { label: label.to_owned(), log: false, reversed: true }
+        Self { label: label.to_owned(), reversed: true, ..Self::default() }
     }
 }
 
@@ -91,6 +134,10 @@ impl Series {
         self.y.extend(self.y.first().copied());
         self
     }
+
+    fn pen(&self, colour: Colour, width: f64) -> Pen {
+        Pen { dashed: self.marks == Marks::Dashes, ..Pen::new(colour, width) }
+    }
 }
 
 impl Chart {
@@ -105,85 +152,124 @@ impl Chart {
 
     /// The chart as a stand-alone SVG document.
     pub fn svg(&self) -> Result<String, ReportError> {
-        self.draw().svg()
+        self.draw(Size::FILE).svg()
     }
 
     /// The chart as PNG, two pixels per unit.
     pub fn png(&self) -> Result<Vec<u8>, ReportError> {
-        self.draw().png(2.0)
+        self.draw(Size::FILE).png(2.0)
     }
 
-    /// The chart on a canvas.
-    pub fn draw(&self) -> Canvas {
-        let mut canvas = Canvas::new(SHEET[0], SHEET[1]);
-        let area = Area { x: 82.0, y: 46.0, width: SHEET[0] - 104.0, height: SHEET[1] - 106.0 };
-        let frame = Frame { area, x: self.scale(0), y: self.scale(1) };
-        let title = Text::new(&self.title, [area.x, 28.0], TITLE_SIZE);
+    /// The chart on a canvas; in the layer `curves`, series and items correspond.
+    pub fn draw(&self, size: Size) -> Canvas {
+        let (mut canvas, frame) = (Canvas::new(size.width, size.height), self.frame(size));
+        let title = Text::new(&self.title, [LEFT, TITLE_LINE], TITLE_SIZE);
         canvas.text(Text { bold: true, ..title });
+        for entry in self.legend(size) {
+            entry.draw(&mut canvas);
+        }
         frame.grid(&mut canvas);
-        canvas.clip(Some(area));
+        canvas.layer("curves", Some(frame.area));
         for (series, colour) in self.series.iter().zip(CURVES.iter().cycle()) {
             draw_series(&mut canvas, &frame, series, *colour);
         }
-        canvas.clip(None);
         frame.border(&mut canvas, &self.x.label, &self.y.label);
-        self.legend(&mut canvas, area);
         canvas
     }
 
-    fn scale(&self, side: usize) -> Scale {
-        let axis = if side == 0 { &self.x } else { &self.y };
-        let bars = self.series.iter().any(|s| s.marks == Marks::Bars);
-        let values = self.series.iter().flat_map(|s| if side == 0 { &s.x } else { &s.y }).copied();
-        let zero = (bars && side == 1).then_some(0.0);
-        let mut scale = Scale::around(values.chain(zero), axis.log, axis.reversed);
-        if bars && side == 1 && scale.from < 0.0 && self.series.iter().all(|s| s.y.iter().all(|y| *y >= 0.0)) {
+    /// Everything that a script needs beside the drawing.
+    pub(super) fn data(&self, size: Size) -> ChartData<'_> {
+        ChartData { chart: self, frame: self.frame(size) }
+    }
+
+    fn frame(&self, size: Size) -> Frame {
+        let top = self.legend(size).last().map_or(TOP, |entry| entry.at[1] + TOP - TITLE_LINE);
+        let area = Area { x: LEFT, y: top, width: size.width - LEFT - RIGHT, height: size.height - top - BOTTOM };
+        let frame = Frame { area, x: self.scale(&self.x, |s| &s.x), y: self.scale(&self.y, |s| &s.y) };
+        let equal = (self.x.equal || self.y.equal) && !self.x.log && !self.y.log;
+        if equal { frame.with_equal_units() } else { frame }
+    }
+
+    fn scale(&self, axis: &Axis, values: fn(&Series) -> &Vec<f64>) -> Scale {
+        let bars = std::ptr::eq(axis, &self.y) && self.series.iter().any(|s| s.marks == Marks::Bars);
+        let all = self.series.iter().flat_map(values).copied();
+        let mut scale = Scale::around(all.chain(bars.then_some(0.0)), axis.log, axis.reversed);
+        if bars && scale.from < 0.0 && self.series.iter().all(|s| s.y.iter().all(|y| *y >= 0.0)) {
             scale.from = 0.0;
         }
         scale
     }
 
-    fn legend(&self, canvas: &mut Canvas, area: Area) {
-        let named: Vec<_> = self.series.iter().zip(CURVES.iter().cycle()).filter(|(s, _)| !s.name.is_empty()).collect();
-        if named.len() < 2 && named.iter().all(|(s, _)| s.name == self.y.label) {
-            return;
-        }
-        // To the right of the title, on one line: never over the data.
-        let mut right = area.x + area.width;
-        for (series, colour) in named.into_iter().rev() {
-            let width = super::font::width(&series.name) * LEGEND_SIZE;
-            let text = Text::new(&series.name, [right, 28.0], LEGEND_SIZE);
-            canvas.text(Text { anchor: Anchor::End, ..text });
-            let (left, y) = (right - width - 26.0, 24.0);
-            match series.marks {
-                Marks::Line => canvas.line(vec![[left, y], [left + 20.0, y]], Pen::new(*colour, 2.2)),
-                Marks::Dots => canvas.discs(vec![[left + 12.0, y]], 3.0, Some(*colour), None),
-                Marks::Rings => canvas.discs(vec![[left + 12.0, y]], 3.6, None, Some(Pen::new(*colour, 1.4))),
-                Marks::Bars => {
-                    let swatch = Area { x: left + 8.0, y: y - 5.0, width: 12.0, height: 10.0 };
-                    canvas.rectangle(swatch, Some(*colour), None);
-                }
+    /// Entries of the legend: beside the title where there is room for all of them, else in rows below it.
+    fn legend(&self, size: Size) -> Vec<Entry<'_>> {
+        let width = |series: &Series| LEGEND_MARK + OTHER_FONTS * font::width(&series.name) * LEGEND_SIZE;
+        let right = size.width - RIGHT;
+        let mut named: Vec<_> =
+            self.series.iter().zip(CURVES.iter().cycle()).filter(|(s, _)| !s.name.is_empty()).collect();
+        named.retain(|(series, _)| self.series.len() > 1 || series.name != self.y.label);
+        let all = named.iter().map(|(series, _)| width(series) + LEGEND_GAP).sum::<f64>() - LEGEND_GAP;
+        let beside = LEFT + OTHER_FONTS * font::width(&self.title) * TITLE_SIZE + LEGEND_GAP <= right - all;
+        let mut next = if beside { [right - all, TITLE_LINE] } else { [LEFT, TITLE_LINE + LEGEND_ROW] };
+        let entry = |(series, colour): (_, &Colour)| {
+            if next[0] > LEFT && next[0] + width(series) > right + 1e-6 {
+                next = [LEFT, next[1] + LEGEND_ROW];
             }
-            right = left - 14.0;
-        }
+            let at = next;
+            next[0] += width(series) + LEGEND_GAP;
+            Entry { series, colour: *colour, at }
+        };
+        named.into_iter().map(entry).collect()
     }
 }
 
+/// A chart and where it is drawn.
+#[derive(Serialize)]
+pub(super) struct ChartData<'a> {
+    #[serde(flatten)]
+    chart: &'a Chart,
+    frame: Frame,
+}
+
+/// A series in the legend, from `at` to the right.
+struct Entry<'a> {
+    series: &'a Series,
+    colour: Colour,
+    at: [f64; 2],
+}
+
+impl Entry<'_> {
+    fn draw(&self, canvas: &mut Canvas) {
+        let Self { colour, at: [x, line], .. } = *self;
+        let y = line - 4.0;
+        match self.series.marks {
+            Marks::Line | Marks::Dashes => canvas.line(vec![[x, y], [x + 20.0, y]], self.series.pen(colour, 2.2)),
+            Marks::Dots => canvas.discs(vec![[x + 12.0, y]], 3.0, Some(colour), None),
+            Marks::Rings => canvas.discs(vec![[x + 12.0, y]], 3.6, None, Some(Pen::new(colour, 1.4))),
+            Marks::Bars => {
+                let swatch = Area { x: x + 8.0, y: y - 5.0, width: 12.0, height: 10.0 };
+                canvas.rectangle(swatch, Some(colour), None);
+            }
+        }
+        canvas.text(Text::new(&self.series.name, [x + LEGEND_MARK, line], LEGEND_SIZE));
+    }
+}
+
+/// Draws a series as one item.
 fn draw_series(canvas: &mut Canvas, frame: &Frame, series: &Series, colour: Colour) {
-    let places: Vec<[f64; 2]> = series.x.iter().zip(&series.y).map(|(x, y)| frame.place(*x, *y)).collect();
+    let places = || series.x.iter().zip(&series.y).map(|(x, y)| frame.place(*x, *y)).collect();
     match series.marks {
-        Marks::Line => places
-            .split(|p| !(p[0].is_finite() && p[1].is_finite()))
-            .for_each(|piece| canvas.line(piece.to_vec(), Pen::new(colour, 1.8))),
-        Marks::Dots => canvas.discs(places, 2.2, Some(colour), None),
-        Marks::Rings => canvas.discs(places, 3.2, None, Some(Pen::new(colour, 1.3))),
+        Marks::Line | Marks::Dashes => canvas.line(places(), series.pen(colour, 1.8)),
+        Marks::Dots => canvas.discs(places(), 2.2, Some(colour), None),
+        Marks::Rings => canvas.discs(places(), 3.2, None, Some(Pen::new(colour, 1.3))),
         Marks::Bars => {
-            for (edges, y) in series.x.windows(2).zip(&series.y) {
+            let bar = |(edges, y): (&[f64], &f64)| {
                 let [low, high] = [frame.place(edges[0], 0.0), frame.place(edges[1], *y)];
                 // One pixel of paper between bars.
                 let area = Area { x: low[0], y: high[1], width: high[0] - low[0] - 1.0, height: low[1] - high[1] };
-                canvas.rectangle(area, Some(colour.faded(215)), None);
-            }
+                area.corners().into_iter().chain([LIFTED])
+            };
+            let bars = series.x.windows(2).zip(&series.y).flat_map(bar).collect();
+            canvas.polygon(bars, Some(colour.faded(215)), None);
         }
     }
 }
@@ -247,6 +333,36 @@ mod tests {
         };
         keep("chart-bars.png", &bars.png().unwrap());
         assert_balanced(&bars.svg().unwrap());
+    }
+
+    #[test]
+    fn phase_planes_of_several_runs_share_a_chart() {
+        let run = |speed: u32, marks| {
+            let t = (0..400).map(|k| 0.05 * f64::from(k));
+            let point = |t: f64| {
+                let size = (-0.02 * f64::from(speed) * t).exp();
+                [size * t.cos(), -size * t.sin()]
+            };
+            let (x, y) = t.map(|t| point(t).into()).unzip();
+            Series::new(&format!("pitch at {speed} of the flutter speed"), marks, x, y)
+        };
+        let mut series: Vec<Series> = (1..6).map(|k| run(k, Marks::Line)).collect();
+        series[2].x[100] = f64::NAN;
+        series.push(run(6, Marks::Dashes));
+        let chart =
+            Chart { title: "Phase plane".into(), x: Axis::linear("α"), y: Axis::equal("dα/dτ / ω"), series };
+        let frame = chart.frame(Size::FILE);
+        let [a, b] = [frame.place(0.0, 0.0), frame.place(1.0, 1.0)];
+        assert!(((b[0] - a[0]) + (b[1] - a[1])).abs() < 1e-9, "a unit is as long on both axes");
+        let legend = chart.legend(Size::FILE);
+        assert!(legend.len() == 6 && legend[5].at[1] < frame.area.y && legend[0].at[1] > TITLE_LINE, "rows of its own");
+        let canvas = chart.draw(Size::FILE);
+        let curves = canvas.layers.iter().find(|layer| layer.name == "curves").unwrap();
+        assert_eq!(curves.items.len(), 6, "one item for each series, interrupted or not");
+        let svg = canvas.svg().unwrap();
+        assert_balanced(&svg);
+        keep("chart-phase.svg", svg.as_bytes());
+        keep("chart-phase.png", &chart.png().unwrap());
     }
 
     #[test]

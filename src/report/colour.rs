@@ -46,6 +46,11 @@ impl Colour {
         format!("#{:02x}{:02x}{:02x}", self.r, self.g, self.b)
     }
 
+    /// From 0 for what cannot be seen to 1.
+    pub fn opacity(&self) -> f64 {
+        f64::from(self.a) / 255.0
+    }
+
     /// This colour under `light`, 1 for unchanged.
     pub(crate) fn lit(self, light: f64) -> Self {
         let shade = |c: u8| (f64::from(c) * light).round().clamp(0.0, 255.0) as u8;

@@ -15,7 +15,7 @@ use super::fields::{self, FieldDifference};
 use super::files::{LOADS, Load, RunFolder};
 use super::page::{Block, Page, Section, Table};
 use super::periodic::{Period, loop_charts};
-use super::sections::number;
+use super::sections::{grouped, number};
 use super::{ReportError, write_file};
 
 /// Harmonics in the table.
@@ -118,42 +118,7 @@ impl Comparison {
 
     /// The comparison as lines of text.
     pub fn text(&self) -> String {
-        let mut text = format!("a = {}\nb = {} (the reference)\n\n", self.runs[0].display(), self.runs[1].display());
-        text.push_str("load       mean a      mean b      |1| a       |1| b       amplitude  phase      e0        e1        e max\n");
-        for l in &self.loads {
-            let [a, b] = l.harmonics.first().copied().unwrap_or_default();
-            text.push_str(&format!(
-                "{:<6} {:>11.5} {:>11.5} {:>11.5} {:>11.5} {:>+9.2} % {:>+7.2}° {:>8.2} % {:>7.2} % {:>7.2} %\n",
-                l.name,
-                l.mean[0],
-                l.mean[1],
-                a.norm(),
-                b.norm(),
-                100.0 * (a.norm() / b.norm() - 1.0),
-                (a / b).arg().to_degrees(),
-                100.0 * l.e0,
-                100.0 * l.e1,
-                100.0 * l.largest
-            ));
-        }
-        match self.wall {
-            Some([rms, most]) => {
-                text.push_str(&format!(
-                    "\nwall Cp at the end of the period: differs by {rms:.4} (root mean square), {most:.4} at most\n"
-                ));
-            }
-            None => text.push_str("\nwall Cp: the runs have different wall particles\n"),
-        }
-        text.push_str(&self.fields_text());
-        text.push_str(&format!("\n{:<34}{:>12}{:>12}{:>14}\n", "cost", "a", "b", "speed-up of a"));
-        for (name, [a, b]) in self.costs() {
-            text.push_str(&match (a / b).is_finite() {
-                true => format!("{name:<34}{a:>12.1}{b:>12.1}{:>14.2}\n", b / a),
-                false => format!("{name:<34}   not counted by both runs\n"),
-            });
-        }
-        text.push_str(&format!("{:<34}{:>12}{:>12}\n", "particles", self.particles[0], self.particles[1]));
-        text
+        self.page().text()
     }
 
     /// What the runs took: name and value for both.
@@ -163,36 +128,6 @@ impl Comparison {
             ("wall time, s", self.wall_clock),
             ("work, evaluations of an instance", self.work),
         ]
-    }
-
-    fn fields_text(&self) -> String {
-        let differences = match &self.fields {
-            Ok(differences) => differences,
-            Err(why) => return format!("fields: {why}\n"),
-        };
-        let mut text =
-            format!("\n{:<10}{:<14}{:>12}{:>10}{:>12}{:>10}   at\n", "field", "of", "rms", "part", "greatest", "part");
-        for d in differences {
-            text.push_str(&format!(
-                "{:<10}{:<14}{:>12.3e}{:>8.2} %{:>12.3e}{:>8.2} %   {}\n",
-                d.quantity,
-                d.at.words(),
-                d.rms,
-                100.0 * d.rms / d.scale,
-                d.largest,
-                100.0 * d.largest / d.scale,
-                d.where_it_is()
-            ));
-        }
-        if differences.iter().any(|d| d.carried) {
-            text.push_str(
-                "the runs have different particles: values of a are carried to those of b by least squares\n",
-            );
-        }
-        text.push_str(
-            "fields over the fluid particles; parts of half the range of b, of the root mean square of a harmonic of b\n",
-        );
-        text
     }
 
     /// The comparison as comma-separated values.
@@ -242,7 +177,13 @@ impl Comparison {
     fn page(&self) -> Page {
         let [a, b] = self.runs.each_ref().map(|run| run.display());
         let charts = self.charts.iter().map(|(_, chart)| Block::chart(chart.clone()));
-        let loads = std::iter::once(Block::Table(self.loads_table())).chain(charts).collect();
+        let wall = match self.wall {
+            Some([rms, most]) => {
+                format!("Wall Cp at the end of the period differs by {rms:.4} (root mean square), {most:.4} at most.")
+            }
+            None => "The runs have different wall particles.".to_owned(),
+        };
+        let loads = [Block::Table(self.loads_table()), Block::Text(wall)].into_iter().chain(charts).collect();
         let fields = self.fields.as_ref().map(|differences| fields_blocks(differences));
         Page {
             title: "Comparison".to_owned(),
@@ -290,7 +231,7 @@ impl Comparison {
     fn costs_table(&self) -> Table {
         let told = |v: f64| if v.is_finite() { number(v) } else { "not counted".to_owned() };
         let cost = self.costs().map(|(name, [a, b])| vec![name.to_owned(), told(a), told(b), told(b / a)]);
-        let [a, b] = self.particles.map(number);
+        let [a, b] = self.particles.map(grouped);
         let particles = vec!["particles".to_owned(), a, b, String::new()];
         Table::new(&["", "a", "b", "speed-up of a"], cost.into_iter().chain([particles]))
     }
@@ -306,9 +247,15 @@ fn fields_blocks(differences: &[FieldDifference]) -> Vec<Block> {
         [d.quantity.to_owned(), d.at.words()].into_iter().chain(sizes).chain([d.where_it_is()]).collect()
     };
     let columns = ["field", "of", "root mean square", "part", "greatest", "part", "at"];
+    let mut blocks = vec![Block::Table(Table::new(&columns, differences.iter().map(row)))];
+    if differences.iter().any(|d| d.carried) {
+        let text = "The runs have different particles: values of a are carried to those of b by least squares.";
+        blocks.push(Block::Text(text.to_owned()));
+    }
     let text = "Over the fluid particles; parts are those of half the range of b, for harmonics of the root mean square of \
                 that harmonic in b.";
-    vec![Block::Table(Table::new(&columns, differences.iter().map(row))), Block::Text(text.to_owned())]
+    blocks.push(Block::Text(text.to_owned()));
+    blocks
 }
 
 /// One load of both runs.
@@ -381,9 +328,15 @@ mod tests {
         assert!((lift.e1 - 0.01).abs() < 1e-12 && lift.e0 == 0.0 && (lift.largest - 0.01).abs() < 1e-12, "{lift:?}");
         assert_eq!(found.wall, Some([0.0, 0.0]));
         let text = found.text();
-        assert!(text.contains("20.0         10.00\n") && text.contains("+1.00 %"), "{text}");
-        assert!(text.contains("40.0          4.00\n") && text.contains("wall time, s"), "{text}");
-        assert!(text.contains("fields: the runs have no field at the same phase"), "{text}");
+        let line = |start: &str| {
+            let line = text.lines().find(|line| line.starts_with(start)).unwrap();
+            line[start.len()..].split_whitespace().map(str::to_owned).collect::<Vec<_>>()
+        };
+        assert_eq!(line("processor time, s"), ["2.0000", "20.000", "10.000"]);
+        assert_eq!(line("work, evaluations of an instance"), ["10.000", "40.000", "4.0000"]);
+        assert_eq!(line("wall time, s").join(" "), ["not counted"; 3].join(" "));
+        assert!(text.contains(" 1.0000 %"), "{text}");
+        assert!(text.contains("\nFields\nthe runs have no field at the same phase\n"), "{text}");
         let csv = found.csv();
         assert!(csv.contains("cost,speed-up in work_units,4,") && csv.contains("cost,wall_seconds,NaN,NaN"), "{csv}");
         let page = std::fs::read_to_string(found.write(&root.path().join("c")).unwrap()).unwrap();

@@ -3,6 +3,7 @@
 //! Letters live on a grid: baseline 0, x-height 10, capitals 14, descenders −4, [`EM`] units to the em. A glyph is a
 //! string of commands: `M x y` moves, `L x y` draws a line, `A cx cy rx ry from to` draws an elliptic arc between two
 //! angles in degrees (counter-clockwise when `to > from`) after a line to its start, `a …` the same without that line.
+use super::canvas::LIFTED;
 
 /// Grid units to the em: text of size s pixels has capitals of 14 s / 20 pixels.
 pub(crate) const EM: f64 = 20.0;
@@ -119,6 +120,13 @@ const GLYPHS: &[(char, f64, &str)] = &[
     ('ρ', 10.2, "M 1.5 -4 L 1.5 5 a 5.3 5 3.8 5 0 360"),
     ('Δ', 11.6, "M 0.8 0 L 5.8 14 L 10.8 0 L 0.8 0"),
     ('∞', 14.0, "a 4 5.6 2.8 2.6 0 360 a 10 5.6 3 2.6 0 360"),
+    ('δ', 10.0, "a 5 4.6 3.7 4.6 0 360 M 5 9.2 L 2.6 12 A 4.8 12.4 2.2 1.8 180 40"),
+    ('ζ', 9.0, "M 2 14 L 7.6 14 L 2.4 7.4 A 5 3.6 3.4 3.6 120 270 A 6 -1.8 1.8 1.8 90 -120"),
+    ('θ', 10.2, "a 5.1 7 3.6 7 0 360 M 1.6 7 L 8.6 7"),
+    ('μ', 10.4, "M 1.5 10 L 1.5 -4 M 1.5 4 A 5 4 3.5 4 180 360 L 8.5 10 M 8.5 4 L 8.5 0"),
+    ('τ', 9.0, "M 0.8 10 L 8.2 10 M 4.5 10 L 4.5 2 A 6.3 2 1.8 2 180 280"),
+    ('φ', 12.0, "a 6 5 4.6 5 0 360 M 6 13.6 L 6 -4"),
+    ('ω', 13.2, "M 3.2 10 A 4 4 2.8 4 150 360 L 6.8 7 M 6.8 4 A 9.6 4 2.8 4 180 390"),
     ('→', 14.0, "M 1.4 6 L 12.4 6 M 9 9 L 12.4 6 L 9 3"),
     ('≤', 10.0, "M 8.4 12 L 1.6 8 L 8.4 4 M 1.6 1 L 8.4 1"),
     ('≥', 10.0, "M 1.6 12 L 8.4 8 L 1.6 4 M 1.6 1 L 8.4 1"),
@@ -132,15 +140,13 @@ pub(crate) fn width(text: &str) -> f64 {
     text.chars().map(|c| glyph(c).1 + TRACKING).sum::<f64>() / EM
 }
 
-/// The strokes of `text` in ems, y up, starting at the origin.
-pub(crate) fn strokes(text: &str) -> Vec<Vec<[f64; 2]>> {
+/// The strokes of `text` in ems, y up, starting at the origin; the pen is lifted between them.
+pub(crate) fn strokes(text: &str) -> Vec<[f64; 2]> {
     let mut all = Vec::new();
     let mut pen = 0.0;
     for c in text.chars() {
         let (_, advance, commands) = glyph(c);
-        for stroke in outline(commands) {
-            all.push(stroke.iter().map(|p| [(p[0] + pen) / EM, p[1] / EM]).collect());
-        }
+        all.extend(outline(commands).iter().map(|p| [(p[0] + pen) / EM, p[1] / EM]));
         pen += advance + TRACKING;
     }
     all
@@ -150,21 +156,20 @@ fn glyph(c: char) -> (char, f64, &'static str) {
     GLYPHS.iter().find(|g| g.0 == c).copied().unwrap_or(MISSING)
 }
 
-fn outline(commands: &str) -> Vec<Vec<[f64; 2]>> {
-    let mut strokes: Vec<Vec<[f64; 2]>> = Vec::new();
+fn outline(commands: &str) -> Vec<[f64; 2]> {
+    let mut points = Vec::new();
     let mut words = commands.split_whitespace();
     while let Some(command) = words.next() {
         let mut number = || words.next().and_then(|w| w.parse::<f64>().ok()).unwrap_or(0.0);
-        let points = match command {
-            "M" | "L" => vec![[number(), number()]],
-            _ => arc([number(), number()], [number(), number()], [number(), number()]),
-        };
-        match strokes.last_mut().filter(|_| command == "L" || command == "A") {
-            Some(stroke) => stroke.extend(points),
-            None => strokes.push(points),
+        if ["M", "a"].contains(&command) {
+            points.push(LIFTED);
+        }
+        match command {
+            "M" | "L" => points.push([number(), number()]),
+            _ => points.extend(arc([number(), number()], [number(), number()], [number(), number()])),
         }
     }
-    strokes
+    points
 }
 
 fn arc(centre: [f64; 2], radius: [f64; 2], angles: [f64; 2]) -> Vec<[f64; 2]> {
@@ -181,7 +186,7 @@ mod tests {
     #[test]
     fn every_printable_letter_has_strokes_inside_its_box() {
         for (c, advance, commands) in GLYPHS {
-            let points: Vec<_> = outline(commands).concat();
+            let points: Vec<_> = outline(commands).into_iter().filter(|p| p[0].is_finite()).collect();
             assert!(!points.is_empty() || *c == ' ', "{c}");
             assert!(
                 points.iter().all(|p| (-1.0..=advance + 1.0).contains(&p[0]) && (-5.0..=16.0).contains(&p[1])),

@@ -2,9 +2,12 @@
 //!
 //! Nothing here knows the solver: pictures are made of rasters, points and triangles, the page is made of the files in
 //! the run folder. [`canvas`] is a sheet that prints itself as SVG or PNG; [`chart`], [`picture`] and [`surface`] draw on
-//! it; `overview` gathers everything into `report.html`; [`verification`] lists claims and whether they hold.
+//! it; `page` is what pages are made of, set by the templates in `templates/`; `overview` gathers everything into `report.html`; [`verification`] lists claims and whether they hold.
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
+
+use base64::Engine as _;
+use base64::engine::general_purpose::STANDARD;
 
 pub mod axes;
 pub mod canvas;
@@ -86,6 +89,11 @@ pub enum ReportError {
     /// The encoder refused.
     #[error("cannot encode a picture as PNG: {0}")]
     Png(String),
+}
+
+/// A picture as an address that holds all of it: `kind` is `png` or `svg+xml`.
+pub(crate) fn data_address(kind: &str, bytes: &[u8]) -> String {
+    format!("data:image/{kind};base64,{}", STANDARD.encode(bytes))
 }
 
 /// Writes a file in one step: beside the target first, then renamed.

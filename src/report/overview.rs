@@ -221,6 +221,7 @@ pub(crate) mod tests {
         fs::create_dir_all(run.join("pictures")).unwrap();
         let chart = crate::report::Chart { title: "Mach number".into(), ..Default::default() };
         fs::write(run.join("pictures/mach.png"), chart.png().unwrap()).unwrap();
+        fs::write(run.join("pictures/mach.svg"), chart.svg().unwrap()).unwrap();
         fs::write(run.join("pictures/cloud-leading-edge.svg"), chart.svg().unwrap()).unwrap();
     }
 
@@ -244,6 +245,7 @@ pub(crate) mod tests {
         ] {
             assert!(page.contains(text), "{text}");
         }
+        assert_eq!(page.matches("alt=\"mach\"").count(), 1, "one of two formats");
         assert_eq!(page.matches("class=\"word\"").count(), 1, "only the reference that is gone");
         assert!(page.contains("the reference <code>gone.csv</code> was not found"));
     }

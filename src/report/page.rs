@@ -3,11 +3,9 @@
 //! Chapters are plain data: headings, tables, facts, charts. Their words are escaped where `templates/page.html` sets them, so
 //! that no other file writes a tag. A page asks nothing from any network: style, script and pictures stand in it.
 use askama::Template;
-use base64::Engine as _;
-use base64::engine::general_purpose::STANDARD;
 
-use super::ReportError;
-use super::chart::Chart;
+use super::chart::{Chart, Size};
+use super::{ReportError, data_address};
 
 /// More points than this are thinned out in charts: a screen has fewer pixels.
 const MAX_POINTS: usize = 6000;
@@ -103,9 +101,9 @@ pub(super) struct Picture {
 /// A chart that answers to the pointer.
 pub(super) struct Figure {
     title: String,
-    /// The chart as an address that holds its picture, for readers without scripts.
-    picture: String,
-    /// What the script of the page draws.
+    /// The chart as drawn.
+    svg: String,
+    /// Its numbers, for the script of the page.
     data: String,
 }
 
@@ -120,6 +118,24 @@ impl Page {
     pub(super) fn html(&self) -> Result<String, ReportError> {
         Ok(self.render()?)
     }
+
+    /// What a terminal shows of the page: its lines and tables.
+    pub(super) fn text(&self) -> String {
+        let plain = |text: &String| format!("{}\n", text.replace('`', ""));
+        let mut text: String = self.lead.iter().map(plain).collect();
+        for section in &self.sections {
+            text.push_str(&format!("\n{}\n", section.title));
+            for block in &section.blocks {
+                match block {
+                    Block::Text(line) | Block::LeftOut(line) | Block::Heading(line) => text.push_str(&plain(line)),
+                    Block::List(lines) => text.extend(lines.iter().map(plain)),
+                    Block::Table(table) => text.push_str(&table.text()),
+                    _ => {}
+                }
+            }
+        }
+        text
+    }
 }
 
 impl Section {
@@ -133,22 +149,21 @@ impl Section {
 impl Block {
     /// A chart as wide as the page.
     pub(super) fn chart(chart: Chart) -> Self {
-        Self::Chart(Figure::new(chart))
+        Self::Chart(Figure::new(chart, Size::PAGE))
     }
 
     /// Small charts, one beside the other.
     pub(super) fn charts(charts: impl Iterator<Item = Chart>) -> Self {
-        Self::Charts(charts.map(Figure::new).collect())
+        Self::Charts(charts.map(|chart| Figure::new(chart, Size::SMALL)).collect())
     }
 }
 
 impl Figure {
-    fn new(mut chart: Chart) -> Self {
+    fn new(mut chart: Chart, size: Size) -> Self {
         chart.thin(MAX_POINTS);
         // `<` cannot stand in a script element: it might end it.
-        let data = serde_json::to_string(&chart).unwrap_or_default().replace('<', "\\u003c");
-        let picture = address("svg+xml", chart.svg().unwrap_or_default().as_bytes());
-        Self { title: chart.title, picture, data }
+        let data = serde_json::to_string(&chart.data(size)).unwrap_or_default().replace('<', "\\u003c");
+        Self { svg: chart.draw(size).svg().unwrap_or_default(), title: chart.title, data }
     }
 }
 
@@ -164,6 +179,23 @@ impl Table {
         let row = |row: Vec<String>| row.into_iter().map(Cell::from).collect();
         Self { columns: columns.iter().map(|c| (*c).to_owned()).collect(), rows: rows.into_iter().map(row).collect() }
     }
+
+    /// Columns below one another, numbers and what stands above them to the right.
+    fn text(&self) -> String {
+        let head = self.columns.iter().map(|name| Cell { text: name.clone(), class: "", link: None });
+        let head: Vec<Cell> = head.collect();
+        let lines = || std::iter::once(&head).chain(&self.rows);
+        let at = |row: &Vec<Cell>, k: usize| row.get(k).map_or(0, |cell| cell.text.chars().count());
+        let widths: Vec<usize> =
+            (0..self.columns.len()).map(|k| lines().map(|row| at(row, k)).max().unwrap_or(0)).collect();
+        let number = |k: usize| self.rows.iter().any(|row| row.get(k).is_some_and(|cell| cell.class == "n"));
+        let entry = |(k, cell): (usize, &Cell)| {
+            let (text, width) = (&cell.text, widths.get(k).copied().unwrap_or(0));
+            if number(k) { format!("{text:>width$}") } else { format!("{text:<width$}") }
+        };
+        let line = |row: &Vec<Cell>| row.iter().enumerate().map(entry).collect::<Vec<_>>().join("  ");
+        lines().map(|row| format!("{}\n", line(row).trim_end())).collect()
+    }
 }
 
 impl From<String> for Cell {
@@ -178,13 +210,8 @@ impl Picture {
     pub(super) fn new(name: &str, bytes: &[u8]) -> Self {
         let kind = if name.ends_with(".svg") { "svg+xml" } else { "png" };
         let caption = name.rsplit_once('.').map_or(name, |(stem, _)| stem).replace(['-', '_'], " ");
-        Self { caption, data: address(kind, bytes) }
+        Self { caption, data: data_address(kind, bytes) }
     }
-}
-
-/// A picture as an address that holds all of it.
-fn address(kind: &str, bytes: &[u8]) -> String {
-    format!("data:image/{kind};base64,{}", STANDARD.encode(bytes))
 }
 
 /// Text with `names` in back quotes as code; without a partner a back quote is one.
@@ -193,5 +220,53 @@ fn spans(text: &str) -> Vec<Span<'_>> {
     match pieces.len() % 2 {
         1 => pieces.into_iter().enumerate().map(|(k, text)| Span { code: k % 2 == 1, text }).collect(),
         _ => vec![Span { code: false, text }],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::overview::tests::assert_balanced;
+    use crate::report::{Axis, Marks, Series};
+
+    #[test]
+    fn words_of_a_page_are_escaped_wherever_they_stand() {
+        let word = || "<b>α & \"β\"".to_owned();
+        let link = Cell { text: word(), class: "good", link: Some("./a?b=\"c\"&d".to_owned()) };
+        let line = Series::new(&word(), Marks::Line, vec![0.0, 1.0], vec![1.0, f64::NAN]);
+        let bars = Series::new("</script>", Marks::Bars, vec![0.0, 1.0, 2.0], vec![1.0, 2.0]);
+        let axis = || Axis::linear(&word());
+        let chart = || Chart { title: word(), x: axis(), y: axis(), series: vec![line.clone(), bars.clone()] };
+        let blocks = vec![
+            Block::Heading(word()),
+            Block::Text(word()),
+            Block::LeftOut(format!("`{}` is not there", word())),
+            Block::Facts(vec![Fact::new(&word(), word())]),
+            Block::Table(Table { columns: vec![word()], rows: vec![vec![link]] }),
+            Block::List(vec![word()]),
+            Block::chart(chart()),
+            Block::charts([chart(), chart()].into_iter()),
+            Block::Pictures(vec![Picture::new(&word(), b"")]),
+            Block::Code(word()),
+        ];
+        let page = Page {
+            title: word(),
+            status: Some(Status { class: "good", verdict: word(), facts: word() }),
+            lead: Some(word()),
+            cards: vec![Card { name: "<b>", value: word(), facts: vec![Fact::new(&word(), word())] }],
+            sections: vec![Section { id: "all", title: word(), blocks }],
+        };
+        let html = page.html().unwrap();
+        assert_balanced(&html);
+        assert!(!html.contains("<b>") && !html.contains("& \"") && !html.contains("?b=\""));
+        assert_eq!(html.matches("</script>").count(), 4, "three charts and the script of the page");
+        assert!(html.contains("<code>&#60;b&#62;α"));
+    }
+
+    #[test]
+    fn a_back_quote_without_a_partner_is_one() {
+        let told = |text: &'static str| spans(text).iter().map(|s| (s.code, s.text)).collect::<Vec<_>>();
+        assert_eq!(told("no `case.toml` here"), [(false, "no "), (true, "case.toml"), (false, " here")]);
+        assert_eq!(told("a ` b"), [(false, "a ` b")]);
     }
 }

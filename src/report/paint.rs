@@ -1,8 +1,8 @@
 //! Paints a canvas as PNG.
-use tiny_skia::{FillRule, LineCap, LineJoin, Mask, Paint, PathBuilder, Pixmap, Stroke, StrokeDash, Transform};
+use tiny_skia::{FillRule, LineCap, LineJoin, Mask, Paint, Path, PathBuilder, Pixmap, Stroke, StrokeDash, Transform};
 
 use super::ReportError;
-use super::canvas::{Anchor, Area, Bitmap, Canvas, Item, Pen, Text};
+use super::canvas::{Anchor, Area, Bitmap, Canvas, Item, Outline, Pen, Text};
 use super::colour::Colour;
 use super::font;
 
@@ -21,8 +21,11 @@ pub(super) fn png(canvas: &Canvas, scale: f64) -> Result<Vec<u8>, ReportError> {
     }
     let mut sheet = Pixmap::new(size[0].round() as u32, size[1].round() as u32).ok_or_else(too_large)?;
     sheet.fill(tiny_skia::Color::WHITE);
-    let mut painter = Painter { scale, clip: None, mask: None, sheet };
-    canvas.items.iter().for_each(|item| painter.item(item));
+    let mut painter = Painter { scale, mask: None, sheet };
+    for layer in &canvas.layers {
+        painter.mask = layer.clip.and_then(|area| painter.mask_of(area));
+        layer.items.iter().for_each(|item| painter.item(item));
+    }
     encoded(&painter.sheet)
 }
 
@@ -62,7 +65,7 @@ fn pixmap_of(bitmap: &Bitmap) -> Option<Pixmap> {
 
 struct Painter {
     scale: f64,
-    clip: Option<Area>,
+    /// What of the present layer shows.
     mask: Option<Mask>,
     sheet: Pixmap,
 }
@@ -70,50 +73,44 @@ struct Painter {
 impl Painter {
     fn item(&mut self, item: &Item) {
         match item {
-            Item::Path { points, closed, fill, pen, clip } => {
-                self.set_clip(*clip);
-                self.shape(&mut |path| add_chain(path, points, *closed), *fill, *pen);
-            }
-            Item::Discs { centres, radius, fill, pen, clip } => {
-                self.set_clip(*clip);
+            Item::Path { outline, fill, pen } => self.path(outline, *fill, *pen),
+            Item::Discs { centres, radius, fill, pen } => {
                 // One path for all would merge overlapping discs into one outline; draw them one by one.
-                for c in centres.iter().filter(|c| c[0].is_finite() && c[1].is_finite()) {
-                    let mut disc = |path: &mut PathBuilder| path.push_circle(c[0] as f32, c[1] as f32, *radius as f32);
-                    self.shape(&mut disc, *fill, *pen);
-                }
+                let discs = centres.iter().map(|c| PathBuilder::from_circle(c[0] as f32, c[1] as f32, *radius as f32));
+                discs.flatten().for_each(|disc| self.shape(&disc, *fill, *pen));
             }
-            Item::Text(text) => {
-                self.set_clip(None);
-                self.text(text);
-            }
+            Item::Text(text) => self.text(text),
             Item::Picture { bitmap, area } => self.picture(bitmap, *area),
         }
     }
 
-    fn set_clip(&mut self, clip: Option<Area>) {
-        if clip == self.clip {
-            return;
-        }
-        self.clip = clip;
-        self.mask = clip.and_then(|a| {
-            let mut mask = Mask::new(self.sheet.width(), self.sheet.height())?;
-            let area = tiny_skia::Rect::from_xywh(a.x as f32, a.y as f32, a.width as f32, a.height as f32)?;
-            mask.fill_path(&PathBuilder::from_rect(area), FillRule::Winding, true, self.transform());
-            Some(mask)
-        });
+    fn mask_of(&self, a: Area) -> Option<Mask> {
+        let mut mask = Mask::new(self.sheet.width(), self.sheet.height())?;
+        let area = tiny_skia::Rect::from_xywh(a.x as f32, a.y as f32, a.width as f32, a.height as f32)?;
+        mask.fill_path(&PathBuilder::from_rect(area), FillRule::Winding, true, self.transform());
+        Some(mask)
     }
 
     fn transform(&self) -> Transform {
         Transform::from_scale(self.scale as f32, self.scale as f32)
     }
 
-    fn shape(&mut self, build: &mut dyn FnMut(&mut PathBuilder), fill: Option<Colour>, pen: Option<Pen>) {
-        let mut builder = PathBuilder::new();
-        build(&mut builder);
-        let Some(path) = builder.finish() else { return };
+    fn path(&mut self, outline: &Outline, fill: Option<Colour>, pen: Option<Pen>) {
+        let mut path = PathBuilder::new();
+        for chain in outline.chains() {
+            path.move_to(chain[0][0] as f32, chain[0][1] as f32);
+            chain[1..].iter().for_each(|p| path.line_to(p[0] as f32, p[1] as f32));
+            if outline.closed {
+                path.close();
+            }
+        }
+        path.finish().into_iter().for_each(|path| self.shape(&path, fill, pen));
+    }
+
+    fn shape(&mut self, path: &Path, fill: Option<Colour>, pen: Option<Pen>) {
         let transform = self.transform();
         if let Some(colour) = fill {
-            self.sheet.fill_path(&path, &paint(colour), FillRule::EvenOdd, transform, self.mask.as_ref());
+            self.sheet.fill_path(path, &paint(colour), FillRule::EvenOdd, transform, self.mask.as_ref());
         }
         if let Some(pen) = pen {
             let stroke = Stroke {
@@ -123,7 +120,7 @@ impl Painter {
                 dash: if pen.dashed { StrokeDash::new(vec![5.0, 4.0], 0.0) } else { None },
                 ..Stroke::default()
             };
-            self.sheet.stroke_path(&path, &paint(pen.colour), &stroke, transform, self.mask.as_ref());
+            self.sheet.stroke_path(path, &paint(pen.colour), &stroke, transform, self.mask.as_ref());
         }
     }
 
@@ -139,10 +136,8 @@ impl Painter {
             if text.upright { [x - up, y - along] } else { [x + along, y - up] }
         };
         let weight = if text.bold { BOLD_WEIGHT } else { TEXT_WEIGHT };
-        let strokes: Vec<Vec<[f64; 2]>> =
-            font::strokes(&text.text).iter().map(|s| s.iter().map(place).collect()).collect();
-        let mut all = |path: &mut PathBuilder| strokes.iter().for_each(|s| add_chain(path, s, false));
-        self.shape(&mut all, None, Some(Pen::new(text.colour, weight * text.size)));
+        let points = font::strokes(&text.text).iter().map(place).collect();
+        self.path(&Outline { points, closed: false }, None, Some(Pen::new(text.colour, weight * text.size)));
     }
 
     fn picture(&mut self, bitmap: &Bitmap, area: Area) {
@@ -199,14 +194,4 @@ fn paint(colour: Colour) -> Paint<'static> {
     paint.set_color_rgba8(colour.r, colour.g, colour.b, colour.a);
     paint.anti_alias = true;
     paint
-}
-
-fn add_chain(path: &mut PathBuilder, points: &[[f64; 2]], closed: bool) {
-    let mut finite = points.iter().filter(|p| p[0].is_finite() && p[1].is_finite());
-    let Some(first) = finite.next() else { return };
-    path.move_to(first[0] as f32, first[1] as f32);
-    finite.for_each(|p| path.line_to(p[0] as f32, p[1] as f32));
-    if closed {
-        path.close();
-    }
 }

@@ -1,7 +1,7 @@
 //! Flow pictures: a field on a raster of pixels, and the particles themselves.
 use super::ReportError;
 use super::axes::{Frame, Scale, TITLE_SIZE, tick_text};
-use super::canvas::{Anchor, Area, Bitmap, Canvas, Pen, Text};
+use super::canvas::{Anchor, Area, Bitmap, Canvas, LIFTED, Pen, Text};
 use super::colour::{CURVES, Colormap, Colour};
 use super::contour;
 use crate::math::{Bounds, Vector};
@@ -10,7 +10,6 @@ use crate::math::{Bounds, Vector};
 const LONG_SIDE: f64 = 820.0;
 /// A plot area is never higher than this.
 const TALL_SIDE: f64 = 640.0;
-/// Opaque: the overlapping ends of its segments would show otherwise.
 const CONTOUR: Pen = Pen::new(Colour::rgb(62, 68, 78), 0.7);
 /// Pixels of PNG per unit of canvas, at most.
 const SHARPNESS: f64 = 2.0;
@@ -87,12 +86,11 @@ pub fn raster_png(raster: &Raster, style: &PictureStyle) -> Result<Vec<u8>, Repo
     let range = style.range.unwrap_or_else(|| robust_range(&raster.values));
     canvas.rectangle(frame.area, Some(Colour::BODY), None);
     canvas.picture(coloured(raster, style.map, range), frame.area);
-    canvas.clip(Some(frame.area));
+    canvas.layer("bodies", Some(frame.area));
     for level in style.contours {
         draw_contour(&mut canvas, &frame, raster, *level);
     }
-    draw_outlines(&mut canvas, &frame, style.outlines, Some(Colour::BODY));
-    canvas.clip(None);
+    draw_outlines(&mut canvas, &frame, style.outlines);
     frame.border(&mut canvas, style.axes[0], style.axes[1]);
     colour_bar(&mut canvas, frame.area, style.map, range, style.quantity);
     // a coarse raster does not become sharper in more pixels
@@ -110,28 +108,43 @@ pub fn scatter_png(scatter: &Scatter, window: Bounds<2>, title: &str) -> Result<
         return Err(ReportError::Shape { what: "the colour of particles", found, expected: scatter.points.len() });
     }
     let (mut canvas, frame) = sheet(window, title)?;
-    let seen: Vec<usize> = (0..found).filter(|i| window.contains(&scatter.points[*i])).collect();
-    // Dots cover a third of the area when evenly spread, and stay visible without merging.
-    let spacing = (frame.area.width * frame.area.height / seen.len().max(1) as f64).sqrt();
-    let radius = (0.28 * spacing).clamp(0.7, 4.5);
-    canvas.clip(Some(frame.area));
-    draw_outlines(&mut canvas, &frame, scatter.outlines, Some(Colour::BODY));
+    let seen = Seen::of(scatter.points, window, &frame);
+    canvas.layer("particles", Some(frame.area));
+    draw_outlines(&mut canvas, &frame, scatter.outlines);
     match scatter.dots {
-        Dots::Level(levels) => draw_levels(&mut canvas, &frame, scatter.points, levels, (&seen, radius)),
+        Dots::Level(levels) => draw_levels(&mut canvas, &frame, &seen, levels),
         Dots::Value { values, quantity, map } => {
-            let shown: Vec<f64> = seen.iter().map(|i| values[*i]).collect();
+            let shown: Vec<f64> = seen.particles.iter().map(|i| values[*i]).collect();
             let range = robust_range(&shown);
-            for i in &seen {
-                let colour = map.colour(values[*i], range);
-                canvas.discs(vec![place(&frame, &scatter.points[*i])], radius, Some(colour), None);
+            for (place, value) in seen.places.iter().zip(shown) {
+                canvas.discs(vec![*place], seen.radius, Some(map.colour(value, range)), None);
             }
+            canvas.layer("legend", None);
             colour_bar(&mut canvas, frame.area, map, range, quantity);
         }
     }
-    draw_interface(&mut canvas, &frame, scatter.interface, window, radius);
-    canvas.clip(None);
+    canvas.layer("interface", Some(frame.area));
+    draw_interface(&mut canvas, &frame, scatter.interface, window, seen.radius);
     frame.border(&mut canvas, "x", "y");
     canvas.png(SHARPNESS)
+}
+
+/// The particles that a picture shows.
+struct Seen {
+    particles: Vec<usize>,
+    places: Vec<[f64; 2]>,
+    /// Radius of their dots.
+    radius: f64,
+}
+
+impl Seen {
+    fn of(points: &[Vector<2>], window: Bounds<2>, frame: &Frame) -> Self {
+        let particles: Vec<usize> = (0..points.len()).filter(|i| window.contains(&points[*i])).collect();
+        let places = particles.iter().map(|i| place(frame, &points[*i])).collect();
+        // Dots cover a third of the area when evenly spread, and stay visible without merging.
+        let spacing = (frame.area.width * frame.area.height / particles.len().max(1) as f64).sqrt();
+        Self { particles, places, radius: (0.28 * spacing).clamp(0.7, 4.5) }
+    }
 }
 
 /// A sheet with a title and a frame of the proportions of `window`.
@@ -202,41 +215,38 @@ fn draw_contour(canvas: &mut Canvas, frame: &Frame, raster: &Raster, level: f64)
         let x = raster.window.min[0] + (p[0] + 0.5) * pixel[0];
         frame.place(x, raster.window.min[1] + (p[1] + 0.5) * pixel[1])
     };
-    for [a, b] in contour::segments(&raster.values, raster.width, level) {
-        canvas.line(vec![at(a), at(b)], CONTOUR);
-    }
+    let segments = contour::segments(&raster.values, raster.width, level);
+    canvas.line(segments.into_iter().flat_map(|[a, b]| [at(a), at(b), LIFTED]).collect(), CONTOUR);
 }
 
-fn draw_outlines(canvas: &mut Canvas, frame: &Frame, outlines: &[Vec<Vector<2>>], fill: Option<Colour>) {
+fn draw_outlines(canvas: &mut Canvas, frame: &Frame, outlines: &[Vec<Vector<2>>]) {
     for outline in outlines {
         let places = outline.iter().map(|x| place(frame, x)).collect();
-        canvas.polygon(places, fill, Some(Pen::new(Colour::INK, 1.2)));
+        canvas.polygon(places, Some(Colour::BODY), Some(Pen::new(Colour::INK, 1.2)));
     }
 }
 
 /// One colour per level, finest first, with a legend beside the plot.
-fn draw_levels(canvas: &mut Canvas, frame: &Frame, points: &[Vector<2>], levels: &[u32], seen: (&[usize], f64)) {
-    let (seen, radius) = seen;
-    let mut present: Vec<u32> = seen.iter().map(|i| levels[*i]).collect();
+fn draw_levels(canvas: &mut Canvas, frame: &Frame, seen: &Seen, levels: &[u32]) {
+    let mut present: Vec<u32> = seen.particles.iter().map(|i| levels[*i]).collect();
     present.sort_unstable();
     present.dedup();
     let range = [present.first().map_or(0.0, |l| f64::from(*l)), present.last().map_or(1.0, |l| f64::from(*l))];
     // The pale end of the scale is lost on paper: use seven eighths of it.
     let range = [range[0], range[1] + 0.15 * (range[1] - range[0]).max(1.0)];
+    let colour = |level: u32| Some(Colormap::Sequential.colour(f64::from(level), range));
+    for level in &present {
+        let own = seen.particles.iter().zip(&seen.places).filter(|(i, _)| levels[**i] == *level);
+        canvas.discs(own.map(|(_, place)| *place).collect(), seen.radius, colour(*level), None);
+    }
     let (left, mut y) = (frame.area.x + frame.area.width + 18.0, frame.area.y + 12.0);
-    let clip = Some(frame.area);
+    canvas.layer("legend", None);
     canvas.text(Text::new("level", [left, y], 12.5));
     for level in present {
-        let colour = Colormap::Sequential.colour(f64::from(level), range);
-        let dots = seen.iter().filter(|i| levels[**i] == level).map(|i| place(frame, &points[*i])).collect();
-        canvas.clip(clip);
-        canvas.discs(dots, radius, Some(colour), None);
-        canvas.clip(None);
         y += 19.0;
-        canvas.discs(vec![[left + 5.0, y - 4.0]], 4.5, Some(colour), None);
+        canvas.discs(vec![[left + 5.0, y - 4.0]], 4.5, colour(level), None);
         canvas.text(tick_text(level.to_string(), [left + 17.0, y], Anchor::Start));
     }
-    canvas.clip(clip);
 }
 
 fn draw_interface(

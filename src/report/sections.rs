@@ -103,10 +103,12 @@ pub(super) fn pictures(run: &RunFolder) -> Result<Vec<Block>, String> {
     Ok(vec![block.ok_or("there are no pictures in `pictures/`")?])
 }
 
-/// The pictures whose names are `wanted`, if any.
+/// The pictures whose names are `wanted`, if any; of a picture in both formats the SVG.
 pub(super) fn pictures_of(run: &RunFolder, wanted: impl Fn(&str) -> bool) -> Option<Block> {
     let pictures = run.pictures();
-    let wanted = pictures.iter().filter(|(name, _)| wanted(name));
+    let twin = |name: &str| name.ends_with(".png").then(|| name.replace(".png", ".svg"));
+    let only = |name: &str| twin(name).is_none_or(|twin| pictures.iter().all(|(other, _)| *other != twin));
+    let wanted = pictures.iter().filter(|(name, _)| wanted(name) && only(name));
     let pictures: Vec<Picture> = wanted.map(|(name, bytes)| Picture::new(name, bytes)).collect();
     (!pictures.is_empty()).then_some(Block::Pictures(pictures))
 }

@@ -76,13 +76,12 @@ pub fn surface_png(shell: &Shell, style: &SurfaceStyle) -> Result<Vec<u8>, Repor
     for pass in [Pass::Depth, Pass::Colour] {
         match *shell {
             Shell::Triangles { points, triangles, values } => {
-                triangles
-                    .iter()
-                    .for_each(|t| fill_triangle(&mut buffer, pass, &view, t.map(|i| i as usize), (points, values)));
+                triangles.iter().for_each(|t| fill_triangle(&mut buffer, pass, &view, &Corners::of(points, values, t)));
             }
             Shell::Splats { points, normals, areas, values } => {
                 for i in 0..points.len() {
-                    fill_disc(&mut buffer, pass, &view, (&points[i], &normals[i], areas[i], values[i]));
+                    let splat = Splat { x: points[i], normal: normals[i], area: areas[i], value: values[i] };
+                    fill_disc(&mut buffer, pass, &view, &splat);
                 }
             }
         }
@@ -229,9 +228,29 @@ fn light(n: &Vector<3>) -> f64 {
     AMBIENT + (1.06 - AMBIENT) * n.dot(&lamp).max(0.0)
 }
 
-fn fill_triangle(buffer: &mut Buffer, pass: Pass, view: &View, corners: [usize; 3], field: (&[Vector<3>], &[f64])) {
-    let [a, b, c] = corners.map(|i| view.project(&field.0[i]));
-    let value = corners.map(|i| field.1[i]);
+/// A triangle with the values at its corners.
+struct Corners {
+    x: [Vector<3>; 3],
+    values: [f64; 3],
+}
+
+impl Corners {
+    fn of(points: &[Vector<3>], values: &[f64], triangle: &[u32; 3]) -> Self {
+        let corners = triangle.map(|i| i as usize);
+        Self { x: corners.map(|i| points[i]), values: corners.map(|i| values[i]) }
+    }
+}
+
+/// A particle of a surface.
+struct Splat {
+    x: Vector<3>,
+    normal: Vector<3>,
+    area: f64,
+    value: f64,
+}
+
+fn fill_triangle(buffer: &mut Buffer, pass: Pass, view: &View, corners: &Corners) {
+    let ([a, b, c], value) = (corners.x.map(|x| view.project(&x)), corners.values);
     let normal = cross(&(b - a), &(c - a));
     if !normal.is_finite() || normal[2] == 0.0 {
         return;
@@ -249,9 +268,9 @@ fn fill_triangle(buffer: &mut Buffer, pass: Pass, view: &View, corners: [usize; 
     });
 }
 
-fn fill_disc(buffer: &mut Buffer, pass: Pass, view: &View, particle: (&Vector<3>, &Vector<3>, f64, f64)) {
-    let (x, normal, area, value) = particle;
-    let (centre, n) = (view.project(x), view.turn(&normal.unit()));
+fn fill_disc(buffer: &mut Buffer, pass: Pass, view: &View, splat: &Splat) {
+    let Splat { x, normal, area, value } = *splat;
+    let (centre, n) = (view.project(&x), view.turn(&normal.unit()));
     let radius = OVERLAP * (area.max(0.0) / std::f64::consts::PI).sqrt() * view.scale;
     if !(centre.is_finite() && n.is_finite() && radius.is_finite()) {
         return;
