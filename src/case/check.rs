@@ -22,6 +22,7 @@ pub(super) fn contradictions(draft: &mut Draft<'_>) {
     time(draft);
     super::motion_check::contradictions(draft, dimension);
     super::motion_check::viscosity(draft);
+    super::structure_check::contradictions(draft, dimension);
     generalised_forces(draft);
 }
 

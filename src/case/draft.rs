@@ -67,6 +67,14 @@ impl<'t> Draft<'t> {
         written.contains(['"', '\'']) && written.contains(|c: char| c.is_alphabetic() && !matches!(c, 'e' | 'E'))
     }
 
+    /// The unit that is written behind the number at `path`; empty when there is none.
+    pub(super) fn unit(&self, path: &str) -> &str {
+        let written = self.places.get(path).and_then(|(_, value)| self.text.get(value.clone())).unwrap_or_default();
+        let inner = written.trim_matches(['"', '\'']).trim();
+        let digits = |c: char| c.is_ascii_digit() || "+-.eE ".contains(c);
+        if self.has_unit(path) { inner.trim_start_matches(digits) } else { "" }
+    }
+
     /// The value at `path`, none when it is absent or wrong.
     pub(super) fn get(&self, path: &str) -> Option<&Value> {
         self.tree.pointer(&format!("/{}", path.replace(['.', '['], "/").replace(']', "")))

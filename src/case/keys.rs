@@ -6,6 +6,7 @@ use super::gaf_keys::GAF;
 use super::motion_keys::{BODY_MOTION, MOTION, WALL};
 use super::quantity::{Angle, Density, Length, Pressure, Temperature, Time, Velocity, Viscosity};
 use super::schema::{Absent, Field, Kind, List, Range, Table, Variant};
+use super::structure_keys::STRUCTURE;
 use super::time_keys::TIME;
 
 const ANY: Kind = Kind::Number(Range::ANY);
@@ -43,6 +44,14 @@ pub(super) static CASE: Table = Table::of(&[
          All parts add up: x = R(θ)(X − pivot) + pivot + d.",
     ),
     Field::defaulted("body", Kind::Tables(&BODY), Absent::Filled, "A solid body: one shape key, then its placement."),
+    Field::defaulted(
+        "structure",
+        Kind::Tables(&STRUCTURE),
+        Absent::Filled,
+        "A body on springs, whose coordinates are unknowns beside those of the gas; `[structure]` serves where there is one. In 2-D its \
+         masses, inertias, stiffnesses and forces are per unit span. Without a dimensional free stream they are in units of its density, \
+         its sound speed and the unit of length.",
+    ),
     Field::defaulted(
         "reference",
         Kind::Table(&REFERENCE),

@@ -20,6 +20,9 @@ pub mod quantity;
 mod read;
 mod reference;
 mod schema;
+mod structure;
+mod structure_check;
+mod structure_keys;
 mod templates;
 #[cfg(test)]
 mod tests;
@@ -36,9 +39,15 @@ pub use motion::{
     BodyMotionSpec, ModeMotion, Motion, MotionFormula, MotionTable, ParticleMotion, Pitch, Plunge, Rotation,
     Translation,
 };
-pub use quantity::{Angle, Density, Frequency, Length, Pressure, Rate, Temperature, Time, Velocity, Viscosity};
+pub use quantity::{
+    Acceleration, Angle, AngularStiffness, Density, Frequency, Inertia, Length, Mass, Pressure, Rate, Stiffness,
+    Temperature, Time, Velocity, Viscosity,
+};
 pub use read::read;
 pub use reference::{reference_markdown, schema};
+pub use structure::{
+    Freedom, PerCoordinate, SpringShape, Structure, StructureFlap, StructureForce, StructureMode, StructureModel,
+};
 pub use templates::{TEMPLATES, template};
 pub use time::{Automatic, Dual, Explicit, HarmonicCount, Harmonics, RungeKutta, Steady, SteadyMethod, Temporal};
 pub use verdict::ClaimRow;
@@ -58,6 +67,9 @@ pub struct Case {
     /// Solid bodies, none for a case without walls.
     #[serde(default, rename = "body")]
     pub bodies: Vec<Body>,
+    /// Bodies on springs, whose coordinates are unknowns.
+    #[serde(default, rename = "structure")]
+    pub structures: Vec<Structure>,
     /// Reference lengths of the load coefficients.
     #[serde(default)]
     pub reference: Reference,

@@ -195,7 +195,8 @@ impl Case {
         let modes = laws.flat_map(|law| &law.modes).map(|mode| mode.file.as_str());
         let balanced = self.gaf.iter().filter(|_| matches!(self.time, Temporal::Harmonics(_)));
         let forces = balanced.flat_map(|g| &g.flexible).map(|mode| mode.file.as_str());
-        shapes.chain(tables).chain(modes).chain(forces)
+        let elastic = self.structures.iter().flat_map(|s| &s.modes).map(|mode| mode.file.as_str());
+        shapes.chain(tables).chain(modes).chain(forces).chain(elastic)
     }
 
     /// True when particles move: a body does, the whole cloud does, or they travel with the fluid.

@@ -69,7 +69,7 @@ fn frequency(draft: &mut Draft<'_>, law: &str) {
 }
 
 /// True when `part` is there, and no empty list of modes.
-fn says_something(draft: &Draft<'_>, part: &str) -> bool {
+pub(super) fn says_something(draft: &Draft<'_>, part: &str) -> bool {
     draft.given(part) && draft.get(part).and_then(Value::as_array).is_none_or(|list| !list.is_empty())
 }
 
@@ -102,7 +102,7 @@ fn dimensional(draft: &mut Draft<'_>, law: &str) {
     }
 }
 
-fn is_dimensional(draft: &Draft<'_>) -> bool {
+pub(super) fn is_dimensional(draft: &Draft<'_>) -> bool {
     ["pressure", "temperature", "density"].iter().filter(|k| draft.given(&format!("flow.{k}"))).count() > 1
 }
 
@@ -202,30 +202,31 @@ fn formulas(draft: &mut Draft<'_>, law: &str) {
         draft.fail_key(&path, format!("`{path}` has no formula")).hint(hint);
     }
     for (column, text) in texts {
-        match Formula::parse(&text) {
-            Err(e) => {
-                let name = text.get(e.span.clone()).unwrap_or_default().to_owned();
-                let meant =
-                    super::read::closest(&name, Formula::vocabulary()).filter(|_| e.message.contains("unknown"));
-                let all = || format!("names are {}", Formula::vocabulary().collect::<Vec<_>>().join(", "));
-                let error = draft.fail_within(&column, e.span, format!("`{column}`: {}", e.message));
-                error.allowed = e.allowed;
-                error.hint = match meant {
-                    Some(meant) => Some(format!("did you mean `{meant}`?")),
-                    None => e.message.contains("unknown").then(all),
-                };
-            }
-            Ok(formula) if formula.contains(&Formula::Omega) && !has_frequency(draft, law) => {
-                let at = text.find("omega").unwrap_or(0);
-                let error = draft.fail_within(
-                    &column,
-                    at..at + 5,
-                    format!("`{column}` uses `omega`, but there is no frequency"),
-                );
-                error.hint("add `reduced_frequency`, `frequency` or `period`");
-            }
-            Ok(_) => {}
+        let known = has_frequency(draft, law);
+        formula(draft, &column, &text, known);
+    }
+}
+
+/// The formula `text` at `path` can be read, and knows its frequency.
+pub(super) fn formula(draft: &mut Draft<'_>, path: &str, text: &str, has_frequency: bool) {
+    match Formula::parse(text) {
+        Err(e) => {
+            let name = text.get(e.span.clone()).unwrap_or_default().to_owned();
+            let meant = super::read::closest(&name, Formula::vocabulary()).filter(|_| e.message.contains("unknown"));
+            let all = || format!("names are {}", Formula::vocabulary().collect::<Vec<_>>().join(", "));
+            let error = draft.fail_within(path, e.span, format!("`{path}`: {}", e.message));
+            error.allowed = e.allowed;
+            error.hint = match meant {
+                Some(meant) => Some(format!("did you mean `{meant}`?")),
+                None => e.message.contains("unknown").then(all),
+            };
         }
+        Ok(formula) if formula.contains(&Formula::Omega) && !has_frequency => {
+            let at = text.find("omega").unwrap_or(0);
+            let message = format!("`{path}` uses `omega`, but there is no frequency");
+            draft.fail_within(path, at..at + 5, message).hint("add `reduced_frequency`, `frequency` or `period`");
+        }
+        Ok(_) => {}
     }
 }
 
@@ -271,6 +272,7 @@ fn in_time(draft: &mut Draft<'_>, laws: &[String]) {
         let flag = draft.get(&format!("{law}.table.periodic")).and_then(Value::as_bool) == Some(true);
         flag || draft.given(&format!("{law}.rotation")) || (moving.is_some() && has_frequency(draft, law))
     });
+    let repeats = repeats || super::structure_check::is_shaken(draft);
     if draft.get("time.harmonics").is_some() && !repeats {
         let hint = "give the motion a frequency, or march with `[time.dual]`";
         draft.fail_key("time.harmonics", "`time.harmonics` needs a periodic motion").hint(hint);

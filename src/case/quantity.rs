@@ -224,6 +224,26 @@ quantities! {
         unit("Pa s", 1.0), unit("Pa.s", 1.0), unit("kg/m/s", 1.0), unit("mPa s", 1e-3), unit("uPa s", 1e-6),
         unit("P", 0.1), unit("cP", 1e-3),
     ];
+    Acceleration, "an acceleration", false, "-9.81 m/s2", [
+        unit("m/s2", 1.0), unit("m/s^2", 1.0), unit("ft/s2", FOOT), unit("g", GRAVITY),
+    ];
+    Mass, "a mass", false, "3 kg/m", [
+        unit("kg", 1.0), unit("g", 1e-3), unit("lb", POUND), unit("slug", POUND * GRAVITY / FOOT),
+        unit("kg/m", 1.0), unit("g/m", 1e-3), unit("lb/ft", POUND / FOOT), unit("slug/ft", POUND * GRAVITY / (FOOT * FOOT)),
+    ];
+    Inertia, "a moment of inertia", false, "0.2 kg m", [
+        unit("kg m2", 1.0), unit("kg m^2", 1.0), unit("slug ft2", POUND * GRAVITY * FOOT),
+        unit("kg m", 1.0), unit("kg m2/m", 1.0), unit("slug ft", POUND * GRAVITY), unit("slug ft2/ft", POUND * GRAVITY),
+    ];
+    Stiffness, "a stiffness", false, "2.8 kN/m2", [
+        unit("N/m", 1.0), unit("kN/m", 1e3), unit("lbf/ft", POUND * GRAVITY / FOOT), unit("lbf/in", 12.0 * POUND * GRAVITY / FOOT),
+        unit("N/m2", 1.0), unit("kN/m2", 1e3), unit("N/m/m", 1.0), unit("lbf/ft2", POUND * GRAVITY / (FOOT * FOOT)),
+    ];
+    AngularStiffness, "a stiffness against rotation", false, "300 N m/rad", [
+        unit("N m/rad", 1.0), unit("N m", 1.0), unit("kN m/rad", 1e3), unit("N m/deg", 1.0 / DEGREE),
+        unit("lbf ft/rad", POUND * GRAVITY * FOOT),
+        unit("N/rad", 1.0), unit("N m/rad/m", 1.0), unit("N", 1.0), unit("lbf/rad", POUND * GRAVITY),
+    ];
 }
 
 #[cfg(test)]
@@ -251,6 +271,11 @@ mod tests {
         assert_eq!(Viscosity::DIMENSION.usual(), "Pa s");
         close("1e3 m".parse::<Length>().unwrap().0, 1000.0);
         close("14.695948775513 psi".parse::<Pressure>().unwrap().0, 101_325.0);
+        close("1 slug/ft".parse::<Mass>().unwrap().0, 14.593_902_937_206_364 / 0.3048);
+        close("2 slug ft2".parse::<Inertia>().unwrap().0, 2.0 * 1.355_817_948_331_400_4);
+        close("1 lbf/in".parse::<Stiffness>().unwrap().0, 175.126_835_246_476_4);
+        close("1 N m/deg".parse::<AngularStiffness>().unwrap().0, 180.0 / std::f64::consts::PI);
+        close("-1 g".parse::<Acceleration>().unwrap().0, -9.80665);
         // sea level of the standard atmosphere (1976) in slug/ft3
         assert!(("0.0023769 slug/ft3".parse::<Density>().unwrap().0 - 1.225).abs() < 1e-4);
     }

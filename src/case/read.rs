@@ -113,6 +113,7 @@ impl Reader<'_> {
             (Kind::Table(table), DeValue::Table(document)) => Some(json!(self.table(table, document, path))),
             (Kind::Table(table), _) if table.shorthand.is_some() => self.shorthand(table, item, path),
             (Kind::Tables(table), DeValue::Array(items)) => Some(self.tables(table, items, path)),
+            (Kind::Tables(table), DeValue::Table(document)) => Some(self.only(table, document, item.span(), path)),
             (Kind::Choice(variants), DeValue::String(text)) => self.choose(variants, text, item, path),
             (Kind::Choice(variants), DeValue::Table(document)) => self.choose_table(variants, document, item, path),
             _ => self.wrong(kind, item, path),
@@ -189,6 +190,13 @@ impl Reader<'_> {
             }
         }
         Value::Array(list)
+    }
+
+    /// A plain table in place of an array of one.
+    fn only(&mut self, table: &'static Table, document: &DeTable<'_>, span: Span<usize>, path: &str) -> Value {
+        let here = format!("{path}[0]");
+        self.draft.place(&here, span.clone(), span);
+        json!([self.table(table, document, &here)])
     }
 
     fn shorthand(&mut self, table: &'static Table, item: &Item<'_>, path: &str) -> Option<Value> {

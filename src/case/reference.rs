@@ -80,7 +80,9 @@ fn kind_schema(kind: &Kind) -> Value {
             Some(field) => json!({ "anyOf": [kind_schema(&field.kind), table_schema(table)] }),
             None => Value::Object(table_schema(table)),
         },
-        Kind::Tables(table) => json!({ "type": "array", "items": table_schema(table) }),
+        Kind::Tables(table) => {
+            json!({ "anyOf": [{ "type": "array", "items": table_schema(table) }, table_schema(table)] })
+        }
         Kind::Choice(variants) => {
             json!({ "anyOf": variants.iter().flat_map(variant_schemas).collect::<Vec<_>>() })
         }
@@ -145,8 +147,11 @@ pub fn reference_markdown() -> String {
     page
 }
 
-fn dimensions() -> [&'static Dimension; 10] {
-    use super::quantity::{Angle, Density, Frequency, Length, Pressure, Rate, Temperature, Time, Velocity, Viscosity};
+fn dimensions() -> [&'static Dimension; 15] {
+    use super::quantity::{
+        Acceleration, Angle, AngularStiffness, Density, Frequency, Inertia, Length, Mass, Pressure, Rate, Stiffness,
+        Temperature, Time, Velocity, Viscosity,
+    };
     [
         Angle::DIMENSION,
         Length::DIMENSION,
@@ -158,6 +163,11 @@ fn dimensions() -> [&'static Dimension; 10] {
         Temperature::DIMENSION,
         Density::DIMENSION,
         Viscosity::DIMENSION,
+        Acceleration::DIMENSION,
+        Mass::DIMENSION,
+        Inertia::DIMENSION,
+        Stiffness::DIMENSION,
+        AngularStiffness::DIMENSION,
     ]
 }
 
@@ -229,7 +239,6 @@ mod tests {
         for (key, field) in value["properties"].as_object().into_iter().flatten() {
             let here = format!("{path}.{key}");
             walk(field, &here, keys);
-            walk(&field["items"], &here, keys);
             for option in field["anyOf"].as_array().into_iter().flatten() {
                 walk(option, &here, keys);
             }

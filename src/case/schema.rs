@@ -48,7 +48,7 @@ pub(super) enum Kind {
     List(&'static List),
     /// A table.
     Table(&'static Table),
-    /// An array of tables.
+    /// An array of tables; a single one may be written as a plain table.
     Tables(&'static Table),
     /// One of several words or one-key tables.
     Choice(&'static [Variant]),
@@ -271,7 +271,7 @@ impl Kind {
                 Some(field) => format!("{} or a table", field.kind.words()),
                 None => "a table".to_owned(),
             },
-            Self::Tables(_) => "an array of tables".to_owned(),
+            Self::Tables(_) => "a table or an array of tables".to_owned(),
             Self::Choice(variants) => one_of(variants.iter().map(|v| v.name)),
         }
     }

@@ -1,8 +1,9 @@
 //! Case files to start from.
 
 /// Names of the templates with a line about each.
-pub const TEMPLATES: [(&str, &str); 5] = [
+pub const TEMPLATES: [(&str, &str); 6] = [
     ("airfoil", "transonic flow over a NACA 0012 section (2-D)"),
+    ("flutter", "a typical section on springs in a stream (2-D)"),
     ("pitching", "an airfoil that pitches about its quarter chord (2-D)"),
     ("sphere", "subsonic flow past a sphere (3-D)"),
     ("stl", "a body from an STL or OBJ surface file (3-D)"),
@@ -13,6 +14,7 @@ pub const TEMPLATES: [(&str, &str); 5] = [
 pub fn template(name: &str) -> Option<String> {
     let text = match name {
         "airfoil" => include_str!("templates/airfoil.toml"),
+        "flutter" => include_str!("templates/flutter.toml"),
         "pitching" => include_str!("templates/pitching.toml"),
         "sphere" => include_str!("templates/sphere.toml"),
         "stl" => include_str!("templates/stl.toml"),

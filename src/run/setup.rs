@@ -59,6 +59,7 @@ pub(super) fn supported(case: &Case) -> Result<(), RunError> {
     let balanced = travels && case.scheme.conservative == Some(true);
     let slow = case.scheme.low_mach && !conserves(case);
     let asks = [
+        (!case.structures.is_empty(), "bodies on springs in a stream (`[structure]`)"),
         (layered, "wall layers of particles that travel with the fluid (`wall_layers`, `particles = \"lagrangian\"`)"),
         (bare, "a deforming cloud without bodies (`particles = \"deforming\"`)"),
         (slow, "slow flow without conservative coefficients (`low_mach = true` needs `conservative = true`)"),

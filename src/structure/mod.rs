@@ -11,7 +11,9 @@
 //! Signs: x points downstream; displacements are positive along x, y and z, so that plunge is *up* positive (the literature of flutter
 //! has h down: h = −plunge); pitch is nose up positive (clockwise in the plane), a flap trailing edge down positive. Units are those of
 //! the solver (density and sound speed of the free stream, unit of length of the case), per unit span in the plane.
+mod describe;
 mod force;
+mod from_case;
 mod placement;
 mod planar;
 mod spatial;
@@ -20,6 +22,7 @@ mod spring;
 mod tests;
 
 pub use force::ForceHistory;
+pub use from_case::{BodyFrame, Scales};
 pub use placement::{Placement, Pose};
 pub use planar::{Flap, InertiaLaw, PlanarBody};
 pub use spatial::RigidBody;
