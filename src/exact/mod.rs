@@ -15,12 +15,15 @@
 //! | [`vortex_far_field`] | point vortex in a compressible free stream |
 //! | [`piston`] | piston started at once, and oscillating: simple wave and acoustics |
 //! | [`theodorsen`] | plate that pitches and plunges in incompressible flow |
+//! | [`flutter`] | typical section on springs in incompressible flow: roots, flutter, divergence |
 //! | [`blasius`] | laminar boundary layer on a flat plate |
 use crate::math::Vector;
 
+mod bessel;
 pub mod blasius;
 pub mod diamond;
 pub mod expansion;
+pub mod flutter;
 mod janzen_rayleigh;
 pub mod piston;
 pub mod potential;

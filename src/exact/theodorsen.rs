@@ -10,6 +10,7 @@
 use num_complex::Complex64;
 
 use super::Error;
+use super::bessel::modified_second;
 
 /// Complex coefficients of lift and moment.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,14 +38,38 @@ pub fn theodorsen(k: f64) -> Result<Complex64, Error> {
 /// Loads of a plate with reduced frequency `k` (of half the chord) and its axis `a` half chords behind the middle
 /// (−1/2: quarter chord), for the complex amplitudes `pitch` (radians, nose up) and `plunge` (up, over half the chord).
 pub fn plate(k: f64, a: f64, pitch: Complex64, plunge: Complex64) -> Result<PlateLoads, Error> {
+    Ok(loads(Complex64::new(0.0, k), theodorsen(k)?, a, [pitch, plunge]))
+}
+
+/// Theodorsen's function continued to motions e^{pUt/b} that grow or decay, C(p) = K₁/(K₀ + K₁) (Edwards, Ashley and Breakwell, AIAA J.
+/// 17, 1979); cut along the negative real axis.
+pub fn theodorsen_growing(p: Complex64) -> Result<Complex64, Error> {
+    if !p.is_finite() || (p.im == 0.0 && p.re < 0.0) {
+        let range = "a number that is neither infinite nor real and negative";
+        return Err(Error::Parameter { what: "reduced exponent", value: p.re, range });
+    }
+    if p.norm() == 0.0 {
+        return Ok(Complex64::new(1.0, 0.0));
+    }
+    let [zeroth, first] = modified_second(p);
+    Ok(first / (zeroth + first))
+}
+
+/// Loads of a plate as [`plate`] has them, for a motion e^{pUt/b}.
+pub fn plate_growing(p: Complex64, a: f64, pitch: Complex64, plunge: Complex64) -> Result<PlateLoads, Error> {
+    Ok(loads(p, theodorsen_growing(p)?, a, [pitch, plunge]))
+}
+
+/// Loads for the exponent p and C(p).
+fn loads(p: Complex64, c: Complex64, a: f64, [pitch, plunge]: [Complex64; 2]) -> PlateLoads {
     use std::f64::consts::PI;
-    let ik = Complex64::new(0.0, k);
+    let square = -p * p;
     // downwash at three quarters of the chord
-    let circulation = theodorsen(k)? * (-ik * plunge + pitch + (0.5 - a) * ik * pitch);
-    let lift = PI * (k * k * plunge + ik * pitch + a * k * k * pitch) + 2.0 * PI * circulation;
-    let inertia = a * k * k * plunge - (0.5 - a) * ik * pitch + (0.125 + a * a) * k * k * pitch;
+    let circulation = c * (-p * plunge + pitch + (0.5 - a) * p * pitch);
+    let lift = PI * (square * plunge + p * pitch + a * square * pitch) + 2.0 * PI * circulation;
+    let inertia = a * square * plunge - (0.5 - a) * p * pitch + (0.125 + a * a) * square * pitch;
     let moment = 0.5 * PI * inertia + PI * (a + 0.5) * circulation;
-    Ok(PlateLoads { lift, moment })
+    PlateLoads { lift, moment }
 }
 
 #[cfg(test)]
@@ -83,6 +108,18 @@ mod tests {
         let pitch = plate(1.0, 0.0, ONE, ZERO).unwrap();
         near(pitch.lift, 3.704385871, 4.206244052);
         near(pitch.moment, 1.122446009, -0.5192353139);
+    }
+
+    #[test]
+    fn growing_motions_continue_steady_oscillations() {
+        for k in [1e-3, 0.1, 0.7, 3.0, 50.0] {
+            let there = theodorsen_growing(Complex64::new(0.0, k)).unwrap();
+            assert!((there - theodorsen(k).unwrap()).norm() < 1e-13);
+        }
+        assert_eq!(theodorsen_growing(ZERO).unwrap(), ONE);
+        assert!(theodorsen_growing(-ONE).is_err() && theodorsen_growing(ONE * f64::NAN).is_err());
+        let (p, a) = (Complex64::new(0.0, 0.3), -0.2);
+        assert!((plate_growing(p, a, ONE, ZERO).unwrap().lift - plate(0.3, a, ONE, ZERO).unwrap().lift).norm() < 1e-13);
     }
 
     #[test]
