@@ -22,7 +22,7 @@ use alula::system::{Instant, System};
 use alula::time::control::{Control, Method};
 use alula::time::explicit::{self, Explicit};
 use alula::time::relax::Relax;
-use alula::time::{March, Past};
+use alula::time::{Integrator, Past};
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
 

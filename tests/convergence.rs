@@ -7,7 +7,7 @@ use alula::exact::vortex::IsentropicVortex;
 use alula::math::Vector;
 use alula::physics::Conserved;
 use alula::time::explicit::{Explicit, Method};
-use alula::time::{March, Past};
+use alula::time::{Integrator, Past};
 use common::{solver, vortex};
 
 /// Volume-weighted error of the density at time `until`, as a root mean square.
@@ -20,7 +20,7 @@ fn vortex_error(spacing: f64, until: f64, low_mach: bool) -> f64 {
     }
     let exact = IsentropicVortex::new(5.0, Vector([5.0, 5.0]), Vector([1.0, 1.0]), fluid.gas.gamma).unwrap();
     let exact = exact.periodic(Vector([10.0, 10.0]));
-    let (cloud, u) = (&fluid.discretisation.cloud, march.parts().2);
+    let (cloud, u) = (&fluid.discretisation.cloud, march.standing().state);
     let square = |i: usize| {
         let found = fluid.gas.primitive(&Conserved::<2>::load(&u[4 * i..])).density;
         cloud.volume[i] * (found - exact.state(&cloud.x[i], until).density).powi(2)
@@ -55,7 +55,7 @@ fn slow_vortex_loss(low_mach: bool) -> f64 {
     while !march.finished() {
         march.advance().unwrap();
     }
-    1.0 - energy(march.parts().2) / before
+    1.0 - energy(march.standing().state) / before
 }
 
 #[test] // Thornber et al. (2008): the loss of kinetic energy of slow flow must not grow as 1/M

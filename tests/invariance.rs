@@ -10,7 +10,7 @@ use alula::system::{Instant, System};
 use alula::time::control::{self, Control};
 use alula::time::explicit::{Explicit, Method};
 use alula::time::relax::Relax;
-use alula::time::{March, Past};
+use alula::time::{Integrator, Past};
 use common::{largest, round_body, solver, two_levels, vortex, with_threads};
 
 /// Round-off of fluxes of order one over a spacing of some hundredths.
@@ -58,7 +58,7 @@ fn marched(steps: usize) -> Vec<u64> {
     for _ in 0..steps {
         march.advance().unwrap();
     }
-    bits(march.parts().2)
+    bits(march.standing().state)
 }
 
 #[test]

@@ -16,7 +16,7 @@ use alula::system::{Instant, System};
 use alula::time::control::{self, Control};
 use alula::time::dual::{Dual, Plan};
 use alula::time::explicit::{Explicit, Method};
-use alula::time::{March, Past};
+use alula::time::{Integrator, Past, Standing};
 use common::{largest, solver};
 
 /// Round-off of a hundred steps of fluxes of order one over spacings of some hundredths.
@@ -136,13 +136,13 @@ fn drift<const D: usize>(
 
 fn worst<const D: usize>(
     fluid: &Fluid<D>,
-    mut march: impl March<Fluid<D>>,
+    mut march: impl Integrator<Fluid<D>>,
     field: &dyn Fn(&Vector<D>) -> Primitive<D>,
 ) -> f64 {
     while !march.finished() {
         march.advance().unwrap();
     }
-    let (frame, _, u) = march.parts();
+    let Standing { frame, state: u, .. } = march.standing();
     largest((0..fluid.discretisation.cloud.n_fluid).map(|i| {
         let found = fluid.gas.primitive(&Conserved::<D>::load(&u[i * (D + 2)..]));
         let error = found.minus(&field(&frame.place(i)));

@@ -6,7 +6,7 @@ use alula::system::{Fault, Field, Hierarchy, Implicit, Instant, Period, Rate, Sy
 use alula::time::control::{Control, Method};
 use alula::time::dual::{Dual, Plan};
 use alula::time::full::Full;
-use alula::time::{March, Past, TimeError};
+use alula::time::{Integrator, Past, TimeError};
 
 /// u' = −u, which between two times only steps no longer than `longest` can solve. A change of the state counts `sharp` times as
 /// the greatest change at one particle.
@@ -82,8 +82,8 @@ fn march_with(system: Decay, iterations: u32) -> Result<(Vec<f64>, f64, u32), Ti
     while !march.finished() {
         times.push(march.advance()?.time);
     }
-    let state = march.parts().2[0];
-    Ok((times, state, march.past().halved))
+    let state = march.standing().state[0];
+    Ok((times, state, march.cost().halved))
 }
 
 #[test]

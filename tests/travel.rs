@@ -18,7 +18,7 @@ use alula::scheme::{CloudMotion, Fluid, RemapLedger};
 use alula::time::control::{self, Control};
 use alula::time::dual::{Dual, Plan};
 use alula::time::explicit::{Explicit, Method};
-use alula::time::{March, Past};
+use alula::time::{Integrator, Memory, Past, Standing};
 use alula::verify::{FieldTruth, metrics};
 use common::{case, largest, solver, vortex, with_threads};
 
@@ -69,7 +69,7 @@ fn march<const D: usize>((fluid, u): (Fluid<D>, Vec<f64>), (how, until, steps): 
     let mut end = End { fluid, u, past: Past::default(), ledger: RemapLedger::default() };
     loop {
         let begin = (end.past.clone(), end.u.clone());
-        let mut leg: Box<dyn March<Fluid<D>>> = match how {
+        let mut leg: Box<dyn Integrator<Fluid<D>>> = match how {
             Courant(cfl) => Box::new(Explicit::new(&end.fluid, Method::Ssprk3, (cfl, until), begin)),
             Step(step) => {
                 let orders = if steps < u32::MAX { 13.0 } else { 4.0 };
@@ -77,12 +77,12 @@ fn march<const D: usize>((fluid, u): (Fluid<D>, Vec<f64>), (how, until, steps): 
             }
         };
         let mut worn = false;
-        while !leg.finished() && leg.past().iteration < steps && !worn {
+        while !leg.finished() && leg.mark().iteration < steps && !worn {
             leg.advance().unwrap();
-            worn = end.fluid.is_worn(leg.parts().0);
+            worn = end.fluid.is_worn(leg.standing().frame);
         }
-        let past = leg.past().clone();
-        let (frame, work, u) = leg.parts();
+        let Memory::March(past) = leg.memory() else { panic!("a march") };
+        let Standing { frame, work, state: u } = leg.standing();
         let known = [&past.before[..], &past.older];
         let reclouded = end.fluid.reclouded(frame, (u, known), work, &mut end.ledger).unwrap().unwrap();
         drop(leg);
@@ -236,7 +236,7 @@ fn the_vortex_converges_at_second_order_on_a_cloud_that_deforms() {
         while !march.finished() {
             march.advance().unwrap();
         }
-        let (frame, _, u) = march.parts();
+        let Standing { frame, state: u, .. } = march.standing();
         let volume = &fluid.discretisation.cloud.volume;
         vortex_rms(&frame.discretisation.cloud, (volume, fluid.gas.gamma), u, 1.0)
     });
@@ -250,7 +250,7 @@ fn explicit_state(cfl: f64) -> Vec<f64> {
     while !march.finished() {
         march.advance().unwrap();
     }
-    march.parts().2.to_vec()
+    march.standing().state.to_vec()
 }
 
 fn implicit_state(step: f64) -> Vec<f64> {
@@ -259,7 +259,7 @@ fn implicit_state(step: f64) -> Vec<f64> {
     while !march.finished() {
         march.advance().unwrap();
     }
-    march.parts().2.to_vec()
+    march.standing().state.to_vec()
 }
 
 /// Order seen between two steps, the second half the first, against a much shorter one.
@@ -313,7 +313,7 @@ fn sod_along(cloud_motion: CloudMotion<2>) -> f64 {
     while !march.finished() {
         march.advance().unwrap();
     }
-    let (frame, _, u) = march.parts();
+    let Standing { frame, state: u, .. } = march.standing();
     shock_error(&frame.discretisation.cloud.x, u, &fluid)
 }
 

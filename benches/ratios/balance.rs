@@ -9,7 +9,7 @@ use alula::time::control::Control;
 use alula::time::dual::{Dual, Plan};
 use alula::time::harmonic::HarmonicBalance;
 use alula::time::relax::Relax;
-use alula::time::{March, Past};
+use alula::time::{Integrator, Past};
 
 use super::{built, control, parsed, residual, seconds, tell};
 
@@ -109,5 +109,5 @@ fn marching_bytes(fluid: &Fluid<2>, u: &[f64], step: f64) -> f64 {
     let mut march = Dual::new(fluid, control(), plan, (Past::default(), u.to_vec()));
     (0..3).for_each(|_| drop(march.advance()));
     let velocity = 8 * 2 * fluid.discretisation.cloud.len();
-    (bytes(fluid) + velocity + march.bytes()) as f64 / particles(fluid)
+    (bytes(fluid) + velocity + march.cost().bytes) as f64 / particles(fluid)
 }

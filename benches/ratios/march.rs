@@ -4,7 +4,7 @@ use std::path::Path;
 use alula::system::{Instant, System, Term};
 use alula::time::dual::{Dual, Plan};
 use alula::time::relax::Relax;
-use alula::time::{March, Past};
+use alula::time::{Integrator, Past};
 
 use super::{built, control, once, parsed, tell};
 
@@ -34,8 +34,8 @@ pub(super) fn dual_step() {
     (0..STEPS[0]).for_each(|_| {
         march.advance().unwrap();
     });
-    let (mut inner, linear, mut spent, mut one) = (0, march.linear(), 0.0, 0.0);
-    let time = march.past().time;
+    let (mut inner, linear, mut spent, mut one) = (0, march.cost().linear, 0.0, 0.0);
+    let time = march.mark().time;
     let frame = fluid.frame(
         &Instant::formula(time, &[Term::of_time(1.0 / step, time), Term::of_time(-1.0 / step, time - step)]),
         &free,
@@ -44,15 +44,15 @@ pub(super) fn dual_step() {
     for _ in 0..STEPS[1] {
         // in turns: the clock of a processor changes within seconds
         spent += once(|| _ = march.advance().unwrap());
-        let state = march.parts().2;
+        let state = march.standing().state;
         one += once(|| fluid.rhs(&frame, state, &mut work, &mut du));
-        inner += march.inner();
+        inner += march.cost().inner;
     }
-    let (linear, steps) = (march.linear() - linear, f64::from(STEPS[1]));
+    let (linear, steps) = (march.cost().linear - linear, f64::from(STEPS[1]));
     tell("dual-time step over a residual", spent / one, "bar 12");
     tell("  Newton iterations a step", f64::from(inner) / steps, "");
     tell("  linear iterations a step", f64::from(linear) / steps, "");
-    tell("  steps that missed their goal", f64::from(march.past().unconverged), "");
+    tell("  steps that missed their goal", f64::from(march.cost().unconverged), "");
     let n = fluid.discretisation.cloud.n_fluid as f64;
     println!("  {n} particles, a residual takes {:.2} µs a particle", 1e6 * one / steps / n);
 }

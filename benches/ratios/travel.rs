@@ -4,7 +4,7 @@ use std::path::Path;
 use alula::scheme::RemapLedger;
 use alula::system::{Instant, System, Term};
 use alula::time::explicit::{Explicit, Method};
-use alula::time::{March, Past};
+use alula::time::{Integrator, Past};
 
 use super::{built, parsed, residual, seconds, tell};
 

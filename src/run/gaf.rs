@@ -5,7 +5,12 @@ use num_complex::Complex64;
 use serde::Serialize;
 use serde_json::json;
 
-use super::{Monitor, Outcome, Places, RunError, Summary, setup};
+use super::build;
+use super::error::RunError;
+use super::folder::{self, Places};
+use super::monitor::Monitor;
+use super::record::summary::Summary;
+use super::session::{Outcome, Session};
 use crate::case::{AnyMode, Case, Gaf, Mode};
 use crate::observe::table::{Entry, write_csv, write_json};
 
@@ -16,6 +21,9 @@ const CONVENTION: &str = "f(t) = Re f exp(+i omega t); Cl = lift/(q c), up posit
                           coordinate j, over q S c (2-D: S = c), with the coordinates of the columns: the row of pitch is Cm, that \
                           of plunge the upward force over q S times L/c; k = omega L/U with L as given; phase positive when the \
                           load leads the motion";
+
+/// Part of the amplitude of `[gaf]` that a column is computed with once more.
+const HALF: f64 = 0.5;
 
 /// One column of the matrix at one frequency.
 #[derive(Clone, Debug, Serialize)]
@@ -28,7 +36,7 @@ pub struct Column {
     pub cl: [f64; 2],
     /// Moment over motion.
     pub cm: [f64; 2],
-    /// Generalised force on every mode over motion, see [`super::forces`].
+    /// Generalised force on every mode over motion, see [`super::GeneralisedForce`].
     pub q: Vec<[f64; 2]>,
     /// Greatest change of lift, moment or generalised force, over the largest of them, when the amplitude is halved.
     pub nonlinearity: f64,
@@ -52,17 +60,19 @@ pub struct Matrices {
 /// Computes the matrices of the table `[gaf]` into a fresh folder; `None` when the monitor says stop.
 pub fn gaf(case: &Case, places: &Places, monitor: &mut dyn Monitor) -> Result<Option<Matrices>, RunError> {
     let Some(plan) = case.gaf.clone() else {
-        return Err(RunError::Unsupported(
-            "the case has no table `[gaf]`\nhint: add one with `reduced_frequencies`".into(),
-        ));
+        return Err(RunError::Unsupported {
+            what: "the case has no table `[gaf]`".into(),
+            hint: "add one with `reduced_frequencies`",
+        });
     };
-    setup::supported(case)?;
-    super::folder::create(case, places)?;
+    build::supported(case)?;
+    folder::create(case, &places.input, &places.out)?;
     let modes = plan.all_modes().map(|m| m.name().to_owned()).collect();
     let mut matrices = Matrices { modes, columns: Vec::new(), linearity: plan.linearity };
     for &k in &plan.reduced_frequencies {
         for mode in plan.all_modes() {
-            let Some(column) = column(case, &plan, (mode, k), places, monitor)? else { return Ok(None) };
+            let swing = Swing { plan: &plan, mode, k };
+            let Some(column) = column(case, &swing, &places.input, monitor)? else { return Ok(None) };
             monitor.note(&format!(
                 "k = {k}, {}: Cl {:+.4} {:+.4}i, Cm {:+.4} {:+.4}i, halved amplitude changes {:.2} %",
                 column.mode,
@@ -80,24 +90,23 @@ pub fn gaf(case: &Case, places: &Places, monitor: &mut dyn Monitor) -> Result<Op
 }
 
 /// One mode at one frequency.
-fn column(
-    case: &Case,
-    plan: &Gaf,
-    (mode, k): (AnyMode<'_>, f64),
-    places: &Places,
-    monitor: &mut dyn Monitor,
-) -> Result<Option<Column>, RunError> {
+struct Swing<'a> {
+    plan: &'a Gaf,
+    mode: AnyMode<'a>,
+    k: f64,
+}
+
+/// A column of the matrix; `None` when the monitor says stop.
+fn column(case: &Case, swing: &Swing<'_>, input: &Path, monitor: &mut dyn Monitor) -> Result<Option<Column>, RunError> {
+    let Swing { plan, mode, k } = *swing;
     let mut found = Vec::new();
     let (mut cpu_seconds, mut converged) = (0.0, true);
-    for (factor, suffix) in [(1.0, ""), (0.5, "-half")] {
-        let out = places.out.join(format!("k{k}-{}{suffix}", mode.name()));
-        let here = Places { input: places.input.clone(), out };
-        let Outcome::Finished(summary) = super::run(&case.gaf_case(plan, mode, k, factor), &here, monitor)? else {
-            return Ok(None);
-        };
+    for factor in [1.0, HALF] {
+        let mut session = Session::open(&case.gaf_case(plan, mode, k, factor), input)?;
+        let Outcome::Finished(summary) = session.solve(monitor)? else { return Ok(None) };
         cpu_seconds += summary.cpu_seconds;
         converged &= summary.converged;
-        found.push(loads(&summary, plan, (mode, factor))?);
+        found.push(swing.loads(&summary, factor)?);
     }
     let (whole, half) = (&found[0], &found[1]);
     let size = whole.iter().map(|c| c.norm()).fold(f64::MIN_POSITIVE, f64::max);
@@ -115,20 +124,23 @@ fn column(
     }))
 }
 
-/// Lift, moment and generalised forces over the motion, which has `factor` times the amplitude of `[gaf]`.
-fn loads(summary: &Summary, plan: &Gaf, (mode, factor): (AnyMode<'_>, f64)) -> Result<Vec<Complex64>, RunError> {
-    let length = plan.reduced_length.map_or(0.5 * summary.chord, |l| l.0);
-    // the part of the motion, the coordinate per unit of it, the amplitude of the coordinate
-    let (part, scale, amplitude) = match mode {
-        AnyMode::Rigid(Mode::Pitch) => ("angle", 1.0, plan.pitch.0),
-        AnyMode::Rigid(Mode::Plunge) => ("shift", length, plan.plunge.0 / length),
-        AnyMode::Flexible(mode) => ("mode", 1.0, mode.amplitude),
-    };
-    let found = summary.first_harmonics.iter().find(|h| h.motion.starts_with(part));
-    let found = found.ok_or_else(|| RunError::Folder(format!("the run of {} shows no motion", mode.name())))?;
-    let loads = [found.cl, found.cm].map(|[re, im]| Complex64::new(re, im) * scale);
-    let forces = summary.generalised_forces.iter().map(|f| f.per(factor * amplitude));
-    Ok(loads.into_iter().chain(forces).collect())
+impl Swing<'_> {
+    /// Lift, moment and generalised forces over the motion, which has `factor` times the amplitude of `[gaf]`.
+    fn loads(&self, summary: &Summary, factor: f64) -> Result<Vec<Complex64>, RunError> {
+        let Self { plan, mode, .. } = *self;
+        let length = plan.reduced_length.map_or(0.5 * summary.chord, |l| l.0);
+        // the part of the motion, the coordinate per unit of it, the amplitude of the coordinate
+        let (part, scale, amplitude) = match mode {
+            AnyMode::Rigid(Mode::Pitch) => ("angle", 1.0, plan.pitch.0),
+            AnyMode::Rigid(Mode::Plunge) => ("shift", length, plan.plunge.0 / length),
+            AnyMode::Flexible(mode) => ("mode", 1.0, mode.amplitude),
+        };
+        let found = summary.first_harmonics.iter().find(|h| h.motion.starts_with(part));
+        let found = found.ok_or_else(|| RunError::NothingMoved { mode: mode.name().to_owned() })?;
+        let loads = [found.cl, found.cm].map(|[re, im]| Complex64::new(re, im) * scale);
+        let forces = summary.generalised_forces.iter().map(|f| f.per(factor * amplitude));
+        Ok(loads.into_iter().chain(forces).collect())
+    }
 }
 
 impl Matrices {

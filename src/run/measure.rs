@@ -1,9 +1,9 @@
 //! What is measured of a finished run: the value of each metric of [`crate::verify`].
 use std::path::Path;
 
-use super::periodic::{FirstHarmonics, LastPeriod};
-use super::snapshot::{Units, rounded};
-use super::{Snapshot, Summary};
+use super::look::{Snapshot, Units, rounded};
+use super::record::summary::Summary;
+use super::record::trace::{FirstHarmonics, LastPeriod};
 use num_complex::Complex64;
 
 use crate::case::{Case, Shape};

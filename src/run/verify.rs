@@ -1,17 +1,18 @@
 //! The walk through `verification/`: every folder is a case with claims; each case runs, each claim is judged.
 //!
 //! Claims share runs: one for each case and spacing, kept until the walk ends, so that a claim may compare its case with
-//! another one. Runs write into a scratch folder that goes with the walk. A case that does not run fails its claims, with
+//! another one. They stay in memory. A case that does not run fails its claims, with
 //! the reason in the place of the source, and the walk goes on.
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use super::error::RunError;
 use super::measure::{Measured, Value};
-use super::{Monitor, Outcome, Places, RunError, Snapshot, Tick};
+use super::monitor::{Monitor, Tick};
+use super::session::{Outcome, Session};
 use crate::case::{Case, read};
-use crate::verify::wall::Wall;
-use crate::verify::{Claim, ClaimFile, ClaimRow, Loops, Metric, Study, metrics};
+use crate::verify::{Claim, ClaimFile, ClaimRow, Metric, Study, metrics};
 
 /// Name of the folder of all cases.
 const FOLDER: &str = "verification";
@@ -267,30 +268,22 @@ fn respaced(case: &Case, spacing: f64, study: &Study) -> Case {
     case
 }
 
-/// Runs a case in a scratch folder and keeps what can be measured.
+/// Solves a case and keeps what can be measured.
 fn run(folder: &Folder, case: &Case, monitor: &mut dyn Monitor) -> Result<Measured, String> {
-    let mut case = case.clone();
-    case.output.report = false;
-    let scratch = tempfile::tempdir().map_err(|e| format!("cannot make a scratch folder: {e}"))?;
-    let places = Places { input: folder.path.clone(), out: scratch.path().join("run") };
-    let mut keeper = Keeper { monitor, field: None };
-    let ended = super::run(&case, &places, &mut keeper).map_err(|e| reason(&e))?;
+    let mut session = Session::open(case, &folder.path).map_err(|e| reason(&e))?;
+    let ended = session.solve(&mut Quiet { monitor }).map_err(|e| reason(&e))?;
     let Outcome::Finished(summary) = ended else { return Err("the run was interrupted".into()) };
-    let field = keeper.field.take().ok_or("the run left no solution")?;
-    let wall = if case.bodies.is_empty() {
-        Wall::default()
-    } else {
-        let text = fs::read_to_string(places.out.join("surface.csv")).map_err(|e| format!("`surface.csv`: {e}"))?;
-        Wall::parse(&text).map_err(|e| format!("`surface.csv`: {e}"))?
-    };
-    let loops = match fs::read_to_string(places.out.join("loops.csv")) {
-        Ok(text) => Loops::parse(&text).map_err(|e| format!("`loops.csv`: {e}"))?,
-        Err(_) => Loops::default(),
-    };
-    Ok(Measured { case, summary: *summary, field, wall, loops })
+    let none = "the run left no solution";
+    Ok(Measured {
+        case: case.clone(),
+        summary: *summary,
+        field: session.field().ok_or(none)?.clone(),
+        wall: session.wall().ok_or(none)?.clone(),
+        loops: session.loops().ok_or(none)?.clone(),
+    })
 }
 
-/// What went wrong, without the scratch folder that is gone.
+/// What went wrong.
 fn reason(problem: &RunError) -> String {
     match problem {
         RunError::Time { source, .. } => source.to_string(),
@@ -298,20 +291,16 @@ fn reason(problem: &RunError) -> String {
     }
 }
 
-/// Keeps the solution and passes on the rest.
-struct Keeper<'a> {
+/// Passes on all but notes.
+struct Quiet<'a> {
     monitor: &'a mut dyn Monitor,
-    field: Option<Snapshot>,
 }
 
-impl Monitor for Keeper<'_> {
+impl Monitor for Quiet<'_> {
     fn tick(&mut self, tick: &Tick) {
         self.monitor.tick(tick);
     }
     fn note(&mut self, _: &str) {}
-    fn solution(&mut self, field: &Snapshot) {
-        self.field = Some(field.clone());
-    }
     fn stop(&self) -> bool {
         self.monitor.stop()
     }

@@ -205,6 +205,32 @@ impl<const D: usize> CloudMotion<D> {
         }
     }
 
+    /// Motions of bodies by which particles go along paths that are known in advance: that of the only body where all move
+    /// as one. None where nothing moves or particles travel with the fluid.
+    pub fn laws(&self) -> &[BodyMotion<D>] {
+        match self {
+            Self::Still | Self::Travel(_) => &[],
+            Self::Rigid(law) => std::slice::from_ref(law),
+            Self::Along { laws, .. } => laws,
+        }
+    }
+
+    /// Motion by which particles on the wall of a body go, see [`Self::laws`].
+    pub fn law_of(&self, body: usize) -> Option<&BodyMotion<D>> {
+        match self {
+            Self::Rigid(law) => Some(law),
+            _ => self.laws().get(body),
+        }
+    }
+
+    /// Particles that travel with the fluid.
+    pub fn travel(&self) -> Option<&Travel<D>> {
+        match self {
+            Self::Travel(travel) => Some(travel),
+            _ => None,
+        }
+    }
+
     /// True when nothing moves.
     pub fn is_still(&self) -> bool {
         matches!(self, Self::Still)

@@ -36,7 +36,7 @@ use crate::math::Vector;
 use crate::math::sweep::{first, maximum, sweep, sweep_each, sweep_parts};
 use crate::motion::{BodyMotion, RigidPose};
 use crate::physics::{Gas, Primitive};
-use crate::system::{Instant, Rate, System, Term};
+use crate::system::{Instant, Rate, Term};
 
 /// Strength A of the shift.
 const STRENGTH: f64 = 0.1;
@@ -299,12 +299,8 @@ impl<const D: usize> Fluid<D> {
         Ok(Some(self.on(cloud, since, kinematics)))
     }
 
-    /// The frame in which this system takes over.
-    pub fn frame_after(&self, u: &[f64]) -> Frame<D> {
-        self.frame(&Instant::formula(self.stood(), &[]), u)
-    }
-
-    fn stood(&self) -> f64 {
+    /// Time at which this system takes over from the one before.
+    pub fn stood(&self) -> f64 {
         match &self.cloud_motion {
             CloudMotion::Travel(travel) => travel.kinematics.now,
             _ => 0.0,

@@ -5,7 +5,7 @@
 use super::control::{Control, Method};
 use super::formula::Formula;
 use super::relax::{Relax, TimeTerm};
-use super::{CROWDED, March, Past, Step, TimeError};
+use super::{CROWDED, Cost, Integrator, Mark, Memory, Past, Standing, Step, TimeError};
 use crate::math::multilevel::Cycle;
 use crate::math::sweep::{sum, sweep};
 use crate::system::{Implicit, Instant, Reach};
@@ -84,33 +84,32 @@ impl<'a, S: Implicit> Dual<'a, S> {
     }
 }
 
-impl<S: Implicit> March<S> for Dual<'_, S> {
+impl<S: Implicit> Integrator<S> for Dual<'_, S> {
     fn finished(&self) -> bool {
         self.past.time >= self.plan.until
     }
 
-    fn parts(&mut self) -> (&S::Frame, &mut S::Work, &[f64]) {
-        self.relax.parts()
+    fn mark(&self) -> Mark {
+        Mark { residual: self.relax.drop(), ..self.past.mark() }
     }
 
-    fn past(&self) -> &Past {
-        &self.past
+    fn standing(&mut self) -> Standing<'_, S> {
+        self.relax.standing()
     }
 
-    fn inner(&self) -> u32 {
-        self.inner
+    fn memory(&self) -> Memory {
+        Memory::March(self.past.clone())
     }
 
-    fn linear(&self) -> u32 {
-        self.relax.linear
-    }
-
-    fn evaluations(&self) -> u64 {
-        self.relax.evaluations
-    }
-
-    fn bytes(&self) -> usize {
-        self.relax.bytes() + 8 * (2 * self.start.len() + self.past.before.len() + self.past.older.len())
+    fn cost(&self) -> Cost {
+        let kept = 2 * self.start.len() + self.past.before.len() + self.past.older.len();
+        Cost {
+            inner: self.inner,
+            bytes: self.relax.bytes() + 8 * kept,
+            unconverged: self.past.unconverged,
+            halved: self.past.halved,
+            ..self.relax.cost()
+        }
     }
 
     fn advance(&mut self) -> Result<Step, TimeError> {

@@ -1,5 +1,5 @@
 //! Explicit Runge-Kutta methods for marching in time.
-use super::{CROWDED, March, Past, Step, TimeError};
+use super::{CROWDED, Cost, Integrator, Mark, Memory, Past, Standing, Step, TimeError};
 use crate::math::sweep::sweep;
 use crate::system::{Instant, System, rows};
 
@@ -110,33 +110,26 @@ impl<'a, S: System> Explicit<'a, S> {
     }
 }
 
-impl<S: System> March<S> for Explicit<'_, S> {
+impl<S: System> Integrator<S> for Explicit<'_, S> {
     fn finished(&self) -> bool {
         self.past.time >= self.until
     }
 
-    fn parts(&mut self) -> (&S::Frame, &mut S::Work, &[f64]) {
-        (&self.frame, &mut self.work, &self.u)
+    fn mark(&self) -> Mark {
+        self.past.mark()
     }
 
-    fn past(&self) -> &Past {
-        &self.past
+    fn standing(&mut self) -> Standing<'_, S> {
+        Standing { frame: &self.frame, work: &mut self.work, state: &self.u }
     }
 
-    fn inner(&self) -> u32 {
-        0
+    fn memory(&self) -> Memory {
+        Memory::March(self.past.clone())
     }
 
-    fn linear(&self) -> u32 {
-        0
-    }
-
-    fn evaluations(&self) -> u64 {
-        self.evaluations
-    }
-
-    fn bytes(&self) -> usize {
-        8 * (3 * self.u.len() + self.sum.len() + self.rate.len())
+    fn cost(&self) -> Cost {
+        let bytes = 8 * (3 * self.u.len() + self.sum.len() + self.rate.len());
+        Cost { evaluations: self.evaluations, bytes, ..Cost::default() }
     }
 
     fn advance(&mut self) -> Result<Step, TimeError> {

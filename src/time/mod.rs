@@ -10,6 +10,7 @@ mod preconditioning;
 pub mod relax;
 
 use crate::system::{Reach, System};
+use relax::Resume;
 
 /// What one call of an integrator did.
 #[derive(Clone, Copy, Debug, Default)]
@@ -53,24 +54,79 @@ pub struct Past {
     pub halved: u32,
 }
 
-/// A method that marches in time.
-pub trait March<S: System> {
-    /// One step.
-    fn advance(&mut self) -> Result<Step, TimeError>;
-    /// True when the end is reached.
-    fn finished(&self) -> bool;
-    /// Frame, storage and state, for those who watch.
-    fn parts(&mut self) -> (&S::Frame, &mut S::Work, &[f64]);
-    /// Where the march stands.
-    fn past(&self) -> &Past;
-    /// Iterations within the last step.
-    fn inner(&self) -> u32;
-    /// Linear iterations so far.
-    fn linear(&self) -> u32;
+impl Past {
+    /// How far the march has come.
+    fn mark(&self) -> Mark {
+        Mark { iteration: self.iteration, time: self.time, last: self.last, residual: 1.0, resting: 0 }
+    }
+}
+
+/// What an integrator must remember, beside the state, to go on to the same bits.
+#[derive(Clone, Debug)]
+pub enum Memory {
+    /// A relaxation.
+    Relaxation(Resume),
+    /// A march.
+    March(Past),
+}
+
+/// How far an integrator has come.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Mark {
+    /// Iterations or steps since the start.
+    pub iteration: u32,
+    /// Physical time; zero in a relaxation.
+    pub time: f64,
+    /// Length of the last step in time; zero before the first one and in a relaxation.
+    pub last: f64,
+    /// Size of the residual over its first value, or that in the last step.
+    pub residual: f64,
+    /// Iterations of Newton's method on a steady state since the residual was last smallest.
+    pub resting: u32,
+}
+
+/// What an integrator has spent and holds.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Cost {
     /// Evaluations of the residual since it was made.
-    fn evaluations(&self) -> u64;
+    pub evaluations: u64,
+    /// Linear iterations so far.
+    pub linear: u32,
+    /// Iterations within the last step.
+    pub inner: u32,
     /// Bytes held.
-    fn bytes(&self) -> usize;
+    pub bytes: usize,
+    /// Steps in time that did not reach their goal.
+    pub unconverged: u32,
+    /// Times a step in time was halved because its equations could not be solved.
+    pub halved: u32,
+}
+
+/// Where an integrator stands, for those who watch.
+pub struct Standing<'a, S: System> {
+    /// Frame of the state.
+    pub frame: &'a S::Frame,
+    /// Storage that may be used to look at it.
+    pub work: &'a mut S::Work,
+    /// State.
+    pub state: &'a [f64],
+}
+
+/// A method that goes on step by step until it is finished: a relaxation, a march, or a relaxation of all instances of a
+/// period. Who drives it need not know which.
+pub trait Integrator<S: System> {
+    /// One step; after an error the state is the last good one.
+    fn advance(&mut self) -> Result<Step, TimeError>;
+    /// True when the goal is reached.
+    fn finished(&self) -> bool;
+    /// How far it has come.
+    fn mark(&self) -> Mark;
+    /// Where it stands.
+    fn standing(&mut self) -> Standing<'_, S>;
+    /// What a later run needs beside the state.
+    fn memory(&self) -> Memory;
+    /// What it has spent.
+    fn cost(&self) -> Cost;
 }
 
 /// What may help where motion leaves a particle without a good cloud.

@@ -13,7 +13,7 @@ use super::control::{Control, Method, Phase};
 use super::formula::Formula;
 use super::norm::{norm, weigh};
 use super::preconditioning::Preconditioning;
-use super::{Step, TimeError};
+use super::{Cost, Integrator, Mark, Memory, Standing, Step, TimeError};
 use crate::math::krylov::Gmres;
 use crate::math::sweep::{sweep, sweep_rows};
 use crate::system::{Fault, Hierarchy, Implicit, Instant, Reach, placed, rows};
@@ -84,7 +84,7 @@ pub struct Relax<'a, S: Implicit> {
     preconditioning: Option<Preconditioning<S::Preconditioner>>,
     gmres: Option<Gmres>,
     time: Option<TimeTerm>,
-    /// Residual over its first value that the step in time is after.
+    /// Residual over its first value that the relaxation, or the step in time, is after.
     pub goal: f64,
     /// Linear iterations so far.
     pub linear: u32,
@@ -123,6 +123,34 @@ pub struct Resume {
     pub phase: Phase,
     /// Time scales of the rows that the residual is measured with.
     pub scale: Vec<f64>,
+}
+
+impl<S: Implicit> Integrator<S> for Relax<'_, S> {
+    fn advance(&mut self) -> Result<Step, TimeError> {
+        Relax::advance(self)
+    }
+
+    /// A state that was handed over is relaxed once at least.
+    fn finished(&self) -> bool {
+        self.iteration > 0 && self.drop() <= self.goal
+    }
+
+    fn mark(&self) -> Mark {
+        Mark { iteration: self.iteration, residual: self.drop(), resting: self.resting(), ..Mark::default() }
+    }
+
+    fn standing(&mut self) -> Standing<'_, S> {
+        Standing { frame: &self.frame, work: &mut self.work, state: &self.u }
+    }
+
+    fn memory(&self) -> Memory {
+        Memory::Relaxation(self.resume())
+    }
+
+    fn cost(&self) -> Cost {
+        let (evaluations, linear, bytes) = (self.evaluations, self.linear, self.bytes());
+        Cost { evaluations, linear, bytes, ..Cost::default() }
+    }
 }
 
 impl<'a, S: Implicit> Relax<'a, S> {
@@ -317,11 +345,6 @@ impl<'a, S: Implicit> Relax<'a, S> {
     /// Residual over its first value.
     pub fn drop(&self) -> f64 {
         self.norm / self.first_norm
-    }
-
-    /// Frame, storage and state, for those who watch.
-    pub fn parts(&mut self) -> (&S::Frame, &mut S::Work, &[f64]) {
-        (&self.frame, &mut self.work, &self.u)
     }
 
     /// The residual R(u) of the last accepted state.

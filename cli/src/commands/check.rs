@@ -2,7 +2,7 @@
 use std::path::{Path, PathBuf};
 
 use alula::case::write;
-use alula::run::{self, Places};
+use alula::run;
 
 use crate::arguments;
 use crate::outcome::Outcome;
@@ -18,7 +18,7 @@ pub(crate) fn check(args: &arguments::Check) -> Outcome {
         return output::data(&write(&case));
     }
     let input = args.case.parent().map_or_else(PathBuf::new, Path::to_path_buf);
-    match run::inspect(&case, &Places { input, out: PathBuf::new() }, false) {
+    match run::inspect(&case, &input, None) {
         Ok(report) => {
             let title = format!("{}: no mistakes in `{}`\n", args.case.display(), case.title);
             output::data(&(title + &super::cloud::describe(&report)))

@@ -1,7 +1,7 @@
 //! `alula cloud`.
 use std::path::{Path, PathBuf};
 
-use alula::run::{self, CloudReport, Places};
+use alula::run::{self, CloudReport};
 
 use super::run::name_of;
 use crate::arguments;
@@ -19,7 +19,7 @@ pub(crate) fn cloud(args: &arguments::Cloud) -> Outcome {
         .clone()
         .unwrap_or_else(|| run::fresh_folder(Path::new("runs"), &format!("{}-cloud", name_of(&args.case))));
     let input = args.case.parent().map_or_else(PathBuf::new, Path::to_path_buf);
-    match run::inspect(&case, &Places { input, out: out.clone() }, true) {
+    match run::inspect(&case, &input, Some(&out)) {
         Ok(report) => {
             let done = output::data(&describe(&report));
             output::message(&format!("written to {}\n", out.display()));

@@ -3,7 +3,10 @@ use std::time::Instant;
 
 use serde::Serialize;
 
-use super::friction::Separation;
+use super::super::look::forces::GeneralisedForce;
+use super::super::look::friction::Separation;
+use super::crosscheck::LoadCrosscheck;
+use super::trace::{Change, FirstHarmonics, LastPeriod};
 use crate::observe::loads::Coefficients;
 
 /// What a run found and what it took.
@@ -51,10 +54,10 @@ pub struct Summary {
     pub chord: f64,
     /// What a harmonic balance found about itself.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub harmonic_balance: Option<super::harmonic::BalanceReport>,
+    pub harmonic_balance: Option<BalanceReport>,
     /// Forces on the modes of `[gaf]`.
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub generalised_forces: Vec<super::forces::GeneralisedForce>,
+    pub generalised_forces: Vec<GeneralisedForce>,
     /// Physical time at the end of a march.
     pub time: f64,
     /// Steps in time that did not reach their goal.
@@ -66,16 +69,16 @@ pub struct Summary {
     pub re_clouding: Option<Reclouding>,
     /// How the loads of the last period differ from those of the one before, where the motion repeats.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub periodic_change: Option<super::periodic::Change>,
+    pub periodic_change: Option<Change>,
     /// First harmonics of the loads per motion, where that repeats.
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub first_harmonics: Vec<super::periodic::FirstHarmonics>,
+    pub first_harmonics: Vec<FirstHarmonics>,
     /// Loads of the last period by momentum balance, against those on the walls.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub momentum_of_period: Option<super::load_crosscheck::LoadCrosscheck>,
+    pub momentum_of_period: Option<LoadCrosscheck>,
     /// Mean and greatest loads of the last period of the motion.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub last_period: Option<super::periodic::LastPeriod>,
+    pub last_period: Option<LastPeriod>,
     /// Last whole cycles of the lift of a march, found from its history: a frequency that no motion prescribes.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub lift_cycles: Option<crate::observe::cycles::Cycles>,
@@ -93,6 +96,68 @@ pub struct Summary {
     pub adapt_change: Option<Coefficients>,
     /// Where the time went: name and wall seconds.
     pub phases: Vec<(String, f64)>,
+}
+
+/// What a harmonic balance found about itself.
+#[derive(Clone, Debug, Serialize)]
+pub struct BalanceReport {
+    /// Number of harmonics N.
+    pub harmonics: usize,
+    /// Instances at which the equations were evaluated.
+    pub instances: usize,
+    /// Part of the last harmonic in all harmonics of the loads; absent with one harmonic.
+    pub tail_loads: Option<f64>,
+    /// The same of the density, root mean square over the volume.
+    pub tail_density: Option<f64>,
+    /// |ωD x − ẋ|/|ẋ| of the walls, root mean squares over walls and instances: what the harmonics lose of the motion.
+    pub wall_velocity_error: f64,
+    /// Evaluations of the residual of one instance.
+    pub evaluations: u64,
+    /// How far a march from there ends from it, where `check` asks for one.
+    pub march: Option<MarchingCheck>,
+}
+
+/// How far a march from a harmonic balance ends from it.
+#[derive(Clone, Debug, Serialize)]
+pub struct MarchingCheck {
+    /// Periods marched.
+    pub periods: u32,
+    /// Steps of each.
+    pub steps_per_period: u32,
+    /// Steps that did not reach their goal.
+    pub unconverged: u32,
+    /// Lift, where it has a first harmonic.
+    pub cl: Option<Apart>,
+    /// Drag.
+    pub cd: Option<Apart>,
+    /// Moment.
+    pub cm: Option<Apart>,
+}
+
+/// A load in the last period of a march against that of the balance, over the first harmonic of the balance.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Apart {
+    /// Difference of the means.
+    pub mean: f64,
+    /// Size of the difference of the first harmonics, complex.
+    pub first_harmonic: f64,
+}
+
+impl MarchingCheck {
+    /// A line for those who watch.
+    pub(crate) fn told(&self) -> String {
+        let named = [("lift", self.cl), ("drag", self.cd), ("moment", self.cm)];
+        let apart = |(name, a): (&str, Option<Apart>)| {
+            let a = a?;
+            Some(format!("{name} {:.2} % (mean {:+.2} %)", 100.0 * a.first_harmonic, 100.0 * a.mean))
+        };
+        let all: Vec<String> = named.into_iter().filter_map(apart).collect();
+        format!(
+            "after {} periods of marching the first harmonics differ from the balance, in parts of themselves: {}",
+            self.periods,
+            if all.is_empty() { "no load has one".into() } else { all.join(", ") }
+        )
+    }
 }
 
 /// How often the cloud of travelling particles was built anew, and what that did.
@@ -124,26 +189,26 @@ pub struct Ledger {
 
 /// Work of a run: evaluations of the residual of one instance times fluid particles, over all stages.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Work {
+pub(crate) struct Work {
     /// So far.
-    pub(super) total: u64,
+    pub(crate) total: u64,
     /// Evaluations of the present stage that are in it.
     counted: u64,
 }
 
 impl Work {
     /// What was done before a restart.
-    pub(super) fn before(total: u64) -> Self {
+    pub(crate) fn before(total: u64) -> Self {
         Self { total, counted: 0 }
     }
 
     /// A stage begins whose integrator has counted `evaluations` already.
-    pub(super) fn begin(&mut self, evaluations: u64) {
+    pub(crate) fn begin(&mut self, evaluations: u64) {
         self.counted = evaluations;
     }
 
     /// The integrator has counted up to `evaluations`, each of so many particles.
-    pub(super) fn add(&mut self, evaluations: u64, particles: usize) {
+    pub(crate) fn add(&mut self, evaluations: u64, particles: usize) {
         self.total += evaluations.saturating_sub(self.counted) * particles as u64;
         self.counted = evaluations;
     }
@@ -151,24 +216,24 @@ impl Work {
 
 /// Processor and wall time.
 #[derive(Clone, Copy, Debug)]
-pub struct Clock {
+pub(crate) struct Clock {
     wall: Instant,
     cpu: f64,
 }
 
 impl Clock {
     /// Starts now.
-    pub fn start() -> Self {
+    pub(crate) fn start() -> Self {
         Self { wall: Instant::now(), cpu: crate::observe::usage::cpu_seconds() }
     }
 
     /// Wall seconds since the start.
-    pub fn wall_seconds(&self) -> f64 {
+    pub(crate) fn wall_seconds(&self) -> f64 {
         self.wall.elapsed().as_secs_f64()
     }
 
     /// Processor seconds since the start.
-    pub fn cpu_seconds(&self) -> f64 {
+    pub(crate) fn cpu_seconds(&self) -> f64 {
         crate::observe::usage::cpu_seconds() - self.cpu
     }
 }

@@ -4,11 +4,12 @@ use std::path::Path;
 use serde::Serialize;
 use serde_json::{Value, json};
 
-use super::RunError;
+use super::super::error::RunError;
 use crate::observe::cycles::Cycles;
 use crate::observe::harmonics::{Harmonics, Periodicity, Window};
 use crate::observe::loads::Coefficients;
 use crate::observe::table::{Entry, write_csv, write_json};
+use crate::verify::Loops;
 
 /// Harmonics that are reported.
 const HARMONICS: usize = 5;
@@ -23,18 +24,18 @@ const STILL: f64 = 1e-12;
 
 /// Loads and motion at one time.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Sample {
+pub(crate) struct Sample {
     /// Time.
-    pub(super) time: f64,
+    pub(crate) time: f64,
     /// Loads.
-    pub(super) loads: Coefficients,
+    pub(crate) loads: Coefficients,
     /// Angle (radians, nose up), displacement and coordinate of the first mode of the first body that moves.
-    pub(super) motion: [f64; 5],
+    pub(crate) motion: [f64; 5],
 }
 
 /// The history of the loads of a march.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Trace {
+pub(crate) struct Trace {
     samples: Vec<Sample>,
     /// Periods at the end that loops and harmonics are the mean of, at least one.
     periods: u32,
@@ -96,7 +97,7 @@ impl Trace {
     }
 
     /// First harmonics over each part of the motion; none while there is no whole period.
-    pub(super) fn first_harmonics(&self, period: f64) -> Vec<FirstHarmonics> {
+    pub(crate) fn first_harmonics(&self, period: f64) -> Vec<FirstHarmonics> {
         let Some((loads, motions)) = self.fitted(period) else { return Vec::new() };
         let over = |motion: &Harmonics| loads.each_ref().map(|h| [h.per(motion).re, h.per(motion).im]);
         let all = motions.iter().map(|(name, motion)| {
@@ -107,7 +108,7 @@ impl Trace {
     }
 
     /// Loads of the last period, linear in time between steps; `None` while there is no whole one.
-    pub(super) fn last_period(&self, period: f64) -> Option<LastPeriod> {
+    pub(crate) fn last_period(&self, period: f64) -> Option<LastPeriod> {
         let time = self.column(|m| m.time);
         let end = *time.last()?;
         // the first sample lies one step after the start of the march
@@ -126,12 +127,12 @@ impl Trace {
     }
 
     /// Cycles of the lift at the end of the history, whether or not a motion prescribes them.
-    pub(super) fn cycles(&self) -> Option<Cycles> {
+    pub(crate) fn cycles(&self) -> Option<Cycles> {
         Cycles::of(&self.column(|m| m.time), &self.column(|m| m.loads.cl), &self.column(|m| m.loads.cd))
     }
 
     /// The same samples, with loops and harmonics from the last `periods`.
-    pub(super) fn over(self, periods: u32) -> Self {
+    pub(crate) fn over(self, periods: u32) -> Self {
         Self { periods, ..self }
     }
 
@@ -165,18 +166,17 @@ impl Trace {
     }
 
     /// Forgets all samples.
-    pub(super) fn clear(&mut self) {
+    pub(crate) fn clear(&mut self) {
         self.samples.clear();
     }
 
     /// Adds a sample.
-    pub(super) fn push(&mut self, sample: Sample) {
+    pub(crate) fn push(&mut self, sample: Sample) {
         self.samples.push(sample);
     }
 
     /// The part of a trace that the history of an interrupted run holds.
-    pub(super) fn read(out: &Path, until: f64) -> Self {
-        let text = super::folder::text(out, "history.csv").unwrap_or_default();
+    pub(crate) fn parse(text: &str, until: f64) -> Self {
         let mut lines = text.lines();
         let header: Vec<&str> = lines.next().unwrap_or_default().split(',').collect();
         let place = |name: &str| header.iter().position(|h| *h == name);
@@ -203,7 +203,7 @@ impl Trace {
     }
 
     /// Change over the last period; `None` while there are not two.
-    pub(super) fn change(&self, period: f64) -> Option<Change> {
+    pub(crate) fn change(&self, period: f64) -> Option<Change> {
         let time = self.column(|m| m.time);
         let loads = [self.column(|m| m.loads.cl), self.column(|m| m.loads.cm)];
         let changes: Option<Vec<Periodicity>> = loads.iter().map(|v| Periodicity::of(&time, v, period)).collect();
@@ -213,7 +213,7 @@ impl Trace {
     }
 
     /// Writes `harmonics.json` and `loops.csv` from the last period; nothing while there is none.
-    pub(super) fn write(&self, out: &Path, period: f64) -> Result<(), RunError> {
+    pub(crate) fn write(&self, out: &Path, period: f64) -> Result<(), RunError> {
         let Some(([cl, cd, cm], motions)) = self.fitted(period) else { return Ok(()) };
         let loads = [("cl", &cl), ("cd", &cd), ("cm", &cm)];
         let about = |motion: &(&'static str, Harmonics)| {
@@ -234,14 +234,26 @@ impl Trace {
             "about_motion": motions.iter().map(about).collect::<Vec<_>>(),
         });
         write_json(&out.join("harmonics.json"), &whole)?;
-        let rows = (0..POINTS).map(|k| {
+        let rows = self.loop_rows(&motions, period).map(|row| row.map(Entry::from).to_vec());
+        Ok(write_csv(&out.join("loops.csv"), &["phase", "angle_deg", "shift", "cl", "cd", "cm"], rows)?)
+    }
+
+    /// Phase, angle, displacement and loads over the last period.
+    fn loop_rows<'a>(&'a self, motions: &'a Moved, period: f64) -> impl Iterator<Item = [f64; 6]> + 'a {
+        (0..POINTS).map(move |k| {
             let t = period * k as f64 / POINTS as f64;
             let angle = motions.iter().find(|m| m.0 == "angle").map_or(0.0, |m| m.1.at(t).to_degrees());
             let shift = motions.iter().find(|m| m.0 != "angle").map_or(0.0, |m| m.1.at(t));
             let [cl, cd, cm] = self.loads_at(t, period);
-            [k as f64 / POINTS as f64, angle, shift, cl, cd, cm].map(Entry::from).to_vec()
-        });
-        Ok(write_csv(&out.join("loops.csv"), &["phase", "angle_deg", "shift", "cl", "cd", "cm"], rows)?)
+            [k as f64 / POINTS as f64, angle, shift, cl, cd, cm]
+        })
+    }
+
+    /// Loads over the last period; empty while there is none.
+    pub(crate) fn loops(&self, period: f64) -> Loops {
+        let Some((_, motions)) = self.fitted(period) else { return Loops::default() };
+        let rows: Vec<[f64; 6]> = self.loop_rows(&motions, period).collect();
+        Loops { cl: rows.iter().map(|r| r[3]).collect(), cd: rows.iter().map(|r| r[4]).collect() }
     }
 }
 

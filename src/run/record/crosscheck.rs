@@ -1,18 +1,15 @@
 //! Loads of a period, evaluated twice: on the walls, and from the momentum of the gas around the bodies.
-use std::path::Path;
-
 use serde::Serialize;
 
-use crate::observe::History;
 use crate::observe::loads::Coefficients;
-use crate::observe::table::FileError;
 
 /// Name of the table in the run folder.
-const FILE: &str = "momentum.csv";
+pub(crate) const FILE: &str = "momentum.csv";
 /// Its columns.
-const COLUMNS: [&str; 8] = ["iteration", "time", "cl", "cd", "cm", "cl_momentum", "cd_momentum", "cm_momentum"];
+pub(crate) const COLUMNS: [&str; 8] =
+    ["iteration", "time", "cl", "cd", "cm", "cl_momentum", "cd_momentum", "cm_momentum"];
 /// Moments of a period of a march at which both are evaluated.
-pub(super) const MOMENTS: u32 = 12;
+pub(crate) const MOMENTS: u32 = 12;
 
 /// How far two evaluations of a load lie apart over a period.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -38,53 +35,48 @@ pub struct LoadCrosscheck {
     pub cm: Apart,
 }
 
-/// Both evaluations at every moment of a run so far, in memory and in `momentum.csv`.
-#[derive(Default)]
-pub(super) struct Twofold {
-    file: Option<History>,
+/// Both evaluations at every moment of a run so far.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Twofold {
     rows: Vec<[f64; 8]>,
 }
 
+/// Loads at one moment, evaluated twice.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Moment {
+    /// Iteration of the run.
+    pub(crate) iteration: u64,
+    /// Time.
+    pub(crate) time: f64,
+    /// Loads on the walls.
+    pub(crate) wall: Coefficients,
+    /// Loads from the momentum of the gas.
+    pub(crate) around: Coefficients,
+}
+
 impl Twofold {
-    /// Begins, or goes on after `iteration`.
-    pub(super) fn open(out: &Path, iteration: Option<u64>) -> Result<Self, FileError> {
-        let path = out.join(FILE);
-        let Some(iteration) = iteration else {
-            return Ok(Self { file: Some(History::create(&path, &COLUMNS)?), rows: Vec::new() });
-        };
-        let file = Some(History::resume(&path, &COLUMNS, iteration)?);
-        let text = super::folder::text(out, FILE).unwrap_or_default();
+    /// What a table holds.
+    pub(crate) fn parse(text: &str) -> Self {
         let row = |line: &str| {
             let values: Vec<f64> = line.split(',').filter_map(|v| v.parse().ok()).collect();
             <[f64; 8]>::try_from(values).ok()
         };
-        Ok(Self { file, rows: text.lines().skip(1).filter_map(row).collect() })
+        Self { rows: text.lines().skip(1).filter_map(row).collect() }
     }
 
-    /// Adds a moment; nothing where no table was begun.
-    pub(super) fn push(
-        &mut self,
-        (iteration, time): (u64, f64),
-        wall: &Coefficients,
-        around: &Coefficients,
-    ) -> Result<(), FileError> {
-        let Some(file) = &mut self.file else { return Ok(()) };
-        let row = [iteration as f64, time, wall.cl, wall.cd, wall.cm, around.cl, around.cd, around.cm];
-        file.append(&row)?;
+    /// Adds a moment; its row.
+    pub(crate) fn push(&mut self, moment: &Moment) -> [f64; 8] {
+        let Moment { iteration, time, wall, around } = moment;
+        let row = [*iteration as f64, *time, wall.cl, wall.cd, wall.cm, around.cl, around.cd, around.cm];
         self.rows.push(row);
-        Ok(())
-    }
-
-    /// True when moments are to be kept.
-    pub(super) fn is_open(&self) -> bool {
-        self.file.is_some()
+        row
     }
 
     /// The moments of the last period; `None` without any.
-    pub(super) fn last(&self, period: f64) -> Option<LoadCrosscheck> {
+    pub(crate) fn last(&self, period: f64) -> Option<LoadCrosscheck> {
         let end = self.rows.last()?[1];
         let rows: Vec<&[f64; 8]> =
-            self.rows.iter().filter(|r| r[1] > end - period * (1.0 - super::run_recorder::NEARLY)).collect();
+            self.rows.iter().filter(|r| r[1] > end - period * (1.0 - super::interval::NEARLY)).collect();
         let n = rows.len() as f64;
         let apart = |c: usize| {
             let difference = |r: &&[f64; 8]| r[c + 3] - r[c];
@@ -105,20 +97,21 @@ mod tests {
     use super::*;
 
     #[test]
-    fn the_last_period_counts_and_goes_on_where_it_was_interrupted() {
-        let folder = tempfile::tempdir().unwrap();
+    fn the_last_period_counts() {
         let load = |cl: f64| Coefficients { cl, cd: 1.0, cm: 0.0 };
-        let mut all = Twofold::open(folder.path(), None).unwrap();
+        let mut all = Twofold::default();
+        let mut text = COLUMNS.join(",");
         for k in 1..=8_u32 {
             let far = if k <= 4 { 5.0 } else { 0.1 };
-            all.push((u64::from(k), 0.25 * f64::from(k)), &load(f64::from(k)), &load(f64::from(k) + far)).unwrap();
+            let (wall, around) = (load(f64::from(k)), load(f64::from(k) + far));
+            let row = all.push(&Moment { iteration: u64::from(k), time: 0.25 * f64::from(k), wall, around });
+            text += &format!("\n{}", row.map(|v| v.to_string()).join(","));
         }
         let found = all.last(1.0).unwrap();
         assert_eq!(found.moments, 4);
         assert!((found.cl.mean - 0.1).abs() < 1e-12 && (found.cl.rms - 0.1).abs() < 1e-12, "{found:?}");
         assert!(found.cl.range == 3.0 && found.cd.rms == 0.0, "{found:?}");
-        let again = Twofold::open(folder.path(), Some(6)).unwrap();
-        assert_eq!(again.rows, all.rows[..6]);
+        assert_eq!(Twofold::parse(&text).rows, all.rows);
         assert!(Twofold::default().last(1.0).is_none());
     }
 }

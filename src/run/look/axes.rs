@@ -1,26 +1,74 @@
-//! The solution as plain tables, in the units of the case.
+//! Axes of loads, and the gas at one moment seen in them.
 use super::friction::add_friction_in;
 use crate::case::Case;
 use crate::math::Vector;
+use crate::math::sweep::sum;
+use crate::motion::BodyMotion;
 use crate::observe::loads::{Coefficients, Load, LoadAxes, pressure_load};
-use crate::physics::Primitive;
 use crate::scheme::start::{free_stream, stream_axes};
-use crate::scheme::{Fluid, Frame, Work};
+use crate::scheme::{Fluid, Frame, HasGas, Work};
+
+/// The gas at one moment.
+#[derive(Clone, Copy)]
+pub(crate) struct GasView<'a, const D: usize> {
+    /// Equations.
+    pub(crate) fluid: &'a Fluid<D>,
+    /// Frame.
+    pub(crate) frame: &'a Frame<D>,
+    /// State.
+    pub(crate) state: &'a [f64],
+}
+
+impl<'a, const D: usize> GasView<'a, D> {
+    /// The gas of a system.
+    pub(crate) fn of<S: HasGas<D>>(system: &'a S, frame: &'a S::Frame, state: &'a [f64]) -> Self {
+        Self { fluid: system.gas(), frame: system.gas_frame(frame), state: system.gas_state(state) }
+    }
+
+    /// Coefficients from wall pressure and friction; `None` without bodies.
+    pub(crate) fn coefficients(&self, axes: &LoadFrame, work: &mut Work<D>) -> Option<Coefficients> {
+        let Self { fluid, frame, state } = self;
+        if fluid.discretisation.cloud.interface.is_empty() {
+            return None;
+        }
+        fluid.fill_states(frame, state, work);
+        if fluid.viscous_model.is_some() {
+            fluid.fill_gradients(frame, work);
+        }
+        Some(axes.coefficients_in(fluid, frame, work))
+    }
+}
+
+/// Angle (radians, nose up), displacement and coordinate of the first mode of the first body that moves.
+pub(crate) fn motion<const D: usize>(fluid: &Fluid<D>, time: f64) -> [f64; 5] {
+    fluid.cloud_motion.law().map_or([0.0; 5], |law: &BodyMotion<D>| {
+        let shift = law.displacement(time).to_3d();
+        let mode = law.coordinates(time).first().copied().unwrap_or(0.0);
+        [law.angle(time).value, shift[0], shift[1], shift[2], mode]
+    })
+}
+
+/// Totals of mass, momentum and energy over the fluid particles.
+pub(crate) fn totals<const D: usize>(fluid: &Fluid<D>, u: &[f64]) -> Vec<f64> {
+    let n = D + 2;
+    let volume = fluid.volumes();
+    (0..n).map(|c| sum(fluid.discretisation.cloud.n_fluid, |i| volume[i] * u[i * n + c])).collect()
+}
 
 /// Load axes that still need the extent of the bodies.
 #[derive(Clone, Debug)]
-pub(super) struct LoadFrame {
+pub(crate) struct LoadFrame {
     case: Case,
 }
 
 /// The axes of a case; defaults follow from the bodies when loads are computed.
-pub(super) fn load_axes(case: &Case) -> LoadFrame {
+pub(crate) fn load_axes(case: &Case) -> LoadFrame {
     LoadFrame { case: case.clone() }
 }
 
 impl LoadFrame {
     /// Axes for the bodies of `fluid`, in the units of the solver.
-    pub(super) fn axes<const D: usize>(&self, fluid: &Fluid<D>) -> LoadAxes {
+    pub(crate) fn axes<const D: usize>(&self, fluid: &Fluid<D>) -> LoadAxes {
         let bounds = crate::math::Bounds::around(fluid.walls_before());
         let extent = bounds.extent();
         let reference = &self.case.reference;
@@ -53,7 +101,7 @@ impl LoadFrame {
     }
 
     /// The axes at the time of `frame`: the point of the moment travels with the first body.
-    pub(super) fn axes_in<const D: usize>(&self, fluid: &Fluid<D>, frame: &Frame<D>) -> LoadAxes {
+    pub(crate) fn axes_in<const D: usize>(&self, fluid: &Fluid<D>, frame: &Frame<D>) -> LoadAxes {
         let mut axes = self.axes(fluid);
         let carried =
             fluid.cloud_motion.body(0, frame.time, &frame.jets).point(&Vector::from_fn(|d| axes.moment_point[d]));
@@ -62,7 +110,7 @@ impl LoadFrame {
     }
 
     /// Coefficients of all bodies from the wall states, and with friction the gradients, in `work`: those of `frame`.
-    pub(super) fn coefficients_in<const D: usize>(
+    pub(crate) fn coefficients_in<const D: usize>(
         &self,
         fluid: &Fluid<D>,
         frame: &Frame<D>,
@@ -82,14 +130,14 @@ impl LoadFrame {
 
 /// The chord that interface particles stand on: they stay half a spacing away from sharp edges, so that their extent is a
 /// little short of a chord that is a round number.
-pub(super) fn rounded(extent: f64) -> f64 {
+pub(crate) fn rounded(extent: f64) -> f64 {
     let step = 10f64.powf(extent.log10().floor() - 1.0);
     let near = (extent / step).round() * step;
     if (near - extent).abs() < 0.02 * extent { near } else { extent }
 }
 
 /// Load of the wall pressure on the interface particles chosen.
-pub(super) fn wall_load<const D: usize>(
+pub(crate) fn wall_load<const D: usize>(
     fluid: &Fluid<D>,
     work: &Work<D>,
     axes: &LoadAxes,
@@ -104,73 +152,4 @@ pub(super) fn wall_load<const D: usize>(
         excess.push(work.state[i].pressure - far);
     }
     pressure_load(axes, &points, &areas, &excess)
-}
-
-/// Named columns over particles.
-#[derive(Clone, Debug)]
-pub struct Snapshot {
-    /// Positions.
-    pub points: Vec<[f64; 3]>,
-    /// Columns: name, components, values.
-    pub columns: Vec<(&'static str, usize, Vec<f64>)>,
-}
-
-/// Factors from the units of the solver to those of the case.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Units {
-    /// Density.
-    pub(super) density: f64,
-    /// Speed.
-    pub(super) speed: f64,
-}
-
-impl Units {
-    /// The units of a case; ones when its free stream is nondimensional.
-    pub(super) fn of(case: &Case) -> Self {
-        let r = case.flow.reference();
-        if case.flow.is_dimensional() {
-            Self { density: r.density, speed: r.sound_speed }
-        } else {
-            Self { density: 1.0, speed: 1.0 }
-        }
-    }
-
-    /// Factor on pressures.
-    pub(super) fn pressure(&self) -> f64 {
-        self.density * self.speed * self.speed
-    }
-}
-
-/// Pressure coefficient; zero when there is no stream.
-pub(super) fn pressure_coefficient<const D: usize>(q: &Primitive<D>, free: &Primitive<D>) -> f64 {
-    let dynamic = 0.5 * free.density * free.velocity.norm_squared();
-    if dynamic > 0.0 { (q.pressure - free.pressure) / dynamic } else { 0.0 }
-}
-
-/// All particles without images, with everything that a field file holds.
-pub(super) fn field<const D: usize>(case: &Case, fluid: &Fluid<D>, work: &Work<D>) -> Snapshot {
-    let cloud = &fluid.discretisation.cloud;
-    let n = cloud.n_real();
-    let (free, units) = (free_stream::<D>(case), Units::of(case));
-    let column = |f: &dyn Fn(usize) -> f64| (0..n).map(f).collect::<Vec<f64>>();
-    let state = &work.state;
-    let velocity = (0..n).flat_map(|i| (state[i].velocity * units.speed).to_3d()).collect();
-    let kind = |i: usize| f64::from(u8::from(i >= cloud.n_fluid) + u8::from(i >= cloud.n_rows()));
-    let entropy = |i: usize| fluid.gas.entropy(&state[i]) / fluid.gas.entropy(&free) - 1.0;
-    let level = |i: usize| (cloud.spacing[i]).log2();
-    Snapshot {
-        points: cloud.x[..n].iter().map(Vector::to_3d).collect(),
-        columns: vec![
-            ("density", 1, column(&|i| state[i].density * units.density)),
-            ("velocity", 3, velocity),
-            ("pressure", 1, column(&|i| state[i].pressure * units.pressure())),
-            ("mach", 1, column(&|i| state[i].velocity.norm() / fluid.gas.sound_speed(&state[i]))),
-            ("cp", 1, column(&|i| pressure_coefficient(&state[i], &free))),
-            ("entropy", 1, column(&entropy)),
-            ("spacing", 1, cloud.spacing[..n].to_vec()),
-            ("volume", 1, cloud.volume[..n].to_vec()),
-            ("level", 1, column(&level)),
-            ("kind", 1, column(&kind)),
-        ],
-    }
 }

@@ -1,16 +1,22 @@
 //! From case to solver: surface, stages, cloud, fluid, state at the start.
+mod motion_feasibility;
+
 use std::path::Path;
 use std::sync::Arc;
 
-use super::RunError;
-use super::forces::ForceModes;
-use crate::case::{Body, Case, Dual, Harmonics, Initial, Length, ParticleMotion, Steady, SteadyMethod, Temporal, Wall};
+pub(crate) use motion_feasibility::check as check_motion;
+
+use super::error::RunError;
+use super::folder;
+use super::look::forces::ForceModes;
+use super::recipe;
+use super::stage::Stage;
+use crate::case::{Body, Case, Length, ParticleMotion, Wall};
 use crate::cloud::conservative::conservative as conserve;
 use crate::cloud::sources::Source;
 use crate::cloud::travel::BackgroundDomain;
 use crate::cloud::{Cloud, Operators};
 use crate::geometry::{GeometryError, Surface, load_surface};
-use crate::math::multilevel::Cycle;
 use crate::math::{Bounds, Vector};
 use crate::motion::{BodyMotion, ModeShape, Motions};
 use crate::physics::{Conserved, Gas, Newtonian};
@@ -19,14 +25,10 @@ use crate::scheme::probe::Probe;
 use crate::scheme::reconstruct::Reconstruction;
 use crate::scheme::start::{Stream, initial};
 use crate::scheme::{
-    CloudMotion, DeformingSurface, Discretisation, Fluid, ParticleKinematics, Travel, ViscousModel, WallCondition,
+    CloudMotion, DeformingSurface, Discretisation, Fluid, HasGas, ParticleKinematics, Travel, ViscousModel,
+    WallCondition, adapt,
 };
-use crate::system::{Instant, System};
-use crate::time::control::{Control, Method};
-use crate::time::dual::Plan;
-
-/// Particles above which a steady case is started on one coarser cloud, and on two; in 2-D and 3-D.
-const START: [[usize; 2]; 2] = [[2_500, 9_000], [15_000, 80_000]];
+use crate::system::{Instant, System, placed};
 
 /// Exactly conservative coefficients unless the case says otherwise: they cost a few per cent of a run.
 const CONSERVATIVE: bool = true;
@@ -42,17 +44,8 @@ const SMALL: f64 = 0.2;
 /// Greatest one: a mode of a whole aircraft may carry a flap.
 const LARGE: f64 = 100.0;
 
-/// Greatest number of iterations of the relaxation before a march.
-const PRELUDE_ITERATIONS: u32 = 500;
-
-/// Orders of magnitude of that relaxation: the motion soon moves loads by more than what is left.
-const PRELUDE_ORDERS: f64 = 3.0;
-
-/// The same where a march leads to a harmonic balance.
-const LEAD_ITERATIONS: u32 = 60;
-
 /// Refuses what a case file can say but the solver cannot compute yet; each line goes when its solver comes.
-pub(super) fn supported(case: &Case) -> Result<(), RunError> {
+pub(crate) fn supported(case: &Case) -> Result<(), RunError> {
     let travels = case.moves() && case.particles() == ParticleMotion::Lagrangian;
     let layered = travels && case.cloud.wall_layers.is_some();
     let bare = case.moves() && case.bodies.is_empty() && case.particles() == ParticleMotion::Deforming;
@@ -69,9 +62,11 @@ pub(super) fn supported(case: &Case) -> Result<(), RunError> {
     if missing.is_empty() {
         return Ok(());
     }
-    let list = missing.join(", ");
-    let hint = "`alula check` and `alula cloud` accept the case; `alula run` does not yet";
-    Err(RunError::Unsupported(format!("this version cannot compute {list}\nhint: {hint}")))
+    let what = format!("this version cannot compute {}", missing.join(", "));
+    Err(RunError::Unsupported {
+        what,
+        hint: "`alula check` and `alula cloud` accept the case; `alula run` does not yet",
+    })
 }
 
 /// Exactly conservative coefficients? Not where particles travel with the fluid and their lists are made anew again and again; and
@@ -82,68 +77,28 @@ fn conserves(case: &Case) -> bool {
     case.scheme.conservative.unwrap_or(CONSERVATIVE && !travels && !layered)
 }
 
-/// One cloud of a run.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
-pub(super) struct Stage {
-    /// Factor on every spacing of the case: 1 except for the clouds that a steady case starts on.
-    pub(super) factor: f64,
-    /// Cycle of adaptation, 0 before any.
-    pub(super) cycle: u32,
-    /// Marches in time; else relaxes to a steady state.
-    #[serde(default)]
-    pub(super) march: bool,
-}
-
-impl Stage {
-    /// The cloud of the case itself.
-    pub(super) fn is_plain(&self) -> bool {
-        self.factor == 1.0 && self.cycle == 0
-    }
-
-    /// True when both stand on the same cloud.
-    pub(super) fn shares_cloud(&self, other: &Self) -> bool {
-        self.factor == other.factor && self.cycle == other.cycle
-    }
-}
-
-/// The stages of a case whose own cloud has `n` fluid particles.
-pub(super) fn stages(case: &Case, n: usize, dimension: usize) -> Vec<Stage> {
-    let mut all = Vec::new();
-    // a march from a given field starts from that field itself
-    let given = super::marches(case) && !matches!(case.initial, Initial::FreeStream);
-    let relaxes = !matches!(case.time, Temporal::Explicit(_)) && !case.bodies.is_empty() && !given;
-    let steady = |factor: f64, cycle: u32| Stage { factor, cycle, march: false };
-    if relaxes {
-        let limits = START[dimension - 2];
-        if n > limits[1] {
-            all.push(steady(4.0, 0));
-        }
-        if n > limits[0] {
-            all.push(steady(2.0, 0));
-        }
-    }
-    if relaxes || matches!(case.time, Temporal::Steady(_)) {
-        all.extend((0..=case.adapt.cycles).map(|cycle| steady(1.0, cycle)));
-    }
-    if super::marches(case) {
-        let cycle = all.last().map_or(0, |s: &Stage| s.cycle);
-        all.push(Stage { factor: 1.0, cycle, march: true });
-    }
-    all
-}
-
-/// A cloud with its equations and its state at the start.
-pub(super) struct Solver<const D: usize> {
+/// A cloud with its equations, and what only some runs need to know of it.
+pub(crate) struct Solver<S, const D: usize> {
     /// Equations.
-    pub(super) fluid: Fluid<D>,
+    pub(crate) system: S,
     /// The bodies, where pictures are drawn on the way.
-    pub(super) film: Option<Surface<D>>,
+    pub(crate) film: Option<Surface<D>>,
     /// Modes that a harmonic balance computes forces on.
-    pub(super) force_modes: Option<ForceModes<D>>,
+    pub(crate) force_modes: Option<ForceModes<D>>,
+}
+
+/// What the solvers of all stages are built from.
+pub(crate) struct Site<'a, const D: usize> {
+    /// The case.
+    pub(crate) case: &'a Case,
+    /// Its bodies.
+    pub(crate) surface: Option<&'a Surface<D>>,
+    /// How they move.
+    pub(crate) motions: &'a Motions<D>,
 }
 
 /// Reads the bodies of a case; `None` when it has none.
-pub(super) fn surface<const D: usize>(
+pub(crate) fn surface<const D: usize>(
     case: &Case,
     input: &Path,
 ) -> Result<(Option<Surface<D>>, Vec<String>), GeometryError> {
@@ -154,14 +109,14 @@ pub(super) fn surface<const D: usize>(
     Ok((Some(surface), notes))
 }
 
-/// Builds the solver of one stage; `ready` is its cloud when that exists already.
-pub(super) fn solver<const D: usize>(
-    case: &Case,
+/// Builds the solver of one stage with the sources of refinement found so far; `ready` is its cloud when that exists already.
+pub(crate) fn solver<const D: usize>(
+    site: &Site<'_, D>,
     stage: &Stage,
-    surface: Option<&Surface<D>>,
-    (sources, motions): (&[Source<D>], &Motions<D>),
+    sources: &[Source<D>],
     ready: Option<Cloud<D>>,
-) -> Result<Solver<D>, RunError> {
+) -> Result<Solver<Fluid<D>, D>, RunError> {
+    let Site { case, surface, motions } = *site;
     let scaled = coarsened(case, stage.factor);
     let sources = if stage.cycle > 0 { sources } else { &[] };
     let mut cloud = match ready {
@@ -206,17 +161,19 @@ pub(super) fn solver<const D: usize>(
     }
     let film = surface.filter(|_| D == 2 && case.output.report && motions.period().is_some()).cloned();
     let force_modes = ForceModes::of(case, &fluid, motions);
-    Ok(Solver { fluid, film, force_modes })
+    Ok(Solver { system: fluid, film, force_modes })
 }
 
 /// Refuses a cloud without conservative coefficients.
 fn unsound<const D: usize>(x: &Vector<D>) -> RunError {
     let place: Vec<String> = x.0.iter().map(|c| format!("{c:.4}")).collect();
-    RunError::Unsupported(format!(
-        "there are no conservative coefficients for the particles at ({}): mostly a crevice narrower than the spacing\nhint: \
-         refine there with a `cloud.box`, widen or round the crevice, or compute without them, `scheme.conservative = false`",
-        place.join(", ")
-    ))
+    let place = place.join(", ");
+    RunError::Unsupported {
+        what: format!(
+            "there are no conservative coefficients for the particles at ({place}): mostly a crevice narrower than the spacing"
+        ),
+        hint: "refine there with a `cloud.box`, widen or round the crevice, or compute without them, `scheme.conservative = false`",
+    }
 }
 
 /// Refuses a start whose entropy is not that of the free stream, which an isentropic gas has everywhere.
@@ -225,11 +182,13 @@ fn at_one_entropy<const D: usize>(fluid: &Fluid<D>) -> Result<(), RunError> {
     let stray = |x: &&Vector<D>| (fluid.gas.gamma * fluid.gas.entropy(&(fluid.held)(x)) - 1.0).abs() > ONE_ENTROPY;
     let Some(x) = cloud.x[..cloud.n_fluid].iter().find(stray) else { return Ok(()) };
     let times = fluid.gas.gamma * fluid.gas.entropy(&(fluid.held)(x));
-    Err(RunError::Unsupported(format!(
-        "the entropy p/\u{3c1}^\u{3b3} of the start is {times:.6} times that of the free stream at {:?}, but the gas is isentropic\nhint: \
-         start with p/\u{3c1}^\u{3b3} = 1/\u{3b3}, or take out `isentropic`",
-        x.0
-    )))
+    Err(RunError::Unsupported {
+        what: format!(
+            "the entropy p/\u{3c1}^\u{3b3} of the start is {times:.6} times that of the free stream at {:?}, but the gas is isentropic",
+            x.0
+        ),
+        hint: "start with p/\u{3c1}^\u{3b3} = 1/\u{3b3}, or take out `isentropic`",
+    })
 }
 
 /// Viscosity of a case in the units of the solver, and what the gas does on each body.
@@ -280,15 +239,15 @@ fn cloud_motion<const D: usize>(
 }
 
 /// The motions of a case.
-pub(super) fn motions<const D: usize>(
+pub(crate) fn motions<const D: usize>(
     case: &Case,
     input: &Path,
     surface: Option<&Surface<D>>,
 ) -> Result<Motions<D>, RunError> {
     let extent = surface.map_or(1.0, |s| s.bounds().extent()[0]);
     let chord = case.reference.chord.map_or(extent, |c| c.0);
-    let read = |name: &str| super::folder::text(input, name);
-    let motions = Motions::new(case, chord, &read).map_err(|e| RunError::Folder(e.to_string()))?;
+    let read = |name: &str| folder::text(input, name);
+    let motions = Motions::new(case, chord, &read)?;
     if let Some(surface) = surface {
         for (b, name) in surface.bodies.iter().enumerate().take(motions.len()) {
             let bounds = surface.bounds_of(b);
@@ -311,12 +270,10 @@ fn lies_on<const D: usize>((name, body): (&str, &Bounds<D>), shape: &ModeShape<D
         return Ok(());
     }
     let place = |b: &Bounds<D>| format!("{:?} to {:?}", b.min.0, b.max.0);
-    Err(RunError::Motion(format!(
-        "the points of a mode reach from {}, but {name} from {}\nhint: points of a mode are those of the body where it is \
-         placed, in the units of the case",
-        place(&points),
-        place(body)
-    )))
+    Err(RunError::Motion {
+        what: format!("the points of a mode reach from {}, but {name} from {}", place(&points), place(body)),
+        hint: "points of a mode are those of the body where it is placed, in the units of the case",
+    })
 }
 
 /// Quarter chord of the bodies.
@@ -342,19 +299,20 @@ fn coarsened(case: &Case, factor: f64) -> Case {
 }
 
 /// The state of the previous stage on the particles of the next one, by the solver's own fit.
-pub(super) fn transfer<const D: usize>(
-    previous: &(Solver<D>, Vec<f64>),
-    next: &Solver<D>,
+pub(crate) fn transfer<S: HasGas<D>, const D: usize>(
+    previous: &S,
+    state: &[f64],
+    next: &S,
     surface: Option<&Surface<D>>,
 ) -> Vec<f64> {
-    let (old, state) = (&previous.0.fluid, &previous.1);
+    let (old, gas) = (previous.gas(), previous.gas_state(state));
     let mut work = old.work();
-    let frame = old.frame(&Instant::still(0.0), state);
-    old.fill_states(&frame, state, &mut work);
+    let frame = old.frame(&Instant::still(0.0), gas);
+    old.fill_states(&frame, gas, &mut work);
     old.fill_gradients(&frame, &mut work);
     let probe = Probe::new(old, &work, surface);
-    let mut u = next.fluid.start();
-    let cloud = &next.fluid.discretisation.cloud;
+    let mut u = next.gas().start();
+    let cloud = &next.gas().discretisation.cloud;
     crate::math::sweep::sweep_rows(&mut u, D + 2, |i, row| {
         let found = probe.at(&cloud.x[i]).filter(crate::physics::Primitive::is_physical);
         if let Some(q) = found {
@@ -362,81 +320,42 @@ pub(super) fn transfer<const D: usize>(
             c.store(row);
         }
     });
-    u
+    previous.with_gas(state, &u)
+}
+
+/// Sources of refinement for the next cycle of adaptation.
+pub(crate) fn adapted<S: HasGas<D>, const D: usize>(case: &Case, system: &S, state: &[f64]) -> Vec<Source<D>> {
+    let (fluid, gas) = (system.gas(), system.gas_state(state));
+    let mut work = fluid.work();
+    let frame = fluid.frame(&Instant::still(0.0), gas);
+    fluid.fill_states(&frame, gas, &mut work);
+    fluid.fill_gradients(&frame, &mut work);
+    let finest = case.adapt.spacing.unwrap_or(case.cloud.spacing).0;
+    adapt::sources(fluid, &work, &case.adapt.sensors, finest)
 }
 
 /// The last state of another run as the start of this one. A harmonic balance takes all instances of another one; others take
 /// the first, at phase zero.
-pub(super) fn taken_over<const D: usize>(case: &Case, solver: &Solver<D>, u: Vec<f64>) -> Result<Vec<f64>, RunError> {
-    let (own, n) = (solver.fluid.len(), D + 2);
+pub(crate) fn taken_over<S: System>(case: &Case, system: &S, u: Vec<f64>) -> Result<Vec<f64>, RunError> {
+    let own = system.len();
     let count = u.len() / own.max(1);
     if own == 0 || u.len() != count * own || count.is_multiple_of(2) {
-        let hint = "the version that wrote it may have built its cloud differently";
-        let text =
-            format!("the other run holds {} numbers where {own} of each instance are needed\nhint: {hint}", u.len());
-        return Err(RunError::Folder(text));
+        return Err(RunError::OtherRun {
+            what: format!("the other run holds {} numbers where {own} of each instance are needed", u.len()),
+            hint: "the version that wrote it may have built its cloud differently",
+        });
     }
-    if count == 1 || matches!(case.time, Temporal::Harmonics(_)) {
+    if count == 1 || recipe::balance(case).is_some() {
         return Ok(u);
     }
-    Ok(u.chunks_exact(n * count).flat_map(|row| row[..n].to_vec()).collect())
-}
-
-/// The relaxation that gives a march its start.
-pub(super) fn prelude(dual: &Dual) -> Steady {
-    Steady { method: dual.method, iterations: PRELUDE_ITERATIONS, orders: PRELUDE_ORDERS, ..Steady::default() }
-}
-
-/// The relaxation that gives a harmonic balance its start.
-pub(super) fn harmonic_prelude(plan: &Harmonics) -> Steady {
-    let iterations = if plan.march > 0 { LEAD_ITERATIONS } else { PRELUDE_ITERATIONS };
-    Steady { method: plan.method, iterations, orders: PRELUDE_ORDERS, ..Steady::default() }
-}
-
-/// Numbers of a harmonic balance.
-pub(super) fn harmonic_control(plan: &Harmonics, dimension: usize) -> Control {
-    let steady = Steady { cfl: plan.cfl, cfl_max: plan.cfl_max, ..harmonic_prelude(plan) };
-    control(&steady, dimension)
-}
-
-/// Numbers of an implicit march.
-pub(super) fn plan(dual: &Dual, period: Option<f64>) -> Result<Plan, RunError> {
-    let wrong = || RunError::Folder("`[time.dual]` counts periods of a motion that has none".into());
-    Ok(Plan {
-        until: dual.end(period).ok_or_else(wrong)?,
-        step: dual.step_length(period).ok_or_else(wrong)?,
-        order: dual.order,
-        orders: dual.orders,
-        iterations: dual.inner_iterations,
-        adaptive: dual.adaptive,
-    })
-}
-
-/// Numbers of the relaxation within a step in time.
-pub(super) fn inner_control(dual: &Dual, dimension: usize) -> Control {
-    let steady = Steady { cfl: dual.cfl, cfl_max: dual.cfl_max, ..prelude(dual) };
-    control(&steady, dimension)
-}
-
-/// Numbers of the steady relaxation.
-pub(super) fn control(steady: &Steady, dimension: usize) -> Control {
-    Control {
-        method: match steady.method {
-            SteadyMethod::NewtonKrylov => Method::NewtonKrylov,
-            SteadyMethod::LuSgs => Method::Sweeps,
-            SteadyMethod::RungeKutta => Method::RungeKutta,
-        },
-        cfl: steady.cfl,
-        cfl_max: match steady.method {
-            SteadyMethod::LuSgs => steady.cfl_max.min(100.0),
-            _ => steady.cfl_max,
-        },
-        growth: 2.0,
-        tolerance: 0.1,
-        basis: 30,
-        group: if dimension == 2 { 4 } else { 8 },
-        cycle: Cycle { sweeps: 2, visits: 1, levels: if steady.method == SteadyMethod::LuSgs { 1 } else { 8 } },
+    let mut first = vec![0.0; own];
+    for at in placed(system.fields()) {
+        let (n, all) = (at.field.block, &u[at.unknowns.start * count..at.unknowns.end * count]);
+        first[at.unknowns].chunks_exact_mut(n).zip(all.chunks_exact(n * count)).for_each(|(one, all)| {
+            one.copy_from_slice(&all[..n]);
+        });
     }
+    Ok(first)
 }
 
 #[cfg(test)]

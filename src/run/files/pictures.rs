@@ -1,7 +1,7 @@
 //! Pictures of a run, drawn through the solver's own fit.
-use super::RunError;
-use super::outputs::{FILM, View};
-use super::snapshot::pressure_coefficient;
+use super::super::error::RunError;
+use super::super::look::pressure_coefficient;
+use super::target::{FILM, View};
 use crate::math::sweep::{sweep_each, sweep_each_chunk};
 use crate::math::{Bounds, Vector};
 use crate::physics::Primitive;
@@ -30,7 +30,7 @@ type Drawn<'a, const D: usize> = (&'a str, (&'a str, &'a str, Colormap, &'a [f64
 type Value<'a, const D: usize> = &'a (dyn Fn(&Primitive<D>) -> f64 + Sync);
 
 /// Draws all pictures of a run.
-pub(super) fn write<const D: usize>(view: &View<'_, D>) -> Result<(), RunError> {
+pub(crate) fn write<const D: usize>(view: &View<'_, D>) -> Result<(), RunError> {
     if D == 2 { plane(view) } else { space(view) }
 }
 
@@ -61,7 +61,7 @@ fn outlines<const D: usize>(view: &View<'_, D>) -> Vec<Vec<Vector<2>>> {
 fn plane<const D: usize>(view: &View<'_, D>) -> Result<(), RunError> {
     let outlines = outlines(view);
     let w = window(view, MARGIN);
-    let free = free_stream::<D>(view.case);
+    let free = free_stream::<D>(view.to.case);
     let gas = view.fluid.gas;
     let mach = |q: &Primitive<D>| q.velocity.norm() / gas.sound_speed(q);
     let cp = |q: &Primitive<D>| pressure_coefficient(q, &free);
@@ -81,7 +81,7 @@ fn plane<const D: usize>(view: &View<'_, D>) -> Result<(), RunError> {
         let raster = Raster { width: states.0, height: states.1, window: w, values };
         let style =
             PictureStyle { title, quantity, axes: ["x", "y"], map: *map, range: None, contours, outlines: &outlines };
-        Ok(write_file(&view.out.join(format!("pictures/{name}.png")), &raster_png(&raster, &style)?)?)
+        Ok(write_file(&view.to.out.join(format!("pictures/{name}.png")), &raster_png(&raster, &style)?)?)
     };
     together(4, |k| match k {
         0 | 1 => field(&fields[k]),
@@ -91,14 +91,14 @@ fn plane<const D: usize>(view: &View<'_, D>) -> Result<(), RunError> {
 }
 
 /// Does `n` things side by side; the first error in their order.
-pub(super) fn together(n: usize, task: impl Fn(usize) -> Result<(), RunError> + Sync) -> Result<(), RunError> {
+pub(crate) fn together(n: usize, task: impl Fn(usize) -> Result<(), RunError> + Sync) -> Result<(), RunError> {
     let mut done: Vec<Result<(), RunError>> = (0..n).map(|_| Ok(())).collect();
     sweep_each(&mut done, task);
     done.into_iter().collect()
 }
 
 /// Draws the Mach number at part `part` of a period, in colours that are the same for all of them.
-pub(super) fn write_film<const D: usize>(view: &View<'_, D>, part: u32) -> Result<(), RunError> {
+pub(crate) fn write_film<const D: usize>(view: &View<'_, D>, part: u32) -> Result<(), RunError> {
     let (window, gas) = (window(view, MARGIN), view.fluid.gas);
     let (width, height, states) = sampled(view, &window, FILM_PIXELS);
     let mach = |q: &Primitive<D>| q.velocity.norm() / gas.sound_speed(q);
@@ -109,12 +109,12 @@ pub(super) fn write_film<const D: usize>(view: &View<'_, D>, part: u32) -> Resul
         quantity: "M",
         axes: ["x", "y"],
         map: Colormap::Sequential,
-        range: Some([0.0, FILM_RANGE * view.case.flow.reference().mach]),
+        range: Some([0.0, FILM_RANGE * view.to.case.flow.reference().mach]),
         contours: &[1.0],
         outlines: &outlines(view),
     };
     let png = raster_png(&Raster { width, height, window, values }, &style)?;
-    Ok(write_file(&view.out.join(format!("pictures/film-{part}.png")), &png)?)
+    Ok(write_file(&view.to.out.join(format!("pictures/film-{part}.png")), &png)?)
 }
 
 /// States on a grid of pixels, `pixels` along the longer side: (width, height, states, `None` inside bodies).
@@ -205,7 +205,7 @@ impl<const D: usize> Grid<'_, D> {
 }
 
 /// Draws the particles near the bodies (plane clouds).
-pub(super) fn write_cloud<const D: usize>(view: &View<'_, D>) -> Result<(), RunError> {
+pub(crate) fn write_cloud<const D: usize>(view: &View<'_, D>) -> Result<(), RunError> {
     if D == 2 { cloud_picture(view, &outlines(view)) } else { Ok(()) }
 }
 
@@ -219,14 +219,14 @@ fn cloud_picture<const D: usize>(view: &View<'_, D>, outlines: &[Vec<Vector<2>>]
         cloud.interface_range().zip(&cloud.interface).map(|(i, w)| (flat(&cloud.x[i]), flat(&w.normal))).collect();
     let scatter = Scatter { points: &points, dots: Dots::Level(&levels), interface: &interface, outlines };
     let png = scatter_png(&scatter, window(view, 0.12), "Particles")?;
-    Ok(write_file(&view.out.join("pictures/cloud.png"), &png)?)
+    Ok(write_file(&view.to.out.join("pictures/cloud.png"), &png)?)
 }
 
 /// Cp along the chord.
 fn curves<const D: usize>(view: &View<'_, D>) -> Result<(), RunError> {
     let Some(surface) = view.surface else { return Ok(()) };
     let cloud = &view.fluid.discretisation.cloud;
-    let free = free_stream::<D>(view.case);
+    let free = free_stream::<D>(view.to.case);
     let b = surface.bounds();
     let mut series = Vec::new();
     for (k, name) in surface.bodies.iter().enumerate() {
@@ -236,8 +236,8 @@ fn curves<const D: usize>(view: &View<'_, D>) -> Result<(), RunError> {
         series.push(Series { name: name.clone(), marks: Marks::Dots, x, y });
     }
     let chart = Chart { title: "Pressure on the wall".into(), x: Axis::linear("x/c"), y: Axis::reversed("Cp"), series };
-    write_file(&view.out.join("pictures/cp-chord.svg"), chart.svg()?.as_bytes())?;
-    Ok(write_file(&view.out.join("pictures/cp-chord.png"), &chart.png()?)?)
+    write_file(&view.to.out.join("pictures/cp-chord.svg"), chart.svg()?.as_bytes())?;
+    Ok(write_file(&view.to.out.join("pictures/cp-chord.png"), &chart.png()?)?)
 }
 
 fn space<const D: usize>(view: &View<'_, D>) -> Result<(), RunError> {
@@ -245,7 +245,7 @@ fn space<const D: usize>(view: &View<'_, D>) -> Result<(), RunError> {
         return Ok(());
     }
     let cloud = &view.fluid.discretisation.cloud;
-    let free = free_stream::<D>(view.case);
+    let free = free_stream::<D>(view.to.case);
     let solid = |v: &Vector<D>| Vector(v.to_3d());
     let points: Vec<Vector<3>> = cloud.x[cloud.interface_range()].iter().map(solid).collect();
     let normals: Vec<Vector<3>> = cloud.interface.iter().map(|w| solid(&w.normal)).collect();
@@ -260,6 +260,6 @@ fn space<const D: usize>(view: &View<'_, D>) -> Result<(), RunError> {
         direction: Vector([1.0, 0.8, -0.6]),
         up: Vector([0.0, 0.0, 1.0]),
     };
-    write_file(&view.out.join("pictures/cp.png"), &surface_png(&shell, &style)?)?;
+    write_file(&view.to.out.join("pictures/cp.png"), &surface_png(&shell, &style)?)?;
     curves(view)
 }

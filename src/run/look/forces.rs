@@ -10,15 +10,13 @@
 use num_complex::Complex64;
 use serde::Serialize;
 
-use super::snapshot::{LoadFrame, load_axes};
+use super::axes::{GasView, LoadFrame, load_axes};
 use crate::case::{AnyMode, Case, Mode};
 use crate::math::Vector;
 use crate::math::fourier::Series;
 use crate::motion::Motions;
 use crate::observe::loads::{Load, LoadAxes};
 use crate::scheme::{Fluid, Frame, Work};
-use crate::system::System;
-use crate::time::harmonic::HarmonicBalance;
 
 /// Generalised force on one mode over a period.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -40,7 +38,7 @@ enum Form<const D: usize> {
 }
 
 /// The modes that forces are computed on.
-pub(super) struct ForceModes<const D: usize> {
+pub(crate) struct ForceModes<const D: usize> {
     all: Vec<(String, Form<D>)>,
     /// Whether each interface particle takes part.
     follows: Vec<bool>,
@@ -51,7 +49,7 @@ pub(super) struct ForceModes<const D: usize> {
 
 impl<const D: usize> ForceModes<D> {
     /// The modes of `[gaf]`; `None` where a case has none.
-    pub(super) fn of(case: &Case, fluid: &Fluid<D>, motions: &Motions<D>) -> Option<Self> {
+    pub(crate) fn of(case: &Case, fluid: &Fluid<D>, motions: &Motions<D>) -> Option<Self> {
         let plan = case.gaf.as_ref()?;
         let cloud = &fluid.discretisation.cloud;
         let mut shapes = motions.shapes_of_forces().iter();
@@ -103,36 +101,31 @@ impl<const D: usize> ForceModes<D> {
         self.all.iter().map(one).collect()
     }
 
-    /// Mean and first harmonic of all forces of a periodic solution.
-    pub(super) fn over_a_period(
-        &self,
-        balance: &HarmonicBalance<'_, Fluid<D>>,
-        fluid: &Fluid<D>,
-        (frames, state): (&[Frame<D>], &[f64]),
-    ) -> Vec<GeneralisedForce> {
-        let (mut one, mut work) = (vec![0.0; fluid.len()], fluid.work());
-        let mut values = vec![Vec::with_capacity(frames.len()); self.all.len()];
-        for (n, frame) in frames.iter().enumerate() {
-            balance.look(state, n, &mut one);
-            fluid.fill_states(frame, &one, &mut work);
-            if fluid.viscous_model.is_some() {
-                fluid.fill_gradients(frame, &mut work);
-            }
-            values.iter_mut().zip(self.at(fluid, frame, &work)).for_each(|(all, v)| all.push(v));
+    /// Forces on all modes at one moment.
+    pub(crate) fn seen(&self, view: &GasView<'_, D>, work: &mut Work<D>) -> Vec<f64> {
+        let GasView { fluid, frame, state } = *view;
+        fluid.fill_states(frame, state, work);
+        if fluid.viscous_model.is_some() {
+            fluid.fill_gradients(frame, work);
         }
-        let names = self.all.iter().map(|(name, _)| name.clone());
-        let force = |(mode, values): (String, Vec<f64>)| {
+        self.at(fluid, frame, work)
+    }
+
+    /// Mean and first harmonic of all forces, given at the instances of a period.
+    pub(crate) fn over_a_period(&self, instances: &[Vec<f64>]) -> Vec<GeneralisedForce> {
+        let force = |(k, (name, _)): (usize, &(String, Form<D>))| {
+            let values: Vec<f64> = instances.iter().map(|all| all[k]).collect();
             let series = Series::of_values(&values).ok()?;
             let (c, n) = (series.coefficients(), series.instances().harmonics());
-            Some(GeneralisedForce { mode, mean: c[0], first: [c[1], -c[n + 1]] })
+            Some(GeneralisedForce { mode: name.clone(), mean: c[0], first: [c[1], -c[n + 1]] })
         };
-        names.zip(values).filter_map(force).collect()
+        self.all.iter().enumerate().filter_map(force).collect()
     }
 }
 
 impl GeneralisedForce {
     /// First harmonic over that of a coordinate that goes as amplitude · sin ωt.
-    pub(super) fn per(&self, amplitude: f64) -> Complex64 {
+    pub(crate) fn per(&self, amplitude: f64) -> Complex64 {
         Complex64::new(self.first[0], self.first[1]) / Complex64::new(0.0, -amplitude)
     }
 }

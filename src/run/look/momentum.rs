@@ -1,22 +1,23 @@
 //! Loads from the momentum of the gas around the bodies: the second evaluation that every run reports.
-use super::snapshot::LoadFrame;
+use super::axes::{GasView, LoadFrame};
 use crate::case::{Case, Side};
 use crate::math::{Bounds, Vector};
 use crate::observe::loads::Balance as Sum;
 use crate::scheme::balance::{Balance, Part};
 use crate::scheme::probe::Probe;
-use crate::scheme::{Fluid, Frame, Work};
+use crate::scheme::{Fluid, Work};
 use crate::system::System;
 
 /// What passes the zone around the bodies at the moment of `frame`; `None` without bodies. Fills `work`. A flow that
 /// `marches` changes as the right-hand side of its equations says.
-pub(super) fn around<const D: usize>(
+pub(crate) fn around<const D: usize>(
     case: &Case,
     axes: &LoadFrame,
-    fluid: &Fluid<D>,
-    (frame, state, work): (&Frame<D>, &[f64], &mut Work<D>),
+    view: &GasView<'_, D>,
+    work: &mut Work<D>,
     marches: bool,
 ) -> Option<Sum> {
+    let GasView { fluid, frame, state } = *view;
     if fluid.discretisation.cloud.interface.is_empty() {
         return None;
     }

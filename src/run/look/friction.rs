@@ -1,7 +1,7 @@
 //! What the gas does to the walls it sticks to: friction, heat, separation.
 use serde::Serialize;
 
-use super::snapshot::Units;
+use super::field::Units;
 use crate::case::Case;
 use crate::math::Vector;
 use crate::observe::loads::{Load, LoadAxes};
@@ -21,17 +21,17 @@ pub struct Separation {
 
 /// Friction on one interface particle.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct WallFriction {
+pub(crate) struct WallFriction {
     /// Shear along the surface in the direction of the stream, over the dynamic pressure.
-    pub(super) cf: f64,
+    pub(crate) cf: f64,
     /// Heat into the wall per area and time, in the units of the case.
-    pub(super) heat_flux: f64,
+    pub(crate) heat_flux: f64,
     /// Distance of the first particle in viscous lengths.
-    pub(super) y_plus: f64,
+    pub(crate) y_plus: f64,
 }
 
 /// Load of the viscous stress on the interface particles chosen; `fluid` stands in the axes of the case.
-pub(super) fn friction_load<const D: usize>(
+pub(crate) fn friction_load<const D: usize>(
     fluid: &Fluid<D>,
     work: &Work<D>,
     axes: &LoadAxes,
@@ -49,7 +49,7 @@ pub(super) fn friction_load<const D: usize>(
 }
 
 /// Adds the load of the viscous stress as it stands in `frame` to `load`.
-pub(super) fn add_friction_in<const D: usize>(
+pub(crate) fn add_friction_in<const D: usize>(
     fluid: &Fluid<D>,
     (frame, work): (&Frame<D>, &Work<D>),
     axes: &LoadAxes,
@@ -65,7 +65,7 @@ pub(super) fn add_friction_in<const D: usize>(
 }
 
 /// Friction on every interface particle; `None` for an inviscid gas.
-pub(super) fn wall_friction<const D: usize>(
+pub(crate) fn wall_friction<const D: usize>(
     case: &Case,
     fluid: &Fluid<D>,
     work: &Work<D>,
@@ -92,7 +92,7 @@ pub(super) fn wall_friction<const D: usize>(
 
 /// Where friction changes from along to against the stream on each side of each body; plane cases only. `x_c` are the
 /// distances of the interface particles from the nose.
-pub(super) fn separations<const D: usize>(
+pub(crate) fn separations<const D: usize>(
     case: &Case,
     fluid: &Fluid<D>,
     friction: &[WallFriction],

@@ -3,8 +3,9 @@
 //! Interface particles are carried along the laws of motion to the times of the steps, or of [`TIMES`] parts of the march.
 //! Bodies that leave the domain or run into one another are refused with place and time; steps in which a body moves by more
 //! than its spacing are noted, with the number of steps that would do.
-use super::RunError;
-use crate::case::{Case, ParticleMotion, Temporal};
+use super::super::error::RunError;
+use super::super::recipe;
+use crate::case::{Case, ParticleMotion};
 use crate::cloud::Cloud;
 use crate::math::{Bounds, Vector};
 use crate::motion::{Motions, PointTrajectory};
@@ -24,7 +25,7 @@ struct Body<'a, const D: usize> {
 }
 
 /// Looks at the whole march; what is worth knowing, or why it cannot be done.
-pub(super) fn check<const D: usize>(
+pub(crate) fn check<const D: usize>(
     case: &Case,
     cloud: &Cloud<D>,
     motions: &Motions<D>,
@@ -64,12 +65,11 @@ fn stays_inside<const D: usize>(bodies: &[Body<'_, D>], domain: &Bounds<D>, t: f
         let at = body.trajectory.at(t);
         let out = body.points.iter().enumerate().map(|(k, (x, _))| at(k, x)).find(|x| !domain.contains(x));
         if let Some(x) = out {
-            return Err(RunError::Motion(format!(
-                "`{}` leaves the domain at t = {t:.4}, at {}\nhint: give it more room with `cloud.domain` or \
-                 `cloud.far_field`, less motion, or let all particles move with it, `motion.particles = \"rigid\"`",
-                body.name,
-                place(&x)
-            )));
+            return Err(RunError::Motion {
+                what: format!("`{}` leaves the domain at t = {t:.4}, at {}", body.name, place(&x)),
+                hint: "give it more room with `cloud.domain` or `cloud.far_field`, less motion, or let all particles move with \
+                       it, `motion.particles = \"rigid\"`",
+            });
         }
     }
     Ok(())
@@ -97,13 +97,14 @@ fn keeps_apart<const D: usize>(bodies: &[Body<'_, D>], t: f64) -> Result<(), Run
         for (x, h) in &carried[a] {
             let near = carried[b].iter().find(|(y, g)| (*x - *y).norm() < GAP * h.max(*g));
             if near.is_some() {
-                return Err(RunError::Motion(format!(
-                    "`{}` and `{}` run into one another at t = {t:.4}, at {}\nhint: a gap must stay wider than a \
-                     spacing of the walls, here {h:.3e}: move them less, or place them farther apart",
-                    bodies[a].name,
-                    bodies[b].name,
-                    place(x)
-                )));
+                let (one, other) = (&bodies[a].name, &bodies[b].name);
+                return Err(RunError::Motion {
+                    what: format!(
+                        "`{one}` and `{other}` run into one another at t = {t:.4}, at {}, where walls are spaced by {h:.3e}",
+                        place(x)
+                    ),
+                    hint: "a gap must stay wider than a spacing of the walls: move them less, or place them farther apart",
+                });
             }
         }
     }
@@ -116,8 +117,7 @@ fn longest_way<const D: usize>(
     bodies: &[Body<'_, D>],
     (period, span): (Option<f64>, f64),
 ) -> Option<String> {
-    let Temporal::Dual(dual) = &case.time else { return None };
-    let dt = dual.step_length(period).filter(|dt| dual.adaptive.is_none() && 0.0 < *dt)?;
+    let recipe::FixedStep { length: dt, of_period } = recipe::fixed_step(case, period)?;
     let steps = ((span / dt).ceil() as usize).max(1);
     let looked_at = (0..steps).step_by(steps.div_ceil(TIMES)).map(|k| k as f64 * dt);
     let mut worst = (0.0, 0.0, "");
@@ -136,9 +136,9 @@ fn longest_way<const D: usize>(
     if !(way > 1.0) {
         return None;
     }
-    let remedy = match (period, dual.steps_per_period) {
-        (Some(period), Some(_)) => format!("`steps_per_period = {}`", (period / dt * way).ceil()),
-        _ => format!("`step = {:.3e}`", dt / way),
+    let remedy = match period.filter(|_| of_period) {
+        Some(period) => format!("`steps_per_period = {}`", (period / dt * way).ceil()),
+        None => format!("`step = {:.3e}`", dt / way),
     };
     Some(format!(
         "`{name}` moves by {way:.1} spacings of its wall in the step after t = {t:.4}: waves from it are smeared in time; \
@@ -166,7 +166,7 @@ mod tests {
         );
         let case = read(&text, "case.toml").unwrap_or_else(|e| panic!("{e}"));
         let (surface, cloud, _) = crate::run::build_cloud::<2>(&case, Path::new("")).unwrap();
-        let motions = crate::run::setup::motions(&case, Path::new(""), surface.as_ref()).unwrap();
+        let motions = crate::run::build::motions(&case, Path::new(""), surface.as_ref()).unwrap();
         check(&case, &cloud, &motions).map_err(|e| e.to_string())
     }
 

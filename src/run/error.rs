@@ -1,0 +1,145 @@
+//! Why a run fails, and what may help.
+use crate::case::CaseErrors;
+use crate::cloud::CloudError;
+use crate::geometry::GeometryError;
+use crate::motion::MotionError;
+use crate::observe::{CheckpointError, FileError, VtkError};
+use crate::report::ReportError;
+use crate::scheme::start::StartError;
+use crate::time::TimeError;
+
+/// Why a run failed.
+#[derive(Debug, thiserror::Error)]
+pub enum RunError {
+    /// Geometry.
+    #[error(transparent)]
+    Geometry(#[from] GeometryError),
+    /// Cloud.
+    #[error(transparent)]
+    Cloud(#[from] CloudError),
+    /// Initial field.
+    #[error(transparent)]
+    Start(#[from] StartError),
+    /// Integration.
+    #[error("{source}{}", last_good(checkpoint))]
+    Time {
+        /// Why.
+        source: TimeError,
+        /// Checkpoint with the last good state, where one is written.
+        checkpoint: Option<String>,
+    },
+    /// The cloud of particles that travel with the fluid could not be built anew.
+    #[error("at time {time:.6} the cloud cannot be built anew: {source}{}", last_good(checkpoint))]
+    Recloud {
+        /// Time reached.
+        time: f64,
+        /// Why.
+        source: CloudError,
+        /// Checkpoint with the last good state, where one is written.
+        checkpoint: Option<String>,
+    },
+    /// Bodies go where no particles can follow.
+    #[error("{what}\nhint: {hint}")]
+    Motion {
+        /// Which, where and when.
+        what: String,
+        /// What may help.
+        hint: &'static str,
+    },
+    /// The motion of a case cannot be made.
+    #[error(transparent)]
+    Law(#[from] MotionError),
+    /// A motion that should repeat does not.
+    #[error("{what}\nhint: {hint}")]
+    NotPeriodic {
+        /// Which.
+        what: String,
+        /// What may help.
+        hint: &'static str,
+    },
+    /// A march is as long as periods of a motion that has none.
+    #[error("`[time.{table}]` counts periods of a motion that has none")]
+    NoPeriod {
+        /// The table of the case.
+        table: &'static str,
+    },
+    /// A run for generalised forces in which nothing moved.
+    #[error("the run of {mode} shows no motion")]
+    NothingMoved {
+        /// Name of the mode.
+        mode: String,
+    },
+    /// A file could not be written or read.
+    #[error(transparent)]
+    File(#[from] FileError),
+    /// A field file could not be written.
+    #[error(transparent)]
+    Vtk(#[from] VtkError),
+    /// A checkpoint could not be written or read.
+    #[error(transparent)]
+    Checkpoint(#[from] CheckpointError),
+    /// A checkpoint of another version of the program.
+    #[error(
+        "`{file}` was written by another version: {problem}\nhint: go on with the version that wrote it, or start again"
+    )]
+    OtherVersion {
+        /// Name of the checkpoint.
+        file: &'static str,
+        /// What is different.
+        problem: String,
+    },
+    /// A picture or the report could not be written.
+    #[error(transparent)]
+    Report(#[from] ReportError),
+    /// The run folder cannot be used.
+    #[error("{what}\nhint: {hint}")]
+    Folder {
+        /// Which, and why.
+        what: String,
+        /// What may help.
+        hint: String,
+    },
+    /// A folder without a run.
+    #[error("`{folder}` is not a run folder: cannot read `case.toml`: {source}")]
+    NoRun {
+        /// The folder.
+        folder: String,
+        /// What the system says.
+        source: std::io::Error,
+    },
+    /// The folder of the case file is gone.
+    #[error("the folder `{folder}` of the case file cannot be found again: {source}")]
+    LostInput {
+        /// The folder.
+        folder: String,
+        /// What the system says.
+        source: std::io::Error,
+    },
+    /// The case in a run folder has mistakes.
+    #[error(transparent)]
+    Case(#[from] CaseErrors),
+    /// Another run whose last state cannot be the start of this one.
+    #[error("{what}\nhint: {hint}")]
+    OtherRun {
+        /// Which, and why.
+        what: String,
+        /// What may help.
+        hint: &'static str,
+    },
+    /// The checkpoint stands at a stage that the run does not have.
+    #[error("the checkpoint names no stage")]
+    NoStage,
+    /// The case asks for something that can be written down but not yet computed.
+    #[error("{what}\nhint: {hint}")]
+    Unsupported {
+        /// What.
+        what: String,
+        /// What may help.
+        hint: &'static str,
+    },
+}
+
+/// Where the last good state is.
+fn last_good(checkpoint: &Option<String>) -> String {
+    checkpoint.as_ref().map_or_else(String::new, |c| format!("\nthe last good state is in `{c}`"))
+}

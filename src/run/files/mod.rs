@@ -1,0 +1,221 @@
+//! What a run leaves in its folder: tables, fields, pictures.
+mod pictures;
+mod target;
+
+use std::path::Path;
+
+use super::error::RunError;
+use super::folder;
+use super::found::Found;
+use super::look::friction::wall_friction;
+use super::look::{GasView, Snapshot, Units, field, pressure_coefficient};
+use super::record::summary::Summary;
+use super::record::{Log, passed};
+use crate::cloud::Diagnosis;
+use crate::geometry::Surface;
+use crate::observe::loads::together as both;
+use crate::observe::table::{Entry, write_csv, write_json};
+use crate::observe::vtk::{Column, Facets, read_collection, write_collection, write_points, write_surface};
+use crate::report;
+use crate::scheme::Work;
+use crate::scheme::start::free_stream;
+
+pub(crate) use pictures::{together, write_cloud};
+pub(crate) use target::{FILM, Target, View};
+
+/// Writes all files of a run that is over.
+pub(crate) fn write_all<const D: usize>(
+    found: &Found<'_, D>,
+    summary: &Summary,
+    all: &Snapshot,
+    log: &Log<'_>,
+    out: &Path,
+) -> Result<(), RunError> {
+    let files = Files { found, out };
+    files.write_tables(&log.record.cycles, summary)?;
+    if let Some(period) = log.period {
+        log.record.trace.write(out, period)?;
+    }
+    files.write_fields(all, log.record.time)?;
+    if found.case.output.report {
+        let to = Target { case: found.case, out };
+        pictures::write(&View { to, fluid: found.fluid, work: found.work, surface: found.surface })?;
+        report::write_report(out)?;
+    }
+    Ok(())
+}
+
+/// What was found on its way into a folder.
+struct Files<'a, const D: usize> {
+    found: &'a Found<'a, D>,
+    out: &'a Path,
+}
+
+impl<const D: usize> Files<'_, D> {
+    fn write_tables(&self, cycles: &[[f64; 5]], summary: &Summary) -> Result<(), RunError> {
+        write_json(&self.out.join("summary.json"), summary)?;
+        write_json(&self.out.join("ledger.json"), &summary.ledger)?;
+        write_json(
+            &self.out.join("doctor.json"),
+            &Diagnosis::of(&self.found.fluid.discretisation.cloud, self.found.fluid.discretisation.walls.n_linear),
+        )?;
+        self.write_loads()?;
+        self.write_surface_csv()?;
+        let rows = cycles.iter().enumerate().map(|(k, c)| {
+            let before = if k > 0 { cycles[k - 1] } else { *c };
+            let numbers = [c[0], c[1], c[2], c[3], c[4], c[2] - before[2], c[3] - before[3]];
+            numbers.iter().map(|v| Entry::from(*v)).collect()
+        });
+        let columns = ["cycle", "particles", "cl", "cd", "cm", "change_cl", "change_cd"];
+        Ok(write_csv(&self.out.join("adapt.csv"), &columns, rows)?)
+    }
+
+    fn write_loads(&self) -> Result<(), RunError> {
+        let cloud = &self.found.fluid.discretisation.cloud;
+        let units = Units::of(self.found.case).pressure();
+        let mut rows = Vec::new();
+        for (b, body) in self.found.names.bodies.iter().enumerate() {
+            for (t, tag) in self.found.names.tags.iter().enumerate() {
+                let chosen =
+                    |w: usize| usize::from(cloud.interface[w].body) == b && usize::from(cloud.interface[w].tag) == t;
+                if !(0..cloud.interface.len()).any(chosen) {
+                    continue;
+                }
+                let (pressure, friction) = self.found.wall_loads(chosen);
+                let load = both(&pressure, &friction);
+                let c = self.found.axes.coefficients(&load);
+                let area: f64 =
+                    (0..cloud.interface.len()).filter(|w| chosen(*w)).map(|w| cloud.interface[w].area.norm()).sum();
+                let mut row = vec![Entry::from(body.as_str()), Entry::from(tag.as_str())];
+                row.extend([c.cl, c.cd, c.cm].map(Entry::from));
+                row.extend(load.force.map(|f| Entry::from(f * units)));
+                row.push(Entry::from(area));
+                rows.push(row);
+            }
+        }
+        let columns = ["body", "tag", "cl", "cd", "cm", "fx", "fy", "fz", "area"];
+        Ok(write_csv(&self.out.join("loads.csv"), &columns, rows)?)
+    }
+
+    fn write_surface_csv(&self) -> Result<(), RunError> {
+        let cloud = &self.found.fluid.discretisation.cloud;
+        let free = free_stream::<D>(self.found.case);
+        let units = Units::of(self.found.case);
+        let friction = wall_friction(self.found.case, self.found.fluid, self.found.work);
+        let mut columns = vec![
+            "x", "y", "z", "nx", "ny", "nz", "area", "body", "tag", "arc", "x_c", "pressure", "cp", "mach", "density",
+            "u", "v", "w",
+        ];
+        if friction.is_some() {
+            columns.extend(["cf", "heat_flux", "y_plus"]);
+        }
+        let chordwise = self.found.chordwise();
+        let rows = cloud.interface_range().zip(&cloud.interface).map(|(i, w)| {
+            let k = i - cloud.n_fluid;
+            let q = &self.found.work.state[i];
+            let mut row: Vec<Entry> = cloud.x[i].to_3d().map(Entry::from).to_vec();
+            row.extend(w.normal.to_3d().map(Entry::from));
+            row.push(Entry::from(w.area.norm()));
+            row.push(Entry::from(self.found.names.bodies.get(usize::from(w.body)).map_or("", String::as_str)));
+            row.push(Entry::from(self.found.names.tags.get(usize::from(w.tag)).map_or("", String::as_str)));
+            let mach = q.velocity.norm() / self.found.fluid.gas.sound_speed(q);
+            let cp = pressure_coefficient(q, &free);
+            row.extend(
+                [w.arc, chordwise[k], q.pressure * units.pressure(), cp, mach, q.density * units.density]
+                    .map(Entry::from),
+            );
+            row.extend((q.velocity * units.speed).to_3d().map(Entry::from));
+            row.extend(friction.iter().flat_map(|f| [f[k].cf, f[k].heat_flux, f[k].y_plus]).map(Entry::from));
+            row
+        });
+        Ok(write_csv(&self.out.join("surface.csv"), &columns, rows.collect::<Vec<_>>())?)
+    }
+
+    fn write_fields(&self, all: &Snapshot, time: f64) -> Result<(), RunError> {
+        let columns: Vec<Column<'_>> = all
+            .columns
+            .iter()
+            .map(|(name, components, values)| Column { name, components: *components, values })
+            .collect();
+        write_points(&self.out.join("field.vtu"), &all.points, &columns)?;
+        write_collection(&self.out.join("field.pvd"), &[(time, "field.vtu")])?;
+        let cloud = &self.found.fluid.discretisation.cloud;
+        if cloud.interface.is_empty() {
+            return Ok(());
+        }
+        let range = cloud.interface_range();
+        let cut: Vec<(&str, usize, Vec<f64>)> = all
+            .columns
+            .iter()
+            .map(|(name, n, values)| (*name, *n, values[range.start * n..range.end * n].to_vec()))
+            .chain([("normal", 3, cloud.interface.iter().flat_map(|w| w.normal.to_3d()).collect())])
+            .collect();
+        let columns: Vec<Column<'_>> =
+            cut.iter().map(|(name, n, values)| Column { name, components: *n, values }).collect();
+        let points = &all.points[range];
+        let lines = outlines(cloud);
+        let facets = if D == 2 { Facets::Polylines(&lines) } else { Facets::Vertices };
+        Ok(write_surface(&self.out.join("surface.vtp"), points, facets, &columns, &[])?)
+    }
+}
+
+/// Writes the field of one moment of a march, and the list of all so far.
+pub(crate) fn write_series<const D: usize>(
+    to: &Target<'_>,
+    view: &GasView<'_, D>,
+    work: &mut Work<D>,
+    interval: f64,
+) -> Result<(), RunError> {
+    let GasView { fluid, frame, state } = *view;
+    fluid.fill_states(frame, state, work);
+    let seen = fluid.seen(frame, work);
+    let (fluid, work) = seen.as_ref().map_or((fluid, &*work), |(fluid, work)| (fluid, work));
+    let (all, time, out) = (field(to.case, fluid, work), frame.time, to.out);
+    let columns: Vec<Column<'_>> =
+        all.columns.iter().map(|(name, components, values)| Column { name, components: *components, values }).collect();
+    let number = passed(time, interval);
+    write_points(&out.join(series_name(number)), &all.points, &columns)?;
+    // a run that went on from a checkpoint writes the later ones again
+    let mut files = read_collection(&folder::text(out, "series.pvd").unwrap_or_default());
+    files.retain(|(t, f)| *t < time && *f != series_name(number));
+    files.push((time, series_name(number)));
+    let listed: Vec<(f64, &str)> = files.iter().map(|(t, f)| (*t, f.as_str())).collect();
+    Ok(write_collection(&out.join("series.pvd"), &listed)?)
+}
+
+/// Draws the flow at the end of part number `part` of the periods of the motion; each period replaces the one before.
+pub(crate) fn write_film<const D: usize>(
+    to: &Target<'_>,
+    surface: &Surface<D>,
+    view: &GasView<'_, D>,
+    work: &mut Work<D>,
+    part: u64,
+) -> Result<(), RunError> {
+    let GasView { fluid, frame, state } = *view;
+    fluid.fill_states(frame, state, work);
+    fluid.fill_gradients(frame, work);
+    let seen = fluid.seen(frame, work);
+    let (fluid, work) = seen.as_ref().map_or((fluid, &*work), |(fluid, work)| (fluid, work));
+    let view = View { to: *to, fluid, work, surface: Some(surface) };
+    pictures::write_film(&view, (part - 1) as u32 % FILM + 1)
+}
+
+fn series_name(number: u64) -> String {
+    format!("field-{number:05}.vtu")
+}
+
+/// Interface particles of each smooth piece of outline, in order.
+fn outlines<const D: usize>(cloud: &crate::cloud::Cloud<D>) -> Vec<Vec<u32>> {
+    let mut lines: Vec<Vec<u32>> = Vec::new();
+    let mut piece = u32::MAX;
+    for (k, w) in cloud.interface.iter().enumerate() {
+        if w.piece != piece {
+            lines.push(Vec::new());
+            piece = w.piece;
+        }
+        if let Some(line) = lines.last_mut() {
+            line.push(k as u32);
+        }
+    }
+    lines
+}

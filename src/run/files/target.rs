@@ -1,0 +1,30 @@
+//! Where files go, and what pictures are drawn from.
+use std::path::Path;
+
+use crate::case::Case;
+use crate::geometry::Surface;
+use crate::scheme::{Fluid, Work};
+
+/// Pictures of one period of a motion.
+pub(crate) const FILM: u32 = 6;
+
+/// Where files of a case go.
+#[derive(Clone, Copy)]
+pub(crate) struct Target<'a> {
+    /// The case.
+    pub(crate) case: &'a Case,
+    /// The folder.
+    pub(crate) out: &'a Path,
+}
+
+/// What the pictures are drawn from.
+pub(crate) struct View<'a, const D: usize> {
+    /// Where they go.
+    pub(crate) to: Target<'a>,
+    /// Equations.
+    pub(crate) fluid: &'a Fluid<D>,
+    /// States and gradients.
+    pub(crate) work: &'a Work<D>,
+    /// Bodies.
+    pub(crate) surface: Option<&'a Surface<D>>,
+}

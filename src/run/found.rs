@@ -1,0 +1,233 @@
+//! What a run has found when it is over: loads, ledgers, errors, the wall.
+use super::look::friction::{Separation, friction_load, separations, wall_friction};
+use super::look::{pressure_coefficient, totals, wall_load};
+use super::recipe;
+use super::record::summary::{Clock, Ledger, Reclouding, Summary};
+use super::record::{Log, Record};
+use crate::case::{Case, Initial};
+use crate::geometry::Surface;
+use crate::math::{Bounds, Vector};
+use crate::observe::loads::{Balance, Coefficients, Load, LoadAxes, together};
+use crate::observe::usage::peak_bytes;
+use crate::scheme::start::free_stream;
+use crate::scheme::{Fluid, Work};
+use crate::system::System;
+use crate::verify::truth::FieldTruth;
+use crate::verify::wall::Wall;
+
+/// The flow at the end, seen in the axes of the case.
+pub(crate) struct Found<'a, const D: usize> {
+    /// The case.
+    pub(crate) case: &'a Case,
+    /// Equations.
+    pub(crate) fluid: &'a Fluid<D>,
+    /// States and gradients.
+    pub(crate) work: &'a Work<D>,
+    /// Bodies.
+    pub(crate) surface: Option<&'a Surface<D>>,
+    /// Axes of the loads.
+    pub(crate) axes: LoadAxes,
+    /// Names of bodies and tags.
+    pub(crate) names: Names,
+    /// What passes a zone around the bodies.
+    pub(crate) balance: Option<Balance>,
+}
+
+/// Names of bodies and tags.
+pub(crate) struct Names {
+    /// Of bodies.
+    pub(crate) bodies: Vec<String>,
+    /// Of their parts.
+    pub(crate) tags: Vec<String>,
+}
+
+impl Names {
+    /// Those of a surface.
+    pub(crate) fn of<const D: usize>(surface: Option<&Surface<D>>) -> Self {
+        surface.map_or(Self { bodies: Vec::new(), tags: Vec::new() }, |s| Self {
+            bodies: s.bodies.clone(),
+            tags: s.tags.clone(),
+        })
+    }
+}
+
+/// Wall seconds of a run.
+pub(crate) struct Spent<'a> {
+    /// Since it began.
+    pub(crate) clock: &'a Clock,
+    /// Until it was solved.
+    pub(crate) solved: f64,
+}
+
+impl Spent<'_> {
+    fn phases(&self) -> Vec<(String, f64)> {
+        let files = self.clock.wall_seconds() - self.solved;
+        vec![("solve".into(), self.solved), ("files so far".into(), files)]
+    }
+}
+
+/// Bytes of a solver, its state and its integrator.
+pub(crate) fn bytes_of<const D: usize>(fluid: &Fluid<D>, integrator: usize) -> usize {
+    let cloud = &fluid.discretisation.cloud;
+    let rows = cloud.neighbours.index.len() * 4 + cloud.neighbours.first.len() * 4;
+    let points = cloud.len() * (8 * D + 8 + 8) + cloud.n_fluid * 8;
+    let states = cloud.len() * (8 * (D + 2) + 8 * D * (D + 2)) + 2 * 8 * fluid.len();
+    rows + points + states + fluid.discretisation.operators.bytes() + fluid.discretisation.walls.bytes() + integrator
+}
+
+fn last_change(cycles: &[[f64; 5]]) -> Option<Coefficients> {
+    let [.., a, b] = cycles else { return None };
+    Some(Coefficients { cl: b[2] - a[2], cd: b[3] - a[3], cm: b[4] - a[4] })
+}
+
+/// Relative change of the totals of a march.
+fn drift<const D: usize>(fluid: &Fluid<D>, state: &[f64], start: &[f64]) -> Ledger {
+    let end = totals(fluid, state);
+    if start.len() != end.len() {
+        return Ledger::default();
+    }
+    let relative = |c: usize| (end[c] - start[c]) / start[c].abs().max(f64::MIN_POSITIVE);
+    let momentum = (1..=D).map(|c| (end[c] - start[c]).abs()).fold(0.0, f64::max) / start[0];
+    Ledger { mass: relative(0), momentum, energy: relative(D + 1) }
+}
+
+/// What re-clouding did, where particles travel with the fluid.
+fn reclouding<const D: usize>(record: &Record) -> Option<Reclouding> {
+    let t = &record.ledger;
+    if t.renewals == 0 {
+        return None;
+    }
+    let start = &record.start_totals;
+    let over = |c: usize, scale: usize| t.lost[c] / start[scale].abs().max(f64::MIN_POSITIVE);
+    let momentum = (1..=D).map(|c| over(c, 0).powi(2)).sum::<f64>().sqrt();
+    Some(Reclouding {
+        renewals: t.renewals,
+        inserted: t.inserted,
+        removed: t.removed,
+        first_order: t.first_order,
+        transfer: Ledger { mass: over(0, 0), momentum, energy: over(D + 1, D + 1) },
+    })
+}
+
+impl<const D: usize> Found<'_, D> {
+    /// The last line of the run; `state` is that of the solver.
+    pub(crate) fn summary(&self, log: &Log<'_>, state: &[f64], spent: &Spent<'_>) -> Summary {
+        let (case, fluid, record) = (self.case, self.fluid, &log.record);
+        let (pressure, friction) = self.wall_loads(|_| true);
+        let loads = self.axes.coefficients(&together(&pressure, &friction));
+        let part = |load: &Load| fluid.viscous_model.as_ref().map(|_| self.axes.coefficients(load));
+        let balance = self.balance.unwrap_or_default();
+        let through = self.axes.coefficients(&balance.load);
+        let ledger = if recipe::is_unsteady(case) {
+            drift(fluid, state, &record.start_totals)
+        } else {
+            self.steady_ledger(&balance, &loads, &through)
+        };
+        let [cpu, wall] = log.seconds();
+        let n = fluid.discretisation.cloud.n_real();
+        Summary {
+            event: "summary",
+            case: case.title.clone(),
+            run: log.journal.as_ref().map_or_else(String::new, |j| j.out.display().to_string()),
+            particles: n,
+            iterations: record.iteration,
+            residual_drop: if recipe::is_unsteady(case) && record.balance.is_none() {
+                0.0
+            } else {
+                -record.drop.log10()
+            },
+            converged: record.converged,
+            cpu_seconds: cpu,
+            wall_seconds: wall,
+            peak_bytes: peak_bytes(),
+            work_units: record.work.total as f64 / self.fluid.discretisation.cloud.n_fluid as f64,
+            chord: self.axes.chord,
+            loads,
+            loads_pressure: part(&pressure),
+            loads_friction: part(&friction),
+            separation: self.separations(),
+            loads_momentum_balance: self.balance.map(|_| through),
+            harmonic_balance: record.balance.clone(),
+            generalised_forces: record.forces.clone(),
+            ledger,
+            time: record.time,
+            unconverged_steps: record.unconverged,
+            halved_steps: record.halved,
+            re_clouding: reclouding::<D>(record),
+            first_harmonics: log.period.map_or_else(Vec::new, |p| record.trace.first_harmonics(p)),
+            momentum_of_period: log.period.and_then(|p| record.moments.last(p)),
+            last_period: log.period.and_then(|p| record.trace.last_period(p)),
+            lift_cycles: record.trace.cycles(),
+            periodic_change: log.period.and_then(|p| record.trace.change(p)),
+            bytes_per_particle: bytes_of(fluid, record.bytes) as f64 / n as f64,
+            cpu_ms_per_particle: 1e3 * cpu / n as f64,
+            linear_iterations: record.linear,
+            error_l2_density: self.exact_error(record.time),
+            adapt_change: last_change(&record.cycles),
+            phases: spent.phases(),
+        }
+    }
+
+    /// The wall as it is measured.
+    pub(crate) fn wall(&self) -> Wall {
+        let cloud = &self.fluid.discretisation.cloud;
+        let free = free_stream::<D>(self.case);
+        let friction = wall_friction(self.case, self.fluid, self.work).unwrap_or_default();
+        Wall {
+            x: cloud.x[cloud.interface_range()].iter().map(|x| Vector(x.to_3d())).collect(),
+            normal: cloud.interface.iter().map(|w| Vector(w.normal.to_3d())).collect(),
+            area: cloud.interface.iter().map(|w| w.area.norm()).collect(),
+            x_c: self.chordwise(),
+            cp: cloud.interface_range().map(|i| pressure_coefficient(&self.work.state[i], &free)).collect(),
+            cf: friction.iter().map(|f| f.cf).collect(),
+        }
+    }
+
+    /// Loads of pressure and friction on the interface particles chosen.
+    pub(crate) fn wall_loads(&self, chosen: impl Fn(usize) -> bool) -> (Load, Load) {
+        let pressure = wall_load(self.fluid, self.work, &self.axes, &chosen);
+        (pressure, friction_load(self.fluid, self.work, &self.axes, &chosen))
+    }
+
+    /// Distances of the interface particles from the nose, over the extent of the bodies.
+    pub(crate) fn chordwise(&self) -> Vec<f64> {
+        let bounds = self.surface.map_or(Bounds { min: Vector::ZERO, max: Vector::splat(1.0) }, Surface::bounds);
+        let x_c = |x: &Vector<D>| (x[0] - bounds.min[0]) / bounds.extent()[0];
+        self.fluid.walls_before().iter().map(x_c).collect()
+    }
+
+    fn separations(&self) -> Vec<Separation> {
+        let friction = wall_friction(self.case, self.fluid, self.work);
+        friction.map_or_else(Vec::new, |f| separations(self.case, self.fluid, &f, &self.chordwise()))
+    }
+
+    fn steady_ledger(&self, balance: &Balance, wall: &Coefficients, through: &Coefficients) -> Ledger {
+        // half of what passes comes in
+        let over = |net: f64, passed: f64| if passed > 0.0 { 2.0 * net / passed } else { 0.0 };
+        Ledger {
+            mass: over(balance.mass, balance.passed[0]),
+            momentum: (wall.cl - through.cl).hypot(wall.cd - through.cd),
+            energy: over(balance.energy, balance.passed[1]),
+        }
+    }
+
+    /// Error of the density against the exact solution that the case starts from, when it has one.
+    fn exact_error(&self, time: f64) -> Option<f64> {
+        if matches!(self.case.initial, Initial::FreeStream) || !self.case.bodies.is_empty() {
+            return None;
+        }
+        let cloud = &self.fluid.discretisation.cloud;
+        let extent = cloud.tree.bounds().extent();
+        let period = Some(Vector([extent[0], extent[1]]));
+        let truth = FieldTruth::new(&self.case.initial, self.case.flow.gamma, period).ok()??;
+        let (mut sum, mut volume) = (0.0, 0.0);
+        let volumes = self.fluid.volumes();
+        for i in 0..cloud.n_fluid {
+            let exact = truth.state(&Vector([cloud.x[i][0], cloud.x[i][1]]), time).ok()?;
+            let error = self.work.state[i].density - exact.density;
+            sum += volumes[i] * error * error;
+            volume += volumes[i];
+        }
+        Some((sum / volume).sqrt())
+    }
+}

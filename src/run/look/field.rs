@@ -1,0 +1,75 @@
+//! The solution as plain tables in the units of the case.
+use crate::case::Case;
+use crate::math::Vector;
+use crate::physics::Primitive;
+use crate::scheme::start::free_stream;
+use crate::scheme::{Fluid, Work};
+
+/// Named columns over particles.
+#[derive(Clone, Debug, Default)]
+pub struct Snapshot {
+    /// Positions.
+    pub points: Vec<[f64; 3]>,
+    /// Columns: name, components, values.
+    pub columns: Vec<(&'static str, usize, Vec<f64>)>,
+}
+
+/// Factors from the units of the solver to those of the case.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Units {
+    /// Density.
+    pub(crate) density: f64,
+    /// Speed.
+    pub(crate) speed: f64,
+}
+
+impl Units {
+    /// The units of a case; ones when its free stream is nondimensional.
+    pub(crate) fn of(case: &Case) -> Self {
+        let r = case.flow.reference();
+        if case.flow.is_dimensional() {
+            Self { density: r.density, speed: r.sound_speed }
+        } else {
+            Self { density: 1.0, speed: 1.0 }
+        }
+    }
+
+    /// Factor on pressures.
+    pub(crate) fn pressure(&self) -> f64 {
+        self.density * self.speed * self.speed
+    }
+}
+
+/// Pressure coefficient; zero when there is no stream.
+pub(crate) fn pressure_coefficient<const D: usize>(q: &Primitive<D>, free: &Primitive<D>) -> f64 {
+    let dynamic = 0.5 * free.density * free.velocity.norm_squared();
+    if dynamic > 0.0 { (q.pressure - free.pressure) / dynamic } else { 0.0 }
+}
+
+/// All particles without images, with everything that a field file holds.
+pub(crate) fn field<const D: usize>(case: &Case, fluid: &Fluid<D>, work: &Work<D>) -> Snapshot {
+    let cloud = &fluid.discretisation.cloud;
+    let n = cloud.n_real();
+    let (free, units) = (free_stream::<D>(case), Units::of(case));
+    let column = |f: &dyn Fn(usize) -> f64| (0..n).map(f).collect::<Vec<f64>>();
+    let state = &work.state;
+    let velocity = (0..n).flat_map(|i| (state[i].velocity * units.speed).to_3d()).collect();
+    let kind = |i: usize| f64::from(u8::from(i >= cloud.n_fluid) + u8::from(i >= cloud.n_rows()));
+    let entropy = |i: usize| fluid.gas.entropy(&state[i]) / fluid.gas.entropy(&free) - 1.0;
+    let level = |i: usize| (cloud.spacing[i]).log2();
+    Snapshot {
+        points: cloud.x[..n].iter().map(Vector::to_3d).collect(),
+        columns: vec![
+            ("density", 1, column(&|i| state[i].density * units.density)),
+            ("velocity", 3, velocity),
+            ("pressure", 1, column(&|i| state[i].pressure * units.pressure())),
+            ("mach", 1, column(&|i| state[i].velocity.norm() / fluid.gas.sound_speed(&state[i]))),
+            ("cp", 1, column(&|i| pressure_coefficient(&state[i], &free))),
+            ("entropy", 1, column(&entropy)),
+            ("spacing", 1, cloud.spacing[..n].to_vec()),
+            ("volume", 1, cloud.volume[..n].to_vec()),
+            ("level", 1, column(&level)),
+            ("kind", 1, column(&kind)),
+        ],
+    }
+}

@@ -1,0 +1,11 @@
+//! Looking at a flow: loads, forces, friction, and the solution as plain tables in the units of the case.
+mod axes;
+mod field;
+pub(crate) mod forces;
+pub(crate) mod friction;
+pub(crate) mod momentum;
+
+pub use field::Snapshot;
+
+pub(crate) use axes::{GasView, LoadFrame, load_axes, motion, rounded, totals, wall_load};
+pub(crate) use field::{Units, field, pressure_coefficient};

@@ -1,0 +1,43 @@
+//! What a run tells while it goes, and what it is told.
+
+/// What a run tells while it goes, and what it is told.
+pub trait Monitor {
+    /// After every iteration.
+    fn tick(&mut self, tick: &Tick);
+    /// Something worth a line.
+    fn note(&mut self, text: &str);
+    /// True when the run should write a checkpoint and stop.
+    fn stop(&self) -> bool {
+        false
+    }
+    /// True when a checkpoint should be written now.
+    fn checkpoint(&self) -> bool {
+        false
+    }
+}
+
+/// A monitor that says nothing.
+pub struct Silent;
+impl Monitor for Silent {
+    fn tick(&mut self, _: &Tick) {}
+    fn note(&mut self, _: &str) {}
+}
+
+/// State of a run after an iteration.
+#[derive(Clone, Copy, Debug)]
+pub struct Tick {
+    /// Iterations over all stages.
+    pub iteration: u64,
+    /// Orders of magnitude to go in all (steady) or fraction of the time (marching), and reached.
+    pub goal: f64,
+    /// Reached of `goal`.
+    pub reached: f64,
+    /// Residual over its first value.
+    pub residual: f64,
+    /// Courant number.
+    pub cfl: f64,
+    /// CL, CD, CM when there are bodies.
+    pub loads: Option<[f64; 3]>,
+    /// Number of fluid particles.
+    pub particles: usize,
+}

@@ -1,0 +1,264 @@
+//! How a case integrates: the one place that tells apart steady, marched and periodic cases, and turns what the case says into
+//! what integrators want.
+use super::error::RunError;
+use super::stage::{Stage, Task};
+use crate::case::{self, Case, HarmonicCount, Harmonics, Initial, RungeKutta, Steady, SteadyMethod, Temporal};
+use crate::math::multilevel::Cycle;
+use crate::time::control::{Control, Method};
+use crate::time::dual::Plan;
+use crate::time::explicit;
+
+/// Particles above which a steady case is started on one coarser cloud, and on two; in 2-D and 3-D.
+const START: [[usize; 2]; 2] = [[2_500, 9_000], [15_000, 80_000]];
+/// Greatest number of iterations of the relaxation before a march.
+const PRELUDE_ITERATIONS: u32 = 500;
+/// Orders of magnitude of that relaxation: the motion soon moves loads by more than what is left.
+const PRELUDE_ORDERS: f64 = 3.0;
+/// Greatest number of its iterations where a march leads to a harmonic balance.
+const LEAD_ITERATIONS: u32 = 60;
+/// Harmonics at which `number = "auto"` begins, and what it adds.
+const FIRST: usize = 1;
+const MORE: usize = 2;
+/// Reduction asked of each linear solve of a steady relaxation.
+const LINEAR_REDUCTION: f64 = 0.1;
+/// Basis vectors of GMRES.
+const BASIS: usize = 30;
+/// Greatest growth of the Courant number in one iteration.
+const GROWTH: f64 = 2.0;
+/// Greatest Courant number of sweeps alone.
+const SWEEPS_CFL_MAX: f64 = 100.0;
+/// Levels of the hierarchy that sweeps are spread over.
+const LEVELS: usize = 8;
+/// Residual evaluations of a typical steady run, per particle.
+const EVALUATIONS: f64 = 1200.0;
+/// The same for one implicit step in time.
+const STEP_EVALUATIONS: f64 = 110.0;
+/// The same for a step of an explicit method, part of a stable step lost included.
+const EXPLICIT_EVALUATIONS: f64 = 3.5;
+/// Harmonics that `number = "auto"` mostly ends with.
+const USUAL_HARMONICS: u32 = 3;
+
+/// A march of a case.
+pub(crate) struct Marching {
+    /// How steps are taken.
+    pub(crate) scheme: Scheme,
+    /// Time at which it ends.
+    pub(crate) until: f64,
+    /// Greatest number of steps.
+    pub(crate) limit: u32,
+    /// Change of the loads from period to period below which it ends as well.
+    pub(crate) tolerance: Option<f64>,
+}
+
+/// How steps in time are taken.
+pub(crate) enum Scheme {
+    /// Implicit, each step relaxed.
+    Dual(Control, Plan),
+    /// Explicit, limited by a Courant number.
+    Explicit(explicit::Method, f64),
+}
+
+/// A fixed implicit step.
+pub(crate) struct FixedStep {
+    /// Its length.
+    pub(crate) length: f64,
+    /// True when it is given as steps of a period.
+    pub(crate) of_period: bool,
+}
+
+/// True for cases that change in time.
+pub(crate) fn is_unsteady(case: &Case) -> bool {
+    !matches!(case.time, Temporal::Steady(_))
+}
+
+/// The harmonic balance of a case.
+pub(crate) fn balance(case: &Case) -> Option<&Harmonics> {
+    match &case.time {
+        Temporal::Harmonics(plan) => Some(plan),
+        _ => None,
+    }
+}
+
+/// The relaxation of a steady case, or the one that gives another case its start.
+pub(crate) fn relaxation(case: &Case) -> Option<Steady> {
+    match &case.time {
+        Temporal::Steady(steady) => Some(steady.clone()),
+        Temporal::Dual(dual) => Some(prelude(dual)),
+        Temporal::Harmonics(plan) => Some(harmonic_prelude(plan)),
+        Temporal::Explicit(_) => None,
+    }
+}
+
+/// The march of a case; `None` where it does not march.
+pub(crate) fn marching(case: &Case, period: Option<f64>, dimension: usize) -> Result<Option<Marching>, RunError> {
+    match &case.time {
+        Temporal::Steady(_) | Temporal::Harmonics(_) => Ok(None),
+        Temporal::Explicit(plan) => {
+            let until = plan.end(period).ok_or(RunError::NoPeriod { table: "explicit" })?;
+            let method = match plan.method {
+                RungeKutta::Ssprk3 => explicit::Method::Ssprk3,
+                RungeKutta::Rk4 => explicit::Method::Rk4,
+            };
+            let scheme = Scheme::Explicit(method, plan.cfl);
+            Ok(Some(Marching { scheme, until, limit: plan.steps, tolerance: plan.periodic_tolerance }))
+        }
+        Temporal::Dual(dual) => {
+            let plan = implicit_plan(dual, period)?;
+            let (until, scheme) = (plan.until, Scheme::Dual(inner_control(dual, dimension), plan));
+            Ok(Some(Marching { scheme, until, limit: u32::MAX, tolerance: dual.periodic_tolerance }))
+        }
+    }
+}
+
+/// The stages of a case whose own cloud has `n` fluid particles: coarse, fine, adapted, marched, more and more harmonics.
+pub(crate) fn plan(case: &Case, n: usize, dimension: usize) -> Vec<Stage> {
+    let mut all = Vec::new();
+    // a march from a given field starts from that field itself
+    let given = is_unsteady(case) && !matches!(case.initial, Initial::FreeStream);
+    let relaxes = relaxation(case).is_some() && !case.bodies.is_empty() && !given;
+    let steady = |factor: f64, cycle: u32| Stage { factor, cycle, task: Task::Relax };
+    if relaxes {
+        let limits = START[dimension - 2];
+        if n > limits[1] {
+            all.push(steady(4.0, 0));
+        }
+        if n > limits[0] {
+            all.push(steady(2.0, 0));
+        }
+    }
+    if relaxes || !is_unsteady(case) {
+        all.extend((0..=case.adapt.cycles).map(|cycle| steady(1.0, cycle)));
+    }
+    let cycle = all.last().map_or(0, |s: &Stage| s.cycle);
+    all.extend(in_time(case, None).into_iter().map(|task| Stage { factor: 1.0, cycle, task }));
+    all
+}
+
+/// The stages of a case that begins from the last state of another run, reached at the stage `from`, on the same cloud.
+pub(crate) fn plan_from(case: &Case, from: &Stage) -> Vec<Stage> {
+    let held = match from.task {
+        Task::Balance { harmonics } => Some(harmonics),
+        _ => None,
+    };
+    let tasks = if is_unsteady(case) { in_time(case, held) } else { vec![Task::Relax] };
+    tasks.into_iter().map(|task| Stage { task, ..*from }).collect()
+}
+
+/// What is done in time after any steady start; `held`: harmonics of the state it begins from.
+fn in_time(case: &Case, held: Option<usize>) -> Vec<Task> {
+    match &case.time {
+        Temporal::Steady(_) => Vec::new(),
+        Temporal::Explicit(_) | Temporal::Dual(_) => vec![Task::March],
+        Temporal::Harmonics(plan) => {
+            let (most, auto) = (most(plan), is_automatic(plan));
+            let lead = held.is_none() && plan.march > 0;
+            let first = match held {
+                Some(held) if auto => held.min(most),
+                None if auto || !lead => FIRST,
+                _ => most,
+            };
+            let more = |n: &usize| (*n < most).then(|| if auto { (n + MORE).min(most) } else { most });
+            let balances = std::iter::successors(Some(first), more).map(|harmonics| Task::Balance { harmonics });
+            lead.then_some(Task::Lead).into_iter().chain(balances).collect()
+        }
+    }
+}
+
+/// Most harmonics that a balance may have.
+fn most(plan: &Harmonics) -> usize {
+    match plan.number {
+        HarmonicCount::Fixed(n) => n as usize,
+        HarmonicCount::Auto(_) => plan.most as usize,
+    }
+}
+
+/// True when the number of harmonics is found on the way.
+pub(crate) fn is_automatic(plan: &Harmonics) -> bool {
+    matches!(plan.number, HarmonicCount::Auto(_))
+}
+
+/// Residual evaluations that a run will spend; `fastest` gives the largest rate of change on its cloud.
+pub(crate) fn evaluations(case: &Case, period: Option<f64>, fastest: impl FnOnce() -> f64) -> f64 {
+    match &case.time {
+        Temporal::Steady(_) => EVALUATIONS * f64::from(1 + case.adapt.cycles),
+        Temporal::Dual(dual) => {
+            let steps = dual.end(period).zip(dual.step_length(period)).map_or(0.0, |(end, step)| end / step);
+            EVALUATIONS + STEP_EVALUATIONS * steps
+        }
+        Temporal::Harmonics(h) => {
+            let count = match h.number {
+                HarmonicCount::Fixed(n) => n,
+                HarmonicCount::Auto(_) => USUAL_HARMONICS,
+            };
+            EVALUATIONS * f64::from(2 + 2 * count)
+        }
+        Temporal::Explicit(e) => EXPLICIT_EVALUATIONS * e.end(period).unwrap_or_default() * fastest() / e.cfl,
+    }
+}
+
+/// True when linear systems are solved.
+pub(crate) fn is_implicit(case: &Case) -> bool {
+    !matches!(case.time, Temporal::Explicit(_))
+}
+
+/// The implicit step of a case, where it is fixed.
+pub(crate) fn fixed_step(case: &Case, period: Option<f64>) -> Option<FixedStep> {
+    let Temporal::Dual(dual) = &case.time else { return None };
+    let length = dual.step_length(period).filter(|dt| dual.adaptive.is_none() && 0.0 < *dt)?;
+    Some(FixedStep { length, of_period: period.is_some() && dual.steps_per_period.is_some() })
+}
+
+/// The relaxation that gives a march its start.
+fn prelude(dual: &case::Dual) -> Steady {
+    Steady { method: dual.method, iterations: PRELUDE_ITERATIONS, orders: PRELUDE_ORDERS, ..Steady::default() }
+}
+
+/// The relaxation that gives a harmonic balance its start.
+fn harmonic_prelude(plan: &Harmonics) -> Steady {
+    let iterations = if plan.march > 0 { LEAD_ITERATIONS } else { PRELUDE_ITERATIONS };
+    Steady { method: plan.method, iterations, orders: PRELUDE_ORDERS, ..Steady::default() }
+}
+
+/// Numbers of a harmonic balance.
+pub(crate) fn harmonic_control(plan: &Harmonics, dimension: usize) -> Control {
+    let steady = Steady { cfl: plan.cfl, cfl_max: plan.cfl_max, ..harmonic_prelude(plan) };
+    control(&steady, dimension)
+}
+
+/// Numbers of an implicit march.
+fn implicit_plan(dual: &case::Dual, period: Option<f64>) -> Result<Plan, RunError> {
+    let wrong = || RunError::NoPeriod { table: "dual" };
+    Ok(Plan {
+        until: dual.end(period).ok_or_else(wrong)?,
+        step: dual.step_length(period).ok_or_else(wrong)?,
+        order: dual.order,
+        orders: dual.orders,
+        iterations: dual.inner_iterations,
+        adaptive: dual.adaptive,
+    })
+}
+
+/// Numbers of the relaxation within a step in time.
+fn inner_control(dual: &case::Dual, dimension: usize) -> Control {
+    let steady = Steady { cfl: dual.cfl, cfl_max: dual.cfl_max, ..prelude(dual) };
+    control(&steady, dimension)
+}
+
+/// Numbers of the steady relaxation.
+pub(crate) fn control(steady: &Steady, dimension: usize) -> Control {
+    let sweeps_alone = steady.method == SteadyMethod::LuSgs;
+    Control {
+        method: match steady.method {
+            SteadyMethod::NewtonKrylov => Method::NewtonKrylov,
+            SteadyMethod::LuSgs => Method::Sweeps,
+            SteadyMethod::RungeKutta => Method::RungeKutta,
+        },
+        cfl: steady.cfl,
+        cfl_max: if sweeps_alone { steady.cfl_max.min(SWEEPS_CFL_MAX) } else { steady.cfl_max },
+        growth: GROWTH,
+        tolerance: LINEAR_REDUCTION,
+        basis: BASIS,
+        group: if dimension == 2 { 4 } else { 8 },
+        cycle: Cycle { sweeps: 2, visits: 1, levels: if sweeps_alone { 1 } else { LEVELS } },
+    }
+}

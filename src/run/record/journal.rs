@@ -1,0 +1,79 @@
+//! Tables that a run appends to while it goes.
+use std::path::{Path, PathBuf};
+
+use super::super::error::RunError;
+use super::super::folder;
+use super::crosscheck::{self, Twofold};
+use super::saved::Saved;
+use super::trace::Trace;
+use crate::case::Case;
+use crate::observe::History;
+
+/// Name of the history in the run folder.
+const HISTORY: &str = "history.csv";
+/// Columns of it.
+const COLUMNS: [&str; 9] = ["cycle", "iteration", "time", "cfl", "residual", "cl", "cd", "cm", "seconds"];
+/// More of them when something moves: iterations within the step, angle and displacement of the first body that moves.
+const MOVING: [&str; 5] = ["inner", "angle_deg", "shift_x", "shift_y", "shift_z"];
+/// One more when a body bends: the coordinate of the first mode of that body.
+const BENDING: &str = "mode";
+
+/// The run folder while a run goes on.
+pub(crate) struct Journal {
+    /// The folder.
+    pub(crate) out: PathBuf,
+    history: History,
+    moments: Option<History>,
+}
+
+/// What the tables of an interrupted run hold.
+#[derive(Default)]
+pub(crate) struct Earlier {
+    /// Loads in time.
+    pub(crate) trace: Trace,
+    /// Loads evaluated twice.
+    pub(crate) moments: Twofold,
+}
+
+/// Columns of the history of a case. Coordinates, rates, forces and energies of a structure are to follow here, and in
+/// [`super::super::watch::progress`], which fills the rows.
+fn columns(case: &Case) -> Vec<&'static str> {
+    let moving = MOVING.into_iter().filter(|_| case.moves());
+    COLUMNS.into_iter().chain(moving).chain(case.bends().then_some(BENDING)).collect()
+}
+
+impl Journal {
+    /// Begins the tables, or goes on where `saved` stands; `twice`: loads are evaluated twice.
+    pub(crate) fn open(
+        case: &Case,
+        out: &Path,
+        saved: Option<&Saved>,
+        twice: bool,
+    ) -> Result<(Self, Earlier), RunError> {
+        let table = |name: &str, columns: &[&str]| match saved {
+            Some(s) => History::resume(&out.join(name), columns, s.iteration),
+            None => History::create(&out.join(name), columns),
+        };
+        let history = table(HISTORY, &columns(case))?;
+        let moments = twice.then(|| table(crosscheck::FILE, &crosscheck::COLUMNS)).transpose()?;
+        let text = |name: &str| folder::text(out, name).unwrap_or_default();
+        let earlier = saved.map_or_else(Earlier::default, |s| Earlier {
+            trace: if s.time > 0.0 { Trace::parse(&text(HISTORY), s.time) } else { Trace::default() },
+            moments: if twice { Twofold::parse(&text(crosscheck::FILE)) } else { Twofold::default() },
+        });
+        Ok((Self { out: out.to_path_buf(), history, moments }, earlier))
+    }
+
+    /// Appends an iteration.
+    pub(crate) fn row(&mut self, row: &[f64]) -> Result<(), RunError> {
+        Ok(self.history.append(row)?)
+    }
+
+    /// Appends loads that were evaluated twice.
+    pub(crate) fn moment(&mut self, row: &[f64]) -> Result<(), RunError> {
+        match &mut self.moments {
+            Some(file) => Ok(file.append(row)?),
+            None => Ok(()),
+        }
+    }
+}

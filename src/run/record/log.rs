@@ -1,0 +1,180 @@
+//! The record of a run, and its ways out.
+use std::path::Path;
+
+use super::super::error::RunError;
+use super::super::look::forces::GeneralisedForce;
+use super::super::look::{LoadFrame, load_axes};
+use super::super::monitor::{Monitor, Tick};
+use super::crosscheck::{Moment, Twofold};
+use super::interval::passed;
+use super::journal::{Earlier, Journal};
+use super::saved::{FILE, Saved, Settling};
+use super::summary::{BalanceReport, Clock, Work};
+use super::trace::Trace;
+use crate::case::Case;
+use crate::scheme::RemapLedger;
+use crate::time::TimeError;
+
+/// What a run has found about itself so far.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Record {
+    /// Iterations over all stages.
+    pub(crate) iteration: u64,
+    /// Finished cycles: cycle, particles, CL, CD, CM.
+    pub(crate) cycles: Vec<[f64; 5]>,
+    /// Totals of the conserved quantities when the march began.
+    pub(crate) start_totals: Vec<f64>,
+    /// Residual over its first value at the end.
+    pub(crate) drop: f64,
+    /// True when the goal was reached.
+    pub(crate) converged: bool,
+    /// Final time.
+    pub(crate) time: f64,
+    /// Bytes of the integrator.
+    pub(crate) bytes: usize,
+    /// Linear iterations of the last stage.
+    pub(crate) linear: u32,
+    /// Steps in time that did not reach their goal.
+    pub(crate) unconverged: u32,
+    /// Times a step in time was halved because its equations could not be solved.
+    pub(crate) halved: u32,
+    /// Loads and motion of the march so far.
+    pub(crate) trace: Trace,
+    /// Work of all stages.
+    pub(crate) work: Work,
+    /// What the end of a harmonic balance is told from.
+    pub(crate) settling: Settling,
+    /// Evaluations of the residual of one instance by the harmonic balances that are over.
+    pub(crate) evaluations: u64,
+    /// What a harmonic balance found about itself.
+    pub(crate) balance: Option<BalanceReport>,
+    /// Forces on the modes of `[gaf]`.
+    pub(crate) forces: Vec<GeneralisedForce>,
+    /// Part of the period, angle, displacement and loads at the instances of a harmonic balance.
+    pub(crate) instances: Vec<[f64; 6]>,
+    /// What re-clouding did so far, where particles travel with the fluid.
+    pub(crate) ledger: RemapLedger,
+    /// Loads evaluated twice, where the motion repeats.
+    pub(crate) moments: Twofold,
+}
+
+impl Record {
+    /// What a checkpoint and the tables beside it hold.
+    fn resumed(saved: &Saved, earlier: Earlier) -> Self {
+        let march = match &saved.memory {
+            crate::time::Memory::March(past) => (past.unconverged, past.halved),
+            crate::time::Memory::Relaxation(_) => (0, 0),
+        };
+        Self {
+            iteration: saved.iteration,
+            cycles: saved.cycles.clone(),
+            start_totals: saved.start_totals.clone(),
+            drop: 1.0,
+            time: saved.time,
+            unconverged: march.0,
+            halved: march.1,
+            trace: earlier.trace,
+            work: Work::before(saved.work),
+            evaluations: saved.settling.earlier,
+            settling: saved.settling.clone(),
+            ledger: saved.lagrangian.as_ref().map_or_else(RemapLedger::default, |r| r.ledger.clone()),
+            moments: earlier.moments,
+            ..Self::default()
+        }
+    }
+}
+
+/// The record of a run with its ways out: to those who watch, and to its folder where it has one.
+pub(crate) struct Log<'a> {
+    monitor: &'a mut dyn Monitor,
+    /// The case.
+    pub(crate) case: &'a Case,
+    /// Axes of the loads.
+    pub(crate) axes: LoadFrame,
+    /// Period of the motion.
+    pub(crate) period: Option<f64>,
+    /// The run folder.
+    pub(crate) journal: Option<Journal>,
+    /// What is known so far.
+    pub(crate) record: Record,
+    clock: Clock,
+    /// Processor and wall seconds before a restart.
+    before: [f64; 2],
+}
+
+impl<'a> Log<'a> {
+    /// Opens the record of a run, and its tables where it has a folder `out`.
+    pub(crate) fn open(
+        case: &'a Case,
+        out: Option<&Path>,
+        period: Option<f64>,
+        saved: Option<&Saved>,
+        monitor: &'a mut dyn Monitor,
+    ) -> Result<Self, RunError> {
+        let twice = period.is_some() && case.moves() && !case.bodies.is_empty();
+        let opened = out.map(|out| Journal::open(case, out, saved, twice)).transpose()?;
+        let (journal, earlier) =
+            opened.map_or((None, Earlier::default()), |(journal, earlier)| (Some(journal), earlier));
+        let mut record = match saved {
+            Some(saved) => Record::resumed(saved, earlier),
+            None => Record { drop: 1.0, ..Record::default() },
+        };
+        record.trace = record.trace.over(case.output.loop_periods);
+        let before = saved.map_or([0.0; 2], |s| [s.cpu_seconds, s.wall_seconds]);
+        Ok(Self { monitor, case, axes: load_axes(case), period, journal, record, clock: Clock::start(), before })
+    }
+
+    /// Says a line.
+    pub(crate) fn note(&mut self, text: &str) {
+        self.monitor.note(text);
+    }
+
+    /// Tells of an iteration.
+    pub(crate) fn tick(&mut self, tick: &Tick) {
+        self.monitor.tick(tick);
+    }
+
+    /// True when the run is told to stop.
+    pub(crate) fn stopped(&self) -> bool {
+        self.monitor.stop()
+    }
+
+    /// True when a checkpoint is asked for now.
+    pub(crate) fn checkpoint_is_asked_for(&self) -> bool {
+        self.monitor.checkpoint()
+    }
+
+    /// Processor and wall seconds, those before a restart included.
+    pub(crate) fn seconds(&self) -> [f64; 2] {
+        [self.before[0] + self.clock.cpu_seconds(), self.before[1] + self.clock.wall_seconds()]
+    }
+
+    /// Loads of period after period are compared where bodies have a motion that repeats.
+    pub(crate) fn compares_loads(&self) -> bool {
+        self.period.is_some() && self.case.moves() && !self.case.bodies.is_empty()
+    }
+
+    /// Keeps the loads of a moment, by both evaluations.
+    pub(crate) fn compared(&mut self, moment: &Moment) -> Result<(), RunError> {
+        let row = self.record.moments.push(moment);
+        self.journal.as_mut().map_or(Ok(()), |j| j.moment(&row))
+    }
+
+    /// Name of the checkpoint, where there is one.
+    pub(crate) fn checkpoint(&self) -> Option<String> {
+        self.journal.as_ref().map(|j| j.out.join(FILE).display().to_string())
+    }
+
+    /// Why a run failed, and where its last good state is.
+    pub(crate) fn failed(&self, source: TimeError) -> RunError {
+        RunError::Time { source, checkpoint: self.checkpoint() }
+    }
+
+    /// How the loads of the last period differ from those of the period before, at the end of a period; `None` elsewhere.
+    pub(crate) fn change_of_period(&self, time: f64, before: f64) -> Option<f64> {
+        let period = self.period?;
+        let ended = passed(time, period) > passed(before, period) && time / period > 1.5;
+        let change = self.record.trace.change(period).filter(|_| ended)?;
+        Some(change.mean.max(change.first_harmonic))
+    }
+}

@@ -1,0 +1,11 @@
+//! What a run knows about itself: in memory while it goes on, in a checkpoint between, in the summary at its end.
+pub(crate) mod crosscheck;
+mod interval;
+mod journal;
+mod log;
+pub(crate) mod saved;
+pub(crate) mod summary;
+pub(crate) mod trace;
+
+pub(crate) use interval::{NEARLY, passed};
+pub(crate) use log::{Log, Record};

@@ -1,0 +1,335 @@
+//! A session: a case in, fields and loads out.
+//!
+//! A run is a plain list of [stages](super::stage): coarse clouds that give a steady case its start, the cloud of the case, one
+//! cloud for each cycle of adaptation, a march, more and more harmonics. Every stage builds its cloud, takes over the state of
+//! the one before by the solver's own fit, and is driven. A session opens no file but those that the case names, unless it keeps
+//! its run in a folder.
+use std::path::{Path, PathBuf};
+
+use super::build::{self, Site, Solver, check_motion};
+use super::error::RunError;
+use super::files;
+use super::found::{Found, Names, Spent};
+use super::look::{GasView, Snapshot, field, momentum};
+use super::monitor::Monitor;
+use super::recipe;
+use super::record::Log;
+use super::record::saved::{LagrangianCheckpoint, Position, Saved, flatten};
+use super::record::summary::{Clock, Summary};
+use super::stage::{Stage, Task};
+use super::studies::{self, Reached, Start, Turn};
+use crate::case::Case;
+use crate::cloud::Cloud;
+use crate::cloud::sources::Source;
+use crate::geometry::{Surface, dimension};
+use crate::observe::loads::Coefficients;
+use crate::scheme::{Fluid, Frame, HasGas};
+use crate::system::System;
+use crate::verify::Loops;
+use crate::verify::wall::Wall;
+
+/// How a run ended.
+#[derive(Debug)]
+pub enum Outcome {
+    /// It ran to its end.
+    Finished(Box<Summary>),
+    /// It was told to stop; a checkpoint is written where it has a folder.
+    Interrupted {
+        /// Iteration at which it stopped.
+        iteration: u64,
+    },
+}
+
+/// What a run begins with.
+pub(crate) enum Origin {
+    /// The case alone.
+    Case,
+    /// Its own checkpoint.
+    Own(Box<Saved>),
+    /// The last state of another run.
+    Other(Box<Saved>),
+}
+
+/// A case that is solved in memory.
+///
+/// ```no_run
+/// # fn main() -> Result<(), Box<dyn std::error::Error>> {
+/// let case = alula::case::read("title = \"cylinder\"\n[flow]\nmach = 0.3\n[[body]]\ncircle = { radius = 0.5 }\n", "case")?;
+/// let mut session = alula::run::Session::open(&case, ".")?;
+/// session.solve(&mut alula::run::Silent)?;
+/// println!("{:?}", session.loads());
+/// # Ok(())
+/// # }
+/// ```
+pub struct Session {
+    case: Case,
+    input: PathBuf,
+    out: Option<PathBuf>,
+    origin: Origin,
+    solution: Option<Solution>,
+}
+
+/// What a session has found.
+struct Solution {
+    summary: Summary,
+    field: Snapshot,
+    wall: Wall,
+    loops: Loops,
+}
+
+impl Session {
+    /// Opens a case whose file names refer to the folder `input`.
+    pub fn open(case: &Case, input: impl Into<PathBuf>) -> Result<Self, RunError> {
+        build::supported(case)?;
+        Ok(Self { case: case.clone(), input: input.into(), out: None, origin: Origin::Case, solution: None })
+    }
+
+    /// The same with a folder, which exists, for tables, checkpoints, fields and pictures.
+    pub(crate) fn kept_in(self, out: &Path) -> Self {
+        Self { out: Some(out.to_path_buf()), ..self }
+    }
+
+    /// The same from elsewhere than the start of the case.
+    pub(crate) fn from(self, origin: Origin) -> Self {
+        Self { origin, ..self }
+    }
+
+    /// Solves the case, from its start or from where it was stopped; tells how it went.
+    pub fn solve(&mut self, monitor: &mut dyn Monitor) -> Result<Outcome, RunError> {
+        let origin = std::mem::replace(&mut self.origin, Origin::Case);
+        let work = Run { case: &self.case, input: &self.input, out: self.out.as_deref() };
+        let ended = match dimension(&self.case) {
+            2 => work.solve::<2>(origin, monitor)?,
+            _ => work.solve::<3>(origin, monitor)?,
+        };
+        Ok(match ended {
+            Ok(solution) => {
+                let summary = Box::new(solution.summary.clone());
+                self.solution = Some(solution);
+                Outcome::Finished(summary)
+            }
+            Err(iteration) => Outcome::Interrupted { iteration },
+        })
+    }
+
+    /// The case.
+    pub fn case(&self) -> &Case {
+        &self.case
+    }
+
+    /// What was found and what it took; `None` before it is solved.
+    pub fn summary(&self) -> Option<&Summary> {
+        self.solution.as_ref().map(|s| &s.summary)
+    }
+
+    /// Loads on all bodies, of pressure and friction; `None` before it is solved.
+    pub fn loads(&self) -> Option<Coefficients> {
+        self.summary().map(|s| s.loads)
+    }
+
+    /// The solution on all particles, in the units of the case; `None` before it is solved.
+    pub fn field(&self) -> Option<&Snapshot> {
+        self.solution.as_ref().map(|s| &s.field)
+    }
+
+    /// Pressure and friction on the walls; `None` before it is solved.
+    pub fn wall(&self) -> Option<&Wall> {
+        self.solution.as_ref().map(|s| &s.wall)
+    }
+
+    /// Loads over the last period of a motion, empty where there is none; `None` before it is solved.
+    pub fn loops(&self) -> Option<&Loops> {
+        self.solution.as_ref().map(|s| &s.loops)
+    }
+}
+
+/// A case on its way through the stages.
+struct Run<'a> {
+    case: &'a Case,
+    input: &'a Path,
+    out: Option<&'a Path>,
+}
+
+/// A solver with a state.
+struct Stood<S, const D: usize> {
+    solver: Solver<S, D>,
+    state: Vec<f64>,
+}
+
+/// What a stage begins with.
+struct Begun<S, const D: usize> {
+    solver: Solver<S, D>,
+    start: Start,
+    particles: Option<LagrangianCheckpoint>,
+}
+
+/// The solution of a run, or the iteration at which it was told to stop.
+type Ended = Result<Solution, u64>;
+
+impl Run<'_> {
+    /// All stages. A structure would be coupled to the gas wherever its solver is built.
+    fn solve<const D: usize>(&self, origin: Origin, monitor: &mut dyn Monitor) -> Result<Ended, RunError> {
+        let (mut saved, mut other) = match origin {
+            Origin::Case => (None, None),
+            Origin::Own(saved) => (Some(*saved), None),
+            Origin::Other(other) => (None, Some(*other)),
+        };
+        let clock = Clock::start();
+        let (surface, notes) = build::surface::<D>(self.case, self.input)?;
+        notes.iter().for_each(|n| monitor.note(n));
+        let motions = build::motions(self.case, self.input, surface.as_ref())?;
+        let site = Site { case: self.case, surface: surface.as_ref(), motions: &motions };
+        let mut ready = if saved.is_some() { None } else { Some(self.cloud(&site, monitor)?) };
+        let particles = ready.as_ref().map_or(0, |c| c.n_fluid);
+        let stages = match (&saved, &other) {
+            (Some(s), _) => s.stages.clone(),
+            (None, Some(o)) => recipe::plan_from(self.case, &o.stages[o.stage]),
+            (None, None) => recipe::plan(self.case, particles, D),
+        };
+        let mut log = Log::open(self.case, self.out, motions.period(), saved.as_ref(), monitor)?;
+        log.note(&describe(&stages, particles));
+        let first = saved.as_ref().map_or(0, |s| s.stage);
+        let known = saved.as_ref().or(other.as_ref());
+        let mut sources: Vec<Source<D>> = known.map_or_else(Vec::new, Saved::sources);
+        let mut previous: Option<Stood<Fluid<D>, D>> = None;
+        let mut end: Option<(Frame<D>, Vec<f64>)> = None;
+        for (k, stage) in stages.iter().enumerate().skip(first) {
+            let same = k > 0 && stage.shares_cloud(&stages[k - 1]);
+            let cloud = if stage.is_plain() { ready.take() } else { None };
+            let begun = match (saved.take(), previous.take()) {
+                (Some(saved), _) => resumed(&site, stage, &sources, saved)?,
+                (None, Some(stood)) if same => Begun::fresh(stood.solver, stood.state),
+                (None, Some(stood)) => followed(&site, stage, &sources, cloud, stood)?,
+                (None, None) => begun(&site, stage, &sources, cloud, other.take())?,
+            };
+            let flat = flatten(&sources);
+            let at = Position { stage: k, stages: &stages, sources: &flat };
+            let turn = Turn { at: &at, last: k + 1 == stages.len() };
+            let Some((solver, reached)) = self.study(begun, &turn, &mut log)? else {
+                return Ok(Err(log.record.iteration));
+            };
+            if stages.get(k + 1).is_some_and(|s| s.cycle > stage.cycle) {
+                sources = build::adapted(self.case, &solver.system, &reached.state);
+            }
+            end = reached.end;
+            previous = Some(Stood { solver, state: reached.state });
+            if reached.enough {
+                break;
+            }
+        }
+        let (Some(stood), Some((frame, state))) = (previous, end) else { return Err(RunError::NoStage) };
+        let view = GasView::of(&stood.solver.system, &frame, &state);
+        self.conclude(&view, surface.as_ref(), &log, &clock).map(Ok)
+    }
+    /// The cloud of the case, and what is worth knowing of the motion on it.
+    fn cloud<const D: usize>(&self, site: &Site<'_, D>, monitor: &mut dyn Monitor) -> Result<Cloud<D>, RunError> {
+        let cloud = Cloud::build(self.case, site.surface, &[])?;
+        check_motion(self.case, &cloud, site.motions)?.iter().for_each(|n| monitor.note(n));
+        Ok(cloud)
+    }
+
+    /// Does what a stage is for; `None` when told to stop.
+    fn study<S: HasGas<D>, const D: usize>(
+        &self,
+        begun: Begun<S, D>,
+        turn: &Turn<'_>,
+        log: &mut Log<'_>,
+    ) -> Result<Option<(Solver<S, D>, Reached<S>)>, RunError> {
+        let Begun { mut solver, start, particles } = begun;
+        let plan = || recipe::balance(self.case).ok_or(RunError::NoStage);
+        let reached = match turn.stage().task {
+            Task::Relax => {
+                let steady = recipe::relaxation(self.case).ok_or(RunError::NoStage)?;
+                studies::relax(&solver.system, &steady, start, turn, log)?
+            }
+            Task::March => {
+                let marching = recipe::marching(self.case, log.period, D)?.ok_or(RunError::NoStage)?;
+                let begin = studies::beginning(&mut solver, start, particles.as_ref())?;
+                studies::march(&mut solver, &marching, begin, turn, log)?
+            }
+            Task::Lead => {
+                let next = turn.at.stages.get(turn.at.stage + 1).ok_or(RunError::NoStage)?;
+                studies::lead(&solver.system, plan()?, next.instances() / 2, start.into_state(), log)?
+            }
+            Task::Balance { .. } => studies::balance(&solver, plan()?, start, turn, log)?,
+        };
+        Ok(reached.map(|reached| (solver, reached)))
+    }
+
+    /// Looks at the end of a run, and writes it where there is a folder.
+    fn conclude<const D: usize>(
+        &self,
+        view: &GasView<'_, D>,
+        surface: Option<&Surface<D>>,
+        log: &Log<'_>,
+        clock: &Clock,
+    ) -> Result<Solution, RunError> {
+        let (solved, fluid, mut work) = (clock.wall_seconds(), view.fluid, view.fluid.work());
+        let balance = momentum::around(self.case, &log.axes, view, &mut work, recipe::is_unsteady(self.case));
+        fluid.fill_states(view.frame, view.state, &mut work);
+        fluid.fill_gradients(view.frame, &mut work);
+        let seen = fluid.seen(view.frame, &work);
+        let (fluid, work) = seen.as_ref().map_or((fluid, &work), |(fluid, work)| (fluid, work));
+        let (axes, names) = (log.axes.axes(fluid), Names::of(surface));
+        let found = Found { case: self.case, fluid, work, surface, axes, names, balance };
+        let summary = found.summary(log, view.state, &Spent { clock, solved });
+        let field = field(self.case, fluid, work);
+        if let Some(journal) = &log.journal {
+            files::write_all(&found, &summary, &field, log, &journal.out)?;
+        }
+        let loops = log.period.map_or_else(Loops::default, |p| log.record.trace.loops(p));
+        Ok(Solution { summary, field, wall: found.wall(), loops })
+    }
+}
+
+impl<S, const D: usize> Begun<S, D> {
+    fn fresh(solver: Solver<S, D>, state: Vec<f64>) -> Self {
+        Self { solver, start: Start::Fresh(state), particles: None }
+    }
+}
+
+/// A stage that goes on where a checkpoint stands.
+fn resumed<const D: usize>(
+    site: &Site<'_, D>,
+    stage: &Stage,
+    sources: &[Source<D>],
+    saved: Saved,
+) -> Result<Begun<Fluid<D>, D>, RunError> {
+    let solver = build::solver(site, stage, sources, None)?;
+    Ok(Begun { solver, start: Start::Resume(saved.state, saved.memory), particles: saved.lagrangian })
+}
+
+/// A stage that takes over the state of the one before it on another cloud.
+fn followed<const D: usize>(
+    site: &Site<'_, D>,
+    stage: &Stage,
+    sources: &[Source<D>],
+    ready: Option<Cloud<D>>,
+    before: Stood<Fluid<D>, D>,
+) -> Result<Begun<Fluid<D>, D>, RunError> {
+    let next = build::solver(site, stage, sources, ready)?;
+    let state = build::transfer(&before.solver.system, &before.state, &next.system, site.surface);
+    Ok(Begun::fresh(next, state))
+}
+
+/// The first stage: from the last state of another run, or from the start of the case.
+fn begun<const D: usize>(
+    site: &Site<'_, D>,
+    stage: &Stage,
+    sources: &[Source<D>],
+    ready: Option<Cloud<D>>,
+    other: Option<Saved>,
+) -> Result<Begun<Fluid<D>, D>, RunError> {
+    let solver = build::solver(site, stage, sources, ready)?;
+    let state = match other {
+        Some(other) => build::taken_over(site.case, &solver.system, other.state)?,
+        None => solver.system.start(),
+    };
+    Ok(Begun::fresh(solver, state))
+}
+
+fn describe(stages: &[Stage], n: usize) -> String {
+    let coarse = stages.iter().filter(|s| s.factor > 1.0).count();
+    let cycles = (1..).take_while(|c| stages.iter().any(|s| s.cycle == *c)).count();
+    format!("{n} fluid particles; {coarse} coarser clouds for the start, {cycles} cycles of adaptation")
+}

@@ -1,0 +1,53 @@
+//! Stages: what a run is a plain list of.
+use serde::{Deserialize, Serialize};
+
+/// What a stage does on its cloud.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum Task {
+    /// Relaxes to a steady state.
+    Relax,
+    /// Marches in time.
+    March,
+    /// Marches a few coarse periods that a harmonic balance begins from.
+    Lead,
+    /// Finds a periodic state with a number of harmonics.
+    Balance {
+        /// The number.
+        harmonics: usize,
+    },
+}
+
+/// One stage of a run.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Stage {
+    /// Factor on every spacing of the case: 1 except for the clouds that a steady case starts on.
+    pub(crate) factor: f64,
+    /// Cycle of adaptation, 0 before any.
+    pub(crate) cycle: u32,
+    /// What is done there.
+    pub(crate) task: Task,
+}
+
+impl Stage {
+    /// A relaxation on the cloud of the case itself.
+    pub(crate) const PLAIN: Self = Self { factor: 1.0, cycle: 0, task: Task::Relax };
+
+    /// True on the cloud of the case itself.
+    pub(crate) fn is_plain(&self) -> bool {
+        self.factor == 1.0 && self.cycle == 0
+    }
+
+    /// True when both stand on the same cloud.
+    pub(crate) fn shares_cloud(&self, other: &Self) -> bool {
+        self.factor == other.factor && self.cycle == other.cycle
+    }
+
+    /// Instances of a period that a state of this stage holds.
+    pub(crate) fn instances(&self) -> usize {
+        match self.task {
+            Task::Balance { harmonics } => 2 * harmonics + 1,
+            _ => 1,
+        }
+    }
+}

@@ -1,0 +1,16 @@
+//! What is done on a cloud: relaxing, marching, finding a periodic state. Each study builds an integrator, chooses who watches
+//! it, lets it be driven, and tells how far it came.
+mod balance;
+mod check;
+mod lead;
+mod march;
+mod periodic;
+mod settled;
+mod steady;
+mod turn;
+
+pub(crate) use balance::balance;
+pub(crate) use lead::lead;
+pub(crate) use march::{beginning, march};
+pub(crate) use steady::relax;
+pub(crate) use turn::{Reached, Start, Turn};

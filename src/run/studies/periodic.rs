@@ -1,0 +1,266 @@
+//! A periodic state that was found: its loads, and what is written of it.
+use std::path::Path;
+
+use num_complex::Complex64;
+
+use super::super::error::RunError;
+use super::super::files::{FILM, Target, together, write_film};
+use super::super::look::{GasView, Units, motion, pressure_coefficient};
+use super::super::record::Log;
+use super::super::record::trace::Sample;
+use super::super::watch::compare;
+use super::settled::PeriodicEyes;
+use crate::case::{Case, Harmonics};
+use crate::geometry::Surface;
+use crate::math::Vector;
+use crate::math::fourier::{Instances, Series};
+use crate::observe::loads::Coefficients;
+use crate::observe::table::{Entry, write_csv};
+use crate::observe::vtk::{Column, write_points};
+use crate::scheme::{Fluid, HasGas, Work};
+use crate::system::{Instant, System};
+use crate::time::harmonic::HarmonicBalance;
+
+/// Samples of the loops.
+const SAMPLES: usize = 256;
+
+/// Part of a length or radian by which a motion may miss itself a period later.
+const REPEATS: f64 = 1e-9;
+/// Parts of a period at which that is looked at.
+const LOOKED_AT: [f64; 4] = [0.0, 0.13, 0.41, 0.77];
+
+/// The equations of a period with a number of harmonics.
+pub(super) fn build<'a, S: System>(
+    system: &'a S,
+    plan: &Harmonics,
+    harmonics: usize,
+    period: f64,
+) -> HarmonicBalance<'a, S> {
+    let omega = std::f64::consts::TAU / period;
+    HarmonicBalance::new(system, Instances::of_harmonics(harmonics), omega, plan.oversample)
+}
+
+/// The period of a motion that repeats.
+pub(super) fn period_of<S: HasGas<D>, const D: usize>(system: &S, log: &Log<'_>) -> Result<f64, RunError> {
+    let Some(period) = log.period else {
+        return Err(RunError::NotPeriodic {
+            what: "the motion does not repeat, but `[time] harmonics` finds flows that do".into(),
+            hint: "take out what drifts in `[motion]`, a translation or a formula that does not return after the period, or \
+                   march with `[time.dual]`",
+        });
+    };
+    repeats(system.gas(), period)?;
+    Ok(period)
+}
+
+/// Refuses motions that do not come back after a period.
+fn repeats<const D: usize>(fluid: &Fluid<D>, period: f64) -> Result<(), RunError> {
+    for (body, law) in fluid.cloud_motion.laws().iter().enumerate() {
+        for part in LOOKED_AT {
+            let (a, b) = (law.pose(part * period), law.pose((part + 1.0) * period));
+            let places = std::iter::once(Vector::ZERO).chain((0..D).map(Vector::axis));
+            let miss = places.map(|x| (a.point(&x) - b.point(&x)).norm()).fold(0.0, f64::max);
+            let (p, q) = (law.coordinates(part * period), law.coordinates((part + 1.0) * period));
+            let bend = p.iter().zip(&q).zip(law.shapes()).map(|((p, q), shape)| (p - q).abs() * shape.size());
+            let miss = bend.fold(miss, f64::max);
+            if miss > REPEATS {
+                return Err(RunError::NotPeriodic {
+                    what: format!("the motion of body {body} misses itself by {miss:.3e} after a period"),
+                    hint: "harmonic balance needs a motion that repeats; march with `[time.dual]` instead",
+                });
+            }
+        }
+    }
+    Ok(())
+}
+
+/// f_1, f_2, … of a series.
+pub(super) fn terms(series: &Series) -> Vec<Complex64> {
+    let (c, n) = (series.coefficients(), series.instances().harmonics());
+    (1..=n).map(|m| Complex64::new(c[m], -c[n + m])).collect()
+}
+
+/// The solution of a balance.
+pub(super) struct PeriodicState<'a, S: System, const D: usize> {
+    /// The equations of all instances.
+    pub(super) balance: &'a HarmonicBalance<'a, S>,
+    /// Those of one.
+    pub(super) system: &'a S,
+    /// The state of all instances.
+    pub(super) state: &'a [f64],
+    /// Period.
+    pub(super) period: f64,
+}
+
+impl<S: HasGas<D>, const D: usize> PeriodicState<'_, S, D> {
+    /// Frames at the instances where the equations are evaluated.
+    pub(super) fn frames(&self) -> Vec<S::Frame> {
+        self.balance.frame(&Instant::still(0.0), self.state)
+    }
+
+    /// The unknowns of the gas at all instances.
+    pub(super) fn gas(&self) -> &[f64] {
+        let (own, count) = (self.system.gas_unknowns(), self.balance.instances().count());
+        &self.state[own.start * count..own.end * count]
+    }
+
+    /// Series of the loads; `None` without bodies.
+    pub(super) fn loads(&self, log: &Log<'_>) -> Option<[Series; 3]> {
+        PeriodicEyes::new(self.balance, self.system).series(&self.frames(), self.state, log)
+    }
+
+    /// Calls `f` with the gas at every instance where the equations are evaluated.
+    pub(super) fn evaluated(&self, mut f: impl FnMut(&GasView<'_, D>, &mut Work<D>)) {
+        let (mut one, mut work) = (vec![0.0; self.system.len()], self.system.work());
+        for (n, frame) in self.frames().iter().enumerate() {
+            self.balance.look(self.state, n, &mut one);
+            f(&GasView::of(self.system, frame, &one), self.system.gas_work(&mut work));
+        }
+    }
+
+    /// The state at a phase.
+    pub(super) fn state_at(&self, phase: f64) -> Vec<f64> {
+        let mut one = vec![0.0; self.system.len()];
+        self.balance.at_phase(self.state, phase, &mut one);
+        one
+    }
+
+    /// Frame and state at an instance that holds the solution, to the bit.
+    pub(super) fn instance(&self, n: usize) -> (S::Frame, Vec<f64>) {
+        let mut one = vec![0.0; self.system.len()];
+        self.balance.instance(self.state, n, &mut one);
+        let phase = std::f64::consts::TAU * n as f64 / self.balance.instances().count() as f64;
+        (self.frame_at(phase, &one), one)
+    }
+
+    fn frame_at(&self, phase: f64, one: &[f64]) -> S::Frame {
+        self.balance.with_instant(self.state, phase, |at| self.system.frame(at, one))
+    }
+
+    /// Puts the loads of one period where those of the last period of a march would be; gives their series.
+    pub(super) fn trace(&self, log: &mut Log<'_>) -> Option<[Series; 3]> {
+        let (period, gas) = (self.period, self.system.gas());
+        let [cl, cd, cm] = self.loads(log)?;
+        log.record.trace.clear();
+        for k in 0..=SAMPLES {
+            let part = 1.0 + k as f64 / SAMPLES as f64;
+            let phase = std::f64::consts::TAU * part;
+            let loads = Coefficients { cl: cl.at(phase), cd: cd.at(phase), cm: cm.at(phase) };
+            let time = part * period;
+            log.record.trace.push(Sample { time, loads, motion: motion(gas, time) });
+        }
+        let instance = |time: f64| {
+            let phase = std::f64::consts::TAU * time / period;
+            let [angle, x, y, z, mode] = motion(gas, time);
+            let shift = [x, y, z, mode].into_iter().find(|s| s.abs() > 0.0).unwrap_or(0.0);
+            [time / period, angle.to_degrees(), shift, cl.at(phase), cd.at(phase), cm.at(phase)]
+        };
+        let frames = self.frames();
+        log.record.instances = frames.iter().map(|f| instance(self.system.gas_frame(f).time)).collect();
+        Some([cl, cd, cm])
+    }
+
+    /// Loads at the instances, evaluated twice.
+    pub(super) fn compare(&self, log: &mut Log<'_>) -> Result<(), RunError> {
+        let mut work = self.system.work();
+        for n in 0..self.balance.instances().count() {
+            let (frame, one) = self.instance(n);
+            let view = GasView::of(self.system, &frame, &one);
+            // a run that is interrupted now does this again
+            let iteration = log.record.iteration + 1;
+            compare(&view, self.system.gas_work(&mut work), iteration, view.frame.time, log)?;
+        }
+        Ok(())
+    }
+
+    /// Loads at the instances, pictures at phases, coefficients in time of walls and field.
+    pub(super) fn write(&self, film: Option<&Surface<D>>, log: &Log<'_>) -> Result<(), RunError> {
+        let Some(journal) = &log.journal else { return Ok(()) };
+        let (case, out) = (log.case, &journal.out);
+        let rows = log.record.instances.iter().map(|row| row.map(Entry::from).to_vec());
+        write_csv(&out.join("instances.csv"), &["phase", "angle_deg", "shift", "cl", "cd", "cm"], rows)?;
+        if let Some(surface) = film {
+            let parts = u64::from(FILM);
+            together(parts as usize, |k| {
+                let phase = std::f64::consts::TAU * ((k + 1) as f64 / parts as f64);
+                let one = self.state_at(phase);
+                let (frame, mut work) = (self.frame_at(phase, &one), self.system.work());
+                let view = GasView::of(self.system, &frame, &one);
+                let work = self.system.gas_work(&mut work);
+                write_film(&Target { case, out }, surface, &view, work, k as u64 + 1)
+            })?;
+        }
+        let moments = self.moments(case);
+        self.write_field(&moments, out)?;
+        self.write_surface(&moments, out)
+    }
+
+    /// Values of all real particles at the instances that hold the solution: density, velocity, pressure, Cp.
+    fn moments(&self, case: &Case) -> Vec<Vec<Vec<f64>>> {
+        let (system, fluid) = (self.system, self.system.gas());
+        let (units, free) = (Units::of(case), crate::scheme::start::free_stream::<D>(case));
+        let rows = fluid.discretisation.cloud.n_real();
+        let mut values = vec![vec![Vec::new(); rows]; D + 3];
+        let mut work = system.work();
+        for n in 0..self.balance.instances().count() {
+            let (frame, one) = self.instance(n);
+            let view = GasView::of(system, &frame, &one);
+            let work = system.gas_work(&mut work);
+            fluid.fill_states(view.frame, view.state, work);
+            for (i, q) in work.state[..rows].iter().enumerate() {
+                let velocity = view.frame.to_inertial_axes(&q.velocity) * units.speed;
+                values[0][i].push(q.density * units.density);
+                (0..D).for_each(|d| values[1 + d][i].push(velocity[d]));
+                values[D + 1][i].push(q.pressure * units.pressure());
+                values[D + 2][i].push(pressure_coefficient(q, &free));
+            }
+        }
+        values
+    }
+
+    /// Coefficient `row` in time of values at the instances.
+    fn coefficient(&self) -> impl Fn(usize, &[f64]) -> f64 + use<S, D> {
+        let forth = self.balance.instances().to_coefficients();
+        move |row, values| forth.row(row).iter().zip(values).map(|(e, v)| e * v).sum()
+    }
+
+    /// `field_harmonics.vtu`: mean and complex harmonics at the particles before any motion.
+    fn write_field(&self, moments: &[Vec<Vec<f64>>], out: &Path) -> Result<(), RunError> {
+        let (cloud, coefficient) = (&self.system.gas().discretisation.cloud, self.coefficient());
+        let n = self.balance.instances().harmonics();
+        let bare = ["density", "velocity_x", "velocity_y", "velocity_z", "pressure"];
+        let names: Vec<&str> = (0..D + 2).map(|c| if c <= D { bare[c] } else { bare[4] }).collect();
+        let mut columns: Vec<(String, Vec<f64>)> = Vec::new();
+        for (name, values) in names.iter().zip(moments) {
+            let column =
+                |row: usize, sign: f64| values.iter().map(|v| sign * coefficient(row, v)).collect::<Vec<f64>>();
+            columns.push((format!("{name}_mean"), column(0, 1.0)));
+            for m in 1..=n {
+                columns.push((format!("{name}_{m}_re"), column(m, 1.0)));
+                columns.push((format!("{name}_{m}_im"), column(n + m, -1.0)));
+            }
+        }
+        let points: Vec<[f64; 3]> = cloud.x[..cloud.n_real()].iter().map(Vector::to_3d).collect();
+        let columns: Vec<Column<'_>> =
+            columns.iter().map(|(name, values)| Column { name, components: 1, values }).collect();
+        Ok(write_points(&out.join("field_harmonics.vtu"), &points, &columns)?)
+    }
+
+    /// `surface_harmonics.csv`: the same of the pressure coefficient on the walls.
+    fn write_surface(&self, moments: &[Vec<Vec<f64>>], out: &Path) -> Result<(), RunError> {
+        let (cloud, coefficient) = (&self.system.gas().discretisation.cloud, self.coefficient());
+        let n = self.balance.instances().harmonics();
+        let mut names = ["x", "y", "z", "area", "cp_mean"].map(String::from).to_vec();
+        names.extend((1..=n).flat_map(|m| [format!("cp_{m}_re"), format!("cp_{m}_im")]));
+        let rows = cloud.interface_range().zip(&cloud.interface).map(|(i, wall)| {
+            let cp = &moments[D + 2][i];
+            let mut row = cloud.x[i].to_3d().map(Entry::from).to_vec();
+            row.push(Entry::from(wall.area.norm()));
+            row.push(Entry::from(coefficient(0, cp)));
+            row.extend((1..=n).flat_map(|m| [coefficient(m, cp), -coefficient(n + m, cp)]).map(Entry::from));
+            row
+        });
+        let names: Vec<&str> = names.iter().map(String::as_str).collect();
+        Ok(write_csv(&out.join("surface_harmonics.csv"), &names, rows.collect::<Vec<_>>())?)
+    }
+}

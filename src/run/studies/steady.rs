@@ -1,0 +1,82 @@
+//! Relaxation to a steady state: the end of a steady case, or the start of another.
+use super::super::error::RunError;
+use super::super::look::GasView;
+use super::super::recipe::control;
+use super::super::record::Log;
+use super::super::watch::{Aim, Checkpoint, Ending, GasEyes, Limit, Observer, Progress, Resting, Told, drive};
+use super::turn::{Reached, Start, Turn};
+use crate::case::Steady;
+use crate::scheme::HasGas;
+use crate::time::relax::Relax;
+use crate::time::{Integrator, Memory, Standing};
+
+/// Orders of magnitude that relaxations before the last stage are solved to.
+const EARLY_ORDERS: f64 = 3.5;
+/// Iterations without a new smallest residual after which a relaxation before the last stage has given what it can.
+const PATIENCE: u32 = 20;
+
+/// Relaxes; `None` when told to stop.
+pub(crate) fn relax<S: HasGas<D>, const D: usize>(
+    system: &S,
+    steady: &Steady,
+    start: Start,
+    turn: &Turn<'_>,
+    log: &mut Log<'_>,
+) -> Result<Option<Reached<S>>, RunError> {
+    let (u, resume) = match start {
+        Start::Resume(u, Memory::Relaxation(resume)) => (u, Some(resume)),
+        other => (other.into_state(), None),
+    };
+    let orders = if turn.last { steady.orders } else { steady.orders.min(EARLY_ORDERS) };
+    let mut relax = Relax::new(system, control(steady, D), u, &system.start(), resume);
+    relax.goal = 10f64.powf(-orders);
+    let ending = watched(system, &mut relax, steady.iterations, turn, log, orders)?;
+    match ending {
+        Ending::Stopped => return Ok(None),
+        Ending::Failed(problem) => return Err(log.failed(problem)),
+        Ending::Finished | Ending::Spent | Ending::Paused => {}
+    }
+    if !relax.finished() && !turn.last && relax.resting() >= PATIENCE {
+        let orders = -relax.drop().log10();
+        log.note(&format!(
+            "the flow has not come nearer to a steady one for {PATIENCE} iterations, at {orders:.1} orders: the run goes on from there"
+        ));
+    }
+    tell(system, &mut relax, turn, log);
+    let Standing { frame, state, .. } = relax.standing();
+    Ok(Some(Reached::at(frame.clone(), state.to_vec())))
+}
+
+fn watched<S: HasGas<D>, const D: usize>(
+    system: &S,
+    relax: &mut Relax<'_, S>,
+    iterations: u32,
+    turn: &Turn<'_>,
+    log: &mut Log<'_>,
+    orders: f64,
+) -> Result<Ending, RunError> {
+    let eyes = &mut GasEyes { system };
+    let mut progress = Progress { eyes, cycle: turn.stage().cycle, aim: Aim::Orders(orders) };
+    let mut checkpoint = Checkpoint { at: turn.at, particles: None, at_end: turn.last };
+    let (mut limit, mut resting) = (Limit { iterations }, Resting { patience: PATIENCE });
+    let mut told = Told;
+    let mut all: Vec<&mut dyn Observer<S>> = vec![&mut progress, &mut limit, &mut told];
+    if !turn.last {
+        all.push(&mut resting);
+    }
+    all.push(&mut checkpoint);
+    drive(relax, &mut all, log)
+}
+
+/// Keeps what is known of a relaxation that is over.
+fn tell<S: HasGas<D>, const D: usize>(system: &S, relax: &mut Relax<'_, S>, turn: &Turn<'_>, log: &mut Log<'_>) {
+    let cost = relax.cost();
+    (log.record.drop, log.record.converged) = (relax.drop(), relax.finished());
+    (log.record.bytes, log.record.linear) = (cost.bytes, cost.linear);
+    let Standing { frame, work, state } = relax.standing();
+    let loads = GasView::of(system, frame, state).coefficients(&log.axes, system.gas_work(work)).unwrap_or_default();
+    if turn.stage().factor == 1.0 {
+        let particles = system.gas().discretisation.cloud.n_real() as f64;
+        log.record.cycles.push([f64::from(turn.stage().cycle), particles, loads.cl, loads.cd, loads.cm]);
+    }
+}

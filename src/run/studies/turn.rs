@@ -1,0 +1,53 @@
+//! A stage among all: where it starts, where it ends.
+use super::super::record::saved::Position;
+use crate::system::System;
+use crate::time::Memory;
+
+/// Where a stage starts.
+pub(crate) enum Start {
+    /// From a state.
+    Fresh(Vec<f64>),
+    /// Where a checkpoint stands: state and what the integrator must remember.
+    Resume(Vec<f64>, Memory),
+}
+
+impl Start {
+    /// The state.
+    pub(crate) fn into_state(self) -> Vec<f64> {
+        match self {
+            Self::Fresh(u) | Self::Resume(u, _) => u,
+        }
+    }
+}
+
+/// A stage among all.
+pub(crate) struct Turn<'a> {
+    /// Where the run stands among its stages.
+    pub(crate) at: &'a Position<'a>,
+    /// True for the last one.
+    pub(crate) last: bool,
+}
+
+impl Turn<'_> {
+    /// The stage.
+    pub(crate) fn stage(&self) -> &super::super::stage::Stage {
+        &self.at.stages[self.at.stage]
+    }
+}
+
+/// Where a stage ends.
+pub(crate) struct Reached<S: System> {
+    /// State that the next stage goes on from.
+    pub(crate) state: Vec<f64>,
+    /// Frame and state at the end of the run, where this may be it.
+    pub(crate) end: Option<(S::Frame, Vec<f64>)>,
+    /// True when the stages that follow are not needed.
+    pub(crate) enough: bool,
+}
+
+impl<S: System> Reached<S> {
+    /// The end of a stage whose state may be that of the run.
+    pub(crate) fn at(frame: S::Frame, state: Vec<f64>) -> Self {
+        Self { end: Some((frame, state.clone())), state, enough: false }
+    }
+}

@@ -1,0 +1,73 @@
+//! Checkpoints: every so many iterations, when asked for, at the end and when things go wrong.
+use super::super::error::RunError;
+use super::super::record::Log;
+use super::super::record::saved::{LagrangianCheckpoint, Position, Saved};
+use super::drive::{Ending, Now, Observer};
+use crate::scheme::RemapLedger;
+use crate::system::System;
+use crate::time::{Integrator, Standing, Step};
+
+/// What a checkpoint keeps of particles that travel, given the frame and what re-clouding did so far.
+pub(crate) type Particles<'a, S> = dyn Fn(&<S as System>::Frame, &RemapLedger) -> Option<LagrangianCheckpoint> + 'a;
+
+/// Writes the checkpoint of a run folder.
+pub(crate) struct Checkpoint<'a, S: System> {
+    /// Where the run stands among its stages.
+    pub(crate) at: &'a Position<'a>,
+    /// What is kept of particles that travel; absent where none can.
+    pub(crate) particles: Option<&'a Particles<'a, S>>,
+    /// Whether one is written when the stage is over.
+    pub(crate) at_end: bool,
+}
+
+impl<S: System> Observer<S> for Checkpoint<'_, S> {
+    fn begin(&mut self, now: &mut Now<'_, S>, log: &mut Log<'_>) -> Result<(), RunError> {
+        if now.mark().iteration == 0 { self.write(now, log) } else { Ok(()) }
+    }
+
+    fn step(&mut self, step: &Step, now: &mut Now<'_, S>, log: &mut Log<'_>) -> Result<(), RunError> {
+        let every = log.case.output.checkpoint.max(1);
+        let due = log.checkpoint_is_asked_for() || step.iteration.is_multiple_of(every);
+        if due { self.write(now, log) } else { Ok(()) }
+    }
+
+    fn end(&mut self, ending: &Ending, now: &mut Now<'_, S>, log: &mut Log<'_>) -> Result<(), RunError> {
+        match ending {
+            Ending::Finished | Ending::Spent if self.at_end => self.write(now, log),
+            Ending::Stopped | Ending::Failed(_) => self.write(now, log),
+            _ => Ok(()),
+        }
+    }
+}
+
+impl<S: System> Checkpoint<'_, S> {
+    /// Writes where an integrator stands that is not being driven.
+    pub(crate) fn keep(&self, integrator: &mut dyn Integrator<S>, log: &Log<'_>) -> Result<(), RunError> {
+        self.write(&mut Now::at(integrator), log)
+    }
+
+    fn write(&self, now: &mut Now<'_, S>, log: &Log<'_>) -> Result<(), RunError> {
+        let Some(journal) = &log.journal else { return Ok(()) };
+        let (memory, time) = (now.memory(), now.mark().time);
+        let Standing { frame, state, .. } = now.standing();
+        let [cpu_seconds, wall_seconds] = log.seconds();
+        let record = &log.record;
+        let saved = Saved {
+            stage: self.at.stage,
+            stages: self.at.stages.to_vec(),
+            iteration: record.iteration,
+            time,
+            state: state.to_vec(),
+            memory,
+            settling: record.settling.clone(),
+            start_totals: record.start_totals.clone(),
+            cycles: record.cycles.clone(),
+            cpu_seconds,
+            wall_seconds,
+            work: record.work.total,
+            lagrangian: self.particles.and_then(|of| of(frame, &record.ledger)),
+            sources: self.at.sources.to_vec(),
+        };
+        saved.write(&journal.out)
+    }
+}

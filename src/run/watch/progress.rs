@@ -1,0 +1,139 @@
+//! Progress: the work done, a line of the history for every iteration, and a word to those who watch.
+use super::super::error::RunError;
+use super::super::look::{GasView, motion};
+use super::super::monitor::Tick;
+use super::super::record::Log;
+use super::super::record::trace::Sample;
+use super::drive::{Now, Observer};
+use crate::observe::loads::Coefficients;
+use crate::scheme::HasGas;
+use crate::system::System;
+use crate::time::{Standing, Step};
+
+/// How loads and motion are seen in a system.
+pub(crate) trait Eyes<S: System> {
+    /// Loads on all bodies; `None` without bodies.
+    fn loads(&mut self, at: Standing<'_, S>, log: &mut Log<'_>) -> Option<Coefficients>;
+    /// Angle (radians, nose up), displacement and coordinate of the first mode of the first body that moves.
+    fn motion(&self, time: f64) -> [f64; 5];
+    /// Fluid particles.
+    fn particles(&self) -> usize;
+    /// Instances of a period at which the residual is evaluated.
+    fn instances(&self) -> usize {
+        1
+    }
+}
+
+/// The gas as it stands at one time.
+pub(crate) struct GasEyes<'a, S, const D: usize> {
+    /// The system.
+    pub(crate) system: &'a S,
+}
+
+impl<S: HasGas<D>, const D: usize> Eyes<S> for GasEyes<'_, S, D> {
+    fn loads(&mut self, at: Standing<'_, S>, log: &mut Log<'_>) -> Option<Coefficients> {
+        GasView::of(self.system, at.frame, at.state).coefficients(&log.axes, self.system.gas_work(at.work))
+    }
+
+    fn motion(&self, time: f64) -> [f64; 5] {
+        motion(self.system.gas(), time)
+    }
+
+    fn particles(&self) -> usize {
+        self.system.gas().discretisation.cloud.n_fluid
+    }
+}
+
+/// Counts evaluations.
+pub(crate) struct Effort {
+    /// Particles, times instances, of each.
+    pub(crate) points: usize,
+}
+
+impl<S: System> Observer<S> for Effort {
+    fn begin(&mut self, now: &mut Now<'_, S>, log: &mut Log<'_>) -> Result<(), RunError> {
+        log.record.work.begin(now.cost().evaluations);
+        Ok(())
+    }
+
+    fn step(&mut self, _: &Step, now: &mut Now<'_, S>, log: &mut Log<'_>) -> Result<(), RunError> {
+        log.record.work.add(now.cost().evaluations, self.points);
+        Ok(())
+    }
+}
+
+/// What an integration is after.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Aim {
+    /// So many orders of magnitude of the residual.
+    Orders(f64),
+    /// A time.
+    Time(f64),
+}
+
+/// Writes the history and tells of every iteration.
+pub(crate) struct Progress<'a, S> {
+    /// How loads are seen.
+    pub(crate) eyes: &'a mut dyn Eyes<S>,
+    /// Cycle of adaptation.
+    pub(crate) cycle: u32,
+    /// What the integration is after.
+    pub(crate) aim: Aim,
+}
+
+impl<S: System> Observer<S> for Progress<'_, S> {
+    fn begin(&mut self, now: &mut Now<'_, S>, log: &mut Log<'_>) -> Result<(), RunError> {
+        self.effort().begin(now, log)
+    }
+
+    fn step(&mut self, step: &Step, now: &mut Now<'_, S>, log: &mut Log<'_>) -> Result<(), RunError> {
+        log.record.iteration += 1;
+        self.effort().step(step, now, log)?;
+        let loads = self.eyes.loads(now.standing(), log);
+        let motion = if log.case.moves() { self.eyes.motion(step.time) } else { [0.0; 5] };
+        if step.time > 0.0 {
+            // the angle that a resumed run reads in the history, to the last bit
+            let motion = [motion[0].to_degrees().to_radians(), motion[1], motion[2], motion[3], motion[4]];
+            log.record.trace.push(Sample { time: step.time, loads: loads.unwrap_or_default(), motion });
+        }
+        let row = self.row(step, now.cost().inner, &loads.unwrap_or_default(), &motion, log);
+        if let Some(journal) = &mut log.journal {
+            journal.row(&row)?;
+        }
+        let [goal, reached] = match self.aim {
+            Aim::Orders(orders) => [orders, -step.residual.log10()],
+            Aim::Time(until) => [until, step.time],
+        };
+        log.tick(&Tick {
+            iteration: log.record.iteration,
+            goal,
+            reached,
+            residual: step.residual,
+            cfl: step.cfl,
+            loads: loads.map(|c| [c.cl, c.cd, c.cm]),
+            particles: self.eyes.particles(),
+        });
+        Ok(())
+    }
+}
+
+impl<S: System> Progress<'_, S> {
+    fn effort(&self) -> Effort {
+        Effort { points: self.eyes.instances() * self.eyes.particles() }
+    }
+
+    /// A row of the history, as the journal names its columns.
+    fn row(&self, step: &Step, inner: u32, c: &Coefficients, motion: &[f64; 5], log: &Log<'_>) -> Vec<f64> {
+        let [_, seconds] = log.seconds();
+        let cycle = f64::from(self.cycle);
+        let mut row =
+            vec![cycle, log.record.iteration as f64, step.time, step.cfl, step.residual, c.cl, c.cd, c.cm, seconds];
+        if log.case.moves() {
+            row.extend([f64::from(inner), motion[0].to_degrees(), motion[1], motion[2], motion[3]]);
+        }
+        if log.case.bends() {
+            row.push(motion[4]);
+        }
+        row
+    }
+}

@@ -1,0 +1,52 @@
+//! Fields and pictures of a march on the way.
+use super::super::error::RunError;
+use super::super::files::{FILM, Target, write_film, write_series};
+use super::super::look::GasView;
+use super::super::record::{Log, passed};
+use super::drive::{Now, Observer};
+use crate::geometry::Surface;
+use crate::scheme::HasGas;
+use crate::time::{Standing, Step};
+
+/// Writes the field at equal intervals of time.
+pub(crate) struct FieldSeries<'a, S, const D: usize> {
+    /// The system.
+    pub(crate) system: &'a S,
+    /// The interval.
+    pub(crate) interval: f64,
+}
+
+impl<S: HasGas<D>, const D: usize> Observer<S> for FieldSeries<'_, S, D> {
+    fn step(&mut self, step: &Step, now: &mut Now<'_, S>, log: &mut Log<'_>) -> Result<(), RunError> {
+        let Some(journal) = &log.journal else { return Ok(()) };
+        if passed(step.time, self.interval) <= passed(now.before, self.interval) {
+            return Ok(());
+        }
+        let Standing { frame, work, state } = now.standing();
+        let view = GasView::of(self.system, frame, state);
+        let to = Target { case: log.case, out: &journal.out };
+        write_series(&to, &view, self.system.gas_work(work), self.interval)
+    }
+}
+
+/// Draws the flow at equal parts of a period.
+pub(crate) struct Film<'a, S, const D: usize> {
+    /// The system.
+    pub(crate) system: &'a S,
+    /// The bodies.
+    pub(crate) surface: &'a Surface<D>,
+}
+
+impl<S: HasGas<D>, const D: usize> Observer<S> for Film<'_, S, D> {
+    fn step(&mut self, step: &Step, now: &mut Now<'_, S>, log: &mut Log<'_>) -> Result<(), RunError> {
+        let (Some(journal), Some(period)) = (&log.journal, log.period) else { return Ok(()) };
+        let part = |t: f64| passed(t, period / f64::from(FILM));
+        if part(step.time) <= part(now.before) {
+            return Ok(());
+        }
+        let Standing { frame, work, state } = now.standing();
+        let view = GasView::of(self.system, frame, state);
+        let to = Target { case: log.case, out: &journal.out };
+        write_film(&to, self.surface, &view, self.system.gas_work(work), part(step.time))
+    }
+}

@@ -1,0 +1,66 @@
+//! When to stop.
+use super::super::record::Log;
+use super::drive::{Now, Observer, Wish};
+use crate::scheme::HasGas;
+use crate::system::System;
+
+/// Ends after a number of iterations.
+pub(crate) struct Limit {
+    /// The number.
+    pub(crate) iterations: u32,
+}
+
+impl<S: System> Observer<S> for Limit {
+    fn wish(&mut self, now: &mut Now<'_, S>, _: &Log<'_>) -> Option<Wish> {
+        (now.mark().iteration >= self.iterations).then_some(Wish::GiveUp)
+    }
+}
+
+/// Ends a relaxation that has not come nearer to a steady state for a number of iterations.
+pub(crate) struct Resting {
+    /// The number.
+    pub(crate) patience: u32,
+}
+
+impl<S: System> Observer<S> for Resting {
+    fn wish(&mut self, now: &mut Now<'_, S>, _: &Log<'_>) -> Option<Wish> {
+        (now.mark().resting >= self.patience).then_some(Wish::GiveUp)
+    }
+}
+
+/// Ends where the monitor says so.
+pub(crate) struct Told;
+
+impl<S: System> Observer<S> for Told {
+    fn wish(&mut self, _: &mut Now<'_, S>, log: &Log<'_>) -> Option<Wish> {
+        log.stopped().then_some(Wish::Stop)
+    }
+}
+
+/// Ends a march at the end of a period whose loads are those of the period before.
+pub(crate) struct Periodic {
+    /// Change below which they are.
+    pub(crate) tolerance: f64,
+}
+
+impl<S: System> Observer<S> for Periodic {
+    fn wish(&mut self, now: &mut Now<'_, S>, log: &Log<'_>) -> Option<Wish> {
+        let mark = now.mark();
+        // a checkpoint may have been written by the very step that ended the march
+        let change = log.change_of_period(mark.time, now.before).filter(|_| mark.iteration > 0)?;
+        (change < self.tolerance).then_some(Wish::Finish)
+    }
+}
+
+/// Pauses a march whose particles have left their lists.
+pub(crate) struct Worn<'a, S, const D: usize> {
+    /// The system.
+    pub(crate) system: &'a S,
+}
+
+impl<S: HasGas<D>, const D: usize> Observer<S> for Worn<'_, S, D> {
+    fn wish(&mut self, now: &mut Now<'_, S>, _: &Log<'_>) -> Option<Wish> {
+        let frame = self.system.gas_frame(now.standing().frame);
+        self.system.gas().is_worn(frame).then_some(Wish::Pause)
+    }
+}

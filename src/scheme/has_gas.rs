@@ -1,0 +1,66 @@
+//! The gas in a system that may hold more than the gas.
+//!
+//! Those who look at a flow (loads, pictures, files) need the gas, its frame, its storage and its part of the state. A system
+//! of gas and structure has them among others; the gas alone is all of them itself.
+use std::ops::Range;
+
+use super::{Fluid, Frame, Work};
+use crate::system::{Implicit, System};
+
+/// A system of which the gas on a cloud is a part.
+pub trait HasGas<const D: usize>: Implicit {
+    /// The equations of the gas.
+    fn gas(&self) -> &Fluid<D>;
+    /// Puts the gas on another cloud.
+    fn set_gas(&mut self, gas: Fluid<D>);
+    /// The unknowns of the gas in the state.
+    fn gas_unknowns(&self) -> Range<usize>;
+    /// The frame of the gas.
+    fn gas_frame<'a>(&self, frame: &'a Self::Frame) -> &'a Frame<D>;
+    /// The storage of the gas.
+    fn gas_work<'a>(&self, work: &'a mut Self::Work) -> &'a mut Work<D>;
+    /// The state at the start.
+    fn start(&self) -> Vec<f64>;
+
+    /// The part of the state that is the gas.
+    fn gas_state<'a>(&self, u: &'a [f64]) -> &'a [f64] {
+        &u[self.gas_unknowns()]
+    }
+
+    /// The coordinates of bodies that are unknowns; empty where all motion is prescribed.
+    fn coordinates<'a>(&self, u: &'a [f64]) -> &'a [f64] {
+        &u[self.placing()]
+    }
+
+    /// The state `u` with another one of the gas, on a cloud of any size.
+    fn with_gas(&self, u: &[f64], gas: &[f64]) -> Vec<f64> {
+        let own = self.gas_unknowns();
+        [&u[..own.start], gas, &u[own.end..]].concat()
+    }
+}
+
+impl<const D: usize> HasGas<D> for Fluid<D> {
+    fn gas(&self) -> &Fluid<D> {
+        self
+    }
+
+    fn set_gas(&mut self, gas: Fluid<D>) {
+        *self = gas;
+    }
+
+    fn gas_unknowns(&self) -> Range<usize> {
+        0..self.len()
+    }
+
+    fn gas_frame<'a>(&self, frame: &'a Frame<D>) -> &'a Frame<D> {
+        frame
+    }
+
+    fn gas_work<'a>(&self, work: &'a mut Work<D>) -> &'a mut Work<D> {
+        work
+    }
+
+    fn start(&self) -> Vec<f64> {
+        self.start()
+    }
+}
