@@ -16,7 +16,7 @@ use alula::time::control::{Control, Method};
 use alula::time::dual::{Dual, Plan};
 use alula::time::harmonic::HarmonicBalance;
 use alula::time::relax::Relax;
-use alula::time::{March, Past};
+use alula::time::{Integrator, Memory, Past, Standing};
 use common::solver;
 
 const CONTROL: Control = Control {
@@ -63,7 +63,7 @@ fn coupled(case: &str, structure: Structure<2>, rigid: bool) -> (Coupled<2>, Vec
     };
     let fluid = Fluid { cloud_motion, ..fluid };
     let system = Coupled::new(fluid, vec![Attached::new(structure, (0, 1.0), 0, Vec::new())]);
-    let u = system.start(&start);
+    let u = system.start_with(&start);
     (system, u)
 }
 
@@ -91,8 +91,8 @@ fn a_piston_on_a_spring_radiates_sound() {
     let (mut worst, mut inner) = (0.0f64, 0);
     while !march.finished() {
         let t = march.advance().unwrap().time;
-        inner += march.inner();
-        let (frame, work, u) = march.parts();
+        inner += march.cost().inner;
+        let Standing { frame, work, state: u } = march.standing();
         let x = u[system.placing().start];
         let ratio = zeta / f64::sqrt(1.0 - zeta * zeta);
         let exact = x0 * (-zeta * omega * t).exp() * ((damped * t).cos() + ratio * (damped * t).sin());
@@ -100,7 +100,7 @@ fn a_piston_on_a_spring_radiates_sound() {
         let passed = system.exchange(frame, u, work);
         assert!((passed.wall_power - passed.power).abs() < 1e-3 * (x0 * omega).powi(2), "{passed:?}");
     }
-    println!("worst {worst}, inner {inner}, linear {}, evaluations {}", march.linear(), march.evaluations());
+    println!("worst {worst}, inner {inner}, linear {}, evaluations {}", march.cost().linear, march.cost().evaluations);
     assert!(worst < 0.02, "{worst}");
 }
 
@@ -127,12 +127,12 @@ fn a_stream_stays_uniform_on_a_cloud_that_unknown_coordinates_move() {
     let mut march = Dual::new(&system, CONTROL, plan, (Past::default(), u.clone()));
     while !march.finished() {
         march.advance().unwrap();
-        let now = march.parts().2;
+        let now = march.standing().state;
         assert!(strayed(&system, now, &u) < 1e-12);
     }
     // the structure has gone its way: M q'' + K q = 0
     let first = system.placing().start;
-    assert!((march.parts().2[first] - u[first]).abs() > 0.1);
+    assert!((march.standing().state[first] - u[first]).abs() > 0.1);
 
     // at the instances of a period, whatever the coordinates are
     let balance = HarmonicBalance::new(&system, Instances::of_harmonics(2), 3.0, 1.0);
@@ -154,8 +154,9 @@ fn a_coupled_march_goes_on_to_the_same_bits() {
     let plan = Plan { until: 0.5, step: 0.05, order: 2, orders: 4.0, iterations: 30, adaptive: None };
     let march = |steps: u32, from: (Past, Vec<f64>)| {
         let mut march = Dual::new(&system, CONTROL, plan, from);
-        (0..steps).for_each(|_| drop(march.advance().unwrap()));
-        (march.past().clone(), march.parts().2.to_vec())
+        (0..steps).for_each(|_| _ = march.advance().unwrap());
+        let Memory::March(past) = march.memory() else { panic!("a march remembers its past") };
+        (past, march.standing().state.to_vec())
     };
     let (_, whole) = march(10, (Past::default(), u.clone()));
     for k in 1..10 {

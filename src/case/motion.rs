@@ -206,5 +206,6 @@ impl Case {
         alone
             || general.is_some_and(|m| m.particles == ParticleMotion::Lagrangian)
             || (0..self.bodies.len()).any(|i| self.motion_of(i).is_some())
+            || !self.structures.is_empty()
     }
 }

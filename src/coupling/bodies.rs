@@ -116,6 +116,13 @@ impl<const D: usize> Attached<D> {
         }
     }
 
+    /// d/dτ of its unknowns on their way to where they begin.
+    pub(super) fn towards_start(&self, u: &[f64], omega: f64, change: &mut [f64]) {
+        for ((change, u), start) in change.iter_mut().zip(u).zip(self.initial()) {
+            *change = omega * (start - u);
+        }
+    }
+
     /// −∂/∂U of what [`Self::rates`], or in steady flow [`Self::towards_rest`], says under fixed forces of the gas, rows one after
     /// another, for the unknowns of this structure alone.
     pub(super) fn matrix(&self, t: f64, u: &[f64], steady: Option<f64>) -> Vec<f64> {

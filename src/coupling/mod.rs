@@ -7,7 +7,8 @@
 //! iteration solves for gas and coordinates together, and nothing is left to iterate between them.
 //!
 //! In a steady flow there is no time for inertia: the coordinates go to where springs and gas are at rest with one another,
-//! dq/dτ = M⁻¹(Q + f − F(q))/ω, dq'/dτ = −ω q', with ω the highest natural frequency.
+//! dq/dτ = M⁻¹(Q + f − F(q))/ω, dq'/dτ = −ω q', with ω the highest natural frequency. Structures that are *held*, for the steady
+//! flow that a march begins with, keep the values of their start.
 mod bodies;
 mod preconditioner;
 
@@ -18,7 +19,7 @@ use std::ops::Range;
 
 use crate::math::jet::Jet;
 use crate::math::sweep::sweep_rows;
-use crate::scheme::{self, Fluid};
+use crate::scheme::{self, Fluid, HasGas};
 use crate::structure::Energy;
 use crate::system::{Fault, Field, Instant, Rate, System, unknowns};
 
@@ -32,6 +33,8 @@ pub struct Coupled<const D: usize> {
     fields: Vec<Field>,
     /// Highest natural frequency of the structures.
     fastest: f64,
+    /// The structures are held where they begin.
+    held: bool,
 }
 
 /// The gas and its cloud, and whether time stands still.
@@ -70,7 +73,7 @@ impl<const D: usize> Coupled<D> {
         let count = bodies.iter().map(|b| b.structure.len()).sum();
         let fields = vec![fluid.fields()[0], Field::new("structure", count, 2)];
         let fastest = bodies.iter().map(Attached::fastest).fold(SLOWEST, f64::max);
-        Self { fluid, bodies, fields, fastest }
+        Self { fluid, bodies, fields, fastest, held: false }
     }
 
     /// The gas.
@@ -94,7 +97,7 @@ impl<const D: usize> Coupled<D> {
     }
 
     /// The state in which the gas is `gas` and the structures are where they begin.
-    pub fn start(&self, gas: &[f64]) -> Vec<f64> {
+    pub fn start_with(&self, gas: &[f64]) -> Vec<f64> {
         gas.iter().copied().chain(self.bodies.iter().flat_map(Attached::initial)).collect()
     }
 
@@ -164,9 +167,10 @@ impl<const D: usize> System for Coupled<D> {
         self.loads(&frame.gas, &work.gas, u, &mut work.load);
         for body in &self.bodies {
             let (own, load) = (2 * body.first..2 * body.range().end, &work.load[body.range()]);
-            match frame.steady {
-                true => body.towards_rest(&u[own.clone()], load, self.fastest, &mut change[own]),
-                false => body.rates(frame.gas.time, &u[own.clone()], load, &mut change[own]),
+            match (self.held, frame.steady) {
+                (true, _) => body.towards_start(&u[own.clone()], self.fastest, &mut change[own]),
+                (_, true) => body.towards_rest(&u[own.clone()], load, self.fastest, &mut change[own]),
+                _ => body.rates(frame.gas.time, &u[own.clone()], load, &mut change[own]),
             }
         }
     }
@@ -200,5 +204,36 @@ impl<const D: usize> System for Coupled<D> {
             true => self.fluid.locate(&frame.gas, row),
             false => Vec::new(),
         }
+    }
+}
+
+impl<const D: usize> HasGas<D> for Coupled<D> {
+    fn gas(&self) -> &Fluid<D> {
+        &self.fluid
+    }
+
+    fn set_gas(&mut self, gas: Fluid<D>) {
+        self.fields[0] = gas.fields()[0];
+        self.fluid = gas;
+    }
+
+    fn gas_unknowns(&self) -> Range<usize> {
+        self.gas_range()
+    }
+
+    fn gas_frame<'a>(&self, frame: &'a Frame<D>) -> &'a scheme::Frame<D> {
+        &frame.gas
+    }
+
+    fn gas_work<'a>(&self, work: &'a mut Work<D>) -> &'a mut scheme::Work<D> {
+        &mut work.gas
+    }
+
+    fn start(&self) -> Vec<f64> {
+        self.start_with(&self.fluid.start())
+    }
+
+    fn hold_bodies(&mut self, held: bool) {
+        self.held = held;
     }
 }

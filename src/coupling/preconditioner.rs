@@ -39,7 +39,10 @@ impl<const D: usize> Preconditioner<Coupled<D>> for CoupledPreconditioner {
         self.matrix.fill(0.0);
         for body in &coupled.bodies {
             let (first, width) = (2 * body.first, 2 * body.structure.len());
-            let own = body.matrix(frame.gas.time, u, frame.steady.then_some(coupled.fastest));
+            let own = match coupled.held {
+                true => (0..width * width).map(|k| if k % (width + 1) == 0 { coupled.fastest } else { 0.0 }).collect(),
+                false => body.matrix(frame.gas.time, u, frame.steady.then_some(coupled.fastest)),
+            };
             for (i, row) in own.chunks_exact(width).enumerate() {
                 self.matrix[(first + i) * n + first..][..width].copy_from_slice(row);
             }

@@ -38,6 +38,8 @@ pub struct Motions<const D: usize> {
     general: BodyMotion<D>,
     /// Shapes that forces are computed on.
     forces: Vec<ModeShape<D>>,
+    /// Period of forces on bodies that coordinates of their own move.
+    forced: Option<f64>,
 }
 
 /// Why a motion cannot be built.
@@ -108,7 +110,7 @@ pub enum MotionError {
 impl<const D: usize> Motions<D> {
     /// `n` bodies at rest.
     pub fn fixed(n: usize) -> Self {
-        Self { bodies: vec![BodyMotion::fixed(); n], general: BodyMotion::fixed(), forces: Vec::new() }
+        Self { bodies: vec![BodyMotion::fixed(); n], general: BodyMotion::fixed(), forces: Vec::new(), forced: None }
     }
 
     /// The motions of `case`; `chord` is its reference chord, `read` opens the files it names.
@@ -125,7 +127,17 @@ impl<const D: usize> Motions<D> {
         let flexible =
             case.gaf.iter().filter(|_| matches!(case.time, Temporal::Harmonics(_))).flat_map(|g| &g.flexible);
         let forces = flexible.map(|mode| mode_shape(&mode.file, read)).collect::<Result<_, _>>()?;
-        Ok(Self { bodies, general, forces })
+        Ok(Self { bodies, general, forces, forced: None })
+    }
+
+    /// Hands a body over to coordinates that are unknowns, see [`BodyMotion::with_freedom`].
+    pub fn free(&mut self, body: usize, motion: BodyMotion<D>) {
+        self.bodies[body] = motion;
+    }
+
+    /// Says that forces on such bodies repeat after `period`.
+    pub fn force_with(&mut self, period: f64) {
+        self.forced = Some(period);
     }
 
     /// Motion of body number `body`.
@@ -162,7 +174,8 @@ impl<const D: usize> Motions<D> {
     pub fn period(&self) -> Option<f64> {
         match time_function::common(self.laws().map(BodyMotion::repeat)) {
             Repeat::Every(period) => Some(period),
-            Repeat::Constant | Repeat::Never => None,
+            Repeat::Constant => self.forced,
+            Repeat::Never => None,
         }
     }
 

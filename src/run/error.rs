@@ -6,6 +6,7 @@ use crate::motion::MotionError;
 use crate::observe::{CheckpointError, FileError, VtkError};
 use crate::report::ReportError;
 use crate::scheme::start::StartError;
+use crate::structure::StructureError;
 use crate::time::TimeError;
 
 /// Why a run failed.
@@ -14,6 +15,9 @@ pub enum RunError {
     /// Geometry.
     #[error(transparent)]
     Geometry(#[from] GeometryError),
+    /// A structure.
+    #[error(transparent)]
+    Structure(#[from] StructureError),
     /// Cloud.
     #[error(transparent)]
     Cloud(#[from] CloudError),

@@ -21,9 +21,10 @@ use super::studies::{self, Reached, Start, Turn};
 use crate::case::Case;
 use crate::cloud::Cloud;
 use crate::cloud::sources::Source;
+use crate::coupling::Coupled;
 use crate::geometry::{Surface, dimension};
 use crate::observe::loads::Coefficients;
-use crate::scheme::{Fluid, Frame, HasGas};
+use crate::scheme::{Fluid, HasGas};
 use crate::system::System;
 use crate::verify::Loops;
 use crate::verify::wall::Wall;
@@ -167,41 +168,65 @@ struct Begun<S, const D: usize> {
 type Ended = Result<Solution, u64>;
 
 impl Run<'_> {
-    /// All stages. A structure would be coupled to the gas wherever its solver is built.
+    /// The gas alone, or with the structures of the case.
     fn solve<const D: usize>(&self, origin: Origin, monitor: &mut dyn Monitor) -> Result<Ended, RunError> {
+        let clock = Clock::start();
+        let (surface, notes) = build::surface::<D>(self.case, self.input)?;
+        notes.iter().for_each(|n| monitor.note(n));
+        let mut motions = build::motions(self.case, self.input, surface.as_ref())?;
+        let bodies = build::bodies(self.case, self.input, surface.as_ref(), &mut motions)?;
+        let site = Site { case: self.case, surface: surface.as_ref(), motions: &motions };
+        if bodies.is_empty() {
+            return self.stages(&site, |gas| gas, origin, monitor, &clock);
+        }
+        let couple = |gas: Fluid<D>| {
+            let cloud = &gas.discretisation.cloud;
+            let walls = &cloud.x[cloud.interface_range()];
+            let on = bodies.iter().map(|body| body.clone().on(walls)).collect();
+            Coupled::new(gas, on)
+        };
+        self.stages(&site, couple, origin, monitor, &clock)
+    }
+
+    /// All stages with the system that `assemble` makes from the gas on each cloud.
+    fn stages<S: HasGas<D>, const D: usize>(
+        &self,
+        site: &Site<'_, D>,
+        assemble: impl Fn(Fluid<D>) -> S,
+        origin: Origin,
+        monitor: &mut dyn Monitor,
+        clock: &Clock,
+    ) -> Result<Ended, RunError> {
         let (mut saved, mut other) = match origin {
             Origin::Case => (None, None),
             Origin::Own(saved) => (Some(*saved), None),
             Origin::Other(other) => (None, Some(*other)),
         };
-        let clock = Clock::start();
-        let (surface, notes) = build::surface::<D>(self.case, self.input)?;
-        notes.iter().for_each(|n| monitor.note(n));
-        let motions = build::motions(self.case, self.input, surface.as_ref())?;
-        let site = Site { case: self.case, surface: surface.as_ref(), motions: &motions };
-        let mut ready = if saved.is_some() { None } else { Some(self.cloud(&site, monitor)?) };
+        let mut ready = if saved.is_some() { None } else { Some(self.cloud(site, monitor)?) };
         let particles = ready.as_ref().map_or(0, |c| c.n_fluid);
         let stages = match (&saved, &other) {
             (Some(s), _) => s.stages.clone(),
             (None, Some(o)) => recipe::plan_from(self.case, &o.stages[o.stage]),
             (None, None) => recipe::plan(self.case, particles, D),
         };
-        let mut log = Log::open(self.case, self.out, motions.period(), saved.as_ref(), monitor)?;
+        let mut log = Log::open(self.case, self.out, site.motions.period(), saved.as_ref(), monitor)?;
         log.note(&describe(&stages, particles));
         let first = saved.as_ref().map_or(0, |s| s.stage);
         let known = saved.as_ref().or(other.as_ref());
         let mut sources: Vec<Source<D>> = known.map_or_else(Vec::new, Saved::sources);
-        let mut previous: Option<Stood<Fluid<D>, D>> = None;
-        let mut end: Option<(Frame<D>, Vec<f64>)> = None;
+        let mut previous: Option<Stood<S, D>> = None;
+        let mut end: Option<(S::Frame, Vec<f64>)> = None;
         for (k, stage) in stages.iter().enumerate().skip(first) {
             let same = k > 0 && stage.shares_cloud(&stages[k - 1]);
             let cloud = if stage.is_plain() { ready.take() } else { None };
-            let begun = match (saved.take(), previous.take()) {
-                (Some(saved), _) => resumed(&site, stage, &sources, saved)?,
+            let build = || Ok::<_, RunError>(build::solver(site, stage, &sources, cloud)?.with(&assemble));
+            let mut begun = match (saved.take(), previous.take()) {
+                (Some(saved), _) => Begun::resumed(build()?, saved),
                 (None, Some(stood)) if same => Begun::fresh(stood.solver, stood.state),
-                (None, Some(stood)) => followed(&site, stage, &sources, cloud, stood)?,
-                (None, None) => begun(&site, stage, &sources, cloud, other.take())?,
+                (None, Some(stood)) => followed(build()?, site, stood),
+                (None, None) => begun(build()?, site, other.take())?,
             };
+            begun.solver.system.hold_bodies(stage.task == Task::Relax && recipe::is_unsteady(self.case));
             let flat = flatten(&sources);
             let at = Position { stage: k, stages: &stages, sources: &flat };
             let turn = Turn { at: &at, last: k + 1 == stages.len() };
@@ -219,7 +244,7 @@ impl Run<'_> {
         }
         let (Some(stood), Some((frame, state))) = (previous, end) else { return Err(RunError::NoStage) };
         let view = GasView::of(&stood.solver.system, &frame, &state);
-        self.conclude(&view, surface.as_ref(), &log, &clock).map(Ok)
+        self.conclude(&view, site.surface, &log, clock).map(Ok)
     }
     /// The cloud of the case, and what is worth knowing of the motion on it.
     fn cloud<const D: usize>(&self, site: &Site<'_, D>, monitor: &mut dyn Monitor) -> Result<Cloud<D>, RunError> {
@@ -286,41 +311,25 @@ impl<S, const D: usize> Begun<S, D> {
     fn fresh(solver: Solver<S, D>, state: Vec<f64>) -> Self {
         Self { solver, start: Start::Fresh(state), particles: None }
     }
-}
 
-/// A stage that goes on where a checkpoint stands.
-fn resumed<const D: usize>(
-    site: &Site<'_, D>,
-    stage: &Stage,
-    sources: &[Source<D>],
-    saved: Saved,
-) -> Result<Begun<Fluid<D>, D>, RunError> {
-    let solver = build::solver(site, stage, sources, None)?;
-    Ok(Begun { solver, start: Start::Resume(saved.state, saved.memory), particles: saved.lagrangian })
+    /// A stage that goes on where a checkpoint stands.
+    fn resumed(solver: Solver<S, D>, saved: Saved) -> Self {
+        Self { solver, start: Start::Resume(saved.state, saved.memory), particles: saved.lagrangian }
+    }
 }
 
 /// A stage that takes over the state of the one before it on another cloud.
-fn followed<const D: usize>(
-    site: &Site<'_, D>,
-    stage: &Stage,
-    sources: &[Source<D>],
-    ready: Option<Cloud<D>>,
-    before: Stood<Fluid<D>, D>,
-) -> Result<Begun<Fluid<D>, D>, RunError> {
-    let next = build::solver(site, stage, sources, ready)?;
+fn followed<S: HasGas<D>, const D: usize>(next: Solver<S, D>, site: &Site<'_, D>, before: Stood<S, D>) -> Begun<S, D> {
     let state = build::transfer(&before.solver.system, &before.state, &next.system, site.surface);
-    Ok(Begun::fresh(next, state))
+    Begun::fresh(next, state)
 }
 
 /// The first stage: from the last state of another run, or from the start of the case.
-fn begun<const D: usize>(
+fn begun<S: HasGas<D>, const D: usize>(
+    solver: Solver<S, D>,
     site: &Site<'_, D>,
-    stage: &Stage,
-    sources: &[Source<D>],
-    ready: Option<Cloud<D>>,
     other: Option<Saved>,
-) -> Result<Begun<Fluid<D>, D>, RunError> {
-    let solver = build::solver(site, stage, sources, ready)?;
+) -> Result<Begun<S, D>, RunError> {
     let state = match other {
         Some(other) => build::taken_over(site.case, &solver.system, other.state)?,
         None => solver.system.start(),

@@ -22,6 +22,9 @@ pub trait HasGas<const D: usize>: Implicit {
     /// The state at the start.
     fn start(&self) -> Vec<f64>;
 
+    /// Holds the bodies that coordinates of their own move where they are at the start, or lets them go.
+    fn hold_bodies(&mut self, _held: bool) {}
+
     /// The part of the state that is the gas.
     fn gas_state<'a>(&self, u: &'a [f64]) -> &'a [f64] {
         &u[self.gas_unknowns()]

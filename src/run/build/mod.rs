@@ -1,9 +1,11 @@
 //! From case to solver: surface, stages, cloud, fluid, state at the start.
+mod bodies;
 mod motion_feasibility;
 
 use std::path::Path;
 use std::sync::Arc;
 
+pub(crate) use bodies::bodies;
 pub(crate) use motion_feasibility::check as check_motion;
 
 use super::error::RunError;
@@ -11,7 +13,7 @@ use super::folder;
 use super::look::forces::ForceModes;
 use super::recipe;
 use super::stage::Stage;
-use crate::case::{Body, Case, Length, ParticleMotion, Wall};
+use crate::case::{Body, Case, Length, ParticleMotion, Temporal, Wall};
 use crate::cloud::conservative::conservative as conserve;
 use crate::cloud::sources::Source;
 use crate::cloud::travel::BackgroundDomain;
@@ -51,8 +53,15 @@ pub(crate) fn supported(case: &Case) -> Result<(), RunError> {
     let bare = case.moves() && case.bodies.is_empty() && case.particles() == ParticleMotion::Deforming;
     let balanced = travels && case.scheme.conservative == Some(true);
     let slow = case.scheme.low_mach && !conserves(case);
+    let sprung = !case.structures.is_empty();
+    let explicit = sprung && matches!(case.time, Temporal::Explicit(_));
+    let carried = sprung && case.particles() == ParticleMotion::Lagrangian;
     let asks = [
-        (!case.structures.is_empty(), "bodies on springs in a stream (`[structure]`)"),
+        (
+            explicit,
+            "bodies on springs with explicit steps (`[structure]` needs `[time.steady]`, `[time.dual]` or `harmonics`)",
+        ),
+        (carried, "bodies on springs among particles that travel with the fluid (`particles = \"lagrangian\"`)"),
         (layered, "wall layers of particles that travel with the fluid (`wall_layers`, `particles = \"lagrangian\"`)"),
         (bare, "a deforming cloud without bodies (`particles = \"deforming\"`)"),
         (slow, "slow flow without conservative coefficients (`low_mach = true` needs `conservative = true`)"),
@@ -85,6 +94,13 @@ pub(crate) struct Solver<S, const D: usize> {
     pub(crate) film: Option<Surface<D>>,
     /// Modes that a harmonic balance computes forces on.
     pub(crate) force_modes: Option<ForceModes<D>>,
+}
+
+impl<const D: usize> Solver<Fluid<D>, D> {
+    /// The same with the system that `assemble` makes of the gas.
+    pub(crate) fn with<S>(self, assemble: impl Fn(Fluid<D>) -> S) -> Solver<S, D> {
+        Solver { system: assemble(self.system), film: self.film, force_modes: self.force_modes }
+    }
 }
 
 /// What the solvers of all stages are built from.
@@ -229,6 +245,12 @@ fn cloud_motion<const D: usize>(
     }
     Ok(match particles {
         _ if !motions.moves() => CloudMotion::Still,
+        ParticleMotion::Rigid if motions.cloud().bends() => {
+            return Err(RunError::Motion {
+                what: "the body bends, but the cloud moves rigidly (`motion.particles = \"rigid\"`)".into(),
+                hint: "use `particles = \"deforming\"`",
+            });
+        }
         ParticleMotion::Rigid => CloudMotion::Rigid(motions.cloud().clone()),
         _ => {
             let until = motions.period().or_else(|| case.time.end(None)).unwrap_or_default();

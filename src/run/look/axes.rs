@@ -2,6 +2,7 @@
 use super::friction::add_friction_in;
 use crate::case::Case;
 use crate::math::Vector;
+use crate::math::jet::Jet;
 use crate::math::sweep::sum;
 use crate::motion::BodyMotion;
 use crate::observe::loads::{Coefficients, Load, LoadAxes, pressure_load};
@@ -40,8 +41,11 @@ impl<'a, const D: usize> GasView<'a, D> {
 }
 
 /// Angle (radians, nose up), displacement and coordinate of the first mode of the first body that moves.
-pub(crate) fn motion<const D: usize>(fluid: &Fluid<D>, time: f64) -> [f64; 5] {
+///
+/// `jets` are coordinates of bodies that are unknowns.
+pub(crate) fn motion<const D: usize>(fluid: &Fluid<D>, time: f64, jets: &[Jet]) -> [f64; 5] {
     fluid.cloud_motion.law().map_or([0.0; 5], |law: &BodyMotion<D>| {
+        let law = law.momentary(time, jets);
         let shift = law.displacement(time).to_3d();
         let mode = law.coordinates(time).first().copied().unwrap_or(0.0);
         [law.angle(time).value, shift[0], shift[1], shift[2], mode]

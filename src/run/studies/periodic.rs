@@ -14,6 +14,8 @@ use crate::case::{Case, Harmonics};
 use crate::geometry::Surface;
 use crate::math::Vector;
 use crate::math::fourier::{Instances, Series};
+use crate::math::jet::Jet;
+use crate::motion::positions;
 use crate::observe::loads::Coefficients;
 use crate::observe::table::{Entry, write_csv};
 use crate::observe::vtk::{Column, write_points};
@@ -147,17 +149,22 @@ impl<S: HasGas<D>, const D: usize> PeriodicState<'_, S, D> {
             let phase = std::f64::consts::TAU * part;
             let loads = Coefficients { cl: cl.at(phase), cd: cd.at(phase), cm: cm.at(phase) };
             let time = part * period;
-            log.record.trace.push(Sample { time, loads, motion: motion(gas, time) });
+            log.record.trace.push(Sample { time, loads, motion: motion(gas, time, &self.jets(phase)) });
         }
         let instance = |time: f64| {
             let phase = std::f64::consts::TAU * time / period;
-            let [angle, x, y, z, mode] = motion(gas, time);
+            let [angle, x, y, z, mode] = motion(gas, time, &self.jets(phase));
             let shift = [x, y, z, mode].into_iter().find(|s| s.abs() > 0.0).unwrap_or(0.0);
             [time / period, angle.to_degrees(), shift, cl.at(phase), cd.at(phase), cm.at(phase)]
         };
         let frames = self.frames();
         log.record.instances = frames.iter().map(|f| instance(self.system.gas_frame(f).time)).collect();
         Some([cl, cd, cm])
+    }
+
+    /// Coordinates of bodies that are unknowns, at a phase.
+    fn jets(&self, phase: f64) -> Vec<Jet> {
+        self.balance.with_instant(self.state, phase, |at| positions(at.coordinates))
     }
 
     /// Loads at the instances, evaluated twice.

@@ -60,8 +60,8 @@ impl<'a, S: HasGas<D>, const D: usize> Eyes<HarmonicBalance<'a, S>> for Periodic
         Some(Coefficients { cl, cd, cm })
     }
 
-    fn motion(&self, time: f64) -> [f64; 5] {
-        motion(self.system.gas(), time)
+    fn motion(&self, at: Standing<'_, HarmonicBalance<'a, S>>, time: f64) -> [f64; 5] {
+        motion(self.system.gas(), time, at.frame.first().map_or(&[], |f| &self.system.gas_frame(f).jets))
     }
 
     fn particles(&self) -> usize {

@@ -15,7 +15,7 @@ pub(crate) trait Eyes<S: System> {
     /// Loads on all bodies; `None` without bodies.
     fn loads(&mut self, at: Standing<'_, S>, log: &mut Log<'_>) -> Option<Coefficients>;
     /// Angle (radians, nose up), displacement and coordinate of the first mode of the first body that moves.
-    fn motion(&self, time: f64) -> [f64; 5];
+    fn motion(&self, at: Standing<'_, S>, time: f64) -> [f64; 5];
     /// Fluid particles.
     fn particles(&self) -> usize;
     /// Instances of a period at which the residual is evaluated.
@@ -35,8 +35,8 @@ impl<S: HasGas<D>, const D: usize> Eyes<S> for GasEyes<'_, S, D> {
         GasView::of(self.system, at.frame, at.state).coefficients(&log.axes, self.system.gas_work(at.work))
     }
 
-    fn motion(&self, time: f64) -> [f64; 5] {
-        motion(self.system.gas(), time)
+    fn motion(&self, at: Standing<'_, S>, time: f64) -> [f64; 5] {
+        motion(self.system.gas(), time, &self.system.gas_frame(at.frame).jets)
     }
 
     fn particles(&self) -> usize {
@@ -90,7 +90,7 @@ impl<S: System> Observer<S> for Progress<'_, S> {
         log.record.iteration += 1;
         self.effort().step(step, now, log)?;
         let loads = self.eyes.loads(now.standing(), log);
-        let motion = if log.case.moves() { self.eyes.motion(step.time) } else { [0.0; 5] };
+        let motion = if log.case.moves() { self.eyes.motion(now.standing(), step.time) } else { [0.0; 5] };
         if step.time > 0.0 {
             // the angle that a resumed run reads in the history, to the last bit
             let motion = [motion[0].to_degrees().to_radians(), motion[1], motion[2], motion[3], motion[4]];

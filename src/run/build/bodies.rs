@@ -1,0 +1,58 @@
+//! Structures of a case, attached to its bodies.
+use std::path::Path;
+use std::sync::Arc;
+
+use super::super::error::RunError;
+use super::super::folder;
+use crate::case::{Case, Temporal};
+use crate::coupling::{Attached, body_motion};
+use crate::geometry::Surface;
+use crate::motion::{ModeShape, Motions, mode_shape};
+use crate::structure::{BodyFrame, Structure};
+
+/// The structures of a case, one after another; `motions` then hand their bodies over to them.
+pub(crate) fn bodies<const D: usize>(
+    case: &Case,
+    input: &Path,
+    surface: Option<&Surface<D>>,
+    motions: &mut Motions<D>,
+) -> Result<Vec<Attached<D>>, RunError> {
+    let Some(surface) = surface else { return Ok(Vec::new()) };
+    let mut all: Vec<Attached<D>> = Vec::new();
+    for body in 0..case.bodies.len() {
+        let Some(data) = case.structure_of(body) else { continue };
+        let frame = frame(case, surface, body);
+        let structure = Structure::<D>::of_case(case, data, frame)?;
+        let read = |name: &str| folder::text(input, name);
+        let shape = |file: &str| mode_shape(file, &read).map(Arc::new);
+        let shapes: Vec<Arc<ModeShape<D>>> = data.modes.iter().map(|m| shape(&m.file)).collect::<Result<_, _>>()?;
+        let first = all.last().map_or(0, |b| b.range().end);
+        motions.free(body, body_motion(&structure, first, &shapes));
+        let attached = Attached::new(structure, (body, frame.chord), first, shapes);
+        if matches!(case.time, Temporal::Steady(_)) && !attached.is_held() {
+            return Err(unheld(&surface.bodies[body]));
+        }
+        all.push(attached);
+    }
+    if let Some(omega) = case.force_frequency(chord(case, surface)).filter(|_| !all.is_empty()) {
+        // the time of the solver is counted in lengths over the speed of sound
+        motions.force_with(std::f64::consts::TAU / omega);
+    }
+    Ok(all)
+}
+
+fn chord<const D: usize>(case: &Case, surface: &Surface<D>) -> f64 {
+    case.reference.chord.map_or(surface.bounds().extent()[0], |c| c.0)
+}
+
+/// What the numbers of flutter are measured with.
+pub(crate) fn frame<const D: usize>(case: &Case, surface: &Surface<D>, body: usize) -> BodyFrame {
+    BodyFrame { chord: chord(case, surface), middle: surface.bounds_of(body).centre().to_3d() }
+}
+
+fn unheld(name: &str) -> RunError {
+    RunError::Motion {
+        what: format!("no spring holds the body `{name}`, so that it has no equilibrium in a steady flow"),
+        hint: "give every coordinate a spring, leave it out of `free`, or march with `[time.dual]`",
+    }
+}
