@@ -220,16 +220,18 @@ static DAMPERS: Table = Table::of(&[
     of("flap", NOT_NEGATIVE, UNDAMPED),
 ]);
 
-const LINEAR: &str = "a linear spring";
+const fn shaped(key: &'static str, table: &'static Table) -> Field {
+    Field::optional(key, Kind::Table(table), "a linear spring", "Cubic part, play and place of rest of its spring.")
+}
 
 static SPRINGS: Table = Table::of(&[
-    of("surge", Kind::Table(&LONG_SPRING), LINEAR),
-    of("sway", Kind::Table(&LONG_SPRING), LINEAR),
-    of("plunge", Kind::Table(&LONG_SPRING), LINEAR),
-    of("roll", Kind::Table(&TURNED_SPRING), LINEAR),
-    of("pitch", Kind::Table(&TURNED_SPRING), LINEAR),
-    of("yaw", Kind::Table(&TURNED_SPRING), LINEAR),
-    of("flap", Kind::Table(&TURNED_SPRING), LINEAR),
+    shaped("surge", &LONG_SPRING),
+    shaped("sway", &LONG_SPRING),
+    shaped("plunge", &LONG_SPRING),
+    shaped("roll", &TURNED_SPRING),
+    shaped("pitch", &TURNED_SPRING),
+    shaped("yaw", &TURNED_SPRING),
+    shaped("flap", &TURNED_SPRING),
 ]);
 
 const CUBIC: Field =
