@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use crate::math::{Vector, dense::Factors};
 use crate::motion::{BodyMotion, Freedom, Hinge, ModeShape, Role};
-use crate::scheme::{Fluid, Frame, Work};
+use crate::scheme::{Fluid, Frame, View, Work};
 use crate::structure::{Energy, Model, Structure};
 use crate::system::Fault;
 
@@ -92,7 +92,7 @@ impl<const D: usize> Attached<D> {
         for (w, wall) in before.interface.iter().enumerate().filter(|(_, wall)| usize::from(wall.body) == self.body) {
             debug_assert!(usize::from(wall.body) == self.body);
             let bends = self.bends.get(w).map_or(&[][..], Vec::as_slice);
-            let force = fluid.wall_force(frame, work, w);
+            let force = View::new(fluid, frame, work).wall_force(w);
             placement.add_work(&before.x[before.n_fluid + w], bends, &force, load);
         }
     }

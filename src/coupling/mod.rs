@@ -19,7 +19,7 @@ use std::ops::Range;
 
 use crate::math::jet::Jet;
 use crate::math::sweep::sweep_rows;
-use crate::scheme::{self, Fluid, HasGas};
+use crate::scheme::{self, Fluid, HasGas, View};
 use crate::structure::Energy;
 use crate::system::{Fault, Field, Instant, Rate, System, unknowns};
 
@@ -119,7 +119,8 @@ impl<const D: usize> Coupled<D> {
         let at = |w: usize| frame.gas.to_inertial_axes(&frame.gas.velocity_of(cloud.n_fluid + w));
         let attached = |w: &usize| self.bodies.iter().any(|b| b.body == usize::from(cloud.interface[*w].body));
         let walls = (0..cloud.interface.len()).filter(attached);
-        let wall_power = walls.map(|w| self.fluid.wall_force(&frame.gas, &work.gas, w).dot(&at(w))).sum();
+        let view = View::new(&self.fluid, &frame.gas, &work.gas);
+        let wall_power = walls.map(|w| view.wall_force(w).dot(&at(w))).sum();
         let energy = self.bodies.iter().map(|b| b.energy(u)).collect();
         Exchange { load, power, wall_power, energy }
     }

@@ -73,15 +73,6 @@ pub fn together(a: &Load, b: &Load) -> Load {
     Load { force: std::array::from_fn(|d| a.force[d] + b.force[d]), moment: a.moment + b.moment }
 }
 
-/// Load of excess pressures on area vectors (both into the fluid).
-pub fn pressure_load(axes: &LoadAxes, points: &[[f64; 3]], areas: &[[f64; 3]], excess: &[f64]) -> Load {
-    let mut load = Load::default();
-    for ((x, s), p) in points.iter().zip(areas).zip(excess) {
-        axes.add(&mut load, x, &s.map(|c| -c * p));
-    }
-    load
-}
-
 /// What passes a zone around the bodies.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Balance {

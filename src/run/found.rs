@@ -1,6 +1,6 @@
 //! What a run has found when it is over: loads, ledgers, errors, the wall.
-use super::look::friction::{Separation, friction_load, separations, wall_friction};
-use super::look::{pressure_coefficient, totals, wall_load};
+use super::look::friction::{Separation, add_friction, separations, wall_friction};
+use super::look::{pressure_coefficient, pressure_load, totals};
 use super::recipe;
 use super::record::summary::{Clock, Ledger, Reclouding, Summary};
 use super::record::{Log, Record};
@@ -10,7 +10,7 @@ use crate::math::{Bounds, Vector};
 use crate::observe::loads::{Balance, Coefficients, Load, LoadAxes, together};
 use crate::observe::usage::peak_bytes;
 use crate::scheme::start::free_stream;
-use crate::scheme::{Fluid, Work};
+use crate::scheme::{Fluid, View};
 use crate::system::System;
 use crate::verify::truth::FieldTruth;
 use crate::verify::wall::Wall;
@@ -19,10 +19,8 @@ use crate::verify::wall::Wall;
 pub(crate) struct Found<'a, const D: usize> {
     /// The case.
     pub(crate) case: &'a Case,
-    /// Equations.
-    pub(crate) fluid: &'a Fluid<D>,
-    /// States and gradients.
-    pub(crate) work: &'a Work<D>,
+    /// The gas with its gradients.
+    pub(crate) view: View<'a, D>,
     /// Bodies.
     pub(crate) surface: Option<&'a Surface<D>>,
     /// Axes of the loads.
@@ -81,8 +79,8 @@ fn last_change(cycles: &[[f64; 5]]) -> Option<Coefficients> {
 }
 
 /// Relative change of the totals of a march.
-fn drift<const D: usize>(fluid: &Fluid<D>, state: &[f64], start: &[f64]) -> Ledger {
-    let end = totals(fluid, state);
+fn drift<const D: usize>(view: &View<'_, D>, state: &[f64], start: &[f64]) -> Ledger {
+    let end = totals(&view.volumes(), state, D + 2);
     if start.len() != end.len() {
         return Ledger::default();
     }
@@ -112,14 +110,14 @@ fn reclouding<const D: usize>(record: &Record) -> Option<Reclouding> {
 impl<const D: usize> Found<'_, D> {
     /// The last line of the run; `state` is that of the solver.
     pub(crate) fn summary(&self, log: &Log<'_>, state: &[f64], spent: &Spent<'_>) -> Summary {
-        let (case, fluid, record) = (self.case, self.fluid, &log.record);
+        let (case, fluid, record) = (self.case, self.view.fluid, &log.record);
         let (pressure, friction) = self.wall_loads(|_| true);
         let loads = self.axes.coefficients(&together(&pressure, &friction));
         let part = |load: &Load| fluid.viscous_model.as_ref().map(|_| self.axes.coefficients(load));
         let balance = self.balance.unwrap_or_default();
         let through = self.axes.coefficients(&balance.load);
         let ledger = if recipe::is_unsteady(case) {
-            drift(fluid, state, &record.start_totals)
+            drift(&self.view, state, &record.start_totals)
         } else {
             self.steady_ledger(&balance, &loads, &through)
         };
@@ -140,7 +138,7 @@ impl<const D: usize> Found<'_, D> {
             cpu_seconds: cpu,
             wall_seconds: wall,
             peak_bytes: peak_bytes(),
-            work_units: record.work.total as f64 / self.fluid.discretisation.cloud.n_fluid as f64,
+            work_units: record.work.total as f64 / self.view.cloud().n_fluid as f64,
             chord: self.axes.chord,
             loads,
             loads_pressure: part(&pressure),
@@ -170,35 +168,36 @@ impl<const D: usize> Found<'_, D> {
 
     /// The wall as it is measured.
     pub(crate) fn wall(&self) -> Wall {
-        let cloud = &self.fluid.discretisation.cloud;
+        let (view, cloud) = (&self.view, self.view.cloud());
         let free = free_stream::<D>(self.case);
-        let friction = wall_friction(self.case, self.fluid, self.work).unwrap_or_default();
+        let friction = wall_friction(self.case, view).unwrap_or_default();
         Wall {
-            x: cloud.x[cloud.interface_range()].iter().map(|x| Vector(x.to_3d())).collect(),
-            normal: cloud.interface.iter().map(|w| Vector(w.normal.to_3d())).collect(),
+            x: cloud.interface_range().map(|i| Vector(view.place(i).to_3d())).collect(),
+            normal: (0..cloud.interface.len()).map(|w| Vector(view.normal(w).to_3d())).collect(),
             area: cloud.interface.iter().map(|w| w.area.norm()).collect(),
             x_c: self.chordwise(),
-            cp: cloud.interface_range().map(|i| pressure_coefficient(&self.work.state[i], &free)).collect(),
+            cp: cloud.interface_range().map(|i| pressure_coefficient(&view.state(i), &free)).collect(),
             cf: friction.iter().map(|f| f.cf).collect(),
         }
     }
 
     /// Loads of pressure and friction on the interface particles chosen.
     pub(crate) fn wall_loads(&self, chosen: impl Fn(usize) -> bool) -> (Load, Load) {
-        let pressure = wall_load(self.fluid, self.work, &self.axes, &chosen);
-        (pressure, friction_load(self.fluid, self.work, &self.axes, &chosen))
+        let mut friction = Load::default();
+        add_friction(&self.view, &self.axes, &chosen, &mut friction);
+        (pressure_load(&self.view, &self.axes, &chosen), friction)
     }
 
     /// Distances of the interface particles from the nose, over the extent of the bodies.
     pub(crate) fn chordwise(&self) -> Vec<f64> {
         let bounds = self.surface.map_or(Bounds { min: Vector::ZERO, max: Vector::splat(1.0) }, Surface::bounds);
         let x_c = |x: &Vector<D>| (x[0] - bounds.min[0]) / bounds.extent()[0];
-        self.fluid.walls_before().iter().map(x_c).collect()
+        self.view.fluid.walls_before().iter().map(x_c).collect()
     }
 
     fn separations(&self) -> Vec<Separation> {
-        let friction = wall_friction(self.case, self.fluid, self.work);
-        friction.map_or_else(Vec::new, |f| separations(self.case, self.fluid, &f, &self.chordwise()))
+        let friction = wall_friction(self.case, &self.view);
+        friction.map_or_else(Vec::new, |f| separations(self.case, &self.view, &f, &self.chordwise()))
     }
 
     fn steady_ledger(&self, balance: &Balance, wall: &Coefficients, through: &Coefficients) -> Ledger {
@@ -216,15 +215,16 @@ impl<const D: usize> Found<'_, D> {
         if matches!(self.case.initial, Initial::FreeStream) || !self.case.bodies.is_empty() {
             return None;
         }
-        let cloud = &self.fluid.discretisation.cloud;
+        let cloud = self.view.cloud();
         let extent = cloud.tree.bounds().extent();
         let period = Some(Vector([extent[0], extent[1]]));
         let truth = FieldTruth::new(&self.case.initial, self.case.flow.gamma, period).ok()??;
         let (mut sum, mut volume) = (0.0, 0.0);
-        let volumes = self.fluid.volumes();
+        let volumes = self.view.volumes();
         for i in 0..cloud.n_fluid {
-            let exact = truth.state(&Vector([cloud.x[i][0], cloud.x[i][1]]), time).ok()?;
-            let error = self.work.state[i].density - exact.density;
+            let x = self.view.place(i);
+            let exact = truth.state(&Vector([x[0], x[1]]), time).ok()?;
+            let error = self.view.state(i).density - exact.density;
             sum += volumes[i] * error * error;
             volume += volumes[i];
         }

@@ -4,7 +4,7 @@ use std::time;
 
 use super::build::{self, Site, Solver, check_motion};
 use super::error::RunError;
-use super::files::{Target, View, write_cloud};
+use super::files::{Scene, Target, write_cloud};
 use super::folder;
 use super::found::bytes_of;
 use super::recipe;
@@ -14,6 +14,7 @@ use crate::cloud::Diagnosis;
 use crate::geometry::dimension;
 use crate::observe::table::write_json;
 use crate::observe::vtk::{Column, write_points};
+use crate::scheme::View;
 use crate::system::{Instant, System};
 
 /// Evaluations timed for the estimate.
@@ -133,5 +134,5 @@ fn write<const D: usize>(
     ];
     write_points(&to.out.join("cloud.vtu"), &points, &columns)?;
     write_json(&to.out.join("doctor.json"), &Diagnosis::of(cloud, fluid.discretisation.walls.n_linear))?;
-    write_cloud(&View { to: *to, fluid, work, surface })
+    write_cloud(&Scene { to: *to, view: View::new(fluid, &frame, work), surface })
 }

@@ -284,21 +284,18 @@ impl Run<'_> {
     /// Looks at the end of a run, and writes it where there is a folder.
     fn conclude<const D: usize>(
         &self,
-        view: &GasView<'_, D>,
+        gas: &GasView<'_, D>,
         surface: Option<&Surface<D>>,
         log: &Log<'_>,
         clock: &Clock,
     ) -> Result<Solution, RunError> {
-        let (solved, fluid, mut work) = (clock.wall_seconds(), view.fluid, view.fluid.work());
-        let balance = momentum::around(self.case, &log.axes, view, &mut work, recipe::is_unsteady(self.case));
-        fluid.fill_states(view.frame, view.state, &mut work);
-        fluid.fill_gradients(view.frame, &mut work);
-        let seen = fluid.seen(view.frame, &work);
-        let (fluid, work) = seen.as_ref().map_or((fluid, &work), |(fluid, work)| (fluid, work));
-        let (axes, names) = (log.axes.axes(fluid), Names::of(surface));
-        let found = Found { case: self.case, fluid, work, surface, axes, names, balance };
-        let summary = found.summary(log, view.state, &Spent { clock, solved });
-        let field = field(self.case, fluid, work);
+        let (solved, mut work) = (clock.wall_seconds(), gas.fluid.work());
+        let balance = momentum::around(self.case, &log.axes, gas, &mut work, recipe::is_unsteady(self.case));
+        let view = gas.seen(&mut work);
+        let (axes, names) = (log.axes.axes(&view), Names::of(surface));
+        let found = Found { case: self.case, view, surface, axes, names, balance };
+        let summary = found.summary(log, gas.state, &Spent { clock, solved });
+        let field = field(self.case, &view);
         if let Some(journal) = &log.journal {
             files::write_all(&found, &summary, &field, log, &journal.out)?;
         }

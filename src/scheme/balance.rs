@@ -9,9 +9,9 @@
 //! on the wall (v − w)·n = 0; for moments, (v − w) × m φ is added because T is not symmetric. dm/dt is the change that a particle sees, in steady flow zero; fluxes of mass and energy are
 //! summed in the same way. Sides A of the domain count where the zone is cut by them. Volumes of particles beside a wall are not
 //! known to all digits; what they lack together follows from the walls and goes to them by area and thickness.
-use super::discretisation::{CloudMotion, Frame};
-use super::fluid::{Fluid, Work};
+use super::discretisation::CloudMotion;
 use super::start::free_stream;
+use super::view::View;
 use crate::case::Case;
 use crate::math::sweep::{sweep_parts, sweep_slots};
 use crate::math::{Bounds, Vector};
@@ -85,35 +85,33 @@ impl<const D: usize> Part<D> {
     };
 }
 
-/// Takes the balance of a fluid at one moment.
+/// Takes the balance of a gas at one moment.
 pub struct Balance<'a, const D: usize> {
-    fluid: &'a Fluid<D>,
-    frame: &'a Frame<D>,
-    work: &'a Work<D>,
+    view: View<'a, D>,
     free: Primitive<D>,
     /// The weight.
     pub zone: Zone<D>,
 }
 
 impl<'a, const D: usize> Balance<'a, D> {
-    /// States and gradients in `work` are those of `frame`; `None` without bodies.
-    pub fn new(case: &Case, fluid: &'a Fluid<D>, (frame, work): (&'a Frame<D>, &'a Work<D>)) -> Option<Self> {
-        let range = frame.discretisation.cloud.interface_range();
+    /// The balance of the gas in `view`, with its gradients; `None` without bodies.
+    pub fn new(case: &Case, view: View<'a, D>) -> Option<Self> {
+        let (frame, range) = (view.frame, view.cloud().interface_range());
         if range.is_empty() {
             return None;
         }
         let places: Vec<Vector<D>> = range.clone().map(|i| frame.place(i)).collect();
         let spacing = range.map(|i| frame.discretisation.cloud.spacing[i]).fold(0.0, f64::max);
         let zone = Zone::around(Bounds::around(&places), spacing);
-        Some(Self { fluid, frame, work, free: free_stream(case), zone })
+        Some(Self { view, free: free_stream(case), zone })
     }
 
     /// What the particles add, and what lies between them and the walls. `rate` is dU/dt of the fluid particles; empty in steady flow.
     pub fn parts(&self, rate: &[f64]) -> Vec<Part<D>> {
-        let (frame, cloud) = (self.frame, &self.frame.discretisation.cloud);
+        let (frame, cloud) = (self.view.frame, self.view.cloud());
         let spread = self.spread();
-        let volume = self.fluid.volumes();
-        let first = self.fluid.discretisation.cloud.interface.len();
+        let volume = self.view.fluid.volumes();
+        let first = self.view.fluid.discretisation.cloud.interface.len();
         let gathered = |i: usize| {
             let own = if rate.is_empty() { Conserved::ZERO } else { Conserved::load(&rate[i * (D + 2)..]) };
             own.momentum - self.free.velocity * own.density + self.momentum(i) * spread.get(i).map_or(0.0, |s| s.1)
@@ -136,7 +134,7 @@ impl<'a, const D: usize> Balance<'a, D> {
                         x,
                         force: (flow.0.momentum - gathered(i) * weight.0) * v,
                         carried: [
-                            frame.to_inertial_axes(&(self.work.state[i].velocity - frame.velocity_of(i))),
+                            frame.to_inertial_axes(&(self.view.work.state[i].velocity - frame.velocity_of(i))),
                             self.momentum(i) * (weight.0 * v),
                         ],
                         mass: -v * flow.0.density,
@@ -152,8 +150,8 @@ impl<'a, const D: usize> Balance<'a, D> {
     /// Volume that the particles beside the walls lack, over the sum of the shares of the walls: ∫ ∇·(φ x) dV is known from the
     /// walls alone. `None` where sides of the domain cut the zone.
     fn missing(&self, volume: &impl Fn(usize) -> f64) -> Option<f64> {
-        let (frame, cloud) = (self.frame, &self.frame.discretisation.cloud);
-        let (zone, domain) = (self.zone.bounds(), self.fluid.reference().cloud.tree.bounds());
+        let (frame, cloud) = (self.view.frame, self.view.cloud());
+        let (zone, domain) = (self.zone.bounds(), self.view.reference().tree.bounds());
         if !(domain.contains(&zone.min) && domain.contains(&zone.max)) {
             return None;
         }
@@ -172,13 +170,13 @@ impl<'a, const D: usize> Balance<'a, D> {
 
     /// The part of interface particle `w` in volume that is missing: rows of particles are a spacing thick.
     fn share(&self, w: usize) -> f64 {
-        let cloud = &self.frame.discretisation.cloud;
+        let cloud = self.view.cloud();
         cloud.interface[w].area.norm() * cloud.spacing[cloud.n_fluid + w]
     }
 
     /// The fluid particle nearest to interface particle `w` of those it is fitted to.
     fn beside(&self, w: usize) -> usize {
-        let cloud = &self.frame.discretisation.cloud;
+        let cloud = self.view.cloud();
         let x = cloud.x[cloud.n_fluid + w];
         let near = cloud.wall_stencils.of(w).iter().map(|j| *j as usize);
         let nearest = near.min_by(|a, b| (cloud.x[*a] - x).norm_squared().total_cmp(&(cloud.x[*b] - x).norm_squared()));
@@ -187,17 +185,17 @@ impl<'a, const D: usize> Balance<'a, D> {
 
     /// ρ(v − v∞) in the axes of the case.
     fn momentum(&self, i: usize) -> Vector<D> {
-        let q = &self.work.state[i];
-        (self.frame.to_inertial_axes(&q.velocity) - self.free.velocity) * q.density
+        let q = &self.view.work.state[i];
+        (self.view.frame.to_inertial_axes(&q.velocity) - self.free.velocity) * q.density
     }
 
     /// (T − m w)·g at particle `i`, momentum in the axes of the case, with the flows of mass and energy along g beyond those of
     /// the free stream; the whole flows.
     fn fluxes(&self, i: usize, g: &Vector<D>) -> (Conserved<D>, [f64; 2]) {
-        let (frame, gas, q) = (self.frame, &self.fluid.gas, &self.work.state[i]);
+        let (frame, gas, q) = (self.view.frame, &self.view.fluid.gas, &self.view.work.state[i]);
         let free = Primitive { velocity: frame.to_body_axes(&self.free.velocity), ..self.free };
         let (own, far) = (gas.flux(q, g), gas.flux(&free, g));
-        let stress = self.fluid.viscous_flux(self.work, i, g);
+        let stress = self.view.fluid.viscous_flux(self.view.work, i, g);
         let push = frame.to_inertial_axes(&(*g * (q.pressure - free.pressure) - stress.momentum));
         let momentum = self.momentum(i) * (q.velocity - frame.velocity_of(i)).dot(g) + push;
         let energy = own.energy - far.energy - stress.energy;
@@ -206,7 +204,7 @@ impl<'a, const D: usize> Balance<'a, D> {
 
     /// What a piece of a side of the domain adds: the state there in the axes of the case, and its outward area.
     pub fn side(&self, x: Vector<D>, q: &Primitive<D>, area: &Vector<D>) -> Part<D> {
-        let (gas, weight) = (&self.fluid.gas, self.zone.at(&x).0);
+        let (gas, weight) = (&self.view.fluid.gas, self.zone.at(&x).0);
         let flow = gas.flux(q, area).plus(-1.0, &gas.flux(&self.free, area)).times(weight);
         let momentum = (q.velocity - self.free.velocity) * (q.density * q.velocity.dot(area));
         Part {
@@ -221,10 +219,10 @@ impl<'a, const D: usize> Balance<'a, D> {
 
     /// Volume of each fluid particle over that before any motion, and ∇·w; empty where both are as for a body.
     fn spread(&self) -> Vec<(f64, f64)> {
-        let (frame, now) = (self.frame, &self.frame.discretisation);
-        let stretched = match self.fluid.cloud_motion {
+        let (frame, now) = (self.view.frame, &self.view.frame.discretisation);
+        let stretched = match self.view.fluid.cloud_motion {
             CloudMotion::Still | CloudMotion::Rigid(_) => return Vec::new(),
-            CloudMotion::Along { .. } => self.fluid.stretch(frame),
+            CloudMotion::Along { .. } => self.view.fluid.stretch(frame),
             CloudMotion::Travel(_) => vec![1.0; now.cloud.n_fluid],
         };
         let mut divergence = vec![0.0; now.cloud.n_fluid];
@@ -249,6 +247,7 @@ impl<'a, const D: usize> Balance<'a, D> {
 mod tests {
     use super::*;
     use crate::case::read;
+    use crate::scheme::Fluid;
     use crate::system::{Instant, System, Term};
 
     /// Rate at which body and gas turn about the pivot.
@@ -288,7 +287,7 @@ mod tests {
         for (i, row) in du.chunks_mut(4).enumerate() {
             row[1..3].copy_from_slice(&change(&frame.place(i), &frame.velocity_of(i)).0);
         }
-        let balance = Balance::new(case, fluid, (&frame, &work)).unwrap();
+        let balance = Balance::new(case, View::new(fluid, &frame, &work)).unwrap();
         let sum = balance.parts(&du).iter().fold(Vector::ZERO, |s, p| s + p.force);
         let walls = frame.discretisation.cloud.interface_range();
         let n = walls.len() as f64;

@@ -38,17 +38,6 @@ impl<const D: usize> Discretisation<D> {
         let walls = WallFits::new(&cloud);
         Self { cloud, operators, walls }
     }
-
-    /// The shape carried off by a rigid motion.
-    pub fn carried(&self, pose: &RigidPose<D>) -> Self {
-        let mut moved = self.clone();
-        moved.cloud.x.iter_mut().for_each(|x| *x = pose.point(x));
-        for w in &mut moved.cloud.interface {
-            w.turn(&pose.rotation);
-        }
-        moved.operators.turn(|v| pose.direction(v));
-        moved
-    }
 }
 
 /// What depends on time but is not evolved.

@@ -26,14 +26,12 @@ use crate::case::{Flux, Limiter, Side};
 use crate::cloud::Cloud;
 use crate::cloud::operators::WallFace;
 use crate::math::Vector;
-use crate::math::jet::Jet;
 use crate::math::sweep::{first, maximum, sweep, sweep_each, sweep_each_slot, sweep_parts, sweep_rows};
-use crate::motion::RigidPose;
 use crate::physics::riemann::{AusmPlusUp, Hllc, Roe, Rusanov, UpwindFlux};
 use crate::physics::{Conserved, Gas, Primitive};
 use crate::system::{Fault, Field as Unknowns, Instant, Rate, System};
 
-use super::boundary::{WallMotion, slip_wall};
+use super::boundary::slip_wall;
 use super::discretisation::{CloudMotion, Discretisation, Frame, LagrangianStep};
 use super::edges::{FluxScheme, Particles, edge_fluxes};
 use super::preconditioner::to_inertial_axes;
@@ -47,8 +45,6 @@ pub struct Fluid<const D: usize> {
     pub discretisation: Arc<Discretisation<D>>,
     /// How particles move.
     pub cloud_motion: CloudMotion<D>,
-    /// Where the particles come from, when this is a view of a moving cloud at one time.
-    pub before: Option<Before<D>>,
     /// The gas.
     pub gas: Gas,
     /// Upwind flux.
@@ -71,21 +67,6 @@ pub struct Fluid<const D: usize> {
     pub fields: [Unknowns; 1],
 }
 
-/// A moving cloud before any motion, and the time at which it is looked at.
-#[derive(Clone)]
-pub struct Before<const D: usize> {
-    /// Particles before any motion.
-    pub discretisation: Arc<Discretisation<D>>,
-    /// Time.
-    pub time: f64,
-    /// Coordinates of bodies that are unknowns.
-    pub jets: Vec<Jet>,
-    /// The motion of all particles as one, where that is what they do.
-    pub pose: Option<RigidPose<D>>,
-    /// Motion of the wall at each interface particle in the axes of the case; empty when nothing moves.
-    pub walls: Arc<Vec<WallMotion<D>>>,
-}
-
 /// What the far field is, given the force on the bodies.
 pub trait FarField<const D: usize>: Send + Sync {
     /// State at `x` when the bodies feel the force `force` (per unit span in 2-D).
@@ -103,34 +84,6 @@ pub struct Work<const D: usize> {
 }
 
 impl<const D: usize> Fluid<D> {
-    /// A view of a moving cloud as it stands in `frame`: particles where they are, states in the axes of the case, for
-    /// those who watch. `None` when nothing moves and the fluid is its own view.
-    pub fn seen(&self, frame: &Frame<D>, work: &Work<D>) -> Option<(Self, Work<D>)> {
-        if self.cloud_motion.is_still() {
-            return None;
-        }
-        let (discretisation, turn) = (&frame.discretisation, |v: &Vector<D>| frame.to_inertial_axes(v));
-        let discretisation = frame
-            .turn
-            .as_ref()
-            .map_or_else(|| Arc::clone(discretisation), |pose| Arc::new(discretisation.carried(pose)));
-        let state = work.state.iter().map(|q| Primitive { velocity: turn(&q.velocity), ..*q }).collect();
-        let gradient = work.gradient.iter().map(|g| g.turned(&turn)).collect();
-        let walls = frame.walls.iter().map(|w| w.turned(turn, |v| frame.to_body_axes(v))).collect();
-        let (discretisation_before, pose) = (Arc::clone(&self.discretisation), frame.turn);
-        let before = Some(Before {
-            discretisation: discretisation_before,
-            time: frame.time,
-            jets: frame.jets.clone(),
-            pose,
-            walls: Arc::new(walls),
-        });
-        let (far_field, held) = (Arc::clone(&self.far_field), Arc::clone(&self.held));
-        let (cloud_motion, viscous_model) = (self.cloud_motion.clone(), self.viscous_model.clone());
-        let seen = Self { discretisation, before, far_field, held, cloud_motion, viscous_model, ..*self };
-        Some((seen, Work { state, gradient }))
-    }
-
     /// The unknowns on a cloud: density, momentum and energy of every fluid particle; density measures a residual.
     pub fn unknowns(cloud: &Cloud<D>) -> [Unknowns; 1] {
         [Unknowns::new("gas", cloud.n_fluid, D + 2).measured_by(1)]
@@ -142,22 +95,6 @@ impl<const D: usize> Fluid<D> {
         let mut u = vec![0.0; self.len()];
         sweep_rows(&mut u, D + 2, |i, row| self.gas.conserved(&(self.held)(&cloud.x[i])).store(row));
         u
-    }
-
-    /// Particles before any motion.
-    pub fn reference(&self) -> &Discretisation<D> {
-        self.before.as_ref().map_or(&self.discretisation, |b| &b.discretisation)
-    }
-
-    /// The place before any motion of what is at `x`.
-    pub fn origin(&self, x: &Vector<D>) -> Vector<D> {
-        let carried = |b: &Before<D>| self.cloud_motion.origin(x, b.time, &b.jets);
-        self.before.as_ref().map_or(*x, |b| b.pose.as_ref().map_or_else(|| carried(b), |p| p.inverse_point(x)))
-    }
-
-    /// Where the point `x` of body number `body` is.
-    pub fn carried(&self, body: usize, x: &Vector<D>) -> Vector<D> {
-        self.before.as_ref().map_or(*x, |b| self.cloud_motion.body(body, b.time, &b.jets).point(x))
     }
 
     /// Fills `work.state` for every particle from the evolved ones, in the axes of `frame.discretisation`.

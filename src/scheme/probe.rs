@@ -4,7 +4,7 @@
 //! weights (a partition of unity), so that pictures, transfers and integrals see the solver's fit and nothing else. Particles in
 //! wall layers look as far across the wall as their layers are thick: the slope of a boundary layer holds no farther. There
 //! they count more than those outside the layers, in proportion to the square of length over thickness.
-use super::fluid::{Fluid, Work};
+use super::view::View;
 use crate::cloud::tree::{Leaf, Tree};
 use crate::geometry::Surface;
 use crate::math::{Bounds, Vector};
@@ -34,20 +34,36 @@ impl<const D: usize> Near<D> {
 
 /// A solution that can be asked anywhere.
 pub struct Probe<'a, const D: usize> {
-    fluid: &'a Fluid<D>,
-    work: &'a Work<D>,
+    view: View<'a, D>,
     surface: Option<&'a Surface<D>>,
+    /// Points are named by where they are before any motion.
+    unmoved: bool,
 }
 
 impl<'a, const D: usize> Probe<'a, D> {
-    /// Looks at the states and gradients in `work`, which must be filled.
-    pub fn new(fluid: &'a Fluid<D>, work: &'a Work<D>, surface: Option<&'a Surface<D>>) -> Self {
-        Self { fluid, work, surface }
+    /// Asks the gas in `view`, with its gradients.
+    pub fn new(view: View<'a, D>, surface: Option<&'a Surface<D>>) -> Self {
+        Self { view, surface, unmoved: false }
+    }
+
+    /// The same where points are named by where they are before any motion.
+    pub fn before_motion(view: View<'a, D>, surface: Option<&'a Surface<D>>) -> Self {
+        Self { view, surface, unmoved: true }
+    }
+
+    /// The place of the point `x` before any motion, and that among `places`.
+    fn origin(&self, x: &Vector<D>) -> (Vector<D>, Vector<D>) {
+        if self.unmoved { (*x, *x) } else { (self.view.origin(x), self.view.in_frame(x)) }
+    }
+
+    /// Where particles are, in the axes that gradients are in.
+    fn places(&self) -> &'a [Vector<D>] {
+        if self.unmoved { &self.view.reference().x } else { &self.view.cloud().x }
     }
 
     /// Size of the background at `x`: about the distance between particles there.
     pub fn spacing(&self, x: &Vector<D>, near: &mut Near<D>) -> f64 {
-        near.leaf(&self.fluid.reference().cloud.tree, &self.fluid.origin(x)).size
+        near.leaf(&self.view.reference().tree, &self.origin(x).0).size
     }
 
     /// State at `x`; `None` where no particle is near.
@@ -58,8 +74,9 @@ impl<'a, const D: usize> Probe<'a, D> {
     /// The same where points are asked one after another that are mostly in the leaf of the one before.
     pub fn beside(&self, x: &Vector<D>, near: &mut Near<D>) -> Option<Primitive<D>> {
         // the background knows particles where they were before any motion
-        let cloud = &self.fluid.reference().cloud;
-        let (place, x) = (x, &self.fluid.origin(x));
+        let cloud = self.view.reference();
+        let (x, place) = &self.origin(x);
+        let places = self.places();
         let leaf = near.leaf(&cloud.tree, x);
         let reach = RADIUS * leaf.size;
         if near.listed != Some(leaf.node) {
@@ -75,17 +92,17 @@ impl<'a, const D: usize> Probe<'a, D> {
             let k = *k as usize;
             let w = self.weight(k, &(*x - cloud.x[k]), reach);
             if w > 0.0 && self.in_sight(k, x) {
-                let offer = self.offer(k, &(*place - self.fluid.discretisation.cloud.x[k]));
+                let offer = self.offer(k, &(*place - places[k]));
                 sum = Some(sum.map_or_else(|| scaled(&offer, w), |s| s.plus(w, &offer)));
                 weight += w;
             }
         }
-        sum.map(|s| scaled(&s, 1.0 / weight))
+        sum.map(|s| self.view.turned(&scaled(&s, 1.0 / weight)))
     }
 
     /// Weight of particle `k` at the offset `d` from it.
     fn weight(&self, k: usize, d: &Vector<D>, reach: f64) -> f64 {
-        let cloud = &self.fluid.reference().cloud;
+        let cloud = self.view.reference();
         let Some((column, layer)) = cloud.layers.slot(k) else {
             return (1.0 - d.norm() / reach).max(0.0).powi(2);
         };
@@ -96,13 +113,13 @@ impl<'a, const D: usize> Probe<'a, D> {
     }
 
     fn offer(&self, k: usize, d: &Vector<D>) -> Primitive<D> {
-        let q = &self.work.state[k];
-        let linear = q.plus(1.0, &self.work.gradient[k].along(d));
+        let q = &self.view.work.state[k];
+        let linear = q.plus(1.0, &self.view.work.gradient[k].along(d));
         if linear.density > 0.0 && linear.pressure > 0.0 { linear } else { *q }
     }
 
     fn in_sight(&self, k: usize, x: &Vector<D>) -> bool {
-        let cloud = &self.fluid.reference().cloud;
+        let cloud = self.view.reference();
         let near = cloud.wall_distance[k] < RADIUS * 2.0 * cloud.spacing[k];
         !near || self.surface.is_none_or(|s| !s.crosses(&cloud.x[k], x))
     }
@@ -131,7 +148,7 @@ mod tests {
             *q = Primitive { density: 1.0, velocity: Vector([exact(x), 0.0]), pressure: 0.7 };
         }
         fluid.fill_gradients(&frame, &mut work);
-        let probe = Probe::new(&fluid, &work, None);
+        let probe = Probe::new(View::new(&fluid, &frame, &work), None);
         for angle in [0.3f64, 1.1, 2.5] {
             for k in 1..200 {
                 let x = Vector([angle.cos(), angle.sin()]) * (0.5 + 0.001 * f64::from(k));

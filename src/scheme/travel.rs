@@ -312,7 +312,7 @@ impl<const D: usize> Fluid<D> {
         match &self.cloud_motion {
             CloudMotion::Travel(travel) => travel.domain.walls().0,
             _ => {
-                let cloud = &self.reference().cloud;
+                let cloud = &self.discretisation.cloud;
                 &cloud.x[cloud.interface_range()]
             }
         }
@@ -320,7 +320,11 @@ impl<const D: usize> Fluid<D> {
 
     /// Volumes for totals and means: where particles travel, the part of the domain that is nearest to each.
     pub fn volumes(&self) -> Vec<f64> {
-        let cloud = &self.discretisation.cloud;
+        self.volumes_of(&self.discretisation.cloud)
+    }
+
+    /// The same of particles that stand as in `cloud`.
+    pub(super) fn volumes_of(&self, cloud: &Cloud<D>) -> Vec<f64> {
         match &self.cloud_motion {
             CloudMotion::Travel(travel) => travel.domain.volumes(&travel.poses(travel.since), cloud),
             _ => cloud.volume[..cloud.n_fluid].to_vec(),
@@ -358,7 +362,6 @@ impl<const D: usize> Fluid<D> {
         Self {
             discretisation: Arc::clone(&self.discretisation),
             cloud_motion: self.cloud_motion.clone(),
-            before: self.before.clone(),
             viscous_model: self.viscous_model.clone(),
             far_field: Arc::clone(&self.far_field),
             held: Arc::clone(&self.held),

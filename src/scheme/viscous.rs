@@ -236,33 +236,19 @@ impl<const D: usize> Fluid<D> {
         })
     }
 
-    /// Motion of the walls of a view of a moving cloud; empty where nothing moves.
-    pub fn walls_seen(&self) -> &[WallMotion<D>] {
-        self.before.as_ref().map_or(&[], |b| &b.walls)
-    }
-
-    /// Stress and heat on the wall of interface particle `w` of a cloud whose walls move, from the states and gradients in
+    /// Stress and heat on the wall of interface particle `w`, which moves with `motion`, from the states and gradients in
     /// `work`; `None` where the gas slides.
-    pub fn wall_slopes(
+    pub(super) fn wall_slopes(
         &self,
-        (cloud, walls): (&Cloud<D>, &[WallMotion<D>]),
-        work: &Work<D>,
+        (cloud, work): (&Cloud<D>, &Work<D>),
         w: usize,
+        motion: Option<&WallMotion<D>>,
     ) -> Option<WallSlopes<D>> {
         let viscous_model = self.viscous_model.as_ref()?;
-        let at = self.at_wall(viscous_model, (cloud, work), w, walls.get(w))?;
+        let at = self.at_wall(viscous_model, (cloud, work), w, motion)?;
         let still = Slopes { velocity: Vector::ZERO, ..at };
         let through = viscous_model.medium.flux(&self.gas, &still, &cloud.interface[w].normal);
         Some(WallSlopes { stress: through.momentum, heat: through.energy })
-    }
-
-    /// Distance of the first particle from the wall in viscous lengths, y⁺ = η √(ρ |τ|)/μ; `None` where the gas slides.
-    pub fn y_plus(&self, cloud: &Cloud<D>, work: &Work<D>, w: usize) -> Option<f64> {
-        let viscous_model = self.viscous_model.as_ref()?;
-        let stress = self.wall_slopes((cloud, self.walls_seen()), work, w)?.stress.norm();
-        let height = lowest_two(cloud, w).map_or(cloud.spacing[cloud.n_fluid + w], |(_, heights)| heights[0]);
-        let wall = &work.state[cloud.n_fluid + w];
-        Some(height * (wall.density * stress).sqrt() / viscous_model.medium.at(self.gas.temperature(wall)))
     }
 
     /// Adds the rates at which viscosity and conduction even out differences between particles.

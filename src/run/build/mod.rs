@@ -169,7 +169,6 @@ pub(crate) fn solver<const D: usize>(
         far_field: Arc::new(Stream::new(case, &centre, surface.is_some_and(|s| !s.sharp.is_empty()))),
         held: field,
         cloud_motion: cloud_motion(case, surface, &cloud, motions)?,
-        before: None,
         discretisation: Arc::new(Discretisation::new(cloud, operators)),
     };
     if case.flow.isentropic {
@@ -330,9 +329,7 @@ pub(crate) fn transfer<S: HasGas<D>, const D: usize>(
     let (old, gas) = (previous.gas(), previous.gas_state(state));
     let mut work = old.work();
     let frame = old.frame(&Instant::still(0.0), gas);
-    old.fill_states(&frame, gas, &mut work);
-    old.fill_gradients(&frame, &mut work);
-    let probe = Probe::new(old, &work, surface);
+    let probe = Probe::before_motion(old.view(&frame, gas, &mut work), surface);
     let mut u = next.gas().start();
     let cloud = &next.gas().discretisation.cloud;
     crate::math::sweep::sweep_rows(&mut u, D + 2, |i, row| {
@@ -350,10 +347,8 @@ pub(crate) fn adapted<S: HasGas<D>, const D: usize>(case: &Case, system: &S, sta
     let (fluid, gas) = (system.gas(), system.gas_state(state));
     let mut work = fluid.work();
     let frame = fluid.frame(&Instant::still(0.0), gas);
-    fluid.fill_states(&frame, gas, &mut work);
-    fluid.fill_gradients(&frame, &mut work);
     let finest = case.adapt.spacing.unwrap_or(case.cloud.spacing).0;
-    adapt::sources(fluid, &work, &case.adapt.sensors, finest)
+    adapt::sources(&fluid.view(&frame, gas, &mut work), &case.adapt.sensors, finest)
 }
 
 /// The last state of another run as the start of this one. A harmonic balance takes all instances of another one; others take

@@ -17,11 +17,11 @@ use crate::observe::loads::together as both;
 use crate::observe::table::{Entry, write_csv, write_json};
 use crate::observe::vtk::{Column, Facets, read_collection, write_collection, write_points, write_surface};
 use crate::report;
-use crate::scheme::Work;
 use crate::scheme::start::free_stream;
+use crate::scheme::{View, Work};
 
 pub(crate) use pictures::{together, write_cloud};
-pub(crate) use target::{FILM, Target, View};
+pub(crate) use target::{FILM, Scene, Target};
 
 /// Writes all files of a run that is over.
 pub(crate) fn write_all<const D: usize>(
@@ -39,7 +39,7 @@ pub(crate) fn write_all<const D: usize>(
     files.write_fields(all, log.record.time)?;
     if found.case.output.report {
         let to = Target { case: found.case, out };
-        pictures::write(&View { to, fluid: found.fluid, work: found.work, surface: found.surface })?;
+        pictures::write(&Scene { to, view: found.view, surface: found.surface })?;
         report::write_report(out)?;
     }
     Ok(())
@@ -57,7 +57,7 @@ impl<const D: usize> Files<'_, D> {
         write_json(&self.out.join("ledger.json"), &summary.ledger)?;
         write_json(
             &self.out.join("doctor.json"),
-            &Diagnosis::of(&self.found.fluid.discretisation.cloud, self.found.fluid.discretisation.walls.n_linear),
+            &Diagnosis::of(self.found.view.cloud(), self.found.view.frame.discretisation.walls.n_linear),
         )?;
         self.write_loads()?;
         self.write_surface_csv()?;
@@ -71,7 +71,7 @@ impl<const D: usize> Files<'_, D> {
     }
 
     fn write_loads(&self) -> Result<(), RunError> {
-        let cloud = &self.found.fluid.discretisation.cloud;
+        let cloud = self.found.view.cloud();
         let units = Units::of(self.found.case).pressure();
         let mut rows = Vec::new();
         for (b, body) in self.found.names.bodies.iter().enumerate() {
@@ -98,10 +98,10 @@ impl<const D: usize> Files<'_, D> {
     }
 
     fn write_surface_csv(&self) -> Result<(), RunError> {
-        let cloud = &self.found.fluid.discretisation.cloud;
-        let free = free_stream::<D>(self.found.case);
+        let cloud = self.found.view.cloud();
+        let (view, free) = (self.found.view, free_stream::<D>(self.found.case));
         let units = Units::of(self.found.case);
-        let friction = wall_friction(self.found.case, self.found.fluid, self.found.work);
+        let friction = wall_friction(self.found.case, &view);
         let mut columns = vec![
             "x", "y", "z", "nx", "ny", "nz", "area", "body", "tag", "arc", "x_c", "pressure", "cp", "mach", "density",
             "u", "v", "w",
@@ -112,13 +112,13 @@ impl<const D: usize> Files<'_, D> {
         let chordwise = self.found.chordwise();
         let rows = cloud.interface_range().zip(&cloud.interface).map(|(i, w)| {
             let k = i - cloud.n_fluid;
-            let q = &self.found.work.state[i];
-            let mut row: Vec<Entry> = cloud.x[i].to_3d().map(Entry::from).to_vec();
-            row.extend(w.normal.to_3d().map(Entry::from));
+            let q = &view.state(i);
+            let mut row: Vec<Entry> = view.place(i).to_3d().map(Entry::from).to_vec();
+            row.extend(view.normal(k).to_3d().map(Entry::from));
             row.push(Entry::from(w.area.norm()));
             row.push(Entry::from(self.found.names.bodies.get(usize::from(w.body)).map_or("", String::as_str)));
             row.push(Entry::from(self.found.names.tags.get(usize::from(w.tag)).map_or("", String::as_str)));
-            let mach = q.velocity.norm() / self.found.fluid.gas.sound_speed(q);
+            let mach = q.velocity.norm() / view.fluid.gas.sound_speed(q);
             let cp = pressure_coefficient(q, &free);
             row.extend(
                 [w.arc, chordwise[k], q.pressure * units.pressure(), cp, mach, q.density * units.density]
@@ -139,7 +139,7 @@ impl<const D: usize> Files<'_, D> {
             .collect();
         write_points(&self.out.join("field.vtu"), &all.points, &columns)?;
         write_collection(&self.out.join("field.pvd"), &[(time, "field.vtu")])?;
-        let cloud = &self.found.fluid.discretisation.cloud;
+        let cloud = self.found.view.cloud();
         if cloud.interface.is_empty() {
             return Ok(());
         }
@@ -148,7 +148,11 @@ impl<const D: usize> Files<'_, D> {
             .columns
             .iter()
             .map(|(name, n, values)| (*name, *n, values[range.start * n..range.end * n].to_vec()))
-            .chain([("normal", 3, cloud.interface.iter().flat_map(|w| w.normal.to_3d()).collect())])
+            .chain([(
+                "normal",
+                3,
+                (0..cloud.interface.len()).flat_map(|w| self.found.view.normal(w).to_3d()).collect(),
+            )])
             .collect();
         let columns: Vec<Column<'_>> =
             cut.iter().map(|(name, n, values)| Column { name, components: *n, values }).collect();
@@ -162,15 +166,13 @@ impl<const D: usize> Files<'_, D> {
 /// Writes the field of one moment of a march, and the list of all so far.
 pub(crate) fn write_series<const D: usize>(
     to: &Target<'_>,
-    view: &GasView<'_, D>,
+    gas: &GasView<'_, D>,
     work: &mut Work<D>,
     interval: f64,
 ) -> Result<(), RunError> {
-    let GasView { fluid, frame, state } = *view;
-    fluid.fill_states(frame, state, work);
-    let seen = fluid.seen(frame, work);
-    let (fluid, work) = seen.as_ref().map_or((fluid, &*work), |(fluid, work)| (fluid, work));
-    let (all, time, out) = (field(to.case, fluid, work), frame.time, to.out);
+    gas.fluid.fill_states(gas.frame, gas.state, work);
+    let view = View::new(gas.fluid, gas.frame, work);
+    let (all, time, out) = (field(to.case, &view), view.time(), to.out);
     let columns: Vec<Column<'_>> =
         all.columns.iter().map(|(name, components, values)| Column { name, components: *components, values }).collect();
     let number = passed(time, interval);
@@ -187,17 +189,12 @@ pub(crate) fn write_series<const D: usize>(
 pub(crate) fn write_film<const D: usize>(
     to: &Target<'_>,
     surface: &Surface<D>,
-    view: &GasView<'_, D>,
+    gas: &GasView<'_, D>,
     work: &mut Work<D>,
     part: u64,
 ) -> Result<(), RunError> {
-    let GasView { fluid, frame, state } = *view;
-    fluid.fill_states(frame, state, work);
-    fluid.fill_gradients(frame, work);
-    let seen = fluid.seen(frame, work);
-    let (fluid, work) = seen.as_ref().map_or((fluid, &*work), |(fluid, work)| (fluid, work));
-    let view = View { to: *to, fluid, work, surface: Some(surface) };
-    pictures::write_film(&view, (part - 1) as u32 % FILM + 1)
+    let scene = Scene { to: *to, view: gas.seen(work), surface: Some(surface) };
+    pictures::write_film(&scene, (part - 1) as u32 % FILM + 1)
 }
 
 fn series_name(number: u64) -> String {

@@ -1,7 +1,7 @@
 //! Pictures of a run, drawn through the solver's own fit.
 use super::super::error::RunError;
 use super::super::look::pressure_coefficient;
-use super::target::{FILM, View};
+use super::target::{FILM, Scene};
 use crate::math::sweep::{sweep_each, sweep_each_chunk};
 use crate::math::{Bounds, Vector};
 use crate::physics::Primitive;
@@ -30,24 +30,24 @@ type Drawn<'a, const D: usize> = (&'a str, (&'a str, &'a str, Colormap, &'a [f64
 type Value<'a, const D: usize> = &'a (dyn Fn(&Primitive<D>) -> f64 + Sync);
 
 /// Draws all pictures of a run.
-pub(crate) fn write<const D: usize>(view: &View<'_, D>) -> Result<(), RunError> {
-    if D == 2 { plane(view) } else { space(view) }
+pub(crate) fn write<const D: usize>(scene: &Scene<'_, D>) -> Result<(), RunError> {
+    if D == 2 { plane(scene) } else { space(scene) }
 }
 
-fn window<const D: usize>(view: &View<'_, D>, margin: f64) -> Bounds<2> {
-    let all = view.fluid.discretisation.cloud.tree.bounds();
-    let b = view.surface.map_or(all, |s| s.bounds().padded(margin * s.bounds().extent().max_abs()));
+fn window<const D: usize>(scene: &Scene<'_, D>, margin: f64) -> Bounds<2> {
+    let all = scene.view.cloud().tree.bounds();
+    let b = scene.surface.map_or(all, |s| s.bounds().padded(margin * s.bounds().extent().max_abs()));
     let pick = |v: Vector<D>| Vector([v[0], v[1]]);
     Bounds { min: pick(b.min.max(&all.min)), max: pick(b.max.min(&all.max)) }
 }
 
-fn outlines<const D: usize>(view: &View<'_, D>) -> Vec<Vec<Vector<2>>> {
-    let Some(surface) = view.surface else { return Vec::new() };
+fn outlines<const D: usize>(scene: &Scene<'_, D>) -> Vec<Vec<Vector<2>>> {
+    let Some(surface) = scene.surface else { return Vec::new() };
     let mut all: Vec<(u16, Vec<Vector<2>>)> = Vec::new();
     for chain in surface.chains() {
         let body = surface.element(chain.elements[0]).body;
         let points = chain.elements.iter().map(|e| {
-            let p = view.fluid.carried(usize::from(body), &surface.corners(*e)[0]);
+            let p = scene.view.carried(usize::from(body), &surface.corners(*e)[0]);
             Vector([p[0], p[1]])
         });
         match all.last_mut() {
@@ -58,19 +58,19 @@ fn outlines<const D: usize>(view: &View<'_, D>) -> Vec<Vec<Vector<2>>> {
     all.into_iter().map(|(_, line)| line).collect()
 }
 
-fn plane<const D: usize>(view: &View<'_, D>) -> Result<(), RunError> {
-    let outlines = outlines(view);
-    let w = window(view, MARGIN);
-    let free = free_stream::<D>(view.to.case);
-    let gas = view.fluid.gas;
+fn plane<const D: usize>(scene: &Scene<'_, D>) -> Result<(), RunError> {
+    let outlines = outlines(scene);
+    let w = window(scene, MARGIN);
+    let free = free_stream::<D>(scene.to.case);
+    let gas = scene.view.fluid.gas;
     let mach = |q: &Primitive<D>| q.velocity.norm() / gas.sound_speed(q);
     let cp = |q: &Primitive<D>| pressure_coefficient(q, &free);
     let density = |q: &Primitive<D>| q.density;
-    let states = sampled(view, &w, PIXELS);
+    let states = sampled(scene, &w, PIXELS);
     let style = |title: &'static str, quantity: &'static str, map: Colormap, contours: &'static [f64]| {
         (title, quantity, map, contours)
     };
-    let second: Drawn<'_, D> = if view.surface.is_some() {
+    let second: Drawn<'_, D> = if scene.surface.is_some() {
         ("cp", style("Pressure coefficient", "Cp", Colormap::Diverging { centre: 0.0 }, &[]), &cp)
     } else {
         ("density", style("Density", "density", Colormap::Sequential, &[]), &density)
@@ -81,12 +81,12 @@ fn plane<const D: usize>(view: &View<'_, D>) -> Result<(), RunError> {
         let raster = Raster { width: states.0, height: states.1, window: w, values };
         let style =
             PictureStyle { title, quantity, axes: ["x", "y"], map: *map, range: None, contours, outlines: &outlines };
-        Ok(write_file(&view.to.out.join(format!("pictures/{name}.png")), &raster_png(&raster, &style)?)?)
+        Ok(write_file(&scene.to.out.join(format!("pictures/{name}.png")), &raster_png(&raster, &style)?)?)
     };
     together(4, |k| match k {
         0 | 1 => field(&fields[k]),
-        2 => cloud_picture(view, &outlines),
-        _ => curves(view),
+        2 => cloud_picture(scene, &outlines),
+        _ => curves(scene),
     })
 }
 
@@ -98,9 +98,9 @@ pub(crate) fn together(n: usize, task: impl Fn(usize) -> Result<(), RunError> + 
 }
 
 /// Draws the Mach number at part `part` of a period, in colours that are the same for all of them.
-pub(crate) fn write_film<const D: usize>(view: &View<'_, D>, part: u32) -> Result<(), RunError> {
-    let (window, gas) = (window(view, MARGIN), view.fluid.gas);
-    let (width, height, states) = sampled(view, &window, FILM_PIXELS);
+pub(crate) fn write_film<const D: usize>(scene: &Scene<'_, D>, part: u32) -> Result<(), RunError> {
+    let (window, gas) = (window(scene, MARGIN), scene.view.fluid.gas);
+    let (width, height, states) = sampled(scene, &window, FILM_PIXELS);
     let mach = |q: &Primitive<D>| q.velocity.norm() / gas.sound_speed(q);
     let values = states.iter().map(|q| q.as_ref().map_or(f64::NAN, mach)).collect();
     let title = format!("Mach number after {part}/{FILM} of the period");
@@ -109,31 +109,30 @@ pub(crate) fn write_film<const D: usize>(view: &View<'_, D>, part: u32) -> Resul
         quantity: "M",
         axes: ["x", "y"],
         map: Colormap::Sequential,
-        range: Some([0.0, FILM_RANGE * view.to.case.flow.reference().mach]),
+        range: Some([0.0, FILM_RANGE * scene.to.case.flow.reference().mach]),
         contours: &[1.0],
-        outlines: &outlines(view),
+        outlines: &outlines(scene),
     };
     let png = raster_png(&Raster { width, height, window, values }, &style)?;
-    Ok(write_file(&view.to.out.join(format!("pictures/film-{part}.png")), &png)?)
+    Ok(write_file(&scene.to.out.join(format!("pictures/film-{part}.png")), &png)?)
 }
 
 /// States on a grid of pixels, `pixels` along the longer side: (width, height, states, `None` inside bodies).
 fn sampled<const D: usize>(
-    view: &View<'_, D>,
+    scene: &Scene<'_, D>,
     w: &Bounds<2>,
     pixels: usize,
 ) -> (usize, usize, Vec<Option<Primitive<D>>>) {
     let extent = w.extent();
     let scale = pixels as f64 / extent[0].max(extent[1]);
     let size = [0, 1].map(|d| (extent[d] * scale).round().max(1.0) as usize);
-    let grid =
-        Grid { view, probe: Probe::new(view.fluid, view.work, view.surface), from: w.min, pixel: 1.0 / scale, size };
+    let grid = Grid { scene, probe: Probe::new(scene.view, scene.surface), from: w.min, pixel: 1.0 / scale, size };
     (size[0], size[1], grid.states(1))
 }
 
 /// Pixels of a picture.
 struct Grid<'a, const D: usize> {
-    view: &'a View<'a, D>,
+    scene: &'a Scene<'a, D>,
     probe: Probe<'a, D>,
     /// Lowest corner.
     from: Vector<2>,
@@ -171,7 +170,7 @@ impl<const D: usize> Grid<'_, D> {
     }
 
     fn fitted(&self, x: &Vector<D>, near: &mut Near<D>) -> Option<Primitive<D>> {
-        let solid = self.view.surface.is_some_and(|s| s.inside(&self.view.fluid.origin(x)));
+        let solid = self.scene.surface.is_some_and(|s| s.inside(&self.scene.view.origin(x)));
         if solid { None } else { self.probe.beside(x, near) }
     }
 
@@ -205,52 +204,55 @@ impl<const D: usize> Grid<'_, D> {
 }
 
 /// Draws the particles near the bodies (plane clouds).
-pub(crate) fn write_cloud<const D: usize>(view: &View<'_, D>) -> Result<(), RunError> {
-    if D == 2 { cloud_picture(view, &outlines(view)) } else { Ok(()) }
+pub(crate) fn write_cloud<const D: usize>(scene: &Scene<'_, D>) -> Result<(), RunError> {
+    if D == 2 { cloud_picture(scene, &outlines(scene)) } else { Ok(()) }
 }
 
-fn cloud_picture<const D: usize>(view: &View<'_, D>, outlines: &[Vec<Vector<2>>]) -> Result<(), RunError> {
-    let cloud = &view.fluid.discretisation.cloud;
+fn cloud_picture<const D: usize>(scene: &Scene<'_, D>, outlines: &[Vec<Vector<2>>]) -> Result<(), RunError> {
+    let cloud = scene.view.cloud();
     let flat = |x: &Vector<D>| Vector([x[0], x[1]]);
-    let points: Vec<Vector<2>> = cloud.x[..cloud.n_fluid].iter().map(flat).collect();
+    let points: Vec<Vector<2>> = (0..cloud.n_fluid).map(|i| flat(&scene.view.place(i))).collect();
     let finest = cloud.spacing[..cloud.n_fluid].iter().fold(f64::INFINITY, |m, h| m.min(*h));
     let levels: Vec<u32> = cloud.spacing[..cloud.n_fluid].iter().map(|h| (h / finest).log2().round() as u32).collect();
-    let interface: Vec<_> =
-        cloud.interface_range().zip(&cloud.interface).map(|(i, w)| (flat(&cloud.x[i]), flat(&w.normal))).collect();
+    let interface: Vec<_> = cloud
+        .interface_range()
+        .enumerate()
+        .map(|(w, i)| (flat(&scene.view.place(i)), flat(&scene.view.normal(w))))
+        .collect();
     let scatter = Scatter { points: &points, dots: Dots::Level(&levels), interface: &interface, outlines };
-    let png = scatter_png(&scatter, window(view, 0.12), "Particles")?;
-    Ok(write_file(&view.to.out.join("pictures/cloud.png"), &png)?)
+    let png = scatter_png(&scatter, window(scene, 0.12), "Particles")?;
+    Ok(write_file(&scene.to.out.join("pictures/cloud.png"), &png)?)
 }
 
 /// Cp along the chord.
-fn curves<const D: usize>(view: &View<'_, D>) -> Result<(), RunError> {
-    let Some(surface) = view.surface else { return Ok(()) };
-    let cloud = &view.fluid.discretisation.cloud;
-    let free = free_stream::<D>(view.to.case);
+fn curves<const D: usize>(scene: &Scene<'_, D>) -> Result<(), RunError> {
+    let Some(surface) = scene.surface else { return Ok(()) };
+    let cloud = scene.view.cloud();
+    let free = free_stream::<D>(scene.to.case);
     let b = surface.bounds();
     let mut series = Vec::new();
     for (k, name) in surface.bodies.iter().enumerate() {
         let own = || cloud.interface_range().zip(&cloud.interface).filter(|(_, w)| usize::from(w.body) == k);
-        let x = own().map(|(i, _)| (view.fluid.reference().cloud.x[i][0] - b.min[0]) / b.extent()[0]).collect();
-        let y = own().map(|(i, _)| pressure_coefficient(&view.work.state[i], &free)).collect();
+        let x = own().map(|(i, _)| (scene.view.reference().x[i][0] - b.min[0]) / b.extent()[0]).collect();
+        let y = own().map(|(i, _)| pressure_coefficient(&scene.view.state(i), &free)).collect();
         series.push(Series { name: name.clone(), marks: Marks::Dots, x, y });
     }
     let chart = Chart { title: "Pressure on the wall".into(), x: Axis::linear("x/c"), y: Axis::reversed("Cp"), series };
-    write_file(&view.to.out.join("pictures/cp-chord.svg"), chart.svg()?.as_bytes())?;
-    Ok(write_file(&view.to.out.join("pictures/cp-chord.png"), &chart.png()?)?)
+    write_file(&scene.to.out.join("pictures/cp-chord.svg"), chart.svg()?.as_bytes())?;
+    Ok(write_file(&scene.to.out.join("pictures/cp-chord.png"), &chart.png()?)?)
 }
 
-fn space<const D: usize>(view: &View<'_, D>) -> Result<(), RunError> {
-    if view.surface.is_none() {
+fn space<const D: usize>(scene: &Scene<'_, D>) -> Result<(), RunError> {
+    if scene.surface.is_none() {
         return Ok(());
     }
-    let cloud = &view.fluid.discretisation.cloud;
-    let free = free_stream::<D>(view.to.case);
+    let cloud = scene.view.cloud();
+    let free = free_stream::<D>(scene.to.case);
     let solid = |v: &Vector<D>| Vector(v.to_3d());
-    let points: Vec<Vector<3>> = cloud.x[cloud.interface_range()].iter().map(solid).collect();
-    let normals: Vec<Vector<3>> = cloud.interface.iter().map(|w| solid(&w.normal)).collect();
+    let points: Vec<Vector<3>> = cloud.interface_range().map(|i| solid(&scene.view.place(i))).collect();
+    let normals: Vec<Vector<3>> = (0..points.len()).map(|w| solid(&scene.view.normal(w))).collect();
     let areas: Vec<f64> = cloud.interface.iter().map(|w| w.area.norm()).collect();
-    let values: Vec<f64> = cloud.interface_range().map(|i| pressure_coefficient(&view.work.state[i], &free)).collect();
+    let values: Vec<f64> = cloud.interface_range().map(|i| pressure_coefficient(&scene.view.state(i), &free)).collect();
     let shell = Shell::Splats { points: &points, normals: &normals, areas: &areas, values: &values };
     let style = SurfaceStyle {
         title: "Pressure coefficient",
@@ -260,6 +262,6 @@ fn space<const D: usize>(view: &View<'_, D>) -> Result<(), RunError> {
         direction: Vector([1.0, 0.8, -0.6]),
         up: Vector([0.0, 0.0, 1.0]),
     };
-    write_file(&view.to.out.join("pictures/cp.png"), &surface_png(&shell, &style)?)?;
-    curves(view)
+    write_file(&scene.to.out.join("pictures/cp.png"), &surface_png(&shell, &style)?)?;
+    curves(scene)
 }

@@ -3,7 +3,7 @@ use std::path::Path;
 
 use crate::case::Case;
 use crate::geometry::Surface;
-use crate::scheme::{Fluid, Work};
+use crate::scheme::View;
 
 /// Pictures of one period of a motion.
 pub(crate) const FILM: u32 = 6;
@@ -18,13 +18,11 @@ pub(crate) struct Target<'a> {
 }
 
 /// What the pictures are drawn from.
-pub(crate) struct View<'a, const D: usize> {
+pub(crate) struct Scene<'a, const D: usize> {
     /// Where they go.
     pub(crate) to: Target<'a>,
-    /// Equations.
-    pub(crate) fluid: &'a Fluid<D>,
-    /// States and gradients.
-    pub(crate) work: &'a Work<D>,
+    /// The gas with its gradients.
+    pub(crate) view: View<'a, D>,
     /// Bodies.
     pub(crate) surface: Option<&'a Surface<D>>,
 }

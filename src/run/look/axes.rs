@@ -1,15 +1,15 @@
 //! Axes of loads, and the gas at one moment seen in them.
-use super::friction::add_friction_in;
+use super::friction::add_friction;
 use crate::case::Case;
 use crate::math::Vector;
 use crate::math::jet::Jet;
 use crate::math::sweep::sum;
 use crate::motion::BodyMotion;
-use crate::observe::loads::{Coefficients, Load, LoadAxes, pressure_load};
+use crate::observe::loads::{Coefficients, Load, LoadAxes};
 use crate::scheme::start::{free_stream, stream_axes};
-use crate::scheme::{Fluid, Frame, HasGas, Work};
+use crate::scheme::{Fluid, Frame, HasGas, View, Work};
 
-/// The gas at one moment.
+/// The gas at one moment, before it is looked at.
 #[derive(Clone, Copy)]
 pub(crate) struct GasView<'a, const D: usize> {
     /// Equations.
@@ -26,17 +26,30 @@ impl<'a, const D: usize> GasView<'a, D> {
         Self { fluid: system.gas(), frame: system.gas_frame(frame), state: system.gas_state(state) }
     }
 
+    /// Finds states and gradients.
+    pub(crate) fn seen<'b>(&self, work: &'b mut Work<D>) -> View<'b, D>
+    where
+        'a: 'b,
+    {
+        self.fluid.view(self.frame, self.state, work)
+    }
+
+    /// Finds states and what else wall forces need.
+    pub(crate) fn walls<'b>(&self, work: &'b mut Work<D>) -> View<'b, D>
+    where
+        'a: 'b,
+    {
+        self.fluid.fill_states(self.frame, self.state, work);
+        if self.fluid.viscous_model.is_some() {
+            self.fluid.fill_gradients(self.frame, work);
+        }
+        View::new(self.fluid, self.frame, work)
+    }
+
     /// Coefficients from wall pressure and friction; `None` without bodies.
     pub(crate) fn coefficients(&self, axes: &LoadFrame, work: &mut Work<D>) -> Option<Coefficients> {
-        let Self { fluid, frame, state } = self;
-        if fluid.discretisation.cloud.interface.is_empty() {
-            return None;
-        }
-        fluid.fill_states(frame, state, work);
-        if fluid.viscous_model.is_some() {
-            fluid.fill_gradients(frame, work);
-        }
-        Some(axes.coefficients_in(fluid, frame, work))
+        let bodies = !self.fluid.discretisation.cloud.interface.is_empty();
+        bodies.then(|| axes.coefficients(&self.walls(work)))
     }
 }
 
@@ -52,11 +65,9 @@ pub(crate) fn motion<const D: usize>(fluid: &Fluid<D>, time: f64, jets: &[Jet]) 
     })
 }
 
-/// Totals of mass, momentum and energy over the fluid particles.
-pub(crate) fn totals<const D: usize>(fluid: &Fluid<D>, u: &[f64]) -> Vec<f64> {
-    let n = D + 2;
-    let volume = fluid.volumes();
-    (0..n).map(|c| sum(fluid.discretisation.cloud.n_fluid, |i| volume[i] * u[i * n + c])).collect()
+/// Totals of the `n` conserved quantities over fluid particles with these volumes.
+pub(crate) fn totals(volume: &[f64], u: &[f64], n: usize) -> Vec<f64> {
+    (0..n).map(|c| sum(volume.len(), |i| volume[i] * u[i * n + c])).collect()
 }
 
 /// Load axes that still need the extent of the bodies.
@@ -71,9 +82,9 @@ pub(crate) fn load_axes(case: &Case) -> LoadFrame {
 }
 
 impl LoadFrame {
-    /// Axes for the bodies of `fluid`, in the units of the solver.
-    pub(crate) fn axes<const D: usize>(&self, fluid: &Fluid<D>) -> LoadAxes {
-        let bounds = crate::math::Bounds::around(fluid.walls_before());
+    /// Axes for the bodies in `view`, in the units of the solver: the point of the moment travels with the first body.
+    pub(crate) fn axes<const D: usize>(&self, view: &View<'_, D>) -> LoadAxes {
+        let bounds = crate::math::Bounds::around(view.fluid.walls_before());
         let extent = bounds.extent();
         let reference = &self.case.reference;
         // a body of which only a face across the stream lies in the domain is as long as that face is high
@@ -90,8 +101,7 @@ impl LoadFrame {
         if let Some(p) = &reference.moment_point {
             point = Vector::from_fn(|d| p.get(d).map_or(0.0, |l| l.0));
         }
-        // the point of the moment travels with the first body
-        let point = fluid.carried(0, &point);
+        let point = view.carried(0, &point);
         let (drag, lift) = stream_axes::<D>(&self.case);
         let speed = free_stream::<D>(&self.case).velocity.norm();
         LoadAxes {
@@ -104,30 +114,11 @@ impl LoadFrame {
         }
     }
 
-    /// The axes at the time of `frame`: the point of the moment travels with the first body.
-    pub(crate) fn axes_in<const D: usize>(&self, fluid: &Fluid<D>, frame: &Frame<D>) -> LoadAxes {
-        let mut axes = self.axes(fluid);
-        let carried =
-            fluid.cloud_motion.body(0, frame.time, &frame.jets).point(&Vector::from_fn(|d| axes.moment_point[d]));
-        axes.moment_point = carried.to_3d();
-        axes
-    }
-
-    /// Coefficients of all bodies from the wall states, and with friction the gradients, in `work`: those of `frame`.
-    pub(crate) fn coefficients_in<const D: usize>(
-        &self,
-        fluid: &Fluid<D>,
-        frame: &Frame<D>,
-        work: &Work<D>,
-    ) -> Coefficients {
-        let axes = self.axes_in(fluid, frame);
-        let (cloud, far) = (&frame.discretisation.cloud, fluid.far_field.pressure());
-        let mut load = Load::default();
-        for (i, wall) in cloud.interface_range().zip(&cloud.interface) {
-            let push = frame.to_inertial_axes(&(wall.area * (far - work.state[i].pressure)));
-            axes.add(&mut load, &frame.place(i).to_3d(), &push.to_3d());
-        }
-        add_friction_in(fluid, (frame, work), &axes, &mut load);
+    /// Coefficients of all bodies, from the wall states and with friction the gradients.
+    pub(crate) fn coefficients<const D: usize>(&self, view: &View<'_, D>) -> Coefficients {
+        let axes = self.axes(view);
+        let mut load = pressure_load(view, &axes, |_| true);
+        add_friction(view, &axes, |_| true, &mut load);
         axes.coefficients(&load)
     }
 }
@@ -141,19 +132,14 @@ pub(crate) fn rounded(extent: f64) -> f64 {
 }
 
 /// Load of the wall pressure on the interface particles chosen.
-pub(crate) fn wall_load<const D: usize>(
-    fluid: &Fluid<D>,
-    work: &Work<D>,
+pub(crate) fn pressure_load<const D: usize>(
+    view: &View<'_, D>,
     axes: &LoadAxes,
     chosen: impl Fn(usize) -> bool,
 ) -> Load {
-    let cloud = &fluid.discretisation.cloud;
-    let far = fluid.far_field.pressure();
-    let (mut points, mut areas, mut excess) = (Vec::new(), Vec::new(), Vec::new());
-    for (w, i) in cloud.interface_range().enumerate().filter(|(w, _)| chosen(*w)) {
-        points.push(cloud.x[i].to_3d());
-        areas.push(cloud.interface[w].area.to_3d());
-        excess.push(work.state[i].pressure - far);
+    let mut load = Load::default();
+    for (w, i) in view.cloud().interface_range().enumerate().filter(|(w, _)| chosen(*w)) {
+        axes.add(&mut load, &view.place(i).to_3d(), &view.pressure_force(w).to_3d());
     }
-    pressure_load(axes, &points, &areas, &excess)
+    load
 }

@@ -1,9 +1,8 @@
 //! The solution as plain tables in the units of the case.
 use crate::case::Case;
-use crate::math::Vector;
 use crate::physics::Primitive;
+use crate::scheme::View;
 use crate::scheme::start::free_stream;
-use crate::scheme::{Fluid, Work};
 
 /// Named columns over particles.
 #[derive(Clone, Debug, Default)]
@@ -47,23 +46,23 @@ pub(crate) fn pressure_coefficient<const D: usize>(q: &Primitive<D>, free: &Prim
 }
 
 /// All particles without images, with everything that a field file holds.
-pub(crate) fn field<const D: usize>(case: &Case, fluid: &Fluid<D>, work: &Work<D>) -> Snapshot {
-    let cloud = &fluid.discretisation.cloud;
+pub(crate) fn field<const D: usize>(case: &Case, view: &View<'_, D>) -> Snapshot {
+    let (cloud, gas) = (view.cloud(), view.fluid.gas);
     let n = cloud.n_real();
     let (free, units) = (free_stream::<D>(case), Units::of(case));
     let column = |f: &dyn Fn(usize) -> f64| (0..n).map(f).collect::<Vec<f64>>();
-    let state = &work.state;
+    let state: Vec<Primitive<D>> = (0..n).map(|i| view.state(i)).collect();
     let velocity = (0..n).flat_map(|i| (state[i].velocity * units.speed).to_3d()).collect();
     let kind = |i: usize| f64::from(u8::from(i >= cloud.n_fluid) + u8::from(i >= cloud.n_rows()));
-    let entropy = |i: usize| fluid.gas.entropy(&state[i]) / fluid.gas.entropy(&free) - 1.0;
+    let entropy = |i: usize| gas.entropy(&state[i]) / gas.entropy(&free) - 1.0;
     let level = |i: usize| (cloud.spacing[i]).log2();
     Snapshot {
-        points: cloud.x[..n].iter().map(Vector::to_3d).collect(),
+        points: (0..n).map(|i| view.place(i).to_3d()).collect(),
         columns: vec![
             ("density", 1, column(&|i| state[i].density * units.density)),
             ("velocity", 3, velocity),
             ("pressure", 1, column(&|i| state[i].pressure * units.pressure())),
-            ("mach", 1, column(&|i| state[i].velocity.norm() / fluid.gas.sound_speed(&state[i]))),
+            ("mach", 1, column(&|i| state[i].velocity.norm() / gas.sound_speed(&state[i]))),
             ("cp", 1, column(&|i| pressure_coefficient(&state[i], &free))),
             ("entropy", 1, column(&entropy)),
             ("spacing", 1, cloud.spacing[..n].to_vec()),

@@ -16,7 +16,7 @@ use crate::math::Vector;
 use crate::math::fourier::Series;
 use crate::motion::Motions;
 use crate::observe::loads::{Load, LoadAxes};
-use crate::scheme::{Fluid, Frame, Work};
+use crate::scheme::{Fluid, View, Work};
 
 /// Generalised force on one mode over a period.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -73,26 +73,25 @@ impl<const D: usize> ForceModes<D> {
         Some(Self { all: all?, follows, length: plan.reduced_length.map(|l| l.0), axes: load_axes(case) })
     }
 
-    /// Forces on all modes as the flow stands in `frame`, whose states and gradients are in `work`.
-    fn at(&self, fluid: &Fluid<D>, frame: &Frame<D>, work: &Work<D>) -> Vec<f64> {
-        let axes = self.axes.axes_in(fluid, frame);
-        let forces = wall_forces(fluid, frame, work);
+    /// Forces on all modes.
+    fn at(&self, view: &View<'_, D>) -> Vec<f64> {
+        let axes = self.axes.axes(view);
+        let forces = wall_forces(view);
         let chosen = || forces.iter().enumerate().filter(|(w, _)| self.follows[*w]);
         let length = self.length.unwrap_or(0.5 * axes.chord);
         let one = |(_, form): &(String, Form<D>)| {
             let work = match form {
                 Form::Plunge => chosen().map(|(_, (_, f))| length * f[D - 1]).sum::<f64>(),
                 Form::Pitch(pivot) => {
-                    let moment_point = fluid.cloud_motion.body(0, frame.time, &frame.jets).point(pivot).to_3d();
+                    let moment_point = view.carried(0, pivot).to_3d();
                     let axes = LoadAxes { moment_point, ..axes.clone() };
                     let mut load = Load::default();
                     chosen().for_each(|(_, (x, f))| axes.add(&mut load, &x.to_3d(), &f.to_3d()));
                     load.moment
                 }
                 Form::Bend(shifts) => {
-                    let body = |w: usize| usize::from(fluid.discretisation.cloud.interface[w].body);
-                    let turned =
-                        |w: usize| fluid.cloud_motion.body(body(w), frame.time, &frame.jets).direction(&shifts[w]);
+                    let body = |w: usize| usize::from(view.cloud().interface[w].body);
+                    let turned = |w: usize| view.carried_direction(body(w), &shifts[w]);
                     chosen().map(|(w, (_, f))| turned(w).dot(f)).sum()
                 }
             };
@@ -103,12 +102,7 @@ impl<const D: usize> ForceModes<D> {
 
     /// Forces on all modes at one moment.
     pub(crate) fn seen(&self, view: &GasView<'_, D>, work: &mut Work<D>) -> Vec<f64> {
-        let GasView { fluid, frame, state } = *view;
-        fluid.fill_states(frame, state, work);
-        if fluid.viscous_model.is_some() {
-            fluid.fill_gradients(frame, work);
-        }
-        self.at(fluid, frame, work)
+        self.at(&view.walls(work))
     }
 
     /// Mean and first harmonic of all forces, given at the instances of a period.
@@ -131,8 +125,6 @@ impl GeneralisedForce {
 }
 
 /// Places of the interface particles and the forces on them, in the axes of the case.
-fn wall_forces<const D: usize>(fluid: &Fluid<D>, frame: &Frame<D>, work: &Work<D>) -> Vec<(Vector<D>, Vector<D>)> {
-    let cloud = &frame.discretisation.cloud;
-    let one = |w: usize| (frame.place(cloud.n_fluid + w), fluid.wall_force(frame, work, w));
-    (0..cloud.interface.len()).map(one).collect()
+fn wall_forces<const D: usize>(view: &View<'_, D>) -> Vec<(Vector<D>, Vector<D>)> {
+    view.cloud().interface_range().enumerate().map(|(w, i)| (view.place(i), view.wall_force(w))).collect()
 }

@@ -5,8 +5,8 @@ use super::field::Units;
 use crate::case::Case;
 use crate::math::Vector;
 use crate::observe::loads::{Load, LoadAxes};
+use crate::scheme::View;
 use crate::scheme::start::{free_stream, stream_axes};
-use crate::scheme::{Fluid, Frame, Work};
 
 /// A place where friction on a wall turns against the stream.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -30,61 +30,36 @@ pub(crate) struct WallFriction {
     pub(crate) y_plus: f64,
 }
 
-/// Load of the viscous stress on the interface particles chosen; `fluid` stands in the axes of the case.
-pub(crate) fn friction_load<const D: usize>(
-    fluid: &Fluid<D>,
-    work: &Work<D>,
+/// Adds the load of the viscous stress on the interface particles chosen to `load`.
+pub(crate) fn add_friction<const D: usize>(
+    view: &View<'_, D>,
     axes: &LoadAxes,
     chosen: impl Fn(usize) -> bool,
-) -> Load {
-    let mut load = Load::default();
-    let cloud = &fluid.discretisation.cloud;
-    for w in (0..cloud.interface.len()).filter(|w| chosen(*w)) {
-        if let Some(at) = fluid.wall_slopes((cloud, fluid.walls_seen()), work, w) {
-            let force = at.stress * cloud.interface[w].area.norm();
-            axes.add(&mut load, &cloud.x[cloud.n_fluid + w].to_3d(), &force.to_3d());
-        }
-    }
-    load
-}
-
-/// Adds the load of the viscous stress as it stands in `frame` to `load`.
-pub(crate) fn add_friction_in<const D: usize>(
-    fluid: &Fluid<D>,
-    (frame, work): (&Frame<D>, &Work<D>),
-    axes: &LoadAxes,
     load: &mut Load,
 ) {
-    let cloud = &frame.discretisation.cloud;
-    for w in 0..cloud.interface.len() {
-        if let Some(at) = fluid.wall_slopes((cloud, &frame.walls), work, w) {
-            let force = frame.to_inertial_axes(&at.stress) * cloud.interface[w].area.norm();
-            axes.add(load, &frame.place(cloud.n_fluid + w).to_3d(), &force.to_3d());
+    let cloud = view.cloud();
+    for w in (0..cloud.interface.len()).filter(|w| chosen(*w)) {
+        if let Some(force) = view.friction_force(w) {
+            axes.add(load, &view.place(cloud.n_fluid + w).to_3d(), &force.to_3d());
         }
     }
 }
 
 /// Friction on every interface particle; `None` for an inviscid gas.
-pub(crate) fn wall_friction<const D: usize>(
-    case: &Case,
-    fluid: &Fluid<D>,
-    work: &Work<D>,
-) -> Option<Vec<WallFriction>> {
-    fluid.viscous_model.as_ref()?;
-    let (cloud, units) = (&fluid.discretisation.cloud, Units::of(case));
+pub(crate) fn wall_friction<const D: usize>(case: &Case, view: &View<'_, D>) -> Option<Vec<WallFriction>> {
+    view.fluid.viscous_model.as_ref()?;
+    let (cloud, units) = (view.cloud(), Units::of(case));
     let free = free_stream::<D>(case);
     let dynamic = (0.5 * free.density * free.velocity.norm_squared()).max(f64::MIN_POSITIVE);
     let stream = stream_axes::<D>(case).0;
     let at = |w: usize| {
-        let Some(found) = fluid.wall_slopes((cloud, fluid.walls_seen()), work, w) else {
-            return WallFriction::default();
-        };
-        let normal = &cloud.interface[w].normal;
-        let along = (stream - *normal * stream.dot(normal)).unit();
+        let Some(found) = view.wall_slopes(w) else { return WallFriction::default() };
+        let normal = view.normal(w);
+        let along = (stream - normal * stream.dot(&normal)).unit();
         WallFriction {
             cf: found.stress.dot(&along) / dynamic,
             heat_flux: found.heat * units.pressure() * units.speed,
-            y_plus: fluid.y_plus(cloud, work, w).unwrap_or_default(),
+            y_plus: view.y_plus(w).unwrap_or_default(),
         }
     };
     Some((0..cloud.interface.len()).map(at).collect())
@@ -94,16 +69,16 @@ pub(crate) fn wall_friction<const D: usize>(
 /// distances of the interface particles from the nose.
 pub(crate) fn separations<const D: usize>(
     case: &Case,
-    fluid: &Fluid<D>,
+    view: &View<'_, D>,
     friction: &[WallFriction],
     x_c: &[f64],
 ) -> Vec<Separation> {
-    let walls = &fluid.discretisation.cloud.interface;
+    let walls = &view.cloud().interface;
     let lift: Vector<D> = stream_axes::<D>(case).1;
     let mut found = Vec::new();
     let n_bodies = if D == 2 { walls.iter().map(|w| w.body + 1).max().unwrap_or(0) } else { 0 };
     for (body, upper) in (0..n_bodies).flat_map(|b| [(b, true), (b, false)]) {
-        let on_side = |w: &usize| walls[*w].body == body && (walls[*w].normal.dot(&lift) > 0.0) == upper;
+        let on_side = |w: &usize| walls[*w].body == body && (view.normal(*w).dot(&lift) > 0.0) == upper;
         let mut side: Vec<usize> = (0..walls.len()).filter(on_side).collect();
         side.sort_by(|a, b| x_c[*a].total_cmp(&x_c[*b]));
         for pair in side.windows(2) {

@@ -5,7 +5,7 @@ use crate::math::{Bounds, Vector};
 use crate::observe::loads::Balance as Sum;
 use crate::scheme::balance::{Balance, Part};
 use crate::scheme::probe::Probe;
-use crate::scheme::{Fluid, Work};
+use crate::scheme::{View, Work};
 use crate::system::System;
 
 /// What passes the zone around the bodies at the moment of `frame`; `None` without bodies. Fills `work`. A flow that
@@ -13,11 +13,11 @@ use crate::system::System;
 pub(crate) fn around<const D: usize>(
     case: &Case,
     axes: &LoadFrame,
-    view: &GasView<'_, D>,
+    gas: &GasView<'_, D>,
     work: &mut Work<D>,
     marches: bool,
 ) -> Option<Sum> {
-    let GasView { fluid, frame, state } = *view;
+    let GasView { fluid, frame, state } = *gas;
     if fluid.discretisation.cloud.interface.is_empty() {
         return None;
     }
@@ -26,11 +26,10 @@ pub(crate) fn around<const D: usize>(
         rate = vec![0.0; fluid.len()];
         fluid.rhs(frame, state, work, &mut rate);
     }
-    fluid.fill_states(frame, state, work);
-    fluid.fill_gradients(frame, work);
-    let balance = Balance::new(case, fluid, (frame, work))?;
+    let view = gas.seen(work);
+    let balance = Balance::new(case, view)?;
     let mut sum = Sum::default();
-    let axes = axes.axes_in(fluid, frame);
+    let axes = axes.axes(&view);
     let mut add = |p: Part<D>| {
         axes.add(&mut sum.load, &p.x.to_3d(), &p.force.to_3d());
         axes.turn(&mut sum.load, &p.carried[0].to_3d(), &p.carried[1].to_3d());
@@ -40,14 +39,12 @@ pub(crate) fn around<const D: usize>(
         sum.passed[1] += p.passed[1];
     };
     balance.parts(&rate).into_iter().for_each(&mut add);
-    let cut = cuts(case, fluid, &balance.zone.bounds());
+    let cut = cuts(case, &view, &balance.zone.bounds());
     if !cut.is_empty() {
-        let seen = fluid.seen(frame, work);
-        let (fluid, work) = seen.as_ref().map_or((fluid, &*work), |(fluid, work)| (fluid, work));
-        let probe = Probe::new(fluid, work, None);
+        let probe = Probe::new(view, None);
         for (axis, sign, region) in cut {
             let end = if sign < 0.0 { region.min[axis] } else { region.max[axis] };
-            tile(fluid, &region, (axis, end), &mut |x, size| {
+            tile(&view, &region, (axis, end), &mut |x, size| {
                 if let Some(q) = probe.at(&x) {
                     add(balance.side(x, &q, &(Vector::axis(axis) * (sign * size))));
                 }
@@ -59,8 +56,8 @@ pub(crate) fn around<const D: usize>(
 
 /// Sides of the domain that cut the zone: axis, direction outward, and the part of the zone that lies inside. What passes one
 /// of two periodic sides comes back through the other.
-fn cuts<const D: usize>(case: &Case, fluid: &Fluid<D>, zone: &Bounds<D>) -> Vec<(usize, f64, Bounds<D>)> {
-    let domain = fluid.reference().cloud.tree.bounds();
+fn cuts<const D: usize>(case: &Case, view: &View<'_, D>, zone: &Bounds<D>) -> Vec<(usize, f64, Bounds<D>)> {
+    let domain = view.reference().tree.bounds();
     let clamp = |v: &Vector<D>| Vector::from_fn(|d| v[d].clamp(domain.min[d], domain.max[d]));
     let region = Bounds { min: clamp(&zone.min), max: clamp(&zone.max) };
     let sides = (0..D).flat_map(|axis| [(axis, -1.0), (axis, 1.0)]);
@@ -76,12 +73,12 @@ fn cuts<const D: usize>(case: &Case, fluid: &Fluid<D>, zone: &Bounds<D>) -> Vec<
 
 /// Calls `f(middle, area)` for tiles of one face of a box, about half a local spacing wide.
 fn tile<const D: usize>(
-    fluid: &Fluid<D>,
+    view: &View<'_, D>,
     region: &Bounds<D>,
     (axis, end): (usize, f64),
     f: &mut dyn FnMut(Vector<D>, f64),
 ) {
-    let tree = &fluid.reference().cloud.tree;
+    let tree = &view.reference().tree;
     let mut stack = vec![*region];
     while let Some(b) = stack.pop() {
         let mut middle = b.centre();

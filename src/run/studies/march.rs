@@ -27,7 +27,7 @@ pub(crate) fn march<S: HasGas<D>, const D: usize>(
 ) -> Result<Option<Reached<S>>, RunError> {
     let mut begin = begin;
     if begin.0.iteration == 0 && log.record.start_totals.is_empty() {
-        log.record.start_totals = totals(solver.system.gas(), solver.system.gas_state(&begin.1));
+        log.record.start_totals = totals(&solver.system.gas().volumes(), solver.system.gas_state(&begin.1), D + 2);
     }
     loop {
         let system = &solver.system;

@@ -4,7 +4,7 @@ use super::super::look::{GasView, momentum};
 use super::super::record::crosscheck::{MOMENTS, Moment};
 use super::super::record::{Log, passed};
 use super::drive::{Now, Observer};
-use crate::scheme::{HasGas, Work};
+use crate::scheme::{HasGas, View, Work};
 use crate::time::{Standing, Step};
 
 /// Compares loads at equal parts of the period of a march.
@@ -27,7 +27,7 @@ impl<S: HasGas<D>, const D: usize> Observer<S> for CrossCheck<'_, S, D> {
 
 /// Keeps the loads of a moment, by both evaluations, as of an iteration.
 pub(crate) fn compare<const D: usize>(
-    view: &GasView<'_, D>,
+    gas: &GasView<'_, D>,
     work: &mut Work<D>,
     iteration: u64,
     time: f64,
@@ -36,8 +36,9 @@ pub(crate) fn compare<const D: usize>(
     if !log.compares_loads() {
         return Ok(());
     }
-    let Some(sum) = momentum::around(log.case, &log.axes, view, work, true) else { return Ok(()) };
-    let wall = log.axes.coefficients_in(view.fluid, view.frame, work);
-    let around = log.axes.axes_in(view.fluid, view.frame).coefficients(&sum.load);
+    let Some(sum) = momentum::around(log.case, &log.axes, gas, work, true) else { return Ok(()) };
+    let view = View::new(gas.fluid, gas.frame, work);
+    let wall = log.axes.coefficients(&view);
+    let around = log.axes.axes(&view).coefficients(&sum.load);
     log.compared(&Moment { iteration, time, wall, around })
 }

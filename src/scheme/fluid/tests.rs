@@ -38,12 +38,11 @@ fn with_cloud(body: &str, keys: &str) -> Fluid<2> {
     let (gas, isentropic, flux, limiter) = (Gas { gamma: 1.4 }, false, Flux::Hllc, Limiter::VanAlbada);
     let far_field = Arc::new(Still);
     let conservative = true;
-    let (before, viscous_model) = (None, None);
+    let viscous_model = None;
     Fluid {
         fields: Fluid::unknowns(&discretisation.cloud),
         discretisation,
         cloud_motion,
-        before,
         gas,
         isentropic,
         flux,

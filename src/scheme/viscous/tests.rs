@@ -2,6 +2,7 @@
 use super::*;
 use crate::case::read;
 use crate::run::build_solver;
+use crate::scheme::View;
 use crate::system::{Instant, System, Term};
 
 /// Gas in a box with a constant viscosity that a free stream of this Reynolds number has.
@@ -129,7 +130,8 @@ fn gas_that_turns_with_a_wall_does_not_rub_on_it() {
             }
             fluid.fill_gradients(&frame, &mut work);
             let mu = fluid.viscous_model.as_ref().unwrap().medium.viscosity;
-            let stress = |w: usize| fluid.wall_slopes((cloud, &frame.walls), &work, w).unwrap().stress.norm();
+            let view = View::new(&fluid, &frame, &work);
+            let stress = |w: usize| view.wall_slopes(w).unwrap().stress.norm();
             let worst = (0..cloud.interface.len()).map(stress).fold(0.0, f64::max) / (mu * 0.4);
             assert!(worst < 1e-6, "{layers} {particles}: {worst}");
         }

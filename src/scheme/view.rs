@@ -1,0 +1,149 @@
+//! The gas as it stands at a moment, for those who look: pictures, probes, loads, balances, checkpoints.
+//!
+//! A [`View`] ties the equations ([`Fluid`]), the cloud at a time ([`Frame`]) and the states on it ([`Work`]) together and
+//! answers in the axes of the case, whatever the axes of the frame: where particles are, what the gas does there and what it
+//! does to walls. It copies nothing and changes nothing. Of the cloud itself ([`View::cloud`]) only what does not depend on
+//! axes should be taken: lists, spacings, volumes, lengths.
+use super::discretisation::Frame;
+use super::fluid::{Fluid, Work};
+use super::viscous::{WallSlopes, lowest_two};
+use crate::cloud::Cloud;
+use crate::math::Vector;
+use crate::physics::Primitive;
+
+/// The gas at a moment.
+#[derive(Clone, Copy)]
+pub struct View<'a, const D: usize> {
+    /// The equations.
+    pub fluid: &'a Fluid<D>,
+    /// The cloud at the time.
+    pub frame: &'a Frame<D>,
+    /// States of all particles and, where slopes are asked for, their gradients, in the axes of the frame.
+    pub work: &'a Work<D>,
+}
+
+impl<const D: usize> Fluid<D> {
+    /// The gas with the state `u` in `frame`; fills `work`.
+    pub fn view<'a>(&'a self, frame: &'a Frame<D>, u: &[f64], work: &'a mut Work<D>) -> View<'a, D> {
+        self.fill_states(frame, u, work);
+        self.fill_gradients(frame, work);
+        View::new(self, frame, work)
+    }
+}
+
+impl<'a, const D: usize> View<'a, D> {
+    /// Looks at the states and gradients in `work`, which are those of `frame`.
+    pub fn new(fluid: &'a Fluid<D>, frame: &'a Frame<D>, work: &'a Work<D>) -> Self {
+        Self { fluid, frame, work }
+    }
+
+    /// Time.
+    pub fn time(&self) -> f64 {
+        self.frame.time
+    }
+
+    /// The cloud; places and directions in it are in the axes of the frame.
+    pub fn cloud(&self) -> &'a Cloud<D> {
+        &self.frame.discretisation.cloud
+    }
+
+    /// Particles before any motion.
+    pub fn reference(&self) -> &'a Cloud<D> {
+        &self.fluid.discretisation.cloud
+    }
+
+    /// Place of particle `i`.
+    pub fn place(&self, i: usize) -> Vector<D> {
+        self.frame.place(i)
+    }
+
+    /// Velocity of particle `i` itself.
+    pub fn velocity(&self, i: usize) -> Vector<D> {
+        self.frame.to_inertial_axes(&self.frame.velocity_of(i))
+    }
+
+    /// State at particle `i`.
+    #[inline]
+    pub fn state(&self, i: usize) -> Primitive<D> {
+        self.turned(&self.work.state[i])
+    }
+
+    /// A state in the axes of the frame, seen in those of the case.
+    #[inline]
+    pub fn turned(&self, q: &Primitive<D>) -> Primitive<D> {
+        Primitive { velocity: self.frame.to_inertial_axes(&q.velocity), ..*q }
+    }
+
+    /// Normal of interface particle `w`, into the gas.
+    pub fn normal(&self, w: usize) -> Vector<D> {
+        self.frame.to_inertial_axes(&self.cloud().interface[w].normal)
+    }
+
+    /// Area vector of interface particle `w`, into the gas.
+    pub fn area(&self, w: usize) -> Vector<D> {
+        self.frame.to_inertial_axes(&self.cloud().interface[w].area)
+    }
+
+    /// Force of the pressure beyond that of the far field on interface particle `w`.
+    pub fn pressure_force(&self, w: usize) -> Vector<D> {
+        let (cloud, far) = (self.cloud(), self.fluid.far_field.pressure());
+        self.frame.to_inertial_axes(&(cloud.interface[w].area * (far - self.work.state[cloud.n_fluid + w].pressure)))
+    }
+
+    /// Force of the viscous stress on interface particle `w`; `None` where the gas slides.
+    pub fn friction_force(&self, w: usize) -> Option<Vector<D>> {
+        Some(self.wall_slopes(w)?.stress * self.cloud().interface[w].area.norm())
+    }
+
+    /// Force of the gas on interface particle `w`: pressure beyond that of the far field, and friction (per unit span in 2-D).
+    pub fn wall_force(&self, w: usize) -> Vector<D> {
+        let cloud = self.cloud();
+        let wall = &cloud.interface[w];
+        let push = wall.area * (self.fluid.far_field.pressure() - self.work.state[cloud.n_fluid + w].pressure);
+        let rub = self.fluid.wall_slopes((cloud, self.work), w, self.frame.walls.get(w));
+        let rub = rub.map_or(Vector::ZERO, |at| at.stress * wall.area.norm());
+        self.frame.to_inertial_axes(&(push + rub))
+    }
+
+    /// Stress and heat on the wall of interface particle `w`; `None` where the gas slides.
+    pub fn wall_slopes(&self, w: usize) -> Option<WallSlopes<D>> {
+        let found = self.fluid.wall_slopes((self.cloud(), self.work), w, self.frame.walls.get(w))?;
+        Some(WallSlopes { stress: self.frame.to_inertial_axes(&found.stress), ..found })
+    }
+
+    /// Distance of the first particle from the wall in viscous lengths, y⁺ = η √(ρ |τ|)/μ; `None` where the gas slides.
+    pub fn y_plus(&self, w: usize) -> Option<f64> {
+        let (gas, cloud) = (&self.fluid.gas, self.cloud());
+        let stress = self.wall_slopes(w)?.stress.norm();
+        let height = lowest_two(cloud, w).map_or(cloud.spacing[cloud.n_fluid + w], |(_, heights)| heights[0]);
+        let wall = &self.work.state[cloud.n_fluid + w];
+        let viscosity = self.fluid.viscous_model.as_ref()?.medium.at(gas.temperature(wall));
+        Some(height * (wall.density * stress).sqrt() / viscosity)
+    }
+
+    /// The place before any motion of what is at `x`.
+    pub fn origin(&self, x: &Vector<D>) -> Vector<D> {
+        let unmoved = || self.fluid.cloud_motion.origin(x, self.frame.time, &self.frame.jets);
+        self.frame.turn.as_ref().map_or_else(unmoved, |pose| pose.inverse_point(x))
+    }
+
+    /// The point `x` in the axes of the frame.
+    pub(super) fn in_frame(&self, x: &Vector<D>) -> Vector<D> {
+        self.frame.turn.as_ref().map_or(*x, |pose| pose.inverse_point(x))
+    }
+
+    /// Where the point `x` of body number `body`, as that stood before any motion, is.
+    pub fn carried(&self, body: usize, x: &Vector<D>) -> Vector<D> {
+        self.fluid.cloud_motion.body(body, self.frame.time, &self.frame.jets).point(x)
+    }
+
+    /// A direction on body number `body`, as that stood before any motion.
+    pub fn carried_direction(&self, body: usize, v: &Vector<D>) -> Vector<D> {
+        self.fluid.cloud_motion.body(body, self.frame.time, &self.frame.jets).direction(v)
+    }
+
+    /// Volumes for totals and means, see [`Fluid::volumes`].
+    pub fn volumes(&self) -> Vec<f64> {
+        self.fluid.volumes_of(self.cloud())
+    }
+}
