@@ -42,6 +42,9 @@ const NARROW: [(&str, &[&str]); 9] = [
     ("verify", &["math", "case", "exact"]),
 ];
 
+/// Modules whose files use one another one way only.
+const ONE_WAY: [&str; 1] = ["scheme"];
+
 /// Who may open files.
 const OPENS_FILES: [&str; 7] = [
     "src/case/",
@@ -193,6 +196,41 @@ fn modules_use_lower_floors_only() {
     }
     assert_none(&problems, "a module may use strictly lower floors only (ARCHITECTURE.md)");
     assert_eq!(uses("use crate::{a::B, c::{d, e}, f}; crate::g::h()"), ["a", "c", "f", "g"]);
+}
+
+/// Files of `module` that each of its files names after `super::`.
+fn uses_within(module: &str) -> BTreeMap<String, Vec<String>> {
+    let folder = format!("src/{module}");
+    let name = |path: &str| path.trim_start_matches(&format!("{folder}/")).trim_end_matches(".rs").to_owned();
+    let all: Vec<String> = files(&folder, ".rs").iter().map(|p| name(p)).collect();
+    let of = |path: &String| {
+        let text = code(path);
+        let named = text.split("super::").skip(1).map(|t| t.split(|c: char| c != '_' && !c.is_alphanumeric()).next());
+        let others = named.flatten().filter(|m| all.iter().any(|n| n == m) && *m != name(path));
+        (name(path), others.map(str::to_owned).collect())
+    };
+    files(&folder, ".rs").iter().map(of).collect()
+}
+
+#[test]
+fn files_of_a_module_form_no_circle() {
+    for module in ONE_WAY {
+        let mut left = uses_within(module);
+        // take away what uses nothing that is left, until nothing is
+        loop {
+            let free: Vec<String> =
+                left.keys().filter(|k| !left[*k].iter().any(|u| left.contains_key(u))).cloned().collect();
+            if free.is_empty() {
+                break;
+            }
+            free.iter().for_each(|k| drop(left.remove(k)));
+        }
+        assert!(
+            left.is_empty(),
+            "files of `{module}` that use one another in a circle, or what does: {:?}",
+            left.keys()
+        );
+    }
 }
 
 #[test]

@@ -141,7 +141,7 @@ fn crevices_are_repaired_in_words() {
     let (cloud, diagnosis) = check::<2>(text);
     assert!(cloud.notes.iter().any(|n| n.contains("first order")) && diagnosis.repairs == cloud.notes);
     assert!(diagnosis.notes.iter().any(|n| n.contains("face another wall")), "{:?}", diagnosis.notes);
-    let fits = crate::scheme::boundary::WallFits::new(&cloud);
+    let fits = crate::scheme::wall_fits::WallFits::new(&cloud);
     assert!(fits.n_linear > 0);
 }
 

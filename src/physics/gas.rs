@@ -46,12 +46,28 @@ impl<const D: usize> Conserved<D> {
         Self { density: row[0], momentum: Vector::from_fn(|d| row[1 + d]), energy: row[D + 1] }
     }
 
+    /// Reads particle `i` of all of them.
+    #[inline(always)]
+    pub fn of_row(rows: &[f64], i: usize) -> Self {
+        Self::load(&rows[i * super::n_variables(D)..])
+    }
+
     /// Writes one particle to a flat slice.
     #[inline(always)]
     pub fn store(&self, row: &mut [f64]) {
         row[0] = self.density;
         row[1..=D].copy_from_slice(&self.momentum.0);
         row[D + 1] = self.energy;
+    }
+
+    /// Adds it to one particle in a flat slice.
+    #[inline(always)]
+    pub fn add_to(&self, row: &mut [f64]) {
+        row[0] += self.density;
+        for d in 0..D {
+            row[1 + d] += self.momentum[d];
+        }
+        row[D + 1] += self.energy;
     }
 
     /// self + s·other.

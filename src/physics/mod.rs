@@ -6,3 +6,9 @@ pub mod viscous;
 
 pub use gas::{Conserved, Gas, Primitive};
 pub use viscous::Newtonian;
+
+/// Unknowns of a particle in `dimension` dimensions: density, momentum and energy.
+#[inline(always)]
+pub const fn n_variables(dimension: usize) -> usize {
+    dimension + 2
+}

@@ -9,6 +9,7 @@ use crate::geometry::Surface;
 use crate::math::{Bounds, Vector};
 use crate::observe::loads::{Balance, Coefficients, Load, LoadAxes, together};
 use crate::observe::usage::peak_bytes;
+use crate::physics::n_variables;
 use crate::scheme::start::free_stream;
 use crate::scheme::{Fluid, View};
 use crate::system::System;
@@ -69,7 +70,7 @@ pub(crate) fn bytes_of<const D: usize>(fluid: &Fluid<D>, integrator: usize) -> u
     let cloud = &fluid.discretisation.cloud;
     let rows = cloud.neighbours.index.len() * 4 + cloud.neighbours.first.len() * 4;
     let points = cloud.len() * (8 * D + 8 + 8) + cloud.n_fluid * 8;
-    let states = cloud.len() * (8 * (D + 2) + 8 * D * (D + 2)) + 2 * 8 * fluid.len();
+    let states = cloud.len() * (8 * n_variables(D) + 8 * D * n_variables(D)) + 2 * 8 * fluid.len();
     rows + points + states + fluid.discretisation.operators.bytes() + fluid.discretisation.walls.bytes() + integrator
 }
 
@@ -80,7 +81,7 @@ fn last_change(cycles: &[[f64; 5]]) -> Option<Coefficients> {
 
 /// Relative change of the totals of a march.
 fn drift<const D: usize>(view: &View<'_, D>, state: &[f64], start: &[f64]) -> Ledger {
-    let end = totals(&view.volumes(), state, D + 2);
+    let end = totals(&view.volumes(), state, n_variables(D));
     if start.len() != end.len() {
         return Ledger::default();
     }

@@ -14,6 +14,7 @@ use crate::cloud::Diagnosis;
 use crate::geometry::dimension;
 use crate::observe::table::write_json;
 use crate::observe::vtk::{Column, write_points};
+use crate::physics::n_variables;
 use crate::scheme::View;
 use crate::system::{Instant, System};
 
@@ -108,7 +109,7 @@ fn integrator_bytes<const D: usize>(case: &Case, fluid: &crate::scheme::Fluid<D>
     if !recipe::is_implicit(case) {
         return 3 * 8 * n;
     }
-    let block = D + 2;
+    let block = n_variables(D);
     let entries = fluid.discretisation.cloud.neighbours.index.len() + fluid.discretisation.cloud.n_fluid;
     8 * entries * block * block * 4 / 6 + 4 * 17 * n + 8 * 8 * n
 }

@@ -113,7 +113,7 @@ impl<'a, const D: usize> Balance<'a, D> {
         let volume = self.view.fluid.volumes();
         let first = self.view.fluid.discretisation.cloud.interface.len();
         let gathered = |i: usize| {
-            let own = if rate.is_empty() { Conserved::ZERO } else { Conserved::load(&rate[i * (D + 2)..]) };
+            let own = if rate.is_empty() { Conserved::ZERO } else { Conserved::of_row(rate, i) };
             own.momentum - self.free.velocity * own.density + self.momentum(i) * spread.get(i).map_or(0.0, |s| s.1)
         };
         let volume = |i: usize| volume[i] * spread.get(i).map_or(1.0, |s| s.0);

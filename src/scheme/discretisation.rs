@@ -1,114 +1,24 @@
-//! The cloud at one time, and how it gets there.
+//! How the cloud gets where it is at a time.
 //!
-//! A [`Discretisation`] is what the scheme knows of the cloud: positions, weights, fits at the walls. A [`Frame`] is the shape at a
-//! time with the velocities of its particles. A cloud at rest shares one shape for ever; a rigid one keeps it and turns the
-//! axes that states are looked at in; any other motion moves the particles and fits their weights anew on the same lists.
+//! A cloud at rest shares one shape for ever; a rigid one keeps it and turns the axes that states are looked at in; any other
+//! motion moves the particles and fits their weights anew on the same lists.
 //!
 //! Velocities come from positions: with the difference formula that time marching or harmonic balance applies to the state,
 //! w = Σ c_k x(t_k), or, within a step of an explicit method, along straight lines x = (1 − θ) x(t) + θ x(t + Δt). Uniform
 //! flow and a linear field at rest are then kept to round-off, whatever the motion.
 use std::sync::Arc;
 
-use super::boundary::{WallFits, WallMotion};
 use super::deforming_surface::DeformingSurface;
+use super::frame::{Discretisation, Frame};
 use super::travel::Travel;
-use crate::cloud::{Cloud, Operators};
+use super::wall_fits::WallFits;
+use super::wall_motion::{WallMotion, rotation_rate};
 use crate::math::Vector;
 use crate::math::jet::Jet;
 use crate::math::square::times;
 use crate::math::sweep::{sweep, sweep_slots};
 use crate::motion::{BodyMotion, RigidPose, positions};
-use crate::physics::Primitive;
 use crate::system::{Instant, Rate, Term};
-
-/// The cloud with the operators that follow from positions.
-#[derive(Clone, Debug)]
-pub struct Discretisation<const D: usize> {
-    /// Particles.
-    pub cloud: Cloud<D>,
-    /// Weights and edges.
-    pub operators: Operators<D>,
-    /// Fits of the interface particles.
-    pub walls: WallFits,
-}
-
-impl<const D: usize> Discretisation<D> {
-    /// Fits all weights of a cloud.
-    pub fn new(cloud: Cloud<D>, operators: Operators<D>) -> Self {
-        let walls = WallFits::new(&cloud);
-        Self { cloud, operators, walls }
-    }
-}
-
-/// What depends on time but is not evolved.
-#[derive(Clone, Debug)]
-pub struct Frame<const D: usize> {
-    /// Time.
-    pub time: f64,
-    /// The cloud in the axes that states are looked at in.
-    pub discretisation: Arc<Discretisation<D>>,
-    /// From those axes to those of the case, when they differ.
-    pub turn: Option<RigidPose<D>>,
-    /// Velocities of all particles in the axes of `discretisation`; empty when nothing moves.
-    pub velocity: Arc<Vec<Vector<D>>>,
-    /// Spin and acceleration of the wall at each interface particle; empty when nothing moves.
-    pub walls: Arc<Vec<WallMotion<D>>>,
-    /// How fluid particles that travel go through the step; empty for all others.
-    pub lagrangian_step: LagrangianStep<D>,
-    /// Coordinates of bodies that are unknowns, with rates and accelerations; empty where all motion is prescribed.
-    pub jets: Vec<Jet>,
-    /// States that sides hold, in the axes of the case: at each outer particle, at its source and behind that.
-    pub outer: Vec<[Primitive<D>; 3]>,
-}
-
-impl<const D: usize> Frame<D> {
-    /// Velocity of particle `i`.
-    #[inline(always)]
-    pub fn velocity_of(&self, i: usize) -> Vector<D> {
-        if self.velocity.is_empty() { Vector::ZERO } else { self.velocity[i] }
-    }
-
-    /// True when particles move.
-    #[inline(always)]
-    pub fn moves(&self) -> bool {
-        !self.velocity.is_empty()
-    }
-
-    /// A direction in the axes of `discretisation`, seen in those of the case.
-    #[inline(always)]
-    pub fn to_inertial_axes(&self, v: &Vector<D>) -> Vector<D> {
-        self.turn.as_ref().map_or(*v, |t| t.direction(v))
-    }
-
-    /// A direction in the axes of the case, seen in those of `discretisation`.
-    #[inline(always)]
-    pub fn to_body_axes(&self, v: &Vector<D>) -> Vector<D> {
-        self.turn.as_ref().map_or(*v, |t| t.inverse_direction(v))
-    }
-
-    /// Place of particle `i` in the axes of the case.
-    pub fn place(&self, i: usize) -> Vector<D> {
-        let x = &self.discretisation.cloud.x[i];
-        self.turn.as_ref().map_or(*x, |t| t.point(x))
-    }
-}
-
-/// How fluid particles that travel go through a step.
-#[derive(Clone, Debug, Default)]
-pub struct LagrangianStep<const D: usize> {
-    /// True once they have chosen where they go; until then they stand where the step before led.
-    pub off: bool,
-    /// Time at which the step began.
-    pub since: f64,
-    /// Where they were then.
-    pub base: Arc<Vec<Vector<D>>>,
-    /// Their straight course in it.
-    pub course: Arc<Vec<Vector<D>>>,
-    /// Their course in the step before.
-    pub before: Arc<Vec<Vector<D>>>,
-    /// Velocities of all particles when the step began.
-    pub velocity: Arc<Vec<Vector<D>>>,
-}
 
 /// Where particle number `i`, at `x` before any motion, is at one time.
 pub type Places<'a, const D: usize> = Box<dyn Fn(usize, &Vector<D>) -> Vector<D> + Send + Sync + 'a>;
@@ -292,16 +202,6 @@ fn jets(at: &Instant<'_>) -> Vec<Jet> {
 /// Where a body is at a time of a formula.
 fn pose_of<const D: usize>(law: &BodyMotion<D>, term: &Term<'_>) -> RigidPose<D> {
     law.momentary(term.time, &positions(term.coordinates)).pose(term.time)
-}
-
-/// ∂w/∂x of the rigid part of a motion in the axes of the case: Ṙ Rᵀ.
-pub(super) fn rotation_rate<const D: usize>(law: &BodyMotion<D>, t: f64) -> [Vector<D>; D] {
-    let pose = law.pose(t);
-    let velocity = |x: &Vector<D>| law.kinematics_of(t, x, &[]).velocity;
-    let base = velocity(&Vector::ZERO);
-    let rates: [Vector<D>; D] = std::array::from_fn(|k| velocity(&Vector::axis(k)) - base);
-    // rates[k] is column k of Ṙ
-    std::array::from_fn(|i| Vector::from_fn(|j| (0..D).map(|k| rates[k][i] * pose.rotation[j][k]).sum()))
 }
 
 /// Moves the particles and fits their weights anew.

@@ -8,12 +8,12 @@
 //! S_E = (c/h) (p∞ (ρ/ρ∞)^γ − p)/(γ − 1).
 //!
 //! In smooth flow the equation of energy asks for the same, so that S_E is as small as the error of the scheme.
-use super::discretisation::Frame;
-use super::fluid::{Fluid, Work, add};
+use super::fluid::{Fluid, Work};
+use super::frame::Frame;
 use crate::math::Vector;
 use crate::math::block_matrix::Rows;
 use crate::math::sweep::sweep_rows;
-use crate::physics::Conserved;
+use crate::physics::{Conserved, n_variables};
 
 impl<const D: usize> Fluid<D> {
     /// Rate c/h of particle `i`.
@@ -28,11 +28,11 @@ impl<const D: usize> Fluid<D> {
 
     /// Adds S_E to the rate of change of every fluid particle.
     pub(super) fn hold_entropy(&self, frame: &Frame<D>, work: &Work<D>, du: &mut [f64]) {
-        sweep_rows(du, D + 2, |i, row| {
+        sweep_rows(du, n_variables(D), |i, row| {
             let q = &work.state[i];
             let missing = (self.held_pressure(q.density) - q.pressure) / (self.gas.gamma - 1.0);
             let energy = self.drawn(frame, work, i) * missing;
-            add(row, &Conserved { density: 0.0, momentum: Vector::<D>::ZERO, energy });
+            Conserved { density: 0.0, momentum: Vector::<D>::ZERO, energy }.add_to(row);
         });
     }
 

@@ -5,20 +5,19 @@
 //! the row with the mirror that removes the normal velocity.
 use multiversion::multiversion;
 
-use super::discretisation::Frame;
-use super::fluid::{Fluid, Work, half_face};
+use super::block::Block;
+use super::edge_flux::half_face;
+use super::fluid::{Fluid, Work};
+use super::frame::Frame;
 use super::viscous::WallCondition;
 use crate::cloud::Edge;
 use crate::math::Vector;
 use crate::math::block_matrix::{BlockMatrix, Rows};
 use crate::physics::riemann::rounded;
-use crate::physics::{Gas, Primitive};
+use crate::physics::{Gas, Primitive, n_variables};
 
 /// Fraction of the sound speed below which eigenvalues are rounded: keeps diagonal blocks invertible where the flow stops.
 const ROUNDING: f64 = 0.1;
-
-/// A dense block, row-major, of order D + 2 ≤ 5.
-pub(super) type Block = [[f64; 5]; 5];
 
 /// ∂(F·n)/∂U at the state `q`.
 #[inline(always)]
@@ -74,8 +73,8 @@ pub fn dissipation_matrix<const D: usize>(gas: &Gas, q: &Primitive<D>, n: &Vecto
     carry[e] = h;
     push[e] = vn;
     let mut m = [[0.0; 5]; 5];
-    for r in 0..D + 2 {
-        for k in 0..D + 2 {
+    for r in 0..n_variables(D) {
+        for k in 0..n_variables(D) {
             m[r][k] = a * (carry[r] * pressure[k] / (c * c) + push[r] * normal[k])
                 + b * (push[r] * pressure[k] + carry[r] * normal[k]);
         }
@@ -94,7 +93,7 @@ pub fn assemble<const D: usize>(fluid: &Fluid<D>, frame: &Frame<D>, work: &Work<
                 let i = face.i as usize;
                 let half = half_face(cloud.volume[i], &face.area);
                 let mut push = wall_jacobian(&fluid.gas, &work.state[i], &half);
-                (0..D + 2).for_each(|k| push[k][k] += frame.velocity_of(face.wall as usize).dot(&half));
+                (0..n_variables(D)).for_each(|k| push[k][k] += frame.velocity_of(face.wall as usize).dot(&half));
                 rows.add(i, i, |r, c| 2.0 * push[r][c]);
             }
             fluid.add_viscous_walls((frame, work), op.wall_faces(k), rows);
@@ -162,15 +161,15 @@ fn one_sided<const D: usize>(
     let swept = frame.velocity_of(row).dot(&end.passed);
     let mut own = flux_jacobian(&fluid.gas, &work.state[row], &end.face);
     let mut other = flux_jacobian(&fluid.gas, &work.state[column], &end.face);
-    for r in 0..D + 2 {
+    for r in 0..n_variables(D) {
         own[r][r] -= swept;
         other[r][r] -= swept;
-        for c in 0..D + 2 {
+        for c in 0..n_variables(D) {
             own[r][c] = scale * spread[r][c] - own[r][c] + end.exchange * layers.0[r][c];
             other[r][c] -= scale * spread[r][c] + end.exchange * layers.1[r][c];
         }
     }
-    rows.add_sized(D + 2, (row, row), |r, c| own[r][c]);
+    rows.add_sized(n_variables(D), (row, row), |r, c| own[r][c]);
     couple(fluid, rows, (frame, work), (row, column), |r, c| other[r][c]);
 }
 
@@ -185,7 +184,7 @@ pub(super) fn couple<const D: usize>(
 ) {
     let cloud = &frame.discretisation.cloud;
     if column < cloud.n_fluid {
-        rows.add_sized(D + 2, (row, column), coupling);
+        rows.add_sized(n_variables(D), (row, column), coupling);
     } else if cloud.interface_range().contains(&column) {
         let wall = &cloud.interface[column - cloud.n_fluid];
         let slips = fluid.viscous_model.as_ref().is_none_or(|f| f.wall_condition(wall.body) == WallCondition::Slip);

@@ -4,15 +4,15 @@
 //! one goes on to serve while the cloud turns. Where a system reaches across the cloud, sweeps on a hierarchy of levels
 //! ([`crate::math::multilevel`]); where the term of time couples what is near, an incomplete factorisation
 //! ([`crate::math::incomplete`]). For all instances of a period at once, sweeps harmonic by harmonic.
-use crate::math::Vector;
 use crate::math::block_matrix::BlockMatrix;
 use crate::math::incomplete::Incomplete;
 use crate::math::multilevel::Multilevel;
 use crate::math::sweep::sweep_rows;
+use crate::physics::n_variables;
 use crate::system::{Hierarchy, Implicit, Period, Preconditioner, Reach, RightHandSide, Shift};
 
-use super::discretisation::Frame;
 use super::fluid::{Fluid, Work};
+use super::frame::Frame;
 
 /// The linearisation of a gas, and what approximates its inverse.
 pub struct FluidPreconditioner {
@@ -27,7 +27,7 @@ impl<const D: usize> Implicit for Fluid<D> {
     type Preconditioner = FluidPreconditioner;
 
     fn preconditioner(&self, plan: &Hierarchy, period: Option<Period>) -> FluidPreconditioner {
-        let (discretisation, block) = (&self.discretisation, D + 2);
+        let (discretisation, block) = (&self.discretisation, n_variables(D));
         let neighbours = &discretisation.cloud.neighbours;
         let parts = discretisation.operators.fluid_parts();
         let matrix = BlockMatrix::new(block, parts, &neighbours.first, &neighbours.index);
@@ -66,12 +66,12 @@ impl<const D: usize> Preconditioner<Fluid<D>> for FluidPreconditioner {
     }
 
     fn apply(&mut self, _: &Fluid<D>, frames: &[&Frame<D>], r: &RightHandSide<'_>, z: &mut [f64]) {
-        let (block, turns) = (D + 2, frames.iter().any(|f| f.turn.is_some()));
+        let (block, turns) = (n_variables(D), frames.iter().any(|f| f.turn.is_some()));
         let width = block * frames.len();
         let right = |i: usize, row: &mut [f32]| {
             r.row(i, i * width, row);
             if turns {
-                row.chunks_exact_mut(block).zip(frames).for_each(|(row, frame)| to_body_axes(frame, row));
+                row.chunks_exact_mut(block).zip(frames).for_each(|(row, frame)| frame.momentum_to_body_axes(row));
             }
         };
         match self.reach {
@@ -80,28 +80,12 @@ impl<const D: usize> Preconditioner<Fluid<D>> for FluidPreconditioner {
         }
         if turns {
             sweep_rows(z, width, |_, row| {
-                row.chunks_exact_mut(block).zip(frames).for_each(|(row, frame)| to_inertial_axes(frame, row));
+                row.chunks_exact_mut(block).zip(frames).for_each(|(row, frame)| frame.momentum_to_inertial_axes(row));
             });
         }
     }
 
     fn bytes(&self) -> usize {
         self.levels.bytes() + self.factors.bytes()
-    }
-}
-
-/// Brings the unknowns of a particle into the axes of a rigid cloud.
-fn to_body_axes<const D: usize>(frame: &Frame<D>, row: &mut [f32]) {
-    if frame.turn.is_some() {
-        let momentum = frame.to_body_axes(&Vector::from_fn(|d| f64::from(row[1 + d])));
-        (0..D).for_each(|d| row[1 + d] = momentum[d] as f32);
-    }
-}
-
-/// Brings the momentum of a particle from the axes of a rigid cloud to those of the case.
-pub(super) fn to_inertial_axes<const D: usize>(frame: &Frame<D>, row: &mut [f64]) {
-    if frame.turn.is_some() {
-        let momentum = frame.to_inertial_axes(&Vector::from_fn(|d| row[1 + d]));
-        row[1..=D].copy_from_slice(&momentum.0);
     }
 }

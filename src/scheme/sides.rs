@@ -3,8 +3,8 @@
 //! A side holds a state: that of the far field, or that of the start. What differs from it near the side leaves as waves do
 //! ([`crate::physics::outgoing`]): the disturbance of the last particle is continued along the line through it and the one
 //! behind it, and the part of it that moves outwards is added to what is held.
-use super::discretisation::Frame;
 use super::fluid::Fluid;
+use super::frame::Frame;
 use crate::case::Side;
 use crate::physics::Primitive;
 use crate::physics::outgoing::outgoing;

@@ -1,5 +1,6 @@
 //! Fields at the start, states held on the boundary, and the far field.
 use super::fluid::FarField;
+pub use super::fluid::Field;
 use crate::case::{Case, Initial};
 use crate::exact::GasState;
 use crate::exact::ringleb::Ringleb;
@@ -7,9 +8,6 @@ use crate::exact::vortex::IsentropicVortex;
 use crate::exact::vortex_far_field::FarFieldVortex;
 use crate::math::Vector;
 use crate::physics::Primitive;
-
-/// A field of states.
-pub type Field<const D: usize> = std::sync::Arc<dyn Fn(&Vector<D>) -> Primitive<D> + Send + Sync>;
 
 /// Why a field cannot be set up.
 #[derive(Debug, thiserror::Error)]

@@ -13,7 +13,7 @@ use crate::cloud::travel::{NEW, Recloud};
 use crate::cloud::{Cloud, CloudError};
 use crate::math::Vector;
 use crate::math::least_squares::Fit;
-use crate::physics::Conserved;
+use crate::physics::{Conserved, n_variables};
 
 /// Sum of absolute weights above which a fit of a state is replaced by one of lower degree.
 const LARGEST_AMPLIFICATION: f64 = 3.0;
@@ -62,7 +62,7 @@ type Sample<const D: usize> = (Vector<D>, Conserved<D>);
 impl<const D: usize> Transfer<'_, D> {
     pub(super) fn state(&self, ledger: &mut RemapLedger) -> Result<Vec<f64>, CloudError> {
         let cloud = &self.recloud.cloud;
-        let n = D + 2;
+        let n = n_variables(D);
         let mut u = vec![0.0; n * cloud.n_fluid];
         let from = &self.recloud.from;
         crate::math::sweep::sweep_rows(&mut u, n, |i, row| match from[i] {
@@ -94,7 +94,7 @@ impl<const D: usize> Transfer<'_, D> {
             let (x, mut shares): (Vec<Vector<D>>, Vec<Share>) =
                 self.near(i).into_iter().filter_map(|j| share(j as usize)).map(|(x, s)| (x - cloud.x[i], s)).unzip();
             let mut weights = Vec::new();
-            for (degree, least) in [(1 + D, D + 2), (1, 1)] {
+            for (degree, least) in [(1 + D, n_variables(D)), (1, 1)] {
                 if x.len() >= least && weigh(&x, cloud.spacing[i], degree, &mut weights) {
                     shares.iter_mut().zip(&weights).for_each(|(s, w)| s.weight = *w);
                     break;
@@ -125,7 +125,7 @@ impl<const D: usize> Transfer<'_, D> {
     /// A state of steps ago, known as `then` on the cloud before, on the renewed one, where the state now is `now`: new
     /// particles changed as those around them did. None of none.
     pub(super) fn past(&self, then: &[f64], now: &[f64], lines: &[Vec<Share>]) -> Vec<f64> {
-        let n = D + 2;
+        let n = n_variables(D);
         let load = |u: &[f64], k: usize| Conserved::<D>::load(&u[k * n..]);
         let change = |s: &Share| {
             let mut change = load(self.before, s.from).plus(-1.0, &load(then, s.from));
@@ -150,7 +150,7 @@ impl<const D: usize> Transfer<'_, D> {
 
     /// Adds to the account of what was done.
     fn count(&self, inserted: u64, ledger: &mut RemapLedger) {
-        let n = D + 2;
+        let n = n_variables(D);
         ledger.renewals += 1;
         ledger.inserted += inserted;
         ledger.removed += self.recloud.removed.len() as u64;
@@ -221,7 +221,7 @@ impl<const D: usize> Transfer<'_, D> {
         let quadratic = 1 + D + D * (D + 1) / 2;
         let x: Vec<Vector<D>> = samples.iter().map(|s| s.0).collect();
         let mut weights = Vec::new();
-        for (degree, least) in [(quadratic, quadratic + SPARE_ROWS), (1 + D, D + 2), (1, 1)] {
+        for (degree, least) in [(quadratic, quadratic + SPARE_ROWS), (1 + D, n_variables(D)), (1, 1)] {
             if samples.len() < least {
                 continue;
             }

@@ -4,9 +4,10 @@
 //! answers in the axes of the case, whatever the axes of the frame: where particles are, what the gas does there and what it
 //! does to walls. It copies nothing and changes nothing. Of the cloud itself ([`View::cloud`]) only what does not depend on
 //! axes should be taken: lists, spacings, volumes, lengths.
-use super::discretisation::Frame;
 use super::fluid::{Fluid, Work};
-use super::viscous::{WallSlopes, lowest_two};
+use super::frame::Frame;
+use super::viscous::WallSlopes;
+use super::wall_fits::lowest_two;
 use crate::cloud::Cloud;
 use crate::math::Vector;
 use crate::physics::Primitive;

@@ -6,8 +6,9 @@
 use crate::math::square::determinant;
 use crate::system::Fault;
 
-use super::discretisation::{CloudMotion, Frame};
+use super::discretisation::CloudMotion;
 use super::fluid::Fluid;
+use super::frame::Frame;
 
 /// Least part of its volume to which the surroundings of a particle may shrink.
 const LEAST: f64 = 0.05;

@@ -4,7 +4,7 @@ use crate::cloud::{Cloud, Diagnosis, Operators};
 use crate::geometry::load_surface;
 use crate::math::Vector;
 use crate::physics::Primitive;
-use crate::scheme::boundary::WallFits;
+use crate::scheme::wall_fits::WallFits;
 use crate::system::{Instant, System};
 
 fn build(body: &str, rest: &str) -> Cloud<2> {

@@ -21,7 +21,7 @@ use crate::cloud::{Cloud, Operators};
 use crate::geometry::{GeometryError, Surface, load_surface};
 use crate::math::{Bounds, Vector};
 use crate::motion::{BodyMotion, ModeShape, Motions};
-use crate::physics::{Conserved, Gas, Newtonian};
+use crate::physics::{Conserved, Gas, Newtonian, n_variables};
 use crate::scheme::motion_blending::MotionBlending;
 use crate::scheme::probe::Probe;
 use crate::scheme::reconstruct::Reconstruction;
@@ -332,7 +332,7 @@ pub(crate) fn transfer<S: HasGas<D>, const D: usize>(
     let probe = Probe::before_motion(old.view(&frame, gas, &mut work), surface);
     let mut u = next.gas().start();
     let cloud = &next.gas().discretisation.cloud;
-    crate::math::sweep::sweep_rows(&mut u, D + 2, |i, row| {
+    crate::math::sweep::sweep_rows(&mut u, n_variables(D), |i, row| {
         let found = probe.at(&cloud.x[i]).filter(crate::physics::Primitive::is_physical);
         if let Some(q) = found {
             let c: Conserved<D> = old.gas.conserved(&q);

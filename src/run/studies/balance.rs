@@ -14,6 +14,7 @@ use super::turn::{Reached, Start, Turn};
 use crate::case::Harmonics;
 use crate::math::fourier::{Instances, Series};
 use crate::math::sweep::sum;
+use crate::physics::n_variables;
 use crate::scheme::{Fluid, Frame, HasGas};
 use crate::system::System;
 use crate::time::harmonic::HarmonicBalance;
@@ -191,7 +192,7 @@ fn report<S: HasGas<D>, const D: usize>(found: &PeriodicState<'_, S, D>, log: &L
 
 /// Part of the last harmonic of the density in all of them.
 fn density_tail<const D: usize>(fluid: &Fluid<D>, held: Instances, state: &[f64]) -> f64 {
-    let (n, b) = (held.harmonics(), D + 2);
+    let (n, b) = (held.harmonics(), n_variables(D));
     let forth = held.to_coefficients();
     let volume = fluid.volumes();
     let size = |m: usize| {

@@ -10,7 +10,8 @@ use super::super::watch::{
     Told, Worn, drive,
 };
 use super::turn::{Reached, Start, Turn};
-use crate::scheme::travel::Reclouded;
+use crate::physics::n_variables;
+use crate::scheme::Reclouded;
 use crate::scheme::{Fluid, HasGas, RemapLedger};
 use crate::system::{Instant, System};
 use crate::time::dual::Dual;
@@ -27,7 +28,8 @@ pub(crate) fn march<S: HasGas<D>, const D: usize>(
 ) -> Result<Option<Reached<S>>, RunError> {
     let mut begin = begin;
     if begin.0.iteration == 0 && log.record.start_totals.is_empty() {
-        log.record.start_totals = totals(&solver.system.gas().volumes(), solver.system.gas_state(&begin.1), D + 2);
+        log.record.start_totals =
+            totals(&solver.system.gas().volumes(), solver.system.gas_state(&begin.1), n_variables(D));
     }
     loop {
         let system = &solver.system;

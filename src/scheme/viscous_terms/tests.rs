@@ -1,6 +1,7 @@
 //! Uniform flow, rotation, shear and the linearisation.
 use super::*;
 use crate::case::read;
+use crate::physics::{Gas, Newtonian};
 use crate::run::build_solver;
 use crate::scheme::View;
 use crate::system::{Instant, System, Term};

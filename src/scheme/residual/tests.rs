@@ -1,7 +1,15 @@
 //! Balance, uniform flow and moving walls of the discrete equations.
+use std::sync::Arc;
+
 use super::*;
 use crate::cloud::conservative::conservative;
 use crate::cloud::{Cloud, Operators};
+use crate::math::Vector;
+use crate::physics::{Gas, Primitive};
+use crate::scheme::fluid::{FarField, Field};
+use crate::scheme::reconstruct::Reconstruction;
+use crate::scheme::{CloudMotion, Discretisation};
+use crate::system::{Instant, System};
 
 struct Still;
 impl<const D: usize> FarField<D> for Still {

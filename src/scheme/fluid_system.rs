@@ -1,0 +1,113 @@
+//! The gas on a cloud as a system of ordinary differential equations.
+use std::sync::Arc;
+
+use super::discretisation::CloudMotion;
+use super::fluid::{Fluid, Work};
+use super::frame::{Frame, LagrangianStep};
+use super::reconstruct::Gradient;
+use crate::case::Side;
+use crate::math::Vector;
+use crate::math::sweep::{first, maximum, sweep_each_slot};
+use crate::physics::{Conserved, Primitive};
+use crate::system::{Fault, Field as Unknowns, Instant, Rate, System};
+
+impl<const D: usize> System for Fluid<D> {
+    type Frame = Frame<D>;
+    type Work = Work<D>;
+
+    fn fields(&self) -> &[Unknowns] {
+        &self.fields
+    }
+
+    fn frame(&self, at: &Instant<'_>, u: &[f64]) -> Frame<D> {
+        let cloud = &self.discretisation.cloud;
+        let mut frame = Frame {
+            time: at.time,
+            discretisation: Arc::clone(&self.discretisation),
+            turn: None,
+            jets: Vec::new(),
+            velocity: Arc::default(),
+            walls: Arc::default(),
+            lagrangian_step: LagrangianStep::default(),
+            outer: (0..cloud.outer.len()).map(|k| cloud.beside(k).map(|i| (self.held)(&cloud.x[i]))).collect(),
+        };
+        self.place(at, &mut frame);
+        self.update_boundary_state(u, &mut self.work(), &mut frame);
+        frame
+    }
+
+    fn place(&self, at: &Instant<'_>, frame: &mut Frame<D>) {
+        self.cloud_motion.place(&self.discretisation, at, frame);
+        if matches!(at.rate, Rate::Still) {
+            frame.velocity = Arc::default();
+            frame.walls = Arc::default();
+        }
+    }
+
+    fn plan_lagrangian_step(&self, step: f64, u: &[f64], work: &mut Work<D>, frame: &mut Frame<D>) -> f64 {
+        if matches!(self.cloud_motion, CloudMotion::Travel(_)) {
+            self.choose_ways(step, u, work, frame)
+        } else {
+            f64::INFINITY
+        }
+    }
+
+    fn update_boundary_state(&self, u: &[f64], work: &mut Work<D>, frame: &mut Frame<D>) {
+        self.fill_states(frame, u, work);
+        let force = self.pressure_force(frame, work);
+        let cloud = &self.discretisation.cloud;
+        let mut outer = std::mem::take(&mut frame.outer);
+        let still = self.cloud_motion.is_still();
+        sweep_each_slot(&mut outer, |k, q| match cloud.outer[k].side {
+            Side::FarField => *q = cloud.beside(k).map(|i| self.far_field.state(&frame.place(i), &force)),
+            _ if still => {}
+            _ => *q = cloud.beside(k).map(|i| (self.held)(&frame.place(i))),
+        });
+        frame.outer = outer;
+    }
+
+    fn work(&self) -> Work<D> {
+        let blank = Primitive { density: 1.0, velocity: Vector::ZERO, pressure: 1.0 };
+        let n = self.discretisation.cloud.len();
+        Work { state: vec![blank; n], gradient: vec![Gradient::ZERO; n] }
+    }
+
+    fn rhs(&self, frame: &Frame<D>, u: &[f64], work: &mut Work<D>, du: &mut [f64]) {
+        self.fill_states(frame, u, work);
+        if self.reconstruction.second_order || self.viscous_model.is_some() {
+            self.fill_gradients(frame, work);
+        }
+        self.residual(frame, work, du);
+    }
+
+    fn rates(&self, frame: &Frame<D>, u: &[f64], work: &mut Work<D>, rate: &mut [f64]) {
+        self.fill_states(frame, u, work);
+        self.fill_rates(frame, work, rate);
+    }
+
+    fn largest_change(&self, u: &[f64], du: &[f64]) -> f64 {
+        let change = |i: usize| {
+            let (a, b) = (Conserved::<D>::of_row(u, i), Conserved::of_row(du, i));
+            let (old, new) = (self.gas.primitive(&a), self.gas.primitive(&a.plus(1.0, &b)));
+            let change = (new.density / old.density - 1.0).abs().max((new.pressure / old.pressure - 1.0).abs());
+            if change.is_finite() { change } else { f64::INFINITY }
+        };
+        maximum(self.discretisation.cloud.n_fluid, change)
+    }
+
+    fn check(&self, frame: &Frame<D>, u: &[f64]) -> Result<(), Fault> {
+        let bad = |i: usize| !self.gas.primitive(&Conserved::<D>::of_row(u, i)).is_physical();
+        let Some(i) = first(self.discretisation.cloud.n_fluid, bad) else { return Ok(()) };
+        let q = self.gas.primitive(&Conserved::<D>::of_row(u, i));
+        let reason = format!("density {:.4e}, pressure {:.4e} (both must be positive)", q.density, q.pressure);
+        Err(Fault { particle: i, place: frame.place(i).0.to_vec(), reason })
+    }
+
+    fn check_frame(&self, frame: &Frame<D>) -> Result<(), Fault> {
+        self.volume_ratio_check(frame).map_or(Ok(()), Err)
+    }
+
+    fn locate(&self, frame: &Frame<D>, particle: usize) -> Vec<f64> {
+        frame.place(particle).0.to_vec()
+    }
+}

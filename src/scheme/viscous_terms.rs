@@ -1,0 +1,216 @@
+//! Stress and heat over the cloud: walls, rates and the linearisation; between particles `edges` takes them along.
+//!
+//! The pointwise parts and what they mean are in `viscous`.
+use std::sync::Arc;
+
+use super::block::Block;
+use super::edge_flux::half_face;
+use super::fluid::{Fluid, Work};
+use super::frame::Frame;
+use super::viscous::{
+    ViscousModel, WallCondition, WallSlopes, at_contact, direction, reach, slope_weights, slopes, temperature_gradient,
+    thin_layer,
+};
+use super::wall_fits::lowest_two;
+use super::wall_motion::WallMotion;
+use crate::cloud::operators::WallFace;
+use crate::cloud::{Cloud, Edge};
+use crate::math::Vector;
+use crate::math::block_matrix::Rows;
+use crate::math::sweep::sweep_parts;
+use crate::physics::viscous::Slopes;
+use crate::physics::{Conserved, Primitive};
+
+impl<const D: usize> Fluid<D> {
+    /// Flux of stress and heat at particle `i` across `n`; zero without viscosity.
+    pub(super) fn viscous_flux(&self, work: &Work<D>, i: usize, n: &Vector<D>) -> Conserved<D> {
+        let flux =
+            |f: &Arc<ViscousModel>| f.medium.flux(&self.gas, &slopes(&self.gas, &work.state[i], &work.gradient[i]), n);
+        self.viscous_model.as_ref().map_or(Conserved::ZERO, flux)
+    }
+
+    /// Calls `add(i, change)` with what stress and heat through every piece of wall add to V dU/dt of the particle there.
+    pub(super) fn viscous_walls(
+        &self,
+        faces: &[WallFace<D>],
+        at: (&Frame<D>, &Work<D>),
+        mut add: impl FnMut(usize, &Conserved<D>),
+    ) {
+        let Some(viscous_model) = &self.viscous_model else { return };
+        faces.iter().for_each(|face| add(face.i as usize, &self.viscous_wall(viscous_model, at, face)));
+    }
+
+    /// Flux of stress and heat through a piece of wall.
+    fn viscous_wall(
+        &self,
+        viscous_model: &ViscousModel,
+        (frame, work): (&Frame<D>, &Work<D>),
+        face: &WallFace<D>,
+    ) -> Conserved<D> {
+        let cloud = &frame.discretisation.cloud;
+        let source = cloud.source(face.wall as usize);
+        let w = source.index - cloud.n_fluid;
+        let Some(at) = self.at_wall(viscous_model, (cloud, work), w, frame.walls.get(w)) else {
+            return Conserved::ZERO;
+        };
+        if !source.image {
+            return viscous_model.medium.flux(&self.gas, &at, &face.area);
+        }
+        let transform = &cloud.transforms[cloud.ghosts[face.wall as usize - cloud.n_real()].transform as usize];
+        let through = viscous_model.medium.flux(&self.gas, &at, &transform.direction(&face.area));
+        Conserved { momentum: transform.direction(&through.momentum), ..through }
+    }
+
+    /// Slopes on the wall of interface particle `w` that moves with `motion`; `None` where the gas slides.
+    fn at_wall(
+        &self,
+        viscous_model: &ViscousModel,
+        (cloud, work): (&Cloud<D>, &Work<D>),
+        w: usize,
+        motion: Option<&WallMotion<D>>,
+    ) -> Option<Slopes<D>> {
+        let wall_condition = viscous_model.wall_condition(cloud.interface[w].body);
+        if wall_condition == WallCondition::Slip {
+            return None;
+        }
+        let (i, normal) = (cloud.n_fluid + w, &cloud.interface[w].normal);
+        let wall = &work.state[i];
+        let temperature = self.gas.temperature(wall);
+        let (rate, heating) = match lowest_two(cloud, w) {
+            Some((particles, heights)) => {
+                let [a, b] = slope_weights(heights);
+                let [p, q] = particles.map(|k| &work.state[k]);
+                let heat = |q: &Primitive<D>| self.gas.temperature(q) - temperature;
+                let rate = (p.velocity - wall.velocity) * a + (q.velocity - wall.velocity) * b;
+                (rate, heat(p) * a + heat(q) * b)
+            }
+            None => {
+                let g = &work.gradient[i];
+                let rate = Vector::from_fn(|c| g.velocity[c].dot(normal));
+                (rate, temperature_gradient(&self.gas, wall, g).dot(normal))
+            }
+        };
+        let heating = if wall_condition == WallCondition::Adiabatic { 0.0 } else { heating };
+        Some(Slopes {
+            velocity: wall.velocity,
+            temperature,
+            velocity_gradient: std::array::from_fn(|c| {
+                let along = motion.map_or(Vector::ZERO, |m| {
+                    m.wall_velocity_gradient[c] - *normal * m.wall_velocity_gradient[c].dot(normal)
+                });
+                *normal * rate[c] + along
+            }),
+            temperature_gradient: *normal * heating,
+        })
+    }
+
+    /// Stress and heat on the wall of interface particle `w`, which moves with `motion`, from the states and gradients in
+    /// `work`; `None` where the gas slides.
+    pub(super) fn wall_slopes(
+        &self,
+        (cloud, work): (&Cloud<D>, &Work<D>),
+        w: usize,
+        motion: Option<&WallMotion<D>>,
+    ) -> Option<WallSlopes<D>> {
+        let viscous_model = self.viscous_model.as_ref()?;
+        let at = self.at_wall(viscous_model, (cloud, work), w, motion)?;
+        let still = Slopes { velocity: Vector::ZERO, ..at };
+        let through = viscous_model.medium.flux(&self.gas, &still, &cloud.interface[w].normal);
+        Some(WallSlopes { stress: through.momentum, heat: through.energy })
+    }
+
+    /// Adds the rates at which viscosity and conduction even out differences between particles.
+    pub(super) fn add_viscous_rate(
+        &self,
+        viscous_model: &ViscousModel,
+        (frame, work): (&Frame<D>, &Work<D>),
+        rate: &mut [f64],
+    ) {
+        let (op, cloud) = (&frame.discretisation.operators, &frame.discretisation.cloud);
+        sweep_parts(op.fluid_parts(), 1, rate, &|k, out| {
+            let start = op.parts[k].start;
+            let diffusivity = |i: usize| viscous_model.medium.diffusivity(&self.gas, &work.state[i]);
+            for e in op.edges(k) {
+                let (to_i, to_j) = self.exchange(e, cloud);
+                out[e.i() - start] += to_i * diffusivity(e.i());
+                if e.both() {
+                    out[e.j() - start] += to_j * diffusivity(e.j());
+                }
+            }
+            for face in op.wall_faces(k).iter().filter(|_| self.conservative) {
+                let i = face.i as usize;
+                out[i - start] += self.wall_exchange(cloud, face)[0].1 * diffusivity(i);
+            }
+        });
+    }
+
+    /// Area over volume and distance of the face of an edge, as each end sees it.
+    #[inline(always)]
+    fn exchange(&self, e: &Edge<D>, cloud: &Cloud<D>) -> (f64, f64) {
+        let d = cloud.x[e.j()] - cloud.x[e.i()];
+        let m = direction(&e.s, &d);
+        let across = 2.0 / reach(&d, &m);
+        let (a_i, a_j) = match self.conservative {
+            true => (half_face(cloud.volume[e.i()], &e.s), -half_face(cloud.volume[e.j()], &e.s)),
+            false => (e.a_i, e.a_j),
+        };
+        (a_i.dot(&m).max(0.0) * across, (-a_j.dot(&m)).max(0.0) * across)
+    }
+
+    /// Particles that the slope at a piece of wall depends on, with its derivative times area over volume.
+    fn wall_exchange(&self, cloud: &Cloud<D>, face: &WallFace<D>) -> [(usize, f64); 2] {
+        let (i, wall) = (face.i as usize, face.wall as usize);
+        let size = face.area.norm();
+        let area = size / cloud.volume[i];
+        let column = wall.checked_sub(cloud.n_fluid).filter(|_| wall < cloud.n_rows());
+        if let Some((particles, heights)) = column.and_then(|w| lowest_two(cloud, w)).filter(|c| c.0[0] == i) {
+            let [a, b] = slope_weights(heights);
+            return [(particles[0], area * a), (particles[1], area * b)];
+        }
+        let normal = face.area * (1.0 / size.max(f64::MIN_POSITIVE));
+        [(i, area / reach(&(cloud.x[wall] - cloud.x[i]), &normal)), (i, 0.0)]
+    }
+
+    /// Viscosity times area over volume and distance of an edge, as each end sees it, and what [`thin_layer`] gives for both ends.
+    #[inline(always)]
+    pub(super) fn viscous_edge(&self, work: &Work<D>, e: &Edge<D>, cloud: &Cloud<D>) -> ((f64, f64), [Block; 2]) {
+        let mut layers = [[[0.0; 5]; 5]; 2];
+        let Some(viscous_model) = &self.viscous_model else { return ((0.0, 0.0), layers) };
+        let (medium, ends) = (&viscous_model.medium, [&work.state[e.i()], &work.state[e.j()]]);
+        let mu = 0.5 * (medium.at(self.gas.temperature(ends[0])) + medium.at(self.gas.temperature(ends[1])));
+        let m = direction(&e.s, &(cloud.x[e.j()] - cloud.x[e.i()]));
+        let (to_i, to_j) = self.exchange(e, cloud);
+        for side in 0..2 {
+            thin_layer(&self.gas, medium, ends[side], &m, &mut layers[side]);
+        }
+        ((mu * to_i, mu * to_j), layers)
+    }
+
+    /// Adds −∂/∂U of stress and heat on pieces of wall.
+    pub(super) fn add_viscous_walls(
+        &self,
+        (frame, work): (&Frame<D>, &Work<D>),
+        faces: &[WallFace<D>],
+        rows: &mut Rows<'_>,
+    ) {
+        let Some(viscous_model) = &self.viscous_model else { return };
+        let (cloud, medium) = (&frame.discretisation.cloud, &viscous_model.medium);
+        for face in faces {
+            let source = cloud.source(face.wall as usize).index;
+            let wall_condition = viscous_model.wall_condition(cloud.interface[source - cloud.n_fluid].body);
+            if wall_condition == WallCondition::Slip {
+                continue;
+            }
+            let n = face.area.unit();
+            let viscosity = medium.at(self.gas.temperature(&work.state[source]));
+            for (q, weight) in self.wall_exchange(cloud, face) {
+                let block =
+                    at_contact(&self.gas, medium, (&work.state[q], &work.state[source].velocity), (wall_condition, &n));
+                rows.add(face.i as usize, q, |r, c| viscosity * weight * block[r][c]);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;

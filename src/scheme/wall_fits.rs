@@ -1,0 +1,161 @@
+//! Conditions as rows of the fit: what follows from the cloud alone.
+//!
+//! The state of an interface particle follows from the fluid particles in front of it by a quadratic fit in
+//! which the normal derivative at the wall is imposed exactly (a Neumann row taken into the fit, eqs (12)-(15)): with
+//! coordinates t along and n across the wall, f(t, n) = f_w + g n + (linear in t, quadratic in t, n). Solved once per cloud it
+//! gives f_w = Σ_k W_k f_k − g Σ_k W_k n_k. What slopes g are imposed says `wall_state`.
+use crate::cloud::Cloud;
+use crate::math::Vector;
+use crate::math::least_squares::Fit;
+use crate::math::sweep::sweep;
+
+/// Sum of absolute weights above which a quadratic fit is replaced by a linear one.
+const LARGEST_AMPLIFICATION: f64 = 6.0;
+/// Round-off of the sum of weights, which is one.
+const CONSTANT_TOLERANCE: f64 = 1e-9;
+/// Rows that a quadratic fit must have beyond its coefficients.
+const SPARE_ROWS: usize = 3;
+/// Most coefficients of a constrained fit: three dimensions, quadratic.
+const MOST: usize = 9;
+
+/// Fits of all interface particles.
+#[derive(Clone, Debug, Default)]
+pub struct WallFits {
+    pub(super) weight: Vec<f64>,
+    pub(super) normal_offset: Vec<f64>,
+    /// Number of fits that fell back to linear.
+    pub n_linear: usize,
+}
+
+impl WallFits {
+    /// Fits every interface particle of the cloud.
+    #[doc(alias = "eq12")]
+    pub fn new<const D: usize>(cloud: &Cloud<D>) -> Self {
+        let mut fits = vec![(Vec::new(), 0.0, false); cloud.interface.len()];
+        sweep(&mut fits, |w| fit_wall(cloud, w));
+        let normal_offset = fits.iter().map(|f| f.1).collect();
+        let n_linear = fits.iter().filter(|f| f.2).count();
+        Self { weight: fits.into_iter().flat_map(|f| f.0).collect(), normal_offset, n_linear }
+    }
+
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        8 * (self.weight.len() + self.normal_offset.len())
+    }
+}
+
+/// Weights of one interface particle: (W, Σ W n, fell back to linear).
+fn fit_wall<const D: usize>(cloud: &Cloud<D>, w: usize) -> (Vec<f64>, f64, bool) {
+    let i = cloud.n_fluid + w;
+    let (h, normal) = (cloud.spacing[i], cloud.interface[w].normal);
+    let axes = tangents(&normal);
+    let (offsets, stretch) = wall_offsets(cloud, w, &axes[0]);
+    let mut weights = Vec::new();
+    let mut linear = false;
+    let quadratic = if D == 2 { 5 } else { 9 };
+    if offsets.len() >= quadratic + SPARE_ROWS {
+        solve_fit(&offsets, (&normal, &axes), h, quadratic, &mut weights);
+    }
+    if !is_sound(&weights) {
+        linear = true;
+        solve_fit(&offsets, (&normal, &axes), h, D, &mut weights);
+    }
+    // a crevice: too little fluid for a slope, or all of it far away
+    if offsets.len() <= D || !is_sound(&weights) {
+        solve_fit(&offsets, (&normal, &axes), h, 1, &mut weights);
+    }
+    let normal_offset = weights.iter().zip(&offsets).map(|(w, d)| w * d.dot(&normal)).sum::<f64>() / stretch;
+    (weights, normal_offset, linear)
+}
+
+/// Offsets to the particles of a fit, and the factor by which they are stretched across the wall: where all of them lie in
+/// layers, distances along the wall and heights above it, so that a thin layer on a curved wall stays a layer.
+fn wall_offsets<const D: usize>(cloud: &Cloud<D>, w: usize, along: &Vector<D>) -> (Vec<Vector<D>>, f64) {
+    let (i, list) = (cloud.n_fluid + w, cloud.wall_stencils.of(w));
+    let normal = &cloud.interface[w].normal;
+    let layers = &cloud.layers;
+    let source = |k: &u32| cloud.source(*k as usize);
+    if layers.slot(i).is_none() || list.iter().any(|k| layers.slot(source(k).index).is_none()) {
+        return (list.iter().map(|k| cloud.x[*k as usize] - cloud.x[i]).collect(), 1.0);
+    }
+    let stretch = cloud.spacing[i] / layers.thickness(w, 0);
+    let place = |k: &u32| {
+        let s = source(k);
+        let Some((column, layer)) = layers.slot(s.index) else { return Vector::ZERO };
+        let foot = cloud.n_fluid + column;
+        let d = match s.image {
+            // the foot of the image of a column
+            true => cloud.x[*k as usize] - *normal * (cloud.x[*k as usize] - cloud.x[i]).dot(normal) - cloud.x[i],
+            false => cloud.x[foot] - cloud.x[i],
+        };
+        let sign = if d.dot(along) < 0.0 { -1.0 } else { 1.0 };
+        *along * (sign * d.norm()) + *normal * (layers.height(column, layer) * stretch)
+    };
+    (list.iter().map(place).collect(), stretch)
+}
+
+/// Weights that reproduce constants, which a rank-deficient fit need not do, without amplifying differences.
+fn is_sound(weights: &[f64]) -> bool {
+    let (sum, size) = weights.iter().fold((0.0, 0.0), |(sum, size), w| (sum + w, size + w.abs()));
+    (sum - 1.0f64).abs() < CONSTANT_TOLERANCE && size <= LARGEST_AMPLIFICATION
+}
+
+/// The row that gives f_w from the values of the fluid particles; `n` coefficients, weights 1/r².
+fn solve_fit<const D: usize>(
+    offsets: &[Vector<D>],
+    frame: (&Vector<D>, &[Vector<D>; D]),
+    h: f64,
+    n: usize,
+    weights: &mut Vec<f64>,
+) {
+    let mut fit = Fit::default();
+    fit.reset(n);
+    for d in offsets {
+        fit.push(&basis(d, frame, h)[..n], h * h / d.norm_squared());
+    }
+    fit.row_of_inverse(0, weights);
+}
+
+/// Basis functions without the one whose coefficient the condition fixes: 1, tangents, then all squares and products.
+fn basis<const D: usize>(d: &Vector<D>, frame: (&Vector<D>, &[Vector<D>; D]), h: f64) -> [f64; MOST] {
+    let (normal, axes) = frame;
+    let mut c = [0.0; D];
+    (0..D - 1).for_each(|a| c[a] = d.dot(&axes[a]) / h);
+    c[D - 1] = d.dot(normal) / h;
+    let mut b = [0.0; MOST];
+    b[0] = 1.0;
+    b[1..D].copy_from_slice(&c[..D - 1]);
+    let mut k = D;
+    for p in 0..D {
+        for q in p..D {
+            b[k] = c[p] * c[q];
+            k += 1;
+        }
+    }
+    b
+}
+
+/// `D` − 1 unit vectors across the normal; the last entry is unused.
+fn tangents<const D: usize>(normal: &Vector<D>) -> [Vector<D>; D] {
+    let mut axes = [Vector::ZERO; D];
+    if D == 2 {
+        (axes[0][0], axes[0][1]) = (-normal[1], normal[0]);
+        return axes;
+    }
+    let smallest = (0..D).fold(0, |a, d| if normal[d].abs() < normal[a].abs() { d } else { a });
+    let e = Vector::axis(smallest);
+    axes[0] = (e - *normal * e.dot(normal)).unit();
+    axes[1] = Vector::from_fn(|d| {
+        let (a, b) = ((d + 1) % D, (d + 2) % D);
+        normal[a] * axes[0][b] - normal[b] * axes[0][a]
+    });
+    axes
+}
+
+/// The two particles next to the wall in the column of interface particle `w`, with their heights.
+#[inline]
+pub(super) fn lowest_two<const D: usize>(cloud: &Cloud<D>, w: usize) -> Option<([usize; 2], [f64; 2])> {
+    let column = cloud.layers.columns.get(w)?;
+    let ([a, b, ..], [low, high, ..]) = (column.particles.as_slice(), column.heights.as_slice()) else { return None };
+    Some(([*a as usize, *b as usize], [*low, *high]))
+}
