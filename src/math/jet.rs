@@ -1,12 +1,21 @@
 //! Numbers that carry their derivatives.
 //!
-//! A function of time written once over [`Scalar`] gives its value for `f64`, and value, velocity and acceleration for a
-//! [`Jet`]: x + x′ε + x″ε²/2 with ε³ = 0, so that derivatives are exact to rounding and belong to the same formula.
+//! A function written once over [`Scalar`] gives its value for `f64`, and value, first and second derivative for a [`Jet`]:
+//! x + x′ε + x″ε²/2 with ε³ = 0, so that derivatives are exact to rounding and belong to the same formula: velocity and
+//! acceleration of a motion, or the change of a flux with a state.
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// What a formula needs of its numbers.
+/// What a formula needs of its numbers. Choices are made by values: a maximum has the derivative of the greater one.
 pub trait Scalar:
-    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Neg<Output = Self> + Div<Output = Self>
+    Copy
+    + Add<Output = Self>
+    + Add<f64, Output = Self>
+    + Sub<Output = Self>
+    + Sub<f64, Output = Self>
+    + Mul<Output = Self>
+    + Mul<f64, Output = Self>
+    + Div<Output = Self>
+    + Neg<Output = Self>
 {
     /// A constant.
     fn constant(value: f64) -> Self;
@@ -16,6 +25,7 @@ pub trait Scalar:
     fn map(self, f: impl FnOnce(f64) -> [f64; 3]) -> Self;
 
     /// Sine.
+    #[inline(always)]
     fn sin(self) -> Self {
         self.map(|x| {
             let (s, c) = x.sin_cos();
@@ -24,25 +34,84 @@ pub trait Scalar:
     }
 
     /// Cosine.
+    #[inline(always)]
     fn cos(self) -> Self {
         self.map(|x| {
             let (s, c) = x.sin_cos();
             [c, -s, -c]
         })
     }
+
+    /// 1/x.
+    #[inline(always)]
+    fn inverse(self) -> Self {
+        self.map(|x| [1.0 / x, -1.0 / (x * x), 2.0 / (x * x * x)])
+    }
+
+    /// √x.
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        self.map(|x| {
+            let root = x.sqrt();
+            [root, 0.5 / root, -0.25 / (root * x)]
+        })
+    }
+
+    /// xⁿ.
+    #[inline(always)]
+    fn powf(self, n: f64) -> Self {
+        self.map(|x| [x.powf(n), n * x.powf(n - 1.0), n * (n - 1.0) * x.powf(n - 2.0)])
+    }
+
+    /// |x|.
+    #[inline(always)]
+    fn abs(self) -> Self {
+        self.map(|x| [x.abs(), x.signum(), 0.0])
+    }
+
+    /// The greater of two numbers.
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        if self.value() < other.value() || self.value().is_nan() { other } else { self }
+    }
+
+    /// The smaller of two numbers.
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        if self.value() > other.value() || self.value().is_nan() { other } else { self }
+    }
 }
 
 impl Scalar for f64 {
+    #[inline(always)]
     fn constant(value: f64) -> Self {
         value
     }
 
+    #[inline(always)]
     fn value(self) -> f64 {
         self
     }
 
+    #[inline(always)]
     fn map(self, f: impl FnOnce(f64) -> [f64; 3]) -> Self {
         f(self)[0]
+    }
+
+    #[inline(always)]
+    fn powf(self, n: f64) -> Self {
+        // the derivatives are no work that the compiler can see through
+        Self::powf(self, n)
+    }
+
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        Self::max(self, other)
+    }
+
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        Self::min(self, other)
     }
 }
 
@@ -119,9 +188,29 @@ impl Mul for Jet {
 impl Div for Jet {
     type Output = Self;
     fn div(self, o: Self) -> Self {
-        let inverse = o.map(|x| [1.0 / x, -1.0 / (x * x), 2.0 / (x * x * x)]);
         // the value itself is divided, so that it is the one of `f64`
-        Self { value: self.value / o.value, ..self * inverse }
+        Self { value: self.value / o.value, ..self * o.inverse() }
+    }
+}
+
+impl Add<f64> for Jet {
+    type Output = Self;
+    fn add(self, o: f64) -> Self {
+        Self { value: self.value + o, ..self }
+    }
+}
+
+impl Sub<f64> for Jet {
+    type Output = Self;
+    fn sub(self, o: f64) -> Self {
+        Self { value: self.value - o, ..self }
+    }
+}
+
+impl Mul<f64> for Jet {
+    type Output = Self;
+    fn mul(self, o: f64) -> Self {
+        Self { value: self.value * o, first: self.first * o, second: self.second * o }
     }
 }
 

@@ -2,58 +2,21 @@
 use std::array::from_fn;
 use std::ops::{Add, AddAssign, Index, IndexMut, Mul, Neg, Sub, SubAssign};
 
-/// A point or a direction in `D` dimensions.
+use super::jet::Scalar;
+
+/// A point or a direction in `D` dimensions, of plain numbers or of numbers that carry derivatives.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(transparent)]
-pub struct Vector<const D: usize>(pub [f64; D]);
+pub struct Vector<const D: usize, S = f64>(pub [S; D]);
 
 impl<const D: usize> Vector<D> {
     /// The zero vector.
     pub const ZERO: Self = Self([0.0; D]);
 
-    /// The vector whose component `d` is `f(d)`.
-    #[inline(always)]
-    pub fn from_fn(mut f: impl FnMut(usize) -> f64) -> Self {
-        // a plain loop: the compiler does not always look through array::from_fn in large kernels
-        let mut v = [0.0; D];
-        for (d, slot) in v.iter_mut().enumerate() {
-            *slot = f(d);
-        }
-        Self(v)
-    }
-
-    /// The vector with every component equal to `value`.
-    #[inline(always)]
-    pub fn splat(value: f64) -> Self {
-        Self([value; D])
-    }
-
     /// The unit vector along axis `axis`.
     #[inline(always)]
     pub fn axis(axis: usize) -> Self {
         Self::from_fn(|d| if d == axis { 1.0 } else { 0.0 })
-    }
-
-    /// Inner product.
-    #[inline(always)]
-    pub fn dot(&self, other: &Self) -> f64 {
-        let mut sum = self.0[0] * other.0[0];
-        for d in 1..D {
-            sum += self.0[d] * other.0[d];
-        }
-        sum
-    }
-
-    /// Euclidean length.
-    #[inline(always)]
-    pub fn norm(&self) -> f64 {
-        self.norm_squared().sqrt()
-    }
-
-    /// Square of the Euclidean length.
-    #[inline(always)]
-    pub fn norm_squared(&self) -> f64 {
-        self.dot(self)
     }
 
     /// The vector of length one along this one; the zero vector stays zero.
@@ -92,60 +55,113 @@ impl<const D: usize> Vector<D> {
     }
 }
 
-impl<const D: usize> Index<usize> for Vector<D> {
-    type Output = f64;
+impl<const D: usize, S: Scalar> Vector<D, S> {
+    /// The vector whose component `d` is `f(d)`.
     #[inline(always)]
-    fn index(&self, d: usize) -> &f64 {
+    pub fn from_fn(mut f: impl FnMut(usize) -> S) -> Self {
+        // a plain loop: the compiler does not always look through array::from_fn in large kernels
+        let mut v = [S::constant(0.0); D];
+        for (d, slot) in v.iter_mut().enumerate() {
+            *slot = f(d);
+        }
+        Self(v)
+    }
+
+    /// The zero vector.
+    #[inline(always)]
+    pub fn zero() -> Self {
+        Self::splat(S::constant(0.0))
+    }
+
+    /// The vector with every component equal to `value`.
+    #[inline(always)]
+    pub fn splat(value: S) -> Self {
+        Self([value; D])
+    }
+
+    /// Inner product.
+    #[inline(always)]
+    pub fn dot(&self, other: &Self) -> S {
+        let mut sum = self.0[0] * other.0[0];
+        for d in 1..D {
+            sum = sum + self.0[d] * other.0[d];
+        }
+        sum
+    }
+
+    /// Euclidean length.
+    #[inline(always)]
+    pub fn norm(&self) -> S {
+        self.norm_squared().sqrt()
+    }
+
+    /// Square of the Euclidean length.
+    #[inline(always)]
+    pub fn norm_squared(&self) -> S {
+        self.dot(self)
+    }
+
+    /// The vector times a plain number.
+    #[inline(always)]
+    pub fn times(&self, factor: f64) -> Self {
+        Self::from_fn(|d| self.0[d] * factor)
+    }
+}
+
+impl<const D: usize, S> Index<usize> for Vector<D, S> {
+    type Output = S;
+    #[inline(always)]
+    fn index(&self, d: usize) -> &S {
         &self.0[d]
     }
 }
-impl<const D: usize> IndexMut<usize> for Vector<D> {
+impl<const D: usize, S> IndexMut<usize> for Vector<D, S> {
     #[inline(always)]
-    fn index_mut(&mut self, d: usize) -> &mut f64 {
+    fn index_mut(&mut self, d: usize) -> &mut S {
         &mut self.0[d]
     }
 }
-impl<const D: usize> Add for Vector<D> {
+impl<const D: usize, S: Scalar> Add for Vector<D, S> {
     type Output = Self;
     #[inline(always)]
     fn add(self, o: Self) -> Self {
         Self::from_fn(|d| self.0[d] + o.0[d])
     }
 }
-impl<const D: usize> Sub for Vector<D> {
+impl<const D: usize, S: Scalar> Sub for Vector<D, S> {
     type Output = Self;
     #[inline(always)]
     fn sub(self, o: Self) -> Self {
         Self::from_fn(|d| self.0[d] - o.0[d])
     }
 }
-impl<const D: usize> Mul<f64> for Vector<D> {
+impl<const D: usize, S: Scalar> Mul<S> for Vector<D, S> {
     type Output = Self;
     #[inline(always)]
-    fn mul(self, s: f64) -> Self {
+    fn mul(self, s: S) -> Self {
         Self::from_fn(|d| self.0[d] * s)
     }
 }
-impl<const D: usize> Neg for Vector<D> {
+impl<const D: usize, S: Scalar> Neg for Vector<D, S> {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
-        self * -1.0
+        self.times(-1.0)
     }
 }
-impl<const D: usize> AddAssign for Vector<D> {
+impl<const D: usize, S: Scalar> AddAssign for Vector<D, S> {
     #[inline(always)]
     fn add_assign(&mut self, o: Self) {
         for d in 0..D {
-            self.0[d] += o.0[d];
+            self.0[d] = self.0[d] + o.0[d];
         }
     }
 }
-impl<const D: usize> SubAssign for Vector<D> {
+impl<const D: usize, S: Scalar> SubAssign for Vector<D, S> {
     #[inline(always)]
     fn sub_assign(&mut self, o: Self) {
         for d in 0..D {
-            self.0[d] -= o.0[d];
+            self.0[d] = self.0[d] - o.0[d];
         }
     }
 }

@@ -3,30 +3,31 @@
 //! ∂ρ/∂t + ∇·(ρv) = 0, ∂(ρv)/∂t + ∇·(ρvv + pI) = 0, ∂(ρE)/∂t + ∇·((ρE + p)v) = 0 with p = (γ−1)ρe, E = e + v²/2: the paper's
 //! equations (1)-(3) and (6) written for conserved quantities, so that shocks stand where they should.
 use crate::math::Vector;
+use crate::math::jet::Scalar;
 
 /// Density, momentum and total energy per volume: Q of eq. (17).
 #[doc(alias = "eq17")]
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
-pub struct Conserved<const D: usize> {
+pub struct Conserved<const D: usize, S = f64> {
     /// Mass per volume.
-    pub density: f64,
+    pub density: S,
     /// Momentum per volume.
-    pub momentum: Vector<D>,
+    pub momentum: Vector<D, S>,
     /// Total energy per volume.
-    pub energy: f64,
+    pub energy: S,
 }
 
 /// Density, velocity and pressure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
-pub struct Primitive<const D: usize> {
+pub struct Primitive<const D: usize, S = f64> {
     /// Mass per volume.
-    pub density: f64,
+    pub density: S,
     /// Velocity.
-    pub velocity: Vector<D>,
+    pub velocity: Vector<D, S>,
     /// Static pressure.
-    pub pressure: f64,
+    pub pressure: S,
 }
 
 /// An ideal gas with constant specific heats.
@@ -69,10 +70,12 @@ impl<const D: usize> Conserved<D> {
         }
         row[D + 1] += self.energy;
     }
+}
 
+impl<const D: usize, S: Scalar> Conserved<D, S> {
     /// self + s·other.
     #[inline(always)]
-    pub fn plus(&self, s: f64, o: &Self) -> Self {
+    pub fn plus(&self, s: S, o: &Self) -> Self {
         Self {
             density: self.density + s * o.density,
             momentum: self.momentum + o.momentum * s,
@@ -80,17 +83,23 @@ impl<const D: usize> Conserved<D> {
         }
     }
 
+    /// self − other.
+    #[inline(always)]
+    pub fn minus(&self, o: &Self) -> Self {
+        self.plus(S::constant(-1.0), o)
+    }
+
     /// s·self.
     #[inline(always)]
-    pub fn times(&self, s: f64) -> Self {
+    pub fn times(&self, s: S) -> Self {
         Self { density: self.density * s, momentum: self.momentum * s, energy: self.energy * s }
     }
 }
 
-impl<const D: usize> Primitive<D> {
+impl<const D: usize, S: Scalar> Primitive<D, S> {
     /// The state f(component) for each of density, velocity and pressure of two others.
     #[inline(always)]
-    pub fn zip(a: &Self, b: &Self, f: impl Fn(f64, f64) -> f64) -> Self {
+    pub fn zip(a: &Self, b: &Self, f: impl Fn(S, S) -> S) -> Self {
         Self {
             density: f(a.density, b.density),
             velocity: Vector::from_fn(|d| f(a.velocity[d], b.velocity[d])),
@@ -110,7 +119,7 @@ impl<const D: usize> Primitive<D> {
 
     /// self + s·other.
     #[inline(always)]
-    pub fn plus(&self, s: f64, o: &Self) -> Self {
+    pub fn plus(&self, s: S, o: &Self) -> Self {
         Self {
             density: self.density + s * o.density,
             velocity: self.velocity + o.velocity * s,
@@ -118,6 +127,14 @@ impl<const D: usize> Primitive<D> {
         }
     }
 
+    /// The state seen by an observer who moves with `w`.
+    #[inline(always)]
+    pub fn seen_from(&self, w: &Vector<D, S>) -> Self {
+        Self { velocity: self.velocity - *w, ..*self }
+    }
+}
+
+impl<const D: usize> Primitive<D> {
     /// True when density and pressure are positive and nothing is NaN or infinite.
     pub fn is_physical(&self) -> bool {
         self.density > 0.0
@@ -131,28 +148,28 @@ impl Gas {
     /// Density, velocity and pressure of a conserved state — p = (γ−1)ρe, eq. (6).
     #[doc(alias = "eq6")]
     #[inline(always)]
-    pub fn primitive<const D: usize>(&self, u: &Conserved<D>) -> Primitive<D> {
-        let velocity = u.momentum * (1.0 / u.density);
-        let pressure = (self.gamma - 1.0) * (u.energy - 0.5 * u.momentum.dot(&velocity));
+    pub fn primitive<const D: usize, S: Scalar>(&self, u: &Conserved<D, S>) -> Primitive<D, S> {
+        let velocity = u.momentum * u.density.inverse();
+        let pressure = (u.energy - u.momentum.dot(&velocity) * 0.5) * (self.gamma - 1.0);
         Primitive { density: u.density, velocity, pressure }
     }
 
     /// Conserved state of density, velocity and pressure.
     #[inline(always)]
-    pub fn conserved<const D: usize>(&self, q: &Primitive<D>) -> Conserved<D> {
+    pub fn conserved<const D: usize, S: Scalar>(&self, q: &Primitive<D, S>) -> Conserved<D, S> {
         Conserved { density: q.density, momentum: q.velocity * q.density, energy: self.energy(q) }
     }
 
     /// Total energy per volume.
     #[inline(always)]
-    pub fn energy<const D: usize>(&self, q: &Primitive<D>) -> f64 {
-        q.pressure * (1.0 / (self.gamma - 1.0)) + 0.5 * q.density * q.velocity.norm_squared()
+    pub fn energy<const D: usize, S: Scalar>(&self, q: &Primitive<D, S>) -> S {
+        q.pressure * (1.0 / (self.gamma - 1.0)) + q.density * 0.5 * q.velocity.norm_squared()
     }
 
     /// Speed of sound c = √(γp/ρ).
     #[inline(always)]
-    pub fn sound_speed<const D: usize>(&self, q: &Primitive<D>) -> f64 {
-        (self.gamma * q.pressure / q.density).sqrt()
+    pub fn sound_speed<const D: usize, S: Scalar>(&self, q: &Primitive<D, S>) -> S {
+        (q.pressure * self.gamma / q.density).sqrt()
     }
 
     /// Flux F(q)·n of mass, momentum and energy across the area vector n — eqs (1)-(3) without stress and heat.
@@ -160,7 +177,7 @@ impl Gas {
     #[doc(alias = "eq2")]
     #[doc(alias = "eq3")]
     #[inline(always)]
-    pub fn flux<const D: usize>(&self, q: &Primitive<D>, n: &Vector<D>) -> Conserved<D> {
+    pub fn flux<const D: usize, S: Scalar>(&self, q: &Primitive<D, S>, n: &Vector<D, S>) -> Conserved<D, S> {
         let mass = q.density * q.velocity.dot(n);
         Conserved {
             density: mass,
@@ -171,19 +188,19 @@ impl Gas {
 
     /// Maximum signal speed |v·n| + c|n| across the area vector n.
     #[inline(always)]
-    pub fn signal_speed<const D: usize>(&self, q: &Primitive<D>, n: &Vector<D>) -> f64 {
+    pub fn signal_speed<const D: usize, S: Scalar>(&self, q: &Primitive<D, S>, n: &Vector<D, S>) -> S {
         q.velocity.dot(n).abs() + self.sound_speed(q) * n.norm()
     }
 
     /// Total enthalpy per mass H = γ/(γ−1) p/ρ + v²/2.
     #[inline(always)]
-    pub fn total_enthalpy<const D: usize>(&self, q: &Primitive<D>) -> f64 {
-        self.gamma / (self.gamma - 1.0) * q.pressure / q.density + 0.5 * q.velocity.norm_squared()
+    pub fn total_enthalpy<const D: usize, S: Scalar>(&self, q: &Primitive<D, S>) -> S {
+        q.pressure * (self.gamma / (self.gamma - 1.0)) / q.density + q.velocity.norm_squared() * 0.5
     }
 
     /// Entropy function p/ρ^γ.
     #[inline(always)]
-    pub fn entropy<const D: usize>(&self, q: &Primitive<D>) -> f64 {
+    pub fn entropy<const D: usize, S: Scalar>(&self, q: &Primitive<D, S>) -> S {
         q.pressure / q.density.powf(self.gamma)
     }
 }

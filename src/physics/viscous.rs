@@ -6,9 +6,10 @@
 //! (0, τ·n, v·τ·n − q·n), to be subtracted from that of the inviscid gas.
 use super::{Conserved, Gas, Primitive};
 use crate::math::Vector;
+use crate::math::jet::Scalar;
 
 /// Rows ∂v_i/∂x of the velocity gradient, or any tensor.
-pub type Tensor<const D: usize> = [Vector<D>; D];
+pub type Tensor<const D: usize, S = f64> = [Vector<D, S>; D];
 
 /// Viscosity and heat conduction.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,53 +24,54 @@ pub struct Newtonian {
 
 /// What viscous fluxes at one place follow from.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Slopes<const D: usize> {
+pub struct Slopes<const D: usize, S = f64> {
     /// Velocity.
-    pub velocity: Vector<D>,
+    pub velocity: Vector<D, S>,
     /// Temperature θ = γp/ρ.
-    pub temperature: f64,
+    pub temperature: S,
     /// Rows ∂v_i/∂x.
-    pub velocity_gradient: Tensor<D>,
+    pub velocity_gradient: Tensor<D, S>,
     /// ∂θ/∂x.
-    pub temperature_gradient: Vector<D>,
+    pub temperature_gradient: Vector<D, S>,
 }
 
 impl Gas {
     /// Temperature over that of the free stream, θ = γp/ρ.
     #[inline(always)]
-    pub fn temperature<const D: usize>(&self, q: &Primitive<D>) -> f64 {
-        self.gamma * q.pressure / q.density
+    pub fn temperature<const D: usize, S: Scalar>(&self, q: &Primitive<D, S>) -> S {
+        q.pressure * self.gamma / q.density
     }
 }
 
 /// Strain rate ε = (∇v + ∇vᵀ)/2 — eq. (4).
 #[doc(alias = "eq4")]
 #[inline(always)]
-pub fn strain_rate<const D: usize>(gradient: &Tensor<D>) -> Tensor<D> {
-    std::array::from_fn(|i| Vector::from_fn(|j| 0.5 * (gradient[i][j] + gradient[j][i])))
+pub fn strain_rate<const D: usize, S: Scalar>(gradient: &Tensor<D, S>) -> Tensor<D, S> {
+    std::array::from_fn(|i| Vector::from_fn(|j| (gradient[i][j] + gradient[j][i]) * 0.5))
 }
 
 /// Viscous part of the stress at the viscosity `mu`, τ = 2μ (ε − ⅓ tr ε I); the whole is σ = τ − p I — eq. (5).
 #[doc(alias = "eq5")]
 #[inline(always)]
-pub fn viscous_stress<const D: usize>(mu: f64, gradient: &Tensor<D>) -> Tensor<D> {
+pub fn viscous_stress<const D: usize, S: Scalar>(mu: S, gradient: &Tensor<D, S>) -> Tensor<D, S> {
     let strain = strain_rate(gradient);
-    let third: f64 = (0..D).map(|d| strain[d][d]).sum::<f64>() / 3.0;
-    std::array::from_fn(|i| Vector::from_fn(|j| 2.0 * mu * (strain[i][j] - if i == j { third } else { 0.0 })))
+    let third = (1..D).fold(strain[0][0], |sum, d| sum + strain[d][d]) / S::constant(3.0);
+    let deviator = |i: usize, j: usize| strain[i][j] - if i == j { third } else { S::constant(0.0) };
+    std::array::from_fn(|i| Vector::from_fn(|j| mu * 2.0 * deviator(i, j)))
 }
 
 impl Newtonian {
     /// Viscosity at the temperature θ: μ∞ θ^1.5 (1 + S)/(θ + S), or μ∞.
     #[inline(always)]
-    pub fn at(&self, temperature: f64) -> f64 {
+    pub fn at<S: Scalar>(&self, temperature: S) -> S {
         let law = |s: f64| temperature * temperature.sqrt() * (1.0 + s) / (temperature + s);
-        self.viscosity * self.sutherland.map_or(1.0, law)
+        self.sutherland.map_or(S::constant(1.0), law) * self.viscosity
     }
 
     /// Conductivity of θ at the viscosity `mu`, μ/((γ − 1) Pr).
     #[inline(always)]
-    pub fn conductivity(&self, gas: &Gas, mu: f64) -> f64 {
-        mu / ((gas.gamma - 1.0) * self.prandtl)
+    pub fn conductivity<S: Scalar>(&self, gas: &Gas, mu: S) -> S {
+        mu / S::constant((gas.gamma - 1.0) * self.prandtl)
     }
 
     /// Greatest diffusivity at the state `q`, μ/ρ max(4/3, γ/Pr): the rate at which a difference over the distance h decays
@@ -81,12 +83,12 @@ impl Newtonian {
 
     /// Flux of mass, momentum and energy by stress and heat across the area vector n: (0, τ·n, v·τ·n − q·n).
     #[inline(always)]
-    pub fn flux<const D: usize>(&self, gas: &Gas, at: &Slopes<D>, n: &Vector<D>) -> Conserved<D> {
+    pub fn flux<const D: usize, S: Scalar>(&self, gas: &Gas, at: &Slopes<D, S>, n: &Vector<D, S>) -> Conserved<D, S> {
         let mu = self.at(at.temperature);
         let stress = viscous_stress(mu, &at.velocity_gradient);
         let momentum = Vector::from_fn(|i| stress[i].dot(n));
         let heat = self.conductivity(gas, mu) * at.temperature_gradient.dot(n);
-        Conserved { density: 0.0, momentum, energy: at.velocity.dot(&momentum) + heat }
+        Conserved { density: S::constant(0.0), momentum, energy: at.velocity.dot(&momentum) + heat }
     }
 }
 
