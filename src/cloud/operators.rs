@@ -39,6 +39,11 @@ pub struct Edge<const D: usize> {
 }
 
 impl<const D: usize> Edge<D> {
+    /// The edge from `i` to `j` that serves both, with the weights of the derivatives there and its area vector.
+    pub fn of_both(i: u32, j: u32, [a_i, a_j]: [Vector<D>; 2], s: Vector<D>) -> Self {
+        Self { i, j: j | BOTH, a_i, a_j, s }
+    }
+
     /// First end.
     #[inline(always)]
     pub fn i(&self) -> usize {

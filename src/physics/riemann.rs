@@ -3,6 +3,7 @@
 //! All are consistent, F(q, q, n) = F(q)·n, and conservative, F(a, b, n) = −F(b, a, −n).
 use super::gas::{Conserved, Gas, Primitive};
 use crate::math::Vector;
+use crate::math::jet::Scalar;
 
 /// Fraction of the sound speed below which Roe's eigenvalues are rounded off (Harten 1983), a smooth entropy fix.
 const ENTROPY_FIX: f64 = 0.1;
@@ -11,7 +12,13 @@ const ENTROPY_FIX: f64 = 0.1;
 pub trait UpwindFlux<const D: usize>: Copy + Sync {
     /// Flux from `l` to `r`. Choices that depend on the states are between numbers, not between ways through the code, so that it
     /// can be computed for many edges at once.
-    fn across(self, gas: &Gas, l: &Primitive<D>, r: &Primitive<D>, n: &Vector<D>) -> Conserved<D>;
+    fn across<S: Scalar>(
+        self,
+        gas: &Gas,
+        l: &Primitive<D, S>,
+        r: &Primitive<D, S>,
+        n: &Vector<D, S>,
+    ) -> Conserved<D, S>;
 }
 
 /// HLLC flux (Toro, Spruce and Speares 1994) with the wave speeds of Batten et al. (1997): resolves contacts exactly.
@@ -19,32 +26,34 @@ pub trait UpwindFlux<const D: usize>: Copy + Sync {
 pub struct Hllc;
 impl<const D: usize> UpwindFlux<D> for Hllc {
     #[inline(always)]
-    fn across(self, gas: &Gas, l: &Primitive<D>, r: &Primitive<D>, n: &Vector<D>) -> Conserved<D> {
-        let inverse = 1.0 / (gas.gamma - 1.0);
+    fn across<S: Scalar>(
+        self,
+        gas: &Gas,
+        l: &Primitive<D, S>,
+        r: &Primitive<D, S>,
+        n: &Vector<D, S>,
+    ) -> Conserved<D, S> {
+        let (zero, inverse) = (S::constant(0.0), 1.0 / (gas.gamma - 1.0));
         let (ul, ur) = (l.velocity.dot(n), r.velocity.dot(n));
         let (tl, tr) = (l.pressure / l.density, r.pressure / r.density);
-        let (el, er) = (inverse * tl + 0.5 * l.velocity.norm_squared(), inverse * tr + 0.5 * r.velocity.norm_squared());
+        let (el, er) = (tl * inverse + l.velocity.norm_squared() * 0.5, tr * inverse + r.velocity.norm_squared() * 0.5);
         let (wl, wr) = (l.density.sqrt(), r.density.sqrt());
-        let weight = 1.0 / (wl + wr);
+        let weight = (wl + wr).inverse();
         let velocity = (l.velocity * wl + r.velocity * wr) * weight;
         let enthalpy = ((el + tl) * wl + (er + tr) * wr) * weight;
         let un = velocity.dot(n);
-        let c = ((gas.gamma - 1.0) * (enthalpy - 0.5 * velocity.norm_squared())).max(0.0).sqrt();
-        let sl = (ul - (gas.gamma * tl).sqrt()).min(un - c);
-        let sr = (ur + (gas.gamma * tr).sqrt()).max(un + c);
+        let c = ((enthalpy - velocity.norm_squared() * 0.5) * (gas.gamma - 1.0)).max(zero).sqrt();
+        let sl = (ul - (tl * gas.gamma).sqrt()).min(un - c);
+        let sr = (ur + (tr * gas.gamma).sqrt()).max(un + c);
         let (ml, mr) = (l.density * (sl - ul), r.density * (sr - ur));
         let star = (r.pressure - l.pressure + ml * ul - mr * ur) / (ml - mr);
         // F + S (U* − U) on the side of the contact where the area lies; S = 0 where that side's own wave has passed it
-        let left = star >= 0.0;
-        let pick = |a: f64, b: f64| if left { a } else { b };
-        let q = Primitive {
-            density: pick(l.density, r.density),
-            velocity: Vector::from_fn(|d| pick(l.velocity[d], r.velocity[d])),
-            pressure: pick(l.pressure, r.pressure),
-        };
-        let (e, s, m, wave) = (pick(el, er), pick(sl, sr), pick(ml, mr), pick(sl.min(0.0), sr.max(0.0)));
+        let left = star.value() >= 0.0;
+        let pick = |a: S, b: S| if left { a } else { b };
+        let q = Primitive::zip(l, r, pick);
+        let (e, s, m, wave) = (pick(el, er), pick(sl, sr), pick(ml, mr), pick(sl.min(zero), sr.max(zero)));
         let jump = star - q.velocity.dot(n);
-        let shared = 1.0 / (m * (s - star));
+        let shared = (m * (s - star)).inverse();
         let density = m * m * shared;
         let energy = density * (e + jump * (star + q.pressure * (s - star) * shared));
         let plain = gas.flux(&q, n);
@@ -61,10 +70,17 @@ impl<const D: usize> UpwindFlux<D> for Hllc {
 pub struct Rusanov;
 impl<const D: usize> UpwindFlux<D> for Rusanov {
     #[inline(always)]
-    fn across(self, gas: &Gas, l: &Primitive<D>, r: &Primitive<D>, n: &Vector<D>) -> Conserved<D> {
+    fn across<S: Scalar>(
+        self,
+        gas: &Gas,
+        l: &Primitive<D, S>,
+        r: &Primitive<D, S>,
+        n: &Vector<D, S>,
+    ) -> Conserved<D, S> {
+        let (one, half) = (S::constant(1.0), S::constant(0.5));
         let speed = gas.signal_speed(l, n).max(gas.signal_speed(r, n));
-        let central = gas.flux(l, n).plus(1.0, &gas.flux(r, n));
-        central.plus(-speed, &gas.conserved(r)).plus(speed, &gas.conserved(l)).times(0.5)
+        let central = gas.flux(l, n).plus(one, &gas.flux(r, n));
+        central.plus(-speed, &gas.conserved(r)).plus(speed, &gas.conserved(l)).times(half)
     }
 }
 
@@ -73,20 +89,26 @@ impl<const D: usize> UpwindFlux<D> for Rusanov {
 pub struct Roe;
 impl<const D: usize> UpwindFlux<D> for Roe {
     #[inline(always)]
-    fn across(self, gas: &Gas, l: &Primitive<D>, r: &Primitive<D>, n: &Vector<D>) -> Conserved<D> {
+    fn across<S: Scalar>(
+        self,
+        gas: &Gas,
+        l: &Primitive<D, S>,
+        r: &Primitive<D, S>,
+        n: &Vector<D, S>,
+    ) -> Conserved<D, S> {
         let (wl, wr) = (l.density.sqrt(), r.density.sqrt());
-        let weight = 1.0 / (wl + wr);
+        let weight = (wl + wr).inverse();
         let density = wl * wr;
         let v = (l.velocity * wl + r.velocity * wr) * weight;
         let h = (gas.total_enthalpy(l) * wl + gas.total_enthalpy(r) * wr) * weight;
-        let c2 = ((gas.gamma - 1.0) * (h - 0.5 * v.norm_squared())).max(1e-300);
+        let c2 = ((h - v.norm_squared() * 0.5) * (gas.gamma - 1.0)).max(S::constant(1e-300));
         let (c, un) = (c2.sqrt(), v.dot(n));
         let dv = r.velocity - l.velocity;
         let (dun, dp, dr) = (dv.dot(n), r.pressure - l.pressure, r.density - l.density);
-        let fix = |x: f64| rounded(x.abs(), ENTROPY_FIX * c);
+        let fix = |x: S| rounded(x.abs(), c * ENTROPY_FIX);
         let (minus, plus, middle) = (fix(un - c), fix(un + c), fix(un));
-        let a = minus * (dp - density * c * dun) / (2.0 * c2);
-        let b = plus * (dp + density * c * dun) / (2.0 * c2);
+        let a = minus * (dp - density * c * dun) / (c2 * 2.0);
+        let b = plus * (dp + density * c * dun) / (c2 * 2.0);
         let e = middle * (dr - dp / c2);
         let shear = (dv - *n * dun) * (middle * density);
         let dissipation = Conserved {
@@ -94,14 +116,15 @@ impl<const D: usize> UpwindFlux<D> for Roe {
             momentum: (v - *n * c) * a + (v + *n * c) * b + v * e + shear,
             energy: a * (h - un * c) + b * (h + un * c) + e * 0.5 * v.norm_squared() + shear.dot(&v),
         };
-        gas.flux(l, n).plus(1.0, &gas.flux(r, n)).plus(-1.0, &dissipation).times(0.5)
+        let (one, half) = (S::constant(1.0), S::constant(0.5));
+        gas.flux(l, n).plus(one, &gas.flux(r, n)).minus(&dissipation).times(half)
     }
 }
 
 /// |x| rounded to a parabola below `width`.
 #[inline(always)]
-pub fn rounded(x: f64, width: f64) -> f64 {
-    if x < width { 0.5 * (x * x / width + width) } else { x }
+pub fn rounded<S: Scalar>(x: S, width: S) -> S {
+    if x.value() < width.value() { (x * x / width + width) * 0.5 } else { x }
 }
 
 /// AUSM⁺-up flux for all speeds (Liou 2006, J. Comput. Phys. 214), K_p = 1/4, K_u = 3/4, σ = 1, no low-Mach scaling.
@@ -109,17 +132,24 @@ pub fn rounded(x: f64, width: f64) -> f64 {
 pub struct AusmPlusUp;
 impl<const D: usize> UpwindFlux<D> for AusmPlusUp {
     #[inline(always)]
-    fn across(self, gas: &Gas, l: &Primitive<D>, r: &Primitive<D>, n: &Vector<D>) -> Conserved<D> {
+    fn across<S: Scalar>(
+        self,
+        gas: &Gas,
+        l: &Primitive<D, S>,
+        r: &Primitive<D, S>,
+        n: &Vector<D, S>,
+    ) -> Conserved<D, S> {
         let (ul, ur) = (l.velocity.dot(n), r.velocity.dot(n));
-        let c = 0.5 * (gas.sound_speed(l) + gas.sound_speed(r));
+        let c = (gas.sound_speed(l) + gas.sound_speed(r)) * 0.5;
         let (ml, mr) = (ul / c, ur / c);
-        let density = 0.5 * (l.density + r.density);
-        let mean = 0.5 * (ml * ml + mr * mr);
-        let coupling = 0.25 * (1.0 - mean).max(0.0) * (r.pressure - l.pressure) / (density * c * c);
+        let density = (l.density + r.density) * 0.5;
+        let mean = (ml * ml + mr * mr) * 0.5;
+        let slow = (S::constant(1.0) - mean).max(S::constant(0.0));
+        let coupling = slow * 0.25 * (r.pressure - l.pressure) / (density * c * c);
         let m = mach_split(ml, 1.0) + mach_split(mr, -1.0) - coupling;
         let (pl, pr) = (pressure_split(ml, 1.0), pressure_split(mr, -1.0));
-        let p = pl * l.pressure + pr * r.pressure - 0.75 * pl * pr * 2.0 * density * c * (ur - ul);
-        let up = if m > 0.0 { l } else { r };
+        let p = pl * l.pressure + pr * r.pressure - pl * 0.75 * pr * 2.0 * density * c * (ur - ul);
+        let up = if m.value() > 0.0 { l } else { r };
         let mass = c * m * up.density;
         Conserved { density: mass, momentum: up.velocity * mass + *n * p, energy: mass * gas.total_enthalpy(up) }
     }
@@ -127,23 +157,23 @@ impl<const D: usize> UpwindFlux<D> for AusmPlusUp {
 
 /// Split Mach number of fourth degree, β = 1/8; `sign` is +1 for the left state.
 #[inline(always)]
-fn mach_split(m: f64, sign: f64) -> f64 {
-    if m.abs() >= 1.0 {
-        return 0.5 * (m + sign * m.abs());
+fn mach_split<S: Scalar>(m: S, sign: f64) -> S {
+    if m.value().abs() >= 1.0 {
+        return (m + m.abs() * sign) * 0.5;
     }
-    let square = 0.25 * (m + sign).powi(2);
-    sign * square * (1.0 + 2.0 * 0.25 * (m - sign).powi(2))
+    let (same, other) = ((m + sign) * (m + sign), (m - sign) * (m - sign));
+    same * 0.25 * sign * (other * (2.0 * 0.25) + 1.0)
 }
 
 /// Split pressure of fifth degree, α = 3/16.
 #[inline(always)]
-fn pressure_split(m: f64, sign: f64) -> f64 {
-    if m.abs() >= 1.0 {
-        return 0.5 * (1.0 + sign * m.signum());
+fn pressure_split<S: Scalar>(m: S, sign: f64) -> S {
+    if m.value().abs() >= 1.0 {
+        return S::constant(0.5 * (1.0 + sign * m.value().signum()));
     }
-    let square = 0.25 * (m + sign).powi(2);
-    let other = 0.25 * (m - sign).powi(2);
-    square * ((2.0 - sign * m) + 16.0 * 3.0 / 16.0 * m * sign * other)
+    let square = (m + sign) * (m + sign) * 0.25;
+    let other = (m - sign) * (m - sign) * 0.25;
+    square * ((-(m * sign) + 2.0) + m * (16.0 * 3.0 / 16.0) * sign * other)
 }
 
 #[cfg(test)]

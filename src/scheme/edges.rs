@@ -1,8 +1,8 @@
 //! The fluxes across the edges of a part, many at a time.
 //!
 //! What the two ends of some edges hold is gathered into arrays, one number of every edge after the other; a loop without
-//! branches then computes all of them, which the compiler turns into vector instructions; what comes out is added to the
-//! rows of the part in the order of the edges. The sums are therefore the same as those of one edge at a time.
+//! branches then computes all of them with the functions of `edge_flux`, which the compiler turns into vector instructions; what
+//! comes out is added to the rows of the part in the order of the edges. The sums are therefore those of one edge at a time.
 use multiversion::multiversion;
 
 use crate::cloud::Edge;
@@ -10,32 +10,14 @@ use crate::math::Vector;
 use crate::physics::riemann::UpwindFlux;
 use crate::physics::{Conserved, Gas, Newtonian, Primitive};
 
-use super::reconstruct::{Gradient, Limit, Reconstruction, low_mach_correction};
-use super::viscous::{direction, middle, slopes};
+use super::edge_flux::{FluxScheme, Passing, conservative, consistent, slowed, upwind, viscous};
+use super::reconstruct::{Gradient, Limit, Reconstruction};
+use super::viscous::slopes;
 
 /// Edges that are computed together: enough to fill vectors, few enough that all of it stays in the first cache.
 const LANES: usize = 16;
 
 type Lanes = [f64; LANES];
-
-/// What the fluxes need to know of the scheme.
-#[derive(Clone, Copy)]
-pub struct FluxScheme<F, L> {
-    /// Gas.
-    pub gas: Gas,
-    /// Upwind flux.
-    pub flux: F,
-    /// Limiter.
-    pub limit: L,
-    /// Order, κ, threshold.
-    pub reconstruction: Reconstruction,
-    /// Exactly conservative coefficients.
-    pub conservative: bool,
-    /// Those also for what a moving particle passes.
-    pub by_faces: bool,
-    /// Viscosity and heat conduction.
-    pub medium: Option<Newtonian>,
-}
 
 /// What particles hold.
 #[derive(Clone, Copy)]
@@ -75,16 +57,28 @@ impl<const D: usize> StateLanes<D> {
     }
 
     #[inline(always)]
-    fn put(&mut self, k: usize, density: f64, vector: &Vector<D>, energy: f64) {
-        self.density[k] = density;
-        put(&mut self.vector, k, vector);
-        self.energy[k] = energy;
+    fn put_primitive(&mut self, k: usize, q: &Primitive<D>) {
+        self.density[k] = q.density;
+        put(&mut self.vector, k, &q.velocity);
+        self.energy[k] = q.pressure;
+    }
+
+    #[inline(always)]
+    fn put_conserved(&mut self, k: usize, c: &Conserved<D>) {
+        self.density[k] = c.density;
+        put(&mut self.vector, k, &c.momentum);
+        self.energy[k] = c.energy;
     }
 }
 
 #[inline(always)]
 fn take<const D: usize>(lanes: &[Lanes; D], k: usize) -> Vector<D> {
     Vector::from_fn(|d| lanes[d][k])
+}
+
+#[inline(always)]
+fn pair<const D: usize>(lanes: &[[Lanes; D]; 2], k: usize) -> [Vector<D>; 2] {
+    [take(&lanes[0], k), take(&lanes[1], k)]
 }
 
 #[inline(always)]
@@ -209,13 +203,12 @@ fn gather<const D: usize, F, L>(
         for side in 0..2 {
             let i = ends[side];
             let q = &p.state[i];
-            batch.own[side].put(k, q.density, &q.velocity, q.pressure);
+            batch.own[side].put_primitive(k, q);
             if scheme.medium.is_some() {
                 batch.gradient[side].put(k, &p.gradient[i]);
             }
             if scheme.reconstruction.second_order {
-                let g = p.gradient[i].along(&d);
-                batch.slope[side].put(k, g.density, &g.velocity, g.pressure);
+                batch.slope[side].put_primitive(k, &p.gradient[i].along(&d));
             }
             if !scheme.conservative || !p.velocity.is_empty() {
                 put(&mut batch.weight[side], k, &(*weights[side] * -p.volume[i]));
@@ -242,39 +235,32 @@ fn reconstruct<const D: usize, L: Limit>(gas: Gas, limit: L, reconstruction: Rec
         let (qi, qj) = (own[0].primitive(k), own[1].primitive(k));
         let slopes = (slope[0].primitive(k), slope[1].primitive(k));
         let (l, r) = reconstruction.states(&gas, limit, (&qi, &qj), (&slopes.0, &slopes.1));
-        left.put(k, l.density, &l.velocity, l.pressure);
-        right.put(k, r.density, &r.velocity, r.pressure);
+        left.put_primitive(k, &l);
+        right.put_primitive(k, &r);
     }
 }
 
-/// Scales the jump of the normal velocity with the Mach number, seen from the mean velocity of the ends.
+/// Scales the jump of the normal velocity with the Mach number.
 #[multiversion(targets("x86_64+avx2"))]
 #[allow(unsafe_code, reason = "the attribute calls the version that the processor has just been asked for")]
 fn low_mach_corrections<const D: usize>(gas: Gas, batch: &mut Batch<D>) {
     let Batch { area, speed, whole, middle: [left, right], .. } = batch;
     for k in 0..LANES {
-        let m = normal(&take(area, k)).0;
-        let w = (take(&speed[0], k) + take(&speed[1], k)) * 0.5;
-        let seen = |q: Primitive<D>, w: Vector<D>| Primitive { velocity: q.velocity - w, ..q };
-        let (l, r) = low_mach_correction(&gas, seen(left.primitive(k), w), seen(right.primitive(k), w), (&m, whole[k]));
-        let (l, r) = (seen(l, -w), seen(r, -w));
-        left.put(k, l.density, &l.velocity, l.pressure);
-        right.put(k, r.density, &r.velocity, r.pressure);
+        let sides = [left.primitive(k), right.primitive(k)];
+        let [l, r] = slowed(&gas, sides, (&take(area, k), whole[k]), &pair(speed, k));
+        left.put_primitive(k, &l);
+        right.put_primitive(k, &r);
     }
 }
 
-/// The upwind flux through an area that moves with the mean velocity of the ends, by way of the axes in which it rests.
+/// The upwind flux through the area of every edge.
 #[multiversion(targets("x86_64+avx2"))]
 #[allow(unsafe_code, reason = "the attribute calls the version that the processor has just been asked for")]
 fn upwind_fluxes<const D: usize, F: UpwindFlux<D>>(gas: Gas, flux: F, batch: &mut Batch<D>) {
-    let Batch { area, speed, middle: [left, right], upwind, .. } = batch;
+    let Batch { area, speed, middle: [left, right], upwind: through, .. } = batch;
     for k in 0..LANES {
-        let m = normal(&take(area, k)).0;
-        let w = (take(&speed[0], k) + take(&speed[1], k)) * 0.5;
-        let seen = |q: Primitive<D>| Primitive { velocity: q.velocity - w, ..q };
-        let f = flux.across(&gas, &seen(left.primitive(k)), &seen(right.primitive(k)), &m);
-        let energy = f.energy + w.dot(&f.momentum) + 0.5 * w.norm_squared() * f.density;
-        upwind.put(k, f.density, &(f.momentum + w * f.density), energy);
+        let sides = [left.primitive(k), right.primitive(k)];
+        through.put_conserved(k, &upwind(&gas, flux, &sides, &take(area, k), &pair(speed, k)));
     }
 }
 
@@ -288,60 +274,21 @@ fn accumulate_residual<const D: usize, const MOVES: bool, const CONSERVATIVE: bo
 ) {
     let Batch { own, weight, area, speed, middle, upwind, out: [out_i, out_j], .. } = batch;
     for k in 0..LANES {
-        let (qi, qj) = (own[0].primitive(k), own[1].primitive(k));
-        let (l, r) = (middle[0].primitive(k), middle[1].primitive(k));
-        let s = take(area, k);
-        let (m, size) = normal(&s);
-        let (wi, wj) = (take(&speed[0], k), take(&speed[1], k));
-        let (w, upwind) = ((wi + wj) * 0.5, upwind.conserved(k));
-        let (a_i, a_j) = (take(&weight[0], k), take(&weight[1], k));
-        let (i, j) = if CONSERVATIVE {
-            let through = upwind.times(size);
-            let (out_i, out_j) = (gas.flux(&qi, &s), gas.flux(&qj, &s));
-            if MOVES {
-                let mean = gas.conserved(&l).plus(1.0, &gas.conserved(&r)).times(0.5);
-                let through = through.plus(w.dot(&s), &mean);
-                // w·∇U: by the weights that are exact for linear fields, which come as −V a, or by those of the fluxes
-                let (n_i, n_j) = if by_faces { (s, -s) } else { (a_i * -2.0, a_j * -2.0) };
-                let swept_i = mean.plus(-1.0, &gas.conserved(&qi)).times(wi.dot(&n_i));
-                let swept_j = mean.plus(-1.0, &gas.conserved(&qj)).times(wj.dot(&n_j));
-                (out_i.plus(-1.0, &through).plus(1.0, &swept_i), through.plus(-1.0, &out_j).plus(1.0, &swept_j))
-            } else {
-                (out_i.plus(-1.0, &through), through.plus(-1.0, &out_j))
-            }
-        } else {
-            let spread = upwind.plus(-0.5, &both::<D, MOVES>(&gas, (&l, &r), &m, &w)).times(size);
-            let central_i = both::<D, MOVES>(&gas, (&l, &r), &a_i, &wi)
-                .plus(-2.0, &relative_flux::<D, MOVES>(&gas, &qi, &a_i, &wi));
-            let central_j = both::<D, MOVES>(&gas, (&l, &r), &a_j, &wj)
-                .plus(-2.0, &relative_flux::<D, MOVES>(&gas, &qj, &a_j, &wj));
-            (central_i.plus(-1.0, &spread), central_j.plus(1.0, &spread))
+        let edge = Passing {
+            state: [own[0].primitive(k), own[1].primitive(k)],
+            weight: pair(weight, k),
+            velocity: pair(speed, k),
+            area: take(area, k),
+            sides: [middle[0].primitive(k), middle[1].primitive(k)],
+            upwind: upwind.conserved(k),
         };
-        out_i.put(k, i.density, &i.momentum, i.energy);
-        out_j.put(k, j.density, &j.momentum, j.energy);
+        let [i, j] = match CONSERVATIVE {
+            true => conservative::<D, f64, MOVES>(&gas, by_faces, &edge),
+            false => consistent::<D, f64, MOVES>(&gas, &edge),
+        };
+        out_i.put_conserved(k, &i);
+        out_j.put_conserved(k, &j);
     }
-}
-
-/// Flux of the state `q` through an area `n` that moves with `w`.
-#[inline(always)]
-fn relative_flux<const D: usize, const MOVES: bool>(
-    gas: &Gas,
-    q: &Primitive<D>,
-    n: &Vector<D>,
-    w: &Vector<D>,
-) -> Conserved<D> {
-    if MOVES { gas.flux(q, n).plus(-w.dot(n), &gas.conserved(q)) } else { gas.flux(q, n) }
-}
-
-/// The same of two states together.
-#[inline(always)]
-fn both<const D: usize, const MOVES: bool>(
-    gas: &Gas,
-    (l, r): (&Primitive<D>, &Primitive<D>),
-    n: &Vector<D>,
-    w: &Vector<D>,
-) -> Conserved<D> {
-    relative_flux::<D, MOVES>(gas, l, n, w).plus(1.0, &relative_flux::<D, MOVES>(gas, r, n, w))
 }
 
 /// What stress and heat along every edge add to V dU/dt of both ends.
@@ -350,29 +297,11 @@ fn both<const D: usize, const MOVES: bool>(
 fn viscous_fluxes<const D: usize, const CONSERVATIVE: bool>(gas: Gas, medium: Newtonian, batch: &mut Batch<D>) {
     let Batch { own, weight, area, along, gradient, out: [out_i, out_j], .. } = batch;
     for k in 0..LANES {
-        let (s, d) = (take(area, k), take(along, k));
-        let a = slopes(&gas, &own[0].primitive(k), &gradient[0].take(k));
-        let b = slopes(&gas, &own[1].primitive(k), &gradient[1].take(k));
-        let middle = middle((&a, &b), &d, &direction(&s, &d));
-        let (i, j) = if CONSERVATIVE {
-            let through = medium.flux(&gas, &middle, &s);
-            (through, through.times(-1.0))
-        } else {
-            // weights come as −V a
-            let (n_i, n_j) = (take(&weight[0], k), take(&weight[1], k));
-            let past_i = medium.flux(&gas, &a, &n_i).plus(-1.0, &medium.flux(&gas, &middle, &n_i));
-            let past_j = medium.flux(&gas, &b, &n_j).plus(-1.0, &medium.flux(&gas, &middle, &n_j));
-            (past_i.times(2.0), past_j.times(2.0))
-        };
-        let (i, j) = (out_i.conserved(k).plus(1.0, &i), out_j.conserved(k).plus(1.0, &j));
-        out_i.put(k, i.density, &i.momentum, i.energy);
-        out_j.put(k, j.density, &j.momentum, j.energy);
+        let ends = [0, 1].map(|side: usize| slopes(&gas, &own[side].primitive(k), &gradient[side].take(k)));
+        let weight = pair(weight, k);
+        let weight = if CONSERVATIVE { None } else { Some(&weight) };
+        let [i, j] = viscous(&gas, &medium, &ends, (&take(along, k), &take(area, k)), weight);
+        out_i.put_conserved(k, &out_i.conserved(k).plus(1.0, &i));
+        out_j.put_conserved(k, &out_j.conserved(k).plus(1.0, &j));
     }
-}
-
-/// Unit normal and size of an area; a normal of no length where there is none.
-#[inline(always)]
-fn normal<const D: usize>(s: &Vector<D>) -> (Vector<D>, f64) {
-    let size = s.norm();
-    (*s * (1.0 / size.max(f64::MIN_POSITIVE)), size)
 }

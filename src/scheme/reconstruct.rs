@@ -5,6 +5,7 @@
 //! q_L = q_i + s/4 [(1 − κs) a + (1 + κs) b]. The limiter s(a, b) is 1 in smooth flow and falls to 0 where a and b disagree;
 //! it is differentiable, so that Newton's method converges through shocks.
 use crate::math::Vector;
+use crate::math::jet::Scalar;
 use crate::physics::{Gas, Primitive};
 
 /// Smallest fraction of a particle's own density or pressure that a reconstructed state may have.
@@ -13,13 +14,13 @@ const POSITIVE: f64 = 0.1;
 /// Gradients of density, velocity and pressure.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
-pub struct Gradient<const D: usize> {
+pub struct Gradient<const D: usize, S = f64> {
     /// Gradient of the density.
-    pub density: Vector<D>,
+    pub density: Vector<D, S>,
     /// Gradient of each velocity component.
-    pub velocity: [Vector<D>; D],
+    pub velocity: [Vector<D, S>; D],
     /// Gradient of the pressure.
-    pub pressure: Vector<D>,
+    pub pressure: Vector<D, S>,
 }
 
 impl<const D: usize> Gradient<D> {
@@ -48,10 +49,12 @@ impl<const D: usize> Gradient<D> {
             pressure: turn(&self.pressure),
         }
     }
+}
 
+impl<const D: usize, S: Scalar> Gradient<D, S> {
     /// Change of the state along `d`.
     #[inline(always)]
-    pub fn along(&self, d: &Vector<D>) -> Primitive<D> {
+    pub fn along(&self, d: &Vector<D, S>) -> Primitive<D, S> {
         Primitive {
             density: self.density.dot(d),
             velocity: Vector::from_fn(|c| self.velocity[c].dot(d)),
@@ -63,7 +66,7 @@ impl<const D: usize> Gradient<D> {
 /// Slope limiter of one edge and one variable: `a` upwind, `b` central difference, `eps` the square of a small difference.
 pub trait Limit: Copy + Sync {
     /// Factors in [0, 1] of both ends, which share one division where they can.
-    fn factors(self, a: [f64; 2], b: f64, eps: f64) -> [f64; 2];
+    fn factors<S: Scalar>(self, a: [S; 2], b: S, eps: S) -> [S; 2];
 }
 
 /// Van Albada, van Leer and Roberts (1982) in a form that never reaches zero, s = m/(m + (a − b)²) with
@@ -72,11 +75,11 @@ pub trait Limit: Copy + Sync {
 pub struct VanAlbada;
 impl Limit for VanAlbada {
     #[inline(always)]
-    fn factors(self, a: [f64; 2], b: f64, eps: f64) -> [f64; 2] {
+    fn factors<S: Scalar>(self, a: [S; 2], b: S, eps: S) -> [S; 2] {
         let [c, a] = a;
-        let (top_c, top_a) = (eps + 0.5 * (c * c + b * b), eps + 0.5 * (a * a + b * b));
+        let (top_c, top_a) = (eps + (c * c + b * b) * 0.5, eps + (a * a + b * b) * 0.5);
         let (bottom_c, bottom_a) = (top_c + (c - b) * (c - b), top_a + (a - b) * (a - b));
-        let shared = 1.0 / (bottom_c * bottom_a);
+        let shared = (bottom_c * bottom_a).inverse();
         [top_c * bottom_a * shared, top_a * bottom_c * shared]
     }
 }
@@ -86,17 +89,18 @@ impl Limit for VanAlbada {
 pub struct Venkatakrishnan;
 impl Limit for Venkatakrishnan {
     #[inline(always)]
-    fn factors(self, a: [f64; 2], b: f64, eps: f64) -> [f64; 2] {
+    fn factors<S: Scalar>(self, a: [S; 2], b: S, eps: S) -> [S; 2] {
         [self.factor(a[0], b, eps), self.factor(a[1], b, eps)]
     }
 }
 impl Venkatakrishnan {
     #[inline(always)]
-    fn factor(self, a: f64, b: f64, eps: f64) -> f64 {
-        let (up, own) = (a * b, 0.25 * (a + b) * (a + b));
-        let top = b * b + eps + 2.0 * 0.5 * (a + b) * b;
-        let bottom = b * b + 2.0 * own + 0.5 * (a + b) * b + eps;
-        if up + eps <= 0.0 { 0.0 } else { (top / bottom).clamp(0.0, 1.0) }
+    fn factor<S: Scalar>(self, a: S, b: S, eps: S) -> S {
+        let (up, own) = (a * b, (a + b) * 0.25 * (a + b));
+        let top = b * b + eps + (a + b) * (2.0 * 0.5) * b;
+        let bottom = b * b + own * 2.0 + (a + b) * 0.5 * b + eps;
+        let (zero, one) = (S::constant(0.0), S::constant(1.0));
+        if (up + eps).value() <= 0.0 { zero } else { (top / bottom).max(zero).min(one) }
     }
 }
 
@@ -105,8 +109,8 @@ impl Venkatakrishnan {
 pub struct Unlimited;
 impl Limit for Unlimited {
     #[inline(always)]
-    fn factors(self, _: [f64; 2], _: f64, _: f64) -> [f64; 2] {
-        [1.0; 2]
+    fn factors<S: Scalar>(self, _: [S; 2], _: S, _: S) -> [S; 2] {
+        [S::constant(1.0); 2]
     }
 }
 
@@ -130,38 +134,40 @@ pub struct Reconstruction {
 /// (Thornber, Mosedale, Drikakis, Youngs and Williams 2008, J. Comput. Phys. 227; Rieper 2011, J. Comput. Phys. 230). The jump
 /// along the edge's face, which is damped with the speed of the flow, stays as it is.
 #[inline(always)]
-pub fn low_mach_correction<const D: usize>(
+pub fn low_mach_correction<const D: usize, S: Scalar>(
     gas: &Gas,
-    l: Primitive<D>,
-    r: Primitive<D>,
-    (n, least): (&Vector<D>, f64),
-) -> (Primitive<D>, Primitive<D>) {
-    let mach2 = |q: &Primitive<D>| q.velocity.norm_squared() * q.density / (gas.gamma * q.pressure);
-    let scale = mach2(&l).max(mach2(&r)).sqrt().min(1.0).max(least);
-    let half = *n * (0.5 * (1.0 - scale) * (r.velocity - l.velocity).dot(n));
+    l: Primitive<D, S>,
+    r: Primitive<D, S>,
+    (n, least): (&Vector<D, S>, f64),
+) -> (Primitive<D, S>, Primitive<D, S>) {
+    let one = S::constant(1.0);
+    let mach2 = |q: &Primitive<D, S>| q.velocity.norm_squared() * q.density / (q.pressure * gas.gamma);
+    let scale = mach2(&l).max(mach2(&r)).sqrt().min(one).max(S::constant(least));
+    let half = *n * ((one - scale) * 0.5 * (r.velocity - l.velocity).dot(n));
     (Primitive { velocity: l.velocity + half, ..l }, Primitive { velocity: r.velocity - half, ..r })
 }
 
 impl Reconstruction {
     /// States on both sides of the middle of an edge, from the states of its ends and their slopes along it.
     #[inline(always)]
-    pub fn states<const D: usize, L: Limit>(
+    pub fn states<const D: usize, S: Scalar, L: Limit>(
         &self,
         gas: &Gas,
         limit: L,
-        ends: (&Primitive<D>, &Primitive<D>),
-        (gi, gj): (&Primitive<D>, &Primitive<D>),
-    ) -> (Primitive<D>, Primitive<D>) {
+        ends: (&Primitive<D, S>, &Primitive<D, S>),
+        (gi, gj): (&Primitive<D, S>, &Primitive<D, S>),
+    ) -> (Primitive<D, S>, Primitive<D, S>) {
         let (qi, qj) = ends;
         if !self.second_order {
             return (*qi, *qj);
         }
         let dq = qj.minus(qi);
-        let (density, pressure) = (0.5 * (qi.density + qj.density), 0.5 * (qi.pressure + qj.pressure));
+        let (density, pressure) = ((qi.density + qj.density) * 0.5, (qi.pressure + qj.pressure) * 0.5);
         let square = self.threshold * self.threshold;
-        let sound2 = gas.gamma * pressure / density;
-        let eps = (square * density * density, square * sound2, square * pressure * pressure);
-        let mut left = Primitive { density: 0.0, velocity: Vector::ZERO, pressure: 0.0 };
+        let sound2 = pressure * gas.gamma / density;
+        let eps = (density * square * density, sound2 * square, pressure * square * pressure);
+        let zero = S::constant(0.0);
+        let mut left = Primitive { density: zero, velocity: Vector::zero(), pressure: zero };
         let mut right = left;
         [left.density, right.density] = self.increments(limit, [gi.density, gj.density], dq.density, eps.0);
         for d in 0..D {
@@ -169,25 +175,26 @@ impl Reconstruction {
             [left.velocity[d], right.velocity[d]] = self.increments(limit, slopes, dq.velocity[d], eps.1);
         }
         [left.pressure, right.pressure] = self.increments(limit, [gi.pressure, gj.pressure], dq.pressure, eps.2);
-        let (l, r) = (qi.plus(1.0, &left), qj.plus(-1.0, &right));
-        let good = |q: &Primitive<D>, own: &Primitive<D>| {
-            (q.density > POSITIVE * own.density) & (q.pressure > POSITIVE * own.pressure)
+        let (l, r) = (qi.plus(S::constant(1.0), &left), qj.plus(S::constant(-1.0), &right));
+        let good = |q: &Primitive<D, S>, own: &Primitive<D, S>| {
+            (q.density.value() > POSITIVE * own.density.value())
+                & (q.pressure.value() > POSITIVE * own.pressure.value())
         };
-        let (all, own) = (good(&l, qi) & good(&r, qj), |a: f64, b: f64, all: bool| if all { a } else { b });
+        let (all, own) = (good(&l, qi) & good(&r, qj), |a: S, b: S, all: bool| if all { a } else { b });
         (Primitive::zip(&l, qi, |a, b| own(a, b, all)), Primitive::zip(&r, qj, |a, b| own(a, b, all)))
     }
 
     /// s/4 [(1 − κs) a + (1 + κs) b] of one variable at both ends.
     #[inline(always)]
-    fn increments<L: Limit>(&self, limit: L, slopes: [f64; 2], dq: f64, eps: f64) -> [f64; 2] {
-        let a = [2.0 * slopes[0] - dq, 2.0 * slopes[1] - dq];
+    fn increments<S: Scalar, L: Limit>(&self, limit: L, slopes: [S; 2], dq: S, eps: S) -> [S; 2] {
+        let a = [slopes[0] * 2.0 - dq, slopes[1] * 2.0 - dq];
         let s = limit.factors(a, dq, eps);
         [self.increment(a[0], dq, s[0]), self.increment(a[1], dq, s[1])]
     }
 
     #[inline(always)]
-    fn increment(&self, a: f64, b: f64, s: f64) -> f64 {
-        0.25 * s * (a + b + self.kappa * s * (b - a))
+    fn increment<S: Scalar>(&self, a: S, b: S, s: S) -> S {
+        s * 0.25 * (a + b + s * self.kappa * (b - a))
     }
 }
 

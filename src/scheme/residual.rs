@@ -20,7 +20,8 @@
 #[cfg(test)]
 mod tests;
 
-use super::edges::{FluxScheme, Particles, edge_fluxes};
+use super::edge_flux::FluxScheme;
+use super::edges::{Particles, edge_fluxes};
 use super::fluid::{Fluid, Work};
 use super::frame::Frame;
 use super::reconstruct::{Limit, Unlimited, VanAlbada, Venkatakrishnan};

@@ -3,10 +3,11 @@
 //! Walls follow from the fluid particles in front of them (`wall_state`), outer sides hold a state and let waves leave
 //! (`sides`), images copy their source through a reflection or shift.
 use super::fluid::{Fluid, Work};
-use super::frame::{Discretisation, Frame};
+use super::frame::Frame;
 use super::reconstruct::Gradient;
 use super::viscous::WallCondition;
-use super::wall_state::{no_slip_wall, slip_wall};
+use super::wall_fits::{lowest_two, parabola};
+use super::wall_state::{Wall, no_slip_wall, slip_wall};
 use crate::case::Side;
 use crate::math::Vector;
 use crate::math::sweep::{sweep, sweep_each, sweep_parts};
@@ -15,7 +16,7 @@ use crate::physics::{Conserved, Primitive};
 impl<const D: usize> Fluid<D> {
     /// Fills `work.state` for every particle from the evolved ones, in the axes of `frame.discretisation`.
     pub fn fill_states(&self, frame: &Frame<D>, u: &[f64], work: &mut Work<D>) {
-        let (cloud, fits) = (&frame.discretisation.cloud, &frame.discretisation.walls);
+        let cloud = &frame.discretisation.cloud;
         let (fluid, rest) = work.state.split_at_mut(cloud.n_fluid);
         let inward = |q: Primitive<D>| Primitive { velocity: frame.to_body_axes(&q.velocity), ..q };
         sweep(fluid, |i| inward(self.gas.primitive(&Conserved::of_row(u, i))));
@@ -29,15 +30,8 @@ impl<const D: usize> Fluid<D> {
             self.image_state(&fluid[image.source as usize], image.transform)
         };
         let (walls, rest) = rest.split_at_mut(cloud.interface.len());
-        let moved = |w: usize| (frame.velocity_of(cloud.n_fluid + w), frame.walls.get(w));
-        let slips = |w: usize| slip_wall((cloud, fits), &self.gas, w, moved(w), seen);
         // sides and walls are few particles, each of them much work
-        match self.viscous_model {
-            None => sweep_each(walls, slips),
-            Some(_) => sweep_each(walls, |w| {
-                self.no_slip_state(&frame.discretisation, (w, frame), seen).unwrap_or_else(|| slips(w))
-            }),
-        }
+        sweep_each(walls, |w| self.wall_state(frame, w, seen));
         let walls = &*walls;
         let (outer, ghosts) = rest.split_at_mut(cloud.outer.len());
         sweep_each(outer, |k| self.outer_state(frame, k, fluid));
@@ -54,22 +48,31 @@ impl<const D: usize> Fluid<D> {
         });
     }
 
-    /// State of interface particle `w` when the gas sticks to its wall; `None` when it slides.
-    #[inline]
-    pub(super) fn no_slip_state(
-        &self,
-        discretisation: &Discretisation<D>,
-        (w, frame): (usize, &Frame<D>),
-        q: impl Fn(usize) -> Primitive<D>,
-    ) -> Option<Primitive<D>> {
-        let temperature = match self.viscous_model.as_ref()?.wall_condition(discretisation.cloud.interface[w].body) {
-            WallCondition::Slip => return None,
+    /// State of interface particle `w`, from those of the fluid particles, images included, in `q`.
+    fn wall_state(&self, frame: &Frame<D>, w: usize, q: impl Fn(usize) -> Primitive<D>) -> Primitive<D> {
+        let (cloud, fits) = (&frame.discretisation.cloud, &frame.discretisation.walls);
+        let interface = &cloud.interface[w];
+        let mut wall = Wall {
+            normal: interface.normal,
+            curvature: interface.curvature,
+            offset: fits.normal_offset(w),
+            velocity: frame.velocity_of(cloud.n_fluid + w),
+            motion: frame.walls.get(w).copied(),
+        };
+        let front = || fits.row(cloud, w).map(|(k, weight)| (weight, q(k)));
+        let condition = self.viscous_model.as_ref().map_or(WallCondition::Slip, |m| m.wall_condition(interface.body));
+        let temperature = match condition {
+            WallCondition::Slip => return slip_wall(&self.gas, &wall, front()),
             WallCondition::Adiabatic => None,
             WallCondition::Temperature(t) => Some(t),
         };
-        let velocity = frame.velocity_of(discretisation.cloud.n_fluid + w);
-        let moved = (velocity, frame.walls.get(w));
-        Some(no_slip_wall((&discretisation.cloud, &discretisation.walls), &self.gas, w, (moved, temperature), q))
+        let Some((particles, heights)) = lowest_two(cloud, w) else {
+            return no_slip_wall(&self.gas, &wall, temperature, front());
+        };
+        let (weights, offset) = parabola(heights);
+        wall.offset = offset;
+        let front = weights.into_iter().zip(particles).map(|(weight, k)| (weight, q(k)));
+        no_slip_wall(&self.gas, &wall, temperature, front)
     }
 
     fn image_state(&self, q: &Primitive<D>, transform: u8) -> Primitive<D> {

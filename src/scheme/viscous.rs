@@ -20,6 +20,7 @@
 use super::block::Block;
 use super::reconstruct::Gradient;
 use crate::math::Vector;
+use crate::math::jet::Scalar;
 use crate::physics::viscous::Slopes;
 use crate::physics::{Gas, Newtonian, Primitive, n_variables};
 
@@ -71,26 +72,30 @@ pub(super) fn slope_weights([low, high]: [f64; 2]) -> [f64; 2] {
 
 /// ∇θ of θ = γp/ρ.
 #[inline(always)]
-pub(super) fn temperature_gradient<const D: usize>(gas: &Gas, q: &Primitive<D>, g: &Gradient<D>) -> Vector<D> {
-    (g.pressure - g.density * (q.pressure / q.density)) * (gas.gamma / q.density)
+pub(super) fn temperature_gradient<const D: usize, S: Scalar>(
+    gas: &Gas,
+    q: &Primitive<D, S>,
+    g: &Gradient<D, S>,
+) -> Vector<D, S> {
+    (g.pressure - g.density * (q.pressure / q.density)) * (S::constant(gas.gamma) / q.density)
 }
 
 /// Extent of the edge `d` across the face with the normal `m`.
 #[inline(always)]
-pub(super) fn reach<const D: usize>(d: &Vector<D>, m: &Vector<D>) -> f64 {
-    m.dot(d).max(SHORTEST * d.norm())
+pub(super) fn reach<const D: usize, S: Scalar>(d: &Vector<D, S>, m: &Vector<D, S>) -> S {
+    m.dot(d).max(d.norm() * SHORTEST)
 }
 
 /// Direction of the face `s` of the edge `d`.
 #[inline(always)]
-pub(super) fn direction<const D: usize>(s: &Vector<D>, d: &Vector<D>) -> Vector<D> {
-    let face = if s.norm_squared() > 0.0 { s } else { d };
-    *face * (1.0 / face.norm())
+pub(super) fn direction<const D: usize, S: Scalar>(s: &Vector<D, S>, d: &Vector<D, S>) -> Vector<D, S> {
+    let face = if s.norm_squared().value() > 0.0 { s } else { d };
+    *face * face.norm().inverse()
 }
 
 /// What viscous fluxes follow from at a particle with the state `q` and the gradient `g`.
 #[inline(always)]
-pub(super) fn slopes<const D: usize>(gas: &Gas, q: &Primitive<D>, g: &Gradient<D>) -> Slopes<D> {
+pub(super) fn slopes<const D: usize, S: Scalar>(gas: &Gas, q: &Primitive<D, S>, g: &Gradient<D, S>) -> Slopes<D, S> {
     Slopes {
         velocity: q.velocity,
         temperature: gas.temperature(q),
@@ -101,18 +106,22 @@ pub(super) fn slopes<const D: usize>(gas: &Gas, q: &Primitive<D>, g: &Gradient<D
 
 /// Slopes in the middle of the edge `d` whose face has the normal `m`.
 #[inline(always)]
-pub(super) fn middle<const D: usize>((a, b): (&Slopes<D>, &Slopes<D>), d: &Vector<D>, m: &Vector<D>) -> Slopes<D> {
-    let across = 1.0 / reach(d, m);
-    let corrected = |ga: &Vector<D>, gb: &Vector<D>, change: f64| {
-        let mean = (*ga + *gb) * 0.5;
+pub(super) fn middle<const D: usize, S: Scalar>(
+    (a, b): (&Slopes<D, S>, &Slopes<D, S>),
+    d: &Vector<D, S>,
+    m: &Vector<D, S>,
+) -> Slopes<D, S> {
+    let across = reach(d, m).inverse();
+    let corrected = |ga: &Vector<D, S>, gb: &Vector<D, S>, change: S| {
+        let mean = (*ga + *gb).times(0.5);
         mean + *m * ((change - mean.dot(d)) * across)
     };
     let (va, vb) = (&a.velocity_gradient, &b.velocity_gradient);
     let dv = b.velocity - a.velocity;
     let dt = b.temperature - a.temperature;
     Slopes {
-        velocity: (a.velocity + b.velocity) * 0.5,
-        temperature: 0.5 * (a.temperature + b.temperature),
+        velocity: (a.velocity + b.velocity).times(0.5),
+        temperature: (a.temperature + b.temperature) * 0.5,
         velocity_gradient: std::array::from_fn(|c| corrected(&va[c], &vb[c], dv[c])),
         temperature_gradient: corrected(&a.temperature_gradient, &b.temperature_gradient, dt),
     }

@@ -21,8 +21,8 @@ const MOST: usize = 9;
 /// Fits of all interface particles.
 #[derive(Clone, Debug, Default)]
 pub struct WallFits {
-    pub(super) weight: Vec<f64>,
-    pub(super) normal_offset: Vec<f64>,
+    weight: Vec<f64>,
+    normal_offset: Vec<f64>,
     /// Number of fits that fell back to linear.
     pub n_linear: usize,
 }
@@ -36,6 +36,17 @@ impl WallFits {
         let normal_offset = fits.iter().map(|f| f.1).collect();
         let n_linear = fits.iter().filter(|f| f.2).count();
         Self { weight: fits.into_iter().flat_map(|f| f.0).collect(), normal_offset, n_linear }
+    }
+
+    /// Particles in front of interface particle `w` with their weights W.
+    pub fn row<'a, const D: usize>(&'a self, cloud: &'a Cloud<D>, w: usize) -> impl Iterator<Item = (usize, f64)> + 'a {
+        let weights = &self.weight[cloud.wall_stencils.range(w)];
+        cloud.wall_stencils.of(w).iter().zip(weights).map(|(k, weight)| (*k as usize, *weight))
+    }
+
+    /// Σ W n of interface particle `w`.
+    pub fn normal_offset(&self, w: usize) -> f64 {
+        self.normal_offset[w]
     }
 
     /// Bytes held.
@@ -158,4 +169,10 @@ pub(super) fn lowest_two<const D: usize>(cloud: &Cloud<D>, w: usize) -> Option<(
     let column = cloud.layers.columns.get(w)?;
     let ([a, b, ..], [low, high, ..]) = (column.particles.as_slice(), column.heights.as_slice()) else { return None };
     Some(([*a as usize, *b as usize], [*low, *high]))
+}
+
+/// Weights W at two heights, and Σ W n, of a parabola through them whose slope at the wall is given.
+pub(super) fn parabola([low, high]: [f64; 2]) -> ([f64; 2], f64) {
+    let part = low * low / (high * high - low * low);
+    ([1.0 + part, -part], low * high / (low + high))
 }

@@ -4,11 +4,11 @@ use crate::motion::BodyMotion;
 
 /// How a wall moves near an interface particle, beside its velocity.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct WallMotion<const D: usize> {
+pub struct WallMotion<const D: usize, S = f64> {
     /// Rows of ∂w/∂x: the rate of rotation, and of stretching where the wall bends.
-    pub wall_velocity_gradient: [Vector<D>; D],
+    pub wall_velocity_gradient: [Vector<D, S>; D],
     /// Acceleration.
-    pub acceleration: Vector<D>,
+    pub acceleration: Vector<D, S>,
 }
 
 impl<const D: usize> WallMotion<D> {

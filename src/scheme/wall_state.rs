@@ -8,16 +8,38 @@
 //! - ∂p/∂n = ρ κ u_t²: the centrifugal balance; walls that move add the rate of rotation and the acceleration.
 //!
 //! *Walls that the gas sticks to* give it their velocity and temperature or ∂θ/∂n = 0; ∂p/∂n = −ρ n·a_w.
-use super::wall_fits::{WallFits, lowest_two};
+//!
+//! Both are functions of plain values: the wall, and weights W_k and states of the particles in front of it.
 use super::wall_motion::WallMotion;
-use crate::cloud::Cloud;
 use crate::math::Vector;
+use crate::math::jet::Scalar;
 use crate::physics::{Gas, Primitive};
 
 /// Smallest fraction of the lowest pressure and entropy in front of a wall that its state may have.
 const FLOOR: f64 = 0.2;
+/// Rounds that settle the pressure on a slip wall, whose density follows it at constant entropy.
+const ROUNDS: usize = 3;
+/// Terms of the Neumann series of (I − B K)⁻¹: B K is small, spacing over radius of curvature.
+const TERMS: usize = 6;
+/// Most of its pressure by which the acceleration of a wall may push the gas on it.
+const MOST_INERTIA: f64 = 0.5;
 
-/// State of interface particle `w` on a slip wall that moves with `velocity` and `motion`.
+/// A piece of wall.
+#[derive(Clone, Copy, Debug)]
+pub struct Wall<const D: usize, S = f64> {
+    /// Unit normal into the gas.
+    pub normal: Vector<D, S>,
+    /// Rows of K = ∂n/∂x along the wall: positive for a convex body.
+    pub curvature: [Vector<D, S>; D],
+    /// Σ W n: what a slope of 1 across the wall takes from the weighted mean.
+    pub offset: S,
+    /// Velocity w.
+    pub velocity: Vector<D, S>,
+    /// Rotation, stretching and acceleration; nothing where all stands still.
+    pub motion: Option<WallMotion<D, S>>,
+}
+
+/// State on a wall along which the gas slides, from the particles in front of it: weights W and states.
 ///
 /// With r = v − w the velocity along the wall, G = ∂w/∂x, K the curvature and a_w the acceleration of the wall:
 ///
@@ -25,99 +47,134 @@ const FLOOR: f64 = 0.2;
 /// - momentum across the wall: ∂p/∂n = ρ [r·K r − 2 n·G r − n·a_w].
 ///
 /// Extrapolation may not bring pressure or entropy below a fraction of the lowest value in front of the wall.
-pub fn slip_wall<const D: usize>(
-    shape: (&Cloud<D>, &WallFits),
+pub fn slip_wall<const D: usize, S: Scalar>(
     gas: &Gas,
-    w: usize,
-    (velocity, motion): (Vector<D>, Option<&WallMotion<D>>),
-    q: impl Fn(usize) -> Primitive<D>,
-) -> Primitive<D> {
-    let (cloud, fits) = shape;
-    let (mut p, mut s, mut v) = (0.0, 0.0, Vector::<D>::ZERO);
-    let mut lowest = (f64::INFINITY, f64::INFINITY);
-    for (k, weight) in cloud.wall_stencils.of(w).iter().zip(&fits.weight[cloud.wall_stencils.range(w)]) {
-        let state = q(*k as usize);
+    wall: &Wall<D, S>,
+    front: impl Iterator<Item = (S, Primitive<D, S>)>,
+) -> Primitive<D, S> {
+    let zero = S::constant(0.0);
+    let (mut p, mut s, mut v) = (zero, zero, Vector::<D, S>::zero());
+    let mut lowest = [S::constant(f64::INFINITY); 2];
+    for (weight, state) in front {
         let entropy = gas.entropy(&state);
-        p += weight * state.pressure;
-        s += weight * entropy;
-        v += state.velocity * *weight;
-        lowest = (lowest.0.min(state.pressure), lowest.1.min(entropy));
+        p = p + weight * state.pressure;
+        s = s + weight * entropy;
+        v += state.velocity * weight;
+        lowest = [lowest[0].min(state.pressure), lowest[1].min(entropy)];
     }
-    let (wall, normal_offset) = (&cloud.interface[w], fits.normal_offset[w]);
-    let gradient_times =
-        |v: &Vector<D>| motion.map_or(Vector::ZERO, |m| Vector::from_fn(|i| m.wall_velocity_gradient[i].dot(v)));
-    let normal = &wall.normal;
-    let slope = motion
-        .map_or(Vector::ZERO, |m| (0..D).fold(Vector::ZERO, |sum, i| sum + m.wall_velocity_gradient[i] * normal[i]));
-    let along = along_wall(&(v - velocity - slope * normal_offset), normal);
-    let relative = irrotational(&along, wall, normal_offset);
-    let s = s.max(FLOOR * lowest.1);
-    let density = |p: f64| (p / s).powf(1.0 / gas.gamma);
-    let inertia = motion.map_or(0.0, |m| 2.0 * normal.dot(&gradient_times(&relative)) + normal.dot(&m.acceleration));
-    let pull = normal_offset * (bending(wall, &relative) - inertia);
-    // the density follows the pressure at constant entropy, three rounds settle it
-    let mut pressure = p.max(FLOOR * lowest.0);
-    for _ in 0..3 {
-        pressure = (p - pull * density(pressure)).max(FLOOR * lowest.0);
+    let relative = sliding(wall, &v);
+    let inertia = wall.motion.as_ref().map_or(zero, |m| {
+        let turned = Vector::from_fn(|i| m.wall_velocity_gradient[i].dot(&relative));
+        wall.normal.dot(&turned) * 2.0 + wall.normal.dot(&m.acceleration)
+    });
+    let pull = wall.offset * (bending(wall, &relative) - inertia);
+    let (s, floor) = (s.max(lowest[1] * FLOOR), lowest[0] * FLOOR);
+    let density = |p: S| (p / s).powf(1.0 / gas.gamma);
+    let mut pressure = p.max(floor);
+    for _ in 0..ROUNDS {
+        pressure = (p - pull * density(pressure)).max(floor);
     }
-    let across = *normal * velocity.dot(normal);
-    Primitive { density: density(pressure), velocity: relative + along_wall(&velocity, normal) + across, pressure }
+    let across = wall.normal * wall.velocity.dot(&wall.normal);
+    let velocity = relative + along_wall(&wall.velocity, &wall.normal) + across;
+    Primitive { density: density(pressure), velocity, pressure }
 }
 
-/// State of interface particle `w` on a wall that the gas sticks to, with ∂p/∂n = −ρ n·a_w and ∂θ/∂n = 0, or at the given
-/// temperature: parabolas through the first two layers, or the fit without layers.
-pub(super) fn no_slip_wall<const D: usize>(
-    (cloud, fits): (&Cloud<D>, &WallFits),
+/// State on a wall that the gas sticks to, with ∂p/∂n = −ρ n·a_w and ∂θ/∂n = 0, or at the given temperature, from the particles
+/// in front of it: weights W and states.
+pub fn no_slip_wall<const D: usize, S: Scalar>(
     gas: &Gas,
-    w: usize,
-    ((velocity, motion), temperature): ((Vector<D>, Option<&WallMotion<D>>), Option<f64>),
-    q: impl Fn(usize) -> Primitive<D>,
-) -> Primitive<D> {
-    let mut sum = (0.0, 0.0);
-    let mut lowest = (f64::INFINITY, f64::INFINITY);
-    let mut take = |k: usize, weight: f64| {
-        let state = q(k);
-        let own = (state.pressure, gas.temperature(&state));
-        sum = (sum.0 + weight * own.0, sum.1 + weight * own.1);
-        lowest = (lowest.0.min(own.0), lowest.1.min(own.1));
-    };
-    let normal_offset = match lowest_two(cloud, w) {
-        Some(([a, b], [low, high])) => {
-            let part = low * low / (high * high - low * low);
-            take(a, 1.0 + part);
-            take(b, -part);
-            low * high / (low + high)
-        }
-        None => {
-            let weights = &fits.weight[cloud.wall_stencils.range(w)];
-            cloud.wall_stencils.of(w).iter().zip(weights).for_each(|(k, weight)| take(*k as usize, *weight));
-            fits.normal_offset[w]
-        }
-    };
-    let (p, floor) = (sum.0, FLOOR * lowest.0);
-    let theta = temperature.unwrap_or(sum.1.max(FLOOR * lowest.1));
-    let inertia = motion.map_or(0.0, |m| cloud.interface[w].normal.dot(&m.acceleration));
-    // p_w = p + normal_offset ρ_w n·a_w with ρ_w = γ p_w/θ
-    let pressure = (p / (1.0 - (normal_offset * inertia * gas.gamma / theta).min(0.5))).max(floor);
-    Primitive { density: gas.gamma * pressure / theta, velocity, pressure }
+    wall: &Wall<D, S>,
+    temperature: Option<S>,
+    front: impl Iterator<Item = (S, Primitive<D, S>)>,
+) -> Primitive<D, S> {
+    let zero = S::constant(0.0);
+    let (mut sum, mut lowest) = ([zero; 2], [S::constant(f64::INFINITY); 2]);
+    for (weight, state) in front {
+        let own = [state.pressure, gas.temperature(&state)];
+        sum = [sum[0] + weight * own[0], sum[1] + weight * own[1]];
+        lowest = [lowest[0].min(own[0]), lowest[1].min(own[1])];
+    }
+    let theta = temperature.unwrap_or(sum[1].max(lowest[1] * FLOOR));
+    let inertia = wall.motion.as_ref().map_or(zero, |m| wall.normal.dot(&m.acceleration));
+    // p_w = p + B ρ_w n·a_w with ρ_w = γ p_w/θ
+    let pushed = (wall.offset * inertia * gas.gamma / theta).min(S::constant(MOST_INERTIA));
+    let pressure = (sum[0] / (S::constant(1.0) - pushed)).max(lowest[0] * FLOOR);
+    Primitive { density: pressure * gas.gamma / theta, velocity: wall.velocity, pressure }
 }
 
-fn along_wall<const D: usize>(v: &Vector<D>, normal: &Vector<D>) -> Vector<D> {
+fn along_wall<const D: usize, S: Scalar>(v: &Vector<D, S>, normal: &Vector<D, S>) -> Vector<D, S> {
     *v - *normal * v.dot(normal)
 }
 
-/// Solves (I − B K) r = `along`: the tangential velocity with slope −K r across the wall.
-fn irrotational<const D: usize>(along: &Vector<D>, wall: &crate::cloud::Interface<D>, normal_offset: f64) -> Vector<D> {
-    // B K is small (spacing over radius of curvature): six terms of the Neumann series are plenty
-    let apply = |u: &Vector<D>| Vector::from_fn(|r| normal_offset * wall.curvature[r].dot(u));
-    let mut u = *along;
-    for _ in 0..6 {
-        u = along_wall(&(*along + apply(&u)), &wall.normal);
-    }
-    u
+/// Velocity along the wall, relative to it, of gas with the weighted mean velocity `v`: solves (I − B K) r = v − w − B Gᵀn.
+fn sliding<const D: usize, S: Scalar>(wall: &Wall<D, S>, v: &Vector<D, S>) -> Vector<D, S> {
+    let turning = |m: &WallMotion<D, S>| {
+        let rows = m.wall_velocity_gradient.iter().enumerate();
+        rows.fold(Vector::zero(), |sum, (i, row)| sum + *row * wall.normal[i])
+    };
+    let slope = wall.motion.as_ref().map_or(Vector::zero(), turning);
+    let along = along_wall(&(*v - wall.velocity - slope * wall.offset), &wall.normal);
+    let bent = |u: &Vector<D, S>| Vector::from_fn(|r| wall.offset * wall.curvature[r].dot(u));
+    (0..TERMS).fold(along, |u, _| along_wall(&(along + bent(&u)), &wall.normal))
 }
 
 /// r·K r.
-fn bending<const D: usize>(wall: &crate::cloud::Interface<D>, r: &Vector<D>) -> f64 {
-    (0..D).map(|d| r[d] * wall.curvature[d].dot(r)).sum()
+fn bending<const D: usize, S: Scalar>(wall: &Wall<D, S>, r: &Vector<D, S>) -> S {
+    Vector::from_fn(|d| wall.curvature[d].dot(r)).dot(r)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::jet::Jet;
+
+    const AIR: Gas = Gas { gamma: 1.4 };
+
+    /// A hollow wall of radius 2 that turns at the rate 0.3 and is pushed; particles in front of it.
+    fn wall<S: Scalar>(speed: S) -> (Wall<2, S>, [(S, Primitive<2, S>); 3]) {
+        let fixed = |v: [f64; 2]| Vector(v.map(S::constant));
+        let motion = WallMotion {
+            wall_velocity_gradient: [fixed([0.0, -0.3]), fixed([0.3, 0.0])],
+            acceleration: fixed([0.05, 0.1]),
+        };
+        let wall = Wall {
+            normal: fixed([0.0, 1.0]),
+            curvature: [fixed([-0.5, 0.0]), fixed([0.0, 0.0])],
+            offset: S::constant(0.06),
+            velocity: fixed([0.02, 0.01]),
+            motion: Some(motion),
+        };
+        let state = |density: f64, factor: f64, pressure: f64| Primitive {
+            density: S::constant(density),
+            velocity: Vector([speed * factor, S::constant(0.03)]),
+            pressure: S::constant(pressure),
+        };
+        let front = [(1.2, state(1.0, 1.0, 0.7)), (0.3, state(1.1, 0.9, 0.75)), (-0.5, state(0.9, 1.2, 0.65))];
+        (wall, front.map(|(weight, q)| (S::constant(weight), q)))
+    }
+
+    fn states<S: Scalar>(speed: S) -> [[S; 4]; 3] {
+        let (wall, front) = wall(speed);
+        let all = |q: Primitive<2, S>| [q.density, q.velocity[0], q.velocity[1], q.pressure];
+        let sticks = |t: Option<S>| all(no_slip_wall(&AIR, &wall, t, front.into_iter()));
+        [all(slip_wall(&AIR, &wall, front.into_iter())), sticks(None), sticks(Some(S::constant(1.1)))]
+    }
+
+    #[test]
+    fn nothing_passes_a_slip_wall_and_the_velocity_of_a_no_slip_wall_is_its_own() {
+        let [slides, sticks, warm] = states(0.4);
+        assert!((slides[2] - 0.01).abs() < 1e-15);
+        assert_eq!([&sticks[1..3], &warm[1..3]], [&[0.02, 0.01]; 2]);
+        assert!((1.4 * warm[3] / warm[0] - 1.1).abs() < 1e-15);
+    }
+
+    #[test]
+    fn numbers_with_derivatives_give_the_derivative_of_the_state() {
+        const STEP: f64 = 1e-5;
+        let (jets, less, more) = (states(Jet::variable(0.4)), states(0.4 - STEP), states(0.4 + STEP));
+        for (jet, (a, b)) in jets.iter().flatten().zip(less.iter().flatten().zip(more.iter().flatten())) {
+            assert!((jet.first - (b - a) / (2.0 * STEP)).abs() < 1e-9, "{jet:?}");
+        }
+        assert_eq!(jets.map(|q| q.map(|v| v.value)), states(0.4));
+    }
 }

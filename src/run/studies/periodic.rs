@@ -19,7 +19,6 @@ use crate::motion::positions;
 use crate::observe::loads::Coefficients;
 use crate::observe::table::{Entry, write_csv};
 use crate::observe::vtk::{Column, write_points};
-use crate::physics::n_variables;
 use crate::scheme::{Fluid, HasGas, Work};
 use crate::system::{Instant, System};
 use crate::time::harmonic::HarmonicBalance;
@@ -261,7 +260,7 @@ impl<S: HasGas<D>, const D: usize> PeriodicState<'_, S, D> {
         let mut names = ["x", "y", "z", "area", "cp_mean"].map(String::from).to_vec();
         names.extend((1..=n).flat_map(|m| [format!("cp_{m}_re"), format!("cp_{m}_im")]));
         let rows = cloud.interface_range().zip(&cloud.interface).map(|(i, wall)| {
-            let cp = &moments[n_variables(D)][i];
+            let cp = &moments[D + 2][i];
             let mut row = cloud.x[i].to_3d().map(Entry::from).to_vec();
             row.push(Entry::from(wall.area.norm()));
             row.push(Entry::from(coefficient(0, cp)));
