@@ -8,6 +8,7 @@
 //! The normal equations are tried first (Cholesky); when their conditioning asks for it, the rows are factorised (QR), and
 //! when these are rank deficient too the pseudo-inverse is taken (SVD by one-sided Jacobi rotations, Demmel 1997 §5.4.3).
 use super::Vector;
+use super::singular::Singular;
 use super::square::cofactor;
 
 /// Condition number of the scaled normal matrix above which Cholesky is not trusted: √ of it is lost digits of the rows.
@@ -336,42 +337,11 @@ fn qr_row(a: &[f64], rows: usize, n: usize, m: usize) -> Option<Vec<f64>> {
 
 /// Row `m` of the pseudo-inverse by one-sided Jacobi rotations of the columns.
 fn svd_row(a: &[f64], rows: usize, n: usize, m: usize) -> Vec<f64> {
-    let mut u: Vec<Vec<f64>> = (0..n).map(|c| (0..rows).map(|k| a[k * n + c]).collect()).collect();
-    let mut v: Vec<Vec<f64>> = (0..n).map(|c| (0..n).map(|k| if k == c { 1.0 } else { 0.0 }).collect()).collect();
-    for _ in 0..30 {
-        let mut rotated = false;
-        for p in 0..n {
-            for q in p + 1..n {
-                rotated |= rotate_columns(&mut u, &mut v, p, q);
-            }
-        }
-        if !rotated {
-            break;
-        }
-    }
-    let sizes: Vec<f64> = u.iter().map(|c| c.iter().map(|x| x * x).sum::<f64>()).collect();
+    let found = Singular::of((0..n).map(|c| (0..rows).map(|k| a[k * n + c]).collect()).collect());
+    let (u, v, sizes) = (&found.left, &found.right, found.squares());
     let largest = sizes.iter().fold(0.0f64, |m, s| m.max(*s));
     let keep = |s: f64| s > largest * RANK_TOLERANCE * RANK_TOLERANCE;
     (0..rows).map(|k| (0..n).filter(|c| keep(sizes[*c])).map(|c| v[c][m] * u[c][k] / sizes[c]).sum()).collect()
-}
-
-fn rotate_columns(u: &mut [Vec<f64>], v: &mut [Vec<f64>], p: usize, q: usize) -> bool {
-    let inner = |x: &[f64], y: &[f64]| x.iter().zip(y).map(|(a, b)| a * b).sum::<f64>();
-    let (a, b, c) = (inner(&u[p], &u[p]), inner(&u[q], &u[q]), inner(&u[p], &u[q]));
-    if c == 0.0 || c.abs() <= 1e-15 * (a * b).sqrt() {
-        return false;
-    }
-    let theta = (b - a) / (2.0 * c);
-    let t = theta.signum() / (theta.abs() + (theta * theta + 1.0).sqrt());
-    let cosine = 1.0 / (t * t + 1.0).sqrt();
-    let sine = t * cosine;
-    for w in [u, v] {
-        let (left, right) = w.split_at_mut(q);
-        for (x, y) in left[p].iter_mut().zip(right[0].iter_mut()) {
-            (*x, *y) = (cosine * *x - sine * *y, sine * *x + cosine * *y);
-        }
-    }
-    true
 }
 
 #[cfg(test)]
