@@ -41,20 +41,20 @@ pub struct Cycles {
 
 /// A load at rising times.
 #[derive(Clone, Copy)]
-struct History<'a> {
-    time: &'a [f64],
-    values: &'a [f64],
+pub(super) struct Trace<'a> {
+    pub(super) time: &'a [f64],
+    pub(super) values: &'a [f64],
 }
 
 impl Cycles {
     /// Cycles at the end of the histories of lift and drag at rising `time`s; `None` where there are not two whole ones.
     pub fn of(time: &[f64], lift: &[f64], drag: &[f64]) -> Option<Self> {
         let (start, end) = (*time.first()?, *time.last()?);
-        let (cl, cd) = (History { time, values: lift }, History { time, values: drag });
+        let (cl, cd) = (Trace { time, values: lift }, Trace { time, values: drag });
         let late = (0.5 * (start + end), end);
         let reach = REACH / cl.dominant(late)?;
         let even = cl.averaged(reach);
-        let seen = History { time, values: &even };
+        let seen = Trace { time, values: &even };
         // nearer to the end the average has one side only
         let late = (late.0, end - reach);
         let first = seen.crossings(late, seen.mean(late))?;
@@ -81,7 +81,7 @@ impl Cycles {
     }
 }
 
-impl History<'_> {
+impl Trace<'_> {
     /// Value at `t` between samples `k` and `k + 1`.
     fn at(&self, k: usize, t: f64) -> f64 {
         let part = (t - self.time[k]) / (self.time[k + 1] - self.time[k]);
@@ -89,7 +89,7 @@ impl History<'_> {
     }
 
     /// Mean over time, linear between samples.
-    fn mean(&self, (from, to): (f64, f64)) -> f64 {
+    pub(super) fn mean(&self, (from, to): (f64, f64)) -> f64 {
         let piece = |k: usize| {
             let (a, b) = (self.time[k].max(from), self.time[k + 1].min(to));
             if a < b { 0.5 * (b - a) * (self.at(k, a) + self.at(k, b)) } else { 0.0 }
@@ -124,7 +124,7 @@ impl History<'_> {
     }
 
     /// Frequency of the largest peak of the spectrum of a window; `None` where there is none.
-    fn dominant(&self, (from, to): (f64, f64)) -> Option<f64> {
+    pub(super) fn dominant(&self, (from, to): (f64, f64)) -> Option<f64> {
         if self.time.len() < 2 {
             return None;
         }
