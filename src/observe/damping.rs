@@ -38,6 +38,10 @@ const STEEP: f64 = 60.0;
 const SLOW: f64 = 1e-3;
 /// Size of an oscillation over the whole above which it lives by cancelling another.
 const CANCELLING: f64 = 10.0;
+/// Radians over the tail by which frequencies must differ to be two, unless the misfit is below [`EXACT`]: a frequency that changes with
+/// amplitude, as with cubic springs and play, looks like two that beat and grow and decay as nothing does.
+const APART: f64 = std::f64::consts::TAU;
+const EXACT: f64 = 1e-4;
 /// Size of an oscillation over the largest below which it is not told.
 const FAINT: f64 = 1e-2;
 
@@ -294,12 +298,16 @@ impl Scaled {
         found.filter_map(|poles| self.candidate(&poles)).collect()
     }
 
-    /// The fit near some poles; `None` where oscillations cancel one another.
+    /// The fit near some poles; `None` where oscillations cancel one another or cannot be told apart.
     fn candidate(&self, poles: &[Complex64]) -> Option<Candidate> {
         let fit = Exponentials::fit(self.samples(), poles)?;
         let n = self.time.len() as f64;
-        let price = n * (fit.misfit(self.samples()) / n + self.floor).ln() + fit.unknowns() as f64 * n.ln();
-        let sound = fit.terms.iter().all(|term| term.is_drift() || term.size(&self.time) < CANCELLING);
+        let square = fit.misfit(self.samples()) / n;
+        let price = n * (square + self.floor).ln() + fit.unknowns() as f64 * n.ln();
+        let swings: Vec<&Term> = fit.terms.iter().filter(|term| !term.is_drift()).collect();
+        let apart = |k: usize| swings[..k].iter().all(|other| (other.frequency - swings[k].frequency).abs() >= APART);
+        let sound = swings.iter().all(|term| term.size(&self.time) < CANCELLING)
+            && (square < EXACT * EXACT || (0..swings.len()).all(apart));
         (sound && price.is_finite()).then_some(Candidate { fit, price })
     }
 
@@ -441,21 +449,27 @@ mod tests {
         assert_eq!(told, "the history holds 1.40 cycles; a frequency needs at least 1.5");
     }
 
-    #[test] // Van der Pol, ε = 0.1: amplitude 2 + ε²/96, ω = 1 − ε²/16 (Andersen and Geer 1982)
-    fn limit_cycles_have_a_frequency_and_an_amplitude() {
-        let rate = |[x, v]: [f64; 2]| [v, 0.1 * (1.0 - x * x) * v - x];
-        let (mut state, step) = ([0.1, 0.0], 0.05);
-        let mut history = Vec::new();
-        for _ in 0..8000 {
-            history.push(state[0]);
-            let moved = |k: [f64; 2], h: f64| [state[0] + h * k[0], state[1] + h * k[1]];
-            let a = rate(state);
+    /// q'' = f(q, q') by the method of Runge and Kutta, from q = 1.
+    fn marched(steps: usize, step: f64, f: impl Fn(f64, f64) -> f64) -> Vec<f64> {
+        let rate = |[x, v]: [f64; 2]| [v, f(x, v)];
+        let mut state = [1.0, 0.0];
+        let advance = |_| {
+            let now = state;
+            let moved = |k: [f64; 2], h: f64| [now[0] + h * k[0], now[1] + h * k[1]];
+            let a = rate(now);
             let b = rate(moved(a, 0.5 * step));
             let c = rate(moved(b, 0.5 * step));
             let d = rate(moved(c, step));
-            state = std::array::from_fn(|i| state[i] + step / 6.0 * (a[i] + 2.0 * (b[i] + c[i]) + d[i]));
-        }
-        let time: Vec<f64> = (0..8000).map(|k| step * f64::from(k)).collect();
+            state = std::array::from_fn(|i| now[i] + step / 6.0 * (a[i] + 2.0 * (b[i] + c[i]) + d[i]));
+            now[0]
+        };
+        (0..steps).map(advance).collect()
+    }
+
+    #[test] // Van der Pol, ε = 0.1: amplitude 2 + ε²/96, ω = 1 − ε²/16 (Andersen and Geer 1982)
+    fn limit_cycles_have_a_frequency_and_an_amplitude() {
+        let history = marched(8000, 0.05, |x, v| 0.1 * (1.0 - x * x) * v - x);
+        let time: Vec<f64> = (0..8000).map(|k| 0.05 * f64::from(k)).collect();
         let fit = DampingFit::of(&time, &history).unwrap();
         let first = fit.modes[0];
         assert!((first.frequency - (1.0 - 0.01 / 16.0)).abs() < 1e-5, "{fit:?}");
@@ -463,6 +477,16 @@ mod tests {
         let last = LastCycles::of(&time, &history, first.frequency).unwrap();
         assert!((last.amplitude - 2.0 - 0.01 / 96.0).abs() < 1e-4 && last.mean.abs() < 1e-3, "{last:?}");
         assert!(last.cycles == LAST && last.spread < 1e-4);
+    }
+
+    #[test] // q'' + 0.02 q' + q + q³/2 = 0 decays at half its damping for any spring; its frequency falls from 1.15 to 1
+    fn a_frequency_that_changes_with_amplitude_is_one_that_decays() {
+        let history = marched(2000, 0.05, |x, v| -x - 0.5 * x * x * x - 0.02 * v);
+        let time: Vec<f64> = (0..2000).map(|k| 0.05 * f64::from(k)).collect();
+        let fit = DampingFit::of(&time, &history).unwrap();
+        let first = fit.modes[0];
+        assert!((first.frequency - 1.04).abs() < 0.02 && (first.growth_rate + 0.01).abs() < 0.002, "{fit:?}");
+        assert!(fit.residual > 1e-3 && fit.modes.iter().all(|m| m.growth_rate < 0.0), "the misfit tells: {fit:?}");
     }
 
     #[test]

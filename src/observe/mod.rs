@@ -1,8 +1,10 @@
 //! What a run leaves behind: tables, field files and checkpoints. Takes slices, knows no solver type.
 pub mod checkpoint;
 pub mod cycles;
+pub mod damping;
 pub mod harmonics;
 pub mod loads;
+pub mod structure;
 pub mod table;
 pub mod usage;
 pub mod vtk;

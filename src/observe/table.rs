@@ -222,7 +222,7 @@ impl History {
 }
 
 /// The numbers of a line that ends in a line break and has the right width.
-fn complete_row(line: &str, columns: usize) -> Option<Vec<f64>> {
+pub(super) fn complete_row(line: &str, columns: usize) -> Option<Vec<f64>> {
     let row: Option<Vec<f64>> =
         line.strip_suffix('\n')?.trim_end().split(',').map(|entry| entry.parse().ok()).collect();
     row.filter(|row| row.len() == columns)

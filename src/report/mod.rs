@@ -24,6 +24,7 @@ mod paint;
 mod periodic;
 pub mod picture;
 mod sections;
+mod structure;
 pub mod surface;
 mod transfer;
 pub mod verification;

@@ -10,7 +10,7 @@ use serde_json::Value;
 use super::files::{LOADS, Load, RunFolder};
 use super::page::{Card, Fact, Page, Section, Status};
 use super::sections::{self, grouped, number};
-use super::{ReportError, periodic, write_file};
+use super::{ReportError, periodic, structure, write_file};
 
 /// Writes `report.html` into a run folder from the files that are there, and gives its path.
 pub fn write_report(run: &Path) -> Result<PathBuf, ReportError> {
@@ -28,6 +28,7 @@ fn report(run: &RunFolder) -> Page {
         Section::new("flow", "Flow", sections::pictures(run)),
         Section::new("pressure", "Pressure on the surface", sections::pressure(run)),
         Section::new("motion", "Motion", Ok(periodic::motion(run))),
+        Section::new("structure", "Structure", Ok(structure::structure(run))),
         Section::new("convergence", "Convergence", Ok(sections::convergence(run))),
         Section::new("doctor", "Cloud doctor", Ok(sections::doctor(run))),
         Section::new("ledger", "Conservation", sections::ledger(run)),

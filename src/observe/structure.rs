@@ -1,0 +1,449 @@
+//! The motion of structures: `structure.csv` of a run, and what its tail says.
+//!
+//! One row per step: of each coordinate its value, rate and generalised force of the gas, then energies and power, and two integrals
+//! by the trapezoidal rule of the steps,
+//!
+//! W = ∫ Σ Q q' dt (`gas_work`, done on the structures) and ∫ (P − Σ Q q') dt (`ledger`), with the power P of pressure and friction on
+//! the moving walls as the gas has it: zero where no work is lost between the two.
+//!
+//! Coordinates are named as in the structure (`plunge`, `plunge_rate`, `plunge_load`), with the body before them (`wing.plunge`)
+//! where more than one structure moves. A resumed run goes on to the same bits: the integrals are read back from the last row.
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+use super::damping::{DampingFit, LastCycles, NoFit, Oscillation, energy_per_cycle};
+use super::table::{FileError, History, complete_row};
+
+/// Name of the file in the folder of a run.
+pub const FILE: &str = "structure.csv";
+/// Columns before those of the coordinates.
+const BEFORE: [&str; 2] = ["iteration", "time"];
+/// What follows the name of a coordinate in its three columns.
+const OF_COORDINATE: [&str; 3] = ["", "_rate", "_load"];
+/// Columns after those of the coordinates.
+const AFTER: [&str; 7] = ["kinetic", "potential", "dissipation", "gas_power", "wall_power", "gas_work", "ledger"];
+/// Coordinates that are angles, in radians, where nothing else is known.
+const ANGLES: [&str; 4] = ["pitch", "flap", "roll", "yaw"];
+
+/// A body on springs and its coordinates.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct StructureNames {
+    /// Name of the body.
+    pub body: String,
+    /// Names of its coordinates.
+    pub coordinates: Vec<String>,
+}
+
+/// All structures of a run at the end of a step, in the units of the solver.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct StructureSample {
+    /// Time.
+    pub time: f64,
+    /// Coordinates, body after body.
+    pub coordinates: Vec<f64>,
+    /// Their rates.
+    pub rates: Vec<f64>,
+    /// Generalised forces of the gas.
+    pub loads: Vec<f64>,
+    /// Kinetic energy.
+    pub kinetic: f64,
+    /// Energy of springs and gravity.
+    pub potential: f64,
+    /// Power that dampers take.
+    pub dissipation: f64,
+    /// Power of the gas on the structures, Σ Q q'.
+    pub gas_power: f64,
+    /// Power of pressure and friction on the moving walls.
+    pub wall_power: f64,
+}
+
+/// The table as it grows.
+#[derive(Debug)]
+pub struct StructureHistory {
+    table: History,
+    /// Integrals up to the last row.
+    last: Option<Totals>,
+}
+
+/// Integrals in time and what they go on from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Totals {
+    time: f64,
+    gas_power: f64,
+    wall_power: f64,
+    gas_work: f64,
+    ledger: f64,
+}
+
+/// A coordinate in a table that was read.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct CoordinateHistory {
+    /// Name, with that of the body before it where there are more.
+    pub name: String,
+    /// Values.
+    pub values: Vec<f64>,
+    /// Rates.
+    pub rates: Vec<f64>,
+    /// Generalised forces of the gas.
+    pub loads: Vec<f64>,
+}
+
+/// A table that was read, column by column.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct StructureTable {
+    /// Iterations or steps of the run.
+    pub iteration: Vec<f64>,
+    /// Times.
+    pub time: Vec<f64>,
+    /// Coordinates.
+    pub coordinates: Vec<CoordinateHistory>,
+    /// Kinetic energy.
+    pub kinetic: Vec<f64>,
+    /// Energy of springs and gravity.
+    pub potential: Vec<f64>,
+    /// Power that dampers take.
+    pub dissipation: Vec<f64>,
+    /// Power of the gas on the structures.
+    pub gas_power: Vec<f64>,
+    /// Power on the moving walls.
+    pub wall_power: Vec<f64>,
+    /// Integral of `gas_power`.
+    pub gas_work: Vec<f64>,
+    /// Integral of `wall_power` less `gas_power`.
+    pub ledger: Vec<f64>,
+}
+
+/// One structure in `summary.json`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct StructureSummary {
+    /// Name of the body.
+    pub body: String,
+    /// Lines about it: signs, units, the numbers of flutter, frequencies.
+    pub description: Vec<String>,
+    /// How each coordinate ended.
+    pub coordinates: Vec<CoordinateSummary>,
+    /// Work of the gas on this structure over the last whole cycle; positive where the motion is fed. None where nothing oscillates.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub energy_per_cycle: Option<f64>,
+}
+
+/// One coordinate in `summary.json`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct CoordinateSummary {
+    /// Name in the structure.
+    pub name: String,
+    /// True for an angle, in radians.
+    pub angle: bool,
+    /// Mean over the last whole cycles; the last value where nothing oscillates.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mean: Option<f64>,
+    /// Half of greatest less smallest value in the last whole cycles, mean of these.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub amplitude: Option<f64>,
+    /// Greatest less smallest amplitude of these cycles over their mean.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub amplitude_spread: Option<f64>,
+    /// Angular frequency ω of the first of `modes`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub frequency: Option<f64>,
+    /// Its growth rate σ.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub growth_rate: Option<f64>,
+    /// Its −σ/√(σ² + ω²).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub damping_ratio: Option<f64>,
+    /// Root mean square misfit of the fit over the deviation of the tail.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub fit_residual: Option<f64>,
+    /// All oscillations found in the tail.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub modes: Vec<Oscillation>,
+    /// Why there is no frequency.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub no_frequency: Option<String>,
+}
+
+/// True for the coordinates of sections and rigid bodies that are angles; the name of a body may stand before.
+pub fn is_angle(name: &str) -> bool {
+    ANGLES.contains(&name.rsplit('.').next().unwrap_or(name))
+}
+
+/// Names of all coordinates in the table.
+fn full_names(structures: &[StructureNames]) -> Vec<String> {
+    let prefix = |s: &StructureNames| if structures.len() > 1 { format!("{}.", s.body) } else { String::new() };
+    let own = |s: &StructureNames| s.coordinates.iter().map(|c| prefix(s) + c).collect::<Vec<String>>();
+    structures.iter().flat_map(own).collect()
+}
+
+/// Names of all columns.
+fn columns(structures: &[StructureNames]) -> Vec<String> {
+    let of = |name: String| OF_COORDINATE.map(|what| format!("{name}{what}"));
+    let coordinates = full_names(structures).into_iter().flat_map(of);
+    BEFORE.into_iter().map(str::to_owned).chain(coordinates).chain(AFTER.into_iter().map(str::to_owned)).collect()
+}
+
+impl StructureHistory {
+    /// Starts an empty table in the folder of a run.
+    pub fn create(folder: &Path, structures: &[StructureNames]) -> Result<Self, FileError> {
+        let names = columns(structures);
+        let names: Vec<&str> = names.iter().map(String::as_str).collect();
+        Ok(Self { table: History::create(&folder.join(FILE), &names)?, last: None })
+    }
+
+    /// Continues a table after `iteration`, as [`History::resume`] does; the file is created when it does not exist.
+    pub fn resume(folder: &Path, structures: &[StructureNames], iteration: u64) -> Result<Self, FileError> {
+        let (names, path) = (columns(structures), folder.join(FILE));
+        let names: Vec<&str> = names.iter().map(String::as_str).collect();
+        let table = History::resume(&path, &names, iteration)?;
+        let last = StructureTable::read(&path)?.and_then(|table| table.totals());
+        Ok(Self { table, last })
+    }
+
+    /// Adds the row of a step.
+    pub fn push(&mut self, iteration: u64, sample: &StructureSample) -> Result<(), FileError> {
+        let totals = Totals::after(self.last, sample);
+        let mut row = vec![iteration as f64, sample.time];
+        for ((q, rate), load) in sample.coordinates.iter().zip(&sample.rates).zip(&sample.loads) {
+            row.extend([q, rate, load]);
+        }
+        row.extend([sample.kinetic, sample.potential, sample.dissipation, sample.gas_power, sample.wall_power]);
+        row.extend([totals.gas_work, totals.ledger]);
+        self.table.append(&row)?;
+        self.last = Some(totals);
+        Ok(())
+    }
+
+    /// Work of the gas on the structures so far.
+    pub fn gas_work(&self) -> f64 {
+        self.last.map_or(0.0, |totals| totals.gas_work)
+    }
+
+    /// Work on the walls as the gas has it less that on the structures, so far.
+    pub fn ledger(&self) -> f64 {
+        self.last.map_or(0.0, |totals| totals.ledger)
+    }
+}
+
+impl Totals {
+    /// Those after a step to `sample`; they begin at zero with the first.
+    fn after(before: Option<Self>, sample: &StructureSample) -> Self {
+        let StructureSample { time, gas_power, wall_power, .. } = *sample;
+        let Some(b) = before else { return Self { time, gas_power, wall_power, gas_work: 0.0, ledger: 0.0 } };
+        let half = 0.5 * (time - b.time);
+        let lost = (b.wall_power - b.gas_power) + (wall_power - gas_power);
+        let (gas_work, ledger) = (b.gas_work + half * (b.gas_power + gas_power), b.ledger + half * lost);
+        Self { time, gas_power, wall_power, gas_work, ledger }
+    }
+}
+
+impl StructureTable {
+    /// The table of a file; nothing when its columns are others.
+    pub fn read(path: &Path) -> Result<Option<Self>, FileError> {
+        let bytes = std::fs::read(path).map_err(FileError::io("read", path))?;
+        Ok(Self::parse(&String::from_utf8_lossy(&bytes)))
+    }
+
+    /// The table of a text up to its first line that is not complete; `None` when its columns are others.
+    pub fn parse(text: &str) -> Option<Self> {
+        let mut lines = text.split_inclusive('\n');
+        let header: Vec<&str> = lines.next()?.trim_end().split(',').collect();
+        let inner = header.strip_prefix(&BEFORE)?.strip_suffix(&AFTER)?;
+        let named = |c: &[&str]| (0..3).all(|k| c[k].strip_prefix(c[0]) == Some(OF_COORDINATE[k]));
+        if !inner.len().is_multiple_of(3) || !inner.chunks_exact(3).all(named) {
+            return None;
+        }
+        let rows: Vec<Vec<f64>> = lines.map_while(|line| complete_row(line, header.len())).collect();
+        let column = |k: usize| rows.iter().map(|row| row[k]).collect::<Vec<f64>>();
+        let coordinate = |(k, name): (usize, &&str)| {
+            let [values, rates, loads] = [2, 3, 4].map(|at| column(at + 3 * k));
+            CoordinateHistory { name: (*name).to_owned(), values, rates, loads }
+        };
+        let coordinates = inner.iter().step_by(3).enumerate().map(coordinate).collect();
+        let [iteration, time] = [0, 1].map(column);
+        let after: [usize; 7] = std::array::from_fn(|k| BEFORE.len() + inner.len() + k);
+        let [kinetic, potential, dissipation, gas_power, wall_power, gas_work, ledger] = after.map(column);
+        let mut table = Self { iteration, time, coordinates, kinetic, potential, ..Self::default() };
+        (table.dissipation, table.gas_power, table.wall_power) = (dissipation, gas_power, wall_power);
+        (table.gas_work, table.ledger) = (gas_work, ledger);
+        Some(table)
+    }
+
+    /// Number of rows.
+    pub fn len(&self) -> usize {
+        self.time.len()
+    }
+
+    /// True without rows.
+    pub fn is_empty(&self) -> bool {
+        self.time.is_empty()
+    }
+
+    /// True when time passes between the last rows: a march.
+    pub fn marches(&self) -> bool {
+        matches!(self.time.as_slice(), [.., before, last] if before < last)
+    }
+
+    fn totals(&self) -> Option<Totals> {
+        Some(Totals {
+            time: *self.time.last()?,
+            gas_power: *self.gas_power.last()?,
+            wall_power: *self.wall_power.last()?,
+            gas_work: *self.gas_work.last()?,
+            ledger: *self.ledger.last()?,
+        })
+    }
+
+    /// What became of each structure, without its description; the coordinates are those of the table in their order.
+    pub fn summaries(&self, structures: &[StructureNames]) -> Vec<StructureSummary> {
+        let mut rest = self.coordinates.as_slice();
+        let summary = |names: &StructureNames| {
+            let (own, others) = rest.split_at(names.coordinates.len().min(rest.len()));
+            rest = others;
+            self.summary(names, own)
+        };
+        structures.iter().map(summary).collect()
+    }
+
+    fn summary(&self, names: &StructureNames, own: &[CoordinateHistory]) -> StructureSummary {
+        let each = names.coordinates.iter().zip(own);
+        let coordinates: Vec<_> = each.map(|(name, c)| CoordinateSummary::of(name, &self.time, &c.values)).collect();
+        // the period is that of the coordinate whose fit is to be believed most
+        let told = coordinates.iter().filter_map(|c| Some([c.fit_residual?, c.frequency?]));
+        let best = told.min_by(|a, b| a[0].total_cmp(&b[0]));
+        let power = |k: usize| own.iter().map(|c| c.loads[k] * c.rates[k]).sum::<f64>();
+        let power: Vec<f64> = (0..self.len()).map(power).collect();
+        let energy_per_cycle = best.and_then(|[_, frequency]| energy_per_cycle(&self.time, &power, frequency));
+        StructureSummary { body: names.body.clone(), description: Vec::new(), coordinates, energy_per_cycle }
+    }
+}
+
+impl CoordinateSummary {
+    /// Mean, amplitude, frequency and damping from the tail of a history.
+    pub fn of(name: &str, time: &[f64], values: &[f64]) -> Self {
+        let mean = values.last().copied().filter(|last| last.is_finite());
+        let summary = Self { name: name.to_owned(), angle: is_angle(name), mean, ..Self::default() };
+        match DampingFit::of(time, values) {
+            Ok(fit) => summary.with(fit, time, values),
+            Err(reason) => {
+                Self { no_frequency: Some(reason.to_string()).filter(|_| reason != NoFit::Still), ..summary }
+            }
+        }
+    }
+
+    fn with(self, fit: DampingFit, time: &[f64], values: &[f64]) -> Self {
+        let first = fit.modes[0];
+        let cycles = LastCycles::of(time, values, first.frequency);
+        Self {
+            mean: Some(cycles.map_or(fit.constant, |c| c.mean)),
+            amplitude: cycles.map(|c| c.amplitude),
+            amplitude_spread: cycles.map(|c| c.spread),
+            frequency: Some(first.frequency),
+            growth_rate: Some(first.growth_rate),
+            damping_ratio: Some(first.damping_ratio),
+            fit_residual: Some(fit.residual),
+            modes: fit.modes,
+            ..self
+        }
+    }
+}
+
+#[cfg(test)]
+pub(crate) mod tests {
+    use super::*;
+
+    fn section() -> StructureNames {
+        StructureNames { body: "wing".into(), coordinates: vec!["plunge".into(), "pitch".into()] }
+    }
+
+    /// A section that swings: plunge decays, pitch keeps its amplitude; walls lose a tenth of the power.
+    pub(crate) fn sample(step: u64) -> StructureSample {
+        let t = 0.1 * step as f64;
+        let (h, a) = ((-0.02 * t).exp() * (0.9 * t).cos(), 0.05 * (0.9 * t).sin() + 0.01);
+        let rates = vec![-0.02 * h - 0.9 * (-0.02 * t).exp() * (0.9 * t).sin(), 0.045 * (0.9 * t).cos()];
+        let loads = vec![0.3 * rates[0], 0.0];
+        let gas_power = 0.3 * rates[0] * rates[0];
+        StructureSample {
+            time: t,
+            coordinates: vec![h, a],
+            kinetic: 0.5 * rates[0] * rates[0],
+            potential: 0.5 * h * h,
+            rates,
+            loads,
+            dissipation: 0.0,
+            gas_power,
+            wall_power: 0.9 * gas_power,
+        }
+    }
+
+    /// Writes the file of such a run of 600 steps.
+    pub(crate) fn fill(folder: &Path) {
+        let mut history = StructureHistory::create(folder, &[section()]).unwrap();
+        (0..600).for_each(|k| history.push(k, &sample(k)).unwrap());
+    }
+
+    #[test]
+    fn a_resumed_table_has_the_same_bits() {
+        let [whole, cut] = [tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap()];
+        fill(whole.path());
+        let mut history = StructureHistory::create(cut.path(), &[section()]).unwrap();
+        (0..320).for_each(|k| history.push(k, &sample(k)).unwrap());
+        let mut history = StructureHistory::resume(cut.path(), &[section()], 300).unwrap();
+        (301..600).for_each(|k| history.push(k, &sample(k)).unwrap());
+        let text = |folder: &Path| std::fs::read_to_string(folder.join(FILE)).unwrap();
+        assert!(text(whole.path()) == text(cut.path()));
+        assert!((history.ledger() + 0.1 * history.gas_work()).abs() < 1e-12 && history.gas_work() > 1.0);
+        // a table that is not there begins
+        let fresh = tempfile::tempdir().unwrap();
+        assert_eq!(StructureHistory::resume(fresh.path(), &[section()], 7).unwrap().gas_work(), 0.0);
+        let wide = StructureSample { coordinates: vec![0.0; 3], rates: vec![0.0; 3], loads: vec![0.0; 3], ..sample(0) };
+        assert!(matches!(history.push(600, &wide), Err(FileError::Width { .. })));
+    }
+
+    #[test]
+    fn names_of_bodies_stand_before_coordinates_where_there_are_more() {
+        let tail = StructureNames { body: "tail".into(), coordinates: vec!["pitch".into()] };
+        let names = columns(&[section(), tail]).join(",");
+        assert!(names.starts_with("iteration,time,wing.plunge,wing.plunge_rate,wing.plunge_load,wing.pitch,"));
+        assert!(names.ends_with("tail.pitch_load,kinetic,potential,dissipation,gas_power,wall_power,gas_work,ledger"));
+        assert!(columns(&[section()]).contains(&"plunge_rate".to_owned()));
+        assert!(is_angle("wing.pitch") && is_angle("flap") && !is_angle("plunge") && !is_angle("bending"));
+    }
+
+    #[test]
+    fn a_table_reads_back_and_is_summed_up() {
+        let folder = tempfile::tempdir().unwrap();
+        fill(folder.path());
+        let table = StructureTable::read(&folder.path().join(FILE)).unwrap().unwrap();
+        assert!(table.len() == 600 && table.marches() && table.coordinates.len() == 2);
+        assert_eq!(table.coordinates[1].name, "pitch");
+        assert_eq!(table.coordinates[0].rates[17], sample(17).rates[0]);
+        assert_eq!(table.wall_power[3], sample(3).wall_power);
+        let all = table.summaries(&[section()]);
+        let [plunge, pitch] = all[0].coordinates.as_slice() else { panic!("{all:?}") };
+        assert!((plunge.frequency.unwrap() - 0.9).abs() < 1e-8 && (plunge.growth_rate.unwrap() + 0.02).abs() < 1e-8);
+        assert!(
+            pitch.angle && (pitch.mean.unwrap() - 0.01).abs() < 1e-4 && (pitch.amplitude.unwrap() - 0.05).abs() < 1e-5
+        );
+        assert!(plunge.fit_residual.unwrap() < 1e-9 && pitch.amplitude_spread.unwrap() < 1e-3, "{all:?}");
+        // ∫ 0.3 q'² over the last cycle, with the decay of half a cycle taken in the middle
+        let middle = (59.9 - std::f64::consts::PI / 0.9) * -0.04;
+        let expected = 0.3 * 0.9 * std::f64::consts::PI * f64::exp(middle);
+        assert!((all[0].energy_per_cycle.unwrap() / expected - 1.0).abs() < 0.02, "{all:?} {expected}");
+        let text = serde_json::to_string(&all).unwrap();
+        assert_eq!(serde_json::from_str::<Vec<StructureSummary>>(&text).unwrap(), all);
+    }
+
+    #[test]
+    fn tables_of_others_are_not_read_and_an_equilibrium_has_no_frequency() {
+        assert_eq!(StructureTable::parse("iteration,time,cl\n1,2,3\n"), None);
+        assert_eq!(StructureTable::parse(""), None);
+        let header = columns(&[section()]).join(",");
+        assert!(StructureTable::parse(&header).unwrap().is_empty());
+        assert_eq!(StructureTable::parse(&header.replace("plunge_load", "pitch_load")), None);
+        let rest = CoordinateSummary::of("pitch", &[0.0; 50], &[0.02; 50]);
+        assert!(rest.mean == Some(0.02) && rest.frequency.is_none() && rest.no_frequency.is_some());
+    }
+}
