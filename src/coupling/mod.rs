@@ -17,10 +17,8 @@ pub use preconditioner::CoupledPreconditioner;
 
 use std::ops::Range;
 
-use crate::math::jet::Jet;
 use crate::math::sweep::sweep_rows;
-use crate::scheme::{self, Fluid, HasGas, View};
-use crate::structure::Energy;
+use crate::scheme::{self, Exchange, Fluid, HasGas, View};
 use crate::system::{Fault, Field, Instant, Rate, System, unknowns};
 
 /// Rate of a structure that nothing holds, in units of the case: what local times are measured with then.
@@ -52,19 +50,6 @@ pub struct Work<const D: usize> {
     pub gas: scheme::Work<D>,
     /// Generalised forces of the gas on all coordinates.
     pub load: Vec<f64>,
-}
-
-/// What passes between gas and structures, and what the structures hold.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Exchange {
-    /// Generalised forces of the gas on all coordinates.
-    pub load: Vec<f64>,
-    /// Power of the gas on the structures, Σ Q q'.
-    pub power: f64,
-    /// Power of the pressure on the walls as the equations of the gas have it, Σ F·w with the velocities of the cloud.
-    pub wall_power: f64,
-    /// Energy of each structure.
-    pub energy: Vec<Energy>,
 }
 
 impl<const D: usize> Coupled<D> {
@@ -107,27 +92,6 @@ impl<const D: usize> Coupled<D> {
         for body in &self.bodies {
             body.add_loads(&self.fluid, (frame, work), u, &mut load[body.range()]);
         }
-    }
-
-    /// What passes between gas and structures at the state `u`, whose wall states an evaluation has left in `work`.
-    pub fn exchange(&self, frame: &Frame<D>, u: &[f64], work: &Work<D>) -> Exchange {
-        let u = &u[self.placing()];
-        let mut load = vec![0.0; self.n_coordinates()];
-        self.loads(&frame.gas, &work.gas, u, &mut load);
-        let power = load.iter().zip(u.chunks_exact(2)).map(|(q, pair)| q * pair[1]).sum();
-        let cloud = &frame.gas.discretisation.cloud;
-        let at = |w: usize| frame.gas.to_inertial_axes(&frame.gas.velocity_of(cloud.n_fluid + w));
-        let attached = |w: &usize| self.bodies.iter().any(|b| b.body == usize::from(cloud.interface[*w].body));
-        let walls = (0..cloud.interface.len()).filter(attached);
-        let view = View::new(&self.fluid, &frame.gas, &work.gas);
-        let wall_power = walls.map(|w| view.wall_force(w).dot(&at(w))).sum();
-        let energy = self.bodies.iter().map(|b| b.energy(u)).collect();
-        Exchange { load, power, wall_power, energy }
-    }
-
-    /// Coordinates, with their rates and accelerations, that the frame stands at.
-    pub fn coordinates(frame: &Frame<D>) -> &[Jet] {
-        &frame.gas.jets
     }
 }
 
@@ -236,5 +200,30 @@ impl<const D: usize> HasGas<D> for Coupled<D> {
 
     fn hold_bodies(&mut self, held: bool) {
         self.held = held;
+    }
+
+    fn exchange(&self, frame: &Frame<D>, u: &[f64], work: &mut Work<D>) -> Option<Exchange> {
+        let (gas, u) = (&u[self.gas_range()], &u[self.placing()]);
+        self.fluid.fill_states(&frame.gas, gas, &mut work.gas);
+        if self.fluid.viscous_model.is_some() {
+            self.fluid.fill_gradients(&frame.gas, &mut work.gas);
+        }
+        self.loads(&frame.gas, &work.gas, u, &mut work.load);
+        let [coordinates, rates] = [0, 1].map(|part| u.chunks_exact(2).map(|pair| pair[part]).collect::<Vec<f64>>());
+        let loads = work.load.clone();
+        let power = loads.iter().zip(&rates).map(|(q, v)| q * v).sum();
+        let cloud = &frame.gas.discretisation.cloud;
+        let velocity = |w: usize| frame.gas.to_inertial_axes(&frame.gas.velocity_of(cloud.n_fluid + w));
+        let attached = |w: &usize| self.bodies.iter().any(|b| b.body == usize::from(cloud.interface[*w].body));
+        let walls = (0..cloud.interface.len()).filter(attached);
+        let view = View::new(&self.fluid, &frame.gas, &work.gas);
+        let wall_power = walls.map(|w| view.wall_force(w).dot(&velocity(w))).sum();
+        let mut all = Exchange { coordinates, rates, loads, power, wall_power, ..Exchange::default() };
+        for energy in self.bodies.iter().map(|b| b.energy(u)) {
+            all.kinetic += energy.kinetic;
+            all.potential += energy.potential;
+            all.dissipation += energy.dissipation;
+        }
+        Some(all)
     }
 }

@@ -271,6 +271,31 @@ impl StructureTable {
         Some(table)
     }
 
+    /// Adds the row of a step; the first one names the coordinates.
+    pub fn push(&mut self, iteration: u64, structures: &[StructureNames], sample: &StructureSample) {
+        if self.coordinates.is_empty() {
+            let names = columns(structures);
+            let own = names[BEFORE.len()..names.len() - AFTER.len()].iter().step_by(3);
+            let named = |name: &String| CoordinateHistory { name: name.clone(), ..CoordinateHistory::default() };
+            self.coordinates = own.map(named).collect();
+        }
+        let totals = Totals::after(self.totals(), sample);
+        for (k, c) in self.coordinates.iter_mut().enumerate() {
+            c.values.push(sample.coordinates[k]);
+            c.rates.push(sample.rates[k]);
+            c.loads.push(sample.loads[k]);
+        }
+        self.iteration.push(iteration as f64);
+        self.time.push(sample.time);
+        self.kinetic.push(sample.kinetic);
+        self.potential.push(sample.potential);
+        self.dissipation.push(sample.dissipation);
+        self.gas_power.push(sample.gas_power);
+        self.wall_power.push(sample.wall_power);
+        self.gas_work.push(totals.gas_work);
+        self.ledger.push(totals.ledger);
+    }
+
     /// Number of rows.
     pub fn len(&self) -> usize {
         self.time.len()

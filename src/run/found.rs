@@ -148,6 +148,7 @@ impl<const D: usize> Found<'_, D> {
             loads_momentum_balance: self.balance.map(|_| through),
             harmonic_balance: record.balance.clone(),
             generalised_forces: record.forces.clone(),
+            structure: log.structure_summaries(),
             ledger,
             time: record.time,
             unconverged_steps: record.unconverged,

@@ -13,9 +13,9 @@ use super::found::{Found, Names, Spent};
 use super::look::{GasView, Snapshot, field, momentum};
 use super::monitor::Monitor;
 use super::recipe;
-use super::record::Log;
 use super::record::saved::{LagrangianCheckpoint, Position, Saved, flatten};
 use super::record::summary::{Clock, Summary};
+use super::record::{Described, Log};
 use super::stage::{Stage, Task};
 use super::studies::{self, Reached, Start, Turn};
 use crate::case::Case;
@@ -170,22 +170,22 @@ type Ended = Result<Solution, u64>;
 impl Run<'_> {
     /// The gas alone, or with the structures of the case.
     fn solve<const D: usize>(&self, origin: Origin, monitor: &mut dyn Monitor) -> Result<Ended, RunError> {
-        let clock = Clock::start();
         let (surface, notes) = build::surface::<D>(self.case, self.input)?;
         notes.iter().for_each(|n| monitor.note(n));
         let mut motions = build::motions(self.case, self.input, surface.as_ref())?;
         let bodies = build::bodies(self.case, self.input, surface.as_ref(), &mut motions)?;
         let site = Site { case: self.case, surface: surface.as_ref(), motions: &motions };
         if bodies.is_empty() {
-            return self.stages(&site, |gas| gas, origin, monitor, &clock);
+            return self.stages(&site, |gas| gas, Vec::new(), origin, monitor);
         }
+        let described = build::described(self.case, surface.as_ref(), &bodies);
         let couple = |gas: Fluid<D>| {
             let cloud = &gas.discretisation.cloud;
             let walls = &cloud.x[cloud.interface_range()];
             let on = bodies.iter().map(|body| body.clone().on(walls)).collect();
             Coupled::new(gas, on)
         };
-        self.stages(&site, couple, origin, monitor, &clock)
+        self.stages(&site, couple, described, origin, monitor)
     }
 
     /// All stages with the system that `assemble` makes from the gas on each cloud.
@@ -193,10 +193,11 @@ impl Run<'_> {
         &self,
         site: &Site<'_, D>,
         assemble: impl Fn(Fluid<D>) -> S,
+        structures: Vec<Described>,
         origin: Origin,
         monitor: &mut dyn Monitor,
-        clock: &Clock,
     ) -> Result<Ended, RunError> {
+        let clock = Clock::start();
         let (mut saved, mut other) = match origin {
             Origin::Case => (None, None),
             Origin::Own(saved) => (Some(*saved), None),
@@ -209,7 +210,7 @@ impl Run<'_> {
             (None, Some(o)) => recipe::plan_from(self.case, &o.stages[o.stage]),
             (None, None) => recipe::plan(self.case, particles, D),
         };
-        let mut log = Log::open(self.case, self.out, site.motions.period(), saved.as_ref(), monitor)?;
+        let mut log = Log::open(self.case, self.out, site.motions.period(), saved.as_ref(), structures, monitor)?;
         log.note(&describe(&stages, particles));
         let first = saved.as_ref().map_or(0, |s| s.stage);
         let known = saved.as_ref().or(other.as_ref());
@@ -244,7 +245,7 @@ impl Run<'_> {
         }
         let (Some(stood), Some((frame, state))) = (previous, end) else { return Err(RunError::NoStage) };
         let view = GasView::of(&stood.solver.system, &frame, &state);
-        self.conclude(&view, site.surface, &log, clock).map(Ok)
+        self.conclude(&view, site.surface, &log, &clock).map(Ok)
     }
     /// The cloud of the case, and what is worth knowing of the motion on it.
     fn cloud<const D: usize>(&self, site: &Site<'_, D>, monitor: &mut dyn Monitor) -> Result<Cloud<D>, RunError> {

@@ -7,6 +7,27 @@ use std::ops::Range;
 use super::{Fluid, Frame, Work};
 use crate::system::{Implicit, System};
 
+/// What passes between a gas and the structures in it, and what these hold; in the units of the solver.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Exchange {
+    /// Coordinates of all structures.
+    pub coordinates: Vec<f64>,
+    /// Their rates.
+    pub rates: Vec<f64>,
+    /// Generalised forces of the gas on them.
+    pub loads: Vec<f64>,
+    /// Power of the gas on the structures, Σ Q q'.
+    pub power: f64,
+    /// Power of pressure and friction on the walls as the gas has it, Σ F·w with the velocities of the cloud.
+    pub wall_power: f64,
+    /// Kinetic energy of the structures.
+    pub kinetic: f64,
+    /// Energy of their springs, and that of gravity.
+    pub potential: f64,
+    /// Power that their dampers take.
+    pub dissipation: f64,
+}
+
 /// A system of which the gas on a cloud is a part.
 pub trait HasGas<const D: usize>: Implicit {
     /// The equations of the gas.
@@ -24,6 +45,11 @@ pub trait HasGas<const D: usize>: Implicit {
 
     /// Holds the bodies that coordinates of their own move where they are at the start, or lets them go.
     fn hold_bodies(&mut self, _held: bool) {}
+
+    /// What passes between gas and structures in a frame at the state `u`; `None` where there are no structures.
+    fn exchange(&self, _frame: &Self::Frame, _u: &[f64], _work: &mut Self::Work) -> Option<Exchange> {
+        None
+    }
 
     /// The part of the state that is the gas.
     fn gas_state<'a>(&self, u: &'a [f64]) -> &'a [f64] {

@@ -37,7 +37,7 @@ pub use deforming_surface::DeformingSurface;
 pub use discretisation::CloudMotion;
 pub use fluid::{Fluid, Work};
 pub use frame::{Discretisation, Frame};
-pub use has_gas::HasGas;
+pub use has_gas::{Exchange, HasGas};
 pub use reclouding::Reclouded;
 pub use transfer::RemapLedger;
 pub use travel::{ParticleKinematics, Travel};

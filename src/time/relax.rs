@@ -212,7 +212,8 @@ impl<'a, S: Implicit> Relax<'a, S> {
         system.update_boundary_state(&self.u, &mut self.work, &mut self.frame);
         system.rhs(&self.frame, &self.u, &mut self.work, &mut self.residual);
         if known.is_none() {
-            weigh(system.fields(), &mut self.scale, &[&self.trial_residual, &self.residual]);
+            // what the free stream does to a structure says nothing of its size: each field counts in its own units
+            weigh(system.fields(), &mut self.scale, &[]);
         }
         self.first_norm = known.unwrap_or_else(|| self.norm_of(&self.trial_residual).max(f64::MIN_POSITIVE));
         self.norm = self.norm_of(&self.residual);

@@ -4,10 +4,12 @@ use std::sync::Arc;
 
 use super::super::error::RunError;
 use super::super::folder;
+use super::super::record::Described;
 use crate::case::{Case, Temporal};
 use crate::coupling::{Attached, body_motion};
 use crate::geometry::Surface;
 use crate::motion::{ModeShape, Motions, mode_shape};
+use crate::observe::structure::StructureNames;
 use crate::structure::{BodyFrame, Structure};
 
 /// The structures of a case, one after another; `motions` then hand their bodies over to them.
@@ -39,6 +41,22 @@ pub(crate) fn bodies<const D: usize>(
         motions.force_with(std::f64::consts::TAU / omega);
     }
     Ok(all)
+}
+
+/// The structures in words.
+pub(crate) fn described<const D: usize>(
+    case: &Case,
+    surface: Option<&Surface<D>>,
+    bodies: &[Attached<D>],
+) -> Vec<Described> {
+    let one = |attached: &Attached<D>| {
+        let (surface, data) = (surface?, case.structure_of(attached.body)?);
+        let coordinates = attached.structure.coordinates().iter().map(|c| c.name.clone()).collect();
+        let names = StructureNames { body: surface.bodies[attached.body].clone(), coordinates };
+        let lines = attached.structure.description(case, data, frame(case, surface, attached.body));
+        Some(Described { names, lines })
+    };
+    bodies.iter().filter_map(one).collect()
 }
 
 fn chord<const D: usize>(case: &Case, surface: &Surface<D>) -> f64 {

@@ -5,7 +5,7 @@ mod motion_feasibility;
 use std::path::Path;
 use std::sync::Arc;
 
-pub(crate) use bodies::bodies;
+pub(crate) use bodies::{bodies, described};
 pub(crate) use motion_feasibility::check as check_motion;
 
 use super::error::RunError;

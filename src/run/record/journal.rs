@@ -8,6 +8,7 @@ use super::saved::Saved;
 use super::trace::Trace;
 use crate::case::Case;
 use crate::observe::History;
+use crate::observe::structure::{self, StructureHistory, StructureNames, StructureSample, StructureTable};
 
 /// Name of the history in the run folder.
 const HISTORY: &str = "history.csv";
@@ -24,6 +25,7 @@ pub(crate) struct Journal {
     pub(crate) out: PathBuf,
     history: History,
     moments: Option<History>,
+    structures: Option<StructureHistory>,
 }
 
 /// What the tables of an interrupted run hold.
@@ -33,10 +35,11 @@ pub(crate) struct Earlier {
     pub(crate) trace: Trace,
     /// Loads evaluated twice.
     pub(crate) moments: Twofold,
+    /// How structures moved.
+    pub(crate) structures: StructureTable,
 }
 
-/// Columns of the history of a case. Coordinates, rates, forces and energies of a structure are to follow here, and in
-/// [`super::super::watch::progress`], which fills the rows.
+/// Columns of the history of a case.
 fn columns(case: &Case) -> Vec<&'static str> {
     let moving = MOVING.into_iter().filter(|_| case.moves());
     COLUMNS.into_iter().chain(moving).chain(case.bends().then_some(BENDING)).collect()
@@ -49,6 +52,7 @@ impl Journal {
         out: &Path,
         saved: Option<&Saved>,
         twice: bool,
+        structures: &[StructureNames],
     ) -> Result<(Self, Earlier), RunError> {
         let table = |name: &str, columns: &[&str]| match saved {
             Some(s) => History::resume(&out.join(name), columns, s.iteration),
@@ -56,17 +60,31 @@ impl Journal {
         };
         let history = table(HISTORY, &columns(case))?;
         let moments = twice.then(|| table(crosscheck::FILE, &crosscheck::COLUMNS)).transpose()?;
+        let structures = (!structures.is_empty()).then(|| match saved {
+            Some(s) => StructureHistory::resume(out, structures, s.iteration),
+            None => StructureHistory::create(out, structures),
+        });
+        let structures = structures.transpose()?;
         let text = |name: &str| folder::text(out, name).unwrap_or_default();
         let earlier = saved.map_or_else(Earlier::default, |s| Earlier {
             trace: if s.time > 0.0 { Trace::parse(&text(HISTORY), s.time) } else { Trace::default() },
             moments: if twice { Twofold::parse(&text(crosscheck::FILE)) } else { Twofold::default() },
+            structures: StructureTable::parse(&text(structure::FILE)).unwrap_or_default(),
         });
-        Ok((Self { out: out.to_path_buf(), history, moments }, earlier))
+        Ok((Self { out: out.to_path_buf(), history, moments, structures }, earlier))
     }
 
     /// Appends an iteration.
     pub(crate) fn row(&mut self, row: &[f64]) -> Result<(), RunError> {
         Ok(self.history.append(row)?)
+    }
+
+    /// Appends how structures moved.
+    pub(crate) fn structure(&mut self, iteration: u64, sample: &StructureSample) -> Result<(), RunError> {
+        match &mut self.structures {
+            Some(file) => Ok(file.push(iteration, sample)?),
+            None => Ok(()),
+        }
     }
 
     /// Appends loads that were evaluated twice.

@@ -12,6 +12,7 @@ use super::saved::{FILE, Saved, Settling};
 use super::summary::{BalanceReport, Clock, Work};
 use super::trace::Trace;
 use crate::case::Case;
+use crate::observe::structure::{StructureNames, StructureSample, StructureSummary, StructureTable};
 use crate::scheme::RemapLedger;
 use crate::time::TimeError;
 
@@ -56,6 +57,8 @@ pub(crate) struct Record {
     pub(crate) ledger: RemapLedger,
     /// Loads evaluated twice, where the motion repeats.
     pub(crate) moments: Twofold,
+    /// How structures moved.
+    pub(crate) structures: StructureTable,
 }
 
 impl Record {
@@ -79,9 +82,19 @@ impl Record {
             settling: saved.settling.clone(),
             ledger: saved.lagrangian.as_ref().map_or_else(RemapLedger::default, |r| r.ledger.clone()),
             moments: earlier.moments,
+            structures: earlier.structures,
             ..Self::default()
         }
     }
+}
+
+/// A structure in words.
+#[derive(Clone, Debug)]
+pub(crate) struct Described {
+    /// Its body and coordinates.
+    pub(crate) names: StructureNames,
+    /// Its conventions, numbers and frequencies.
+    pub(crate) lines: Vec<String>,
 }
 
 /// The record of a run with its ways out: to those who watch, and to its folder where it has one.
@@ -97,6 +110,8 @@ pub(crate) struct Log<'a> {
     pub(crate) journal: Option<Journal>,
     /// What is known so far.
     pub(crate) record: Record,
+    /// The structures.
+    pub(crate) structures: Vec<Described>,
     clock: Clock,
     /// Processor and wall seconds before a restart.
     before: [f64; 2],
@@ -109,10 +124,12 @@ impl<'a> Log<'a> {
         out: Option<&Path>,
         period: Option<f64>,
         saved: Option<&Saved>,
+        structures: Vec<Described>,
         monitor: &'a mut dyn Monitor,
     ) -> Result<Self, RunError> {
+        let names: Vec<StructureNames> = structures.iter().map(|s| s.names.clone()).collect();
         let twice = period.is_some() && case.moves() && !case.bodies.is_empty();
-        let opened = out.map(|out| Journal::open(case, out, saved, twice)).transpose()?;
+        let opened = out.map(|out| Journal::open(case, out, saved, twice, &names)).transpose()?;
         let (journal, earlier) =
             opened.map_or((None, Earlier::default()), |(journal, earlier)| (Some(journal), earlier));
         let mut record = match saved {
@@ -121,7 +138,8 @@ impl<'a> Log<'a> {
         };
         record.trace = record.trace.over(case.output.loop_periods);
         let before = saved.map_or([0.0; 2], |s| [s.cpu_seconds, s.wall_seconds]);
-        Ok(Self { monitor, case, axes: load_axes(case), period, journal, record, clock: Clock::start(), before })
+        let axes = load_axes(case);
+        Ok(Self { monitor, case, axes, period, journal, record, structures, clock: Clock::start(), before })
     }
 
     /// Says a line.
@@ -152,6 +170,22 @@ impl<'a> Log<'a> {
     /// Loads of period after period are compared where bodies have a motion that repeats.
     pub(crate) fn compares_loads(&self) -> bool {
         self.period.is_some() && self.case.moves() && !self.case.bodies.is_empty()
+    }
+
+    /// Keeps how structures moved in a step.
+    pub(crate) fn structure(&mut self, sample: &StructureSample) -> Result<(), RunError> {
+        let names: Vec<StructureNames> = self.structures.iter().map(|s| s.names.clone()).collect();
+        self.record.structures.push(self.record.iteration, &names, sample);
+        let iteration = self.record.iteration;
+        self.journal.as_mut().map_or(Ok(()), |j| j.structure(iteration, sample))
+    }
+
+    /// What became of the structures.
+    pub(crate) fn structure_summaries(&self) -> Vec<StructureSummary> {
+        let names: Vec<StructureNames> = self.structures.iter().map(|s| s.names.clone()).collect();
+        let mut all = self.record.structures.summaries(&names);
+        all.iter_mut().zip(&self.structures).for_each(|(s, d)| s.description = d.lines.clone());
+        all
     }
 
     /// Keeps the loads of a moment, by both evaluations.

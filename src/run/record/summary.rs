@@ -55,6 +55,9 @@ pub struct Summary {
     /// What a harmonic balance found about itself.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub harmonic_balance: Option<BalanceReport>,
+    /// What became of bodies on springs.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub structure: Vec<crate::observe::structure::StructureSummary>,
     /// Forces on the modes of `[gaf]`.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub generalised_forces: Vec<GeneralisedForce>,

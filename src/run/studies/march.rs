@@ -7,7 +7,7 @@ use super::super::record::Log;
 use super::super::record::saved::LagrangianCheckpoint;
 use super::super::watch::{
     Aim, Checkpoint, CrossCheck, Ending, FieldSeries, Film, GasEyes, Limit, Observer, Particles, Periodic, Progress,
-    Told, Worn, drive,
+    Structures, Told, Worn, drive,
 };
 use super::turn::{Reached, Start, Turn};
 use crate::physics::n_variables;
@@ -88,7 +88,7 @@ fn integrator<'a, S: HasGas<D>, const D: usize>(
     }
 }
 
-/// Drives one leg under the eyes of all that watch a march. Histories of a structure will be one more of them.
+/// Drives one leg under the eyes of all that watch a march.
 fn watched<S: HasGas<D>, const D: usize>(
     solver: &Solver<S, D>,
     integrator: &mut (dyn Integrator<S> + '_),
@@ -100,14 +100,14 @@ fn watched<S: HasGas<D>, const D: usize>(
     let eyes = &mut GasEyes { system };
     let keep = keeper(system);
     let mut progress = Progress { eyes, cycle: 0, aim: Aim::Time(marching.until) };
-    let mut crosscheck = CrossCheck { system };
+    let (mut crosscheck, mut structures) = (CrossCheck { system }, Structures { system });
     let mut series = log.case.output.field_interval.map(|t| FieldSeries { system, interval: t.0 });
     let mut film = solver.film.as_ref().map(|surface| Film { system, surface });
     let mut periodic = marching.tolerance.map(|tolerance| Periodic { tolerance });
     let (mut limit, mut worn) = (Limit { iterations: marching.limit }, Worn { system });
     let mut checkpoint = checkpoint(turn, &keep);
     let mut told = Told;
-    let mut all: Vec<&mut dyn Observer<S>> = vec![&mut progress, &mut crosscheck];
+    let mut all: Vec<&mut dyn Observer<S>> = vec![&mut progress, &mut structures, &mut crosscheck];
     all.extend(series.as_mut().map(|o| o as &mut dyn Observer<S>));
     all.extend(film.as_mut().map(|o| o as &mut dyn Observer<S>));
     all.extend(periodic.as_mut().map(|o| o as &mut dyn Observer<S>));

@@ -3,7 +3,7 @@ use super::super::error::RunError;
 use super::super::look::GasView;
 use super::super::recipe::control;
 use super::super::record::Log;
-use super::super::watch::{Aim, Checkpoint, Ending, GasEyes, Limit, Observer, Progress, Resting, Told, drive};
+use super::super::watch::{Aim, Checkpoint, Ending, GasEyes, Limit, Observer, Progress, Resting, Told, drive, sample};
 use super::turn::{Reached, Start, Turn};
 use crate::case::Steady;
 use crate::scheme::HasGas;
@@ -42,7 +42,7 @@ pub(crate) fn relax<S: HasGas<D>, const D: usize>(
             "the flow has not come nearer to a steady one for {PATIENCE} iterations, at {orders:.1} orders: the run goes on from there"
         ));
     }
-    tell(system, &mut relax, turn, log);
+    tell(system, &mut relax, turn, log)?;
     let Standing { frame, state, .. } = relax.standing();
     Ok(Some(Reached::at(frame.clone(), state.to_vec())))
 }
@@ -69,14 +69,25 @@ fn watched<S: HasGas<D>, const D: usize>(
 }
 
 /// Keeps what is known of a relaxation that is over.
-fn tell<S: HasGas<D>, const D: usize>(system: &S, relax: &mut Relax<'_, S>, turn: &Turn<'_>, log: &mut Log<'_>) {
+fn tell<S: HasGas<D>, const D: usize>(
+    system: &S,
+    relax: &mut Relax<'_, S>,
+    turn: &Turn<'_>,
+    log: &mut Log<'_>,
+) -> Result<(), RunError> {
     let cost = relax.cost();
     (log.record.drop, log.record.converged) = (relax.drop(), relax.finished());
     (log.record.bytes, log.record.linear) = (cost.bytes, cost.linear);
     let Standing { frame, work, state } = relax.standing();
     let loads = GasView::of(system, frame, state).coefficients(&log.axes, system.gas_work(work)).unwrap_or_default();
+    if turn.last
+        && let Some(exchange) = system.exchange(frame, state, work)
+    {
+        log.structure(&sample(0.0, exchange))?;
+    }
     if turn.stage().factor == 1.0 {
         let particles = system.gas().discretisation.cloud.n_real() as f64;
         log.record.cycles.push([f64::from(turn.stage().cycle), particles, loads.cl, loads.cd, loads.cm]);
     }
+    Ok(())
 }

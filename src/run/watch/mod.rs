@@ -1,14 +1,14 @@
 //! Watching: one loop that drives any integrator, and the small scheduled things that watch it.
 //!
 //! An [`Observer`] looks at an integrator before and after its steps and may wish that it end. None of them knows which method
-//! it watches; those that look at a flow know a system of which the gas is a part. The histories of a structure (coordinates,
-//! rates, generalised forces, energies) are one more of them, beside [`progress`].
+//! it watches; those that look at a flow know a system of which the gas is a part.
 mod checkpoint;
 mod crosscheck;
 mod drive;
 pub(crate) mod progress;
 mod series;
 mod stops;
+mod structures;
 
 pub(crate) use checkpoint::{Checkpoint, Particles};
 pub(crate) use crosscheck::{CrossCheck, compare};
@@ -16,3 +16,4 @@ pub(crate) use drive::{Ending, Now, Observer, Wish, drive};
 pub(crate) use progress::{Aim, Effort, Eyes, GasEyes, Progress};
 pub(crate) use series::{FieldSeries, Film};
 pub(crate) use stops::{Limit, Periodic, Resting, Told, Worn};
+pub(crate) use structures::{Structures, sample};
