@@ -10,7 +10,7 @@ use alula::time::dual::{Dual, Plan};
 use alula::time::full::Full;
 use alula::time::harmonic::HarmonicBalance;
 use alula::time::relax::Relax;
-use alula::time::{March, Past};
+use alula::time::{Integrator, Past};
 
 /// A structure without surroundings, u = [q, q'].
 struct Alone {
@@ -138,8 +138,8 @@ fn march(system: &Alone, start: &[f64], until: f64, steps: u32) -> Vec<f64> {
     while !march.finished() {
         march.advance().unwrap();
     }
-    assert_eq!(march.past().iteration, steps);
-    march.parts().2.to_vec()
+    assert_eq!(march.mark().iteration, steps);
+    march.standing().state.to_vec()
 }
 
 /// Classical Runge-Kutta.
