@@ -142,7 +142,7 @@ impl Exponentials {
     }
 
     fn polished(self, samples: Samples<'_>) -> Self {
-        let (mut best, mut misfit, mut held) = (self.clone(), self.misfit(samples), HELD_BACK);
+        let (mut misfit, mut held, mut best) = (self.misfit(samples), HELD_BACK, self);
         for _ in 0..STEPS {
             let next = best.step(samples, Free::All, held).map(|next| (next.misfit(samples), next));
             let Some((found, next)) = next.filter(|(found, _)| *found < misfit) else {

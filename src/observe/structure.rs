@@ -453,10 +453,11 @@ pub(crate) mod tests {
             pitch.angle && (pitch.mean.unwrap() - 0.01).abs() < 1e-4 && (pitch.amplitude.unwrap() - 0.05).abs() < 1e-5
         );
         assert!(plunge.fit_residual.unwrap() < 1e-9 && pitch.amplitude_spread.unwrap() < 1e-3, "{all:?}");
-        // ∫ 0.3 q'² over the last cycle, with the decay of half a cycle taken in the middle
-        let middle = (59.9 - std::f64::consts::PI / 0.9) * -0.04;
-        let expected = 0.3 * 0.9 * std::f64::consts::PI * f64::exp(middle);
-        assert!((all[0].energy_per_cycle.unwrap() / expected - 1.0).abs() < 0.02, "{all:?} {expected}");
+        // q' = Re s e^{st}, so that ∫ q'² dt = |s|² e^{2σt}/(4σ) + Re(s e^{2st})/4
+        let s = num_complex::Complex64::new(-0.02, 0.9);
+        let integral = |t: f64| 0.25 * (s.norm_sqr() * (2.0 * s.re * t).exp() / s.re + (s * (2.0 * s * t).exp()).re);
+        let expected = 0.3 * (integral(59.9) - integral(59.9 - std::f64::consts::TAU / s.im));
+        assert!((all[0].energy_per_cycle.unwrap() / expected - 1.0).abs() < 2e-3, "{all:?} {expected}");
         let text = serde_json::to_string(&all).unwrap();
         assert_eq!(serde_json::from_str::<Vec<StructureSummary>>(&text).unwrap(), all);
     }
