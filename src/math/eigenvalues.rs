@@ -22,7 +22,7 @@ pub fn eigenvalues(matrix: &[f64], n: usize) -> Option<Vec<Complex64>> {
         return None;
     }
     let mut h = Matrix { n, a: matrix.iter().map(|x| Complex64::new(*x, 0.0)).collect() };
-    h.to_hessenberg();
+    h.reduce_to_hessenberg();
     let (mut left, mut steps) = (n, 0);
     while left > 0 {
         let first = h.start_of_block(left - 1);
@@ -51,7 +51,7 @@ impl Matrix {
     }
 
     /// Clears what is below the first diagonal under the main one, by similarity.
-    fn to_hessenberg(&mut self) {
+    fn reduce_to_hessenberg(&mut self) {
         let n = self.n;
         for k in 1..n.saturating_sub(1) {
             let size = |i: usize| self.at(i, k - 1).norm();
