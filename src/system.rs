@@ -196,6 +196,11 @@ pub trait System: Sync {
     }
     /// du = R(t, u).
     fn rhs(&self, frame: &Self::Frame, u: &[f64], work: &mut Self::Work, du: &mut [f64]);
+    /// The two together: brings the states of the boundary to the state `u`, and du = R(t, u) there.
+    fn rhs_with_boundary(&self, u: &[f64], work: &mut Self::Work, frame: &mut Self::Frame, du: &mut [f64]) {
+        self.update_boundary_state(u, work, frame);
+        self.rhs(frame, u, work, du);
+    }
     /// Largest rate of change 1/τ of each row: explicit steps need Δt · rate ≲ 1.
     fn rates(&self, frame: &Self::Frame, u: &[f64], work: &mut Self::Work, rate: &mut [f64]);
     /// The largest relative change of a positive quantity (density, pressure) that the update `du` makes, or of a coordinate in

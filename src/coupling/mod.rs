@@ -93,6 +93,19 @@ impl<const D: usize> Coupled<D> {
             body.add_loads(&self.fluid, (frame, work), u, &mut load[body.range()]);
         }
     }
+
+    /// d/dt of the unknowns `u` of the structures under the walls whose states are in `work`.
+    fn structures(&self, frame: &Frame<D>, u: &[f64], work: &mut Work<D>, change: &mut [f64]) {
+        self.loads(&frame.gas, &work.gas, u, &mut work.load);
+        for body in &self.bodies {
+            let (own, load) = (2 * body.first..2 * body.range().end, &work.load[body.range()]);
+            match (self.held, frame.steady) {
+                (true, _) => body.towards_start(&u[own.clone()], self.fastest, &mut change[own]),
+                (_, true) => body.towards_rest(&u[own.clone()], load, self.fastest, &mut change[own]),
+                _ => body.rates(frame.gas.time, &u[own.clone()], load, &mut change[own]),
+            }
+        }
+    }
 }
 
 impl<const D: usize> System for Coupled<D> {
@@ -129,15 +142,14 @@ impl<const D: usize> System for Coupled<D> {
         let ((gas, u), (gas_change, change)) =
             (u.split_at(self.fields[0].len()), du.split_at_mut(self.fields[0].len()));
         self.fluid.rhs(&frame.gas, gas, &mut work.gas, gas_change);
-        self.loads(&frame.gas, &work.gas, u, &mut work.load);
-        for body in &self.bodies {
-            let (own, load) = (2 * body.first..2 * body.range().end, &work.load[body.range()]);
-            match (self.held, frame.steady) {
-                (true, _) => body.towards_start(&u[own.clone()], self.fastest, &mut change[own]),
-                (_, true) => body.towards_rest(&u[own.clone()], load, self.fastest, &mut change[own]),
-                _ => body.rates(frame.gas.time, &u[own.clone()], load, &mut change[own]),
-            }
-        }
+        self.structures(frame, u, work, change);
+    }
+
+    fn rhs_with_boundary(&self, u: &[f64], work: &mut Work<D>, frame: &mut Frame<D>, du: &mut [f64]) {
+        let ((gas, u), (gas_change, change)) =
+            (u.split_at(self.fields[0].len()), du.split_at_mut(self.fields[0].len()));
+        self.fluid.rhs_with_boundary(gas, &mut work.gas, &mut frame.gas, gas_change);
+        self.structures(frame, u, work, change);
     }
 
     fn rates(&self, frame: &Frame<D>, u: &[f64], work: &mut Work<D>, rate: &mut [f64]) {

@@ -13,6 +13,12 @@ pub struct Gmres {
     hessenberg: Vec<Vec<f64>>,
     z: Vec<f64>,
     w: Vec<f64>,
+    /// What is left of the right-hand side in the turned basis, and the rotations that turn it.
+    g: Vec<f64>,
+    rotations: Vec<(f64, f64)>,
+    /// Products with the basis, or coefficients in it, and their sums over chunks.
+    products: Vec<f64>,
+    chunks: Vec<f64>,
 }
 
 /// A linear system by what it does to vectors.
@@ -40,6 +46,10 @@ impl Gmres {
             hessenberg: vec![vec![0.0; size + 1]; size],
             z: vec![0.0; n],
             w: vec![0.0; n],
+            g: vec![0.0; size + 1],
+            rotations: Vec::with_capacity(size),
+            products: vec![0.0; size + 1],
+            chunks: Vec::new(),
         }
     }
 
@@ -65,26 +75,26 @@ impl Gmres {
             return Solved { iterations: 0, reduction: 0.0 };
         }
         sweep(&mut self.basis[0], |i| (b[i] / start) as f32);
-        let mut g = vec![0.0; size + 1];
-        let mut rotations: Vec<(f64, f64)> = Vec::with_capacity(size);
-        g[0] = start;
+        self.g.fill(0.0);
+        self.g[0] = start;
+        self.rotations.clear();
         let mut used = 0;
         for k in 0..size.min(most.max(1)) {
             precondition(&self.basis[k], &mut self.z);
             product(&self.z, &mut self.w);
             self.orthogonalise(k);
-            self.rotate(k, &mut rotations, &mut g);
+            self.rotate(k);
             used = k + 1;
-            if g[k + 1].abs() <= tolerance * start || self.hessenberg[k][k] == 0.0 {
+            if self.g[k + 1].abs() <= tolerance * start || self.hessenberg[k][k] == 0.0 {
                 break;
             }
         }
-        self.combine(used, &g);
+        self.combine(used);
         // the next basis vector is not needed any more: it takes the combination to the preconditioner
         let w = &self.w;
         sweep(&mut self.basis[used], |i| w[i] as f32);
         precondition(&self.basis[used], x);
-        Solved { iterations: used, reduction: g[used].abs() / start }
+        Solved { iterations: used, reduction: self.g[used].abs() / start }
     }
 
     /// Gram-Schmidt of A z against the basis; once more where the first pass left little of it.
@@ -96,8 +106,9 @@ impl Gmres {
         let mut before = norm(&self.w);
         let mut after = before;
         for _ in 0..2 {
-            let h = products(&self.w, &self.basis[..=k]);
-            column.iter_mut().zip(&h).for_each(|(c, h)| *c += h);
+            let h = &mut self.products[..=k];
+            products(&self.w, &self.basis[..=k], h, &mut self.chunks);
+            column.iter_mut().zip(&*h).for_each(|(c, h)| *c += h);
             combine(&mut self.w, &self.basis[..=k], |j| -h[j]);
             after = norm(&self.w);
             if after > ENOUGH_LEFT * before {
@@ -114,8 +125,8 @@ impl Gmres {
         sweep(&mut self.basis[k + 1], |i| (w[i] * scale) as f32);
     }
 
-    fn rotate(&mut self, k: usize, rotations: &mut Vec<(f64, f64)>, g: &mut [f64]) {
-        let h = &mut self.hessenberg[k];
+    fn rotate(&mut self, k: usize) {
+        let (h, g, rotations) = (&mut self.hessenberg[k], &mut self.g, &mut self.rotations);
         for (j, (c, s)) in rotations.iter().enumerate() {
             (h[j], h[j + 1]) = (c * h[j] + s * h[j + 1], -s * h[j] + c * h[j + 1]);
         }
@@ -127,8 +138,9 @@ impl Gmres {
     }
 
     /// w = Σ y_k v_k with the triangular solve for y.
-    fn combine(&mut self, used: usize, g: &[f64]) {
-        let mut y = g[..used].to_vec();
+    fn combine(&mut self, used: usize) {
+        let y = &mut self.products[..used];
+        y.copy_from_slice(&self.g[..used]);
         for k in (0..used).rev() {
             for j in k + 1..used {
                 y[k] -= self.hessenberg[j][k] * y[j];
@@ -140,9 +152,9 @@ impl Gmres {
     }
 }
 
-/// Inner products of `w` with all vectors of the basis.
-fn products(w: &[f64], basis: &[Vec<f32>]) -> Vec<f64> {
-    sum_each(w.len(), basis.len(), |range, out| {
+/// Sets `all` to the inner products of `w` with the vectors of the basis.
+fn products(w: &[f64], basis: &[Vec<f32>], all: &mut [f64], chunks: &mut Vec<f64>) {
+    sum_each(w.len(), all, chunks, |range, out| {
         for (out, v) in out.iter_mut().zip(basis) {
             let (w, v) = (&w[range.clone()], &v[range.clone()]);
             *out = abreast(0..w.len(), |k| w[k] * f64::from(v[k]));

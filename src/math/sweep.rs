@@ -171,16 +171,18 @@ fn pairwise(from: usize, to: usize, value: &(impl Fn(usize) -> f64 + Sync)) -> f
     }
 }
 
-/// `width` sums at once: `f` sets those of a range of indices; chunks of fixed size are added in order.
-pub fn sum_each(n: usize, width: usize, f: impl Fn(Range<usize>, &mut [f64]) + Sync) -> Vec<f64> {
-    let mut chunks = vec![0.0; n.div_ceil(CHUNK) * width];
+/// As many sums at once as `total` has slots: `f` sets those of a range of indices; chunks of fixed size are added in order.
+/// `chunks` is storage.
+pub fn sum_each(n: usize, total: &mut [f64], chunks: &mut Vec<f64>, f: impl Fn(Range<usize>, &mut [f64]) + Sync) {
+    let width = total.len();
+    chunks.clear();
+    chunks.resize(n.div_ceil(CHUNK) * width, 0.0);
     chunks
         .par_chunks_exact_mut(width.max(1))
         .enumerate()
         .for_each(|(c, out)| f(c * CHUNK..n.min((c + 1) * CHUNK), out));
-    let mut total = vec![0.0; width];
+    total.fill(0.0);
     chunks.chunks_exact(width.max(1)).for_each(|c| total.iter_mut().zip(c).for_each(|(t, c)| *t += c));
-    total
 }
 
 /// Calls `f(range, slots)` for consecutive slots of `out`, a chunk at a time.

@@ -60,6 +60,8 @@ pub struct Work<const D: usize> {
     pub state: Vec<Primitive<D>>,
     /// Gradients of all particles.
     pub gradient: Vec<Gradient<D>>,
+    /// Speed of sound at fluid particles.
+    pub(super) sound: Vec<f64>,
 }
 
 impl<const D: usize> Fluid<D> {

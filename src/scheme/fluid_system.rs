@@ -5,9 +5,8 @@ use super::discretisation::CloudMotion;
 use super::fluid::{Fluid, Work};
 use super::frame::{Frame, LagrangianStep};
 use super::reconstruct::Gradient;
-use crate::case::Side;
 use crate::math::Vector;
-use crate::math::sweep::{first, maximum, sweep_each_slot};
+use crate::math::sweep::{first, maximum};
 use crate::physics::{Conserved, Primitive};
 use crate::system::{Fault, Field as Unknowns, Instant, Rate, System};
 
@@ -53,35 +52,32 @@ impl<const D: usize> System for Fluid<D> {
     }
 
     fn update_boundary_state(&self, u: &[f64], work: &mut Work<D>, frame: &mut Frame<D>) {
-        self.fill_states(frame, u, work);
-        let force = self.pressure_force(frame, work);
-        let cloud = &self.discretisation.cloud;
-        let mut outer = std::mem::take(&mut frame.outer);
-        let still = self.cloud_motion.is_still();
-        sweep_each_slot(&mut outer, |k, q| match cloud.outer[k].side {
-            Side::FarField => *q = cloud.beside(k).map(|i| self.far_field.state(&frame.place(i), &force)),
-            _ if still => {}
-            _ => *q = cloud.beside(k).map(|i| (self.held)(&frame.place(i))),
-        });
-        frame.outer = outer;
+        self.fill_fluid(frame, u, work);
+        self.fill_walls(frame, work);
+        self.hold_sides(frame, work);
     }
 
     fn work(&self) -> Work<D> {
         let blank = Primitive { density: 1.0, velocity: Vector::ZERO, pressure: 1.0 };
         let n = self.discretisation.cloud.len();
-        Work { state: vec![blank; n], gradient: vec![Gradient::ZERO; n] }
+        let sound = vec![0.0; self.discretisation.cloud.n_fluid];
+        Work { state: vec![blank; n], gradient: vec![Gradient::ZERO; n], sound }
     }
 
     fn rhs(&self, frame: &Frame<D>, u: &[f64], work: &mut Work<D>, du: &mut [f64]) {
         self.fill_states(frame, u, work);
-        if self.reconstruction.second_order || self.viscous_model.is_some() {
-            self.fill_gradients(frame, work);
-        }
+        self.residual(frame, work, du);
+    }
+
+    fn rhs_with_boundary(&self, u: &[f64], work: &mut Work<D>, frame: &mut Frame<D>, du: &mut [f64]) {
+        self.update_boundary_state(u, work, frame);
+        // fluid and walls, which do not depend on the sides, are known
+        self.fill_outside(frame, work);
         self.residual(frame, work, du);
     }
 
     fn rates(&self, frame: &Frame<D>, u: &[f64], work: &mut Work<D>, rate: &mut [f64]) {
-        self.fill_states(frame, u, work);
+        self.fill_fluid(frame, u, work);
         self.fill_rates(frame, work, rate);
     }
 

@@ -8,11 +8,13 @@ use crate::math::Vector;
 use crate::math::sweep::{sweep, sweep_parts};
 
 impl<const D: usize> Fluid<D> {
-    /// Fills `rate` from the states in `work`.
-    pub(super) fn fill_rates(&self, frame: &Frame<D>, work: &Work<D>, rate: &mut [f64]) {
+    /// Fills `rate` from the states of fluid particles in `work`.
+    pub(super) fn fill_rates(&self, frame: &Frame<D>, work: &mut Work<D>, rate: &mut [f64]) {
         let (op, volume) = (&frame.discretisation.operators, &frame.discretisation.cloud.volume);
-        let mut sound = vec![0.0; frame.discretisation.cloud.n_fluid];
-        sweep(&mut sound, |i| self.gas.sound_speed(&work.state[i]));
+        let Work { state, sound, .. } = work;
+        sweep(sound, |i| self.gas.sound_speed(&state[i]));
+        let work = &*work;
+        let sound = &work.sound;
         let past = |i: usize| work.state[i].velocity - frame.velocity_of(i);
         let speed = |i: usize, a: &Vector<D>| past(i).dot(a).abs() + sound[i] * a.norm();
         sweep_parts(op.fluid_parts(), 1, rate, &|k, out| {

@@ -32,8 +32,12 @@ use crate::physics::riemann::{AusmPlusUp, Hllc, Roe, Rusanov, UpwindFlux};
 use crate::physics::{Conserved, n_variables};
 
 impl<const D: usize> Fluid<D> {
-    /// Fills `du` with R from the states and gradients in `work`.
-    pub(super) fn residual(&self, frame: &Frame<D>, work: &Work<D>, du: &mut [f64]) {
+    /// Fills `du` with R from the states in `work`.
+    pub(super) fn residual(&self, frame: &Frame<D>, work: &mut Work<D>, du: &mut [f64]) {
+        if self.reconstruction.second_order || self.viscous_model.is_some() {
+            self.fill_gradients(frame, work);
+        }
+        let work = &*work;
         match self.flux {
             Flux::Hllc => self.rhs_with_limiter(Hllc, frame, work, du),
             Flux::Roe => self.rhs_with_limiter(Roe, frame, work, du),

@@ -3,9 +3,10 @@
 //! A side holds a state: that of the far field, or that of the start. What differs from it near the side leaves as waves do
 //! ([`crate::physics::outgoing`]): the disturbance of the last particle is continued along the line through it and the one
 //! behind it, and the part of it that moves outwards is added to what is held.
-use super::fluid::Fluid;
+use super::fluid::{Fluid, Work};
 use super::frame::Frame;
 use crate::case::Side;
+use crate::math::sweep::sweep_each_slot;
 use crate::physics::Primitive;
 use crate::physics::outgoing::outgoing;
 
@@ -13,6 +14,20 @@ use crate::physics::outgoing::outgoing;
 const FURTHEST: f64 = 1.0;
 
 impl<const D: usize> Fluid<D> {
+    /// Brings what sides hold to the time of `frame` and, in the far field, to the force of the wall states in `work`.
+    pub(super) fn hold_sides(&self, frame: &mut Frame<D>, work: &Work<D>) {
+        let force = self.pressure_force(frame, work);
+        let cloud = &self.discretisation.cloud;
+        let mut outer = std::mem::take(&mut frame.outer);
+        let still = self.cloud_motion.is_still();
+        sweep_each_slot(&mut outer, |k, q| match cloud.outer[k].side {
+            Side::FarField => *q = cloud.beside(k).map(|i| self.far_field.state(&frame.place(i), &force)),
+            _ if still => {}
+            _ => *q = cloud.beside(k).map(|i| (self.held)(&frame.place(i))),
+        });
+        frame.outer = outer;
+    }
+
     /// State of outer particle `k`: what its side holds, with the part of what its source differs that leaves.
     pub(super) fn outer_state(&self, frame: &Frame<D>, k: usize, fluid: &[Primitive<D>]) -> Primitive<D> {
         let cloud = &frame.discretisation.cloud;

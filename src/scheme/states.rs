@@ -16,10 +16,22 @@ use crate::physics::{Conserved, Primitive};
 impl<const D: usize> Fluid<D> {
     /// Fills `work.state` for every particle from the evolved ones, in the axes of `frame.discretisation`.
     pub fn fill_states(&self, frame: &Frame<D>, u: &[f64], work: &mut Work<D>) {
+        self.fill_fluid(frame, u, work);
+        self.fill_walls(frame, work);
+        self.fill_outside(frame, work);
+    }
+
+    /// Fills the states of the evolved particles.
+    pub(super) fn fill_fluid(&self, frame: &Frame<D>, u: &[f64], work: &mut Work<D>) {
+        let inward = |q: Primitive<D>| Primitive { velocity: frame.to_body_axes(&q.velocity), ..q };
+        let fluid = &mut work.state[..frame.discretisation.cloud.n_fluid];
+        sweep(fluid, |i| inward(self.gas.primitive(&Conserved::of_row(u, i))));
+    }
+
+    /// Fills the states of interface particles from those of the fluid.
+    pub(super) fn fill_walls(&self, frame: &Frame<D>, work: &mut Work<D>) {
         let cloud = &frame.discretisation.cloud;
         let (fluid, rest) = work.state.split_at_mut(cloud.n_fluid);
-        let inward = |q: Primitive<D>| Primitive { velocity: frame.to_body_axes(&q.velocity), ..q };
-        sweep(fluid, |i| inward(self.gas.primitive(&Conserved::of_row(u, i))));
         let fluid = &*fluid;
         let first_ghost = cloud.n_real();
         let seen = |k: usize| {
@@ -29,10 +41,15 @@ impl<const D: usize> Fluid<D> {
             let image = &cloud.ghosts[k - first_ghost];
             self.image_state(&fluid[image.source as usize], image.transform)
         };
-        let (walls, rest) = rest.split_at_mut(cloud.interface.len());
         // sides and walls are few particles, each of them much work
-        sweep_each(walls, |w| self.wall_state(frame, w, seen));
-        let walls = &*walls;
+        sweep_each(&mut rest[..cloud.interface.len()], |w| self.wall_state(frame, w, seen));
+    }
+
+    /// Fills the states of outer particles and images from those of the fluid and the walls, and what sides hold.
+    pub(super) fn fill_outside(&self, frame: &Frame<D>, work: &mut Work<D>) {
+        let cloud = &frame.discretisation.cloud;
+        let (inside, rest) = work.state.split_at_mut(cloud.n_rows());
+        let (fluid, walls) = inside.split_at(cloud.n_fluid);
         let (outer, ghosts) = rest.split_at_mut(cloud.outer.len());
         sweep_each(outer, |k| self.outer_state(frame, k, fluid));
         let outer = &*outer;

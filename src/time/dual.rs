@@ -58,6 +58,8 @@ pub struct Dual<'a, S: Implicit> {
     plan: Plan,
     past: Past,
     start: Vec<f64>,
+    /// The line through the states of the last two steps at the end of this one.
+    line: Vec<f64>,
     inner: u32,
     /// Longest step of particles that follow the state; infinite where none do.
     reach: f64,
@@ -73,7 +75,7 @@ impl<'a, S: Implicit> Dual<'a, S> {
         let control = Control { cycle: Cycle { sweeps, ..control.cycle }, ..control };
         let relax = Relax::new(system, control, u, &start, None);
         let past = Past { next: if past.next > 0.0 { past.next } else { plan.step }, ..past };
-        let mut all = Self { system, relax, plan, past, start, inner: 0, reach: f64::INFINITY };
+        let mut all = Self { system, relax, plan, past, start, line: Vec::new(), inner: 0, reach: f64::INFINITY };
         if all.past.last > 0.0 {
             all.set_frame_after_step();
             all.make_again();
@@ -102,7 +104,7 @@ impl<S: Implicit> Integrator<S> for Dual<'_, S> {
     }
 
     fn cost(&self) -> Cost {
-        let kept = 2 * self.start.len() + self.past.before.len() + self.past.older.len();
+        let kept = 2 * self.start.len() + self.line.len() + self.past.before.len() + self.past.older.len();
         Cost {
             inner: self.inner,
             bytes: self.relax.bytes() + 8 * kept,
@@ -250,12 +252,12 @@ impl<S: Implicit> Dual<'_, S> {
         let (start, before, placing) = (&self.start, &self.past.before, self.system.placing());
         let past = [&start[placing.clone()], before.get(placing).unwrap_or_default()];
         let formula = self.formula_at(end, self.past.last, dt).with_past(&past);
-        let mut rest = vec![0.0; start.len()];
+        let mut rest = self.relax.spare_rest();
         let [last, older] = [formula.coefficient(1), formula.coefficient(2)];
         let old = |k: usize| if older != 0.0 { older * before[k] } else { 0.0 };
         sweep(&mut rest, |k| last * start[k] + old(k));
-        let linear = self.line(dt);
-        let smooth = self.begin_with(linear.as_deref(), dt);
+        let guesses = self.second_order();
+        let smooth = guesses && self.begin_on_line(dt);
         self.relax.set_reach(self.past.reach);
         self.prepare(&formula, end, dt);
         self.relax.begin_step(TimeTerm { formula, rest });
@@ -269,29 +271,22 @@ impl<S: Implicit> Dual<'_, S> {
         }
         self.solve()?;
         // the predictor is of the same order with another constant: 1/3 of the difference for equal steps
-        let error = linear.map_or(0.0, |g| {
-            let u = &self.relax.u;
-            let (change, size) = (sum(u.len(), |k| (u[k] - g[k]).powi(2)), sum(u.len(), |k| u[k] * u[k]));
+        let (u, line) = (&self.relax.u, &self.line);
+        let error = || {
+            let (change, size) = (sum(u.len(), |k| (u[k] - line[k]).powi(2)), sum(u.len(), |k| u[k] * u[k]));
             (change / size).sqrt() / 3.0
-        });
-        Ok(error)
-    }
-
-    /// The states of the last two steps, continued along a line.
-    fn line(&self, dt: f64) -> Option<Vec<f64>> {
-        let (start, before, ratio) = (&self.start, &self.past.before, dt / self.past.last);
-        self.second_order().then(|| {
-            let mut guess = vec![0.0; start.len()];
-            sweep(&mut guess, |k| start[k] + ratio * (start[k] - before[k]));
-            guess
-        })
+        };
+        Ok(if guesses { error() } else { 0.0 })
     }
 
     /// Starts from the parabola through the last three states where it serves, or from the line through two, or from where
     /// the state is; true for the parabola.
-    fn begin_with(&mut self, line: Option<&[f64]>, dt: f64) -> bool {
-        let Some(line) = line else { return false };
+    fn begin_on_line(&mut self, dt: f64) -> bool {
         let (start, before, older) = (&self.start, &self.past.before, &self.past.older);
+        let ratio = dt / self.past.last;
+        self.line.resize(start.len(), 0.0);
+        sweep(&mut self.line, |k| start[k] + ratio * (start[k] - before[k]));
+        let line = &self.line;
         if self.is_even(dt) && older.len() == start.len() {
             let bend = |k: usize| start[k] - 2.0 * before[k] + older[k];
             let [slopes, bends] =

@@ -80,8 +80,7 @@ impl<'a, S: System> Explicit<'a, S> {
 
     fn evaluate(&mut self, dt: f64, fraction: f64) {
         self.place(dt, fraction);
-        self.system.update_boundary_state(&self.u, &mut self.work, &mut self.frame);
-        self.system.rhs(&self.frame, &self.u, &mut self.work, &mut self.du);
+        self.system.rhs_with_boundary(&self.u, &mut self.work, &mut self.frame, &mut self.du);
         self.evaluations += 1;
     }
 

@@ -8,11 +8,12 @@ use crate::system::{Instant, Rate, Term};
 /// used.
 #[derive(Clone, Debug, Default)]
 pub struct Formula {
-    terms: Vec<Known>,
+    terms: [Known; 3],
+    count: usize,
 }
 
 /// One term.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 struct Known {
     coefficient: f64,
     time: f64,
@@ -36,17 +37,16 @@ impl Formula {
     }
 
     fn of(terms: &[(f64, f64)]) -> Self {
-        let known = |(coefficient, time): &(f64, f64)| Known {
-            coefficient: *coefficient,
-            time: *time,
-            coordinates: Vec::new(),
-        };
-        Self { terms: terms.iter().map(known).collect() }
+        let mut all = Self { count: terms.len(), ..Self::default() };
+        for (known, (coefficient, time)) in all.terms.iter_mut().zip(terms) {
+            (known.coefficient, known.time) = (*coefficient, *time);
+        }
+        all
     }
 
     /// The same with the coordinates of bodies at its second time, its third, and so on.
     pub fn with_past(mut self, past: &[&[f64]]) -> Self {
-        for (term, coordinates) in self.terms.iter_mut().skip(1).zip(past) {
+        for (term, coordinates) in self.terms[..self.count].iter_mut().skip(1).zip(past) {
             term.coordinates = coordinates.to_vec();
         }
         self
@@ -60,7 +60,7 @@ impl Formula {
     /// Calls `f` with the instant at the end of the step, where bodies have the coordinates `coordinates`.
     pub fn at<T>(&self, coordinates: &[f64], f: impl FnOnce(&Instant<'_>) -> T) -> T {
         let mut terms = [Term::of_time(0.0, 0.0); 3];
-        let count = self.terms.len();
+        let count = self.count;
         for (term, known) in terms.iter_mut().zip(&self.terms) {
             *term = Term { coefficient: known.coefficient, time: known.time, coordinates: &known.coordinates };
         }

@@ -209,8 +209,7 @@ impl<'a, S: Implicit> Relax<'a, S> {
         if self.moves() {
             system.place(&Instant::still(0.0).with(&self.u[system.placing()]), &mut self.frame);
         }
-        system.update_boundary_state(&self.u, &mut self.work, &mut self.frame);
-        system.rhs(&self.frame, &self.u, &mut self.work, &mut self.residual);
+        system.rhs_with_boundary(&self.u, &mut self.work, &mut self.frame, &mut self.residual);
         if known.is_none() {
             // what the free stream does to a structure says nothing of its size: each field counts in its own units
             weigh(system.fields(), &mut self.scale, &[]);
@@ -293,6 +292,11 @@ impl<'a, S: Implicit> Relax<'a, S> {
         self.preconditioning.as_ref().is_some_and(Preconditioning::still_serves)
     }
 
+    /// Storage for [`TimeTerm::rest`]: that of the step before.
+    pub fn spare_rest(&mut self) -> Vec<f64> {
+        self.time.take().map_or_else(|| vec![0.0; self.u.len()], |term| term.rest)
+    }
+
     /// Turns to the equations of a step in time, R(U) − c·U − rest = 0 at the end of the step, from the guess in `u`.
     ///
     /// The residual is measured against the size of ∂U/∂t, or against itself at the guess if that is larger.
@@ -301,11 +305,10 @@ impl<'a, S: Implicit> Relax<'a, S> {
     pub fn begin_step(&mut self, term: TimeTerm) {
         let (system, placing) = (self.system, self.system.placing());
         term.formula.at(&self.u[placing], |at| system.place(at, &mut self.frame));
-        system.update_boundary_state(&self.u, &mut self.work, &mut self.frame);
+        system.rhs_with_boundary(&self.u, &mut self.work, &mut self.frame, &mut self.residual);
         system.rates(&self.frame, &self.u, &mut self.work, &mut self.rate);
         let (rate, coefficient) = (&self.rate, term.rate());
         sweep(&mut self.scale, |i| 1.0 / (rate[i] + coefficient));
-        system.rhs(&self.frame, &self.u, &mut self.work, &mut self.residual);
         self.evaluations += 1;
         let u = &self.u;
         sweep(&mut self.trial, |k| coefficient * u[k] + term.rest[k]);
@@ -443,9 +446,9 @@ impl<'a, S: Implicit> Relax<'a, S> {
         if self.system.check(&self.frame, &self.trial).is_err() {
             return false;
         }
-        let mut frame = self.frame_of_trial();
-        self.system.update_boundary_state(&self.trial, &mut self.work, &mut frame);
-        self.system.rhs(&frame, &self.trial, &mut self.work, &mut self.trial_residual);
+        let mut beside = self.frame_of_trial();
+        let frame = beside.as_mut().unwrap_or(&mut self.frame);
+        self.system.rhs_with_boundary(&self.trial, &mut self.work, frame, &mut self.trial_residual);
         self.evaluations += 1;
         if let Some(term) = &self.time {
             let (trial, rate) = (&self.trial, term.rate());
@@ -454,11 +457,15 @@ impl<'a, S: Implicit> Relax<'a, S> {
         }
         let norm = self.norm_of(&self.trial_residual);
         if !norm.is_finite() || norm > jump * self.norm {
-            self.keep_beside(frame);
+            match beside {
+                Some(_) => self.beside = beside,
+                None => self.system.update_boundary_state(&self.u, &mut self.work, &mut self.frame),
+            }
             return false;
         }
-        let old = std::mem::replace(&mut self.frame, frame);
-        self.keep_beside(old);
+        if let Some(frame) = beside {
+            self.beside = Some(std::mem::replace(&mut self.frame, frame));
+        }
         std::mem::swap(&mut self.u, &mut self.trial);
         std::mem::swap(&mut self.residual, &mut self.trial_residual);
         self.cfl = self.next_cfl(fraction, self.norm / norm.max(f64::MIN_POSITIVE));
@@ -469,21 +476,14 @@ impl<'a, S: Implicit> Relax<'a, S> {
         true
     }
 
-    /// The frame of the state in `trial`.
-    fn frame_of_trial(&mut self) -> S::Frame {
+    /// The frame of the state in `trial`, where frames depend on the state.
+    fn frame_of_trial(&mut self) -> Option<S::Frame> {
         if !self.moves() {
-            return self.frame.clone();
+            return None;
         }
         let mut frame = self.beside.take().unwrap_or_else(|| self.frame.clone());
         put(self.system, self.time.as_ref(), &self.trial, &mut frame);
-        frame
-    }
-
-    /// Keeps a frame that is of no more use, so that the next one need not be made.
-    fn keep_beside(&mut self, frame: S::Frame) {
-        if self.moves() {
-            self.beside = Some(frame);
-        }
+        Some(frame)
     }
 
     /// The Courant number after an accepted step that divided the residual by `ratio`.

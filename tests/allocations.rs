@@ -1,0 +1,73 @@
+//! Nothing is allocated inside `advance` once the first steps have made what is kept.
+//!
+//! On one thread, so that only what the steps themselves ask for is counted. A linear solve that needs more vectors than any
+//! before it makes them then: such steps do not count.
+mod common;
+
+use alula::math::multilevel::Cycle;
+use alula::scheme::Fluid;
+use alula::time::control::{Control, Method};
+use alula::time::dual::{Dual, Plan};
+use alula::time::relax::Relax;
+use alula::time::{Integrator, Past, Step, TimeError};
+use common::{round_body, solver};
+
+/// Steps that may allocate.
+const FIRST: u32 = 4;
+/// Steps after those.
+const COUNTED: u32 = 8;
+
+const CONTROL: Control = Control {
+    method: Method::NewtonKrylov,
+    cfl: 20.0,
+    cfl_max: 1e6,
+    growth: 2.0,
+    tolerance: 0.1,
+    basis: 30,
+    group: 4,
+    cycle: Cycle { sweeps: 2, visits: 1, levels: 8 },
+};
+
+/// Runs `f` on this thread alone.
+fn alone(f: impl FnOnce() + Send) {
+    rayon::ThreadPoolBuilder::new().num_threads(1).use_current_thread().build().unwrap().install(f);
+}
+
+/// Allocations of each step that needs no more linear iterations than one before it.
+fn counted(mut advance: impl FnMut() -> Result<Step, TimeError>) -> Vec<u64> {
+    let (mut longest, mut linear, mut found) = (0, 0, Vec::new());
+    for k in 0..FIRST + COUNTED {
+        let mut step = None;
+        let made = allocation_counter::measure(|| step = Some(advance().unwrap()));
+        let now = step.unwrap().linear;
+        let iterations = now - linear;
+        if k >= FIRST && iterations <= longest {
+            found.push(made.count_total);
+        }
+        (longest, linear) = (longest.max(iterations), now);
+    }
+    found
+}
+
+fn viscous_body() -> (Fluid<2>, Vec<f64>) {
+    solver::<2>(&round_body(2).replace("mach = 0.3", "mach = 0.3\nreynolds = 100"))
+}
+
+#[test]
+fn neither_newton_iterations_nor_steps_in_time_allocate() {
+    for (fluid, u) in [solver::<2>(&round_body(2)), viscous_body()] {
+        alone(|| {
+            let mut steady = Relax::new(&fluid, CONTROL, u.clone(), &u, None);
+            let mut resume = steady.resume();
+            resume.phase.newton = true;
+            steady = Relax::new(&fluid, CONTROL, u.clone(), &u, Some(resume));
+            let found = counted(|| steady.advance());
+            assert!(found.len() > 2 && found.iter().all(|n| *n == 0), "steady: {found:?}");
+
+            let plan = Plan { until: 1e3, step: 0.1, order: 2, orders: 3.0, iterations: 20, adaptive: None };
+            let mut march = Dual::new(&fluid, CONTROL, plan, (Past::default(), u.clone()));
+            let found = counted(|| march.advance());
+            assert!(found.len() > 2 && found.iter().all(|n| *n == 0), "march: {found:?}");
+        });
+    }
+}
