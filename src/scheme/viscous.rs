@@ -11,7 +11,7 @@
 //! uniform flow and for uniform stress.
 //!
 //! *Walls that the gas sticks to.* The velocity of an interface particle is that of the wall, its pressure follows from
-//! ∂p/∂n = −ρ n·a_w and its temperature from ∂θ/∂n = 0 or is given (`boundary`). The wall takes the stress of the slope
+//! ∂p/∂n = −ρ n·a_w and its temperature from ∂θ/∂n = 0 or is given (`wall_state`). The wall takes the stress of the slope
 //! ∂v/∂n = (Δv₁ η₂/η₁ − Δv₂ η₁/η₂)/(η₂ − η₁), a parabola through the wall and two layers at the heights η, or without layers
 //! of the normal part of the gradient of the interface particle. Along the wall the gas turns with it: ∇v = n ∂v/∂n + G (I − nn)
 //! with the rate of rotation G of the wall, so that what turns with the wall feels no stress.
