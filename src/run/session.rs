@@ -13,7 +13,7 @@ use super::found::{Found, Names, Spent};
 use super::look::{GasView, Snapshot, field, momentum};
 use super::monitor::Monitor;
 use super::recipe;
-use super::record::saved::{LagrangianCheckpoint, Position, Saved, flatten};
+use super::record::saved::{Position, Saved, flatten};
 use super::record::summary::{Clock, Summary};
 use super::record::{Described, Log};
 use super::stage::{Stage, Task};
@@ -161,7 +161,6 @@ struct Stood<S, const D: usize> {
 struct Begun<S, const D: usize> {
     solver: Solver<S, D>,
     start: Start,
-    particles: Option<LagrangianCheckpoint>,
 }
 
 /// The solution of a run, or the iteration at which it was told to stop.
@@ -221,17 +220,17 @@ impl Run<'_> {
             let same = k > 0 && stage.shares_cloud(&stages[k - 1]);
             let cloud = if stage.is_plain() { ready.take() } else { None };
             let build = || Ok::<_, RunError>(build::solver(site, stage, &sources, cloud)?.with(&assemble));
-            let mut begun = match (saved.take(), previous.take()) {
-                (Some(saved), _) => Begun::resumed(build()?, saved),
+            let Begun { mut solver, start } = match (saved.take(), previous.take()) {
+                (Some(saved), _) => Begun::resumed(build()?, saved)?,
                 (None, Some(stood)) if same => Begun::fresh(stood.solver, stood.state),
                 (None, Some(stood)) => followed(build()?, site, stood),
                 (None, None) => begun(build()?, site, other.take())?,
             };
-            begun.solver.system.hold_bodies(stage.task == Task::Relax && recipe::is_unsteady(self.case));
+            solver.system.hold_bodies(stage.task == Task::Relax && recipe::is_unsteady(self.case));
             let flat = flatten(&sources);
             let at = Position { stage: k, stages: &stages, sources: &flat };
             let turn = Turn { at: &at, last: k + 1 == stages.len() };
-            let Some((solver, reached)) = self.study(begun, &turn, &mut log)? else {
+            let Some(reached) = self.study(&mut solver, start, &turn, &mut log)? else {
                 return Ok(Err(log.record.iteration));
             };
             if stages.get(k + 1).is_some_and(|s| s.cycle > stage.cycle) {
@@ -257,29 +256,27 @@ impl Run<'_> {
     /// Does what a stage is for; `None` when told to stop.
     fn study<S: HasGas<D>, const D: usize>(
         &self,
-        begun: Begun<S, D>,
+        solver: &mut Solver<S, D>,
+        start: Start,
         turn: &Turn<'_>,
         log: &mut Log<'_>,
-    ) -> Result<Option<(Solver<S, D>, Reached<S>)>, RunError> {
-        let Begun { mut solver, start, particles } = begun;
+    ) -> Result<Option<Reached<S>>, RunError> {
         let plan = || recipe::balance(self.case).ok_or(RunError::NoStage);
-        let reached = match turn.stage().task {
+        match turn.stage().task {
             Task::Relax => {
                 let steady = recipe::relaxation(self.case).ok_or(RunError::NoStage)?;
-                studies::relax(&solver.system, &steady, start, turn, log)?
+                studies::relax(&solver.system, &steady, start, turn, log)
             }
             Task::March => {
                 let marching = recipe::marching(self.case, log.period, D)?.ok_or(RunError::NoStage)?;
-                let begin = studies::beginning(&mut solver, start, particles.as_ref())?;
-                studies::march(&mut solver, &marching, begin, turn, log)?
+                studies::march(solver, &marching, start, turn, log)
             }
             Task::Lead => {
                 let next = turn.at.stages.get(turn.at.stage + 1).ok_or(RunError::NoStage)?;
-                studies::lead(&solver.system, plan()?, next.instances() / 2, start.into_state(), log)?
+                studies::lead(&solver.system, plan()?, next.instances() / 2, start.into_state(), log)
             }
-            Task::Balance { .. } => studies::balance(&solver, plan()?, start, turn, log)?,
-        };
-        Ok(reached.map(|reached| (solver, reached)))
+            Task::Balance { .. } => studies::balance(solver, plan()?, start, turn, log),
+        }
     }
 
     /// Looks at the end of a run, and writes it where there is a folder.
@@ -307,12 +304,18 @@ impl Run<'_> {
 
 impl<S, const D: usize> Begun<S, D> {
     fn fresh(solver: Solver<S, D>, state: Vec<f64>) -> Self {
-        Self { solver, start: Start::Fresh(state), particles: None }
+        Self { solver, start: Start::Fresh(state) }
     }
+}
 
+impl<S: HasGas<D>, const D: usize> Begun<S, D> {
     /// A stage that goes on where a checkpoint stands.
-    fn resumed(solver: Solver<S, D>, saved: Saved) -> Self {
-        Self { solver, start: Start::Resume(saved.state, saved.memory), particles: saved.lagrangian }
+    fn resumed(mut solver: Solver<S, D>, saved: Saved) -> Result<Self, RunError> {
+        // particles that travel are elsewhere by now
+        if let Some(fluid) = saved.lagrangian.map(|r| r.resume(solver.system.gas())).transpose()?.flatten() {
+            solver.system.set_gas(fluid);
+        }
+        Ok(Self { solver, start: Start::Resume(saved.state, saved.memory) })
     }
 }
 

@@ -22,11 +22,14 @@ use crate::time::{Integrator, Memory, Past, Standing};
 pub(crate) fn march<S: HasGas<D>, const D: usize>(
     solver: &mut Solver<S, D>,
     marching: &Marching,
-    begin: (Past, Vec<f64>),
+    start: Start,
     turn: &Turn<'_>,
     log: &mut Log<'_>,
 ) -> Result<Option<Reached<S>>, RunError> {
-    let mut begin = begin;
+    let mut begin = match start {
+        Start::Resume(u, Memory::March(past)) => (past, u),
+        other => (Past::default(), other.into_state()),
+    };
     if begin.0.iteration == 0 && log.record.start_totals.is_empty() {
         log.record.start_totals =
             totals(&solver.system.gas().volumes(), solver.system.gas_state(&begin.1), n_variables(D));
@@ -60,21 +63,6 @@ pub(crate) fn march<S: HasGas<D>, const D: usize>(
         }
         begin = (past, u);
     }
-}
-
-/// The equations and the place in time that a march begins with: on the cloud that a checkpoint kept where particles travel.
-pub(crate) fn beginning<S: HasGas<D>, const D: usize>(
-    solver: &mut Solver<S, D>,
-    start: Start,
-    particles: Option<&LagrangianCheckpoint>,
-) -> Result<(Past, Vec<f64>), RunError> {
-    if let Some(fluid) = particles.map(|r| r.resume(solver.system.gas())).transpose()?.flatten() {
-        solver.system.set_gas(fluid);
-    }
-    Ok(match start {
-        Start::Resume(u, Memory::March(past)) => (past, u),
-        other => (Past::default(), other.into_state()),
-    })
 }
 
 fn integrator<'a, S: HasGas<D>, const D: usize>(

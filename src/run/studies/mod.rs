@@ -11,6 +11,6 @@ mod turn;
 
 pub(crate) use balance::balance;
 pub(crate) use lead::lead;
-pub(crate) use march::{beginning, march};
+pub(crate) use march::march;
 pub(crate) use steady::relax;
 pub(crate) use turn::{Reached, Start, Turn};
