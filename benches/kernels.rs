@@ -12,7 +12,7 @@ mod ratios;
 use std::path::Path;
 
 use alula::case::{Case, read};
-use alula::cloud::{Cloud, Operators};
+use alula::cloud::{Cloud, CloudSpec, Operators};
 use alula::geometry::load_surface;
 use alula::math::Vector;
 use alula::math::multilevel::Cycle;
@@ -43,7 +43,7 @@ fn main() {
 /// Prints the bytes per particle of the edges and of all that an explicit march holds.
 #[allow(clippy::print_stdout, reason = "a benchmark prints")]
 fn print_bytes<const D: usize>() {
-    let cloud = Cloud::<D>::build(&case::<D>(), None, &[]).unwrap();
+    let cloud = Cloud::<D>::build(&CloudSpec::of_case(&case::<D>()), None, &[]).unwrap();
     let operators = Operators::new(&cloud);
     let n = cloud.n_fluid as f64;
     let points = cloud.len() * (size_of::<Vector<D>>() + 2 * size_of::<f64>());
@@ -118,8 +118,9 @@ fn gradient<const D: usize>(bencher: Bencher<'_, '_>) {
 #[divan::bench(consts = [2, 3], args = THREADS, sample_count = 10)]
 fn cloud<const D: usize>(bencher: Bencher<'_, '_>, threads: usize) {
     let (case, pool) = (case::<D>(), pool(threads));
-    let n = Cloud::<D>::build(&case, None, &[]).unwrap().n_fluid;
-    let build = || Cloud::<D>::build(black_box(&case), None, &[]).unwrap();
+    let spec = CloudSpec::of_case(&case);
+    let n = Cloud::<D>::build(&spec, None, &[]).unwrap().n_fluid;
+    let build = || Cloud::<D>::build(black_box(&spec), None, &[]).unwrap();
     bencher.counter(ItemsCount::new(n)).bench_local(|| pool.install(build));
 }
 
@@ -129,8 +130,9 @@ fn cloud_around_sphere(bencher: Bencher<'_, '_>, threads: usize) {
     let text = "title = \"bench\"\n[flow]\nmach = 0.3\n[[body]]\nsphere = { radius = 0.5 }\n\
                 [cloud]\nspacing = 0.025\nfar_field = 10.0\nlayers = 12.0\n[time.steady]\norders = 6\n";
     let case = read(text, "bench.toml").unwrap_or_else(|e| panic!("{e}"));
-    let surface = load_surface::<3>(&case, Path::new("")).unwrap().0;
-    let build = || Cloud::<3>::build(black_box(&case), Some(&surface), &[]).unwrap();
+    let surface = load_surface::<3>(&case.bodies, Path::new("")).unwrap().0;
+    let spec = CloudSpec::of_case(&case);
+    let build = || Cloud::<3>::build(black_box(&spec), Some(&surface), &[]).unwrap();
     let pool = pool(threads);
     bencher.counter(ItemsCount::new(build().n_fluid)).bench_local(|| pool.install(build));
 }
@@ -138,7 +140,7 @@ fn cloud_around_sphere(bencher: Bencher<'_, '_>, threads: usize) {
 /// Least-squares weights and edges.
 #[divan::bench(consts = [2, 3], args = THREADS, sample_count = 20)]
 fn weights<const D: usize>(bencher: Bencher<'_, '_>, threads: usize) {
-    let cloud = Cloud::<D>::build(&case::<D>(), None, &[]).unwrap();
+    let cloud = Cloud::<D>::build(&CloudSpec::of_case(&case::<D>()), None, &[]).unwrap();
     let pool = pool(threads);
     bencher.counter(ItemsCount::new(cloud.n_fluid)).bench_local(|| pool.install(|| Operators::new(black_box(&cloud))));
 }

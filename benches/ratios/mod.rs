@@ -70,7 +70,7 @@ fn parsed(text: &str) -> Case {
 /// Equations and start of a case, and the period of its motion where it has one.
 fn built(case: &Case, folder: &Path) -> (Fluid<2>, Vec<f64>, f64) {
     let (fluid, u) = alula::run::build_solver::<2>(case, folder).unwrap();
-    let motions = Motions::<2>::new(case, 1.0, &|_| unreachable!("no files of motion")).unwrap();
+    let motions = Motions::<2>::of_case(case, 1.0, &|_| unreachable!("no files of motion")).unwrap();
     (fluid, u, motions.period().unwrap_or_default())
 }
 

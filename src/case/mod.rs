@@ -468,6 +468,25 @@ pub struct Compare {
     pub label: String,
 }
 
+impl Default for Placement {
+    /// As the shape is.
+    fn default() -> Self {
+        Self { scale: 1.0, rotate: Vec::new(), translate: Vec::new() }
+    }
+}
+
+impl Body {
+    /// A body of this shape, without name, at rest where the shape puts it.
+    pub fn new(shape: Shape) -> Self {
+        Self { name: None, shape, placement: Placement::default(), wall: None, motion: None }
+    }
+
+    /// A NACA 4-digit section of unit chord with a closed trailing edge, nose at the origin.
+    pub fn naca(digits: &str) -> Self {
+        Self::new(Shape::Naca(Naca { digits: digits.to_owned(), trailing_edge: TrailingEdge::Closed }))
+    }
+}
+
 impl Default for Scheme {
     fn default() -> Self {
         Self {

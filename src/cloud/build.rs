@@ -6,8 +6,7 @@ use super::fill::Particles;
 use super::layout::{Layout, background};
 use super::neighbours::{Clouds, Search};
 use super::sources::Source;
-use super::{Cloud, CloudError, Outer};
-use crate::case::Case;
+use super::{Cloud, CloudError, CloudSpec, Outer};
 use crate::geometry::Surface;
 use crate::math::Vector;
 
@@ -15,16 +14,16 @@ use crate::math::Vector;
 const WALL_HEIGHT: f64 = 0.45;
 
 impl<const D: usize> Cloud<D> {
-    /// Builds the cloud of a case; `extra` are sources of refinement that follow the solution.
-    pub fn build(case: &Case, surface: Option<&Surface<D>>, extra: &[Source<D>]) -> Result<Self, CloudError> {
-        let layout = Layout::new(case, surface)?;
-        let tree = Arc::new(background(case, &layout, surface, extra));
+    /// Builds a cloud around a surface, or in the domain alone; `extra` are sources of refinement that follow the solution.
+    pub fn build(spec: &CloudSpec<D>, surface: Option<&Surface<D>>, extra: &[Source<D>]) -> Result<Self, CloudError> {
+        let layout = Layout::new(spec, surface)?;
+        let tree = Arc::new(background(spec, &layout, surface, extra));
         let transforms = layout.transforms();
-        let mut particles = Particles::fill(tree, &layout, &transforms, &case.cloud, surface);
+        let mut particles = Particles::fill(tree, &layout, &transforms, spec, surface);
         if particles.n_fluid == 0 {
             return Err(CloudError::Empty);
         }
-        let found = Search::new(&particles, surface, &transforms, case.cloud.radius).clouds()?;
+        let found = Search::new(&particles, surface, &transforms, spec.radius).clouds()?;
         found.repair.moved.iter().for_each(|(i, place)| particles.x[*i as usize] = *place);
         Ok(Self::join(particles, found, transforms))
     }

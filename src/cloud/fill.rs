@@ -12,8 +12,8 @@ use super::layout::Layout;
 use super::near_wall_smoothing::smooth_near_wall;
 use super::neighbours::NEAR;
 use super::tree::{Leaf, MAX_LEVEL, Tree};
-use super::{Interface, Transform};
-use crate::case::{Cloud as Spec, Side};
+use super::{CloudSpec, Interface, Transform};
+use crate::case::Side;
 use crate::geometry::Surface;
 use crate::math::hilbert::hilbert_index;
 use crate::math::sweep::{CHUNK, order_by_key, parts, sweep_parts};
@@ -106,7 +106,7 @@ impl<const D: usize> Particles<D> {
         tree: Arc<Tree<D>>,
         layout: &Layout<D>,
         transforms: &[Transform<D>],
-        spec: &Spec,
+        spec: &CloudSpec<D>,
         surface: Option<&Surface<D>>,
     ) -> Self {
         let mut placed = surface.map(|s| place(s, &tree, &layout.planes())).unwrap_or_default();

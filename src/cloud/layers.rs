@@ -11,9 +11,6 @@
 //!
 //! References: Visbal and Gaitonde, J. Comput. Phys. 181 (2002), for metric terms that must be taken with the weights of the
 //! scheme; Pirzadeh, AIAA J. 34 (1996), for layers that advance together and stop where fronts meet.
-#[cfg(test)]
-mod tests;
-
 use super::Cloud;
 use crate::math::Vector;
 

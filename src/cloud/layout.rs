@@ -1,8 +1,8 @@
-//! From the case to the background: domain, levels, sources of refinement.
+//! From the specification to the background: domain, levels, sources of refinement.
 use super::sources::{Source, SourceBox, Sources};
 use super::tree::{Forest, Tree};
-use super::{CloudError, Transform};
-use crate::case::{Case, Side};
+use super::{CloudError, CloudSpec, Transform};
+use crate::case::Side;
 use crate::geometry::Surface;
 use crate::math::{Bounds, Vector};
 
@@ -23,15 +23,12 @@ pub struct Layout<const D: usize> {
 }
 
 impl<const D: usize> Layout<D> {
-    /// Lays out the domain of a case.
-    pub fn new(case: &Case, surface: Option<&Surface<D>>) -> Result<Self, CloudError> {
-        let s = &case.boundary;
-        let all = [[s.x_min, s.x_max], [s.y_min, s.y_max], [s.z_min, s.z_max]];
-        let sides: [[Side; 2]; D] = std::array::from_fn(|d| all[d]);
-        let periodic = std::array::from_fn(|d| sides[d][0] == Side::Periodic);
-        let forest = match (&case.cloud.domain, surface) {
-            (Some(domain), _) => explicit(case, domain, periodic)?,
-            (None, Some(surface)) => around(case, surface, &sides),
+    /// Lays out the domain.
+    pub fn new(spec: &CloudSpec<D>, surface: Option<&Surface<D>>) -> Result<Self, CloudError> {
+        let sides = spec.sides;
+        let forest = match (&spec.domain, surface) {
+            (Some(domain), _) => explicit(spec, domain)?,
+            (None, Some(surface)) => around(spec, surface),
             (None, None) => return Err(CloudError::Layout("a case without bodies needs `cloud.domain`".into())),
         };
         Ok(Self { forest, sides })
@@ -75,14 +72,9 @@ impl<const D: usize> Layout<D> {
 }
 
 /// Root cells of an explicit domain: the largest power of two of the spacing that divides every side.
-fn explicit<const D: usize>(
-    case: &Case,
-    domain: &crate::case::Domain,
-    periodic: [bool; D],
-) -> Result<Forest<D>, CloudError> {
-    let corner = |v: &[crate::case::Length]| Vector::<D>::from_fn(|d| v.get(d).map_or(0.0, |l| l.0));
-    let (min, max) = (corner(&domain.min), corner(&domain.max));
-    let spacing = case.cloud.spacing.0;
+fn explicit<const D: usize>(spec: &CloudSpec<D>, domain: &Bounds<D>) -> Result<Forest<D>, CloudError> {
+    let Bounds { min, max } = *domain;
+    let spacing = spec.spacing;
     let cells: [f64; D] = std::array::from_fn(|d| (max[d] - min[d]) / spacing);
     for d in 0..D {
         if (cells[d] - cells[d].round()).abs() > MISFIT * cells[d] || cells[d] < 0.5 {
@@ -103,15 +95,17 @@ fn explicit<const D: usize>(
             "`cloud.domain` needs {roots:?} root cells, at most 2047 along an axis; hint: make its sides multiples of a larger power of two of the spacing"
         )));
     }
+    let periodic = std::array::from_fn(|d| spec.sides[d][0] == Side::Periodic);
     Ok(Forest { origin: min, root_size, roots, periodic })
 }
 
 /// One root cell around the bodies; planes of symmetry pass through the origin of their axis.
-fn around<const D: usize>(case: &Case, surface: &Surface<D>, sides: &[[Side; 2]; D]) -> Forest<D> {
+fn around<const D: usize>(spec: &CloudSpec<D>, surface: &Surface<D>) -> Forest<D> {
+    let sides = &spec.sides;
     let bounds = surface.bounds();
     let length = bounds.extent().max_abs();
-    let wanted = case.cloud.far_field.map_or(FAR_FIELD[D - 2] * length, |l| l.0);
-    let spacing = case.cloud.spacing.0;
+    let wanted = spec.far_field.unwrap_or(FAR_FIELD[D - 2] * length);
+    let spacing = spec.spacing;
     let half = spacing * 2f64.powf((wanted / spacing).log2().ceil());
     let centre = bounds.centre();
     let cut = |d: usize, end: usize| sides[d][end] == Side::Symmetry && sides[d][1 - end] != Side::Symmetry;
@@ -129,36 +123,30 @@ fn around<const D: usize>(case: &Case, surface: &Surface<D>, sides: &[[Side; 2];
     Forest { origin, root_size, roots: std::array::from_fn(count), periodic: [false; D] }
 }
 
-/// The background tree of a case; `extra` are sources that follow the solution.
+/// The background tree; `extra` are sources that follow the solution.
 pub fn background<const D: usize>(
-    case: &Case,
+    spec: &CloudSpec<D>,
     layout: &Layout<D>,
     surface: Option<&Surface<D>>,
     extra: &[Source<D>],
 ) -> Tree<D> {
     let mut points = extra.to_vec();
-    let mut boxes = user_boxes(case, surface);
+    let mut boxes = user_boxes(spec, surface);
     if let Some(surface) = surface {
-        surface_sources(case, surface, &mut points);
+        surface_sources(spec, surface, &mut points);
     } else {
         let size = layout.forest.roots;
         let extent = Vector::from_fn(|d| f64::from(size[d]) * layout.forest.root_size);
         let bounds = Bounds { min: layout.forest.origin, max: layout.forest.origin + extent };
-        boxes.push(SourceBox { bounds, spacing: case.cloud.spacing.0 });
+        boxes.push(SourceBox { bounds, spacing: spec.spacing });
     }
     let sources = Sources::new(points, boxes);
     Tree::build(&layout.forest, |x, size| sources.split(x, size))
 }
 
-fn user_boxes<const D: usize>(case: &Case, surface: Option<&Surface<D>>) -> Vec<SourceBox<D>> {
-    let corner = |v: &[crate::case::Length]| Vector::from_fn(|d| v.get(d).map_or(0.0, |l| l.0));
-    let mut boxes: Vec<_> = case
-        .cloud
-        .boxes
-        .iter()
-        .map(|b| SourceBox { bounds: Bounds { min: corner(&b.min), max: corner(&b.max) }, spacing: b.spacing.0 })
-        .collect();
-    if let (Some(wake), Some(surface)) = (&case.cloud.wake, surface) {
+fn user_boxes<const D: usize>(spec: &CloudSpec<D>, surface: Option<&Surface<D>>) -> Vec<SourceBox<D>> {
+    let mut boxes = spec.boxes.clone();
+    if let (Some(wake), Some(surface)) = (&spec.wake, surface) {
         let b = surface.bounds();
         let mut max = b.max;
         max[0] += wake.length.0;
@@ -167,10 +155,9 @@ fn user_boxes<const D: usize>(case: &Case, surface: Option<&Surface<D>>) -> Vec<
     boxes
 }
 
-/// Points of the surface with the spacing that the case, the curvature and sharp edges ask for.
-fn surface_sources<const D: usize>(case: &Case, surface: &Surface<D>, points: &mut Vec<Source<D>>) {
-    let cloud = &case.cloud;
-    let base = cloud.spacing.0;
+/// Points of the surface with the spacing that the specification, the curvature and sharp edges ask for.
+fn surface_sources<const D: usize>(cloud: &CloudSpec<D>, surface: &Surface<D>, points: &mut Vec<Source<D>>) {
+    let base = cloud.spacing;
     let finest = base / f64::from(1u32 << cloud.curvature_levels);
     points.extend(surface.samples(0.5 * base, |x, radius| {
         let spacing = (cloud.curvature * radius).clamp(finest, base);

@@ -80,6 +80,7 @@ fn seen<const D: usize>(cloud: &Cloud<D>, gradients: &[Matrix<D>], i: usize) -> 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::cloud::CloudSpec;
     use crate::cloud::conservative::conservative;
 
     /// Greatest sum of area vectors around a particle, over the sum of their sizes, after the motion `to`.
@@ -87,8 +88,8 @@ mod tests {
         let text = "title = \"x\"\ndimension = 2\n[flow]\nmach = 0.5\n[[body]]\ncircle = { radius = 0.3 }\n[cloud]\nspacing = 0.0625\n\
                     jitter = 0.2\ndomain = { min = [-1.0, -1.0], max = [1.0, 1.0] }\n";
         let case = crate::case::read(text, "test").unwrap();
-        let surface = crate::geometry::load_surface::<2>(&case, std::path::Path::new(".")).unwrap().0;
-        let mut from = Cloud::build(&case, Some(&surface), &[]).unwrap();
+        let surface = crate::geometry::load_surface::<2>(&case.bodies, std::path::Path::new(".")).unwrap().0;
+        let mut from = Cloud::build(&CloudSpec::of_case(&case), Some(&surface), &[]).unwrap();
         let mut origin = Operators::new(&from);
         conservative(&mut from, &mut origin);
         let (mut cloud, mut moved) = (from.clone(), origin.clone());

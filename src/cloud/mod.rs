@@ -22,6 +22,7 @@ pub mod operators;
 pub mod quality;
 pub mod repair;
 pub mod sources;
+pub mod spec;
 pub mod strain;
 #[cfg(test)]
 mod tests;
@@ -37,6 +38,7 @@ pub use layout::Layout;
 pub use neighbours::Neighbours;
 pub use operators::{Edge, Operators};
 pub use quality::Diagnosis;
+pub use spec::CloudSpec;
 pub use strain::Strain;
 
 /// A particle on a surface.

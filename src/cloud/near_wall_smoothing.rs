@@ -131,15 +131,15 @@ impl<const D: usize> Walls<'_, D> {
 #[cfg(test)]
 mod tests {
     use crate::case::read;
-    use crate::cloud::Cloud;
+    use crate::cloud::{Cloud, CloudSpec};
     use crate::geometry::load_surface;
 
     #[test]
     fn the_first_row_stands_at_the_middle_of_its_cells() {
         let text = "title = \"t\"\n[flow]\nmach = 0.3\n[[body]]\nsphere = { radius = 0.5 }\n[cloud]\nspacing = 0.06\nfar_field = 2\n";
         let case = read(text, "t").unwrap();
-        let surface = load_surface::<3>(&case, std::path::Path::new(".")).unwrap().0;
-        let cloud = Cloud::build(&case, Some(&surface), &[]).unwrap();
+        let surface = load_surface::<3>(&case.bodies, std::path::Path::new(".")).unwrap().0;
+        let cloud = Cloud::build(&CloudSpec::of_case(&case), Some(&surface), &[]).unwrap();
         let height = |i: usize| (cloud.x[i].norm() - 0.5) / cloud.spacing[i];
         let lowest: Vec<f64> = (0..cloud.n_fluid).map(height).filter(|h| *h < 0.7).collect();
         // one above every interface particle, more or less: these stand 0.86 spacings apart, the columns 1 to 1.7

@@ -23,7 +23,7 @@ pub struct Source<const D: usize> {
 }
 
 /// A box inside which cells may not be larger than `spacing`.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SourceBox<const D: usize> {
     /// Extent.
     pub bounds: Bounds<D>,

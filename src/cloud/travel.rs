@@ -17,8 +17,8 @@ use super::layers::Layers;
 use super::layout::Layout;
 use super::neighbours::{NEAR, Search};
 use super::tree::{Leaf, Tree};
-use super::{Cloud, CloudError, Transform};
-use crate::case::{Case, Side};
+use super::{Cloud, CloudError, CloudSpec, Transform};
+use crate::case::Side;
 use crate::geometry::Surface;
 use crate::math::sweep::{CHUNK, order_by_key, parts, sweep, sweep_each, sweep_parts};
 use crate::math::{Bounds, Vector};
@@ -82,9 +82,9 @@ struct Scene<'a, const D: usize> {
 }
 
 impl<const D: usize> BackgroundDomain<D> {
-    /// What the cloud of a case, which is built already, keeps.
-    pub fn new(case: &Case, surface: Option<&Surface<D>>, cloud: &Cloud<D>) -> Result<Self, CloudError> {
-        let layout = Layout::new(case, surface)?;
+    /// What a cloud of this specification, which is built already, keeps.
+    pub fn new(spec: &CloudSpec<D>, surface: Option<&Surface<D>>, cloud: &Cloud<D>) -> Result<Self, CloudError> {
+        let layout = Layout::new(spec, surface)?;
         let tree = Arc::clone(&cloud.tree);
         let placed = surface.map(|s| place(s, &tree, &layout.planes())).unwrap_or_default();
         let walls = Walls::new(surface, tree.bounds(), &cloud.transforms);
@@ -93,13 +93,13 @@ impl<const D: usize> BackgroundDomain<D> {
         for leaf in tree.leaves() {
             sizes = (sizes.0.min(leaf.size), sizes.1.max(leaf.size));
             let side = side_of(&leaf, &tree.bounds(), &layout.sides);
-            let free = |last: &mut _| walls.distance((&leaf.centre, leaf.size), case.cloud.blank, last).is_some();
+            let free = |last: &mut _| walls.distance((&leaf.centre, leaf.size), spec.blank, last).is_some();
             outer.extend(side.filter(|_| free(&mut last)).map(|side| (leaf, side)));
         }
         let order = order_by_key(outer.len(), |k| curve_position(tree.anchor(outer[k].0.node)));
         let outer: Vec<_> = order.into_iter().map(|k| outer[k as usize]).collect();
         let transforms = cloud.transforms.clone();
-        let (radius, blank, uniform) = (case.cloud.radius.max(LEAST_RADIUS), case.cloud.blank, sizes.0 == sizes.1);
+        let (radius, blank, uniform) = (spec.radius.max(LEAST_RADIUS), spec.blank, sizes.0 == sizes.1);
         // from the middle of a leaf to a particle in it, to what that sees, and to what gives that its spacing
         let even = tree.even(0.5 + LARGER * radius + 1.0);
         let surface = surface.cloned();

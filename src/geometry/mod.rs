@@ -88,11 +88,14 @@ pub fn dimension(case: &Case) -> u8 {
     case.dimension.unwrap_or_else(|| case.bodies.first().map_or(2, of))
 }
 
-/// The surface of all bodies of a case, and notes on what was assumed or mended. Files are looked up in `folder`.
-pub fn load_surface<const D: usize>(case: &Case, folder: &Path) -> Result<(Surface<D>, Vec<String>), GeometryError> {
+/// The surface of all bodies, and notes on what was assumed or mended. Files are looked up in `folder`.
+pub fn load_surface<const D: usize>(
+    bodies: &[Body],
+    folder: &Path,
+) -> Result<(Surface<D>, Vec<String>), GeometryError> {
     let mut notes = Vec::new();
     let mut shells = Vec::new();
-    for (i, body) in case.bodies.iter().enumerate() {
+    for (i, body) in bodies.iter().enumerate() {
         let name = body.name.clone().unwrap_or_else(|| format!("body-{}", i + 1));
         let shell = load_shell(&name, &body.shape, folder, &mut notes)?;
         let mut shell = shell.in_dimension::<D>().ok_or_else(|| {

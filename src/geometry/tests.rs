@@ -209,17 +209,17 @@ fn naca() -> Shape {
 fn bodies_are_placed_and_overlaps_refused() {
     let folder = Path::new("");
     let circle = |x: f64| body(Shape::Circle { radius: Length(0.5) }, vec![], vec![x, 0.0]);
-    let two = case(vec![circle(0.0), circle(1.5)]);
+    let two = vec![circle(0.0), circle(1.5)];
     let (surface, _) = load_surface::<2>(&two, folder).unwrap();
-    assert!(dimension(&two) == 2 && surface.bodies == ["body-1", "body-2"] && surface.tags.len() == 2);
+    assert!(dimension(&case(two)) == 2 && surface.bodies == ["body-1", "body-2"] && surface.tags.len() == 2);
     assert!(surface.inside(&Vector([1.9, 0.0])) && !surface.inside(&Vector([0.75, 0.0])));
     let exact = surface.project(&surface.nearest(&Vector([2.5, 0.0]), 1.0).unwrap());
     assert!((exact.point - Vector([2.0, 0.0])).norm() < 1e-12);
-    let close = load_surface::<2>(&case(vec![circle(0.0), circle(0.9)]), folder).unwrap_err().to_string();
+    let close = load_surface::<2>(&[circle(0.0), circle(0.9)], folder).unwrap_err().to_string();
     assert!(close.contains("body `body-1`: overlaps body `body-2`"), "{close}");
     let small = body(Shape::Circle { radius: Length(0.1) }, vec![], vec![]);
-    assert!(load_surface::<2>(&case(vec![circle(0.0), small]), folder).is_err());
-    let pitched = case(vec![body(naca(), vec![0.1], vec![])]);
+    assert!(load_surface::<2>(&[circle(0.0), small], folder).is_err());
+    let pitched = [body(naca(), vec![0.1], vec![])];
     let (surface, _) = load_surface::<2>(&pitched, folder).unwrap();
     let tail = surface.sharp[0].ends[0];
     assert!((tail - Vector([0.1_f64.cos(), -0.1_f64.sin()])).norm() < 1e-12, "{tail:?}");
@@ -230,13 +230,13 @@ fn wrong_bodies_are_refused_by_name() {
     let folder = Path::new("");
     let sphere = || Shape::Sphere { radius: Length(1.0) };
     assert_eq!(dimension(&case(vec![body(sphere(), vec![], vec![])])), 3);
-    let message = |b: Body| load_surface::<2>(&case(vec![b]), folder).unwrap_err().to_string();
+    let message = |b: Body| load_surface::<2>(&[b], folder).unwrap_err().to_string();
     assert!(message(body(sphere(), vec![], vec![])).contains("not 2-dimensional"));
     assert!(message(body(Shape::Circle { radius: Length(-1.0) }, vec![], vec![])).contains("`radius` is -1"));
     assert!(message(body(naca(), vec![], vec![1.0])).contains("`translate`"));
     assert!(message(body(naca(), vec![1.0, 2.0], vec![])).contains("nose up"));
     assert!(message(body(Shape::Airfoil("none.dat".into()), vec![], vec![])).contains("cannot read `none.dat`"));
-    let (empty, _) = load_surface::<2>(&case(vec![]), folder).unwrap();
+    let (empty, _) = load_surface::<2>(&[], folder).unwrap();
     let x = Vector([0.0, 0.0]);
     assert!(!empty.inside(&x) && empty.nearest(&x, 1.0).is_none() && !empty.crosses(&x, &Vector([1.0, 0.0])));
 }

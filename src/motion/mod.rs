@@ -1,9 +1,10 @@
 //! Motion of bodies: x(t), and from it v(t).
 //!
-//! [`Motions`] holds one [`BodyMotion`] for each body; a [`RigidPose`] is where a law has got to. Velocities are never written
+//! [`Motions`] holds one [`BodyMotion`] for each body, by hand ([`Motions::new`]) or from a case ([`Motions::of_case`]); a [`RigidPose`] is where a law has got to. Velocities are never written
 //! down a second time: marching takes differences of positions, with the formula it uses for the state, and what needs the
 //! velocity at an instant gets it by differentiating the same law (`math::jet`).
 mod freedom;
+mod from_case;
 mod law;
 mod mode;
 mod point_trajectory;
@@ -15,6 +16,7 @@ mod tests;
 mod time_function;
 
 pub use freedom::{Freedom, Role, positions};
+pub use from_case::{MotionError, ReadFile, mode_shape};
 pub use law::{BodyMotion, Kinematics};
 pub use mode::{Expansion, Hinge, ModeShape};
 pub use point_trajectory::PointTrajectory;
@@ -22,16 +24,7 @@ pub use pose::RigidPose;
 pub use spline::Spline;
 pub use time_function::{Repeat, TimeFunction};
 
-use std::sync::Arc;
-
-use crate::case::formula::{Formula, FormulaError};
-use crate::case::{BodyMotionSpec, Case, CaseErrors, MotionFormula, MotionTable, Temporal, read_mode};
-use crate::math::Vector;
-
-/// Reads the text of a file that a case names.
-pub type ReadFile<'a> = &'a dyn Fn(&str) -> std::io::Result<String>;
-
-/// The motion of every body of a case.
+/// The motion of every body.
 #[derive(Clone, Debug)]
 pub struct Motions<const D: usize> {
     bodies: Vec<BodyMotion<D>>,
@@ -42,92 +35,15 @@ pub struct Motions<const D: usize> {
     forced: Option<f64>,
 }
 
-/// Why a motion cannot be built.
-#[derive(Debug, thiserror::Error)]
-pub enum MotionError {
-    /// The file of a table cannot be read.
-    #[error("cannot read the motion table `{file}`: {source}")]
-    File {
-        /// Its name.
-        file: String,
-        /// Why.
-        source: std::io::Error,
-    },
-    /// The file of a table holds no table.
-    #[error(
-        "motion table `{file}`: {problem}\nhint: give columns `time` and any of `x`, `y`, `z`, `angle_deg`, `angle_rad`"
-    )]
-    Table {
-        /// Its name.
-        file: String,
-        /// What is wrong.
-        problem: String,
-    },
-    /// The file of a mode cannot be read.
-    #[error("cannot read the mode `{file}`: {source}\nhint: paths are relative to the case file")]
-    ModeFile {
-        /// Its name.
-        file: String,
-        /// Why.
-        source: std::io::Error,
-    },
-    /// The file of a mode holds no mode.
-    #[error("{0}")]
-    Mode(Box<CaseErrors>),
-    /// The points of a mode do not determine a shape.
-    #[error(
-        "mode `{file}`: its points lie too near to one another, or on both sides of a plate that is thin against its extent\n\
-         hint: keep the points of one side, and no two within a millionth of the extent"
-    )]
-    Crowded {
-        /// Its name.
-        file: String,
-    },
-    /// A formula cannot be read.
-    #[error("formula `{text}`: {source}")]
-    Formula {
-        /// The formula.
-        text: String,
-        /// Why.
-        source: FormulaError,
-    },
-    /// A law has no finite place at the start.
-    #[error(
-        "the motion of {body} is not finite at t = 0\nhint: look for divisions by zero, `ln` and `sqrt` in its formulas"
-    )]
-    NotFinite {
-        /// Whose.
-        body: String,
-    },
-    /// A law turns a body about no point.
-    #[error("the motion of {body} turns, but has no pivot\nhint: add `pivot` to its motion")]
-    Pivot {
-        /// Whose.
-        body: String,
-    },
-}
-
 impl<const D: usize> Motions<D> {
-    /// `n` bodies at rest.
-    pub fn fixed(n: usize) -> Self {
-        Self { bodies: vec![BodyMotion::fixed(); n], general: BodyMotion::fixed(), forces: Vec::new(), forced: None }
+    /// Bodies that move by these laws.
+    pub fn new(bodies: Vec<BodyMotion<D>>) -> Self {
+        Self { bodies, general: BodyMotion::fixed(), forces: Vec::new(), forced: None }
     }
 
-    /// The motions of `case`; `chord` is its reference chord, `read` opens the files it names.
-    pub fn new(case: &Case, chord: f64, read: ReadFile<'_>) -> Result<Self, MotionError> {
-        let build = |motion: Option<&BodyMotionSpec>, whose: String| match motion {
-            Some(motion) => Builder { case, chord, read, motion, whose: &whose }.law(),
-            None => Ok(BodyMotion::fixed()),
-        };
-        let named = |i: usize| case.bodies[i].name.clone().unwrap_or_else(|| format!("body {}", i + 1));
-        let bodies = (0..case.bodies.len())
-            .map(|i| build(case.motion_of(i), format!("`{}`", named(i))))
-            .collect::<Result<_, _>>()?;
-        let general = build(case.motion.as_ref().map(|m| &m.law), "`[motion]`".to_owned())?;
-        let flexible =
-            case.gaf.iter().filter(|_| matches!(case.time, Temporal::Harmonics(_))).flat_map(|g| &g.flexible);
-        let forces = flexible.map(|mode| mode_shape(&mode.file, read)).collect::<Result<_, _>>()?;
-        Ok(Self { bodies, general, forces, forced: None })
+    /// `n` bodies at rest.
+    pub fn fixed(n: usize) -> Self {
+        Self::new(vec![BodyMotion::fixed(); n])
     }
 
     /// Hands a body over to coordinates that are unknowns, see [`BodyMotion::with_freedom`].
@@ -183,108 +99,4 @@ impl<const D: usize> Motions<D> {
         let alone = self.bodies.is_empty().then_some(&self.general);
         self.bodies.iter().chain(alone)
     }
-}
-
-/// The shape of a mode from its file.
-pub fn mode_shape<const D: usize>(file: &str, read: ReadFile<'_>) -> Result<ModeShape<D>, MotionError> {
-    let text = read(file).map_err(|source| MotionError::ModeFile { file: file.to_owned(), source })?;
-    let table = read_mode(&text, file, D).map_err(|e| MotionError::Mode(Box::new(e)))?;
-    ModeShape::new(&table).ok_or_else(|| MotionError::Crowded { file: file.to_owned() })
-}
-
-/// What the law of one body is made from.
-struct Builder<'a> {
-    case: &'a Case,
-    chord: f64,
-    read: ReadFile<'a>,
-    motion: &'a BodyMotionSpec,
-    whose: &'a str,
-}
-
-impl Builder<'_> {
-    fn law<const D: usize>(&self) -> Result<BodyMotion<D>, MotionError> {
-        let motion = self.motion;
-        let pivot = motion.pivot.as_ref().map(|p| Vector::from_fn(|d| p[d].0));
-        let axis = motion.axis.as_ref().map(|a| [a[0], a[1], a[2]]);
-        let mut law = BodyMotion::about(pivot.unwrap_or(Vector::ZERO), axis);
-        let omega = self.case.angular_frequency(motion, self.chord).unwrap_or(0.0);
-        let sine = |amplitude: f64, phase: f64| TimeFunction::Sine { amplitude, omega, phase };
-        if let Some(pitch) = &motion.pitch {
-            law = law.with_angle(sine(pitch.amplitude.0, pitch.phase.0));
-        }
-        if let Some(plunge) = &motion.plunge {
-            let up = Vector::axis(D - 1);
-            let direction = plunge.direction.as_ref().map_or(up, |v| Vector::from_fn(|d| v[d]).unit());
-            law = law.with_shift_along(&direction, |c| sine(plunge.amplitude.0 * c, plunge.phase.0));
-        }
-        if let Some(rotation) = &motion.rotation {
-            law = law.with_angle(TimeFunction::Steady(rotation.rate.0));
-        }
-        if let Some(translation) = &motion.translation {
-            law = law.with_shift(std::array::from_fn(|d| TimeFunction::Steady(translation.velocity[d].0)));
-        }
-        if let Some(table) = &motion.table {
-            law = self.table(table, law)?;
-        }
-        if let Some(formula) = &motion.formula {
-            law = formulas(formula, omega, law)?;
-        }
-        for mode in &motion.modes {
-            let shape = mode_shape(&mode.file, self.read)?;
-            law = law.with_mode(Arc::new(shape), sine(mode.amplitude, mode.phase.0));
-        }
-        // only a table file can turn a body unseen by the reader of the case
-        if pivot.is_none() && law.turns() {
-            return Err(MotionError::Pivot { body: self.whose.to_owned() });
-        }
-        if !law.is_finite(0.0) {
-            return Err(MotionError::NotFinite { body: self.whose.to_owned() });
-        }
-        Ok(law)
-    }
-
-    /// Adds the splines through a table.
-    fn table<const D: usize>(&self, table: &MotionTable, law: BodyMotion<D>) -> Result<BodyMotion<D>, MotionError> {
-        let samples = match &table.file {
-            None => samples::Samples::of(table),
-            Some(file) => {
-                let text = (self.read)(file).map_err(|source| MotionError::File { file: file.clone(), source })?;
-                let problem = |problem| MotionError::Table { file: file.clone(), problem };
-                samples::Samples::parse(&text, table.periodic, D).map_err(problem)?
-            }
-        };
-        let spline = |values: &Vec<f64>| TimeFunction::Spline(Spline::new(&samples.time, values, table.periodic));
-        let law = match &samples.angle {
-            Some(angle) => law.with_angle(spline(angle)),
-            None => law,
-        };
-        if samples.shift.iter().all(Option::is_none) {
-            return Ok(law);
-        }
-        Ok(law.with_shift(std::array::from_fn(|d| samples.shift[d].as_ref().map_or(TimeFunction::Steady(0.0), spline))))
-    }
-}
-
-/// Adds formulas.
-fn formulas<const D: usize>(
-    formula: &MotionFormula,
-    omega: f64,
-    law: BodyMotion<D>,
-) -> Result<BodyMotion<D>, MotionError> {
-    let course = |text: &Option<String>| match text {
-        None => Ok(None),
-        Some(text) => match Formula::parse(text) {
-            Ok(formula) => Ok(Some(TimeFunction::Formula(formula, omega))),
-            Err(source) => Err(MotionError::Formula { text: text.clone(), source }),
-        },
-    };
-    let law = match course(&formula.angle)? {
-        Some(angle) => law.with_angle(angle),
-        None => law,
-    };
-    let shift = [course(&formula.x)?, course(&formula.y)?, course(&formula.z)?];
-    if shift.iter().all(Option::is_none) {
-        return Ok(law);
-    }
-    Ok(law.with_shift(std::array::from_fn(|d| shift[d].clone().unwrap_or(TimeFunction::Steady(0.0)))))
 }

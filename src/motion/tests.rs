@@ -3,6 +3,7 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use super::*;
 use crate::case::read;
+use crate::math::Vector;
 
 const CLOUD: &str = "[cloud]\nspacing = 0.1\n[time.explicit]\nuntil = 1\n";
 
@@ -13,7 +14,7 @@ fn no_file(name: &str) -> std::io::Result<String> {
 fn motions<const D: usize>(shape: &str, motion: &str) -> Motions<D> {
     let text = format!("[flow]\nmach = 0.5\n[[body]]\n{shape}\n{CLOUD}[motion]\n{motion}\n");
     let case = read(&text, "case.toml").unwrap_or_else(|e| panic!("{e}"));
-    Motions::new(&case, 1.0, &no_file).unwrap_or_else(|e| panic!("{e}"))
+    Motions::of_case(&case, 1.0, &no_file).unwrap_or_else(|e| panic!("{e}"))
 }
 
 fn plane(motion: &str) -> Motions<2> {
@@ -125,7 +126,7 @@ fn bodies_have_motions_of_their_own_and_a_common_period() {
     let text = "[flow]\nmach = 0.5\n[motion]\nperiod = 2\nplunge = 0.1\n[[body]]\nnaca = \"0012\"\n[[body]]\nnaca = \"0012\"\n\
                 motion = {}\n[[body]]\nnaca = \"0012\"\nmotion = { period = 3, plunge = 0.2 }\n";
     let case = read(&format!("{text}{CLOUD}"), "c").unwrap_or_else(|e| panic!("{e}"));
-    let m = Motions::<2>::new(&case, 1.0, &no_file).unwrap();
+    let m = Motions::<2>::of_case(&case, 1.0, &no_file).unwrap();
     assert_eq!((m.of(0).is_fixed(), m.of(1).is_fixed(), m.period()), (false, true, Some(6.0)));
     assert_near(m.of(2).pose(0.75).shift, [0.0, 0.2], 1e-15);
     assert!(m.moves());
@@ -136,7 +137,7 @@ fn a_cloud_without_bodies_can_move() {
     let text = "[flow]\nmach = 0.5\n[cloud]\nspacing = 0.1\ndomain = { min = [0, 0], max = [1, 1] }\n\
                 [time.explicit]\nuntil = 1\n[motion]\nparticles = \"rigid\"\nperiod = 2\nplunge = 0.1\n";
     let case = read(text, "c").unwrap_or_else(|e| panic!("{e}"));
-    let m = Motions::<2>::new(&case, 1.0, &no_file).unwrap();
+    let m = Motions::<2>::of_case(&case, 1.0, &no_file).unwrap();
     assert!(m.moves() && case.moves() && m.is_empty());
     assert_near(m.cloud().pose(0.5).shift, [0.0, 0.1], 1e-15);
 }
@@ -150,7 +151,7 @@ fn tables_come_from_files_too() {
         read(if periodic { &long } else { &text }, "c").unwrap_or_else(|e| panic!("{e}"))
     };
     let build = |file: &'static str, periodic: bool| {
-        Motions::<2>::new(&case(periodic), 1.0, &move |name: &str| {
+        Motions::<2>::of_case(&case(periodic), 1.0, &move |name: &str| {
             assert_eq!(name, "m.csv");
             Ok(file.to_owned())
         })
@@ -168,7 +169,7 @@ fn tables_come_from_files_too() {
     assert!(told("time,w\n0,0\n1,1\n").contains("column `w` has no meaning"));
     assert!(told("time\n0\n1\n").contains("nothing moves"));
     assert!(told("x\n0\n1\n").contains("column `time`"));
-    let gone = Motions::<2>::new(&case(false), 1.0, &no_file).unwrap_err().to_string();
+    let gone = Motions::<2>::of_case(&case(false), 1.0, &no_file).unwrap_err().to_string();
     assert!(gone.contains("cannot read the motion table `m.csv`"), "{gone}");
 }
 
@@ -176,11 +177,11 @@ fn tables_come_from_files_too() {
 fn motions_that_make_no_sense_are_refused() {
     let refuse = |motion: &str| {
         let text = format!("[flow]\nmach = 0.5\n[[body]]\nnaca = \"0012\"\n{CLOUD}[motion]\n{motion}\n");
-        Motions::<2>::new(&read(&text, "c").unwrap(), 1.0, &no_file).unwrap_err().to_string()
+        Motions::<2>::of_case(&read(&text, "c").unwrap(), 1.0, &no_file).unwrap_err().to_string()
     };
     assert!(refuse("formula = { y = \"1 / t\" }").contains("not finite at t = 0"));
     let file = |_: &str| Ok("time,angle_rad\n0,0\n1,1\n".to_owned());
     let text = format!("[flow]\nmach = 0.5\n[[body]]\nnaca = \"0012\"\n{CLOUD}[motion]\ntable = \"a.csv\"\n");
-    let error = Motions::<2>::new(&read(&text, "c").unwrap(), 1.0, &file).unwrap_err().to_string();
+    let error = Motions::<2>::of_case(&read(&text, "c").unwrap(), 1.0, &file).unwrap_err().to_string();
     assert!(error.contains("`body-1` turns, but has no pivot"), "{error}");
 }

@@ -29,7 +29,7 @@ mod watch;
 use std::path::Path;
 
 use crate::case::Case;
-use crate::cloud::Cloud;
+use crate::cloud::{Cloud, CloudSpec};
 use crate::geometry::Surface;
 use crate::scheme::Fluid;
 
@@ -105,7 +105,7 @@ pub fn build_cloud<const D: usize>(
     input: &Path,
 ) -> Result<(Option<Surface<D>>, Cloud<D>, Vec<String>), RunError> {
     let (surface, notes) = build::surface::<D>(case, input)?;
-    let cloud = Cloud::build(case, surface.as_ref(), &[])?;
+    let cloud = Cloud::build(&CloudSpec::of_case(case), surface.as_ref(), &[])?;
     Ok((surface, cloud, notes))
 }
 

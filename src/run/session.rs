@@ -19,8 +19,8 @@ use super::record::{Described, Log};
 use super::stage::{Stage, Task};
 use super::studies::{self, Reached, Start, Turn};
 use crate::case::Case;
-use crate::cloud::Cloud;
 use crate::cloud::sources::Source;
+use crate::cloud::{Cloud, CloudSpec};
 use crate::coupling::Coupled;
 use crate::geometry::{Surface, dimension};
 use crate::observe::loads::Coefficients;
@@ -248,7 +248,7 @@ impl Run<'_> {
     }
     /// The cloud of the case, and what is worth knowing of the motion on it.
     fn cloud<const D: usize>(&self, site: &Site<'_, D>, monitor: &mut dyn Monitor) -> Result<Cloud<D>, RunError> {
-        let cloud = Cloud::build(self.case, site.surface, &[])?;
+        let cloud = Cloud::build(&CloudSpec::of_case(self.case), site.surface, &[])?;
         check_motion(self.case, &cloud, site.motions)?.iter().for_each(|n| monitor.note(n));
         Ok(cloud)
     }

@@ -10,9 +10,7 @@
 //! summed in the same way. Sides A of the domain count where the zone is cut by them. Volumes of particles beside a wall are not
 //! known to all digits; what they lack together follows from the walls and goes to them by area and thickness.
 use super::discretisation::CloudMotion;
-use super::start::free_stream;
 use super::view::View;
-use crate::case::Case;
 use crate::math::sweep::{sweep_parts, sweep_slots};
 use crate::math::{Bounds, Vector};
 use crate::physics::{Conserved, Primitive};
@@ -94,8 +92,8 @@ pub struct Balance<'a, const D: usize> {
 }
 
 impl<'a, const D: usize> Balance<'a, D> {
-    /// The balance of the gas in `view`, with its gradients; `None` without bodies.
-    pub fn new(case: &Case, view: View<'a, D>) -> Option<Self> {
+    /// The balance of the gas in `view`, with its gradients; `free` is the free stream. `None` without bodies.
+    pub fn new(free: Primitive<D>, view: View<'a, D>) -> Option<Self> {
         let (frame, range) = (view.frame, view.cloud().interface_range());
         if range.is_empty() {
             return None;
@@ -103,7 +101,7 @@ impl<'a, const D: usize> Balance<'a, D> {
         let places: Vec<Vector<D>> = range.clone().map(|i| frame.place(i)).collect();
         let spacing = range.map(|i| frame.discretisation.cloud.spacing[i]).fold(0.0, f64::max);
         let zone = Zone::around(Bounds::around(&places), spacing);
-        Some(Self { view, free: free_stream(case), zone })
+        Some(Self { view, free, zone })
     }
 
     /// What the particles add, and what lies between them and the walls. `rate` is dU/dt of the fluid particles; empty in steady flow.
@@ -246,8 +244,8 @@ impl<'a, const D: usize> Balance<'a, D> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::case::read;
-    use crate::scheme::Fluid;
+    use crate::motion::{BodyMotion, TimeFunction};
+    use crate::scheme::{Fluid, built};
     use crate::system::{Instant, System, Term};
 
     /// Rate at which body and gas turn about the pivot.
@@ -257,23 +255,21 @@ mod tests {
     const STEP: f64 = 1e-4;
 
     /// A circle of radius 1/2 around the origin that turns about the pivot, in a viscous gas.
-    fn turning(spacing: f64, mach: f64) -> (Case, Fluid<2>) {
-        let text = format!(
+    fn turning(spacing: f64, mach: f64) -> (Primitive<2>, Fluid<2>) {
+        let fluid = built::fluid(&format!(
             "[flow]\nmach = {mach}\nalpha = \"5 deg\"\nreynolds = 100\nviscosity_law = \"constant\"\n[[body]]\ncircle = {{ radius = 0.5 }}\n\
-             [motion]\nparticles = \"deforming\"\npivot = [0.9, 0.3]\nrotation = {OMEGA}\n[cloud]\n\
-             spacing = {spacing}\njitter = 0.1\ndomain = {{ min = [-3.2, -3.2], max = [3.2, 3.2] }}\n\
-             [[cloud.box]]\nmin = [-1.6, -1.6]\nmax = [1.6, 1.6]\nspacing = {spacing}\n\
-             [time.dual]\nstep = 0.1\nuntil = 1.0\n"
-        );
-        let case = read(&text, "case.toml").unwrap_or_else(|e| panic!("{e}"));
-        let fluid = crate::run::build_solver::<2>(&case, std::path::Path::new("")).unwrap().0;
-        (case, fluid)
+             [cloud]\nspacing = {spacing}\njitter = 0.1\ndomain = {{ min = [-3.2, -3.2], max = [3.2, 3.2] }}\n\
+             [[cloud.box]]\nmin = [-1.6, -1.6]\nmax = [1.6, 1.6]\nspacing = {spacing}\n"
+        ));
+        let law = BodyMotion::about(PIVOT, None).with_angle(TimeFunction::Steady(OMEGA));
+        let cloud_motion = CloudMotion::deforming(&fluid.discretisation.cloud, vec![law], 1.0);
+        ((fluid.held)(&Vector::ZERO), Fluid { cloud_motion, ..fluid })
     }
 
     /// Force on the circle at time `t` in the field `q` whose momentum changes at rest in space by `change`, and the middle
     /// of the circle.
     fn force(
-        (case, fluid): &(Case, Fluid<2>),
+        (free, fluid): &(Primitive<2>, Fluid<2>),
         t: f64,
         q: impl Fn(&Vector<2>) -> Primitive<2>,
         change: impl Fn(&Vector<2>, &Vector<2>) -> Vector<2>,
@@ -287,7 +283,7 @@ mod tests {
         for (i, row) in du.chunks_mut(4).enumerate() {
             row[1..3].copy_from_slice(&change(&frame.place(i), &frame.velocity_of(i)).0);
         }
-        let balance = Balance::new(case, View::new(fluid, &frame, &work)).unwrap();
+        let balance = Balance::new(*free, View::new(fluid, &frame, &work)).unwrap();
         let sum = balance.parts(&du).iter().fold(Vector::ZERO, |s, p| s + p.force);
         let walls = frame.discretisation.cloud.interface_range();
         let n = walls.len() as f64;
@@ -297,7 +293,7 @@ mod tests {
     #[test]
     fn uniform_flow_makes_no_force_however_particles_move() {
         let at = turning(0.1, 0.5);
-        let free = free_stream::<2>(&at.0);
+        let free = at.0;
         let (found, _) = force(&at, 0.7, |_| free, |_, _| Vector::ZERO);
         // velocities are differences over 2e-4 of positions with their round-off
         assert!(found.max_abs() < 1e-12, "{found:?}");

@@ -1,7 +1,10 @@
 //! The discrete equations on a cloud.
 pub mod adapt;
+mod assembly;
 pub mod balance;
 mod block;
+#[cfg(test)]
+mod built;
 pub mod deforming_surface;
 pub mod discretisation;
 pub mod edge_flux;

@@ -139,8 +139,7 @@ mod tests {
         const THICKNESS: f64 = 0.02;
         let text = "[flow]\nmach = 0.3\nreynolds = 1e4\n[[body]]\ncircle = { radius = 0.5 }\n[cloud]\nspacing = 0.02\nfar_field = 4\n\
                     wall_layers = { first = 0.001 }\n";
-        let case = crate::case::read(text, "case.toml").unwrap();
-        let fluid = crate::run::build_solver::<2>(&case, std::path::Path::new("")).unwrap().0;
+        let fluid = crate::scheme::built::fluid(text);
         let exact = |x: &Vector<2>| 1.0 - (-(x.norm() - 0.5) / THICKNESS).exp();
         let frame = fluid.frame(&Instant::still(0.0), &vec![1.0; fluid.len()]);
         let mut work = fluid.work();

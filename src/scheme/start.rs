@@ -1,7 +1,7 @@
 //! Fields at the start, states held on the boundary, and the far field.
 use super::fluid::FarField;
 pub use super::fluid::Field;
-use crate::case::{Case, Initial};
+use crate::case::{Case, Domain, Initial};
 use crate::exact::GasState;
 use crate::exact::ringleb::Ringleb;
 use crate::exact::vortex::IsentropicVortex;
@@ -14,28 +14,72 @@ use crate::physics::Primitive;
 #[error("{0}")]
 pub struct StartError(String);
 
+/// The free stream in units of its own density and sound speed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FreeStream {
+    /// Mach number.
+    pub mach: f64,
+    /// Angle of attack in radians, nose up positive.
+    pub alpha: f64,
+    /// Sideslip angle in radians, 3-D only.
+    pub beta: f64,
+    /// Ratio of specific heats.
+    pub gamma: f64,
+}
+
+impl FreeStream {
+    /// Air along the first axis.
+    pub fn new(mach: f64) -> Self {
+        Self { mach, alpha: 0.0, beta: 0.0, gamma: 1.4 }
+    }
+
+    /// What `[flow]` of a case says.
+    pub fn of_case(case: &Case) -> Self {
+        let flow = &case.flow;
+        Self { mach: flow.reference().mach, alpha: flow.alpha.0, beta: flow.beta.0, gamma: flow.gamma }
+    }
+
+    /// Unit vectors of drag and lift.
+    pub fn axes<const D: usize>(&self) -> (Vector<D>, Vector<D>) {
+        let (a, b) = (self.alpha, self.beta);
+        if D == 2 {
+            let pick = |x: f64, y: f64| Vector::from_fn(|d| if d == 0 { x } else { y });
+            return (pick(a.cos(), a.sin()), pick(-a.sin(), a.cos()));
+        }
+        let drag = [a.cos() * b.cos(), b.sin(), a.sin() * b.cos()];
+        let lift = [-a.sin(), 0.0, a.cos()];
+        (Vector::from_fn(|d| drag[d]), Vector::from_fn(|d| lift[d]))
+    }
+
+    /// Density, velocity and pressure.
+    pub fn state<const D: usize>(&self) -> Primitive<D> {
+        Primitive { density: 1.0, velocity: self.axes::<D>().0 * self.mach, pressure: 1.0 / self.gamma }
+    }
+}
+
 /// Unit vectors of drag and lift for the angles of the case.
 pub fn stream_axes<const D: usize>(case: &Case) -> (Vector<D>, Vector<D>) {
-    let (a, b) = (case.flow.alpha.0, case.flow.beta.0);
-    if D == 2 {
-        let pick = |x: f64, y: f64| Vector::from_fn(|d| if d == 0 { x } else { y });
-        return (pick(a.cos(), a.sin()), pick(-a.sin(), a.cos()));
-    }
-    let drag = [a.cos() * b.cos(), b.sin(), a.sin() * b.cos()];
-    let lift = [-a.sin(), 0.0, a.cos()];
-    (Vector::from_fn(|d| drag[d]), Vector::from_fn(|d| lift[d]))
+    FreeStream::of_case(case).axes()
 }
 
-/// Free stream in units of its own density and sound speed.
+/// Free stream of the case in units of its own density and sound speed.
 pub fn free_stream<const D: usize>(case: &Case) -> Primitive<D> {
-    let mach = case.flow.reference().mach;
-    Primitive { density: 1.0, velocity: stream_axes::<D>(case).0 * mach, pressure: 1.0 / case.flow.gamma }
+    FreeStream::of_case(case).state()
 }
 
-/// The field at the start.
+/// The field at the start of a case.
 pub fn initial<const D: usize>(case: &Case) -> Result<Field<D>, StartError> {
-    let free = free_stream::<D>(case);
-    let gamma = case.flow.gamma;
+    let extent = |domain: &Domain| Vector::from_fn(|d| domain.max[d].0 - domain.min[d].0);
+    start_field(&case.initial, &FreeStream::of_case(case), case.cloud.domain.as_ref().map(extent))
+}
+
+/// A field at the start; a vortex repeats after `period` along each of two axes.
+pub fn start_field<const D: usize>(
+    initial: &Initial,
+    stream: &FreeStream,
+    period: Option<Vector<2>>,
+) -> Result<Field<D>, StartError> {
+    let free = stream.state::<D>();
     let planar = |x: &Vector<D>| Vector([x[0], x[1]]);
     let lift = |s: GasState<2>| Primitive {
         density: s.density,
@@ -43,7 +87,7 @@ pub fn initial<const D: usize>(case: &Case) -> Result<Field<D>, StartError> {
         pressure: s.pressure,
     };
     let wrong = |e: crate::exact::Error| StartError(e.to_string());
-    match &case.initial {
+    match initial {
         Initial::FreeStream => Ok(std::sync::Arc::new(move |_| free)),
         Initial::Riemann { left, right, position, axis } => {
             let (left, right, position, axis) = (*left, *right, *position, *axis as usize);
@@ -53,15 +97,13 @@ pub fn initial<const D: usize>(case: &Case) -> Result<Field<D>, StartError> {
             }))
         }
         Initial::Vortex { strength, centre, velocity } => {
-            let mut vortex =
-                IsentropicVortex::new(*strength, Vector(*centre), Vector(*velocity), gamma).map_err(wrong)?;
-            if let Some(domain) = &case.cloud.domain {
-                vortex = vortex.periodic(Vector::from_fn(|d| domain.max[d].0 - domain.min[d].0));
-            }
+            let vortex = IsentropicVortex::new(*strength, Vector(*centre), Vector(*velocity), stream.gamma);
+            let vortex = vortex.map_err(wrong)?;
+            let vortex = period.map_or(vortex, |p| vortex.periodic(p));
             Ok(std::sync::Arc::new(move |x| lift(vortex.state(&planar(x), 0.0))))
         }
         Initial::Ringleb => {
-            let flow = Ringleb::new(gamma).map_err(wrong)?;
+            let flow = Ringleb::new(stream.gamma).map_err(wrong)?;
             Ok(std::sync::Arc::new(move |x| flow.state(&planar(x)).map_or(free, lift)))
         }
     }
@@ -75,17 +117,17 @@ pub struct Stream<const D: usize> {
 }
 
 impl<const D: usize> Stream<D> {
-    /// Far field of the bodies around `centre`. The vortex is left out when `lifting` is false: on a body without a sharp
+    /// Far field of bodies around `centre`. The vortex is left out when `lifting` is false: on a body without a sharp
     /// edge nothing determines the circulation, and a far field that follows it would let it grow.
-    pub fn new(case: &Case, centre: &Vector<D>, lifting: bool) -> Self {
-        let free = free_stream::<D>(case);
+    pub fn new(stream: &FreeStream, centre: &Vector<D>, lifting: bool) -> Self {
+        let free = stream.state::<D>();
         let state =
             GasState { density: 1.0, velocity: Vector([free.velocity[0], free.velocity[1]]), pressure: free.pressure };
         let mach = free.velocity.norm();
         let plane = lifting && D == 2 && 0.0 < mach && mach < 1.0;
         let centre = Vector([centre[0], centre[1]]);
-        let vortex = plane.then(|| FarFieldVortex::new(state, case.flow.gamma, 0.0, centre).ok()).flatten();
-        Self { free, lift: stream_axes::<D>(case).1, vortex }
+        let vortex = plane.then(|| FarFieldVortex::new(state, stream.gamma, 0.0, centre).ok()).flatten();
+        Self { free, lift: stream.axes::<D>().1, vortex }
     }
 }
 

@@ -1,5 +1,6 @@
 //! Tests of the search for conservative coefficients.
 use super::*;
+use crate::cloud::CloudSpec;
 use crate::cloud::operators::Reverse;
 use std::collections::HashMap;
 
@@ -7,8 +8,8 @@ fn cloud<const D: usize>(text: &str) -> Cloud<D> {
     let text = format!("title = \"x\"\ndimension = {D}\n[flow]\nmach = 0.5\n{text}");
     let case = crate::case::read(&text, "test").map_err(|e| e.render(false)).unwrap();
     let surface = (!case.bodies.is_empty())
-        .then(|| crate::geometry::load_surface::<D>(&case, std::path::Path::new(".")).unwrap().0);
-    Cloud::build(&case, surface.as_ref(), &[]).unwrap()
+        .then(|| crate::geometry::load_surface::<D>(&case.bodies, std::path::Path::new(".")).unwrap().0);
+    Cloud::build(&CloudSpec::of_case(&case), surface.as_ref(), &[]).unwrap()
 }
 
 /// A shaken tube of two levels between planes of symmetry, or periodic.

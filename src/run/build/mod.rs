@@ -13,23 +13,19 @@ use super::folder;
 use super::look::forces::ForceModes;
 use super::recipe;
 use super::stage::Stage;
-use crate::case::{Body, Case, Length, ParticleMotion, Temporal, Wall};
+use crate::case::{Case, Length, ParticleMotion, Temporal};
 use crate::cloud::conservative::conservative as conserve;
 use crate::cloud::sources::Source;
 use crate::cloud::travel::BackgroundDomain;
-use crate::cloud::{Cloud, Operators};
+use crate::cloud::{Cloud, CloudSpec, Operators};
 use crate::geometry::{GeometryError, Surface, load_surface};
 use crate::math::{Bounds, Vector};
 use crate::motion::{BodyMotion, ModeShape, Motions};
-use crate::physics::{Conserved, Gas, Newtonian, n_variables};
-use crate::scheme::motion_blending::MotionBlending;
+use crate::physics::{Conserved, Gas, n_variables};
 use crate::scheme::probe::Probe;
 use crate::scheme::reconstruct::Reconstruction;
-use crate::scheme::start::{Stream, initial};
-use crate::scheme::{
-    CloudMotion, DeformingSurface, Discretisation, Fluid, HasGas, ParticleKinematics, Travel, ViscousModel,
-    WallCondition, adapt,
-};
+use crate::scheme::start::{FreeStream, Stream, initial};
+use crate::scheme::{CloudMotion, Discretisation, Fluid, HasGas, ParticleKinematics, Travel, ViscousModel, adapt};
 use crate::system::{Instant, System, placed};
 
 /// Exactly conservative coefficients unless the case says otherwise: they cost a few per cent of a run.
@@ -121,7 +117,7 @@ pub(crate) fn surface<const D: usize>(
     if case.bodies.is_empty() {
         return Ok((None, Vec::new()));
     }
-    let (surface, notes) = load_surface(case, input)?;
+    let (surface, notes) = load_surface(&case.bodies, input)?;
     Ok((Some(surface), notes))
 }
 
@@ -137,7 +133,7 @@ pub(crate) fn solver<const D: usize>(
     let sources = if stage.cycle > 0 { sources } else { &[] };
     let mut cloud = match ready {
         Some(cloud) => cloud,
-        None => Cloud::build(&scaled, surface, sources)?,
+        None => Cloud::build(&CloudSpec::of_case(&scaled), surface, sources)?,
     };
     let field = initial::<D>(case)?;
     let conservative = conserves(case);
@@ -158,15 +154,14 @@ pub(crate) fn solver<const D: usize>(
         isentropic: case.flow.isentropic,
         flux: scheme.flux,
         limiter: scheme.limiter,
-        reconstruction: Reconstruction {
-            second_order: scheme.order == 2,
-            kappa: scheme.kappa,
-            low_mach: scheme.low_mach,
-            threshold: scheme.limiter_threshold,
-        },
+        reconstruction: Reconstruction::of_scheme(scheme),
         conservative,
         viscous_model: viscous_model(case, surface).map(Arc::new),
-        far_field: Arc::new(Stream::new(case, &centre, surface.is_some_and(|s| !s.sharp.is_empty()))),
+        far_field: Arc::new(Stream::new(
+            &FreeStream::of_case(case),
+            &centre,
+            surface.is_some_and(|s| !s.sharp.is_empty()),
+        )),
         held: field,
         cloud_motion: cloud_motion(case, surface, &cloud, motions)?,
         discretisation: Arc::new(Discretisation::new(cloud, operators)),
@@ -210,17 +205,7 @@ fn at_one_entropy<const D: usize>(fluid: &Fluid<D>) -> Result<(), RunError> {
 fn viscous_model<const D: usize>(case: &Case, surface: Option<&Surface<D>>) -> Option<ViscousModel> {
     let extent = surface.map_or(1.0, |s| s.bounds().extent()[0]);
     let chord = case.reference.chord.map_or(extent, |c| c.0);
-    let viscous = case.flow.viscous(chord)?;
-    let scales = case.flow.reference();
-    let kelvin = if case.flow.is_dimensional() { case.flow.kelvin() } else { 1.0 };
-    let wall_condition = |body: &Body| match case.flow.wall(body) {
-        Wall::Slip => WallCondition::Slip,
-        Wall::Adiabatic => WallCondition::Adiabatic,
-        Wall::Temperature { value } => WallCondition::Temperature(value.0 / kelvin),
-    };
-    let viscosity = viscous.viscosity / (scales.density * scales.sound_speed);
-    let medium = Newtonian { viscosity, sutherland: viscous.sutherland, prandtl: viscous.prandtl };
-    Some(ViscousModel { medium, wall_conditions: case.bodies.iter().map(wall_condition).collect() })
+    ViscousModel::of_case(case, chord)
 }
 
 /// How the particles of a cloud follow the bodies.
@@ -233,7 +218,7 @@ fn cloud_motion<const D: usize>(
     let laws = || (0..motions.len()).map(|b| motions.of(b).clone()).collect::<Vec<BodyMotion<D>>>();
     let particles = case.particles();
     if case.moves() && particles == ParticleMotion::Lagrangian {
-        let domain = Arc::new(BackgroundDomain::new(case, surface, cloud)?);
+        let domain = Arc::new(BackgroundDomain::new(&CloudSpec::of_case(case), surface, cloud)?);
         let places = cloud.x[..cloud.n_rows()].to_vec();
         return Ok(CloudMotion::Travel(Travel {
             domain,
@@ -253,8 +238,7 @@ fn cloud_motion<const D: usize>(
         ParticleMotion::Rigid => CloudMotion::Rigid(motions.cloud().clone()),
         _ => {
             let until = motions.period().or_else(|| case.time.end(None)).unwrap_or_default();
-            let (laws, deforming_surface) = (laws(), Arc::new(DeformingSurface::new(cloud, &laws())));
-            CloudMotion::Along { path: Arc::new(MotionBlending::new(cloud, &laws, until)), laws, deforming_surface }
+            CloudMotion::deforming(cloud, laws(), until)
         }
     })
 }
@@ -268,7 +252,7 @@ pub(crate) fn motions<const D: usize>(
     let extent = surface.map_or(1.0, |s| s.bounds().extent()[0]);
     let chord = case.reference.chord.map_or(extent, |c| c.0);
     let read = |name: &str| folder::text(input, name);
-    let motions = Motions::new(case, chord, &read)?;
+    let motions = Motions::of_case(case, chord, &read)?;
     if let Some(surface) = surface {
         for (b, name) in surface.bodies.iter().enumerate().take(motions.len()) {
             let bounds = surface.bounds_of(b);

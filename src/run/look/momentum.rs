@@ -5,6 +5,7 @@ use crate::math::{Bounds, Vector};
 use crate::observe::loads::Balance as Sum;
 use crate::scheme::balance::{Balance, Part};
 use crate::scheme::probe::Probe;
+use crate::scheme::start::free_stream;
 use crate::scheme::{View, Work};
 use crate::system::System;
 
@@ -27,7 +28,7 @@ pub(crate) fn around<const D: usize>(
         fluid.rhs(frame, state, work, &mut rate);
     }
     let view = gas.seen(work);
-    let balance = Balance::new(case, view)?;
+    let balance = Balance::new(free_stream(case), view)?;
     let mut sum = Sum::default();
     let axes = axes.axes(&view);
     let mut add = |p: Part<D>| {

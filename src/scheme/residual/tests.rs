@@ -3,7 +3,7 @@ use std::sync::Arc;
 
 use super::*;
 use crate::cloud::conservative::conservative;
-use crate::cloud::{Cloud, Operators};
+use crate::cloud::{Cloud, CloudSpec, Operators};
 use crate::math::Vector;
 use crate::physics::{Gas, Primitive};
 use crate::scheme::fluid::{FarField, Field};
@@ -35,8 +35,8 @@ fn with_cloud(body: &str, keys: &str) -> Fluid<2> {
          [boundary]\nx_min = \"symmetry\"\nx_max = \"symmetry\"\ny_min = \"periodic\"\ny_max = \"periodic\"\n"
     );
     let case = crate::case::read(&text, "test").unwrap();
-    let surface = crate::geometry::load_surface::<2>(&case, std::path::Path::new(".")).unwrap().0;
-    let mut cloud = Cloud::build(&case, (!body.is_empty()).then_some(&surface), &[]).unwrap();
+    let surface = crate::geometry::load_surface::<2>(&case.bodies, std::path::Path::new(".")).unwrap().0;
+    let mut cloud = Cloud::build(&CloudSpec::of_case(&case), (!body.is_empty()).then_some(&surface), &[]).unwrap();
     let mut operators = Operators::new(&cloud);
     conservative(&mut cloud, &mut operators);
     let discretisation = Arc::new(Discretisation::new(cloud, operators));

@@ -1,21 +1,18 @@
 //! Uniform flow, rotation, shear and the linearisation.
 use super::*;
-use crate::case::read;
+use crate::motion::{BodyMotion, TimeFunction};
 use crate::physics::{Gas, Newtonian};
-use crate::run::build_solver;
-use crate::scheme::View;
+use crate::scheme::{CloudMotion, View, built};
 use crate::system::{Instant, System, Term};
 
 /// Gas in a box with a constant viscosity that a free stream of this Reynolds number has.
 fn boxed(conservative: bool) -> Fluid<2> {
-    let text = format!(
+    built::fluid(&format!(
         "[flow]\nmach = 0.5\nreynolds = 20\nreynolds_length = 1.0\nviscosity_law = \"constant\"\n[cloud]\n\
          spacing = 0.0625\njitter = 0.15\n[cloud.domain]\nmin = [0.0, 0.0]\nmax = [1.0, 1.0]\n[scheme]\n\
          conservative = {conservative}\n[boundary]\nx_min = \"held\"\nx_max = \"held\"\ny_min = \"held\"\n\
          y_max = \"held\"\n[time.explicit]\nuntil = 1.0\n"
-    );
-    let case = read(&text, "case.toml").unwrap_or_else(|e| panic!("{e}"));
-    build_solver::<2>(&case, std::path::Path::new("")).unwrap().0
+    ))
 }
 
 /// What viscosity adds to the fluxes of every fluid particle for the field `q` in all particles.
@@ -104,14 +101,18 @@ fn the_blocks_are_the_derivative_across_a_face() {
 
 /// A circle off the axis it turns about; layers when asked for. `particles` is how they move.
 fn turning(layers: &str, particles: &str) -> Fluid<2> {
-    let text = format!(
+    let fluid = built::fluid(&format!(
         "[flow]\nmach = 0.1\nreynolds = 100\nviscosity_law = \"constant\"\n[[body]]\ncircle = {{ radius = 0.5 }}\n\
-         [motion]\nparticles = \"{particles}\"\npivot = [0.2, 0.3]\nrotation = 0.4\n[cloud]\n{layers}\n\
-         spacing = 0.05\ndomain = {{ min = [-3.2, -3.2], max = [3.2, 3.2] }}\n\
-         [time.dual]\nstep = 0.1\nuntil = 1.0\n"
-    );
-    let case = read(&text, "case.toml").unwrap_or_else(|e| panic!("{e}"));
-    build_solver::<2>(&case, std::path::Path::new("")).unwrap().0
+         [cloud]\n{layers}\nspacing = 0.05\ndomain = {{ min = [-3.2, -3.2], max = [3.2, 3.2] }}\n\
+         [scheme]\nconservative = {}\n",
+        layers.is_empty()
+    ));
+    let law = BodyMotion::about(Vector([0.2, 0.3]), None).with_angle(TimeFunction::Steady(0.4));
+    let cloud_motion = match particles {
+        "rigid" => CloudMotion::Rigid(law),
+        _ => CloudMotion::deforming(&fluid.discretisation.cloud, vec![law], 1.0),
+    };
+    Fluid { cloud_motion, ..fluid }
 }
 
 #[test]

@@ -1,17 +1,20 @@
 //! Layers on bodies that break them: thin edges, corners, bends, other walls.
-use crate::cloud::conservative::conservative;
-use crate::cloud::{Cloud, Diagnosis, Operators};
-use crate::geometry::load_surface;
-use crate::math::Vector;
-use crate::physics::Primitive;
-use crate::scheme::wall_fits::WallFits;
-use crate::system::{Instant, System};
+#![allow(clippy::unwrap_used, reason = "a test may stop anywhere")]
+
+use alula::cloud::conservative::conservative;
+use alula::cloud::layers::End;
+use alula::cloud::{Cloud, CloudSpec, Diagnosis, Operators};
+use alula::geometry::load_surface;
+use alula::math::Vector;
+use alula::physics::Primitive;
+use alula::scheme::wall_fits::WallFits;
+use alula::system::{Instant, System};
 
 fn build(body: &str, rest: &str) -> Cloud<2> {
     let text = format!("title = \"t\"\n[flow]\nmach = 0.5\n[[body]]\n{body}\n[cloud]\nfar_field = 4\n{rest}");
-    let case = crate::case::read(&text, "test").unwrap();
-    let surface = load_surface(&case, std::path::Path::new(".")).unwrap().0;
-    Cloud::build(&case, Some(&surface), &[]).unwrap()
+    let case = alula::case::read(&text, "test").unwrap();
+    let surface = load_surface(&case.bodies, std::path::Path::new(".")).unwrap().0;
+    Cloud::build(&CloudSpec::of_case(&case), Some(&surface), &[]).unwrap()
 }
 
 const CIRCLE: &str = "circle = { radius = 0.5 }";
@@ -135,9 +138,9 @@ fn columns_stop_where_walls_face_one_another() {
             "title = \"t\"\n[flow]\nmach = 0.5\n[[body]]\n{CIRCLE}\n[[body]]\n{CIRCLE}\ntranslate = [{}, 0]\n[cloud]\nfar_field = 4\nspacing = 0.02\nwall_layers = {{ first = 0.001 }}",
             1.0 + gap
         );
-        let case = crate::case::read(&text, "test").unwrap();
-        let surface = load_surface::<2>(&case, std::path::Path::new(".")).unwrap().0;
-        let cloud = Cloud::build(&case, Some(&surface), &[]).unwrap();
+        let case = alula::case::read(&text, "test").unwrap();
+        let surface = load_surface::<2>(&case.bodies, std::path::Path::new(".")).unwrap().0;
+        let cloud = Cloud::build(&CloudSpec::of_case(&case), Some(&surface), &[]).unwrap();
         assert!(slope_error(&cloud, &Operators::new(&cloud)) < 1e-10);
         for i in (0..cloud.n_fluid).filter(|i| cloud.layers.slot(*i).is_some()) {
             let x = &cloud.x[i];
@@ -151,9 +154,9 @@ fn layers_go_on_across_a_plane_of_symmetry() {
     let text = format!(
         "title = \"t\"\n[flow]\nmach = 0.5\n[[body]]\n{NACA}\n[cloud]\nfar_field = 4\nspacing = 0.01\nwall_layers = {{ first = 0.0003 }}\n[boundary]\ny_min = \"symmetry\""
     );
-    let case = crate::case::read(&text, "test").unwrap();
-    let surface = load_surface::<2>(&case, std::path::Path::new(".")).unwrap().0;
-    let mut cloud = Cloud::build(&case, Some(&surface), &[]).unwrap();
+    let case = alula::case::read(&text, "test").unwrap();
+    let surface = load_surface::<2>(&case.bodies, std::path::Path::new(".")).unwrap().0;
+    let mut cloud = Cloud::build(&CloudSpec::of_case(&case), Some(&surface), &[]).unwrap();
     let mut operators = Operators::new(&cloud);
     assert!(slope_error(&cloud, &operators) < 1e-10 && cloud.notes.is_empty());
     let nose = (0..cloud.interface.len()).find(|w| cloud.layers.columns[*w].beside.contains(&Some(*w as u32))).unwrap();
@@ -186,8 +189,8 @@ fn notch(opening: f64, lean: f64) -> (String, f64) {
 fn rest_residual(body: &str, rest: &str) -> f64 {
     let text =
         format!("title = \"t\"\n[flow]\nmach = 0.3\nreynolds = 1000\n[[body]]\n{body}\n[cloud]\nfar_field = 4\n{rest}");
-    let case = crate::case::read(&text, "test").unwrap();
-    let (fluid, mut u) = crate::run::build_solver::<2>(&case, std::path::Path::new(".")).unwrap();
+    let case = alula::case::read(&text, "test").unwrap();
+    let (fluid, mut u) = alula::run::build_solver::<2>(&case, std::path::Path::new(".")).unwrap();
     let still = Primitive { density: 1.0, velocity: Vector::ZERO, pressure: 1.0 / fluid.gas.gamma };
     u.chunks_exact_mut(4).for_each(|row| fluid.gas.conserved(&still).store(row));
     let mut frame = fluid.frame(&Instant::still(0.0), &u);
@@ -245,7 +248,6 @@ fn a_first_layer_beyond_the_spacing_is_told() {
 
 #[test]
 fn the_end_of_columns_is_told_with_its_reason() {
-    use super::End;
     let ends = |body: &str| {
         let cloud = build(body, "spacing = 0.02\nwall_layers = { first = 0.0005 }");
         cloud.layers.columns.iter().map(|c| c.end).collect::<Vec<_>>()
@@ -271,4 +273,14 @@ fn the_last_column_before_a_sharp_edge_looks_both_ways() {
     }
     // the rest of the slope along the wall is that towards the column before it
     assert!(shares.len() == 2 && shares.iter().all(|s| (0.3..0.7).contains(s)), "{shares:?}");
+}
+
+#[test]
+fn walls_that_face_one_another_are_fitted_by_planes() {
+    let text = "title = \"t\"\n[flow]\nmach = 0.5\n[[body]]\ncircle = { radius = 0.5 }\n[[body]]\ncircle = { radius = 0.5 }\n\
+                translate = [1.004, 0]\n[cloud]\nspacing = 0.02\n";
+    let case = alula::case::read(text, "test").unwrap();
+    let surface = load_surface::<2>(&case.bodies, std::path::Path::new(".")).unwrap().0;
+    let cloud = Cloud::build(&CloudSpec::of_case(&case), Some(&surface), &[]).unwrap();
+    assert!(WallFits::new(&cloud).n_linear > 0);
 }
