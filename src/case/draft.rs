@@ -147,3 +147,12 @@ impl<'t> Draft<'t> {
         0..0
     }
 }
+
+/// The candidate that `word` was probably meant to be.
+pub(super) fn closest<'a>(word: &str, candidates: impl Iterator<Item = &'a str>) -> Option<&'a str> {
+    /// Jaro-Winkler similarity of names that still look alike.
+    const ALIKE: f64 = 0.8;
+    let word: String = word.chars().take(64).collect::<String>().to_lowercase().replace('-', "_");
+    let scored = candidates.map(|c| (strsim::jaro_winkler(&word, c), c)).filter(|(score, _)| ALIKE <= *score);
+    scored.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, c)| c)
+}

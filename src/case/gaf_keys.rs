@@ -1,5 +1,5 @@
 //! The keys of `[gaf]`.
-use super::keys::{POSITIVE, SIZE};
+use super::kinds::{POSITIVE, SIZE};
 use super::motion_keys::MODE_FILE;
 use super::quantity::{Angle, Length};
 use super::schema::{Absent, Field, Kind, List, Range, Table};

@@ -3,20 +3,15 @@
 //! Ranges that are not plain logic come from the numerics: particles nearer to the wall than 0.3 spacings spoil the
 //! conditioning of their clouds, more than 0.6 leave a gap; fewer than 3 particles a level do not fill a cloud.
 use super::gaf_keys::GAF;
+use super::kinds::{ANGLE, COUNT, LENGTH, POINT, POSITIVE, SIZE};
 use super::motion_keys::{BODY_MOTION, MOTION, WALL};
-use super::quantity::{Angle, Density, Length, Pressure, Temperature, Time, Velocity, Viscosity};
+use super::quantity::{Density, Pressure, Temperature, Time, Velocity, Viscosity};
 use super::schema::{Absent, Field, Kind, List, Range, Table, Variant};
 use super::structure_keys::STRUCTURE;
 use super::time_keys::TIME;
 
 const ANY: Kind = Kind::Number(Range::ANY);
-pub(super) const POSITIVE: Kind = Kind::Number(Range::POSITIVE);
-pub(super) const LENGTH: Kind = Kind::Quantity(Length::DIMENSION, Range::ANY);
-pub(super) const SIZE: Kind = Kind::Quantity(Length::DIMENSION, Range::POSITIVE);
-pub(super) const ANGLE: Kind = Kind::Quantity(Angle::DIMENSION, Range::ANY);
-pub(super) const COUNT: Kind = Kind::Integer(1, u32::MAX as u64);
 const LEVELS: Kind = Kind::Integer(0, 16);
-pub(super) const POINT: Kind = Kind::List(&List { item: LENGTH, min: 2, max: 3, single: false });
 const PLANE_POINT: Kind = Kind::List(&List { item: ANY, min: 2, max: 2, single: false });
 const STATE: Kind = Kind::List(&List { item: ANY, min: 3, max: 3, single: false });
 

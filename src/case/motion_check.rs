@@ -2,9 +2,8 @@
 use serde_json::Value;
 
 use super::draft::Draft;
-use super::formula::Formula;
+use super::facts::{FREQUENCIES, formula, is_dimensional, is_shaken, says_something};
 
-const FREQUENCIES: [&str; 3] = ["frequency", "reduced_frequency", "period"];
 const PARTS: [&str; 7] = ["pitch", "plunge", "rotation", "translation", "table", "formula", "mode"];
 /// The parts that make a body turn, and where in the table.
 const TURNS: [&str; 4] = ["pitch", "rotation", "table.angle", "formula.angle"];
@@ -68,11 +67,6 @@ fn frequency(draft: &mut Draft<'_>, law: &str) {
     }
 }
 
-/// True when `part` is there, and no empty list of modes.
-pub(super) fn says_something(draft: &Draft<'_>, part: &str) -> bool {
-    draft.given(part) && draft.get(part).and_then(Value::as_array).is_none_or(|list| !list.is_empty())
-}
-
 /// A frequency of its own, or that of `[motion]`.
 fn has_frequency(draft: &Draft<'_>, law: &str) -> bool {
     [law, "motion"].iter().any(|l| FREQUENCIES.iter().any(|f| draft.given(&format!("{l}.{f}"))))
@@ -100,10 +94,6 @@ fn dimensional(draft: &mut Draft<'_>, law: &str) {
             draft.fail(&path, message).hint(format!("use {instead}, or {hint}"));
         }
     }
-}
-
-pub(super) fn is_dimensional(draft: &Draft<'_>) -> bool {
-    ["pressure", "temperature", "density"].iter().filter(|k| draft.given(&format!("flow.{k}"))).count() > 1
 }
 
 /// What turns has a pivot, and an axis only what turns.
@@ -207,29 +197,6 @@ fn formulas(draft: &mut Draft<'_>, law: &str) {
     }
 }
 
-/// The formula `text` at `path` can be read, and knows its frequency.
-pub(super) fn formula(draft: &mut Draft<'_>, path: &str, text: &str, has_frequency: bool) {
-    match Formula::parse(text) {
-        Err(e) => {
-            let name = text.get(e.span.clone()).unwrap_or_default().to_owned();
-            let meant = super::read::closest(&name, Formula::vocabulary()).filter(|_| e.message.contains("unknown"));
-            let all = || format!("names are {}", Formula::vocabulary().collect::<Vec<_>>().join(", "));
-            let error = draft.fail_within(path, e.span, format!("`{path}`: {}", e.message));
-            error.allowed = e.allowed;
-            error.hint = match meant {
-                Some(meant) => Some(format!("did you mean `{meant}`?")),
-                None => e.message.contains("unknown").then(all),
-            };
-        }
-        Ok(formula) if formula.contains(&Formula::Omega) && !has_frequency => {
-            let at = text.find("omega").unwrap_or(0);
-            let message = format!("`{path}` uses `omega`, but there is no frequency");
-            draft.fail_within(path, at..at + 5, message).hint("add `reduced_frequency`, `frequency` or `period`");
-        }
-        Ok(_) => {}
-    }
-}
-
 /// Modes move bodies, and need a cloud that can follow them.
 fn flexible(draft: &mut Draft<'_>, law: &str) {
     let mode = format!("{law}.mode");
@@ -272,7 +239,7 @@ fn in_time(draft: &mut Draft<'_>, laws: &[String]) {
         let flag = draft.get(&format!("{law}.table.periodic")).and_then(Value::as_bool) == Some(true);
         flag || draft.given(&format!("{law}.rotation")) || (moving.is_some() && has_frequency(draft, law))
     });
-    let repeats = repeats || super::structure_check::is_shaken(draft);
+    let repeats = repeats || is_shaken(draft);
     if draft.get("time.harmonics").is_some() && !repeats {
         let hint = "give the motion a frequency, or march with `[time.dual]`";
         draft.fail_key("time.harmonics", "`time.harmonics` needs a periodic motion").hint(hint);

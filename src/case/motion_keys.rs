@@ -1,5 +1,5 @@
 //! The keys of `[motion]` and of the motion of one body.
-use super::keys::{ANGLE, LENGTH, POINT, POSITIVE, SIZE};
+use super::kinds::{ANGLE, LENGTH, POINT, POSITIVE, SIZE};
 use super::quantity::{Angle, Frequency, Length, Rate, Time, Velocity};
 use super::schema::{Absent, Field, Kind, List, Range, Table, Variant};
 

@@ -11,7 +11,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::Case;
-use super::draft::Draft;
+use super::draft::{Draft, closest};
 use super::error::{CaseErrors, quote};
 use super::keys::CASE;
 use super::schema::{Absent, Field, Kind, List, Range, Table, Variant, one_of};
@@ -351,15 +351,6 @@ fn lower(doc: &str) -> String {
     let doc = doc.trim_end_matches('.');
     let mut chars = doc.chars();
     chars.next().map_or_else(String::new, |c| c.to_lowercase().chain(chars).collect())
-}
-
-/// The candidate that `word` was probably meant to be.
-pub(super) fn closest<'a>(word: &str, candidates: impl Iterator<Item = &'a str>) -> Option<&'a str> {
-    /// Jaro-Winkler similarity of names that still look alike.
-    const ALIKE: f64 = 0.8;
-    let word: String = word.chars().take(64).collect::<String>().to_lowercase().replace('-', "_");
-    let scored = candidates.map(|c| (strsim::jaro_winkler(&word, c), c)).filter(|(score, _)| ALIKE <= *score);
-    scored.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, c)| c)
 }
 
 /// Path of the table that has a key called `key`.

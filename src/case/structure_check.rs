@@ -1,12 +1,11 @@
 //! Contradictions in `[structure]`.
 use serde_json::Value;
 
-use super::draft::Draft;
-use super::motion_check::{formula, is_dimensional, says_something};
+use super::draft::{Draft, closest};
+use super::facts::{FREQUENCIES, formula, is_dimensional, says_something};
 use super::schema::one_of;
 use super::structure::Freedom;
 
-const FREQUENCIES: [&str; 3] = ["frequency", "reduced_frequency", "period"];
 const SPEEDS: [&str; 3] = ["reduced_speed", "reduced_velocity", "speed_index"];
 /// Parts of a motion that prescribe where a body is.
 const PARTS: [&str; 7] = ["pitch", "plunge", "rotation", "translation", "table", "formula", "mode"];
@@ -86,12 +85,6 @@ struct Look<'d, 't> {
     section: bool,
 }
 
-/// True when a force on a structure has a frequency: then something repeats.
-pub(super) fn is_shaken(draft: &Draft<'_>) -> bool {
-    let mut forces = (0..draft.count("structure")).map(|i| format!("structure[{i}].force"));
-    forces.any(|force| FREQUENCIES.iter().any(|f| draft.given(&format!("{force}.{f}"))))
-}
-
 /// Looks for contradictions in all structures.
 pub(super) fn contradictions(draft: &mut Draft<'_>, dimension: Option<usize>) {
     bodies(draft);
@@ -140,7 +133,7 @@ fn bodies(draft: &mut Draft<'_>) {
                 Some(body) => body,
                 None => {
                     let allowed = one_of(names.iter().map(String::as_str));
-                    let close = super::read::closest(&wanted, names.iter().map(String::as_str));
+                    let close = closest(&wanted, names.iter().map(String::as_str));
                     let hint = close.map(|n| format!("did you mean `\"{n}\"`?"));
                     draft.fail(&place, format!("no body is called `{wanted}`")).allowed(allowed).hint = hint;
                     continue;

@@ -1,5 +1,5 @@
 //! The keys of `[structure]`.
-use super::keys::{ANGLE, LENGTH, POINT, POSITIVE, SIZE};
+use super::kinds::{ANGLE, LENGTH, POINT, POSITIVE, SIZE};
 use super::motion_keys::MODE_FILE;
 use super::quantity::{
     Acceleration, AngularStiffness, Frequency, Inertia, Length, Mass, Rate, Stiffness, Time, Velocity,

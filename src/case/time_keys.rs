@@ -1,5 +1,5 @@
 //! The keys of `[time]`.
-use super::keys::{COUNT, POSITIVE};
+use super::kinds::{COUNT, POSITIVE};
 use super::quantity::Time;
 use super::schema::{Absent, Field, Kind, Range, Table, Variant};
 

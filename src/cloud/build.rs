@@ -2,9 +2,10 @@
 use std::sync::Arc;
 
 use super::Transform;
-use super::fill::Particles;
+use super::clouds::Clouds;
 use super::layout::{Layout, background};
-use super::neighbours::{Clouds, Search};
+use super::neighbours::Search;
+use super::particles::Particles;
 use super::sources::Source;
 use super::{Cloud, CloudError, CloudSpec, Outer};
 use crate::geometry::Surface;

@@ -13,12 +13,12 @@
 //! Then the columns are cut until neighbours differ by one layer at most. Particles of the background inside the layers, or
 //! too near to them, are left out.
 use super::Transform;
-use super::fill::ParticleSite;
 use super::grid::Grid;
 use super::interface::Placed;
 use super::layers::{Column, End};
 use super::layout::Layout;
 use super::neighbours::NEAR;
+use super::particles::ParticleSite;
 use super::tree::{Leaf, Tree};
 use crate::case::{Side, WallLayers};
 use crate::geometry::Surface;

@@ -5,7 +5,7 @@
 //! how many columns, the place of the worst, how many layers it has, and what helps.
 use super::Cloud;
 use super::layers::{Column, End};
-use super::quality::place;
+use crate::math::Vector;
 
 /// Last distance between layers over the distance to the columns beside it, below which a column ends early.
 const EARLY: f64 = 0.5;
@@ -85,4 +85,10 @@ fn describe<const D: usize>(end: End, found: &Ended, (n, most): (usize, usize), 
          hint: {hint}",
         found.n, found.layers
     )
+}
+
+/// A place as a message shows it.
+pub(super) fn place<const D: usize>(x: &Vector<D>) -> String {
+    let parts: Vec<String> = x.0.iter().map(|c| format!("{c:.5}")).collect();
+    format!("({})", parts.join(", "))
 }

@@ -4,6 +4,7 @@
 //! the surfaces, *outer* particles on the sides of the domain, and *ghosts*, images of particles across planes of symmetry and
 //! periodic sides. Only fluid particles evolve; the state of the others follows from theirs.
 pub mod build;
+mod clouds;
 mod coefficient_unknowns;
 mod columns;
 pub mod conservative;
@@ -19,6 +20,7 @@ mod multipliers;
 mod near_wall_smoothing;
 pub mod neighbours;
 pub mod operators;
+pub mod particles;
 pub mod quality;
 pub mod repair;
 pub mod sources;
@@ -163,7 +165,7 @@ pub struct Cloud<const D: usize> {
     /// Layers along the walls: a column an interface particle.
     pub layers: layers::Layers<D>,
     /// Which particles sit in which leaf of the background.
-    pub leaves: fill::LeafIndex,
+    pub leaves: particles::LeafIndex,
     /// Particles, in ascending order, whose reconstruction stays first order: too few neighbours around them.
     pub first_order: Vec<u32>,
     /// The background.

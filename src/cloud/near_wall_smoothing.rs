@@ -17,7 +17,7 @@
 //!
 //! Limits: three dimensions; where the background changes its size next to a wall, and in crevices, particles stay.
 use super::Transform;
-use super::fill::Particles;
+use super::particles::Particles;
 use crate::geometry::Surface;
 use crate::math::Vector;
 use crate::math::sweep::sweep;

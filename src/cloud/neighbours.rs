@@ -7,10 +7,9 @@
 //! sees of its own kind just the two neighbours along the outline, none across a sharp edge.
 use std::cell::OnceCell;
 
-use super::fill::Particles;
+use super::Transform;
 use super::layers::Source;
-use super::repair::Repair;
-use super::{CloudError, Ghost, Transform};
+use super::particles::Particles;
 use crate::geometry::Surface;
 use crate::math::sweep::{CHUNK, sweep_each, sweep_parts};
 use crate::math::{Bounds, Vector};
@@ -84,7 +83,7 @@ pub(super) struct Rows {
 
 impl Rows {
     /// Calls `fill(i, list)` for every row; it appends what row `i` sees.
-    fn new(n: usize, fill: impl Fn(usize, &mut Vec<Seen>) + Sync) -> Self {
+    pub(super) fn new(n: usize, fill: impl Fn(usize, &mut Vec<Seen>) + Sync) -> Self {
         let mut chunks = vec![(Vec::new(), Vec::new()); n.div_ceil(CHUNK)];
         sweep_each(&mut chunks, |c| {
             let (mut first, mut list) = (vec![0], Vec::with_capacity(ROOM * CHUNK));
@@ -104,12 +103,12 @@ impl Rows {
     }
 
     /// Everything seen through a transform.
-    fn ghosts(&self) -> impl Iterator<Item = Seen> + '_ {
+    pub(super) fn ghosts(&self) -> impl Iterator<Item = Seen> + '_ {
         self.chunks.iter().flat_map(|(_, list)| list).filter(|s| s.1 != IDENTITY).copied()
     }
 
     /// Removes entries (row, what it sees), sorted.
-    fn remove(&mut self, unwanted: &[(u32, Seen)]) {
+    pub(super) fn remove(&mut self, unwanted: &[(u32, Seen)]) {
         for (c, (first, list)) in self.chunks.iter_mut().enumerate() {
             let below = |row: usize| unwanted.partition_point(|u| (u.0 as usize) < row);
             let own = &unwanted[below(c * CHUNK)..below((c + 1) * CHUNK)];
@@ -128,7 +127,7 @@ impl Rows {
     }
 
     /// Final rows: `number` gives the index of what is seen, `extra` holds sorted entries to join rows.
-    fn pack(self, extra: &[(u32, Seen)], number: impl Fn(&Seen) -> u32 + Sync) -> Neighbours {
+    pub(super) fn pack(self, extra: &[(u32, Seen)], number: impl Fn(&Seen) -> u32 + Sync) -> Neighbours {
         let joins = |i: usize| {
             &extra[extra.partition_point(|e| (e.0 as usize) < i)..extra.partition_point(|e| e.0 as usize <= i)]
         };
@@ -153,20 +152,6 @@ impl Rows {
         });
         Neighbours { first, index }
     }
-}
-
-/// What a search finds.
-pub struct Clouds<const D: usize> {
-    /// Clouds of fluid and interface particles.
-    pub neighbours: Neighbours,
-    /// Fluid particles from which the state of each interface particle is fitted.
-    pub wall_stencils: Neighbours,
-    /// Images that either of them sees.
-    pub ghosts: Vec<Ghost>,
-    /// What had to be repaired.
-    pub repair: Repair<D>,
-    /// Number of interface particles with too little fluid in front of them for an ordinary fit.
-    pub n_crevice: usize,
 }
 
 /// Whether a line of sight is tested.
@@ -248,45 +233,9 @@ impl<'a, const D: usize> Search<'a, D> {
         self.particles
     }
 
-    /// Clouds of all fluid and interface particles, repaired where needed.
-    pub fn clouds(&self) -> Result<Clouds<D>, CloudError> {
-        let p = self.particles;
-        let links = self.links();
-        let mut rows = Rows::new(p.n_rows(), |i, list| {
-            self.cloud_of(i, list);
-            let own = links.partition_point(|l| (l.0 as usize) < i)..links.partition_point(|l| l.0 as usize <= i);
-            list.extend(links[own].iter().map(|l| l.1));
-        });
-        let unanswered = self.unanswered(&rows);
-        rows.remove(&unanswered);
-        let walls = Rows::new(p.interface.len(), |w, list| self.wall_cloud(w, list));
-        let mut repair = Repair::of(self, &rows);
-        let blind = (0..p.interface.len()).filter(|w| walls.of(*w).is_empty());
-        repair.refused.extend(
-            blind.map(|w| format!("interface particle at {:?} has no fluid in front of it", p.x[p.n_fluid + w].0)),
-        );
-        if !repair.refused.is_empty() {
-            return Err(CloudError::Quality(repair.refused));
-        }
-        let extra = &repair.extra;
-        let mut ghosts: Vec<Seen> =
-            rows.ghosts().chain(walls.ghosts()).chain(extra.iter().map(|e| e.1).filter(|s| s.1 != IDENTITY)).collect();
-        ghosts.sort_unstable();
-        ghosts.dedup();
-        let first_ghost = p.x.len() as u32;
-        let number = |s: &Seen| match s.1 {
-            IDENTITY => s.0,
-            _ => first_ghost + ghosts.binary_search(s).unwrap_or(0) as u32,
-        };
-        let n_crevice = (0..p.interface.len()).filter(|w| walls.of(*w).len() <= D).count();
-        let (neighbours, wall_stencils) = (rows.pack(extra, number), walls.pack(&[], number));
-        let ghosts = ghosts.iter().map(|s| Ghost { source: s.0, transform: s.1 }).collect();
-        Ok(Clouds { neighbours, wall_stencils, ghosts, repair, n_crevice })
-    }
-
     /// Entries that are not seen back: lines of sight are tested at one end only, and round-off, or an abrupt change of
     /// spacing, can decide otherwise at the other. Pairs of the regular background cannot disagree.
-    fn unanswered(&self, rows: &Rows) -> Vec<(u32, Seen)> {
+    pub(super) fn unanswered(&self, rows: &Rows) -> Vec<(u32, Seen)> {
         let p = self.particles;
         let n = p.n_rows();
         let mut chunks = vec![Vec::new(); n.div_ceil(CHUNK)];
@@ -315,7 +264,7 @@ impl<'a, const D: usize> Search<'a, D> {
     }
 
     /// What particle `i` sees, but for what lies in layers.
-    fn cloud_of(&self, i: usize, list: &mut Vec<Seen>) {
+    pub(super) fn cloud_of(&self, i: usize, list: &mut Vec<Seen>) {
         if self.in_layers(i) {
             return;
         }

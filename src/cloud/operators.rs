@@ -12,7 +12,7 @@ use super::neighbours::Neighbours;
 use super::{Cloud, Ghost, Transform};
 use crate::math::Vector;
 use crate::math::least_squares::{bounded_inverse, gradient_weight, normal_inverse, normal_matrix};
-use crate::math::sweep::{parts, sweep, sweep_each, sweep_each_slot, sweep_two_parts};
+use crate::math::sweep::{parts, sweep, sweep_each, sweep_each_slot, sweep_parts, sweep_two_parts};
 
 /// Fewest and most rows in one part, in 2-D and in 3-D: large enough that few edges are visited twice (of 4,096 rows in 3-D
 /// a quarter of the edges are), small enough to stay in the second cache and to balance threads.
@@ -170,6 +170,22 @@ impl<const D: usize> Operators<D> {
         let (inverse, condition) = rows.into_iter().unzip();
         self.condition = condition;
         inverse
+    }
+
+    /// Gradient of a field at every fluid and interface particle from its `values` at all particles: exact where it is linear.
+    pub fn gradient(&self, values: &[f64]) -> Vec<Vector<D>> {
+        let mut gradient = vec![Vector::ZERO; self.parts.last().map_or(0, |p| p.end)];
+        sweep_parts(&self.parts, 1, &mut gradient, &|k, out| {
+            let start = self.parts[k].start;
+            for e in self.edges(k) {
+                let change = values[e.j()] - values[e.i()];
+                out[e.i() - start] += e.a_i * change;
+                if e.both() {
+                    out[e.j() - start] -= e.a_j * change;
+                }
+            }
+        });
+        gradient
     }
 
     /// Turns all vectors.

@@ -10,7 +10,7 @@ use serde::Serialize;
 
 use super::Cloud;
 use super::grid::Grid;
-use super::layer_termination;
+use super::layer_termination::{self, place};
 use super::repair::Sums;
 use crate::math::Vector;
 use crate::math::sweep::{CHUNK, sweep_each};
@@ -383,10 +383,4 @@ fn closure<const D: usize>(cloud: &Cloud<D>) -> Vec<(Vector<D>, f64)> {
         sums[usize::from(w.body)].1 += w.area.norm();
     }
     sums
-}
-
-/// A place as a message shows it.
-pub(super) fn place<const D: usize>(x: &Vector<D>) -> String {
-    let parts: Vec<String> = x.0.iter().map(|c| format!("{c:.5}")).collect();
-    format!("({})", parts.join(", "))
 }

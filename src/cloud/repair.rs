@@ -11,8 +11,8 @@
 //! 4. refused, if a fluid particle is left with fewer than D neighbours.
 //!
 //! A row that is not sick is not touched: healthy clouds keep every bit.
-use super::fill::Particles;
 use super::neighbours::{Rows, Search, Seen};
+use super::particles::Particles;
 use crate::math::Vector;
 use crate::math::least_squares::condition_symmetric;
 use crate::math::sweep::sweep;

@@ -10,12 +10,13 @@
 //! place, a middle or a corner of a leaf with no particle within 0.9 spacings (1.0 in 3-D), a particle is inserted there.
 use std::sync::Arc;
 
-use super::fill::{Ball, ParticleSite, Particles, Walls, curve_position, side_of};
+use super::fill::{Ball, Walls, curve_position, side_of};
 use super::grid::Grid;
 use super::interface::{Placed, place};
 use super::layers::Layers;
 use super::layout::Layout;
 use super::neighbours::{NEAR, Search};
+use super::particles::{ParticleSite, Particles};
 use super::tree::{Leaf, Tree};
 use super::{Cloud, CloudError, CloudSpec, Transform};
 use crate::case::Side;

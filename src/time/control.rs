@@ -33,6 +33,22 @@ pub struct Control {
     pub cycle: Cycle,
 }
 
+impl Default for Control {
+    /// Newton-Krylov for plane flow.
+    fn default() -> Self {
+        Self {
+            method: Method::NewtonKrylov,
+            cfl: 10.0,
+            cfl_max: 1e6,
+            growth: 2.0,
+            tolerance: 0.1,
+            basis: 30,
+            group: 4,
+            cycle: Cycle { sweeps: 2, visits: 1, levels: 8 },
+        }
+    }
+}
+
 /// Which of the two ways a Newton-Krylov relaxation is going, and how well.
 #[derive(Clone, Copy, Debug)]
 pub struct Phase {

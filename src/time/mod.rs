@@ -6,6 +6,7 @@ pub mod formula;
 pub mod full;
 pub mod harmonic;
 mod norm;
+pub mod ordinary;
 mod preconditioning;
 pub mod relax;
 

@@ -1,0 +1,47 @@
+//! What several checks ask of a draft.
+use serde_json::Value;
+
+use super::draft::{Draft, closest};
+use super::formula::Formula;
+
+/// Keys that give a frequency.
+pub(super) const FREQUENCIES: [&str; 3] = ["frequency", "reduced_frequency", "period"];
+
+/// True when `part` is there, and no empty list of modes.
+pub(super) fn says_something(draft: &Draft<'_>, part: &str) -> bool {
+    draft.given(part) && draft.get(part).and_then(Value::as_array).is_none_or(|list| !list.is_empty())
+}
+
+/// True when the free stream has units.
+pub(super) fn is_dimensional(draft: &Draft<'_>) -> bool {
+    ["pressure", "temperature", "density"].iter().filter(|k| draft.given(&format!("flow.{k}"))).count() > 1
+}
+
+/// True when a force on a structure has a frequency: then something repeats.
+pub(super) fn is_shaken(draft: &Draft<'_>) -> bool {
+    let mut forces = (0..draft.count("structure")).map(|i| format!("structure[{i}].force"));
+    forces.any(|force| FREQUENCIES.iter().any(|f| draft.given(&format!("{force}.{f}"))))
+}
+
+/// The formula `text` at `path` can be read, and knows its frequency.
+pub(super) fn formula(draft: &mut Draft<'_>, path: &str, text: &str, has_frequency: bool) {
+    match Formula::parse(text) {
+        Err(e) => {
+            let name = text.get(e.span.clone()).unwrap_or_default().to_owned();
+            let meant = closest(&name, Formula::vocabulary()).filter(|_| e.message.contains("unknown"));
+            let all = || format!("names are {}", Formula::vocabulary().collect::<Vec<_>>().join(", "));
+            let error = draft.fail_within(path, e.span, format!("`{path}`: {}", e.message));
+            error.allowed = e.allowed;
+            error.hint = match meant {
+                Some(meant) => Some(format!("did you mean `{meant}`?")),
+                None => e.message.contains("unknown").then(all),
+            };
+        }
+        Ok(formula) if formula.contains(&Formula::Omega) && !has_frequency => {
+            let at = text.find("omega").unwrap_or(0);
+            let message = format!("`{path}` uses `omega`, but there is no frequency");
+            draft.fail_within(path, at..at + 5, message).hint("add `reduced_frequency`, `frequency` or `period`");
+        }
+        Ok(_) => {}
+    }
+}

@@ -1,0 +1,10 @@
+//! Kinds of values that keys of several tables share.
+use super::quantity::{Angle, Length};
+use super::schema::{Kind, List, Range};
+
+pub(super) const POSITIVE: Kind = Kind::Number(Range::POSITIVE);
+pub(super) const LENGTH: Kind = Kind::Quantity(Length::DIMENSION, Range::ANY);
+pub(super) const SIZE: Kind = Kind::Quantity(Length::DIMENSION, Range::POSITIVE);
+pub(super) const ANGLE: Kind = Kind::Quantity(Angle::DIMENSION, Range::ANY);
+pub(super) const COUNT: Kind = Kind::Integer(1, u32::MAX as u64);
+pub(super) const POINT: Kind = Kind::List(&List { item: LENGTH, min: 2, max: 3, single: false });

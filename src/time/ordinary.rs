@@ -1,0 +1,72 @@
+//! Ordinary differential equations du/dt = f(t, u) as a system: oscillators, circuits, models of few unknowns.
+//!
+//! Every integrator takes them as it takes a gas; the linear systems of implicit ones are solved with the full matrix.
+use super::full::Full;
+use crate::system::{Fault, Field, Hierarchy, Implicit, Instant, Period, System};
+
+/// Change of an unknown, in its own unit, that counts as much as a relative change of one thousandth of a density.
+const LARGE: f64 = 1e-3;
+
+/// The equations, all in one row.
+pub struct Ordinary<F> {
+    fields: [Field; 1],
+    rate: f64,
+    f: F,
+}
+
+impl<F: Fn(f64, &[f64], &mut [f64]) + Sync> Ordinary<F> {
+    /// `n` equations: `f(t, u, du)` writes du/dt. `rate` is the fastest rate at which the unknowns change on their own, which
+    /// explicit steps and pseudo time are measured by.
+    pub fn new(n: usize, rate: f64, f: F) -> Self {
+        Self { fields: [Field::new("unknowns", 1, n)], rate, f }
+    }
+}
+
+impl<F: Fn(f64, &[f64], &mut [f64]) + Sync> System for Ordinary<F> {
+    type Frame = f64;
+    type Work = ();
+
+    fn fields(&self) -> &[Field] {
+        &self.fields
+    }
+
+    fn work(&self) {}
+
+    fn frame(&self, at: &Instant<'_>, _: &[f64]) -> f64 {
+        at.time
+    }
+
+    fn place(&self, at: &Instant<'_>, time: &mut f64) {
+        *time = at.time;
+    }
+
+    fn update_boundary_state(&self, _: &[f64], (): &mut (), _: &mut f64) {}
+
+    fn rhs(&self, time: &f64, u: &[f64], (): &mut (), du: &mut [f64]) {
+        (self.f)(*time, u, du);
+    }
+
+    fn rates(&self, _: &f64, _: &[f64], (): &mut (), rate: &mut [f64]) {
+        rate.fill(self.rate);
+    }
+
+    fn largest_change(&self, _: &[f64], du: &[f64]) -> f64 {
+        du.iter().fold(0.0, |m: f64, d| if d.is_finite() { m.max(LARGE * d.abs()) } else { f64::INFINITY })
+    }
+
+    fn check(&self, time: &f64, u: &[f64]) -> Result<(), Fault> {
+        let stray = u.iter().position(|v| !v.is_finite());
+        stray.map_or(Ok(()), |k| {
+            let reason = format!("unknown number {k} is not finite at time {time}");
+            Err(Fault { particle: 0, place: Vec::new(), reason })
+        })
+    }
+}
+
+impl<F: Fn(f64, &[f64], &mut [f64]) + Sync> Implicit for Ordinary<F> {
+    type Preconditioner = Full;
+
+    fn preconditioner(&self, _: &Hierarchy, period: Option<Period>) -> Full {
+        Full::new(self, period)
+    }
+}
