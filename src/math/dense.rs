@@ -128,7 +128,9 @@ mod tests {
     #[test]
     fn factors_solve_what_elimination_solves() {
         let n = 23;
-        let entry = |k: usize| ((7 * (k / n) + 3 * (k % n) * (k % n)) as f64).sin() * f64::from(k % (n + 1) != 0);
+        let entry = |k: usize| {
+            ((7 * (k / n) + 3 * (k % n) * (k % n)) as f64).sin() * f64::from(u8::from(!k.is_multiple_of(n + 1)))
+        };
         let matrix: Vec<f64> = (0..n * n).map(entry).collect();
         let exact: Vec<f64> = (0..n).map(|i| 1.0 + i as f64).collect();
         let b: Vec<f64> = (0..n).map(|i| (0..n).map(|j| matrix[i * n + j] * exact[j]).sum()).collect();

@@ -229,7 +229,7 @@ impl<'a, S: Implicit> Relax<'a, S> {
         self.system.update_boundary_state(&self.u, &mut self.work, &mut self.frame);
     }
 
-    /// Lets particles that travel choose where they go; see [`System::plan_lagrangian_step`].
+    /// Lets particles that travel choose where they go; see [`plan_lagrangian_step`](crate::system::System::plan_lagrangian_step).
     pub fn plan_lagrangian_step(&mut self, step: f64) -> f64 {
         self.system.plan_lagrangian_step(step, &self.u, &mut self.work, &mut self.frame)
     }
