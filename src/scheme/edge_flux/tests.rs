@@ -104,7 +104,7 @@ fn varied<const D: usize, S: Scalar>(end: &EdgeEnd<D>, k: usize, by: S) -> EdgeE
     let mut at = 0;
     let mut next = |value: f64| {
         at += 1;
-        if at == k + 1 { by + value } else { S::constant(value) }
+        if at - 1 == k { by + value } else { S::constant(value) }
     };
     let vector = |v: &Vector<D>, next: &mut dyn FnMut(f64) -> S| Vector::from_fn(|d| next(v[d]));
     let density = next(end.state.density);
