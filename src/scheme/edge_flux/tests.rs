@@ -125,7 +125,7 @@ fn numbers<const D: usize, S: Scalar>(both: [Conserved<D, S>; 2]) -> Vec<S> {
 
 /// Compares derivatives to every number of both ends with differences.
 fn derivatives<F: UpwindFlux<2>, L: Limit>(scheme: &FluxScheme<F, L>) {
-    const STEP: f64 = 1e-5;
+    const STEP: f64 = 2e-6;
     let few = few::<2>();
     let e = &few.edges[3];
     let [i, j] = [e.i(), e.j()];
