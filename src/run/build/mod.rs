@@ -52,7 +52,12 @@ pub(crate) fn supported(case: &Case) -> Result<(), RunError> {
     let sprung = !case.structures.is_empty();
     let explicit = sprung && matches!(case.time, Temporal::Explicit(_));
     let carried = sprung && case.particles() == ParticleMotion::Lagrangian;
+    let timed = sprung && case.flow.is_dimensional() && !matches!(case.time, Temporal::Steady(_));
     let asks = [
+        (
+            timed,
+            "bodies on springs in time in a dimensional stream (`[flow]` by Mach number and plain numbers in `[structure]`)",
+        ),
         (
             explicit,
             "bodies on springs with explicit steps (`[structure]` needs `[time.steady]`, `[time.dual]` or `harmonics`)",
