@@ -7,6 +7,7 @@
 //! little.
 #![allow(clippy::print_stdout, reason = "a benchmark prints")]
 mod balance;
+mod coupled;
 mod march;
 mod travel;
 
@@ -25,8 +26,9 @@ const TURNS: usize = 7;
 
 /// Runs those whose names hold one of `filters`, all when there are none.
 pub(crate) fn run(filters: &[String]) {
-    let all: [(&str, fn()); 5] = [
+    let all: [(&str, fn()); 6] = [
         ("ratios::dual_step", march::dual_step),
+        ("ratios::coupled_step", coupled::coupled_step),
         ("ratios::travelling", travel::travelling),
         ("ratios::deforming", travel::deforming),
         ("ratios::balance", balance::balance),

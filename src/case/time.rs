@@ -137,6 +137,9 @@ pub struct Dual {
     pub orders: f64,
     /// Greatest number of iterations within a step.
     pub inner_iterations: u32,
+    /// Orders of magnitude the residual of the steady flow must fall before the march; absent: as many as the march needs.
+    #[serde(default)]
+    pub start_orders: Option<f64>,
     /// Relative error of a step that the step size is fitted to; absent: fixed steps.
     pub adaptive: Option<f64>,
     /// The run ends when mean and first harmonic of the loads change less from one period to the next.

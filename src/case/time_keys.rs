@@ -163,6 +163,12 @@ static DUAL: Table = Table::of(&[
     ),
     Field::defaulted("inner_iterations", COUNT, Absent::Integer(50), "Greatest number of iterations within a step."),
     Field::optional(
+        "start_orders",
+        ORDERS,
+        "3, and 8 with bodies on springs",
+        "Orders of magnitude the residual of the steady flow that the march begins with must fall: what is left moves bodies on springs.",
+    ),
+    Field::optional(
         "adaptive",
         Kind::Number(Range { min: 0.0, max: 0.1, closed: false }),
         "fixed steps",

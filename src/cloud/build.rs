@@ -11,6 +11,9 @@ use super::{Cloud, CloudError, CloudSpec, Outer};
 use crate::geometry::Surface;
 use crate::math::Vector;
 
+/// Part of a spacing by which places looked at lie off the borders of leaves.
+const ASIDE: f64 = 1e-6;
+
 /// Height of the volume that an interface particle stands for, in spacings.
 const WALL_HEIGHT: f64 = 0.45;
 
@@ -100,18 +103,21 @@ fn outer_particles<const D: usize>(particles: &Particles<D>) -> Vec<Outer> {
         let side = particles.sides[*axis][*end];
         let (x, h) = (&particles.x[i], particles.spacing[i]);
         let centre = particles.tree.bounds().centre();
-        let toward = |d: usize| h * (centre[d] - x[d]).signum();
+        // not quite as far, and a little inwards along the side: where leaves of two sizes meet, the place would lie on the border of
+        // two of them, and clouds about an axis would lose their symmetry
+        let inward = |d: usize| h * (centre[d] - x[d]).signum();
+        let toward = |d: usize| (1.0 - ASIDE) * inward(d);
         let fluid_at = |x: &Vector<D>| {
             let leaf = particles.tree.leaf_at(x).node;
             particles.in_leaf(leaf).find(|k| (*k as usize) < particles.n_fluid)
         };
         // at an edge or a corner of the domain the way straight inward leads along another side: go across it as well
         let ways = (0..1usize << D).filter(|w| w & (1 << axis) != 0);
-        let place = |w: usize| *x + Vector::from_fn(|d| if w & (1 << d) != 0 { toward(d) } else { 0.0 });
+        let place = |w: usize| *x + Vector::from_fn(|d| if w & (1 << d) != 0 { toward(d) } else { ASIDE * inward(d) });
         let fewest = |n: u32| ways.clone().filter(move |w| w.count_ones() == n);
         let source = (1..=D as u32).flat_map(fewest).find_map(|w| fluid_at(&place(w))).unwrap_or(i as u32);
-        let behind = particles.x[source as usize] * 2.0 - *x;
-        let behind = fluid_at(&behind).filter(|k| *k != source).unwrap_or(source);
+        let onwards = particles.x[source as usize] - *x;
+        let behind = fluid_at(&(particles.x[source as usize] + onwards * (1.0 - ASIDE))).filter(|k| *k != source).unwrap_or(source);
         Outer { side, source, behind, outward: (*axis as u8, *end == 1) }
     });
     outer.collect()

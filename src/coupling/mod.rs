@@ -223,7 +223,9 @@ impl<const D: usize> HasGas<D> for Coupled<D> {
         self.loads(&frame.gas, &work.gas, u, &mut work.load);
         let [coordinates, rates] = [0, 1].map(|part| u.chunks_exact(2).map(|pair| pair[part]).collect::<Vec<f64>>());
         let loads = work.load.clone();
-        let power = loads.iter().zip(&rates).map(|(q, v)| q * v).sum();
+        // by the rates of the difference formula, which move the walls: what these take is what the structures get
+        let moved = |k: usize| frame.gas.jets.get(k).map_or(rates[k], |jet| jet.first);
+        let power = loads.iter().enumerate().map(|(k, load)| load * moved(k)).sum();
         let cloud = &frame.gas.discretisation.cloud;
         let velocity = |w: usize| frame.gas.to_inertial_axes(&frame.gas.velocity_of(cloud.n_fluid + w));
         let attached = |w: &usize| self.bodies.iter().any(|b| b.body == usize::from(cloud.interface[*w].body));

@@ -127,6 +127,9 @@ pub struct StructureSummary {
     /// Work of the gas on this structure over the last whole cycle; positive where the motion is fed. None where nothing oscillates.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub energy_per_cycle: Option<f64>,
+    /// Greatest difference of the power on the walls and that on the structures at the end of any step, over the greatest power:
+    /// zero where all work of the gas arrives. Of all structures together.
+    pub lost_power: f64,
 }
 
 /// One coordinate in `summary.json`.
@@ -140,6 +143,8 @@ pub struct CoordinateSummary {
     /// Mean over the last whole cycles; the last value where nothing oscillates.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mean: Option<f64>,
+    /// Greatest absolute value.
+    pub largest: f64,
     /// Half of greatest less smallest value in the last whole cycles, mean of these.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub amplitude: Option<f64>,
@@ -332,6 +337,14 @@ impl StructureTable {
         structures.iter().map(summary).collect()
     }
 
+    /// Greatest difference of the two powers over the greatest of them.
+    fn lost_power(&self) -> f64 {
+        let largest = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, |m: f64, v| m.max(v.abs()));
+        let lost = largest(&mut self.wall_power.iter().zip(&self.gas_power).map(|(wall, gas)| wall - gas));
+        let all = largest(&mut self.wall_power.iter().chain(&self.gas_power).copied());
+        if all > 0.0 { lost / all } else { 0.0 }
+    }
+
     fn summary(&self, names: &StructureNames, own: &[CoordinateHistory]) -> StructureSummary {
         let each = names.coordinates.iter().zip(own);
         let coordinates: Vec<_> = each.map(|(name, c)| CoordinateSummary::of(name, &self.time, &c.values)).collect();
@@ -341,7 +354,8 @@ impl StructureTable {
         let power = |k: usize| own.iter().map(|c| c.loads[k] * c.rates[k]).sum::<f64>();
         let power: Vec<f64> = (0..self.len()).map(power).collect();
         let energy_per_cycle = best.and_then(|[_, frequency]| energy_per_cycle(&self.time, &power, frequency));
-        StructureSummary { body: names.body.clone(), description: Vec::new(), coordinates, energy_per_cycle }
+        let lost_power = self.lost_power();
+        StructureSummary { body: names.body.clone(), description: Vec::new(), coordinates, energy_per_cycle, lost_power }
     }
 }
 
@@ -349,7 +363,8 @@ impl CoordinateSummary {
     /// Mean, amplitude, frequency and damping from the tail of a history.
     pub fn of(name: &str, time: &[f64], values: &[f64]) -> Self {
         let mean = values.last().copied().filter(|last| last.is_finite());
-        let summary = Self { name: name.to_owned(), angle: is_angle(name), mean, ..Self::default() };
+        let largest = values.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
+        let summary = Self { name: name.to_owned(), angle: is_angle(name), mean, largest, ..Self::default() };
         match DampingFit::of(time, values) {
             Ok(fit) => summary.with(fit, time, values),
             Err(reason) => {

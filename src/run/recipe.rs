@@ -14,6 +14,8 @@ const START: [[usize; 2]; 2] = [[2_500, 9_000], [15_000, 80_000]];
 const PRELUDE_ITERATIONS: u32 = 500;
 /// Orders of magnitude of that relaxation: the motion soon moves loads by more than what is left.
 const PRELUDE_ORDERS: f64 = 3.0;
+/// The same for bodies on springs, which what is left moves: oscillations of a thousandth of a degree shall be linear ones.
+const SPRUNG_ORDERS: f64 = 8.0;
 /// Greatest number of its iterations where a march leads to a harmonic balance.
 const LEAD_ITERATIONS: u32 = 60;
 /// Harmonics at which `number = "auto"` begins, and what it adds.
@@ -83,7 +85,7 @@ pub(crate) fn balance(case: &Case) -> Option<&Harmonics> {
 pub(crate) fn relaxation(case: &Case) -> Option<Steady> {
     match &case.time {
         Temporal::Steady(steady) => Some(steady.clone()),
-        Temporal::Dual(dual) => Some(prelude(dual)),
+        Temporal::Dual(dual) => Some(start_of_march(case, dual)),
         Temporal::Harmonics(plan) => Some(harmonic_prelude(plan)),
         Temporal::Explicit(_) => None,
     }
@@ -209,6 +211,12 @@ pub(crate) fn fixed_step(case: &Case, period: Option<f64>) -> Option<FixedStep> 
 }
 
 /// The relaxation that gives a march its start.
+fn start_of_march(case: &Case, dual: &case::Dual) -> Steady {
+    let usual = if case.structures.is_empty() { PRELUDE_ORDERS } else { SPRUNG_ORDERS };
+    Steady { orders: dual.start_orders.unwrap_or(usual), ..prelude(dual) }
+}
+
+/// That relaxation as far as it is one of each step as well.
 fn prelude(dual: &case::Dual) -> Steady {
     Steady { method: dual.method, iterations: PRELUDE_ITERATIONS, orders: PRELUDE_ORDERS, ..Steady::default() }
 }

@@ -272,7 +272,7 @@ impl Run<'_> {
                 studies::march(solver, &marching, start, turn, log)
             }
             Task::Lead => {
-                let next = turn.at.stages.get(turn.at.stage + 1).ok_or(RunError::NoStage)?;
+                let next = turn.next().ok_or(RunError::NoStage)?;
                 studies::lead(&solver.system, plan()?, next.instances() / 2, start.into_state(), log)
             }
             Task::Balance { .. } => studies::balance(solver, plan()?, start, turn, log),

@@ -73,6 +73,8 @@ pub struct Claim {
     pub other: Option<String>,
     /// A third one, for metrics that draw a parabola.
     pub third: Option<String>,
+    /// Coordinate of the structure, where there is more than one.
+    pub coordinate: Option<String>,
     /// Box of samples or wall particles the metric is restricted to: corners of smallest and largest coordinates.
     pub region: Option<[Vec<f64>; 2]>,
     /// Two pressures (over the free stream's) on either side of a wave or front.
@@ -240,6 +242,35 @@ metrics! {
     PeakCl = "peak_cl",
     /// Length behind the body over which the gas on its axis runs against the stream, in chords.
     WakeLength = "wake_length",
+    /// Mean of `coordinate` of the structure over its last whole cycles, or where it came to rest.
+    StructureMean = "structure_mean",
+    /// Greatest absolute value of it in the whole run.
+    StructureLargest = "structure_largest",
+    /// Half of greatest less smallest value of it within the last whole cycles.
+    StructureAmplitude = "structure_amplitude",
+    /// Angular frequency fitted to the tail of its march.
+    StructureFrequency = "structure_frequency",
+    /// Rate at which that oscillation grows; negative where it decays.
+    StructureGrowthRate = "structure_growth_rate",
+    /// Its damping ratio.
+    StructureDampingRatio = "structure_damping_ratio",
+    /// Greatest difference, at the end of any step, between the power that the walls take from the gas and the power that the
+    /// structures get, over the greatest power.
+    WorkLedger = "work_ledger",
+    /// `structure_frequency` extrapolated to a section of no thickness, like the lift.
+    ThinFrequency = "thin_frequency",
+    /// `structure_growth_rate` of the same, over the frequency.
+    ThinGrowthRate = "thin_growth_rate",
+    /// Angle of pitch of a section in equilibrium over that which springs and the moment slope of the fixed section of the case
+    /// `other` demand, less one.
+    EquilibriumAngleError = "equilibrium_angle_error",
+    /// Divergence speed that this angle tells over that which the moment slope of the case `other` tells, less one.
+    DivergenceSpeedError = "divergence_speed_error",
+    /// Observed order in the step of the frequency: from this case, the case `other` with half its step and the `third` with a
+    /// quarter of it.
+    FrequencyStepOrder = "frequency_step_order",
+    /// The same of the amplitude.
+    AmplitudeStepOrder = "amplitude_step_order",
     /// Lift coefficient extrapolated to zero spacing over the study.
     ExtrapolatedCl = "extrapolated_cl",
     /// Drag coefficient extrapolated to zero spacing over the study.

@@ -30,7 +30,7 @@ pub(super) fn parse_claim(table: &Table, number: usize, problems: &mut Vec<Strin
     }
     let label = keys.string("label");
     let (file, other, third) = (keys.string("file"), keys.string("other"), keys.string("third"));
-    let case = keys.string("case");
+    let (case, coordinate) = (keys.string("case"), keys.string("coordinate"));
     let exact = parse_exact(&mut keys);
     let region = parse_region(&mut keys);
     let levels = keys.numbers("levels").and_then(|v| <[f64; 2]>::try_from(v).ok());
@@ -51,6 +51,7 @@ pub(super) fn parse_claim(table: &Table, number: usize, problems: &mut Vec<Strin
         case,
         other,
         third,
+        coordinate,
         region,
         levels,
     })

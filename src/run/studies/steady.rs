@@ -3,6 +3,7 @@ use super::super::error::RunError;
 use super::super::look::GasView;
 use super::super::recipe::control;
 use super::super::record::Log;
+use super::super::stage::Task;
 use super::super::watch::{Aim, Checkpoint, Ending, GasEyes, Limit, Observer, Progress, Resting, Told, drive, sample};
 use super::turn::{Reached, Start, Turn};
 use crate::case::Steady;
@@ -10,7 +11,7 @@ use crate::scheme::HasGas;
 use crate::time::relax::Relax;
 use crate::time::{Integrator, Memory, Standing};
 
-/// Orders of magnitude that relaxations before the last stage are solved to.
+/// Orders of magnitude that relaxations before another one are solved to.
 const EARLY_ORDERS: f64 = 3.5;
 /// Iterations without a new smallest residual after which a relaxation before the last stage has given what it can.
 const PATIENCE: u32 = 20;
@@ -27,7 +28,8 @@ pub(crate) fn relax<S: HasGas<D>, const D: usize>(
         Start::Resume(u, Memory::Relaxation(resume)) => (u, Some(resume)),
         other => (other.into_state(), None),
     };
-    let orders = if turn.last { steady.orders } else { steady.orders.min(EARLY_ORDERS) };
+    let again = turn.next().is_some_and(|stage| stage.task == Task::Relax);
+    let orders = if again { steady.orders.min(EARLY_ORDERS) } else { steady.orders };
     let mut relax = Relax::new(system, control(steady, D), u, &system.start(), resume);
     relax.goal = 10f64.powf(-orders);
     let ending = watched(system, &mut relax, steady.iterations, turn, log, orders)?;

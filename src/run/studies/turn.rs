@@ -33,6 +33,11 @@ impl Turn<'_> {
     pub(crate) fn stage(&self) -> &super::super::stage::Stage {
         &self.at.stages[self.at.stage]
     }
+
+    /// The one after it.
+    pub(crate) fn next(&self) -> Option<&super::super::stage::Stage> {
+        self.at.stages.get(self.at.stage + 1)
+    }
 }
 
 /// Where a stage ends.

@@ -1,4 +1,6 @@
 //! What is measured of a finished run: the value of each metric of [`crate::verify`].
+mod structure;
+
 use std::path::Path;
 
 use super::look::{Snapshot, Units, rounded};
@@ -113,6 +115,19 @@ impl Measured {
             Metric::FreeStreamDeviation => self.free_stream_deviation(),
             Metric::ShockPositionError => self.shock_position_error(),
             Metric::WaveAngle => self.wave_angle(claim),
+            Metric::StructureMean
+            | Metric::StructureLargest
+            | Metric::StructureAmplitude
+            | Metric::StructureFrequency
+            | Metric::StructureGrowthRate
+            | Metric::StructureDampingRatio
+            | Metric::WorkLedger
+            | Metric::ThinFrequency
+            | Metric::ThinGrowthRate
+            | Metric::EquilibriumAngleError
+            | Metric::DivergenceSpeedError
+            | Metric::FrequencyStepOrder
+            | Metric::AmplitudeStepOrder => self.of_structure(claim, others),
         }
     }
 
