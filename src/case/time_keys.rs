@@ -102,7 +102,7 @@ const UNTIL: Field = Field::optional(
     "until",
     Kind::Quantity(Time::DIMENSION, Range::POSITIVE),
     "`periods` must be given",
-    "Time at which the run ends.",
+    "Time at which the run ends: seconds, or lengths over sound speed without a dimensional free stream.",
 );
 const PERIODS: Field = Field::optional(
     "periods",
@@ -144,7 +144,7 @@ static DUAL: Table = Table::of(&[
         "step",
         Kind::Quantity(Time::DIMENSION, Range::POSITIVE),
         "`steps_per_period` must be given",
-        "Step in time.",
+        "Step in time, in the units of `until`.",
     ),
     PERIODS,
     UNTIL,

@@ -5,7 +5,7 @@ use num_complex::Complex64;
 
 use super::super::error::RunError;
 use super::super::files::{FILM, Target, together, write_film};
-use super::super::look::{GasView, Units, motion, pressure_coefficient};
+use super::super::look::{GasView, motion, pressure_coefficient};
 use super::super::record::Log;
 use super::super::record::trace::Sample;
 use super::super::watch::compare;
@@ -149,7 +149,8 @@ impl<S: HasGas<D>, const D: usize> PeriodicState<'_, S, D> {
             let phase = std::f64::consts::TAU * part;
             let loads = Coefficients { cl: cl.at(phase), cd: cd.at(phase), cm: cm.at(phase) };
             let time = part * period;
-            log.record.trace.push(Sample { time, loads, motion: motion(gas, time, &self.jets(phase)) });
+            let motion = motion(gas, time, &self.jets(phase));
+            log.record.trace.push(Sample { time: log.units.case_time(time), loads, motion });
         }
         let instance = |time: f64| {
             let phase = std::f64::consts::TAU * time / period;
@@ -205,7 +206,7 @@ impl<S: HasGas<D>, const D: usize> PeriodicState<'_, S, D> {
     /// Values of all real particles at the instances that hold the solution: density, velocity, pressure, Cp.
     fn moments(&self, case: &Case) -> Vec<Vec<Vec<f64>>> {
         let (system, fluid) = (self.system, self.system.gas());
-        let (units, free) = (Units::of(case), crate::scheme::start::free_stream::<D>(case));
+        let (units, free) = (case.flow.units(), crate::scheme::start::free_stream::<D>(case));
         let rows = fluid.discretisation.cloud.n_real();
         let mut values = vec![vec![Vec::new(); rows]; D + 3];
         let mut work = system.work();
