@@ -8,7 +8,7 @@ use super::super::files::{FILM, Target, together, write_film};
 use super::super::look::{GasView, motion, pressure_coefficient};
 use super::super::record::Log;
 use super::super::record::trace::Sample;
-use super::super::watch::compare;
+use super::super::watch::{compare, sample};
 use super::settled::PeriodicEyes;
 use crate::case::{Case, Harmonics};
 use crate::geometry::Surface;
@@ -19,12 +19,15 @@ use crate::motion::positions;
 use crate::observe::loads::Coefficients;
 use crate::observe::table::{Entry, write_csv};
 use crate::observe::vtk::{Column, write_points};
-use crate::scheme::{Fluid, HasGas, Work};
+use crate::scheme::{Exchange, Fluid, HasGas, Work};
 use crate::system::{Instant, System};
 use crate::time::harmonic::HarmonicBalance;
 
 /// Samples of the loops.
 const SAMPLES: usize = 256;
+/// Steps in each of the periods that the table of structures holds, and these.
+const STEPS: usize = 128;
+const PERIODS: usize = 2;
 
 /// Part of a length or radian by which a motion may miss itself a period later.
 const REPEATS: f64 = 1e-9;
@@ -166,6 +169,28 @@ impl<S: HasGas<D>, const D: usize> PeriodicState<'_, S, D> {
     /// Coordinates of bodies that are unknowns, at a phase.
     fn jets(&self, phase: f64) -> Vec<Jet> {
         self.balance.with_instant(self.state, phase, |at| positions(at.coordinates))
+    }
+
+    /// Puts two periods of the structures where the steps of a march would be; nothing without structures.
+    pub(super) fn sample_structures(&self, log: &mut Log<'_>) -> Result<(), RunError> {
+        if log.structures.is_empty() {
+            return Ok(());
+        }
+        let mut work = self.system.work();
+        let at = |k: usize| {
+            let phase = std::f64::consts::TAU * k as f64 / STEPS as f64;
+            let one = self.state_at(phase);
+            self.system.exchange(&self.frame_at(phase, &one), &one, &mut work)
+        };
+        let Some(period) = (0..STEPS).map(at).collect::<Option<Vec<Exchange>>>() else { return Ok(()) };
+        // a run that is interrupted now does this again
+        let iteration = log.record.iteration + 1;
+        for k in 0..=PERIODS * STEPS {
+            let time = self.period * k as f64 / STEPS as f64;
+            log.structure(iteration, &sample(time, period[k % STEPS].clone(), &log.units))?;
+        }
+        log.record.balanced = Some(log.units.case_rate(std::f64::consts::TAU / self.period));
+        Ok(())
     }
 
     /// Loads at the instances, evaluated twice.
