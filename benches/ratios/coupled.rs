@@ -33,8 +33,7 @@ const PRELUDE: (f64, u32) = (1e-2, 80);
 pub(super) fn coupled_step() {
     let (fluid, free, period) = built(&parsed(&case(MOTION)), Path::new(""));
     let u = started(&fluid, &free);
-    let plan =
-        Plan { until: 1e9, step: period / 64.0, order: 2, orders: 2.0, iterations: 20, adaptive: None };
+    let plan = Plan { until: 1e9, step: period / 64.0, order: 2, orders: 2.0, iterations: 20, adaptive: None };
     let (still, _, _) = built(&parsed(&case("")), Path::new(""));
     let system = sprung(still, std::f64::consts::TAU / period);
     let all = system.start_with(&u);

@@ -4,6 +4,7 @@
 use serde_json::{Value, json};
 
 use super::draft::Draft;
+use super::facts::is_dimensional;
 use super::keys::{SHAPES, SIDES};
 use super::schema::one_of;
 
@@ -281,6 +282,12 @@ fn initial(draft: &mut Draft<'_>, d: usize) {
         let hint = "use a 2-D domain: two numbers in `min` and `max`";
         draft.fail("initial", format!("`{kind}` is a 2-D flow, but the case is 3-D")).hint(hint);
     }
+    let own =
+        ["initial.vortex", "initial.ringleb"].iter().any(|k| draft.get(k).is_some()) || is(draft, "initial", "ringleb");
+    if own && is_dimensional(draft) {
+        let message = "this field has units of its own, density and pressure or sound speed 1, but the free stream is dimensional";
+        draft.fail("initial", message).hint("give `[flow]` by `mach` alone");
+    }
     if let Some(axis) = draft.number("initial.riemann.axis").filter(|&a| a >= d as f64) {
         let message = format!("`initial.riemann.axis` is {axis} in a {d}-D case");
         draft.fail("initial.riemann.axis", message).allowed(format!("from 0 to {}", d - 1));
@@ -357,6 +364,15 @@ fn time(draft: &mut Draft<'_>) {
     }
     if draft.get("time.dual").is_some() {
         one_of_two(draft, "time.dual", "steps_per_period", "step");
+    }
+    let times = ["time.explicit.until", "time.dual.until", "time.dual.step", "output.field_interval"];
+    for path in times.into_iter().filter(|_| !is_dimensional(draft)).collect::<Vec<_>>() {
+        if draft.has_unit(path) {
+            let message = format!("`{path}` has a unit of time, but the free stream is nondimensional");
+            let hint = "use a plain number, in units of length over sound speed, or give two of `pressure`, `temperature` and \
+                        `density` in `[flow]`";
+            draft.fail(path, message).hint(hint);
+        }
     }
     let marches = draft.get("time.explicit").or(draft.get("time.dual")).is_some();
     if draft.given("output.field_interval") && !marches && draft.get("time").is_some() {

@@ -70,7 +70,56 @@ impl FreeStreamScales {
     }
 }
 
+/// What one unit of the solver is in the case: the free stream has density and sound speed 1 in the solver, lengths are
+/// those of the case, and so its unit of time is a length over the sound speed.
+///
+/// Every time, frequency, speed and force of a case passes here on its way in, and on its way out. Without a dimensional free
+/// stream both factors are exactly 1.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Units {
+    /// Density ρ∞.
+    pub density: f64,
+    /// Speed a∞.
+    pub speed: f64,
+}
+
+impl Units {
+    /// Factor on pressures, on forces, moments and energies: ρ∞ a∞².
+    pub fn pressure(&self) -> f64 {
+        self.density * self.speed * self.speed
+    }
+
+    /// The time of the solver that is `time` in the case, in seconds where that is dimensional.
+    pub fn solver_time(&self, time: f64) -> f64 {
+        time * self.speed
+    }
+
+    /// The time of the case that is `time` in the solver.
+    pub fn case_time(&self, time: f64) -> f64 {
+        time / self.speed
+    }
+
+    /// The speed, frequency or rate of the case that is `rate` in the solver.
+    pub fn case_rate(&self, rate: f64) -> f64 {
+        rate * self.speed
+    }
+
+    /// The speed, frequency or rate of the solver that is `rate` in the case.
+    pub fn solver_rate(&self, rate: f64) -> f64 {
+        rate / self.speed
+    }
+}
+
 impl Flow {
+    /// Factors from the units of the solver to those of the case.
+    pub fn units(&self) -> Units {
+        if !self.is_dimensional() {
+            return Units { density: 1.0, speed: 1.0 };
+        }
+        let r = self.reference();
+        Units { density: r.density, speed: r.sound_speed }
+    }
+
     /// Density, sound speed, pressure, speed and Mach number of the free stream.
     ///
     /// Without `mach` and `velocity` (cases that start from their own field) the stream is at rest.
@@ -181,6 +230,12 @@ mod tests {
         assert!((s.sound_speed - 340.294).abs() < 0.05);
         assert!((s.mach - 0.5).abs() < 1e-4);
         assert!((s.dynamic_pressure() - 0.5 * 1.225 * 170.147_f64.powi(2)).abs() < 20.0);
+        let units = stream("mach = 0.5\npressure = 101325\ndensity = 1.225").units();
+        assert_eq!(units.solver_time(2.0), 2.0 * units.speed);
+        assert!((units.case_time(units.solver_time(0.3)) - 0.3).abs() < 1e-16);
+        assert!((units.case_rate(units.solver_rate(7.0)) - 7.0).abs() < 1e-14);
+        assert!((units.pressure() - 1.4 * 101_325.0).abs() < 1e-9);
+        assert_eq!(stream("mach = 0.5\ngamma = 1.27").units(), super::Units { density: 1.0, speed: 1.0 });
         let other = scales("mach = 0.5\npressure = 101325\ndensity = 1.225");
         assert!((other.speed - 170.147).abs() < 0.05);
     }

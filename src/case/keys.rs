@@ -407,8 +407,12 @@ const INITIAL: &[Variant] = &[
 ];
 
 static RIEMANN: Table = Table::of(&[
-    Field::required("left", STATE, "Left state: density, velocity along `axis`, pressure."),
-    Field::required("right", STATE, "Right state: density, velocity along `axis`, pressure."),
+    Field::required(
+        "left",
+        STATE,
+        "Left state: density, velocity along `axis`, pressure; SI units with a dimensional free stream.",
+    ),
+    Field::required("right", STATE, "Right state: density, velocity along `axis`, pressure, in the same units."),
     Field::defaulted("position", ANY, Absent::Number(0.0), "Position of the plane."),
     Field::defaulted("axis", Kind::Integer(0, 2), Absent::Integer(0), "Axis across the plane, 0 for x."),
 ]);
@@ -482,7 +486,7 @@ static OUTPUT: Table = Table::of(&[
         "field_interval",
         Kind::Quantity(Time::DIMENSION, Range::POSITIVE),
         "the last field only",
-        "Time between field files in marching runs.",
+        "Time between field files in marching runs: seconds, or lengths over sound speed without a dimensional free stream.",
     ),
     Field::defaulted(
         "loop_periods",

@@ -34,7 +34,7 @@ mod verdict;
 mod write;
 
 pub use error::{CaseError, CaseErrors};
-pub use flow::{FreeStreamScales, ViscosityLaw, Viscous, Wall};
+pub use flow::{FreeStreamScales, Units, ViscosityLaw, Viscous, Wall};
 pub use gaf::{AnyMode, FlexibleMode, Gaf, Mode};
 pub use mode_file::{ModeTable, read_mode};
 pub use motion::{
@@ -376,6 +376,19 @@ pub enum Initial {
     },
     /// Ringleb's flow, stagnation density and sound speed 1.
     Ringleb,
+}
+
+impl Initial {
+    /// The same in the units of the solver. Vortex and Ringleb's flow have units of their own, which are those of the solver.
+    pub fn in_solver_units(&self, units: &Units) -> Self {
+        let state = |s: &[f64; 3]| [s[0] / units.density, units.solver_rate(s[1]), s[2] / units.pressure()];
+        match self {
+            Self::Riemann { left, right, position, axis } => {
+                Self::Riemann { left: state(left), right: state(right), position: *position, axis: *axis }
+            }
+            other => other.clone(),
+        }
+    }
 }
 
 /// Spatial scheme.

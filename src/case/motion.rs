@@ -126,7 +126,7 @@ pub struct MotionTable {
     pub periodic: bool,
 }
 
-/// Formulas in `t` for displacements and angle (radians).
+/// Formulas in the time `t` of the case for displacements and angle (radians).
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct MotionFormula {
     /// Displacement along x.
@@ -151,7 +151,7 @@ impl BodyMotionSpec {
             && self.modes.is_empty()
     }
 
-    /// Angular frequency ω of this table alone; `chord` is the reference chord, of which k takes half by default.
+    /// Angular frequency ω of this table alone, in the units of the case; `chord` is the reference chord, of which k takes half by default.
     fn own_angular_frequency(&self, flow: &Flow, chord: f64) -> Option<f64> {
         if let Some(k) = self.reduced_frequency {
             let length = self.reduced_length.map_or(0.5 * chord, |l| l.0);
@@ -168,7 +168,7 @@ impl Case {
         own.or(self.motion.as_ref().map(|m| &m.law)).filter(|law| !law.is_still())
     }
 
-    /// Angular frequency of `law` in the units of the solver: its own, else that of `[motion]`.
+    /// Angular frequency of `law` in the units of the case, radians per second where they are dimensional: its own, else that of `[motion]`.
     pub fn angular_frequency(&self, law: &BodyMotionSpec, chord: f64) -> Option<f64> {
         let general = || self.motion.as_ref().and_then(|m| m.law.own_angular_frequency(&self.flow, chord));
         law.own_angular_frequency(&self.flow, chord).or_else(general)

@@ -447,14 +447,21 @@ mod tests {
         told(&march("dual]\nuntil = 2", "plunge = 1\nperiod = 2"), &["neither `steps_per_period` nor `step`"]);
         told(&march("dual]\nuntil = 2\nperiods = 3\nstep = 1", "plunge = 1\nperiod = 2"), &["are both given"]);
         told(&march("dual]\nuntil = 2\nsteps_per_period = 9", "translation = [1, 0]"), &["needs a periodic motion"]);
+        let still = "translation = [1, 0]";
+        let of_time = "has a unit of time, but the free stream is nondimensional";
+        told(&march("dual]\nuntil = 2\nstep = \"5 ms\"", still), &["`time.dual.step`", of_time]);
+        told(&march("explicit]\nuntil = \"2 s\"", still), &["`time.explicit.until`", of_time]);
         let c = read(&march("dual]\nsteps_per_period = 50\nperiods = 3", "plunge = 1\nperiod = 2"), "c").unwrap();
         let Temporal::Dual(dual) = &c.time else { panic!("{:?}", c.time) };
         assert_eq!((dual.order, dual.orders, dual.inner_iterations), (2, 2.0, 50));
-        assert_eq!((dual.end(Some(2.0)), dual.step_length(Some(2.0))), (Some(6.0), Some(0.04)));
-        assert_eq!((dual.end(None), dual.step_length(None)), (None, None));
+        assert_eq!((c.end(Some(2.0)), c.step_length(Some(2.0))), (Some(6.0), Some(0.04)));
+        assert_eq!((c.end(None), c.step_length(None)), (None, None));
         let c = read(&march("dual]\nstep = 0.5\nuntil = 3", "translation = [1, 0]"), "c").unwrap();
-        let Temporal::Dual(dual) = &c.time else { panic!("{:?}", c.time) };
-        assert_eq!((dual.end(None), dual.step_length(None)), (Some(3.0), Some(0.5)));
+        assert_eq!((c.end(None), c.step_length(None)), (Some(3.0), Some(0.5)));
+        let air = march("dual]\nstep = \"5 ms\"\nuntil = 3", "translation = [1, 0]");
+        let c = read(&air.replace("mach = 0.5", "mach = 0.5\npressure = 101325\ntemperature = 288.15"), "c").unwrap();
+        let a = c.flow.reference().sound_speed;
+        assert_eq!((c.end(None), c.step_length(None)), (Some(3.0 * a), Some(0.005 * a)));
     }
 
     #[test]

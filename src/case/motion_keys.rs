@@ -26,8 +26,12 @@ const REDUCED_LENGTH: Field = Field::optional(
     "half of the reference chord",
     "Length L of the reduced frequency; give the chord itself when k = ωc/U∞ is meant.",
 );
-const PERIOD: Field =
-    Field::optional("period", Kind::Quantity(Time::DIMENSION, Range::POSITIVE), ONE, "Period 2π/ω instead.");
+const PERIOD: Field = Field::optional(
+    "period",
+    Kind::Quantity(Time::DIMENSION, Range::POSITIVE),
+    ONE,
+    "Period 2π/ω instead, in seconds or lengths over sound speed.",
+);
 const PIVOT: Field = Field::optional(
     "pivot",
     POINT,
@@ -75,8 +79,9 @@ const FORMULA: Field = Field::optional(
     "formula",
     Kind::Table(&FORMULA_KEYS),
     STILL,
-    "Formulas in `t`, with `omega`, `pi`, `e`, `deg`, the operators `+ - * / ^` and the functions `sin`, `cos`, `tan`, \
-     `asin`, `acos`, `atan`, `sinh`, `cosh`, `tanh`, `exp`, `ln`, `sqrt`, `abs`, `min`, `max`.",
+    "Formulas in `t`, the time of the case (seconds, or lengths over sound speed without a dimensional free stream), with \
+     `omega`, `pi`, `e`, `deg`, the operators `+ - * / ^` and the functions `sin`, `cos`, `tan`, `asin`, `acos`, `atan`, `sinh`, \
+     `cosh`, `tanh`, `exp`, `ln`, `sqrt`, `abs`, `min`, `max`.",
 );
 
 const MODE: Field = Field::defaulted(

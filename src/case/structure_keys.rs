@@ -342,6 +342,6 @@ static MODE: Table = Table::of(&[
         "force",
         Kind::Text,
         ZERO,
-        "External generalised force as a formula in `t`; `omega` is that of `[structure.force]`.",
+        "External generalised force as a formula in `t`, in base units; `omega` is that of `[structure.force]`.",
     ),
 ]);

@@ -48,8 +48,8 @@ fn defaults_are_the_documented_ones() {
 
 #[test]
 fn conveniences_mean_what_they_say() {
-    let text = "[flow]\nmach = 0.8\nalpha = \"1.25 deg\"\n[[body]]\nnaca = { digits = \"0012\", trailing_edge = \"blunt\" }\n\
-                chord = 2\nrotate = \"3 deg\"\ntranslate = [\"1 ft\", 2]\n[cloud]\nspacing = \"10 mm\"\n[boundary]\n\
+    let text = "[flow]\nmach = 0.8\npressure = \"1 atm\"\ntemperature = 300\nalpha = \"1.25 deg\"\n\
+                [[body]]\nnaca = { digits = \"0012\", trailing_edge = \"blunt\" }\nchord = 2\nrotate = \"3 deg\"\ntranslate = [\"1 ft\", 2]\n[cloud]\nspacing = \"10 mm\"\n[boundary]\n\
                 x_min = \"held\"\nx_max = { outflow = { pressure = 0.9 } }\ny_max = \"outflow\"\n\
                 [time.explicit]\nuntil = \"20 ms\"\n[adapt]\nparticles = 2e6\n[[compare]]\nfile = \"a.csv\"\n";
     let case = read(text, "dir/wing.toml").unwrap_or_else(|e| panic!("{e}"));
@@ -71,6 +71,12 @@ fn fields_at_the_start_are_read() {
     assert_eq!(vortex, Initial::Vortex { strength: 5.0, centre: [0.0, 0.0], velocity: [1.0, 0.0] });
     for text in ["[initial]\nringleb = {}", "[initial.ringleb]"] {
         assert_eq!(read(&open(text), "c").unwrap().initial, Initial::Ringleb);
+    }
+    let air = "[flow]\nmach = 0.5\npressure = 101325\ntemperature = 288.15";
+    for field in ["vortex = { strength = 5, centre = [0, 0], velocity = [1, 0] }", "ringleb = {}"] {
+        let text = open(&format!("[initial]\n{field}")).replace("[flow]\nmach = 0.5", air);
+        assert!(text.contains("101325"));
+        assert_shows(&text, &["this field has units of its own"]);
     }
     let tube = "initial.riemann = { left = [1, 0, 1], right = [0.125, 0, 0.1] }\n[cloud]\nspacing = 0.01\n\
                 domain = { min = [0, 0], max = [1, 0.1] }\n[boundary]\nx_min = \"held\"\nx_max = \"outflow\"\n\

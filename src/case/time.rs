@@ -1,7 +1,7 @@
 //! How a case goes on in time, as data.
 use serde::{Deserialize, Serialize};
 
-use super::Time;
+use super::{Case, Time};
 
 /// Steady relaxation or time marching.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -152,38 +152,24 @@ pub struct Dual {
     pub cfl_max: f64,
 }
 
-impl Explicit {
-    /// Time at which the run ends; `None` when it counts periods of a motion that has none.
+impl Case {
+    /// Time of the solver at which a march ends; `period` is that of the motion, in the same units. `None` when it counts periods
+    /// of a motion that has none, and where nothing marches.
     pub fn end(&self, period: Option<f64>) -> Option<f64> {
-        end(self.until, self.periods, period)
-    }
-}
-
-impl Temporal {
-    /// Time at which a march ends; `None` when it counts periods of a motion that has none, and for a steady run.
-    pub fn end(&self, period: Option<f64>) -> Option<f64> {
-        match self {
-            Self::Steady(_) | Self::Harmonics(_) => None,
-            Self::Explicit(explicit) => explicit.end(period),
-            Self::Dual(dual) => dual.end(period),
-        }
-    }
-}
-
-impl Dual {
-    /// Time at which the run ends; `None` when it counts periods of a motion that has none.
-    pub fn end(&self, period: Option<f64>) -> Option<f64> {
-        end(self.until, self.periods, period)
+        let (until, periods) = match &self.time {
+            Temporal::Steady(_) | Temporal::Harmonics(_) => return None,
+            Temporal::Explicit(plan) => (plan.until, plan.periods),
+            Temporal::Dual(plan) => (plan.until, plan.periods),
+        };
+        until.map(|t| self.flow.units().solver_time(t.0)).or_else(|| Some(periods? * period?))
     }
 
-    /// Step in time, the first one when steps are adaptive.
+    /// Implicit step in the time of the solver, the first one when steps are adaptive; `period` as for [`Self::end`].
     pub fn step_length(&self, period: Option<f64>) -> Option<f64> {
-        self.step.map(|s| s.0).or_else(|| Some(period? / f64::from(self.steps_per_period?)))
+        let Temporal::Dual(plan) = &self.time else { return None };
+        let step = plan.step.map(|t| self.flow.units().solver_time(t.0));
+        step.or_else(|| Some(period? / f64::from(plan.steps_per_period?)))
     }
-}
-
-fn end(until: Option<Time>, periods: Option<f64>, period: Option<f64>) -> Option<f64> {
-    until.map(|t| t.0).or_else(|| Some(periods? * period?))
 }
 
 impl Default for Temporal {

@@ -102,7 +102,7 @@ const UNTIL: Field = Field::optional(
     "until",
     Kind::Quantity(Time::DIMENSION, Range::POSITIVE),
     "`periods` must be given",
-    "Time at which the run ends.",
+    "Time at which the run ends: seconds, or lengths over sound speed without a dimensional free stream.",
 );
 const PERIODS: Field = Field::optional(
     "periods",
@@ -144,7 +144,7 @@ static DUAL: Table = Table::of(&[
         "step",
         Kind::Quantity(Time::DIMENSION, Range::POSITIVE),
         "`steps_per_period` must be given",
-        "Step in time.",
+        "Step in time, in the units of `until`.",
     ),
     PERIODS,
     UNTIL,
@@ -165,7 +165,7 @@ static DUAL: Table = Table::of(&[
     Field::optional(
         "start_orders",
         ORDERS,
-        "3, and 8 with bodies on springs",
+        "3, and 13 with bodies on springs",
         "Orders of magnitude the residual of the steady flow that the march begins with must fall: what is left moves bodies on springs.",
     ),
     Field::optional(

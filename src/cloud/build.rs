@@ -117,7 +117,9 @@ fn outer_particles<const D: usize>(particles: &Particles<D>) -> Vec<Outer> {
         let fewest = |n: u32| ways.clone().filter(move |w| w.count_ones() == n);
         let source = (1..=D as u32).flat_map(fewest).find_map(|w| fluid_at(&place(w))).unwrap_or(i as u32);
         let onwards = particles.x[source as usize] - *x;
-        let behind = fluid_at(&(particles.x[source as usize] + onwards * (1.0 - ASIDE))).filter(|k| *k != source).unwrap_or(source);
+        let behind = fluid_at(&(particles.x[source as usize] + onwards * (1.0 - ASIDE)))
+            .filter(|k| *k != source)
+            .unwrap_or(source);
         Outer { side, source, behind, outward: (*axis as u8, *end == 1) }
     });
     outer.collect()

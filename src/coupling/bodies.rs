@@ -36,11 +36,8 @@ impl<const D: usize> Attached<D> {
         first: usize,
         shapes: Vec<Arc<ModeShape<D>>>,
     ) -> Self {
-        let unit = |name: &str| match name {
-            "pitch" | "roll" | "yaw" | "flap" => 1.0,
-            _ => length,
-        };
-        let units = structure.coordinates().iter().map(|c| unit(&c.name)).collect();
+        let unit = |k: usize| if structure.is_angle(k) { 1.0 } else { length };
+        let units = (0..structure.len()).map(unit).collect();
         Self { structure, body, first, shapes, units, bends: Vec::new() }
     }
 

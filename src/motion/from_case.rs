@@ -1,10 +1,12 @@
 //! Laws of motion from the tables of a case and the files they name.
+//!
+//! Laws are in the time of the solver, the tables in that of the case: here one becomes the other, and nowhere else.
 use std::sync::Arc;
 
 use super::samples::Samples;
 use super::{BodyMotion, ModeShape, Motions, Spline, TimeFunction};
 use crate::case::formula::{Formula, FormulaError};
-use crate::case::{BodyMotionSpec, Case, CaseErrors, MotionFormula, MotionTable, Temporal, read_mode};
+use crate::case::{BodyMotionSpec, Case, CaseErrors, MotionFormula, MotionTable, Temporal, Units, read_mode};
 use crate::math::Vector;
 
 /// Reads the text of a file that a case names.
@@ -79,7 +81,7 @@ impl<const D: usize> Motions<D> {
     /// The motions of `case`; `chord` is its reference chord, `read` opens the files it names.
     pub fn of_case(case: &Case, chord: f64, read: ReadFile<'_>) -> Result<Self, MotionError> {
         let build = |motion: Option<&BodyMotionSpec>, whose: String| match motion {
-            Some(motion) => Builder { case, chord, read, motion, whose: &whose }.law(),
+            Some(motion) => Builder { case, chord, units: case.flow.units(), read, motion, whose: &whose }.law(),
             None => Ok(BodyMotion::fixed()),
         };
         let named = |i: usize| case.bodies[i].name.clone().unwrap_or_else(|| format!("body {}", i + 1));
@@ -105,6 +107,7 @@ pub fn mode_shape<const D: usize>(file: &str, read: ReadFile<'_>) -> Result<Mode
 struct Builder<'a> {
     case: &'a Case,
     chord: f64,
+    units: Units,
     read: ReadFile<'a>,
     motion: &'a BodyMotionSpec,
     whose: &'a str,
@@ -116,7 +119,8 @@ impl Builder<'_> {
         let pivot = motion.pivot.as_ref().map(|p| Vector::from_fn(|d| p[d].0));
         let axis = motion.axis.as_ref().map(|a| [a[0], a[1], a[2]]);
         let mut law = BodyMotion::about(pivot.unwrap_or(Vector::ZERO), axis);
-        let omega = self.case.angular_frequency(motion, self.chord).unwrap_or(0.0);
+        let frequency = self.case.angular_frequency(motion, self.chord).unwrap_or(0.0);
+        let omega = self.units.solver_rate(frequency);
         let sine = |amplitude: f64, phase: f64| TimeFunction::Sine { amplitude, omega, phase };
         if let Some(pitch) = &motion.pitch {
             law = law.with_angle(sine(pitch.amplitude.0, pitch.phase.0));
@@ -127,16 +131,17 @@ impl Builder<'_> {
             law = law.with_shift_along(&direction, |c| sine(plunge.amplitude.0 * c, plunge.phase.0));
         }
         if let Some(rotation) = &motion.rotation {
-            law = law.with_angle(TimeFunction::Steady(rotation.rate.0));
+            law = law.with_angle(TimeFunction::Steady(self.units.solver_rate(rotation.rate.0)));
         }
         if let Some(translation) = &motion.translation {
-            law = law.with_shift(std::array::from_fn(|d| TimeFunction::Steady(translation.velocity[d].0)));
+            let speed = |d: usize| self.units.solver_rate(translation.velocity[d].0);
+            law = law.with_shift(std::array::from_fn(|d| TimeFunction::Steady(speed(d))));
         }
         if let Some(table) = &motion.table {
             law = self.table(table, law)?;
         }
         if let Some(formula) = &motion.formula {
-            law = formulas(formula, omega, law)?;
+            law = self.formulas(formula, frequency, law)?;
         }
         for mode in &motion.modes {
             let shape = mode_shape(&mode.file, self.read)?;
@@ -162,7 +167,8 @@ impl Builder<'_> {
                 Samples::parse(&text, table.periodic, D).map_err(problem)?
             }
         };
-        let spline = |values: &Vec<f64>| TimeFunction::Spline(Spline::new(&samples.time, values, table.periodic));
+        let time: Vec<f64> = samples.time.iter().map(|t| self.units.solver_time(*t)).collect();
+        let spline = |values: &Vec<f64>| TimeFunction::Spline(Spline::new(&time, values, table.periodic));
         let law = match &samples.angle {
             Some(angle) => law.with_angle(spline(angle)),
             None => law,
@@ -172,28 +178,30 @@ impl Builder<'_> {
         }
         Ok(law.with_shift(std::array::from_fn(|d| samples.shift[d].as_ref().map_or(TimeFunction::Steady(0.0), spline))))
     }
-}
 
-/// Adds formulas.
-fn formulas<const D: usize>(
-    formula: &MotionFormula,
-    omega: f64,
-    law: BodyMotion<D>,
-) -> Result<BodyMotion<D>, MotionError> {
-    let course = |text: &Option<String>| match text {
-        None => Ok(None),
-        Some(text) => match Formula::parse(text) {
-            Ok(formula) => Ok(Some(TimeFunction::Formula(formula, omega))),
-            Err(source) => Err(MotionError::Formula { text: text.clone(), source }),
-        },
-    };
-    let law = match course(&formula.angle)? {
-        Some(angle) => law.with_angle(angle),
-        None => law,
-    };
-    let shift = [course(&formula.x)?, course(&formula.y)?, course(&formula.z)?];
-    if shift.iter().all(Option::is_none) {
-        return Ok(law);
+    /// Adds formulas in the time of the case, in which `frequency` is.
+    fn formulas<const D: usize>(
+        &self,
+        formula: &MotionFormula,
+        frequency: f64,
+        law: BodyMotion<D>,
+    ) -> Result<BodyMotion<D>, MotionError> {
+        let time = self.units.case_time(1.0);
+        let course = |text: &Option<String>| match text {
+            None => Ok(None),
+            Some(text) => match Formula::parse(text) {
+                Ok(formula) => Ok(Some(TimeFunction::Formula { formula, omega: frequency, time })),
+                Err(source) => Err(MotionError::Formula { text: text.clone(), source }),
+            },
+        };
+        let law = match course(&formula.angle)? {
+            Some(angle) => law.with_angle(angle),
+            None => law,
+        };
+        let shift = [course(&formula.x)?, course(&formula.y)?, course(&formula.z)?];
+        if shift.iter().all(Option::is_none) {
+            return Ok(law);
+        }
+        Ok(law.with_shift(std::array::from_fn(|d| shift[d].clone().unwrap_or(TimeFunction::Steady(0.0)))))
     }
-    Ok(law.with_shift(std::array::from_fn(|d| shift[d].clone().unwrap_or(TimeFunction::Steady(0.0)))))
 }

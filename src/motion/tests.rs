@@ -174,6 +174,33 @@ fn tables_come_from_files_too() {
 }
 
 #[test]
+fn laws_of_a_dimensional_stream_are_in_the_time_of_the_solver() {
+    let air = "mach = 0.5\npressure = 101325\ntemperature = 288.15";
+    let motions = |motion: &str, file: &'static str| {
+        let text = format!("[flow]\n{air}\n[[body]]\nnaca = \"0012\"\n{CLOUD}[motion]\n{motion}\n");
+        let case = read(&text, "c").unwrap_or_else(|e| panic!("{e}"));
+        let motions = Motions::<2>::of_case(&case, 1.0, &move |_| Ok(file.to_owned()));
+        (motions.unwrap_or_else(|e| panic!("{e}")), case.flow.reference().sound_speed)
+    };
+    // a quarter of a period of 0.2 s, at a rate over the sound speed
+    let sine = "frequency = \"5 Hz\"\nplunge = 0.1";
+    let formula = "frequency = \"5 Hz\"\nformula = { y = \"0.1 * sin(10 * pi * t) + 0 * omega\" }";
+    let table = "table = { file = \"m.csv\", periodic = true }";
+    for motion in [sine, formula, table] {
+        let (m, a) = motions(motion, "time,y\n0,0\n0.05,0.1\n0.1,0\n0.15,-0.1\n0.2,0\n");
+        assert!((m.period().unwrap() / (0.2 * a) - 1.0).abs() < 1e-14, "{motion}");
+        assert_near(m.of(0).pose(0.05 * a).shift, [0.0, 0.1], 1e-14);
+        let rate = m.of(0).velocity(0.0, &Vector([0.0, 0.0]))[1] * a;
+        let wanted = if motion == table { 3.0 } else { PI };
+        assert!((rate - wanted).abs() < 1e-12, "{motion}: {rate}");
+    }
+    let (m, a) = motions("pivot = [0, 0]\nrotation = \"90 deg/s\"\ntranslation = [\"2 m/s\", 0]", "");
+    assert_near(m.of(0).pose(a).point(&Vector([0.0, 1.0])), [3.0, 0.0], 1e-14);
+    let (m, a) = motions("formula = { y = \"0.3 * t^2\" }", "");
+    assert_near(m.of(0).pose(2.0 * a).shift, [0.0, 1.2], 1e-14);
+}
+
+#[test]
 fn motions_that_make_no_sense_are_refused() {
     let refuse = |motion: &str| {
         let text = format!("[flow]\nmach = 0.5\n[[body]]\nnaca = \"0012\"\n{CLOUD}[motion]\n{motion}\n");

@@ -28,8 +28,15 @@ pub enum TimeFunction {
     Steady(f64),
     /// A cubic spline through a table.
     Spline(Spline),
-    /// A formula in t and ω.
-    Formula(Formula, f64),
+    /// A formula of a case file in its own time.
+    Formula {
+        /// The formula in t and ω.
+        formula: Formula,
+        /// ω of the formula, in the units of its time.
+        omega: f64,
+        /// Units of the formula's time in one unit of time here.
+        time: f64,
+    },
     /// value + rate (t − about) + acceleration (t − about)²/2: a coordinate that is an unknown, as it is at one time.
     Momentary {
         /// Time.
@@ -59,7 +66,7 @@ impl TimeFunction {
             }
             Self::Steady(rate) => t * S::constant(*rate),
             Self::Spline(spline) => spline.at(t),
-            Self::Formula(formula, omega) => evaluate(formula, t, *omega),
+            Self::Formula { formula, omega, time } => evaluate(formula, t * S::constant(*time), *omega),
             Self::Momentary { about, jet } => {
                 let passed = t - S::constant(*about);
                 let half = S::constant(0.5 * jet.second) * passed * passed;
@@ -75,9 +82,11 @@ impl TimeFunction {
             Self::Sine { omega, .. } => Repeat::Every(TAU / omega),
             Self::Steady(_) => Repeat::Never,
             Self::Spline(spline) => spline.period().map_or(Repeat::Never, Repeat::Every),
-            Self::Formula(formula, _) if !formula.contains(&Formula::Time) => Repeat::Constant,
-            Self::Formula(_, omega) if *omega > 0.0 && self.repeats_after(TAU / omega) => Repeat::Every(TAU / omega),
-            Self::Formula(..) | Self::Momentary { .. } => Repeat::Never,
+            Self::Formula { formula, .. } if !formula.contains(&Formula::Time) => Repeat::Constant,
+            Self::Formula { omega, time, .. } if *omega > 0.0 && self.repeats_after(TAU / (omega * time)) => {
+                Repeat::Every(TAU / (omega * time))
+            }
+            Self::Formula { .. } | Self::Momentary { .. } => Repeat::Never,
         }
     }
 
@@ -212,7 +221,7 @@ mod tests {
     use super::*;
 
     fn formula(text: &str, omega: f64) -> TimeFunction {
-        TimeFunction::Formula(Formula::parse(text).unwrap(), omega)
+        TimeFunction::Formula { formula: Formula::parse(text).unwrap(), omega, time: 1.0 }
     }
 
     #[test]

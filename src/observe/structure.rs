@@ -8,6 +8,11 @@
 //!
 //! Coordinates are named as in the structure (`plunge`, `plunge_rate`, `plunge_load`), with the body before them (`wing.plunge`)
 //! where more than one structure moves. A resumed run goes on to the same bits: the integrals are read back from the last row.
+//!
+//! Units are those of the case: with a dimensional free stream seconds, metres and radians, rates per second, and in the plane per
+//! span N/m and N (forces, moments), J/m (energies, work), W/m (powers); in space N, N m, J, W. Else those of ρ∞, a∞ and the length.
+//!
+//! The rows of a harmonic balance are two periods of it, and its frequency is known: nothing is fitted.
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
@@ -23,7 +28,7 @@ const BEFORE: [&str; 2] = ["iteration", "time"];
 const OF_COORDINATE: [&str; 3] = ["", "_rate", "_load"];
 /// Columns after those of the coordinates.
 const AFTER: [&str; 7] = ["kinetic", "potential", "dissipation", "gas_power", "wall_power", "gas_work", "ledger"];
-/// Coordinates that are angles, in radians, where nothing else is known.
+/// Names of coordinates that are taken for angles where nothing is known but a table.
 const ANGLES: [&str; 4] = ["pitch", "flap", "roll", "yaw"];
 
 /// A body on springs and its coordinates.
@@ -31,11 +36,20 @@ const ANGLES: [&str; 4] = ["pitch", "flap", "roll", "yaw"];
 pub struct StructureNames {
     /// Name of the body.
     pub body: String,
-    /// Names of its coordinates.
-    pub coordinates: Vec<String>,
+    /// Its coordinates.
+    pub coordinates: Vec<CoordinateName>,
 }
 
-/// All structures of a run at the end of a step, in the units of the solver.
+/// What a coordinate is called, and what it is.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct CoordinateName {
+    /// Its name in the structure.
+    pub name: String,
+    /// True for an angle, in radians.
+    pub angle: bool,
+}
+
+/// All structures of a run at the end of a step, in the units of the case.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct StructureSample {
     /// Time.
@@ -140,7 +154,7 @@ pub struct CoordinateSummary {
     pub name: String,
     /// True for an angle, in radians.
     pub angle: bool,
-    /// Mean over the last whole cycles; the last value where nothing oscillates.
+    /// Mean over the last whole cycles, of a harmonic balance its two; the last value where nothing oscillates.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mean: Option<f64>,
     /// Greatest absolute value.
@@ -151,10 +165,10 @@ pub struct CoordinateSummary {
     /// Greatest less smallest amplitude of these cycles over their mean.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub amplitude_spread: Option<f64>,
-    /// Angular frequency ω of the first of `modes`.
+    /// Angular frequency ω of the first of `modes`, or of the harmonic balance.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub frequency: Option<f64>,
-    /// Its growth rate σ.
+    /// Its growth rate σ, zero in a harmonic balance.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub growth_rate: Option<f64>,
     /// Its −σ/√(σ² + ω²).
@@ -171,7 +185,7 @@ pub struct CoordinateSummary {
     pub no_frequency: Option<String>,
 }
 
-/// True for the coordinates of sections and rigid bodies that are angles; the name of a body may stand before.
+/// True for names that mostly belong to angles, where a table is all that is known; the name of a body may stand before.
 pub fn is_angle(name: &str) -> bool {
     ANGLES.contains(&name.rsplit('.').next().unwrap_or(name))
 }
@@ -179,7 +193,7 @@ pub fn is_angle(name: &str) -> bool {
 /// Names of all coordinates in the table.
 fn full_names(structures: &[StructureNames]) -> Vec<String> {
     let prefix = |s: &StructureNames| if structures.len() > 1 { format!("{}.", s.body) } else { String::new() };
-    let own = |s: &StructureNames| s.coordinates.iter().map(|c| prefix(s) + c).collect::<Vec<String>>();
+    let own = |s: &StructureNames| s.coordinates.iter().map(|c| prefix(s) + &c.name).collect::<Vec<String>>();
     structures.iter().flat_map(own).collect()
 }
 
@@ -276,14 +290,14 @@ impl StructureTable {
         Some(table)
     }
 
-    /// Adds the row of a step; the first one names the coordinates.
-    pub fn push(&mut self, iteration: u64, structures: &[StructureNames], sample: &StructureSample) {
-        if self.coordinates.is_empty() {
-            let names = columns(structures);
-            let own = names[BEFORE.len()..names.len() - AFTER.len()].iter().step_by(3);
-            let named = |name: &String| CoordinateHistory { name: name.clone(), ..CoordinateHistory::default() };
-            self.coordinates = own.map(named).collect();
-        }
+    /// An empty table of these structures.
+    pub fn of(structures: &[StructureNames]) -> Self {
+        let named = |name| CoordinateHistory { name, ..CoordinateHistory::default() };
+        Self { coordinates: full_names(structures).into_iter().map(named).collect(), ..Self::default() }
+    }
+
+    /// Adds the row of a step.
+    pub fn push(&mut self, iteration: u64, sample: &StructureSample) {
         let totals = Totals::after(self.totals(), sample);
         for (k, c) in self.coordinates.iter_mut().enumerate() {
             c.values.push(sample.coordinates[k]);
@@ -326,50 +340,80 @@ impl StructureTable {
         })
     }
 
-    /// What became of each structure, without its description; the coordinates are those of the table in their order.
-    pub fn summaries(&self, structures: &[StructureNames]) -> Vec<StructureSummary> {
+    /// What became of each structure, without its description; the coordinates are those of the table in their order. `balanced` is the
+    /// angular frequency of the harmonic balance whose periods the table holds, where it does.
+    pub fn summaries(&self, structures: &[StructureNames], balanced: Option<f64>) -> Vec<StructureSummary> {
         let mut rest = self.coordinates.as_slice();
         let summary = |names: &StructureNames| {
             let (own, others) = rest.split_at(names.coordinates.len().min(rest.len()));
             rest = others;
-            self.summary(names, own)
+            self.summary(names, own, balanced)
         };
         structures.iter().map(summary).collect()
     }
 
     /// Greatest difference of the two powers over the greatest of them.
     fn lost_power(&self) -> f64 {
-        let largest = |values: &mut dyn Iterator<Item = f64>| values.fold(0.0, |m: f64, v| m.max(v.abs()));
-        let lost = largest(&mut self.wall_power.iter().zip(&self.gas_power).map(|(wall, gas)| wall - gas));
-        let all = largest(&mut self.wall_power.iter().chain(&self.gas_power).copied());
+        let lost = largest(self.wall_power.iter().zip(&self.gas_power).map(|(wall, gas)| wall - gas));
+        let all = largest(self.wall_power.iter().chain(&self.gas_power).copied());
         if all > 0.0 { lost / all } else { 0.0 }
     }
 
-    fn summary(&self, names: &StructureNames, own: &[CoordinateHistory]) -> StructureSummary {
-        let each = names.coordinates.iter().zip(own);
-        let coordinates: Vec<_> = each.map(|(name, c)| CoordinateSummary::of(name, &self.time, &c.values)).collect();
+    fn summary(&self, names: &StructureNames, own: &[CoordinateHistory], balanced: Option<f64>) -> StructureSummary {
+        let told = |(name, c): (&CoordinateName, &CoordinateHistory)| match balanced {
+            Some(omega) => CoordinateSummary::periodic(name, &self.time, &c.values, omega),
+            None => CoordinateSummary::of(name, &self.time, &c.values),
+        };
+        let coordinates: Vec<_> = names.coordinates.iter().zip(own).map(told).collect();
         // the period is that of the coordinate whose fit is to be believed most
-        let told = coordinates.iter().filter_map(|c| Some([c.fit_residual?, c.frequency?]));
-        let best = told.min_by(|a, b| a[0].total_cmp(&b[0]));
+        let fitted = coordinates.iter().filter_map(|c| Some([c.fit_residual?, c.frequency?]));
+        let best = fitted.min_by(|a, b| a[0].total_cmp(&b[0])).map(|[_, frequency]| frequency);
         let power = |k: usize| own.iter().map(|c| c.loads[k] * c.rates[k]).sum::<f64>();
         let power: Vec<f64> = (0..self.len()).map(power).collect();
-        let energy_per_cycle = best.and_then(|[_, frequency]| energy_per_cycle(&self.time, &power, frequency));
+        let energy_per_cycle = balanced.or(best).and_then(|frequency| energy_per_cycle(&self.time, &power, frequency));
         let lost_power = self.lost_power();
-        StructureSummary { body: names.body.clone(), description: Vec::new(), coordinates, energy_per_cycle, lost_power }
+        StructureSummary {
+            body: names.body.clone(),
+            description: Vec::new(),
+            coordinates,
+            energy_per_cycle,
+            lost_power,
+        }
     }
+}
+
+/// Greatest absolute value.
+fn largest(values: impl Iterator<Item = f64>) -> f64 {
+    values.fold(0.0, |m: f64, v| m.max(v.abs()))
 }
 
 impl CoordinateSummary {
     /// Mean, amplitude, frequency and damping from the tail of a history.
-    pub fn of(name: &str, time: &[f64], values: &[f64]) -> Self {
+    pub fn of(name: &CoordinateName, time: &[f64], values: &[f64]) -> Self {
         let mean = values.last().copied().filter(|last| last.is_finite());
-        let largest = values.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
-        let summary = Self { name: name.to_owned(), angle: is_angle(name), mean, largest, ..Self::default() };
+        let largest = largest(values.iter().copied());
+        let summary = Self { name: name.name.clone(), angle: name.angle, mean, largest, ..Self::default() };
         match DampingFit::of(time, values) {
             Ok(fit) => summary.with(fit, time, values),
             Err(reason) => {
                 Self { no_frequency: Some(reason.to_string()).filter(|_| reason != NoFit::Still), ..summary }
             }
+        }
+    }
+
+    /// Mean and amplitude of whole periods of a motion that has the angular frequency `omega` and neither grows nor decays.
+    pub fn periodic(name: &CoordinateName, time: &[f64], values: &[f64], omega: f64) -> Self {
+        let cycles = LastCycles::of(time, values, omega);
+        Self {
+            name: name.name.clone(),
+            angle: name.angle,
+            mean: cycles.map(|c| c.mean),
+            largest: largest(values.iter().copied()),
+            amplitude: cycles.map(|c| c.amplitude),
+            frequency: Some(omega),
+            growth_rate: Some(0.0),
+            damping_ratio: Some(0.0),
+            ..Self::default()
         }
     }
 
@@ -394,8 +438,12 @@ impl CoordinateSummary {
 pub(crate) mod tests {
     use super::*;
 
-    fn section() -> StructureNames {
-        StructureNames { body: "wing".into(), coordinates: vec!["plunge".into(), "pitch".into()] }
+    pub(crate) fn named(name: &str, angle: bool) -> CoordinateName {
+        CoordinateName { name: name.into(), angle }
+    }
+
+    pub(crate) fn section() -> StructureNames {
+        StructureNames { body: "wing".into(), coordinates: vec![named("plunge", false), named("pitch", true)] }
     }
 
     /// A section that swings: plunge decays, pitch keeps its amplitude; walls lose a tenth of the power.
@@ -444,7 +492,7 @@ pub(crate) mod tests {
 
     #[test]
     fn names_of_bodies_stand_before_coordinates_where_there_are_more() {
-        let tail = StructureNames { body: "tail".into(), coordinates: vec!["pitch".into()] };
+        let tail = StructureNames { body: "tail".into(), coordinates: vec![named("pitch", true)] };
         let names = columns(&[section(), tail]).join(",");
         assert!(names.starts_with("iteration,time,wing.plunge,wing.plunge_rate,wing.plunge_load,wing.pitch,"));
         assert!(names.ends_with("tail.pitch_load,kinetic,potential,dissipation,gas_power,wall_power,gas_work,ledger"));
@@ -461,7 +509,7 @@ pub(crate) mod tests {
         assert_eq!(table.coordinates[1].name, "pitch");
         assert_eq!(table.coordinates[0].rates[17], sample(17).rates[0]);
         assert_eq!(table.wall_power[3], sample(3).wall_power);
-        let all = table.summaries(&[section()]);
+        let all = table.summaries(&[section()], None);
         let [plunge, pitch] = all[0].coordinates.as_slice() else { panic!("{all:?}") };
         assert!((plunge.frequency.unwrap() - 0.9).abs() < 1e-8 && (plunge.growth_rate.unwrap() + 0.02).abs() < 1e-8);
         assert!(
@@ -478,13 +526,41 @@ pub(crate) mod tests {
     }
 
     #[test]
+    fn periods_of_a_balance_have_its_frequency_and_modes_are_no_angles() {
+        let omega = 0.7;
+        let names = StructureNames { body: "wing".into(), coordinates: vec![named("pitch", false)] };
+        let mut table = StructureTable::of(std::slice::from_ref(&names));
+        for k in 0..=256 {
+            let phase = std::f64::consts::TAU * f64::from(k) / 128.0;
+            let rate = -0.3 * omega * phase.sin();
+            table.push(
+                9,
+                &StructureSample {
+                    time: phase / omega,
+                    coordinates: vec![0.1 + 0.3 * phase.cos()],
+                    rates: vec![rate],
+                    loads: vec![2.0 * rate],
+                    ..StructureSample::default()
+                },
+            );
+        }
+        let all = table.summaries(&[names], Some(omega));
+        let c = &all[0].coordinates[0];
+        assert_eq!((c.frequency, c.growth_rate, c.angle, c.fit_residual), (Some(omega), Some(0.0), false, None));
+        assert!((c.mean.unwrap() - 0.1).abs() < 1e-12 && (c.amplitude.unwrap() - 0.3).abs() < 1e-6, "{c:?}");
+        // ∫ 2 q'² dt = 2 π ω a²
+        let work = std::f64::consts::TAU * omega * 0.09;
+        assert!((all[0].energy_per_cycle.unwrap() / work - 1.0).abs() < 1e-12, "{all:?}");
+    }
+
+    #[test]
     fn tables_of_others_are_not_read_and_an_equilibrium_has_no_frequency() {
         assert_eq!(StructureTable::parse("iteration,time,cl\n1,2,3\n"), None);
         assert_eq!(StructureTable::parse(""), None);
         let header = columns(&[section()]).join(",");
         assert!(StructureTable::parse(&header).unwrap().is_empty());
         assert_eq!(StructureTable::parse(&header.replace("plunge_load", "pitch_load")), None);
-        let rest = CoordinateSummary::of("pitch", &[0.0; 50], &[0.02; 50]);
+        let rest = CoordinateSummary::of(&named("pitch", true), &[0.0; 50], &[0.02; 50]);
         assert!(rest.mean == Some(0.02) && rest.frequency.is_none() && rest.no_frequency.is_some());
     }
 }

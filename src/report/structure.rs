@@ -41,7 +41,12 @@ fn ending(summary: &StructureSummary, several: bool) -> Vec<Block> {
     if !summary.coordinates.is_empty() {
         blocks.push(Block::Table(tail_table(&summary.coordinates)));
     }
-    let notes: Vec<String> = summary.coordinates.iter().filter_map(note).collect();
+    let mut notes: Vec<String> = summary.coordinates.iter().filter_map(note).collect();
+    if summary.coordinates.iter().any(is_balanced) {
+        notes.push(
+            "the frequency is that of the harmonic balance, of which two periods are shown: nothing is fitted".into(),
+        );
+    }
     if !notes.is_empty() {
         blocks.push(Block::List(notes));
     }
@@ -49,6 +54,11 @@ fn ending(summary: &StructureSummary, several: bool) -> Vec<Block> {
         summary.energy_per_cycle.map(|energy| Fact::new("Work of the gas over the last cycle", number(energy)));
     blocks.extend(energy.map(|fact| Block::Facts(vec![fact])));
     blocks
+}
+
+/// True for a coordinate whose frequency was known before.
+fn is_balanced(c: &CoordinateSummary) -> bool {
+    c.frequency.is_some() && c.fit_residual.is_none()
 }
 
 /// Columns of the table of coordinates.
@@ -194,7 +204,7 @@ fn energies(table: &StructureTable, across: &Across<'_>) -> [Chart; 4] {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::observe::structure::{StructureNames, tests::fill};
+    use crate::observe::structure::tests::{fill, section};
     use crate::report::overview::tests::assert_balanced;
     use crate::report::write_report;
 
@@ -203,8 +213,7 @@ mod tests {
     }
 
     fn summary(folder: &std::path::Path) -> Vec<StructureSummary> {
-        let names = StructureNames { body: "wing".into(), coordinates: vec!["plunge".into(), "pitch".into()] };
-        let mut all = StructureTable::read(&folder.join(FILE)).unwrap().unwrap().summaries(&[names]);
+        let mut all = StructureTable::read(&folder.join(FILE)).unwrap().unwrap().summaries(&[section()], None);
         all[0].description = vec!["mass ratio μ = 60".into(), "V* = 5 <b>".into()];
         all
     }

@@ -154,15 +154,15 @@ impl<const D: usize> Found<'_, D> {
             unconverged_steps: record.unconverged,
             halved_steps: record.halved,
             re_clouding: reclouding::<D>(record),
-            first_harmonics: log.period.map_or_else(Vec::new, |p| record.trace.first_harmonics(p)),
-            momentum_of_period: log.period.and_then(|p| record.moments.last(p)),
-            last_period: log.period.and_then(|p| record.trace.last_period(p)),
+            first_harmonics: log.case_period().map_or_else(Vec::new, |p| record.trace.first_harmonics(p)),
+            momentum_of_period: log.case_period().and_then(|p| record.moments.last(p)),
+            last_period: log.case_period().and_then(|p| record.trace.last_period(p)),
             lift_cycles: record.trace.cycles(),
-            periodic_change: log.period.and_then(|p| record.trace.change(p)),
+            periodic_change: log.case_period().and_then(|p| record.trace.change(p)),
             bytes_per_particle: bytes_of(fluid, record.bytes) as f64 / n as f64,
             cpu_ms_per_particle: 1e3 * cpu / n as f64,
             linear_iterations: record.linear,
-            error_l2_density: self.exact_error(record.time),
+            error_l2_density: self.exact_error(log.units.solver_time(record.time)),
             adapt_change: last_change(&record.cycles),
             phases: spent.phases(),
         }
@@ -212,7 +212,7 @@ impl<const D: usize> Found<'_, D> {
         }
     }
 
-    /// Error of the density against the exact solution that the case starts from, when it has one.
+    /// Error of the density against the exact solution that the case starts from, when it has one, at a `time` of the solver.
     fn exact_error(&self, time: f64) -> Option<f64> {
         if matches!(self.case.initial, Initial::FreeStream) || !self.case.bodies.is_empty() {
             return None;
@@ -220,7 +220,9 @@ impl<const D: usize> Found<'_, D> {
         let cloud = self.view.cloud();
         let extent = cloud.tree.bounds().extent();
         let period = Some(Vector([extent[0], extent[1]]));
-        let truth = FieldTruth::new(&self.case.initial, self.case.flow.gamma, period).ok()??;
+        let truth =
+            FieldTruth::new(&self.case.initial.in_solver_units(&self.case.flow.units()), self.case.flow.gamma, period)
+                .ok()??;
         let (mut sum, mut volume) = (0.0, 0.0);
         let volumes = self.view.volumes();
         for i in 0..cloud.n_fluid {

@@ -28,7 +28,7 @@ impl Monitor for Silent {
 pub struct Tick {
     /// Iterations over all stages.
     pub iteration: u64,
-    /// Orders of magnitude to go in all (steady) or fraction of the time (marching), and reached.
+    /// Orders of magnitude to go in all (steady), or the time at which a march ends, in the units of the case.
     pub goal: f64,
     /// Reached of `goal`.
     pub reached: f64,

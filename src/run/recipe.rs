@@ -14,8 +14,9 @@ const START: [[usize; 2]; 2] = [[2_500, 9_000], [15_000, 80_000]];
 const PRELUDE_ITERATIONS: u32 = 500;
 /// Orders of magnitude of that relaxation: the motion soon moves loads by more than what is left.
 const PRELUDE_ORDERS: f64 = 3.0;
-/// The same for bodies on springs, which what is left moves: oscillations of a thousandth of a degree shall be linear ones.
-const SPRUNG_ORDERS: f64 = 8.0;
+/// The same for bodies on springs, which what is left moves: it is to be round-off, so that
+/// oscillations may be as small as one likes.
+const SPRUNG_ORDERS: f64 = 13.0;
 /// Greatest number of its iterations where a march leads to a harmonic balance.
 const LEAD_ITERATIONS: u32 = 60;
 /// Harmonics at which `number = "auto"` begins, and what it adds.
@@ -44,7 +45,7 @@ const USUAL_HARMONICS: u32 = 3;
 pub(crate) struct Marching {
     /// How steps are taken.
     pub(crate) scheme: Scheme,
-    /// Time at which it ends.
+    /// Time of the solver at which it ends.
     pub(crate) until: f64,
     /// Greatest number of steps.
     pub(crate) limit: u32,
@@ -96,7 +97,7 @@ pub(crate) fn marching(case: &Case, period: Option<f64>, dimension: usize) -> Re
     match &case.time {
         Temporal::Steady(_) | Temporal::Harmonics(_) => Ok(None),
         Temporal::Explicit(plan) => {
-            let until = plan.end(period).ok_or(RunError::NoPeriod { table: "explicit" })?;
+            let until = case.end(period).ok_or(RunError::NoPeriod { table: "explicit" })?;
             let method = match plan.method {
                 RungeKutta::Ssprk3 => explicit::Method::Ssprk3,
                 RungeKutta::Rk4 => explicit::Method::Rk4,
@@ -105,7 +106,7 @@ pub(crate) fn marching(case: &Case, period: Option<f64>, dimension: usize) -> Re
             Ok(Some(Marching { scheme, until, limit: plan.steps, tolerance: plan.periodic_tolerance }))
         }
         Temporal::Dual(dual) => {
-            let plan = implicit_plan(dual, period)?;
+            let plan = implicit_plan(case, dual, period)?;
             let (until, scheme) = (plan.until, Scheme::Dual(inner_control(dual, dimension), plan));
             Ok(Some(Marching { scheme, until, limit: u32::MAX, tolerance: dual.periodic_tolerance }))
         }
@@ -183,8 +184,8 @@ pub(crate) fn is_automatic(plan: &Harmonics) -> bool {
 pub(crate) fn evaluations(case: &Case, period: Option<f64>, fastest: impl FnOnce() -> f64) -> f64 {
     match &case.time {
         Temporal::Steady(_) => EVALUATIONS * f64::from(1 + case.adapt.cycles),
-        Temporal::Dual(dual) => {
-            let steps = dual.end(period).zip(dual.step_length(period)).map_or(0.0, |(end, step)| end / step);
+        Temporal::Dual(_) => {
+            let steps = case.end(period).zip(case.step_length(period)).map_or(0.0, |(end, step)| end / step);
             EVALUATIONS + STEP_EVALUATIONS * steps
         }
         Temporal::Harmonics(h) => {
@@ -194,7 +195,7 @@ pub(crate) fn evaluations(case: &Case, period: Option<f64>, fastest: impl FnOnce
             };
             EVALUATIONS * f64::from(2 + 2 * count)
         }
-        Temporal::Explicit(e) => EXPLICIT_EVALUATIONS * e.end(period).unwrap_or_default() * fastest() / e.cfl,
+        Temporal::Explicit(e) => EXPLICIT_EVALUATIONS * case.end(period).unwrap_or_default() * fastest() / e.cfl,
     }
 }
 
@@ -206,7 +207,7 @@ pub(crate) fn is_implicit(case: &Case) -> bool {
 /// The implicit step of a case, where it is fixed.
 pub(crate) fn fixed_step(case: &Case, period: Option<f64>) -> Option<FixedStep> {
     let Temporal::Dual(dual) = &case.time else { return None };
-    let length = dual.step_length(period).filter(|dt| dual.adaptive.is_none() && 0.0 < *dt)?;
+    let length = case.step_length(period).filter(|dt| dual.adaptive.is_none() && 0.0 < *dt)?;
     Some(FixedStep { length, of_period: period.is_some() && dual.steps_per_period.is_some() })
 }
 
@@ -234,11 +235,11 @@ pub(crate) fn harmonic_control(plan: &Harmonics, dimension: usize) -> Control {
 }
 
 /// Numbers of an implicit march.
-fn implicit_plan(dual: &case::Dual, period: Option<f64>) -> Result<Plan, RunError> {
+fn implicit_plan(case: &Case, dual: &case::Dual, period: Option<f64>) -> Result<Plan, RunError> {
     let wrong = || RunError::NoPeriod { table: "dual" };
     Ok(Plan {
-        until: dual.end(period).ok_or_else(wrong)?,
-        step: dual.step_length(period).ok_or_else(wrong)?,
+        until: case.end(period).ok_or_else(wrong)?,
+        step: case.step_length(period).ok_or_else(wrong)?,
         order: dual.order,
         orders: dual.orders,
         iterations: dual.inner_iterations,

@@ -297,7 +297,7 @@ impl Run<'_> {
         if let Some(journal) = &log.journal {
             files::write_all(&found, &summary, &field, log, &journal.out)?;
         }
-        let loops = log.period.map_or_else(Loops::default, |p| log.record.trace.loops(p));
+        let loops = log.case_period().map_or_else(Loops::default, |p| log.record.trace.loops(p));
         Ok(Solution { summary, field, wall: found.wall(), loops })
     }
 }

@@ -70,7 +70,11 @@ pub fn free_stream<const D: usize>(case: &Case) -> Primitive<D> {
 /// The field at the start of a case.
 pub fn initial<const D: usize>(case: &Case) -> Result<Field<D>, StartError> {
     let extent = |domain: &Domain| Vector::from_fn(|d| domain.max[d].0 - domain.min[d].0);
-    start_field(&case.initial, &FreeStream::of_case(case), case.cloud.domain.as_ref().map(extent))
+    start_field(
+        &case.initial.in_solver_units(&case.flow.units()),
+        &FreeStream::of_case(case),
+        case.cloud.domain.as_ref().map(extent),
+    )
 }
 
 /// A field at the start; a vortex repeats after `period` along each of two axes.

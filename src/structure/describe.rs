@@ -2,8 +2,8 @@
 use std::f64::consts::{PI, TAU};
 
 use super::from_case::semichord;
-use super::{BodyFrame, InertiaLaw, Model, Scales, Spring, Structure};
-use crate::case::{self, Case};
+use super::{BodyFrame, InertiaLaw, Model, Spring, Structure};
+use crate::case::{self, Case, Units};
 
 /// Significant digits of numbers in a report.
 const DIGITS: i32 = 6;
@@ -28,7 +28,9 @@ fn point(x: &[f64]) -> String {
 /// How the lines are written.
 struct Writer<'a, const D: usize> {
     structure: &'a Structure<D>,
-    scales: Scales,
+    units: Units,
+    /// U∞ in units of the solver.
+    stream: f64,
     dimensional: bool,
     b: f64,
     lines: Vec<String>,
@@ -37,16 +39,16 @@ struct Writer<'a, const D: usize> {
 impl<const D: usize> Structure<D> {
     /// Lines about the structure that `data` of `case` describes: signs, units, μ, x_α, r_α², V*, frequencies.
     pub fn description(&self, case: &Case, data: &case::Structure, frame: BodyFrame) -> Vec<String> {
-        let (scales, b) = (Scales::of(case), semichord(data, &frame));
-        let mut writer =
-            Writer { structure: self, scales, dimensional: case.flow.is_dimensional(), b, lines: Vec::new() };
+        let (units, stream, b) = (case.flow.units(), case.flow.reference().mach, semichord(data, &frame));
+        let dimensional = case.flow.is_dimensional();
+        let mut writer = Writer { structure: self, units, stream, dimensional, b, lines: Vec::new() };
         writer.conventions();
         match &self.model {
             Model::Planar(_) => writer.section(),
             Model::Spatial(body) => {
                 let moments = [body.inertia[0][0], body.inertia[1][1], body.inertia[2][2]];
                 writer.say(format!("pivot {}; mass m = {}", point(&body.pivot), writer.mass(body.mass)));
-                let about = moments.map(|j| j * writer.density());
+                let about = moments.map(|j| j * writer.units.density);
                 writer.say(format!("moments of inertia about the pivot: Jxx, Jyy, Jzz = {}", point(&about)));
             }
             Model::Modal(modes) => {
@@ -65,11 +67,6 @@ impl<const D: usize> Writer<'_, D> {
         self.lines.push(line);
     }
 
-    /// Factor on masses and inertias that brings them back to the case.
-    fn density(&self) -> f64 {
-        if self.dimensional { self.scales.density } else { 1.0 }
-    }
-
     fn mass(&self, m: f64) -> String {
         let unit = match (self.dimensional, D) {
             (true, 2) => "kg/m",
@@ -77,11 +74,13 @@ impl<const D: usize> Writer<'_, D> {
             (false, 2) => "ρ∞L²",
             (false, _) => "ρ∞L³",
         };
-        format!("{} {unit}", number(m * self.density()))
+        format!("{} {unit}", number(m * self.units.density))
     }
 
     fn conventions(&mut self) {
+        let modal = matches!(self.structure.model, Model::Modal(_));
         let words = self.structure.coordinates.iter().map(|c| match c.name.as_str() {
+            mode if modal => mode,
             "plunge" => "plunge (up positive; the h of the literature of flutter is down: h = -plunge)",
             "pitch" => "pitch (nose up positive)",
             "flap" => "flap (trailing edge down positive)",
@@ -90,8 +89,11 @@ impl<const D: usize> Writer<'_, D> {
         let list = words.collect::<Vec<_>>().join(", ");
         self.say(format!("unknown coordinates: {list}"));
         let span = if D == 2 { "per unit span, " } else { "" };
-        let units = if self.dimensional { "SI units" } else { "units of ρ∞, a∞ and the length L = 1 of the case" };
-        self.say(format!("masses, stiffnesses and forces: {span}{units}"));
+        let units = match self.dimensional {
+            true => "SI units, times in s, angles in rad",
+            false => "units of ρ∞, a∞ and the length L = 1 of the case, times in L/a∞",
+        };
+        self.say(format!("masses, stiffnesses, forces and energies: {span}{units}"));
     }
 
     fn section(&mut self) {
@@ -106,7 +108,7 @@ impl<const D: usize> Writer<'_, D> {
             let (mu, x) = (m / (PI * b * b), body.static_moment[0] / (m * b));
             self.say(format!("mass m = {}, mass ratio μ = m/(π ρ∞ b²) = {}", self.mass(m), number(mu)));
             let r2 = body.inertia / (m * b * b);
-            let inertia = number(body.inertia * self.density());
+            let inertia = number(body.inertia * self.units.density);
             self.say(format!("x_α = S/(m b) = {}, I = {inertia}, r_α² = I/(m b²) = {}", number(x), number(r2)));
             if let Some(flap) = &body.flap {
                 let (x, r2) = (flap.static_moment[0] / (m * b), flap.inertia / (m * b * b));
@@ -126,10 +128,10 @@ impl<const D: usize> Writer<'_, D> {
             _ => return,
         };
         let omega = (leading.spring.stiffness / inertia).sqrt();
-        if !(omega > 0.0 && self.scales.stream > 0.0) {
+        if !(omega > 0.0 && self.stream > 0.0) {
             return;
         }
-        let v = self.scales.stream / (self.b * omega);
+        let v = self.stream / (self.b * omega);
         let index = if body.mass > 0.0 {
             format!(", V_f = V*/√μ = {}", number(v / (body.mass / (PI * self.b * self.b)).sqrt()))
         } else {
@@ -139,7 +141,7 @@ impl<const D: usize> Writer<'_, D> {
     }
 
     fn springs(&mut self) {
-        let stiff = self.density() * if self.dimensional { self.scales.speed.powi(2) } else { 1.0 };
+        let stiff = self.units.pressure();
         for c in &self.structure.coordinates {
             let s = &c.spring;
             let mut parts = vec![format!("spring of {}: K = {}", c.name, number(s.stiffness * stiff))];
@@ -153,10 +155,7 @@ impl<const D: usize> Writer<'_, D> {
                 parts.push(format!("at ease at {}", number(s.rest)));
             }
             if c.damping != 0.0 {
-                parts.push(format!(
-                    "damper {}",
-                    number(c.damping * stiff / if self.dimensional { self.scales.speed } else { 1.0 })
-                ));
+                parts.push(format!("damper {}", number(self.units.case_time(c.damping * stiff))));
             }
             self.lines.push(parts.join(", "));
         }
@@ -166,7 +165,7 @@ impl<const D: usize> Writer<'_, D> {
         let mut linear = self.structure.clone();
         linear.coordinates.iter_mut().for_each(|c| c.spring = Spring::linear(c.spring.stiffness));
         let found = linear.natural_frequencies(&vec![0.0; linear.len()]);
-        let speed = if self.dimensional { self.scales.speed } else { 1.0 };
+        let speed = self.units.speed;
         let unit = if self.dimensional { "rad/s" } else { "a∞/L" };
         for (k, omega) in found.into_iter().enumerate() {
             let mut line = format!(
@@ -177,8 +176,8 @@ impl<const D: usize> Writer<'_, D> {
             if self.dimensional {
                 line.push_str(&format!(" = {} Hz", number(omega * speed / TAU)));
             }
-            if self.scales.stream > 0.0 {
-                line.push_str(&format!(", ω b/U∞ = {}", number(omega * self.b / self.scales.stream)));
+            if self.stream > 0.0 {
+                line.push_str(&format!(", ω b/U∞ = {}", number(omega * self.b / self.stream)));
             }
             self.say(line);
         }

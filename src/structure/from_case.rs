@@ -11,7 +11,7 @@ use super::{
     Coordinate, Flap, ForceHistory, InertiaLaw, Model, PlanarBody, RigidBody, Spring, Structure, StructureError,
 };
 use crate::case::formula::Formula;
-use crate::case::{self, Case, Freedom, Length, SpringShape, StructureModel};
+use crate::case::{self, Case, Freedom, Length, SpringShape, StructureModel, Units};
 
 /// What the numbers of flutter are measured with.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,36 +22,14 @@ pub struct BodyFrame {
     pub middle: [f64; 3],
 }
 
-/// Units of the case in those of the solver.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Scales {
-    /// ρ∞.
-    pub density: f64,
-    /// a∞.
-    pub speed: f64,
-    /// U∞ in units of the solver: the Mach number.
-    pub stream: f64,
-}
-
-impl Scales {
-    /// Those of a case.
-    pub fn of(case: &Case) -> Self {
-        let r = case.flow.reference();
-        Self { density: r.density, speed: r.sound_speed, stream: r.mach }
-    }
-
-    /// ρ∞ a∞².
-    fn pressure(&self) -> f64 {
-        self.density * self.speed * self.speed
-    }
-}
-
 /// One structure of a case on its way.
 struct Builder<'a> {
     case: &'a Case,
     data: &'a case::Structure,
     frame: BodyFrame,
-    scales: Scales,
+    units: Units,
+    /// U∞ in units of the solver: the Mach number.
+    stream: f64,
     b: f64,
 }
 
@@ -59,7 +37,8 @@ impl<const D: usize> Structure<D> {
     /// The structure that `data` of `case` describes, for a body with this frame.
     pub fn of_case(case: &Case, data: &case::Structure, frame: BodyFrame) -> Result<Self, StructureError> {
         let b = semichord(data, &frame);
-        let builder = Builder { case, data, frame, scales: Scales::of(case), b };
+        let (units, stream) = (case.flow.units(), case.flow.reference().mach);
+        let builder = Builder { case, data, frame, units, stream, b };
         match data.model {
             StructureModel::Modal => builder.modes(),
             _ if D == 2 => builder.plane(),
@@ -80,13 +59,13 @@ fn point<const N: usize>(list: &[Length]) -> [f64; N] {
 impl Builder<'_> {
     /// Mass, zero where none was needed.
     fn mass(&self) -> f64 {
-        let given = self.data.mass.map(|m| m.0 / self.scales.density);
+        let given = self.data.mass.map(|m| m.0 / self.units.density);
         given.or(self.data.mass_ratio.map(|mu| mu * PI * self.b * self.b)).unwrap_or(0.0)
     }
 
     fn gravity<const N: usize>(&self) -> [f64; N] {
         let list = self.data.gravity.as_deref().unwrap_or_default();
-        std::array::from_fn(|d| list.get(d).map_or(0.0, |g| g.0 / self.scales.speed.powi(2)))
+        std::array::from_fn(|d| list.get(d).map_or(0.0, |g| g.0 / self.units.speed.powi(2)))
     }
 
     /// Pivot and centre of mass; each stands for the other where only one is given.
@@ -105,7 +84,7 @@ impl Builder<'_> {
 
     fn plane<const D: usize>(&self) -> Result<Structure<D>, StructureError> {
         let (mass, [pivot, centre]) = (self.mass(), self.points::<2>());
-        let given = self.data.inertia.as_deref().and_then(<[_]>::first).map(|i| i.0 / self.scales.density);
+        let given = self.data.inertia.as_deref().and_then(<[_]>::first).map(|i| i.0 / self.units.density);
         let per_mass = mass * self.b * self.b;
         let inertia = given.or(self.data.r_alpha2.map(|r2| r2 * per_mass)).unwrap_or(0.0);
         let flap = self.data.flap.as_ref().map(|flap| Flap {
@@ -136,7 +115,7 @@ impl Builder<'_> {
     fn space<const D: usize>(&self) -> Result<Structure<D>, StructureError> {
         let (mass, [pivot, centre]) = (self.mass(), self.points::<3>());
         let given = self.data.inertia.as_deref().unwrap_or_default();
-        let j = |k: usize| given.get(k).map_or(0.0, |i| i.0 / self.scales.density);
+        let j = |k: usize| given.get(k).map_or(0.0, |i| i.0 / self.units.density);
         let inertia = [[j(0), j(3), j(5)], [j(3), j(1), j(4)], [j(5), j(4), j(2)]];
         let body = RigidBody {
             pivot,
@@ -162,8 +141,8 @@ impl Builder<'_> {
             let name = f.name();
             let stiffness = self.stiffness(*f, &free, &weight);
             let ratio = self.data.damping_ratio.get(name).map(|zeta| 2.0 * zeta * (stiffness * weight(*f)).sqrt());
-            let damper = self.data.damping.get(name).map(|c| c / (self.scales.density * self.scales.speed));
-            let rate = self.data.initial.get(&format!("{name}_rate")).map_or(0.0, |v| v / self.scales.speed);
+            let damper = self.data.damping.get(name).map(|c| c / (self.units.density * self.units.speed));
+            let rate = self.data.initial.get(&format!("{name}_rate")).map_or(0.0, |v| self.units.solver_rate(*v));
             Coordinate {
                 name: name.to_owned(),
                 spring: spring(stiffness, self.data.springs.get(name)),
@@ -179,17 +158,17 @@ impl Builder<'_> {
     /// Stiffness of the spring of a coordinate.
     fn stiffness(&self, f: Freedom, free: &[Freedom], weight: &impl Fn(Freedom) -> f64) -> f64 {
         if let Some(k) = self.data.stiffness.get(f.name()) {
-            return k / self.scales.pressure();
+            return k / self.units.pressure();
         }
         let leading = if free.contains(&Freedom::Pitch) { Freedom::Pitch } else { Freedom::Plunge };
-        let own = self.data.frequency.get(f.name()).map(|w| w.0 / self.scales.speed);
+        let own = self.data.frequency.get(f.name()).map(|w| self.units.solver_rate(w.0));
         let over_pitch = match f {
             Freedom::Plunge => self.data.frequency_ratio,
             Freedom::Flap => self.data.flap.as_ref().and_then(|flap| flap.frequency_ratio),
             _ => None,
         };
         let of_pitch = || (self.stiffness(Freedom::Pitch, free, weight) / weight(Freedom::Pitch)).sqrt();
-        let by_speed = self.reduced_speed().filter(|_| f == leading).map(|v| self.scales.stream / (v * self.b));
+        let by_speed = self.reduced_speed().filter(|_| f == leading).map(|v| self.stream / (v * self.b));
         let omega = own.or(over_pitch.map(|ratio| ratio * of_pitch())).or(by_speed);
         omega.map_or(0.0, |omega| weight(f) * omega * omega)
     }
@@ -205,18 +184,18 @@ impl Builder<'_> {
         // the reader of the case has read the formula already
         let Some(Ok(formula)) = text.map(|text| Formula::parse(text)) else { return ForceHistory::Zero };
         let frequency = self.data.force.as_ref().and_then(|f| f.angular_frequency(&self.case.flow, self.frame.chord));
-        let (omega, factor) = (frequency.unwrap_or(0.0), 1.0 / self.scales.pressure());
-        ForceHistory::Formula { formula, omega, time: 1.0 / self.scales.speed, factor }
+        let (omega, factor) = (frequency.unwrap_or(0.0), 1.0 / self.units.pressure());
+        ForceHistory::Formula { formula, omega, time: self.units.case_time(1.0), factor }
     }
 
     fn modes<const D: usize>(&self) -> Result<Structure<D>, StructureError> {
         let modes = &self.data.modes;
-        let model = modes.iter().map(|mode| (mode.name.clone(), mode.mass / self.scales.density)).collect();
+        let model = modes.iter().map(|mode| (mode.name.clone(), mode.mass / self.units.density)).collect();
         let unknown = |mode: &case::StructureMode| {
-            let mass = mode.mass / self.scales.density;
-            let reduced = mode.reduced_frequency.map(|k| k * self.scales.stream / self.b);
-            let omega = mode.frequency.map(|w| w.0 / self.scales.speed).or(reduced);
-            let given = mode.stiffness.map(|k| k / self.scales.pressure());
+            let mass = mode.mass / self.units.density;
+            let reduced = mode.reduced_frequency.map(|k| k * self.stream / self.b);
+            let omega = mode.frequency.map(|w| self.units.solver_rate(w.0)).or(reduced);
+            let given = mode.stiffness.map(|k| k / self.units.pressure());
             let stiffness = given.or(omega.map(|w| mass * w * w)).unwrap_or(0.0);
             Coordinate {
                 name: mode.name.clone(),
@@ -224,7 +203,7 @@ impl Builder<'_> {
                 damping: 2.0 * mode.damping_ratio * (stiffness * mass).sqrt(),
                 force: self.force(mode.force.as_ref()),
                 initial: mode.initial,
-                initial_rate: mode.initial_rate / self.scales.speed,
+                initial_rate: self.units.solver_rate(mode.initial_rate),
             }
         };
         Structure::new(Model::Modal(model), modes.iter().map(unknown).collect())

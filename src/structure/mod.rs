@@ -22,12 +22,13 @@ mod spring;
 mod tests;
 
 pub use force::ForceHistory;
-pub use from_case::{BodyFrame, Scales};
+pub use from_case::BodyFrame;
 pub use placement::{Placement, Pose};
 pub use planar::{Flap, InertiaLaw, PlanarBody};
 pub use spatial::RigidBody;
 pub use spring::Spring;
 
+use crate::case::Freedom;
 use crate::math::jet::{Jet, Scalar};
 use crate::math::{Vector, dense, rotation, symmetric};
 use placement::{Effect, TurnedFlap};
@@ -216,6 +217,13 @@ impl<const D: usize> Structure<D> {
     /// The unknowns.
     pub fn coordinates(&self) -> &[Coordinate] {
         &self.coordinates
+    }
+
+    /// True where coordinate number `k` is an angle, in radians: those of sections and rigid bodies may be, whatever a mode is called
+    /// is none.
+    pub fn is_angle(&self, k: usize) -> bool {
+        let turns = |name: &str| Freedom::ALL.iter().any(|f| f.turns() && f.name() == name);
+        !matches!(self.model, Model::Modal(_)) && turns(&self.coordinates[k].name)
     }
 
     /// The state [q, q'] at the start.

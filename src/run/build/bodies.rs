@@ -9,7 +9,7 @@ use crate::case::{Case, Temporal};
 use crate::coupling::{Attached, body_motion};
 use crate::geometry::Surface;
 use crate::motion::{ModeShape, Motions, mode_shape};
-use crate::observe::structure::StructureNames;
+use crate::observe::structure::{CoordinateName, StructureNames};
 use crate::structure::{BodyFrame, Structure};
 
 /// The structures of a case, one after another; `motions` then hand their bodies over to them.
@@ -37,8 +37,7 @@ pub(crate) fn bodies<const D: usize>(
         all.push(attached);
     }
     if let Some(omega) = case.force_frequency(chord(case, surface)).filter(|_| !all.is_empty()) {
-        // the time of the solver is counted in lengths over the speed of sound
-        motions.force_with(std::f64::consts::TAU / omega);
+        motions.force_with(case.flow.units().solver_time(std::f64::consts::TAU / omega));
     }
     Ok(all)
 }
@@ -51,9 +50,12 @@ pub(crate) fn described<const D: usize>(
 ) -> Vec<Described> {
     let one = |attached: &Attached<D>| {
         let (surface, data) = (surface?, case.structure_of(attached.body)?);
-        let coordinates = attached.structure.coordinates().iter().map(|c| c.name.clone()).collect();
+        let structure = &attached.structure;
+        let named =
+            |k: usize| CoordinateName { name: structure.coordinates()[k].name.clone(), angle: structure.is_angle(k) };
+        let coordinates = (0..structure.len()).map(named).collect();
         let names = StructureNames { body: surface.bodies[attached.body].clone(), coordinates };
-        let lines = attached.structure.description(case, data, frame(case, surface, attached.body));
+        let lines = structure.description(case, data, frame(case, surface, attached.body));
         Some(Described { names, lines })
     };
     bodies.iter().filter_map(one).collect()

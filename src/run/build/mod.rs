@@ -52,12 +52,7 @@ pub(crate) fn supported(case: &Case) -> Result<(), RunError> {
     let sprung = !case.structures.is_empty();
     let explicit = sprung && matches!(case.time, Temporal::Explicit(_));
     let carried = sprung && case.particles() == ParticleMotion::Lagrangian;
-    let timed = sprung && case.flow.is_dimensional() && !matches!(case.time, Temporal::Steady(_));
     let asks = [
-        (
-            timed,
-            "bodies on springs in time in a dimensional stream (`[flow]` by Mach number and plain numbers in `[structure]`)",
-        ),
         (
             explicit,
             "bodies on springs with explicit steps (`[structure]` needs `[time.steady]`, `[time.dual]` or `harmonics`)",
@@ -242,7 +237,7 @@ fn cloud_motion<const D: usize>(
         }
         ParticleMotion::Rigid => CloudMotion::Rigid(motions.cloud().clone()),
         _ => {
-            let until = motions.period().or_else(|| case.time.end(None)).unwrap_or_default();
+            let until = motions.period().or_else(|| case.end(None)).unwrap_or_default();
             CloudMotion::deforming(cloud, laws(), until)
         }
     })

@@ -5,7 +5,7 @@
 //! than its spacing are noted, with the number of steps that would do.
 use super::super::error::RunError;
 use super::super::recipe;
-use crate::case::{Case, ParticleMotion};
+use crate::case::{Case, ParticleMotion, Units};
 use crate::cloud::Cloud;
 use crate::math::{Bounds, Vector};
 use crate::motion::{Motions, PointTrajectory};
@@ -31,16 +31,16 @@ pub(crate) fn check<const D: usize>(
     motions: &Motions<D>,
 ) -> Result<Vec<String>, RunError> {
     let period = motions.period();
-    let Some(end) = case.time.end(period).filter(|_| motions.moves() && !cloud.interface.is_empty()) else {
+    let Some(end) = case.end(period).filter(|_| motions.moves() && !cloud.interface.is_empty()) else {
         return Ok(Vec::new());
     };
-    let bodies = bodies(case, cloud, motions);
+    let (bodies, units) = (bodies(case, cloud, motions), case.flow.units());
     let span = period.map_or(end, |p| p.min(end));
     if case.particles() != ParticleMotion::Rigid {
         for k in 0..=TIMES {
             let t = span * k as f64 / TIMES as f64;
-            stays_inside(&bodies, &cloud.tree.bounds(), t)?;
-            keeps_apart(&bodies, t)?;
+            stays_inside(&bodies, &cloud.tree.bounds(), t, &units)?;
+            keeps_apart(&bodies, t, &units)?;
         }
     }
     Ok(longest_way(case, &bodies, (period, span)).into_iter().collect())
@@ -60,13 +60,18 @@ fn bodies<'a, const D: usize>(case: &Case, cloud: &'a Cloud<D>, motions: &Motion
     (0..case.bodies.len()).map(body).collect()
 }
 
-fn stays_inside<const D: usize>(bodies: &[Body<'_, D>], domain: &Bounds<D>, t: f64) -> Result<(), RunError> {
+fn stays_inside<const D: usize>(
+    bodies: &[Body<'_, D>],
+    domain: &Bounds<D>,
+    t: f64,
+    units: &Units,
+) -> Result<(), RunError> {
     for body in bodies {
         let at = body.trajectory.at(t);
         let out = body.points.iter().enumerate().map(|(k, (x, _))| at(k, x)).find(|x| !domain.contains(x));
         if let Some(x) = out {
             return Err(RunError::Motion {
-                what: format!("`{}` leaves the domain at t = {t:.4}, at {}", body.name, place(&x)),
+                what: format!("`{}` leaves the domain at t = {:.4}, at {}", body.name, units.case_time(t), place(&x)),
                 hint: "give it more room with `cloud.domain` or `cloud.far_field`, less motion, or let all particles move with \
                        it, `motion.particles = \"rigid\"`",
             });
@@ -75,7 +80,7 @@ fn stays_inside<const D: usize>(bodies: &[Body<'_, D>], domain: &Bounds<D>, t: f
     Ok(())
 }
 
-fn keeps_apart<const D: usize>(bodies: &[Body<'_, D>], t: f64) -> Result<(), RunError> {
+fn keeps_apart<const D: usize>(bodies: &[Body<'_, D>], t: f64, units: &Units) -> Result<(), RunError> {
     let carried: Vec<Vec<(Vector<D>, f64)>> = bodies
         .iter()
         .map(|b| {
@@ -97,7 +102,7 @@ fn keeps_apart<const D: usize>(bodies: &[Body<'_, D>], t: f64) -> Result<(), Run
         for (x, h) in &carried[a] {
             let near = carried[b].iter().find(|(y, g)| (*x - *y).norm() < GAP * h.max(*g));
             if near.is_some() {
-                let (one, other) = (&bodies[a].name, &bodies[b].name);
+                let (one, other, t) = (&bodies[a].name, &bodies[b].name, units.case_time(t));
                 return Err(RunError::Motion {
                     what: format!(
                         "`{one}` and `{other}` run into one another at t = {t:.4}, at {}, where walls are spaced by {h:.3e}",
@@ -136,9 +141,11 @@ fn longest_way<const D: usize>(
     if !(way > 1.0) {
         return None;
     }
+    let units = case.flow.units();
+    let (t, shorter) = (units.case_time(t), units.case_time(dt / way));
     let remedy = match period.filter(|_| of_period) {
         Some(period) => format!("`steps_per_period = {}`", (period / dt * way).ceil()),
-        None => format!("`step = {:.3e}`", dt / way),
+        None => format!("`step = {shorter:.3e}`"),
     };
     Some(format!(
         "`{name}` moves by {way:.1} spacings of its wall in the step after t = {t:.4}: waves from it are smeared in time; \

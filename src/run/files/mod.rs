@@ -8,7 +8,7 @@ use super::error::RunError;
 use super::folder;
 use super::found::Found;
 use super::look::friction::wall_friction;
-use super::look::{GasView, Snapshot, Units, field, pressure_coefficient};
+use super::look::{GasView, Snapshot, field, pressure_coefficient};
 use super::record::summary::Summary;
 use super::record::{Log, passed};
 use crate::cloud::Diagnosis;
@@ -33,7 +33,7 @@ pub(crate) fn write_all<const D: usize>(
 ) -> Result<(), RunError> {
     let files = Files { found, out };
     files.write_tables(&log.record.cycles, summary)?;
-    if let Some(period) = log.period {
+    if let Some(period) = log.case_period() {
         log.record.trace.write(out, period)?;
     }
     files.write_fields(all, log.record.time)?;
@@ -72,7 +72,7 @@ impl<const D: usize> Files<'_, D> {
 
     fn write_loads(&self) -> Result<(), RunError> {
         let cloud = self.found.view.cloud();
-        let units = Units::of(self.found.case).pressure();
+        let units = self.found.case.flow.units().pressure();
         let mut rows = Vec::new();
         for (b, body) in self.found.names.bodies.iter().enumerate() {
             for (t, tag) in self.found.names.tags.iter().enumerate() {
@@ -100,7 +100,7 @@ impl<const D: usize> Files<'_, D> {
     fn write_surface_csv(&self) -> Result<(), RunError> {
         let cloud = self.found.view.cloud();
         let (view, free) = (self.found.view, free_stream::<D>(self.found.case));
-        let units = Units::of(self.found.case);
+        let units = self.found.case.flow.units();
         let friction = wall_friction(self.found.case, &view);
         let mut columns = vec![
             "x", "y", "z", "nx", "ny", "nz", "area", "body", "tag", "arc", "x_c", "pressure", "cp", "mach", "density",
@@ -163,7 +163,7 @@ impl<const D: usize> Files<'_, D> {
     }
 }
 
-/// Writes the field of one moment of a march, and the list of all so far.
+/// Writes the field of one moment of a march, and the list of all so far; `interval` is one of the solver.
 pub(crate) fn write_series<const D: usize>(
     to: &Target<'_>,
     gas: &GasView<'_, D>,
@@ -172,10 +172,10 @@ pub(crate) fn write_series<const D: usize>(
 ) -> Result<(), RunError> {
     gas.fluid.fill_states(gas.frame, gas.state, work);
     let view = View::new(gas.fluid, gas.frame, work);
-    let (all, time, out) = (field(to.case, &view), view.time(), to.out);
+    let (all, time, out) = (field(to.case, &view), to.case.flow.units().case_time(view.time()), to.out);
     let columns: Vec<Column<'_>> =
         all.columns.iter().map(|(name, components, values)| Column { name, components: *components, values }).collect();
-    let number = passed(time, interval);
+    let number = passed(view.time(), interval);
     write_points(&out.join(series_name(number)), &all.points, &columns)?;
     // a run that went on from a checkpoint writes the later ones again
     let mut files = read_collection(&folder::text(out, "series.pvd").unwrap_or_default());

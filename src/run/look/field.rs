@@ -13,32 +13,6 @@ pub struct Snapshot {
     pub columns: Vec<(&'static str, usize, Vec<f64>)>,
 }
 
-/// Factors from the units of the solver to those of the case.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Units {
-    /// Density.
-    pub(crate) density: f64,
-    /// Speed.
-    pub(crate) speed: f64,
-}
-
-impl Units {
-    /// The units of a case; ones when its free stream is nondimensional.
-    pub(crate) fn of(case: &Case) -> Self {
-        let r = case.flow.reference();
-        if case.flow.is_dimensional() {
-            Self { density: r.density, speed: r.sound_speed }
-        } else {
-            Self { density: 1.0, speed: 1.0 }
-        }
-    }
-
-    /// Factor on pressures.
-    pub(crate) fn pressure(&self) -> f64 {
-        self.density * self.speed * self.speed
-    }
-}
-
 /// Pressure coefficient; zero when there is no stream.
 pub(crate) fn pressure_coefficient<const D: usize>(q: &Primitive<D>, free: &Primitive<D>) -> f64 {
     let dynamic = 0.5 * free.density * free.velocity.norm_squared();
@@ -49,7 +23,7 @@ pub(crate) fn pressure_coefficient<const D: usize>(q: &Primitive<D>, free: &Prim
 pub(crate) fn field<const D: usize>(case: &Case, view: &View<'_, D>) -> Snapshot {
     let (cloud, gas) = (view.cloud(), view.fluid.gas);
     let n = cloud.n_real();
-    let (free, units) = (free_stream::<D>(case), Units::of(case));
+    let (free, units) = (free_stream::<D>(case), case.flow.units());
     let column = |f: &dyn Fn(usize) -> f64| (0..n).map(f).collect::<Vec<f64>>();
     let state: Vec<Primitive<D>> = (0..n).map(|i| view.state(i)).collect();
     let velocity = (0..n).flat_map(|i| (state[i].velocity * units.speed).to_3d()).collect();

@@ -1,7 +1,6 @@
 //! What the gas does to the walls it sticks to: friction, heat, separation.
 use serde::Serialize;
 
-use super::field::Units;
 use crate::case::Case;
 use crate::math::Vector;
 use crate::observe::loads::{Load, LoadAxes};
@@ -48,7 +47,7 @@ pub(crate) fn add_friction<const D: usize>(
 /// Friction on every interface particle; `None` for an inviscid gas.
 pub(crate) fn wall_friction<const D: usize>(case: &Case, view: &View<'_, D>) -> Option<Vec<WallFriction>> {
     view.fluid.viscous_model.as_ref()?;
-    let (cloud, units) = (view.cloud(), Units::of(case));
+    let (cloud, units) = (view.cloud(), case.flow.units());
     let free = free_stream::<D>(case);
     let dynamic = (0.5 * free.density * free.velocity.norm_squared()).max(f64::MIN_POSITIVE);
     let stream = stream_axes::<D>(case).0;

@@ -8,4 +8,4 @@ pub(crate) mod momentum;
 pub use field::Snapshot;
 
 pub(crate) use axes::{GasView, LoadFrame, load_axes, motion, pressure_load, rounded, totals};
-pub(crate) use field::{Units, field, pressure_coefficient};
+pub(crate) use field::{field, pressure_coefficient};

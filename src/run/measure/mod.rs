@@ -3,7 +3,7 @@ mod structure;
 
 use std::path::Path;
 
-use super::look::{Snapshot, Units, rounded};
+use super::look::{Snapshot, rounded};
 use super::record::summary::Summary;
 use super::record::trace::{FirstHarmonics, LastPeriod};
 use num_complex::Complex64;
@@ -381,7 +381,7 @@ impl Measured {
     fn free_stream_deviation(&self) -> Value {
         let free = self.stream();
         let gas = Gas { gamma: self.case.flow.gamma };
-        let units = Units::of(&self.case);
+        let units = self.case.flow.units();
         let (density, velocity) = (self.column("density")?, self.column("velocity")?);
         let pressure = self.column("pressure")?;
         let expected = gas.conserved(&free);
@@ -407,11 +407,13 @@ impl Measured {
 
     /// |place of the shock − exact| in spacings of the case.
     fn shock_position_error(&self) -> Value {
-        let truth = FieldTruth::new(&self.case.initial, self.case.flow.gamma, None).map_err(|e| e.to_string())?;
+        let units = self.case.flow.units();
+        let initial = self.case.initial.in_solver_units(&units);
+        let truth = FieldTruth::new(&initial, self.case.flow.gamma, None).map_err(|e| e.to_string())?;
         let Some(FieldTruth::Riemann { axis, .. }) = truth else {
             return Err("the case starts from no Riemann problem".into());
         };
-        let exact = truth.and_then(|t| t.shock(self.summary.time));
+        let exact = truth.and_then(|t| t.shock(units.solver_time(self.summary.time)));
         let (place, levels) = exact.ok_or("the exact solution has no shock")?;
         let pressure = self.column("pressure")?;
         let fluid = self.fluid()?;

@@ -46,7 +46,7 @@ pub(crate) struct Twofold {
 pub(crate) struct Moment {
     /// Iteration of the run.
     pub(crate) iteration: u64,
-    /// Time.
+    /// Time, in the units of the case.
     pub(crate) time: f64,
     /// Loads on the walls.
     pub(crate) wall: Coefficients,

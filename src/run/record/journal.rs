@@ -65,9 +65,10 @@ impl Journal {
             None => StructureHistory::create(out, structures),
         });
         let structures = structures.transpose()?;
+        let until = |s: &Saved| case.flow.units().case_time(s.time);
         let text = |name: &str| folder::text(out, name).unwrap_or_default();
         let earlier = saved.map_or_else(Earlier::default, |s| Earlier {
-            trace: if s.time > 0.0 { Trace::parse(&text(HISTORY), s.time) } else { Trace::default() },
+            trace: if s.time > 0.0 { Trace::parse(&text(HISTORY), until(s)) } else { Trace::default() },
             moments: if twice { Twofold::parse(&text(crosscheck::FILE)) } else { Twofold::default() },
             structures: StructureTable::parse(&text(structure::FILE)).unwrap_or_default(),
         });

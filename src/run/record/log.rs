@@ -11,7 +11,7 @@ use super::journal::{Earlier, Journal};
 use super::saved::{FILE, Saved, Settling};
 use super::summary::{BalanceReport, Clock, Work};
 use super::trace::Trace;
-use crate::case::Case;
+use crate::case::{Case, Units};
 use crate::observe::structure::{StructureNames, StructureSample, StructureSummary, StructureTable};
 use crate::scheme::RemapLedger;
 use crate::time::TimeError;
@@ -29,7 +29,7 @@ pub(crate) struct Record {
     pub(crate) drop: f64,
     /// True when the goal was reached.
     pub(crate) converged: bool,
-    /// Final time.
+    /// Final time, in the units of the case.
     pub(crate) time: f64,
     /// Bytes of the integrator.
     pub(crate) bytes: usize,
@@ -59,11 +59,13 @@ pub(crate) struct Record {
     pub(crate) moments: Twofold,
     /// How structures moved.
     pub(crate) structures: StructureTable,
+    /// Angular frequency of the harmonic balance that they moved by, in the units of the case.
+    pub(crate) balanced: Option<f64>,
 }
 
 impl Record {
     /// What a checkpoint and the tables beside it hold.
-    fn resumed(saved: &Saved, earlier: Earlier) -> Self {
+    fn resumed(saved: &Saved, earlier: Earlier, units: &Units) -> Self {
         let march = match &saved.memory {
             crate::time::Memory::March(past) => (past.unconverged, past.halved),
             crate::time::Memory::Relaxation(_) => (0, 0),
@@ -73,7 +75,7 @@ impl Record {
             cycles: saved.cycles.clone(),
             start_totals: saved.start_totals.clone(),
             drop: 1.0,
-            time: saved.time,
+            time: units.case_time(saved.time),
             unconverged: march.0,
             halved: march.1,
             trace: earlier.trace,
@@ -104,7 +106,9 @@ pub(crate) struct Log<'a> {
     pub(crate) case: &'a Case,
     /// Axes of the loads.
     pub(crate) axes: LoadFrame,
-    /// Period of the motion.
+    /// From the units of the solver to those of the case: what observers keep, tell and write is in the latter.
+    pub(crate) units: Units,
+    /// Period of the motion, in the time of the solver.
     pub(crate) period: Option<f64>,
     /// The run folder.
     pub(crate) journal: Option<Journal>,
@@ -132,14 +136,18 @@ impl<'a> Log<'a> {
         let opened = out.map(|out| Journal::open(case, out, saved, twice, &names)).transpose()?;
         let (journal, earlier) =
             opened.map_or((None, Earlier::default()), |(journal, earlier)| (Some(journal), earlier));
+        let units = case.flow.units();
         let mut record = match saved {
-            Some(saved) => Record::resumed(saved, earlier),
+            Some(saved) => Record::resumed(saved, earlier, &units),
             None => Record { drop: 1.0, ..Record::default() },
         };
+        if record.structures.coordinates.is_empty() {
+            record.structures = StructureTable::of(&names);
+        }
         record.trace = record.trace.over(case.output.loop_periods);
         let before = saved.map_or([0.0; 2], |s| [s.cpu_seconds, s.wall_seconds]);
         let axes = load_axes(case);
-        Ok(Self { monitor, case, axes, period, journal, record, structures, clock: Clock::start(), before })
+        Ok(Self { monitor, case, axes, units, period, journal, record, structures, clock: Clock::start(), before })
     }
 
     /// Says a line.
@@ -172,18 +180,21 @@ impl<'a> Log<'a> {
         self.period.is_some() && self.case.moves() && !self.case.bodies.is_empty()
     }
 
-    /// Keeps how structures moved in a step.
-    pub(crate) fn structure(&mut self, sample: &StructureSample) -> Result<(), RunError> {
-        let names: Vec<StructureNames> = self.structures.iter().map(|s| s.names.clone()).collect();
-        self.record.structures.push(self.record.iteration, &names, sample);
-        let iteration = self.record.iteration;
+    /// Period of the motion, in the time of the case.
+    pub(crate) fn case_period(&self) -> Option<f64> {
+        self.period.map(|period| self.units.case_time(period))
+    }
+
+    /// Keeps how structures moved in a step, as of an iteration.
+    pub(crate) fn structure(&mut self, iteration: u64, sample: &StructureSample) -> Result<(), RunError> {
+        self.record.structures.push(iteration, sample);
         self.journal.as_mut().map_or(Ok(()), |j| j.structure(iteration, sample))
     }
 
     /// What became of the structures.
     pub(crate) fn structure_summaries(&self) -> Vec<StructureSummary> {
         let names: Vec<StructureNames> = self.structures.iter().map(|s| s.names.clone()).collect();
-        let mut all = self.record.structures.summaries(&names);
+        let mut all = self.record.structures.summaries(&names, self.record.balanced);
         all.iter_mut().zip(&self.structures).for_each(|(s, d)| s.description = d.lines.clone());
         all
     }
@@ -208,7 +219,7 @@ impl<'a> Log<'a> {
     pub(crate) fn change_of_period(&self, time: f64, before: f64) -> Option<f64> {
         let period = self.period?;
         let ended = passed(time, period) > passed(before, period) && time / period > 1.5;
-        let change = self.record.trace.change(period).filter(|_| ended)?;
+        let change = self.record.trace.change(self.units.case_time(period)).filter(|_| ended)?;
         Some(change.mean.max(change.first_harmonic))
     }
 }

@@ -208,7 +208,7 @@ pub(crate) struct Saved {
     pub(crate) stages: Vec<Stage>,
     /// Iterations over all stages.
     pub(crate) iteration: u64,
-    /// Physical time.
+    /// Physical time, in the units of the solver.
     pub(crate) time: f64,
     /// State.
     pub(crate) state: Vec<f64>,

@@ -61,7 +61,7 @@ pub struct Summary {
     /// Forces on the modes of `[gaf]`.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub generalised_forces: Vec<GeneralisedForce>,
-    /// Physical time at the end of a march.
+    /// Physical time at the end of a march, in the units of the case.
     pub time: f64,
     /// Steps in time that did not reach their goal.
     pub unconverged_steps: u32,

@@ -25,7 +25,7 @@ const STILL: f64 = 1e-12;
 /// Loads and motion at one time.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sample {
-    /// Time.
+    /// Time, in the units of the case.
     pub(crate) time: f64,
     /// Loads.
     pub(crate) loads: Coefficients,
@@ -33,7 +33,7 @@ pub(crate) struct Sample {
     pub(crate) motion: [f64; 5],
 }
 
-/// The history of the loads of a march.
+/// The history of the loads of a march; times and periods are those of the case.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Trace {
     samples: Vec<Sample>,

@@ -142,6 +142,7 @@ fn finish<S: HasGas<D>, const D: usize>(
         log.record.forces = modes.over_a_period(&forces);
     }
     found.compare(log)?;
+    found.sample_structures(log)?;
     found.write(solver.film.as_ref(), log)?;
     log.record.balance = Some(report);
     let (frame, first) = found.instance(0);

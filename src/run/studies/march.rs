@@ -89,7 +89,8 @@ fn watched<S: HasGas<D>, const D: usize>(
     let keep = keeper(system);
     let mut progress = Progress { eyes, cycle: 0, aim: Aim::Time(marching.until) };
     let (mut crosscheck, mut structures) = (CrossCheck { system }, Structures { system });
-    let mut series = log.case.output.field_interval.map(|t| FieldSeries { system, interval: t.0 });
+    let mut series =
+        log.case.output.field_interval.map(|t| FieldSeries { system, interval: log.units.solver_time(t.0) });
     let mut film = solver.film.as_ref().map(|surface| Film { system, surface });
     let mut periodic = marching.tolerance.map(|tolerance| Periodic { tolerance });
     let (mut limit, mut worn) = (Limit { iterations: marching.limit }, Worn { system });
@@ -113,7 +114,7 @@ fn tell<S: HasGas<D>, const D: usize>(
     let settled = marching.tolerance.is_none_or(|t| !unsettled(t, log));
     let cost = integrator.cost();
     let record = &mut log.record;
-    record.time = integrator.mark().time;
+    record.time = log.units.case_time(integrator.mark().time);
     record.converged = matches!(ending, Ending::Finished) && settled;
     (record.bytes, record.linear) = (cost.bytes, cost.linear);
     (record.unconverged, record.halved) = (cost.unconverged, cost.halved);
@@ -124,7 +125,7 @@ fn tell<S: HasGas<D>, const D: usize>(
 
 /// True, with a note, when the loads of the last period still differ from those of the period before.
 fn unsettled(tolerance: f64, log: &mut Log<'_>) -> bool {
-    let Some(period) = log.period else { return false };
+    let Some(period) = log.case_period() else { return false };
     let Some(change) = log.record.trace.change(period) else {
         log.note(
             "`periodic_tolerance` was not tested: loads are compared over the last two periods; march three or more",
@@ -168,7 +169,8 @@ fn renewed<S: HasGas<D>, const D: usize>(
         Ok(found) => found,
         Err(source) => {
             checkpoint(turn, &keeper(system)).keep(integrator, log)?;
-            return Err(RunError::Recloud { time: past.time, source, checkpoint: log.checkpoint() });
+            let time = log.units.case_time(past.time);
+            return Err(RunError::Recloud { time, source, checkpoint: log.checkpoint() });
         }
     };
     let Some(Reclouded { fluid, u, past: [before, older] }) = found else { return Ok(None) };

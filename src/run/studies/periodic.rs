@@ -5,10 +5,10 @@ use num_complex::Complex64;
 
 use super::super::error::RunError;
 use super::super::files::{FILM, Target, together, write_film};
-use super::super::look::{GasView, Units, motion, pressure_coefficient};
+use super::super::look::{GasView, motion, pressure_coefficient};
 use super::super::record::Log;
 use super::super::record::trace::Sample;
-use super::super::watch::compare;
+use super::super::watch::{compare, sample};
 use super::settled::PeriodicEyes;
 use crate::case::{Case, Harmonics};
 use crate::geometry::Surface;
@@ -19,12 +19,15 @@ use crate::motion::positions;
 use crate::observe::loads::Coefficients;
 use crate::observe::table::{Entry, write_csv};
 use crate::observe::vtk::{Column, write_points};
-use crate::scheme::{Fluid, HasGas, Work};
+use crate::scheme::{Exchange, Fluid, HasGas, Work};
 use crate::system::{Instant, System};
 use crate::time::harmonic::HarmonicBalance;
 
 /// Samples of the loops.
 const SAMPLES: usize = 256;
+/// Steps in each of the periods that the table of structures holds, and these.
+const STEPS: usize = 128;
+const PERIODS: usize = 2;
 
 /// Part of a length or radian by which a motion may miss itself a period later.
 const REPEATS: f64 = 1e-9;
@@ -149,7 +152,8 @@ impl<S: HasGas<D>, const D: usize> PeriodicState<'_, S, D> {
             let phase = std::f64::consts::TAU * part;
             let loads = Coefficients { cl: cl.at(phase), cd: cd.at(phase), cm: cm.at(phase) };
             let time = part * period;
-            log.record.trace.push(Sample { time, loads, motion: motion(gas, time, &self.jets(phase)) });
+            let motion = motion(gas, time, &self.jets(phase));
+            log.record.trace.push(Sample { time: log.units.case_time(time), loads, motion });
         }
         let instance = |time: f64| {
             let phase = std::f64::consts::TAU * time / period;
@@ -165,6 +169,28 @@ impl<S: HasGas<D>, const D: usize> PeriodicState<'_, S, D> {
     /// Coordinates of bodies that are unknowns, at a phase.
     fn jets(&self, phase: f64) -> Vec<Jet> {
         self.balance.with_instant(self.state, phase, |at| positions(at.coordinates))
+    }
+
+    /// Puts two periods of the structures where the steps of a march would be; nothing without structures.
+    pub(super) fn sample_structures(&self, log: &mut Log<'_>) -> Result<(), RunError> {
+        if log.structures.is_empty() {
+            return Ok(());
+        }
+        let mut work = self.system.work();
+        let at = |k: usize| {
+            let phase = std::f64::consts::TAU * k as f64 / STEPS as f64;
+            let one = self.state_at(phase);
+            self.system.exchange(&self.frame_at(phase, &one), &one, &mut work)
+        };
+        let Some(period) = (0..STEPS).map(at).collect::<Option<Vec<Exchange>>>() else { return Ok(()) };
+        // a run that is interrupted now does this again
+        let iteration = log.record.iteration + 1;
+        for k in 0..=PERIODS * STEPS {
+            let time = self.period * k as f64 / STEPS as f64;
+            log.structure(iteration, &sample(time, period[k % STEPS].clone(), &log.units))?;
+        }
+        log.record.balanced = Some(log.units.case_rate(std::f64::consts::TAU / self.period));
+        Ok(())
     }
 
     /// Loads at the instances, evaluated twice.
@@ -205,7 +231,7 @@ impl<S: HasGas<D>, const D: usize> PeriodicState<'_, S, D> {
     /// Values of all real particles at the instances that hold the solution: density, velocity, pressure, Cp.
     fn moments(&self, case: &Case) -> Vec<Vec<Vec<f64>>> {
         let (system, fluid) = (self.system, self.system.gas());
-        let (units, free) = (Units::of(case), crate::scheme::start::free_stream::<D>(case));
+        let (units, free) = (case.flow.units(), crate::scheme::start::free_stream::<D>(case));
         let rows = fluid.discretisation.cloud.n_real();
         let mut values = vec![vec![Vec::new(); rows]; D + 3];
         let mut work = system.work();

@@ -85,7 +85,7 @@ fn tell<S: HasGas<D>, const D: usize>(
     if turn.last
         && let Some(exchange) = system.exchange(frame, state, work)
     {
-        log.structure(&sample(0.0, exchange))?;
+        log.structure(log.record.iteration, &sample(0.0, exchange, &log.units))?;
     }
     if turn.stage().factor == 1.0 {
         let particles = system.gas().discretisation.cloud.n_real() as f64;

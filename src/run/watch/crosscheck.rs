@@ -25,7 +25,7 @@ impl<S: HasGas<D>, const D: usize> Observer<S> for CrossCheck<'_, S, D> {
     }
 }
 
-/// Keeps the loads of a moment, by both evaluations, as of an iteration.
+/// Keeps the loads of a moment, by both evaluations, as of an iteration; `time` is that of the solver.
 pub(crate) fn compare<const D: usize>(
     gas: &GasView<'_, D>,
     work: &mut Work<D>,
@@ -40,5 +40,6 @@ pub(crate) fn compare<const D: usize>(
     let view = View::new(gas.fluid, gas.frame, work);
     let wall = log.axes.coefficients(&view);
     let around = log.axes.axes(&view).coefficients(&sum.load);
+    let time = log.units.case_time(time);
     log.compared(&Moment { iteration, time, wall, around })
 }

@@ -67,7 +67,7 @@ impl<S: System> Observer<S> for Effort {
 pub(crate) enum Aim {
     /// So many orders of magnitude of the residual.
     Orders(f64),
-    /// A time.
+    /// A time of the solver.
     Time(f64),
 }
 
@@ -91,10 +91,11 @@ impl<S: System> Observer<S> for Progress<'_, S> {
         self.effort().step(step, now, log)?;
         let loads = self.eyes.loads(now.standing(), log);
         let motion = if log.case.moves() { self.eyes.motion(now.standing(), step.time) } else { [0.0; 5] };
-        if step.time > 0.0 {
+        let time = log.units.case_time(step.time);
+        if time > 0.0 {
             // the angle that a resumed run reads in the history, to the last bit
             let motion = [motion[0].to_degrees().to_radians(), motion[1], motion[2], motion[3], motion[4]];
-            log.record.trace.push(Sample { time: step.time, loads: loads.unwrap_or_default(), motion });
+            log.record.trace.push(Sample { time, loads: loads.unwrap_or_default(), motion });
         }
         let row = self.row(step, now.cost().inner, &loads.unwrap_or_default(), &motion, log);
         if let Some(journal) = &mut log.journal {
@@ -102,7 +103,7 @@ impl<S: System> Observer<S> for Progress<'_, S> {
         }
         let [goal, reached] = match self.aim {
             Aim::Orders(orders) => [orders, -step.residual.log10()],
-            Aim::Time(until) => [until, step.time],
+            Aim::Time(until) => [log.units.case_time(until), time],
         };
         log.tick(&Tick {
             iteration: log.record.iteration,
@@ -125,9 +126,9 @@ impl<S: System> Progress<'_, S> {
     /// A row of the history, as the journal names its columns.
     fn row(&self, step: &Step, inner: u32, c: &Coefficients, motion: &[f64; 5], log: &Log<'_>) -> Vec<f64> {
         let [_, seconds] = log.seconds();
-        let cycle = f64::from(self.cycle);
+        let (cycle, time) = (f64::from(self.cycle), log.units.case_time(step.time));
         let mut row =
-            vec![cycle, log.record.iteration as f64, step.time, step.cfl, step.residual, c.cl, c.cd, c.cm, seconds];
+            vec![cycle, log.record.iteration as f64, time, step.cfl, step.residual, c.cl, c.cd, c.cm, seconds];
         if log.case.moves() {
             row.extend([f64::from(inner), motion[0].to_degrees(), motion[1], motion[2], motion[3]]);
         }

@@ -12,7 +12,7 @@ use crate::time::{Standing, Step};
 pub(crate) struct FieldSeries<'a, S, const D: usize> {
     /// The system.
     pub(crate) system: &'a S,
-    /// The interval.
+    /// The interval, in the time of the solver.
     pub(crate) interval: f64,
 }
 

@@ -2,6 +2,7 @@
 use super::super::error::RunError;
 use super::super::record::Log;
 use super::drive::{Now, Observer};
+use crate::case::Units;
 use crate::observe::structure::StructureSample;
 use crate::scheme::{Exchange, HasGas};
 use crate::time::{Standing, Step};
@@ -16,14 +17,28 @@ impl<S: HasGas<D>, const D: usize> Observer<S> for Structures<'_, S, D> {
     fn step(&mut self, step: &Step, now: &mut Now<'_, S>, log: &mut Log<'_>) -> Result<(), RunError> {
         let Standing { frame, work, state } = now.standing();
         match self.system.exchange(frame, state, work) {
-            Some(exchange) => log.structure(&sample(step.time, exchange)),
+            Some(exchange) => log.structure(log.record.iteration, &sample(step.time, exchange, &log.units)),
             None => Ok(()),
         }
     }
 }
 
-/// A row of the table.
-pub(crate) fn sample(time: f64, exchange: Exchange) -> StructureSample {
-    let Exchange { coordinates, rates, loads, power, wall_power, kinetic, potential, dissipation } = exchange;
-    StructureSample { time, coordinates, rates, loads, kinetic, potential, dissipation, gas_power: power, wall_power }
+/// A row of the table, in the units of the case; `time` and `exchange` are in those of the solver.
+pub(crate) fn sample(time: f64, exchange: Exchange, units: &Units) -> StructureSample {
+    let Exchange { coordinates, mut rates, mut loads, power, wall_power, kinetic, potential, dissipation } = exchange;
+    // a force on a length is an energy: lengths are the same in both, and so forces, moments and energies have one factor
+    let (force, power_unit) = (units.pressure(), units.pressure() * units.speed);
+    rates.iter_mut().for_each(|v| *v *= units.speed);
+    loads.iter_mut().for_each(|q| *q *= force);
+    StructureSample {
+        time: units.case_time(time),
+        coordinates,
+        rates,
+        loads,
+        kinetic: kinetic * force,
+        potential: potential * force,
+        dissipation: dissipation * power_unit,
+        gas_power: power * power_unit,
+        wall_power: wall_power * power_unit,
+    }
 }
