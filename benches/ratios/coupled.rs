@@ -15,7 +15,7 @@ use super::{built, control, once, parsed, tell};
 fn case(motion: &str) -> String {
     format!(
         "title = \"bench\"\n[flow]\nmach = 0.5\n[[body]]\nnaca = \"0012\"\n{motion}\n[cloud]\nspacing = 0.015625\n\
-         [time.dual]\nsteps_per_period = 64\nperiods = 3\n"
+         [time.dual]\nstep = 1.0\nuntil = 1.0\n"
     )
 }
 
