@@ -167,7 +167,7 @@ pub fn sum(n: usize, f: impl Fn(usize) -> f64 + Sync) -> f64 {
 
 /// Sum of `f(i)` over a range, every eighth term together: additions that need not wait for one another.
 #[inline(always)]
-pub fn abreast(range: Range<usize>, f: impl Fn(usize) -> f64) -> f64 {
+pub fn abreast(range: Range<usize>, f: &impl Fn(usize) -> f64) -> f64 {
     let mut sums = [0.0; 8];
     let whole = range.start + range.len() / 8 * 8;
     for start in (range.start..whole).step_by(8) {
