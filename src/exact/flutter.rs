@@ -12,7 +12,7 @@
 use num_complex::Complex64;
 
 use super::Error;
-use super::theodorsen::plate_growing;
+use super::theodorsen::{plate_loads, theodorsen_growing};
 
 /// Reduced speed at which roots are followed from: there the stream does nothing to thirteen digits.
 const STILL: f64 = 1e-3;
@@ -66,8 +66,8 @@ impl FlutterSection {
         let (zero, one) = (Complex64::new(0.0, 0.0), Complex64::new(1.0, 0.0));
         let (square, ratio, [zh, za]) = (lambda * lambda, self.frequency_ratio, self.damping);
         let p = lambda / v;
-        let plunge = plate_growing(p, self.axis, zero, one)?;
-        let pitch = plate_growing(p, self.axis, one, zero)?;
+        let c = theodorsen_growing(p)?;
+        let [plunge, pitch] = [[zero, one], [one, zero]].map(|motion| plate_loads(p, c, self.axis, motion));
         let loads = v * v / (std::f64::consts::PI * self.mass_ratio);
         let heave = square + 2.0 * zh * ratio * lambda + ratio * ratio;
         let twist = self.r_alpha2 * (square + 2.0 * za * lambda + 1.0);
@@ -229,9 +229,16 @@ mod tests {
     fn motions_decay_below_and_grow_above() {
         let s = section([60.0, -2.0, 1.8, 3.48, 1.0]);
         let v = s.flutter(25.0).unwrap().unwrap().reduced_speed;
-        let most = |v: f64| s.modes(v).unwrap().iter().fold(f64::NEG_INFINITY, |m, r| m.max(r.re));
-        assert!(most(0.97 * v) < -1e-4 && most(1.03 * v) > 1e-4 && most(v).abs() < 1e-10);
-        for root in s.modes(0.9 * v).unwrap() {
+        let before = s.modes(0.9 * v).unwrap();
+        // on from there, in steps short enough to stay on the same roots
+        let mut roots = before;
+        let mut most = |to: f64| {
+            roots = s.roots(to * v, roots).unwrap();
+            roots[0].re.max(roots[1].re)
+        };
+        let rates = [0.92, 0.94, 0.96, 0.97, 0.99, 1.0, 1.01, 1.02, 1.03].map(&mut most);
+        assert!(rates[3] < -1e-4 && rates[5].abs() < 1e-10 && rates[8] > 1e-4, "{rates:?}");
+        for root in before {
             assert!(s.determinant(root, 0.9 * v).unwrap().norm() < 1e-12);
             // the second equation holds for the shape of the first
             let (z, m) = (s.plunge_over_pitch(0.9 * v, root).unwrap(), s.matrix(root, 0.9 * v).unwrap());

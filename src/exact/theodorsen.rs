@@ -38,7 +38,7 @@ pub fn theodorsen(k: f64) -> Result<Complex64, Error> {
 /// Loads of a plate with reduced frequency `k` (of half the chord) and its axis `a` half chords behind the middle
 /// (−1/2: quarter chord), for the complex amplitudes `pitch` (radians, nose up) and `plunge` (up, over half the chord).
 pub fn plate(k: f64, a: f64, pitch: Complex64, plunge: Complex64) -> Result<PlateLoads, Error> {
-    Ok(loads(Complex64::new(0.0, k), theodorsen(k)?, a, [pitch, plunge]))
+    Ok(plate_loads(Complex64::new(0.0, k), theodorsen(k)?, a, [pitch, plunge]))
 }
 
 /// Theodorsen's function continued to motions e^{pUt/b} that grow or decay, C(p) = K₁/(K₀ + K₁) (Edwards, Ashley and Breakwell, AIAA J.
@@ -57,11 +57,11 @@ pub fn theodorsen_growing(p: Complex64) -> Result<Complex64, Error> {
 
 /// Loads of a plate as [`plate`] has them, for a motion e^{pUt/b}.
 pub fn plate_growing(p: Complex64, a: f64, pitch: Complex64, plunge: Complex64) -> Result<PlateLoads, Error> {
-    Ok(loads(p, theodorsen_growing(p)?, a, [pitch, plunge]))
+    Ok(plate_loads(p, theodorsen_growing(p)?, a, [pitch, plunge]))
 }
 
-/// Loads for the exponent p and C(p).
-fn loads(p: Complex64, c: Complex64, a: f64, [pitch, plunge]: [Complex64; 2]) -> PlateLoads {
+/// Loads for the exponent p and C(p), which costs far more than all the rest.
+pub(super) fn plate_loads(p: Complex64, c: Complex64, a: f64, [pitch, plunge]: [Complex64; 2]) -> PlateLoads {
     use std::f64::consts::PI;
     let square = -p * p;
     // downwash at three quarters of the chord

@@ -126,6 +126,9 @@ impl Instances {
     /// The matrix that takes values at these instances to values at those of `target`: exact interpolation to more
     /// instances; to fewer, what the target can hold of the series, without the rest folded into it.
     pub fn resample(&self, target: &Self) -> Matrix {
+        if self == target {
+            return Matrix::from_fn(self.count(), self.count(), |n, j| if n == j { 1.0 } else { 0.0 });
+        }
         let shared = self.harmonics.min(target.harmonics);
         let scale = 1.0 / self.count() as f64;
         Matrix::from_fn(target.count(), self.count(), |n, j| {
@@ -134,7 +137,8 @@ impl Instances {
         })
     }
 
-    /// Weights of the values in the derivative by ωt of the interpolant, at the phase ωt; at an instance a row of D.
+    /// Weights of the values in the derivative by ωt of the interpolant, at the phase ωt; at an instance they are those of
+    /// [`Self::derivative`], which costs less.
     pub fn derivative_weights(&self, phase: f64) -> Vec<f64> {
         let slope = |x: f64| -2.0 * (1..=self.harmonics).map(|m| m as f64 * (m as f64 * x).sin()).sum::<f64>();
         (0..self.count()).map(|j| slope(phase - self.phase(j)) / self.count() as f64).collect()

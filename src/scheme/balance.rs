@@ -310,7 +310,7 @@ mod tests {
         // particles move through a momentum that stands still in space: dm/dt = w·∇m
         let seen = |_: &Vector<2>, w: &Vector<2>| Vector([w[1], -w[0]]) * OMEGA;
         let mut errors = Vec::new();
-        for spacing in [0.05, 0.025] {
+        for spacing in [0.08, 0.04] {
             let at = turning(spacing, 1e-3);
             let (found, middle) = force(&at, 0.7, field, seen);
             let exact = (middle - PIVOT) * (-OMEGA * OMEGA * 0.25 * std::f64::consts::PI);

@@ -27,6 +27,8 @@ pub struct HarmonicBalance<'a, S: System> {
     seen: Instances,
     omega: f64,
     derivative: Matrix,
+    /// The same between the instances where R is evaluated.
+    seen_derivative: Matrix,
     up: Matrix,
     down: Matrix,
 }
@@ -49,7 +51,8 @@ impl<'a, S: System> HarmonicBalance<'a, S> {
         let placing = system.placing();
         let placing = placing.start * count..placing.end * count;
         let (up, down) = (held.resample(&seen), seen.resample(&held));
-        Self { system, fields, placing, held, seen, omega, derivative, up, down }
+        let seen_derivative = seen.derivative(omega);
+        Self { system, fields, placing, held, seen, omega, derivative, seen_derivative, up, down }
     }
 
     /// Instances that hold the solution.
@@ -141,7 +144,8 @@ impl<'a, S: System> HarmonicBalance<'a, S> {
     /// The instant of phase ωt in the solution `u`, velocities from positions at the instances by the operator of the state.
     pub fn with_instant<T>(&self, u: &[f64], phase: f64, f: impl FnOnce(&Instant<'_>) -> T) -> T {
         let now = self.coordinates(u, &self.held.weights(phase));
-        self.instant(&self.coordinates_seen(&u[self.placing.clone()]), (phase, &now), f)
+        let weights: Vec<f64> = self.seen.derivative_weights(phase).iter().map(|w| w * self.omega).collect();
+        self.instant(&self.coordinates_seen(&u[self.placing.clone()]), (phase, &now), &weights, f)
     }
 
     /// The coordinates that place frames, Σ_j weights_j q_j.
@@ -164,12 +168,18 @@ impl<'a, S: System> HarmonicBalance<'a, S> {
         (0..self.seen.count()).map(|n| self.coordinates_of(q, self.up.row(n))).collect()
     }
 
-    fn instant<T>(&self, seen: &[Vec<f64>], (phase, now): (f64, &[f64]), f: impl FnOnce(&Instant<'_>) -> T) -> T {
+    /// The instant of phase ωt at the coordinates `now`, of those at all instances where R is evaluated, and their weights in the
+    /// derivative then.
+    fn instant<T>(
+        &self,
+        seen: &[Vec<f64>],
+        (phase, now): (f64, &[f64]),
+        weights: &[f64],
+        f: impl FnOnce(&Instant<'_>) -> T,
+    ) -> T {
         let times = self.seen.times(self.omega);
-        let weights = self.seen.derivative_weights(phase);
-        let terms: Vec<Term<'_>> = (0..times.len())
-            .map(|n| Term { coefficient: weights[n] * self.omega, time: times[n], coordinates: &seen[n] })
-            .collect();
+        let terms: Vec<Term<'_>> =
+            (0..times.len()).map(|n| Term { coefficient: weights[n], time: times[n], coordinates: &seen[n] }).collect();
         f(&Instant::formula(phase / self.omega, &terms).with(now))
     }
 
@@ -227,7 +237,7 @@ impl<S: System> System for HarmonicBalance<'_, S> {
         let seen = self.coordinates_seen(&u[self.placing.clone()]);
         let frame = |(n, phase): (usize, f64)| {
             self.look(u, n, &mut one);
-            self.instant(&seen, (phase, &seen[n]), |at| self.system.frame(at, &one))
+            self.instant(&seen, (phase, &seen[n]), self.seen_derivative.row(n), |at| self.system.frame(at, &one))
         };
         self.phases().into_iter().enumerate().map(frame).collect()
     }
@@ -235,7 +245,7 @@ impl<S: System> System for HarmonicBalance<'_, S> {
     fn place(&self, at: &Instant<'_>, frame: &mut Self::Frame) {
         let seen = self.coordinates_seen(at.coordinates);
         for (n, (phase, frame)) in self.phases().into_iter().zip(frame).enumerate() {
-            self.instant(&seen, (phase, &seen[n]), |at| self.system.place(at, frame));
+            self.instant(&seen, (phase, &seen[n]), self.seen_derivative.row(n), |at| self.system.place(at, frame));
         }
     }
 

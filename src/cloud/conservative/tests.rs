@@ -100,7 +100,7 @@ fn every_wall_is_shared_out_and_its_pressure_closes() {
 
 #[test]
 fn spheres_cut_by_a_plane_of_symmetry_close() {
-    let text = "[[body]]\nsphere = { radius = 0.5 }\n[cloud]\nspacing = 0.25\n\
+    let text = "[[body]]\nsphere = { radius = 0.5 }\n[cloud]\nspacing = 0.25\ncurvature = 0.25\n\
                 domain = { min = [-1.0, -1.0, 0.0], max = [1.0, 1.0, 1.0] }\n\
                 [boundary]\nz_min = \"symmetry\"\n";
     let mut cloud = cloud::<3>(text);

@@ -368,8 +368,8 @@ mod tests {
         let built = |more: &str| {
             let text = format!(
                 "title = \"t\"\n[flow]\nmach = 0.3\nreynolds = 1000\n[[body]]\npolygon = [[-0.5, -0.5], [0.5, -0.5], \
-                 [0.5, 0.5], [0.079, 0.5], [0, -0.1], [-0.079, 0.5], [-0.5, 0.5]]\n[cloud]\nspacing = 0.03\nfar_field = 4\n\
-                 wall_layers = {{ first = 0.004 }}\n[scheme]\n{more}"
+                 [0.5, 0.5], [0.079, 0.5], [0, -0.1], [-0.079, 0.5], [-0.5, 0.5]]\n[cloud]\nspacing = 0.06\nfar_field = 2\n\
+                 edge_levels = 1\nwall_layers = {{ first = 0.008 }}\n[scheme]\n{more}"
             );
             let case = crate::case::read(&text, "t").unwrap();
             crate::run::build_solver::<2>(&case, Path::new("")).map_err(|e| e.to_string())
