@@ -16,9 +16,13 @@ lint:
     cargo fmt --all --check
     cargo clippy --workspace --all-targets -- -D warnings
 
-# all tests
+# the tests of the README
 test:
     cargo test --workspace
+
+# those that take long
+test-long:
+    cargo test --workspace -- --ignored
 
 # bring the generated pages of the book up to date
 book:

@@ -13,12 +13,11 @@ use alula::motion::{BodyMotion, TimeFunction};
 use alula::physics::Primitive;
 use alula::scheme::discretisation::{Path, Places};
 use alula::scheme::{CloudMotion, Fluid};
-use alula::system::{Fault, Field, Hierarchy, Implicit, Instant, Period, System};
+use alula::system::{Instant, System};
 use alula::time::control::{Control, Method};
-use alula::time::full::Full;
 use alula::time::harmonic::HarmonicBalance;
 use alula::time::relax::Relax;
-use common::{largest, solver};
+use common::{largest, oscillator, solver};
 
 /// Round-off of fluxes of order one, in changes of the state within one local time.
 const ROUND_OFF: f64 = 1e-12;
@@ -112,48 +111,6 @@ fn uniform_and_linear_fields_stay_on_moving_clouds() {
     }
 }
 
-/// x'' = f(x, x', t) as two equations of the first order, for x' and x.
-struct Oscillator<F>(F);
-impl<F: Fn(f64, f64, f64) -> f64 + Sync> System for Oscillator<F> {
-    type Frame = f64;
-    type Work = ();
-
-    fn fields(&self) -> &[Field] {
-        const ONE: [Field; 1] = [Field::new("oscillator", 1, 2)];
-        &ONE
-    }
-    fn frame(&self, at: &Instant<'_>, _: &[f64]) -> f64 {
-        at.time
-    }
-    fn place(&self, at: &Instant<'_>, frame: &mut f64) {
-        *frame = at.time;
-    }
-    fn update_boundary_state(&self, _: &[f64], (): &mut (), _: &mut f64) {}
-    fn work(&self) {}
-    fn rhs(&self, t: &f64, u: &[f64], (): &mut (), du: &mut [f64]) {
-        (du[0], du[1]) = ((self.0)(u[1], u[0], *t), u[0]);
-    }
-    fn rates(&self, _: &f64, _: &[f64], (): &mut (), rate: &mut [f64]) {
-        rate.fill(2.0);
-    }
-    fn largest_change(&self, _: &[f64], du: &[f64]) -> f64 {
-        du.iter().fold(0.0, |m: f64, d| if d.is_finite() { m.max(1e-3 * d.abs()) } else { f64::INFINITY })
-    }
-    fn check(&self, _: &f64, u: &[f64]) -> Result<(), Fault> {
-        if u.iter().all(|v| v.is_finite()) {
-            return Ok(());
-        }
-        Err(Fault { particle: 0, place: Vec::new(), reason: "infinite".into() })
-    }
-}
-
-impl<F: Fn(f64, f64, f64) -> f64 + Sync> Implicit for Oscillator<F> {
-    type Preconditioner = Full;
-    fn preconditioner(&self, _: &Hierarchy, period: Option<Period>) -> Full {
-        Full::new(self, period)
-    }
-}
-
 /// Solves F(x) = 0 by Newton's method with differences; `None` unless it converges.
 fn newton(mut x: Vec<f64>, f: impl Fn(&[f64]) -> Vec<f64>) -> Option<Vec<f64>> {
     let n = x.len();
@@ -205,7 +162,7 @@ fn limit_cycle_of_van_der_pol() {
     for (mu, omega, greatest, harmonics) in
         [(0.1, 0.999_375_553_424, 2.000_103_979_872, 11), (1.0, 0.942_955_847_442, 2.008_619_860_875, 31)]
     {
-        let system = Oscillator(move |x: f64, v: f64, _: f64| mu * (1.0 - x * x) * v - x);
+        let system = oscillator(move |x: f64, v: f64, _: f64| mu * (1.0 - x * x) * v - x);
         let instances = Instances::of_harmonics(harmonics);
         let count = instances.count();
         // unknowns: state, and the frequency in place of the velocity at the first instance, which fixes the phase
@@ -235,7 +192,7 @@ fn limit_cycle_of_van_der_pol() {
 
 /// Distinct first harmonics |h1| that Newton's method finds from many starts.
 fn roots(omega: f64, harmonics: usize, oversample: f64) -> Vec<f64> {
-    let system = Oscillator(move |x: f64, v: f64, t: f64| -0.1 * v - x - x.powi(3) + 0.3 * (omega * t).cos());
+    let system = oscillator(move |x: f64, v: f64, t: f64| -0.1 * v - x - x.powi(3) + 0.3 * (omega * t).cos());
     let balance = HarmonicBalance::new(&system, Instances::of_harmonics(harmonics), omega, oversample);
     let mut found: Vec<f64> = Vec::new();
     let mut seed = 1u64;
@@ -275,7 +232,7 @@ fn oversampling_leaves_the_roots_of_duffing_that_exist() {
 
 #[test]
 fn relaxation_finds_the_forced_oscillation() {
-    let system = Oscillator(|x: f64, v: f64, t: f64| -1.5 * v - x - x.powi(3) + 0.3 * (0.8 * t).cos());
+    let system = oscillator(|x: f64, v: f64, t: f64| -1.5 * v - x - x.powi(3) + 0.3 * (0.8 * t).cos());
     for (method, harmonics) in [(Method::NewtonKrylov, 1), (Method::NewtonKrylov, 5), (Method::RungeKutta, 3)] {
         let balance = HarmonicBalance::new(&system, Instances::of_harmonics(harmonics), 0.8, 2.0);
         let cycle = Cycle { sweeps: 2, visits: 1, levels: 1 };
@@ -295,7 +252,7 @@ fn relaxation_finds_the_forced_oscillation() {
 
 #[test]
 fn states_move_between_numbers_of_harmonics() {
-    let system = Oscillator(|_: f64, _: f64, _: f64| 0.0);
+    let system = oscillator(|_: f64, _: f64, _: f64| 0.0);
     let build = |n: usize| HarmonicBalance::new(&system, Instances::of_harmonics(n), 1.0, 1.0);
     let few: Vec<f64> = (0..10).map(|k| f64::from(k * k).sin()).collect();
     let many = build(5).resampled(&few, Instances::of_harmonics(2));
@@ -334,29 +291,35 @@ fn places(root: &std::path::Path, name: &str) -> alula::run::Places {
 }
 
 #[test]
-fn an_interrupted_balance_goes_on_to_the_same_bits() {
+fn a_balance_goes_on_from_an_interruption_from_another_one_and_from_a_march() {
     let root = tempfile::tempdir().unwrap();
-    let case = section("2");
-    let whole = alula::run::run(&case, &places(root.path(), "whole"), &mut alula::run::Silent).unwrap();
-    let alula::run::Outcome::Finished(summary) = whole else { panic!("interrupted") };
-    assert!(summary.converged && summary.first_harmonics[0].cl[0] > 3.0, "{summary:?}");
-    let stopped = &mut After(summary.iterations - 2, std::cell::Cell::new(0));
-    alula::run::run(&case, &places(root.path(), "cut"), stopped).unwrap();
-    alula::run::resume(&root.path().join("cut"), &mut alula::run::Silent).unwrap();
-    let read = |name: &str, file: &str| std::fs::read(root.path().join(name).join(file)).unwrap();
+    let whole = summary(&section("2"), &places(root.path(), "whole"));
+    assert!(whole.converged && whole.first_harmonics[0].cl[0] > 3.0, "{whole:?}");
+    goes_on_to_the_same_bits(root.path(), &whole);
+    goes_on_with_other_harmonics(root.path(), &whole);
+    begins_with_a_march(root.path(), &whole);
+}
+
+/// An interrupted balance against one that was not.
+fn goes_on_to_the_same_bits(root: &std::path::Path, whole: &alula::run::Summary) {
+    let stopped = &mut After(whole.iterations - 2, std::cell::Cell::new(0));
+    alula::run::run(&section("2"), &places(root, "cut"), stopped).unwrap();
+    alula::run::resume(&root.join("cut"), &mut alula::run::Silent).unwrap();
+    let read = |name: &str, file: &str| std::fs::read(root.join(name).join(file)).unwrap();
     for file in ["harmonics.json", "surface_harmonics.csv", "instances.csv", "field_harmonics.vtu"] {
         assert_eq!(read("whole", file), read("cut", file), "{file}");
     }
-    // from there to other numbers of harmonics, and to a march
-    let from = root.path().join("whole");
-    let more =
-        alula::run::run_from(&section("3"), &places(root.path(), "more"), &from, &mut alula::run::Silent).unwrap();
+}
+
+fn goes_on_with_other_harmonics(root: &std::path::Path, whole: &alula::run::Summary) {
+    let from = root.join("whole");
+    let more = alula::run::run_from(&section("3"), &places(root, "more"), &from, &mut alula::run::Silent).unwrap();
     let alula::run::Outcome::Finished(more) = more else { panic!("interrupted") };
-    let change = more.first_harmonics[0].cl[0] - summary.first_harmonics[0].cl[0];
+    let change = more.first_harmonics[0].cl[0] - whole.first_harmonics[0].cl[0];
     assert!(more.converged && change.abs() < 0.01, "{change}");
     let mut other = section("1");
     other.cloud.spacing.0 = 0.05;
-    let refused = alula::run::run_from(&other, &places(root.path(), "x"), &from, &mut alula::run::Silent).unwrap_err();
+    let refused = alula::run::run_from(&other, &places(root, "x"), &from, &mut alula::run::Silent).unwrap_err();
     assert!(refused.to_string().contains("`[cloud]` differ"), "{refused}");
 }
 
@@ -380,19 +343,17 @@ impl alula::run::Monitor for AtMarch {
     }
 }
 
-#[test]
-fn a_balance_that_begins_with_a_march_finds_the_same() {
-    let root = tempfile::tempdir().unwrap();
-    let direct = summary(&section("2"), &places(root.path(), "direct"));
-    let marched = section("{ number = 2, march = 1 }");
-    let whole = summary(&marched, &places(root.path(), "whole"));
+/// A balance that begins with a march, interrupted or not, against one that does not.
+fn begins_with_a_march(root: &std::path::Path, direct: &alula::run::Summary) {
+    let case = section("{ number = 2, march = 1 }");
+    let marched = summary(&case, &places(root, "marched"));
     let lift = |s: &alula::run::Summary| s.first_harmonics[0].cl;
-    let change = (0..2).map(|k| (lift(&whole)[k] - lift(&direct)[k]).abs()).fold(0.0, f64::max);
-    assert!(whole.converged && change < 2e-3, "{change}");
-    alula::run::run(&marched, &places(root.path(), "cut"), &mut AtMarch(false.into())).unwrap();
-    alula::run::resume(&root.path().join("cut"), &mut alula::run::Silent).unwrap();
-    let read = |name: &str| std::fs::read(root.path().join(name).join("instances.csv")).unwrap();
-    assert!(read("whole") == read("cut"), "a march that was interrupted ends elsewhere");
+    let change = (0..2).map(|k| (lift(&marched)[k] - lift(direct)[k]).abs()).fold(0.0, f64::max);
+    assert!(marched.converged && change < 2e-3, "{change}");
+    alula::run::run(&case, &places(root, "march cut"), &mut AtMarch(false.into())).unwrap();
+    alula::run::resume(&root.join("march cut"), &mut alula::run::Silent).unwrap();
+    let read = |name: &str| std::fs::read(root.join(name).join("instances.csv")).unwrap();
+    assert!(read("marched") == read("march cut"), "a march that was interrupted ends elsewhere");
 }
 
 #[test]

@@ -19,29 +19,33 @@ use alula::time::explicit::{Explicit, Method};
 use alula::time::{Integrator, Past, Standing};
 use common::{largest, solver};
 
-/// Round-off of a hundred steps of fluxes of order one over spacings of some hundredths.
+/// Round-off of some tens of steps of fluxes of order one over spacings of some hundredths.
 const ROUND_OFF: f64 = 1e-12;
 /// Length of a step in time.
-const STEP: f64 = 0.005;
+const STEP: f64 = 0.0125;
 /// Steps of an implicit march.
-const STEPS: u32 = 100;
+const STEPS: u32 = 40;
+
 /// Spacing of the clouds.
-const SPACING: f64 = 0.125;
+fn spacing(dimension: usize) -> f64 {
+    if dimension == 2 { 0.125 } else { 1.0 / 6.0 }
+}
 
 /// A random cloud of two levels in a box whose sides hold the field at the start.
 fn boxed<const D: usize>() -> (Fluid<D>, Vec<f64>) {
     let list = |v: f64| vec![v.to_string(); D].join(", ");
     let sides: String =
         ["x", "y", "z"][..D].iter().map(|a| format!("{a}_min = \"held\"\n{a}_max = \"held\"\n")).collect();
+    let spacing = spacing(D);
     let half = if D == 2 { "0.5, 0.0" } else { "0.5, 0.0, 0.0" };
     let case = format!(
-        "title = \"box\"\ndimension = {D}\n[flow]\nmach = 0.6\nalpha = \"7 deg\"\n[cloud]\nspacing = {SPACING}\n\
+        "title = \"box\"\ndimension = {D}\n[flow]\nmach = 0.6\nalpha = \"7 deg\"\n[cloud]\nspacing = {spacing}\n\
          jitter = 0.2\n[cloud.domain]\nmin = [{}]\nmax = [{}]\n[[cloud.box]]\nmin = [{half}]\nmax = [{}]\n\
          spacing = {}\n[scheme]\nconservative = false\n[boundary]\n{sides}",
         list(0.0),
         list(1.0),
         list(1.0),
-        0.5 * SPACING
+        0.5 * spacing
     );
     solver::<D>(&case)
 }
@@ -77,7 +81,7 @@ impl Walk {
             }
             (z >> 11) as f64 / (1u64 << 53) as f64 - 0.5
         };
-        Vector::from_fn(|d| 0.1 * SPACING * hash(d))
+        Vector::from_fn(|d| 0.1 * spacing(D) * hash(d))
     }
 }
 impl<const D: usize> Path<D> for Walk {

@@ -4,106 +4,27 @@
 use alula::math::fourier::{Instances, Series};
 use alula::math::multilevel::Cycle;
 use alula::structure::{Coordinate, ForceHistory, InertiaLaw, Model, PlanarBody, Spring, Structure};
-use alula::system::{Fault, Field, Hierarchy, Implicit, Instant, Period, Preconditioner, Shift, System};
+use alula::system::{Instant, System};
 use alula::time::control::{Control, Method};
 use alula::time::dual::{Dual, Plan};
-use alula::time::full::Full;
 use alula::time::harmonic::HarmonicBalance;
+use alula::time::ordinary::Ordinary;
 use alula::time::relax::Relax;
 use alula::time::{Integrator, Past};
 
-/// A structure without surroundings, u = [q, q'].
-struct Alone {
-    structure: Structure<2>,
-    fields: Vec<Field>,
+/// The equations of a structure without surroundings, u = [q, q'].
+fn alone(structure: &Structure<2>) -> Ordinary<impl Fn(f64, &[f64], &mut [f64]) + Sync> {
+    let still = vec![0.0; structure.len()];
+    Ordinary::new(2 * structure.len(), 2.0, move |t, u, du| du.copy_from_slice(&structure.rates(t, u, &still)))
 }
 
-impl Alone {
-    fn new(structure: Structure<2>) -> Self {
-        let fields = vec![Field::new("structure", 1, 2 * structure.len())];
-        Self { structure, fields }
-    }
-
-    fn still(&self) -> Vec<f64> {
-        vec![0.0; self.structure.len()]
-    }
-}
-
-impl System for Alone {
-    type Frame = f64;
-    type Work = ();
-
-    fn fields(&self) -> &[Field] {
-        &self.fields
-    }
-    fn frame(&self, at: &Instant<'_>, _: &[f64]) -> f64 {
-        at.time
-    }
-    fn place(&self, at: &Instant<'_>, frame: &mut f64) {
-        *frame = at.time;
-    }
-    fn update_boundary_state(&self, _: &[f64], (): &mut (), _: &mut f64) {}
-    fn work(&self) {}
-    fn rhs(&self, t: &f64, u: &[f64], (): &mut (), du: &mut [f64]) {
-        du.copy_from_slice(&self.structure.rates(*t, u, &self.still()));
-    }
-    fn rates(&self, _: &f64, _: &[f64], (): &mut (), rate: &mut [f64]) {
-        rate.fill(2.0);
-    }
-    fn largest_change(&self, _: &[f64], du: &[f64]) -> f64 {
-        du.iter().fold(0.0, |m: f64, d| if d.is_finite() { m.max(1e-3 * d.abs()) } else { f64::INFINITY })
-    }
-    fn check(&self, _: &f64, u: &[f64]) -> Result<(), Fault> {
-        let reason = self.structure.fault(&u[..self.structure.len()]);
-        reason.map_or(Ok(()), |reason| Err(Fault { particle: 0, place: Vec::new(), reason }))
-    }
-}
-
-impl Implicit for Alone {
-    type Preconditioner = Tangent;
-    fn preconditioner(&self, _: &Hierarchy, period: Option<Period>) -> Tangent {
-        Tangent(Full::new(self, period))
-    }
-}
-
-/// The full matrix of the exact tangents.
-struct Tangent(Full);
-
-impl Preconditioner<Alone> for Tangent {
-    fn begin(&mut self, points: usize) {
-        Preconditioner::<Alone>::begin(&mut self.0, points);
-    }
-    fn add(&mut self, system: &Alone, t: &f64, u: &[f64], (): &mut ()) {
-        let n = system.structure.len();
-        let tangent = system.structure.linearise(*t, [&u[..n], &u[n..]], &system.still());
-        let mut matrix = vec![0.0; 4 * n * n];
-        for i in 0..n {
-            matrix[i * 2 * n + n + i] = -1.0;
-            for j in 0..n {
-                matrix[(n + i) * 2 * n + j] = -tangent.by_coordinate[i * n + j];
-                matrix[(n + i) * 2 * n + n + j] = -tangent.by_rate[i * n + j];
-            }
-        }
-        self.0.add_matrix(&matrix);
-    }
-    fn finish(&mut self, shift: &Shift<'_>) {
-        Preconditioner::<Alone>::finish(&mut self.0, shift);
-    }
-    fn apply(&mut self, system: &Alone, frames: &[&f64], r: &alula::system::RightHandSide<'_>, z: &mut [f64]) {
-        self.0.apply(system, frames, r, z);
-    }
-    fn bytes(&self) -> usize {
-        Preconditioner::<Alone>::bytes(&self.0)
-    }
-}
-
-fn oscillator(spring: Spring, damping: f64, force: ForceHistory) -> Alone {
+fn oscillator(spring: Spring, damping: f64, force: ForceHistory) -> Structure<2> {
     let coordinate = Coordinate { name: "x".into(), spring, damping, force, ..Coordinate::default() };
-    Alone::new(Structure::new(Model::Modal(vec![("x".into(), 1.0)]), vec![coordinate]).unwrap())
+    Structure::new(Model::Modal(vec![("x".into(), 1.0)]), vec![coordinate]).unwrap()
 }
 
 /// A section with unbalance, springs and dampers; `play` on its pitch.
-fn section(play: f64, law: InertiaLaw) -> Alone {
+fn section(play: f64, law: InertiaLaw) -> Structure<2> {
     let body = PlanarBody {
         pivot: [0.0; 2],
         mass: 1.0,
@@ -117,7 +38,7 @@ fn section(play: f64, law: InertiaLaw) -> Alone {
         |name: &str, spring: Spring| Coordinate { name: name.into(), spring, damping: 0.02, ..Coordinate::default() };
     let pitch = Spring { stiffness: 0.5, cubic: 1.0, play, rest: 0.0 };
     let all = vec![named("plunge", Spring::linear(0.3)), named("pitch", pitch)];
-    Alone::new(Structure::new(Model::Planar(body), all).unwrap())
+    Structure::new(Model::Planar(body), all).unwrap()
 }
 
 const CONTROL: Control = Control {
@@ -132,9 +53,10 @@ const CONTROL: Control = Control {
 };
 
 /// The state at time `until` after steps of one length by the formula of second order.
-fn march(system: &Alone, start: &[f64], until: f64, steps: u32) -> Vec<f64> {
+fn march(structure: &Structure<2>, start: &[f64], until: f64, steps: u32) -> Vec<f64> {
     let plan = Plan { until, step: until / f64::from(steps), order: 2, orders: 9.0, iterations: 40, adaptive: None };
-    let mut march = Dual::new(system, CONTROL, plan, (Past::default(), start.to_vec()));
+    let system = alone(structure);
+    let mut march = Dual::new(&system, CONTROL, plan, (Past::default(), start.to_vec()));
     while !march.finished() {
         march.advance().unwrap();
     }
@@ -143,15 +65,15 @@ fn march(system: &Alone, start: &[f64], until: f64, steps: u32) -> Vec<f64> {
 }
 
 /// Classical Runge-Kutta.
-fn reference(system: &Alone, start: &[f64], until: f64, steps: usize) -> Vec<f64> {
-    let (dt, none, mut u) = (until / steps as f64, system.still(), start.to_vec());
+fn reference(structure: &Structure<2>, start: &[f64], until: f64, steps: usize) -> Vec<f64> {
+    let (dt, none, mut u) = (until / steps as f64, vec![0.0; structure.len()], start.to_vec());
     let along = |u: &[f64], k: &[f64], f: f64| u.iter().zip(k).map(|(u, k)| u + f * k).collect::<Vec<f64>>();
     for n in 0..steps {
         let t = n as f64 * dt;
-        let a = system.structure.rates(t, &u, &none);
-        let b = system.structure.rates(t + 0.5 * dt, &along(&u, &a, 0.5 * dt), &none);
-        let c = system.structure.rates(t + 0.5 * dt, &along(&u, &b, 0.5 * dt), &none);
-        let d = system.structure.rates(t + dt, &along(&u, &c, dt), &none);
+        let a = structure.rates(t, &u, &none);
+        let b = structure.rates(t + 0.5 * dt, &along(&u, &a, 0.5 * dt), &none);
+        let c = structure.rates(t + 0.5 * dt, &along(&u, &b, 0.5 * dt), &none);
+        let d = structure.rates(t + dt, &along(&u, &c, dt), &none);
         (0..u.len()).for_each(|k| u[k] += dt / 6.0 * (a[k] + 2.0 * b[k] + 2.0 * c[k] + d[k]));
     }
     u
@@ -162,8 +84,14 @@ fn miss(a: &[f64], b: &[f64]) -> f64 {
 }
 
 /// Error at three steps: of second order, and its Richardson extrapolate far below.
-fn assert_second_order(system: &Alone, start: &[f64], (until, steps): (f64, u32), exact: &[f64], extrapolated: f64) {
-    let found: Vec<Vec<f64>> = [1, 2, 4].iter().map(|f| march(system, start, until, f * steps)).collect();
+fn assert_second_order(
+    structure: &Structure<2>,
+    start: &[f64],
+    (until, steps): (f64, u32),
+    exact: &[f64],
+    extrapolated: f64,
+) {
+    let found: Vec<Vec<f64>> = [1, 2, 4].iter().map(|f| march(structure, start, until, f * steps)).collect();
     let errors: Vec<f64> = found.iter().map(|u| miss(u, exact)).collect();
     let order = (errors[1] / errors[2]).log2();
     assert!((1.9..2.1).contains(&order), "order {order}, errors {errors:?}");
@@ -192,13 +120,13 @@ fn free_and_forced_oscillations_are_marched_at_second_order() {
 #[test]
 fn play_cubic_springs_and_large_angles_are_marched_at_second_order() {
     let start = [0.1, 0.3, 0.0, -0.2];
-    for (system, best) in [
+    for (structure, best) in [
         (section(0.0, InertiaLaw::Linear), 1e-5),
         (section(0.0, InertiaLaw::Exact), 1e-5),
         (section(0.05, InertiaLaw::Exact), 1e-4),
     ] {
-        let exact = reference(&system, &start, 8.0, 64_000);
-        assert_second_order(&system, &start, (8.0, 800), &exact, best);
+        let exact = reference(&structure, &start, 8.0, 64_000);
+        assert_second_order(&structure, &start, (8.0, 800), &exact, best);
     }
 }
 
@@ -209,15 +137,16 @@ fn sampled(harmonics: usize, start: impl Fn(f64) -> Vec<f64>) -> Vec<f64> {
 }
 
 /// First harmonic |h₁| of the first coordinate of a state of all instances.
-fn first_harmonic(system: &Alone, u: &[f64], harmonics: usize) -> f64 {
-    let x: Vec<f64> = u.chunks_exact(2 * system.structure.len()).map(|u| u[0]).collect();
+fn first_harmonic(structure: &Structure<2>, u: &[f64], harmonics: usize) -> f64 {
+    let x: Vec<f64> = u.chunks_exact(2 * structure.len()).map(|u| u[0]).collect();
     let series = Series::of_values(&x).unwrap();
     series.coefficients()[1].hypot(series.coefficients()[1 + harmonics])
 }
 
 /// The periodic solution that relaxation finds from `start`.
-fn relaxed(system: &Alone, omega: f64, harmonics: usize, start: Vec<f64>) -> Vec<f64> {
-    let balance = HarmonicBalance::new(system, Instances::of_harmonics(harmonics), omega, 2.0);
+fn relaxed(structure: &Structure<2>, omega: f64, harmonics: usize, start: Vec<f64>) -> Vec<f64> {
+    let system = alone(structure);
+    let balance = HarmonicBalance::new(&system, Instances::of_harmonics(harmonics), omega, 2.0);
     let mut relax = Relax::new(&balance, CONTROL, start, &vec![0.1; balance.len()], None);
     while relax.drop() > 1e-11 {
         assert!(relax.iteration < 500, "{:e}", relax.drop());
@@ -227,8 +156,9 @@ fn relaxed(system: &Alone, omega: f64, harmonics: usize, start: Vec<f64>) -> Vec
 }
 
 /// The periodic solution next to `start`, stable or not: Newton's method with differences.
-fn nearest(system: &Alone, omega: f64, harmonics: usize, start: Vec<f64>) -> Vec<f64> {
-    let balance = HarmonicBalance::new(system, Instances::of_harmonics(harmonics), omega, 2.0);
+fn nearest(structure: &Structure<2>, omega: f64, harmonics: usize, start: Vec<f64>) -> Vec<f64> {
+    let system = alone(structure);
+    let balance = HarmonicBalance::new(&system, Instances::of_harmonics(harmonics), omega, 2.0);
     let equations = |u: &[f64]| {
         let mut du = vec![0.0; u.len()];
         balance.rhs(&balance.frame(&Instant::still(0.0), u), u, &mut balance.work(), &mut du);
@@ -272,18 +202,18 @@ fn harmonic_balance_finds_the_solutions_of_duffing() {
     let harmonics = 15;
     for (omega, [a, lag], exact, stable) in branches {
         let force = ForceHistory::Cosine { amplitude: 0.3, omega, phase: 0.0 };
-        let system = oscillator(spring, 0.1, force);
+        let structure = oscillator(spring, 0.1, force);
         let start = sampled(harmonics, |phase| vec![a * (phase - lag).cos(), -a * omega * (phase - lag).sin()]);
-        let mut found = vec![nearest(&system, omega, harmonics, start.clone())];
+        let mut found = vec![nearest(&structure, omega, harmonics, start.clone())];
         if stable {
-            found.push(relaxed(&system, omega, harmonics, start));
+            found.push(relaxed(&structure, omega, harmonics, start));
         }
         for u in found {
-            let first = first_harmonic(&system, &u, harmonics);
+            let first = first_harmonic(&structure, &u, harmonics);
             assert!((first - exact).abs() < 1e-8, "{omega}: {first} {exact}");
             // a period later it is where it was
             let period = std::f64::consts::TAU / omega;
-            assert!(miss(&reference(&system, &u[..2], period, 4000), &u[..2]) < 1e-8, "{omega} {a}");
+            assert!(miss(&reference(&structure, &u[..2], period, 4000), &u[..2]) < 1e-8, "{omega} {a}");
         }
     }
 }
@@ -293,7 +223,6 @@ fn harmonic_balance_of_a_section_is_its_linear_response() {
     let mut linear = section(0.0, InertiaLaw::Linear);
     let omega = 0.8;
     let coordinates: Vec<Coordinate> = linear
-        .structure
         .coordinates()
         .iter()
         .map(|c| Coordinate {
@@ -302,11 +231,11 @@ fn harmonic_balance_of_a_section_is_its_linear_response() {
             ..c.clone()
         })
         .collect();
-    linear = Alone::new(Structure::new(linear.structure.model().clone(), coordinates).unwrap());
+    linear = Structure::new(linear.model().clone(), coordinates).unwrap();
     let u = relaxed(&linear, omega, 1, sampled(1, |_| vec![0.0; 4]));
     let first = first_harmonic(&linear, &u, 1);
     // (K − ω²M + iωC) q = f, the first harmonic of plunge by Cramer's rule
-    let m = linear.structure.matrices(&[0.0; 2], &[0.0; 2]);
+    let m = linear.matrices(&[0.0; 2], &[0.0; 2]);
     let entry = |k: usize| num(m.stiffness[k] - omega * omega * m.mass[k], omega * m.damping[k]);
     let [a, b, c, d] = [entry(0), entry(1), entry(2), entry(3)];
     let determinant = minus(times(a, d), times(b, c));

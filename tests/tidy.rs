@@ -52,7 +52,7 @@ const OPENS_FILES: [&str; 7] = [
     "src/report/",
     "src/geometry/mod.rs",
     "src/run/folder.rs",
-    "src/run/measure.rs",
+    "src/run/measure/",
     "src/run/verify.rs",
 ];
 /// Who may contain `unsafe`: nobody so far.

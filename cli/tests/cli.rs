@@ -54,17 +54,17 @@ const SECTION: &str = "title = \"section\"\n[flow]\nmach = 0.5\nalpha = \"2 deg\
     [cloud]\nspacing = 0.03125\nfar_field = 10.0\n[scheme]\nlimiter = \"none\"\n[output]\ncheckpoint = 1\n\
     report = false\n";
 
-/// A vortex in a periodic square: a march of some hundred steps.
+/// A vortex in a periodic square: a march of some tens of steps.
 const VORTEX: &str = "title = \"vortex\"\ndimension = 2\n[flow]\nmach = 1.1952286093343936\nalpha = \"45 deg\"\n[cloud]\n\
     spacing = 0.15625\ndomain = { min = [0.0, 0.0], max = [10.0, 10.0] }\n[boundary]\nx_min = \"periodic\"\n\
     x_max = \"periodic\"\ny_min = \"periodic\"\ny_max = \"periodic\"\n[initial.vortex]\nstrength = 5.0\n\
-    centre = [5.0, 5.0]\nvelocity = [1.0, 1.0]\n[scheme]\nlimiter = \"none\"\n[time.explicit]\nuntil = 3.0\ncfl = 0.5\n\
+    centre = [5.0, 5.0]\nvelocity = [1.0, 1.0]\n[scheme]\nlimiter = \"none\"\n[time.explicit]\nuntil = 1.0\ncfl = 0.5\n\
     [output]\ncheckpoint = 1\nreport = false\n";
 
 /// A cylinder that starts to swing in a stream of particles that travel: they are inserted and removed all the time.
 const CYLINDER: &str = "title = \"cylinder\"\n[flow]\nmach = 0.3\n[motion]\nparticles = \"lagrangian\"\nperiod = 4.0\n\
     plunge = 0.1\n[[body]]\ncircle = { radius = 0.5 }\n[cloud]\nspacing = 0.0625\nfar_field = 4.0\n\
-    [time.explicit]\nuntil = 2.0\n[output]\ncheckpoint = 1\nreport = false\n";
+    [time.explicit]\nuntil = 1.0\n[output]\ncheckpoint = 1\nreport = false\n";
 
 /// A section that is dropped on springs in a transonic stream.
 const DROPPED: &str = "title = \"dropped\"\n[flow]\nmach = 0.8\n[motion]\nparticles = \"rigid\"\n[structure]\n\

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use alula::case::{Case, read};
 use alula::scheme::Fluid;
+use alula::time::ordinary::Ordinary;
 
 /// Uniform stream on a jittered cloud with two levels, plane or solid.
 pub(crate) fn two_levels(dimension: usize) -> String {
@@ -22,10 +23,10 @@ pub(crate) fn two_levels(dimension: usize) -> String {
 
 /// A circle or a sphere in a stream.
 pub(crate) fn round_body(dimension: usize) -> String {
-    let (body, spacing, reach) = if dimension == 2 { ("circle", 0.0625, 4.0) } else { ("sphere", 0.125, 2.0) };
+    let (body, spacing, reach) = if dimension == 2 { ("circle", 0.0625, 4.0) } else { ("sphere", 0.125, 1.0) };
     format!(
         "title = \"round\"\n[flow]\nmach = 0.3\n[[body]]\n{body} = {{ radius = 0.5 }}\n[cloud]\nspacing = {spacing}\n\
-         far_field = {reach}\n[scheme]\nlimiter = \"none\"\n"
+         curvature = 0.25\nfar_field = {reach}\n[scheme]\nlimiter = \"none\"\n"
     )
 }
 
@@ -38,6 +39,11 @@ pub(crate) fn vortex(spacing: f64, until: f64) -> String {
          centre = [5.0, 5.0]\nvelocity = [1.0, 1.0]\n[scheme]\nlimiter = \"none\"\nkappa = 0.3333333333333333\n\
          [time.explicit]\nuntil = {until}\ncfl = 0.5\n"
     )
+}
+
+/// x'' = f(x, x', t) as two equations of the first order, for x' and x.
+pub(crate) fn oscillator(f: impl Fn(f64, f64, f64) -> f64 + Sync) -> Ordinary<impl Fn(f64, &[f64], &mut [f64]) + Sync> {
+    Ordinary::new(2, 2.0, move |t, u, du| (du[0], du[1]) = (f(u[1], u[0], t), u[0]))
 }
 
 /// Reads a case.
