@@ -88,7 +88,7 @@ fn sprung(fluid: Fluid<2>, omega: f64) -> Coupled<2> {
         law: InertiaLaw::Exact,
     };
     let spring = Spring::linear(HEAVY * omega * omega);
-    let coordinate = |name: &str| Coordinate { name: name.into(), spring: spring.clone(), ..Coordinate::default() };
+    let coordinate = |name: &str| Coordinate { name: name.into(), spring, ..Coordinate::default() };
     let plunge = Coordinate { initial: 0.01, ..coordinate("plunge") };
     let pitch = Coordinate { initial_rate: 1f64.to_radians() * omega, ..coordinate("pitch") };
     let structure = Structure::new(Model::Planar(body), vec![plunge, pitch]).unwrap();

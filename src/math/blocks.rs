@@ -39,10 +39,7 @@ pub fn array<T: Copy, const N: usize>(mut f: impl FnMut(usize) -> T) -> [T; N] {
 /// Writes the numbers of a block's row or column to the start of `out`.
 #[inline(always)]
 pub(super) fn store<const N: usize>(values: &[f32; N], out: &mut [f32]) {
-    let out = &mut out[..N];
-    for k in 0..N {
-        out[k] = values[k];
-    }
+    out[..N].copy_from_slice(values);
 }
 
 /// Evaluates an expression with the constant `N` set to the order of a block.

@@ -129,11 +129,14 @@ pub fn sweep_two_parts<T: Send, U: Send>(
     split_two_parts(0, &mut a, &mut b, f);
 }
 
+/// What is done with a part of either output.
+type OnTwoParts<'f, T, U> = dyn Fn(usize, &mut [T], &mut [U]) + Sync + 'f;
+
 fn split_two_parts<T: Send, U: Send>(
     first: usize,
     a: &mut Cut<'_, T>,
     b: &mut Cut<'_, U>,
-    f: &(dyn Fn(usize, &mut [T], &mut [U]) + Sync),
+    f: &OnTwoParts<'_, T, U>,
 ) {
     match a.0.len() {
         0 => {}
