@@ -132,12 +132,7 @@ pub fn sweep_two_parts<T: Send, U: Send>(
 /// What is done with a part of either output.
 type OnTwoParts<'f, T, U> = dyn Fn(usize, &mut [T], &mut [U]) + Sync + 'f;
 
-fn split_two_parts<T: Send, U: Send>(
-    first: usize,
-    a: &mut Cut<'_, T>,
-    b: &mut Cut<'_, U>,
-    f: &OnTwoParts<'_, T, U>,
-) {
+fn split_two_parts<T: Send, U: Send>(first: usize, a: &mut Cut<'_, T>, b: &mut Cut<'_, U>, f: &OnTwoParts<'_, T, U>) {
     match a.0.len() {
         0 => {}
         1 => f(first, a.2, b.2),
