@@ -8,7 +8,7 @@ mod common;
 
 use alula::case::Case;
 use alula::observe::structure::StructureTable;
-use alula::run::{Monitor, Outcome, Places, Session, Silent, Summary, Tick, run};
+use alula::run::{Monitor, Outcome, Places, Session, Silent, Summary, Tick, resume, run};
 
 /// Air with ρ = 1/2 kg/m³ and a = 256 m/s.
 const AIR: &str = "pressure = 23405.714285714286\ndensity = 0.5";
@@ -310,6 +310,38 @@ fn a_balance_writes_two_periods_of_its_structures_in_units_of_the_case() {
         "Work of the gas over the last cycle",
     ] {
         assert!(page.contains(part), "{part}");
+    }
+}
+
+/// Stops after a number of iterations.
+struct After(u64, u64);
+impl Monitor for After {
+    fn tick(&mut self, _: &Tick) {
+        self.1 += 1;
+    }
+    fn note(&mut self, _: &str) {}
+    fn stop(&self) -> bool {
+        self.1 >= self.0
+    }
+}
+
+#[test]
+fn interrupted_runs_in_seconds_go_on_to_the_same_tables() {
+    let [_, flow] = Stream::of(SEA_LEVEL).tables();
+    let march = SHAKEN.replace("[time.harmonics]\nnumber = 1", "[time.dual]\nsteps_per_period = 16\nperiods = 1");
+    for (text, stop) in [(march.as_str(), 24), (SHAKEN, 14)] {
+        let case = common::case(&format!("{flow}{SECTION}{text}"));
+        let root = tempfile::tempdir().unwrap();
+        let places = |name: &str| Places { input: root.path().to_path_buf(), out: root.path().join(name) };
+        let (whole, cut) = (places("whole"), places("cut"));
+        let Outcome::Finished(one) = run(&case, &whole, &mut Silent).unwrap() else { panic!() };
+        assert!(matches!(run(&case, &cut, &mut After(stop, 0)).unwrap(), Outcome::Interrupted { .. }));
+        let Outcome::Finished(other) = resume(&cut.out, &mut Silent).unwrap() else { panic!() };
+        let table = |at: &Places| std::fs::read_to_string(at.out.join("structure.csv")).unwrap();
+        assert!(table(&whole) == table(&cut) && one.structure == other.structure && one.time == other.time);
+        // once more from the end
+        let Outcome::Finished(again) = resume(&cut.out, &mut Silent).unwrap() else { panic!() };
+        assert!(table(&whole) == table(&cut) && one.structure == again.structure);
     }
 }
 

@@ -15,7 +15,7 @@ use super::{built, control, once, parsed, tell};
 fn case(motion: &str) -> String {
     format!(
         "title = \"bench\"\n[flow]\nmach = 0.5\n[[body]]\nnaca = \"0012\"\n{motion}\n[cloud]\nspacing = 0.015625\n\
-         [time.dual]\nsteps_per_period = 64\nperiods = 3\n"
+         [time.dual]\nstep = 1.0\nuntil = 1.0\n"
     )
 }
 
@@ -88,7 +88,7 @@ fn sprung(fluid: Fluid<2>, omega: f64) -> Coupled<2> {
         law: InertiaLaw::Exact,
     };
     let spring = Spring::linear(HEAVY * omega * omega);
-    let coordinate = |name: &str| Coordinate { name: name.into(), spring: spring.clone(), ..Coordinate::default() };
+    let coordinate = |name: &str| Coordinate { name: name.into(), spring, ..Coordinate::default() };
     let plunge = Coordinate { initial: 0.01, ..coordinate("plunge") };
     let pitch = Coordinate { initial_rate: 1f64.to_radians() * omega, ..coordinate("pitch") };
     let structure = Structure::new(Model::Planar(body), vec![plunge, pitch]).unwrap();

@@ -154,12 +154,12 @@ static DUAL: Table = Table::of(&[
         Absent::Integer(2),
         "Order of the backward difference in time; the first step is of first order.",
     ),
-    Field::defaulted(
+    Field::optional(
         "orders",
         ORDERS,
-        Absent::Number(2.0),
+        "2, and 3 with bodies on springs",
         "Orders of magnitude the residual must fall within a step: below the size of the change in time, or one order less \
-         below that of a state guessed through the last three.",
+         below that of a state guessed through the last three. What is left disturbs the damping of bodies on springs.",
     ),
     Field::defaulted("inner_iterations", COUNT, Absent::Integer(50), "Greatest number of iterations within a step."),
     Field::optional(

@@ -8,7 +8,7 @@ use std::ops::Range;
 
 use multiversion::multiversion;
 
-use super::blocks::with_block;
+use super::blocks::{array, store, with_block};
 use super::sweep::{copy, fill, parts, sweep_parts, sweep_rows, sweep_two_parts};
 
 /// Fewest and most rows in one part of a coarse matrix.
@@ -220,16 +220,17 @@ impl BlockMatrix {
             subtract::<N>(self.off_diagonal(e), &load::<N>(x, self.column[e] as usize - part.start), &mut sum);
         }
         (0..N).for_each(|c| r[c] += side[at + c] + sum[c]);
-        side[at..at + N].copy_from_slice(&sum);
+        store(&sum, &mut side[at..]);
         let mut y = [0.0; N];
         multiply::<N>(&self.inverse[i * N * N..(i + 1) * N * N], &r, &mut y);
-        x[at..at + N].copy_from_slice(&y);
+        store(&y, &mut x[at..]);
     }
 
     /// Entries of row `i` before, in and after its part.
     #[inline(always)]
     pub(super) fn split_row(&self, i: usize) -> (Range<usize>, Range<usize>, Range<usize>) {
-        let [from, _, to] = self.cut[i].map(|e| e as usize);
+        let [from, _, to] = self.cut[i];
+        let (from, to) = (from as usize, to as usize);
         (self.first[i] as usize..from, from..to, to..self.first[i + 1] as usize)
     }
 
@@ -308,7 +309,7 @@ impl BlockMatrix {
                 for e in middle..inside.end {
                     subtract::<N>(self.off_diagonal(e), &load::<N>(x, self.column[e] as usize), &mut sum);
                 }
-                row.copy_from_slice(&sum);
+                store(&sum, row);
             }
         });
     }
@@ -470,9 +471,8 @@ fn widen(half: u16) -> f32 {
 
 #[inline(always)]
 pub(super) fn load<const N: usize>(x: &[f32], i: usize) -> [f32; N] {
-    let mut out = [0.0; N];
-    out.copy_from_slice(&x[i * N..(i + 1) * N]);
-    out
+    let x = &x[i * N..(i + 1) * N];
+    array(|k| x[k])
 }
 
 /// r ← r − B x for a block stored by columns.
@@ -485,7 +485,7 @@ pub(super) fn subtract<const N: usize>(block: &[u16], x: &[f32; N], r: &mut [f32
 #[inline(always)]
 pub(super) fn widen_block<const N: usize>(block: &[u16]) -> [[f32; N]; N] {
     let block = &block[..N * N];
-    std::array::from_fn(|c| std::array::from_fn(|k| widen(block[c * N + k])))
+    array(|c| array(|k| widen(block[c * N + k])))
 }
 
 /// r ← r − B x.

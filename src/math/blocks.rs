@@ -24,6 +24,24 @@ pub(super) fn not_served(block: usize) -> String {
     format!("no kernel serves blocks of {block} unknowns, only {SERVED:?}; a new order is added in `math::blocks`")
 }
 
+/// The array whose entry `k` is `f(k)`.
+///
+/// A plain loop, so that it becomes part of the kernel around it: what the standard library has for this is compiled apart from it.
+#[inline(always)]
+pub fn array<T: Copy, const N: usize>(mut f: impl FnMut(usize) -> T) -> [T; N] {
+    let mut out = [f(0); N];
+    for (k, slot) in out.iter_mut().enumerate().skip(1) {
+        *slot = f(k);
+    }
+    out
+}
+
+/// Writes the numbers of a block's row or column to the start of `out`.
+#[inline(always)]
+pub(super) fn store<const N: usize>(values: &[f32; N], out: &mut [f32]) {
+    out[..N].copy_from_slice(values);
+}
+
 /// Evaluates an expression with the constant `N` set to the order of a block.
 macro_rules! with_block {
     ($block:expr, $n:ident => $body:expr) => {

@@ -10,7 +10,7 @@ use std::ops::Range;
 use multiversion::multiversion;
 
 use super::block_matrix::{BlockMatrix, load, multiply, subtract_wide, widen_block};
-use super::blocks::with_block;
+use super::blocks::{store, with_block};
 use super::sweep::{copy, fill, sweep_parts, sweep_two_parts};
 
 /// Greatest number of harmonics.
@@ -163,7 +163,7 @@ impl HarmonicSweeps {
                 for e in matrix.middle(i)..inside.end {
                     gather::<N>(matrix, e, &x[matrix.column(e) * count * N..], &mut sum[..count]);
                 }
-                row.chunks_exact_mut(N).zip(&sum).for_each(|(row, sum)| row.copy_from_slice(sum));
+                row.chunks_exact_mut(N).zip(&sum).for_each(|(row, sum)| store(sum, row));
             }
         });
     }
@@ -222,11 +222,11 @@ fn relax_row<const N: usize, const COUNT: usize>(
         for v in 0..N {
             r[c][v] += b[(i * count + c) * N + v] + side[at + c * N + v] + sum[c][v];
         }
-        side[at + c * N..at + (c + 1) * N].copy_from_slice(&sum[c]);
+        store(&sum[c], &mut side[at + c * N..]);
     }
     let mut y = [0.0; N];
     multiply::<N>(matrix.inverse(i), &r[0], &mut y);
-    x[at..at + N].copy_from_slice(&y);
+    store(&y, &mut x[at..]);
     for m in 0..harmonics {
         let own = &inverse[m * 2 * N * N..(m + 1) * 2 * N * N];
         let (real, imaginary) = own.split_at(N * N);

@@ -12,7 +12,7 @@ use std::ops::Range;
 use multiversion::multiversion;
 
 use super::block_matrix::{BlockMatrix, invert, load, multiply, subtract, widen_block};
-use super::blocks::with_block;
+use super::blocks::{array, store, with_block};
 use super::sweep::{sweep, sweep_parts};
 
 /// Inverse pivots of a matrix, and the storage of a solution.
@@ -106,7 +106,8 @@ fn correct_part<const N: usize>(
         let (below, inside, above) = matrix.split_row(i);
         let mut r = [0.0; N];
         b(i, &mut r);
-        multiply::<N>(matrix.diagonal(i), &load::<N>(first, i).map(|x| -x), &mut r);
+        let own = load::<N>(first, i);
+        multiply::<N>(matrix.diagonal(i), &array(|c| -own[c]), &mut r);
         for e in below.chain(matrix.middle(i)..inside.end).chain(above) {
             subtract::<N>(matrix.off_diagonal(e), &load::<N>(first, matrix.column(e)), &mut r);
         }
@@ -114,7 +115,7 @@ fn correct_part<const N: usize>(
         for e in inside.start..matrix.middle(i) {
             let j = matrix.column(e);
             let (x, y) = (load::<N>(first, j), load::<N>(y, j - start));
-            subtract::<N>(matrix.off_diagonal(e), &std::array::from_fn(|c| x[c] + y[c]), &mut r);
+            subtract::<N>(matrix.off_diagonal(e), &array(|c| x[c] + y[c]), &mut r);
         }
         add_pivoted::<N>(inverse, i, &r, [0.0; N], &mut y[(i - start) * N..]);
     }
@@ -140,13 +141,13 @@ fn backward<const N: usize>(matrix: &BlockMatrix, inverse: &[f32], part: &Range<
 fn add_pivoted<const N: usize>(inverse: &[f32], i: usize, r: &[f32; N], own: [f32; N], x: &mut [f32]) {
     let mut y = own;
     multiply::<N>(&inverse[i * N * N..(i + 1) * N * N], r, &mut y);
-    x[..N].copy_from_slice(&y);
+    store(&y, x);
 }
 
 /// A_ii − Σ_{j<i} A_ij D_j⁻¹ A_ji by columns; `before` holds the inverse pivots of the rows of the part from `start` to i.
 fn pivot<const N: usize>(matrix: &BlockMatrix, i: usize, start: usize, before: &[f32]) -> [[f64; N]; N] {
     let own = matrix.diagonal(i);
-    let mut pivot: [[f64; N]; N] = std::array::from_fn(|c| std::array::from_fn(|r| f64::from(own[c * N + r])));
+    let mut pivot: [[f64; N]; N] = array(|c| array(|r| f64::from(own[c * N + r])));
     let (_, inside, _) = matrix.split_row(i);
     for e in inside.start..matrix.middle(i) {
         let j = matrix.column(e);

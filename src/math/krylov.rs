@@ -157,7 +157,7 @@ fn products(w: &[f64], basis: &[Vec<f32>], all: &mut [f64], chunks: &mut Vec<f64
     sum_each(w.len(), all, chunks, |range, out| {
         for (out, v) in out.iter_mut().zip(basis) {
             let (w, v) = (&w[range.clone()], &v[range.clone()]);
-            *out = abreast(0..w.len(), |k| w[k] * f64::from(v[k]));
+            *out = abreast(0..w.len(), &|k| w[k] * f64::from(v[k]));
         }
     })
 }

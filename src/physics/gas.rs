@@ -57,7 +57,7 @@ impl<const D: usize> Conserved<D> {
     #[inline(always)]
     pub fn store(&self, row: &mut [f64]) {
         row[0] = self.density;
-        row[1..=D].copy_from_slice(&self.momentum.0);
+        (0..D).for_each(|d| row[1 + d] = self.momentum[d]);
         row[D + 1] = self.energy;
     }
 

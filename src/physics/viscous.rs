@@ -6,6 +6,7 @@
 //! (0, τ·n, v·τ·n − q·n), to be subtracted from that of the inviscid gas.
 use super::{Conserved, Gas, Primitive};
 use crate::math::Vector;
+use crate::math::blocks::array;
 use crate::math::jet::Scalar;
 
 /// Rows ∂v_i/∂x of the velocity gradient, or any tensor.
@@ -47,7 +48,7 @@ impl Gas {
 #[doc(alias = "eq4")]
 #[inline(always)]
 pub fn strain_rate<const D: usize, S: Scalar>(gradient: &Tensor<D, S>) -> Tensor<D, S> {
-    std::array::from_fn(|i| Vector::from_fn(|j| (gradient[i][j] + gradient[j][i]) * 0.5))
+    array(|i| Vector::from_fn(|j| (gradient[i][j] + gradient[j][i]) * 0.5))
 }
 
 /// Viscous part of the stress at the viscosity `mu`, τ = 2μ (ε − ⅓ tr ε I); the whole is σ = τ − p I — eq. (5).
@@ -57,7 +58,7 @@ pub fn viscous_stress<const D: usize, S: Scalar>(mu: S, gradient: &Tensor<D, S>)
     let strain = strain_rate(gradient);
     let third = (1..D).fold(strain[0][0], |sum, d| sum + strain[d][d]) / S::constant(3.0);
     let deviator = |i: usize, j: usize| strain[i][j] - if i == j { third } else { S::constant(0.0) };
-    std::array::from_fn(|i| Vector::from_fn(|j| mu * 2.0 * deviator(i, j)))
+    array(|i| Vector::from_fn(|j| mu * 2.0 * deviator(i, j)))
 }
 
 impl Newtonian {

@@ -148,7 +148,7 @@ pub(super) fn conservative<const D: usize, S: Scalar, const MOVES: bool>(
     let mean_state = gas.conserved(&edge.sides[0]).plus(one, &gas.conserved(&edge.sides[1])).times(S::constant(0.5));
     let through = through.plus(mean(&edge.velocity).dot(s), &mean_state);
     // w·∇U: by the weights that are exact for linear fields, which come as −V a, or by those of the fluxes
-    let n = if by_faces { [*s, -*s] } else { edge.weight.map(|a| a.times(-2.0)) };
+    let n = if by_faces { [*s, -*s] } else { [edge.weight[0].times(-2.0), edge.weight[1].times(-2.0)] };
     let swept = |k: usize| mean_state.minus(&gas.conserved(&edge.state[k])).times(edge.velocity[k].dot(&n[k]));
     [out_i.minus(&through).plus(one, &swept(0)), through.minus(&out_j).plus(one, &swept(1))]
 }
@@ -160,17 +160,26 @@ pub(super) fn consistent<const D: usize, S: Scalar, const MOVES: bool>(
     edge: &Passing<D, S>,
 ) -> [Conserved<D, S>; 2] {
     let (m, size) = normal(&edge.area);
-    let [l, r] = &edge.sides;
-    let both = |n: &Vector<D, S>, w: &Vector<D, S>| {
-        let left = relative_flux::<D, S, MOVES>(gas, l, n, w);
-        left.plus(S::constant(1.0), &relative_flux::<D, S, MOVES>(gas, r, n, w))
-    };
-    let spread = edge.upwind.plus(S::constant(-0.5), &both(&m, &mean(&edge.velocity))).times(size);
+    let both = both_sides::<D, S, MOVES>(gas, &edge.sides, &m, &mean(&edge.velocity));
+    let spread = edge.upwind.plus(S::constant(-0.5), &both).times(size);
     let central = |k: usize| {
         let (a, w) = (&edge.weight[k], &edge.velocity[k]);
-        both(a, w).plus(S::constant(-2.0), &relative_flux::<D, S, MOVES>(gas, &edge.state[k], a, w))
+        let both = both_sides::<D, S, MOVES>(gas, &edge.sides, a, w);
+        both.plus(S::constant(-2.0), &relative_flux::<D, S, MOVES>(gas, &edge.state[k], a, w))
     };
     [central(0).minus(&spread), central(1).plus(S::constant(1.0), &spread)]
+}
+
+/// The fluxes of both sides of the middle through an area `n` that moves with `w`, added.
+#[inline(always)]
+fn both_sides<const D: usize, S: Scalar, const MOVES: bool>(
+    gas: &Gas,
+    [left, right]: &[Primitive<D, S>; 2],
+    n: &Vector<D, S>,
+    w: &Vector<D, S>,
+) -> Conserved<D, S> {
+    let through = relative_flux::<D, S, MOVES>(gas, left, n, w);
+    through.plus(S::constant(1.0), &relative_flux::<D, S, MOVES>(gas, right, n, w))
 }
 
 /// Flux of the state `q` through an area `n` that moves with `w`.

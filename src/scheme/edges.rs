@@ -7,6 +7,7 @@ use multiversion::multiversion;
 
 use crate::cloud::Edge;
 use crate::math::Vector;
+use crate::math::blocks::array;
 use crate::physics::riemann::UpwindFlux;
 use crate::physics::{Conserved, Gas, Newtonian, Primitive};
 
@@ -122,7 +123,7 @@ impl<const D: usize> Slope<D> {
     fn take(&self, k: usize) -> Gradient<D> {
         Gradient {
             density: take(&self.density, k),
-            velocity: std::array::from_fn(|c| take(&self.velocity[c], k)),
+            velocity: array(|c| take(&self.velocity[c], k)),
             pressure: take(&self.pressure, k),
         }
     }
@@ -158,7 +159,7 @@ pub fn edge_fluxes<const D: usize, F: UpwindFlux<D>, L: Limit>(
     scheme: &FluxScheme<F, L>,
     particles: Particles<'_, D>,
     edges: &[Edge<D>],
-    mut add: impl FnMut(usize, &Conserved<D>),
+    add: &mut impl FnMut(usize, &Conserved<D>),
 ) {
     let mut batch = Batch::BLANK;
     for some in edges.chunks(LANES) {
@@ -297,7 +298,7 @@ fn accumulate_residual<const D: usize, const MOVES: bool, const CONSERVATIVE: bo
 fn viscous_fluxes<const D: usize, const CONSERVATIVE: bool>(gas: Gas, medium: Newtonian, batch: &mut Batch<D>) {
     let Batch { own, weight, area, along, gradient, out: [out_i, out_j], .. } = batch;
     for k in 0..LANES {
-        let ends = [0, 1].map(|side: usize| slopes(&gas, &own[side].primitive(k), &gradient[side].take(k)));
+        let ends = array(|side| slopes(&gas, &own[side].primitive(k), &gradient[side].take(k)));
         let weight = pair(weight, k);
         let weight = if CONSERVATIVE { None } else { Some(&weight) };
         let [i, j] = viscous(&gas, &medium, &ends, (&take(along, k), &take(area, k)), weight);

@@ -87,7 +87,7 @@ impl<const D: usize> Frame<D> {
     pub(super) fn momentum_to_inertial_axes(&self, row: &mut [f64]) {
         if self.turn.is_some() {
             let momentum = self.to_inertial_axes(&Vector::from_fn(|d| row[1 + d]));
-            row[1..=D].copy_from_slice(&momentum.0);
+            (0..D).for_each(|d| row[1 + d] = momentum[d]);
         }
     }
 

@@ -104,7 +104,7 @@ impl<const D: usize> Fluid<D> {
         &self,
         faces: &[WallFace<D>],
         (frame, work): (&Frame<D>, &Work<D>),
-        mut add: impl FnMut(usize, &Conserved<D>),
+        add: &mut impl FnMut(usize, &Conserved<D>),
     ) {
         let by_faces = self.passes_by_faces();
         for face in faces {

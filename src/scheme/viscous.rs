@@ -20,6 +20,7 @@
 use super::block::Block;
 use super::reconstruct::Gradient;
 use crate::math::Vector;
+use crate::math::blocks::array;
 use crate::math::jet::Scalar;
 use crate::physics::viscous::Slopes;
 use crate::physics::{Gas, Newtonian, Primitive, n_variables};
@@ -122,7 +123,7 @@ pub(super) fn middle<const D: usize, S: Scalar>(
     Slopes {
         velocity: (a.velocity + b.velocity).times(0.5),
         temperature: (a.temperature + b.temperature) * 0.5,
-        velocity_gradient: std::array::from_fn(|c| corrected(&va[c], &vb[c], dv[c])),
+        velocity_gradient: array(|c| corrected(&va[c], &vb[c], dv[c])),
         temperature_gradient: corrected(&a.temperature_gradient, &b.temperature_gradient, dt),
     }
 }

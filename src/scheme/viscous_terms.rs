@@ -34,7 +34,7 @@ impl<const D: usize> Fluid<D> {
         &self,
         faces: &[WallFace<D>],
         at: (&Frame<D>, &Work<D>),
-        mut add: impl FnMut(usize, &Conserved<D>),
+        add: &mut impl FnMut(usize, &Conserved<D>),
     ) {
         let Some(viscous_model) = &self.viscous_model else { return };
         faces.iter().for_each(|face| add(face.i as usize, &self.viscous_wall(viscous_model, at, face)));

@@ -13,7 +13,7 @@ impl Measured {
         match claim.metric {
             Metric::StructureMean => own()?.mean.ok_or_else(unfinished),
             Metric::StructureLargest => Ok(own()?.largest),
-            Metric::StructureAmplitude => own()?.amplitude.ok_or_else(no_oscillation),
+            Metric::StructureAmplitude => self.amplitude(claim),
             Metric::StructureFrequency => self.frequency(claim),
             Metric::StructureGrowthRate => own()?.growth_rate.ok_or_else(no_oscillation),
             Metric::StructureDampingRatio => own()?.damping_ratio.ok_or_else(no_oscillation),
@@ -61,9 +61,9 @@ impl Measured {
         own.growth_rate.zip(own.frequency).map(|(growth, omega)| growth / omega).ok_or_else(no_oscillation)
     }
 
-    /// Size at the end of the oscillation that was fitted.
+    /// Half of greatest less smallest value in the last whole cycles.
     fn amplitude(&self, claim: &Claim) -> Value {
-        self.coordinate(claim)?.modes.first().map(|m| m.amplitude).ok_or_else(no_oscillation)
+        self.coordinate(claim)?.amplitude.ok_or_else(no_oscillation)
     }
 
     fn angle(&self, claim: &Claim) -> Value {
