@@ -274,6 +274,9 @@ proptest! {
         factors(Venkatakrishnan, numbers, (b * b / eps).min(0.25))?;
         let ends = [&ends.0, &ends.1];
         linear(VanAlbada, scheme, ends)?;
+        // where nothing varies there is nothing to compare, with or without a threshold
+        linear(VanAlbada, (scheme.0, 0.0), [ends[0]; 2])?;
+        linear(Venkatakrishnan, (scheme.0, 0.0), [ends[0]; 2])?;
         linear(Unlimited, scheme, ends)?;
     }
 

@@ -10,6 +10,8 @@ use crate::physics::{Gas, Primitive};
 
 /// Smallest fraction of a particle's own density or pressure that a reconstructed state may have.
 const POSITIVE: f64 = 0.1;
+/// Least square of the threshold: without any, limiters would divide nothing by nothing where nothing varies.
+const LEAST_SQUARE: f64 = 1e-60;
 
 /// Gradients of density, velocity and pressure.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -84,7 +86,8 @@ impl Limit for VanAlbada {
     }
 }
 
-/// The rational function of Venkatakrishnan (1995) applied to the two differences of an edge.
+/// The rational function of Venkatakrishnan (1995) applied to the two differences of an edge: smooth where these agree, but 3/4
+/// there if they are far above the threshold.
 #[derive(Clone, Copy)]
 pub struct Venkatakrishnan;
 impl Limit for Venkatakrishnan {
@@ -163,7 +166,7 @@ impl Reconstruction {
         }
         let dq = qj.minus(qi);
         let (density, pressure) = ((qi.density + qj.density) * 0.5, (qi.pressure + qj.pressure) * 0.5);
-        let square = self.threshold * self.threshold;
+        let square = (self.threshold * self.threshold).max(LEAST_SQUARE);
         let sound2 = pressure * gas.gamma / density;
         let eps = (density * square * density, sound2 * square, pressure * square * pressure);
         let zero = S::constant(0.0);
