@@ -280,11 +280,13 @@ fn a_balance_writes_two_periods_of_its_structures_in_units_of_the_case() {
     assert!(table.len() == 257 && table.marches(), "{}", table.len());
     near(*table.time.last().unwrap(), 2.0 * period);
     let [h, a] = &table.coordinates[..] else { panic!("{table:?}") };
+    let strongest = common::largest(table.gas_power.iter().copied());
     for k in 0..table.len() {
         let springs = 0.5 * (2e5 * h.values[k].powi(2) + 2e4 * a.values[k].powi(2));
         assert!((table.potential[k] - springs).abs() < 1e-10, "{} {springs}", table.potential[k]);
         let power = h.loads[k] * h.rates[k] + a.loads[k] * a.rates[k];
-        assert!((table.gas_power[k] - power).abs() < 1e-10, "{} {power}", table.gas_power[k]);
+        // rates and differences of coordinates, which the power goes by, meet as far as the balance is solved
+        assert!((table.gas_power[k] - power).abs() < 1e-5 * strongest, "{} {power}", table.gas_power[k]);
     }
     let structure = &summary.structure[0];
     for (c, column) in structure.coordinates.iter().zip([h, a]) {

@@ -66,7 +66,7 @@ pub struct StructureSample {
     pub potential: f64,
     /// Power that dampers take.
     pub dissipation: f64,
-    /// Power of the gas on the structures, Σ Q q'.
+    /// Power of the gas on the structures, Σ Q q', with q' as walls move: by the difference formula of the coordinates.
     pub gas_power: f64,
     /// Power of pressure and friction on the moving walls.
     pub wall_power: f64,
