@@ -286,6 +286,18 @@ fn a_killed_march_of_a_body_on_springs_goes_on_to_the_same_bits() {
     survives_being_killed(DROPPED);
 }
 
+#[test]
+fn a_body_that_swings_beyond_what_the_gas_can_follow_is_told_with_its_place() {
+    let desk = Desk::new(&DROPPED.replace("plunge = 0.01", "pitch_rate = 1.0"));
+    let output = desk.alula(&["run", "case.toml", "--out", "out", "--quiet"]);
+    let text = told(&output);
+    assert_eq!(code(&output), Some(1), "{text}");
+    for word in ["the structure had plunge", "pitch", "degrees", "`alula report out`", "last good state"] {
+        assert!(text.contains(word), "no {word} in {text}");
+    }
+    assert_eq!(code(&desk.alula(&["report", "out"])), Some(0));
+}
+
 #[cfg(unix)]
 #[test]
 fn an_interrupted_run_says_how_to_go_on() {

@@ -25,10 +25,12 @@ pub enum RunError {
     #[error(transparent)]
     Start(#[from] StartError),
     /// Integration.
-    #[error("{source}{}", last_good(checkpoint))]
+    #[error("{source}{reached}{}", last_good(checkpoint))]
     Time {
         /// Why.
         source: TimeError,
+        /// How far bodies on springs had come, as a line of its own; empty without them.
+        reached: String,
         /// Checkpoint with the last good state, where one is written.
         checkpoint: Option<String>,
     },

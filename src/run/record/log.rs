@@ -12,7 +12,7 @@ use super::saved::{FILE, Saved, Settling};
 use super::summary::{BalanceReport, Clock, Work};
 use super::trace::Trace;
 use crate::case::{Case, Units};
-use crate::observe::structure::{StructureNames, StructureSample, StructureSummary, StructureTable};
+use crate::observe::structure::{CoordinateHistory, StructureNames, StructureSample, StructureSummary, StructureTable};
 use crate::scheme::RemapLedger;
 use crate::time::TimeError;
 
@@ -212,7 +212,27 @@ impl<'a> Log<'a> {
 
     /// Why a run failed, and where its last good state is.
     pub(crate) fn failed(&self, source: TimeError) -> RunError {
-        RunError::Time { source, checkpoint: self.checkpoint() }
+        RunError::Time { source, reached: self.reached(), checkpoint: self.checkpoint() }
+    }
+
+    /// How far the bodies on springs of a march had come, as a line of its own: motion that grows until the gas cannot follow is
+    /// flutter, and no fault of a particle. Empty without them.
+    fn reached(&self) -> String {
+        let table = &self.record.structures;
+        let Some(time) = table.time.last().filter(|_| table.marches()) else { return String::new() };
+        let angles = self.structures.iter().flat_map(|s| &s.names.coordinates).map(|c| c.angle);
+        let told = |(c, angle): (&CoordinateHistory, bool)| {
+            let value = c.values.last().copied().unwrap_or_default();
+            if angle {
+                format!("{} {:.1} degrees", c.name, value.to_degrees())
+            } else {
+                format!("{} {value:.4}", c.name)
+            }
+        };
+        let all: Vec<String> = table.coordinates.iter().zip(angles).map(told).collect();
+        let shown = |j: &Journal| format!("; `alula report {}` shows how it came there", j.out.display());
+        let report = self.journal.as_ref().map_or_else(String::new, shown);
+        format!("\nat t = {time:.5} the structure had {}{report}", all.join(", "))
     }
 
     /// How the loads of the last period differ from those of the period before, at the end of a period; `None` elsewhere.
