@@ -15,11 +15,10 @@ use alula::case::{Case, read};
 use alula::cloud::{Cloud, CloudSpec, Operators};
 use alula::geometry::load_surface;
 use alula::math::Vector;
-use alula::math::multilevel::Cycle;
 use alula::physics::Primitive;
 use alula::scheme::{Fluid, RemapLedger};
 use alula::system::{Instant, System};
-use alula::time::control::{Control, Method};
+use alula::time::control::Control;
 use alula::time::explicit::{self, Explicit};
 use alula::time::relax::Relax;
 use alula::time::{Integrator, Past};
@@ -172,8 +171,12 @@ fn re_clouding<const D: usize>(bencher: Bencher<'_, '_>, threads: usize) {
 fn travelling_step<const D: usize>(bencher: Bencher<'_, '_>, threads: usize) {
     let (fluid, u) = travelling::<D>();
     let pool = pool(threads);
-    let begin = (Past::default(), u);
-    let mut march = Explicit::new(&fluid, explicit::Method::Ssprk3, (0.1, 1e9), begin);
+    let mut march = Explicit::new(
+        &fluid,
+        explicit::Plan { method: explicit::Method::Ssprk3, cfl: 0.1, until: 1e9 },
+        Past::default(),
+        u,
+    );
     bencher
         .counter(ItemsCount::new(fluid.discretisation.cloud.n_fluid))
         .bench_local(|| pool.install(|| march.advance()).is_ok());
@@ -196,16 +199,7 @@ fn implicit_step<const D: usize>(bencher: Bencher<'_, '_>) {
         .iter()
         .flat_map(|_| u[..D + 2].to_vec())
         .collect::<Vec<_>>();
-    let control = Control {
-        method: Method::NewtonKrylov,
-        cfl: 20.0,
-        cfl_max: 1e6,
-        growth: 2.0,
-        tolerance: 0.1,
-        basis: 30,
-        group: if D == 2 { 4 } else { 8 },
-        cycle: Cycle { sweeps: 2, visits: 1, levels: 8 },
-    };
+    let control = Control { cfl: 20.0, ..Control::newton(D) };
     let start = || {
         let mut resume = Relax::new(&fluid, control, u.clone(), &origin, None).resume();
         resume.phase.newton = true;

@@ -27,7 +27,7 @@ pub(crate) fn run() -> Result<Vec<(f64, f64)>, Box<dyn Error>> {
         let far_field = Arc::new(Stream::new(&stream, &Vector([0.25, 0.0]), true));
         let fluid = Fluid { far_field, ..Fluid::new(cloud.clone(), &stream, &Scheme::default()) };
         let u = fluid.start();
-        let mut relax = Relax::new(&fluid, Control::default(), u.clone(), &u, None);
+        let mut relax = Relax::new(&fluid, Control::newton(2), u.clone(), &u, None);
         while relax.drop() > 1e-4 {
             relax.advance()?;
         }

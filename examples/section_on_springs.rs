@@ -33,9 +33,9 @@ pub(crate) fn run() -> Result<[f64; 2], Box<dyn Error>> {
     let stream = FreeStream { alpha: 0.03, ..FreeStream::new(0.3) };
     let cloud_motion = CloudMotion::deforming(&cloud, vec![body_motion(&structure, 0, &[])], 0.0);
     let fluid = Fluid { cloud_motion, ..Fluid::new(cloud, &stream, &Scheme::default()) };
-    let system = Coupled::new(fluid, vec![Attached::new(structure, (0, 1.0), 0, Vec::new())]);
+    let system = Coupled::new(fluid, vec![Attached::new(structure, 0, 1.0, 0, Vec::new())]);
     let u = system.start();
-    let mut relax = Relax::new(&system, Control::default(), u.clone(), &u, None);
+    let mut relax = Relax::new(&system, Control::newton(2), u.clone(), &u, None);
     while relax.drop() > 1e-6 {
         relax.advance()?;
     }

@@ -12,7 +12,7 @@ use alula::math::{Bounds, Vector};
 use alula::physics::{Conserved, Primitive};
 use alula::scheme::Fluid;
 use alula::scheme::start::FreeStream;
-use alula::time::explicit::{Explicit, Method};
+use alula::time::explicit::{Explicit, Method, Plan};
 use alula::time::{Integrator, Past};
 
 /// Mean error of the density at time 0.2.
@@ -27,7 +27,8 @@ pub(crate) fn run() -> Result<f64, Box<dyn Error>> {
         Primitive { density: s.density, velocity: Vector([s.velocity, 0.0]), pressure: s.pressure }
     });
     let fluid = Fluid { held, ..Fluid::new(cloud, &FreeStream::new(0.0), &Scheme::default()) };
-    let mut march = Explicit::new(&fluid, Method::Ssprk3, (0.8, 0.2), (Past::default(), fluid.start()));
+    let mut march =
+        Explicit::new(&fluid, Plan { method: Method::Ssprk3, cfl: 0.8, until: 0.2 }, Past::default(), fluid.start());
     while !march.finished() {
         march.advance()?;
     }

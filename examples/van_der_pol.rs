@@ -9,7 +9,7 @@ use std::f64::consts::TAU;
 
 use alula::math::fourier::{Instances, Series};
 use alula::time::control::Control;
-use alula::time::explicit::{Explicit, Method};
+use alula::time::explicit::{Explicit, Method, Plan};
 use alula::time::harmonic::HarmonicBalance;
 use alula::time::ordinary::Ordinary;
 use alula::time::relax::Relax;
@@ -24,7 +24,7 @@ pub(crate) fn run() -> Result<[f64; 2], TimeError> {
     });
     let balance = HarmonicBalance::new(&system, Instances::of_harmonics(12), omega, 1.0);
     let u = balance.copies(&[2.0, 0.0]);
-    let mut relax = Relax::new(&balance, Control::default(), u.clone(), &u, None);
+    let mut relax = Relax::new(&balance, Control::newton(2), u.clone(), &u, None);
     while relax.drop() > 1e-12 {
         relax.advance()?;
     }
@@ -33,7 +33,8 @@ pub(crate) fn run() -> Result<[f64; 2], TimeError> {
     let amplitude = Series::of_values(&x).map_or(0.0, |s| s.coefficients()[1].hypot(s.coefficients()[13]));
     println!("first harmonic: {amplitude:.9}");
     let end = 40.0 * TAU / omega;
-    let mut march = Explicit::new(&system, Method::Rk4, (0.04, end), (Past::default(), vec![2.0, 0.0]));
+    let mut march =
+        Explicit::new(&system, Plan { method: Method::Rk4, cfl: 0.04, until: end }, Past::default(), vec![2.0, 0.0]);
     while !march.finished() {
         march.advance()?;
     }

@@ -5,8 +5,7 @@
 #![allow(clippy::unwrap_used, reason = "a test may stop anywhere")]
 mod common;
 
-use alula::math::multilevel::Cycle;
-use alula::time::control::{Control, Method};
+use alula::time::control::Control;
 use alula::time::dual::{Dual, Plan};
 use alula::time::relax::Relax;
 use alula::time::{Integrator, Past, Step, TimeError};
@@ -17,16 +16,7 @@ const FIRST: u32 = 4;
 /// Steps after those.
 const COUNTED: u32 = 8;
 
-const CONTROL: Control = Control {
-    method: Method::NewtonKrylov,
-    cfl: 20.0,
-    cfl_max: 1e6,
-    growth: 2.0,
-    tolerance: 0.1,
-    basis: 30,
-    group: 4,
-    cycle: Cycle { sweeps: 2, visits: 1, levels: 8 },
-};
+const CONTROL: Control = Control { cfl: 20.0, ..Control::newton(2) };
 
 /// Runs `f` on this thread alone.
 fn alone(f: impl FnOnce() + Send) {
@@ -68,7 +58,7 @@ fn neither_newton_iterations_nor_steps_in_time_allocate() {
             assert!(found.len() > 2 && found.iter().all(|n| *n == 0), "steady: {found:?}");
 
             let plan = Plan { until: 1e3, step: 0.1, order: 2, orders: 3.0, iterations: 20, adaptive: None };
-            let mut march = Dual::new(&fluid, CONTROL, plan, (Past::default(), u.clone()));
+            let mut march = Dual::new(&fluid, CONTROL, plan, Past::default(), u.clone());
             let found = counted(|| march.advance());
             assert!(found.len() > 2 && found.iter().all(|n| *n == 0), "march: {found:?}");
         }

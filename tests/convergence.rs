@@ -6,7 +6,7 @@ mod common;
 use alula::exact::vortex::IsentropicVortex;
 use alula::math::Vector;
 use alula::physics::Conserved;
-use alula::time::explicit::{Explicit, Method};
+use alula::time::explicit::{Explicit, Method, Plan};
 use alula::time::{Integrator, Past};
 use common::{solver, vortex};
 
@@ -14,7 +14,7 @@ use common::{solver, vortex};
 fn vortex_error(spacing: f64, until: f64, low_mach: bool) -> f64 {
     let text = vortex(spacing, until).replace("[time", &format!("low_mach = {low_mach}\n[time"));
     let (fluid, u) = solver::<2>(&text);
-    let mut march = Explicit::new(&fluid, Method::Ssprk3, (0.5, until), (Past::default(), u));
+    let mut march = Explicit::new(&fluid, Plan { method: Method::Ssprk3, cfl: 0.5, until }, Past::default(), u);
     while !march.finished() {
         march.advance().unwrap();
     }
@@ -51,7 +51,7 @@ fn slow_vortex_loss(low_mach: bool) -> f64 {
             .sum()
     };
     let before = energy(&u);
-    let mut march = Explicit::new(&fluid, Method::Ssprk3, (0.5, 40.0), (Past::default(), u));
+    let mut march = Explicit::new(&fluid, Plan { method: Method::Ssprk3, cfl: 0.5, until: 40.0 }, Past::default(), u);
     while !march.finished() {
         march.advance().unwrap();
     }

@@ -236,8 +236,7 @@ fn relaxation_finds_the_forced_oscillation() {
     for (method, harmonics) in [(Method::NewtonKrylov, 1), (Method::NewtonKrylov, 5), (Method::RungeKutta, 3)] {
         let balance = HarmonicBalance::new(&system, Instances::of_harmonics(harmonics), 0.8, 2.0);
         let cycle = Cycle { sweeps: 2, visits: 1, levels: 1 };
-        let control =
-            Control { method, cfl: 10.0, cfl_max: 1e6, growth: 2.0, tolerance: 0.01, basis: 20, group: 1, cycle };
+        let control = Control { method, tolerance: 0.01, basis: 20, cycle, ..Control::newton(2) };
         let start = vec![0.0; balance.len()];
         let mut relax = Relax::new(&balance, control, start.clone(), &vec![0.1; balance.len()], None);
         while relax.drop() > 1e-8 {

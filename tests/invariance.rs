@@ -4,11 +4,10 @@
 mod common;
 
 use alula::math::Vector;
-use alula::math::multilevel::Cycle;
 use alula::physics::Primitive;
 use alula::system::{Instant, System};
-use alula::time::control::{self, Control};
-use alula::time::explicit::{Explicit, Method};
+use alula::time::control::Control;
+use alula::time::explicit::{Explicit, Method, Plan};
 use alula::time::relax::Relax;
 use alula::time::{Integrator, Past};
 use common::{largest, round_body, solver, two_levels, vortex, with_threads};
@@ -54,7 +53,7 @@ fn bits(u: &[f64]) -> Vec<u64> {
 /// State after `steps` explicit steps of the vortex.
 fn marched(steps: usize) -> Vec<u64> {
     let (fluid, u) = solver::<2>(&vortex(0.15625, 5.0));
-    let mut march = Explicit::new(&fluid, Method::Ssprk3, (0.5, 5.0), (Past::default(), u));
+    let mut march = Explicit::new(&fluid, Plan { method: Method::Ssprk3, cfl: 0.5, until: 5.0 }, Past::default(), u);
     for _ in 0..steps {
         march.advance().unwrap();
     }
@@ -70,16 +69,7 @@ fn one_and_two_threads_march_to_the_same_bits() {
 /// State after `steps` implicit steps around a body, with Newton's method from the first step on.
 fn relaxed<const D: usize>(steps: usize) -> Vec<u64> {
     let (fluid, u) = solver::<D>(&round_body(D));
-    let control = Control {
-        method: control::Method::NewtonKrylov,
-        cfl: 5.0,
-        cfl_max: 1e6,
-        growth: 2.0,
-        tolerance: 0.1,
-        basis: 30,
-        group: if D == 2 { 4 } else { 8 },
-        cycle: Cycle { sweeps: 2, visits: 1, levels: 8 },
-    };
+    let control = Control { cfl: 5.0, ..Control::newton(D) };
     let origin = u.clone();
     let mut relax = Relax::new(&fluid, control, u, &origin, None);
     let mut resume = relax.resume();

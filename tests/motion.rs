@@ -7,15 +7,14 @@ use std::sync::Arc;
 
 use alula::math::Vector;
 use alula::math::jet::Jet;
-use alula::math::multilevel::Cycle;
 use alula::motion::{BodyMotion, TimeFunction};
 use alula::physics::{Conserved, Primitive};
 use alula::scheme::discretisation::{Path, Places};
 use alula::scheme::{CloudMotion, Fluid};
 use alula::system::{Instant, System};
-use alula::time::control::{self, Control};
+use alula::time::control::Control;
 use alula::time::dual::{Dual, Plan};
-use alula::time::explicit::{Explicit, Method};
+use alula::time::explicit::{self, Explicit, Method};
 use alula::time::{Integrator, Past, Standing};
 use common::{largest, solver};
 
@@ -121,20 +120,15 @@ fn drift<const D: usize>(
     }
     let until = STEP * f64::from(STEPS);
     if implicit {
-        let control = Control {
-            method: control::Method::NewtonKrylov,
-            cfl: 1e3,
-            cfl_max: 1e6,
-            growth: 2.0,
-            tolerance: 0.1,
-            basis: 10,
-            group: 4,
-            cycle: Cycle { sweeps: 2, visits: 1, levels: 8 },
-        };
+        let control = Control { cfl: 1e3, basis: 10, ..Control::newton(2) };
         let plan = Plan { until, step: STEP, order: 2, orders: 13.0, iterations: 30, adaptive: None };
-        worst(&fluid, Dual::new(&fluid, control, plan, (Past::default(), u)), field)
+        worst(&fluid, Dual::new(&fluid, control, plan, Past::default(), u), field)
     } else {
-        worst(&fluid, Explicit::new(&fluid, Method::Ssprk3, (0.5, until), (Past::default(), u)), field)
+        worst(
+            &fluid,
+            Explicit::new(&fluid, explicit::Plan { method: Method::Ssprk3, cfl: 0.5, until }, Past::default(), u),
+            field,
+        )
     }
 }
 

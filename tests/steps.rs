@@ -3,7 +3,7 @@
 
 use alula::math::multilevel::Cycle;
 use alula::system::{Fault, Field, Hierarchy, Implicit, Instant, Period, Rate, System};
-use alula::time::control::{Control, Method};
+use alula::time::control::Control;
 use alula::time::dual::{Dual, Plan};
 use alula::time::full::Full;
 use alula::time::{Integrator, Past, TimeError};
@@ -67,17 +67,14 @@ fn march(longest: f64) -> Result<(Vec<f64>, f64, u32), TimeError> {
 /// Times of the steps, the last state, and how often steps were halved.
 fn march_with(system: Decay, iterations: u32) -> Result<(Vec<f64>, f64, u32), TimeError> {
     let control = Control {
-        method: Method::NewtonKrylov,
         cfl: 1e3,
-        cfl_max: 1e6,
-        growth: 2.0,
         tolerance: 1e-3,
         basis: 5,
-        group: 4,
         cycle: Cycle { sweeps: 2, visits: 1, levels: 2 },
+        ..Control::newton(2)
     };
     let plan = Plan { until: 2.0, step: 0.1, order: 2, orders: 9.0, iterations, adaptive: None };
-    let mut march = Dual::new(&system, control, plan, (Past::default(), vec![1.0]));
+    let mut march = Dual::new(&system, control, plan, Past::default(), vec![1.0]);
     let mut times = Vec::new();
     while !march.finished() {
         times.push(march.advance()?.time);

@@ -5,7 +5,7 @@ use alula::math::fourier::{Instances, Series};
 use alula::math::multilevel::Cycle;
 use alula::structure::{Coordinate, ForceHistory, InertiaLaw, Model, PlanarBody, Spring, Structure};
 use alula::system::{Instant, System};
-use alula::time::control::{Control, Method};
+use alula::time::control::Control;
 use alula::time::dual::{Dual, Plan};
 use alula::time::harmonic::HarmonicBalance;
 use alula::time::ordinary::Ordinary;
@@ -42,21 +42,19 @@ fn section(play: f64, law: InertiaLaw) -> Structure<2> {
 }
 
 const CONTROL: Control = Control {
-    method: Method::NewtonKrylov,
     cfl: 1e6,
     cfl_max: 1e9,
-    growth: 2.0,
     tolerance: 1e-4,
     basis: 12,
-    group: 4,
     cycle: Cycle { sweeps: 2, visits: 1, levels: 1 },
+    ..Control::newton(2)
 };
 
 /// The state at time `until` after steps of one length by the formula of second order.
 fn march(structure: &Structure<2>, start: &[f64], until: f64, steps: u32) -> Vec<f64> {
     let plan = Plan { until, step: until / f64::from(steps), order: 2, orders: 9.0, iterations: 40, adaptive: None };
     let system = alone(structure);
-    let mut march = Dual::new(&system, CONTROL, plan, (Past::default(), start.to_vec()));
+    let mut march = Dual::new(&system, CONTROL, plan, Past::default(), start.to_vec());
     while !march.finished() {
         march.advance().unwrap();
     }

@@ -11,13 +11,12 @@ use alula::cloud::Cloud;
 use alula::exact::vortex::IsentropicVortex;
 use alula::math::Vector;
 use alula::math::jet::Jet;
-use alula::math::multilevel::Cycle;
 use alula::physics::Conserved;
 use alula::scheme::discretisation::{Path, Places};
 use alula::scheme::{CloudMotion, Fluid, RemapLedger};
-use alula::time::control::{self, Control};
+use alula::time::control::Control;
 use alula::time::dual::{Dual, Plan};
-use alula::time::explicit::{Explicit, Method};
+use alula::time::explicit::{self, Explicit, Method};
 use alula::time::{Integrator, Memory, Past, Standing};
 use alula::verify::{FieldTruth, metrics};
 use common::{case, largest, solver, vortex, with_threads};
@@ -49,16 +48,7 @@ enum How {
 use How::{Courant, Step};
 
 /// Newton's method on every step.
-const NEWTON: Control = Control {
-    method: control::Method::NewtonKrylov,
-    cfl: 1e3,
-    cfl_max: 1e6,
-    growth: 2.0,
-    tolerance: 0.1,
-    basis: 20,
-    group: 4,
-    cycle: Cycle { sweeps: 2, visits: 1, levels: 8 },
-};
+const NEWTON: Control = Control { cfl: 1e3, basis: 20, ..Control::newton(2) };
 
 fn implicit(step: f64, until: f64, orders: f64) -> Plan {
     Plan { until, step, order: 2, orders, iterations: 40, adaptive: None }
@@ -68,12 +58,14 @@ fn implicit(step: f64, until: f64, orders: f64) -> Plan {
 fn march<const D: usize>((fluid, u): (Fluid<D>, Vec<f64>), (how, until, steps): (How, f64, u32)) -> End<D> {
     let mut end = End { fluid, u, past: Past::default(), ledger: RemapLedger::default() };
     loop {
-        let begin = (end.past.clone(), end.u.clone());
+        let (past, u) = (end.past.clone(), end.u.clone());
         let mut leg: Box<dyn Integrator<Fluid<D>>> = match how {
-            Courant(cfl) => Box::new(Explicit::new(&end.fluid, Method::Ssprk3, (cfl, until), begin)),
+            Courant(cfl) => {
+                Box::new(Explicit::new(&end.fluid, explicit::Plan { method: Method::Ssprk3, cfl, until }, past, u))
+            }
             Step(step) => {
                 let orders = if steps < u32::MAX { 13.0 } else { 4.0 };
-                Box::new(Dual::new(&end.fluid, NEWTON, implicit(step, until, orders), begin))
+                Box::new(Dual::new(&end.fluid, NEWTON, implicit(step, until, orders), past, u))
             }
         };
         let mut worn = false;
@@ -244,7 +236,8 @@ fn the_vortex_converges_at_second_order_on_a_cloud_that_deforms() {
     let spacings = [0.3125, 0.15625, 0.078125];
     let errors = spacings.map(|h| {
         let (fluid, u) = moving_vortex(h, 1.0, Swing);
-        let mut march = Explicit::new(&fluid, Method::Ssprk3, (0.5, 1.0), (Past::default(), u));
+        let mut march =
+            Explicit::new(&fluid, explicit::Plan { method: Method::Ssprk3, cfl: 0.5, until: 1.0 }, Past::default(), u);
         while !march.finished() {
             march.advance().unwrap();
         }
@@ -257,7 +250,8 @@ fn the_vortex_converges_at_second_order_on_a_cloud_that_deforms() {
 
 fn explicit_state(cfl: f64) -> Vec<f64> {
     let (fluid, u) = moving_vortex(0.625, 1.0, Straight);
-    let mut march = Explicit::new(&fluid, Method::Ssprk3, (cfl, 1.0), (Past::default(), u));
+    let mut march =
+        Explicit::new(&fluid, explicit::Plan { method: Method::Ssprk3, cfl, until: 1.0 }, Past::default(), u);
     while !march.finished() {
         march.advance().unwrap();
     }
@@ -266,7 +260,7 @@ fn explicit_state(cfl: f64) -> Vec<f64> {
 
 fn implicit_state(step: f64) -> Vec<f64> {
     let (fluid, u) = moving_vortex(0.625, 1.0, Swing);
-    let mut march = Dual::new(&fluid, NEWTON, implicit(step, 1.0, 9.0), (Past::default(), u));
+    let mut march = Dual::new(&fluid, NEWTON, implicit(step, 1.0, 9.0), Past::default(), u);
     while !march.finished() {
         march.advance().unwrap();
     }
@@ -320,7 +314,8 @@ impl Path<2> for Shaken {
 fn sod_along(cloud_motion: CloudMotion<2>) -> f64 {
     let (fluid, u) = solver::<2>(&sod());
     let fluid = Fluid { cloud_motion, ..fluid };
-    let mut march = Explicit::new(&fluid, Method::Ssprk3, (0.5, 0.2), (Past::default(), u));
+    let mut march =
+        Explicit::new(&fluid, explicit::Plan { method: Method::Ssprk3, cfl: 0.5, until: 0.2 }, Past::default(), u);
     while !march.finished() {
         march.advance().unwrap();
     }

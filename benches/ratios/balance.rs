@@ -11,7 +11,7 @@ use alula::time::harmonic::HarmonicBalance;
 use alula::time::relax::Relax;
 use alula::time::{Integrator, Past};
 
-use super::{built, control, parsed, residual, seconds, tell};
+use super::{built, parsed, residual, seconds, tell};
 
 /// NACA 0010 in pitch.
 const CASE: &str = "title = \"bench\"\n[flow]\nmach = 0.7\n[[body]]\nname = \"foil\"\nnaca = \"0010\"\n\
@@ -46,7 +46,7 @@ pub(super) fn balance() {
         tell(&name, rhs / one / count, "about 1");
         tell("  preconditioner of an instance over that of one state", applied / steady / count, "");
         tell("  linearisation and refresh of all over residuals of one", refreshed / one, "");
-        let mut relax = Relax::new(&balance, control(), all.clone(), &all, None);
+        let mut relax = Relax::new(&balance, Control::newton(2), all.clone(), &all, None);
         (0..WARM).for_each(|_| drop(relax.advance()));
         let held =
             bytes(&fluid) + 8 * 2 * u.len() + 8 * frame.len() * 2 * fluid.discretisation.cloud.len() + relax.bytes();
@@ -64,7 +64,7 @@ pub(super) fn threads() {
     let solve = |threads: usize| {
         let clock = time::Instant::now();
         let steps = || {
-            let mut relax = Relax::new(&balance, control(), all.clone(), &all, None);
+            let mut relax = Relax::new(&balance, Control::newton(2), all.clone(), &all, None);
             (0..SOLVED).for_each(|_| drop(relax.advance()));
         };
         crate::pool(threads).install(steps);
@@ -81,7 +81,7 @@ fn particles(fluid: &Fluid<2>) -> f64 {
 
 /// Times of one application of the preconditioner, and of making it.
 fn preconditioner<S: Implicit>(system: &S, u: &[f64]) -> (f64, f64) {
-    let Control { group, cycle, .. } = control();
+    let Control { group, cycle, .. } = Control::newton(2);
     let mut inner = system.preconditioner(&Hierarchy { group, cycle }, None);
     let (frame, mut work) = (system.frame(&Instant::still(0.0), u), system.work());
     let mut rate = vec![0.0; rows(system.fields())];
@@ -106,7 +106,7 @@ fn bytes(fluid: &Fluid<2>) -> usize {
 /// Bytes per particle of a march that has taken a few steps.
 fn marching_bytes(fluid: &Fluid<2>, u: &[f64], step: f64) -> f64 {
     let plan = Plan { until: 1e9, step, order: 2, orders: 2.0, iterations: 20, adaptive: None };
-    let mut march = Dual::new(fluid, control(), plan, (Past::default(), u.to_vec()));
+    let mut march = Dual::new(fluid, Control::newton(2), plan, Past::default(), u.to_vec());
     (0..3).for_each(|_| drop(march.advance()));
     let velocity = 8 * 2 * fluid.discretisation.cloud.len();
     (bytes(fluid) + velocity + march.cost().bytes) as f64 / particles(fluid)

@@ -2,11 +2,12 @@
 use std::path::Path;
 
 use alula::system::{Instant, System, Term};
+use alula::time::control::Control;
 use alula::time::dual::{Dual, Plan};
 use alula::time::relax::Relax;
 use alula::time::{Integrator, Past};
 
-use super::{built, control, once, parsed, tell};
+use super::{built, once, parsed, tell};
 
 /// RAE 2822 in pitch and plunge: viscous, layered, rigid.
 const CASE: &str = "title = \"bench\"\n[flow]\nmach = 0.7\nreynolds = 3.1e5\ntemperature = \"288.15 K\"\n\
@@ -24,13 +25,13 @@ const PRELUDE: (f64, u32) = (1e-2, 80);
 pub(super) fn dual_step() {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("verification/rae2822_m073_a319");
     let (fluid, free, period) = built(&parsed(CASE), &folder);
-    let mut relax = Relax::new(&fluid, control(), free.clone(), &free, None);
+    let mut relax = Relax::new(&fluid, Control::newton(2), free.clone(), &free, None);
     while relax.drop() > PRELUDE.0 && relax.iteration < PRELUDE.1 && relax.advance().is_ok() {}
     let u = relax.u.clone();
     drop(relax);
     let step = period / 64.0;
     let plan = Plan { until: 1e9, step, order: 2, orders: 2.0, iterations: 20, adaptive: None };
-    let mut march = Dual::new(&fluid, control(), plan, (Past::default(), u));
+    let mut march = Dual::new(&fluid, Control::newton(2), plan, Past::default(), u);
     (0..STEPS[0]).for_each(|_| {
         march.advance().unwrap();
     });

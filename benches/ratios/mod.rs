@@ -15,11 +15,9 @@ use std::path::Path;
 use std::time;
 
 use alula::case::{Case, read};
-use alula::math::multilevel::Cycle;
 use alula::motion::Motions;
 use alula::scheme::Fluid;
 use alula::system::{Instant, System};
-use alula::time::control::{Control, Method};
 
 /// Times each side is measured.
 const TURNS: usize = 7;
@@ -74,18 +72,4 @@ fn built(case: &Case, folder: &Path) -> (Fluid<2>, Vec<f64>, f64) {
     let (fluid, u) = alula::run::build_solver::<2>(case, folder).unwrap();
     let motions = Motions::<2>::of_case(case, 1.0, &|_| unreachable!("no files of motion")).unwrap();
     (fluid, u, motions.period().unwrap_or_default())
-}
-
-/// Newton-Krylov with the numbers of a run.
-fn control() -> Control {
-    Control {
-        method: Method::NewtonKrylov,
-        cfl: 10.0,
-        cfl_max: 1e6,
-        growth: 2.0,
-        tolerance: 0.1,
-        basis: 30,
-        group: 4,
-        cycle: Cycle { sweeps: 2, visits: 1, levels: 8 },
-    }
 }

@@ -3,7 +3,7 @@ use std::path::Path;
 
 use alula::scheme::RemapLedger;
 use alula::system::{Instant, System, Term};
-use alula::time::explicit::{Explicit, Method};
+use alula::time::explicit::{Explicit, Method, Plan};
 use alula::time::{Integrator, Past};
 
 use super::{built, parsed, residual, seconds, tell};
@@ -43,7 +43,8 @@ pub(super) fn travelling() {
     let anew = seconds(|| drop(fluid.reclouded(&frame, (&u, [&[], &[]]), &mut work, &mut ledger)));
     let mut operators = fluid.discretisation.operators.clone();
     let refit = seconds(|| operators.refit(&fluid.discretisation.cloud));
-    let mut march = Explicit::new(&fluid, Method::Ssprk3, (0.1, 1e9), (Past::default(), u.clone()));
+    let mut march =
+        Explicit::new(&fluid, Plan { method: Method::Ssprk3, cfl: 0.1, until: 1e9 }, Past::default(), u.clone());
     let step = seconds(|| drop(march.advance()));
     tell("travelling particles searched and fitted anew, over a residual", anew / one, "bar 4");
     tell("weights fitted anew on the same lists", refit / one, "");

@@ -32,7 +32,8 @@ impl<const D: usize> Attached<D> {
     /// The structure `structure` of body number `body`, whose length is `length`; its first coordinate is number `first` of all.
     pub fn new(
         structure: Structure<D>,
-        (body, length): (usize, f64),
+        body: usize,
+        length: f64,
         first: usize,
         shapes: Vec<Arc<ModeShape<D>>>,
     ) -> Self {

@@ -21,6 +21,15 @@ pub struct Gmres {
     chunks: Vec<f64>,
 }
 
+/// When a solve ends.
+#[derive(Clone, Copy, Debug)]
+pub struct Goal {
+    /// Residual over right-hand side that is asked for.
+    pub tolerance: f64,
+    /// Greatest number of iterations.
+    pub most: usize,
+}
+
 /// A linear system by what it does to vectors.
 pub struct System<A, P> {
     /// `product(v, out)`: out = A v.
@@ -58,16 +67,16 @@ impl Gmres {
         self.z.len() * (4 * self.basis.len() + 8 * 2)
     }
 
-    /// Solves A x = b from x = 0 until the residual has fallen to `tolerance`, after `most` iterations, or when the basis is
-    /// full.
-    ///
+    /// Solves A x = b from x = 0 until the residual has fallen to what `goal` asks, after as many iterations as it
+    /// allows, or when the basis is full.
     pub fn solve(
         &mut self,
-        (b, x): (&[f64], &mut [f64]),
-        (tolerance, most): (f64, usize),
+        b: &[f64],
+        x: &mut [f64],
+        goal: Goal,
         system: System<impl FnMut(&[f64], &mut [f64]), impl FnMut(&[f32], &mut [f64])>,
     ) -> Solved {
-        let System { mut product, mut precondition } = system;
+        let (Goal { tolerance, most }, System { mut product, mut precondition }) = (goal, system);
         fill(x, 0.0);
         let size = self.hessenberg.len();
         let start = norm(b);

@@ -28,7 +28,7 @@ pub enum RunError {
     #[error("{source}{reached}{}", last_good(checkpoint))]
     Time {
         /// Why.
-        source: TimeError,
+        source: Box<TimeError>,
         /// How far bodies on springs had come, as a line of its own; empty without them.
         reached: String,
         /// Checkpoint with the last good state, where one is written.

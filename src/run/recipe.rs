@@ -26,16 +26,8 @@ const LEAD_ITERATIONS: u32 = 60;
 /// Harmonics at which `number = "auto"` begins, and what it adds.
 const FIRST: usize = 1;
 const MORE: usize = 2;
-/// Reduction asked of each linear solve of a steady relaxation.
-const LINEAR_REDUCTION: f64 = 0.1;
-/// Basis vectors of GMRES.
-const BASIS: usize = 30;
-/// Greatest growth of the Courant number in one iteration.
-const GROWTH: f64 = 2.0;
 /// Greatest Courant number of sweeps alone.
 const SWEEPS_CFL_MAX: f64 = 100.0;
-/// Levels of the hierarchy that sweeps are spread over.
-const LEVELS: usize = 8;
 /// Residual evaluations of a typical steady run, per particle.
 const EVALUATIONS: f64 = 1200.0;
 /// The same for one implicit step in time.
@@ -62,7 +54,7 @@ pub(crate) enum Scheme {
     /// Implicit, each step relaxed.
     Dual(Control, Plan),
     /// Explicit, limited by a Courant number.
-    Explicit(explicit::Method, f64),
+    Explicit(explicit::Plan),
 }
 
 /// A fixed implicit step.
@@ -106,7 +98,7 @@ pub(crate) fn marching(case: &Case, period: Option<f64>, dimension: usize) -> Re
                 RungeKutta::Ssprk3 => explicit::Method::Ssprk3,
                 RungeKutta::Rk4 => explicit::Method::Rk4,
             };
-            let scheme = Scheme::Explicit(method, plan.cfl);
+            let scheme = Scheme::Explicit(explicit::Plan { method, cfl: plan.cfl, until });
             Ok(Some(Marching { scheme, until, limit: plan.steps, tolerance: plan.periodic_tolerance }))
         }
         Temporal::Dual(dual) => {
@@ -260,6 +252,7 @@ fn inner_control(dual: &case::Dual, dimension: usize) -> Control {
 /// Numbers of the steady relaxation.
 pub(crate) fn control(steady: &Steady, dimension: usize) -> Control {
     let sweeps_alone = steady.method == SteadyMethod::LuSgs;
+    let usual = Control::newton(dimension);
     Control {
         method: match steady.method {
             SteadyMethod::NewtonKrylov => Method::NewtonKrylov,
@@ -268,10 +261,7 @@ pub(crate) fn control(steady: &Steady, dimension: usize) -> Control {
         },
         cfl: steady.cfl,
         cfl_max: if sweeps_alone { steady.cfl_max.min(SWEEPS_CFL_MAX) } else { steady.cfl_max },
-        growth: GROWTH,
-        tolerance: LINEAR_REDUCTION,
-        basis: BASIS,
-        group: if dimension == 2 { 4 } else { 8 },
-        cycle: Cycle { sweeps: 2, visits: 1, levels: if sweeps_alone { 1 } else { LEVELS } },
+        cycle: Cycle { levels: if sweeps_alone { 1 } else { usual.cycle.levels }, ..usual.cycle },
+        ..usual
     }
 }

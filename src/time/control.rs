@@ -12,7 +12,7 @@ pub enum Method {
     RungeKutta,
 }
 
-/// Numbers that steer the relaxation; the defaults serve every case.
+/// Numbers that steer the relaxation.
 #[derive(Clone, Copy, Debug)]
 pub struct Control {
     /// Method.
@@ -33,9 +33,9 @@ pub struct Control {
     pub cycle: Cycle,
 }
 
-impl Default for Control {
-    /// Newton-Krylov for plane flow.
-    fn default() -> Self {
+impl Control {
+    /// Newton-GMRES in `dimension` dimensions, as every case is solved by default.
+    pub const fn newton(dimension: usize) -> Self {
         Self {
             method: Method::NewtonKrylov,
             cfl: 10.0,
@@ -43,7 +43,7 @@ impl Default for Control {
             growth: 2.0,
             tolerance: 0.1,
             basis: 30,
-            group: 4,
+            group: 1 << dimension,
             cycle: Cycle { sweeps: 2, visits: 1, levels: 8 },
         }
     }

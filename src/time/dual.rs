@@ -67,7 +67,7 @@ pub struct Dual<'a, S: Implicit> {
 
 impl<'a, S: Implicit> Dual<'a, S> {
     /// Prepares a march from the state `u`.
-    pub fn new(system: &'a S, control: Control, plan: Plan, (past, u): (Past, Vec<f64>)) -> Self {
+    pub fn new(system: &'a S, control: Control, plan: Plan, past: Past, u: Vec<f64>) -> Self {
         let start = u.clone();
         // the term of time makes the matrix easy: one sweep each way does
         let newton = control.method == Method::NewtonKrylov;

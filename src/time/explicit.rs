@@ -28,6 +28,17 @@ pub enum Method {
     Rk4,
 }
 
+/// How to march.
+#[derive(Clone, Copy, Debug)]
+pub struct Plan {
+    /// Method.
+    pub method: Method,
+    /// Courant number of the steps.
+    pub cfl: f64,
+    /// Time at which the march ends.
+    pub until: f64,
+}
+
 /// A march from `t` to `until` with steps limited by the Courant number.
 pub struct Explicit<'a, S: System> {
     system: &'a S,
@@ -47,7 +58,8 @@ pub struct Explicit<'a, S: System> {
 
 impl<'a, S: System> Explicit<'a, S> {
     /// Prepares a march from the state `u` at time `time`.
-    pub fn new(system: &'a S, method: Method, (cfl, until): (f64, f64), (past, u): (Past, Vec<f64>)) -> Self {
+    pub fn new(system: &'a S, plan: Plan, past: Past, u: Vec<f64>) -> Self {
+        let Plan { method, cfl, until } = plan;
         let n = u.len();
         let (end, step) = (past.time, past.last);
         let at = match step > 0.0 {

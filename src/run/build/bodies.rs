@@ -30,7 +30,7 @@ pub(crate) fn bodies<const D: usize>(
         let shapes: Vec<Arc<ModeShape<D>>> = data.modes.iter().map(|m| shape(&m.file)).collect::<Result<_, _>>()?;
         let first = all.last().map_or(0, |b| b.range().end);
         motions.free(body, body_motion(&structure, first, &shapes));
-        let attached = Attached::new(structure, (body, frame.chord), first, shapes);
+        let attached = Attached::new(structure, body, frame.chord, first, shapes);
         if matches!(case.time, Temporal::Steady(_)) && !attached.is_held() {
             return Err(unheld(&surface.bodies[body]));
         }

@@ -212,7 +212,7 @@ impl<'a> Log<'a> {
 
     /// Why a run failed, and where its last good state is.
     pub(crate) fn failed(&self, source: TimeError) -> RunError {
-        RunError::Time { source, reached: self.reached(), checkpoint: self.checkpoint() }
+        RunError::Time { source: Box::new(source), reached: self.reached(), checkpoint: self.checkpoint() }
     }
 
     /// How far the bodies on springs of a march had come, as a line of its own: motion that grows until the gas cannot follow is

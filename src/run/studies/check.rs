@@ -36,7 +36,7 @@ pub(super) fn marched_on<S: HasGas<D>, const D: usize>(
     let march = even_steps(step, f64::from(1 + plan.check) * period);
     let at = |before: f64| from.state_at(-before * step / period * std::f64::consts::TAU);
     let past = Past { time: period, last: step, next: step, before: at(1.0), older: at(2.0), ..Past::default() };
-    let mut marcher = Dual::new(system, harmonic_control(plan, D), march, (past, at(0.0)));
+    let mut marcher = Dual::new(system, harmonic_control(plan, D), march, past, at(0.0));
     log.note(&format!("{} periods of {STEPS} steps are marched from the balance", plan.check));
     let mut effort = Effort { points: system.gas().discretisation.cloud.n_fluid };
     let mut seen = Loads { system, time: Vec::new(), loads: Vec::new() };

@@ -46,7 +46,7 @@ pub(crate) fn lead<S: HasGas<D>, const D: usize>(
     let mut periods = Periods { period, of: plan.march };
     let all = vec![0.0; u.len() * count];
     let mut instances = Instances { balance: &balance, after: march.until - period, part: period / count as f64, all };
-    let mut marcher = Dual::new(system, harmonic_control(plan, D), march, (Past::default(), u));
+    let mut marcher = Dual::new(system, harmonic_control(plan, D), march, Past::default(), u);
     log.note(&format!("{} periods of {steps} steps are marched first", plan.march));
     match drive(&mut marcher, &mut [&mut effort, &mut periods, &mut instances, &mut Told], log)? {
         Ending::Stopped => Ok(None),

@@ -68,11 +68,11 @@ pub(crate) fn march<S: HasGas<D>, const D: usize>(
 fn integrator<'a, S: HasGas<D>, const D: usize>(
     system: &'a S,
     marching: &Marching,
-    begin: (Past, Vec<f64>),
+    (past, u): (Past, Vec<f64>),
 ) -> Box<dyn Integrator<S> + 'a> {
     match marching.scheme {
-        Scheme::Dual(control, plan) => Box::new(Dual::new(system, control, plan, begin)),
-        Scheme::Explicit(method, cfl) => Box::new(Explicit::new(system, method, (cfl, marching.until), begin)),
+        Scheme::Dual(control, plan) => Box::new(Dual::new(system, control, plan, past, u)),
+        Scheme::Explicit(plan) => Box::new(Explicit::new(system, plan, past, u)),
     }
 }
 

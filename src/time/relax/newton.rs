@@ -5,7 +5,7 @@
 //! Newton's method can use.
 use super::super::preconditioning::Preconditioning;
 use super::{Relax, TimeTerm};
-use crate::math::krylov::{Gmres, System as Linear};
+use crate::math::krylov::{Gmres, Goal, System as Linear};
 use crate::math::sweep::{sum, sweep, sweep_rows};
 use crate::system::{Implicit, Instant, Reach, RightHandSide, Shift, System, placed};
 
@@ -59,12 +59,12 @@ impl<S: Implicit> Relax<'_, S> {
     }
 
     /// Reduction asked of a linear solve, and the greatest number of its iterations.
-    fn asked(&self, reach: Reach) -> (f64, usize) {
+    fn asked(&self, reach: Reach) -> Goal {
         if self.time.is_none() {
-            return (self.control.tolerance, usize::MAX);
+            return Goal { tolerance: self.control.tolerance, most: usize::MAX };
         }
-        let reduction = (SHARE * self.goal / self.drop()).clamp(REDUCTION[0], REDUCTION[1]);
-        (reduction, Preconditioning::<S::Preconditioner>::most(reach))
+        let tolerance = (SHARE * self.goal / self.drop()).clamp(REDUCTION[0], REDUCTION[1]);
+        Goal { tolerance, most: Preconditioning::<S::Preconditioner>::most(reach) }
     }
 
     /// The step of Newton's method; the iterations that it took.
@@ -111,7 +111,7 @@ impl<S: Implicit> Relax<'_, S> {
             preconditioning.apply(system, frame, &RightHandSide::Scaled { values: r, scale }, z);
         };
         let linear = Linear { product, precondition };
-        let solved = gmres.solve((&self.trial_residual, &mut self.step), goal, linear);
+        let solved = gmres.solve(&self.trial_residual, &mut self.step, goal, linear);
         self.beside = beside;
         self.linear += solved.iterations as u32;
         self.evaluations += solved.iterations as u64;
