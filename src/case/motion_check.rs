@@ -453,7 +453,7 @@ mod tests {
         told(&march("explicit]\nuntil = \"2 s\"", still), &["`time.explicit.until`", of_time]);
         let c = read(&march("dual]\nsteps_per_period = 50\nperiods = 3", "plunge = 1\nperiod = 2"), "c").unwrap();
         let Temporal::Dual(dual) = &c.time else { panic!("{:?}", c.time) };
-        assert_eq!((dual.order, dual.orders, dual.inner_iterations), (2, None, 50));
+        assert_eq!((dual.order, dual.orders, dual.inner_iterations), (2, 2.0, 50));
         assert_eq!((c.end(Some(2.0)), c.step_length(Some(2.0))), (Some(6.0), Some(0.04)));
         assert_eq!((c.end(None), c.step_length(None)), (None, None));
         let c = read(&march("dual]\nstep = 0.5\nuntil = 3", "translation = [1, 0]"), "c").unwrap();

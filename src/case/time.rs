@@ -133,9 +133,8 @@ pub struct Dual {
     pub periods: Option<f64>,
     /// Order of the backward difference, 1 or 2.
     pub order: u8,
-    /// Orders of magnitude the residual must fall within a step; absent: as many as the march needs.
-    #[serde(default)]
-    pub orders: Option<f64>,
+    /// Orders of magnitude the residual must fall within a step.
+    pub orders: f64,
     /// Greatest number of iterations within a step.
     pub inner_iterations: u32,
     /// Orders of magnitude the residual of the steady flow must fall before the march; absent: as many as the march needs.

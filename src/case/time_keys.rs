@@ -154,10 +154,10 @@ static DUAL: Table = Table::of(&[
         Absent::Integer(2),
         "Order of the backward difference in time; the first step is of first order.",
     ),
-    Field::optional(
+    Field::defaulted(
         "orders",
         ORDERS,
-        "2, and 3 with bodies on springs",
+        Absent::Number(2.0),
         "Orders of magnitude the residual must fall within a step: below the size of the change in time, or one order less \
          below that of a state guessed through the last three. What is left disturbs the damping of bodies on springs.",
     ),

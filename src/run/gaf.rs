@@ -5,12 +5,12 @@ use num_complex::Complex64;
 use serde::Serialize;
 use serde_json::json;
 
-use super::build;
 use super::error::RunError;
 use super::folder::{self, Places};
 use super::monitor::Monitor;
 use super::record::summary::Summary;
 use super::session::{Outcome, Session};
+use super::setup;
 use crate::case::{AnyMode, Case, Gaf, Mode};
 use crate::observe::table::{Entry, write_csv, write_json};
 
@@ -65,7 +65,7 @@ pub fn gaf(case: &Case, places: &Places, monitor: &mut dyn Monitor) -> Result<Op
             hint: "add one with `reduced_frequencies`",
         });
     };
-    build::supported(case)?;
+    setup::supported(case)?;
     folder::create(case, &places.input, &places.out)?;
     let modes = plan.all_modes().map(|m| m.name().to_owned()).collect();
     let mut matrices = Matrices { modes, columns: Vec::new(), linearity: plan.linearity };

@@ -2,12 +2,12 @@
 use std::path::Path;
 use std::time;
 
-use super::build::{self, Site, Solver, check_motion};
 use super::error::RunError;
 use super::files::{Scene, Target, write_cloud};
 use super::folder;
 use super::found::bytes_of;
 use super::recipe;
+use super::setup::{self, Site, Solver, check_motion};
 use super::stage::Stage;
 use crate::case::Case;
 use crate::cloud::Diagnosis;
@@ -59,10 +59,10 @@ pub fn inspect(case: &Case, input: &Path, out: Option<&Path>) -> Result<CloudRep
 
 fn look<const D: usize>(case: &Case, input: &Path, out: Option<&Path>) -> Result<CloudReport, RunError> {
     let began = time::Instant::now();
-    let (surface, mut notes) = build::surface::<D>(case, input)?;
-    let motions = build::motions(case, input, surface.as_ref())?;
+    let (surface, mut notes) = setup::surface::<D>(case, input)?;
+    let motions = setup::motions(case, input, surface.as_ref())?;
     let site = Site { case, surface: surface.as_ref(), motions: &motions };
-    let solver = build::solver(&site, &Stage::PLAIN, &[], None)?;
+    let solver = setup::solver(&site, &Stage::PLAIN, &[], None)?;
     let seconds = began.elapsed().as_secs_f64();
     let (fluid, u) = (&solver.system, &solver.system.start());
     let (mut work, mut du) = (fluid.work(), vec![0.0; u.len()]);

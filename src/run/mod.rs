@@ -8,7 +8,6 @@
 //! of a flow), `build` (from a case to its equations), `record` (what a run knows about itself), `found` (what it tells at its
 //! end), `files`, `watch` (one loop that drives any integrator, and those who watch it), `studies` (what is done on a cloud),
 //! `session`; on top of it [`gaf`] and [`verify`].
-mod build;
 mod error;
 mod files;
 mod folder;
@@ -21,6 +20,7 @@ mod monitor;
 mod recipe;
 mod record;
 mod session;
+mod setup;
 mod stage;
 mod studies;
 pub mod verify;
@@ -104,18 +104,18 @@ pub fn build_cloud<const D: usize>(
     case: &Case,
     input: &Path,
 ) -> Result<(Option<Surface<D>>, Cloud<D>, Vec<String>), RunError> {
-    let (surface, notes) = build::surface::<D>(case, input)?;
+    let (surface, notes) = setup::surface::<D>(case, input)?;
     let cloud = Cloud::build(&CloudSpec::of_case(case), surface.as_ref(), &[])?;
     Ok((surface, cloud, notes))
 }
 
 /// Builds the equations of a case on its own cloud, and the state at the start, without running it.
 pub fn build_solver<const D: usize>(case: &Case, input: &Path) -> Result<(Fluid<D>, Vec<f64>), RunError> {
-    build::supported(case)?;
-    let (surface, _) = build::surface::<D>(case, input)?;
-    let motions = build::motions(case, input, surface.as_ref())?;
-    let site = build::Site { case, surface: surface.as_ref(), motions: &motions };
-    let solver = build::solver(&site, &Stage::PLAIN, &[], None)?;
+    setup::supported(case)?;
+    let (surface, _) = setup::surface::<D>(case, input)?;
+    let motions = setup::motions(case, input, surface.as_ref())?;
+    let site = setup::Site { case, surface: surface.as_ref(), motions: &motions };
+    let solver = setup::solver(&site, &Stage::PLAIN, &[], None)?;
     let start = solver.system.start();
     Ok((solver.system, start))
 }

@@ -17,10 +17,6 @@ const PRELUDE_ORDERS: f64 = 3.0;
 /// The same for bodies on springs, which what is left moves: it is to be round-off, so that
 /// oscillations may be as small as one likes.
 const SPRUNG_ORDERS: f64 = 13.0;
-/// Orders of magnitude of the residual within a step in time: to its own error.
-const STEP_ORDERS: f64 = 2.0;
-/// The same for bodies on springs: 2 shifts a damping ratio of .7 % by 5 % of it, 3 by half a per cent of it.
-const SPRUNG_STEP_ORDERS: f64 = 3.0;
 /// Greatest number of its iterations where a march leads to a harmonic balance.
 const LEAD_ITERATIONS: u32 = 60;
 /// Harmonics at which `number = "auto"` begins, and what it adds.
@@ -237,7 +233,7 @@ fn implicit_plan(case: &Case, dual: &case::Dual, period: Option<f64>) -> Result<
         until: case.end(period).ok_or_else(wrong)?,
         step: case.step_length(period).ok_or_else(wrong)?,
         order: dual.order,
-        orders: dual.orders.unwrap_or(if case.structures.is_empty() { STEP_ORDERS } else { SPRUNG_STEP_ORDERS }),
+        orders: dual.orders,
         iterations: dual.inner_iterations,
         adaptive: dual.adaptive,
     })

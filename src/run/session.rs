@@ -6,7 +6,6 @@
 //! its run in a folder.
 use std::path::{Path, PathBuf};
 
-use super::build::{self, Site, Solver, check_motion};
 use super::error::RunError;
 use super::files;
 use super::found::{Found, Names, Spent};
@@ -16,6 +15,7 @@ use super::recipe;
 use super::record::saved::{Position, Saved, flatten};
 use super::record::summary::{Clock, Summary};
 use super::record::{Described, Log};
+use super::setup::{self, Site, Solver, check_motion};
 use super::stage::{Stage, Task};
 use super::studies::{self, Reached, Start, Turn};
 use crate::case::Case;
@@ -81,7 +81,7 @@ struct Solution {
 impl Session {
     /// Opens a case whose file names refer to the folder `input`.
     pub fn open(case: &Case, input: impl Into<PathBuf>) -> Result<Self, RunError> {
-        build::supported(case)?;
+        setup::supported(case)?;
         Ok(Self { case: case.clone(), input: input.into(), out: None, origin: Origin::Case, solution: None })
     }
 
@@ -169,15 +169,15 @@ type Ended = Result<Solution, u64>;
 impl Run<'_> {
     /// The gas alone, or with the structures of the case.
     fn solve<const D: usize>(&self, origin: Origin, monitor: &mut dyn Monitor) -> Result<Ended, RunError> {
-        let (surface, notes) = build::surface::<D>(self.case, self.input)?;
+        let (surface, notes) = setup::surface::<D>(self.case, self.input)?;
         notes.iter().for_each(|n| monitor.note(n));
-        let mut motions = build::motions(self.case, self.input, surface.as_ref())?;
-        let bodies = build::bodies(self.case, self.input, surface.as_ref(), &mut motions)?;
+        let mut motions = setup::motions(self.case, self.input, surface.as_ref())?;
+        let bodies = setup::bodies(self.case, self.input, surface.as_ref(), &mut motions)?;
         let site = Site { case: self.case, surface: surface.as_ref(), motions: &motions };
         if bodies.is_empty() {
             return self.stages(&site, |gas| gas, Vec::new(), origin, monitor);
         }
-        let described = build::described(self.case, surface.as_ref(), &bodies);
+        let described = setup::described(self.case, surface.as_ref(), &bodies);
         let couple = |gas: Fluid<D>| {
             let cloud = &gas.discretisation.cloud;
             let walls = &cloud.x[cloud.interface_range()];
@@ -219,7 +219,7 @@ impl Run<'_> {
         for (k, stage) in stages.iter().enumerate().skip(first) {
             let same = k > 0 && stage.shares_cloud(&stages[k - 1]);
             let cloud = if stage.is_plain() { ready.take() } else { None };
-            let build = || Ok::<_, RunError>(build::solver(site, stage, &sources, cloud)?.with(&assemble));
+            let build = || Ok::<_, RunError>(setup::solver(site, stage, &sources, cloud)?.with(&assemble));
             let Begun { mut solver, start } = match (saved.take(), previous.take()) {
                 (Some(saved), _) => Begun::resumed(build()?, saved)?,
                 (None, Some(stood)) if same => Begun::fresh(stood.solver, stood.state),
@@ -234,7 +234,7 @@ impl Run<'_> {
                 return Ok(Err(log.record.iteration));
             };
             if stages.get(k + 1).is_some_and(|s| s.cycle > stage.cycle) {
-                sources = build::adapted(self.case, &solver.system, &reached.state);
+                sources = setup::adapted(self.case, &solver.system, &reached.state);
             }
             end = reached.end;
             previous = Some(Stood { solver, state: reached.state });
@@ -321,7 +321,7 @@ impl<S: HasGas<D>, const D: usize> Begun<S, D> {
 
 /// A stage that takes over the state of the one before it on another cloud.
 fn followed<S: HasGas<D>, const D: usize>(next: Solver<S, D>, site: &Site<'_, D>, before: Stood<S, D>) -> Begun<S, D> {
-    let state = build::transfer(&before.solver.system, &before.state, &next.system, site.surface);
+    let state = setup::transfer(&before.solver.system, &before.state, &next.system, site.surface);
     Begun::fresh(next, state)
 }
 
@@ -332,7 +332,7 @@ fn begun<S: HasGas<D>, const D: usize>(
     other: Option<Saved>,
 ) -> Result<Begun<S, D>, RunError> {
     let state = match other {
-        Some(other) => build::taken_over(site.case, &solver.system, other.state)?,
+        Some(other) => setup::taken_over(site.case, &solver.system, other.state)?,
         None => solver.system.start(),
     };
     Ok(Begun::fresh(solver, state))

@@ -7,6 +7,9 @@ use crate::system::{Field, Placed, placed};
 
 /// Least first residual of a field in units of its unknowns: below it a field counts as if it had nothing to do.
 const NOTHING: f64 = 1e-10;
+/// Least weight of a field in its own units. A body that swings changes the mean particle of a large cloud little: counted in its
+/// own units, its motion would hide that the gas is not solved. In the first step from rest only the body moves, and counts.
+const LEAST: f64 = 1e-3;
 
 /// Sum over the rows of all fields of the squares of their measured residuals times `scale`, over the rows of the first field.
 pub(super) fn norm(fields: &[Field], r: &[f64], scale: &[f64]) -> f64 {
@@ -29,7 +32,7 @@ fn square(field: &Field, r: &[f64], i: usize) -> f64 {
 }
 
 /// Multiplies the local times of all fields but the first by what makes each field count as the first does, where `residuals`
-/// are those that the fields have at first; a field never counts less than in its own units.
+/// are those that the fields have at first.
 pub(super) fn weigh(fields: &[Field], scale: &mut [f64], residuals: &[&[f64]]) {
     let size = |at: &Placed, scale: &[f64]| {
         let count = (at.field.rows * at.field.instances) as f64;
@@ -43,7 +46,7 @@ pub(super) fn weigh(fields: &[Field], scale: &mut [f64], residuals: &[&[f64]]) {
     let Some((reference, count)) = all.next().map(|at| size(&at, scale)) else { return };
     for at in all {
         let (own, own_count) = size(&at, scale);
-        let weight = (reference / own).max(1.0) * (count / own_count).sqrt();
+        let weight = (reference / own).max(LEAST) * (count / own_count).sqrt();
         scale[at.rows].iter_mut().for_each(|s| *s *= weight);
     }
 }

@@ -1,10 +1,10 @@
 //! Harmonic balance with one number of harmonics, and what is made of the last one.
-use super::super::build::Solver;
 use super::super::error::RunError;
 use super::super::recipe::{harmonic_control, is_automatic};
 use super::super::record::Log;
 use super::super::record::saved::Settling;
 use super::super::record::summary::BalanceReport;
+use super::super::setup::Solver;
 use super::super::stage::Task;
 use super::super::watch::{Aim, Checkpoint, Ending, Observer, Progress, Told, drive};
 use super::check::marched_on;

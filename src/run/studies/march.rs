@@ -1,10 +1,10 @@
 //! Marching in time; where particles travel, in legs between which the cloud is built anew.
-use super::super::build::Solver;
 use super::super::error::RunError;
 use super::super::look::totals;
 use super::super::recipe::{Marching, Scheme};
 use super::super::record::Log;
 use super::super::record::saved::LagrangianCheckpoint;
+use super::super::setup::Solver;
 use super::super::watch::{
     Aim, Checkpoint, CrossCheck, Ending, FieldSeries, Film, GasEyes, Limit, Observer, Particles, Periodic, Progress,
     Structures, Told, Worn, drive,

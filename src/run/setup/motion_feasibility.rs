@@ -173,7 +173,7 @@ mod tests {
         );
         let case = read(&text, "case.toml").unwrap_or_else(|e| panic!("{e}"));
         let (surface, cloud, _) = crate::run::build_cloud::<2>(&case, Path::new("")).unwrap();
-        let motions = crate::run::build::motions(&case, Path::new(""), surface.as_ref()).unwrap();
+        let motions = crate::run::setup::motions(&case, Path::new(""), surface.as_ref()).unwrap();
         check(&case, &cloud, &motions).map_err(|e| e.to_string())
     }
 
