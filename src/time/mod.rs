@@ -149,16 +149,14 @@ pub enum TimeError {
     },
     /// The steady relaxation cannot get on.
     #[error(
-        "the relaxation stopped at iteration {iteration}: every step down to a Courant number of {cfl:.1e} was rejected; the largest residual is at particle {particle}{place}\nhint: lower `cfl` in `[time]`, take shorter steps in a march, or refine the cloud there"
+        "the relaxation stopped at iteration {iteration}: every step down to a Courant number of {cfl:.1e} was rejected; the largest residual is at {place}\nhint: lower `cfl` (in `[time.steady]`, `[time.dual]` or `[time.harmonics]`), take shorter steps in a march, or refine the cloud there"
     )]
     Stalled {
         /// Iteration.
         iteration: u32,
         /// Smallest Courant number tried.
         cfl: f64,
-        /// Particle with the largest scaled residual.
-        particle: usize,
-        /// Where that is.
+        /// Where the largest scaled residual is: a particle and its place, or a row of another field.
         place: String,
     },
 }

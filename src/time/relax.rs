@@ -405,8 +405,7 @@ impl<'a, S: Implicit> Relax<'a, S> {
 
     /// What to say where it cannot go on.
     pub fn stalled(&self) -> TimeError {
-        let (particle, place) = self.worst();
-        TimeError::Stalled { iteration: self.iteration, cfl: self.cfl, particle, place }
+        TimeError::Stalled { iteration: self.iteration, cfl: self.cfl, place: self.worst() }
     }
 
     /// Newton's method once the flow has taken shape; back to sweeps alone when its steps become small.
@@ -528,20 +527,21 @@ impl<'a, S: Implicit> Relax<'a, S> {
         }
     }
 
-    /// The row with the largest residual, and where it is.
-    pub fn worst(&self) -> (usize, String) {
-        let mut worst = (0, -1.0);
+    /// Where the largest residual is: a particle and its place, or a row of another field.
+    pub fn worst(&self) -> String {
+        let (mut worst, mut whose) = ((0, -1.0), String::new());
         for at in placed(self.system.fields()) {
             let (n, r, scale) = (at.field.block, &self.residual[at.unknowns], &self.scale[at.rows.clone()]);
             for (i, row) in r.chunks_exact(n).enumerate() {
                 let size = row.iter().fold(0.0, |m: f64, r| m.max(r.abs())) * scale[i];
                 if size > worst.1 {
                     worst = (at.rows.start + i, size);
+                    whose = format!("row {i} of the {}", at.field.name);
                 }
             }
         }
         let place = self.system.locate(&self.frame, worst.0);
         let place: Vec<String> = place.iter().map(|c| format!("{c:.5}")).collect();
-        (worst.0, if place.is_empty() { String::new() } else { format!(" at ({})", place.join(", ")) })
+        if place.is_empty() { whose } else { format!("particle {} at ({})", worst.0, place.join(", ")) }
     }
 }

@@ -1,3 +1,4 @@
+//! What `[structure]` accepts and refuses.
 use crate::case::{Case, Freedom, Frequency, Mass, StructureModel, read, write};
 
 const HEAD: &str = "[flow]\nmach = 0.3\n[[body]]\nname = \"wing\"\nnaca = \"0012\"\n[cloud]\nspacing = 0.01\n[time.dual]\n\

@@ -118,10 +118,10 @@ impl Settled {
     }
 
     /// Says that a relaxation was given up.
-    pub(super) fn told(drop: f64, harmonics: usize, (particle, place): &(usize, String)) -> String {
+    pub(super) fn told(drop: f64, harmonics: usize, place: &str) -> String {
         format!(
             "the residual has not fallen for {PATIENCE} iterations at {:.2} orders: with {harmonics} harmonics the flow has no \
-             periodic state that the relaxation can find; it is largest at particle {particle}{place}",
+             periodic state that the relaxation can find; it is largest at {place}",
             -drop.log10()
         )
     }
