@@ -20,6 +20,7 @@ pub(super) fn contradictions(draft: &mut Draft<'_>) {
         sides(draft, d);
     }
     domain(draft);
+    accuracy(draft, dimension.unwrap_or(2));
     time(draft);
     super::motion_check::contradictions(draft, dimension);
     super::motion_check::viscosity(draft);
@@ -249,6 +250,37 @@ fn corners(draft: &mut Draft<'_>, path: &str) {
     if let Some((a, b)) = min.iter().zip(&max).find(|(a, b)| a >= b) {
         let message = format!("`{path}` is empty: its `min` has {a} where its `max` has {b}");
         draft.fail(&format!("{path}.max"), message).hint("`min` must be smaller than `max` on every axis");
+    }
+}
+
+/// A spacing is there where the program cannot choose one, and accuracy is asked of loads that do not change.
+fn accuracy(draft: &mut Draft<'_>, dimension: usize) {
+    let viscous = draft.given("flow.reynolds") || draft.given("flow.viscosity");
+    let needed = match (draft.given("body"), dimension, viscous) {
+        (false, ..) => Some("a case without bodies needs `cloud.spacing`"),
+        (_, 3, _) => Some("a case in space needs `cloud.spacing`: it is chosen for plane bodies only"),
+        (_, _, true) => Some("a gas with viscosity needs `cloud.spacing`: layers at its walls are not chosen yet"),
+        _ => None,
+    };
+    if let Some(message) = needed.filter(|_| !draft.given("cloud.spacing")) {
+        let hint = "add `[cloud]` with `spacing`, a hundredth of the body to begin with";
+        draft.fail("cloud.spacing", message).hint(hint);
+    }
+    if !draft.given("accuracy") {
+        return;
+    }
+    let steady = draft.get("time").is_none_or(|t| t.as_str() == Some("steady") || t.get("steady").is_some());
+    let refused = [
+        (!steady, "`[accuracy]` is for steady cases", "remove it, or `[time]`"),
+        (!draft.given("body"), "`[accuracy]` is of loads, and there is no body", "remove it"),
+        (
+            draft.number("adapt.cycles").is_some_and(|n| n > 0.0),
+            "`[accuracy]` and `[adapt]` cannot work together yet",
+            "keep one of them",
+        ),
+    ];
+    for (_, message, hint) in refused.into_iter().filter(|(wrong, ..)| *wrong) {
+        draft.fail_key("accuracy", message).hint(hint);
     }
 }
 

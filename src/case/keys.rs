@@ -5,7 +5,7 @@
 use super::gaf_keys::GAF;
 use super::kinds::{ANGLE, COUNT, LENGTH, POINT, POSITIVE, SIZE};
 use super::motion_keys::{BODY_MOTION, MOTION, WALL};
-use super::quantity::{Density, Pressure, Temperature, Time, Velocity, Viscosity};
+use super::quantity::{Density, Pressure, Ratio, Temperature, Time, Velocity, Viscosity};
 use super::schema::{Absent, Field, Kind, List, Range, Table, Variant};
 use super::structure_keys::STRUCTURE;
 use super::time_keys::TIME;
@@ -53,7 +53,13 @@ pub(super) static CASE: Table = Table::of(&[
         Absent::Filled,
         "Reference lengths of the load coefficients.",
     ),
-    Field::required("cloud", Kind::Table(&CLOUD), "How particles fill the domain."),
+    Field::defaulted("cloud", Kind::Table(&CLOUD), Absent::Filled, "How particles fill the domain."),
+    Field::optional(
+        "accuracy",
+        Kind::Table(&ACCURACY),
+        "1 % where `[cloud]` gives no `spacing` to a steady case, else the loads are those of one cloud",
+        "How well the loads of a steady case are to be known: finer and finer clouds until their error bars are short enough.",
+    ),
     Field::defaulted("boundary", Kind::Table(&BOUNDARY), Absent::Filled, "Conditions on the sides of the domain."),
     Field::defaulted("initial", Kind::Choice(INITIAL), Absent::Word("free_stream"), "Field at the start."),
     Field::defaulted("scheme", Kind::Table(&SCHEME), Absent::Filled, "Spatial scheme."),
@@ -279,7 +285,12 @@ static REFERENCE: Table = Table::of(&[
 ]);
 
 static CLOUD: Table = Table::of(&[
-    Field::required("spacing", SIZE, "Particle spacing at the surface; of the whole domain when there is no body."),
+    Field::optional(
+        "spacing",
+        SIZE,
+        "1/64 of the shortest body; a steady case goes on to finer clouds as `[accuracy]` says",
+        "Particle spacing at the surface; of the whole domain when there is no body, where it must be given. In space and with viscosity too.",
+    ),
     Field::optional(
         "far_field",
         SIZE,
@@ -292,10 +303,10 @@ static CLOUD: Table = Table::of(&[
         "a square or cube of half-width `far_field`; must be given when there is no body",
         "Explicit domain.",
     ),
-    Field::defaulted(
+    Field::optional(
         "layers",
         Kind::Number(Range::between(3.0, 1000.0)),
-        Absent::Number(6.0),
+        "6; 12 where no `spacing` is given",
         "Particles per level of refinement, counted away from the surface.",
     ),
     Field::defaulted("edge_levels", LEVELS, Absent::Integer(2), "Extra levels of refinement at sharp edges."),
@@ -461,6 +472,21 @@ const LIMITERS: &[(&str, &str)] = &[
     ("van_albada", "van Albada (1982) with a threshold, differentiable"),
     ("venkatakrishnan", "Venkatakrishnan's (1995) rational function on edges"),
 ];
+
+static ACCURACY: Table = Table::of(&[
+    Field::defaulted(
+        "loads",
+        Kind::Quantity(Ratio::DIMENSION, Range { min: 0.0, max: 0.5, closed: false }),
+        Absent::Number(0.01),
+        "Half width of the error bars of CL, CD and CM over their value, or over 0.1, 0.01 and 0.02 where that is smaller.",
+    ),
+    Field::defaulted(
+        "particles",
+        COUNT,
+        Absent::Integer(50_000),
+        "Greatest number of particles: the run ends on the finest cloud below it where the error bars are not short enough before.",
+    ),
+]);
 
 static ADAPT: Table = Table::of(&[
     Field::defaulted("cycles", Kind::Integer(0, 64), Absent::Integer(0), "Number of refinements (0: none)."),

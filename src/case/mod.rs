@@ -42,7 +42,7 @@ pub use motion::{
     Translation,
 };
 pub use quantity::{
-    Acceleration, Angle, AngularStiffness, Density, Frequency, Inertia, Length, Mass, Pressure, Rate, Stiffness,
+    Acceleration, Angle, AngularStiffness, Density, Frequency, Inertia, Length, Mass, Pressure, Rate, Ratio, Stiffness,
     Temperature, Time, Velocity, Viscosity,
 };
 pub use read::read;
@@ -77,6 +77,8 @@ pub struct Case {
     pub reference: Reference,
     /// How particles fill the domain.
     pub cloud: Cloud,
+    /// How well the loads of a steady case are to be known.
+    pub accuracy: Option<Accuracy>,
     /// Conditions on the sides of the domain.
     #[serde(default)]
     pub boundary: Sides,
@@ -240,14 +242,14 @@ pub struct Reference {
 /// How particles fill the domain.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Cloud {
-    /// Particle spacing at the surface; of the whole domain when there is no body.
-    pub spacing: Length,
+    /// Particle spacing at the surface; of the whole domain when there is no body. Absent: chosen from the size of the bodies.
+    pub spacing: Option<Length>,
     /// Half-width of the far field around the bodies; ignored when `domain` is given. Default 40 chords (2-D), 10 (3-D).
     pub far_field: Option<Length>,
     /// Explicit domain; its sides must be whole numbers of `coarse` cells.
     pub domain: Option<Domain>,
-    /// Particles per level of refinement, counted away from the surface; default 6.
-    pub layers: f64,
+    /// Particles per level of refinement, counted away from the surface; default 6, and 12 without `spacing`.
+    pub layers: Option<f64>,
     /// Extra levels of refinement at sharp edges; default 2.
     pub edge_levels: u32,
     /// Spacing is at most this fraction of the local radius of curvature (never finer than `curvature_levels`);
@@ -436,6 +438,15 @@ pub enum Limiter {
     Venkatakrishnan,
 }
 
+/// How well the loads of a steady case are to be known.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Accuracy {
+    /// Half width of the error bars over the loads.
+    pub loads: Ratio,
+    /// Greatest number of particles.
+    pub particles: usize,
+}
+
 /// Refinement that follows the solution.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Adapt {
@@ -513,6 +524,19 @@ impl Default for Scheme {
             low_mach: false,
             conservative: None,
         }
+    }
+}
+
+impl Cloud {
+    /// Particles per level of refinement, counted away from the surface.
+    pub fn particles_per_level(&self) -> f64 {
+        self.layers.unwrap_or(6.0)
+    }
+}
+
+impl Default for Accuracy {
+    fn default() -> Self {
+        Self { loads: Ratio(0.01), particles: 50_000 }
     }
 }
 

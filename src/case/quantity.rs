@@ -186,6 +186,7 @@ macro_rules! quantities {
 }
 
 quantities! {
+    Ratio, "a ratio", false, "1 %", [unit("-", 1.0), unit("%", 1e-2)];
     Angle, "an angle", true, "1.25 deg", [
         unit("rad", 1.0), unit("deg", DEGREE), unit("°", DEGREE), unit("mrad", 1e-3),
     ];

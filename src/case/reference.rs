@@ -257,7 +257,7 @@ mod tests {
         let schema = schema();
         assert_eq!(schema["properties"]["cloud"]["properties"]["blank"]["default"], json!(0.4));
         assert_eq!(schema["properties"]["cloud"]["properties"]["blank"]["maximum"], json!(0.6));
-        assert_eq!(schema["required"], json!(["cloud"]));
+        assert_eq!(schema["required"], json!([]));
         assert_eq!(schema["properties"]["time"]["default"], json!("steady"));
     }
 

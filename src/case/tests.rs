@@ -35,7 +35,7 @@ fn defaults_are_the_documented_ones() {
     assert_eq!(case.bodies[0].placement, Placement { scale: 1.0, rotate: vec![], translate: vec![] });
     assert_eq!((case.flow.gamma, case.flow.gas_constant, case.flow.alpha), (1.4, 287.05, Angle(0.0)));
     let c = &case.cloud;
-    assert_eq!((c.layers, c.edge_levels, c.curvature, c.curvature_levels), (6.0, 2, 0.125, 3));
+    assert_eq!((c.particles_per_level(), c.edge_levels, c.curvature, c.curvature_levels), (6.0, 2, 0.125, 3));
     assert_eq!((c.blank, c.radius, c.jitter), (0.4, 1.6, 0.0));
     assert_eq!(case.scheme, Scheme::default());
     assert_eq!(case.time, Temporal::default());
@@ -176,10 +176,28 @@ fn bodies_that_contradict_themselves_are_refused() {
 }
 
 #[test]
+fn a_case_may_leave_the_cloud_to_the_program() {
+    let bare = GOOD.replace("[cloud]\nspacing = 0.01\n", "");
+    let case = read(&bare, "case.toml").unwrap();
+    assert_eq!((case.cloud.spacing, case.accuracy), (None, None));
+    assert_eq!(read(&write(&case), "case.toml").unwrap(), case);
+    let asked = read(&format!("{bare}[accuracy]\nloads = \"0.5 %\"\n"), "case.toml").unwrap().accuracy.unwrap();
+    assert_eq!((asked.loads.0, asked.particles), (0.005, 50_000));
+    let sphere = "[flow]\nmach = 0.3\n[[body]]\nsphere = { radius = 1 }\n";
+    assert_shows(sphere, &["a case in space needs `cloud.spacing`"]);
+    assert_shows(
+        &bare.replace("mach = 0.8", "mach = 0.8\nreynolds = 1e4"),
+        &["a gas with viscosity needs `cloud.spacing`"],
+    );
+    let accuracy = "[accuracy]\nloads = 0.01\n";
+    assert_shows(&format!("{bare}{accuracy}[adapt]\ncycles = 2\n"), &["cannot work together yet"]);
+    assert_shows(&format!("{bare}{accuracy}[time.dual]\nstep = 1\nuntil = 2\n"), &["is for steady cases"]);
+}
+
+#[test]
 fn domains_and_sides_that_contradict_themselves_are_refused() {
-    assert_shows(&GOOD.replace("spacing = 0.01", ""), &["missing key `spacing` in `[cloud]`"]);
     assert_shows("[flow]\nmach = 1\n[cloud]\nspacing = 1\n", &["a case without bodies needs `cloud.domain`"]);
-    assert_shows("", &["missing table `cloud` in the file", "the free stream has no speed"]);
+    assert_shows("", &["a case without bodies needs `cloud.spacing`", "needs `cloud.domain`", "the free stream has no speed"]);
     let periodic = open("[boundary]\nx_min = \"periodic\"");
     assert_shows(&periodic, &["`boundary.x_min` is periodic, but `boundary.x_max` is not"]);
     assert_shows(&open("[boundary]\nz_min = \"held\""), &["`boundary.z_min` needs a 3-D case"]);

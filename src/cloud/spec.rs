@@ -66,20 +66,20 @@ impl<const D: usize> CloudSpec<D> {
         }
     }
 
-    /// What `[cloud]` and `[boundary]` of a case say.
+    /// What `[cloud]` and `[boundary]` of a case say, whose spacing is known.
     pub fn of_case(case: &Case) -> Self {
         let (cloud, s) = (&case.cloud, &case.boundary);
         let sides = [[s.x_min, s.x_max], [s.y_min, s.y_max], [s.z_min, s.z_max]];
         let boxes =
             cloud.boxes.iter().map(|b| SourceBox { bounds: bounds(&b.min, &b.max), spacing: b.spacing.0 }).collect();
         Self {
-            spacing: cloud.spacing.0,
+            spacing: cloud.spacing.map_or(0.0, |l| l.0),
             domain: cloud.domain.as_ref().map(|d| bounds(&d.min, &d.max)),
             far_field: cloud.far_field.map(|l| l.0),
             sides: std::array::from_fn(|d| sides[d]),
             boxes,
             wake: cloud.wake.clone(),
-            layers: cloud.layers,
+            layers: cloud.particles_per_level(),
             edge_levels: cloud.edge_levels,
             curvature: cloud.curvature,
             curvature_levels: cloud.curvature_levels,

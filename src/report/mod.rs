@@ -18,6 +18,7 @@ mod contour;
 pub mod fields;
 mod files;
 mod font;
+mod grid;
 mod overview;
 mod page;
 mod paint;

@@ -1,7 +1,7 @@
 //! The report: one page that opens anywhere, offline, for ever.
 //!
 //! Its top gives the loads with three measures of their error: the difference between the pressure on the surface and the
-//! balance of momentum around the bodies, the change by the last refinement, and the difference from a reference where the
+//! balance of momentum around the bodies, the change by the last refinement, their error bar where they were found on a family of clouds, and the difference from a reference where the
 //! run knows one.
 use std::path::{Path, PathBuf};
 
@@ -10,7 +10,7 @@ use serde_json::Value;
 use super::files::{LOADS, Load, RunFolder};
 use super::page::{Card, Fact, Page, Section, Status};
 use super::sections::{self, grouped, number};
-use super::{ReportError, periodic, structure, write_file};
+use super::{ReportError, grid, periodic, structure, write_file};
 
 /// Writes `report.html` into a run folder from the files that are there, and gives its path.
 pub fn write_report(run: &Path) -> Result<PathBuf, ReportError> {
@@ -25,6 +25,7 @@ fn report(run: &RunFolder) -> Page {
     let summary = run.json("summary.json").unwrap_or_default();
     let sections = [
         Section::new("loads", "Loads", sections::loads(run)),
+        Section::new("grid", "Grid convergence", Ok(grid::grid(run))),
         Section::new("flow", "Flow", sections::pictures(run)),
         Section::new("pressure", "Pressure on the surface", sections::pressure(run)),
         Section::new("motion", "Motion", Ok(periodic::motion(run))),
@@ -85,6 +86,7 @@ fn cards(run: &RunFolder, summary: &Value) -> Vec<Card> {
 fn card(summary: &Value, load: &Load, refinement: Option<f64>) -> Card {
     let of = |table: &str| summary.get(table).and_then(|t| t.get(load.column)).and_then(Value::as_f64);
     let value = of("loads");
+    let bar = of("loads_error").map_or_else(String::new, |bar| format!(" ± {}", number(bar)));
     let difference = |other: Option<f64>| value.zip(other).map(|(a, b)| a - b);
     let fact = |name: &str, change: Option<f64>| Fact::new(name, change.map_or("–".to_owned(), |c| signed(c, value)));
     let facts = vec![
@@ -92,7 +94,7 @@ fn card(summary: &Value, load: &Load, refinement: Option<f64>) -> Card {
         fact("change by last refinement", refinement),
         fact("against reference", difference(of("reference"))),
     ];
-    Card { name: load.name, value: value.map_or("–".to_owned(), number), facts }
+    Card { name: load.name, value: value.map_or("–".to_owned(), |v| number(v) + &bar), facts }
 }
 
 /// A difference with its sign, and in per cent of `whole` where that means something.

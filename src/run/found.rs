@@ -1,4 +1,5 @@
 //! What a run has found when it is over: loads, ledgers, errors, the wall.
+use super::accuracy;
 use super::look::friction::{Separation, add_friction, separations, wall_friction};
 use super::look::{pressure_coefficient, pressure_load, totals};
 use super::recipe;
@@ -7,6 +8,7 @@ use super::record::{Log, Record};
 use crate::case::{Case, Initial};
 use crate::geometry::Surface;
 use crate::math::{Bounds, Vector};
+use crate::observe::convergence::Convergence;
 use crate::observe::loads::{Balance, Coefficients, Load, LoadAxes, together};
 use crate::observe::usage::peak_bytes;
 use crate::physics::n_variables;
@@ -124,6 +126,7 @@ impl<const D: usize> Found<'_, D> {
         };
         let [cpu, wall] = log.seconds();
         let n = fluid.discretisation.cloud.n_real();
+        let family = accuracy::asked(case).and_then(|asked| Convergence::of(&record.clouds, asked.loads.0));
         Summary {
             event: "summary",
             case: case.title.clone(),
@@ -163,6 +166,8 @@ impl<const D: usize> Found<'_, D> {
             cpu_ms_per_particle: 1e3 * cpu / n as f64,
             linear_iterations: record.linear,
             error_l2_density: self.exact_error(log.units.solver_time(record.time)),
+            loads_error: family.as_ref().map(Convergence::half_widths),
+            grid_convergence: family,
             adapt_change: last_change(&record.cycles),
             phases: spent.phases(),
         }

@@ -2,6 +2,7 @@
 use std::path::Path;
 use std::time;
 
+use super::accuracy;
 use super::error::RunError;
 use super::files::{Scene, Target, write_cloud};
 use super::folder;
@@ -60,6 +61,8 @@ pub fn inspect(case: &Case, input: &Path, out: Option<&Path>) -> Result<CloudRep
 fn look<const D: usize>(case: &Case, input: &Path, out: Option<&Path>) -> Result<CloudReport, RunError> {
     let began = time::Instant::now();
     let (surface, mut notes) = setup::surface::<D>(case, input)?;
+    let filled = accuracy::with_cloud(case, surface.as_ref());
+    let case = filled.as_ref();
     let motions = setup::motions(case, input, surface.as_ref())?;
     let site = Site { case, surface: surface.as_ref(), motions: &motions };
     let solver = setup::solver(&site, &Stage::PLAIN, &[], None)?;

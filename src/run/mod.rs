@@ -8,6 +8,7 @@
 //! of a flow), `build` (from a case to its equations), `record` (what a run knows about itself), `found` (what it tells at its
 //! end), `files`, `watch` (one loop that drives any integrator, and those who watch it), `studies` (what is done on a cloud),
 //! `session`; on top of it [`gaf`] and [`verify`].
+mod accuracy;
 mod error;
 mod files;
 mod folder;
@@ -105,7 +106,8 @@ pub fn build_cloud<const D: usize>(
     input: &Path,
 ) -> Result<(Option<Surface<D>>, Cloud<D>, Vec<String>), RunError> {
     let (surface, notes) = setup::surface::<D>(case, input)?;
-    let cloud = Cloud::build(&CloudSpec::of_case(case), surface.as_ref(), &[])?;
+    let case = accuracy::with_cloud(case, surface.as_ref());
+    let cloud = Cloud::build(&CloudSpec::of_case(&case), surface.as_ref(), &[])?;
     Ok((surface, cloud, notes))
 }
 
@@ -113,6 +115,7 @@ pub fn build_cloud<const D: usize>(
 pub fn build_solver<const D: usize>(case: &Case, input: &Path) -> Result<(Fluid<D>, Vec<f64>), RunError> {
     setup::supported(case)?;
     let (surface, _) = setup::surface::<D>(case, input)?;
+    let case = &*accuracy::with_cloud(case, surface.as_ref());
     let motions = setup::motions(case, input, surface.as_ref())?;
     let site = setup::Site { case, surface: surface.as_ref(), motions: &motions };
     let solver = setup::solver(&site, &Stage::PLAIN, &[], None)?;

@@ -1,5 +1,6 @@
 //! How a case integrates: the one place that tells apart steady, marched and periodic cases, and turns what the case says into
 //! what integrators want.
+use super::accuracy;
 use super::error::RunError;
 use super::stage::{Stage, Task};
 use crate::case::{self, Case, HarmonicCount, Harmonics, Initial, RungeKutta, Steady, SteadyMethod, Temporal};
@@ -107,6 +108,9 @@ pub(crate) fn marching(case: &Case, period: Option<f64>, dimension: usize) -> Re
 
 /// The stages of a case whose own cloud has `n` fluid particles: coarse, fine, adapted, marched, more and more harmonics.
 pub(crate) fn plan(case: &Case, n: usize, dimension: usize) -> Vec<Stage> {
+    if let Some(asked) = accuracy::asked(case) {
+        return accuracy::family(&asked, n, dimension);
+    }
     let mut all = Vec::new();
     // a march from a given field starts from that field itself
     let given = is_unsteady(case) && !matches!(case.initial, Initial::FreeStream);

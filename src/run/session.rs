@@ -6,6 +6,7 @@
 //! its run in a folder.
 use std::path::{Path, PathBuf};
 
+use super::accuracy;
 use super::error::RunError;
 use super::files;
 use super::found::{Found, Names, Spent};
@@ -171,13 +172,25 @@ impl Run<'_> {
     fn solve<const D: usize>(&self, origin: Origin, monitor: &mut dyn Monitor) -> Result<Ended, RunError> {
         let (surface, notes) = setup::surface::<D>(self.case, self.input)?;
         notes.iter().for_each(|n| monitor.note(n));
-        let mut motions = setup::motions(self.case, self.input, surface.as_ref())?;
-        let bodies = setup::bodies(self.case, self.input, surface.as_ref(), &mut motions)?;
-        let site = Site { case: self.case, surface: surface.as_ref(), motions: &motions };
+        let filled = accuracy::with_cloud(self.case, surface.as_ref());
+        let run = Run { case: &filled, ..*self };
+        run.on(surface.as_ref(), origin, monitor)
+    }
+
+    /// The same around the bodies, on clouds whose spacing is known.
+    fn on<const D: usize>(
+        &self,
+        surface: Option<&Surface<D>>,
+        origin: Origin,
+        monitor: &mut dyn Monitor,
+    ) -> Result<Ended, RunError> {
+        let mut motions = setup::motions(self.case, self.input, surface)?;
+        let bodies = setup::bodies(self.case, self.input, surface, &mut motions)?;
+        let site = Site { case: self.case, surface: surface, motions: &motions };
         if bodies.is_empty() {
             return self.stages(&site, |gas| gas, Vec::new(), origin, monitor);
         }
-        let described = setup::described(self.case, surface.as_ref(), &bodies);
+        let described = setup::described(self.case, surface, &bodies);
         let couple = |gas: Fluid<D>| {
             let cloud = &gas.discretisation.cloud;
             let walls = &cloud.x[cloud.interface_range()];

@@ -11,7 +11,7 @@ use super::error::RunError;
 use super::measure::{Measured, Value};
 use super::monitor::{Monitor, Tick};
 use super::session::{Outcome, Session};
-use crate::case::{Case, read};
+use crate::case::{Case, Length, read};
 use crate::verify::{Claim, ClaimFile, ClaimRow, Metric, Study, metrics};
 
 /// Name of the folder of all cases.
@@ -187,9 +187,9 @@ impl Walk {
 
     /// Runs a case at its spacing unless that has been done.
     fn ensure(&mut self, folder: &Folder, case: &Case, monitor: &mut dyn Monitor) -> (String, u64) {
-        let key = (folder.name.clone(), case.cloud.spacing.0.to_bits());
+        let key = (folder.name.clone(), spacing_of(case).to_bits());
         if !self.runs.contains_key(&key) && !monitor.stop() {
-            let spacing = case.cloud.spacing.0;
+            let spacing = spacing_of(case);
             monitor.note(&format!("{} at spacing {spacing}", folder.name));
             let run = run(folder, case, monitor);
             if let Ok(m) = &run {
@@ -248,16 +248,21 @@ fn row(claim: &Claim, case: &str, value: Value) -> ClaimRow {
     }
 }
 
+/// Spacing of a case, zero where the program chooses it.
+fn spacing_of(case: &Case) -> f64 {
+    case.cloud.spacing.map_or(0.0, |l| l.0)
+}
+
 /// The case at another spacing.
 fn respaced(case: &Case, spacing: f64, study: &Study) -> Case {
     let mut case = case.clone();
-    let factor = spacing / case.cloud.spacing.0;
-    case.cloud.spacing.0 = spacing;
+    let factor = spacing / spacing_of(&case);
+    case.cloud.spacing = Some(Length(spacing));
     if study.scale_boxes {
         case.cloud.boxes.iter_mut().for_each(|b| b.spacing.0 *= factor);
     }
     if study.scale_layers {
-        case.cloud.layers /= factor;
+        case.cloud.layers = Some(case.cloud.particles_per_level() / factor);
     }
     if let Some(layers) = case.cloud.wall_layers.as_mut().filter(|_| study.scale_wall_layers) {
         layers.first.0 *= factor;

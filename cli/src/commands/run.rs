@@ -2,6 +2,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use alula::observe::convergence::Convergence;
 use alula::observe::loads::Coefficients;
 use alula::run::{self, Outcome as Ended, Places, RunError, Summary};
 
@@ -81,6 +82,18 @@ fn finished(summary: &Summary, out: &Path, verbosity: Verbosity) -> Outcome {
     Outcome::Failed
 }
 
+/// Whether the loads are known as well as was asked, and on how many clouds.
+fn grid_convergence(c: &Convergence) -> String {
+    let asked = 100.0 * c.asked;
+    match c.reached {
+        true => format!("loads within {asked} % on {} clouds\n", c.clouds.len()),
+        false => format!(
+            "the error bars are longer than {asked} %: `accuracy.particles` allows no finer cloud than the last of {}\n",
+            c.clouds.len()
+        ),
+    }
+}
+
 fn describe(s: &Summary, out: &Path) -> String {
     let (a, b) = (&s.loads, &s.loads_momentum_balance);
     let mut text = String::new();
@@ -97,6 +110,12 @@ fn describe(s: &Summary, out: &Path) -> String {
         if let Some(b) = b {
             row("momentum", b);
         }
+        if let Some(bar) = &s.loads_error {
+            row("error bar ±", bar);
+        }
+    }
+    if let Some(c) = &s.grid_convergence {
+        text += &grid_convergence(c);
     }
     if let Some(t) = &s.momentum_of_period {
         text += &format!(

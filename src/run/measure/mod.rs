@@ -421,7 +421,7 @@ impl Measured {
         let p: Vec<f64> = fluid.iter().map(|&i| pressure[i]).collect();
         let everywhere = (f64::NEG_INFINITY, f64::INFINITY);
         let found = metrics::front_position(&x, &p, levels, everywhere).ok_or("the solution has no shock")?;
-        Ok((found - place).abs() / self.case.cloud.spacing.0)
+        Ok((found - place).abs() / self.case.cloud.spacing.map_or(1.0, |l| l.0))
     }
 
     fn wave_angle(&self, claim: &Claim) -> Value {

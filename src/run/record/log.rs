@@ -12,6 +12,7 @@ use super::saved::{FILE, Saved, Settling};
 use super::summary::{BalanceReport, Clock, Work};
 use super::trace::Trace;
 use crate::case::{Case, Units};
+use crate::observe::convergence::CloudLoads;
 use crate::observe::structure::{CoordinateHistory, StructureNames, StructureSample, StructureSummary, StructureTable};
 use crate::scheme::RemapLedger;
 use crate::time::TimeError;
@@ -23,6 +24,8 @@ pub(crate) struct Record {
     pub(crate) iteration: u64,
     /// Finished cycles: cycle, particles, CL, CD, CM.
     pub(crate) cycles: Vec<[f64; 5]>,
+    /// Loads on the clouds of a family.
+    pub(crate) clouds: Vec<CloudLoads>,
     /// Totals of the conserved quantities when the march began.
     pub(crate) start_totals: Vec<f64>,
     /// Residual over its first value at the end.
@@ -73,6 +76,7 @@ impl Record {
         Self {
             iteration: saved.iteration,
             cycles: saved.cycles.clone(),
+            clouds: saved.clouds.clone(),
             start_totals: saved.start_totals.clone(),
             drop: 1.0,
             time: units.case_time(saved.time),

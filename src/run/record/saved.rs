@@ -9,6 +9,7 @@ use crate::cloud::CloudError;
 use crate::cloud::sources::Source;
 use crate::math::Vector;
 use crate::observe::checkpoint::{self, Array, Checkpoint, Field};
+use crate::observe::convergence::CloudLoads;
 use crate::scheme::{Fluid, Frame, ParticleKinematics, RemapLedger};
 use crate::system::Reach;
 use crate::time::control::Phase;
@@ -19,7 +20,7 @@ use crate::time::{Memory, Past};
 pub(crate) const FILE: &str = "checkpoint.alula";
 
 /// What the numbers of a checkpoint mean; another number, another meaning.
-const MEANING: u32 = 2;
+const MEANING: u32 = 3;
 
 /// Where a run stands among its stages.
 pub(crate) struct Position<'a> {
@@ -49,6 +50,7 @@ struct Meta {
     phase_best_age: u32,
     start_totals_bits: Vec<u64>,
     cycles: Vec<[f64; 5]>,
+    clouds: Vec<CloudLoads>,
     cpu_seconds: f64,
     wall_seconds: f64,
     work: u64,
@@ -220,6 +222,8 @@ pub(crate) struct Saved {
     pub(crate) start_totals: Vec<f64>,
     /// Finished cycles: cycle, particles, CL, CD, CM.
     pub(crate) cycles: Vec<[f64; 5]>,
+    /// Loads on the clouds of a family.
+    pub(crate) clouds: Vec<CloudLoads>,
     /// Processor time spent before.
     pub(crate) cpu_seconds: f64,
     /// Wall time spent before.
@@ -267,6 +271,7 @@ impl Saved {
             phase_best_age: relax.phase.best_age,
             start_totals_bits: bits(&self.start_totals),
             cycles: self.cycles,
+            clouds: self.clouds,
             cpu_seconds: self.cpu_seconds,
             wall_seconds: self.wall_seconds,
             broad: past.reach == Reach::Far,
@@ -330,6 +335,7 @@ impl Saved {
             stage: m.stage,
             stages: m.stages,
             cycles: m.cycles,
+            clouds: m.clouds,
             cpu_seconds: m.cpu_seconds,
             wall_seconds: m.wall_seconds,
             work: m.work,

@@ -7,6 +7,7 @@ use super::super::look::forces::GeneralisedForce;
 use super::super::look::friction::Separation;
 use super::crosscheck::LoadCrosscheck;
 use super::trace::{Change, FirstHarmonics, LastPeriod};
+use crate::observe::convergence::Convergence;
 use crate::observe::loads::Coefficients;
 
 /// What a run found and what it took.
@@ -94,6 +95,12 @@ pub struct Summary {
     /// Volume-weighted root mean square error of density, where the case has an exact solution.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub error_l2_density: Option<f64>,
+    /// Half widths of the error bars of the loads, where they were found on a family of clouds.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub loads_error: Option<Coefficients>,
+    /// That family, and how the loads converge on it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub grid_convergence: Option<Convergence>,
     /// Change of the loads in the last cycle of adaptation.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub adapt_change: Option<Coefficients>,

@@ -8,12 +8,13 @@ use std::sync::Arc;
 pub(crate) use bodies::{bodies, described};
 pub(crate) use motion_feasibility::check as check_motion;
 
+use super::accuracy;
 use super::error::RunError;
 use super::folder;
 use super::look::forces::ForceModes;
 use super::recipe;
 use super::stage::Stage;
-use crate::case::{Case, Length, ParticleMotion, Temporal};
+use crate::case::{Case, ParticleMotion, Temporal};
 use crate::cloud::conservative::conservative as conserve;
 use crate::cloud::sources::Source;
 use crate::cloud::travel::BackgroundDomain;
@@ -129,7 +130,7 @@ pub(crate) fn solver<const D: usize>(
     ready: Option<Cloud<D>>,
 ) -> Result<Solver<Fluid<D>, D>, RunError> {
     let Site { case, surface, motions } = *site;
-    let scaled = coarsened(case, stage.factor);
+    let scaled = accuracy::scaled(case, stage.factor);
     let sources = if stage.cycle > 0 { sources } else { &[] };
     let mut cloud = match ready {
         Some(cloud) => cloud,
@@ -288,21 +289,6 @@ fn vortex_centre<const D: usize>(bounds: &Bounds<D>) -> Vector<D> {
     centre
 }
 
-/// The case with every spacing multiplied by `factor`.
-fn coarsened(case: &Case, factor: f64) -> Case {
-    let mut case = case.clone();
-    let scale = |l: &mut Length| l.0 *= factor;
-    scale(&mut case.cloud.spacing);
-    case.cloud.boxes.iter_mut().for_each(|b| scale(&mut b.spacing));
-    if let Some(wake) = case.cloud.wake.as_mut() {
-        scale(&mut wake.spacing);
-    }
-    if let Some(layers) = case.cloud.wall_layers.as_mut() {
-        scale(&mut layers.first);
-    }
-    case
-}
-
 /// The state of the previous stage on the particles of the next one, by the solver's own fit.
 pub(crate) fn transfer<S: HasGas<D>, const D: usize>(
     previous: &S,
@@ -331,7 +317,7 @@ pub(crate) fn adapted<S: HasGas<D>, const D: usize>(case: &Case, system: &S, sta
     let (fluid, gas) = (system.gas(), system.gas_state(state));
     let mut work = fluid.work();
     let frame = fluid.frame(&Instant::still(0.0), gas);
-    let finest = case.adapt.spacing.unwrap_or(case.cloud.spacing).0;
+    let finest = case.adapt.spacing.or(case.cloud.spacing).map_or(0.0, |l| l.0);
     adapt::sources(&fluid.view(&frame, gas, &mut work), &case.adapt.sensors, finest)
 }
 

@@ -1,18 +1,24 @@
 //! Relaxation to a steady state: the end of a steady case, or the start of another.
+use super::super::accuracy;
 use super::super::error::RunError;
 use super::super::look::GasView;
 use super::super::recipe::control;
 use super::super::record::Log;
-use super::super::stage::Task;
+use super::super::stage::{Stage, Task};
 use super::super::watch::{Aim, Checkpoint, Ending, GasEyes, Limit, Observer, Progress, Resting, Told, drive, sample};
 use super::turn::{Reached, Start, Turn};
 use crate::case::Steady;
-use crate::scheme::HasGas;
+use crate::math::Bounds;
+use crate::observe::convergence::CloudLoads;
+use crate::scheme::{Fluid, HasGas};
 use crate::time::relax::Relax;
 use crate::time::{Integrator, Memory, Standing};
 
 /// Orders of magnitude that relaxations before another one are solved to.
 const EARLY_ORDERS: f64 = 3.5;
+/// Orders beyond those of a single cloud, on the clouds of a family: what loads change by from one to the next must not be what
+/// is left of their residual.
+const SETTLING: f64 = 1.5;
 /// Iterations without a new smallest residual after which a relaxation before the last stage has given what it can.
 const PATIENCE: u32 = 20;
 
@@ -28,8 +34,13 @@ pub(crate) fn relax<S: HasGas<D>, const D: usize>(
         Start::Resume(u, Memory::Relaxation(resume)) => (u, Some(resume)),
         other => (other.into_state(), None),
     };
+    let asked = accuracy::asked(log.case);
     let again = turn.next().is_some_and(|stage| stage.task == Task::Relax);
-    let orders = if again { steady.orders.min(EARLY_ORDERS) } else { steady.orders };
+    let orders = match asked {
+        Some(_) => steady.orders + SETTLING,
+        None if again => steady.orders.min(EARLY_ORDERS),
+        None => steady.orders,
+    };
     let mut relax = Relax::new(system, control(steady, D), u, &system.start(), resume);
     relax.goal = 10f64.powf(-orders);
     let ending = watched(system, &mut relax, steady.iterations, turn, log, orders)?;
@@ -44,9 +55,10 @@ pub(crate) fn relax<S: HasGas<D>, const D: usize>(
             "the flow has not come nearer to a steady one for {PATIENCE} iterations, at {orders:.1} orders: the run goes on from there"
         ));
     }
-    tell(system, &mut relax, turn, log)?;
+    let loads = tell(system, &mut relax, turn, log)?;
+    let enough = asked.is_some_and(|asked| accuracy::judge(&asked, loads, log));
     let Standing { frame, state, .. } = relax.standing();
-    Ok(Some(Reached::at(frame.clone(), state.to_vec())))
+    Ok(Some(Reached { enough, ..Reached::at(frame.clone(), state.to_vec()) }))
 }
 
 fn watched<S: HasGas<D>, const D: usize>(
@@ -59,7 +71,9 @@ fn watched<S: HasGas<D>, const D: usize>(
 ) -> Result<Ending, RunError> {
     let eyes = &mut GasEyes { system };
     let mut progress = Progress { eyes, cycle: turn.stage().cycle, aim: Aim::Orders(orders) };
-    let mut checkpoint = Checkpoint { at: turn.at, particles: None, at_end: turn.last };
+    // any cloud of a family may be the last one
+    let at_end = turn.last || accuracy::asked(log.case).is_some();
+    let mut checkpoint = Checkpoint { at: turn.at, particles: None, at_end };
     let (mut limit, mut resting) = (Limit { iterations }, Resting { patience: PATIENCE });
     let mut told = Told;
     let mut all: Vec<&mut dyn Observer<S>> = vec![&mut progress, &mut limit, &mut told];
@@ -70,13 +84,13 @@ fn watched<S: HasGas<D>, const D: usize>(
     drive(relax, &mut all, log)
 }
 
-/// Keeps what is known of a relaxation that is over.
+/// Keeps what is known of a relaxation that is over; its loads.
 fn tell<S: HasGas<D>, const D: usize>(
     system: &S,
     relax: &mut Relax<'_, S>,
     turn: &Turn<'_>,
     log: &mut Log<'_>,
-) -> Result<(), RunError> {
+) -> Result<CloudLoads, RunError> {
     let cost = relax.cost();
     (log.record.drop, log.record.converged) = (relax.drop(), relax.finished());
     (log.record.bytes, log.record.linear) = (cost.bytes, cost.linear);
@@ -87,9 +101,16 @@ fn tell<S: HasGas<D>, const D: usize>(
     {
         log.structure(log.record.iteration, &sample(0.0, exchange, &log.units))?;
     }
-    if turn.stage().factor == 1.0 {
-        let particles = system.gas().discretisation.cloud.n_real() as f64;
-        log.record.cycles.push([f64::from(turn.stage().cycle), particles, loads.cl, loads.cd, loads.cm]);
+    let (Stage { factor, cycle, .. }, particles) = (*turn.stage(), system.gas().discretisation.cloud.n_real());
+    if factor == 1.0 {
+        log.record.cycles.push([f64::from(cycle), particles as f64, loads.cl, loads.cd, loads.cm]);
     }
-    Ok(())
+    let reach = reach(system.gas());
+    Ok(CloudLoads { factor, particles, reach, cl: loads.cl, cd: loads.cd, cm: loads.cm })
+}
+
+/// Half-width of the domain in lengths of the bodies.
+fn reach<const D: usize>(gas: &Fluid<D>) -> f64 {
+    let half = 0.5 * gas.discretisation.cloud.tree.bounds().extent().max_abs();
+    half / Bounds::around(gas.walls_before()).extent().max_abs()
 }

@@ -62,6 +62,7 @@ impl<S: System> Checkpoint<'_, S> {
             settling: record.settling.clone(),
             start_totals: record.start_totals.clone(),
             cycles: record.cycles.clone(),
+            clouds: record.clouds.clone(),
             cpu_seconds,
             wall_seconds,
             work: record.work.total,

@@ -1,0 +1,68 @@
+//! The chapter on grid convergence: loads on a family of clouds, their limits and error bars.
+use super::chart::{Axis, Chart, Marks, Series};
+use super::files::RunFolder;
+use super::page::{Block, Table};
+use super::sections::{grouped, number};
+use crate::observe::convergence::{CloudLoads, Convergence, LoadEstimate};
+
+/// One load of a cloud.
+type Pick = fn(&CloudLoads) -> f64;
+
+/// Nothing for a run on one cloud.
+pub(super) fn grid(run: &RunFolder) -> Vec<Block> {
+    let found = run.json("summary.json").map(|summary| summary["grid_convergence"].clone()).unwrap_or_default();
+    let Ok(found) = serde_json::from_value::<Convergence>(found) else { return Vec::new() };
+    vec![Block::Text(verdict(&found)), Block::Table(table(&found)), Block::charts(charts(&found).into_iter())]
+}
+
+fn loads(found: &Convergence) -> [(&'static str, Pick, &LoadEstimate); 3] {
+    [("CL", |l| l.cl, &found.cl), ("CD", |l| l.cd, &found.cd), ("CM", |l| l.cm, &found.cm)]
+}
+
+fn verdict(found: &Convergence) -> String {
+    let asked = number(100.0 * found.asked);
+    let end = match found.reached {
+        true => format!("all error bars are within {asked} % of the loads"),
+        false => {
+            format!("error bars are longer than {asked} % of the loads, and `accuracy.particles` allows no finer cloud")
+        }
+    };
+    format!(
+        "The clouds are alike, each with half the spacing of the one before; {end}. A load that approaches its limit with an order \
+         has 5/4 of the way to it as error bar, another one the spread of the last clouds."
+    )
+}
+
+/// A row for each cloud, then limit, error bar and order.
+fn table(found: &Convergence) -> Table {
+    let (all, mut rows) = (loads(found), Vec::new());
+    for cloud in &found.clouds {
+        let values = all.iter().map(|(_, of, _)| number(of(cloud)));
+        let head = [format!("{} × spacing", cloud.factor), grouped(cloud.particles as f64)];
+        rows.push(head.into_iter().chain(values).collect::<Vec<_>>());
+    }
+    let row = |name: &str, value: &dyn Fn(&LoadEstimate) -> Option<f64>| {
+        let values = all.iter().map(|(_, _, e)| value(e).map_or("–".to_owned(), number));
+        [name.to_owned(), String::new()].into_iter().chain(values).collect::<Vec<_>>()
+    };
+    rows.push(row("limit", &|e| e.limit));
+    rows.push(row("error bar ±", &|e| Some(e.half_width)));
+    rows.push(row("observed order", &|e| e.order));
+    Table::new(&["cloud", "particles", "CL", "CD", "CM"], rows)
+}
+
+/// Loads over 1/N, in proportion to the square of the spacing, between the ends of the error bar.
+fn charts(found: &Convergence) -> Vec<Chart> {
+    let x: Vec<f64> = found.clouds.iter().map(|c| 1.0 / c.particles as f64).collect();
+    let chart = |(name, of, estimate): (&str, Pick, &LoadEstimate)| {
+        let y: Vec<f64> = found.clouds.iter().map(of).collect();
+        let last = y.last().copied().unwrap_or_default();
+        let ends = [0.0, x.first().copied().unwrap_or_default()];
+        let line =
+            |value: f64| Series { name: String::new(), x: ends.to_vec(), y: vec![value; 2], marks: Marks::Dashes };
+        let clouds = Series { name: name.to_owned(), x: x.clone(), y: y.clone(), marks: Marks::Line };
+        let series = vec![clouds, line(last - estimate.half_width), line(last + estimate.half_width)];
+        Chart { title: name.to_owned(), x: Axis::linear("1/particles"), y: Axis::linear(name), series }
+    };
+    loads(found).into_iter().map(chart).collect()
+}

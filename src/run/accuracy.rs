@@ -1,0 +1,88 @@
+//! Cases that leave the cloud to the program: where clouds begin, how they become finer, when they are fine enough.
+//!
+//! A family of clouds is one cloud seen larger and larger: spacing, layers and what curvature asks for are scaled together, so
+//! that what the loads change by from one to the next tells how far they are from their limit
+//! ([`Convergence`](crate::observe::convergence::Convergence)).
+use std::borrow::Cow;
+
+use super::recipe::is_unsteady;
+use super::record::Log;
+use super::stage::{Stage, Task};
+use crate::case::{Accuracy, Case, Length};
+use crate::geometry::Surface;
+use crate::observe::convergence::{CloudLoads, Convergence};
+
+/// Spacings in the length of the shortest body.
+const ALONG: f64 = 64.0;
+/// Particles per level of refinement of the cloud with that spacing.
+const LAYERS: f64 = 12.0;
+/// Half-width of their domain in lengths of the bodies: beyond 40, where it is otherwise, nearly nothing is spent and lift gains 0.02 %.
+const FAR_FIELD: f64 = 100.0;
+/// Fewest particles per level of refinement.
+const FEWEST: f64 = 3.0;
+/// Factor on the spacing of the first cloud.
+const FIRST: f64 = 4.0;
+/// Clouds that an error bar is drawn from.
+const CLOUDS: usize = 3;
+
+/// How well the loads are to be known; `None` where they are those of one cloud.
+pub(crate) fn asked(case: &Case) -> Option<Accuracy> {
+    let chosen = case.cloud.spacing.is_none() && !is_unsteady(case) && !case.bodies.is_empty();
+    case.accuracy.or_else(|| chosen.then(Accuracy::default))
+}
+
+/// The case with the spacing of its cloud, and with the accuracy that is asked for where it leaves that out.
+pub(crate) fn with_cloud<'a, const D: usize>(case: &'a Case, surface: Option<&Surface<D>>) -> Cow<'a, Case> {
+    let Some(surface) = surface.filter(|_| case.cloud.spacing.is_none()) else { return Cow::Borrowed(case) };
+    let length = |body: usize| {
+        let extent = surface.bounds_of(body).extent();
+        (0..D).map(|d| extent[d]).fold(0.0, f64::max)
+    };
+    let shortest = (0..surface.bodies.len()).map(length).fold(f64::INFINITY, f64::min);
+    let mut filled = case.clone();
+    filled.accuracy = asked(case);
+    filled.cloud.spacing = Some(Length(shortest / ALONG));
+    filled.cloud.far_field = case.cloud.far_field.or(Some(Length(FAR_FIELD * surface.bounds().extent().max_abs())));
+    filled.cloud.layers = case.cloud.layers.or(Some(LAYERS));
+    Cow::Owned(filled)
+}
+
+/// The case with every spacing multiplied by `factor`, and with those of a family what else makes clouds alike.
+pub(crate) fn scaled(case: &Case, factor: f64) -> Case {
+    let mut case = case.clone();
+    let scale = |l: &mut Length| l.0 *= factor;
+    case.cloud.spacing.iter_mut().for_each(scale);
+    case.cloud.boxes.iter_mut().for_each(|b| scale(&mut b.spacing));
+    if let Some(wake) = case.cloud.wake.as_mut() {
+        scale(&mut wake.spacing);
+    }
+    if let Some(layers) = case.cloud.wall_layers.as_mut() {
+        scale(&mut layers.first);
+    }
+    if case.accuracy.is_some() {
+        case.cloud.curvature = (case.cloud.curvature * factor).min(1.0);
+        case.cloud.layers = Some((case.cloud.particles_per_level() / factor).max(FEWEST));
+    }
+    case
+}
+
+/// The stages of a family whose member with the spacing of the case has `n` fluid particles.
+pub(crate) fn family(asked: &Accuracy, n: usize, dimension: usize) -> Vec<Stage> {
+    let particles = |factor: f64| n as f64 / factor.powi(dimension as i32);
+    let factors = std::iter::successors(Some(FIRST), |f| Some(0.5 * f));
+    let within = factors.enumerate().take_while(|(k, f)| *k < CLOUDS || particles(*f) <= asked.particles as f64);
+    within.map(|(_, factor)| Stage { factor, cycle: 0, task: Task::Relax }).collect()
+}
+
+/// Adds the loads on one more cloud; true when they are known well enough.
+pub(crate) fn judge(asked: &Accuracy, loads: CloudLoads, log: &mut Log<'_>) -> bool {
+    log.record.clouds.push(loads);
+    let found = Convergence::of(&log.record.clouds, asked.loads.0);
+    let enough = found.as_ref().is_some_and(|c| c.reached);
+    let bars = found.map_or_else(String::new, |c| {
+        let h = c.half_widths();
+        format!(" ± {:.5}, CD {:.5} ± {:.5}, CM {:.5} ± {:.5}", h.cl, loads.cd, h.cd, loads.cm, h.cm)
+    });
+    log.note(&format!("{} particles: CL {:.5}{bars}", loads.particles, loads.cl));
+    enough
+}

@@ -1,0 +1,36 @@
+//! Loads with their error bars, from cases that leave the cloud to the program.
+use alula::case::read;
+use alula::run::{Session, Silent, Summary};
+
+/// A NACA 0012 in a stream, without a cloud; at most 12,000 particles.
+fn solved(mach: f64, alpha: f64) -> Summary {
+    let text = format!(
+        "[flow]\nmach = {mach}\nalpha = \"{alpha} deg\"\n[[body]]\nnaca = \"0012\"\n[accuracy]\nparticles = 12000\n"
+    );
+    let case = read(&text, "section.toml").unwrap_or_else(|e| panic!("{e}"));
+    let mut session = Session::open(&case, ".").unwrap();
+    session.solve(&mut Silent).unwrap();
+    session.summary().unwrap().clone()
+}
+
+#[test]
+fn exact_lift_lies_within_the_error_bar() {
+    // the full potential equation in free air, exact to 1e-8, closed section of unit chord
+    for (mach, alpha, exact) in [(0.5, 2.0, 0.28653976), (0.3, 4.0, 0.50954894)] {
+        let s = solved(mach, alpha);
+        let (bar, family) = (s.loads_error.unwrap(), s.grid_convergence.unwrap());
+        assert!((s.loads.cl - exact).abs() < bar.cl, "Mach {mach}: {} ± {} for {exact}", s.loads.cl, bar.cl);
+        assert!(bar.cl < 0.002 * exact && s.loads.cd.abs() < 1e-4, "Mach {mach}: {bar:?}, {:?}", s.loads);
+        assert_eq!(family.clouds.len(), 3);
+        assert!(
+            family.clouds.windows(2).all(|c| c[1].factor == 0.5 * c[0].factor && c[1].particles > 2 * c[0].particles)
+        );
+        assert!(s.converged);
+    }
+}
+
+#[test]
+fn a_symmetric_section_keeps_its_lift_of_zero() {
+    let s = solved(0.8, 0.0);
+    assert!(s.loads.cl.abs() < 1e-8 && s.loads_error.unwrap().cl < 1e-6, "{:?}", s.loads);
+}
