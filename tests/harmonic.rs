@@ -317,7 +317,7 @@ fn goes_on_with_other_harmonics(root: &std::path::Path, whole: &alula::run::Summ
     let change = more.first_harmonics[0].cl[0] - whole.first_harmonics[0].cl[0];
     assert!(more.converged && change.abs() < 0.01, "{change}");
     let mut other = section("1");
-    other.cloud.spacing.0 = 0.05;
+    other.cloud.spacing = Some(alula::case::Length(0.05));
     let refused = alula::run::run_from(&other, &places(root, "x"), &from, &mut alula::run::Silent).unwrap_err();
     assert!(refused.to_string().contains("`[cloud]` differ"), "{refused}");
 }
