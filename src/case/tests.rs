@@ -197,7 +197,10 @@ fn a_case_may_leave_the_cloud_to_the_program() {
 #[test]
 fn domains_and_sides_that_contradict_themselves_are_refused() {
     assert_shows("[flow]\nmach = 1\n[cloud]\nspacing = 1\n", &["a case without bodies needs `cloud.domain`"]);
-    assert_shows("", &["a case without bodies needs `cloud.spacing`", "needs `cloud.domain`", "the free stream has no speed"]);
+    assert_shows(
+        "",
+        &["a case without bodies needs `cloud.spacing`", "needs `cloud.domain`", "the free stream has no speed"],
+    );
     let periodic = open("[boundary]\nx_min = \"periodic\"");
     assert_shows(&periodic, &["`boundary.x_min` is periodic, but `boundary.x_max` is not"]);
     assert_shows(&open("[boundary]\nz_min = \"held\""), &["`boundary.z_min` needs a 3-D case"]);

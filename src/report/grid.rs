@@ -20,7 +20,8 @@ fn loads(found: &Convergence) -> [(&'static str, Pick, &LoadEstimate); 3] {
 }
 
 fn verdict(found: &Convergence) -> String {
-    let asked = number(100.0 * found.asked);
+    // 0.07 times 100 is not quite 7
+    let asked = (1e6 * found.asked).round() / 1e4;
     let end = match found.reached {
         true => format!("all error bars are within {asked} % of the loads"),
         false => {

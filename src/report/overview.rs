@@ -86,7 +86,7 @@ fn cards(run: &RunFolder, summary: &Value) -> Vec<Card> {
 fn card(summary: &Value, load: &Load, refinement: Option<f64>) -> Card {
     let of = |table: &str| summary.get(table).and_then(|t| t.get(load.column)).and_then(Value::as_f64);
     let value = of("loads");
-    let bar = of("loads_error").map_or_else(String::new, |bar| format!(" ± {}", number(bar)));
+    let told = |v| of("loads_error").map_or_else(|| number(v), |bar| with_bar(v, bar));
     let difference = |other: Option<f64>| value.zip(other).map(|(a, b)| a - b);
     let fact = |name: &str, change: Option<f64>| Fact::new(name, change.map_or("–".to_owned(), |c| signed(c, value)));
     let facts = vec![
@@ -94,7 +94,13 @@ fn card(summary: &Value, load: &Load, refinement: Option<f64>) -> Card {
         fact("change by last refinement", refinement),
         fact("against reference", difference(of("reference"))),
     ];
-    Card { name: load.name, value: value.map_or("–".to_owned(), |v| number(v) + &bar), facts }
+    Card { name: load.name, value: value.map_or("–".to_owned(), told), facts }
+}
+
+/// A value with its error bar, both to the second digit of the bar.
+fn with_bar(value: f64, bar: f64) -> String {
+    let decimals = (1.0 - bar.log10().floor()).clamp(2.0, 7.0) as usize;
+    format!("{value:.decimals$} ± {bar:.decimals$}").replace('-', "\u{2212}")
 }
 
 /// A difference with its sign, and in per cent of `whole` where that means something.
@@ -130,6 +136,13 @@ fn last_refinement(run: &RunFolder) -> [Option<f64>; 3] {
 pub(crate) mod tests {
     use super::*;
     use std::fs;
+
+    #[test]
+    fn a_load_ends_with_the_second_digit_of_its_bar() {
+        assert_eq!(with_bar(0.286541, 2.245e-5), "0.286541 ± 0.000022");
+        assert_eq!(with_bar(-0.35673, 0.0031), "\u{2212}0.3567 ± 0.0031");
+        assert_eq!(with_bar(0.0, 0.0), "0.0000000 ± 0.0000000");
+    }
 
     /// Every tag that opens closes again, in order; void elements end in `/>`. Scripts and styles are not looked into.
     pub(crate) fn assert_balanced(page: &str) {

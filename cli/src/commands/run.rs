@@ -84,7 +84,8 @@ fn finished(summary: &Summary, out: &Path, verbosity: Verbosity) -> Outcome {
 
 /// Whether the loads are known as well as was asked, and on how many clouds.
 fn grid_convergence(c: &Convergence) -> String {
-    let asked = 100.0 * c.asked;
+    // 0.07 times 100 is not quite 7
+    let asked = (1e6 * c.asked).round() / 1e4;
     match c.reached {
         true => format!("loads within {asked} % on {} clouds\n", c.clouds.len()),
         false => format!(
