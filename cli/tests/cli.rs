@@ -365,3 +365,58 @@ fn a_run_that_reads_files_goes_on_from_any_folder() {
     assert_eq!(code(&output), Some(0), "{}", told(&output));
     assert_same_results(&desk.path("whole"), &desk.path("out"), "from another folder");
 }
+
+/// All files of a folder and the folders in it, with what they hold.
+fn contents(folder: &Path) -> std::collections::BTreeMap<PathBuf, Vec<u8>> {
+    let mut all = std::collections::BTreeMap::new();
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            all.extend(contents(&path));
+        } else {
+            all.insert(path.clone(), std::fs::read(&path).unwrap());
+        }
+    }
+    all
+}
+
+/// Runs a case to its end, goes on with it and runs it again: nothing changes.
+fn stays_as_it_is(case: &str) {
+    let desk = Desk::new(case);
+    let first = desk.alula(&["run", "case.toml", "--out", "out", "--quiet"]);
+    let before = contents(&desk.path("out"));
+    assert!(before.contains_key(&desk.path("out/summary.json")), "{}", told(&first));
+    let output = desk.alula(&["resume", "out"]);
+    assert_eq!(code(&output), code(&first), "{}", told(&output));
+    assert!(String::from_utf8_lossy(&output.stdout).contains("is finished"), "{}", told(&output));
+    let again = desk.alula(&["run", "case.toml", "--out", "out"]);
+    assert!(code(&again) == Some(2) && told(&again).contains("`out` holds a finished run"), "{}", told(&again));
+    for (path, bytes) in contents(&desk.path("out")) {
+        assert!(before.get(&path) == Some(&bytes), "`{}` differs", path.display());
+    }
+    // without its mark, as after a power cut at the very end: tables do not grow
+    std::fs::remove_file(desk.path("out/finished.txt")).unwrap();
+    desk.alula(&["resume", "out", "--quiet"]);
+    for name in ["adapt.csv", "structure.csv"] {
+        let path = desk.path("out").join(name);
+        assert!(before.get(&path) == std::fs::read(&path).ok().as_ref(), "`{name}` differs");
+    }
+}
+
+#[test]
+fn a_finished_adapted_run_stays_as_it_is() {
+    stays_as_it_is(&SECTION.replace("[scheme]", "[adapt]\ncycles = 1\n[scheme]"));
+}
+
+#[test]
+fn a_finished_march_stays_as_it_is() {
+    stays_as_it_is(&DROPPED.replace("until = 40.0", "until = 3.0"));
+}
+
+#[test]
+fn a_finished_equilibrium_of_a_body_on_springs_stays_as_it_is() {
+    let steady = DROPPED.split("[time.dual]").next().unwrap();
+    let steady = steady.replace("mach = 0.8", "mach = 0.5").replace("initial = { plunge = 0.01 }\n", "");
+    let rest = "[time.steady]\niterations = 200\n[output]\ncheckpoint = 1\nreport = false\n";
+    stays_as_it_is(&(steady.replace("[motion]\nparticles = \"rigid\"\n", "") + rest));
+}

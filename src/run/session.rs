@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 
 use super::error::RunError;
 use super::files;
+use super::folder;
 use super::found::{Found, Names, Spent};
 use super::look::{GasView, Snapshot, field, momentum};
 use super::monitor::Monitor;
@@ -34,6 +35,11 @@ use crate::verify::wall::Wall;
 pub enum Outcome {
     /// It ran to its end.
     Finished(Box<Summary>),
+    /// It had run to its end before: nothing was computed or written.
+    AlreadyFinished {
+        /// Its `summary.json`.
+        summary: serde_json::Value,
+    },
     /// It was told to stop; a checkpoint is written where it has a folder.
     Interrupted {
         /// Iteration at which it stopped.
@@ -296,6 +302,7 @@ impl Run<'_> {
         let field = field(self.case, &view);
         if let Some(journal) = &log.journal {
             files::write_all(&found, &summary, &field, log, &journal.out)?;
+            folder::finish(&journal.out)?;
         }
         let loops = log.case_period().map_or_else(Loops::default, |p| log.record.trace.loops(p));
         Ok(Solution { summary, field, wall: found.wall(), loops })

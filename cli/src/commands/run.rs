@@ -45,6 +45,7 @@ pub(crate) fn tell(ended: Result<Ended, RunError>, out: &Path, watch: &mut Watch
     watch.progress().finish();
     match ended {
         Ok(Ended::Finished(summary)) => finished(&summary, out, verbosity),
+        Ok(Ended::AlreadyFinished { summary }) => already_finished(&summary, out, verbosity),
         Ok(Ended::Interrupted { iteration }) => {
             output::message(&format!("{}\n", Interrupt::farewell(out, iteration)));
             Outcome::Interrupted
@@ -59,6 +60,22 @@ pub(crate) fn tell(ended: Result<Ended, RunError>, out: &Path, watch: &mut Watch
             }
         }
     }
+}
+
+/// Says that a run needs nothing more; whether it converged is told as when it ended.
+fn already_finished(summary: &serde_json::Value, out: &Path, verbosity: Verbosity) -> Outcome {
+    let mut told = Outcome::Done;
+    if verbosity.json {
+        told = output::data(&format!("{summary}\n"));
+    } else if !verbosity.quiet {
+        told = output::data(&format!("the run in `{}` is finished: nothing was changed\n", out.display()));
+    }
+    if summary["converged"] == true {
+        return told;
+    }
+    let hint = format!("change `{}` and go on with `alula resume`", out.join("case.toml").display());
+    output::error("the run is finished, but not converged", &hint);
+    Outcome::Failed
 }
 
 fn finished(summary: &Summary, out: &Path, verbosity: Verbosity) -> Outcome {
