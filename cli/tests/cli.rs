@@ -420,3 +420,19 @@ fn a_finished_equilibrium_of_a_body_on_springs_stays_as_it_is() {
     let rest = "[time.steady]\niterations = 200\n[output]\ncheckpoint = 1\nreport = false\n";
     stays_as_it_is(&(steady.replace("[motion]\nparticles = \"rigid\"\n", "") + rest));
 }
+
+#[test]
+fn the_chord_is_that_of_the_geometry() {
+    let short = SHAPE.lines().map(|l| l.split_once(' ').unwrap());
+    let short: Vec<[f64; 2]> = short.map(|(x, y)| [x, y].map(|v| 0.2875 * v.parse::<f64>().unwrap())).collect();
+    let shape: String = short.iter().map(|[x, y]| format!("{x} {y}\n")).collect();
+    let case = SECTION.replace("naca = \"0012\"", "airfoil = \"section.dat\"\nchord = 0.2875");
+    let desk = Desk::new(&case.replace("0.03125", "0.0125").replace("far_field = 10.0", "far_field = 3.0"));
+    std::fs::write(desk.path("section.dat"), shape).unwrap();
+    let output = desk.alula(&["check", "case.toml"]);
+    assert_eq!(code(&output), Some(0), "{}", told(&output));
+    let text = String::from_utf8(output.stdout).unwrap();
+    let line = text.lines().find(|l| l.starts_with("chord ")).unwrap();
+    let chord: f64 = line.split_whitespace().nth(1).unwrap().parse().unwrap();
+    assert!((chord - 0.2875).abs() < 1e-12, "{line}");
+}

@@ -10,12 +10,12 @@ use super::error::RunError;
 use super::files;
 use super::folder;
 use super::found::{Found, Names, Spent};
-use super::look::{GasView, Snapshot, field, momentum};
+use super::look::{GasView, Snapshot, field, load_axes, momentum};
 use super::monitor::Monitor;
 use super::recipe;
 use super::record::saved::{Position, Saved, flatten};
 use super::record::summary::{Clock, Summary};
-use super::record::{Described, Log};
+use super::record::{Described, Log, Scales};
 use super::setup::{self, Site, Solver, check_motion};
 use super::stage::{Stage, Task};
 use super::studies::{self, Reached, Start, Turn};
@@ -215,7 +215,8 @@ impl Run<'_> {
             (None, Some(o)) => recipe::plan_from(self.case, &o.stages[o.stage]),
             (None, None) => recipe::plan(self.case, particles, D),
         };
-        let mut log = Log::open(self.case, self.out, site.motions.period(), saved.as_ref(), structures, monitor)?;
+        let scales = Scales { axes: load_axes(self.case, site.surface), period: site.motions.period() };
+        let mut log = Log::open(self.case, self.out, scales, saved.as_ref(), structures, monitor)?;
         log.note(&describe(&stages, particles));
         let first = saved.as_ref().map_or(0, |s| s.stage);
         let known = saved.as_ref().or(other.as_ref());

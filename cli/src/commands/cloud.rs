@@ -44,6 +44,9 @@ pub(crate) fn describe(r: &CloudReport) -> String {
         r.spacing.1,
         r.worst_condition
     );
+    if let Some(chord) = r.chord {
+        text += &format!("chord          {chord} (reference of loads)\n");
+    }
     text += &format!(
         "built in       {:.2} s\nmemory         about {:.0} MB\ntime           about {}\n",
         r.seconds,
