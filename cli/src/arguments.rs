@@ -16,6 +16,7 @@ Exit codes:
 
 Signals during a run:
   Ctrl-C, SIGTERM  finish the iteration, write a checkpoint, stop; a second one stops at once
+  SIGHUP           the same, unless it is ignored (`nohup`)
   SIGUSR1          write a checkpoint and go on";
 
 const VERIFY_CODES: &str = "\

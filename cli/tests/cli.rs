@@ -436,3 +436,35 @@ fn the_chord_is_that_of_the_geometry() {
     let chord: f64 = line.split_whitespace().nth(1).unwrap().parse().unwrap();
     assert!((chord - 0.2875).abs() < 1e-12, "{line}");
 }
+
+#[test]
+fn a_run_stopped_before_its_first_checkpoint_begins_again() {
+    let desk = Desk::new(SECTION);
+    let whole = desk.alula(&["run", "case.toml", "--out", "out", "--quiet"]);
+    assert_eq!(code(&whole), Some(0), "{}", told(&whole));
+    std::fs::rename(desk.path("out"), desk.path("whole")).unwrap();
+    std::fs::create_dir_all(desk.path("out/pictures")).unwrap();
+    for name in ["origin.txt", "case.toml"] {
+        std::fs::copy(desk.path("whole").join(name), desk.path("out").join(name)).unwrap();
+    }
+    let output = desk.alula(&["resume", "out"]);
+    assert!(code(&output) == Some(2) && told(&output).contains("`alula run`"), "{}", told(&output));
+    let output = desk.alula(&["run", "case.toml", "--out", "out"]);
+    assert_eq!(code(&output), Some(0), "{}", told(&output));
+    assert!(told(&output).contains("begins again"), "{}", told(&output));
+    assert_same_results(&desk.path("whole"), &desk.path("out"), "begun again");
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_run_whose_terminal_closes_keeps_a_checkpoint() {
+    let desk = Desk::new(VORTEX);
+    let hang_up = |child: &Child| {
+        assert!(Command::new("kill").args(["-HUP", &child.id().to_string()]).status().unwrap().success());
+    };
+    let child = desk.begun("out");
+    hang_up(&child);
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(code(&output), Some(130), "{}", told(&output));
+    assert!(told(&output).contains("`alula resume out`"), "{}", told(&output));
+}
