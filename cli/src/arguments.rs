@@ -74,7 +74,7 @@ pub(crate) struct Run {
     pub(crate) threads: Threads,
     #[command(flatten)]
     pub(crate) verbosity: Verbosity,
-    /// Replace the results of an earlier run.
+    /// Compute into the folder of an earlier run, whose results are renamed; without `--out` the first one of the case.
     #[arg(long)]
     pub(crate) force: bool,
     /// Start from the last state of another run on the same cloud: steady, marched, or periodic with any number of harmonics.

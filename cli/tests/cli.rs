@@ -468,3 +468,41 @@ fn a_run_whose_terminal_closes_keeps_a_checkpoint() {
     assert_eq!(code(&output), Some(130), "{}", told(&output));
     assert!(told(&output).contains("`alula resume out`"), "{}", told(&output));
 }
+
+#[test]
+fn a_replaced_run_is_kept_under_another_name() {
+    let desk = Desk::new(SECTION);
+    std::fs::create_dir_all(desk.path("runs/case")).unwrap();
+    std::fs::write(desk.path("runs/case/case.toml"), "mine").unwrap();
+    let output = desk.alula(&["run", "case.toml", "--force"]);
+    assert_eq!(code(&output), Some(0), "{}", told(&output));
+    assert!(told(&output).contains("kept in `runs/case.replaced`"), "{}", told(&output));
+    assert_eq!(std::fs::read_to_string(desk.path("runs/case.replaced/case.toml")).unwrap(), "mine");
+    assert!(desk.path("runs/case/summary.json").is_file());
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn results_that_nobody_receives_are_a_failure() {
+    let desk = Desk::new(SECTION);
+    let full = || Stdio::from(std::fs::File::options().write(true).open("/dev/full").unwrap());
+    for more in [&[][..], &["--json"]] {
+        let args = [&["run", "case.toml"][..], more].concat();
+        let output = desk.command(&args).stdout(full()).output().unwrap();
+        assert_eq!(code(&output), Some(1), "{}", told(&output));
+        assert!(told(&output).contains("cannot write to standard output"), "{}", told(&output));
+    }
+}
+
+#[test]
+fn a_run_tells_of_its_cloud_what_check_tells() {
+    let layers = "spacing = 0.03125\nwall_layers = { first = 0.001 }";
+    let desk = Desk::new(
+        &SECTION.replace("spacing = 0.03125", layers).replace("[scheme]", "[time.steady]\niterations = 1\n[scheme]"),
+    );
+    let checked = String::from_utf8(desk.alula(&["check", "case.toml"]).stdout).unwrap();
+    let text = told(&desk.alula(&["run", "case.toml"]));
+    let notes: Vec<&str> = checked.lines().filter_map(|l| l.strip_prefix("note: ")).collect();
+    assert!(!notes.is_empty(), "{checked}");
+    notes.iter().for_each(|note| assert!(text.contains(note), "no {note} in {text}"));
+}

@@ -253,9 +253,10 @@ impl Run<'_> {
         let view = GasView::of(&stood.solver.system, &frame, &state);
         self.conclude(&view, site.surface, &log, &clock).map(Ok)
     }
-    /// The cloud of the case, and what is worth knowing of the motion on it.
+    /// The cloud of the case; tells what is worth knowing of it and of the motion on it.
     fn cloud<const D: usize>(&self, site: &Site<'_, D>, monitor: &mut dyn Monitor) -> Result<Cloud<D>, RunError> {
         let cloud = Cloud::build(&CloudSpec::of_case(self.case), site.surface, &[])?;
+        cloud.notes.iter().cloned().chain(cloud.early_ends()).for_each(|n| monitor.note(&n));
         check_motion(self.case, &cloud, site.motions)?.iter().for_each(|n| monitor.note(n));
         Ok(cloud)
     }
