@@ -423,12 +423,9 @@ fn a_finished_equilibrium_of_a_body_on_springs_stays_as_it_is() {
 
 #[test]
 fn the_chord_is_that_of_the_geometry() {
-    let short = SHAPE.lines().map(|l| l.split_once(' ').unwrap());
-    let short: Vec<[f64; 2]> = short.map(|(x, y)| [x, y].map(|v| 0.2875 * v.parse::<f64>().unwrap())).collect();
-    let shape: String = short.iter().map(|[x, y]| format!("{x} {y}\n")).collect();
     let case = SECTION.replace("naca = \"0012\"", "airfoil = \"section.dat\"\nchord = 0.2875");
     let desk = Desk::new(&case.replace("0.03125", "0.0125").replace("far_field = 10.0", "far_field = 3.0"));
-    std::fs::write(desk.path("section.dat"), shape).unwrap();
+    std::fs::write(desk.path("section.dat"), SHAPE).unwrap();
     let output = desk.alula(&["check", "case.toml"]);
     assert_eq!(code(&output), Some(0), "{}", told(&output));
     let text = String::from_utf8(output.stdout).unwrap();

@@ -45,6 +45,8 @@ pub(crate) fn describe(r: &CloudReport) -> String {
         r.worst_condition
     );
     if let Some(chord) = r.chord {
+        // without the round-off of the last digits
+        let chord: f64 = format!("{chord:.11e}").parse().unwrap_or(chord);
         text += &format!("chord          {chord} (reference of loads)\n");
     }
     text += &format!(
