@@ -493,9 +493,12 @@ fn results_that_nobody_receives_are_a_failure() {
 
 #[test]
 fn a_run_tells_of_its_cloud_what_check_tells() {
-    let layers = "spacing = 0.03125\nwall_layers = { first = 0.001 }";
+    // a crevice, in which layers end early
     let desk = Desk::new(
-        &SECTION.replace("spacing = 0.03125", layers).replace("[scheme]", "[time.steady]\niterations = 1\n[scheme]"),
+        "title = \"crevice\"\n[flow]\nmach = 0.3\nreynolds = 1000\n[[body]]\npolygon = [[-0.5, -0.5], [0.5, -0.5], \
+         [0.5, 0.5], [0.079, 0.5], [0, -0.1], [-0.079, 0.5], [-0.5, 0.5]]\n[cloud]\nspacing = 0.06\nfar_field = 2\n\
+         edge_levels = 1\nwall_layers = { first = 0.008 }\n[scheme]\nconservative = false\n[time.steady]\n\
+         iterations = 1\n[output]\nreport = false\n",
     );
     let checked = String::from_utf8(desk.alula(&["check", "case.toml"]).stdout).unwrap();
     let text = told(&desk.alula(&["run", "case.toml"]));
