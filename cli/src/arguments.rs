@@ -16,6 +16,7 @@ Exit codes:
 
 Signals during a run:
   Ctrl-C, SIGTERM  finish the iteration, write a checkpoint, stop; a second one stops at once
+  SIGHUP           the same, unless it is ignored (`nohup`)
   SIGUSR1          write a checkpoint and go on";
 
 const VERIFY_CODES: &str = "\
@@ -73,7 +74,7 @@ pub(crate) struct Run {
     pub(crate) threads: Threads,
     #[command(flatten)]
     pub(crate) verbosity: Verbosity,
-    /// Replace the results of an earlier run.
+    /// Compute into the folder of an earlier run, whose results are renamed; without `--out` the first one of the case.
     #[arg(long)]
     pub(crate) force: bool,
     /// Start from the last state of another run on the same cloud: steady, marched, or periodic with any number of harmonics.

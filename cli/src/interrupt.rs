@@ -1,7 +1,8 @@
 //! Signals that a run listens to.
 //!
 //! SIGINT and SIGTERM ask the run to finish its iteration, write a checkpoint and stop; a second one ends the process at
-//! once. SIGUSR1 asks for a checkpoint now. Handlers only set flags: the run loop looks at them between iterations.
+//! once. SIGHUP asks for the same, any number of times (a terminal that closes may send two), unless it was ignored when
+//! the program began, as under `nohup`. SIGUSR1 asks for a checkpoint now. Handlers only set flags: the run loop looks at them between iterations.
 use std::io;
 use std::path::Path;
 use std::sync::Arc;
@@ -31,7 +32,13 @@ impl Interrupt {
             flag::register(signal, Arc::clone(&flags.stop))?;
         }
         #[cfg(unix)]
-        flag::register(signal_hook::consts::SIGUSR1, Arc::clone(&flags.checkpoint))?;
+        {
+            use signal_hook::consts::{SIGHUP, SIGUSR1};
+            flag::register(SIGUSR1, Arc::clone(&flags.checkpoint))?;
+            if is_heard(SIGHUP) {
+                flag::register(SIGHUP, Arc::clone(&flags.stop))?;
+            }
+        }
         Ok(flags)
     }
 
@@ -49,6 +56,15 @@ impl Interrupt {
     pub(crate) fn farewell(run: &Path, iteration: u64) -> String {
         format!("interrupted after iteration {iteration}; go on with `alula resume {}`", run.display())
     }
+}
+
+/// True when the system says that the process was not told to ignore `signal`: a handler would end what `nohup` protects.
+#[cfg(unix)]
+fn is_heard(signal: i32) -> bool {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let mask = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
+    let ignored = mask.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok());
+    ignored.is_some_and(|mask| mask >> (signal - 1) & 1 == 0)
 }
 
 #[cfg(all(test, unix))]

@@ -11,7 +11,7 @@ pub(crate) enum Outcome {
     Failed = 1,
     /// Arguments, case or files are wrong.
     BadInput = 2,
-    /// Stopped by SIGINT or SIGTERM, after a checkpoint.
+    /// Stopped by SIGINT, SIGTERM or SIGHUP, after a checkpoint.
     Interrupted = 130,
 }
 

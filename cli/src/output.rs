@@ -15,7 +15,13 @@ pub(crate) fn message(text: &str) {
 
 /// Writes an error with its remedy to stderr.
 pub(crate) fn error(what: &str, hint: &str) {
-    message(&format!("error: {what}\nhint: {hint}"));
+    message(&error_text(what, hint));
+}
+
+/// An error with its remedy, where there is one.
+fn error_text(what: &str, hint: &str) -> String {
+    let what = what.strip_prefix("error: ").unwrap_or(what);
+    if hint.is_empty() { format!("error: {what}") } else { format!("error: {what}\nhint: {hint}") }
 }
 
 /// True when messages may carry colours (<https://no-color.org>).
@@ -47,6 +53,12 @@ mod tests {
         fn flush(&mut self) -> io::Result<()> {
             Ok(())
         }
+    }
+
+    #[test]
+    fn nothing_is_said_twice_or_left_empty() {
+        assert_eq!(error_text("error: it broke", ""), "error: it broke");
+        assert_eq!(error_text("it broke", "mend it"), "error: it broke\nhint: mend it");
     }
 
     #[test]

@@ -365,3 +365,144 @@ fn a_run_that_reads_files_goes_on_from_any_folder() {
     assert_eq!(code(&output), Some(0), "{}", told(&output));
     assert_same_results(&desk.path("whole"), &desk.path("out"), "from another folder");
 }
+
+/// All files of a folder and the folders in it, with what they hold.
+fn contents(folder: &Path) -> std::collections::BTreeMap<PathBuf, Vec<u8>> {
+    let mut all = std::collections::BTreeMap::new();
+    for entry in std::fs::read_dir(folder).unwrap() {
+        let path = entry.unwrap().path();
+        if path.is_dir() {
+            all.extend(contents(&path));
+        } else {
+            all.insert(path.clone(), std::fs::read(&path).unwrap());
+        }
+    }
+    all
+}
+
+/// Runs a case to its end, goes on with it and runs it again: nothing changes.
+fn stays_as_it_is(case: &str) {
+    let desk = Desk::new(case);
+    let first = desk.alula(&["run", "case.toml", "--out", "out", "--quiet"]);
+    let before = contents(&desk.path("out"));
+    assert!(before.contains_key(&desk.path("out/summary.json")), "{}", told(&first));
+    let output = desk.alula(&["resume", "out"]);
+    assert_eq!(code(&output), code(&first), "{}", told(&output));
+    assert!(String::from_utf8_lossy(&output.stdout).contains("is finished"), "{}", told(&output));
+    let again = desk.alula(&["run", "case.toml", "--out", "out"]);
+    assert!(code(&again) == Some(2) && told(&again).contains("`out` holds a finished run"), "{}", told(&again));
+    for (path, bytes) in contents(&desk.path("out")) {
+        assert!(before.get(&path) == Some(&bytes), "`{}` differs", path.display());
+    }
+    // without its mark, as after a power cut at the very end: tables do not grow
+    std::fs::remove_file(desk.path("out/finished.txt")).unwrap();
+    desk.alula(&["resume", "out", "--quiet"]);
+    for name in ["adapt.csv", "structure.csv"] {
+        let path = desk.path("out").join(name);
+        assert!(before.get(&path) == std::fs::read(&path).ok().as_ref(), "`{name}` differs");
+    }
+}
+
+#[test]
+fn a_finished_adapted_run_stays_as_it_is() {
+    stays_as_it_is(&SECTION.replace("[scheme]", "[adapt]\ncycles = 1\n[scheme]"));
+}
+
+#[test]
+fn a_finished_march_stays_as_it_is() {
+    stays_as_it_is(&DROPPED.replace("until = 40.0", "until = 3.0"));
+}
+
+#[test]
+fn a_finished_equilibrium_of_a_body_on_springs_stays_as_it_is() {
+    let steady = DROPPED.split("[time.dual]").next().unwrap();
+    let steady = steady.replace("mach = 0.8", "mach = 0.5").replace("initial = { plunge = 0.01 }\n", "");
+    let rest = "[time.steady]\niterations = 200\n[output]\ncheckpoint = 1\nreport = false\n";
+    stays_as_it_is(&(steady.replace("[motion]\nparticles = \"rigid\"\n", "") + rest));
+}
+
+#[test]
+fn the_chord_is_that_of_the_geometry() {
+    let case = SECTION.replace("naca = \"0012\"", "airfoil = \"section.dat\"\nchord = 0.2875");
+    let desk = Desk::new(&case.replace("0.03125", "0.0125").replace("far_field = 10.0", "far_field = 3.0"));
+    std::fs::write(desk.path("section.dat"), SHAPE).unwrap();
+    let output = desk.alula(&["check", "case.toml"]);
+    assert_eq!(code(&output), Some(0), "{}", told(&output));
+    let text = String::from_utf8(output.stdout).unwrap();
+    let line = text.lines().find(|l| l.starts_with("chord ")).unwrap();
+    let chord: f64 = line.split_whitespace().nth(1).unwrap().parse().unwrap();
+    assert!((chord - 0.2875).abs() < 1e-12, "{line}");
+}
+
+#[test]
+fn a_run_stopped_before_its_first_checkpoint_begins_again() {
+    let desk = Desk::new(SECTION);
+    let whole = desk.alula(&["run", "case.toml", "--out", "out", "--quiet"]);
+    assert_eq!(code(&whole), Some(0), "{}", told(&whole));
+    std::fs::rename(desk.path("out"), desk.path("whole")).unwrap();
+    std::fs::create_dir_all(desk.path("out/pictures")).unwrap();
+    for name in ["origin.txt", "case.toml"] {
+        std::fs::copy(desk.path("whole").join(name), desk.path("out").join(name)).unwrap();
+    }
+    let output = desk.alula(&["resume", "out"]);
+    assert!(code(&output) == Some(2) && told(&output).contains("`alula run`"), "{}", told(&output));
+    let output = desk.alula(&["run", "case.toml", "--out", "out"]);
+    assert_eq!(code(&output), Some(0), "{}", told(&output));
+    assert!(told(&output).contains("begins again"), "{}", told(&output));
+    assert_same_results(&desk.path("whole"), &desk.path("out"), "begun again");
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_run_whose_terminal_closes_keeps_a_checkpoint() {
+    let desk = Desk::new(VORTEX);
+    let hang_up = |child: &Child| {
+        assert!(Command::new("kill").args(["-HUP", &child.id().to_string()]).status().unwrap().success());
+    };
+    let child = desk.begun("out");
+    hang_up(&child);
+    let output = child.wait_with_output().unwrap();
+    assert_eq!(code(&output), Some(130), "{}", told(&output));
+    assert!(told(&output).contains("`alula resume out`"), "{}", told(&output));
+}
+
+#[test]
+fn a_replaced_run_is_kept_under_another_name() {
+    let desk = Desk::new(SECTION);
+    std::fs::create_dir_all(desk.path("runs/case")).unwrap();
+    std::fs::write(desk.path("runs/case/case.toml"), "mine").unwrap();
+    let output = desk.alula(&["run", "case.toml", "--force"]);
+    assert_eq!(code(&output), Some(0), "{}", told(&output));
+    assert!(told(&output).contains("kept in `runs/case.replaced`"), "{}", told(&output));
+    assert_eq!(std::fs::read_to_string(desk.path("runs/case.replaced/case.toml")).unwrap(), "mine");
+    assert!(desk.path("runs/case/summary.json").is_file());
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn results_that_nobody_receives_are_a_failure() {
+    let desk = Desk::new(SECTION);
+    let full = || Stdio::from(std::fs::File::options().write(true).open("/dev/full").unwrap());
+    for more in [&[][..], &["--json"]] {
+        let args = [&["run", "case.toml"][..], more].concat();
+        let output = desk.command(&args).stdout(full()).output().unwrap();
+        assert_eq!(code(&output), Some(1), "{}", told(&output));
+        assert!(told(&output).contains("cannot write to standard output"), "{}", told(&output));
+    }
+}
+
+#[test]
+fn a_run_tells_of_its_cloud_what_check_tells() {
+    // a crevice, in which layers end early
+    let desk = Desk::new(
+        "title = \"crevice\"\n[flow]\nmach = 0.3\nreynolds = 1000\n[[body]]\npolygon = [[-0.5, -0.5], [0.5, -0.5], \
+         [0.5, 0.5], [0.079, 0.5], [0, -0.1], [-0.079, 0.5], [-0.5, 0.5]]\n[cloud]\nspacing = 0.06\nfar_field = 2\n\
+         edge_levels = 1\nwall_layers = { first = 0.008 }\n[scheme]\nconservative = false\n[time.steady]\n\
+         iterations = 1\n[output]\nreport = false\n",
+    );
+    let checked = String::from_utf8(desk.alula(&["check", "case.toml"]).stdout).unwrap();
+    let text = told(&desk.alula(&["run", "case.toml"]));
+    let notes: Vec<&str> = checked.lines().filter_map(|l| l.strip_prefix("note: ")).collect();
+    assert!(!notes.is_empty(), "{checked}");
+    notes.iter().for_each(|note| assert!(text.contains(note), "no {note} in {text}"));
+}

@@ -9,6 +9,9 @@ const LONGEST_QUOTE: usize = 48;
 /// Longest list of what is allowed that is shown beside a hint.
 const LONGEST_LABEL: usize = 72;
 
+/// Most mistakes that are shown; the others are counted.
+const MOST_SHOWN: usize = 50;
+
 /// One mistake in a case file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CaseError {
@@ -67,16 +70,16 @@ impl CaseError {
         self
     }
 
-    /// Fixes the span to one line of `text` and derives the rest of the place from it.
-    fn locate(&mut self, text: &str) {
+    /// Fixes the span to one line of `text`, whose lines begin at `starts`, and derives the rest of the place from it.
+    fn locate(&mut self, text: &str, starts: &[usize]) {
         let start = boundary(text, self.span.start);
-        let first = text[..start].rfind('\n').map_or(0, |i| i + 1);
-        let last = text[start..].find('\n').map_or(text.len(), |i| start + i);
+        self.line = starts.partition_point(|first| *first <= start);
+        let first = starts[self.line - 1];
+        let last = starts.get(self.line).map_or(text.len(), |next| next - 1);
         let last = first + text[first..last].trim_end_matches('\r').len();
         let start = start.min(last);
         let end = boundary(text, self.span.end).clamp(start, last);
         self.span = start..end;
-        self.line = text[..first].matches('\n').count() + 1;
         self.column = text[first..start].chars().count() + 1;
         self.end_column = self.column + text[start..end].chars().count();
         self.value = (start < end).then(|| quote(&text[start..end]));
@@ -85,20 +88,23 @@ impl CaseError {
 
 impl CaseErrors {
     pub(super) fn new(name: &str, text: &str, mut errors: Vec<CaseError>) -> Self {
-        errors.iter_mut().for_each(|e| e.locate(text));
+        let starts: Vec<usize> = std::iter::once(0).chain(text.match_indices('\n').map(|(i, _)| i + 1)).collect();
+        errors.iter_mut().for_each(|e| e.locate(text, &starts));
         errors.sort_by_key(|e| e.span.start);
         errors.dedup();
-        let lines = errors.iter().map(|e| line_of(text, e.line)).collect();
+        let lines = errors.iter().take(MOST_SHOWN).map(|e| line_of(&text[starts[e.line - 1]..])).collect();
         Self { name: name.to_owned(), errors, lines }
     }
 
-    /// The messages with the lines they are about, with terminal colours if `color`.
+    /// The first messages with the lines they are about and how many more there are, with terminal colours if `color`.
     pub fn render(&self, color: bool) -> String {
         let renderer = if color { Renderer::styled() } else { Renderer::plain() };
         let mut blocks: Vec<String> =
             self.errors.iter().zip(&self.lines).map(|(e, line)| self.block(e, line, &renderer)).collect();
+        let more = self.errors.len().saturating_sub(MOST_SHOWN);
         blocks.push(match self.errors.len() {
             1 => format!("1 mistake in `{}`", self.name),
+            n if more > 0 => format!("and {more} more: {n} mistakes in `{}`", self.name),
             n => format!("{n} mistakes in `{}`", self.name),
         });
         blocks.join("\n\n")
@@ -143,9 +149,9 @@ fn boundary(text: &str, index: usize) -> usize {
     (0..=index.min(text.len())).rev().find(|&i| text.is_char_boundary(i)).unwrap_or(0)
 }
 
-/// Line `number` of `text` with control characters made visible, one character for one character.
-fn line_of(text: &str, number: usize) -> String {
-    let line = text.split('\n').nth(number - 1).unwrap_or_default().trim_end_matches('\r');
+/// The first line of `text` with control characters made visible, one character for one character.
+fn line_of(text: &str) -> String {
+    let line = text.split('\n').next().unwrap_or_default().trim_end_matches('\r');
     line.chars().map(|c| if c.is_control() && c != '\t' { '\u{fffd}' } else { c }).collect()
 }
 
@@ -171,6 +177,18 @@ mod tests {
         assert!(shown.contains("^ allowed: from 0.3 to 0.6"), "{shown}");
         assert!(shown.contains("= hint: use 0.4"), "{shown}");
         assert!(shown.ends_with("1 mistake in `case.toml`"), "{shown}");
+    }
+
+    #[test]
+    fn many_mistakes_are_counted_and_the_first_are_shown() {
+        let text: String = (0..200_000).map(|i| format!("k{i} = 1\n")).collect();
+        let began = std::time::Instant::now();
+        let errors = super::super::read(&text, "case.toml").unwrap_err();
+        let shown = errors.render(false);
+        assert!(errors.errors.len() >= 200_000 && began.elapsed().as_secs() < 20, "{:?}", began.elapsed());
+        assert_eq!(shown.matches("error: ").count(), MOST_SHOWN);
+        let more = errors.errors.len() - MOST_SHOWN;
+        assert!(shown.contains(&format!("and {more} more: ")), "{shown}");
     }
 
     #[test]

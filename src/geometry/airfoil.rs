@@ -48,9 +48,33 @@ pub(super) fn read(file: &str, input: impl Read, notes: &mut Vec<String>) -> Res
     let mut bytes = Vec::new();
     let input = input.take(LONGEST).read_to_end(&mut bytes);
     input.map_err(|source| GeometryError::Open { file: file.to_string(), source })?;
-    let table = parse(file, &String::from_utf8_lossy(&bytes))?;
+    let table = parse(file, &plain(file, &bytes)?)?;
     let marks = around(file, &table, notes)?;
     outline::airfoil(file, marks, notes)
+}
+
+/// The text of a file; lines may end in `\r` alone, as old Macintosh programs wrote them.
+fn plain(file: &str, bytes: &[u8]) -> Result<String, GeometryError> {
+    if bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]) {
+        return Err(GeometryError::refused(file.to_string(), "is UTF-16 text", "save it as UTF-8 or ASCII text"));
+    }
+    let text = String::from_utf8_lossy(bytes);
+    Ok(text.replace("\r\n", "\n").replace('\r', "\n"))
+}
+
+/// Refuses rows whose numbers have decimal commas: two values would be read as four.
+fn no_decimal_commas(file: &str, number: usize, line: &str) -> Result<(), GeometryError> {
+    let digits = |part: &str| part.trim_start_matches(['-', '+']).chars().all(|c| c.is_ascii_digit());
+    let with_comma = |word: &str| word.split_once(',').is_some_and(|(a, b)| !b.is_empty() && digits(a) && digits(b));
+    let words = || line.split(|c: char| c == ';' || c.is_whitespace()).filter(|w| !w.is_empty());
+    match words().find(|w| with_comma(w)) {
+        Some(word) if words().count() > 1 => Err(GeometryError::refused(
+            format!("{file}, line {number}"),
+            format!("`{word}` has a decimal comma"),
+            "write decimals with a point, `0.5`",
+        )),
+        _ => Ok(()),
+    }
 }
 
 fn parse(file: &str, text: &str) -> Result<Table, GeometryError> {
@@ -72,6 +96,7 @@ fn parse(file: &str, text: &str) -> Result<Table, GeometryError> {
             // A title that is a number, `2412`.
             continue;
         }
+        no_decimal_commas(file, i + 1, line)?;
         let row = row(file, i + 1, &words, table.columns.as_ref())?;
         if before && table.columns.is_none() && counts(&row).is_some() {
             table.counts = counts(&row);
@@ -253,6 +278,18 @@ mod tests {
 
     fn error(text: &str) -> String {
         load(text).unwrap_err().to_string()
+    }
+
+    #[test]
+    fn commas_and_encodings_of_other_programs_are_read_or_told() {
+        let rows = "1 0\n0.5 0.05\n0 0\n0.5 -0.05\n1 0\n";
+        let told = error(&rows.replace('.', ","));
+        assert!(told.contains("line 2") && told.contains("`0,5` has a decimal comma"), "{told}");
+        assert_eq!(load(&rows.replace('\n', "\r")).is_ok(), load(rows).is_ok());
+        assert!(load(&rows.replace(' ', ",")).is_ok() == load(rows).is_ok());
+        let wide: Vec<u8> = [0xff, 0xfe].into_iter().chain(rows.bytes().flat_map(|b| [b, 0])).collect();
+        let told = read("wing.dat", &wide[..], &mut Vec::new()).map(|_| ()).unwrap_err().to_string();
+        assert!(told.contains("UTF-16"), "{told}");
     }
 
     /// Greatest distance of the file's points from the surface.

@@ -76,6 +76,7 @@ pub(crate) fn family(asked: &Accuracy, n: usize, dimension: usize) -> Vec<Stage>
 
 /// Adds the loads on one more cloud; true when they are known well enough.
 pub(crate) fn judge(asked: &Accuracy, loads: CloudLoads, log: &mut Log<'_>) -> bool {
+    log.record.clouds.retain(|known| known.factor != loads.factor);
     log.record.clouds.push(loads);
     let found = Convergence::of(&log.record.clouds, asked.loads.0);
     let enough = found.as_ref().is_some_and(|c| c.reached);

@@ -1,13 +1,19 @@
 //! The run folder: made before anything else, never overwritten.
 use std::fs;
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use super::error::RunError;
+use super::record::saved;
 use crate::case::{Case, read, write};
 use crate::observe::write_atomic;
 
 /// Where the folder of the case file is noted.
 const ORIGIN: &str = "origin.txt";
+/// Written last: the checksum of the case that the results belong to.
+const FINISHED: &str = "finished.txt";
+/// The last line of a run.
+const SUMMARY: &str = "summary.json";
 
 /// Where a run reads and writes.
 #[derive(Clone, Debug)]
@@ -24,26 +30,91 @@ pub fn fresh_folder(parent: &Path, name: &str) -> PathBuf {
     std::iter::once(parent.join(name)).chain(numbered).find(|p| !p.exists()).unwrap_or_else(|| parent.join(name))
 }
 
-/// Makes the run folder and puts the resolved case into it.
-pub(crate) fn create(case: &Case, input: &Path, out: &Path) -> Result<(), RunError> {
+/// Makes the run folder and puts the resolved case into it; true where a run was begun there before that kept nothing.
+pub(crate) fn create(case: &Case, input: &Path, out: &Path) -> Result<bool, RunError> {
     let named = out.display();
-    if out.join("case.toml").exists() || out.join("summary.json").exists() {
-        return Err(RunError::Folder {
-            what: format!("`{named}` holds an earlier run"),
-            hint: format!(
-                "choose another folder with `--out`, go on with `alula resume {named}`, or replace it with `--force`"
-            ),
-        });
+    let used = out.join("case.toml").exists() || out.join(SUMMARY).exists();
+    if used && !is_barely_begun(out) {
+        return Err(occupied(out));
     }
     fs::create_dir_all(out.join("pictures")).map_err(|e| RunError::Folder {
         what: format!("cannot make the run folder `{named}`: {e}"),
         hint: "choose a writable place with `--out`".into(),
     })?;
-    write_atomic(&out.join("case.toml"), |w| w.write_all(write(case).as_bytes()))?;
     let lost = |source| RunError::LostInput { folder: input.display().to_string(), source };
     let origin = absolute(input).map_err(lost)?;
+    // before the case, so that a case without it is one that no run has put there
     write_atomic(&out.join(ORIGIN), |w| writeln!(w, "{}", origin.display()))?;
-    Ok(())
+    write_atomic(&out.join("case.toml"), |w| w.write_all(write(case).as_bytes()))?;
+    Ok(used)
+}
+
+/// True where a run was stopped before it kept anything but its case.
+fn is_barely_begun(out: &Path) -> bool {
+    let kept = [saved::FILE, SUMMARY, FINISHED, "doctor.json"];
+    out.join(ORIGIN).is_file() && kept.iter().all(|name| !out.join(name).exists())
+}
+
+/// Why a folder with an earlier run is no place for another one.
+fn occupied(out: &Path) -> RunError {
+    let named = out.display();
+    if finished(out).is_some() {
+        return RunError::Folder {
+            what: format!("`{named}` holds a finished run of `{named}/case.toml`"),
+            hint: "choose another folder with `--out`, or replace it with `--force`".into(),
+        };
+    }
+    RunError::Folder {
+        what: format!("`{named}` holds an earlier run"),
+        hint: format!(
+            "choose another folder with `--out`, go on with `alula resume {named}`, or replace it with `--force`"
+        ),
+    }
+}
+
+/// Marks a run as finished: all its files are written.
+pub(crate) fn finish(out: &Path) -> Result<(), RunError> {
+    match checksum(out) {
+        Some(sum) => Ok(write_atomic(&out.join(FINISHED), |w| w.write_all(sum.as_bytes()))?),
+        None => Ok(()),
+    }
+}
+
+/// Takes the mark from a run that goes on.
+pub(crate) fn reopen(out: &Path) -> Result<(), RunError> {
+    match fs::remove_file(out.join(FINISHED)) {
+        Err(e) if e.kind() != ErrorKind::NotFound => Err(RunError::Folder {
+            what: format!("cannot go on in the run folder `{}`: {e}", out.display()),
+            hint: "make it writable".into(),
+        }),
+        _ => Ok(()),
+    }
+}
+
+/// The summary of a run that is finished; `None` where it is not, or its case was changed since.
+pub(crate) fn finished(out: &Path) -> Option<serde_json::Value> {
+    let mark = fs::read_to_string(out.join(FINISHED)).ok()?;
+    let summary = fs::read_to_string(out.join(SUMMARY)).ok()?;
+    (Some(mark) == checksum(out)).then(|| serde_json::from_str(&summary).ok())?
+}
+
+/// What the mark of a finished run says of its case.
+fn checksum(out: &Path) -> Option<String> {
+    let case = fs::read(out.join("case.toml")).ok()?;
+    Some(format!("case.toml {:08x}\n", crc32fast::hash(&case)))
+}
+
+/// Refuses to go on where no checkpoint was written.
+pub(crate) fn check_begun(out: &Path) -> Result<(), RunError> {
+    if out.join(saved::FILE).exists() {
+        return Ok(());
+    }
+    let (named, file) = (out.display(), saved::FILE);
+    let force = if is_barely_begun(out) { "" } else { " --force" };
+    Err(RunError::Folder {
+        what: format!("there is no `{file}` in `{named}`: the run was stopped before it wrote one"),
+        hint: format!("begin it again: `alula run` with its case file and `--out {named}{force}`"),
+    })
 }
 
 /// The same place from any working folder; no name stands for the working folder itself.

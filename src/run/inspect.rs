@@ -7,6 +7,7 @@ use super::error::RunError;
 use super::files::{Scene, Target, write_cloud};
 use super::folder;
 use super::found::bytes_of;
+use super::look::load_axes;
 use super::recipe;
 use super::setup::{self, Site, Solver, check_motion};
 use super::stage::Stage;
@@ -39,6 +40,8 @@ pub struct CloudReport {
     pub spacing: (f64, f64),
     /// Largest condition number of a fit.
     pub worst_condition: f64,
+    /// Chord that loads are referred to; absent without bodies.
+    pub chord: Option<f64>,
     /// Seconds that building took.
     pub seconds: f64,
     /// Memory that a run will need.
@@ -82,7 +85,12 @@ fn look<const D: usize>(case: &Case, input: &Path, out: Option<&Path>) -> Result
     let counts: Vec<usize> = (0..cloud.n_rows()).map(|i| cloud.neighbours.of(i).len()).collect();
     notes.extend(cloud.notes.iter().cloned().chain(cloud.early_ends()));
     notes.extend(check_motion(case, cloud, &motions)?);
+    let chord = (!cloud.interface.is_empty()).then(|| {
+        let axes = load_axes(case, surface.as_ref());
+        axes.axes(&fluid.view(&frame, u, &mut work)).chord
+    });
     let report = CloudReport {
+        chord,
         particles: cloud.n_real(),
         fluid: cloud.n_fluid,
         interface: cloud.interface.len(),

@@ -53,7 +53,7 @@ use stage::Stage;
 /// Runs a case into a fresh folder.
 pub fn run(case: &Case, places: &Places, monitor: &mut dyn Monitor) -> Result<Outcome, RunError> {
     let session = Session::open(case, &places.input)?;
-    folder::create(case, &places.input, &places.out)?;
+    begin(case, places, monitor)?;
     session.kept_in(&places.out).solve(monitor)
 }
 
@@ -88,15 +88,29 @@ pub fn run_from(case: &Case, places: &Places, from: &Path, monitor: &mut dyn Mon
             hint: "finish it with `alula resume`; particles that travel keep a cloud of their own",
         });
     }
-    folder::create(case, &places.input, &places.out)?;
+    begin(case, places, monitor)?;
     session.kept_in(&places.out).from(Origin::Other(Box::new(saved))).solve(monitor)
 }
 
-/// Goes on with an interrupted or killed run.
+/// Makes the folder of a run.
+fn begin(case: &Case, places: &Places, monitor: &mut dyn Monitor) -> Result<(), RunError> {
+    if folder::create(case, &places.input, &places.out)? {
+        let out = places.out.display();
+        monitor.note(&format!("the run in `{out}` was stopped before its first checkpoint: it begins again"));
+    }
+    Ok(())
+}
+
+/// Goes on with an interrupted or killed run; one that is finished stays as it is.
 pub fn resume(out: &Path, monitor: &mut dyn Monitor) -> Result<Outcome, RunError> {
     let (case, input) = folder::read_case(out)?;
+    if let Some(summary) = folder::finished(out) {
+        return Ok(Outcome::AlreadyFinished { summary });
+    }
     folder::check_input(&case, &input, out)?;
+    folder::check_begun(out)?;
     let saved = Saved::read(out)?;
+    folder::reopen(out)?;
     Session::open(&case, input)?.kept_in(out).from(Origin::Own(Box::new(saved))).solve(monitor)
 }
 

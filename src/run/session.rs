@@ -9,13 +9,14 @@ use std::path::{Path, PathBuf};
 use super::accuracy;
 use super::error::RunError;
 use super::files;
+use super::folder;
 use super::found::{Found, Names, Spent};
-use super::look::{GasView, Snapshot, field, momentum};
+use super::look::{GasView, Snapshot, field, load_axes, momentum};
 use super::monitor::Monitor;
 use super::recipe;
 use super::record::saved::{Position, Saved, flatten};
 use super::record::summary::{Clock, Summary};
-use super::record::{Described, Log};
+use super::record::{Described, Log, Scales};
 use super::setup::{self, Site, Solver, check_motion};
 use super::stage::{Stage, Task};
 use super::studies::{self, Reached, Start, Turn};
@@ -35,6 +36,11 @@ use crate::verify::wall::Wall;
 pub enum Outcome {
     /// It ran to its end.
     Finished(Box<Summary>),
+    /// It had run to its end before: nothing was computed or written.
+    AlreadyFinished {
+        /// Its `summary.json`.
+        summary: serde_json::Value,
+    },
     /// It was told to stop; a checkpoint is written where it has a folder.
     Interrupted {
         /// Iteration at which it stopped.
@@ -222,7 +228,8 @@ impl Run<'_> {
             (None, Some(o)) => recipe::plan_from(self.case, &o.stages[o.stage]),
             (None, None) => recipe::plan(self.case, particles, D),
         };
-        let mut log = Log::open(self.case, self.out, site.motions.period(), saved.as_ref(), structures, monitor)?;
+        let scales = Scales { axes: load_axes(self.case, site.surface), period: site.motions.period() };
+        let mut log = Log::open(self.case, self.out, scales, saved.as_ref(), structures, monitor)?;
         log.note(&describe(&stages, particles));
         let first = saved.as_ref().map_or(0, |s| s.stage);
         let known = saved.as_ref().or(other.as_ref());
@@ -259,9 +266,10 @@ impl Run<'_> {
         let view = GasView::of(&stood.solver.system, &frame, &state);
         self.conclude(&view, site.surface, &log, &clock).map(Ok)
     }
-    /// The cloud of the case, and what is worth knowing of the motion on it.
+    /// The cloud of the case; tells what is worth knowing of it and of the motion on it.
     fn cloud<const D: usize>(&self, site: &Site<'_, D>, monitor: &mut dyn Monitor) -> Result<Cloud<D>, RunError> {
         let cloud = Cloud::build(&CloudSpec::of_case(self.case), site.surface, &[])?;
+        cloud.notes.iter().cloned().chain(cloud.early_ends()).for_each(|n| monitor.note(&n));
         check_motion(self.case, &cloud, site.motions)?.iter().for_each(|n| monitor.note(n));
         Ok(cloud)
     }
@@ -309,6 +317,7 @@ impl Run<'_> {
         let field = field(self.case, &view);
         if let Some(journal) = &log.journal {
             files::write_all(&found, &summary, &field, log, &journal.out)?;
+            folder::finish(&journal.out)?;
         }
         let loops = log.case_period().map_or_else(Loops::default, |p| log.record.trace.loops(p));
         Ok(Solution { summary, field, wall: found.wall(), loops })

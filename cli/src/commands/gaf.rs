@@ -45,7 +45,7 @@ pub(crate) fn gaf(args: &arguments::Gaf) -> Outcome {
     }
     text.push_str(&squares(&matrices));
     text.push_str(&format!("matrices: {}\n", out.join("gaf.csv").display()));
-    output::data(&text);
+    let told = output::data(&text);
     let bad = |c: &&run::gaf::Column| c.nonlinearity > matrices.linearity;
     if let Some(c) = matrices.columns.iter().find(bad) {
         let what = format!(
@@ -61,7 +61,7 @@ pub(crate) fn gaf(args: &arguments::Gaf) -> Outcome {
         output::error(&format!("k = {}, {}: not converged", c.k, c.mode), "look at its folder");
         return Outcome::Failed;
     }
-    Outcome::Done
+    told
 }
 
 /// The square matrix of generalised forces at each frequency.

@@ -51,6 +51,10 @@ fn threaded(threads: Threads, command: impl FnOnce() -> Outcome) -> Outcome {
 fn load(path: &Path) -> Result<Case, Outcome> {
     let name = path.display().to_string();
     let text = match std::fs::read(path) {
+        Ok(bytes) if bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]) => {
+            output::error(&format!("`{name}` is UTF-16 text"), "save it as UTF-8");
+            return Err(Outcome::BadInput);
+        }
         Ok(bytes) => String::from_utf8(bytes).map_err(|_| {
             output::error(
                 &format!("`{name}` is not UTF-8 text"),

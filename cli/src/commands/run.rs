@@ -21,15 +21,25 @@ pub(crate) fn run(args: &arguments::Run) -> Outcome {
         Ok(case) => case,
         Err(outcome) => return outcome,
     };
-    let out = args.out.clone().unwrap_or_else(|| run::fresh_folder(Path::new(RUNS), &name_of(&args.case)));
-    if args.force
-        && let Err(problem) = set_aside(&out)
-    {
-        output::error(
-            &format!("cannot set `{}` aside: {problem}", out.display()),
-            "choose another folder with `--out`",
-        );
-        return Outcome::BadInput;
+    let out = args.out.clone().unwrap_or_else(|| default_folder(&args.case, args.force));
+    if args.force {
+        match set_aside(&out) {
+            Ok(Some(kept)) if !args.verbosity.quiet => {
+                output::message(&format!(
+                    "the earlier results in `{}` are kept in `{}`",
+                    out.display(),
+                    kept.display()
+                ));
+            }
+            Ok(_) => {}
+            Err(problem) => {
+                output::error(
+                    &format!("cannot set `{}` aside: {problem}", out.display()),
+                    "choose another folder with `--out`",
+                );
+                return Outcome::BadInput;
+            }
+        }
     }
     let input = args.case.parent().map_or_else(PathBuf::new, Path::to_path_buf);
     let mut watch = Watch::new(args.verbosity);
@@ -46,6 +56,7 @@ pub(crate) fn tell(ended: Result<Ended, RunError>, out: &Path, watch: &mut Watch
     watch.progress().finish();
     match ended {
         Ok(Ended::Finished(summary)) => finished(&summary, out, verbosity),
+        Ok(Ended::AlreadyFinished { summary }) => already_finished(&summary, out, verbosity),
         Ok(Ended::Interrupted { iteration }) => {
             output::message(&format!("{}\n", Interrupt::farewell(out, iteration)));
             Outcome::Interrupted
@@ -62,15 +73,32 @@ pub(crate) fn tell(ended: Result<Ended, RunError>, out: &Path, watch: &mut Watch
     }
 }
 
+/// Says that a run needs nothing more; whether it converged is told as when it ended.
+fn already_finished(summary: &serde_json::Value, out: &Path, verbosity: Verbosity) -> Outcome {
+    let mut told = Outcome::Done;
+    if verbosity.json {
+        told = output::data(&format!("{summary}\n"));
+    } else if !verbosity.quiet {
+        told = output::data(&format!("the run in `{}` is finished: nothing was changed\n", out.display()));
+    }
+    if summary["converged"] == true {
+        return told;
+    }
+    let hint = format!("change `{}` and go on with `alula resume`", out.join("case.toml").display());
+    output::error("the run is finished, but not converged", &hint);
+    Outcome::Failed
+}
+
 fn finished(summary: &Summary, out: &Path, verbosity: Verbosity) -> Outcome {
+    let mut told = Outcome::Done;
     if verbosity.json {
         let line = serde_json::to_string(summary).unwrap_or_default();
-        output::data(&format!("{line}\n"));
+        told = output::data(&format!("{line}\n"));
     } else if !verbosity.quiet {
-        output::data(&describe(summary, out));
+        told = output::data(&describe(summary, out));
     }
     if summary.converged {
-        return Outcome::Done;
+        return told;
     }
     if summary.time > 0.0 {
         let hint = "raise `periods`, or loosen `periodic_tolerance`";
@@ -161,12 +189,20 @@ pub(crate) fn name_of(case: &Path) -> String {
     if own == "case" { folder.unwrap_or(own) } else { own }
 }
 
-/// Renames an existing run folder, so that nothing is lost.
-fn set_aside(out: &Path) -> std::io::Result<()> {
+/// Folder of a run that names none: the first one if it shall be replaced, or else one that does not exist yet.
+fn default_folder(case: &Path, replaced: bool) -> PathBuf {
+    let (runs, name) = (Path::new(RUNS), name_of(case));
+    if replaced { runs.join(name) } else { run::fresh_folder(runs, &name) }
+}
+
+/// Renames an existing run folder, so that nothing is lost; its new name, if there was one.
+fn set_aside(out: &Path) -> std::io::Result<Option<PathBuf>> {
     if !out.exists() {
-        return Ok(());
+        return Ok(None);
     }
     let parent = out.parent().unwrap_or(Path::new(""));
     let name = out.file_name().map_or_else(|| "run".into(), |n| n.to_string_lossy().into_owned());
-    fs::rename(out, run::fresh_folder(parent, &format!("{name}.replaced")))
+    let kept = run::fresh_folder(parent, &format!("{name}.replaced"));
+    fs::rename(out, &kept)?;
+    Ok(Some(kept))
 }

@@ -1,9 +1,10 @@
 //! Axes of loads, and the gas at one moment seen in them.
 use super::friction::add_friction;
 use crate::case::Case;
-use crate::math::Vector;
+use crate::geometry::Surface;
 use crate::math::jet::Jet;
 use crate::math::sweep::sum;
+use crate::math::{Bounds, Vector};
 use crate::motion::BodyMotion;
 use crate::observe::loads::{Coefficients, Load, LoadAxes};
 use crate::scheme::start::{free_stream, stream_axes};
@@ -70,26 +71,30 @@ pub(crate) fn totals(volume: &[f64], u: &[f64], n: usize) -> Vec<f64> {
     (0..n).map(|c| sum(volume.len(), |i| volume[i] * u[i * n + c])).collect()
 }
 
-/// Load axes that still need the extent of the bodies.
+/// Load axes that still need to know what of the bodies lies in the domain.
 #[derive(Clone, Debug)]
 pub(crate) struct LoadFrame {
     case: Case,
+    /// Corners of the smallest box around the bodies, before they move; absent without bodies.
+    bodies: Option<[[f64; 3]; 2]>,
 }
 
-/// The axes of a case; defaults follow from the bodies when loads are computed.
-pub(crate) fn load_axes(case: &Case) -> LoadFrame {
-    LoadFrame { case: case.clone() }
+/// The axes of a case; defaults follow from its bodies when loads are computed.
+pub(crate) fn load_axes<const D: usize>(case: &Case, surface: Option<&Surface<D>>) -> LoadFrame {
+    let corners = |bounds: Bounds<D>| [bounds.min.to_3d(), bounds.max.to_3d()];
+    LoadFrame { case: case.clone(), bodies: surface.map(|s| corners(s.bounds())) }
 }
 
 impl LoadFrame {
     /// Axes for the bodies in `view`, in the units of the solver: the point of the moment travels with the first body.
     pub(crate) fn axes<const D: usize>(&self, view: &View<'_, D>) -> LoadAxes {
-        let bounds = crate::math::Bounds::around(view.fluid.walls_before());
+        let seen = Bounds::around(view.fluid.walls_before());
+        let bounds = self.bodies_within(&view.fluid.discretisation.cloud.tree.bounds()).unwrap_or(seen);
         let extent = bounds.extent();
         let reference = &self.case.reference;
         // a body of which only a face across the stream lies in the domain is as long as that face is high
-        let length = if extent[0] > 0.0 { extent[0] } else { extent.max_abs() };
-        let chord = reference.chord.map_or(rounded(length), |c| c.0);
+        let length = if seen.extent()[0] > 0.0 { extent[0] } else { seen.extent().max_abs() };
+        let chord = reference.chord.map_or(length, |c| c.0);
         let area = match D {
             2 => chord,
             _ => reference.area.unwrap_or(extent[1] * extent[D - 1]),
@@ -114,6 +119,15 @@ impl LoadFrame {
         }
     }
 
+    /// The smallest box around the bodies, cut to the domain: interface particles stay half a spacing away from sharp edges.
+    fn bodies_within<const D: usize>(&self, domain: &Bounds<D>) -> Option<Bounds<D>> {
+        let [min, max] = self.bodies?;
+        Some(Bounds {
+            min: Vector::from_fn(|d| min[d].max(domain.min[d])),
+            max: Vector::from_fn(|d| max[d].min(domain.max[d])),
+        })
+    }
+
     /// Coefficients of all bodies, from the wall states and with friction the gradients.
     pub(crate) fn coefficients<const D: usize>(&self, view: &View<'_, D>) -> Coefficients {
         let axes = self.axes(view);
@@ -121,14 +135,6 @@ impl LoadFrame {
         add_friction(view, &axes, |_| true, &mut load);
         axes.coefficients(&load)
     }
-}
-
-/// The chord that interface particles stand on: they stay half a spacing away from sharp edges, so that their extent is a
-/// little short of a chord that is a round number.
-pub(crate) fn rounded(extent: f64) -> f64 {
-    let step = 10f64.powf(extent.log10().floor() - 1.0);
-    let near = (extent / step).round() * step;
-    if (near - extent).abs() < 0.02 * extent { near } else { extent }
 }
 
 /// Load of the wall pressure on the interface particles chosen.

@@ -12,6 +12,7 @@ use serde::Serialize;
 
 use super::axes::{GasView, LoadFrame, load_axes};
 use crate::case::{AnyMode, Case, Mode};
+use crate::geometry::Surface;
 use crate::math::Vector;
 use crate::math::fourier::Series;
 use crate::motion::Motions;
@@ -49,7 +50,12 @@ pub(crate) struct ForceModes<const D: usize> {
 
 impl<const D: usize> ForceModes<D> {
     /// The modes of `[gaf]`; `None` where a case has none.
-    pub(crate) fn of(case: &Case, fluid: &Fluid<D>, motions: &Motions<D>) -> Option<Self> {
+    pub(crate) fn of(
+        case: &Case,
+        surface: Option<&Surface<D>>,
+        fluid: &Fluid<D>,
+        motions: &Motions<D>,
+    ) -> Option<Self> {
         let plan = case.gaf.as_ref()?;
         let cloud = &fluid.discretisation.cloud;
         let mut shapes = motions.shapes_of_forces().iter();
@@ -70,7 +76,7 @@ impl<const D: usize> ForceModes<D> {
         let all: Option<Vec<_>> = plan.all_modes().map(form).collect();
         let own = |body: u16| case.bodies.get(usize::from(body)).is_some_and(|b| b.motion.is_some());
         let follows = cloud.interface.iter().map(|w| !own(w.body)).collect();
-        Some(Self { all: all?, follows, length: plan.reduced_length.map(|l| l.0), axes: load_axes(case) })
+        Some(Self { all: all?, follows, length: plan.reduced_length.map(|l| l.0), axes: load_axes(case, surface) })
     }
 
     /// Forces on all modes.

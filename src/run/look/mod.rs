@@ -7,5 +7,5 @@ pub(crate) mod momentum;
 
 pub use field::Snapshot;
 
-pub(crate) use axes::{GasView, LoadFrame, load_axes, motion, pressure_load, rounded, totals};
+pub(crate) use axes::{GasView, LoadFrame, load_axes, motion, pressure_load, totals};
 pub(crate) use field::{field, pressure_coefficient};

@@ -3,7 +3,7 @@ mod structure;
 
 use std::path::Path;
 
-use super::look::{Snapshot, rounded};
+use super::look::Snapshot;
 use super::record::summary::Summary;
 use super::record::trace::{FirstHarmonics, LastPeriod};
 use num_complex::Complex64;
@@ -198,7 +198,7 @@ impl Measured {
 
     /// Length of the Reynolds number, and of frequencies.
     fn chord(&self) -> f64 {
-        self.case.reference.chord.map_or_else(|| rounded(Bounds::around(&self.wall.x).extent()[0]), |c| c.0)
+        self.summary.chord
     }
 
     /// From the rear of the bodies to where the gas on their axis turns back into the stream, in chords (plane flow).

@@ -2,8 +2,8 @@
 use std::path::Path;
 
 use super::super::error::RunError;
+use super::super::look::LoadFrame;
 use super::super::look::forces::GeneralisedForce;
-use super::super::look::{LoadFrame, load_axes};
 use super::super::monitor::{Monitor, Tick};
 use super::crosscheck::{Moment, Twofold};
 use super::interval::passed;
@@ -125,12 +125,20 @@ pub(crate) struct Log<'a> {
     before: [f64; 2],
 }
 
+/// What loads are measured by.
+pub(crate) struct Scales {
+    /// Axes.
+    pub(crate) axes: LoadFrame,
+    /// Period of the motion, in the time of the solver.
+    pub(crate) period: Option<f64>,
+}
+
 impl<'a> Log<'a> {
     /// Opens the record of a run, and its tables where it has a folder `out`.
     pub(crate) fn open(
         case: &'a Case,
         out: Option<&Path>,
-        period: Option<f64>,
+        Scales { axes, period }: Scales,
         saved: Option<&Saved>,
         structures: Vec<Described>,
         monitor: &'a mut dyn Monitor,
@@ -150,7 +158,6 @@ impl<'a> Log<'a> {
         }
         record.trace = record.trace.over(case.output.loop_periods);
         let before = saved.map_or([0.0; 2], |s| [s.cpu_seconds, s.wall_seconds]);
-        let axes = load_axes(case);
         Ok(Self { monitor, case, axes, units, period, journal, record, structures, clock: Clock::start(), before })
     }
 

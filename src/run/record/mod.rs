@@ -8,4 +8,4 @@ pub(crate) mod summary;
 pub(crate) mod trace;
 
 pub(crate) use interval::{NEARLY, passed};
-pub(crate) use log::{Described, Log, Record};
+pub(crate) use log::{Described, Log, Record, Scales};

@@ -171,7 +171,7 @@ pub(crate) fn solver<const D: usize>(
         at_one_entropy(&fluid)?;
     }
     let film = surface.filter(|_| D == 2 && case.output.report && motions.period().is_some()).cloned();
-    let force_modes = ForceModes::of(case, &fluid, motions);
+    let force_modes = ForceModes::of(case, surface, &fluid, motions);
     Ok(Solver { system: fluid, film, force_modes })
 }
 

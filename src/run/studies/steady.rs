@@ -96,14 +96,18 @@ fn tell<S: HasGas<D>, const D: usize>(
     (log.record.bytes, log.record.linear) = (cost.bytes, cost.linear);
     let Standing { frame, work, state } = relax.standing();
     let loads = GasView::of(system, frame, state).coefficients(&log.axes, system.gas_work(work)).unwrap_or_default();
+    let told = log.record.structures.iteration.last() == Some(&(log.record.iteration as f64));
     if turn.last
+        && !told
         && let Some(exchange) = system.exchange(frame, state, work)
     {
         log.structure(log.record.iteration, &sample(0.0, exchange, &log.units))?;
     }
     let (Stage { factor, cycle, .. }, particles) = (*turn.stage(), system.gas().discretisation.cloud.n_real());
     if factor == 1.0 {
-        log.record.cycles.push([f64::from(cycle), particles as f64, loads.cl, loads.cd, loads.cm]);
+        let cycle = f64::from(cycle);
+        log.record.cycles.retain(|known| known[0] != cycle);
+        log.record.cycles.push([cycle, particles as f64, loads.cl, loads.cd, loads.cm]);
     }
     let reach = reach(system.gas());
     Ok(CloudLoads { factor, particles, reach, cl: loads.cl, cd: loads.cd, cm: loads.cm })
