@@ -8,9 +8,9 @@ fn solved(mach: f64, alpha: f64) -> Summary {
         "[flow]\nmach = {mach}\nalpha = \"{alpha} deg\"\n[[body]]\nnaca = \"0012\"\n[accuracy]\nparticles = 12000\n"
     );
     let case = read(&text, "section.toml").unwrap_or_else(|e| panic!("{e}"));
-    let mut session = Session::open(&case, ".").unwrap();
-    session.solve(&mut Silent).unwrap();
-    session.summary().unwrap().clone()
+    let mut session = Session::open(&case, ".").unwrap_or_else(|e| panic!("{e}"));
+    session.solve(&mut Silent).unwrap_or_else(|e| panic!("{e}"));
+    session.summary().cloned().unwrap_or_else(|| panic!("it is solved"))
 }
 
 #[test]

@@ -192,7 +192,7 @@ impl Run<'_> {
     ) -> Result<Ended, RunError> {
         let mut motions = setup::motions(self.case, self.input, surface)?;
         let bodies = setup::bodies(self.case, self.input, surface, &mut motions)?;
-        let site = Site { case: self.case, surface: surface, motions: &motions };
+        let site = Site { case: self.case, surface, motions: &motions };
         if bodies.is_empty() {
             return self.stages(&site, |gas| gas, Vec::new(), origin, monitor);
         }
