@@ -107,6 +107,12 @@ impl<const D: usize, S: Scalar> Primitive<D, S> {
         }
     }
 
+    /// Times a number.
+    #[inline(always)]
+    pub fn times(&self, s: S) -> Self {
+        Self { density: self.density * s, velocity: self.velocity * s, pressure: self.pressure * s }
+    }
+
     /// self − other.
     #[inline(always)]
     pub fn minus(&self, o: &Self) -> Self {

@@ -15,7 +15,7 @@ use super::reconstruct::{Gradient, Limit, Reconstruction, low_mach_correction};
 use super::viscous::{direction, middle, slopes};
 use crate::math::Vector;
 use crate::math::jet::Scalar;
-use crate::physics::riemann::UpwindFlux;
+use crate::physics::riemann::{Rusanov, UpwindFlux};
 use crate::physics::viscous::Slopes;
 use crate::physics::{Conserved, Gas, Newtonian, Primitive};
 
@@ -45,6 +45,8 @@ pub struct EdgeEnd<const D: usize, S = f64> {
     pub state: Primitive<D, S>,
     /// The gradient there.
     pub gradient: Gradient<D, S>,
+    /// How steep the pressure is there, from 0 to 1.
+    pub steepness: S,
     /// −V a: its volume times the weight of the other end in that gradient, turned round.
     pub weight: Vector<D, S>,
     /// Its own velocity w.
@@ -69,7 +71,7 @@ pub fn edge_flux<const D: usize, S: Scalar, F: UpwindFlux<D>, L: Limit>(
     face: &EdgeFace<D, S>,
 ) -> [Conserved<D, S>; 2] {
     let (gas, [a, b]) = (&scheme.gas, ends);
-    let along = ends.map(|end| end.gradient.along(&face.along));
+    let along = ends.map(|end| end.gradient.along(&face.along).times(S::constant(1.0) - end.steepness));
     let sides = scheme.reconstruction.states(gas, scheme.limit, (&a.state, &b.state), (&along[0], &along[1]));
     let (velocity, weight) = (ends.map(|end| end.velocity), ends.map(|end| end.weight));
     let sides = if scheme.reconstruction.low_mach {
@@ -78,6 +80,7 @@ pub fn edge_flux<const D: usize, S: Scalar, F: UpwindFlux<D>, L: Limit>(
         [sides.0, sides.1]
     };
     let upwind = upwind(gas, scheme.flux, &sides, &face.area, &velocity);
+    let upwind = steep(gas, (&sides, &upwind), &face.area, &velocity, a.steepness.max(b.steepness));
     let passing = Passing { state: ends.map(|end| end.state), weight, velocity, area: face.area, sides, upwind };
     let inviscid = match scheme.conservative {
         true => conservative::<D, S, true>(gas, scheme.by_faces, &passing),
@@ -130,6 +133,19 @@ pub(super) fn upwind<const D: usize, S: Scalar, F: UpwindFlux<D>>(
     let f = flux.across(gas, &l.seen_from(&w), &r.seen_from(&w), &m);
     let energy = f.energy + w.dot(&f.momentum) + w.norm_squared() * 0.5 * f.density;
     Conserved { density: f.density, momentum: f.momentum + w * f.density, energy }
+}
+
+/// The upwind flux, on its way to Rusanov's as `steepness` goes from 0 to 1.
+#[inline(always)]
+pub(super) fn steep<const D: usize, S: Scalar>(
+    gas: &Gas,
+    (sides, plain): (&[Primitive<D, S>; 2], &Conserved<D, S>),
+    area: &Vector<D, S>,
+    velocity: &[Vector<D, S>; 2],
+    steepness: S,
+) -> Conserved<D, S> {
+    let damped = upwind(gas, Rusanov, sides, area, velocity);
+    plain.plus(steepness, &damped.minus(plain))
 }
 
 /// With coefficients that let one end gain what the other loses; `by_faces`: these serve as well for what moving ends pass.

@@ -11,7 +11,7 @@ use crate::math::blocks::array;
 use crate::physics::riemann::UpwindFlux;
 use crate::physics::{Conserved, Gas, Newtonian, Primitive};
 
-use super::edge_flux::{FluxScheme, Passing, conservative, consistent, slowed, upwind, viscous};
+use super::edge_flux::{FluxScheme, Passing, conservative, consistent, slowed, steep, upwind, viscous};
 use super::reconstruct::{Gradient, Limit, Reconstruction};
 use super::viscous::slopes;
 
@@ -31,6 +31,8 @@ pub struct Particles<'a, const D: usize> {
     pub state: &'a [Primitive<D>],
     /// Gradients.
     pub gradient: &'a [Gradient<D>],
+    /// How steep the pressure is there, from 0 to 1.
+    pub steepness: &'a [f64],
     /// Velocities of the particles themselves; empty when none moves.
     pub velocity: &'a [Vector<D>],
     /// The outer ones: waves leave through them, which takes the whole jump of the velocity.
@@ -99,6 +101,8 @@ struct Batch<const D: usize> {
     speed: [[Lanes; D]; 2],
     /// Least part of the jump of the normal velocity that counts: 1 beside outer particles.
     whole: Lanes,
+    /// The greater steepness of the two ends.
+    steepness: Lanes,
     /// States on both sides of the middle, the upwind flux there per unit of area, and the result.
     middle: [StateLanes<D>; 2],
     upwind: StateLanes<D>,
@@ -146,6 +150,7 @@ impl<const D: usize> Batch<D> {
         area: [[0.0; LANES]; D],
         speed: [[[0.0; LANES]; D]; 2],
         whole: [0.0; LANES],
+        steepness: [0.0; LANES],
         middle: [StateLanes::ZERO; 2],
         upwind: StateLanes::ZERO,
         out: [StateLanes::ZERO; 2],
@@ -169,6 +174,9 @@ pub fn edge_fluxes<const D: usize, F: UpwindFlux<D>, L: Limit>(
             low_mach_corrections(scheme.gas, &mut batch);
         }
         upwind_fluxes(scheme.gas, scheme.flux, &mut batch);
+        if batch.steepness.iter().any(|s| *s > 0.0) {
+            steep_fluxes(scheme.gas, &mut batch);
+        }
         match (particles.velocity.is_empty(), scheme.conservative) {
             (true, true) => accumulate_residual::<D, false, true>(scheme.gas, scheme.by_faces, &mut batch),
             (true, false) => accumulate_residual::<D, false, false>(scheme.gas, scheme.by_faces, &mut batch),
@@ -209,7 +217,7 @@ fn gather<const D: usize, F, L>(
                 batch.gradient[side].put(k, &p.gradient[i]);
             }
             if scheme.reconstruction.second_order {
-                batch.slope[side].put_primitive(k, &p.gradient[i].along(&d));
+                batch.slope[side].put_primitive(k, &p.gradient[i].along(&d).times(1.0 - p.steepness[i]));
             }
             if !scheme.conservative || !p.velocity.is_empty() {
                 put(&mut batch.weight[side], k, &(*weights[side] * -p.volume[i]));
@@ -220,6 +228,7 @@ fn gather<const D: usize, F, L>(
         }
         put(&mut batch.area, k, &e.s);
         put(&mut batch.along, k, &d);
+        batch.steepness[k] = p.steepness[ends[0]].max(p.steepness[ends[1]]);
         batch.whole[k] = f64::from(u8::from(p.outer.0 <= ends[1] && ends[1] < p.outer.1));
     }
 }
@@ -262,6 +271,18 @@ fn upwind_fluxes<const D: usize, F: UpwindFlux<D>>(gas: Gas, flux: F, batch: &mu
     for k in 0..LANES {
         let sides = [left.primitive(k), right.primitive(k)];
         through.put_conserved(k, &upwind(&gas, flux, &sides, &take(area, k), &pair(speed, k)));
+    }
+}
+
+/// Brings the upwind flux nearer to Rusanov's between steep particles.
+#[multiversion(targets("x86_64+avx2"))]
+#[allow(unsafe_code, reason = "the attribute calls the version that the processor has just been asked for")]
+fn steep_fluxes<const D: usize>(gas: Gas, batch: &mut Batch<D>) {
+    let Batch { area, speed, steepness, middle: [left, right], upwind: through, .. } = batch;
+    for k in 0..LANES {
+        let (sides, plain) = ([left.primitive(k), right.primitive(k)], through.conserved(k));
+        let flux = steep(&gas, (&sides, &plain), &take(area, k), &pair(speed, k), steepness[k]);
+        through.put_conserved(k, &flux);
     }
 }
 

@@ -77,6 +77,7 @@ impl<const D: usize> Fluid<D> {
             volume: &cloud.volume,
             state: &work.state,
             gradient: &work.gradient,
+            steepness: &work.steepness,
             velocity: &frame.velocity,
             outer: (cloud.outer_range().start, cloud.outer_range().end),
         };

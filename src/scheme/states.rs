@@ -129,6 +129,17 @@ impl<const D: usize> Fluid<D> {
                 pressure: t.direction(&g.pressure),
             })
         });
+        self.fill_steepness(frame, work);
+    }
+
+    fn fill_steepness(&self, frame: &Frame<D>, work: &mut Work<D>) {
+        let cloud = &frame.discretisation.cloud;
+        let (state, gradient) = (&work.state, &work.gradient);
+        let (rows, rest) = work.steepness.split_at_mut(cloud.n_rows());
+        sweep(rows, |i| gradient[i].steepness(cloud.spacing[i], state[i].pressure));
+        let rows = &*rows;
+        let ghosts = &mut rest[cloud.outer.len()..];
+        sweep(ghosts, |k| rows.get(cloud.ghosts[k].source as usize).copied().unwrap_or(0.0));
     }
 
     /// Force of the pressure on all bodies in the axes of the case, from the wall states in `work`.

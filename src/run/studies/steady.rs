@@ -43,20 +43,29 @@ pub(crate) fn relax<S: HasGas<D>, const D: usize>(
     };
     let mut relax = Relax::new(system, control(steady, D), u, &system.start(), resume);
     relax.goal = 10f64.powf(-orders);
-    let ending = watched(system, &mut relax, steady.iterations, turn, log, orders)?;
-    match ending {
-        Ending::Stopped => return Ok(None),
-        Ending::Failed(problem) => return Err(log.failed(problem)),
-        Ending::Finished | Ending::Spent | Ending::Paused => {}
-    }
-    if !relax.finished() && !turn.last && relax.resting() >= PATIENCE {
-        let orders = -relax.drop().log10();
-        log.note(&format!(
-            "the flow has not come nearer to a steady one for {PATIENCE} iterations, at {orders:.1} orders: the run goes on from there"
-        ));
-    }
-    let loads = tell(system, &mut relax, turn, log)?;
-    let enough = asked.is_some_and(|asked| accuracy::judge(&asked, loads, log));
+    let mut hurried = !turn.last;
+    let enough = loop {
+        let ending = watched(system, &mut relax, (steady.iterations, hurried), turn, log, orders)?;
+        match ending {
+            Ending::Stopped => return Ok(None),
+            Ending::Failed(problem) => return Err(log.failed(problem)),
+            Ending::Finished | Ending::Spent | Ending::Paused => {}
+        }
+        let loads = tell(system, &mut relax, turn, log)?;
+        let enough = asked.is_some_and(|asked| accuracy::judge(&asked, loads, log));
+        let rests = hurried && !relax.finished() && relax.resting() >= PATIENCE;
+        if !(rests && enough) {
+            if rests {
+                let orders = -relax.drop().log10();
+                log.note(&format!(
+                    "the flow has not come nearer to a steady one for {PATIENCE} iterations, at {orders:.1} orders: the run goes on from there"
+                ));
+            }
+            break enough;
+        }
+        // the last cloud of a family is solved to the end
+        hurried = false;
+    };
     let Standing { frame, state, .. } = relax.standing();
     Ok(Some(Reached { enough, ..Reached::at(frame.clone(), state.to_vec()) }))
 }
@@ -64,7 +73,7 @@ pub(crate) fn relax<S: HasGas<D>, const D: usize>(
 fn watched<S: HasGas<D>, const D: usize>(
     system: &S,
     relax: &mut Relax<'_, S>,
-    iterations: u32,
+    (iterations, hurried): (u32, bool),
     turn: &Turn<'_>,
     log: &mut Log<'_>,
     orders: f64,
@@ -77,7 +86,7 @@ fn watched<S: HasGas<D>, const D: usize>(
     let (mut limit, mut resting) = (Limit { iterations }, Resting { patience: PATIENCE });
     let mut told = Told;
     let mut all: Vec<&mut dyn Observer<S>> = vec![&mut progress, &mut limit, &mut told];
-    if !turn.last {
+    if hurried {
         all.push(&mut resting);
     }
     all.push(&mut checkpoint);
