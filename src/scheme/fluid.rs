@@ -52,6 +52,11 @@ pub trait FarField<const D: usize>: Send + Sync {
     fn state(&self, x: &Vector<D>, force: &Vector<D>) -> Primitive<D>;
     /// Static pressure far away.
     fn pressure(&self) -> f64;
+    /// The velocity at `x` that the circulation of the force adds around bodies that nothing gives one, as they have no edge: such
+    /// a circulation is what a start has left behind. `None` around other bodies.
+    fn stray_velocity(&self, _x: &Vector<D>, _force: &Vector<D>) -> Option<Vector<D>> {
+        None
+    }
 }
 
 /// Storage of an evaluation.

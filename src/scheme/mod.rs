@@ -5,6 +5,7 @@ pub mod balance;
 mod block;
 #[cfg(test)]
 mod built;
+mod circulation;
 pub mod deforming_surface;
 pub mod discretisation;
 pub mod edge_flux;

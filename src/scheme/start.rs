@@ -117,7 +117,9 @@ pub fn start_field<const D: usize>(
 pub struct Stream<const D: usize> {
     free: Primitive<D>,
     lift: Vector<D>,
+    /// That of subsonic plane flow.
     vortex: Option<FarFieldVortex>,
+    lifting: bool,
 }
 
 impl<const D: usize> Stream<D> {
@@ -128,19 +130,23 @@ impl<const D: usize> Stream<D> {
         let state =
             GasState { density: 1.0, velocity: Vector([free.velocity[0], free.velocity[1]]), pressure: free.pressure };
         let mach = free.velocity.norm();
-        let plane = lifting && D == 2 && 0.0 < mach && mach < 1.0;
+        let plane = D == 2 && 0.0 < mach && mach < 1.0;
         let centre = Vector([centre[0], centre[1]]);
         let vortex = plane.then(|| FarFieldVortex::new(state, stream.gamma, 0.0, centre).ok()).flatten();
-        Self { free, lift: stream.axes::<D>().1, vortex }
+        Self { free, lift: stream.axes::<D>().1, vortex, lifting }
+    }
+
+    /// The vortex of a force: lift = ρ V Γ (Kutta, Joukowski).
+    fn vortex_of(&self, force: &Vector<D>) -> Option<FarFieldVortex> {
+        let circulation = force.dot(&self.lift) / (self.free.density * self.free.velocity.norm());
+        self.vortex.map(|vortex| vortex.with_circulation(circulation))
     }
 }
 
 impl<const D: usize> FarField<D> for Stream<D> {
     fn state(&self, x: &Vector<D>, force: &Vector<D>) -> Primitive<D> {
-        let Some(vortex) = self.vortex else { return self.free };
-        // Kutta-Joukowski: lift = ρ V Γ
-        let circulation = force.dot(&self.lift) / (self.free.density * self.free.velocity.norm());
-        let s = vortex.with_circulation(circulation).state(&Vector([x[0], x[1]]));
+        let Some(vortex) = self.vortex_of(force).filter(|_| self.lifting) else { return self.free };
+        let s = vortex.state(&Vector([x[0], x[1]]));
         let velocity = Vector::from_fn(|d| s.velocity[d.min(1)]);
         let q = Primitive { density: s.density, velocity, pressure: s.pressure };
         if q.is_physical() { q } else { self.free }
@@ -148,5 +154,11 @@ impl<const D: usize> FarField<D> for Stream<D> {
 
     fn pressure(&self) -> f64 {
         self.free.pressure
+    }
+
+    fn stray_velocity(&self, x: &Vector<D>, force: &Vector<D>) -> Option<Vector<D>> {
+        let vortex = self.vortex_of(force).filter(|_| !self.lifting)?;
+        let v = vortex.velocity_increment(&Vector([x[0], x[1]]));
+        Some(Vector::from_fn(|d| v[d.min(1)]))
     }
 }

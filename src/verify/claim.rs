@@ -240,6 +240,10 @@ metrics! {
     MeanCl = "mean_cl",
     /// Greatest lift coefficient within that period.
     PeakCl = "peak_cl",
+    /// Greatest pressure on the wall over what Rayleigh's pitot formula gives.
+    PitotPressure = "pitot_pressure",
+    /// Distance on the axis from the bow shock, where the density is half way across a normal shock, to the body, in half chords.
+    StandOff = "stand_off",
     /// Length behind the body over which the gas on its axis runs against the stream, in chords.
     WakeLength = "wake_length",
     /// Mean of `coordinate` of the structure over its last whole cycles, or where it came to rest.

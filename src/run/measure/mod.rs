@@ -1,4 +1,5 @@
 //! What is measured of a finished run: the value of each metric of [`crate::verify`].
+mod axis;
 mod structure;
 
 use std::path::Path;
@@ -20,9 +21,6 @@ use crate::verify::{Claim, Curve, FieldTruth, Loops, Metric, Table, WallTruth, l
 
 /// Part of the chord in which shocks are looked for: away from the suction peak and the trailing edge.
 const SHOCK_WINDOW: (f64, f64) = (0.05, 0.95);
-
-/// Half-width of the strip along the axis of the wake that tells where it ends, in local spacings.
-const AXIS: f64 = 2.0;
 
 /// Height of the boundary layer of Blasius that profiles are compared in, in √(νx/U).
 const LAYER: f64 = 7.0;
@@ -87,6 +85,8 @@ impl Measured {
             Metric::MeanCl => self.last_period().map(|p| p.mean_cl),
             Metric::PeakCl => self.last_period().map(|p| p.peak_cl),
             Metric::WakeLength => self.wake_length(),
+            Metric::PitotPressure => self.pitot_pressure(),
+            Metric::StandOff => self.stand_off(),
             Metric::DragSecondHarmonic => Ok(harmonic(&self.loops.cd, 2).norm()),
             Metric::ThinLiftAmplitude => self.thin(others, Self::lift).map(|c| c.norm()),
             Metric::ThinLiftPhase => self.thin(others, Self::lift).map(|c| c.arg().to_degrees()),
@@ -199,27 +199,6 @@ impl Measured {
     /// Length of the Reynolds number, and of frequencies.
     fn chord(&self) -> f64 {
         self.summary.chord
-    }
-
-    /// From the rear of the bodies to where the gas on their axis turns back into the stream, in chords (plane flow).
-    fn wake_length(&self) -> Value {
-        let stream = self.stream().velocity;
-        let along = stream * (1.0 / stream.norm());
-        let across = Vector([-along[1], along[0], 0.0]);
-        let centre = self.body_centre();
-        let rear = self.wall.x.iter().map(|x| (*x - centre).dot(&along)).fold(f64::NEG_INFINITY, f64::max);
-        let (velocity, spacing) = (self.column("velocity")?, self.column("spacing")?);
-        let mut samples = Vec::new();
-        for i in self.fluid()? {
-            let d = Vector(self.field.points[i]) - centre;
-            let v = Vector::<3>::from_fn(|k| velocity[3 * i + k]);
-            let (x, y) = (d.dot(&along) - rear, d.dot(&across));
-            if x > 0.0 && y.abs() <= AXIS * spacing[i] {
-                samples.push([x, y, v.dot(&along)]);
-            }
-        }
-        let end = metrics::wake_end(&samples).ok_or("no gas behind the body runs against the stream")?;
-        Ok(end / self.chord())
     }
 
     /// A load on a section of no thickness, by the polynomial through this one and the others.

@@ -66,8 +66,11 @@ pub(crate) fn relax<S: HasGas<D>, const D: usize>(
         // the last cloud of a family is solved to the end
         hurried = false;
     };
-    let Standing { frame, state, .. } = relax.standing();
-    Ok(Some(Reached { enough, ..Reached::at(frame.clone(), state.to_vec()) }))
+    let Standing { frame, state, work } = relax.standing();
+    let mut reached = Reached { enough, ..Reached::at(frame.clone(), state.to_vec()) };
+    let (gas, own) = (system.gas(), system.gas_unknowns());
+    gas.without_circulation(system.gas_frame(frame), system.gas_work(work), &mut reached.state[own]);
+    Ok(Some(reached))
 }
 
 fn watched<S: HasGas<D>, const D: usize>(
