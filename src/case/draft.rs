@@ -5,6 +5,7 @@ use std::ops::Range;
 use serde_json::{Value, json};
 
 use super::error::{CaseError, quote};
+use super::read::with_point;
 
 /// Values in base units with defaults, places by key path, mistakes.
 pub(super) struct Draft<'t> {
@@ -52,8 +53,22 @@ impl<'t> Draft<'t> {
         errors.retain(|e| !broken.contains(&line(e.span.start)));
         self.errors = errors;
         for error in syntax {
-            self.fail_at("", error.span().unwrap_or(0..0), format!("this is not TOML: {}", error.message()));
+            let span = error.span().unwrap_or(0..0);
+            match self.decimal_comma(span.start) {
+                Some(point) => self
+                    .fail_at("", span, "a number has a decimal comma")
+                    .hint(format!("write decimals with a point, `{point}`")),
+                None => self.fail_at("", span, format!("this is not TOML: {}", error.message())),
+            };
         }
+    }
+
+    /// The value with a point in place of the decimal comma that is at, or just before, byte `at`.
+    fn decimal_comma(&self, at: usize) -> Option<String> {
+        let line_start = self.text.get(..at)?.rfind('\n').map_or(0, |i| i + 1);
+        let line = self.text.get(line_start..)?.lines().next()?;
+        let value = line.split_once('=')?.1.split('#').next()?.trim();
+        with_point(value).filter(|_| value.chars().all(|c| c.is_ascii_digit() || "+-,eE".contains(c)))
     }
 
     /// True when `path` was written in the file.

@@ -20,6 +20,8 @@ pub(super) struct Field {
     pub(super) key: &'static str,
     /// A second spelling.
     pub(super) alias: Option<&'static str>,
+    /// What other programs call it: no keys, but words that are answered with this one.
+    pub(super) synonyms: &'static [&'static str],
     /// Meaning, one or two sentences.
     pub(super) doc: &'static str,
     /// What the key holds.
@@ -154,6 +156,12 @@ impl Table {
         self.fields.iter().find(|f| f.key == key || f.alias == Some(key))
     }
 
+    /// The name of the field that other programs call `word`.
+    pub(super) fn meant_by(&self, word: &str) -> Option<&'static str> {
+        let word = word.to_lowercase().replace('-', "_");
+        self.fields.iter().find(|f| f.synonyms.contains(&word.as_str())).map(|f| f.alias.unwrap_or(f.key))
+    }
+
     /// The table of an empty document: all defaults.
     pub(super) fn defaults(&self) -> Map<String, Value> {
         self.fields.iter().filter_map(|f| Some((f.key.to_owned(), f.default_value()?))).collect()
@@ -163,22 +171,28 @@ impl Table {
 impl Field {
     /// A key that must be given.
     pub(super) const fn required(key: &'static str, kind: Kind, doc: &'static str) -> Self {
-        Self { key, alias: None, doc, kind, default: Absent::Required }
+        Self { key, alias: None, synonyms: &[], doc, kind, default: Absent::Required }
     }
 
     /// A key that may be absent; `meaning` says what happens then.
     pub(super) const fn optional(key: &'static str, kind: Kind, meaning: &'static str, doc: &'static str) -> Self {
-        Self { key, alias: None, doc, kind, default: Absent::Nothing(meaning) }
+        Self { key, alias: None, synonyms: &[], doc, kind, default: Absent::Nothing(meaning) }
     }
 
     /// A key with a default.
     pub(super) const fn defaulted(key: &'static str, kind: Kind, default: Absent, doc: &'static str) -> Self {
-        Self { key, alias: None, doc, kind, default }
+        Self { key, alias: None, synonyms: &[], doc, kind, default }
     }
 
     /// The same key with a second spelling.
     pub(super) const fn alias(mut self, alias: &'static str) -> Self {
         self.alias = Some(alias);
+        self
+    }
+
+    /// The same key, which other programs call by these names.
+    pub(super) const fn known_as(mut self, synonyms: &'static [&'static str]) -> Self {
+        self.synonyms = synonyms;
         self
     }
 

@@ -21,7 +21,7 @@ impl<const D: usize> Cloud<D> {
     /// Builds a cloud around a surface, or in the domain alone; `extra` are sources of refinement that follow the solution.
     pub fn build(spec: &CloudSpec<D>, surface: Option<&Surface<D>>, extra: &[Source<D>]) -> Result<Self, CloudError> {
         let layout = Layout::new(spec, surface)?;
-        let tree = Arc::new(background(spec, &layout, surface, extra));
+        let tree = Arc::new(background(spec, &layout, surface, extra)?);
         let transforms = layout.transforms();
         let mut particles = Particles::fill(tree, &layout, &transforms, spec, surface);
         if particles.n_fluid == 0 {

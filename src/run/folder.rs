@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::error::RunError;
 use super::record::saved;
-use crate::case::{Case, read, write};
+use crate::case::{Case, read, text_of, write};
 use crate::observe::write_atomic;
 
 /// Where the folder of the case file is noted.
@@ -125,8 +125,7 @@ fn absolute(folder: &Path) -> std::io::Result<PathBuf> {
 /// The case of a run folder, and the folder its file names refer to.
 pub(crate) fn read_case(out: &Path) -> Result<(Case, PathBuf), RunError> {
     let path = out.join("case.toml");
-    let text =
-        fs::read_to_string(&path).map_err(|source| RunError::NoRun { folder: out.display().to_string(), source })?;
+    let text = plain(&path).map_err(|source| RunError::NoRun { folder: out.display().to_string(), source })?;
     let case = read(&text, &path.display().to_string())?;
     let origin = fs::read_to_string(out.join(ORIGIN)).unwrap_or_default();
     Ok((case, PathBuf::from(origin.trim())))
@@ -147,5 +146,10 @@ pub(crate) fn check_input(case: &Case, input: &Path, out: &Path) -> Result<(), R
 
 /// Text of a file that a case or a run refers to.
 pub(crate) fn text(folder: &Path, name: &str) -> std::io::Result<String> {
-    fs::read_to_string(folder.join(name))
+    plain(&folder.join(name))
+}
+
+/// Text of a file, however it is encoded.
+fn plain(path: &Path) -> std::io::Result<String> {
+    text_of(&fs::read(path)?).map_err(|e| std::io::Error::new(ErrorKind::InvalidData, e))
 }
