@@ -21,6 +21,7 @@ pub(super) fn contradictions(draft: &mut Draft<'_>) {
     }
     domain(draft);
     accuracy(draft, dimension.unwrap_or(2));
+    doubtful(draft);
     time(draft);
     super::motion_check::contradictions(draft, dimension);
     super::motion_check::viscosity(draft);
@@ -158,6 +159,26 @@ fn dimension(draft: &mut Draft<'_>) -> Option<usize> {
         tree.insert("dimension".to_owned(), json!(d));
     }
     agreed.then_some(d as usize)
+}
+
+/// Values that are possible, but hardly meant.
+fn doubtful(draft: &mut Draft<'_>) {
+    /// Temperature in kelvin below which a number without unit is taken for one in degrees.
+    const COLD: f64 = 100.0;
+    /// Reynolds number that no laminar layer on a body survives (Schlichting and Gersten, Boundary-Layer Theory, 15.1).
+    const NEVER_LAMINAR: f64 = 1e7;
+    let bare = !draft.has_unit("flow.temperature");
+    if let Some(t) = draft.number("flow.temperature").filter(|t| bare && *t < COLD) {
+        let message = format!("`flow.temperature` is {t} without a unit, which would be {t} K");
+        draft.fail("flow.temperature", message).hint(format!("write `\"{t} degC\"` or `\"{t} K\"`"));
+    }
+    if let Some(re) = draft.number("flow.reynolds").filter(|re| *re > NEVER_LAMINAR && draft.given("body")) {
+        let message = format!("at a Reynolds number of {re:e} the boundary layers are turbulent, which this program cannot compute");
+        draft
+            .fail("flow.reynolds", message)
+            .allowed(format!("at most {NEVER_LAMINAR:e}"))
+            .hint("leave `reynolds` out for a gas without viscosity, whose pressures are closer to those of so thin a layer");
+    }
 }
 
 /// `mach` or `velocity`; none or two of pressure, temperature and density.

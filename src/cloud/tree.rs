@@ -76,7 +76,8 @@ impl<const D: usize> Tree<D> {
         most: usize,
         wanted: impl Fn(&Vector<D>, f64) -> bool + Sync,
     ) -> Option<Self> {
-        let count: u32 = forest.roots.iter().product();
+        let count = forest.roots.iter().map(|r| u64::from(*r)).product::<u64>();
+        let count = u32::try_from(count).ok().filter(|n| (*n as usize) <= most)?;
         let max_level = forest.max_level();
         let root = |k| Node { first_child: NONE, level: 0, anchor: root_cell(k, &forest.roots).map(|c| c << max_level) };
         let nodes = (0..count).map(root).collect();

@@ -135,6 +135,14 @@ pub enum RunError {
     /// The checkpoint stands at a stage that the run does not have.
     #[error("the checkpoint names no stage")]
     NoStage,
+    /// The case asks for something that no body or wave could be seen with.
+    #[error("{what}\nhint: {hint}")]
+    Senseless {
+        /// What.
+        what: String,
+        /// What may help.
+        hint: &'static str,
+    },
     /// The case asks for something that can be written down but not yet computed.
     #[error("{what}\nhint: {hint}")]
     Unsupported {

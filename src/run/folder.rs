@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::error::RunError;
 use super::record::saved;
-use crate::case::{Case, read, text_of, write};
+use crate::case::{Case, Compare, read, text_of, write};
 use crate::observe::write_atomic;
 
 /// Where the folder of the case file is noted.
@@ -141,6 +141,19 @@ pub(crate) fn check_input(case: &Case, input: &Path, out: &Path) -> Result<(), R
     Err(RunError::Folder {
         what: format!("the case of this run names the files {missing}, which are not in `{input}`"),
         hint: format!("put them back, or write the folder they are in now into `{}`", out.join(ORIGIN).display()),
+    })
+}
+
+/// Refuses a case that compares itself with files that are not there.
+pub(crate) fn check_compared(case: &Case, input: &Path) -> Result<(), RunError> {
+    let gone = |c: &&Compare| !input.join(&c.file).is_file();
+    let missing: Vec<String> = case.compare.iter().filter(gone).map(|c| format!("`{}`", c.file)).collect();
+    if missing.is_empty() {
+        return Ok(());
+    }
+    Err(RunError::Folder {
+        what: format!("`[[compare]]` names files that are not there: {}", missing.join(", ")),
+        hint: format!("paths are relative to the case file, in `{}`", input.display()),
     })
 }
 

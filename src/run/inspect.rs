@@ -11,6 +11,7 @@ use super::look::load_axes;
 use super::recipe;
 use super::setup::{self, Site, Solver, check_motion};
 use super::stage::Stage;
+use super::understood::{Fact, facts};
 use crate::case::Case;
 use crate::cloud::Diagnosis;
 use crate::geometry::dimension;
@@ -40,8 +41,8 @@ pub struct CloudReport {
     pub spacing: (f64, f64),
     /// Largest condition number of a fit.
     pub worst_condition: f64,
-    /// Chord that loads are referred to; absent without bodies.
-    pub chord: Option<f64>,
+    /// What was understood of the case: stream, reference values, bodies, times.
+    pub facts: Vec<Fact>,
     /// Seconds that building took.
     pub seconds: f64,
     /// Memory that a run will need.
@@ -67,6 +68,8 @@ fn look<const D: usize>(case: &Case, input: &Path, out: Option<&Path>) -> Result
     let filled = accuracy::with_cloud(case, surface.as_ref());
     let case = filled.as_ref();
     let motions = setup::motions(case, input, surface.as_ref())?;
+    folder::check_compared(case, input)?;
+    notes.extend(setup::sane(case, surface.as_ref(), &motions)?);
     let site = Site { case, surface: surface.as_ref(), motions: &motions };
     let solver = setup::solver(&site, &Stage::PLAIN, &[], None)?;
     let seconds = began.elapsed().as_secs_f64();
@@ -85,12 +88,10 @@ fn look<const D: usize>(case: &Case, input: &Path, out: Option<&Path>) -> Result
     let counts: Vec<usize> = (0..cloud.n_rows()).map(|i| cloud.neighbours.of(i).len()).collect();
     notes.extend(cloud.notes.iter().cloned().chain(cloud.early_ends()));
     notes.extend(check_motion(case, cloud, &motions)?);
-    let chord = (!cloud.interface.is_empty()).then(|| {
-        let axes = load_axes(case, surface.as_ref());
-        axes.axes(&fluid.view(&frame, u, &mut work)).chord
-    });
+    let axes = (!cloud.interface.is_empty())
+        .then(|| load_axes(case, surface.as_ref()).axes(&fluid.view(&frame, u, &mut work)));
     let report = CloudReport {
-        chord,
+        facts: facts(case, surface.as_ref(), &motions, axes.as_ref()),
         particles: cloud.n_real(),
         fluid: cloud.n_fluid,
         interface: cloud.interface.len(),

@@ -24,13 +24,14 @@ mod session;
 mod setup;
 mod stage;
 mod studies;
+mod understood;
 pub mod verify;
 mod watch;
 
 use std::path::Path;
 
 use crate::case::Case;
-use crate::cloud::{Cloud, CloudSpec};
+use crate::cloud::Cloud;
 use crate::geometry::Surface;
 use crate::scheme::Fluid;
 
@@ -45,6 +46,7 @@ pub use record::crosscheck::{Apart as LoadsApart, LoadCrosscheck};
 pub use record::summary::{Apart, BalanceReport, Ledger, MarchingCheck, Reclouding, Summary};
 pub use record::trace::{Change, FirstHarmonics, LastPeriod};
 pub use session::{Outcome, Session};
+pub use understood::Fact;
 
 use record::saved::Saved;
 use session::Origin;
@@ -52,6 +54,7 @@ use stage::Stage;
 
 /// Runs a case into a fresh folder.
 pub fn run(case: &Case, places: &Places, monitor: &mut dyn Monitor) -> Result<Outcome, RunError> {
+    folder::check_compared(case, &places.input)?;
     let session = Session::open(case, &places.input)?;
     begin(case, places, monitor)?;
     session.kept_in(&places.out).solve(monitor)
@@ -121,7 +124,7 @@ pub fn build_cloud<const D: usize>(
 ) -> Result<(Option<Surface<D>>, Cloud<D>, Vec<String>), RunError> {
     let (surface, notes) = setup::surface::<D>(case, input)?;
     let case = accuracy::with_cloud(case, surface.as_ref());
-    let cloud = Cloud::build(&CloudSpec::of_case(&case), surface.as_ref(), &[])?;
+    let cloud = Cloud::build(&setup::spec(&case), surface.as_ref(), &[])?;
     Ok((surface, cloud, notes))
 }
 

@@ -44,10 +44,8 @@ pub(crate) fn describe(r: &CloudReport) -> String {
         r.spacing.1,
         r.worst_condition
     );
-    if let Some(chord) = r.chord {
-        // without the round-off of the last digits
-        let chord: f64 = format!("{chord:.11e}").parse().unwrap_or(chord);
-        text += &format!("chord          {chord} (reference of loads)\n");
+    for (what, value) in &r.facts {
+        text += &format!("{what:<15}{value}\n");
     }
     text += &format!(
         "built in       {:.2} s\nmemory         about {:.0} MB\ntime           about {}\n",
