@@ -110,6 +110,19 @@ impl<'t> Draft<'t> {
         self.get(path).and_then(Value::as_array).map_or(0, Vec::len)
     }
 
+    /// Calls bodies in messages by their names, as every other message does: `body-1.chord` is `chord` of the first `[[body]]`.
+    pub(super) fn name_bodies(&mut self) {
+        for i in 0..self.count("body") {
+            let given = self.get(&format!("body[{i}].name")).and_then(Value::as_str);
+            let name = given.map_or_else(|| default_name(i), str::to_owned);
+            let (path, name) = (format!("`body[{i}]"), format!("`{name}"));
+            for error in &mut self.errors {
+                error.message = error.message.replace(&path, &name);
+                error.hint = error.hint.take().map(|h| h.replace(&path, &name));
+            }
+        }
+    }
+
     /// Adds a mistake about the value at `path`, or about the table that lacks it.
     pub(super) fn fail(&mut self, path: &str, message: impl Into<String>) -> &mut CaseError {
         let span = match self.places.get(path) {
@@ -161,6 +174,11 @@ impl<'t> Draft<'t> {
         }
         0..0
     }
+}
+
+/// Name of a body that has none.
+pub(super) fn default_name(body: usize) -> String {
+    format!("body-{}", body + 1)
 }
 
 /// The candidate that `word` was probably meant to be.

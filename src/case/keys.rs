@@ -240,15 +240,14 @@ static BODY: Table = Table::of(&[
         "Motion of this body in place of that of `[motion]`, whose frequency it takes when it has none; `motion = {}` keeps \
          the body at rest.",
     ),
-]);
+])
+.with_one_of(&["naca", "airfoil", "polygon", "circle", "ellipse", "sphere", "box", "surface"]);
 
-static NACA: Table = Table {
-    fields: &[
-        Field::required("digits", Kind::Text, "The four digits."),
-        Field::defaulted("trailing_edge", Kind::Words(TRAILING_EDGES), Absent::Word("closed"), "How the section ends."),
-    ],
-    shorthand: Some("digits"),
-};
+static NACA: Table = Table::of(&[
+    Field::required("digits", Kind::Matching("^[0-9].{3,}$"), "The four digits."),
+    Field::defaulted("trailing_edge", Kind::Words(TRAILING_EDGES), Absent::Word("closed"), "How the section ends."),
+])
+.short("digits");
 
 const TRAILING_EDGES: &[(&str, &str)] = &[
     ("closed", "last thickness coefficient -0.1036: both sides meet at x/c = 1"),

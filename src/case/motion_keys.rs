@@ -140,10 +140,9 @@ const PHASE: Field =
     Field::defaulted("phase", ANGLE, Absent::Number(0.0), "Phase at t = 0; `\"90 deg\"` makes the sine a cosine.");
 
 static PITCH_KEYS: Table =
-    Table { fields: &[Field::required("amplitude", ANGLE, "Amplitude."), PHASE], shorthand: Some("amplitude") };
+    Table::of(&[Field::required("amplitude", ANGLE, "Amplitude."), PHASE]).short("amplitude");
 
-static PLUNGE_KEYS: Table = Table {
-    fields: &[
+static PLUNGE_KEYS: Table = Table::of(&[
         Field::required("amplitude", LENGTH, "Amplitude of the displacement."),
         PHASE,
         Field::optional(
@@ -152,27 +151,19 @@ static PLUNGE_KEYS: Table = Table {
             "up: +y in 2-D, +z in 3-D",
             "Direction of positive displacement; its length does not matter.",
         ),
-    ],
-    shorthand: Some("amplitude"),
-};
+    ]).short("amplitude");
 
-static ROTATION_KEYS: Table = Table {
-    fields: &[Field::required(
+static ROTATION_KEYS: Table = Table::of(&[Field::required(
         "rate",
         Kind::Quantity(Rate::DIMENSION, Range::ANY),
         "Rate; a plain number is radians per unit of time.",
-    )],
-    shorthand: Some("rate"),
-};
+    )]).short("rate");
 
-static TRANSLATION_KEYS: Table = Table {
-    fields: &[Field::required(
+static TRANSLATION_KEYS: Table = Table::of(&[Field::required(
         "velocity",
         Kind::List(&List { item: Kind::Quantity(Velocity::DIMENSION, Range::ANY), min: 2, max: 3, single: false }),
         "Velocity.",
-    )],
-    shorthand: Some("velocity"),
-};
+    )]).short("velocity");
 
 const fn column(key: &'static str, item: &'static List, doc: &'static str) -> Field {
     Field::optional(key, Kind::List(item), "zero", doc)
@@ -183,8 +174,7 @@ static ANGLES: List =
     List { item: Kind::Quantity(Angle::DIMENSION, Range::ANY), min: 2, max: usize::MAX, single: false };
 static TIMES: List = List { item: Kind::Quantity(Time::DIMENSION, Range::ANY), min: 2, max: usize::MAX, single: false };
 
-static TABLE_KEYS: Table = Table {
-    fields: &[
+static TABLE_KEYS: Table = Table::of(&[
         Field::optional(
             "file",
             Kind::Text,
@@ -203,9 +193,7 @@ static TABLE_KEYS: Table = Table {
             "The table repeats, its last row is its first one a period later; else it begins and ends at rest and its \
              ends are held.",
         ),
-    ],
-    shorthand: Some("file"),
-};
+    ]).short("file");
 
 pub(super) const MODE_FILE: Field = Field::required(
     "file",
@@ -243,11 +231,8 @@ pub(super) const WALL: &[Variant] = &[
     ),
 ];
 
-static WALL_TEMPERATURE: Table = Table {
-    fields: &[Field::required(
+static WALL_TEMPERATURE: Table = Table::of(&[Field::required(
         "value",
         Kind::Quantity(super::quantity::Temperature::DIMENSION, Range::POSITIVE),
         "Temperature; over that of the free stream, without unit, when the free stream has none.",
-    )],
-    shorthand: Some("value"),
-};
+    )]).short("value");

@@ -35,6 +35,7 @@ pub fn read(text: &str, name: &str) -> Result<Case, CaseErrors> {
             Err(error) => draft.fail("", format!("the case does not fit together: {error}")),
         };
     }
+    draft.name_bodies();
     Err(CaseErrors::new(name, text, draft.errors))
 }
 
@@ -105,7 +106,7 @@ impl Reader<'_> {
             (Kind::IntegerOr(_, _, word), DeValue::String(text)) if text.as_ref() == *word => Some(json!(word)),
             (Kind::IntegerOr(min, max, _), value) => self.whole(kind, (*min, *max), number(value), item, path),
             (Kind::Flag, DeValue::Boolean(flag)) => Some(json!(flag)),
-            (Kind::Text, DeValue::String(text)) if !text.trim().is_empty() => Some(json!(text)),
+            (Kind::Text | Kind::Matching(_), DeValue::String(text)) if !text.trim().is_empty() => Some(json!(text)),
             (Kind::Words(words), DeValue::String(text)) => {
                 let names: Vec<_> = words.iter().map(|w| w.0).collect();
                 self.word(&names, text, item, path).map(|i| json!(names[i]))

@@ -12,6 +12,8 @@ pub(super) struct Table {
     pub(super) fields: &'static [Field],
     /// Key that a bare value stands for: `naca = "0012"` is `naca = { digits = "0012" }`.
     pub(super) shorthand: Option<&'static str>,
+    /// Keys of which exactly one must be given.
+    pub(super) one_of: &'static [&'static str],
 }
 
 /// One key of a table.
@@ -44,6 +46,8 @@ pub(super) enum Kind {
     Flag,
     /// Any text but the empty one.
     Text,
+    /// A text that editors know to be wrong where it does not match this regular expression.
+    Matching(&'static str),
     /// One of several words.
     Words(&'static [(&'static str, &'static str)]),
     /// A list of `min` to `max` items.
@@ -148,7 +152,19 @@ impl Range {
 impl Table {
     /// A table whose keys are `fields`.
     pub(super) const fn of(fields: &'static [Field]) -> Self {
-        Self { fields, shorthand: None }
+        Self { fields, shorthand: None, one_of: &[] }
+    }
+
+    /// The same, which a bare value of `key` stands for.
+    pub(super) const fn short(mut self, key: &'static str) -> Self {
+        self.shorthand = Some(key);
+        self
+    }
+
+    /// The same with exactly one of `keys`.
+    pub(super) const fn with_one_of(mut self, keys: &'static [&'static str]) -> Self {
+        self.one_of = keys;
+        self
     }
 
     /// The field called `key`, by either of its names.
@@ -278,7 +294,7 @@ impl Kind {
             Self::Integer(min, max) => format!("a whole number from {min} to {max}"),
             Self::IntegerOr(min, max, word) => format!("a whole number from {min} to {max} or `\"{word}\"`"),
             Self::Flag => "`true` or `false`".to_owned(),
-            Self::Text => "a text in quotes".to_owned(),
+            Self::Text | Self::Matching(_) => "a text in quotes".to_owned(),
             Self::Words(words) => one_of(words.iter().map(|w| w.0)),
             Self::List(list) => list.words(),
             Self::Table(table) => match table.shorthand.and_then(|key| table.field(key)) {

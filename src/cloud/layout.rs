@@ -194,6 +194,29 @@ fn reaches<const D: usize>(
     )))
 }
 
+/// Tells where the surface is more strongly curved than the cloud is allowed to follow.
+pub fn capped<const D: usize>(spec: &CloudSpec<D>, surface: &Surface<D>) -> Option<String> {
+    let finest = finest(spec);
+    let sharper = |a: &u32, b: &u32| surface.radius[*a as usize].total_cmp(&surface.radius[*b as usize]);
+    let sharpest = (0..surface.elements.len() as u32).min_by(sharper)?;
+    let radius = surface.radius[sharpest as usize];
+    if radius >= finest {
+        return None;
+    }
+    let x = surface.corners(sharpest)[0];
+    let levels = (spec.spacing / (spec.curvature * radius).max(f64::MIN_POSITIVE)).log2().ceil();
+    Some(format!(
+        "near {:?} the surface is rounded with a radius of {radius:.2e}, but no spacing is finer than {finest:.2e}: \
+         `cloud.curvature_levels = {levels}` follows it (now {})",
+        x.0, spec.curvature_levels
+    ))
+}
+
+/// The finest spacing that curvature may ask for.
+fn finest<const D: usize>(spec: &CloudSpec<D>) -> f64 {
+    spec.spacing / f64::from(1u32 << spec.curvature_levels)
+}
+
 fn user_boxes<const D: usize>(spec: &CloudSpec<D>, surface: Option<&Surface<D>>) -> Vec<SourceBox<D>> {
     let mut boxes = spec.boxes.clone();
     if let (Some(wake), Some(surface)) = (&spec.wake, surface) {
@@ -208,7 +231,7 @@ fn user_boxes<const D: usize>(spec: &CloudSpec<D>, surface: Option<&Surface<D>>)
 /// Points of the surface with the spacing that the specification, the curvature and sharp edges ask for.
 fn surface_sources<const D: usize>(cloud: &CloudSpec<D>, surface: &Surface<D>, points: &mut Vec<Source<D>>) {
     let base = cloud.spacing;
-    let finest = base / f64::from(1u32 << cloud.curvature_levels);
+    let finest = finest(cloud);
     points.extend(surface.samples(0.5 * base, |x, radius| {
         let spacing = (cloud.curvature * radius).clamp(finest, base);
         Source { x: *x, spacing, layers: cloud.layers }

@@ -94,6 +94,14 @@ pub enum RunError {
         /// What is different.
         problem: String,
     },
+    /// A checkpoint with numbers that no run writes.
+    #[error("`{file}` was not written by a run of this case: {problem}\nhint: put back the file as it was, or start the run again")]
+    Untrue {
+        /// Name of the checkpoint.
+        file: &'static str,
+        /// What is wrong.
+        problem: &'static str,
+    },
     /// A picture or the report could not be written.
     #[error(transparent)]
     Report(#[from] ReportError),

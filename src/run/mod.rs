@@ -9,6 +9,7 @@
 //! end), `files`, `watch` (one loop that drives any integrator, and those who watch it), `studies` (what is done on a cloud),
 //! `session`; on top of it [`gaf`] and [`verify`].
 mod accuracy;
+mod cost;
 mod error;
 mod files;
 mod folder;
@@ -35,6 +36,7 @@ use crate::cloud::Cloud;
 use crate::geometry::Surface;
 use crate::scheme::Fluid;
 
+pub use cost::Cost;
 pub use error::RunError;
 pub use folder::{Places, fresh_folder};
 pub use inspect::{CloudReport, inspect};
@@ -83,7 +85,7 @@ pub fn run_from(case: &Case, places: &Places, from: &Path, monitor: &mut dyn Mon
             hint: "start from a run on the same cloud, or without `--from`",
         });
     }
-    let saved = Saved::read(from)?;
+    let saved = Saved::read(from)?.trusted(&other)?;
     let last = saved.stages.get(saved.stage).is_some_and(|s| s.factor == 1.0);
     if !last || saved.lagrangian.is_some() {
         return Err(RunError::OtherRun {
@@ -112,7 +114,7 @@ pub fn resume(out: &Path, monitor: &mut dyn Monitor) -> Result<Outcome, RunError
     }
     folder::check_input(&case, &input, out)?;
     folder::check_begun(out)?;
-    let saved = Saved::read(out)?;
+    let saved = Saved::read(out)?.trusted(&case)?;
     folder::reopen(out)?;
     Session::open(&case, input)?.kept_in(out).from(Origin::Own(Box::new(saved))).solve(monitor)
 }

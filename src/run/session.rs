@@ -335,9 +335,11 @@ impl<S: HasGas<D>, const D: usize> Begun<S, D> {
     /// A stage that goes on where a checkpoint stands.
     fn resumed(mut solver: Solver<S, D>, saved: Saved) -> Result<Self, RunError> {
         // particles that travel are elsewhere by now
-        if let Some(fluid) = saved.lagrangian.map(|r| r.resume(solver.system.gas())).transpose()?.flatten() {
+        let travelled = saved.lagrangian.as_ref().map(|r| r.resume(solver.system.gas()));
+        if let Some(fluid) = travelled.transpose()?.flatten() {
             solver.system.set_gas(fluid);
         }
+        saved.fits(solver.system.len())?;
         Ok(Self { solver, start: Start::Resume(saved.state, saved.memory) })
     }
 }
