@@ -51,7 +51,8 @@ impl Estimate {
         if sum <= TRUST * most as f64 {
             return Ok(());
         }
-        Err(self.refused(format!("about {sum:.1e}"), most))
+        let about = if sum.is_finite() { format!("about {sum:.1e}") } else { "countless".to_owned() };
+        Err(self.refused(about, most))
     }
 
     /// Cells that a tree of at most `most` particles has.

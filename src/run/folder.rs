@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use super::error::RunError;
 use super::record::saved;
 use crate::case::{Case, Compare, read, text_of, write};
+use crate::observe::table::UNFINISHED;
 use crate::observe::write_atomic;
 
 /// Where the folder of the case file is noted.
@@ -37,6 +38,7 @@ pub(crate) fn create(case: &Case, input: &Path, out: &Path) -> Result<bool, RunE
     if used && !is_barely_begun(out) {
         return Err(occupied(out));
     }
+    unfinished_files(out).iter().for_each(|file| fs::remove_file(file).unwrap_or_default());
     fs::create_dir_all(out.join("pictures")).map_err(|e| RunError::Folder {
         what: format!("cannot make the run folder `{named}`: {e}"),
         hint: "choose a writable place with `--out`".into(),
@@ -80,8 +82,12 @@ pub(crate) fn finish(out: &Path) -> Result<(), RunError> {
     }
 }
 
-/// Takes the mark from a run that goes on.
+/// Takes the mark from a run that goes on, and the files that it was writing when it was killed.
 pub(crate) fn reopen(out: &Path) -> Result<(), RunError> {
+    for unfinished in unfinished_files(out) {
+        // whoever may not remove it is told so with the mark below
+        let _ = fs::remove_file(unfinished);
+    }
     match fs::remove_file(out.join(FINISHED)) {
         Err(e) if e.kind() != ErrorKind::NotFound => Err(RunError::Folder {
             what: format!("cannot go on in the run folder `{}`: {e}", out.display()),
@@ -89,6 +95,16 @@ pub(crate) fn reopen(out: &Path) -> Result<(), RunError> {
         }),
         _ => Ok(()),
     }
+}
+
+/// Files of a run folder that were not renamed to their names.
+fn unfinished_files(out: &Path) -> Vec<PathBuf> {
+    let listed = |folder: PathBuf| fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path());
+    let unfinished = |path: &PathBuf| {
+        let name = path.file_name().map_or_else(Default::default, |n| n.to_string_lossy());
+        name.starts_with(UNFINISHED.0) && name.ends_with(UNFINISHED.1)
+    };
+    [out.to_path_buf(), out.join("pictures")].into_iter().flat_map(listed).filter(unfinished).collect()
 }
 
 /// The summary of a run that is finished; `None` where it is not, or its case was changed since.

@@ -339,7 +339,7 @@ impl<S: HasGas<D>, const D: usize> Begun<S, D> {
         if let Some(fluid) = travelled.transpose()?.flatten() {
             solver.system.set_gas(fluid);
         }
-        saved.fits(solver.system.len())?;
+        saved.fits(solver.system.fields())?;
         Ok(Self { solver, start: Start::Resume(saved.state, saved.memory) })
     }
 }

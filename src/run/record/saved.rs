@@ -252,6 +252,8 @@ pub(crate) struct Saved {
     pub(crate) wall_seconds: f64,
     /// Work done before, see [`super::summary::Work`].
     pub(crate) work: u64,
+    /// Linear iterations of the stage.
+    pub(crate) linear: u32,
     /// Particles that travel with the fluid.
     pub(crate) lagrangian: Option<LagrangianCheckpoint>,
     /// Sources of refinement, flat.
@@ -286,7 +288,7 @@ impl Saved {
             time_bits: self.time.to_bits(),
             cfl_bits: relax.cfl.to_bits(),
             first_norm_bits: relax.first_norm.to_bits(),
-            linear: relax.linear,
+            linear: self.linear,
             newton: relax.phase.newton,
             phase_age: relax.phase.age,
             phase_best_bits: relax.phase.best.to_bits(),
@@ -361,6 +363,7 @@ impl Saved {
             cpu_seconds: m.cpu_seconds,
             wall_seconds: m.wall_seconds,
             work: m.work,
+            linear: m.linear,
             sources: part("sources")?,
         })
     }

@@ -4,6 +4,7 @@ use crate::case::Case;
 use crate::run::error::RunError;
 use crate::run::recipe;
 use crate::run::stage::{Stage, Task};
+use crate::system::{Field, unknowns};
 use crate::time::Memory;
 
 /// Greatest number of stages of any plan: cycles of adaptation, harmonics one by one, clouds of a family.
@@ -22,17 +23,17 @@ impl Saved {
         Ok(self)
     }
 
-    /// Refuses fields of another length than `unknowns`, those of the equations at one instant, ask for.
-    pub(crate) fn fits(&self, unknowns: usize) -> Result<(), RunError> {
-        let wanted = unknowns * self.stages.get(self.stage).map_or(0, Stage::instances);
-        let others: Vec<&Vec<f64>> = match &self.memory {
-            Memory::Relaxation(relax) => vec![&relax.scale],
-            Memory::March(past) => vec![&past.before, &past.older],
+    /// Refuses arrays of another length than the equations at one instant, with these `fields`, ask for.
+    pub(crate) fn fits(&self, fields: &[Field]) -> Result<(), RunError> {
+        let wanted = unknowns(fields) * self.stages.get(self.stage).map_or(0, Stage::instances);
+        let rows = fields.iter().map(|f| f.rows).sum();
+        let others = match &self.memory {
+            Memory::Relaxation(relax) => vec![(&relax.scale, rows)],
+            Memory::March(past) => vec![(&past.before, wanted), (&past.older, wanted)],
         };
         require(self.state.len() == wanted, "its state is of another cloud")?;
-        // a time scale may stand for each row of unknowns
-        let fits = |v: &&Vec<f64>| v.is_empty() || (v.len() <= wanted && wanted.is_multiple_of(v.len()));
-        require(others.iter().all(fits), "its fields are of different lengths")
+        let fits = others.iter().all(|(v, n)| v.is_empty() || v.len() == *n);
+        require(fits, "its fields are of different lengths")
     }
 
     /// All arrays of numbers, and all numbers that stand alone.
