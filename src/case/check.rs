@@ -183,11 +183,12 @@ fn doubtful(draft: &mut Draft<'_>) {
         );
     }
     if let Some(re) = draft.number("flow.reynolds").filter(|re| *re > NEVER_LAMINAR && draft.given("body")) {
-        let message = format!("at a Reynolds number of {re:e} the boundary layers are turbulent, which this program cannot compute");
-        draft
-            .fail("flow.reynolds", message)
-            .allowed(format!("at most {NEVER_LAMINAR:e}"))
-            .hint("leave `reynolds` out for a gas without viscosity, whose pressures are closer to those of so thin a layer");
+        let message = format!(
+            "at a Reynolds number of {re:e} the boundary layers are turbulent, which this program cannot compute"
+        );
+        draft.fail("flow.reynolds", message).allowed(format!("at most {NEVER_LAMINAR:e}")).hint(
+            "leave `reynolds` out for a gas without viscosity, whose pressures are closer to those of so thin a layer",
+        );
     }
 }
 

@@ -82,8 +82,11 @@ pub(super) static CASE: Table = Table::of(&[
 ]);
 
 static FLOW: Table = Table::of(&[
-    Field::optional("mach", POSITIVE, "`velocity` must be given", "Mach number of the free stream.")
-        .known_as(&["m", "ma", "mach_number"]),
+    Field::optional("mach", POSITIVE, "`velocity` must be given", "Mach number of the free stream.").known_as(&[
+        "m",
+        "ma",
+        "mach_number",
+    ]),
     Field::optional(
         "velocity",
         Kind::Quantity(Velocity::DIMENSION, Range::POSITIVE),

@@ -285,4 +285,15 @@ mod tests {
         assert!(page.contains("| `scale`, `chord` |"), "{page}");
         assert!(page.lines().filter(|l| l.starts_with('|')).all(|l| l.matches(" | ").count() <= 3), "{page}");
     }
+
+    #[test]
+    fn alternatives_may_be_written_in_every_way_that_is_read() {
+        let schema = schema();
+        let time = schema["properties"]["time"]["anyOf"].as_array().unwrap();
+        let harmonics = time.iter().find(|v| v["required"][0] == "harmonics").unwrap();
+        let short = &harmonics["properties"]["harmonics"]["anyOf"];
+        assert!(short.as_array().unwrap().iter().any(|v| v["type"] == "object") && short.as_array().unwrap().len() > 1);
+        let body = &schema["properties"]["body"]["anyOf"][0]["items"];
+        assert!(body["oneOf"].as_array().unwrap().contains(&json!({ "required": ["naca"] })), "{body}");
+    }
 }

@@ -49,7 +49,8 @@ impl<const D: usize> Layout<D> {
             let bounds = surface.bounds_of(body);
             let cut = self.planes().into_iter().find(|(d, outward, plane)| {
                 let side = self.sides[*d][usize::from(*outward > 0.0)];
-                let [near, far] = if *outward > 0.0 { [bounds.min[*d], bounds.max[*d]] } else { [-bounds.max[*d], -bounds.min[*d]] };
+                let [near, far] =
+                    if *outward > 0.0 { [bounds.min[*d], bounds.max[*d]] } else { [-bounds.max[*d], -bounds.min[*d]] };
                 let plane = outward * plane;
                 near >= plane || (far > plane && side != Side::Symmetry)
             });
@@ -178,11 +179,7 @@ pub fn background<const D: usize>(
 }
 
 /// Refuses spacings that the deepest cells of the background are too large for.
-fn reaches<const D: usize>(
-    layout: &Layout<D>,
-    points: &[Source<D>],
-    boxes: &[SourceBox<D>],
-) -> Result<(), CloudError> {
+fn reaches<const D: usize>(layout: &Layout<D>, points: &[Source<D>], boxes: &[SourceBox<D>]) -> Result<(), CloudError> {
     let finest = points.iter().map(|p| p.spacing).chain(boxes.iter().map(|b| b.spacing)).fold(f64::INFINITY, f64::min);
     let possible = layout.forest.finest();
     if possible <= finest * SIZE_SLACK {

@@ -71,15 +71,12 @@ impl<const D: usize> Forest<D> {
 impl<const D: usize> Tree<D> {
     /// Splits every cell for which `wanted(centre, size)` holds, then balances; `None` as soon as that takes more than `most`
     /// cells, parents included.
-    pub fn build(
-        forest: &Forest<D>,
-        most: usize,
-        wanted: impl Fn(&Vector<D>, f64) -> bool + Sync,
-    ) -> Option<Self> {
+    pub fn build(forest: &Forest<D>, most: usize, wanted: impl Fn(&Vector<D>, f64) -> bool + Sync) -> Option<Self> {
         let count = forest.roots.iter().map(|r| u64::from(*r)).product::<u64>();
         let count = u32::try_from(count).ok().filter(|n| (*n as usize) <= most)?;
         let max_level = forest.max_level();
-        let root = |k| Node { first_child: NONE, level: 0, anchor: root_cell(k, &forest.roots).map(|c| c << max_level) };
+        let root =
+            |k| Node { first_child: NONE, level: 0, anchor: root_cell(k, &forest.roots).map(|c| c << max_level) };
         let nodes = (0..count).map(root).collect();
         let mut tree = Self {
             origin: forest.origin,

@@ -133,7 +133,8 @@ mod tests {
     fn cost(more: &str, particles: usize) -> Cost {
         let text = format!("[flow]\nmach = 0.5\n[[body]]\nnaca = \"0012\"\n[cloud]\nspacing = 0.015625\n{more}");
         let case = crate::case::read(&text, "t").unwrap();
-        Sized { case: &case, particles, dimension: 2, period: Some(10.0), evaluation: 1.7e-7 * particles as f64 }.cost(|| 1.0)
+        Sized { case: &case, particles, dimension: 2, period: Some(10.0), evaluation: 1.7e-7 * particles as f64 }
+            .cost(|| 1.0)
     }
 
     #[test] // greatest resident memory and processor seconds of the runs the numbers are fitted to

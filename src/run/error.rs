@@ -95,7 +95,9 @@ pub enum RunError {
         problem: String,
     },
     /// A checkpoint with numbers that no run writes.
-    #[error("`{file}` was not written by a run of this case: {problem}\nhint: put back the file as it was, or start the run again")]
+    #[error(
+        "`{file}` was not written by a run of this case: {problem}\nhint: put back the file as it was, or start the run again"
+    )]
     Untrue {
         /// Name of the checkpoint.
         file: &'static str,

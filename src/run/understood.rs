@@ -41,7 +41,10 @@ fn stream<const D: usize>(case: &Case, surface: Option<&Surface<D>>) -> Vec<Fact
         ("dynamic pr.", with_unit(case, s.dynamic_pressure(), "Pa")),
     ];
     if case.flow.is_dimensional() {
-        facts.push(("gas", format!("{} Pa, {} K, {} kg/m3", short(s.pressure), short(case.flow.kelvin()), short(s.density))));
+        facts.push((
+            "gas",
+            format!("{} Pa, {} K, {} kg/m3", short(s.pressure), short(case.flow.kelvin()), short(s.density)),
+        ));
     }
     let viscous = reynolds(case, chord(case, surface));
     facts.push(("Reynolds nr.", viscous.map_or_else(|| "none: no viscosity".to_owned(), short)));

@@ -128,7 +128,10 @@ impl LagrangianCheckpoint {
         let full = |v: &[f64], n: usize| v.len() == D * n;
         let known = |v: &[f64], n: usize| v.is_empty() || full(v, n);
         let fits = full(&self.lists, n_fluid) && full(&self.places, rows);
-        require(fits && known(&self.velocity, rows) && known(&self.course, n_fluid), "its particles are of another cloud")?;
+        require(
+            fits && known(&self.velocity, rows) && known(&self.course, n_fluid),
+            "its particles are of another cloud",
+        )?;
         let domain = cloud.tree.bounds();
         let inside = |x: &[f64]| domain.contains(&Vector::from_fn(|d| x[d]));
         require(self.lists.chunks_exact(D).all(inside), "its particles lie outside the domain")?;

@@ -43,7 +43,10 @@ pub(crate) fn sane<const D: usize>(
             });
         }
         if spacing > ROUGH * length {
-            notes.push(format!("body `{name}` is only {:.1} spacings long: its loads are a rough guess", length / spacing));
+            notes.push(format!(
+                "body `{name}` is only {:.1} spacings long: its loads are a rough guess",
+                length / spacing
+            ));
         }
     }
     notes.extend(doubtful(case, surface));
@@ -105,7 +108,9 @@ mod tests {
         assert!(coarse.contains("`cloud.spacing` is 5, but body `body-1` is only 1 long"), "{coarse}");
         assert!(told(&format!("{stream}[cloud]\nspacing = 0.2\n")).unwrap()[0].contains("5.0 spacings long"));
         let swing = |period: &str| {
-            format!("{stream}[motion]\nplunge = 0.01\nperiod = {period}\n[time]\nharmonics = 1\n[cloud]\nspacing = 0.03\n")
+            format!(
+                "{stream}[motion]\nplunge = 0.01\nperiod = {period}\n[time]\nharmonics = 1\n[cloud]\nspacing = 0.03\n"
+            )
         };
         assert!(told(&swing("1e-9")).unwrap_err().contains("the period 1.000e-9 is so short"));
         assert_eq!(told(&swing("20")), Ok(Vec::new()));
