@@ -65,9 +65,9 @@ def results(folder):
     return {str(f.relative_to(folder)): content(f) for f in files}
 
 
-def begin(program, kind, folder, more=()):
+def begin(program, kind, folder):
     command = "gaf" if kind == "gaf" else "run"
-    return start(program, [command, "case.toml", "--out", "run", *more], folder)
+    return start(program, [command, "case.toml", "--out", "run"], folder)
 
 
 def start(program, args, folder):
@@ -107,8 +107,8 @@ def interrupted(program, kind, folder, seconds, rng):
         elif (run / "finished.txt").exists():
             return code, told
         else:
-            # gaf keeps no checkpoint: what it wrote is replaced
-            process = begin(program, kind, folder, ["--force"] if kind == "gaf" and run.exists() else [])
+            # gaf keeps no checkpoint: it begins again where it stood
+            process = begin(program, kind, folder)
     return ended(process)
 
 
