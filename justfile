@@ -28,6 +28,12 @@ test:
 test-long:
     cargo test --workspace -- --ignored
 
+# mutated inputs and killed runs, for the night; they print what is not survived
+night count="10000":
+    cargo build --release
+    tests/nightly/mutate.py target/release/alula --count {{count}} --seed $(date +%j)
+    tests/nightly/kill.py target/release/alula --count 300 --seed $(date +%j)
+
 # bring the generated pages of the book up to date
 book:
     ALULA_WRITE=1 cargo test --test tidy

@@ -3,7 +3,7 @@
 //! Every check looks at values that passed on their own and stays silent about absent ones, so one mistake is told once.
 use serde_json::{Value, json};
 
-use super::draft::Draft;
+use super::draft::{Draft, default_name};
 use super::facts::is_dimensional;
 use super::keys::{SHAPES, SIDES};
 use super::schema::one_of;
@@ -21,6 +21,7 @@ pub(super) fn contradictions(draft: &mut Draft<'_>) {
     }
     domain(draft);
     accuracy(draft, dimension.unwrap_or(2));
+    doubtful(draft);
     time(draft);
     super::motion_check::contradictions(draft, dimension);
     super::motion_check::viscosity(draft);
@@ -71,7 +72,7 @@ fn bodies(draft: &mut Draft<'_>) {
         naca(draft, &format!("{body}.naca"));
         polygon(draft, &format!("{body}.polygon"));
         let name = draft.get(&format!("{body}.name")).and_then(Value::as_str).map(str::to_owned);
-        let name = name.unwrap_or_else(|| format!("body-{}", i + 1));
+        let name = name.unwrap_or_else(|| default_name(i));
         if names.contains(&name) {
             let message = format!("two bodies are called `{name}`");
             draft.fail(&format!("{body}.name"), message).hint("give each body a name of its own");
@@ -158,6 +159,37 @@ fn dimension(draft: &mut Draft<'_>) -> Option<usize> {
         tree.insert("dimension".to_owned(), json!(d));
     }
     agreed.then_some(d as usize)
+}
+
+/// Values that are possible, but hardly meant.
+fn doubtful(draft: &mut Draft<'_>) {
+    /// Temperature in kelvin below which a number without unit is taken for one in degrees.
+    const COLD: f64 = 100.0;
+    /// Mach number at which a circle has a drag coefficient of 0.1 without viscosity.
+    const HARDLY_MOVING: f64 = 0.005;
+    /// Reynolds number that no laminar layer on a body survives (Schlichting and Gersten, Boundary-Layer Theory, 15.1).
+    const NEVER_LAMINAR: f64 = 1e7;
+    let bare = !draft.has_unit("flow.temperature");
+    if let Some(t) = draft.number("flow.temperature").filter(|t| bare && *t < COLD) {
+        let message = format!("`flow.temperature` is {t} without a unit, which would be {t} K");
+        draft.fail("flow.temperature", message).hint(format!("write `\"{t} degC\"` or `\"{t} K\"`"));
+    }
+    let slow = draft.get("scheme.low_mach").and_then(Value::as_bool) == Some(false) && draft.given("body");
+    let steady = is(draft, "time", "steady") || draft.get("time.steady").is_some();
+    if let Some(mach) = draft.number("flow.mach").filter(|m| slow && steady && *m < HARDLY_MOVING) {
+        let message = format!("at M {mach} the scheme's own drag is larger than any of the body");
+        draft.fail("flow.mach", message).allowed(format!("at least {HARDLY_MOVING}")).hint(
+            "take M 0.1, whose loads are those of incompressible flow within 1 %, or try `scheme.low_mach = true`",
+        );
+    }
+    if let Some(re) = draft.number("flow.reynolds").filter(|re| *re > NEVER_LAMINAR && draft.given("body")) {
+        let message = format!(
+            "at a Reynolds number of {re:e} the boundary layers are turbulent, which this program cannot compute"
+        );
+        draft.fail("flow.reynolds", message).allowed(format!("at most {NEVER_LAMINAR:e}")).hint(
+            "leave `reynolds` out for a gas without viscosity, whose pressures are closer to those of so thin a layer",
+        );
+    }
 }
 
 /// `mach` or `velocity`; none or two of pressure, temperature and density.

@@ -5,6 +5,7 @@ use std::ops::Range;
 use serde_json::{Value, json};
 
 use super::error::{CaseError, quote};
+use super::read::with_point;
 
 /// Values in base units with defaults, places by key path, mistakes.
 pub(super) struct Draft<'t> {
@@ -52,8 +53,22 @@ impl<'t> Draft<'t> {
         errors.retain(|e| !broken.contains(&line(e.span.start)));
         self.errors = errors;
         for error in syntax {
-            self.fail_at("", error.span().unwrap_or(0..0), format!("this is not TOML: {}", error.message()));
+            let span = error.span().unwrap_or(0..0);
+            match self.decimal_comma(span.start) {
+                Some(point) => self
+                    .fail_at("", span, "a number has a decimal comma")
+                    .hint(format!("write decimals with a point, `{point}`")),
+                None => self.fail_at("", span, format!("this is not TOML: {}", error.message())),
+            };
         }
+    }
+
+    /// The value with a point in place of the decimal comma that is at, or just before, byte `at`.
+    fn decimal_comma(&self, at: usize) -> Option<String> {
+        let line_start = self.text.get(..at)?.rfind('\n').map_or(0, |i| i + 1);
+        let line = self.text.get(line_start..)?.lines().next()?;
+        let value = line.split_once('=')?.1.split('#').next()?.trim();
+        with_point(value).filter(|_| value.chars().all(|c| c.is_ascii_digit() || "+-,eE".contains(c)))
     }
 
     /// True when `path` was written in the file.
@@ -93,6 +108,19 @@ impl<'t> Draft<'t> {
     /// Number of items in the list at `path`.
     pub(super) fn count(&self, path: &str) -> usize {
         self.get(path).and_then(Value::as_array).map_or(0, Vec::len)
+    }
+
+    /// Calls bodies in messages by their names, as every other message does: `body-1.chord` is `chord` of the first `[[body]]`.
+    pub(super) fn name_bodies(&mut self) {
+        for i in 0..self.count("body") {
+            let given = self.get(&format!("body[{i}].name")).and_then(Value::as_str);
+            let name = given.map_or_else(|| default_name(i), str::to_owned);
+            let (path, name) = (format!("`body[{i}]"), format!("`{name}"));
+            for error in &mut self.errors {
+                error.message = error.message.replace(&path, &name);
+                error.hint = error.hint.take().map(|h| h.replace(&path, &name));
+            }
+        }
     }
 
     /// Adds a mistake about the value at `path`, or about the table that lacks it.
@@ -146,6 +174,11 @@ impl<'t> Draft<'t> {
         }
         0..0
     }
+}
+
+/// Name of a body that has none.
+pub(super) fn default_name(body: usize) -> String {
+    format!("body-{}", body + 1)
 }
 
 /// The candidate that `word` was probably meant to be.

@@ -10,7 +10,7 @@ const LONGEST_QUOTE: usize = 48;
 const LONGEST_LABEL: usize = 72;
 
 /// Most mistakes that are shown; the others are counted.
-const MOST_SHOWN: usize = 50;
+pub(super) const MOST_SHOWN: usize = 50;
 
 /// One mistake in a case file.
 #[derive(Clone, Debug, PartialEq)]

@@ -82,13 +82,18 @@ pub(super) static CASE: Table = Table::of(&[
 ]);
 
 static FLOW: Table = Table::of(&[
-    Field::optional("mach", POSITIVE, "`velocity` must be given", "Mach number of the free stream."),
+    Field::optional("mach", POSITIVE, "`velocity` must be given", "Mach number of the free stream.").known_as(&[
+        "m",
+        "ma",
+        "mach_number",
+    ]),
     Field::optional(
         "velocity",
         Kind::Quantity(Velocity::DIMENSION, Range::POSITIVE),
         "`mach` must be given",
         "Speed of the free stream; needs a dimensional free stream.",
-    ),
+    )
+    .known_as(&["speed", "u", "v", "airspeed"]),
     Field::optional(
         "pressure",
         Kind::Quantity(Pressure::DIMENSION, Range::POSITIVE),
@@ -126,14 +131,16 @@ static FLOW: Table = Table::of(&[
         ANGLE,
         Absent::Number(0.0),
         "Angle of attack, nose up positive: the flow turns from +x towards +y in 2-D, towards +z in 3-D.",
-    ),
+    )
+    .known_as(&["aoa", "angle", "angle_of_attack", "incidence"]),
     Field::defaulted("beta", ANGLE, Absent::Number(0.0), "Sideslip angle, 3-D only: the flow turns towards +y."),
     Field::optional(
         "reynolds",
         POSITIVE,
         "no viscosity, or from `viscosity`",
         "Reynolds number ρ∞ U∞ L/μ∞ with L = `reynolds_length`.",
-    ),
+    )
+    .known_as(&["re", "reynolds_number"]),
     Field::optional("reynolds_length", SIZE, "the reference chord", "Length of the Reynolds number."),
     Field::optional(
         "viscosity",
@@ -176,7 +183,8 @@ const SHAPE: &str = "another shape key";
 static BODY: Table = Table::of(&[
     Field::optional("name", Kind::Text, "`body-1`, `body-2`, …", "Name used in tables of loads."),
     Field::optional("naca", Kind::Table(&NACA), SHAPE, "NACA 4-digit section (2-D), `naca = \"0012\"`."),
-    Field::optional("airfoil", Kind::Text, SHAPE, "Airfoil coordinate file (2-D) in Selig, Lednicer or CSV order."),
+    Field::optional("airfoil", Kind::Text, SHAPE, "Airfoil coordinate file (2-D) in Selig, Lednicer or CSV order.")
+        .known_as(&["file", "dat", "coordinates", "section", "profile"]),
     Field::optional(
         "polygon",
         Kind::List(&List { item: PLANE_POINT, min: 3, max: usize::MAX, single: false }),
@@ -197,27 +205,31 @@ static BODY: Table = Table::of(&[
         SHAPE,
         "Box centred on the origin of the shape, `box = { size = [1, 1, 1] }`.",
     ),
-    Field::optional("surface", Kind::Text, SHAPE, "STL or OBJ file (3-D), relative to the case file."),
+    Field::optional("surface", Kind::Text, SHAPE, "STL or OBJ file (3-D), relative to the case file.")
+        .known_as(&["stl", "obj", "mesh", "geometry"]),
     Field::defaulted(
         "scale",
-        POSITIVE,
+        SIZE,
         Absent::Number(1.0),
-        "Factor on every coordinate of the shape; the chord of an airfoil of unit chord.",
+        "Length of one unit of the shape: the chord of an airfoil of unit chord, `\"0.35 m\"`; `\"1 mm\"` for a file in millimetres.",
     )
-    .alias("chord"),
+    .alias("chord")
+    .known_as(&["size", "length", "unit", "units", "factor", "c"]),
     Field::defaulted(
         "rotate",
         Kind::List(&List { item: ANGLE, min: 0, max: 3, single: true }),
         Absent::Filled,
         "Rotation about the origin of the shape after scaling: one angle in 2-D (nose up positive), three in 3-D (about \
          x, then y, then z).",
-    ),
+    )
+    .known_as(&["angle", "alpha", "incidence", "rotation", "orientation", "twist", "pitch"]),
     Field::defaulted(
         "translate",
         Kind::List(&List { item: LENGTH, min: 0, max: 3, single: false }),
         Absent::Filled,
         "Translation after scaling and rotation.",
-    ),
+    )
+    .known_as(&["at", "position", "origin", "place", "centre", "center", "location", "offset", "shift", "move", "leading_edge"]),
     Field::optional(
         "wall",
         Kind::Choice(WALL),
@@ -231,15 +243,14 @@ static BODY: Table = Table::of(&[
         "Motion of this body in place of that of `[motion]`, whose frequency it takes when it has none; `motion = {}` keeps \
          the body at rest.",
     ),
-]);
+])
+.with_one_of(&["naca", "airfoil", "polygon", "circle", "ellipse", "sphere", "box", "surface"]);
 
-static NACA: Table = Table {
-    fields: &[
-        Field::required("digits", Kind::Text, "The four digits."),
-        Field::defaulted("trailing_edge", Kind::Words(TRAILING_EDGES), Absent::Word("closed"), "How the section ends."),
-    ],
-    shorthand: Some("digits"),
-};
+static NACA: Table = Table::of(&[
+    Field::required("digits", Kind::Matching("^[0-9].{3,}$"), "The four digits."),
+    Field::defaulted("trailing_edge", Kind::Words(TRAILING_EDGES), Absent::Word("closed"), "How the section ends."),
+])
+.short("digits");
 
 const TRAILING_EDGES: &[(&str, &str)] = &[
     ("closed", "last thickness coefficient -0.1036: both sides meet at x/c = 1"),

@@ -28,6 +28,7 @@ mod structure_keys;
 mod templates;
 #[cfg(test)]
 mod tests;
+mod text;
 mod time;
 mod time_keys;
 mod verdict;
@@ -51,6 +52,7 @@ pub use structure::{
     Freedom, PerCoordinate, SpringShape, Structure, StructureFlap, StructureForce, StructureMode, StructureModel,
 };
 pub use templates::{TEMPLATES, template};
+pub use text::{TextError, text_of};
 pub use time::{Automatic, Dual, Explicit, HarmonicCount, Harmonics, RungeKutta, Steady, SteadyMethod, Temporal};
 pub use verdict::ClaimRow;
 pub use write::write;
@@ -219,7 +221,7 @@ pub enum TrailingEdge {
 /// Placement of a body.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Placement {
-    /// Factor on every coordinate of the shape; the chord of an airfoil of unit chord.
+    /// Length of one unit of the shape, so a factor on its coordinates; the chord of an airfoil of unit chord.
     pub scale: f64,
     /// Rotation: one angle in 2-D (nose up positive about the origin of the shape), three in 3-D (about x, y, z); empty:
     /// none.

@@ -489,7 +489,7 @@ mod tests {
         told(&flow("mach = 0.5\nviscosity = 1e-5", ""), &["`flow.viscosity` needs a dimensional free stream"]);
         told(&flow("mach = 0.5\nprandtl = 0.7", ""), &["`flow.prandtl`, but the gas has no viscosity"]);
         told(&flow("mach = 0.5\ntemperature = 288", ""), &["`flow.temperature` alone does not fix"]);
-        told(&flow("mach = 0.5", "wall = \"adiabatic\""), &["`body[0].wall` needs viscosity"]);
+        told(&flow("mach = 0.5", "wall = \"adiabatic\""), &["`body-1.wall` needs viscosity"]);
         told(
             &flow("mach = 0.5\nreynolds = 5e3", "wall = { temperature = \"300 K\" }"),
             &["has a unit, but the free stream"],

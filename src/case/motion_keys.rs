@@ -139,40 +139,33 @@ const PARTICLES: &[(&str, &str)] = &[
 const PHASE: Field =
     Field::defaulted("phase", ANGLE, Absent::Number(0.0), "Phase at t = 0; `\"90 deg\"` makes the sine a cosine.");
 
-static PITCH_KEYS: Table =
-    Table { fields: &[Field::required("amplitude", ANGLE, "Amplitude."), PHASE], shorthand: Some("amplitude") };
+static PITCH_KEYS: Table = Table::of(&[Field::required("amplitude", ANGLE, "Amplitude."), PHASE]).short("amplitude");
 
-static PLUNGE_KEYS: Table = Table {
-    fields: &[
-        Field::required("amplitude", LENGTH, "Amplitude of the displacement."),
-        PHASE,
-        Field::optional(
-            "direction",
-            DIRECTION,
-            "up: +y in 2-D, +z in 3-D",
-            "Direction of positive displacement; its length does not matter.",
-        ),
-    ],
-    shorthand: Some("amplitude"),
-};
+static PLUNGE_KEYS: Table = Table::of(&[
+    Field::required("amplitude", LENGTH, "Amplitude of the displacement."),
+    PHASE,
+    Field::optional(
+        "direction",
+        DIRECTION,
+        "up: +y in 2-D, +z in 3-D",
+        "Direction of positive displacement; its length does not matter.",
+    ),
+])
+.short("amplitude");
 
-static ROTATION_KEYS: Table = Table {
-    fields: &[Field::required(
-        "rate",
-        Kind::Quantity(Rate::DIMENSION, Range::ANY),
-        "Rate; a plain number is radians per unit of time.",
-    )],
-    shorthand: Some("rate"),
-};
+static ROTATION_KEYS: Table = Table::of(&[Field::required(
+    "rate",
+    Kind::Quantity(Rate::DIMENSION, Range::ANY),
+    "Rate; a plain number is radians per unit of time.",
+)])
+.short("rate");
 
-static TRANSLATION_KEYS: Table = Table {
-    fields: &[Field::required(
-        "velocity",
-        Kind::List(&List { item: Kind::Quantity(Velocity::DIMENSION, Range::ANY), min: 2, max: 3, single: false }),
-        "Velocity.",
-    )],
-    shorthand: Some("velocity"),
-};
+static TRANSLATION_KEYS: Table = Table::of(&[Field::required(
+    "velocity",
+    Kind::List(&List { item: Kind::Quantity(Velocity::DIMENSION, Range::ANY), min: 2, max: 3, single: false }),
+    "Velocity.",
+)])
+.short("velocity");
 
 const fn column(key: &'static str, item: &'static List, doc: &'static str) -> Field {
     Field::optional(key, Kind::List(item), "zero", doc)
@@ -183,29 +176,27 @@ static ANGLES: List =
     List { item: Kind::Quantity(Angle::DIMENSION, Range::ANY), min: 2, max: usize::MAX, single: false };
 static TIMES: List = List { item: Kind::Quantity(Time::DIMENSION, Range::ANY), min: 2, max: usize::MAX, single: false };
 
-static TABLE_KEYS: Table = Table {
-    fields: &[
-        Field::optional(
-            "file",
-            Kind::Text,
-            "the lists `time`, `x`, …",
-            "CSV file, relative to the case file, with columns `time` and any of `x`, `y`, `z`, `angle_deg`, `angle_rad`.",
-        ),
-        Field::optional("time", Kind::List(&TIMES), "`file` must be given", "Times, rising."),
-        column("x", &LENGTHS, "Displacements along x."),
-        column("y", &LENGTHS, "Displacements along y."),
-        column("z", &LENGTHS, "Displacements along z (3-D)."),
-        column("angle", &ANGLES, "Angles, of the sign of pitch."),
-        Field::defaulted(
-            "periodic",
-            Kind::Flag,
-            Absent::Flag(false),
-            "The table repeats, its last row is its first one a period later; else it begins and ends at rest and its \
+static TABLE_KEYS: Table = Table::of(&[
+    Field::optional(
+        "file",
+        Kind::Text,
+        "the lists `time`, `x`, …",
+        "CSV file, relative to the case file, with columns `time` and any of `x`, `y`, `z`, `angle_deg`, `angle_rad`.",
+    ),
+    Field::optional("time", Kind::List(&TIMES), "`file` must be given", "Times, rising."),
+    column("x", &LENGTHS, "Displacements along x."),
+    column("y", &LENGTHS, "Displacements along y."),
+    column("z", &LENGTHS, "Displacements along z (3-D)."),
+    column("angle", &ANGLES, "Angles, of the sign of pitch."),
+    Field::defaulted(
+        "periodic",
+        Kind::Flag,
+        Absent::Flag(false),
+        "The table repeats, its last row is its first one a period later; else it begins and ends at rest and its \
              ends are held.",
-        ),
-    ],
-    shorthand: Some("file"),
-};
+    ),
+])
+.short("file");
 
 pub(super) const MODE_FILE: Field = Field::required(
     "file",
@@ -243,11 +234,9 @@ pub(super) const WALL: &[Variant] = &[
     ),
 ];
 
-static WALL_TEMPERATURE: Table = Table {
-    fields: &[Field::required(
-        "value",
-        Kind::Quantity(super::quantity::Temperature::DIMENSION, Range::POSITIVE),
-        "Temperature; over that of the free stream, without unit, when the free stream has none.",
-    )],
-    shorthand: Some("value"),
-};
+static WALL_TEMPERATURE: Table = Table::of(&[Field::required(
+    "value",
+    Kind::Quantity(super::quantity::Temperature::DIMENSION, Range::POSITIVE),
+    "Temperature; over that of the free stream, without unit, when the free stream has none.",
+)])
+.short("value");

@@ -12,7 +12,7 @@ use toml::de::{DeTable, DeValue};
 
 use super::Case;
 use super::draft::{Draft, closest};
-use super::error::{CaseErrors, quote};
+use super::error::{CaseErrors, MOST_SHOWN, quote};
 use super::keys::CASE;
 use super::schema::{Absent, Field, Kind, List, Range, Table, Variant, one_of};
 
@@ -35,6 +35,7 @@ pub fn read(text: &str, name: &str) -> Result<Case, CaseErrors> {
             Err(error) => draft.fail("", format!("the case does not fit together: {error}")),
         };
     }
+    draft.name_bodies();
     Err(CaseErrors::new(name, text, draft.errors))
 }
 
@@ -68,7 +69,9 @@ impl Reader<'_> {
                 continue;
             }
             self.draft.place(&here, key.span(), item.span());
-            if let Some(value) = self.value(&field.kind, item, &here) {
+            // messages about one value call it as it is written
+            let written = if field.alias == Some(key.get_ref()) { join(path, key.get_ref()) } else { here };
+            if let Some(value) = self.value(&field.kind, item, &written) {
                 tree.insert(field.key.to_owned(), value);
             }
         }
@@ -103,7 +106,7 @@ impl Reader<'_> {
             (Kind::IntegerOr(_, _, word), DeValue::String(text)) if text.as_ref() == *word => Some(json!(word)),
             (Kind::IntegerOr(min, max, _), value) => self.whole(kind, (*min, *max), number(value), item, path),
             (Kind::Flag, DeValue::Boolean(flag)) => Some(json!(flag)),
-            (Kind::Text, DeValue::String(text)) if !text.trim().is_empty() => Some(json!(text)),
+            (Kind::Text | Kind::Matching(_), DeValue::String(text)) if !text.trim().is_empty() => Some(json!(text)),
             (Kind::Words(words), DeValue::String(text)) => {
                 let names: Vec<_> = words.iter().map(|w| w.0).collect();
                 self.word(&names, text, item, path).map(|i| json!(names[i]))
@@ -132,9 +135,16 @@ impl Reader<'_> {
     }
 
     fn bad_quantity(&mut self, kind: &Kind, error: &str, item: &Item<'_>, path: &str) -> Option<Value> {
-        let message = format!("`{path}`: {error}");
+        let written = self.draft.source(item.span());
+        let point = with_point(written.trim_matches(['"', '\'']));
+        let message = match point {
+            Some(_) => format!("`{path}`: {written} has a decimal comma"),
+            None => format!("`{path}`: {error}"),
+        };
         let error = self.draft.fail_at(path, item.span(), message).allowed(kind.words());
-        if let (Kind::Quantity(dimension, _), Some(x)) = (kind, number(item.get_ref())) {
+        if let Some(point) = point {
+            error.hint(format!("write decimals with a point, `\"{point}\"`"));
+        } else if let (Kind::Quantity(dimension, _), Some(x)) = (kind, number(item.get_ref())) {
             error.hint(format!("write `\"{x} {}\"` with one of the units {}", dimension.usual(), dimension.symbols()));
         }
         None
@@ -290,9 +300,13 @@ impl Reader<'_> {
 
     /// Tells an unknown key; returns the one that was probably meant.
     fn unknown(&mut self, table: &'static Table, key: &str, span: Span<usize>, path: &str) -> Option<&'static str> {
-        let meant = closest(key, table.fields.iter().flat_map(|f| [Some(f.key), f.alias]).flatten());
+        let names = || table.fields.iter().flat_map(|f| [Some(f.key), f.alias]).flatten();
+        // nobody reads the hints of thousands of mistakes
+        let searched = self.draft.errors.len() < MOST_SHOWN;
+        let meant = if searched { table.meant_by(key).or_else(|| closest(key, names())) } else { None };
         let hint = match meant {
             Some(name) => Some(format!("did you mean `{name}`?")),
+            None if !searched => None,
             None => home_of(key, &CASE, "").map(|home| format!("`{key}` belongs in `[{home}]`")),
         };
         let message = format!("unknown key `{}` {}", quote(key), inside(path));
@@ -320,6 +334,15 @@ fn number(value: &DeValue<'_>) -> Option<f64> {
         DeValue::Integer(n) => i128::from_str_radix(n.as_str(), n.radix()).ok().map(|n| n as f64),
         _ => None,
     }
+}
+
+/// `text` with a point in place of its decimal comma, if it begins with a number that has one.
+pub(super) fn with_point(text: &str) -> Option<String> {
+    let (whole, rest) = text.trim().split_once(',')?;
+    let digits = |part: &str| part.starts_with(|c: char| c.is_ascii_digit());
+    let number = whole.trim_start_matches(['+', '-']);
+    let is_number = digits(number) && number.chars().all(|c| c.is_ascii_digit());
+    (is_number && digits(rest) && !rest.contains(',')).then(|| format!("{whole}.{rest}"))
 }
 
 fn type_of(value: &DeValue<'_>) -> &'static str {

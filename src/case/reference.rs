@@ -29,10 +29,12 @@ fn table_schema(table: &Table) -> Map<String, Value> {
         "required": required.collect::<Vec<_>>(),
         "additionalProperties": false,
     });
-    match schema {
-        Value::Object(map) => map,
-        _ => Map::new(),
+    let Value::Object(mut schema) = schema else { return Map::new() };
+    if !table.one_of.is_empty() {
+        let given = |key: &&str| json!({ "required": [key] });
+        schema.insert("oneOf".to_owned(), table.one_of.iter().map(given).collect());
     }
+    schema
 }
 
 fn field_schema(field: &Field, alias_of: Option<&str>) -> Value {
@@ -66,6 +68,7 @@ fn kind_schema(kind: &Kind) -> Value {
         }
         Kind::Flag => json!({ "type": "boolean" }),
         Kind::Text => json!({ "type": "string", "minLength": 1 }),
+        Kind::Matching(pattern) => json!({ "type": "string", "pattern": pattern }),
         Kind::Words(words) => {
             json!({ "oneOf": words.iter().map(|w| json!({ "const": w.0, "description": w.1 })).collect::<Vec<_>>() })
         }
@@ -76,15 +79,12 @@ fn kind_schema(kind: &Kind) -> Value {
             }
             if list.single { json!({ "anyOf": [schema, kind_schema(&list.item)] }) } else { schema }
         }
-        Kind::Table(table) => match table.shorthand.and_then(|key| table.field(key)) {
-            Some(field) => json!({ "anyOf": [kind_schema(&field.kind), table_schema(table)] }),
-            None => Value::Object(table_schema(table)),
-        },
+        Kind::Table(table) => short_or_whole(table),
         Kind::Tables(table) => {
             json!({ "anyOf": [{ "type": "array", "items": table_schema(table) }, table_schema(table)] })
         }
         Kind::Choice(variants) => {
-            json!({ "anyOf": variants.iter().flat_map(variant_schemas).collect::<Vec<_>>() })
+            json!({ "anyOf": variants.iter().flat_map(|v| variant_schemas(v, variants)).collect::<Vec<_>>() })
         }
     }
 }
@@ -109,20 +109,34 @@ fn quantity_schema(dimension: &Dimension, range: &Range) -> Value {
     json!({ "anyOf": [text, plain] })
 }
 
-fn variant_schemas(variant: &Variant) -> Vec<Value> {
+/// A table, or the bare value that stands for it.
+fn short_or_whole(table: &Table) -> Value {
+    match table.shorthand.and_then(|key| table.field(key)) {
+        Some(field) => json!({ "anyOf": [kind_schema(&field.kind), table_schema(table)] }),
+        None => Value::Object(table_schema(table)),
+    }
+}
+
+/// One of several alternatives: the word, or its one key with what stands behind it.
+fn variant_schemas(variant: &Variant, all: &[Variant]) -> Vec<Value> {
     let mut schemas = Vec::new();
     if variant.is_word() {
         schemas.push(json!({ "const": variant.name, "description": variant.doc }));
     }
-    if let Some(table) = variant.table {
-        schemas.push(json!({
-            "type": "object",
-            "description": variant.doc,
-            "properties": { variant.name: table_schema(table) },
-            "required": [variant.name],
-            "additionalProperties": false,
-        }));
+    let nothing = || json!({ "anyOf": [{ "const": true }, { "type": "object", "maxProperties": 0 }] });
+    let content = |v: &Variant| v.table.map_or_else(nothing, short_or_whole);
+    let mut properties = Map::new();
+    // others are left aside where one rules
+    for other in all.iter().filter(|v| variant.rules || v.name == variant.name) {
+        properties.insert(other.name.to_owned(), content(other));
     }
+    schemas.push(json!({
+        "type": "object",
+        "description": variant.doc,
+        "properties": properties,
+        "required": [variant.name],
+        "additionalProperties": false,
+    }));
     schemas
 }
 
@@ -270,5 +284,16 @@ mod tests {
         assert!(page.contains("| `blank` | a number from 0.3 to 0.6 | `0.4` |"), "{page}");
         assert!(page.contains("| `scale`, `chord` |"), "{page}");
         assert!(page.lines().filter(|l| l.starts_with('|')).all(|l| l.matches(" | ").count() <= 3), "{page}");
+    }
+
+    #[test]
+    fn alternatives_may_be_written_in_every_way_that_is_read() {
+        let schema = schema();
+        let time = schema["properties"]["time"]["anyOf"].as_array().unwrap();
+        let harmonics = time.iter().find(|v| v["required"][0] == "harmonics").unwrap();
+        let short = &harmonics["properties"]["harmonics"]["anyOf"];
+        assert!(short.as_array().unwrap().iter().any(|v| v["type"] == "object") && short.as_array().unwrap().len() > 1);
+        let body = &schema["properties"]["body"]["anyOf"][0]["items"];
+        assert!(body["oneOf"].as_array().unwrap().contains(&json!({ "required": ["naca"] })), "{body}");
     }
 }

@@ -12,6 +12,8 @@ pub(super) struct Table {
     pub(super) fields: &'static [Field],
     /// Key that a bare value stands for: `naca = "0012"` is `naca = { digits = "0012" }`.
     pub(super) shorthand: Option<&'static str>,
+    /// Keys of which exactly one must be given.
+    pub(super) one_of: &'static [&'static str],
 }
 
 /// One key of a table.
@@ -20,6 +22,8 @@ pub(super) struct Field {
     pub(super) key: &'static str,
     /// A second spelling.
     pub(super) alias: Option<&'static str>,
+    /// What other programs call it: no keys, but words that are answered with this one.
+    pub(super) synonyms: &'static [&'static str],
     /// Meaning, one or two sentences.
     pub(super) doc: &'static str,
     /// What the key holds.
@@ -42,6 +46,8 @@ pub(super) enum Kind {
     Flag,
     /// Any text but the empty one.
     Text,
+    /// A text that editors know to be wrong where it does not match this regular expression.
+    Matching(&'static str),
     /// One of several words.
     Words(&'static [(&'static str, &'static str)]),
     /// A list of `min` to `max` items.
@@ -146,12 +152,30 @@ impl Range {
 impl Table {
     /// A table whose keys are `fields`.
     pub(super) const fn of(fields: &'static [Field]) -> Self {
-        Self { fields, shorthand: None }
+        Self { fields, shorthand: None, one_of: &[] }
+    }
+
+    /// The same, which a bare value of `key` stands for.
+    pub(super) const fn short(mut self, key: &'static str) -> Self {
+        self.shorthand = Some(key);
+        self
+    }
+
+    /// The same with exactly one of `keys`.
+    pub(super) const fn with_one_of(mut self, keys: &'static [&'static str]) -> Self {
+        self.one_of = keys;
+        self
     }
 
     /// The field called `key`, by either of its names.
     pub(super) fn field(&self, key: &str) -> Option<&'static Field> {
         self.fields.iter().find(|f| f.key == key || f.alias == Some(key))
+    }
+
+    /// The name of the field that other programs call `word`.
+    pub(super) fn meant_by(&self, word: &str) -> Option<&'static str> {
+        let word = word.to_lowercase().replace('-', "_");
+        self.fields.iter().find(|f| f.synonyms.contains(&word.as_str())).map(|f| f.alias.unwrap_or(f.key))
     }
 
     /// The table of an empty document: all defaults.
@@ -163,22 +187,28 @@ impl Table {
 impl Field {
     /// A key that must be given.
     pub(super) const fn required(key: &'static str, kind: Kind, doc: &'static str) -> Self {
-        Self { key, alias: None, doc, kind, default: Absent::Required }
+        Self { key, alias: None, synonyms: &[], doc, kind, default: Absent::Required }
     }
 
     /// A key that may be absent; `meaning` says what happens then.
     pub(super) const fn optional(key: &'static str, kind: Kind, meaning: &'static str, doc: &'static str) -> Self {
-        Self { key, alias: None, doc, kind, default: Absent::Nothing(meaning) }
+        Self { key, alias: None, synonyms: &[], doc, kind, default: Absent::Nothing(meaning) }
     }
 
     /// A key with a default.
     pub(super) const fn defaulted(key: &'static str, kind: Kind, default: Absent, doc: &'static str) -> Self {
-        Self { key, alias: None, doc, kind, default }
+        Self { key, alias: None, synonyms: &[], doc, kind, default }
     }
 
     /// The same key with a second spelling.
     pub(super) const fn alias(mut self, alias: &'static str) -> Self {
         self.alias = Some(alias);
+        self
+    }
+
+    /// The same key, which other programs call by these names.
+    pub(super) const fn known_as(mut self, synonyms: &'static [&'static str]) -> Self {
+        self.synonyms = synonyms;
         self
     }
 
@@ -264,7 +294,7 @@ impl Kind {
             Self::Integer(min, max) => format!("a whole number from {min} to {max}"),
             Self::IntegerOr(min, max, word) => format!("a whole number from {min} to {max} or `\"{word}\"`"),
             Self::Flag => "`true` or `false`".to_owned(),
-            Self::Text => "a text in quotes".to_owned(),
+            Self::Text | Self::Matching(_) => "a text in quotes".to_owned(),
             Self::Words(words) => one_of(words.iter().map(|w| w.0)),
             Self::List(list) => list.words(),
             Self::Table(table) => match table.shorthand.and_then(|key| table.field(key)) {

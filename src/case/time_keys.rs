@@ -16,8 +16,7 @@ pub(super) const TIME: &[Variant] = &[
     .ruling(),
 ];
 
-static HARMONICS: Table = Table {
-    fields: &[
+static HARMONICS: Table = Table::of(&[
         Field::required(
             "number",
             Kind::IntegerOr(1, 16, "auto"),
@@ -74,9 +73,7 @@ static HARMONICS: Table = Table {
         METHOD,
         CFL,
         CFL_MAX,
-    ],
-    shorthand: Some("number"),
-};
+    ]).short("number");
 
 const METHOD: Field =
     Field::defaulted("method", Kind::Words(RELAXATIONS), Absent::Word("newton_krylov"), "Method of the relaxation.");

@@ -3,7 +3,7 @@ use std::sync::Arc;
 
 use super::Transform;
 use super::clouds::Clouds;
-use super::layout::{Layout, background};
+use super::layout::{Layout, background, capped};
 use super::neighbours::Search;
 use super::particles::Particles;
 use super::sources::Source;
@@ -21,7 +21,7 @@ impl<const D: usize> Cloud<D> {
     /// Builds a cloud around a surface, or in the domain alone; `extra` are sources of refinement that follow the solution.
     pub fn build(spec: &CloudSpec<D>, surface: Option<&Surface<D>>, extra: &[Source<D>]) -> Result<Self, CloudError> {
         let layout = Layout::new(spec, surface)?;
-        let tree = Arc::new(background(spec, &layout, surface, extra));
+        let tree = Arc::new(background(spec, &layout, surface, extra)?);
         let transforms = layout.transforms();
         let mut particles = Particles::fill(tree, &layout, &transforms, spec, surface);
         if particles.n_fluid == 0 {
@@ -29,7 +29,9 @@ impl<const D: usize> Cloud<D> {
         }
         let found = Search::new(&particles, surface, &transforms, spec.radius).clouds()?;
         found.repair.moved.iter().for_each(|(i, place)| particles.x[*i as usize] = *place);
-        Ok(Self::join(particles, found, transforms))
+        let mut cloud = Self::join(particles, found, transforms);
+        cloud.notes.extend(surface.and_then(|s| capped(spec, s)));
+        Ok(cloud)
     }
 
     /// The cloud of particles and what a search among them found.

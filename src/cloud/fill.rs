@@ -12,7 +12,7 @@ use super::layout::Layout;
 use super::near_wall_smoothing::smooth_near_wall;
 use super::neighbours::NEAR;
 use super::particles::{LeafIndex, ParticleSite, Particles};
-use super::tree::{Leaf, MAX_LEVEL, Tree};
+use super::tree::{Leaf, Tree};
 use super::{CloudSpec, Transform};
 use crate::case::Side;
 use crate::geometry::Surface;
@@ -24,6 +24,8 @@ use crate::math::{Bounds, Vector};
 const CLEARANCE: f64 = 0.4;
 /// Dimension in which the particles next to a wall move: in 2-D `wall_layers` follow an outline.
 const SETTLED: usize = 3;
+/// Bits that address a cell of the background.
+const CELL_BITS: u32 = 31;
 /// Share of the sum of two radii below which balls surely overlap.
 const FREE: f64 = 0.999;
 
@@ -138,7 +140,7 @@ impl<const D: usize> Particles<D> {
     fn shake(&mut self, jitter: f64) {
         for i in 0..self.n_fluid {
             if jitter > 0.0 && self.wall_distance[i].is_infinite() {
-                let cell = self.tree.anchor(self.tree.leaf_at(&self.centre[i]).node);
+                let cell = self.tree.label(self.tree.leaf_at(&self.centre[i]).node);
                 self.x[i] += random_direction(cell) * (jitter * self.spacing[i]);
             }
         }
@@ -241,9 +243,8 @@ fn gather<const D: usize>(columns: Columns<D>, sites: &[ParticleSite<D>]) -> Lay
 /// Position of a cell along the space-filling curve.
 pub(super) fn curve_position<const D: usize>(cell: [u32; D]) -> u64 {
     let bits = 64 / D as u32;
-    let need = u32::from(MAX_LEVEL) + 11;
-    let shift = need.saturating_sub(bits.min(31));
-    hilbert_index(cell.map(|c| c >> shift), bits.min(31))
+    let shift = CELL_BITS.saturating_sub(bits);
+    hilbert_index(cell.map(|c| c >> shift), bits.min(CELL_BITS))
 }
 
 /// A vector with components in [−1, 1] that depends on the cell alone.

@@ -1,5 +1,6 @@
 //! From the specification to the background: domain, levels, sources of refinement.
-use super::sources::{Source, SourceBox, Sources};
+use super::estimate::Estimate;
+use super::sources::{SIZE_SLACK, Source, SourceBox, Sources};
 use super::tree::{Forest, Tree};
 use super::{CloudError, CloudSpec, Transform};
 use crate::case::Side;
@@ -31,7 +32,38 @@ impl<const D: usize> Layout<D> {
             (None, Some(surface)) => around(spec, surface),
             (None, None) => return Err(CloudError::Layout("a case without bodies needs `cloud.domain`".into())),
         };
-        Ok(Self { forest, sides })
+        let layout = Self { forest, sides };
+        surface.map_or(Ok(()), |s| layout.contains(s))?;
+        Ok(layout)
+    }
+
+    /// The box itself.
+    pub fn bounds(&self) -> Bounds<D> {
+        let Forest { origin, root_size, roots, .. } = self.forest;
+        Bounds { min: origin, max: origin + Vector::from_fn(|d| f64::from(roots[d]) * root_size) }
+    }
+
+    /// Refuses bodies that lie outside the domain, or that a side through which gas comes and goes cuts.
+    fn contains(&self, surface: &Surface<D>) -> Result<(), CloudError> {
+        for (body, name) in surface.bodies.iter().enumerate() {
+            let bounds = surface.bounds_of(body);
+            let cut = self.planes().into_iter().find(|(d, outward, plane)| {
+                let side = self.sides[*d][usize::from(*outward > 0.0)];
+                let [near, far] =
+                    if *outward > 0.0 { [bounds.min[*d], bounds.max[*d]] } else { [-bounds.max[*d], -bounds.min[*d]] };
+                let plane = outward * plane;
+                near >= plane || (far > plane && side != Side::Symmetry)
+            });
+            if let Some((d, _, plane)) = cut {
+                let axis = ["x", "y", "z"][d];
+                return Err(CloudError::Layout(format!(
+                    "body `{name}` from {:?} to {:?} lies across or beyond the side {axis} = {plane} of the domain\nhint: enlarge \
+                     `cloud.domain`, or move the body; only a side of symmetry may cut one",
+                    bounds.min.0, bounds.max.0
+                )));
+            }
+        }
+        Ok(())
     }
 
     /// Sides that end the domain: axis, sign of the outward normal, coordinate.
@@ -79,7 +111,7 @@ fn explicit<const D: usize>(spec: &CloudSpec<D>, domain: &Bounds<D>) -> Result<F
     for d in 0..D {
         if (cells[d] - cells[d].round()).abs() > MISFIT * cells[d] || cells[d] < 0.5 {
             return Err(CloudError::Layout(format!(
-                "side {d} of `cloud.domain` is {} long, not a whole number of `cloud.spacing` = {spacing}; hint: {} cells would fit with a spacing of {}",
+                "side {d} of `cloud.domain` is {} long, not a whole number of `cloud.spacing` = {spacing}\nhint: {} cells would fit with a spacing of {}",
                 max[d] - min[d],
                 cells[d].round().max(1.0),
                 (max[d] - min[d]) / cells[d].round().max(1.0)
@@ -92,7 +124,7 @@ fn explicit<const D: usize>(spec: &CloudSpec<D>, domain: &Bounds<D>) -> Result<F
     let roots = std::array::from_fn(|d| (whole[d] >> shift) as u32);
     if roots.iter().any(|r| *r >= 1 << 11) {
         return Err(CloudError::Layout(format!(
-            "`cloud.domain` needs {roots:?} root cells, at most 2047 along an axis; hint: make its sides multiples of a larger power of two of the spacing"
+            "`cloud.domain` needs {roots:?} root cells, at most 2047 along an axis\nhint: make its sides multiples of a larger power of two of the spacing"
         )));
     }
     let periodic = std::array::from_fn(|d| spec.sides[d][0] == Side::Periodic);
@@ -129,19 +161,57 @@ pub fn background<const D: usize>(
     layout: &Layout<D>,
     surface: Option<&Surface<D>>,
     extra: &[Source<D>],
-) -> Tree<D> {
+) -> Result<Tree<D>, CloudError> {
     let mut points = extra.to_vec();
     let mut boxes = user_boxes(spec, surface);
+    if surface.is_none() {
+        boxes.push(SourceBox { bounds: layout.bounds(), spacing: spec.spacing });
+    }
+    let size = Estimate::new(spec, layout, surface, &boxes);
+    size.check(spec.most)?;
     if let Some(surface) = surface {
         surface_sources(spec, surface, &mut points);
-    } else {
-        let size = layout.forest.roots;
-        let extent = Vector::from_fn(|d| f64::from(size[d]) * layout.forest.root_size);
-        let bounds = Bounds { min: layout.forest.origin, max: layout.forest.origin + extent };
-        boxes.push(SourceBox { bounds, spacing: spec.spacing });
     }
+    reaches(layout, &points, &boxes)?;
     let sources = Sources::new(points, boxes);
-    Tree::build(&layout.forest, |x, size| sources.split(x, size))
+    let tree = Tree::build(&layout.forest, size.most_cells(spec.most), |x, size| sources.split(x, size));
+    tree.ok_or_else(|| size.refused(format!("more than {}", spec.most), spec.most))
+}
+
+/// Refuses spacings that the deepest cells of the background are too large for.
+fn reaches<const D: usize>(layout: &Layout<D>, points: &[Source<D>], boxes: &[SourceBox<D>]) -> Result<(), CloudError> {
+    let finest = points.iter().map(|p| p.spacing).chain(boxes.iter().map(|b| b.spacing)).fold(f64::INFINITY, f64::min);
+    let possible = layout.forest.finest();
+    if possible <= finest * SIZE_SLACK {
+        return Ok(());
+    }
+    Err(CloudError::Layout(format!(
+        "a spacing of {finest:.3e} is asked for, but in a domain this large none is finer than {possible:.3e}\nhint: lower \
+         `cloud.far_field`, or raise `cloud.spacing`"
+    )))
+}
+
+/// Tells where the surface is more strongly curved than the cloud is allowed to follow.
+pub fn capped<const D: usize>(spec: &CloudSpec<D>, surface: &Surface<D>) -> Option<String> {
+    let finest = finest(spec);
+    let sharper = |a: &u32, b: &u32| surface.radius[*a as usize].total_cmp(&surface.radius[*b as usize]);
+    let sharpest = (0..surface.elements.len() as u32).min_by(sharper)?;
+    let radius = surface.radius[sharpest as usize];
+    if radius >= finest {
+        return None;
+    }
+    let x = surface.corners(sharpest)[0];
+    let levels = (spec.spacing / (spec.curvature * radius).max(f64::MIN_POSITIVE)).log2().ceil();
+    Some(format!(
+        "near {:?} the surface is rounded with a radius of {radius:.2e}, but no spacing is finer than {finest:.2e}: \
+         `cloud.curvature_levels = {levels}` follows it (now {})",
+        x.0, spec.curvature_levels
+    ))
+}
+
+/// The finest spacing that curvature may ask for.
+fn finest<const D: usize>(spec: &CloudSpec<D>) -> f64 {
+    spec.spacing / f64::from(1u32 << spec.curvature_levels)
 }
 
 fn user_boxes<const D: usize>(spec: &CloudSpec<D>, surface: Option<&Surface<D>>) -> Vec<SourceBox<D>> {
@@ -158,7 +228,7 @@ fn user_boxes<const D: usize>(spec: &CloudSpec<D>, surface: Option<&Surface<D>>)
 /// Points of the surface with the spacing that the specification, the curvature and sharp edges ask for.
 fn surface_sources<const D: usize>(cloud: &CloudSpec<D>, surface: &Surface<D>, points: &mut Vec<Source<D>>) {
     let base = cloud.spacing;
-    let finest = base / f64::from(1u32 << cloud.curvature_levels);
+    let finest = finest(cloud);
     points.extend(surface.samples(0.5 * base, |x, radius| {
         let spacing = (cloud.curvature * radius).clamp(finest, base);
         Source { x: *x, spacing, layers: cloud.layers }

@@ -8,6 +8,7 @@ mod clouds;
 mod coefficient_unknowns;
 mod columns;
 pub mod conservative;
+mod estimate;
 pub mod fill;
 pub mod grid;
 pub mod interface;
@@ -245,10 +246,20 @@ pub enum CloudError {
     /// The domain does not suit the spacing.
     #[error("{0}")]
     Layout(String),
+    /// More particles than memory holds.
+    #[error("the cloud would have {particles} particles, but only {most} fit into memory\nhint: {hint}")]
+    TooLarge {
+        /// About how many, in words.
+        particles: String,
+        /// Greatest number.
+        most: usize,
+        /// What asks for them.
+        hint: String,
+    },
     /// The doctor found particles that cannot be repaired.
     #[error("{} particles have clouds that cannot be repaired; first ones:\n{}\nhint: lower `cloud.spacing` or raise `cloud.radius`", .0.len(), .0.iter().take(5).cloned().collect::<Vec<_>>().join("\n"))]
     Quality(Vec<String>),
     /// Nothing is left for the fluid.
-    #[error("no fluid particle is left: the bodies fill the domain; hint: check `scale` and `cloud.far_field`")]
+    #[error("no fluid particle is left: the bodies fill the domain\nhint: check `scale` and `cloud.far_field`")]
     Empty,
 }

@@ -9,7 +9,7 @@ const BUCKET: usize = 8;
 /// Half diagonal of the unit cube: the cell's own extent.
 const HALF_DIAGONAL: f64 = 0.87;
 /// Slack of the comparison of sizes that are powers of two apart.
-const SIZE_SLACK: f64 = 1.001;
+pub(super) const SIZE_SLACK: f64 = 1.001;
 
 /// A point that asks for a spacing.
 #[derive(Clone, Copy, Debug)]

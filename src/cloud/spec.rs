@@ -3,6 +3,9 @@ use super::sources::SourceBox;
 use crate::case::{self, Case, Side, Wake, WallLayers};
 use crate::math::{Bounds, Vector};
 
+/// Greatest number of particles whose cells have numbers of 32 bits, parents included.
+const MOST: usize = 1 << 30;
+
 /// Spacing, domain and refinement of a cloud; lengths are in the unit of the geometry.
 ///
 /// ```
@@ -43,6 +46,8 @@ pub struct CloudSpec<const D: usize> {
     pub radius: f64,
     /// Random displacement of interior particles as a fraction of the local spacing.
     pub jitter: f64,
+    /// Greatest number of particles: what memory holds. A cloud that would be larger is refused before it is built.
+    pub most: usize,
 }
 
 impl<const D: usize> CloudSpec<D> {
@@ -63,6 +68,7 @@ impl<const D: usize> CloudSpec<D> {
             blank: 0.4,
             radius: 1.6,
             jitter: 0.0,
+            most: MOST,
         }
     }
 
@@ -87,6 +93,7 @@ impl<const D: usize> CloudSpec<D> {
             blank: cloud.blank,
             radius: cloud.radius,
             jitter: cloud.jitter,
+            most: MOST,
         }
     }
 }

@@ -181,3 +181,39 @@ fn the_diagnosis_is_plain_json() {
         assert_eq!(h.edges.len(), h.counts.len() + 1);
     }
 }
+
+/// Why a cloud of a NACA 0012 is refused that may have `most` particles.
+fn refused(cloud: &str, most: usize) -> String {
+    let case = case(&format!("[[body]]\nnaca = \"0012\"\n[cloud]\n{cloud}"));
+    let spec = CloudSpec { most, ..CloudSpec::of_case(&case) };
+    Cloud::<2>::build(&spec, Some(&surface_of(&case)), &[]).map(|c| c.n_real()).unwrap_err().to_string()
+}
+
+#[test]
+fn clouds_that_are_too_large_are_refused_before_they_are_built() {
+    let many = refused("spacing = 1e-300\n", 1_000_000);
+    assert!(many.contains("countless particles, but only 1000000 fit") && many.contains("(1e-300)"), "{many}");
+    let layers = refused("spacing = 0.01\nlayers = 1000\n", 100_000);
+    assert!(
+        layers.contains("lower `cloud.layers` (1000.0)") || layers.contains("lower `cloud.layers` (1000)"),
+        "{layers}"
+    );
+    let wake = refused("spacing = 0.01\nwake = { length = 40, spacing = 1e-4 }\n", 1_000_000);
+    assert!(wake.contains("raise `cloud.wake.spacing` (0.0001)"), "{wake}");
+    let scarce = refused("spacing = 0.01\n", 500);
+    assert!(scarce.contains("only 500 fit"), "{scarce}");
+}
+
+#[test]
+fn spacings_below_the_deepest_cells_are_refused_not_coarsened() {
+    let fine = refused("spacing = 0.03\nbox = [{ min = [2, 2], max = [2.0001, 2.0001], spacing = 1e-7 }]\n", 1_000_000);
+    assert!(fine.contains("a spacing of 1.000e-7 is asked for") && fine.contains("none is finer than"), "{fine}");
+}
+
+#[test]
+fn bodies_across_the_sides_of_the_domain_are_refused() {
+    let at = |domain: &str| refused(&format!("spacing = 0.0625\ndomain = {{ {domain} }}\n"), usize::MAX);
+    for domain in ["min = [2, 2], max = [4, 4]", "min = [0.5, -2], max = [4.5, 2]"] {
+        assert!(at(domain).contains("lies across or beyond the side x = "), "{}", at(domain));
+    }
+}

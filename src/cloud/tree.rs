@@ -5,8 +5,10 @@
 use crate::math::sweep::sweep;
 use crate::math::{Bounds, Vector};
 
-/// Deepest level below a root.
-pub const MAX_LEVEL: u8 = 20;
+/// Deepest level below a root in a box of many roots, and of few: a cell is addressed by 31 bits.
+const LEVELS: [u8; 2] = [20, 26];
+/// Roots along an axis below which the deeper ones fit.
+const FEW_ROOTS: u32 = 1 << 5;
 const NONE: u32 = u32::MAX;
 
 /// One cell; its children, when it has any, follow one another from `first_child`.
@@ -24,6 +26,7 @@ pub struct Tree<const D: usize> {
     root_size: f64,
     roots: [u32; D],
     periodic: [bool; D],
+    max_level: u8,
     nodes: Vec<Node<D>>,
 }
 
@@ -53,17 +56,34 @@ pub struct Forest<const D: usize> {
     pub periodic: [bool; D],
 }
 
+impl<const D: usize> Forest<D> {
+    /// Deepest level below a root.
+    fn max_level(&self) -> u8 {
+        LEVELS[usize::from(self.roots.iter().all(|r| *r < FEW_ROOTS))]
+    }
+
+    /// Edge length of the finest possible cell.
+    pub fn finest(&self) -> f64 {
+        self.root_size / (1u64 << self.max_level()) as f64
+    }
+}
+
 impl<const D: usize> Tree<D> {
-    /// Splits every cell for which `wanted(centre, size)` holds, then balances.
-    pub fn build(forest: &Forest<D>, wanted: impl Fn(&Vector<D>, f64) -> bool + Sync) -> Self {
-        let count: u32 = forest.roots.iter().product();
-        let nodes =
-            (0..count).map(|k| Node { first_child: NONE, level: 0, anchor: root_anchor(k, &forest.roots) }).collect();
+    /// Splits every cell for which `wanted(centre, size)` holds, then balances; `None` as soon as that takes more than `most`
+    /// cells, parents included.
+    pub fn build(forest: &Forest<D>, most: usize, wanted: impl Fn(&Vector<D>, f64) -> bool + Sync) -> Option<Self> {
+        let count = forest.roots.iter().map(|r| u64::from(*r)).product::<u64>();
+        let count = u32::try_from(count).ok().filter(|n| (*n as usize) <= most)?;
+        let max_level = forest.max_level();
+        let root =
+            |k| Node { first_child: NONE, level: 0, anchor: root_cell(k, &forest.roots).map(|c| c << max_level) };
+        let nodes = (0..count).map(root).collect();
         let mut tree = Self {
             origin: forest.origin,
             root_size: forest.root_size,
             roots: forest.roots,
             periodic: forest.periodic,
+            max_level,
             nodes,
         };
         // children follow all cells of their parents' generation
@@ -72,13 +92,16 @@ impl<const D: usize> Tree<D> {
             let mut split = vec![false; generation.len()];
             sweep(&mut split, |k| {
                 let leaf = tree.leaf((generation.start + k) as u32);
-                leaf.level < MAX_LEVEL && wanted(&leaf.centre, leaf.size)
+                leaf.level < max_level && wanted(&leaf.centre, leaf.size)
             });
+            let wanted = split.iter().filter(|s| **s).count();
+            if tree.nodes.len() + (wanted << D) > most {
+                return None;
+            }
             generation.clone().zip(split).filter(|s| s.1).for_each(|(k, _)| tree.split(k as u32));
             generation = generation.end..tree.nodes.len();
         }
-        tree.balance();
-        tree
+        tree.balance(most).then_some(tree)
     }
 
     /// All cells without children.
@@ -107,6 +130,12 @@ impl<const D: usize> Tree<D> {
         even
     }
 
+    /// Integer coordinates of the lower corner of cell `k` on a grid that does not depend on how deep the tree may be; cells
+    /// deeper than the grid share those of the cell around them.
+    pub fn label(&self, k: u32) -> [u32; D] {
+        self.anchor(k).map(|c| c >> (self.max_level - LEVELS[0]))
+    }
+
     /// Number of cells, parents included: the bound of every `Leaf::node`.
     pub fn n_nodes(&self) -> usize {
         self.nodes.len()
@@ -132,7 +161,7 @@ impl<const D: usize> Tree<D> {
     pub fn cell_at(&self, x: &Vector<D>) -> [u32; D] {
         let unit = self.unit();
         std::array::from_fn(|d| {
-            let top = i64::from(self.roots[d]) << MAX_LEVEL;
+            let top = i64::from(self.roots[d]) << self.max_level;
             (((x[d] - self.origin[d]) / unit).floor() as i64).clamp(0, top - 1) as u32
         })
     }
@@ -142,7 +171,7 @@ impl<const D: usize> Tree<D> {
         let unit = self.unit();
         let low: [i64; D] = std::array::from_fn(|d| ((cube.min[d] - self.origin[d]) / unit).floor() as i64);
         let high: [i64; D] = std::array::from_fn(|d| ((cube.max[d] - self.origin[d]) / unit).floor() as i64);
-        let root = |c: i64, d: usize| (c >> MAX_LEVEL).clamp(0, i64::from(self.roots[d]) - 1);
+        let root = |c: i64, d: usize| (c >> self.max_level).clamp(0, i64::from(self.roots[d]) - 1);
         let mut cell: [i64; D] = std::array::from_fn(|d| root(low[d], d));
         loop {
             let k = (0..D).rev().fold(0, |k, d| k * i64::from(self.roots[d]) + cell[d]);
@@ -157,7 +186,7 @@ impl<const D: usize> Tree<D> {
 
     fn meets(&self, k: u32, low: &[i64; D], high: &[i64; D]) -> bool {
         let node = &self.nodes[k as usize];
-        let size = 1i64 << (MAX_LEVEL - node.level);
+        let size = 1i64 << (self.max_level - node.level);
         (0..D).all(|d| i64::from(node.anchor[d]) <= high[d] && i64::from(node.anchor[d]) + size > low[d])
     }
 
@@ -168,7 +197,7 @@ impl<const D: usize> Tree<D> {
             f(k);
             return;
         }
-        let half = 1i64 << (MAX_LEVEL - node.level - 1);
+        let half = 1i64 << (self.max_level - node.level - 1);
         // bit d: no child on the lower (upper) side of axis d meets the box
         let (mut no_lower, mut no_upper) = (0, 0);
         for d in 0..D {
@@ -184,7 +213,7 @@ impl<const D: usize> Tree<D> {
     }
 
     fn unit(&self) -> f64 {
-        self.root_size / (1u64 << MAX_LEVEL) as f64
+        self.root_size / (1u64 << self.max_level) as f64
     }
 
     /// The leaf or cell with index `k`.
@@ -205,16 +234,16 @@ impl<const D: usize> Tree<D> {
     fn find(&self, p: &[i64; D]) -> Option<u32> {
         let mut q = [0u32; D];
         for d in 0..D {
-            let top = i64::from(self.roots[d]) << MAX_LEVEL;
+            let top = i64::from(self.roots[d]) << self.max_level;
             let c = if self.periodic[d] { p[d].rem_euclid(top) } else { p[d] };
             if c < 0 || c >= top {
                 return None;
             }
             q[d] = c as u32;
         }
-        let mut k = (0..D).rev().fold(0, |k, d| k * self.roots[d] + (q[d] >> MAX_LEVEL)) as usize;
+        let mut k = (0..D).rev().fold(0, |k, d| k * self.roots[d] + (q[d] >> self.max_level)) as usize;
         while self.nodes[k].first_child != NONE {
-            let bit = MAX_LEVEL - 1 - self.nodes[k].level;
+            let bit = self.max_level - 1 - self.nodes[k].level;
             let child = (0..D).fold(0, |c, d| c | (q[d] >> bit & 1) << d);
             k = (self.nodes[k].first_child + child) as usize;
         }
@@ -224,7 +253,7 @@ impl<const D: usize> Tree<D> {
     fn split(&mut self, k: u32) {
         let node = self.nodes[k as usize];
         self.nodes[k as usize].first_child = self.nodes.len() as u32;
-        let half = 1u32 << (MAX_LEVEL - node.level - 1);
+        let half = 1u32 << (self.max_level - node.level - 1);
         for c in 0..1u32 << D {
             let anchor = std::array::from_fn(|d| node.anchor[d] + (c >> d & 1) * half);
             self.nodes.push(Node { first_child: NONE, level: node.level + 1, anchor });
@@ -232,13 +261,16 @@ impl<const D: usize> Tree<D> {
     }
 
     /// Splits cells until touching leaves differ by one level at most: whatever touches a cell that has children must not be
-    /// larger than that cell.
-    fn balance(&mut self) {
+    /// larger than that cell. False where that takes more than `most` cells.
+    fn balance(&mut self, most: usize) -> bool {
         // a cell without coarser neighbours gets none when others are split
         let mut unbalanced = vec![false; self.nodes.len()];
         sweep(&mut unbalanced, |k| self.nodes[k].first_child != NONE && !self.coarser(k as u32).is_empty());
         let mut queue: Vec<u32> = (0..self.nodes.len() as u32).filter(|k| unbalanced[*k as usize]).collect();
         while let Some(k) = queue.pop() {
+            if self.nodes.len() > most {
+                return false;
+            }
             let coarse = self.coarser(k);
             if !coarse.is_empty() {
                 queue.push(k);
@@ -248,12 +280,13 @@ impl<const D: usize> Tree<D> {
                 queue.push(j);
             }
         }
+        true
     }
 
     /// Leaves that touch cell `k` and are larger.
     fn coarser(&self, k: u32) -> Vec<u32> {
         let node = &self.nodes[k as usize];
-        let size = 1i64 << (MAX_LEVEL - node.level);
+        let size = 1i64 << (self.max_level - node.level);
         let mut coarse = Vec::new();
         for_each_direction(|direction: [i64; D]| {
             let p = std::array::from_fn(|d| i64::from(node.anchor[d]) + direction[d] * size);
@@ -268,12 +301,13 @@ impl<const D: usize> Tree<D> {
     }
 }
 
-fn root_anchor<const D: usize>(k: u32, roots: &[u32; D]) -> [u32; D] {
+/// Place of root `k` among the roots.
+fn root_cell<const D: usize>(k: u32, roots: &[u32; D]) -> [u32; D] {
     let mut rest = k;
     std::array::from_fn(|d| {
         let c = rest % roots[d];
         rest /= roots[d];
-        c << MAX_LEVEL
+        c
     })
 }
 
@@ -298,7 +332,7 @@ mod tests {
 
     fn sample() -> Tree<2> {
         let forest = Forest { origin: Vector([-1.0, -1.0]), root_size: 1.0, roots: [2, 2], periodic: [true, false] };
-        Tree::build(&forest, |x, size| size > 0.01 && x.norm() < size)
+        Tree::build(&forest, usize::MAX, |x, size| size > 0.01 && x.norm() < size).unwrap()
     }
 
     #[test]

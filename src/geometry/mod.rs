@@ -37,6 +37,9 @@ use std::path::Path;
 /// Turning angle of a polygon's sharp corners, radians (5°): whoever lists corners means them.
 const POLYGON_CREASE: f64 = 5.0 * PI / 180.0;
 
+/// Distance over the size of a body below which another one touches it.
+const TOUCHING: f64 = 1e-9;
+
 /// Why a surface could not be made.
 #[derive(Debug, thiserror::Error)]
 pub enum GeometryError {
@@ -159,7 +162,7 @@ fn positive(place: &str, key: &str, value: f64) -> Result<f64, GeometryError> {
 fn refuse_overlap<const D: usize>(surface: &Surface<D>, shells: &[(String, Shell<D>)]) -> Result<(), GeometryError> {
     let refused = |a: usize, b: usize, x: &Vector<D>| {
         let (place, what) =
-            (format!("body `{}`", shells[a].0), format!("overlaps body `{}` at {:?}", shells[b].0, x.0));
+            (format!("body `{}`", shells[a].0), format!("overlaps or touches body `{}` at {:?}", shells[b].0, x.0));
         Err(GeometryError::refused(place, what, "move the bodies apart, or unite them in one surface"))
     };
     if let Some((x, pair)) = surface.intersection() {
@@ -169,7 +172,10 @@ fn refuse_overlap<const D: usize>(surface: &Surface<D>, shells: &[(String, Shell
     for (b, shell) in shells.iter().enumerate() {
         let alone = Surface::new(std::slice::from_ref(shell));
         for (a, other) in shells.iter().enumerate().filter(|(a, _)| *a != b) {
-            if let Some(x) = other.1.vertices.first().filter(|x| alone.inside(x)) {
+            let touching = TOUCHING * alone.bounds().extent().max_abs();
+            let meets = |x: &&Vector<D>| alone.nearest(x, touching).is_some();
+            let within = other.1.vertices.first().filter(|x| alone.inside(x));
+            if let Some(x) = within.or_else(|| other.1.vertices.iter().find(meets)) {
                 return refused(a, b, x);
             }
         }

@@ -131,6 +131,7 @@ fn closed_loop(file: &str, mut marks: Vec<Mark>, notes: &mut Vec<String>) -> Res
         return Err(GeometryError::refused(file, what, hint));
     }
     if gap > CLOSED {
+        has_base(file, &marks)?;
         return Ok((marks, true));
     }
     if gap > SAME {
@@ -139,6 +140,25 @@ fn closed_loop(file: &str, mut marks: Vec<Mark>, notes: &mut Vec<String>) -> Res
     }
     marks.pop();
     Ok((marks, false))
+}
+
+/// Refuses an open end that is no base: a base stands across the section, while a gap that points were left out of runs along it.
+fn has_base(file: &str, marks: &[Mark]) -> Result<(), GeometryError> {
+    /// Least angle between a base and the sides that end there, radians (30°).
+    const ACROSS: f64 = PI / 6.0;
+    let n = marks.len();
+    let (first, last) = (&marks[0], &marks[n - 1]);
+    let base = first.point - last.point;
+    let along = |a: &Mark, b: &Mark| {
+        let angle = simplex::angle_between(&base.unit(), &(a.point - b.point).unit());
+        angle.min(PI - angle) < ACROSS
+    };
+    if !along(first, &marks[1]) && !along(last, &marks[n - 2]) {
+        return Ok(());
+    }
+    let what = format!("the outline is open from {} to {}, along its side", at(first), at(last));
+    let hint = "add the points that are missing at the trailing edge; a blunt base stands across the section";
+    Err(GeometryError::refused(file, what, hint))
 }
 
 /// Removes points that repeat the one before.

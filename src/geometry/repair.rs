@@ -34,7 +34,7 @@ pub(super) fn shell(file: &str, soup: &Soup, notes: &mut Vec<String>) -> Result<
     orient(file, &mut shell, notes)?;
     check_edges(file, &shell, notes)?;
     match Surface::new(&[(String::new(), shell.clone())]).intersection() {
-        None => Ok(shell),
+        None => nested(file, &shell).map(|()| shell),
         Some((x, [e, f])) => {
             let part = |e: u32| shell.tags.get(e as usize).and_then(|&t| shell.tag_names.get(usize::from(t)));
             let parts = match (part(e), part(f)) {
@@ -45,6 +45,53 @@ pub(super) fn shell(file: &str, soup: &Soup, notes: &mut Vec<String>) -> Result<
             Err(GeometryError::refused(file, format!("{parts} at {}", at(&x)), hint))
         }
     }
+}
+
+/// Refuses a closed part inside another one: no gas reaches it.
+fn nested(file: &str, shell: &Shell<3>) -> Result<(), GeometryError> {
+    let parts = parts(shell);
+    let surface = |part: &Shell<3>| Surface::new(&[(String::new(), part.clone())]);
+    let bounds: Vec<Bounds<3>> = parts.iter().map(|p| Bounds::around(&p.vertices)).collect();
+    for (a, part) in parts.iter().enumerate().filter(|_| parts.len() > 1) {
+        let within = |b: &usize| *b != a && bounds[a].contains(&bounds[*b].min) && bounds[a].contains(&bounds[*b].max);
+        let candidates: Vec<usize> = (0..parts.len()).filter(within).collect();
+        if candidates.is_empty() {
+            continue;
+        }
+        let whole = surface(part);
+        if let Some(x) = candidates.iter().map(|b| parts[*b].vertices[0]).find(|x| whole.inside(x)) {
+            let what = format!("a closed part lies inside another one, at {}", at(&x));
+            return Err(GeometryError::refused(
+                file,
+                what,
+                "remove inner walls and cavities before the export: no gas reaches them",
+            ));
+        }
+    }
+    Ok(())
+}
+
+/// The closed parts of a shell, which share no vertex.
+fn parts(shell: &Shell<3>) -> Vec<Shell<3>> {
+    let mut group: Vec<u32> = (0..shell.vertices.len() as u32).collect();
+    shell.elements.iter().flat_map(|e| [(e[0], e[1]), (e[0], e[2])]).for_each(|(v, w)| unite(&mut group, v, w));
+    let mut of_part: HashMap<u32, Vec<usize>> = HashMap::new();
+    for (e, corners) in shell.elements.iter().enumerate() {
+        of_part.entry(root(&mut group, corners[0])).or_default().push(e);
+    }
+    let mut members: Vec<Vec<usize>> = of_part.into_values().collect();
+    members.sort_unstable();
+    let corner = |e: usize, k: usize| shell.vertices[shell.elements[e][k] as usize];
+    let part = |own: &Vec<usize>| Shell {
+        vertices: own.iter().flat_map(|e| (0..3).map(|k| corner(*e, k))).collect(),
+        elements: (0..own.len() as u32).map(|e| [3 * e, 3 * e + 1, 3 * e + 2]).collect(),
+        normals: None,
+        tags: Vec::new(),
+        tag_names: Vec::new(),
+        exact: Exact::None,
+        crease: shell.crease,
+    };
+    members.iter().map(part).collect()
 }
 
 /// Welds with the smallest tolerance that closes the surface.
@@ -400,13 +447,13 @@ mod tests {
     }
 
     #[test]
-    fn inward_bodies_are_turned_and_cavities_are_solid() {
+    fn inward_bodies_are_turned_and_parts_inside_others_are_refused() {
         let mut inside_out = icosphere(1.0, 2);
         inside_out.elements.iter_mut().for_each(|e| e.swap(0, 1));
         let (surface, notes) = mend(&soup(&[&inside_out, &moved(&icosphere(1.0, 2), [3.0, 0.0, 0.0])])).unwrap();
         assert!((surface.volume() / icosphere_volume(2) - 2.0).abs() < 1e-12 && notes.len() == 1, "{notes:?}");
-        let (hollow, _) = mend(&soup(&[&icosphere(0.5, 2), &icosphere(1.0, 2)])).unwrap();
-        assert!(hollow.inside(&Vector::ZERO) && hollow.inside(&Vector([0.7, 0.0, 0.0])));
+        let hollow = mend(&soup(&[&icosphere(0.5, 2), &icosphere(1.0, 2)])).unwrap_err().to_string();
+        assert!(hollow.contains("a closed part lies inside another one, at ("), "{hollow}");
     }
 
     #[test]

@@ -216,7 +216,7 @@ fn bodies_are_placed_and_overlaps_refused() {
     let exact = surface.project(&surface.nearest(&Vector([2.5, 0.0]), 1.0).unwrap());
     assert!((exact.point - Vector([2.0, 0.0])).norm() < 1e-12);
     let close = load_surface::<2>(&[circle(0.0), circle(0.9)], folder).unwrap_err().to_string();
-    assert!(close.contains("body `body-1`: overlaps body `body-2`"), "{close}");
+    assert!(close.contains("body `body-1`: overlaps or touches body `body-2`"), "{close}");
     let small = body(Shape::Circle { radius: Length(0.1) }, vec![], vec![]);
     assert!(load_surface::<2>(&[circle(0.0), small], folder).is_err());
     let pitched = [body(naca(), vec![0.1], vec![])];

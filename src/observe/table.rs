@@ -10,6 +10,9 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
+/// How the name of a file begins and ends while it is being written.
+pub(crate) const UNFINISHED: (&str, &str) = (".alula-", ".tmp");
+
 /// What can go wrong with a table.
 #[derive(Debug, thiserror::Error)]
 pub enum FileError {
@@ -81,7 +84,7 @@ pub(crate) fn write_beside(
 fn temporary_beside(path: &Path) -> io::Result<tempfile::NamedTempFile> {
     let folder = folder_of(path);
     let mut builder = tempfile::Builder::new();
-    builder.prefix(".alula-").suffix(".tmp");
+    builder.prefix(UNFINISHED.0).suffix(UNFINISHED.1);
     // Temporary files are private by default; results are ordinary files under the user's umask.
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));

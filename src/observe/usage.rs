@@ -28,7 +28,50 @@ fn thread_nanoseconds() -> Option<f64> {
 /// Greatest resident memory of this process in bytes; 0 where the system does not tell.
 pub fn peak_bytes() -> u64 {
     let Ok(status) = fs::read_to_string("/proc/self/status") else { return 0 };
-    let line = status.lines().find(|l| l.starts_with("VmHWM:")).unwrap_or("");
-    let kilobytes: u64 = line.split_whitespace().nth(1).and_then(|n| n.parse().ok()).unwrap_or(0);
-    kilobytes * 1024
+    kilobytes(&status, "VmHWM:").unwrap_or(0)
+}
+
+/// Bytes of memory that this process may still take: what is free, what its group and its address space allow; `None` where the
+/// system does not tell.
+pub fn available_bytes() -> Option<u64> {
+    let limits = [free_bytes(), group_bytes(), address_bytes()];
+    limits.into_iter().flatten().min()
+}
+
+/// Memory that is free or can be freed.
+fn free_bytes() -> Option<u64> {
+    let text = fs::read_to_string("/proc/meminfo").ok()?;
+    kilobytes(&text, "MemAvailable:")
+}
+
+/// What a control group leaves of its limit, which stands in a file of its own in version 2.
+fn group_bytes() -> Option<u64> {
+    let number = |name: &str| fs::read_to_string(name).ok()?.trim().parse::<u64>().ok();
+    Some(number("/sys/fs/cgroup/memory.max")?.saturating_sub(number("/sys/fs/cgroup/memory.current")?))
+}
+
+/// What `ulimit -v` leaves.
+fn address_bytes() -> Option<u64> {
+    let limits = fs::read_to_string("/proc/self/limits").ok()?;
+    let line = limits.lines().find_map(|l| l.strip_prefix("Max address space"))?;
+    let most: u64 = line.split_whitespace().next()?.parse().ok()?;
+    let used = kilobytes(&fs::read_to_string("/proc/self/status").ok()?, "VmSize:")?;
+    Some(most.saturating_sub(used))
+}
+
+/// The number of bytes in the line of `text` that begins with `name` and counts kilobytes.
+fn kilobytes(text: &str, name: &str) -> Option<u64> {
+    let line = text.lines().find_map(|l| l.strip_prefix(name))?;
+    Some(1024 * line.split_whitespace().next()?.parse::<u64>().ok()?)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn kilobytes_are_read_from_the_line_of_a_name() {
+        assert_eq!(kilobytes("MemTotal: 9 kB\nMemAvailable:   12 kB\n", "MemAvailable:"), Some(12 * 1024));
+        assert_eq!(kilobytes("MemTotal: 9 kB\n", "MemAvailable:"), None);
+    }
 }

@@ -94,6 +94,16 @@ pub enum RunError {
         /// What is different.
         problem: String,
     },
+    /// A checkpoint with numbers that no run writes.
+    #[error(
+        "`{file}` was not written by a run of this case: {problem}\nhint: put back the file as it was, or start the run again"
+    )]
+    Untrue {
+        /// Name of the checkpoint.
+        file: &'static str,
+        /// What is wrong.
+        problem: &'static str,
+    },
     /// A picture or the report could not be written.
     #[error(transparent)]
     Report(#[from] ReportError),
@@ -135,6 +145,14 @@ pub enum RunError {
     /// The checkpoint stands at a stage that the run does not have.
     #[error("the checkpoint names no stage")]
     NoStage,
+    /// The case asks for something that no body or wave could be seen with.
+    #[error("{what}\nhint: {hint}")]
+    Senseless {
+        /// What.
+        what: String,
+        /// What may help.
+        hint: &'static str,
+    },
     /// The case asks for something that can be written down but not yet computed.
     #[error("{what}\nhint: {hint}")]
     Unsupported {

@@ -5,7 +5,8 @@ use std::path::{Path, PathBuf};
 
 use super::error::RunError;
 use super::record::saved;
-use crate::case::{Case, read, write};
+use crate::case::{Case, Compare, read, text_of, write};
+use crate::observe::table::UNFINISHED;
 use crate::observe::write_atomic;
 
 /// Where the folder of the case file is noted.
@@ -37,6 +38,7 @@ pub(crate) fn create(case: &Case, input: &Path, out: &Path) -> Result<bool, RunE
     if used && !is_barely_begun(out) {
         return Err(occupied(out));
     }
+    unfinished_files(out).iter().for_each(|file| fs::remove_file(file).unwrap_or_default());
     fs::create_dir_all(out.join("pictures")).map_err(|e| RunError::Folder {
         what: format!("cannot make the run folder `{named}`: {e}"),
         hint: "choose a writable place with `--out`".into(),
@@ -80,8 +82,12 @@ pub(crate) fn finish(out: &Path) -> Result<(), RunError> {
     }
 }
 
-/// Takes the mark from a run that goes on.
+/// Takes the mark from a run that goes on, and the files that it was writing when it was killed.
 pub(crate) fn reopen(out: &Path) -> Result<(), RunError> {
+    for unfinished in unfinished_files(out) {
+        // whoever may not remove it is told so with the mark below
+        let _ = fs::remove_file(unfinished);
+    }
     match fs::remove_file(out.join(FINISHED)) {
         Err(e) if e.kind() != ErrorKind::NotFound => Err(RunError::Folder {
             what: format!("cannot go on in the run folder `{}`: {e}", out.display()),
@@ -89,6 +95,16 @@ pub(crate) fn reopen(out: &Path) -> Result<(), RunError> {
         }),
         _ => Ok(()),
     }
+}
+
+/// Files of a run folder that were not renamed to their names.
+fn unfinished_files(out: &Path) -> Vec<PathBuf> {
+    let listed = |folder: PathBuf| fs::read_dir(folder).into_iter().flatten().flatten().map(|entry| entry.path());
+    let unfinished = |path: &PathBuf| {
+        let name = path.file_name().map_or_else(Default::default, |n| n.to_string_lossy());
+        name.starts_with(UNFINISHED.0) && name.ends_with(UNFINISHED.1)
+    };
+    [out.to_path_buf(), out.join("pictures")].into_iter().flat_map(listed).filter(unfinished).collect()
 }
 
 /// The summary of a run that is finished; `None` where it is not, or its case was changed since.
@@ -125,8 +141,7 @@ fn absolute(folder: &Path) -> std::io::Result<PathBuf> {
 /// The case of a run folder, and the folder its file names refer to.
 pub(crate) fn read_case(out: &Path) -> Result<(Case, PathBuf), RunError> {
     let path = out.join("case.toml");
-    let text =
-        fs::read_to_string(&path).map_err(|source| RunError::NoRun { folder: out.display().to_string(), source })?;
+    let text = plain(&path).map_err(|source| RunError::NoRun { folder: out.display().to_string(), source })?;
     let case = read(&text, &path.display().to_string())?;
     let origin = fs::read_to_string(out.join(ORIGIN)).unwrap_or_default();
     Ok((case, PathBuf::from(origin.trim())))
@@ -145,7 +160,25 @@ pub(crate) fn check_input(case: &Case, input: &Path, out: &Path) -> Result<(), R
     })
 }
 
+/// Refuses a case that compares itself with files that are not there.
+pub(crate) fn check_compared(case: &Case, input: &Path) -> Result<(), RunError> {
+    let gone = |c: &&Compare| !input.join(&c.file).is_file();
+    let missing: Vec<String> = case.compare.iter().filter(gone).map(|c| format!("`{}`", c.file)).collect();
+    if missing.is_empty() {
+        return Ok(());
+    }
+    Err(RunError::Folder {
+        what: format!("`[[compare]]` names files that are not there: {}", missing.join(", ")),
+        hint: format!("paths are relative to the case file, in `{}`", input.display()),
+    })
+}
+
 /// Text of a file that a case or a run refers to.
 pub(crate) fn text(folder: &Path, name: &str) -> std::io::Result<String> {
-    fs::read_to_string(folder.join(name))
+    plain(&folder.join(name))
+}
+
+/// Text of a file, however it is encoded.
+fn plain(path: &Path) -> std::io::Result<String> {
+    text_of(&fs::read(path)?).map_err(|e| std::io::Error::new(ErrorKind::InvalidData, e))
 }

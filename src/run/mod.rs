@@ -9,6 +9,7 @@
 //! end), `files`, `watch` (one loop that drives any integrator, and those who watch it), `studies` (what is done on a cloud),
 //! `session`; on top of it [`gaf`] and [`verify`].
 mod accuracy;
+mod cost;
 mod error;
 mod files;
 mod folder;
@@ -24,16 +25,18 @@ mod session;
 mod setup;
 mod stage;
 mod studies;
+mod understood;
 pub mod verify;
 mod watch;
 
 use std::path::Path;
 
 use crate::case::Case;
-use crate::cloud::{Cloud, CloudSpec};
+use crate::cloud::Cloud;
 use crate::geometry::Surface;
 use crate::scheme::Fluid;
 
+pub use cost::Cost;
 pub use error::RunError;
 pub use folder::{Places, fresh_folder};
 pub use inspect::{CloudReport, inspect};
@@ -45,6 +48,7 @@ pub use record::crosscheck::{Apart as LoadsApart, LoadCrosscheck};
 pub use record::summary::{Apart, BalanceReport, Ledger, MarchingCheck, Reclouding, Summary};
 pub use record::trace::{Change, FirstHarmonics, LastPeriod};
 pub use session::{Outcome, Session};
+pub use understood::Fact;
 
 use record::saved::Saved;
 use session::Origin;
@@ -52,6 +56,7 @@ use stage::Stage;
 
 /// Runs a case into a fresh folder.
 pub fn run(case: &Case, places: &Places, monitor: &mut dyn Monitor) -> Result<Outcome, RunError> {
+    folder::check_compared(case, &places.input)?;
     let session = Session::open(case, &places.input)?;
     begin(case, places, monitor)?;
     session.kept_in(&places.out).solve(monitor)
@@ -80,7 +85,7 @@ pub fn run_from(case: &Case, places: &Places, from: &Path, monitor: &mut dyn Mon
             hint: "start from a run on the same cloud, or without `--from`",
         });
     }
-    let saved = Saved::read(from)?;
+    let saved = Saved::read(from)?.trusted(&other)?;
     let last = saved.stages.get(saved.stage).is_some_and(|s| s.factor == 1.0);
     if !last || saved.lagrangian.is_some() {
         return Err(RunError::OtherRun {
@@ -109,7 +114,7 @@ pub fn resume(out: &Path, monitor: &mut dyn Monitor) -> Result<Outcome, RunError
     }
     folder::check_input(&case, &input, out)?;
     folder::check_begun(out)?;
-    let saved = Saved::read(out)?;
+    let saved = Saved::read(out)?.trusted(&case)?;
     folder::reopen(out)?;
     Session::open(&case, input)?.kept_in(out).from(Origin::Own(Box::new(saved))).solve(monitor)
 }
@@ -121,7 +126,7 @@ pub fn build_cloud<const D: usize>(
 ) -> Result<(Option<Surface<D>>, Cloud<D>, Vec<String>), RunError> {
     let (surface, notes) = setup::surface::<D>(case, input)?;
     let case = accuracy::with_cloud(case, surface.as_ref());
-    let cloud = Cloud::build(&CloudSpec::of_case(&case), surface.as_ref(), &[])?;
+    let cloud = Cloud::build(&setup::spec(&case), surface.as_ref(), &[])?;
     Ok((surface, cloud, notes))
 }
 

@@ -25,15 +25,6 @@ const FIRST: usize = 1;
 const MORE: usize = 2;
 /// Greatest Courant number of sweeps alone.
 const SWEEPS_CFL_MAX: f64 = 100.0;
-/// Residual evaluations of a typical steady run, per particle.
-const EVALUATIONS: f64 = 1200.0;
-/// The same for one implicit step in time.
-const STEP_EVALUATIONS: f64 = 110.0;
-/// The same for a step of an explicit method, part of a stable step lost included.
-const EXPLICIT_EVALUATIONS: f64 = 3.5;
-/// Harmonics that `number = "auto"` mostly ends with.
-const USUAL_HARMONICS: u32 = 3;
-
 /// A march of a case.
 pub(crate) struct Marching {
     /// How steps are taken.
@@ -164,7 +155,7 @@ fn in_time(case: &Case, held: Option<usize>) -> Vec<Task> {
 }
 
 /// Most harmonics that a balance may have.
-fn most(plan: &Harmonics) -> usize {
+pub(crate) fn most(plan: &Harmonics) -> usize {
     match plan.number {
         HarmonicCount::Fixed(n) => n as usize,
         HarmonicCount::Auto(_) => plan.most as usize,
@@ -174,30 +165,6 @@ fn most(plan: &Harmonics) -> usize {
 /// True when the number of harmonics is found on the way.
 pub(crate) fn is_automatic(plan: &Harmonics) -> bool {
     matches!(plan.number, HarmonicCount::Auto(_))
-}
-
-/// Residual evaluations that a run will spend; `fastest` gives the largest rate of change on its cloud.
-pub(crate) fn evaluations(case: &Case, period: Option<f64>, fastest: impl FnOnce() -> f64) -> f64 {
-    match &case.time {
-        Temporal::Steady(_) => EVALUATIONS * f64::from(1 + case.adapt.cycles),
-        Temporal::Dual(_) => {
-            let steps = case.end(period).zip(case.step_length(period)).map_or(0.0, |(end, step)| end / step);
-            EVALUATIONS + STEP_EVALUATIONS * steps
-        }
-        Temporal::Harmonics(h) => {
-            let count = match h.number {
-                HarmonicCount::Fixed(n) => n,
-                HarmonicCount::Auto(_) => USUAL_HARMONICS,
-            };
-            EVALUATIONS * f64::from(2 + 2 * count)
-        }
-        Temporal::Explicit(e) => EXPLICIT_EVALUATIONS * case.end(period).unwrap_or_default() * fastest() / e.cfl,
-    }
-}
-
-/// True when linear systems are solved.
-pub(crate) fn is_implicit(case: &Case) -> bool {
-    !matches!(case.time, Temporal::Explicit(_))
 }
 
 /// The implicit step of a case, where it is fixed.

@@ -21,8 +21,8 @@ use super::setup::{self, Site, Solver, check_motion};
 use super::stage::{Stage, Task};
 use super::studies::{self, Reached, Start, Turn};
 use crate::case::Case;
+use crate::cloud::Cloud;
 use crate::cloud::sources::Source;
-use crate::cloud::{Cloud, CloudSpec};
 use crate::coupling::Coupled;
 use crate::geometry::{Surface, dimension};
 use crate::observe::loads::Coefficients;
@@ -191,6 +191,7 @@ impl Run<'_> {
         monitor: &mut dyn Monitor,
     ) -> Result<Ended, RunError> {
         let mut motions = setup::motions(self.case, self.input, surface)?;
+        setup::sane(self.case, surface, &motions)?.iter().for_each(|n| monitor.note(n));
         let bodies = setup::bodies(self.case, self.input, surface, &mut motions)?;
         let site = Site { case: self.case, surface, motions: &motions };
         if bodies.is_empty() {
@@ -268,7 +269,7 @@ impl Run<'_> {
     }
     /// The cloud of the case; tells what is worth knowing of it and of the motion on it.
     fn cloud<const D: usize>(&self, site: &Site<'_, D>, monitor: &mut dyn Monitor) -> Result<Cloud<D>, RunError> {
-        let cloud = Cloud::build(&CloudSpec::of_case(self.case), site.surface, &[])?;
+        let cloud = Cloud::build(&setup::spec(self.case), site.surface, &[])?;
         cloud.notes.iter().cloned().chain(cloud.early_ends()).for_each(|n| monitor.note(&n));
         check_motion(self.case, &cloud, site.motions)?.iter().for_each(|n| monitor.note(n));
         Ok(cloud)
@@ -334,9 +335,11 @@ impl<S: HasGas<D>, const D: usize> Begun<S, D> {
     /// A stage that goes on where a checkpoint stands.
     fn resumed(mut solver: Solver<S, D>, saved: Saved) -> Result<Self, RunError> {
         // particles that travel are elsewhere by now
-        if let Some(fluid) = saved.lagrangian.map(|r| r.resume(solver.system.gas())).transpose()?.flatten() {
+        let travelled = saved.lagrangian.as_ref().map(|r| r.resume(solver.system.gas()));
+        if let Some(fluid) = travelled.transpose()?.flatten() {
             solver.system.set_gas(fluid);
         }
+        saved.fits(solver.system.fields())?;
         Ok(Self { solver, start: Start::Resume(saved.state, saved.memory) })
     }
 }

@@ -259,7 +259,7 @@ mod tests {
         let fluid = built::fluid(&format!(
             "[flow]\nmach = {mach}\nalpha = \"5 deg\"\nreynolds = 100\nviscosity_law = \"constant\"\n[[body]]\ncircle = {{ radius = 0.5 }}\n\
              [cloud]\nspacing = {spacing}\njitter = 0.1\ndomain = {{ min = [-3.2, -3.2], max = [3.2, 3.2] }}\n\
-             [[cloud.box]]\nmin = [-1.6, -1.6]\nmax = [1.6, 1.6]\nspacing = {spacing}\n"
+             [[cloud.box]]\nmin = [-1.6, -1.6]\nmax = [1.6, 1.6]\nspacing = {spacing}\n[time.explicit]\nuntil = 1\n"
         ));
         let law = BodyMotion::about(PIVOT, None).with_angle(TimeFunction::Steady(OMEGA));
         let cloud_motion = CloudMotion::deforming(&fluid.discretisation.cloud, vec![law], 1.0);

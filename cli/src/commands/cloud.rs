@@ -44,25 +44,27 @@ pub(crate) fn describe(r: &CloudReport) -> String {
         r.spacing.1,
         r.worst_condition
     );
-    if let Some(chord) = r.chord {
-        // without the round-off of the last digits
-        let chord: f64 = format!("{chord:.11e}").parse().unwrap_or(chord);
-        text += &format!("chord          {chord} (reference of loads)\n");
+    for (what, value) in &r.facts {
+        text += &format!("{what:<15}{value}\n");
     }
-    text += &format!(
-        "built in       {:.2} s\nmemory         about {:.0} MB\ntime           about {}\n",
-        r.seconds,
-        r.memory_bytes as f64 / 1e6,
-        readable(r.expected_seconds)
-    );
+    text += &format!("built in       {:.2} s\n", r.seconds);
+    text += &format!("memory         {}\ntime           {}\n", megabytes(&r.cost), readable(r.cost.seconds));
+    if let Some(gaf) = &r.gaf {
+        text += &format!("`alula gaf`    {}, {}\n", megabytes(gaf), readable(gaf.seconds));
+    }
     r.notes.iter().for_each(|n| text += &format!("note: {n}\n"));
     text
 }
 
+fn megabytes(cost: &run::Cost) -> String {
+    format!("about {:.0} MB", cost.bytes / 1e6)
+}
+
 fn readable(seconds: f64) -> String {
     match seconds {
-        s if s < 90.0 => format!("{s:.0} s"),
-        s if s < 5400.0 => format!("{:.0} min", s / 60.0),
-        s => format!("{:.1} h", s / 3600.0),
+        s if s < 10.0 => format!("about {s:.1} s"),
+        s if s < 90.0 => format!("about {s:.0} s"),
+        s if s < 5400.0 => format!("about {:.0} min", s / 60.0),
+        s => format!("about {:.1} h", s / 3600.0),
     }
 }

@@ -1,7 +1,7 @@
 //! One file for each command.
 use std::path::Path;
 
-use alula::case::{Case, read};
+use alula::case::{Case, read, text_of};
 
 use crate::arguments::{Cli, Command, Threads};
 use crate::outcome::Outcome;
@@ -51,14 +51,10 @@ fn threaded(threads: Threads, command: impl FnOnce() -> Outcome) -> Outcome {
 fn load(path: &Path) -> Result<Case, Outcome> {
     let name = path.display().to_string();
     let text = match std::fs::read(path) {
-        Ok(bytes) if bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]) => {
-            output::error(&format!("`{name}` is UTF-16 text"), "save it as UTF-8");
-            return Err(Outcome::BadInput);
-        }
-        Ok(bytes) => String::from_utf8(bytes).map_err(|_| {
+        Ok(bytes) => text_of(&bytes).map_err(|problem| {
             output::error(
-                &format!("`{name}` is not UTF-8 text"),
-                "a case file is TOML; start from `alula new airfoil`",
+                &format!("cannot read `{name}`: {problem}"),
+                "a case file is TOML, saved as UTF-8; start from `alula new airfoil`",
             );
             Outcome::BadInput
         })?,

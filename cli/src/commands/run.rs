@@ -101,12 +101,13 @@ fn finished(summary: &Summary, out: &Path, verbosity: Verbosity) -> Outcome {
         return told;
     }
     if summary.time > 0.0 {
-        let hint = "raise `periods`, or loosen `periodic_tolerance`";
+        let hint = "raise `periods` of `[time.dual]` or `[time.explicit]`, or loosen `periodic_tolerance` there";
         output::error("not converged: the loads have not become periodic", hint);
         return Outcome::Failed;
     }
-    let hint = "raise `time.steady.iterations`, or look at the residual in the report";
-    output::error(&format!("not converged: the residual fell {:.1} orders", summary.residual_drop), hint);
+    let table = if summary.harmonic_balance.is_some() { "harmonics" } else { "steady" };
+    let hint = format!("raise `time.{table}.iterations`, or look at the residual in the report");
+    output::error(&format!("not converged: the residual fell {:.1} orders", summary.residual_drop), &hint);
     Outcome::Failed
 }
 

@@ -38,6 +38,8 @@ pub(crate) struct Record {
     pub(crate) bytes: usize,
     /// Linear iterations of the last stage.
     pub(crate) linear: u32,
+    /// Those of the legs of a march before this one.
+    pub(crate) linear_before: u32,
     /// Steps in time that did not reach their goal.
     pub(crate) unconverged: u32,
     /// Times a step in time was halved because its equations could not be solved.
@@ -70,8 +72,9 @@ impl Record {
     /// What a checkpoint and the tables beside it hold.
     fn resumed(saved: &Saved, earlier: Earlier, units: &Units) -> Self {
         let march = match &saved.memory {
-            crate::time::Memory::March(past) => (past.unconverged, past.halved),
-            crate::time::Memory::Relaxation(_) => (0, 0),
+            crate::time::Memory::March(past) => (past.unconverged, past.halved, saved.linear),
+            // it counts on by itself
+            crate::time::Memory::Relaxation(_) => (0, 0, 0),
         };
         Self {
             iteration: saved.iteration,
@@ -82,6 +85,7 @@ impl Record {
             time: units.case_time(saved.time),
             unconverged: march.0,
             halved: march.1,
+            linear_before: march.2,
             trace: earlier.trace,
             work: Work::before(saved.work),
             evaluations: saved.settling.earlier,

@@ -6,6 +6,7 @@ mod log;
 pub(crate) mod saved;
 pub(crate) mod summary;
 pub(crate) mod trace;
+mod trust;
 
 pub(crate) use interval::{NEARLY, passed};
 pub(crate) use log::{Described, Log, Record, Scales};

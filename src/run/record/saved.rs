@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::super::error::RunError;
 use super::super::stage::{Stage, Task};
-use crate::cloud::CloudError;
+use super::trust::require;
 use crate::cloud::sources::Source;
 use crate::math::Vector;
 use crate::observe::checkpoint::{self, Array, Checkpoint, Field};
@@ -110,13 +110,38 @@ impl LagrangianCheckpoint {
     }
 
     /// The equations on the cloud that was kept.
-    pub(crate) fn resume<const D: usize>(&self, fluid: &Fluid<D>) -> Result<Option<Fluid<D>>, CloudError> {
+    pub(crate) fn resume<const D: usize>(&self, fluid: &Fluid<D>) -> Result<Option<Fluid<D>>, RunError> {
+        self.fits(fluid)?;
         let points = |v: &[f64]| v.chunks_exact(D).map(|x| Vector::from_fn(|d| x[d])).collect::<Vec<Vector<D>>>();
         let lists = points(&self.lists);
         // until it is built anew a march stands on the cloud of the case
         let lists = (self.ledger.renewals > 0).then_some((&lists[..], self.since));
         let [places, velocity, course] = [&self.places, &self.velocity, &self.course].map(|v| points(v));
-        fluid.resumed(lists, ParticleKinematics { now: self.now, places, velocity, course })
+        Ok(fluid.resumed(lists, ParticleKinematics { now: self.now, places, velocity, course })?)
+    }
+
+    /// Refuses fields of another length than the particles ask for, and particles outside the domain.
+    fn fits<const D: usize>(&self, fluid: &Fluid<D>) -> Result<(), RunError> {
+        let cloud = &fluid.discretisation.cloud;
+        let n_fluid = if self.ledger.renewals > 0 { self.lists.len() / D } else { cloud.n_fluid };
+        let rows = n_fluid + cloud.interface.len();
+        let full = |v: &[f64], n: usize| v.len() == D * n;
+        let known = |v: &[f64], n: usize| v.is_empty() || full(v, n);
+        let fits = full(&self.lists, n_fluid) && full(&self.places, rows);
+        require(
+            fits && known(&self.velocity, rows) && known(&self.course, n_fluid),
+            "its particles are of another cloud",
+        )?;
+        let domain = cloud.tree.bounds();
+        let inside = |x: &[f64]| domain.contains(&Vector::from_fn(|d| x[d]));
+        require(self.lists.chunks_exact(D).all(inside), "its particles lie outside the domain")?;
+        let totals = [&self.ledger.lost, &self.ledger.exchanged].map(Vec::len);
+        require(self.ledger.renewals == 0 || totals[0] == D + 2, "its ledger is of another dimension")
+    }
+
+    /// All arrays of numbers.
+    pub(super) fn arrays(&self) -> [&[f64]; 4] {
+        [&self.lists, &self.places, &self.velocity, &self.course]
     }
 
     fn counts(&self) -> Counts {
@@ -230,6 +255,8 @@ pub(crate) struct Saved {
     pub(crate) wall_seconds: f64,
     /// Work done before, see [`super::summary::Work`].
     pub(crate) work: u64,
+    /// Linear iterations of the stage.
+    pub(crate) linear: u32,
     /// Particles that travel with the fluid.
     pub(crate) lagrangian: Option<LagrangianCheckpoint>,
     /// Sources of refinement, flat.
@@ -264,7 +291,7 @@ impl Saved {
             time_bits: self.time.to_bits(),
             cfl_bits: relax.cfl.to_bits(),
             first_norm_bits: relax.first_norm.to_bits(),
-            linear: relax.linear,
+            linear: self.linear,
             newton: relax.phase.newton,
             phase_age: relax.phase.age,
             phase_best_bits: relax.phase.best.to_bits(),
@@ -339,6 +366,7 @@ impl Saved {
             cpu_seconds: m.cpu_seconds,
             wall_seconds: m.wall_seconds,
             work: m.work,
+            linear: m.linear,
             sources: part("sources")?,
         })
     }

@@ -1,12 +1,16 @@
 //! From case to solver: surface, stages, cloud, fluid, state at the start.
 mod bodies;
 mod motion_feasibility;
+mod sanity;
+mod size;
 
 use std::path::Path;
 use std::sync::Arc;
 
 pub(crate) use bodies::{bodies, described};
 pub(crate) use motion_feasibility::check as check_motion;
+pub(crate) use sanity::{chord, reynolds, sane};
+pub(crate) use size::spec;
 
 use super::accuracy;
 use super::error::RunError;
@@ -18,7 +22,7 @@ use crate::case::{Case, ParticleMotion, Temporal};
 use crate::cloud::conservative::conservative as conserve;
 use crate::cloud::sources::Source;
 use crate::cloud::travel::BackgroundDomain;
-use crate::cloud::{Cloud, CloudSpec, Operators};
+use crate::cloud::{Cloud, Operators};
 use crate::geometry::{GeometryError, Surface, load_surface};
 use crate::math::{Bounds, Vector};
 use crate::motion::{BodyMotion, ModeShape, Motions};
@@ -134,7 +138,7 @@ pub(crate) fn solver<const D: usize>(
     let sources = if stage.cycle > 0 { sources } else { &[] };
     let mut cloud = match ready {
         Some(cloud) => cloud,
-        None => Cloud::build(&CloudSpec::of_case(&scaled), surface, sources)?,
+        None => Cloud::build(&size::spec(&scaled), surface, sources)?,
     };
     let field = initial::<D>(case)?;
     let conservative = conserves(case);
@@ -219,7 +223,7 @@ fn cloud_motion<const D: usize>(
     let laws = || (0..motions.len()).map(|b| motions.of(b).clone()).collect::<Vec<BodyMotion<D>>>();
     let particles = case.particles();
     if case.moves() && particles == ParticleMotion::Lagrangian {
-        let domain = Arc::new(BackgroundDomain::new(&CloudSpec::of_case(case), surface, cloud)?);
+        let domain = Arc::new(BackgroundDomain::new(&size::spec(case), surface, cloud)?);
         let places = cloud.x[..cloud.n_rows()].to_vec();
         return Ok(CloudMotion::Travel(Travel {
             domain,

@@ -116,7 +116,8 @@ fn tell<S: HasGas<D>, const D: usize>(
     let record = &mut log.record;
     record.time = log.units.case_time(integrator.mark().time);
     record.converged = matches!(ending, Ending::Finished) && settled;
-    (record.bytes, record.linear) = (cost.bytes, cost.linear);
+    record.linear_before += cost.linear;
+    (record.bytes, record.linear) = (cost.bytes, record.linear_before);
     (record.unconverged, record.halved) = (cost.unconverged, cost.halved);
     if cost.halved > 0 {
         log.note(&format!("steps in time were halved {} times, where Newton's method stalled", cost.halved));

@@ -49,6 +49,7 @@ impl<S: System> Checkpoint<'_, S> {
     fn write(&self, now: &mut Now<'_, S>, log: &Log<'_>) -> Result<(), RunError> {
         let Some(journal) = &log.journal else { return Ok(()) };
         let (memory, time) = (now.memory(), now.mark().time);
+        let linear = log.record.linear_before + now.cost().linear;
         let Standing { frame, state, .. } = now.standing();
         let [cpu_seconds, wall_seconds] = log.seconds();
         let record = &log.record;
@@ -66,6 +67,7 @@ impl<S: System> Checkpoint<'_, S> {
             cpu_seconds,
             wall_seconds,
             work: record.work.total,
+            linear,
             lagrangian: self.particles.and_then(|of| of(frame, &record.ledger)),
             sources: self.at.sources.to_vec(),
         };

@@ -1,0 +1,127 @@
+//! How many particles a cloud will have, before any of it is made.
+//!
+//! Around a surface of measure S the levels of sizes s = h, 2h, 4h, … follow one another, each n = `layers` cells deep: level s
+//! fills the gas within n s/2 of the surface that finer ones have not filled. Its volume is estimated by Steiner's formula for a
+//! convex body, S r + ω_D r^D with r = n s/2, and cut off at the volume of the domain. A box with a spacing of its own holds
+//! V/s^D cells. What edges and curvature ask for beyond that is left out: the estimate is there to refuse what is far too large.
+use super::layout::Layout;
+use super::sources::SourceBox;
+use super::{CloudError, CloudSpec};
+use crate::geometry::Surface;
+use crate::math::Bounds;
+
+/// Estimates are trusted to this factor: only what is larger by more than it is refused unbuilt.
+const TRUST: f64 = 3.0;
+/// Cells of a tree for each particle: parents, and cells inside bodies.
+const CELLS: usize = 2;
+/// Cells that are never too many.
+const FEW: usize = 1 << 16;
+/// Length of a body above which its unit is asked about: hardly anything that flies is longer in metres.
+const LONG: f64 = 90.0;
+/// Volume of the unit disc and the unit ball.
+const UNIT_BALL: [f64; 2] = [std::f64::consts::PI, 4.0 / 3.0 * std::f64::consts::PI];
+
+/// What asks for particles, each with their number.
+pub(super) struct Estimate {
+    shares: Vec<(f64, String)>,
+}
+
+impl Estimate {
+    /// Counts what the surface and each of the `boxes`, the wake among them, ask for.
+    pub(super) fn new<const D: usize>(
+        spec: &CloudSpec<D>,
+        layout: &Layout<D>,
+        surface: Option<&Surface<D>>,
+        boxes: &[SourceBox<D>],
+    ) -> Self {
+        let domain = layout.bounds();
+        let mut shares: Vec<(f64, String)> = boxes
+            .iter()
+            .enumerate()
+            .map(|(k, b)| (cells(&common(&b.bounds, &domain), b.spacing), name_of(k, spec, surface.is_some())))
+            .collect();
+        shares.extend(surface.map(|s| (around(spec, &domain, s), reason(spec, s))));
+        Self { shares }
+    }
+
+    /// Refuses what is surely more than `most` particles.
+    pub(super) fn check(&self, most: usize) -> Result<(), CloudError> {
+        let sum: f64 = self.shares.iter().map(|s| s.0).sum();
+        // not a number: infinitely many over an infinitely small size
+        if sum <= TRUST * most as f64 {
+            return Ok(());
+        }
+        let about = if sum.is_finite() { format!("about {sum:.1e}") } else { "countless".to_owned() };
+        Err(self.refused(about, most))
+    }
+
+    /// Cells that a tree of at most `most` particles has.
+    pub(super) fn most_cells(&self, most: usize) -> usize {
+        most.saturating_mul(CELLS).max(FEW)
+    }
+
+    /// Why this many `particles` are too many, with what asks for most of them.
+    pub(super) fn refused(&self, particles: String, most: usize) -> CloudError {
+        let largest = self.shares.iter().max_by(|a, b| a.0.total_cmp(&b.0));
+        let hint = largest.map_or_else(|| "raise `cloud.spacing`".to_owned(), |s| s.1.clone());
+        CloudError::TooLarge { particles, most, hint }
+    }
+}
+
+/// Cells of the levels around a surface.
+fn around<const D: usize>(spec: &CloudSpec<D>, domain: &Bounds<D>, surface: &Surface<D>) -> f64 {
+    let area: f64 = (0..surface.elements.len() as u32).map(|e| surface.element_area_vector(e).norm()).sum();
+    let whole = volume(domain);
+    // on the surface itself sit interface particles
+    let mut count = area / spec.spacing.powi(D as i32 - 1);
+    let (mut size, mut filled) = (spec.spacing, 0.0);
+    while filled < whole && count.is_finite() {
+        let reach = 0.5 * spec.layers * size;
+        let within = (area * reach + UNIT_BALL[D - 2] * reach.powi(D as i32)).min(whole);
+        count += (within - filled) / size.powi(D as i32);
+        (filled, size) = (within, 2.0 * size);
+    }
+    count
+}
+
+/// What is to be changed where the surface asks for most.
+fn reason<const D: usize>(spec: &CloudSpec<D>, surface: &Surface<D>) -> String {
+    /// Layers that are more than a level of refinement ever needs.
+    const MANY: f64 = 64.0;
+    let length = surface.bounds().extent().max_abs();
+    if length > LONG && length > 1e3 * spec.spacing {
+        return format!(
+            "the bodies are {length} long: are they in millimetres? then `scale = \"1 mm\"`; else raise `cloud.spacing` ({:?})",
+            spec.spacing
+        );
+    }
+    if spec.layers > MANY {
+        return format!("lower `cloud.layers` ({}): 6 to 24 are usual", spec.layers);
+    }
+    format!("raise `cloud.spacing` ({:?}): the bodies are {length} long", spec.spacing)
+}
+
+/// What the `k`-th box is called in a case: those of the user, then the wake, or the domain.
+fn name_of<const D: usize>(k: usize, spec: &CloudSpec<D>, has_bodies: bool) -> String {
+    if k < spec.boxes.len() {
+        return format!("raise `cloud.box[{k}].spacing` ({:?}), or make the box smaller", spec.boxes[k].spacing);
+    }
+    match (&spec.wake, has_bodies) {
+        (Some(wake), true) => {
+            format!("raise `cloud.wake.spacing` ({:?}), or shorten `cloud.wake.length`", wake.spacing.0)
+        }
+        _ => format!("raise `cloud.spacing` ({:?}), or make `cloud.domain` smaller", spec.spacing),
+    }
+}
+
+fn cells<const D: usize>(bounds: &Bounds<D>, size: f64) -> f64 {
+    (0..D).map(|d| (bounds.extent()[d].max(0.0) / size).max(1.0)).product()
+}
+
+fn volume<const D: usize>(bounds: &Bounds<D>) -> f64 {
+    (0..D).map(|d| bounds.extent()[d]).product()
+}
+
+fn common<const D: usize>(a: &Bounds<D>, b: &Bounds<D>) -> Bounds<D> {
+    Bounds { min: a.min.max(&b.min), max: a.max.min(&b.max) }
+}

@@ -1,0 +1,157 @@
+//! What a run will take: memory of the process and time, from its number of particles and a timed residual.
+//!
+//! Fitted to runs on one core of an AMD EPYC and two of an Intel Xeon (November 2026): NACA 0012 from Mach 0.5 to 0.8 on 4,000 to 36,000
+//! particles, a sphere on 35,000, sections in pitch with 64 steps a period, with one to four harmonics and with explicit steps.
+//! A step in time or an iteration costs a number of residuals that depends little on the case; how many are needed grows slowly
+//! with the number of particles. Shocks that move, separated flow and families of clouds that are told early to be fine enough take
+//! more or less than this.
+use super::accuracy;
+use super::recipe::is_automatic;
+use crate::case::{Case, HarmonicCount, ParticleMotion, Temporal};
+
+/// Bytes of a process that computes nothing.
+const PROGRAM: f64 = 11.4e6;
+/// Bytes of each particle in the plane: steady, what steps in time add, a balance without and with each harmonic, explicit steps
+/// of particles at rest and in motion.
+const STEADY_BYTES: f64 = 2110.0;
+const STEP_BYTES: f64 = 900.0;
+const BALANCE_BYTES: [f64; 2] = [3600.0, 1600.0];
+const EXPLICIT_BYTES: [f64; 2] = [1100.0, 1400.0];
+/// Bytes of a particle in space over those in the plane.
+const SPACE_BYTES: f64 = 2.36;
+/// Residuals that a steady state takes on a plane cloud of [`USUAL`] particles, and in space.
+const STEADY: [f64; 2] = [570.0, 840.0];
+/// Growth of that number with the number of particles.
+const GROWTH: f64 = 0.27;
+const USUAL: f64 = 4000.0;
+/// Residuals of an implicit step in time.
+const STEP: f64 = 20.0;
+/// Residuals of a harmonic balance without and with each harmonic, its start included.
+const BALANCE: [f64; 2] = [900.0, 450.0];
+/// Residuals of a step of an explicit method, part of a stable step lost included, at rest and in motion.
+const EXPLICIT: [f64; 2] = [3.5, 7.0];
+/// Harmonics that `number = "auto"` mostly ends with.
+const USUAL_HARMONICS: u32 = 3;
+/// Growth of a cloud in a cycle of adaptation.
+const ADAPTED: f64 = 1.4;
+
+/// What a run takes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cost {
+    /// Greatest memory of the process.
+    pub bytes: f64,
+    /// Seconds on this machine, with as many threads as now.
+    pub seconds: f64,
+}
+
+/// A case on a cloud.
+pub(crate) struct Sized<'a> {
+    /// The case.
+    pub(crate) case: &'a Case,
+    /// Particles of its own cloud.
+    pub(crate) particles: usize,
+    /// 2 or 3.
+    pub(crate) dimension: usize,
+    /// Period of the motion in the time of the solver.
+    pub(crate) period: Option<f64>,
+    /// Seconds of a residual on that cloud.
+    pub(crate) evaluation: f64,
+}
+
+impl Sized<'_> {
+    /// What `alula run` takes; `fastest` gives the largest rate of change on the cloud.
+    pub(crate) fn cost(&self, fastest: impl FnOnce() -> f64) -> Cost {
+        let sizes = self.sizes();
+        let largest = sizes.iter().fold(0.0, |m: f64, n| m.max(*n));
+        let each = self.evaluation / self.particles.max(1) as f64;
+        let relaxed: f64 = sizes.iter().map(|n| n * each * self.steady(*n)).sum();
+        let marched = largest * each * self.in_time(largest, fastest);
+        let starts = !matches!(self.case.time, Temporal::Explicit(_) | Temporal::Harmonics(_));
+        let seconds = marched + if starts { relaxed } else { 0.0 };
+        Cost { bytes: PROGRAM + largest * bytes_each(self.case, self.dimension), seconds }
+    }
+
+    /// Particles of the clouds of the run, one after another.
+    fn sizes(&self) -> Vec<f64> {
+        let n = self.particles as f64;
+        match accuracy::asked(self.case) {
+            Some(asked) => {
+                let family = accuracy::family(&asked, self.particles, self.dimension);
+                family.iter().map(|stage| n / stage.factor.powi(self.dimension as i32)).collect()
+            }
+            None => (0..=self.case.adapt.cycles).map(|k| n * ADAPTED.powi(k as i32)).collect(),
+        }
+    }
+
+    /// Residuals of a steady state of `n` particles.
+    fn steady(&self, n: f64) -> f64 {
+        STEADY[self.dimension - 2] * (n / USUAL).powf(GROWTH)
+    }
+
+    /// Residuals of what follows a steady start.
+    fn in_time(&self, n: f64, fastest: impl FnOnce() -> f64) -> f64 {
+        let end = self.case.end(self.period).unwrap_or_default();
+        match &self.case.time {
+            Temporal::Steady(_) => 0.0,
+            Temporal::Dual(_) => self.case.step_length(self.period).map_or(0.0, |step| STEP * end / step),
+            Temporal::Harmonics(_) => {
+                let [alone, each] = BALANCE;
+                (alone + each * f64::from(harmonics(self.case))) * (n / USUAL).powf(GROWTH)
+            }
+            Temporal::Explicit(plan) => EXPLICIT[usize::from(self.case.moves())] * end * fastest() / plan.cfl,
+        }
+    }
+}
+
+/// Harmonics of a balance, 0 without one.
+fn harmonics(case: &Case) -> u32 {
+    match &case.time {
+        Temporal::Harmonics(plan) => match plan.number {
+            HarmonicCount::Fixed(n) => n,
+            HarmonicCount::Auto(_) if is_automatic(plan) => USUAL_HARMONICS.min(plan.most),
+            HarmonicCount::Auto(_) => plan.most,
+        },
+        _ => 0,
+    }
+}
+
+/// Bytes that each particle of a run takes.
+pub(crate) fn bytes_each(case: &Case, dimension: usize) -> f64 {
+    let plane = match &case.time {
+        Temporal::Steady(_) => STEADY_BYTES,
+        Temporal::Dual(_) => STEADY_BYTES + STEP_BYTES,
+        Temporal::Harmonics(_) => BALANCE_BYTES[0] + BALANCE_BYTES[1] * f64::from(harmonics(case)),
+        Temporal::Explicit(_) => EXPLICIT_BYTES[usize::from(case.moves() && case.particles() != ParticleMotion::Rigid)],
+    };
+    if dimension == 2 { plane } else { SPACE_BYTES * plane }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn cost(more: &str, particles: usize) -> Cost {
+        let text = format!("[flow]\nmach = 0.5\n[[body]]\nnaca = \"0012\"\n[cloud]\nspacing = 0.015625\n{more}");
+        let case = crate::case::read(&text, "t").unwrap();
+        Sized { case: &case, particles, dimension: 2, period: Some(10.0), evaluation: 1.7e-7 * particles as f64 }
+            .cost(|| 1.0)
+    }
+
+    #[test] // greatest resident memory and processor seconds of the runs the numbers are fitted to
+    fn measured_runs_are_met() {
+        let moved = "[motion]\nreduced_frequency = 0.3\nplunge = 0.01\n";
+        let balance = |n: usize| format!("{moved}[time]\nharmonics = {n}\n");
+        for (more, particles, megabytes, seconds) in [
+            ("", 4111, 20.1, 0.4),
+            ("", 17_805, 49.0, 2.8),
+            (balance(1).as_str(), 3122, 27.3, 0.7),
+            (&balance(2), 3122, 31.1, 0.9),
+            (&balance(4), 3122, 43.3, 1.3),
+            (&format!("{moved}[time.dual]\nsteps_per_period = 64\nperiods = 1\n"), 3122, 20.9, 0.7),
+        ] {
+            let found = cost(more, particles);
+            assert!((found.bytes / (1e6 * megabytes) - 1.0).abs() < 0.15, "{more}: {found:?}");
+            assert!((found.seconds / seconds - 1.0).abs() < 0.5, "{more}: {found:?}");
+        }
+    }
+}
