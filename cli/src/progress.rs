@@ -6,6 +6,7 @@
 use std::io::{self, IsTerminal, Write};
 use std::time::{Duration, Instant};
 
+use alula::run::MarchTick;
 use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::{Value, json};
 
@@ -21,7 +22,7 @@ const HISTORY: usize = 2 * SPARKS;
 const SPARKS: usize = 16;
 
 /// What is known after an iteration.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub(crate) struct Tick {
     /// Iterations so far.
     pub(crate) iteration: u64,
@@ -39,6 +40,10 @@ pub(crate) struct Tick {
     pub(crate) particles: usize,
     /// Seconds left, as far as one can tell.
     pub(crate) eta: Option<f64>,
+    /// Where a march stands.
+    pub(crate) march: Option<MarchTick>,
+    /// Present point of a polar from 0, and their number.
+    pub(crate) point: Option<[usize; 2]>,
 }
 
 /// Tells the progress of a run.
@@ -161,11 +166,44 @@ fn fields(tick: &Tick) -> Value {
     })
 }
 
+/// A march in one line of at most 80 columns, what is left of it first.
+fn march_text(march: &MarchTick, tick: &Tick) -> String {
+    let left = tick.eta.map_or_else(|| "–:––".to_owned(), clock);
+    let mut text = format!("{left} left  ");
+    match march.period {
+        Some(period) => text += &format!("period {:.2} of {:.0}", march.time / period, march.until / period),
+        None => text += &format!("to t {}", short(march.until)),
+    }
+    text += &format!("  t {}", short(march.time));
+    if let Some(angle) = march.angle {
+        text += &format!("  α {:.2}°", angle.to_degrees());
+    }
+    if let Some([lift, ..]) = tick.loads {
+        text += &format!("  CL {lift:.4}");
+    }
+    text + &march.lift_before.map_or_else(String::new, |lift| format!(" (before {lift:.4})"))
+}
+
+/// A time with four digits.
+fn short(time: f64) -> String {
+    let decimals = (3.0 - time.abs().max(f64::MIN_POSITIVE).log10().floor()).clamp(0.0, 8.0) as usize;
+    if time.abs() < 1e6 { format!("{time:.decimals$}") } else { format!("{time:.3e}") }
+}
+
+/// Which point of a polar the line is about.
+fn point_text(tick: &Tick) -> String {
+    tick.point.map_or_else(String::new, |[point, all]| format!("point {} of {all}  ", point + 1))
+}
+
 fn line_text(tick: &Tick) -> String {
-    let mut text = format!(
-        "iteration {:>6}  residual {:.3e}  orders {:5.2}  cfl {:.1e}",
-        tick.iteration, tick.residual, tick.orders, tick.cfl
-    );
+    if let Some(march) = &tick.march {
+        return march_text(march, tick);
+    }
+    let mut text = point_text(tick)
+        + &format!(
+            "iteration {:>6}  residual {:.3e}  orders {:5.2}  cfl {:.1e}",
+            tick.iteration, tick.residual, tick.orders, tick.cfl
+        );
     if let Some([lift, drag, moment]) = tick.loads {
         text.push_str(&format!("  CL {lift:8.5}  CD {drag:8.5}  CM {moment:8.5}"));
     }
@@ -173,8 +211,12 @@ fn line_text(tick: &Tick) -> String {
 }
 
 fn bar_text(tick: &Tick, history: &History) -> String {
+    if let Some(march) = &tick.march {
+        return march_text(march, tick);
+    }
     let (sparks, orders) = (history.sparkline(), tick.orders);
-    let mut text = format!("{}  {sparks} {:.2e} ({orders:.1} orders)", tick.iteration, tick.residual);
+    let mut text =
+        point_text(tick) + &format!("{}  {sparks} {:.2e} ({orders:.1} orders)", tick.iteration, tick.residual);
     if let Some([lift, drag, moment]) = tick.loads {
         text.push_str(&format!("  CL {lift:.4} CD {drag:.4} CM {moment:.4}"));
     }
@@ -295,7 +337,26 @@ mod tests {
             rate: 8.1,
             particles: 20_000,
             eta: Some(3723.0),
+            march: None,
+            point: None,
         }
+    }
+
+    #[test]
+    fn a_march_tells_what_is_left_in_eighty_columns() {
+        let march = MarchTick {
+            time: 123.456,
+            until: 216.1,
+            period: Some(54.03),
+            angle: Some(-0.0178),
+            lift_before: Some(-0.28611),
+        };
+        let told = line_text(&Tick { march: Some(march), ..tick(700, 5.0) });
+        assert_eq!(told, "1:02:03 left  period 2.28 of 4  t 123.5  α -1.02°  CL 0.3500 (before -0.2861)");
+        assert!(told.chars().count() <= 80, "{}", told.chars().count());
+        let free = MarchTick { period: None, angle: None, lift_before: None, ..march };
+        let told = line_text(&Tick { march: Some(free), eta: None, ..tick(7, 5.0) });
+        assert_eq!(told, "–:–– left  to t 216.1  t 123.5  CL 0.3500");
     }
 
     #[test]

@@ -38,7 +38,8 @@ impl Monitor for Watch {
     fn tick(&mut self, tick: &Tick) {
         let first = *self.first.get_or_insert(tick.iteration.saturating_sub(1));
         let seconds = self.began.elapsed().as_secs_f64();
-        let share = (tick.reached / tick.goal).clamp(0.0, 1.0);
+        let of_stage = (tick.reached / tick.goal).clamp(0.0, 1.0);
+        let share = tick.point.map_or(of_stage, |[point, all]| (point as f64 + of_stage) / all as f64);
         let eta = (share > 0.02 && share < 1.0).then(|| seconds * (1.0 - share) / share);
         self.progress.tick(&progress::Tick {
             iteration: tick.iteration,
@@ -49,6 +50,8 @@ impl Monitor for Watch {
             rate: (tick.iteration - first) as f64 / seconds.max(1e-9),
             particles: tick.particles,
             eta,
+            march: tick.march,
+            point: tick.point,
         });
     }
 

@@ -23,7 +23,8 @@ const PROMISED: [&str; 13] = [
     "ledger",
 ];
 /// What it may add.
-const EXTRA: [&str; 21] = [
+const EXTRA: [&str; 22] = [
+    "polar",
     "work_units",
     "generalised_forces",
     "chord",
@@ -71,6 +72,10 @@ const DROPPED: &str = "title = \"dropped\"\n[flow]\nmach = 0.8\n[motion]\npartic
     elastic_axis = -0.6\nmass_ratio = 75.0\nx_alpha = 0.25\nr_alpha2 = 0.75\nfrequency_ratio = 0.5\nspeed_index = 0.65\n\
     initial = { plunge = 0.01 }\n[[body]]\nnaca = \"0012\"\n[cloud]\nspacing = 0.0625\nfar_field = 10.0\n\
     [time.dual]\nstep = 1.0\nuntil = 40.0\n[output]\ncheckpoint = 1\nreport = false\n";
+
+/// Two angles at two Mach numbers around a section.
+const POLAR: &str = "title = \"polar\"\n[flow]\nmach = [0.4, 0.5]\nalpha = \"0:2:2 deg\"\n[[body]]\nnaca = \"0012\"\n\
+    [cloud]\nspacing = 0.0625\nfar_field = 10.0\n[accuracy]\nparticles = 100\n[output]\ncheckpoint = 1\nreport = false\n";
 
 /// A folder with a case in it.
 struct Desk {
@@ -132,13 +137,17 @@ fn assert_same_results(a: &Path, b: &Path, what: &str) {
         assert!(bytes(a).is_some() || name == "structure.csv", "{what}: no `{name}`");
         assert!(bytes(a) == bytes(b), "{what}: `{name}` differs");
     }
-    let history = |folder: &Path| {
-        let text = std::fs::read_to_string(folder.join("history.csv")).unwrap();
-        let seconds = text.lines().next().unwrap().split(',').position(|name| name == "seconds").unwrap();
-        let rest = |l: &str| l.split(',').enumerate().filter(|c| c.0 != seconds).map(|c| c.1.to_owned()).collect();
+    let timeless = |folder: &Path, name: &str| {
+        let text = std::fs::read_to_string(folder.join(name)).unwrap_or_default();
+        let seconds = text.lines().next().and_then(|head| head.split(',').position(|name| name.ends_with("seconds")));
+        let rest =
+            |l: &str| l.split(',').enumerate().filter(|c| Some(c.0) != seconds).map(|c| c.1.to_owned()).collect();
         text.lines().map(rest).collect::<Vec<Vec<String>>>()
     };
-    assert_eq!(history(a), history(b), "{what}: the histories differ");
+    assert!(!timeless(a, "history.csv").is_empty(), "{what}: no history");
+    for name in ["history.csv", "polar.csv"] {
+        assert_eq!(timeless(a, name), timeless(b, name), "{what}: `{name}` differs");
+    }
 }
 
 #[test]
@@ -264,6 +273,27 @@ fn survives_being_killed(case: &str) {
 #[test]
 fn a_killed_relaxation_goes_on_to_the_same_bits() {
     survives_being_killed(SECTION);
+}
+
+#[test]
+fn a_killed_polar_goes_on_to_the_same_bits() {
+    survives_being_killed(POLAR);
+}
+
+#[test]
+fn a_polar_has_a_row_for_each_point_and_check_counts_them() {
+    let desk = Desk::new(POLAR);
+    let checked = desk.alula(&["check", "case.toml"]);
+    let said = String::from_utf8(checked.stdout).unwrap();
+    assert!(said.contains("4 points: 2 angles at 2 Mach numbers"), "{said}");
+    let output = desk.alula(&["run", "case.toml", "--out", "out"]);
+    assert_eq!(code(&output), Some(0), "{}", told(&output));
+    let said = String::from_utf8(output.stdout).unwrap();
+    assert!(said.contains("0.500    2.000") && said.contains("4 points; "), "{said}");
+    let table = std::fs::read_to_string(desk.path("out/polar.csv")).unwrap();
+    assert!(table.starts_with("point,mach,alpha_deg,cl,cd,cm,") && table.lines().count() == 5, "{table}");
+    let refused = desk.alula(&["run", "case.toml", "--out", "other", "--from", "out"]);
+    assert!(code(&refused) == Some(2) && told(&refused).contains("without `--from`"), "{}", told(&refused));
 }
 
 #[test]

@@ -6,6 +6,7 @@ use serde_json::{Value, json};
 use super::draft::{Draft, default_name};
 use super::facts::is_dimensional;
 use super::keys::{SHAPES, SIDES};
+use super::naca::{Naca, TrailingEdge};
 use super::schema::one_of;
 
 /// Looks for all contradictions, and fills in what follows from other keys: dimension and names of bodies.
@@ -13,6 +14,7 @@ pub(super) fn contradictions(draft: &mut Draft<'_>) {
     bodies(draft);
     let dimension = dimension(draft);
     free_stream(draft);
+    super::polar::contradictions(draft);
     if let Some(d) = dimension {
         placements(draft, d);
         in_dimension(draft, d);
@@ -101,21 +103,12 @@ fn one_shape(draft: &mut Draft<'_>, body: &str) {
     }
 }
 
-/// Abbott and von Doenhoff (1959): camber, its position in tenths, thickness in hundredths of the chord.
+/// The designation of a section can be made.
 fn naca(draft: &mut Draft<'_>, path: &str) {
     let Some(digits) = draft.get(&format!("{path}.digits")).and_then(Value::as_str).map(str::to_owned) else { return };
     let place = if draft.given(&format!("{path}.digits")) { format!("{path}.digits") } else { path.to_owned() };
-    let bytes = digits.as_bytes();
-    if bytes.len() != 4 || !bytes.iter().all(u8::is_ascii_digit) {
-        let message = format!("`{digits}` is no NACA 4-digit section");
-        draft.fail(&place, message).allowed("four digits").hint("for example `naca = \"0012\"` or `naca = \"2412\"`");
-    } else if &bytes[2..] == b"00" {
-        draft
-            .fail(&place, format!("NACA {digits} has no thickness"))
-            .hint("the last two digits are the thickness in %");
-    } else if (bytes[0] == b'0') != (bytes[1] == b'0') {
-        let hint = "the first two digits are camber in % and its place in tenths: both zero or both not";
-        draft.fail(&place, format!("NACA {digits} has half a camber line")).hint(hint);
+    if let Err(no) = (Naca { digits, trailing_edge: TrailingEdge::Closed }).design() {
+        draft.fail(&place, no.what).hint(no.hint);
     }
 }
 
@@ -400,7 +393,7 @@ fn one_side(draft: &mut Draft<'_>, side: &str, axis: usize, d: usize) {
         (1, 3) => "flow.beta",
         _ => "",
     };
-    if is(draft, side, "symmetry") && draft.number(turned).is_some_and(|angle| angle != 0.0) {
+    if is(draft, side, "symmetry") && draft.values(turned).iter().any(|angle| *angle != 0.0) {
         let hint = format!("turn the body with `rotate`, or remove `{}`", turned.trim_start_matches("flow."));
         draft
             .fail(side, format!("the free stream crosses the symmetry plane `{side}`: `{turned}` is not zero"))

@@ -100,6 +100,11 @@ impl<'t> Draft<'t> {
         self.get(path)?.as_f64()
     }
 
+    /// The number at `path`, or those in the list there.
+    pub(super) fn values(&self, path: &str) -> Vec<f64> {
+        self.numbers(path).unwrap_or_else(|| self.number(path).into_iter().collect())
+    }
+
     /// The numbers in the list at `path`.
     pub(super) fn numbers(&self, path: &str) -> Option<Vec<f64>> {
         self.get(path)?.as_array()?.iter().map(Value::as_f64).collect()

@@ -82,11 +82,13 @@ pub(super) static CASE: Table = Table::of(&[
 ]);
 
 static FLOW: Table = Table::of(&[
-    Field::optional("mach", POSITIVE, "`velocity` must be given", "Mach number of the free stream.").known_as(&[
-        "m",
-        "ma",
-        "mach_number",
-    ]),
+    Field::optional(
+        "mach",
+        Kind::Values(&POSITIVE),
+        "`velocity` must be given",
+        "Mach number of the free stream; several make a polar.",
+    )
+    .known_as(&["m", "ma", "mach_number"]),
     Field::optional(
         "velocity",
         Kind::Quantity(Velocity::DIMENSION, Range::POSITIVE),
@@ -128,9 +130,10 @@ static FLOW: Table = Table::of(&[
     ),
     Field::defaulted(
         "alpha",
-        ANGLE,
+        Kind::Values(&ANGLE),
         Absent::Number(0.0),
-        "Angle of attack, nose up positive: the flow turns from +x towards +y in 2-D, towards +z in 3-D.",
+        "Angle of attack, nose up positive: the flow turns from +x towards +y in 2-D, towards +z in 3-D. Several, \
+          `\"-4:8:1 deg\"`, make a polar: one run through all of them, at every Mach number of `mach`.",
     )
     .known_as(&["aoa", "angle", "angle_of_attack", "incidence"]),
     Field::defaulted("beta", ANGLE, Absent::Number(0.0), "Sideslip angle, 3-D only: the flow turns towards +y."),
@@ -182,7 +185,12 @@ const SHAPE: &str = "another shape key";
 
 static BODY: Table = Table::of(&[
     Field::optional("name", Kind::Text, "`body-1`, `body-2`, …", "Name used in tables of loads."),
-    Field::optional("naca", Kind::Table(&NACA), SHAPE, "NACA 4-digit section (2-D), `naca = \"0012\"`."),
+    Field::optional(
+        "naca",
+        Kind::Table(&NACA),
+        SHAPE,
+        "NACA section of four or five digits, modified or not (2-D), `naca = \"0012\"`, `\"23012\"` or `\"0012-64\"`.",
+    ),
     Field::optional("airfoil", Kind::Text, SHAPE, "Airfoil coordinate file (2-D) in Selig, Lednicer or CSV order.")
         .known_as(&["file", "dat", "coordinates", "section", "profile"]),
     Field::optional(
@@ -247,14 +255,17 @@ static BODY: Table = Table::of(&[
 .with_one_of(&["naca", "airfoil", "polygon", "circle", "ellipse", "sphere", "box", "surface"]);
 
 static NACA: Table = Table::of(&[
-    Field::required("digits", Kind::Matching("^[0-9].{3,}$"), "The four digits."),
+    Field::required("digits", Kind::Matching("^[0-9].{3,}$"), "Its designation."),
     Field::defaulted("trailing_edge", Kind::Words(TRAILING_EDGES), Absent::Word("closed"), "How the section ends."),
 ])
 .short("digits");
 
 const TRAILING_EDGES: &[(&str, &str)] = &[
-    ("closed", "last thickness coefficient -0.1036: both sides meet at x/c = 1"),
-    ("blunt", "last thickness coefficient -0.1015 as published: a base of 0.252 % chord for 12 %"),
+    ("closed", "last thickness coefficient -0.1036, no base of a modified form: both sides meet at x/c = 1"),
+    (
+        "blunt",
+        "last thickness coefficient -0.1015 as published: a base of 0.252 % chord for 12 %, of a modified form 0.24 %",
+    ),
     ("extended", "as published, extended to where the sides meet and scaled back to unit chord"),
 ];
 

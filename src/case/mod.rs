@@ -18,6 +18,8 @@ mod mode_file;
 mod motion;
 mod motion_check;
 mod motion_keys;
+mod naca;
+mod polar;
 pub mod quantity;
 mod read;
 mod reference;
@@ -42,6 +44,8 @@ pub use motion::{
     BodyMotionSpec, ModeMotion, Motion, MotionFormula, MotionTable, ParticleMotion, Pitch, Plunge, Rotation,
     Translation,
 };
+pub use naca::{MeanLine, Naca, NacaDesign, NoSection, TrailingEdge};
+pub use polar::Polar;
 pub use quantity::{
     Acceleration, Angle, AngularStiffness, Density, Frequency, Inertia, Length, Mass, Pressure, Rate, Ratio, Stiffness,
     Temperature, Time, Velocity, Viscosity,
@@ -64,8 +68,11 @@ pub struct Case {
     pub title: String,
     /// Number of space dimensions, 2 or 3; taken from the bodies or the domain when absent: [`read()`] always fills it in.
     pub dimension: Option<u8>,
-    /// Free stream.
+    /// Free stream; of a polar that of its first point.
     pub flow: Flow,
+    /// Values of a polar, where `alpha` or `mach` is a list in the file.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub polar: Option<Polar>,
     /// Motion of bodies and particles; absent: only bodies with a motion of their own move.
     pub motion: Option<Motion>,
     /// Solid bodies, none for a case without walls.
@@ -167,7 +174,7 @@ pub struct Body {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Shape {
-    /// Four digits of a NACA section, `naca = "0012"`, or a table with `digits` and `trailing_edge`.
+    /// NACA section, `naca = "0012"` or `naca = "23012"`, or a table with `digits` and `trailing_edge`.
     Naca(Naca),
     /// Airfoil coordinate file, `airfoil = "rae2822.dat"` (Selig, Lednicer or CSV order).
     Airfoil(String),
@@ -195,27 +202,6 @@ pub enum Shape {
     },
     /// STL or OBJ file, `surface = "wing.stl"`.
     Surface(String),
-}
-
-/// A NACA 4-digit section.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Naca {
-    /// Four digits.
-    pub digits: String,
-    /// How the section ends.
-    pub trailing_edge: TrailingEdge,
-}
-
-/// Trailing edge of a NACA section.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum TrailingEdge {
-    /// Last thickness coefficient −0.1036: both sides meet at x/c = 1.
-    Closed,
-    /// Last thickness coefficient −0.1015 as published: a base of 0.252 % chord for 12 %.
-    Blunt,
-    /// As published, extended to where the sides meet (x/c = 1.00893 for 12 %) and scaled back to unit chord.
-    Extended,
 }
 
 /// Placement of a body.

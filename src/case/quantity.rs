@@ -139,6 +139,24 @@ const fn unit(symbol: &'static str, factor: f64) -> Unit {
     Unit { symbol, factor, offset: 0.0 }
 }
 
+/// The shortest decimal number of degrees that reads back to the same `radians`.
+pub(super) fn exact_degrees(radians: f64) -> Option<String> {
+    let degrees = radians / DEGREE;
+    let texts = (0..=15).map(|digits| format!("{degrees:.digits$}"));
+    texts.into_iter().find(|text| text.parse::<f64>().is_ok_and(|value| value * DEGREE == radians))
+}
+
+impl Angle {
+    /// In degrees, as one would write it.
+    pub fn degrees(&self) -> f64 {
+        exact_degrees(self.0).and_then(|text| text.parse().ok()).unwrap_or(self.0 / DEGREE)
+    }
+}
+
+/// A number without dimension, where it is written as text.
+pub(super) const PURE: &Dimension =
+    &Dimension { name: "a number", units: &[unit("-", 1.0)], needs_unit: false, example: "0.3" };
+
 /// One degree in radians.
 pub(crate) const DEGREE: f64 = std::f64::consts::PI / 180.0;
 /// One international foot in metres.

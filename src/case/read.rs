@@ -14,6 +14,8 @@ use super::Case;
 use super::draft::{Draft, closest};
 use super::error::{CaseErrors, MOST_SHOWN, quote};
 use super::keys::CASE;
+use super::polar;
+use super::quantity::PURE;
 use super::schema::{Absent, Field, Kind, List, Range, Table, Variant, one_of};
 
 /// Reads the text of a case file; `name` is what messages call it.
@@ -30,6 +32,7 @@ pub fn read(text: &str, name: &str) -> Result<Case, CaseErrors> {
         draft.add_syntax_errors(&syntax);
     }
     if draft.errors.is_empty() {
+        polar::take_out(&mut draft.tree);
         match serde_json::from_value(draft.tree.take()) {
             Ok(case) => return Ok(case),
             Err(error) => draft.fail("", format!("the case does not fit together: {error}")),
@@ -102,6 +105,7 @@ impl Reader<'_> {
                     Err(error) => self.bad_quantity(kind, &error.to_string(), item, path),
                 }
             }
+            (Kind::Values(one), _) => self.values(one, item, path),
             (Kind::Integer(min, max), value) => self.whole(kind, (*min, *max), number(value), item, path),
             (Kind::IntegerOr(_, _, word), DeValue::String(text)) if text.as_ref() == *word => Some(json!(word)),
             (Kind::IntegerOr(min, max, _), value) => self.whole(kind, (*min, *max), number(value), item, path),
@@ -120,6 +124,79 @@ impl Reader<'_> {
             (Kind::Choice(variants), DeValue::String(text)) => self.choose(variants, text, item, path),
             (Kind::Choice(variants), DeValue::Table(document)) => self.choose_table(variants, document, item, path),
             _ => self.wrong(kind, item, path),
+        }
+    }
+
+    /// One value, or several.
+    fn values(&mut self, one: &'static Kind, item: &Item<'_>, path: &str) -> Option<Value> {
+        let read = match item.get_ref() {
+            DeValue::Array(items) => self.listed(one, items, item, path)?,
+            DeValue::String(text) if text.contains([':', ',']) => self.series(one, text, item, path)?,
+            _ => return self.value(one, item, path),
+        };
+        Some(if read.len() == 1 { read[0].clone() } else { Value::Array(read) })
+    }
+
+    /// The values of a list; the unit of the last one serves those without.
+    fn listed(&mut self, one: &'static Kind, items: &[Item<'_>], whole: &Item<'_>, path: &str) -> Option<Vec<Value>> {
+        let Some(last) = items.last() else {
+            let message = format!("`{path}` has no values");
+            self.draft.fail_at(path, whole.span(), message).allowed("one value or more");
+            return None;
+        };
+        let unit = last.get_ref().as_str().map_or("", |text| polar::split(text).1).to_owned();
+        let numbers: Option<Vec<f64>> = items.iter().map(|item| number(item.get_ref())).collect();
+        if let Some(error) = numbers.and_then(|all| missing_unit(one, &all)) {
+            return self.no_unit(one, &error, whole, path);
+        }
+        let read = items.iter().enumerate().map(|(i, item)| {
+            let here = format!("{path}[{i}]");
+            match number(item.get_ref()).filter(|_| !unit.is_empty()) {
+                Some(x) => self.text_value(one, &format!("{x} {unit}"), item, &here),
+                None => self.value(one, item, &here),
+            }
+        });
+        read.collect::<Vec<_>>().into_iter().collect()
+    }
+
+    /// The values of a series in one text.
+    fn series(&mut self, one: &'static Kind, text: &str, item: &Item<'_>, path: &str) -> Option<Vec<Value>> {
+        let texts = match polar::values_of(text) {
+            Ok(texts) => texts,
+            Err(problem) => {
+                let allowed = "`\"first:last:step\"` with a step that leads from the first to the last";
+                self.draft.fail_at(path, item.span(), format!("`{path}`: {problem}")).allowed(allowed);
+                return None;
+            }
+        };
+        let numbers: Option<Vec<f64>> = texts.iter().map(|t| t.parse().ok()).collect();
+        if let Some(error) = numbers.and_then(|all| missing_unit(one, &all)) {
+            return self.no_unit(one, &error, item, path);
+        }
+        let read = texts.iter().enumerate().map(|(i, t)| self.text_value(one, t, item, &format!("{path}[{i}]")));
+        read.collect::<Vec<_>>().into_iter().collect()
+    }
+
+    /// Tells that several values lack a unit.
+    fn no_unit(&mut self, one: &Kind, error: &str, item: &Item<'_>, path: &str) -> Option<Vec<Value>> {
+        let Kind::Quantity(dimension, _) = one else { return None };
+        let written = self.draft.source(item.span());
+        let written = written.trim_matches(['[', ']', '"', '\'', ' ']);
+        let hint = format!("write `\"{written} {}\"` with one of the units {}", dimension.usual(), dimension.symbols());
+        self.draft.fail_at(path, item.span(), format!("`{path}`: {error}")).allowed(one.words()).hint(hint);
+        None
+    }
+
+    /// A number or a quantity that is given as text.
+    fn text_value(&mut self, one: &'static Kind, text: &str, item: &Item<'_>, path: &str) -> Option<Value> {
+        let (parsed, range) = match one {
+            Kind::Quantity(dimension, range) => (dimension.parse(text), range),
+            Kind::Number(range) => (PURE.parse(text), range),
+            other => return self.wrong(other, item, path),
+        };
+        match parsed {
+            Ok(x) => self.number(x, range, item, path),
+            Err(error) => self.bad_quantity(one, &error.to_string(), item, path),
         }
     }
 
@@ -325,6 +402,12 @@ impl Reader<'_> {
         let hint = format!("add `{}` ({}): {}", field.key, field.kind.words(), lower(field.doc));
         self.draft.fail(&place, message).hint(hint);
     }
+}
+
+/// What is wrong with the first of several plain numbers that should have a unit.
+fn missing_unit(one: &Kind, numbers: &[f64]) -> Option<String> {
+    let Kind::Quantity(dimension, _) = one else { return None };
+    numbers.iter().find_map(|x| dimension.plain(*x).err()).map(|e| e.to_string())
 }
 
 /// The number that `value` is, if it is one; infinities and NaN count, so that their range error is told.

@@ -62,6 +62,11 @@ fn kind_schema(kind: &Kind) -> Value {
     match kind {
         Kind::Number(range) => number_schema(range),
         Kind::Quantity(dimension, range) => quantity_schema(dimension, range),
+        Kind::Values(one) => {
+            let items = json!({ "anyOf": [kind_schema(one), { "type": "number" }] });
+            let list = json!({ "type": "array", "items": items, "minItems": 1 });
+            json!({ "anyOf": [kind_schema(one), list, { "type": "string", "pattern": "[:,]" }] })
+        }
         Kind::Integer(min, max) => json!({ "type": "integer", "minimum": min, "maximum": max }),
         Kind::IntegerOr(min, max, word) => {
             json!({ "anyOf": [{ "type": "integer", "minimum": min, "maximum": max }, { "const": word }] })

@@ -38,6 +38,8 @@ pub(super) enum Kind {
     Number(Range),
     /// A number with a unit.
     Quantity(&'static Dimension, Range),
+    /// One number or quantity, or several: a list, `first:last:step`, or values with commas between.
+    Values(&'static Kind),
     /// A whole number from .. to, ends included.
     Integer(u64, u64),
     /// A whole number from .. to, ends included, or this word.
@@ -290,6 +292,7 @@ impl Kind {
             Self::Quantity(dimension, range) => {
                 with(format!("{} like `\"{}\"`", dimension.name, dimension.example), range)
             }
+            Self::Values(one) => format!("{}, a list of them, or `\"first:last:step\"`", one.words()),
             Self::Integer(min, max) if *max >= u64::from(u32::MAX) => format!("a whole number, at least {min}"),
             Self::Integer(min, max) => format!("a whole number from {min} to {max}"),
             Self::IntegerOr(min, max, word) => format!("a whole number from {min} to {max} or `\"{word}\"`"),

@@ -6,12 +6,13 @@ use serde_json::{Map, Value};
 
 use super::Case;
 use super::keys::CASE;
-use super::quantity::{Angle, DEGREE};
+use super::quantity::{Angle, exact_degrees};
 use super::schema::{Field, Kind, Table};
 
 /// The case as TOML; lines that only repeat a default say so.
 pub fn write(case: &Case) -> String {
-    let Ok(Value::Object(tree)) = serde_json::to_value(case) else { return String::new() };
+    let Ok(Value::Object(mut tree)) = serde_json::to_value(case) else { return String::new() };
+    super::polar::put_back(&mut tree);
     let mut text = String::new();
     for field in CASE.fields.iter().filter(|f| !has_header(f, tree.get(f.key))) {
         line(field, tree.get(field.key), &mut text);
@@ -77,6 +78,8 @@ fn inline(kind: &Kind, value: &Value) -> String {
         (Kind::Quantity(dimension, _), Value::Number(x)) if dimension.needs_unit => {
             format!("\"{:?} {}\"", x.as_f64().unwrap_or_default(), dimension.units[0].symbol)
         }
+        (Kind::Values(one), Value::Array(items)) => bracket(items.iter().map(|v| inline(one, v))),
+        (Kind::Values(one), value) => inline(one, value),
         (Kind::List(list), Value::Array(items)) => bracket(items.iter().map(|v| inline(&list.item, v))),
         (Kind::Table(table), Value::Object(keys)) => braces(table, keys),
         (Kind::Tables(table), Value::Array(items)) => {
@@ -115,10 +118,7 @@ fn quoted(text: &str) -> String {
 
 /// The shortest decimal number of degrees that reads back to the same radians, else the radians.
 fn angle(radians: f64) -> String {
-    let degrees = radians / DEGREE;
-    let exact = (0..=15)
-        .map(|digits| format!("{degrees:.digits$}"))
-        .find(|text| text.parse::<f64>().is_ok_and(|value| value * DEGREE == radians));
+    let exact = exact_degrees(radians);
     exact.map_or_else(|| format!("\"{radians:?} rad\""), |degrees| format!("\"{degrees} deg\""))
 }
 

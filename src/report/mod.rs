@@ -24,6 +24,7 @@ mod page;
 mod paint;
 mod periodic;
 pub mod picture;
+mod polar;
 mod sections;
 mod structure;
 pub mod surface;
@@ -35,6 +36,7 @@ pub use colour::Colormap;
 pub use compare::Comparison;
 pub use overview::write_report;
 pub use picture::{Dots, PictureStyle, Raster, Scatter, raster_png, scatter_png};
+pub use polar::write_polar;
 pub use surface::{Shell, SurfaceStyle, surface_png};
 pub use verification::write_verification_page;
 

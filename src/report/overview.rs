@@ -10,7 +10,7 @@ use serde_json::Value;
 use super::files::{LOADS, Load, RunFolder};
 use super::page::{Card, Fact, Page, Section, Status};
 use super::sections::{self, grouped, number};
-use super::{ReportError, grid, periodic, structure, write_file};
+use super::{ReportError, grid, periodic, polar, structure, write_file};
 
 /// Writes `report.html` into a run folder from the files that are there, and gives its path.
 pub fn write_report(run: &Path) -> Result<PathBuf, ReportError> {
@@ -23,16 +23,20 @@ pub fn write_report(run: &Path) -> Result<PathBuf, ReportError> {
 
 fn report(run: &RunFolder) -> Page {
     let summary = run.json("summary.json").unwrap_or_default();
+    // a harmonic balance has none
+    let none = summary.get("ledger").is_some_and(Value::is_null);
+    let ledger = if none { Ok(Vec::new()) } else { sections::ledger(run) };
     let sections = [
         Section::new("loads", "Loads", sections::loads(run)),
         Section::new("grid", "Grid convergence", Ok(grid::grid(run))),
+        Section::new("polar", "Polar", Ok(polar::polar(run))),
         Section::new("flow", "Flow", sections::pictures(run)),
         Section::new("pressure", "Pressure on the surface", sections::pressure(run)),
         Section::new("motion", "Motion", Ok(periodic::motion(run))),
         Section::new("structure", "Structure", Ok(structure::structure(run))),
         Section::new("convergence", "Convergence", Ok(sections::convergence(run))),
         Section::new("doctor", "Cloud doctor", Ok(sections::doctor(run))),
-        Section::new("ledger", "Conservation", sections::ledger(run)),
+        Section::new("ledger", "Conservation", ledger),
         Section::new("cost", "Time and memory", sections::timings(run)),
         Section::new("case", "Case", sections::case(run)),
         Section::new("cite", "How to cite", Ok(sections::citation())),
@@ -57,7 +61,10 @@ fn case_title(run: &RunFolder, summary: &Value) -> String {
 /// One line: converged or not, particles, iterations.
 fn status(summary: &Value) -> Status {
     let get = |key: &str| summary.get(key).and_then(Value::as_f64);
+    let marched = get("time").is_some_and(|time| time > 0.0) && summary.get("harmonic_balance").is_none();
     let (class, verdict) = match summary.get("converged").and_then(Value::as_bool) {
+        Some(true) if marched => ("good", "marched to its end"),
+        Some(false) if marched => ("bad", "not periodic, or short of its end"),
         Some(true) => ("good", "converged"),
         Some(false) => ("bad", "not converged"),
         None => ("unknown", "no summary"),

@@ -22,13 +22,20 @@ const FAR_FIELD: f64 = 100.0;
 const FEWEST: f64 = 3.0;
 /// Factor on the spacing of the first cloud.
 const FIRST: f64 = 4.0;
+/// Greatest number of particles at the points of a polar that says nothing of accuracy: three clouds for each section, and about a
+/// second for each point.
+const POLAR_PARTICLES: usize = 20_000;
 /// Clouds that an error bar is drawn from.
 const CLOUDS: usize = 3;
 
 /// How well the loads are to be known; `None` where they are those of one cloud.
 pub(crate) fn asked(case: &Case) -> Option<Accuracy> {
     let chosen = case.cloud.spacing.is_none() && !is_unsteady(case) && !case.bodies.is_empty();
-    case.accuracy.or_else(|| chosen.then(Accuracy::default))
+    let usual = match case.polar {
+        Some(_) => Accuracy { particles: POLAR_PARTICLES, ..Accuracy::default() },
+        None => Accuracy::default(),
+    };
+    case.accuracy.or(chosen.then_some(usual))
 }
 
 /// The case with the spacing of its cloud, and with the accuracy that is asked for where it leaves that out.
@@ -71,7 +78,7 @@ pub(crate) fn family(asked: &Accuracy, n: usize, dimension: usize) -> Vec<Stage>
     let particles = |factor: f64| n as f64 / factor.powi(dimension as i32);
     let factors = std::iter::successors(Some(FIRST), |f| Some(0.5 * f));
     let within = factors.enumerate().take_while(|(k, f)| *k < CLOUDS || particles(*f) <= asked.particles as f64);
-    within.map(|(_, factor)| Stage { factor, cycle: 0, task: Task::Relax }).collect()
+    within.map(|(_, factor)| Stage { factor, task: Task::Relax, ..Stage::PLAIN }).collect()
 }
 
 /// Adds the loads on one more cloud; true when they are known well enough.
@@ -80,6 +87,9 @@ pub(crate) fn judge(asked: &Accuracy, loads: CloudLoads, log: &mut Log<'_>) -> b
     log.record.clouds.push(loads);
     let found = Convergence::of(&log.record.clouds, asked.loads.0);
     let enough = found.as_ref().is_some_and(|c| c.reached);
+    if log.point.is_some() {
+        return enough;
+    }
     let bars = found.map_or_else(String::new, |c| {
         let h = c.half_widths();
         format!(" ± {:.5}, CD {:.5} ± {:.5}, CM {:.5} ± {:.5}", h.cl, loads.cd, h.cd, loads.cm, h.cm)

@@ -81,15 +81,15 @@ fn last_change(cycles: &[[f64; 5]]) -> Option<Coefficients> {
     Some(Coefficients { cl: b[2] - a[2], cd: b[3] - a[3], cm: b[4] - a[4] })
 }
 
-/// Relative change of the totals of a march.
-fn drift<const D: usize>(view: &View<'_, D>, state: &[f64], start: &[f64]) -> Ledger {
+/// Relative change of the totals of a march; `None` where they were not known when it began.
+fn drift<const D: usize>(view: &View<'_, D>, state: &[f64], start: &[f64]) -> Option<Ledger> {
     let end = totals(&view.volumes(), state, n_variables(D));
     if start.len() != end.len() {
-        return Ledger::default();
+        return None;
     }
     let relative = |c: usize| (end[c] - start[c]) / start[c].abs().max(f64::MIN_POSITIVE);
     let momentum = (1..=D).map(|c| (end[c] - start[c]).abs()).fold(0.0, f64::max) / start[0];
-    Ledger { mass: relative(0), momentum, energy: relative(D + 1) }
+    Some(Ledger { mass: relative(0), momentum, energy: relative(D + 1) })
 }
 
 /// What re-clouding did, where particles travel with the fluid.
@@ -119,10 +119,10 @@ impl<const D: usize> Found<'_, D> {
         let part = |load: &Load| fluid.viscous_model.as_ref().map(|_| self.axes.coefficients(load));
         let balance = self.balance.unwrap_or_default();
         let through = self.axes.coefficients(&balance.load);
-        let ledger = if recipe::is_unsteady(case) {
-            drift(&self.view, state, &record.start_totals)
-        } else {
-            self.steady_ledger(&balance, &loads, &through)
+        let ledger = match recipe::balance(case) {
+            Some(_) => None,
+            None if recipe::is_unsteady(case) => drift(&self.view, state, &record.start_totals),
+            None => Some(self.steady_ledger(&balance, &loads, &through)),
         };
         let [cpu, wall] = log.seconds();
         let n = fluid.discretisation.cloud.n_real();
@@ -138,7 +138,7 @@ impl<const D: usize> Found<'_, D> {
             } else {
                 -record.drop.log10()
             },
-            converged: record.converged,
+            converged: record.converged_everywhere(),
             cpu_seconds: cpu,
             wall_seconds: wall,
             peak_bytes: peak_bytes(),
@@ -160,6 +160,7 @@ impl<const D: usize> Found<'_, D> {
             first_harmonics: log.case_period().map_or_else(Vec::new, |p| record.trace.first_harmonics(p)),
             momentum_of_period: log.case_period().and_then(|p| record.moments.last(p)),
             last_period: log.case_period().and_then(|p| record.trace.last_period(p)),
+            periodic_loads: log.case_period().and_then(|p| record.trace.periodic_loads(p)),
             lift_cycles: record.trace.cycles(),
             periodic_change: log.case_period().and_then(|p| record.trace.change(p)),
             bytes_per_particle: bytes_of(fluid, record.bytes) as f64 / n as f64,
@@ -168,6 +169,7 @@ impl<const D: usize> Found<'_, D> {
             error_l2_density: self.exact_error(log.units.solver_time(record.time)),
             loads_error: family.as_ref().map(Convergence::half_widths),
             grid_convergence: family,
+            polar: record.polar.points.clone(),
             adapt_change: last_change(&record.cycles),
             phases: spent.phases(),
         }

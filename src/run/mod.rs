@@ -7,7 +7,7 @@
 //! Rooms, each of which uses those before it only: `stage` and `recipe` (what is done, in which order), `look` (loads and fields
 //! of a flow), `build` (from a case to its equations), `record` (what a run knows about itself), `found` (what it tells at its
 //! end), `files`, `watch` (one loop that drives any integrator, and those who watch it), `studies` (what is done on a cloud),
-//! `session`; on top of it [`gaf`] and [`verify`].
+//! `polar` (what many flows on the same clouds leave to one another), `session`; on top of it [`gaf`] and [`verify`].
 mod accuracy;
 mod cost;
 mod error;
@@ -19,6 +19,7 @@ mod inspect;
 mod look;
 mod measure;
 mod monitor;
+mod polar;
 mod recipe;
 mod record;
 mod session;
@@ -43,10 +44,11 @@ pub use inspect::{CloudReport, inspect};
 pub use look::Snapshot;
 pub use look::forces::GeneralisedForce;
 pub use look::friction::Separation;
-pub use monitor::{Monitor, Silent, Tick};
+pub use monitor::{MarchTick, Monitor, Silent, Tick};
 pub use record::crosscheck::{Apart as LoadsApart, LoadCrosscheck};
+pub use record::polar::PolarPoint;
 pub use record::summary::{Apart, BalanceReport, Ledger, MarchingCheck, Reclouding, Summary};
-pub use record::trace::{Change, FirstHarmonics, LastPeriod};
+pub use record::trace::{Change, FirstHarmonics, LastPeriod, PeriodicLoads};
 pub use session::{Outcome, Session};
 pub use understood::Fact;
 
@@ -78,6 +80,12 @@ pub fn run_from(case: &Case, places: &Places, from: &Path, monitor: &mut dyn Mon
     .filter_map(|(name, differs)| differs.then_some(name))
     .collect();
     let name = from.display();
+    if case.polar.is_some() || other.polar.is_some() {
+        return Err(RunError::OtherRun {
+            what: format!("a polar neither begins from another run nor is one that others begin from (`{name}`)"),
+            hint: "its points start from one another: run it without `--from`",
+        });
+    }
     if !differing.is_empty() {
         let keys = differing.join("`, `");
         return Err(RunError::OtherRun {

@@ -40,4 +40,23 @@ pub struct Tick {
     pub loads: Option<[f64; 3]>,
     /// Number of fluid particles.
     pub particles: usize,
+    /// Where a march stands; absent elsewhere.
+    pub march: Option<MarchTick>,
+    /// Present point of a polar from 0, and their number; absent elsewhere.
+    pub point: Option<[usize; 2]>,
+}
+
+/// Where a march stands; times are in the units of the case.
+#[derive(Clone, Copy, Debug)]
+pub struct MarchTick {
+    /// Time.
+    pub time: f64,
+    /// Time at which it ends.
+    pub until: f64,
+    /// Period of the motion, where that repeats.
+    pub period: Option<f64>,
+    /// Angle of the first body that moves, radians, nose up, where something moves.
+    pub angle: Option<f64>,
+    /// Lift a period ago, where there is one.
+    pub lift_before: Option<f64>,
 }

@@ -2,6 +2,7 @@
 //! what integrators want.
 use super::accuracy;
 use super::error::RunError;
+use super::polar;
 use super::stage::{Stage, Task};
 use crate::case::{self, Case, HarmonicCount, Harmonics, Initial, RungeKutta, Steady, SteadyMethod, Temporal};
 use crate::math::multilevel::Cycle;
@@ -100,13 +101,13 @@ pub(crate) fn marching(case: &Case, period: Option<f64>, dimension: usize) -> Re
 /// The stages of a case whose own cloud has `n` fluid particles: coarse, fine, adapted, marched, more and more harmonics.
 pub(crate) fn plan(case: &Case, n: usize, dimension: usize) -> Vec<Stage> {
     if let Some(asked) = accuracy::asked(case) {
-        return accuracy::family(&asked, n, dimension);
+        return polar::at_all_points(case, accuracy::family(&asked, n, dimension));
     }
     let mut all = Vec::new();
     // a march from a given field starts from that field itself
     let given = is_unsteady(case) && !matches!(case.initial, Initial::FreeStream);
     let relaxes = relaxation(case).is_some() && !case.bodies.is_empty() && !given;
-    let steady = |factor: f64, cycle: u32| Stage { factor, cycle, task: Task::Relax };
+    let steady = |factor: f64, cycle: u32| Stage { factor, cycle, point: None, task: Task::Relax };
     if relaxes {
         let limits = START[dimension - 2];
         if n > limits[1] {
@@ -120,8 +121,8 @@ pub(crate) fn plan(case: &Case, n: usize, dimension: usize) -> Vec<Stage> {
         all.extend((0..=case.adapt.cycles).map(|cycle| steady(1.0, cycle)));
     }
     let cycle = all.last().map_or(0, |s: &Stage| s.cycle);
-    all.extend(in_time(case, None).into_iter().map(|task| Stage { factor: 1.0, cycle, task }));
-    all
+    all.extend(in_time(case, None).into_iter().map(|task| Stage { factor: 1.0, cycle, point: None, task }));
+    polar::at_all_points(case, all)
 }
 
 /// The stages of a case that begins from the last state of another run, reached at the stage `from`, on the same cloud.

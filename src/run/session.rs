@@ -13,6 +13,7 @@ use super::folder;
 use super::found::{Found, Names, Spent};
 use super::look::{GasView, Snapshot, field, load_axes, momentum};
 use super::monitor::Monitor;
+use super::polar::{Coarser, Course};
 use super::recipe;
 use super::record::saved::{Position, Saved, flatten};
 use super::record::summary::{Clock, Summary};
@@ -27,7 +28,7 @@ use crate::coupling::Coupled;
 use crate::geometry::{Surface, dimension};
 use crate::observe::loads::Coefficients;
 use crate::scheme::{Fluid, HasGas};
-use crate::system::System;
+use crate::system::{Instant, System};
 use crate::verify::Loops;
 use crate::verify::wall::Wall;
 
@@ -158,10 +159,11 @@ struct Run<'a> {
     out: Option<&'a Path>,
 }
 
-/// A solver with a state.
-struct Stood<S, const D: usize> {
+/// A stage that is over: its solver and where it ended.
+struct Stood<S: System, const D: usize> {
+    stage: Stage,
     solver: Solver<S, D>,
-    state: Vec<f64>,
+    reached: Reached<S>,
 }
 
 /// What a stage begins with.
@@ -230,43 +232,82 @@ impl Run<'_> {
             (None, None) => recipe::plan(self.case, particles, D),
         };
         let scales = Scales { axes: load_axes(self.case, site.surface), period: site.motions.period() };
+        let points = self.case.points();
         let mut log = Log::open(self.case, self.out, scales, saved.as_ref(), structures, monitor)?;
         log.note(&describe(&stages, particles));
-        let first = saved.as_ref().map_or(0, |s| s.stage);
         let known = saved.as_ref().or(other.as_ref());
         let mut sources: Vec<Source<D>> = known.map_or_else(Vec::new, Saved::sources);
+        let kept = saved.as_mut().map_or_else(Vec::new, |s| std::mem::take(&mut s.kept));
+        let mut course = Course::of(self.case, &points, kept);
+        let mut k = saved.as_ref().map_or(0, |s| s.stage);
+        if saved.is_none() {
+            log.begin_point(true);
+        }
         let mut previous: Option<Stood<S, D>> = None;
-        let mut end: Option<(S::Frame, Vec<f64>)> = None;
-        for (k, stage) in stages.iter().enumerate().skip(first) {
-            let same = k > 0 && stage.shares_cloud(&stages[k - 1]);
-            let cloud = if stage.is_plain() { ready.take() } else { None };
-            let build = || Ok::<_, RunError>(setup::solver(site, stage, &sources, cloud)?.with(&assemble));
+        while let Some(stage) = stages.get(k) {
+            let site = Site { case: course.case(stage), ..*site };
+            course.enter(stage, site.surface, &mut log);
+            let mut build = || match course.take(stage, &site)? {
+                Some(solver) => Ok(solver),
+                None => {
+                    let cloud = if stage.is_plain() { ready.take() } else { None };
+                    Ok::<_, RunError>(setup::solver(&site, stage, &sources, cloud)?.with(&assemble))
+                }
+            };
             let Begun { mut solver, start } = match (saved.take(), previous.take()) {
                 (Some(saved), _) => Begun::resumed(build()?, saved)?,
-                (None, Some(stood)) if same => Begun::fresh(stood.solver, stood.state),
-                (None, Some(stood)) => followed(build()?, site, stood),
-                (None, None) => begun(build()?, site, other.take())?,
+                (None, Some(stood)) if stage.shares_cloud(&stood.stage) => {
+                    Begun::fresh(stood.solver, stood.reached.state)
+                }
+                (None, stood) => {
+                    let solver = build()?;
+                    let transfer =
+                        |s: &Stood<S, D>, u: &[f64]| setup::transfer(&s.solver.system, u, &solver.system, site.surface);
+                    let carry = |u: &[f64]| stood.as_ref().map_or_else(Vec::new, |s| transfer(s, u));
+                    let coarser = stood.as_ref().map(|s| Coarser {
+                        factor: s.stage.factor,
+                        state: &s.reached.state,
+                        carry: &carry,
+                    });
+                    let guess = course.guess(stage, &solver.system, coarser.as_ref(), &log);
+                    let begun = begun(solver, &site, (guess, stood.as_ref()), other.take())?;
+                    stood.into_iter().for_each(|s| course.shelve(&s.stage, s.solver));
+                    begun
+                }
             };
             solver.system.hold_bodies(stage.task == Task::Relax && recipe::is_unsteady(self.case));
             let flat = flatten(&sources);
-            let at = Position { stage: k, stages: &stages, sources: &flat };
-            let turn = Turn { at: &at, last: k + 1 == stages.len() };
-            let Some(reached) = self.study(&mut solver, start, &turn, &mut log)? else {
-                return Ok(Err(log.record.iteration));
+            let at = Position { stage: k, stages: &stages, sources: &flat, kept: course.kept() };
+            let turn = Turn { at: &at };
+            let reached = match self.study(&mut solver, start, &turn, &mut log) {
+                Ok(Some(reached)) => reached,
+                Ok(None) => return Ok(Err(log.record.iteration)),
+                Err(problem) => {
+                    course.shelve(stage, solver);
+                    k = course.failed(k, &stages, problem, &mut log)?;
+                    continue;
+                }
             };
-            if stages.get(k + 1).is_some_and(|s| s.cycle > stage.cycle) {
-                sources = setup::adapted(self.case, &solver.system, &reached.state);
+            if turn.next().is_some_and(|s| s.cycle > stage.cycle) {
+                sources = setup::adapted(site.case, &solver.system, &reached.state);
             }
-            end = reached.end;
-            previous = Some(Stood { solver, state: reached.state });
-            if reached.enough {
-                break;
+            let over = reached.enough || turn.last();
+            course.keep(stage, &reached.state);
+            k = if over { course.over(k, &stages, (&solver.system, &reached), &mut log)? } else { k + 1 };
+            previous = Some(Stood { stage: *stage, solver, reached });
+            if over && k < stages.len() {
+                previous.take().into_iter().for_each(|s| course.shelve(&s.stage, s.solver));
             }
         }
-        let (Some(stood), Some((frame, state))) = (previous, end) else { return Err(RunError::NoStage) };
-        let view = GasView::of(&stood.solver.system, &frame, &state);
-        self.conclude(&view, site.surface, &log, &clock).map(Ok)
+        let stood = match previous {
+            Some(stood) => stood,
+            None => last_known(&mut course, site, assemble, &mut log)?,
+        };
+        let Some((frame, state)) = &stood.reached.end else { return Err(RunError::NoStage) };
+        let view = GasView::of(&stood.solver.system, frame, state);
+        Run { case: log.case, ..*self }.conclude(&view, site.surface, &log, &clock).map(Ok)
     }
+
     /// The cloud of the case; tells what is worth knowing of it and of the motion on it.
     fn cloud<const D: usize>(&self, site: &Site<'_, D>, monitor: &mut dyn Monitor) -> Result<Cloud<D>, RunError> {
         let cloud = Cloud::build(&setup::spec(self.case), site.surface, &[])?;
@@ -344,27 +385,48 @@ impl<S: HasGas<D>, const D: usize> Begun<S, D> {
     }
 }
 
-/// A stage that takes over the state of the one before it on another cloud.
-fn followed<S: HasGas<D>, const D: usize>(next: Solver<S, D>, site: &Site<'_, D>, before: Stood<S, D>) -> Begun<S, D> {
-    let state = setup::transfer(&before.solver.system, &before.state, &next.system, site.surface);
-    Begun::fresh(next, state)
-}
-
-/// The first stage: from the last state of another run, or from the start of the case.
+/// A stage on a cloud of its own: from what is guessed, else from the state of the stage before it, else from the last state of
+/// another run, else from the start of the case.
 fn begun<S: HasGas<D>, const D: usize>(
     solver: Solver<S, D>,
     site: &Site<'_, D>,
+    (guess, before): (Option<Vec<f64>>, Option<&Stood<S, D>>),
     other: Option<Saved>,
 ) -> Result<Begun<S, D>, RunError> {
-    let state = match other {
-        Some(other) => setup::taken_over(site.case, &solver.system, other.state)?,
-        None => solver.system.start(),
+    let state = match (guess, before, other) {
+        (Some(guess), ..) => guess,
+        (None, Some(before), _) => {
+            setup::transfer(&before.solver.system, &before.reached.state, &solver.system, site.surface)
+        }
+        (None, None, Some(other)) => setup::taken_over(site.case, &solver.system, other.state)?,
+        (None, None, None) => solver.system.start(),
     };
     Ok(Begun::fresh(solver, state))
 }
 
+/// The last point of a polar whose flow is known, where the last one failed.
+fn last_known<'a, S: HasGas<D>, const D: usize>(
+    course: &mut Course<'a, S, D>,
+    site: &Site<'_, D>,
+    assemble: impl Fn(Fluid<D>) -> S,
+    log: &mut Log<'a>,
+) -> Result<Stood<S, D>, RunError> {
+    let (stage, state) = course.last()?;
+    let site = Site { case: course.case(&stage), ..*site };
+    course.enter(&stage, site.surface, log);
+    log.forget_clouds();
+    let solver = match course.take(&stage, &site)? {
+        Some(solver) => solver,
+        None => setup::solver(&site, &stage, &[], None)?.with(assemble),
+    };
+    let frame = solver.system.frame(&Instant::still(0.0), &state);
+    Ok(Stood { stage, solver, reached: Reached::at(frame, state) })
+}
+
 fn describe(stages: &[Stage], n: usize) -> String {
-    let coarse = stages.iter().filter(|s| s.factor > 1.0).count();
+    let first = || stages.iter().filter(|s| s.point.unwrap_or(0) == 0);
+    let coarse = first().filter(|s| s.factor > 1.0).count();
     let cycles = (1..).take_while(|c| stages.iter().any(|s| s.cycle == *c)).count();
-    format!("{n} fluid particles; {coarse} coarser clouds for the start, {cycles} cycles of adaptation")
+    let points = stages.last().and_then(|s| s.point).map_or_else(String::new, |p| format!("; {} points", p + 1));
+    format!("{n} fluid particles; {coarse} coarser clouds for the start, {cycles} cycles of adaptation{points}")
 }

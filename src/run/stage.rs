@@ -25,22 +25,25 @@ pub(crate) struct Stage {
     pub(crate) factor: f64,
     /// Cycle of adaptation, 0 before any.
     pub(crate) cycle: u32,
+    /// Point of a polar; absent where there is one flow only.
+    #[serde(default)]
+    pub(crate) point: Option<usize>,
     /// What is done there.
     pub(crate) task: Task,
 }
 
 impl Stage {
     /// A relaxation on the cloud of the case itself.
-    pub(crate) const PLAIN: Self = Self { factor: 1.0, cycle: 0, task: Task::Relax };
+    pub(crate) const PLAIN: Self = Self { factor: 1.0, cycle: 0, point: None, task: Task::Relax };
 
     /// True on the cloud of the case itself.
     pub(crate) fn is_plain(&self) -> bool {
         self.factor == 1.0 && self.cycle == 0
     }
 
-    /// True when both stand on the same cloud.
+    /// True when both stand on the same cloud, in the same free stream.
     pub(crate) fn shares_cloud(&self, other: &Self) -> bool {
-        self.factor == other.factor && self.cycle == other.cycle
+        self.factor == other.factor && self.cycle == other.cycle && self.point == other.point
     }
 
     /// Instances of a period that a state of this stage holds.

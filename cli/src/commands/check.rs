@@ -1,7 +1,7 @@
 //! `alula check`.
 use std::path::{Path, PathBuf};
 
-use alula::case::write;
+use alula::case::{Case, write};
 use alula::run;
 
 use crate::arguments;
@@ -21,8 +21,15 @@ pub(crate) fn check(args: &arguments::Check) -> Outcome {
     match run::inspect(&case, &input, None) {
         Ok(report) => {
             let title = format!("{}: no mistakes in `{}`\n", args.case.display(), case.title);
-            output::data(&(title + &super::cloud::describe(&report)))
+            output::data(&(title + &points(&case) + &super::cloud::describe(&report)))
         }
         Err(problem) => super::refuse(&problem),
     }
+}
+
+/// How many points a polar has; nothing for a single flow.
+fn points(case: &Case) -> String {
+    let Some(polar) = &case.polar else { return String::new() };
+    let (all, angles) = (polar.len(), polar.angles());
+    format!("polar          {all} points: {angles} angles at {} Mach numbers\n", all / angles)
 }

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use alula::observe::convergence::Convergence;
 use alula::observe::loads::Coefficients;
-use alula::run::{self, Outcome as Ended, Places, RunError, Summary};
+use alula::run::{self, Outcome as Ended, PeriodicLoads, Places, PolarPoint, RunError, Summary};
 
 use crate::arguments::{self, Verbosity};
 use crate::interrupt::Interrupt;
@@ -100,6 +100,12 @@ fn finished(summary: &Summary, out: &Path, verbosity: Verbosity) -> Outcome {
     if summary.converged {
         return told;
     }
+    if !summary.polar.is_empty() {
+        let (all, not) = (summary.polar.len(), summary.polar.iter().filter(|p| !p.converged).count());
+        let hint = format!("the reasons stand in `{}`", out.join("polar.csv").display());
+        output::error(&format!("{not} of {all} points did not converge"), &hint);
+        return Outcome::Failed;
+    }
     if summary.time > 0.0 {
         let hint = "raise `periods` of `[time.dual]` or `[time.explicit]`, or loosen `periodic_tolerance` there";
         output::error("not converged: the loads have not become periodic", hint);
@@ -125,26 +131,12 @@ fn grid_convergence(c: &Convergence) -> String {
 }
 
 fn describe(s: &Summary, out: &Path) -> String {
-    let (a, b) = (&s.loads, &s.loads_momentum_balance);
-    let mut text = String::new();
-    if a.cl != 0.0 || a.cd != 0.0 {
-        text += "                      CL         CD         CM\n";
-        let mut row = |name: &str, c: &Coefficients| {
-            text += &format!("{name:<16}{:9.5}  {:9.5}  {:9.5}\n", c.cl, c.cd, c.cm);
-        };
-        row("wall pressure", s.loads_pressure.as_ref().unwrap_or(a));
-        if let Some(friction) = &s.loads_friction {
-            row("wall friction", friction);
-            row("both", a);
-        }
-        if let Some(b) = b {
-            row("momentum", b);
-        }
-        if let Some(bar) = &s.loads_error {
-            row("error bar ±", bar);
-        }
-    }
-    if let Some(c) = &s.grid_convergence {
+    let mut text = match (&s.polar[..], &s.periodic_loads) {
+        ([], Some(loads)) => periodic_loads(loads),
+        ([], None) => loads(s),
+        (points, _) => polar(points),
+    };
+    if let Some(c) = s.grid_convergence.as_ref().filter(|_| s.polar.is_empty()) {
         text += &grid_convergence(c);
     }
     if let Some(t) = &s.momentum_of_period {
@@ -166,20 +158,82 @@ fn describe(s: &Summary, out: &Path) -> String {
             r.renewals, r.inserted, r.removed, t.mass, t.momentum, t.energy
         );
     }
-    text += &format!(
-        "{} particles, {} iterations, residual down {:.1} orders; {:.2} s of processor time ({:.3} ms per particle), {:.0} bytes per particle\nledger: mass {:.1e}, momentum {:.1e}, energy {:.1e}\nreport: {}\n",
+    text += &cost(s);
+    if let Some(l) = &s.ledger {
+        text += &format!("ledger: mass {:.1e}, momentum {:.1e}, energy {:.1e}\n", l.mass, l.momentum, l.energy);
+    }
+    text + &format!("report: {}\n", out.join("report.html").display())
+}
+
+/// What it took; how far the residual fell where there is one flow that it belongs to.
+fn cost(s: &Summary) -> String {
+    let marched = s.time > 0.0 && s.harmonic_balance.is_none();
+    let way = match (marched, s.polar.len()) {
+        (true, _) => format!("to t = {:.4}", s.time),
+        (false, 0) => format!("residual down {:.1} orders", s.residual_drop),
+        (false, points) => format!("{points} points"),
+    };
+    format!(
+        "{} particles, {} {}, {way}; {:.2} s of processor time ({:.3} ms per particle), {:.0} bytes per particle\n",
         s.particles,
         s.iterations,
-        s.residual_drop,
+        if marched { "steps" } else { "iterations" },
         s.cpu_seconds,
         s.cpu_ms_per_particle,
         s.bytes_per_particle,
-        s.ledger.mass,
-        s.ledger.momentum,
-        s.ledger.energy,
-        out.join("report.html").display()
-    );
-    text
+    )
+}
+
+const LOADS: &str = "                      CL         CD         CM\n";
+
+fn row(name: &str, c: &Coefficients) -> String {
+    format!("{name:<16}{:9.5}  {:9.5}  {:9.5}\n", c.cl, c.cd, c.cm)
+}
+
+/// Loads of a steady state, or at the end of a march without a period; nothing without bodies.
+fn loads(s: &Summary) -> String {
+    let (all, momentum) = (&s.loads, &s.loads_momentum_balance);
+    if all.cl == 0.0 && all.cd == 0.0 {
+        return String::new();
+    }
+    let mut text = if s.time > 0.0 { format!("at t = {:.4}\n", s.time) } else { String::new() } + LOADS;
+    text += &row("wall pressure", s.loads_pressure.as_ref().unwrap_or(all));
+    if let Some(friction) = &s.loads_friction {
+        text += &(row("wall friction", friction) + &row("both", all));
+    }
+    text += &momentum.as_ref().map_or_else(String::new, |b| row("momentum", b));
+    text + &s.loads_error.as_ref().map_or_else(String::new, |bar| row("error bar ±", bar))
+}
+
+/// Means and first harmonics of loads that repeat.
+fn periodic_loads(p: &PeriodicLoads) -> String {
+    let phase = &p.phase_deg;
+    let phases =
+        format!("{:<16}{:9.2}  {:9.2}  {:9.2}  degrees before {}\n", "phase", phase.cl, phase.cd, phase.cm, p.motion);
+    let head = LOADS.replacen(&" ".repeat(15), "the last period", 1);
+    head + &row("mean", &p.mean) + &row("first harmonic", &p.amplitude) + &phases
+}
+
+/// The points of a polar, one a row; bars only where there are some.
+fn polar(points: &[PolarPoint]) -> String {
+    let bars = points.iter().any(|p| p.loads_error.is_some());
+    let mut text = String::from("    M    alpha");
+    for name in ["CL", "CD", "CM"] {
+        text += &format!("{name:>10}{}", if bars { "        ±" } else { "" });
+    }
+    for p in points {
+        text += &format!("\n{:5.3} {:8.3}", p.mach, p.alpha_deg);
+        let Some(c) = &p.loads else {
+            text += &format!("  {}", p.reason);
+            continue;
+        };
+        let all = [c.cl, c.cd, c.cm].into_iter().zip(p.loads_error.map_or([None; 3], |e| [e.cl, e.cd, e.cm].map(Some)));
+        for (value, bar) in all {
+            text += &format!(" {value:9.5}{}", bar.map_or_else(String::new, |b| format!(" {b:8.5}")));
+        }
+        text += if p.converged { "" } else { "  not converged" };
+    }
+    text + "\n"
 }
 
 /// Name of a run after its case file: the file's own, or that of its folder when the file is called `case.toml`.

@@ -39,6 +39,7 @@ pub(crate) fn write_all<const D: usize>(
     files.write_fields(all, log.record.time)?;
     if found.case.output.report {
         let to = Target { case: found.case, out };
+        report::write_polar(out)?;
         pictures::write(&Scene { to, view: found.view, surface: found.surface })?;
         report::write_report(out)?;
     }
@@ -54,7 +55,9 @@ struct Files<'a, const D: usize> {
 impl<const D: usize> Files<'_, D> {
     fn write_tables(&self, cycles: &[[f64; 5]], summary: &Summary) -> Result<(), RunError> {
         write_json(&self.out.join("summary.json"), summary)?;
-        write_json(&self.out.join("ledger.json"), &summary.ledger)?;
+        if let Some(ledger) = &summary.ledger {
+            write_json(&self.out.join("ledger.json"), ledger)?;
+        }
         write_json(
             &self.out.join("doctor.json"),
             &Diagnosis::of(self.found.view.cloud(), self.found.view.frame.discretisation.walls.n_linear),

@@ -97,8 +97,8 @@ impl Measured {
             Metric::ResidualDrop => Ok(s.residual_drop),
             Metric::Converged => Ok(f64::from(u8::from(s.converged))),
             Metric::Particles => Ok(s.particles as f64),
-            Metric::MassDrift => Ok(s.ledger.mass.abs()),
-            Metric::EnergyDrift => Ok(s.ledger.energy.abs()),
+            Metric::MassDrift => s.ledger.map(|l| l.mass.abs()).ok_or_else(no_ledger),
+            Metric::EnergyDrift => s.ledger.map(|l| l.energy.abs()).ok_or_else(no_ledger),
             Metric::ErrorL2Density | Metric::Order => {
                 s.error_l2_density.ok_or_else(|| "the case starts from no exact solution".into())
             }
@@ -231,14 +231,14 @@ impl Measured {
         Ok(force.per(mode.amplitude) * Complex64::cis(-mode.phase.0))
     }
 
-    /// Thickness of the section in parts of the chord: of a NACA one by its digits, of others by the extent of their walls.
+    /// Thickness of the section in parts of the chord: of a NACA one by its designation, of others by the extent of their walls.
     fn thickness(&self) -> Result<f64, String> {
-        let digits = self.case.bodies.first().and_then(|b| match &b.shape {
-            Shape::Naca(naca) => naca.digits.get(2..4)?.parse::<f64>().ok(),
+        let designed = self.case.bodies.first().and_then(|b| match &b.shape {
+            Shape::Naca(naca) => Some(naca.design().ok()?.thickness),
             _ => None,
         });
-        if let Some(digits) = digits {
-            return Ok(0.01 * digits);
+        if let Some(thickness) = designed {
+            return Ok(thickness);
         }
         let extent = Bounds::around(&self.wall.x).extent();
         if self.wall.is_empty() { Err(no_wall()) } else { Ok(extent[1] / extent[0]) }
@@ -441,6 +441,10 @@ fn no_other() -> String {
 
 fn no_viscosity() -> String {
     "the case has no viscosity".into()
+}
+
+fn no_ledger() -> String {
+    "a harmonic balance goes from no time to another".into()
 }
 
 fn no_balance() -> String {

@@ -18,6 +18,8 @@ const COLUMNS: [&str; 9] = ["cycle", "iteration", "time", "cfl", "residual", "cl
 const MOVING: [&str; 5] = ["inner", "angle_deg", "shift_x", "shift_y", "shift_z"];
 /// One more when a body bends: the coordinate of the first mode of that body.
 const BENDING: &str = "mode";
+/// One more for a polar: the number of the point, from 1.
+const POINT: &str = "point";
 
 /// The run folder while a run goes on.
 pub(crate) struct Journal {
@@ -42,7 +44,8 @@ pub(crate) struct Earlier {
 /// Columns of the history of a case.
 fn columns(case: &Case) -> Vec<&'static str> {
     let moving = MOVING.into_iter().filter(|_| case.moves());
-    COLUMNS.into_iter().chain(moving).chain(case.bends().then_some(BENDING)).collect()
+    let point = case.polar.as_ref().map(|_| POINT);
+    COLUMNS.into_iter().chain(moving).chain(case.bends().then_some(BENDING)).chain(point).collect()
 }
 
 impl Journal {

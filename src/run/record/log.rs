@@ -8,6 +8,7 @@ use super::super::monitor::{Monitor, Tick};
 use super::crosscheck::{Moment, Twofold};
 use super::interval::passed;
 use super::journal::{Earlier, Journal};
+use super::polar::{PolarPoint, PolarRecord};
 use super::saved::{FILE, Saved, Settling};
 use super::summary::{BalanceReport, Clock, Work};
 use super::trace::Trace;
@@ -26,6 +27,10 @@ pub(crate) struct Record {
     pub(crate) cycles: Vec<[f64; 5]>,
     /// Loads on the clouds of a family.
     pub(crate) clouds: Vec<CloudLoads>,
+    /// Points of a polar.
+    pub(crate) polar: PolarRecord,
+    /// Why a relaxation ended short of its goal, where it did.
+    pub(crate) reason: Option<String>,
     /// Totals of the conserved quantities when the march began.
     pub(crate) start_totals: Vec<f64>,
     /// Residual over its first value at the end.
@@ -80,6 +85,7 @@ impl Record {
             iteration: saved.iteration,
             cycles: saved.cycles.clone(),
             clouds: saved.clouds.clone(),
+            polar: saved.polar.clone(),
             start_totals: saved.start_totals.clone(),
             drop: 1.0,
             time: units.case_time(saved.time),
@@ -94,6 +100,16 @@ impl Record {
             moments: earlier.moments,
             structures: earlier.structures,
             ..Self::default()
+        }
+    }
+}
+
+impl Record {
+    /// True when the goal was reached, at all points of a polar.
+    pub(crate) fn converged_everywhere(&self) -> bool {
+        match &self.polar.points[..] {
+            [] => self.converged,
+            points => points.iter().all(|p| p.converged),
         }
     }
 }
@@ -122,6 +138,8 @@ pub(crate) struct Log<'a> {
     pub(crate) journal: Option<Journal>,
     /// What is known so far.
     pub(crate) record: Record,
+    /// Present point of a polar, and their number.
+    pub(crate) point: Option<[usize; 2]>,
     /// The structures.
     pub(crate) structures: Vec<Described>,
     clock: Clock,
@@ -162,7 +180,43 @@ impl<'a> Log<'a> {
         }
         record.trace = record.trace.over(case.output.loop_periods);
         let before = saved.map_or([0.0; 2], |s| [s.cpu_seconds, s.wall_seconds]);
-        Ok(Self { monitor, case, axes, units, period, journal, record, structures, clock: Clock::start(), before })
+        Ok(Self {
+            monitor,
+            case,
+            axes,
+            units,
+            period,
+            journal,
+            record,
+            point: None,
+            structures,
+            clock: Clock::start(),
+            before,
+        })
+    }
+
+    /// The run turns to a point of a polar: `case` in axes of its own.
+    pub(crate) fn turn_to(&mut self, case: &'a Case, axes: LoadFrame, point: [usize; 2]) {
+        (self.case, self.axes, self.point) = (case, axes, Some(point));
+    }
+
+    /// A point of a polar begins, which nothing is known of: from rest, or from a neighbouring one.
+    pub(crate) fn begin_point(&mut self, from_rest: bool) {
+        let [cpu, _] = self.seconds();
+        self.record.polar.begin(self.record.iteration, cpu, from_rest);
+        self.forget_clouds();
+    }
+
+    /// What was found on the clouds of a point does not count.
+    pub(crate) fn forget_clouds(&mut self) {
+        self.record.clouds.clear();
+        self.record.cycles.clear();
+    }
+
+    /// A point of a polar is over: its row.
+    pub(crate) fn end_point(&mut self, row: PolarPoint) -> Result<(), RunError> {
+        self.record.polar.points.push(row);
+        self.journal.as_ref().map_or(Ok(()), |j| self.record.polar.write(&j.out))
     }
 
     /// Says a line.

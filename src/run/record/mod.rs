@@ -3,6 +3,7 @@ pub(crate) mod crosscheck;
 mod interval;
 mod journal;
 mod log;
+pub(crate) mod polar;
 pub(crate) mod saved;
 pub(crate) mod summary;
 pub(crate) mod trace;

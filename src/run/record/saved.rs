@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::super::error::RunError;
 use super::super::stage::{Stage, Task};
+use super::polar::PolarRecord;
 use super::trust::require;
 use crate::cloud::sources::Source;
 use crate::math::Vector;
@@ -30,6 +31,27 @@ pub(crate) struct Position<'a> {
     pub(crate) stages: &'a [Stage],
     /// Sources of refinement, flat.
     pub(crate) sources: &'a [f64],
+    /// States that points of a polar leave to those to come.
+    pub(crate) kept: &'a [Kept],
+}
+
+/// The state of a point of a polar on a cloud.
+#[derive(Clone, Debug)]
+pub(crate) struct Kept {
+    /// Factor on the spacing of the cloud.
+    pub(crate) factor: f64,
+    /// The point.
+    pub(crate) point: usize,
+    /// Its state there.
+    pub(crate) state: Vec<f64>,
+}
+
+/// What a checkpoint says of a polar.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+struct PolarMeta {
+    record: PolarRecord,
+    /// Factor, point and length of each state that is kept.
+    kept: Vec<(f64, usize, usize)>,
 }
 
 /// Numbers of a checkpoint that are not arrays.
@@ -61,6 +83,8 @@ struct Meta {
     halved: u32,
     settling: SettlingCounts,
     roaming: Option<Counts>,
+    #[serde(default)]
+    polar: PolarMeta,
 }
 
 /// What re-clouding did until a checkpoint, and the time at which the cloud was built.
@@ -261,6 +285,10 @@ pub(crate) struct Saved {
     pub(crate) lagrangian: Option<LagrangianCheckpoint>,
     /// Sources of refinement, flat.
     pub(crate) sources: Vec<f64>,
+    /// The points of a polar so far.
+    pub(crate) polar: PolarRecord,
+    /// The states that they leave to those to come.
+    pub(crate) kept: Vec<Kept>,
 }
 
 /// Sources of refinement as numbers.
@@ -309,6 +337,10 @@ impl Saved {
             steps: [past.last.to_bits(), past.next.to_bits(), u64::from(past.unconverged)],
             settling: self.settling.counts(),
             roaming: self.lagrangian.as_ref().map(LagrangianCheckpoint::counts),
+            polar: PolarMeta {
+                record: self.polar,
+                kept: self.kept.iter().map(|k| (k.factor, k.point, k.state.len())).collect(),
+            },
         };
         let meta = serde_json::to_value(meta).map_err(|e| other_version(&e))?;
         let mut fields = vec![
@@ -318,6 +350,7 @@ impl Saved {
             field("older", past.older),
             field("sources", self.sources),
             field("settling", self.settling.recent.concat()),
+            field("kept", self.kept.into_iter().flat_map(|k| k.state).collect()),
         ];
         if let Some(lagrangian) = self.lagrangian {
             let LagrangianCheckpoint { lists, places, velocity, course, .. } = lagrangian;
@@ -354,6 +387,9 @@ impl Saved {
         Ok(Self {
             lagrangian,
             settling: Settling::new(&m.settling, &part("settling")?),
+            // checkpoints of versions without polars have none
+            kept: m.polar.kept(&part("kept").unwrap_or_default()),
+            polar: m.polar.record,
             iteration: m.iteration,
             time: f64::from_bits(m.time_bits),
             state: part("state")?,
@@ -369,6 +405,19 @@ impl Saved {
             linear: m.linear,
             sources: part("sources")?,
         })
+    }
+}
+
+impl PolarMeta {
+    /// The states that are kept, from all their numbers.
+    fn kept(&self, mut numbers: &[f64]) -> Vec<Kept> {
+        let mut all = Vec::new();
+        for (factor, point, length) in &self.kept {
+            let (state, rest) = numbers.split_at((*length).min(numbers.len()));
+            all.push(Kept { factor: *factor, point: *point, state: state.to_vec() });
+            numbers = rest;
+        }
+        all
     }
 }
 

@@ -6,7 +6,8 @@ use serde::Serialize;
 use super::super::look::forces::GeneralisedForce;
 use super::super::look::friction::Separation;
 use super::crosscheck::LoadCrosscheck;
-use super::trace::{Change, FirstHarmonics, LastPeriod};
+use super::polar::PolarPoint;
+use super::trace::{Change, FirstHarmonics, LastPeriod, PeriodicLoads};
 use crate::observe::convergence::Convergence;
 use crate::observe::loads::Coefficients;
 
@@ -46,8 +47,8 @@ pub struct Summary {
     pub separation: Vec<Separation>,
     /// Loads from the momentum of the gas around the bodies; null without bodies.
     pub loads_momentum_balance: Option<Coefficients>,
-    /// Conservation.
-    pub ledger: Ledger,
+    /// Conservation; null for a harmonic balance, which does not go from one time to another.
+    pub ledger: Option<Ledger>,
     /// Evaluations of the residual of one instance on the cloud of the end, over all stages: those on coarser clouds count with
     /// their part of its particles.
     pub work_units: f64,
@@ -83,6 +84,9 @@ pub struct Summary {
     /// Mean and greatest loads of the last period of the motion.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub last_period: Option<LastPeriod>,
+    /// Means and first harmonics of the loads in the last period of the motion.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub periodic_loads: Option<PeriodicLoads>,
     /// Last whole cycles of the lift of a march, found from its history: a frequency that no motion prescribes.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub lift_cycles: Option<crate::observe::cycles::Cycles>,
@@ -101,6 +105,9 @@ pub struct Summary {
     /// That family, and how the loads converge on it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub grid_convergence: Option<Convergence>,
+    /// The points of a polar; all else is of the last of them whose flow is known.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub polar: Vec<PolarPoint>,
     /// Change of the loads in the last cycle of adaptation.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub adapt_change: Option<Coefficients>,

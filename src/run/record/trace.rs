@@ -78,6 +78,19 @@ pub struct FirstHarmonics {
     pub cm: [f64; 2],
 }
 
+/// Loads of the last period: f(t) = mean + amplitude cos(ωt + phase) and higher harmonics.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct PeriodicLoads {
+    /// Means.
+    pub mean: Coefficients,
+    /// Amplitudes of the first harmonics.
+    pub amplitude: Coefficients,
+    /// What the first harmonics lead the motion by, degrees from -180 to 180.
+    pub phase_deg: Coefficients,
+    /// Part of the motion that phases are measured against.
+    pub motion: &'static str,
+}
+
 /// Parts of the motion that are there, by name.
 type Moved = Vec<(&'static str, Harmonics)>;
 
@@ -105,6 +118,27 @@ impl Trace {
             FirstHarmonics { motion: name, cl, cd, cm }
         });
         all.collect()
+    }
+
+    /// Means and first harmonics of the loads; `None` while there is no whole period, or nothing moves.
+    pub(crate) fn periodic_loads(&self, period: f64) -> Option<PeriodicLoads> {
+        let (loads, motions) = self.fitted(period)?;
+        let (motion, moved) = motions.first()?;
+        let of = |value: &dyn Fn(&Harmonics) -> f64| {
+            let [cl, cd, cm] = loads.each_ref().map(value);
+            Coefficients { cl, cd, cm }
+        };
+        Some(PeriodicLoads {
+            mean: of(&|h| h.mean),
+            amplitude: of(&|h| h.term(1).norm()),
+            phase_deg: of(&|h| h.per(moved).arg().to_degrees()),
+            motion,
+        })
+    }
+
+    /// Lift at time `t`, where the history reaches back so far.
+    pub(crate) fn lift_at(&self, t: f64) -> Option<f64> {
+        self.samples.first().filter(|m| m.time <= t).map(|_| self.loads_near(t)[0])
     }
 
     /// Loads of the last period, linear in time between steps; `None` while there is no whole one.

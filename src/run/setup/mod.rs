@@ -27,6 +27,7 @@ use crate::geometry::{GeometryError, Surface, load_surface};
 use crate::math::{Bounds, Vector};
 use crate::motion::{BodyMotion, ModeShape, Motions};
 use crate::physics::{Conserved, Gas, n_variables};
+use crate::scheme::fluid::FarField;
 use crate::scheme::probe::Probe;
 use crate::scheme::reconstruct::Reconstruction;
 use crate::scheme::start::{FreeStream, Stream, initial};
@@ -140,7 +141,6 @@ pub(crate) fn solver<const D: usize>(
         Some(cloud) => cloud,
         None => Cloud::build(&size::spec(&scaled), surface, sources)?,
     };
-    let field = initial::<D>(case)?;
     let conservative = conserves(case);
     let mut operators = Operators::new(&cloud);
     if conservative {
@@ -152,7 +152,6 @@ pub(crate) fn solver<const D: usize>(
     }
     let gas = Gas { gamma: case.flow.gamma };
     let scheme = &case.scheme;
-    let centre = surface.map_or(Vector::ZERO, |s| vortex_centre(&s.bounds()));
     let fluid = Fluid {
         fields: Fluid::unknowns(&cloud),
         gas,
@@ -162,12 +161,8 @@ pub(crate) fn solver<const D: usize>(
         reconstruction: Reconstruction::of_scheme(scheme),
         conservative,
         viscous_model: viscous_model(case, surface).map(Arc::new),
-        far_field: Arc::new(Stream::new(
-            &FreeStream::of_case(case),
-            &centre,
-            surface.is_some_and(|s| !s.sharp.is_empty()),
-        )),
-        held: field,
+        far_field: far_field(site),
+        held: initial::<D>(case)?,
         cloud_motion: cloud_motion(case, surface, &cloud, motions)?,
         discretisation: Arc::new(Discretisation::new(cloud, operators)),
     };
@@ -177,6 +172,27 @@ pub(crate) fn solver<const D: usize>(
     let film = surface.filter(|_| D == 2 && case.output.report && motions.period().is_some()).cloned();
     let force_modes = ForceModes::of(case, surface, &fluid, motions);
     Ok(Solver { system: fluid, film, force_modes })
+}
+
+/// The same gas on the same cloud in the free stream of the case of `site`.
+pub(crate) fn in_stream<const D: usize>(site: &Site<'_, D>, gas: &Fluid<D>) -> Result<Fluid<D>, RunError> {
+    let Site { case, surface, .. } = *site;
+    Ok(Fluid {
+        discretisation: Arc::clone(&gas.discretisation),
+        cloud_motion: gas.cloud_motion.clone(),
+        viscous_model: viscous_model(case, surface).map(Arc::new),
+        far_field: far_field(site),
+        held: initial::<D>(case)?,
+        fields: gas.fields,
+        ..*gas
+    })
+}
+
+/// What the far field of a case is.
+fn far_field<const D: usize>(site: &Site<'_, D>) -> Arc<dyn FarField<D>> {
+    let centre = site.surface.map_or(Vector::ZERO, |s| vortex_centre(&s.bounds()));
+    let sharp = site.surface.is_some_and(|s| !s.sharp.is_empty());
+    Arc::new(Stream::new(&FreeStream::of_case(site.case), &centre, sharp))
 }
 
 /// Refuses a cloud without conservative coefficients.

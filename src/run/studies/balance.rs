@@ -47,7 +47,7 @@ pub(crate) fn balance<S: HasGas<D>, const D: usize>(
     let report = report(&found, log);
     let tail = report.tail_loads.zip(report.tail_density).map(|(a, b)| a.max(b));
     let short = tail.is_some_and(|t| t <= plan.tail);
-    if turn.last || (is_automatic(plan) && short) {
+    if turn.last() || (is_automatic(plan) && short) {
         return finish(&found, solver, plan, report, log);
     }
     let next = turn.at.stages.get(turn.at.stage + 1).map_or(0, |s| s.instances() / 2);
@@ -92,7 +92,7 @@ fn converge<S: HasGas<D>, const D: usize>(
     log: &mut Log<'_>,
 ) -> Result<Option<Vec<f64>>, RunError> {
     let Seek { plan, state, resume } = seek;
-    let last = turn.last || is_automatic(plan);
+    let last = turn.last() || is_automatic(plan);
     let orders = if last { plan.orders } else { plan.orders.min(EARLY_ORDERS) };
     let tolerance = if last { plan.tolerance } else { plan.tolerance.max(EARLY_TOLERANCE) };
     let origin = balance.copies(&system.start());

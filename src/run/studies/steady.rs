@@ -11,6 +11,7 @@ use crate::case::Steady;
 use crate::math::Bounds;
 use crate::observe::convergence::CloudLoads;
 use crate::scheme::{Fluid, HasGas};
+use crate::system::Implicit;
 use crate::time::relax::Relax;
 use crate::time::{Integrator, Memory, Standing};
 
@@ -21,6 +22,8 @@ const EARLY_ORDERS: f64 = 3.5;
 const SETTLING: f64 = 1.5;
 /// Iterations without a new smallest residual after which a relaxation before the last stage has given what it can.
 const PATIENCE: u32 = 20;
+/// The same for the last stage of a point of a polar that starts from rest: the other points wait.
+const POINT_PATIENCE: u32 = 60;
 
 /// Relaxes; `None` when told to stop.
 pub(crate) fn relax<S: HasGas<D>, const D: usize>(
@@ -43,7 +46,7 @@ pub(crate) fn relax<S: HasGas<D>, const D: usize>(
     };
     let mut relax = Relax::new(system, control(steady, D), u, &system.start(), resume);
     relax.goal = 10f64.powf(-orders);
-    let mut hurried = !turn.last;
+    let mut hurried = !turn.last();
     let enough = loop {
         let ending = watched(system, &mut relax, (steady.iterations, hurried), turn, log, orders)?;
         match ending {
@@ -51,6 +54,7 @@ pub(crate) fn relax<S: HasGas<D>, const D: usize>(
             Ending::Failed(problem) => return Err(log.failed(problem)),
             Ending::Finished | Ending::Spent | Ending::Paused => {}
         }
+        log.record.reason = (!relax.finished()).then(|| short_of_goal(&relax, steady, orders));
         let loads = tell(system, &mut relax, turn, log)?;
         let enough = asked.is_some_and(|asked| accuracy::judge(&asked, loads, log));
         let rests = hurried && !relax.finished() && relax.resting() >= PATIENCE;
@@ -73,6 +77,19 @@ pub(crate) fn relax<S: HasGas<D>, const D: usize>(
     Ok(Some(reached))
 }
 
+/// Why a relaxation ended before its goal.
+fn short_of_goal<S: Implicit>(relax: &Relax<'_, S>, steady: &Steady, orders: f64) -> String {
+    let reached = -relax.drop().log10();
+    if relax.iteration >= steady.iterations {
+        let all = steady.iterations;
+        return format!("after all {all} iterations the residual is down {reached:.1} of {orders:.1} orders");
+    }
+    let resting = relax.resting();
+    format!(
+        "no steady flow was found: the residual, down {reached:.1} of {orders:.1} orders, has not fallen for {resting} iterations"
+    )
+}
+
 fn watched<S: HasGas<D>, const D: usize>(
     system: &S,
     relax: &mut Relax<'_, S>,
@@ -84,12 +101,13 @@ fn watched<S: HasGas<D>, const D: usize>(
     let eyes = &mut GasEyes { system };
     let mut progress = Progress { eyes, cycle: turn.stage().cycle, aim: Aim::Orders(orders) };
     // any cloud of a family may be the last one
-    let at_end = turn.last || accuracy::asked(log.case).is_some();
+    let at_end = turn.last() || accuracy::asked(log.case).is_some();
     let mut checkpoint = Checkpoint { at: turn.at, particles: None, at_end };
-    let (mut limit, mut resting) = (Limit { iterations }, Resting { patience: PATIENCE });
+    let patience = if turn.last() && log.record.polar.from_rest { POINT_PATIENCE } else { PATIENCE };
+    let (mut limit, mut resting) = (Limit { iterations }, Resting { patience });
     let mut told = Told;
     let mut all: Vec<&mut dyn Observer<S>> = vec![&mut progress, &mut limit, &mut told];
-    if hurried {
+    if hurried || turn.stage().point.is_some() {
         all.push(&mut resting);
     }
     all.push(&mut checkpoint);
@@ -109,7 +127,7 @@ fn tell<S: HasGas<D>, const D: usize>(
     let Standing { frame, work, state } = relax.standing();
     let loads = GasView::of(system, frame, state).coefficients(&log.axes, system.gas_work(work)).unwrap_or_default();
     let told = log.record.structures.iteration.last() == Some(&(log.record.iteration as f64));
-    if turn.last
+    if turn.last()
         && !told
         && let Some(exchange) = system.exchange(frame, state, work)
     {

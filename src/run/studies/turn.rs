@@ -24,8 +24,6 @@ impl Start {
 pub(crate) struct Turn<'a> {
     /// Where the run stands among its stages.
     pub(crate) at: &'a Position<'a>,
-    /// True for the last one.
-    pub(crate) last: bool,
 }
 
 impl Turn<'_> {
@@ -34,9 +32,14 @@ impl Turn<'_> {
         &self.at.stages[self.at.stage]
     }
 
-    /// The one after it.
+    /// The one after it in the same free stream.
     pub(crate) fn next(&self) -> Option<&super::super::stage::Stage> {
-        self.at.stages.get(self.at.stage + 1)
+        self.at.stages.get(self.at.stage + 1).filter(|next| next.point == self.stage().point)
+    }
+
+    /// True for the last one in its free stream.
+    pub(crate) fn last(&self) -> bool {
+        self.next().is_none()
     }
 }
 

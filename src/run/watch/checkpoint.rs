@@ -70,6 +70,8 @@ impl<S: System> Checkpoint<'_, S> {
             linear,
             lagrangian: self.particles.and_then(|of| of(frame, &record.ledger)),
             sources: self.at.sources.to_vec(),
+            polar: record.polar.clone(),
+            kept: self.at.kept.to_vec(),
         };
         saved.write(&journal.out)
     }

@@ -1,7 +1,7 @@
 //! Progress: the work done, a line of the history for every iteration, and a word to those who watch.
 use super::super::error::RunError;
 use super::super::look::{GasView, motion};
-use super::super::monitor::Tick;
+use super::super::monitor::{MarchTick, Tick};
 use super::super::record::Log;
 use super::super::record::trace::Sample;
 use super::drive::{Now, Observer};
@@ -113,6 +113,8 @@ impl<S: System> Observer<S> for Progress<'_, S> {
             cfl: step.cfl,
             loads: loads.map(|c| [c.cl, c.cd, c.cm]),
             particles: self.eyes.particles(),
+            march: self.march(time, motion[0], log),
+            point: log.point,
         });
         Ok(())
     }
@@ -121,6 +123,19 @@ impl<S: System> Observer<S> for Progress<'_, S> {
 impl<S: System> Progress<'_, S> {
     fn effort(&self) -> Effort {
         Effort { points: self.eyes.instances() * self.eyes.particles() }
+    }
+
+    /// Where a march stands.
+    fn march(&self, time: f64, angle: f64, log: &Log<'_>) -> Option<MarchTick> {
+        let Aim::Time(until) = self.aim else { return None };
+        let period = log.case_period();
+        Some(MarchTick {
+            time,
+            until: log.units.case_time(until),
+            period,
+            angle: log.case.moves().then_some(angle),
+            lift_before: period.and_then(|p| log.record.trace.lift_at(time - p)),
+        })
     }
 
     /// A row of the history, as the journal names its columns.
@@ -135,6 +150,7 @@ impl<S: System> Progress<'_, S> {
         if log.case.bends() {
             row.push(motion[4]);
         }
+        row.extend(log.point.map(|[point, _]| (point + 1) as f64));
         row
     }
 }

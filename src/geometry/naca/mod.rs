@@ -1,25 +1,28 @@
-//! NACA 4-digit sections.
+//! NACA sections of four and five digits, modified or not.
 //!
-//! Half thickness y_t(x) = 5 τ (0.2969 √x − 0.1260 x − 0.3516 x² + 0.2843 x³ − a₄ x⁴) is laid off perpendicular to a
-//! mean line of two parabolas that meet at the place of greatest camber (Jacobs, Ward, Pinkerton, NACA report 460, 1933).
-//! a₄ = 0.1015 as published leaves a base; 0.1036 closes it at x = 1. In s = √x all functions are polynomials, so the
-//! outline and its normals are exact through the leading edge.
+//! Half thickness is laid off perpendicular to a mean line (Jacobs, Ward, Pinkerton, NACA report 460, 1933). In s = √x all functions
+//! are polynomials, so the outline and its normals are exact through the leading edge.
+mod mean_line;
+mod thickness;
+
+use std::f64::consts::PI;
+
+use self::thickness::Thickness;
 use super::GeometryError;
 use super::outline::{self, Sample};
 use super::shell::Shell;
-use crate::case::{Naca, TrailingEdge};
+use crate::case::{MeanLine, Naca, NoSection, TrailingEdge};
 use crate::math::Vector;
-use std::f64::consts::PI;
 
 /// Segments of each side: the chord error, largest at the nose, is 0.63/N² of the chord at any thickness.
 const SEGMENTS: usize = 3200;
 
 /// A section as a function of s = √(x / extent).
 struct Section {
-    camber: f64,
-    peak: f64,
-    thickness: f64,
-    last: f64,
+    line: MeanLine,
+    thickness: Thickness,
+    /// Both sides meet at the end.
+    sharp: bool,
     extent: f64,
 }
 
@@ -39,56 +42,17 @@ pub(super) fn shell(naca: &Naca) -> Result<Shell<2>, GeometryError> {
 
 impl Section {
     fn new(naca: &Naca) -> Result<Self, GeometryError> {
-        let bad = |what, hint| GeometryError::refused(format!("`naca = \"{}\"`", naca.digits), what, hint);
-        let digits: Vec<f64> = naca.digits.chars().filter_map(|c| c.to_digit(10)).map(f64::from).collect();
-        let [m, p, t1, t2] = digits[..] else {
-            return Err(bad("is not a four-digit section", "give four digits such as `0012` or `2412`"));
+        let design = naca.design();
+        let refused = |no| {
+            let NoSection { what, hint } = no;
+            GeometryError::refused(format!("`naca = \"{}\"`", naca.digits), what, hint)
         };
-        if naca.digits.len() != 4 {
-            return Err(bad("is not a four-digit section", "give four digits such as `0012` or `2412`"));
-        }
-        let thickness = 0.01 * (10.0 * t1 + t2);
-        if thickness == 0.0 {
-            return Err(bad("has no thickness", "the last two digits are the thickness in percent of the chord"));
-        }
-        if m > 0.0 && p == 0.0 {
-            return Err(bad("has camber but no place for it", "the second digit is its place in tenths of the chord"));
-        }
-        let last = if naca.trailing_edge == TrailingEdge::Closed { 0.1036 } else { 0.1015 };
-        let mut section = Self { camber: 0.01 * m, peak: 0.1 * p, thickness, last, extent: 1.0 };
-        if naca.trailing_edge == TrailingEdge::Extended {
-            section.extent = section.zero();
-        }
-        Ok(section)
-    }
-
-    /// Half thickness and its derivative with respect to s = √x.
-    fn half_thickness(&self, s: f64) -> (f64, f64) {
-        let c = [0.2969, -0.1260, -0.3516, 0.2843, -self.last];
-        let x = s * s;
-        let value = c[0] * s + x * (c[1] + x * (c[2] + x * (c[3] + x * c[4])));
-        let slope = c[0] + s * (2.0 * c[1] + x * (4.0 * c[2] + x * (6.0 * c[3] + x * 8.0 * c[4])));
-        (5.0 * self.thickness * value, 5.0 * self.thickness * slope)
-    }
-
-    /// Where the thickness vanishes behind x = 1: 1.008930411 for the published coefficients, by Newton's method.
-    fn zero(&self) -> f64 {
-        let mut s = 1.0_f64;
-        for _ in 0..20 {
-            let (value, slope) = self.half_thickness(s);
-            s -= value / slope;
-        }
-        s * s
-    }
-
-    /// Height, slope and second derivative of the mean line.
-    fn mean_line(&self, x: f64) -> (f64, f64, f64) {
-        if self.camber == 0.0 {
-            return (0.0, 0.0, 0.0);
-        }
-        let (m, p) = (self.camber, self.peak);
-        let (q, base) = if x < p { (m / (p * p), 0.0) } else { (m / ((1.0 - p) * (1.0 - p)), 1.0 - 2.0 * p) };
-        (q * (base + 2.0 * p * x - x * x), 2.0 * q * (p - x), -2.0 * q)
+        let design = design.map_err(refused)?;
+        let closed = naca.trailing_edge == TrailingEdge::Closed;
+        let thickness = Thickness::new(design.thickness, design.modified, closed);
+        let extended = naca.trailing_edge == TrailingEdge::Extended;
+        let extent = if extended { thickness.end() } else { 1.0 };
+        Ok(Self { line: design.line, thickness, sharp: closed || extended, extent })
     }
 
     /// Point and outward normal at √(x / extent) on the upper (`sign` 1) or lower (−1) side.
@@ -96,10 +60,9 @@ impl Section {
         let s = fraction * self.extent.sqrt();
         let x = s * s;
         // The closed ends are zero by definition; rounding would leave 1e-17 and open the outline.
-        let sharp = fraction == 1.0 && (self.extent > 1.0 || self.last == 0.1036);
-        let (value, half_slope) = self.half_thickness(s);
-        let half = if sharp { 0.0 } else { value };
-        let (height, slope, bend) = self.mean_line(x);
+        let (value, half_slope) = self.thickness.at(s);
+        let half = if self.sharp && fraction == 1.0 { 0.0 } else { value };
+        let (height, slope, bend) = mean_line::at(&self.line, x);
         let along = Vector([1.0, slope]).unit();
         let across = Vector([-along[1], along[0]]);
         let turning = 2.0 * s * bend / (1.0 + slope * slope);
@@ -113,7 +76,7 @@ impl Section {
 
 #[cfg(test)]
 mod tests {
-    use super::super::surface::Surface;
+    use super::super::surface::{Nearest, Surface};
     use super::*;
 
     fn section(digits: &str, trailing_edge: TrailingEdge) -> Shell<2> {
@@ -121,7 +84,7 @@ mod tests {
     }
 
     /// Rows `x_c, closed, open, extended` computed independently from the published polynomial.
-    const TABLE: &str = include_str!("testdata/naca0012_formula_variants.csv");
+    const TABLE: &str = include_str!("../testdata/naca0012_formula_variants.csv");
 
     #[test]
     fn thickness_follows_the_published_polynomial() {
@@ -156,7 +119,7 @@ mod tests {
                 if (x[0] - 0.4).abs() < 1e-2 {
                     continue;
                 }
-                let near = super::super::surface::Nearest {
+                let near = Nearest {
                     point: x,
                     normal: element.normals[0],
                     distance: 0.0,
@@ -184,7 +147,7 @@ mod tests {
 
     #[test]
     fn bad_digits_are_refused() {
-        for digits in ["", "12", "0000", "2012", "23012", "00a2", "00-12"] {
+        for digits in ["", "12", "0000", "2012", "23612", "64A010", "00a2", "00-12"] {
             let naca = Naca { digits: digits.into(), trailing_edge: TrailingEdge::Closed };
             assert!(shell(&naca).is_err(), "{digits}");
         }

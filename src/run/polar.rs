@@ -1,0 +1,265 @@
+//! Polars: steady states at many free streams in one run.
+//!
+//! The clouds do not depend on the free stream, so each is built once and kept. Every point goes through the stages of a case: from
+//! its coarsest cloud to its finest. The coarsest starts from the point before it, or at the first angle of a Mach number from the
+//! first angle of the Mach number before; two points at one Mach number are carried on along the line through them,
+//!
+//! u = u₁ + (u₁ − u₂)(α − α₁)/(α₁ − α₂).
+//!
+//! A finer cloud h starts from the coarser one H of the same point, which knows where its shocks are, with what the finer cloud changed
+//! at the point before it: u = T u_H + (u₁ − T u₁,H), T the transfer by the solver's own fit. The state of the point before alone serves
+//! worse: its shocks have to travel.
+//!
+//! A point that fails or does not converge from there is tried once from rest; one that does not from rest is told with its reason,
+//! and the polar goes on.
+use super::error::RunError;
+use super::look::{GasView, load_axes, momentum};
+use super::record::Log;
+use super::record::polar::PolarPoint;
+use super::record::saved::Kept;
+use super::setup::{self, Site, Solver};
+use super::stage::Stage;
+use super::studies::Reached;
+use crate::case::{Case, Polar};
+use crate::geometry::Surface;
+use crate::observe::convergence::Convergence;
+use crate::scheme::HasGas;
+use crate::system::{Instant, System};
+
+/// What the points of a polar leave to one another; a single case is one point, which nothing is kept for.
+pub(crate) struct Course<'a, S, const D: usize> {
+    /// The case at each point.
+    points: &'a [Case],
+    /// Angles at each Mach number.
+    angles: usize,
+    /// Solvers on the clouds that all points share, with the factor on their spacing.
+    shelf: Vec<(f64, Solver<S, D>)>,
+    /// States of points that are over.
+    kept: Vec<Kept>,
+    /// Why the last point that failed did.
+    failure: Option<RunError>,
+}
+
+/// The coarser cloud that a stage comes from.
+pub(crate) struct Coarser<'a> {
+    /// Factor on its spacing.
+    pub(crate) factor: f64,
+    /// The state that was reached there.
+    pub(crate) state: &'a [f64],
+    /// Takes a state from there to the cloud of the stage.
+    pub(crate) carry: &'a dyn Fn(&[f64]) -> Vec<f64>,
+}
+
+impl<'a, S: HasGas<D>, const D: usize> Course<'a, S, D> {
+    /// The `points` of a case, with the states that a checkpoint kept.
+    pub(crate) fn of(case: &Case, points: &'a [Case], kept: Vec<Kept>) -> Self {
+        let angles = case.polar.as_ref().map_or(1, Polar::angles);
+        Self { points, angles, shelf: Vec::new(), kept, failure: None }
+    }
+
+    /// The case at the point of a stage.
+    pub(crate) fn case(&self, stage: &Stage) -> &'a Case {
+        &self.points[stage.point.unwrap_or(0)]
+    }
+
+    /// States of points that are over.
+    pub(crate) fn kept(&self) -> &[Kept] {
+        &self.kept
+    }
+
+    /// The state that a stage starts from, where a neighbouring point says more of it than the coarser cloud alone.
+    pub(crate) fn guess(
+        &self,
+        stage: &Stage,
+        system: &S,
+        coarser: Option<&Coarser<'_>>,
+        log: &Log<'_>,
+    ) -> Option<Vec<f64>> {
+        if log.record.polar.from_rest {
+            return None;
+        }
+        let near = self.neighbour(stage)?;
+        let sound = |u: &Vec<f64>| system.check(&system.frame(&Instant::still(0.0), u), u).is_ok();
+        match coarser {
+            None => Some(self.along(stage, near).filter(sound).unwrap_or_else(|| near.state.clone())),
+            Some(coarser) => self.corrected(stage, near, coarser).filter(sound),
+        }
+    }
+
+    /// The state of the coarser cloud with what the finer one changed at `near`; `None` where that is no point of the same row.
+    fn corrected(&self, stage: &Stage, near: &Kept, coarser: &Coarser<'_>) -> Option<Vec<f64>> {
+        let same = |k: &&Kept| k.factor == coarser.factor && k.point == near.point;
+        let before = self.kept.iter().find(same).filter(|_| self.in_row(stage, near))?;
+        let [own, other] = [coarser.state, &before.state].map(|u| (coarser.carry)(u));
+        Some(own.iter().zip(&near.state).zip(&other).map(|((own, near), other)| own + (near - other)).collect())
+    }
+
+    /// True for a point at the Mach number of a stage.
+    fn in_row(&self, stage: &Stage, kept: &Kept) -> bool {
+        stage.point.is_some_and(|point| point / self.angles == kept.point / self.angles)
+    }
+
+    /// The last point of the row before that of a stage whose state on its cloud is known, else the first of the row before.
+    fn neighbour(&self, stage: &Stage) -> Option<&Kept> {
+        let point = stage.point.filter(|_| stage.cycle == 0)?;
+        let on_cloud = || self.kept.iter().filter(|k| k.factor == stage.factor && k.point < point);
+        let row = on_cloud().filter(|k| k.point / self.angles == point / self.angles);
+        row.max_by_key(|k| k.point).or_else(|| on_cloud().min_by_key(|k| k.point))
+    }
+
+    /// The line through `near` and the point before it, at the angle of a stage; `None` across Mach numbers.
+    fn along(&self, stage: &Stage, near: &Kept) -> Option<Vec<f64>> {
+        let line = |k: &&Kept| k.factor == stage.factor && k.point < near.point && self.in_row(stage, k);
+        let before = self.kept.iter().filter(line).max_by_key(|k| k.point)?;
+        let angle = |point: usize| self.points[point].flow.alpha.0;
+        let part = (angle(stage.point?) - angle(near.point)) / (angle(near.point) - angle(before.point));
+        Some(near.state.iter().zip(&before.state).map(|(a, b)| a + part * (a - b)).collect())
+    }
+
+    /// Keeps the state at the end of a stage for points to come.
+    pub(crate) fn keep(&mut self, stage: &Stage, state: &[f64]) {
+        let Some(point) = stage.point.filter(|_| stage.cycle == 0) else { return };
+        self.kept.retain(|k| k.factor != stage.factor || k.point != point);
+        self.kept.push(Kept { factor: stage.factor, point, state: state.to_vec() });
+        // the first of a row serves the next row, the last two of the row the next points
+        let (row, on) = (point - point % self.angles, stage.factor);
+        let first = self.kept.iter().filter(|k| k.factor == on && k.point >= row).map(|k| k.point).min();
+        let mut last: Vec<usize> = self.kept.iter().filter(|k| k.factor == on).map(|k| k.point).collect();
+        last.sort_unstable();
+        let last = last.split_off(last.len().saturating_sub(2));
+        self.kept.retain(|k| k.factor != on || Some(k.point) == first || last.contains(&k.point));
+    }
+
+    /// The solver on the cloud of a stage, where it is on the shelf, in the free stream of its point.
+    pub(crate) fn take(&mut self, stage: &Stage, site: &Site<'_, D>) -> Result<Option<Solver<S, D>>, RunError> {
+        let found = self.shelf.iter().position(|(factor, _)| *factor == stage.factor && stage.cycle == 0);
+        let Some((_, mut solver)) = found.map(|k| self.shelf.swap_remove(k)) else { return Ok(None) };
+        let gas = setup::in_stream(site, solver.system.gas())?;
+        solver.system.set_gas(gas);
+        Ok(Some(solver))
+    }
+
+    /// Puts a solver on the shelf, where points to come have a use for it.
+    pub(crate) fn shelve(&mut self, stage: &Stage, solver: Solver<S, D>) {
+        if stage.point.is_some() && stage.cycle == 0 {
+            self.shelf.push((stage.factor, solver));
+        }
+    }
+
+    /// The next point begins: its first stage.
+    fn begin(&self, k: usize, stages: &[Stage], log: &mut Log<'_>) -> usize {
+        let next = after(k, stages);
+        if next < stages.len() {
+            log.begin_point(self.kept.is_empty());
+        }
+        next
+    }
+
+    /// A point begins: what is said and measured from now on is in its free stream.
+    pub(crate) fn enter(&self, stage: &Stage, surface: Option<&Surface<D>>, log: &mut Log<'a>) {
+        let Some(point) = stage.point else { return };
+        let case = self.case(stage);
+        log.turn_to(case, load_axes(case, surface), [point, self.points.len()]);
+    }
+
+    /// A stage failed: the first stage of the same point, from rest, or of the next one.
+    pub(crate) fn failed(
+        &mut self,
+        k: usize,
+        stages: &[Stage],
+        problem: RunError,
+        log: &mut Log<'_>,
+    ) -> Result<usize, RunError> {
+        let stage = stages[k];
+        let (Some(_), RunError::Time { .. }) = (stage.point, &problem) else { return Err(problem) };
+        if !log.record.polar.from_rest {
+            return Ok(again(k, stages, &first_line(&problem), log));
+        }
+        let row = PolarPoint { reason: first_line(&problem), ..self.row(&stage, log) };
+        self.failure = Some(problem);
+        self.tell(row, log)?;
+        Ok(self.begin(k, stages, log))
+    }
+
+    /// A point is over, at the end of stage `k`; the stage that follows: the first of the same point where it did not converge from
+    /// its neighbour.
+    pub(crate) fn over(
+        &self,
+        k: usize,
+        stages: &[Stage],
+        (system, reached): (&S, &Reached<S>),
+        log: &mut Log<'_>,
+    ) -> Result<usize, RunError> {
+        let (Some((frame, state)), true) = (&reached.end, stages[k].point.is_some()) else { return Ok(stages.len()) };
+        if !log.record.converged && !log.record.polar.from_rest {
+            let why = log.record.reason.clone().unwrap_or_default();
+            return Ok(again(k, stages, &why, log));
+        }
+        let stage = &stages[k];
+        let (case, gas) = (self.case(stage), GasView::of(system, frame, state));
+        let mut work = gas.fluid.work();
+        let balance = momentum::around(case, &log.axes, &gas, &mut work, false);
+        let axes = log.axes.axes(&gas.walls(&mut work));
+        let family = case.accuracy.and_then(|asked| Convergence::of(&log.record.clouds, asked.loads.0));
+        let record = &log.record;
+        let row = PolarPoint {
+            loads: gas.coefficients(&log.axes, &mut work),
+            loads_momentum_balance: balance.map(|b| axes.coefficients(&b.load)),
+            loads_error: family.as_ref().map(Convergence::half_widths),
+            within_accuracy: family.as_ref().map(|f| f.reached),
+            particles: gas.fluid.discretisation.cloud.n_real(),
+            residual_drop: -record.drop.log10(),
+            converged: record.converged,
+            reason: record.reason.clone().filter(|_| !record.converged).unwrap_or_default(),
+            ..self.row(stage, log)
+        };
+        self.tell(row, log)?;
+        Ok(self.begin(k, stages, log))
+    }
+
+    /// What is known of a point however it ends.
+    fn row(&self, stage: &Stage, log: &Log<'_>) -> PolarPoint {
+        let (iterations, cpu_seconds) = log.record.polar.spent(log.record.iteration, log.seconds()[0]);
+        let from_rest = log.record.polar.from_rest;
+        PolarPoint { iterations, cpu_seconds, from_rest, ..PolarPoint::of(self.case(stage)) }
+    }
+
+    fn tell(&self, row: PolarPoint, log: &mut Log<'_>) -> Result<(), RunError> {
+        let number = log.record.polar.points.len() + 1;
+        log.note(&format!("point {number} of {}: {}", self.points.len(), row.told()));
+        log.end_point(row)
+    }
+
+    /// The last point whose flow is known, on the finest cloud that all points share; what made the last one fail where there is none.
+    pub(crate) fn last(&mut self) -> Result<(Stage, Vec<f64>), RunError> {
+        let fine = |k: &&Kept| (std::cmp::Reverse(k.factor.to_bits()), k.point);
+        let Some(kept) = self.kept.iter().max_by_key(fine) else {
+            return Err(self.failure.take().unwrap_or(RunError::NoStage));
+        };
+        let stage = Stage { factor: kept.factor, point: Some(kept.point), ..Stage::PLAIN };
+        Ok((stage, kept.state.clone()))
+    }
+}
+
+/// The point of stage `k` begins again, from rest: its first stage.
+fn again(k: usize, stages: &[Stage], why: &str, log: &mut Log<'_>) -> usize {
+    log.note(&format!("the point is tried from rest: from its neighbour {why}"));
+    log.record.polar.from_rest = true;
+    log.forget_clouds();
+    stages.iter().position(|s| s.point == stages[k].point).unwrap_or(k)
+}
+
+/// Index of the first stage of the point after that of stage `k`.
+fn after(k: usize, stages: &[Stage]) -> usize {
+    (k..stages.len()).find(|j| stages[*j].point != stages[k].point).unwrap_or(stages.len())
+}
+
+/// The stages of one point, for every point of a polar.
+pub(crate) fn at_all_points(case: &Case, stages: Vec<Stage>) -> Vec<Stage> {
+    let Some(polar) = &case.polar else { return stages };
+    (0..polar.len()).flat_map(|point| stages.iter().map(move |s| Stage { point: Some(point), ..*s })).collect()
+}
+
+fn first_line(problem: &RunError) -> String {
+    problem.to_string().lines().next().unwrap_or_default().to_owned()
+}

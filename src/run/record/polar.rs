@@ -1,0 +1,151 @@
+//! The points of a polar: what is known of each, and the table of all of them.
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+use super::super::error::RunError;
+use crate::case::Case;
+use crate::observe::loads::Coefficients;
+use crate::observe::table::{Entry, write_csv};
+
+/// Name of the table in the run folder.
+pub(crate) const FILE: &str = "polar.csv";
+/// Its columns; angles in degrees, time in seconds of the processor.
+const COLUMNS: [&str; 20] = [
+    "point",
+    "mach",
+    "alpha_deg",
+    "cl",
+    "cd",
+    "cm",
+    "cl_momentum",
+    "cd_momentum",
+    "cm_momentum",
+    "cl_error",
+    "cd_error",
+    "cm_error",
+    "within_accuracy",
+    "particles",
+    "orders",
+    "iterations",
+    "from_rest",
+    "cpu_seconds",
+    "converged",
+    "reason",
+];
+
+/// One point of a polar.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct PolarPoint {
+    /// Mach number of the free stream.
+    pub mach: f64,
+    /// Angle of attack in degrees, nose up positive.
+    pub alpha_deg: f64,
+    /// Loads on the walls; absent where the point failed.
+    pub loads: Option<Coefficients>,
+    /// Loads from the momentum of the gas around the bodies.
+    pub loads_momentum_balance: Option<Coefficients>,
+    /// Half widths of the error bars, where the loads were found on a family of clouds.
+    pub loads_error: Option<Coefficients>,
+    /// Whether they are as short as was asked for.
+    pub within_accuracy: Option<bool>,
+    /// Particles, images left out.
+    pub particles: usize,
+    /// Orders of magnitude that the residual fell on the last cloud.
+    pub residual_drop: f64,
+    /// Iterations on all clouds.
+    pub iterations: u64,
+    /// True where it was started from rest, not from a neighbouring point.
+    pub from_rest: bool,
+    /// Processor seconds.
+    pub cpu_seconds: f64,
+    /// True when the goal was reached.
+    pub converged: bool,
+    /// Why it was not; empty where it was.
+    pub reason: String,
+}
+
+/// What a run knows of its polar so far.
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
+pub(crate) struct PolarRecord {
+    /// Points that are over.
+    pub(crate) points: Vec<PolarPoint>,
+    /// The present point starts from rest: there is no other, or from its neighbour it did not go.
+    pub(crate) from_rest: bool,
+    /// Iterations and processor seconds of the run when the present point began.
+    began: (u64, f64),
+}
+
+impl PolarRecord {
+    /// A point begins.
+    pub(crate) fn begin(&mut self, iteration: u64, cpu_seconds: f64, from_rest: bool) {
+        (self.began, self.from_rest) = ((iteration, cpu_seconds), from_rest);
+    }
+
+    /// Iterations and processor seconds of the present point.
+    pub(crate) fn spent(&self, iteration: u64, cpu_seconds: f64) -> (u64, f64) {
+        (iteration - self.began.0, cpu_seconds - self.began.1)
+    }
+
+    /// Writes the table.
+    pub(crate) fn write(&self, out: &Path) -> Result<(), RunError> {
+        let rows = self.points.iter().enumerate().map(|(k, point)| point.row(k + 1));
+        Ok(write_csv(&out.join(FILE), &COLUMNS, rows)?)
+    }
+}
+
+impl PolarPoint {
+    /// A point of `case` of which nothing is known yet.
+    pub(crate) fn of(case: &Case) -> Self {
+        Self {
+            mach: case.flow.reference().mach,
+            alpha_deg: case.flow.alpha.degrees(),
+            loads: None,
+            loads_momentum_balance: None,
+            loads_error: None,
+            within_accuracy: None,
+            particles: 0,
+            residual_drop: 0.0,
+            iterations: 0,
+            from_rest: false,
+            cpu_seconds: 0.0,
+            converged: false,
+            reason: String::new(),
+        }
+    }
+
+    /// The point in one line for those who watch.
+    pub fn told(&self) -> String {
+        let at = format!("M {}, alpha {} deg", self.mach, self.alpha_deg);
+        let bars = self.loads_error;
+        let load = |name: &str, value: f64, bar: fn(&Coefficients) -> f64| {
+            let bar = bars.as_ref().map_or_else(String::new, |b| format!(" ± {:.5}", bar(b)));
+            format!("{name} {value:.5}{bar}")
+        };
+        let loads = self.loads.map(|c| {
+            let all = [load("CL", c.cl, |b| b.cl), load("CD", c.cd, |b| b.cd), load("CM", c.cm, |b| b.cm)];
+            all.join(", ")
+        });
+        let parts = [Some(at), loads, (!self.converged).then(|| format!("not converged: {}", self.reason))];
+        parts.into_iter().flatten().collect::<Vec<_>>().join(": ")
+    }
+
+    fn row(&self, number: usize) -> Vec<Entry> {
+        let three = |c: Option<Coefficients>| {
+            let told = |v: fn(&Coefficients) -> f64| c.as_ref().map_or_else(|| "".into(), |c| Entry::from(v(c)));
+            [told(|c| c.cl), told(|c| c.cd), told(|c| c.cm)]
+        };
+        let flag = |flag: bool| Entry::from(if flag { "true" } else { "false" });
+        let mut row: Vec<Entry> = [number as f64, self.mach, self.alpha_deg].map(Entry::from).to_vec();
+        row.extend(three(self.loads));
+        row.extend(three(self.loads_momentum_balance));
+        row.extend(three(self.loads_error));
+        row.push(self.within_accuracy.map_or_else(|| "".into(), flag));
+        row.extend([self.particles as f64, self.residual_drop, self.iterations as f64].map(Entry::from));
+        row.push(flag(self.from_rest));
+        row.push(self.cpu_seconds.into());
+        row.push(flag(self.converged));
+        row.push(self.reason.as_str().into());
+        row
+    }
+}
