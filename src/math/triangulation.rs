@@ -29,10 +29,10 @@ impl HasPosition for Numbered {
 /// Of points in one place only one is a corner. There is no triangle where a coordinate is not a number.
 pub fn triangulate(points: &[Vector<2>], edges: &[[u32; 2]]) -> Vec<[u32; 3]> {
     let coordinate = |x: f64| if x.abs() < NEXT_TO_NOTHING { 0.0 } else { x };
-    let numbered = points.iter().enumerate().map(|(i, x)| Numbered {
-        position: Point2::new(coordinate(x[0]), coordinate(x[1])),
-        number: i as u32,
-    });
+    let numbered = points
+        .iter()
+        .enumerate()
+        .map(|(i, x)| Numbered { position: Point2::new(coordinate(x[0]), coordinate(x[1])), number: i as u32 });
     let edges = edges.iter().filter(|[a, b]| a != b).map(|edge| edge.map(|i| i as usize)).collect();
     let built = ConstrainedDelaunayTriangulation::try_bulk_load_cdt(numbered.collect(), edges, |_| ());
     let corners = |mesh: ConstrainedDelaunayTriangulation<Numbered>| {

@@ -24,6 +24,7 @@ mod page;
 mod paint;
 mod periodic;
 pub mod picture;
+mod pressure;
 mod sections;
 mod structure;
 pub mod surface;

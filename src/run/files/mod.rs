@@ -17,8 +17,8 @@ use crate::observe::loads::together as both;
 use crate::observe::table::{Entry, write_csv, write_json};
 use crate::observe::vtk::{Cells, Column, Facets, read_collection, write_cells, write_collection, write_surface};
 use crate::report;
-use crate::scheme::start::free_stream;
 use crate::scheme::Work;
+use crate::scheme::start::free_stream;
 
 pub(crate) use pictures::{together, write_cloud};
 pub(crate) use target::{FILM, Scene, Target};
@@ -26,7 +26,7 @@ pub(crate) use target::{FILM, Scene, Target};
 /// Writes all files of a run that is over.
 pub(crate) fn write_all<const D: usize>(
     found: &Found<'_, D>,
-    summary: &Summary,
+    summary: &mut Summary,
     all: &Snapshot,
     log: &Log<'_>,
     out: &Path,
@@ -40,7 +40,13 @@ pub(crate) fn write_all<const D: usize>(
     if found.case.output.report {
         let to = Target { case: found.case, out };
         pictures::write(&Scene { to, view: found.view, surface: found.surface })?;
+        // the page tells the cost of all but itself
+        let path = out.join("summary.json");
+        summary.spent(log.seconds());
+        write_json(&path, summary)?;
         report::write_report(out)?;
+        summary.spent(log.seconds());
+        write_json(&path, summary)?;
     }
     Ok(())
 }
@@ -149,7 +155,11 @@ impl<const D: usize> Files<'_, D> {
                 3,
                 (0..cloud.interface.len()).flat_map(|w| self.found.view.normal(w).to_3d()).collect(),
             )])
-            .chain([("area", 1, cloud.interface.iter().map(|w| w.area.norm()).collect())])
+            .chain([(
+                "area_vector",
+                3,
+                (0..cloud.interface.len()).flat_map(|w| self.found.view.area(w).to_3d()).collect(),
+            )])
             .collect();
         let columns: Vec<Column<'_>> =
             cut.iter().map(|(name, n, values)| Column { name, components: *n, values }).collect();
