@@ -147,7 +147,7 @@ fn histories(mut table: Csv) -> Vec<Block> {
         chart("Residual", Axis::log("residual"), curve("residual", "residual")),
         chart("Loads", Axis::linear("coefficient"), table.loads("iteration")),
         chart("Courant number", Axis::log("CFL"), curve("cfl", "CFL")),
-        chart("Particles", Axis::linear("particles"), changing(curve("particles", "particles"))),
+        chart("Fluid particles", Axis::linear("particles"), changing(curve("fluid_particles", "particles"))),
     ];
     charts.into_iter().flatten().collect()
 }
