@@ -79,7 +79,8 @@ impl<const D: usize> Turn<D> {
 
     fn end(&self, e: &EdgeEnd<D>) -> EdgeEnd<D> {
         let gradient = e.gradient.turned(&|x: &Vector<D>| self.of(x));
-        EdgeEnd { state: self.state(&e.state), gradient, weight: self.of(&e.weight), velocity: self.of(&e.velocity) }
+        let (weight, velocity) = (self.of(&e.weight), self.of(&e.velocity));
+        EdgeEnd { state: self.state(&e.state), gradient, weight, velocity, ..*e }
     }
 }
 
@@ -132,11 +133,17 @@ struct Pair<const D: usize> {
 
 impl<const D: usize> Pair<D> {
     fn any() -> impl Strategy<Value = Self> {
-        let end =
-            || {
-                (state(), gradient(), vector(1.0), vector(0.5))
-                    .prop_map(|(state, gradient, weight, velocity)| EdgeEnd { state, gradient, weight, velocity })
-            };
+        let end = || {
+            (state(), gradient(), 0.0..=1.0, vector(1.0), vector(0.5)).prop_map(
+                |(state, gradient, steepness, weight, velocity)| EdgeEnd {
+                    state,
+                    gradient,
+                    steepness,
+                    weight,
+                    velocity,
+                },
+            )
+        };
         let face = (direction(), vector(1.0), select(vec![0.0, 1.0])).prop_map(|(along, area, whole)| EdgeFace {
             along: along * 0.3,
             area,

@@ -157,6 +157,10 @@ impl Tally {
         let bin = edges.partition_point(|e| *e <= value).clamp(1, edges.len() - 1) - 1;
         self.counts[m][bin] += 1;
         let badness = if MEASURES[m].small_is_bad { -value } else { value };
+        // nothing stands out where nothing is missing
+        if badness == 0.0 && !MEASURES[m].small_is_bad {
+            return;
+        }
         let list = &mut self.worst[m];
         if list.len() < WORST || badness > list[WORST - 1].0 {
             let at = list.partition_point(|w| w.0 >= badness);

@@ -18,6 +18,7 @@ pub mod singular;
 pub mod square;
 pub mod sweep;
 pub mod symmetric;
+pub mod triangulation;
 pub mod types;
 
 pub use types::{Bounds, Vector};

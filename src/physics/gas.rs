@@ -204,6 +204,12 @@ impl Gas {
         q.pressure * (self.gamma / (self.gamma - 1.0)) / q.density + q.velocity.norm_squared() * 0.5
     }
 
+    /// Total pressure p (1 + (γ−1)/2 M²)^(γ/(γ−1)) of gas that is brought to rest without loss.
+    pub fn total_pressure<const D: usize>(&self, q: &Primitive<D>) -> f64 {
+        let mach_squared = q.velocity.norm_squared() / self.sound_speed(q).powi(2);
+        q.pressure * (1.0 + 0.5 * (self.gamma - 1.0) * mach_squared).powf(self.gamma / (self.gamma - 1.0))
+    }
+
     /// Entropy function p/ρ^γ.
     #[inline(always)]
     pub fn entropy<const D: usize, S: Scalar>(&self, q: &Primitive<D, S>) -> S {
@@ -216,6 +222,12 @@ mod tests {
     use super::*;
 
     const AIR: Gas = Gas { gamma: 1.4 };
+
+    #[test] // Anderson, Modern Compressible Flow, table A.1: p₀/p at Mach 2
+    fn total_pressure_is_that_of_the_tables() {
+        let q = Primitive { density: 1.4, velocity: Vector([0.0, 2.0]), pressure: 1.0 };
+        assert!((AIR.total_pressure(&q) - 7.824).abs() < 5e-4);
+    }
 
     #[test] // eq6, eq17
     fn conserved_and_primitive_are_inverse() {

@@ -41,6 +41,8 @@ impl Size {
     pub const FILE: Self = Self { width: 760.0, height: 470.0 };
     /// As wide as a page.
     pub const PAGE: Self = Self { width: 960.0, height: 430.0 };
+    /// As wide as a page, for what needs height.
+    pub const TALL: Self = Self { width: 960.0, height: 640.0 };
     /// One of several beside one another.
     pub const SMALL: Self = Self { width: 480.0, height: 310.0 };
 }

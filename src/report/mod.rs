@@ -25,6 +25,7 @@ mod paint;
 mod periodic;
 pub mod picture;
 mod polar;
+mod pressure;
 mod sections;
 mod structure;
 pub mod surface;

@@ -10,7 +10,7 @@ use serde_json::Value;
 use super::files::{LOADS, Load, RunFolder};
 use super::page::{Card, Fact, Page, Section, Status};
 use super::sections::{self, grouped, number};
-use super::{ReportError, grid, periodic, polar, structure, write_file};
+use super::{ReportError, grid, periodic, polar, pressure, structure, write_file};
 
 /// Writes `report.html` into a run folder from the files that are there, and gives its path.
 pub fn write_report(run: &Path) -> Result<PathBuf, ReportError> {
@@ -31,7 +31,7 @@ fn report(run: &RunFolder) -> Page {
         Section::new("grid", "Grid convergence", Ok(grid::grid(run))),
         Section::new("polar", "Polar", Ok(polar::polar(run))),
         Section::new("flow", "Flow", sections::pictures(run)),
-        Section::new("pressure", "Pressure on the surface", sections::pressure(run)),
+        Section::new("pressure", "Pressure on the surface", pressure::pressure(run)),
         Section::new("motion", "Motion", Ok(periodic::motion(run))),
         Section::new("structure", "Structure", Ok(structure::structure(run))),
         Section::new("convergence", "Convergence", Ok(sections::convergence(run))),

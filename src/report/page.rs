@@ -152,6 +152,11 @@ impl Block {
         Self::Chart(Figure::new(chart, Size::PAGE))
     }
 
+    /// A chart of its own size.
+    pub(super) fn sized_chart(chart: Chart, size: Size) -> Self {
+        Self::Chart(Figure::new(chart, size))
+    }
+
     /// Small charts, one beside the other.
     pub(super) fn charts(charts: impl Iterator<Item = Chart>) -> Self {
         Self::Charts(charts.map(|chart| Figure::new(chart, Size::SMALL)).collect())

@@ -166,13 +166,17 @@ fn place(frame: &Frame, x: &Vector<2>) -> [f64; 2] {
     frame.place(x[0], x[1])
 }
 
-/// The range of all but the 0.2 % smallest and largest values: one bad particle must not bleach a picture.
+/// The range of the values. What lies beyond all but the 0.2 % smallest and largest by more than their range is cut: one bad
+/// particle must not bleach a picture, but stagnation points and suction peaks belong on the scale.
 pub(super) fn robust_range(values: &[f64]) -> [f64; 2] {
     let mut finite: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
-    let cut = finite.len() / 500;
-    let Some(last) = finite.len().checked_sub(1 + cut) else { return [0.0, 1.0] };
+    let (count, cut) = (finite.len(), finite.len() / 500);
+    let Some(last) = count.checked_sub(1 + cut) else { return [0.0, 1.0] };
     let mut ranked = |k: usize| *finite.select_nth_unstable_by(k, f64::total_cmp).1;
-    match [ranked(cut), ranked(last)] {
+    let [low, high, least, most] = [ranked(cut), ranked(last), ranked(0), ranked(count - 1)];
+    let width = high - low;
+    let end = |extreme: f64, inner: f64| if (extreme - inner).abs() <= width { extreme } else { inner };
+    match [end(least, low), end(most, high)] {
         [low, high] if low < high => [low, high],
         [low, _] => [low - 0.5, low + 0.5],
     }
@@ -398,5 +402,15 @@ pub(crate) mod tests {
         raster.window = Bounds::EMPTY;
         assert!(matches!(raster_png(&raster, &style), Err(ReportError::Window { .. })));
         assert_eq!(robust_range(&[2.0; 5]), [1.5, 2.5]);
+    }
+
+    #[test]
+    fn a_peak_is_on_the_scale_and_an_outlier_is_not() {
+        let mut values: Vec<f64> = (0..2000).map(|k| f64::from(k % 100) * 0.01).collect();
+        values[7] = 1.5;
+        assert_eq!(robust_range(&values), [0.0, 1.5]);
+        values[8] = 40.0;
+        let range = robust_range(&values);
+        assert!(range[1] < 1.0, "{range:?}");
     }
 }

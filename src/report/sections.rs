@@ -4,6 +4,7 @@ use serde_json::Value;
 use super::chart::{Axis, Chart, Marks, Series};
 use super::files::{Csv, LOADS, RunFolder};
 use super::page::{Block, Cell, Fact, Picture, Table};
+use super::pressure;
 
 /// What pictures of the particles begin with.
 const OF_CLOUD: [&str; 3] = ["cloud", "particles", "doctor"];
@@ -17,6 +18,11 @@ const PAPER: &str = "@inproceedings{hu2010meshless,
   note      = {AIAA 2010-7604},
   doi       = {10.2514/6.2010-7604}
 }";
+
+/// What the names of pictures of Cp along the chord begin with.
+const CHORDWISE: &str = "cp-chord";
+/// Histograms whose ends differ by more than this factor have a logarithmic axis.
+const WIDE: f64 = 50.0;
 
 /// A number for reading: five significant digits, an exponent for the very large and small.
 pub(super) fn number(value: f64) -> String {
@@ -98,7 +104,12 @@ fn heading(column: &str) -> String {
 
 /// Pictures of the flow: all but those of the particles and of the last period.
 pub(super) fn pictures(run: &RunFolder) -> Result<Vec<Block>, String> {
-    let elsewhere = |name: &str| OF_CLOUD.iter().chain([&super::periodic::FILM]).any(|start| name.starts_with(start));
+    // the chapter on pressure draws the same curve where it can
+    let drawn = pressure::chart(run, Vec::new()).is_ok();
+    let elsewhere = |name: &str| {
+        OF_CLOUD.iter().chain([&super::periodic::FILM]).any(|start| name.starts_with(start))
+            || drawn && name.starts_with(CHORDWISE)
+    };
     let block = pictures_of(run, |name| !elsewhere(name));
     Ok(vec![block.ok_or("there are no pictures in `pictures/`")?])
 }
@@ -111,43 +122,6 @@ pub(super) fn pictures_of(run: &RunFolder, wanted: impl Fn(&str) -> bool) -> Opt
     let wanted = pictures.iter().filter(|(name, _)| wanted(name) && only(name));
     let pictures: Vec<Picture> = wanted.map(|(name, bytes)| Picture::new(name, bytes)).collect();
     (!pictures.is_empty()).then_some(Block::Pictures(pictures))
-}
-
-pub(super) fn pressure(run: &RunFolder) -> Result<Vec<Block>, String> {
-    let (references, missing) = run.references();
-    let mut blocks: Vec<Block> = missing.into_iter().map(Block::LeftOut).collect();
-    match pressure_chart(run, references) {
-        Ok(chart) => blocks.push(Block::chart(chart)),
-        Err(reason) => blocks.insert(0, Block::LeftOut(reason)),
-    }
-    Ok(blocks)
-}
-
-/// Cp of the surface along the chord beside the references.
-fn pressure_chart(run: &RunFolder, references: Vec<Series>) -> Result<Chart, String> {
-    let table = run.table("surface.csv")?;
-    let three_d = table.numbers("nz").is_some_and(|nz| nz.iter().any(|n| n.abs() > 1e-9));
-    if three_d && references.is_empty() {
-        return Err("a curve of Cp needs a two-dimensional body; pictures show the pressure of this one".to_owned());
-    }
-    let mut series = surface_series(&table);
-    series.extend(references);
-    Ok(Chart { title: "Pressure coefficient".into(), x: Axis::linear("x/c"), y: Axis::reversed("Cp"), series })
-}
-
-/// Cp of each body.
-fn surface_series(table: &Csv) -> Vec<Series> {
-    let (Some(x), Some(cp)) = (table.numbers("x_c"), table.numbers("cp")) else { return Vec::new() };
-    let bodies = table.column("body").unwrap_or_else(|| vec!["surface"; x.len()]);
-    let mut names: Vec<&str> = bodies.clone();
-    names.sort_unstable();
-    names.dedup();
-    let of_body = |name: &str| {
-        let own = |values: &[f64]| values.iter().zip(&bodies).filter(|(_, b)| **b == name).map(|(v, _)| *v).collect();
-        let label = if name.parse::<u32>().is_ok() { format!("body {name}") } else { name.to_owned() };
-        Series::new(&format!("Alula, {label}"), Marks::Dots, own(&x), own(&cp))
-    };
-    names.into_iter().map(of_body).collect()
 }
 
 pub(super) fn convergence(run: &RunFolder) -> Vec<Block> {
@@ -173,8 +147,15 @@ fn histories(mut table: Csv) -> Vec<Block> {
         chart("Residual", Axis::log("residual"), curve("residual", "residual")),
         chart("Loads", Axis::linear("coefficient"), table.loads("iteration")),
         chart("Courant number", Axis::log("CFL"), curve("cfl", "CFL")),
+        chart("Fluid particles", Axis::linear("particles"), changing(curve("fluid_particles", "particles"))),
     ];
     charts.into_iter().flatten().collect()
+}
+
+/// The curves that are not level.
+fn changing(mut curves: Vec<Series>) -> Vec<Series> {
+    curves.retain(|curve| curve.y.windows(2).any(|w| w[0] != w[1]));
+    curves
 }
 
 pub(super) fn doctor(run: &RunFolder) -> Vec<Block> {
@@ -204,14 +185,22 @@ fn items(list: &Value) -> &[Value] {
 }
 
 fn histogram(entry: &Value) -> Chart {
-    let numbers = |key: &str| items(&entry[key]).iter().map(|v| v.as_f64().unwrap_or(f64::NAN)).collect();
+    let numbers =
+        |key: &str| -> Vec<f64> { items(&entry[key]).iter().map(|v| v.as_f64().unwrap_or(f64::NAN)).collect() };
+    let (mut edges, mut counts) = (numbers("edges"), numbers("counts"));
+    // bins that nothing is in, at both ends, would leave no room for the others
+    if let (Some(first), Some(last)) = (counts.iter().position(|c| *c > 0.0), counts.iter().rposition(|c| *c > 0.0)) {
+        counts = counts[first..=last].to_vec();
+        edges = edges.into_iter().skip(first).take(last + 2 - first).collect();
+    }
+    let wide = matches!(edges[..], [low, .., high] if low > 0.0 && high > WIDE * low);
     let text = |key: &str| entry[key].as_str().unwrap_or_default();
     let unit = if ["", "1"].contains(&text("unit")) { String::new() } else { format!(" ({})", text("unit")) };
     Chart {
         title: text("name").to_owned(),
-        x: Axis::linear(&format!("{}{unit}", text("name"))),
+        x: Axis { log: wide, ..Axis::linear(&format!("{}{unit}", text("name"))) },
         y: Axis::linear("particles"),
-        series: vec![Series::new("", Marks::Bars, numbers("edges"), numbers("counts"))],
+        series: vec![Series::new("", Marks::Bars, edges, counts)],
     }
 }
 
@@ -274,11 +263,21 @@ pub(super) fn timings(run: &RunFolder) -> Result<Vec<Block>, String> {
         fact("Wall time per particle", per_particle(get("wall_seconds"), 1e3), "ms"),
         fact("Processor time per particle and iteration", per_step, "µs"),
         fact("Greatest memory", get("peak_bytes").map(|b| b / 1_048_576.0), "MiB"),
-        fact("Memory per particle", per_particle(get("peak_bytes"), 1.0), "bytes"),
+        fact("Arrays of the solver per particle", get("bytes_per_particle"), "bytes"),
     ])];
-    let phases = summary.get("phases").map(|phases| Table::new(&["phase", "seconds"], leaves("", phases)));
-    blocks.extend(phases.map(Block::Table));
+    let phases = phases(&summary["phases"]);
+    blocks.extend((!phases.is_empty()).then(|| Block::Table(Table::new(&["phase", "seconds"], phases))));
     Ok(blocks)
+}
+
+/// Rows of phase and seconds, from a list of pairs or from an object.
+fn phases(phases: &Value) -> Vec<Vec<String>> {
+    let row = |pair: &Value| Some(vec![pair.get(0)?.as_str()?.to_owned(), number_of(pair.get(1)?)]);
+    match phases {
+        Value::Array(pairs) => pairs.iter().filter_map(row).collect(),
+        Value::Object(_) => leaves("", phases),
+        _ => Vec::new(),
+    }
 }
 
 pub(super) fn case(run: &RunFolder) -> Result<Vec<Block>, String> {

@@ -7,7 +7,7 @@
 //! more or less than this.
 use super::accuracy;
 use super::recipe::is_automatic;
-use crate::case::{Case, HarmonicCount, ParticleMotion, Temporal};
+use crate::case::{Case, HarmonicCount, ParticleMotion, Polar, Temporal};
 
 /// Bytes of a process that computes nothing.
 const PROGRAM: f64 = 11.4e6;
@@ -61,10 +61,11 @@ pub(crate) struct Sized<'a> {
 impl Sized<'_> {
     /// What `alula run` takes; `fastest` gives the largest rate of change on the cloud.
     pub(crate) fn cost(&self, fastest: impl FnOnce() -> f64) -> Cost {
+        let points = self.case.polar.as_ref().map_or(1, Polar::len) as f64;
         let sizes = self.sizes();
         let largest = sizes.iter().fold(0.0, |m: f64, n| m.max(*n));
         let each = self.evaluation / self.particles.max(1) as f64;
-        let relaxed: f64 = sizes.iter().map(|n| n * each * self.steady(*n)).sum();
+        let relaxed: f64 = points * sizes.iter().map(|n| n * each * self.steady(*n)).sum::<f64>();
         let marched = largest * each * self.in_time(largest, fastest);
         let starts = !matches!(self.case.time, Temporal::Explicit(_) | Temporal::Harmonics(_));
         let seconds = marched + if starts { relaxed } else { 0.0 };

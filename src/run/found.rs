@@ -3,7 +3,7 @@ use super::accuracy;
 use super::look::friction::{Separation, add_friction, separations, wall_friction};
 use super::look::{pressure_coefficient, pressure_load, totals};
 use super::recipe;
-use super::record::summary::{Clock, Ledger, Reclouding, Summary};
+use super::record::summary::{Clock, FILES, Ledger, Reclouding, Summary};
 use super::record::{Log, Record};
 use crate::case::{Case, Initial};
 use crate::geometry::Surface;
@@ -63,7 +63,7 @@ pub(crate) struct Spent<'a> {
 impl Spent<'_> {
     fn phases(&self) -> Vec<(String, f64)> {
         let files = self.clock.wall_seconds() - self.solved;
-        vec![("solve".into(), self.solved), ("files so far".into(), files)]
+        vec![("solve".into(), self.solved), (FILES.into(), files)]
     }
 }
 

@@ -355,10 +355,10 @@ impl Run<'_> {
         let view = gas.seen(&mut work);
         let (axes, names) = (log.axes.axes(&view), Names::of(surface));
         let found = Found { case: self.case, view, surface, axes, names, balance };
-        let summary = found.summary(log, gas.state, &Spent { clock, solved });
+        let mut summary = found.summary(log, gas.state, &Spent { clock, solved });
         let field = field(self.case, &view);
         if let Some(journal) = &log.journal {
-            files::write_all(&found, &summary, &field, log, &journal.out)?;
+            files::write_all(&found, &mut summary, &field, log, &journal.out)?;
             folder::finish(&journal.out)?;
         }
         let loops = log.case_period().map_or_else(Loops::default, |p| log.record.trace.loops(p));

@@ -69,6 +69,18 @@ impl<'a, const D: usize> View<'a, D> {
         self.turned(&self.work.state[i])
     }
 
+    /// Curl of the velocity at particle `i`, along the third axis in plane flow; gradients must be known. Zero where the scheme
+    /// has no slope.
+    pub fn vorticity(&self, i: usize) -> [f64; 3] {
+        let slope = &self.work.gradient[i].velocity;
+        let turning = |a: usize, b: usize| if a < D && b < D { slope[b][a] - slope[a][b] } else { 0.0 };
+        if D < 3 {
+            return [0.0, 0.0, turning(0, 1)];
+        }
+        let curl = [turning(1, 2), turning(2, 0), turning(0, 1)];
+        self.frame.to_inertial_axes(&Vector::from_fn(|d| curl[d])).to_3d()
+    }
+
     /// A state in the axes of the frame, seen in those of the case.
     #[inline]
     pub fn turned(&self, q: &Primitive<D>) -> Primitive<D> {

@@ -8,17 +8,17 @@ use super::error::RunError;
 use super::folder;
 use super::found::Found;
 use super::look::friction::wall_friction;
-use super::look::{GasView, Snapshot, field, pressure_coefficient};
+use super::look::{GasView, Mesh, Snapshot, field, pressure_coefficient};
 use super::record::summary::Summary;
 use super::record::{Log, passed};
 use crate::cloud::Diagnosis;
 use crate::geometry::Surface;
 use crate::observe::loads::together as both;
 use crate::observe::table::{Entry, write_csv, write_json};
-use crate::observe::vtk::{Column, Facets, read_collection, write_collection, write_points, write_surface};
+use crate::observe::vtk::{Cells, Column, Facets, read_collection, write_cells, write_collection, write_surface};
 use crate::report;
+use crate::scheme::Work;
 use crate::scheme::start::free_stream;
-use crate::scheme::{View, Work};
 
 pub(crate) use pictures::{together, write_cloud};
 pub(crate) use target::{FILM, Scene, Target};
@@ -26,7 +26,7 @@ pub(crate) use target::{FILM, Scene, Target};
 /// Writes all files of a run that is over.
 pub(crate) fn write_all<const D: usize>(
     found: &Found<'_, D>,
-    summary: &Summary,
+    summary: &mut Summary,
     all: &Snapshot,
     log: &Log<'_>,
     out: &Path,
@@ -41,7 +41,13 @@ pub(crate) fn write_all<const D: usize>(
         let to = Target { case: found.case, out };
         report::write_polar(out)?;
         pictures::write(&Scene { to, view: found.view, surface: found.surface })?;
+        // the page tells the cost of all but itself
+        let path = out.join("summary.json");
+        summary.spent(log.seconds());
+        write_json(&path, summary)?;
         report::write_report(out)?;
+        summary.spent(log.seconds());
+        write_json(&path, summary)?;
     }
     Ok(())
 }
@@ -135,12 +141,8 @@ impl<const D: usize> Files<'_, D> {
     }
 
     fn write_fields(&self, all: &Snapshot, time: f64) -> Result<(), RunError> {
-        let columns: Vec<Column<'_>> = all
-            .columns
-            .iter()
-            .map(|(name, components, values)| Column { name, components: *components, values })
-            .collect();
-        write_points(&self.out.join("field.vtu"), &all.points, &columns)?;
+        let mesh = Mesh::of(&self.found.view);
+        write_field(&self.out.join("field.vtu"), all, &mesh)?;
         write_collection(&self.out.join("field.pvd"), &[(time, "field.vtu")])?;
         let cloud = self.found.view.cloud();
         if cloud.interface.is_empty() {
@@ -156,14 +158,26 @@ impl<const D: usize> Files<'_, D> {
                 3,
                 (0..cloud.interface.len()).flat_map(|w| self.found.view.normal(w).to_3d()).collect(),
             )])
+            .chain([(
+                "area_vector",
+                3,
+                (0..cloud.interface.len()).flat_map(|w| self.found.view.area(w).to_3d()).collect(),
+            )])
             .collect();
         let columns: Vec<Column<'_>> =
             cut.iter().map(|(name, n, values)| Column { name, components: *n, values }).collect();
         let points = &all.points[range];
-        let lines = outlines(cloud);
-        let facets = if D == 2 { Facets::Polylines(&lines) } else { Facets::Vertices };
+        let facets = if D == 2 { Facets::Polylines(&mesh.outlines) } else { Facets::Vertices };
         Ok(write_surface(&self.out.join("surface.vtp"), points, facets, &columns, &[])?)
     }
+}
+
+/// Writes a field with the cells between its particles; they are vertices where there are none.
+fn write_field(path: &Path, all: &Snapshot, mesh: &Mesh) -> Result<(), RunError> {
+    let columns: Vec<Column<'_>> =
+        all.columns.iter().map(|(name, components, values)| Column { name, components: *components, values }).collect();
+    let cells = if mesh.triangles.is_empty() { Cells::Vertices } else { Cells::Triangles(&mesh.triangles) };
+    Ok(write_cells(path, &all.points, cells, &columns)?)
 }
 
 /// Writes the field of one moment of a march, and the list of all so far; `interval` is one of the solver.
@@ -173,13 +187,10 @@ pub(crate) fn write_series<const D: usize>(
     work: &mut Work<D>,
     interval: f64,
 ) -> Result<(), RunError> {
-    gas.fluid.fill_states(gas.frame, gas.state, work);
-    let view = View::new(gas.fluid, gas.frame, work);
+    let view = gas.seen(work);
     let (all, time, out) = (field(to.case, &view), to.case.flow.units().case_time(view.time()), to.out);
-    let columns: Vec<Column<'_>> =
-        all.columns.iter().map(|(name, components, values)| Column { name, components: *components, values }).collect();
     let number = passed(view.time(), interval);
-    write_points(&out.join(series_name(number)), &all.points, &columns)?;
+    write_field(&out.join(series_name(number)), &all, &Mesh::of(&view))?;
     // a run that went on from a checkpoint writes the later ones again
     let mut files = read_collection(&folder::text(out, "series.pvd").unwrap_or_default());
     files.retain(|(t, f)| *t < time && *f != series_name(number));
@@ -202,20 +213,4 @@ pub(crate) fn write_film<const D: usize>(
 
 fn series_name(number: u64) -> String {
     format!("field-{number:05}.vtu")
-}
-
-/// Interface particles of each smooth piece of outline, in order.
-fn outlines<const D: usize>(cloud: &crate::cloud::Cloud<D>) -> Vec<Vec<u32>> {
-    let mut lines: Vec<Vec<u32>> = Vec::new();
-    let mut piece = u32::MAX;
-    for (k, w) in cloud.interface.iter().enumerate() {
-        if w.piece != piece {
-            lines.push(Vec::new());
-            piece = w.piece;
-        }
-        if let Some(line) = lines.last_mut() {
-            line.push(k as u32);
-        }
-    }
-    lines
 }

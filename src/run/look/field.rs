@@ -19,7 +19,10 @@ pub(crate) fn pressure_coefficient<const D: usize>(q: &Primitive<D>, free: &Prim
     if dynamic > 0.0 { (q.pressure - free.pressure) / dynamic } else { 0.0 }
 }
 
-/// All particles without images, with everything that a field file holds.
+/// All particles without images, with everything that a field file holds; `view` has states and gradients.
+///
+/// Temperature is in that of the free stream, entropy is (p/ρ^γ) over that of the free stream less 1, and the loss of total pressure
+/// is 1 less p₀ over that of the free stream.
 pub(crate) fn field<const D: usize>(case: &Case, view: &View<'_, D>) -> Snapshot {
     let (cloud, gas) = (view.cloud(), view.fluid.gas);
     let n = cloud.n_real();
@@ -30,6 +33,9 @@ pub(crate) fn field<const D: usize>(case: &Case, view: &View<'_, D>) -> Snapshot
     let kind = |i: usize| f64::from(u8::from(i >= cloud.n_fluid) + u8::from(i >= cloud.n_rows()));
     let entropy = |i: usize| gas.entropy(&state[i]) / gas.entropy(&free) - 1.0;
     let level = |i: usize| (cloud.spacing[i]).log2();
+    let total = |i: usize| gas.total_pressure(&state[i]);
+    let free_total = gas.total_pressure(&free);
+    let vorticity = (0..n).flat_map(|i| view.vorticity(i).map(|w| w * units.speed)).collect();
     Snapshot {
         points: (0..n).map(|i| view.place(i).to_3d()).collect(),
         columns: vec![
@@ -38,7 +44,11 @@ pub(crate) fn field<const D: usize>(case: &Case, view: &View<'_, D>) -> Snapshot
             ("pressure", 1, column(&|i| state[i].pressure * units.pressure())),
             ("mach", 1, column(&|i| state[i].velocity.norm() / gas.sound_speed(&state[i]))),
             ("cp", 1, column(&|i| pressure_coefficient(&state[i], &free))),
+            ("temperature", 1, column(&|i| gas.temperature(&state[i]) / gas.temperature(&free))),
+            ("total_pressure", 1, column(&|i| total(i) * units.pressure())),
+            ("total_pressure_loss", 1, column(&|i| 1.0 - total(i) / free_total)),
             ("entropy", 1, column(&entropy)),
+            ("vorticity", 3, vorticity),
             ("spacing", 1, cloud.spacing[..n].to_vec()),
             ("volume", 1, cloud.volume[..n].to_vec()),
             ("level", 1, column(&level)),

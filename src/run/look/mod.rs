@@ -3,9 +3,11 @@ mod axes;
 mod field;
 pub(crate) mod forces;
 pub(crate) mod friction;
+mod mesh;
 pub(crate) mod momentum;
 
 pub use field::Snapshot;
 
 pub(crate) use axes::{GasView, LoadFrame, load_axes, motion, pressure_load, totals};
 pub(crate) use field::{field, pressure_coefficient};
+pub(crate) use mesh::Mesh;

@@ -13,7 +13,8 @@ use crate::observe::structure::{self, StructureHistory, StructureNames, Structur
 /// Name of the history in the run folder.
 const HISTORY: &str = "history.csv";
 /// Columns of it.
-const COLUMNS: [&str; 9] = ["cycle", "iteration", "time", "cfl", "residual", "cl", "cd", "cm", "seconds"];
+const COLUMNS: [&str; 10] =
+    ["cycle", "iteration", "time", "cfl", "residual", "cl", "cd", "cm", "seconds", "fluid_particles"];
 /// More of them when something moves: iterations within the step, angle and displacement of the first body that moves.
 const MOVING: [&str; 5] = ["inner", "angle_deg", "shift_x", "shift_y", "shift_z"];
 /// One more when a body bends: the coordinate of the first mode of that body.

@@ -10,6 +10,10 @@ use super::polar::PolarPoint;
 use super::trace::{Change, FirstHarmonics, LastPeriod, PeriodicLoads};
 use crate::observe::convergence::Convergence;
 use crate::observe::loads::Coefficients;
+use crate::observe::usage::peak_bytes;
+
+/// The phase in which files, pictures and the report are written.
+pub(crate) const FILES: &str = "files and pictures";
 
 /// What a run found and what it took.
 #[derive(Clone, Debug, Serialize)]
@@ -228,6 +232,16 @@ impl Work {
     pub(crate) fn add(&mut self, evaluations: u64, particles: usize) {
         self.total += evaluations.saturating_sub(self.counted) * particles as u64;
         self.counted = evaluations;
+    }
+}
+
+impl Summary {
+    /// Brings what the run cost up to date: `[processor, wall]` seconds since its beginning, the rest as the system tells it.
+    pub(crate) fn spent(&mut self, [cpu, wall]: [f64; 2]) {
+        let files = self.phases.iter_mut().find(|(name, _)| name == FILES);
+        files.into_iter().for_each(|(_, seconds)| *seconds += wall - self.wall_seconds);
+        (self.cpu_seconds, self.wall_seconds, self.peak_bytes) = (cpu, wall, peak_bytes());
+        self.cpu_ms_per_particle = 1e3 * cpu / self.particles as f64;
     }
 }
 

@@ -144,6 +144,7 @@ impl<S: System> Progress<'_, S> {
         let (cycle, time) = (f64::from(self.cycle), log.units.case_time(step.time));
         let mut row =
             vec![cycle, log.record.iteration as f64, time, step.cfl, step.residual, c.cl, c.cd, c.cm, seconds];
+        row.push(self.eyes.particles() as f64);
         if log.case.moves() {
             row.extend([f64::from(inner), motion[0].to_degrees(), motion[1], motion[2], motion[3]]);
         }

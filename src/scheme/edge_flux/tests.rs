@@ -43,6 +43,7 @@ fn few<const D: usize>() -> Few<D> {
             velocity: std::array::from_fn(|_| draw.vector::<D>() * 0.3),
             pressure: draw.vector::<D>() * 0.3,
         },
+        steepness: draw.number().max(0.0),
         weight: Vector::ZERO,
         velocity: draw.vector::<D>() * 0.2,
     };
@@ -61,9 +62,17 @@ fn few<const D: usize>() -> Few<D> {
 fn compare<const D: usize, F: UpwindFlux<D>, L: Limit>(few: &Few<D>, scheme: &FluxScheme<F, L>) {
     let (state, gradient): (Vec<_>, Vec<_>) = few.ends.iter().map(|e| (e.state, e.gradient)).unzip();
     let velocity: Vec<_> = few.ends.iter().map(|e| e.velocity).collect();
+    let steepness: Vec<_> = few.ends.iter().map(|e| e.steepness).collect();
     let outer = (10, 12);
-    let particles =
-        Particles { x: &few.x, volume: &few.volume, state: &state, gradient: &gradient, velocity: &velocity, outer };
+    let particles = Particles {
+        x: &few.x,
+        volume: &few.volume,
+        state: &state,
+        gradient: &gradient,
+        steepness: &steepness,
+        velocity: &velocity,
+        outer,
+    };
     let mut found = Vec::new();
     edge_fluxes(scheme, particles, &few.edges, &mut |i: usize, change: &Conserved<D>| found.push((i, *change)));
     let mut found = found.into_iter();
@@ -116,7 +125,8 @@ fn varied<const D: usize, S: Scalar>(end: &EdgeEnd<D>, k: usize, by: S) -> EdgeE
         pressure: vector(&end.gradient.pressure, &mut next),
     };
     let (weight, speed) = (vector(&end.weight, &mut next), vector(&end.velocity, &mut next));
-    EdgeEnd { state: Primitive { density, velocity, pressure }, gradient, weight, velocity: speed }
+    let state = Primitive { density, velocity, pressure };
+    EdgeEnd { state, gradient, steepness: S::constant(end.steepness), weight, velocity: speed }
 }
 
 fn numbers<const D: usize, S: Scalar>(both: [Conserved<D, S>; 2]) -> Vec<S> {
@@ -175,7 +185,13 @@ fn numbers_with_derivatives_give_the_derivative_of_the_flux() {
 fn uniform_flow_adds_nothing_however_the_ends_move() {
     let q = Primitive { density: 1.2, velocity: Vector([0.3, -0.6]), pressure: 0.8 };
     let gradient = Gradient::ZERO;
-    let end = |weight, velocity| EdgeEnd { state: q, gradient, weight: Vector(weight), velocity: Vector(velocity) };
+    let end = |weight, velocity| EdgeEnd {
+        state: q,
+        gradient,
+        steepness: 0.0,
+        weight: Vector(weight),
+        velocity: Vector(velocity),
+    };
     let face = EdgeFace { along: Vector([0.1, 0.02]), area: Vector([0.4, -0.1]), whole: 0.0 };
     let reconstruction = Reconstruction { second_order: true, kappa: 0.0, threshold: 0.02, low_mach: false };
     let (gas, flux, limit, conservative, by_faces) = (AIR, Hllc, VanAlbada, false, false);

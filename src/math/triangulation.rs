@@ -1,0 +1,80 @@
+//! Triangles between points of the plane.
+//!
+//! A constrained Delaunay triangulation: no point lies inside the circle around a triangle unless a given edge stands between
+//! them (Chew 1989, doi:10.1007/BF01553881). It covers the convex hull of the points; the predicates are exact, so that points
+//! in rows and columns do no harm.
+use spade::{ConstrainedDelaunayTriangulation, HasPosition, Point2, Triangulation};
+
+use super::Vector;
+
+/// Coordinates below this are zero: the exact predicates cannot multiply them.
+const NEXT_TO_NOTHING: f64 = 1e-40;
+
+/// A point that remembers its number.
+struct Numbered {
+    position: Point2<f64>,
+    number: u32,
+}
+
+impl HasPosition for Numbered {
+    type Scalar = f64;
+
+    fn position(&self) -> Point2<f64> {
+        self.position
+    }
+}
+
+/// Triangles, counterclockwise, between `points`; every one of `edges` is a side of triangles unless it crosses another.
+///
+/// Of points in one place only one is a corner. There is no triangle where a coordinate is not a number.
+pub fn triangulate(points: &[Vector<2>], edges: &[[u32; 2]]) -> Vec<[u32; 3]> {
+    let coordinate = |x: f64| if x.abs() < NEXT_TO_NOTHING { 0.0 } else { x };
+    let numbered = points
+        .iter()
+        .enumerate()
+        .map(|(i, x)| Numbered { position: Point2::new(coordinate(x[0]), coordinate(x[1])), number: i as u32 });
+    let edges = edges.iter().filter(|[a, b]| a != b).map(|edge| edge.map(|i| i as usize)).collect();
+    let built = ConstrainedDelaunayTriangulation::try_bulk_load_cdt(numbered.collect(), edges, |_| ());
+    let corners = |mesh: ConstrainedDelaunayTriangulation<Numbered>| {
+        mesh.inner_faces().map(|face| face.vertices().map(|vertex| vertex.data().number)).collect()
+    };
+    built.map_or_else(|_| Vec::new(), corners)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn area(points: &[Vector<2>], triangle: &[u32; 3]) -> f64 {
+        let [a, b, c] = triangle.map(|i| points[i as usize]);
+        0.5 * ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]))
+    }
+
+    #[test]
+    fn a_lattice_is_covered_once() {
+        let points: Vec<Vector<2>> =
+            (0..400).map(|k| Vector([f64::from(k % 20) / 19.0, f64::from(k / 20) / 19.0])).collect();
+        let triangles = triangulate(&points, &[]);
+        assert_eq!(triangles.len(), 2 * 19 * 19);
+        assert!(triangles.iter().all(|t| area(&points, t) > 0.0));
+        assert!((triangles.iter().map(|t| area(&points, t)).sum::<f64>() - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_given_edge_is_a_side_and_a_crossing_one_is_left_out() {
+        // without the edge, the short diagonal from above to below would be chosen
+        let points = [[-1.0, 0.0], [1.0, 0.0], [0.0, 0.1], [0.0, -0.1]].map(Vector);
+        let side = |triangles: &[[u32; 3]], a, b| triangles.iter().filter(|t| t.contains(&a) && t.contains(&b)).count();
+        assert_eq!(side(&triangulate(&points, &[]), 2, 3), 2);
+        assert_eq!(side(&triangulate(&points, &[[0, 1]]), 0, 1), 2);
+        assert_eq!(triangulate(&points, &[[0, 1], [2, 3]]).len(), 2);
+    }
+
+    #[test]
+    fn points_in_one_place_and_broken_ones_do_no_harm() {
+        let points = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [0.0, 1e-60]].map(Vector);
+        assert_eq!(triangulate(&points, &[[0, 3], [1, 1]]).len(), 1);
+        assert!(triangulate(&[Vector([f64::NAN, 0.0]), Vector([1.0, 0.0])], &[]).is_empty());
+        assert!(triangulate(&[], &[]).is_empty());
+    }
+}

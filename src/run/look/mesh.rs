@@ -1,0 +1,126 @@
+//! Cells between particles, for tools that contour, cut and integrate.
+//!
+//! In the plane the particles, those on walls and on the border included, are the corners of a constrained Delaunay
+//! triangulation. Outlines of bodies are sides of it, so that no triangle reaches through a wall, and triangles inside bodies are
+//! left out. In space the particles stay vertices.
+use crate::math::Vector;
+use crate::math::triangulation::triangulate;
+use crate::scheme::View;
+
+/// Two panels meet when their ends are nearer to one another than this part of their mean length.
+const MEETING: f64 = 0.5;
+
+/// What ties particles together.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Mesh {
+    /// Chains of wall particles, counted from the first of them; a closed one ends where it began.
+    pub(crate) outlines: Vec<Vec<u32>>,
+    /// Triangles of particles, counterclockwise.
+    pub(crate) triangles: Vec<[u32; 3]>,
+}
+
+impl Mesh {
+    /// The cells of the plane cloud in `view` where particles are now; nothing in space.
+    pub(crate) fn of<const D: usize>(view: &View<'_, D>) -> Self {
+        if D != 2 {
+            return Self::default();
+        }
+        let cloud = view.cloud();
+        let flat = |x: Vector<D>| Vector([x[0], x[1]]);
+        let points: Vec<Vector<2>> = (0..cloud.n_real()).map(|i| flat(view.place(i))).collect();
+        let first = cloud.n_fluid;
+        let walls = Walls {
+            places: &points[cloud.interface_range()],
+            normals: (0..cloud.interface.len()).map(|w| flat(view.normal(w))).collect(),
+            lengths: cloud.interface.iter().map(|w| w.area.norm()).collect(),
+            pieces: cloud.interface.iter().map(|w| w.piece).collect(),
+        };
+        let outlines = walls.outlines();
+        let edge = |pair: &[u32]| [pair[0], pair[1]].map(|w| w + first as u32);
+        let edges: Vec<[u32; 2]> = outlines.iter().flat_map(|line| line.windows(2).map(edge)).collect();
+        let mut triangles = triangulate(&points, &edges);
+        let last = first + cloud.interface.len();
+        let wall = |i: u32| (first..last).contains(&(i as usize)).then(|| i as usize - first);
+        triangles.retain(|corners| match corners.map(wall) {
+            [Some(a), Some(b), Some(c)] => !walls.solid([a, b, c]),
+            _ => true,
+        });
+        Self { outlines, triangles }
+    }
+}
+
+/// The wall particles of a plane cloud, each in the middle of a panel.
+struct Walls<'a> {
+    places: &'a [Vector<2>],
+    /// Into the gas.
+    normals: Vec<Vector<2>>,
+    lengths: Vec<f64>,
+    /// Smooth piece of outline that each belongs to; the particles of one follow one another.
+    pieces: Vec<u32>,
+}
+
+impl Walls<'_> {
+    /// True when a triangle between three wall particles lies in a body: its middle is behind their panels.
+    fn solid(&self, corners: [usize; 3]) -> bool {
+        let middle = corners.iter().fold(Vector::ZERO, |sum, w| sum + self.places[*w]) * (1.0 / 3.0);
+        corners.iter().map(|w| (middle - self.places[*w]).unit().dot(&self.normals[*w])).sum::<f64>() < 0.0
+    }
+
+    /// Pieces of outline, joined where the end of one is the beginning of another or its own.
+    fn outlines(&self) -> Vec<Vec<u32>> {
+        let mut pieces: Vec<Vec<u32>> = Vec::new();
+        for (w, piece) in self.pieces.iter().enumerate() {
+            match pieces.last_mut().filter(|_| w > 0 && self.pieces[w - 1] == *piece) {
+                Some(line) => line.push(w as u32),
+                None => pieces.push(vec![w as u32]),
+            }
+        }
+        let next: Vec<Option<usize>> = pieces.iter().map(|piece| self.follower(piece, &pieces)).collect();
+        let led: Vec<bool> = (0..pieces.len()).map(|k| next.contains(&Some(k))).collect();
+        let mut used = vec![false; pieces.len()];
+        let mut outlines = Vec::new();
+        // open chains begin with a piece that follows none, what is left closes on itself
+        for start in (0..pieces.len()).filter(|k| !led[*k]).chain(0..pieces.len()) {
+            let (mut line, mut at) = (Vec::new(), Some(start).filter(|k| !used[*k]));
+            while let Some(k) = at.filter(|k| !used[*k]) {
+                used[k] = true;
+                line.extend(&pieces[k]);
+                at = next[k];
+            }
+            if at == Some(start) {
+                line.push(pieces[start][0]);
+            }
+            outlines.extend(Some(line).filter(|line| line.len() > 1));
+        }
+        outlines
+    }
+
+    /// The piece that begins where `piece` ends.
+    fn follower(&self, piece: &[u32], pieces: &[Vec<u32>]) -> Option<usize> {
+        let last = *piece.last()? as usize;
+        let gap = |other: &Vec<u32>| (self.end(last, piece) - self.begin(other[0] as usize, other)).norm();
+        let nearest = (0..pieces.len()).min_by(|a, b| gap(&pieces[*a]).total_cmp(&gap(&pieces[*b])))?;
+        let mean = f64::midpoint(self.lengths[last], self.lengths[pieces[nearest][0] as usize]);
+        (gap(&pieces[nearest]) < MEETING * mean).then_some(nearest)
+    }
+
+    /// Where the panel of `w`, the last of `piece`, ends.
+    fn end(&self, w: usize, piece: &[u32]) -> Vector<2> {
+        self.places[w] + self.along(w, piece) * (0.5 * self.lengths[w])
+    }
+
+    /// Where the panel of `w`, the first of `piece`, begins.
+    fn begin(&self, w: usize, piece: &[u32]) -> Vector<2> {
+        self.places[w] - self.along(w, piece) * (0.5 * self.lengths[w])
+    }
+
+    /// Tangent of the panel of `w` in the order of its piece.
+    fn along(&self, w: usize, piece: &[u32]) -> Vector<2> {
+        let n = self.normals[w];
+        let tangent = Vector([n[1], -n[0]]);
+        let [first, second] = [0, 1].map(|k| self.places[piece[k.min(piece.len() - 1)] as usize]);
+        let [before, last] = [2, 1].map(|k| self.places[piece[piece.len().saturating_sub(k)] as usize]);
+        let forward = if piece.last() == Some(&(w as u32)) { last - before } else { second - first };
+        if forward.dot(&tangent) < 0.0 { tangent * -1.0 } else { tangent }
+    }
+}
