@@ -202,7 +202,7 @@ fn clouds_that_are_too_large_are_refused_before_they_are_built() {
     );
     let wake = refused("spacing = 0.01\nwake = { length = 40, spacing = 1e-4 }\n", 1_000_000);
     assert!(wake.contains("raise `cloud.wake.spacing` (0.0001)"), "{wake}");
-    let scarce = refused("spacing = 0.01\n", 500);
+    let scarce = refused("spacing = 0.0005\n", 500);
     assert!(scarce.contains("only 500 fit"), "{scarce}");
 }
 
