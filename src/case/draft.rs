@@ -5,7 +5,6 @@ use std::ops::Range;
 use serde_json::{Value, json};
 
 use super::error::{CaseError, quote};
-use super::read::with_point;
 
 /// Values in base units with defaults, places by key path, mistakes.
 pub(super) struct Draft<'t> {
@@ -193,4 +192,13 @@ pub(super) fn closest<'a>(word: &str, candidates: impl Iterator<Item = &'a str>)
     let word: String = word.chars().take(64).collect::<String>().to_lowercase().replace('-', "_");
     let scored = candidates.map(|c| (strsim::jaro_winkler(&word, c), c)).filter(|(score, _)| ALIKE <= *score);
     scored.max_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, c)| c)
+}
+
+/// `text` with a point in place of its decimal comma, if it begins with a number that has one.
+pub(super) fn with_point(text: &str) -> Option<String> {
+    let (whole, rest) = text.trim().split_once(',')?;
+    let digits = |part: &str| part.starts_with(|c: char| c.is_ascii_digit());
+    let number = whole.trim_start_matches(['+', '-']);
+    let is_number = digits(number) && number.chars().all(|c| c.is_ascii_digit());
+    (is_number && digits(rest) && !rest.contains(',')).then(|| format!("{whole}.{rest}"))
 }

@@ -11,7 +11,7 @@ use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
 use super::Case;
-use super::draft::{Draft, closest};
+use super::draft::{Draft, closest, with_point};
 use super::error::{CaseErrors, MOST_SHOWN, quote};
 use super::keys::CASE;
 use super::polar;
@@ -417,15 +417,6 @@ fn number(value: &DeValue<'_>) -> Option<f64> {
         DeValue::Integer(n) => i128::from_str_radix(n.as_str(), n.radix()).ok().map(|n| n as f64),
         _ => None,
     }
-}
-
-/// `text` with a point in place of its decimal comma, if it begins with a number that has one.
-pub(super) fn with_point(text: &str) -> Option<String> {
-    let (whole, rest) = text.trim().split_once(',')?;
-    let digits = |part: &str| part.starts_with(|c: char| c.is_ascii_digit());
-    let number = whole.trim_start_matches(['+', '-']);
-    let is_number = digits(number) && number.chars().all(|c| c.is_ascii_digit());
-    (is_number && digits(rest) && !rest.contains(',')).then(|| format!("{whole}.{rest}"))
 }
 
 fn type_of(value: &DeValue<'_>) -> &'static str {
