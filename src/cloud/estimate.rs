@@ -4,7 +4,6 @@
 //! fills the gas within n s/2 of the surface that finer ones have not filled. Its volume is estimated by Steiner's formula for a
 //! convex body, S r + ω_D r^D with r = n s/2, and cut off at the volume of the domain. A box with a spacing of its own holds
 //! V/s^D cells. What edges and curvature ask for beyond that is left out: the estimate is there to refuse what is far too large.
-use super::layout::Layout;
 use super::sources::SourceBox;
 use super::{CloudError, CloudSpec};
 use crate::geometry::Surface;
@@ -30,17 +29,16 @@ impl Estimate {
     /// Counts what the surface and each of the `boxes`, the wake among them, ask for.
     pub(super) fn new<const D: usize>(
         spec: &CloudSpec<D>,
-        layout: &Layout<D>,
+        domain: &Bounds<D>,
         surface: Option<&Surface<D>>,
         boxes: &[SourceBox<D>],
     ) -> Self {
-        let domain = layout.bounds();
         let mut shares: Vec<(f64, String)> = boxes
             .iter()
             .enumerate()
-            .map(|(k, b)| (cells(&common(&b.bounds, &domain), b.spacing), name_of(k, spec, surface.is_some())))
+            .map(|(k, b)| (cells(&common(&b.bounds, domain), b.spacing), name_of(k, spec, surface.is_some())))
             .collect();
-        shares.extend(surface.map(|s| (around(spec, &domain, s), reason(spec, s))));
+        shares.extend(surface.map(|s| (around(spec, domain, s), reason(spec, s))));
         Self { shares }
     }
 

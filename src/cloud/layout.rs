@@ -167,7 +167,7 @@ pub fn background<const D: usize>(
     if surface.is_none() {
         boxes.push(SourceBox { bounds: layout.bounds(), spacing: spec.spacing });
     }
-    let size = Estimate::new(spec, layout, surface, &boxes);
+    let size = Estimate::new(spec, &layout.bounds(), surface, &boxes);
     size.check(spec.most)?;
     if let Some(surface) = surface {
         surface_sources(spec, surface, &mut points);
