@@ -36,7 +36,7 @@ night count="10000":
 
 # bring the generated pages of the book up to date
 book:
-    ALULA_WRITE=1 cargo test --test tidy
+    ALULA_WRITE=1 cargo test -p alula --test tidy
 
 # particles a second of the kernels, one thread
 bench *filter:
