@@ -54,9 +54,13 @@ pub(crate) fn with_cloud<'a, const D: usize>(case: &'a Case, surface: Option<&Su
     Cow::Owned(filled)
 }
 
-/// The case with every spacing multiplied by `factor`, and with those of a family what else makes clouds alike.
+/// The case with the spacing, the particles per level and what curvature asks for scaled by `factor`: its cloud is alike, and has
+/// factor⁻ᵈ as many particles.
 pub(crate) fn scaled(case: &Case, factor: f64) -> Case {
     let mut case = case.clone();
+    if factor == 1.0 {
+        return case;
+    }
     let scale = |l: &mut Length| l.0 *= factor;
     case.cloud.spacing.iter_mut().for_each(scale);
     case.cloud.boxes.iter_mut().for_each(|b| scale(&mut b.spacing));
@@ -66,10 +70,8 @@ pub(crate) fn scaled(case: &Case, factor: f64) -> Case {
     if let Some(layers) = case.cloud.wall_layers.as_mut() {
         scale(&mut layers.first);
     }
-    if case.accuracy.is_some() {
-        case.cloud.curvature = (case.cloud.curvature * factor).min(1.0);
-        case.cloud.layers = Some((case.cloud.particles_per_level() / factor).max(FEWEST));
-    }
+    case.cloud.curvature = (case.cloud.curvature * factor).min(1.0);
+    case.cloud.layers = Some((case.cloud.particles_per_level() / factor).max(FEWEST));
     case
 }
 
