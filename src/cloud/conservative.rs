@@ -12,15 +12,24 @@
 //! the fluid loses.
 //!
 //! Eliminating s, β and V leaves a symmetric positive system for the multipliers of the conditions, one small block a
-//! particle: conjugate gradients with block-Jacobi (Nocedal and Wright, *Numerical Optimization*, 2nd ed., §16.2-16.3). A
-//! second, cheaper solve over the closure alone then drives its defect to round-off.
+//! particle: conjugate gradients, preconditioned by the blocks and by what finds smooth multipliers ([`smooth`]; Nocedal and Wright,
+//! *Numerical Optimization*, 2nd ed., §16.2-16.3). A second solve over the closure alone then drives its defect to round-off
+//! ([`closure`]).
 //! Antisymmetric coefficients of this kind are those of Chiu, Wang, Hu and Jameson (SIAM J. Sci. Comput. 34, 2012).
+mod closure;
+mod graph;
+mod smooth;
+
+use graph::Graph;
+use smooth::Smooth;
+
 use super::coefficient_unknowns::{ITSELF, Kind, Link, links, sweep_entries};
 use super::layers::stand_on_wall;
-use super::multipliers::{MOST, Row, cholesky, conjugate_gradients};
+use super::multipliers::{MOST, Row, cholesky};
 use super::operators::WallFace;
 use super::{Cloud, Operators};
 use crate::math::Vector;
+use crate::math::conjugate::{Row as _, Symmetric, conjugate_gradients};
 use crate::math::sweep::{sum, sweep, sweep_rows, sweep_slots};
 
 /// ε: square of the tolerated relative error of linear consistency against relative changes of s, in the measure of w and b;
@@ -37,16 +46,10 @@ const VOLUME_FREEDOM: f64 = 1.0;
 /// Power of the distance in the first guess of the shares.
 const SHARE_POWER: i32 = 4;
 /// Reduction of the residual of the multipliers.
-const TOLERANCE: f64 = 3e-3;
-/// Reduction of the closure defect in one round.
-const CLOSURE_TOLERANCE: f64 = 1e-9;
-/// Closure defect, relative to the area of a particle, that counts as round-off.
-const ROUND_OFF: f64 = 1e-14;
-/// Part of that at which iterating stops: the largest defect exceeds the root mean square.
-const FLOOR: f64 = 0.1;
-/// Rounds that polish the closure.
-const CLOSURE_ROUNDS: usize = 4;
+const TOLERANCE: f64 = 1e-2;
 
+/// Most iterations of one solve.
+const MOST_ITERATIONS: usize = 4000;
 /// Largest linear error of coefficients that a flow can be computed with, generously: a healthy cloud has less than one. In
 /// crevices narrower than the spacing the conditions may contradict one another, and area vectors of any size come out.
 const WORST_ERROR: f64 = 1e3;
@@ -94,8 +97,9 @@ pub fn conservative_with<const D: usize>(
     softness: f64,
 ) -> ConservativeReport {
     let mut problem = Problem::new(cloud, operators, softness);
+    let mut graph = problem.graph();
     let mut multipliers = vec![Row::ZERO; problem.n_rows()];
-    let mut iterations = problem.solve(&mut multipliers);
+    let mut iterations = problem.solve(&mut multipliers, &mut graph);
     let mut n_softened = 0;
     for _ in 0..SOFTEN_ROUNDS {
         let softened = problem.soften(&problem.volumes(&multipliers));
@@ -103,11 +107,11 @@ pub fn conservative_with<const D: usize>(
             break;
         }
         n_softened = softened;
-        iterations += problem.solve(&mut multipliers);
+        iterations += problem.solve(&mut multipliers, &mut graph);
     }
     let mut x = problem.recover(multipliers);
     problem.fix_shares(&mut x);
-    let polish_iterations = problem.close(&mut x);
+    let polish_iterations = problem.close(&mut x, &mut graph);
     let report = ConservativeReport { iterations, polish_iterations, n_softened, softness, ..problem.judge(&x) };
     store(cloud, operators, &problem, &x);
     report
@@ -329,15 +333,22 @@ impl<const D: usize> Problem<D> {
     }
 
     /// Conjugate gradients for the multipliers, from those in `y`.
-    fn solve(&mut self, y: &mut [Row<D>]) -> usize {
+    fn solve(&mut self, y: &mut [Row<D>], graph: &mut Graph) -> usize {
         self.factorise();
         let start = |i: usize| Row::ZERO.plus(-1.0, &self.defect(i, &self.guess));
         let mut r = vec![Row::ZERO; self.n_rows()];
         self.apply(y, &mut r);
         sweep_slots(&mut r, |i, r| *r = start(i).plus(-1.0, r));
-        let size = |r: Row<D>, i: usize| r.dot(&self.precondition(i, &r));
-        let goal = TOLERANCE * TOLERANCE * sum(self.n_rows(), |i| size(start(i), i));
-        conjugate_gradients(y, &mut r, goal, |y, out| self.apply(y, out), |i, r| self.precondition(i, r))
+        let size = |r: &Row<D>, i: usize| r.dot(&self.precondition(i, r));
+        let goal = TOLERANCE * TOLERANCE * sum(self.n_rows(), |i| size(&start(i), i));
+        let mut smooth = Smooth::new(self);
+        let precondition = |r: &[Row<D>], z: &mut [Row<D>]| {
+            smooth.apply(self, graph, r, z);
+            sweep_slots(z, |i, z| *z = z.plus(1.0, &self.precondition(i, &r[i])));
+        };
+        let enough = |r: &[Row<D>]| sum(r.len(), |i| size(&r[i], i)) <= goal;
+        let product = |y: &[Row<D>], out: &mut [Row<D>]| self.apply(y, out);
+        conjugate_gradients(y, &mut r, MOST_ITERATIONS, Symmetric { enough, product, precondition })
     }
 
     /// Raises ε around particles whose volume is too small; number of particles touched so far, zero when nothing was done.
@@ -366,54 +377,6 @@ impl<const D: usize> Problem<D> {
             for (_, p) in sharers {
                 x.area[*p as usize] -= self.wall(&self.links[*p as usize]) * excess;
             }
-        }
-    }
-
-    /// Drives the closure to round-off with the smallest change of the area vectors between particles.
-    fn close(&self, x: &mut Unknowns<D>) -> usize {
-        let mut iterations = 0;
-        for _ in 0..CLOSURE_ROUNDS {
-            let mut r = vec![Row::ZERO; self.n_fluid];
-            sweep(&mut r, |i| Row { closure: -self.defect(i, x).closure, moment: [Vector::ZERO; D] });
-            if (0..self.n_fluid).all(|i| r[i].closure.norm() <= ROUND_OFF * self.surface(i, x)) {
-                break;
-            }
-            let mut y = vec![Row::ZERO; self.n_fluid];
-            let precondition = |i: usize, r: &Row<D>| {
-                let total: f64 = self.links[self.range(i)].iter().filter(|l| !l.is_wall()).map(|l| l.weight).sum();
-                Row { closure: r.closure * (1.0 / total.max(f64::MIN_POSITIVE)), moment: r.moment }
-            };
-            let size = sum(self.n_fluid, |i| r[i].dot(&precondition(i, &r[i])));
-            let floor = sum(self.n_fluid, |i| {
-                let row = Row { closure: Vector::splat(ROUND_OFF * self.surface(i, x)), moment: r[i].moment };
-                row.dot(&precondition(i, &row))
-            });
-            let goal = (size * CLOSURE_TOLERANCE * CLOSURE_TOLERANCE).max(FLOOR * FLOOR * floor);
-            let laplacian = |y: &[Row<D>], out: &mut [Row<D>]| {
-                sweep(out, |i| {
-                    let links = self.links[self.range(i)].iter().filter(|l| !l.is_wall());
-                    let closure = links.fold(Vector::ZERO, |s, l| s + self.closure_change(i, l, y));
-                    Row { closure, moment: [Vector::ZERO; D] }
-                });
-            };
-            iterations += conjugate_gradients(&mut y, &mut r, goal, laplacian, precondition);
-            sweep_entries(&self.first, &mut x.area, |i, p, area| *area += self.closure_change(i, &self.links[p], &y));
-            self.mirror(x);
-        }
-        iterations
-    }
-
-    #[inline(always)]
-    fn closure_change(&self, i: usize, link: &Link<D>, y: &[Row<D>]) -> Vector<D> {
-        let own = y[i].closure;
-        match link.kind {
-            Kind::Pair => (own - y[link.other as usize].closure) * link.weight,
-            Kind::Image(t) => {
-                let t = &self.signs[t as usize];
-                Vector::from_fn(|d| own[d] - t[d] * y[link.other as usize].closure[d]) * link.weight
-            }
-            Kind::Open => own * link.weight,
-            Kind::Wall(_) => Vector::ZERO,
         }
     }
 

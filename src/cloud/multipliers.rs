@@ -1,12 +1,7 @@
-//! Multipliers of the conditions on conservative coefficients, and the conjugate gradients that find them.
-//!
-//! The system is symmetric and positive (semi-definite, but consistent, in a domain without open sides); its diagonal
-//! blocks, one a particle, are factorised once and serve as preconditioner.
+//! Multipliers of the conditions on conservative coefficients, particle by particle.
 use crate::math::Vector;
-use crate::math::sweep::{sum, sweep, sweep_slots};
+use crate::math::conjugate;
 
-/// Most iterations of one solve.
-const MOST_ITERATIONS: usize = 4000;
 /// Smallest pivot of a block relative to its diagonal.
 const FLAT: f64 = 1e-12;
 /// Most conditions of a particle: three dimensions.
@@ -21,22 +16,24 @@ pub(super) struct Row<const D: usize> {
     pub(super) moment: [Vector<D>; D],
 }
 
-impl<const D: usize> Row<D> {
-    pub(super) const ZERO: Self = Self { closure: Vector::ZERO, moment: [Vector::ZERO; D] };
+impl<const D: usize> conjugate::Row for Row<D> {
+    const ZERO: Self = Self { closure: Vector::ZERO, moment: [Vector::ZERO; D] };
 
     #[inline(always)]
-    pub(super) fn dot(&self, o: &Self) -> f64 {
+    fn dot(&self, o: &Self) -> f64 {
         self.closure.dot(&o.closure) + (0..D).map(|r| self.moment[r].dot(&o.moment[r])).sum::<f64>()
     }
 
     #[inline(always)]
-    pub(super) fn plus(&self, s: f64, o: &Self) -> Self {
+    fn plus(&self, s: f64, o: &Self) -> Self {
         Self {
             closure: self.closure + o.closure * s,
             moment: std::array::from_fn(|r| self.moment[r] + o.moment[r] * s),
         }
     }
+}
 
+impl<const D: usize> Row<D> {
     /// Adds what an area vector contributes, `reach` × offset from the particle.
     #[inline(always)]
     pub(super) fn add(&mut self, s: &Vector<D>, offset: &Vector<D>, reach: f64) {
@@ -61,44 +58,6 @@ impl<const D: usize> Row<D> {
         x[..D].copy_from_slice(&self.closure.0);
         (0..D).for_each(|r| x[D + r * D..D + (r + 1) * D].copy_from_slice(&self.moment[r].0));
     }
-}
-
-/// Solves A y = b for a symmetric positive A; `r` holds b − A y. Number of iterations until r·M⁻¹r ≤ `goal`.
-pub(super) fn conjugate_gradients<const D: usize>(
-    y: &mut [Row<D>],
-    r: &mut [Row<D>],
-    goal: f64,
-    apply: impl Fn(&[Row<D>], &mut [Row<D>]),
-    precondition: impl Fn(usize, &Row<D>) -> Row<D> + Sync,
-) -> usize {
-    let n = y.len();
-    let mut z = vec![Row::ZERO; n];
-    let mut p = vec![Row::ZERO; n];
-    let mut last = f64::INFINITY;
-    for iteration in 0..MOST_ITERATIONS {
-        sweep(&mut z, |i| precondition(i, &r[i]));
-        let size = sum(n, |i| r[i].dot(&z[i]));
-        if size.is_nan() || size <= goal {
-            return iteration;
-        }
-        update(&mut p, |i, p| z[i].plus(size / last, p));
-        last = size;
-        // A p takes the place of M⁻¹ r, which has done its work
-        apply(&p, &mut z);
-        let curvature = sum(n, |i| p[i].dot(&z[i]));
-        if curvature.is_nan() || curvature <= 0.0 {
-            return iteration;
-        }
-        let step = size / curvature;
-        update(y, |i, y| y.plus(step, &p[i]));
-        update(r, |i, r| r.plus(-step, &z[i]));
-    }
-    MOST_ITERATIONS
-}
-
-/// x[i] = f(i, x[i]).
-fn update<T: Send>(x: &mut [T], f: impl Fn(usize, &T) -> T + Sync) {
-    sweep_slots(x, |i, x| *x = f(i, x));
 }
 
 /// Cholesky factor in the lower triangle, the diagonal inverted; directions without

@@ -2,6 +2,7 @@
 pub mod block_matrix;
 pub mod blocks;
 pub mod circulant;
+pub mod conjugate;
 pub mod dense;
 pub mod eigenvalues;
 pub mod exponentials;

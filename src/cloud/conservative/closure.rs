@@ -1,0 +1,60 @@
+//! Closure to round-off: the smallest change of the area vectors between particles after which each particle's sum is zero.
+//!
+//! s_ij changes by w_ij (y_i − y_j), and Σ_j w_ij (y_i − y_j) is what the sum lacks.
+use super::graph::Graph;
+use super::{MOST_ITERATIONS, Problem, Unknowns};
+use crate::cloud::coefficient_unknowns::{Kind, Link, sweep_entries};
+use crate::math::Vector;
+use crate::math::conjugate::{Symmetric, conjugate_gradients};
+use crate::math::sweep::{sum, sweep};
+
+/// Reduction of the defect in one round.
+const TOLERANCE: f64 = 1e-9;
+/// Defect, relative to the area of a particle, that counts as round-off.
+const ROUND_OFF: f64 = 1e-14;
+/// Part of that at which iterating stops: the largest defect exceeds the root mean square.
+const FLOOR: f64 = 0.1;
+/// Rounds.
+const ROUNDS: usize = 4;
+
+impl<const D: usize> Problem<D> {
+    /// Closes all particles; the iterations that it took.
+    pub(super) fn close(&self, x: &mut Unknowns<D>, graph: &mut Graph) -> usize {
+        let (n, mut iterations) = (self.n_fluid, 0);
+        let mut weight = vec![0.0; n];
+        sweep(&mut weight, |i| self.passing(i).map(|l| l.weight).sum::<f64>().max(f64::MIN_POSITIVE));
+        for _ in 0..ROUNDS {
+            let allowed = |i: usize| ROUND_OFF * self.surface(i, x);
+            let mut r = vec![Vector::ZERO; n];
+            sweep(&mut r, |i| -self.defect(i, x).closure);
+            if (0..n).all(|i| r[i].norm() <= allowed(i)) {
+                break;
+            }
+            let size = |r: &[Vector<D>]| sum(n, |i| r[i].norm_squared() / weight[i]);
+            let floor = sum(n, |i| D as f64 * allowed(i).powi(2) / weight[i]);
+            let goal = (size(&r) * TOLERANCE * TOLERANCE).max(FLOOR * FLOOR * floor);
+            let product = |y: &[Vector<D>], out: &mut [Vector<D>]| {
+                sweep(out, |i| self.passing(i).fold(Vector::ZERO, |s, l| s + self.closure_change(i, l, y)));
+            };
+            let precondition = |r: &[Vector<D>], z: &mut [Vector<D>]| graph.nearly_solve(r, z);
+            let mut y = vec![Vector::ZERO; n];
+            let system = Symmetric { enough: |r: &[Vector<D>]| size(r) <= goal, product, precondition };
+            iterations += conjugate_gradients(&mut y, &mut r, MOST_ITERATIONS, system);
+            sweep_entries(&self.first, &mut x.area, |i, p, area| *area += self.closure_change(i, &self.links[p], &y));
+            self.mirror(x);
+        }
+        iterations
+    }
+
+    /// What `y` changes the area vector of an entry of row `i` by.
+    #[inline(always)]
+    fn closure_change(&self, i: usize, link: &Link<D>, y: &[Vector<D>]) -> Vector<D> {
+        match link.kind {
+            Kind::Pair | Kind::Image(_) => {
+                Vector::from_fn(|d| y[i][d] - self.sign(link, d) * y[link.other as usize][d]) * link.weight
+            }
+            Kind::Open => y[i] * link.weight,
+            Kind::Wall(_) => Vector::ZERO,
+        }
+    }
+}
