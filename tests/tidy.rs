@@ -478,6 +478,11 @@ fn the_reference_of_the_case_file_is_fresh() {
     fresh("book/reference/case.md", &alula::case::reference_markdown());
 }
 
+#[test]
+fn the_reference_of_the_tables_is_fresh() {
+    fresh("book/reference/tables.md", &alula::observe::columns::reference_markdown());
+}
+
 /// Compares a generated page with the committed one, or writes it when `ALULA_WRITE` is set.
 fn fresh(path: &str, page: &str) {
     let place = root().join(path);

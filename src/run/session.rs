@@ -393,6 +393,7 @@ impl Run<'_> {
         let (field, walls) = (field(self.case, &view), found.walls());
         if let Some(journal) = &log.journal {
             files::write_all(&found, &mut summary, (&field, &walls), log, &journal.out)?;
+            journal.describe()?;
             folder::finish(&journal.out)?;
         }
         let loops = log.case_period().map_or_else(Loops::default, |p| log.record.trace.loops(p));

@@ -8,7 +8,9 @@ use super::history::IterationHistory;
 use super::saved::Saved;
 use super::trace::Trace;
 use crate::case::Case;
+use crate::geometry::dimension;
 use crate::observe::History;
+use crate::observe::columns::{Scale, describe_tables};
 use crate::observe::structure::{self, StructureHistory, StructureNames, StructureSample, StructureTable};
 
 /// Name of the history in the run folder.
@@ -21,6 +23,8 @@ pub(crate) struct Journal {
     history: History,
     moments: Option<History>,
     structures: Option<StructureHistory>,
+    scale: Scale,
+    names: Vec<StructureNames>,
 }
 
 /// What the tables of an interrupted run hold.
@@ -43,7 +47,7 @@ impl Journal {
         out: &Path,
         saved: Option<&Saved>,
         twice: bool,
-        structures: &[StructureNames],
+        names: &[StructureNames],
     ) -> Result<(Self, Earlier), RunError> {
         let table = |name: &str, columns: &[&str]| match saved {
             Some(s) => History::resume(&out.join(name), columns, s.iteration),
@@ -52,9 +56,9 @@ impl Journal {
         let rows = IterationHistory::of(case);
         let history = table(HISTORY, &rows.names)?;
         let moments = twice.then(|| table(crosscheck::FILE, &crosscheck::COLUMNS)).transpose()?;
-        let structures = (!structures.is_empty()).then(|| match saved {
-            Some(s) => StructureHistory::resume(out, structures, s.iteration),
-            None => StructureHistory::create(out, structures),
+        let structures = (!names.is_empty()).then(|| match saved {
+            Some(s) => StructureHistory::resume(out, names, s.iteration),
+            None => StructureHistory::create(out, names),
         });
         let structures = structures.transpose()?;
         let until = |s: &Saved| case.flow.units().case_time(s.time);
@@ -65,7 +69,15 @@ impl Journal {
             moments: if twice { Twofold::parse(&text(crosscheck::FILE)) } else { Twofold::default() },
             structures: StructureTable::parse(&text(structure::FILE)).unwrap_or_default(),
         });
-        Ok((Self { out: out.to_path_buf(), history, moments, structures }, earlier))
+        let scale = Scale { dimensional: case.flow.is_dimensional(), dimension: dimension(case).into() };
+        let journal = Self { out: out.to_path_buf(), history, moments, structures, scale, names: names.to_vec() };
+        journal.describe()?;
+        Ok((journal, earlier))
+    }
+
+    /// Tells the units of all tables of the folder.
+    pub(crate) fn describe(&self) -> Result<(), RunError> {
+        Ok(describe_tables(&self.out, self.scale, &self.names)?)
     }
 
     /// Appends an iteration.
