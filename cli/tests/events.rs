@@ -100,7 +100,7 @@ fn check_tells_what_it_understood_in_one_object() {
 #[test]
 fn matrices_are_the_last_event_of_gaf() {
     let case = SECTION.replace("mach = 0.03", "mach = 0.5").replace("[time.steady]\niterations = 2\n", "");
-    let folder = folder_with(&(case + "[gaf]\nreduced_frequencies = [0.5]\npitch = \"0.1 deg\"\nplunge = 0.001\n"));
+    let folder = folder_with(&(case + "[gaf]\nreduced_frequencies = [0.5]\npivot = [0.25, 0]\n"));
     let output = alula(folder.path(), &["gaf", "case.toml", "--out", "out", "--json"]);
     let told = events(&output);
     let last = told.last().unwrap();
