@@ -37,7 +37,11 @@ pub(crate) fn of_case(py: Python<'_>, errors: &CaseErrors, in_file: bool) -> PyE
 
 /// Why a run failed, as an exception.
 pub(crate) fn of_run(py: Python<'_>, error: &RunError) -> PyErr {
-    let text = error.to_string();
+    let text = match error {
+        // the hint names options of the command
+        RunError::Folder { what, .. } => format!("{what}\nhint: choose another folder with `out`"),
+        other => other.to_string(),
+    };
     match error.blame() {
         Blame::Files => PyOSError::new_err(text),
         Blame::Computation => ComputationError::new_err(text),

@@ -2,14 +2,13 @@
 //!
 //! A case is solved in threads of its own while the thread that asked waits without the interpreter lock. That thread alone
 //! meets Python: it calls the callback, hears Ctrl-C, and tells the computation to stop after its iteration.
-use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
 use std::thread;
 use std::time::Duration;
 
-use pyo3::exceptions::{PyRuntimeError, PyUserWarning};
+use pyo3::exceptions::{PyRuntimeError, PyTypeError, PyUserWarning, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use solver::run::{Monitor, Outcome, RunError, Session, Solution, Tick, inspect};
@@ -37,7 +36,7 @@ const STACK: usize = 8 << 20;
 ///     Called with a dict: after every iteration `{"event": "iteration", ...}` with `iteration`, `residual` (over its first value),
 ///     `orders` (of magnitude that it fell), `cfl`, `cl`, `cd`, `cm` (None without bodies), `particles`, `time` and `until` (of a
 ///     march, else None), `point` and `points` (of a polar, else None); `{"event": "note", "message": ...}` for what is worth a
-///     line. An exception in it ends the run as Ctrl-C does, and is raised.
+///     line, `"warning"` for what makes results doubtful. An exception in it ends the run as Ctrl-C does, and is raised.
 /// threads : int, optional
 ///     Number of threads; default: one for each core. Results do not depend on it.
 ///
@@ -65,10 +64,18 @@ pub(crate) fn run(
     case: &Bound<'_, PyAny>,
     out: Option<PathBuf>,
     progress: Option<Py<PyAny>>,
-    threads: Option<NonZeroUsize>,
+    threads: Option<usize>,
 ) -> PyResult<Found> {
+    if let Some(other) = progress.as_ref().map(|p| p.bind(py)).filter(|p| !p.is_callable()) {
+        let kind = other.get_type().name()?;
+        return Err(PyTypeError::new_err(format!("`progress` is a `{kind}`; allowed: what can be called with a dict")));
+    }
+    if threads == Some(0) {
+        let text = "`threads` is 0; allowed: 1 or more\nhint: leave it out for one for each core";
+        return Err(PyValueError::new_err(text));
+    }
     let given = Given::of(case)?;
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.map_or(0, NonZeroUsize::get)).stack_size(STACK);
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).stack_size(STACK);
     let pool = pool.build().map_err(|problem| PyRuntimeError::new_err(format!("cannot start threads: {problem}")))?;
     let stop = AtomicBool::new(false);
     let (solved, told) = py.detach(|| {

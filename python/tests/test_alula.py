@@ -153,6 +153,13 @@ def test_what_is_no_case_is_told(tmp_path):
         alula.run(7)
     with pytest.raises(TypeError, match=r"`flow.mach` is a `object`; allowed: numbers"):
         alula.run({"flow": {"mach": object()}})
+    with pytest.raises(TypeError, match="`progress` is a `int`; allowed: what can be called"):
+        alula.run(SECTION, progress=3)
+    with pytest.raises(ValueError, match="`threads` is 0; allowed: 1 or more"):
+        alula.run(SECTION, threads=0)
+    (tmp_path / "file").write_text("")
+    with pytest.raises(OSError, match="cannot make the run folder(.|\n)*with `out`"):
+        alula.run(SECTION, out=tmp_path / "file" / "run")
     with pytest.raises(alula.CaseError, match="`wing.dat`") as caught:
         alula.run(SECTION | {"body": [{"airfoil": "wing.dat"}]})
     assert len(caught.value.mistakes) == 1
