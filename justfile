@@ -42,6 +42,13 @@ book:
 bench *filter:
     RAYON_NUM_THREADS=1 cargo bench -p alula -- {{filter}}
 
+# the wheel of the Python package, tested in an environment of its own
+python:
+    python3 -m venv .venv
+    .venv/bin/pip install --quiet maturin pytest
+    CARGO_TARGET_DIR=$PWD/target .venv/bin/pip install ./python
+    .venv/bin/pytest -q python
+
 # documentation of the library
 doc:
     cargo doc --workspace --no-deps --open

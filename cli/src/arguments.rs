@@ -39,7 +39,7 @@ pub(crate) enum Command {
     /// Compute a case and write fields, loads and a report.
     #[command(after_help = EXIT_CODES)]
     Run(Run),
-    /// Write a commented case file to start from.
+    /// Write a commented case file to start from, with the schema beside it that editors read.
     New(New),
     /// Read a case file and tell all its mistakes at once.
     Check(Check),
@@ -89,7 +89,7 @@ pub(crate) struct New {
     pub(crate) template: String,
     /// File to write; `-` prints it. Default: the name of the template with `.toml`.
     pub(crate) path: Option<PathBuf>,
-    /// Replace an existing file.
+    /// Replace an existing file, and the schema beside it.
     #[arg(long)]
     pub(crate) force: bool,
 }
@@ -101,6 +101,9 @@ pub(crate) struct Check {
     /// Print the case with all defaults filled in.
     #[arg(long)]
     pub(crate) resolved: bool,
+    /// Print what is known as one JSON object, or each mistake as one.
+    #[arg(long, conflicts_with = "resolved")]
+    pub(crate) json: bool,
 }
 
 #[derive(Debug, Args)]

@@ -11,6 +11,7 @@ use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::{Value, json};
 
 use crate::arguments::Verbosity;
+use crate::output::{event_line, message};
 
 /// Least time between two plain lines.
 const LINE_INTERVAL: Duration = Duration::from_secs(1);
@@ -115,22 +116,27 @@ impl Progress {
 
     /// Tells something else: an object `{"event": name, ...}` with `--json`, nothing otherwise.
     pub(crate) fn event(&mut self, name: &str, fields: Value) {
-        if !matches!(self.voice, Voice::Json(_)) {
-            return;
+        if matches!(self.voice, Voice::Json(_)) {
+            self.say(&event_line(name, fields));
         }
-        let mut object = json!({ "event": name });
-        if let (Some(object), Value::Object(fields)) = (object.as_object_mut(), fields) {
-            object.extend(fields);
-        }
-        self.say(&object.to_string());
     }
 
-    /// Tells a sentence to humans, above the line that is drawn over; nothing with `--json` or `--quiet`.
+    /// Tells a sentence: above the line that is drawn over, or as an event `note`; nothing with `--quiet`.
     pub(crate) fn note(&mut self, text: &str) {
+        self.sentence("note", text, text);
+    }
+
+    /// Tells what makes results doubtful: as a note with that word, or as an event `warning`.
+    pub(crate) fn warn(&mut self, text: &str) {
+        self.sentence("warning", text, &format!("warning: {text}"));
+    }
+
+    fn sentence(&mut self, event: &str, text: &str, for_people: &str) {
         match &self.voice {
-            Voice::Bar(bar) => bar.suspend(|| crate::output::message(text)),
-            Voice::Lines(_) => self.say(text),
-            Voice::Silent | Voice::Json(_) => {}
+            Voice::Bar(bar) => bar.suspend(|| message(for_people)),
+            Voice::Lines(_) => self.say(for_people),
+            Voice::Json(_) => self.event(event, json!({ "message": text })),
+            Voice::Silent => {}
         }
     }
 
@@ -366,10 +372,13 @@ mod tests {
         progress.event("start", json!({ "case": "a" }));
         progress.tick(&tick(1, 0.0));
         progress.tick(&Tick { residual: f64::NAN, loads: None, ..tick(2, 0.1) });
-        progress.note("for humans");
+        progress.note("for all");
+        progress.warn("doubtful");
         progress.finish();
         let lines: Vec<Value> = page.text().lines().map(|l| serde_json::from_str(l).unwrap()).collect();
-        assert_eq!(lines.len(), 3);
+        assert_eq!(lines.len(), 5);
+        assert_eq!(lines[3], json!({ "event": "note", "message": "for all" }));
+        assert_eq!(lines[4], json!({ "event": "warning", "message": "doubtful" }));
         assert_eq!(lines[0], json!({ "event": "start", "case": "a" }));
         assert_eq!((&lines[1]["event"], &lines[1]["loads"][1]), (&json!("iteration"), &json!(0.022)));
         assert_eq!((&lines[2]["residual"], &lines[2]["loads"]), (&Value::Null, &Value::Null));

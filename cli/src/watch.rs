@@ -61,6 +61,12 @@ impl Monitor for Watch {
         }
     }
 
+    fn warn(&mut self, text: &str) {
+        if !self.quiet {
+            self.progress.warn(text);
+        }
+    }
+
     fn stop(&self) -> bool {
         self.interrupt.stopping()
     }

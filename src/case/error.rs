@@ -3,6 +3,7 @@ use std::fmt;
 use std::ops::Range;
 
 use annotate_snippets::{AnnotationKind, Level, Renderer, Snippet};
+use serde::Serialize;
 
 /// Longest piece of the file repeated in a message.
 const LONGEST_QUOTE: usize = 48;
@@ -13,11 +14,13 @@ const LONGEST_LABEL: usize = 72;
 pub(super) const MOST_SHOWN: usize = 50;
 
 /// One mistake in a case file.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct CaseError {
     /// Key path, `cloud.box[0].spacing`; empty for the whole file.
+    #[serde(rename = "key")]
     pub path: String,
     /// Bytes of the file the message points at; never longer than a line.
+    #[serde(skip)]
     pub span: Range<usize>,
     /// Line, counted from 1.
     pub line: usize,

@@ -55,7 +55,7 @@ pub use reference::{reference_markdown, schema};
 pub use structure::{
     Freedom, PerCoordinate, SpringShape, Structure, StructureFlap, StructureForce, StructureMode, StructureModel,
 };
-pub use templates::{TEMPLATES, template};
+pub use templates::{SCHEMA_FILE, TEMPLATES, template};
 pub use text::{TextError, text_of};
 pub use time::{Automatic, Dual, Explicit, HarmonicCount, Harmonics, RungeKutta, Steady, SteadyMethod, Temporal};
 pub use verdict::ClaimRow;

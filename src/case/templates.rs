@@ -11,7 +11,10 @@ pub const TEMPLATES: [(&str, &str); 7] = [
     ("travelling", "a cylinder in a stream of particles that travel with the fluid (2-D)"),
 ];
 
-/// The commented case file called `name`.
+/// Name of the schema that the first line of a template points to, beside the case.
+pub const SCHEMA_FILE: &str = "alula.schema.json";
+
+/// The commented case file called `name`. Its first line tells editors (Taplo, Even Better TOML) that [`SCHEMA_FILE`] describes it.
 pub fn template(name: &str) -> Option<String> {
     let text = match name {
         "airfoil" => include_str!("templates/airfoil.toml"),
@@ -23,7 +26,7 @@ pub fn template(name: &str) -> Option<String> {
         "travelling" => include_str!("templates/travelling.toml"),
         _ => return None,
     };
-    Some(text.to_owned())
+    Some(format!("#:schema ./{SCHEMA_FILE}\n{text}"))
 }
 
 #[cfg(test)]
@@ -37,6 +40,7 @@ mod tests {
             let text = template(name).unwrap();
             let case = read(&text, name).unwrap_or_else(|e| panic!("{e}"));
             assert_eq!(case.bodies.len(), 1);
+            assert!(text.starts_with("#:schema ./alula.schema.json\n# "), "{name}");
             assert!(text.lines().all(|line| line.len() <= 100), "{name} has long lines");
         }
         assert!(template("wing").is_none());

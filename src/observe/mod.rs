@@ -1,5 +1,6 @@
 //! What a run leaves behind: tables, field files and checkpoints. Takes slices, knows no solver type.
 pub mod checkpoint;
+pub mod columns;
 pub mod convergence;
 pub mod cycles;
 pub mod damping;

@@ -5,6 +5,8 @@
 //! A step in time or an iteration costs a number of residuals that depends little on the case; how many are needed grows slowly
 //! with the number of particles. Shocks that move, separated flow and families of clouds that are told early to be fine enough take
 //! more or less than this.
+use serde::Serialize;
+
 use super::accuracy;
 use super::recipe::is_automatic;
 use crate::case::{Case, HarmonicCount, ParticleMotion, Polar, Temporal};
@@ -36,7 +38,7 @@ const USUAL_HARMONICS: u32 = 3;
 const ADAPTED: f64 = 1.4;
 
 /// What a run takes.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Cost {
     /// Greatest memory of the process.
     pub bytes: f64,

@@ -163,6 +163,47 @@ pub enum RunError {
     },
 }
 
+/// Who has to act on a failure.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Blame {
+    /// Whoever wrote the case: it cannot be computed as it is.
+    Case,
+    /// Whoever owns the files: they cannot be read or written, or do not belong to the run.
+    Files,
+    /// Nobody before the run: the computation broke off.
+    Computation,
+}
+
+impl RunError {
+    /// Who has to act.
+    pub fn blame(&self) -> Blame {
+        match self {
+            Self::Time { .. } | Self::Recloud { .. } | Self::NothingMoved { .. } | Self::NoStage => Blame::Computation,
+            Self::File(_)
+            | Self::Vtk(_)
+            | Self::Checkpoint(_)
+            | Self::OtherVersion { .. }
+            | Self::Untrue { .. }
+            | Self::Report(_)
+            | Self::Folder { .. }
+            | Self::NoRun { .. }
+            | Self::LostInput { .. }
+            | Self::OtherRun { .. } => Blame::Files,
+            Self::Geometry(_)
+            | Self::Structure(_)
+            | Self::Cloud(_)
+            | Self::Start(_)
+            | Self::Motion { .. }
+            | Self::Law(_)
+            | Self::NotPeriodic { .. }
+            | Self::NoPeriod { .. }
+            | Self::Case(_)
+            | Self::Senseless { .. }
+            | Self::Unsupported { .. } => Blame::Case,
+        }
+    }
+}
+
 /// Where the last good state is.
 fn last_good(checkpoint: &Option<String>) -> String {
     checkpoint.as_ref().map_or_else(String::new, |c| format!("\nthe last good state is in `{c}`"))

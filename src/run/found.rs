@@ -1,7 +1,7 @@
 //! What a run has found when it is over: loads, ledgers, errors, the wall.
 use super::accuracy;
 use super::look::friction::{Separation, add_friction, separations, wall_friction};
-use super::look::{pressure_coefficient, pressure_load, totals};
+use super::look::{WallSnapshot, pressure_load, totals};
 use super::recipe;
 use super::record::summary::{Clock, FILES, Ledger, Reclouding, Summary};
 use super::record::{Log, Record};
@@ -12,11 +12,9 @@ use crate::observe::convergence::Convergence;
 use crate::observe::loads::{Balance, Coefficients, Load, LoadAxes, together};
 use crate::observe::usage::peak_bytes;
 use crate::physics::n_variables;
-use crate::scheme::start::free_stream;
 use crate::scheme::{Fluid, View};
 use crate::system::System;
 use crate::verify::truth::FieldTruth;
-use crate::verify::wall::Wall;
 
 /// The flow at the end, seen in the axes of the case.
 pub(crate) struct Found<'a, const D: usize> {
@@ -175,19 +173,10 @@ impl<const D: usize> Found<'_, D> {
         }
     }
 
-    /// The wall as it is measured.
-    pub(crate) fn wall(&self) -> Wall {
-        let (view, cloud) = (&self.view, self.view.cloud());
-        let free = free_stream::<D>(self.case);
-        let friction = wall_friction(self.case, view).unwrap_or_default();
-        Wall {
-            x: cloud.interface_range().map(|i| Vector(view.place(i).to_3d())).collect(),
-            normal: (0..cloud.interface.len()).map(|w| Vector(view.normal(w).to_3d())).collect(),
-            area: cloud.interface.iter().map(|w| w.area.norm()).collect(),
-            x_c: self.chordwise(),
-            cp: cloud.interface_range().map(|i| pressure_coefficient(&view.state(i), &free)).collect(),
-            cf: friction.iter().map(|f| f.cf).collect(),
-        }
+    /// The flow on the walls.
+    pub(crate) fn walls(&self) -> WallSnapshot {
+        let names = [self.names.bodies.clone(), self.names.tags.clone()];
+        WallSnapshot::of(self.case, &self.view, self.chordwise(), names)
     }
 
     /// Loads of pressure and friction on the interface particles chosen.

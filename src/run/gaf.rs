@@ -12,6 +12,8 @@ use super::record::summary::Summary;
 use super::session::{Outcome, Session};
 use super::setup;
 use crate::case::{AnyMode, Case, Gaf, Mode};
+use crate::geometry::dimension;
+use crate::observe::columns::{Scale, describe_tables};
 use crate::observe::table::{Entry, write_csv, write_json};
 
 /// What files say about signs and units.
@@ -83,7 +85,8 @@ pub fn gaf(case: &Case, places: &Places, monitor: &mut dyn Monitor) -> Result<Op
                 100.0 * column.nonlinearity
             ));
             matrices.columns.push(column);
-            matrices.write(&plan.reduced_frequencies, &places.out)?;
+            let scale = Scale { dimensional: case.flow.is_dimensional(), dimension: dimension(case).into() };
+            matrices.write(&plan.reduced_frequencies, scale, &places.out)?;
         }
     }
     Ok(Some(matrices))
@@ -145,7 +148,7 @@ impl Swing<'_> {
 
 impl Matrices {
     /// Writes `gaf.csv`, a row for each column of the matrices, and `gaf.json`.
-    fn write(&self, frequencies: &[f64], out: &Path) -> Result<(), RunError> {
+    fn write(&self, frequencies: &[f64], scale: Scale, out: &Path) -> Result<(), RunError> {
         let rows = self.columns.iter().map(|c| {
             let mut row = vec![Entry::from(c.k), Entry::from(c.mode.as_str())];
             for [re, im] in [c.cl, c.cm] {
@@ -163,6 +166,7 @@ impl Matrices {
         names.push("nonlinearity".into());
         let names: Vec<&str> = names.iter().map(String::as_str).collect();
         write_csv(&out.join("gaf.csv"), &names, rows)?;
+        describe_tables(out, scale, &[])?;
         let whole = json!({
             "convention": CONVENTION,
             "rows": ["cl", "cm"],

@@ -2,6 +2,8 @@
 use std::path::Path;
 use std::time;
 
+use serde::Serialize;
+
 use super::accuracy;
 use super::cost::{Cost, Sized};
 use super::error::RunError;
@@ -10,9 +12,9 @@ use super::folder;
 use super::look::load_axes;
 use super::setup::{self, Site, Solver, check_motion};
 use super::stage::Stage;
-use super::understood::{Fact, facts};
+use super::understood::Understood;
 use crate::case::Case;
-use crate::cloud::Diagnosis;
+use crate::cloud::{Cloud, Diagnosis};
 use crate::geometry::dimension;
 use crate::observe::table::write_json;
 use crate::observe::vtk::{Column, write_points};
@@ -23,7 +25,7 @@ use crate::system::{Instant, System};
 const TIMED: u32 = 10;
 
 /// What is known of a cloud before a run.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize)]
 pub struct CloudReport {
     /// Particles without images.
     pub particles: usize,
@@ -33,14 +35,14 @@ pub struct CloudReport {
     pub interface: usize,
     /// Particles on the sides of the domain.
     pub outer: usize,
-    /// Least, mean and most neighbours.
-    pub neighbours: (usize, f64, usize),
-    /// Finest and coarsest spacing.
-    pub spacing: (f64, f64),
+    /// Neighbours of a particle.
+    pub neighbours: NeighbourCount,
+    /// Distances between neighbours.
+    pub spacing: SpacingRange,
     /// Largest condition number of a fit.
     pub worst_condition: f64,
     /// What was understood of the case: stream, reference values, bodies, times.
-    pub facts: Vec<Fact>,
+    pub understood: Understood,
     /// Seconds that building took.
     pub seconds: f64,
     /// What a run will take.
@@ -49,6 +51,46 @@ pub struct CloudReport {
     pub gaf: Option<Cost>,
     /// What was repaired or assumed.
     pub notes: Vec<String>,
+    /// What makes the results of a run doubtful.
+    pub warnings: Vec<String>,
+}
+
+/// Neighbours of a particle.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct NeighbourCount {
+    /// Least.
+    pub least: usize,
+    /// Mean.
+    pub mean: f64,
+    /// Most.
+    pub most: usize,
+}
+
+/// Distances between neighbours.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct SpacingRange {
+    /// Smallest.
+    pub finest: f64,
+    /// Largest.
+    pub coarsest: f64,
+}
+
+impl NeighbourCount {
+    fn of<const D: usize>(cloud: &Cloud<D>) -> Self {
+        let counts: Vec<usize> = (0..cloud.n_rows()).map(|i| cloud.neighbours.of(i).len()).collect();
+        Self {
+            least: counts.iter().copied().min().unwrap_or(0),
+            mean: counts.iter().sum::<usize>() as f64 / counts.len().max(1) as f64,
+            most: counts.iter().copied().max().unwrap_or(0),
+        }
+    }
+}
+
+impl SpacingRange {
+    fn of(spacing: &[f64]) -> Self {
+        let widen = |s: Self, h: &f64| Self { finest: h.min(s.finest), coarsest: h.max(s.coarsest) };
+        spacing.iter().fold(Self { finest: f64::INFINITY, coarsest: 0.0 }, widen)
+    }
 }
 
 /// Builds the cloud of a case, whose file names refer to the folder `input`, and judges it; writes it into the folder `out` if
@@ -67,7 +109,7 @@ fn look<const D: usize>(case: &Case, input: &Path, out: Option<&Path>) -> Result
     let case = filled.as_ref();
     let motions = setup::motions(case, input, surface.as_ref())?;
     folder::check_compared(case, input)?;
-    notes.extend(setup::sane(case, surface.as_ref(), &motions)?);
+    let mut warnings = setup::sane(case, surface.as_ref(), &motions)?;
     let site = Site { case, surface: surface.as_ref(), motions: &motions };
     let solver = setup::solver(&site, &Stage::PLAIN, &[], None)?;
     let seconds = began.elapsed().as_secs_f64();
@@ -87,30 +129,26 @@ fn look<const D: usize>(case: &Case, input: &Path, out: Option<&Path>) -> Result
         rate.iter().fold(0.0f64, |m, r| m.max(*r))
     };
     let cloud = &fluid.discretisation.cloud;
-    let counts: Vec<usize> = (0..cloud.n_rows()).map(|i| cloud.neighbours.of(i).len()).collect();
     notes.extend(cloud.notes.iter().cloned().chain(cloud.early_ends()));
-    notes.extend(check_motion(case, cloud, &motions)?);
+    warnings.extend(check_motion(case, cloud, &motions)?);
     let axes = (!cloud.interface.is_empty())
         .then(|| load_axes(case, surface.as_ref()).axes(&fluid.view(&frame, u, &mut work)));
     let (particles, period) = (cloud.n_real(), motions.period());
     let sized = Sized { case, particles, dimension: D, period, evaluation };
     let report = CloudReport {
-        facts: facts(case, surface.as_ref(), &motions, axes.as_ref()),
+        understood: Understood::of(case, surface.as_ref(), &motions, axes.as_ref()),
         particles,
         fluid: cloud.n_fluid,
         interface: cloud.interface.len(),
         outer: cloud.outer.len(),
-        neighbours: (
-            counts.iter().copied().min().unwrap_or(0),
-            counts.iter().sum::<usize>() as f64 / counts.len().max(1) as f64,
-            counts.iter().copied().max().unwrap_or(0),
-        ),
-        spacing: cloud.spacing.iter().fold((f64::INFINITY, 0.0), |(l, h), s| (s.min(l), s.max(h))),
+        neighbours: NeighbourCount::of(cloud),
+        spacing: SpacingRange::of(&cloud.spacing),
         worst_condition: fluid.discretisation.operators.condition.iter().fold(0.0, |m, c| c.max(m)),
         seconds,
         cost: sized.cost(fastest),
         gaf: cost_of_gaf(&sized, axes.as_ref().map(|a| a.chord)),
         notes,
+        warnings,
     };
     if let Some(out) = out {
         folder::create(case, input, out)?;

@@ -38,19 +38,20 @@ use crate::geometry::Surface;
 use crate::scheme::Fluid;
 
 pub use cost::Cost;
-pub use error::RunError;
+pub use error::{Blame, RunError};
 pub use folder::{Places, fresh_folder};
-pub use inspect::{CloudReport, inspect};
-pub use look::Snapshot;
+pub use inspect::{CloudReport, NeighbourCount, SpacingRange, inspect};
 pub use look::forces::GeneralisedForce;
 pub use look::friction::Separation;
+pub use look::{Snapshot, WallSnapshot};
 pub use monitor::{MarchTick, Monitor, Silent, Tick};
+pub use record::IterationHistory;
 pub use record::crosscheck::{Apart as LoadsApart, LoadCrosscheck};
 pub use record::polar::PolarPoint;
 pub use record::summary::{Apart, BalanceReport, Ledger, MarchingCheck, Reclouding, Summary};
 pub use record::trace::{Change, FirstHarmonics, LastPeriod, PeriodicLoads};
-pub use session::{Outcome, Session};
-pub use understood::Fact;
+pub use session::{Outcome, Session, Solution};
+pub use understood::{BodyBox, ReferenceValues, Understood};
 
 use record::saved::Saved;
 use session::Origin;
@@ -58,10 +59,7 @@ use stage::Stage;
 
 /// Runs a case into a fresh folder.
 pub fn run(case: &Case, places: &Places, monitor: &mut dyn Monitor) -> Result<Outcome, RunError> {
-    folder::check_compared(case, &places.input)?;
-    let session = Session::open(case, &places.input)?;
-    begin(case, places, monitor)?;
-    session.kept_in(&places.out).solve(monitor)
+    Session::open(case, &places.input)?.keep_in(&places.out, monitor)?.solve(monitor)
 }
 
 /// Runs a case into a fresh folder from the last state of another run on the same cloud: a steady flow, a march or a harmonic
@@ -101,17 +99,7 @@ pub fn run_from(case: &Case, places: &Places, from: &Path, monitor: &mut dyn Mon
             hint: "finish it with `alula resume`; particles that travel keep a cloud of their own",
         });
     }
-    begin(case, places, monitor)?;
-    session.kept_in(&places.out).from(Origin::Other(Box::new(saved))).solve(monitor)
-}
-
-/// Makes the folder of a run.
-fn begin(case: &Case, places: &Places, monitor: &mut dyn Monitor) -> Result<(), RunError> {
-    if folder::create(case, &places.input, &places.out)? {
-        let out = places.out.display();
-        monitor.note(&format!("the run in `{out}` was stopped before its first checkpoint: it begins again"));
-    }
-    Ok(())
+    session.keep_in(&places.out, monitor)?.from(Origin::Other(Box::new(saved))).solve(monitor)
 }
 
 /// Goes on with an interrupted or killed run; one that is finished stays as it is.

@@ -6,6 +6,10 @@ pub trait Monitor {
     fn tick(&mut self, tick: &Tick);
     /// Something worth a line.
     fn note(&mut self, text: &str);
+    /// Something that makes results doubtful; a note with that word unless a monitor has another way to tell it.
+    fn warn(&mut self, text: &str) {
+        self.note(&format!("warning: {text}"));
+    }
     /// True when the run should write a checkpoint and stop.
     fn stop(&self) -> bool {
         false

@@ -11,13 +11,13 @@ use super::error::RunError;
 use super::files;
 use super::folder;
 use super::found::{Found, Names, Spent};
-use super::look::{GasView, Snapshot, field, load_axes, momentum};
+use super::look::{GasView, Snapshot, WallSnapshot, field, load_axes, momentum};
 use super::monitor::Monitor;
 use super::polar::{Coarser, Course};
 use super::recipe;
 use super::record::saved::{Position, Saved, flatten};
 use super::record::summary::{Clock, Summary};
-use super::record::{Described, Log, Scales};
+use super::record::{Described, IterationHistory, Log, Scales};
 use super::setup::{self, Site, Solver, check_motion};
 use super::stage::{Stage, Task};
 use super::studies::{self, Reached, Start, Turn};
@@ -79,11 +79,18 @@ pub struct Session {
 }
 
 /// What a session has found.
-struct Solution {
-    summary: Summary,
-    field: Snapshot,
-    wall: Wall,
-    loops: Loops,
+#[derive(Clone, Debug)]
+pub struct Solution {
+    /// Loads, and what it took.
+    pub summary: Summary,
+    /// The solution on all particles, in the units of the case.
+    pub field: Snapshot,
+    /// The solution on the walls, in the units of the case.
+    pub walls: WallSnapshot,
+    /// What every iteration left.
+    pub history: IterationHistory,
+    /// Loads over the last period of a motion, empty where there is none.
+    pub loops: Loops,
 }
 
 impl Session {
@@ -93,7 +100,19 @@ impl Session {
         Ok(Self { case: case.clone(), input: input.into(), out: None, origin: Origin::Case, solution: None })
     }
 
-    /// The same with a folder, which exists, for tables, checkpoints, fields and pictures.
+    /// The same with a folder for tables, checkpoints, fields and pictures, which is made and gets the resolved case. Fails where
+    /// it holds an earlier run already.
+    pub fn keep_in(self, out: impl AsRef<Path>, monitor: &mut dyn Monitor) -> Result<Self, RunError> {
+        let out = out.as_ref();
+        folder::check_compared(&self.case, &self.input)?;
+        if folder::create(&self.case, &self.input, out)? {
+            let out = out.display();
+            monitor.note(&format!("the run in `{out}` was stopped before its first checkpoint: it begins again"));
+        }
+        Ok(self.kept_in(out))
+    }
+
+    /// The same with a folder, which exists.
     pub(crate) fn kept_in(self, out: &Path) -> Self {
         Self { out: Some(out.to_path_buf()), ..self }
     }
@@ -141,14 +160,29 @@ impl Session {
         self.solution.as_ref().map(|s| &s.field)
     }
 
-    /// Pressure and friction on the walls; `None` before it is solved.
-    pub fn wall(&self) -> Option<&Wall> {
-        self.solution.as_ref().map(|s| &s.wall)
+    /// The solution on the walls, in the units of the case; `None` before it is solved.
+    pub fn walls(&self) -> Option<&WallSnapshot> {
+        self.solution.as_ref().map(|s| &s.walls)
+    }
+
+    /// Pressure and friction on the walls, as claims are measured on them; `None` before it is solved.
+    pub fn wall(&self) -> Option<Wall> {
+        self.walls().map(WallSnapshot::measured)
+    }
+
+    /// What every iteration left; `None` before it is solved.
+    pub fn history(&self) -> Option<&IterationHistory> {
+        self.solution.as_ref().map(|s| &s.history)
     }
 
     /// Loads over the last period of a motion, empty where there is none; `None` before it is solved.
     pub fn loops(&self) -> Option<&Loops> {
         self.solution.as_ref().map(|s| &s.loops)
+    }
+
+    /// All that it has found, handed over; `None` before it is solved.
+    pub fn into_solution(self) -> Option<Solution> {
+        self.solution
     }
 }
 
@@ -193,7 +227,7 @@ impl Run<'_> {
         monitor: &mut dyn Monitor,
     ) -> Result<Ended, RunError> {
         let mut motions = setup::motions(self.case, self.input, surface)?;
-        setup::sane(self.case, surface, &motions)?.iter().for_each(|n| monitor.note(n));
+        setup::sane(self.case, surface, &motions)?.iter().for_each(|n| monitor.warn(n));
         let bodies = setup::bodies(self.case, self.input, surface, &mut motions)?;
         let site = Site { case: self.case, surface, motions: &motions };
         if bodies.is_empty() {
@@ -305,14 +339,14 @@ impl Run<'_> {
         };
         let Some((frame, state)) = &stood.reached.end else { return Err(RunError::NoStage) };
         let view = GasView::of(&stood.solver.system, frame, state);
-        Run { case: log.case, ..*self }.conclude(&view, site.surface, &log, &clock).map(Ok)
+        Run { case: log.case, ..*self }.conclude(&view, site.surface, &mut log, &clock).map(Ok)
     }
 
     /// The cloud of the case; tells what is worth knowing of it and of the motion on it.
     fn cloud<const D: usize>(&self, site: &Site<'_, D>, monitor: &mut dyn Monitor) -> Result<Cloud<D>, RunError> {
         let cloud = Cloud::build(&setup::spec(self.case), site.surface, &[])?;
         cloud.notes.iter().cloned().chain(cloud.early_ends()).for_each(|n| monitor.note(&n));
-        check_motion(self.case, &cloud, site.motions)?.iter().for_each(|n| monitor.note(n));
+        check_motion(self.case, &cloud, site.motions)?.iter().for_each(|n| monitor.warn(n));
         Ok(cloud)
     }
 
@@ -347,7 +381,7 @@ impl Run<'_> {
         &self,
         gas: &GasView<'_, D>,
         surface: Option<&Surface<D>>,
-        log: &Log<'_>,
+        log: &mut Log<'_>,
         clock: &Clock,
     ) -> Result<Solution, RunError> {
         let (solved, mut work) = (clock.wall_seconds(), gas.fluid.work());
@@ -356,13 +390,15 @@ impl Run<'_> {
         let (axes, names) = (log.axes.axes(&view), Names::of(surface));
         let found = Found { case: self.case, view, surface, axes, names, balance };
         let mut summary = found.summary(log, gas.state, &Spent { clock, solved });
-        let field = field(self.case, &view);
+        let (field, walls) = (field(self.case, &view), found.walls());
         if let Some(journal) = &log.journal {
-            files::write_all(&found, &mut summary, &field, log, &journal.out)?;
+            files::write_all(&found, &mut summary, (&field, &walls), log, &journal.out)?;
+            journal.describe()?;
             folder::finish(&journal.out)?;
         }
         let loops = log.case_period().map_or_else(Loops::default, |p| log.record.trace.loops(p));
-        Ok(Solution { summary, field, wall: found.wall(), loops })
+        let history = std::mem::take(&mut log.record.history);
+        Ok(Solution { summary, field, walls, history, loops })
     }
 }
 

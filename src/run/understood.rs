@@ -1,4 +1,6 @@
 //! What the program understood of a case, in numbers: what `check` tells beside its mistakes.
+use serde::Serialize;
+
 use super::setup::{chord, reynolds};
 use crate::case::Case;
 use crate::geometry::Surface;
@@ -6,75 +8,152 @@ use crate::math::{Bounds, Vector};
 use crate::motion::Motions;
 use crate::observe::loads::LoadAxes;
 
-/// A line: what, and its value with the unit.
-pub type Fact = (&'static str, String);
-
-/// Stream, reference values, bodies and times of a case.
-/// `axes` are those of its loads.
-pub(crate) fn facts<const D: usize>(
-    case: &Case,
-    surface: Option<&Surface<D>>,
-    motions: &Motions<D>,
-    axes: Option<&LoadAxes>,
-) -> Vec<Fact> {
-    let mut facts = stream(case, surface);
-    facts.extend(axes.map(|a| reference::<D>(case, a)));
-    for (body, name) in surface.iter().flat_map(|s| s.bodies.iter().enumerate()) {
-        let bounds = surface.map_or(Bounds::EMPTY, |s| s.bounds_of(body));
-        facts.push(("body", format!("`{name}` from {} to {}", place(&bounds.min), place(&bounds.max))));
-    }
-    facts.extend(times(case, surface, motions));
-    facts
-}
-
-/// The number with the unit that it has in a dimensional stream.
-fn with_unit(case: &Case, value: f64, unit: &str) -> String {
-    if case.flow.is_dimensional() { format!("{} {unit}", short(value)) } else { short(value) }
-}
-
-fn stream<const D: usize>(case: &Case, surface: Option<&Surface<D>>) -> Vec<Fact> {
-    let s = case.flow.reference();
-    let mut facts = vec![
-        ("Mach number", short(s.mach)),
-        ("sound speed", with_unit(case, s.sound_speed, "m/s")),
-        ("speed", with_unit(case, s.speed, "m/s")),
-        ("dynamic pr.", with_unit(case, s.dynamic_pressure(), "Pa")),
-    ];
-    if case.flow.is_dimensional() {
-        facts.push((
-            "gas",
-            format!("{} Pa, {} K, {} kg/m3", short(s.pressure), short(case.flow.kelvin()), short(s.density)),
-        ));
-    }
-    let viscous = reynolds(case, chord(case, surface));
-    facts.push(("Reynolds nr.", viscous.map_or_else(|| "none: no viscosity".to_owned(), short)));
-    facts
+/// Stream, reference values, bodies and times of a case: in SI units where `dimensional` is true; otherwise lengths are in the
+/// unit of the geometry, and density and sound speed of the stream are 1.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Understood {
+    /// True where the stream has units.
+    pub dimensional: bool,
+    /// Mach number of the stream.
+    pub mach: f64,
+    /// Angle of attack in degrees, nose up positive.
+    pub alpha_deg: f64,
+    /// Sound speed of the stream.
+    pub sound_speed: f64,
+    /// Speed of the stream.
+    pub speed: f64,
+    /// Dynamic pressure ρ V²/2 of the stream.
+    pub dynamic_pressure: f64,
+    /// Static pressure of the stream.
+    pub pressure: f64,
+    /// Density of the stream.
+    pub density: f64,
+    /// Temperature of the stream in kelvin; absent where it has no units.
+    pub temperature: Option<f64>,
+    /// Reynolds number; absent without viscosity.
+    pub reynolds: Option<f64>,
+    /// What loads are divided by; absent without bodies.
+    pub reference: Option<ReferenceValues>,
+    /// Bodies and the boxes around them.
+    pub bodies: Vec<BodyBox>,
+    /// Period of the motion; absent where it does not repeat.
+    pub period: Option<f64>,
+    /// Reduced frequency k = ωc/2V of that motion; absent without a stream.
+    pub reduced_frequency: Option<f64>,
+    /// First step of an implicit march.
+    pub time_step: Option<f64>,
+    /// Time at which a march ends.
+    pub until: Option<f64>,
+    /// Points of a polar; absent for a single flow.
+    pub points: Option<usize>,
 }
 
 /// What loads are divided by.
-fn reference<const D: usize>(case: &Case, axes: &LoadAxes) -> Fact {
-    // the scale of forces in the units of the solver, whose speed of the stream is the Mach number
-    let area = axes.force_scale / (0.5 * case.flow.reference().mach.powi(2));
-    let area = if D == 2 { String::new() } else { format!(", area {}", short(area)) };
-    ("reference", format!("chord {}{area}, moments about {}", short(axes.chord), list(&axes.moment_point[..D])))
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ReferenceValues {
+    /// Chord.
+    pub chord: f64,
+    /// Area; absent in the plane, where it is chord times 1.
+    pub area: Option<f64>,
+    /// Point of the moment, of two or three coordinates.
+    pub moment_point: Vec<f64>,
 }
 
-fn times<const D: usize>(case: &Case, surface: Option<&Surface<D>>, motions: &Motions<D>) -> Vec<Fact> {
-    let (units, period) = (case.flow.units(), motions.period());
-    let mut facts = Vec::new();
-    if let Some(period) = period {
-        let k = std::f64::consts::PI * chord(case, surface) / (period * case.flow.reference().mach);
-        let time = with_unit(case, units.case_time(period), "s");
-        let k = if k.is_finite() { format!(", reduced frequency k = ωc/2V = {}", short(k)) } else { String::new() };
-        facts.push(("period", format!("{time}{k}")));
+/// A body and the box around it, with corners of two or three coordinates.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct BodyBox {
+    /// Its name.
+    pub name: String,
+    /// Corner with the smallest coordinates.
+    pub min: Vec<f64>,
+    /// Corner with the largest coordinates.
+    pub max: Vec<f64>,
+}
+
+impl Understood {
+    /// What a case means with these bodies and motions; `axes` are those of its loads.
+    pub(crate) fn of<const D: usize>(
+        case: &Case,
+        surface: Option<&Surface<D>>,
+        motions: &Motions<D>,
+        axes: Option<&LoadAxes>,
+    ) -> Self {
+        let (stream, units, period) = (case.flow.reference(), case.flow.units(), motions.period());
+        let time = |t: Option<f64>| t.map(|t| units.case_time(t));
+        let chord = chord(case, surface);
+        let frequency = |t: f64| std::f64::consts::PI * chord / (t * stream.mach);
+        let bounds = |body: usize| surface.map_or(Bounds::EMPTY, |s| s.bounds_of(body));
+        let names = surface.iter().flat_map(|s| s.bodies.iter().enumerate());
+        Self {
+            dimensional: case.flow.is_dimensional(),
+            mach: stream.mach,
+            alpha_deg: case.flow.alpha.degrees(),
+            sound_speed: stream.sound_speed,
+            speed: stream.speed,
+            dynamic_pressure: stream.dynamic_pressure(),
+            pressure: stream.pressure,
+            density: stream.density,
+            temperature: case.flow.is_dimensional().then(|| case.flow.kelvin()),
+            reynolds: reynolds(case, chord),
+            reference: axes.map(|axes| ReferenceValues::of::<D>(axes, stream.mach)),
+            bodies: names.map(|(body, name)| BodyBox::of(name, &bounds(body))).collect(),
+            period: time(period),
+            reduced_frequency: period.map(frequency).filter(|k| k.is_finite()),
+            time_step: time(case.step_length(period)),
+            until: time(case.end(period).filter(|_| super::recipe::balance(case).is_none())),
+            points: case.polar.as_ref().map(crate::case::Polar::len),
+        }
     }
-    if let Some(step) = case.step_length(period) {
-        facts.push(("time step", with_unit(case, units.case_time(step), "s")));
+
+    /// The same in lines for people: what, and its value with the unit.
+    pub fn lines(&self) -> Vec<(&'static str, String)> {
+        let mut lines = vec![
+            ("Mach number", short(self.mach)),
+            ("sound speed", self.with_unit(self.sound_speed, "m/s")),
+            ("speed", self.with_unit(self.speed, "m/s")),
+            ("dynamic pr.", self.with_unit(self.dynamic_pressure, "Pa")),
+        ];
+        if let Some(kelvin) = self.temperature {
+            let gas = format!("{} Pa, {} K, {} kg/m3", short(self.pressure), short(kelvin), short(self.density));
+            lines.push(("gas", gas));
+        }
+        lines.push(("Reynolds nr.", self.reynolds.map_or_else(|| "none: no viscosity".to_owned(), short)));
+        if let Some(r) = &self.reference {
+            let area = r.area.map_or_else(String::new, |area| format!(", area {}", short(area)));
+            let point = list(&r.moment_point);
+            lines.push(("reference", format!("chord {}{area}, moments about {point}", short(r.chord))));
+        }
+        for body in &self.bodies {
+            lines.push(("body", format!("`{}` from {} to {}", body.name, list(&body.min), list(&body.max))));
+        }
+        if let Some(period) = self.period {
+            let k = self.reduced_frequency.map(|k| format!(", reduced frequency k = ωc/2V = {}", short(k)));
+            lines.push(("period", self.with_unit(period, "s") + &k.unwrap_or_default()));
+        }
+        lines.extend(self.time_step.map(|t| ("time step", self.with_unit(t, "s"))));
+        lines.extend(self.until.map(|t| ("until", self.with_unit(t, "s"))));
+        lines
     }
-    if let Some(end) = case.end(period).filter(|_| super::recipe::balance(case).is_none()) {
-        facts.push(("until", with_unit(case, units.case_time(end), "s")));
+
+    /// The number with the unit that it has in a dimensional stream.
+    fn with_unit(&self, value: f64, unit: &str) -> String {
+        if self.dimensional { format!("{} {unit}", short(value)) } else { short(value) }
     }
-    facts
+}
+
+impl ReferenceValues {
+    fn of<const D: usize>(axes: &LoadAxes, mach: f64) -> Self {
+        // the scale of forces in the units of the solver, whose speed of the stream is the Mach number
+        let area = (D == 3).then(|| axes.force_scale / (0.5 * mach.powi(2)));
+        Self { chord: axes.chord, area, moment_point: axes.moment_point[..D].to_vec() }
+    }
+}
+
+impl BodyBox {
+    fn of<const D: usize>(name: &str, bounds: &Bounds<D>) -> Self {
+        let corner = |x: &Vector<D>| x.0.to_vec();
+        Self { name: name.to_owned(), min: corner(&bounds.min), max: corner(&bounds.max) }
+    }
 }
 
 /// Six digits are enough to recognise a number.
@@ -85,10 +164,6 @@ fn short(value: f64) -> String {
         return format!("{rounded}");
     }
     format!("{value:.5e}")
-}
-
-fn place<const D: usize>(x: &Vector<D>) -> String {
-    list(&x.0)
 }
 
 fn list(numbers: &[f64]) -> String {

@@ -283,7 +283,7 @@ fn run(folder: &Folder, case: &Case, monitor: &mut dyn Monitor) -> Result<Measur
         case: case.clone(),
         summary: *summary,
         field: session.field().ok_or(none)?.clone(),
-        wall: session.wall().ok_or(none)?.clone(),
+        wall: session.wall().ok_or(none)?,
         loops: session.loops().ok_or(none)?.clone(),
     })
 }

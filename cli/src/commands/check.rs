@@ -3,6 +3,7 @@ use std::path::{Path, PathBuf};
 
 use alula::case::{Case, write};
 use alula::run;
+use serde_json::{Value, json};
 
 use crate::arguments;
 use crate::outcome::Outcome;
@@ -19,6 +20,13 @@ pub(crate) fn check(args: &arguments::Check) -> Outcome {
     }
     let input = args.case.parent().map_or_else(PathBuf::new, Path::to_path_buf);
     match run::inspect(&case, &input, None) {
+        Ok(report) if args.json => {
+            let mut fields = json!({ "file": args.case, "title": case.title });
+            if let (Some(fields), Ok(Value::Object(known))) = (fields.as_object_mut(), serde_json::to_value(&report)) {
+                fields.extend(known);
+            }
+            output::event("check", fields)
+        }
         Ok(report) => {
             let title = format!("{}: no mistakes in `{}`\n", args.case.display(), case.title);
             output::data(&(title + &points(&case) + &super::cloud::describe(&report)))

@@ -37,14 +37,14 @@ pub(crate) fn describe(r: &CloudReport) -> String {
         r.fluid,
         r.interface,
         r.outer,
-        r.neighbours.0,
-        r.neighbours.1,
-        r.neighbours.2,
-        r.spacing.0,
-        r.spacing.1,
+        r.neighbours.least,
+        r.neighbours.mean,
+        r.neighbours.most,
+        r.spacing.finest,
+        r.spacing.coarsest,
         r.worst_condition
     );
-    for (what, value) in &r.facts {
+    for (what, value) in r.understood.lines() {
         text += &format!("{what:<15}{value}\n");
     }
     text += &format!("built in       {:.2} s\n", r.seconds);
@@ -53,6 +53,7 @@ pub(crate) fn describe(r: &CloudReport) -> String {
         text += &format!("`alula gaf`    {}, {}\n", megabytes(gaf), readable(gaf.seconds));
     }
     r.notes.iter().for_each(|n| text += &format!("note: {n}\n"));
+    r.warnings.iter().for_each(|w| text += &format!("warning: {w}\n"));
     text
 }
 

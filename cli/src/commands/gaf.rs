@@ -1,10 +1,12 @@
 //! `alula gaf`.
 use std::path::{Path, PathBuf};
 
+use alula::run::gaf::Matrices;
 use alula::run::{self, Places};
+use serde_json::{Value, json};
 
+use super::run::{Shortfall, results};
 use crate::arguments;
-use crate::interrupt::Interrupt;
 use crate::outcome::Outcome;
 use crate::output;
 use crate::watch::Watch;
@@ -24,11 +26,41 @@ pub(crate) fn gaf(args: &arguments::Gaf) -> Outcome {
     let matrices = match found {
         Ok(Some(matrices)) => matrices,
         Ok(None) => {
-            output::message(&format!("{}\n", Interrupt::farewell(&out, 0)));
+            output::note("interrupted; matrices are kept only when all are found: begin again");
             return Outcome::Interrupted;
         }
         Err(problem) => return super::refuse(&problem),
     };
+    let found = match args.verbosity.json {
+        true => output::event_line("gaf", event(&matrices, &out)) + "\n",
+        false => table(&matrices) + &format!("matrices: {}\n", out.join("gaf.csv").display()),
+    };
+    results(&found, shortfall(&matrices), args.verbosity)
+}
+
+/// All columns, for programs.
+fn event(matrices: &Matrices, out: &Path) -> Value {
+    let (modes, linearity) = (&matrices.modes, matrices.linearity);
+    json!({ "run": out, "modes": modes, "linearity": linearity, "columns": matrices.columns })
+}
+
+/// The first column that is nonlinear, or else not converged.
+fn shortfall(matrices: &Matrices) -> Option<Shortfall> {
+    if let Some(c) = matrices.columns.iter().find(|c| c.nonlinearity > matrices.linearity) {
+        let change = 100.0 * c.nonlinearity;
+        return Some(Shortfall {
+            what: format!("k = {}, {}: halving the amplitude changes the forces by {change:.2} %", c.k, c.mode),
+            hint: "lower `gaf.pitch` or `gaf.plunge`".into(),
+        });
+    }
+    matrices.columns.iter().find(|c| !c.converged).map(|c| Shortfall {
+        what: format!("k = {}, {}: not converged", c.k, c.mode),
+        hint: "lower the frequency or the amplitude, or refine the cloud".into(),
+    })
+}
+
+/// Columns and square matrices, for people.
+fn table(matrices: &Matrices) -> String {
     let mut text =
         String::from("       k  mode              Cl                    Cm          halved amplitude changes\n");
     for c in &matrices.columns {
@@ -43,29 +75,11 @@ pub(crate) fn gaf(args: &arguments::Gaf) -> Outcome {
             100.0 * c.nonlinearity
         ));
     }
-    text.push_str(&squares(&matrices));
-    text.push_str(&format!("matrices: {}\n", out.join("gaf.csv").display()));
-    let told = output::data(&text);
-    let bad = |c: &&run::gaf::Column| c.nonlinearity > matrices.linearity;
-    if let Some(c) = matrices.columns.iter().find(bad) {
-        let what = format!(
-            "k = {}, {}: halving the amplitude changes the forces by {:.2} %",
-            c.k,
-            c.mode,
-            100.0 * c.nonlinearity
-        );
-        output::error(&what, "lower `gaf.pitch` or `gaf.plunge`");
-        return Outcome::Failed;
-    }
-    if let Some(c) = matrices.columns.iter().find(|c| !c.converged) {
-        output::error(&format!("k = {}, {}: not converged", c.k, c.mode), "look at its folder");
-        return Outcome::Failed;
-    }
-    told
+    text + &squares(matrices)
 }
 
 /// The square matrix of generalised forces at each frequency.
-fn squares(matrices: &run::gaf::Matrices) -> String {
+fn squares(matrices: &Matrices) -> String {
     let mut text = String::new();
     for columns in matrices.columns.chunks(matrices.modes.len()) {
         let Some(first) = columns.first() else { continue };

@@ -2,6 +2,7 @@
 use std::path::Path;
 
 use alula::case::{Case, read, text_of};
+use alula::run::{Blame, RunError};
 
 use crate::arguments::{Cli, Command, Threads};
 use crate::outcome::Outcome;
@@ -21,6 +22,14 @@ mod verify;
 
 /// Does what was typed.
 pub(crate) fn dispatch(cli: Cli) -> Outcome {
+    output::speak_json(match &cli.command {
+        Command::Run(args) => args.verbosity.json,
+        Command::Resume(args) => args.verbosity.json,
+        Command::Gaf(args) => args.verbosity.json,
+        Command::Check(args) => args.json,
+        Command::Verify(args) => args.json,
+        _ => false,
+    });
     match cli.command {
         Command::Run(args) => threaded(args.threads, || run::run(&args)),
         Command::New(args) => new::new(&args),
@@ -47,37 +56,36 @@ fn threaded(threads: Threads, command: impl FnOnce() -> Outcome) -> Outcome {
     command()
 }
 
-/// The case in the file at `path`; its mistakes go to stderr.
+/// The case in the file at `path`; its mistakes are told.
 fn load(path: &Path) -> Result<Case, Outcome> {
     let name = path.display().to_string();
     let text = match std::fs::read(path) {
         Ok(bytes) => text_of(&bytes).map_err(|problem| {
-            output::error(
-                &format!("cannot read `{name}`: {problem}"),
-                "a case file is TOML, saved as UTF-8; start from `alula new airfoil`",
-            );
+            let hint = "a case file is TOML, saved as UTF-8; start from `alula new airfoil`";
+            output::error_in(Some(&name), &format!("cannot read `{name}`: {problem}"), hint);
             Outcome::BadInput
         })?,
         Err(problem) => {
-            output::error(
-                &format!("cannot read `{name}`: {problem}"),
-                "`alula new airfoil` writes a case to start from",
-            );
+            let hint = "`alula new airfoil` writes a case to start from";
+            output::error_in(Some(&name), &format!("cannot read `{name}`: {problem}"), hint);
             return Err(Outcome::BadInput);
         }
     };
     read(&text, &name).map_err(|mistakes| {
-        output::message(&mistakes.render(output::colour()));
+        output::mistakes(&mistakes);
         Outcome::BadInput
     })
 }
 
 /// Tells why a case cannot be computed.
-fn refuse(problem: &alula::run::RunError) -> Outcome {
+fn refuse(problem: &RunError) -> Outcome {
     let text = problem.to_string();
     let (what, hint) = text.split_once("\nhint: ").unwrap_or((&text, ""));
     output::error(what, hint);
-    Outcome::BadInput
+    match problem.blame() {
+        Blame::Computation => Outcome::Failed,
+        Blame::Case | Blame::Files => Outcome::BadInput,
+    }
 }
 
 #[cfg(test)]

@@ -3,13 +3,14 @@ use std::fs::OpenOptions;
 use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
-use alula::case::template;
+use alula::case::{SCHEMA_FILE, template};
 
 use crate::arguments;
 use crate::outcome::Outcome;
 use crate::output;
 
-/// Writes a commented case file, never over an existing one unless asked.
+/// Writes a commented case file, never over an existing one unless asked, and beside it the schema that its first line names, by
+/// which editors complete and check it.
 pub(crate) fn new(args: &arguments::New) -> Outcome {
     let Some(text) = template(&args.template) else {
         output::error(&format!("no template is called `{}`", args.template), "see `alula new --help`");
@@ -20,16 +21,26 @@ pub(crate) fn new(args: &arguments::New) -> Outcome {
         return output::data(&text);
     }
     match write(&path, &text, args.force) {
-        Ok(()) => output::data(&format!("wrote {0}\nnext: alula check {0}\n", path.display())),
+        Ok(()) => {}
         Err(problem) if problem.kind() == ErrorKind::AlreadyExists => {
             output::error(&format!("`{}` exists", path.display()), "give another name, or replace it with `--force`");
-            Outcome::BadInput
+            return Outcome::BadInput;
         }
-        Err(problem) => {
-            output::error(&format!("cannot write `{}`: {problem}", path.display()), "give a path you can write to");
-            Outcome::BadInput
-        }
+        Err(problem) => return cannot_write(&path, &problem),
     }
+    let schema = path.with_file_name(SCHEMA_FILE);
+    let mut told = format!("wrote {}\n", path.display());
+    match write(&schema, &super::schema::text(), args.force) {
+        Ok(()) => told += &format!("wrote {}, by which editors complete and check cases\n", schema.display()),
+        Err(problem) if problem.kind() == ErrorKind::AlreadyExists => {}
+        Err(problem) => return cannot_write(&schema, &problem),
+    }
+    output::data(&format!("{told}next: alula check {}\n", path.display()))
+}
+
+fn cannot_write(path: &Path, problem: &io::Error) -> Outcome {
+    output::error(&format!("cannot write `{}`: {problem}", path.display()), "give a path you can write to");
+    Outcome::BadInput
 }
 
 fn write(path: &Path, text: &str, force: bool) -> io::Result<()> {
@@ -52,11 +63,19 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("mine.toml");
         let args = |force| arguments::New { template: "airfoil".to_owned(), path: Some(path.clone()), force };
+        let schema = folder.path().join("alula.schema.json");
         assert_eq!(new(&args(false)), Outcome::Done);
+        let written = std::fs::read_to_string(&schema).unwrap();
+        assert_eq!(serde_json::from_str::<serde_json::Value>(&written).unwrap(), alula::case::schema());
         std::fs::write(&path, "mine").unwrap();
+        std::fs::write(&schema, "{}").unwrap();
         assert_eq!(new(&args(false)), Outcome::BadInput);
         assert_eq!(std::fs::read_to_string(&path).unwrap(), "mine");
+        let other = arguments::New { path: Some(folder.path().join("other.toml")), ..args(false) };
+        assert_eq!(new(&other), Outcome::Done);
+        assert_eq!(std::fs::read_to_string(&schema).unwrap(), "{}", "a schema that is there stays");
         assert_eq!(new(&args(true)), Outcome::Done);
+        assert_eq!(std::fs::read_to_string(&schema).unwrap(), written);
         assert_eq!(std::fs::read_to_string(&path).unwrap(), template("airfoil").unwrap());
         let nowhere = arguments::New { path: Some(folder.path().join("no/where.toml")), ..args(false) };
         assert_eq!(new(&nowhere), Outcome::BadInput);

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use alula::observe::convergence::Convergence;
 use alula::observe::loads::Coefficients;
 use alula::run::{self, Outcome as Ended, PeriodicLoads, Places, PolarPoint, RunError, Summary};
+use serde_json::json;
 
 use crate::arguments::{self, Verbosity};
 use crate::interrupt::Interrupt;
@@ -25,11 +26,7 @@ pub(crate) fn run(args: &arguments::Run) -> Outcome {
     if args.force {
         match set_aside(&out) {
             Ok(Some(kept)) if !args.verbosity.quiet => {
-                output::message(&format!(
-                    "the earlier results in `{}` are kept in `{}`",
-                    out.display(),
-                    kept.display()
-                ));
+                output::note(&format!("the earlier results in `{}` are kept in `{}`", out.display(), kept.display()));
             }
             Ok(_) => {}
             Err(problem) => {
@@ -57,64 +54,86 @@ pub(crate) fn tell(ended: Result<Ended, RunError>, out: &Path, watch: &mut Watch
     match ended {
         Ok(Ended::Finished(summary)) => finished(&summary, out, verbosity),
         Ok(Ended::AlreadyFinished { summary }) => already_finished(&summary, out, verbosity),
-        Ok(Ended::Interrupted { iteration }) => {
-            output::message(&format!("{}\n", Interrupt::farewell(out, iteration)));
-            Outcome::Interrupted
-        }
-        Err(problem) => {
-            let text = problem.to_string();
-            let (what, hint) = text.split_once("\nhint: ").unwrap_or((&text, ""));
-            output::error(what, hint);
-            match problem {
-                RunError::Time { .. } => Outcome::Failed,
-                _ => Outcome::BadInput,
-            }
-        }
+        Ok(Ended::Interrupted { iteration }) => interrupted(out, iteration, verbosity),
+        Err(problem) => super::refuse(&problem),
     }
+}
+
+/// Says how to go on with a run that was told to stop.
+fn interrupted(out: &Path, iteration: u64, verbosity: Verbosity) -> Outcome {
+    let text = Interrupt::farewell(out, iteration);
+    if verbosity.json {
+        output::event("interrupted", json!({ "run": out, "iteration": iteration, "message": text }));
+    } else {
+        output::message(&format!("{text}\n"));
+    }
+    Outcome::Interrupted
+}
+
+/// What a run lacks: what and what may help.
+pub(super) struct Shortfall {
+    pub(super) what: String,
+    pub(super) hint: String,
+}
+
+/// Tells results, and what they lack: the results are the last line for programs, the first one for people.
+pub(super) fn results(found: &str, lacking: Option<Shortfall>, verbosity: Verbosity) -> Outcome {
+    let say = || if verbosity.quiet { Outcome::Done } else { output::data(found) };
+    let Some(Shortfall { what, hint }) = lacking else { return say() };
+    if verbosity.json {
+        output::error(&what, &hint);
+        say();
+    } else {
+        say();
+        output::error(&what, &hint);
+    }
+    Outcome::Failed
 }
 
 /// Says that a run needs nothing more; whether it converged is told as when it ended.
 fn already_finished(summary: &serde_json::Value, out: &Path, verbosity: Verbosity) -> Outcome {
-    let mut told = Outcome::Done;
-    if verbosity.json {
-        told = output::data(&format!("{summary}\n"));
-    } else if !verbosity.quiet {
-        told = output::data(&format!("the run in `{}` is finished: nothing was changed\n", out.display()));
-    }
-    if summary["converged"] == true {
-        return told;
-    }
-    let hint = format!("change `{}` and go on with `alula resume`", out.join("case.toml").display());
-    output::error("the run is finished, but not converged", &hint);
-    Outcome::Failed
+    let found = match verbosity.json {
+        true => format!("{summary}\n"),
+        false => format!("the run in `{}` is finished: nothing was changed\n", out.display()),
+    };
+    let lacking = (summary["converged"] != true).then(|| Shortfall {
+        what: "the run is finished, but not converged".into(),
+        hint: format!("change `{}` and go on with `alula resume`", out.join("case.toml").display()),
+    });
+    results(&found, lacking, verbosity)
 }
 
 fn finished(summary: &Summary, out: &Path, verbosity: Verbosity) -> Outcome {
-    let mut told = Outcome::Done;
-    if verbosity.json {
-        let line = serde_json::to_string(summary).unwrap_or_default();
-        told = output::data(&format!("{line}\n"));
-    } else if !verbosity.quiet {
-        told = output::data(&describe(summary, out));
-    }
+    let found = match verbosity.json {
+        true => serde_json::to_string(summary).unwrap_or_default() + "\n",
+        false => describe(summary, out),
+    };
+    results(&found, shortfall(summary, out), verbosity)
+}
+
+/// Why a run did not converge; `None` where it did.
+fn shortfall(summary: &Summary, out: &Path) -> Option<Shortfall> {
     if summary.converged {
-        return told;
+        return None;
     }
     if !summary.polar.is_empty() {
         let (all, not) = (summary.polar.len(), summary.polar.iter().filter(|p| !p.converged).count());
-        let hint = format!("the reasons stand in `{}`", out.join("polar.csv").display());
-        output::error(&format!("{not} of {all} points did not converge"), &hint);
-        return Outcome::Failed;
+        return Some(Shortfall {
+            what: format!("{not} of {all} points did not converge"),
+            hint: format!("the reasons stand in `{}`", out.join("polar.csv").display()),
+        });
     }
     if summary.time > 0.0 {
-        let hint = "raise `periods` of `[time.dual]` or `[time.explicit]`, or loosen `periodic_tolerance` there";
-        output::error("not converged: the loads have not become periodic", hint);
-        return Outcome::Failed;
+        return Some(Shortfall {
+            what: "not converged: the loads have not become periodic".into(),
+            hint: "raise `periods` of `[time.dual]` or `[time.explicit]`, or loosen `periodic_tolerance` there".into(),
+        });
     }
     let table = if summary.harmonic_balance.is_some() { "harmonics" } else { "steady" };
-    let hint = format!("raise `time.{table}.iterations`, or look at the residual in the report");
-    output::error(&format!("not converged: the residual fell {:.1} orders", summary.residual_drop), &hint);
-    Outcome::Failed
+    Some(Shortfall {
+        what: format!("not converged: the residual fell {:.1} orders", summary.residual_drop),
+        hint: format!("raise `time.{table}.iterations`, or look at the residual in the report"),
+    })
 }
 
 /// Whether the loads are known as well as was asked, and on how many clouds.

@@ -10,5 +10,10 @@ pub(crate) fn schema(args: &arguments::Schema) -> Outcome {
     if args.markdown {
         return output::data(&reference_markdown());
     }
-    output::data(&format!("{:#}\n", case_schema()))
+    output::data(&text())
+}
+
+/// The schema as a file.
+pub(super) fn text() -> String {
+    format!("{:#}\n", case_schema())
 }

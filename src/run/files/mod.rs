@@ -7,8 +7,7 @@ use std::path::Path;
 use super::error::RunError;
 use super::folder;
 use super::found::Found;
-use super::look::friction::wall_friction;
-use super::look::{GasView, Mesh, Snapshot, field, pressure_coefficient};
+use super::look::{GasView, Mesh, Snapshot, WallSnapshot, field};
 use super::record::summary::Summary;
 use super::record::{Log, passed};
 use crate::cloud::Diagnosis;
@@ -18,7 +17,6 @@ use crate::observe::table::{Entry, write_csv, write_json};
 use crate::observe::vtk::{Cells, Column, Facets, read_collection, write_cells, write_collection, write_surface};
 use crate::report;
 use crate::scheme::Work;
-use crate::scheme::start::free_stream;
 
 pub(crate) use pictures::{together, write_cloud};
 pub(crate) use target::{FILM, Scene, Target};
@@ -27,11 +25,11 @@ pub(crate) use target::{FILM, Scene, Target};
 pub(crate) fn write_all<const D: usize>(
     found: &Found<'_, D>,
     summary: &mut Summary,
-    all: &Snapshot,
+    (all, walls): (&Snapshot, &WallSnapshot),
     log: &Log<'_>,
     out: &Path,
 ) -> Result<(), RunError> {
-    let files = Files { found, out };
+    let files = Files { found, walls, out };
     files.write_tables(&log.record.cycles, summary)?;
     if let Some(period) = log.case_period() {
         log.record.trace.write(out, period)?;
@@ -55,6 +53,7 @@ pub(crate) fn write_all<const D: usize>(
 /// What was found on its way into a folder.
 struct Files<'a, const D: usize> {
     found: &'a Found<'a, D>,
+    walls: &'a WallSnapshot,
     out: &'a Path,
 }
 
@@ -107,37 +106,29 @@ impl<const D: usize> Files<'_, D> {
     }
 
     fn write_surface_csv(&self) -> Result<(), RunError> {
-        let cloud = self.found.view.cloud();
-        let (view, free) = (self.found.view, free_stream::<D>(self.found.case));
-        let units = self.found.case.flow.units();
-        let friction = wall_friction(self.found.case, &view);
-        let mut columns = vec![
-            "x", "y", "z", "nx", "ny", "nz", "area", "body", "tag", "arc", "x_c", "pressure", "cp", "mach", "density",
-            "u", "v", "w",
-        ];
-        if friction.is_some() {
-            columns.extend(["cf", "heat_flux", "y_plus"]);
+        let walls = self.walls;
+        let told = || walls.on.columns.iter().filter(|(name, ..)| *name != "area_vector");
+        let mut columns = vec!["x", "y", "z"];
+        for (name, ..) in told() {
+            match *name {
+                "normal" => columns.extend(["nx", "ny", "nz"]),
+                "area" => columns.extend(["area", "body", "tag"]),
+                "velocity" => columns.extend(["u", "v", "w"]),
+                name => columns.push(name),
+            }
         }
-        let chordwise = self.found.chordwise();
-        let rows = cloud.interface_range().zip(&cloud.interface).map(|(i, w)| {
-            let k = i - cloud.n_fluid;
-            let q = &view.state(i);
-            let mut row: Vec<Entry> = view.place(i).to_3d().map(Entry::from).to_vec();
-            row.extend(view.normal(k).to_3d().map(Entry::from));
-            row.push(Entry::from(w.area.norm()));
-            row.push(Entry::from(self.found.names.bodies.get(usize::from(w.body)).map_or("", String::as_str)));
-            row.push(Entry::from(self.found.names.tags.get(usize::from(w.tag)).map_or("", String::as_str)));
-            let mach = q.velocity.norm() / view.fluid.gas.sound_speed(q);
-            let cp = pressure_coefficient(q, &free);
-            row.extend(
-                [w.arc, chordwise[k], q.pressure * units.pressure(), cp, mach, q.density * units.density]
-                    .map(Entry::from),
-            );
-            row.extend((q.velocity * units.speed).to_3d().map(Entry::from));
-            row.extend(friction.iter().flat_map(|f| [f[k].cf, f[k].heat_flux, f[k].y_plus]).map(Entry::from));
+        let named = |names: &[String], k: u16| Entry::from(names.get(usize::from(k)).map_or("", String::as_str));
+        let rows = walls.on.points.iter().enumerate().map(|(w, x)| {
+            let mut row: Vec<Entry> = x.map(Entry::from).to_vec();
+            for (name, n, values) in told() {
+                row.extend(values[w * n..(w + 1) * n].iter().map(|v| Entry::from(*v)));
+                if *name == "area" {
+                    row.extend([named(&walls.bodies, walls.body[w]), named(&walls.tags, walls.tag[w])]);
+                }
+            }
             row
         });
-        Ok(write_csv(&self.out.join("surface.csv"), &columns, rows.collect::<Vec<_>>())?)
+        Ok(write_csv(&self.out.join("surface.csv"), &columns, rows)?)
     }
 
     fn write_fields(&self, all: &Snapshot, time: f64) -> Result<(), RunError> {

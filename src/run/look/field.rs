@@ -13,6 +13,13 @@ pub struct Snapshot {
     pub columns: Vec<(&'static str, usize, Vec<f64>)>,
 }
 
+impl Snapshot {
+    /// Values of the column of this name, component by component; `None` without it.
+    pub fn column(&self, name: &str) -> Option<&[f64]> {
+        self.columns.iter().find(|(n, ..)| *n == name).map(|(.., values)| &values[..])
+    }
+}
+
 /// Pressure coefficient; zero when there is no stream.
 pub(crate) fn pressure_coefficient<const D: usize>(q: &Primitive<D>, free: &Primitive<D>) -> f64 {
     let dynamic = 0.5 * free.density * free.velocity.norm_squared();

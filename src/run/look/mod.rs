@@ -5,8 +5,10 @@ pub(crate) mod forces;
 pub(crate) mod friction;
 mod mesh;
 pub(crate) mod momentum;
+mod walls;
 
 pub use field::Snapshot;
+pub use walls::WallSnapshot;
 
 pub(crate) use axes::{GasView, LoadFrame, load_axes, motion, pressure_load, totals};
 pub(crate) use field::{field, pressure_coefficient};

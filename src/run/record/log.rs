@@ -6,6 +6,7 @@ use super::super::look::LoadFrame;
 use super::super::look::forces::GeneralisedForce;
 use super::super::monitor::{Monitor, Tick};
 use super::crosscheck::{Moment, Twofold};
+use super::history::IterationHistory;
 use super::interval::passed;
 use super::journal::{Earlier, Journal};
 use super::polar::{PolarPoint, PolarRecord};
@@ -23,6 +24,8 @@ use crate::time::TimeError;
 pub(crate) struct Record {
     /// Iterations over all stages.
     pub(crate) iteration: u64,
+    /// What every iteration left.
+    pub(crate) history: IterationHistory,
     /// Finished cycles: cycle, particles, CL, CD, CM.
     pub(crate) cycles: Vec<[f64; 5]>,
     /// Loads on the clouds of a family.
@@ -83,6 +86,7 @@ impl Record {
         };
         Self {
             iteration: saved.iteration,
+            history: earlier.history,
             cycles: saved.cycles.clone(),
             clouds: saved.clouds.clone(),
             polar: saved.polar.clone(),
@@ -173,7 +177,7 @@ impl<'a> Log<'a> {
         let units = case.flow.units();
         let mut record = match saved {
             Some(saved) => Record::resumed(saved, earlier, &units),
-            None => Record { drop: 1.0, ..Record::default() },
+            None => Record { drop: 1.0, history: IterationHistory::of(case), ..Record::default() },
         };
         if record.structures.coordinates.is_empty() {
             record.structures = StructureTable::of(&names);
@@ -222,6 +226,17 @@ impl<'a> Log<'a> {
     /// Says a line.
     pub(crate) fn note(&mut self, text: &str) {
         self.monitor.note(text);
+    }
+
+    /// Says what makes results doubtful.
+    pub(crate) fn warn(&mut self, text: &str) {
+        self.monitor.warn(text);
+    }
+
+    /// Keeps a row of the history.
+    pub(crate) fn row(&mut self, row: &[f64]) -> Result<(), RunError> {
+        self.record.history.push(row);
+        self.journal.as_mut().map_or(Ok(()), |j| j.row(row))
     }
 
     /// Tells of an iteration.

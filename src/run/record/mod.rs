@@ -1,5 +1,6 @@
 //! What a run knows about itself: in memory while it goes on, in a checkpoint between, in the summary at its end.
 pub(crate) mod crosscheck;
+mod history;
 mod interval;
 mod journal;
 mod log;
@@ -9,5 +10,6 @@ pub(crate) mod summary;
 pub(crate) mod trace;
 mod trust;
 
+pub use history::IterationHistory;
 pub(crate) use interval::{NEARLY, passed};
 pub(crate) use log::{Described, Log, Record, Scales};

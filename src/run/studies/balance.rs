@@ -117,7 +117,7 @@ fn converge<S: HasGas<D>, const D: usize>(
     record.evaluations = record.settling.earlier + cost.evaluations * balance.times().len() as u64;
     if !record.converged && settled.is_stuck(relax.iteration, &record.settling) {
         let text = Settled::told(relax.drop(), balance.instances().harmonics(), &relax.worst());
-        log.note(&text);
+        log.warn(&text);
     }
     Ok(Some(relax.u))
 }
@@ -155,14 +155,14 @@ fn tell(plan: &Harmonics, report: &BalanceReport, log: &mut Log<'_>) {
     if let Some(tail) = report.tail_loads.into_iter().chain(report.tail_density).reduce(f64::max)
         && tail > plan.tail
     {
-        log.note(&format!(
-            "warning: the last of {n} harmonics still holds {:.1} % of them: add harmonics, or let `number = \"auto\"` do so",
+        log.warn(&format!(
+            "the last of {n} harmonics still holds {:.1} % of them: add harmonics, or let `number = \"auto\"` do so",
             100.0 * tail
         ));
     }
     if report.wall_velocity_error > WALL_ERROR {
-        log.note(&format!(
-            "warning: {n} harmonics miss {:.1} % of the velocity of the walls: add harmonics",
+        log.warn(&format!(
+            "{n} harmonics miss {:.1} % of the velocity of the walls: add harmonics",
             100.0 * report.wall_velocity_error
         ));
     }

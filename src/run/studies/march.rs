@@ -120,7 +120,7 @@ fn tell<S: HasGas<D>, const D: usize>(
     (record.bytes, record.linear) = (cost.bytes, record.linear_before);
     (record.unconverged, record.halved) = (cost.unconverged, cost.halved);
     if cost.halved > 0 {
-        log.note(&format!("steps in time were halved {} times, where Newton's method stalled", cost.halved));
+        log.warn(&format!("steps in time were halved {} times, where Newton's method stalled", cost.halved));
     }
 }
 
@@ -128,7 +128,7 @@ fn tell<S: HasGas<D>, const D: usize>(
 fn unsettled(tolerance: f64, log: &mut Log<'_>) -> bool {
     let Some(period) = log.case_period() else { return false };
     let Some(change) = log.record.trace.change(period) else {
-        log.note(
+        log.warn(
             "`periodic_tolerance` was not tested: loads are compared over the last two periods; march three or more",
         );
         return false;
@@ -137,7 +137,7 @@ fn unsettled(tolerance: f64, log: &mut Log<'_>) -> bool {
     if largest < tolerance {
         return false;
     }
-    log.note(&format!(
+    log.warn(&format!(
         "the loads have not settled: after {:.4} periods mean and first harmonic still change by {largest:.1e} from one \
          period to the next (`periodic_tolerance` {tolerance:.1e}); more `periods` may do, unless the flow has a rhythm of \
          its own: see `lift_cycles` in `summary.json`",

@@ -98,9 +98,7 @@ impl<S: System> Observer<S> for Progress<'_, S> {
             log.record.trace.push(Sample { time, loads: loads.unwrap_or_default(), motion });
         }
         let row = self.row(step, now.cost().inner, &loads.unwrap_or_default(), &motion, log);
-        if let Some(journal) = &mut log.journal {
-            journal.row(&row)?;
-        }
+        log.row(&row)?;
         let [goal, reached] = match self.aim {
             Aim::Orders(orders) => [orders, -step.residual.log10()],
             Aim::Time(until) => [log.units.case_time(until), time],
@@ -138,7 +136,7 @@ impl<S: System> Progress<'_, S> {
         })
     }
 
-    /// A row of the history, as the journal names its columns.
+    /// A row of the history, as [`IterationHistory`](super::super::record::IterationHistory) names its columns.
     fn row(&self, step: &Step, inner: u32, c: &Coefficients, motion: &[f64; 5], log: &Log<'_>) -> Vec<f64> {
         let [_, seconds] = log.seconds();
         let (cycle, time) = (f64::from(self.cycle), log.units.case_time(step.time));

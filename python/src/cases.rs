@@ -1,0 +1,106 @@
+//! Cases from files and from dicts.
+use std::path::{Path, PathBuf};
+
+use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::{PyBool, PyDict, PyFloat, PyMapping, PyString};
+use solver::case::{Case, read, text_of};
+use toml::{Table, Value};
+
+use crate::faults;
+
+/// What messages call a case that is a dict.
+const DICT: &str = "case";
+
+/// A case, and the folder that its file names refer to.
+pub(crate) struct Given {
+    pub(crate) case: Case,
+    pub(crate) input: PathBuf,
+}
+
+impl Given {
+    /// The case in the file at a path, or in a dict whose file names refer to the working folder.
+    pub(crate) fn of(given: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let py = given.py();
+        if let Ok(path) = given.extract::<PathBuf>() {
+            let case = read(&text_at(py, &path)?, &path.display().to_string());
+            let case = case.map_err(|mistakes| faults::of_case(py, &mistakes, true))?;
+            return Ok(Self { case, input: path.parent().map_or_else(PathBuf::new, Path::to_path_buf) });
+        }
+        let Ok(dict) = given.cast::<PyMapping>() else {
+            let kind = given.get_type().name()?;
+            return Err(PyTypeError::new_err(format!(
+                "a case is the path of a case file or a dict with its keys, not a `{kind}`"
+            )));
+        };
+        let text = table(dict, "")?.to_string();
+        let case = read(&text, DICT).map_err(|mistakes| faults::of_case(py, &mistakes, false))?;
+        Ok(Self { case, input: PathBuf::new() })
+    }
+}
+
+fn text_at(py: Python<'_>, path: &Path) -> PyResult<String> {
+    let bytes = std::fs::read(path).map_err(|problem| -> PyErr {
+        let text = format!("cannot read `{}`: {problem}", path.display());
+        std::io::Error::new(problem.kind(), text).into()
+    })?;
+    text_of(&bytes).map_err(|problem| {
+        let hint = "a case file is TOML, saved as UTF-8";
+        faults::single(py, &format!("cannot read `{}`: {problem}\nhint: {hint}", path.display()))
+    })
+}
+
+/// The entries of a mapping at `path`; those that are None are left out.
+fn table(given: &Bound<'_, PyMapping>, path: &str) -> PyResult<Table> {
+    let mut entries = Table::new();
+    for item in given.items()?.iter() {
+        let (key, value): (Bound<'_, PyAny>, Bound<'_, PyAny>) = item.extract()?;
+        let key = key.cast::<PyString>().map_err(|_| {
+            PyTypeError::new_err(format!("keys of a case are text; `{}` has the key {key}", place(path)))
+        })?;
+        let here = if path.is_empty() { key.to_string() } else { format!("{path}.{key}") };
+        if !value.is_none() {
+            entries.insert(key.to_string(), self::value(&value, &here)?);
+        }
+    }
+    Ok(entries)
+}
+
+/// Numbers, among them those of NumPy, text, paths, mappings and sequences.
+fn value(given: &Bound<'_, PyAny>, path: &str) -> PyResult<Value> {
+    if let Ok(flag) = given.cast::<PyBool>() {
+        return Ok(Value::Boolean(flag.is_true()));
+    }
+    if let Ok(text) = given.extract::<String>() {
+        return Ok(Value::String(text));
+    }
+    if given.cast::<PyDict>().is_ok() || given.cast::<PyMapping>().is_ok() {
+        return Ok(Value::Table(table(given.cast()?, path)?));
+    }
+    if given.cast::<PyFloat>().is_ok() {
+        return Ok(Value::Float(given.extract()?));
+    }
+    // whole numbers of any kind, which a float is not
+    if given.hasattr("__index__")? && !given.hasattr("__len__")? {
+        let whole = given.extract().map_err(|_| PyValueError::new_err(format!("`{path}` is too large: {given}")))?;
+        return Ok(Value::Integer(whole));
+    }
+    if let Ok(file) = given.extract::<PathBuf>() {
+        return Ok(Value::String(file.to_string_lossy().into_owned()));
+    }
+    if let Ok(items) = given.try_iter() {
+        let item = |(k, item): (usize, PyResult<Bound<'_, PyAny>>)| value(&item?, &format!("{path}[{k}]"));
+        return Ok(Value::Array(items.enumerate().map(item).collect::<PyResult<_>>()?));
+    }
+    if let Ok(number) = given.extract::<f64>() {
+        return Ok(Value::Float(number));
+    }
+    let kind = given.get_type().name()?;
+    Err(PyTypeError::new_err(format!(
+        "`{path}` is a `{kind}`; allowed: numbers, text with units, booleans, paths, dicts and lists of these"
+    )))
+}
+
+fn place(path: &str) -> &str {
+    if path.is_empty() { DICT } else { path }
+}

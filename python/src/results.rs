@@ -1,0 +1,156 @@
+//! Results as NumPy arrays, which own what the library found: nothing is copied.
+use std::path::PathBuf;
+
+use numpy::{PyArray1, PyArrayMethods};
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyList, PySlice};
+use solver::case::Case;
+use solver::geometry::dimension;
+use solver::observe::loads::Coefficients;
+use solver::run::{PolarPoint, Snapshot, Solution, WallSnapshot};
+
+/// What a run found.
+///
+/// Lengths are in the unit of the geometry. In a stream with units (`pressure`, `temperature`, ... in the case) all else is in SI units;
+/// otherwise densities are over that of the free stream, velocities over its sound speed c, pressures over density times c².
+#[pyclass(frozen, module = "alula")]
+pub(crate) struct Result {
+    /// Title of the case.
+    #[pyo3(get)]
+    title: String,
+    /// Lift coefficient; of a polar that of its last point, of a march that of its end.
+    #[pyo3(get)]
+    cl: f64,
+    /// Drag coefficient.
+    #[pyo3(get)]
+    cd: f64,
+    /// Moment coefficient about the reference point, nose up positive.
+    #[pyo3(get)]
+    cm: f64,
+    /// Half widths of the error bars of the loads, `{"cl": ..., "cd": ..., "cm": ...}`; None without a family of clouds.
+    #[pyo3(get)]
+    loads_error: Option<Py<PyDict>>,
+    /// True when the goal was reached.
+    #[pyo3(get)]
+    converged: bool,
+    /// Everything else that is one number: what `summary.json` holds.
+    #[pyo3(get)]
+    summary: Py<PyAny>,
+    /// Arrays of shape (iterations,), named as the columns of `history.csv`.
+    #[pyo3(get)]
+    history: Py<PyDict>,
+    /// Arrays over all particles: `positions` (N, 2 or 3), `velocity` and `vorticity` (N, 2 or 3; (N,) for the vorticity of a plane
+    /// flow), `density`, `pressure`, `mach`, `cp`, `temperature`, `total_pressure`, `total_pressure_loss`, `entropy`, `spacing`,
+    /// `volume`, `level`, `kind` (0 fluid, 1 wall, 2 outer) (N,).
+    #[pyo3(get)]
+    fields: Py<PyDict>,
+    /// Arrays over the particles on walls: `positions`, `normal` (into the gas), `area_vector`, `velocity` (M, 2 or 3), `area`, `arc`, `x_c`,
+    /// `pressure`, `cp`, `mach`, `density`, with viscosity `cf`, `heat_flux`, `y_plus`, and the indices `body` and `tag` (M,).
+    #[pyo3(get)]
+    surface: Py<PyDict>,
+    /// Names of bodies, which `surface["body"]` counts from 0.
+    #[pyo3(get)]
+    bodies: Vec<String>,
+    /// Names of their parts, which `surface["tag"]` counts from 0.
+    #[pyo3(get)]
+    tags: Vec<String>,
+    /// Arrays over the points of a polar, NaN where a point failed: `mach`, `alpha_deg`, `cl`, `cd`, `cm`, `cl_error`, `cd_error`, `cm_error`
+    /// (half widths of error bars), `converged`, and the list `reason`; None for a single flow.
+    #[pyo3(get)]
+    polar: Option<Py<PyDict>>,
+    /// Folder of the run; None without one.
+    #[pyo3(get)]
+    folder: Option<PathBuf>,
+}
+
+#[pymethods]
+impl Result {
+    fn __repr__(&self) -> String {
+        let state = if self.converged { "converged" } else { "not converged" };
+        format!("<alula.Result of '{}': cl {:.5}, cd {:.5}, cm {:.5}, {state}>", self.title, self.cl, self.cd, self.cm)
+    }
+}
+
+impl Result {
+    /// What was found, handed over to Python.
+    pub(crate) fn of(py: Python<'_>, case: &Case, found: Solution, folder: Option<PathBuf>) -> PyResult<Self> {
+        let (summary, d) = (found.summary, usize::from(dimension(case)));
+        let history = PyDict::new(py);
+        for (name, values) in found.history.names.iter().zip(found.history.columns) {
+            history.set_item(name, PyArray1::from_vec(py, values))?;
+        }
+        let bars = |bars: Coefficients| -> PyResult<Py<PyDict>> {
+            let told = PyDict::new(py);
+            [("cl", bars.cl), ("cd", bars.cd), ("cm", bars.cm)]
+                .into_iter()
+                .try_for_each(|(n, v)| told.set_item(n, v))?;
+            Ok(told.unbind())
+        };
+        let WallSnapshot { on, body, tag, bodies, tags } = found.walls;
+        let surface = arrays(py, on, d)?;
+        surface.set_item("body", PyArray1::from_vec(py, body))?;
+        surface.set_item("tag", PyArray1::from_vec(py, tag))?;
+        let told = serde_json::to_value(&summary).unwrap_or_default();
+        Ok(Self {
+            title: case.title.clone(),
+            cl: summary.loads.cl,
+            cd: summary.loads.cd,
+            cm: summary.loads.cm,
+            loads_error: summary.loads_error.map(bars).transpose()?,
+            converged: summary.converged,
+            summary: python_of(py, &told)?,
+            history: history.unbind(),
+            fields: arrays(py, found.field, d)?.unbind(),
+            surface: surface.unbind(),
+            bodies,
+            tags,
+            polar: (!summary.polar.is_empty()).then(|| polar(py, &summary.polar)).transpose()?,
+            folder,
+        })
+    }
+}
+
+/// Columns by name; vectors of a plane flow have two components, its vorticity has one.
+fn arrays<'py>(py: Python<'py>, snapshot: Snapshot, dimension: usize) -> PyResult<Bound<'py, PyDict>> {
+    let all = PyDict::new(py);
+    let (points, n) = (snapshot.points.into_flattened(), 3);
+    for (name, n, values) in std::iter::once(("positions", n, points)).chain(snapshot.columns) {
+        let flat = PyArray1::from_vec(py, values);
+        if n == 1 {
+            all.set_item(name, flat)?;
+            continue;
+        }
+        let rows = flat.reshape([flat.len()? / n, n])?;
+        let every = PySlice::full(py);
+        let view = match (dimension, name) {
+            (2, "vorticity") => rows.get_item((every, 2))?,
+            (d, _) => rows.get_item((every, PySlice::new(py, 0, d.cast_signed(), 1)))?,
+        };
+        all.set_item(name, view)?;
+    }
+    Ok(all)
+}
+
+/// The table of a polar.
+fn polar(py: Python<'_>, points: &[PolarPoint]) -> PyResult<Py<PyDict>> {
+    let table = PyDict::new(py);
+    let column = |f: &dyn Fn(&PolarPoint) -> f64| PyArray1::from_vec(py, points.iter().map(f).collect());
+    let load = |c: Option<Coefficients>, f: fn(&Coefficients) -> f64| c.as_ref().map_or(f64::NAN, f);
+    table.set_item("mach", column(&|p| p.mach))?;
+    table.set_item("alpha_deg", column(&|p| p.alpha_deg))?;
+    let loads = |name: &str, f: fn(&Coefficients) -> f64| -> PyResult<()> {
+        table.set_item(name, column(&|p| load(p.loads, f)))?;
+        table.set_item(format!("{name}_error"), column(&|p| load(p.loads_error, f)))
+    };
+    loads("cl", |c| c.cl)?;
+    loads("cd", |c| c.cd)?;
+    loads("cm", |c| c.cm)?;
+    table.set_item("converged", PyArray1::from_vec(py, points.iter().map(|p| p.converged).collect()))?;
+    table.set_item("reason", PyList::new(py, points.iter().map(|p| &p.reason))?)?;
+    Ok(table.unbind())
+}
+
+/// A JSON value as what Python makes of it.
+pub(crate) fn python_of(py: Python<'_>, value: &serde_json::Value) -> PyResult<Py<PyAny>> {
+    Ok(py.import("json")?.call_method1("loads", (value.to_string(),))?.unbind())
+}

@@ -1,0 +1,237 @@
+//! The computation, beside the interpreter.
+//!
+//! A case is solved in threads of its own while the thread that asked waits without the interpreter lock. That thread alone
+//! meets Python: it calls the callback, hears Ctrl-C, and tells the computation to stop after its iteration.
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
+use std::thread;
+use std::time::Duration;
+
+use pyo3::exceptions::{PyRuntimeError, PyTypeError, PyUserWarning, PyValueError};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use solver::run::{Monitor, Outcome, RunError, Session, Solution, Tick, inspect};
+
+use crate::cases::Given;
+use crate::faults;
+use crate::results::{Result as Found, python_of};
+
+/// Longest wait between two looks at signals.
+const PAUSE: Duration = Duration::from_millis(50);
+/// Events that may wait for a slow callback before the computation waits as well.
+const WAITING: usize = 64;
+/// Stack of a thread that computes, as large as that of a program.
+const STACK: usize = 8 << 20;
+
+/// Solves a case.
+///
+/// Parameters
+/// ----------
+/// case : str, os.PathLike or dict
+///     Path of a case file, or its keys as a dict. File names in a dict refer to the working folder.
+/// out : str or os.PathLike, optional
+///     Folder for tables, checkpoints, fields, pictures and the report; it must hold no run. Without it no file is written.
+/// progress : callable, optional
+///     Called with a dict: after every iteration `{"event": "iteration", ...}` with `iteration`, `residual` (over its first value),
+///     `orders` (of magnitude that it fell), `cfl`, `cl`, `cd`, `cm` (None without bodies), `particles`, `time` and `until` (of a
+///     march, else None), `point` and `points` (of a polar, else None); `{"event": "note", "message": ...}` for what is worth a
+///     line, `"warning"` for what makes results doubtful. An exception in it ends the run as Ctrl-C does, and is raised.
+/// threads : int, optional
+///     Number of threads; default: one for each core. Results do not depend on it.
+///
+/// Returns
+/// -------
+/// Result
+///     Loads, fields and history. `converged` tells whether the goal was reached.
+///
+/// Raises
+/// ------
+/// CaseError
+///     The case has mistakes, all of which are told, or cannot be computed as it is.
+/// ComputationError
+///     The computation broke off.
+/// OSError
+///     A file cannot be read or written, or `out` holds a run already.
+/// KeyboardInterrupt
+///     Ctrl-C: the iteration was finished and, with `out`, a checkpoint written; `alula resume` goes on from there.
+///
+/// What makes results doubtful is told as a `UserWarning`.
+#[pyfunction]
+#[pyo3(signature = (case, out=None, progress=None, threads=None))]
+pub(crate) fn run(
+    py: Python<'_>,
+    case: &Bound<'_, PyAny>,
+    out: Option<PathBuf>,
+    progress: Option<Py<PyAny>>,
+    threads: Option<usize>,
+) -> PyResult<Found> {
+    if let Some(other) = progress.as_ref().map(|p| p.bind(py)).filter(|p| !p.is_callable()) {
+        let kind = other.get_type().name()?;
+        return Err(PyTypeError::new_err(format!("`progress` is a `{kind}`; allowed: what can be called with a dict")));
+    }
+    if threads == Some(0) {
+        let text = "`threads` is 0; allowed: 1 or more\nhint: leave it out for one for each core";
+        return Err(PyValueError::new_err(text));
+    }
+    let given = Given::of(case)?;
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).stack_size(STACK);
+    let pool = pool.build().map_err(|problem| PyRuntimeError::new_err(format!("cannot start threads: {problem}")))?;
+    let stop = AtomicBool::new(false);
+    let (solved, told) = py.detach(|| {
+        let (sender, events) = sync_channel(WAITING);
+        // it ends with the computation, and with it the events
+        let mut relay = Relay { events: sender, stop: &stop, ticks: progress.is_some() };
+        let (given, out) = (&given, out.as_deref());
+        thread::scope(|scope| {
+            let solving = scope.spawn(move || pool.install(|| solve(given, out, &mut relay)));
+            let told = attend(&events, progress.as_ref(), &stop);
+            (solving.join(), told)
+        })
+    });
+    let solved = solved.unwrap_or_else(|panic| std::panic::resume_unwind(panic));
+    told?;
+    match solved.map_err(|problem| faults::of_run(py, &problem))? {
+        Some(solution) => Found::of(py, &given.case, solution, out),
+        None => Err(PyRuntimeError::new_err("the run was told to stop")),
+    }
+}
+
+/// Reads a case, builds its cloud, and tells what it means and what a run will take; computes no flow.
+///
+/// Parameters
+/// ----------
+/// case : str, os.PathLike or dict
+///     As for `run`.
+///
+/// Returns
+/// -------
+/// dict
+///     `title`; `understood`: Mach number, sound speed, dynamic pressure, Reynolds number, reference values, boxes around the bodies,
+///     period and steps, in SI units where `understood["dimensional"]` is true; `particles`, `fluid`, `interface`, `outer`,
+///     `neighbours`, `spacing`, `worst_condition`; `cost` of a run in `bytes` and `seconds` on this machine, and `gaf`, that of
+///     `alula gaf` where the case asks for it; `notes` and `warnings`.
+///
+/// Raises
+/// ------
+/// CaseError
+///     The case has mistakes, all of which are told, or cannot be computed as it is.
+/// OSError
+///     A file cannot be read.
+#[pyfunction]
+pub(crate) fn check(py: Python<'_>, case: &Bound<'_, PyAny>) -> PyResult<Py<PyAny>> {
+    let given = Given::of(case)?;
+    let report = py.detach(|| inspect(&given.case, &given.input, None));
+    let report = report.map_err(|problem| faults::of_run(py, &problem))?;
+    let mut told = serde_json::to_value(&report).unwrap_or_default();
+    told["title"] = given.case.title.into();
+    python_of(py, &told)
+}
+
+/// What was found; `None` when told to stop.
+fn solve(given: &Given, out: Option<&Path>, relay: &mut Relay<'_>) -> Result<Option<Solution>, RunError> {
+    let mut session = Session::open(&given.case, &given.input)?;
+    if let Some(out) = out {
+        session = session.keep_in(out, relay)?;
+    }
+    match session.solve(relay)? {
+        Outcome::Interrupted { .. } => Ok(None),
+        Outcome::Finished(_) | Outcome::AlreadyFinished { .. } => Ok(session.into_solution()),
+    }
+}
+
+/// What a computation tells.
+enum Event {
+    Iteration(Tick),
+    Note(String),
+    Warning(String),
+}
+
+/// The end of the computation.
+struct Relay<'a> {
+    events: SyncSender<Event>,
+    stop: &'a AtomicBool,
+    /// Somebody listens to iterations.
+    ticks: bool,
+}
+
+impl Relay<'_> {
+    fn send(&self, event: Event) {
+        // whoever listened is gone only when all is over
+        let _ = self.events.send(event);
+    }
+}
+
+impl Monitor for Relay<'_> {
+    fn tick(&mut self, tick: &Tick) {
+        if self.ticks {
+            self.send(Event::Iteration(*tick));
+        }
+    }
+
+    fn note(&mut self, text: &str) {
+        self.send(Event::Note(text.to_owned()));
+    }
+
+    fn warn(&mut self, text: &str) {
+        self.send(Event::Warning(text.to_owned()));
+    }
+
+    fn stop(&self) -> bool {
+        self.stop.load(Ordering::Relaxed)
+    }
+}
+
+/// Passes on what happens until all is over; the first exception stops the computation and is kept.
+fn attend(events: &Receiver<Event>, progress: Option<&Py<PyAny>>, stop: &AtomicBool) -> PyResult<()> {
+    let mut first = Ok(());
+    loop {
+        let event = match events.recv_timeout(PAUSE) {
+            Ok(event) => Some(event),
+            Err(RecvTimeoutError::Timeout) => None,
+            Err(RecvTimeoutError::Disconnected) => return first,
+        };
+        if first.is_err() {
+            continue;
+        }
+        first = Python::attach(|py| {
+            event.map_or(Ok(()), |event| tell(py, &event, progress))?;
+            py.check_signals()
+        });
+        stop.store(first.is_err(), Ordering::Relaxed);
+    }
+}
+
+fn tell(py: Python<'_>, event: &Event, progress: Option<&Py<PyAny>>) -> PyResult<()> {
+    if let Event::Warning(text) = event {
+        let text = std::ffi::CString::new(text.as_str())?;
+        PyErr::warn(py, &py.get_type::<PyUserWarning>(), &text, 1)?;
+    }
+    let Some(progress) = progress else { return Ok(()) };
+    let told = PyDict::new(py);
+    match event {
+        Event::Iteration(tick) => describe(&told, tick)?,
+        Event::Note(text) | Event::Warning(text) => {
+            let kind = if matches!(event, Event::Note(_)) { "note" } else { "warning" };
+            told.set_item("event", kind)?;
+            told.set_item("message", text)?;
+        }
+    }
+    progress.call1(py, (told,)).map(|_| ())
+}
+
+fn describe(told: &Bound<'_, PyDict>, tick: &Tick) -> PyResult<()> {
+    told.set_item("event", "iteration")?;
+    told.set_item("iteration", tick.iteration)?;
+    told.set_item("residual", tick.residual)?;
+    told.set_item("orders", -tick.residual.max(f64::MIN_POSITIVE).log10())?;
+    told.set_item("cfl", tick.cfl)?;
+    for (k, name) in ["cl", "cd", "cm"].into_iter().enumerate() {
+        told.set_item(name, tick.loads.map(|loads| loads[k]))?;
+    }
+    told.set_item("particles", tick.particles)?;
+    told.set_item("time", tick.march.map(|march| march.time))?;
+    told.set_item("until", tick.march.map(|march| march.until))?;
+    told.set_item("point", tick.point.map(|[point, _]| point + 1))?;
+    told.set_item("points", tick.point.map(|[_, points]| points))
+}
