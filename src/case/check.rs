@@ -280,11 +280,9 @@ fn corners(draft: &mut Draft<'_>, path: &str) {
 
 /// A spacing is there where the program cannot choose one, and accuracy is asked of loads that do not change.
 fn accuracy(draft: &mut Draft<'_>, dimension: usize) {
-    let viscous = draft.given("flow.reynolds") || draft.given("flow.viscosity");
-    let needed = match (draft.given("body"), dimension, viscous) {
-        (false, ..) => Some("a case without bodies needs `cloud.spacing`"),
-        (_, 3, _) => Some("a case in space needs `cloud.spacing`: it is chosen for plane bodies only"),
-        (_, _, true) => Some("a gas with viscosity needs `cloud.spacing`: layers at its walls are not chosen yet"),
+    let needed = match (draft.given("body"), dimension) {
+        (false, _) => Some("a case without bodies needs `cloud.spacing`"),
+        (_, 3) => Some("a case in space needs `cloud.spacing`: it is chosen for plane bodies only"),
         _ => None,
     };
     if let Some(message) = needed.filter(|_| !draft.given("cloud.spacing")) {

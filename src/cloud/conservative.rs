@@ -12,9 +12,9 @@
 //! the fluid loses.
 //!
 //! Eliminating s, β and V leaves a symmetric positive system for the multipliers of the conditions, one small block a
-//! particle: conjugate gradients, preconditioned by the blocks and by what finds smooth multipliers ([`smooth`]; Nocedal and Wright,
+//! particle: conjugate gradients, preconditioned by the blocks and by what finds smooth multipliers (in `smooth`; Nocedal and Wright,
 //! *Numerical Optimization*, 2nd ed., §16.2-16.3). A second solve over the closure alone then drives its defect to round-off
-//! ([`closure`]).
+//! (in `closure`).
 //! Antisymmetric coefficients of this kind are those of Chiu, Wang, Hu and Jameson (SIAM J. Sci. Comput. 34, 2012).
 mod closure;
 mod graph;

@@ -4,7 +4,8 @@
 //! observed order is p = log₂(d₁/d₂) (Richardson 1911), the limit f + d₂/(2^p − 1), and the error bar 5/4 of the way to it
 //! (Roache 1994, grid convergence index). Loads that swing, hardly change, or change faster than the scheme can make them have
 //! no order to speak of: their bar is the honest spread, after Eça and Hoekstra (2014). What the end of the domain does to the loads,
-//! which is the same on all clouds, adds its part.
+//! which is the same on all clouds, half of what loads from wall pressure and from momentum differ by, and the digits that are
+//! printed add their parts; parts that know nothing of one another add as squares.
 use serde::{Deserialize, Serialize};
 
 use super::loads::Coefficients;
@@ -20,8 +21,12 @@ const LUCK: f64 = 1.0 / 16.0;
 /// Relative error of a load for a domain that ends a length of the bodies away, of second order in the distance: lift of a section
 /// at Mach 0.5 with a vortex in the far field, 0.93 at 64 chords.
 const FAR: f64 = 1.0;
+/// Part of the difference between loads from wall pressure and from momentum that the error of the first may be.
+const DISAGREEMENT: f64 = 0.5;
+/// Half of the last digit of a load that is printed.
+const PRINTED: f64 = 5e-6;
 /// Least CL, CD and CM that an error is measured by: a section at no incidence has a lift of zero, and is known well all the same.
-const LEAST: [f64; 3] = [0.1, 0.01, 0.02];
+pub(crate) const LEAST: [f64; 3] = [0.1, 0.01, 0.02];
 
 /// Loads on one cloud of a family.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -38,17 +43,25 @@ pub struct CloudLoads {
     pub cd: f64,
     /// Moment.
     pub cm: f64,
+    /// The same from the momentum of the gas around the bodies.
+    pub momentum: Option<Coefficients>,
 }
 
 /// What a family of clouds says of one load.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct LoadEstimate {
     /// Observed order, where the load approaches a limit.
     pub order: Option<f64>,
     /// Its limit, where it has an order.
     pub limit: Option<f64>,
-    /// Half width of the error bar around the load on the finest cloud.
+    /// Half width of the error bar around the load on the finest cloud: the root of the sum of the squares of its parts.
     pub half_width: f64,
+    /// Part of the spacing.
+    pub spacing: f64,
+    /// Part of the end of the domain.
+    pub far_field: f64,
+    /// Part of what wall pressure and momentum differ by.
+    pub momentum: f64,
 }
 
 /// A family of clouds, and the error bars of the loads on the finest.
@@ -73,11 +86,15 @@ impl Convergence {
     /// clouds, each half as fine as the next.
     pub fn of(clouds: &[CloudLoads], asked: f64) -> Option<Self> {
         let [.., a, b, c] = clouds else { return None };
-        let of = |load: fn(&CloudLoads) -> f64| {
+        let of = |load: fn(&CloudLoads) -> f64, through: fn(&Coefficients) -> f64| {
             let found = estimate([load(a), load(b), load(c)]);
-            LoadEstimate { half_width: found.half_width + FAR * load(c).abs() / c.reach.powi(2), ..found }
+            let far_field = FAR * load(c).abs() / c.reach.powi(2);
+            let momentum = c.momentum.as_ref().map_or(0.0, |m| DISAGREEMENT * (load(c) - through(m)).abs());
+            let parts = [found.spacing, far_field, momentum, PRINTED];
+            let half_width = parts.iter().map(|p| p * p).sum::<f64>().sqrt();
+            LoadEstimate { half_width, far_field, momentum, ..found }
         };
-        let all = [of(|l| l.cl), of(|l| l.cd), of(|l| l.cm)];
+        let all = [of(|l| l.cl, |m| m.cl), of(|l| l.cd, |m| m.cd), of(|l| l.cm, |m| m.cm)];
         let values = [c.cl, c.cd, c.cm];
         let short = |k: usize| all[k].half_width <= asked * values[k].abs().max(LEAST[k]);
         let [cl, cd, cm] = all;
@@ -90,16 +107,20 @@ impl Convergence {
     }
 }
 
-/// The estimate from values at spacings 4, 2 and 1.
+/// The estimate from values at spacings 4, 2 and 1, of the part of the spacing alone.
 fn estimate([a, b, c]: [f64; 3]) -> LoadEstimate {
     let [before, last] = [b - a, c - b];
     let order = (before / last).log2();
     if (ORDERS[0]..=ORDERS[1]).contains(&order) {
         let way = last / (order.min(SCHEME_ORDER).exp2() - 1.0);
-        return LoadEstimate { order: Some(order), limit: Some(c + way), half_width: SAFETY * way.abs() };
+        return LoadEstimate {
+            order: Some(order),
+            limit: Some(c + way),
+            spacing: SAFETY * way.abs(),
+            ..LoadEstimate::default()
+        };
     }
-    let half_width = SAFETY * last.abs().max(LUCK * before.abs());
-    LoadEstimate { order: None, limit: None, half_width }
+    LoadEstimate { spacing: SAFETY * last.abs().max(LUCK * before.abs()), ..LoadEstimate::default() }
 }
 
 #[cfg(test)]
@@ -112,7 +133,7 @@ mod tests {
             let at = |h: f64| 0.3 + 0.02 * h.powf(order);
             let e = estimate([at(4.0), at(2.0), at(1.0)]);
             assert!((e.order.unwrap() - order).abs() < 1e-9 && (e.limit.unwrap() - 0.3).abs() < 1e-9, "{e:?}");
-            assert!(e.half_width > 0.02 && e.half_width < 0.026, "{e:?}");
+            assert!(e.spacing > 0.02 && e.spacing < 0.026, "{e:?}");
         }
     }
 
@@ -121,17 +142,32 @@ mod tests {
         for values in [[1.0, 2.0, 1.5], [1.0, 1.1, 1.1], [1.0, 1.1, 1.11], [1.0, 1.1, 1.3], [1.0, 1.0, 1.0]] {
             let e = estimate(values);
             assert_eq!((e.order, e.limit), (None, None), "{values:?}");
-            assert!(e.half_width >= (values[2] - values[1]).abs() && e.half_width.is_finite(), "{e:?}");
+            assert!(e.spacing >= (values[2] - values[1]).abs() && e.spacing.is_finite(), "{e:?}");
         }
     }
 
     #[test]
     fn bars_are_measured_by_what_was_asked() {
-        let cloud = |factor: f64, cl: f64| CloudLoads { factor, particles: 10, reach: 1e3, cl, cd: 0.0, cm: 0.0 };
+        let cloud = |factor: f64, cl: f64| CloudLoads {
+            factor,
+            particles: 10,
+            reach: 1e3,
+            cl,
+            cd: 0.0,
+            cm: 0.0,
+            momentum: None,
+        };
         let clouds = [cloud(4.0, 0.34), cloud(2.0, 0.31), cloud(1.0, 0.3025)];
         assert_eq!(Convergence::of(&clouds[1..], 0.01), None);
         let c = Convergence::of(&clouds, 0.01).unwrap();
         assert!(c.half_widths().cl > 0.0030 && !c.reached, "{c:?}");
         assert!(Convergence::of(&clouds, 0.02).unwrap().reached);
+        let momentum = Some(Coefficients { cl: 0.2925, ..Coefficients::default() });
+        let apart = [clouds[0], clouds[1], CloudLoads { momentum, ..clouds[2] }];
+        let wider = Convergence::of(&apart, 0.02).unwrap();
+        assert!(
+            (wider.cl.momentum - 0.005).abs() < 1e-12 && wider.cl.half_width > c.cl.half_width && !wider.reached,
+            "{wider:?}"
+        );
     }
 }

@@ -30,7 +30,8 @@ fn verdict(found: &Convergence) -> String {
     };
     format!(
         "The clouds are alike, each with half the spacing of the one before; {end}. A load that approaches its limit with an order \
-         has 5/4 of the way to it as error bar, another one the spread of the last clouds."
+         has 5/4 of the way to it as part of its error bar, another one the spread of the last clouds; what the end of the domain does \
+         and half of what wall pressure and momentum differ by are the other parts, added as squares."
     )
 }
 
@@ -48,6 +49,9 @@ fn table(found: &Convergence) -> Table {
     };
     rows.push(row("limit", &|e| e.limit));
     rows.push(row("error bar ±", &|e| Some(e.half_width)));
+    rows.push(row("of it: spacing", &|e| Some(e.spacing)));
+    rows.push(row("end of the domain", &|e| Some(e.far_field)));
+    rows.push(row("wall pressure against momentum", &|e| Some(e.momentum)));
     rows.push(row("observed order", &|e| e.order));
     Table::new(&["cloud", "particles", "CL", "CD", "CM"], rows)
 }

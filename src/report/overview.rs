@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use serde_json::Value;
 
 use super::files::{LOADS, Load, RunFolder};
-use super::page::{Card, Fact, Page, Section, Status};
+use super::page::{Block, Card, Fact, Page, Section, Status};
 use super::sections::{self, grouped, number};
 use super::{ReportError, grid, periodic, polar, pressure, structure, write_file};
 
@@ -27,6 +27,7 @@ fn report(run: &RunFolder) -> Page {
     let none = summary.get("ledger").is_some_and(Value::is_null);
     let ledger = if none { Ok(Vec::new()) } else { sections::ledger(run) };
     let sections = [
+        Section::new("warnings", "Warnings", Ok(warnings(&summary))),
         Section::new("loads", "Loads", sections::loads(run)),
         Section::new("grid", "Grid convergence", Ok(grid::grid(run))),
         Section::new("polar", "Polar", Ok(polar::polar(run))),
@@ -49,6 +50,12 @@ fn report(run: &RunFolder) -> Page {
         sections: sections.into_iter().filter(|s| !s.blocks.is_empty()).collect(),
         ..Page::default()
     }
+}
+
+/// What makes the results doubtful.
+fn warnings(summary: &Value) -> Vec<Block> {
+    let told = summary.get("warnings").and_then(Value::as_array).into_iter().flatten();
+    told.filter_map(Value::as_str).map(|text| Block::Text(text.to_owned())).collect()
 }
 
 fn case_title(run: &RunFolder, summary: &Value) -> String {

@@ -7,8 +7,9 @@ use std::borrow::Cow;
 
 use super::recipe::is_unsteady;
 use super::record::Log;
+use super::setup;
 use super::stage::{Stage, Task};
-use crate::case::{Accuracy, Case, Length};
+use crate::case::{Accuracy, Case, Length, Wake, WallLayers};
 use crate::geometry::Surface;
 use crate::observe::convergence::{CloudLoads, Convergence};
 
@@ -18,6 +19,11 @@ const ALONG: f64 = 64.0;
 const LAYERS: f64 = 12.0;
 /// Half-width of their domain in lengths of the bodies: beyond 40, where it is otherwise, nearly nothing is spent and lift gains 0.02 %.
 const FAR_FIELD: f64 = 100.0;
+/// First layers at walls in L/√Re, which is a fifth of a laminar boundary layer, and how layers grow.
+const ACROSS: f64 = 16.0;
+const GROWTH: f64 = 1.2;
+/// Lengths of the shortest body behind which wakes are followed.
+const WAKE: f64 = 2.0;
 /// Fewest particles per level of refinement.
 const FEWEST: f64 = 3.0;
 /// Factor on the spacing of the first cloud.
@@ -51,6 +57,13 @@ pub(crate) fn with_cloud<'a, const D: usize>(case: &'a Case, surface: Option<&Su
     filled.cloud.spacing = Some(Length(shortest / ALONG));
     filled.cloud.far_field = case.cloud.far_field.or(Some(Length(FAR_FIELD * surface.bounds().extent().max_abs())));
     filled.cloud.layers = case.cloud.layers.or(Some(LAYERS));
+    if let Some(re) = setup::reynolds(case, setup::chord(case, Some(surface))) {
+        let whole = case.flow.reynolds_length.map_or_else(|| setup::chord(case, Some(surface)), |l| l.0);
+        let first = Length(shortest / (ACROSS * (re * shortest / whole).sqrt()));
+        filled.cloud.wall_layers = case.cloud.wall_layers.or(Some(WallLayers { first, growth: GROWTH, count: None }));
+        let wake = Wake { length: Length(WAKE * shortest), spacing: Length(shortest / ALONG) };
+        filled.cloud.wake = case.cloud.wake.clone().or(Some(wake));
+    }
     Cow::Owned(filled)
 }
 

@@ -168,6 +168,7 @@ impl<const D: usize> Found<'_, D> {
             loads_error: family.as_ref().map(Convergence::half_widths),
             grid_convergence: family,
             polar: record.polar.points.clone(),
+            warnings: Vec::new(),
             adapt_change: last_change(&record.cycles),
             phases: spent.phases(),
         }

@@ -7,6 +7,7 @@
 use std::path::{Path, PathBuf};
 
 use super::accuracy;
+use super::doubts;
 use super::error::RunError;
 use super::files;
 use super::folder;
@@ -281,6 +282,7 @@ impl Run<'_> {
         while let Some(stage) = stages.get(k) {
             let site = Site { case: course.case(stage), ..*site };
             course.enter(stage, site.surface, &mut log);
+            log.record.warnings.clear();
             let mut build = || match course.take(stage, &site)? {
                 Some(solver) => Ok(solver),
                 None => {
@@ -295,15 +297,7 @@ impl Run<'_> {
                 }
                 (None, stood) => {
                     let solver = build()?;
-                    let transfer =
-                        |s: &Stood<S, D>, u: &[f64]| setup::transfer(&s.solver.system, u, &solver.system, site.surface);
-                    let carry = |u: &[f64]| stood.as_ref().map_or_else(Vec::new, |s| transfer(s, u));
-                    let coarser = stood.as_ref().map(|s| Coarser {
-                        factor: s.stage.factor,
-                        state: &s.reached.state,
-                        carry: &carry,
-                    });
-                    let guess = course.guess(stage, &solver.system, coarser.as_ref(), &log);
+                    let guess = guess(&solver, stage, &site, stood.as_ref(), &course, &log);
                     let begun = begun(solver, &site, (guess, stood.as_ref()), other.take())?;
                     stood.into_iter().for_each(|s| course.shelve(&s.stage, s.solver));
                     begun
@@ -390,6 +384,8 @@ impl Run<'_> {
         let (axes, names) = (log.axes.axes(&view), Names::of(surface));
         let found = Found { case: self.case, view, surface, axes, names, balance };
         let mut summary = found.summary(log, gas.state, &Spent { clock, solved });
+        doubts::of_loads(self.case, &summary).iter().for_each(|doubt| log.warn(doubt));
+        summary.warnings.clone_from(&log.record.warnings);
         let (field, walls) = (field(self.case, &view), found.walls());
         if let Some(journal) = &log.journal {
             files::write_all(&found, &mut summary, (&field, &walls), log, &journal.out)?;
@@ -419,6 +415,21 @@ impl<S: HasGas<D>, const D: usize> Begun<S, D> {
         saved.fits(solver.system.fields())?;
         Ok(Self { solver, start: Start::Resume(saved.state, saved.memory) })
     }
+}
+
+/// What is guessed of the state of a stage on a cloud of its own.
+fn guess<S: HasGas<D>, const D: usize>(
+    solver: &Solver<S, D>,
+    stage: &Stage,
+    site: &Site<'_, D>,
+    before: Option<&Stood<S, D>>,
+    course: &Course<'_, S, D>,
+    log: &Log<'_>,
+) -> Option<Vec<f64>> {
+    let transfer = |s: &Stood<S, D>, u: &[f64]| setup::transfer(&s.solver.system, u, &solver.system, site.surface);
+    let carry = |u: &[f64]| before.map_or_else(Vec::new, |s| transfer(s, u));
+    let coarser = before.map(|s| Coarser { factor: s.stage.factor, state: &s.reached.state, carry: &carry });
+    course.guess(stage, &solver.system, coarser.as_ref(), log)
 }
 
 /// A stage on a cloud of its own: from what is guessed, else from the state of the stage before it, else from the last state of

@@ -32,6 +32,8 @@ pub(crate) struct Record {
     pub(crate) clouds: Vec<CloudLoads>,
     /// Points of a polar.
     pub(crate) polar: PolarRecord,
+    /// What the stage told that makes results doubtful.
+    pub(crate) warnings: Vec<String>,
     /// Why a relaxation ended short of its goal, where it did.
     pub(crate) reason: Option<String>,
     /// Totals of the conserved quantities when the march began.
@@ -230,6 +232,7 @@ impl<'a> Log<'a> {
 
     /// Says what makes results doubtful.
     pub(crate) fn warn(&mut self, text: &str) {
+        self.record.warnings.push(text.to_owned());
         self.monitor.warn(text);
     }
 

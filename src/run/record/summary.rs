@@ -112,6 +112,9 @@ pub struct Summary {
     /// The points of a polar; all else is of the last of them whose flow is known.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub polar: Vec<PolarPoint>,
+    /// What makes these results doubtful.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub warnings: Vec<String>,
     /// Change of the loads in the last cycle of adaptation.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub adapt_change: Option<Coefficients>,

@@ -1,7 +1,7 @@
 //! Relaxation to a steady state: the end of a steady case, or the start of another.
 use super::super::accuracy;
 use super::super::error::RunError;
-use super::super::look::GasView;
+use super::super::look::{GasView, momentum};
 use super::super::recipe::control;
 use super::super::record::Log;
 use super::super::stage::{Stage, Task};
@@ -22,6 +22,8 @@ const EARLY_ORDERS: f64 = 3.5;
 const SETTLING: f64 = 1.5;
 /// Iterations without a new smallest residual after which a relaxation before the last stage has given what it can.
 const PATIENCE: u32 = 20;
+/// The same for the last stage: no later one makes up for it.
+const LAST_PATIENCE: u32 = 200;
 /// The same for the last stage of a point of a polar that starts from rest: the other points wait.
 const POINT_PATIENCE: u32 = 60;
 
@@ -103,15 +105,15 @@ fn watched<S: HasGas<D>, const D: usize>(
     // any cloud of a family may be the last one
     let at_end = turn.last() || accuracy::asked(log.case).is_some();
     let mut checkpoint = Checkpoint { at: turn.at, particles: None, at_end };
-    let patience = if turn.last() && log.record.polar.from_rest { POINT_PATIENCE } else { PATIENCE };
+    let patience = match (hurried || turn.stage().point.is_some(), turn.last() && log.record.polar.from_rest) {
+        (false, _) => LAST_PATIENCE,
+        (true, true) => POINT_PATIENCE,
+        (true, false) => PATIENCE,
+    };
     let (mut limit, mut resting) = (Limit { iterations }, Resting { patience });
     let mut told = Told;
-    let mut all: Vec<&mut dyn Observer<S>> = vec![&mut progress, &mut limit, &mut told];
-    if hurried || turn.stage().point.is_some() {
-        all.push(&mut resting);
-    }
-    all.push(&mut checkpoint);
-    drive(relax, &mut all, log)
+    let all: &mut [&mut dyn Observer<S>] = &mut [&mut progress, &mut limit, &mut told, &mut resting, &mut checkpoint];
+    drive(relax, all, log)
 }
 
 /// Keeps what is known of a relaxation that is over; its loads.
@@ -125,7 +127,11 @@ fn tell<S: HasGas<D>, const D: usize>(
     (log.record.drop, log.record.converged) = (relax.drop(), relax.finished());
     (log.record.bytes, log.record.linear) = (cost.bytes, cost.linear);
     let Standing { frame, work, state } = relax.standing();
-    let loads = GasView::of(system, frame, state).coefficients(&log.axes, system.gas_work(work)).unwrap_or_default();
+    let gas = GasView::of(system, frame, state);
+    let loads = gas.coefficients(&log.axes, system.gas_work(work)).unwrap_or_default();
+    let family = accuracy::asked(log.case);
+    let balance = family.and_then(|_| momentum::around(log.case, &log.axes, &gas, system.gas_work(work), false));
+    let momentum = balance.map(|sum| log.axes.axes(&gas.seen(system.gas_work(work))).coefficients(&sum.load));
     let told = log.record.structures.iteration.last() == Some(&(log.record.iteration as f64));
     if turn.last()
         && !told
@@ -140,7 +146,7 @@ fn tell<S: HasGas<D>, const D: usize>(
         log.record.cycles.push([cycle, particles as f64, loads.cl, loads.cd, loads.cm]);
     }
     let reach = reach(system.gas());
-    Ok(CloudLoads { factor, particles, reach, cl: loads.cl, cd: loads.cd, cm: loads.cm })
+    Ok(CloudLoads { factor, particles, reach, cl: loads.cl, cd: loads.cd, cm: loads.cm, momentum })
 }
 
 /// Half-width of the domain in lengths of the bodies.

@@ -1,0 +1,40 @@
+//! What makes the loads of a finished run doubtful.
+use super::recipe::is_unsteady;
+use super::record::summary::Summary;
+use crate::case::Case;
+use crate::observe::convergence::LEAST;
+
+/// Part of a load that its two evaluations may differ by.
+const DISAGREEMENT: f64 = 0.05;
+/// Negative drag without viscosity that rounding and the cloud may leave: a count.
+const NEGATIVE_DRAG: f64 = -1e-4;
+
+/// What is to be said of the loads of a steady flow.
+pub(crate) fn of_loads(case: &Case, s: &Summary) -> Vec<String> {
+    if is_unsteady(case) || !s.converged {
+        return Vec::new();
+    }
+    let mut doubts = Vec::new();
+    let wall = s.loads;
+    if let Some(through) = s.loads_momentum_balance {
+        let pairs = [("CL", wall.cl, through.cl, LEAST[0]), ("CD", wall.cd, through.cd, LEAST[1])];
+        for (name, wall, through, least) in pairs {
+            let part = (wall - through).abs() / wall.abs().max(through.abs()).max(least);
+            if part >= DISAGREEMENT {
+                doubts.push(format!(
+                    "{name} is {wall:.5} by wall pressure and {through:.5} by momentum, {:.0} % apart: the cloud is too coarse for it \
+                     near the bodies or around them; a finer `spacing` or more `layers` tells which",
+                    100.0 * part
+                ));
+            }
+        }
+    }
+    let allowed = NEGATIVE_DRAG - s.loads_error.map_or(0.0, |bar| bar.cd);
+    if !case.flow.is_viscous() && wall.cd < allowed {
+        doubts.push(format!(
+            "the drag of a gas without viscosity is negative, CD {:.5}: the cloud is too coarse for it; take a finer `spacing`",
+            wall.cd
+        ));
+    }
+    doubts
+}
