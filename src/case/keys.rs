@@ -5,7 +5,7 @@
 use super::gaf_keys::GAF;
 use super::kinds::{ANGLE, COUNT, LENGTH, POINT, POSITIVE, SIZE};
 use super::motion_keys::{BODY_MOTION, MOTION, WALL};
-use super::quantity::{Density, Pressure, Ratio, Temperature, Time, Velocity, Viscosity};
+use super::quantity::{Density, Pressure, Ratio, Temperature, Time, Velocity, Viscosity, WallTime};
 use super::schema::{Absent, Field, Kind, List, Range, Table, Variant};
 use super::structure_keys::STRUCTURE;
 use super::time_keys::TIME;
@@ -507,6 +507,12 @@ static ACCURACY: Table = Table::of(&[
         COUNT,
         Absent::Integer(50_000),
         "Greatest number of particles: the run ends on the finest cloud below it where the error bars are not short enough before.",
+    ),
+    Field::optional(
+        "time",
+        Kind::Quantity(WallTime::DIMENSION, Range::POSITIVE),
+        "none",
+        "Wall-clock time: the run ends on the cloud after which the next, finer one would not end within it.",
     ),
 ]);
 

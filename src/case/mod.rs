@@ -48,7 +48,7 @@ pub use naca::{MeanLine, Naca, NacaDesign, NoSection, TrailingEdge};
 pub use polar::Polar;
 pub use quantity::{
     Acceleration, Angle, AngularStiffness, Density, Frequency, Inertia, Length, Mass, Pressure, Rate, Ratio, Stiffness,
-    Temperature, Time, Velocity, Viscosity,
+    Temperature, Time, Velocity, Viscosity, WallTime,
 };
 pub use read::read;
 pub use reference::{reference_markdown, schema};
@@ -433,6 +433,8 @@ pub struct Accuracy {
     pub loads: Ratio,
     /// Greatest number of particles.
     pub particles: usize,
+    /// Wall-clock time within which the last cloud is to end.
+    pub time: Option<WallTime>,
 }
 
 /// Refinement that follows the solution.
@@ -524,7 +526,7 @@ impl Cloud {
 
 impl Default for Accuracy {
     fn default() -> Self {
-        Self { loads: Ratio(0.01), particles: 50_000 }
+        Self { loads: Ratio(0.01), particles: 50_000, time: None }
     }
 }
 

@@ -109,6 +109,7 @@ pub(super) fn contradictions(draft: &mut Draft<'_>) {
         (moves, "something moves", "give one value, or take out `motion`"),
         (draft.count("structure") > 0, "a body hangs on springs", "give one value, or take out `[structure]`"),
         (draft.given("gaf"), "`[gaf]` oscillates about one flow", "give one value, or take out `[gaf]`"),
+        (draft.given("accuracy.time"), "`accuracy.time` is for one flow", "bound `accuracy.particles` instead"),
         (bodies == 0, "there is no body that has loads", "give one value, or add a `[[body]]`"),
     ];
     for (_, why, hint) in reasons.iter().filter(|r| r.0) {

@@ -166,10 +166,10 @@ pub fn reference_markdown() -> String {
     page
 }
 
-fn dimensions() -> [&'static Dimension; 15] {
+fn dimensions() -> [&'static Dimension; 16] {
     use super::quantity::{
         Acceleration, Angle, AngularStiffness, Density, Frequency, Inertia, Length, Mass, Pressure, Rate, Stiffness,
-        Temperature, Time, Velocity, Viscosity,
+        Temperature, Time, Velocity, Viscosity, WallTime,
     };
     [
         Angle::DIMENSION,
@@ -187,6 +187,7 @@ fn dimensions() -> [&'static Dimension; 15] {
         Inertia::DIMENSION,
         Stiffness::DIMENSION,
         AngularStiffness::DIMENSION,
+        WallTime::DIMENSION,
     ]
 }
 

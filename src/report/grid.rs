@@ -3,7 +3,7 @@ use super::chart::{Axis, Chart, Marks, Series};
 use super::files::RunFolder;
 use super::page::{Block, Table};
 use super::sections::{grouped, number};
-use crate::observe::convergence::{CloudLoads, Convergence, LoadEstimate};
+use crate::observe::convergence::{CloudLoads, Convergence, FamilyEnd, LoadEstimate};
 
 /// One load of a cloud.
 type Pick = fn(&CloudLoads) -> f64;
@@ -22,16 +22,22 @@ fn loads(found: &Convergence) -> [(&'static str, Pick, &LoadEstimate); 3] {
 fn verdict(found: &Convergence) -> String {
     // 0.07 times 100 is not quite 7
     let asked = (1e6 * found.asked).round() / 1e4;
-    let end = match found.reached {
-        true => format!("all error bars are within {asked} % of the loads"),
-        false => {
+    let end = match found.ended_by {
+        FamilyEnd::Accuracy => format!("all error bars are within {asked} % of the loads"),
+        FamilyEnd::Particles => {
             format!("error bars are longer than {asked} % of the loads, and `accuracy.particles` allows no finer cloud")
+        }
+        FamilyEnd::Time => {
+            format!(
+                "error bars are longer than {asked} % of the loads, and a finer cloud would not end within `accuracy.time`"
+            )
         }
     };
     format!(
         "The clouds are alike, each with half the spacing of the one before; {end}. A load that approaches its limit with an order \
-         has 5/4 of the way to it as part of its error bar, another one the spread of the last clouds; what the end of the domain does \
-         and half of what wall pressure and momentum differ by are the other parts, added as squares."
+         has 5/4 of the way to it as part of its error bar, another one the spread of the last clouds; what the end of the domain does, \
+         half of what wall pressure and momentum differ by beyond the last change of the latter, and what the last iterations changed \
+         are the other parts, added as squares."
     )
 }
 
@@ -52,6 +58,7 @@ fn table(found: &Convergence) -> Table {
     rows.push(row("of it: spacing", &|e| Some(e.spacing)));
     rows.push(row("end of the domain", &|e| Some(e.far_field)));
     rows.push(row("wall pressure against momentum", &|e| Some(e.momentum)));
+    rows.push(row("last iterations", &|e| Some(e.residual)));
     rows.push(row("observed order", &|e| e.order));
     Table::new(&["cloud", "particles", "CL", "CD", "CM"], rows)
 }

@@ -6,7 +6,7 @@
 use std::borrow::Cow;
 
 use super::recipe::is_unsteady;
-use super::record::Log;
+use super::record::{Log, Record};
 use super::setup;
 use super::stage::{Stage, Task};
 use crate::case::{Accuracy, Case, Length, Wake, WallLayers};
@@ -15,6 +15,8 @@ use crate::observe::convergence::{CloudLoads, Convergence};
 
 /// Spacings in the length of the shortest body.
 const ALONG: f64 = 64.0;
+/// The same where the gas has viscosity: layers and wake need as many particles again, and a fourth cloud is to be within reach.
+const ALONG_LAYERS: f64 = 48.0;
 /// Particles per level of refinement of the cloud with that spacing.
 const LAYERS: f64 = 12.0;
 /// Half-width of their domain in lengths of the bodies: beyond 40, where it is otherwise, nearly nothing is spent and lift gains 0.02 %.
@@ -22,6 +24,8 @@ const FAR_FIELD: f64 = 100.0;
 /// First layers at walls in L/√Re, which is a fifth of a laminar boundary layer, and how layers grow.
 const ACROSS: f64 = 16.0;
 const GROWTH: f64 = 1.2;
+/// Greatest growth of the layers of a coarser cloud.
+const STEEPEST: f64 = 1.5;
 /// Lengths of the shortest body behind which wakes are followed.
 const WAKE: f64 = 2.0;
 /// Fewest particles per level of refinement.
@@ -31,6 +35,8 @@ const FIRST: f64 = 4.0;
 /// Greatest number of particles at the points of a polar that says nothing of accuracy: three clouds for each section, and about a
 /// second for each point.
 const POLAR_PARTICLES: usize = 20_000;
+/// Time that the next cloud of a family takes over that of all before it.
+const NEXT: f64 = 4.0;
 /// Clouds that an error bar is drawn from.
 const CLOUDS: usize = 3;
 
@@ -44,6 +50,12 @@ pub(crate) fn asked(case: &Case) -> Option<Accuracy> {
     case.accuracy.or(chosen.then_some(usual))
 }
 
+/// True where every cloud of a family is fine at the shocks that the flow on the one before has. Points of a polar share their
+/// clouds.
+pub(crate) fn follows_shocks(case: &Case) -> bool {
+    asked(case).is_some() && case.polar.is_none()
+}
+
 /// The case with the spacing of its cloud, and with the accuracy that is asked for where it leaves that out.
 pub(crate) fn with_cloud<'a, const D: usize>(case: &'a Case, surface: Option<&Surface<D>>) -> Cow<'a, Case> {
     let Some(surface) = surface.filter(|_| case.cloud.spacing.is_none()) else { return Cow::Borrowed(case) };
@@ -54,14 +66,17 @@ pub(crate) fn with_cloud<'a, const D: usize>(case: &'a Case, surface: Option<&Su
     let shortest = (0..surface.bodies.len()).map(length).fold(f64::INFINITY, f64::min);
     let mut filled = case.clone();
     filled.accuracy = asked(case);
-    filled.cloud.spacing = Some(Length(shortest / ALONG));
+    let chord = setup::chord(case, Some(surface));
+    let reynolds = setup::reynolds(case, chord);
+    let spacing = Length(shortest / if reynolds.is_some() { ALONG_LAYERS } else { ALONG });
+    filled.cloud.spacing = Some(spacing);
     filled.cloud.far_field = case.cloud.far_field.or(Some(Length(FAR_FIELD * surface.bounds().extent().max_abs())));
     filled.cloud.layers = case.cloud.layers.or(Some(LAYERS));
-    if let Some(re) = setup::reynolds(case, setup::chord(case, Some(surface))) {
-        let whole = case.flow.reynolds_length.map_or_else(|| setup::chord(case, Some(surface)), |l| l.0);
+    if let Some(re) = reynolds {
+        let whole = case.flow.reynolds_length.map_or(chord, |l| l.0);
         let first = Length(shortest / (ACROSS * (re * shortest / whole).sqrt()));
         filled.cloud.wall_layers = case.cloud.wall_layers.or(Some(WallLayers { first, growth: GROWTH, count: None }));
-        let wake = Wake { length: Length(WAKE * shortest), spacing: Length(shortest / ALONG) };
+        let wake = Wake { length: Length(WAKE * shortest), spacing };
         filled.cloud.wake = case.cloud.wake.clone().or(Some(wake));
     }
     Cow::Owned(filled)
@@ -82,6 +97,7 @@ pub(crate) fn scaled(case: &Case, factor: f64) -> Case {
     }
     if let Some(layers) = case.cloud.wall_layers.as_mut() {
         scale(&mut layers.first);
+        layers.growth = (1.0 + (layers.growth - 1.0) * factor).min(STEEPEST.max(layers.growth));
     }
     case.cloud.curvature = (case.cloud.curvature * factor).min(1.0);
     case.cloud.layers = Some((case.cloud.particles_per_level() / factor).max(FEWEST));
@@ -96,16 +112,25 @@ pub(crate) fn family(asked: &Accuracy, n: usize, dimension: usize) -> Vec<Stage>
     within.map(|(_, factor)| Stage { factor, task: Task::Relax, ..Stage::PLAIN }).collect()
 }
 
-/// Adds the loads on one more cloud; true when they are known well enough.
+/// The error bars of the clouds of a run, and what ended their family; `None` where there are none.
+pub(crate) fn found(case: &Case, record: &Record) -> Option<Convergence> {
+    let family = Convergence::of(&record.clouds, asked(case)?.loads.0)?;
+    Some(if record.out_of_time { family.out_of_time() } else { family })
+}
+
+/// Adds the loads on one more cloud; true when they are known well enough, or when the next cloud would take too long.
 pub(crate) fn judge(asked: &Accuracy, loads: CloudLoads, log: &mut Log<'_>) -> bool {
     log.record.clouds.retain(|known| known.factor != loads.factor);
     log.record.clouds.push(loads);
-    let found = Convergence::of(&log.record.clouds, asked.loads.0);
-    let enough = found.as_ref().is_some_and(|c| c.reached);
+    let family = Convergence::of(&log.record.clouds, asked.loads.0);
+    let reached = family.as_ref().is_some_and(|c| c.reached());
+    let [_, wall] = log.seconds();
+    log.record.out_of_time = !reached && asked.time.is_some_and(|t| (1.0 + NEXT) * wall > t.0);
+    let enough = reached || log.record.out_of_time;
     if log.point.is_some() {
         return enough;
     }
-    let bars = found.map_or_else(String::new, |c| {
+    let bars = family.map_or_else(String::new, |c| {
         let h = c.half_widths();
         format!(" ± {:.5}, CD {:.5} ± {:.5}, CM {:.5} ± {:.5}", h.cl, loads.cd, h.cd, loads.cm, h.cm)
     });

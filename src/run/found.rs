@@ -124,7 +124,7 @@ impl<const D: usize> Found<'_, D> {
         };
         let [cpu, wall] = log.seconds();
         let n = fluid.discretisation.cloud.n_real();
-        let family = accuracy::asked(case).and_then(|asked| Convergence::of(&record.clouds, asked.loads.0));
+        let family = accuracy::found(case, record);
         Summary {
             event: "summary",
             case: case.title.clone(),

@@ -206,7 +206,7 @@ impl<'a, S: HasGas<D>, const D: usize> Course<'a, S, D> {
             loads: gas.coefficients(&log.axes, &mut work),
             loads_momentum_balance: balance.map(|b| axes.coefficients(&b.load)),
             loads_error: family.as_ref().map(Convergence::half_widths),
-            within_accuracy: family.as_ref().map(|f| f.reached),
+            within_accuracy: family.as_ref().map(Convergence::reached),
             particles: gas.fluid.discretisation.cloud.n_real(),
             residual_drop: -record.drop.log10(),
             converged: record.converged,

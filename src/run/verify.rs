@@ -12,7 +12,8 @@ use super::measure::{Measured, Value};
 use super::monitor::{Monitor, Tick};
 use super::session::{Outcome, Session};
 use crate::case::{Case, Length, read};
-use crate::verify::{Claim, ClaimFile, ClaimRow, Metric, Study, metrics};
+use crate::verify::calibration::{KnownLoad, holding, median_ratio};
+use crate::verify::{Claim, ClaimFile, ClaimRow, Metric, Study, Table, metrics};
 
 /// Name of the folder of all cases.
 const FOLDER: &str = "verification";
@@ -142,6 +143,9 @@ impl Walk {
     }
 
     fn measure(&mut self, claim: &Claim, folder: &Folder, monitor: &mut dyn Monitor) -> Value {
+        if claim.metric.needs_cases() {
+            return self.calibrate(claim, folder, monitor);
+        }
         if !claim.metric.needs_study() {
             let names = claim.other.iter().chain(&claim.third);
             let others = names.map(|name| self.other(name, folder, monitor)).collect::<Result<Vec<_>, _>>()?;
@@ -160,6 +164,31 @@ impl Walk {
             _ => metrics::limit(&study.spacings, &values).map(|(limit, _)| limit),
         };
         found.ok_or_else(|| format!("the values {values:?} have no order or limit"))
+    }
+
+    /// Runs every case of the table of `claim`, and holds their error bars against the exact loads.
+    fn calibrate(&mut self, claim: &Claim, folder: &Folder, monitor: &mut dyn Monitor) -> Value {
+        let name = claim.file.as_deref().ok_or("the claim names no `file` of loads")?;
+        let wrong = |e: &dyn std::fmt::Display| format!("`{name}`: {e}");
+        let text = fs::read_to_string(folder.path.join(name)).map_err(|e| wrong(&e))?;
+        let known = Table::parse(&text).and_then(|t| KnownLoad::all(&t)).map_err(|e| wrong(&e))?;
+        let mut loads = Vec::new();
+        for row in &known {
+            let here = folder.beside(&row.case).map_err(|e| e.to_string())?;
+            let key = self.ensure(&here, &here.case, monitor);
+            let s = &self.at(&key)?.summary;
+            let bars = s.loads_error.ok_or_else(|| format!("`{}` has no error bars", row.case))?;
+            let found = row.found(&s.loads, &bars).ok_or_else(|| wrong(&format!("no load `{}`", row.load)))?;
+            if claim.metric == Metric::BarsHolding {
+                monitor.note(&format!(
+                    "{}: {} error {:.1e}, bar {:.1e}",
+                    row.case, row.load, found.error, found.half_width
+                ));
+            }
+            loads.push(found);
+        }
+        let found = if claim.metric == Metric::BarsHolding { holding(&loads) } else { median_ratio(&loads) };
+        found.ok_or_else(|| wrong(&"no loads"))
     }
 
     /// Runs the case that a claim compares with: that of another folder, or another file of this one.

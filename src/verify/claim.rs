@@ -279,6 +279,10 @@ metrics! {
     ExtrapolatedCl = "extrapolated_cl",
     /// Drag coefficient extrapolated to zero spacing over the study.
     ExtrapolatedCd = "extrapolated_cd",
+    /// Part of the loads of the table `file` (columns `case`, `load`, `exact`) whose error lies within its bar.
+    BarsHolding = "bars_holding",
+    /// Median of bar over error of those loads.
+    BarOverError = "bar_over_error",
 }
 
 impl Metric {
@@ -290,6 +294,11 @@ impl Metric {
     /// True when the metric needs runs at several spacings.
     pub fn needs_study(self) -> bool {
         matches!(self, Self::Order | Self::CpRmsOrder | Self::ExtrapolatedCl | Self::ExtrapolatedCd)
+    }
+
+    /// True when the metric needs the runs of a table of cases.
+    pub fn needs_cases(self) -> bool {
+        matches!(self, Self::BarsHolding | Self::BarOverError)
     }
 }
 
@@ -436,6 +445,7 @@ mod tests {
                     let columns = match claim.metric {
                         Metric::LiftLoopDifference => ["phase", "CL"],
                         Metric::DragLoopDifference => ["phase", "CD"],
+                        m if m.needs_cases() => ["exact", "exact"],
                         _ => ["x_c", "Cp"],
                     };
                     let upper = table.only("surface", "upper");

@@ -90,6 +90,14 @@ impl Table {
         Self { names: self.names.clone(), rows }
     }
 
+    /// The texts of a column.
+    pub fn text(&self, name: &str) -> Result<Vec<String>, TableError> {
+        let Some(k) = self.position(name) else {
+            return Err(TableError::Column { name: name.to_string(), names: self.names.join(", ") });
+        };
+        Ok(self.rows.iter().map(|row| row[k].clone()).collect())
+    }
+
     /// Number of rows.
     pub fn len(&self) -> usize {
         self.rows.len()

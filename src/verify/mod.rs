@@ -3,8 +3,9 @@
 //! A folder of `verification/` holds a case, its authority, reference curves and `claim.toml`. This module is the pure part:
 //! [`claim`] reads the claims and judges values, [`metrics`] turns samples into values, [`curve`] reads reference tables, [`loops`] compares
 //! periods, [`truth`] finds exact
-//! solutions by name, [`wall`] holds the wall of a result.
+//! solutions by name, [`wall`] holds the wall of a result, [`calibration`] holds error bars against exact loads.
 //! It opens no file and runs nothing; `run::verify` does both.
+pub mod calibration;
 pub mod claim;
 pub mod curve;
 pub mod loops;

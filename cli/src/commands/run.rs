@@ -2,7 +2,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use alula::observe::convergence::Convergence;
+use alula::observe::convergence::{Convergence, FamilyEnd};
 use alula::observe::loads::Coefficients;
 use alula::run::{self, Outcome as Ended, PeriodicLoads, Places, PolarPoint, RunError, Summary};
 use serde_json::json;
@@ -140,11 +140,14 @@ fn shortfall(summary: &Summary, out: &Path) -> Option<Shortfall> {
 fn grid_convergence(c: &Convergence) -> String {
     // 0.07 times 100 is not quite 7
     let asked = (1e6 * c.asked).round() / 1e4;
-    match c.reached {
-        true => format!("loads within {asked} % on {} clouds\n", c.clouds.len()),
-        false => format!(
-            "the error bars are longer than {asked} %: `accuracy.particles` allows no finer cloud than the last of {}\n",
-            c.clouds.len()
+    let n = c.clouds.len();
+    match c.ended_by {
+        FamilyEnd::Accuracy => format!("loads within {asked} % on {n} clouds\n"),
+        FamilyEnd::Particles => format!(
+            "the error bars are longer than {asked} %: `accuracy.particles` allows no finer cloud than the last of {n}\n"
+        ),
+        FamilyEnd::Time => format!(
+            "the error bars are longer than {asked} %: a finer cloud than the last of {n} would not end within `accuracy.time`\n"
         ),
     }
 }

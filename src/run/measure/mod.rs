@@ -115,6 +115,7 @@ impl Measured {
             Metric::FreeStreamDeviation => self.free_stream_deviation(),
             Metric::ShockPositionError => self.shock_position_error(),
             Metric::WaveAngle => self.wave_angle(claim),
+            Metric::BarsHolding | Metric::BarOverError => Err("the metric needs a table of cases".into()),
             Metric::StructureMean
             | Metric::StructureLargest
             | Metric::StructureAmplitude

@@ -30,6 +30,8 @@ pub(crate) struct Record {
     pub(crate) cycles: Vec<[f64; 5]>,
     /// Loads on the clouds of a family.
     pub(crate) clouds: Vec<CloudLoads>,
+    /// True where a family of clouds ended because the next one would have taken too long.
+    pub(crate) out_of_time: bool,
     /// Points of a polar.
     pub(crate) polar: PolarRecord,
     /// What the stage told that makes results doubtful.

@@ -136,10 +136,10 @@ pub(crate) fn solver<const D: usize>(
 ) -> Result<Solver<Fluid<D>, D>, RunError> {
     let Site { case, surface, motions } = *site;
     let scaled = accuracy::scaled(case, stage.factor);
-    let sources = if stage.cycle > 0 { sources } else { &[] };
+    let sources = if stage.cycle > 0 || accuracy::follows_shocks(case) { sources } else { &[] };
     let mut cloud = match ready {
         Some(cloud) => cloud,
-        None => Cloud::build(&size::spec(&scaled), surface, sources)?,
+        None => size::cloud(&scaled, surface, sources)?,
     };
     let conservative = conserves(case);
     let mut operators = Operators::new(&cloud);
@@ -332,6 +332,21 @@ pub(crate) fn transfer<S: HasGas<D>, const D: usize>(
     previous.with_gas(state, &u)
 }
 
+/// Sources of refinement at the shocks of a flow, for the next cloud of a family, whose spacings are those of the case times
+/// `factor`.
+pub(crate) fn shocks<S: HasGas<D>, const D: usize>(
+    case: &Case,
+    system: &S,
+    state: &[f64],
+    factor: f64,
+) -> Vec<Source<D>> {
+    let (fluid, gas) = (system.gas(), system.gas_state(state));
+    let mut work = fluid.work();
+    let frame = fluid.frame(&Instant::still(0.0), gas);
+    let finest = case.cloud.spacing.map_or(0.0, |l| l.0 * factor);
+    adapt::shocks(&fluid.view(&frame, gas, &mut work), finest)
+}
+
 /// Sources of refinement for the next cycle of adaptation.
 pub(crate) fn adapted<S: HasGas<D>, const D: usize>(case: &Case, system: &S, state: &[f64]) -> Vec<Source<D>> {
     let (fluid, gas) = (system.gas(), system.gas_state(state));
@@ -370,20 +385,22 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_crevice_without_conservative_coefficients_is_refused_with_its_place() {
-        let built = |more: &str| {
+    fn a_crevice_narrower_than_the_spacing_has_conservative_coefficients() {
+        let built = |half_width: f64| {
             let text = format!(
                 "title = \"t\"\n[flow]\nmach = 0.3\nreynolds = 1000\n[[body]]\npolygon = [[-0.5, -0.5], [0.5, -0.5], \
-                 [0.5, 0.5], [0.079, 0.5], [0, -0.1], [-0.079, 0.5], [-0.5, 0.5]]\n[cloud]\nspacing = 0.06\nfar_field = 2\n\
-                 edge_levels = 1\nwall_layers = {{ first = 0.008 }}\n[scheme]\n{more}"
+                 [0.5, 0.5], [{half_width}, 0.5], [0, -0.1], [-{half_width}, 0.5], [-0.5, 0.5]]\n[cloud]\nspacing = 0.06\n\
+                 far_field = 2\nedge_levels = 1\nwall_layers = {{ first = 0.008 }}\n"
             );
             let case = crate::case::read(&text, "t").unwrap();
             crate::run::build_solver::<2>(&case, Path::new("")).map_err(|e| e.to_string())
         };
-        let message = built("").map(|_| ()).unwrap_err();
-        assert!(message.starts_with("there are no conservative coefficients for the particles at ("), "{message}");
+        for half_width in [0.02, 0.079, 0.12] {
+            assert_eq!(built(half_width).map(|_| ()), Ok(()), "{half_width}");
+        }
+        let message = unsound(&Vector([0.25, -1.0])).to_string();
+        assert!(message.starts_with("there are no conservative coefficients for the particles at (0.2500, -1.0000)"));
         assert!(message.contains("`scheme.conservative = false`"), "{message}");
-        assert!(built("conservative = false").is_ok());
     }
 
     #[test]

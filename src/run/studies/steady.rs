@@ -10,6 +10,7 @@ use super::turn::{Reached, Start, Turn};
 use crate::case::Steady;
 use crate::math::Bounds;
 use crate::observe::convergence::CloudLoads;
+use crate::observe::loads::Coefficients;
 use crate::scheme::{Fluid, HasGas};
 use crate::system::Implicit;
 use crate::time::relax::Relax;
@@ -26,6 +27,9 @@ const PATIENCE: u32 = 20;
 const LAST_PATIENCE: u32 = 200;
 /// The same for the last stage of a point of a polar that starts from rest: the other points wait.
 const POINT_PATIENCE: u32 = 60;
+
+/// Iterations that loads are watched over where the residual does not reach its goal.
+const UNSETTLED: usize = 20;
 
 /// Relaxes; `None` when told to stop.
 pub(crate) fn relax<S: HasGas<D>, const D: usize>(
@@ -145,8 +149,22 @@ fn tell<S: HasGas<D>, const D: usize>(
         log.record.cycles.retain(|known| known[0] != cycle);
         log.record.cycles.push([cycle, particles as f64, loads.cl, loads.cd, loads.cm]);
     }
-    let reach = reach(system.gas());
-    Ok(CloudLoads { factor, particles, reach, cl: loads.cl, cd: loads.cd, cm: loads.cm, momentum })
+    let (reach, unsettled) = (reach(system.gas()), unsettled(log));
+    Ok(CloudLoads { factor, particles, reach, cl: loads.cl, cd: loads.cd, cm: loads.cm, momentum, unsettled })
+}
+
+/// What the last iteration changed the loads by; half of their range over the last iterations where the residual did not reach its
+/// goal.
+fn unsettled(log: &Log<'_>) -> Coefficients {
+    let (history, last) = (&log.record.history, if log.record.converged { 2 } else { UNSETTLED });
+    let of = |name: &str| {
+        let column = history.column(name).unwrap_or_default();
+        let tail = &column[column.len().saturating_sub(last)..];
+        let [low, high] = tail.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], v| [l.min(*v), h.max(*v)]);
+        let range = (high - low).max(0.0);
+        if log.record.converged { range } else { 0.5 * range }
+    };
+    Coefficients { cl: of("cl"), cd: of("cd"), cm: of("cm"), ..Coefficients::default() }
 }
 
 /// Half-width of the domain in lengths of the bodies.
