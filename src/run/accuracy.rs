@@ -50,12 +50,6 @@ pub(crate) fn asked(case: &Case) -> Option<Accuracy> {
     case.accuracy.or(chosen.then_some(usual))
 }
 
-/// True where every cloud of a family is fine at the shocks that the flow on the one before has. Points of a polar share their
-/// clouds.
-pub(crate) fn follows_shocks(case: &Case) -> bool {
-    asked(case).is_some() && case.polar.is_none()
-}
-
 /// The case with the spacing of its cloud, and with the accuracy that is asked for where it leaves that out.
 pub(crate) fn with_cloud<'a, const D: usize>(case: &'a Case, surface: Option<&Surface<D>>) -> Cow<'a, Case> {
     let Some(surface) = surface.filter(|_| case.cloud.spacing.is_none()) else { return Cow::Borrowed(case) };

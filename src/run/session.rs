@@ -318,10 +318,6 @@ impl Run<'_> {
             };
             if turn.next().is_some_and(|s| s.cycle > stage.cycle) {
                 sources = setup::adapted(site.case, &solver.system, &reached.state);
-            } else if let Some(next) = turn.next().filter(|_| accuracy::follows_shocks(site.case)) {
-                sources = setup::shocks(site.case, &solver.system, &reached.state, next.factor);
-                // the cloud of the case was built without them
-                ready = ready.filter(|_| sources.is_empty());
             }
             let over = reached.enough || turn.last();
             course.keep(stage, &reached.state);

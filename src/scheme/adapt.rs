@@ -19,40 +19,6 @@ const KEEP: f64 = 0.25;
 /// Cells of each size around a source of adaptation.
 const LAYERS: f64 = 4.0;
 
-/// Part of its spacing that a particle at a shock asks of the next cloud of a family: half of what that has there anyway.
-const AT_SHOCKS: f64 = 0.25;
-
-/// Sources of refinement at shocks for a cloud of half the spacing everywhere, none finer than `finest`: particles with an edge
-/// along which gas faster than sound runs into a higher pressure.
-pub fn shocks<const D: usize>(view: &View<'_, D>, finest: f64) -> Vec<Source<D>> {
-    let n = view.cloud().n_fluid;
-    let mut at_shock = vec![false; n];
-    let op = &view.frame.discretisation.operators;
-    for edge in (0..op.fluid_parts().len()).flat_map(|k| op.edges(k)) {
-        let (i, j) = (edge.i(), edge.j());
-        if is_shock(view, i, j) {
-            at_shock[i] = true;
-            if edge.both() {
-                at_shock[j] = true;
-            }
-        }
-    }
-    let source = |i: usize| {
-        let spacing = (AT_SHOCKS * view.cloud().spacing[i]).max(finest);
-        Source { x: view.reference().x[i], spacing, layers: LAYERS }
-    };
-    (0..n).filter(|i| at_shock[*i]).map(source).collect()
-}
-
-/// True where gas faster than sound runs into a pressure that is higher by the threshold along an edge.
-fn is_shock<const D: usize>(view: &View<'_, D>, i: usize, j: usize) -> bool {
-    let (a, b) = (&view.work.state[i], &view.work.state[j]);
-    let along = (view.cloud().x[j] - view.cloud().x[i]).unit();
-    let (ahead, sign) = if a.pressure < b.pressure { (a, 1.0) } else { (b, -1.0) };
-    let normal = sign * ahead.velocity.dot(&along);
-    normal > view.fluid.gas.sound_speed(ahead) && measure(view, Sensor::Shock, i, j) > 1.0
-}
-
 /// Sources of refinement of the cloud before any motion from the solution and its gradients, none finer than `finest`.
 pub fn sources<const D: usize>(view: &View<'_, D>, sensors: &[Sensor], finest: f64) -> Vec<Source<D>> {
     let n = view.cloud().n_fluid;

@@ -136,10 +136,10 @@ pub(crate) fn solver<const D: usize>(
 ) -> Result<Solver<Fluid<D>, D>, RunError> {
     let Site { case, surface, motions } = *site;
     let scaled = accuracy::scaled(case, stage.factor);
-    let sources = if stage.cycle > 0 || accuracy::follows_shocks(case) { sources } else { &[] };
+    let sources = if stage.cycle > 0 { sources } else { &[] };
     let mut cloud = match ready {
         Some(cloud) => cloud,
-        None => size::cloud(&scaled, surface, sources)?,
+        None => Cloud::build(&size::spec(&scaled), surface, sources)?,
     };
     let conservative = conserves(case);
     let mut operators = Operators::new(&cloud);
@@ -330,21 +330,6 @@ pub(crate) fn transfer<S: HasGas<D>, const D: usize>(
         }
     });
     previous.with_gas(state, &u)
-}
-
-/// Sources of refinement at the shocks of a flow, for the next cloud of a family, whose spacings are those of the case times
-/// `factor`.
-pub(crate) fn shocks<S: HasGas<D>, const D: usize>(
-    case: &Case,
-    system: &S,
-    state: &[f64],
-    factor: f64,
-) -> Vec<Source<D>> {
-    let (fluid, gas) = (system.gas(), system.gas_state(state));
-    let mut work = fluid.work();
-    let frame = fluid.frame(&Instant::still(0.0), gas);
-    let finest = case.cloud.spacing.map_or(0.0, |l| l.0 * factor);
-    adapt::shocks(&fluid.view(&frame, gas, &mut work), finest)
 }
 
 /// Sources of refinement for the next cycle of adaptation.
