@@ -187,7 +187,7 @@ pub(crate) struct Completions {
     pub(crate) shell: Shell,
 }
 
-#[derive(Clone, Copy, Debug, Args)]
+#[derive(Clone, Copy, Debug, Default, Args)]
 pub(crate) struct Threads {
     /// Number of threads; default: one for each core. Results do not depend on it.
     #[arg(long, value_name = "N")]

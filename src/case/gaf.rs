@@ -2,8 +2,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::{
-    Angle, BodyMotionSpec, Case, HarmonicCount, Harmonics, Length, ModeMotion, Motion, ParticleMotion, Pitch, Plunge,
-    SteadyMethod, Temporal,
+    Angle, BodyMotionSpec, Case, HarmonicCount, Harmonics, Length, ModeMotion, Motion, OwnFrequency, ParticleMotion,
+    Pitch, Plunge, SteadyMethod, Temporal,
 };
 
 /// The table `[gaf]`.
@@ -103,11 +103,12 @@ impl Case {
         let mut particles = gaf.particles;
         match mode {
             AnyMode::Rigid(Mode::Pitch) => {
-                law.pitch = Some(Pitch { amplitude: Angle(factor * gaf.pitch.0), phase: none });
+                let amplitude = Angle(factor * gaf.pitch.0);
+                law.pitch = vec![Pitch { amplitude, phase: none, own: OwnFrequency::default() }];
             }
             AnyMode::Rigid(Mode::Plunge) => {
                 let amplitude = Length(factor * gaf.plunge.0);
-                law.plunge = Some(Plunge { amplitude, phase: none, direction: None });
+                law.plunge = vec![Plunge { amplitude, phase: none, direction: None, own: OwnFrequency::default() }];
             }
             AnyMode::Flexible(mode) => {
                 particles = ParticleMotion::Deforming;

@@ -41,8 +41,8 @@ pub use flow::{FreeStreamScales, Units, ViscosityLaw, Viscous, Wall};
 pub use gaf::{AnyMode, FlexibleMode, Gaf, Mode};
 pub use mode_file::{ModeTable, read_mode};
 pub use motion::{
-    BodyMotionSpec, ModeMotion, Motion, MotionFormula, MotionTable, ParticleMotion, Pitch, Plunge, Rotation,
-    Translation,
+    BodyMotionSpec, ModeMotion, Motion, MotionFormula, MotionTable, OwnFrequency, ParticleMotion, Pitch, Plunge,
+    Rotation, Translation,
 };
 pub use naca::{MeanLine, Naca, NacaDesign, NoSection, TrailingEdge};
 pub use polar::Polar;

@@ -45,10 +45,12 @@ pub struct BodyMotionSpec {
     pub pivot: Option<Vec<Length>>,
     /// Axis of the turn in 3-D, right-handed; absent: +y, nose up positive for a stream along +x with lift along +z.
     pub axis: Option<Vec<f64>>,
-    /// Sine in angle.
-    pub pitch: Option<Pitch>,
-    /// Sine in displacement.
-    pub plunge: Option<Plunge>,
+    /// Sines in angle, which add up.
+    #[serde(default)]
+    pub pitch: Vec<Pitch>,
+    /// Sines in displacement, which add up.
+    #[serde(default)]
+    pub plunge: Vec<Plunge>,
     /// Steady rotation.
     pub rotation: Option<Rotation>,
     /// Steady translation.
@@ -80,6 +82,9 @@ pub struct Pitch {
     pub amplitude: Angle,
     /// Phase at t = 0.
     pub phase: Angle,
+    /// Frequency of its own.
+    #[serde(flatten)]
+    pub own: OwnFrequency,
 }
 
 /// d(t) = amplitude·sin(ωt + phase)·direction.
@@ -91,6 +96,20 @@ pub struct Plunge {
     pub phase: Angle,
     /// Direction of positive displacement, made a unit vector; absent: up, +y in 2-D and +z in 3-D.
     pub direction: Option<Vec<f64>>,
+    /// Frequency of its own.
+    #[serde(flatten)]
+    pub own: OwnFrequency,
+}
+
+/// Frequency of one part of a motion; absent: that of the motion.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct OwnFrequency {
+    /// Frequency.
+    pub frequency: Option<Frequency>,
+    /// Reduced frequency k = ωL/U∞ instead, with the length L of the motion.
+    pub reduced_frequency: Option<f64>,
+    /// Period 2π/ω instead.
+    pub period: Option<Time>,
 }
 
 /// θ(t) = rate·t.
@@ -142,8 +161,8 @@ pub struct MotionFormula {
 impl BodyMotionSpec {
     /// True when no part moves anything.
     pub fn is_still(&self) -> bool {
-        self.pitch.is_none()
-            && self.plunge.is_none()
+        self.pitch.is_empty()
+            && self.plunge.is_empty()
             && self.rotation.is_none()
             && self.translation.is_none()
             && self.table.is_none()
@@ -153,8 +172,17 @@ impl BodyMotionSpec {
 
     /// Angular frequency ω of this table alone, in the units of the case; `chord` is the reference chord, of which k takes half by default.
     fn own_angular_frequency(&self, flow: &Flow, chord: f64) -> Option<f64> {
+        let own =
+            OwnFrequency { frequency: self.frequency, reduced_frequency: self.reduced_frequency, period: self.period };
+        own.angular(self, flow, chord)
+    }
+}
+
+impl OwnFrequency {
+    /// Angular frequency ω in the units of the case, for a part of `law`.
+    fn angular(&self, law: &BodyMotionSpec, flow: &Flow, chord: f64) -> Option<f64> {
         if let Some(k) = self.reduced_frequency {
-            let length = self.reduced_length.map_or(0.5 * chord, |l| l.0);
+            let length = law.reduced_length.map_or(0.5 * chord, |l| l.0);
             return Some(k * flow.reference().speed / length);
         }
         self.frequency.map(|f| f.0).or(self.period.map(|t| std::f64::consts::TAU / t.0))
@@ -172,6 +200,11 @@ impl Case {
     pub fn angular_frequency(&self, law: &BodyMotionSpec, chord: f64) -> Option<f64> {
         let general = || self.motion.as_ref().and_then(|m| m.law.own_angular_frequency(&self.flow, chord));
         law.own_angular_frequency(&self.flow, chord).or_else(general)
+    }
+
+    /// Angular frequency of one part of `law`: its own, else that of the motion.
+    pub fn part_frequency(&self, part: &OwnFrequency, law: &BodyMotionSpec, chord: f64) -> Option<f64> {
+        part.angular(law, &self.flow, chord).or_else(|| self.angular_frequency(law, chord))
     }
 
     /// True when a body bends.

@@ -39,9 +39,14 @@ fn frequency(draft: &mut Draft<'_>, law: &str) {
         let message = format!("the frequency is given twice, as `{first}` and as `{last}`");
         draft.fail_key(&format!("{law}.{last}"), message).hint("keep one; the others follow from it");
     }
+    let own = |part: &str| {
+        let path = format!("{law}.{part}");
+        (0..draft.count(&path)).any(|i| draft.given(&format!("{path}[{i}].reduced_frequency")))
+    };
     let reduced = draft.given(&format!("{law}.reduced_frequency"));
+    let needs_length = reduced || own("pitch") || own("plunge");
     let length = format!("{law}.reduced_length");
-    if draft.given(&length) && !reduced {
+    if draft.given(&length) && !needs_length {
         let hint = "add `reduced_frequency`, or remove the length";
         draft.fail_key(&length, "`reduced_length` without `reduced_frequency`").hint(hint);
     }
@@ -56,15 +61,57 @@ fn frequency(draft: &mut Draft<'_>, law: &str) {
             draft.fail_key(&place, message).hint("add `reduced_length`");
         }
     }
+    own_frequencies(draft, law);
     if has_frequency(draft, law) {
         return;
     }
     let hint = "add `reduced_frequency = 0.1`, `frequency = \"5 Hz\"` or `period = 20`";
     for part in ["pitch", "plunge", "mode"].map(|part| format!("{law}.{part}")) {
-        if says_something(draft, &part) {
+        let alone = (0..draft.count(&part)).any(|i| own_keys(draft, &format!("{part}[{i}]")).is_empty());
+        if says_something(draft, &part) && alone {
             draft.fail_key(&part, format!("`{part}` has no frequency")).hint(hint);
         }
     }
+}
+
+/// The keys that give a part a frequency of its own.
+fn own_keys(draft: &Draft<'_>, part: &str) -> Vec<&'static str> {
+    FREQUENCIES.into_iter().filter(|f| draft.given(&format!("{part}.{f}"))).collect()
+}
+
+/// Parts of a motion have one frequency each.
+fn own_frequencies(draft: &mut Draft<'_>, law: &str) {
+    let parts = ["pitch", "plunge"].map(|part| format!("{law}.{part}"));
+    let all: Vec<String> =
+        parts.iter().flat_map(|p| (0..draft.count(p)).map(|i| format!("{p}[{i}]")).collect::<Vec<_>>()).collect();
+    for part in all {
+        let given = own_keys(draft, &part);
+        if let [first, .., last] = given[..] {
+            let message = format!("the frequency is given twice, as `{first}` and as `{last}`");
+            draft.fail_key(&format!("{part}.{last}"), message).hint("keep one; the others follow from it");
+        }
+        let reduced = format!("{part}.reduced_frequency");
+        if draft.given(&reduced) && !draft.given("flow.mach") && !draft.given("flow.velocity") {
+            let hint = "add `mach` to `[flow]`, or give `period`";
+            draft.fail_key(&reduced, "a reduced frequency needs the speed of the free stream").hint(hint);
+        }
+        for key in ["frequency", "period"].map(|key| format!("{part}.{key}")) {
+            if draft.has_unit(&key) && !is_dimensional(draft) {
+                let message = format!("`{key}` has a unit of time, but the free stream is nondimensional");
+                let hint = "use `reduced_frequency` or a plain `period`, or give two of `pressure`, `temperature` and `density` in \
+                            `[flow]`";
+                draft.fail(&key, message).hint(hint);
+            }
+        }
+    }
+}
+
+/// True when some part of the motion repeats with a frequency of its own.
+fn has_own_frequency(draft: &Draft<'_>, law: &str) -> bool {
+    ["pitch", "plunge"].iter().any(|part| {
+        let path = format!("{law}.{part}");
+        (0..draft.count(&path)).any(|i| !own_keys(draft, &format!("{path}[{i}]")).is_empty())
+    })
 }
 
 /// A frequency of its own, or that of `[motion]`.
@@ -99,7 +146,7 @@ fn dimensional(draft: &mut Draft<'_>, law: &str) {
 /// What turns has a pivot, and an axis only what turns.
 fn turning(draft: &mut Draft<'_>, law: &str, dimension: Option<usize>) {
     let turns = TURNS.map(|part| format!("{law}.{part}"));
-    let turn = turns.iter().find(|part| draft.given(part)).cloned();
+    let turn = turns.iter().find(|part| says_something(draft, part)).cloned();
     match turn {
         Some(part) if !draft.given(&format!("{law}.pivot")) => {
             let message = format!("`{part}` turns about no point: `{law}.pivot` is missing");
@@ -110,17 +157,26 @@ fn turning(draft: &mut Draft<'_>, law: &str, dimension: Option<usize>) {
         }
         _ => {}
     }
-    for (path, what) in [("axis", "an axis"), ("plunge.direction", "a direction")] {
-        let path = format!("{law}.{path}");
+    let mut lengths = vec![(format!("{law}.axis"), "an axis")];
+    lengths.extend(directions(draft, law).map(|path| (path, "a direction")));
+    for (path, what) in lengths {
         if draft.numbers(&path).is_some_and(|v| v.iter().all(|c| *c == 0.0)) {
             draft.fail(&path, format!("`{path}` is {what} of no length")).hint("give at least one component");
         }
     }
 }
 
+/// Directions of the parts of a plunge.
+fn directions(draft: &Draft<'_>, law: &str) -> impl Iterator<Item = String> + use<> {
+    let path = format!("{law}.plunge");
+    (0..draft.count(&path)).map(move |i| format!("{path}[{i}].direction"))
+}
+
 /// Points and directions have `d` components; what lies outside the plane is absent in 2-D.
 fn in_dimension(draft: &mut Draft<'_>, law: &str, d: usize) {
-    for path in ["pivot", "plunge.direction", "translation.velocity"].map(|p| format!("{law}.{p}")) {
+    let points = ["pivot", "translation.velocity"].map(|p| format!("{law}.{p}"));
+    let all: Vec<String> = points.into_iter().chain(directions(draft, law)).collect();
+    for path in all {
         let n = draft.count(&path);
         if n != 0 && n != d {
             draft.fail(&path, format!("`{path}` has {n} components in a {d}-D case")).allowed(format!("{d} values"));
@@ -237,7 +293,8 @@ fn in_time(draft: &mut Draft<'_>, laws: &[String]) {
     }
     let repeats = laws.iter().any(|law| {
         let flag = draft.get(&format!("{law}.table.periodic")).and_then(Value::as_bool) == Some(true);
-        flag || draft.given(&format!("{law}.rotation")) || (moving.is_some() && has_frequency(draft, law))
+        flag || draft.given(&format!("{law}.rotation"))
+            || (moving.is_some() && (has_frequency(draft, law) || has_own_frequency(draft, law)))
     });
     let repeats = repeats || is_shaken(draft);
     if draft.get("time.harmonics").is_some() && !repeats {
@@ -374,8 +431,8 @@ mod tests {
             "period = 3\npivot = [0.25, 0]\npitch = \"2 deg\"\nplunge = { amplitude = 0.1, phase = \"90 deg\" }",
         );
         let law = c.motion_of(0).unwrap();
-        assert_eq!(law.pitch.as_ref().unwrap().amplitude, Angle(2f64.to_radians()));
-        assert_eq!(law.plunge.as_ref().unwrap().amplitude, Length(0.1));
+        assert_eq!(law.pitch[0].amplitude, Angle(2f64.to_radians()));
+        assert_eq!(law.plunge[0].amplitude, Length(0.1));
         assert_eq!((c.particles(), c.moves()), (ParticleMotion::Deforming, true));
         let own = "[flow]\nmach = 0.5\n[motion]\nperiod = 3\nplunge = 0.1\n[[body]]\nnaca = \"0012\"\n[[body]]\nnaca = \"0012\"\n\
                    name = \"tail\"\nmotion = {}\n[[body]]\nnaca = \"0006\"\n[body.motion]\nplunge = 0.2\n[cloud]\nspacing = 0.01\n\
@@ -383,7 +440,7 @@ mod tests {
         let c = read(own, "case.toml").unwrap_or_else(|e| panic!("{e}"));
         assert!(c.motion_of(0).is_some() && c.motion_of(1).is_none());
         let third = c.motion_of(2).unwrap();
-        assert_eq!(third.plunge.as_ref().unwrap().amplitude, Length(0.2));
+        assert_eq!(third.plunge[0].amplitude, Length(0.2));
         assert!((c.angular_frequency(third, 1.0).unwrap() * 3.0 - std::f64::consts::TAU).abs() < 1e-15);
         assert_eq!(read(&write(&c), "c").unwrap_or_else(|e| panic!("{e}\n{}", write(&c))), c);
     }

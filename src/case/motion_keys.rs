@@ -44,18 +44,18 @@ const AXIS: Field = Field::optional(
     "+y in 3-D: nose up positive for a stream along +x with lift along +z",
     "Axis of the turn (3-D only), right-handed. In 2-D angles are nose up positive: clockwise.",
 );
-const PITCH: Field = Field::optional(
+const PITCH: Field = Field::defaulted(
     "pitch",
-    Kind::Table(&PITCH_KEYS),
-    STILL,
+    Kind::Tables(&PITCH_KEYS),
+    Absent::Filled,
     "Angle amplitude·sin(ωt + phase), nose up positive; the mean angle is `flow.alpha` or `rotate` of the body. \
-     `pitch = \"2 deg\"` is an amplitude alone.",
+     `pitch = \"2 deg\"` is an amplitude alone. Several in a list add up, each with a frequency of its own where it has one.",
 );
-const PLUNGE: Field = Field::optional(
+const PLUNGE: Field = Field::defaulted(
     "plunge",
-    Kind::Table(&PLUNGE_KEYS),
-    STILL,
-    "Displacement amplitude·sin(ωt + phase), up positive. `plunge = 0.1` is an amplitude alone.",
+    Kind::Tables(&PLUNGE_KEYS),
+    Absent::Filled,
+    "Displacement amplitude·sin(ωt + phase), up positive. `plunge = 0.1` is an amplitude alone. Several in a list add up.",
 );
 const ROTATION: Field = Field::optional(
     "rotation",
@@ -139,7 +139,30 @@ const PARTICLES: &[(&str, &str)] = &[
 const PHASE: Field =
     Field::defaulted("phase", ANGLE, Absent::Number(0.0), "Phase at t = 0; `\"90 deg\"` makes the sine a cosine.");
 
-static PITCH_KEYS: Table = Table::of(&[Field::required("amplitude", ANGLE, "Amplitude."), PHASE]).short("amplitude");
+const OWN: &str = "that of the motion";
+const OWN_FREQUENCY: Field = Field::optional(
+    "frequency",
+    Kind::Quantity(Frequency::DIMENSION, Range::POSITIVE),
+    OWN,
+    "Frequency of this part alone; needs a dimensional free stream. Frequencies of one motion are whole multiples of a common one.",
+);
+const OWN_REDUCED_FREQUENCY: Field = Field::optional(
+    "reduced_frequency",
+    POSITIVE,
+    OWN,
+    "Reduced frequency of this part, with `reduced_length` of the motion.",
+);
+const OWN_PERIOD: Field =
+    Field::optional("period", Kind::Quantity(Time::DIMENSION, Range::POSITIVE), OWN, "Period of this part instead.");
+
+static PITCH_KEYS: Table = Table::of(&[
+    Field::required("amplitude", ANGLE, "Amplitude."),
+    PHASE,
+    OWN_FREQUENCY,
+    OWN_REDUCED_FREQUENCY,
+    OWN_PERIOD,
+])
+.short("amplitude");
 
 static PLUNGE_KEYS: Table = Table::of(&[
     Field::required("amplitude", LENGTH, "Amplitude of the displacement."),
@@ -150,6 +173,9 @@ static PLUNGE_KEYS: Table = Table::of(&[
         "up: +y in 2-D, +z in 3-D",
         "Direction of positive displacement; its length does not matter.",
     ),
+    OWN_FREQUENCY,
+    OWN_REDUCED_FREQUENCY,
+    OWN_PERIOD,
 ])
 .short("amplitude");
 

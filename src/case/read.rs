@@ -121,6 +121,11 @@ impl Reader<'_> {
             (Kind::Table(table), _) if table.shorthand.is_some() => self.shorthand(table, item, path),
             (Kind::Tables(table), DeValue::Array(items)) => Some(self.tables(table, items, path)),
             (Kind::Tables(table), DeValue::Table(document)) => Some(self.only(table, document, item.span(), path)),
+            (Kind::Tables(table), _) if table.shorthand.is_some() => {
+                let here = format!("{path}[0]");
+                self.draft.place(&here, item.span(), item.span());
+                Some(json!([self.shorthand(table, item, &here)?]))
+            }
             (Kind::Choice(variants), DeValue::String(text)) => self.choose(variants, text, item, path),
             (Kind::Choice(variants), DeValue::Table(document)) => self.choose_table(variants, document, item, path),
             _ => self.wrong(kind, item, path),
@@ -269,6 +274,9 @@ impl Reader<'_> {
             self.draft.place(&here, item.span(), item.span());
             match item.get_ref() {
                 DeValue::Table(document) => list.push(json!(self.table(table, document, &here))),
+                _ if table.shorthand.is_some() => {
+                    list.push(self.shorthand(table, item, &here).unwrap_or(Value::Null));
+                }
                 _ => {
                     let message = format!("`{here}` must be a table, not {}", type_of(item.get_ref()));
                     self.draft.fail_at(&here, item.span(), message).allowed("a table");

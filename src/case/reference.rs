@@ -86,7 +86,8 @@ fn kind_schema(kind: &Kind) -> Value {
         }
         Kind::Table(table) => short_or_whole(table),
         Kind::Tables(table) => {
-            json!({ "anyOf": [{ "type": "array", "items": table_schema(table) }, table_schema(table)] })
+            let one = short_or_whole(table);
+            json!({ "anyOf": [{ "type": "array", "items": one }, one] })
         }
         Kind::Choice(variants) => {
             json!({ "anyOf": variants.iter().flat_map(|v| variant_schemas(v, variants)).collect::<Vec<_>>() })

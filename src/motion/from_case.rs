@@ -6,7 +6,9 @@ use std::sync::Arc;
 use super::samples::Samples;
 use super::{BodyMotion, ModeShape, Motions, Spline, TimeFunction};
 use crate::case::formula::{Formula, FormulaError};
-use crate::case::{BodyMotionSpec, Case, CaseErrors, MotionFormula, MotionTable, Temporal, Units, read_mode};
+use crate::case::{
+    BodyMotionSpec, Case, CaseErrors, MotionFormula, MotionTable, OwnFrequency, Temporal, Units, read_mode,
+};
 use crate::math::Vector;
 
 /// Reads the text of a file that a case names.
@@ -121,14 +123,18 @@ impl Builder<'_> {
         let mut law = BodyMotion::about(pivot.unwrap_or(Vector::ZERO), axis);
         let frequency = self.case.angular_frequency(motion, self.chord).unwrap_or(0.0);
         let omega = self.units.solver_rate(frequency);
-        let sine = |amplitude: f64, phase: f64| TimeFunction::Sine { amplitude, omega, phase };
-        if let Some(pitch) = &motion.pitch {
-            law = law.with_angle(sine(pitch.amplitude.0, pitch.phase.0));
+        let sine = |amplitude: f64, phase: f64, omega: f64| TimeFunction::Sine { amplitude, omega, phase };
+        let own = |part: &OwnFrequency| {
+            self.units.solver_rate(self.case.part_frequency(part, motion, self.chord).unwrap_or(0.0))
+        };
+        for pitch in &motion.pitch {
+            law = law.with_angle(sine(pitch.amplitude.0, pitch.phase.0, own(&pitch.own)));
         }
-        if let Some(plunge) = &motion.plunge {
+        for plunge in &motion.plunge {
             let up = Vector::axis(D - 1);
             let direction = plunge.direction.as_ref().map_or(up, |v| Vector::from_fn(|d| v[d]).unit());
-            law = law.with_shift_along(&direction, |c| sine(plunge.amplitude.0 * c, plunge.phase.0));
+            let omega = own(&plunge.own);
+            law = law.with_shift_along(&direction, |c| sine(plunge.amplitude.0 * c, plunge.phase.0, omega));
         }
         if let Some(rotation) = &motion.rotation {
             law = law.with_angle(TimeFunction::Steady(self.units.solver_rate(rotation.rate.0)));
@@ -145,7 +151,7 @@ impl Builder<'_> {
         }
         for mode in &motion.modes {
             let shape = mode_shape(&mode.file, self.read)?;
-            law = law.with_mode(Arc::new(shape), sine(mode.amplitude, mode.phase.0));
+            law = law.with_mode(Arc::new(shape), sine(mode.amplitude, mode.phase.0, omega));
         }
         // only a table file can turn a body unseen by the reader of the case
         if pivot.is_none() && law.turns() {

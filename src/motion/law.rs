@@ -274,4 +274,13 @@ impl<const D: usize> BodyMotion<D> {
         let others = self.shift.iter().flatten().chain(self.modes.iter().map(|(_, function)| function));
         common(turns.chain(others.map(TimeFunction::repeat)))
     }
+
+    /// Angular frequencies of its sines.
+    pub(super) fn frequencies(&self) -> impl Iterator<Item = f64> {
+        let modes = self.modes.iter().map(|(_, function)| function);
+        self.turn.iter().chain(self.shift.iter().flatten()).chain(modes).filter_map(|function| match function {
+            TimeFunction::Sine { amplitude, omega, .. } if *amplitude != 0.0 => Some(*omega),
+            _ => None,
+        })
+    }
 }

@@ -22,7 +22,11 @@ pub use mode::{Expansion, Hinge, ModeShape};
 pub use point_trajectory::PointTrajectory;
 pub use pose::RigidPose;
 pub use spline::Spline;
+pub(crate) use time_function::MOST_PERIODS;
 pub use time_function::{Repeat, TimeFunction};
+
+/// Relative difference of two frequencies that count as one.
+const SAME: f64 = 1e-9;
 
 /// The motion of every body.
 #[derive(Clone, Debug)]
@@ -93,6 +97,20 @@ impl<const D: usize> Motions<D> {
             Repeat::Constant => self.forced,
             Repeat::Never => None,
         }
+    }
+
+    /// Angular frequencies of all sines, rising, each once.
+    pub fn frequencies(&self) -> Vec<f64> {
+        let mut all: Vec<f64> = self.laws().flat_map(BodyMotion::frequencies).collect();
+        all.sort_by(f64::total_cmp);
+        all.dedup_by(|a, b| (*a - *b).abs() <= SAME * *b);
+        all
+    }
+
+    /// Those frequencies as multiples of the common one, rising, which is the first harmonic of a balance; empty where nothing repeats.
+    pub fn multiples(&self) -> Vec<usize> {
+        let Some(period) = self.period() else { return Vec::new() };
+        self.frequencies().iter().map(|omega| (omega * period / std::f64::consts::TAU).round() as usize).collect()
     }
 
     fn laws(&self) -> impl Iterator<Item = &BodyMotion<D>> {

@@ -12,6 +12,9 @@ const REPEATS: f64 = 1e-9;
 /// Number of times at which a formula is compared with itself a period later.
 const SAMPLES: usize = 29;
 
+/// Most periods of a part of a motion in the common one: more are of no use to anybody.
+pub(crate) const MOST_PERIODS: u32 = 64;
+
 /// A scalar function of time.
 #[derive(Clone, Debug)]
 pub enum TimeFunction {
@@ -197,13 +200,11 @@ pub(super) fn common(repeats: impl IntoIterator<Item = Repeat>) -> Repeat {
 
 /// Least common multiple of two periods: n·a = m·b with small whole numbers.
 fn least_multiple(a: f64, b: f64) -> Option<f64> {
-    /// More periods than this in a common one are of no use to anybody.
-    const MOST: u32 = 64;
     let matches = |n: u32| {
         let m = f64::from(n) * a / b;
-        m.round() >= 1.0 && m.round() <= f64::from(MOST) && (m - m.round()).abs() <= REPEATS * m
+        m.round() >= 1.0 && m.round() <= f64::from(MOST_PERIODS) && (m - m.round()).abs() <= REPEATS * m
     };
-    (1..=MOST).find(|n| matches(*n)).map(|n| f64::from(n) * a)
+    (1..=MOST_PERIODS).find(|n| matches(*n)).map(|n| f64::from(n) * a)
 }
 
 /// Value and two derivatives of a sum of courses.

@@ -11,6 +11,8 @@ use num_complex::Complex64;
 const SAMPLES_PER_UNKNOWN: usize = 2;
 /// Pivots of the fit smaller than this part of the largest mean that the samples do not tell the harmonics apart.
 const SINGULAR: f64 = 1e-10;
+/// Harmonics among which the largest is looked for, fewer where a period has few samples.
+const WATCHED: [usize; 2] = [5, 1];
 /// Part of a step by which a history may miss the start of its window.
 const SLACK: f64 = 1e-6;
 
@@ -41,9 +43,9 @@ pub struct Window {
 /// How a period differs from the one before it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Periodicity {
-    /// Change of the mean over the first harmonic.
+    /// Change of the mean over the largest harmonic.
     pub mean: f64,
-    /// Change of the first harmonic (complex) over the first harmonic.
+    /// Change of the largest harmonic (complex) over itself.
     pub first: f64,
 }
 
@@ -129,9 +131,20 @@ impl Harmonics {
         self.mean + (1..=self.terms.len()).map(wave).sum::<f64>()
     }
 
-    /// f_1/α_1: the load per motion, with the phase by which it leads.
-    pub fn per(&self, motion: &Self) -> Complex64 {
-        self.term(1) / motion.term(1)
+    /// f_n/α_n: the load per motion in one harmonic, with the phase by which it leads.
+    pub fn per(&self, motion: &Self, n: usize) -> Complex64 {
+        self.term(n) / motion.term(n)
+    }
+
+    /// Number of the largest harmonic, 1 where there is none.
+    pub fn dominant(&self) -> usize {
+        (1..=self.terms.len()).reduce(|a, b| if self.term(b).norm() > self.term(a).norm() { b } else { a }).unwrap_or(1)
+    }
+
+    /// Numbers of the harmonics that are more than `part` of the largest, rising.
+    pub fn present(&self, part: f64) -> Vec<usize> {
+        let least = part * self.term(self.dominant()).norm();
+        (1..=self.terms.len()).filter(|n| self.term(*n).norm() > least).collect()
     }
 
     /// f_n when time starts at the greatest value of the first harmonic of `motion`.
@@ -155,16 +168,20 @@ impl Harmonics {
 }
 
 impl Periodicity {
-    /// Compares the last period of a history with the one before; `None` while there are no two, or no first harmonic.
+    /// Compares the last period of a history with the one before; `None` while there are no two, or no harmonic.
     pub fn of(time: &[f64], values: &[f64], period: f64) -> Option<Self> {
-        let window = Window { period, periods: 1.0, harmonics: 1 };
         let end = *time.last()?;
-        let last = Harmonics::fit_until(time, values, &window, end).ok()?;
-        let before = Harmonics::fit_until(time, values, &window, end - period).ok()?;
-        let size = last.term(1).norm();
+        let both = |harmonics: usize| {
+            let window = Window { period, periods: 1.0, harmonics };
+            let at = |end: f64| Harmonics::fit_until(time, values, &window, end).ok();
+            at(end).zip(at(end - period))
+        };
+        let (last, before) = WATCHED.into_iter().find_map(both)?;
+        let n = last.dominant();
+        let size = last.term(n).norm();
         (size > 0.0).then(|| Self {
             mean: (last.mean - before.mean).abs() / size,
-            first: (last.term(1) - before.term(1)).norm() / size,
+            first: (last.term(n) - before.term(n)).norm() / size,
         })
     }
 
@@ -274,7 +291,7 @@ mod tests {
     fn loads_are_told_relative_to_the_motion() {
         let motion = fit(|t| 0.1 * (omega() * t + 1.1).sin(), 2);
         let load = fit(|t| 3.0 * (omega() * t + 1.1 - 0.25).sin() + 0.2 * (2.0 * (omega() * t + 1.1)).cos(), 2);
-        let ratio = load.per(&motion);
+        let ratio = load.per(&motion, 1);
         assert!((ratio.norm() - 30.0).abs() < 1e-10 && (ratio.arg() + 0.25).abs() < 1e-12);
         // the origin of time does not matter
         let late = fit(|t| 0.2 * (2.0 * omega() * t).cos(), 2);

@@ -99,7 +99,8 @@ pub(crate) fn marching(case: &Case, period: Option<f64>, dimension: usize) -> Re
 }
 
 /// The stages of a case whose own cloud has `n` fluid particles: coarse, fine, adapted, marched, more and more harmonics.
-pub(crate) fn plan(case: &Case, n: usize, dimension: usize) -> Vec<Stage> {
+/// A harmonic balance has `least` harmonics or more: the motion has so many.
+pub(crate) fn plan(case: &Case, n: usize, dimension: usize, least: usize) -> Vec<Stage> {
     if let Some(asked) = accuracy::asked(case) {
         return polar::at_all_points(case, accuracy::family(&asked, n, dimension));
     }
@@ -121,7 +122,7 @@ pub(crate) fn plan(case: &Case, n: usize, dimension: usize) -> Vec<Stage> {
         all.extend((0..=case.adapt.cycles).map(|cycle| steady(1.0, cycle)));
     }
     let cycle = all.last().map_or(0, |s: &Stage| s.cycle);
-    all.extend(in_time(case, None).into_iter().map(|task| Stage { factor: 1.0, cycle, point: None, task }));
+    all.extend(in_time(case, None, least).into_iter().map(|task| Stage { factor: 1.0, cycle, point: None, task }));
     polar::at_all_points(case, all)
 }
 
@@ -131,12 +132,13 @@ pub(crate) fn plan_from(case: &Case, from: &Stage) -> Vec<Stage> {
         Task::Balance { harmonics } => Some(harmonics),
         _ => None,
     };
-    let tasks = if is_unsteady(case) { in_time(case, held) } else { vec![Task::Relax] };
+    let tasks = if is_unsteady(case) { in_time(case, held, FIRST) } else { vec![Task::Relax] };
     tasks.into_iter().map(|task| Stage { task, ..*from }).collect()
 }
 
-/// What is done in time after any steady start; `held`: harmonics of the state it begins from.
-fn in_time(case: &Case, held: Option<usize>) -> Vec<Task> {
+/// What is done in time after any steady start; `held`: harmonics of the state it begins from; `least`: harmonics that the motion
+/// has.
+fn in_time(case: &Case, held: Option<usize>, least: usize) -> Vec<Task> {
     match &case.time {
         Temporal::Steady(_) => Vec::new(),
         Temporal::Explicit(_) | Temporal::Dual(_) => vec![Task::March],
@@ -145,7 +147,7 @@ fn in_time(case: &Case, held: Option<usize>) -> Vec<Task> {
             let lead = held.is_none() && plan.march > 0;
             let first = match held {
                 Some(held) if auto => held.min(most),
-                None if auto || !lead => FIRST,
+                None if auto || !lead => least.clamp(FIRST, most),
                 _ => most,
             };
             let more = |n: &usize| (*n < most).then(|| if auto { (n + MORE).min(most) } else { most });

@@ -264,7 +264,9 @@ impl Run<'_> {
         let stages = match (&saved, &other) {
             (Some(s), _) => s.stages.clone(),
             (None, Some(o)) => recipe::plan_from(self.case, &o.stages[o.stage]),
-            (None, None) => recipe::plan(self.case, particles, D),
+            (None, None) => {
+                recipe::plan(self.case, particles, D, site.motions.multiples().last().copied().unwrap_or(1))
+            }
         };
         let scales = Scales { axes: load_axes(self.case, site.surface), period: site.motions.period() };
         let points = self.case.points();

@@ -38,6 +38,8 @@ pub struct Understood {
     pub bodies: Vec<BodyBox>,
     /// Period of the motion; absent where it does not repeat.
     pub period: Option<f64>,
+    /// Frequencies of the motion as multiples of that of this period, where they are several or not the first.
+    pub multiples: Vec<usize>,
     /// Reduced frequency k = ωc/2V of that motion; absent without a stream.
     pub reduced_frequency: Option<f64>,
     /// First step of an implicit march.
@@ -98,6 +100,7 @@ impl Understood {
             reference: axes.map(|axes| ReferenceValues::of::<D>(axes, stream.mach)),
             bodies: names.map(|(body, name)| BodyBox::of(name, &bounds(body))).collect(),
             period: time(period),
+            multiples: Some(motions.multiples()).filter(|m| m.iter().any(|n| *n > 1)).unwrap_or_default(),
             reduced_frequency: period.map(frequency).filter(|k| k.is_finite()),
             time_step: time(case.step_length(period)),
             until: time(case.end(period).filter(|_| super::recipe::balance(case).is_none())),
@@ -129,6 +132,10 @@ impl Understood {
         if let Some(period) = self.period {
             let k = self.reduced_frequency.map(|k| format!(", reduced frequency k = ωc/2V = {}", short(k)));
             lines.push(("period", self.with_unit(period, "s") + &k.unwrap_or_default()));
+            if !self.multiples.is_empty() {
+                let all = self.multiples.iter().map(usize::to_string).collect::<Vec<_>>().join(", ");
+                lines.push(("frequencies", format!("{all} times the common one of this period, its harmonics")));
+            }
         }
         lines.extend(self.time_step.map(|t| ("time step", self.with_unit(t, "s"))));
         lines.extend(self.until.map(|t| ("until", self.with_unit(t, "s"))));

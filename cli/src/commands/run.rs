@@ -233,7 +233,11 @@ fn periodic_loads(p: &PeriodicLoads) -> String {
     let phases =
         format!("{:<16}{:9.2}  {:9.2}  {:9.2}  degrees before {}\n", "phase", phase.cl, phase.cd, phase.cm, p.motion);
     let head = LOADS.replacen(&" ".repeat(15), "the last period", 1);
-    head + &row("mean", &p.mean) + &row("first harmonic", &p.amplitude) + &phases
+    let harmonic = match p.harmonic {
+        1 => "first harmonic".to_owned(),
+        n => format!("harmonic {n}"),
+    };
+    head + &row("mean", &p.mean) + &row(&harmonic, &p.amplitude) + &phases
 }
 
 /// The points of a polar, one a row; bars only where there are some.

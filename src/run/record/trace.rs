@@ -11,8 +11,12 @@ use crate::observe::loads::Coefficients;
 use crate::observe::table::{Entry, write_csv, write_json};
 use crate::verify::Loops;
 
-/// Harmonics that are reported.
-const HARMONICS: usize = 5;
+/// Harmonics that are reported: more where those do not hold the motion, as of several frequencies on their common one.
+const HARMONICS: [usize; 3] = [5, 13, 31];
+/// Root mean square of a motion that its harmonics leave, over the largest, below which they hold it.
+const HELD: f64 = 1e-3;
+/// Harmonic of a motion over its largest above which it is there.
+const PRESENT: f64 = 1e-3;
 /// Part of a period within which two times are the same.
 const SAME_TIME: f64 = 1e-9;
 /// Points of a loop.
@@ -65,11 +69,14 @@ pub struct LastPeriod {
     pub peak_cd: f64,
 }
 
-/// First harmonics of the loads over that of one part of the motion: real and imaginary parts.
+/// First harmonics of the loads over that of one part of the motion: real and imaginary parts. Where a part has other harmonics, as
+/// with several frequencies on their common one, so do these.
 #[derive(Clone, Debug, Serialize)]
 pub struct FirstHarmonics {
     /// `angle` (loads per radian), `shift_x`, `shift_y`, `shift_z` (per length) or `mode` (per unit of its coordinate).
     pub motion: &'static str,
+    /// Number of the harmonic.
+    pub harmonic: usize,
     /// Lift.
     pub cl: [f64; 2],
     /// Drag.
@@ -83,10 +90,12 @@ pub struct FirstHarmonics {
 pub struct PeriodicLoads {
     /// Means.
     pub mean: Coefficients,
-    /// Amplitudes of the first harmonics.
+    /// Amplitudes of the harmonic that the motion has most of: the first, but for motions of several frequencies.
     pub amplitude: Coefficients,
-    /// What the first harmonics lead the motion by, degrees from -180 to 180.
+    /// What that harmonic leads the motion by, degrees from -180 to 180.
     pub phase_deg: Coefficients,
+    /// Number of the harmonic.
+    pub harmonic: usize,
     /// Part of the motion that phases are measured against.
     pub motion: &'static str,
 }
@@ -100,22 +109,37 @@ const PARTS: [&str; 5] = ["angle", "shift_x", "shift_y", "shift_z", "mode"];
 impl Trace {
     /// Series of the loads and of the parts of the motion that are there, from the last period.
     fn fitted(&self, period: f64) -> Option<([Harmonics; 3], Moved)> {
+        let mut all = HARMONICS.into_iter().map_while(|n| self.fitted_by(period, n));
+        let first = all.next()?;
+        let holds = |(_, h): &(&str, Harmonics)| h.remainder <= HELD * h.term(h.dominant()).norm();
+        if first.1.iter().all(holds) {
+            return Some(first);
+        }
+        Some(all.find(|(_, motions)| motions.iter().all(holds)).unwrap_or(first))
+    }
+
+    /// The same with a number of harmonics.
+    fn fitted_by(&self, period: f64, harmonics: usize) -> Option<([Harmonics; 3], Moved)> {
         let time = self.column(|m| m.time);
-        let window = Window { period, periods: f64::from(self.whole(period)), harmonics: HARMONICS };
+        let window = Window { period, periods: f64::from(self.whole(period)), harmonics };
         let fit = |f: &dyn Fn(&Sample) -> f64| Harmonics::fit(&time, &self.column(f), &window).ok();
         let loads = [fit(&|m| m.loads.cl)?, fit(&|m| m.loads.cd)?, fit(&|m| m.loads.cm)?];
         let moved = |(k, name): (usize, &'static str)| Some((name, fit(&|m: &Sample| m.motion[k])?));
-        let motions = PARTS.into_iter().enumerate().filter_map(moved).filter(|(_, h)| h.term(1).norm() > STILL);
+        let moves = |h: &Harmonics| h.term(h.dominant()).norm().max(h.remainder) > STILL;
+        let motions = PARTS.into_iter().enumerate().filter_map(moved).filter(|(_, h)| moves(h));
         Some((loads, motions.collect()))
     }
 
     /// First harmonics over each part of the motion; none while there is no whole period.
     pub(crate) fn first_harmonics(&self, period: f64) -> Vec<FirstHarmonics> {
         let Some((loads, motions)) = self.fitted(period) else { return Vec::new() };
-        let over = |motion: &Harmonics| loads.each_ref().map(|h| [h.per(motion).re, h.per(motion).im]);
-        let all = motions.iter().map(|(name, motion)| {
-            let [cl, cd, cm] = over(motion);
-            FirstHarmonics { motion: name, cl, cd, cm }
+        let all = motions.iter().flat_map(|(name, motion)| {
+            let of = |harmonic: usize| {
+                let over = |load: &Harmonics| [load.per(motion, harmonic).re, load.per(motion, harmonic).im];
+                let [cl, cd, cm] = loads.each_ref().map(over);
+                FirstHarmonics { motion: name, harmonic, cl, cd, cm }
+            };
+            motion.present(PRESENT).into_iter().map(of)
         });
         all.collect()
     }
@@ -124,14 +148,16 @@ impl Trace {
     pub(crate) fn periodic_loads(&self, period: f64) -> Option<PeriodicLoads> {
         let (loads, motions) = self.fitted(period)?;
         let (motion, moved) = motions.first()?;
+        let harmonic = moved.dominant();
         let of = |value: &dyn Fn(&Harmonics) -> f64| {
             let [cl, cd, cm] = loads.each_ref().map(value);
             Coefficients { cl, cd, cm }
         };
         Some(PeriodicLoads {
             mean: of(&|h| h.mean),
-            amplitude: of(&|h| h.term(1).norm()),
-            phase_deg: of(&|h| h.per(moved).arg().to_degrees()),
+            amplitude: of(&|h| h.term(harmonic).norm()),
+            phase_deg: of(&|h| h.per(moved, harmonic).arg().to_degrees()),
+            harmonic,
             motion,
         })
     }
@@ -251,21 +277,29 @@ impl Trace {
         let Some(([cl, cd, cm], motions)) = self.fitted(period) else { return Ok(()) };
         let loads = [("cl", &cl), ("cd", &cd), ("cm", &cm)];
         let about = |motion: &(&'static str, Harmonics)| {
-            let per = |(name, h): &(&str, &Harmonics)| ((*name).to_owned(), ratio(h, &motion.1));
-            json!({
-                "motion": motion.0,
-                "amplitude": motion.1.term(1).norm(),
-                "loads_per_motion": loads.iter().map(per).collect::<serde_json::Map<String, Value>>(),
-            })
+            motion
+                .1
+                .present(PRESENT)
+                .into_iter()
+                .map(|n| {
+                    let per = |(name, h): &(&str, &Harmonics)| ((*name).to_owned(), ratio(h, &motion.1, n));
+                    json!({
+                        "motion": motion.0,
+                        "harmonic": n,
+                        "amplitude": motion.1.term(n).norm(),
+                        "loads_per_motion": loads.iter().map(per).collect::<serde_json::Map<String, Value>>(),
+                    })
+                })
+                .collect::<Vec<_>>()
         };
         let whole = json!({
-            "convention": "f(t) = mean + Re sum f_n exp(+i n omega t); ratios are first harmonic of the load over that of \
+            "convention": "f(t) = mean + Re sum f_n exp(+i n omega t); ratios are a harmonic of the load over the same of \
                            the motion (radians, lengths, coordinate of a mode), phase positive when the load leads; times are those of the run",
             "omega": cl.omega,
             "period": period,
             "change_over_last_period": self.change(period),
             "loads": loads.iter().map(|(n, h)| ((*n).to_owned(), series(h))).collect::<serde_json::Map<String, Value>>(),
-            "about_motion": motions.iter().map(about).collect::<Vec<_>>(),
+            "about_motion": motions.iter().flat_map(about).collect::<Vec<_>>(),
         });
         write_json(&out.join("harmonics.json"), &whole)?;
         let rows = self.loop_rows(&motions, period).map(|row| row.map(Entry::from).to_vec());
@@ -297,9 +331,9 @@ fn series(h: &Harmonics) -> Value {
     json!({ "mean": h.mean, "harmonics": terms, "remainder_rms": h.remainder })
 }
 
-/// First harmonic of a load over that of the motion, and the work of a cycle.
-fn ratio(load: &Harmonics, motion: &Harmonics) -> Value {
-    let per = load.per(motion);
+/// Harmonic `n` of a load over that of the motion, and the work of a cycle by all harmonics.
+fn ratio(load: &Harmonics, motion: &Harmonics, n: usize) -> Value {
+    let per = load.per(motion, n);
     json!({
         "re": per.re,
         "im": per.im,

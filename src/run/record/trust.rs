@@ -20,15 +20,20 @@ impl Saved {
         require(arrays.iter().all(|a| a.iter().all(|x| x.is_finite())), "a field holds what is not a finite number")?;
         require(!numbers.iter().any(|x| x.is_nan()) && self.time.is_finite(), "a number is not one")?;
         require(self.start_totals.len() <= 5, "its totals are too many")?;
+        let lost = self.lagrangian.as_ref().map_or(0, |l| if l.ledger.renewals > 0 { l.ledger.lost.len() } else { 0 });
+        require(self.start_totals.len() >= lost, "its totals are too few")?;
         Ok(self)
     }
 
     /// Refuses arrays of another length than the equations at one instant, with these `fields`, ask for.
     pub(crate) fn fits(&self, fields: &[Field]) -> Result<(), RunError> {
         let wanted = unknowns(fields) * self.stages.get(self.stage).map_or(0, Stage::instances);
-        let rows = fields.iter().map(|f| f.rows).sum();
+        let rows: usize = fields.iter().map(|f| f.rows).sum();
         let others = match &self.memory {
-            Memory::Relaxation(relax) => vec![(&relax.scale, rows)],
+            Memory::Relaxation(relax) => {
+                require(relax.scale.len() == rows, "its local times are of another cloud")?;
+                Vec::new()
+            }
             Memory::March(past) => vec![(&past.before, wanted), (&past.older, wanted)],
         };
         require(self.state.len() == wanted, "its state is of another cloud")?;

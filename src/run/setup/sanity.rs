@@ -1,8 +1,9 @@
 //! What can be written down but makes no sense: told before any particle is placed.
 use super::super::error::RunError;
-use crate::case::Case;
+use super::super::recipe;
+use crate::case::{Case, Temporal};
 use crate::geometry::Surface;
-use crate::motion::Motions;
+use crate::motion::{MOST_PERIODS, Motions};
 
 /// Greatest spacing in lengths of a body.
 const COARSE: f64 = 0.5;
@@ -23,7 +24,9 @@ pub(crate) fn sane<const D: usize>(
 ) -> Result<Vec<String>, RunError> {
     let Some(spacing) = case.cloud.spacing.map(|l| l.0) else { return Ok(Vec::new()) };
     let mut notes = Vec::new();
-    if let Some(period) = motions.period().filter(|t| *t < SHORTEST_WAVE * spacing) {
+    frequencies(case, motions)?;
+    let fastest = motions.frequencies().last().map(|omega| std::f64::consts::TAU / omega);
+    if let Some(period) = fastest.or(motions.period()).filter(|t| *t < SHORTEST_WAVE * spacing) {
         let k = std::f64::consts::PI * chord(case, surface) / (period * case.flow.reference().mach);
         let given = case.flow.units().case_time(period);
         return Err(RunError::Senseless {
@@ -51,6 +54,33 @@ pub(crate) fn sane<const D: usize>(
     }
     notes.extend(doubtful(case, surface));
     Ok(notes)
+}
+
+/// Refuses frequencies that have no common one where a period is needed, and fewer harmonics of it than the motion has.
+fn frequencies<const D: usize>(case: &Case, motions: &Motions<D>) -> Result<(), RunError> {
+    let Temporal::Harmonics(plan) = &case.time else { return Ok(()) };
+    let all = motions.frequencies();
+    if let ([first, .., last], None) = (&all[..], motions.period()) {
+        return Err(RunError::Senseless {
+            what: format!(
+                "the motion has frequencies that are no whole multiples of a common one within {MOST_PERIODS} periods (the last is \
+                 {:.9} times the first)",
+                last / first
+            ),
+            hint: "harmonic balance finds flows that repeat: write frequencies whose ratio is that of small whole numbers, or march",
+        });
+    }
+    let (Some(&highest), most) = (motions.multiples().last(), recipe::most(plan)) else { return Ok(()) };
+    if most >= highest {
+        return Ok(());
+    }
+    Err(RunError::Senseless {
+        what: format!(
+            "{most} harmonics of the common frequency are wanted, but the motion itself has the harmonic {highest}"
+        ),
+        hint: "the common frequency of all parts is the first harmonic: ask for as many harmonics as the fastest part has, better \
+               twice as many",
+    })
 }
 
 /// What of the stream is doubtful.

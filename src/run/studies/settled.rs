@@ -13,7 +13,7 @@ use crate::time::{Standing, Step};
 
 /// Iterations over which loads must not change.
 const WINDOW: usize = 5;
-/// First harmonic over the largest one above which a load counts: symmetry leaves others at round-off.
+/// Largest harmonic over that of all loads above which a load counts: symmetry leaves others at round-off.
 const PRESENT: f64 = 1e-3;
 /// Orders by which the residual must have fallen before loads are looked at.
 const FALLEN: f64 = 2.0;
@@ -128,7 +128,8 @@ impl Settled {
 }
 
 /// True when over a number of iterations no mean and no harmonic of a load has changed by more than `tolerance` times the
-/// first harmonic of that load, for loads that the motion makes at all; bodies without loads are always still.
+/// largest harmonic of that load, for loads that the motion makes at all; bodies without loads are always still. The first harmonic
+/// may be small: that of the common frequency of several, or of a drag that follows the square of the motion.
 fn still(recent: &[Vec<f64>], iterations: usize, tolerance: f64) -> bool {
     let Some(last) = recent.last() else { return true };
     if recent.len() <= iterations {
@@ -137,10 +138,11 @@ fn still(recent: &[Vec<f64>], iterations: usize, tolerance: f64) -> bool {
     let count = last.len() / 3;
     let window = &recent[recent.len() - 1 - iterations..];
     let part = |v: &[f64], load: usize, k: usize| v[load * count + k];
-    let first = |load: usize| part(last, load, 1).hypot(part(last, load, 1 + count / 2));
-    let largest = (0..3).map(first).fold(0.0, f64::max);
-    (0..3).filter(|load| first(*load) > PRESENT * largest).all(|load| {
-        let bound = tolerance * first(load);
+    let harmonic = |load: usize, n: usize| part(last, load, n).hypot(part(last, load, n + count / 2));
+    let dominant = |load: usize| (1..=count / 2).map(|n| harmonic(load, n)).fold(0.0, f64::max);
+    let largest = (0..3).map(dominant).fold(0.0, f64::max);
+    (0..3).filter(|load| dominant(*load) > PRESENT * largest).all(|load| {
+        let bound = tolerance * dominant(load);
         (0..count).all(|k| window.iter().all(|v| (part(v, load, k) - part(last, load, k)).abs() < bound))
     })
 }
@@ -159,5 +161,8 @@ mod tests {
         assert!(still(&[], 1, 1e-4) && still(&[vec![0.0; 9], vec![0.0; 9]], 1, 1e-4));
         let lift = |cosine: f64| vec![0.0, cosine, 0.0, 0.0, 0.0, 0.0, 0.0, 0.01, 0.0];
         assert!(!still(&[lift(1.0), lift(1.01)], 1, 1e-4));
+        // means and cosines of two harmonics and their sines: the second one rules, the first one is noise
+        let second = |noise: f64| vec![0.0, noise, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0];
+        assert!(still(&[second(1e-6), second(3e-6)], 1, 1e-4) && !still(&[second(1e-6), second(3e-3)], 1, 1e-4));
     }
 }
