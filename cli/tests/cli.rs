@@ -23,7 +23,8 @@ const PROMISED: [&str; 13] = [
     "ledger",
 ];
 /// What it may add.
-const EXTRA: [&str; 22] = [
+const EXTRA: [&str; 23] = [
+    "warnings",
     "polar",
     "work_units",
     "generalised_forces",

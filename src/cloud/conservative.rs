@@ -19,6 +19,7 @@
 mod closure;
 mod graph;
 mod smooth;
+mod symmetry;
 
 use graph::Graph;
 use smooth::Smooth;
@@ -97,7 +98,7 @@ pub fn conservative_with<const D: usize>(
     softness: f64,
 ) -> ConservativeReport {
     let mut problem = Problem::new(cloud, operators, softness);
-    let mut graph = problem.graph();
+    let mut graph = problem.graph(symmetry::mirrors(cloud));
     let mut multipliers = vec![Row::ZERO; problem.n_rows()];
     let mut iterations = problem.solve(&mut multipliers, &mut graph);
     let mut n_softened = 0;

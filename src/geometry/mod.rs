@@ -7,6 +7,7 @@
 //! Limits: a surface must bound a volume (thin sheets and large holes are refused), bodies must not overlap.
 //! Only [`load_surface`] opens files; all readers take any input.
 mod airfoil;
+mod holes;
 mod mesh;
 mod naca;
 mod outline;
@@ -21,11 +22,14 @@ mod surface;
 #[cfg(test)]
 mod tests;
 mod tree;
+mod weld;
+mod wing;
 
 pub use primitive::{icosphere, write_stl};
 pub use sampling::Chain;
 pub use shell::{Edge, Exact, Shell};
 pub use surface::{Element, Nearest, Projection, Surface};
+pub use wing::wing;
 
 use crate::case::{Body, Case, Shape};
 use crate::math::Vector;

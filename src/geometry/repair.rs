@@ -1,29 +1,19 @@
 //! From a soup of triangles to a closed, consistently oriented shell.
 //!
 //! Vertices are welded, degenerate and repeated triangles dropped, needles resolved by splitting the triangle on their
-//! long side, orientation made consistent by a flood across edges with exactly two triangles, and each closed component
-//! turned outward by the sign of its volume. What cannot be mended safely is refused with its place: holes, edges with an
+//! long side, orientation made consistent by a flood across edges with exactly two triangles, each component turned outward by the
+//! sign of its volume, and small holes closed. What cannot be mended safely is refused with its place: large holes, edges with an
 //! odd number of triangles, one-sided surfaces, self-intersections.
-use super::GeometryError;
 use super::mesh::Soup;
 use super::shell::{Exact, Facet, Shell, facets, root, unite};
-use super::simplex;
 use super::surface::Surface;
+use super::weld::weld;
+use super::{GeometryError, holes, simplex};
 use crate::math::{Bounds, Vector};
-use std::collections::{BTreeMap, HashMap, HashSet};
-use std::f64::consts::PI;
+use std::collections::{HashMap, HashSet};
 
-/// Vertices nearer than these fractions of the body's diagonal are one; the second, above the rounding of single
-/// precision, is tried only when the first leaves open edges.
-const WELD: [f64; 2] = [1e-9, 1e-6];
-/// Surfaces smaller than this are refused: squares of areas would underflow.
-const SMALLEST: f64 = 1e-50;
 /// Triangles lower than this fraction of the diagonal are needles.
 const NEEDLE: f64 = 1e-9;
-/// Holes smaller than this fraction of the diagonal are left to the winding number.
-const GAP: f64 = 1e-3;
-/// Turning angle of sharp edges, radians (40°).
-const CREASE: f64 = 40.0 * PI / 180.0;
 /// Rounds of needle removal; each resolves every needle that does not touch another.
 const ROUNDS: usize = 16;
 
@@ -32,6 +22,7 @@ pub(super) fn shell(file: &str, soup: &Soup, notes: &mut Vec<String>) -> Result<
     let mut shell = weld(file, soup, notes)?;
     split_needles(file, &mut shell, notes);
     orient(file, &mut shell, notes)?;
+    holes::fill(file, &mut shell, notes);
     check_edges(file, &shell, notes)?;
     match Surface::new(&[(String::new(), shell.clone())]).intersection() {
         None => nested(file, &shell).map(|()| shell),
@@ -92,103 +83,6 @@ fn parts(shell: &Shell<3>) -> Vec<Shell<3>> {
         crease: shell.crease,
     };
     members.iter().map(part).collect()
-}
-
-/// Welds with the smallest tolerance that closes the surface.
-fn weld(file: &str, soup: &Soup, notes: &mut Vec<String>) -> Result<Shell<3>, GeometryError> {
-    let size = Bounds::around(soup.triangles.iter().flatten()).extent().norm();
-    if size < SMALLEST || !size.is_finite() || soup.triangles.len() > u32::MAX as usize / 3 {
-        let what = format!("{} triangles of extent {size} are no surface", soup.triangles.len());
-        return Err(GeometryError::refused(file, what, "check the export"));
-    }
-    let open = |shell: &Shell<3>| runs(&facets(&shell.elements)).filter(|run| run.len() == 1).count();
-    let mut mended = Vec::new();
-    let mut best = welded(soup, WELD[0] * size, file, &mut mended);
-    let gaps = open(&best);
-    if gaps > 0 {
-        let mut wider = Vec::new();
-        let second = welded(soup, WELD[1] * size, file, &mut wider);
-        if open(&second) < gaps {
-            wider.push(format!(
-                "{file}: vertices up to {:.1e} apart are joined to close {gaps} open edges",
-                WELD[1] * size
-            ));
-            (best, mended) = (second, wider);
-        }
-    }
-    notes.append(&mut mended);
-    if best.elements.is_empty() {
-        return Err(GeometryError::refused(file, "all triangles are degenerate", "check the export"));
-    }
-    Ok(best)
-}
-
-/// Shell with vertices nearer than `tolerance` joined, without degenerate and repeated triangles.
-fn welded(soup: &Soup, tolerance: f64, file: &str, notes: &mut Vec<String>) -> Shell<3> {
-    let mut welder = Welder { cell: 4.0 * tolerance, tolerance, cells: HashMap::new(), vertices: Vec::new() };
-    let (mut elements, mut tags) = (Vec::new(), Vec::new());
-    let mut seen: HashSet<[u32; 3]> = HashSet::with_capacity(soup.triangles.len());
-    let (mut degenerate, mut repeated) = (0, 0);
-    for (triangle, &tag) in soup.triangles.iter().zip(&soup.tags) {
-        let element = triangle.map(|x| welder.vertex(&x));
-        let mut key = element;
-        key.sort_unstable();
-        if key[0] == key[1] || key[1] == key[2] {
-            degenerate += 1;
-        } else if !seen.insert(key) {
-            repeated += 1;
-        } else {
-            elements.push(element);
-            tags.push(tag);
-        }
-    }
-    for (count, kind) in [(degenerate, "degenerate"), (repeated, "repeated")] {
-        if count > 0 {
-            notes.push(format!("{file}: {count} {kind} triangles are left out"));
-        }
-    }
-    Shell {
-        vertices: welder.vertices,
-        elements,
-        normals: None,
-        tags,
-        tag_names: soup.names.clone(),
-        exact: Exact::None,
-        crease: CREASE,
-    }
-}
-
-/// Joins near points with a hashed grid of cells four tolerances wide: a ball of one tolerance meets few cells.
-struct Welder {
-    cell: f64,
-    tolerance: f64,
-    cells: HashMap<[i64; 3], Vec<u32>>,
-    vertices: Vec<Vector<3>>,
-}
-
-impl Welder {
-    fn key(&self, x: &Vector<3>, shift: &Vector<3>) -> [i64; 3] {
-        std::array::from_fn(|d| ((x[d] + shift[d]) / self.cell).floor() as i64)
-    }
-
-    fn vertex(&mut self, x: &Vector<3>) -> u32 {
-        let home = self.key(x, &Vector::ZERO);
-        for corner in 0..8_u32 {
-            let shift = Vector::from_fn(|d| if corner >> d & 1 == 1 { self.tolerance } else { -self.tolerance });
-            let key = self.key(x, &shift);
-            let near = |v: &&u32| (self.vertices[**v as usize] - *x).norm() <= self.tolerance;
-            if let Some(&v) = self.cells.get(&key).and_then(|cell| cell.iter().find(near)) {
-                return v;
-            }
-            if corner == 0 && key == home && self.key(x, &Vector::splat(self.tolerance)) == home {
-                break;
-            }
-        }
-        let v = self.vertices.len() as u32;
-        self.vertices.push(*x);
-        self.cells.entry(home).or_default().push(v);
-        v
-    }
 }
 
 /// A needle a-b-c with b on the side a-c opens a crack when dropped; instead the triangle beyond a-c is split at b.
@@ -327,7 +221,7 @@ fn volume(shell: &Shell<3>, members: &[usize], flipped: &[bool]) -> f64 {
     members.iter().map(|&e| flux(e)).sum()
 }
 
-/// Refuses edges with an odd number of triangles unless they border tiny holes.
+/// Refuses edges with an odd number of triangles.
 fn check_edges(file: &str, shell: &Shell<3>, notes: &mut Vec<String>) -> Result<(), GeometryError> {
     let all = facets(&shell.elements);
     let middle = |f: &Facet| (shell.vertices[f.vertices[0] as usize] + shell.vertices[f.vertices[1] as usize]) * 0.5;
@@ -344,37 +238,15 @@ fn check_edges(file: &str, shell: &Shell<3>, notes: &mut Vec<String>) -> Result<
     if open.is_empty() {
         return Ok(());
     }
-    let holes = holes(shell, &open);
-    let size = Bounds::around(&shell.vertices).extent().norm();
-    let places: Vec<String> = holes.iter().take(3).map(|h| at(&h.centre())).collect();
-    let what = format!("{} open edges in {} holes, the first near {}", open.len(), holes.len(), places.join(", "));
-    if holes.iter().any(|h| h.extent().norm() > GAP * size) {
-        return Err(GeometryError::refused(file, what, "close the surface; it must bound a volume"));
-    }
-    notes.push(format!("{file}: {what}; all are tiny and count as closed"));
-    Ok(())
-}
-
-/// Boxes around the groups of connected open edges, largest first.
-fn holes(shell: &Shell<3>, open: &[Facet]) -> Vec<Bounds<3>> {
-    let mut group: Vec<u32> = (0..shell.vertices.len() as u32).collect();
-    open.iter().for_each(|f| unite(&mut group, f.vertices[0], f.vertices[1]));
-    let mut boxes: BTreeMap<u32, Bounds<3>> = BTreeMap::new();
-    for v in open.iter().flat_map(|f| f.vertices) {
-        let entry = boxes.entry(root(&mut group, v)).or_insert(Bounds::EMPTY);
-        *entry = entry.grown(&shell.vertices[v as usize]);
-    }
-    let mut boxes: Vec<Bounds<3>> = boxes.into_values().collect();
-    boxes.sort_by(|a, b| b.extent().norm().total_cmp(&a.extent().norm()));
-    boxes
+    Err(GeometryError::refused(file, holes::told(shell, &open), "close the surface; it must bound a volume"))
 }
 
 /// Groups of facets with the same vertices.
-fn runs(facets: &[Facet]) -> impl Iterator<Item = &[Facet]> {
+pub(super) fn runs(facets: &[Facet]) -> impl Iterator<Item = &[Facet]> {
     facets.chunk_by(|a, b| a.vertices == b.vertices)
 }
 
-fn at(x: &Vector<3>) -> String {
+pub(super) fn at(x: &Vector<3>) -> String {
     format!("({:.6}, {:.6}, {:.6})", x[0], x[1], x[2])
 }
 
@@ -457,11 +329,39 @@ mod tests {
     }
 
     #[test]
-    fn missing_triangles_are_refused() {
-        let mut all = soup(&[&icosphere(1.0, 3)]);
-        all.triangles.truncate(1278);
-        let error = mend(&all).unwrap_err().to_string();
-        assert!(error.contains("open edges in ") && error.contains("the first near ("), "{error}");
+    fn small_holes_are_closed_and_large_ones_listed() {
+        let mut all = soup(&[&icosphere(1.0, 5)]);
+        all.triangles.truncate(20_477);
+        all.triangles.remove(40);
+        let (surface, notes) = mend(&all).unwrap();
+        assert!(notes.iter().any(|n| n.contains("small holes are closed")), "{notes:?}");
+        assert!(surface.is_closed());
+        let areas = (0..surface.elements.len() as u32).map(|e| surface.element_area_vector(e));
+        let area = areas.fold(Vector::ZERO, |a, b| a + b);
+        assert!(area.norm() < 1e-12, "{area:?}");
+        let far = |t: &[Vector<3>; 3]| (0..3).all(|d| t.iter().all(|x| x[d].abs() < 0.75));
+        let mut open = soup(&[&icosphere(1.0, 3)]);
+        open.triangles.retain(|t| !far(t));
+        let error = mend(&open).unwrap_err().to_string();
+        assert!(error.contains("open edges in 8 holes") && error.matches(" edges, ").count() == 8, "{error}");
+    }
+
+    #[test]
+    fn noise_is_welded_and_thin_edges_are_kept() {
+        let mut all = soup(&[&icosphere(1.0, 4)]);
+        let mut state = 1u64;
+        for x in all.triangles.iter_mut().flatten() {
+            *x = Vector::from_fn(|d| {
+                state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+                x[d] + 2e-5 * ((state >> 11) as f64 / (1u64 << 53) as f64 - 0.5)
+            });
+        }
+        let (surface, notes) = mend(&all).unwrap();
+        assert!(surface.vertices.len() == 2562 && notes.iter().any(|n| n.contains("joined")), "{notes:?}");
+        // a plate of a hundred-thousandth of its length with a crack of the same width keeps its two sides
+        let mut plate = soup(&[&cuboid([1.0, 1.0, 1e-5])]);
+        plate.triangles[0][0] = plate.triangles[0][0] + Vector([2e-5, 0.0, 0.0]);
+        assert!(mend(&plate).is_err());
     }
 
     #[test]
@@ -476,7 +376,7 @@ mod tests {
         }
         shell.elements.retain(|e| !e.contains(&tip));
         let (surface, notes) = mend(&soup(&[&shell])).unwrap();
-        assert!(notes.iter().any(|n| n.contains("in 1 holes") && n.contains("tiny")), "{notes:?}");
+        assert!(notes.iter().any(|n| n.contains("1 small hole is closed")), "{notes:?}");
         assert!(surface.inside(&(centre * 0.9)) && !surface.inside(&(centre * 1.1)));
     }
 

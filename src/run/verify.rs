@@ -12,6 +12,7 @@ use super::measure::{Measured, Value};
 use super::monitor::{Monitor, Tick};
 use super::session::{Outcome, Session};
 use crate::case::{Case, Length, read};
+use crate::observe::loads::Coefficients;
 use crate::verify::calibration::{KnownLoad, holding, median_ratio};
 use crate::verify::{Claim, ClaimFile, ClaimRow, Metric, Study, Table, metrics};
 
@@ -178,7 +179,8 @@ impl Walk {
             let key = self.ensure(&here, &here.case, monitor);
             let s = &self.at(&key)?.summary;
             let bars = s.loads_error.ok_or_else(|| format!("`{}` has no error bars", row.case))?;
-            let found = row.found(&s.loads, &bars).ok_or_else(|| wrong(&format!("no load `{}`", row.load)))?;
+            let found =
+                row.found(three(&s.loads), three(&bars)).ok_or_else(|| wrong(&format!("no load `{}`", row.load)))?;
             if claim.metric == Metric::BarsHolding {
                 monitor.note(&format!(
                     "{}: {} error {:.1e}, bar {:.1e}",
@@ -257,6 +259,10 @@ impl Folder {
         let case = read(&text, &path.display().to_string()).map_err(wrong)?;
         Ok(Self { name: format!("{}/{file}", self.name), case, ..self.clone() })
     }
+}
+
+fn three(c: &Coefficients) -> [f64; 3] {
+    [c.cl, c.cd, c.cm]
 }
 
 fn unreadable(path: &Path, problem: std::io::Error) -> WalkError {

@@ -3,7 +3,9 @@
 //! A table `case,load,exact` names case files and what one of their loads is. Loads that are zero because flow and body are
 //! symmetric do not belong in it: any bar holds them.
 use super::curve::{Table, TableError};
-use crate::observe::loads::Coefficients;
+
+/// Names of the loads.
+const LOADS: [&str; 3] = ["cl", "cd", "cm"];
 
 /// A load that is known exactly.
 #[derive(Clone, Debug, PartialEq)]
@@ -33,15 +35,10 @@ impl KnownLoad {
         Ok(rows.map(|((case, load), exact)| Self { case: case.clone(), load: load.clone(), exact }).collect())
     }
 
-    /// The load among `loads` and `half_widths` of a run; `None` for a name that is none.
-    pub fn found(&self, loads: &Coefficients, half_widths: &Coefficients) -> Option<BarredLoad> {
-        let of = |c: &Coefficients| match self.load.as_str() {
-            "cl" => Some(c.cl),
-            "cd" => Some(c.cd),
-            "cm" => Some(c.cm),
-            _ => None,
-        };
-        Some(BarredLoad { error: (of(loads)? - self.exact).abs(), half_width: of(half_widths)? })
+    /// The load among the three (lift, drag, moment) of a run and their half widths; `None` for a name that is none.
+    pub fn found(&self, loads: [f64; 3], half_widths: [f64; 3]) -> Option<BarredLoad> {
+        let k = LOADS.iter().position(|name| *name == self.load)?;
+        Some(BarredLoad { error: (loads[k] - self.exact).abs(), half_width: half_widths[k] })
     }
 }
 
@@ -68,9 +65,7 @@ mod tests {
     fn rows_are_read_and_judged() {
         let table = Table::parse("# source\ncase,load,exact\na.toml,cl,0.3\na.toml,cd,0\nb.toml,lift,1\n").unwrap();
         let rows = KnownLoad::all(&table).unwrap();
-        let loads = Coefficients { cl: 0.31, cd: 1e-4, ..Coefficients::default() };
-        let bars = Coefficients { cl: 0.005, cd: 3e-4, ..Coefficients::default() };
-        let found: Vec<_> = rows.iter().map(|r| r.found(&loads, &bars)).collect();
+        let found: Vec<_> = rows.iter().map(|r| r.found([0.31, 1e-4, 0.0], [0.005, 3e-4, 0.0])).collect();
         assert!(found[2].is_none());
         let found: Vec<_> = found.into_iter().flatten().collect();
         assert_eq!(holding(&found), Some(0.5));

@@ -4,6 +4,7 @@ use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
 use alula::case::{SCHEMA_FILE, template};
+use alula::geometry::{wing, write_stl};
 
 use crate::arguments;
 use crate::outcome::Outcome;
@@ -20,7 +21,7 @@ pub(crate) fn new(args: &arguments::New) -> Outcome {
     if path == Path::new("-") {
         return output::data(&text);
     }
-    match write(&path, &text, args.force) {
+    match write(&path, text.as_bytes(), args.force) {
         Ok(()) => {}
         Err(problem) if problem.kind() == ErrorKind::AlreadyExists => {
             output::error(&format!("`{}` exists", path.display()), "give another name, or replace it with `--force`");
@@ -30,7 +31,15 @@ pub(crate) fn new(args: &arguments::New) -> Outcome {
     }
     let schema = path.with_file_name(SCHEMA_FILE);
     let mut told = format!("wrote {}\n", path.display());
-    match write(&schema, &super::schema::text(), args.force) {
+    if args.template == "stl" {
+        let body = path.with_file_name("body.stl");
+        match write(&body, &wing_file(), args.force) {
+            Ok(()) => told += &format!("wrote {}, a wing to begin with\n", body.display()),
+            Err(problem) if problem.kind() == ErrorKind::AlreadyExists => {}
+            Err(problem) => return cannot_write(&body, &problem),
+        }
+    }
+    match write(&schema, super::schema::text().as_bytes(), args.force) {
         Ok(()) => told += &format!("wrote {}, by which editors complete and check cases\n", schema.display()),
         Err(problem) if problem.kind() == ErrorKind::AlreadyExists => {}
         Err(problem) => return cannot_write(&schema, &problem),
@@ -43,7 +52,15 @@ fn cannot_write(path: &Path, problem: &io::Error) -> Outcome {
     Outcome::BadInput
 }
 
-fn write(path: &Path, text: &str, force: bool) -> io::Result<()> {
+/// The wing that the template `stl` computes, as a binary STL file.
+fn wing_file() -> Vec<u8> {
+    let mut bytes = Vec::new();
+    // memory takes every byte
+    let _ = write_stl(&mut bytes, &wing());
+    bytes
+}
+
+fn write(path: &Path, bytes: &[u8], force: bool) -> io::Result<()> {
     let mut options = OpenOptions::new();
     options.write(true);
     if force {
@@ -51,7 +68,7 @@ fn write(path: &Path, text: &str, force: bool) -> io::Result<()> {
     } else {
         options.create_new(true)
     };
-    options.open(path)?.write_all(text.as_bytes())
+    options.open(path)?.write_all(bytes)
 }
 
 #[cfg(test)]
@@ -77,6 +94,12 @@ mod tests {
         assert_eq!(new(&args(true)), Outcome::Done);
         assert_eq!(std::fs::read_to_string(&schema).unwrap(), written);
         assert_eq!(std::fs::read_to_string(&path).unwrap(), template("airfoil").unwrap());
+        let stl =
+            arguments::New { template: "stl".to_owned(), path: Some(folder.path().join("wing.toml")), force: false };
+        assert_eq!(new(&stl), Outcome::Done);
+        let case = alula::case::read(&std::fs::read_to_string(folder.path().join("wing.toml")).unwrap(), "wing.toml");
+        let (surface, notes) = alula::geometry::load_surface::<3>(&case.unwrap().bodies, folder.path()).unwrap();
+        assert!(surface.is_closed() && notes.is_empty(), "{notes:?}");
         let nowhere = arguments::New { path: Some(folder.path().join("no/where.toml")), ..args(false) };
         assert_eq!(new(&nowhere), Outcome::BadInput);
     }

@@ -1,6 +1,7 @@
 //! The graph of the particles that exchange area: Σ_j w_ij (y_i − y_j), a Laplacian, and sweeps on coarser and coarser versions of
 //! it ([`crate::math::multilevel`]) that nearly invert it whatever the number of particles.
 use super::Problem;
+use super::symmetry::Mirror;
 use crate::cloud::coefficient_unknowns::{Kind, Link};
 use crate::math::Vector;
 use crate::math::block_matrix::BlockMatrix;
@@ -17,6 +18,7 @@ pub(super) struct Graph {
     /// Greatest weight, which counts as one in single precision.
     unit: f64,
     values: Vec<f64>,
+    mirrors: Vec<Mirror>,
 }
 
 impl Graph {
@@ -26,12 +28,14 @@ impl Graph {
         self.levels.apply(|i, b| (0..D).for_each(|d| b[d] = (r[i][d] / size) as f32), &mut self.values);
         let (values, scale) = (&self.values, size / self.unit);
         sweep(z, |i| Vector::from_fn(|d| values[i * D + d] * scale));
+        let mut other = Vec::new();
+        self.mirrors.iter().filter(|m| m.keeps(r)).for_each(|mirror| mirror.average(z, &mut other));
     }
 }
 
 impl<const D: usize> Problem<D> {
     /// The graph of the fluid particles.
-    pub(super) fn graph(&self) -> Graph {
+    pub(super) fn graph(&self, mirrors: Vec<Mirror>) -> Graph {
         let (mut first, mut index) = (vec![0], Vec::new());
         for i in 0..self.n_fluid {
             let mut others: Vec<u32> =
@@ -58,7 +62,7 @@ impl<const D: usize> Problem<D> {
         });
         levels.refresh();
         let values = vec![0.0; self.n_fluid * D];
-        Graph { levels, unit, values }
+        Graph { levels, unit, values, mirrors }
     }
 
     /// Entries of row `i` whose area vectors may change.

@@ -1,0 +1,133 @@
+//! Vertices of a soup of triangles that are one.
+//!
+//! The smallest tolerance that closes the surface is taken, from round-off over single precision to the noise of scans, as long as
+//! no triangle is lost by it: what is thinner than the tolerance stays as it is.
+use super::GeometryError;
+use super::mesh::Soup;
+use super::repair::runs;
+use super::shell::{Exact, Shell, facets};
+use crate::math::{Bounds, Vector};
+use std::collections::{HashMap, HashSet};
+use std::f64::consts::PI;
+
+/// Vertices nearer than these fractions of the body's diagonal are one; those above the rounding of single precision are tried only
+/// where smaller ones leave open edges.
+const WELD: [f64; 5] = [1e-9, 1e-6, 1e-5, 4e-5, 1e-4];
+/// Surfaces smaller than this are refused: squares of areas would underflow.
+const SMALLEST: f64 = 1e-50;
+/// Turning angle of sharp edges, radians (40°).
+const CREASE: f64 = 40.0 * PI / 180.0;
+
+/// Welds with the smallest tolerance that closes the surface.
+pub(super) fn weld(file: &str, soup: &Soup, notes: &mut Vec<String>) -> Result<Shell<3>, GeometryError> {
+    let size = Bounds::around(soup.triangles.iter().flatten()).extent().norm();
+    if size < SMALLEST || !size.is_finite() || soup.triangles.len() > u32::MAX as usize / 3 {
+        let what = format!("{} triangles of extent {size} are no surface", soup.triangles.len());
+        return Err(GeometryError::refused(file, what, "check the export"));
+    }
+    let mut mended = Vec::new();
+    let mut best = welded(soup, WELD[0] * size, file, &mut mended);
+    let (mut least, gaps) = (best.edges(), best.edges().open);
+    for tolerance in WELD[1..].iter().map(|t| t * size) {
+        if least.open == 0 {
+            break;
+        }
+        let mut wider = Vec::new();
+        let next = welded(soup, tolerance, file, &mut wider);
+        // a wider weld must close edges and not flatten what is thin
+        let edges = next.edges();
+        if edges.open < least.open && edges.crowded <= least.crowded && next.collapsed == best.collapsed {
+            wider.push(format!("{file}: vertices up to {tolerance:.1e} apart are joined to close {gaps} open edges"));
+            (best, least, mended) = (next, edges, wider);
+        }
+    }
+    let best = best.shell;
+    notes.append(&mut mended);
+    if best.elements.is_empty() {
+        return Err(GeometryError::refused(file, "all triangles are degenerate", "check the export"));
+    }
+    Ok(best)
+}
+
+/// Shell with vertices nearer than `tolerance` joined, without degenerate and repeated triangles.
+fn welded(soup: &Soup, tolerance: f64, file: &str, notes: &mut Vec<String>) -> Welded {
+    let mut welder = Welder { cell: 4.0 * tolerance, tolerance, cells: HashMap::new(), vertices: Vec::new() };
+    let (mut elements, mut tags) = (Vec::new(), Vec::new());
+    let mut seen: HashSet<[u32; 3]> = HashSet::with_capacity(soup.triangles.len());
+    let (mut degenerate, mut repeated) = (0, 0);
+    for (triangle, &tag) in soup.triangles.iter().zip(&soup.tags) {
+        let element = triangle.map(|x| welder.vertex(&x));
+        let mut key = element;
+        key.sort_unstable();
+        if key[0] == key[1] || key[1] == key[2] {
+            degenerate += 1;
+        } else if !seen.insert(key) {
+            repeated += 1;
+        } else {
+            elements.push(element);
+            tags.push(tag);
+        }
+    }
+    for (count, kind) in [(degenerate, "degenerate"), (repeated, "repeated")] {
+        if count > 0 {
+            notes.push(format!("{file}: {count} {kind} triangles are left out"));
+        }
+    }
+    let (vertices, tag_names) = (welder.vertices, soup.names.clone());
+    let shell = Shell { vertices, elements, normals: None, tags, tag_names, exact: Exact::None, crease: CREASE };
+    Welded { shell, collapsed: degenerate + repeated }
+}
+
+/// A shell, and how many triangles the weld left nothing of.
+struct Welded {
+    shell: Shell<3>,
+    collapsed: usize,
+}
+
+/// Numbers of edges with one triangle, and with more than two.
+#[derive(Clone, Copy)]
+struct Edges {
+    open: usize,
+    crowded: usize,
+}
+
+impl Welded {
+    fn edges(&self) -> Edges {
+        let all = facets(&self.shell.elements);
+        let count = |which: fn(usize) -> bool| runs(&all).filter(|run| which(run.len())).count();
+        Edges { open: count(|n| n == 1), crowded: count(|n| n > 2) }
+    }
+}
+
+/// Joins near points with a hashed grid of cells four tolerances wide: a ball of one tolerance meets few cells.
+struct Welder {
+    cell: f64,
+    tolerance: f64,
+    cells: HashMap<[i64; 3], Vec<u32>>,
+    vertices: Vec<Vector<3>>,
+}
+
+impl Welder {
+    fn key(&self, x: &Vector<3>, shift: &Vector<3>) -> [i64; 3] {
+        std::array::from_fn(|d| ((x[d] + shift[d]) / self.cell).floor() as i64)
+    }
+
+    fn vertex(&mut self, x: &Vector<3>) -> u32 {
+        let home = self.key(x, &Vector::ZERO);
+        for corner in 0..8_u32 {
+            let shift = Vector::from_fn(|d| if corner >> d & 1 == 1 { self.tolerance } else { -self.tolerance });
+            let key = self.key(x, &shift);
+            let near = |v: &&u32| (self.vertices[**v as usize] - *x).norm() <= self.tolerance;
+            if let Some(&v) = self.cells.get(&key).and_then(|cell| cell.iter().find(near)) {
+                return v;
+            }
+            if corner == 0 && key == home && self.key(x, &Vector::splat(self.tolerance)) == home {
+                break;
+            }
+        }
+        let v = self.vertices.len() as u32;
+        self.vertices.push(*x);
+        self.cells.entry(home).or_default().push(v);
+        v
+    }
+}
