@@ -49,8 +49,8 @@ const SHARE_POWER: i32 = 4;
 /// Reduction of the residual of the multipliers.
 const TOLERANCE: f64 = 1e-2;
 
-/// Most iterations of one solve: some thirty are usual, more than this many mean conditions that contradict one another.
-const MOST_ITERATIONS: usize = 500;
+/// Most iterations of one solve: some thirty are usual, and many times that in crevices.
+const MOST_ITERATIONS: usize = 4000;
 /// Largest linear error of coefficients that a flow can be computed with, generously: a healthy cloud has less than one. In
 /// crevices narrower than the spacing the conditions may contradict one another, and area vectors of any size come out.
 const WORST_ERROR: f64 = 1e3;

@@ -12,6 +12,7 @@
 use super::GeometryError;
 use super::outline::{self, Mark};
 use super::shell::Shell;
+use crate::case::text_of;
 use crate::math::{Bounds, Vector};
 use std::io::Read;
 
@@ -56,7 +57,9 @@ pub(super) fn read(file: &str, input: impl Read, notes: &mut Vec<String>) -> Res
 /// The text of a file; lines may end in `\r` alone, as old Macintosh programs wrote them.
 fn plain(file: &str, bytes: &[u8]) -> Result<String, GeometryError> {
     if bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]) {
-        return Err(GeometryError::refused(file.to_string(), "is UTF-16 text", "save it as UTF-8 or ASCII text"));
+        let wrong =
+            |_| GeometryError::refused(file.to_string(), "is broken UTF-16 text", "save it as UTF-8 or ASCII text");
+        return text_of(bytes).map_err(wrong).map(|text| text.replace("\r\n", "\n"));
     }
     let text = String::from_utf8_lossy(bytes);
     Ok(text.replace("\r\n", "\n").replace('\r', "\n"))
@@ -288,8 +291,10 @@ mod tests {
         assert_eq!(load(&rows.replace('\n', "\r")).is_ok(), load(rows).is_ok());
         assert!(load(&rows.replace(' ', ",")).is_ok() == load(rows).is_ok());
         let wide: Vec<u8> = [0xff, 0xfe].into_iter().chain(rows.bytes().flat_map(|b| [b, 0])).collect();
-        let told = read("wing.dat", &wide[..], &mut Vec::new()).map(|_| ()).unwrap_err().to_string();
-        assert!(told.contains("UTF-16"), "{told}");
+        assert_eq!(read("wing.dat", &wide[..], &mut Vec::new()).is_ok(), load(rows).is_ok());
+        let broken = [&wide[..], &[0x00, 0xd8]].concat();
+        let told = read("wing.dat", &broken[..], &mut Vec::new()).map(|_| ()).unwrap_err().to_string();
+        assert!(told.contains("broken UTF-16"), "{told}");
     }
 
     /// Greatest distance of the file's points from the surface.
