@@ -19,12 +19,16 @@ const STEADY_BYTES: f64 = 2110.0;
 const STEP_BYTES: f64 = 900.0;
 const BALANCE_BYTES: [f64; 2] = [3600.0, 1600.0];
 const EXPLICIT_BYTES: [f64; 2] = [1100.0, 1400.0];
+/// Bytes that pictures and report take at their peak: always, with each thread, with each particle.
+const PICTURES_BYTES: [f64; 3] = [42e6, 20e6, 700.0];
+/// Seconds that they take on one thread: of a flow that stands, and of one that moves.
+const PICTURES_SECONDS: [f64; 2] = [0.2, 1.2];
 /// Bytes of a particle in space over those in the plane.
 const SPACE_BYTES: f64 = 2.36;
 /// Residuals that a steady state takes on a plane cloud of [`USUAL`] particles, and in space.
-const STEADY: [f64; 2] = [570.0, 840.0];
+const STEADY: [f64; 2] = [570.0, 520.0];
 /// Growth of that number with the number of particles.
-const GROWTH: f64 = 0.27;
+const GROWTH: f64 = 0.15;
 const USUAL: f64 = 4000.0;
 /// Residuals of an implicit step in time.
 const STEP: f64 = 20.0;
@@ -70,8 +74,16 @@ impl Sized<'_> {
         let relaxed: f64 = points * sizes.iter().map(|n| n * each * self.steady(*n)).sum::<f64>();
         let marched = largest * each * self.in_time(largest, fastest);
         let starts = !matches!(self.case.time, Temporal::Explicit(_) | Temporal::Harmonics(_));
-        let seconds = marched + if starts { relaxed } else { 0.0 };
-        Cost { bytes: PROGRAM + largest * bytes_each(self.case, self.dimension), seconds }
+        let solved = marched + if starts { relaxed } else { 0.0 };
+        let bytes = PROGRAM + largest * bytes_each(self.case, self.dimension);
+        if !self.case.output.report {
+            return Cost { bytes, seconds: solved };
+        }
+        let threads = rayon::current_num_threads() as f64;
+        let [always, thread, each] = PICTURES_BYTES;
+        let pictures = always + threads * thread + largest * each;
+        let seconds = solved + PICTURES_SECONDS[usize::from(self.case.moves())] / threads;
+        Cost { bytes: bytes.max(pictures), seconds }
     }
 
     /// Particles of the clouds of the run, one after another.
@@ -134,10 +146,19 @@ mod tests {
     use super::*;
 
     fn cost(more: &str, particles: usize) -> Cost {
-        let text = format!("[flow]\nmach = 0.5\n[[body]]\nnaca = \"0012\"\n[cloud]\nspacing = 0.015625\n{more}");
+        let text = format!(
+            "[flow]\nmach = 0.5\n[[body]]\nnaca = \"0012\"\n[cloud]\nspacing = 0.015625\n{more}{}",
+            if more.contains("[output]") { "" } else { "[output]\nreport = false\n" }
+        );
         let case = crate::case::read(&text, "t").unwrap();
         Sized { case: &case, particles, dimension: 2, period: Some(10.0), evaluation: 1.7e-7 * particles as f64 }
             .cost(|| 1.0)
+    }
+
+    #[test]
+    fn pictures_count_where_they_are_drawn() {
+        let (with, without) = (cost("[output]\nreport = true\n", 4000), cost("", 4000));
+        assert!(with.bytes > without.bytes + 4e7 && with.seconds > without.seconds, "{with:?} {without:?}");
     }
 
     #[test] // greatest resident memory and processor seconds of the runs the numbers are fitted to
@@ -146,7 +167,7 @@ mod tests {
         let balance = |n: usize| format!("{moved}[time]\nharmonics = {n}\n");
         for (more, particles, megabytes, seconds) in [
             ("", 4111, 20.1, 0.4),
-            ("", 17_805, 49.0, 2.8),
+            ("", 17_805, 49.0, 2.0),
             (balance(1).as_str(), 3122, 27.3, 0.7),
             (&balance(2), 3122, 31.1, 0.9),
             (&balance(4), 3122, 43.3, 1.3),
