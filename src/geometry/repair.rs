@@ -360,7 +360,7 @@ mod tests {
         assert!(surface.vertices.len() == 2562 && notes.iter().any(|n| n.contains("joined")), "{notes:?}");
         // a plate of a hundred-thousandth of its length with a crack of the same width keeps its two sides
         let mut plate = soup(&[&cuboid([1.0, 1.0, 1e-5])]);
-        plate.triangles[0][0] = plate.triangles[0][0] + Vector([2e-5, 0.0, 0.0]);
+        plate.triangles[0][0] += Vector([2e-5, 0.0, 0.0]);
         assert!(mend(&plate).is_err());
     }
 

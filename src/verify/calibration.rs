@@ -54,7 +54,7 @@ pub fn median_ratio(loads: &[BarredLoad]) -> Option<f64> {
     ratios.sort_by(f64::total_cmp);
     let n = ratios.len();
     let middle = *ratios.get(n / 2)?;
-    Some(if n % 2 == 0 { 0.5 * (ratios[n / 2 - 1] + middle) } else { middle })
+    Some(if n.is_multiple_of(2) { 0.5 * (ratios[n / 2 - 1] + middle) } else { middle })
 }
 
 #[cfg(test)]

@@ -164,7 +164,7 @@ fn unsettled(log: &Log<'_>) -> Coefficients {
         let range = (high - low).max(0.0);
         if log.record.converged { range } else { 0.5 * range }
     };
-    Coefficients { cl: of("cl"), cd: of("cd"), cm: of("cm"), ..Coefficients::default() }
+    Coefficients { cl: of("cl"), cd: of("cd"), cm: of("cm") }
 }
 
 /// Half-width of the domain in lengths of the bodies.
