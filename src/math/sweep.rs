@@ -13,6 +13,11 @@ pub const CHUNK: usize = 1024;
 /// Most pieces that a loop is cut into where each slot is much work: enough that no thread waits long for another.
 const PIECES: usize = 1024;
 
+/// Threads that loops are shared out to.
+pub fn threads() -> usize {
+    rayon::current_num_threads()
+}
+
 // A loop meets the threads in `both` alone, which is compiled once for all of them. A call of a function that is known only at
 // run time costs nothing beside a chunk, and what the chunk holds is a plain loop, compiled for the formula inside it.
 

@@ -10,6 +10,7 @@ use serde::Serialize;
 use super::accuracy;
 use super::recipe::is_automatic;
 use crate::case::{Case, HarmonicCount, ParticleMotion, Polar, Temporal};
+use crate::math::sweep::threads;
 
 /// Bytes of a process that computes nothing.
 const PROGRAM: f64 = 11.4e6;
@@ -79,10 +80,10 @@ impl Sized<'_> {
         if !self.case.output.report {
             return Cost { bytes, seconds: solved };
         }
-        let threads = rayon::current_num_threads() as f64;
+        let shared = threads() as f64;
         let [always, thread, each] = PICTURES_BYTES;
-        let pictures = always + threads * thread + largest * each;
-        let seconds = solved + PICTURES_SECONDS[usize::from(self.case.moves())] / threads;
+        let pictures = always + shared * thread + largest * each;
+        let seconds = solved + PICTURES_SECONDS[usize::from(self.case.moves())] / shared;
         Cost { bytes: bytes.max(pictures), seconds }
     }
 
