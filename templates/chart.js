@@ -1,6 +1,6 @@
 // Charts answer to the pointer: drag to zoom, double-click to see everything, hover to read values. Their curves stand in the
 // page already; zooming moves them and draws new ticks.
-(() => {
+const Alula = (() => {
   "use strict";
   const node = (parent, name, attributes, text) => {
     const element = document.createElementNS("http://www.w3.org/2000/svg", name);
@@ -147,4 +147,5 @@
   }
 
   document.querySelectorAll("figure.chart").forEach(chart);
+  return { ticks, show, mix, part };
 })();

@@ -49,7 +49,7 @@ pub struct Viscous {
 }
 
 /// The free stream in numbers: dimensional when the case is, else in units of its density and sound speed.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct FreeStreamScales {
     /// Density.
     pub density: f64,

@@ -19,6 +19,7 @@ pub mod singular;
 pub mod square;
 pub mod sweep;
 pub mod symmetric;
+pub mod tetrahedra;
 pub mod triangulation;
 pub mod types;
 

@@ -39,6 +39,8 @@ pub enum Cells<'a> {
     Lines(&'a [[u32; 2]]),
     /// Triangles.
     Triangles(&'a [[u32; 3]]),
+    /// Tetrahedra, the last corner on the left of the first three.
+    Tetrahedra(&'a [[u32; 4]]),
     /// Quadrangles, corners in order around the border.
     Quads(&'a [[u32; 4]]),
     /// Axis-aligned boxes, corners with x fastest, then y, then z.
@@ -97,6 +99,7 @@ pub fn write_cells(path: &Path, points: &[[f64; 3]], cells: Cells, columns: &[Co
         Cells::Vertices => (1_u8, Joined::vertices(points.len())),
         Cells::Lines(cells) => (3, Joined::of(cells.iter().map(|c| &c[..]))),
         Cells::Triangles(cells) => (5, Joined::of(cells.iter().map(|c| &c[..]))),
+        Cells::Tetrahedra(cells) => (10, Joined::of(cells.iter().map(|c| &c[..]))),
         Cells::Quads(cells) => (9, Joined::of(cells.iter().map(|c| &c[..]))),
         Cells::Voxels(cells) => (11, Joined::of(cells.iter().map(|c| &c[..]))),
     };
@@ -374,6 +377,7 @@ mod tests {
         write_cells(&folder.join("quads.vtu"), &SQUARE, Cells::Quads(&[[0, 1, 2, 3]]), &[cp]).unwrap();
         write_cells(&folder.join("lines.vtu"), &SQUARE, Cells::Lines(&[[0, 1], [1, 2]]), &[cp]).unwrap();
         let cube: Vec<[f64; 3]> = (0..8).map(|k| [f64::from(k % 2), f64::from(k / 2 % 2), f64::from(k / 4)]).collect();
+        write_cells(&folder.join("tetrahedra.vtu"), &cube, Cells::Tetrahedra(&[[0, 1, 2, 4]]), &[]).unwrap();
         write_cells(&folder.join("voxels.vtu"), &cube, Cells::Voxels(&[[0, 1, 2, 3, 4, 5, 6, 7]]), &[]).unwrap();
         write_surface(&folder.join("chain.vtp"), &SQUARE, Facets::Polylines(&[vec![0, 1, 2, 3, 0]]), &[cp], &[])
             .unwrap();

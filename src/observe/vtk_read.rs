@@ -30,13 +30,27 @@ impl FieldFile {
         let xml = std::str::from_utf8(&bytes[..start]).ok()?;
         let part = |line: &str, key: &str| Some(line.split_once(&format!("{key}=\""))?.1.split_once('"')?.0.to_owned());
         let array = |line: &str| Some((part(line, "Name")?, part(line, "offset")?.parse().ok()?));
-        let wide = |line: &&str| line.contains("<DataArray type=\"Float64\"");
+        let wide =
+            |line: &&str| ["Float64", "Int64"].iter().any(|kind| line.contains(&format!("<DataArray type=\"{kind}\"")));
         let arrays = xml.lines().filter(wide).map(array).collect::<Option<_>>()?;
         Some(Self { arrays, start: start + MARKER.len(), bytes })
     }
 
     /// Numbers of the array called `name`.
     pub fn values(&self, name: &str) -> Option<Vec<f64>> {
+        Some(self.words(name)?.into_iter().map(f64::from_bits).collect())
+    }
+
+    /// Corners of its cells, `None` where they are not triangles.
+    pub fn triangles(&self) -> Option<Vec<[u32; 3]>> {
+        let ends = self.words("offsets")?;
+        let corners: Vec<u32> =
+            self.words("connectivity")?.into_iter().map(|i| u32::try_from(i).ok()).collect::<Option<_>>()?;
+        let three = ends.iter().enumerate().all(|(k, end)| *end == 3 * (k as u64 + 1));
+        (three && 3 * ends.len() == corners.len()).then(|| corners.as_chunks().0.to_vec())
+    }
+
+    fn words(&self, name: &str) -> Option<Vec<u64>> {
         let (_, offset) = self.arrays.iter().find(|(n, _)| n == name)?;
         let block = self.bytes.get(self.start.checked_add(*offset)?..)?;
         let word = |k: usize| Some(u64::from_le_bytes(block.get(8 * k..8 * k + 8)?.try_into().ok()?) as usize);
@@ -49,12 +63,7 @@ impl FieldFile {
             ZlibDecoder::new(packed).take(LONGEST).read_to_end(&mut unpacked).ok()?;
             at += size;
         }
-        Some(
-            unpacked
-                .chunks_exact(8)
-                .map(|b| f64::from_le_bytes([b[0], b[1], b[2], b[3], b[4], b[5], b[6], b[7]]))
-                .collect(),
-        )
+        Some(unpacked.as_chunks().0.iter().map(|b| u64::from_le_bytes(*b)).collect())
     }
 
     /// Places of the points.
@@ -65,7 +74,7 @@ impl FieldFile {
 
 #[cfg(test)]
 mod tests {
-    use super::super::vtk::{Column, write_points};
+    use super::super::vtk::{Cells, Column, write_cells, write_points};
     use super::*;
 
     #[test]
@@ -80,6 +89,10 @@ mod tests {
         assert_eq!(file.points().unwrap(), points);
         assert_eq!(file.values("density").unwrap(), density);
         assert!(file.values("pressure").is_none());
+        assert!(file.triangles().is_none(), "vertices");
+        let triangles = folder.path().join("triangles.vtu");
+        write_cells(&triangles, &points[..4], Cells::Triangles(&[[0, 1, 2], [3, 2, 1]]), &[]).unwrap();
+        assert_eq!(FieldFile::open(&triangles).unwrap().triangles().unwrap(), [[0, 1, 2], [3, 2, 1]]);
         let whole = std::fs::read(&path).unwrap();
         std::fs::write(&path, &whole[..whole.len() / 2]).unwrap();
         let cut = FieldFile::open(&path).unwrap();

@@ -27,6 +27,12 @@ const OTHER_FONTS: f64 = 1.15;
 const LEGEND_MARK: f64 = 26.0;
 const LEGEND_GAP: f64 = 16.0;
 
+/// Where along a loop its arrows are.
+const ARROWS: [f64; 2] = [0.125, 0.625];
+/// Length of their heads, and half their width over it.
+const ARROW: f64 = 11.0;
+const SLENDER: f64 = 0.45;
+
 /// Size of a sheet in pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Size {
@@ -66,6 +72,8 @@ pub struct Axis {
 pub enum Marks {
     /// Joined by straight lines.
     Line,
+    /// Joined, with arrows that tell in which order: loops against a motion.
+    Loop,
     /// Joined by dashes: theory and fits.
     Dashes,
     /// Separate dots: computed values in no order along a curve.
@@ -244,7 +252,9 @@ impl Entry<'_> {
         let Self { colour, at: [x, line], .. } = *self;
         let y = line - 4.0;
         match self.series.marks {
-            Marks::Line | Marks::Dashes => canvas.line(vec![[x, y], [x + 20.0, y]], self.series.pen(colour, 2.2)),
+            Marks::Line | Marks::Loop | Marks::Dashes => {
+                canvas.line(vec![[x, y], [x + 20.0, y]], self.series.pen(colour, 2.2));
+            }
             Marks::Dots => canvas.discs(vec![[x + 12.0, y]], 3.0, Some(colour), None),
             Marks::Rings => canvas.discs(vec![[x + 12.0, y]], 3.6, None, Some(Pen::new(colour, 1.4))),
             Marks::Bars => {
@@ -256,11 +266,30 @@ impl Entry<'_> {
     }
 }
 
+/// The head of an arrow at point `at` of a line, after a lifted pen; `None` where the line does not move on.
+fn arrow(line: &[[f64; 2]], at: usize) -> Option<[[f64; 2]; 4]> {
+    let (tip, before) = (line.get(at)?, line.get(at.checked_sub(1)?)?);
+    let [dx, dy] = [tip[0] - before[0], tip[1] - before[1]];
+    let size = dx.hypot(dy);
+    if !size.is_finite() || size == 0.0 {
+        return None;
+    }
+    let [dx, dy] = [dx / size * ARROW, dy / size * ARROW];
+    let side = |s: f64| [tip[0] - dx + s * dy * SLENDER, tip[1] - dy - s * dx * SLENDER];
+    Some([LIFTED, side(-1.0), *tip, side(1.0)])
+}
+
 /// Draws a series as one item.
 fn draw_series(canvas: &mut Canvas, frame: &Frame, series: &Series, colour: Colour) {
     let places = || series.x.iter().zip(&series.y).map(|(x, y)| frame.place(*x, *y)).collect();
     match series.marks {
         Marks::Line | Marks::Dashes => canvas.line(places(), series.pen(colour, 1.8)),
+        Marks::Loop => {
+            let places: Vec<[f64; 2]> = places();
+            let arrows = ARROWS.iter().filter_map(|part| arrow(&places, (part * places.len() as f64) as usize));
+            let all = places.iter().copied().chain(arrows.flatten()).collect();
+            canvas.line(all, series.pen(colour, 1.8));
+        }
         Marks::Dots => canvas.discs(places(), 2.2, Some(colour), None),
         Marks::Rings => canvas.discs(places(), 3.2, None, Some(Pen::new(colour, 1.3))),
         Marks::Bars => {
@@ -365,6 +394,14 @@ mod tests {
         assert_balanced(&svg);
         keep("chart-phase.svg", svg.as_bytes());
         keep("chart-phase.png", &chart.png().unwrap());
+    }
+
+    #[test]
+    fn loops_tell_their_direction() {
+        let line = [[0.0, 0.0], [10.0, 0.0], [10.0, 10.0]];
+        let head = arrow(&line, 1).unwrap();
+        assert!(head[0][0].is_nan() && head[2] == [10.0, 0.0] && head[1][0] < 10.0 && head[1][1] == -head[3][1]);
+        assert!(arrow(&line, 0).is_none() && arrow(&[[1.0, 1.0]; 2], 1).is_none() && arrow(&line, 3).is_none());
     }
 
     #[test]

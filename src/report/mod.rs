@@ -31,6 +31,7 @@ mod structure;
 pub mod surface;
 mod transfer;
 pub mod verification;
+mod viewer;
 
 pub use chart::{Axis, Chart, Marks, Series};
 pub use colour::Colormap;

@@ -11,6 +11,7 @@ use super::{ReportError, data_address};
 const MAX_POINTS: usize = 6000;
 const STYLE: &str = include_str!("../../templates/page.css");
 const SCRIPT: &str = include_str!("../../templates/chart.js");
+const VIEWER: &str = include_str!("../../templates/viewer.js");
 
 /// A whole page.
 #[derive(Default, Template)]
@@ -71,6 +72,8 @@ pub(super) enum Block {
     /// Small charts, one beside the other.
     Charts(Vec<Figure>),
     Pictures(Vec<Picture>),
+    /// A field that answers to the pointer: what the script of the page needs, as JSON.
+    Viewer(String),
     /// Text as it is.
     Code(String),
 }
@@ -117,6 +120,10 @@ impl Page {
     /// The page as a document.
     pub(super) fn html(&self) -> Result<String, ReportError> {
         Ok(self.render()?)
+    }
+
+    fn has_viewer(&self) -> bool {
+        self.sections.iter().flat_map(|s| &s.blocks).any(|block| matches!(block, Block::Viewer(_)))
     }
 
     /// What a terminal shows of the page: its lines and tables.

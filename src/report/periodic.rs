@@ -58,7 +58,8 @@ pub(super) fn loop_charts(runs: &[Period]) -> Vec<(Load, Chart)> {
     let Some((motion, label)) = motions.into_iter().find(|(motion, _)| moved(motion)) else { return Vec::new() };
     let one = |load: Load| {
         let name = |run: &Period| if runs.len() > 1 { run.name.clone() } else { load.name.to_owned() };
-        let lines = runs.iter().filter_map(|run| Some(run.loops.curve(motion, load.column, &name(run))?.closed()));
+        let closed = |run: &Period| Some(run.loops.curve(motion, load.column, &name(run))?.closed());
+        let lines = runs.iter().filter_map(closed).map(|s| Series { marks: Marks::Loop, ..s });
         let dots = runs.iter().filter_map(|run| run.instances.as_ref()?.curve(motion, load.column, "instances"));
         let series: Vec<Series> = lines.chain(dots.map(|s| Series { marks: Marks::Dots, ..s })).collect();
         let title = format!("{} over one period", load.name);

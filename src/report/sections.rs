@@ -5,6 +5,7 @@ use super::chart::{Axis, Chart, Marks, Series};
 use super::files::{Csv, LOADS, RunFolder};
 use super::page::{Block, Cell, Fact, Picture, Table};
 use super::pressure;
+use super::viewer::viewer;
 
 /// What pictures of the particles begin with.
 const OF_CLOUD: [&str; 3] = ["cloud", "particles", "doctor"];
@@ -111,7 +112,8 @@ pub(super) fn pictures(run: &RunFolder) -> Result<Vec<Block>, String> {
             || drawn && name.starts_with(CHORDWISE)
     };
     let block = pictures_of(run, |name| !elsewhere(name));
-    Ok(vec![block.ok_or("there are no pictures in `pictures/`")?])
+    let block = block.unwrap_or_else(|| Block::LeftOut("there are no pictures in `pictures/`".to_owned()));
+    Ok(viewer(run).into_iter().chain([block]).collect())
 }
 
 /// The pictures whose names are `wanted`, if any; of a picture in both formats the SVG.

@@ -184,7 +184,7 @@ impl Drawn {
             title: format!("Phase plane of {}", self.name),
             x: Axis::linear(&self.label("")),
             y: Axis::linear(&self.label(" rate")),
-            series: vec![Series::new("", Marks::Line, self.values.clone(), self.rates.clone())],
+            series: vec![Series::new("", Marks::Loop, self.values.clone(), self.rates.clone())],
         }
     }
 }

@@ -3,7 +3,7 @@ use super::accuracy;
 use super::look::friction::{Separation, add_friction, separations, wall_friction};
 use super::look::{WallSnapshot, pressure_load, totals};
 use super::recipe;
-use super::record::summary::{Clock, FILES, Ledger, Reclouding, Summary};
+use super::record::summary::{Clock, FILES, FreeStream, Ledger, Reclouding, Summary};
 use super::record::{Log, Record};
 use crate::case::{Case, Initial};
 use crate::geometry::Surface;
@@ -141,6 +141,7 @@ impl<const D: usize> Found<'_, D> {
             wall_seconds: wall,
             peak_bytes: peak_bytes(),
             work_units: record.work.total as f64 / self.view.cloud().n_fluid as f64,
+            free_stream: FreeStream { state: case.flow.reference(), gamma: case.flow.gamma },
             chord: self.axes.chord,
             loads,
             loads_pressure: part(&pressure),

@@ -9,7 +9,7 @@ use super::cost::{Cost, Sized};
 use super::error::RunError;
 use super::files::{Scene, Target, write_cloud};
 use super::folder;
-use super::look::load_axes;
+use super::look::{Mesh, load_axes};
 use super::setup::{self, Site, Solver, check_motion};
 use super::stage::Stage;
 use super::understood::Understood;
@@ -17,7 +17,7 @@ use crate::case::Case;
 use crate::cloud::{Cloud, Diagnosis};
 use crate::geometry::dimension;
 use crate::observe::table::write_json;
-use crate::observe::vtk::{Column, write_points};
+use crate::observe::vtk::{Column, write_cells};
 use crate::scheme::View;
 use crate::system::{Instant, System};
 
@@ -192,7 +192,7 @@ fn write<const D: usize>(
         Column { name: "volume", components: 1, values: &cloud.volume[..n] },
         Column { name: "condition", components: 1, values: &condition },
     ];
-    write_points(&to.out.join("cloud.vtu"), &points, &columns)?;
+    write_cells(&to.out.join("cloud.vtu"), &points, Mesh::of(cloud).cells(), &columns)?;
     write_json(&to.out.join("doctor.json"), &Diagnosis::of(cloud, fluid.discretisation.walls.n_linear))?;
     write_cloud(&Scene { to: *to, view: View::new(fluid, &frame, work), surface })
 }

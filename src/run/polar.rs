@@ -162,7 +162,8 @@ impl<'a, S: HasGas<D>, const D: usize> Course<'a, S, D> {
         log.turn_to(case, load_axes(case, surface), [point, self.points.len()]);
     }
 
-    /// A stage failed: the first stage of the same point, from rest, or of the next one.
+    /// A stage failed: the next stage, from the start of the case, after a cloud that only gives a start; the first stage of the same
+    /// point of a polar, from rest, or of the next one.
     pub(crate) fn failed(
         &mut self,
         k: usize,
@@ -171,6 +172,14 @@ impl<'a, S: HasGas<D>, const D: usize> Course<'a, S, D> {
         log: &mut Log<'_>,
     ) -> Result<usize, RunError> {
         let stage = stages[k];
+        if stage.factor > 1.0 && stage.point.is_none() && matches!(problem, RunError::Time { .. }) {
+            log.note(&format!(
+                "the cloud with {} times the spacing gives no start, for {}; the next one begins without it",
+                stage.factor,
+                first_line(&problem)
+            ));
+            return Ok(k + 1);
+        }
         let (Some(_), RunError::Time { .. }) = (stage.point, &problem) else { return Err(problem) };
         if !log.record.polar.from_rest {
             return Ok(again(k, stages, &first_line(&problem), log));

@@ -14,12 +14,15 @@ use crate::cloud::Diagnosis;
 use crate::geometry::Surface;
 use crate::observe::loads::together as both;
 use crate::observe::table::{Entry, write_csv, write_json};
-use crate::observe::vtk::{Cells, Column, Facets, read_collection, write_cells, write_collection, write_surface};
+use crate::observe::vtk::{Column, read_collection, write_cells, write_collection, write_surface};
 use crate::report;
 use crate::scheme::Work;
 
 pub(crate) use pictures::{together, write_cloud};
-pub(crate) use target::{FILM, Scene, Target};
+pub(crate) use target::{FILM, FILM_FIELDS, Scene, Target};
+
+/// Columns of the fields of a film.
+const FILMED: [&str; 4] = ["density", "velocity", "pressure", "vorticity"];
 
 /// Writes all files of a run that is over.
 pub(crate) fn write_all<const D: usize>(
@@ -132,7 +135,7 @@ impl<const D: usize> Files<'_, D> {
     }
 
     fn write_fields(&self, all: &Snapshot, time: f64) -> Result<(), RunError> {
-        let mesh = Mesh::of(&self.found.view);
+        let mesh = Mesh::of(self.found.view.cloud());
         write_field(&self.out.join("field.vtu"), all, &mesh)?;
         write_collection(&self.out.join("field.pvd"), &[(time, "field.vtu")])?;
         let cloud = self.found.view.cloud();
@@ -158,8 +161,7 @@ impl<const D: usize> Files<'_, D> {
         let columns: Vec<Column<'_>> =
             cut.iter().map(|(name, n, values)| Column { name, components: *n, values }).collect();
         let points = &all.points[range];
-        let facets = if D == 2 { Facets::Polylines(&mesh.outlines) } else { Facets::Vertices };
-        Ok(write_surface(&self.out.join("surface.vtp"), points, facets, &columns, &[])?)
+        Ok(write_surface(&self.out.join("surface.vtp"), points, mesh.facets(), &columns, &[])?)
     }
 }
 
@@ -167,8 +169,7 @@ impl<const D: usize> Files<'_, D> {
 fn write_field(path: &Path, all: &Snapshot, mesh: &Mesh) -> Result<(), RunError> {
     let columns: Vec<Column<'_>> =
         all.columns.iter().map(|(name, components, values)| Column { name, components: *components, values }).collect();
-    let cells = if mesh.triangles.is_empty() { Cells::Vertices } else { Cells::Triangles(&mesh.triangles) };
-    Ok(write_cells(path, &all.points, cells, &columns)?)
+    Ok(write_cells(path, &all.points, mesh.cells(), &columns)?)
 }
 
 /// Writes the field of one moment of a march, and the list of all so far; `interval` is one of the solver.
@@ -180,17 +181,23 @@ pub(crate) fn write_series<const D: usize>(
 ) -> Result<(), RunError> {
     let view = gas.seen(work);
     let (all, time, out) = (field(to.case, &view), to.case.flow.units().case_time(view.time()), to.out);
-    let number = passed(view.time(), interval);
-    write_field(&out.join(series_name(number)), &all, &Mesh::of(&view))?;
-    // a run that went on from a checkpoint writes the later ones again
-    let mut files = read_collection(&folder::text(out, "series.pvd").unwrap_or_default());
-    files.retain(|(t, f)| *t < time && *f != series_name(number));
-    files.push((time, series_name(number)));
-    let listed: Vec<(f64, &str)> = files.iter().map(|(t, f)| (*t, f.as_str())).collect();
-    Ok(write_collection(&out.join("series.pvd"), &listed)?)
+    let name = format!("field-{:05}.vtu", passed(view.time(), interval));
+    write_field(&out.join(&name), &all, &Mesh::of(view.cloud()))?;
+    list(out, "series.pvd", f64::NEG_INFINITY, (time, name))
 }
 
-/// Draws the flow at the end of part number `part` of the periods of the motion; each period replaces the one before.
+/// Adds a field to the list called `name`, in which only those after `since` stay. A run that went on from a checkpoint writes
+/// the later ones again.
+fn list(out: &Path, name: &str, since: f64, (time, file): (f64, String)) -> Result<(), RunError> {
+    let mut files = read_collection(&folder::text(out, name).unwrap_or_default());
+    files.retain(|(t, f)| *t > since && *t < time && *f != file);
+    files.push((time, file));
+    let listed: Vec<(f64, &str)> = files.iter().map(|(t, f)| (*t, f.as_str())).collect();
+    Ok(write_collection(&out.join(name), &listed)?)
+}
+
+/// Draws the flow at the end of part number `part` of the [`FILM`] parts of the periods of the motion; each period replaces the
+/// one before.
 pub(crate) fn write_film<const D: usize>(
     to: &Target<'_>,
     surface: &Surface<D>,
@@ -202,6 +209,20 @@ pub(crate) fn write_film<const D: usize>(
     pictures::write_film(&scene, (part - 1) as u32 % FILM + 1)
 }
 
-fn series_name(number: u64) -> String {
-    format!("field-{number:05}.vtu")
+/// The same of what a viewer of the field needs, at the end of part number `part` of the [`FILM_FIELDS`] parts of `period`.
+pub(crate) fn write_film_field<const D: usize>(
+    to: &Target<'_>,
+    gas: &GasView<'_, D>,
+    work: &mut Work<D>,
+    period: f64,
+    part: u64,
+) -> Result<(), RunError> {
+    let (view, units) = (gas.seen(work), to.case.flow.units());
+    let mut all = field(to.case, &view);
+    all.columns.retain(|(name, ..)| FILMED.contains(name));
+    let (time, period) = (units.case_time(view.time()), units.case_time(period));
+    let name = format!("film-{:02}.vtu", (part - 1) % u64::from(FILM_FIELDS) + 1);
+    write_field(&to.out.join(&name), &all, &Mesh::of(view.cloud()))?;
+    // one part is as long as a twelfth of the period: half of it is beyond doubt
+    list(to.out, "film.pvd", time - period * (1.0 - 0.5 / f64::from(FILM_FIELDS)), (time, name))
 }

@@ -7,6 +7,8 @@ use crate::scheme::View;
 
 /// Pictures of one period of a motion.
 pub(crate) const FILM: u32 = 6;
+/// Fields of the last period of a march: a picture of every second one.
+pub(crate) const FILM_FIELDS: u32 = 2 * FILM;
 
 /// Where files of a case go.
 #[derive(Clone, Copy)]

@@ -2,36 +2,73 @@
 //!
 //! In the plane the particles, those on walls and on the border included, are the corners of a constrained Delaunay
 //! triangulation. Outlines of bodies are sides of it, so that no triangle reaches through a wall, and triangles inside bodies are
-//! left out. In space the particles stay vertices.
+//! left out. In space they are the corners of a Delaunay tetrahedralisation without the tetrahedra that lie in bodies or reach
+//! through their walls; beyond a million particles they stay vertices, for the tetrahedra would take more memory than the solver.
+use crate::cloud::Cloud;
 use crate::math::Vector;
+use crate::math::tetrahedra::tetrahedralise;
 use crate::math::triangulation::triangulate;
-use crate::scheme::View;
+use crate::observe::vtk::{Cells, Facets};
 
 /// Two panels meet when their ends are nearer to one another than this part of their mean length.
 const MEETING: f64 = 0.5;
+
+/// Most particles between which there are tetrahedra.
+const MOST: usize = 1_000_000;
+/// Cosine of the angle between the normal of a wall particle and the way to a corner beyond which that is behind the wall.
+const BEHIND: f64 = -0.5;
 
 /// What ties particles together.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Mesh {
     /// Chains of wall particles, counted from the first of them; a closed one ends where it began.
     pub(crate) outlines: Vec<Vec<u32>>,
+    /// Walls in space: triangles of wall particles, counted from the first of them, counterclockwise as seen from the gas.
+    pub(crate) walls: Vec<[u32; 3]>,
     /// Triangles of particles, counterclockwise.
     pub(crate) triangles: Vec<[u32; 3]>,
+    /// Tetrahedra of particles, of positive volume.
+    pub(crate) tetrahedra: Vec<[u32; 4]>,
 }
 
 impl Mesh {
-    /// The cells of the plane cloud in `view` where particles are now; nothing in space.
-    pub(crate) fn of<const D: usize>(view: &View<'_, D>) -> Self {
-        if D != 2 {
-            return Self::default();
+    /// The cells of a cloud.
+    pub(crate) fn of<const D: usize>(cloud: &Cloud<D>) -> Self {
+        match D {
+            2 => Self::of_plane(cloud),
+            3 if cloud.n_real() <= MOST => Self::of_space(cloud),
+            _ => Self::default(),
         }
-        let cloud = view.cloud();
-        let flat = |x: Vector<D>| Vector([x[0], x[1]]);
-        let points: Vec<Vector<2>> = (0..cloud.n_real()).map(|i| flat(view.place(i))).collect();
+    }
+
+    fn of_space<const D: usize>(cloud: &Cloud<D>) -> Self {
+        let solid = |x: &Vector<D>| Vector(x.to_3d());
+        let points: Vec<Vector<3>> = cloud.x[..cloud.n_real()].iter().map(solid).collect();
+        let normals: Vec<Vector<3>> = cloud.interface.iter().map(|w| solid(&w.normal)).collect();
+        let mut tetrahedra = tetrahedralise(&points, &cloud.spacing[..cloud.n_real()]);
+        let first = cloud.n_fluid;
+        let normal = |i: u32| normals.get((i as usize).checked_sub(first)?).copied();
+        tetrahedra.retain(|corners| {
+            let middle = corners.iter().fold(Vector::ZERO, |sum, i| sum + points[*i as usize]) * 0.25;
+            let of_walls = || corners.iter().filter_map(|i| Some((points[*i as usize], normal(*i)?)));
+            let beside = |i: &u32| of_walls().all(|(x, n)| {
+                let way = points[*i as usize] - x;
+                normal(*i).is_some() || way.dot(&n) >= BEHIND * way.norm()
+            });
+            let front = of_walls().map(|(x, n)| (middle - x).unit().dot(&n)).sum::<f64>();
+            (of_walls().count() < 4 || front > 0.0) && corners.iter().all(beside)
+        });
+        let wall = |i: u32| (i as usize).checked_sub(first).filter(|w| *w < normals.len()).map(|w| w as u32);
+        Self { walls: walls(&tetrahedra, wall), tetrahedra, ..Self::default() }
+    }
+
+    fn of_plane<const D: usize>(cloud: &Cloud<D>) -> Self {
+        let flat = |x: &Vector<D>| Vector([x[0], x[1]]);
+        let points: Vec<Vector<2>> = cloud.x[..cloud.n_real()].iter().map(flat).collect();
         let first = cloud.n_fluid;
         let walls = Walls {
             places: &points[cloud.interface_range()],
-            normals: (0..cloud.interface.len()).map(|w| flat(view.normal(w))).collect(),
+            normals: cloud.interface.iter().map(|w| flat(&w.normal)).collect(),
             lengths: cloud.interface.iter().map(|w| w.area.norm()).collect(),
             pieces: cloud.interface.iter().map(|w| w.piece).collect(),
         };
@@ -45,8 +82,40 @@ impl Mesh {
             [Some(a), Some(b), Some(c)] => !walls.solid([a, b, c]),
             _ => true,
         });
-        Self { outlines, triangles }
+        Self { outlines, triangles, ..Self::default() }
     }
+
+    /// What a file of the walls holds: outlines in the plane, triangles in space, else each particle by itself.
+    pub(crate) fn facets(&self) -> Facets<'_> {
+        match self {
+            Self { outlines, .. } if !outlines.is_empty() => Facets::Polylines(outlines),
+            Self { walls, .. } if !walls.is_empty() => Facets::Triangles(walls),
+            _ => Facets::Vertices,
+        }
+    }
+
+    /// What a field file holds: tetrahedra or triangles where there are any, else each particle by itself.
+    pub(crate) fn cells(&self) -> Cells<'_> {
+        match self {
+            Self { tetrahedra, .. } if !tetrahedra.is_empty() => Cells::Tetrahedra(tetrahedra),
+            Self { triangles, .. } if !triangles.is_empty() => Cells::Triangles(triangles),
+            _ => Cells::Vertices,
+        }
+    }
+}
+
+/// Faces between three wall particles that one tetrahedron has alone, in the numbers that `wall` gives these.
+fn walls(tetrahedra: &[[u32; 4]], wall: impl Fn(u32) -> Option<u32>) -> Vec<[u32; 3]> {
+    let faces = |t: &[u32; 4]| [[t[0], t[1], t[2]], [t[0], t[3], t[1]], [t[1], t[3], t[2]], [t[2], t[3], t[0]]];
+    let on_wall = |[a, b, c]: [u32; 3]| Some([wall(a)?, wall(b)?, wall(c)?]);
+    let mut all: Vec<[u32; 3]> = tetrahedra.iter().flat_map(faces).filter_map(on_wall).collect();
+    let sorted = |face: &[u32; 3]| {
+        let mut face = *face;
+        face.sort_unstable();
+        face
+    };
+    all.sort_unstable_by_key(sorted);
+    all.chunk_by(|a, b| sorted(a) == sorted(b)).filter(|same| same.len() == 1).map(|same| same[0]).collect()
 }
 
 /// The wall particles of a plane cloud, each in the middle of a panel.

@@ -8,6 +8,7 @@ use super::super::look::friction::Separation;
 use super::crosscheck::LoadCrosscheck;
 use super::polar::PolarPoint;
 use super::trace::{Change, FirstHarmonics, LastPeriod, PeriodicLoads};
+use crate::case::FreeStreamScales;
 use crate::observe::convergence::Convergence;
 use crate::observe::loads::Coefficients;
 use crate::observe::usage::peak_bytes;
@@ -56,6 +57,8 @@ pub struct Summary {
     /// Evaluations of the residual of one instance on the cloud of the end, over all stages: those on coarser clouds count with
     /// their part of its particles.
     pub work_units: f64,
+    /// Density, pressure, speed, sound speed and Mach number of the free stream, and the ratio of specific heats.
+    pub free_stream: FreeStream,
     /// Chord of the load coefficients.
     pub chord: f64,
     /// What a harmonic balance found about itself.
@@ -120,6 +123,16 @@ pub struct Summary {
     pub adapt_change: Option<Coefficients>,
     /// Where the time went: name and wall seconds.
     pub phases: Vec<(String, f64)>,
+}
+
+/// The free stream in the units of the case.
+#[derive(Clone, Debug, Serialize)]
+pub struct FreeStream {
+    /// Its state.
+    #[serde(flatten)]
+    pub state: FreeStreamScales,
+    /// Ratio of specific heats.
+    pub gamma: f64,
 }
 
 /// What a harmonic balance found about itself.

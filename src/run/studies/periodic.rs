@@ -5,7 +5,7 @@ use num_complex::Complex64;
 
 use super::super::error::RunError;
 use super::super::files::{FILM, Target, together, write_film};
-use super::super::look::{GasView, motion, pressure_coefficient};
+use super::super::look::{GasView, Mesh, motion, pressure_coefficient};
 use super::super::record::Log;
 use super::super::record::trace::Sample;
 use super::super::watch::{compare, sample};
@@ -18,7 +18,7 @@ use crate::math::jet::Jet;
 use crate::motion::positions;
 use crate::observe::loads::Coefficients;
 use crate::observe::table::{Entry, write_csv};
-use crate::observe::vtk::{Column, write_points};
+use crate::observe::vtk::{Column, write_cells};
 use crate::scheme::{Exchange, Fluid, HasGas, Work};
 use crate::system::{Instant, System};
 use crate::time::harmonic::HarmonicBalance;
@@ -228,12 +228,13 @@ impl<S: HasGas<D>, const D: usize> PeriodicState<'_, S, D> {
         self.write_surface(&moments, out)
     }
 
-    /// Values of all real particles at the instances that hold the solution: density, velocity, pressure, Cp.
+    /// Values of all real particles at the instances that hold the solution: density, velocity, pressure, Cp, and how far each is
+    /// from where it is before any motion.
     fn moments(&self, case: &Case) -> Vec<Vec<Vec<f64>>> {
         let (system, fluid) = (self.system, self.system.gas());
         let (units, free) = (case.flow.units(), crate::scheme::start::free_stream::<D>(case));
         let rows = fluid.discretisation.cloud.n_real();
-        let mut values = vec![vec![Vec::new(); rows]; D + 3];
+        let mut values = vec![vec![Vec::new(); rows]; 2 * D + 3];
         let mut work = system.work();
         for n in 0..self.balance.instances().count() {
             let (frame, one) = self.instance(n);
@@ -246,6 +247,8 @@ impl<S: HasGas<D>, const D: usize> PeriodicState<'_, S, D> {
                 (0..D).for_each(|d| values[1 + d][i].push(velocity[d]));
                 values[D + 1][i].push(q.pressure * units.pressure());
                 values[D + 2][i].push(pressure_coefficient(q, &free));
+                let shift = view.frame.place(i) - fluid.discretisation.cloud.x[i];
+                (0..D).for_each(|d| values[D + 3 + d][i].push(shift[d]));
             }
         }
         values
@@ -261,10 +264,12 @@ impl<S: HasGas<D>, const D: usize> PeriodicState<'_, S, D> {
     fn write_field(&self, moments: &[Vec<Vec<f64>>], out: &Path) -> Result<(), RunError> {
         let (cloud, coefficient) = (&self.system.gas().discretisation.cloud, self.coefficient());
         let n = self.balance.instances().harmonics();
-        let bare = ["density", "velocity_x", "velocity_y", "velocity_z", "pressure"];
-        let names: Vec<&str> = (0..D + 2).map(|c| if c <= D { bare[c] } else { bare[4] }).collect();
+        let velocity = ["velocity_x", "velocity_y", "velocity_z"].into_iter().take(D);
+        let shift = ["displacement_x", "displacement_y", "displacement_z"].into_iter().take(D);
+        let names = std::iter::once("density").chain(velocity).chain(["pressure"]).chain(shift);
+        let told = moments[..D + 2].iter().chain(&moments[D + 3..]);
         let mut columns: Vec<(String, Vec<f64>)> = Vec::new();
-        for (name, values) in names.iter().zip(moments) {
+        for (name, values) in names.zip(told) {
             let column =
                 |row: usize, sign: f64| values.iter().map(|v| sign * coefficient(row, v)).collect::<Vec<f64>>();
             columns.push((format!("{name}_mean"), column(0, 1.0)));
@@ -276,7 +281,7 @@ impl<S: HasGas<D>, const D: usize> PeriodicState<'_, S, D> {
         let points: Vec<[f64; 3]> = cloud.x[..cloud.n_real()].iter().map(Vector::to_3d).collect();
         let columns: Vec<Column<'_>> =
             columns.iter().map(|(name, values)| Column { name, components: 1, values }).collect();
-        Ok(write_points(&out.join("field_harmonics.vtu"), &points, &columns)?)
+        Ok(write_cells(&out.join("field_harmonics.vtu"), &points, Mesh::of(cloud).cells(), &columns)?)
     }
 
     /// `surface_harmonics.csv`: the same of the pressure coefficient on the walls.

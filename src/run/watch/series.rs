@@ -1,6 +1,6 @@
 //! Fields and pictures of a march on the way.
 use super::super::error::RunError;
-use super::super::files::{FILM, Target, write_film, write_series};
+use super::super::files::{FILM, FILM_FIELDS, Target, write_film, write_film_field, write_series};
 use super::super::look::GasView;
 use super::super::record::{Log, passed};
 use super::drive::{Now, Observer};
@@ -29,7 +29,7 @@ impl<S: HasGas<D>, const D: usize> Observer<S> for FieldSeries<'_, S, D> {
     }
 }
 
-/// Draws the flow at equal parts of a period.
+/// Draws the flow and writes fields at equal parts of a period.
 pub(crate) struct Film<'a, S, const D: usize> {
     /// The system.
     pub(crate) system: &'a S,
@@ -40,13 +40,22 @@ pub(crate) struct Film<'a, S, const D: usize> {
 impl<S: HasGas<D>, const D: usize> Observer<S> for Film<'_, S, D> {
     fn step(&mut self, step: &Step, now: &mut Now<'_, S>, log: &mut Log<'_>) -> Result<(), RunError> {
         let (Some(journal), Some(period)) = (&log.journal, log.period) else { return Ok(()) };
-        let part = |t: f64| passed(t, period / f64::from(FILM));
-        if part(step.time) <= part(now.before) {
+        let before = now.before;
+        let begun = |parts: u32| {
+            let part = |t: f64| passed(t, period / f64::from(parts));
+            (part(step.time) > part(before)).then(|| part(step.time))
+        };
+        let (picture, field) = (begun(FILM), begun(FILM_FIELDS));
+        if picture.is_none() && field.is_none() {
             return Ok(());
         }
         let Standing { frame, work, state } = now.standing();
         let view = GasView::of(self.system, frame, state);
         let to = Target { case: log.case, out: &journal.out };
-        write_film(&to, self.surface, &view, self.system.gas_work(work), part(step.time))
+        let work = self.system.gas_work(work);
+        if let Some(part) = field {
+            write_film_field(&to, &view, work, period, part)?;
+        }
+        picture.map_or(Ok(()), |part| write_film(&to, self.surface, &view, work, part))
     }
 }

@@ -1,0 +1,93 @@
+//! Tetrahedra between points of space.
+//!
+//! A Delaunay tetrahedralisation by insertion (Bowyer 1981, doi:10.1093/comjnl/24.2.162; Watson 1981,
+//! doi:10.1093/comjnl/24.2.167) with exact predicates. Points of a lattice lie on common spheres, which makes exact predicates slow
+//! and tetrahedra flat: every point is moved by a millionth of its spacing first, always the same way, and what is flat
+//! nevertheless is left out.
+use simple_delaunay_lib::delaunay_3d::delaunay_struct_3d::DelaunayStructure3D;
+use simple_delaunay_lib::delaunay_3d::simplicial_struct_3d::Node;
+
+use super::Vector;
+use super::rotation::cross;
+
+/// Part of its spacing by which a point is moved at most.
+const MOVED: f64 = 1e-6;
+/// Six volumes over the cube of the longest side below which a tetrahedron is flat.
+const FLAT: f64 = 1e-4;
+
+/// Tetrahedra between `points`, which are `spacing` apart; the last corner is on the left of the first three, so that volumes are
+/// positive. None where there are fewer than four points or a coordinate is not a number.
+pub fn tetrahedralise(points: &[Vector<3>], spacing: &[f64]) -> Vec<[u32; 4]> {
+    let moved = moved(points, spacing);
+    if points.len() < 4 || !moved.iter().flatten().all(|x| x.is_finite()) {
+        return Vec::new();
+    }
+    let mut built = DelaunayStructure3D::new();
+    if built.insert_vertices(&moved, true).is_err() {
+        return Vec::new();
+    }
+    let all = built.get_simplicial();
+    let corners = |k: usize| -> Option<[u32; 4]> {
+        let mut corners = [0; 4];
+        for (corner, node) in corners.iter_mut().zip(all.get_tetrahedron(k).ok()?.nodes()) {
+            match node {
+                Node::Value(i) => *corner = i as u32,
+                Node::Infinity => return None,
+            }
+        }
+        turned(points, corners)
+    };
+    (0..all.get_nb_tetrahedra()).filter_map(corners).collect()
+}
+
+fn moved(points: &[Vector<3>], spacing: &[f64]) -> Vec<[f64; 3]> {
+    // a generator of Marsaglia (2003, doi:10.18637/jss.v008.i14): any numbers without a pattern would do
+    let mut seed = 0x9e37_79b9_7f4a_7c15_u64;
+    let mut part = || {
+        seed ^= seed << 13;
+        seed ^= seed >> 7;
+        seed ^= seed << 17;
+        (seed >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
+    };
+    points.iter().zip(spacing).map(|(x, h)| x.0.map(|x| x + MOVED * h * part())).collect()
+}
+
+/// The corners in an order that makes the volume positive, `None` for a flat tetrahedron.
+fn turned(points: &[Vector<3>], corners: [u32; 4]) -> Option<[u32; 4]> {
+    let [a, b, c, d] = corners.map(|i| points[i as usize]);
+    let volume = Vector(cross(&(b - a).0, &(c - a).0)).dot(&(d - a));
+    let sides = [b - a, c - a, d - a, c - b, d - b, d - c];
+    let longest = sides.iter().map(Vector::norm_squared).fold(0.0, f64::max).sqrt();
+    let [a, b, c, d] = corners;
+    (volume.abs() > FLAT * longest.powi(3)).then_some(if volume > 0.0 { [a, b, c, d] } else { [a, c, b, d] })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn volume(points: &[Vector<3>], t: &[u32; 4]) -> f64 {
+        let [a, b, c, d] = t.map(|i| points[i as usize]);
+        Vector(cross(&(b - a).0, &(c - a).0)).dot(&(d - a)) / 6.0
+    }
+
+    #[test]
+    fn a_lattice_is_covered_once() {
+        let at = |k: u32| f64::from(k) / 9.0;
+        let points: Vec<Vector<3>> =
+            (0..1000).map(|k| Vector([at(k % 10), at(k / 10 % 10), at(k / 100)])).collect();
+        let found = tetrahedralise(&points, &[1.0 / 9.0; 1000]);
+        assert!(found.iter().all(|t| volume(&points, t) > 0.0));
+        assert!((found.iter().map(|t| volume(&points, t)).sum::<f64>() - 1.0).abs() < 1e-6);
+        assert_eq!(found, tetrahedralise(&points, &[1.0 / 9.0; 1000]));
+    }
+
+    #[test]
+    fn what_is_no_body_of_points_has_none() {
+        assert!(tetrahedralise(&[Vector::ZERO; 3], &[1.0; 3]).is_empty());
+        assert!(tetrahedralise(&[Vector([f64::NAN; 3]); 5], &[1.0; 5]).is_empty());
+        assert!(tetrahedralise(&[Vector::ZERO; 6], &[1.0; 6]).is_empty(), "all in one place");
+        let flat: Vec<Vector<3>> = (0..25).map(|k| Vector([f64::from(k % 5), f64::from(k / 5), 0.0])).collect();
+        assert!(tetrahedralise(&flat, &[1.0; 25]).is_empty());
+    }
+}
