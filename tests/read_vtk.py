@@ -4,19 +4,25 @@
     pip install vtk
     python tests/read_vtk.py FILE.vtu FILE.vtp FILE.pvd ...
     python tests/read_vtk.py --plane RUN
+    python tests/read_vtk.py --space RUN
 
 Every message of the reader counts as a failure; the exit status is 1 when any file fails. With `--plane` the field of a plane
 run is used as in ParaView: its triangles cover the domain without the bodies, a contour and a slice are cut, and the
-pressure on the wall is integrated along its lines, which must give the forces of `loads.csv`.
+pressure on the wall is integrated along its lines, which must give the forces of `loads.csv`. With `--space` the same is done with
+the tetrahedra of a run in space and the triangles of its walls, and a streamline is followed past the body.
 """
 import csv
 import sys
 import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
-from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkCommonDataModel import VTK_TRIANGLE, vtkPlane
-from vtkmodules.vtkFiltersCore import vtkContourFilter, vtkCutter
+from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkPoints
+from vtkmodules.vtkCommonDataModel import VTK_TETRA, VTK_TRIANGLE, vtkPlane, vtkPolyData
+from vtkmodules.vtkFiltersCore import vtkContourFilter, vtkCutter, vtkMassProperties, vtkProbeFilter
+from vtkmodules.vtkFiltersFlowPaths import vtkStreamTracer
+from vtkmodules.vtkFiltersModeling import vtkSelectEnclosedPoints
+from vtkmodules.vtkFiltersSources import vtkPointSource
 from vtkmodules.vtkIOXML import vtkXMLPolyDataReader, vtkXMLUnstructuredGridReader
 import numpy
 
@@ -163,6 +169,97 @@ def check_plane(run):
             and abs(cut - expected) < 1e-6 * expected and errors[0] < FORCE and errors[1] < PANELS)
 
 
+# Part of the places in the gas that are in no tetrahedron, and of those in the body that are in one.
+PLACES = 1e-3
+# Wall forces from the triangles between wall particles, as above: a body of flat triangles is smaller than a round one.
+TRIANGLES = 2e-2
+# What the area vectors of the triangles of a body add up to; sharp edges leave gaps.
+GAP = 1e-3
+
+
+def covered(field, wall, middle, reach, count=20000):
+    """For places around the body: is each outside the triangles of the wall, and in a cell of the field."""
+    places = middle + reach * numpy.random.default_rng(1).uniform(-1.0, 1.0, (count, 3))
+    points, cloud = vtkPoints(), vtkPolyData()
+    points.SetData(numpy_to_vtk(places))
+    cloud.SetPoints(points)
+    enclosed, probe = vtkSelectEnclosedPoints(), vtkProbeFilter()
+    enclosed.SetInputData(cloud)
+    enclosed.SetSurfaceData(wall)
+    enclosed.Update()
+    probe.SetInputData(cloud)
+    probe.SetSourceData(field)
+    probe.ComputeToleranceOff()
+    probe.SetTolerance(1e-9)
+    probe.Update()
+    inside = vtk_to_numpy(enclosed.GetOutput().GetPointData().GetArray("SelectedPoints"))
+    known = vtk_to_numpy(probe.GetOutput().GetPointData().GetArray(probe.GetValidPointMaskArrayName()))
+    return inside == 0, known != 0
+
+
+def check_space(run):
+    field, wall = opened(run / "field.vtu"), opened(run / "surface.vtp")
+    if field.GetCellType(0) != VTK_TETRA or not wall.GetNumberOfPolys():
+        print(f"{run.name}: the cells of the field are no tetrahedra, or those of the walls no triangles")
+        return False
+    points = vtk_to_numpy(field.GetPoints().GetData())
+    corners = vtk_to_numpy(field.GetCells().GetConnectivityArray()).reshape(-1, 4)
+    a, b, c, d = (points[corners[:, k]] for k in range(4))
+    volumes = numpy.einsum("ij,ij->i", numpy.cross(b - a, c - a), d - a) / 6.0
+    mass = vtkMassProperties()
+    mass.SetInputData(wall)
+    mass.Update()
+    at_wall = vtk_to_numpy(wall.GetPoints().GetData())
+    triangles = vtk_to_numpy(wall.GetPolys().GetConnectivityArray()).reshape(-1, 3)
+    middle, reach = at_wall.mean(axis=0), numpy.ptp(at_wall, axis=0)
+    gas, found = covered(field, wall, middle, numpy.minimum(1.5 * reach, 0.4 * numpy.ptp(points, axis=0)))
+    missing = numpy.count_nonzero(gas & ~found) / numpy.count_nonzero(gas)
+    inside = numpy.count_nonzero(~gas & found) / max(1, numpy.count_nonzero(~gas))
+    print(f"{run.name}: {len(corners)} tetrahedra, smallest {volumes.min():.3g}; of places in the gas {missing:.2g} in none, of those "
+          f"in the body {inside:.2g} in one; {len(triangles)} triangles around a body of {mass.GetVolume():.6g}")
+
+    contour, plane, cutter = vtkContourFilter(), vtkPlane(), vtkCutter()
+    contour.SetInputData(field)
+    contour.SetInputArrayToProcess(0, 0, 0, 0, "mach")
+    contour.SetValue(0, float(numpy.median(array(wall, "mach"))))
+    contour.Update()
+    plane.SetOrigin(*(middle + 1e-3))
+    plane.SetNormal(0.0, 1.0, 0.0)
+    cutter.SetInputData(field)
+    cutter.SetCutFunction(plane)
+    cutter.Update()
+    cut = cutter.GetOutput().GetNumberOfPolys()
+    seeds, tracer = vtkPointSource(), vtkStreamTracer()
+    seeds.SetNumberOfPoints(1)
+    seeds.SetRadius(0.0)
+    seeds.SetCenter(middle[0] - reach[0], middle[1] + 0.1 * reach[1], middle[2] + 0.1 * reach[2])
+    tracer.SetInputData(field)
+    tracer.SetSourceConnection(seeds.GetOutputPort())
+    tracer.SetInputArrayToProcess(0, 0, 0, 0, "velocity")
+    tracer.SetMaximumPropagation(float(4.0 * reach[0]))
+    tracer.SetIntegratorTypeToRungeKutta45()
+    tracer.Update()
+    path = vtk_to_numpy(tracer.GetOutput().GetPoints().GetData())
+    past = path[:, 0].max() > middle[0] + reach[0]
+    polygons = contour.GetOutput().GetNumberOfPolys()
+    print(f"  contour of Mach with {polygons} triangles, slice with {cut}, streamline to x = {path[:, 0].max():.4g}")
+
+    pressure, area = array(wall, "pressure"), array(wall, "area_vector")
+    a, b, c = (at_wall[triangles[:, k]] for k in range(3))
+    outward = 0.5 * numpy.cross(b - a, c - a)
+    force = -(pressure[triangles].mean(axis=1) @ outward)
+    panels = -pressure @ area
+    with open(run / "loads.csv") as table:
+        rows = list(csv.DictReader(table))
+    told = numpy.array([sum(float(row[key]) for row in rows) for key in ("fx", "fy", "fz")])
+    scale = numpy.ptp(pressure) * numpy.linalg.norm(area, axis=1).sum()
+    errors = [float(numpy.abs(f - told).max() / scale) for f in (force, panels)]
+    print(f"  force {force}, loads.csv {told}: off by {errors[0]:.2g}, panels {errors[1]:.2g}")
+    gap = numpy.abs(outward.sum(axis=0)).max() / numpy.abs(outward).sum()
+    print(f"  areas of the triangles add up to {gap:.2g} of all")
+    return bool(gap < GAP and volumes.min() > 0.0 and missing < PLACES and inside < PLACES and polygons > 0 and cut > 0 and past and errors[0] < TRIANGLES and errors[1] < PANELS)
+
+
 def crossings(chain, x):
     """Heights at which a chain of points crosses a vertical line."""
     a, b = chain[:-1], chain[1:]
@@ -175,8 +272,9 @@ def main(names):
     if not names:
         print(__doc__)
         return 2
-    if names[0] == "--plane":
-        bad = [run for run in names[1:] if not check_plane(Path(run))]
+    checks = {"--plane": check_plane, "--space": check_space}
+    if names[0] in checks:
+        bad = [run for run in names[1:] if not checks[names[0]](Path(run))]
         for run in bad:
             print(f"FAILED {run}")
         return 1 if bad else 0

@@ -49,7 +49,10 @@ const SHARE_POWER: i32 = 4;
 /// Reduction of the residual of the multipliers.
 const TOLERANCE: f64 = 1e-2;
 
-/// Most iterations of one solve: some thirty are usual, and many times that in crevices.
+/// Most iterations for the multipliers: some thirty are usual. At thin edges and in crevices the conditions nearly contradict one
+/// another, and hundreds more would only trade one particle's linear error for another's.
+const MOST_FOR_MULTIPLIERS: usize = 100;
+/// Most iterations for the closure, which is to be round-off.
 const MOST_ITERATIONS: usize = 4000;
 /// Largest linear error of coefficients that a flow can be computed with, generously: a healthy cloud has less than one. In
 /// crevices narrower than the spacing the conditions may contradict one another, and area vectors of any size come out.
@@ -349,7 +352,7 @@ impl<const D: usize> Problem<D> {
         };
         let enough = |r: &[Row<D>]| sum(r.len(), |i| size(&r[i], i)) <= goal;
         let product = |y: &[Row<D>], out: &mut [Row<D>]| self.apply(y, out);
-        conjugate_gradients(y, &mut r, MOST_ITERATIONS, Symmetric { enough, product, precondition })
+        conjugate_gradients(y, &mut r, MOST_FOR_MULTIPLIERS, Symmetric { enough, product, precondition })
     }
 
     /// Raises ε around particles whose volume is too small; number of particles touched so far, zero when nothing was done.
