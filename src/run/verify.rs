@@ -14,12 +14,15 @@ use super::session::{Outcome, Session};
 use crate::case::{Case, Length, read};
 use crate::observe::loads::Coefficients;
 use crate::verify::calibration::{KnownLoad, holding, median_ratio};
-use crate::verify::{Claim, ClaimFile, ClaimRow, Metric, Study, Table, metrics};
+use crate::verify::{Claim, ClaimFile, ClaimRow, Metric, Sample, Study, Table, metrics};
 
 /// Name of the folder of all cases.
 const FOLDER: &str = "verification";
 /// Files of one case.
 const FILES: [&str; 2] = ["case.toml", "claim.toml"];
+
+/// By how much the angles of attack of an ensemble differ, radians: loads change by a hundred thousandth, chaos by all it can.
+const NEXT_TO_NOTHING: f64 = 1e-6;
 
 /// Why a walk cannot begin.
 #[derive(Debug, thiserror::Error)]
@@ -132,8 +135,8 @@ impl Walk {
                 Some(file) => folder
                     .beside(file)
                     .map_err(|e| e.to_string())
-                    .and_then(|other| self.measure(claim, &other, monitor)),
-                None => self.measure(claim, &folder, monitor),
+                    .and_then(|other| self.sample(claim, &other, monitor)),
+                None => self.sample(claim, &folder, monitor),
             };
             rows.push(row(claim, &folder.name, value));
             if monitor.stop() {
@@ -141,6 +144,20 @@ impl Walk {
             }
         }
         Some(rows)
+    }
+
+    /// The value of a claim, or the mean of its ensemble: runs whose angles of attack differ by next to nothing.
+    fn sample(&mut self, claim: &Claim, folder: &Folder, monitor: &mut dyn Monitor) -> Result<Sample, String> {
+        let member = |k: usize| {
+            let mut member = folder.clone();
+            if k > 0 {
+                member.name = format!("{}, run {}", folder.name, k + 1);
+                member.case.flow.alpha.0 += NEXT_TO_NOTHING * k as f64;
+            }
+            member
+        };
+        let values = (0..claim.ensemble.unwrap_or(1)).map(|k| self.measure(claim, &member(k), monitor));
+        Ok(Sample::of(&values.collect::<Result<Vec<f64>, _>>()?))
     }
 
     fn measure(&mut self, claim: &Claim, folder: &Folder, monitor: &mut dyn Monitor) -> Value {
@@ -273,9 +290,9 @@ fn is_extrapolation(metric: Metric) -> bool {
     matches!(metric, Metric::ExtrapolatedCl | Metric::ExtrapolatedCd)
 }
 
-fn row(claim: &Claim, case: &str, value: Value) -> ClaimRow {
+fn row(claim: &Claim, case: &str, value: Result<Sample, String>) -> ClaimRow {
     match value {
-        Ok(value) => claim.judge(case, value),
+        Ok(sample) => claim.judge_sample(case, sample),
         Err(problem) => {
             let first = problem.replace('\n', "; ");
             ClaimRow { source: format!("no value: {first}"), ..claim.judge(case, f64::NAN) }

@@ -79,6 +79,31 @@ pub struct Claim {
     pub region: Option<[Vec<f64>; 2]>,
     /// Two pressures (over the free stream's) on either side of a wave or front.
     pub levels: Option<[f64; 2]>,
+    /// Number of runs that differ by next to nothing, for flows that are chaotic: their mean is judged, with its scatter.
+    pub ensemble: Option<usize>,
+}
+
+/// The same metric of several runs.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sample {
+    /// Number of runs.
+    pub count: usize,
+    /// Their mean.
+    pub mean: f64,
+    /// Twice the standard error of the mean.
+    pub scatter: f64,
+}
+
+impl Sample {
+    /// Mean and scatter; of one value it is zero.
+    pub fn of(values: &[f64]) -> Self {
+        let count = values.len();
+        let n = count as f64;
+        let mean = values.iter().sum::<f64>() / n;
+        let squares: f64 = values.iter().map(|v| (v - mean).powi(2)).sum();
+        let scatter = if count > 1 { 2.0 * (squares / (n - 1.0) / n).sqrt() } else { 0.0 };
+        Self { count, mean, scatter }
+    }
 }
 
 /// A body whose wall pressure is known exactly.
@@ -305,11 +330,19 @@ impl Metric {
 impl Claim {
     /// Judges the measured `value` of the case folder `case`.
     pub fn judge(&self, case: &str, value: f64) -> ClaimRow {
-        let (reference, error, tolerance, pass) = self.kind.compare(value);
-        let metric = match &self.label {
-            Some(label) => format!("{} ({label})", self.metric.name()),
-            None => self.metric.name().to_string(),
-        };
+        self.judge_sample(case, Sample { count: 1, mean: value, scatter: 0.0 })
+    }
+
+    /// The row of the mean of several runs; it passes where the mean does at both ends of its scatter.
+    pub fn judge_sample(&self, case: &str, sample: Sample) -> ClaimRow {
+        let value = sample.mean;
+        let ends = [value - sample.scatter, value + sample.scatter];
+        let (reference, error, tolerance, _) = self.kind.compare(value);
+        let pass = ends.iter().all(|end| self.kind.compare(*end).3);
+        let several = (sample.count > 1).then(|| format!("mean of {} runs, ± {:.1e}", sample.count, sample.scatter));
+        let words: Vec<&str> = self.label.iter().chain(&several).map(String::as_str).collect();
+        let words = if words.is_empty() { String::new() } else { format!(" ({})", words.join("; ")) };
+        let metric = format!("{}{words}", self.metric.name());
         ClaimRow {
             case: case.to_string(),
             metric,
@@ -474,6 +507,16 @@ mod tests {
         for kind in [relative, absolute, range, Kind::AtMost(1.0), Kind::AtLeast(1.0)] {
             assert!(!verdict(kind, f64::NAN));
         }
+    }
+
+    #[test]
+    fn a_mean_is_judged_with_its_scatter() {
+        let sample = Sample::of(&[1.0, 1.2, 0.8, 1.0]);
+        assert!((sample.mean - 1.0).abs() < 1e-15 && (sample.scatter - 0.163_299).abs() < 1e-6);
+        let verdict = |bound: f64| claim(Kind::AtMost(bound)).judge_sample("case", sample);
+        assert!(verdict(1.17).pass && !verdict(1.16).pass && verdict(2.0).metric.contains("mean of 4 runs, ± 1.6e-1"));
+        assert_eq!(Sample::of(&[3.0]).scatter, 0.0);
+        assert!(!claim(Kind::AtMost(1.0)).judge_sample("case", Sample::of(&[f64::NAN, 0.0])).pass);
     }
 
     #[test]

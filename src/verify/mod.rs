@@ -15,7 +15,7 @@ pub mod truth;
 pub mod wall;
 
 pub use crate::case::ClaimRow;
-pub use claim::{Claim, ClaimError, ClaimFile, Exact, Kind, Metric, Study};
+pub use claim::{Claim, ClaimError, ClaimFile, Exact, Kind, Metric, Sample, Study};
 pub use curve::{Curve, Table};
 pub use loops::Loops;
 pub use truth::{FieldTruth, WallTruth};

@@ -3,6 +3,9 @@ use toml::{Table, Value};
 
 use super::claim::{Claim, Exact, Kind, Metric, Study};
 
+/// Most runs of an ensemble.
+const MOST_RUNS: f64 = 64.0;
+
 pub(super) fn parse_study(table: &Table, problems: &mut Vec<String>) -> Option<Study> {
     let before = problems.len();
     let mut keys = Keys::new(table, "study: ".into(), problems);
@@ -37,6 +40,10 @@ pub(super) fn parse_claim(table: &Table, number: usize, problems: &mut Vec<Strin
     if table.contains_key("levels") && levels.is_none() {
         keys.problem("`levels` must be two numbers\nhint: write the pressures ahead and behind, `levels = [1.0, 1.7]`");
     }
+    let ensemble = keys.number("ensemble");
+    if ensemble.is_some_and(|n| n.fract() != 0.0 || !(2.0..=MOST_RUNS).contains(&n)) {
+        keys.problem("`ensemble` must be a whole number from 2 to 64\nhint: four runs tell scatter from chance");
+    }
     keys.finish();
     if problems.len() > before {
         return None;
@@ -54,6 +61,7 @@ pub(super) fn parse_claim(table: &Table, number: usize, problems: &mut Vec<Strin
         coordinate,
         region,
         levels,
+        ensemble: ensemble.map(|n| n as usize),
     })
 }
 
