@@ -116,6 +116,16 @@ def run(
     Raises CaseError, ComputationError, OSError, and KeyboardInterrupt at the end of the iteration in which Ctrl-C came.
     """
 
+def resume(
+    out: Union[str, PathLike[str]],
+    progress: Optional[Callable[[dict[str, Any]], Any]] = None,
+    threads: Optional[int] = None,
+) -> Result:
+    """Goes on with the run in the folder `out` that was stopped, from its checkpoint, to the same bits as if it had not been.
+
+    Raises CaseError where there is nothing to go on with, else what `run` raises.
+    """
+
 def check(case: Case) -> dict[str, Any]:
     """Reads a case, builds its cloud, and tells what it means and what a run will take; computes no flow.
 

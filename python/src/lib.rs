@@ -23,7 +23,7 @@ mod module {
     #[pymodule_export]
     use super::results::Result;
     #[pymodule_export]
-    use super::work::{check, run};
+    use super::work::{check, resume, run};
 
     #[pymodule_init]
     fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {

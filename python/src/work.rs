@@ -11,7 +11,8 @@ use std::time::Duration;
 use pyo3::exceptions::{PyRuntimeError, PyTypeError, PyUserWarning, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use solver::run::{Monitor, Outcome, RunError, Session, Solution, Tick, inspect};
+use solver::case::Case;
+use solver::run::{Monitor, Outcome, RunError, Session, Solution, Tick, continued, inspect, is_finished};
 
 use crate::cases::Given;
 use crate::faults;
@@ -54,7 +55,7 @@ const STACK: usize = 8 << 20;
 /// OSError
 ///     A file cannot be read or written, or `out` holds a run already.
 /// KeyboardInterrupt
-///     Ctrl-C: the iteration was finished and, with `out`, a checkpoint written; `alula resume` goes on from there.
+///     Ctrl-C: the iteration was finished and, with `out`, a checkpoint written; `resume` goes on from there.
 ///
 /// What makes results doubtful is told as a `UserWarning`.
 #[pyfunction]
@@ -66,15 +67,86 @@ pub(crate) fn run(
     progress: Option<Py<PyAny>>,
     threads: Option<usize>,
 ) -> PyResult<Found> {
-    if let Some(other) = progress.as_ref().map(|p| p.bind(py)).filter(|p| !p.is_callable()) {
-        let kind = other.get_type().name()?;
-        return Err(PyTypeError::new_err(format!("`progress` is a `{kind}`; allowed: what can be called with a dict")));
-    }
-    if threads == Some(0) {
-        let text = "`threads` is 0; allowed: 1 or more\nhint: leave it out for one for each core";
-        return Err(PyValueError::new_err(text));
-    }
+    let wishes = Wishes::of(py, progress, threads)?;
     let given = Given::of(case)?;
+    let open = |relay: &mut Relay<'_>| {
+        let session = Session::open(&given.case, &given.input)?;
+        match out.as_deref() {
+            Some(out) => session.keep_in(out, relay),
+            None => Ok(session),
+        }
+    };
+    computed(py, wishes, open, out.as_deref())
+}
+
+/// Goes on with a run that was stopped, from its checkpoint, to the same bits as if it had not been.
+///
+/// Parameters
+/// ----------
+/// out : str or os.PathLike
+///     The folder of the run.
+/// progress, threads : optional
+///     As for `run`.
+///
+/// Returns
+/// -------
+/// Result
+///     As of `run`; the history begins where the run began.
+///
+/// Raises
+/// ------
+/// CaseError
+///     The folder holds no run that can go on, or one that is finished.
+/// ComputationError, OSError, KeyboardInterrupt
+///     As for `run`.
+#[pyfunction]
+#[pyo3(signature = (out, progress=None, threads=None))]
+pub(crate) fn resume(
+    py: Python<'_>,
+    out: PathBuf,
+    progress: Option<Py<PyAny>>,
+    threads: Option<usize>,
+) -> PyResult<Found> {
+    let wishes = Wishes::of(py, progress, threads)?;
+    if is_finished(&out) {
+        let text = format!(
+            "the run in `{}` is finished\nhint: its tables and fields are there; `run` computes a case anew",
+            out.display()
+        );
+        return Err(faults::single(py, &text));
+    }
+    computed(py, wishes, |_| continued(&out), Some(&out))
+}
+
+/// What a caller wants beside the result.
+struct Wishes {
+    progress: Option<Py<PyAny>>,
+    threads: Option<usize>,
+}
+
+impl Wishes {
+    fn of(py: Python<'_>, progress: Option<Py<PyAny>>, threads: Option<usize>) -> PyResult<Self> {
+        if let Some(other) = progress.as_ref().map(|p| p.bind(py)).filter(|p| !p.is_callable()) {
+            let kind = other.get_type().name()?;
+            let text = format!("`progress` is a `{kind}`; allowed: what can be called with a dict");
+            return Err(PyTypeError::new_err(text));
+        }
+        if threads == Some(0) {
+            let text = "`threads` is 0; allowed: 1 or more\nhint: leave it out for one for each core";
+            return Err(PyValueError::new_err(text));
+        }
+        Ok(Self { progress, threads })
+    }
+}
+
+/// Solves what `open` opens in threads of its own.
+fn computed(
+    py: Python<'_>,
+    wishes: Wishes,
+    open: impl FnOnce(&mut Relay<'_>) -> Result<Session, RunError> + Send,
+    out: Option<&Path>,
+) -> PyResult<Found> {
+    let Wishes { progress, threads } = wishes;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).stack_size(STACK);
     let pool = pool.build().map_err(|problem| PyRuntimeError::new_err(format!("cannot start threads: {problem}")))?;
     let stop = AtomicBool::new(false);
@@ -82,9 +154,8 @@ pub(crate) fn run(
         let (sender, events) = sync_channel(WAITING);
         // it ends with the computation, and with it the events
         let mut relay = Relay { events: sender, stop: &stop, ticks: progress.is_some() };
-        let (given, out) = (&given, out.as_deref());
         thread::scope(|scope| {
-            let solving = scope.spawn(move || pool.install(|| solve(given, out, &mut relay)));
+            let solving = scope.spawn(move || pool.install(|| solve(open, &mut relay)));
             let told = attend(&events, progress.as_ref(), &stop);
             (solving.join(), told)
         })
@@ -92,7 +163,7 @@ pub(crate) fn run(
     let solved = solved.unwrap_or_else(|panic| std::panic::resume_unwind(panic));
     told?;
     match solved.map_err(|problem| faults::of_run(py, &problem))? {
-        Some(solution) => Found::of(py, &given.case, solution, out),
+        Some((case, solution)) => Found::of(py, &case, solution, out.map(Path::to_path_buf)),
         None => Err(PyRuntimeError::new_err("the run was told to stop")),
     }
 }
@@ -128,15 +199,18 @@ pub(crate) fn check(py: Python<'_>, case: &Bound<'_, PyAny>) -> PyResult<Py<PyAn
     python_of(py, &told)
 }
 
-/// What was found; `None` when told to stop.
-fn solve(given: &Given, out: Option<&Path>, relay: &mut Relay<'_>) -> Result<Option<Solution>, RunError> {
-    let mut session = Session::open(&given.case, &given.input)?;
-    if let Some(out) = out {
-        session = session.keep_in(out, relay)?;
-    }
+/// The case and what was found; `None` when told to stop.
+fn solve(
+    open: impl FnOnce(&mut Relay<'_>) -> Result<Session, RunError>,
+    relay: &mut Relay<'_>,
+) -> Result<Option<(Case, Solution)>, RunError> {
+    let mut session = open(relay)?;
     match session.solve(relay)? {
         Outcome::Interrupted { .. } => Ok(None),
-        Outcome::Finished(_) | Outcome::AlreadyFinished { .. } => Ok(session.into_solution()),
+        Outcome::Finished(_) | Outcome::AlreadyFinished { .. } => {
+            let case = session.case().clone();
+            Ok(session.into_solution().map(|solution| (case, solution)))
+        }
     }
 }
 

@@ -256,10 +256,27 @@ def test_ctrl_c_leaves_a_checkpoint(tmp_path):
     assert (tmp_path / "run" / "checkpoint.alula").is_file()
 
 
+def test_a_stopped_run_goes_on_to_the_same_bits(section, tmp_path):
+    def weary(event):
+        if event.get("iteration") == 5:
+            raise RuntimeError("enough")
+
+    with pytest.raises(RuntimeError, match="enough"):
+        alula.run(SECTION, out=tmp_path / "run", progress=weary)
+    resumed = alula.resume(tmp_path / "run", threads=1)
+    assert resumed.converged and resumed.cl == section.cl
+    assert np.array_equal(resumed.fields["pressure"], section.fields["pressure"])
+    assert np.array_equal(resumed.history["residual"], section.history["residual"])
+    with pytest.raises(alula.CaseError, match="is finished"):
+        alula.resume(tmp_path / "run")
+    with pytest.raises((alula.CaseError, OSError)):
+        alula.resume(tmp_path / "none")
+
+
 def test_stubs_name_what_there_is():
     stubs = (Path(__file__).parents[1] / "alula.pyi").read_text()
     public = [name for name in dir(alula.Result) if not name.startswith("_")]
     assert all(f"def {name}(self)" in stubs for name in public)
-    assert all(name in stubs for name in ["def run(", "def check(", "class CaseError(", "class ComputationError("])
-    for thing in [alula, alula.run, alula.check, alula.Result, alula.CaseError, alula.ComputationError]:
+    assert all(name in stubs for name in ["def run(", "def resume(", "def check(", "class CaseError(", "class ComputationError("])
+    for thing in [alula, alula.run, alula.resume, alula.check, alula.Result, alula.CaseError, alula.ComputationError]:
         assert thing.__doc__

@@ -163,28 +163,29 @@ fn positive(place: &str, key: &str, value: f64) -> Result<f64, GeometryError> {
 }
 
 /// Refuses bodies that intersect or lie inside one another.
+/// Refuses bodies that overlap or touch; names all pairs that do.
 fn refuse_overlap<const D: usize>(surface: &Surface<D>, shells: &[(String, Shell<D>)]) -> Result<(), GeometryError> {
-    let refused = |a: usize, b: usize, x: &Vector<D>| {
-        let (place, what) =
-            (format!("body `{}`", shells[a].0), format!("overlaps or touches body `{}` at {:?}", shells[b].0, x.0));
-        Err(GeometryError::refused(place, what, "move the bodies apart, or unite them in one surface"))
+    let alone: Vec<Surface<D>> = shells.iter().map(|shell| Surface::new(std::slice::from_ref(shell))).collect();
+    let within = |a: usize, b: usize| {
+        let (other, touching) = (&shells[a].1.vertices, TOUCHING * alone[b].bounds().extent().max_abs());
+        let meets = |x: &&Vector<D>| alone[b].nearest(x, touching).is_some();
+        other.first().filter(|x| alone[b].inside(x)).or_else(|| other.iter().find(meets)).copied()
     };
-    if let Some((x, pair)) = surface.intersection() {
-        let [a, b] = pair.map(|e| usize::from(surface.elements[e as usize].body));
-        return refused(a, b, &x);
-    }
-    for (b, shell) in shells.iter().enumerate() {
-        let alone = Surface::new(std::slice::from_ref(shell));
-        for (a, other) in shells.iter().enumerate().filter(|(a, _)| *a != b) {
-            let touching = TOUCHING * alone.bounds().extent().max_abs();
-            let meets = |x: &&Vector<D>| alone.nearest(x, touching).is_some();
-            let within = other.1.vertices.first().filter(|x| alone.inside(x));
-            if let Some(x) = within.or_else(|| other.1.vertices.iter().find(meets)) {
-                return refused(a, b, x);
-            }
-        }
-    }
-    Ok(())
+    let crossed = surface.intersection().is_some();
+    let crossing = |a: usize, b: usize| {
+        let two = Surface::new(&[shells[a].clone(), shells[b].clone()]);
+        two.intersection().map(|(x, _)| x)
+    };
+    let pairs = (0..shells.len()).flat_map(|a| (a + 1..shells.len()).map(move |b| [a, b]));
+    let meeting = |[a, b]: [usize; 2]| {
+        let x = within(a, b).or_else(|| within(b, a)).or_else(|| if crossed { crossing(a, b) } else { None })?;
+        let [a, b] = [a, b].map(|k| &shells[k].0);
+        Some((format!("body `{a}`"), format!("overlaps or touches body `{b}` at {:?}", x.0)))
+    };
+    let mut found = pairs.filter_map(meeting);
+    let Some((place, mut what)) = found.next() else { return Ok(()) };
+    found.for_each(|(place, more)| what.push_str(&format!("; {place} {more}")));
+    Err(GeometryError::refused(place, what, "move the bodies apart, or unite them in one surface"))
 }
 
 impl AnyShell {

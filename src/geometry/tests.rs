@@ -217,6 +217,9 @@ fn bodies_are_placed_and_overlaps_refused() {
     assert!((exact.point - Vector([2.0, 0.0])).norm() < 1e-12);
     let close = load_surface::<2>(&[circle(0.0), circle(0.9)], folder).unwrap_err().to_string();
     assert!(close.contains("body `body-1`: overlaps or touches body `body-2`"), "{close}");
+    let three =
+        load_surface::<2>(&[circle(0.0), circle(0.9), circle(5.0), circle(5.2)], folder).unwrap_err().to_string();
+    assert!(three.contains("touches body `body-2` at") && three.contains("; body `body-3` overlaps"), "{three}");
     let small = body(Shape::Circle { radius: Length(0.1) }, vec![], vec![]);
     assert!(load_surface::<2>(&[circle(0.0), small], folder).is_err());
     let pitched = [body(naca(), vec![0.1], vec![])];

@@ -74,8 +74,7 @@ mod tests {
     #[test]
     fn a_lattice_is_covered_once() {
         let at = |k: u32| f64::from(k) / 9.0;
-        let points: Vec<Vector<3>> =
-            (0..1000).map(|k| Vector([at(k % 10), at(k / 10 % 10), at(k / 100)])).collect();
+        let points: Vec<Vector<3>> = (0..1000).map(|k| Vector([at(k % 10), at(k / 10 % 10), at(k / 100)])).collect();
         let found = tetrahedralise(&points, &[1.0 / 9.0; 1000]);
         assert!(found.iter().all(|t| volume(&points, t) > 0.0));
         assert!((found.iter().map(|t| volume(&points, t)).sum::<f64>() - 1.0).abs() < 1e-6);

@@ -105,15 +105,26 @@ pub fn run_from(case: &Case, places: &Places, from: &Path, monitor: &mut dyn Mon
 
 /// Goes on with an interrupted or killed run; one that is finished stays as it is.
 pub fn resume(out: &Path, monitor: &mut dyn Monitor) -> Result<Outcome, RunError> {
-    let (case, input) = folder::read_case(out)?;
     if let Some(summary) = folder::finished(out) {
+        folder::read_case(out)?;
         return Ok(Outcome::AlreadyFinished { summary });
     }
+    continued(out)?.solve(monitor)
+}
+
+/// True where the run in `out` is over.
+pub fn is_finished(out: &Path) -> bool {
+    folder::finished(out).is_some()
+}
+
+/// A session that goes on with the run in `out` from its checkpoint, to the same bits as if it had not been stopped.
+pub fn continued(out: &Path) -> Result<Session, RunError> {
+    let (case, input) = folder::read_case(out)?;
     folder::check_input(&case, &input, out)?;
     folder::check_begun(out)?;
     let saved = Saved::read(out)?.trusted(&case)?;
     folder::reopen(out)?;
-    Session::open(&case, input)?.kept_in(out).from(Origin::Own(Box::new(saved))).solve(monitor)
+    Ok(Session::open(&case, input)?.kept_in(out).from(Origin::Own(Box::new(saved))))
 }
 
 /// Builds the cloud of a case without running it.

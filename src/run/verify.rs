@@ -132,10 +132,9 @@ impl Walk {
         let mut rows = Vec::new();
         for claim in claims {
             let value = match &claim.case {
-                Some(file) => folder
-                    .beside(file)
-                    .map_err(|e| e.to_string())
-                    .and_then(|other| self.sample(claim, &other, monitor)),
+                Some(file) => {
+                    folder.beside(file).map_err(|e| e.to_string()).and_then(|other| self.sample(claim, &other, monitor))
+                }
                 None => self.sample(claim, &folder, monitor),
             };
             rows.push(row(claim, &folder.name, value));

@@ -51,10 +51,12 @@ impl Mesh {
         tetrahedra.retain(|corners| {
             let middle = corners.iter().fold(Vector::ZERO, |sum, i| sum + points[*i as usize]) * 0.25;
             let of_walls = || corners.iter().filter_map(|i| Some((points[*i as usize], normal(*i)?)));
-            let beside = |i: &u32| of_walls().all(|(x, n)| {
-                let way = points[*i as usize] - x;
-                normal(*i).is_some() || way.dot(&n) >= BEHIND * way.norm()
-            });
+            let beside = |i: &u32| {
+                of_walls().all(|(x, n)| {
+                    let way = points[*i as usize] - x;
+                    normal(*i).is_some() || way.dot(&n) >= BEHIND * way.norm()
+                })
+            };
             let front = of_walls().map(|(x, n)| (middle - x).unit().dot(&n)).sum::<f64>();
             (of_walls().count() < 4 || front > 0.0) && corners.iter().all(beside)
         });
