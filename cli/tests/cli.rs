@@ -23,10 +23,11 @@ const PROMISED: [&str; 13] = [
     "ledger",
 ];
 /// What it may add.
-const EXTRA: [&str; 23] = [
+const EXTRA: [&str; 24] = [
     "warnings",
     "polar",
     "work_units",
+    "free_stream",
     "generalised_forces",
     "chord",
     "harmonic_balance",

@@ -1,8 +1,7 @@
 //! Holes of a surface: small ones are closed, large ones are listed.
 use std::collections::BTreeMap;
 
-use super::repair::{at, runs};
-use super::shell::{Facet, Shell, facets, root, unite};
+use super::shell::{Facet, Shell, at, facets, root, runs, unite};
 use crate::math::{Bounds, Vector};
 
 /// Greatest extent of a hole that is closed, over the diagonal of the body.

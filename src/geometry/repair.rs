@@ -5,7 +5,7 @@
 //! sign of its volume, and small holes closed. What cannot be mended safely is refused with its place: large holes, edges with an
 //! odd number of triangles, one-sided surfaces, self-intersections.
 use super::mesh::Soup;
-use super::shell::{Exact, Facet, Shell, facets, root, unite};
+use super::shell::{Exact, Facet, Shell, at, facets, root, runs, unite};
 use super::surface::Surface;
 use super::weld::weld;
 use super::{GeometryError, holes, simplex};
@@ -239,15 +239,6 @@ fn check_edges(file: &str, shell: &Shell<3>, notes: &mut Vec<String>) -> Result<
         return Ok(());
     }
     Err(GeometryError::refused(file, holes::told(shell, &open), "close the surface; it must bound a volume"))
-}
-
-/// Groups of facets with the same vertices.
-pub(super) fn runs(facets: &[Facet]) -> impl Iterator<Item = &[Facet]> {
-    facets.chunk_by(|a, b| a.vertices == b.vertices)
-}
-
-pub(super) fn at(x: &Vector<3>) -> String {
-    format!("({:.6}, {:.6}, {:.6})", x[0], x[1], x[2])
 }
 
 #[cfg(test)]

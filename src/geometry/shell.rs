@@ -192,6 +192,16 @@ pub(super) fn facets<const D: usize>(elements: &[[u32; D]]) -> Vec<Facet> {
     facets
 }
 
+/// Groups of facets with the same vertices.
+pub(super) fn runs(facets: &[Facet]) -> impl Iterator<Item = &[Facet]> {
+    facets.chunk_by(|a, b| a.vertices == b.vertices)
+}
+
+/// A place in words.
+pub(super) fn at(x: &Vector<3>) -> String {
+    format!("({:.6}, {:.6}, {:.6})", x[0], x[1], x[2])
+}
+
 /// Representative of `i` in a forest of groups; halves paths on the way.
 pub(super) fn root(group: &mut [u32], mut i: u32) -> u32 {
     while group[i as usize] != i {

@@ -4,8 +4,7 @@
 //! no triangle is lost by it: what is thinner than the tolerance stays as it is.
 use super::GeometryError;
 use super::mesh::Soup;
-use super::repair::runs;
-use super::shell::{Exact, Shell, facets};
+use super::shell::{Exact, Shell, facets, runs};
 use crate::math::{Bounds, Vector};
 use std::collections::{HashMap, HashSet};
 use std::f64::consts::PI;

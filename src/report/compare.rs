@@ -15,7 +15,7 @@ use super::fields::{self, FieldDifference};
 use super::files::{LOADS, Load, RunFolder};
 use super::page::{Block, Page, Section, Table};
 use super::periodic::{Period, loop_charts};
-use super::sections::{grouped, number};
+use super::words::{grouped, number};
 use super::{ReportError, write_file};
 
 /// Harmonics in the table.

@@ -5,6 +5,9 @@ use serde_json::Value;
 
 use super::chart::{Marks, Series};
 
+/// What the pictures of the film strip begin with.
+pub(super) const FILM: &str = "film";
+
 /// A run folder. Every reader gives what is there or says, for the page, why it is not.
 pub(super) struct RunFolder {
     pub(super) path: PathBuf,

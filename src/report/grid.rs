@@ -2,7 +2,7 @@
 use super::chart::{Axis, Chart, Marks, Series};
 use super::files::RunFolder;
 use super::page::{Block, Table};
-use super::sections::{grouped, number};
+use super::words::{grouped, number};
 use crate::observe::convergence::{CloudLoads, Convergence, FamilyEnd, LoadEstimate};
 
 /// One load of a cloud.

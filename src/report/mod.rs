@@ -32,6 +32,7 @@ pub mod surface;
 mod transfer;
 pub mod verification;
 mod viewer;
+mod words;
 
 pub use chart::{Axis, Chart, Marks, Series};
 pub use colour::Colormap;

@@ -9,7 +9,8 @@ use serde_json::Value;
 
 use super::files::{LOADS, Load, RunFolder};
 use super::page::{Block, Card, Fact, Page, Section, Status};
-use super::sections::{self, grouped, number};
+use super::sections;
+use super::words::{grouped, number};
 use super::{ReportError, grid, periodic, polar, pressure, structure, write_file};
 
 /// Writes `report.html` into a run folder from the files that are there, and gives its path.

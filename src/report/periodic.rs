@@ -2,12 +2,11 @@
 use serde_json::Value;
 
 use super::chart::{Axis, Chart, Marks, Series};
-use super::files::{Csv, LOADS, Load, RunFolder};
+use super::files::{Csv, FILM, LOADS, Load, RunFolder};
 use super::page::{Block, Table};
-use super::sections::{number_of, pictures_of};
+use super::sections::pictures_of;
+use super::words::number_of;
 
-/// What the pictures of the film strip begin with.
-pub(super) const FILM: &str = "film";
 /// Smallest part of a motion, in degrees or lengths, that a loop is drawn against.
 const STILL: f64 = 1e-12;
 /// Harmonics in the table.

@@ -4,7 +4,7 @@ use std::path::Path;
 use super::chart::{Axis, Chart, Marks, Series};
 use super::files::{Csv, LOADS, Load, RunFolder};
 use super::page::{Block, Table};
-use super::sections::number;
+use super::words::number;
 use super::{ReportError, write_file};
 
 /// Name of the table.

@@ -7,7 +7,7 @@
 use super::chart::{Axis, Chart, Marks, Series, Size};
 use super::files::{Csv, LOADS, RunFolder};
 use super::page::{Block, Fact};
-use super::sections::{grouped, number};
+use super::words::{grouped, number};
 
 /// Cp* farther up than this, in the range of Cp, would leave no room for the curves.
 const FAR: f64 = 0.6;

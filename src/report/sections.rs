@@ -2,10 +2,11 @@
 use serde_json::Value;
 
 use super::chart::{Axis, Chart, Marks, Series};
-use super::files::{Csv, LOADS, RunFolder};
+use super::files::{Csv, FILM, LOADS, RunFolder};
 use super::page::{Block, Cell, Fact, Picture, Table};
 use super::pressure;
 use super::viewer::viewer;
+use super::words::{grouped, number, number_of};
 
 /// What pictures of the particles begin with.
 const OF_CLOUD: [&str; 3] = ["cloud", "particles", "doctor"];
@@ -24,40 +25,6 @@ const PAPER: &str = "@inproceedings{hu2010meshless,
 const CHORDWISE: &str = "cp-chord";
 /// Histograms whose ends differ by more than this factor have a logarithmic axis.
 const WIDE: f64 = 50.0;
-
-/// A number for reading: five significant digits, an exponent for the very large and small.
-pub(super) fn number(value: f64) -> String {
-    let size = value.abs();
-    let text = if value == 0.0 {
-        "0".to_owned()
-    } else if !value.is_finite() {
-        return "–".to_owned();
-    } else if (1e-4..1e7).contains(&size) {
-        let decimals = (4.0 - size.log10().floor()).clamp(0.0, 6.0) as usize;
-        format!("{value:.decimals$}")
-    } else {
-        format!("{value:.3e}")
-    };
-    text.replace('-', "\u{2212}")
-}
-
-/// The same of an entry of a file that may not be one.
-pub(super) fn number_of(value: &Value) -> String {
-    value.as_f64().map_or("–".to_owned(), number)
-}
-
-/// A whole number with thin spaces between thousands.
-pub(super) fn grouped(value: f64) -> String {
-    let digits = format!("{:.0}", value.abs());
-    let mut text = String::from(if value < 0.0 { "\u{2212}" } else { "" });
-    for (k, digit) in digits.chars().enumerate() {
-        if k > 0 && (digits.len() - k).is_multiple_of(3) {
-            text.push('\u{202f}');
-        }
-        text.push(digit);
-    }
-    text
-}
 
 fn plain_or_number(value: f64) -> String {
     if value.fract() == 0.0 && value.abs() < 1e15 { grouped(value) } else { number(value) }
@@ -108,8 +75,7 @@ pub(super) fn pictures(run: &RunFolder) -> Result<Vec<Block>, String> {
     // the chapter on pressure draws the same curve where it can
     let drawn = pressure::chart(run, Vec::new()).is_ok();
     let elsewhere = |name: &str| {
-        OF_CLOUD.iter().chain([&super::periodic::FILM]).any(|start| name.starts_with(start))
-            || drawn && name.starts_with(CHORDWISE)
+        OF_CLOUD.iter().chain([&FILM]).any(|start| name.starts_with(start)) || drawn && name.starts_with(CHORDWISE)
     };
     let block = pictures_of(run, |name| !elsewhere(name));
     let block = block.unwrap_or_else(|| Block::LeftOut("there are no pictures in `pictures/`".to_owned()));

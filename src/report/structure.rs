@@ -4,7 +4,7 @@ use std::f64::consts::TAU;
 use super::chart::{Axis, Chart, Marks, Series};
 use super::files::RunFolder;
 use super::page::{Block, Fact, Table};
-use super::sections::number;
+use super::words::number;
 use crate::observe::structure::{
     CoordinateHistory, CoordinateSummary, FILE, StructureSummary, StructureTable, is_angle,
 };

@@ -2,7 +2,7 @@
 use std::path::Path;
 
 use super::page::{Block, Cell, Page, Section, Status, Table};
-use super::sections::number;
+use super::words::number;
 use super::{ReportError, write_file};
 use crate::case::ClaimRow;
 

@@ -11,7 +11,7 @@ use serde_json::Value;
 use super::colour::Colormap;
 use super::files::RunFolder;
 use super::page::Block;
-use super::sections::number;
+use super::words::number;
 use crate::observe::vtk::read_collection;
 use crate::observe::vtk_read::FieldFile;
 
