@@ -3,6 +3,7 @@
 //! Every check looks at values that passed on their own and stays silent about absent ones, so one mistake is told once.
 use serde_json::{Value, json};
 
+use super::Accuracy;
 use super::draft::{Draft, default_name};
 use super::facts::is_dimensional;
 use super::keys::{SHAPES, SIDES};
@@ -237,6 +238,12 @@ fn placements(draft: &mut Draft<'_>, d: usize) {
             draft.fail(&rotate, message).allowed(if d == 2 { "one angle" } else { "three angles: about x, y, z" });
         }
         length(draft, &format!("body[{i}].translate"), d);
+        let weld = format!("body[{i}].weld");
+        if draft.given(&weld) && !draft.given(&format!("body[{i}].surface")) {
+            draft
+                .fail_key(&weld, format!("`{weld}` joins vertices of a `surface`, and this body has none"))
+                .hint("remove it");
+        }
     }
 }
 
@@ -280,17 +287,19 @@ fn corners(draft: &mut Draft<'_>, path: &str) {
 
 /// A spacing is there where the program cannot choose one, and accuracy is asked of loads that do not change.
 fn accuracy(draft: &mut Draft<'_>, dimension: usize) {
-    let needed = match (draft.given("body"), dimension) {
-        (false, _) => Some("a case without bodies needs `cloud.spacing`"),
-        (_, 3) => Some("a case in space needs `cloud.spacing`: it is chosen for plane bodies only"),
-        _ => None,
-    };
-    if let Some(message) = needed.filter(|_| !draft.given("cloud.spacing")) {
+    if !draft.given("body") && !draft.given("cloud.spacing") {
+        let message = "a case without bodies needs `cloud.spacing`";
         let hint = "add `[cloud]` with `spacing`, a hundredth of the body to begin with";
         draft.fail("cloud.spacing", message).hint(hint);
     }
     if !draft.given("accuracy") {
         return;
+    }
+    if dimension == 3
+        && !draft.given("accuracy.particles")
+        && let Some(accuracy) = draft.tree.get_mut("accuracy").and_then(Value::as_object_mut)
+    {
+        accuracy.insert("particles".to_owned(), json!(Accuracy::PARTICLES_IN_SPACE));
     }
     let steady = draft.get("time").is_none_or(|t| t.as_str() == Some("steady") || t.get("steady").is_some());
     let refused = [

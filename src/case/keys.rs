@@ -239,6 +239,13 @@ static BODY: Table = Table::of(&[
     )
     .known_as(&["at", "position", "origin", "place", "centre", "center", "location", "offset", "shift", "move", "leading_edge"]),
     Field::optional(
+        "weld",
+        SIZE,
+        "as little as closes the surface, at most 1e-4 of its size",
+        "Distance up to which vertices of a surface file are joined, in the unit of the placed body: for coarse or noisy exports, `\"0.5 mm\"`.",
+    )
+    .known_as(&["tolerance", "merge", "snap", "weld_tolerance"]),
+    Field::optional(
         "wall",
         Kind::Choice(WALL),
         "`\"slip\"` without viscosity, `\"adiabatic\"` with",
@@ -289,13 +296,13 @@ static REFERENCE: Table = Table::of(&[
     Field::optional(
         "chord",
         SIZE,
-        "extent of the bodies along x",
+        "extent of the bodies along x; in 3-D the mean aerodynamic chord of their planform",
         "Length of the moment coefficient (and of CL, CD in 2-D).",
     ),
     Field::optional(
         "area",
         POSITIVE,
-        "frontal area of the bounding box of the bodies",
+        "area of the planform, seen along z",
         "Area of the coefficients in 3-D, length squared.",
     ),
     Field::optional(
@@ -506,7 +513,8 @@ static ACCURACY: Table = Table::of(&[
         "particles",
         COUNT,
         Absent::Integer(50_000),
-        "Greatest number of particles: the run ends on the finest cloud below it where the error bars are not short enough before.",
+        "Greatest number of particles: the run ends on the finest cloud below it where the error bars are not short enough before \
+         (in 3-D: 400 000).",
     ),
     Field::optional(
         "time",

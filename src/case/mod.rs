@@ -164,6 +164,9 @@ pub struct Body {
     /// Placement: scale first, then rotation about the origin of the shape, then translation.
     #[serde(flatten)]
     pub placement: Placement,
+    /// Distance up to which vertices of a surface file are joined; absent: as little as closes the surface, a ten thousandth of its
+    /// size at most.
+    pub weld: Option<Length>,
     /// Condition of the gas on the surface; absent: slip without viscosity, adiabatic with.
     pub wall: Option<Wall>,
     /// Motion of its own, in place of that of `[motion]`; an empty one keeps the body at rest.
@@ -219,9 +222,10 @@ pub struct Placement {
 /// Reference quantities of the coefficients.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Reference {
-    /// Length of the moment coefficient (and of CL, CD in 2-D); default: extent of the bodies along x.
+    /// Length of the moment coefficient (and of CL, CD in 2-D); default: extent of the bodies along x, in 3-D the mean aerodynamic chord of
+    /// their planform.
     pub chord: Option<Length>,
-    /// Area of the coefficients in 3-D (in units of length squared); default: frontal area of the bodies' bounding box.
+    /// Area of the coefficients in 3-D (in units of length squared); default: that of the planform, seen along z.
     pub area: Option<f64>,
     /// Point about which moments are taken; default: quarter chord of the bounding box in 2-D, its centre in 3-D.
     pub moment_point: Option<Vec<Length>>,
@@ -236,7 +240,7 @@ pub struct Cloud {
     pub far_field: Option<Length>,
     /// Explicit domain; its sides must be whole numbers of `coarse` cells.
     pub domain: Option<Domain>,
-    /// Particles per level of refinement, counted away from the surface; default 6, and 12 without `spacing`.
+    /// Particles per level of refinement, counted away from the surface; default 6; without `spacing` 12, in 3-D 8.
     pub layers: Option<f64>,
     /// Extra levels of refinement at sharp edges; default 2.
     pub edge_levels: u32,
@@ -494,7 +498,7 @@ impl Default for Placement {
 impl Body {
     /// A body of this shape, without name, at rest where the shape puts it.
     pub fn new(shape: Shape) -> Self {
-        Self { name: None, shape, placement: Placement::default(), wall: None, motion: None }
+        Self { name: None, shape, placement: Placement::default(), weld: None, wall: None, motion: None }
     }
 
     /// A NACA 4-digit section of unit chord with a closed trailing edge, nose at the origin.
@@ -527,6 +531,17 @@ impl Cloud {
 impl Default for Accuracy {
     fn default() -> Self {
         Self { loads: Ratio(0.01), particles: 50_000, time: None }
+    }
+}
+
+impl Accuracy {
+    /// Greatest number of particles of cases in space that do not say.
+    pub(crate) const PARTICLES_IN_SPACE: usize = 400_000;
+
+    /// What is asked of a case that says nothing.
+    pub(crate) fn in_dimension(dimension: usize) -> Self {
+        let usual = Self::default();
+        Self { particles: if dimension == 3 { Self::PARTICLES_IN_SPACE } else { usual.particles }, ..usual }
     }
 }
 

@@ -178,6 +178,12 @@ pub fn background<const D: usize>(
     tree.ok_or_else(|| size.refused(format!("more than {}", spec.most), spec.most))
 }
 
+/// Cells of the background around a surface: somewhat more than the cloud will have particles, at a small part of the cost.
+pub fn count<const D: usize>(spec: &CloudSpec<D>, surface: &Surface<D>) -> Result<usize, CloudError> {
+    let layout = Layout::new(spec, Some(surface))?;
+    Ok(background(spec, &layout, Some(surface), &[])?.leaves().count())
+}
+
 /// Refuses spacings that the deepest cells of the background are too large for.
 fn reaches<const D: usize>(layout: &Layout<D>, points: &[Source<D>], boxes: &[SourceBox<D>]) -> Result<(), CloudError> {
     let finest = points.iter().map(|p| p.spacing).chain(boxes.iter().map(|b| b.spacing)).fold(f64::INFINITY, f64::min);

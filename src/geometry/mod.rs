@@ -12,6 +12,7 @@ mod mesh;
 mod naca;
 mod outline;
 mod placement;
+mod planform;
 mod primitive;
 mod repair;
 mod sampling;
@@ -25,6 +26,7 @@ mod tree;
 mod weld;
 mod wing;
 
+pub use planform::Planform;
 pub use primitive::{icosphere, write_stl};
 pub use sampling::Chain;
 pub use shell::{Edge, Exact, Shell};
@@ -104,7 +106,7 @@ pub fn load_surface<const D: usize>(
     let mut shells = Vec::new();
     for (i, body) in bodies.iter().enumerate() {
         let name = body.name.clone().unwrap_or_else(|| format!("body-{}", i + 1));
-        let shell = load_shell(&name, &body.shape, folder, &mut notes)?;
+        let shell = load_shell(&name, body, folder, &mut notes)?;
         let mut shell = shell.in_dimension::<D>().ok_or_else(|| {
             let what = format!("its shape is not {D}-dimensional as the case is");
             GeometryError::refused(format!("body `{name}`"), what, "change the shape or `dimension`")
@@ -119,12 +121,12 @@ pub fn load_surface<const D: usize>(
     Ok((surface, notes))
 }
 
-fn load_shell(name: &str, shape: &Shape, folder: &Path, notes: &mut Vec<String>) -> Result<AnyShell, GeometryError> {
+fn load_shell(name: &str, body: &Body, folder: &Path, notes: &mut Vec<String>) -> Result<AnyShell, GeometryError> {
     let open = |file: &str| {
         File::open(folder.join(file)).map_err(|source| GeometryError::Open { file: file.to_string(), source })
     };
     let place = format!("body `{name}`");
-    Ok(match shape {
+    Ok(match &body.shape {
         Shape::Naca(naca) => AnyShell::Plane(naca::shell(naca)?),
         Shape::Airfoil(file) => AnyShell::Plane(airfoil::read(file, open(file)?, notes)?),
         Shape::Polygon(points) => {
@@ -151,7 +153,10 @@ fn load_shell(name: &str, shape: &Shape, folder: &Path, notes: &mut Vec<String>)
                 }
             }
         }
-        Shape::Surface(file) => AnyShell::Space(repair::shell(file, &mesh::read(file, open(file)?)?, notes)?),
+        Shape::Surface(file) => {
+            let within = body.weld.map(|l| l.0 / body.placement.scale);
+            AnyShell::Space(repair::shell(file, &mesh::read(file, open(file)?)?, within, notes)?)
+        }
     })
 }
 

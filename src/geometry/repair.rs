@@ -17,9 +17,15 @@ const NEEDLE: f64 = 1e-9;
 /// Rounds of needle removal; each resolves every needle that does not touch another.
 const ROUNDS: usize = 16;
 
-/// Makes a shell of the triangles of `file`; what was mended is appended to `notes`.
-pub(super) fn shell(file: &str, soup: &Soup, notes: &mut Vec<String>) -> Result<Shell<3>, GeometryError> {
-    let mut shell = weld(file, soup, notes)?;
+/// Makes a shell of the triangles of `file`, with vertices `within` a distance joined where one is given; what was mended is
+/// appended to `notes`.
+pub(super) fn shell(
+    file: &str,
+    soup: &Soup,
+    within: Option<f64>,
+    notes: &mut Vec<String>,
+) -> Result<Shell<3>, GeometryError> {
+    let mut shell = weld(file, soup, within, notes)?;
     split_needles(file, &mut shell, notes);
     orient(file, &mut shell, notes)?;
     holes::fill(file, &mut shell, notes);
@@ -238,7 +244,11 @@ fn check_edges(file: &str, shell: &Shell<3>, notes: &mut Vec<String>) -> Result<
     if open.is_empty() {
         return Ok(());
     }
-    Err(GeometryError::refused(file, holes::told(shell, &open), "close the surface; it must bound a volume"))
+    Err(GeometryError::refused(
+        file,
+        holes::told(shell, &open),
+        "close the surface, which must bound a volume, or join vertices farther apart with `weld` in the table of the body",
+    ))
 }
 
 #[cfg(test)]
@@ -252,7 +262,7 @@ mod tests {
 
     fn load(file: &str, bytes: &[u8]) -> Loaded {
         let mut notes = Vec::new();
-        let shell = shell(file, &mesh::read(file, bytes)?, &mut notes)?;
+        let shell = shell(file, &mesh::read(file, bytes)?, None, &mut notes)?;
         Ok((Surface::new(&[("body".into(), shell)]), notes))
     }
 
@@ -262,8 +272,12 @@ mod tests {
     }
 
     fn mend(soup: &Soup) -> Loaded {
+        mend_within(soup, None)
+    }
+
+    fn mend_within(soup: &Soup, within: Option<f64>) -> Loaded {
         let mut notes = Vec::new();
-        let shell = shell("body.stl", soup, &mut notes)?;
+        let shell = shell("body.stl", soup, within, &mut notes)?;
         Ok((Surface::new(&[("body".into(), shell)]), notes))
     }
 
@@ -337,17 +351,31 @@ mod tests {
         assert!(error.contains("open edges in 8 holes") && error.matches(" edges, ").count() == 8, "{error}");
     }
 
-    #[test]
-    fn noise_is_welded_and_thin_edges_are_kept() {
+    /// A sphere whose vertices are `size` apart where they should be one.
+    fn noisy(size: f64) -> Soup {
         let mut all = soup(&[&icosphere(1.0, 4)]);
         let mut state = 1u64;
         for x in all.triangles.iter_mut().flatten() {
             *x = Vector::from_fn(|d| {
                 state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-                x[d] + 2e-5 * ((state >> 11) as f64 / (1u64 << 53) as f64 - 0.5)
+                x[d] + size * ((state >> 11) as f64 / (1u64 << 53) as f64 - 0.5)
             });
         }
-        let (surface, notes) = mend(&all).unwrap();
+        all
+    }
+
+    #[test]
+    fn vertices_are_joined_as_far_apart_as_is_asked() {
+        let rough = noisy(5e-3);
+        assert!(mend(&rough).is_err());
+        assert_eq!(mend_within(&rough, Some(0.01)).unwrap().0.vertices.len(), 2562);
+        assert!(mend_within(&rough, Some(1e-3)).is_err());
+        assert!(mend_within(&rough, Some(10.0)).is_err());
+    }
+
+    #[test]
+    fn noise_is_welded_and_thin_edges_are_kept() {
+        let (surface, notes) = mend(&noisy(2e-5)).unwrap();
         assert!(surface.vertices.len() == 2562 && notes.iter().any(|n| n.contains("joined")), "{notes:?}");
         // a plate of a hundred-thousandth of its length with a crack of the same width keeps its two sides
         let mut plate = soup(&[&cuboid([1.0, 1.0, 1e-5])]);

@@ -17,17 +17,22 @@ const SMALLEST: f64 = 1e-50;
 /// Turning angle of sharp edges, radians (40°).
 const CREASE: f64 = 40.0 * PI / 180.0;
 
-/// Welds with the smallest tolerance that closes the surface.
-pub(super) fn weld(file: &str, soup: &Soup, notes: &mut Vec<String>) -> Result<Shell<3>, GeometryError> {
+/// Welds vertices `within` a distance; where none is given, with the smallest tolerance that closes the surface.
+pub(super) fn weld(
+    file: &str,
+    soup: &Soup,
+    within: Option<f64>,
+    notes: &mut Vec<String>,
+) -> Result<Shell<3>, GeometryError> {
     let size = Bounds::around(soup.triangles.iter().flatten()).extent().norm();
     if size < SMALLEST || !size.is_finite() || soup.triangles.len() > u32::MAX as usize / 3 {
         let what = format!("{} triangles of extent {size} are no surface", soup.triangles.len());
         return Err(GeometryError::refused(file, what, "check the export"));
     }
     let mut mended = Vec::new();
-    let mut best = welded(soup, WELD[0] * size, file, &mut mended);
+    let mut best = welded(soup, within.unwrap_or(WELD[0] * size), file, &mut mended);
     let (mut least, gaps) = (best.edges(), best.edges().open);
-    for tolerance in WELD[1..].iter().map(|t| t * size) {
+    for tolerance in WELD[1..].iter().map(|t| t * size).filter(|_| within.is_none()) {
         if least.open == 0 {
             break;
         }

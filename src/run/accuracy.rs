@@ -10,20 +10,25 @@ use super::record::{Log, Record};
 use super::setup;
 use super::stage::{Stage, Task};
 use crate::case::{Accuracy, Case, Length, Wake, WallLayers};
+use crate::cloud::CloudSpec;
+use crate::cloud::layout::count;
 use crate::geometry::Surface;
 use crate::observe::convergence::{CloudLoads, Convergence};
 
-/// Spacings in the length of the shortest body.
-const ALONG: f64 = 64.0;
+/// Spacings in the length of the shortest body, in 2-D and 3-D.
+const ALONG: [f64; 2] = [64.0, 40.0];
 /// The same where the gas has viscosity: layers and wake need as many particles again, and a fourth cloud is to be within reach.
 const ALONG_LAYERS: f64 = 48.0;
 /// Particles per level of refinement of the cloud with that spacing.
-const LAYERS: f64 = 12.0;
-/// Half-width of their domain in lengths of the bodies: beyond 40, where it is otherwise, nearly nothing is spent and lift gains 0.02 %.
-const FAR_FIELD: f64 = 100.0;
+const LAYERS: [f64; 2] = [12.0, 8.0];
+/// Half-width of their domain in lengths of the bodies: in the plane, beyond 40, where it is otherwise, nearly nothing is spent and
+/// lift gains 0.02 %; in space what a body does falls off faster.
+const FAR_FIELD: [f64; 2] = [100.0, 30.0];
 /// First layers at walls in L/√Re, which is a fifth of a laminar boundary layer, and how layers grow.
 const ACROSS: f64 = 16.0;
 const GROWTH: f64 = 1.2;
+/// Spacing in space over that thickness: there are no layers.
+const IN_SPACE: f64 = 4.0;
 /// Greatest growth of the layers of a coarser cloud.
 const STEEPEST: f64 = 1.5;
 /// Lengths of the shortest body behind which wakes are followed.
@@ -37,6 +42,12 @@ const FIRST: f64 = 4.0;
 const POLAR_PARTICLES: usize = 20_000;
 /// Time that the next cloud of a family takes over that of all before it.
 const NEXT: f64 = 4.0;
+/// Part of the particles allowed that the third cloud in space may have, how many times those of the second it has, the power of the
+/// spacing that their number goes with, and how often the spacing is corrected.
+const ROOM: f64 = 0.6;
+const FINER: f64 = 6.0;
+const POWER: f64 = 2.5;
+const ROUNDS: usize = 4;
 /// Clouds that an error bar is drawn from.
 const CLOUDS: usize = 3;
 
@@ -44,8 +55,8 @@ const CLOUDS: usize = 3;
 pub(crate) fn asked(case: &Case) -> Option<Accuracy> {
     let chosen = case.cloud.spacing.is_none() && !is_unsteady(case) && !case.bodies.is_empty();
     let usual = match case.polar {
-        Some(_) => Accuracy { particles: POLAR_PARTICLES, ..Accuracy::default() },
-        None => Accuracy::default(),
+        Some(_) if case.dimension != Some(3) => Accuracy { particles: POLAR_PARTICLES, ..Accuracy::default() },
+        _ => Accuracy::in_dimension(case.dimension.map_or(2, usize::from)),
     };
     case.accuracy.or(chosen.then_some(usual))
 }
@@ -55,25 +66,53 @@ pub(crate) fn with_cloud<'a, const D: usize>(case: &'a Case, surface: Option<&Su
     let Some(surface) = surface.filter(|_| case.cloud.spacing.is_none()) else { return Cow::Borrowed(case) };
     let length = |body: usize| {
         let extent = surface.bounds_of(body).extent();
-        (0..D).map(|d| extent[d]).fold(0.0, f64::max)
+        let mut sides: [f64; D] = std::array::from_fn(|d| extent[d]);
+        sides.sort_by(f64::total_cmp);
+        // the chord of a section and of a wing, the width of a slender body
+        sides[1]
     };
     let shortest = (0..surface.bodies.len()).map(length).fold(f64::INFINITY, f64::min);
     let mut filled = case.clone();
     filled.accuracy = asked(case);
     let chord = setup::chord(case, Some(surface));
     let reynolds = setup::reynolds(case, chord);
-    let spacing = Length(shortest / if reynolds.is_some() { ALONG_LAYERS } else { ALONG });
+    let whole = case.flow.reynolds_length.map_or(chord, |l| l.0);
+    // a fifth of a laminar boundary layer: across it in the plane, in space all around
+    let thin = reynolds.map(|re| shortest / (ACROSS * (re * shortest / whole).sqrt()));
+    let along = shortest / if D == 2 && thin.is_some() { ALONG_LAYERS } else { ALONG[D - 2] };
+    let spacing = Length(if D == 3 { thin.map_or(along, |thin| along.min(IN_SPACE * thin)) } else { along });
     filled.cloud.spacing = Some(spacing);
-    filled.cloud.far_field = case.cloud.far_field.or(Some(Length(FAR_FIELD * surface.bounds().extent().max_abs())));
-    filled.cloud.layers = case.cloud.layers.or(Some(LAYERS));
-    if let Some(re) = reynolds {
-        let whole = case.flow.reynolds_length.map_or(chord, |l| l.0);
-        let first = Length(shortest / (ACROSS * (re * shortest / whole).sqrt()));
-        filled.cloud.wall_layers = case.cloud.wall_layers.or(Some(WallLayers { first, growth: GROWTH, count: None }));
+    filled.cloud.far_field =
+        case.cloud.far_field.or(Some(Length(FAR_FIELD[D - 2] * surface.bounds().extent().max_abs())));
+    filled.cloud.layers = case.cloud.layers.or(Some(LAYERS[D - 2]));
+    if D == 3 {
+        filled.cloud.spacing = Some(Length(affordable(&filled, surface, spacing.0)));
+    }
+    if let Some(thin) = thin.filter(|_| D == 2) {
+        let layers = WallLayers { first: Length(thin), growth: GROWTH, count: None };
+        filled.cloud.wall_layers = case.cloud.wall_layers.or(Some(layers));
         let wake = Wake { length: Length(WAKE * shortest), spacing };
         filled.cloud.wake = case.cloud.wake.clone().or(Some(wake));
     }
     Cow::Owned(filled)
+}
+
+/// The spacing, no finer than `spacing`, at which the third cloud of a family in space leaves room in the particles allowed: thin
+/// edges and noses ask for more than the size of a body tells. Counted on the background of the second cloud.
+fn affordable<const D: usize>(case: &Case, surface: &Surface<D>, spacing: f64) -> f64 {
+    let room = ROOM * asked(case).unwrap_or(Accuracy::in_dimension(D)).particles as f64;
+    let mut case = case.clone();
+    let mut spacing = spacing;
+    for _ in 0..ROUNDS {
+        case.cloud.spacing = Some(Length(spacing));
+        let Ok(cells) = count(&CloudSpec::of_case(&scaled(&case, 2.0)), surface) else { break };
+        let over = FINER * cells as f64 / room;
+        if over <= 1.0 {
+            break;
+        }
+        spacing *= over.powf(1.0 / POWER);
+    }
+    spacing
 }
 
 /// The case with the spacing, the particles per level and what curvature asks for scaled by `factor`: its cloud is alike, and has

@@ -15,7 +15,7 @@ use super::reconstruct::{Gradient, Limit, Reconstruction, low_mach_correction};
 use super::viscous::{direction, middle, slopes};
 use crate::math::Vector;
 use crate::math::jet::Scalar;
-use crate::physics::riemann::{Rusanov, UpwindFlux};
+use crate::physics::riemann::{Hlle, UpwindFlux};
 use crate::physics::viscous::Slopes;
 use crate::physics::{Conserved, Gas, Newtonian, Primitive};
 
@@ -135,7 +135,7 @@ pub(super) fn upwind<const D: usize, S: Scalar, F: UpwindFlux<D>>(
     Conserved { density: f.density, momentum: f.momentum + w * f.density, energy }
 }
 
-/// The upwind flux, on its way to Rusanov's as `steepness` goes from 0 to 1.
+/// The upwind flux, on its way to Einfeldt's as `steepness` goes from 0 to 1.
 #[inline(always)]
 pub(super) fn steep<const D: usize, S: Scalar>(
     gas: &Gas,
@@ -144,7 +144,7 @@ pub(super) fn steep<const D: usize, S: Scalar>(
     velocity: &[Vector<D, S>; 2],
     steepness: S,
 ) -> Conserved<D, S> {
-    let damped = upwind(gas, Rusanov, sides, area, velocity);
+    let damped = upwind(gas, Hlle, sides, area, velocity);
     plain.plus(steepness, &damped.minus(plain))
 }
 

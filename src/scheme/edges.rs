@@ -274,7 +274,7 @@ fn upwind_fluxes<const D: usize, F: UpwindFlux<D>>(gas: Gas, flux: F, batch: &mu
     }
 }
 
-/// Brings the upwind flux nearer to Rusanov's between steep particles.
+/// Brings the upwind flux nearer to Einfeldt's between steep particles.
 #[multiversion(targets("x86_64+avx2"))]
 #[allow(unsafe_code, reason = "the attribute calls the version that the processor has just been asked for")]
 fn steep_fluxes<const D: usize>(gas: Gas, batch: &mut Batch<D>) {

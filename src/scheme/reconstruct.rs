@@ -7,9 +7,10 @@
 //!
 //! Nothing is linear in a strong shock or beside a vacuum. There slopes are given up, smoothly: of a *steep* particle, whose
 //! pressure changes by much of itself within its spacing, and of an edge whose ends have very different pressures; what is left
-//! of an increment leaves density and pressure positive. Between steep particles the upwind flux gives way to Rusanov's: one that
+//! of an increment leaves density and pressure positive. Between steep particles the upwind flux gives way to Einfeldt's: one that
 //! resolves contacts lets disturbances grow along a strong shock that stands between two rows of particles (Quirk 1994, Int. J.
-//! Numer. Methods Fluids 18). None of it acts in shocks below about Mach 1.4.
+//! Numer. Methods Fluids 18). Rusanov's would do as well, but takes mass and energy from row to row where a shock is curved: total
+//! pressure behind the bow shock of a circle at Mach 10 was 4 % low. None of it acts in shocks below about Mach 1.4.
 use crate::math::Vector;
 use crate::math::jet::Scalar;
 use crate::physics::{Gas, Primitive};

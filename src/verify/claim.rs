@@ -267,7 +267,7 @@ metrics! {
     PeakCl = "peak_cl",
     /// Greatest pressure on the wall over what Rayleigh's pitot formula gives.
     PitotPressure = "pitot_pressure",
-    /// Distance on the axis from the bow shock, where the density is half way across a normal shock, to the body, in half chords.
+    /// Distance on the axis from the bow shock, where the density is half way across a normal shock, to the body, in half lengths of the body.
     StandOff = "stand_off",
     /// Length behind the body over which the gas on its axis runs against the stream, in chords.
     WakeLength = "wake_length",

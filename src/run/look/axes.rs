@@ -1,7 +1,8 @@
 //! Axes of loads, and the gas at one moment seen in them.
 use super::friction::add_friction;
+use super::reference::planform;
 use crate::case::Case;
-use crate::geometry::Surface;
+use crate::geometry::{Planform, Surface};
 use crate::math::jet::Jet;
 use crate::math::sweep::sum;
 use crate::math::{Bounds, Vector};
@@ -77,12 +78,18 @@ pub(crate) struct LoadFrame {
     case: Case,
     /// Corners of the smallest box around the bodies, before they move; absent without bodies.
     bodies: Option<[[f64; 3]; 2]>,
+    /// Their reference values.
+    planform: Option<Planform>,
 }
 
 /// The axes of a case; defaults follow from its bodies when loads are computed.
 pub(crate) fn load_axes<const D: usize>(case: &Case, surface: Option<&Surface<D>>) -> LoadFrame {
     let corners = |bounds: Bounds<D>| [bounds.min.to_3d(), bounds.max.to_3d()];
-    LoadFrame { case: case.clone(), bodies: surface.map(|s| corners(s.bounds())) }
+    LoadFrame {
+        case: case.clone(),
+        bodies: surface.map(|s| corners(s.bounds())),
+        planform: surface.map(|s| planform(case, s)),
+    }
 }
 
 impl LoadFrame {
@@ -94,10 +101,12 @@ impl LoadFrame {
         let reference = &self.case.reference;
         // a body of which only a face across the stream lies in the domain is as long as that face is high
         let length = if seen.extent()[0] > 0.0 { extent[0] } else { seen.extent().max_abs() };
-        let chord = reference.chord.map_or(length, |c| c.0);
-        let area = match D {
-            2 => chord,
-            _ => reference.area.unwrap_or(extent[1] * extent[D - 1]),
+        let (chord, area) = match self.planform.filter(|_| D == 3) {
+            Some(seen) => (seen.chord, seen.area),
+            None => {
+                let chord = reference.chord.map_or(length, |c| c.0);
+                (chord, if D == 2 { chord } else { reference.area.unwrap_or(chord * extent[1]) })
+            }
         };
         let mut point = bounds.centre();
         if D == 2 {

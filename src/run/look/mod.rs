@@ -5,6 +5,7 @@ pub(crate) mod forces;
 pub(crate) mod friction;
 mod mesh;
 pub(crate) mod momentum;
+pub(crate) mod reference;
 mod walls;
 
 pub use field::Snapshot;

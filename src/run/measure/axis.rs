@@ -35,7 +35,7 @@ impl Measured {
         Ok(pressure(found) / pressure(cp))
     }
 
-    /// Distance of the bow shock from the nose in half chords.
+    /// Distance of the bow shock from the nose in half lengths of the body.
     pub(super) fn stand_off(&self) -> Value {
         let flow = &self.case.flow;
         let jump = normal_shock(flow.reference().mach, flow.gamma).map_err(|e| e.to_string())?;
@@ -49,7 +49,7 @@ impl Measured {
         let [ahead, behind] = [&samples[first - 1], &samples[first]];
         let part = (middle - ahead.density) / (behind.density - ahead.density);
         let shock = ahead.at[0] + part * (behind.at[0] - ahead.at[0]);
-        Ok((-nose - shock) / (0.5 * self.chord()))
+        Ok((-nose - shock) / (0.5 * (nose + self.reach(1.0))))
     }
 
     /// How far the body reaches from its middle along the stream times `sign`.

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::super::error::RunError;
 use super::super::folder;
+use super::super::look::reference::chord;
 use super::super::record::Described;
 use crate::case::{Case, Temporal};
 use crate::coupling::{Attached, body_motion};
@@ -36,7 +37,7 @@ pub(crate) fn bodies<const D: usize>(
         }
         all.push(attached);
     }
-    if let Some(omega) = case.force_frequency(chord(case, surface)).filter(|_| !all.is_empty()) {
+    if let Some(omega) = case.force_frequency(chord(case, Some(surface))).filter(|_| !all.is_empty()) {
         motions.force_with(case.flow.units().solver_time(std::f64::consts::TAU / omega));
     }
     Ok(all)
@@ -61,13 +62,9 @@ pub(crate) fn described<const D: usize>(
     bodies.iter().filter_map(one).collect()
 }
 
-fn chord<const D: usize>(case: &Case, surface: &Surface<D>) -> f64 {
-    case.reference.chord.map_or(surface.bounds().extent()[0], |c| c.0)
-}
-
 /// What the numbers of flutter are measured with.
 pub(crate) fn frame<const D: usize>(case: &Case, surface: &Surface<D>, body: usize) -> BodyFrame {
-    BodyFrame { chord: chord(case, surface), middle: surface.bounds_of(body).centre().to_3d() }
+    BodyFrame { chord: chord(case, Some(surface)), middle: surface.bounds_of(body).centre().to_3d() }
 }
 
 fn unheld(name: &str) -> RunError {

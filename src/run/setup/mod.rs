@@ -9,7 +9,9 @@ use std::sync::Arc;
 
 pub(crate) use bodies::{bodies, described};
 pub(crate) use motion_feasibility::check as check_motion;
-pub(crate) use sanity::{chord, reynolds, sane};
+pub(crate) use sanity::{reynolds, sane};
+
+pub(crate) use super::look::reference::chord;
 pub(crate) use size::spec;
 
 use super::accuracy;
@@ -224,8 +226,7 @@ fn at_one_entropy<const D: usize>(fluid: &Fluid<D>) -> Result<(), RunError> {
 
 /// Viscosity of a case in the units of the solver, and what the gas does on each body.
 fn viscous_model<const D: usize>(case: &Case, surface: Option<&Surface<D>>) -> Option<ViscousModel> {
-    let extent = surface.map_or(1.0, |s| s.bounds().extent()[0]);
-    let chord = case.reference.chord.map_or(extent, |c| c.0);
+    let chord = chord(case, surface);
     ViscousModel::of_case(case, chord)
 }
 
@@ -270,8 +271,7 @@ pub(crate) fn motions<const D: usize>(
     input: &Path,
     surface: Option<&Surface<D>>,
 ) -> Result<Motions<D>, RunError> {
-    let extent = surface.map_or(1.0, |s| s.bounds().extent()[0]);
-    let chord = case.reference.chord.map_or(extent, |c| c.0);
+    let chord = chord(case, surface);
     let read = |name: &str| folder::text(input, name);
     let motions = Motions::of_case(case, chord, &read)?;
     if let Some(surface) = surface {

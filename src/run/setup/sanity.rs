@@ -1,5 +1,6 @@
 //! What can be written down but makes no sense: told before any particle is placed.
 use super::super::error::RunError;
+use super::super::look::reference::chord;
 use super::super::recipe;
 use crate::case::{Case, Temporal};
 use crate::geometry::Surface;
@@ -111,11 +112,6 @@ pub(crate) fn reynolds(case: &Case, chord: f64) -> Option<f64> {
     let (viscous, stream) = (case.flow.viscous(chord)?, case.flow.reference());
     let length = case.flow.reynolds_length.map_or(chord, |l| l.0);
     Some(stream.density * stream.speed * length / viscous.viscosity)
-}
-
-/// Reference chord: that of the case, else the extent of the bodies along x.
-pub(crate) fn chord<const D: usize>(case: &Case, surface: Option<&Surface<D>>) -> f64 {
-    case.reference.chord.map_or_else(|| surface.map_or(1.0, |s| s.bounds().extent()[0]), |c| c.0)
 }
 
 #[cfg(test)]

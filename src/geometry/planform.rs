@@ -1,0 +1,101 @@
+//! Planform: what bodies look like from above, which the coefficients of wings are made with.
+//!
+//! The chord c at a station of the span is the length along x of what lies under or above it; with the area S = ∫ c dy the mean
+//! aerodynamic chord is ∫ c² dy / S.
+use super::Surface;
+use crate::math::{Bounds, Vector};
+
+/// Stations along the span.
+const STATIONS: usize = 1024;
+
+/// Reference values that follow from the shape of the bodies.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Planform {
+    /// Mean aerodynamic chord; in 2-D the extent along x.
+    pub chord: f64,
+    /// Area seen along z; in 2-D the chord.
+    pub area: f64,
+}
+
+impl<const D: usize> Surface<D> {
+    /// The planform of the part of the bodies `within` a box, x along the chord and y along the span.
+    pub fn planform(&self, within: &Bounds<D>) -> Planform {
+        let length = self.bounds().extent()[0];
+        if D == 2 {
+            return Planform { chord: length, area: length };
+        }
+        let (low, high) = (self.bounds().min[1].max(within.min[1]), self.bounds().max[1].min(within.max[1]));
+        let width = (high - low) / STATIONS as f64;
+        let mut spans: Vec<Vec<[f64; 2]>> = vec![Vec::new(); STATIONS];
+        for e in 0..self.elements.len() {
+            let corners = self.corners(e as u32);
+            let heights = corners.iter().map(|c| (c[1] - low) / width - 0.5);
+            let (first, last) = heights.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), h| (a.min(h), b.max(h)));
+            let stations = first.ceil().max(0.0) as usize..=last.floor().min(STATIONS as f64 - 1.0).max(-1.0) as usize;
+            for k in stations.filter(|_| last >= 0.0) {
+                spans[k].extend(cut(&corners, low + (k as f64 + 0.5) * width));
+            }
+        }
+        let chords: Vec<f64> = spans.iter_mut().map(|spans| covered(spans)).collect();
+        let (sum, squares) = chords.iter().fold((0.0, 0.0), |(s, q), c| (s + c, q + c * c));
+        if sum > 0.0 {
+            Planform { chord: squares / sum, area: sum * width }
+        } else {
+            Planform { chord: length, area: length * (high - low).max(0.0) }
+        }
+    }
+}
+
+/// The stretch along x of a triangle at the station `y`; `None` where it does not reach there.
+fn cut<const D: usize>(corners: &[Vector<D>; D], y: f64) -> Option<[f64; 2]> {
+    let mut stretch = [f64::INFINITY, f64::NEG_INFINITY];
+    for k in 0..D {
+        let (a, b) = (&corners[k], &corners[(k + 1) % D]);
+        if (a[1] <= y) != (b[1] <= y) {
+            let x = a[0] + (b[0] - a[0]) * (y - a[1]) / (b[1] - a[1]);
+            stretch = [stretch[0].min(x), stretch[1].max(x)];
+        }
+    }
+    (stretch[0] <= stretch[1]).then_some(stretch)
+}
+
+/// Length of the union of stretches.
+fn covered(stretches: &mut [[f64; 2]]) -> f64 {
+    stretches.sort_by(|a, b| a[0].total_cmp(&b[0]));
+    let mut end = f64::NEG_INFINITY;
+    let mut length = 0.0;
+    for [from, to] in stretches.iter() {
+        length += (to - from.max(end)).max(0.0);
+        end = end.max(*to);
+    }
+    length
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::{icosphere, wing};
+
+    fn everywhere() -> Bounds<3> {
+        Bounds { min: Vector([-1e3; 3]), max: Vector([1e3; 3]) }
+    }
+
+    #[test]
+    fn a_sphere_is_seen_as_a_circle() {
+        let surface = Surface::new(&[("ball".to_owned(), icosphere(0.5, 5))]);
+        let seen = surface.planform(&everywhere());
+        let area = std::f64::consts::FRAC_PI_4;
+        assert!((seen.area / area - 1.0).abs() < 2e-3, "{seen:?}");
+        assert!((seen.chord / (2.0 / 3.0 / area) - 1.0).abs() < 2e-3, "{seen:?}");
+    }
+
+    #[test]
+    fn a_tapered_wing_has_the_mean_chord_of_the_books() {
+        let surface = Surface::new(&[("wing".to_owned(), wing())]);
+        let seen = surface.planform(&everywhere());
+        // root chord 1, tip chord 0.5, span 3: S = b (c + t)/2, 2/3 (c² + c t + t²)/(c + t)
+        assert!((seen.area / 2.25 - 1.0).abs() < 1e-6 && (seen.chord / 0.777_778 - 1.0).abs() < 1e-5, "{seen:?}");
+        let half = surface.planform(&Bounds { min: Vector([-1e3, 0.0, -1e3]), ..everywhere() });
+        assert!((half.area / 1.125 - 1.0).abs() < 1e-6 && (half.chord / seen.chord - 1.0).abs() < 1e-5, "{half:?}");
+    }
+}
