@@ -117,6 +117,18 @@ AREA = 1e-9
 FORCE, PANELS = 2e-4, 1e-9
 
 
+def off(run, wall, force):
+    """By how much a force integrated over cells, and one over the panels of the wall, differ from the table of loads."""
+    pressure, area = array(wall, "pressure"), array(wall, "area_vector")
+    with open(run / "loads.csv") as table:
+        rows = list(csv.DictReader(table))
+    told = numpy.array([sum(float(row[key]) for row in rows) for key in ("fx", "fy", "fz")])
+    scale = numpy.ptp(pressure) * numpy.linalg.norm(area, axis=1).sum()
+    errors = [float(numpy.abs(f - told).max() / scale) for f in (force, -pressure @ area)]
+    print(f"  force {force}, loads.csv {told}: off by {errors[0]:.2g}, panels {errors[1]:.2g}")
+    return errors
+
+
 def check_plane(run):
     field, wall = opened(run / "field.vtu"), opened(run / "surface.vtp")
     if field.GetCellType(0) != VTK_TRIANGLE:
@@ -150,7 +162,7 @@ def check_plane(run):
     cut = length(cutter.GetOutput())
     print(f"  contour of Mach {length(contour.GetOutput()):.4g} long, slice {cut:.9g} of {expected:.9g}")
 
-    pressure, normal, area = array(wall, "pressure"), array(wall, "normal"), array(wall, "area_vector")
+    pressure, normal = array(wall, "pressure"), array(wall, "normal")
     force = numpy.zeros(3)
     for line in lines:
         ends = at_wall[line]
@@ -158,13 +170,7 @@ def check_plane(run):
         outward = numpy.sign(numpy.sum(across * normal[line[:-1], :2]))
         mean = 0.5 * (pressure[line[:-1]] + pressure[line[1:]])
         force[:2] -= outward * (mean[:, None] * across).sum(axis=0)
-    panels = -pressure @ area
-    with open(run / "loads.csv") as table:
-        rows = list(csv.DictReader(table))
-    told = numpy.array([sum(float(row[key]) for row in rows) for key in ("fx", "fy", "fz")])
-    scale = numpy.ptp(pressure) * numpy.linalg.norm(area, axis=1).sum()
-    errors = [float(numpy.abs(f - told).max() / scale) for f in (force, panels)]
-    print(f"  force {force[0]:.6g} {force[1]:.6g}, loads.csv {told[0]:.6g} {told[1]:.6g}: off by {errors[0]:.2g}, panels {errors[1]:.2g}")
+    errors = off(run, wall, force)
     return (closed and areas.min() > 0.0 and missing < AREA and length(contour.GetOutput()) > 0.0
             and abs(cut - expected) < 1e-6 * expected and errors[0] < FORCE and errors[1] < PANELS)
 
@@ -244,20 +250,15 @@ def check_space(run):
     polygons = contour.GetOutput().GetNumberOfPolys()
     print(f"  contour of Mach with {polygons} triangles, slice with {cut}, streamline to x = {path[:, 0].max():.4g}")
 
-    pressure, area = array(wall, "pressure"), array(wall, "area_vector")
+    pressure = array(wall, "pressure")
     a, b, c = (at_wall[triangles[:, k]] for k in range(3))
     outward = 0.5 * numpy.cross(b - a, c - a)
     force = -(pressure[triangles].mean(axis=1) @ outward)
-    panels = -pressure @ area
-    with open(run / "loads.csv") as table:
-        rows = list(csv.DictReader(table))
-    told = numpy.array([sum(float(row[key]) for row in rows) for key in ("fx", "fy", "fz")])
-    scale = numpy.ptp(pressure) * numpy.linalg.norm(area, axis=1).sum()
-    errors = [float(numpy.abs(f - told).max() / scale) for f in (force, panels)]
-    print(f"  force {force}, loads.csv {told}: off by {errors[0]:.2g}, panels {errors[1]:.2g}")
+    errors = off(run, wall, force)
     gap = numpy.abs(outward.sum(axis=0)).max() / numpy.abs(outward).sum()
     print(f"  areas of the triangles add up to {gap:.2g} of all")
-    return bool(gap < GAP and volumes.min() > 0.0 and missing < PLACES and inside < PLACES and polygons > 0 and cut > 0 and past and errors[0] < TRIANGLES and errors[1] < PANELS)
+    covers = gap < GAP and volumes.min() > 0.0 and missing < PLACES and inside < PLACES
+    return bool(covers and polygons > 0 and cut > 0 and past and errors[0] < TRIANGLES and errors[1] < PANELS)
 
 
 def crossings(chain, x):

@@ -146,14 +146,24 @@ impl Flow {
     /// Viscosity and heat conduction, `None` for an inviscid gas; `chord` is the reference chord.
     pub fn viscous(&self, chord: f64) -> Option<Viscous> {
         let scales = self.reference();
-        let length = self.reynolds_length.map_or(chord, |l| l.0);
-        let from_reynolds = self.reynolds.map(|re| scales.density * scales.speed * length / re);
+        let from_reynolds = self.reynolds.map(|re| scales.density * scales.speed * self.viscous_length(chord) / re);
         let sutherland = self.sutherland.map_or(SUTHERLAND, |s| s.0) / self.kelvin();
         Some(Viscous {
             viscosity: self.viscosity.map(|mu| mu.0).or(from_reynolds)?,
             sutherland: (self.viscosity_law != Some(ViscosityLaw::Constant)).then_some(sutherland),
             prandtl: self.prandtl.unwrap_or(PRANDTL),
         })
+    }
+
+    /// Length of the Reynolds number: its own, else the reference chord.
+    pub fn viscous_length(&self, chord: f64) -> f64 {
+        self.reynolds_length.map_or(chord, |l| l.0)
+    }
+
+    /// Reynolds number of the stream; `None` without viscosity.
+    pub fn reynolds_number(&self, chord: f64) -> Option<f64> {
+        let (viscous, stream) = (self.viscous(chord)?, self.reference());
+        Some(stream.density * stream.speed * self.viscous_length(chord) / viscous.viscosity)
     }
 
     /// Condition on the surface of `body`.

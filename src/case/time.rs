@@ -153,6 +153,11 @@ pub struct Dual {
 }
 
 impl Case {
+    /// True for cases that change in time.
+    pub fn is_unsteady(&self) -> bool {
+        !matches!(self.time, Temporal::Steady(_))
+    }
+
     /// Time of the solver at which a march ends; `period` is that of the motion, in the same units. `None` when it counts periods
     /// of a motion that has none, and where nothing marches.
     pub fn end(&self, period: Option<f64>) -> Option<f64> {

@@ -167,7 +167,6 @@ fn positive(place: &str, key: &str, value: f64) -> Result<f64, GeometryError> {
     Err(GeometryError::refused(place, format!("`{key}` is {value}"), "use a positive length"))
 }
 
-/// Refuses bodies that intersect or lie inside one another.
 /// Refuses bodies that overlap or touch; names all pairs that do.
 fn refuse_overlap<const D: usize>(surface: &Surface<D>, shells: &[(String, Shell<D>)]) -> Result<(), GeometryError> {
     let alone: Vec<Surface<D>> = shells.iter().map(|shell| Surface::new(std::slice::from_ref(shell))).collect();

@@ -23,6 +23,28 @@ pub trait UpwindFlux<const D: usize>: Copy + Sync {
     ) -> Conserved<D, S>;
 }
 
+/// Averages of two states by the roots of their densities (Roe 1981, J. Comput. Phys. 43).
+struct RoeAverage<const D: usize, S> {
+    density: S,
+    velocity: Vector<D, S>,
+    enthalpy: S,
+    /// Square of the sound speed, which two states of very different enthalpy may leave below zero.
+    square: S,
+}
+
+impl<const D: usize, S: Scalar> RoeAverage<D, S> {
+    /// The averages of two states with these total enthalpies.
+    #[inline(always)]
+    fn of(gas: &Gas, [l, r]: [&Primitive<D, S>; 2], [hl, hr]: [S; 2]) -> Self {
+        let (wl, wr) = (l.density.sqrt(), r.density.sqrt());
+        let weight = (wl + wr).inverse();
+        let velocity = (l.velocity * wl + r.velocity * wr) * weight;
+        let enthalpy = (hl * wl + hr * wr) * weight;
+        let square = (enthalpy - velocity.norm_squared() * 0.5) * (gas.gamma - 1.0);
+        Self { density: wl * wr, velocity, enthalpy, square }
+    }
+}
+
 /// HLLC flux (Toro, Spruce and Speares 1994) with the wave speeds of Batten et al. (1997): resolves contacts exactly.
 #[derive(Clone, Copy, Debug)]
 pub struct Hllc;
@@ -39,12 +61,8 @@ impl<const D: usize> UpwindFlux<D> for Hllc {
         let (ul, ur) = (l.velocity.dot(n), r.velocity.dot(n));
         let (tl, tr) = (l.pressure / l.density, r.pressure / r.density);
         let (el, er) = (tl * inverse + l.velocity.norm_squared() * 0.5, tr * inverse + r.velocity.norm_squared() * 0.5);
-        let (wl, wr) = (l.density.sqrt(), r.density.sqrt());
-        let weight = (wl + wr).inverse();
-        let velocity = (l.velocity * wl + r.velocity * wr) * weight;
-        let enthalpy = ((el + tl) * wl + (er + tr) * wr) * weight;
-        let un = velocity.dot(n);
-        let c = ((enthalpy - velocity.norm_squared() * 0.5) * (gas.gamma - 1.0)).max(zero).sqrt();
+        let mean = RoeAverage::of(gas, [l, r], [el + tl, er + tr]);
+        let (un, c) = (mean.velocity.dot(n), mean.square.max(zero).sqrt());
         let sl = (ul - (tl * gas.gamma).sqrt()).min(un - c);
         let sr = (ur + (tr * gas.gamma).sqrt()).max(un + c);
         let (ml, mr) = (l.density * (sl - ul), r.density * (sr - ur));
@@ -104,12 +122,8 @@ impl<const D: usize> UpwindFlux<D> for Hlle {
     ) -> Conserved<D, S> {
         let zero = S::constant(0.0);
         let (ul, ur) = (l.velocity.dot(n), r.velocity.dot(n));
-        let (wl, wr) = (l.density.sqrt(), r.density.sqrt());
-        let weight = (wl + wr).inverse();
-        let velocity = (l.velocity * wl + r.velocity * wr) * weight;
-        let enthalpy = (gas.total_enthalpy(l) * wl + gas.total_enthalpy(r) * wr) * weight;
-        let un = velocity.dot(n);
-        let c = ((enthalpy - velocity.norm_squared() * 0.5) * (gas.gamma - 1.0)).max(zero).sqrt();
+        let mean = RoeAverage::of(gas, [l, r], [gas.total_enthalpy(l), gas.total_enthalpy(r)]);
+        let (un, c) = (mean.velocity.dot(n), mean.square.max(zero).sqrt());
         let width = c * PASSING;
         let least = |a: S, b: S| (a + b - rounded((a - b).abs(), width)) * 0.5;
         let low = least(least(ul - gas.sound_speed(l), un - c), zero);
@@ -132,12 +146,8 @@ impl<const D: usize> UpwindFlux<D> for Roe {
         r: &Primitive<D, S>,
         n: &Vector<D, S>,
     ) -> Conserved<D, S> {
-        let (wl, wr) = (l.density.sqrt(), r.density.sqrt());
-        let weight = (wl + wr).inverse();
-        let density = wl * wr;
-        let v = (l.velocity * wl + r.velocity * wr) * weight;
-        let h = (gas.total_enthalpy(l) * wl + gas.total_enthalpy(r) * wr) * weight;
-        let c2 = ((h - v.norm_squared() * 0.5) * (gas.gamma - 1.0)).max(S::constant(1e-300));
+        let mean = RoeAverage::of(gas, [l, r], [gas.total_enthalpy(l), gas.total_enthalpy(r)]);
+        let (density, v, h, c2) = (mean.density, mean.velocity, mean.enthalpy, mean.square.max(S::constant(1e-300)));
         let (c, un) = (c2.sqrt(), v.dot(n));
         let dv = r.velocity - l.velocity;
         let (dun, dp, dr) = (dv.dot(n), r.pressure - l.pressure, r.density - l.density);

@@ -5,15 +5,12 @@
 //! ([`Convergence`](crate::observe::convergence::Convergence)).
 use std::borrow::Cow;
 
-use super::recipe::is_unsteady;
-use super::record::{Log, Record};
-use super::setup;
+use super::look::reference;
 use super::stage::{Stage, Task};
 use crate::case::{Accuracy, Case, Length, Wake, WallLayers};
 use crate::cloud::CloudSpec;
 use crate::cloud::layout::count;
 use crate::geometry::Surface;
-use crate::observe::convergence::{CloudLoads, Convergence};
 
 /// Spacings in the length of the shortest body, in 2-D and 3-D.
 const ALONG: [f64; 2] = [64.0, 40.0];
@@ -40,8 +37,6 @@ const FIRST: f64 = 4.0;
 /// Greatest number of particles at the points of a polar that says nothing of accuracy: three clouds for each section, and about a
 /// second for each point.
 const POLAR_PARTICLES: usize = 20_000;
-/// Time that the next cloud of a family takes over that of all before it.
-const NEXT: f64 = 4.0;
 /// Part of the particles allowed that the third cloud in space may have, how many times those of the second it has, the power of the
 /// spacing that their number goes with, and how often the spacing is corrected.
 const ROOM: f64 = 0.6;
@@ -53,7 +48,7 @@ const CLOUDS: usize = 3;
 
 /// How well the loads are to be known; `None` where they are those of one cloud.
 pub(crate) fn asked(case: &Case) -> Option<Accuracy> {
-    let chosen = case.cloud.spacing.is_none() && !is_unsteady(case) && !case.bodies.is_empty();
+    let chosen = case.cloud.spacing.is_none() && !case.is_unsteady() && !case.bodies.is_empty();
     let usual = match case.polar {
         Some(_) if case.dimension != Some(3) => Accuracy { particles: POLAR_PARTICLES, ..Accuracy::default() },
         _ => Accuracy::in_dimension(case.dimension.map_or(2, usize::from)),
@@ -74,9 +69,9 @@ pub(crate) fn with_cloud<'a, const D: usize>(case: &'a Case, surface: Option<&Su
     let shortest = (0..surface.bodies.len()).map(length).fold(f64::INFINITY, f64::min);
     let mut filled = case.clone();
     filled.accuracy = asked(case);
-    let chord = setup::chord(case, Some(surface));
-    let reynolds = setup::reynolds(case, chord);
-    let whole = case.flow.reynolds_length.map_or(chord, |l| l.0);
+    let chord = reference::chord(case, Some(surface));
+    let reynolds = case.flow.reynolds_number(chord);
+    let whole = case.flow.viscous_length(chord);
     // a fifth of a laminar boundary layer: across it in the plane, in space all around
     let thin = reynolds.map(|re| shortest / (ACROSS * (re * shortest / whole).sqrt()));
     let along = shortest / if D == 2 && thin.is_some() { ALONG_LAYERS } else { ALONG[D - 2] };
@@ -143,30 +138,4 @@ pub(crate) fn family(asked: &Accuracy, n: usize, dimension: usize) -> Vec<Stage>
     let factors = std::iter::successors(Some(FIRST), |f| Some(0.5 * f));
     let within = factors.enumerate().take_while(|(k, f)| *k < CLOUDS || particles(*f) <= asked.particles as f64);
     within.map(|(_, factor)| Stage { factor, task: Task::Relax, ..Stage::PLAIN }).collect()
-}
-
-/// The error bars of the clouds of a run, and what ended their family; `None` where there are none.
-pub(crate) fn found(case: &Case, record: &Record) -> Option<Convergence> {
-    let family = Convergence::of(&record.clouds, asked(case)?.loads.0)?;
-    Some(if record.out_of_time { family.out_of_time() } else { family })
-}
-
-/// Adds the loads on one more cloud; true when they are known well enough, or when the next cloud would take too long.
-pub(crate) fn judge(asked: &Accuracy, loads: CloudLoads, log: &mut Log<'_>) -> bool {
-    log.record.clouds.retain(|known| known.factor != loads.factor);
-    log.record.clouds.push(loads);
-    let family = Convergence::of(&log.record.clouds, asked.loads.0);
-    let reached = family.as_ref().is_some_and(|c| c.reached());
-    let [_, wall] = log.seconds();
-    log.record.out_of_time = !reached && asked.time.is_some_and(|t| (1.0 + NEXT) * wall > t.0);
-    let enough = reached || log.record.out_of_time;
-    if log.point.is_some() {
-        return enough;
-    }
-    let bars = family.map_or_else(String::new, |c| {
-        let h = c.half_widths();
-        format!(" ± {:.5}, CD {:.5} ± {:.5}, CM {:.5} ± {:.5}", h.cl, loads.cd, h.cd, loads.cm, h.cm)
-    });
-    log.note(&format!("{} particles: CL {:.5}{bars}", loads.particles, loads.cl));
-    enough
 }

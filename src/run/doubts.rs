@@ -1,5 +1,4 @@
 //! What makes the loads of a finished run doubtful.
-use super::recipe::is_unsteady;
 use super::record::summary::Summary;
 use crate::case::Case;
 use crate::observe::convergence::LEAST;
@@ -11,7 +10,7 @@ const NEGATIVE_DRAG: f64 = -1e-4;
 
 /// What is to be said of the loads of a steady flow.
 pub(crate) fn of_loads(case: &Case, s: &Summary) -> Vec<String> {
-    if is_unsteady(case) || !s.converged {
+    if case.is_unsteady() || !s.converged {
         return Vec::new();
     }
     let mut doubts = Vec::new();

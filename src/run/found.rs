@@ -1,8 +1,8 @@
 //! What a run has found when it is over: loads, ledgers, errors, the wall.
-use super::accuracy;
 use super::look::friction::{Separation, add_friction, separations, wall_friction};
 use super::look::{WallSnapshot, pressure_load, totals};
 use super::recipe;
+use super::record::family;
 use super::record::summary::{Clock, FILES, FreeStream, Ledger, Reclouding, Summary};
 use super::record::{Log, Record};
 use crate::case::{Case, Initial};
@@ -117,25 +117,22 @@ impl<const D: usize> Found<'_, D> {
         let part = |load: &Load| fluid.viscous_model.as_ref().map(|_| self.axes.coefficients(load));
         let balance = self.balance.unwrap_or_default();
         let through = self.axes.coefficients(&balance.load);
+        let marches = case.is_unsteady() && record.balance.is_none();
         let ledger = match recipe::balance(case) {
             Some(_) => None,
-            None if recipe::is_unsteady(case) => drift(&self.view, state, &record.start_totals),
+            None if marches => drift(&self.view, state, &record.start_totals),
             None => Some(self.steady_ledger(&balance, &loads, &through)),
         };
         let [cpu, wall] = log.seconds();
         let n = fluid.discretisation.cloud.n_real();
-        let family = accuracy::found(case, record);
+        let family = family::found(case, record);
         Summary {
             event: "summary",
             case: case.title.clone(),
             run: log.journal.as_ref().map_or_else(String::new, |j| j.out.display().to_string()),
             particles: n,
             iterations: record.iteration,
-            residual_drop: if recipe::is_unsteady(case) && record.balance.is_none() {
-                0.0
-            } else {
-                -record.drop.log10()
-            },
+            residual_drop: if marches { 0.0 } else { -record.drop.log10() },
             converged: record.converged_everywhere(),
             cpu_seconds: cpu,
             wall_seconds: wall,

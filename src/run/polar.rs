@@ -263,12 +263,6 @@ fn after(k: usize, stages: &[Stage]) -> usize {
     (k..stages.len()).find(|j| stages[*j].point != stages[k].point).unwrap_or(stages.len())
 }
 
-/// The stages of one point, for every point of a polar.
-pub(crate) fn at_all_points(case: &Case, stages: Vec<Stage>) -> Vec<Stage> {
-    let Some(polar) = &case.polar else { return stages };
-    (0..polar.len()).flat_map(|point| stages.iter().map(move |s| Stage { point: Some(point), ..*s })).collect()
-}
-
 fn first_line(problem: &RunError) -> String {
     problem.to_string().lines().next().unwrap_or_default().to_owned()
 }

@@ -2,7 +2,6 @@
 //! what integrators want.
 use super::accuracy;
 use super::error::RunError;
-use super::polar;
 use super::stage::{Stage, Task};
 use crate::case::{self, Case, HarmonicCount, Harmonics, Initial, RungeKutta, Steady, SteadyMethod, Temporal};
 use crate::math::multilevel::Cycle;
@@ -54,11 +53,6 @@ pub(crate) struct FixedStep {
     pub(crate) of_period: bool,
 }
 
-/// True for cases that change in time.
-pub(crate) fn is_unsteady(case: &Case) -> bool {
-    !matches!(case.time, Temporal::Steady(_))
-}
-
 /// The harmonic balance of a case.
 pub(crate) fn balance(case: &Case) -> Option<&Harmonics> {
     match &case.time {
@@ -102,11 +96,11 @@ pub(crate) fn marching(case: &Case, period: Option<f64>, dimension: usize) -> Re
 /// A harmonic balance has `least` harmonics or more: the motion has so many.
 pub(crate) fn plan(case: &Case, n: usize, dimension: usize, least: usize) -> Vec<Stage> {
     if let Some(asked) = accuracy::asked(case) {
-        return polar::at_all_points(case, accuracy::family(&asked, n, dimension));
+        return at_all_points(case, accuracy::family(&asked, n, dimension));
     }
     let mut all = Vec::new();
     // a march from a given field starts from that field itself
-    let given = is_unsteady(case) && !matches!(case.initial, Initial::FreeStream);
+    let given = case.is_unsteady() && !matches!(case.initial, Initial::FreeStream);
     let relaxes = relaxation(case).is_some() && !case.bodies.is_empty() && !given;
     let steady = |factor: f64, cycle: u32| Stage { factor, cycle, point: None, task: Task::Relax };
     if relaxes {
@@ -118,12 +112,18 @@ pub(crate) fn plan(case: &Case, n: usize, dimension: usize, least: usize) -> Vec
             all.push(steady(2.0, 0));
         }
     }
-    if relaxes || !is_unsteady(case) {
+    if relaxes || !case.is_unsteady() {
         all.extend((0..=case.adapt.cycles).map(|cycle| steady(1.0, cycle)));
     }
     let cycle = all.last().map_or(0, |s: &Stage| s.cycle);
     all.extend(in_time(case, None, least).into_iter().map(|task| Stage { factor: 1.0, cycle, point: None, task }));
-    polar::at_all_points(case, all)
+    at_all_points(case, all)
+}
+
+/// The stages of one point, for every point of a polar.
+fn at_all_points(case: &Case, stages: Vec<Stage>) -> Vec<Stage> {
+    let Some(polar) = &case.polar else { return stages };
+    (0..polar.len()).flat_map(|point| stages.iter().map(move |s| Stage { point: Some(point), ..*s })).collect()
 }
 
 /// The stages of a case that begins from the last state of another run, reached at the stage `from`, on the same cloud.
@@ -132,7 +132,7 @@ pub(crate) fn plan_from(case: &Case, from: &Stage) -> Vec<Stage> {
         Task::Balance { harmonics } => Some(harmonics),
         _ => None,
     };
-    let tasks = if is_unsteady(case) { in_time(case, held, FIRST) } else { vec![Task::Relax] };
+    let tasks = if case.is_unsteady() { in_time(case, held, FIRST) } else { vec![Task::Relax] };
     tasks.into_iter().map(|task| Stage { task, ..*from }).collect()
 }
 

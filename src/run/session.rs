@@ -254,30 +254,17 @@ impl Run<'_> {
         monitor: &mut dyn Monitor,
     ) -> Result<Ended, RunError> {
         let clock = Clock::start();
-        let (mut saved, mut other) = match origin {
-            Origin::Case => (None, None),
-            Origin::Own(saved) => (Some(*saved), None),
-            Origin::Other(other) => (None, Some(*other)),
-        };
-        let mut ready = if saved.is_some() { None } else { Some(self.cloud(site, monitor)?) };
-        let particles = ready.as_ref().map_or(0, |c| c.n_fluid);
-        let stages = match (&saved, &other) {
-            (Some(s), _) => s.stages.clone(),
-            (None, Some(o)) => recipe::plan_from(self.case, &o.stages[o.stage]),
-            (None, None) => {
-                recipe::plan(self.case, particles, D, site.motions.multiples().last().copied().unwrap_or(1))
-            }
-        };
+        let (stages, mut ground) = self.opening(site, origin, monitor)?;
         let scales = Scales { axes: load_axes(self.case, site.surface), period: site.motions.period() };
         let points = self.case.points();
-        let mut log = Log::open(self.case, self.out, scales, saved.as_ref(), structures, monitor)?;
-        log.note(&describe(&stages, particles));
-        let known = saved.as_ref().or(other.as_ref());
+        let mut log = Log::open(self.case, self.out, scales, ground.saved.as_ref(), structures, monitor)?;
+        log.note(&describe(&stages, ground.ready.as_ref().map_or(0, |c| c.n_fluid)));
+        let known = ground.saved.as_ref().or(ground.other.as_ref());
         let mut sources: Vec<Source<D>> = known.map_or_else(Vec::new, Saved::sources);
-        let kept = saved.as_mut().map_or_else(Vec::new, |s| std::mem::take(&mut s.kept));
+        let kept = ground.saved.as_mut().map_or_else(Vec::new, |s| std::mem::take(&mut s.kept));
         let mut course = Course::of(self.case, &points, kept);
-        let mut k = saved.as_ref().map_or(0, |s| s.stage);
-        if saved.is_none() {
+        let mut k = ground.saved.as_ref().map_or(0, |s| s.stage);
+        if ground.saved.is_none() {
             log.begin_point(true);
         }
         let mut previous: Option<Stood<S, D>> = None;
@@ -285,27 +272,10 @@ impl Run<'_> {
             let site = Site { case: course.case(stage), ..*site };
             course.enter(stage, site.surface, &mut log);
             log.record.warnings.clear();
-            let mut build = || match course.take(stage, &site)? {
-                Some(solver) => Ok(solver),
-                None => {
-                    let cloud = if stage.is_plain() { ready.take() } else { None };
-                    Ok::<_, RunError>(setup::solver(&site, stage, &sources, cloud)?.with(&assemble))
-                }
-            };
-            let Begun { mut solver, start } = match (saved.take(), previous.take()) {
-                (Some(saved), _) => Begun::resumed(build()?, saved)?,
-                (None, Some(stood)) if stage.shares_cloud(&stood.stage) => {
-                    Begun::fresh(stood.solver, stood.reached.state)
-                }
-                (None, stood) => {
-                    let solver = build()?;
-                    let guess = guess(&solver, stage, &site, stood.as_ref(), &course, &log);
-                    let begun = begun(solver, &site, (guess, stood.as_ref()), other.take())?;
-                    stood.into_iter().for_each(|s| course.shelve(&s.stage, s.solver));
-                    begun
-                }
-            };
-            solver.system.hold_bodies(stage.task == Task::Relax && recipe::is_unsteady(self.case));
+            let build = |ready| Ok(setup::solver(&site, stage, &sources, ready)?.with(&assemble));
+            let Begun { mut solver, start } =
+                ground.begin((stage, &site), build, previous.take(), &mut course, &log)?;
+            solver.system.hold_bodies(stage.task == Task::Relax && self.case.is_unsteady());
             let flat = flatten(&sources);
             let at = Position { stage: k, stages: &stages, sources: &flat, kept: course.kept() };
             let turn = Turn { at: &at };
@@ -336,6 +306,28 @@ impl Run<'_> {
         let Some((frame, state)) = &stood.reached.end else { return Err(RunError::NoStage) };
         let view = GasView::of(&stood.solver.system, frame, state);
         Run { case: log.case, ..*self }.conclude(&view, site.surface, &mut log, &clock).map(Ok)
+    }
+
+    /// The stages of a run, and what the first of them stands on.
+    fn opening<const D: usize>(
+        &self,
+        site: &Site<'_, D>,
+        origin: Origin,
+        monitor: &mut dyn Monitor,
+    ) -> Result<(Vec<Stage>, Ground<D>), RunError> {
+        let (saved, other) = match origin {
+            Origin::Own(saved) => {
+                return Ok((saved.stages.clone(), Ground { ready: None, saved: Some(*saved), other: None }));
+            }
+            Origin::Other(other) => (None, Some(*other)),
+            Origin::Case => (None, None),
+        };
+        let cloud = self.cloud(site, monitor)?;
+        let stages = match &other {
+            Some(o) => recipe::plan_from(self.case, &o.stages[o.stage]),
+            None => recipe::plan(self.case, cloud.n_fluid, D, site.motions.multiples().last().copied().unwrap_or(1)),
+        };
+        Ok((stages, Ground { ready: Some(cloud), saved, other }))
     }
 
     /// The cloud of the case; tells what is worth knowing of it and of the motion on it.
@@ -381,7 +373,7 @@ impl Run<'_> {
         clock: &Clock,
     ) -> Result<Solution, RunError> {
         let (solved, mut work) = (clock.wall_seconds(), gas.fluid.work());
-        let balance = momentum::around(self.case, &log.axes, gas, &mut work, recipe::is_unsteady(self.case));
+        let balance = momentum::around(self.case, &log.axes, gas, &mut work, self.case.is_unsteady());
         let view = gas.seen(&mut work);
         let (axes, names) = (log.axes.axes(&view), Names::of(surface));
         let found = Found { case: self.case, view, surface, axes, names, balance };
@@ -397,6 +389,47 @@ impl Run<'_> {
         let loops = log.case_period().map_or_else(Loops::default, |p| log.record.trace.loops(p));
         let history = std::mem::take(&mut log.record.history);
         Ok(Solution { summary, field, walls, history, loops })
+    }
+}
+
+/// What the first stage stands on; each thing serves once.
+struct Ground<const D: usize> {
+    /// The cloud of the case.
+    ready: Option<Cloud<D>>,
+    /// Where this run stopped.
+    saved: Option<Saved>,
+    /// Where another run ended.
+    other: Option<Saved>,
+}
+
+impl<const D: usize> Ground<D> {
+    /// The beginning of a stage: at the checkpoint, on the cloud of the stage before it, or on one that `build` makes.
+    fn begin<S: HasGas<D>>(
+        &mut self,
+        (stage, site): (&Stage, &Site<'_, D>),
+        build: impl Fn(Option<Cloud<D>>) -> Result<Solver<S, D>, RunError>,
+        previous: Option<Stood<S, D>>,
+        course: &mut Course<'_, S, D>,
+        log: &Log<'_>,
+    ) -> Result<Begun<S, D>, RunError> {
+        let saved = self.saved.take();
+        let stood = match previous {
+            Some(stood) if saved.is_none() && stage.shares_cloud(&stood.stage) => {
+                return Ok(Begun::fresh(stood.solver, stood.reached.state));
+            }
+            other => other,
+        };
+        let solver = match course.take(stage, site)? {
+            Some(solver) => solver,
+            None => build(if stage.is_plain() { self.ready.take() } else { None })?,
+        };
+        if let Some(saved) = saved {
+            return Begun::resumed(solver, saved);
+        }
+        let guess = guess(&solver, stage, site, stood.as_ref(), course, log);
+        let begun = begun(solver, site, (guess, stood.as_ref()), self.other.take())?;
+        stood.into_iter().for_each(|s| course.shelve(&s.stage, s.solver));
+        Ok(begun)
     }
 }
 

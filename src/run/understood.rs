@@ -1,7 +1,7 @@
 //! What the program understood of a case, in numbers: what `check` tells beside its mistakes.
 use serde::Serialize;
 
-use super::setup::{chord, reynolds};
+use super::look::reference::chord;
 use crate::case::Case;
 use crate::geometry::Surface;
 use crate::math::{Bounds, Vector};
@@ -96,7 +96,7 @@ impl Understood {
             pressure: stream.pressure,
             density: stream.density,
             temperature: case.flow.is_dimensional().then(|| case.flow.kelvin()),
-            reynolds: reynolds(case, chord),
+            reynolds: case.flow.reynolds_number(chord),
             reference: axes.map(|axes| ReferenceValues::of::<D>(axes, stream.mach)),
             bodies: names.map(|(body, name)| BodyBox::of(name, &bounds(body))).collect(),
             period: time(period),

@@ -21,9 +21,6 @@
 //! stands. The quick subset judges the `fast` cases, without extrapolations: those rerun a case at its finest spacing.
 use std::fmt;
 
-use toml::Table;
-
-use super::parse::{Keys, parse_claim, parse_study};
 use crate::case::ClaimRow;
 
 /// The contents of a `claim.toml`.
@@ -391,36 +388,11 @@ impl fmt::Display for ClaimError {
     }
 }
 
-impl ClaimFile {
-    /// Reads a `claim.toml`; reports every problem at once.
-    pub fn parse(text: &str) -> Result<Self, ClaimError> {
-        let table: Table = text
-            .parse()
-            .map_err(|e: toml::de::Error| ClaimError { problems: vec![e.to_string().trim_end().to_string()] })?;
-        let mut problems = Vec::new();
-        let mut root = Keys::new(&table, String::new(), &mut problems);
-        let fast = root.boolean("fast").unwrap_or(false);
-        let study = root.table("study");
-        let list = root.tables("claim");
-        root.finish();
-        let study = study.and_then(|t| parse_study(t, &mut problems));
-        let claims: Vec<Claim> =
-            list.iter().enumerate().filter_map(|(i, t)| parse_claim(t, i + 1, &mut problems)).collect();
-        if list.is_empty() {
-            problems.push("file has no claim\nhint: add a `[[claim]]` table".into());
-        }
-        if let (None, Some(claim)) = (&study, claims.iter().find(|c| c.metric.needs_study())) {
-            let name = claim.metric.name();
-            problems.push(format!("metric `{name}` needs several spacings\nhint: add `[study]` with `spacings`"));
-        }
-        if problems.is_empty() { Ok(Self { fast, study, claims }) } else { Err(ClaimError { problems }) }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use proptest::prelude::*;
+    use toml::Table;
 
     const GOOD: &str = r#"
         fast = true

@@ -1,12 +1,38 @@
 //! The tables of a `claim.toml`, key by key: every problem is noted with a hint.
 use toml::{Table, Value};
 
-use super::claim::{Claim, Exact, Kind, Metric, Study};
+use super::claim::{Claim, ClaimError, ClaimFile, Exact, Kind, Metric, Study};
 
 /// Most runs of an ensemble.
 const MOST_RUNS: f64 = 64.0;
 
-pub(super) fn parse_study(table: &Table, problems: &mut Vec<String>) -> Option<Study> {
+impl ClaimFile {
+    /// Reads a `claim.toml`; reports every problem at once.
+    pub fn parse(text: &str) -> Result<Self, ClaimError> {
+        let table: Table = text
+            .parse()
+            .map_err(|e: toml::de::Error| ClaimError { problems: vec![e.to_string().trim_end().to_string()] })?;
+        let mut problems = Vec::new();
+        let mut root = Keys::new(&table, String::new(), &mut problems);
+        let fast = root.boolean("fast").unwrap_or(false);
+        let study = root.table("study");
+        let list = root.tables("claim");
+        root.finish();
+        let study = study.and_then(|t| parse_study(t, &mut problems));
+        let claims: Vec<Claim> =
+            list.iter().enumerate().filter_map(|(i, t)| parse_claim(t, i + 1, &mut problems)).collect();
+        if list.is_empty() {
+            problems.push("file has no claim\nhint: add a `[[claim]]` table".into());
+        }
+        if let (None, Some(claim)) = (&study, claims.iter().find(|c| c.metric.needs_study())) {
+            let name = claim.metric.name();
+            problems.push(format!("metric `{name}` needs several spacings\nhint: add `[study]` with `spacings`"));
+        }
+        if problems.is_empty() { Ok(Self { fast, study, claims }) } else { Err(ClaimError { problems }) }
+    }
+}
+
+fn parse_study(table: &Table, problems: &mut Vec<String>) -> Option<Study> {
     let before = problems.len();
     let mut keys = Keys::new(table, "study: ".into(), problems);
     let spacings = keys.numbers("spacings").unwrap_or_default();
@@ -22,7 +48,7 @@ pub(super) fn parse_study(table: &Table, problems: &mut Vec<String>) -> Option<S
     (problems.len() == before).then_some(Study { spacings, scale_boxes, scale_layers, scale_wall_layers, scale_wake })
 }
 
-pub(super) fn parse_claim(table: &Table, number: usize, problems: &mut Vec<String>) -> Option<Claim> {
+fn parse_claim(table: &Table, number: usize, problems: &mut Vec<String>) -> Option<Claim> {
     let before = problems.len();
     let mut keys = Keys::new(table, format!("claim {number}: "), problems);
     let metric = parse_metric(&mut keys);
@@ -140,7 +166,7 @@ fn parse_region(keys: &mut Keys<'_, '_>) -> Option<[Vec<f64>; 2]> {
 }
 
 /// The keys of one table, ticked off as they are read.
-pub(super) struct Keys<'t, 'p> {
+struct Keys<'t, 'p> {
     table: &'t Table,
     place: String,
     known: Vec<&'static str>,
@@ -148,15 +174,15 @@ pub(super) struct Keys<'t, 'p> {
 }
 
 impl<'t, 'p> Keys<'t, 'p> {
-    pub(super) fn new(table: &'t Table, place: String, problems: &'p mut Vec<String>) -> Self {
+    fn new(table: &'t Table, place: String, problems: &'p mut Vec<String>) -> Self {
         Self { table, place, known: Vec::new(), problems }
     }
 
-    pub(super) fn problem(&mut self, text: &str) {
+    fn problem(&mut self, text: &str) {
         self.problems.push(format!("{}{text}", self.place));
     }
 
-    pub(super) fn skip(&mut self, names: &[&'static str]) {
+    fn skip(&mut self, names: &[&'static str]) {
         self.known.extend(names);
     }
 
@@ -172,33 +198,33 @@ impl<'t, 'p> Keys<'t, 'p> {
         out
     }
 
-    pub(super) fn boolean(&mut self, key: &'static str) -> Option<bool> {
+    fn boolean(&mut self, key: &'static str) -> Option<bool> {
         self.read(key, "true or false", Value::as_bool)
     }
 
-    pub(super) fn string(&mut self, key: &'static str) -> Option<String> {
+    fn string(&mut self, key: &'static str) -> Option<String> {
         self.read(key, "text", |v| v.as_str().map(str::to_string))
     }
 
-    pub(super) fn number(&mut self, key: &'static str) -> Option<f64> {
+    fn number(&mut self, key: &'static str) -> Option<f64> {
         self.read(key, "a finite number", as_number)
     }
 
-    pub(super) fn numbers(&mut self, key: &'static str) -> Option<Vec<f64>> {
+    fn numbers(&mut self, key: &'static str) -> Option<Vec<f64>> {
         self.read(key, "a list of finite numbers", as_numbers)
     }
 
-    pub(super) fn table(&mut self, key: &'static str) -> Option<&'t Table> {
+    fn table(&mut self, key: &'static str) -> Option<&'t Table> {
         self.read(key, "a table", Value::as_table)
     }
 
-    pub(super) fn tables(&mut self, key: &'static str) -> Vec<&'t Table> {
+    fn tables(&mut self, key: &'static str) -> Vec<&'t Table> {
         let read = |v: &'t Value| v.as_array()?.iter().map(Value::as_table).collect::<Option<Vec<_>>>();
         self.read(key, "a list of tables", read).unwrap_or_default()
     }
 
     /// Reports the keys nobody asked for.
-    pub(super) fn finish(&mut self) {
+    fn finish(&mut self) {
         let unknown: Vec<&String> = self.table.keys().filter(|k| !self.known.contains(&k.as_str())).collect();
         for key in unknown {
             let hint = suggestion(key, self.known.iter().copied());

@@ -78,7 +78,7 @@ pub(crate) struct LoadFrame {
     case: Case,
     /// Corners of the smallest box around the bodies, before they move; absent without bodies.
     bodies: Option<[[f64; 3]; 2]>,
-    /// Their reference values.
+    /// Their reference values in 3-D.
     planform: Option<Planform>,
 }
 
@@ -88,7 +88,7 @@ pub(crate) fn load_axes<const D: usize>(case: &Case, surface: Option<&Surface<D>
     LoadFrame {
         case: case.clone(),
         bodies: surface.map(|s| corners(s.bounds())),
-        planform: surface.map(|s| planform(case, s)),
+        planform: surface.filter(|_| D == 3).map(|s| planform(case, s)),
     }
 }
 
@@ -101,13 +101,8 @@ impl LoadFrame {
         let reference = &self.case.reference;
         // a body of which only a face across the stream lies in the domain is as long as that face is high
         let length = if seen.extent()[0] > 0.0 { extent[0] } else { seen.extent().max_abs() };
-        let (chord, area) = match self.planform.filter(|_| D == 3) {
-            Some(seen) => (seen.chord, seen.area),
-            None => {
-                let chord = reference.chord.map_or(length, |c| c.0);
-                (chord, if D == 2 { chord } else { reference.area.unwrap_or(chord * extent[1]) })
-            }
-        };
+        let chord = reference.chord.map_or(length, |c| c.0);
+        let Planform { chord, area } = self.planform.unwrap_or(Planform { chord, area: chord });
         let mut point = bounds.centre();
         if D == 2 {
             point[0] = bounds.min[0] + 0.25 * extent[0];

@@ -1,5 +1,6 @@
 //! What a run knows about itself: in memory while it goes on, in a checkpoint between, in the summary at its end.
 pub(crate) mod crosscheck;
+pub(crate) mod family;
 mod history;
 mod interval;
 mod journal;

@@ -6,7 +6,6 @@ use serde::{Deserialize, Serialize};
 use super::super::error::RunError;
 use super::super::stage::{Stage, Task};
 use super::polar::PolarRecord;
-use super::trust::require;
 use crate::cloud::sources::Source;
 use crate::math::Vector;
 use crate::observe::checkpoint::{self, Array, Checkpoint, Field};
@@ -470,4 +469,9 @@ fn other_version(problem: &dyn std::fmt::Display) -> RunError {
 /// Where a march stands, in the terms of a relaxation.
 fn bare(iteration: u32) -> Resume {
     Resume { iteration, cfl: 0.0, first_norm: 1.0, linear: 0, phase: Phase::default(), scale: Vec::new() }
+}
+
+/// Nothing, or what is wrong with a checkpoint.
+pub(super) fn require(holds: bool, problem: &'static str) -> Result<(), RunError> {
+    if holds { Ok(()) } else { Err(RunError::Untrue { file: FILE, problem }) }
 }

@@ -1,5 +1,5 @@
 //! Whether the numbers of a checkpoint are those of a run: checksums tell damage of the file, not what was written into it.
-use super::saved::{LagrangianCheckpoint, Saved};
+use super::saved::{LagrangianCheckpoint, Saved, require};
 use crate::case::Case;
 use crate::run::error::RunError;
 use crate::run::recipe;
@@ -70,9 +70,4 @@ fn is_of(case: &Case, stage: &Stage) -> bool {
         _ => true,
     };
     cloud && task
-}
-
-/// Nothing, or what is wrong with a checkpoint.
-pub(crate) fn require(holds: bool, problem: &'static str) -> Result<(), RunError> {
-    if holds { Ok(()) } else { Err(RunError::Untrue { file: super::saved::FILE, problem }) }
 }

@@ -9,15 +9,14 @@ use std::sync::Arc;
 
 pub(crate) use bodies::{bodies, described};
 pub(crate) use motion_feasibility::check as check_motion;
-pub(crate) use sanity::{reynolds, sane};
-
-pub(crate) use super::look::reference::chord;
+pub(crate) use sanity::sane;
 pub(crate) use size::spec;
 
 use super::accuracy;
 use super::error::RunError;
 use super::folder;
 use super::look::forces::ForceModes;
+use super::look::reference::chord;
 use super::recipe;
 use super::stage::Stage;
 use crate::case::{Case, ParticleMotion, Temporal};

@@ -103,15 +103,8 @@ fn slow(case: &Case) -> Option<String> {
 
 /// Boundary layers that do not stay laminar.
 fn turbulent<const D: usize>(case: &Case, surface: Option<&Surface<D>>) -> Option<String> {
-    let re = reynolds(case, chord(case, surface)).filter(|re| surface.is_some() && *re > TURBULENT)?;
+    let re = case.flow.reynolds_number(chord(case, surface)).filter(|re| surface.is_some() && *re > TURBULENT)?;
     Some(format!("at the Reynolds number {re:.2e} boundary layers are turbulent, but the gas is computed as laminar"))
-}
-
-/// Reynolds number of the stream; `None` without viscosity.
-pub(crate) fn reynolds(case: &Case, chord: f64) -> Option<f64> {
-    let (viscous, stream) = (case.flow.viscous(chord)?, case.flow.reference());
-    let length = case.flow.reynolds_length.map_or(chord, |l| l.0);
-    Some(stream.density * stream.speed * length / viscous.viscosity)
 }
 
 #[cfg(test)]

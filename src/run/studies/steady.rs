@@ -4,6 +4,7 @@ use super::super::error::RunError;
 use super::super::look::{GasView, momentum};
 use super::super::recipe::control;
 use super::super::record::Log;
+use super::super::record::family;
 use super::super::stage::{Stage, Task};
 use super::super::watch::{Aim, Checkpoint, Ending, GasEyes, Limit, Observer, Progress, Resting, Told, drive, sample};
 use super::turn::{Reached, Start, Turn};
@@ -62,7 +63,7 @@ pub(crate) fn relax<S: HasGas<D>, const D: usize>(
         }
         log.record.reason = (!relax.finished()).then(|| short_of_goal(&relax, steady, orders));
         let loads = tell(system, &mut relax, turn, log)?;
-        let enough = asked.is_some_and(|asked| accuracy::judge(&asked, loads, log));
+        let enough = asked.is_some_and(|asked| family::judge(&asked, loads, log));
         let rests = hurried && !relax.finished() && relax.resting() >= PATIENCE;
         if !(rests && enough) {
             if rests {
