@@ -30,6 +30,20 @@ fn exact_lift_lies_within_the_error_bar() {
 }
 
 #[test]
+fn momentum_balances_where_the_zone_runs_along_a_bow_shock() {
+    for mach in [3, 6] {
+        let body = "[[body]]\ncircle = { radius = 0.5 }\n[cloud]\nspacing = 0.02\n";
+        let case = read(&format!("[flow]\nmach = {mach}\n{body}"), "circle.toml").unwrap_or_else(|e| panic!("{e}"));
+        let mut session = Session::open(&case, ".").unwrap_or_else(|e| panic!("{e}"));
+        session.solve(&mut Silent).unwrap_or_else(|e| panic!("{e}"));
+        let s = session.summary().unwrap();
+        let through = s.loads_momentum_balance.unwrap();
+        assert!((through.cd / s.loads.cd - 1.0).abs() < 0.015, "Mach {mach}: {} and {}", s.loads.cd, through.cd);
+        assert!(s.ledger.unwrap().mass.abs() < 0.01, "Mach {mach}: {:?}", s.ledger);
+    }
+}
+
+#[test]
 fn a_symmetric_section_keeps_its_lift_of_zero() {
     let s = solved(0.8, 0.0);
     assert!(s.loads.cl.abs() < 1e-6 && s.loads_error.unwrap().cl < 1e-5, "{:?}", s.loads);

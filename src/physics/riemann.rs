@@ -134,6 +134,22 @@ impl<const D: usize> UpwindFlux<D> for Hlle {
     }
 }
 
+/// The mean of the fluxes on both sides: what the others add their dissipation to.
+#[derive(Clone, Copy, Debug)]
+pub struct Central;
+impl<const D: usize> UpwindFlux<D> for Central {
+    #[inline(always)]
+    fn across<S: Scalar>(
+        self,
+        gas: &Gas,
+        l: &Primitive<D, S>,
+        r: &Primitive<D, S>,
+        n: &Vector<D, S>,
+    ) -> Conserved<D, S> {
+        gas.flux(l, n).plus(S::constant(1.0), &gas.flux(r, n)).times(S::constant(0.5))
+    }
+}
+
 /// Roe's flux (1981) with a smooth entropy fix.
 #[derive(Clone, Copy, Debug)]
 pub struct Roe;

@@ -15,7 +15,7 @@ use super::reconstruct::{Gradient, Limit, Reconstruction, low_mach_correction};
 use super::viscous::{direction, middle, slopes};
 use crate::math::Vector;
 use crate::math::jet::Scalar;
-use crate::physics::riemann::{Hlle, UpwindFlux};
+use crate::physics::riemann::{Central, Hlle, UpwindFlux};
 use crate::physics::viscous::Slopes;
 use crate::physics::{Conserved, Gas, Newtonian, Primitive};
 
@@ -70,17 +70,9 @@ pub fn edge_flux<const D: usize, S: Scalar, F: UpwindFlux<D>, L: Limit>(
     ends: [&EdgeEnd<D, S>; 2],
     face: &EdgeFace<D, S>,
 ) -> [Conserved<D, S>; 2] {
-    let (gas, [a, b]) = (&scheme.gas, ends);
-    let along = ends.map(|end| end.gradient.along(&face.along).times(S::constant(1.0) - end.steepness));
-    let sides = scheme.reconstruction.states(gas, scheme.limit, (&a.state, &b.state), (&along[0], &along[1]));
+    let gas = &scheme.gas;
     let (velocity, weight) = (ends.map(|end| end.velocity), ends.map(|end| end.weight));
-    let sides = if scheme.reconstruction.low_mach {
-        slowed(gas, [sides.0, sides.1], (&face.area, face.whole), &velocity)
-    } else {
-        [sides.0, sides.1]
-    };
-    let upwind = upwind(gas, scheme.flux, &sides, &face.area, &velocity);
-    let upwind = steep(gas, (&sides, &upwind), &face.area, &velocity, a.steepness.max(b.steepness));
+    let (sides, upwind) = between(scheme, ends, face);
     let passing = Passing { state: ends.map(|end| end.state), weight, velocity, area: face.area, sides, upwind };
     let inviscid = match scheme.conservative {
         true => conservative::<D, S, true>(gas, scheme.by_faces, &passing),
@@ -91,6 +83,37 @@ pub fn edge_flux<const D: usize, S: Scalar, F: UpwindFlux<D>, L: Limit>(
     let viscous = viscous(gas, medium, &slopes, (&face.along, &face.area), (!scheme.conservative).then_some(&weight));
     let [i, j] = inviscid;
     [i.plus(S::constant(1.0), &viscous[0]), j.plus(S::constant(1.0), &viscous[1])]
+}
+
+/// What the scheme lets through an edge beyond the mean flux of its ends: its dissipation, and what is gained by reconstruction.
+pub fn beyond_mean<const D: usize, F: UpwindFlux<D>, L: Limit>(
+    scheme: &FluxScheme<F, L>,
+    ends: [&EdgeEnd<D>; 2],
+    face: &EdgeFace<D>,
+) -> Conserved<D> {
+    let velocity = ends.map(|end| end.velocity);
+    let mean = upwind(&scheme.gas, Central, &ends.map(|end| end.state), &face.area, &velocity);
+    between(scheme, ends, face).1.minus(&mean).times(face.area.norm())
+}
+
+/// States on both sides of the middle of an edge, and the upwind flux between them per unit of area.
+fn between<const D: usize, S: Scalar, F: UpwindFlux<D>, L: Limit>(
+    scheme: &FluxScheme<F, L>,
+    ends: [&EdgeEnd<D, S>; 2],
+    face: &EdgeFace<D, S>,
+) -> ([Primitive<D, S>; 2], Conserved<D, S>) {
+    let (gas, [a, b]) = (&scheme.gas, ends);
+    let along = ends.map(|end| end.gradient.along(&face.along).times(S::constant(1.0) - end.steepness));
+    let sides = scheme.reconstruction.states(gas, scheme.limit, (&a.state, &b.state), (&along[0], &along[1]));
+    let velocity = ends.map(|end| end.velocity);
+    let sides = if scheme.reconstruction.low_mach {
+        slowed(gas, [sides.0, sides.1], (&face.area, face.whole), &velocity)
+    } else {
+        [sides.0, sides.1]
+    };
+    let upwind = upwind(gas, scheme.flux, &sides, &face.area, &velocity);
+    let upwind = steep(gas, (&sides, &upwind), &face.area, &velocity, a.steepness.max(b.steepness));
+    (sides, upwind)
 }
 
 /// What the inviscid part follows from once the states on both sides of the middle and the flux between them are known.

@@ -74,7 +74,7 @@ impl<const D: usize> Gradient<D> {
 
 /// 0 below 0, 1 above 1, in between t² (3 − 2t).
 #[inline(always)]
-fn smooth_step<S: Scalar>(t: S) -> S {
+pub(super) fn smooth_step<S: Scalar>(t: S) -> S {
     let t = t.max(S::constant(0.0)).min(S::constant(1.0));
     t * t * (S::constant(3.0) - t * 2.0)
 }

@@ -20,13 +20,15 @@
 #[cfg(test)]
 mod tests;
 
-use super::edge_flux::FluxScheme;
+use super::edge_flux::{EdgeEnd, EdgeFace, FluxScheme, beyond_mean};
 use super::edges::{Particles, edge_fluxes};
 use super::fluid::{Fluid, Work};
 use super::frame::Frame;
 use super::reconstruct::{Limit, Unlimited, VanAlbada, Venkatakrishnan};
 use crate::case::{Flux, Limiter};
+use crate::cloud::Edge;
 use crate::cloud::operators::WallFace;
+use crate::math::Vector;
 use crate::math::sweep::sweep_parts;
 use crate::physics::riemann::{AusmPlusUp, Hllc, Roe, Rusanov, UpwindFlux};
 use crate::physics::{Conserved, n_variables};
@@ -68,10 +70,7 @@ impl<const D: usize> Fluid<D> {
     fn fluxes(&self, flux: impl UpwindFlux<D>, limit: impl Limit, at: (&Frame<D>, &Work<D>), du: &mut [f64]) {
         let (frame, work) = at;
         let (op, cloud) = (&frame.discretisation.operators, &frame.discretisation.cloud);
-        let (gas, reconstruction, conservative) = (self.gas, self.reconstruction, self.conservative);
-        let medium = self.viscous_model.as_ref().map(|f| f.medium);
-        let scheme =
-            FluxScheme { gas, flux, limit, reconstruction, conservative, by_faces: self.passes_by_faces(), medium };
+        let scheme = self.flux_scheme(flux, limit);
         let particles = Particles {
             x: &cloud.x,
             volume: &cloud.volume,
@@ -98,6 +97,44 @@ impl<const D: usize> Fluid<D> {
                 out.chunks_exact_mut(n_variables(D)).for_each(|row| frame.momentum_to_inertial_axes(row));
             }
         });
+    }
+
+    /// What is let through an edge beyond the mean flux of its ends.
+    pub(super) fn beyond_mean(&self, (frame, work): (&Frame<D>, &Work<D>), e: &Edge<D>) -> Conserved<D> {
+        match self.flux {
+            Flux::Hllc => self.beyond_mean_by(Hllc, (frame, work), e),
+            Flux::Roe => self.beyond_mean_by(Roe, (frame, work), e),
+            Flux::AusmPlusUp => self.beyond_mean_by(AusmPlusUp, (frame, work), e),
+            Flux::Rusanov => self.beyond_mean_by(Rusanov, (frame, work), e),
+        }
+    }
+
+    fn beyond_mean_by(
+        &self,
+        flux: impl UpwindFlux<D>,
+        (frame, work): (&Frame<D>, &Work<D>),
+        e: &Edge<D>,
+    ) -> Conserved<D> {
+        let x = &frame.discretisation.cloud.x;
+        let ends = [e.i(), e.j()].map(|i| EdgeEnd {
+            state: work.state[i],
+            gradient: work.gradient[i],
+            steepness: work.steepness[i],
+            weight: Vector::ZERO,
+            velocity: frame.velocity_of(i),
+        });
+        let (ends, face) = ([&ends[0], &ends[1]], EdgeFace { along: x[e.j()] - x[e.i()], area: e.s, whole: 0.0 });
+        match self.limiter {
+            Limiter::None => beyond_mean(&self.flux_scheme(flux, Unlimited), ends, &face),
+            Limiter::VanAlbada => beyond_mean(&self.flux_scheme(flux, VanAlbada), ends, &face),
+            Limiter::Venkatakrishnan => beyond_mean(&self.flux_scheme(flux, Venkatakrishnan), ends, &face),
+        }
+    }
+
+    fn flux_scheme<F, L>(&self, flux: F, limit: L) -> FluxScheme<F, L> {
+        let (gas, reconstruction, conservative) = (self.gas, self.reconstruction, self.conservative);
+        let medium = self.viscous_model.as_ref().map(|f| f.medium);
+        FluxScheme { gas, flux, limit, reconstruction, conservative, by_faces: self.passes_by_faces(), medium }
     }
 
     /// Pressure on the pieces of wall that bound fluid particles: no mass passes, and energy only where the wall moves.
