@@ -330,7 +330,7 @@ static CLOUD: Table = Table::of(&[
         "domain",
         Kind::Table(&DOMAIN),
         "a square or cube of half-width `far_field`; must be given when there is no body",
-        "Explicit domain.",
+        "Explicit domain: whole numbers of `spacing` long. Where the program chooses the spacing, far sides move outward until they are.",
     ),
     Field::optional(
         "layers",

@@ -133,24 +133,23 @@ fn explicit<const D: usize>(spec: &CloudSpec<D>, domain: &Bounds<D>) -> Result<F
 
 /// One root cell around the bodies; planes of symmetry pass through the origin of their axis.
 fn around<const D: usize>(spec: &CloudSpec<D>, surface: &Surface<D>) -> Forest<D> {
-    let sides = &spec.sides;
     let bounds = surface.bounds();
     let length = bounds.extent().max_abs();
     let wanted = spec.far_field.unwrap_or(FAR_FIELD[D - 2] * length);
     let spacing = spec.spacing;
     let half = spacing * 2f64.powf((wanted / spacing).log2().ceil());
     let centre = bounds.centre();
-    let cut = |d: usize, end: usize| sides[d][end] == Side::Symmetry && sides[d][1 - end] != Side::Symmetry;
     // the grid is aligned with the origin, so that a section that is symmetric about an axis gets a symmetric cloud
     let snap = |c: f64| (c / spacing).round() * spacing;
-    let origin = Vector::from_fn(|d| match (cut(d, 0), cut(d, 1)) {
+    let origin = Vector::from_fn(|d| match (spec.halves(d, 0), spec.halves(d, 1)) {
         (true, _) => 0.0,
         (_, true) => -half,
         _ => snap(centre[d]) - half,
     });
     // where half of the space is cut off, cells of half the width fill the rest
-    let halved = (0..D).any(|d| cut(d, 0) || cut(d, 1));
-    let count = |d: usize| if !halved || cut(d, 0) || cut(d, 1) { 1 } else { 2 };
+    let cut = |d: usize| spec.halves(d, 0) || spec.halves(d, 1);
+    let halved = (0..D).any(cut);
+    let count = |d: usize| if !halved || cut(d) { 1 } else { 2 };
     let root_size = if halved { half } else { 2.0 * half };
     Forest { origin, root_size, roots: std::array::from_fn(count), periodic: [false; D] }
 }

@@ -98,6 +98,23 @@ impl<const D: usize> CloudSpec<D> {
     }
 }
 
+impl<const D: usize> CloudSpec<D> {
+    /// True where the side `end` of axis `d` is a plane of symmetry, and the other one is not.
+    pub fn halves(&self, d: usize, end: usize) -> bool {
+        self.sides[d][end] == Side::Symmetry && self.sides[d][1 - end] != Side::Symmetry
+    }
+
+    /// What the domain surely reaches no farther than: an explicit one, or the side of planes of symmetry that the gas is on; around
+    /// bodies these pass through the origin of their axis.
+    pub fn limits(&self) -> Bounds<D> {
+        let end = |d: usize, end: usize, none: f64| if self.halves(d, end) { 0.0 } else { none };
+        self.domain.unwrap_or_else(|| Bounds {
+            min: Vector::from_fn(|d| end(d, 0, f64::NEG_INFINITY)),
+            max: Vector::from_fn(|d| end(d, 1, f64::INFINITY)),
+        })
+    }
+}
+
 fn bounds<const D: usize>(min: &[case::Length], max: &[case::Length]) -> Bounds<D> {
     let corner = |v: &[case::Length]| Vector::from_fn(|d| v.get(d).map_or(0.0, |l| l.0));
     Bounds { min: corner(min), max: corner(max) }

@@ -7,7 +7,7 @@ use std::borrow::Cow;
 
 use super::look::reference;
 use super::stage::{Stage, Task};
-use crate::case::{Accuracy, Case, Length, Wake, WallLayers};
+use crate::case::{Accuracy, Case, Domain, Length, Side, Wake, WallLayers};
 use crate::cloud::CloudSpec;
 use crate::cloud::layout::count;
 use crate::geometry::Surface;
@@ -43,6 +43,11 @@ const ROOM: f64 = 0.6;
 const FINER: f64 = 6.0;
 const POWER: f64 = 2.5;
 const ROUNDS: usize = 4;
+/// Cells along the shortest side of a domain that a case gives, at least; greatest number of those between sides that must stay; by how
+/// much of a side they may miss it.
+const CELLS: f64 = 8.0;
+const MOST_CELLS: u32 = 64;
+const WHOLE: f64 = 1e-9;
 /// Clouds that an error bar is drawn from.
 const CLOUDS: usize = 3;
 
@@ -76,13 +81,10 @@ pub(crate) fn with_cloud<'a, const D: usize>(case: &'a Case, surface: Option<&Su
     let thin = reynolds.map(|re| shortest / (ACROSS * (re * shortest / whole).sqrt()));
     let along = shortest / if D == 2 && thin.is_some() { ALONG_LAYERS } else { ALONG[D - 2] };
     let spacing = Length(if D == 3 { thin.map_or(along, |thin| along.min(IN_SPACE * thin)) } else { along });
-    filled.cloud.spacing = Some(spacing);
     filled.cloud.far_field =
         case.cloud.far_field.or(Some(Length(FAR_FIELD[D - 2] * surface.bounds().extent().max_abs())));
     filled.cloud.layers = case.cloud.layers.or(Some(LAYERS[D - 2]));
-    if D == 3 {
-        filled.cloud.spacing = Some(Length(affordable(&filled, surface, spacing.0)));
-    }
+    filled = spaced::<D>(&filled, if D == 3 { affordable(&filled, surface, spacing.0) } else { spacing.0 });
     if let Some(thin) = thin.filter(|_| D == 2) {
         let layers = WallLayers { first: Length(thin), growth: GROWTH, count: None };
         filled.cloud.wall_layers = case.cloud.wall_layers.or(Some(layers));
@@ -96,10 +98,9 @@ pub(crate) fn with_cloud<'a, const D: usize>(case: &'a Case, surface: Option<&Su
 /// edges and noses ask for more than the size of a body tells. Counted on the background of the second cloud.
 fn affordable<const D: usize>(case: &Case, surface: &Surface<D>, spacing: f64) -> f64 {
     let room = ROOM * asked(case).unwrap_or(Accuracy::in_dimension(D)).particles as f64;
-    let mut case = case.clone();
     let mut spacing = spacing;
     for _ in 0..ROUNDS {
-        case.cloud.spacing = Some(Length(spacing));
+        let case = spaced::<D>(case, spacing);
         let Ok(cells) = count(&CloudSpec::of_case(&scaled(&case, 2.0)), surface) else { break };
         let over = FINER * cells as f64 / room;
         if over <= 1.0 {
@@ -108,6 +109,38 @@ fn affordable<const D: usize>(case: &Case, surface: &Surface<D>, spacing: f64) -
         spacing *= over.powf(1.0 / POWER);
     }
     spacing
+}
+
+/// The case with this spacing. A domain that it gives is widened at far sides until it holds whole cells of the coarsest cloud; where
+/// two sides of an axis must stay, the spacing is one that fits between them.
+fn spaced<const D: usize>(case: &Case, spacing: f64) -> Case {
+    let mut case = case.clone();
+    case.cloud.spacing = Some(Length(spacing));
+    let sides = CloudSpec::<D>::of_case(&case).sides;
+    let Some(Domain { min, max }) = case.cloud.domain.as_mut() else { return case };
+    let lengths: [f64; D] = std::array::from_fn(|d| max[d].0 - min[d].0);
+    let shortest = lengths.into_iter().fold(f64::INFINITY, f64::min);
+    // the first cloud fits as often as a power of two into cells that are small beside the domain
+    let cells = |cell: f64| (cell / (FIRST * spacing)).log2();
+    let mut cell = FIRST * spacing * 2f64.powf(cells(shortest / CELLS).floor().max(0.0));
+    let whole = |length: f64, cell: f64| (length / cell - (length / cell).round()).abs() < WHOLE * length / cell;
+    let far = |d: usize, end: usize| sides[d][end] == Side::FarField;
+    let fixed = || (0..D).filter(|d| !far(*d, 0) && !far(*d, 1)).map(|d| lengths[d]);
+    if let Some(first) = fixed().reduce(f64::min) {
+        let fitting = (1..=MOST_CELLS).map(|n| first / f64::from(n)).find(|c| fixed().all(|length| whole(length, *c)));
+        cell = fitting.unwrap_or(first);
+        case.cloud.spacing = Some(Length(cell / (FIRST * 2f64.powf(cells(cell).round().max(0.0)))));
+    }
+    for d in (0..D).filter(|d| !whole(lengths[*d], cell)) {
+        let more = (lengths[d] / cell).ceil() * cell - lengths[d];
+        match (far(d, 0), far(d, 1)) {
+            (true, true) => (min[d].0, max[d].0) = (min[d].0 - 0.5 * more, max[d].0 + 0.5 * more),
+            (true, false) => min[d].0 -= more,
+            (false, true) => max[d].0 += more,
+            (false, false) => {}
+        }
+    }
+    case
 }
 
 /// The case with the spacing, the particles per level and what curvature asks for scaled by `factor`: its cloud is alike, and has
