@@ -511,6 +511,29 @@ fn a_replaced_run_is_kept_under_another_name() {
     assert!(told(&output).contains("kept in `runs/case.replaced`"), "{}", told(&output));
     assert_eq!(std::fs::read_to_string(desk.path("runs/case.replaced/case.toml")).unwrap(), "mine");
     assert!(desk.path("runs/case/summary.json").is_file());
+    // what cannot begin replaces nothing
+    std::fs::write(desk.path("case.toml"), format!("{SECTION}[[body]]\nnaca = \"0012\"\n")).unwrap();
+    let output = desk.alula(&["run", "case.toml", "--force"]);
+    assert_eq!(code(&output), Some(2), "{}", told(&output));
+    assert!(told(&output).contains("overlaps or touches"), "{}", told(&output));
+    assert!(desk.path("runs/case/summary.json").is_file() && !desk.path("runs/case.replaced-2").exists());
+}
+
+#[cfg(unix)]
+#[test]
+fn a_run_that_goes_on_keeps_its_folder_to_itself() {
+    let desk = Desk::new(CYLINDER);
+    let child = desk.begun("out");
+    let tell = |signal: &str| Command::new("kill").args([signal, &child.id().to_string()]).status().unwrap().success();
+    assert!(tell("-STOP"));
+    for words in [&["resume", "out"][..], &["run", "case.toml", "--out", "out", "--force"]] {
+        let output = desk.alula(words);
+        assert_eq!(code(&output), Some(2), "{}", told(&output));
+        assert!(told(&output).contains("a run is going on in `out`"), "{}", told(&output));
+    }
+    assert!(tell("-INT") && tell("-CONT"));
+    assert_eq!(code(&child.wait_with_output().unwrap()), Some(130));
+    assert_eq!(code(&desk.alula(&["resume", "out"])), Some(0));
 }
 
 #[cfg(target_os = "linux")]

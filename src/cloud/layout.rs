@@ -178,9 +178,9 @@ pub fn background<const D: usize>(
 }
 
 /// Cells of the background around a surface: somewhat more than the cloud will have particles, at a small part of the cost.
-pub fn count<const D: usize>(spec: &CloudSpec<D>, surface: &Surface<D>) -> Result<usize, CloudError> {
-    let layout = Layout::new(spec, Some(surface))?;
-    Ok(background(spec, &layout, Some(surface), &[])?.leaves().count())
+pub fn count<const D: usize>(spec: &CloudSpec<D>, surface: Option<&Surface<D>>) -> Result<usize, CloudError> {
+    let layout = Layout::new(spec, surface)?;
+    Ok(background(spec, &layout, surface, &[])?.leaves().count())
 }
 
 /// Refuses spacings that the deepest cells of the background are too large for.

@@ -101,7 +101,7 @@ fn affordable<const D: usize>(case: &Case, surface: &Surface<D>, spacing: f64) -
     let mut spacing = spacing;
     for _ in 0..ROUNDS {
         let case = spaced::<D>(case, spacing);
-        let Ok(cells) = count(&CloudSpec::of_case(&scaled(&case, 2.0)), surface) else { break };
+        let Ok(cells) = count(&CloudSpec::of_case(&scaled(&case, 2.0)), Some(surface)) else { break };
         let over = FINER * cells as f64 / room;
         if over <= 1.0 {
             break;

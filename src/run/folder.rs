@@ -1,5 +1,5 @@
 //! The run folder: made before anything else, never overwritten.
-use std::fs;
+use std::fs::{self, File, TryLockError};
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
@@ -31,9 +31,39 @@ pub fn fresh_folder(parent: &Path, name: &str) -> PathBuf {
     std::iter::once(parent.join(name)).chain(numbered).find(|p| !p.exists()).unwrap_or_else(|| parent.join(name))
 }
 
+/// A run folder that is this run's as long as this lives; file systems without locks let it pass.
+pub(crate) struct Hold {
+    _lock: Option<File>,
+}
+
+/// Takes a run folder; refuses one in which another run is going on.
+pub(crate) fn hold(out: &Path) -> Result<Hold, RunError> {
+    let Ok(file) = File::open(out.join(ORIGIN)) else { return Ok(Hold { _lock: None }) };
+    match file.try_lock() {
+        Ok(()) => Ok(Hold { _lock: Some(file) }),
+        Err(TryLockError::Error(_)) => Ok(Hold { _lock: None }),
+        Err(TryLockError::WouldBlock) => Err(RunError::Folder {
+            what: format!("a run is going on in `{}`", out.display()),
+            hint: "wait for its end, stop it, or choose another folder with `--out`".into(),
+        }),
+    }
+}
+
+/// Renames a run folder, so that nothing is lost; its new name.
+pub(crate) fn set_aside(out: &Path) -> Result<PathBuf, RunError> {
+    let _held = hold(out)?;
+    let name = out.file_name().map_or_else(|| "run".into(), |n| n.to_string_lossy().into_owned());
+    let kept = fresh_folder(out.parent().unwrap_or(Path::new("")), &format!("{name}.replaced"));
+    fs::rename(out, &kept).map(|()| kept).map_err(|e| RunError::Folder {
+        what: format!("cannot set `{}` aside: {e}", out.display()),
+        hint: "choose another folder with `--out`".into(),
+    })
+}
+
 /// Makes the run folder and puts the resolved case into it; true where a run was begun there before that kept nothing.
-pub(crate) fn create(case: &Case, input: &Path, out: &Path) -> Result<bool, RunError> {
+pub(crate) fn create(case: &Case, input: &Path, out: &Path) -> Result<(bool, Hold), RunError> {
     let named = out.display();
+    let _before = hold(out)?;
     let used = out.join("case.toml").exists() || out.join(SUMMARY).exists();
     if used && !is_barely_begun(out) {
         return Err(occupied(out));
@@ -47,8 +77,9 @@ pub(crate) fn create(case: &Case, input: &Path, out: &Path) -> Result<bool, RunE
     let origin = absolute(input).map_err(lost)?;
     // before the case, so that a case without it is one that no run has put there
     write_atomic(&out.join(ORIGIN), |w| writeln!(w, "{}", origin.display()))?;
+    let held = hold(out)?;
     write_atomic(&out.join("case.toml"), |w| w.write_all(write(case).as_bytes()))?;
-    Ok(used)
+    Ok((used, held))
 }
 
 /// True where a run was stopped before it kept anything but its case.

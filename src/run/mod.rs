@@ -31,11 +31,12 @@ mod understood;
 pub mod verify;
 mod watch;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use crate::case::Case;
 use crate::cloud::Cloud;
-use crate::geometry::Surface;
+use crate::cloud::layout::count;
+use crate::geometry::{Surface, dimension};
 use crate::scheme::Fluid;
 
 pub use cost::Cost;
@@ -103,6 +104,31 @@ pub fn run_from(case: &Case, places: &Places, from: &Path, monitor: &mut dyn Mon
     session.keep_in(&places.out, monitor)?.from(Origin::Other(Box::new(saved))).solve(monitor)
 }
 
+/// Makes room for a case that can begin: an earlier run in its folder is renamed; its new name, if there was one.
+pub fn set_aside(case: &Case, places: &Places) -> Result<Option<PathBuf>, RunError> {
+    if !places.out.exists() {
+        return Ok(None);
+    }
+    folder::check_compared(case, &places.input)?;
+    match dimension(case) {
+        2 => rehearse::<2>(case, &places.input)?,
+        _ => rehearse::<3>(case, &places.input)?,
+    }
+    folder::set_aside(&places.out).map(Some)
+}
+
+/// Refuses a case of which it is known before its cloud is built that it cannot begin.
+fn rehearse<const D: usize>(case: &Case, input: &Path) -> Result<(), RunError> {
+    setup::supported(case)?;
+    let (surface, _) = setup::surface::<D>(case, input)?;
+    let case = &*accuracy::with_cloud(case, surface.as_ref());
+    let mut motions = setup::motions(case, input, surface.as_ref())?;
+    setup::sane(case, surface.as_ref(), &motions)?;
+    setup::bodies(case, input, surface.as_ref(), &mut motions)?;
+    count(&setup::spec(case), surface.as_ref())?;
+    Ok(())
+}
+
 /// Goes on with an interrupted or killed run; one that is finished stays as it is.
 pub fn resume(out: &Path, monitor: &mut dyn Monitor) -> Result<Outcome, RunError> {
     if let Some(summary) = folder::finished(out) {
@@ -122,9 +148,10 @@ pub fn continued(out: &Path) -> Result<Session, RunError> {
     let (case, input) = folder::read_case(out)?;
     folder::check_input(&case, &input, out)?;
     folder::check_begun(out)?;
+    let held = folder::hold(out)?;
     let saved = Saved::read(out)?.trusted(&case)?;
     folder::reopen(out)?;
-    Ok(Session::open(&case, input)?.kept_in(out).from(Origin::Own(Box::new(saved))))
+    Ok(Session::open(&case, input)?.kept_in(out, held).from(Origin::Own(Box::new(saved))))
 }
 
 /// Builds the cloud of a case without running it.

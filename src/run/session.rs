@@ -10,7 +10,7 @@ use super::accuracy;
 use super::doubts;
 use super::error::RunError;
 use super::files;
-use super::folder;
+use super::folder::{self, Hold};
 use super::found::{Found, Names, Spent};
 use super::look::{GasView, Snapshot, WallSnapshot, field, load_axes, momentum};
 use super::monitor::Monitor;
@@ -75,6 +75,7 @@ pub struct Session {
     case: Case,
     input: PathBuf,
     out: Option<PathBuf>,
+    held: Option<Hold>,
     origin: Origin,
     solution: Option<Solution>,
 }
@@ -98,7 +99,14 @@ impl Session {
     /// Opens a case whose file names refer to the folder `input`.
     pub fn open(case: &Case, input: impl Into<PathBuf>) -> Result<Self, RunError> {
         setup::supported(case)?;
-        Ok(Self { case: case.clone(), input: input.into(), out: None, origin: Origin::Case, solution: None })
+        Ok(Self {
+            case: case.clone(),
+            input: input.into(),
+            out: None,
+            held: None,
+            origin: Origin::Case,
+            solution: None,
+        })
     }
 
     /// The same with a folder for tables, checkpoints, fields and pictures, which is made and gets the resolved case. Fails where
@@ -106,16 +114,17 @@ impl Session {
     pub fn keep_in(self, out: impl AsRef<Path>, monitor: &mut dyn Monitor) -> Result<Self, RunError> {
         let out = out.as_ref();
         folder::check_compared(&self.case, &self.input)?;
-        if folder::create(&self.case, &self.input, out)? {
+        let (again, held) = folder::create(&self.case, &self.input, out)?;
+        if again {
             let out = out.display();
             monitor.note(&format!("the run in `{out}` was stopped before its first checkpoint: it begins again"));
         }
-        Ok(self.kept_in(out))
+        Ok(self.kept_in(out, held))
     }
 
     /// The same with a folder, which exists.
-    pub(crate) fn kept_in(self, out: &Path) -> Self {
-        Self { out: Some(out.to_path_buf()), ..self }
+    pub(crate) fn kept_in(self, out: &Path, held: Hold) -> Self {
+        Self { out: Some(out.to_path_buf()), held: Some(held), ..self }
     }
 
     /// The same from elsewhere than the start of the case.
@@ -128,10 +137,11 @@ impl Session {
         let origin = std::mem::replace(&mut self.origin, Origin::Case);
         let work = Run { case: &self.case, input: &self.input, out: self.out.as_deref() };
         let ended = match dimension(&self.case) {
-            2 => work.solve::<2>(origin, monitor)?,
-            _ => work.solve::<3>(origin, monitor)?,
+            2 => work.solve::<2>(origin, monitor),
+            _ => work.solve::<3>(origin, monitor),
         };
-        Ok(match ended {
+        self.held = None;
+        Ok(match ended? {
             Ok(solution) => {
                 let summary = Box::new(solution.summary.clone());
                 self.solution = Some(solution);

@@ -1,5 +1,4 @@
 //! `alula run`.
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use alula::observe::convergence::{Convergence, FamilyEnd};
@@ -23,24 +22,18 @@ pub(crate) fn run(args: &arguments::Run) -> Outcome {
         Err(outcome) => return outcome,
     };
     let out = args.out.clone().unwrap_or_else(|| default_folder(&args.case, args.force));
+    let input = args.case.parent().map_or_else(PathBuf::new, Path::to_path_buf);
+    let places = Places { input, out: out.clone() };
     if args.force {
-        match set_aside(&out) {
+        match run::set_aside(&case, &places) {
             Ok(Some(kept)) if !args.verbosity.quiet => {
                 output::note(&format!("the earlier results in `{}` are kept in `{}`", out.display(), kept.display()));
             }
             Ok(_) => {}
-            Err(problem) => {
-                output::error(
-                    &format!("cannot set `{}` aside: {problem}", out.display()),
-                    "choose another folder with `--out`",
-                );
-                return Outcome::BadInput;
-            }
+            Err(problem) => return super::refuse(&problem),
         }
     }
-    let input = args.case.parent().map_or_else(PathBuf::new, Path::to_path_buf);
     let mut watch = Watch::new(args.verbosity);
-    let places = Places { input, out: out.clone() };
     let ended = match &args.from {
         Some(from) => run::run_from(&case, &places, from, &mut watch),
         None => run::run(&case, &places, &mut watch),
@@ -274,16 +267,4 @@ pub(crate) fn name_of(case: &Path) -> String {
 fn default_folder(case: &Path, replaced: bool) -> PathBuf {
     let (runs, name) = (Path::new(RUNS), name_of(case));
     if replaced { runs.join(name) } else { run::fresh_folder(runs, &name) }
-}
-
-/// Renames an existing run folder, so that nothing is lost; its new name, if there was one.
-fn set_aside(out: &Path) -> std::io::Result<Option<PathBuf>> {
-    if !out.exists() {
-        return Ok(None);
-    }
-    let parent = out.parent().unwrap_or(Path::new(""));
-    let name = out.file_name().map_or_else(|| "run".into(), |n| n.to_string_lossy().into_owned());
-    let kept = run::fresh_folder(parent, &format!("{name}.replaced"));
-    fs::rename(out, &kept)?;
-    Ok(Some(kept))
 }
