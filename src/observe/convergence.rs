@@ -3,7 +3,8 @@
 //! Three clouds of one family, each with half the spacing of the one before: with d₁ and d₂ the last two changes of a load, the
 //! observed order is p = log₂(d₁/d₂) (Richardson 1911), the limit f + d₂/(2^p − 1), and the error bar 5/4 of the way to it
 //! (Roache 1994, grid convergence index). Between the orders 1 and 2 first-order errors (at shocks and corners) and second-order ones are
-//! both there: the limit is that of f + a h + b h² through the three loads, which lies farther away. Loads that swing, hardly
+//! both there: the limit is that of f + a h + b h² through the three loads, which lies farther away. Where the gas is faster than sound
+//! shocks are captured, and no order beyond 1 is trusted. Loads that swing, hardly
 //! change, or change faster than the scheme can make them have no order to speak of: their bar is the honest spread, after Eça and
 //! Hoekstra (2014).
 //!
@@ -18,10 +19,11 @@ use super::loads::Coefficients;
 const SAFETY: f64 = 1.25;
 /// Orders that a second-order scheme with captured shocks and edges may show.
 const ORDERS: [f64; 2] = [0.5, 2.2];
-/// Order of the scheme, which no extrapolation goes beyond.
-const SCHEME_ORDER: f64 = 2.0;
-/// Part of the change before the last one that is left where the last one is smaller than the scheme can make it: h⁴ over h².
-const LUCK: f64 = 1.0 / 16.0;
+/// Order of the scheme, which no extrapolation goes beyond: in smooth flow, and where shocks are captured, some spacings wide.
+const SCHEME_ORDER: [f64; 2] = [2.0, 1.0];
+/// Part of the change before the last one that is left where the last one is smaller than the scheme can make it: h⁴ over h², and half of
+/// what h over itself would leave.
+const LUCK: [f64; 2] = [1.0 / 16.0, 1.0 / 8.0];
 /// Relative error of a load for a domain that ends a length of the bodies away, of second order in the distance: lift of a section
 /// at Mach 0.5 with a vortex in the far field, 0.93 at 64 chords.
 const FAR: f64 = 1.0;
@@ -42,6 +44,9 @@ pub struct CloudLoads {
     pub particles: usize,
     /// Half-width of the domain in lengths of the bodies.
     pub reach: f64,
+    /// True where the gas is faster than sound somewhere: then there are shocks.
+    #[serde(default)]
+    pub supersonic: bool,
     /// Lift.
     pub cl: f64,
     /// Drag.
@@ -108,7 +113,7 @@ impl Convergence {
     pub fn of(clouds: &[CloudLoads], asked: f64) -> Option<Self> {
         let [.., a, b, c] = clouds else { return None };
         let of = |load: fn(&CloudLoads) -> f64, part: fn(&Coefficients) -> f64| {
-            let found = estimate([load(a), load(b), load(c)]);
+            let found = estimate([load(a), load(b), load(c)], c.supersonic);
             let far_field = FAR * load(c).abs() / c.reach.powi(2);
             let momentum = c.momentum.as_ref().map_or(0.0, |through| {
                 let change = b.momentum.as_ref().map_or(0.0, |before| (part(through) - part(before)).abs());
@@ -145,14 +150,15 @@ impl Convergence {
 }
 
 /// The estimate from values at spacings 4, 2 and 1, of the part of the spacing alone.
-fn estimate([a, b, c]: [f64; 3]) -> LoadEstimate {
+fn estimate([a, b, c]: [f64; 3], shocks: bool) -> LoadEstimate {
     let [before, last] = [b - a, c - b];
+    let [most, luck] = [SCHEME_ORDER, LUCK].map(|of| of[usize::from(shocks)]);
     let order = (before / last).log2();
     if (ORDERS[0]..=ORDERS[1]).contains(&order) {
         let way = match order {
             // the limit of f + a h + b h² through the three
-            p if 1.0 < p && p < SCHEME_ORDER => (5.0 * last - before) / 3.0,
-            p => last / (p.min(SCHEME_ORDER).exp2() - 1.0),
+            p if 1.0 < p && p < most => (5.0 * last - before) / 3.0,
+            p => last / (p.min(most).exp2() - 1.0),
         };
         return LoadEstimate {
             order: Some(order),
@@ -161,7 +167,7 @@ fn estimate([a, b, c]: [f64; 3]) -> LoadEstimate {
             ..LoadEstimate::default()
         };
     }
-    LoadEstimate { spacing: SAFETY * last.abs().max(LUCK * before.abs()), ..LoadEstimate::default() }
+    LoadEstimate { spacing: SAFETY * last.abs().max(luck * before.abs()), ..LoadEstimate::default() }
 }
 
 #[cfg(test)]
@@ -172,19 +178,28 @@ mod tests {
     fn loads_of_an_order_have_their_limit_within_the_bar() {
         for order in [0.7, 1.0, 2.0] {
             let at = |h: f64| 0.3 + 0.02 * h.powf(order);
-            let e = estimate([at(4.0), at(2.0), at(1.0)]);
+            let e = estimate([at(4.0), at(2.0), at(1.0)], false);
             assert!((e.order.unwrap() - order).abs() < 1e-9 && (e.limit.unwrap() - 0.3).abs() < 1e-9, "{e:?}");
             assert!(e.spacing > 0.02 && e.spacing < 0.026, "{e:?}");
         }
         let both = |h: f64| 0.3 + 0.01 * h + 0.01 * h * h;
-        let e = estimate([both(4.0), both(2.0), both(1.0)]);
+        let e = estimate([both(4.0), both(2.0), both(1.0)], false);
         assert!((1.0..2.0).contains(&e.order.unwrap()) && (e.limit.unwrap() - 0.3).abs() < 1e-9, "{e:?}");
+    }
+
+    #[test]
+    fn captured_shocks_leave_an_error_of_first_order() {
+        for values in [[0.5, 0.35, 0.3], [0.5, 0.31, 0.309]] {
+            let [smooth, shocks] = [false, true].map(|with| estimate(values, with));
+            let last = f64::abs(values[2] - values[1]);
+            assert!(shocks.spacing >= 1.25 * last && shocks.spacing > smooth.spacing, "{smooth:?}, {shocks:?}");
+        }
     }
 
     #[test]
     fn loads_without_an_order_have_their_spread() {
         for values in [[1.0, 2.0, 1.5], [1.0, 1.1, 1.1], [1.0, 1.1, 1.11], [1.0, 1.1, 1.3], [1.0, 1.0, 1.0]] {
-            let e = estimate(values);
+            let e = estimate(values, false);
             assert_eq!((e.order, e.limit), (None, None), "{values:?}");
             assert!(e.spacing >= (values[2] - values[1]).abs() && e.spacing.is_finite(), "{e:?}");
         }
@@ -196,6 +211,7 @@ mod tests {
             factor,
             particles: 10,
             reach: 1e3,
+            supersonic: false,
             cl,
             cd: 0.0,
             cm: 0.0,

@@ -14,6 +14,10 @@ pub(crate) fn of_loads(case: &Case, s: &Summary) -> Vec<String> {
         return Vec::new();
     }
     let mut doubts = Vec::new();
+    let finer = match case.accuracy {
+        Some(_) => "allow more `accuracy.particles`",
+        None => "take a finer `spacing` or more `layers`",
+    };
     let wall = s.loads;
     if let Some(through) = s.loads_momentum_balance {
         let pairs = [("CL", wall.cl, through.cl, LEAST[0]), ("CD", wall.cd, through.cd, LEAST[1])];
@@ -22,7 +26,7 @@ pub(crate) fn of_loads(case: &Case, s: &Summary) -> Vec<String> {
             if part >= DISAGREEMENT {
                 doubts.push(format!(
                     "{name} is {wall:.5} by wall pressure and {through:.5} by momentum, {:.0} % apart: the cloud is too coarse for it \
-                     near the bodies or around them; a finer `spacing` or more `layers` tells which",
+                     near the bodies or around them; {finer}",
                     100.0 * part
                 ));
             }
@@ -31,7 +35,7 @@ pub(crate) fn of_loads(case: &Case, s: &Summary) -> Vec<String> {
     let allowed = NEGATIVE_DRAG - s.loads_error.map_or(0.0, |bar| bar.cd);
     if !case.flow.is_viscous() && wall.cd < allowed {
         doubts.push(format!(
-            "the drag of a gas without viscosity is negative, CD {:.5}: the cloud is too coarse for it; take a finer `spacing`",
+            "the drag of a gas without viscosity is negative, CD {:.5}: the cloud is too coarse for it; {finer}",
             wall.cd
         ));
     }

@@ -12,7 +12,7 @@ use crate::case::Steady;
 use crate::math::Bounds;
 use crate::observe::convergence::CloudLoads;
 use crate::observe::loads::Coefficients;
-use crate::scheme::{Fluid, HasGas};
+use crate::scheme::{Fluid, HasGas, Work};
 use crate::system::Implicit;
 use crate::time::relax::Relax;
 use crate::time::{Integrator, Memory, Standing};
@@ -151,7 +151,15 @@ fn tell<S: HasGas<D>, const D: usize>(
         log.record.cycles.push([cycle, particles as f64, loads.cl, loads.cd, loads.cm]);
     }
     let (reach, unsettled) = (reach(system.gas()), unsettled(log));
-    Ok(CloudLoads { factor, particles, reach, cl: loads.cl, cd: loads.cd, cm: loads.cm, momentum, unsettled })
+    let supersonic = is_supersonic(system.gas(), system.gas_work(work));
+    let Coefficients { cl, cd, cm } = loads;
+    Ok(CloudLoads { factor, particles, reach, supersonic, cl, cd, cm, momentum, unsettled })
+}
+
+/// True where the gas is faster than sound somewhere.
+fn is_supersonic<const D: usize>(gas: &Fluid<D>, work: &Work<D>) -> bool {
+    let n = gas.discretisation.cloud.n_fluid;
+    work.state[..n].iter().any(|q| q.velocity.norm() > gas.gas.sound_speed(q))
 }
 
 /// What the last iteration changed the loads by; half of their range over the last iterations where the residual did not reach its
