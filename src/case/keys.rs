@@ -189,7 +189,8 @@ static BODY: Table = Table::of(&[
         "naca",
         Kind::Table(&NACA),
         SHAPE,
-        "NACA section of four or five digits, modified or not (2-D), `naca = \"0012\"`, `\"23012\"` or `\"0012-64\"`.",
+        "NACA section of four or five digits, modified or not, or of the 6-series (2-D), `naca = \"0012\"`, `\"23012\"`, \
+         `\"0012-64\"`, `\"63-415\"` or `\"64A010\"`.",
     ),
     Field::optional("airfoil", Kind::Text, SHAPE, "Airfoil coordinate file (2-D) in Selig, Lednicer or CSV order.")
         .known_as(&["file", "dat", "coordinates", "section", "profile"]),
@@ -271,7 +272,7 @@ const TRAILING_EDGES: &[(&str, &str)] = &[
     ("closed", "last thickness coefficient -0.1036, no base of a modified form: both sides meet at x/c = 1"),
     (
         "blunt",
-        "last thickness coefficient -0.1015 as published: a base of 0.252 % chord for 12 %, of a modified form 0.24 %",
+        "last thickness coefficient -0.1015 as published: a base of 0.252 % chord for 12 %, of a modified form 0.24 %, of 64A010 0.04 %",
     ),
     ("extended", "as published, extended to where the sides meet and scaled back to unit chord"),
 ];

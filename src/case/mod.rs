@@ -44,7 +44,7 @@ pub use motion::{
     BodyMotionSpec, ModeMotion, Motion, MotionFormula, MotionTable, OwnFrequency, ParticleMotion, Pitch, Plunge,
     Rotation, Translation,
 };
-pub use naca::{MeanLine, Naca, NacaDesign, NoSection, TrailingEdge};
+pub use naca::{MeanLine, Naca, NacaDesign, NoSection, SixSeries, ThicknessForm, TrailingEdge};
 pub use polar::Polar;
 pub use quantity::{
     Acceleration, Angle, AngularStiffness, Density, Frequency, Inertia, Length, Mass, Pressure, Rate, Ratio, Stiffness,

@@ -3,14 +3,16 @@
 //! Four digits: camber in hundredths of the chord, its place in tenths, thickness in hundredths. Five digits: design lift
 //! coefficient in twentieths of three (2 is 0.3), place of greatest camber in twentieths, 0 for a plain or 1 for a reflexed mean
 //! line, thickness. Either may end with a dash and two digits: index of the nose radius (6 as without) and place of greatest
-//! thickness in tenths. Jacobs, Ward and Pinkerton, NACA report 460 (1933); Jacobs and Pinkerton, report 537 (1935); Stack and von
-//! Doenhoff, report 492 (1934).
+//! thickness in tenths. 6-series: `6`, place of least pressure in tenths, `A` for the form that is straight from 0.8 chord on, if
+//! wanted the range of lift of the low drag in tenths (it says nothing about the form), a dash, design lift coefficient in tenths,
+//! thickness; `a=0.5` behind says how far the load of the mean line is uniform (1 by default). Jacobs, Ward and Pinkerton, NACA report 460 (1933); Jacobs and Pinkerton, report 537 (1935); Stack and von
+//! Doenhoff, report 492 (1934); Abbott, von Doenhoff and Stivers, report 824 (1945); Loftin, report 903 (1948).
 use serde::{Deserialize, Serialize};
 
 /// A NACA section.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Naca {
-    /// Its designation, `0012`, `23012` or `0012-64`.
+    /// Its designation, `0012`, `23012`, `0012-64`, `63-415` or `64A010`.
     pub digits: String,
     /// How the section ends.
     pub trailing_edge: TrailingEdge,
@@ -22,7 +24,8 @@ pub struct Naca {
 pub enum TrailingEdge {
     /// Both sides meet at x/c = 1: last thickness coefficient −0.1036, of a modified form no thickness there.
     Closed,
-    /// As published, with a base: last thickness coefficient −0.1015, 0.252 % chord for 12 %; of a modified form 0.24 %.
+    /// As published, with a base: last thickness coefficient −0.1015, 0.252 % chord for 12 %; of a modified form 0.24 %. Sections of the
+    /// 6-series without `A` are published closed.
     Blunt,
     /// As published, extended to where the sides meet (x/c = 1.00893 for 0012) and scaled back to unit chord.
     Extended,
@@ -35,8 +38,33 @@ pub struct NacaDesign {
     pub line: MeanLine,
     /// Greatest thickness over the chord.
     pub thickness: f64,
-    /// Index of the nose radius and place of greatest thickness over the chord, where they are not those of four digits.
-    pub modified: Option<(f64, f64)>,
+    /// How the thickness is spread.
+    pub form: ThicknessForm,
+}
+
+/// Thickness along the chord.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum ThicknessForm {
+    /// That of four digits.
+    Standard,
+    /// With another nose radius and place of greatest thickness.
+    Modified {
+        /// Index of the nose radius, 6 as without.
+        nose: f64,
+        /// Place of greatest thickness over the chord.
+        place: f64,
+    },
+    /// Of the 6-series.
+    Six(SixSeries),
+}
+
+/// A family of the 6-series.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SixSeries {
+    /// Place of least pressure in tenths of the chord, 3 to 7.
+    pub place: usize,
+    /// The A-series: straight from 0.8 chord on, 3 to 5.
+    pub straight: bool,
 }
 
 /// The line that a section is bent along.
@@ -63,6 +91,18 @@ pub enum MeanLine {
         /// Place of greatest camber in twentieths of the chord, 2 to 5.
         place: usize,
     },
+    /// Uniform load to a part of the chord, from there falling to zero.
+    Uniform {
+        /// Design lift coefficient.
+        lift: f64,
+        /// a, the part of the chord.
+        to: f64,
+    },
+    /// a = 0.8 with a straight end, the line of the A-series.
+    Straightened {
+        /// Design lift coefficient.
+        lift: f64,
+    },
 }
 
 /// Why a text is no designation of a section that can be made: what is wrong, and what may help.
@@ -74,8 +114,10 @@ pub struct NoSection {
     pub hint: &'static str,
 }
 
-const FORMS: &str = "for example `0012`, `2412`, `23012`, `23112` or `0012-64`; other sections by their coordinates, `airfoil = \"file\"`";
-const SIX: &str = "write its coordinates into a file and name that, `airfoil = \"file\"`: tables of them are published";
+const FORMS: &str = "for example `0012`, `2412`, `23012`, `23112`, `0012-64`, `63-415` or `64A010`; other sections by their coordinates, `airfoil = \"file\"`";
+const SIX: &str = "for example `63-415`, `65(2)-215`, `66,1-212`, `64A010` or `65-210 a=0.5`; families are 63 to 67 and 63A to 65A; other sections by their coordinates, `airfoil = \"file\"`";
+/// Thickness over the chord up to which the mapping of the 6-series is used; published are 6 to 21 %.
+const SIX_THICKEST: f64 = 0.3;
 const MODIFIED: &str =
     "behind the dash stand the index of the nose radius, 0 to 9, and the place of greatest thickness, 2 to 6 tenths";
 const FIVE: &str = "plain mean lines are 210 to 250, reflexed ones 221 to 251, times the first digit over 2";
@@ -89,28 +131,31 @@ impl Naca {
         let bad = |what: String, hint: &'static str| NoSection { what, hint };
         let (digits, tail) = text.split_once('-').map_or((text, None), |(d, t)| (d, Some(t)));
         if is_six_series(text) {
-            let what = format!("NACA {text} is a section of the 6-series, whose forms are tables");
-            return Err(bad(what, SIX));
+            return six_series(text).ok_or_else(|| bad(format!("`{text}` is no section of the 6-series"), SIX));
         }
         let plain = |t: &str| t.bytes().all(|b| b.is_ascii_digit());
         if !(4..=5).contains(&digits.len()) || !plain(digits) {
             return Err(bad(format!("`{text}` is no NACA section of four or five digits"), FORMS));
         }
-        let value = |t: &str| t.bytes().fold(0.0, |n, b| 10.0 * n + f64::from(b - b'0'));
         let (line, thick) = digits.split_at(digits.len() - 2);
         let thickness = 0.01 * value(thick);
         if thickness == 0.0 {
             return Err(bad(format!("NACA {text} has no thickness"), "the last two digits are the thickness in %"));
         }
-        let modified = match tail {
-            None => None,
+        let form = match tail {
+            None => ThicknessForm::Standard,
             Some(tail) if tail.len() == 2 && plain(tail) && (b'2'..=b'6').contains(&tail.as_bytes()[1]) => {
-                Some((value(&tail[..1]), 0.1 * value(&tail[1..])))
+                ThicknessForm::Modified { nose: value(&tail[..1]), place: 0.1 * value(&tail[1..]) }
             }
             Some(_) => return Err(bad(format!("NACA {text} is modified in no known way"), MODIFIED)),
         };
-        Ok(NacaDesign { line: mean_line(text, line)?, thickness, modified })
+        Ok(NacaDesign { line: mean_line(text, line)?, thickness, form })
     }
+}
+
+/// The number that digits stand for.
+fn value(digits: &str) -> f64 {
+    digits.bytes().fold(0.0, |n, b| 10.0 * n + f64::from(b - b'0'))
 }
 
 /// The mean line of the two or three first digits of `text`.
@@ -134,12 +179,41 @@ fn mean_line(text: &str, digits: &str) -> Result<MeanLine, NoSection> {
     }
 }
 
-/// True for designations such as `64A010`, `63-415`, `65(2)-215` or `66,1-212`.
+/// True for what begins like `64A010`, `63-415`, `65(2)-215`, `66,1-212`, `652-215` or `652215`.
 fn is_six_series(text: &str) -> bool {
-    let mut chars = text.chars();
-    let head = (chars.next(), chars.next());
-    let six = head.0 == Some('6') && head.1.is_some_and(|c| ('3'..='7').contains(&c));
-    six && chars.next().is_some_and(|c| !c.is_ascii_digit())
+    let b = text.as_bytes();
+    let head = b.len() > 2 && b[0] == b'6' && (b'3'..=b'7').contains(&b[1]);
+    head && (!b[2].is_ascii_digit() || b.get(3) == Some(&b'-') || text.split(' ').next().is_some_and(|t| t.len() == 6))
+}
+
+/// The section of a designation of the 6-series.
+fn six_series(text: &str) -> Option<NacaDesign> {
+    let (text, to) = match text.split_once(char::is_whitespace) {
+        Some((head, tail)) => (head, Some(tail.trim().strip_prefix("a=")?.parse::<f64>().ok()?)),
+        None => (text, None),
+    };
+    // what stands before the last three digits: family, `A`, range of low drag, dash
+    let split = text.len().checked_sub(3).filter(|&i| text.is_char_boundary(i))?;
+    let (head, digits) = text.split_at(split);
+    let dashed = head.ends_with('-');
+    let (family, rest) = head.strip_suffix('-').unwrap_or(head).split_at_checked(2)?;
+    let straight = rest.contains(['A', 'a']);
+    let range = rest.replacen(['A', 'a'], "", 1);
+    let range = range.strip_prefix('(').and_then(|r| r.strip_suffix(')')).or(range.strip_prefix(',')).unwrap_or(&range);
+    let known = range.len() <= 1 && range.bytes().all(|b| b.is_ascii_digit());
+    let place = usize::from(family.as_bytes()[1] - b'0');
+    let separate = dashed || straight || !range.is_empty();
+    let thickness = 0.01 * value(digits.get(1..).filter(|t| t.bytes().all(|b| b.is_ascii_digit()))?);
+    let lift = 0.1 * value(digits.get(..1).filter(|t| t.bytes().all(|b| b.is_ascii_digit()))?);
+    let made = (3..=if straight { 5 } else { 7 }).contains(&place) && thickness > 0.0 && thickness <= SIX_THICKEST;
+    let line = match to {
+        None if straight => MeanLine::Straightened { lift },
+        Some(to) if !straight && (0.0..=1.0).contains(&to) => MeanLine::Uniform { lift, to },
+        None => MeanLine::Uniform { lift, to: 1.0 },
+        Some(_) => return None,
+    };
+    let form = ThicknessForm::Six(SixSeries { place, straight });
+    (known && separate && made).then_some(NacaDesign { line, thickness, form })
 }
 
 #[cfg(test)]
@@ -153,11 +227,27 @@ mod tests {
     #[test]
     fn designations_mean_what_the_reports_say() {
         let d = design("2412").unwrap();
-        assert_eq!((d.line, d.thickness, d.modified), (MeanLine::Parabolas { camber: 0.02, place: 0.4 }, 0.12, None));
+        let plain = (MeanLine::Parabolas { camber: 0.02, place: 0.4 }, 0.12, ThicknessForm::Standard);
+        assert_eq!((d.line, d.thickness, d.form), plain);
         assert_eq!(design("23012").unwrap().line, MeanLine::Cubic { lift: 0.3, place: 3 });
         let d = design("43115-64").unwrap();
         assert_eq!((d.line, d.thickness), (MeanLine::Reflexed { lift: 0.6, place: 3 }, 0.15));
-        assert_eq!(d.modified, Some((6.0, 0.4)));
+        assert_eq!(d.form, ThicknessForm::Modified { nose: 6.0, place: 0.4 });
+    }
+
+    #[test]
+    fn designations_of_the_six_series_are_read_in_all_spellings() {
+        let six = |place, straight| ThicknessForm::Six(SixSeries { place, straight });
+        for digits in ["65-215", "65(2)-215", "65,2-215", "652-215", "652215"] {
+            let d = design(digits).unwrap();
+            assert_eq!((d.form, d.thickness), (six(5, false), 0.15), "{digits}");
+            assert_eq!(d.line, MeanLine::Uniform { lift: 0.2, to: 1.0 }, "{digits}");
+        }
+        assert_eq!(design("65-210 a=0.5").unwrap().line, MeanLine::Uniform { lift: 0.2, to: 0.5 });
+        for digits in ["64A410", "64a410", "64(1)A410", "64A-410"] {
+            let d = design(digits).unwrap();
+            assert_eq!((d.form, d.line), (six(4, true), MeanLine::Straightened { lift: 0.4 }), "{digits}");
+        }
     }
 
     #[test]
@@ -166,8 +256,10 @@ mod tests {
             let e = design(digits).unwrap_err();
             assert!(e.what.contains(what) && e.hint.contains(hint), "{digits}: {e:?}");
         };
-        for digits in ["64A010", "63-415", "65(2)-215", "66,1-212", "63A-010"] {
-            told(digits, "6-series", "airfoil = \"file\"");
+        for digits in
+            ["66A010", "63-41", "65(215)-215", "64A010 a=0.5", "63-415 a=2", "63-400", "64-250", "63é-410", "64A"]
+        {
+            told(digits, "no section of the 6-series", "airfoil = \"file\"");
         }
         for digits in ["", "12", "00a2", "123456", "00-12", "-12", "NACA0012", "16-012"] {
             told(digits, "is no NACA section", "0012-64");

@@ -164,7 +164,7 @@ fn bodies_that_contradict_themselves_are_refused() {
     );
     assert_shows(&body("scale = 2"), &["`body-1` has no shape"]);
     assert_shows(&body("naca = \"23612\""), &["a mean line `236` that is not published"]);
-    assert_shows(&body("naca = \"64A010\""), &["is a section of the 6-series"]);
+    assert_shows(&body("naca = \"66A010\""), &["is no section of the 6-series"]);
     assert_shows(&body("naca = \"2012\""), &["half a camber line"]);
     assert_shows(&body("naca = \"0012\"\nrotate = [\"1 deg\", 0, 0]"), &["`body-1.rotate` has 3 angles"]);
     assert_shows(&body("naca = \"0012\"\ntranslate = [1, 2, 3]"), &["`body-1.translate` has 3 coordinates in a 2-D"]);

@@ -16,6 +16,7 @@ pub(super) enum End {
 }
 
 /// A cubic spline in the plane.
+#[derive(Clone, Debug)]
 pub(super) struct Spline {
     knots: Vec<f64>,
     points: Vec<Vector<2>>,
@@ -29,6 +30,11 @@ impl Spline {
         for i in 1..points.len() {
             knots[i] = knots[i - 1] + (points[i] - points[i - 1]).norm();
         }
+        Self::over(knots, points, start, finish)
+    }
+
+    /// The spline through `points` at parameters of one's own, which rise.
+    pub(super) fn over(knots: Vec<f64>, points: Vec<Vector<2>>, start: End, finish: End) -> Self {
         let bend = second_derivatives(&knots, &points, start, finish);
         Self { knots, points, bend }
     }

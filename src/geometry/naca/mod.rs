@@ -1,8 +1,9 @@
-//! NACA sections of four and five digits, modified or not.
+//! NACA sections of four and five digits, modified or not, and of the 6-series.
 //!
 //! Half thickness is laid off perpendicular to a mean line (Jacobs, Ward, Pinkerton, NACA report 460, 1933). In s = √x all functions
-//! are polynomials, so the outline and its normals are exact through the leading edge.
+//! are smooth, so the outline and its normals are exact through the leading edge.
 mod mean_line;
+mod six_series;
 mod thickness;
 
 use std::f64::consts::PI;
@@ -33,7 +34,7 @@ pub(super) fn shell(naca: &Naca) -> Result<Shell<2>, GeometryError> {
     let mut outline: Vec<Sample> = (0..=SEGMENTS).rev().map(|i| section.point(s(i), 1.0)).collect();
     outline.extend((1..=SEGMENTS).map(|i| section.point(s(i), -1.0)));
     let mut pieces = vec![outline];
-    if naca.trailing_edge == TrailingEdge::Blunt {
+    if !section.sharp {
         let ends = (pieces[0][2 * SEGMENTS].0, pieces[0][0].0);
         pieces.push(outline::straight(ends.0, ends.1));
     }
@@ -49,10 +50,11 @@ impl Section {
         };
         let design = design.map_err(refused)?;
         let closed = naca.trailing_edge == TrailingEdge::Closed;
-        let thickness = Thickness::new(design.thickness, design.modified, closed);
+        let thickness = Thickness::new(design.thickness, design.form, closed);
         let extended = naca.trailing_edge == TrailingEdge::Extended;
         let extent = if extended { thickness.end() } else { 1.0 };
-        Ok(Self { line: design.line, thickness, sharp: closed || extended, extent })
+        let sharp = closed || extended || thickness.at(1.0).0 == 0.0;
+        Ok(Self { line: design.line, thickness, sharp, extent })
     }
 
     /// Point and outward normal at √(x / extent) on the upper (`sign` 1) or lower (−1) side.
@@ -147,7 +149,7 @@ mod tests {
 
     #[test]
     fn bad_digits_are_refused() {
-        for digits in ["", "12", "0000", "2012", "23612", "64A010", "00a2", "00-12"] {
+        for digits in ["", "12", "0000", "2012", "23612", "66A010", "00a2", "00-12"] {
             let naca = Naca { digits: digits.into(), trailing_edge: TrailingEdge::Closed };
             assert!(shell(&naca).is_err(), "{digits}");
         }

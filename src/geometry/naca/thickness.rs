@@ -8,6 +8,8 @@
 //! the base, d₁ the slope at the end, tabulated for each m; d₂ and d₃ make the half thickness 0.1 at m, where its slope vanishes. a₀ is
 //! that of the standard form times a sixth of the index of the nose radius; the other a make height, slope and curvature go on
 //! through m.
+use super::six_series::Six;
+use crate::case::ThicknessForm;
 
 /// Standard coefficients but the last.
 const STANDARD: [f64; 4] = [0.2969, -0.1260, -0.3516, 0.2843];
@@ -31,6 +33,8 @@ pub(super) enum Thickness {
     Standard(f64, f64),
     /// Modified.
     Modified(Modified),
+    /// Of the 6-series.
+    Six(Six),
 }
 
 /// Coefficients of a modified form.
@@ -44,12 +48,13 @@ pub(super) struct Modified {
 
 impl Thickness {
     /// The form with a greatest thickness, closed at x = 1 or as published.
-    pub(super) fn new(thickness: f64, modified: Option<(f64, f64)>, closed: bool) -> Self {
-        match modified {
-            None => Self::Standard(thickness, LAST[usize::from(closed)]),
-            Some((index, place)) => {
-                Self::Modified(Modified::new(thickness, (index, place), if closed { 0.0 } else { BASE }))
+    pub(super) fn new(thickness: f64, form: ThicknessForm, closed: bool) -> Self {
+        match form {
+            ThicknessForm::Standard => Self::Standard(thickness, LAST[usize::from(closed)]),
+            ThicknessForm::Modified { nose, place } => {
+                Self::Modified(Modified::new(thickness, (nose, place), if closed { 0.0 } else { BASE }))
             }
+            ThicknessForm::Six(series) => Self::Six(Six::new(thickness, series, closed)),
         }
     }
 
@@ -64,14 +69,18 @@ impl Thickness {
                 (5.0 * thickness * value, 5.0 * thickness * slope)
             }
             Self::Modified(form) => form.at(s),
+            Self::Six(form) => form.at(s),
         }
     }
 
-    /// Where the half thickness vanishes behind x = 1, by Newton's method: 1.008930411 for the standard form as published.
+    /// Where the half thickness vanishes, at x = 1 or behind it, by Newton's method: 1.008930411 for the standard form as published.
     pub(super) fn end(&self) -> f64 {
         let mut s = 1.0_f64;
         for _ in 0..20 {
             let (value, slope) = self.at(s);
+            if value == 0.0 {
+                break;
+            }
             s -= value / slope;
         }
         s * s
@@ -119,7 +128,10 @@ mod tests {
 
     #[test] // coefficients and ordinates of NACA 0010-64 by the program of NASA TM X-3284 (Ladson and Brooks 1975), radius rounded there
     fn modified_forms_are_the_published_ones() {
-        let Thickness::Modified(form) = Thickness::new(0.1, Some((6.0, 0.4)), false) else { unreachable!() };
+        let Thickness::Modified(form) = Thickness::new(0.1, ThicknessForm::Modified { nose: 6.0, place: 0.4 }, false)
+        else {
+            unreachable!()
+        };
         for (found, published) in form.a.iter().zip([0.296648, -0.246120, 0.174088, -0.265983]) {
             assert!((found - published).abs() < 2e-3, "{found} {published}");
         }
@@ -145,7 +157,7 @@ mod tests {
         for tenths in 2..=6 {
             for index in [0.0, 3.0, 6.0, 9.0] {
                 let place = 0.1 * f64::from(tenths);
-                let form = Thickness::new(0.12, Some((index, place)), true);
+                let form = Thickness::new(0.12, ThicknessForm::Modified { nose: index, place }, true);
                 let (value, slope) = form.at(place.sqrt());
                 assert!((value - 0.06).abs() < 1e-12 && slope.abs() < 1e-12, "{tenths} {index}");
                 let before = form.at(place.sqrt() - 1e-9);
