@@ -4,10 +4,11 @@
 //! y = k₁/6 (x³ − 3 r x² + r² (3 − r) x) before r, k₁ r³/6 (1 − x) behind; reflexed
 //! y = k₁/6 ((x − r)³ − κ (1 − r)³ x − r³ x + r³) before r, with κ (x − r)³ in place of (x − r)³ behind. r, k₁ and κ = k₂/k₁ as published.
 //!
-//! 6-series: the load of thin sections is uniform to a and falls linearly from there to zero (Abbott, von Doenhoff and Stivers, NACA
-//! report 824, 1945). Its slope is logarithmic at the nose, for a = 1 at both ends: next to an end, within half a percent of the
-//! chord at the nose and a thousandth at the other, a parabola goes on to it. The A-series has the line a = 0.8 with a straight end (Loftin, report 903, 1948); the published straight line misses
-//! the end of the chord by 6e-4 of the design lift, so the whole is turned about the nose by that.
+//! 6-series: the load of thin sections is uniform to a and falls linearly from there to zero (Abbott, von Doenhoff and Stivers,
+//! NACA report 824, 1945). Its slope is logarithmic at the nose, for a = 1 at both ends: next to an end, within half a percent of
+//! the chord at the nose and a thousandth at the other, a parabola goes on to it. The A-series has the line a = 0.8 with a straight
+//! end (Loftin, report 903, 1948); the published straight line misses the end of the chord by 6e-4 of the design lift, so the
+//! whole is turned about the nose by that.
 use std::f64::consts::PI;
 
 use crate::case::MeanLine;

@@ -1,5 +1,4 @@
 //! Bodies that bend: modes from files against rigid motion, against mathematics, and against theory.
-#![allow(clippy::unwrap_used, reason = "a test may stop anywhere")]
 
 use std::path::Path;
 

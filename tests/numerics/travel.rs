@@ -1,11 +1,9 @@
 //! Particles that travel with the fluid, and clouds on prescribed motion.
-#![allow(clippy::unwrap_used, reason = "a test may stop anywhere")]
-
-mod common;
 
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
+use crate::common::{case, largest, solver, vortex, with_threads};
 use alula::case::Initial;
 use alula::cloud::Cloud;
 use alula::exact::vortex::IsentropicVortex;
@@ -19,7 +17,6 @@ use alula::time::dual::{Dual, Plan};
 use alula::time::explicit::{self, Explicit, Method};
 use alula::time::{Integrator, Memory, Past, Standing};
 use alula::verify::{FieldTruth, metrics};
-use common::{case, largest, solver, vortex, with_threads};
 
 /// Round-off of some tens of steps of fluxes of order one over spacings of some hundredths.
 const ROUND_OFF: f64 = 1e-12;

@@ -1,14 +1,11 @@
 //! Observed order on an exact solution.
-#![allow(clippy::unwrap_used, reason = "a test may stop anywhere")]
 
-mod common;
-
+use crate::common::{solver, vortex};
 use alula::exact::vortex::IsentropicVortex;
 use alula::math::Vector;
 use alula::physics::Conserved;
 use alula::time::explicit::{Explicit, Method, Plan};
 use alula::time::{Integrator, Past};
-use common::{solver, vortex};
 
 /// Volume-weighted error of the density at time `until`, as a root mean square.
 fn vortex_error(spacing: f64, until: f64, low_mach: bool) -> f64 {

@@ -1,8 +1,6 @@
 //! What must not change anything: uniform flow on any cloud, the number of threads.
-#![allow(clippy::unwrap_used, reason = "a test may stop anywhere")]
 
-mod common;
-
+use crate::common::{largest, round_body, solver, two_levels, vortex, with_threads};
 use alula::math::Vector;
 use alula::physics::Primitive;
 use alula::system::{Instant, System};
@@ -10,7 +8,6 @@ use alula::time::control::Control;
 use alula::time::explicit::{Explicit, Method, Plan};
 use alula::time::relax::Relax;
 use alula::time::{Integrator, Past};
-use common::{largest, round_body, solver, two_levels, vortex, with_threads};
 
 /// Round-off of fluxes of order one over a spacing of some hundredths.
 const ROUND_OFF: f64 = 1e-12;

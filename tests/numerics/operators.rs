@@ -1,14 +1,11 @@
 //! Operators reproduce the fields that they are made for, on clouds without any order.
-#![allow(clippy::unwrap_used, reason = "a test may stop anywhere")]
 
-mod common;
-
+use crate::common::{largest, round_body, solver, two_levels};
 use alula::math::Vector;
 use alula::math::least_squares::{Fit, Method};
 use alula::physics::Primitive;
 use alula::scheme::Fluid;
 use alula::system::{Instant, System};
-use common::{largest, round_body, solver, two_levels};
 
 /// Round-off of a derivative over a spacing of some hundredths.
 const ROUND_OFF: f64 = 1e-12;

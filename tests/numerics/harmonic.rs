@@ -1,10 +1,8 @@
 //! What must hold in harmonic balance: exact fields on moving clouds, exact solutions of ordinary equations.
-#![allow(clippy::unwrap_used, reason = "a test may stop anywhere")]
-
-mod common;
 
 use std::sync::Arc;
 
+use crate::common::{largest, oscillator, solver};
 use alula::math::Vector;
 use alula::math::fourier::{Instances, Series};
 use alula::math::jet::Jet;
@@ -17,7 +15,6 @@ use alula::system::{Instant, System};
 use alula::time::control::{Control, Method};
 use alula::time::harmonic::HarmonicBalance;
 use alula::time::relax::Relax;
-use common::{largest, oscillator, solver};
 
 /// Round-off of fluxes of order one, in changes of the state within one local time.
 const ROUND_OFF: f64 = 1e-12;
@@ -266,7 +263,7 @@ fn states_move_between_numbers_of_harmonics() {
 
 /// A small section that pitches, by harmonic balance.
 fn section(harmonics: &str) -> alula::case::Case {
-    common::case(&format!(
+    crate::common::case(&format!(
         "title = \"section\"\n[flow]\nmach = 0.4\n[[body]]\nnaca = \"0012\"\n[motion]\nparticles = \"rigid\"\n\
          pivot = [0.25, 0.0]\npitch = \"1 deg\"\nreduced_frequency = 0.3\n[cloud]\nspacing = 0.06\nfar_field = 8.0\n\
          edge_levels = 1\n[time]\nharmonics = {harmonics}\n[output]\nreport = false\n"
@@ -377,13 +374,14 @@ fn a_wave_leaves_through_the_end_of_a_tube() {
                 right = [1.0, 0.0, 0.7142857142857143]\nposition = 10.0\n[scheme]\nlimiter = \"none\"\nkappa = 0.3333\n\
                 [time.harmonics]\nnumber = 3\noversample = 1.5\n[output]\nreport = false\n";
     let root = tempfile::tempdir().unwrap();
-    let found = summary(&common::case(text), &places(root.path(), "tube"));
+    let found = summary(&crate::common::case(text), &places(root.path(), "tube"));
     // the exact simple wave: 2 · 0.1402100/γ over the displacement 0.1/2π, behind it by 90°
     let [re, im] = found.first_harmonics[0].cd;
     assert!(found.converged && (im / -12.58523 - 1.0).abs() < 0.005 && re.abs() < 0.1, "{re} {im}");
     let hot = text.replace("right = [1.0, 0.0, 0.7142857142857143]", "right = [0.9, 0.0, 0.7142857142857143]");
     let hot = hot.replace("position = 10.0", "position = 0.3");
-    let told = alula::run::run(&common::case(&hot), &places(root.path(), "hot"), &mut alula::run::Silent).unwrap_err();
+    let told =
+        alula::run::run(&crate::common::case(&hot), &places(root.path(), "hot"), &mut alula::run::Silent).unwrap_err();
     assert!(told.to_string().contains("the entropy"), "{told}");
 }
 
@@ -403,7 +401,8 @@ fn what_is_not_periodic_is_refused() {
         "from 1 to 16",
     );
     let root = tempfile::tempdir().unwrap();
-    let fading = common::case(&format!("{head}period = 3\nformula = {{ y = \"0.1*sin(omega*t)*exp(-t/9)\" }}\n"));
+    let fading =
+        crate::common::case(&format!("{head}period = 3\nformula = {{ y = \"0.1*sin(omega*t)*exp(-t/9)\" }}\n"));
     let problem = alula::run::run(&fading, &places(root.path(), "a"), &mut alula::run::Silent).unwrap_err();
     assert!(problem.to_string().contains("does not repeat"), "{problem}");
 }

@@ -1,10 +1,8 @@
 //! Gas and structures as one system: a piston on a spring, sections that are released, an oscillation that is forced.
-#![allow(clippy::unwrap_used, reason = "a test may stop anywhere")]
-
-mod common;
 
 use std::sync::Arc;
 
+use crate::common::solver;
 use alula::coupling::{Attached, Coupled, body_motion};
 use alula::math::fourier::{Instances, Series};
 use alula::math::multilevel::Cycle;
@@ -17,7 +15,6 @@ use alula::time::dual::{Dual, Plan};
 use alula::time::harmonic::HarmonicBalance;
 use alula::time::relax::Relax;
 use alula::time::{Integrator, Memory, Past, Standing};
-use common::solver;
 
 const CONTROL: Control =
     Control { cfl: 1e3, tolerance: 1e-2, cycle: Cycle { sweeps: 2, visits: 1, levels: 10 }, ..Control::newton(2) };
@@ -110,7 +107,7 @@ fn carried_stream() -> (Coupled<2>, Vec<f64>) {
 
 /// Largest difference of the gas from a uniform stream.
 fn strayed(system: &Coupled<2>, u: &[f64], uniform: &[f64]) -> f64 {
-    common::largest(system.gas_range().map(|k| u[k] - uniform[k]))
+    crate::common::largest(system.gas_range().map(|k| u[k] - uniform[k]))
 }
 
 #[test]
@@ -138,7 +135,7 @@ fn a_stream_stays_uniform_on_a_cloud_that_unknown_coordinates_move() {
     balance.rhs(&frame, &all, &mut work, &mut du);
     let gas = 0..balance.placing().start;
     // fluxes of order one over spacings of a tenth
-    assert!(common::largest(du[gas].iter().copied()) < 1e-11);
+    assert!(crate::common::largest(du[gas].iter().copied()) < 1e-11);
 }
 
 #[test]

@@ -1,10 +1,8 @@
 //! What must hold on particles that move, whatever their motion.
-#![allow(clippy::unwrap_used, reason = "a test may stop anywhere")]
-
-mod common;
 
 use std::sync::Arc;
 
+use crate::common::{largest, solver};
 use alula::math::Vector;
 use alula::math::jet::Jet;
 use alula::motion::{BodyMotion, TimeFunction};
@@ -16,7 +14,6 @@ use alula::time::control::Control;
 use alula::time::dual::{Dual, Plan};
 use alula::time::explicit::{self, Explicit, Method};
 use alula::time::{Integrator, Past, Standing};
-use common::{largest, solver};
 
 /// Round-off of some tens of steps of fluxes of order one over spacings of some hundredths.
 const ROUND_OFF: f64 = 1e-12;

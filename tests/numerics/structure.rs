@@ -1,5 +1,4 @@
 //! Structures alone, marched and by harmonic balance, with the integrators that the gas has.
-#![allow(clippy::unwrap_used, reason = "a test may stop anywhere")]
 
 use alula::math::fourier::{Instances, Series};
 use alula::math::multilevel::Cycle;

@@ -1,8 +1,6 @@
 //! What the numerics promise for any state, any direction and any cloud, tried on random ones.
-#![allow(clippy::unwrap_used, reason = "a test may stop anywhere")]
 
-mod common;
-
+use crate::common::{case, largest, solver};
 use alula::case::{Flux, Limiter};
 use alula::cloud::sources::Source;
 use alula::cloud::{Cloud, CloudSpec, Operators};
@@ -14,7 +12,6 @@ use alula::scheme::reconstruct::{Gradient, Limit, Reconstruction, Unlimited, Van
 use alula::scheme::wall_motion::WallMotion;
 use alula::scheme::wall_state::{Wall, no_slip_wall, slip_wall};
 use alula::system::{Instant, System};
-use common::{case, largest, solver};
 use proptest::collection::vec;
 use proptest::prelude::*;
 use proptest::sample::select;

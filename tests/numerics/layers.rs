@@ -1,5 +1,4 @@
 //! Layers on bodies that break them: thin edges, corners, bends, other walls.
-#![allow(clippy::unwrap_used, reason = "a test may stop anywhere")]
 
 use alula::cloud::conservative::conservative;
 use alula::cloud::layers::End;

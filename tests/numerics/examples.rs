@@ -1,20 +1,19 @@
 //! The programs in `examples/` do what they say.
-#![allow(clippy::unwrap_used, reason = "a test may stop anywhere")]
 
 #[allow(dead_code, reason = "the program itself")]
-#[path = "../examples/derivative.rs"]
+#[path = "../../examples/derivative.rs"]
 mod derivative;
 #[allow(dead_code, reason = "the program itself")]
-#[path = "../examples/polar.rs"]
+#[path = "../../examples/polar.rs"]
 mod polar;
 #[allow(dead_code, reason = "the program itself")]
-#[path = "../examples/section_on_springs.rs"]
+#[path = "../../examples/section_on_springs.rs"]
 mod section_on_springs;
 #[allow(dead_code, reason = "the program itself")]
-#[path = "../examples/shock_tube.rs"]
+#[path = "../../examples/shock_tube.rs"]
 mod shock_tube;
 #[allow(dead_code, reason = "the program itself")]
-#[path = "../examples/van_der_pol.rs"]
+#[path = "../../examples/van_der_pol.rs"]
 mod van_der_pol;
 
 #[test]

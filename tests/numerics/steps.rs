@@ -1,5 +1,4 @@
 //! Steps in time whose equations cannot be solved.
-#![allow(clippy::unwrap_used, reason = "a test may stop anywhere")]
 
 use alula::math::multilevel::Cycle;
 use alula::system::{Fault, Field, Hierarchy, Implicit, Instant, Period, Rate, System};

@@ -1,0 +1,18 @@
+//! Tests of the numerics as another program uses them, in one program: what they share of the library is compiled once.
+#![allow(clippy::unwrap_used, reason = "a test may stop anywhere")]
+
+#[path = "../common/mod.rs"]
+mod common;
+mod convergence;
+mod coupled;
+mod examples;
+mod harmonic;
+mod invariance;
+mod layers;
+mod modes;
+mod motion;
+mod operators;
+mod properties;
+mod steps;
+mod structure;
+mod travel;
