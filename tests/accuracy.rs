@@ -25,6 +25,10 @@ fn exact_lift_lies_within_the_error_bar() {
         assert!(
             family.clouds.windows(2).all(|c| c[1].factor == 0.5 * c[0].factor && c[1].particles > 2 * c[0].particles)
         );
+        let order = |load: &dyn Fn(usize) -> f64| 0.5 * (load(0) / load(2)).abs().log2();
+        let lift = order(&|k| family.clouds[k].cl - exact);
+        let drag = order(&|k| family.clouds[k].cd);
+        assert!(lift > 1.8 && drag > 1.8, "Mach {mach}: order of the lift {lift}, of the drag {drag}");
         assert!(s.converged);
     }
 }

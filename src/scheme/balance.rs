@@ -168,9 +168,12 @@ impl<'a, const D: usize> Balance<'a, D> {
                 let [p, q] = [e.i(), e.j()].map(|i| work.state[i].pressure);
                 let jump = (q - p).abs() / (q + p);
                 let weight = smooth_step((jump - JUMP[0]) / (JUMP[1] - JUMP[0]));
-                let change = || self.zone.at(&frame.place(e.j())).0 - self.zone.at(&frame.place(e.i())).0;
-                if weight > 0.0 {
-                    let part = self.view.fluid.beyond_mean((frame, work), e).times(0.5 * weight * change());
+                if weight == 0.0 {
+                    continue;
+                }
+                let change = self.zone.at(&frame.place(e.j())).0 - self.zone.at(&frame.place(e.i())).0;
+                if change != 0.0 {
+                    let part = self.view.fluid.beyond_mean((frame, work), e).times(0.5 * weight * change);
                     part.add_to(&mut out[(e.i() - start) * n..]);
                     if e.both() {
                         part.add_to(&mut out[(e.j() - start) * n..]);
