@@ -388,6 +388,20 @@ mod tests {
     }
 
     #[test]
+    fn points_missing_on_a_side_are_told() {
+        let angle = |i: usize| 2.0 * std::f64::consts::PI * i as f64 / 100.0;
+        let ellipse = |left_out: std::ops::Range<usize>| {
+            let kept = (0..=100).filter(move |i| !left_out.contains(i));
+            load(&rows(kept.map(|i| (0.5 + 0.5 * angle(i).cos(), 0.1 * angle(i).sin())))).unwrap().1
+        };
+        let told = |notes: &[String]| notes.iter().filter(|n| n.contains("points missing")).count();
+        let notes = ellipse(23..28);
+        assert!(notes.iter().any(|n| n.contains("6.1 times as far") && n.contains("line 23")), "{notes:?}");
+        assert_eq!((told(&ellipse(0..0)), told(&notes), told(&ellipse(47..51))), (0, 1, 1));
+        assert_eq!(told(&load(RAE_2822).unwrap().1) + told(&load(NACA_0012).unwrap().1), 0);
+    }
+
+    #[test]
     fn mistakes_are_refused_with_their_place() {
         assert!(error("").contains("holds 0 points"));
         assert!(error("a\n1 0\n0.5 x\n0 0").contains("wing.dat, line 3: `x` is not a finite number"));

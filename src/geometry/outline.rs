@@ -60,6 +60,7 @@ pub(super) fn airfoil(file: &str, marks: Vec<Mark>, notes: &mut Vec<String>) -> 
     let extra = corners.len().saturating_sub(if base { 2 } else { 1 });
     let more = if extra > 0 { format!(" and {extra} more corners") } else { String::new() };
     notes.push(format!("{file}: {} points, chord {chord:.6}, {ends}{more}", points.len()));
+    notes.extend(wide_gaps(&marks, &corners, chord).into_iter().map(|gap| format!("{file}: {gap}")));
     let pieces = pieces(&points, &corners, chord);
     let shell = shell_of_pieces(&pieces, CORNER);
     let surface = Surface::new(&[(String::new(), shell.clone())]);
@@ -232,6 +233,29 @@ fn corners(points: &[Vector<2>], base: bool) -> Vec<usize> {
         turn(i) > CORNER && !rounded
     };
     (0..n).filter(|&i| sharp(i) || (base && (i == 0 || i == n - 1))).collect()
+}
+
+/// Where the outline turns between two points that lie much farther apart than those on either side: points may be missing there.
+/// Sides that end at corners are left out: they may be straight lines, which need no points between their ends.
+fn wide_gaps(marks: &[Mark], corners: &[usize], chord: f64) -> Vec<String> {
+    /// Times the longer of the two sides next to it.
+    const WIDE: f64 = 2.5;
+    /// Least height of the arc over the gap, in chords: what a spline may get wrong there.
+    const HEIGHT: f64 = 2e-4;
+    let n = marks.len();
+    let side = |i: usize| marks[(i + 1) % n].point - marks[i % n].point;
+    let gap = |i: usize| {
+        let [before, here, after] = [side(i + n - 1), side(i), side(i + 1)];
+        let times = here.norm() / before.norm().max(after.norm());
+        let turned = simplex::angle_between(&before.unit(), &after.unit());
+        let height = turned * here.norm() / (8.0 * chord);
+        let smooth = !corners.contains(&i) && !corners.contains(&((i + 1) % n));
+        (smooth && times > WIDE && height > HEIGHT).then(|| {
+            let (from, to) = (at(&marks[i]), at(&marks[(i + 1) % n]));
+            format!("{times:.1} times as far from {from} to {to} as beside it: are points missing there?")
+        })
+    };
+    (0..n).filter_map(gap).collect()
 }
 
 /// Spline pieces between corners; an outline without corners is one piece whose ends share a tangent.

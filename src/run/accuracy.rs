@@ -49,7 +49,7 @@ const CELLS: f64 = 8.0;
 const MOST_CELLS: u32 = 64;
 const WHOLE: f64 = 1e-9;
 /// Clouds that an error bar is drawn from.
-const CLOUDS: usize = 3;
+pub(crate) const CLOUDS: usize = 3;
 
 /// How well the loads are to be known; `None` where they are those of one cloud.
 pub(crate) fn asked(case: &Case) -> Option<Accuracy> {

@@ -3,11 +3,12 @@
 //! Fitted to runs on one core of an AMD EPYC and two of an Intel Xeon (November 2026): NACA 0012 from Mach 0.5 to 0.8 on 4,000 to 36,000
 //! particles, a sphere on 35,000, sections in pitch with 64 steps a period, with one to four harmonics and with explicit steps.
 //! A step in time or an iteration costs a number of residuals that depends little on the case; how many are needed grows slowly
-//! with the number of particles. Shocks that move, separated flow and families of clouds that are told early to be fine enough take
-//! more or less than this.
+//! with the number of particles, and is scaled by what a pilot took (`super::pilot`). A family of clouds may end early: its cost is that of
+//! its last cloud at most, and of its third at least. Shocks that move and separated flow take more than this.
 use serde::Serialize;
 
 use super::accuracy;
+use super::pilot::Pilot;
 use super::recipe::is_automatic;
 use crate::case::{Case, HarmonicCount, ParticleMotion, Polar, Temporal};
 use crate::math::sweep::threads;
@@ -23,7 +24,7 @@ const EXPLICIT_BYTES: [f64; 2] = [1100.0, 1400.0];
 /// Bytes that pictures and report take at their peak: always, with each thread, with each particle.
 const PICTURES_BYTES: [f64; 3] = [42e6, 20e6, 700.0];
 /// Seconds that they take on one thread: of a flow that stands, and of one that moves.
-const PICTURES_SECONDS: [f64; 2] = [0.2, 1.2];
+const PICTURES_SECONDS: [f64; 2] = [0.2, 2.2];
 /// Bytes of a particle in space over those in the plane.
 const SPACE_BYTES: f64 = 2.36;
 /// Residuals that a steady state takes on a plane cloud of [`USUAL`] particles, and in space.
@@ -57,22 +58,37 @@ pub(crate) struct Sized<'a> {
     pub(crate) case: &'a Case,
     /// Particles of its own cloud.
     pub(crate) particles: usize,
+    /// Those of them in the gas.
+    pub(crate) fluid: usize,
     /// 2 or 3.
     pub(crate) dimension: usize,
     /// Period of the motion in the time of the solver.
     pub(crate) period: Option<f64>,
     /// Seconds of a residual on that cloud.
     pub(crate) evaluation: f64,
+    /// The steady flow on a coarser cloud, where it was tried.
+    pub(crate) pilot: Option<Pilot>,
 }
 
 impl Sized<'_> {
     /// What `alula run` takes; `fastest` gives the largest rate of change on the cloud.
     pub(crate) fn cost(&self, fastest: impl FnOnce() -> f64) -> Cost {
-        let points = self.case.polar.as_ref().map_or(1, Polar::len) as f64;
+        self.on(&self.sizes(), fastest)
+    }
+
+    /// What it takes where the first clouds that give an error bar are fine enough; `None` where it goes on to its last cloud anyway.
+    pub(crate) fn least(&self) -> Option<Cost> {
         let sizes = self.sizes();
+        let enough = accuracy::CLOUDS;
+        (accuracy::asked(self.case).is_some() && sizes.len() > enough).then(|| self.on(&sizes[..enough], || 0.0))
+    }
+
+    /// What it takes on clouds of these numbers of particles.
+    fn on(&self, sizes: &[f64], fastest: impl FnOnce() -> f64) -> Cost {
+        let points = self.case.polar.as_ref().map_or(1, Polar::len) as f64;
         let largest = sizes.iter().fold(0.0, |m: f64, n| m.max(*n));
         let each = self.evaluation / self.particles.max(1) as f64;
-        let relaxed: f64 = points * sizes.iter().map(|n| n * each * self.steady(*n)).sum::<f64>();
+        let relaxed: f64 = self.pace() * points * sizes.iter().map(|n| n * each * self.steady(*n)).sum::<f64>();
         let marched = largest * each * self.in_time(largest, fastest);
         let starts = !matches!(self.case.time, Temporal::Explicit(_) | Temporal::Harmonics(_));
         let solved = marched + if starts { relaxed } else { 0.0 };
@@ -92,11 +108,19 @@ impl Sized<'_> {
         let n = self.particles as f64;
         match accuracy::asked(self.case) {
             Some(asked) => {
-                let family = accuracy::family(&asked, self.particles, self.dimension);
+                let family = accuracy::family(&asked, self.fluid, self.dimension);
                 family.iter().map(|stage| n / stage.factor.powi(self.dimension as i32)).collect()
             }
             None => (0..=self.case.adapt.cycles).map(|k| n * ADAPTED.powi(k as i32)).collect(),
         }
+    }
+
+    /// Time that the pilot took, over that of a usual flow of so many particles.
+    fn pace(&self) -> f64 {
+        self.pilot.map_or(1.0, |pilot| {
+            let each = self.evaluation / self.particles.max(1) as f64;
+            pilot.seconds / (pilot.particles * each * self.steady(pilot.particles))
+        })
     }
 
     /// Residuals of a steady state of `n` particles.
@@ -152,8 +176,16 @@ mod tests {
             if more.contains("[output]") { "" } else { "[output]\nreport = false\n" }
         );
         let case = crate::case::read(&text, "t").unwrap();
-        Sized { case: &case, particles, dimension: 2, period: Some(10.0), evaluation: 1.7e-7 * particles as f64 }
-            .cost(|| 1.0)
+        Sized {
+            case: &case,
+            particles,
+            fluid: particles,
+            dimension: 2,
+            period: Some(10.0),
+            evaluation: 1.7e-7 * particles as f64,
+            pilot: None,
+        }
+        .cost(|| 1.0)
     }
 
     #[test]

@@ -10,6 +10,7 @@ use super::error::RunError;
 use super::files::{Scene, Target, write_cloud};
 use super::folder;
 use super::look::{Mesh, load_axes};
+use super::pilot;
 use super::setup::{self, Site, Solver, check_motion};
 use super::stage::Stage;
 use super::understood::Understood;
@@ -45,8 +46,10 @@ pub struct CloudReport {
     pub understood: Understood,
     /// Seconds that building took.
     pub seconds: f64,
-    /// What a run will take.
+    /// What a run will take; where it may end on a coarser cloud because the loads are known well enough, what it takes at most.
     pub cost: Cost,
+    /// What such a run takes at least.
+    pub least: Option<Cost>,
     /// What `alula gaf` will take, where the case asks for it.
     pub gaf: Option<Cost>,
     /// What was repaired or assumed.
@@ -134,7 +137,8 @@ fn look<const D: usize>(case: &Case, input: &Path, out: Option<&Path>) -> Result
     let axes = (!cloud.interface.is_empty())
         .then(|| load_axes(case, surface.as_ref()).axes(&fluid.view(&frame, u, &mut work)));
     let (particles, period) = (cloud.n_real(), motions.period());
-    let sized = Sized { case, particles, dimension: D, period, evaluation };
+    let pilot = pilot::fly(case, input, cloud.n_fluid, D);
+    let sized = Sized { case, particles, fluid: cloud.n_fluid, dimension: D, period, evaluation, pilot };
     let report = CloudReport {
         understood: Understood::of(case, surface.as_ref(), &motions, axes.as_ref()),
         particles,
@@ -146,6 +150,7 @@ fn look<const D: usize>(case: &Case, input: &Path, out: Option<&Path>) -> Result
         worst_condition: fluid.discretisation.operators.condition.iter().fold(0.0, |m, c| c.max(m)),
         seconds,
         cost: sized.cost(fastest),
+        least: sized.least(),
         gaf: cost_of_gaf(&sized, axes.as_ref().map(|a| a.chord)),
         notes,
         warnings,

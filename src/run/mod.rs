@@ -20,6 +20,7 @@ mod inspect;
 mod look;
 mod measure;
 mod monitor;
+mod pilot;
 mod polar;
 mod recipe;
 mod record;

@@ -48,7 +48,18 @@ pub(crate) fn describe(r: &CloudReport) -> String {
         text += &format!("{what:<15}{value}\n");
     }
     text += &format!("built in       {:.2} s\n", r.seconds);
-    text += &format!("memory         {}\ntime           {}\n", megabytes(&r.cost), readable(r.cost.seconds));
+    let (memory, time) = match &r.least {
+        Some(least) => (
+            format!("{}, at most {}", megabytes(least), megabytes(&r.cost)),
+            format!(
+                "{} if the loads are known well enough then, at most {}",
+                readable(least.seconds),
+                readable(r.cost.seconds)
+            ),
+        ),
+        None => (megabytes(&r.cost), readable(r.cost.seconds)),
+    };
+    text += &format!("memory         {memory}\ntime           {time}\n");
     if let Some(gaf) = &r.gaf {
         text += &format!("`alula gaf`    {}, {}\n", megabytes(gaf), readable(gaf.seconds));
     }
