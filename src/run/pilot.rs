@@ -3,9 +3,10 @@
 //! How many iterations a flow takes, and how far they run in parallel, nobody knows who has not seen it: a bow shock takes five times
 //! those of a section at Mach 0.5. What does not depend on the number of particles is seen on few of them.
 use std::path::Path;
+use std::time::{Duration, Instant};
 
 use super::accuracy;
-use super::monitor::Silent;
+use super::monitor::{Monitor, Tick};
 use super::recipe;
 use super::session::Session;
 use crate::case::{Case, Initial, Temporal};
@@ -14,6 +15,20 @@ use crate::case::{Case, Initial, Temporal};
 const MOST: f64 = 6000.0;
 /// Factors on the spacing.
 const FACTORS: [f64; 2] = [2.0, 4.0];
+
+/// Longest that a pilot may take: a flow that is not solved by then tells nothing.
+const LONGEST: Duration = Duration::from_secs(2);
+
+/// Ends a run that takes too long.
+struct Bounded(Instant);
+
+impl Monitor for Bounded {
+    fn tick(&mut self, _: &Tick) {}
+    fn note(&mut self, _: &str) {}
+    fn stop(&self) -> bool {
+        self.0.elapsed() > LONGEST
+    }
+}
 
 /// What a pilot took.
 #[derive(Clone, Copy, Debug)]
@@ -24,10 +39,10 @@ pub(super) struct Pilot {
     pub(super) seconds: f64,
 }
 
-/// Solves the steady flow around the bodies of a case, whose cloud has `n` particles, on a coarser cloud. `None` where there is no
-/// such flow, where even the coarser cloud has many particles, and where it can't be solved.
+/// Solves the steady flow around the bodies of a case, whose cloud has `n` particles, on a coarser cloud. `None` where a run has no
+/// such start or it counts for little, where even the coarser cloud has many particles, and where it is not solved soon.
 pub(super) fn fly(case: &Case, input: &Path, n: usize, dimension: usize) -> Option<Pilot> {
-    let relaxation = recipe::relaxation(case)?;
+    let relaxation = recipe::relaxation(case).filter(|_| !matches!(case.time, Temporal::Harmonics(_)))?;
     if case.bodies.is_empty() || !matches!(case.initial, Initial::FreeStream) {
         return None;
     }
@@ -40,7 +55,7 @@ pub(super) fn fly(case: &Case, input: &Path, n: usize, dimension: usize) -> Opti
     coarse.compare.clear();
     coarse.adapt.cycles = 0;
     let mut session = Session::open(&coarse, input).ok()?;
-    session.solve(&mut Silent).ok()?;
+    session.solve(&mut Bounded(Instant::now())).ok()?;
     let found = session.summary()?;
     Some(Pilot { particles: found.particles as f64, seconds: found.wall_seconds })
 }
