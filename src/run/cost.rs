@@ -3,12 +3,11 @@
 //! Fitted to runs on one core of an AMD EPYC and two of an Intel Xeon (November 2026): NACA 0012 from Mach 0.5 to 0.8 on 4,000 to 36,000
 //! particles, a sphere on 35,000, sections in pitch with 64 steps a period, with one to four harmonics and with explicit steps.
 //! A step in time or an iteration costs a number of residuals that depends little on the case; how many are needed grows slowly
-//! with the number of particles, and is scaled by what a pilot took (`super::pilot`). A family of clouds may end early: its cost is that of
+//! with the number of particles, and is scaled by what a pilot took. A family of clouds may end early: its cost is that of
 //! its last cloud at most, and of its third at least. Shocks that move and separated flow take more than this.
 use serde::Serialize;
 
 use super::accuracy;
-use super::pilot::Pilot;
 use super::recipe::is_automatic;
 use crate::case::{Case, HarmonicCount, ParticleMotion, Polar, Temporal};
 use crate::math::sweep::threads;
@@ -50,6 +49,15 @@ pub struct Cost {
     pub bytes: f64,
     /// Seconds on this machine, with as many threads as now.
     pub seconds: f64,
+}
+
+/// What the steady flow of a case took on a coarser cloud, solved for this alone.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Pilot {
+    /// Its particles.
+    pub(crate) particles: f64,
+    /// Seconds from its start to its end.
+    pub(crate) seconds: f64,
 }
 
 /// A case on a cloud.

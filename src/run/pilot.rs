@@ -6,6 +6,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use super::accuracy;
+use super::cost::Pilot;
 use super::monitor::{Monitor, Tick};
 use super::recipe;
 use super::session::Session;
@@ -28,15 +29,6 @@ impl Monitor for Bounded {
     fn stop(&self) -> bool {
         self.0.elapsed() > LONGEST
     }
-}
-
-/// What a pilot took.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Pilot {
-    /// Its particles.
-    pub(super) particles: f64,
-    /// Seconds from its start to its end.
-    pub(super) seconds: f64,
 }
 
 /// Solves the steady flow around the bodies of a case, whose cloud has `n` particles, on a coarser cloud. `None` where a run has no
