@@ -115,7 +115,7 @@ pub struct Bitmap {
 impl Bitmap {
     /// The picture as an address that holds all of it.
     fn address(&self) -> askama::Result<String> {
-        let png = super::paint::bitmap_png(self).map_err(askama::Error::custom)?;
+        let png = self.png().map_err(askama::Error::custom)?;
         Ok(super::data_address("png", &png))
     }
 }
@@ -227,11 +227,6 @@ impl Canvas {
     /// A picture stretched over `area`.
     pub fn picture(&mut self, bitmap: Bitmap, area: Area) {
         self.draw(Item::Picture { bitmap, area });
-    }
-
-    /// The sheet as PNG with `scale` pixels per unit.
-    pub fn png(&self, scale: f64) -> Result<Vec<u8>, ReportError> {
-        super::paint::png(self, scale)
     }
 
     /// The sheet as a stand-alone SVG document.

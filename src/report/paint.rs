@@ -13,26 +13,32 @@ const BOLD_WEIGHT: f64 = 0.1;
 /// More pixels than any screen shows; a guard against absurd sizes.
 const MAX_SIDE: f64 = 16384.0;
 
-pub(super) fn png(canvas: &Canvas, scale: f64) -> Result<Vec<u8>, ReportError> {
-    let size = [canvas.width * scale, canvas.height * scale];
-    let too_large = || ReportError::Size { width: size[0], height: size[1] };
-    if !size.iter().all(|s| (1.0..=MAX_SIDE).contains(s)) {
-        return Err(too_large());
+impl Canvas {
+    /// The sheet as PNG with `scale` pixels per unit.
+    pub fn png(&self, scale: f64) -> Result<Vec<u8>, ReportError> {
+        let size = [self.width * scale, self.height * scale];
+        let too_large = || ReportError::Size { width: size[0], height: size[1] };
+        if !size.iter().all(|s| (1.0..=MAX_SIDE).contains(s)) {
+            return Err(too_large());
+        }
+        let mut sheet = Pixmap::new(size[0].round() as u32, size[1].round() as u32).ok_or_else(too_large)?;
+        sheet.fill(tiny_skia::Color::WHITE);
+        let mut painter = Painter { scale, mask: None, sheet };
+        for layer in &self.layers {
+            painter.mask = layer.clip.and_then(|area| painter.mask_of(area));
+            layer.items.iter().for_each(|item| painter.item(item));
+        }
+        encoded(&painter.sheet)
     }
-    let mut sheet = Pixmap::new(size[0].round() as u32, size[1].round() as u32).ok_or_else(too_large)?;
-    sheet.fill(tiny_skia::Color::WHITE);
-    let mut painter = Painter { scale, mask: None, sheet };
-    for layer in &canvas.layers {
-        painter.mask = layer.clip.and_then(|area| painter.mask_of(area));
-        layer.items.iter().for_each(|item| painter.item(item));
-    }
-    encoded(&painter.sheet)
 }
 
-pub(super) fn bitmap_png(bitmap: &Bitmap) -> Result<Vec<u8>, ReportError> {
-    let size = ReportError::Size { width: bitmap.width as f64, height: bitmap.height as f64 };
-    let pixmap = pixmap_of(bitmap).ok_or(size)?;
-    encoded(&pixmap)
+impl Bitmap {
+    /// The pixels as PNG.
+    pub(super) fn png(&self) -> Result<Vec<u8>, ReportError> {
+        let size = ReportError::Size { width: self.width as f64, height: self.height as f64 };
+        let pixmap = pixmap_of(self).ok_or(size)?;
+        encoded(&pixmap)
+    }
 }
 
 /// The picture as a file: quickly written rather than as small as can be.
