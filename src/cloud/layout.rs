@@ -177,10 +177,15 @@ pub fn background<const D: usize>(
     tree.ok_or_else(|| size.refused(format!("more than {}", spec.most), spec.most))
 }
 
-/// Cells of the background around a surface: somewhat more than the cloud will have particles, at a small part of the cost.
-pub fn count<const D: usize>(spec: &CloudSpec<D>, surface: Option<&Surface<D>>) -> Result<usize, CloudError> {
+/// Cells of the background around a surface and the sources in `extra`: somewhat more than the cloud will have particles, at a
+/// small part of the cost.
+pub fn count<const D: usize>(
+    spec: &CloudSpec<D>,
+    surface: Option<&Surface<D>>,
+    extra: &[Source<D>],
+) -> Result<usize, CloudError> {
     let layout = Layout::new(spec, surface)?;
-    Ok(background(spec, &layout, surface, &[])?.leaves().count())
+    Ok(background(spec, &layout, surface, extra)?.leaves().count())
 }
 
 /// Refuses spacings that the deepest cells of the background are too large for.

@@ -6,7 +6,7 @@
 use std::borrow::Cow;
 
 use super::look::reference;
-use super::stage::{Stage, Task};
+use super::stage::Stage;
 use crate::case::{Accuracy, Case, Domain, Length, Side, Wake, WallLayers};
 use crate::cloud::CloudSpec;
 use crate::cloud::layout::count;
@@ -101,7 +101,7 @@ fn affordable<const D: usize>(case: &Case, surface: &Surface<D>, spacing: f64) -
     let mut spacing = spacing;
     for _ in 0..ROUNDS {
         let case = spaced::<D>(case, spacing);
-        let Ok(cells) = count(&CloudSpec::of_case(&scaled(&case, 2.0)), Some(surface)) else { break };
+        let Ok(cells) = count(&CloudSpec::of_case(&scaled(&case, 2.0)), Some(surface), &[]) else { break };
         let over = FINER * cells as f64 / room;
         if over <= 1.0 {
             break;
@@ -165,10 +165,16 @@ pub(crate) fn scaled(case: &Case, factor: f64) -> Case {
     case
 }
 
+/// True where the clouds of a family follow what detached shocks slow down. The points of a polar share their clouds.
+pub(crate) fn follows_shocks(case: &Case) -> bool {
+    case.flow.reference().mach > 1.0 && case.polar.is_none()
+}
+
 /// The stages of a family whose member with the spacing of the case has `n` fluid particles.
-pub(crate) fn family(asked: &Accuracy, n: usize, dimension: usize) -> Vec<Stage> {
+pub(crate) fn family(case: &Case, asked: &Accuracy, n: usize, dimension: usize) -> Vec<Stage> {
     let particles = |factor: f64| n as f64 / factor.powi(dimension as i32);
     let factors = std::iter::successors(Some(FIRST), |f| Some(0.5 * f));
     let within = factors.enumerate().take_while(|(k, f)| *k < CLOUDS || particles(*f) <= asked.particles as f64);
-    within.map(|(_, factor)| Stage { factor, task: Task::Relax, ..Stage::PLAIN }).collect()
+    let cycle = |k: usize| if follows_shocks(case) { k as u32 } else { 0 };
+    within.map(|(k, factor)| Stage { factor, cycle: cycle(k), ..Stage::PLAIN }).collect()
 }

@@ -9,6 +9,7 @@ use serde::Serialize;
 
 use super::accuracy;
 use super::recipe::is_automatic;
+use super::stage::Stage;
 use crate::case::{Case, HarmonicCount, ParticleMotion, Polar, Temporal};
 use crate::math::sweep::threads;
 
@@ -58,6 +59,8 @@ pub(crate) struct Pilot {
     pub(crate) particles: f64,
     /// Seconds from its start to its end.
     pub(crate) seconds: f64,
+    /// Particles of a cloud that follows its shocks over those of one that does not.
+    pub(crate) following: f64,
 }
 
 /// A case on a cloud.
@@ -114,10 +117,12 @@ impl Sized<'_> {
     /// Particles of the clouds of the run, one after another.
     fn sizes(&self) -> Vec<f64> {
         let n = self.particles as f64;
+        let following = |cycle: u32| if cycle == 0 { 1.0 } else { self.pilot.map_or(1.0, |p| p.following) };
         match accuracy::asked(self.case) {
             Some(asked) => {
-                let family = accuracy::family(&asked, self.fluid, self.dimension);
-                family.iter().map(|stage| n / stage.factor.powi(self.dimension as i32)).collect()
+                let family = accuracy::family(self.case, &asked, self.fluid, self.dimension);
+                let size = |stage: &Stage| following(stage.cycle) * n / stage.factor.powi(self.dimension as i32);
+                family.iter().map(size).collect()
             }
             None => (0..=self.case.adapt.cycles).map(|k| n * ADAPTED.powi(k as i32)).collect(),
         }

@@ -137,7 +137,7 @@ fn look<const D: usize>(case: &Case, input: &Path, out: Option<&Path>) -> Result
     let axes = (!cloud.interface.is_empty())
         .then(|| load_axes(case, surface.as_ref()).axes(&fluid.view(&frame, u, &mut work)));
     let (particles, period) = (cloud.n_real(), motions.period());
-    let pilot = pilot::fly(case, input, cloud.n_fluid, D);
+    let pilot = pilot::fly(case, input, surface.as_ref(), cloud.n_fluid);
     let sized = Sized { case, particles, fluid: cloud.n_fluid, dimension: D, period, evaluation, pilot };
     let report = CloudReport {
         understood: Understood::of(case, surface.as_ref(), &motions, axes.as_ref()),

@@ -126,7 +126,7 @@ fn rehearse<const D: usize>(case: &Case, input: &Path) -> Result<(), RunError> {
     let mut motions = setup::motions(case, input, surface.as_ref())?;
     setup::sane(case, surface.as_ref(), &motions)?;
     setup::bodies(case, input, surface.as_ref(), &mut motions)?;
-    count(&setup::spec(case), surface.as_ref())?;
+    count(&setup::spec(case), surface.as_ref(), &[])?;
     Ok(())
 }
 

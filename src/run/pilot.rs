@@ -7,10 +7,15 @@ use std::time::{Duration, Instant};
 
 use super::accuracy;
 use super::cost::Pilot;
+use super::look::Snapshot;
 use super::monitor::{Monitor, Tick};
 use super::recipe;
 use super::session::Session;
+use super::setup::ShockLayer;
 use crate::case::{Case, Initial, Temporal};
+use crate::cloud::CloudSpec;
+use crate::cloud::layout::count;
+use crate::geometry::Surface;
 
 /// Greatest number of particles of a pilot: a fraction of a second in the plane.
 const MOST: f64 = 6000.0;
@@ -33,12 +38,12 @@ impl Monitor for Bounded {
 
 /// Solves the steady flow around the bodies of a case, whose cloud has `n` particles, on a coarser cloud. `None` where a run has no
 /// such start or it counts for little, where even the coarser cloud has many particles, and where it is not solved soon.
-pub(super) fn fly(case: &Case, input: &Path, n: usize, dimension: usize) -> Option<Pilot> {
+pub(super) fn fly<const D: usize>(case: &Case, input: &Path, surface: Option<&Surface<D>>, n: usize) -> Option<Pilot> {
     let relaxation = recipe::relaxation(case).filter(|_| !matches!(case.time, Temporal::Harmonics(_)))?;
     if case.bodies.is_empty() || !matches!(case.initial, Initial::FreeStream) {
         return None;
     }
-    let factor = FACTORS.into_iter().find(|f| n as f64 / f.powi(dimension as i32) <= MOST)?;
+    let factor = FACTORS.into_iter().find(|f| n as f64 / f.powi(D as i32) <= MOST)?;
     let mut coarse = accuracy::scaled(case.points().first()?, factor);
     (coarse.time, coarse.accuracy) = (Temporal::Steady(relaxation), None);
     (coarse.motion, coarse.gaf) = (None, None);
@@ -49,5 +54,14 @@ pub(super) fn fly(case: &Case, input: &Path, n: usize, dimension: usize) -> Opti
     let mut session = Session::open(&coarse, input).ok()?;
     session.solve(&mut Bounded(Instant::now())).ok()?;
     let found = session.summary()?;
-    Some(Pilot { particles: found.particles as f64, seconds: found.wall_seconds })
+    let following = followed(case, surface?, session.field()?).unwrap_or(1.0);
+    Some(Pilot { particles: found.particles as f64, seconds: found.wall_seconds, following })
+}
+
+/// Particles of the cloud of a case that follows the shocks in `field` over those of one that does not; `None` where it does not.
+fn followed<const D: usize>(case: &Case, surface: &Surface<D>, field: &Snapshot) -> Option<f64> {
+    let asked = accuracy::asked(case).filter(|_| accuracy::follows_shocks(case))?;
+    let sources = ShockLayer::of(case, surface, field)?.sources(case, surface, &asked, 1.0);
+    let cells = |sources: &[_]| count(&CloudSpec::of_case(case), Some(surface), sources).ok();
+    Some(cells(&sources)? as f64 / cells(&[])? as f64)
 }

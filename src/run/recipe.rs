@@ -96,7 +96,7 @@ pub(crate) fn marching(case: &Case, period: Option<f64>, dimension: usize) -> Re
 /// A harmonic balance has `least` harmonics or more: the motion has so many.
 pub(crate) fn plan(case: &Case, n: usize, dimension: usize, least: usize) -> Vec<Stage> {
     if let Some(asked) = accuracy::asked(case) {
-        return at_all_points(case, accuracy::family(&asked, n, dimension));
+        return at_all_points(case, accuracy::family(case, &asked, n, dimension));
     }
     let mut all = Vec::new();
     // a march from a given field starts from that field itself

@@ -282,7 +282,10 @@ impl Run<'_> {
             let site = Site { case: course.case(stage), ..*site };
             course.enter(stage, site.surface, &mut log);
             log.record.warnings.clear();
-            let build = |ready| Ok(setup::solver(&site, stage, &sources, ready)?.with(&assemble));
+            let build = |ready: Option<Cloud<D>>| {
+                let own = ready.filter(|_| stage.cycle == 0 || sources.is_empty());
+                Ok(setup::solver(&site, stage, &sources, own)?.with(&assemble))
+            };
             let Begun { mut solver, start } =
                 ground.begin((stage, &site), build, previous.take(), &mut course, &log)?;
             solver.system.hold_bodies(stage.task == Task::Relax && self.case.is_unsteady());
@@ -298,8 +301,8 @@ impl Run<'_> {
                     continue;
                 }
             };
-            if turn.next().is_some_and(|s| s.cycle > stage.cycle) {
-                sources = setup::adapted(site.case, &solver.system, &reached.state);
+            if let Some(next) = turn.next().filter(|next| next.cycle > stage.cycle && !reached.enough) {
+                sources = setup::adapted(&site, next, &solver.system, &reached.state);
             }
             let over = reached.enough || turn.last();
             course.keep(stage, &reached.state);
@@ -431,7 +434,7 @@ impl<const D: usize> Ground<D> {
         };
         let solver = match course.take(stage, site)? {
             Some(solver) => solver,
-            None => build(if stage.is_plain() { self.ready.take() } else { None })?,
+            None => build(if stage.factor == 1.0 { self.ready.take() } else { None })?,
         };
         if let Some(saved) = saved {
             return Begun::resumed(solver, saved);
@@ -518,7 +521,7 @@ fn last_known<'a, S: HasGas<D>, const D: usize>(
 fn describe(stages: &[Stage], n: usize) -> String {
     let first = || stages.iter().filter(|s| s.point.unwrap_or(0) == 0);
     let coarse = first().filter(|s| s.factor > 1.0).count();
-    let cycles = (1..).take_while(|c| stages.iter().any(|s| s.cycle == *c)).count();
+    let cycles = (1..).take_while(|c| first().any(|s| s.factor == 1.0 && s.cycle == *c)).count();
     let points = stages.last().and_then(|s| s.point).map_or_else(String::new, |p| format!("; {} points", p + 1));
     format!("{n} fluid particles; {coarse} coarser clouds for the start, {cycles} cycles of adaptation{points}")
 }

@@ -36,11 +36,6 @@ impl Stage {
     /// A relaxation on the cloud of the case itself.
     pub(crate) const PLAIN: Self = Self { factor: 1.0, cycle: 0, point: None, task: Task::Relax };
 
-    /// True on the cloud of the case itself.
-    pub(crate) fn is_plain(&self) -> bool {
-        self.factor == 1.0 && self.cycle == 0
-    }
-
     /// True when both stand on the same cloud, in the same free stream.
     pub(crate) fn shares_cloud(&self, other: &Self) -> bool {
         self.factor == other.factor && self.cycle == other.cycle && self.point == other.point

@@ -49,6 +49,15 @@ impl IterationHistory {
         let at = self.names.iter().position(|n| *n == name)?;
         Some(&self.columns[at])
     }
+
+    /// Least and greatest lift, drag and moment of the last `n` iterations.
+    pub(crate) fn last_loads(&self, n: usize) -> [[f64; 2]; 3] {
+        ["cl", "cd", "cm"].map(|name| {
+            let column = self.column(name).unwrap_or_default();
+            let tail = &column[column.len().saturating_sub(n)..];
+            tail.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], v| [l.min(*v), h.max(*v)])
+        })
+    }
 }
 
 #[cfg(test)]

@@ -2,8 +2,8 @@
 use super::saved::{LagrangianCheckpoint, Saved, require};
 use crate::case::Case;
 use crate::run::error::RunError;
-use crate::run::recipe;
 use crate::run::stage::{Stage, Task};
+use crate::run::{accuracy, recipe};
 use crate::system::{Field, unknowns};
 use crate::time::Memory;
 
@@ -64,7 +64,9 @@ impl Saved {
 
 /// True where a plan of the case may have such a stage.
 fn is_of(case: &Case, stage: &Stage) -> bool {
-    let cloud = stage.factor.is_finite() && 0.0 < stage.factor && stage.cycle <= case.adapt.cycles;
+    let cloud = stage.factor.is_finite()
+        && 0.0 < stage.factor
+        && (stage.cycle <= case.adapt.cycles || accuracy::asked(case).is_some());
     let task = match stage.task {
         Task::Balance { harmonics } => recipe::balance(case).is_some_and(|plan| harmonics <= recipe::most(plan)),
         _ => true,

@@ -6,9 +6,11 @@ use super::super::recipe::control;
 use super::super::record::Log;
 use super::super::record::family;
 use super::super::stage::{Stage, Task};
-use super::super::watch::{Aim, Checkpoint, Ending, GasEyes, Limit, Observer, Progress, Resting, Told, drive, sample};
+use super::super::watch::{
+    Aim, Checkpoint, Ending, Flat, GasEyes, Limit, Observer, Progress, Resting, Told, drive, sample,
+};
 use super::turn::{Reached, Start, Turn};
-use crate::case::Steady;
+use crate::case::{Accuracy, Steady};
 use crate::math::Bounds;
 use crate::observe::convergence::CloudLoads;
 use crate::observe::loads::Coefficients;
@@ -31,6 +33,8 @@ const POINT_PATIENCE: u32 = 60;
 
 /// Iterations that loads are watched over where the residual does not reach its goal.
 const UNSETTLED: usize = 20;
+/// Range of the loads over them, in what they are asked to, that counts as rest on the clouds of a family.
+const REST: f64 = 1e-3;
 
 /// Relaxes; `None` when told to stop.
 pub(crate) fn relax<S: HasGas<D>, const D: usize>(
@@ -59,7 +63,8 @@ pub(crate) fn relax<S: HasGas<D>, const D: usize>(
         match ending {
             Ending::Stopped => return Ok(None),
             Ending::Failed(problem) => return Err(log.failed(problem)),
-            Ending::Finished | Ending::Spent | Ending::Paused => {}
+            Ending::Finished => relax.goal = relax.goal.max(relax.drop()),
+            Ending::Spent | Ending::Paused => {}
         }
         log.record.reason = (!relax.finished()).then(|| short_of_goal(&relax, steady, orders));
         let loads = tell(system, &mut relax, turn, log)?;
@@ -116,9 +121,17 @@ fn watched<S: HasGas<D>, const D: usize>(
         (true, false) => PATIENCE,
     };
     let (mut limit, mut resting) = (Limit { iterations }, Resting { patience });
-    let mut told = Told;
-    let all: &mut [&mut dyn Observer<S>] = &mut [&mut progress, &mut limit, &mut told, &mut resting, &mut checkpoint];
-    drive(relax, all, log)
+    let least = if turn.stage().factor > 1.0 { EARLY_ORDERS } else { orders - SETTLING };
+    let (mut told, mut flat) = (Told, accuracy::asked(log.case).map(|asked| flat(&asked, least)));
+    let mut all: Vec<&mut dyn Observer<S>> = vec![&mut progress, &mut limit, &mut told, &mut resting];
+    flat.iter_mut().for_each(|flat| all.push(flat));
+    all.push(&mut checkpoint);
+    drive(relax, &mut all, log)
+}
+
+/// When loads are at rest on a cloud of a family, whose residual has fallen by so many `orders`.
+fn flat(asked: &Accuracy, orders: f64) -> Flat {
+    Flat { residual: 10f64.powf(-orders), range: REST * asked.loads.0, iterations: UNSETTLED }
 }
 
 /// Keeps what is known of a relaxation that is over; its loads.
@@ -165,15 +178,9 @@ fn is_supersonic<const D: usize>(gas: &Fluid<D>, work: &Work<D>) -> bool {
 /// What the last iteration changed the loads by; half of their range over the last iterations where the residual did not reach its
 /// goal.
 fn unsettled(log: &Log<'_>) -> Coefficients {
-    let (history, last) = (&log.record.history, if log.record.converged { 2 } else { UNSETTLED });
-    let of = |name: &str| {
-        let column = history.column(name).unwrap_or_default();
-        let tail = &column[column.len().saturating_sub(last)..];
-        let [low, high] = tail.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], v| [l.min(*v), h.max(*v)]);
-        let range = (high - low).max(0.0);
-        if log.record.converged { range } else { 0.5 * range }
-    };
-    Coefficients { cl: of("cl"), cd: of("cd"), cm: of("cm") }
+    let (last, part) = if log.record.converged { (2, 1.0) } else { (UNSETTLED, 0.5) };
+    let [cl, cd, cm] = log.record.history.last_loads(last).map(|[low, high]| part * (high - low).max(0.0));
+    Coefficients { cl, cd, cm }
 }
 
 /// Half-width of the domain in lengths of the bodies.

@@ -28,6 +28,30 @@ impl<S: System> Observer<S> for Resting {
     }
 }
 
+/// Ends a relaxation whose loads have come to rest, though its residual falls on slowly: a wake may take hundreds of iterations to
+/// settle that move no load.
+pub(crate) struct Flat {
+    /// Residual over its first value from which on loads are looked at.
+    pub(crate) residual: f64,
+    /// Range of loads over the last iterations, in the largest of them, that counts as rest.
+    pub(crate) range: f64,
+    /// How many iterations these are.
+    pub(crate) iterations: usize,
+}
+
+impl<S: System> Observer<S> for Flat {
+    fn wish(&mut self, now: &mut Now<'_, S>, log: &Log<'_>) -> Option<Wish> {
+        let mark = now.mark();
+        if mark.residual > self.residual || (mark.iteration as usize) < self.iterations {
+            return None;
+        }
+        let ends = log.record.history.last_loads(self.iterations);
+        let largest = ends.iter().flatten().fold(0.0, |m: f64, v| m.max(v.abs()));
+        let rest = ends.iter().all(|[low, high]| high - low <= self.range * largest);
+        rest.then_some(Wish::Finish)
+    }
+}
+
 /// Ends where the monitor says so.
 pub(crate) struct Told;
 
