@@ -22,17 +22,18 @@ const MOST: f64 = 6000.0;
 /// Factors on the spacing.
 const FACTORS: [f64; 2] = [2.0, 4.0];
 
-/// Longest that a pilot may take: a flow that is not solved by then tells nothing.
-const LONGEST: Duration = Duration::from_secs(2);
+/// Longest that a pilot may take, in 2-D and 3-D, where the cloud of the case itself takes longer: a flow that is not solved by then
+/// tells nothing.
+const LONGEST: [Duration; 2] = [Duration::from_secs(2), Duration::from_secs(10)];
 
-/// Ends a run that takes too long.
+/// Ends a run that lasts beyond a moment.
 struct Bounded(Instant);
 
 impl Monitor for Bounded {
     fn tick(&mut self, _: &Tick) {}
     fn note(&mut self, _: &str) {}
     fn stop(&self) -> bool {
-        self.0.elapsed() > LONGEST
+        Instant::now() > self.0
     }
 }
 
@@ -52,7 +53,7 @@ pub(super) fn fly<const D: usize>(case: &Case, input: &Path, surface: Option<&Su
     coarse.compare.clear();
     coarse.adapt.cycles = 0;
     let mut session = Session::open(&coarse, input).ok()?;
-    session.solve(&mut Bounded(Instant::now())).ok()?;
+    session.solve(&mut Bounded(Instant::now() + LONGEST[D - 2])).ok()?;
     let found = session.summary()?;
     let following = followed(case, surface?, session.field()?).unwrap_or(1.0);
     Some(Pilot { particles: found.particles as f64, seconds: found.wall_seconds, following })
