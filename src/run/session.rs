@@ -268,7 +268,9 @@ impl Run<'_> {
         let scales = Scales { axes: load_axes(self.case, site.surface), period: site.motions.period() };
         let points = self.case.points();
         let mut log = Log::open(self.case, self.out, scales, ground.saved.as_ref(), structures, monitor)?;
-        log.note(&describe(&stages, ground.ready.as_ref().map_or(0, |c| c.n_fluid)));
+        if let Some(cloud) = &ground.ready {
+            log.note(&describe(&stages, cloud.n_fluid));
+        }
         let known = ground.saved.as_ref().or(ground.other.as_ref());
         let mut sources: Vec<Source<D>> = known.map_or_else(Vec::new, Saved::sources);
         let kept = ground.saved.as_mut().map_or_else(Vec::new, |s| std::mem::take(&mut s.kept));
