@@ -233,7 +233,9 @@ def test_ctrl_c_is_heard_without_a_callback():
 
 
 INTERRUPTED = """
-import alula, sys
+import alula, signal, sys
+# whoever started the tests may have had it ignored
+signal.signal(signal.SIGINT, signal.default_int_handler)
 def told(event):
     if event.get("iteration") == 3:
         print("begun", flush=True)
