@@ -40,7 +40,7 @@ const POLAR_PARTICLES: usize = 20_000;
 /// Part of the particles allowed that the third cloud in space may have, how many times those of the second it has, the power of the
 /// spacing that their number goes with, and how often the spacing is corrected.
 const ROOM: f64 = 0.6;
-const FINER: f64 = 6.0;
+pub(super) const FINER: f64 = 6.0;
 const POWER: f64 = 2.5;
 const ROUNDS: usize = 4;
 /// Cells along the shortest side of a domain that a case gives, at least; greatest number of those between sides that must stay; by how

@@ -26,7 +26,7 @@ const FACTORS: [f64; 2] = [2.0, 4.0];
 /// tells nothing.
 const LONGEST: [Duration; 2] = [Duration::from_secs(2), Duration::from_secs(10)];
 
-/// Ends a run that lasts beyond a moment.
+/// Ends a run at a moment.
 struct Bounded(Instant);
 
 impl Monitor for Bounded {

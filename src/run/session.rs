@@ -284,10 +284,7 @@ impl Run<'_> {
             let site = Site { case: course.case(stage), ..*site };
             course.enter(stage, site.surface, &mut log);
             log.record.warnings.clear();
-            let build = |ready: Option<Cloud<D>>| {
-                let own = ready.filter(|_| stage.cycle == 0 || sources.is_empty());
-                Ok(setup::solver(&site, stage, &sources, own)?.with(&assemble))
-            };
+            let build = |ready| Ok(setup::solver(&site, stage, &sources, ready)?.with(&assemble));
             let Begun { mut solver, start } =
                 ground.begin((stage, &site), build, previous.take(), &mut course, &log)?;
             solver.system.hold_bodies(stage.task == Task::Relax && self.case.is_unsteady());

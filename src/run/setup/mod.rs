@@ -131,7 +131,8 @@ pub(crate) fn surface<const D: usize>(
     Ok((Some(surface), notes))
 }
 
-/// Builds the solver of one stage with the sources of refinement found so far; `ready` is its cloud when that exists already.
+/// Builds the solver of one stage with the sources of refinement found so far; `ready` is its cloud without any, when that exists
+/// already.
 pub(crate) fn solver<const D: usize>(
     site: &Site<'_, D>,
     stage: &Stage,
@@ -141,7 +142,7 @@ pub(crate) fn solver<const D: usize>(
     let Site { case, surface, motions } = *site;
     let scaled = accuracy::scaled(case, stage.factor);
     let sources = if stage.cycle > 0 { sources } else { &[] };
-    let mut cloud = match ready {
+    let mut cloud = match ready.filter(|_| sources.is_empty()) {
         Some(cloud) => cloud,
         None => Cloud::build(&size::spec(&scaled), surface, sources)?,
     };

@@ -22,8 +22,6 @@ const COMPRESSED: f64 = 0.85;
 const MOST: f64 = 4.0;
 /// Cells of each size around a particle of the layer: those of the cloud it was found on are up to four times as far apart.
 const LAYERS: f64 = 2.0;
-/// Growth of the number of particles from one cloud of a family to the next.
-const FINER: f64 = 6.0;
 /// Factor on the spacing in the layer where there would be too many particles: cells come in powers of two.
 const COARSER: f64 = 2.0;
 
@@ -62,7 +60,7 @@ impl<const D: usize> ShockLayer<D> {
     /// would have more particles than `asked` allows.
     pub(crate) fn sources(&self, case: &Case, surface: &Surface<D>, asked: &Accuracy, factor: f64) -> Vec<Source<D>> {
         let Some(wall) = case.cloud.spacing.map(|l| factor * l.0) else { return Vec::new() };
-        let room = asked.particles as f64 / FINER.powf(factor.log2().max(0.0));
+        let room = asked.particles as f64 / accuracy::FINER.powf(factor.log2().max(0.0));
         let spec = CloudSpec::of_case(&accuracy::scaled(case, factor));
         let mut coarser = 1.0;
         loop {
