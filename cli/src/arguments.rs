@@ -104,6 +104,8 @@ pub(crate) struct Check {
     /// Print what is known as one JSON object, or each mistake as one.
     #[arg(long, conflicts_with = "resolved")]
     pub(crate) json: bool,
+    #[command(flatten)]
+    pub(crate) threads: Threads,
 }
 
 #[derive(Debug, Args)]

@@ -1,7 +1,8 @@
 //! What a run will take: memory of the process and time, from its number of particles and a timed residual.
 //!
 //! Fitted to runs on one core of an AMD EPYC and two of an Intel Xeon (November 2026): NACA 0012 from Mach 0.5 to 0.8 on 4,000 to 36,000
-//! particles, a sphere on 35,000, sections in pitch with 64 steps a period, with one to four harmonics and with explicit steps.
+//! particles, a sphere on 35,000, sections in pitch with 64 steps a period, with one to four harmonics and with explicit steps, and
+//! those of `tests/nightly/estimate.py`.
 //! A step in time or an iteration costs a number of residuals that depends little on the case; how many are needed grows slowly
 //! with the number of particles, and is scaled by what a pilot took. A family of clouds may end early: its cost is that of
 //! its last cloud at most, and of its third at least. Shocks that move and separated flow take more than this.
@@ -19,10 +20,11 @@ const PROGRAM: f64 = 11.4e6;
 /// of particles at rest and in motion.
 const STEADY_BYTES: f64 = 2110.0;
 const STEP_BYTES: f64 = 900.0;
-const BALANCE_BYTES: [f64; 2] = [3600.0, 1600.0];
+const BALANCE_BYTES: [f64; 2] = [4200.0, 1900.0];
 const EXPLICIT_BYTES: [f64; 2] = [1100.0, 1400.0];
-/// Bytes that pictures and report take at their peak: always, with each thread, with each particle.
-const PICTURES_BYTES: [f64; 3] = [42e6, 20e6, 700.0];
+/// Bytes that pictures and report take at their peak: always, with each pixel of a picture, with each of it and each thread, with
+/// each particle.
+const PICTURES_BYTES: [f64; 4] = [52.5e6, 7.0, 33.0, 600.0];
 /// Seconds that they take on one thread: of a flow that stands, and of one that moves.
 const PICTURES_SECONDS: [f64; 2] = [0.2, 2.2];
 /// Bytes of a particle in space over those in the plane.
@@ -32,19 +34,25 @@ const STEADY: [f64; 2] = [570.0, 520.0];
 /// Growth of that number with the number of particles.
 const GROWTH: f64 = 0.15;
 const USUAL: f64 = 4000.0;
-/// Time of a family that follows detached shocks over that of one that does not and has as many particles: fine gas nearly at rest
-/// makes linear systems hard. Of a sphere at Mach 3 and of a quarter of one.
+/// Time of a family in space that follows detached shocks over that of one that does not and has as many particles: fine gas nearly
+/// at rest makes linear systems hard. Of a sphere at Mach 3 and of a quarter of one.
 const FOLLOWING: f64 = 15.0;
-/// Residuals of an implicit step in time.
-const STEP: f64 = 20.0;
+/// Residuals of an implicit step in time on a cloud of [`USUAL`] particles, and growth of that number: the finer the cloud, the more
+/// cells a sound wave passes in a step.
+const STEP: f64 = 22.0;
+const STEP_GROWTH: f64 = 0.5;
 /// Residuals of a harmonic balance without and with each harmonic, its start included.
-const BALANCE: [f64; 2] = [900.0, 450.0];
+const BALANCE: [f64; 2] = [1300.0, 700.0];
 /// Residuals of a step of an explicit method, part of a stable step lost included, at rest and in motion.
 const EXPLICIT: [f64; 2] = [3.5, 7.0];
 /// Harmonics that `number = "auto"` mostly ends with.
 const USUAL_HARMONICS: u32 = 3;
-/// Growth of a cloud in a cycle of adaptation.
+/// Growth of a cloud in a cycle of adaptation, and work of a steady state that begins from that of the cycle before over that of
+/// one that begins anew.
 const ADAPTED: f64 = 1.4;
+const AGAIN: f64 = 0.3;
+/// Work of a point of a polar after the first, which begins from the one before.
+const NEXT_POINT: f64 = 0.6;
 
 /// What a run takes.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -78,6 +86,8 @@ pub(crate) struct Sized<'a> {
     pub(crate) dimension: usize,
     /// Period of the motion in the time of the solver.
     pub(crate) period: Option<f64>,
+    /// Pixels of a picture of the flow.
+    pub(crate) pixels: f64,
     /// Seconds of a residual on that cloud.
     pub(crate) evaluation: f64,
     /// The steady flow on a coarser cloud, where it was tried.
@@ -99,10 +109,13 @@ impl Sized<'_> {
 
     /// What it takes on clouds of these numbers of particles.
     fn on(&self, sizes: &[f64], fastest: impl FnOnce() -> f64) -> Cost {
-        let points = self.case.polar.as_ref().map_or(1, Polar::len) as f64;
+        let points = 1.0 + NEXT_POINT * (self.case.polar.as_ref().map_or(1, Polar::len) as f64 - 1.0);
         let largest = sizes.iter().fold(0.0, |m: f64, n| m.max(*n));
         let each = self.evaluation / self.particles.max(1) as f64;
-        let relaxed: f64 = self.pace() * points * sizes.iter().map(|n| n * each * self.steady(*n)).sum::<f64>();
+        let again = if accuracy::asked(self.case).is_some() { 1.0 } else { AGAIN };
+        let states =
+            sizes.iter().enumerate().map(|(k, n)| if k == 0 { 1.0 } else { again } * n * each * self.steady(*n));
+        let relaxed = self.pace() * points * states.sum::<f64>();
         let marched = largest * each * self.in_time(largest, fastest);
         let starts = !matches!(self.case.time, Temporal::Explicit(_) | Temporal::Harmonics(_));
         let solved = marched + if starts { relaxed } else { 0.0 };
@@ -111,8 +124,8 @@ impl Sized<'_> {
             return Cost { bytes, seconds: solved };
         }
         let shared = threads() as f64;
-        let [always, thread, each] = PICTURES_BYTES;
-        let pictures = always + shared * thread + largest * each;
+        let [always, pixel, thread, each] = PICTURES_BYTES;
+        let pictures = always + self.pixels * (pixel + shared * thread) + largest * each;
         let seconds = solved + PICTURES_SECONDS[usize::from(self.case.moves())] / shared;
         Cost { bytes: bytes.max(pictures), seconds }
     }
@@ -135,7 +148,7 @@ impl Sized<'_> {
     fn pace(&self) -> f64 {
         self.pilot.map_or(1.0, |pilot| {
             let each = self.evaluation / self.particles.max(1) as f64;
-            let harder = if pilot.following > 1.0 { FOLLOWING } else { 1.0 };
+            let harder = if self.dimension == 3 && pilot.following > 1.0 { FOLLOWING } else { 1.0 };
             harder * pilot.seconds / (pilot.particles * each * self.steady(pilot.particles))
         })
     }
@@ -150,7 +163,10 @@ impl Sized<'_> {
         let end = self.case.end(self.period).unwrap_or_default();
         match &self.case.time {
             Temporal::Steady(_) => 0.0,
-            Temporal::Dual(_) => self.case.step_length(self.period).map_or(0.0, |step| STEP * end / step),
+            Temporal::Dual(_) => {
+                let each = STEP * (n / USUAL).powf(STEP_GROWTH);
+                self.case.step_length(self.period).map_or(0.0, |step| each * end / step)
+            }
             Temporal::Harmonics(_) => {
                 let [alone, each] = BALANCE;
                 (alone + each * f64::from(harmonics(self.case))) * (n / USUAL).powf(GROWTH)
@@ -199,6 +215,7 @@ mod tests {
             fluid: particles,
             dimension: 2,
             period: Some(10.0),
+            pixels: 486e3,
             evaluation: 1.7e-7 * particles as f64,
             pilot: None,
         }

@@ -7,7 +7,7 @@ use serde::Serialize;
 use super::accuracy;
 use super::cost::{Cost, Sized};
 use super::error::RunError;
-use super::files::{Scene, Target, write_cloud};
+use super::files::{Scene, Target, pixels, write_cloud};
 use super::folder;
 use super::look::{Mesh, load_axes};
 use super::pilot;
@@ -138,7 +138,8 @@ fn look<const D: usize>(case: &Case, input: &Path, out: Option<&Path>) -> Result
         .then(|| load_axes(case, surface.as_ref()).axes(&fluid.view(&frame, u, &mut work)));
     let (particles, period) = (cloud.n_real(), motions.period());
     let pilot = pilot::fly(case, input, surface.as_ref(), cloud.n_fluid);
-    let sized = Sized { case, particles, fluid: cloud.n_fluid, dimension: D, period, evaluation, pilot };
+    let pixels = pixels(surface.as_ref(), &cloud.tree.bounds());
+    let sized = Sized { case, particles, fluid: cloud.n_fluid, dimension: D, period, pixels, evaluation, pilot };
     let report = CloudReport {
         understood: Understood::of(case, surface.as_ref(), &motions, axes.as_ref()),
         particles,

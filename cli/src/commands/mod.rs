@@ -33,7 +33,7 @@ pub(crate) fn dispatch(cli: Cli) -> Outcome {
     match cli.command {
         Command::Run(args) => threaded(args.threads, || run::run(&args)),
         Command::New(args) => new::new(&args),
-        Command::Check(args) => threaded(Threads::default(), || check::check(&args)),
+        Command::Check(args) => threaded(args.threads, || check::check(&args)),
         Command::Cloud(args) => threaded(args.threads, || cloud::cloud(&args)),
         Command::Resume(args) => threaded(args.threads, || resume::resume(&args)),
         Command::Gaf(args) => threaded(args.threads, || gaf::gaf(&args)),

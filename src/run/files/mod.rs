@@ -18,7 +18,7 @@ use crate::observe::vtk::{Column, read_collection, write_cells, write_collection
 use crate::report;
 use crate::scheme::Work;
 
-pub(crate) use pictures::{together, write_cloud};
+pub(crate) use pictures::{pixels, together, write_cloud};
 pub(crate) use target::{FILM, FILM_FIELDS, Scene, Target};
 
 /// Columns of the fields of a film.

@@ -2,6 +2,7 @@
 use super::super::error::RunError;
 use super::super::look::pressure_coefficient;
 use super::target::{FILM, Scene};
+use crate::geometry::Surface;
 use crate::math::sweep::{sweep_each, sweep_each_chunk};
 use crate::math::{Bounds, Vector};
 use crate::physics::Primitive;
@@ -35,10 +36,21 @@ pub(crate) fn write<const D: usize>(scene: &Scene<'_, D>) -> Result<(), RunError
 }
 
 fn window<const D: usize>(scene: &Scene<'_, D>, margin: f64) -> Bounds<2> {
-    let all = scene.view.cloud().tree.bounds();
-    let b = scene.surface.map_or(all, |s| s.bounds().padded(margin * s.bounds().extent().max_abs()));
+    around(scene.surface, &scene.view.cloud().tree.bounds(), margin)
+}
+
+/// What a picture shows: the bodies with a margin in body lengths around them, or all of the domain.
+fn around<const D: usize>(surface: Option<&Surface<D>>, all: &Bounds<D>, margin: f64) -> Bounds<2> {
+    let b = surface.map_or(*all, |s| s.bounds().padded(margin * s.bounds().extent().max_abs()));
     let pick = |v: Vector<D>| Vector([v[0], v[1]]);
     Bounds { min: pick(b.min.max(&all.min)), max: pick(b.max.min(&all.max)) }
+}
+
+/// Pixels of a picture of the flow.
+pub(crate) fn pixels<const D: usize>(surface: Option<&Surface<D>>, domain: &Bounds<D>) -> f64 {
+    let extent = around(surface, domain, MARGIN).extent();
+    let longest = extent[0].max(extent[1]);
+    (PIXELS * PIXELS) as f64 * extent[0] * extent[1] / (longest * longest)
 }
 
 fn outlines<const D: usize>(scene: &Scene<'_, D>) -> Vec<Vec<Vector<2>>> {
