@@ -4,9 +4,13 @@ use alula::run::{Session, Silent, Summary};
 
 /// A NACA 0012 in a stream, without a cloud; at most 12,000 particles.
 fn solved(mach: f64, alpha: f64) -> Summary {
-    let text = format!(
-        "[flow]\nmach = {mach}\nalpha = \"{alpha} deg\"\n[[body]]\nnaca = \"0012\"\n[accuracy]\nparticles = 12000\n"
-    );
+    solved_with(mach, alpha, "")
+}
+
+/// The same with more tables.
+fn solved_with(mach: f64, alpha: f64, more: &str) -> Summary {
+    let body = "[[body]]\nnaca = \"0012\"\n[accuracy]\nparticles = 12000\n";
+    let text = format!("[flow]\nmach = {mach}\nalpha = \"{alpha} deg\"\n{body}{more}");
     let case = read(&text, "section.toml").unwrap_or_else(|e| panic!("{e}"));
     let mut session = Session::open(&case, ".").unwrap_or_else(|e| panic!("{e}"));
     session.solve(&mut Silent).unwrap_or_else(|e| panic!("{e}"));
@@ -51,4 +55,13 @@ fn momentum_balances_where_the_zone_runs_along_a_bow_shock() {
 fn a_symmetric_section_keeps_its_lift_of_zero() {
     let s = solved(0.8, 0.0);
     assert!(s.loads.cl.abs() < 1e-6 && s.loads_error.unwrap().cl < 1e-5, "{:?}", s.loads);
+}
+
+#[test]
+fn adapted_clouds_of_a_family_are_refined_at_the_shock_and_have_an_error_bar() {
+    let [plain, adapted] = ["", "[adapt]\ncycles = 1\n"].map(|more| solved_with(0.8, 1.25, more));
+    let [even, fine] = [&plain, &adapted].map(|s| s.grid_convergence.clone().unwrap().clouds);
+    assert!(fine[0].particles == even[0].particles && fine[1].particles > even[1].particles, "{fine:?}");
+    let apart = (plain.loads.cl - adapted.loads.cl).abs();
+    assert!(apart < plain.loads_error.unwrap().cl + adapted.loads_error.unwrap().cl, "{apart}");
 }

@@ -305,11 +305,6 @@ fn accuracy(draft: &mut Draft<'_>, dimension: usize) {
     let refused = [
         (!steady, "`[accuracy]` is for steady cases", "remove it, or `[time]`"),
         (!draft.given("body"), "`[accuracy]` is of loads, and there is no body", "remove it"),
-        (
-            draft.number("adapt.cycles").is_some_and(|n| n > 0.0),
-            "`[accuracy]` and `[adapt]` cannot work together yet",
-            "keep one of them",
-        ),
     ];
     for (_, message, hint) in refused.into_iter().filter(|(wrong, ..)| *wrong) {
         draft.fail_key("accuracy", message).hint(hint);

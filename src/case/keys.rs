@@ -64,7 +64,12 @@ pub(super) static CASE: Table = Table::of(&[
     Field::defaulted("initial", Kind::Choice(INITIAL), Absent::Word("free_stream"), "Field at the start."),
     Field::defaulted("scheme", Kind::Table(&SCHEME), Absent::Filled, "Spatial scheme."),
     Field::defaulted("time", Kind::Choice(TIME), Absent::Word("steady"), "Steady relaxation or time marching."),
-    Field::defaulted("adapt", Kind::Table(&ADAPT), Absent::Filled, "Refinement that follows the solution."),
+    Field::defaulted(
+        "adapt",
+        Kind::Table(&ADAPT),
+        Absent::Filled,
+        "Refinement that follows the solution; with `[accuracy]` each finer cloud is refined where the one before tells.",
+    ),
     Field::defaulted("output", Kind::Table(&OUTPUT), Absent::Filled, "What is written, and how often."),
     Field::defaulted(
         "compare",
@@ -309,7 +314,7 @@ static REFERENCE: Table = Table::of(&[
     Field::optional(
         "moment_point",
         POINT,
-        "quarter chord of the bounding box (2-D), its centre (3-D)",
+        "quarter of the chord (2-D), of the mean aerodynamic chord (3-D)",
         "Point about which moments are taken.",
     ),
 ]);

@@ -1,12 +1,14 @@
 //! Planform: what bodies look like from above, which the coefficients of wings are made with.
 //!
 //! The chord c at a station of the span is the length along x of what lies under or above it; with the area S = ∫ c dy the mean
-//! aerodynamic chord is ∫ c² dy / S.
+//! aerodynamic chord is ∫ c² dy / S, and its leading edge is at ∫ c (x_le, y) dy / S.
 use super::Surface;
 use crate::math::{Bounds, Vector};
 
 /// Stations along the span.
 const STATIONS: usize = 1024;
+/// Part of the chord at which moments are taken.
+const QUARTER: f64 = 0.25;
 
 /// Reference values that follow from the shape of the bodies.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,14 +17,16 @@ pub struct Planform {
     pub chord: f64,
     /// Area seen along z; in 2-D the chord.
     pub area: f64,
+    /// The point at a quarter of that chord, along x and y.
+    pub quarter: [f64; 2],
 }
 
 impl<const D: usize> Surface<D> {
     /// The planform of the part of the bodies `within` a box, x along the chord and y along the span.
     pub fn planform(&self, within: &Bounds<D>) -> Planform {
-        let length = self.bounds().extent()[0];
+        let (start, length) = (self.bounds().min[0], self.bounds().extent()[0]);
         if D == 2 {
-            return Planform { chord: length, area: length };
+            return Planform { chord: length, area: length, quarter: [start + QUARTER * length, 0.0] };
         }
         let (low, high) = (self.bounds().min[1].max(within.min[1]), self.bounds().max[1].min(within.max[1]));
         let width = (high - low) / STATIONS as f64;
@@ -36,12 +40,21 @@ impl<const D: usize> Surface<D> {
                 spans[k].extend(cut(&corners, low + (k as f64 + 0.5) * width));
             }
         }
-        let chords: Vec<f64> = spans.iter_mut().map(|spans| covered(spans)).collect();
-        let (sum, squares) = chords.iter().fold((0.0, 0.0), |(s, q), c| (s + c, q + c * c));
+        let [mut sum, mut squares, mut edge, mut station] = [0.0; 4];
+        for (k, spans) in spans.iter_mut().enumerate() {
+            let chord = covered(spans);
+            let Some([leading, _]) = spans.first() else { continue };
+            sum += chord;
+            squares += chord * chord;
+            edge += chord * leading;
+            station += chord * (low + (k as f64 + 0.5) * width);
+        }
         if sum > 0.0 {
-            Planform { chord: squares / sum, area: sum * width }
+            let chord = squares / sum;
+            Planform { chord, area: sum * width, quarter: [edge / sum + QUARTER * chord, station / sum] }
         } else {
-            Planform { chord: length, area: length * (high - low).max(0.0) }
+            let quarter = [start + QUARTER * length, f64::midpoint(low, high)];
+            Planform { chord: length, area: length * (high - low).max(0.0), quarter }
         }
     }
 }
@@ -95,6 +108,7 @@ mod tests {
         let seen = surface.planform(&everywhere());
         // root chord 1, tip chord 0.5, span 3: S = b (c + t)/2, 2/3 (c² + c t + t²)/(c + t)
         assert!((seen.area / 2.25 - 1.0).abs() < 1e-6 && (seen.chord / 0.777_778 - 1.0).abs() < 1e-5, "{seen:?}");
+        assert!(seen.quarter[1].abs() < 1e-9, "{seen:?}");
         let half = surface.planform(&Bounds { min: Vector([-1e3, 0.0, -1e3]), ..everywhere() });
         assert!((half.area / 1.125 - 1.0).abs() < 1e-6 && (half.chord / seen.chord - 1.0).abs() < 1e-5, "{half:?}");
     }

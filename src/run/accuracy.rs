@@ -40,7 +40,7 @@ const POLAR_PARTICLES: usize = 20_000;
 /// Part of the particles allowed that the third cloud in space may have, how many times those of the second it has, the power of the
 /// spacing that their number goes with, and how often the spacing is corrected.
 const ROOM: f64 = 0.6;
-pub(super) const FINER: f64 = 6.0;
+const FINER: f64 = 6.0;
 const POWER: f64 = 2.5;
 const ROUNDS: usize = 4;
 /// Cells along the shortest side of a domain that a case gives, at least; greatest number of those between sides that must stay; by how
@@ -167,7 +167,17 @@ pub(crate) fn scaled(case: &Case, factor: f64) -> Case {
 
 /// True where the clouds of a family follow what detached shocks slow down. The points of a polar share their clouds.
 pub(crate) fn follows_shocks(case: &Case) -> bool {
-    case.flow.reference().mach > 1.0 && case.polar.is_none()
+    case.flow.reference().mach > 1.0 && case.polar.is_none() && case.adapt.cycles == 0
+}
+
+/// True where each cloud of a family is refined by what was found on the one before.
+fn follows(case: &Case) -> bool {
+    follows_shocks(case) || case.adapt.cycles > 0
+}
+
+/// Greatest number of particles of the cloud of a family with `factor` times the spacing of the case.
+pub(crate) fn room(asked: &Accuracy, factor: f64) -> f64 {
+    asked.particles as f64 / FINER.powf(factor.log2().max(0.0))
 }
 
 /// The stages of a family whose member with the spacing of the case has `n` fluid particles.
@@ -175,6 +185,6 @@ pub(crate) fn family(case: &Case, asked: &Accuracy, n: usize, dimension: usize) 
     let particles = |factor: f64| n as f64 / factor.powi(dimension as i32);
     let factors = std::iter::successors(Some(FIRST), |f| Some(0.5 * f));
     let within = factors.enumerate().take_while(|(k, f)| *k < CLOUDS || particles(*f) <= asked.particles as f64);
-    let cycle = |k: usize| if follows_shocks(case) { k as u32 } else { 0 };
+    let cycle = |k: usize| if follows(case) { k as u32 } else { 0 };
     within.map(|(k, factor)| Stage { factor, cycle: cycle(k), ..Stage::PLAIN }).collect()
 }

@@ -11,7 +11,7 @@ use super::look::Snapshot;
 use super::monitor::{Monitor, Tick};
 use super::recipe;
 use super::session::Session;
-use super::setup::ShockLayer;
+use super::setup::behind_shocks;
 use crate::case::{Case, Initial, Temporal};
 use crate::cloud::CloudSpec;
 use crate::cloud::layout::count;
@@ -61,8 +61,10 @@ pub(super) fn fly<const D: usize>(case: &Case, input: &Path, surface: Option<&Su
 
 /// Particles of the cloud of a case that follows the shocks in `field` over those of one that does not; `None` where it does not.
 fn followed<const D: usize>(case: &Case, surface: &Surface<D>, field: &Snapshot) -> Option<f64> {
-    let asked = accuracy::asked(case).filter(|_| accuracy::follows_shocks(case))?;
-    let sources = ShockLayer::of(case, surface, field)?.sources(case, surface, &asked, 1.0);
+    let sources = behind_shocks(case, surface, field, 1.0);
+    if sources.is_empty() {
+        return None;
+    }
     let cells = |sources: &[_]| count(&CloudSpec::of_case(case), Some(surface), sources).ok();
     Some(cells(&sources)? as f64 / cells(&[])? as f64)
 }

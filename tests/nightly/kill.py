@@ -27,6 +27,8 @@ CASES = {
     "steady": STREAM + SECTION + END,
     "adapted": '[flow]\nmach = 0.8\nalpha = "1.25 deg"\n' + SECTION + "[adapt]\ncycles = 2\n" + END,
     "family": STREAM + '[[body]]\nnaca = "0012"\n[accuracy]\nparticles = 3000\n' + END,
+    "adapted family": '[flow]\nmach = 0.8\nalpha = "1.25 deg"\n[[body]]\nnaca = "0012"\n[accuracy]\nparticles = 3000\n'
+                      "[adapt]\ncycles = 1\n" + END,
     "viscous": "[flow]\nmach = 0.3\nreynolds = 100\n" + SECTION + "wall_layers = { first = 0.01 }\n[time.steady]\norders = 4\n" + END,
     "dual": PLUNGE + "[time.dual]\nsteps_per_period = 16\nperiods = 1\n" + END,
     "explicit": PLUNGE + "[time.explicit]\nuntil = 0.5\n" + END,

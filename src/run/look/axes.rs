@@ -102,11 +102,10 @@ impl LoadFrame {
         // a body of which only a face across the stream lies in the domain is as long as that face is high
         let length = if seen.extent()[0] > 0.0 { extent[0] } else { seen.extent().max_abs() };
         let chord = reference.chord.map_or(length, |c| c.0);
-        let Planform { chord, area } = self.planform.unwrap_or(Planform { chord, area: chord });
+        let quarter = [bounds.min[0] + 0.25 * extent[0], bounds.centre()[1]];
+        let Planform { chord, area, quarter } = self.planform.unwrap_or(Planform { chord, area: chord, quarter });
         let mut point = bounds.centre();
-        if D == 2 {
-            point[0] = bounds.min[0] + 0.25 * extent[0];
-        }
+        (point[0], point[1]) = (quarter[0], quarter[1]);
         if let Some(p) = &reference.moment_point {
             point = Vector::from_fn(|d| p.get(d).map_or(0.0, |l| l.0));
         }

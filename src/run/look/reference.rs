@@ -7,7 +7,7 @@ use crate::geometry::{Planform, Surface};
 pub(crate) fn planform<const D: usize>(case: &Case, surface: &Surface<D>) -> Planform {
     let seen = surface.planform(&CloudSpec::of_case(case).limits());
     let given = &case.reference;
-    Planform { chord: given.chord.map_or(seen.chord, |c| c.0), area: given.area.unwrap_or(seen.area) }
+    Planform { chord: given.chord.map_or(seen.chord, |c| c.0), area: given.area.unwrap_or(seen.area), ..seen }
 }
 
 /// Reference chord: that of the case, else of its bodies; 1 without any.

@@ -1,6 +1,7 @@
 //! From case to solver: surface, stages, cloud, fluid, state at the start.
 mod bodies;
 mod motion_feasibility;
+mod refinement;
 mod sanity;
 mod shock_layer;
 mod size;
@@ -10,14 +11,13 @@ use std::sync::Arc;
 
 pub(crate) use bodies::{bodies, described};
 pub(crate) use motion_feasibility::check as check_motion;
+pub(crate) use refinement::{adapted, behind_shocks};
 pub(crate) use sanity::sane;
-pub(crate) use shock_layer::ShockLayer;
 pub(crate) use size::spec;
 
 use super::accuracy;
 use super::error::RunError;
 use super::folder;
-use super::look::field;
 use super::look::forces::ForceModes;
 use super::look::reference::chord;
 use super::recipe;
@@ -35,7 +35,7 @@ use crate::scheme::fluid::FarField;
 use crate::scheme::probe::Probe;
 use crate::scheme::reconstruct::Reconstruction;
 use crate::scheme::start::{FreeStream, Stream, initial};
-use crate::scheme::{CloudMotion, Discretisation, Fluid, HasGas, ParticleKinematics, Travel, ViscousModel, adapt};
+use crate::scheme::{CloudMotion, Discretisation, Fluid, HasGas, ParticleKinematics, Travel, ViscousModel};
 use crate::system::{Instant, System, placed};
 
 /// Exactly conservative coefficients unless the case says otherwise: they cost a few per cent of a run.
@@ -333,27 +333,6 @@ pub(crate) fn transfer<S: HasGas<D>, const D: usize>(
         }
     });
     previous.with_gas(state, &u)
-}
-
-/// Sources of refinement for the next stage, from the solution of this one: what detached shocks ask for in a family of clouds, else
-/// what the sensors of the case tell.
-pub(crate) fn adapted<S: HasGas<D>, const D: usize>(
-    site: &Site<'_, D>,
-    next: &Stage,
-    system: &S,
-    state: &[f64],
-) -> Vec<Source<D>> {
-    let Site { case, surface, .. } = *site;
-    let (fluid, gas) = (system.gas(), system.gas_state(state));
-    let mut work = fluid.work();
-    let frame = fluid.frame(&Instant::still(0.0), gas);
-    let view = fluid.view(&frame, gas, &mut work);
-    if let (Some(asked), Some(surface)) = (accuracy::asked(case), surface) {
-        let layer = ShockLayer::of(case, surface, &field(case, &view));
-        return layer.map_or_else(Vec::new, |layer| layer.sources(case, surface, &asked, next.factor));
-    }
-    let finest = case.adapt.spacing.or(case.cloud.spacing).map_or(0.0, |l| l.0);
-    adapt::sources(&view, &case.adapt.sensors, finest)
 }
 
 /// The last state of another run as the start of this one. A harmonic balance takes all instances of another one; others take

@@ -4,11 +4,8 @@
 //! the pressure at the stagnation point is too low by about (d − 1) h/(2 R) in d dimensions, R the radius of the shock, whatever the
 //! scheme. By the correlations of Billig (1967) that radius is between 5 and 8 times the thickness δ of the layer, so that δ/[`ACROSS`]
 //! keeps it within 1 %. Where the cloud is that fine already, nothing is asked.
-use super::super::accuracy;
 use super::super::look::Snapshot;
-use crate::case::{Accuracy, Case};
-use crate::cloud::CloudSpec;
-use crate::cloud::layout::count;
+use crate::case::Case;
 use crate::cloud::sources::Source;
 use crate::exact::shock::normal_shock;
 use crate::geometry::Surface;
@@ -22,8 +19,6 @@ const COMPRESSED: f64 = 0.85;
 const MOST: f64 = 4.0;
 /// Cells of each size around a particle of the layer: those of the cloud it was found on are up to four times as far apart.
 const LAYERS: f64 = 2.0;
-/// Factor on the spacing in the layer where there would be too many particles: cells come in powers of two.
-const COARSER: f64 = 2.0;
 
 /// The gas that a shock has slowed down to nearly rest ahead of bodies.
 pub(crate) struct ShockLayer<const D: usize> {
@@ -56,22 +51,12 @@ impl<const D: usize> ShockLayer<D> {
         (!places.is_empty()).then_some(Self { places, thickness })
     }
 
-    /// What the layer asks of the cloud with `factor` times the spacing of the case; empty where that is fine enough, or where it
-    /// would have more particles than `asked` allows.
-    pub(crate) fn sources(&self, case: &Case, surface: &Surface<D>, asked: &Accuracy, factor: f64) -> Vec<Source<D>> {
-        let Some(wall) = case.cloud.spacing.map(|l| factor * l.0) else { return Vec::new() };
-        let room = asked.particles as f64 / accuracy::FINER.powf(factor.log2().max(0.0));
-        let spec = CloudSpec::of_case(&accuracy::scaled(case, factor));
-        let mut coarser = 1.0;
-        loop {
-            let spacing = |body: usize| coarser * (factor * self.thickness[body] / ACROSS[D - 2]).max(wall / MOST);
-            let finer = self.places.iter().filter(|(_, body)| spacing(*body) < wall);
-            let all: Vec<_> = finer.map(|(x, b)| Source { x: *x, spacing: spacing(*b), layers: LAYERS }).collect();
-            if all.is_empty() || count(&spec, Some(surface), &all).is_ok_and(|cells| cells as f64 <= room) {
-                return all;
-            }
-            coarser *= COARSER;
-        }
+    /// What the layer asks of the cloud with `factor` times the spacing of the case, and `coarser` than it should be; empty where that
+    /// is fine enough.
+    pub(crate) fn sources(&self, wall: f64, factor: f64, coarser: f64) -> Vec<Source<D>> {
+        let spacing = |body: usize| coarser * (factor * self.thickness[body] / ACROSS[D - 2]).max(wall / MOST);
+        let finer = self.places.iter().filter(|(_, body)| spacing(*body) < wall);
+        finer.map(|(x, b)| Source { x: *x, spacing: spacing(*b), layers: LAYERS }).collect()
     }
 }
 
@@ -113,15 +98,13 @@ mod tests {
     fn a_thin_layer_asks_for_particles_across_it_and_a_thick_one_does_not() {
         let case = case(6.0, 0.0625);
         let body = surface::<2>(&case, Path::new(".")).unwrap().0.unwrap();
-        let asked = Accuracy { particles: 100_000, ..Accuracy::default() };
         let layer = ShockLayer::<2>::of(&case, &body, &field(0.2)).unwrap();
         assert!((layer.thickness[0] / 0.2 - 1.0).abs() < 0.1, "{:?}", layer.thickness);
-        let sources = layer.sources(&case, &body, &asked, 1.0);
+        let sources = layer.sources(0.0625, 1.0, 1.0);
         assert!(sources.len() == layer.places.len() && sources.iter().all(|s| (s.spacing / 0.02 - 1.0).abs() < 0.1));
-        let coarse = layer.sources(&case, &body, &Accuracy { particles: 10, ..asked }, 1.0);
-        assert!(coarse.is_empty(), "there is no room for them");
+        assert!(layer.sources(0.0625, 1.0, 4.0).is_empty(), "that coarse it asks for nothing");
         let thick = ShockLayer::<2>::of(&case, &body, &field(0.4)).unwrap();
-        assert!(thick.sources(&self::case(6.0, 0.03125), &body, &asked, 1.0).is_empty(), "it has enough");
+        assert!(thick.sources(0.03125, 1.0, 1.0).is_empty(), "it has enough");
     }
 
     #[test]

@@ -1,0 +1,106 @@
+//! What one cloud of a run tells the next: where it must be finer.
+//!
+//! A case that is adapted without error bars keeps its spacing and refines, cycle by cycle, where the sensors of
+//! [`crate::scheme::adapt`] tell. In a family of clouds all of that is scaled with the spacing: each cloud is refined by what was found
+//! on the one before, at half the distance between particles, so that the clouds stay alike and their loads have an error bar. Without
+//! `[adapt]` a family follows the gas behind detached shocks.
+use super::super::accuracy;
+use super::super::look::{Snapshot, field};
+use super::super::stage::Stage;
+use super::Site;
+use super::shock_layer::ShockLayer;
+use crate::case::{Accuracy, Case};
+use crate::cloud::CloudSpec;
+use crate::cloud::layout::count;
+use crate::cloud::sources::Source;
+use crate::geometry::Surface;
+use crate::scheme::{HasGas, View, adapt};
+use crate::system::{Instant, System};
+
+/// Spacing of a cloud of a family over that of the one before.
+const HALF: f64 = 0.5;
+/// Factor on what is asked for where there would be too many particles: cells come in powers of two.
+const COARSER: f64 = 2.0;
+
+/// Sources of refinement for the next stage, from the solution of this one.
+pub(crate) fn adapted<S: HasGas<D>, const D: usize>(
+    site: &Site<'_, D>,
+    next: &Stage,
+    system: &S,
+    state: &[f64],
+) -> Vec<Source<D>> {
+    let (fluid, gas) = (system.gas(), system.gas_state(state));
+    let mut work = fluid.work();
+    let frame = fluid.frame(&Instant::still(0.0), gas);
+    let view = fluid.view(&frame, gas, &mut work);
+    match (accuracy::asked(site.case), site.surface) {
+        (Some(_), Some(surface)) if site.case.adapt.cycles == 0 => {
+            behind_shocks(site.case, surface, &field(site.case, &view), next.factor)
+        }
+        (Some(asked), Some(surface)) => in_family(site.case, surface, &view, (&asked, next.factor)),
+        _ => adapt::sources(&view, &site.case.adapt.sensors, finest(site.case)),
+    }
+}
+
+/// Finest spacing that adaptation may ask for.
+fn finest(case: &Case) -> f64 {
+    case.adapt.spacing.or(case.cloud.spacing).map_or(0.0, |l| l.0)
+}
+
+/// What detached shocks in `field` ask of the cloud with `factor` times the spacing of the case.
+pub(crate) fn behind_shocks<const D: usize>(
+    case: &Case,
+    surface: &Surface<D>,
+    field: &Snapshot,
+    factor: f64,
+) -> Vec<Source<D>> {
+    let asked = accuracy::asked(case).filter(|_| accuracy::follows_shocks(case));
+    let layer = asked.and_then(|asked| Some((ShockLayer::of(case, surface, field)?, asked)));
+    let (Some((layer, asked)), Some(spacing)) = (layer, case.cloud.spacing) else { return Vec::new() };
+    let at = |coarser: f64| layer.sources(factor * spacing.0, factor, coarser);
+    affordable(case, surface, (&asked, factor), at)
+}
+
+/// What the sensors ask of that cloud.
+fn in_family<const D: usize>(
+    case: &Case,
+    surface: &Surface<D>,
+    view: &View<'_, D>,
+    (asked, factor): (&Accuracy, f64),
+) -> Vec<Source<D>> {
+    let most = Accuracy { particles: asked.particles.min(case.adapt.particles), ..asked.clone() };
+    let finest = factor * finest(case);
+    let all = adapt::sources(view, &case.adapt.sensors, finest / HALF);
+    let at = |coarser: f64| {
+        let asks = |s: &Source<D>| Source { spacing: coarser * HALF * s.spacing, ..*s };
+        all.iter().map(asks).collect()
+    };
+    affordable(case, surface, (&most, factor), at)
+}
+
+/// The finest of the sources `at(1)`, `at(2)`, `at(4)` … with which the cloud with `factor` times the spacing of the case has no more
+/// particles than `asked` allows; none where even that has more.
+fn affordable<const D: usize>(
+    case: &Case,
+    surface: &Surface<D>,
+    (asked, factor): (&Accuracy, f64),
+    at: impl Fn(f64) -> Vec<Source<D>>,
+) -> Vec<Source<D>> {
+    let room = accuracy::room(asked, factor);
+    let spec = CloudSpec::of_case(&accuracy::scaled(case, factor));
+    let cells = |sources: &[_]| count(&spec, Some(surface), sources).ok();
+    let Some(alone) = cells(&[]) else { return Vec::new() };
+    let mut coarser = 1.0;
+    loop {
+        let all = at(coarser);
+        let found = cells(&all);
+        // where sources refine nothing more, nothing is gained by coarser ones
+        if all.is_empty() || found.is_some_and(|n| n as f64 <= room) {
+            return all;
+        }
+        if found.is_some_and(|n| n <= alone) {
+            return Vec::new();
+        }
+        coarser *= COARSER;
+    }
+}
