@@ -68,7 +68,7 @@ fn in_family<const D: usize>(
     view: &View<'_, D>,
     (asked, factor): (&Accuracy, f64),
 ) -> Vec<Source<D>> {
-    let most = Accuracy { particles: asked.particles.min(case.adapt.particles), ..asked.clone() };
+    let most = Accuracy { particles: asked.particles.min(case.adapt.particles), ..*asked };
     let finest = factor * finest(case);
     let all = adapt::sources(view, &case.adapt.sensors, finest / HALF);
     let at = |coarser: f64| {
