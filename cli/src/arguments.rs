@@ -45,6 +45,8 @@ pub(crate) enum Command {
     Check(Check),
     /// Fill the domain with particles and judge the cloud, without computing a flow.
     Cloud(Cloud),
+    /// Write the bodies of a case in space as one STL or OBJ file.
+    Geometry(Geometry),
     /// Go on with a run from its last checkpoint.
     #[command(after_help = EXIT_CODES)]
     Resume(Resume),
@@ -117,6 +119,18 @@ pub(crate) struct Cloud {
     pub(crate) out: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) threads: Threads,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Geometry {
+    /// Case file.
+    pub(crate) case: PathBuf,
+    /// File to write, `.stl` or `.obj`; default: the name of the case with `.stl`.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) out: Option<PathBuf>,
+    /// Replace an existing file.
+    #[arg(long)]
+    pub(crate) force: bool,
 }
 
 #[derive(Debug, Args)]

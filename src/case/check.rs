@@ -4,9 +4,10 @@
 use serde_json::{Value, json};
 
 use super::Accuracy;
+use super::body_keys::SHAPES;
 use super::draft::{Draft, default_name};
 use super::facts::is_dimensional;
-use super::keys::{SHAPES, SIDES};
+use super::keys::SIDES;
 use super::naca::{Naca, TrailingEdge};
 use super::schema::one_of;
 
@@ -74,6 +75,8 @@ fn bodies(draft: &mut Draft<'_>) {
         one_shape(draft, &body);
         naca(draft, &format!("{body}.naca"));
         polygon(draft, &format!("{body}.polygon"));
+        wing(draft, &format!("{body}.wing"));
+        profile(draft, &format!("{body}.revolution.profile"));
         let name = draft.get(&format!("{body}.name")).and_then(Value::as_str).map(str::to_owned);
         let name = name.unwrap_or_else(|| default_name(i));
         if names.contains(&name) {
@@ -119,6 +122,46 @@ fn polygon(draft: &mut Draft<'_>, path: &str) {
     if let Some(i) = (0..n).find(|&i| points[i] == points[(i + 1) % n]) {
         let message = format!("corners {} and {} of `{path}` are the same point", i + 1, (i + 1) % n + 1);
         draft.fail(path, message).hint("the polygon closes by itself: do not repeat the first corner");
+    }
+}
+
+/// A wing has one section at each end and a chord.
+fn wing(draft: &mut Draft<'_>, path: &str) {
+    if draft.get(path).is_none_or(Value::is_null) {
+        return;
+    }
+    let given = |draft: &Draft<'_>, key: &str| draft.given(&format!("{path}.{key}"));
+    for (end, least) in [("", 1), ("tip_", 0)] {
+        let keys = [format!("{end}naca"), format!("{end}airfoil")];
+        let count = keys.iter().filter(|key| given(draft, key)).count();
+        if count < least {
+            draft.fail_key(path, "a wing has no section").hint("add `naca = \"0012\"` or `airfoil = \"FILE\"`");
+        } else if count > 1 {
+            let message = format!("a wing has two sections at one place, `{}` and `{}`", keys[0], keys[1]);
+            draft.fail_key(&format!("{path}.{}", keys[1]), message).hint("keep one of them");
+        }
+        naca(draft, &format!("{path}.{}", keys[0]));
+    }
+    let [chord, ratio] = ["chord", "aspect_ratio"].map(|key| given(draft, key));
+    if chord == ratio {
+        let message = if chord { "a wing has both a chord and an aspect ratio" } else { "a wing has no chord" };
+        draft.fail_key(path, message).hint("give `chord` at the root, or `aspect_ratio`");
+    }
+}
+
+/// A profile goes from the nose to the rear, on one side of the axis.
+fn profile(draft: &mut Draft<'_>, path: &str) {
+    let Some(points) = draft.get(path).and_then(Value::as_array).cloned() else { return };
+    let at = |p: &Value, k: usize| p.get(k).and_then(Value::as_f64).unwrap_or(f64::NAN);
+    let n = points.len();
+    if let Some(i) = (1..n).find(|&i| at(&points[i], 0) < at(&points[i - 1], 0)) {
+        let message = format!("point {} of the profile lies ahead of the one before", i + 1);
+        draft.fail(path, message).hint("list points from the nose to the rear");
+    }
+    let inner = |i: usize| 0 < i && i + 1 < n;
+    if let Some(i) = (0..n).find(|&i| at(&points[i], 1) < 0.0 || (inner(i) && at(&points[i], 1) == 0.0)) {
+        let message = format!("point {} of the profile is not outside the axis", i + 1);
+        draft.fail(path, message).hint("radii are positive; only the first and the last point may be on the axis");
     }
 }
 

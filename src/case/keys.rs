@@ -2,9 +2,10 @@
 //!
 //! Ranges that are not plain logic come from the numerics: particles nearer to the wall than 0.3 spacings spoil the
 //! conditioning of their clouds, more than 0.6 leave a gap; fewer than 3 particles a level do not fill a cloud.
+use super::body_keys::BODY;
 use super::gaf_keys::GAF;
-use super::kinds::{ANGLE, COUNT, LENGTH, POINT, POSITIVE, SIZE};
-use super::motion_keys::{BODY_MOTION, MOTION, WALL};
+use super::kinds::{ANGLE, COUNT, PLANE_POINT, POINT, POSITIVE, SIZE};
+use super::motion_keys::MOTION;
 use super::quantity::{Density, Pressure, Ratio, Temperature, Time, Velocity, Viscosity, WallTime};
 use super::schema::{Absent, Field, Kind, List, Range, Table, Variant};
 use super::structure_keys::STRUCTURE;
@@ -12,7 +13,6 @@ use super::time_keys::TIME;
 
 const ANY: Kind = Kind::Number(Range::ANY);
 const LEVELS: Kind = Kind::Integer(0, 16);
-const PLANE_POINT: Kind = Kind::List(&List { item: ANY, min: 2, max: 2, single: false });
 const STATE: Kind = Kind::List(&List { item: ANY, min: 3, max: 3, single: false });
 
 /// The whole file.
@@ -174,129 +174,6 @@ static FLOW: Table = Table::of(&[
 
 const VISCOSITY_LAWS: &[(&str, &str)] =
     &[("sutherland", "μ/μ∞ = (T/T∞)^1.5 (T∞ + S)/(T + S)"), ("constant", "the same everywhere")];
-
-/// Shape keys of a body with the dimension each of them fixes (0: by the number of lengths).
-pub(super) const SHAPES: [(&str, u64); 8] = [
-    ("naca", 2),
-    ("airfoil", 2),
-    ("polygon", 2),
-    ("circle", 2),
-    ("ellipse", 2),
-    ("sphere", 3),
-    ("box", 0),
-    ("surface", 3),
-];
-const SHAPE: &str = "another shape key";
-
-static BODY: Table = Table::of(&[
-    Field::optional("name", Kind::Text, "`body-1`, `body-2`, …", "Name used in tables of loads."),
-    Field::optional(
-        "naca",
-        Kind::Table(&NACA),
-        SHAPE,
-        "NACA section of four or five digits, modified or not, or of the 6-series (2-D), `naca = \"0012\"`, `\"23012\"`, \
-         `\"0012-64\"`, `\"63-415\"` or `\"64A010\"`.",
-    ),
-    Field::optional("airfoil", Kind::Text, SHAPE, "Airfoil coordinate file (2-D) in Selig, Lednicer or CSV order.")
-        .known_as(&["file", "dat", "coordinates", "section", "profile"]),
-    Field::optional(
-        "polygon",
-        Kind::List(&List { item: PLANE_POINT, min: 3, max: usize::MAX, single: false }),
-        SHAPE,
-        "Closed polygon with sharp corners (2-D), `[[0, 0], [1, 0.1], [1, -0.1]]`.",
-    ),
-    Field::optional("circle", Kind::Table(&CIRCLE), SHAPE, "Circle (2-D), `circle = { radius = 0.5 }`."),
-    Field::optional(
-        "ellipse",
-        Kind::Table(&ELLIPSE),
-        SHAPE,
-        "Ellipse (2-D) centred on the origin of the shape, `ellipse = { size = [1, 0.12] }`.",
-    ),
-    Field::optional("sphere", Kind::Table(&SPHERE), SHAPE, "Sphere (3-D), `sphere = { radius = 0.5 }`."),
-    Field::optional(
-        "box",
-        Kind::Table(&BOX),
-        SHAPE,
-        "Box centred on the origin of the shape, `box = { size = [1, 1, 1] }`.",
-    ),
-    Field::optional("surface", Kind::Text, SHAPE, "STL or OBJ file (3-D), relative to the case file.")
-        .known_as(&["stl", "obj", "mesh", "geometry"]),
-    Field::defaulted(
-        "scale",
-        SIZE,
-        Absent::Number(1.0),
-        "Length of one unit of the shape: the chord of an airfoil of unit chord, `\"0.35 m\"`; `\"1 mm\"` for a file in millimetres.",
-    )
-    .alias("chord")
-    .known_as(&["size", "length", "unit", "units", "factor", "c"]),
-    Field::defaulted(
-        "rotate",
-        Kind::List(&List { item: ANGLE, min: 0, max: 3, single: true }),
-        Absent::Filled,
-        "Rotation about the origin of the shape after scaling: one angle in 2-D (nose up positive), three in 3-D (about \
-         x, then y, then z).",
-    )
-    .known_as(&["angle", "alpha", "incidence", "rotation", "orientation", "twist", "pitch"]),
-    Field::defaulted(
-        "translate",
-        Kind::List(&List { item: LENGTH, min: 0, max: 3, single: false }),
-        Absent::Filled,
-        "Translation after scaling and rotation.",
-    )
-    .known_as(&["at", "position", "origin", "place", "centre", "center", "location", "offset", "shift", "move", "leading_edge"]),
-    Field::optional(
-        "weld",
-        SIZE,
-        "as little as closes the surface, at most 1e-4 of its size",
-        "Distance up to which vertices of a surface file are joined, in the unit of the placed body: for coarse or noisy exports, `\"0.5 mm\"`.",
-    )
-    .known_as(&["tolerance", "merge", "snap", "weld_tolerance"]),
-    Field::optional(
-        "wall",
-        Kind::Choice(WALL),
-        "`\"slip\"` without viscosity, `\"adiabatic\"` with",
-        "Condition of the gas on the surface, `wall = { temperature = \"300 K\" }`.",
-    ),
-    Field::optional(
-        "motion",
-        Kind::Table(&BODY_MOTION),
-        "that of `[motion]`",
-        "Motion of this body in place of that of `[motion]`, whose frequency it takes when it has none; `motion = {}` keeps \
-         the body at rest.",
-    ),
-])
-.with_one_of(&["naca", "airfoil", "polygon", "circle", "ellipse", "sphere", "box", "surface"]);
-
-static NACA: Table = Table::of(&[
-    Field::required("digits", Kind::Matching("^[0-9].{3,}$"), "Its designation."),
-    Field::defaulted("trailing_edge", Kind::Words(TRAILING_EDGES), Absent::Word("closed"), "How the section ends."),
-])
-.short("digits");
-
-const TRAILING_EDGES: &[(&str, &str)] = &[
-    ("closed", "last thickness coefficient -0.1036, no base of a modified form: both sides meet at x/c = 1"),
-    (
-        "blunt",
-        "last thickness coefficient -0.1015 as published: a base of 0.252 % chord for 12 %, of a modified form 0.24 %, of 64A010 0.04 %",
-    ),
-    ("extended", "as published, extended to where the sides meet and scaled back to unit chord"),
-];
-
-static CIRCLE: Table = Table::of(&[Field::required("radius", SIZE, "Radius.")]);
-
-static ELLIPSE: Table = Table::of(&[Field::required(
-    "size",
-    Kind::List(&List { item: SIZE, min: 2, max: 2, single: false }),
-    "Lengths of its axes along x and y.",
-)]);
-
-static SPHERE: Table = Table::of(&[Field::required("radius", SIZE, "Radius.")]);
-
-static BOX: Table = Table::of(&[Field::required(
-    "size",
-    Kind::List(&List { item: SIZE, min: 2, max: 3, single: false }),
-    "Edge lengths, two or three.",
-)]);
 
 static REFERENCE: Table = Table::of(&[
     Field::optional(

@@ -8,3 +8,5 @@ pub(super) const SIZE: Kind = Kind::Quantity(Length::DIMENSION, Range::POSITIVE)
 pub(super) const ANGLE: Kind = Kind::Quantity(Angle::DIMENSION, Range::ANY);
 pub(super) const COUNT: Kind = Kind::Integer(1, u32::MAX as u64);
 pub(super) const POINT: Kind = Kind::List(&List { item: LENGTH, min: 2, max: 3, single: false });
+pub(super) const PLANE_POINT: Kind =
+    Kind::List(&List { item: Kind::Number(Range::ANY), min: 2, max: 2, single: false });

@@ -4,6 +4,7 @@
 //! radians, lengths are in the unit of the geometry (metres when the free stream is dimensional).
 use serde::{Deserialize, Serialize};
 
+mod body_keys;
 mod check;
 mod draft;
 mod error;
@@ -34,6 +35,7 @@ mod text;
 mod time;
 mod time_keys;
 mod verdict;
+mod wing;
 mod write;
 
 pub use error::{CaseError, CaseErrors};
@@ -59,6 +61,7 @@ pub use templates::{SCHEMA_FILE, TEMPLATES, template};
 pub use text::{TextError, text_of};
 pub use time::{Automatic, Dual, Explicit, HarmonicCount, Harmonics, RungeKutta, Steady, SteadyMethod, Temporal};
 pub use verdict::ClaimRow;
+pub use wing::{PlanformShape, Tip, Wing, WingSides};
 pub use write::write;
 
 /// Everything a run needs to know.
@@ -205,6 +208,18 @@ pub enum Shape {
     },
     /// STL or OBJ file, `surface = "wing.stl"`.
     Surface(String),
+    /// Wing, tail or fin by planform and sections.
+    Wing(Box<Wing>),
+    /// Body of revolution about the x axis.
+    Revolution {
+        /// Points x, r from the nose to the rear.
+        profile: Vec<[f64; 2]>,
+    },
+    /// Ellipsoid centred on the origin of the shape.
+    Ellipsoid {
+        /// Lengths of its axes.
+        size: [Length; 3],
+    },
 }
 
 /// Placement of a body.

@@ -219,10 +219,12 @@ impl Case {
 
     /// Names of all files that a run reads beside the case file.
     pub fn files(&self) -> impl Iterator<Item = &str> {
-        let shapes = self.bodies.iter().filter_map(|body| match &body.shape {
-            Shape::Airfoil(file) | Shape::Surface(file) => Some(file.as_str()),
-            _ => None,
+        let shapes = self.bodies.iter().flat_map(|body| match &body.shape {
+            Shape::Airfoil(file) | Shape::Surface(file) => [Some(file.as_str()), None],
+            Shape::Wing(wing) => [wing.airfoil.as_deref(), wing.tip_airfoil.as_deref()],
+            _ => [None; 2],
         });
+        let shapes = shapes.flatten();
         let laws = self.bodies.iter().filter_map(|b| b.motion.as_ref()).chain(self.motion.as_ref().map(|m| &m.law));
         let tables = laws.clone().filter_map(|law| law.table.as_ref()?.file.as_deref());
         let modes = laws.flat_map(|law| &law.modes).map(|mode| mode.file.as_str());

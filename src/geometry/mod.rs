@@ -4,10 +4,13 @@
 //! coordinate files, polygons, circles, ellipses, spheres, boxes, STL and OBJ files. Shells are placed and joined to a [`Surface`],
 //! which answers nearest-point, crossing and inside questions through a tree of boxes.
 //!
-//! Limits: a surface must bound a volume (thin sheets and large holes are refused), bodies must not overlap.
+//! Bodies in space that overlap are clipped at their intersection and closed.
+//!
+//! Limits: a surface must bound a volume (thin sheets and large holes are refused), bodies in the plane must not overlap.
 //! Only [`load_surface`] opens files; all readers take any input.
 mod airfoil;
 mod holes;
+mod loft;
 mod mesh;
 mod naca;
 mod outline;
@@ -16,6 +19,7 @@ mod planform;
 mod primitive;
 mod repair;
 mod sampling;
+mod section;
 mod shell;
 mod simplex;
 mod spline;
@@ -23,17 +27,16 @@ mod surface;
 #[cfg(test)]
 mod tests;
 mod tree;
+mod union;
 mod weld;
-mod wing;
 
 pub use planform::Planform;
-pub use primitive::{icosphere, write_stl};
+pub use primitive::{icosphere, write_obj, write_stl};
 pub use sampling::Chain;
 pub use shell::{Edge, Exact, Shell};
-pub use surface::{Element, Nearest, Projection, Surface};
-pub use wing::wing;
+pub use surface::{Element, Nearest, Projection, Skin, Surface};
 
-use crate::case::{Body, Case, Shape};
+use crate::case::{Body, Case, Naca, Shape};
 use crate::math::Vector;
 use std::f64::consts::PI;
 use std::fs::File;
@@ -85,7 +88,11 @@ enum AnyShell {
 pub fn dimension(case: &Case) -> u8 {
     let of = |body: &Body| match &body.shape {
         Shape::Naca(_) | Shape::Airfoil(_) | Shape::Polygon(_) | Shape::Circle { .. } | Shape::Ellipse { .. } => 2,
-        Shape::Sphere { .. } | Shape::Surface(_) => 3,
+        Shape::Sphere { .. }
+        | Shape::Surface(_)
+        | Shape::Wing(_)
+        | Shape::Revolution { .. }
+        | Shape::Ellipsoid { .. } => 3,
         Shape::Box { size } => {
             if size.len() == 3 {
                 3
@@ -114,11 +121,52 @@ pub fn load_surface<const D: usize>(
         placement::place(&name, &mut shell, &body.placement)?;
         shells.push((name, shell));
     }
-    let surface = Surface::new(&shells);
-    if shells.len() > 1 {
-        refuse_overlap(&surface, &shells)?;
+    let groups = meeting(&shells);
+    let mut skins = Vec::new();
+    for group in &groups {
+        skins.push(skin(group, bodies, &shells, &mut notes)?);
     }
-    Ok((surface, notes))
+    let names: Vec<String> = shells.into_iter().map(|(name, _)| name).collect();
+    Ok((Surface::of(&names, &skins), notes))
+}
+
+/// The skin of bodies that meet, or of one that meets none.
+fn skin<const D: usize>(
+    group: &[usize],
+    bodies: &[Body],
+    shells: &[(String, Shell<D>)],
+    notes: &mut Vec<String>,
+) -> Result<Skin<D>, GeometryError> {
+    let (name, shell) = &shells[group[0]];
+    if group.len() == 1 {
+        return Ok(Skin { shell: shell.clone(), owner: vec![group[0] as u16] });
+    }
+    let place = format!("body `{name}`");
+    let others: Vec<String> = group[1..].iter().map(|k| format!("`{}`", shells[*k].0)).collect();
+    let refused = |what: String, hint: &str| Err(GeometryError::refused(&place, what, hint));
+    let solid: Option<Vec<Shell<3>>> = group.iter().map(|k| shells[*k].1.clone().cast()).collect();
+    let Some(solid) = solid.filter(|_| D == 3) else {
+        return refused(
+            format!("overlaps or touches body {}", others.join(", ")),
+            "move the bodies apart, or unite them in one outline",
+        );
+    };
+    if let Some(k) = group.iter().find(|k| bodies[**k].motion != bodies[group[0]].motion) {
+        let what = format!("meets body `{}`, which moves in another way", shells[*k].0);
+        return refused(what, "bodies that intersect are one solid: give them the same motion, or move them apart");
+    }
+    let united = match union::united(&solid.iter().collect::<Vec<_>>()) {
+        Ok(united) => united,
+        Err(why) => return refused(format!("meets body {}: {why}", others.join(", ")), "unite them before the export"),
+    };
+    if let Some(k) = (0..group.len()).find(|k| !united.owner.contains(&(*k as u16))) {
+        let what = format!("body `{}` lies inside other bodies", shells[group[k]].0);
+        return refused(what, "remove it: no gas reaches it");
+    }
+    notes.push(format!("bodies `{name}` and {} intersect: they are clipped there and closed", others.join(", ")));
+    let owner = united.owner.iter().map(|k| group[usize::from(*k)] as u16).collect();
+    let shell = united.shell.cast().unwrap_or_else(|| shell.clone());
+    Ok(Skin { shell, owner })
 }
 
 fn load_shell(name: &str, body: &Body, folder: &Path, notes: &mut Vec<String>) -> Result<AnyShell, GeometryError> {
@@ -157,6 +205,25 @@ fn load_shell(name: &str, body: &Body, folder: &Path, notes: &mut Vec<String>) -
             let within = body.weld.map(|l| l.0 / body.placement.scale);
             AnyShell::Space(repair::shell(file, &mesh::read(file, open(file)?)?, within, notes)?)
         }
+        Shape::Wing(wing) => {
+            let mut section = |naca: &Option<Naca>, file: &Option<String>| match (naca, file) {
+                (Some(naca), _) => naca::shell(naca).map(Some),
+                (_, Some(file)) => airfoil::read(file, open(file)?, notes).map(Some),
+                _ => Ok(None),
+            };
+            let root = section(&wing.naca, &wing.airfoil)?;
+            let root = root.ok_or_else(|| GeometryError::refused(&place, "a wing has no section", "add `naca`"))?;
+            let tip = section(&wing.tip_naca, &wing.tip_airfoil)?;
+            AnyShell::Space(loft::wing(&place, wing, [&root, tip.as_ref().unwrap_or(&root)])?)
+        }
+        Shape::Revolution { profile } => {
+            let points: Vec<Vector<2>> = profile.iter().map(|p| Vector(*p)).collect();
+            AnyShell::Space(loft::revolution(&outline::profile(&points)))
+        }
+        Shape::Ellipsoid { size } => {
+            let [a, b, c] = size.map(|l| positive(&place, "size", l.0));
+            AnyShell::Space(loft::ellipsoid(primitive::sphere(1.0), [0.5 * a?, 0.5 * b?, 0.5 * c?]))
+        }
     })
 }
 
@@ -167,29 +234,27 @@ fn positive(place: &str, key: &str, value: f64) -> Result<f64, GeometryError> {
     Err(GeometryError::refused(place, format!("`{key}` is {value}"), "use a positive length"))
 }
 
-/// Refuses bodies that overlap or touch; names all pairs that do.
-fn refuse_overlap<const D: usize>(surface: &Surface<D>, shells: &[(String, Shell<D>)]) -> Result<(), GeometryError> {
+/// Bodies in groups of those that overlap or touch, directly or through others.
+fn meeting<const D: usize>(shells: &[(String, Shell<D>)]) -> Vec<Vec<usize>> {
+    let mut group: Vec<u32> = (0..shells.len() as u32).collect();
     let alone: Vec<Surface<D>> = shells.iter().map(|shell| Surface::new(std::slice::from_ref(shell))).collect();
     let within = |a: usize, b: usize| {
         let (other, touching) = (&shells[a].1.vertices, TOUCHING * alone[b].bounds().extent().max_abs());
-        let meets = |x: &&Vector<D>| alone[b].nearest(x, touching).is_some();
-        other.first().filter(|x| alone[b].inside(x)).or_else(|| other.iter().find(meets)).copied()
+        other.first().is_some_and(|x| alone[b].inside(x))
+            || other.iter().any(|x| alone[b].nearest(x, touching).is_some())
     };
-    let crossed = surface.intersection().is_some();
-    let crossing = |a: usize, b: usize| {
-        let two = Surface::new(&[shells[a].clone(), shells[b].clone()]);
-        two.intersection().map(|(x, _)| x)
-    };
-    let pairs = (0..shells.len()).flat_map(|a| (a + 1..shells.len()).map(move |b| [a, b]));
-    let meeting = |[a, b]: [usize; 2]| {
-        let x = within(a, b).or_else(|| within(b, a)).or_else(|| if crossed { crossing(a, b) } else { None })?;
-        let [a, b] = [a, b].map(|k| &shells[k].0);
-        Some((format!("body `{a}`"), format!("overlaps or touches body `{b}` at {:?}", x.0)))
-    };
-    let mut found = pairs.filter_map(meeting);
-    let Some((place, mut what)) = found.next() else { return Ok(()) };
-    found.for_each(|(place, more)| what.push_str(&format!("; {place} {more}")));
-    Err(GeometryError::refused(place, what, "move the bodies apart, or unite them in one surface"))
+    let crossing = |a: usize, b: usize| Surface::new(&[shells[a].clone(), shells[b].clone()]).intersection().is_some();
+    for a in 0..shells.len() {
+        for b in a + 1..shells.len() {
+            let near = alone[a].bounds().meets(&alone[b].bounds(), TOUCHING * alone[a].bounds().extent().max_abs());
+            if near && (within(a, b) || within(b, a) || crossing(a, b)) {
+                shell::unite(&mut group, a as u32, b as u32);
+            }
+        }
+    }
+    let roots: Vec<u32> = (0..shells.len()).map(|k| shell::root(&mut group, k as u32)).collect();
+    let of = |k: usize| (0..shells.len()).filter(|i| roots[*i] == k as u32).collect::<Vec<_>>();
+    (0..shells.len()).map(of).filter(|members| !members.is_empty()).collect()
 }
 
 impl AnyShell {

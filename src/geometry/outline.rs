@@ -6,6 +6,7 @@
 //! nose: near the leading edge coarse points turn by more than that, but their neighbours turn too, while beside a sharp
 //! nose they hardly do.
 use super::GeometryError;
+use super::section::Chain;
 use super::shell::{Exact, Shell};
 use super::simplex;
 use super::spline::{End, Spline};
@@ -98,6 +99,40 @@ pub(super) fn polygon(
     refuse_crossing(name, &marks)?;
     orient(name, &mut marks, notes)?;
     Ok(Shell { crease, ..straight_shell(&marks) })
+}
+
+/// The smooth pieces of a profile, `points` from the nose to the rear on one side of the axis: those of the outline that it is half
+/// of, so that it crosses the axis smoothly or in a corner as the points say.
+pub(super) fn profile(points: &[Vector<2>]) -> Chain {
+    let mirrored = points.iter().filter(|x| x[1] > 0.0).map(|x| Vector([x[0], -x[1]]));
+    let around: Vec<Vector<2>> = points.iter().rev().copied().chain(mirrored).collect();
+    let (nose, rear) = (points[0], points[points.len() - 1]);
+    let corners = corners(&around, rear[1] > 0.0);
+    let sharp = !corners.is_empty();
+    let samples = pieces(&around, &corners, extent(&around)).into_iter().flat_map(|piece| {
+        let last = piece.len() - 1;
+        piece.into_iter().take(last).enumerate().map(move |(k, s)| (s.0, sharp && k == 0)).collect::<Vec<_>>()
+    });
+    let mut ring: Vec<(Vector<2>, bool)> = samples.collect();
+    let nearest = |ring: &[(Vector<2>, bool)], x: Vector<2>| {
+        let away = |k: &usize| (ring[*k].0 - x).norm_squared();
+        (0..ring.len()).min_by(|a, b| away(a).total_cmp(&away(b))).unwrap_or(0)
+    };
+    let start = nearest(&ring, rear);
+    ring.rotate_left(start);
+    let end = nearest(&ring, nose);
+    let (last, mut chain) = (ring[end.min(ring.len() - 1)].0, vec![vec![ring[0].0]]);
+    for (x, corner) in ring[1..end].iter().copied().chain([(last, false)]) {
+        chain.last_mut().into_iter().for_each(|piece| piece.push(x));
+        if corner {
+            chain.push(vec![x]);
+        }
+    }
+    chain.iter_mut().for_each(|piece| piece.reverse());
+    chain.reverse();
+    chain.first_mut().and_then(|piece| piece.first_mut()).into_iter().for_each(|x| *x = nose);
+    chain.last_mut().and_then(|piece| piece.last_mut()).into_iter().for_each(|x| *x = rear);
+    Chain(chain)
 }
 
 /// A straight piece between two corners of a counter-clockwise outline.

@@ -3,6 +3,7 @@
 //! A circle is a regular polygon and a sphere a subdivided icosahedron (each triangle into four, new vertices moved onto
 //! the sphere); both carry their exact shape, so places and normals on them are exact. Boxes have flat sides and creases.
 use super::shell::{Exact, Shell};
+use super::surface::Surface;
 use crate::math::Vector;
 use std::collections::HashMap;
 use std::f64::consts::PI;
@@ -137,16 +138,31 @@ pub(super) fn cuboid(size: [f64; 3]) -> Shell<3> {
     }
 }
 
-/// Writes a shell as a binary STL file (single precision, as the format demands).
-pub fn write_stl(out: &mut impl Write, shell: &Shell<3>) -> io::Result<()> {
+/// Writes a surface as a binary STL file (single precision, as the format demands).
+pub fn write_stl(out: &mut impl Write, surface: &Surface<3>) -> io::Result<()> {
     let single = |x: &Vector<3>| stl_io::Vector::new(x.0.map(|c| c as f32));
-    let triangles: Vec<stl_io::Triangle> = shell
-        .all_corners()
-        .iter()
-        .map(|c| stl_io::Triangle {
-            normal: single(&super::simplex::area_vector(c).unit()),
-            vertices: [single(&c[0]), single(&c[1]), single(&c[2])],
-        })
-        .collect();
+    let triangle = |e: usize| {
+        let corners = surface.corners(e as u32);
+        let normal = single(&surface.element_area_vector(e as u32).unit());
+        stl_io::Triangle { normal, vertices: [single(&corners[0]), single(&corners[1]), single(&corners[2])] }
+    };
+    let triangles: Vec<stl_io::Triangle> = (0..surface.elements.len()).map(triangle).collect();
     stl_io::write_stl(out, triangles.iter())
+}
+
+/// Writes a surface as an OBJ file: all digits, one group for each tag.
+pub fn write_obj(out: &mut impl Write, surface: &Surface<3>) -> io::Result<()> {
+    for x in &surface.vertices {
+        writeln!(out, "v {} {} {}", x[0], x[1], x[2])?;
+    }
+    let mut group = None;
+    for e in &surface.elements {
+        if group != Some(e.tag) {
+            group = Some(e.tag);
+            writeln!(out, "g {}", surface.tags[usize::from(e.tag)])?;
+        }
+        let [a, b, c] = e.vertices.map(|v| v + 1);
+        writeln!(out, "f {a} {b} {c}")?;
+    }
+    Ok(())
 }

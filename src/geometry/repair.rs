@@ -283,7 +283,7 @@ mod tests {
 
     fn stl(subdivisions: u32) -> Vec<u8> {
         let mut bytes = Vec::new();
-        write_stl(&mut bytes, &icosphere(1.0, subdivisions)).unwrap();
+        write_stl(&mut bytes, &Surface::new(&[(String::new(), icosphere(1.0, subdivisions))])).unwrap();
         bytes
     }
 

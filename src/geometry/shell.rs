@@ -75,6 +75,7 @@ impl<const D: usize> Shell<D> {
     }
 
     /// Corner points of all elements.
+    #[cfg(test)]
     pub(super) fn all_corners(&self) -> Vec<Corners<D>> {
         (0..self.elements.len()).map(|e| self.corners(e)).collect()
     }

@@ -50,6 +50,15 @@ pub struct Projection<const D: usize> {
     pub curvature: f64,
 }
 
+/// The skin of one body, or of several that meet.
+#[derive(Clone, Debug)]
+pub struct Skin<const D: usize> {
+    /// Its elements.
+    pub shell: Shell<D>,
+    /// Number of the body that each element is of; one number where all are of the same.
+    pub owner: Vec<u16>,
+}
+
 /// The surface of all bodies of a case.
 #[derive(Clone, Debug)]
 pub struct Surface<const D: usize> {
@@ -76,20 +85,27 @@ pub struct Surface<const D: usize> {
 impl<const D: usize> Surface<D> {
     /// Joins the named shells of all bodies.
     pub fn new(shells: &[(String, Shell<D>)]) -> Self {
+        let names: Vec<String> = shells.iter().map(|(name, _)| name.clone()).collect();
+        let skin = |(k, (_, shell)): (usize, &(String, Shell<D>))| Skin { shell: shell.clone(), owner: vec![k as u16] };
+        Self::of(&names, &shells.iter().enumerate().map(skin).collect::<Vec<_>>())
+    }
+
+    /// Joins the skins of all bodies, which have these names.
+    pub fn of(bodies: &[String], skins: &[Skin<D>]) -> Self {
         let mut surface = Self {
             vertices: Vec::new(),
             elements: Vec::new(),
-            bodies: Vec::new(),
+            bodies: bodies.to_vec(),
             tags: Vec::new(),
             radius: Vec::new(),
             curvature: Vec::new(),
             sharp: Vec::new(),
-            exact: Vec::new(),
+            exact: vec![Exact::None; bodies.len()],
             tree: Tree::new(&[]),
             bounds: Bounds::EMPTY,
         };
-        for (name, shell) in shells {
-            surface.add(name, shell);
+        for skin in skins {
+            surface.add(skin);
         }
         let corners: Vec<_> = (0..surface.elements.len()).map(|e| surface.corners(e as u32)).collect();
         surface.tree = Tree::new(&corners);
@@ -119,27 +135,29 @@ impl<const D: usize> Surface<D> {
         moved
     }
 
-    fn add(&mut self, name: &str, shell: &Shell<D>) {
-        let (vertex, element, body) =
-            (self.vertices.len() as u32, self.elements.len() as u32, self.bodies.len() as u16);
+    fn add(&mut self, skin: &Skin<D>) {
+        let Skin { shell, owner } = skin;
+        let (vertex, element) = (self.vertices.len() as u32, self.elements.len() as u32);
         let features = shell.features();
-        let names = if shell.tag_names.is_empty() { vec![name.to_string()] } else { shell.tag_names.clone() };
-        let tags: Vec<u16> = names.iter().map(|n| self.tag(n)).collect();
+        let body = |e: usize| owner[e.min(owner.len() - 1)];
         self.vertices.extend(&shell.vertices);
-        self.elements.extend(shell.elements.iter().enumerate().map(|(e, vertices)| Element {
-            vertices: vertices.map(|v| v + vertex),
-            normals: features.normals[e],
-            body,
-            tag: tags[shell.tags.get(e).map_or(0, |&t| usize::from(t)).min(tags.len() - 1)],
-        }));
+        for (e, vertices) in shell.elements.iter().enumerate() {
+            let own =
+                shell.tags.get(e).and_then(|t| shell.tag_names.get(usize::from(*t))).filter(|name| !name.is_empty());
+            let name = own.unwrap_or(&self.bodies[usize::from(body(e))]).clone();
+            let tag = self.tag(&name);
+            let (vertices, normals) = (vertices.map(|v| v + vertex), features.normals[e]);
+            self.elements.push(Element { vertices, normals, body: body(e), tag });
+        }
         self.sharp.extend(features.edges.iter().map(|edge| Edge {
+            body: body(edge.elements[0] as usize),
             elements: edge.elements.map(|e| e + element),
-            body,
             ..*edge
         }));
         self.curvature.extend(features.curvature);
-        self.exact.push(shell.exact);
-        self.bodies.push(name.to_string());
+        if let [only] = owner[..] {
+            self.exact[usize::from(only)] = shell.exact;
+        }
     }
 
     fn tag(&mut self, name: &str) -> u16 {

@@ -204,6 +204,11 @@ impl<const D: usize> Bounds<D> {
         (0..D).all(|d| self.min[d] <= x[d] && x[d] <= self.max[d])
     }
 
+    /// True when both boxes have a point in common, or are no more than `margin` apart along any axis.
+    pub fn meets(&self, other: &Self, margin: f64) -> bool {
+        (0..D).all(|d| self.min[d] - margin <= other.max[d] && other.min[d] - margin <= self.max[d])
+    }
+
     /// Square of the distance from `x` to the box, zero inside.
     #[inline]
     pub fn distance_squared(&self, x: &Vector<D>) -> f64 {

@@ -13,6 +13,7 @@ mod cloud;
 mod compare;
 mod completions;
 mod gaf;
+mod geometry;
 mod new;
 mod report;
 mod resume;
@@ -37,6 +38,7 @@ pub(crate) fn dispatch(cli: Cli) -> Outcome {
         Command::Cloud(args) => threaded(args.threads, || cloud::cloud(&args)),
         Command::Resume(args) => threaded(args.threads, || resume::resume(&args)),
         Command::Gaf(args) => threaded(args.threads, || gaf::gaf(&args)),
+        Command::Geometry(args) => geometry::geometry(&args),
         Command::Report(args) => report::report(&args),
         Command::Compare(args) => compare::compare(&args),
         Command::Verify(args) => threaded(args.threads, || verify::verify(&args)),

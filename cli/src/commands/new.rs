@@ -3,12 +3,16 @@ use std::fs::OpenOptions;
 use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
-use alula::case::{SCHEMA_FILE, template};
-use alula::geometry::{wing, write_stl};
+use alula::case::{SCHEMA_FILE, read, template};
+use alula::geometry::{load_surface, write_stl};
+use alula::run::RunError;
 
 use crate::arguments;
 use crate::outcome::Outcome;
 use crate::output;
+
+/// The wing of the template `stl`.
+const WING: &str = "[flow]\nmach = 0.5\n[[body]]\nwing = { naca = \"0012\", span = 3, chord = 1, taper = 0.5, sweep = \"21.8 deg\", tip = \"flat\" }\n";
 
 /// Writes a commented case file, never over an existing one unless asked, and beside it the schema that its first line names, by
 /// which editors complete and check it.
@@ -33,7 +37,11 @@ pub(crate) fn new(args: &arguments::New) -> Outcome {
     let mut told = format!("wrote {}\n", path.display());
     if args.template == "stl" {
         let body = path.with_file_name("body.stl");
-        match write(&body, &wing_file(), args.force) {
+        let file = match wing_file() {
+            Ok(file) => file,
+            Err(problem) => return super::refuse(&problem),
+        };
+        match write(&body, &file, args.force) {
             Ok(()) => told += &format!("wrote {}, a wing to begin with\n", body.display()),
             Err(problem) if problem.kind() == ErrorKind::AlreadyExists => {}
             Err(problem) => return cannot_write(&body, &problem),
@@ -53,11 +61,13 @@ fn cannot_write(path: &Path, problem: &io::Error) -> Outcome {
 }
 
 /// The wing that the template `stl` computes, as a binary STL file.
-fn wing_file() -> Vec<u8> {
+fn wing_file() -> Result<Vec<u8>, RunError> {
+    let case = read(WING, "wing").map_err(|_| RunError::NoStage)?;
+    let (surface, _) = load_surface::<3>(&case.bodies, Path::new("."))?;
     let mut bytes = Vec::new();
     // memory takes every byte
-    let _ = write_stl(&mut bytes, &wing());
-    bytes
+    let _ = write_stl(&mut bytes, &surface);
+    Ok(bytes)
 }
 
 fn write(path: &Path, bytes: &[u8], force: bool) -> io::Result<()> {

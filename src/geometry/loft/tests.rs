@@ -1,0 +1,122 @@
+use super::super::{Surface, load_surface, naca, outline, primitive};
+use super::*;
+use crate::case::read;
+use crate::math::Bounds;
+
+fn body(shape: &str) -> Surface<3> {
+    let text = format!("[flow]\nmach = 0.3\n[[body]]\n{shape}\n");
+    let case = read(&text, "t").unwrap_or_else(|e| panic!("{e}"));
+    load_surface::<3>(&case.bodies, std::path::Path::new(".")).unwrap_or_else(|e| panic!("{e}")).0
+}
+
+fn everywhere() -> Bounds<3> {
+    Bounds { min: Vector([-1e3; 3]), max: Vector([1e3; 3]) }
+}
+
+fn closed(surface: &Surface<3>) {
+    let all = 0..surface.elements.len() as u32;
+    let sum = all.map(|e| surface.element_area_vector(e)).fold(Vector::ZERO, |a, b| a + b);
+    assert!(surface.is_closed() && sum.norm() < 1e-12 * surface.area() && surface.volume() > 0.0, "{sum:?}");
+    assert!(surface.intersection().is_none());
+}
+
+#[test]
+fn wings_are_closed_whatever_their_ends() {
+    for naca in ["0012", "4412", "64A010"] {
+        for end in ["closed", "blunt"] {
+            for tip in ["round", "flat"] {
+                for sides in ["both", "one"] {
+                    let section = format!("{{ digits = \"{naca}\", trailing_edge = \"{end}\" }}");
+                    let more = "span = 3, chord = 1, taper = 0.5, sweep = \"30 deg\", twist = \"-3 deg\", dihedral = \"5 deg\"";
+                    closed(&body(&format!(
+                        "wing = {{ naca = {section}, {more}, tip = \"{tip}\", sides = \"{sides}\" }}"
+                    )));
+                }
+            }
+        }
+    }
+    let fin = "wing = { naca = \"0008\", span = 2, chord = 1, dihedral = \"90 deg\", sides = \"one\" }";
+    let surface = body(fin);
+    closed(&surface);
+    let bounds = surface.bounds();
+    assert!(bounds.min[2].abs() < 1e-12 && bounds.max[2] > 2.0 && bounds.max[1] < 0.041, "{bounds:?}");
+}
+
+#[test]
+fn planforms_are_those_that_were_asked_for() {
+    let tapered = body(
+        "wing = { naca = \"0010\", span = 6, aspect_ratio = 4.8, taper = 0.3, sweep = \"37 deg\", tip = \"flat\" }",
+    );
+    // S = b²/A; mean chord of the books, 2/3 (c² + c t + t²)/(c + t)
+    let seen = tapered.planform(&everywhere());
+    let root = 2.0 * 7.5 / (6.0 * 1.3);
+    let mean = 2.0 / 3.0 * root * (1.0 + 0.3 + 0.09) / 1.3;
+    assert!((seen.area / 7.5 - 1.0).abs() < 1e-5 && (seen.chord / mean - 1.0).abs() < 1e-5, "{seen:?}");
+    let half = tapered.planform(&Bounds { min: Vector([-1e3, 0.0, -1e3]), ..everywhere() });
+    assert!((half.area / 3.75 - 1.0).abs() < 1e-5 && (half.chord / mean - 1.0).abs() < 1e-5, "{half:?}");
+    let tip = tapered.bounds().max[0] - 0.3 * root;
+    assert!((tip - 3.0 * 37f64.to_radians().tan()).abs() < 1e-9, "{tip}");
+    let ellipse = body("wing = { naca = \"0012\", span = 6, chord = 1, planform = \"elliptic\", sweep_at = 0.25 }");
+    closed(&ellipse);
+    let seen = ellipse.planform(&everywhere());
+    assert!((seen.area / (0.25 * PI * 6.0) - 1.0).abs() < 2e-3, "{seen:?}");
+    // its quarter line is straight
+    assert!((seen.quarter[0] - 0.25).abs() < 2e-3, "{seen:?}");
+}
+
+#[test]
+fn volumes_are_those_of_the_books() {
+    // a section of four digits has the area 0.6822 t c², closed; its tip as a body of revolution π/2 ∫ z² dx = 0.00385 π/2 at 12 %
+    let wing = body("wing = { naca = \"0012\", span = 8, chord = 1, tip = \"flat\" }");
+    assert!((wing.volume() / (8.0 * 0.6822 * 0.12) - 1.0).abs() < 5e-3, "{}", wing.volume());
+    let round = body("wing = { naca = \"0012\", span = 8, chord = 1 }");
+    let tips = round.volume() - wing.volume();
+    let area = |k: usize| {
+        let x = (k as f64 + 0.5) / 1e4;
+        let z = 0.6 * (0.2969 * x.sqrt() + x * (-0.126 + x * (-0.3516 + x * (0.2843 - 0.1036 * x))));
+        PI * z * z / 1e4
+    };
+    let whole: f64 = (0..10_000).map(area).sum();
+    assert!((tips / whole - 1.0).abs() < 0.02, "{tips} {whole}");
+    let cone = body("revolution = [[0, 0], [1, 0.2]]");
+    closed(&cone);
+    assert!((cone.volume() / (PI * 0.04 / 3.0) - 1.0).abs() < 2e-3, "{}", cone.volume());
+    // a corner stays one: cone and cylinder
+    let bullet = body("revolution = [[0, 0], [1, 0.2], [3, 0.2]]");
+    closed(&bullet);
+    assert!((bullet.volume() / (PI * 0.04 * (2.0 + 1.0 / 3.0)) - 1.0).abs() < 2e-3, "{}", bullet.volume());
+    let can = body("revolution = [[0, 0.2], [1, 0.2]]");
+    closed(&can);
+    assert!((can.volume() / (PI * 0.04) - 1.0).abs() < 2e-3, "{}", can.volume());
+    let ball: Vec<String> = (0..=20)
+        .map(|k| (PI * f64::from(k) / 20.0).sin_cos())
+        .map(|(s, c)| format!("[{}, {}]", -0.5 * c, if s < 1e-9 { 0.0 } else { 0.5 * s }))
+        .collect();
+    let ball = body(&format!("revolution = [{}]", ball.join(", ")));
+    closed(&ball);
+    assert!((ball.volume() / (PI / 6.0) - 1.0).abs() < 2e-3 && ball.sharp.is_empty(), "{}", ball.volume());
+    let egg = body("ellipsoid = { size = [3, 1, 2] }");
+    closed(&egg);
+    assert!((egg.volume() / PI - 1.0).abs() < 1e-3, "{}", egg.volume());
+}
+
+#[test]
+fn a_positive_twist_turns_the_nose_of_the_tip_up() {
+    let wing =
+        body("wing = { naca = \"0012\", span = 4, chord = 1, twist = \"10 deg\", tip = \"flat\", sides = \"one\" }");
+    let tip = |x: &&Vector<3>| (x[1] - 2.0).abs() < 1e-9;
+    let nose = wing.vertices.iter().filter(tip).min_by(|a, b| a[0].total_cmp(&b[0])).unwrap();
+    assert!((nose[2] - 0.25 * 10f64.to_radians().sin()).abs() < 1e-3, "{nose:?}");
+}
+
+#[test]
+fn sections_without_corners_and_with_two_are_split_at_their_ends() {
+    let places = clustered(8);
+    let round = Sides::of(&primitive::ellipse([0.5, 0.1]), &places);
+    assert!(round.is_sharp() && (round.upper[0] - Vector([-0.5, 0.0])).norm() < 1e-3);
+    let blunt = crate::case::Naca { digits: "0012".into(), trailing_edge: crate::case::TrailingEdge::Blunt };
+    let sides = Sides::of(&naca::shell(&blunt).unwrap(), &places);
+    assert!(!sides.is_sharp() && sides.upper[8][1] > 0.001 && sides.lower[8][1] < -0.001);
+    let cone = outline::profile(&[Vector([0.0, 0.0]), Vector([1.0, 0.2]), Vector([2.0, 0.2])]);
+    assert_eq!(cone.0.len(), 2);
+}
