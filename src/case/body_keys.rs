@@ -154,13 +154,23 @@ static ELLIPSOID: Table = Table::of(&[Field::required(
     "Lengths of its axes along x, y and z.",
 )]);
 
-static REVOLUTION: Table = Table::of(&[Field::required(
-    "profile",
-    Kind::List(&List { item: PLANE_POINT, min: 2, max: usize::MAX, single: false }),
-    "Points `[x, r]` from the nose to the rear: a smooth curve with corners where it turns by more than 35 deg. Where it does not \
-     begin or end on the axis a face closes it.",
-)])
+static REVOLUTION: Table = Table::of(&[
+    Field::required(
+        "profile",
+        Kind::List(&List { item: PLANE_POINT, min: 2, max: usize::MAX, single: false }),
+        "Points `[x, r]` from the nose to the rear. Where they do not begin or end on the axis a face closes the body.",
+    ),
+    Field::defaulted("sides", Kind::Words(PROFILE_SIDES), Absent::Word("smooth"), "What joins the points."),
+])
 .short("profile");
+
+const PROFILE_SIDES: &[(&str, &str)] = &[
+    (
+        "smooth",
+        "a smooth curve with corners where it turns by more than 35 deg; its ends on the axis are round where it reaches them at more than 30 deg",
+    ),
+    ("straight", "straight lines: cones and cylinders"),
+];
 
 const SECTION: &str = "another key of the section";
 

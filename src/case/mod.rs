@@ -61,7 +61,7 @@ pub use templates::{SCHEMA_FILE, TEMPLATES, template};
 pub use text::{TextError, text_of};
 pub use time::{Automatic, Dual, Explicit, HarmonicCount, Harmonics, RungeKutta, Steady, SteadyMethod, Temporal};
 pub use verdict::ClaimRow;
-pub use wing::{PlanformShape, Tip, Wing, WingSides};
+pub use wing::{PlanformShape, ProfileSides, Tip, Wing, WingSides};
 pub use write::write;
 
 /// Everything a run needs to know.
@@ -214,6 +214,8 @@ pub enum Shape {
     Revolution {
         /// Points x, r from the nose to the rear.
         profile: Vec<[f64; 2]>,
+        /// What joins them.
+        sides: ProfileSides,
     },
     /// Ellipsoid centred on the origin of the shape.
     Ellipsoid {

@@ -1,4 +1,4 @@
-//! Wings by their planform and sections, as a case names them.
+//! Wings by their planform and sections, and bodies of revolution, as a case names them.
 use serde::{Deserialize, Serialize};
 
 use super::naca::Naca;
@@ -68,4 +68,14 @@ pub enum WingSides {
     Both,
     /// That of positive y, or the fin.
     One,
+}
+
+/// What joins the points of a profile.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum ProfileSides {
+    /// A smooth curve, with corners where it turns by more than 35°.
+    Smooth,
+    /// Straight lines.
+    Straight,
 }

@@ -36,7 +36,7 @@ pub use sampling::Chain;
 pub use shell::{Edge, Exact, Shell};
 pub use surface::{Element, Nearest, Projection, Skin, Surface};
 
-use crate::case::{Body, Case, Naca, Shape};
+use crate::case::{Body, Case, Naca, ProfileSides, Shape};
 use crate::math::Vector;
 use std::f64::consts::PI;
 use std::fs::File;
@@ -121,7 +121,10 @@ pub fn load_surface<const D: usize>(
         placement::place(&name, &mut shell, &body.placement)?;
         shells.push((name, shell));
     }
-    let groups = meeting(&shells);
+    if D == 2 && shells.len() > 1 {
+        refuse_overlap(&shells)?;
+    }
+    let groups = if D == 2 { (0..shells.len()).map(|k| vec![k]).collect() } else { meeting(&shells) };
     let mut skins = Vec::new();
     for group in &groups {
         skins.push(skin(group, bodies, &shells, &mut notes)?);
@@ -145,11 +148,8 @@ fn skin<const D: usize>(
     let others: Vec<String> = group[1..].iter().map(|k| format!("`{}`", shells[*k].0)).collect();
     let refused = |what: String, hint: &str| Err(GeometryError::refused(&place, what, hint));
     let solid: Option<Vec<Shell<3>>> = group.iter().map(|k| shells[*k].1.clone().cast()).collect();
-    let Some(solid) = solid.filter(|_| D == 3) else {
-        return refused(
-            format!("overlaps or touches body {}", others.join(", ")),
-            "move the bodies apart, or unite them in one outline",
-        );
+    let Some(solid) = solid else {
+        return refused(format!("meets body {}", others.join(", ")), "move the bodies apart");
     };
     if let Some(k) = group.iter().find(|k| bodies[**k].motion != bodies[group[0]].motion) {
         let what = format!("meets body `{}`, which moves in another way", shells[*k].0);
@@ -216,9 +216,11 @@ fn load_shell(name: &str, body: &Body, folder: &Path, notes: &mut Vec<String>) -
             let tip = section(&wing.tip_naca, &wing.tip_airfoil)?;
             AnyShell::Space(loft::wing(&place, wing, [&root, tip.as_ref().unwrap_or(&root)])?)
         }
-        Shape::Revolution { profile } => {
+        Shape::Revolution { profile, sides } => {
             let points: Vec<Vector<2>> = profile.iter().map(|p| Vector(*p)).collect();
-            AnyShell::Space(loft::revolution(&outline::profile(&points)))
+            let straight = *sides == ProfileSides::Straight;
+            let shell = loft::revolution(&outline::profile(&points, straight));
+            AnyShell::Space(if straight { Shell { crease: POLYGON_CREASE, ..shell } } else { shell })
         }
         Shape::Ellipsoid { size } => {
             let [a, b, c] = size.map(|l| positive(&place, "size", l.0));
@@ -232,6 +234,31 @@ fn positive(place: &str, key: &str, value: f64) -> Result<f64, GeometryError> {
         return Ok(value);
     }
     Err(GeometryError::refused(place, format!("`{key}` is {value}"), "use a positive length"))
+}
+
+/// Refuses bodies in the plane that overlap or touch; names all pairs that do.
+fn refuse_overlap<const D: usize>(shells: &[(String, Shell<D>)]) -> Result<(), GeometryError> {
+    let alone: Vec<Surface<D>> = shells.iter().map(|shell| Surface::new(std::slice::from_ref(shell))).collect();
+    let within = |a: usize, b: usize| {
+        let (other, touching) = (&shells[a].1.vertices, TOUCHING * alone[b].bounds().extent().max_abs());
+        let meets = |x: &&Vector<D>| alone[b].nearest(x, touching).is_some();
+        other.first().filter(|x| alone[b].inside(x)).or_else(|| other.iter().find(meets)).copied()
+    };
+    let crossed = Surface::new(shells).intersection().is_some();
+    let crossing = |a: usize, b: usize| {
+        let two = Surface::new(&[shells[a].clone(), shells[b].clone()]);
+        two.intersection().map(|(x, _)| x)
+    };
+    let pairs = (0..shells.len()).flat_map(|a| (a + 1..shells.len()).map(move |b| [a, b]));
+    let meeting = |[a, b]: [usize; 2]| {
+        let x = within(a, b).or_else(|| within(b, a)).or_else(|| if crossed { crossing(a, b) } else { None })?;
+        let [a, b] = [a, b].map(|k| &shells[k].0);
+        Some((format!("body `{a}`"), format!("overlaps or touches body `{b}` at {:?}", x.0)))
+    };
+    let mut found = pairs.filter_map(meeting);
+    let Some((place, mut what)) = found.next() else { return Ok(()) };
+    found.for_each(|(place, more)| what.push_str(&format!("; {place} {more}")));
+    Err(GeometryError::refused(place, what, "move the bodies apart, or unite them in one outline"))
 }
 
 /// Bodies in groups of those that overlap or touch, directly or through others.

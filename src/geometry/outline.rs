@@ -30,6 +30,8 @@ const SAGITTA: f64 = 5e-8;
 const SEGMENTS: f64 = 1500.0;
 /// Most segments between two points: a nose given by a few points needs a thousand, wild data would ask for millions.
 const PARTS: f64 = 1024.0;
+/// Slope of the first side of a profile above which its nose is round: 30° from the axis.
+const STEEP: f64 = 0.577;
 /// The nose is what lies within this fraction of the chord from the leading edge.
 const NOSE: f64 = 0.1;
 /// Next to a sharp nose the outline turns by less than this fraction of the turn at the nose.
@@ -101,38 +103,30 @@ pub(super) fn polygon(
     Ok(Shell { crease, ..straight_shell(&marks) })
 }
 
-/// The smooth pieces of a profile, `points` from the nose to the rear on one side of the axis: those of the outline that it is half
-/// of, so that it crosses the axis smoothly or in a corner as the points say.
-pub(super) fn profile(points: &[Vector<2>]) -> Chain {
-    let mirrored = points.iter().filter(|x| x[1] > 0.0).map(|x| Vector([x[0], -x[1]]));
-    let around: Vec<Vector<2>> = points.iter().rev().copied().chain(mirrored).collect();
-    let (nose, rear) = (points[0], points[points.len() - 1]);
-    let corners = corners(&around, rear[1] > 0.0);
-    let sharp = !corners.is_empty();
-    let samples = pieces(&around, &corners, extent(&around)).into_iter().flat_map(|piece| {
-        let last = piece.len() - 1;
-        piece.into_iter().take(last).enumerate().map(move |(k, s)| (s.0, sharp && k == 0)).collect::<Vec<_>>()
-    });
-    let mut ring: Vec<(Vector<2>, bool)> = samples.collect();
-    let nearest = |ring: &[(Vector<2>, bool)], x: Vector<2>| {
-        let away = |k: &usize| (ring[*k].0 - x).norm_squared();
-        (0..ring.len()).min_by(|a, b| away(a).total_cmp(&away(b))).unwrap_or(0)
+/// The pieces of a profile, `points` from the nose to the rear on one side of the axis: straight ones between all points, or smooth ones
+/// between corners, which cross the axis at a right angle where they reach it steeply, and in a point elsewhere.
+pub(super) fn profile(points: &[Vector<2>], straight: bool) -> Chain {
+    let last = points.len() - 1;
+    let turn =
+        |i: usize| simplex::angle_between(&(points[i] - points[i - 1]).unit(), &(points[i + 1] - points[i]).unit());
+    let inner = (1..last).filter(|i| straight || turn(*i) > CORNER);
+    let corners: Vec<usize> = std::iter::once(0).chain(inner).chain([last]).collect();
+    let end = |i: usize, beside: usize, across: f64| {
+        let along = points[beside] - points[i];
+        let steep = points[i][1] == 0.0 && along[1].abs() > STEEP * along[0].abs();
+        if steep && !straight { End::Along(Vector([0.0, across])) } else { End::Natural }
     };
-    let start = nearest(&ring, rear);
-    ring.rotate_left(start);
-    let end = nearest(&ring, nose);
-    let (last, mut chain) = (ring[end.min(ring.len() - 1)].0, vec![vec![ring[0].0]]);
-    for (x, corner) in ring[1..end].iter().copied().chain([(last, false)]) {
-        chain.last_mut().into_iter().for_each(|piece| piece.push(x));
-        if corner {
-            chain.push(vec![x]);
-        }
-    }
-    chain.iter_mut().for_each(|piece| piece.reverse());
-    chain.reverse();
-    chain.first_mut().and_then(|piece| piece.first_mut()).into_iter().for_each(|x| *x = nose);
-    chain.last_mut().and_then(|piece| piece.last_mut()).into_iter().for_each(|x| *x = rear);
-    Chain(chain)
+    let piece = |ends: &[usize]| {
+        let [from, to] = [ends[0], ends[1]];
+        let start = if from == 0 { end(0, 1, 1.0) } else { End::Natural };
+        let stop = if to == last { end(last, last - 1, -1.0) } else { End::Natural };
+        let spline = Spline::new(points[from..=to].to_vec(), start, stop);
+        let mut all: Vec<Vector<2>> = sample(&spline, extent(points)).into_iter().map(|s| s.0).collect();
+        let n = all.len() - 1;
+        (all[0], all[n]) = (points[from], points[to]);
+        all
+    };
+    Chain(corners.windows(2).map(piece).collect())
 }
 
 /// A straight piece between two corners of a counter-clockwise outline.

@@ -82,7 +82,7 @@ fn volumes_are_those_of_the_books() {
     closed(&cone);
     assert!((cone.volume() / (PI * 0.04 / 3.0) - 1.0).abs() < 2e-3, "{}", cone.volume());
     // a corner stays one: cone and cylinder
-    let bullet = body("revolution = [[0, 0], [1, 0.2], [3, 0.2]]");
+    let bullet = body("revolution = { profile = [[0, 0], [1, 0.2], [3, 0.2]], sides = \"straight\" }");
     closed(&bullet);
     assert!((bullet.volume() / (PI * 0.04 * (2.0 + 1.0 / 3.0)) - 1.0).abs() < 2e-3, "{}", bullet.volume());
     let can = body("revolution = [[0, 0.2], [1, 0.2]]");
@@ -104,9 +104,11 @@ fn volumes_are_those_of_the_books() {
 fn a_positive_twist_turns_the_nose_of_the_tip_up() {
     let wing =
         body("wing = { naca = \"0012\", span = 4, chord = 1, twist = \"10 deg\", tip = \"flat\", sides = \"one\" }");
-    let tip = |x: &&Vector<3>| (x[1] - 2.0).abs() < 1e-9;
-    let nose = wing.vertices.iter().filter(tip).min_by(|a, b| a[0].total_cmp(&b[0])).unwrap();
-    assert!((nose[2] - 0.25 * 10f64.to_radians().sin()).abs() < 1e-3, "{nose:?}");
+    let tip = |x: &&Vector<3>| (x[1] - 4.0).abs() < 1e-9;
+    let (sin, cos) = 10f64.to_radians().sin_cos();
+    let nose = Vector([0.25 * (1.0 - cos), 4.0, 0.25 * sin]);
+    let nearest = wing.vertices.iter().filter(tip).map(|x| (*x - nose).norm()).fold(f64::INFINITY, f64::min);
+    assert!(nearest < 1e-6, "{nearest}");
 }
 
 #[test]
@@ -117,6 +119,9 @@ fn sections_without_corners_and_with_two_are_split_at_their_ends() {
     let blunt = crate::case::Naca { digits: "0012".into(), trailing_edge: crate::case::TrailingEdge::Blunt };
     let sides = Sides::of(&naca::shell(&blunt).unwrap(), &places);
     assert!(!sides.is_sharp() && sides.upper[8][1] > 0.001 && sides.lower[8][1] < -0.001);
-    let cone = outline::profile(&[Vector([0.0, 0.0]), Vector([1.0, 0.2]), Vector([2.0, 0.2])]);
+    let cone = outline::profile(&[Vector([0.0, 0.0]), Vector([1.0, 0.2]), Vector([2.0, 0.2])], true);
     assert_eq!(cone.0.len(), 2);
+    let pod =
+        outline::profile(&[Vector([0.0, 0.0]), Vector([0.5, 0.4]), Vector([1.0, 0.5]), Vector([2.0, 0.5])], false);
+    assert!(pod.0.len() == 1 && pod.0[0][1][1] > 10.0 * pod.0[0][1][0], "a round nose stands across the axis");
 }
