@@ -175,9 +175,15 @@ fn follows(case: &Case) -> bool {
     follows_shocks(case) || case.adapt.cycles > 0
 }
 
-/// Greatest number of particles of the cloud of a family with `factor` times the spacing of the case.
+/// Greatest number of particles of the cloud of a family in space with `factor` times the spacing of the case; in the plane clouds of a
+/// family grow less.
 pub(crate) fn room(asked: &Accuracy, factor: f64) -> f64 {
     asked.particles as f64 / FINER.powf(factor.log2().max(0.0))
+}
+
+/// The same where each cloud is adapted: in the plane it may have all that the last one leaves to its like.
+pub(crate) fn room_adapted<const D: usize>(particles: usize, factor: f64) -> f64 {
+    particles as f64 / factor.max(1.0).powf(D as f64)
 }
 
 /// The stages of a family whose member with the spacing of the case has `n` fluid particles.

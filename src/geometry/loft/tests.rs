@@ -1,3 +1,4 @@
+//! Wings and bodies of revolution against the formulas of the books.
 use super::super::{Surface, load_surface, naca, outline, primitive};
 use super::*;
 use crate::case::read;

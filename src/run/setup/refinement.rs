@@ -58,7 +58,7 @@ pub(crate) fn behind_shocks<const D: usize>(
     let layer = asked.and_then(|asked| Some((ShockLayer::of(case, surface, field)?, asked)));
     let (Some((layer, asked)), Some(spacing)) = (layer, case.cloud.spacing) else { return Vec::new() };
     let at = |coarser: f64| layer.sources(factor * spacing.0, factor, coarser);
-    affordable(case, surface, (&asked, factor), at)
+    affordable(case, surface, (accuracy::room(&asked, factor), factor), at)
 }
 
 /// What the sensors ask of that cloud.
@@ -68,25 +68,24 @@ fn in_family<const D: usize>(
     view: &View<'_, D>,
     (asked, factor): (&Accuracy, f64),
 ) -> Vec<Source<D>> {
-    let most = Accuracy { particles: asked.particles.min(case.adapt.particles), ..*asked };
+    let room = accuracy::room_adapted::<D>(asked.particles.min(case.adapt.particles), factor);
     let finest = factor * finest(case);
     let all = adapt::sources(view, &case.adapt.sensors, finest / HALF);
     let at = |coarser: f64| {
         let asks = |s: &Source<D>| Source { spacing: coarser * HALF * s.spacing, ..*s };
         all.iter().map(asks).collect()
     };
-    affordable(case, surface, (&most, factor), at)
+    affordable(case, surface, (room, factor), at)
 }
 
 /// The finest of the sources `at(1)`, `at(2)`, `at(4)` … with which the cloud with `factor` times the spacing of the case has no more
-/// particles than `asked` allows; none where even that has more.
+/// particles than there is `room` for; none where even that has more.
 fn affordable<const D: usize>(
     case: &Case,
     surface: &Surface<D>,
-    (asked, factor): (&Accuracy, f64),
+    (room, factor): (f64, f64),
     at: impl Fn(f64) -> Vec<Source<D>>,
 ) -> Vec<Source<D>> {
-    let room = accuracy::room(asked, factor);
     let spec = CloudSpec::of_case(&accuracy::scaled(case, factor));
     let cells = |sources: &[_]| count(&spec, Some(surface), sources).ok();
     let Some(alone) = cells(&[]) else { return Vec::new() };
