@@ -158,6 +158,16 @@ fn profile(draft: &mut Draft<'_>, path: &str) {
         let message = format!("point {} of the profile lies ahead of the one before", i + 1);
         draft.fail(path, message).hint("list points from the nose to the rear");
     }
+    if n > 0 && at(&points[n - 1], 0) <= at(&points[0], 0) {
+        draft.fail(path, "the profile has no length").hint("list points `[x, r]` from the nose to the rear");
+    }
+    if let Some(i) = (1..n).find(|&i| points[i] == points[i - 1]) {
+        let message = format!("points {i} and {} of the profile are the same", i + 1);
+        draft.fail(path, message).hint("remove one of them");
+    }
+    if (0..n).all(|i| at(&points[i], 1) == 0.0) {
+        draft.fail(path, "the profile runs along the axis").hint("radii `r` of points `[x, r]` are positive");
+    }
     let inner = |i: usize| 0 < i && i + 1 < n;
     if let Some(i) = (0..n).find(|&i| at(&points[i], 1) < 0.0 || (inner(i) && at(&points[i], 1) == 0.0)) {
         let message = format!("point {} of the profile is not outside the axis", i + 1);

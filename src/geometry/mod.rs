@@ -155,6 +155,22 @@ fn skin<const D: usize>(
         let what = format!("meets body `{}`, which moves in another way", shells[*k].0);
         return refused(what, "bodies that intersect are one solid: give them the same motion, or move them apart");
     }
+    for (i, a) in group.iter().enumerate() {
+        for (j, b) in group.iter().enumerate().skip(i + 1) {
+            let name = |k: &usize| format!("body `{}`", shells[*k].0);
+            let (inner, outer) = match union::meeting(&solid[i], &solid[j]) {
+                Ok(union::Meeting::Within) => (a, b),
+                Ok(union::Meeting::Around) => (b, a),
+                Ok(union::Meeting::Touching) if meets(&shells[*a], &shells[*b]) => {
+                    let what = format!("touches {} without overlapping it", name(b));
+                    return Err(GeometryError::refused(name(a), what, "move them apart, or into one another"));
+                }
+                _ => continue,
+            };
+            let what = format!("lies inside {}, or is the same", name(outer));
+            return Err(GeometryError::refused(name(inner), what, "remove it: no gas reaches it"));
+        }
+    }
     let united = match union::united(&solid.iter().collect::<Vec<_>>()) {
         Ok(united) => united,
         Err(why) => return refused(format!("meets body {}: {why}", others.join(", ")), "unite them before the export"),
@@ -261,22 +277,26 @@ fn refuse_overlap<const D: usize>(shells: &[(String, Shell<D>)]) -> Result<(), G
     Err(GeometryError::refused(place, what, "move the bodies apart, or unite them in one outline"))
 }
 
+/// True when two bodies overlap or touch.
+fn meets<const D: usize>(a: &(String, Shell<D>), b: &(String, Shell<D>)) -> bool {
+    let alone = [a, b].map(|body| Surface::new(std::slice::from_ref(body)));
+    let touching = alone.each_ref().map(|s| TOUCHING * s.bounds().extent().max_abs());
+    let within = |vertices: &[Vector<D>], k: usize| {
+        vertices.first().is_some_and(|x| alone[k].inside(x))
+            || vertices.iter().any(|x| alone[k].nearest(x, touching[k]).is_some())
+    };
+    alone[0].bounds().meets(&alone[1].bounds(), touching[0])
+        && (within(&a.1.vertices, 1)
+            || within(&b.1.vertices, 0)
+            || Surface::new(&[a.clone(), b.clone()]).intersection().is_some())
+}
+
 /// Bodies in groups of those that overlap or touch, directly or through others.
 fn meeting<const D: usize>(shells: &[(String, Shell<D>)]) -> Vec<Vec<usize>> {
     let mut group: Vec<u32> = (0..shells.len() as u32).collect();
-    let alone: Vec<Surface<D>> = shells.iter().map(|shell| Surface::new(std::slice::from_ref(shell))).collect();
-    let within = |a: usize, b: usize| {
-        let (other, touching) = (&shells[a].1.vertices, TOUCHING * alone[b].bounds().extent().max_abs());
-        other.first().is_some_and(|x| alone[b].inside(x))
-            || other.iter().any(|x| alone[b].nearest(x, touching).is_some())
-    };
-    let crossing = |a: usize, b: usize| Surface::new(&[shells[a].clone(), shells[b].clone()]).intersection().is_some();
     for a in 0..shells.len() {
-        for b in a + 1..shells.len() {
-            let near = alone[a].bounds().meets(&alone[b].bounds(), TOUCHING * alone[a].bounds().extent().max_abs());
-            if near && (within(a, b) || within(b, a) || crossing(a, b)) {
-                shell::unite(&mut group, a as u32, b as u32);
-            }
+        for b in (a + 1..shells.len()).filter(|b| meets(&shells[a], &shells[*b])) {
+            shell::unite(&mut group, a as u32, b as u32);
         }
     }
     let roots: Vec<u32> = (0..shells.len()).map(|k| shell::root(&mut group, k as u32)).collect();

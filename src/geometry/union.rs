@@ -11,11 +11,61 @@ use super::shell::{Exact, Shell, root, unite};
 use super::simplex;
 use crate::math::Vector;
 
+/// Part of a volume or an area that is nothing: triangles of the same shape may differ by so much.
+const NOTHING: f64 = 1e-6;
+
 /// What bodies enclose together.
 pub(super) struct United {
     pub(super) shell: Shell<3>,
     /// Number, among the shells that were united, of the one that each triangle is of.
     pub(super) owner: Vec<u16>,
+}
+
+/// How two closed shells stand to one another.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Meeting {
+    /// They share a part of both.
+    Overlapping,
+    /// They share walls, or a piece of them, but no volume: a face goes.
+    Joined,
+    /// They touch at points or edges only.
+    Touching,
+    /// The first lies inside the second, or is the same.
+    Within,
+    /// The second lies inside the first.
+    Around,
+}
+
+/// How `a` stands to `b`; the reason where that cannot be told.
+pub(super) fn meeting(a: &Shell<3>, b: &Shell<3>) -> Result<Meeting, String> {
+    let solids = solids(&[a, b], &[0, a.elements.len()])?;
+    let both = solids[0].union(&solids[1]);
+    let [va, vb, all] = [&solids[0], &solids[1], &both].map(Manifold::volume);
+    let [sa, sb, skin] = [&solids[0], &solids[1], &both].map(Manifold::surface_area);
+    let shared = va + vb - all;
+    Ok(if shared >= (1.0 - NOTHING) * va {
+        Meeting::Within
+    } else if shared >= (1.0 - NOTHING) * vb {
+        Meeting::Around
+    } else if shared > NOTHING * va.min(vb) {
+        Meeting::Overlapping
+    } else if skin < (1.0 - NOTHING) * (sa + sb) {
+        Meeting::Joined
+    } else {
+        Meeting::Touching
+    })
+}
+
+/// The shells in the form of the library, triangles numbered from those in `first`.
+fn solids(shells: &[&Shell<3>], first: &[usize]) -> Result<Vec<Manifold>, String> {
+    let solid = |k: usize| {
+        let solid = Manifold::from_mesh_gl64(&mesh(shells[k], first[k]));
+        match solid.status() {
+            Error::NoError => Ok(solid),
+            problem => Err(format!("part {} is no closed body ({problem:?})", k + 1)),
+        }
+    };
+    (0..shells.len()).map(solid).collect()
 }
 
 /// Unites closed shells; the reason where that cannot be done.
@@ -24,14 +74,7 @@ pub(super) fn united(shells: &[&Shell<3>]) -> Result<United, String> {
     for shell in shells {
         first.push(first[first.len() - 1] + shell.elements.len());
     }
-    let solid = |k: usize| {
-        let solid = Manifold::from_mesh_gl64(&mesh(shells[k], first[k]));
-        match solid.status() {
-            Error::NoError => Ok(solid),
-            problem => Err(format!("part {} is no closed body ({problem:?})", k + 1)),
-        }
-    };
-    let solids: Vec<Manifold> = (0..shells.len()).map(solid).collect::<Result<_, _>>()?;
+    let solids = solids(shells, &first)?;
     let found = Manifold::batch_boolean(&solids, OpType::Add);
     if found.status() != Error::NoError || found.is_empty() {
         return Err(format!("they cannot be united ({:?})", found.status()));
@@ -132,6 +175,24 @@ mod tests {
         let sum = all.map(|e| surface.element_area_vector(e)).fold(Vector::ZERO, |a, b| a + b);
         assert!(sum.norm() < 1e-12, "{sum:?}");
         assert!(found.owner.contains(&0) && found.owner.contains(&1));
+    }
+
+    #[test]
+    fn bodies_that_add_nothing_or_only_touch_are_told() {
+        let ball = icosphere(1.0, 3);
+        let small = Shell { vertices: ball.vertices.iter().map(|x| *x * 0.5).collect(), ..ball.clone() };
+        let tip = ball.vertices.iter().fold(0.0, |m: f64, x| m.max(x[0]));
+        let cube = cuboid([1.0; 3]);
+        for (other, expected) in [
+            (ball.clone(), Meeting::Within),
+            (small.clone(), Meeting::Around),
+            (moved(&ball, [1.0, 0.0, 0.0]), Meeting::Overlapping),
+            (moved(&ball, [2.0 * tip, 0.0, 0.0]), Meeting::Touching),
+        ] {
+            assert_eq!(meeting(&ball, &other), Ok(expected));
+        }
+        assert_eq!(meeting(&small, &ball), Ok(Meeting::Within));
+        assert_eq!(meeting(&cube, &moved(&cube, [1.0, 0.0, 0.0])), Ok(Meeting::Joined));
     }
 
     #[test]

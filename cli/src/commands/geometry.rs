@@ -2,7 +2,6 @@
 use std::path::{Path, PathBuf};
 
 use alula::geometry::{Surface, dimension, load_surface, write_obj, write_stl};
-
 use alula::math::Vector;
 
 use super::run::name_of;
