@@ -149,30 +149,32 @@ fn wing(draft: &mut Draft<'_>, path: &str) {
     }
 }
 
-/// A profile goes from the nose to the rear, on one side of the axis.
+/// A profile goes from the nose to the rear, on one side of the axis; the first reason why it does not.
 fn profile(draft: &mut Draft<'_>, path: &str) {
     let Some(points) = draft.get(path).and_then(Value::as_array).cloned() else { return };
-    let at = |p: &Value, k: usize| p.get(k).and_then(Value::as_f64).unwrap_or(f64::NAN);
+    let at = |i: usize, k: usize| points[i].get(k).and_then(Value::as_f64).unwrap_or(f64::NAN);
     let n = points.len();
-    if let Some(i) = (1..n).find(|&i| at(&points[i], 0) < at(&points[i - 1], 0)) {
-        let message = format!("point {} of the profile lies ahead of the one before", i + 1);
-        draft.fail(path, message).hint("list points from the nose to the rear");
-    }
-    if n > 0 && at(&points[n - 1], 0) <= at(&points[0], 0) {
-        draft.fail(path, "the profile has no length").hint("list points `[x, r]` from the nose to the rear");
-    }
-    if let Some(i) = (1..n).find(|&i| points[i] == points[i - 1]) {
-        let message = format!("points {i} and {} of the profile are the same", i + 1);
-        draft.fail(path, message).hint("remove one of them");
-    }
-    if (0..n).all(|i| at(&points[i], 1) == 0.0) {
-        draft.fail(path, "the profile runs along the axis").hint("radii `r` of points `[x, r]` are positive");
-    }
-    let inner = |i: usize| 0 < i && i + 1 < n;
-    if let Some(i) = (0..n).find(|&i| at(&points[i], 1) < 0.0 || (inner(i) && at(&points[i], 1) == 0.0)) {
-        let message = format!("point {} of the profile is not outside the axis", i + 1);
-        draft.fail(path, message).hint("radii are positive; only the first and the last point may be on the axis");
-    }
+    let back = (1..n).find(|&i| at(i, 0) < at(i - 1, 0));
+    let same = (1..n).find(|&i| points[i] == points[i - 1]);
+    let crossing = (0..n).find(|&i| at(i, 1) < 0.0 || (0 < i && i + 1 < n && at(i, 1) == 0.0));
+    let (message, hint) = if let Some(i) = back {
+        (
+            format!("point {} of the profile lies ahead of the one before", i + 1),
+            "list points from the nose to the rear",
+        )
+    } else if let Some(i) = same {
+        (format!("points {i} and {} of the profile are the same", i + 1), "remove one of them")
+    } else if let Some(i) = crossing {
+        let hint = "radii are positive; only the first and the last point may be on the axis";
+        (format!("point {} of the profile is not outside the axis", i + 1), hint)
+    } else if 1 < n && at(n - 1, 0) <= at(0, 0) {
+        ("the profile has no length".to_owned(), "list points `[x, r]` from the nose to the rear")
+    } else if (0..n).all(|i| at(i, 1) == 0.0) {
+        ("the profile runs along the axis".to_owned(), "radii `r` of points `[x, r]` are positive")
+    } else {
+        return;
+    };
+    draft.fail(path, message).hint(hint);
 }
 
 /// Number of dimensions from the key, the bodies or the domain; they must agree.

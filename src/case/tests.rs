@@ -335,3 +335,23 @@ fn values_that_are_hardly_meant_are_refused() {
     assert_shows(&flow("mach = 0.001"), &["at M 0.001", "M 0.1"]);
     assert!(read(&(flow("mach = 0.001") + "[scheme]\nlow_mach = true\n"), "t").is_ok());
 }
+
+#[test]
+fn wings_and_profiles_that_cannot_be_are_told() {
+    let body = |shape: &str| format!("[flow]\nmach = 0.3\n[[body]]\n{shape}\n");
+    assert!(read(&body("wing = { naca = \"0012\", span = 8, chord = 1 }"), "t").is_ok());
+    for (shape, told) in [
+        ("wing = { span = 8, chord = 1 }", "a wing has no section"),
+        ("wing = { naca = \"0012\", airfoil = \"a.dat\", span = 8, chord = 1 }", "two sections at one place"),
+        ("wing = { naca = \"0012\", span = 8 }", "a wing has no chord"),
+        ("wing = { naca = \"0012\", span = 8, chord = 1, aspect_ratio = 8 }", "both a chord and an aspect ratio"),
+        ("wing = { naca = \"9912x\", span = 8, chord = 1 }", "9912x"),
+        ("revolution = [[0, 0.1], [0, 0.5]]", "the profile has no length"),
+        ("revolution = [[0, 0], [1, 0]]", "the profile runs along the axis"),
+        ("revolution = [[0, 0], [2, 0.5], [1, 0.5], [3, 0]]", "lies ahead of the one before"),
+        ("revolution = [[0, 0], [1, 0.5], [1, 0.5], [3, 0]]", "are the same"),
+        ("revolution = [[0, 0], [1, 0], [3, 1]]", "is not outside the axis"),
+    ] {
+        assert_shows(&body(shape), &[told]);
+    }
+}

@@ -204,13 +204,16 @@ fn reaches<const D: usize>(layout: &Layout<D>, points: &[Source<D>], boxes: &[So
 /// Tells where the surface is more strongly curved than the cloud is allowed to follow.
 pub fn capped<const D: usize>(spec: &CloudSpec<D>, surface: &Surface<D>) -> Option<String> {
     let finest = finest(spec);
-    let sharper = |a: &u32, b: &u32| surface.radius[*a as usize].total_cmp(&surface.radius[*b as usize]);
-    let sharpest = (0..surface.elements.len() as u32).min_by(sharper)?;
-    let radius = surface.radius[sharpest as usize];
-    if radius >= finest {
-        return None;
-    }
-    let x = surface.corners(sharpest)[0];
+    let radius = |e: &u32| surface.radius[*e as usize];
+    let mut sharp: Vec<u32> = (0..surface.elements.len() as u32).filter(|e| radius(e) < finest).collect();
+    sharp.sort_by(|a, b| radius(a).total_cmp(&radius(b)));
+    // in space tips taper off to a point: what is smaller than a particle is no more than that
+    let (mut seen, patch) = (0.0, if D == 2 { 0.0 } else { finest.powi(D as i32 - 1) });
+    let found = sharp.into_iter().find(|e| {
+        seen += surface.element_area_vector(*e).norm();
+        seen >= patch
+    })?;
+    let (x, radius) = (surface.corners(found)[0], radius(&found));
     let levels = (spec.spacing / (spec.curvature * radius).max(f64::MIN_POSITIVE)).log2().ceil();
     Some(format!(
         "near {:?} the surface is rounded with a radius of {radius:.2e}, but no spacing is finer than {finest:.2e}: \

@@ -142,7 +142,7 @@ fn skin<const D: usize>(
 ) -> Result<Skin<D>, GeometryError> {
     let (name, shell) = &shells[group[0]];
     if group.len() == 1 {
-        return Ok(Skin { shell: shell.clone(), owner: vec![group[0] as u16] });
+        return Ok(Skin { shell: shell.clone(), owner: vec![group[0] as u16], curvature: None });
     }
     let place = format!("body `{name}`");
     let others: Vec<String> = group[1..].iter().map(|k| format!("`{}`", shells[*k].0)).collect();
@@ -182,7 +182,7 @@ fn skin<const D: usize>(
     notes.push(format!("bodies `{name}` and {} intersect: they are clipped there and closed", others.join(", ")));
     let owner = united.owner.iter().map(|k| group[usize::from(*k)] as u16).collect();
     let shell = united.shell.cast().unwrap_or_else(|| shell.clone());
-    Ok(Skin { shell, owner })
+    Ok(Skin { shell, owner, curvature: Some(united.curvature) })
 }
 
 fn load_shell(name: &str, body: &Body, folder: &Path, notes: &mut Vec<String>) -> Result<AnyShell, GeometryError> {

@@ -57,6 +57,8 @@ pub struct Skin<const D: usize> {
     pub shell: Shell<D>,
     /// Number of the body that each element is of; one number where all are of the same.
     pub owner: Vec<u16>,
+    /// Curvature of its elements where it is known; else it follows from their normals.
+    pub curvature: Option<Vec<f64>>,
 }
 
 /// The surface of all bodies of a case.
@@ -86,7 +88,11 @@ impl<const D: usize> Surface<D> {
     /// Joins the named shells of all bodies.
     pub fn new(shells: &[(String, Shell<D>)]) -> Self {
         let names: Vec<String> = shells.iter().map(|(name, _)| name.clone()).collect();
-        let skin = |(k, (_, shell)): (usize, &(String, Shell<D>))| Skin { shell: shell.clone(), owner: vec![k as u16] };
+        let skin = |(k, (_, shell)): (usize, &(String, Shell<D>))| Skin {
+            shell: shell.clone(),
+            owner: vec![k as u16],
+            curvature: None,
+        };
         Self::of(&names, &shells.iter().enumerate().map(skin).collect::<Vec<_>>())
     }
 
@@ -136,7 +142,7 @@ impl<const D: usize> Surface<D> {
     }
 
     fn add(&mut self, skin: &Skin<D>) {
-        let Skin { shell, owner } = skin;
+        let Skin { shell, owner, curvature } = skin;
         let (vertex, element) = (self.vertices.len() as u32, self.elements.len() as u32);
         let features = shell.features();
         let body = |e: usize| owner[e.min(owner.len() - 1)];
@@ -154,7 +160,7 @@ impl<const D: usize> Surface<D> {
             elements: edge.elements.map(|e| e + element),
             ..*edge
         }));
-        self.curvature.extend(features.curvature);
+        self.curvature.extend(curvature.as_ref().unwrap_or(&features.curvature));
         if let [only] = owner[..] {
             self.exact[usize::from(only)] = shell.exact;
         }

@@ -7,7 +7,7 @@
 use manifold_rust::manifold::Manifold;
 use manifold_rust::types::{Error, MeshGL64, OpType};
 
-use super::shell::{Exact, Shell, root, unite};
+use super::shell::{Exact, Features, Shell, root, unite};
 use super::simplex;
 use crate::math::Vector;
 
@@ -19,6 +19,8 @@ pub(super) struct United {
     pub(super) shell: Shell<3>,
     /// Number, among the shells that were united, of the one that each triangle is of.
     pub(super) owner: Vec<u16>,
+    /// Curvature of the triangle that each was cut from.
+    pub(super) curvature: Vec<f64>,
 }
 
 /// How two closed shells stand to one another.
@@ -107,7 +109,7 @@ fn traced(mesh: &MeshGL64, shells: &[&Shell<3>], first: &[usize]) -> United {
         .collect();
     all.sort_unstable();
     let source = |face: usize| first.partition_point(|f| *f <= face) - 1;
-    let normals: Vec<Vec<[Vector<3>; 3]>> = shells.iter().map(|s| s.features().normals).collect();
+    let features: Vec<Features<3>> = shells.iter().map(|s| s.features()).collect();
     let mut tag_names: Vec<String> = Vec::new();
     let mut tag = |k: usize, e: usize| {
         let own = shells[k].tags.get(e).and_then(|t| shells[k].tag_names.get(usize::from(*t)));
@@ -117,16 +119,18 @@ fn traced(mesh: &MeshGL64, shells: &[&Shell<3>], first: &[usize]) -> United {
             tag_names.len() - 1
         }) as u16
     };
-    let (mut owner, mut tags, mut elements, mut kept) = (Vec::new(), Vec::new(), Vec::new(), Vec::new());
+    let (mut owner, mut curvature) = (Vec::new(), Vec::new());
+    let (mut tags, mut elements, mut kept) = (Vec::new(), Vec::new(), Vec::new());
     for (face, corners) in all {
         let k = source(face);
         let e = face - first[k];
         let original = shells[k].corners(e);
         let normal = |v: u32| {
             let weights = simplex::closest(&vertices[v as usize], &original);
-            simplex::blend(&normals[k][e], &weights).unit()
+            simplex::blend(&features[k].normals[e], &weights).unit()
         };
         owner.push(k as u16);
+        curvature.push(features[k].curvature[e]);
         tags.push(tag(k, e));
         kept.push(corners.map(normal));
         elements.push(corners);
@@ -134,7 +138,7 @@ fn traced(mesh: &MeshGL64, shells: &[&Shell<3>], first: &[usize]) -> United {
     let (vertices, elements) = compact(&vertices, elements);
     let crease = shells.iter().fold(f64::INFINITY, |m, s| m.min(s.crease));
     let shell = Shell { vertices, elements, normals: Some(kept), tags, tag_names, exact: Exact::None, crease };
-    United { shell, owner }
+    United { shell, owner, curvature }
 }
 
 /// Drops vertices that no element uses.

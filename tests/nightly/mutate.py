@@ -73,6 +73,38 @@ def obj():
 
 
 SPACE = "[flow]\nmach = 0.3\n[[body]]\nsurface = \"{}\"\n[cloud]\nspacing = 0.25\nfar_field = 2.0\n"
+# few particles where the change cuts the cloud off
+AIRCRAFT = """[accuracy]
+particles = 20000
+[flow]
+mach = 0.5
+[[body]]
+revolution = [
+[0, 0],
+[0.3, 0.2],
+[2, 0.3],
+[4, 0.1]]
+[[body]]
+[body.wing]
+naca = "64A010"
+tip_naca = "0012"
+span = 4
+aspect_ratio = 5
+taper = 0.4
+sweep = "30 deg"
+twist = "-2 deg"
+[[body]]
+ellipsoid = { size = [2, 0.8, 0.9] }
+translate = [1, 0, 0.25]
+[[body]]
+wing = { airfoil = "a.dat", span = 1, chord = 0.6, dihedral = "90 deg", sides = "one", tip = "flat" }
+translate = [3, 0, 0]
+[cloud]
+spacing = 0.4
+far_field = 8.0
+edge_levels = 0
+curvature_levels = 0
+"""
 TABLE = "t,x,y,theta\n" + "".join(f"{0.5 * k},0,{0.01 * (k % 3)},0\n" for k in range(8))
 MODE = "x,y,dx,dy\n" + "".join(f"{0.1 * k},0,0,{0.001 * k * k}\n" for k in range(11))
 PLAIN = MARCH.replace("plunge = 0.1", "{}").replace("period = 4.0\n", "")
@@ -81,6 +113,8 @@ INPUTS = {
     "case": ({"case.toml": SECTION}, "case.toml"),
     "moving case": ({"case.toml": MARCH}, "case.toml"),
     "airfoil": ({"case.toml": STREAM + '[[body]]\nairfoil = "a.dat"\n' + SMALL, "a.dat": airfoil()}, "a.dat"),
+    "aircraft": ({"case.toml": AIRCRAFT, "a.dat": airfoil()}, "case.toml"),
+    "fin": ({"case.toml": AIRCRAFT, "a.dat": airfoil()}, "a.dat"),
     "stl": ({"case.toml": SPACE.format("a.stl"), "a.stl": stl_text()}, "a.stl"),
     "binary stl": ({"case.toml": SPACE.format("a.stl"), "a.stl": stl_binary()}, "a.stl"),
     "obj": ({"case.toml": SPACE.format("a.obj"), "a.obj": obj()}, "a.obj"),
@@ -231,9 +265,9 @@ def prepare_runs(program, home):
         (folder / "run" / "finished.txt").unlink(missing_ok=True)
 
 
-def one(program, runs, place, rng):
+def one(program, runs, place, rng, only=None):
     """Makes one input in `place`; kind, and how the program ended."""
-    kind = rng.choice(sorted(INPUTS) + ["checkpoint"] * 3)
+    kind = only or rng.choice(sorted(INPUTS) + ["checkpoint"] * 3)
     if kind == "checkpoint":
         start = rng.choice(sorted(STARTS))
         shutil.copytree(runs / start, place, dirs_exist_ok=True)
@@ -254,6 +288,7 @@ def main():
     parser.add_argument("alula")
     parser.add_argument("--count", type=int, default=10_000)
     parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--only", choices=sorted(INPUTS), help="mutate inputs of this kind alone")
     args = parser.parse_args()
     program = str(pathlib.Path(args.alula).resolve())
     home = pathlib.Path(tempfile.mkdtemp(prefix="alula-mutate-"))
@@ -262,7 +297,7 @@ def main():
     for k in range(args.count):
         place = home / f"{args.seed}-{k}"
         place.mkdir()
-        kind, (code, told) = one(program, home / "runs", place, random.Random(f"{args.seed} {k}"))
+        kind, (code, told) = one(program, home / "runs", place, random.Random(f"{args.seed} {k}"), args.only)
         codes[code] = codes.get(code, 0) + 1
         if code in GOOD_CODES:
             shutil.rmtree(place)
