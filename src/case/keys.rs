@@ -138,7 +138,8 @@ static FLOW: Table = Table::of(&[
         Kind::Values(&ANGLE),
         Absent::Number(0.0),
         "Angle of attack, nose up positive: the flow turns from +x towards +y in 2-D, towards +z in 3-D. Several, \
-          `\"-4:8:1 deg\"`, make a polar: one run through all of them, at every Mach number of `mach`.",
+          `\"-4:8:1 deg\"` or `[-2, 0, 2, 4]`, make a polar: one run through all of them, at every Mach number of `mach`. \
+          Several without a unit are degrees.",
     )
     .known_as(&["aoa", "angle", "angle_of_attack", "incidence"]),
     Field::defaulted("beta", ANGLE, Absent::Number(0.0), "Sideslip angle, 3-D only: the flow turns towards +y."),

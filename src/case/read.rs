@@ -142,18 +142,16 @@ impl Reader<'_> {
         Some(if read.len() == 1 { read[0].clone() } else { Value::Array(read) })
     }
 
-    /// The values of a list; the unit of the last one serves those without.
+    /// The values of a list; the unit of the last one serves those without, and where none has one the usual unit serves all.
     fn listed(&mut self, one: &'static Kind, items: &[Item<'_>], whole: &Item<'_>, path: &str) -> Option<Vec<Value>> {
         let Some(last) = items.last() else {
             let message = format!("`{path}` has no values");
             self.draft.fail_at(path, whole.span(), message).allowed("one value or more");
             return None;
         };
-        let unit = last.get_ref().as_str().map_or("", |text| polar::split(text).1).to_owned();
-        let numbers: Option<Vec<f64>> = items.iter().map(|item| number(item.get_ref())).collect();
-        if let Some(error) = numbers.and_then(|all| missing_unit(one, &all)) {
-            return self.no_unit(one, &error, whole, path);
-        }
+        let plain = items.iter().all(|item| number(item.get_ref()).is_some());
+        let last = last.get_ref().as_str().map_or("", |text| polar::split(text).1);
+        let unit = if plain { one.usual_unit() } else { last }.to_owned();
         let read = items.iter().enumerate().map(|(i, item)| {
             let here = format!("{path}[{i}]");
             match number(item.get_ref()).filter(|_| !unit.is_empty()) {
@@ -174,22 +172,11 @@ impl Reader<'_> {
                 return None;
             }
         };
-        let numbers: Option<Vec<f64>> = texts.iter().map(|t| t.parse().ok()).collect();
-        if let Some(error) = numbers.and_then(|all| missing_unit(one, &all)) {
-            return self.no_unit(one, &error, item, path);
-        }
-        let read = texts.iter().enumerate().map(|(i, t)| self.text_value(one, t, item, &format!("{path}[{i}]")));
+        let unit = if texts.iter().all(|t| t.parse::<f64>().is_ok()) { one.usual_unit() } else { "" };
+        let whole = |text: &String| format!("{text} {unit}").trim().to_owned();
+        let read = texts.iter().map(whole).enumerate();
+        let read = read.map(|(i, t)| self.text_value(one, &t, item, &format!("{path}[{i}]")));
         read.collect::<Vec<_>>().into_iter().collect()
-    }
-
-    /// Tells that several values lack a unit.
-    fn no_unit(&mut self, one: &Kind, error: &str, item: &Item<'_>, path: &str) -> Option<Vec<Value>> {
-        let Kind::Quantity(dimension, _) = one else { return None };
-        let written = self.draft.source(item.span());
-        let written = written.trim_matches(['[', ']', '"', '\'', ' ']);
-        let hint = format!("write `\"{written} {}\"` with one of the units {}", dimension.usual(), dimension.symbols());
-        self.draft.fail_at(path, item.span(), format!("`{path}`: {error}")).allowed(one.words()).hint(hint);
-        None
     }
 
     /// A number or a quantity that is given as text.
@@ -410,12 +397,6 @@ impl Reader<'_> {
         let hint = format!("add `{}` ({}): {}", field.key, field.kind.words(), lower(field.doc));
         self.draft.fail(&place, message).hint(hint);
     }
-}
-
-/// What is wrong with the first of several plain numbers that should have a unit.
-fn missing_unit(one: &Kind, numbers: &[f64]) -> Option<String> {
-    let Kind::Quantity(dimension, _) = one else { return None };
-    numbers.iter().find_map(|x| dimension.plain(*x).err()).map(|e| e.to_string())
 }
 
 /// The number that `value` is, if it is one; infinities and NaN count, so that their range error is told.

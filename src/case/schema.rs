@@ -281,6 +281,11 @@ impl Variant {
 }
 
 impl Kind {
+    /// The unit that serves several values of which none has one.
+    pub(super) fn usual_unit(&self) -> &'static str {
+        if let Self::Quantity(dimension, _) = self { dimension.usual() } else { "" }
+    }
+
     /// What may be written, in words.
     pub(super) fn words(&self) -> String {
         let with = |what: String, range: &Range| match range.words() {

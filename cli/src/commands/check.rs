@@ -1,7 +1,7 @@
 //! `alula check`.
 use std::path::{Path, PathBuf};
 
-use alula::case::{Case, write};
+use alula::case::{Angle, Case, write};
 use alula::run;
 use serde_json::{Value, json};
 
@@ -35,9 +35,23 @@ pub(crate) fn check(args: &arguments::Check) -> Outcome {
     }
 }
 
-/// How many points a polar has; nothing for a single flow.
+/// The points of a polar; nothing for a single flow.
 fn points(case: &Case) -> String {
     let Some(polar) = &case.polar else { return String::new() };
-    let (all, angles) = (polar.len(), polar.angles());
-    format!("polar          {all} points: {angles} angles at {} Mach numbers\n", all / angles)
+    let or = |list: Vec<f64>, one: Option<f64>| if list.is_empty() { one.into_iter().collect() } else { list };
+    let angles = or(polar.alpha.iter().map(Angle::degrees).collect(), Some(case.flow.alpha.degrees()));
+    let machs = or(polar.mach.clone(), case.flow.mach);
+    let at = if machs.is_empty() { String::new() } else { format!(", Mach {}", series(&machs)) };
+    format!("polar          {} points: {} deg{at}\n", polar.len(), series(&angles))
+}
+
+/// The values of a list; of a long one the first and the last.
+fn series(values: &[f64]) -> String {
+    /// Most values that are written out.
+    const MOST: usize = 6;
+    let all = |part: &[f64]| part.iter().map(f64::to_string).collect::<Vec<_>>().join(", ");
+    match values {
+        [first @ .., last] if values.len() > MOST => format!("{}, ..., {last}", all(&first[..2])),
+        _ => all(values),
+    }
 }
