@@ -16,6 +16,9 @@ impl Saved {
         let known = self.stage < self.stages.len() && self.stages.len() <= MOST_STAGES;
         require(known, "its stage is not among its stages")?;
         require(self.stages.iter().all(|s| is_of(case, s)), "its stages are not those of the case")?;
+        // a state of several instants never becomes one of fewer
+        let grows = self.stages.windows(2).all(|w| w[0].instances() <= w[1].instances());
+        require(grows, "its stages are in another order than those of the case")?;
         let (arrays, numbers) = self.reals();
         require(arrays.iter().all(|a| a.iter().all(|x| x.is_finite())), "a field holds what is not a finite number")?;
         require(!numbers.iter().any(|x| x.is_nan()) && self.time.is_finite(), "a number is not one")?;
