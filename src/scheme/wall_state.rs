@@ -19,8 +19,11 @@ use crate::physics::{Gas, Primitive};
 const FLOOR: f64 = 0.2;
 /// Rounds that settle the pressure on a slip wall, whose density follows it at constant entropy.
 const ROUNDS: usize = 3;
-/// Terms of the Neumann series of (I − B K)⁻¹: B K is small, spacing over radius of curvature.
+/// Terms of the Neumann series of (I − B K)⁻¹: B K is small, spacing over radius of curvature, and at most half ([`tempered`]).
 const TERMS: usize = 6;
+/// k of [`tempered`] for the slope of the speed and that of the pressure.
+const OF_SPEED: f64 = 2.0;
+const OF_PRESSURE: f64 = 2.9;
 /// Most of its pressure by which the acceleration of a wall may push the gas on it.
 const MOST_INERTIA: f64 = 0.5;
 
@@ -67,7 +70,7 @@ pub fn slip_wall<const D: usize, S: Scalar>(
         let turned = Vector::from_fn(|i| m.wall_velocity_gradient[i].dot(&relative));
         wall.normal.dot(&turned) * 2.0 + wall.normal.dot(&m.acceleration)
     });
-    let pull = wall.offset * (bending(wall, &relative) - inertia);
+    let pull = wall.offset * (bending(wall, &relative) * tempered(wall, OF_PRESSURE) - inertia);
     let (s, floor) = (s.max(lowest[1] * FLOOR), lowest[0] * FLOOR);
     let density = |p: S| (p / s).powf(1.0 / gas.gamma);
     let mut pressure = p.max(floor);
@@ -114,8 +117,22 @@ fn sliding<const D: usize, S: Scalar>(wall: &Wall<D, S>, v: &Vector<D, S>) -> Ve
     };
     let slope = wall.motion.as_ref().map_or(Vector::zero(), turning);
     let along = along_wall(&(*v - wall.velocity - slope * wall.offset), &wall.normal);
-    let bent = |u: &Vector<D, S>| Vector::from_fn(|r| wall.offset * wall.curvature[r].dot(u));
+    let reach = wall.offset * tempered(wall, OF_SPEED);
+    let bent = |u: &Vector<D, S>| Vector::from_fn(|r| reach * wall.curvature[r].dot(u));
     (0..TERMS).fold(along, |u, _| along_wall(&(along + bent(&u)), &wall.normal))
+}
+
+/// Factor on the curvature where a wall is bent within a spacing, and 1 where it is not.
+///
+/// The slope on the wall, κ u, holds on the wall alone: round a cylinder u = u_w (1 + 1/(1 + κn)²)/2, which falls to half and no
+/// further. A fit through particles at h/2 and 3h/2 finds u_w of that flow within 2 % for any radius, and its p_w within 8 %, when
+/// the slope is taken (1 + (k x)^(3/2))^(−2/3) times, x = B κ; without, it finds any speed at all where x nears 1.
+fn tempered<const D: usize, S: Scalar>(wall: &Wall<D, S>, k: f64) -> S {
+    let one = S::constant(1.0);
+    let square = wall.curvature.iter().fold(S::constant(0.0), |sum, row| sum + row.dot(row));
+    let x2 = square * wall.offset * wall.offset * (k * k);
+    // a flat wall has no derivative of a root
+    if x2.value() > 0.0 { (x2.powf(0.75) + one).powf(-2.0 / 3.0) } else { one }
 }
 
 /// r·K r.
@@ -151,6 +168,33 @@ mod tests {
         };
         let front = [(1.2, state(1.0, 1.0, 0.7)), (0.3, state(1.1, 0.9, 0.75)), (-0.5, state(0.9, 1.2, 0.65))];
         (wall, front.map(|(weight, q)| (S::constant(weight), q)))
+    }
+
+    /// Wall state of the flow round a cylinder of radius `r` spacings at the height of its greatest speed, from the two
+    /// particles above it.
+    fn on_cylinder(r: f64) -> Primitive<2> {
+        let front = [0.5, 1.5].map(|n: f64| {
+            let u = 0.01 * (1.0 + (r / (r + n)).powi(2)) / 2.0;
+            Primitive { density: 1.0, velocity: Vector([u, 0.0]), pressure: 1.0 / 1.4 - u * u / 2.0 }
+        });
+        let wall = Wall {
+            normal: Vector([0.0, 1.0]),
+            curvature: [Vector([1.0 / r, 0.0]), Vector::ZERO],
+            offset: 0.375,
+            velocity: Vector::ZERO,
+            motion: None,
+        };
+        slip_wall(&AIR, &wall, [1.125, -0.125].into_iter().zip(front))
+    }
+
+    #[test]
+    fn walls_of_any_radius_have_the_speed_and_pressure_of_the_flow_round_a_cylinder() {
+        for r in [1e-3, 0.03, 0.3, 0.6, 1.0, 2.0, 5.0, 20.0, 1e3] {
+            let q = on_cylinder(r);
+            let (u, p) = (q.velocity[0] / 0.01, (q.pressure - 1.0 / 1.4) / 0.5e-4);
+            assert!((u - 1.0).abs() < 0.02 && (p + 1.0).abs() < 0.08, "{r}: {u} {p}");
+        }
+        assert!((on_cylinder(40.0).velocity[0] / 0.01 - 1.0).abs() < 2e-5);
     }
 
     fn states<S: Scalar>(speed: S) -> [[S; 4]; 3] {
