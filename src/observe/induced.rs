@@ -127,7 +127,7 @@ mod tests {
         let load = |[a, b]: &[f64; 2]| Wrench { force: [0.0, 0.0, of(*a, *b)], moment: [0.0; 3] };
         let loads: Vec<Wrench> = ends.iter().map(load).collect();
         let sides: Vec<Side> = vec![side(&ends, &vec![[Section::default(); 2]; n], &loads)];
-        Strips { body: "wing".into(), span: Span::Lying, lifting: true, middle: 0.0, sides }
+        Strips { body: "wing".into(), span: Span::Lying, lifting: true, sides }
     }
 
     fn axes(area: f64, dynamic: f64) -> LoadAxes {

@@ -1,9 +1,9 @@
 //! Loads along the span: strips of a body across its span, and what the strips outboard of a station do to the section there.
 //!
-//! A piece of wall at s along the span stands for a stretch of it. Its force is shared among strips as a hat of that half width,
-//! ∫ (1 − |t − s|/r)/r dt, so that nothing is lost or made: strips add up to the body, whatever their width. A share acts in the
-//! middle of its stretch, all of them together where the piece is, so that moments add up too. Part of a hat beyond the ends of the
-//! body goes to the strips inside.
+//! A piece of wall at s along the span stands for a stretch of it. Its force is shared among strips as a hat of half width r, 3/2 of
+//! that stretch, ∫ (1 − |t − s|/r)/r dt, so that nothing is lost or made: strips add up to the body, whatever their width. A share acts in the
+//! middle of its stretch, all of them together where the piece is, so that moments add up too. What of a hat is beyond the ends
+//! of the body is folded back.
 //!
 //! Up is z for wings and y for fins. At the inner end of a strip, over all strips from there outwards,
 //!
@@ -14,7 +14,9 @@ use serde::Serialize;
 use super::loads::{Coefficients, Load, LoadAxes};
 
 /// Width of strips in mean extents of pieces along the span.
-const WIDTH: f64 = 1.5;
+const WIDTH: f64 = 2.0;
+/// Half width of hats in extents of pieces.
+const REACH: f64 = 1.5;
 /// Most strips from root to tip.
 const MOST: f64 = 100.0;
 /// Smallest extent of a piece, in widths of strips.
@@ -93,8 +95,6 @@ pub struct Strips {
     pub span: Span,
     /// True for wings and fins, false for what is as high as it is wide.
     pub lifting: bool,
-    /// Plane of symmetry along the span.
-    pub middle: f64,
     /// One or two sides.
     pub sides: Vec<Side>,
 }
@@ -215,7 +215,7 @@ impl Strip {
 }
 
 impl Strips {
-    /// Strips from one tip to the other with the name of the way inward: ascending along the span.
+    /// All strips, ascending along the span.
     pub fn across(&self) -> Vec<&Strip> {
         let mut all: Vec<&Strip> = self.sides.iter().flat_map(|side| &side.strips).collect();
         all.sort_by(|a, b| a.middle().total_cmp(&b.middle()));
@@ -266,30 +266,68 @@ pub fn divide(pieces: &[Piece], [inner, outer]: [f64; 2]) -> Vec<[f64; 2]> {
     (0..n as usize).map(|k| [at(k as f64), at(k as f64 + 1.0)]).collect()
 }
 
-/// Loads of the strips with these ends: what each piece shares among them.
-pub fn shares(pieces: &[Piece], ends: &[[f64; 2]], span: Span) -> Vec<Wrench> {
-    let mut loads = vec![Wrench::default(); ends.len()];
-    let narrowest = ends.iter().map(|e| (e[1] - e[0]).abs()).fold(f64::INFINITY, f64::min);
-    let mut part: Vec<[f64; 2]> = Vec::with_capacity(ends.len());
+/// Loads of the strips of sides with these ends: what each piece shares among them.
+pub fn shares(pieces: &[Piece], sides: &[Vec<[f64; 2]>], span: Span) -> Vec<Vec<Wrench>> {
+    let strips: Vec<StripEnds> = sides.iter().flat_map(|side| strip_ends(side, sides)).collect();
+    let mut loads = vec![Wrench::default(); strips.len()];
+    let narrowest = strips.iter().map(|s| s.high - s.low).fold(f64::INFINITY, f64::min);
+    let mut parts: Vec<[f64; 2]> = Vec::with_capacity(strips.len());
     for piece in pieces {
-        let reach = piece.extent.max(THINNEST * narrowest);
-        part.clear();
-        part.extend(ends.iter().map(|e| share(piece.station, reach, [e[0].min(e[1]), e[0].max(e[1])])));
-        let total: f64 = part.iter().map(|p| p[0]).sum();
+        let reach = (REACH * piece.extent).max(THINNEST * narrowest);
+        parts.clear();
+        parts.extend(strips.iter().map(|strip| strip.share(piece.station, reach)));
+        let total: f64 = parts.iter().map(|p| p[0]).sum();
         if total <= 0.0 {
-            let away = |e: &[f64; 2]| (f64::midpoint(e[0], e[1]) - piece.station).abs();
-            let nearest = (0..ends.len()).min_by(|a, b| away(&ends[*a]).total_cmp(&away(&ends[*b])));
+            let away = |s: &StripEnds| (f64::midpoint(s.low, s.high) - piece.station).abs();
+            let nearest = (0..strips.len()).min_by(|a, b| away(&strips[*a]).total_cmp(&away(&strips[*b])));
             nearest.into_iter().for_each(|k| loads[k].add(&piece.x, &piece.force));
             continue;
         }
-        let centre = part.iter().map(|p| p[1]).sum::<f64>() / total;
-        for (load, [weight, first]) in loads.iter_mut().zip(&part).filter(|(_, p)| p[0] > 0.0) {
+        let centre = parts.iter().map(|p| p[1]).sum::<f64>() / total;
+        for (load, [weight, first]) in loads.iter_mut().zip(&parts).filter(|(_, p)| p[0] > 0.0) {
             let mut x = piece.x;
             x[span.axis()] += first / weight - centre;
             load.add(&x, &piece.force.map(|f| f * (weight / total)));
         }
     }
-    loads
+    let mut loads = loads.into_iter();
+    sides.iter().map(|side| loads.by_ref().take(side.len()).collect()).collect()
+}
+
+/// A strip that hats are cut to.
+struct StripEnds {
+    low: f64,
+    high: f64,
+    /// From where to where its side goes.
+    side: [f64; 2],
+    /// Ends of the body on its side, beyond which hats are folded back.
+    folds: [Option<f64>; 2],
+}
+
+/// The strips of one side of all `sides`: where one goes on in the other no body ends.
+fn strip_ends(side: &[[f64; 2]], sides: &[Vec<[f64; 2]>]) -> Vec<StripEnds> {
+    let (Some([inner, _]), Some([_, outer])) = (side.first(), side.last()) else { return Vec::new() };
+    let joined = sides.iter().filter(|s| s.first().is_some_and(|e| e[0] == *inner)).count() > 1;
+    let folds = [Some(*inner).filter(|_| !joined), Some(*outer)];
+    let strip = |e: &[f64; 2]| StripEnds {
+        low: e[0].min(e[1]),
+        high: e[0].max(e[1]),
+        side: [inner.min(*outer), inner.max(*outer)],
+        folds,
+    };
+    side.iter().map(strip).collect()
+}
+
+impl StripEnds {
+    /// Part of the hat around `s` that lies in the strip or is folded back into it, and its first moment about `s`.
+    fn share(&self, s: f64, reach: f64) -> [f64; 2] {
+        let own = share(s, reach, [self.low, self.high]);
+        let beside = self.side[0] <= s && s <= self.side[1];
+        self.folds.iter().flatten().filter(|_| beside).fold(own, |[weight, first], end| {
+            let [back, moment] = share(s, reach, [2.0 * end - self.high, 2.0 * end - self.low]);
+            [weight + back, first + 2.0 * (end - s) * back - moment]
+        })
+    }
 }
 
 /// Strips of one side from their ends, sections and loads.
@@ -345,7 +383,7 @@ mod tests {
 
     fn strips_of(pieces: &[Piece], ends: &[[f64; 2]]) -> Side {
         let section = Section { chord: 1.0, quarter: [0.25, 0.0, 0.0] };
-        side(ends, &vec![[section; 2]; ends.len()], &shares(pieces, ends, Span::Lying))
+        side(ends, &vec![[section; 2]; ends.len()], &shares(pieces, &[ends.to_vec()], Span::Lying)[0])
     }
 
     #[test]
@@ -356,9 +394,7 @@ mod tests {
         let ends = divide(&pieces, [0.0, 1.0]);
         assert!(ends.len() > 20 && ends[0][0] == 0.0 && (ends[ends.len() - 1][1] - 1.0).abs() < 1e-15);
         let side = strips_of(&pieces, &ends);
-        let sum =
-            Strips { body: String::new(), span: Span::Lying, lifting: true, middle: 0.0, sides: vec![side.clone()] }
-                .whole();
+        let sum = Strips { body: String::new(), span: Span::Lying, lifting: true, sides: vec![side.clone()] }.whole();
         for d in 0..3 {
             assert!((sum.force[d] - whole.force[d]).abs() < 1e-14, "{sum:?} {whole:?}");
             assert!((sum.moment[d] - whole.moment[d]).abs() < 1e-14, "{sum:?} {whole:?}");
@@ -386,12 +422,11 @@ mod tests {
     fn both_sides_are_bent_up_by_lift() {
         let pieces: Vec<Piece> = elliptic(40).into_iter().chain(elliptic(40).into_iter().map(mirrored)).collect();
         let ends = [divide(&pieces, [0.0, -1.0]), divide(&pieces, [0.0, 1.0])];
-        let all: Vec<[f64; 2]> = ends.concat();
-        let loads = shares(&pieces, &all, Span::Lying);
+        let loads = shares(&pieces, &ends, Span::Lying);
         let n = ends[0].len();
         let section = [[Section::default(); 2]; 100];
-        let left = side(&ends[0], &section[..n], &loads[..n]).strips[0].internal(Span::Lying);
-        let right = side(&ends[1], &section[..n], &loads[n..]).strips[0].internal(Span::Lying);
+        let left = side(&ends[0], &section[..n], &loads[0]).strips[0].internal(Span::Lying);
+        let right = side(&ends[1], &section[..n], &loads[1]).strips[0].internal(Span::Lying);
         assert!((left.bending - right.bending).abs() < 1e-12 && left.bending > 0.4, "{left:?} {right:?}");
         assert!((left.torsion - right.torsion).abs() < 1e-12);
     }
@@ -405,7 +440,7 @@ mod tests {
         let piece = Piece { station: 0.5, extent: 0.1, x: [1.0, 0.0, 0.5], force: [0.0, 2.0, 0.0] };
         let ends = [[0.0, 1.0]];
         let section = Section { chord: 1.0, quarter: [0.0; 3] };
-        let fin = side(&ends, &[[section; 2]], &shares(&[piece], &ends, Span::Upright));
+        let fin = side(&ends, &[[section; 2]], &shares(&[piece], &[ends.to_vec()], Span::Upright)[0]);
         assert_eq!(fin.strips[0].internal(Span::Upright), Internal { shear: 2.0, bending: 1.0, torsion: -2.0 });
     }
 }

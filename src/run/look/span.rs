@@ -87,18 +87,11 @@ fn of_body<const D: usize>(
     let stretches = stretches(surface, body, span, middle);
     let ends: Vec<Vec<[f64; 2]>> =
         stretches.into_iter().map(|s| divide(&pieces, s)).filter(|e| !e.is_empty()).collect();
-    let loads = shares(&pieces, &ends.concat(), span);
-    let mut loads = &loads[..];
-    let sides: Vec<Side> = ends
-        .iter()
-        .map(|ends| {
-            let (own, rest) = loads.split_at(ends.len());
-            loads = rest;
-            side(ends, &sections(surface, body, axis, ends), own)
-        })
-        .collect();
+    let loads = shares(&pieces, &ends, span);
+    let sides: Vec<Side> =
+        ends.iter().zip(&loads).map(|(ends, own)| side(ends, &sections(surface, body, axis, ends), own)).collect();
     let lifting = above.max(side_on) > FLAT * above.min(side_on);
-    (!sides.is_empty()).then(|| Strips { body: name.to_owned(), span, lifting, middle, sides })
+    (!sides.is_empty()).then(|| Strips { body: name.to_owned(), span, lifting, sides })
 }
 
 /// Inner and outer end of each side of a body.

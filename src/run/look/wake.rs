@@ -1,18 +1,19 @@
 //! Lift and drag from the wake of bodies in a steady subsonic stream: what far-field methods see in a plane behind them.
 //!
-//! With the stream U along e_D and q = (v·e_D), Oswatitsch's part of the drag is what entropy s and total enthalpy H of the gas that
-//! passes a plane with the normal n have lost,
+//! With the stream U along e_D, Oswatitsch's part of the drag is what the entropy of the gas that passes a plane with the normal n takes,
 //!
-//! D_s = ∫ ρ (v·n)(U − ū) dS, ū² = U² + 2ΔH − 2a²/(γ − 1) ((K/K∞)^(1/γ) − 1), K = p/ρ^γ,
+//! D_s = ∫ ρ (v·n)(U − ū) dS, ū² = U² − 2a²/(γ − 1) ((K/K∞)^(1/γ) − 1), K = p/ρ^γ,
 //!
-//! where ū is the speed that the gas would have at the pressure of the free stream (van der Vooren and Destarac 2004). The rest is
-//! induced drag; with v' = v − ū e_D and its part u' along e_D it is to second order
+//! where ū is the speed that the gas would have at the pressure of the free stream (van der Vooren and Destarac 2004); total enthalpy is
+//! that of the free stream. The rest is induced drag; with v' = v − ū e_D and its part u' along e_D it is to second order
 //!
 //! D_i = ρ∞ ∫ [(n·e_D)(v'·v' + M² u'²)/2 − (v'·n) u'] dS,
 //!
 //! which for n = e_D is Maskell's (1972) crossflow energy ρ∞/2 ∫ (v² + w² − (1 − M²) u²) dS and does not depend on the distance from
-//! the body. Lift is that of the vorticity ω of the wake at y along the span, L = ρ∞ U ∫ y ω·n dS (Kutta and Joukowski).
-//! A captured wake decays: its crossflow becomes entropy, so that the sum of both drags stays.
+//! the body. Lift is that of the vorticity ω of the wake at y along the span, L = ρ∞ U ∫ y ω·n dS (Kutta and Joukowski), the
+//! circulation around tiles of the plane. The wake is looked for near the bodies alone: far away particles are wide apart, and what
+//! rounding leaves there adds up over large areas. A captured wake decays: its crossflow becomes entropy, so that the sum of both
+//! drags stays.
 use serde::Serialize;
 
 use super::momentum::tile;
@@ -27,6 +28,9 @@ use crate::scheme::probe::{Near, Probe};
 /// Distances of the planes behind the bodies in reference chords.
 const DISTANCES: [f64; 3] = [0.5, 0.75, 1.0];
 
+/// How far beyond the bodies across the stream the wake is looked for, in reference chords.
+const MARGIN: f64 = 1.2;
+
 /// Lift and drag from one plane behind the bodies.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct WakePlane {
@@ -38,7 +42,7 @@ pub struct WakePlane {
     pub cl: f64,
     /// Induced drag coefficient.
     pub cd_induced: f64,
-    /// Drag coefficient of entropy and total enthalpy.
+    /// Drag coefficient of entropy: shocks, and what the scheme loses.
     pub cd_entropy: f64,
     /// Sum of both.
     pub cd: f64,
@@ -53,8 +57,10 @@ pub(crate) fn wake_planes<const D: usize>(
 ) -> Vec<WakePlane> {
     let mach = free.velocity.norm();
     let Some(surface) = surface.filter(|_| D == 3 && 0.0 < mach && mach < 1.0) else { return Vec::new() };
-    let (rear, domain) = (surface.bounds().max[0], view.reference().tree.bounds());
-    let wake = Wake { view, probe: Probe::new(*view, None), free, mach, axes };
+    let (bodies, domain) = (surface.bounds(), view.reference().tree.bounds());
+    let rear = bodies.max[0];
+    let near = bodies.padded(MARGIN * axes.chord);
+    let wake = Wake { view, probe: Probe::new(*view, None), free, mach, axes, near };
     let inside = |distance: &f64| rear + distance * axes.chord < domain.max[0];
     DISTANCES.into_iter().filter(inside).map(|d| wake.plane(d, rear + d * axes.chord, &domain)).collect()
 }
@@ -66,6 +72,8 @@ struct Wake<'a, const D: usize> {
     free: &'a Primitive<D>,
     mach: f64,
     axes: &'a LoadAxes,
+    /// Where the wake is looked for, across the stream.
+    near: Bounds<D>,
 }
 
 impl<const D: usize> Wake<'_, D> {
@@ -93,18 +101,19 @@ impl<const D: usize> Wake<'_, D> {
         let area = extent[1] * extent[2];
         let drags = [a, b, c, d].iter().map(|q| self.drags(q)).fold([0.0; 2], |s, d| [s[0] + d[0], s[1] + d[1]]);
         let lift = self.free.density * self.mach * middle[1] * circulation;
-        Some([lift, 0.25 * area * drags[0], 0.25 * area * drags[1]])
+        let inside = (1..D).all(|d| self.near.min[d] < middle[d] && middle[d] < self.near.max[d]);
+        let wake = if inside { [lift, 0.25 * area * drags[1]] } else { [0.0; 2] };
+        Some([wake[0], 0.25 * area * drags[0], wake[1]])
     }
 
     /// Induced drag and drag of entropy for a unit of area.
     fn drags(&self, q: &Primitive<D>) -> [f64; 2] {
         let (gas, free, mach) = (&self.view.fluid.gas, self.free, self.mach);
         let along = Vector::<D>::from_fn(|d| self.axes.drag[d]);
-        let enthalpy = gas.total_enthalpy(q) - gas.total_enthalpy(free);
         let sound2 = gas.sound_speed(free).powi(2);
         // at the pressure of the free stream the temperature has grown as exp((γ−1)/γ Δs/R)
         let warmer = (gas.entropy(q) / gas.entropy(free)).powf(1.0 / gas.gamma) - 1.0;
-        let left = (mach * mach + 2.0 * enthalpy - 2.0 * sound2 / (gas.gamma - 1.0) * warmer).max(0.0).sqrt();
+        let left = (mach * mach - 2.0 * sound2 / (gas.gamma - 1.0) * warmer).max(0.0).sqrt();
         let rest = q.velocity - along * left;
         let u = rest.dot(&along);
         let induced = 0.5 * along[0] * (rest.norm_squared() + mach * mach * u * u) - rest[0] * u;
