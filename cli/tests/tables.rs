@@ -93,7 +93,7 @@ fn strips_of_an_aircraft_add_up_to_the_loads_of_its_parts() {
         "[flow]\nmach = 0.4\nalpha = \"3 deg\"\n{air}\n\
          [[body]]\nname = \"wing\"\nwing = {{ naca = \"0012\", span = \"5 m\", chord = \"1 m\", taper = 0.5, sweep = \"20 deg\" }}\n\
          [[body]]\nname = \"fin\"\nwing = {{ naca = \"0012\", span = \"1.5 m\", chord = \"1 m\", sides = \"one\", dihedral = \"90 deg\" }}\n\
-         translate = [3, 0, 0]\n[cloud]\nspacing = \"0.25 m\"\nfar_field = \"16 m\"\n[time.steady]\niterations = 4\n"
+         translate = [3, 0, 0]\n[cloud]\nspacing = \"0.25 m\"\nedge_levels = 0\ncurvature_levels = 0\nfar_field = \"16 m\"\n[time.steady]\niterations = 4\n"
     );
     let folder = tempfile::tempdir().unwrap();
     let out = run(folder.path(), "run", &case);

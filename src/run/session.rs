@@ -389,8 +389,10 @@ impl Run<'_> {
         let balance = momentum::around(self.case, &log.axes, gas, &mut work, self.case.is_unsteady());
         let view = gas.seen(&mut work);
         let (axes, names) = (log.axes.axes(&view), Names::of(surface));
-        let still = !self.case.is_unsteady();
-        let wake = still.then(|| wake_planes(&view, surface, &free_stream(self.case), &axes)).unwrap_or_default();
+        let wake = match self.case.is_unsteady() {
+            true => Vec::new(),
+            false => wake_planes(&view, surface, &free_stream(self.case), &axes),
+        };
         let strips = span_loads(self.case, &view, surface, &axes);
         let span_load = span_load(self.case, &view, &strips, &axes);
         let found = Found { case: self.case, view, surface, axes, names, balance, strips, span_load, wake };
