@@ -23,7 +23,10 @@ const PROMISED: [&str; 13] = [
     "ledger",
 ];
 /// What it may add.
-const EXTRA: [&str; 24] = [
+const EXTRA: [&str; 27] = [
+    "root_loads",
+    "span_load",
+    "wake_planes",
     "warnings",
     "polar",
     "work_units",

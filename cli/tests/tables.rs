@@ -1,7 +1,7 @@
 //! Tables that programs read by name, and what is told of their columns.
 #![allow(clippy::unwrap_used, reason = "it may stop anywhere")]
 use std::collections::BTreeSet;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::Command;
 
 use serde_json::Value;
@@ -12,14 +12,19 @@ const SECTION: &str =
 /// Runs a case into `out`; names of its tables, all columns of which are described.
 fn tables_of(command: &str, case: &str) -> BTreeSet<String> {
     let folder = tempfile::tempdir().unwrap();
-    std::fs::write(folder.path().join("case.toml"), format!("{case}\n{SECTION}")).unwrap();
+    described(&run(folder.path(), command, &format!("{case}\n{SECTION}")))
+}
+
+/// Runs a case in a folder; the folder of the run.
+fn run(folder: &Path, command: &str, case: &str) -> PathBuf {
+    std::fs::write(folder.join("case.toml"), case).unwrap();
     let run = Command::new(env!("CARGO_BIN_EXE_alula"))
         .args([command, "case.toml", "--out", "out", "--quiet"])
-        .current_dir(folder.path())
+        .current_dir(folder)
         .output()
         .unwrap();
     assert!(matches!(run.status.code(), Some(0 | 1)), "{}", String::from_utf8_lossy(&run.stderr));
-    described(&folder.path().join("out"))
+    folder.join("out")
 }
 
 fn described(out: &Path) -> BTreeSet<String> {
@@ -71,4 +76,44 @@ fn every_column_of_a_structure_has_its_unit() {
         x_alpha = 0.25\nr_alpha2 = 0.75\nfrequency_ratio = 0.5\nspeed_index = 0.65\ninitial = { plunge = 0.01 }\n\
         [time.dual]\nstep = 1.0\nuntil = 3.0";
     has(&tables_of("run", springs), &["structure.csv"]);
+}
+
+/// A column of numbers of the rows of a table whose first entry is `body`.
+fn column(table: &Path, name: &str, body: &str) -> Vec<f64> {
+    let text = std::fs::read_to_string(table).unwrap();
+    let at = text.lines().next().unwrap().split(',').position(|n| n == name).unwrap();
+    let rows = text.lines().skip(1).map(|l| l.split(',').collect::<Vec<_>>()).filter(|r| r[0] == body);
+    rows.map(|r| r[at].parse().unwrap()).collect()
+}
+
+#[test]
+fn strips_of_an_aircraft_add_up_to_the_loads_of_its_parts() {
+    let air = "pressure = \"1 atm\"\ntemperature = \"15 degC\"";
+    let case = format!(
+        "[flow]\nmach = 0.4\nalpha = \"3 deg\"\n{air}\n\
+         [[body]]\nname = \"wing\"\nwing = {{ naca = \"0012\", span = \"5 m\", chord = \"1 m\", taper = 0.5, sweep = \"20 deg\" }}\n\
+         [[body]]\nname = \"fin\"\nwing = {{ naca = \"0012\", span = \"1.5 m\", chord = \"1 m\", sides = \"one\", dihedral = \"90 deg\" }}\n\
+         translate = [3, 0, 0]\n[cloud]\nspacing = \"0.25 m\"\nedge_levels = 0\ncurvature_levels = 0\nfar_field = \"16 m\"\n[time.steady]\niterations = 4\n"
+    );
+    let folder = tempfile::tempdir().unwrap();
+    let out = run(folder.path(), "run", &case);
+    has(&described(&out), &["strips.csv"]);
+    for body in ["wing", "fin"] {
+        for name in ["cl", "cd", "cm", "fx", "fy", "fz"] {
+            let [strips, whole] = ["strips.csv", "loads.csv"].map(|table| column(&out.join(table), name, body));
+            let size: f64 = strips.iter().map(|v| v.abs()).sum();
+            let apart = strips.iter().sum::<f64>() - whole.iter().sum::<f64>();
+            assert!(strips.len() > 3 && apart.abs() <= 1e-12 * size, "{body} {name}: {apart:e} of {size}");
+        }
+    }
+    let summary: Value = serde_json::from_str(&std::fs::read_to_string(out.join("summary.json")).unwrap()).unwrap();
+    let roots = summary["root_loads"].as_array().unwrap();
+    let told: Vec<_> = roots.iter().map(|r| (r["body"].as_str().unwrap(), r["axis"].as_str().unwrap())).collect();
+    assert_eq!(told, [("wing", "y"), ("wing", "y"), ("fin", "z")]);
+    let sides = [0, 1].map(|k| roots[k]["shear"].as_f64().unwrap());
+    let lift: f64 = column(&out.join("loads.csv"), "fz", "wing").iter().sum();
+    assert!((sides[0] + sides[1] - lift).abs() <= 1e-12 * lift.abs(), "{sides:?} {lift}");
+    for name in ["span-loading.svg", "span-loading.png"] {
+        assert!(out.join("pictures").join(name).is_file(), "no `{name}`");
+    }
 }

@@ -30,7 +30,7 @@ mod tree;
 mod union;
 mod weld;
 
-pub use planform::Planform;
+pub use planform::{Planform, Station};
 pub use primitive::{icosphere, write_obj, write_stl};
 pub use sampling::Chain;
 pub use shell::{Edge, Exact, Shell};

@@ -21,7 +21,63 @@ pub struct Planform {
     pub quarter: [f64; 2],
 }
 
+/// A section of a body across its span.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Station {
+    /// Length along x of what is cut; 0 where nothing is.
+    pub chord: f64,
+    /// The point at a quarter of the chord, on the line from the foremost point to the rearmost one.
+    pub quarter: [f64; 3],
+}
+
 impl<const D: usize> Surface<D> {
+    /// Smallest and greatest coordinate along `axis` of what of body number `body` lies on either side of `middle`; `None` for a side
+    /// without any.
+    pub fn sides(&self, body: u16, axis: usize, middle: f64) -> [Option<[f64; 2]>; 2] {
+        let mut sides: [Option<[f64; 2]>; 2] = [None; 2];
+        for e in (0..self.elements.len()).filter(|e| self.elements[*e].body == body) {
+            let ends = self
+                .corners(e as u32)
+                .iter()
+                .fold([f64::INFINITY, f64::NEG_INFINITY], |r, c| [r[0].min(c[axis]), r[1].max(c[axis])]);
+            for (side, [low, high]) in
+                sides.iter_mut().zip([[ends[0], ends[1].min(middle)], [ends[0].max(middle), ends[1]]])
+            {
+                if low < high {
+                    *side = Some(side.map_or([low, high], |s| [s[0].min(low), s[1].max(high)]));
+                }
+            }
+        }
+        sides
+    }
+
+    /// Sections of body number `body` at the coordinates `at` along `axis`, which ascend.
+    pub fn stations(&self, body: u16, axis: usize, at: &[f64]) -> Vec<Station> {
+        let mut spans: Vec<Vec<[f64; 2]>> = vec![Vec::new(); at.len()];
+        let mut ends = vec![[[f64::INFINITY, 0.0, 0.0], [f64::NEG_INFINITY, 0.0, 0.0]]; at.len()];
+        for e in (0..self.elements.len()).filter(|e| self.elements[*e].body == body) {
+            let corners = self.corners(e as u32);
+            let heights = corners.iter().map(|c| c[axis]);
+            let (low, high) = heights.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), h| (a.min(h), b.max(h)));
+            for k in at.partition_point(|s| *s < low)..at.partition_point(|s| *s <= high) {
+                let Some([front, rear]) = cut(&corners, axis, at[k]) else { continue };
+                spans[k].push([front[0], rear[0]]);
+                if front[0] < ends[k][0][0] {
+                    ends[k][0] = front;
+                }
+                if rear[0] > ends[k][1][0] {
+                    ends[k][1] = rear;
+                }
+            }
+        }
+        let station = |(spans, [front, rear]): (&mut Vec<[f64; 2]>, &[[f64; 3]; 2])| {
+            let chord = covered(spans);
+            let part = if chord > 0.0 { QUARTER * chord / (rear[0] - front[0]) } else { return Station::default() };
+            Station { chord, quarter: std::array::from_fn(|d| front[d] + part * (rear[d] - front[d])) }
+        };
+        spans.iter_mut().zip(&ends).map(station).collect()
+    }
+
     /// The planform of the part of the bodies `within` a box, x along the chord and y along the span.
     pub fn planform(&self, within: &Bounds<D>) -> Planform {
         let (start, length) = (self.bounds().min[0], self.bounds().extent()[0]);
@@ -37,7 +93,8 @@ impl<const D: usize> Surface<D> {
             let (first, last) = heights.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), h| (a.min(h), b.max(h)));
             let stations = first.ceil().max(0.0) as usize..=last.floor().min(STATIONS as f64 - 1.0).max(-1.0) as usize;
             for k in stations.filter(|_| last >= 0.0) {
-                spans[k].extend(cut(&corners, low + (k as f64 + 0.5) * width));
+                let found = cut(&corners, 1, low + (k as f64 + 0.5) * width);
+                spans[k].extend(found.map(|[front, rear]| [front[0], rear[0]]));
             }
         }
         let [mut sum, mut squares, mut edge, mut station] = [0.0; 4];
@@ -59,17 +116,22 @@ impl<const D: usize> Surface<D> {
     }
 }
 
-/// The stretch along x of a triangle at the station `y`; `None` where it does not reach there.
-fn cut<const D: usize>(corners: &[Vector<D>; D], y: f64) -> Option<[f64; 2]> {
-    let mut stretch = [f64::INFINITY, f64::NEG_INFINITY];
+/// The foremost and the rearmost point of a triangle where its coordinate along `axis` is `at`; `None` where it does not reach there.
+fn cut<const D: usize>(corners: &[Vector<D>; D], axis: usize, at: f64) -> Option<[[f64; 3]; 2]> {
+    let mut ends = [[f64::INFINITY, 0.0, 0.0], [f64::NEG_INFINITY, 0.0, 0.0]];
     for k in 0..D {
         let (a, b) = (&corners[k], &corners[(k + 1) % D]);
-        if (a[1] <= y) != (b[1] <= y) {
-            let x = a[0] + (b[0] - a[0]) * (y - a[1]) / (b[1] - a[1]);
-            stretch = [stretch[0].min(x), stretch[1].max(x)];
+        if (a[axis] <= at) != (b[axis] <= at) {
+            let x = (*a + (*b - *a) * ((at - a[axis]) / (b[axis] - a[axis]))).to_3d();
+            if x[0] < ends[0][0] {
+                ends[0] = x;
+            }
+            if x[0] > ends[1][0] {
+                ends[1] = x;
+            }
         }
     }
-    (stretch[0] <= stretch[1]).then_some(stretch)
+    (ends[0][0] <= ends[1][0]).then_some(ends)
 }
 
 /// Length of the union of stretches.

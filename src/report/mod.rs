@@ -27,6 +27,7 @@ pub mod picture;
 mod polar;
 mod pressure;
 mod sections;
+mod span;
 mod structure;
 pub mod surface;
 mod transfer;

@@ -11,7 +11,7 @@ use super::files::{LOADS, Load, RunFolder};
 use super::page::{Block, Card, Fact, Page, Section, Status};
 use super::sections;
 use super::words::{grouped, number};
-use super::{ReportError, grid, periodic, polar, pressure, structure, write_file};
+use super::{ReportError, grid, periodic, polar, pressure, span, structure, write_file};
 
 /// Writes `report.html` into a run folder from the files that are there, and gives its path.
 pub fn write_report(run: &Path) -> Result<PathBuf, ReportError> {
@@ -30,6 +30,7 @@ fn report(run: &RunFolder) -> Page {
     let sections = [
         Section::new("warnings", "Warnings", Ok(warnings(&summary))),
         Section::new("loads", "Loads", sections::loads(run)),
+        Section::new("span", "Load along the span", Ok(span::span(run))),
         Section::new("grid", "Grid convergence", Ok(grid::grid(run))),
         Section::new("polar", "Polar", Ok(polar::polar(run))),
         Section::new("flow", "Flow", sections::pictures(run)),

@@ -23,6 +23,8 @@ const PAPER: &str = "@inproceedings{hu2010meshless,
 
 /// What the names of pictures of Cp along the chord begin with.
 const CHORDWISE: &str = "cp-chord";
+/// The chapter on the load along the span draws that.
+const SPANWISE: &str = "span-loading";
 /// Histograms whose ends differ by more than this factor have a logarithmic axis.
 const WIDE: f64 = 50.0;
 
@@ -77,7 +79,7 @@ pub(super) fn pictures(run: &RunFolder) -> Result<Vec<Block>, String> {
     let elsewhere = |name: &str| {
         OF_CLOUD.iter().chain([&FILM]).any(|start| name.starts_with(start)) || drawn && name.starts_with(CHORDWISE)
     };
-    let block = pictures_of(run, |name| !elsewhere(name));
+    let block = pictures_of(run, |name| !elsewhere(name) && !name.starts_with(SPANWISE));
     let block = block.unwrap_or_else(|| Block::LeftOut("there are no pictures in `pictures/`".to_owned()));
     Ok(viewer(run).into_iter().chain([block]).collect())
 }

@@ -1,6 +1,6 @@
 //! What a run has found when it is over: loads, ledgers, errors, the wall.
 use super::look::friction::{Separation, add_friction, separations, wall_friction};
-use super::look::{WallSnapshot, pressure_load, totals};
+use super::look::{WakePlane, WallSnapshot, pressure_load, totals};
 use super::recipe;
 use super::record::family;
 use super::record::summary::{Clock, FILES, FreeStream, Ledger, Reclouding, Summary};
@@ -9,7 +9,9 @@ use crate::case::{Case, Initial};
 use crate::geometry::Surface;
 use crate::math::{Bounds, Vector};
 use crate::observe::convergence::Convergence;
+use crate::observe::induced::SpanLoad;
 use crate::observe::loads::{Balance, Coefficients, Load, LoadAxes, together};
+use crate::observe::strips::{RootLoads, Strips};
 use crate::observe::usage::peak_bytes;
 use crate::physics::n_variables;
 use crate::scheme::{Fluid, View};
@@ -30,6 +32,12 @@ pub(crate) struct Found<'a, const D: usize> {
     pub(crate) names: Names,
     /// What passes a zone around the bodies.
     pub(crate) balance: Option<Balance>,
+    /// Loads along the span of bodies in space.
+    pub(crate) strips: Vec<Strips>,
+    /// Induced drag of that.
+    pub(crate) span_load: Option<SpanLoad>,
+    /// Lift and drag from planes behind them.
+    pub(crate) wake: Vec<WakePlane>,
 }
 
 /// Names of bodies and tags.
@@ -145,6 +153,9 @@ impl<const D: usize> Found<'_, D> {
             loads_friction: part(&friction),
             separation: self.separations(),
             loads_momentum_balance: self.balance.map(|_| through),
+            root_loads: self.root_loads(),
+            span_load: self.span_load,
+            wake_planes: self.wake.clone(),
             harmonic_balance: record.balance.clone(),
             generalised_forces: record.forces.clone(),
             structure: log.structure_summaries(),
@@ -170,6 +181,12 @@ impl<const D: usize> Found<'_, D> {
             adapt_change: last_change(&record.cycles),
             phases: spent.phases(),
         }
+    }
+
+    /// What acts at the roots of wings and fins.
+    fn root_loads(&self) -> Vec<RootLoads> {
+        let pressure = self.case.flow.units().pressure();
+        self.strips.iter().filter(|s| s.lifting).flat_map(|s| s.roots(&self.axes, pressure)).collect()
     }
 
     /// The flow on the walls.

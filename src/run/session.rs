@@ -12,7 +12,7 @@ use super::error::RunError;
 use super::files;
 use super::folder::{self, Hold};
 use super::found::{Found, Names, Spent};
-use super::look::{GasView, Snapshot, WallSnapshot, field, load_axes, momentum};
+use super::look::{GasView, Snapshot, WallSnapshot, field, load_axes, momentum, span_load, span_loads, wake_planes};
 use super::monitor::Monitor;
 use super::polar::{Coarser, Course};
 use super::recipe;
@@ -28,6 +28,7 @@ use crate::cloud::sources::Source;
 use crate::coupling::Coupled;
 use crate::geometry::{Surface, dimension};
 use crate::observe::loads::Coefficients;
+use crate::scheme::start::free_stream;
 use crate::scheme::{Fluid, HasGas};
 use crate::system::{Instant, System};
 use crate::verify::Loops;
@@ -388,7 +389,13 @@ impl Run<'_> {
         let balance = momentum::around(self.case, &log.axes, gas, &mut work, self.case.is_unsteady());
         let view = gas.seen(&mut work);
         let (axes, names) = (log.axes.axes(&view), Names::of(surface));
-        let found = Found { case: self.case, view, surface, axes, names, balance };
+        let wake = match self.case.is_unsteady() {
+            true => Vec::new(),
+            false => wake_planes(&view, surface, &free_stream(self.case), &axes),
+        };
+        let strips = span_loads(self.case, &view, surface, &axes);
+        let span_load = span_load(self.case, &view, &strips, &axes);
+        let found = Found { case: self.case, view, surface, axes, names, balance, strips, span_load, wake };
         let mut summary = found.summary(log, gas.state, &Spent { clock, solved });
         doubts::of_loads(self.case, &summary).iter().for_each(|doubt| log.warn(doubt));
         summary.warnings.clone_from(&log.record.warnings);

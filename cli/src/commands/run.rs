@@ -3,6 +3,7 @@ use std::path::{Path, PathBuf};
 
 use alula::observe::convergence::{Convergence, FamilyEnd};
 use alula::observe::loads::Coefficients;
+use alula::observe::strips::Span;
 use alula::run::{self, Outcome as Ended, PeriodicLoads, Places, PolarPoint, RunError, Summary};
 use serde_json::json;
 
@@ -217,7 +218,34 @@ fn loads(s: &Summary) -> String {
         text += &(row("wall friction", friction) + &row("both", all));
     }
     text += &momentum.as_ref().map_or_else(String::new, |b| row("momentum", b));
-    text + &s.loads_error.as_ref().map_or_else(String::new, |bar| row("error bar ±", bar))
+    text += &s.loads_error.as_ref().map_or_else(String::new, |bar| row("error bar ±", bar));
+    text + &in_space(s)
+}
+
+/// Drag from the wake and of the load along the span, and what acts at the roots of wings and fins.
+fn in_space(s: &Summary) -> String {
+    let mut text = String::new();
+    if let Some(w) = s.wake_planes.first() {
+        text += &format!(
+            "{:<16}{:9.5}  {:9.5}  {:.2} chords behind: induced {:.5}, entropy {:.5}\n",
+            "wake", w.cl, w.cd, w.distance, w.cd_induced, w.cd_entropy
+        );
+    }
+    if let Some(l) = &s.span_load {
+        text += &format!(
+            "{:<16}{:9.5}  {:9.5}  induced drag of the load along the span, efficiency {:.3}\n",
+            "span load", l.cl, l.cd_induced, l.efficiency
+        );
+    }
+    if !s.root_loads.is_empty() {
+        text += "at the root          shear    bending    torsion  in the units of the case; over q S and q S c\n";
+    }
+    for r in &s.root_loads {
+        let place = format!("{} {} {:.4}", r.body, if r.axis == Span::Lying { "y" } else { "z" }, r.root);
+        text += &format!("{place:<16}{:10.4e} {:10.4e} {:10.4e}  ", r.shear, r.bending, r.torsion);
+        text += &format!("{:9.5} {:9.5} {:9.5}\n", r.shear_coefficient, r.bending_coefficient, r.torsion_coefficient);
+    }
+    text
 }
 
 /// Means and first harmonics of loads that repeat.

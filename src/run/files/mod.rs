@@ -1,5 +1,6 @@
 //! What a run leaves in its folder: tables, fields, pictures.
 mod pictures;
+mod strips;
 mod target;
 
 use std::path::Path;
@@ -42,6 +43,7 @@ pub(crate) fn write_all<const D: usize>(
         let to = Target { case: found.case, out };
         report::write_polar(out)?;
         pictures::write(&Scene { to, view: found.view, surface: found.surface })?;
+        strips::write_chart(found, out)?;
         // the page tells the cost of all but itself
         let path = out.join("summary.json");
         summary.spent(log.seconds());
@@ -71,6 +73,7 @@ impl<const D: usize> Files<'_, D> {
             &Diagnosis::of(self.found.view.cloud(), self.found.view.frame.discretisation.walls.n_linear),
         )?;
         self.write_loads()?;
+        strips::write_table(self.found, self.out)?;
         self.write_surface_csv()?;
         let rows = cycles.iter().enumerate().map(|(k, c)| {
             let before = if k > 0 { cycles[k - 1] } else { *c };

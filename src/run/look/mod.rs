@@ -6,11 +6,16 @@ pub(crate) mod friction;
 mod mesh;
 pub(crate) mod momentum;
 pub(crate) mod reference;
+mod span;
+mod wake;
 mod walls;
 
 pub use field::Snapshot;
+pub use wake::WakePlane;
 pub use walls::WallSnapshot;
 
 pub(crate) use axes::{GasView, LoadFrame, load_axes, motion, pressure_load, totals};
 pub(crate) use field::{field, pressure_coefficient};
 pub(crate) use mesh::Mesh;
+pub(crate) use span::{span_load, span_loads};
+pub(crate) use wake::wake_planes;

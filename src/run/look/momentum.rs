@@ -45,7 +45,8 @@ pub(crate) fn around<const D: usize>(
         let probe = Probe::new(view, None);
         for (axis, sign, region) in cut {
             let end = if sign < 0.0 { region.min[axis] } else { region.max[axis] };
-            tile(&view, &region, (axis, end), &mut |x, size| {
+            tile(&view, &region, (axis, end), &mut |x, extent| {
+                let size: f64 = (0..D).map(|d| extent[d]).product();
                 if let Some(q) = probe.at(&x) {
                     add(balance.side(x, &q, &(Vector::axis(axis) * (sign * size))));
                 }
@@ -72,12 +73,13 @@ fn cuts<const D: usize>(case: &Case, view: &View<'_, D>, zone: &Bounds<D>) -> Ve
     sides.filter(beyond).filter(open).map(|(axis, sign)| (axis, sign, region)).collect()
 }
 
-/// Calls `f(middle, area)` for tiles of one face of a box, about half a local spacing wide.
-fn tile<const D: usize>(
+/// Calls `f(middle, extent)` for tiles of one face of a box, or of a plane across it, about half a local spacing wide; the extent along
+/// `axis` is 1.
+pub(super) fn tile<const D: usize>(
     view: &View<'_, D>,
     region: &Bounds<D>,
     (axis, end): (usize, f64),
-    f: &mut dyn FnMut(Vector<D>, f64),
+    f: &mut dyn FnMut(Vector<D>, Vector<D>),
 ) {
     let tree = &view.reference().tree;
     let mut stack = vec![*region];
@@ -93,7 +95,7 @@ fn tile<const D: usize>(
             (low.max[side], high.min[side]) = (half, half);
             stack.extend([low, high]);
         } else {
-            f(middle, (0..D).filter(|d| *d != axis).map(|d| extent[d]).product());
+            f(middle, Vector::from_fn(|d| if d == axis { 1.0 } else { extent[d] }));
         }
     }
 }

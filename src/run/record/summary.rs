@@ -3,6 +3,7 @@ use std::time::Instant;
 
 use serde::Serialize;
 
+use super::super::look::WakePlane;
 use super::super::look::forces::GeneralisedForce;
 use super::super::look::friction::Separation;
 use super::crosscheck::LoadCrosscheck;
@@ -10,7 +11,9 @@ use super::polar::PolarPoint;
 use super::trace::{Change, FirstHarmonics, LastPeriod, PeriodicLoads};
 use crate::case::FreeStreamScales;
 use crate::observe::convergence::Convergence;
+use crate::observe::induced::SpanLoad;
 use crate::observe::loads::Coefficients;
+use crate::observe::strips::RootLoads;
 use crate::observe::usage::peak_bytes;
 
 /// The phase in which files, pictures and the report are written.
@@ -54,6 +57,15 @@ pub struct Summary {
     pub loads_momentum_balance: Option<Coefficients>,
     /// Conservation; null for a harmonic balance, which does not go from one time to another.
     pub ledger: Option<Ledger>,
+    /// What acts at the roots of wings and fins.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub root_loads: Vec<RootLoads>,
+    /// Lift and induced drag of the load along the span.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub span_load: Option<SpanLoad>,
+    /// Lift and drag from planes behind the bodies, the nearest first.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub wake_planes: Vec<WakePlane>,
     /// Evaluations of the residual of one instance on the cloud of the end, over all stages: those on coarser clouds count with
     /// their part of its particles.
     pub work_units: f64,
