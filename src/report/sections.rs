@@ -5,6 +5,7 @@ use super::chart::{Axis, Chart, Marks, Series};
 use super::files::{Csv, FILM, LOADS, RunFolder};
 use super::page::{Block, Cell, Fact, Picture, Table};
 use super::pressure;
+use super::surface_viewer::surface_viewer;
 use super::viewer::viewer;
 use super::words::{grouped, number, number_of};
 
@@ -79,7 +80,7 @@ pub(super) fn pictures(run: &RunFolder) -> Result<Vec<Block>, String> {
     };
     let block = pictures_of(run, |name| !elsewhere(name));
     let block = block.unwrap_or_else(|| Block::LeftOut("there are no pictures in `pictures/`".to_owned()));
-    Ok(viewer(run).into_iter().chain([block]).collect())
+    Ok(viewer(run).into_iter().chain(surface_viewer(run)).chain([block]).collect())
 }
 
 /// The pictures whose names are `wanted`, if any; of a picture in both formats the SVG.

@@ -7,8 +7,8 @@ use crate::math::sweep::{sweep_each, sweep_each_chunk};
 use crate::math::{Bounds, Vector};
 use crate::physics::Primitive;
 use crate::report::{
-    Axis, Chart, Colormap, Dots, Marks, PictureStyle, Raster, Scatter, Series, Shell, SurfaceStyle, raster_png,
-    scatter_png, surface_png, write_file,
+    Axis, Chart, Colormap, Dots, Marks, PictureStyle, Raster, Scatter, Series, raster_png, scatter_png, write_file,
+    write_surface_views,
 };
 use crate::scheme::probe::{Near, Probe};
 use crate::scheme::start::free_stream;
@@ -258,22 +258,6 @@ fn space<const D: usize>(scene: &Scene<'_, D>) -> Result<(), RunError> {
     if scene.surface.is_none() {
         return Ok(());
     }
-    let cloud = scene.view.cloud();
-    let free = free_stream::<D>(scene.to.case);
-    let solid = |v: &Vector<D>| Vector(v.to_3d());
-    let points: Vec<Vector<3>> = cloud.interface_range().map(|i| solid(&scene.view.place(i))).collect();
-    let normals: Vec<Vector<3>> = (0..points.len()).map(|w| solid(&scene.view.normal(w))).collect();
-    let areas: Vec<f64> = cloud.interface.iter().map(|w| w.area.norm()).collect();
-    let values: Vec<f64> = cloud.interface_range().map(|i| pressure_coefficient(&scene.view.state(i), &free)).collect();
-    let shell = Shell::Splats { points: &points, normals: &normals, areas: &areas, values: &values };
-    let style = SurfaceStyle {
-        title: "Pressure coefficient",
-        quantity: "Cp",
-        map: Colormap::Diverging { centre: 0.0 },
-        range: None,
-        direction: Vector([1.0, 0.8, -0.6]),
-        up: Vector([0.0, 0.0, 1.0]),
-    };
-    write_file(&scene.to.out.join("pictures/cp.png"), &surface_png(&shell, &style)?)?;
+    write_surface_views(scene.to.out)?;
     curves(scene)
 }

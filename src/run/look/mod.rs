@@ -3,9 +3,11 @@ mod axes;
 mod field;
 pub(crate) mod forces;
 pub(crate) mod friction;
+mod hull;
 mod mesh;
 pub(crate) mod momentum;
 pub(crate) mod reference;
+mod wall_weights;
 mod walls;
 
 pub use field::Snapshot;
@@ -13,4 +15,5 @@ pub use walls::WallSnapshot;
 
 pub(crate) use axes::{GasView, LoadFrame, load_axes, motion, pressure_load, totals};
 pub(crate) use field::{field, pressure_coefficient};
+pub(crate) use hull::Hull;
 pub(crate) use mesh::Mesh;
