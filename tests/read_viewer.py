@@ -5,7 +5,7 @@ usage: read_viewer.py REPORT.html [SCREENSHOT.png]
 
 Chromium is driven through pipes (`--remote-debugging-pipe`), so that the standard library is enough. The page must ask nothing
 from a network and put no error on its console; the sheet must show more than one colour; dragging, the wheel, another quantity
-and a view from the side must each change it; a value must stand under the pointer. Ends with 0 and a line where there is no browser.
+and a view from above must each change it; a value must stand under the pointer. Ends with 0 and a line where no browser starts.
 """
 import base64
 import json
@@ -96,7 +96,11 @@ def main(report, screenshot=None):
         print("no browser here: the surface viewer was not tried")
         return
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as folder:
-        browser = Browser(program, folder)
+        try:
+            browser = Browser(program, folder)
+        except (SystemExit, OSError) as reason:
+            print(f"{program} does not start here ({reason}): the surface viewer was not tried")
+            return
         try:
             turn(browser, Path(report).resolve(), screenshot)
         finally:

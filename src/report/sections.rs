@@ -24,6 +24,8 @@ const PAPER: &str = "@inproceedings{hu2010meshless,
 
 /// What the names of pictures of Cp along the chord begin with.
 const CHORDWISE: &str = "cp-chord";
+/// The sheet of the same at stations of the span, whose charts stand in the chapter on pressure.
+const STATIONS: &str = "cp-stations";
 /// Histograms whose ends differ by more than this factor have a logarithmic axis.
 const WIDE: f64 = 50.0;
 
@@ -76,7 +78,9 @@ pub(super) fn pictures(run: &RunFolder) -> Result<Vec<Block>, String> {
     // the chapter on pressure draws the same curve where it can
     let drawn = pressure::chart(run, Vec::new()).is_ok();
     let elsewhere = |name: &str| {
-        OF_CLOUD.iter().chain([&FILM]).any(|start| name.starts_with(start)) || drawn && name.starts_with(CHORDWISE)
+        OF_CLOUD.iter().chain([&FILM]).any(|start| name.starts_with(start))
+            || drawn && name.starts_with(CHORDWISE)
+            || name.starts_with(STATIONS)
     };
     let block = pictures_of(run, |name| !elsewhere(name));
     let block = block.unwrap_or_else(|| Block::LeftOut("there are no pictures in `pictures/`".to_owned()));

@@ -141,19 +141,8 @@ struct View {
 
 impl View {
     fn of(points: &[Vector<3>], style: &SurfaceStyle, area: Area) -> Self {
-        let usable = |v: &Vector<3>| v.is_finite() && v.norm() > 0.0;
-        let away = if usable(&style.direction) { style.direction.unit() } else { Vector([0.0, 1.0, 0.0]) };
-        let mut right = cross(&away, &style.up);
-        if !usable(&right) || right.norm() < 1e-6 {
-            // Looking along `up`: any direction across will do.
-            right = cross(&away, &if away[0].abs() < 0.9 { Vector::axis(0) } else { Vector::axis(1) });
-        }
-        let right = right.unit();
-        let axes = [right, cross(&right, &away), away];
-        let seen: Vec<Vector<3>> =
-            points.iter().filter(|x| x.is_finite()).map(|x| Vector(axes.map(|a| a.dot(x)))).collect();
-        let bounds =
-            if seen.is_empty() { Bounds { min: Vector::ZERO, max: Vector::ZERO } } else { Bounds::around(&seen) };
+        let axes = axes(&style.direction, &style.up);
+        let bounds = seen(points, &style.direction, &style.up);
         let extent = bounds.extent();
         let fit = (area.width / extent[0].max(1e-300)).min(area.height / extent[1].max(1e-300));
         // A margin of 6 % on the tighter side.
@@ -171,6 +160,27 @@ impl View {
     fn turn(&self, n: &Vector<3>) -> Vector<3> {
         Vector([self.axes[0].dot(n), -self.axes[1].dot(n), self.axes[2].dot(n)])
     }
+}
+
+/// To the right, upwards and away from the eye.
+fn axes(direction: &Vector<3>, up: &Vector<3>) -> [Vector<3>; 3] {
+    let usable = |v: &Vector<3>| v.is_finite() && v.norm() > 0.0;
+    let away = if usable(direction) { direction.unit() } else { Vector([0.0, 1.0, 0.0]) };
+    let mut right = cross(&away, up);
+    if !usable(&right) || right.norm() < 1e-6 {
+        // Looking along `up`: any direction across will do.
+        right = cross(&away, &if away[0].abs() < 0.9 { Vector::axis(0) } else { Vector::axis(1) });
+    }
+    let right = right.unit();
+    [right, cross(&right, &away), away]
+}
+
+/// What points take of the picture, across, up and in depth.
+pub(super) fn seen(points: &[Vector<3>], direction: &Vector<3>, up: &Vector<3>) -> Bounds<3> {
+    let axes = axes(direction, up);
+    let turned: Vec<Vector<3>> =
+        points.iter().filter(|x| x.is_finite()).map(|x| Vector(axes.map(|a| a.dot(x)))).collect();
+    if turned.is_empty() { Bounds { min: Vector::ZERO, max: Vector::ZERO } } else { Bounds::around(&turned) }
 }
 
 fn cross(a: &Vector<3>, b: &Vector<3>) -> Vector<3> {
@@ -316,7 +326,7 @@ fn fill_disc(buffer: &mut Buffer, pass: Pass, view: &View, splat: &Splat) {
 /// The three axes in the lower left corner.
 fn draw_triad(canvas: &mut Canvas, view: &View) {
     let area = view.area;
-    let origin = [area.x + 40.0, area.y + area.height - 34.0];
+    let origin = [area.x + 40.0, area.y + area.height - 52.0];
     for (d, name) in ["x", "y", "z"].into_iter().enumerate() {
         let n = view.turn(&Vector::axis(d));
         let tip = [origin[0] + 30.0 * n[0], origin[1] + 30.0 * n[1]];

@@ -9,8 +9,8 @@ use super::axes::TITLE_SIZE;
 use super::canvas::{Area, Canvas, Text};
 use super::colour::{Colormap, Colour};
 use super::files::{LOADS, RunFolder};
-use super::picture::{colour_bar, robust_range};
-use super::surface::{Shell, SurfaceStyle, draw_surface};
+use super::picture::colour_bar;
+use super::surface::{Shell, SurfaceStyle, draw_surface, seen};
 use super::surface_viewer::TOLD;
 use super::walls::Walls;
 use super::words::{grouped, number};
@@ -30,6 +30,8 @@ const VIEWS: [(&str, [f64; 3], [f64; 3]); 6] = [
 const ACROSS: usize = 3;
 /// Area of each.
 const CELL: [f64; 2] = [400.0, 340.0];
+/// Room above and below what a row shows.
+const ROOM: f64 = 96.0;
 /// Left of the views, and above them.
 const MARGIN: [f64; 2] = [24.0, 72.0];
 /// Right of the views: the colour bar.
@@ -59,17 +61,19 @@ fn sheet(walls: &Walls, words: &[String; 2], views: &[usize], cell: [f64; 2]) ->
     let Some(values) = walls.field("cp") else { return Ok(None) };
     let Walls { points, normals, triangles, .. } = walls;
     let shell = Shell::Triangles { points, triangles, values, normals };
-    let (across, rows) = (ACROSS.min(views.len()), views.len().div_ceil(ACROSS));
-    let all =
-        Area { x: MARGIN[0], y: MARGIN[1], width: across as f64 * cell[0], height: rows as f64 * cell[1] };
+    let across = ACROSS.min(views.len());
+    let row_of = |row: &[usize]| row.iter().map(|k| tallness(points, *k)).fold(0.0, f64::max) * cell[0] + ROOM;
+    let heights: Vec<f64> = views.chunks(across).map(|row| row_of(row).min(cell[1])).collect();
+    let height = heights.iter().sum();
+    let all = Area { x: MARGIN[0], y: MARGIN[1], width: across as f64 * cell[0], height };
     let mut canvas = Canvas::new(all.x + all.width + BAR, all.y + all.height + MARGIN[0]);
     canvas.text(Text { bold: true, ..Text::new(format!("{quantity}: {}", words[0]), [all.x, 30.0], TITLE_SIZE) });
     canvas.text(Text { colour: Colour::GREY, ..Text::new(words[1].as_str(), [all.x, 54.0], 13.0) });
-    let (map, range) = (Colormap::Diverging { centre: 0.0 }, robust_range(values));
+    let (map, range) = (Colormap::Diverging { centre: 0.0 }, Walls::range(values));
     for (k, view) in views.iter().enumerate() {
         let (name, direction, up) = VIEWS[*view];
-        let at = [all.x + (k % across) as f64 * cell[0], all.y + (k / across) as f64 * cell[1]];
-        let area = Area { x: at[0], y: at[1], width: cell[0], height: cell[1] };
+        let at = [all.x + (k % across) as f64 * cell[0], all.y + heights[..k / across].iter().sum::<f64>()];
+        let area = Area { x: at[0], y: at[1], width: cell[0], height: heights[k / across] };
         let (direction, up) = (Vector(direction), Vector(up));
         let style = SurfaceStyle { title: "", quantity: symbol, map, range: Some(range), direction, up };
         draw_surface(&mut canvas, area, &shell, &style)?;
@@ -79,6 +83,13 @@ fn sheet(walls: &Walls, words: &[String; 2], views: &[usize], cell: [f64; 2]) ->
     }
     colour_bar(&mut canvas, all, map, range, symbol);
     Ok(Some(canvas))
+}
+
+/// Height over width of what a view shows.
+fn tallness(points: &[Vector<3>], view: usize) -> f64 {
+    let (_, direction, up) = VIEWS[view];
+    let extent = seen(points, &Vector(direction), &Vector(up)).extent();
+    extent[1] / extent[0].max(1e-300)
 }
 
 /// What a run is called.
@@ -103,6 +114,10 @@ pub(super) fn conditions(run: &RunFolder) -> String {
         let value = summary["loads"][load.column].as_f64()?;
         Some(format!("{} {}", load.name, number(value)))
     };
-    let particles = summary["particles"].as_f64().map(|n| format!("{} particles", grouped(n)));
-    told.filter(|words| words != "beta 0 deg").chain(LOADS.iter().filter_map(load)).chain(particles).collect::<Vec<_>>().join("  ·  ")
+    let particles = summary["particles"].as_f64().map(|n| format!("{} particles", grouped(n).replace('\u{202f}', " ")));
+    told.filter(|words| words != "beta 0 deg")
+        .chain(LOADS.iter().filter_map(load))
+        .chain(particles)
+        .collect::<Vec<_>>()
+        .join("  ·  ")
 }

@@ -4,14 +4,23 @@
 use std::collections::BTreeMap;
 
 use super::files::RunFolder;
+use super::picture::range_without;
 use crate::math::Vector;
 use crate::observe::vtk_read::FieldFile;
 
+/// Part of the corners on either side whose values may be far out.
+const FAR_OUT: f64 = 0.01;
 /// Factor by which the cells of the grid grow until few enough triangles are left.
 const COARSER: f64 = 1.3;
 /// Names of sides and axes of the domain.
-const SIDES: [(&str, usize, &str); 6] =
-    [("x_min", 0, "min"), ("x_max", 0, "max"), ("y_min", 1, "min"), ("y_max", 1, "max"), ("z_min", 2, "min"), ("z_max", 2, "max")];
+const SIDES: [(&str, usize, &str); 6] = [
+    ("x_min", 0, "min"),
+    ("x_max", 0, "max"),
+    ("y_min", 1, "min"),
+    ("y_max", 1, "max"),
+    ("z_min", 2, "min"),
+    ("z_max", 2, "max"),
+];
 
 /// A plane of symmetry across an axis.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -70,14 +79,20 @@ impl Walls {
     /// Lowest and highest corner of a box around them.
     pub(super) fn bounds(&self) -> [[f64; 3]; 2] {
         let start = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
-        self.points.iter().fold(start, |[low, high], x| {
-            [[0, 1, 2].map(|d| low[d].min(x[d])), [0, 1, 2].map(|d| high[d].max(x[d]))]
-        })
+        self.points
+            .iter()
+            .fold(start, |[low, high], x| [[0, 1, 2].map(|d| low[d].min(x[d])), [0, 1, 2].map(|d| high[d].max(x[d]))])
     }
 
     /// The values of the field called `name`.
     pub(super) fn field(&self, name: &str) -> Option<&[f64]> {
         self.fields.iter().find(|(own, _)| *own == name).map(|(_, values)| &values[..])
+    }
+
+    /// Ends of the colours of a field: nearly all of it. A wall particle far out reaches the corners around it, so that more values
+    /// are cut than in other pictures.
+    pub(super) fn range(values: &[f64]) -> [f64; 2] {
+        range_without(values, FAR_OUT)
     }
 
     /// With all mirror images beside them.
@@ -128,8 +143,7 @@ impl Walls {
                 })
             })
             .collect();
-        let mut triangles: Vec<[u32; 3]> =
-            self.triangles.iter().map(|t| t.map(|i| number[i as usize])).collect();
+        let mut triangles: Vec<[u32; 3]> = self.triangles.iter().map(|t| t.map(|i| number[i as usize])).collect();
         triangles.retain(|[a, b, c]| a != b && b != c && c != a);
         let chosen = |values: &Vec<f64>| kept.iter().map(|i| values[*i]).collect();
         Self {
@@ -158,7 +172,6 @@ impl Walls {
             self.fields.iter_mut().for_each(|(_, values)| values[i] = 0.0);
         }
     }
-
 }
 
 /// Names of the bodies of a case, in their order.
@@ -182,4 +195,59 @@ fn mirrors(case: &toml::Table) -> Vec<Mirror> {
         symmetric.then_some(Mirror { axis: *axis, at })
     };
     SIDES.iter().filter_map(plane).collect()
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::*;
+    use crate::observe::vtk::{Column, Facets, write_surface};
+    use std::path::Path;
+
+    /// Half a swept wing of 2 n² triangles as a run leaves it, with a plane of symmetry at y = 0.
+    pub(in crate::report) fn fill_wing(run: &Path, n: usize) {
+        let (mut points, mut normals, mut cp) = (Vec::new(), Vec::new(), Vec::new());
+        for l in 0..=n {
+            for k in 0..=n {
+                let (span, around) = (l as f64 / n as f64, std::f64::consts::TAU * k as f64 / n as f64);
+                points.push([0.5 * span + 0.5 - 0.5 * around.cos(), 1.5 * span, 0.06 * around.sin()]);
+                normals.extend([0.0, 0.0, if around < std::f64::consts::PI { 1.0 } else { -1.0 }]);
+                cp.push(around.cos() - span);
+            }
+        }
+        let at = |k: usize, l: usize| (l * (n + 1) + k) as u32;
+        let cell = |i: usize| (i % n, i / n);
+        let triangles: Vec<[u32; 3]> = (0..n * n)
+            .map(cell)
+            .flat_map(|(k, l)| [[at(k, l), at(k + 1, l), at(k + 1, l + 1)], [at(k, l), at(k + 1, l + 1), at(k, l + 1)]])
+            .collect();
+        let body = vec![0.0; points.len()];
+        let column = |name, components, values| Column { name, components, values };
+        let columns = [
+            column("normal", 3, &normals[..]),
+            column("body", 1, &body[..]),
+            column("cp", 1, &cp[..]),
+            column("mach", 1, &cp[..]),
+        ];
+        write_surface(&run.join("hull.vtp"), &points, Facets::Triangles(&triangles), &columns, &[]).unwrap();
+        let case = "dimension = 3\n[flow]\nmach = 0.8\nalpha = \"3 deg\"\n[[body]]\nname = \"wing\"\n[boundary]\ny_min = \"symmetry\"\n\
+                    [[compare]]\nfile = \"cp.csv\"\nlabel = \"measured\"\n";
+        std::fs::write(run.join("case.toml"), case).unwrap();
+        std::fs::write(run.join("cp.csv"), "eta,x_c,Cp\n0.5,0.1,-0.4\n0.5,0.5,-0.2\n0.9,0.5,-0.1\n").unwrap();
+        std::fs::create_dir_all(run.join("pictures")).unwrap();
+    }
+
+    #[test]
+    fn walls_are_read_mirrored_and_thinned() {
+        let folder = tempfile::tempdir().unwrap();
+        fill_wing(folder.path(), 40);
+        let walls = Walls::of(&RunFolder::new(folder.path())).unwrap();
+        assert_eq!((walls.triangles.len(), walls.bodies.clone()), (3200, vec!["wing".to_owned()]));
+        assert_eq!(walls.mirrors, [Mirror { axis: 1, at: 0.0 }]);
+        let both = walls.clone().mirrored();
+        assert_eq!((both.bounds()[0][1], both.bounds()[1][1], both.triangles.len()), (-1.5, 1.5, 6400));
+        let few = walls.clone().thinned(500);
+        assert!(few.triangles.len() <= 500 && few.triangles.len() > 100, "{}", few.triangles.len());
+        assert_eq!(few.field("cp").unwrap().len(), few.points.len());
+        assert_eq!(walls.clone().thinned(4000).triangles.len(), 3200);
+    }
 }

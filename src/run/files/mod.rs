@@ -1,4 +1,5 @@
 //! What a run leaves in its folder: tables, fields, pictures.
+mod cuts;
 mod pictures;
 mod target;
 
@@ -41,7 +42,8 @@ pub(crate) fn write_all<const D: usize>(
     if found.case.output.report {
         let to = Target { case: found.case, out };
         report::write_polar(out)?;
-        pictures::write(&Scene { to, view: found.view, surface: found.surface })?;
+        let vortex = summary.tip_vortex;
+        pictures::write(&Scene { to, view: found.view, surface: found.surface, chord: found.axes.chord, vortex })?;
         // the page tells the cost of all but itself
         let path = out.join("summary.json");
         summary.spent(log.seconds());
@@ -220,7 +222,7 @@ pub(crate) fn write_film<const D: usize>(
     work: &mut Work<D>,
     part: u64,
 ) -> Result<(), RunError> {
-    let scene = Scene { to: *to, view: gas.seen(work), surface: Some(surface) };
+    let scene = Scene { to: *to, view: gas.seen(work), surface: Some(surface), chord: 1.0, vortex: None };
     pictures::write_film(&scene, (part - 1) as u32 % FILM + 1)
 }
 

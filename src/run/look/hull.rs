@@ -84,9 +84,8 @@ impl Hull {
 fn spread(found: &[Vec<(u32, f64)>], n: usize, values: &[f64]) -> Vec<f64> {
     let at = |weights: &Vec<(u32, f64)>, c: usize| {
         let own = |w: u32| values[w as usize * n + c];
-        let [low, high] = weights
-            .iter()
-            .fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], (w, _)| [a.min(own(*w)), b.max(own(*w))]);
+        let [low, high] =
+            weights.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], (w, _)| [a.min(own(*w)), b.max(own(*w))]);
         let value: f64 = weights.iter().map(|(w, weight)| weight * own(*w)).sum();
         if low <= high { value.clamp(low, high) } else { f64::NAN }
     };
@@ -153,7 +152,9 @@ fn refined<const D: usize>(mut facets: Vec<Facet<D>>, length: impl Fn(&Vector<D>
                     continue;
                 }
                 [true, false, _] => vec![[a, p, c], [p, b, c]],
-                [true, true, false] if (p.x - c.x).norm() <= (a.x - q.x).norm() => vec![[p, b, q], [p, q, c], [a, p, c]],
+                [true, true, false] if (p.x - c.x).norm() <= (a.x - q.x).norm() => {
+                    vec![[p, b, q], [p, q, c], [a, p, c]]
+                }
                 [true, true, false] => vec![[p, b, q], [a, p, q], [a, q, c]],
                 [true, true, true] => vec![[a, p, r], [p, b, q], [r, q, c], [p, q, r]],
             };
@@ -189,4 +190,58 @@ fn welded<const D: usize>(facets: &[Facet<D>]) -> (Vec<Corner<D>>, Vec<u16>, Vec
         }
     }
     (corners, body, triangles)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::geometry::icosphere;
+
+    fn sphere() -> Vec<Facet<3>> {
+        let shell = icosphere(1.0, 1);
+        let surface = Surface::new(&[("ball".to_owned(), shell)]);
+        (0..surface.elements.len()).map(|e| facet(&surface, e as u32)).collect()
+    }
+
+    fn area(facets: &[Facet<3>]) -> f64 {
+        let of = |([a, b, c], _): &Facet<3>| {
+            let (p, q) = (b.x - a.x, c.x - a.x);
+            0.5 * (p.norm_squared() * q.norm_squared() - p.dot(&q).powi(2)).max(0.0).sqrt()
+        };
+        facets.iter().map(of).sum()
+    }
+
+    /// Sides that one triangle has alone.
+    fn alone(triangles: &[[u32; 3]]) -> Vec<[u32; 2]> {
+        let sides = |t: &[u32; 3]| [[t[0], t[1]], [t[1], t[2]], [t[2], t[0]]];
+        let all: Vec<[u32; 2]> = triangles.iter().flat_map(sides).collect();
+        all.iter().filter(|[a, b]| !all.contains(&[*b, *a])).copied().collect()
+    }
+
+    #[test]
+    fn halved_sides_leave_no_cracks() {
+        let facets = sphere();
+        // finer towards one side
+        let fine = refined(facets.clone(), |x| 0.12 + 0.2 * (1.0 + x[0]));
+        assert!(fine.len() > 2 * facets.len(), "{}", fine.len());
+        assert!((area(&fine) / area(&facets) - 1.0).abs() < 1e-12);
+        let (corners, body, triangles) = welded(&fine);
+        assert_eq!((corners.len(), triangles.len()), (body.len(), fine.len()));
+        assert!(alone(&triangles).is_empty());
+        let longest = |([a, b, c], _): &Facet<3>| [(a, b), (b, c), (c, a)].map(|(p, q)| (p.x - q.x).norm());
+        assert!(fine.iter().flat_map(longest).all(|l| l < 0.52));
+    }
+
+    #[test]
+    fn what_lies_beyond_a_side_is_cut_away() {
+        let domain = Bounds { min: Vector([-2.0, 0.1, -2.0]), max: Vector::splat(2.0) };
+        let half: Vec<Facet<3>> = sphere().into_iter().flat_map(|f| cut(f, &domain)).collect();
+        let (corners, _, triangles) = welded(&refined(half, |_| 0.2));
+        assert!(corners.iter().all(|c| c.x[1] >= 0.1));
+        let rim = alone(&triangles);
+        assert!(
+            rim.len() > 8 && rim.iter().flatten().all(|i| corners[*i as usize].x[1] == 0.1),
+            "the rim is on the side"
+        );
+    }
 }

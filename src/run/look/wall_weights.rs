@@ -59,7 +59,8 @@ impl<'a, const D: usize> WallWeights<'a, D> {
                 let Some(w) = (*i as usize).checked_sub(cloud.n_fluid).filter(|w| *w < cloud.interface.len()) else {
                     continue;
                 };
-                let (offset, facing) = ((cloud.x[*i as usize] - *x) * (1.0 / reach), cloud.interface[w].normal.dot(normal));
+                let (offset, facing) =
+                    ((cloud.x[*i as usize] - *x) * (1.0 / reach), cloud.interface[w].normal.dot(normal));
                 let distance = offset.norm();
                 if distance < 1.0 && facing > side {
                     let weight = (1.0 - distance).powi(2) / (distance * distance + closeness);
@@ -99,4 +100,43 @@ fn fitted(near: &[Near]) -> Vec<(u32, f64)> {
     }
     let c = [(aa * bb - ab * ab) / det, (ab * b - a * bb) / det, (a * ab - aa * b) / det];
     near.iter().map(|(w, at, weight)| (*w, weight / total * (c[0] + c[1] * at[0] + c[2] * at[1]))).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn fits_are_exact_for_linear_fields_and_means_for_few_particles() {
+        let near: Vec<Near> = (0..9_u32)
+            .map(|k| {
+                let at = [0.2 * f64::from(k % 3) - 0.05, 0.3 * f64::from(k / 3) - 0.2 + 0.01 * f64::from(k)];
+                (k, at, 1.0 / (1.0 + f64::from(k)))
+            })
+            .collect();
+        let sum = |near: &[Near], row: &[(u32, f64)], f: &dyn Fn([f64; 2]) -> f64| {
+            near.iter().zip(row).map(|((_, at, _), (_, w))| w * f(*at)).sum::<f64>()
+        };
+        let row = fitted(&near);
+        for (f, exact) in [(&(|_: [f64; 2]| 1.0) as &dyn Fn([f64; 2]) -> f64, 1.0), (&|x| x[0], 0.0), (&|x| x[1], 0.0)]
+        {
+            assert!((sum(&near, &row, f) - exact).abs() < 1e-12);
+        }
+        for few in [&near[..3], &near[..1]] {
+            let row = fitted(few);
+            assert!((sum(few, &row, &|_| 1.0) - 1.0).abs() < 1e-12 && row.iter().all(|(_, w)| *w > 0.0));
+        }
+        let line: Vec<Near> = (0..6).map(|k| (k, [0.1 * f64::from(k), 0.0], 1.0)).collect();
+        assert!(fitted(&line).iter().all(|(_, w)| (w - 1.0 / 6.0).abs() < 1e-12));
+    }
+
+    #[test]
+    fn directions_along_a_wall_are_square() {
+        for normal in [[0.0, 0.0, 1.0], [0.6, 0.0, -0.8], [0.48, 0.6, 0.64]] {
+            let n = Vector(normal);
+            let [t, s] = along(&n);
+            assert!(t.dot(&n).abs() < 1e-12 && s.dot(&n).abs() < 1e-12 && t.dot(&s).abs() < 1e-12);
+            assert!((t.norm() - 1.0).abs() < 1e-12 && (s.norm() - 1.0).abs() < 1e-12);
+        }
+    }
 }

@@ -3,6 +3,7 @@ use std::time::Instant;
 
 use serde::Serialize;
 
+use super::super::look::TipVortex;
 use super::super::look::forces::GeneralisedForce;
 use super::super::look::friction::Separation;
 use super::crosscheck::LoadCrosscheck;
@@ -52,6 +53,9 @@ pub struct Summary {
     pub separation: Vec<Separation>,
     /// Loads from the momentum of the gas around the bodies; null without bodies.
     pub loads_momentum_balance: Option<Coefficients>,
+    /// The vortex behind the tip of what lifts, in space.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tip_vortex: Option<TipVortex>,
     /// Conservation; null for a harmonic balance, which does not go from one time to another.
     pub ledger: Option<Ledger>,
     /// Evaluations of the residual of one instance on the cloud of the end, over all stages: those on coarser clouds count with
