@@ -100,6 +100,6 @@ fn chart(walls: &Walls, eta: f64, at: f64, references: &[Reference]) -> Option<C
             series.push(Series::new(&curve.name, Marks::Rings, of(&curve.x), of(&curve.y)));
         }
     }
-    let title = format!("η = {eta:.3}").trim_end_matches('0').to_owned();
+    let title = format!("eta = {eta:.3}").trim_end_matches('0').to_owned();
     Some(Chart { title, x: Axis::linear("x/c"), y: Axis::reversed("Cp"), series })
 }

@@ -176,7 +176,7 @@ mod tests {
         write_stations(folder.path()).unwrap();
         let svg = std::fs::read_to_string(folder.path().join("pictures/cp-stations.svg")).unwrap();
         assert!(
-            svg.contains("η = 0.5") && svg.contains("η = 0.9") && !svg.contains("η = 0.44"),
+            svg.contains("eta = 0.5") && svg.contains("eta = 0.9") && !svg.contains("eta = 0.44"),
             "those of the reference"
         );
         assert!(svg.contains("measured") && svg.contains("Mach 0.8"));

@@ -31,7 +31,7 @@ const ACROSS: usize = 3;
 /// Area of each.
 const CELL: [f64; 2] = [400.0, 340.0];
 /// Room above and below what a row shows.
-const ROOM: f64 = 96.0;
+const ROOM: f64 = 160.0;
 /// Left of the views, and above them.
 const MARGIN: [f64; 2] = [24.0, 72.0];
 /// Right of the views: the colour bar.

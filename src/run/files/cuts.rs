@@ -4,7 +4,7 @@
 //! flow across the stream in a plane behind bodies that lift. Lines there follow v and w less those of the free stream.
 use super::super::error::RunError;
 use super::super::look::WakePlane;
-use super::pictures::{MARGIN, PIXELS, Plane, sampled, together};
+use super::pictures::{MARGIN, Plane, sampled, together};
 use super::target::Scene;
 use crate::case::Side;
 use crate::geometry::Surface;
@@ -15,6 +15,9 @@ use crate::physics::Primitive;
 use crate::report::{Colormap, PictureStyle, Raster, raster_png, write_file, write_stations, write_surface_views};
 use crate::scheme::probe::{Near, Probe};
 use crate::scheme::start::free_stream;
+
+/// Pixels along the longer side: particles in space are farther apart than in the plane, and each pixel asks more of them.
+pub(super) const PIXELS: usize = 480;
 
 /// Draws all pictures of a run in space.
 pub(super) fn write<const D: usize>(scene: &Scene<'_, D>) -> Result<(), RunError> {

@@ -14,7 +14,7 @@ use crate::scheme::probe::{Near, Probe};
 use crate::scheme::start::free_stream;
 
 /// Pixels along the longer side of a flow picture.
-pub(super) const PIXELS: usize = 900;
+const PIXELS: usize = 900;
 /// Pixels along the longer side of a picture of a film strip.
 const FILM_PIXELS: usize = 450;
 /// Greatest Mach number in the colours of a film strip, in that of the free stream.
@@ -48,13 +48,13 @@ fn around<const D: usize>(surface: Option<&Surface<D>>, all: &Bounds<D>, margin:
 
 /// Pixels of a picture of the flow.
 pub(crate) fn pixels<const D: usize>(surface: Option<&Surface<D>>, domain: &Bounds<D>) -> f64 {
-    let of = |window: Bounds<2>| {
+    let of = |window: Bounds<2>, along: usize| {
         let extent = window.extent();
-        (PIXELS * PIXELS) as f64 * extent[0].min(extent[1]) / extent[0].max(extent[1])
+        (along * along) as f64 * extent[0].min(extent[1]) / extent[0].max(extent[1])
     };
     match D {
-        2 => of(around(surface, domain, MARGIN)),
-        _ => surface.map_or(0.0, |surface| of(cuts::window(surface, domain))),
+        2 => of(around(surface, domain, MARGIN), PIXELS),
+        _ => surface.map_or(0.0, |surface| of(cuts::window(surface, domain), cuts::PIXELS)),
     }
 }
 

@@ -22,7 +22,7 @@ const REACH: [f64; 2] = [1.5, 0.75];
 /// Part of the half span inside which the core is not looked for.
 const INNER: f64 = 0.3;
 /// Points along each side of the contour, and of the grid that the core is looked for on.
-const POINTS: usize = 240;
+const POINTS: usize = 120;
 /// Radius in which the centre of the core is taken, in spacings of the particles.
 const CORE: f64 = 2.0;
 
