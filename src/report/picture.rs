@@ -400,6 +400,8 @@ pub(crate) mod tests {
             range: None,
             contours: &contours,
             outlines: &[ellipse()],
+            directions: &[],
+            mark: None,
         };
         keep("raster.png", &raster_png(&sample(400, 260), &style).unwrap());
         style.map = Colormap::Diverging { centre: 1.0 };

@@ -9,7 +9,7 @@ use crate::math::Vector;
 use crate::observe::vtk_read::FieldFile;
 
 /// Part of the corners on either side whose values may be far out.
-const FAR_OUT: f64 = 0.01;
+const FAR_OUT: f64 = 0.02;
 /// Factor by which the cells of the grid grow until few enough triangles are left.
 const COARSER: f64 = 1.3;
 /// Names of sides and axes of the domain.
