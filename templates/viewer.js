@@ -421,5 +421,5 @@
     resize();
   }
 
-  document.querySelectorAll("figure.viewer").forEach(viewer);
+  document.querySelectorAll("figure.viewer:not(.surface)").forEach(viewer);
 })();

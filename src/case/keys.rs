@@ -442,13 +442,19 @@ static OUTPUT: Table = Table::of(&[
          a rhythm of its own beside that of the motion.",
     ),
     Field::defaulted("report", Kind::Flag, Absent::Flag(true), "Write `report.html` and pictures."),
+    Field::optional(
+        "stations",
+        Kind::List(&List { item: Kind::Number(Range::between(0.0, 1.0)), min: 1, max: 24, single: true }),
+        "those of the references, else 0.2, 0.44, 0.65, 0.8, 0.9, 0.95",
+        "Parts of the half span at which Cp is drawn along the chord, in space.",
+    ),
 ]);
 
 static COMPARE: Table = Table::of(&[
     Field::required(
         "file",
         Kind::Text,
-        "CSV file with columns `x_c` and `Cp` (`surface` optional), relative to the case file.",
+        "CSV file with columns `x_c` and `Cp`, in space `eta`, the part of the half span, relative to the case file.",
     ),
     Field::defaulted("label", Kind::Text, Absent::Word("reference"), "Name in the legend."),
 ]);

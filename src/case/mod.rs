@@ -494,12 +494,14 @@ pub struct Output {
     pub loop_periods: u32,
     /// Write `report.html` and pictures.
     pub report: bool,
+    /// Parts of the half span at which Cp is drawn along the chord, in space; absent: those of the references, else a usual list.
+    pub stations: Option<Vec<f64>>,
 }
 
 /// A reference curve of Cp against x/c.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Compare {
-    /// CSV file with columns `x_c` and `Cp` (`surface` optional), relative to the case file.
+    /// CSV file with columns `x_c` and `Cp`, in space `eta`, the part of the half span, relative to the case file.
     pub file: String,
     /// Name in the legend.
     pub label: String,
@@ -570,6 +572,6 @@ impl Default for Adapt {
 
 impl Default for Output {
     fn default() -> Self {
-        Self { checkpoint: 50, field_interval: None, loop_periods: 1, report: true }
+        Self { checkpoint: 50, field_interval: None, loop_periods: 1, report: true, stations: None }
     }
 }

@@ -16,6 +16,7 @@ pub mod multilevel;
 pub mod pencil;
 pub mod rotation;
 pub mod singular;
+pub mod slice;
 pub mod square;
 pub mod sweep;
 pub mod symmetric;

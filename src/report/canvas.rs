@@ -229,6 +229,28 @@ impl Canvas {
         self.draw(Item::Picture { bitmap, area });
     }
 
+    /// Puts another sheet on this one, with its upper left corner at `at`.
+    pub(crate) fn sheet(&mut self, other: &Self, at: [f64; 2]) {
+        let moved = |p: &[f64; 2]| [p[0] + at[0], p[1] + at[1]];
+        let area = |a: &Area| Area { x: a.x + at[0], y: a.y + at[1], ..*a };
+        let item = |item: &Item| match item {
+            Item::Path { outline, fill, pen } => {
+                let points = outline.points.iter().map(moved).collect();
+                Item::Path { outline: Outline { points, closed: outline.closed }, fill: *fill, pen: *pen }
+            }
+            Item::Discs { centres, radius, fill, pen } => {
+                Item::Discs { centres: centres.iter().map(moved).collect(), radius: *radius, fill: *fill, pen: *pen }
+            }
+            Item::Text(text) => Item::Text(Text { at: moved(&text.at), ..text.clone() }),
+            Item::Picture { bitmap, area: own } => Item::Picture { bitmap: bitmap.clone(), area: area(own) },
+        };
+        self.layers.extend(other.layers.iter().map(|layer| Layer {
+            name: layer.name,
+            clip: layer.clip.as_ref().map(area),
+            items: layer.items.iter().map(item).collect(),
+        }));
+    }
+
     /// The sheet as a stand-alone SVG document.
     pub fn svg(&self) -> Result<String, ReportError> {
         Ok(self.render()?)

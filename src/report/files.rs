@@ -24,6 +24,14 @@ pub(super) struct Load {
 pub(super) const LOADS: [Load; 3] =
     [Load { column: "cl", name: "CL" }, Load { column: "cd", name: "CD" }, Load { column: "cm", name: "CM" }];
 
+/// A curve of Cp to compare with.
+pub(super) struct Reference {
+    /// Cp against x/c.
+    pub(super) curve: Series,
+    /// Part of the half span of each value; empty in the plane.
+    pub(super) stations: Vec<f64>,
+}
+
 /// A table of comma-separated values; lines that begin with `#` are comments.
 pub(super) struct Csv {
     pub(super) columns: Vec<String>,
@@ -68,7 +76,7 @@ impl RunFolder {
 
     /// Reference curves of Cp named under `[[compare]]` in the case, and words about those that cannot be read. A file is
     /// looked for beside the run and beside the case file.
-    pub(super) fn references(&self) -> (Vec<Series>, Vec<String>) {
+    pub(super) fn references(&self) -> (Vec<Reference>, Vec<String>) {
         let case = self.text("case.toml").ok().and_then(|text| text.parse::<toml::Table>().ok()).unwrap_or_default();
         let entries = case.get("compare").and_then(|c| c.as_array()).cloned().unwrap_or_default();
         let (mut found, mut missing) = (Vec::new(), Vec::new());
@@ -83,14 +91,17 @@ impl RunFolder {
         (found, missing)
     }
 
-    fn reference(&self, file: &str, label: &str) -> Result<Series, String> {
+    fn reference(&self, file: &str, label: &str) -> Result<Reference, String> {
         let origin = self.text("origin.txt").map(|text| PathBuf::from(text.trim())).ok();
         let beside = [Some(self.path.as_path()), self.path.parent(), origin.as_deref()];
         let path = beside.into_iter().flatten().map(|folder| folder.join(file)).find(|path| path.is_file());
         let path = path.ok_or_else(|| format!("the reference `{file}` was not found"))?;
         let table = Csv::parse(&read_text(&path, file)?).map_err(|e| format!("`{file}` is not a table: {e}"))?;
         match (table.numbers("x_c"), table.numbers("cp")) {
-            (Some(x), Some(cp)) => Ok(Series::new(label, Marks::Rings, x, cp)),
+            (Some(x), Some(cp)) => {
+                let stations = table.numbers("eta").unwrap_or_default();
+                Ok(Reference { curve: Series::new(label, Marks::Rings, x, cp), stations })
+            }
             _ => Err(format!("the reference `{file}` has no columns `x_c` and `Cp`")),
         }
     }

@@ -28,11 +28,16 @@ mod polar;
 mod pressure;
 mod sections;
 mod span;
+mod stations;
+mod stream_lines;
 mod structure;
 pub mod surface;
+mod surface_viewer;
+mod surface_views;
 mod transfer;
 pub mod verification;
 mod viewer;
+mod walls;
 mod words;
 
 pub use chart::{Axis, Chart, Marks, Series};
@@ -41,7 +46,9 @@ pub use compare::Comparison;
 pub use overview::write_report;
 pub use picture::{Dots, PictureStyle, Raster, Scatter, raster_png, scatter_png};
 pub use polar::write_polar;
+pub use stations::write_stations;
 pub use surface::{Shell, SurfaceStyle, surface_png};
+pub use surface_views::write_surface_views;
 pub use verification::write_verification_page;
 
 /// What can go wrong with a picture or a page.

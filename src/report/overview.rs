@@ -187,7 +187,7 @@ pub(crate) mod tests {
         assert!(open.is_empty(), "left open: {open:?}");
     }
 
-    fn assert_self_contained(page: &str) {
+    pub(crate) fn assert_self_contained(page: &str) {
         for attribute in ["src=\"", "href=\"", "url("] {
             for piece in page.split(attribute).skip(1) {
                 let target: String = piece.chars().take(12).collect();

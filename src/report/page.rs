@@ -12,6 +12,7 @@ const MAX_POINTS: usize = 6000;
 const STYLE: &str = include_str!("../../templates/page.css");
 const SCRIPT: &str = include_str!("../../templates/chart.js");
 const VIEWER: &str = include_str!("../../templates/viewer.js");
+const SURFACE: &str = include_str!("../../templates/surface.js");
 
 /// A whole page.
 #[derive(Default, Template)]
@@ -74,6 +75,8 @@ pub(super) enum Block {
     Pictures(Vec<Picture>),
     /// A field that answers to the pointer: what the script of the page needs, as JSON.
     Viewer(String),
+    /// Walls that turn with the pointer: what the script of the page needs, as JSON.
+    Surface(String),
     /// Text as it is.
     Code(String),
 }
@@ -124,6 +127,10 @@ impl Page {
 
     fn has_viewer(&self) -> bool {
         self.sections.iter().flat_map(|s| &s.blocks).any(|block| matches!(block, Block::Viewer(_)))
+    }
+
+    fn has_surface(&self) -> bool {
+        self.sections.iter().flat_map(|s| &s.blocks).any(|block| matches!(block, Block::Surface(_)))
     }
 
     /// What a terminal shows of the page: its lines and tables.

@@ -4,6 +4,7 @@ use super::axes::{Frame, Scale, TITLE_SIZE, tick_text};
 use super::canvas::{Anchor, Area, Bitmap, Canvas, LIFTED, Pen, Text};
 use super::colour::{CURVES, Colormap, Colour};
 use super::contour;
+use super::stream_lines::Directions;
 use crate::math::{Bounds, Vector};
 
 /// Longest side of a plot area in pixels.
@@ -11,6 +12,7 @@ const LONG_SIDE: f64 = 820.0;
 /// A plot area is never higher than this.
 const TALL_SIDE: f64 = 640.0;
 const CONTOUR: Pen = Pen::new(Colour::rgb(62, 68, 78), 0.7);
+const STREAM: Pen = Pen::new(Colour::rgb(62, 68, 78), 0.8);
 /// Pixels of PNG per unit of canvas, at most.
 const SHARPNESS: f64 = 2.0;
 
@@ -44,6 +46,27 @@ pub struct PictureStyle<'a> {
     pub contours: &'a [f64],
     /// Bodies: closed polygons.
     pub outlines: &'a [Vec<Vector<2>>],
+    /// Directions at the pixels, along which lines are drawn; none: an empty slice.
+    pub directions: &'a [[f64; 2]],
+    /// A place that is marked.
+    pub mark: Option<Vector<2>>,
+}
+
+impl<'a> PictureStyle<'a> {
+    /// A field on its own, with axes of these names.
+    pub fn plain(title: &'a str, quantity: &'a str, axes: [&'a str; 2]) -> Self {
+        Self {
+            title,
+            quantity,
+            axes,
+            map: Colormap::Sequential,
+            range: None,
+            contours: &[],
+            outlines: &[],
+            directions: &[],
+            mark: None,
+        }
+    }
 }
 
 /// What the colour of a particle says.
@@ -90,7 +113,13 @@ pub fn raster_png(raster: &Raster, style: &PictureStyle) -> Result<Vec<u8>, Repo
     for level in style.contours {
         draw_contour(&mut canvas, &frame, raster, *level);
     }
+    draw_stream_lines(&mut canvas, &frame, raster, style.directions)?;
     draw_outlines(&mut canvas, &frame, style.outlines);
+    if let Some(at) = style.mark {
+        let centre = vec![place(&frame, &at)];
+        canvas.discs(centre.clone(), 7.0, None, Some(Pen::new(Colour::PAPER, 4.0)));
+        canvas.discs(centre, 7.0, None, Some(Pen::new(Colour::INK, 1.6)));
+    }
     frame.border(&mut canvas, style.axes[0], style.axes[1]);
     colour_bar(&mut canvas, frame.area, style.map, range, style.quantity);
     // a coarse raster does not become sharper in more pixels
@@ -169,8 +198,13 @@ fn place(frame: &Frame, x: &Vector<2>) -> [f64; 2] {
 /// The range of the values. What lies beyond all but the 0.2 % smallest and largest by more than their range is cut: one bad
 /// particle must not bleach a picture, but stagnation points and suction peaks belong on the scale.
 pub(super) fn robust_range(values: &[f64]) -> [f64; 2] {
+    range_without(values, 0.002)
+}
+
+/// The same where this part of the values may be far out on either side.
+pub(super) fn range_without(values: &[f64], part: f64) -> [f64; 2] {
     let mut finite: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
-    let (count, cut) = (finite.len(), finite.len() / 500);
+    let (count, cut) = (finite.len(), (part * finite.len() as f64) as usize);
     let Some(last) = count.checked_sub(1 + cut) else { return [0.0, 1.0] };
     let mut ranked = |k: usize| *finite.select_nth_unstable_by(k, f64::total_cmp).1;
     let [low, high, least, most] = [ranked(cut), ranked(last), ranked(0), ranked(count - 1)];
@@ -221,6 +255,37 @@ fn draw_contour(canvas: &mut Canvas, frame: &Frame, raster: &Raster, level: f64)
     };
     let segments = contour::segments(&raster.values, raster.width, level);
     canvas.line(segments.into_iter().flat_map(|[a, b]| [at(a), at(b), LIFTED]).collect(), CONTOUR);
+}
+
+/// Lines along directions, with an arrow in the middle of each.
+fn draw_stream_lines(
+    canvas: &mut Canvas,
+    frame: &Frame,
+    raster: &Raster,
+    values: &[[f64; 2]],
+) -> Result<(), ReportError> {
+    if values.is_empty() {
+        return Ok(());
+    }
+    let (width, height) = (raster.width, raster.height);
+    if values.len() != width * height {
+        return Err(ReportError::Shape { what: "directions", found: values.len(), expected: width * height });
+    }
+    let area = frame.area;
+    let at = |p: &[f64; 2]| {
+        [area.x + p[0] / width as f64 * area.width, area.y + area.height - p[1] / height as f64 * area.height]
+    };
+    for line in (Directions { width, height, values }).lines() {
+        let points: Vec<[f64; 2]> = line.iter().map(at).collect();
+        let middle = points.len() / 2;
+        let ([ax, ay], [bx, by]) = (points[middle - 1], points[middle]);
+        let long = (bx - ax).hypot(by - ay).max(1e-9);
+        let (dx, dy) = (5.0 * (bx - ax) / long, 5.0 * (by - ay) / long);
+        let wing = |side: f64| [bx - dx + side * 0.6 * dy, by - dy - side * 0.6 * dx];
+        canvas.line(points, STREAM);
+        canvas.line(vec![wing(1.0), [bx, by], wing(-1.0)], STREAM);
+    }
+    Ok(())
 }
 
 fn draw_outlines(canvas: &mut Canvas, frame: &Frame, outlines: &[Vec<Vector<2>>]) {
@@ -335,6 +400,8 @@ pub(crate) mod tests {
             range: None,
             contours: &contours,
             outlines: &[ellipse()],
+            directions: &[],
+            mark: None,
         };
         keep("raster.png", &raster_png(&sample(400, 260), &style).unwrap());
         style.map = Colormap::Diverging { centre: 1.0 };
@@ -392,6 +459,8 @@ pub(crate) mod tests {
             range: None,
             contours: &[0.0, f64::NAN],
             outlines: &[],
+            directions: &[],
+            mark: None,
         };
         let mut raster = sample(4, 3);
         raster.values = vec![f64::NAN; 12];

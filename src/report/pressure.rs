@@ -7,6 +7,7 @@
 use super::chart::{Axis, Chart, Marks, Series, Size};
 use super::files::{Csv, LOADS, RunFolder};
 use super::page::{Block, Fact};
+use super::stations;
 use super::words::{grouped, number};
 
 /// Cp* farther up than this, in the range of Cp, would leave no room for the curves.
@@ -23,8 +24,14 @@ const GAP: f64 = 24.0;
 const ROOM: [f64; 2] = [770.0, 460.0];
 
 pub(super) fn pressure(run: &RunFolder) -> Result<Vec<Block>, String> {
-    let (references, missing) = run.references();
+    let (curves, missing) = run.references();
     let mut blocks: Vec<Block> = missing.into_iter().map(Block::LeftOut).collect();
+    let sections = stations::charts(run, &curves);
+    if !sections.is_empty() {
+        blocks.extend([Block::Facts(conditions(run)), Block::charts(sections.into_iter())]);
+        return Ok(blocks);
+    }
+    let references = curves.into_iter().map(|reference| reference.curve).collect();
     match chart(run, references) {
         Ok(chart) => blocks.extend([Block::Facts(conditions(run)), Block::sized_chart(chart, Size::TALL)]),
         Err(reason) => blocks.insert(0, Block::LeftOut(reason)),

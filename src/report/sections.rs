@@ -5,6 +5,7 @@ use super::chart::{Axis, Chart, Marks, Series};
 use super::files::{Csv, FILM, LOADS, RunFolder};
 use super::page::{Block, Cell, Fact, Picture, Table};
 use super::pressure;
+use super::surface_viewer::surface_viewer;
 use super::viewer::viewer;
 use super::words::{grouped, number, number_of};
 
@@ -25,6 +26,8 @@ const PAPER: &str = "@inproceedings{hu2010meshless,
 const CHORDWISE: &str = "cp-chord";
 /// The chapter on the load along the span draws that.
 const SPANWISE: &str = "span-loading";
+/// The sheet of the same at stations of the span, whose charts stand in the chapter on pressure.
+const STATIONS: &str = "cp-stations";
 /// Histograms whose ends differ by more than this factor have a logarithmic axis.
 const WIDE: f64 = 50.0;
 
@@ -77,11 +80,13 @@ pub(super) fn pictures(run: &RunFolder) -> Result<Vec<Block>, String> {
     // the chapter on pressure draws the same curve where it can
     let drawn = pressure::chart(run, Vec::new()).is_ok();
     let elsewhere = |name: &str| {
-        OF_CLOUD.iter().chain([&FILM]).any(|start| name.starts_with(start)) || drawn && name.starts_with(CHORDWISE)
+        OF_CLOUD.iter().chain([&FILM]).any(|start| name.starts_with(start))
+            || drawn && name.starts_with(CHORDWISE)
+            || name.starts_with(STATIONS)
     };
     let block = pictures_of(run, |name| !elsewhere(name) && !name.starts_with(SPANWISE));
     let block = block.unwrap_or_else(|| Block::LeftOut("there are no pictures in `pictures/`".to_owned()));
-    Ok(viewer(run).into_iter().chain([block]).collect())
+    Ok(viewer(run).into_iter().chain(surface_viewer(run)).chain([block]).collect())
 }
 
 /// The pictures whose names are `wanted`, if any; of a picture in both formats the SVG.

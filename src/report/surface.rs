@@ -31,6 +31,8 @@ pub enum Shell<'a> {
         triangles: &'a [[u32; 3]],
         /// One value per corner.
         values: &'a [f64],
+        /// Normals at the corners for the light, of any length; empty: those of the triangles.
+        normals: &'a [Vector<3>],
     },
     /// Surface particles.
     Splats {
@@ -64,19 +66,36 @@ pub struct SurfaceStyle<'a> {
 
 /// Draws a surface coloured by its values, as PNG.
 pub fn surface_png(shell: &Shell, style: &SurfaceStyle) -> Result<Vec<u8>, ReportError> {
+    let values = match *shell {
+        Shell::Triangles { values, .. } | Shell::Splats { values, .. } => values,
+    };
+    let range = style.range.unwrap_or_else(|| robust_range(values));
+    let mut canvas = Canvas::new(PLOT.x + PLOT.width + 110.0, PLOT.y + PLOT.height + 24.0);
+    canvas.text(Text { bold: true, ..Text::new(style.title, [PLOT.x, 28.0], TITLE_SIZE) });
+    draw_surface(&mut canvas, PLOT, shell, &SurfaceStyle { range: Some(range), ..*style })?;
+    colour_bar(&mut canvas, PLOT, style.map, range, style.quantity);
+    canvas.png(SHARPNESS)
+}
+
+/// Draws a surface as large as it fits into `area`, without title and colour bar.
+pub(super) fn draw_surface(
+    canvas: &mut Canvas,
+    area: Area,
+    shell: &Shell,
+    style: &SurfaceStyle,
+) -> Result<(), ReportError> {
     check(shell)?;
     let (points, values) = match *shell {
         Shell::Triangles { points, values, .. } | Shell::Splats { points, values, .. } => (points, values),
     };
-    let view = View::of(points, style);
     let range = style.range.unwrap_or_else(|| robust_range(values));
-    let mut canvas = Canvas::new(PLOT.x + PLOT.width + 110.0, PLOT.y + PLOT.height + 24.0);
-    canvas.text(Text { bold: true, ..Text::new(style.title, [PLOT.x, 28.0], TITLE_SIZE) });
-    let mut buffer = Buffer::new((PLOT.width * SHARPNESS) as usize, (PLOT.height * SHARPNESS) as usize);
+    let view = View::of(points, style, area);
+    let mut buffer = Buffer::new((area.width * SHARPNESS) as usize, (area.height * SHARPNESS) as usize);
     for pass in [Pass::Depth, Pass::Colour] {
         match *shell {
-            Shell::Triangles { points, triangles, values } => {
-                triangles.iter().for_each(|t| fill_triangle(&mut buffer, pass, &view, &Corners::of(points, values, t)));
+            Shell::Triangles { points, triangles, values, normals } => {
+                let corners = |t| Corners::of(points, values, normals, t);
+                triangles.iter().for_each(|t| fill_triangle(&mut buffer, pass, &view, &corners(t)));
             }
             Shell::Splats { points, normals, areas, values } => {
                 for i in 0..points.len() {
@@ -86,10 +105,9 @@ pub fn surface_png(shell: &Shell, style: &SurfaceStyle) -> Result<Vec<u8>, Repor
             }
         }
     }
-    canvas.picture(buffer.coloured(style.map, range), PLOT);
-    colour_bar(&mut canvas, PLOT, style.map, range, style.quantity);
-    draw_triad(&mut canvas, &view);
-    canvas.png(SHARPNESS)
+    canvas.picture(buffer.coloured(style.map, range), area);
+    draw_triad(canvas, &view);
+    Ok(())
 }
 
 fn check(shell: &Shell) -> Result<(), ReportError> {
@@ -97,8 +115,9 @@ fn check(shell: &Shell) -> Result<(), ReportError> {
         if found == expected { Ok(()) } else { Err(ReportError::Shape { what, found, expected }) }
     };
     match *shell {
-        Shell::Triangles { points, triangles, values } => {
+        Shell::Triangles { points, triangles, values, normals } => {
             same("the field on a surface", values.len(), points.len())?;
+            same("the normals of a surface", normals.len(), if normals.is_empty() { 0 } else { points.len() })?;
             match triangles.iter().position(|t| t.iter().any(|i| *i as usize >= points.len())) {
                 Some(triangle) => Err(ReportError::Triangle { triangle, points: points.len() }),
                 None => Ok(()),
@@ -117,33 +136,23 @@ struct View {
     axes: [Vector<3>; 3],
     centre: Vector<3>,
     scale: f64,
+    area: Area,
 }
 
 impl View {
-    fn of(points: &[Vector<3>], style: &SurfaceStyle) -> Self {
-        let usable = |v: &Vector<3>| v.is_finite() && v.norm() > 0.0;
-        let away = if usable(&style.direction) { style.direction.unit() } else { Vector([0.0, 1.0, 0.0]) };
-        let mut right = cross(&away, &style.up);
-        if !usable(&right) || right.norm() < 1e-6 {
-            // Looking along `up`: any direction across will do.
-            right = cross(&away, &if away[0].abs() < 0.9 { Vector::axis(0) } else { Vector::axis(1) });
-        }
-        let right = right.unit();
-        let axes = [right, cross(&right, &away), away];
-        let seen: Vec<Vector<3>> =
-            points.iter().filter(|x| x.is_finite()).map(|x| Vector(axes.map(|a| a.dot(x)))).collect();
-        let bounds =
-            if seen.is_empty() { Bounds { min: Vector::ZERO, max: Vector::ZERO } } else { Bounds::around(&seen) };
+    fn of(points: &[Vector<3>], style: &SurfaceStyle, area: Area) -> Self {
+        let axes = axes(&style.direction, &style.up);
+        let bounds = seen(points, &style.direction, &style.up);
         let extent = bounds.extent();
-        let fit = (PLOT.width / extent[0].max(1e-300)).min(PLOT.height / extent[1].max(1e-300));
+        let fit = (area.width / extent[0].max(1e-300)).min(area.height / extent[1].max(1e-300));
         // A margin of 6 % on the tighter side.
-        Self { axes, centre: bounds.centre(), scale: 0.88 * fit.min(1e300) * SHARPNESS }
+        Self { axes, centre: bounds.centre(), scale: 0.88 * fit.min(1e300) * SHARPNESS, area }
     }
 
     /// Pixel coordinates, y down, and depth in the same unit.
     fn project(&self, x: &Vector<3>) -> Vector<3> {
         let p = Vector(self.axes.map(|a| a.dot(x))) - self.centre;
-        let middle = [0.5 * PLOT.width * SHARPNESS, 0.5 * PLOT.height * SHARPNESS];
+        let middle = [0.5 * self.area.width * SHARPNESS, 0.5 * self.area.height * SHARPNESS];
         Vector([middle[0] + p[0] * self.scale, middle[1] - p[1] * self.scale, p[2] * self.scale])
     }
 
@@ -151,6 +160,27 @@ impl View {
     fn turn(&self, n: &Vector<3>) -> Vector<3> {
         Vector([self.axes[0].dot(n), -self.axes[1].dot(n), self.axes[2].dot(n)])
     }
+}
+
+/// To the right, upwards and away from the eye.
+fn axes(direction: &Vector<3>, up: &Vector<3>) -> [Vector<3>; 3] {
+    let usable = |v: &Vector<3>| v.is_finite() && v.norm() > 0.0;
+    let away = if usable(direction) { direction.unit() } else { Vector([0.0, 1.0, 0.0]) };
+    let mut right = cross(&away, up);
+    if !usable(&right) || right.norm() < 1e-6 {
+        // Looking along `up`: any direction across will do.
+        right = cross(&away, &if away[0].abs() < 0.9 { Vector::axis(0) } else { Vector::axis(1) });
+    }
+    let right = right.unit();
+    [right, cross(&right, &away), away]
+}
+
+/// What points take of the picture, across, up and in depth.
+pub(super) fn seen(points: &[Vector<3>], direction: &Vector<3>, up: &Vector<3>) -> Bounds<3> {
+    let axes = axes(direction, up);
+    let turned: Vec<Vector<3>> =
+        points.iter().filter(|x| x.is_finite()).map(|x| Vector(axes.map(|a| a.dot(x)))).collect();
+    if turned.is_empty() { Bounds { min: Vector::ZERO, max: Vector::ZERO } } else { Bounds::around(&turned) }
 }
 
 fn cross(a: &Vector<3>, b: &Vector<3>) -> Vector<3> {
@@ -232,12 +262,16 @@ fn light(n: &Vector<3>) -> f64 {
 struct Corners {
     x: [Vector<3>; 3],
     values: [f64; 3],
+    /// Normals, where they are not that of the triangle.
+    normals: Option<[Vector<3>; 3]>,
 }
 
 impl Corners {
-    fn of(points: &[Vector<3>], values: &[f64], triangle: &[u32; 3]) -> Self {
+    fn of(points: &[Vector<3>], values: &[f64], normals: &[Vector<3>], triangle: &[u32; 3]) -> Self {
         let corners = triangle.map(|i| i as usize);
-        Self { x: corners.map(|i| points[i]), values: corners.map(|i| values[i]) }
+        let usable = corners.iter().all(|i| normals.get(*i).is_some_and(|n| n.is_finite() && n.norm() > 0.0));
+        let normals = usable.then(|| corners.map(|i| normals[i]));
+        Self { x: corners.map(|i| points[i]), values: corners.map(|i| values[i]), normals }
     }
 }
 
@@ -255,7 +289,7 @@ fn fill_triangle(buffer: &mut Buffer, pass: Pass, view: &View, corners: &Corners
     if !normal.is_finite() || normal[2] == 0.0 {
         return;
     }
-    let shade = light(&normal);
+    let shades = corners.normals.map_or([light(&normal); 3], |own| own.map(|n| light(&view.turn(&n))));
     let low = [a[0].min(b[0]).min(c[0]), a[1].min(b[1]).min(c[1])];
     let high = [a[0].max(b[0]).max(c[0]), a[1].max(b[1]).max(c[1])];
     buffer.visit(pass, low, high, |x, y| {
@@ -263,8 +297,8 @@ fn fill_triangle(buffer: &mut Buffer, pass: Pass, view: &View, corners: &Corners
         let [u, v, w] = [side(&b, &c), side(&c, &a), side(&a, &b)];
         let inside = u >= 0.0 && v >= 0.0 && w >= 0.0;
         let mix = |f: [f64; 3]| u * f[0] + v * f[1] + w * f[2];
-        let (depth, value) = (mix([a[2], b[2], c[2]]), mix(value));
-        inside.then_some(Sample { depth, value, light: shade, weight: 1.0, thickness: 0.0 })
+        let (depth, value, light) = (mix([a[2], b[2], c[2]]), mix(value), mix(shades));
+        inside.then_some(Sample { depth, value, light, weight: 1.0, thickness: 0.0 })
     });
 }
 
@@ -291,7 +325,8 @@ fn fill_disc(buffer: &mut Buffer, pass: Pass, view: &View, splat: &Splat) {
 
 /// The three axes in the lower left corner.
 fn draw_triad(canvas: &mut Canvas, view: &View) {
-    let origin = [PLOT.x + 40.0, PLOT.y + PLOT.height - 34.0];
+    let area = view.area;
+    let origin = [area.x + 40.0, area.y + area.height - 52.0];
     for (d, name) in ["x", "y", "z"].into_iter().enumerate() {
         let n = view.turn(&Vector::axis(d));
         let tip = [origin[0] + 30.0 * n[0], origin[1] + 30.0 * n[1]];
@@ -370,11 +405,11 @@ mod tests {
         }
         let values: Vec<f64> =
             points.iter().map(|x| if x[0] - 0.5 * x[1] < 0.55 { -1.0 } else { -0.2 } + x[2]).collect();
-        let shell = Shell::Triangles { points: &points, triangles: &triangles, values: &values };
+        let shell = Shell::Triangles { points: &points, triangles: &triangles, values: &values, normals: &[] };
         let style = SurfaceStyle { map: Colormap::Sequential, ..STYLE };
         keep("surface-triangles.png", &surface_png(&shell, &style).unwrap());
         let far = [[0, 1, 10_000]];
-        let shell = Shell::Triangles { points: &points, triangles: &far, values: &values };
+        let shell = Shell::Triangles { points: &points, triangles: &far, values: &values, normals: &[] };
         assert!(matches!(surface_png(&shell, &STYLE), Err(ReportError::Triangle { triangle: 0, .. })));
     }
 

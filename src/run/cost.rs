@@ -27,6 +27,8 @@ const EXPLICIT_BYTES: [f64; 2] = [1100.0, 1400.0];
 const PICTURES_BYTES: [f64; 4] = [52.5e6, 7.0, 33.0, 600.0];
 /// Seconds that they take on one thread: of a flow that stands, and of one that moves.
 const PICTURES_SECONDS: [f64; 2] = [0.2, 2.2];
+/// What they take beyond that in space, always and with each particle: walls, planes and sections.
+const SPACE_PICTURES_SECONDS: [f64; 2] = [1.5, 7e-5];
 /// Bytes of a particle in space over those in the plane.
 const SPACE_BYTES: f64 = 2.36;
 /// Residuals that a steady state takes on a plane cloud of [`USUAL`] particles, and in space.
@@ -126,7 +128,9 @@ impl Sized<'_> {
         let shared = threads() as f64;
         let [always, pixel, thread, each] = PICTURES_BYTES;
         let pictures = always + self.pixels * (pixel + shared * thread) + largest * each;
-        let seconds = solved + PICTURES_SECONDS[usize::from(self.case.moves())] / shared;
+        let [first, of_particle] = SPACE_PICTURES_SECONDS;
+        let of_space = if self.dimension == 3 { first + of_particle * largest } else { 0.0 };
+        let seconds = solved + (PICTURES_SECONDS[usize::from(self.case.moves())] + of_space) / shared;
         Cost { bytes: bytes.max(pictures), seconds }
     }
 

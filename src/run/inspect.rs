@@ -200,5 +200,5 @@ fn write<const D: usize>(
     ];
     write_cells(&to.out.join("cloud.vtu"), &points, Mesh::of(cloud).cells(), &columns)?;
     write_json(&to.out.join("doctor.json"), &Diagnosis::of(cloud, fluid.discretisation.walls.n_linear))?;
-    write_cloud(&Scene { to: *to, view: View::new(fluid, &frame, work), surface })
+    write_cloud(&Scene { to: *to, view: View::new(fluid, &frame, work), surface, chord: 1.0, vortex: None })
 }

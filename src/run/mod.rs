@@ -46,7 +46,7 @@ pub use folder::{Places, fresh_folder};
 pub use inspect::{CloudReport, NeighbourCount, SpacingRange, inspect};
 pub use look::forces::GeneralisedForce;
 pub use look::friction::Separation;
-pub use look::{Snapshot, WakePlane, WallSnapshot};
+pub use look::{Snapshot, TipVortex, WakePlane, WallSnapshot};
 pub use monitor::{MarchTick, Monitor, Silent, Tick};
 pub use record::IterationHistory;
 pub use record::crosscheck::{Apart as LoadsApart, LoadCrosscheck};

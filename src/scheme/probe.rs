@@ -73,6 +73,30 @@ impl<'a, const D: usize> Probe<'a, D> {
 
     /// The same where points are asked one after another that are mostly in the leaf of the one before.
     pub fn beside(&self, x: &Vector<D>, near: &mut Near<D>) -> Option<Primitive<D>> {
+        let mut sum: Option<Primitive<D>> = None;
+        let mut weight = 0.0;
+        self.offers(x, near, |k, w, d| {
+            let offer = self.offer(k, d);
+            sum = Some(sum.map_or_else(|| scaled(&offer, w), |s| s.plus(w, &offer)));
+            weight += w;
+        });
+        sum.map(|s| self.view.turned(&scaled(&s, 1.0 / weight)))
+    }
+
+    /// Curl of the velocity at `x`, blended from that at the particles; `None` where none is near.
+    pub fn vorticity(&self, x: &Vector<D>, near: &mut Near<D>) -> Option<[f64; 3]> {
+        let (mut sum, mut weight) = ([0.0; 3], 0.0);
+        self.offers(x, near, |k, w, _| {
+            let own = self.view.vorticity(k);
+            (0..3).for_each(|d| sum[d] += w * own[d]);
+            weight += w;
+        });
+        (weight > 0.0).then(|| sum.map(|s| s / weight))
+    }
+
+    /// Calls `f(particle, weight, offset)` for all that have a word at `x`.
+    #[inline]
+    fn offers(&self, x: &Vector<D>, near: &mut Near<D>, mut f: impl FnMut(usize, f64, &Vector<D>)) {
         // the background knows particles where they were before any motion
         let cloud = self.view.reference();
         let (x, place) = &self.origin(x);
@@ -86,18 +110,13 @@ impl<'a, const D: usize> Probe<'a, D> {
             let cube = Bounds { min: leaf.centre - corner, max: leaf.centre + corner };
             cloud.tree.overlapping(&cube, |node| near.list.extend(cloud.leaves.of(node)));
         }
-        let mut sum: Option<Primitive<D>> = None;
-        let mut weight = 0.0;
         for k in &near.list {
             let k = *k as usize;
             let w = self.weight(k, &(*x - cloud.x[k]), reach);
             if w > 0.0 && self.in_sight(k, x) {
-                let offer = self.offer(k, &(*place - places[k]));
-                sum = Some(sum.map_or_else(|| scaled(&offer, w), |s| s.plus(w, &offer)));
-                weight += w;
+                f(k, w, &(*place - places[k]));
             }
         }
-        sum.map(|s| self.view.turned(&scaled(&s, 1.0 / weight)))
     }
 
     /// Weight of particle `k` at the offset `d` from it.

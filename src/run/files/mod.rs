@@ -1,4 +1,5 @@
 //! What a run leaves in its folder: tables, fields, pictures.
+mod cuts;
 mod pictures;
 mod strips;
 mod target;
@@ -8,14 +9,14 @@ use std::path::Path;
 use super::error::RunError;
 use super::folder;
 use super::found::Found;
-use super::look::{GasView, Mesh, Snapshot, WallSnapshot, field};
+use super::look::{GasView, Hull, Mesh, Snapshot, WallSnapshot, field};
 use super::record::summary::Summary;
 use super::record::{Log, passed};
 use crate::cloud::Diagnosis;
 use crate::geometry::Surface;
 use crate::observe::loads::together as both;
 use crate::observe::table::{Entry, write_csv, write_json};
-use crate::observe::vtk::{Column, read_collection, write_cells, write_collection, write_surface};
+use crate::observe::vtk::{Column, Facets, read_collection, write_cells, write_collection, write_surface};
 use crate::report;
 use crate::scheme::Work;
 
@@ -42,7 +43,8 @@ pub(crate) fn write_all<const D: usize>(
     if found.case.output.report {
         let to = Target { case: found.case, out };
         report::write_polar(out)?;
-        pictures::write(&Scene { to, view: found.view, surface: found.surface })?;
+        let vortex = summary.tip_vortex;
+        pictures::write(&Scene { to, view: found.view, surface: found.surface, chord: found.axes.chord, vortex })?;
         strips::write_chart(found, out)?;
         // the page tells the cost of all but itself
         let path = out.join("summary.json");
@@ -164,7 +166,22 @@ impl<const D: usize> Files<'_, D> {
         let columns: Vec<Column<'_>> =
             cut.iter().map(|(name, n, values)| Column { name, components: *n, values }).collect();
         let points = &all.points[range];
-        Ok(write_surface(&self.out.join("surface.vtp"), points, mesh.facets(), &columns, &[])?)
+        write_surface(&self.out.join("surface.vtp"), points, mesh.facets(), &columns, &[])?;
+        self.write_hull(all)
+    }
+
+    /// The triangles of the bodies with the flow at their corners, in space.
+    fn write_hull(&self, all: &Snapshot) -> Result<(), RunError> {
+        let Some(surface) = self.found.surface.filter(|_| D == 3) else { return Ok(()) };
+        let hull = Hull::of(&self.found.view, surface, (all, self.walls));
+        let own = [
+            Column { name: "normal", components: 3, values: &hull.normals },
+            Column { name: "body", components: 1, values: &hull.body },
+        ];
+        let told = hull.columns.iter().map(|(name, n, values)| Column { name, components: *n, values });
+        let columns: Vec<Column<'_>> = own.into_iter().chain(told).collect();
+        let facets = Facets::Triangles(&hull.triangles);
+        Ok(write_surface(&self.out.join("hull.vtp"), &hull.points, facets, &columns, &[])?)
     }
 }
 
@@ -208,7 +225,7 @@ pub(crate) fn write_film<const D: usize>(
     work: &mut Work<D>,
     part: u64,
 ) -> Result<(), RunError> {
-    let scene = Scene { to: *to, view: gas.seen(work), surface: Some(surface) };
+    let scene = Scene { to: *to, view: gas.seen(work), surface: Some(surface), chord: 1.0, vortex: None };
     pictures::write_film(&scene, (part - 1) as u32 % FILM + 1)
 }
 

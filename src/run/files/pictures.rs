@@ -1,14 +1,14 @@
 //! Pictures of a run, drawn through the solver's own fit.
 use super::super::error::RunError;
 use super::super::look::pressure_coefficient;
+use super::cuts;
 use super::target::{FILM, Scene};
 use crate::geometry::Surface;
 use crate::math::sweep::{sweep_each, sweep_each_chunk};
 use crate::math::{Bounds, Vector};
 use crate::physics::Primitive;
 use crate::report::{
-    Axis, Chart, Colormap, Dots, Marks, PictureStyle, Raster, Scatter, Series, Shell, SurfaceStyle, raster_png,
-    scatter_png, surface_png, write_file,
+    Axis, Chart, Colormap, Dots, Marks, PictureStyle, Raster, Scatter, Series, raster_png, scatter_png, write_file,
 };
 use crate::scheme::probe::{Near, Probe};
 use crate::scheme::start::free_stream;
@@ -24,7 +24,7 @@ const LARGEST_STEP: usize = 4;
 /// Size of the background over that distance from which on pixels between are means.
 const COARSE: f64 = 3.0;
 /// Margin of flow pictures around the bodies in body lengths.
-const MARGIN: f64 = 0.6;
+pub(super) const MARGIN: f64 = 0.6;
 
 /// A flow picture: file name, (title, quantity, colours, contours), value of a state.
 type Drawn<'a, const D: usize> = (&'a str, (&'a str, &'a str, Colormap, &'a [f64]), Value<'a, D>);
@@ -32,7 +32,7 @@ type Value<'a, const D: usize> = &'a (dyn Fn(&Primitive<D>) -> f64 + Sync);
 
 /// Draws all pictures of a run.
 pub(crate) fn write<const D: usize>(scene: &Scene<'_, D>) -> Result<(), RunError> {
-    if D == 2 { plane(scene) } else { space(scene) }
+    if D == 2 { plane(scene) } else { cuts::write(scene) }
 }
 
 fn window<const D: usize>(scene: &Scene<'_, D>, margin: f64) -> Bounds<2> {
@@ -48,9 +48,14 @@ fn around<const D: usize>(surface: Option<&Surface<D>>, all: &Bounds<D>, margin:
 
 /// Pixels of a picture of the flow.
 pub(crate) fn pixels<const D: usize>(surface: Option<&Surface<D>>, domain: &Bounds<D>) -> f64 {
-    let extent = around(surface, domain, MARGIN).extent();
-    let longest = extent[0].max(extent[1]);
-    (PIXELS * PIXELS) as f64 * extent[0] * extent[1] / (longest * longest)
+    let of = |window: Bounds<2>, along: usize| {
+        let extent = window.extent();
+        (along * along) as f64 * extent[0].min(extent[1]) / extent[0].max(extent[1])
+    };
+    match D {
+        2 => of(around(surface, domain, MARGIN), PIXELS),
+        _ => surface.map_or(0.0, |surface| of(cuts::window(surface, domain), cuts::PIXELS)),
+    }
 }
 
 fn outlines<const D: usize>(scene: &Scene<'_, D>) -> Vec<Vec<Vector<2>>> {
@@ -78,7 +83,7 @@ fn plane<const D: usize>(scene: &Scene<'_, D>) -> Result<(), RunError> {
     let mach = |q: &Primitive<D>| q.velocity.norm() / gas.sound_speed(q);
     let cp = |q: &Primitive<D>| pressure_coefficient(q, &free);
     let density = |q: &Primitive<D>| q.density;
-    let states = sampled(scene, &w, PIXELS);
+    let states = sampled(scene, &Plane::of_motion(), &w, PIXELS);
     let style = |title: &'static str, quantity: &'static str, map: Colormap, contours: &'static [f64]| {
         (title, quantity, map, contours)
     };
@@ -91,8 +96,12 @@ fn plane<const D: usize>(scene: &Scene<'_, D>) -> Result<(), RunError> {
     let field = |(name, (title, quantity, map, contours), value): &Drawn<'_, D>| -> Result<(), RunError> {
         let values = states.2.iter().map(|q| q.as_ref().map_or(f64::NAN, value)).collect();
         let raster = Raster { width: states.0, height: states.1, window: w, values };
-        let style =
-            PictureStyle { title, quantity, axes: ["x", "y"], map: *map, range: None, contours, outlines: &outlines };
+        let style = PictureStyle {
+            map: *map,
+            contours,
+            outlines: &outlines,
+            ..PictureStyle::plain(title, quantity, ["x", "y"])
+        };
         Ok(write_file(&scene.to.out.join(format!("pictures/{name}.png")), &raster_png(&raster, &style)?)?)
     };
     together(4, |k| match k {
@@ -112,33 +121,55 @@ pub(crate) fn together(n: usize, task: impl Fn(usize) -> Result<(), RunError> + 
 /// Draws the Mach number at part `part` of a period, in colours that are the same for all of them.
 pub(crate) fn write_film<const D: usize>(scene: &Scene<'_, D>, part: u32) -> Result<(), RunError> {
     let (window, gas) = (window(scene, MARGIN), scene.view.fluid.gas);
-    let (width, height, states) = sampled(scene, &window, FILM_PIXELS);
+    let (width, height, states) = sampled(scene, &Plane::of_motion(), &window, FILM_PIXELS);
     let mach = |q: &Primitive<D>| q.velocity.norm() / gas.sound_speed(q);
     let values = states.iter().map(|q| q.as_ref().map_or(f64::NAN, mach)).collect();
     let title = format!("Mach number after {part}/{FILM} of the period");
     let style = PictureStyle {
-        title: &title,
-        quantity: "M",
-        axes: ["x", "y"],
-        map: Colormap::Sequential,
         range: Some([0.0, FILM_RANGE * scene.to.case.flow.reference().mach]),
         contours: &[1.0],
         outlines: &outlines(scene),
+        ..PictureStyle::plain(&title, "M", ["x", "y"])
     };
     let png = raster_png(&Raster { width, height, window, values }, &style)?;
     Ok(write_file(&scene.to.out.join(format!("pictures/film-{part}.png")), &png)?)
 }
 
+/// The plane of a picture.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Plane<const D: usize> {
+    /// Axes that run to the right and upwards.
+    pub(super) axes: [usize; 2],
+    /// A point of it.
+    pub(super) through: Vector<D>,
+}
+
+impl<const D: usize> Plane<D> {
+    /// That of plane flow.
+    fn of_motion() -> Self {
+        Self { axes: [0, 1], through: Vector::ZERO }
+    }
+
+    /// The point at these coordinates along its axes.
+    pub(super) fn place(&self, at: [f64; 2]) -> Vector<D> {
+        let mut x = self.through;
+        (0..2).for_each(|k| x[self.axes[k]] = at[k]);
+        x
+    }
+}
+
 /// States on a grid of pixels, `pixels` along the longer side: (width, height, states, `None` inside bodies).
-fn sampled<const D: usize>(
+pub(super) fn sampled<const D: usize>(
     scene: &Scene<'_, D>,
+    plane: &Plane<D>,
     w: &Bounds<2>,
     pixels: usize,
 ) -> (usize, usize, Vec<Option<Primitive<D>>>) {
     let extent = w.extent();
     let scale = pixels as f64 / extent[0].max(extent[1]);
     let size = [0, 1].map(|d| (extent[d] * scale).round().max(1.0) as usize);
-    let grid = Grid { scene, probe: Probe::new(scene.view, scene.surface), from: w.min, pixel: 1.0 / scale, size };
+    let probe = Probe::new(scene.view, scene.surface);
+    let grid = Grid { scene, probe, plane: *plane, from: w.min, pixel: 1.0 / scale, size };
     (size[0], size[1], grid.states(1))
 }
 
@@ -146,6 +177,7 @@ fn sampled<const D: usize>(
 struct Grid<'a, const D: usize> {
     scene: &'a Scene<'a, D>,
     probe: Probe<'a, D>,
+    plane: Plane<D>,
     /// Lowest corner.
     from: Vector<2>,
     pixel: f64,
@@ -178,7 +210,7 @@ impl<const D: usize> Grid<'_, D> {
     }
 
     fn place(&self, pixel: [usize; 2]) -> Vector<D> {
-        Vector::from_fn(|d| if d < 2 { self.from[d] + (pixel[d] as f64 + 0.5) * self.pixel } else { 0.0 })
+        self.plane.place([0, 1].map(|d| self.from[d] + (pixel[d] as f64 + 0.5) * self.pixel))
     }
 
     fn fitted(&self, x: &Vector<D>, near: &mut Near<D>) -> Option<Primitive<D>> {
@@ -252,28 +284,4 @@ fn curves<const D: usize>(scene: &Scene<'_, D>) -> Result<(), RunError> {
     let chart = Chart { title: "Pressure on the wall".into(), x: Axis::linear("x/c"), y: Axis::reversed("Cp"), series };
     write_file(&scene.to.out.join("pictures/cp-chord.svg"), chart.svg()?.as_bytes())?;
     Ok(write_file(&scene.to.out.join("pictures/cp-chord.png"), &chart.png()?)?)
-}
-
-fn space<const D: usize>(scene: &Scene<'_, D>) -> Result<(), RunError> {
-    if scene.surface.is_none() {
-        return Ok(());
-    }
-    let cloud = scene.view.cloud();
-    let free = free_stream::<D>(scene.to.case);
-    let solid = |v: &Vector<D>| Vector(v.to_3d());
-    let points: Vec<Vector<3>> = cloud.interface_range().map(|i| solid(&scene.view.place(i))).collect();
-    let normals: Vec<Vector<3>> = (0..points.len()).map(|w| solid(&scene.view.normal(w))).collect();
-    let areas: Vec<f64> = cloud.interface.iter().map(|w| w.area.norm()).collect();
-    let values: Vec<f64> = cloud.interface_range().map(|i| pressure_coefficient(&scene.view.state(i), &free)).collect();
-    let shell = Shell::Splats { points: &points, normals: &normals, areas: &areas, values: &values };
-    let style = SurfaceStyle {
-        title: "Pressure coefficient",
-        quantity: "Cp",
-        map: Colormap::Diverging { centre: 0.0 },
-        range: None,
-        direction: Vector([1.0, 0.8, -0.6]),
-        up: Vector([0.0, 0.0, 1.0]),
-    };
-    write_file(&scene.to.out.join("pictures/cp.png"), &surface_png(&shell, &style)?)?;
-    curves(scene)
 }

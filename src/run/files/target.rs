@@ -1,6 +1,7 @@
 //! Where files go, and what pictures are drawn from.
 use std::path::Path;
 
+use super::super::look::TipVortex;
 use crate::case::Case;
 use crate::geometry::Surface;
 use crate::scheme::View;
@@ -27,4 +28,8 @@ pub(crate) struct Scene<'a, const D: usize> {
     pub(crate) view: View<'a, D>,
     /// Bodies.
     pub(crate) surface: Option<&'a Surface<D>>,
+    /// Chord of the loads.
+    pub(crate) chord: f64,
+    /// The vortex behind the tip, where there is one.
+    pub(crate) vortex: Option<TipVortex>,
 }

@@ -3,19 +3,25 @@ mod axes;
 mod field;
 pub(crate) mod forces;
 pub(crate) mod friction;
+mod hull;
 mod mesh;
 pub(crate) mod momentum;
 pub(crate) mod reference;
 mod span;
+mod tip_vortex;
 mod wake;
+mod wall_weights;
 mod walls;
 
 pub use field::Snapshot;
+pub use tip_vortex::TipVortex;
 pub use wake::WakePlane;
 pub use walls::WallSnapshot;
 
 pub(crate) use axes::{GasView, LoadFrame, load_axes, motion, pressure_load, totals};
 pub(crate) use field::{field, pressure_coefficient};
+pub(crate) use hull::Hull;
 pub(crate) use mesh::Mesh;
 pub(crate) use span::{span_load, span_loads};
+pub(crate) use tip_vortex::{CrossPlane, tip_vortex};
 pub(crate) use wake::wake_planes;

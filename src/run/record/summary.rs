@@ -3,7 +3,7 @@ use std::time::Instant;
 
 use serde::Serialize;
 
-use super::super::look::WakePlane;
+use super::super::look::{TipVortex, WakePlane};
 use super::super::look::forces::GeneralisedForce;
 use super::super::look::friction::Separation;
 use super::crosscheck::LoadCrosscheck;
@@ -55,6 +55,9 @@ pub struct Summary {
     pub separation: Vec<Separation>,
     /// Loads from the momentum of the gas around the bodies; null without bodies.
     pub loads_momentum_balance: Option<Coefficients>,
+    /// The vortex behind the tip of what lifts, in space.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tip_vortex: Option<TipVortex>,
     /// Conservation; null for a harmonic balance, which does not go from one time to another.
     pub ledger: Option<Ledger>,
     /// What acts at the roots of wings and fins.
