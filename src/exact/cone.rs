@@ -44,14 +44,15 @@ impl ConeFlow {
         if !(1.0 < mach && mach.is_finite()) {
             return Err(Error::Mach { what: "flow past a cone", range: "(1, inf)", mach });
         }
-        if !(LEAST <= half_angle && half_angle < FRAC_PI_2) {
+        if !(LEAST..FRAC_PI_2).contains(&half_angle) {
             return Err(Error::Angle { what: "flow past a cone", range: "[0.001, detachment]", angle: half_angle });
         }
         let mach_angle = (1.0 / mach).asin();
         let at = |k: usize| mach_angle + (FRAC_PI_2 - mach_angle) * k as f64 / SEARCHED as f64;
         let angle = |shock: f64| behind(mach, shock, gamma).surface();
-        let (steepest, limit) =
-            (1..SEARCHED).map(|k| (at(k), angle(at(k)).0)).fold((mach_angle, 0.0), |a, b| if b.1 > a.1 { b } else { a });
+        let (steepest, limit) = (1..SEARCHED)
+            .map(|k| (at(k), angle(at(k)).0))
+            .fold((mach_angle, 0.0), |a, b| if b.1 > a.1 { b } else { a });
         if half_angle > limit {
             return Err(Error::Detached { angle: half_angle, mach, limit });
         }

@@ -110,7 +110,11 @@ impl FlatWing {
         }
         let beta = (1.0 - mach * mach).sqrt();
         let panels = self.panels(beta, lattice);
-        let circulation = circulation(&panels).ok_or(Error::Outside { what: "planforms with an area", x: self.span, y: self.root_chord })?;
+        let circulation = circulation(&panels).ok_or(Error::Outside {
+            what: "planforms with an area",
+            x: self.span,
+            y: self.root_chord,
+        })?;
         // both sides of a wing at one radian in a stream of speed one: L = 2 Σ Γ Δy
         let lift: f64 = panels.iter().zip(&circulation).map(|(p, g)| 4.0 * g * p.width).sum();
         let moment: f64 = panels
@@ -138,7 +142,10 @@ impl FlatWing {
             let at = |part: f64, y: f64| [self.point((row as f64 + part) / rows, y) / beta, y];
             Panel { ends: [at(0.25, y0), at(0.25, y1)], control: at(0.75, middle), width: y1 - y0, strip }
         };
-        (0..lattice.spanwise).flat_map(|s| (0..lattice.chordwise).map(move |r| (s, r))).map(|(s, r)| panel(s, r)).collect()
+        (0..lattice.spanwise)
+            .flat_map(|s| (0..lattice.chordwise).map(move |r| (s, r)))
+            .map(|(s, r)| panel(s, r))
+            .collect()
     }
 }
 
@@ -231,7 +238,10 @@ mod tests {
         // a quarter of the perimeter by Ramanujan
         let around = 0.25 * PI * (3.0 * (b + c) - ((3.0 * b + c) * (b + 3.0 * c)).sqrt());
         let edge = 2.0 * PI * a / (a * around / b + 2.0);
-        assert!((found.lift_slope / edge - 1.0).abs() < 0.02 && (found.efficiency - 1.0).abs() < 2e-3, "{found:?} {edge}");
+        assert!(
+            (found.lift_slope / edge - 1.0).abs() < 0.02 && (found.efficiency - 1.0).abs() < 2e-3,
+            "{found:?} {edge}"
+        );
         // H. Glauert, The Elements of Aerofoil and Airscrew Theory (1926), chapter 11, by 60 terms: 0.951 for a rectangle of aspect ratio
         // 2π, 0.768 of 50; square tips carry less where the chord counts
         for (aspect_ratio, line) in [(2.0 * PI, 0.9514), (50.0, 0.7679)] {
@@ -248,6 +258,8 @@ mod tests {
         let [fast, slow] = [wing.lift(mach, FINE).unwrap(), longer.lift(0.0, FINE).unwrap()];
         assert!((fast.lift_slope * beta / slow.lift_slope - 1.0).abs() < 1e-12, "{fast:?} {slow:?}");
         assert!((fast.neutral_point / (beta * slow.neutral_point) - 1.0).abs() < 1e-12);
-        assert!((fast.with_section(1.0) / fast.lift_slope - 1.0).abs() < 1e-12 && fast.with_section(1.1) > fast.lift_slope);
+        assert!(
+            (fast.with_section(1.0) / fast.lift_slope - 1.0).abs() < 1e-12 && fast.with_section(1.1) > fast.lift_slope
+        );
     }
 }

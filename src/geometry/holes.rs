@@ -102,7 +102,9 @@ fn least_area(rim: &[Vector<3>]) -> Vec<[usize; 3]> {
         for i in 0..n - gap {
             let j = i + gap;
             let through = |m: usize| best[i * n + m].0 + best[m * n + j].0 + weight(i, m, j);
-            let least = (i + 1..j).map(|m| (through(m), m as u32)).fold((f64::INFINITY, 0), |a, b| if b.0 < a.0 { b } else { a });
+            let least = (i + 1..j)
+                .map(|m| (through(m), m as u32))
+                .fold((f64::INFINITY, 0), |a, b| if b.0 < a.0 { b } else { a });
             best[i * n + j] = least;
         }
     }

@@ -3,10 +3,10 @@
 //! A part is what is reached across edges with two triangles. Parts that share a volume, or a piece of wall, are clipped at their
 //! intersection and closed ([`super::union`]): the walls bound one volume. No gas reaches a part inside another one that faces the same way; one that
 //! faces the other way is a cavity or the room around a model, which only the user can tell.
+use super::GeometryError;
 use super::shell::{Exact, Shell, at, facets, root, unite};
 use super::surface::Surface;
 use super::union::{self, Meeting};
-use super::GeometryError;
 use crate::math::Bounds;
 use std::collections::BTreeMap;
 
@@ -91,7 +91,8 @@ fn inside(
 ) -> Result<usize, GeometryError> {
     let (name, around) = (&inner.name, &outer.name);
     if inner.inward != outer.inward {
-        let what = format!("{name} lies inside {around} and faces the other way: it is a cavity, or a room around a model");
+        let what =
+            format!("{name} lies inside {around} and faces the other way: it is a cavity, or a room around a model");
         let hint = "keep only the walls that the stream reaches: remove inner walls and cavities before the export";
         return Err(GeometryError::refused(file, what, hint));
     }

@@ -316,7 +316,9 @@ mod tests {
                 triangles.extend([[at(k, a), at(k + 1, a), at(k, b)], [at(k + 1, a), at(k + 1, b), at(k, b)]]);
             }
         }
-        triangles.extend([root, tip].iter().zip([0, n]).filter(|(open, _)| !**open).map(|(_, k)| [0, 1, 2].map(|c| at(k, c))));
+        triangles.extend(
+            [root, tip].iter().zip([0, n]).filter(|(open, _)| !**open).map(|(_, k)| [0, 1, 2].map(|c| at(k, c))),
+        );
         Soup { tags: vec![0; triangles.len()], names: vec!["wing".into()], triangles }
     }
 
@@ -329,7 +331,11 @@ mod tests {
             ([true, false, true], vec!["flat", "flat"]),
         ] {
             let (surface, notes) = mend(&wedge(0.01, open)).unwrap();
-            assert!(surface.is_closed() && (surface.volume() - 0.02).abs() < 1e-12, "{open:?} {notes:?} {}", surface.volume());
+            assert!(
+                surface.is_closed() && (surface.volume() - 0.02).abs() < 1e-12,
+                "{open:?} {notes:?} {}",
+                surface.volume()
+            );
             let told: Vec<&String> = notes.iter().filter(|n| n.contains("opening")).collect();
             assert_eq!(told.len(), kinds.len(), "{notes:?}");
             assert!(told.iter().zip(&kinds).all(|(n, kind)| n.contains(kind)), "{notes:?}");

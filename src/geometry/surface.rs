@@ -88,10 +88,7 @@ impl<const D: usize> Surface<D> {
     /// Joins the named shells of all bodies.
     pub fn new(shells: &[(String, Shell<D>)]) -> Self {
         let names: Vec<String> = shells.iter().map(|(name, _)| name.clone()).collect();
-        let skin = |(k, (_, shell)): (usize, &(String, Shell<D>))| Skin {
-            shell: shell.clone(),
-            owner: vec![k as u16],
-        };
+        let skin = |(k, (_, shell)): (usize, &(String, Shell<D>))| Skin { shell: shell.clone(), owner: vec![k as u16] };
         Self::of(&names, &shells.iter().enumerate().map(skin).collect::<Vec<_>>())
     }
 

@@ -86,7 +86,16 @@ fn welded(soup: &Soup, tolerance: f64, file: &str, notes: &mut Vec<String>) -> W
         }
     }
     let (vertices, tag_names) = (welder.vertices, soup.names.clone());
-    let shell = Shell { vertices, elements, normals: None, curvature: None, tags, tag_names, exact: Exact::None, crease: CREASE };
+    let shell = Shell {
+        vertices,
+        elements,
+        normals: None,
+        curvature: None,
+        tags,
+        tag_names,
+        exact: Exact::None,
+        crease: CREASE,
+    };
     Welded { shell, collapsed: degenerate + repeated + walls }
 }
 
