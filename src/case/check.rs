@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 
 use super::Accuracy;
 use super::body_keys::SHAPES;
-use super::draft::{Draft, default_name};
+use super::draft::{Draft, closest, default_name};
 use super::facts::is_dimensional;
 use super::keys::SIDES;
 use super::naca::{Naca, TrailingEdge};
@@ -320,6 +320,25 @@ fn in_dimension(draft: &mut Draft<'_>, d: usize) {
     if d == 2 && draft.given("reference.area") {
         let hint = "in 2-D the coefficients use `reference.chord`";
         draft.fail_key("reference.area", "`reference.area` needs a 3-D case").hint(hint);
+    }
+    reference_body(draft, d);
+}
+
+/// The body of the reference values is one of the case.
+fn reference_body(draft: &mut Draft<'_>, d: usize) {
+    let key = "reference.body";
+    let Some(wanted) = draft.get(key).and_then(Value::as_str).map(str::to_owned) else { return };
+    if d == 2 {
+        draft.fail_key(key, "`reference.body` needs a 3-D case").hint("in 2-D the coefficients use `reference.chord`");
+        return;
+    }
+    let name = |i: usize| draft.get(&format!("body[{i}].name")).and_then(Value::as_str).unwrap_or_default().to_owned();
+    let names: Vec<String> = (0..draft.count("body")).map(name).collect();
+    if !names.contains(&wanted) {
+        let close = closest(&wanted, names.iter().map(String::as_str));
+        let hint = close.map(|n| format!("did you mean `\"{n}\"`?"));
+        let allowed = one_of(names.iter().map(String::as_str));
+        draft.fail(key, format!("no body is called `{wanted}`")).allowed(allowed).hint = hint;
     }
 }
 

@@ -190,6 +190,12 @@ static REFERENCE: Table = Table::of(&[
         "Area of the coefficients in 3-D, length squared.",
     ),
     Field::optional(
+        "body",
+        Kind::Text,
+        "all bodies",
+        "Name of the body whose planform gives the values that are not given, in 3-D: the wing of an aircraft. It counts whole, with what lies inside other bodies.",
+    ),
+    Field::optional(
         "moment_point",
         POINT,
         "quarter of the chord (2-D), of the mean aerodynamic chord (3-D)",

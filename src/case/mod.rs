@@ -244,6 +244,8 @@ pub struct Reference {
     pub chord: Option<Length>,
     /// Area of the coefficients in 3-D (in units of length squared); default: that of the planform, seen along z.
     pub area: Option<f64>,
+    /// Name of the body whose planform gives what is not given, in 3-D; default: all of them.
+    pub body: Option<String>,
     /// Point about which moments are taken; default: quarter chord of the bounding box in 2-D, its centre in 3-D.
     pub moment_point: Option<Vec<Length>>,
 }

@@ -8,6 +8,7 @@
 //! | [`riemann`] | Riemann problem of the ideal gas |
 //! | [`shock`] | normal and oblique shocks, detachment |
 //! | [`expansion`] | isentropic relations, Prandtl-Meyer fan |
+//! | [`cone`] | supersonic flow past a cone |
 //! | [`diamond`] | diamond airfoil by shock-expansion theory |
 //! | [`vortex`] | advected isentropic vortex |
 //! | [`ringleb`] | Ringleb's transonic hodograph flow |
@@ -16,15 +17,18 @@
 //! | [`piston`] | piston started at once, and oscillating: simple wave and acoustics |
 //! | [`theodorsen`] | plate that pitches and plunges in incompressible flow |
 //! | [`flutter`] | typical section on springs in incompressible flow: roots, flutter, divergence |
+//! | [`lifting_surface`] | lift and induced drag of thin wings in subsonic flow |
 //! | [`blasius`] | laminar boundary layer on a flat plate |
 use crate::math::Vector;
 
 mod bessel;
 pub mod blasius;
+pub mod cone;
 pub mod diamond;
 pub mod expansion;
 pub mod flutter;
 mod janzen_rayleigh;
+pub mod lifting_surface;
 pub mod piston;
 pub mod potential;
 pub mod riemann;

@@ -283,7 +283,16 @@ impl Skin {
             elements.iter_mut().for_each(|e| e.swap(1, 2));
         }
         let (tags, tag_names) = (Vec::new(), Vec::new());
-        Shell { vertices, elements, normals: None, tags, tag_names, exact: Exact::None, crease: CREASE }
+        Shell {
+            vertices,
+            elements,
+            normals: None,
+            tags,
+            tag_names,
+            curvature: None,
+            exact: Exact::None,
+            crease: CREASE,
+        }
     }
 }
 

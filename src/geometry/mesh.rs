@@ -4,6 +4,7 @@
 //! double precision, with all its solids and with line numbers in messages; binary STL goes through `stl_io`, OBJ through
 //! `tobj`.
 use super::GeometryError;
+use super::parts::UNNAMED;
 use crate::math::Vector;
 use std::io::{Cursor, Read};
 
@@ -27,7 +28,7 @@ pub(super) struct Soup {
 impl Soup {
     /// Makes `name` the part of the triangles to come.
     fn begin(&mut self, name: &str) -> u16 {
-        let name = if name.is_empty() { "unnamed" } else { name };
+        let name = if name.is_empty() { UNNAMED } else { name };
         let found = self.names.iter().position(|n| n == name).unwrap_or_else(|| {
             self.names.push(name.to_string());
             self.names.len() - 1

@@ -4,7 +4,7 @@
 //! coordinate files, polygons, circles, ellipses, spheres, boxes, STL and OBJ files. Shells are placed and joined to a [`Surface`],
 //! which answers nearest-point, crossing and inside questions through a tree of boxes.
 //!
-//! Bodies in space that overlap are clipped at their intersection and closed.
+//! Bodies in space that overlap, and parts of one file, are clipped at their intersection and closed.
 //!
 //! Limits: a surface must bound a volume (thin sheets and large holes are refused), bodies in the plane must not overlap.
 //! Only [`load_surface`] opens files; all readers take any input.
@@ -14,6 +14,7 @@ mod loft;
 mod mesh;
 mod naca;
 mod outline;
+mod parts;
 mod placement;
 mod planform;
 mod primitive;
@@ -129,8 +130,12 @@ pub fn load_surface<const D: usize>(
     for group in &groups {
         skins.push(skin(group, bodies, &shells, &mut notes)?);
     }
-    let names: Vec<String> = shells.into_iter().map(|(name, _)| name).collect();
-    Ok((Surface::of(&names, &skins), notes))
+    let names: Vec<String> = shells.iter().map(|(name, _)| name.clone()).collect();
+    let mut surface = Surface::of(&names, &skins);
+    for k in groups.iter().filter(|group| group.len() > 1).flatten() {
+        surface.keep_whole(*k, &shells[*k].1);
+    }
+    Ok((surface, notes))
 }
 
 /// The skin of bodies that meet, or of one that meets none.
@@ -142,7 +147,7 @@ fn skin<const D: usize>(
 ) -> Result<Skin<D>, GeometryError> {
     let (name, shell) = &shells[group[0]];
     if group.len() == 1 {
-        return Ok(Skin { shell: shell.clone(), owner: vec![group[0] as u16], curvature: None });
+        return Ok(Skin { shell: shell.clone(), owner: vec![group[0] as u16] });
     }
     let place = format!("body `{name}`");
     let others: Vec<String> = group[1..].iter().map(|k| format!("`{}`", shells[*k].0)).collect();
@@ -161,7 +166,7 @@ fn skin<const D: usize>(
             let (inner, outer) = match union::meeting(&solid[i], &solid[j]) {
                 Ok(union::Meeting::Within) => (a, b),
                 Ok(union::Meeting::Around) => (b, a),
-                Ok(union::Meeting::Touching) if meets(&shells[*a], &shells[*b]) => {
+                Ok(union::Meeting::Touching) if touch(&shells[*a], &shells[*b]) => {
                     let what = format!("touches {} without overlapping it", name(b));
                     return Err(GeometryError::refused(name(a), what, "move them apart, or into one another"));
                 }
@@ -182,7 +187,7 @@ fn skin<const D: usize>(
     notes.push(format!("bodies `{name}` and {} intersect: they are clipped there and closed", others.join(", ")));
     let owner = united.owner.iter().map(|k| group[usize::from(*k)] as u16).collect();
     let shell = united.shell.cast().unwrap_or_else(|| shell.clone());
-    Ok(Skin { shell, owner, curvature: Some(united.curvature) })
+    Ok(Skin { shell, owner })
 }
 
 fn load_shell(name: &str, body: &Body, folder: &Path, notes: &mut Vec<String>) -> Result<AnyShell, GeometryError> {
@@ -278,24 +283,17 @@ fn refuse_overlap<const D: usize>(shells: &[(String, Shell<D>)]) -> Result<(), G
 }
 
 /// True when two bodies overlap or touch.
-fn meets<const D: usize>(a: &(String, Shell<D>), b: &(String, Shell<D>)) -> bool {
-    let alone = [a, b].map(|body| Surface::new(std::slice::from_ref(body)));
-    let touching = alone.each_ref().map(|s| TOUCHING * s.bounds().extent().max_abs());
-    let within = |vertices: &[Vector<D>], k: usize| {
-        vertices.first().is_some_and(|x| alone[k].inside(x))
-            || vertices.iter().any(|x| alone[k].nearest(x, touching[k]).is_some())
-    };
-    alone[0].bounds().meets(&alone[1].bounds(), touching[0])
-        && (within(&a.1.vertices, 1)
-            || within(&b.1.vertices, 0)
-            || Surface::new(&[a.clone(), b.clone()]).intersection().is_some())
+fn touch<const D: usize>(a: &(String, Shell<D>), b: &(String, Shell<D>)) -> bool {
+    let [a, b] = [a, b].map(|body| Surface::new(std::slice::from_ref(body)));
+    a.meets(&b)
 }
 
 /// Bodies in groups of those that overlap or touch, directly or through others.
 fn meeting<const D: usize>(shells: &[(String, Shell<D>)]) -> Vec<Vec<usize>> {
     let mut group: Vec<u32> = (0..shells.len() as u32).collect();
+    let alone: Vec<Surface<D>> = shells.iter().map(|body| Surface::new(std::slice::from_ref(body))).collect();
     for a in 0..shells.len() {
-        for b in (a + 1..shells.len()).filter(|b| meets(&shells[a], &shells[*b])) {
+        for b in (a + 1..shells.len()).filter(|b| alone[a].meets(&alone[*b])) {
             shell::unite(&mut group, a as u32, b as u32);
         }
     }

@@ -142,7 +142,7 @@ pub(super) fn shell_of_pieces(pieces: &[Vec<Sample>], crease: f64) -> Shell<2> {
     let n = vertices.len() as u32;
     let elements = (0..n).map(|i| [i, (i + 1) % n]).collect();
     let (tags, tag_names) = (Vec::new(), Vec::new());
-    Shell { vertices, elements, normals: Some(normals), tags, tag_names, exact: Exact::None, crease }
+    Shell { vertices, elements, normals: Some(normals), curvature: None, tags, tag_names, exact: Exact::None, crease }
 }
 
 /// Removes repeated points and decides how the trailing edge ends: the distinct points, and true for a blunt base.
@@ -239,6 +239,7 @@ fn straight_shell(marks: &[Mark]) -> Shell<2> {
         vertices: marks.iter().map(|m| m.point).collect(),
         elements: (0..n).map(|i| [i, (i + 1) % n]).collect(),
         normals: None,
+        curvature: None,
         tags: Vec::new(),
         tag_names: Vec::new(),
         exact: Exact::None,

@@ -35,6 +35,7 @@ pub(super) fn place<const D: usize>(
     for normal in shell.normals.iter_mut().flatten().flatten() {
         *normal = turn(normal);
     }
+    shell.curvature.iter_mut().flatten().for_each(|k| *k /= scale);
     if let Exact::Ball { centre, radius } = &mut shell.exact {
         (*centre, *radius) = (moved(centre), *radius * scale);
     }

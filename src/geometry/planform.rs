@@ -78,22 +78,24 @@ impl<const D: usize> Surface<D> {
         spans.iter_mut().zip(&ends).map(station).collect()
     }
 
-    /// The planform of the part of the bodies `within` a box, x along the chord and y along the span.
-    pub fn planform(&self, within: &Bounds<D>) -> Planform {
-        let (start, length) = (self.bounds().min[0], self.bounds().extent()[0]);
+    /// The planform of the part of the bodies `within` a box, x along the chord and y along the span; of body number `body` alone where one is
+    /// given, which counts whole where others cut it.
+    pub fn planform(&self, within: &Bounds<D>, body: Option<usize>) -> Planform {
+        let all = self.corners_of(body);
+        let bounds = all.iter().fold(Bounds::EMPTY, |b: Bounds<D>, c| b.union(&Bounds::around(c)));
+        let (start, length) = (bounds.min[0], bounds.extent()[0]);
         if D == 2 {
             return Planform { chord: length, area: length, quarter: [start + QUARTER * length, 0.0] };
         }
-        let (low, high) = (self.bounds().min[1].max(within.min[1]), self.bounds().max[1].min(within.max[1]));
+        let (low, high) = (bounds.min[1].max(within.min[1]), bounds.max[1].min(within.max[1]));
         let width = (high - low) / STATIONS as f64;
         let mut spans: Vec<Vec<[f64; 2]>> = vec![Vec::new(); STATIONS];
-        for e in 0..self.elements.len() {
-            let corners = self.corners(e as u32);
+        for corners in &all {
             let heights = corners.iter().map(|c| (c[1] - low) / width - 0.5);
             let (first, last) = heights.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), h| (a.min(h), b.max(h)));
             let stations = first.ceil().max(0.0) as usize..=last.floor().min(STATIONS as f64 - 1.0).max(-1.0) as usize;
             for k in stations.filter(|_| last >= 0.0) {
-                let found = cut(&corners, 1, low + (k as f64 + 0.5) * width);
+                let found = cut(corners, 1, low + (k as f64 + 0.5) * width);
                 spans[k].extend(found.map(|[front, rear]| [front[0], rear[0]]));
             }
         }
@@ -158,7 +160,7 @@ mod tests {
     #[test]
     fn a_sphere_is_seen_as_a_circle() {
         let surface = Surface::new(&[("ball".to_owned(), icosphere(0.5, 5))]);
-        let seen = surface.planform(&everywhere());
+        let seen = surface.planform(&everywhere(), None);
         let area = std::f64::consts::FRAC_PI_4;
         assert!((seen.area / area - 1.0).abs() < 2e-3, "{seen:?}");
         assert!((seen.chord / (2.0 / 3.0 / area) - 1.0).abs() < 2e-3, "{seen:?}");

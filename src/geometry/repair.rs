@@ -2,15 +2,14 @@
 //!
 //! Vertices are welded, degenerate and repeated triangles dropped, needles resolved by splitting the triangle on their
 //! long side, orientation made consistent by a flood across edges with exactly two triangles, each component turned outward by the
-//! sign of its volume, and small holes closed. What cannot be mended safely is refused with its place: large holes, edges with an
-//! odd number of triangles, one-sided surfaces, self-intersections.
+//! sign of its volume, holes closed where that is safe ([`super::holes`]), and parts that overlap united ([`super::parts`]). What cannot be
+//! mended safely is refused with its place: large holes, edges with an odd number of triangles, one-sided surfaces, parts that cross themselves.
 use super::mesh::Soup;
-use super::shell::{Exact, Facet, Shell, at, facets, root, runs, unite};
-use super::surface::Surface;
+use super::shell::{Facet, Shell, at, facets, runs};
 use super::weld::weld;
-use super::{GeometryError, holes, simplex};
+use super::{GeometryError, holes, parts, simplex};
 use crate::math::{Bounds, Vector};
-use std::collections::{HashMap, HashSet};
+use std::collections::HashSet;
 
 /// Triangles lower than this fraction of the diagonal are needles.
 const NEEDLE: f64 = 1e-9;
@@ -27,68 +26,10 @@ pub(super) fn shell(
 ) -> Result<Shell<3>, GeometryError> {
     let mut shell = weld(file, soup, within, notes)?;
     split_needles(file, &mut shell, notes);
-    orient(file, &mut shell, notes)?;
+    let inward = orient(file, &mut shell, notes)?;
     holes::fill(file, &mut shell, notes);
     check_edges(file, &shell, notes)?;
-    match Surface::new(&[(String::new(), shell.clone())]).intersection() {
-        None => nested(file, &shell).map(|()| shell),
-        Some((x, [e, f])) => {
-            let part = |e: u32| shell.tags.get(e as usize).and_then(|&t| shell.tag_names.get(usize::from(t)));
-            let parts = match (part(e), part(f)) {
-                (Some(a), Some(b)) if a != b => format!("parts `{a}` and `{b}` intersect"),
-                _ => "the surface crosses itself".to_string(),
-            };
-            let hint = "unite overlapping parts before the export";
-            Err(GeometryError::refused(file, format!("{parts} at {}", at(&x)), hint))
-        }
-    }
-}
-
-/// Refuses a closed part inside another one: no gas reaches it.
-fn nested(file: &str, shell: &Shell<3>) -> Result<(), GeometryError> {
-    let parts = parts(shell);
-    let surface = |part: &Shell<3>| Surface::new(&[(String::new(), part.clone())]);
-    let bounds: Vec<Bounds<3>> = parts.iter().map(|p| Bounds::around(&p.vertices)).collect();
-    for (a, part) in parts.iter().enumerate().filter(|_| parts.len() > 1) {
-        let within = |b: &usize| *b != a && bounds[a].contains(&bounds[*b].min) && bounds[a].contains(&bounds[*b].max);
-        let candidates: Vec<usize> = (0..parts.len()).filter(within).collect();
-        if candidates.is_empty() {
-            continue;
-        }
-        let whole = surface(part);
-        if let Some(x) = candidates.iter().map(|b| parts[*b].vertices[0]).find(|x| whole.inside(x)) {
-            let what = format!("a closed part lies inside another one, at {}", at(&x));
-            return Err(GeometryError::refused(
-                file,
-                what,
-                "remove inner walls and cavities before the export: no gas reaches them",
-            ));
-        }
-    }
-    Ok(())
-}
-
-/// The closed parts of a shell, which share no vertex.
-fn parts(shell: &Shell<3>) -> Vec<Shell<3>> {
-    let mut group: Vec<u32> = (0..shell.vertices.len() as u32).collect();
-    shell.elements.iter().flat_map(|e| [(e[0], e[1]), (e[0], e[2])]).for_each(|(v, w)| unite(&mut group, v, w));
-    let mut of_part: HashMap<u32, Vec<usize>> = HashMap::new();
-    for (e, corners) in shell.elements.iter().enumerate() {
-        of_part.entry(root(&mut group, corners[0])).or_default().push(e);
-    }
-    let mut members: Vec<Vec<usize>> = of_part.into_values().collect();
-    members.sort_unstable();
-    let corner = |e: usize, k: usize| shell.vertices[shell.elements[e][k] as usize];
-    let part = |own: &Vec<usize>| Shell {
-        vertices: own.iter().flat_map(|e| (0..3).map(|k| corner(*e, k))).collect(),
-        elements: (0..own.len() as u32).map(|e| [3 * e, 3 * e + 1, 3 * e + 2]).collect(),
-        normals: None,
-        tags: Vec::new(),
-        tag_names: Vec::new(),
-        exact: Exact::None,
-        crease: shell.crease,
-    };
-    members.iter().map(part).collect()
+    parts::settle(file, shell, &inward, notes)
 }
 
 /// A needle a-b-c with b on the side a-c opens a crack when dropped; instead the triangle beyond a-c is split at b.
@@ -159,12 +100,13 @@ fn needle_tip(c: &[Vector<3>; 3], height: f64) -> Option<usize> {
     (2.0 * simplex::area_vector(c).norm() <= height * side(tip)).then_some(tip)
 }
 
-/// Consistent orientation within components, outward by the sign of their volume.
-fn orient(file: &str, shell: &mut Shell<3>, notes: &mut Vec<String>) -> Result<(), GeometryError> {
+/// Consistent orientation within components, outward by the sign of their volume; tells which triangles belong to components that
+/// faced inwards for the most part.
+fn orient(file: &str, shell: &mut Shell<3>, notes: &mut Vec<String>) -> Result<Vec<bool>, GeometryError> {
     let n = shell.elements.len();
     let neighbours = neighbours(shell);
     let mut component = vec![u32::MAX; n];
-    let mut flipped = vec![false; n];
+    let (mut flipped, mut inward) = (vec![false; n], vec![false; n]);
     let mut changed = 0;
     for seed in 0..n {
         if component[seed] != u32::MAX {
@@ -187,10 +129,13 @@ fn orient(file: &str, shell: &mut Shell<3>, notes: &mut Vec<String>) -> Result<(
             }
         }
         let outward = volume(shell, &members, &flipped) >= 0.0;
+        let mut turned = 0;
         for &e in &members {
             flipped[e] ^= !outward;
-            changed += usize::from(flipped[e]);
+            turned += usize::from(flipped[e]);
         }
+        changed += turned;
+        members.iter().for_each(|e| inward[*e] = 2 * turned > members.len());
     }
     for e in (0..n).filter(|&e| flipped[e]) {
         shell.elements[e].swap(1, 2);
@@ -198,7 +143,7 @@ fn orient(file: &str, shell: &mut Shell<3>, notes: &mut Vec<String>) -> Result<(
     if changed > 0 {
         notes.push(format!("{file}: {changed} of {n} triangles are turned to face outward"));
     }
-    Ok(())
+    Ok(inward)
 }
 
 /// For each element those across its edges with two triangles, and whether both run along the edge in the same sense,
@@ -247,7 +192,8 @@ fn check_edges(file: &str, shell: &Shell<3>, notes: &mut Vec<String>) -> Result<
     Err(GeometryError::refused(
         file,
         holes::told(shell, &open),
-        "close the surface, which must bound a volume, or join vertices farther apart with `weld` in the table of the body",
+        "close the surface, which must bound a volume (sheets need a thickness), or join vertices farther apart with `weld` in the table of \
+         the body",
     ))
 }
 
@@ -255,6 +201,7 @@ fn check_edges(file: &str, shell: &Shell<3>, notes: &mut Vec<String>) -> Result<
 mod tests {
     use super::super::mesh;
     use super::super::primitive::{cuboid, icosphere, write_stl};
+    use super::super::surface::Surface;
     use super::*;
     use proptest::prelude::*;
 
@@ -324,13 +271,17 @@ mod tests {
     }
 
     #[test]
-    fn inward_bodies_are_turned_and_parts_inside_others_are_refused() {
+    fn inward_bodies_are_turned_and_parts_inside_others_are_left_out() {
         let mut inside_out = icosphere(1.0, 2);
         inside_out.elements.iter_mut().for_each(|e| e.swap(0, 1));
         let (surface, notes) = mend(&soup(&[&inside_out, &moved(&icosphere(1.0, 2), [3.0, 0.0, 0.0])])).unwrap();
         assert!((surface.volume() / icosphere_volume(2) - 2.0).abs() < 1e-12 && notes.len() == 1, "{notes:?}");
-        let hollow = mend(&soup(&[&icosphere(0.5, 2), &icosphere(1.0, 2)])).unwrap_err().to_string();
-        assert!(hollow.contains("a closed part lies inside another one, at ("), "{hollow}");
+        let (surface, notes) = mend(&soup(&[&icosphere(0.5, 2), &icosphere(1.0, 3)])).unwrap();
+        assert!(surface.elements.len() == 1280 && notes[0].contains("lies inside part 2"), "{notes:?}");
+        let mut cavity = icosphere(0.5, 2);
+        cavity.elements.iter_mut().for_each(|e| e.swap(0, 1));
+        let hollow = mend(&soup(&[&cavity, &icosphere(1.0, 2)])).unwrap_err().to_string();
+        assert!(hollow.contains("faces the other way"), "{hollow}");
     }
 
     #[test]
@@ -349,6 +300,60 @@ mod tests {
         open.triangles.retain(|t| !far(t));
         let error = mend(&open).unwrap_err().to_string();
         assert!(error.contains("open edges in 8 holes") && error.matches(" edges, ").count() == 8, "{error}");
+    }
+
+    /// A wing without sweep whose section is a wedge, open at the root, along the base of this height, or at both ends.
+    fn wedge(base: f64, [root, rear, tip]: [bool; 3]) -> Soup {
+        let n = 40;
+        let at = |k: usize, corner: usize| {
+            let (x, z) = [(1.0, 0.5 * base), (0.0, 0.0), (1.0, -0.5 * base)][corner];
+            Vector([x, 4.0 * k as f64 / n as f64, z])
+        };
+        let mut triangles = Vec::new();
+        for k in 0..n {
+            for side in (0..3).filter(|side| *side < 2 || !rear) {
+                let [a, b] = [side, (side + 1) % 3];
+                triangles.extend([[at(k, a), at(k + 1, a), at(k, b)], [at(k + 1, a), at(k + 1, b), at(k, b)]]);
+            }
+        }
+        triangles.extend(
+            [root, tip].iter().zip([0, n]).filter(|(open, _)| !**open).map(|(_, k)| [0, 1, 2].map(|c| at(k, c))),
+        );
+        Soup { tags: vec![0; triangles.len()], names: vec!["wing".into()], triangles }
+    }
+
+    #[test]
+    fn open_roots_and_trailing_edges_are_closed() {
+        for (open, kinds) in [
+            ([true, false, false], vec!["flat"]),
+            ([false, true, false], vec!["flat"]),
+            ([true, true, true], vec!["narrow"]),
+            ([true, false, true], vec!["flat", "flat"]),
+        ] {
+            let (surface, notes) = mend(&wedge(0.01, open)).unwrap();
+            assert!(
+                surface.is_closed() && (surface.volume() - 0.02).abs() < 1e-12,
+                "{open:?} {notes:?} {}",
+                surface.volume()
+            );
+            let told: Vec<&String> = notes.iter().filter(|n| n.contains("opening")).collect();
+            assert_eq!(told.len(), kinds.len(), "{notes:?}");
+            assert!(told.iter().zip(&kinds).all(|(n, kind)| n.contains(kind)), "{notes:?}");
+            assert_eq!(surface.intersection(), None);
+        }
+        let sheet = wedge(0.0, [true, true, true]);
+        let half = Soup { tags: vec![0; 80], names: vec![], triangles: sheet.triangles[..80].to_vec() };
+        assert!(mend(&half).unwrap_err().to_string().contains("open edges"));
+    }
+
+    #[test]
+    fn walls_between_parts_go() {
+        let half = wedge(0.1, [false; 3]);
+        let mirror = |t: &[Vector<3>; 3]| [0, 2, 1].map(|k: usize| Vector([t[k][0], -t[k][1], t[k][2]]));
+        let triangles: Vec<_> = half.triangles.iter().copied().chain(half.triangles.iter().map(mirror)).collect();
+        let (surface, notes) = mend(&Soup { tags: vec![0; triangles.len()], names: vec![], triangles }).unwrap();
+        assert!(surface.is_closed() && (surface.volume() - 0.4).abs() < 1e-12, "{notes:?}");
+        assert!(notes.iter().any(|n| n.contains("1 pairs of triangles between parts")), "{notes:?}");
     }
 
     /// A sphere whose vertices are `size` apart where they should be one.
@@ -425,9 +430,22 @@ mod tests {
     }
 
     #[test]
-    fn intersections_and_fins_are_refused() {
-        let overlap = soup(&[&icosphere(1.0, 2), &moved(&icosphere(1.0, 2), [0.5, 0.1, 0.2])]);
-        assert!(mend(&overlap).unwrap_err().to_string().contains("crosses itself at ("));
+    fn parts_that_overlap_are_united_and_those_that_cross_themselves_or_have_fins_refused() {
+        let (a, b) = (icosphere(1.0, 3), moved(&icosphere(1.0, 3), [0.5, 0.1, 0.2]));
+        let far = moved(&icosphere(1.0, 2), [5.0, 0.0, 0.0]);
+        let (surface, notes) = mend(&soup(&[&a, &far, &b])).unwrap();
+        assert!(surface.is_closed() && notes.len() == 1 && notes[0].contains("overlap"), "{notes:?}");
+        let areas = (0..surface.elements.len() as u32).map(|e| surface.element_area_vector(e));
+        assert!(areas.fold(Vector::ZERO, |a, b| a + b).norm() < 1e-12 * surface.area());
+        let (alone, apart) = (icosphere_volume(3), 0.3_f64.sqrt());
+        // the lens that both share: π (2 − d)² (d² + 4 d)/(12 d) of two unit spheres d apart
+        let lens = std::f64::consts::PI * (2.0 - apart).powi(2) * (apart + 4.0) / 12.0;
+        let expected = 2.0 * alone - lens + icosphere_volume(2);
+        assert!((surface.volume() / expected - 1.0).abs() < 0.01, "{} {expected}", surface.volume());
+        assert!(surface.curvature.iter().all(|k| (k - 1.0).abs() < 0.1), "they stay spheres");
+        let mut folded = icosphere(1.0, 2);
+        folded.vertices[0] = folded.vertices[0] * -2.0;
+        assert!(mend(&soup(&[&folded])).unwrap_err().to_string().contains("crosses itself at ("));
         let mut fin = soup(&[&cuboid([1.0, 1.0, 1.0])]);
         let [a, b, _] = fin.triangles[0];
         fin.triangles.push([a, b, Vector([-2.0, -3.0, -4.0])]);

@@ -31,6 +31,8 @@ pub struct Shell<const D: usize> {
     pub elements: Vec<[u32; D]>,
     /// Outward unit normals at the corners when they are known; otherwise they are averaged from the elements.
     pub normals: Option<Vec<[Vector<D>; D]>>,
+    /// Signed curvature of largest magnitude of the elements when it is known; otherwise it follows from their normals.
+    pub curvature: Option<Vec<f64>>,
     /// Index into `tag_names` of every element; empty when the body has a single tag.
     pub tags: Vec<u16>,
     /// Names of parts (STL solids, OBJ groups); empty when there are none.
@@ -80,6 +82,13 @@ impl<const D: usize> Shell<D> {
         (0..self.elements.len()).map(|e| self.corners(e)).collect()
     }
 
+    /// For each element the first of those that are reached from it across facets with two elements; `all` are its facets.
+    pub(super) fn edge_connected(&self, all: &[Facet]) -> Vec<u32> {
+        let mut group: Vec<u32> = (0..self.elements.len() as u32).collect();
+        runs(all).filter(|run| run.len() == 2).for_each(|run| unite(&mut group, run[0].element, run[1].element));
+        (0..self.elements.len() as u32).map(|e| root(&mut group, e)).collect()
+    }
+
     /// Creases, corner normals and curvature. Edges carry body 0 and local element numbers.
     pub(super) fn features(&self) -> Features<D> {
         let joints = self.joints();
@@ -88,7 +97,7 @@ impl<const D: usize> Shell<D> {
             Some(normals) => normals.clone(),
             None => self.smooth_normals(joints.iter().filter(|j| !creased(j))),
         };
-        let curvature = self.curvature(&normals);
+        let curvature = self.curvature.clone().unwrap_or_else(|| self.curvature_of(&normals));
         let edges = joints.iter().filter(|j| creased(j)).map(|j| Edge {
             ends: j.facet.map(|v| self.vertices[v as usize]),
             turn: j.turn,
@@ -137,7 +146,7 @@ impl<const D: usize> Shell<D> {
     }
 
     /// Signed curvature of largest magnitude of every element, zero where it is flat within the noise of the vertices.
-    fn curvature(&self, normals: &[[Vector<D>; D]]) -> Vec<f64> {
+    fn curvature_of(&self, normals: &[[Vector<D>; D]]) -> Vec<f64> {
         // Single-precision files round coordinates to 6e-8 of their size: a sagitta below that is noise.
         const NOISE: f64 = 6e-8;
         let noise = NOISE * Bounds::around(&self.vertices).extent().norm();
@@ -234,6 +243,7 @@ impl<const D: usize> Shell<D> {
             vertices: self.vertices.iter().map(vector).collect(),
             elements: self.elements.iter().map(|e| std::array::from_fn(|k| e[k])).collect(),
             normals,
+            curvature: self.curvature,
             tags: self.tags,
             tag_names: self.tag_names,
             exact,

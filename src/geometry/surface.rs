@@ -7,8 +7,8 @@
 //! Inside means that the generalised winding number exceeds one half (Jacobson, Kavan, Sorkine-Hornung 2013), which also
 //! holds for surfaces with gaps. Area and volume follow from the area vectors: V = Σ x·A / D.
 use super::shell::{Edge, Exact, Shell};
-use super::simplex;
 use super::tree::Tree;
+use super::{TOUCHING, simplex};
 use crate::math::{Bounds, Vector};
 
 /// One segment (2-D) or triangle (3-D).
@@ -57,8 +57,6 @@ pub struct Skin<const D: usize> {
     pub shell: Shell<D>,
     /// Number of the body that each element is of; one number where all are of the same.
     pub owner: Vec<u16>,
-    /// Curvature of its elements where it is known; else it follows from their normals.
-    pub curvature: Option<Vec<f64>>,
 }
 
 /// The surface of all bodies of a case.
@@ -82,17 +80,15 @@ pub struct Surface<const D: usize> {
     pub exact: Vec<Exact<D>>,
     tree: Tree<D>,
     bounds: Bounds<D>,
+    /// Elements, before they were cut, of bodies that are cut by others; of the others none.
+    whole: Vec<Vec<[Vector<D>; D]>>,
 }
 
 impl<const D: usize> Surface<D> {
     /// Joins the named shells of all bodies.
     pub fn new(shells: &[(String, Shell<D>)]) -> Self {
         let names: Vec<String> = shells.iter().map(|(name, _)| name.clone()).collect();
-        let skin = |(k, (_, shell)): (usize, &(String, Shell<D>))| Skin {
-            shell: shell.clone(),
-            owner: vec![k as u16],
-            curvature: None,
-        };
+        let skin = |(k, (_, shell)): (usize, &(String, Shell<D>))| Skin { shell: shell.clone(), owner: vec![k as u16] };
         Self::of(&names, &shells.iter().enumerate().map(skin).collect::<Vec<_>>())
     }
 
@@ -109,6 +105,7 @@ impl<const D: usize> Surface<D> {
             exact: vec![Exact::None; bodies.len()],
             tree: Tree::new(&[]),
             bounds: Bounds::EMPTY,
+            whole: vec![Vec::new(); bodies.len()],
         };
         for skin in skins {
             surface.add(skin);
@@ -118,6 +115,22 @@ impl<const D: usize> Surface<D> {
         surface.bounds = corners.iter().fold(Bounds::EMPTY, |b: Bounds<D>, c| b.union(&simplex::bounds(c)));
         surface.radius = surface.curvature.iter().map(|k| 1.0 / k.abs()).collect();
         surface
+    }
+
+    /// Keeps what body number `body` was before others cut it.
+    pub(super) fn keep_whole(&mut self, body: usize, shell: &Shell<D>) {
+        self.whole[body] = (0..shell.elements.len()).map(|e| shell.corners(e)).collect();
+    }
+
+    /// Corners of the elements of body number `body`, with what lies inside other bodies; of all walls without a number.
+    pub(super) fn corners_of(&self, body: Option<usize>) -> Vec<[Vector<D>; D]> {
+        match body {
+            Some(k) if !self.whole[k].is_empty() => self.whole[k].clone(),
+            _ => {
+                let own = |e: &usize| body.is_none_or(|k| usize::from(self.elements[*e].body) == k);
+                (0..self.elements.len()).filter(own).map(|e| self.corners(e as u32)).collect()
+            }
+        }
     }
 
     /// The same with every body moved rigidly; `point` and `direction` take the number of a body. Shapes known exactly are
@@ -142,7 +155,7 @@ impl<const D: usize> Surface<D> {
     }
 
     fn add(&mut self, skin: &Skin<D>) {
-        let Skin { shell, owner, curvature } = skin;
+        let Skin { shell, owner } = skin;
         let (vertex, element) = (self.vertices.len() as u32, self.elements.len() as u32);
         let features = shell.features();
         let body = |e: usize| owner[e.min(owner.len() - 1)];
@@ -160,7 +173,7 @@ impl<const D: usize> Surface<D> {
             elements: edge.elements.map(|e| e + element),
             ..*edge
         }));
-        self.curvature.extend(curvature.as_ref().unwrap_or(&features.curvature));
+        self.curvature.extend(&features.curvature);
         if let [only] = owner[..] {
             self.exact[usize::from(only)] = shell.exact;
         }
@@ -286,6 +299,32 @@ impl<const D: usize> Surface<D> {
             });
             found
         })
+    }
+
+    /// First place where this surface intersects another one, elements that share a corner left out.
+    pub(super) fn crossing(&self, other: &Self) -> Option<Vector<D>> {
+        (0..self.elements.len() as u32).find_map(|e| {
+            let corners = self.corners(e);
+            let mut found = None;
+            other.tree.overlapping(&simplex::bounds(&corners), |_, theirs| {
+                if !corners.iter().any(|x| theirs.contains(x)) {
+                    found = simplex::intersection(&corners, theirs);
+                }
+                found.is_some()
+            });
+            found
+        })
+    }
+
+    /// True when this closed surface and another one overlap or touch.
+    pub(super) fn meets(&self, other: &Self) -> bool {
+        let touching = |s: &Self| TOUCHING * s.bounds().extent().max_abs();
+        let within = |a: &Self, b: &Self| {
+            a.vertices.first().is_some_and(|x| b.inside(x))
+                || a.vertices.iter().any(|x| b.nearest(x, touching(b)).is_some())
+        };
+        self.bounds().meets(&other.bounds(), touching(self))
+            && (within(self, other) || within(other, self) || self.crossing(other).is_some())
     }
 
     fn neighbours(&self, e: u32, f: u32) -> bool {

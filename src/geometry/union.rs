@@ -19,8 +19,6 @@ pub(super) struct United {
     pub(super) shell: Shell<3>,
     /// Number, among the shells that were united, of the one that each triangle is of.
     pub(super) owner: Vec<u16>,
-    /// Curvature of the triangle that each was cut from.
-    pub(super) curvature: Vec<f64>,
 }
 
 /// How two closed shells stand to one another.
@@ -137,8 +135,9 @@ fn traced(mesh: &MeshGL64, shells: &[&Shell<3>], first: &[usize]) -> United {
     }
     let (vertices, elements) = compact(&vertices, elements);
     let crease = shells.iter().fold(f64::INFINITY, |m, s| m.min(s.crease));
-    let shell = Shell { vertices, elements, normals: Some(kept), tags, tag_names, exact: Exact::None, crease };
-    United { shell, owner, curvature }
+    let (normals, curvature) = (Some(kept), Some(curvature));
+    let shell = Shell { vertices, elements, normals, curvature, tags, tag_names, exact: Exact::None, crease };
+    United { shell, owner }
 }
 
 /// Drops vertices that no element uses.

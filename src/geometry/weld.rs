@@ -57,7 +57,8 @@ pub(super) fn weld(
 fn welded(soup: &Soup, tolerance: f64, file: &str, notes: &mut Vec<String>) -> Welded {
     let mut welder = Welder { cell: 4.0 * tolerance, tolerance, cells: HashMap::new(), vertices: Vec::new() };
     let (mut elements, mut tags) = (Vec::new(), Vec::new());
-    let mut seen: HashSet<[u32; 3]> = HashSet::with_capacity(soup.triangles.len());
+    let mut seen: HashMap<[u32; 3], usize> = HashMap::with_capacity(soup.triangles.len());
+    let mut between: Vec<usize> = Vec::new();
     let (mut degenerate, mut repeated) = (0, 0);
     for (triangle, &tag) in soup.triangles.iter().zip(&soup.tags) {
         let element = triangle.map(|x| welder.vertex(&x));
@@ -65,12 +66,19 @@ fn welded(soup: &Soup, tolerance: f64, file: &str, notes: &mut Vec<String>) -> W
         key.sort_unstable();
         if key[0] == key[1] || key[1] == key[2] {
             degenerate += 1;
-        } else if !seen.insert(key) {
+        } else if let Some(first) = seen.get(&key) {
             repeated += 1;
+            between.extend(Some(*first).filter(|e| !same_sense(&elements[*e], &element)));
         } else {
+            seen.insert(key, elements.len());
             elements.push(element);
             tags.push(tag);
         }
+    }
+    let walls = drop_between(&mut elements, &mut tags, &between);
+    if walls > 0 {
+        notes.push(format!("{file}: {walls} pairs of triangles between parts that share a wall are left out"));
+        repeated -= walls;
     }
     for (count, kind) in [(degenerate, "degenerate"), (repeated, "repeated")] {
         if count > 0 {
@@ -78,8 +86,44 @@ fn welded(soup: &Soup, tolerance: f64, file: &str, notes: &mut Vec<String>) -> W
         }
     }
     let (vertices, tag_names) = (welder.vertices, soup.names.clone());
-    let shell = Shell { vertices, elements, normals: None, tags, tag_names, exact: Exact::None, crease: CREASE };
-    Welded { shell, collapsed: degenerate + repeated }
+    let shell = Shell {
+        vertices,
+        elements,
+        normals: None,
+        curvature: None,
+        tags,
+        tag_names,
+        exact: Exact::None,
+        crease: CREASE,
+    };
+    Welded { shell, collapsed: degenerate + repeated + walls }
+}
+
+/// True when two triangles of the same vertices run round them in the same sense.
+fn same_sense(a: &[u32; 3], b: &[u32; 3]) -> bool {
+    b.iter().position(|v| *v == a[0]).is_some_and(|k| b[(k + 1) % 3] == a[1])
+}
+
+/// Drops triangles `between` two parts, which were there once for each of them, where that leaves fewer edges with an odd number of triangles:
+/// then they are walls that parts share, and not copies of outer ones. Tells how many.
+fn drop_between(elements: &mut Vec<[u32; 3]>, tags: &mut Vec<u16>, between: &[usize]) -> usize {
+    if between.is_empty() {
+        return 0;
+    }
+    let odd = |elements: &[[u32; 3]]| runs(&facets(elements)).filter(|run| run.len() % 2 == 1).count();
+    let inner: HashSet<usize> = between.iter().copied().collect();
+    // the rim of a fin without thickness, both of whose sides are there, has no other triangle
+    if runs(&facets(elements)).any(|run| run.len() == 1 && inner.contains(&(run[0].element as usize))) {
+        return 0;
+    }
+    let outer = |e: &usize| !inner.contains(e);
+    let rest: Vec<[u32; 3]> = (0..elements.len()).filter(outer).map(|e| elements[e]).collect();
+    if odd(&rest) >= odd(elements) {
+        return 0;
+    }
+    *tags = (0..tags.len()).filter(outer).map(|e| tags[e]).collect();
+    *elements = rest;
+    inner.len()
 }
 
 /// A shell, and how many triangles the weld left nothing of.

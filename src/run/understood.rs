@@ -57,6 +57,8 @@ pub struct ReferenceValues {
     pub chord: f64,
     /// Area; absent in the plane, where it is chord times 1.
     pub area: Option<f64>,
+    /// Body whose planform gives what the case does not give; absent where all do.
+    pub body: Option<String>,
     /// Point of the moment, of two or three coordinates.
     pub moment_point: Vec<f64>,
 }
@@ -97,7 +99,7 @@ impl Understood {
             density: stream.density,
             temperature: case.flow.is_dimensional().then(|| case.flow.kelvin()),
             reynolds: case.flow.reynolds_number(chord),
-            reference: axes.map(|axes| ReferenceValues::of::<D>(axes, stream.mach)),
+            reference: axes.map(|axes| ReferenceValues::of::<D>(axes, stream.mach, case.reference.body.clone())),
             bodies: names.map(|(body, name)| BodyBox::of(name, &bounds(body))).collect(),
             period: time(period),
             multiples: Some(motions.multiples()).filter(|m| m.iter().any(|n| *n > 1)).unwrap_or_default(),
@@ -124,7 +126,8 @@ impl Understood {
         if let Some(r) = &self.reference {
             let area = r.area.map_or_else(String::new, |area| format!(", area {}", short(area)));
             let point = list(&r.moment_point);
-            lines.push(("reference", format!("chord {}{area}, moments about {point}", short(r.chord))));
+            let of = r.body.as_ref().map_or_else(String::new, |body| format!(", planform of `{body}`"));
+            lines.push(("reference", format!("chord {}{area}, moments about {point}{of}", short(r.chord))));
         }
         for body in &self.bodies {
             lines.push(("body", format!("`{}` from {} to {}", body.name, list(&body.min), list(&body.max))));
@@ -149,10 +152,10 @@ impl Understood {
 }
 
 impl ReferenceValues {
-    fn of<const D: usize>(axes: &LoadAxes, mach: f64) -> Self {
+    fn of<const D: usize>(axes: &LoadAxes, mach: f64, body: Option<String>) -> Self {
         // the scale of forces in the units of the solver, whose speed of the stream is the Mach number
         let area = (D == 3).then(|| axes.force_scale / (0.5 * mach.powi(2)));
-        Self { chord: axes.chord, area, moment_point: axes.moment_point[..D].to_vec() }
+        Self { chord: axes.chord, area, body, moment_point: axes.moment_point[..D].to_vec() }
     }
 }
 

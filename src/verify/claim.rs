@@ -211,7 +211,7 @@ metrics! {
     MassDrift = "mass_drift",
     /// |Energy at the end − expected| over energy at the start; what crossed open ends is expected.
     EnergyDrift = "energy_drift",
-    /// Angle of a wave to the x axis in degrees, samples in `region`, between pressures `levels`.
+    /// Angle of a wave to the x axis in degrees (in space one of revolution about it), samples in `region`, between pressures `levels`.
     WaveAngle = "wave_angle",
     /// Mean wall pressure in `region` over free-stream pressure.
     PanelPressure = "panel_pressure",

@@ -61,7 +61,7 @@ fn point(x: &Vector<3>) -> String {
 
 fn describe(surface: &Surface<3>) -> String {
     let everywhere = surface.bounds();
-    let seen = surface.planform(&everywhere);
+    let seen = surface.planform(&everywhere, None);
     let areas = (0..surface.elements.len() as u32).map(|e| surface.element_area_vector(e));
     let open = areas.fold(Vector::ZERO, |a, b| a + b).norm() / surface.area();
     let mut text = String::new();

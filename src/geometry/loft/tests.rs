@@ -49,17 +49,17 @@ fn planforms_are_those_that_were_asked_for() {
         "wing = { naca = \"0010\", span = 6, aspect_ratio = 4.8, taper = 0.3, sweep = \"37 deg\", tip = \"flat\" }",
     );
     // S = b²/A; mean chord of the books, 2/3 (c² + c t + t²)/(c + t)
-    let seen = tapered.planform(&everywhere());
+    let seen = tapered.planform(&everywhere(), None);
     let root = 2.0 * 7.5 / (6.0 * 1.3);
     let mean = 2.0 / 3.0 * root * (1.0 + 0.3 + 0.09) / 1.3;
     assert!((seen.area / 7.5 - 1.0).abs() < 1e-5 && (seen.chord / mean - 1.0).abs() < 1e-5, "{seen:?}");
-    let half = tapered.planform(&Bounds { min: Vector([-1e3, 0.0, -1e3]), ..everywhere() });
+    let half = tapered.planform(&Bounds { min: Vector([-1e3, 0.0, -1e3]), ..everywhere() }, None);
     assert!((half.area / 3.75 - 1.0).abs() < 1e-5 && (half.chord / mean - 1.0).abs() < 1e-5, "{half:?}");
     let tip = tapered.bounds().max[0] - 0.3 * root;
     assert!((tip - 3.0 * 37f64.to_radians().tan()).abs() < 1e-9, "{tip}");
     let ellipse = body("wing = { naca = \"0012\", span = 6, chord = 1, planform = \"elliptic\", sweep_at = 0.25 }");
     closed(&ellipse);
-    let seen = ellipse.planform(&everywhere());
+    let seen = ellipse.planform(&everywhere(), None);
     assert!((seen.area / (0.25 * PI * 6.0) - 1.0).abs() < 2e-3, "{seen:?}");
     // its quarter line is straight
     assert!((seen.quarter[0] - 0.25).abs() < 2e-3, "{seen:?}");

@@ -5,8 +5,9 @@ use crate::geometry::{Planform, Surface};
 
 /// Chord and area that coefficients are made with.
 pub(crate) fn planform<const D: usize>(case: &Case, surface: &Surface<D>) -> Planform {
-    let seen = surface.planform(&CloudSpec::of_case(case).limits());
     let given = &case.reference;
+    let body = given.body.as_ref().and_then(|name| surface.bodies.iter().position(|b| b == name));
+    let seen = surface.planform(&CloudSpec::of_case(case).limits(), body);
     Planform { chord: given.chord.map_or(seen.chord, |c| c.0), area: given.area.unwrap_or(seen.area), ..seen }
 }
 

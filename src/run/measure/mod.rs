@@ -410,9 +410,12 @@ impl Measured {
         };
         let cp = self.column("cp")?;
         let inside = self.fluid()?.into_iter().filter(|&i| contains(low, high, &self.field.points[i]));
-        let samples: Vec<[f64; 3]> = inside
-            .map(|i| [self.field.points[i][0], self.field.points[i][1], self.over_free_pressure(cp[i])])
-            .collect();
+        let space = self.case.dimension == Some(3);
+        // in space the wave is one of revolution about the x axis
+        let across = |x: &[f64; 3]| if space { x[1].hypot(x[2]) } else { x[1] };
+        let point = |i: usize| &self.field.points[i];
+        let samples: Vec<[f64; 3]> =
+            inside.map(|i| [point(i)[0], across(point(i)), self.over_free_pressure(cp[i])]).collect();
         let angle = metrics::wave_angle(&samples, levels).ok_or("the samples hold no wave")?;
         Ok(angle.to_degrees())
     }
