@@ -62,7 +62,7 @@ pub fn induced(bodies: &[Strips], plane: Option<f64>, axes: &LoadAxes, dynamic: 
     let centre = plane.unwrap_or(f64::midpoint(low, high));
     let half = (high - centre).max(centre - low);
     let width = lying().map(|s| s.width()).fold(0.0, f64::max);
-    let n = ((high - low) / width).floor().max(1.0) as usize;
+    let n = ((high - low) / width).round().max(1.0) as usize;
     // the strips of all bodies on a common grid
     let at = |k: usize| low + (high - low) * k as f64 / n as f64;
     let mut lift = vec![0.0; n];
