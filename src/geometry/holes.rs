@@ -139,7 +139,7 @@ fn close(shell: &mut Shell<3>, ring: &[(u32, u32)]) {
     }
 }
 
-/// Closed rings of open edges, against the sense of the elements beside them; none where two holes of one part share a vertex.
+/// Closed rings of open edges without a vertex twice, against the sense of the elements beside them.
 fn rings(shell: &Shell<3>, open: &[Facet], part: &[u32]) -> Vec<Vec<(u32, u32)>> {
     let mut next: BTreeMap<(u32, u32), Vec<(u32, u32)>> = BTreeMap::new();
     for f in open {
@@ -149,15 +149,23 @@ fn rings(shell: &Shell<3>, open: &[Facet], part: &[u32]) -> Vec<Vec<(u32, u32)>>
     }
     let mut rings = Vec::new();
     while let Some((&(own, start), _)) = next.iter().next() {
-        let (mut ring, mut v, mut simple) = (Vec::new(), start, true);
-        while let Some(ways) = next.remove(&(own, v)) {
-            let (to, element) = ways[0];
-            simple &= ways.len() == 1;
-            ring.push((v, element));
+        let (mut path, mut place, mut v) = (Vec::new(), BTreeMap::new(), start);
+        while let Some(ways) = next.get_mut(&(own, v)) {
+            let Some((to, element)) = ways.pop() else { break };
+            if ways.is_empty() {
+                next.remove(&(own, v));
+            }
+            place.insert(v, path.len());
+            path.push((v, element));
+            // where holes meet at a vertex, each is a ring of its own
+            if let Some(&k) = place.get(&to) {
+                let ring = path.split_off(k);
+                ring.iter().for_each(|(w, _)| {
+                    place.remove(w);
+                });
+                rings.extend(Some(ring).filter(|ring| ring.len() > 2));
+            }
             v = to;
-        }
-        if simple && v == start && ring.len() > 2 {
-            rings.push(ring);
         }
     }
     rings

@@ -54,7 +54,9 @@ pub(super) fn wing(place: &str, wing: &Wing, sections: [&Shell<2>; 2]) -> Result
     skin.cap(&all[all.len() - 1], &rows, false);
     rows.iter_mut().flatten().for_each(|x| *x = mirrored(x));
     skin.cap(&all[0], &rows, true);
-    Ok(skin.shell())
+    let shell = skin.shell();
+    let kink = wing.planform == PlanformShape::Straight || wing.sweep.0 != 0.0 || wing.dihedral.0 != 0.0;
+    Ok(if kink { shell.kinked(|x| x[1] == 0.0) } else { shell })
 }
 
 /// A body of revolution about the x axis, of the profile `chain` from the nose to the rear; closed by a face where it does not end

@@ -10,6 +10,8 @@ use super::union::{self, Meeting};
 use crate::math::Bounds;
 use std::collections::BTreeMap;
 
+/// Least volume of a part over its area to the power 3/2: that of a plate a hundred thousand times as long as thick is 4e-6.
+const THINNEST: f64 = 1e-9;
 /// Most parts that a note names.
 const NAMED: usize = 4;
 /// Name of the solids and groups that have none.
@@ -35,6 +37,7 @@ pub(super) fn settle(
 ) -> Result<Shell<3>, GeometryError> {
     let parts = parts(&shell, inward);
     for part in &parts {
+        refuse_sheet(file, part)?;
         refuse_crossing(file, part)?;
     }
     let mut left_out = vec![false; parts.len()];
@@ -100,6 +103,15 @@ fn inside(
     Ok(number)
 }
 
+/// Refuses a part that bounds no volume: a sheet folded on itself.
+fn refuse_sheet(file: &str, part: &Part) -> Result<(), GeometryError> {
+    if part.surface.volume() > THINNEST * part.surface.area().powf(1.5) {
+        return Ok(());
+    }
+    let what = format!("{} bounds no volume", part.name);
+    Err(GeometryError::refused(file, what, "give sheets a thickness, or remove them"))
+}
+
 /// Refuses a part that intersects itself.
 fn refuse_crossing(file: &str, part: &Part) -> Result<(), GeometryError> {
     let Some((x, [e, f])) = part.surface.intersection() else { return Ok(()) };
@@ -154,7 +166,13 @@ fn parts(shell: &Shell<3>, inward: &[bool]) -> Vec<Part> {
         let name = name(&own, k + 1);
         Part { surface, name, inward: inward.get(members[0]).copied().unwrap_or(false), shell: own, members }
     };
-    of_part.into_values().enumerate().map(part).collect()
+    let mut parts: Vec<Part> = of_part.into_values().enumerate().map(part).collect();
+    let mut times: BTreeMap<String, usize> = BTreeMap::new();
+    parts.iter().for_each(|part| *times.entry(part.name.clone()).or_default() += 1);
+    for (k, part) in parts.iter_mut().enumerate().filter(|(_, part)| times[&part.name] > 1) {
+        part.name = by_place(&part.shell, k + 1);
+    }
+    parts
 }
 
 /// The name of a part: that of its solid or group where it has one of its own, else its number and place.
@@ -162,8 +180,12 @@ fn name(part: &Shell<3>, number: usize) -> String {
     let first = part.tags.first().filter(|t| part.tags.iter().all(|u| u == *t));
     match first.and_then(|t| part.tag_names.get(usize::from(*t))) {
         Some(name) if name != UNNAMED => format!("`{name}`"),
-        _ => format!("part {number} around {}", at(&Bounds::around(&part.vertices).centre())),
+        _ => by_place(part, number),
     }
+}
+
+fn by_place(part: &Shell<3>, number: usize) -> String {
+    format!("part {number} around {}", at(&Bounds::around(&part.vertices).centre()))
 }
 
 /// Some triangles of a shell without normals, and their vertices.

@@ -341,9 +341,12 @@ mod tests {
             assert!(told.iter().zip(&kinds).all(|(n, kind)| n.contains(kind)), "{notes:?}");
             assert_eq!(surface.intersection(), None);
         }
-        let sheet = wedge(0.0, [true, true, true]);
-        let half = Soup { tags: vec![0; 80], names: vec![], triangles: sheet.triangles[..80].to_vec() };
+        let sheet = wedge(0.0, [true; 3]);
+        let one_side = sheet.triangles.iter().step_by(4).chain(sheet.triangles.iter().skip(1).step_by(4));
+        let triangles: Vec<_> = one_side.copied().collect();
+        let half = Soup { tags: vec![0; triangles.len()], names: vec![], triangles };
         assert!(mend(&half).unwrap_err().to_string().contains("open edges"));
+        assert!(mend(&sheet).unwrap_err().to_string().contains("bounds no volume"));
     }
 
     #[test]

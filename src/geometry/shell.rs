@@ -107,6 +107,17 @@ impl<const D: usize> Shell<D> {
         Features { edges: edges.collect(), normals, curvature }
     }
 
+    /// Lets normals differ on both sides of the facets whose ends are all `apart`, where the shape has a kink below the crease
+    /// angle: a patch with one normal there would leave the flat sides beside it.
+    pub(super) fn kinked(mut self, apart: impl Fn(&Vector<D>) -> bool) -> Self {
+        let joints = self.joints();
+        let kink = |j: &Joint| j.facet.iter().all(|v| apart(&self.vertices[*v as usize]));
+        let normals = self.smooth_normals(joints.iter().filter(|j| j.turn.abs() <= self.crease && !kink(j)));
+        self.curvature = Some(self.curvature_of(&normals));
+        self.normals = Some(normals);
+        self
+    }
+
     /// Facets that exactly two elements share.
     fn joints(&self) -> Vec<Joint> {
         let facets = facets(&self.elements);

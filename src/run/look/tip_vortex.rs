@@ -169,7 +169,7 @@ mod tests {
         const GAMMA: f64 = 0.2;
         const CORE: [f64; 2] = [1.6, 0.2];
         let text = "[flow]\nmach = 0.5\n[[body]]\nellipsoid = { size = [0.6, 3.6, 0.3] }\n[cloud]\nspacing = 0.25\n\
-                    domain = { min = [-1.5, -4, -2], max = [2.5, 4, 2] }\n";
+                    domain = { min = [-1.5, -4, -2], max = [2.5, 4, 2] }\n[scheme]\nconservative = false\n";
         let case = crate::case::read(text, "case.toml").unwrap_or_else(|e| panic!("{e}"));
         let surface: Surface<3> = crate::geometry::load_surface(&case.bodies, Path::new("")).unwrap().0;
         let cloud = Cloud::build(&CloudSpec::of_case(&case), Some(&surface), &[]).unwrap();
