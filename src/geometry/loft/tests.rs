@@ -126,3 +126,15 @@ fn sections_without_corners_and_with_two_are_split_at_their_ends() {
         outline::profile(&[Vector([0.0, 0.0]), Vector([0.5, 0.4]), Vector([1.0, 0.5]), Vector([2.0, 0.5])], false);
     assert!(pod.0.len() == 1 && pod.0[0][1][1] > 10.0 * pod.0[0][1][0], "a round nose stands across the axis");
 }
+
+#[test]
+fn skins_stay_on_the_flat_sides_of_a_kink_at_the_root() {
+    let surface =
+        body("wing = { naca = \"0010\", span = 6, chord = 2, taper = 0.5, sweep = \"30 deg\", tip = \"flat\" }");
+    for (x, y, z) in [(1.2, 0.01, 0.1), (1.6, 0.02, 0.05), (1.6, -0.02, -0.05)] {
+        let nearest = surface.nearest(&Vector([x, y, z]), f64::INFINITY).unwrap();
+        let off = (surface.project(&nearest).point - nearest.point).norm();
+        let turn = nearest.normal[1] * f64::signum(y);
+        assert!(off < 2e-5 && turn < -0.005, "{x} {y} {z}: {off} {nearest:?}");
+    }
+}

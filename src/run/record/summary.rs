@@ -3,9 +3,9 @@ use std::time::Instant;
 
 use serde::Serialize;
 
-use super::super::look::{TipVortex, WakePlane};
 use super::super::look::forces::GeneralisedForce;
 use super::super::look::friction::Separation;
+use super::super::look::{TipVortex, WakePlane};
 use super::crosscheck::LoadCrosscheck;
 use super::polar::PolarPoint;
 use super::trace::{Change, FirstHarmonics, LastPeriod, PeriodicLoads};
