@@ -357,11 +357,11 @@ static SCHEME: Table = Table::of(&[
     Field::defaulted("flux", Kind::Words(FLUXES), Absent::Word("hllc"), "Upwind flux at the middle of an edge."),
     Field::defaulted("order", Kind::Integer(1, 2), Absent::Integer(2), "Order of the reconstruction."),
     Field::defaulted("limiter", Kind::Words(LIMITERS), Absent::Word("van_albada"), "Slope limiter."),
-    Field::defaulted(
+    Field::optional(
         "limiter_threshold",
         Kind::Number(Range::between(0.0, 1.0)),
-        Absent::Number(0.1),
-        "Relative size of second differences below which the limiter leaves a field alone.",
+        "0.1 in 2-D, 0.4 in 3-D",
+        "Relative size of second differences below which the limiter leaves a field alone: more in 3-D, where clouds are coarser.",
     ),
     Field::defaulted(
         "kappa",

@@ -413,8 +413,9 @@ pub struct Scheme {
     pub order: u8,
     /// Slope limiter.
     pub limiter: Limiter,
-    /// Relative size of second differences below which the limiter leaves a field alone.
-    pub limiter_threshold: f64,
+    /// Relative size of second differences below which the limiter leaves a field alone; absent where the number of
+    /// dimensions says it.
+    pub limiter_threshold: Option<f64>,
     /// κ of the reconstruction: 0 for steady flow, 1/3 for waves and vortices.
     pub kappa: f64,
     /// The jump of the normal velocity counts in the upwind flux in proportion to the Mach number.
@@ -534,7 +535,7 @@ impl Default for Scheme {
             flux: Flux::Hllc,
             order: 2,
             limiter: Limiter::VanAlbada,
-            limiter_threshold: 0.1,
+            limiter_threshold: None,
             kappa: 0.0,
             low_mach: false,
             conservative: None,

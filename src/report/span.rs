@@ -11,9 +11,9 @@ use crate::observe::induced::SpanLoad;
 const CHARTS: [(&str, &str); 5] = [
     ("section_cl", "section lift coefficient"),
     ("section_cm", "section moment coefficient about the quarter chord"),
-    ("shear", "shear"),
-    ("bending", "bending moment"),
-    ("torsion", "torsion about the quarter chord"),
+    ("shear_force", "shear_force"),
+    ("bending_moment", "bending moment"),
+    ("torsion_moment", "torsion about the quarter chord"),
 ];
 
 /// Nothing for a run without wings.
@@ -40,7 +40,11 @@ struct Body {
 impl Body {
     fn curve(&self, column: &str) -> Option<Series> {
         let along = if self.table.numbers(column)?.len() > 1 { Marks::Line } else { Marks::Dots };
-        let x = if ["shear", "bending", "torsion"].contains(&column) { "station_in" } else { "station" };
+        let x = if ["shear_force", "bending_moment", "torsion_moment"].contains(&column) {
+            "station_in"
+        } else {
+            "station"
+        };
         Some(Series::new(&self.name, along, self.table.numbers(x)?, self.table.numbers(column)?))
     }
 

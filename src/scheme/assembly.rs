@@ -13,14 +13,18 @@ use crate::math::Vector;
 use crate::motion::BodyMotion;
 use crate::physics::{Gas, Newtonian};
 
+/// Threshold of limiters in the plane and in space, whose coarser clouds have greater differences where the flow is smooth: on
+/// the ONERA M6 at 56 thousand particles 0.1 costs 0.8 % of the lift and adds 22 counts of drag.
+const THRESHOLD: [f64; 2] = [0.1, 0.4];
+
 impl Reconstruction {
-    /// What the scheme of a case says.
-    pub fn of_scheme(scheme: &Scheme) -> Self {
+    /// What the scheme of a case says in `D` dimensions.
+    pub fn of_scheme<const D: usize>(scheme: &Scheme) -> Self {
         Self {
             second_order: scheme.order == 2,
             kappa: scheme.kappa,
             low_mach: scheme.low_mach,
-            threshold: scheme.limiter_threshold,
+            threshold: scheme.limiter_threshold.unwrap_or(THRESHOLD[D - 2]),
         }
     }
 }
@@ -41,7 +45,7 @@ impl<const D: usize> Fluid<D> {
             isentropic: false,
             flux: scheme.flux,
             limiter: scheme.limiter,
-            reconstruction: Reconstruction::of_scheme(scheme),
+            reconstruction: Reconstruction::of_scheme::<D>(scheme),
             conservative: conserves,
             viscous_model: None,
             far_field: Arc::new(Stream::new(stream, &Vector::ZERO, false)),

@@ -41,8 +41,13 @@ fn points(case: &Case) -> String {
     let or = |list: Vec<f64>, one: Option<f64>| if list.is_empty() { one.into_iter().collect() } else { list };
     let angles = or(polar.alpha.iter().map(Angle::degrees).collect(), Some(case.flow.alpha.degrees()));
     let machs = or(polar.mach.clone(), case.flow.mach);
-    let at = if machs.is_empty() { String::new() } else { format!(", Mach {}", series(&machs)) };
-    format!("polar          {} points: {} deg{at}\n", polar.len(), series(&angles))
+    let (all, count) = (polar.len(), polar.angles());
+    let at = if machs.is_empty() { String::new() } else { format!("; Mach {}", series(&machs)) };
+    format!(
+        "polar          {all} points: {count} angles at {} Mach numbers: {} deg{at}\n",
+        all / count,
+        series(&angles)
+    )
 }
 
 /// The values of a list; of a long one the first and the last.

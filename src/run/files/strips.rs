@@ -28,9 +28,9 @@ const COLUMNS: [&str; 20] = [
     "fy",
     "fz",
     "station_in",
-    "shear",
-    "bending",
-    "torsion",
+    "shear_force",
+    "bending_moment",
+    "torsion_moment",
 ];
 
 /// Writes the strips of all bodies; nothing where there are none.

@@ -163,7 +163,7 @@ pub(crate) fn solver<const D: usize>(
         isentropic: case.flow.isentropic,
         flux: scheme.flux,
         limiter: scheme.limiter,
-        reconstruction: Reconstruction::of_scheme(scheme),
+        reconstruction: Reconstruction::of_scheme::<D>(scheme),
         conservative,
         viscous_model: viscous_model(case, surface).map(Arc::new),
         far_field: far_field(site),
