@@ -18,6 +18,8 @@ const UPRIGHT: f64 = 2.0;
 const SECTIONS: usize = 8;
 /// Part of the span that a side must have to be one.
 const SLIVER: f64 = 0.02;
+/// Part of the height of a fin, from either end, at which its chords are compared: nearer, a fuselage may cut them.
+const WITHIN: f64 = 0.3;
 
 /// Loads along the span of all bodies; none in the plane, without a stream, or where no body is flat.
 pub(crate) fn span_loads<const D: usize>(
@@ -100,8 +102,8 @@ fn stretches<const D: usize>(surface: &Surface<D>, body: u16, span: Span, middle
     if span == Span::Upright {
         let [_, whole] = surface.sides(body, axis, f64::NEG_INFINITY);
         let Some([low, high]) = whole else { return Vec::new() };
-        let near = SLIVER * (high - low);
-        let chords = surface.stations(body, axis, &[low + near, high - near]);
+        let inside = WITHIN * (high - low);
+        let chords = surface.stations(body, axis, &[low + inside, high - inside]);
         let hangs = chords[1].chord > chords[0].chord;
         return vec![if hangs { [high, low] } else { [low, high] }];
     }
