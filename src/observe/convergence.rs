@@ -4,7 +4,7 @@
 //! observed order is p = log₂(d₁/d₂) (Richardson 1911), the limit f + d₂/(2^p − 1), and the error bar 5/4 of the way to it
 //! (Roache 1994, grid convergence index). Between the orders 1 and 2 first-order errors (at shocks and corners) and second-order ones are
 //! both there: the limit is that of f + a h + b h² through the three loads, which lies farther away. Where the gas is faster than sound
-//! shocks are captured, and no order beyond 1 is trusted. Loads that swing, hardly
+//! shocks are captured, and no order but 1 is trusted. Loads that swing, hardly
 //! change, or change faster than the scheme can make them have no order to speak of: their bar is the honest spread, after Eça and
 //! Hoekstra (2014).
 //!
@@ -15,8 +15,15 @@ use serde::{Deserialize, Serialize};
 
 use super::loads::Coefficients;
 
-/// Part of the distance to the limit that an error bar is (Roache 1994).
+/// Part of the distance to the limit that an error bar is where the order of the loads is known (Roache 1994).
 const SAFETY: f64 = 1.25;
+/// The same where shocks are captured and the observed order is not the one that is trusted: the clouds are not in the range where
+/// errors fall as a power of the spacing (Oberkampf and Roy, *Verification and Validation in Scientific Computing*, 2010, §8.6).
+const SAFETY_OFF: f64 = 3.0;
+/// Difference of orders up to which they count as the same, there too.
+const SAME_ORDER: f64 = 0.1;
+/// Part of the last change that an error bar is where loads have no order: it may come again, to either side.
+const SPREAD: f64 = 2.0;
 /// Orders that a second-order scheme with captured shocks and edges may show.
 const ORDERS: [f64; 2] = [0.5, 2.2];
 /// Order of the scheme, which no extrapolation goes beyond: in smooth flow, and where shocks are captured, some spacings wide.
@@ -160,14 +167,11 @@ fn estimate([a, b, c]: [f64; 3], shocks: bool) -> LoadEstimate {
             p if 1.0 < p && p < most => (5.0 * last - before) / 3.0,
             p => last / (p.min(most).exp2() - 1.0),
         };
-        return LoadEstimate {
-            order: Some(order),
-            limit: Some(c + way),
-            spacing: SAFETY * way.abs(),
-            ..LoadEstimate::default()
-        };
+        let known = !shocks || (order - most).abs() <= SAME_ORDER;
+        let spacing = if known { SAFETY } else { SAFETY_OFF } * way.abs();
+        return LoadEstimate { order: Some(order), limit: Some(c + way), spacing, ..LoadEstimate::default() };
     }
-    LoadEstimate { spacing: SAFETY * last.abs().max(luck * before.abs()), ..LoadEstimate::default() }
+    LoadEstimate { spacing: SPREAD * last.abs().max(luck * before.abs()), ..LoadEstimate::default() }
 }
 
 #[cfg(test)]
