@@ -28,7 +28,6 @@ use crate::cloud::sources::Source;
 use crate::coupling::Coupled;
 use crate::geometry::{Surface, dimension};
 use crate::observe::loads::Coefficients;
-use crate::scheme::start::free_stream;
 use crate::scheme::{Fluid, HasGas};
 use crate::system::{Instant, System};
 use crate::verify::Loops;
@@ -391,7 +390,7 @@ impl Run<'_> {
         let (axes, names) = (log.axes.axes(&view), Names::of(surface));
         let wake = match self.case.is_unsteady() {
             true => Vec::new(),
-            false => wake_planes(&view, surface, &free_stream(self.case), &axes),
+            false => wake_planes(&view, surface, self.case, &axes),
         };
         let strips = span_loads(self.case, &view, surface, &axes);
         let span_load = span_load(self.case, &view, &strips, &axes);

@@ -3,10 +3,9 @@
 //! The Mach number is shown in the plane of symmetry, or in the middle of the bodies where there is none; the axial vorticity and the
 //! flow across the stream in a plane behind bodies that lift. Lines there follow v and w less those of the free stream.
 use super::super::error::RunError;
-use super::super::look::CrossPlane;
-use super::pictures::{MARGIN, Plane, sampled, together};
+use super::super::look::{CrossPlane, side_of_symmetry};
+use super::raster::{MARGIN, Plane, sampled, together};
 use super::target::Scene;
-use crate::case::Side;
 use crate::geometry::Surface;
 use crate::math::slice::slice;
 use crate::math::sweep::sweep_each_chunk;
@@ -42,11 +41,9 @@ pub(super) fn window<const D: usize>(surface: &Surface<D>, domain: &Bounds<D>) -
 /// Mach number in the plane of symmetry or in the middle.
 fn middle<const D: usize>(scene: &Scene<'_, D>, surface: &Surface<D>) -> Result<(), RunError> {
     let (domain, b) = (scene.view.cloud().tree.bounds(), surface.bounds());
-    let sides = &scene.to.case.boundary;
-    let (at, told) = match (sides.y_min, sides.y_max) {
-        (Side::Symmetry, _) => (domain.min[1], "in the plane of symmetry".to_owned()),
-        (_, Side::Symmetry) => (domain.max[1], "in the plane of symmetry".to_owned()),
-        _ => (b.centre()[1], format!("at y = {:.3}, the middle of the span", b.centre()[1])),
+    let (at, told) = match side_of_symmetry(scene.to.case, &domain) {
+        Some((at, _)) => (at, "in the plane of symmetry".to_owned()),
+        None => (b.centre()[1], format!("at y = {:.3}, the middle of the span", b.centre()[1])),
     };
     let plane = Plane { axes: [0, D - 1], through: Vector::axis(1) * at };
     let (w, gas) = (window(surface, &domain), scene.view.fluid.gas);

@@ -1,6 +1,7 @@
 //! What a run leaves in its folder: tables, fields, pictures.
 mod cuts;
 mod pictures;
+mod raster;
 mod strips;
 mod target;
 
@@ -20,7 +21,8 @@ use crate::observe::vtk::{Column, Facets, read_collection, write_cells, write_co
 use crate::report;
 use crate::scheme::Work;
 
-pub(crate) use pictures::{pixels, together, write_cloud};
+pub(crate) use pictures::{pixels, write_cloud};
+pub(crate) use raster::together;
 pub(crate) use target::{FILM, FILM_FIELDS, Scene, Target};
 
 /// Columns of the fields of a film.

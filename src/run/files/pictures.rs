@@ -2,15 +2,14 @@
 use super::super::error::RunError;
 use super::super::look::pressure_coefficient;
 use super::cuts;
+use super::raster::{MARGIN, Plane, sampled, together};
 use super::target::{FILM, Scene};
 use crate::geometry::Surface;
-use crate::math::sweep::{sweep_each, sweep_each_chunk};
 use crate::math::{Bounds, Vector};
 use crate::physics::Primitive;
 use crate::report::{
     Axis, Chart, Colormap, Dots, Marks, PictureStyle, Raster, Scatter, Series, raster_png, scatter_png, write_file,
 };
-use crate::scheme::probe::{Near, Probe};
 use crate::scheme::start::free_stream;
 
 /// Pixels along the longer side of a flow picture.
@@ -19,12 +18,6 @@ const PIXELS: usize = 900;
 const FILM_PIXELS: usize = 450;
 /// Greatest Mach number in the colours of a film strip, in that of the free stream.
 const FILM_RANGE: f64 = 2.0;
-/// Pixels from one that is computed by the fit to the next, at most.
-const LARGEST_STEP: usize = 4;
-/// Size of the background over that distance from which on pixels between are means.
-const COARSE: f64 = 3.0;
-/// Margin of flow pictures around the bodies in body lengths.
-pub(super) const MARGIN: f64 = 0.6;
 
 /// A flow picture: file name, (title, quantity, colours, contours), value of a state.
 type Drawn<'a, const D: usize> = (&'a str, (&'a str, &'a str, Colormap, &'a [f64]), Value<'a, D>);
@@ -111,13 +104,6 @@ fn plane<const D: usize>(scene: &Scene<'_, D>) -> Result<(), RunError> {
     })
 }
 
-/// Does `n` things side by side; the first error in their order.
-pub(crate) fn together(n: usize, task: impl Fn(usize) -> Result<(), RunError> + Sync) -> Result<(), RunError> {
-    let mut done: Vec<Result<(), RunError>> = (0..n).map(|_| Ok(())).collect();
-    sweep_each(&mut done, task);
-    done.into_iter().collect()
-}
-
 /// Draws the Mach number at part `part` of a period, in colours that are the same for all of them.
 pub(crate) fn write_film<const D: usize>(scene: &Scene<'_, D>, part: u32) -> Result<(), RunError> {
     let (window, gas) = (window(scene, MARGIN), scene.view.fluid.gas);
@@ -133,118 +119,6 @@ pub(crate) fn write_film<const D: usize>(scene: &Scene<'_, D>, part: u32) -> Res
     };
     let png = raster_png(&Raster { width, height, window, values }, &style)?;
     Ok(write_file(&scene.to.out.join(format!("pictures/film-{part}.png")), &png)?)
-}
-
-/// The plane of a picture.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Plane<const D: usize> {
-    /// Axes that run to the right and upwards.
-    pub(super) axes: [usize; 2],
-    /// A point of it.
-    pub(super) through: Vector<D>,
-}
-
-impl<const D: usize> Plane<D> {
-    /// That of plane flow.
-    fn of_motion() -> Self {
-        Self { axes: [0, 1], through: Vector::ZERO }
-    }
-
-    /// The point at these coordinates along its axes.
-    pub(super) fn place(&self, at: [f64; 2]) -> Vector<D> {
-        let mut x = self.through;
-        (0..2).for_each(|k| x[self.axes[k]] = at[k]);
-        x
-    }
-}
-
-/// States on a grid of pixels, `pixels` along the longer side: (width, height, states, `None` inside bodies).
-pub(super) fn sampled<const D: usize>(
-    scene: &Scene<'_, D>,
-    plane: &Plane<D>,
-    w: &Bounds<2>,
-    pixels: usize,
-) -> (usize, usize, Vec<Option<Primitive<D>>>) {
-    let extent = w.extent();
-    let scale = pixels as f64 / extent[0].max(extent[1]);
-    let size = [0, 1].map(|d| (extent[d] * scale).round().max(1.0) as usize);
-    let probe = Probe::new(scene.view, scene.surface);
-    let grid = Grid { scene, probe, plane: *plane, from: w.min, pixel: 1.0 / scale, size };
-    (size[0], size[1], grid.states(1))
-}
-
-/// Pixels of a picture.
-struct Grid<'a, const D: usize> {
-    scene: &'a Scene<'a, D>,
-    probe: Probe<'a, D>,
-    plane: Plane<D>,
-    /// Lowest corner.
-    from: Vector<2>,
-    pixel: f64,
-    /// Pixels in a row, and rows.
-    size: [usize; 2],
-}
-
-impl<const D: usize> Grid<'_, D> {
-    /// Every `step`th pixel of every `step`th row.
-    fn count(&self, step: usize) -> [usize; 2] {
-        self.size.map(|n| (n - 1) / step + 1)
-    }
-
-    /// The states there: between pixels of twice that step by their mean where particles are far apart, else by the fit.
-    fn states(&self, step: usize) -> Vec<Option<Primitive<D>>> {
-        let coarse = if step < LARGEST_STEP { self.states(2 * step) } else { Vec::new() };
-        let [across, rows] = self.count(step);
-        let mut states = vec![None; across * rows];
-        sweep_each_chunk(&mut states, across, |row, states| {
-            let mut near = Near::default();
-            for (k, state) in states.iter_mut().enumerate() {
-                let x = self.place([k, row].map(|c| c * step));
-                *state = match self.between((&coarse, 2 * step), [k, row], &x, &mut near) {
-                    None => self.fitted(&x, &mut near),
-                    known => known,
-                };
-            }
-        });
-        states
-    }
-
-    fn place(&self, pixel: [usize; 2]) -> Vector<D> {
-        self.plane.place([0, 1].map(|d| self.from[d] + (pixel[d] as f64 + 0.5) * self.pixel))
-    }
-
-    fn fitted(&self, x: &Vector<D>, near: &mut Near<D>) -> Option<Primitive<D>> {
-        let solid = self.scene.surface.is_some_and(|s| s.inside(&self.scene.view.origin(x)));
-        if solid { None } else { self.probe.beside(x, near) }
-    }
-
-    /// The mean of the `coarse` pixels, `step` apart, around the one that is `at` half steps; `None` where particles are near one
-    /// another or one of them is solid.
-    fn between(
-        &self,
-        (coarse, step): (&[Option<Primitive<D>>], usize),
-        at: [usize; 2],
-        x: &Vector<D>,
-        near: &mut Near<D>,
-    ) -> Option<Primitive<D>> {
-        let ([across, rows], [k, row]) = (self.count(step), at);
-        let corner =
-            |k: usize, row: usize| (k < across && row < rows).then(|| coarse.get(row * across + k).copied()?)?;
-        let (low, high) = ([k / 2, row / 2], [k.div_ceil(2), row.div_ceil(2)]);
-        if low == high {
-            return corner(k / 2, row / 2);
-        }
-        if coarse.is_empty() || self.probe.spacing(x, near) < COARSE * step as f64 * self.pixel {
-            return None;
-        }
-        let [a, b] = [corner(low[0], low[1])?, corner(high[0], high[1])?];
-        let [c, d] = [corner(low[0], high[1])?, corner(high[0], low[1])?];
-        Some(Primitive::zip(
-            &Primitive::zip(&a, &b, f64::midpoint),
-            &Primitive::zip(&c, &d, f64::midpoint),
-            f64::midpoint,
-        ))
-    }
 }
 
 /// Draws the particles near the bodies (plane clouds).

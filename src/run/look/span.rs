@@ -3,7 +3,8 @@
 //! A body is cut across its span: along y, and along z where it is seen from the side with more than twice the area that it is seen
 //! from above with, as a fin. The root is at the plane of symmetry: that of the domain, else y = 0 where bodies reach it, else their
 //! middle; or at the inner end of a side that does not reach the plane. A fin has its root where its chord is longer.
-use crate::case::{Case, Side as Condition};
+use super::symmetry::side_of_symmetry;
+use crate::case::Case;
 use crate::geometry::{Station, Surface};
 use crate::observe::induced::{SpanLoad, induced};
 use crate::observe::loads::LoadAxes;
@@ -43,19 +44,9 @@ pub(crate) fn span_load<const D: usize>(
     axes: &LoadAxes,
 ) -> Option<SpanLoad> {
     let free = free_stream::<D>(case);
-    let plane = side_of_domain(case, view);
+    let plane = side_of_symmetry(case, &view.reference().tree.bounds()).map(|side| side.0);
     let subsonic = D == 3 && free.velocity.norm() < 1.0;
     if subsonic { induced(bodies, plane, axes, 0.5 * free.density * free.velocity.norm_squared()) } else { None }
-}
-
-/// The side of the domain that is a plane of symmetry across the span, y.
-fn side_of_domain<const D: usize>(case: &Case, view: &View<'_, D>) -> Option<f64> {
-    let domain = view.reference().tree.bounds();
-    match (case.boundary.y_min, case.boundary.y_max) {
-        (Condition::Symmetry, _) => Some(domain.min[1]),
-        (_, Condition::Symmetry) => Some(domain.max[1]),
-        _ => None,
-    }
 }
 
 /// The plane of symmetry across the span, y.
@@ -64,7 +55,7 @@ fn plane_of_symmetry<const D: usize>(case: &Case, view: &View<'_, D>, surface: &
     let slack = SLIVER * (high - low);
     let reached = low <= slack && high >= -slack;
     let own = if reached { 0.0 } else { f64::midpoint(low, high) };
-    side_of_domain(case, view).unwrap_or(own)
+    side_of_symmetry(case, &view.reference().tree.bounds()).map_or(own, |side| side.0)
 }
 
 fn of_body<const D: usize>(

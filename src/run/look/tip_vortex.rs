@@ -6,7 +6,8 @@
 //! centre of axial vorticity around its greatest value in the outer part.
 use serde::Serialize;
 
-use crate::case::{Case, Side};
+use super::symmetry::side_of_symmetry;
+use crate::case::Case;
 use crate::geometry::Surface;
 use crate::math::sweep::sweep_each;
 use crate::math::{Bounds, Vector};
@@ -65,11 +66,7 @@ impl CrossPlane {
         }
         let b = surface.bounds();
         let (low, high) = (b.min.max(&domain.min), b.max.min(&domain.max));
-        let (middle, side) = match (case.boundary.y_min, case.boundary.y_max) {
-            (Side::Symmetry, _) => (domain.min[1], 1.0),
-            (_, Side::Symmetry) => (domain.max[1], -1.0),
-            _ => (f64::midpoint(low[1], high[1]), 1.0),
-        };
+        let (middle, side) = side_of_symmetry(case, domain).unwrap_or((f64::midpoint(low[1], high[1]), 1.0));
         let half = if side > 0.0 { high[1] - middle } else { middle - low[1] };
         let (x, outer) = (high[0] + BEHIND * chord, middle + side * REACH[0] * half);
         let z = f64::midpoint(low[2], high[2]);

@@ -17,6 +17,8 @@
 use serde::Serialize;
 
 use super::momentum::tile;
+use super::symmetry::side_of_symmetry;
+use crate::case::Case;
 use crate::geometry::Surface;
 use crate::math::sweep::sweep;
 use crate::math::{Bounds, Vector};
@@ -24,6 +26,7 @@ use crate::observe::loads::LoadAxes;
 use crate::physics::Primitive;
 use crate::scheme::View;
 use crate::scheme::probe::{Near, Probe};
+use crate::scheme::start::free_stream;
 
 /// Distances of the planes behind the bodies in reference chords.
 const DISTANCES: [f64; 3] = [0.5, 0.75, 1.0];
@@ -52,15 +55,17 @@ pub struct WakePlane {
 pub(crate) fn wake_planes<const D: usize>(
     view: &View<'_, D>,
     surface: Option<&Surface<D>>,
-    free: &Primitive<D>,
+    case: &Case,
     axes: &LoadAxes,
 ) -> Vec<WakePlane> {
+    let free = &free_stream(case);
     let mach = free.velocity.norm();
     let Some(surface) = surface.filter(|_| D == 3 && 0.0 < mach && mach < 1.0) else { return Vec::new() };
     let (bodies, domain) = (surface.bounds(), view.reference().tree.bounds());
     let rear = bodies.max[0];
     let near = bodies.padded(MARGIN * axes.chord);
-    let wake = Wake { view, probe: Probe::new(*view, None), free, mach, axes, near };
+    let middle = side_of_symmetry(case, &domain).map_or(0.0, |side| side.0);
+    let wake = Wake { view, probe: Probe::new(*view, None), free, mach, axes, near, middle };
     let inside = |distance: &f64| rear + distance * axes.chord < domain.max[0];
     DISTANCES.into_iter().filter(inside).map(|d| wake.plane(d, rear + d * axes.chord, &domain)).collect()
 }
@@ -74,6 +79,8 @@ struct Wake<'a, const D: usize> {
     axes: &'a LoadAxes,
     /// Where the wake is looked for, across the stream.
     near: Bounds<D>,
+    /// Where along the span its vorticity is counted from: the plane of symmetry of a half model.
+    middle: f64,
 }
 
 impl<const D: usize> Wake<'_, D> {
@@ -100,7 +107,7 @@ impl<const D: usize> Wake<'_, D> {
         let circulation = side(&a, &b, 1) + side(&b, &c, 2) - side(&d, &c, 1) - side(&a, &d, 2);
         let area = extent[1] * extent[2];
         let drags = [a, b, c, d].iter().map(|q| self.drags(q)).fold([0.0; 2], |s, d| [s[0] + d[0], s[1] + d[1]]);
-        let lift = self.free.density * self.mach * middle[1] * circulation;
+        let lift = self.free.density * self.mach * (middle[1] - self.middle) * circulation;
         let inside = (1..D).all(|d| self.near.min[d] < middle[d] && middle[d] < self.near.max[d]);
         let wake = if inside { [lift, 0.25 * area * drags[1]] } else { [0.0; 2] };
         Some([wake[0], 0.25 * area * drags[0], wake[1]])
