@@ -11,7 +11,7 @@ const SHARE_FREEDOM: f64 = 0.1;
 pub(super) const ITSELF: u8 = u8::MAX;
 
 /// What stands at the other end of a neighbour entry.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Kind {
     /// A fluid particle.
     Pair,

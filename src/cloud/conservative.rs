@@ -12,26 +12,28 @@
 //! the fluid loses.
 //!
 //! Eliminating s, β and V leaves a symmetric positive system for the multipliers of the conditions, one small block a
-//! particle: conjugate gradients, preconditioned by the blocks and by what finds smooth multipliers (in `smooth`; Nocedal and Wright,
-//! *Numerical Optimization*, 2nd ed., §16.2-16.3). A second solve over the closure alone then drives its defect to round-off
-//! (in `closure`).
+//! particle (Nocedal and Wright, *Numerical Optimization*, 2nd ed., §16.2-16.3): conjugate gradients, preconditioned by sweeps over
+//! the particles and over groups of them (in `cycle`). A second solve over the closure alone then drives its defect to round-off (in
+//! `closure`).
 //! Antisymmetric coefficients of this kind are those of Chiu, Wang, Hu and Jameson (SIAM J. Sci. Comput. 34, 2012).
 mod closure;
-mod graph;
-mod smooth;
+mod cycle;
+mod field;
+mod levels;
 mod symmetry;
 
-use graph::Graph;
-use smooth::Smooth;
+use std::ops::Range;
+
+use cycle::{Cycle, Grid, Levels, Way};
 
 use super::coefficient_unknowns::{ITSELF, Kind, Link, links, sweep_entries};
 use super::layers::stand_on_wall;
-use super::multipliers::{MOST, Row, cholesky};
+use super::multipliers::{Factors, Row};
 use super::operators::WallFace;
 use super::{Cloud, Operators};
 use crate::math::Vector;
 use crate::math::conjugate::{Row as _, Symmetric, conjugate_gradients};
-use crate::math::sweep::{sum, sweep, sweep_rows, sweep_slots};
+use crate::math::sweep::{sum, sweep, sweep_slots};
 
 /// ε: square of the tolerated relative error of linear consistency against relative changes of s, in the measure of w and b;
 /// in 2-D and 3-D, where the errors of 0.02 would still be seen in the pressure on a sphere.
@@ -101,9 +103,9 @@ pub fn conservative_with<const D: usize>(
     softness: f64,
 ) -> ConservativeReport {
     let mut problem = Problem::new(cloud, operators, softness);
-    let mut graph = problem.graph(symmetry::mirrors(cloud));
+    let levels = Levels::new(&problem, symmetry::mirrors(cloud));
     let mut multipliers = vec![Row::ZERO; problem.n_rows()];
-    let mut iterations = problem.solve(&mut multipliers, &mut graph);
+    let mut iterations = problem.solve(&mut multipliers, &levels);
     let mut n_softened = 0;
     for _ in 0..SOFTEN_ROUNDS {
         let softened = problem.soften(&problem.volumes(&multipliers));
@@ -111,11 +113,11 @@ pub fn conservative_with<const D: usize>(
             break;
         }
         n_softened = softened;
-        iterations += problem.solve(&mut multipliers, &mut graph);
+        iterations += problem.solve(&mut multipliers, &levels);
     }
     let mut x = problem.recover(multipliers);
     problem.fix_shares(&mut x);
-    let polish_iterations = problem.close(&mut x, &mut graph);
+    let polish_iterations = problem.close(&mut x, &levels);
     let report = ConservativeReport { iterations, polish_iterations, n_softened, softness, ..problem.judge(&x) };
     store(cloud, operators, &problem, &x);
     report
@@ -131,6 +133,7 @@ struct Problem<const D: usize> {
     n_fluid: usize,
     first: Vec<u32>,
     links: Vec<Link<D>>,
+    place: Vec<Vector<D>>,
     /// Area vectors of the interface particles, out of the fluid.
     walls: Vec<Vector<D>>,
     /// Signs of the transforms.
@@ -142,16 +145,12 @@ struct Problem<const D: usize> {
     softened: Vec<bool>,
     /// Entries (row, entry) that share each wall.
     sharers: Vec<Vec<(u32, u32)>>,
-    /// Lower triangles of the factorised blocks, row after row.
-    blocks: Vec<f64>,
+    /// Weight of all who share each wall.
+    shared: Vec<f64>,
+    factors: Factors<D>,
 }
 
 impl<const D: usize> Problem<D> {
-    /// Number of conditions of a fluid particle.
-    const WIDTH: usize = D + D * D;
-    /// Elements of a lower triangle of that order.
-    const TRIANGLE: usize = Self::WIDTH * (Self::WIDTH + 1) / 2;
-
     fn new(cloud: &Cloud<D>, operators: &Operators<D>, softness: f64) -> Self {
         let n_fluid = cloud.n_fluid;
         let first = cloud.neighbours.first[..=n_fluid].to_vec();
@@ -186,8 +185,25 @@ impl<const D: usize> Problem<D> {
         let softened = vec![false; n_fluid];
         let walls = cloud.interface.iter().map(|w| -w.area).collect();
         let signs = cloud.transforms.iter().map(|t| t.sign).collect();
-        let blocks = Vec::new();
-        let mut all = Self { n_fluid, first, links, walls, signs, guess, unit, softness, softened, sharers, blocks };
+        let weight = |s: &(u32, u32)| links[s.1 as usize].weight;
+        let shared =
+            sharers.iter().map(|all: &Vec<_>| all.iter().map(weight).sum::<f64>().max(f64::MIN_POSITIVE)).collect();
+        let (place, factors) = (cloud.x[..n_fluid].to_vec(), Factors::default());
+        let mut all = Self {
+            n_fluid,
+            first,
+            links,
+            place,
+            walls,
+            signs,
+            guess,
+            unit,
+            softness,
+            softened,
+            sharers,
+            shared,
+            factors,
+        };
         all.guess_shares();
         all
     }
@@ -224,22 +240,26 @@ impl<const D: usize> Problem<D> {
         let own = &y[i];
         let d = &link.offset;
         match link.kind {
-            Kind::Pair => {
-                let other = &y[link.other as usize];
-                Vector::from_fn(|r| {
-                    own.closure[r] - other.closure[r] + 0.5 * (own.moment[r].dot(d) + other.moment[r].dot(d))
-                }) * link.weight
-            }
-            Kind::Image(t) => {
-                let (other, t) = (&y[link.other as usize], &self.signs[t as usize]);
-                let back = Vector::from_fn(|c| t[c] * d[c]);
-                Vector::from_fn(|r| {
-                    own.closure[r] - t[r] * other.closure[r]
-                        + 0.5 * (own.moment[r].dot(d) + t[r] * other.moment[r].dot(&back))
-                }) * link.weight
+            Kind::Pair | Kind::Image(_) => {
+                let across = self.across(link, &y[link.other as usize]);
+                Vector::from_fn(|r| own.closure[r] + 0.5 * own.moment[r].dot(d) - across[r]) * link.weight
             }
             Kind::Open => Vector::from_fn(|r| own.closure[r] + 0.5 * own.moment[r].dot(d)) * link.weight,
             Kind::Wall(_) => self.wall_change(i, link, y),
+        }
+    }
+
+    /// The field of the particle at the other end of an entry in the middle between both.
+    #[inline(always)]
+    fn across(&self, link: &Link<D>, other: &Row<D>) -> Vector<D> {
+        let d = &link.offset;
+        match link.kind {
+            Kind::Image(t) => {
+                let t = &self.signs[t as usize];
+                let back = Vector::from_fn(|c| t[c] * d[c]);
+                Vector::from_fn(|r| t[r] * (other.closure[r] - 0.5 * other.moment[r].dot(&back)))
+            }
+            _ => Vector::from_fn(|r| other.closure[r] - 0.5 * other.moment[r].dot(d)),
         }
     }
 
@@ -256,29 +276,44 @@ impl<const D: usize> Problem<D> {
         area.dot(&a) / a.norm_squared().max(f64::MIN_POSITIVE)
     }
 
+    /// (A W Aᵀ + ε) y in the row of a fluid particle.
+    #[inline(always)]
+    fn row(&self, i: usize, y: &[Row<D>]) -> Row<D> {
+        let mut row = self.soft(i, &y[i]);
+        for link in &self.links[self.range(i)] {
+            row.add(&self.change(i, link, y), &link.offset, link.reach());
+        }
+        row
+    }
+
+    /// The part of it that is not of the pairs.
+    #[inline(always)]
+    fn soft(&self, i: usize, y: &Row<D>) -> Row<D> {
+        let (volume, tolerance) = (self.volume_freedom(i) * y.trace(), self.tolerance(i));
+        let mut row = Row { closure: Vector::ZERO, moment: y.moment.map(|m| m * tolerance) };
+        (0..D).for_each(|r| row.moment[r][r] += volume);
+        row
+    }
+
+    /// The same in the row of wall `w`.
+    fn wall_row(&self, w: usize, y: &[Row<D>]) -> f64 {
+        let share = |(k, p): &(u32, u32)| {
+            let link = &self.links[*p as usize];
+            self.share(link, &self.wall_change(*k as usize, link, y))
+        };
+        self.sharers[w].iter().map(share).sum()
+    }
+
     /// out = (A W Aᵀ + ε) y.
     fn apply(&self, y: &[Row<D>], out: &mut [Row<D>]) {
-        sweep(out, |i| {
-            let mut row = Row::ZERO;
-            if i >= self.n_fluid {
-                let shares = self.sharers[i - self.n_fluid].iter().map(|(k, p)| {
-                    let link = &self.links[*p as usize];
-                    self.share(link, &self.wall_change(*k as usize, link, y))
-                });
-                row.closure[0] = shares.sum();
-                return row;
-            }
-            for link in &self.links[self.range(i)] {
-                row.add(&self.change(i, link, y), &link.offset, link.reach());
-            }
-            let volume = self.volume_freedom(i) * y[i].trace();
-            let soft = self.softness[i] * self.unit[i] * self.unit[i];
-            for r in 0..D {
-                row.moment[r] += y[i].moment[r] * soft;
-                row.moment[r][r] += volume;
-            }
-            row
-        });
+        let (fluid, walls) = out.split_at_mut(self.n_fluid);
+        sweep(fluid, |i| self.row(i, y));
+        sweep(walls, |w| Row::ZERO.with_share(self.wall_row(w, y)));
+    }
+
+    /// How freely linear consistency is missed.
+    fn tolerance(&self, i: usize) -> f64 {
+        self.softness[i] * self.unit[i] * self.unit[i]
     }
 
     fn volume_freedom(&self, i: usize) -> f64 {
@@ -311,7 +346,7 @@ impl<const D: usize> Problem<D> {
 
     /// Turns the guess into the unknowns that belong to multipliers. Each pair is computed at one end and copied to the other.
     fn recover(&mut self, y: Vec<Row<D>>) -> Unknowns<D> {
-        self.blocks = Vec::new();
+        self.factors = Factors::default();
         let mut area = std::mem::take(&mut self.guess.area);
         sweep_entries(&self.first, &mut area, |i, p, area| *area += self.change(i, &self.links[p], &y));
         let mut x = Unknowns { area, volume: self.volumes(&y) };
@@ -337,19 +372,19 @@ impl<const D: usize> Problem<D> {
     }
 
     /// Conjugate gradients for the multipliers, from those in `y`.
-    fn solve(&mut self, y: &mut [Row<D>], graph: &mut Graph) -> usize {
-        self.factorise();
+    fn solve(&mut self, y: &mut [Row<D>], levels: &Levels<D>) -> usize {
+        self.factors = Factors::new(self.n_fluid, |i, y| self.own(i, y));
         let start = |i: usize| Row::ZERO.plus(-1.0, &self.defect(i, &self.guess));
         let mut r = vec![Row::ZERO; self.n_rows()];
         self.apply(y, &mut r);
         sweep_slots(&mut r, |i, r| *r = start(i).plus(-1.0, r));
-        let size = |r: &Row<D>, i: usize| r.dot(&self.precondition(i, r));
-        let goal = TOLERANCE * TOLERANCE * sum(self.n_rows(), |i| size(&start(i), i));
-        let mut smooth = Smooth::new(self);
-        let precondition = |r: &[Row<D>], z: &mut [Row<D>]| {
-            smooth.apply(self, graph, r, z);
-            sweep_slots(z, |i, z| *z = z.plus(1.0, &self.precondition(i, &r[i])));
+        let size = |r: &Row<D>, i: usize| match i.checked_sub(self.n_fluid) {
+            Some(w) => r.closure[0] * r.closure[0] / self.shared[w],
+            None => r.dot(&self.factors.solve(i, r)),
         };
+        let goal = TOLERANCE * TOLERANCE * sum(self.n_rows(), |i| size(&start(i), i));
+        let mut cycle = Cycle::new(levels, self.n_fluid);
+        let precondition = |r: &[Row<D>], z: &mut [Row<D>]| cycle.nearly_solve(self, r, z);
         let enough = |r: &[Row<D>]| sum(r.len(), |i| size(&r[i], i)) <= goal;
         let product = |y: &[Row<D>], out: &mut [Row<D>]| self.apply(y, out);
         conjugate_gradients(y, &mut r, MOST_FOR_MULTIPLIERS, Symmetric { enough, product, precondition })
@@ -412,80 +447,66 @@ impl<const D: usize> Problem<D> {
         }
     }
 
-    /// Cholesky factors of the diagonal blocks.
-    fn factorise(&mut self) {
-        let m = Self::WIDTH;
-        let mut blocks = std::mem::take(&mut self.blocks);
-        blocks.resize(self.n_rows() * Self::TRIANGLE, 0.0);
-        sweep_rows(&mut blocks, Self::TRIANGLE, |i, triangle| {
-            let mut block = [0.0; MOST * MOST];
-            self.diagonal(i, &mut block[..m * m]);
-            cholesky(&mut block, m);
-            let mut rest = triangle;
-            for r in 0..m {
-                let (row, below) = rest.split_at_mut(r + 1);
-                row.copy_from_slice(&block[r * m..=r * m + r]);
-                rest = below;
-            }
-        });
-        self.blocks = blocks;
+    /// What row `i` makes of its own multipliers.
+    fn own(&self, i: usize, y: &Row<D>) -> Row<D> {
+        let mut row = self.soft(i, y);
+        for link in &self.links[self.range(i)] {
+            let reach = link.reach();
+            let own = Vector::from_fn(|r| y.closure[r] + reach * y.moment[r].dot(&link.offset));
+            let change = match link.kind {
+                Kind::Wall(_) => {
+                    let a = self.wall(link);
+                    a * (link.weight * own.dot(&a))
+                }
+                _ => own * link.weight,
+            };
+            row.add(&change, &link.offset, reach);
+        }
+        row
     }
 
-    /// The diagonal block of row `i`.
-    fn diagonal(&self, i: usize, block: &mut [f64]) {
-        let m = Self::WIDTH;
-        if i >= self.n_fluid {
-            let sharers = self.sharers[i - self.n_fluid].iter();
-            (0..m).for_each(|k| block[k * m + k] = 1.0);
-            block[0] = sharers.map(|(_, p)| self.links[*p as usize].weight).sum::<f64>();
-            if block[0] == 0.0 {
-                block[0] = 1.0;
-            }
-            return;
+    /// Entries of row `i` whose area vectors may change.
+    fn passing(&self, i: usize) -> impl Iterator<Item = &Link<D>> {
+        self.links[self.range(i)].iter().filter(|l| !l.is_wall())
+    }
+
+    /// Sign with which component `r` of the row at the other end of an entry is seen.
+    #[inline(always)]
+    fn sign(&self, link: &Link<D>, r: usize) -> f64 {
+        match link.kind {
+            Kind::Image(t) => self.signs[t as usize][r],
+            _ => 1.0,
         }
-        let unit = self.unit[i];
-        for c in 0..m {
-            let mut column = [0.0; MOST];
-            column[c] = 1.0;
-            let e = Row::load(&column);
-            let mut out = Row::ZERO;
-            for link in &self.links[self.range(i)] {
-                let reach = link.reach();
-                let s = Vector::from_fn(|r| e.closure[r] + reach * e.moment[r].dot(&link.offset));
-                let s = match link.kind {
-                    Kind::Wall(_) => {
-                        let a = self.wall(link);
-                        a * (link.weight * s.dot(&a))
-                    }
-                    _ => s * link.weight,
-                };
-                out.add(&s, &link.offset, reach);
-            }
-            for r in 0..D {
-                out.moment[r] += e.moment[r] * (self.softness[i] * unit * unit);
-                out.moment[r][r] += self.volume_freedom(i) * e.trace();
-            }
-            out.store(&mut column);
-            (0..m).for_each(|r| block[r * m + c] = column[r]);
-        }
+    }
+}
+
+impl<const D: usize> Grid<Row<D>> for Problem<D> {
+    #[inline(always)]
+    fn left(&self, i: usize, b: &Row<D>, x: &[Row<D>]) -> Row<D> {
+        b.plus(-1.0, &self.row(i, x))
     }
 
     #[inline(always)]
-    fn precondition(&self, i: usize, r: &Row<D>) -> Row<D> {
-        let m = Self::WIDTH;
-        let l = &self.blocks[i * Self::TRIANGLE..(i + 1) * Self::TRIANGLE];
-        let at = |r: usize, c: usize| l[r * (r + 1) / 2 + c];
-        let mut x = [0.0; MOST];
-        r.store(&mut x);
-        for a in 0..m {
-            let s: f64 = (0..a).map(|b| at(a, b) * x[b]).sum();
-            x[a] = (x[a] - s) * at(a, a);
+    fn less(&self, i: usize, mut r: Row<D>, range: &Range<usize>, found: &[Row<D>], way: Way) -> Row<D> {
+        for link in &self.links[self.range(i)] {
+            let other = link.other as usize;
+            if way.has_passed(range, i, other) && link.kind != Kind::Open {
+                r.add(&(self.across(link, &found[other - range.start]) * link.weight), &link.offset, link.reach());
+            }
         }
-        for a in (0..m).rev() {
-            let s: f64 = (a + 1..m).map(|b| at(b, a) * x[b]).sum();
-            x[a] = (x[a] - s) * at(a, a);
-        }
-        Row::load(&x)
+        r
+    }
+
+    #[inline(always)]
+    fn solved(&self, i: usize, r: &Row<D>) -> Row<D> {
+        self.factors.solve(i, r)
+    }
+
+    /// Multipliers of the walls.
+    fn follow(&self, b: &[Row<D>], x: &mut [Row<D>]) {
+        let mut walls = vec![0.0; self.sharers.len()];
+        sweep(&mut walls, |w| (b[self.n_fluid + w].closure[0] - self.wall_row(w, x)) / self.shared[w]);
+        sweep_slots(&mut x[self.n_fluid..], |w, x| x.closure[0] += walls[w]);
     }
 }
 

@@ -1,11 +1,12 @@
 //! Multipliers of the conditions on conservative coefficients, particle by particle.
 use crate::math::Vector;
 use crate::math::conjugate;
+use crate::math::sweep::sweep_rows;
 
 /// Smallest pivot of a block relative to its diagonal.
 const FLAT: f64 = 1e-12;
 /// Most conditions of a particle: three dimensions.
-pub(super) const MOST: usize = 12;
+const MOST: usize = 12;
 
 /// Multipliers, or defects, of the conditions of one particle.
 #[derive(Clone, Copy)]
@@ -43,6 +44,12 @@ impl<const D: usize> Row<D> {
         }
     }
 
+    /// The same with this multiplier, or defect, of the sum of shares.
+    pub(super) fn with_share(mut self, share: f64) -> Self {
+        self.closure[0] = share;
+        self
+    }
+
     pub(super) fn trace(&self) -> f64 {
         (0..D).map(|r| self.moment[r][r]).sum()
     }
@@ -60,9 +67,63 @@ impl<const D: usize> Row<D> {
     }
 }
 
+/// Blocks of conditions, one a row, factorised (Cholesky): the lower triangles row after row, diagonals inverted. In single
+/// precision, as they only precondition.
+#[derive(Default)]
+pub(super) struct Factors<const D: usize> {
+    values: Vec<f32>,
+}
+
+impl<const D: usize> Factors<D> {
+    /// Number of conditions of a particle.
+    const WIDTH: usize = D + D * D;
+    /// Elements of a lower triangle of that order.
+    const TRIANGLE: usize = Self::WIDTH * (Self::WIDTH + 1) / 2;
+
+    /// Of the `n` blocks that make `product(i, y)` of y.
+    pub(super) fn new(n: usize, product: impl Fn(usize, &Row<D>) -> Row<D> + Sync) -> Self {
+        let m = Self::WIDTH;
+        let mut values = vec![0.0; n * Self::TRIANGLE];
+        sweep_rows(&mut values, Self::TRIANGLE, |i, triangle| {
+            let mut block = [0.0; MOST * MOST];
+            for c in 0..m {
+                let mut column = [0.0; MOST];
+                column[c] = 1.0;
+                product(i, &Row::load(&column)).store(&mut column);
+                (0..m).for_each(|r| block[r * m + c] = column[r]);
+            }
+            cholesky(&mut block, m);
+            let entries = (0..m).flat_map(|r| (0..=r).map(move |c| (r, c)));
+            triangle.iter_mut().zip(entries).for_each(|(t, (r, c))| *t = block[r * m + c] as f32);
+        });
+        Self { values }
+    }
+
+    /// What block `i` makes `r` of.
+    #[inline(always)]
+    pub(super) fn solve(&self, i: usize, r: &Row<D>) -> Row<D> {
+        let m = Self::WIDTH;
+        let l = &self.values[i * Self::TRIANGLE..(i + 1) * Self::TRIANGLE];
+        let at = |r: usize, c: usize| f64::from(l[r * (r + 1) / 2 + c]);
+        let mut x = [0.0; MOST];
+        r.store(&mut x);
+        for a in 0..m {
+            let s: f64 = (0..a).map(|b| at(a, b) * x[b]).sum();
+            x[a] = (x[a] - s) * at(a, a);
+        }
+        for a in (0..m).rev() {
+            x[a] *= at(a, a);
+            for b in 0..a {
+                x[b] -= at(a, b) * x[a];
+            }
+        }
+        Row::load(&x)
+    }
+}
+
 /// Cholesky factor in the lower triangle, the diagonal inverted; directions without
 /// stiffness are left alone.
-pub(super) fn cholesky(a: &mut [f64], n: usize) {
+fn cholesky(a: &mut [f64], n: usize) {
     for c in 0..n {
         let s: f64 = (0..c).map(|k| a[c * n + k] * a[c * n + k]).sum();
         let pivot = (a[c * n + c] - s).max(FLAT * a[c * n + c]).max(f64::MIN_POSITIVE);

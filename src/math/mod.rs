@@ -7,6 +7,7 @@ pub mod dense;
 pub mod eigenvalues;
 pub mod exponentials;
 pub mod fourier;
+pub mod groups;
 pub mod hilbert;
 pub mod incomplete;
 pub mod jet;

@@ -8,6 +8,7 @@
 use super::block_matrix::{BlockMatrix, Sweeps};
 use super::circulant::{HarmonicSweeps, MOST_HARMONICS};
 use super::fourier::Instances;
+use super::groups::{Gathering, Groups};
 use super::sweep::{sweep, sweep_rows};
 
 /// Rows at which coarsening stops.
@@ -31,10 +32,7 @@ pub struct Cycle {
 
 struct Level {
     matrix: BlockMatrix,
-    group: Vec<u32>,
-    /// Rows of each group one after another, and where those of a group begin.
-    member: Vec<u32>,
-    first_member: Vec<u32>,
+    groups: Groups,
     target: Vec<u32>,
     sweeps: Sweeps,
     harmonic_sweeps: Option<HarmonicSweeps>,
@@ -65,13 +63,14 @@ impl Multilevel {
             if last.matrix.n_rows() <= COARSEST {
                 break;
             }
-            let (group, n) = groups(&last.matrix, size);
-            if n * 10 > last.matrix.n_rows() * 9 {
+            let fine = &last.matrix;
+            let columns = |i: usize, list: &mut Vec<u32>| list.extend(fine.columns(i));
+            let groups = Groups::new(fine.n_rows(), Gathering { size, far: false }, columns);
+            if groups.len() * 10 > fine.n_rows() * 9 {
                 break;
             }
-            let (coarse, target) = last.matrix.coarse(&group, n);
-            (last.member, last.first_member) = members(&group, n);
-            (last.group, last.target) = (group, target);
+            let (coarse, target) = fine.coarse(groups.of(), groups.len());
+            (last.groups, last.target) = (groups, target);
             levels.push(level(coarse));
         }
         Self { levels, cycle, times: None }
@@ -85,7 +84,7 @@ impl Multilevel {
             let next = self.levels.get(k + 1).map_or(0, |l| l.matrix.n_rows());
             let level = &mut self.levels[k];
             let harmonic_sweeps = HarmonicSweeps::new(&level.matrix, instances.harmonics(), omega, mass);
-            mass = harmonic_sweeps.gathered(&level.group, next);
+            mass = harmonic_sweeps.gathered(level.groups.of(), next);
             level.harmonic_sweeps = Some(harmonic_sweeps);
             level.sweeps = Sweeps::default();
         }
@@ -112,7 +111,7 @@ impl Multilevel {
                 harmonic_sweeps.invert(&fine.matrix);
             }
             if let Some(coarse) = coarse.first_mut() {
-                coarse.matrix.gather(&fine.matrix, |g| fine.members(g), &fine.target);
+                coarse.matrix.gather(&fine.matrix, |g| fine.groups.members(g), &fine.target);
             }
         }
     }
@@ -134,7 +133,7 @@ impl Multilevel {
     /// Bytes held.
     pub fn bytes(&self) -> usize {
         let harmonic_sweeps = |l: &Level| l.harmonic_sweeps.as_ref().map_or(0, HarmonicSweeps::bytes);
-        let lists = |l: &Level| 4 * (l.group.len() + l.member.len() + l.first_member.len() + l.target.len());
+        let lists = |l: &Level| l.groups.bytes() + 4 * l.target.len();
         self.levels.iter().map(|l| l.matrix.bytes() + l.sweeps.bytes() + harmonic_sweeps(l) + lists(l)).sum()
     }
 
@@ -146,8 +145,7 @@ impl Multilevel {
 
 fn level(matrix: BlockMatrix) -> Level {
     let sweeps = Sweeps::new(&matrix);
-    let (group, member, first_member, target) = Default::default();
-    Level { group, member, first_member, target, sweeps, matrix, harmonic_sweeps: None }
+    Level { groups: Groups::default(), target: Vec::new(), sweeps, matrix, harmonic_sweeps: None }
 }
 
 /// The place of coefficient `c` (mean, cosine, sine, cosine, ...) among mean, cosines, sines.
@@ -207,11 +205,6 @@ impl Level {
         }
     }
 
-    /// Rows of group `g` in ascending order.
-    fn members(&self, g: usize) -> &[u32] {
-        &self.member[self.first_member[g] as usize..self.first_member[g + 1] as usize]
-    }
-
     /// Unknowns of a row.
     fn width(&self) -> usize {
         self.matrix.block() * self.harmonic_sweeps.as_ref().map_or(1, HarmonicSweeps::count)
@@ -255,7 +248,7 @@ fn cycle(levels: &mut [Level], how: Cycle) {
     let left = fine.left();
     sweep_rows(coarse[0].right_hand_side(), n, |g, b| {
         b.fill(0.0);
-        for i in fine.members(g).iter().map(|i| *i as usize) {
+        for i in fine.groups.members(g).iter().map(|i| *i as usize) {
             b.iter_mut().zip(&left[i * n..(i + 1) * n]).for_each(|(b, r)| *b += r);
         }
     });
@@ -264,53 +257,12 @@ fn cycle(levels: &mut [Level], how: Cycle) {
         cycle(coarse, how);
     }
     let found = coarse[0].solution();
-    let group = std::mem::take(&mut fine.group);
+    let groups = std::mem::take(&mut fine.groups);
     sweep_rows(fine.solution_mut(), n, |i, x| {
-        let at = group[i] as usize * n;
+        let at = groups.of()[i] as usize * n;
         x.iter_mut().zip(&found[at..at + n]).for_each(|(x, c)| *x += c);
     });
-    fine.group = group;
+    fine.groups = groups;
     fine.restart();
     (0..sweeps).for_each(|_| fine.smooth());
-}
-
-/// Rows of each of `n` groups one after another in ascending order, and where those of a group begin.
-fn members(group: &[u32], n: usize) -> (Vec<u32>, Vec<u32>) {
-    let mut first = vec![0; n + 1];
-    group.iter().for_each(|g| first[*g as usize + 1] += 1);
-    (0..n).for_each(|g| first[g + 1] += first[g]);
-    let (mut next, mut member) = (first.clone(), vec![0; group.len()]);
-    for (i, g) in group.iter().enumerate() {
-        member[next[*g as usize] as usize] = i as u32;
-        next[*g as usize] += 1;
-    }
-    (member, first)
-}
-
-/// Groups of up to `size` rows that see one another, nearest in storage order first.
-fn groups(matrix: &BlockMatrix, size: usize) -> (Vec<u32>, usize) {
-    const FREE: u32 = u32::MAX;
-    let n = matrix.n_rows();
-    let mut group = vec![FREE; n];
-    let mut count = 0;
-    let mut near: Vec<u32> = Vec::new();
-    for i in 0..n {
-        if group[i] != FREE {
-            continue;
-        }
-        near.clear();
-        near.extend(matrix.columns(i).iter().filter(|j| group[**j as usize] == FREE));
-        near.sort_unstable_by_key(|j| (j.abs_diff(i as u32), *j));
-        if near.is_empty() && size > 1 {
-            // a lone row joins the group of its nearest neighbour
-            if let Some(j) = matrix.columns(i).iter().min_by_key(|j| (j.abs_diff(i as u32), **j)) {
-                group[i] = group[*j as usize];
-                continue;
-            }
-        }
-        group[i] = count;
-        near.iter().take(size - 1).for_each(|j| group[*j as usize] = count);
-        count += 1;
-    }
-    (group, count as usize)
 }

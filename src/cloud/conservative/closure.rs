@@ -1,7 +1,9 @@
 //! Closure to round-off: the smallest change of the area vectors between particles after which each particle's sum is zero.
 //!
 //! s_ij changes by w_ij (y_i − y_j), and Σ_j w_ij (y_i − y_j) is what the sum lacks.
-use super::graph::Graph;
+use std::ops::Range;
+
+use super::cycle::{Cycle, Grid, Levels, Way};
 use super::{MOST_ITERATIONS, Problem, Unknowns};
 use crate::cloud::coefficient_unknowns::{Kind, Link, sweep_entries};
 use crate::math::Vector;
@@ -19,10 +21,11 @@ const ROUNDS: usize = 4;
 
 impl<const D: usize> Problem<D> {
     /// Closes all particles; the iterations that it took.
-    pub(super) fn close(&self, x: &mut Unknowns<D>, graph: &mut Graph) -> usize {
+    pub(super) fn close(&self, x: &mut Unknowns<D>, levels: &Levels<D>) -> usize {
         let (n, mut iterations) = (self.n_fluid, 0);
         let mut weight = vec![0.0; n];
         sweep(&mut weight, |i| self.passing(i).map(|l| l.weight).sum::<f64>().max(f64::MIN_POSITIVE));
+        let mut cycle = Cycle::new(levels, n);
         for _ in 0..ROUNDS {
             let allowed = |i: usize| ROUND_OFF * self.surface(i, x);
             let mut r = vec![Vector::ZERO; n];
@@ -34,9 +37,9 @@ impl<const D: usize> Problem<D> {
             let floor = sum(n, |i| D as f64 * allowed(i).powi(2) / weight[i]);
             let goal = (size(&r) * TOLERANCE * TOLERANCE).max(FLOOR * FLOOR * floor);
             let product = |y: &[Vector<D>], out: &mut [Vector<D>]| {
-                sweep(out, |i| self.passing(i).fold(Vector::ZERO, |s, l| s + self.closure_change(i, l, y)));
+                sweep(out, |i| self.closure_row(i, y));
             };
-            let precondition = |r: &[Vector<D>], z: &mut [Vector<D>]| graph.nearly_solve(r, z);
+            let precondition = |r: &[Vector<D>], z: &mut [Vector<D>]| cycle.nearly_solve(self, r, z);
             let mut y = vec![Vector::ZERO; n];
             let system = Symmetric { enough: |r: &[Vector<D>]| size(r) <= goal, product, precondition };
             iterations += conjugate_gradients(&mut y, &mut r, MOST_ITERATIONS, system);
@@ -44,6 +47,11 @@ impl<const D: usize> Problem<D> {
             self.mirror(x);
         }
         iterations
+    }
+
+    #[inline(always)]
+    fn closure_row(&self, i: usize, y: &[Vector<D>]) -> Vector<D> {
+        self.passing(i).fold(Vector::ZERO, |s, l| s + self.closure_change(i, l, y))
     }
 
     /// What `y` changes the area vector of an entry of row `i` by.
@@ -56,5 +64,26 @@ impl<const D: usize> Problem<D> {
             Kind::Open => y[i] * link.weight,
             Kind::Wall(_) => Vector::ZERO,
         }
+    }
+}
+
+impl<const D: usize> Grid<Vector<D>> for Problem<D> {
+    #[inline(always)]
+    fn left(&self, i: usize, b: &Vector<D>, x: &[Vector<D>]) -> Vector<D> {
+        *b - self.closure_row(i, x)
+    }
+
+    #[inline(always)]
+    fn less(&self, i: usize, r: Vector<D>, range: &Range<usize>, found: &[Vector<D>], way: Way) -> Vector<D> {
+        let passed = self.passing(i).filter(|l| l.kind != Kind::Open && way.has_passed(range, i, l.other as usize));
+        passed.fold(r, |r, l| {
+            let other = &found[l.other as usize - range.start];
+            r + Vector::from_fn(|d| self.sign(l, d) * other[d]) * l.weight
+        })
+    }
+
+    #[inline(always)]
+    fn solved(&self, i: usize, r: &Vector<D>) -> Vector<D> {
+        *r * (1.0 / self.passing(i).map(|l| l.weight).sum::<f64>().max(f64::MIN_POSITIVE))
     }
 }

@@ -5,6 +5,7 @@
 //! side, which conjugate gradients keep, that is the preconditioner (M + R M R)/2.
 use std::collections::HashMap;
 
+use super::field::Field;
 use crate::cloud::Cloud;
 use crate::math::Vector;
 use crate::math::sweep::{sum, sweep};
@@ -46,23 +47,25 @@ pub(super) fn mirrors<const D: usize>(cloud: &Cloud<D>) -> Vec<Mirror> {
 }
 
 impl Mirror {
-    /// The mirror image of a field of vectors at particle `i`.
-    fn image<const D: usize>(&self, field: &[Vector<D>], i: usize) -> Vector<D> {
-        let mut image = field[self.partner[i] as usize];
-        image[self.axis] = -image[self.axis];
-        image
+    /// The mirror image of a field at particle `i`.
+    fn image<const D: usize, V: Field<D>>(&self, field: &[V], i: usize) -> V {
+        let sign = Vector::from_fn(|d| if d == self.axis { -1.0 } else { 1.0 });
+        field[self.partner[i] as usize].mirrored(&sign)
     }
 
-    /// True where a field of vectors is its own mirror image.
-    pub(super) fn keeps<const D: usize>(&self, field: &[Vector<D>]) -> bool {
-        let miss = sum(field.len(), |i| (field[i] - self.image(field, i)).norm_squared());
-        miss <= SYMMETRIC * SYMMETRIC * sum(field.len(), |i| field[i].norm_squared())
+    /// True where a field is its own mirror image.
+    pub(super) fn keeps<const D: usize, V: Field<D>>(&self, field: &[V]) -> bool {
+        let square = |v: V| v.dot(&v);
+        let miss = sum(field.len(), |i| square(field[i].plus(-1.0, &self.image(field, i))));
+        miss <= SYMMETRIC * SYMMETRIC * sum(field.len(), |i| square(field[i]))
     }
 
-    /// The mean of a field of vectors and its mirror image.
-    pub(super) fn average<const D: usize>(&self, field: &mut [Vector<D>], other: &mut Vec<Vector<D>>) {
-        other.resize(field.len(), Vector::ZERO);
-        sweep(other, |i| (field[i] + self.image(field, i)) * 0.5);
+    /// The mean of a field and its mirror image; `other` is storage.
+    pub(super) fn average<const D: usize, V: Field<D>>(&self, field: &mut [V], other: &mut [V]) {
+        sweep(other, |i| {
+            let twice = field[i].plus(1.0, &self.image(field, i));
+            twice.plus(-0.5, &twice)
+        });
         field.copy_from_slice(other);
     }
 }

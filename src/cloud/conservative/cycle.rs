@@ -1,0 +1,197 @@
+//! Sweeps over the particles and over coarser and coarser groups of them ([`super::levels`]), which nearly solve for the
+//! multipliers whatever their number.
+//!
+//! Every level sweeps forth on the way down and back on the way up, chunk by chunk: inside a chunk with what has just been found,
+//! beyond it with what was known before. A pair's energy w |φ_i − φ_j|² is at most twice that of its ends each on its own, so that
+//! such sweeps, in whatever order, are those of a positive preconditioner.
+use std::ops::Range;
+
+use super::Problem;
+use super::field::Field;
+use super::levels::{Edge, Level, levels};
+use super::symmetry::Mirror;
+use crate::math::Vector;
+use crate::math::conjugate;
+use crate::math::sweep::{copy, sweep_chunks, sweep_slots};
+
+/// Visits to the next coarser level.
+const VISITS: usize = 2;
+/// Sweeps forth and back where there is none.
+const COARSEST_SWEEPS: usize = 10;
+
+/// The two ways to sweep.
+#[derive(Clone, Copy)]
+pub(super) enum Way {
+    Forth,
+    Back,
+}
+
+impl Way {
+    /// True when row `j` of a range comes before row `i` on this way.
+    #[inline(always)]
+    pub(super) fn has_passed(self, range: &Range<usize>, i: usize, j: usize) -> bool {
+        match self {
+            Self::Forth => range.start <= j && j < i,
+            Self::Back => i < j && j < range.end,
+        }
+    }
+}
+
+/// A positive matrix by its rows.
+pub(super) trait Grid<V>: Sync {
+    /// b − A x in row `i`.
+    fn left(&self, i: usize, b: &V, x: &[V]) -> V;
+
+    /// r less what row `i` makes of the rows of a range that `way` has passed, which `found` holds.
+    fn less(&self, i: usize, r: V, range: &Range<usize>, found: &[V], way: Way) -> V;
+
+    /// What the block of row `i` makes r of.
+    fn solved(&self, i: usize, r: &V) -> V;
+
+    /// Sets what follows from all else.
+    fn follow(&self, _b: &[V], _x: &mut [V]) {}
+}
+
+/// What a level needs to remember.
+struct Store<V> {
+    b: Vec<V>,
+    x: Vec<V>,
+    left: Vec<V>,
+}
+
+/// The levels, and what they remember.
+pub(super) struct Cycle<'a, const D: usize, V> {
+    levels: &'a Levels<D>,
+    stores: Vec<Store<V>>,
+}
+
+/// Coarser versions of a problem, and its mirrors.
+pub(super) struct Levels<const D: usize> {
+    coarser: Vec<Level<D>>,
+    mirrors: Vec<Mirror>,
+}
+
+impl<const D: usize> Levels<D> {
+    pub(super) fn new(problem: &Problem<D>, mirrors: Vec<Mirror>) -> Self {
+        Self { coarser: levels(problem), mirrors }
+    }
+}
+
+impl<'a, const D: usize, V: Field<D>> Cycle<'a, D, V>
+where
+    Problem<D>: Grid<V>,
+    for<'l> Signed<'l, D>: Grid<V>,
+{
+    pub(super) fn new(levels: &'a Levels<D>, n: usize) -> Self {
+        let zeros = |n: usize| vec![V::ZERO; n];
+        let finest = Store { b: Vec::new(), x: Vec::new(), left: zeros(n) };
+        let coarser =
+            levels.coarser.iter().map(|l| l.len()).map(|n| Store { b: zeros(n), x: zeros(n), left: zeros(n) });
+        Self { levels, stores: std::iter::once(finest).chain(coarser).collect() }
+    }
+
+    /// z ≈ A⁻¹ r.
+    pub(super) fn nearly_solve(&mut self, problem: &Problem<D>, r: &[V], z: &mut [V]) {
+        sweep_slots(z, |_, z| *z = V::ZERO);
+        visit(problem, &self.levels.coarser, &problem.signs, &mut self.stores, (r, &mut *z), true);
+        let n = self.stores[0].left.len();
+        let mirrors = self.levels.mirrors.iter().filter(|m| m.keeps(&r[..n]));
+        let mut averaged = false;
+        for mirror in mirrors {
+            mirror.average(&mut z[..n], &mut self.stores[0].left);
+            averaged = true;
+        }
+        if averaged {
+            problem.follow(r, z);
+        }
+    }
+}
+
+/// A level with the signs under which its groups see others.
+pub(super) struct Signed<'a, const D: usize> {
+    level: &'a Level<D>,
+    signs: &'a [Vector<D>],
+}
+
+/// One cycle for A x = b on a level and all coarser ones; `first` where x is zero.
+fn visit<const D: usize, V: Field<D>, G: Grid<V>>(
+    grid: &G,
+    coarser: &[Level<D>],
+    signs: &[Vector<D>],
+    stores: &mut [Store<V>],
+    (b, x): (&[V], &mut [V]),
+    first: bool,
+) where
+    for<'l> Signed<'l, D>: Grid<V>,
+{
+    let Some((store, below)) = stores.split_first_mut() else { return };
+    let left = &mut store.left;
+    let n = left.len();
+    let (Some((level, rest)), Some(_)) = (coarser.split_first(), below.first()) else {
+        (0..COARSEST_SWEEPS)
+            .for_each(|_| [Way::Forth, Way::Back].into_iter().for_each(|way| improve(grid, b, x, left, way)));
+        return;
+    };
+    if first {
+        copy(&b[..n], left);
+        step(grid, x, left, Way::Forth);
+    } else {
+        improve(grid, b, x, left, Way::Forth);
+    }
+    grid.follow(b, x);
+    sweep_slots(left, |i, left| *left = grid.left(i, &b[i], x));
+    let mut next = std::mem::replace(&mut below[0].b, Vec::new());
+    let mut found = std::mem::replace(&mut below[0].x, Vec::new());
+    sweep_slots(&mut next, |g, b| {
+        *b = level
+            .groups
+            .members(g)
+            .iter()
+            .map(|i| *i as usize)
+            .fold(V::ZERO, |b, i| b.plus(1.0, &left[i].gathered(&level.offset[i])));
+    });
+    sweep_slots(&mut found, |_, x| *x = V::ZERO);
+    for visit_number in 0..VISITS {
+        let grid = Signed { level, signs };
+        visit(&grid, rest, signs, below, (&next, &mut found), visit_number == 0);
+    }
+    sweep_slots(&mut x[..n], |i, x| *x = x.plus(V::STEP, &found[level.groups.of()[i] as usize].at(&level.offset[i])));
+    (below[0].b, below[0].x) = (next, found);
+    grid.follow(b, x);
+    improve(grid, b, x, &mut store.left, Way::Back);
+}
+
+/// One sweep for A x = b.
+fn improve<V: conjugate::Row, G: Grid<V>>(grid: &G, b: &[V], x: &mut [V], left: &mut [V], way: Way) {
+    sweep_slots(left, |i, left| *left = grid.left(i, &b[i], x));
+    step(grid, x, left, way);
+}
+
+/// Adds to x what a sweep finds from what is left.
+fn step<V: conjugate::Row, G: Grid<V>>(grid: &G, x: &mut [V], left: &mut [V], way: Way) {
+    sweep_chunks(left, |range, found| {
+        for k in 0..found.len() {
+            let k = if let Way::Forth = way { k } else { found.len() - 1 - k };
+            let i = range.start + k;
+            let r = grid.less(i, found[k], &range, found, way);
+            found[k] = grid.solved(i, &r);
+        }
+    });
+    sweep_slots(&mut x[..left.len()], |i, x| *x = x.plus(1.0, &left[i]));
+}
+
+impl<const D: usize, V: Field<D>> Grid<V> for Signed<'_, D> {
+    fn left(&self, i: usize, b: &V, x: &[V]) -> V {
+        let pull = |row: V, e: &Edge<D>| row.plus(1.0, &e.pull(self.signs, &x[e.other as usize]));
+        self.level.edges(i).iter().fold(b.plus(-1.0, &x[i].own(self.level, i)), pull)
+    }
+
+    fn less(&self, i: usize, r: V, range: &Range<usize>, found: &[V], way: Way) -> V {
+        let passed = self.level.edges(i).iter().filter(|e| way.has_passed(range, i, e.other as usize));
+        passed.fold(r, |r, e| r.plus(1.0, &e.pull(self.signs, &found[e.other as usize - range.start])))
+    }
+
+    fn solved(&self, i: usize, r: &V) -> V {
+        r.solved(self.level, i)
+    }
+}

@@ -1,0 +1,278 @@
+//! Coarser and coarser versions of the conditions: groups of particles that share a field.
+//!
+//! Each level is what the one below makes of fields that are affine on every group (Galerkin), but for the pairs between groups: an
+//! affine field on groups has steps between them that a smooth field has not, and they are made less stiff. A wall stands with the
+//! nearest particle in front of it and follows the field there.
+use super::Problem;
+use super::field::{Field, Moments};
+use crate::cloud::coefficient_unknowns::{ITSELF, Kind, Link};
+use crate::cloud::multipliers::{Factors, Row};
+use crate::math::Vector;
+use crate::math::groups::{Gathering, Groups};
+use crate::math::sweep::{sweep, sweep_each};
+
+/// Factor on what couples groups, level by level; the number of iterations hardly depends on it between 0.25 and 0.5.
+pub(super) const STIFFNESS: f64 = 0.35;
+/// Rows a group.
+const GROUP: usize = 8;
+/// Rows at which coarsening stops, and most levels.
+const COARSEST: usize = 200;
+const MOST_LEVELS: usize = 12;
+
+/// What couples a group with another one.
+pub(super) struct Edge<const D: usize> {
+    pub(super) other: u32,
+    /// Transform under which the other is seen, or `ITSELF`.
+    transform: u8,
+    /// From the centre of the group to that of the other.
+    shift: Vector<D>,
+    /// Middles of the pairs, from the centre of the group.
+    moments: Moments<D>,
+}
+
+impl<const D: usize> Edge<D> {
+    /// What the group makes of the field of the other.
+    #[inline(always)]
+    pub(super) fn pull<V: Field<D>>(&self, signs: &[Vector<D>], other: &V) -> V {
+        let back = -self.shift;
+        match self.transform {
+            ITSELF => other.at(&back).weighed(&self.moments),
+            t => other.mirrored(&signs[t as usize]).at(&back).weighed(&self.moments),
+        }
+    }
+}
+
+/// Groups, or particles, that are gathered into groups.
+trait Finer<const D: usize>: Sync {
+    fn n_rows(&self) -> usize;
+    fn centre(&self, i: usize) -> Vector<D>;
+    /// Calls `f` with every edge of row `i`.
+    fn edges(&self, i: usize, f: &mut dyn FnMut(&Edge<D>));
+    /// Pairs with what has no multipliers.
+    fn open(&self, i: usize) -> Moments<D>;
+    /// Softness and freedom of the volume.
+    fn soft(&self, i: usize) -> [f64; 2];
+}
+
+/// One of the coarser versions.
+pub(super) struct Level<const D: usize> {
+    /// Rows of the finer version that share a field.
+    pub(super) groups: Groups,
+    /// Offset of each of those rows from the centre of its group.
+    pub(super) offset: Vec<Vector<D>>,
+    centre: Vec<Vector<D>>,
+    first: Vec<u32>,
+    edges: Vec<Edge<D>>,
+    open: Vec<Moments<D>>,
+    /// All pairs of a group with others.
+    pub(super) own: Vec<Moments<D>>,
+    pub(super) softness: Vec<f64>,
+    pub(super) freedom: Vec<f64>,
+    pub(super) factors: Factors<D>,
+}
+
+/// All of them, coarser and coarser.
+pub(super) fn levels<const D: usize>(problem: &Problem<D>) -> Vec<Level<D>> {
+    let mut all: Vec<Level<D>> = Vec::new();
+    while all.len() < MOST_LEVELS {
+        let next = match all.last() {
+            Some(last) => Level::new(last, &problem.signs),
+            None => Level::new(&Particles::new(problem), &problem.signs),
+        };
+        match next {
+            Some(level) => all.push(level),
+            None => break,
+        }
+    }
+    all
+}
+
+impl<const D: usize> Level<D> {
+    /// Groups of the rows of `finer`; nothing where there are few, or where they hardly see one another.
+    fn new(finer: &impl Finer<D>, signs: &[Vector<D>]) -> Option<Self> {
+        let n = finer.n_rows();
+        if n <= COARSEST {
+            return None;
+        }
+        let others = |i: usize, list: &mut Vec<u32>| finer.edges(i, &mut |e| list.push(e.other));
+        let groups = Groups::new(n, Gathering { size: GROUP, far: true }, others);
+        if groups.len() * 10 > n * 9 {
+            return None;
+        }
+        let mut centre = vec![Vector::ZERO; groups.len()];
+        sweep(&mut centre, |g| {
+            let members = groups.members(g);
+            members.iter().fold(Vector::ZERO, |x, i| x + finer.centre(*i as usize)) * (1.0 / members.len() as f64)
+        });
+        let mut offset = vec![Vector::ZERO; n];
+        sweep(&mut offset, |i| finer.centre(i) - centre[groups.of()[i] as usize]);
+        let mut rows: Vec<Vec<Edge<D>>> = Vec::new();
+        rows.resize_with(groups.len(), Vec::new);
+        sweep_each(&mut rows, |g| gather(finer, signs, &groups, &offset, g));
+        let mut first = vec![0];
+        first.extend(rows.iter().scan(0, |n, r| {
+            *n += r.len() as u32;
+            Some(*n)
+        }));
+        let [mut open, mut own] = [(); 2].map(|()| vec![Moments::ZERO; groups.len()]);
+        let members = |g: usize| groups.members(g).iter().map(|i| *i as usize);
+        sweep(&mut open, |g| {
+            members(g).fold(Moments::ZERO, |m, i| m.plus(1.0, &finer.open(i).from_origin(&-offset[i])))
+        });
+        sweep(&mut own, |g| rows[g].iter().fold(open[g], |m, e| m.plus(1.0, &e.moments)));
+        let [softness, freedom] =
+            [0, 1].map(|k| (0..groups.len()).map(|g| members(g).map(|i| finer.soft(i)[k]).sum()).collect());
+        let edges = rows.into_iter().flatten().collect();
+        let factors = Factors::default();
+        let level = Self { groups, offset, centre, first, edges, open, own, softness, freedom, factors };
+        Some(Self { factors: Factors::new(level.len(), |i, e: &Row<D>| e.own(&level, i)), ..level })
+    }
+
+    pub(super) fn len(&self) -> usize {
+        self.centre.len()
+    }
+
+    pub(super) fn edges(&self, i: usize) -> &[Edge<D>] {
+        &self.edges[self.first[i] as usize..self.first[i + 1] as usize]
+    }
+}
+
+/// The edges of group `g`, those of its members added up.
+fn gather<const D: usize>(
+    finer: &impl Finer<D>,
+    signs: &[Vector<D>],
+    groups: &Groups,
+    offset: &[Vector<D>],
+    g: usize,
+) -> Vec<Edge<D>> {
+    let mut all: Vec<Edge<D>> = Vec::new();
+    for i in groups.members(g).iter().map(|i| *i as usize) {
+        finer.edges(i, &mut |e| {
+            let other = groups.of()[e.other as usize];
+            if other as usize == g && e.transform == ITSELF {
+                return;
+            }
+            let moments = e.moments.from_origin(&-offset[i]);
+            match all.iter_mut().find(|a| a.other == other && a.transform == e.transform) {
+                Some(a) => a.moments = a.moments.plus(STIFFNESS, &moments),
+                None => {
+                    // the centre of the other group lies behind its member
+                    let shift = e.shift + offset[i] - seen(signs, e.transform, offset[e.other as usize]);
+                    let moments = Moments::ZERO.plus(STIFFNESS, &moments);
+                    all.push(Edge { other, transform: e.transform, shift, moments });
+                }
+            }
+        });
+    }
+    all
+}
+
+/// A vector as it is seen under a transform.
+fn seen<const D: usize>(signs: &[Vector<D>], transform: u8, v: Vector<D>) -> Vector<D> {
+    if transform == ITSELF { v } else { Vector::from_fn(|d| signs[transform as usize][d] * v[d]) }
+}
+
+impl<const D: usize> Finer<D> for Level<D> {
+    fn n_rows(&self) -> usize {
+        self.len()
+    }
+
+    fn centre(&self, i: usize) -> Vector<D> {
+        self.centre[i]
+    }
+
+    fn edges(&self, i: usize, f: &mut dyn FnMut(&Edge<D>)) {
+        Level::edges(self, i).iter().for_each(f);
+    }
+
+    fn open(&self, i: usize) -> Moments<D> {
+        self.open[i]
+    }
+
+    fn soft(&self, i: usize) -> [f64; 2] {
+        [self.softness[i], self.freedom[i]]
+    }
+}
+
+/// The particles with the nearest one, and its entry, of those that share each wall.
+struct Particles<'a, const D: usize> {
+    problem: &'a Problem<D>,
+    nearest: Vec<Option<(u32, u32)>>,
+}
+
+impl<'a, const D: usize> Particles<'a, D> {
+    fn new(problem: &'a Problem<D>) -> Self {
+        let mut nearest = vec![None; problem.sharers.len()];
+        sweep(&mut nearest, |w| {
+            let link = |s: &(u32, u32)| &problem.links[s.1 as usize];
+            let here = problem.sharers[w].iter().filter(|s| link(s).kind == Kind::Wall(ITSELF));
+            here.min_by(|a, b| link(a).offset.norm_squared().total_cmp(&link(b).offset.norm_squared())).copied()
+        });
+        Self { problem, nearest }
+    }
+
+    /// The edge along which a particle with entry `own` for a wall meets one that sees the wall by `other`.
+    fn along_wall(&self, row: u32, transform: u8, own: &Link<D>, other: &Link<D>, weight: f64) -> Edge<D> {
+        let signs = &self.problem.signs;
+        let shift = own.offset - seen(signs, transform, other.offset);
+        Edge { other: row, transform, shift, moments: Moments::of(weight, own.offset) }
+    }
+
+    fn edges_along_wall(&self, i: usize, p: usize, transform: u8, f: &mut dyn FnMut(&Edge<D>)) {
+        let problem = self.problem;
+        let link = &problem.links[p];
+        let w = link.other as usize - problem.n_fluid;
+        let Some((row, entry)) = self.nearest[w] else { return };
+        // all components, where only that across the wall is held: stiffer than it is, and alike in all of them
+        let weight = |l: &Link<D>| l.weight * problem.walls[w].norm_squared();
+        if entry as usize != p {
+            let nearest = &problem.links[entry as usize];
+            f(&self.along_wall(row, transform, link, nearest, weight(link)));
+            return;
+        }
+        for (k, e) in problem.sharers[w].iter().filter(|s| s.1 as usize != p) {
+            let other = &problem.links[*e as usize];
+            if let Kind::Wall(t) = other.kind
+                && (*k as usize != i || t != ITSELF)
+            {
+                f(&self.along_wall(*k, t, link, other, weight(other)));
+            }
+        }
+    }
+}
+
+impl<const D: usize> Finer<D> for Particles<'_, D> {
+    fn n_rows(&self) -> usize {
+        self.problem.n_fluid
+    }
+
+    fn centre(&self, i: usize) -> Vector<D> {
+        self.problem.place[i]
+    }
+
+    fn edges(&self, i: usize, f: &mut dyn FnMut(&Edge<D>)) {
+        for p in self.problem.range(i) {
+            let link = &self.problem.links[p];
+            let transform = match link.kind {
+                Kind::Pair => ITSELF,
+                Kind::Image(t) => t,
+                Kind::Open => continue,
+                Kind::Wall(t) => {
+                    self.edges_along_wall(i, p, t, f);
+                    continue;
+                }
+            };
+            let moments = Moments::of(link.weight, link.offset * 0.5);
+            f(&Edge { other: link.other, transform, shift: link.offset, moments });
+        }
+    }
+
+    fn open(&self, i: usize) -> Moments<D> {
+        let open = self.problem.passing(i).filter(|l| l.kind == Kind::Open);
+        open.fold(Moments::ZERO, |m, l| m.plus(1.0, &Moments::of(l.weight, l.offset * 0.5)))
+    }
+
+    fn soft(&self, i: usize) -> [f64; 2] {
+        [self.problem.tolerance(i), self.problem.volume_freedom(i)]
+    }
+}

@@ -1,0 +1,131 @@
+//! Groups of a few rows that see one another.
+const FREE: u32 = u32::MAX;
+
+/// Rows gathered into groups.
+#[derive(Default)]
+pub struct Groups {
+    /// The group of each row.
+    of: Vec<u32>,
+    /// Rows of each group one after another in ascending order, and where those of a group begin.
+    member: Vec<u32>,
+    first: Vec<u32>,
+}
+
+/// How groups are gathered.
+#[derive(Clone, Copy, Debug)]
+pub struct Gathering {
+    /// Rows a group, at most but for lone rows that join it.
+    pub size: usize,
+    /// True when neighbours of neighbours may join where too few neighbours are left.
+    pub far: bool,
+}
+
+impl Groups {
+    /// Groups of `n` rows, nearest in storage order first; `others(i, list)` adds the rows that row `i` sees to a list.
+    pub fn new(n: usize, how: Gathering, others: impl Fn(usize, &mut Vec<u32>)) -> Self {
+        let mut of = vec![FREE; n];
+        let mut count = 0;
+        let (mut near, mut seen) = (Vec::<u32>::new(), Vec::new());
+        for i in 0..n {
+            if of[i] != FREE {
+                continue;
+            }
+            seen.clear();
+            others(i, &mut seen);
+            seen.sort_unstable_by_key(|j| (j.abs_diff(i as u32), *j));
+            seen.dedup();
+            near.clear();
+            near.extend(seen.iter().filter(|j| of[**j as usize] == FREE && **j as usize != i));
+            if near.is_empty() && how.size > 1 {
+                // a lone row joins the group of its nearest neighbour
+                if let Some(j) = seen.iter().find(|j| **j as usize != i) {
+                    of[i] = of[*j as usize];
+                    continue;
+                }
+            }
+            of[i] = count;
+            near.truncate(how.size.saturating_sub(1));
+            near.iter().for_each(|j| of[*j as usize] = count);
+            let left = how.size.saturating_sub(1 + near.len());
+            if how.far && left > 0 {
+                seen.clear();
+                near.iter().for_each(|j| others(*j as usize, &mut seen));
+                seen.retain(|j| of[*j as usize] == FREE);
+                seen.sort_unstable_by_key(|j| (j.abs_diff(i as u32), *j));
+                seen.dedup();
+                seen.iter().take(left).for_each(|j| of[*j as usize] = count);
+            }
+            count += 1;
+        }
+        let (member, first) = members(&of, count as usize);
+        Self { of, member, first }
+    }
+
+    /// Number of groups.
+    pub fn len(&self) -> usize {
+        self.first.len().saturating_sub(1)
+    }
+
+    /// True without any.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The group of each row.
+    pub fn of(&self) -> &[u32] {
+        &self.of
+    }
+
+    /// Rows of group `g` in ascending order.
+    pub fn members(&self, g: usize) -> &[u32] {
+        &self.member[self.first[g] as usize..self.first[g + 1] as usize]
+    }
+
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        4 * (self.of.len() + self.member.len() + self.first.len())
+    }
+}
+
+/// Rows of each of `n` groups one after another in ascending order, and where those of a group begin.
+fn members(group: &[u32], n: usize) -> (Vec<u32>, Vec<u32>) {
+    let mut first = vec![0; n + 1];
+    group.iter().for_each(|g| first[*g as usize + 1] += 1);
+    (0..n).for_each(|g| first[g + 1] += first[g]);
+    let (mut next, mut member) = (first.clone(), vec![0; group.len()]);
+    for (i, g) in group.iter().enumerate() {
+        member[next[*g as usize] as usize] = i as u32;
+        next[*g as usize] += 1;
+    }
+    (member, first)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A row of rows that see the ones beside them.
+    fn line(n: usize) -> impl Fn(usize, &mut Vec<u32>) {
+        move |i, list| {
+            list.extend((i > 0).then(|| i as u32 - 1));
+            list.extend((i + 1 < n).then_some(i as u32 + 1));
+        }
+    }
+
+    #[test]
+    fn every_row_is_in_one_group() {
+        for (far, most) in [(false, 3), (true, 4)] {
+            let groups = Groups::new(10, Gathering { size: 4, far }, line(10));
+            let all: Vec<u32> = (0..groups.len()).flat_map(|g| groups.members(g).to_vec()).collect();
+            assert_eq!(all, (0..10).collect::<Vec<u32>>());
+            assert!((0..groups.len()).all(|g| groups.members(g).len() <= most));
+            assert!(all.iter().all(|i| groups.members(groups.of()[*i as usize] as usize).contains(i)));
+        }
+    }
+
+    #[test]
+    fn neighbours_of_neighbours_make_groups_larger() {
+        let count = |far| Groups::new(60, Gathering { size: 3, far }, line(60)).len();
+        assert!(count(true) < count(false), "{} {}", count(true), count(false));
+    }
+}
