@@ -79,6 +79,17 @@ pub struct Part<const D: usize> {
     pub passed: [f64; 2],
 }
 
+/// The sides of the domain that cut the zone.
+#[derive(Clone, Debug)]
+pub enum Sides<const D: usize> {
+    /// None does.
+    Beyond,
+    /// Middles and outward areas of pieces that make them up, outside the bodies.
+    Open(Vec<(Vector<D>, Vector<D>)>),
+    /// Some that are periodic.
+    Periodic,
+}
+
 impl<const D: usize> Part<D> {
     const BLANK: Self = Self {
         x: Vector::ZERO,
@@ -112,7 +123,7 @@ impl<'a, const D: usize> Balance<'a, D> {
     }
 
     /// What the particles add, and what lies between them and the walls. `rate` is dU/dt of the fluid particles; empty in steady flow.
-    pub fn parts(&self, rate: &[f64]) -> Vec<Part<D>> {
+    pub fn parts(&self, rate: &[f64], sides: &Sides<D>) -> Vec<Part<D>> {
         let (frame, cloud) = (self.view.frame, self.view.cloud());
         let spread = self.spread();
         let volume = self.view.fluid.volumes();
@@ -122,7 +133,7 @@ impl<'a, const D: usize> Balance<'a, D> {
             own.momentum - self.free.velocity * own.density + self.momentum(i) * spread.get(i).map_or(0.0, |s| s.1)
         };
         let volume = |i: usize| volume[i] * spread.get(i).map_or(1.0, |s| s.0);
-        let missing = self.missing(&volume);
+        let missing = self.missing(&volume, sides);
         let in_shocks = self.carried_through_shocks();
         let mut parts = vec![Part::BLANK; first + cloud.n_fluid];
         sweep_slots(&mut parts, |k, part| {
@@ -185,16 +196,18 @@ impl<'a, const D: usize> Balance<'a, D> {
     }
 
     /// Volume that the particles beside the walls lack, over the sum of the shares of the walls: ∫ ∇·(φ x) dV is known from the
-    /// walls alone. `None` where sides of the domain cut the zone.
-    fn missing(&self, volume: &impl Fn(usize) -> f64) -> Option<f64> {
+    /// walls and from the sides that cut the zone. `None` where those are periodic.
+    fn missing(&self, volume: &impl Fn(usize) -> f64, sides: &Sides<D>) -> Option<f64> {
         let (frame, cloud) = (self.view.frame, self.view.cloud());
-        let (zone, domain) = (self.zone.bounds(), self.view.reference().tree.bounds());
-        if !(domain.contains(&zone.min) && domain.contains(&zone.max)) {
-            return None;
-        }
-        let middle = zone.centre();
+        let middle = self.zone.bounds().centre();
+        let cut: f64 = match sides {
+            Sides::Beyond => 0.0,
+            Sides::Open(tiles) => tiles.iter().map(|(x, area)| self.zone.at(x).0 * (*x - middle).dot(area)).sum(),
+            Sides::Periodic => return None,
+        };
         let walls = cloud.interface_range().zip(&cloud.interface);
-        let exact: f64 = walls.map(|(i, w)| -(frame.place(i) - middle).dot(&frame.to_inertial_axes(&w.area))).sum();
+        let exact =
+            walls.map(|(i, w)| -(frame.place(i) - middle).dot(&frame.to_inertial_axes(&w.area))).sum::<f64>() + cut;
         let particle = |i: usize| {
             let x = frame.place(i);
             let (weight, slope) = self.zone.at(&x);
@@ -323,7 +336,7 @@ mod tests {
             row[1..3].copy_from_slice(&change(&frame.place(i), &frame.velocity_of(i)).0);
         }
         let balance = Balance::new(*free, View::new(fluid, &frame, &work)).unwrap();
-        let sum = balance.parts(&du).iter().fold(Vector::ZERO, |s, p| s + p.force);
+        let sum = balance.parts(&du, &Sides::Beyond).iter().fold(Vector::ZERO, |s, p| s + p.force);
         let walls = frame.discretisation.cloud.interface_range();
         let n = walls.len() as f64;
         (sum, walls.map(|i| frame.place(i)).fold(Vector::ZERO, |s, x| s + x * (1.0 / n)))

@@ -3,11 +3,16 @@ use super::axes::{GasView, LoadFrame};
 use crate::case::{Case, Side};
 use crate::math::{Bounds, Vector};
 use crate::observe::loads::Balance as Sum;
-use crate::scheme::balance::{Balance, Part};
+use crate::scheme::balance::{Balance, Part, Sides};
 use crate::scheme::probe::Probe;
 use crate::scheme::start::free_stream;
 use crate::scheme::{View, Work};
 use crate::system::System;
+
+/// Distance of interface particles from a plane, in their spacings, within which they tell where a body stands on it.
+const RIM: f64 = 2.0;
+/// Size of the smallest pieces of a plane beside a body, in spacings of the body.
+const PIECE: f64 = 0.125;
 
 /// What passes the zone around the bodies at the moment of `frame`; `None` without bodies. Fills `work`. A flow that
 /// `marches` changes as the right-hand side of its equations says.
@@ -39,38 +44,93 @@ pub(crate) fn around<const D: usize>(
         sum.passed[0] += p.passed[0];
         sum.passed[1] += p.passed[1];
     };
-    balance.parts(&rate).into_iter().for_each(&mut add);
-    let cut = cuts(case, &view, &balance.zone.bounds());
-    if !cut.is_empty() {
-        let probe = Probe::new(view, None);
-        for (axis, sign, region) in cut {
-            let end = if sign < 0.0 { region.min[axis] } else { region.max[axis] };
-            tile(&view, &region, (axis, end), &mut |x, extent| {
-                let size: f64 = (0..D).map(|d| extent[d]).product();
-                if let Some(q) = probe.at(&x) {
-                    add(balance.side(x, &q, &(Vector::axis(axis) * (sign * size))));
-                }
-            });
+    let sides = sides(case, &view, &balance.zone.bounds());
+    balance.parts(&rate, &sides).into_iter().for_each(&mut add);
+    let probe = Probe::new(view, None);
+    let Sides::Open(tiles) = &sides else { return Some(sum) };
+    for (x, area) in tiles {
+        if let Some(q) = probe.at(x) {
+            add(balance.side(*x, &q, area));
         }
     }
     Some(sum)
 }
 
-/// Sides of the domain that cut the zone: axis, direction outward, and the part of the zone that lies inside. What passes one
-/// of two periodic sides comes back through the other.
-fn cuts<const D: usize>(case: &Case, view: &View<'_, D>, zone: &Bounds<D>) -> Vec<(usize, f64, Bounds<D>)> {
+/// The sides of the domain that cut the zone, in tiles outside the bodies. What passes one of two periodic sides comes back through the
+/// other.
+fn sides<const D: usize>(case: &Case, view: &View<'_, D>, zone: &Bounds<D>) -> Sides<D> {
     let domain = view.reference().tree.bounds();
     let clamp = |v: &Vector<D>| Vector::from_fn(|d| v[d].clamp(domain.min[d], domain.max[d]));
     let region = Bounds { min: clamp(&zone.min), max: clamp(&zone.max) };
-    let sides = (0..D).flat_map(|axis| [(axis, -1.0), (axis, 1.0)]);
-    let beyond = |(axis, sign): &(usize, f64)| match *sign < 0.0 {
-        true => zone.min[*axis] < domain.min[*axis],
-        false => zone.max[*axis] > domain.max[*axis],
-    };
     let s = &case.boundary;
     let conditions = [[s.x_min, s.x_max], [s.y_min, s.y_max], [s.z_min, s.z_max]];
-    let open = |(axis, sign): &(usize, f64)| conditions[*axis][usize::from(*sign > 0.0)] != Side::Periodic;
-    sides.filter(beyond).filter(open).map(|(axis, sign)| (axis, sign, region)).collect()
+    let mut tiles = Vec::new();
+    for (axis, sign) in (0..D).flat_map(|axis| [(axis, -1.0), (axis, 1.0)]) {
+        let low = sign < 0.0;
+        let beyond = if low { zone.min[axis] < domain.min[axis] } else { zone.max[axis] > domain.max[axis] };
+        if !beyond {
+            continue;
+        }
+        if conditions[axis][usize::from(!low)] == Side::Periodic {
+            return Sides::Periodic;
+        }
+        let end = if low { region.min[axis] } else { region.max[axis] };
+        let rim = Rim::new(view, axis, end);
+        tile(view, &region, (axis, end), &mut |x, extent| {
+            rim.cut(x, extent, &mut |x, extent| {
+                let size: f64 = (0..D).map(|d| extent[d]).product();
+                tiles.push((x, Vector::axis(axis) * (sign * size)));
+            });
+        });
+    }
+    if tiles.is_empty() { Sides::Beyond } else { Sides::Open(tiles) }
+}
+
+/// Interface particles beside a plane across an axis: where bodies stand on it.
+struct Rim<const D: usize> {
+    axis: usize,
+    /// Place, normal into the gas and spacing.
+    walls: Vec<(Vector<D>, Vector<D>, f64)>,
+    around: Bounds<D>,
+}
+
+impl<const D: usize> Rim<D> {
+    fn new(view: &View<'_, D>, axis: usize, end: f64) -> Self {
+        let cloud = view.cloud();
+        let wall = |i: usize| {
+            let normal = view.frame.to_inertial_axes(&cloud.interface[i - cloud.n_fluid].area).unit();
+            (view.frame.place(i), normal, view.fluid.discretisation.cloud.spacing[i])
+        };
+        let beside = |w: &(Vector<D>, Vector<D>, f64)| (w.0[axis] - end).abs() < RIM * w.2;
+        let walls: Vec<_> = cloud.interface_range().map(wall).filter(beside).collect();
+        let widest = walls.iter().map(|w| w.2).fold(0.0, f64::max);
+        let places: Vec<_> = walls.iter().map(|w| w.0).collect();
+        Self { axis, around: Bounds::around(&places).padded(RIM * widest), walls }
+    }
+
+    /// Calls `f` with the pieces of a tile that lie outside the bodies, small ones at their rims.
+    fn cut(&self, x: Vector<D>, extent: Vector<D>, f: &mut dyn FnMut(Vector<D>, Vector<D>)) {
+        let apart = |w: &(Vector<D>, Vector<D>, f64)| (x - w.0).norm_squared();
+        let within =
+            self.around.contains(&Vector::from_fn(|d| if d == self.axis { self.around.centre()[d] } else { x[d] }));
+        let near = self.walls.iter().filter(|_| within).min_by(|a, b| apart(a).total_cmp(&apart(b)));
+        let Some(wall) = near else { return f(x, extent) };
+        let across = |d: &usize| *d != self.axis;
+        let size = (0..D).filter(across).map(|d| extent[d]).fold(0.0, f64::max);
+        if apart(wall).sqrt() < size * (D as f64).sqrt() && size > PIECE * wall.2 {
+            let half = Vector::from_fn(|d| if d == self.axis { extent[d] } else { 0.5 * extent[d] });
+            for corner in 0..1 << (D - 1) {
+                let mut bits = (0..D - 1).map(|k| if corner >> k & 1 == 0 { -0.5 } else { 0.5 });
+                let at =
+                    Vector::from_fn(
+                        |d| if d == self.axis { x[d] } else { x[d] + bits.next().unwrap_or(0.0) * half[d] },
+                    );
+                self.cut(at, half, f);
+            }
+        } else if (x - wall.0).dot(&wall.1) > 0.0 {
+            f(x, extent);
+        }
+    }
 }
 
 /// Calls `f(middle, extent)` for tiles of one face of a box, or of a plane across it, about half a local spacing wide; the extent along
