@@ -30,7 +30,7 @@ impl<const D: usize> Search<'_, D> {
         let unanswered = self.unanswered(&rows);
         rows.remove(&unanswered);
         let walls = Rows::new(p.interface.len(), |w, list| self.wall_cloud(w, list));
-        let mut repair = Repair::of(self, &rows);
+        let mut repair = Repair::of(self, &rows, &walls);
         let blind = (0..p.interface.len()).filter(|w| walls.of(*w).is_empty());
         repair.refused.extend(
             blind.map(|w| format!("interface particle at {:?} has no fluid in front of it", p.x[p.n_fluid + w].0)),

@@ -10,6 +10,9 @@
 //! 3. *first order*: a bounded gradient for the fluxes (see `Operators`), none for the reconstruction;
 //! 4. refused, if a fluid particle is left with fewer than D neighbours.
 //!
+//! An interface particle that is in the row of no fluid particle would push nothing, and loads would count a force that the gas does
+//! not feel. It joins the nearest fluid particle of those that its own state is fitted to.
+//!
 //! A row that is not sick is not touched: healthy clouds keep every bit.
 use super::neighbours::{Rows, Search, Seen};
 use super::particles::Particles;
@@ -41,11 +44,13 @@ pub struct Repair<const D: usize> {
     pub refused: Vec<String>,
     /// Number of rows that were widened with success.
     pub widened: usize,
+    /// Number of interface particles that no fluid particle saw.
+    pub joined: usize,
 }
 
 impl<const D: usize> Repair<D> {
-    /// Examines every row and treats the sick ones.
-    pub(super) fn of(search: &Search<'_, D>, rows: &Rows) -> Self {
+    /// Examines every row and treats the sick ones; `walls` holds the fluid particles that interface particles are fitted to.
+    pub(super) fn of(search: &Search<'_, D>, rows: &Rows, walls: &Rows) -> Self {
         let particles = search.particles();
         let mut sick = vec![false; particles.n_rows()];
         sweep(&mut sick, |i| is_sick(search, i, &particles.x[i], rows.of(i)));
@@ -53,10 +58,30 @@ impl<const D: usize> Repair<D> {
         for i in (0..sick.len()).filter(|i| sick[*i]) {
             repair.treat(search, rows, i);
         }
+        repair.join_walls(search, rows, walls);
         repair.extra.sort_unstable();
         repair.extra.dedup();
         repair.extra.retain(|(row, seen)| !rows.of(*row as usize).contains(seen));
         repair
+    }
+
+    /// Joins each interface particle that no fluid particle sees to the nearest in front of it.
+    fn join_walls(&mut self, search: &Search<'_, D>, rows: &Rows, walls: &Rows) {
+        let particles = search.particles();
+        let fluid = |s: &&Seen| (s.0 as usize) < particles.n_fluid;
+        for (w, i) in (particles.n_fluid..particles.n_rows()).enumerate() {
+            let widened = self.extra.iter().any(|e| e.0 as usize == i && fluid(&&e.1));
+            if widened || rows.of(i).iter().any(|s| fluid(&s)) || search.in_layers(i) {
+                continue;
+            }
+            let distance = |s: &Seen| (search.position(s.0 as usize, s.1) - particles.x[i]).norm_squared();
+            let nearest = walls.of(w).iter().min_by(|a, b| distance(a).total_cmp(&distance(b)).then(a.cmp(b)));
+            if let Some(s) = nearest {
+                self.extra.push((i as u32, *s));
+                self.extra.extend(search.seen_from(i, *s));
+                self.joined += 1;
+            }
+        }
     }
 
     fn treat(&mut self, search: &Search<'_, D>, rows: &Rows, i: usize) {
@@ -94,6 +119,7 @@ impl<const D: usize> Repair<D> {
         [
             line(self.widened, "had too few neighbours around and got more, within 2.4 spacings"),
             line(self.moved.len(), "moved away from a neighbour nearer than 0.3 spacings"),
+            line(self.joined, "of the surface were seen by none in the gas and joined the nearest"),
             line(self.first_order.len(), "fell back to first order: too few neighbours around"),
         ]
         .into_iter()

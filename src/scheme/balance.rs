@@ -84,10 +84,21 @@ pub struct Part<const D: usize> {
 pub enum Sides<const D: usize> {
     /// None does.
     Beyond,
-    /// Middles and outward areas of pieces that make them up, outside the bodies.
-    Open(Vec<(Vector<D>, Vector<D>)>),
+    /// Pieces that make them up, outside the bodies.
+    Open(Vec<SidePiece<D>>),
     /// Some that are periodic.
     Periodic,
+}
+
+/// A piece of a side of the domain.
+#[derive(Clone, Copy, Debug)]
+pub struct SidePiece<const D: usize> {
+    /// Its middle.
+    pub x: Vector<D>,
+    /// Its outward area.
+    pub area: Vector<D>,
+    /// True where nothing passes it.
+    pub closed: bool,
 }
 
 impl<const D: usize> Part<D> {
@@ -202,7 +213,7 @@ impl<'a, const D: usize> Balance<'a, D> {
         let middle = self.zone.bounds().centre();
         let cut: f64 = match sides {
             Sides::Beyond => 0.0,
-            Sides::Open(tiles) => tiles.iter().map(|(x, area)| self.zone.at(x).0 * (*x - middle).dot(area)).sum(),
+            Sides::Open(tiles) => tiles.iter().map(|t| self.zone.at(&t.x).0 * (t.x - middle).dot(&t.area)).sum(),
             Sides::Periodic => return None,
         };
         let walls = cloud.interface_range().zip(&cloud.interface);

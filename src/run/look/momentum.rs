@@ -3,7 +3,7 @@ use super::axes::{GasView, LoadFrame};
 use crate::case::{Case, Side};
 use crate::math::{Bounds, Vector};
 use crate::observe::loads::Balance as Sum;
-use crate::scheme::balance::{Balance, Part, Sides};
+use crate::scheme::balance::{Balance, Part, SidePiece, Sides};
 use crate::scheme::probe::Probe;
 use crate::scheme::start::free_stream;
 use crate::scheme::{View, Work};
@@ -48,8 +48,12 @@ pub(crate) fn around<const D: usize>(
     balance.parts(&rate, &sides).into_iter().for_each(&mut add);
     let probe = Probe::new(view, None);
     let Sides::Open(tiles) = &sides else { return Some(sum) };
-    for (x, area) in tiles {
-        if let Some(q) = probe.at(x) {
+    for SidePiece { x, area, closed } in tiles {
+        if let Some(mut q) = probe.at(x) {
+            if *closed {
+                // nothing passes, whatever lies between the particles and the side
+                q.velocity -= *area * (q.velocity.dot(area) / area.norm_squared());
+            }
             add(balance.side(*x, &q, area));
         }
     }
@@ -71,15 +75,17 @@ fn sides<const D: usize>(case: &Case, view: &View<'_, D>, zone: &Bounds<D>) -> S
         if !beyond {
             continue;
         }
-        if conditions[axis][usize::from(!low)] == Side::Periodic {
+        let condition = conditions[axis][usize::from(!low)];
+        if condition == Side::Periodic {
             return Sides::Periodic;
         }
+        let closed = condition == Side::Symmetry;
         let end = if low { region.min[axis] } else { region.max[axis] };
         let rim = Rim::new(view, axis, end);
         tile(view, &region, (axis, end), &mut |x, extent| {
             rim.cut(x, extent, &mut |x, extent| {
                 let size: f64 = (0..D).map(|d| extent[d]).product();
-                tiles.push((x, Vector::axis(axis) * (sign * size)));
+                tiles.push(SidePiece { x, area: Vector::axis(axis) * (sign * size), closed });
             });
         });
     }
