@@ -183,6 +183,8 @@ metrics! {
     ClMomentum = "cl_momentum",
     /// Drag coefficient from the momentum of the gas around the body.
     CdMomentum = "cd_momentum",
+    /// |Drag coefficient from the walls − that from the momentum of the gas|.
+    CdBalance = "cd_balance",
     /// Orders of magnitude the steady residual fell.
     ResidualDrop = "residual_drop",
     /// One when the run reached its own stopping criterion, zero otherwise.

@@ -66,6 +66,7 @@ impl Measured {
             Metric::ProfileBlasiusRms => self.blasius_profile(claim),
             Metric::ClMomentum => s.loads_momentum_balance.map(|c| c.cl).ok_or_else(no_balance),
             Metric::CdMomentum => s.loads_momentum_balance.map(|c| c.cd).ok_or_else(no_balance),
+            Metric::CdBalance => s.loads_momentum_balance.map(|c| (c.cd - s.loads.cd).abs()).ok_or_else(no_balance),
             Metric::LiftAmplitude => self.lift().map(|c| c.norm()),
             Metric::LiftPhase => self.lift().map(|c| c.arg().to_degrees()),
             Metric::DragAmplitude => self.drag().map(|c| c.norm()),
