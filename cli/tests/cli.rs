@@ -23,7 +23,8 @@ const PROMISED: [&str; 13] = [
     "ledger",
 ];
 /// What it may add.
-const EXTRA: [&str; 27] = [
+const EXTRA: [&str; 28] = [
+    "hinge_moments",
     "root_loads",
     "span_load",
     "wake_planes",

@@ -11,6 +11,9 @@ use super::keys::SIDES;
 use super::naca::{Naca, TrailingEdge};
 use super::schema::one_of;
 
+/// Part of the length of a hinge line that must lie across the stream.
+const ALONG_STREAM: f64 = 0.1;
+
 /// Looks for all contradictions, and fills in what follows from other keys: dimension and names of bodies.
 pub(super) fn contradictions(draft: &mut Draft<'_>) {
     bodies(draft);
@@ -322,16 +325,53 @@ fn in_dimension(draft: &mut Draft<'_>, d: usize) {
         draft.fail_key("reference.area", "`reference.area` needs a 3-D case").hint(hint);
     }
     reference_body(draft, d);
+    hinges(draft, d);
+}
+
+/// Hinges are points in the plane and lines across the stream in space, of bodies of the case.
+fn hinges(draft: &mut Draft<'_>, d: usize) {
+    for i in 0..draft.count("hinge") {
+        let key = |name: &str| format!("hinge[{i}].{name}");
+        length(draft, &key("from"), d);
+        if d == 2 {
+            if draft.given(&key("to")) {
+                draft.fail_key(&key("to"), "a hinge has one end in a 2-D case").hint("take out `to`");
+            }
+        } else if draft.given(&key("to")) {
+            length(draft, &key("to"), d);
+            hinge_line(draft, &key("from"), &key("to"));
+        } else {
+            draft.fail_key(&key("from"), "a hinge needs both ends in a 3-D case").hint("give `to = [x, y, z]`");
+        }
+        known_body(draft, &key("body"));
+    }
+}
+
+/// A hinge line is long and not along the stream.
+fn hinge_line(draft: &mut Draft<'_>, from: &str, to: &str) {
+    let [Some(from), Some(ends)] = [from, to].map(|key| draft.numbers(key)) else { return };
+    let (&[a, b, c], &[p, q, r]) = (&from[..], &ends[..]) else { return };
+    let (x, y, z): (f64, f64, f64) = (p - a, q - b, r - c);
+    let across = y.hypot(z);
+    if across < ALONG_STREAM * x.hypot(across) || across == 0.0 {
+        let hint = "what lies behind a line is told by its direction across x: move one of its ends";
+        draft.fail(to, "the hinge line runs along the stream or has no length").hint(hint);
+    }
 }
 
 /// The body of the reference values is one of the case.
 fn reference_body(draft: &mut Draft<'_>, d: usize) {
     let key = "reference.body";
-    let Some(wanted) = draft.get(key).and_then(Value::as_str).map(str::to_owned) else { return };
-    if d == 2 {
+    if d == 2 && draft.given(key) {
         draft.fail_key(key, "`reference.body` needs a 3-D case").hint("in 2-D the coefficients use `reference.chord`");
         return;
     }
+    known_body(draft, key);
+}
+
+/// A body that a key names is one of the case.
+fn known_body(draft: &mut Draft<'_>, key: &str) {
+    let Some(wanted) = draft.get(key).and_then(Value::as_str).map(str::to_owned) else { return };
     let name = |i: usize| draft.get(&format!("body[{i}].name")).and_then(Value::as_str).unwrap_or_default().to_owned();
     let names: Vec<String> = (0..draft.count("body")).map(name).collect();
     if !names.contains(&wanted) {

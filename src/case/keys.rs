@@ -77,6 +77,12 @@ pub(super) static CASE: Table = Table::of(&[
         Absent::Filled,
         "A reference curve of Cp that the report draws beside the result.",
     ),
+    Field::defaulted(
+        "hinge",
+        Kind::Tables(&HINGE),
+        Absent::Filled,
+        "A hinge about which the moment of what lies behind it is told.",
+    ),
     Field::optional(
         "gaf",
         Kind::Table(&GAF),
@@ -454,6 +460,18 @@ static OUTPUT: Table = Table::of(&[
         "those of the references, else 0.2, 0.44, 0.65, 0.8, 0.9, 0.95",
         "Parts of the half span at which Cp is drawn along the chord, in space.",
     ),
+]);
+
+static HINGE: Table = Table::of(&[
+    Field::defaulted("name", Kind::Text, Absent::Word("hinge"), "Name in tables."),
+    Field::optional("body", Kind::Text, "all bodies", "Name of the body that the control surface is part of."),
+    Field::required(
+        "from",
+        POINT,
+        "One end of the hinge line, before any motion; in 2-D the hinge. Moments are positive by the right-hand rule about the line from here \
+         `to` there (from left to right: trailing edge down), in 2-D where they turn the trailing edge down.",
+    ),
+    Field::optional("to", POINT, "2-D: the hinge is a point", "The other end, in 3-D."),
 ]);
 
 static COMPARE: Table = Table::of(&[

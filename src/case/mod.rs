@@ -112,6 +112,9 @@ pub struct Case {
     /// Reference curves that the report draws beside the result.
     #[serde(default)]
     pub compare: Vec<Compare>,
+    /// Hinges about which moments are told.
+    #[serde(default)]
+    pub hinge: Vec<Hinge>,
     /// What `alula gaf` computes.
     pub gaf: Option<Gaf>,
 }
@@ -508,6 +511,19 @@ pub struct Compare {
     pub file: String,
     /// Name in the legend.
     pub label: String,
+}
+
+/// The hinge of a control surface: what of a body lies behind it, between its ends.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Hinge {
+    /// Its name.
+    pub name: String,
+    /// Name of the body that the control surface is part of; absent: all bodies.
+    pub body: Option<String>,
+    /// One end of the line, in the plane the hinge.
+    pub from: Vec<Length>,
+    /// The other end, in space.
+    pub to: Option<Vec<Length>>,
 }
 
 impl Default for Placement {

@@ -195,6 +195,20 @@ fn a_case_may_leave_the_cloud_to_the_program() {
 }
 
 #[test]
+fn hinges_that_are_none_are_refused() {
+    let hinge = |keys: &str| format!("{GOOD}\n[[hinge]]\n{keys}");
+    assert_shows(&hinge("name = \"flap\""), &["hinge", "from"]);
+    assert_shows(&hinge("from = [0.7, 0, 0]"), &["`hinge.from` needs 2"]);
+    assert_shows(&hinge("from = [0.7, 0]\nto = [0.7, 1]"), &["a hinge has one end in a 2-D case"]);
+    assert_shows(&hinge("from = [0.7, 0]\nbody = \"tail\""), &["no body is called `tail`"]);
+    let wing = "[flow]\nmach = 0.5\n[[body]]\nwing = { naca = \"0012\", span = 4, chord = 1 }\n[cloud]\nspacing = 0.1\n[[hinge]]\n";
+    let line = |ends: &str| format!("{wing}{ends}");
+    assert_shows(&line("from = [0.7, 0, 0]"), &["a hinge needs both ends in a 3-D case"]);
+    assert_shows(&line("from = [0.7, 0, 0]\nto = [1.7, 0.01, 0]"), &["the hinge line runs along the stream"]);
+    assert!(read(&line("from = [0.7, 0, 0]\nto = [0.7, 1, 0]"), "case.toml").is_ok());
+}
+
+#[test]
 fn domains_and_sides_that_contradict_themselves_are_refused() {
     assert_shows("[flow]\nmach = 1\n[cloud]\nspacing = 1\n", &["a case without bodies needs `cloud.domain`"]);
     assert_shows(

@@ -177,6 +177,9 @@ conservative = false
 until = "20 ms"
 [output]
 field_interval = "1 ms"
+[[hinge]]
+name = "flap"
+from = [0.75, 0]
 [[compare]]
 file = "a.csv"
 "#;

@@ -5,6 +5,7 @@ pub mod convergence;
 pub mod cycles;
 pub mod damping;
 pub mod harmonics;
+pub mod hinge;
 pub mod induced;
 pub mod loads;
 pub mod strips;

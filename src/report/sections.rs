@@ -52,7 +52,28 @@ pub(super) fn loads(run: &RunFolder) -> Result<Vec<Block>, String> {
         _ => "Two evaluations of the same loads",
     };
     blocks.extend([Block::Heading(title.to_owned()), Block::Table(Table::new(&["", "CL", "CD", "CM"], rows))]);
+    blocks.extend(hinges(&summary));
     Ok(blocks)
+}
+
+/// Moments about hinges.
+fn hinges(summary: &Value) -> Vec<Block> {
+    let row = |hinge: &Value| {
+        let numbers = ["moment", "coefficient", "area", "chord"].map(|key| number_of(&hinge[key]));
+        std::iter::once(hinge["name"].as_str().unwrap_or_default().to_owned()).chain(numbers).collect()
+    };
+    let rows: Vec<Vec<String>> = summary["hinge_moments"].as_array().into_iter().flatten().map(row).collect();
+    if rows.is_empty() {
+        return Vec::new();
+    }
+    let text = "By the right-hand rule about the line from its first end to the other (left to right, and in the plane: trailing edge down), in the \
+                units of the case. The coefficient is the moment over dynamic pressure, area and mean chord of what lies behind the line.";
+    let columns = ["hinge", "moment", "coefficient", "area behind", "chord behind"];
+    vec![
+        Block::Heading("Hinge moments".to_owned()),
+        Block::Text(text.to_owned()),
+        Block::Table(Table::new(&columns, rows)),
+    ]
 }
 
 /// A table of a run as it is, with numbers for reading; the first `text_columns` are names even when they are digits.

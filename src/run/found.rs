@@ -1,6 +1,6 @@
 //! What a run has found when it is over: loads, ledgers, errors, the wall.
 use super::look::friction::{Separation, add_friction, separations, wall_friction};
-use super::look::{WakePlane, WallSnapshot, pressure_load, tip_vortex, totals};
+use super::look::{WakePlane, WallSnapshot, hinge_moments, pressure_load, tip_vortex, totals};
 use super::recipe;
 use super::record::family;
 use super::record::summary::{Clock, FILES, FreeStream, Ledger, Reclouding, Summary};
@@ -154,6 +154,7 @@ impl<const D: usize> Found<'_, D> {
             separation: self.separations(),
             loads_momentum_balance: self.balance.map(|_| through),
             root_loads: self.root_loads(),
+            hinge_moments: hinge_moments(case, &self.view, &self.names.bodies),
             span_load: self.span_load,
             wake_planes: self.wake.clone(),
             tip_vortex: tip_vortex(case, &self.view, self.surface, [self.axes.chord, loads.cl]),

@@ -245,6 +245,13 @@ fn in_space(s: &Summary) -> String {
         text += &format!("{place:<16}{:10.4e} {:10.4e} {:10.4e}  ", r.shear, r.bending, r.torsion);
         text += &format!("{:9.5} {:9.5} {:9.5}\n", r.shear_coefficient, r.bending_coefficient, r.torsion_coefficient);
     }
+    if !s.hinge_moments.is_empty() {
+        text += "hinge moment       moment  coefficient     area      chord  in the units of the case; over q S c behind the hinge\n";
+    }
+    for h in &s.hinge_moments {
+        text +=
+            &format!("{:<16}{:10.4e}  {:9.5} {:10.4e} {:10.4e}\n", h.name, h.moment, h.coefficient, h.area, h.chord);
+    }
     text
 }
 

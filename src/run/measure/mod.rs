@@ -77,7 +77,7 @@ impl Measured {
                 let other = other.ok_or_else(no_other)?.lift()?;
                 Ok((self.lift()? - other).norm() / other.norm())
             }
-            Metric::LiftMeanError => self.lift_mean_error(other.ok_or_else(no_other)?),
+            Metric::LiftMeanError => mean_error(&self.loops.cl, &other.ok_or_else(no_other)?.loops.cl),
             Metric::Strouhal => self.cycles().map(|c| c.frequency * self.chord() / self.case.flow.reference().speed),
             Metric::CycleSpread => self.cycles().map(|c| c.spread),
             Metric::MeanCd => self.cycles().map(|c| c.mean_cd),
@@ -155,16 +155,6 @@ impl Measured {
     }
 
     /// Difference of the means of the lift over the first harmonic of the other.
-    fn lift_mean_error(&self, other: &Self) -> Value {
-        let mean = |v: &[f64]| v.iter().sum::<f64>() / v.len().max(1) as f64;
-        let (own, far) = (&self.loops.cl, &other.loops.cl);
-        let first = harmonic(far, 1).norm();
-        if own.is_empty() || first == 0.0 {
-            return Err("a run has no whole period of a motion that repeats".into());
-        }
-        Ok((mean(own) - mean(far)).abs() / first)
-    }
-
     /// Difference of one load over the last period to a file or another case.
     fn loop_difference(
         &self,
@@ -458,4 +448,14 @@ fn no_balance() -> String {
 
 fn no_wall() -> String {
     "there are no wall particles to compare".into()
+}
+
+/// Difference of the means of two loops of a load, over the first harmonic of the second.
+fn mean_error(own: &[f64], far: &[f64]) -> Value {
+    let mean = |v: &[f64]| v.iter().sum::<f64>() / v.len().max(1) as f64;
+    let first = harmonic(far, 1).norm();
+    if own.is_empty() || first == 0.0 {
+        return Err("a run has no whole period of a motion that repeats".into());
+    }
+    Ok((mean(own) - mean(far)).abs() / first)
 }

@@ -11,6 +11,7 @@ use super::polar::PolarPoint;
 use super::trace::{Change, FirstHarmonics, LastPeriod, PeriodicLoads};
 use crate::case::FreeStreamScales;
 use crate::observe::convergence::Convergence;
+use crate::observe::hinge::HingeMoment;
 use crate::observe::induced::SpanLoad;
 use crate::observe::loads::Coefficients;
 use crate::observe::strips::RootLoads;
@@ -63,6 +64,9 @@ pub struct Summary {
     /// What acts at the roots of wings and fins.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub root_loads: Vec<RootLoads>,
+    /// Moments about the hinges of the case.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub hinge_moments: Vec<HingeMoment>,
     /// Lift and induced drag of the load along the span.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub span_load: Option<SpanLoad>,

@@ -29,6 +29,9 @@ const SAMPLES: usize = 256;
 const STEPS: usize = 128;
 const PERIODS: usize = 2;
 
+/// Harmonics of a product of two flows over those of each.
+const PRODUCTS: usize = 2;
+
 /// Part of a length or radian by which a motion may miss itself a period later.
 const REPEATS: f64 = 1e-9;
 /// Parts of a period at which that is looked at.
@@ -114,6 +117,23 @@ impl<S: HasGas<D>, const D: usize> PeriodicState<'_, S, D> {
         PeriodicEyes::new(self.balance, self.system).series(&self.frames(), self.state, log)
     }
 
+    /// Series of the loads of the flow between its instances; `None` without bodies.
+    ///
+    /// Loads are products, pressure times a normal that turns, and hold twice the harmonics of the flow: from as few samples as there
+    /// are instances the second would seem to be a first.
+    fn loads_between(&self, log: &Log<'_>) -> Option<[Series; 3]> {
+        let held = Instances::of_harmonics(PRODUCTS * self.balance.instances().harmonics() + 1);
+        let (mut all, mut work) = ([Vec::new(), Vec::new(), Vec::new()], self.system.work());
+        for phase in held.times(1.0) {
+            let one = self.state_at(phase);
+            let frame = self.frame_at(phase, &one);
+            let c = GasView::of(self.system, &frame, &one).coefficients(&log.axes, self.system.gas_work(&mut work))?;
+            [c.cl, c.cd, c.cm].into_iter().zip(&mut all).for_each(|(v, all)| all.push(v));
+        }
+        let [a, b, c] = all.map(|values| Series::of_values(&values).ok());
+        Some([a?, b?, c?])
+    }
+
     /// Calls `f` with the gas at every instance where the equations are evaluated.
     pub(super) fn evaluated(&self, mut f: impl FnMut(&GasView<'_, D>, &mut Work<D>)) {
         let (mut one, mut work) = (vec![0.0; self.system.len()], self.system.work());
@@ -145,7 +165,7 @@ impl<S: HasGas<D>, const D: usize> PeriodicState<'_, S, D> {
     /// Puts the loads of one period where those of the last period of a march would be; gives their series.
     pub(super) fn trace(&self, log: &mut Log<'_>) -> Option<[Series; 3]> {
         let (period, gas) = (self.period, self.system.gas());
-        let [cl, cd, cm] = self.loads(log)?;
+        let [cl, cd, cm] = self.loads_between(log)?;
         log.record.trace.clear();
         for k in 0..=SAMPLES {
             let part = 1.0 + k as f64 / SAMPLES as f64;
