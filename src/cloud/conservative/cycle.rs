@@ -140,8 +140,8 @@ fn visit<const D: usize, V: Field<D>, G: Grid<V>>(
     }
     grid.follow(b, x);
     sweep_slots(left, |i, left| *left = grid.left(i, &b[i], x));
-    let mut next = std::mem::replace(&mut below[0].b, Vec::new());
-    let mut found = std::mem::replace(&mut below[0].x, Vec::new());
+    let mut next = std::mem::take(&mut below[0].b);
+    let mut found = std::mem::take(&mut below[0].x);
     sweep_slots(&mut next, |g, b| {
         *b = level
             .groups

@@ -36,7 +36,7 @@ impl<const D: usize> Moments<D> {
     }
 
     /// The same from another origin, `to` away from this one.
-    pub(super) fn from_origin(&self, to: &Vector<D>) -> Self {
+    pub(super) fn about_origin(&self, to: &Vector<D>) -> Self {
         let first = self.first - *to * self.weight;
         let second = std::array::from_fn(|r| self.second[r] - *to * self.first[r] - first * to[r]);
         Self { weight: self.weight, first, second }
@@ -161,7 +161,7 @@ mod tests {
     fn moments_do_not_depend_on_their_origin() {
         let (to, middle) = (Vector([0.3, -0.2, 0.5]), Vector([0.7, 0.1, -0.4]));
         let (here, there) = (Moments::of(2.0, middle), Moments::of(2.0, middle - to));
-        let moved = here.from_origin(&to);
+        let moved = here.about_origin(&to);
         assert!((moved.first - there.first).norm() < 1e-15);
         assert!((0..3).all(|r| (moved.second[r] - there.second[r]).norm() < 1e-15));
         // what a pair makes of a field is the same from either origin

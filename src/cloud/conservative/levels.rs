@@ -117,7 +117,7 @@ impl<const D: usize> Level<D> {
         let [mut open, mut own] = [(); 2].map(|()| vec![Moments::ZERO; groups.len()]);
         let members = |g: usize| groups.members(g).iter().map(|i| *i as usize);
         sweep(&mut open, |g| {
-            members(g).fold(Moments::ZERO, |m, i| m.plus(1.0, &finer.open(i).from_origin(&-offset[i])))
+            members(g).fold(Moments::ZERO, |m, i| m.plus(1.0, &finer.open(i).about_origin(&-offset[i])))
         });
         sweep(&mut own, |g| rows[g].iter().fold(open[g], |m, e| m.plus(1.0, &e.moments)));
         let [softness, freedom] =
@@ -152,7 +152,7 @@ fn gather<const D: usize>(
             if other as usize == g && e.transform == ITSELF {
                 return;
             }
-            let moments = e.moments.from_origin(&-offset[i]);
+            let moments = e.moments.about_origin(&-offset[i]);
             match all.iter_mut().find(|a| a.other == other && a.transform == e.transform) {
                 Some(a) => a.moments = a.moments.plus(STIFFNESS, &moments),
                 None => {
