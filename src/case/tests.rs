@@ -198,7 +198,7 @@ fn a_case_may_leave_the_cloud_to_the_program() {
 fn hinges_that_are_none_are_refused() {
     let hinge = |keys: &str| format!("{GOOD}\n[[hinge]]\n{keys}");
     assert_shows(&hinge("name = \"flap\""), &["hinge", "from"]);
-    assert_shows(&hinge("from = [0.7, 0, 0]"), &["`hinge.from` needs 2"]);
+    assert_shows(&hinge("from = [0.7, 0, 0]"), &["`hinge[0].from` has 3 coordinates in a 2-D case"]);
     assert_shows(&hinge("from = [0.7, 0]\nto = [0.7, 1]"), &["a hinge has one end in a 2-D case"]);
     assert_shows(&hinge("from = [0.7, 0]\nbody = \"tail\""), &["no body is called `tail`"]);
     let wing = "[flow]\nmach = 0.5\n[[body]]\nwing = { naca = \"0012\", span = 4, chord = 1 }\n[cloud]\nspacing = 0.1\n[[hinge]]\n";

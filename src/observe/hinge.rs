@@ -117,16 +117,16 @@ fn unit(v: &[f64; 3]) -> [f64; 3] {
 mod tests {
     use super::*;
 
-    /// Both sides of a plate from x = 0 to 1 and y = 0 to 2 in n × n pieces, pressed from below.
+    /// Both sides of a plate from x = 0 to 1 and y = 0 to 2 in n × 2n pieces, pressed from below.
     fn plate(n: usize) -> Vec<Patch> {
         let at = |k: usize| (k as f64 + 0.5) / n as f64;
-        let size = 2.0 / (n * n) as f64;
+        let size = 1.0 / (n * n) as f64;
         let one = |k: usize, side: f64| {
             let area = [0.0, 0.0, side * size];
             let force = [0.0, 0.0, if side < 0.0 { size } else { 0.0 }];
-            Patch { x: [at(k % n), 2.0 * at(k / n), 0.0], area, force }
+            Patch { x: [at(k % n), at(k / n), 0.0], area, force }
         };
-        (0..n * n).flat_map(|k| [one(k, 1.0), one(k, -1.0)]).collect()
+        (0..2 * n * n).flat_map(|k| [one(k, 1.0), one(k, -1.0)]).collect()
     }
 
     #[test]
