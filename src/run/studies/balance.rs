@@ -138,7 +138,7 @@ fn finish<S: HasGas<D>, const D: usize>(
     }
     if let Some(modes) = &solver.force_modes {
         let mut forces = Vec::new();
-        found.evaluated(|view, work| forces.push(modes.seen(view, work)));
+        found.between(|view, work| forces.push(modes.seen(view, work)));
         log.record.forces = modes.over_a_period(&forces);
     }
     found.compare(log)?;

@@ -118,28 +118,30 @@ impl<S: HasGas<D>, const D: usize> PeriodicState<'_, S, D> {
     }
 
     /// Series of the loads of the flow between its instances; `None` without bodies.
-    ///
-    /// Loads are products, pressure times a normal that turns, and hold twice the harmonics of the flow: from as few samples as there
-    /// are instances the second would seem to be a first.
     fn loads_between(&self, log: &Log<'_>) -> Option<[Series; 3]> {
-        let held = Instances::of_harmonics(PRODUCTS * self.balance.instances().harmonics() + 1);
-        let (mut all, mut work) = ([Vec::new(), Vec::new(), Vec::new()], self.system.work());
-        for phase in held.times(1.0) {
-            let one = self.state_at(phase);
-            let frame = self.frame_at(phase, &one);
-            let c = GasView::of(self.system, &frame, &one).coefficients(&log.axes, self.system.gas_work(&mut work))?;
-            [c.cl, c.cd, c.cm].into_iter().zip(&mut all).for_each(|(v, all)| all.push(v));
+        let mut all = [Vec::new(), Vec::new(), Vec::new()];
+        self.between(|view, work| {
+            let loads = view.coefficients(&log.axes, work).map_or([f64::NAN; 3], |c| [c.cl, c.cd, c.cm]);
+            loads.into_iter().zip(&mut all).for_each(|(v, all)| all.push(v));
+        });
+        if self.system.gas().discretisation.cloud.interface.is_empty() {
+            return None;
         }
         let [a, b, c] = all.map(|values| Series::of_values(&values).ok());
         Some([a?, b?, c?])
     }
 
-    /// Calls `f` with the gas at every instance where the equations are evaluated.
-    pub(super) fn evaluated(&self, mut f: impl FnMut(&GasView<'_, D>, &mut Work<D>)) {
-        let (mut one, mut work) = (vec![0.0; self.system.len()], self.system.work());
-        for (n, frame) in self.frames().iter().enumerate() {
-            self.balance.look(self.state, n, &mut one);
-            f(&GasView::of(self.system, frame, &one), self.system.gas_work(&mut work));
+    /// Calls `f` with the gas at instants that loads are told from.
+    ///
+    /// Loads are products, pressure times a normal that turns, and hold twice the harmonics of the flow: from as few samples as there
+    /// are instances the second would seem to be a first.
+    pub(super) fn between(&self, mut f: impl FnMut(&GasView<'_, D>, &mut Work<D>)) {
+        let held = Instances::of_harmonics(PRODUCTS * self.balance.instances().harmonics() + 1);
+        let mut work = self.system.work();
+        for phase in held.times(1.0) {
+            let one = self.state_at(phase);
+            let frame = self.frame_at(phase, &one);
+            f(&GasView::of(self.system, &frame, &one), self.system.gas_work(&mut work));
         }
     }
 
