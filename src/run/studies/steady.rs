@@ -20,7 +20,7 @@ use crate::time::relax::Relax;
 use crate::time::{Integrator, Memory, Standing};
 
 /// Orders of magnitude that relaxations before another one are solved to.
-const EARLY_ORDERS: f64 = 3.5;
+const EARLY_ORDERS: f64 = 4.5;
 /// Orders beyond those of a single cloud, on the clouds of a family: what loads change by from one to the next must not be what
 /// is left of their residual.
 const SETTLING: f64 = 1.5;
