@@ -1,7 +1,7 @@
 //! Neighbour entries as unknowns of the conservative coefficients.
-use super::Cloud;
 use super::layers::face_volume;
 use super::operators::Reverse;
+use super::{Cloud, Neighbours};
 use crate::math::Vector;
 use crate::math::sweep::{CHUNK, parts, sweep_parts};
 
@@ -28,8 +28,6 @@ pub(super) enum Kind {
 pub(super) struct Link<const D: usize> {
     /// Row at the other end.
     pub(super) other: u32,
-    /// Entry of that row that is the same unknown; its own number when there is none.
-    pub(super) partner: u32,
     /// w of the objective.
     pub(super) weight: f64,
     pub(super) offset: Vector<D>,
@@ -37,8 +35,6 @@ pub(super) struct Link<const D: usize> {
 }
 
 impl<const D: usize> Link<D> {
-    const EMPTY: Self = Self { other: 0, partner: 0, weight: 0.0, offset: Vector::ZERO, kind: Kind::Open };
-
     pub(super) fn is_wall(&self) -> bool {
         matches!(self.kind, Kind::Wall(_))
     }
@@ -50,45 +46,97 @@ impl<const D: usize> Link<D> {
     }
 }
 
-/// Sets `out[p] = f(i, p)` for every neighbour entry p of the rows i that `first` delimits.
-pub(super) fn sweep_entries<T: Send>(first: &[u32], out: &mut [T], f: impl Fn(usize, usize, &mut T) + Sync) {
-    let rows = parts(first.len() - 1, CHUNK);
-    let entries: Vec<_> = rows.iter().map(|r| first[r.start] as usize..first[r.end] as usize).collect();
-    sweep_parts(&entries, 1, out, &|k, slots| {
-        for i in rows[k].clone() {
-            for p in first[i] as usize..first[i + 1] as usize {
-                f(i, p, &mut slots[p - entries[k].start]);
+/// The neighbour entries of the fluid particles of a cloud. What they are is found anew whenever it is asked for: a cloud of
+/// millions would otherwise hold little else.
+pub(super) struct Links<'a, const D: usize> {
+    cloud: &'a Cloud<D>,
+    /// Whether the particle at the other end of an entry sees the first one.
+    seen_back: Vec<bool>,
+    layered: bool,
+}
+
+impl<'a, const D: usize> Links<'a, D> {
+    pub(super) fn new(cloud: &'a Cloud<D>) -> Self {
+        let reverse = Reverse::new(cloud);
+        let Neighbours { first, index, .. } = &cloud.neighbours;
+        let first = &first[..=cloud.n_fluid];
+        let mut seen_back = vec![false; first[cloud.n_fluid] as usize];
+        let rows = parts(cloud.n_fluid, CHUNK);
+        let entries: Vec<_> = rows.iter().map(|r| first[r.start] as usize..first[r.end] as usize).collect();
+        sweep_parts(&entries, 1, &mut seen_back, &|k, slots| {
+            for i in rows[k].clone() {
+                for p in first[i] as usize..first[i + 1] as usize {
+                    slots[p - entries[k].start] = reverse.position(i, index[p] as usize).is_some();
+                }
             }
-        }
-    });
-}
+        });
+        Self { cloud, seen_back, layered: !cloud.layers.is_empty() }
+    }
 
-/// Classifies the neighbour entries of all fluid particles.
-pub(super) fn links<const D: usize>(cloud: &Cloud<D>) -> Vec<Link<D>> {
-    let reverse = Reverse::new(cloud);
-    let first = &cloud.neighbours.first[..=cloud.n_fluid];
-    let mut all = vec![Link::EMPTY; first[cloud.n_fluid] as usize];
-    sweep_entries(first, &mut all, |i, p, slot| *slot = link(cloud, &reverse, i, p));
-    all
-}
+    /// True where faces depend on layers.
+    pub(super) fn layered(&self) -> bool {
+        self.layered
+    }
 
-fn link<const D: usize>(cloud: &Cloud<D>, reverse: &Reverse<'_, D>, i: usize, p: usize) -> Link<D> {
-    let j = cloud.neighbours.index[p] as usize;
-    let offset = cloud.x[j] - cloud.x[i];
-    let image = j.checked_sub(cloud.n_real()).and_then(|k| cloud.ghosts.get(k));
-    let source = image.map_or(j, |m| m.source as usize);
-    let transform = image.map(|m| m.transform);
-    let partner = reverse.position(i, j).map(|(e, _)| e as u32);
-    let face = face_volume(cloud, i, source) / offset.norm();
-    let mut weight = face * face;
-    let kind = match (transform, partner) {
-        _ if cloud.interface_range().contains(&source) => {
-            weight = SHARE_FREEDOM;
-            Kind::Wall(transform.unwrap_or(ITSELF))
+    /// Entries of row `i`.
+    #[inline(always)]
+    pub(super) fn range(&self, i: usize) -> std::ops::Range<usize> {
+        self.cloud.neighbours.range(i)
+    }
+
+    /// Links of row `i`, each with its entry.
+    #[inline(always)]
+    pub(super) fn of(&self, i: usize) -> impl Iterator<Item = (usize, Link<D>)> {
+        self.range(i).map(move |p| (p, self.at(i, p)))
+    }
+
+    /// The link from particle `i` to `j`, which is in its list.
+    pub(super) fn between(&self, i: usize, j: usize) -> Option<(usize, Link<D>)> {
+        let p = self.cloud.neighbours.of(i).binary_search(&(j as u32)).ok()? + self.range(i).start;
+        Some((p, self.at(i, p)))
+    }
+
+    /// Particle, or image of one, at the other end of entry `p`.
+    #[inline(always)]
+    pub(super) fn end(&self, p: usize) -> usize {
+        self.cloud.neighbours.index[p] as usize
+    }
+
+    /// The link of entry `p` of row `i`.
+    #[inline(always)]
+    pub(super) fn at(&self, i: usize, p: usize) -> Link<D> {
+        let (cloud, j) = (self.cloud, self.end(p));
+        let offset = cloud.x[j] - cloud.x[i];
+        if j < cloud.n_fluid {
+            let kind = if self.seen_back[p] { Kind::Pair } else { Kind::Open };
+            return Link { other: j as u32, weight: self.weight(i, j, &offset), offset, kind };
         }
-        (None, Some(_)) => Kind::Pair,
-        (Some(t), Some(_)) => Kind::Image(t),
-        _ => Kind::Open,
-    };
-    Link { other: source as u32, partner: partner.unwrap_or(p as u32), weight, offset, kind }
+        self.beyond(i, p, offset)
+    }
+
+    /// The link to what is no fluid particle.
+    #[inline(never)]
+    fn beyond(&self, i: usize, p: usize, offset: Vector<D>) -> Link<D> {
+        let (cloud, j) = (self.cloud, self.end(p));
+        let image = j.checked_sub(cloud.n_real()).and_then(|k| cloud.ghosts.get(k));
+        let source = image.map_or(j, |m| m.source as usize);
+        let (kind, weight) = match image {
+            _ if cloud.interface_range().contains(&source) => {
+                (Kind::Wall(image.map_or(ITSELF, |m| m.transform)), SHARE_FREEDOM)
+            }
+            Some(m) if self.seen_back[p] => (Kind::Image(m.transform), self.weight(i, source, &offset)),
+            _ => (Kind::Open, self.weight(i, source, &offset)),
+        };
+        Link { other: source as u32, weight, offset, kind }
+    }
+
+    #[inline(always)]
+    fn weight(&self, i: usize, j: usize, offset: &Vector<D>) -> f64 {
+        let cloud = self.cloud;
+        let face = match self.layered {
+            true => face_volume(cloud, i, j),
+            false => (0.5 * (cloud.spacing[i] + cloud.spacing[j])).powi(D as i32),
+        };
+        face * face / offset.norm_squared()
+    }
 }

@@ -22,18 +22,20 @@ mod field;
 mod levels;
 mod symmetry;
 
+use std::cmp::Ordering;
+use std::collections::HashMap;
 use std::ops::Range;
 
 use cycle::{Cycle, Grid, Levels, Way};
 
-use super::coefficient_unknowns::{ITSELF, Kind, Link, links, sweep_entries};
-use super::layers::stand_on_wall;
+use super::coefficient_unknowns::{ITSELF, Kind, Link, Links};
+use super::layers::{below_first, grown_face};
 use super::multipliers::{Factors, Row};
-use super::operators::WallFace;
+use super::operators::{Reverse, WallFace};
 use super::{Cloud, Operators};
 use crate::math::Vector;
 use crate::math::conjugate::{Row as _, Symmetric, conjugate_gradients};
-use crate::math::sweep::{sum, sweep, sweep_slots};
+use crate::math::sweep::{sum, sweep, sweep_parts, sweep_slots};
 
 /// ε: square of the tolerated relative error of linear consistency against relative changes of s, in the measure of w and b;
 /// in 2-D and 3-D, where the errors of 0.02 would still be seen in the pressure on a sphere.
@@ -102,10 +104,27 @@ pub fn conservative_with<const D: usize>(
     operators: &mut Operators<D>,
     softness: f64,
 ) -> ConservativeReport {
-    let mut problem = Problem::new(cloud, operators, softness);
+    let (volume, faces, report) = find(cloud, operators, softness);
+    operators.set_wall_faces(faces);
+    cloud.volume[..volume.len()].copy_from_slice(&volume);
+    let first = cloud.n_real();
+    for (k, image) in cloud.ghosts.iter().enumerate() {
+        cloud.volume[first + k] = cloud.volume[image.source as usize];
+    }
+    report
+}
+
+/// Finds volumes and pieces of wall, and sets the area vectors of the edges.
+fn find<const D: usize>(
+    cloud: &Cloud<D>,
+    operators: &mut Operators<D>,
+    softness: f64,
+) -> (Vec<f64>, Vec<WallFace<D>>, ConservativeReport) {
+    let mut problem = Problem::new(cloud, softness);
+    problem.prepare(operators);
     let levels = Levels::new(&problem, symmetry::mirrors(cloud));
     let mut multipliers = vec![Row::ZERO; problem.n_rows()];
-    let mut iterations = problem.solve(&mut multipliers, &levels);
+    let mut iterations = problem.solve(operators, &mut multipliers, &levels);
     let mut n_softened = 0;
     for _ in 0..SOFTEN_ROUNDS {
         let softened = problem.soften(&problem.volumes(&multipliers));
@@ -113,107 +132,118 @@ pub fn conservative_with<const D: usize>(
             break;
         }
         n_softened = softened;
-        iterations += problem.solve(&mut multipliers, &levels);
+        iterations += problem.solve(operators, &mut multipliers, &levels);
     }
-    let mut x = problem.recover(multipliers);
-    problem.fix_shares(&mut x);
-    let polish_iterations = problem.close(&mut x, &levels);
-    let report = ConservativeReport { iterations, polish_iterations, n_softened, softness, ..problem.judge(&x) };
-    store(cloud, operators, &problem, &x);
-    report
+    problem.recover(operators, multipliers);
+    problem.fix_shares();
+    let polish_iterations = problem.close(operators, &levels);
+    drop(levels);
+    let report =
+        ConservativeReport { iterations, polish_iterations, n_softened, softness, ..problem.judge(operators) };
+    let faces = problem.wall_faces();
+    (problem.volume, faces, report)
 }
 
-/// The unknowns: an area vector, or a share, per entry, and a volume per fluid particle.
-struct Unknowns<const D: usize> {
-    area: Vec<Vector<D>>,
-    volume: Vec<f64>,
+/// An interface particle, or an image of it, as a fluid particle sees it.
+#[derive(Clone, Copy)]
+struct Sharer {
+    /// The fluid particle.
+    i: u32,
+    /// Its entry.
+    p: u32,
+    /// Its share β.
+    share: f64,
 }
 
-struct Problem<const D: usize> {
+/// The conditions, the volumes of the fluid particles and their shares of the walls; area vectors are those of the edges.
+struct Problem<'a, const D: usize> {
     n_fluid: usize,
-    first: Vec<u32>,
-    links: Vec<Link<D>>,
-    place: Vec<Vector<D>>,
+    cloud: &'a Cloud<D>,
+    links: Links<'a, D>,
     /// Area vectors of the interface particles, out of the fluid.
     walls: Vec<Vector<D>>,
     /// Signs of the transforms.
     signs: Vec<Vector<D>>,
-    guess: Unknowns<D>,
+    /// Volumes: the first guess of them until the multipliers are known.
+    volume: Vec<f64>,
     /// Spacing^D, the unit of the volumes.
     unit: Vec<f64>,
     softness: Vec<f64>,
     softened: Vec<bool>,
-    /// Entries (row, entry) that share each wall.
-    sharers: Vec<Vec<(u32, u32)>>,
+    /// Who shares each wall.
+    sharers: Vec<Vec<Sharer>>,
     /// Weight of all who share each wall.
     shared: Vec<f64>,
+    /// Weight of all entries of a row whose area vectors may change.
+    passing: Vec<f64>,
     factors: Factors<D>,
 }
 
-impl<const D: usize> Problem<D> {
-    fn new(cloud: &Cloud<D>, operators: &Operators<D>, softness: f64) -> Self {
+impl<'a, const D: usize> Problem<'a, D> {
+    fn new(cloud: &'a Cloud<D>, softness: f64) -> Self {
         let n_fluid = cloud.n_fluid;
-        let first = cloud.neighbours.first[..=n_fluid].to_vec();
-        let links = links(cloud);
-        let mut area = vec![Vector::ZERO; links.len()];
-        for k in 0..operators.n_fluid_parts {
-            for e in operators.edges(k) {
-                let mut place = |i: usize, j: usize, s: Vector<D>| {
-                    if let Ok(p) = cloud.neighbours.of(i).binary_search(&(j as u32)) {
-                        area[first[i] as usize + p] = s;
-                    }
-                };
-                place(e.i(), e.j(), e.s);
-                if e.both() {
-                    place(e.j(), e.i(), -e.s);
-                }
-            }
-        }
+        let links = Links::new(cloud);
         let mut sharers = vec![Vec::new(); cloud.interface.len()];
         for i in 0..n_fluid {
-            for p in first[i]..first[i + 1] {
-                let link = &links[p as usize];
-                if let Kind::Wall(_) = link.kind {
-                    sharers[link.other as usize - n_fluid].push((i as u32, p));
+            for p in links.range(i).filter(|p| links.end(*p) >= n_fluid) {
+                let link = links.at(i, p);
+                if link.is_wall() {
+                    sharers[link.other as usize - n_fluid].push(Sharer { i: i as u32, p: p as u32, share: 0.0 });
                 }
             }
         }
-        let mut guess = Unknowns { area, volume: cloud.volume[..n_fluid].to_vec() };
-        stand_on_wall(cloud, &first, &mut guess.area, &mut guess.volume);
-        let unit = guess.volume.clone();
-        let softness = vec![softness; n_fluid];
-        let softened = vec![false; n_fluid];
+        let mut volume = cloud.volume[..n_fluid].to_vec();
+        volume.iter_mut().enumerate().for_each(|(i, v)| *v += below_first(cloud, i).unwrap_or(0.0));
         let walls = cloud.interface.iter().map(|w| -w.area).collect();
         let signs = cloud.transforms.iter().map(|t| t.sign).collect();
-        let weight = |s: &(u32, u32)| links[s.1 as usize].weight;
+        let weight = |s: &Sharer| links.at(s.i as usize, s.p as usize).weight;
         let shared =
             sharers.iter().map(|all: &Vec<_>| all.iter().map(weight).sum::<f64>().max(f64::MIN_POSITIVE)).collect();
-        let (place, factors) = (cloud.x[..n_fluid].to_vec(), Factors::default());
-        let mut all = Self {
+        let mut passing = vec![0.0; n_fluid];
+        sweep(&mut passing, |i| {
+            let weights = links.of(i).filter(|(_, l)| !l.is_wall()).map(|(_, l)| l.weight);
+            weights.sum::<f64>().max(f64::MIN_POSITIVE)
+        });
+        Self {
             n_fluid,
-            first,
+            cloud,
             links,
-            place,
             walls,
             signs,
-            guess,
-            unit,
-            softness,
-            softened,
+            unit: volume.clone(),
+            volume,
+            softness: vec![softness; n_fluid],
+            softened: vec![false; n_fluid],
             sharers,
             shared,
-            factors,
-        };
-        all.guess_shares();
-        all
+            passing,
+            factors: Factors::default(),
+        }
+    }
+
+    /// First guess: area vectors of the least-squares fit, none to walls; shares of every wall by inverse powers of the distance.
+    fn prepare(&mut self, operators: &mut Operators<D>) {
+        let cloud = self.cloud;
+        operators.alter_areas(|i, j, s| match cloud.interface_range().contains(&cloud.source(j).index) {
+            true => Vector::ZERO,
+            false if self.links.layered() => *s * grown_face(cloud, i, j),
+            false => *s,
+        });
+        let mut sharers = std::mem::take(&mut self.sharers);
+        for all in &mut sharers {
+            let weight = |s: &Sharer| self.link(s).offset.norm().powi(-SHARE_POWER);
+            let total: f64 = all.iter().map(weight).sum();
+            all.iter_mut().for_each(|s| s.share = weight(s) / total);
+        }
+        self.sharers = sharers;
+    }
+
+    fn link(&self, s: &Sharer) -> Link<D> {
+        self.links.at(s.i as usize, s.p as usize)
     }
 
     fn n_rows(&self) -> usize {
         self.n_fluid + self.sharers.len()
-    }
-
-    fn range(&self, i: usize) -> std::ops::Range<usize> {
-        self.first[i] as usize..self.first[i + 1] as usize
     }
 
     /// Area vector of the interface particle, or image of one, at the other end of an entry.
@@ -221,17 +251,6 @@ impl<const D: usize> Problem<D> {
         let Kind::Wall(transform) = link.kind else { return Vector::ZERO };
         let a = self.walls[link.other as usize - self.n_fluid];
         if transform == ITSELF { a } else { Vector::from_fn(|d| self.signs[transform as usize][d] * a[d]) }
-    }
-
-    /// First guess of the shares of every wall: inverse powers of the distance. An entry holds s_iw = −β_iw A_w.
-    fn guess_shares(&mut self) {
-        for sharers in &self.sharers {
-            let weight = |p: u32| self.links[p as usize].offset.norm().powi(-SHARE_POWER);
-            let total: f64 = sharers.iter().map(|s| weight(s.1)).sum();
-            for (_, p) in sharers {
-                self.guess.area[*p as usize] = self.wall(&self.links[*p as usize]) * (weight(*p) / total);
-            }
-        }
     }
 
     /// W Aᵀ λ of one entry of row `i`: the change of its area vector.
@@ -280,8 +299,8 @@ impl<const D: usize> Problem<D> {
     #[inline(always)]
     fn row(&self, i: usize, y: &[Row<D>]) -> Row<D> {
         let mut row = self.soft(i, &y[i]);
-        for link in &self.links[self.range(i)] {
-            row.add(&self.change(i, link, y), &link.offset, link.reach());
+        for (_, link) in self.links.of(i) {
+            row.add(&self.change(i, &link, y), &link.offset, link.reach());
         }
         row
     }
@@ -297,9 +316,9 @@ impl<const D: usize> Problem<D> {
 
     /// The same in the row of wall `w`.
     fn wall_row(&self, w: usize, y: &[Row<D>]) -> f64 {
-        let share = |(k, p): &(u32, u32)| {
-            let link = &self.links[*p as usize];
-            self.share(link, &self.wall_change(*k as usize, link, y))
+        let share = |s: &Sharer| {
+            let link = self.link(s);
+            self.share(&link, &self.wall_change(s.i as usize, &link, y))
         };
         self.sharers[w].iter().map(share).sum()
     }
@@ -320,69 +339,118 @@ impl<const D: usize> Problem<D> {
         VOLUME_FREEDOM * self.unit[i] * self.unit[i]
     }
 
-    /// Defect of all conditions of row `i`.
-    fn defect(&self, i: usize, x: &Unknowns<D>) -> Row<D> {
-        let mut row = Row::ZERO;
-        if i >= self.n_fluid {
-            let sharers = self.sharers[i - self.n_fluid].iter();
-            let total: f64 = sharers.map(|(_, p)| self.share(&self.links[*p as usize], &x.area[*p as usize])).sum();
-            row.closure[0] = if self.sharers[i - self.n_fluid].is_empty() { 0.0 } else { total - 1.0 };
-            return row;
+    /// Defects of all conditions: of area vectors, shares and volumes as they are.
+    fn defects(&self, operators: &Operators<D>) -> Vec<Row<D>> {
+        let mut all = vec![Row::ZERO; self.n_rows()];
+        let (fluid, walls) = all.split_at_mut(self.n_fluid);
+        self.sum_edges(operators, fluid, |row, s, offset| row.add(s, offset, 0.5));
+        sweep_slots(fluid, |i, row| (0..D).for_each(|r| row.moment[r][r] -= self.volume[i]));
+        for (sharers, wall) in self.sharers.iter().zip(walls) {
+            for s in sharers {
+                let link = self.link(s);
+                fluid[s.i as usize].add(&(self.wall(&link) * s.share), &link.offset, 1.0);
+            }
+            let total: f64 = sharers.iter().map(|s| s.share).sum();
+            wall.closure[0] = if sharers.is_empty() { 0.0 } else { total - 1.0 };
         }
-        for p in self.range(i) {
-            let link = &self.links[p];
-            row.add(&x.area[p], &link.offset, link.reach());
-        }
-        (0..D).for_each(|r| row.moment[r][r] -= x.volume[i]);
-        row
+        all
+    }
+
+    /// Calls `add` for every area vector of every fluid particle, with the offset of its other end.
+    fn sum_edges<T: Send>(
+        &self,
+        operators: &Operators<D>,
+        out: &mut [T],
+        add: impl Fn(&mut T, &Vector<D>, &Vector<D>) + Sync,
+    ) {
+        let (cloud, parts) = (self.cloud, operators.fluid_parts());
+        sweep_parts(parts, 1, out, &|k, out| {
+            let start = parts[k].start;
+            for e in operators.edges(k) {
+                let offset = cloud.x[e.j()] - cloud.x[e.i()];
+                add(&mut out[e.i() - start], &e.s, &offset);
+                if e.both() && e.seen_back() {
+                    add(&mut out[e.j() - start], &-e.s, &-offset);
+                }
+            }
+        });
+    }
+
+    /// Changes area vectors by `change(i, link)`, computed at either end of a pair alike but for the sign.
+    fn alter(&self, operators: &mut Operators<D>, change: impl Fn(usize, &Link<D>) -> Vector<D> + Sync) {
+        operators.alter_areas(|i, j, s| match self.links.between(i, j) {
+            Some((_, link)) if !link.is_wall() => *s + change(i, &link),
+            _ => *s,
+        });
+        self.mirror(operators);
+    }
+
+    /// Area vectors to images: computed at one end and copied to the other, sign reversed.
+    fn mirror(&self, operators: &mut Operators<D>) {
+        let reverse = Reverse::new(self.cloud);
+        let beyond = self.cloud.n_real();
+        let known: HashMap<(usize, usize), Vector<D>> = match self.signs.is_empty() {
+            true => return,
+            false => (0..operators.n_fluid_parts)
+                .flat_map(|k| operators.edges(k))
+                .filter(|e| e.j() >= beyond)
+                .map(|e| ((e.i(), e.j()), e.s))
+                .collect(),
+        };
+        operators.alter_areas(|i, j, s| {
+            let Some((p, Link { kind: Kind::Image(t), other, .. })) =
+                (j >= beyond).then(|| self.links.between(i, j)).flatten()
+            else {
+                return *s;
+            };
+            let Some((partner, _)) = reverse.position(i, j) else { return *s };
+            let signs = &self.signs[t as usize];
+            match partner.cmp(&p) {
+                Ordering::Greater => *s,
+                // seen from its own image only the part across the plane is left
+                Ordering::Equal => Vector::from_fn(|d| if signs[d] < 0.0 { s[d] } else { 0.0 }),
+                Ordering::Less => match known.get(&(other as usize, self.links.end(partner))) {
+                    Some(seen) => Vector::from_fn(|d| -signs[d] * seen[d]),
+                    None => *s,
+                },
+            }
+        });
     }
 
     /// The volumes that belong to multipliers.
     fn volumes(&self, y: &[Row<D>]) -> Vec<f64> {
         let mut volume = vec![0.0; self.n_fluid];
-        sweep(&mut volume, |i| self.guess.volume[i] - self.volume_freedom(i) * y[i].trace());
+        sweep(&mut volume, |i| self.volume[i] - self.volume_freedom(i) * y[i].trace());
         volume
     }
 
-    /// Turns the guess into the unknowns that belong to multipliers. Each pair is computed at one end and copied to the other.
-    fn recover(&mut self, y: Vec<Row<D>>) -> Unknowns<D> {
+    /// Turns the guess into what belongs to multipliers.
+    fn recover(&mut self, operators: &mut Operators<D>, y: Vec<Row<D>>) {
         self.factors = Factors::default();
-        let mut area = std::mem::take(&mut self.guess.area);
-        sweep_entries(&self.first, &mut area, |i, p, area| *area += self.change(i, &self.links[p], &y));
-        let mut x = Unknowns { area, volume: self.volumes(&y) };
-        self.mirror(&mut x);
-        x
-    }
-
-    /// Copies area vectors to the partner entries, sign reversed.
-    fn mirror(&self, x: &mut Unknowns<D>) {
-        for (p, link) in self.links.iter().enumerate() {
-            let q = link.partner as usize;
-            match link.kind {
-                Kind::Pair if p < q => x.area[q] = -x.area[p],
-                // seen from its own image only the part across the plane is left
-                Kind::Image(t) if p == q => {
-                    let t = &self.signs[t as usize];
-                    x.area[p] = Vector::from_fn(|d| if t[d] < 0.0 { x.area[p][d] } else { 0.0 })
-                }
-                Kind::Image(t) if p < q => x.area[q] = Vector::from_fn(|d| -self.signs[t as usize][d] * x.area[p][d]),
-                _ => {}
+        self.alter(operators, |i, link| self.change(i, link, &y));
+        let mut sharers = std::mem::take(&mut self.sharers);
+        sweep_slots(&mut sharers, |_, all| {
+            for s in all {
+                let link = self.link(s);
+                s.share += self.share(&link, &self.wall_change(s.i as usize, &link, &y));
             }
-        }
+        });
+        self.sharers = sharers;
+        self.volume = self.volumes(&y);
     }
 
     /// Conjugate gradients for the multipliers, from those in `y`.
-    fn solve(&mut self, y: &mut [Row<D>], levels: &Levels<D>) -> usize {
+    fn solve(&mut self, operators: &Operators<D>, y: &mut [Row<D>], levels: &Levels<D>) -> usize {
         self.factors = Factors::new(self.n_fluid, |i, y| self.own(i, y));
-        let start = |i: usize| Row::ZERO.plus(-1.0, &self.defect(i, &self.guess));
-        let mut r = vec![Row::ZERO; self.n_rows()];
-        self.apply(y, &mut r);
-        sweep_slots(&mut r, |i, r| *r = start(i).plus(-1.0, r));
+        let mut r = self.defects(operators);
         let size = |r: &Row<D>, i: usize| match i.checked_sub(self.n_fluid) {
             Some(w) => r.closure[0] * r.closure[0] / self.shared[w],
             None => r.dot(&self.factors.solve(i, r)),
         };
-        let goal = TOLERANCE * TOLERANCE * sum(self.n_rows(), |i| size(&start(i), i));
+        let goal = TOLERANCE * TOLERANCE * sum(self.n_rows(), |i| size(&r[i], i));
+        let less = |i: usize, r: &mut Row<D>| *r = Row::ZERO.plus(-1.0, &r.plus(1.0, &self.row(i, y)));
+        sweep_slots(&mut r[..self.n_fluid], less);
+        sweep_slots(&mut r[self.n_fluid..], |w, r| r.closure[0] = -r.closure[0] - self.wall_row(w, y));
         let mut cycle = Cycle::new(levels, self.n_fluid);
         let precondition = |r: &[Row<D>], z: &mut [Row<D>]| cycle.nearly_solve(self, r, z);
         let enough = |r: &[Row<D>]| sum(r.len(), |i| size(&r[i], i)) <= goal;
@@ -397,8 +465,7 @@ impl<const D: usize> Problem<D> {
             .collect();
         let mut touched = low.clone();
         for i in &low {
-            let links = &self.links[self.range(*i)];
-            touched.extend(links.iter().map(|l| l.other as usize).filter(|k| *k < self.n_fluid));
+            touched.extend(self.links.of(*i).map(|(_, l)| l.other as usize).filter(|k| *k < self.n_fluid));
         }
         touched.sort_unstable();
         touched.dedup();
@@ -410,29 +477,33 @@ impl<const D: usize> Problem<D> {
     }
 
     /// Makes the shares of every wall sum to one exactly.
-    fn fix_shares(&self, x: &mut Unknowns<D>) {
-        for (w, sharers) in self.sharers.iter().enumerate() {
-            let excess = self.defect(self.n_fluid + w, x).closure[0] / sharers.len().max(1) as f64;
-            for (_, p) in sharers {
-                x.area[*p as usize] -= self.wall(&self.links[*p as usize]) * excess;
-            }
+    fn fix_shares(&mut self) {
+        for sharers in self.sharers.iter_mut().filter(|s| !s.is_empty()) {
+            let excess = (sharers.iter().map(|s| s.share).sum::<f64>() - 1.0) / sharers.len() as f64;
+            sharers.iter_mut().for_each(|s| s.share -= excess);
         }
     }
 
-    fn surface(&self, i: usize, x: &Unknowns<D>) -> f64 {
-        self.range(i).map(|p| x.area[p].norm()).sum()
+    /// The sum of the sizes of all area vectors of every fluid particle.
+    fn surfaces(&self, operators: &Operators<D>) -> Vec<f64> {
+        let mut all = vec![0.0; self.n_fluid];
+        self.sum_edges(operators, &mut all, |sum, s, _| *sum += s.norm());
+        for s in self.sharers.iter().flatten() {
+            all[s.i as usize] += (self.wall(&self.link(s)) * s.share).norm();
+        }
+        all
     }
 
-    fn judge(&self, x: &Unknowns<D>) -> ConservativeReport {
+    fn judge(&self, operators: &Operators<D>) -> ConservativeReport {
         let (mut closure, mut square, mut largest, mut volume) = (0.0f64, 0.0, (0.0f64, 0), f64::INFINITY);
-        for i in 0..self.n_fluid {
-            let defect = self.defect(i, x);
-            closure = closure.max(defect.closure.norm() / self.surface(i, x).max(f64::MIN_POSITIVE));
-            let error = defect.moment.iter().map(Vector::norm_squared).sum::<f64>().sqrt() / x.volume[i].abs();
+        let (defects, surfaces) = (self.defects(operators), self.surfaces(operators));
+        for (i, defect) in defects[..self.n_fluid].iter().enumerate() {
+            closure = closure.max(defect.closure.norm() / surfaces[i].max(f64::MIN_POSITIVE));
+            let error = defect.moment.iter().map(Vector::norm_squared).sum::<f64>().sqrt() / self.volume[i].abs();
             square += error * error;
             // a number that is none counts as the largest
             largest = if error <= largest.0 || largest.0.is_nan() { largest } else { (error, i) };
-            volume = volume.min(x.volume[i] / self.unit[i]);
+            volume = volume.min(self.volume[i] / self.unit[i]);
         }
         ConservativeReport {
             iterations: 0,
@@ -447,15 +518,26 @@ impl<const D: usize> Problem<D> {
         }
     }
 
+    /// The pieces of wall that bound fluid particles, in the order of their entries.
+    fn wall_faces(&self) -> Vec<WallFace<D>> {
+        let mut all: Vec<&Sharer> = self.sharers.iter().flatten().collect();
+        all.sort_unstable_by_key(|s| s.p);
+        let face = |s: &&Sharer| {
+            let area = self.wall(&self.link(s)) * s.share;
+            WallFace { i: s.i, wall: self.links.end(s.p as usize) as u32, area }
+        };
+        all.iter().map(face).collect()
+    }
+
     /// What row `i` makes of its own multipliers.
     fn own(&self, i: usize, y: &Row<D>) -> Row<D> {
         let mut row = self.soft(i, y);
-        for link in &self.links[self.range(i)] {
+        for (_, link) in self.links.of(i) {
             let reach = link.reach();
             let own = Vector::from_fn(|r| y.closure[r] + reach * y.moment[r].dot(&link.offset));
             let change = match link.kind {
                 Kind::Wall(_) => {
-                    let a = self.wall(link);
+                    let a = self.wall(&link);
                     a * (link.weight * own.dot(&a))
                 }
                 _ => own * link.weight,
@@ -466,8 +548,19 @@ impl<const D: usize> Problem<D> {
     }
 
     /// Entries of row `i` whose area vectors may change.
-    fn passing(&self, i: usize) -> impl Iterator<Item = &Link<D>> {
-        self.links[self.range(i)].iter().filter(|l| !l.is_wall())
+    fn passing(&self, i: usize) -> impl Iterator<Item = Link<D>> {
+        self.links.of(i).map(|(_, l)| l).filter(|l| !l.is_wall())
+    }
+
+    /// Those of them to rows of a range that a way has passed, each with that row.
+    #[inline(always)]
+    fn passed(&self, i: usize, range: &Range<usize>, way: Way) -> impl Iterator<Item = (usize, Link<D>)> {
+        let passed = move |p: &usize| {
+            let j = self.links.end(*p);
+            j >= self.n_fluid || way.has_passed(range, i, j)
+        };
+        let all = self.links.range(i).filter(passed).map(move |p| self.links.at(i, p)).map(|l| (l.other as usize, l));
+        all.filter(move |(j, l)| !l.is_wall() && l.kind != Kind::Open && way.has_passed(range, i, *j))
     }
 
     /// Sign with which component `r` of the row at the other end of an entry is seen.
@@ -480,7 +573,7 @@ impl<const D: usize> Problem<D> {
     }
 }
 
-impl<const D: usize> Grid<Row<D>> for Problem<D> {
+impl<const D: usize> Grid<Row<D>> for Problem<'_, D> {
     #[inline(always)]
     fn left(&self, i: usize, b: &Row<D>, x: &[Row<D>]) -> Row<D> {
         b.plus(-1.0, &self.row(i, x))
@@ -488,11 +581,8 @@ impl<const D: usize> Grid<Row<D>> for Problem<D> {
 
     #[inline(always)]
     fn less(&self, i: usize, mut r: Row<D>, range: &Range<usize>, found: &[Row<D>], way: Way) -> Row<D> {
-        for link in &self.links[self.range(i)] {
-            let other = link.other as usize;
-            if way.has_passed(range, i, other) && link.kind != Kind::Open {
-                r.add(&(self.across(link, &found[other - range.start]) * link.weight), &link.offset, link.reach());
-            }
+        for (other, link) in self.passed(i, range, way) {
+            r.add(&(self.across(&link, &found[other - range.start]) * link.weight), &link.offset, link.reach());
         }
         r
     }
@@ -507,34 +597,6 @@ impl<const D: usize> Grid<Row<D>> for Problem<D> {
         let mut walls = vec![0.0; self.sharers.len()];
         sweep(&mut walls, |w| (b[self.n_fluid + w].closure[0] - self.wall_row(w, x)) / self.shared[w]);
         sweep_slots(&mut x[self.n_fluid..], |w, x| x.closure[0] += walls[w]);
-    }
-}
-
-/// Writes the result back.
-fn store<const D: usize>(cloud: &mut Cloud<D>, operators: &mut Operators<D>, problem: &Problem<D>, x: &Unknowns<D>) {
-    let mut faces = Vec::new();
-    for i in 0..problem.n_fluid {
-        for p in problem.range(i) {
-            if problem.links[p].is_wall() {
-                faces.push(WallFace { i: i as u32, wall: cloud.neighbours.index[p], area: x.area[p] });
-            }
-        }
-    }
-    operators.set_wall_faces(faces);
-    for e in operators.edges_mut() {
-        let i = e.i();
-        if i >= problem.n_fluid {
-            continue;
-        }
-        if let Ok(p) = cloud.neighbours.of(i).binary_search(&(e.j() as u32)) {
-            let p = problem.first[i] as usize + p;
-            e.s = if problem.links[p].is_wall() { Vector::ZERO } else { x.area[p] };
-        }
-    }
-    cloud.volume[..problem.n_fluid].copy_from_slice(&x.volume);
-    let first = cloud.n_real();
-    for (k, image) in cloud.ghosts.iter().enumerate() {
-        cloud.volume[first + k] = cloud.volume[image.source as usize];
     }
 }
 

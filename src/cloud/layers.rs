@@ -193,24 +193,17 @@ pub(super) fn face_volume<const D: usize>(cloud: &Cloud<D>, i: usize, j: usize) 
     2.0 / (1.0 / cloud.volume[i] + 1.0 / cloud.volume[j])
 }
 
-/// The first layer reaches down to the wall: its faces with the columns beside grow by the half layer that the interface
-/// particles stand for elsewhere, and its volumes with them.
-pub(super) fn stand_on_wall<const D: usize>(
-    cloud: &Cloud<D>,
-    first: &[u32],
-    area: &mut [Vector<D>],
-    volume: &mut [f64],
-) {
-    let at_wall = |i: usize| cloud.layers.slot(i).filter(|s| s.1 == 1).map(|s| cloud.volume[cloud.n_fluid + s.0]);
-    for i in 0..cloud.n_fluid {
-        let Some(half) = at_wall(i) else { continue };
-        volume[i] += half;
-        for (p, j) in cloud.neighbours.of(i).iter().enumerate() {
-            let j = cloud.source(*j as usize).index;
-            if let Some(other) = at_wall(j) {
-                let grown = 1.0 + 0.5 * (half / cloud.volume[i] + other / cloud.volume[j]);
-                area[first[i] as usize + p] = area[first[i] as usize + p] * grown;
-            }
-        }
+/// The first layer reaches down to the wall: its volumes grow by the half layer that the interface particles stand for elsewhere.
+/// That half layer, where particle `i` is in the first layer.
+pub(super) fn below_first<const D: usize>(cloud: &Cloud<D>, i: usize) -> Option<f64> {
+    cloud.layers.slot(i).filter(|s| s.1 == 1).map(|s| cloud.volume[cloud.n_fluid + s.0])
+}
+
+/// Factor by which the face between two particles grows with their volumes where both are in the first layer.
+pub(super) fn grown_face<const D: usize>(cloud: &Cloud<D>, i: usize, j: usize) -> f64 {
+    let j = cloud.source(j).index;
+    match (below_first(cloud, i), below_first(cloud, j)) {
+        (Some(half), Some(other)) => 1.0 + 0.5 * (half / cloud.volume[i] + other / cloud.volume[j]),
+        _ => 1.0,
     }
 }

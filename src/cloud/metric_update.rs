@@ -46,11 +46,11 @@ impl<const D: usize> Operators<D> {
         sweep_parts(&self.parts, 1, &mut all, &|k, out| {
             let start = self.parts[k].start;
             out.fill(std::array::from_fn(Vector::axis));
-            for e in self.edges(k) {
+            for (e, [a_i, a_j]) in self.weighed_edges(from, k) {
                 let d = moved(e.j()) - moved(e.i());
-                (0..D).for_each(|r| out[e.i() - start][r] += e.a_i * d[r]);
+                (0..D).for_each(|r| out[e.i() - start][r] += a_i * d[r]);
                 if e.both() {
-                    (0..D).for_each(|r| out[e.j() - start][r] += e.a_j * -d[r]);
+                    (0..D).for_each(|r| out[e.j() - start][r] += a_j * -d[r]);
                 }
             }
         });

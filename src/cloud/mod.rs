@@ -39,7 +39,7 @@ use crate::math::Vector;
 
 pub use layout::Layout;
 pub use neighbours::Neighbours;
-pub use operators::{Edge, Operators};
+pub use operators::{Edge, Operators, Weights};
 pub use quality::Diagnosis;
 pub use spec::CloudSpec;
 pub use strain::Strain;

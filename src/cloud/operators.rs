@@ -1,8 +1,8 @@
 //! Derivative weights and the edges of the cloud.
 //!
 //! ∇f_i = Σ_j a_ij (f_j − f_i) by a linear least-squares fit with weights 1/r² (eqs (10)-(15)). The scheme works on *edges*:
-//! pairs of particles that see one another, each with a_ij, a_ji and the antisymmetric vector s_ij = V_i a_ij − V_j a_ji that
-//! weights the upwind dissipation. On a uniform lattice s_ij = 2 V a_ij and everything reduces to one set of coefficients.
+//! pairs of particles that see one another, each with the antisymmetric vector s_ij = V_i a_ij − V_j a_ji that weights the upwind
+//! dissipation; a_ij and a_ji follow from one small matrix a row. On a uniform lattice s_ij = 2 V a_ij and everything reduces to one set of coefficients.
 //!
 //! Rows are cut into contiguous *parts*; an edge inside a part is visited once and serves both ends, an edge between parts
 //! is stored with both. Every part writes only its own rows, so results do not depend on the number of threads.
@@ -30,18 +30,14 @@ const SEEN_BACK: u32 = 1 << 30;
 pub struct Edge<const D: usize> {
     i: u32,
     j: u32,
-    /// Weight a_ij of the derivative at the first end.
-    pub a_i: Vector<D>,
-    /// Weight a_ji of the derivative at the second end, zero if that has no cloud.
-    pub a_j: Vector<D>,
     /// V_i a_ij − V_j a_ji.
     pub s: Vector<D>,
 }
 
 impl<const D: usize> Edge<D> {
-    /// The edge from `i` to `j` that serves both, with the weights of the derivatives there and its area vector.
-    pub fn of_both(i: u32, j: u32, [a_i, a_j]: [Vector<D>; 2], s: Vector<D>) -> Self {
-        Self { i, j: j | BOTH, a_i, a_j, s }
+    /// The edge from `i` to `j` that serves both, with its area vector.
+    pub fn of_both(i: u32, j: u32, s: Vector<D>) -> Self {
+        Self { i, j: j | BOTH, s }
     }
 
     /// First end.
@@ -56,7 +52,9 @@ impl<const D: usize> Edge<D> {
         (self.j & !(BOTH | SEEN_BACK)) as usize
     }
 
-    fn seen_back(&self) -> bool {
+    /// True where the second end is a particle, not an image, that sees the first.
+    #[inline(always)]
+    pub fn seen_back(&self) -> bool {
         self.j & SEEN_BACK != 0
     }
 
@@ -64,6 +62,35 @@ impl<const D: usize> Edge<D> {
     #[inline(always)]
     pub fn both(&self) -> bool {
         self.j & BOTH != 0
+    }
+}
+
+/// Weights a_ij and a_ji of the derivatives at both ends of the edges of a part; that of an end that has no cloud, or is not served
+/// by the visit, is zero.
+#[derive(Clone, Copy)]
+pub struct Weights<'a, const D: usize> {
+    /// Of each row the matrix that makes a weight of an offset over its square, where offsets are plain differences.
+    inverse: &'a [[[f64; D]; D]],
+    /// Of each edge, where they are not.
+    stored: &'a [[Vector<D>; 2]],
+}
+
+impl<'a, const D: usize> Weights<'a, D> {
+    /// Those of edges in the order in which they come.
+    pub fn stored(stored: &'a [[Vector<D>; 2]]) -> Self {
+        Self { inverse: &[], stored }
+    }
+
+    /// Of the `n`-th edge of the part, which goes along `d`.
+    #[inline(always)]
+    pub fn of(&self, n: usize, e: &Edge<D>, d: &Vector<D>) -> [Vector<D>; 2] {
+        if let Some(pair) = self.stored.get(n) {
+            return *pair;
+        }
+        let scaled = *d * (1.0 / d.norm_squared());
+        let times = |m: &[[f64; D]; D]| Vector::from_fn(|r| (0..D).map(|c| m[r][c] * scaled[c]).sum::<f64>());
+        let back = e.both() && e.seen_back();
+        [times(&self.inverse[e.i()]), if back { -times(&self.inverse[e.j()]) } else { Vector::ZERO }]
     }
 }
 
@@ -76,6 +103,10 @@ pub struct Operators<const D: usize> {
     pub n_fluid_parts: usize,
     /// Edges of each part.
     edges: Vec<Vec<Edge<D>>>,
+    /// Of each row the matrix that makes weights; empty where there are layers.
+    inverse: Vec<[[f64; D]; D]>,
+    /// Weights of each edge of each part; empty where there are no layers.
+    stored: Vec<Vec<[Vector<D>; 2]>>,
     /// Condition number of the normal matrix of each row, infinite where the cloud determines no gradient.
     pub condition: Vec<f64>,
     /// True when what one particle loses another gains.
@@ -108,8 +139,17 @@ impl<const D: usize> Operators<D> {
         let mut edges = vec![Vec::new(); all.len()];
         sweep_each(&mut edges, |k| part_edges(cloud, &lookup, &all[k]));
         let (walls, wall_first) = (Vec::new(), vec![0; n_fluid_parts + 1]);
-        let mut operators =
-            Self { parts: all, n_fluid_parts, edges, condition: Vec::new(), conservative: false, walls, wall_first };
+        let mut operators = Self {
+            parts: all,
+            n_fluid_parts,
+            edges,
+            inverse: Vec::new(),
+            stored: Vec::new(),
+            condition: Vec::new(),
+            conservative: false,
+            walls,
+            wall_first,
+        };
         operators.fit(cloud, &lookup);
         operators
     }
@@ -124,16 +164,25 @@ impl<const D: usize> Operators<D> {
     }
 
     fn fit(&mut self, cloud: &Cloud<D>, lookup: &Reverse<'_, D>) {
-        let inverse = match cloud.layers.is_empty() {
+        let plain = cloud.layers.is_empty();
+        let inverse = match plain {
             true => self.fit_by_edges(cloud),
             false => self.fit_by_rows(cloud),
         };
-        let (parts, plain) = (&self.parts, cloud.layers.is_empty());
-        sweep_each_slot(&mut self.edges, |k, edges| {
+        sweep_each_slot(&mut self.edges, |_, edges| {
             edges.iter_mut().for_each(|e| match plain && e.j() < cloud.n_real() {
                 true => e.weigh(cloud, &inverse),
-                false => *e = edge(cloud, &inverse, lookup, (e.i(), e.j()), &parts[k]),
+                false => e.s = weights(cloud, &inverse, lookup, (e.i(), e.j())).1,
             });
+        });
+        if plain {
+            self.inverse = inverse;
+            return;
+        }
+        self.stored.resize(self.parts.len(), Vec::new());
+        let edges = &self.edges;
+        sweep_each(&mut self.stored, |k| {
+            edges[k].iter().map(|e| weights(cloud, &inverse, lookup, (e.i(), e.j())).0).collect()
         });
     }
 
@@ -173,27 +222,42 @@ impl<const D: usize> Operators<D> {
     }
 
     /// Gradient of a field at every fluid and interface particle from its `values` at all particles: exact where it is linear.
-    pub fn gradient(&self, values: &[f64]) -> Vec<Vector<D>> {
+    pub fn gradient(&self, cloud: &Cloud<D>, values: &[f64]) -> Vec<Vector<D>> {
         let mut gradient = vec![Vector::ZERO; self.parts.last().map_or(0, |p| p.end)];
         sweep_parts(&self.parts, 1, &mut gradient, &|k, out| {
             let start = self.parts[k].start;
-            for e in self.edges(k) {
+            for (e, [a_i, a_j]) in self.weighed_edges(cloud, k) {
                 let change = values[e.j()] - values[e.i()];
-                out[e.i() - start] += e.a_i * change;
+                out[e.i() - start] += a_i * change;
                 if e.both() {
-                    out[e.j() - start] -= e.a_j * change;
+                    out[e.j() - start] -= a_j * change;
                 }
             }
         });
         gradient
     }
 
-    /// Turns all vectors.
-    pub fn turn(&mut self, turned: impl Fn(&Vector<D>) -> Vector<D>) {
-        for e in self.edges_mut() {
-            (e.a_i, e.a_j, e.s) = (turned(&e.a_i), turned(&e.a_j), turned(&e.s));
-        }
-        self.walls.iter_mut().for_each(|w| w.area = turned(&w.area));
+    /// Weights of the derivatives at both ends of the edges of part `k`.
+    #[inline]
+    pub fn weights(&self, k: usize) -> Weights<'_, D> {
+        Weights { inverse: &self.inverse, stored: self.stored.get(k).map_or(&[], Vec::as_slice) }
+    }
+
+    /// Edges of part `k` with the weights of the derivatives at both ends; `cloud` is the one that the weights were fitted to.
+    #[inline]
+    pub fn weighed_edges<'a>(
+        &'a self,
+        cloud: &'a Cloud<D>,
+        k: usize,
+    ) -> impl Iterator<Item = (&'a Edge<D>, [Vector<D>; 2])> {
+        let weights = self.weights(k);
+        self.edges(k).iter().enumerate().map(move |(n, e)| (e, weights.of(n, e, &(cloud.x[e.j()] - cloud.x[e.i()]))))
+    }
+
+    /// Of each row the matrix that makes the gradient of Σ (d/d²)(f_j − f_i); nothing where there are layers.
+    #[inline]
+    pub fn inverse(&self) -> &[[[f64; D]; D]] {
+        &self.inverse
     }
 
     /// Area vectors s of all edges: those of `origin`, on the same lists, after `f(i, j, s)`.
@@ -201,6 +265,13 @@ impl<const D: usize> Operators<D> {
         let before = &origin.edges;
         sweep_each_slot(&mut self.edges, |k, edges| {
             edges.iter_mut().zip(&before[k]).for_each(|(e, o)| e.s = f(o.i(), o.j(), &o.s));
+        });
+    }
+
+    /// Replaces the area vectors of the edges of fluid particles by `f(i, j, s)`.
+    pub(super) fn alter_areas(&mut self, f: impl Fn(usize, usize, &Vector<D>) -> Vector<D> + Sync) {
+        sweep_each_slot(&mut self.edges[..self.n_fluid_parts], |_, edges| {
+            edges.iter_mut().for_each(|e| e.s = f(e.i(), e.j(), &e.s));
         });
     }
 
@@ -213,11 +284,6 @@ impl<const D: usize> Operators<D> {
     /// Parts of fluid particles.
     pub fn fluid_parts(&self) -> &[Range<usize>] {
         &self.parts[..self.n_fluid_parts]
-    }
-
-    /// All edges, part after part, to rewrite the dissipation vectors.
-    pub fn edges_mut(&mut self) -> impl Iterator<Item = &mut Edge<D>> {
-        self.edges.iter_mut().flatten()
     }
 
     /// Pieces of wall of fluid part `k`; none unless the coefficients are conservative.
@@ -238,7 +304,8 @@ impl<const D: usize> Operators<D> {
     /// Bytes held.
     pub fn bytes(&self) -> usize {
         let edges: usize = self.edges.iter().map(Vec::len).sum();
-        self.walls.len() * size_of::<WallFace<D>>() + edges * size_of::<Edge<D>>() + self.condition.len() * 8
+        let weights = self.inverse.len() * 8 * D * D + self.stored.iter().map(Vec::len).sum::<usize>() * 16 * D;
+        self.walls.len() * size_of::<WallFace<D>>() + edges * size_of::<Edge<D>>() + weights + self.condition.len() * 8
     }
 }
 
@@ -363,36 +430,30 @@ impl<const D: usize> Edge<D> {
     fn between(i: usize, j: usize, part: &Range<usize>, seen_back: bool) -> Self {
         let both = if part.contains(&j) { BOTH } else { 0 };
         let seen = if seen_back { SEEN_BACK } else { 0 };
-        let zero = Vector::ZERO;
-        Self { i: i as u32, j: j as u32 | both | seen, a_i: zero, a_j: zero, s: zero }
+        Self { i: i as u32, j: j as u32 | both | seen, s: Vector::ZERO }
     }
 
-    /// Sets the weights between particles that are no images, given the inverse normal matrices of all rows.
+    /// Sets the area vector between particles that are no images, given the inverse normal matrices of all rows.
     #[inline(always)]
     fn weigh(&mut self, cloud: &Cloud<D>, inverse: &[[[f64; D]; D]]) {
         let (i, j) = (self.i(), self.j());
         let d = cloud.x[j] - cloud.x[i];
         let a_i = gradient_weight(&inverse[i], &d);
-        self.a_i = a_i;
         // an end without a cloud counts as the mirror image of this one
-        (self.a_j, self.s) = match self.seen_back() {
-            true => {
-                let a_j = gradient_weight(&inverse[j], &-d);
-                (a_j, a_i * cloud.volume[i] - a_j * cloud.volume[j])
-            }
-            false => (Vector::ZERO, a_i * (2.0 * cloud.volume[i])),
+        self.s = match self.seen_back() {
+            true => a_i * cloud.volume[i] - gradient_weight(&inverse[j], &-d) * cloud.volume[j],
+            false => a_i * (2.0 * cloud.volume[i]),
         };
     }
 }
 
-/// An edge with its weights, whatever its second end.
-fn edge<const D: usize>(
+/// Weights at both ends of an edge, whatever its second end, and its area vector.
+fn weights<const D: usize>(
     cloud: &Cloud<D>,
     inverse: &[[[f64; D]; D]],
     reverse: &Reverse<'_, D>,
     (i, j): (usize, usize),
-    part: &Range<usize>,
-) -> Edge<D> {
+) -> ([Vector<D>; 2], Vector<D>) {
     let a_i = gradient_weight(&inverse[i], &cloud.offset(i, j));
     let back = reverse.position(i, j).map(|(e, transform)| match transform {
         None => gradient_weight(&inverse[j], &cloud.offset(j, i)),
@@ -407,8 +468,7 @@ fn edge<const D: usize>(
         Some(a_j) => a_i * cloud.volume[i] - a_j * cloud.volume[j],
         None => a_i * (2.0 * cloud.volume[i]),
     };
-    let seen_back = j < cloud.n_rows() && back.is_some();
-    Edge { a_i, a_j: back.unwrap_or(Vector::ZERO), s, ..Edge::between(i, j, part, seen_back) }
+    ([a_i, back.unwrap_or(Vector::ZERO)], s)
 }
 
 /// Rows whose neighbours are not all fluid particles in the interior: none of their entries is missing.

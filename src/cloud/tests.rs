@@ -55,11 +55,11 @@ fn check_gradients<const D: usize>(cloud: &Cloud<D>) {
     let operators = Operators::new(cloud);
     let mut gradient = vec![0.0; cloud.n_rows()];
     for k in 0..operators.parts.len() {
-        for e in operators.edges(k) {
+        for (e, [a_i, a_j]) in operators.weighed_edges(cloud, k) {
             let d = cloud.x[e.j()] - cloud.x[e.i()];
-            gradient[e.i()] += e.a_i[0] * d[0];
+            gradient[e.i()] += a_i[0] * d[0];
             if e.both() {
-                gradient[e.j()] -= e.a_j[0] * d[0];
+                gradient[e.j()] -= a_j[0] * d[0];
             }
         }
     }

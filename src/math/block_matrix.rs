@@ -1,20 +1,30 @@
 //! Sparse matrices of small dense blocks: what implicit steps are preconditioned with.
 //!
-//! Rows are particles. Each block is stored column by column, diagonal blocks in single precision, the others with the upper
-//! half of its bits (8 bits of significand): they only steer the linear solver, and sweeps run as fast as blocks are read.
-//! What rounding takes from a block goes to the diagonal of its row. Sweeps are Gauss-Seidel inside fixed parts of consecutive rows and Jacobi between them, so that the result does
-//! not depend on the number of threads.
+//! Rows are particles. Each block is stored column by column, diagonal blocks in single precision, the others as whole numbers
+//! from -127 to 127 of one unit a block: they only steer the linear solver, and sweeps run as fast as blocks are read. What
+//! rounding takes from a block goes to the diagonal of its row. Unknowns are to be scaled so that the entries of a block are of
+//! one size ([`BlockMatrix::assemble`]). Sweeps are Gauss-Seidel inside fixed parts of consecutive rows and Jacobi between them, so
+//! that the result does not depend on the number of threads.
 use std::ops::Range;
 
 use multiversion::multiversion;
 
-use super::blocks::{array, store, with_block};
+use super::blocks::{MOST_ENTRIES, array, store, with_block};
 use super::sweep::{copy, fill, parts, sweep_parts, sweep_rows, sweep_two_parts};
 
 /// Fewest and most rows in one part of a coarse matrix.
 const PART: [usize; 2] = [64, 1024];
 /// Parts that a coarse matrix has where they are not smaller than that.
 const MANY_PARTS: usize = 8;
+
+/// Numbers that are read at once: a column of a block and what follows it.
+pub(super) const LANES: usize = 8;
+/// A column of a block, or what is summed of one; entries beyond the order of the block mean nothing.
+pub(super) type Lanes = [f32; LANES];
+/// Bytes before the entries of a block: the upper half of its unit.
+const UNIT: usize = 2;
+/// Largest whole number in a block.
+const LARGEST: f32 = 127.0;
 
 /// A sparse matrix of square blocks.
 #[derive(Clone, Debug, Default)]
@@ -24,13 +34,16 @@ pub struct BlockMatrix {
     column: Vec<u32>,
     /// Of each row: its first entry inside its part, its first one beyond the diagonal, its first one after its part.
     cut: Vec<[u32; 3]>,
-    value: Vec<u16>,
+    /// Of each off-diagonal block its unit and its entries; [`LANES`] more at the end.
+    value: Vec<u8>,
     diagonal: Vec<f32>,
     inverse: Vec<f32>,
     parts: Vec<Range<usize>>,
     value_parts: Vec<Range<usize>>,
     /// Weight with which assemblies add to what is there; `None`: they make blocks anew.
     weight: Option<f32>,
+    /// Sizes of the unknowns of a row: inside, each counts in its own.
+    scale: Vec<f32>,
 }
 
 /// An approximate solution of A x = b and the sums that its sweeps share.
@@ -96,7 +109,7 @@ impl BlockMatrix {
         Self {
             block,
             cut,
-            value: vec![0; column.len() * size],
+            value: vec![0; column.len() * (UNIT + size) + LANES],
             diagonal: vec![0.0; n * size],
             inverse: vec![0.0; n * size],
             first,
@@ -104,7 +117,31 @@ impl BlockMatrix {
             parts,
             value_parts,
             weight: None,
+            scale: vec![1.0; block],
         }
+    }
+
+    /// The same with unknowns of these sizes, which come into what is assembled, and out of what is solved by
+    /// [`Self::enter`] and [`Self::leave`].
+    ///
+    /// # Panics
+    ///
+    /// Where there are not as many as a row has unknowns.
+    pub fn scaled(self, scale: &[f64]) -> Self {
+        assert_eq!(scale.len(), self.block);
+        Self { scale: scale.iter().map(|s| *s as f32).collect(), ..self }
+    }
+
+    /// Turns right-hand sides, row after row, into those of the scaled matrix.
+    #[inline(always)]
+    pub fn enter(&self, b: &mut [f32]) {
+        b.chunks_exact_mut(self.block).for_each(|b| b.iter_mut().zip(&self.scale).for_each(|(b, s)| *b /= s));
+    }
+
+    /// Entry `k` of a solution of the scaled matrix, unscaled.
+    #[inline(always)]
+    pub fn leave(&self, x: &[f32], k: usize) -> f32 {
+        x[k] * self.scale[k % self.block]
     }
 
     /// Makes the matrix the mean of the next `count` assemblies, until [`Self::end_mean`].
@@ -131,7 +168,7 @@ impl BlockMatrix {
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        2 * self.value.len() + 4 * (2 * self.inverse.len() + self.column.len() + self.first.len() + 3 * self.cut.len())
+        self.value.len() + 4 * (2 * self.inverse.len() + self.column.len() + self.first.len() + 3 * self.cut.len())
     }
 
     /// Parts in which rows are assembled and swept.
@@ -140,10 +177,16 @@ impl BlockMatrix {
     }
 
     /// Calls `f(k, rows)` for every part; `rows` adds to the blocks of the rows of part `k`, which are zero at first.
+    ///
+    /// An entry smaller than a 254th of the largest one of its off-diagonal block is lost there.
     pub fn assemble(&mut self, f: impl Fn(usize, &mut Rows<'_>) + Sync) {
         let (first, column, block, parts) = (&self.first, &self.column, self.block, &self.parts);
         let (size, weight) = (block * block, self.weight);
-        let values = (self.value_parts.as_slice(), size, self.value.as_mut_slice());
+        let mut factor = [0.0; MOST_ENTRIES];
+        for (k, factor) in factor[..size].iter_mut().enumerate() {
+            *factor = weight.unwrap_or(1.0) * self.scale[k / block] / self.scale[k % block];
+        }
+        let values = (self.value_parts.as_slice(), UNIT + size, self.value.as_mut_slice());
         let diagonals = (parts.as_slice(), size, self.diagonal.as_mut_slice());
         sweep_two_parts(values, diagonals, &|k, value, diagonal| {
             if weight.is_none() {
@@ -151,7 +194,7 @@ impl BlockMatrix {
                 diagonal.fill(0.0);
             }
             let start = parts[k].start;
-            f(k, &mut Rows { first, column, value, diagonal, start, block, weight: weight.unwrap_or(1.0) });
+            f(k, &mut Rows { first, column, value, diagonal, start, block, factor: &factor });
         });
     }
 
@@ -210,19 +253,19 @@ impl BlockMatrix {
         let at = (i - part.start) * N;
         let (below, inside, above) = self.split_row(i);
         let middle = self.middle(i);
-        let mut r = load::<N>(b, i);
+        let mut r = load_lanes::<N>(b, i);
         for e in below.chain(above) {
-            subtract::<N>(self.off_diagonal(e), &load::<N>(old, self.column[e] as usize), &mut r);
+            subtract::<N>(self.off_diagonal::<N>(e), &load::<N>(old, self.column[e] as usize), &mut r);
         }
         let swept = if forward { inside.start..middle } else { middle..inside.end };
-        let mut sum = [0.0; N];
+        let mut sum = [0.0; LANES];
         for e in swept {
-            subtract::<N>(self.off_diagonal(e), &load::<N>(x, self.column[e] as usize - part.start), &mut sum);
+            subtract::<N>(self.off_diagonal::<N>(e), &load::<N>(x, self.column[e] as usize - part.start), &mut sum);
         }
         (0..N).for_each(|c| r[c] += side[at + c] + sum[c]);
-        store(&sum, &mut side[at..]);
+        store(&leading::<N>(&sum), &mut side[at..]);
         let mut y = [0.0; N];
-        multiply::<N>(&self.inverse[i * N * N..(i + 1) * N * N], &r, &mut y);
+        multiply::<N>(&self.inverse[i * N * N..(i + 1) * N * N], &leading::<N>(&r), &mut y);
         store(&y, &mut x[at..]);
     }
 
@@ -263,10 +306,11 @@ impl BlockMatrix {
         &self.inverse[i * self.block * self.block..(i + 1) * self.block * self.block]
     }
 
+    /// Unit and entries of entry `e`, and what follows them.
     #[inline(always)]
-    pub(super) fn off_diagonal(&self, e: usize) -> &[u16] {
-        let size = self.block * self.block;
-        &self.value[e * size..(e + 1) * size]
+    pub(super) fn off_diagonal<const N: usize>(&self, e: usize) -> &[u8] {
+        let at = e * (UNIT + N * N);
+        &self.value[at..at + UNIT + (N - 1) * N + LANES]
     }
 
     /// s.r = b − A x; and what a sweep needs to know of `s.x` after it was changed.
@@ -281,9 +325,9 @@ impl BlockMatrix {
             for (i, row) in part.clone().zip(out.chunks_exact_mut(N)) {
                 let (below, inside, above) = self.split_row(i);
                 let middle = self.middle(i);
-                let mut sum = load::<N>(b, i);
+                let mut sum = load_lanes::<N>(b, i);
                 for e in below.chain(inside.start..middle).chain(above) {
-                    subtract::<N>(self.off_diagonal(e), &load::<N>(x, self.column[e] as usize), &mut sum);
+                    subtract::<N>(self.off_diagonal::<N>(e), &load::<N>(x, self.column[e] as usize), &mut sum);
                 }
                 let mut own = [0.0; N];
                 multiply::<N>(&self.diagonal[i * N * N..(i + 1) * N * N], &load::<N>(x, i), &mut own);
@@ -305,11 +349,11 @@ impl BlockMatrix {
             for (i, row) in part.clone().zip(out.chunks_exact_mut(N)) {
                 let (_, inside, _) = self.split_row(i);
                 let middle = self.middle(i);
-                let mut sum = [0.0; N];
+                let mut sum = [0.0; LANES];
                 for e in middle..inside.end {
-                    subtract::<N>(self.off_diagonal(e), &load::<N>(x, self.column[e] as usize), &mut sum);
+                    subtract::<N>(self.off_diagonal::<N>(e), &load::<N>(x, self.column[e] as usize), &mut sum);
                 }
-                store(&sum, row);
+                store(&leading::<N>(&sum), row);
             }
         });
     }
@@ -341,42 +385,45 @@ impl BlockMatrix {
             first.push(column.len() as u32);
         }
         let parts = parts(n_groups, (n_groups / MANY_PARTS).clamp(PART[0], PART[1]));
-        (Self::from_pattern(self.block, first, column, parts), target)
+        (Self { scale: self.scale.clone(), ..Self::from_pattern(self.block, first, column, parts) }, target)
     }
 
     /// Sums the blocks of `fine` into this matrix: `members(g)` are the rows of group g in ascending order, `target` says where
     /// each off-diagonal block goes.
     pub fn gather<'a>(&mut self, fine: &Self, members: impl Fn(usize) -> &'a [u32] + Sync, target: &[u32]) {
-        let size = self.block * self.block;
-        let (parts, value_parts) = (self.parts.as_slice(), self.value_parts.as_slice());
-        let values = (value_parts, size, self.value.as_mut_slice());
-        sweep_two_parts(values, (parts, size, self.diagonal.as_mut_slice()), &|k, value, diagonal| {
-            value.fill(0);
-            diagonal.fill(0.0);
-            let start = value_parts[k].start;
-            for (g, own) in parts[k].clone().zip(diagonal.chunks_exact_mut(size)) {
-                for i in members(g).iter().map(|i| *i as usize) {
-                    own.iter_mut().zip(&fine.diagonal[i * size..(i + 1) * size]).for_each(|(a, b)| *a += b);
-                    let entries = fine.first[i] as usize..fine.first[i + 1] as usize;
-                    fine.gather_row(entries, (target, start), value, own);
-                }
-            }
-        });
+        with_block!(self.block, N => self.gather_blocks::<N>(fine, &members, target))
     }
 
-    /// Adds the off-diagonal blocks `entries` to those of a group.
-    fn gather_row(&self, entries: Range<usize>, to: (&[u32], usize), value: &mut [u16], own: &mut [f32]) {
-        let (size, (target, start)) = (self.block * self.block, to);
-        for e in entries {
-            let from = self.off_diagonal(e);
-            if target[e] == u32::MAX {
-                own.iter_mut().zip(from).for_each(|(a, b)| *a += widen(*b));
-            } else {
-                let at = (target[e] as usize - start) * size;
-                let to = value[at..at + size].iter_mut();
-                to.zip(from).zip(own.iter_mut()).for_each(|((a, b), d)| *d += add(a, widen(*b)));
+    fn gather_blocks<'a, const N: usize>(
+        &mut self,
+        fine: &Self,
+        members: &(impl Fn(usize) -> &'a [u32] + Sync),
+        target: &[u32],
+    ) {
+        let size = N * N;
+        let (parts, value_parts, first) = (self.parts.as_slice(), self.value_parts.as_slice(), &self.first);
+        let values = (value_parts, UNIT + size, self.value.as_mut_slice());
+        sweep_two_parts(values, (parts, size, self.diagonal.as_mut_slice()), &|k, value, diagonal| {
+            let mut blocks = value.chunks_exact_mut(UNIT + size);
+            let mut row: Vec<f32> = Vec::new();
+            for (g, own) in parts[k].clone().zip(diagonal.chunks_exact_mut(size)) {
+                let start = first[g] as usize;
+                row.clear();
+                row.resize((first[g + 1] as usize - start) * size, 0.0);
+                own.fill(0.0);
+                for i in members(g).iter().map(|i| *i as usize) {
+                    own.iter_mut().zip(&fine.diagonal[i * size..(i + 1) * size]).for_each(|(a, b)| *a += b);
+                    for e in fine.first[i] as usize..fine.first[i + 1] as usize {
+                        let to = match target[e] {
+                            u32::MAX => &mut *own,
+                            to => &mut row[(to as usize - start) * size..][..size],
+                        };
+                        add_block::<N>(fine.off_diagonal::<N>(e), to);
+                    }
+                }
+                row.chunks_exact(size).zip(&mut blocks).for_each(|(sum, block)| round_block(sum, block, own));
             }
-        }
+        });
     }
 
     /// Columns of row `i` beside its own, in ascending order.
@@ -412,11 +459,12 @@ fn cut(i: usize, part: &Range<usize>, first: &[u32], column: &[u32]) -> [u32; 3]
 pub struct Rows<'a> {
     first: &'a [u32],
     column: &'a [u32],
-    value: &'a mut [u16],
+    value: &'a mut [u8],
     diagonal: &'a mut [f32],
     start: usize,
     block: usize,
-    weight: f32,
+    /// What entries are multiplied by, for their scale and for means.
+    factor: &'a [f32; MOST_ENTRIES],
 }
 
 impl Rows<'_> {
@@ -432,41 +480,69 @@ impl Rows<'_> {
         let at = (i - self.start) * n * n;
         let own = &mut self.diagonal[at..at + n * n];
         if i == j {
-            (0..n).for_each(|c| (0..n).for_each(|r| own[c * n + r] += self.weight * f(r, c) as f32));
+            (0..n).for_each(|c| (0..n).for_each(|r| own[c * n + r] += self.factor[c * n + r] * f(r, c) as f32));
             return;
         }
         let row = self.first[i] as usize..self.first[i + 1] as usize;
         let Ok(k) = self.column[row.clone()].binary_search(&(j as u32)) else { return };
-        let at = (row.start + k - self.first[self.start] as usize) * n * n;
-        let block = &mut self.value[at..at + n * n];
+        let at = (row.start + k - self.first[self.start] as usize) * (UNIT + n * n);
+        let block = &mut self.value[at..at + UNIT + n * n];
+        let unit = unit_of(block);
+        let mut sum = [0.0; MOST_ENTRIES];
         for c in 0..n {
             for r in 0..n {
-                own[c * n + r] += add(&mut block[c * n + r], self.weight * f(r, c) as f32);
+                sum[c * n + r] = unit * f32::from(block[UNIT + c * n + r] as i8) + self.factor[c * n + r] * f(r, c) as f32;
             }
         }
+        round_block(&sum[..n * n], block, own);
     }
 }
 
-/// Adds `x` to a number in half the bits and returns what was lost, so that it can go to the diagonal: sums of rows, which
-/// rule the slow modes, then stay exact.
+/// Unit of the entries of a block.
 #[inline(always)]
-fn add(half: &mut u16, x: f32) -> f32 {
-    let exact = widen(*half) + x;
-    *half = narrow(exact);
-    exact - widen(*half)
+fn unit_of(block: &[u8]) -> f32 {
+    f32::from_bits(u32::from(u16::from_le_bytes([block[0], block[1]])) << 16)
 }
 
-/// The upper half of the bits of a number, rounded to even.
+/// Writes the numbers of a block, and adds what rounding takes from them to `own`: sums of rows, which rule the slow modes,
+/// then stay exact.
 #[inline(always)]
-fn narrow(x: f32) -> u16 {
-    let bits = x.to_bits();
-    (bits.wrapping_add(0x7fff + ((bits >> 16) & 1)) >> 16) as u16
+fn round_block(sum: &[f32], block: &mut [u8], own: &mut [f32]) {
+    // twelve and a half million: sums with it have no room for fractions
+    const WHOLE: f32 = 12_582_912.0;
+    let largest = sum.iter().fold(0.0f32, |m, x| m.max(x.abs()));
+    // half of the bits, rounded up
+    let half = (largest / LARGEST).to_bits().wrapping_add(0xffff) >> 16;
+    let unit = f32::from_bits(half << 16);
+    let scale = if unit >= f32::MIN_POSITIVE { 1.0 / unit } else { 0.0 };
+    block[..UNIT].copy_from_slice(&(half as u16).to_le_bytes());
+    for ((x, to), own) in sum.iter().zip(&mut block[UNIT..]).zip(own) {
+        let whole = x * scale + WHOLE;
+        *to = (whole.to_bits() as i32 - WHOLE.to_bits() as i32) as u8;
+        *own += x - (whole - WHOLE) * unit;
+    }
 }
 
-/// The number whose upper half this is.
+/// sum ← sum + B.
 #[inline(always)]
-fn widen(half: u16) -> f32 {
-    f32::from_bits(u32::from(half) << 16)
+fn add_block<const N: usize>(block: &[u8], sum: &mut [f32]) {
+    let unit = unit_of(block);
+    let entries = block[UNIT..UNIT + N * N].iter();
+    sum[..N * N].iter_mut().zip(entries).for_each(|(s, b)| *s += unit * f32::from(*b as i8));
+}
+
+/// The first `N` numbers.
+#[inline(always)]
+pub(super) fn leading<const N: usize>(lanes: &Lanes) -> [f32; N] {
+    array(|k| lanes[k])
+}
+
+#[inline(always)]
+pub(super) fn load_lanes<const N: usize>(x: &[f32], i: usize) -> Lanes {
+    let x = &x[i * N..(i + 1) * N];
+    let mut lanes = [0.0; LANES];
+    (0..N).for_each(|k| lanes[k] = x[k]);
+    lanes
 }
 
 #[inline(always)]
@@ -475,25 +551,38 @@ pub(super) fn load<const N: usize>(x: &[f32], i: usize) -> [f32; N] {
     array(|k| x[k])
 }
 
-/// r ← r − B x for a block stored by columns.
+/// r ← r − B x.
 #[inline(always)]
-pub(super) fn subtract<const N: usize>(block: &[u16], x: &[f32; N], r: &mut [f32; N]) {
-    subtract_wide(&widen_block::<N>(block), x, r);
+pub(super) fn subtract<const N: usize>(block: &[u8], x: &[f32; N], r: &mut Lanes) {
+    let unit = unit_of(block);
+    for c in 0..N {
+        let (column, x) = (column::<N>(block, c), unit * x[c]);
+        for k in 0..LANES {
+            r[k] -= column[k] * x;
+        }
+    }
+}
+
+/// Column `c` of a block, in its unit.
+#[inline(always)]
+fn column<const N: usize>(block: &[u8], c: usize) -> Lanes {
+    let entries = &block[UNIT + c * N..UNIT + c * N + LANES];
+    array(|k| f32::from(entries[k] as i8))
 }
 
 /// The numbers of a block, by columns.
 #[inline(always)]
-pub(super) fn widen_block<const N: usize>(block: &[u16]) -> [[f32; N]; N] {
-    let block = &block[..N * N];
-    array(|c| array(|k| widen(block[c * N + k])))
+pub(super) fn widen_block<const N: usize>(block: &[u8]) -> [Lanes; N] {
+    let unit = unit_of(block);
+    array(|c| column::<N>(block, c).map(|b| unit * b))
 }
 
 /// r ← r − B x.
 #[inline(always)]
-pub(super) fn subtract_wide<const N: usize>(block: &[[f32; N]; N], x: &[f32], r: &mut [f32; N]) {
+pub(super) fn subtract_wide<const N: usize>(block: &[Lanes; N], x: &[f32], r: &mut Lanes) {
     let x = &x[..N];
     for c in 0..N {
-        for k in 0..N {
+        for k in 0..LANES {
             r[k] -= block[c][k] * x[c];
         }
     }

@@ -9,7 +9,7 @@ use std::ops::Range;
 
 use multiversion::multiversion;
 
-use super::block_matrix::{BlockMatrix, load, multiply, subtract_wide, widen_block};
+use super::block_matrix::{BlockMatrix, LANES, Lanes, leading, load, multiply, subtract_wide, widen_block};
 use super::blocks::{store, with_block};
 use super::sweep::{copy, fill, sweep_parts, sweep_two_parts};
 
@@ -125,7 +125,7 @@ impl HarmonicSweeps {
             for (i, row) in part.clone().zip(out.chunks_exact_mut(N * count)) {
                 let (below, inside, above) = matrix.split_row(i);
                 let middle = matrix.middle(i);
-                let mut sum = [[0.0; N]; MOST];
+                let mut sum = [[0.0; LANES]; MOST];
                 let sum = &mut sum[..count];
                 for e in below.chain(inside.start..middle).chain(above) {
                     gather::<N>(matrix, e, &x[matrix.column(e) * count * N..], sum);
@@ -159,11 +159,11 @@ impl HarmonicSweeps {
             let part = matrix.parts()[k].clone();
             for (i, row) in part.clone().zip(out.chunks_exact_mut(N * count)) {
                 let (_, inside, _) = matrix.split_row(i);
-                let mut sum = [[0.0; N]; MOST];
+                let mut sum = [[0.0; LANES]; MOST];
                 for e in matrix.middle(i)..inside.end {
                     gather::<N>(matrix, e, &x[matrix.column(e) * count * N..], &mut sum[..count]);
                 }
-                row.chunks_exact_mut(N).zip(&sum).for_each(|(row, sum)| store(sum, row));
+                row.chunks_exact_mut(N).zip(&sum).for_each(|(row, sum)| store(&leading::<N>(sum), row));
             }
         });
     }
@@ -171,8 +171,8 @@ impl HarmonicSweeps {
 
 /// sum ← sum − B x for all coefficients of one neighbour.
 #[inline(always)]
-fn gather<const N: usize>(matrix: &BlockMatrix, e: usize, x: &[f32], sum: &mut [[f32; N]]) {
-    let block = widen_block::<N>(matrix.off_diagonal(e));
+fn gather<const N: usize>(matrix: &BlockMatrix, e: usize, x: &[f32], sum: &mut [Lanes]) {
+    let block = widen_block::<N>(matrix.off_diagonal::<N>(e));
     for (x, sum) in x.chunks_exact(N).zip(sum) {
         subtract_wide::<N>(&block, x, sum);
     }
@@ -209,8 +209,8 @@ fn relax_row<const N: usize, const COUNT: usize>(
     let at = (i - part.start) * count * N;
     let (below, inside, above) = matrix.split_row(i);
     let middle = matrix.middle(i);
-    let mut r = [[0.0; N]; COUNT];
-    let mut sum = [[0.0; N]; COUNT];
+    let mut r = [[0.0; LANES]; COUNT];
+    let mut sum = [[0.0; LANES]; COUNT];
     for e in below.chain(above) {
         gather::<N>(matrix, e, &old[matrix.column(e) * count * N..], &mut r[..count]);
     }
@@ -222,15 +222,15 @@ fn relax_row<const N: usize, const COUNT: usize>(
         for v in 0..N {
             r[c][v] += b[(i * count + c) * N + v] + side[at + c * N + v] + sum[c][v];
         }
-        store(&sum[c], &mut side[at + c * N..]);
+        store(&leading::<N>(&sum[c]), &mut side[at + c * N..]);
     }
     let mut y = [0.0; N];
-    multiply::<N>(matrix.inverse(i), &r[0], &mut y);
+    multiply::<N>(matrix.inverse(i), &leading::<N>(&r[0]), &mut y);
     store(&y, &mut x[at..]);
     for m in 0..harmonics {
         let own = &inverse[m * 2 * N * N..(m + 1) * 2 * N * N];
         let (real, imaginary) = own.split_at(N * N);
-        let (rc, rs) = (&r[2 * m + 1], &r[2 * m + 2]);
+        let (rc, rs) = (&leading::<N>(&r[2 * m + 1]), &leading::<N>(&r[2 * m + 2]));
         // (P − iQ)(r_c − i r_s) = (P r_c − Q r_s) − i (P r_s + Q r_c)
         let (mut c, mut s, mut q) = ([0.0; N], [0.0; N], [0.0; N]);
         multiply::<N>(real, rc, &mut c);

@@ -11,7 +11,7 @@ use std::ops::Range;
 
 use multiversion::multiversion;
 
-use super::block_matrix::{BlockMatrix, invert, load, multiply, subtract, widen_block};
+use super::block_matrix::{BlockMatrix, LANES, Lanes, leading, invert, load, multiply, subtract, widen_block};
 use super::blocks::{array, store, with_block};
 use super::sweep::{sweep, sweep_parts};
 
@@ -55,7 +55,11 @@ impl Incomplete {
     /// z ≈ A⁻¹ r, where `r(i, row)` sets row i of the right-hand side and `matrix` is the one that was factored: solved once with
     /// the factors, and once more for what is left, blocks between parts included.
     pub fn apply(&mut self, matrix: &BlockMatrix, r: impl Fn(usize, &mut [f32]) + Sync, z: &mut [f64]) {
-        with_block!(matrix.block(), N => self.solve::<N>(matrix, &r, z));
+        let scaled = |i: usize, row: &mut [f32]| {
+            r(i, row);
+            matrix.enter(row);
+        };
+        with_block!(matrix.block(), N => self.solve::<N>(matrix, &scaled, z));
     }
 
     fn solve<const N: usize>(&mut self, matrix: &BlockMatrix, b: &(impl Fn(usize, &mut [f32]) + Sync), z: &mut [f64]) {
@@ -64,7 +68,7 @@ impl Incomplete {
         let first = &first[..];
         sweep_parts(parts, N, &mut self.second, &|k, y| correct_part::<N>(matrix, (inverse, first), &parts[k], b, y));
         let second = &self.second;
-        sweep(z, |k| f64::from(first[k] + second[k]));
+        sweep(z, |k| f64::from(matrix.leave(first, k) + matrix.leave(second, k)));
     }
 }
 
@@ -81,22 +85,22 @@ fn solve_part<const N: usize>(
     let start = part.start;
     for i in part.clone() {
         let (_, inside, _) = matrix.split_row(i);
-        let mut r = [0.0; N];
-        b(i, &mut r);
+        let mut r = [0.0; LANES];
+        b(i, &mut r[..N]);
         for e in inside.start..matrix.middle(i) {
-            subtract::<N>(matrix.off_diagonal(e), &load::<N>(x, matrix.column(e) - start), &mut r);
+            subtract::<N>(matrix.off_diagonal::<N>(e), &load::<N>(x, matrix.column(e) - start), &mut r);
         }
         add_pivoted::<N>(inverse, i, &r, [0.0; N], &mut x[(i - start) * N..]);
     }
     backward::<N>(matrix, inverse, part, x);
 }
 
-/// The same for what the solution `first` has left of the right-hand side.
+/// The same for what the solution `solved` has left of the right-hand side.
 #[multiversion(targets("x86_64+avx2"))]
 #[allow(unsafe_code, reason = "the attribute calls the version that the processor has just been asked for")]
 fn correct_part<const N: usize>(
     matrix: &BlockMatrix,
-    (inverse, first): (&[f32], &[f32]),
+    (inverse, solved): (&[f32], &[f32]),
     part: &Range<usize>,
     b: &impl Fn(usize, &mut [f32]),
     y: &mut [f32],
@@ -104,18 +108,20 @@ fn correct_part<const N: usize>(
     let start = part.start;
     for i in part.clone() {
         let (below, inside, above) = matrix.split_row(i);
-        let mut r = [0.0; N];
-        b(i, &mut r);
-        let own = load::<N>(first, i);
-        multiply::<N>(matrix.diagonal(i), &array(|c| -own[c]), &mut r);
+        let mut r = [0.0; LANES];
+        b(i, &mut r[..N]);
+        let own = load::<N>(solved, i);
+        let mut turned = leading::<N>(&r);
+        multiply::<N>(matrix.diagonal(i), &array(|c| -own[c]), &mut turned);
+        r[..N].copy_from_slice(&turned);
         for e in below.chain(matrix.middle(i)..inside.end).chain(above) {
-            subtract::<N>(matrix.off_diagonal(e), &load::<N>(first, matrix.column(e)), &mut r);
+            subtract::<N>(matrix.off_diagonal::<N>(e), &load::<N>(solved, matrix.column(e)), &mut r);
         }
         // what is left of the right-hand side and what the forward solve takes from it, at once
         for e in inside.start..matrix.middle(i) {
             let j = matrix.column(e);
-            let (x, y) = (load::<N>(first, j), load::<N>(y, j - start));
-            subtract::<N>(matrix.off_diagonal(e), &array(|c| x[c] + y[c]), &mut r);
+            let (x, y) = (load::<N>(solved, j), load::<N>(y, j - start));
+            subtract::<N>(matrix.off_diagonal::<N>(e), &array(|c| x[c] + y[c]), &mut r);
         }
         add_pivoted::<N>(inverse, i, &r, [0.0; N], &mut y[(i - start) * N..]);
     }
@@ -127,9 +133,9 @@ fn correct_part<const N: usize>(
 fn backward<const N: usize>(matrix: &BlockMatrix, inverse: &[f32], part: &Range<usize>, x: &mut [f32]) {
     for i in part.clone().rev() {
         let (_, inside, _) = matrix.split_row(i);
-        let mut r = [0.0; N];
+        let mut r = [0.0; LANES];
         for e in matrix.middle(i)..inside.end {
-            subtract::<N>(matrix.off_diagonal(e), &load::<N>(x, matrix.column(e) - part.start), &mut r);
+            subtract::<N>(matrix.off_diagonal::<N>(e), &load::<N>(x, matrix.column(e) - part.start), &mut r);
         }
         let own = load::<N>(x, i - part.start);
         add_pivoted::<N>(inverse, i, &r, own, &mut x[(i - part.start) * N..]);
@@ -138,9 +144,9 @@ fn backward<const N: usize>(matrix: &BlockMatrix, inverse: &[f32], part: &Range<
 
 /// x_i = own + D_i⁻¹ r.
 #[inline(always)]
-fn add_pivoted<const N: usize>(inverse: &[f32], i: usize, r: &[f32; N], own: [f32; N], x: &mut [f32]) {
+fn add_pivoted<const N: usize>(inverse: &[f32], i: usize, r: &Lanes, own: [f32; N], x: &mut [f32]) {
     let mut y = own;
-    multiply::<N>(&inverse[i * N * N..(i + 1) * N * N], r, &mut y);
+    multiply::<N>(&inverse[i * N * N..(i + 1) * N * N], &leading::<N>(r), &mut y);
     store(&y, x);
 }
 
@@ -152,12 +158,12 @@ fn pivot<const N: usize>(matrix: &BlockMatrix, i: usize, start: usize, before: &
     for e in inside.start..matrix.middle(i) {
         let j = matrix.column(e);
         let Some(back) = matrix.entry(j, i) else { continue };
-        let there = widen_block::<N>(matrix.off_diagonal(e));
-        let back = widen_block::<N>(matrix.off_diagonal(back));
+        let there = widen_block::<N>(matrix.off_diagonal::<N>(e));
+        let back = widen_block::<N>(matrix.off_diagonal::<N>(back));
         let inverse = &before[(j - start) * N * N..(j - start + 1) * N * N];
         for c in 0..N {
             let mut t = [0.0; N];
-            multiply::<N>(inverse, &back[c], &mut t);
+            multiply::<N>(inverse, &leading::<N>(&back[c]), &mut t);
             for m in 0..N {
                 (0..N).for_each(|r| pivot[c][r] -= f64::from(there[m][r] * t[m]));
             }

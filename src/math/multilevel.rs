@@ -122,12 +122,15 @@ impl Multilevel {
             return apply_in_time(&mut self.levels, self.cycle, times, r, z);
         }
         let n = self.levels[0].matrix.block();
-        let finest = &mut self.levels[0].sweeps;
-        sweep_rows(&mut finest.b, n, r);
-        finest.clear();
+        let Level { matrix, sweeps, .. } = &mut self.levels[0];
+        sweep_rows(&mut sweeps.b, n, |i, b| {
+            r(i, b);
+            matrix.enter(b);
+        });
+        sweeps.clear();
         cycle(&mut self.levels, self.cycle);
-        let x = &self.levels[0].sweeps.x;
-        sweep(z, |k| f64::from(x[k]));
+        let Level { matrix, sweeps, .. } = &self.levels[0];
+        sweep(z, |k| f64::from(matrix.leave(&sweeps.x, k)));
     }
 
     /// Bytes held.
@@ -159,12 +162,14 @@ fn sorted(c: usize, count: usize) -> usize {
 
 fn apply_in_time(levels: &mut [Level], how: Cycle, times: &Times, r: impl Fn(usize, &mut [f32]) + Sync, z: &mut [f64]) {
     let (n, count) = (levels[0].matrix.block(), times.count);
-    let Some(finest) = levels[0].harmonic_sweeps.as_mut() else { return };
+    let Level { matrix, harmonic_sweeps, .. } = &mut levels[0];
+    let Some(finest) = harmonic_sweeps.as_mut() else { return };
     // places inside a row: (instance or coefficient, unknown)
     let row = |k: usize| (k / (n * count) * n * count, k / n % count, k % n);
     sweep_rows(&mut finest.b, n * count, |i, b| {
         let mut values = [0.0; MOST_VALUES];
         r(i, &mut values[..n * count]);
+        matrix.enter(&mut values[..n * count]);
         b.fill(0.0);
         for instance in 0..count {
             for v in 0..n {
@@ -175,11 +180,12 @@ fn apply_in_time(levels: &mut [Level], how: Cycle, times: &Times, r: impl Fn(usi
     });
     finest.clear();
     cycle(levels, how);
-    let Some(finest) = levels[0].harmonic_sweeps.as_ref() else { return };
+    let Level { matrix, harmonic_sweeps, .. } = &levels[0];
+    let Some(finest) = harmonic_sweeps.as_ref() else { return };
     sweep(z, |k| {
         let (at, instance, v) = row(k);
         let weights = &times.back[instance * count..(instance + 1) * count];
-        weights.iter().enumerate().map(|(c, w)| w * f64::from(finest.x[at + c * n + v])).sum()
+        weights.iter().enumerate().map(|(c, w)| w * f64::from(matrix.leave(&finest.x, at + c * n + v))).sum()
     });
 }
 

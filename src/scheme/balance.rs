@@ -291,11 +291,11 @@ impl<'a, const D: usize> Balance<'a, D> {
         if frame.moves() {
             sweep_parts(op.fluid_parts(), 1, &mut divergence, &|k, out| {
                 let start = op.parts[k].start;
-                for e in op.edges(k) {
+                for (e, [a_i, a_j]) in op.weighed_edges(&now.cloud, k) {
                     let change = frame.velocity_of(e.j()) - frame.velocity_of(e.i());
-                    out[e.i() - start] += e.a_i.dot(&change);
+                    out[e.i() - start] += a_i.dot(&change);
                     if e.both() {
-                        out[e.j() - start] -= e.a_j.dot(&change);
+                        out[e.j() - start] -= a_j.dot(&change);
                     }
                 }
             });

@@ -5,7 +5,7 @@
 //! comes out is added to the rows of the part in the order of the edges. The sums are therefore those of one edge at a time.
 use multiversion::multiversion;
 
-use crate::cloud::Edge;
+use crate::cloud::{Edge, Weights};
 use crate::math::Vector;
 use crate::math::blocks::array;
 use crate::physics::riemann::UpwindFlux;
@@ -163,12 +163,12 @@ impl<const D: usize> Batch<D> {
 pub fn edge_fluxes<const D: usize, F: UpwindFlux<D>, L: Limit>(
     scheme: &FluxScheme<F, L>,
     particles: Particles<'_, D>,
-    edges: &[Edge<D>],
+    (edges, weights): (&[Edge<D>], Weights<'_, D>),
     add: &mut impl FnMut(usize, &Conserved<D>),
 ) {
     let mut batch = Batch::BLANK;
-    for some in edges.chunks(LANES) {
-        gather(scheme, &particles, some, &mut batch);
+    for (c, some) in edges.chunks(LANES).enumerate() {
+        gather(scheme, &particles, (some, c * LANES, &weights), &mut batch);
         reconstruct(scheme.gas, scheme.limit, scheme.reconstruction, &mut batch);
         if scheme.reconstruction.low_mach {
             low_mach_corrections(scheme.gas, &mut batch);
@@ -202,13 +202,14 @@ pub fn edge_fluxes<const D: usize, F: UpwindFlux<D>, L: Limit>(
 fn gather<const D: usize, F, L>(
     scheme: &FluxScheme<F, L>,
     p: &Particles<'_, D>,
-    edges: &[Edge<D>],
+    (edges, first, weights): (&[Edge<D>], usize, &Weights<'_, D>),
     batch: &mut Batch<D>,
 ) {
+    let weighed = !scheme.conservative || !p.velocity.is_empty();
     for (k, e) in edges.iter().enumerate() {
         let ends = [e.i(), e.j()];
         let d = p.x[ends[1]] - p.x[ends[0]];
-        let weights = [&e.a_i, &e.a_j];
+        let pair = if weighed { weights.of(first + k, e, &d) } else { [Vector::ZERO; 2] };
         for side in 0..2 {
             let i = ends[side];
             let q = &p.state[i];
@@ -219,8 +220,8 @@ fn gather<const D: usize, F, L>(
             if scheme.reconstruction.second_order {
                 batch.slope[side].put_primitive(k, &p.gradient[i].along(&d).times(1.0 - p.steepness[i]));
             }
-            if !scheme.conservative || !p.velocity.is_empty() {
-                put(&mut batch.weight[side], k, &(*weights[side] * -p.volume[i]));
+            if weighed {
+                put(&mut batch.weight[side], k, &(pair[side] * -p.volume[i]));
             }
             if !p.velocity.is_empty() {
                 put(&mut batch.speed[side], k, &p.velocity[i]);

@@ -10,7 +10,7 @@ use super::edge_flux::half_face;
 use super::fluid::{Fluid, Work};
 use super::frame::Frame;
 use super::viscous::WallCondition;
-use crate::cloud::Edge;
+use crate::cloud::{Edge, Weights};
 use crate::math::Vector;
 use crate::math::block_matrix::{BlockMatrix, Rows};
 use crate::physics::riemann::rounded;
@@ -87,7 +87,7 @@ pub fn dissipation_matrix<const D: usize>(gas: &Gas, q: &Primitive<D>, n: &Vecto
 pub fn assemble<const D: usize>(fluid: &Fluid<D>, frame: &Frame<D>, work: &Work<D>, matrix: &mut BlockMatrix) {
     let (op, cloud) = (&frame.discretisation.operators, &frame.discretisation.cloud);
     matrix.assemble(|k, rows| {
-        edge_blocks(fluid, (frame, work), op.edges(k), rows);
+        edge_blocks(fluid, (frame, work), (op.edges(k), op.weights(k)), rows);
         if fluid.conservative {
             for face in op.wall_faces(k) {
                 let i = face.i as usize;
@@ -120,10 +120,16 @@ struct End<const D: usize> {
 /// Adds the blocks of the edges of a part.
 #[multiversion(targets("x86_64+avx2"))]
 #[allow(unsafe_code, reason = "the attribute calls the version that the processor has just been asked for")]
-fn edge_blocks<const D: usize>(fluid: &Fluid<D>, at: (&Frame<D>, &Work<D>), edges: &[Edge<D>], rows: &mut Rows<'_>) {
+fn edge_blocks<const D: usize>(
+    fluid: &Fluid<D>,
+    at: (&Frame<D>, &Work<D>),
+    (edges, weights): (&[Edge<D>], Weights<'_, D>),
+    rows: &mut Rows<'_>,
+) {
     let (frame, work) = at;
     let (cloud, by_faces) = (&frame.discretisation.cloud, fluid.passes_by_faces());
-    for edge in edges {
+    let weighed = !fluid.conservative || frame.moves() && !by_faces;
+    for (n, edge) in edges.iter().enumerate() {
         let (i, j) = (edge.i(), edge.j());
         let (qi, qj) = (&work.state[i], &work.state[j]);
         let size = edge.s.norm();
@@ -131,12 +137,13 @@ fn edge_blocks<const D: usize>(fluid: &Fluid<D>, at: (&Frame<D>, &Work<D>), edge
         let mean = Primitive::zip(qi, qj, |a, b| 0.5 * (a + b));
         let drift = 0.5 * (frame.velocity_of(i) + frame.velocity_of(j)).dot(&m);
         let spread = dissipation_matrix(&fluid.gas, &mean, &m, drift);
-        let (exchange, layers) = fluid.viscous_edge(work, edge, cloud);
-        let (a_i, a_j) = match fluid.conservative {
-            true => (half_face(cloud.volume[i], &edge.s), -half_face(cloud.volume[j], &edge.s)),
-            false => (edge.a_i, edge.a_j),
+        let weights = if weighed { weights.of(n, edge, &(cloud.x[j] - cloud.x[i])) } else { [Vector::ZERO; 2] };
+        let (exchange, layers) = fluid.viscous_edge(work, (edge, &weights), cloud);
+        let [a_i, a_j] = match fluid.conservative {
+            true => [half_face(cloud.volume[i], &edge.s), -half_face(cloud.volume[j], &edge.s)],
+            false => weights,
         };
-        let passed = if by_faces { [a_i, a_j] } else { [edge.a_i, edge.a_j] };
+        let passed = if by_faces { [a_i, a_j] } else { weights };
         let end = End { row: i, column: j, passed: passed[0], face: a_i, exchange: exchange.0 };
         one_sided(fluid, at, &end, (0.5 * size, &spread), (&layers[0], &layers[1]), rows);
         if edge.both() {

@@ -4,6 +4,7 @@
 //! one goes on to serve while the cloud turns. Where a system reaches across the cloud, sweeps on a hierarchy of levels
 //! ([`crate::math::multilevel`]); where the term of time couples what is near, an incomplete factorisation
 //! ([`crate::math::incomplete`]). For all instances of a period at once, sweeps harmonic by harmonic.
+use crate::math::Vector;
 use crate::math::block_matrix::BlockMatrix;
 use crate::math::incomplete::Incomplete;
 use crate::math::multilevel::Multilevel;
@@ -30,7 +31,12 @@ impl<const D: usize> Implicit for Fluid<D> {
         let (discretisation, block) = (&self.discretisation, n_variables(D));
         let neighbours = &discretisation.cloud.neighbours;
         let parts = discretisation.operators.fluid_parts();
-        let matrix = BlockMatrix::new(block, parts, &neighbours.first, &neighbours.index);
+        // momentum counts in that of the stream or of sound, energy in the energy of that
+        let stream = self.far_field.state(&Vector::ZERO, &Vector::ZERO);
+        let speed = self.gas.sound_speed(&stream).max(stream.velocity.norm());
+        let mut scale = vec![speed; block];
+        (scale[0], scale[block - 1]) = (1.0, speed * speed);
+        let matrix = BlockMatrix::new(block, parts, &neighbours.first, &neighbours.index).scaled(&scale);
         let levels = Multilevel::new(matrix, plan.group, plan.cycle);
         let levels = match period {
             Some(period) => levels.in_time(period.instances, period.omega),

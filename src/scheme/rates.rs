@@ -10,7 +10,8 @@ use crate::math::sweep::{sweep, sweep_parts};
 impl<const D: usize> Fluid<D> {
     /// Fills `rate` from the states of fluid particles in `work`.
     pub(super) fn fill_rates(&self, frame: &Frame<D>, work: &mut Work<D>, rate: &mut [f64]) {
-        let (op, volume) = (&frame.discretisation.operators, &frame.discretisation.cloud.volume);
+        let (op, cloud) = (&frame.discretisation.operators, &frame.discretisation.cloud);
+        let volume = &cloud.volume;
         let Work { state, sound, .. } = work;
         sweep(sound, |i| self.gas.sound_speed(&state[i]));
         let work = &*work;
@@ -20,11 +21,12 @@ impl<const D: usize> Fluid<D> {
         sweep_parts(op.fluid_parts(), 1, rate, &|k, out| {
             let start = op.parts[k].start;
             out.fill(0.0);
-            for e in op.edges(k) {
+            let weights = op.weights(k);
+            for (n, e) in op.edges(k).iter().enumerate() {
                 let (i, j) = (e.i(), e.j());
-                let (a_i, a_j) = match self.conservative {
-                    true => (half_face(volume[i], &e.s), half_face(volume[j], &e.s)),
-                    false => (e.a_i, e.a_j),
+                let [a_i, a_j] = match self.conservative {
+                    true => [half_face(volume[i], &e.s), half_face(volume[j], &e.s)],
+                    false => weights.of(n, e, &(cloud.x[j] - cloud.x[i])),
                 };
                 out[i - start] += speed(i, &a_i);
                 if e.both() {

@@ -51,6 +51,12 @@ impl<const D: usize> Gradient<D> {
         self.pressure += *a * dq.pressure;
     }
 
+    /// Gradients of which each is `f` of one here.
+    #[inline(always)]
+    pub fn map(&self, f: impl Fn(&Vector<D>) -> Vector<D>) -> Self {
+        Self { density: f(&self.density), velocity: self.velocity.each_ref().map(&f), pressure: f(&self.pressure) }
+    }
+
     /// How far the pressure `p` is from linear within a spacing `h`: 0 in smooth flow and weak shocks, 1 in strong ones.
     #[inline(always)]
     pub fn steepness(&self, h: f64, p: f64) -> f64 {

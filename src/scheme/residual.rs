@@ -84,7 +84,7 @@ impl<const D: usize> Fluid<D> {
             let start = op.parts[k].start;
             out.fill(0.0);
             let mut to = |i: usize, change: &Conserved<D>| change.add_to(&mut out[(i - start) * n_variables(D)..]);
-            edge_fluxes(&scheme, particles, op.edges(k), &mut to);
+            edge_fluxes(&scheme, particles, (op.edges(k), op.weights(k)), &mut to);
             if self.conservative {
                 self.wall_fluxes(op.wall_faces(k), at, &mut to);
                 self.viscous_walls(op.wall_faces(k), at, &mut to);

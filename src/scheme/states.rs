@@ -104,13 +104,27 @@ impl<const D: usize> Fluid<D> {
         sweep_parts(&op.parts, 1, rows, &|k, out| {
             let start = op.parts[k].start;
             out.fill(Gradient::ZERO);
+            let inverse = op.inverse();
+            if inverse.is_empty() {
+                for (e, [a_i, a_j]) in op.weighed_edges(cloud, k) {
+                    let dq = state[e.j()].minus(&state[e.i()]);
+                    out[e.i() - start].add(&a_i, &dq);
+                    if e.both() {
+                        out[e.j() - start].add(&-a_j, &dq);
+                    }
+                }
+                return;
+            }
+            // both ends sum the same, and only then make gradients of it
             for e in op.edges(k) {
-                let dq = state[e.j()].minus(&state[e.i()]);
-                out[e.i() - start].add(&e.a_i, &dq);
-                if e.both() {
-                    out[e.j() - start].add(&-e.a_j, &dq);
+                let (d, dq) = (cloud.x[e.j()] - cloud.x[e.i()], state[e.j()].minus(&state[e.i()]));
+                let scaled = d * (1.0 / d.norm_squared());
+                out[e.i() - start].add(&scaled, &dq);
+                if e.both() && e.seen_back() {
+                    out[e.j() - start].add(&scaled, &dq);
                 }
             }
+            out.iter_mut().zip(&inverse[start..]).for_each(|(g, m)| *g = g.map(|v| Vector::from_fn(|r| (0..D).map(|c| m[r][c] * v[c]).sum())));
         });
         cloud.first_order.iter().for_each(|i| rows[*i as usize] = Gradient::ZERO);
         let rows = &*rows;

@@ -130,8 +130,8 @@ impl<const D: usize> Fluid<D> {
         sweep_parts(op.fluid_parts(), 1, rate, &|k, out| {
             let start = op.parts[k].start;
             let diffusivity = |i: usize| viscous_model.medium.diffusivity(&self.gas, &work.state[i]);
-            for e in op.edges(k) {
-                let (to_i, to_j) = self.exchange(e, cloud);
+            for (e, weights) in op.weighed_edges(cloud, k) {
+                let (to_i, to_j) = self.exchange((e, &weights), cloud);
                 out[e.i() - start] += to_i * diffusivity(e.i());
                 if e.both() {
                     out[e.j() - start] += to_j * diffusivity(e.j());
@@ -146,13 +146,13 @@ impl<const D: usize> Fluid<D> {
 
     /// Area over volume and distance of the face of an edge, as each end sees it.
     #[inline(always)]
-    fn exchange(&self, e: &Edge<D>, cloud: &Cloud<D>) -> (f64, f64) {
+    fn exchange(&self, (e, weights): (&Edge<D>, &[Vector<D>; 2]), cloud: &Cloud<D>) -> (f64, f64) {
         let d = cloud.x[e.j()] - cloud.x[e.i()];
         let m = direction(&e.s, &d);
         let across = 2.0 / reach(&d, &m);
-        let (a_i, a_j) = match self.conservative {
-            true => (half_face(cloud.volume[e.i()], &e.s), -half_face(cloud.volume[e.j()], &e.s)),
-            false => (e.a_i, e.a_j),
+        let [a_i, a_j] = match self.conservative {
+            true => [half_face(cloud.volume[e.i()], &e.s), -half_face(cloud.volume[e.j()], &e.s)],
+            false => *weights,
         };
         (a_i.dot(&m).max(0.0) * across, (-a_j.dot(&m)).max(0.0) * across)
     }
@@ -173,13 +173,18 @@ impl<const D: usize> Fluid<D> {
 
     /// Viscosity times area over volume and distance of an edge, as each end sees it, and what [`thin_layer`] gives for both ends.
     #[inline(always)]
-    pub(super) fn viscous_edge(&self, work: &Work<D>, e: &Edge<D>, cloud: &Cloud<D>) -> ((f64, f64), [Block; 2]) {
+    pub(super) fn viscous_edge(
+        &self,
+        work: &Work<D>,
+        (e, weights): (&Edge<D>, &[Vector<D>; 2]),
+        cloud: &Cloud<D>,
+    ) -> ((f64, f64), [Block; 2]) {
         let mut layers = [[[0.0; 5]; 5]; 2];
         let Some(viscous_model) = &self.viscous_model else { return ((0.0, 0.0), layers) };
         let (medium, ends) = (&viscous_model.medium, [&work.state[e.i()], &work.state[e.j()]]);
         let mu = 0.5 * (medium.at(self.gas.temperature(ends[0])) + medium.at(self.gas.temperature(ends[1])));
         let m = direction(&e.s, &(cloud.x[e.j()] - cloud.x[e.i()]));
-        let (to_i, to_j) = self.exchange(e, cloud);
+        let (to_i, to_j) = self.exchange((e, weights), cloud);
         for side in 0..2 {
             thin_layer(&self.gas, medium, ends[side], &m, &mut layers[side]);
         }

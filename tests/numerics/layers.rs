@@ -26,12 +26,12 @@ const PLUS: &str = "polygon = [[1, 0], [2, 0], [2, 1], [3, 1], [3, 2], [2, 2], [
 fn slope_error(cloud: &Cloud<2>, operators: &Operators<2>) -> f64 {
     let mut slope = vec![[Vector::<2>::ZERO; 2]; cloud.n_rows()];
     for k in 0..operators.parts.len() {
-        for e in operators.edges(k) {
+        for (e, [a_i, a_j]) in operators.weighed_edges(cloud, k) {
             let d = cloud.x[e.j()] - cloud.x[e.i()];
             for axis in 0..2 {
-                slope[e.i()][axis] += e.a_i * d[axis];
+                slope[e.i()][axis] += a_i * d[axis];
                 if e.both() {
-                    slope[e.j()][axis] -= e.a_j * d[axis];
+                    slope[e.j()][axis] -= a_j * d[axis];
                 }
             }
         }
@@ -263,9 +263,10 @@ fn the_last_column_before_a_sharp_edge_looks_both_ways() {
     let mut shares = Vec::new();
     for (c, column) in cloud.layers.columns.iter().enumerate().filter(|(_, c)| c.beside.contains(&None)) {
         let (i, along) = (column.particles[0] as usize, cloud.layers.axes(c)[0]);
-        let edges = (0..operators.fluid_parts().len()).flat_map(|k| operators.edges(k));
-        let rows = edges
-            .flat_map(|e| [(e.i(), e.j(), e.a_i), (e.j(), e.i(), e.a_j)].into_iter().take(1 + usize::from(e.both())));
+        let edges = (0..operators.fluid_parts().len()).flat_map(|k| operators.weighed_edges(&cloud, k));
+        let rows = edges.flat_map(|(e, [a_i, a_j])| {
+            [(e.i(), e.j(), a_i), (e.j(), e.i(), a_j)].into_iter().take(1 + usize::from(e.both()))
+        });
         let behind = rows.filter(|(own, other, _)| *own == i && cloud.layers.slot(*other).is_none());
         let share: f64 = behind.map(|(_, j, a)| a.dot(&along) * (cloud.x[j] - cloud.x[i]).dot(&along)).sum();
         shares.push(share);

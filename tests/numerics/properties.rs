@@ -353,7 +353,7 @@ fn gradient_error<const D: usize>(
     scale: impl Fn(f64) -> f64,
 ) -> f64 {
     let values: Vec<f64> = cloud.x.iter().map(field).collect();
-    let found = Operators::new(cloud).gradient(&values);
+    let found = Operators::new(cloud).gradient(cloud, &values);
     let error = |(i, g): (usize, &Vector<D>)| (*g - slope(&cloud.x[i])).max_abs() / scale(cloud.spacing[i]);
     let fitted = |i: usize| cloud.first_order.binary_search(&(i as u32)).is_err();
     largest(found.iter().enumerate().filter(|(i, _)| fitted(*i)).map(error))

@@ -4,8 +4,9 @@
 use std::ops::Range;
 
 use super::cycle::{Cycle, Grid, Levels, Way};
-use super::{MOST_ITERATIONS, Problem, Unknowns};
-use crate::cloud::coefficient_unknowns::{Kind, Link, sweep_entries};
+use super::{MOST_ITERATIONS, Problem};
+use crate::cloud::Operators;
+use crate::cloud::coefficient_unknowns::{Kind, Link};
 use crate::math::Vector;
 use crate::math::conjugate::{Symmetric, conjugate_gradients};
 use crate::math::sweep::{sum, sweep};
@@ -19,17 +20,15 @@ const FLOOR: f64 = 0.1;
 /// Rounds.
 const ROUNDS: usize = 4;
 
-impl<const D: usize> Problem<D> {
+impl<const D: usize> Problem<'_, D> {
     /// Closes all particles; the iterations that it took.
-    pub(super) fn close(&self, x: &mut Unknowns<D>, levels: &Levels<D>) -> usize {
-        let (n, mut iterations) = (self.n_fluid, 0);
-        let mut weight = vec![0.0; n];
-        sweep(&mut weight, |i| self.passing(i).map(|l| l.weight).sum::<f64>().max(f64::MIN_POSITIVE));
+    pub(super) fn close(&self, operators: &mut Operators<D>, levels: &Levels<D>) -> usize {
+        let (n, mut iterations, weight) = (self.n_fluid, 0, &self.passing);
         let mut cycle = Cycle::new(levels, n);
         for _ in 0..ROUNDS {
-            let allowed = |i: usize| ROUND_OFF * self.surface(i, x);
-            let mut r = vec![Vector::ZERO; n];
-            sweep(&mut r, |i| -self.defect(i, x).closure);
+            let surfaces = self.surfaces(operators);
+            let allowed = |i: usize| ROUND_OFF * surfaces[i];
+            let mut r = self.open(operators);
             if (0..n).all(|i| r[i].norm() <= allowed(i)) {
                 break;
             }
@@ -43,15 +42,24 @@ impl<const D: usize> Problem<D> {
             let mut y = vec![Vector::ZERO; n];
             let system = Symmetric { enough: |r: &[Vector<D>]| size(r) <= goal, product, precondition };
             iterations += conjugate_gradients(&mut y, &mut r, MOST_ITERATIONS, system);
-            sweep_entries(&self.first, &mut x.area, |i, p, area| *area += self.closure_change(i, &self.links[p], &y));
-            self.mirror(x);
+            self.alter(operators, |i, link| self.closure_change(i, link, &y));
         }
         iterations
     }
 
+    /// What the area vectors of every fluid particle lack.
+    fn open(&self, operators: &Operators<D>) -> Vec<Vector<D>> {
+        let mut all = vec![Vector::ZERO; self.n_fluid];
+        self.sum_edges(operators, &mut all, |sum, s, _| *sum -= *s);
+        for s in self.sharers.iter().flatten() {
+            all[s.i as usize] -= self.wall(&self.link(s)) * s.share;
+        }
+        all
+    }
+
     #[inline(always)]
     fn closure_row(&self, i: usize, y: &[Vector<D>]) -> Vector<D> {
-        self.passing(i).fold(Vector::ZERO, |s, l| s + self.closure_change(i, l, y))
+        self.passing(i).fold(Vector::ZERO, |s, l| s + self.closure_change(i, &l, y))
     }
 
     /// What `y` changes the area vector of an entry of row `i` by.
@@ -67,7 +75,7 @@ impl<const D: usize> Problem<D> {
     }
 }
 
-impl<const D: usize> Grid<Vector<D>> for Problem<D> {
+impl<const D: usize> Grid<Vector<D>> for Problem<'_, D> {
     #[inline(always)]
     fn left(&self, i: usize, b: &Vector<D>, x: &[Vector<D>]) -> Vector<D> {
         *b - self.closure_row(i, x)
@@ -75,15 +83,14 @@ impl<const D: usize> Grid<Vector<D>> for Problem<D> {
 
     #[inline(always)]
     fn less(&self, i: usize, r: Vector<D>, range: &Range<usize>, found: &[Vector<D>], way: Way) -> Vector<D> {
-        let passed = self.passing(i).filter(|l| l.kind != Kind::Open && way.has_passed(range, i, l.other as usize));
-        passed.fold(r, |r, l| {
-            let other = &found[l.other as usize - range.start];
-            r + Vector::from_fn(|d| self.sign(l, d) * other[d]) * l.weight
+        self.passed(i, range, way).fold(r, |r, (j, l)| {
+            let other = &found[j - range.start];
+            r + Vector::from_fn(|d| self.sign(&l, d) * other[d]) * l.weight
         })
     }
 
     #[inline(always)]
     fn solved(&self, i: usize, r: &Vector<D>) -> Vector<D> {
-        *r * (1.0 / self.passing(i).map(|l| l.weight).sum::<f64>().max(f64::MIN_POSITIVE))
+        *r * (1.0 / self.passing[i])
     }
 }

@@ -72,14 +72,14 @@ pub(super) struct Levels<const D: usize> {
 }
 
 impl<const D: usize> Levels<D> {
-    pub(super) fn new(problem: &Problem<D>, mirrors: Vec<Mirror>) -> Self {
+    pub(super) fn new(problem: &Problem<'_, D>, mirrors: Vec<Mirror>) -> Self {
         Self { coarser: levels(problem), mirrors }
     }
 }
 
 impl<'a, const D: usize, V: Field<D>> Cycle<'a, D, V>
 where
-    Problem<D>: Grid<V>,
+    for<'p> Problem<'p, D>: Grid<V>,
     for<'l> Signed<'l, D>: Grid<V>,
 {
     pub(super) fn new(levels: &'a Levels<D>, n: usize) -> Self {
@@ -91,7 +91,7 @@ where
     }
 
     /// z ≈ A⁻¹ r.
-    pub(super) fn nearly_solve(&mut self, problem: &Problem<D>, r: &[V], z: &mut [V]) {
+    pub(super) fn nearly_solve(&mut self, problem: &Problem<'_, D>, r: &[V], z: &mut [V]) {
         sweep_slots(z, |_, z| *z = V::ZERO);
         visit(problem, &self.levels.coarser, &problem.signs, &mut self.stores, (r, &mut *z), true);
         let n = self.stores[0].left.len();

@@ -3,7 +3,7 @@
 //! Each level is what the one below makes of fields that are affine on every group (Galerkin), but for the pairs between groups: an
 //! affine field on groups has steps between them that a smooth field has not, and they are made less stiff. A wall stands with the
 //! nearest particle in front of it and follows the field there.
-use super::Problem;
+use super::{Problem, Sharer};
 use super::field::{Field, Moments};
 use crate::cloud::coefficient_unknowns::{ITSELF, Kind, Link};
 use crate::cloud::multipliers::{Factors, Row};
@@ -72,7 +72,7 @@ pub(super) struct Level<const D: usize> {
 }
 
 /// All of them, coarser and coarser.
-pub(super) fn levels<const D: usize>(problem: &Problem<D>) -> Vec<Level<D>> {
+pub(super) fn levels<const D: usize>(problem: &Problem<'_, D>) -> Vec<Level<D>> {
     let mut all: Vec<Level<D>> = Vec::new();
     while all.len() < MOST_LEVELS {
         let next = match all.last() {
@@ -194,17 +194,17 @@ impl<const D: usize> Finer<D> for Level<D> {
     }
 }
 
-/// The particles with the nearest one, and its entry, of those that share each wall.
+/// The particles with the nearest one of those that share each wall.
 struct Particles<'a, const D: usize> {
-    problem: &'a Problem<D>,
-    nearest: Vec<Option<(u32, u32)>>,
+    problem: &'a Problem<'a, D>,
+    nearest: Vec<Option<Sharer>>,
 }
 
 impl<'a, const D: usize> Particles<'a, D> {
-    fn new(problem: &'a Problem<D>) -> Self {
+    fn new(problem: &'a Problem<'a, D>) -> Self {
         let mut nearest = vec![None; problem.sharers.len()];
         sweep(&mut nearest, |w| {
-            let link = |s: &(u32, u32)| &problem.links[s.1 as usize];
+            let link = |s: &Sharer| problem.link(s);
             let here = problem.sharers[w].iter().filter(|s| link(s).kind == Kind::Wall(ITSELF));
             here.min_by(|a, b| link(a).offset.norm_squared().total_cmp(&link(b).offset.norm_squared())).copied()
         });
@@ -220,22 +220,21 @@ impl<'a, const D: usize> Particles<'a, D> {
 
     fn edges_along_wall(&self, i: usize, p: usize, transform: u8, f: &mut dyn FnMut(&Edge<D>)) {
         let problem = self.problem;
-        let link = &problem.links[p];
+        let link = &problem.links.at(i, p);
         let w = link.other as usize - problem.n_fluid;
-        let Some((row, entry)) = self.nearest[w] else { return };
+        let Some(nearest) = self.nearest[w] else { return };
         // all components, where only that across the wall is held: stiffer than it is, and alike in all of them
         let weight = |l: &Link<D>| l.weight * problem.walls[w].norm_squared();
-        if entry as usize != p {
-            let nearest = &problem.links[entry as usize];
-            f(&self.along_wall(row, transform, link, nearest, weight(link)));
+        if nearest.p as usize != p {
+            f(&self.along_wall(nearest.i, transform, link, &problem.link(&nearest), weight(link)));
             return;
         }
-        for (k, e) in problem.sharers[w].iter().filter(|s| s.1 as usize != p) {
-            let other = &problem.links[*e as usize];
+        for s in problem.sharers[w].iter().filter(|s| s.p as usize != p) {
+            let other = &problem.link(s);
             if let Kind::Wall(t) = other.kind
-                && (*k as usize != i || t != ITSELF)
+                && (s.i as usize != i || t != ITSELF)
             {
-                f(&self.along_wall(*k, t, link, other, weight(other)));
+                f(&self.along_wall(s.i, t, link, other, weight(other)));
             }
         }
     }
@@ -247,12 +246,11 @@ impl<const D: usize> Finer<D> for Particles<'_, D> {
     }
 
     fn centre(&self, i: usize) -> Vector<D> {
-        self.problem.place[i]
+        self.problem.cloud.x[i]
     }
 
     fn edges(&self, i: usize, f: &mut dyn FnMut(&Edge<D>)) {
-        for p in self.problem.range(i) {
-            let link = &self.problem.links[p];
+        for (p, link) in self.problem.links.of(i) {
             let transform = match link.kind {
                 Kind::Pair => ITSELF,
                 Kind::Image(t) => t,

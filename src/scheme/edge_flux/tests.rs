@@ -1,6 +1,6 @@
 //! The edge flux against the kernel that computes many at once, against differences, and in uniform flow.
 use super::*;
-use crate::cloud::Edge;
+use crate::cloud::{Edge, Weights};
 use crate::math::jet::Jet;
 use crate::physics::riemann::{AusmPlusUp, Hllc, Roe, Rusanov};
 use crate::scheme::edges::{Particles, edge_fluxes};
@@ -28,6 +28,7 @@ struct Few<const D: usize> {
     volume: Vec<f64>,
     ends: Vec<EdgeEnd<D>>,
     edges: Vec<Edge<D>>,
+    weights: Vec<[Vector<D>; 2]>,
 }
 
 fn few<const D: usize>() -> Few<D> {
@@ -49,12 +50,15 @@ fn few<const D: usize>() -> Few<D> {
     };
     let ends = (0..n).map(|_| end(&mut draw)).collect();
     let pairs = (0..n).flat_map(|i: u32| (i + 1..n).map(move |j| (i, j)));
-    let edges = pairs.map(|(i, j)| Edge::of_both(i, j, [draw.vector(), draw.vector()], draw.vector())).collect();
+    let (weights, edges) = pairs
+        .map(|(i, j)| ([draw.vector(), draw.vector()], Edge::of_both(i, j, draw.vector())))
+        .unzip();
     Few {
         x: (0..n).map(|_| draw.vector()).collect(),
         volume: (0..n).map(|_| 1.5 + draw.number()).collect(),
         ends,
         edges,
+        weights,
     }
 }
 
@@ -74,12 +78,13 @@ fn compare<const D: usize, F: UpwindFlux<D>, L: Limit>(few: &Few<D>, scheme: &Fl
         outer,
     };
     let mut found = Vec::new();
-    edge_fluxes(scheme, particles, &few.edges, &mut |i: usize, change: &Conserved<D>| found.push((i, *change)));
+    let edges = (few.edges.as_slice(), Weights::stored(&few.weights));
+    edge_fluxes(scheme, particles, edges, &mut |i: usize, change: &Conserved<D>| found.push((i, *change)));
     let mut found = found.into_iter();
-    for e in &few.edges {
+    for (e, [a_i, a_j]) in few.edges.iter().zip(&few.weights) {
         let [i, j] = [e.i(), e.j()];
         let one = |k: usize, a: &Vector<D>| EdgeEnd { weight: *a * -few.volume[k], ..few.ends[k] };
-        let ends = [one(i, &e.a_i), one(j, &e.a_j)];
+        let ends = [one(i, a_i), one(j, a_j)];
         let face = EdgeFace { along: few.x[j] - few.x[i], area: e.s, whole: f64::from(u8::from(j >= outer.0)) };
         let [a, b] = edge_flux(scheme, [&ends[0], &ends[1]], &face);
         assert_eq!(found.next(), Some((i, a)));
@@ -137,10 +142,10 @@ fn numbers<const D: usize, S: Scalar>(both: [Conserved<D, S>; 2]) -> Vec<S> {
 fn derivatives<F: UpwindFlux<2>, L: Limit>(scheme: &FluxScheme<F, L>) {
     const STEP: f64 = 2e-6;
     let few = few::<2>();
-    let e = &few.edges[3];
+    let (e, [a_i, a_j]) = (&few.edges[3], &few.weights[3]);
     let [i, j] = [e.i(), e.j()];
     let one = |k: usize, a: &Vector<2>| EdgeEnd { weight: *a * -few.volume[k], ..few.ends[k] };
-    let ends = [one(i, &e.a_i), one(j, &e.a_j)];
+    let ends = [one(i, a_i), one(j, a_j)];
     fn face<S: Scalar>(few: &Few<2>, e: &Edge<2>) -> EdgeFace<2, S> {
         let fixed = |v: Vector<2>| Vector::from_fn(|d| S::constant(v[d]));
         EdgeFace { along: fixed(few.x[e.j()] - few.x[e.i()]), area: fixed(e.s), whole: 0.0 }
