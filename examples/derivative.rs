@@ -17,7 +17,7 @@ pub(crate) fn run() -> Result<Vec<f64>, CloudError> {
         let spec = CloudSpec { domain: Some(square), jitter: 0.3, ..CloudSpec::new(spacing) };
         let cloud = Cloud::build(&spec, None, &[])?;
         let values: Vec<f64> = cloud.x.iter().map(f).collect();
-        let found = Operators::new(&cloud).gradient(&values);
+        let found = Operators::new(&cloud).gradient(&cloud, &values);
         let squares = found.iter().zip(&cloud.x).map(|(g, x)| (*g - slope(x)).norm_squared());
         let error = (squares.sum::<f64>() / found.len() as f64).sqrt();
         println!("{:6} particles {spacing} apart: error {error:.2e}", cloud.n_fluid);

@@ -338,7 +338,11 @@ static OUTFLOW: Table =
 const INITIAL: &[Variant] = &[
     Variant::word("free_stream", "free stream everywhere"),
     Variant::table("riemann", &RIEMANN, "two states on either side of a plane"),
-    Variant::table("vortex", &VORTEX, "isentropic vortex (Shu 1998), density and pressure 1 far away, 2-D"),
+    Variant::table(
+        "vortex",
+        &VORTEX,
+        "isentropic vortex (Shu 1998), density and pressure 1 far away; in 3-D a column along z",
+    ),
     Variant::word("ringleb", "Ringleb's flow, stagnation density and sound speed 1, 2-D"),
 ];
 
@@ -355,7 +359,7 @@ static RIEMANN: Table = Table::of(&[
 
 static VORTEX: Table = Table::of(&[
     Field::required("strength", ANY, "Strength β."),
-    Field::required("centre", PLANE_POINT, "Centre at the start."),
+    Field::required("centre", PLANE_POINT, "Centre at the start, in the plane of x and y."),
     Field::required("velocity", PLANE_POINT, "Mean velocity."),
 ]);
 

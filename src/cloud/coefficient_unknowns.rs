@@ -46,13 +46,14 @@ impl<const D: usize> Link<D> {
     }
 }
 
-/// The neighbour entries of the fluid particles of a cloud. What they are is found anew whenever it is asked for: a cloud of
-/// millions would otherwise hold little else.
+/// The neighbour entries of the fluid particles of a cloud. But for their weights, what they are is found anew
+/// whenever it is asked for: a cloud of millions would otherwise hold little else.
 pub(super) struct Links<'a, const D: usize> {
     cloud: &'a Cloud<D>,
     /// Whether the particle at the other end of an entry sees the first one.
     seen_back: Vec<bool>,
-    layered: bool,
+    /// w of every entry.
+    weight: Vec<f32>,
 }
 
 impl<'a, const D: usize> Links<'a, D> {
@@ -70,12 +71,15 @@ impl<'a, const D: usize> Links<'a, D> {
                 }
             }
         });
-        Self { cloud, seen_back, layered: !cloud.layers.is_empty() }
-    }
-
-    /// True where faces depend on layers.
-    pub(super) fn layered(&self) -> bool {
-        self.layered
+        let mut all = Self { cloud, seen_back, weight: Vec::new() };
+        let mut weight = vec![0.0; all.seen_back.len()];
+        sweep_parts(&entries, 1, &mut weight, &|k, slots| {
+            for i in rows[k].clone() {
+                all.range(i).for_each(|p| slots[p - entries[k].start] = all.weight(i, p) as f32);
+            }
+        });
+        all.weight = weight;
+        all
     }
 
     /// Entries of row `i`.
@@ -109,34 +113,40 @@ impl<'a, const D: usize> Links<'a, D> {
         let offset = cloud.x[j] - cloud.x[i];
         if j < cloud.n_fluid {
             let kind = if self.seen_back[p] { Kind::Pair } else { Kind::Open };
-            return Link { other: j as u32, weight: self.weight(i, j, &offset), offset, kind };
+            return Link { other: j as u32, weight: f64::from(self.weight[p]), offset, kind };
         }
-        self.beyond(i, p, offset)
+        self.beyond(p, offset)
+    }
+
+    /// Calls `f` with the links of row `i`.
+    #[inline(always)]
+    pub(super) fn each(&self, i: usize, mut f: impl FnMut(&Link<D>)) {
+        for p in self.range(i) {
+            f(&self.at(i, p));
+        }
     }
 
     /// The link to what is no fluid particle.
     #[inline(never)]
-    fn beyond(&self, i: usize, p: usize, offset: Vector<D>) -> Link<D> {
+    fn beyond(&self, p: usize, offset: Vector<D>) -> Link<D> {
         let (cloud, j) = (self.cloud, self.end(p));
         let image = j.checked_sub(cloud.n_real()).and_then(|k| cloud.ghosts.get(k));
         let source = image.map_or(j, |m| m.source as usize);
-        let (kind, weight) = match image {
-            _ if cloud.interface_range().contains(&source) => {
-                (Kind::Wall(image.map_or(ITSELF, |m| m.transform)), SHARE_FREEDOM)
-            }
-            Some(m) if self.seen_back[p] => (Kind::Image(m.transform), self.weight(i, source, &offset)),
-            _ => (Kind::Open, self.weight(i, source, &offset)),
+        let kind = match image {
+            _ if cloud.interface_range().contains(&source) => Kind::Wall(image.map_or(ITSELF, |m| m.transform)),
+            Some(m) if self.seen_back[p] => Kind::Image(m.transform),
+            _ => Kind::Open,
         };
-        Link { other: source as u32, weight, offset, kind }
+        Link { other: source as u32, weight: f64::from(self.weight[p]), offset, kind }
     }
 
-    #[inline(always)]
-    fn weight(&self, i: usize, j: usize, offset: &Vector<D>) -> f64 {
-        let cloud = self.cloud;
-        let face = match self.layered {
-            true => face_volume(cloud, i, j),
-            false => (0.5 * (cloud.spacing[i] + cloud.spacing[j])).powi(D as i32),
-        };
-        face * face / offset.norm_squared()
+    fn weight(&self, i: usize, p: usize) -> f64 {
+        let (cloud, j) = (self.cloud, self.end(p));
+        let source = cloud.source(j).index;
+        if cloud.interface_range().contains(&source) {
+            return SHARE_FREEDOM;
+        }
+        let face = face_volume(cloud, i, source);
+        face * face / (cloud.x[j] - cloud.x[i]).norm_squared()
     }
 }

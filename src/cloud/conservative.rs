@@ -20,13 +20,15 @@ mod closure;
 mod cycle;
 mod field;
 mod levels;
+mod rows;
 mod symmetry;
 
 use std::cmp::Ordering;
 use std::collections::HashMap;
 use std::ops::Range;
 
-use cycle::{Cycle, Grid, Levels, Way};
+use cycle::{Cycle, Levels, Way};
+use field::{Field, Moments};
 
 use super::coefficient_unknowns::{ITSELF, Kind, Link, Links};
 use super::layers::{below_first, grown_face};
@@ -52,6 +54,8 @@ const VOLUME_FREEDOM: f64 = 1.0;
 const SHARE_POWER: i32 = 4;
 /// Reduction of the residual of the multipliers.
 const TOLERANCE: f64 = 1e-2;
+/// The same where only volumes are wanted.
+const ROUGH: f64 = 5e-2;
 
 /// Most iterations for the multipliers: some thirty are usual. At thin edges and in crevices the conditions nearly contradict one
 /// another, and hundreds more would only trade one particle's linear error for another's.
@@ -124,22 +128,22 @@ fn find<const D: usize>(
     problem.prepare(operators);
     let levels = Levels::new(&problem, symmetry::mirrors(cloud));
     let mut multipliers = vec![Row::ZERO; problem.n_rows()];
-    let mut iterations = problem.solve(operators, &mut multipliers, &levels);
-    let mut n_softened = 0;
-    for _ in 0..SOFTEN_ROUNDS {
-        let softened = problem.soften(&problem.volumes(&multipliers));
-        if softened == 0 {
-            break;
+    // volumes are told well enough by a rough solution
+    let (mut iterations, mut n_softened, mut tolerance) = (0, 0, ROUGH);
+    for round in 0.. {
+        iterations += problem.solve(operators, &mut multipliers, &levels, tolerance);
+        let softened = if round < SOFTEN_ROUNDS { problem.soften(&problem.volumes(&multipliers)) } else { 0 };
+        match softened {
+            0 if tolerance == TOLERANCE => break,
+            0 => tolerance = TOLERANCE,
+            _ => n_softened = softened,
         }
-        n_softened = softened;
-        iterations += problem.solve(operators, &mut multipliers, &levels);
     }
     problem.recover(operators, multipliers);
     problem.fix_shares();
     let polish_iterations = problem.close(operators, &levels);
     drop(levels);
-    let report =
-        ConservativeReport { iterations, polish_iterations, n_softened, softness, ..problem.judge(operators) };
+    let report = ConservativeReport { iterations, polish_iterations, n_softened, softness, ..problem.judge(operators) };
     let faces = problem.wall_faces();
     (problem.volume, faces, report)
 }
@@ -226,7 +230,7 @@ impl<'a, const D: usize> Problem<'a, D> {
         let cloud = self.cloud;
         operators.alter_areas(|i, j, s| match cloud.interface_range().contains(&cloud.source(j).index) {
             true => Vector::ZERO,
-            false if self.links.layered() => *s * grown_face(cloud, i, j),
+            false if !cloud.layers.is_empty() => *s * grown_face(cloud, i, j),
             false => *s,
         });
         let mut sharers = std::mem::take(&mut self.sharers);
@@ -299,9 +303,7 @@ impl<'a, const D: usize> Problem<'a, D> {
     #[inline(always)]
     fn row(&self, i: usize, y: &[Row<D>]) -> Row<D> {
         let mut row = self.soft(i, &y[i]);
-        for (_, link) in self.links.of(i) {
-            row.add(&self.change(i, &link, y), &link.offset, link.reach());
-        }
+        self.links.each(i, |link| row.add(&self.change(i, link, y), &link.offset, link.reach()));
         row
     }
 
@@ -440,14 +442,14 @@ impl<'a, const D: usize> Problem<'a, D> {
     }
 
     /// Conjugate gradients for the multipliers, from those in `y`.
-    fn solve(&mut self, operators: &Operators<D>, y: &mut [Row<D>], levels: &Levels<D>) -> usize {
-        self.factors = Factors::new(self.n_fluid, |i, y| self.own(i, y));
+    fn solve(&mut self, operators: &Operators<D>, y: &mut [Row<D>], levels: &Levels<D>, tolerance: f64) -> usize {
+        self.factors = Factors::new(self.n_fluid, |i| self.own(i));
         let mut r = self.defects(operators);
         let size = |r: &Row<D>, i: usize| match i.checked_sub(self.n_fluid) {
             Some(w) => r.closure[0] * r.closure[0] / self.shared[w],
             None => r.dot(&self.factors.solve(i, r)),
         };
-        let goal = TOLERANCE * TOLERANCE * sum(self.n_rows(), |i| size(&r[i], i));
+        let goal = tolerance * tolerance * sum(self.n_rows(), |i| size(&r[i], i));
         let less = |i: usize, r: &mut Row<D>| *r = Row::ZERO.plus(-1.0, &r.plus(1.0, &self.row(i, y)));
         sweep_slots(&mut r[..self.n_fluid], less);
         sweep_slots(&mut r[self.n_fluid..], |w, r| r.closure[0] = -r.closure[0] - self.wall_row(w, y));
@@ -530,21 +532,22 @@ impl<'a, const D: usize> Problem<'a, D> {
     }
 
     /// What row `i` makes of its own multipliers.
-    fn own(&self, i: usize, y: &Row<D>) -> Row<D> {
-        let mut row = self.soft(i, y);
+    fn own(&self, i: usize) -> impl Fn(&Row<D>) -> Row<D> {
+        let (mut pairs, mut walls) = (Moments::ZERO, Vec::new());
         for (_, link) in self.links.of(i) {
-            let reach = link.reach();
-            let own = Vector::from_fn(|r| y.closure[r] + reach * y.moment[r].dot(&link.offset));
-            let change = match link.kind {
-                Kind::Wall(_) => {
-                    let a = self.wall(&link);
-                    a * (link.weight * own.dot(&a))
-                }
-                _ => own * link.weight,
-            };
-            row.add(&change, &link.offset, reach);
+            match link.kind {
+                Kind::Wall(_) => walls.push((self.wall(&link), link)),
+                _ => pairs = pairs.plus(1.0, &Moments::of(link.weight, link.offset * 0.5)),
+            }
         }
-        row
+        move |y| {
+            let mut row = y.weighed(&pairs).plus(1.0, &self.soft(i, y));
+            for (a, link) in &walls {
+                let own = Vector::from_fn(|r| y.closure[r] + y.moment[r].dot(&link.offset));
+                row.add(&(*a * (link.weight * own.dot(a))), &link.offset, 1.0);
+            }
+            row
+        }
     }
 
     /// Entries of row `i` whose area vectors may change.
@@ -552,15 +555,20 @@ impl<'a, const D: usize> Problem<'a, D> {
         self.links.of(i).map(|(_, l)| l).filter(|l| !l.is_wall())
     }
 
-    /// Those of them to rows of a range that a way has passed, each with that row.
+    /// Calls `f(row, link)` for those of them to rows of a range that a way has passed.
     #[inline(always)]
-    fn passed(&self, i: usize, range: &Range<usize>, way: Way) -> impl Iterator<Item = (usize, Link<D>)> {
-        let passed = move |p: &usize| {
-            let j = self.links.end(*p);
-            j >= self.n_fluid || way.has_passed(range, i, j)
-        };
-        let all = self.links.range(i).filter(passed).map(move |p| self.links.at(i, p)).map(|l| (l.other as usize, l));
-        all.filter(move |(j, l)| !l.is_wall() && l.kind != Kind::Open && way.has_passed(range, i, *j))
+    fn each_passed(&self, i: usize, range: &Range<usize>, way: Way, mut f: impl FnMut(usize, &Link<D>)) {
+        for p in self.links.range(i) {
+            let j = self.links.end(p);
+            if j < self.n_fluid && !way.has_passed(range, i, j) {
+                continue;
+            }
+            let link = self.links.at(i, p);
+            let j = link.other as usize;
+            if !link.is_wall() && link.kind != Kind::Open && way.has_passed(range, i, j) {
+                f(j, &link);
+            }
+        }
     }
 
     /// Sign with which component `r` of the row at the other end of an entry is seen.
@@ -570,33 +578,6 @@ impl<'a, const D: usize> Problem<'a, D> {
             Kind::Image(t) => self.signs[t as usize][r],
             _ => 1.0,
         }
-    }
-}
-
-impl<const D: usize> Grid<Row<D>> for Problem<'_, D> {
-    #[inline(always)]
-    fn left(&self, i: usize, b: &Row<D>, x: &[Row<D>]) -> Row<D> {
-        b.plus(-1.0, &self.row(i, x))
-    }
-
-    #[inline(always)]
-    fn less(&self, i: usize, mut r: Row<D>, range: &Range<usize>, found: &[Row<D>], way: Way) -> Row<D> {
-        for (other, link) in self.passed(i, range, way) {
-            r.add(&(self.across(&link, &found[other - range.start]) * link.weight), &link.offset, link.reach());
-        }
-        r
-    }
-
-    #[inline(always)]
-    fn solved(&self, i: usize, r: &Row<D>) -> Row<D> {
-        self.factors.solve(i, r)
-    }
-
-    /// Multipliers of the walls.
-    fn follow(&self, b: &[Row<D>], x: &mut [Row<D>]) {
-        let mut walls = vec![0.0; self.sharers.len()];
-        sweep(&mut walls, |w| (b[self.n_fluid + w].closure[0] - self.wall_row(w, x)) / self.shared[w]);
-        sweep_slots(&mut x[self.n_fluid..], |w, x| x.closure[0] += walls[w]);
     }
 }
 

@@ -267,7 +267,7 @@ struct Sample<const D: usize> {
 
 /// 3-D: dense samples, greedy pick, Lloyd.
 fn scatter<const D: usize>(surface: &Surface<D>, tree: &Tree<D>, planes: &[Plane]) -> Placed<D> {
-    let samples = surface.pieces(
+    let mut samples = surface.pieces(
         |x| SAMPLE_SIZE * tree.leaf_at(x).size,
         |x, normal, area, element| {
             let spacing = tree.leaf_at(x).size;
@@ -275,7 +275,7 @@ fn scatter<const D: usize>(surface: &Surface<D>, tree: &Tree<D>, planes: &[Plane
             inside.then_some(Sample { x: *x, normal: *normal, area: *area, spacing, element })
         },
     );
-    let samples = sort_along_curve(samples);
+    sort_along_curve(&mut samples);
     let (mut chosen, mut owner) = pick(&samples);
     for _ in 0..LLOYD_ROUNDS {
         assign(&samples, &chosen, &mut owner);
@@ -285,12 +285,28 @@ fn scatter<const D: usize>(surface: &Surface<D>, tree: &Tree<D>, planes: &[Plane
     gather(surface, &samples, &chosen, &owner)
 }
 
-fn sort_along_curve<const D: usize>(samples: Vec<Sample<D>>) -> Vec<Sample<D>> {
+fn sort_along_curve<const D: usize>(samples: &mut [Sample<D>]) {
     let bounds = Bounds::around(samples.iter().map(|s| &s.x));
     let scale = f64::from(1u32 << 20) / (bounds.extent().max_abs() * 1.0001);
     let cell = |s: &Sample<D>| std::array::from_fn::<u32, D, _>(|d| ((s.x[d] - bounds.min[d]) * scale) as u32);
-    let order = order_by_key(samples.len(), |k| crate::math::hilbert::hilbert_index(cell(&samples[k]), 20));
-    order.into_iter().map(|k| samples[k as usize]).collect()
+    let mut order = order_by_key(samples.len(), |k| crate::math::hilbert::hilbert_index(cell(&samples[k]), 20));
+    permute(samples, &mut order);
+}
+
+/// Puts at every place k what stands at `order[k]`, cycle by cycle; `order` is used up.
+fn permute<T: Copy>(all: &mut [T], order: &mut [u32]) {
+    for start in 0..order.len() {
+        let (first, mut k) = (all[start], start);
+        loop {
+            let from = std::mem::replace(&mut order[k], k as u32) as usize;
+            if from == start {
+                all[k] = first;
+                break;
+            }
+            all[k] = all[from];
+            k = from;
+        }
+    }
 }
 
 /// Samples that keep `PICK_SPACING` between them, first come first served, and for every sample the one that is in its way.

@@ -80,16 +80,17 @@ impl<const D: usize> Factors<D> {
     /// Elements of a lower triangle of that order.
     const TRIANGLE: usize = Self::WIDTH * (Self::WIDTH + 1) / 2;
 
-    /// Of the `n` blocks that make `product(i, y)` of y.
-    pub(super) fn new(n: usize, product: impl Fn(usize, &Row<D>) -> Row<D> + Sync) -> Self {
+    /// Of the `n` blocks of which the i-th makes `product(i)(y)` of y.
+    pub(super) fn new<P: Fn(&Row<D>) -> Row<D>>(n: usize, product: impl Fn(usize) -> P + Sync) -> Self {
         let m = Self::WIDTH;
         let mut values = vec![0.0; n * Self::TRIANGLE];
         sweep_rows(&mut values, Self::TRIANGLE, |i, triangle| {
             let mut block = [0.0; MOST * MOST];
+            let product = product(i);
             for c in 0..m {
                 let mut column = [0.0; MOST];
                 column[c] = 1.0;
-                product(i, &Row::load(&column)).store(&mut column);
+                product(&Row::load(&column)).store(&mut column);
                 (0..m).for_each(|r| block[r * m + c] = column[r]);
             }
             cholesky(&mut block, m);

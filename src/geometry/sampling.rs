@@ -86,7 +86,10 @@ impl<const D: usize> Surface<D> {
             }
             found
         });
-        groups.concat()
+        // one after the other, so that there are never two of all
+        let mut all = Vec::with_capacity(groups.iter().map(Vec::len).sum());
+        groups.into_iter().for_each(|found| all.extend(found));
+        all
     }
 
     /// Cuts an element in halves across its longest side until it is small enough; points lie on the shape itself.

@@ -9,22 +9,14 @@ use std::ops::Range;
 
 use multiversion::multiversion;
 
-use super::blocks::{MOST_ENTRIES, array, store, with_block};
+use super::blocks::{MOST_ENTRIES, store, with_block};
+use super::rounded::{LANES, UNIT, add_block, leading, load, load_lanes, multiply, round_block, subtract, unit_of};
 use super::sweep::{copy, fill, parts, sweep_parts, sweep_rows, sweep_two_parts};
 
 /// Fewest and most rows in one part of a coarse matrix.
 const PART: [usize; 2] = [64, 1024];
 /// Parts that a coarse matrix has where they are not smaller than that.
 const MANY_PARTS: usize = 8;
-
-/// Numbers that are read at once: a column of a block and what follows it.
-pub(super) const LANES: usize = 8;
-/// A column of a block, or what is summed of one; entries beyond the order of the block mean nothing.
-pub(super) type Lanes = [f32; LANES];
-/// Bytes before the entries of a block: the upper half of its unit.
-const UNIT: usize = 2;
-/// Largest whole number in a block.
-const LARGEST: f32 = 127.0;
 
 /// A sparse matrix of square blocks.
 #[derive(Clone, Debug, Default)]
@@ -358,14 +350,12 @@ impl BlockMatrix {
         });
     }
 
-    /// The pattern of the matrix that couples groups of rows, and where each off-diagonal block of this one goes:
-    /// `u32::MAX` for the diagonal.
-    pub fn coarse(&self, group: &[u32], n_groups: usize) -> (Self, Vec<u32>) {
+    /// The pattern of the matrix that couples groups of rows.
+    pub fn coarse(&self, group: &[u32], n_groups: usize) -> Self {
         let mut members: Vec<Vec<u32>> = vec![Vec::new(); n_groups];
         group.iter().enumerate().for_each(|(i, g)| members[*g as usize].push(i as u32));
         let mut first = vec![0u32];
         let mut column: Vec<u32> = Vec::new();
-        let mut target = vec![u32::MAX; self.column.len()];
         let mut own: Vec<u32> = Vec::new();
         for (g, rows) in members.iter().enumerate() {
             let entries = |i: &u32| self.first[*i as usize] as usize..self.first[*i as usize + 1] as usize;
@@ -375,48 +365,44 @@ impl BlockMatrix {
             );
             own.sort_unstable();
             own.dedup();
-            let start = column.len();
-            for e in rows.iter().flat_map(entries) {
-                if let Ok(k) = own.binary_search(&group[self.column[e] as usize]) {
-                    target[e] = (start + k) as u32;
-                }
-            }
             column.extend_from_slice(&own);
             first.push(column.len() as u32);
         }
         let parts = parts(n_groups, (n_groups / MANY_PARTS).clamp(PART[0], PART[1]));
-        (Self { scale: self.scale.clone(), ..Self::from_pattern(self.block, first, column, parts) }, target)
+        column.shrink_to_fit();
+        Self { scale: self.scale.clone(), ..Self::from_pattern(self.block, first, column, parts) }
     }
 
-    /// Sums the blocks of `fine` into this matrix: `members(g)` are the rows of group g in ascending order, `target` says where
-    /// each off-diagonal block goes.
-    pub fn gather<'a>(&mut self, fine: &Self, members: impl Fn(usize) -> &'a [u32] + Sync, target: &[u32]) {
-        with_block!(self.block, N => self.gather_blocks::<N>(fine, &members, target))
+    /// Sums the blocks of `fine` into this matrix: `members(g)` are the rows of group g in ascending order, `group` says to which
+    /// each row belongs.
+    pub fn gather<'a>(&mut self, fine: &Self, members: impl Fn(usize) -> &'a [u32] + Sync, group: &[u32]) {
+        with_block!(self.block, N => self.gather_blocks::<N>(fine, &members, group))
     }
 
     fn gather_blocks<'a, const N: usize>(
         &mut self,
         fine: &Self,
         members: &(impl Fn(usize) -> &'a [u32] + Sync),
-        target: &[u32],
+        group: &[u32],
     ) {
         let size = N * N;
-        let (parts, value_parts, first) = (self.parts.as_slice(), self.value_parts.as_slice(), &self.first);
+        let (parts, value_parts) = (self.parts.as_slice(), self.value_parts.as_slice());
+        let (first, column) = (&self.first, &self.column);
         let values = (value_parts, UNIT + size, self.value.as_mut_slice());
         sweep_two_parts(values, (parts, size, self.diagonal.as_mut_slice()), &|k, value, diagonal| {
             let mut blocks = value.chunks_exact_mut(UNIT + size);
             let mut row: Vec<f32> = Vec::new();
             for (g, own) in parts[k].clone().zip(diagonal.chunks_exact_mut(size)) {
-                let start = first[g] as usize;
+                let columns = &column[first[g] as usize..first[g + 1] as usize];
                 row.clear();
-                row.resize((first[g + 1] as usize - start) * size, 0.0);
+                row.resize(columns.len() * size, 0.0);
                 own.fill(0.0);
                 for i in members(g).iter().map(|i| *i as usize) {
                     own.iter_mut().zip(&fine.diagonal[i * size..(i + 1) * size]).for_each(|(a, b)| *a += b);
                     for e in fine.first[i] as usize..fine.first[i + 1] as usize {
-                        let to = match target[e] {
-                            u32::MAX => &mut *own,
-                            to => &mut row[(to as usize - start) * size..][..size],
+                        let to = match columns.binary_search(&group[fine.column(e)]) {
+                            Ok(k) => &mut row[k * size..][..size],
+                            Err(_) => &mut *own,
                         };
                         add_block::<N>(fine.off_diagonal::<N>(e), to);
                     }
@@ -491,111 +477,11 @@ impl Rows<'_> {
         let mut sum = [0.0; MOST_ENTRIES];
         for c in 0..n {
             for r in 0..n {
-                sum[c * n + r] = unit * f32::from(block[UNIT + c * n + r] as i8) + self.factor[c * n + r] * f(r, c) as f32;
+                sum[c * n + r] =
+                    unit * f32::from(block[UNIT + c * n + r] as i8) + self.factor[c * n + r] * f(r, c) as f32;
             }
         }
         round_block(&sum[..n * n], block, own);
-    }
-}
-
-/// Unit of the entries of a block.
-#[inline(always)]
-fn unit_of(block: &[u8]) -> f32 {
-    f32::from_bits(u32::from(u16::from_le_bytes([block[0], block[1]])) << 16)
-}
-
-/// Writes the numbers of a block, and adds what rounding takes from them to `own`: sums of rows, which rule the slow modes,
-/// then stay exact.
-#[inline(always)]
-fn round_block(sum: &[f32], block: &mut [u8], own: &mut [f32]) {
-    // twelve and a half million: sums with it have no room for fractions
-    const WHOLE: f32 = 12_582_912.0;
-    let largest = sum.iter().fold(0.0f32, |m, x| m.max(x.abs()));
-    // half of the bits, rounded up
-    let half = (largest / LARGEST).to_bits().wrapping_add(0xffff) >> 16;
-    let unit = f32::from_bits(half << 16);
-    let scale = if unit >= f32::MIN_POSITIVE { 1.0 / unit } else { 0.0 };
-    block[..UNIT].copy_from_slice(&(half as u16).to_le_bytes());
-    for ((x, to), own) in sum.iter().zip(&mut block[UNIT..]).zip(own) {
-        let whole = x * scale + WHOLE;
-        *to = (whole.to_bits() as i32 - WHOLE.to_bits() as i32) as u8;
-        *own += x - (whole - WHOLE) * unit;
-    }
-}
-
-/// sum ← sum + B.
-#[inline(always)]
-fn add_block<const N: usize>(block: &[u8], sum: &mut [f32]) {
-    let unit = unit_of(block);
-    let entries = block[UNIT..UNIT + N * N].iter();
-    sum[..N * N].iter_mut().zip(entries).for_each(|(s, b)| *s += unit * f32::from(*b as i8));
-}
-
-/// The first `N` numbers.
-#[inline(always)]
-pub(super) fn leading<const N: usize>(lanes: &Lanes) -> [f32; N] {
-    array(|k| lanes[k])
-}
-
-#[inline(always)]
-pub(super) fn load_lanes<const N: usize>(x: &[f32], i: usize) -> Lanes {
-    let x = &x[i * N..(i + 1) * N];
-    let mut lanes = [0.0; LANES];
-    (0..N).for_each(|k| lanes[k] = x[k]);
-    lanes
-}
-
-#[inline(always)]
-pub(super) fn load<const N: usize>(x: &[f32], i: usize) -> [f32; N] {
-    let x = &x[i * N..(i + 1) * N];
-    array(|k| x[k])
-}
-
-/// r ← r − B x.
-#[inline(always)]
-pub(super) fn subtract<const N: usize>(block: &[u8], x: &[f32; N], r: &mut Lanes) {
-    let unit = unit_of(block);
-    for c in 0..N {
-        let (column, x) = (column::<N>(block, c), unit * x[c]);
-        for k in 0..LANES {
-            r[k] -= column[k] * x;
-        }
-    }
-}
-
-/// Column `c` of a block, in its unit.
-#[inline(always)]
-fn column<const N: usize>(block: &[u8], c: usize) -> Lanes {
-    let entries = &block[UNIT + c * N..UNIT + c * N + LANES];
-    array(|k| f32::from(entries[k] as i8))
-}
-
-/// The numbers of a block, by columns.
-#[inline(always)]
-pub(super) fn widen_block<const N: usize>(block: &[u8]) -> [Lanes; N] {
-    let unit = unit_of(block);
-    array(|c| column::<N>(block, c).map(|b| unit * b))
-}
-
-/// r ← r − B x.
-#[inline(always)]
-pub(super) fn subtract_wide<const N: usize>(block: &[Lanes; N], x: &[f32], r: &mut Lanes) {
-    let x = &x[..N];
-    for c in 0..N {
-        for k in 0..LANES {
-            r[k] -= block[c][k] * x[c];
-        }
-    }
-}
-
-/// r ← r + B x for a block stored by columns.
-#[inline(always)]
-pub(super) fn multiply<const N: usize>(block: &[f32], x: &[f32; N], r: &mut [f32; N]) {
-    let block = &block[..N * N];
-    for c in 0..N {
-        for k in 0..N {
-            r[k] += block[c * N + k] * x[c];
-        }
     }
 }
 
@@ -628,6 +514,56 @@ pub(super) fn invert(n: usize, a: &[f64], out: &mut [f64]) {
     for r in 0..n {
         for c in 0..n {
             out[c * n + r] = m[r][n + c];
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two rows that see one another, with unknowns of these sizes.
+    fn pair(scale: [f64; 2], entry: impl Fn(usize, usize) -> f64) -> BlockMatrix {
+        let mut matrix = BlockMatrix::new(2, std::slice::from_ref(&(0..2)), &[0, 1, 2], &[1, 0]).scaled(&scale);
+        matrix.assemble(|_, rows| {
+            for i in 0..2 {
+                rows.add(i, i, |r, c| if r == c { 4.0 } else { 0.0 });
+                rows.add(i, 1 - i, &entry);
+            }
+        });
+        matrix
+    }
+
+    /// A x for the unscaled unknowns `x` of each row.
+    fn product(matrix: &BlockMatrix, x: [f32; 2]) -> [f32; 2] {
+        let mut s = Sweeps::new(matrix);
+        s.x.copy_from_slice(&[x, x].concat());
+        matrix.enter(&mut s.x);
+        matrix.restart(&mut s);
+        matrix.residual(&mut s);
+        [0, 1].map(|k| -matrix.leave(&s.r, k))
+    }
+
+    #[test]
+    fn sums_of_rows_survive_rounding() {
+        let entry = |r: usize, c: usize| [[-1.0, 0.3217], [0.0771, -0.6193]][r][c];
+        let found = product(&pair([1.0, 1.0], entry), [1.0, 1.0]);
+        let wanted = [0, 1].map(|r| (4.0 + entry(r, 0) + entry(r, 1)) as f32);
+        assert!((0..2).all(|k| (found[k] - wanted[k]).abs() < 1e-6), "{found:?} {wanted:?}");
+    }
+
+    #[test]
+    fn unknowns_of_different_sizes_are_all_kept() {
+        // entries a thousand times apart, in the units of unknowns of one size
+        let scale = [1.0, 1000.0];
+        let entry = |r: usize, c: usize| [[-1.0, 0.3], [0.1, -0.6]][r][c] * scale[r] / scale[c];
+        for x in [[1.0, 0.0], [0.0, 1000.0]] {
+            let found = product(&pair(scale, entry), x);
+            for (k, found) in found.iter().enumerate() {
+                let of = |i: usize| (entry(k, i) + if k == i { 4.0 } else { 0.0 }) * f64::from(x[i]);
+                let wanted = of(0) + of(1);
+                assert!((f64::from(*found) - wanted).abs() < 0.005 * scale[k], "{x:?} {k}: {found} {wanted}");
+            }
         }
     }
 }

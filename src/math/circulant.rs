@@ -9,8 +9,9 @@ use std::ops::Range;
 
 use multiversion::multiversion;
 
-use super::block_matrix::{BlockMatrix, LANES, Lanes, leading, load, multiply, subtract_wide, widen_block};
+use super::block_matrix::BlockMatrix;
 use super::blocks::{store, with_block};
+use super::rounded::{LANES, Lanes, leading, load, multiply, subtract_wide, widen_block};
 use super::sweep::{copy, fill, sweep_parts, sweep_two_parts};
 
 /// Greatest number of harmonics.
@@ -272,6 +273,9 @@ mod tests {
     use super::*;
     use crate::math::fourier::Instances;
 
+    /// Off-diagonal entries that are kept as they are: 127 and -16 of a unit.
+    const OFF: [f64; 2] = [-127.0 / 128.0, 16.0 / 128.0];
+
     /// Rows of a chain that lean on both neighbours.
     fn chain(n: usize) -> BlockMatrix {
         let mut first = vec![0u32];
@@ -286,7 +290,7 @@ mod tests {
             for i in parts[k].clone() {
                 rows.add(i, i, |r, c| if r == c { 2.5 + 0.5 * r as f64 } else { 0.25 * (r as f64 - c as f64) });
                 for j in [i.wrapping_sub(1), i + 1].into_iter().filter(|j| *j < n) {
-                    rows.add(i, j, |r, c| if r == c { -1.0 } else { 0.125 });
+                    rows.add(i, j, |r, c| OFF[usize::from(r != c)]);
                 }
             }
         });
@@ -331,7 +335,7 @@ mod tests {
                     let entry =
                         |r: usize, c: usize| if r == c { 2.5 + 0.5 * r as f64 } else { 0.25 * (r as f64 - c as f64) };
                     let own: f64 = (0..3).map(|c| entry(d, c) * x(i, c)).sum();
-                    let off = |j: usize| (0..3).map(|c| if c == d { -x(j, c) } else { 0.125 * x(j, c) }).sum::<f64>();
+                    let off = |j: usize| (0..3).map(|c| OFF[usize::from(c != d)] * x(j, c)).sum::<f64>();
                     let rate: f64 = (0..count).map(|j| derivative.row(k)[j] * value(&harmonic_sweeps.x, i, d, j)).sum();
                     let left = own + off(i - 1) + off(i + 1) + rate;
                     assert!((left - value(&harmonic_sweeps.b, i, d, k)).abs() < 1e-4, "{i} {d} {k}");

@@ -33,7 +33,6 @@ pub struct Cycle {
 struct Level {
     matrix: BlockMatrix,
     groups: Groups,
-    target: Vec<u32>,
     sweeps: Sweeps,
     harmonic_sweeps: Option<HarmonicSweeps>,
 }
@@ -69,8 +68,8 @@ impl Multilevel {
             if groups.len() * 10 > fine.n_rows() * 9 {
                 break;
             }
-            let (coarse, target) = fine.coarse(groups.of(), groups.len());
-            (last.groups, last.target) = (groups, target);
+            let coarse = fine.coarse(groups.of(), groups.len());
+            last.groups = groups;
             levels.push(level(coarse));
         }
         Self { levels, cycle, times: None }
@@ -111,7 +110,7 @@ impl Multilevel {
                 harmonic_sweeps.invert(&fine.matrix);
             }
             if let Some(coarse) = coarse.first_mut() {
-                coarse.matrix.gather(&fine.matrix, |g| fine.groups.members(g), &fine.target);
+                coarse.matrix.gather(&fine.matrix, |g| fine.groups.members(g), fine.groups.of());
             }
         }
     }
@@ -136,8 +135,7 @@ impl Multilevel {
     /// Bytes held.
     pub fn bytes(&self) -> usize {
         let harmonic_sweeps = |l: &Level| l.harmonic_sweeps.as_ref().map_or(0, HarmonicSweeps::bytes);
-        let lists = |l: &Level| l.groups.bytes() + 4 * l.target.len();
-        self.levels.iter().map(|l| l.matrix.bytes() + l.sweeps.bytes() + harmonic_sweeps(l) + lists(l)).sum()
+        self.levels.iter().map(|l| l.matrix.bytes() + l.sweeps.bytes() + harmonic_sweeps(l) + l.groups.bytes()).sum()
     }
 
     /// Rows of each level.
@@ -148,7 +146,7 @@ impl Multilevel {
 
 fn level(matrix: BlockMatrix) -> Level {
     let sweeps = Sweeps::new(&matrix);
-    Level { groups: Groups::default(), target: Vec::new(), sweeps, matrix, harmonic_sweeps: None }
+    Level { groups: Groups::default(), sweeps, matrix, harmonic_sweeps: None }
 }
 
 /// The place of coefficient `c` (mean, cosine, sine, cosine, ...) among mean, cosines, sines.

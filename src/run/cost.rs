@@ -18,10 +18,10 @@ use crate::math::sweep::threads;
 const PROGRAM: f64 = 11.4e6;
 /// Bytes of each particle in the plane: steady, what steps in time add, a balance without and with each harmonic, explicit steps
 /// of particles at rest and in motion.
-const STEADY_BYTES: f64 = 2110.0;
-const STEP_BYTES: f64 = 900.0;
-const BALANCE_BYTES: [f64; 2] = [4000.0, 1700.0];
-const EXPLICIT_BYTES: [f64; 2] = [1100.0, 1400.0];
+const STEADY_BYTES: f64 = 1830.0;
+const STEP_BYTES: f64 = 850.0;
+const BALANCE_BYTES: [f64; 2] = [3100.0, 1750.0];
+const EXPLICIT_BYTES: [f64; 2] = [1000.0, 1300.0];
 /// Bytes that pictures and report take at their peak: always, with each pixel of a picture, with each of it and each thread, with
 /// each particle.
 const PICTURES_BYTES: [f64; 4] = [52.5e6, 7.0, 33.0, 600.0];
@@ -30,7 +30,7 @@ const PICTURES_SECONDS: [f64; 2] = [0.2, 2.2];
 /// What they take beyond that in space, always and with each particle: walls, planes and sections.
 const SPACE_PICTURES_SECONDS: [f64; 2] = [1.5, 7e-5];
 /// Bytes of a particle in space over those in the plane.
-const SPACE_BYTES: f64 = 2.36;
+const SPACE_BYTES: f64 = 1.8;
 /// Residuals that a steady state takes on a plane cloud of [`USUAL`] particles, and in space.
 const STEADY: [f64; 2] = [570.0, 520.0];
 /// Growth of that number with the number of particles.
@@ -237,12 +237,12 @@ mod tests {
         let moved = "[motion]\nreduced_frequency = 0.3\nplunge = 0.01\n";
         let balance = |n: usize| format!("{moved}[time]\nharmonics = {n}\n");
         for (more, particles, megabytes, seconds) in [
-            ("", 4111, 20.1, 0.4),
-            ("", 17_805, 49.0, 2.0),
-            (balance(1).as_str(), 3122, 27.3, 0.7),
-            (&balance(2), 3122, 31.1, 0.9),
-            (&balance(4), 3122, 43.3, 1.3),
-            (&format!("{moved}[time.dual]\nsteps_per_period = 64\nperiods = 1\n"), 3122, 20.9, 0.7),
+            ("", 4111, 20.5, 0.4),
+            ("", 17_805, 44.0, 2.0),
+            (balance(1).as_str(), 3122, 26.6, 0.7),
+            (&balance(2), 3122, 31.9, 0.9),
+            (&balance(4), 3122, 43.1, 1.3),
+            (&format!("{moved}[time.dual]\nsteps_per_period = 64\nperiods = 1\n"), 3122, 20.8, 0.7),
         ] {
             let found = cost(more, particles);
             assert!((found.bytes / (1e6 * megabytes) - 1.0).abs() < 0.15, "{more}: {found:?}");

@@ -59,7 +59,9 @@ impl<const D: usize> Problem<'_, D> {
 
     #[inline(always)]
     fn closure_row(&self, i: usize, y: &[Vector<D>]) -> Vector<D> {
-        self.passing(i).fold(Vector::ZERO, |s, l| s + self.closure_change(i, &l, y))
+        let mut sum = Vector::ZERO;
+        self.links.each(i, |l| sum += self.closure_change(i, l, y));
+        sum
     }
 
     /// What `y` changes the area vector of an entry of row `i` by.
@@ -83,10 +85,12 @@ impl<const D: usize> Grid<Vector<D>> for Problem<'_, D> {
 
     #[inline(always)]
     fn less(&self, i: usize, r: Vector<D>, range: &Range<usize>, found: &[Vector<D>], way: Way) -> Vector<D> {
-        self.passed(i, range, way).fold(r, |r, (j, l)| {
+        let mut r = r;
+        self.each_passed(i, range, way, |j, l| {
             let other = &found[j - range.start];
-            r + Vector::from_fn(|d| self.sign(&l, d) * other[d]) * l.weight
-        })
+            r += Vector::from_fn(|d| self.sign(l, d) * other[d]) * l.weight;
+        });
+        r
     }
 
     #[inline(always)]

@@ -3,8 +3,8 @@
 //! Each level is what the one below makes of fields that are affine on every group (Galerkin), but for the pairs between groups: an
 //! affine field on groups has steps between them that a smooth field has not, and they are made less stiff. A wall stands with the
 //! nearest particle in front of it and follows the field there.
-use super::{Problem, Sharer};
 use super::field::{Field, Moments};
+use super::{Problem, Sharer};
 use crate::cloud::coefficient_unknowns::{ITSELF, Kind, Link};
 use crate::cloud::multipliers::{Factors, Row};
 use crate::math::Vector;
@@ -125,7 +125,13 @@ impl<const D: usize> Level<D> {
         let edges = rows.into_iter().flatten().collect();
         let factors = Factors::default();
         let level = Self { groups, offset, centre, first, edges, open, own, softness, freedom, factors };
-        Some(Self { factors: Factors::new(level.len(), |i, e: &Row<D>| e.own(&level, i)), ..level })
+        Some(Self {
+            factors: Factors::new(level.len(), |i| {
+                let level = &level;
+                move |e: &Row<D>| e.own(level, i)
+            }),
+            ..level
+        })
     }
 
     pub(super) fn len(&self) -> usize {

@@ -50,9 +50,8 @@ fn few<const D: usize>() -> Few<D> {
     };
     let ends = (0..n).map(|_| end(&mut draw)).collect();
     let pairs = (0..n).flat_map(|i: u32| (i + 1..n).map(move |j| (i, j)));
-    let (weights, edges) = pairs
-        .map(|(i, j)| ([draw.vector(), draw.vector()], Edge::of_both(i, j, draw.vector())))
-        .unzip();
+    let (weights, edges) =
+        pairs.map(|(i, j)| ([draw.vector(), draw.vector()], Edge::of_both(i, j, draw.vector()))).unzip();
     Few {
         x: (0..n).map(|_| draw.vector()).collect(),
         volume: (0..n).map(|_| 1.5 + draw.number()).collect(),

@@ -1,0 +1,35 @@
+//! The rows of the multipliers, as sweeps over the particles see them.
+use std::ops::Range;
+
+use super::Problem;
+use super::cycle::{Grid, Way};
+use crate::cloud::multipliers::Row;
+use crate::math::conjugate::Row as _;
+use crate::math::sweep::{sweep, sweep_slots};
+
+impl<const D: usize> Grid<Row<D>> for Problem<'_, D> {
+    #[inline(always)]
+    fn left(&self, i: usize, b: &Row<D>, x: &[Row<D>]) -> Row<D> {
+        b.plus(-1.0, &self.row(i, x))
+    }
+
+    #[inline(always)]
+    fn less(&self, i: usize, mut r: Row<D>, range: &Range<usize>, found: &[Row<D>], way: Way) -> Row<D> {
+        self.each_passed(i, range, way, |other, link| {
+            r.add(&(self.across(link, &found[other - range.start]) * link.weight), &link.offset, 0.5);
+        });
+        r
+    }
+
+    #[inline(always)]
+    fn solved(&self, i: usize, r: &Row<D>) -> Row<D> {
+        self.factors.solve(i, r)
+    }
+
+    /// Multipliers of the walls.
+    fn follow(&self, b: &[Row<D>], x: &mut [Row<D>]) {
+        let mut walls = vec![0.0; self.sharers.len()];
+        sweep(&mut walls, |w| (b[self.n_fluid + w].closure[0] - self.wall_row(w, x)) / self.shared[w]);
+        sweep_slots(&mut x[self.n_fluid..], |w, x| x.closure[0] += walls[w]);
+    }
+}
