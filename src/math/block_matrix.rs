@@ -523,7 +523,7 @@ mod tests {
     use super::*;
 
     /// Two rows that see one another, with unknowns of these sizes.
-    fn pair(scale: [f64; 2], entry: impl Fn(usize, usize) -> f64) -> BlockMatrix {
+    fn pair(scale: [f64; 2], entry: impl Fn(usize, usize) -> f64 + Sync) -> BlockMatrix {
         let mut matrix = BlockMatrix::new(2, std::slice::from_ref(&(0..2)), &[0, 1, 2], &[1, 0]).scaled(&scale);
         matrix.assemble(|_, rows| {
             for i in 0..2 {
