@@ -61,25 +61,9 @@ impl<'a, const D: usize> Links<'a, D> {
         let reverse = Reverse::new(cloud);
         let Neighbours { first, index, .. } = &cloud.neighbours;
         let first = &first[..=cloud.n_fluid];
-        let mut seen_back = vec![false; first[cloud.n_fluid] as usize];
-        let rows = parts(cloud.n_fluid, CHUNK);
-        let entries: Vec<_> = rows.iter().map(|r| first[r.start] as usize..first[r.end] as usize).collect();
-        sweep_parts(&entries, 1, &mut seen_back, &|k, slots| {
-            for i in rows[k].clone() {
-                for p in first[i] as usize..first[i + 1] as usize {
-                    slots[p - entries[k].start] = reverse.position(i, index[p] as usize).is_some();
-                }
-            }
-        });
-        let mut all = Self { cloud, seen_back, weight: Vec::new() };
-        let mut weight = vec![0.0; all.seen_back.len()];
-        sweep_parts(&entries, 1, &mut weight, &|k, slots| {
-            for i in rows[k].clone() {
-                all.range(i).for_each(|p| slots[p - entries[k].start] = all.weight(i, p) as f32);
-            }
-        });
-        all.weight = weight;
-        all
+        let seen_back = of_entries(first, false, |i, p| reverse.position(i, index[p] as usize).is_some());
+        let weight = of_entries(first, 0.0, |i, p| weight(cloud, i, index[p] as usize) as f32);
+        Self { cloud, seen_back, weight }
     }
 
     /// Entries of row `i`.
@@ -139,14 +123,27 @@ impl<'a, const D: usize> Links<'a, D> {
         };
         Link { other: source as u32, weight: f64::from(self.weight[p]), offset, kind }
     }
+}
 
-    fn weight(&self, i: usize, p: usize) -> f64 {
-        let (cloud, j) = (self.cloud, self.end(p));
-        let source = cloud.source(j).index;
-        if cloud.interface_range().contains(&source) {
-            return SHARE_FREEDOM;
+/// `f(i, p)` of every neighbour entry p of the rows i that `first` delimits.
+fn of_entries<T: Copy + Send>(first: &[u32], blank: T, f: impl Fn(usize, usize) -> T + Sync) -> Vec<T> {
+    let rows = parts(first.len() - 1, CHUNK);
+    let entries: Vec<_> = rows.iter().map(|r| first[r.start] as usize..first[r.end] as usize).collect();
+    let mut all = vec![blank; entries.last().map_or(0, |e| e.end)];
+    sweep_parts(&entries, 1, &mut all, &|k, slots| {
+        for i in rows[k].clone() {
+            (first[i] as usize..first[i + 1] as usize).for_each(|p| slots[p - entries[k].start] = f(i, p));
         }
-        let face = face_volume(cloud, i, source);
-        face * face / (cloud.x[j] - cloud.x[i]).norm_squared()
+    });
+    all
+}
+
+/// w of the entry of particle `i` for particle `j`, or an image.
+fn weight<const D: usize>(cloud: &Cloud<D>, i: usize, j: usize) -> f64 {
+    let source = cloud.source(j).index;
+    if cloud.interface_range().contains(&source) {
+        return SHARE_FREEDOM;
     }
+    let face = face_volume(cloud, i, source);
+    face * face / (cloud.x[j] - cloud.x[i]).norm_squared()
 }

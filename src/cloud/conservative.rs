@@ -124,8 +124,12 @@ fn find<const D: usize>(
     operators: &mut Operators<D>,
     softness: f64,
 ) -> (Vec<f64>, Vec<WallFace<D>>, ConservativeReport) {
+    // first guess: those of the least-squares fit, none to walls
+    operators.alter_areas(|i, j, s| match cloud.interface_range().contains(&cloud.source(j).index) {
+        true => Vector::ZERO,
+        false => *s * grown_face(cloud, i, j),
+    });
     let mut problem = Problem::new(cloud, softness);
-    problem.prepare(operators);
     let levels = Levels::new(&problem, symmetry::mirrors(cloud));
     let mut multipliers = vec![Row::ZERO; problem.n_rows()];
     // volumes are told well enough by a rough solution
@@ -196,6 +200,12 @@ impl<'a, const D: usize> Problem<'a, D> {
                 }
             }
         }
+        // first guess of the shares of every wall: inverse powers of the distance
+        for all in &mut sharers {
+            let weight = |s: &Sharer| links.at(s.i as usize, s.p as usize).offset.norm().powi(-SHARE_POWER);
+            let total: f64 = all.iter().map(weight).sum();
+            all.iter_mut().for_each(|s| s.share = weight(s) / total);
+        }
         let mut volume = cloud.volume[..n_fluid].to_vec();
         volume.iter_mut().enumerate().for_each(|(i, v)| *v += below_first(cloud, i).unwrap_or(0.0));
         let walls = cloud.interface.iter().map(|w| -w.area).collect();
@@ -223,23 +233,6 @@ impl<'a, const D: usize> Problem<'a, D> {
             passing,
             factors: Factors::default(),
         }
-    }
-
-    /// First guess: area vectors of the least-squares fit, none to walls; shares of every wall by inverse powers of the distance.
-    fn prepare(&mut self, operators: &mut Operators<D>) {
-        let cloud = self.cloud;
-        operators.alter_areas(|i, j, s| match cloud.interface_range().contains(&cloud.source(j).index) {
-            true => Vector::ZERO,
-            false if !cloud.layers.is_empty() => *s * grown_face(cloud, i, j),
-            false => *s,
-        });
-        let mut sharers = std::mem::take(&mut self.sharers);
-        for all in &mut sharers {
-            let weight = |s: &Sharer| self.link(s).offset.norm().powi(-SHARE_POWER);
-            let total: f64 = all.iter().map(weight).sum();
-            all.iter_mut().for_each(|s| s.share = weight(s) / total);
-        }
-        self.sharers = sharers;
     }
 
     fn link(&self, s: &Sharer) -> Link<D> {

@@ -2,7 +2,8 @@
 //!
 //! ∇f_i = Σ_j a_ij (f_j − f_i) by a linear least-squares fit with weights 1/r² (eqs (10)-(15)). The scheme works on *edges*:
 //! pairs of particles that see one another, each with the antisymmetric vector s_ij = V_i a_ij − V_j a_ji that weights the upwind
-//! dissipation; a_ij and a_ji follow from one small matrix a row. On a uniform lattice s_ij = 2 V a_ij and everything reduces to one set of coefficients.
+//! dissipation; a_ij and a_ji follow from one small matrix a row. On a uniform lattice s_ij = 2 V a_ij and everything reduces to
+//! one set of coefficients.
 //!
 //! Rows are cut into contiguous *parts*; an edge inside a part is visited once and serves both ends, an edge between parts
 //! is stored with both. Every part writes only its own rows, so results do not depend on the number of threads.
@@ -87,10 +88,9 @@ impl<'a, const D: usize> Weights<'a, D> {
         if let Some(pair) = self.stored.get(n) {
             return *pair;
         }
-        let scaled = *d * (1.0 / d.norm_squared());
-        let times = |m: &[[f64; D]; D]| Vector::from_fn(|r| (0..D).map(|c| m[r][c] * scaled[c]).sum::<f64>());
         let back = e.both() && e.seen_back();
-        [times(&self.inverse[e.i()]), if back { -times(&self.inverse[e.j()]) } else { Vector::ZERO }]
+        let a_j = if back { gradient_weight(&self.inverse[e.j()], &-*d) } else { Vector::ZERO };
+        [gradient_weight(&self.inverse[e.i()], d), a_j]
     }
 }
 
@@ -164,38 +164,41 @@ impl<const D: usize> Operators<D> {
     }
 
     fn fit(&mut self, cloud: &Cloud<D>, lookup: &Reverse<'_, D>) {
-        let plain = cloud.layers.is_empty();
-        let inverse = match plain {
-            true => self.fit_by_edges(cloud),
-            false => self.fit_by_rows(cloud),
-        };
-        sweep_each_slot(&mut self.edges, |_, edges| {
-            edges.iter_mut().for_each(|e| match plain && e.j() < cloud.n_real() {
-                true => e.weigh(cloud, &inverse),
-                false => e.s = weights(cloud, &inverse, lookup, (e.i(), e.j())).1,
+        if cloud.layers.is_empty() {
+            self.fit_by_edges(cloud);
+            let inverse = &self.inverse;
+            sweep_each_slot(&mut self.edges, |_, edges| {
+                edges.iter_mut().for_each(|e| match e.j() < cloud.n_real() {
+                    true => e.weigh(cloud, inverse),
+                    false => e.s = weights(cloud, inverse, lookup, (e.i(), e.j())).1,
+                });
             });
-        });
-        if plain {
-            self.inverse = inverse;
             return;
         }
+        let inverse = self.fit_by_rows(cloud);
         self.stored.resize(self.parts.len(), Vec::new());
-        let edges = &self.edges;
-        sweep_each(&mut self.stored, |k| {
-            edges[k].iter().map(|e| weights(cloud, &inverse, lookup, (e.i(), e.j())).0).collect()
+        let mut both: Vec<_> = self.edges.iter_mut().zip(&mut self.stored).collect();
+        sweep_each_slot(&mut both, |_, (edges, stored)| {
+            stored.clear();
+            stored.extend(edges.iter_mut().map(|e| {
+                let (pair, s) = weights(cloud, &inverse, lookup, (e.i(), e.j()));
+                e.s = s;
+                pair
+            }));
         });
     }
 
-    /// Inverse normal matrices, from which every weight follows, where offsets are plain differences: those of the two ends
+    /// Finds the inverse normal matrices, from which every weight follows, where offsets are plain differences: those of the two ends
     /// of an edge are opposite, and add the same to both.
-    fn fit_by_edges(&mut self, cloud: &Cloud<D>) -> Vec<[[f64; D]; D]> {
+    fn fit_by_edges(&mut self, cloud: &Cloud<D>) {
         let n = cloud.neighbours.len();
-        let mut rows = vec![[[0.0; D]; D]; n];
+        self.inverse.resize(n, [[0.0; D]; D]);
         self.condition.resize(n, 0.0);
         let (parts, edges) = (&self.parts, &self.edges);
-        let condition = self.condition.as_mut_slice();
-        sweep_two_parts((parts, 1, rows.as_mut_slice()), (parts, 1, condition), &|k, rows, condition| {
+        let (inverse, condition) = (self.inverse.as_mut_slice(), self.condition.as_mut_slice());
+        sweep_two_parts((parts, 1, inverse), (parts, 1, condition), &|k, rows, condition| {
             let start = parts[k].start;
+            rows.fill([[0.0; D]; D]);
             for e in &edges[k] {
                 let d = cloud.x[e.j()] - cloud.x[e.i()];
                 let scaled = d * (1.0 / d.norm_squared());
@@ -209,7 +212,6 @@ impl<const D: usize> Operators<D> {
                 (*row, *condition, _) = invert_row(cloud, i, row, count);
             }
         });
-        rows
     }
 
     /// The same on any cloud, row by row.
