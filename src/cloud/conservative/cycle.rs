@@ -183,7 +183,7 @@ fn step<V: conjugate::Row, G: Grid<V>>(grid: &G, x: &mut [V], left: &mut [V], wa
 impl<const D: usize, V: Field<D>> Grid<V> for Signed<'_, D> {
     fn left(&self, i: usize, b: &V, x: &[V]) -> V {
         let pull = |row: V, e: &Edge<D>| row.plus(1.0, &e.pull(self.signs, &x[e.other as usize]));
-        self.level.edges(i).iter().fold(b.plus(-1.0, &x[i].own(self.level, i)), pull)
+        self.level.edges(i).iter().fold(b.plus(-1.0, &x[i].own(&self.level.own[i], self.level.soft[i])), pull)
     }
 
     fn less(&self, i: usize, r: V, range: &Range<usize>, found: &[V], way: Way) -> V {
@@ -192,6 +192,6 @@ impl<const D: usize, V: Field<D>> Grid<V> for Signed<'_, D> {
     }
 
     fn solved(&self, i: usize, r: &V) -> V {
-        r.solved(self.level, i)
+        r.solved(&self.level.own[i], &self.level.factors, i)
     }
 }

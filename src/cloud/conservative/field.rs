@@ -4,10 +4,12 @@
 //! what the fields of its ends differ by at the middle m between them, w_ij (φ_i(m) − φ_j(m)). So groups of particles may share a
 //! field, and what couples two groups is again a sum of products of affine functions, their [`Moments`]. The closure alone has
 //! constant fields.
-use super::levels::Level;
-use crate::cloud::multipliers::Row;
+use crate::cloud::multipliers::{Factors, Row};
 use crate::math::Vector;
 use crate::math::conjugate;
+
+/// Factor on what couples groups, level by level; the number of iterations hardly depends on it between 0.25 and 0.5.
+pub(super) const STIFFNESS: f64 = 0.35;
 
 /// Σ w (1, m) ⊗ (1, m) over pairs with weights w and middles m from some origin.
 #[derive(Clone, Copy)]
@@ -46,7 +48,7 @@ impl<const D: usize> Moments<D> {
 /// Multipliers of the particles, or of groups of them.
 pub(super) trait Field<const D: usize>: conjugate::Row {
     /// Part of what a group finds that its members take. Fields with steps between groups are stiffer than smooth ones, by
-    /// [`super::levels::STIFFNESS`] for affine fields; constant ones by half.
+    /// [`STIFFNESS`] for affine fields; constant ones by half.
     const STEP: f64;
 
     /// The field from a point `d` farther on.
@@ -61,11 +63,11 @@ pub(super) trait Field<const D: usize>: conjugate::Row {
     /// What pairs with these moments make of the field.
     fn weighed(&self, moments: &Moments<D>) -> Self;
 
-    /// What group `i` makes of its own field.
-    fn own(&self, level: &Level<D>, i: usize) -> Self;
+    /// What a group makes of its own field: all its pairs with others, its softness and the freedom of its volume.
+    fn own(&self, pairs: &Moments<D>, soft: [f64; 2]) -> Self;
 
     /// The field of group `i` of which it makes this.
-    fn solved(&self, level: &Level<D>, i: usize) -> Self;
+    fn solved(&self, pairs: &Moments<D>, factors: &Factors<D>, i: usize) -> Self;
 }
 
 impl<const D: usize> Field<D> for Row<D> {
@@ -99,24 +101,24 @@ impl<const D: usize> Field<D> for Row<D> {
     }
 
     #[inline(always)]
-    fn own(&self, level: &Level<D>, i: usize) -> Self {
-        let mut row = self.weighed(&level.own[i]);
-        let volume = level.freedom[i] * self.trace();
+    fn own(&self, pairs: &Moments<D>, [softness, freedom]: [f64; 2]) -> Self {
+        let mut row = self.weighed(pairs);
+        let volume = freedom * self.trace();
         for r in 0..D {
-            row.moment[r] += self.moment[r] * level.softness[i];
+            row.moment[r] += self.moment[r] * softness;
             row.moment[r][r] += volume;
         }
         row
     }
 
     #[inline(always)]
-    fn solved(&self, level: &Level<D>, i: usize) -> Self {
-        level.factors.solve(i, self)
+    fn solved(&self, _: &Moments<D>, factors: &Factors<D>, i: usize) -> Self {
+        factors.solve(i, self)
     }
 }
 
 impl<const D: usize> Field<D> for Vector<D> {
-    const STEP: f64 = super::levels::STIFFNESS / 0.5;
+    const STEP: f64 = STIFFNESS / 0.5;
 
     #[inline(always)]
     fn at(&self, _: &Vector<D>) -> Self {
@@ -138,13 +140,13 @@ impl<const D: usize> Field<D> for Vector<D> {
     }
 
     #[inline(always)]
-    fn own(&self, level: &Level<D>, i: usize) -> Self {
-        self.weighed(&level.own[i])
+    fn own(&self, pairs: &Moments<D>, _: [f64; 2]) -> Self {
+        self.weighed(pairs)
     }
 
     #[inline(always)]
-    fn solved(&self, level: &Level<D>, i: usize) -> Self {
-        *self * (1.0 / level.own[i].weight.max(f64::MIN_POSITIVE))
+    fn solved(&self, pairs: &Moments<D>, _: &Factors<D>, _: usize) -> Self {
+        *self * (1.0 / pairs.weight.max(f64::MIN_POSITIVE))
     }
 }
 

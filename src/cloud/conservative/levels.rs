@@ -3,7 +3,7 @@
 //! Each level is what the one below makes of fields that are affine on every group (Galerkin), but for the pairs between groups: an
 //! affine field on groups has steps between them that a smooth field has not, and they are made less stiff. A wall stands with the
 //! nearest particle in front of it and follows the field there.
-use super::field::{Field, Moments};
+use super::field::{Field, Moments, STIFFNESS};
 use super::{Problem, Sharer};
 use crate::cloud::coefficient_unknowns::{ITSELF, Kind, Link};
 use crate::cloud::multipliers::{Factors, Row};
@@ -11,8 +11,6 @@ use crate::math::Vector;
 use crate::math::groups::{Gathering, Groups};
 use crate::math::sweep::{sweep, sweep_each};
 
-/// Factor on what couples groups, level by level; the number of iterations hardly depends on it between 0.25 and 0.5.
-pub(super) const STIFFNESS: f64 = 0.35;
 /// Rows a group.
 const GROUP: usize = 8;
 /// Rows at which coarsening stops, and most levels.
@@ -66,8 +64,8 @@ pub(super) struct Level<const D: usize> {
     open: Vec<Moments<D>>,
     /// All pairs of a group with others.
     pub(super) own: Vec<Moments<D>>,
-    pub(super) softness: Vec<f64>,
-    pub(super) freedom: Vec<f64>,
+    /// Softness of each, and the freedom of its volume.
+    pub(super) soft: Vec<[f64; 2]>,
     pub(super) factors: Factors<D>,
 }
 
@@ -120,18 +118,14 @@ impl<const D: usize> Level<D> {
             members(g).fold(Moments::ZERO, |m, i| m.plus(1.0, &finer.open(i).about_origin(&-offset[i])))
         });
         sweep(&mut own, |g| rows[g].iter().fold(open[g], |m, e| m.plus(1.0, &e.moments)));
-        let [softness, freedom] =
-            [0, 1].map(|k| (0..groups.len()).map(|g| members(g).map(|i| finer.soft(i)[k]).sum()).collect());
+        let mut soft = vec![[0.0; 2]; groups.len()];
+        sweep(&mut soft, |g| members(g).map(|i| finer.soft(i)).fold([0.0; 2], |a, b| [a[0] + b[0], a[1] + b[1]]));
         let edges = rows.into_iter().flatten().collect();
-        let factors = Factors::default();
-        let level = Self { groups, offset, centre, first, edges, open, own, softness, freedom, factors };
-        Some(Self {
-            factors: Factors::new(level.len(), |i| {
-                let level = &level;
-                move |e: &Row<D>| e.own(level, i)
-            }),
-            ..level
-        })
+        let factors = Factors::new(groups.len(), |g| {
+            let (own, soft) = (&own[g], soft[g]);
+            move |e: &Row<D>| e.own(own, soft)
+        });
+        Some(Self { groups, offset, centre, first, edges, open, own, soft, factors })
     }
 
     pub(super) fn len(&self) -> usize {
@@ -196,7 +190,7 @@ impl<const D: usize> Finer<D> for Level<D> {
     }
 
     fn soft(&self, i: usize) -> [f64; 2] {
-        [self.softness[i], self.freedom[i]]
+        self.soft[i]
     }
 }
 
