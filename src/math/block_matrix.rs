@@ -18,6 +18,9 @@ const PART: [usize; 2] = [64, 1024];
 /// Parts that a coarse matrix has where they are not smaller than that.
 const MANY_PARTS: usize = 8;
 
+/// Blocks of a row of a coarse matrix that are summed at a time.
+const WINDOW: usize = 64;
+
 /// A sparse matrix of square blocks.
 #[derive(Clone, Debug, Default)]
 pub struct BlockMatrix {
@@ -391,23 +394,27 @@ impl BlockMatrix {
         let values = (value_parts, UNIT + size, self.value.as_mut_slice());
         sweep_two_parts(values, (parts, size, self.diagonal.as_mut_slice()), &|k, value, diagonal| {
             let mut blocks = value.chunks_exact_mut(UNIT + size);
-            let mut row: Vec<f32> = Vec::new();
+            let mut some = [0.0; WINDOW * MOST_ENTRIES];
             for (g, own) in parts[k].clone().zip(diagonal.chunks_exact_mut(size)) {
-                let columns = &column[first[g] as usize..first[g + 1] as usize];
-                row.clear();
-                row.resize(columns.len() * size, 0.0);
+                let rows = || members(g).iter().map(|i| *i as usize);
+                let entries = || rows().flat_map(|i| fine.first[i] as usize..fine.first[i + 1] as usize);
                 own.fill(0.0);
-                for i in members(g).iter().map(|i| *i as usize) {
+                for i in rows() {
                     own.iter_mut().zip(&fine.diagonal[i * size..(i + 1) * size]).for_each(|(a, b)| *a += b);
-                    for e in fine.first[i] as usize..fine.first[i + 1] as usize {
-                        let to = match columns.binary_search(&group[fine.column(e)]) {
-                            Ok(k) => &mut row[k * size..][..size],
-                            Err(_) => &mut *own,
-                        };
-                        add_block::<N>(fine.off_diagonal::<N>(e), to);
-                    }
                 }
-                row.chunks_exact(size).zip(&mut blocks).for_each(|(sum, block)| round_block(sum, block, own));
+                for e in entries().filter(|e| group[fine.column(*e)] as usize == g) {
+                    add_block::<N>(fine.off_diagonal::<N>(e), own);
+                }
+                for columns in column[first[g] as usize..first[g + 1] as usize].chunks(WINDOW) {
+                    let some = &mut some[..columns.len() * size];
+                    some.fill(0.0);
+                    for e in entries() {
+                        if let Ok(k) = columns.binary_search(&group[fine.column(e)]) {
+                            add_block::<N>(fine.off_diagonal::<N>(e), &mut some[k * size..][..size]);
+                        }
+                    }
+                    some.chunks_exact(size).zip(&mut blocks).for_each(|(sum, block)| round_block(sum, block, own));
+                }
             }
         });
     }
