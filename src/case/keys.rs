@@ -443,7 +443,13 @@ const SENSORS: &[(&str, &str)] = &[
 ];
 
 static OUTPUT: Table = Table::of(&[
-    Field::defaulted("checkpoint", COUNT, Absent::Integer(50), "Iterations between checkpoints."),
+    Field::defaulted("checkpoint", COUNT, Absent::Integer(50), "Iterations between checkpoints, at most."),
+    Field::defaulted(
+        "checkpoint_time",
+        Kind::Quantity(WallTime::DIMENSION, Range::POSITIVE),
+        Absent::Word("10 min"),
+        "Wall-clock time between checkpoints, at most: what a run that is killed loses. No result depends on it.",
+    ),
     Field::optional(
         "field_interval",
         Kind::Quantity(Time::DIMENSION, Range::POSITIVE),

@@ -492,8 +492,10 @@ pub enum Sensor {
 /// What is written, and how often.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Output {
-    /// Iterations between checkpoints.
+    /// Iterations between checkpoints, at most.
     pub checkpoint: u32,
+    /// Wall-clock time between checkpoints, at most.
+    pub checkpoint_time: WallTime,
     /// Time between field files in marching runs; absent: the last field only.
     pub field_interval: Option<Time>,
     /// Periods at the end of a march that loops and harmonics of the loads are the mean of.
@@ -591,6 +593,6 @@ impl Default for Adapt {
 
 impl Default for Output {
     fn default() -> Self {
-        Self { checkpoint: 50, field_interval: None, loop_periods: 1, report: true, stations: None }
+        Self { checkpoint: 50, checkpoint_time: WallTime(600.0), field_interval: None, loop_periods: 1, report: true, stations: None }
     }
 }

@@ -1,5 +1,6 @@
 //! What the process has used, as the operating system tells it.
 use std::fs;
+use std::path::Path;
 
 /// Clock ticks per second in `/proc`: fixed on Linux.
 const TICKS: f64 = 100.0;
@@ -36,6 +37,19 @@ pub fn peak_bytes() -> u64 {
 pub fn available_bytes() -> Option<u64> {
     let limits = [free_bytes(), group_bytes(), address_bytes()];
     limits.into_iter().flatten().min()
+}
+
+/// Bytes that this user may still write where `folder` is, which exists; `None` where the system does not tell.
+#[cfg(unix)]
+pub fn free_disk_bytes(folder: &Path) -> Option<u64> {
+    let disk = rustix::fs::statvfs(folder).ok()?;
+    disk.f_bavail.checked_mul(disk.f_frsize)
+}
+
+/// Bytes that this user may still write where `folder` is: this system is not asked.
+#[cfg(not(unix))]
+pub fn free_disk_bytes(_: &Path) -> Option<u64> {
+    None
 }
 
 /// Memory that is free or can be freed.

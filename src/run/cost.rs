@@ -9,6 +9,7 @@
 use serde::Serialize;
 
 use super::accuracy;
+use super::disk;
 use super::recipe::is_automatic;
 use super::stage::Stage;
 use crate::case::{Case, HarmonicCount, ParticleMotion, Polar, Temporal};
@@ -63,6 +64,8 @@ pub struct Cost {
     pub bytes: f64,
     /// Seconds on this machine, with as many threads as now.
     pub seconds: f64,
+    /// What it writes.
+    pub disk: f64,
 }
 
 /// What the steady flow of a case took on a coarser cloud, solved for this alone.
@@ -122,8 +125,9 @@ impl Sized<'_> {
         let starts = !matches!(self.case.time, Temporal::Explicit(_) | Temporal::Harmonics(_));
         let solved = marched + if starts { relaxed } else { 0.0 };
         let bytes = PROGRAM + largest * bytes_each(self.case, self.dimension);
+        let disk = disk::bytes(self.case, largest, self.dimension, self.period);
         if !self.case.output.report {
-            return Cost { bytes, seconds: solved };
+            return Cost { bytes, seconds: solved, disk };
         }
         let shared = threads() as f64;
         let [always, pixel, thread, each] = PICTURES_BYTES;
@@ -131,7 +135,7 @@ impl Sized<'_> {
         let [first, of_particle] = SPACE_PICTURES_SECONDS;
         let of_space = if self.dimension == 3 { first + of_particle * largest } else { 0.0 };
         let seconds = solved + (PICTURES_SECONDS[usize::from(self.case.moves())] + of_space) / shared;
-        Cost { bytes: bytes.max(pictures), seconds }
+        Cost { bytes: bytes.max(pictures), seconds, disk }
     }
 
     /// Particles of the clouds of the run, one after another.
@@ -181,7 +185,7 @@ impl Sized<'_> {
 }
 
 /// Harmonics of a balance, 0 without one.
-fn harmonics(case: &Case) -> u32 {
+pub(crate) fn harmonics(case: &Case) -> u32 {
     match &case.time {
         Temporal::Harmonics(plan) => match plan.number {
             HarmonicCount::Fixed(n) => n,

@@ -166,14 +166,15 @@ fn look<const D: usize>(case: &Case, input: &Path, out: Option<&Path>) -> Result
 /// What the matrices of `[gaf]` take, where the case asks for them: two balances for each mode and frequency.
 fn cost_of_gaf(own: &Sized<'_>, chord: Option<f64>) -> Option<Cost> {
     let plan = own.case.gaf.as_ref()?;
-    let mut all = Cost { bytes: 0.0, seconds: 0.0 };
+    let mut all = Cost { bytes: 0.0, seconds: 0.0, disk: 0.0 };
     for &k in &plan.reduced_frequencies {
         for mode in plan.all_modes() {
             let length = plan.reduced_length.map_or(0.5 * chord.unwrap_or(1.0), |l| l.0);
             let period = std::f64::consts::TAU * length / (k * own.case.flow.reference().mach);
             let case = &own.case.gaf_case(plan, mode, k, 1.0);
             let one = Sized { case, period: Some(period), ..*own }.cost(|| 0.0);
-            all = Cost { bytes: all.bytes.max(one.bytes), seconds: all.seconds + 2.0 * one.seconds };
+            let seconds = all.seconds + 2.0 * one.seconds;
+            all = Cost { bytes: all.bytes.max(one.bytes), seconds, disk: all.disk.max(one.disk) };
         }
     }
     Some(all)

@@ -10,6 +10,7 @@
 //! `polar` (what many flows on the same clouds leave to one another), `session`; on top of it [`gaf`] and [`verify`].
 mod accuracy;
 mod cost;
+mod disk;
 mod doubts;
 mod error;
 mod files;

@@ -7,6 +7,7 @@
 use std::path::{Path, PathBuf};
 
 use super::accuracy;
+use super::disk;
 use super::doubts;
 use super::error::RunError;
 use super::files;
@@ -345,6 +346,7 @@ impl Run<'_> {
     /// The cloud of the case; tells what is worth knowing of it and of the motion on it.
     fn cloud<const D: usize>(&self, site: &Site<'_, D>, monitor: &mut dyn Monitor) -> Result<Cloud<D>, RunError> {
         let cloud = Cloud::build(&setup::spec(self.case), site.surface, &[])?;
+        self.out.map_or(Ok(()), |out| disk::check(self.case, out, cloud.n_real(), D, site.motions.period()))?;
         cloud.notes.iter().cloned().chain(cloud.early_ends()).for_each(|n| monitor.note(&n));
         check_motion(self.case, &cloud, site.motions)?.iter().for_each(|n| monitor.warn(n));
         Ok(cloud)

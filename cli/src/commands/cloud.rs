@@ -59,7 +59,8 @@ pub(crate) fn describe(r: &CloudReport) -> String {
         ),
         None => (megabytes(&r.cost), readable(r.cost.seconds)),
     };
-    text += &format!("memory         {memory}\ntime           {time}\n");
+    let disk = format!("about {:.0} MB", r.cost.disk / 1e6);
+    text += &format!("memory         {memory}\ntime           {time}\ndisk           {disk}\n");
     if let Some(gaf) = &r.gaf {
         text += &format!("`alula gaf`    {}, {}\n", megabytes(gaf), readable(gaf.seconds));
     }

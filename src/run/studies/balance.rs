@@ -102,7 +102,7 @@ fn converge<S: HasGas<D>, const D: usize>(
     let eyes = &mut PeriodicEyes::new(balance, system);
     let mut progress = Progress { eyes, cycle: 0, aim: Aim::Orders(orders) };
     let mut settled = Settled { goal: 10f64.powf(-orders), tolerance, iterations: plan.iterations };
-    let mut checkpoint = Checkpoint { at: turn.at, particles: None, at_end: true };
+    let mut checkpoint = Checkpoint::new(turn.at, None, true);
     let all: &mut [&mut dyn Observer<_>] = &mut [&mut progress, &mut settled, &mut Told, &mut checkpoint];
     let ending = drive(&mut relax, all, log)?;
     match ending {

@@ -188,5 +188,5 @@ fn keeper<S: HasGas<D>, const D: usize>(
 }
 
 fn checkpoint<'a, S: System>(turn: &'a Turn<'a>, particles: &'a Particles<'a, S>) -> Checkpoint<'a, S> {
-    Checkpoint { at: turn.at, particles: Some(particles), at_end: true }
+    Checkpoint::new(turn.at, Some(particles), true)
 }

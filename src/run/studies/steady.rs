@@ -114,7 +114,7 @@ fn watched<S: HasGas<D>, const D: usize>(
     let mut progress = Progress { eyes, cycle: turn.stage().cycle, aim: Aim::Orders(orders) };
     // any cloud of a family may be the last one
     let at_end = turn.last() || accuracy::asked(log.case).is_some();
-    let mut checkpoint = Checkpoint { at: turn.at, particles: None, at_end };
+    let mut checkpoint = Checkpoint::new(turn.at, None, at_end);
     let patience = match (hurried || turn.stage().point.is_some(), turn.last() && log.record.polar.from_rest) {
         (false, _) => LAST_PATIENCE,
         (true, true) => POINT_PATIENCE,

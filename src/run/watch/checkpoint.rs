@@ -1,4 +1,4 @@
-//! Checkpoints: every so many iterations, when asked for, at the end and when things go wrong.
+//! Checkpoints: every so many iterations or minutes, when asked for, at the end and when things go wrong.
 use super::super::error::RunError;
 use super::super::record::Log;
 use super::super::record::saved::{LagrangianCheckpoint, Position, Saved};
@@ -13,22 +13,32 @@ pub(crate) type Particles<'a, S> = dyn Fn(&<S as System>::Frame, &RemapLedger) -
 /// Writes the checkpoint of a run folder.
 pub(crate) struct Checkpoint<'a, S: System> {
     /// Where the run stands among its stages.
-    pub(crate) at: &'a Position<'a>,
+    at: &'a Position<'a>,
     /// What is kept of particles that travel; absent where none can.
-    pub(crate) particles: Option<&'a Particles<'a, S>>,
+    particles: Option<&'a Particles<'a, S>>,
     /// Whether one is written when the stage is over.
-    pub(crate) at_end: bool,
+    at_end: bool,
+    /// Wall seconds of the run at the last one.
+    written: f64,
 }
 
 impl<S: System> Observer<S> for Checkpoint<'_, S> {
     fn begin(&mut self, now: &mut Now<'_, S>, log: &mut Log<'_>) -> Result<(), RunError> {
+        self.written = log.seconds()[1];
         if now.mark().iteration == 0 { self.write(now, log) } else { Ok(()) }
     }
 
     fn step(&mut self, step: &Step, now: &mut Now<'_, S>, log: &mut Log<'_>) -> Result<(), RunError> {
-        let every = log.case.output.checkpoint.max(1);
-        let due = log.checkpoint_is_asked_for() || step.iteration.is_multiple_of(every);
-        if due { self.write(now, log) } else { Ok(()) }
+        let output = &log.case.output;
+        let [_, seconds] = log.seconds();
+        let due = log.checkpoint_is_asked_for()
+            || step.iteration.is_multiple_of(output.checkpoint.max(1))
+            || seconds - self.written >= output.checkpoint_time.0;
+        if !due {
+            return Ok(());
+        }
+        self.written = seconds;
+        self.write(now, log)
     }
 
     fn end(&mut self, ending: &Ending, now: &mut Now<'_, S>, log: &mut Log<'_>) -> Result<(), RunError> {
@@ -40,7 +50,12 @@ impl<S: System> Observer<S> for Checkpoint<'_, S> {
     }
 }
 
-impl<S: System> Checkpoint<'_, S> {
+impl<'a, S: System> Checkpoint<'a, S> {
+    /// Of a stage of a run; `at_end`: one is written when the stage is over.
+    pub(crate) fn new(at: &'a Position<'a>, particles: Option<&'a Particles<'a, S>>, at_end: bool) -> Self {
+        Self { at, particles, at_end, written: 0.0 }
+    }
+
     /// Writes where an integrator stands that is not being driven.
     pub(crate) fn keep(&self, integrator: &mut dyn Integrator<S>, log: &Log<'_>) -> Result<(), RunError> {
         self.write(&mut Now::at(integrator), log)
