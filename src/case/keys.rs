@@ -447,8 +447,8 @@ static OUTPUT: Table = Table::of(&[
     Field::defaulted(
         "checkpoint_time",
         Kind::Quantity(WallTime::DIMENSION, Range::POSITIVE),
-        Absent::Word("10 min"),
-        "Wall-clock time between checkpoints, at most: what a run that is killed loses. No result depends on it.",
+        Absent::Number(600.0),
+        "Wall-clock time between checkpoints, at most, in seconds without a unit: what a run that is killed loses. No result depends on it.",
     ),
     Field::optional(
         "field_interval",

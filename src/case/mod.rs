@@ -593,6 +593,13 @@ impl Default for Adapt {
 
 impl Default for Output {
     fn default() -> Self {
-        Self { checkpoint: 50, checkpoint_time: WallTime(600.0), field_interval: None, loop_periods: 1, report: true, stations: None }
+        Self {
+            checkpoint: 50,
+            checkpoint_time: WallTime(600.0),
+            field_interval: None,
+            loop_periods: 1,
+            report: true,
+            stations: None,
+        }
     }
 }

@@ -20,6 +20,10 @@ use crate::system::{Fault, Hierarchy, Implicit, Instant, Reach, placed, rows};
 
 /// Drop of the residual below which the flow counts as settled.
 const SETTLED: f64 = 3e-3;
+/// Drop of the residual after which sweeps alone are over as soon as they make it grow by more than [`WORN_RISE`]: near the solution
+/// the first-order operator overshoots, and leaves a worse state the longer it goes on.
+const NEAR: f64 = 2e-2;
+const WORN_RISE: f64 = 1.5;
 /// Iterations without a new smallest residual after which the flow counts as settled.
 const PATIENCE: u32 = 10;
 /// Fewest iterations of sweeps alone before patience is counted.
@@ -422,7 +426,8 @@ impl<'a, S: Implicit> Relax<'a, S> {
         if self.norm < 0.98 * phase.best {
             (phase.best, phase.best_age) = (self.norm, phase.age);
         }
-        let settled = drop < SETTLED || (phase.age > SHORTEST_START && phase.age > phase.best_age + PATIENCE);
+        let worn = phase.best < NEAR * self.first_norm && self.norm > WORN_RISE * phase.best;
+        let settled = drop < SETTLED || worn || (phase.age > SHORTEST_START && phase.age > phase.best_age + PATIENCE);
         let lost = phase.newton && self.cfl < LOST_CFL && phase.age > SHORTEST_START;
         if (!phase.newton && settled) || lost {
             *phase = Phase { newton: !phase.newton, age: 0, best: self.norm, best_age: 0 };
