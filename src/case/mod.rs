@@ -20,6 +20,7 @@ mod motion;
 mod motion_check;
 mod motion_keys;
 mod naca;
+mod output;
 mod polar;
 pub mod quantity;
 mod read;
@@ -47,6 +48,7 @@ pub use motion::{
     Rotation, Translation,
 };
 pub use naca::{MeanLine, Naca, NacaDesign, NoSection, SixSeries, ThicknessForm, TrailingEdge};
+pub use output::Output;
 pub use polar::Polar;
 pub use quantity::{
     Acceleration, Angle, AngularStiffness, Density, Frequency, Inertia, Length, Mass, Pressure, Rate, Ratio, Stiffness,
@@ -489,23 +491,6 @@ pub enum Sensor {
     Curvature,
 }
 
-/// What is written, and how often.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Output {
-    /// Iterations between checkpoints, at most.
-    pub checkpoint: u32,
-    /// Wall-clock time between checkpoints, at most.
-    pub checkpoint_time: WallTime,
-    /// Time between field files in marching runs; absent: the last field only.
-    pub field_interval: Option<Time>,
-    /// Periods at the end of a march that loops and harmonics of the loads are the mean of.
-    pub loop_periods: u32,
-    /// Write `report.html` and pictures.
-    pub report: bool,
-    /// Parts of the half span at which Cp is drawn along the chord, in space; absent: those of the references, else a usual list.
-    pub stations: Option<Vec<f64>>,
-}
-
 /// A reference curve of Cp against x/c.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Compare {
@@ -588,18 +573,5 @@ impl Accuracy {
 impl Default for Adapt {
     fn default() -> Self {
         Self { cycles: 0, spacing: None, particles: 2_000_000, sensors: vec![Sensor::Shock, Sensor::Curvature] }
-    }
-}
-
-impl Default for Output {
-    fn default() -> Self {
-        Self {
-            checkpoint: 50,
-            checkpoint_time: WallTime(600.0),
-            field_interval: None,
-            loop_periods: 1,
-            report: true,
-            stations: None,
-        }
     }
 }
