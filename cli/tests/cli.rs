@@ -331,6 +331,8 @@ fn a_killed_march_of_a_body_on_springs_goes_on_to_the_same_bits() {
 fn a_body_that_goes_where_the_cloud_cannot_follow_is_told_with_its_place() {
     let light =
         DROPPED.replace("mass_ratio = 75.0", "mass_ratio = 10.0").replace("speed_index = 0.65", "speed_index = 6.0");
+    // all but free to plunge, so that it leaves whatever the digits of its start are
+    let light = light.replace("frequency_ratio = 0.5", "frequency_ratio = 0.05");
     let light = light.replace("rigid", "deforming").replace("until = 40", "until = 100");
     let desk = Desk::new(&light.replace("plunge = 0.01", "pitch_rate = 0.2"));
     let output = desk.alula(&["run", "case.toml", "--out", "out", "--quiet"]);
