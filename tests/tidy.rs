@@ -43,7 +43,7 @@ const NARROW: [(&str, &[&str]); 9] = [
 ];
 
 /// Modules whose files use one another one way only.
-const ONE_WAY: [&str; 3] = ["case", "cloud", "scheme"];
+const ONE_WAY: [&str; 4] = ["case", "cloud", "scheme", "run"];
 
 /// Who may open files.
 const OPENS_FILES: [&str; 7] = [

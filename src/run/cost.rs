@@ -10,9 +10,9 @@ use serde::Serialize;
 
 use super::accuracy;
 use super::disk;
-use super::recipe::is_automatic;
+use super::recipe::harmonics;
 use super::stage::Stage;
-use crate::case::{Case, HarmonicCount, ParticleMotion, Polar, Temporal};
+use crate::case::{Case, ParticleMotion, Polar, Temporal};
 use crate::math::sweep::threads;
 
 /// Bytes of a process that computes nothing.
@@ -48,8 +48,6 @@ const STEP_GROWTH: f64 = 0.5;
 const BALANCE: [f64; 2] = [980.0, 490.0];
 /// Residuals of a step of an explicit method, part of a stable step lost included, at rest and in motion.
 const EXPLICIT: [f64; 2] = [3.5, 7.0];
-/// Harmonics that `number = "auto"` mostly ends with.
-const USUAL_HARMONICS: u32 = 3;
 /// Growth of a cloud in a cycle of adaptation, and work of a steady state that begins from that of the cycle before over that of
 /// one that begins anew.
 const ADAPTED: f64 = 1.4;
@@ -64,7 +62,7 @@ pub struct Cost {
     pub bytes: f64,
     /// Seconds on this machine, with as many threads as now.
     pub seconds: f64,
-    /// What it writes.
+    /// Bytes that its folder holds at most.
     pub disk: f64,
 }
 
@@ -181,18 +179,6 @@ impl Sized<'_> {
             }
             Temporal::Explicit(plan) => EXPLICIT[usize::from(self.case.moves())] * end * fastest() / plan.cfl,
         }
-    }
-}
-
-/// Harmonics of a balance, 0 without one.
-pub(crate) fn harmonics(case: &Case) -> u32 {
-    match &case.time {
-        Temporal::Harmonics(plan) => match plan.number {
-            HarmonicCount::Fixed(n) => n,
-            HarmonicCount::Auto(_) if is_automatic(plan) => USUAL_HARMONICS.min(plan.most),
-            HarmonicCount::Auto(_) => plan.most,
-        },
-        _ => 0,
     }
 }
 

@@ -4,9 +4,9 @@
 //! 276,000 (November 2026).
 use std::path::Path;
 
-use super::cost::harmonics;
 use super::error::RunError;
 use super::files::FILM_FIELDS;
+use super::recipe::harmonics;
 use crate::case::{Case, Temporal};
 use crate::observe::usage::free_disk_bytes;
 

@@ -25,6 +25,9 @@ const FIRST: usize = 1;
 const MORE: usize = 2;
 /// Greatest Courant number of sweeps alone.
 const SWEEPS_CFL_MAX: f64 = 100.0;
+/// Harmonics that `number = "auto"` mostly ends with.
+const USUAL_HARMONICS: u32 = 3;
+
 /// A march of a case.
 pub(crate) struct Marching {
     /// How steps are taken.
@@ -168,6 +171,17 @@ pub(crate) fn most(plan: &Harmonics) -> usize {
 /// True when the number of harmonics is found on the way.
 pub(crate) fn is_automatic(plan: &Harmonics) -> bool {
     matches!(plan.number, HarmonicCount::Auto(_))
+}
+
+/// Harmonics that a balance ends with as far as is known before, 0 without one.
+pub(crate) fn harmonics(case: &Case) -> u32 {
+    match &case.time {
+        Temporal::Harmonics(plan) => match plan.number {
+            HarmonicCount::Fixed(n) => n,
+            HarmonicCount::Auto(_) => USUAL_HARMONICS.min(plan.most),
+        },
+        _ => 0,
+    }
 }
 
 /// The implicit step of a case, where it is fixed.

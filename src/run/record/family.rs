@@ -19,7 +19,7 @@ pub(crate) fn judge(asked: &Accuracy, loads: CloudLoads, log: &mut Log<'_>) -> b
     log.record.clouds.push(loads);
     let family = Convergence::of(&log.record.clouds, asked.loads.0);
     let reached = family.as_ref().is_some_and(|c| c.reached());
-    let [_, wall] = log.seconds();
+    let wall = log.wall_seconds();
     log.record.out_of_time = !reached && asked.time.is_some_and(|t| (1.0 + NEXT) * wall > t.0);
     let enough = reached || log.record.out_of_time;
     if log.point.is_some() {

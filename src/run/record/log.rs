@@ -259,9 +259,14 @@ impl<'a> Log<'a> {
         self.monitor.checkpoint()
     }
 
+    /// Wall seconds, those before a restart included. Processor time takes reading files of the system, which is not for every step.
+    pub(crate) fn wall_seconds(&self) -> f64 {
+        self.before[1] + self.clock.wall_seconds()
+    }
+
     /// Processor and wall seconds, those before a restart included.
     pub(crate) fn seconds(&self) -> [f64; 2] {
-        [self.before[0] + self.clock.cpu_seconds(), self.before[1] + self.clock.wall_seconds()]
+        [self.before[0] + self.clock.cpu_seconds(), self.wall_seconds()]
     }
 
     /// Loads of period after period are compared where bodies have a motion that repeats.

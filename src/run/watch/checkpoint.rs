@@ -24,13 +24,13 @@ pub(crate) struct Checkpoint<'a, S: System> {
 
 impl<S: System> Observer<S> for Checkpoint<'_, S> {
     fn begin(&mut self, now: &mut Now<'_, S>, log: &mut Log<'_>) -> Result<(), RunError> {
-        self.written = log.seconds()[1];
+        self.written = log.wall_seconds();
         if now.mark().iteration == 0 { self.write(now, log) } else { Ok(()) }
     }
 
     fn step(&mut self, step: &Step, now: &mut Now<'_, S>, log: &mut Log<'_>) -> Result<(), RunError> {
         let output = &log.case.output;
-        let [_, seconds] = log.seconds();
+        let seconds = log.wall_seconds();
         let due = log.checkpoint_is_asked_for()
             || step.iteration.is_multiple_of(output.checkpoint.max(1))
             || seconds - self.written >= output.checkpoint_time.0;

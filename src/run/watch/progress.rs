@@ -138,7 +138,7 @@ impl<S: System> Progress<'_, S> {
 
     /// A row of the history, as [`IterationHistory`](super::super::record::IterationHistory) names its columns.
     fn row(&self, step: &Step, inner: u32, c: &Coefficients, motion: &[f64; 5], log: &Log<'_>) -> Vec<f64> {
-        let [_, seconds] = log.seconds();
+        let seconds = log.wall_seconds();
         let (cycle, time) = (f64::from(self.cycle), log.units.case_time(step.time));
         let mut row =
             vec![cycle, log.record.iteration as f64, time, step.cfl, step.residual, c.cl, c.cd, c.cm, seconds];
