@@ -54,6 +54,9 @@ pub struct CloudLoads {
     /// True where the gas is faster than sound somewhere: then there are shocks.
     #[serde(default)]
     pub supersonic: bool,
+    /// True where the flow came to rest.
+    #[serde(default)]
+    pub steady: bool,
     /// Lift.
     pub cl: f64,
     /// Drag.
@@ -81,7 +84,7 @@ pub struct LoadEstimate {
     pub far_field: f64,
     /// Part of what wall pressure and momentum differ by.
     pub momentum: f64,
-    /// Part of the last iterations.
+    /// Part of the last iterations, and of the loads on a finer cloud whose flow came to no rest.
     pub residual: f64,
 }
 
@@ -90,6 +93,9 @@ pub struct LoadEstimate {
 pub struct Convergence {
     /// Coarse to fine.
     pub clouds: Vec<CloudLoads>,
+    /// A finer cloud, whose flow came to no rest.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub unsteady: Option<CloudLoads>,
     /// Lift.
     pub cl: LoadEstimate,
     /// Drag.
@@ -112,13 +118,18 @@ pub enum FamilyEnd {
     Particles,
     /// A finer cloud would take more time than allowed.
     Time,
+    /// On a finer cloud there is no steady flow.
+    Unsteady,
 }
 
 impl Convergence {
     /// The error bars of the loads on the last of `clouds`, which were to be `asked` over the loads; `None` for fewer than three
-    /// clouds, each half as fine as the next.
+    /// clouds, each half as fine as the next. A finer one among those before the last found no steady flow.
     pub fn of(clouds: &[CloudLoads], asked: f64) -> Option<Self> {
-        let [.., a, b, c] = clouds else { return None };
+        let last = clouds.last()?;
+        let unsteady = clouds.iter().find(|finer| finer.factor < last.factor).copied();
+        let clouds: Vec<CloudLoads> = clouds.iter().filter(|c| c.factor >= last.factor).copied().collect();
+        let [.., a, b, c] = &clouds[..] else { return None };
         let of = |load: fn(&CloudLoads) -> f64, part: fn(&Coefficients) -> f64| {
             let found = estimate([load(a), load(b), load(c)], c.supersonic);
             let far_field = FAR * load(c).abs() / c.reach.powi(2);
@@ -126,7 +137,8 @@ impl Convergence {
                 let change = b.momentum.as_ref().map_or(0.0, |before| (part(through) - part(before)).abs());
                 DISAGREEMENT * ((load(c) - part(through)).abs() - change).max(0.0)
             });
-            let residual = part(&c.unsettled).abs();
+            let swing = |finer: &CloudLoads| (load(finer) - load(c)).abs() + part(&finer.unsettled).abs();
+            let residual = part(&c.unsettled).abs().max(unsteady.as_ref().map_or(0.0, swing));
             let parts = [found.spacing, far_field, momentum, residual, PRINTED];
             let half_width = parts.iter().map(|p| p * p).sum::<f64>().sqrt();
             LoadEstimate { half_width, far_field, momentum, residual, ..found }
@@ -135,8 +147,12 @@ impl Convergence {
         let values = [c.cl, c.cd, c.cm];
         let short = |k: usize| all[k].half_width <= asked * values[k].abs().max(LEAST[k]);
         let [cl, cd, cm] = all;
-        let ended_by = if (0..3).all(short) { FamilyEnd::Accuracy } else { FamilyEnd::Particles };
-        Some(Self { clouds: clouds.to_vec(), cl, cd, cm, asked, ended_by })
+        let ended_by = match unsteady {
+            _ if (0..3).all(short) => FamilyEnd::Accuracy,
+            Some(_) => FamilyEnd::Unsteady,
+            None => FamilyEnd::Particles,
+        };
+        Some(Self { clouds, unsteady, cl, cd, cm, asked, ended_by })
     }
 
     /// True when all error bars are as short as was asked.
@@ -146,8 +162,10 @@ impl Convergence {
 
     /// The same family, where time ended it.
     pub fn out_of_time(self) -> Self {
-        let ended_by = if self.reached() { FamilyEnd::Accuracy } else { FamilyEnd::Time };
-        Self { ended_by, ..self }
+        match self.ended_by {
+            FamilyEnd::Particles => Self { ended_by: FamilyEnd::Time, ..self },
+            _ => self,
+        }
     }
 
     /// Half widths of all error bars.
@@ -216,6 +234,7 @@ mod tests {
             particles: 10,
             reach: 1e3,
             supersonic: false,
+            steady: true,
             cl,
             cd: 0.0,
             cm: 0.0,
@@ -239,5 +258,12 @@ mod tests {
         let unsettled = Coefficients { cl: 0.006, ..Coefficients::default() };
         let swinging = Convergence::of(&[clouds[0], clouds[1], CloudLoads { unsettled, ..clouds[2] }], 0.02).unwrap();
         assert!(swinging.cl.half_width > c.cl.half_width && !swinging.reached(), "{swinging:?}");
+        let finer = CloudLoads { steady: false, unsettled, ..cloud(0.5, 0.32) };
+        let back = Convergence::of(&[clouds[0], clouds[1], finer, clouds[2]], 0.02).unwrap();
+        assert_eq!((back.clouds.len(), back.ended_by), (3, FamilyEnd::Unsteady));
+        assert!(
+            (back.cl.residual - 0.0235).abs() < 1e-12 && back.cl.half_width > 0.0235,
+            "holds what the finer one swings by"
+        );
     }
 }

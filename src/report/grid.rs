@@ -27,6 +27,9 @@ fn verdict(found: &Convergence) -> String {
         FamilyEnd::Particles => {
             format!("error bars are longer than {asked} % of the loads, and `accuracy.particles` allows no finer cloud")
         }
+        FamilyEnd::Unsteady => format!(
+            "error bars are longer than {asked} % of the loads: on a finer cloud the flow came to no rest, and its loads lie within them"
+        ),
         FamilyEnd::Time => {
             format!(
                 "error bars are longer than {asked} % of the loads, and a finer cloud would not end within `accuracy.time`"
@@ -48,6 +51,10 @@ fn table(found: &Convergence) -> Table {
         let values = all.iter().map(|(_, of, _)| number(of(cloud)));
         let head = [format!("{} × spacing", cloud.factor), grouped(cloud.particles as f64)];
         rows.push(head.into_iter().chain(values).collect::<Vec<_>>());
+    }
+    if let Some(finer) = &found.unsteady {
+        let head = [format!("{} × spacing, not steady", finer.factor), grouped(finer.particles as f64)];
+        rows.push(head.into_iter().chain(all.iter().map(|(_, of, _)| number(of(finer)))).collect());
     }
     let row = |name: &str, value: &dyn Fn(&LoadEstimate) -> Option<f64>| {
         let values = all.iter().map(|(_, _, e)| value(e).map_or("–".to_owned(), number));

@@ -15,12 +15,14 @@
 use super::error::RunError;
 use super::look::{GasView, load_axes, momentum};
 use super::record::Log;
+use super::record::family;
 use super::record::polar::PolarPoint;
-use super::record::saved::Kept;
+use super::record::saved::{Kept, raised};
 use super::setup::{self, Site, Solver};
 use super::stage::Stage;
 use super::studies::Reached;
 use crate::case::{Case, Polar};
+use crate::cloud::sources::Source;
 use crate::geometry::Surface;
 use crate::observe::convergence::Convergence;
 use crate::scheme::HasGas;
@@ -75,6 +77,9 @@ impl<'a, S: HasGas<D>, const D: usize> Course<'a, S, D> {
         coarser: Option<&Coarser<'_>>,
         log: &Log<'_>,
     ) -> Option<Vec<f64>> {
+        if stage.back {
+            return self.own(stage).map(|k| k.state.clone());
+        }
         if log.record.polar.from_rest {
             return None;
         }
@@ -116,11 +121,29 @@ impl<'a, S: HasGas<D>, const D: usize> Course<'a, S, D> {
         Some(near.state.iter().zip(&before.state).map(|(a, b)| a + part * (a - b)).collect())
     }
 
-    /// Keeps the state at the end of a stage for points to come.
-    pub(crate) fn keep(&mut self, stage: &Stage, state: &[f64]) {
-        let Some(point) = stage.point.filter(|_| stage.cycle == 0) else { return };
+    /// What is kept of the flow of a stage on its cloud.
+    fn own(&self, stage: &Stage) -> Option<&Kept> {
+        self.kept.iter().find(|k| k.factor == stage.factor && k.point == stage.point.unwrap_or(0))
+    }
+
+    /// Keeps the state at the end of a stage, and the `sources` of its cloud: for points to come, or for the one finer cloud of a family.
+    pub(crate) fn keep(&mut self, stage: &Stage, reached: &Reached<S>, sources: &[f64]) {
+        let kept = |state: &[f64]| Kept {
+            factor: stage.factor,
+            point: stage.point.unwrap_or(0),
+            state: state.to_vec(),
+            sources: sources.to_vec(),
+        };
+        let Some(point) = stage.point else {
+            let end = reached.end.as_ref().filter(|_| self.points[0].accuracy.is_some());
+            self.kept = end.map(|(_, state)| kept(state)).into_iter().collect();
+            return;
+        };
+        if stage.cycle > 0 {
+            return;
+        }
         self.kept.retain(|k| k.factor != stage.factor || k.point != point);
-        self.kept.push(Kept { factor: stage.factor, point, state: state.to_vec() });
+        self.kept.push(kept(&reached.state));
         // the first of a row serves the next row, the last two of the row the next points
         let (row, on) = (point - point % self.angles, stage.factor);
         let first = self.kept.iter().filter(|k| k.factor == on && k.point >= row).map(|k| k.point).min();
@@ -128,6 +151,28 @@ impl<'a, S: HasGas<D>, const D: usize> Course<'a, S, D> {
         last.sort_unstable();
         let last = last.split_off(last.len().saturating_sub(2));
         self.kept.retain(|k| k.factor != on || Some(k.point) == first || last.contains(&k.point));
+    }
+
+    /// The stage that goes back to the cloud before, whose flow came to rest, where on that of stage `k`, the last of its family, it did
+    /// not; and the sources of that cloud.
+    pub(crate) fn back(
+        &self,
+        k: usize,
+        stages: &[Stage],
+        reached: &Reached<S>,
+        log: &mut Log<'_>,
+    ) -> Option<(Stage, Vec<Source<D>>)> {
+        let stage = &stages[k];
+        let tried = stage.point.is_none() || log.record.polar.from_rest;
+        if !reached.unsteady || !tried || !family::has_steady_before(stage, log) {
+            return None;
+        }
+        let before = |s: &&Stage| s.point == stage.point && s.factor == 2.0 * stage.factor;
+        let back = Stage { back: true, ..*stages[..k].iter().rfind(before)? };
+        let sources = raised(&self.own(&back)?.sources);
+        let why = log.record.reason.clone().unwrap_or_default();
+        log.note(&format!("{why}: the run goes back to the cloud before, where the flow came to rest"));
+        Some((back, sources))
     }
 
     /// The solver on the cloud of a stage, where it is on the shelf, in the free stream of its point.

@@ -105,7 +105,7 @@ pub(crate) fn plan(case: &Case, n: usize, dimension: usize, least: usize) -> Vec
     // a march from a given field starts from that field itself
     let given = case.is_unsteady() && !matches!(case.initial, Initial::FreeStream);
     let relaxes = relaxation(case).is_some() && !case.bodies.is_empty() && !given;
-    let steady = |factor: f64, cycle: u32| Stage { factor, cycle, point: None, task: Task::Relax };
+    let steady = |factor: f64, cycle: u32| Stage { factor, cycle, ..Stage::PLAIN };
     if relaxes {
         let limits = START[dimension - 2];
         if n > limits[1] {
@@ -119,7 +119,7 @@ pub(crate) fn plan(case: &Case, n: usize, dimension: usize, least: usize) -> Vec
         all.extend((0..=case.adapt.cycles).map(|cycle| steady(1.0, cycle)));
     }
     let cycle = all.last().map_or(0, |s: &Stage| s.cycle);
-    all.extend(in_time(case, None, least).into_iter().map(|task| Stage { factor: 1.0, cycle, point: None, task }));
+    all.extend(in_time(case, None, least).into_iter().map(|task| Stage { cycle, task, ..Stage::PLAIN }));
     at_all_points(case, all)
 }
 

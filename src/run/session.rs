@@ -265,7 +265,7 @@ impl Run<'_> {
         monitor: &mut dyn Monitor,
     ) -> Result<Ended, RunError> {
         let clock = Clock::start();
-        let (stages, mut ground) = self.opening(site, origin, monitor)?;
+        let (mut stages, mut ground) = self.opening(site, origin, monitor)?;
         let scales = Scales { axes: load_axes(self.case, site.surface), period: site.motions.period() };
         let points = self.case.points();
         let mut log = Log::open(self.case, self.out, scales, ground.saved.as_ref(), structures, monitor)?;
@@ -281,8 +281,8 @@ impl Run<'_> {
             log.begin_point(true);
         }
         let mut previous: Option<Stood<S, D>> = None;
-        while let Some(stage) = stages.get(k) {
-            let site = Site { case: course.case(stage), ..*site };
+        while let Some(stage) = stages.get(k).copied() {
+            let (stage, site) = (&stage, Site { case: course.case(&stage), ..*site });
             course.enter(stage, site.surface, &mut log);
             log.record.warnings.clear();
             let build = |ready| Ok(setup::solver(&site, stage, &sources, ready)?.with(&assemble));
@@ -304,8 +304,18 @@ impl Run<'_> {
             if let Some(next) = turn.next().filter(|next| next.cycle > stage.cycle && !reached.enough) {
                 sources = setup::adapted(&site, next, &solver.system, &reached.state);
             }
-            let over = reached.enough || turn.last();
-            course.keep(stage, &reached.state);
+            let last = turn.last();
+            let over = reached.enough || last;
+            if !last || stage.point.is_some() {
+                course.keep(stage, &reached, &flat);
+            }
+            let back = if last { course.back(k, &stages, &reached, &mut log) } else { None };
+            if let Some((back, before)) = back {
+                (k, sources) = (k + 1, before);
+                stages.insert(k, back);
+                previous = Some(Stood { stage: *stage, solver, reached });
+                continue;
+            }
             k = if over { course.over(k, &stages, (&solver.system, &reached), &mut log)? } else { k + 1 };
             previous = Some(Stood { stage: *stage, solver, reached });
             if over && k < stages.len() {

@@ -28,13 +28,16 @@ pub(crate) struct Stage {
     /// Point of a polar; absent where there is one flow only.
     #[serde(default)]
     pub(crate) point: Option<usize>,
+    /// True where a run goes back to a coarser cloud, for want of a steady flow on the finer one.
+    #[serde(default)]
+    pub(crate) back: bool,
     /// What is done there.
     pub(crate) task: Task,
 }
 
 impl Stage {
     /// A relaxation on the cloud of the case itself.
-    pub(crate) const PLAIN: Self = Self { factor: 1.0, cycle: 0, point: None, task: Task::Relax };
+    pub(crate) const PLAIN: Self = Self { factor: 1.0, cycle: 0, point: None, back: false, task: Task::Relax };
 
     /// True when both stand on the same cloud, in the same free stream.
     pub(crate) fn shares_cloud(&self, other: &Self) -> bool {

@@ -140,6 +140,9 @@ fn grid_convergence(c: &Convergence) -> String {
         FamilyEnd::Particles => format!(
             "the error bars are longer than {asked} %: `accuracy.particles` allows no finer cloud than the last of {n}\n"
         ),
+        FamilyEnd::Unsteady => format!(
+            "the error bars are longer than {asked} %: on a cloud finer than the last of {n} the flow came to no rest\n"
+        ),
         FamilyEnd::Time => format!(
             "the error bars are longer than {asked} %: a finer cloud than the last of {n} would not end within `accuracy.time`\n"
         ),

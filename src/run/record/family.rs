@@ -3,6 +3,7 @@ use super::{Log, Record};
 use crate::case::{Accuracy, Case};
 use crate::observe::convergence::{CloudLoads, Convergence};
 use crate::run::accuracy;
+use crate::run::stage::Stage;
 
 /// Time that the next cloud of a family takes over that of all before it.
 const NEXT: f64 = 4.0;
@@ -11,6 +12,11 @@ const NEXT: f64 = 4.0;
 pub(crate) fn found(case: &Case, record: &Record) -> Option<Convergence> {
     let family = Convergence::of(&record.clouds, accuracy::asked(case)?.loads.0)?;
     Some(if record.out_of_time { family.out_of_time() } else { family })
+}
+
+/// True where the flow came to rest on the cloud with twice the spacing of a stage that goes back to none.
+pub(crate) fn has_steady_before(stage: &Stage, log: &Log<'_>) -> bool {
+    !stage.back && log.record.clouds.iter().any(|known| known.steady && known.factor == 2.0 * stage.factor)
 }
 
 /// Adds the loads on one more cloud; true when they are known well enough, or when the next cloud would take too long.

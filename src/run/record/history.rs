@@ -20,6 +20,9 @@ pub struct IterationHistory {
     pub columns: Vec<Vec<f64>>,
 }
 
+/// Part of the smallest residual that counts as a new one.
+const PROGRESS: f64 = 0.98;
+
 impl IterationHistory {
     /// An empty history with the columns of a case.
     pub(crate) fn of(case: &Case) -> Self {
@@ -58,11 +61,33 @@ impl IterationHistory {
             tail.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[l, h], v| [l.min(*v), h.max(*v)])
         })
     }
+
+    /// Iterations since the residual was last smaller, by a fiftieth, than ever before among the last `n`.
+    pub(crate) fn since_smallest(&self, n: usize) -> usize {
+        let column = self.column("residual").unwrap_or_default();
+        let tail = &column[column.len().saturating_sub(n)..];
+        let (mut best, mut since) = (f64::INFINITY, 0);
+        for residual in tail {
+            (best, since) = if *residual < PROGRESS * best { (*residual, 0) } else { (best, since + 1) };
+        }
+        since
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_residual_that_swings_finds_no_new_smallest_value() {
+        let mut history = IterationHistory::of(&crate::case::read("[flow]\nmach = 0.5\n", "t").unwrap());
+        let place = history.names.iter().position(|n| *n == "residual").unwrap();
+        for residual in [1e-9, 1.0, 0.5, 0.2, 0.3, 0.199, 0.4] {
+            let row: Vec<f64> = (0..history.names.len()).map(|k| if k == place { residual } else { 0.0 }).collect();
+            history.push(&row);
+        }
+        assert_eq!([6, 7, 1].map(|n| history.since_smallest(n)), [3, 6, 0]);
+    }
 
     #[test]
     fn rows_of_a_file_and_of_a_run_are_the_same() {

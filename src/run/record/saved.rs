@@ -30,11 +30,11 @@ pub(crate) struct Position<'a> {
     pub(crate) stages: &'a [Stage],
     /// Sources of refinement, flat.
     pub(crate) sources: &'a [f64],
-    /// States that points of a polar leave to those to come.
+    /// States that points of a polar leave to those to come, or a family of clouds to itself.
     pub(crate) kept: &'a [Kept],
 }
 
-/// The state of a point of a polar on a cloud.
+/// The state of a point of a polar, or of a single flow, on a cloud.
 #[derive(Clone, Debug)]
 pub(crate) struct Kept {
     /// Factor on the spacing of the cloud.
@@ -43,6 +43,8 @@ pub(crate) struct Kept {
     pub(crate) point: usize,
     /// Its state there.
     pub(crate) state: Vec<f64>,
+    /// Sources of refinement of the cloud, flat.
+    pub(crate) sources: Vec<f64>,
 }
 
 /// What a checkpoint says of a polar.
@@ -51,6 +53,9 @@ struct PolarMeta {
     record: PolarRecord,
     /// Factor, point and length of each state that is kept.
     kept: Vec<(f64, usize, usize)>,
+    /// Length of the sources of each.
+    #[serde(default)]
+    sources: Vec<usize>,
 }
 
 /// Numbers of a checkpoint that are not arrays.
@@ -295,11 +300,16 @@ pub(crate) fn flatten<const D: usize>(sources: &[Source<D>]) -> Vec<f64> {
     sources.iter().flat_map(|s| s.x.0.into_iter().chain([s.spacing, s.layers])).collect()
 }
 
+/// Sources of refinement from their numbers.
+pub(crate) fn raised<const D: usize>(flat: &[f64]) -> Vec<Source<D>> {
+    let source = |row: &[f64]| Source { x: Vector::from_fn(|d| row[d]), spacing: row[D], layers: row[D + 1] };
+    flat.chunks_exact(D + 2).map(source).collect()
+}
+
 impl Saved {
     /// Sources of refinement of the stage.
     pub(crate) fn sources<const D: usize>(&self) -> Vec<Source<D>> {
-        let source = |row: &[f64]| Source { x: Vector::from_fn(|d| row[d]), spacing: row[D], layers: row[D + 1] };
-        self.sources.chunks_exact(D + 2).map(source).collect()
+        raised(&self.sources)
     }
 
     /// Writes the checkpoint of a run folder.
@@ -339,6 +349,7 @@ impl Saved {
             polar: PolarMeta {
                 record: self.polar,
                 kept: self.kept.iter().map(|k| (k.factor, k.point, k.state.len())).collect(),
+                sources: self.kept.iter().map(|k| k.sources.len()).collect(),
             },
         };
         let meta = serde_json::to_value(meta).map_err(|e| other_version(&e))?;
@@ -349,7 +360,7 @@ impl Saved {
             field("older", past.older),
             field("sources", self.sources),
             field("settling", self.settling.recent.concat()),
-            field("kept", self.kept.into_iter().flat_map(|k| k.state).collect()),
+            field("kept", self.kept.into_iter().flat_map(|k| [k.state, k.sources].concat()).collect()),
         ];
         if let Some(lagrangian) = self.lagrangian {
             let LagrangianCheckpoint { lists, places, velocity, course, .. } = lagrangian;
@@ -411,10 +422,14 @@ impl PolarMeta {
     /// The states that are kept, from all their numbers.
     fn kept(&self, mut numbers: &[f64]) -> Vec<Kept> {
         let mut all = Vec::new();
-        for (factor, point, length) in &self.kept {
-            let (state, rest) = numbers.split_at((*length).min(numbers.len()));
-            all.push(Kept { factor: *factor, point: *point, state: state.to_vec() });
+        let mut take = |length: usize| {
+            let (taken, rest) = numbers.split_at(length.min(numbers.len()));
             numbers = rest;
+            taken.to_vec()
+        };
+        for (k, (factor, point, length)) in self.kept.iter().enumerate() {
+            let (state, sources) = (take(*length), take(self.sources.get(k).copied().unwrap_or(0)));
+            all.push(Kept { factor: *factor, point: *point, state, sources });
         }
         all
     }

@@ -52,7 +52,7 @@ pub(crate) fn balance<S: HasGas<D>, const D: usize>(
     }
     let next = turn.at.stages.get(turn.at.stage + 1).map_or(0, |s| s.instances() / 2);
     log.note(&format!("{harmonics} harmonics done, {next} follow"));
-    Ok(Some(Reached { state, end: None, enough: false }))
+    Ok(Some(Reached { state, end: None, enough: false, unsteady: false }))
 }
 
 /// State at all instances, from one or from another number of them, and where a relaxation stands.
@@ -146,7 +146,7 @@ fn finish<S: HasGas<D>, const D: usize>(
     found.write(solver.film.as_ref(), log)?;
     log.record.balance = Some(report);
     let (frame, first) = found.instance(0);
-    Ok(Some(Reached { state: found.state.to_vec(), end: Some((frame, first)), enough: true }))
+    Ok(Some(Reached { state: found.state.to_vec(), end: Some((frame, first)), enough: true, unsteady: false }))
 }
 
 /// Says what a user should know of the truncation.

@@ -51,7 +51,7 @@ pub(crate) fn lead<S: HasGas<D>, const D: usize>(
     match drive(&mut marcher, &mut [&mut effort, &mut periods, &mut instances, &mut Told], log)? {
         Ending::Stopped => Ok(None),
         Ending::Failed(problem) => Err(log.failed(problem)),
-        _ => Ok(Some(Reached { state: instances.all, end: None, enough: false })),
+        _ => Ok(Some(Reached { state: instances.all, end: None, enough: false, unsteady: false })),
     }
 }
 

@@ -3,11 +3,11 @@ use super::super::accuracy;
 use super::super::error::RunError;
 use super::super::look::{GasView, momentum};
 use super::super::recipe::control;
-use super::super::record::Log;
 use super::super::record::family;
+use super::super::record::{IterationHistory, Log};
 use super::super::stage::{Stage, Task};
 use super::super::watch::{
-    Aim, Checkpoint, Ending, Flat, GasEyes, Limit, Observer, Progress, Resting, Told, drive, sample,
+    Aim, Checkpoint, Ending, Flat, GasEyes, Limit, Observer, Progress, Resting, Swinging, Told, drive, sample,
 };
 use super::turn::{Reached, Start, Turn};
 use crate::case::{Accuracy, Steady};
@@ -28,6 +28,8 @@ const SETTLING: f64 = 1.5;
 const PATIENCE: u32 = 20;
 /// The same for the last stage: no later one makes up for it.
 const LAST_PATIENCE: u32 = 200;
+/// The same on the last cloud of a family, where the one before serves in its place.
+const FAMILY_PATIENCE: usize = 100;
 /// The same for the last stage of a point of a polar that starts from rest: the other points wait.
 const POINT_PATIENCE: u32 = 60;
 
@@ -66,7 +68,7 @@ pub(crate) fn relax<S: HasGas<D>, const D: usize>(
             Ending::Finished => relax.goal = relax.goal.max(relax.drop()),
             Ending::Spent | Ending::Paused => {}
         }
-        log.record.reason = (!relax.finished()).then(|| short_of_goal(&relax, steady, orders));
+        log.record.reason = (!relax.finished()).then(|| short_of_goal(&relax, steady, orders, &log.record.history));
         let loads = tell(system, &mut relax, turn, log)?;
         let enough = asked.is_some_and(|asked| family::judge(&asked, loads, log));
         let rests = hurried && !relax.finished() && relax.resting() >= PATIENCE;
@@ -82,21 +84,27 @@ pub(crate) fn relax<S: HasGas<D>, const D: usize>(
         // the last cloud of a family is solved to the end
         hurried = false;
     };
+    let unsteady = !log.record.converged && relax.iteration < steady.iterations;
     let Standing { frame, state, work } = relax.standing();
-    let mut reached = Reached { enough, ..Reached::at(frame.clone(), state.to_vec()) };
+    let mut reached = Reached { enough, unsteady, ..Reached::at(frame.clone(), state.to_vec()) };
     let (gas, own) = (system.gas(), system.gas_unknowns());
     gas.without_circulation(system.gas_frame(frame), system.gas_work(work), &mut reached.state[own]);
     Ok(Some(reached))
 }
 
 /// Why a relaxation ended before its goal.
-fn short_of_goal<S: Implicit>(relax: &Relax<'_, S>, steady: &Steady, orders: f64) -> String {
+fn short_of_goal<S: Implicit>(
+    relax: &Relax<'_, S>,
+    steady: &Steady,
+    orders: f64,
+    history: &IterationHistory,
+) -> String {
     let reached = -relax.drop().log10();
     if relax.iteration >= steady.iterations {
         let all = steady.iterations;
         return format!("after all {all} iterations the residual is down {reached:.1} of {orders:.1} orders");
     }
-    let resting = relax.resting();
+    let resting = history.since_smallest(relax.iteration as usize);
     format!(
         "no steady flow was found: the residual, down {reached:.1} of {orders:.1} orders, has not fallen for {resting} iterations"
     )
@@ -121,10 +129,14 @@ fn watched<S: HasGas<D>, const D: usize>(
         (true, false) => PATIENCE,
     };
     let (mut limit, mut resting) = (Limit { iterations }, Resting { patience });
-    let least = if turn.stage().factor > 1.0 { EARLY_ORDERS } else { orders - SETTLING };
+    let least = if turn.stage().factor > 1.0 && !turn.last() { EARLY_ORDERS } else { orders - SETTLING };
     let (mut told, mut flat) = (Told, accuracy::asked(log.case).map(|asked| flat(&asked, least)));
     let mut all: Vec<&mut dyn Observer<S>> = vec![&mut progress, &mut limit, &mut told, &mut resting];
     flat.iter_mut().for_each(|flat| all.push(flat));
+    let mut swinging = Swinging { patience: FAMILY_PATIENCE };
+    if turn.last() && family::has_steady_before(turn.stage(), log) {
+        all.push(&mut swinging);
+    }
     all.push(&mut checkpoint);
     drive(relax, &mut all, log)
 }
@@ -165,8 +177,8 @@ fn tell<S: HasGas<D>, const D: usize>(
     }
     let (reach, unsettled) = (reach(system.gas()), unsettled(log));
     let supersonic = is_supersonic(system.gas(), system.gas_work(work));
-    let Coefficients { cl, cd, cm } = loads;
-    Ok(CloudLoads { factor, particles, reach, supersonic, cl, cd, cm, momentum, unsettled })
+    let (steady, Coefficients { cl, cd, cm }) = (log.record.converged, loads);
+    Ok(CloudLoads { factor, particles, reach, supersonic, steady, cl, cd, cm, momentum, unsettled })
 }
 
 /// True where the gas is faster than sound somewhere.

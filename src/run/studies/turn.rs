@@ -51,11 +51,13 @@ pub(crate) struct Reached<S: System> {
     pub(crate) end: Option<(S::Frame, Vec<f64>)>,
     /// True when the stages that follow are not needed.
     pub(crate) enough: bool,
+    /// True when no steady flow was found for want of one, not of iterations.
+    pub(crate) unsteady: bool,
 }
 
 impl<S: System> Reached<S> {
     /// The end of a stage whose state may be that of the run.
     pub(crate) fn at(frame: S::Frame, state: Vec<f64>) -> Self {
-        Self { end: Some((frame, state.clone())), state, enough: false }
+        Self { end: Some((frame, state.clone())), state, enough: false, unsteady: false }
     }
 }

@@ -28,6 +28,20 @@ impl<S: System> Observer<S> for Resting {
     }
 }
 
+/// Ends a relaxation whose residual, over all of it, has found no new smallest value for a number of iterations: one that swings may
+/// begin anew again and again.
+pub(crate) struct Swinging {
+    /// The number.
+    pub(crate) patience: usize,
+}
+
+impl<S: System> Observer<S> for Swinging {
+    fn wish(&mut self, now: &mut Now<'_, S>, log: &Log<'_>) -> Option<Wish> {
+        let since = log.record.history.since_smallest(now.mark().iteration as usize);
+        (since >= self.patience).then_some(Wish::GiveUp)
+    }
+}
+
 /// Ends a relaxation whose loads have come to rest, though its residual falls on slowly: a wake may take hundreds of iterations to
 /// settle that move no load.
 pub(crate) struct Flat {
