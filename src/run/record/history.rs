@@ -80,7 +80,8 @@ mod tests {
 
     #[test]
     fn a_residual_that_swings_finds_no_new_smallest_value() {
-        let mut history = IterationHistory::of(&crate::case::read("[flow]\nmach = 0.5\n", "t").unwrap());
+        let mut history =
+            IterationHistory::of(&crate::case::read("[flow]\nmach = 0.5\n[[body]]\nnaca = \"0012\"\n", "t").unwrap());
         let place = history.names.iter().position(|n| *n == "residual").unwrap();
         for residual in [1e-9, 1.0, 0.5, 0.2, 0.3, 0.199, 0.4] {
             let row: Vec<f64> = (0..history.names.len()).map(|k| if k == place { residual } else { 0.0 }).collect();
