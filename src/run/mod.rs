@@ -10,6 +10,7 @@
 //! `polar` (what many flows on the same clouds leave to one another), `session`; on top of it [`gaf`] and [`verify`].
 mod accuracy;
 mod cost;
+mod course;
 mod disk;
 mod doubts;
 mod error;
@@ -22,7 +23,6 @@ mod look;
 mod measure;
 mod monitor;
 mod pilot;
-mod polar;
 mod recipe;
 mod record;
 mod session;

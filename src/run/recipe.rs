@@ -136,7 +136,7 @@ pub(crate) fn plan_from(case: &Case, from: &Stage) -> Vec<Stage> {
         _ => None,
     };
     let tasks = if case.is_unsteady() { in_time(case, held, FIRST) } else { vec![Task::Relax] };
-    tasks.into_iter().map(|task| Stage { task, ..*from }).collect()
+    tasks.into_iter().map(|task| Stage { task, back: false, ..*from }).collect()
 }
 
 /// What is done in time after any steady start; `held`: harmonics of the state it begins from; `least`: harmonics that the motion

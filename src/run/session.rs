@@ -7,6 +7,7 @@
 use std::path::{Path, PathBuf};
 
 use super::accuracy;
+use super::course::{Coarser, Course, Next};
 use super::disk;
 use super::doubts;
 use super::error::RunError;
@@ -15,9 +16,8 @@ use super::folder::{self, Hold};
 use super::found::{Found, Names, Spent};
 use super::look::{GasView, Snapshot, WallSnapshot, field, load_axes, momentum, span_load, span_loads, wake_planes};
 use super::monitor::Monitor;
-use super::polar::{Coarser, Course};
 use super::recipe;
-use super::record::saved::{Position, Saved, flatten};
+use super::record::saved::{Kept, Position, Saved, flatten};
 use super::record::summary::{Clock, Summary};
 use super::record::{Described, IterationHistory, Log, Scales};
 use super::setup::{self, Site, Solver, check_motion};
@@ -271,15 +271,10 @@ impl Run<'_> {
         let mut log = Log::open(self.case, self.out, scales, ground.saved.as_ref(), structures, monitor)?;
         if let Some(cloud) = &ground.ready {
             log.note(&describe(&stages, cloud.n_fluid));
-        }
-        let known = ground.saved.as_ref().or(ground.other.as_ref());
-        let mut sources: Vec<Source<D>> = known.map_or_else(Vec::new, Saved::sources);
-        let kept = ground.saved.as_mut().map_or_else(Vec::new, |s| std::mem::take(&mut s.kept));
-        let mut course = Course::of(self.case, &points, kept);
-        let mut k = ground.saved.as_ref().map_or(0, |s| s.stage);
-        if ground.saved.is_none() {
             log.begin_point(true);
         }
+        let (mut k, mut sources, kept) = ground.standing();
+        let mut course = Course::of(self.case, &points, kept);
         let mut previous: Option<Stood<S, D>> = None;
         while let Some(stage) = stages.get(k).copied() {
             let (stage, site) = (&stage, Site { case: course.case(&stage), ..*site });
@@ -288,7 +283,6 @@ impl Run<'_> {
             let build = |ready| Ok(setup::solver(&site, stage, &sources, ready)?.with(&assemble));
             let Begun { mut solver, start } =
                 ground.begin((stage, &site), build, previous.take(), &mut course, &log)?;
-            solver.system.hold_bodies(stage.task == Task::Relax && self.case.is_unsteady());
             let flat = flatten(&sources);
             let at = Position { stage: k, stages: &stages, sources: &flat, kept: course.kept() };
             let turn = Turn { at: &at };
@@ -304,31 +298,24 @@ impl Run<'_> {
             if let Some(next) = turn.next().filter(|next| next.cycle > stage.cycle && !reached.enough) {
                 sources = setup::adapted(&site, next, &solver.system, &reached.state);
             }
-            let last = turn.last();
-            let over = reached.enough || last;
-            if !last || stage.point.is_some() {
-                course.keep(stage, &reached, &flat);
-            }
-            let back = if last { course.back(k, &stages, &reached, &mut log) } else { None };
-            if let Some((back, before)) = back {
-                (k, sources) = (k + 1, before);
-                stages.insert(k, back);
-                previous = Some(Stood { stage: *stage, solver, reached });
-                continue;
-            }
-            k = if over { course.over(k, &stages, (&solver.system, &reached), &mut log)? } else { k + 1 };
+            course.keep(k, &stages, &reached, &flat);
+            k = match course.next(k, &stages, (&solver.system, &reached), &mut log)? {
+                Next::Stage(next) => next,
+                Next::Back(back, before) => {
+                    sources = before;
+                    stages.insert(k + 1, back);
+                    k + 1
+                }
+                Next::Point(first) => {
+                    course.shelve(stage, solver);
+                    k = first;
+                    continue;
+                }
+            };
             previous = Some(Stood { stage: *stage, solver, reached });
-            if over && k < stages.len() {
-                previous.take().into_iter().for_each(|s| course.shelve(&s.stage, s.solver));
-            }
         }
-        let stood = match previous {
-            Some(stood) => stood,
-            None => last_known(&mut course, site, assemble, &mut log)?,
-        };
-        let Some((frame, state)) = &stood.reached.end else { return Err(RunError::NoStage) };
-        let view = GasView::of(&stood.solver.system, frame, state);
-        Run { case: log.case, ..*self }.conclude(&view, site.surface, &mut log, &clock).map(Ok)
+        let stood = previous.map_or_else(|| last_known(&mut course, site, assemble, &mut log), Ok)?;
+        Run { case: log.case, ..*self }.conclude(&stood, site.surface, &mut log, &clock).map(Ok)
     }
 
     /// The stages of a run, and what the first of them stands on.
@@ -370,6 +357,7 @@ impl Run<'_> {
         turn: &Turn<'_>,
         log: &mut Log<'_>,
     ) -> Result<Option<Reached<S>>, RunError> {
+        solver.system.hold_bodies(turn.stage().task == Task::Relax && self.case.is_unsteady());
         let plan = || recipe::balance(self.case).ok_or(RunError::NoStage);
         match turn.stage().task {
             Task::Relax => {
@@ -389,13 +377,15 @@ impl Run<'_> {
     }
 
     /// Looks at the end of a run, and writes it where there is a folder.
-    fn conclude<const D: usize>(
+    fn conclude<S: HasGas<D>, const D: usize>(
         &self,
-        gas: &GasView<'_, D>,
+        stood: &Stood<S, D>,
         surface: Option<&Surface<D>>,
         log: &mut Log<'_>,
         clock: &Clock,
     ) -> Result<Solution, RunError> {
+        let Some((frame, state)) = &stood.reached.end else { return Err(RunError::NoStage) };
+        let gas = &GasView::of(&stood.solver.system, frame, state);
         let (solved, mut work) = (clock.wall_seconds(), gas.fluid.work());
         let balance = momentum::around(self.case, &log.axes, gas, &mut work, self.case.is_unsteady());
         let view = gas.seen(&mut work);
@@ -433,6 +423,13 @@ struct Ground<const D: usize> {
 }
 
 impl<const D: usize> Ground<D> {
+    /// The stage that a run goes on with, the sources of its cloud, and what was kept of those before it.
+    fn standing(&mut self) -> (usize, Vec<Source<D>>, Vec<Kept>) {
+        let sources = self.saved.as_ref().or(self.other.as_ref()).map_or_else(Vec::new, Saved::sources);
+        let Some(saved) = &mut self.saved else { return (0, sources, Vec::new()) };
+        (saved.stage, sources, std::mem::take(&mut saved.kept))
+    }
+
     /// The beginning of a stage: at the checkpoint, on the cloud of the stage before it, or on one that `build` makes.
     fn begin<S: HasGas<D>>(
         &mut self,

@@ -27,11 +27,11 @@ const SETTLING: f64 = 1.5;
 /// Iterations without a new smallest residual after which a relaxation before the last stage has given what it can.
 const PATIENCE: u32 = 20;
 /// The same for the last stage: no later one makes up for it.
-const LAST_PATIENCE: u32 = 200;
+const LAST_PATIENCE: usize = 200;
 /// The same on the last cloud of a family, where the one before serves in its place.
 const FAMILY_PATIENCE: usize = 100;
 /// The same for the last stage of a point of a polar that starts from rest: the other points wait.
-const POINT_PATIENCE: u32 = 60;
+const POINT_PATIENCE: usize = 60;
 
 /// Iterations that loads are watched over where the residual does not reach its goal.
 const UNSETTLED: usize = 20;
@@ -123,20 +123,19 @@ fn watched<S: HasGas<D>, const D: usize>(
     // any cloud of a family may be the last one
     let at_end = turn.last() || accuracy::asked(log.case).is_some();
     let mut checkpoint = Checkpoint::new(turn.at, None, at_end);
-    let patience = match (hurried || turn.stage().point.is_some(), turn.last() && log.record.polar.from_rest) {
-        (false, _) => LAST_PATIENCE,
-        (true, true) => POINT_PATIENCE,
-        (true, false) => PATIENCE,
+    let patience = match (turn.stage().point, turn.last()) {
+        (Some(_), _) => POINT_PATIENCE,
+        (None, true) if family::has_steady_before(turn.stage(), log) => FAMILY_PATIENCE,
+        _ => LAST_PATIENCE,
     };
-    let (mut limit, mut resting) = (Limit { iterations }, Resting { patience });
+    let hurried = hurried || (turn.stage().point.is_some() && !log.record.polar.from_rest);
+    let (mut limit, mut resting, mut swinging) =
+        (Limit { iterations }, Resting { patience: PATIENCE }, Swinging { patience });
     let least = if turn.stage().factor > 1.0 && !turn.last() { EARLY_ORDERS } else { orders - SETTLING };
     let (mut told, mut flat) = (Told, accuracy::asked(log.case).map(|asked| flat(&asked, least)));
-    let mut all: Vec<&mut dyn Observer<S>> = vec![&mut progress, &mut limit, &mut told, &mut resting];
+    let mut all: Vec<&mut dyn Observer<S>> = vec![&mut progress, &mut limit, &mut told];
+    all.push(if hurried { &mut resting } else { &mut swinging });
     flat.iter_mut().for_each(|flat| all.push(flat));
-    let mut swinging = Swinging { patience: FAMILY_PATIENCE };
-    if turn.last() && family::has_steady_before(turn.stage(), log) {
-        all.push(&mut swinging);
-    }
     all.push(&mut checkpoint);
     drive(relax, &mut all, log)
 }

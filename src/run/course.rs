@@ -1,5 +1,9 @@
-//! Polars: steady states at many free streams in one run.
+//! The course of a run through its stages: points of a polar, which leave something to one another, and the way back.
 //!
+//! Where the last cloud of a family has no steady flow, the run goes back to the one before, whose flow came to rest: to the state that was
+//! kept of it, on the cloud of the sources that were kept of it.
+//!
+//! A polar is steady states at many free streams in one run.
 //! The clouds do not depend on the free stream, so each is built once and kept. Every point goes through the stages of a case: from
 //! its coarsest cloud to its finest. The coarsest starts from the point before it, or at the first angle of a Mach number from the
 //! first angle of the Mach number before; two points at one Mach number are carried on along the line through them,
@@ -40,6 +44,16 @@ pub(crate) struct Course<'a, S, const D: usize> {
     kept: Vec<Kept>,
     /// Why the last point that failed did.
     failure: Option<RunError>,
+}
+
+/// What follows a stage.
+pub(crate) enum Next<const D: usize> {
+    /// A stage that goes on from it, or none where it is the last one.
+    Stage(usize),
+    /// A new stage, on the cloud before, and the sources of that cloud.
+    Back(Stage, Vec<Source<D>>),
+    /// The first stage of a point of a polar.
+    Point(usize),
 }
 
 /// The coarser cloud that a stage comes from.
@@ -126,8 +140,10 @@ impl<'a, S: HasGas<D>, const D: usize> Course<'a, S, D> {
         self.kept.iter().find(|k| k.factor == stage.factor && k.point == stage.point.unwrap_or(0))
     }
 
-    /// Keeps the state at the end of a stage, and the `sources` of its cloud: for points to come, or for the one finer cloud of a family.
-    pub(crate) fn keep(&mut self, stage: &Stage, reached: &Reached<S>, sources: &[f64]) {
+    /// Keeps the state at the end of stage `k`, and the `sources` of its cloud: for points to come, or to go back to from the last
+    /// cloud of a family.
+    pub(crate) fn keep(&mut self, k: usize, stages: &[Stage], reached: &Reached<S>, sources: &[f64]) {
+        let stage = &stages[k];
         let kept = |state: &[f64]| Kept {
             factor: stage.factor,
             point: stage.point.unwrap_or(0),
@@ -135,8 +151,10 @@ impl<'a, S: HasGas<D>, const D: usize> Course<'a, S, D> {
             sources: sources.to_vec(),
         };
         let Some(point) = stage.point else {
-            let end = reached.end.as_ref().filter(|_| self.points[0].accuracy.is_some());
-            self.kept = end.map(|(_, state)| kept(state)).into_iter().collect();
+            if k + 1 < stages.len() {
+                let end = reached.end.as_ref().filter(|_| self.points[0].accuracy.is_some());
+                self.kept = end.map(|(_, state)| kept(state)).into_iter().collect();
+            }
             return;
         };
         if stage.cycle > 0 {
@@ -153,9 +171,28 @@ impl<'a, S: HasGas<D>, const D: usize> Course<'a, S, D> {
         self.kept.retain(|k| k.factor != on || Some(k.point) == first || last.contains(&k.point));
     }
 
+    /// What follows stage `k`.
+    pub(crate) fn next(
+        &self,
+        k: usize,
+        stages: &[Stage],
+        (system, reached): (&S, &Reached<S>),
+        log: &mut Log<'_>,
+    ) -> Result<Next<D>, RunError> {
+        let last = after(k, stages) == k + 1;
+        if !last && !reached.enough {
+            return Ok(Next::Stage(k + 1));
+        }
+        if last && let Some((stage, sources)) = self.back(k, stages, reached, log) {
+            return Ok(Next::Back(stage, sources));
+        }
+        let next = self.over(k, stages, (system, reached), log)?;
+        Ok(if next < stages.len() { Next::Point(next) } else { Next::Stage(next) })
+    }
+
     /// The stage that goes back to the cloud before, whose flow came to rest, where on that of stage `k`, the last of its family, it did
     /// not; and the sources of that cloud.
-    pub(crate) fn back(
+    fn back(
         &self,
         k: usize,
         stages: &[Stage],
@@ -217,7 +254,7 @@ impl<'a, S: HasGas<D>, const D: usize> Course<'a, S, D> {
         log: &mut Log<'_>,
     ) -> Result<usize, RunError> {
         let stage = stages[k];
-        if stage.factor > 1.0 && stage.point.is_none() && matches!(problem, RunError::Time { .. }) {
+        if stage.factor > 1.0 && !stage.back && stage.point.is_none() && matches!(problem, RunError::Time { .. }) {
             log.note(&format!(
                 "the cloud with {} times the spacing gives no start, for {}; the next one begins without it",
                 stage.factor,
@@ -237,7 +274,7 @@ impl<'a, S: HasGas<D>, const D: usize> Course<'a, S, D> {
 
     /// A point is over, at the end of stage `k`; the stage that follows: the first of the same point where it did not converge from
     /// its neighbour.
-    pub(crate) fn over(
+    fn over(
         &self,
         k: usize,
         stages: &[Stage],
