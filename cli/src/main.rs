@@ -5,6 +5,7 @@ use clap::Parser;
 
 mod arguments;
 mod commands;
+mod heap;
 #[allow(dead_code, reason = "interface of the run loop")]
 mod interrupt;
 mod outcome;
@@ -14,5 +15,6 @@ mod progress;
 mod watch;
 
 fn main() -> ExitCode {
+    heap::give_back_large_arrays();
     commands::dispatch(arguments::Cli::parse()).into()
 }

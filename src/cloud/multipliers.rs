@@ -67,11 +67,12 @@ impl<const D: usize> Row<D> {
     }
 }
 
-/// Blocks of conditions, one a row, factorised (Cholesky): the lower triangles row after row, diagonals inverted. In single
-/// precision, as they only precondition.
+/// Blocks of conditions, one a row, factorised (Cholesky): the lower triangles row after row, diagonals inverted. They only
+/// precondition, which any factor does whose product with its transpose is near the block: each number is the upper half of one in single
+/// precision, for a triangle of every particle is the largest array of all.
 #[derive(Default)]
 pub(super) struct Factors<const D: usize> {
-    values: Vec<f32>,
+    values: Vec<u16>,
 }
 
 impl<const D: usize> Factors<D> {
@@ -83,7 +84,7 @@ impl<const D: usize> Factors<D> {
     /// Of the `n` blocks of which the i-th makes `product(i)(y)` of y.
     pub(super) fn new<P: Fn(&Row<D>) -> Row<D>>(n: usize, product: impl Fn(usize) -> P + Sync) -> Self {
         let m = Self::WIDTH;
-        let mut values = vec![0.0; n * Self::TRIANGLE];
+        let mut values = vec![0; n * Self::TRIANGLE];
         sweep_rows(&mut values, Self::TRIANGLE, |i, triangle| {
             let mut block = [0.0; MOST * MOST];
             let product = product(i);
@@ -95,7 +96,7 @@ impl<const D: usize> Factors<D> {
             }
             cholesky(&mut block, m);
             let entries = (0..m).flat_map(|r| (0..=r).map(move |c| (r, c)));
-            triangle.iter_mut().zip(entries).for_each(|(t, (r, c))| *t = block[r * m + c] as f32);
+            triangle.iter_mut().zip(entries).for_each(|(t, (r, c))| *t = upper_half(block[r * m + c]));
         });
         Self { values }
     }
@@ -105,7 +106,7 @@ impl<const D: usize> Factors<D> {
     pub(super) fn solve(&self, i: usize, r: &Row<D>) -> Row<D> {
         let m = Self::WIDTH;
         let l = &self.values[i * Self::TRIANGLE..(i + 1) * Self::TRIANGLE];
-        let at = |r: usize, c: usize| f64::from(l[r * (r + 1) / 2 + c]);
+        let at = |r: usize, c: usize| f64::from(f32::from_bits(u32::from(l[r * (r + 1) / 2 + c]) << 16));
         let mut x = [0.0; MOST];
         r.store(&mut x);
         for a in 0..m {
@@ -120,6 +121,11 @@ impl<const D: usize> Factors<D> {
         }
         Row::load(&x)
     }
+}
+
+/// The upper half of a number in single precision, rounded.
+fn upper_half(x: f64) -> u16 {
+    ((x as f32).to_bits().wrapping_add(0x8000) >> 16) as u16
 }
 
 /// Cholesky factor in the lower triangle, the diagonal inverted; directions without

@@ -31,7 +31,9 @@ pub struct BlockMatrix {
     cut: Vec<[u32; 3]>,
     /// Of each off-diagonal block its unit and its entries; [`LANES`] more at the end.
     value: Vec<u8>,
+    /// Diagonal blocks as they were assembled, or their inverses once [`Self::make_sweepable`] was called.
     diagonal: Vec<f32>,
+    /// Their inverses beside them, where [`Self::invert_diagonal`] made them.
     inverse: Vec<f32>,
     parts: Vec<Range<usize>>,
     value_parts: Vec<Range<usize>>,
@@ -50,7 +52,8 @@ pub struct Sweeps {
     pub x: Vec<f32>,
     /// Scratch: solution before a half-sweep, or b − A x.
     pub r: Vec<f32>,
-    /// Sums over the columns of the same part on one side of the diagonal: those that the last half-sweep went through.
+    /// Of each row: sums over the columns of the same part on one side of the diagonal, those that the last half-sweep went through;
+    /// and what its diagonal block made of its unknowns then.
     side: Vec<f32>,
 }
 
@@ -58,12 +61,12 @@ impl Sweeps {
     /// Storage for the rows of `matrix`.
     pub fn new(matrix: &BlockMatrix) -> Self {
         let zero = vec![0.0; matrix.n_rows() * matrix.block];
-        Self { b: zero.clone(), x: zero.clone(), r: zero.clone(), side: zero }
+        Self { b: zero.clone(), x: zero.clone(), side: vec![0.0; 2 * zero.len()], r: zero }
     }
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        16 * self.b.len()
+        20 * self.b.len()
     }
 
     /// Sets the solution to zero.
@@ -106,7 +109,7 @@ impl BlockMatrix {
             cut,
             value: vec![0; column.len() * (UNIT + size) + LANES],
             diagonal: vec![0.0; n * size],
-            inverse: vec![0.0; n * size],
+            inverse: Vec::new(),
             first,
             column,
             parts,
@@ -163,7 +166,8 @@ impl BlockMatrix {
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        self.value.len() + 4 * (2 * self.inverse.len() + self.column.len() + self.first.len() + 3 * self.cut.len())
+        self.value.len()
+            + 4 * (self.diagonal.len() + self.inverse.len() + self.column.len() + self.first.len() + 3 * self.cut.len())
     }
 
     /// Parts in which rows are assembled and swept.
@@ -201,19 +205,18 @@ impl BlockMatrix {
         });
     }
 
-    /// Inverts the diagonal blocks: needed before a sweep.
+    /// Puts the inverses of the diagonal blocks in their place: needed before a sweep, and undone by the next assembly.
+    pub fn make_sweepable(&mut self) {
+        let (block, size) = (self.block, self.block * self.block);
+        sweep_rows(&mut self.diagonal, size, |_, own| invert_block(block, own));
+    }
+
+    /// Makes the inverses of the diagonal blocks beside them.
     pub fn invert_diagonal(&mut self) {
-        let size = self.block * self.block;
-        let (diagonal, block, parts) = (&self.diagonal, self.block, &self.parts);
-        sweep_parts(parts, size, &mut self.inverse, &|k, out| {
-            for (i, inverse) in parts[k].clone().zip(out.chunks_exact_mut(size)) {
-                let mut a = [0.0; 36];
-                a.iter_mut().zip(&diagonal[i * size..(i + 1) * size]).for_each(|(a, d)| *a = f64::from(*d));
-                let mut wide = [0.0; 36];
-                invert(block, &a[..size], &mut wide[..size]);
-                inverse.iter_mut().zip(&wide).for_each(|(i, w)| *i = *w as f32);
-            }
-        });
+        let (block, size) = (self.block, self.block * self.block);
+        self.inverse.resize(self.diagonal.len(), 0.0);
+        copy(&self.diagonal, &mut self.inverse);
+        sweep_rows(&mut self.inverse, size, |_, own| invert_block(block, own));
     }
 
     /// One forward and one backward sweep for A x = b, starting from `s.x`.
@@ -228,8 +231,8 @@ impl BlockMatrix {
         for forward in [true, false] {
             copy(&s.x, &mut s.r);
             let (b, old) = (&s.b, &s.r);
-            let outputs = ((self.parts.as_slice(), N, s.x.as_mut_slice()), (self.parts.as_slice(), N, &mut s.side[..]));
-            sweep_two_parts(outputs.0, outputs.1, &|k, x, side| {
+            let (parts, x) = (self.parts.as_slice(), s.x.as_mut_slice());
+            sweep_two_parts((parts, N, x), (parts, 2 * N, &mut s.side[..]), &|k, x, side| {
                 relax_part::<N>(self, &self.parts[k], (b, old), forward, (x, side));
             });
         }
@@ -257,10 +260,12 @@ impl BlockMatrix {
         for e in swept {
             subtract::<N>(self.off_diagonal::<N>(e), &load::<N>(x, self.column[e] as usize - part.start), &mut sum);
         }
-        (0..N).for_each(|c| r[c] += side[at + c] + sum[c]);
-        store(&leading::<N>(&sum), &mut side[at..]);
+        let side = &mut side[2 * at..2 * (at + N)];
+        (0..N).for_each(|c| r[c] += side[c] + sum[c]);
+        store(&leading::<N>(&sum), side);
+        store(&leading::<N>(&r), &mut side[N..]);
         let mut y = [0.0; N];
-        multiply::<N>(&self.inverse[i * N * N..(i + 1) * N * N], &leading::<N>(&r), &mut y);
+        multiply::<N>(&self.diagonal[i * N * N..(i + 1) * N * N], &leading::<N>(&r), &mut y);
         store(&y, &mut x[at..]);
     }
 
@@ -308,7 +313,7 @@ impl BlockMatrix {
         &self.value[at..at + UNIT + (N - 1) * N + LANES]
     }
 
-    /// s.r = b − A x; and what a sweep needs to know of `s.x` after it was changed.
+    /// s.r = b − A x after a sweep.
     pub fn residual(&self, s: &mut Sweeps) {
         with_block!(self.block, N => self.residual_of::<N>(s))
     }
@@ -324,10 +329,9 @@ impl BlockMatrix {
                 for e in below.chain(inside.start..middle).chain(above) {
                     subtract::<N>(self.off_diagonal::<N>(e), &load::<N>(x, self.column[e] as usize), &mut sum);
                 }
-                let mut own = [0.0; N];
-                multiply::<N>(&self.diagonal[i * N * N..(i + 1) * N * N], &load::<N>(x, i), &mut own);
-                // what the backward sweep summed after the diagonal still holds
-                (0..N).for_each(|c| row[c] = sum[c] + side[i * N + c] - own[c]);
+                // what the backward sweep summed after the diagonal still holds, as does what it found for the diagonal
+                let side = &side[2 * i * N..2 * (i + 1) * N];
+                (0..N).for_each(|c| row[c] = sum[c] + side[c] - side[N + c]);
             }
         });
     }
@@ -339,9 +343,9 @@ impl BlockMatrix {
 
     fn restart_of<const N: usize>(&self, s: &mut Sweeps) {
         let x = &s.x;
-        sweep_parts(&self.parts, N, &mut s.side, &|k, out| {
+        sweep_parts(&self.parts, 2 * N, &mut s.side, &|k, out| {
             let part = self.parts[k].clone();
-            for (i, row) in part.clone().zip(out.chunks_exact_mut(N)) {
+            for (i, row) in part.clone().zip(out.chunks_exact_mut(2 * N)) {
                 let (_, inside, _) = self.split_row(i);
                 let middle = self.middle(i);
                 let mut sum = [0.0; LANES];
@@ -492,6 +496,14 @@ impl Rows<'_> {
     }
 }
 
+/// Inverts a block of order `n` in its place.
+fn invert_block(n: usize, own: &mut [f32]) {
+    let (mut block, mut inverse) = ([0.0; MOST_ENTRIES].map(f64::from), [0.0; MOST_ENTRIES].map(f64::from));
+    block.iter_mut().zip(&*own).for_each(|(b, o)| *b = f64::from(*o));
+    invert(n, &block[..n * n], &mut inverse[..n * n]);
+    own.iter_mut().zip(&inverse).for_each(|(o, i)| *o = *i as f32);
+}
+
 /// Inverse of a small matrix by Gauss-Jordan elimination with row pivoting; a singular one gives the zero matrix.
 pub(super) fn invert(n: usize, a: &[f64], out: &mut [f64]) {
     let mut m = [[0.0f64; 12]; 6];
@@ -547,6 +559,11 @@ mod tests {
         s.x.copy_from_slice(&[x, x].concat());
         matrix.enter(&mut s.x);
         matrix.restart(&mut s);
+        for i in 0..2 {
+            let mut own = [0.0; 2];
+            multiply::<2>(matrix.diagonal(i), &load::<2>(&s.x, i), &mut own);
+            store(&own, &mut s.side[4 * i + 2..]);
+        }
         matrix.residual(&mut s);
         [0, 1].map(|k| -matrix.leave(&s.r, k))
     }

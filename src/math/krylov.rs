@@ -11,8 +11,6 @@ const ENOUGH_LEFT: f64 = 0.1;
 pub struct Gmres {
     basis: Vec<Vec<f32>>,
     hessenberg: Vec<Vec<f64>>,
-    z: Vec<f64>,
-    w: Vec<f64>,
     /// What is left of the right-hand side in the turned basis, and the rotations that turn it.
     g: Vec<f64>,
     rotations: Vec<(f64, f64)>,
@@ -53,8 +51,6 @@ impl Gmres {
         Self {
             basis: vec![vec![0.0; n]],
             hessenberg: vec![vec![0.0; size + 1]; size],
-            z: vec![0.0; n],
-            w: vec![0.0; n],
             g: vec![0.0; size + 1],
             rotations: Vec::with_capacity(size),
             products: vec![0.0; size + 1],
@@ -64,14 +60,14 @@ impl Gmres {
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        self.z.len() * (4 * self.basis.len() + 8 * 2)
+        4 * self.basis.iter().map(Vec::len).sum::<usize>()
     }
 
     /// Solves A x = b from x = 0 until the residual has fallen to what `goal` asks, after as many iterations as it
-    /// allows, or when the basis is full.
+    /// allows, or when the basis is full; `b` is storage afterwards.
     pub fn solve(
         &mut self,
-        b: &[f64],
+        b: &mut [f64],
         x: &mut [f64],
         goal: Goal,
         system: System<impl FnMut(&[f64], &mut [f64]), impl FnMut(&[f32], &mut [f64])>,
@@ -89,18 +85,18 @@ impl Gmres {
         self.rotations.clear();
         let mut used = 0;
         for k in 0..size.min(most.max(1)) {
-            precondition(&self.basis[k], &mut self.z);
-            product(&self.z, &mut self.w);
-            self.orthogonalise(k);
+            precondition(&self.basis[k], x);
+            product(x, b);
+            self.orthogonalise(k, b);
             self.rotate(k);
             used = k + 1;
             if self.g[k + 1].abs() <= tolerance * start || self.hessenberg[k][k] == 0.0 {
                 break;
             }
         }
-        self.combine(used);
+        self.combine(used, b);
         // the next basis vector is not needed any more: it takes the combination to the preconditioner
-        let w = &self.w;
+        let w = &*b;
         sweep(&mut self.basis[used], |i| w[i] as f32);
         precondition(&self.basis[used], x);
         Solved { iterations: used, reduction: self.g[used].abs() / start }
@@ -109,17 +105,17 @@ impl Gmres {
     /// Gram-Schmidt of A z against the basis; once more where the first pass left little of it.
     ///
     /// The classical form reads each chunk of the basis once for all products, the modified form once for each.
-    fn orthogonalise(&mut self, k: usize) {
+    fn orthogonalise(&mut self, k: usize, w: &mut [f64]) {
         let column = &mut self.hessenberg[k];
         column[..=k].fill(0.0);
-        let mut before = norm(&self.w);
+        let mut before = norm(w);
         let mut after = before;
         for _ in 0..2 {
             let h = &mut self.products[..=k];
-            products(&self.w, &self.basis[..=k], h, &mut self.chunks);
+            products(w, &self.basis[..=k], h, &mut self.chunks);
             column.iter_mut().zip(&*h).for_each(|(c, h)| *c += h);
-            combine(&mut self.w, &self.basis[..=k], |j| -h[j]);
-            after = norm(&self.w);
+            combine(w, &self.basis[..=k], |j| -h[j]);
+            after = norm(w);
             if after > ENOUGH_LEFT * before {
                 break;
             }
@@ -128,9 +124,9 @@ impl Gmres {
         column[k + 1] = after;
         let scale = if after > 0.0 { 1.0 / after } else { 0.0 };
         if self.basis.len() == k + 1 {
-            self.basis.push(vec![0.0; self.w.len()]);
+            self.basis.push(vec![0.0; w.len()]);
         }
-        let w = &self.w;
+        let w = &*w;
         sweep(&mut self.basis[k + 1], |i| (w[i] * scale) as f32);
     }
 
@@ -147,7 +143,7 @@ impl Gmres {
     }
 
     /// w = Σ y_k v_k with the triangular solve for y.
-    fn combine(&mut self, used: usize) {
+    fn combine(&mut self, used: usize, w: &mut [f64]) {
         let y = &mut self.products[..used];
         y.copy_from_slice(&self.g[..used]);
         for k in (0..used).rev() {
@@ -156,8 +152,8 @@ impl Gmres {
             }
             y[k] = if self.hessenberg[k][k] != 0.0 { y[k] / self.hessenberg[k][k] } else { 0.0 };
         }
-        fill(&mut self.w, 0.0);
-        combine(&mut self.w, &self.basis[..used], |j| y[j]);
+        fill(w, 0.0);
+        combine(w, &self.basis[..used], |j| y[j]);
     }
 }
 

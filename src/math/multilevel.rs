@@ -105,12 +105,15 @@ impl Multilevel {
         for k in 0..self.levels.len() {
             let (fine, coarse) = self.levels.split_at_mut(k + 1);
             let fine = &mut fine[k];
-            fine.matrix.invert_diagonal();
-            if let Some(harmonic_sweeps) = fine.harmonic_sweeps.as_mut() {
-                harmonic_sweeps.invert(&fine.matrix);
-            }
             if let Some(coarse) = coarse.first_mut() {
                 coarse.matrix.gather(&fine.matrix, |g| fine.groups.members(g), fine.groups.of());
+            }
+            match fine.harmonic_sweeps.as_mut() {
+                None => fine.matrix.make_sweepable(),
+                Some(harmonic_sweeps) => {
+                    fine.matrix.invert_diagonal();
+                    harmonic_sweeps.invert(&fine.matrix);
+                }
             }
         }
     }

@@ -40,6 +40,43 @@ impl<const D: usize> Edge<D> {
     }
 }
 
+/// The same in single precision, as levels keep it: they only precondition, and their edges are most of what they hold.
+#[derive(Clone, Copy)]
+struct Packed<const D: usize> {
+    other: u32,
+    transform: u8,
+    shift: [f32; D],
+    weight: f32,
+    first: [f32; D],
+    second: [[f32; D]; D],
+}
+
+impl<const D: usize> Packed<D> {
+    fn of(edge: &Edge<D>) -> Self {
+        let narrow = |v: &Vector<D>| v.0.map(|x| x as f32);
+        let Moments { weight, first, second } = &edge.moments;
+        Self {
+            other: edge.other,
+            transform: edge.transform,
+            shift: narrow(&edge.shift),
+            weight: *weight as f32,
+            first: narrow(first),
+            second: second.each_ref().map(narrow),
+        }
+    }
+
+    #[inline(always)]
+    fn edge(&self) -> Edge<D> {
+        let wide = |v: &[f32; D]| Vector(v.map(f64::from));
+        let moments = Moments {
+            weight: f64::from(self.weight),
+            first: wide(&self.first),
+            second: self.second.each_ref().map(wide),
+        };
+        Edge { other: self.other, transform: self.transform, shift: wide(&self.shift), moments }
+    }
+}
+
 /// Groups, or particles, that are gathered into groups.
 trait Finer<const D: usize>: Sync {
     fn n_rows(&self) -> usize;
@@ -60,7 +97,7 @@ pub(super) struct Level<const D: usize> {
     pub(super) offset: Vec<Vector<D>>,
     centre: Vec<Vector<D>>,
     first: Vec<u32>,
-    edges: Vec<Edge<D>>,
+    edges: Vec<Packed<D>>,
     open: Vec<Moments<D>>,
     /// All pairs of a group with others.
     pub(super) own: Vec<Moments<D>>,
@@ -104,9 +141,9 @@ impl<const D: usize> Level<D> {
         });
         let mut offset = vec![Vector::ZERO; n];
         sweep(&mut offset, |i| finer.centre(i) - centre[groups.of()[i] as usize]);
-        let mut rows: Vec<Vec<Edge<D>>> = Vec::new();
+        let mut rows: Vec<Vec<Packed<D>>> = Vec::new();
         rows.resize_with(groups.len(), Vec::new);
-        sweep_each(&mut rows, |g| gather(finer, signs, &groups, &offset, g));
+        sweep_each(&mut rows, |g| gather(finer, signs, &groups, &offset, g).iter().map(Packed::of).collect());
         let mut first = vec![0];
         first.extend(rows.iter().scan(0, |n, r| {
             *n += r.len() as u32;
@@ -117,10 +154,11 @@ impl<const D: usize> Level<D> {
         sweep(&mut open, |g| {
             members(g).fold(Moments::ZERO, |m, i| m.plus(1.0, &finer.open(i).about_origin(&-offset[i])))
         });
-        sweep(&mut own, |g| rows[g].iter().fold(open[g], |m, e| m.plus(1.0, &e.moments)));
+        sweep(&mut own, |g| rows[g].iter().fold(open[g], |m, e| m.plus(1.0, &e.edge().moments)));
         let mut soft = vec![[0.0; 2]; groups.len()];
         sweep(&mut soft, |g| members(g).map(|i| finer.soft(i)).fold([0.0; 2], |a, b| [a[0] + b[0], a[1] + b[1]]));
-        let edges = rows.into_iter().flatten().collect();
+        let mut edges = Vec::with_capacity(rows.iter().map(Vec::len).sum());
+        rows.into_iter().for_each(|row| edges.extend(row));
         let factors = Factors::new(groups.len(), |g| {
             let (own, soft) = (&own[g], soft[g]);
             move |e: &Row<D>| e.own(own, soft)
@@ -132,8 +170,8 @@ impl<const D: usize> Level<D> {
         self.centre.len()
     }
 
-    pub(super) fn edges(&self, i: usize) -> &[Edge<D>] {
-        &self.edges[self.first[i] as usize..self.first[i + 1] as usize]
+    pub(super) fn edges(&self, i: usize) -> impl Iterator<Item = Edge<D>> {
+        self.edges[self.first[i] as usize..self.first[i + 1] as usize].iter().map(Packed::edge)
     }
 }
 
@@ -182,7 +220,7 @@ impl<const D: usize> Finer<D> for Level<D> {
     }
 
     fn edges(&self, i: usize, f: &mut dyn FnMut(&Edge<D>)) {
-        Level::edges(self, i).iter().for_each(f);
+        Level::edges(self, i).for_each(|e| f(&e));
     }
 
     fn open(&self, i: usize) -> Moments<D> {

@@ -111,7 +111,7 @@ impl<S: Implicit> Relax<'_, S> {
             preconditioning.apply(system, frame, &RightHandSide::Scaled { values: r, scale }, z);
         };
         let linear = Linear { product, precondition };
-        let solved = gmres.solve(&self.trial_residual, &mut self.step, goal, linear);
+        let solved = gmres.solve(&mut self.trial_residual, &mut self.step, goal, linear);
         self.beside = beside;
         self.linear += solved.iterations as u32;
         self.evaluations += solved.iterations as u64;
