@@ -64,7 +64,7 @@ impl Multilevel {
             }
             let fine = &last.matrix;
             let columns = |i: usize, list: &mut Vec<u32>| list.extend(fine.columns(i));
-            let groups = Groups::new(fine.n_rows(), Gathering { size, far: false }, columns);
+            let groups = Groups::new(fine.n_rows(), Gathering { size, far: true }, columns);
             if groups.len() * 10 > fine.n_rows() * 9 {
                 break;
             }
