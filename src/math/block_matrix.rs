@@ -336,6 +336,23 @@ impl BlockMatrix {
         });
     }
 
+    /// A x of the matrix as it was assembled.
+    #[cfg(test)]
+    pub(super) fn product(&self, x: &[f32]) -> Vec<f32> {
+        with_block!(self.block, N => {
+            let row = |i: usize| {
+                let mut sum = [0.0; N];
+                multiply::<N>(self.diagonal(i), &load::<N>(x, i), &mut sum);
+                let mut all = [0.0; LANES];
+                for e in self.first[i] as usize..self.first[i + 1] as usize {
+                    subtract::<N>(self.off_diagonal::<N>(e), &load::<N>(x, self.column(e)), &mut all);
+                }
+                (0..N).map(move |c| sum[c] - all[c])
+            };
+            (0..self.n_rows()).flat_map(row).collect()
+        })
+    }
+
     /// Forms the sums that a forward sweep starts from, after `s.x` was changed from outside.
     pub fn restart(&self, s: &mut Sweeps) {
         with_block!(self.block, N => self.restart_of::<N>(s))
@@ -555,17 +572,10 @@ mod tests {
 
     /// A x for the unscaled unknowns `x` of each row.
     fn product(matrix: &BlockMatrix, x: [f32; 2]) -> [f32; 2] {
-        let mut s = Sweeps::new(matrix);
-        s.x.copy_from_slice(&[x, x].concat());
-        matrix.enter(&mut s.x);
-        matrix.restart(&mut s);
-        for i in 0..2 {
-            let mut own = [0.0; 2];
-            multiply::<2>(matrix.diagonal(i), &load::<2>(&s.x, i), &mut own);
-            store(&own, &mut s.side[4 * i + 2..]);
-        }
-        matrix.residual(&mut s);
-        [0, 1].map(|k| -matrix.leave(&s.r, k))
+        let mut x = [x, x].concat();
+        matrix.enter(&mut x);
+        let product = matrix.product(&x);
+        [0, 1].map(|k| matrix.leave(&product, k))
     }
 
     #[test]

@@ -54,8 +54,8 @@ struct Times {
 }
 
 impl Multilevel {
-    /// Builds the hierarchy from the pattern of `matrix` alone: `size` rows a group.
-    pub fn new(matrix: BlockMatrix, size: usize, cycle: Cycle) -> Self {
+    /// Builds the hierarchy from the pattern of `matrix` alone.
+    pub fn new(matrix: BlockMatrix, gathering: Gathering, cycle: Cycle) -> Self {
         let mut levels = vec![level(matrix)];
         while levels.len() < cycle.levels {
             let Some(last) = levels.last_mut() else { break };
@@ -64,7 +64,7 @@ impl Multilevel {
             }
             let fine = &last.matrix;
             let columns = |i: usize, list: &mut Vec<u32>| list.extend(fine.columns(i));
-            let groups = Groups::new(fine.n_rows(), Gathering { size, far: true }, columns);
+            let groups = Groups::new(fine.n_rows(), gathering, columns);
             if groups.len() * 10 > fine.n_rows() * 9 {
                 break;
             }

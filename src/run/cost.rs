@@ -25,13 +25,13 @@ const BALANCE_BYTES: [f64; 2] = [3100.0, 1750.0];
 const EXPLICIT_BYTES: [f64; 2] = [1000.0, 1300.0];
 /// Bytes that pictures and report take at their peak: always, with each pixel of a picture, with each of it and each thread, with
 /// each particle.
-const PICTURES_BYTES: [f64; 4] = [52.5e6, 7.0, 33.0, 600.0];
+const PICTURES_BYTES: [f64; 4] = [50e6, 7.0, 33.0, 350.0];
 /// Seconds that they take on one thread: of a flow that stands, and of one that moves.
 const PICTURES_SECONDS: [f64; 2] = [0.2, 2.2];
 /// What they take beyond that in space, always and with each particle: walls, planes and sections.
 const SPACE_PICTURES_SECONDS: [f64; 2] = [1.5, 7e-5];
 /// Bytes of a particle in space over those in the plane.
-const SPACE_BYTES: f64 = 1.8;
+const SPACE_BYTES: f64 = 1.3;
 /// Residuals that a steady state takes on a plane cloud of [`USUAL`] particles, and in space.
 const STEADY: [f64; 2] = [570.0, 520.0];
 /// Growth of that number with the number of particles.

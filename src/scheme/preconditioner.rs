@@ -6,6 +6,7 @@
 //! ([`crate::math::incomplete`]). For all instances of a period at once, sweeps harmonic by harmonic.
 use crate::math::Vector;
 use crate::math::block_matrix::BlockMatrix;
+use crate::math::groups::Gathering;
 use crate::math::incomplete::Incomplete;
 use crate::math::multilevel::Multilevel;
 use crate::math::sweep::sweep_rows;
@@ -37,7 +38,9 @@ impl<const D: usize> Implicit for Fluid<D> {
         let mut scale = vec![speed; block];
         (scale[0], scale[block - 1]) = (1.0, speed * speed);
         let matrix = BlockMatrix::new(block, parts, &neighbours.first, &neighbours.index).scaled(&scale);
-        let levels = Multilevel::new(matrix, plan.group, plan.cycle);
+        // in space small groups see so many others that coarse rows would take a third of all memory
+        let gathering = Gathering { size: plan.group, far: D == 3 && period.is_none() };
+        let levels = Multilevel::new(matrix, gathering, plan.cycle);
         let levels = match period {
             Some(period) => levels.in_time(period.instances, period.omega),
             None => levels,

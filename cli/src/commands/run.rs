@@ -126,7 +126,10 @@ fn shortfall(summary: &Summary, out: &Path) -> Option<Shortfall> {
     let table = if summary.harmonic_balance.is_some() { "harmonics" } else { "steady" };
     Some(Shortfall {
         what: format!("not converged: the residual fell {:.1} orders", summary.residual_drop),
-        hint: format!("raise `time.{table}.iterations`, or look at the residual in the report"),
+        hint: format!(
+            "the residual in the report says why: one that still falls needs more `time.{table}.iterations`, one that swings is of a flow \
+             that comes to no rest, which `[time.dual]` follows"
+        ),
     })
 }
 
