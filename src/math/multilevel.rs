@@ -41,6 +41,8 @@ struct Level {
 pub struct Multilevel {
     levels: Vec<Level>,
     cycle: Cycle,
+    /// Part of what a coarser level finds that the finer one takes.
+    step: f32,
     times: Option<Times>,
 }
 
@@ -72,7 +74,12 @@ impl Multilevel {
             last.groups = groups;
             levels.push(level(coarse));
         }
-        Self { levels, cycle, times: None }
+        Self { levels, cycle, step: 1.0, times: None }
+    }
+
+    /// The same where a finer level takes this part of what a coarser one finds.
+    pub fn stepping(self, step: f32) -> Self {
+        Self { step, ..self }
     }
 
     /// The same for (A + ∂/∂t) x = b at the instances of a period of frequency `omega`: vectors hold, for each row, the
@@ -130,7 +137,7 @@ impl Multilevel {
             matrix.enter(b);
         });
         sweeps.clear();
-        cycle(&mut self.levels, self.cycle);
+        cycle(&mut self.levels, self.cycle, self.step);
         let Level { matrix, sweeps, .. } = &self.levels[0];
         sweep(z, |k| f64::from(matrix.leave(&sweeps.x, k)));
     }
@@ -180,7 +187,7 @@ fn apply_in_time(levels: &mut [Level], how: Cycle, times: &Times, r: impl Fn(usi
         }
     });
     finest.clear();
-    cycle(levels, how);
+    cycle(levels, how, 1.0);
     let Level { matrix, harmonic_sweeps, .. } = &levels[0];
     let Some(finest) = harmonic_sweeps.as_ref() else { return };
     sweep(z, |k| {
@@ -242,7 +249,7 @@ impl Level {
     }
 }
 
-fn cycle(levels: &mut [Level], how: Cycle) {
+fn cycle(levels: &mut [Level], how: Cycle, step: f32) {
     let Some((fine, coarse)) = levels.split_first_mut() else { return };
     let bottom = coarse.is_empty();
     let sweeps = if bottom && how.levels > 1 { COARSEST_SWEEPS } else { how.sweeps };
@@ -261,13 +268,13 @@ fn cycle(levels: &mut [Level], how: Cycle) {
     });
     coarse[0].clear();
     for _ in 0..how.visits {
-        cycle(coarse, how);
+        cycle(coarse, how, step);
     }
     let found = coarse[0].solution();
     let groups = std::mem::take(&mut fine.groups);
     sweep_rows(fine.solution_mut(), n, |i, x| {
         let at = groups.of()[i] as usize * n;
-        x.iter_mut().zip(&found[at..at + n]).for_each(|(x, c)| *x += c);
+        x.iter_mut().zip(&found[at..at + n]).for_each(|(x, c)| *x += step * c);
     });
     fine.groups = groups;
     fine.restart();

@@ -16,6 +16,10 @@ use crate::system::{Hierarchy, Implicit, Period, Preconditioner, Reach, RightHan
 use super::fluid::{Fluid, Work};
 use super::frame::Frame;
 
+/// Part of what large groups find that their members take: a fighter and a wing take 25 to 30 % fewer linear iterations with 0.7 to 0.85
+/// than with 1, and twice as many with 1.6.
+const STEP: f32 = 0.8;
+
 /// The linearisation of a gas, and what approximates its inverse.
 pub struct FluidPreconditioner {
     levels: Multilevel,
@@ -39,8 +43,9 @@ impl<const D: usize> Implicit for Fluid<D> {
         (scale[0], scale[block - 1]) = (1.0, speed * speed);
         let matrix = BlockMatrix::new(block, parts, &neighbours.first, &neighbours.index).scaled(&scale);
         // in space small groups see so many others that coarse rows would take a third of all memory
-        let gathering = Gathering { size: plan.group, far: D == 3 && period.is_none() };
-        let levels = Multilevel::new(matrix, gathering, plan.cycle);
+        let large = D == 3 && period.is_none();
+        let gathering = Gathering { size: plan.group, far: large };
+        let levels = Multilevel::new(matrix, gathering, plan.cycle).stepping(if large { STEP } else { 1.0 });
         let levels = match period {
             Some(period) => levels.in_time(period.instances, period.omega),
             None => levels,
