@@ -1,6 +1,7 @@
 //! Multipliers of the conditions on conservative coefficients, particle by particle.
 use crate::math::Vector;
 use crate::math::conjugate;
+use crate::math::rounded::{of_upper_half, upper_half};
 use crate::math::sweep::sweep_rows;
 
 /// Smallest pivot of a block relative to its diagonal.
@@ -96,7 +97,7 @@ impl<const D: usize> Factors<D> {
             }
             cholesky(&mut block, m);
             let entries = (0..m).flat_map(|r| (0..=r).map(move |c| (r, c)));
-            triangle.iter_mut().zip(entries).for_each(|(t, (r, c))| *t = upper_half(block[r * m + c]));
+            triangle.iter_mut().zip(entries).for_each(|(t, (r, c))| *t = upper_half(block[r * m + c] as f32));
         });
         Self { values }
     }
@@ -106,7 +107,7 @@ impl<const D: usize> Factors<D> {
     pub(super) fn solve(&self, i: usize, r: &Row<D>) -> Row<D> {
         let m = Self::WIDTH;
         let l = &self.values[i * Self::TRIANGLE..(i + 1) * Self::TRIANGLE];
-        let at = |r: usize, c: usize| f64::from(f32::from_bits(u32::from(l[r * (r + 1) / 2 + c]) << 16));
+        let at = |r: usize, c: usize| f64::from(of_upper_half(l[r * (r + 1) / 2 + c]));
         let mut x = [0.0; MOST];
         r.store(&mut x);
         for a in 0..m {
@@ -121,11 +122,6 @@ impl<const D: usize> Factors<D> {
         }
         Row::load(&x)
     }
-}
-
-/// The upper half of a number in single precision, rounded.
-fn upper_half(x: f64) -> u16 {
-    ((x as f32).to_bits().wrapping_add(0x8000) >> 16) as u16
 }
 
 /// Cholesky factor in the lower triangle, the diagonal inverted; directions without

@@ -9,7 +9,7 @@ use std::ops::Range;
 
 use multiversion::multiversion;
 
-use super::blocks::{MOST_ENTRIES, store, with_block};
+use super::blocks::{MOST_ENTRIES, invert_block, store, with_block};
 use super::rounded::{LANES, UNIT, add_block, leading, load, load_lanes, multiply, round_block, subtract, unit_of};
 use super::sweep::{copy, fill, parts, sweep_parts, sweep_rows, sweep_two_parts};
 
@@ -294,7 +294,7 @@ impl BlockMatrix {
         self.cut[i][1] as usize
     }
 
-    /// Diagonal block of row `i`, by columns.
+    /// Diagonal block of row `i`, by columns, as it was assembled: not after [`Self::make_sweepable`].
     #[inline(always)]
     pub(super) fn diagonal(&self, i: usize) -> &[f32] {
         &self.diagonal[i * self.block * self.block..(i + 1) * self.block * self.block]
@@ -510,47 +510,6 @@ impl Rows<'_> {
             }
         }
         round_block(&sum[..n * n], block, own);
-    }
-}
-
-/// Inverts a block of order `n` in its place.
-fn invert_block(n: usize, own: &mut [f32]) {
-    let (mut block, mut inverse) = ([0.0; MOST_ENTRIES].map(f64::from), [0.0; MOST_ENTRIES].map(f64::from));
-    block.iter_mut().zip(&*own).for_each(|(b, o)| *b = f64::from(*o));
-    invert(n, &block[..n * n], &mut inverse[..n * n]);
-    own.iter_mut().zip(&inverse).for_each(|(o, i)| *o = *i as f32);
-}
-
-/// Inverse of a small matrix by Gauss-Jordan elimination with row pivoting; a singular one gives the zero matrix.
-pub(super) fn invert(n: usize, a: &[f64], out: &mut [f64]) {
-    let mut m = [[0.0f64; 12]; 6];
-    for r in 0..n {
-        for c in 0..n {
-            m[r][c] = a[c * n + r];
-        }
-        m[r][n + r] = 1.0;
-    }
-    for p in 0..n {
-        let pivot = (p..n).fold(p, |b, r| if m[r][p].abs() > m[b][p].abs() { r } else { b });
-        m.swap(p, pivot);
-        if m[p][p] == 0.0 || !m[p][p].is_finite() {
-            out.fill(0.0);
-            return;
-        }
-        let scale = 1.0 / m[p][p];
-        m[p].iter_mut().for_each(|v| *v *= scale);
-        for r in 0..n {
-            if r != p && m[r][p] != 0.0 {
-                let f = m[r][p];
-                let pivot_row = m[p];
-                m[r].iter_mut().zip(&pivot_row).for_each(|(v, w)| *v -= f * w);
-            }
-        }
-    }
-    for r in 0..n {
-        for c in 0..n {
-            out[c * n + r] = m[r][n + c];
-        }
     }
 }
 

@@ -42,6 +42,47 @@ pub(super) fn store<const N: usize>(values: &[f32; N], out: &mut [f32]) {
     out[..N].copy_from_slice(values);
 }
 
+/// Inverts a block of order `n` in its place.
+pub(super) fn invert_block(n: usize, own: &mut [f32]) {
+    let (mut block, mut inverse) = ([0.0; MOST_ENTRIES].map(f64::from), [0.0; MOST_ENTRIES].map(f64::from));
+    block.iter_mut().zip(&*own).for_each(|(b, o)| *b = f64::from(*o));
+    invert(n, &block[..n * n], &mut inverse[..n * n]);
+    own.iter_mut().zip(&inverse).for_each(|(o, i)| *o = *i as f32);
+}
+
+/// Inverse of a small matrix by Gauss-Jordan elimination with row pivoting; a singular one gives the zero matrix.
+pub(super) fn invert(n: usize, a: &[f64], out: &mut [f64]) {
+    let mut m = [[0.0f64; 12]; 6];
+    for r in 0..n {
+        for c in 0..n {
+            m[r][c] = a[c * n + r];
+        }
+        m[r][n + r] = 1.0;
+    }
+    for p in 0..n {
+        let pivot = (p..n).fold(p, |b, r| if m[r][p].abs() > m[b][p].abs() { r } else { b });
+        m.swap(p, pivot);
+        if m[p][p] == 0.0 || !m[p][p].is_finite() {
+            out.fill(0.0);
+            return;
+        }
+        let scale = 1.0 / m[p][p];
+        m[p].iter_mut().for_each(|v| *v *= scale);
+        for r in 0..n {
+            if r != p && m[r][p] != 0.0 {
+                let f = m[r][p];
+                let pivot_row = m[p];
+                m[r].iter_mut().zip(&pivot_row).for_each(|(v, w)| *v -= f * w);
+            }
+        }
+    }
+    for r in 0..n {
+        for c in 0..n {
+            out[c * n + r] = m[r][n + c];
+        }
+    }
+}
+
 /// Evaluates an expression with the constant `N` set to the order of a block.
 macro_rules! with_block {
     ($block:expr, $n:ident => $body:expr) => {

@@ -258,7 +258,7 @@ fn invert_shifted(n: usize, a: &[f32], beta: f32, out: &mut [f32]) {
         square[r * n + r] += f64::from(beta).powi(2);
     }
     let mut inverse = [0.0f64; 36];
-    super::block_matrix::invert(n, &square[..size], &mut inverse[..size]);
+    super::blocks::invert(n, &square[..size], &mut inverse[..size]);
     for r in 0..n {
         for c in 0..n {
             let real: f64 = (0..n).map(|k| inverse[k * n + r] * at(k, c)).sum();

@@ -11,8 +11,8 @@ use std::ops::Range;
 
 use multiversion::multiversion;
 
-use super::block_matrix::{BlockMatrix, invert};
-use super::blocks::{array, store, with_block};
+use super::block_matrix::BlockMatrix;
+use super::blocks::{array, invert, store, with_block};
 use super::rounded::{LANES, Lanes, leading, load, multiply, subtract, widen_block};
 use super::sweep::{sweep, sweep_parts};
 

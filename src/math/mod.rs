@@ -16,7 +16,7 @@ pub mod least_squares;
 pub mod multilevel;
 pub mod pencil;
 pub mod rotation;
-mod rounded;
+pub(crate) mod rounded;
 pub mod singular;
 pub mod slice;
 pub mod square;

@@ -13,7 +13,19 @@ const LARGEST: f32 = 127.0;
 /// Unit of the entries of a block.
 #[inline(always)]
 pub(super) fn unit_of(block: &[u8]) -> f32 {
-    f32::from_bits(u32::from(u16::from_le_bytes([block[0], block[1]])) << 16)
+    of_upper_half(u16::from_le_bytes([block[0], block[1]]))
+}
+
+/// The number whose upper half this is.
+#[inline(always)]
+pub(crate) fn of_upper_half(half: u16) -> f32 {
+    f32::from_bits(u32::from(half) << 16)
+}
+
+/// The upper half of a number, rounded.
+#[inline(always)]
+pub(crate) fn upper_half(x: f32) -> u16 {
+    (x.to_bits().wrapping_add(0x8000) >> 16) as u16
 }
 
 /// Writes the numbers of a block, and adds what rounding takes from them to `own`: sums of rows, which rule the slow modes,

@@ -284,8 +284,7 @@ impl Run<'_> {
             let Begun { mut solver, start } =
                 ground.begin((stage, &site), build, previous.take(), &mut course, &log)?;
             let flat = flatten(&sources);
-            let at = Position { stage: k, stages: &stages, sources: &flat, kept: course.kept() };
-            let turn = Turn { at: &at };
+            let turn = Turn { at: &Position { stage: k, stages: &stages, sources: &flat, kept: course.kept() } };
             let reached = match self.study(&mut solver, start, &turn, &mut log) {
                 Ok(Some(reached)) => reached,
                 Ok(None) => return Ok(Err(log.record.iteration)),

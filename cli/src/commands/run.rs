@@ -123,12 +123,15 @@ fn shortfall(summary: &Summary, out: &Path) -> Option<Shortfall> {
             hint: "raise `periods` of `[time.dual]` or `[time.explicit]`, or loosen `periodic_tolerance` there".into(),
         });
     }
-    let table = if summary.harmonic_balance.is_some() { "harmonics" } else { "steady" };
+    let (table, swings) = match summary.harmonic_balance {
+        Some(_) => ("harmonics", "does not repeat with the motion"),
+        None => ("steady", "comes to no rest"),
+    };
     Some(Shortfall {
         what: format!("not converged: the residual fell {:.1} orders", summary.residual_drop),
         hint: format!(
             "the residual in the report says why: one that still falls needs more `time.{table}.iterations`, one that swings is of a flow \
-             that comes to no rest, which `[time.dual]` follows"
+             that {swings}, which `[time.dual]` follows"
         ),
     })
 }
