@@ -397,17 +397,22 @@ impl BlockMatrix {
         Self { scale: self.scale.clone(), ..Self::from_pattern(self.block, first, column, parts) }
     }
 
-    /// Sums the blocks of `fine` into this matrix: `members(g)` are the rows of group g in ascending order, `group` says to which
-    /// each row belongs.
-    pub fn gather<'a>(&mut self, fine: &Self, members: impl Fn(usize) -> &'a [u32] + Sync, group: &[u32]) {
-        with_block!(self.block, N => self.gather_blocks::<N>(fine, &members, group))
+    /// Makes each row of this matrix the mean of rows of `fine`: `members(g)` are those of group g in ascending order, `group` says
+    /// to which each row belongs and `share` with what part it counts there.
+    pub fn gather<'a>(
+        &mut self,
+        fine: &Self,
+        members: impl Fn(usize) -> &'a [u32] + Sync,
+        (group, share): (&[u32], &[f32]),
+    ) {
+        with_block!(self.block, N => self.gather_blocks::<N>(fine, &members, (group, share)))
     }
 
     fn gather_blocks<'a, const N: usize>(
         &mut self,
         fine: &Self,
         members: &(impl Fn(usize) -> &'a [u32] + Sync),
-        group: &[u32],
+        (group, share): (&[u32], &[f32]),
     ) {
         let size = N * N;
         let (parts, value_parts) = (self.parts.as_slice(), self.value_parts.as_slice());
@@ -418,20 +423,24 @@ impl BlockMatrix {
             let mut some = [0.0; WINDOW * MOST_ENTRIES];
             for (g, own) in parts[k].clone().zip(diagonal.chunks_exact_mut(size)) {
                 let rows = || members(g).iter().map(|i| *i as usize);
-                let entries = || rows().flat_map(|i| fine.first[i] as usize..fine.first[i + 1] as usize);
+                let entries = || {
+                    let of = |i: usize| fine.first[i] as usize..fine.first[i + 1] as usize;
+                    rows().flat_map(move |i| of(i).map(move |e| (e, share[i])))
+                };
                 own.fill(0.0);
                 for i in rows() {
-                    own.iter_mut().zip(&fine.diagonal[i * size..(i + 1) * size]).for_each(|(a, b)| *a += b);
+                    let fine = &fine.diagonal[i * size..(i + 1) * size];
+                    own.iter_mut().zip(fine).for_each(|(a, b)| *a += share[i] * b);
                 }
-                for e in entries().filter(|e| group[fine.column(*e)] as usize == g) {
-                    add_block::<N>(fine.off_diagonal::<N>(e), own);
+                for (e, share) in entries().filter(|(e, _)| group[fine.column(*e)] as usize == g) {
+                    add_block::<N>(fine.off_diagonal::<N>(e), share, own);
                 }
                 for columns in column[first[g] as usize..first[g + 1] as usize].chunks(WINDOW) {
                     let some = &mut some[..columns.len() * size];
                     some.fill(0.0);
-                    for e in entries() {
+                    for (e, share) in entries() {
                         if let Ok(k) = columns.binary_search(&group[fine.column(e)]) {
-                            add_block::<N>(fine.off_diagonal::<N>(e), &mut some[k * size..][..size]);
+                            add_block::<N>(fine.off_diagonal::<N>(e), share, &mut some[k * size..][..size]);
                         }
                     }
                     some.chunks_exact(size).zip(&mut blocks).for_each(|(sum, block)| round_block(sum, block, own));

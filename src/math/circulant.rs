@@ -3,8 +3,7 @@
 //! With one matrix A for all instances the system is block-circulant: in Fourier coefficients of time it falls apart into
 //! A x_0 = b_0 and, for each harmonic, (A + imω) z_m = r_m with z = c − is for c cos mωt + s sin mωt (Mavriplis and Mundis,
 //! AIAA 2014-0571). All harmonics share the blocks beside the diagonal, which a sweep reads once for all of them; each has
-//! its own inverse of the diagonal, S A − imωμ S with S = (A² + m²ω²μ²)⁻¹, where μ is the weight of ∂/∂t in the row: one on
-//! the finest level, the number of rows gathered on coarser ones. Sweeps run as those of [`BlockMatrix`], in the same parts.
+//! its own inverse of the diagonal, S A − imω S with S = (A² + m²ω²)⁻¹. Sweeps run as those of [`BlockMatrix`], in the same parts.
 use std::ops::Range;
 
 use multiversion::multiversion;
@@ -25,8 +24,6 @@ const MOST: usize = 2 * MOST_HARMONICS + 1;
 pub struct HarmonicSweeps {
     harmonics: usize,
     omega: f32,
-    /// Weight μ of the time derivative in each row.
-    mass: Vec<f32>,
     /// Right-hand side.
     pub b: Vec<f32>,
     /// Solution.
@@ -34,18 +31,18 @@ pub struct HarmonicSweeps {
     /// Scratch: solution before a half-sweep, or b − (A + ∂/∂t) x.
     pub r: Vec<f32>,
     side: Vec<f32>,
-    /// Real and negative imaginary part of (A_ii + imωμ)⁻¹ for each harmonic.
+    /// Real and negative imaginary part of (A_ii + imω)⁻¹ for each harmonic.
     inverse: Vec<f32>,
 }
 
 impl HarmonicSweeps {
     /// Storage for the rows of `matrix`.
-    pub fn new(matrix: &BlockMatrix, harmonics: usize, omega: f64, mass: Vec<f32>) -> Self {
+    pub fn new(matrix: &BlockMatrix, harmonics: usize, omega: f64) -> Self {
         let (n, size) = (matrix.n_rows(), matrix.block());
         let zero = vec![0.0; n * size * (2 * harmonics + 1)];
         let inverse = vec![0.0; n * size * size * 2 * harmonics];
         let omega = omega as f32;
-        Self { harmonics, omega, mass, b: zero.clone(), x: zero.clone(), r: zero.clone(), side: zero, inverse }
+        Self { harmonics, omega, b: zero.clone(), x: zero.clone(), r: zero.clone(), side: zero, inverse }
     }
 
     /// Number of coefficients in time.
@@ -53,16 +50,9 @@ impl HarmonicSweeps {
         2 * self.harmonics + 1
     }
 
-    /// Weights of the time derivative when rows are gathered into groups.
-    pub fn gathered(&self, group: &[u32], n_groups: usize) -> Vec<f32> {
-        let mut mass = vec![0.0; n_groups];
-        group.iter().zip(&self.mass).for_each(|(g, m)| mass[*g as usize] += m);
-        mass
-    }
-
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        4 * (4 * self.b.len() + self.inverse.len() + self.mass.len())
+        4 * (4 * self.b.len() + self.inverse.len())
     }
 
     /// Sets the solution to zero.
@@ -75,14 +65,14 @@ impl HarmonicSweeps {
     pub fn invert(&mut self, matrix: &BlockMatrix) {
         let (block, harmonics) = (matrix.block(), self.harmonics);
         let size = block * block;
-        let (omega, mass) = (self.omega, &self.mass);
+        let omega = self.omega;
         if harmonics == 0 {
             return;
         }
         sweep_parts(matrix.parts(), 2 * harmonics * size, &mut self.inverse, &|k, out| {
             for (i, out) in matrix.parts()[k].clone().zip(out.chunks_exact_mut(2 * harmonics * size)) {
                 for (m, out) in out.chunks_exact_mut(2 * size).enumerate() {
-                    let beta = (m + 1) as f32 * omega * mass[i];
+                    let beta = (m + 1) as f32 * omega;
                     invert_shifted(block, matrix.diagonal(i), beta, out);
                 }
             }
@@ -120,7 +110,7 @@ impl HarmonicSweeps {
 
     fn residual_of<const N: usize>(&mut self, matrix: &BlockMatrix) {
         let (count, omega) = (self.count(), self.omega);
-        let (b, x, side, mass) = (&self.b, &self.x, &self.side, &self.mass);
+        let (b, x, side) = (&self.b, &self.x, &self.side);
         sweep_parts(matrix.parts(), N * count, &mut self.r, &|k, out| {
             let part = matrix.parts()[k].clone();
             for (i, row) in part.clone().zip(out.chunks_exact_mut(N * count)) {
@@ -136,7 +126,7 @@ impl HarmonicSweeps {
                     let mut own = [0.0; N];
                     multiply::<N>(matrix.diagonal(i), &load::<N>(x, at + c), &mut own);
                     // d/dt of a cosine feeds the sine and the other way round
-                    let beta = c.div_ceil(2) as f32 * omega * mass[i];
+                    let beta = c.div_ceil(2) as f32 * omega;
                     let (partner, beta) = if c % 2 == 1 { (c + 1, beta) } else { (c.max(1) - 1, -beta) };
                     let other = load::<N>(x, at + partner);
                     for v in 0..N {
@@ -302,7 +292,7 @@ mod tests {
     fn sweeps_solve_the_system_in_time() {
         let (n, harmonics, omega) = (23, 2, 0.7);
         let matrix = chain(n);
-        let mut harmonic_sweeps = HarmonicSweeps::new(&matrix, harmonics, omega, vec![1.0; n]);
+        let mut harmonic_sweeps = HarmonicSweeps::new(&matrix, harmonics, omega);
         harmonic_sweeps.invert(&matrix);
         harmonic_sweeps.b.iter_mut().enumerate().for_each(|(k, b)| *b = ((k * k) as f32 * 0.37).sin());
         for _ in 0..40 {
@@ -347,7 +337,7 @@ mod tests {
     #[test]
     fn restarts_hold_what_sweeps_summed() {
         let matrix = chain(20);
-        let mut harmonic_sweeps = HarmonicSweeps::new(&matrix, 1, 2.0, vec![1.0; 20]);
+        let mut harmonic_sweeps = HarmonicSweeps::new(&matrix, 1, 2.0);
         harmonic_sweeps.invert(&matrix);
         harmonic_sweeps.b.fill(1.0);
         harmonic_sweeps.symmetric_sweep(&matrix);

@@ -1,20 +1,23 @@
 //! Sweeps on a hierarchy of ever coarser matrices.
 //!
-//! Rows are gathered into groups of a few strongly coupled neighbours; the matrix of the groups is the sum of the blocks of
-//! their members (Galerkin with piecewise-constant transfer; Lallemand, Steve and Dervieux 1992). For the first-order upwind
-//! operator this is again a first-order upwind operator on a coarser cloud.
+//! Rows are gathered into groups of a few strongly coupled neighbours; the row of a group is the mean of those of its members
+//! by their volumes (Galerkin with piecewise-constant transfer; Lallemand, Steve and Dervieux 1992). What members of a group
+//! pass to one another then cancels, and from the first-order upwind operator comes a first-order upwind operator on a coarser cloud.
 //!
 //! The same hierarchy serves systems that repeat in time, harmonic by harmonic ([`super::circulant`]).
 use super::block_matrix::{BlockMatrix, Sweeps};
 use super::circulant::{HarmonicSweeps, MOST_HARMONICS};
 use super::fourier::Instances;
-use super::groups::{Gathering, Groups};
+use super::groups::Groups;
 use super::sweep::{sweep, sweep_rows};
 
 /// Rows at which coarsening stops.
 const COARSEST: usize = 60;
 /// Sweeps on the coarsest level.
 const COARSEST_SWEEPS: usize = 8;
+/// Part of what a coarser level finds that the finer one takes. All of it serves best where nothing jumps (laminar flow takes 15 %
+/// more iterations with 0.8), but goes too far at shocks: a transonic section takes 308 linear iterations with 1, 137 with 0.8, 109 with 0.6.
+const STEP: f32 = 0.8;
 
 /// Unknowns of a row at all instances of a period, at most.
 const MOST_VALUES: usize = 6 * (2 * MOST_HARMONICS + 1);
@@ -33,6 +36,8 @@ pub struct Cycle {
 struct Level {
     matrix: BlockMatrix,
     groups: Groups,
+    /// Part with which each row counts in its group.
+    share: Vec<f32>,
     sweeps: Sweeps,
     harmonic_sweeps: Option<HarmonicSweeps>,
 }
@@ -41,8 +46,6 @@ struct Level {
 pub struct Multilevel {
     levels: Vec<Level>,
     cycle: Cycle,
-    /// Part of what a coarser level finds that the finer one takes.
-    step: f32,
     times: Option<Times>,
 }
 
@@ -56,8 +59,8 @@ struct Times {
 }
 
 impl Multilevel {
-    /// Builds the hierarchy from the pattern of `matrix` alone.
-    pub fn new(matrix: BlockMatrix, gathering: Gathering, cycle: Cycle) -> Self {
+    /// Builds the hierarchy from the pattern of `matrix`, whose rows tell of these volumes, with groups of `size` rows or fewer.
+    pub fn new(matrix: BlockMatrix, mut volume: Vec<f64>, size: usize, cycle: Cycle) -> Self {
         let mut levels = vec![level(matrix)];
         while levels.len() < cycle.levels {
             let Some(last) = levels.last_mut() else { break };
@@ -66,32 +69,25 @@ impl Multilevel {
             }
             let fine = &last.matrix;
             let columns = |i: usize, list: &mut Vec<u32>| list.extend(fine.columns(i));
-            let groups = Groups::new(fine.n_rows(), gathering, columns);
+            let groups = Groups::new(fine.n_rows(), size, columns);
             if groups.len() * 10 > fine.n_rows() * 9 {
                 break;
             }
             let coarse = fine.coarse(groups.of(), groups.len());
-            last.groups = groups;
+            let mut gathered = vec![0.0; groups.len()];
+            volume.iter().zip(groups.of()).for_each(|(v, g)| gathered[*g as usize] += v);
+            last.share = volume.iter().zip(groups.of()).map(|(v, g)| (v / gathered[*g as usize]) as f32).collect();
+            (last.groups, volume) = (groups, gathered);
             levels.push(level(coarse));
         }
-        Self { levels, cycle, step: 1.0, times: None }
-    }
-
-    /// The same where a finer level takes this part of what a coarser one finds.
-    pub fn stepping(self, step: f32) -> Self {
-        Self { step, ..self }
+        Self { levels, cycle, times: None }
     }
 
     /// The same for (A + ∂/∂t) x = b at the instances of a period of frequency `omega`: vectors hold, for each row, the
     /// unknowns of the first instance, then those of the second, and so on.
     pub fn in_time(mut self, instances: Instances, omega: f64) -> Self {
-        let mut mass = vec![1.0; self.levels[0].matrix.n_rows()];
-        for k in 0..self.levels.len() {
-            let next = self.levels.get(k + 1).map_or(0, |l| l.matrix.n_rows());
-            let level = &mut self.levels[k];
-            let harmonic_sweeps = HarmonicSweeps::new(&level.matrix, instances.harmonics(), omega, mass);
-            mass = harmonic_sweeps.gathered(level.groups.of(), next);
-            level.harmonic_sweeps = Some(harmonic_sweeps);
+        for level in &mut self.levels {
+            level.harmonic_sweeps = Some(HarmonicSweeps::new(&level.matrix, instances.harmonics(), omega));
             level.sweeps = Sweeps::default();
         }
         let count = instances.count();
@@ -113,7 +109,7 @@ impl Multilevel {
             let (fine, coarse) = self.levels.split_at_mut(k + 1);
             let fine = &mut fine[k];
             if let Some(coarse) = coarse.first_mut() {
-                coarse.matrix.gather(&fine.matrix, |g| fine.groups.members(g), fine.groups.of());
+                coarse.matrix.gather(&fine.matrix, |g| fine.groups.members(g), (fine.groups.of(), &fine.share));
             }
             match fine.harmonic_sweeps.as_mut() {
                 None => fine.matrix.make_sweepable(),
@@ -137,7 +133,7 @@ impl Multilevel {
             matrix.enter(b);
         });
         sweeps.clear();
-        cycle(&mut self.levels, self.cycle, self.step);
+        cycle(&mut self.levels, self.cycle);
         let Level { matrix, sweeps, .. } = &self.levels[0];
         sweep(z, |k| f64::from(matrix.leave(&sweeps.x, k)));
     }
@@ -145,7 +141,10 @@ impl Multilevel {
     /// Bytes held.
     pub fn bytes(&self) -> usize {
         let harmonic_sweeps = |l: &Level| l.harmonic_sweeps.as_ref().map_or(0, HarmonicSweeps::bytes);
-        self.levels.iter().map(|l| l.matrix.bytes() + l.sweeps.bytes() + harmonic_sweeps(l) + l.groups.bytes()).sum()
+        self.levels
+            .iter()
+            .map(|l| l.matrix.bytes() + l.sweeps.bytes() + harmonic_sweeps(l) + l.groups.bytes() + 4 * l.share.len())
+            .sum()
     }
 
     /// Rows of each level.
@@ -156,7 +155,7 @@ impl Multilevel {
 
 fn level(matrix: BlockMatrix) -> Level {
     let sweeps = Sweeps::new(&matrix);
-    Level { groups: Groups::default(), sweeps, matrix, harmonic_sweeps: None }
+    Level { groups: Groups::default(), share: Vec::new(), sweeps, matrix, harmonic_sweeps: None }
 }
 
 /// The place of coefficient `c` (mean, cosine, sine, cosine, ...) among mean, cosines, sines.
@@ -187,7 +186,7 @@ fn apply_in_time(levels: &mut [Level], how: Cycle, times: &Times, r: impl Fn(usi
         }
     });
     finest.clear();
-    cycle(levels, how, 1.0);
+    cycle(levels, how);
     let Level { matrix, harmonic_sweeps, .. } = &levels[0];
     let Some(finest) = harmonic_sweeps.as_ref() else { return };
     sweep(z, |k| {
@@ -249,7 +248,7 @@ impl Level {
     }
 }
 
-fn cycle(levels: &mut [Level], how: Cycle, step: f32) {
+fn cycle(levels: &mut [Level], how: Cycle) {
     let Some((fine, coarse)) = levels.split_first_mut() else { return };
     let bottom = coarse.is_empty();
     let sweeps = if bottom && how.levels > 1 { COARSEST_SWEEPS } else { how.sweeps };
@@ -263,20 +262,55 @@ fn cycle(levels: &mut [Level], how: Cycle, step: f32) {
     sweep_rows(coarse[0].right_hand_side(), n, |g, b| {
         b.fill(0.0);
         for i in fine.groups.members(g).iter().map(|i| *i as usize) {
-            b.iter_mut().zip(&left[i * n..(i + 1) * n]).for_each(|(b, r)| *b += r);
+            let share = fine.share[i];
+            b.iter_mut().zip(&left[i * n..(i + 1) * n]).for_each(|(b, r)| *b += share * r);
         }
     });
     coarse[0].clear();
     for _ in 0..how.visits {
-        cycle(coarse, how, step);
+        cycle(coarse, how);
     }
     let found = coarse[0].solution();
     let groups = std::mem::take(&mut fine.groups);
     sweep_rows(fine.solution_mut(), n, |i, x| {
         let at = groups.of()[i] as usize * n;
-        x.iter_mut().zip(&found[at..at + n]).for_each(|(x, c)| *x += step * c);
+        x.iter_mut().zip(&found[at..at + n]).for_each(|(x, c)| *x += STEP * c);
     });
     fine.groups = groups;
     fine.restart();
     (0..sweeps).for_each(|_| fine.smooth());
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn coarse_rows_conserve_what_fine_rows_conserve() {
+        // what rows of a ring hand on, each over its own volume
+        let n = 240;
+        let volume: Vec<f64> = (0..n).map(|i| [1.0, 0.3, 4.0, 0.02][i * i % 7 % 4]).collect();
+        let first: Vec<u32> = (0..=n as u32).map(|i| 2 * i).collect();
+        let index: Vec<u32> = (0..n).flat_map(|i| [(i + n - 1) % n, (i + 1) % n]).map(|j| j as u32).collect();
+        let matrix = BlockMatrix::new(2, std::slice::from_ref(&(0..n)), &first, &index);
+        let mut all = Multilevel::new(matrix, volume.clone(), 4, Cycle { sweeps: 1, visits: 1, levels: 3 });
+        let handed = |i: usize| 1.0 + 0.5 * (i as f64).sin();
+        all.finest().assemble(|_, rows| {
+            for i in 0..n {
+                let before = (i + n - 1) % n;
+                rows.add(i, i, |r, c| if r == c { handed(i) / volume[i] } else { 0.0 });
+                rows.add(i, before, |r, c| if r == c { -handed(before) / volume[i] } else { 0.0 });
+            }
+        });
+        let (fine, coarse) = all.levels.split_at_mut(1);
+        let (fine, coarse) = (&fine[0], &mut coarse[0].matrix);
+        coarse.gather(&fine.matrix, |g| fine.groups.members(g), (fine.groups.of(), &fine.share));
+        let x: Vec<f32> = (0..2 * coarse.n_rows()).map(|k| (k as f32).cos()).collect();
+        let mut gathered = vec![0.0; coarse.n_rows()];
+        volume.iter().zip(fine.groups.of()).for_each(|(v, g)| gathered[*g as usize] += v);
+        let passed: Vec<f64> = coarse.product(&x).chunks(2).zip(gathered).map(|(r, v)| f64::from(r[0]) * v).collect();
+        let size: f64 = passed.iter().map(|p| p.abs()).sum();
+        // blocks are rounded to a 254th; sums of rows as they are would be off by all of their size
+        assert!(passed.iter().sum::<f64>().abs() < 1e-2 * size, "{passed:?}");
+    }
 }

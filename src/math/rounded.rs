@@ -47,10 +47,10 @@ pub(super) fn round_block(sum: &[f32], block: &mut [u8], own: &mut [f32]) {
     }
 }
 
-/// sum ← sum + B.
+/// sum ← sum + share · B.
 #[inline(always)]
-pub(super) fn add_block<const N: usize>(block: &[u8], sum: &mut [f32]) {
-    let unit = unit_of(block);
+pub(super) fn add_block<const N: usize>(block: &[u8], share: f32, sum: &mut [f32]) {
+    let unit = share * unit_of(block);
     let entries = block[UNIT..UNIT + N * N].iter();
     sum[..N * N].iter_mut().zip(entries).for_each(|(s, b)| *s += unit * f32::from(*b as i8));
 }

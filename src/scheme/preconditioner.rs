@@ -6,7 +6,6 @@
 //! ([`crate::math::incomplete`]). For all instances of a period at once, sweeps harmonic by harmonic.
 use crate::math::Vector;
 use crate::math::block_matrix::BlockMatrix;
-use crate::math::groups::Gathering;
 use crate::math::incomplete::Incomplete;
 use crate::math::multilevel::Multilevel;
 use crate::math::sweep::sweep_rows;
@@ -15,10 +14,6 @@ use crate::system::{Hierarchy, Implicit, Period, Preconditioner, Reach, RightHan
 
 use super::fluid::{Fluid, Work};
 use super::frame::Frame;
-
-/// Part of what large groups find that their members take: a fighter and a wing take 25 to 30 % fewer linear iterations with 0.7 to 0.85
-/// than with 1, and twice as many with 1.6.
-const STEP: f32 = 0.8;
 
 /// The linearisation of a gas, and what approximates its inverse.
 pub struct FluidPreconditioner {
@@ -42,10 +37,8 @@ impl<const D: usize> Implicit for Fluid<D> {
         let mut scale = vec![speed; block];
         (scale[0], scale[block - 1]) = (1.0, speed * speed);
         let matrix = BlockMatrix::new(block, parts, &neighbours.first, &neighbours.index).scaled(&scale);
-        // in space small groups see so many others that coarse rows would take a third of all memory
-        let large = D == 3 && period.is_none();
-        let gathering = Gathering { size: plan.group, far: large };
-        let levels = Multilevel::new(matrix, gathering, plan.cycle).stepping(if large { STEP } else { 1.0 });
+        let volume = discretisation.cloud.volume[..discretisation.cloud.n_fluid].to_vec();
+        let levels = Multilevel::new(matrix, volume, plan.group, plan.cycle);
         let levels = match period {
             Some(period) => levels.in_time(period.instances, period.omega),
             None => levels,

@@ -8,7 +8,7 @@ use super::{Problem, Sharer};
 use crate::cloud::coefficient_unknowns::{ITSELF, Kind, Link};
 use crate::cloud::multipliers::{Factors, Row};
 use crate::math::Vector;
-use crate::math::groups::{Gathering, Groups};
+use crate::math::groups::Groups;
 use crate::math::sweep::{sweep, sweep_each};
 
 /// Rows a group.
@@ -130,7 +130,7 @@ impl<const D: usize> Level<D> {
             return None;
         }
         let others = |i: usize, list: &mut Vec<u32>| finer.edges(i, &mut |e| list.push(e.other));
-        let groups = Groups::new(n, Gathering { size: GROUP, far: true }, others);
+        let groups = Groups::new(n, GROUP, others);
         if groups.len() * 10 > n * 9 {
             return None;
         }
