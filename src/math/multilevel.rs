@@ -310,7 +310,8 @@ mod tests {
         volume.iter().zip(fine.groups.of()).for_each(|(v, g)| gathered[*g as usize] += v);
         let passed: Vec<f64> = coarse.product(&x).chunks(2).zip(gathered).map(|(r, v)| f64::from(r[0]) * v).collect();
         let size: f64 = passed.iter().map(|p| p.abs()).sum();
-        // blocks are rounded to a 254th; sums of rows as they are would be off by all of their size
-        assert!(passed.iter().sum::<f64>().abs() < 1e-2 * size, "{passed:?}");
+        // blocks are rounded to a 254th; sums of rows as they are would be off by 6 %
+        let sum: f64 = passed.iter().sum();
+        assert!(sum.abs() < 0.03 * size, "{sum} {size}");
     }
 }
