@@ -40,7 +40,7 @@ impl Control {
             method: Method::NewtonKrylov,
             cfl: 10.0,
             cfl_max: 1e6,
-            growth: 2.0,
+            growth: 4.0,
             tolerance: 0.1,
             basis: 30,
             group: 1 << dimension,
