@@ -26,6 +26,8 @@ const NEAR: f64 = 2e-2;
 const WORN_RISE: f64 = 1.5;
 /// Iterations without a new smallest residual after which the flow counts as settled.
 const PATIENCE: u32 = 10;
+/// Residual after a step of sweeps alone over the smallest before it, beyond which they are too slow at their greatest Courant number.
+const SLOW: f64 = 0.93;
 /// Fewest iterations of sweeps alone before patience is counted.
 const SHORTEST_START: u32 = 20;
 /// Courant number below which Newton's method is given up for a while.
@@ -423,11 +425,13 @@ impl<'a, S: Implicit> Relax<'a, S> {
         let drop = self.drop();
         let phase = &mut self.phase;
         phase.age += 1;
+        let slow = self.cfl >= START_CFL_MAX && self.norm > SLOW * phase.best;
         if self.norm < 0.98 * phase.best {
             (phase.best, phase.best_age) = (self.norm, phase.age);
         }
         let worn = phase.best < NEAR * self.first_norm && self.norm > WORN_RISE * phase.best;
-        let settled = drop < SETTLED || worn || (phase.age > SHORTEST_START && phase.age > phase.best_age + PATIENCE);
+        let rests = slow || phase.age > phase.best_age + PATIENCE;
+        let settled = drop < SETTLED || worn || (rests && phase.age > SHORTEST_START);
         let lost = phase.newton && self.cfl < LOST_CFL && phase.age > SHORTEST_START;
         if (!phase.newton && settled) || lost {
             *phase = Phase { newton: !phase.newton, age: 0, best: self.norm, best_age: 0 };
