@@ -34,9 +34,10 @@ const SPACE_PICTURES_SECONDS: [f64; 2] = [1.5, 7e-5];
 const SPACE_BYTES: f64 = 1.3;
 /// Residuals that a steady state takes on a plane cloud of [`USUAL`] particles, and in space.
 const STEADY: [f64; 2] = [570.0, 520.0];
-/// Growth of that number with the number of particles, and in the plane where a pilot took so many times what is usual: detached
-/// shocks settle the more slowly the finer they are drawn.
+/// Growth of that number with the number of particles, in the plane and in space.
 const GROWTH: [f64; 2] = [-0.09, 0.05];
+/// Time of a pilot in the plane over a usual one beyond which a flow is hard, and growth of its residuals beyond the usual: detached
+/// shocks settle the more slowly the finer they are drawn.
 const HARD: f64 = 1.4;
 const HARD_GROWTH: f64 = 0.4;
 const USUAL: f64 = 4000.0;

@@ -422,10 +422,10 @@ impl<'a, S: Implicit> Relax<'a, S> {
         if self.control.method != Method::NewtonKrylov || self.time.is_some() {
             return;
         }
-        let drop = self.drop();
+        let (drop, fastest) = (self.drop(), self.cfl >= self.largest_cfl());
         let phase = &mut self.phase;
         phase.age += 1;
-        let slow = self.cfl >= START_CFL_MAX && self.norm > SLOW * phase.best;
+        let slow = fastest && self.norm > SLOW * phase.best;
         if self.norm < 0.98 * phase.best {
             (phase.best, phase.best_age) = (self.norm, phase.age);
         }
