@@ -9,7 +9,7 @@
 //! Hoekstra (2014).
 //!
 //! Other parts are what the end of the domain does to the loads, which is the same on all clouds; what loads from wall
-//! pressure and from momentum differ by, as far as the last refinement did not change the latter by more; what the last iterations
+//! pressure and from momentum differ by, as far as what the latter may still change by does not explain it; what the last iterations
 //! changed; and the digits that are printed. Parts that know nothing of one another add as squares.
 use serde::{Deserialize, Serialize};
 
@@ -35,7 +35,7 @@ const LUCK: [f64; 2] = [1.0 / 16.0, 1.0 / 8.0];
 /// at Mach 0.5 with a vortex in the far field, 0.93 at 64 chords.
 const FAR: f64 = 1.0;
 /// Part of the difference between loads from wall pressure and from momentum that the error of the first may be, once what the
-/// last refinement changed the second by is taken off.
+/// second may still change by is taken off.
 const DISAGREEMENT: f64 = 0.5;
 /// Half of the last digit of a load that is printed.
 const PRINTED: f64 = 5e-6;
@@ -133,9 +133,10 @@ impl Convergence {
         let of = |load: fn(&CloudLoads) -> f64, part: fn(&Coefficients) -> f64| {
             let found = estimate([load(a), load(b), load(c)], c.supersonic);
             let far_field = FAR * load(c).abs() / c.reach.powi(2);
-            let momentum = c.momentum.as_ref().map_or(0.0, |through| {
-                let change = b.momentum.as_ref().map_or(0.0, |before| (part(through) - part(before)).abs());
-                DISAGREEMENT * ((load(c) - part(through)).abs() - change).max(0.0)
+            let through = |cloud: &CloudLoads| cloud.momentum.as_ref().map(part);
+            let momentum = through(c).map_or(0.0, |value| {
+                let change = through(b).map_or(0.0, |b| to_come(through(a), [b, value], c.supersonic));
+                DISAGREEMENT * ((load(c) - value).abs() - change).max(0.0)
             });
             let swing = |finer: &CloudLoads| (load(finer) - load(c)).abs() + part(&finer.unsettled).abs();
             let residual = part(&c.unsettled).abs().max(unsteady.as_ref().map_or(0.0, swing));
@@ -172,6 +173,13 @@ impl Convergence {
     pub fn half_widths(&self) -> Coefficients {
         Coefficients { cl: self.cl.half_width, cd: self.cd.half_width, cm: self.cm.half_width }
     }
+}
+
+/// What a load from momentum may still change by: all that it changed by the last time, less where it came nearer at each refinement.
+fn to_come(before: Option<f64>, [b, c]: [f64; 2], shocks: bool) -> f64 {
+    let last = (c - b).abs();
+    let order = before.map_or(0.0, |a| ((b - a) / (c - b)).log2());
+    if order >= 1.0 { last / (order.min(SCHEME_ORDER[usize::from(shocks)]).exp2() - 1.0) } else { last }
 }
 
 /// The estimate from values at spacings 4, 2 and 1, of the part of the spacing alone.

@@ -39,7 +39,7 @@ fn verdict(found: &Convergence) -> String {
     format!(
         "The clouds are alike, each with half the spacing of the one before; {end}. A load that approaches its limit with an order \
          has 5/4 of the way to it as part of its error bar, another one the spread of the last clouds; what the end of the domain does, \
-         half of what wall pressure and momentum differ by beyond the last change of the latter, and what the last iterations changed \
+         half of what wall pressure and momentum differ by beyond what the latter may still change by, and what the last iterations changed \
          are the other parts, added as squares."
     )
 }
