@@ -38,12 +38,6 @@ impl<const D: usize> Link<D> {
     pub(super) fn is_wall(&self) -> bool {
         matches!(self.kind, Kind::Wall(_))
     }
-
-    /// Part of the way to the other end at which the area vector stands.
-    #[inline(always)]
-    pub(super) fn reach(&self) -> f64 {
-        if self.is_wall() { 1.0 } else { 0.5 }
-    }
 }
 
 /// The neighbour entries of the fluid particles of a cloud. But for their weights, what they are is found anew
@@ -102,12 +96,27 @@ impl<'a, const D: usize> Links<'a, D> {
         self.beyond(p, offset)
     }
 
-    /// Calls `f` with the links of row `i`.
+    /// Entries of row `i` for fluid particles, and the others after them.
     #[inline(always)]
-    pub(super) fn each(&self, i: usize, mut f: impl FnMut(&Link<D>)) {
-        for p in self.range(i) {
-            f(&self.at(i, p));
+    pub(super) fn sorted(&self, i: usize) -> [std::ops::Range<usize>; 2] {
+        let range = self.range(i);
+        let mut middle = range.start;
+        while middle < range.end && self.end(middle) < self.cloud.n_fluid {
+            middle += 1;
         }
+        [range.start..middle, middle..range.end]
+    }
+
+    /// Where the fluid particle of entry `p` of row `i` is, half of the offset to it in single precision, the weight, and whether that
+    /// particle sees the first.
+    #[inline(always)]
+    pub(super) fn near(&self, i: usize, p: usize) -> (usize, [f32; D], f32, bool) {
+        let (here, there) = (&self.cloud.x[i], &self.cloud.x[self.end(p)]);
+        let mut middle = [0.0; D];
+        for d in 0..D {
+            middle[d] = (0.5 * (there[d] - here[d])) as f32;
+        }
+        (self.end(p), middle, self.weight[p], self.seen_back[p])
     }
 
     /// The link to what is no fluid particle.

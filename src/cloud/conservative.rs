@@ -32,7 +32,7 @@ use field::{Field, Moments};
 
 use super::coefficient_unknowns::{ITSELF, Kind, Link, Links};
 use super::layers::{below_first, grown_face};
-use super::multipliers::{Factors, Row};
+use super::multipliers::{Factors, Lanes, Row, add_to, lanes, opposite, part_of};
 use super::operators::{Reverse, WallFace};
 use super::{Cloud, Operators};
 use crate::math::Vector;
@@ -253,37 +253,40 @@ impl<'a, const D: usize> Problem<'a, D> {
     /// W Aᵀ λ of one entry of row `i`: the change of its area vector.
     #[inline(always)]
     fn change(&self, i: usize, link: &Link<D>, y: &[Row<D>]) -> Vector<D> {
-        let own = &y[i];
-        let d = &link.offset;
         match link.kind {
-            Kind::Pair | Kind::Image(_) => {
-                let across = self.across(link, &y[link.other as usize]);
-                Vector::from_fn(|r| own.closure[r] + 0.5 * own.moment[r].dot(d) - across[r]) * link.weight
-            }
-            Kind::Open => Vector::from_fn(|r| own.closure[r] + 0.5 * own.moment[r].dot(d)) * link.weight,
             Kind::Wall(_) => self.wall_change(i, link, y),
+            _ => {
+                let middle = part_of(&link.offset, 0.5);
+                let change = self.pair_change(&y[i], link, &middle, y);
+                Vector::from_fn(|d| link.weight * f64::from(change[d]))
+            }
         }
+    }
+
+    /// The same of one between particles, in whose middle it stands, over its weight.
+    #[inline(always)]
+    fn pair_change(&self, own: &Row<D>, link: &Link<D>, middle: &[f32; D], y: &[Row<D>]) -> Lanes {
+        let mut change = own.at(middle);
+        if link.kind != Kind::Open {
+            add_to(&mut change, -1.0, &self.there(link, middle, &y[link.other as usize]));
+        }
+        change
     }
 
     /// The field of the particle at the other end of an entry in the middle between both.
     #[inline(always)]
-    fn across(&self, link: &Link<D>, other: &Row<D>) -> Vector<D> {
-        let d = &link.offset;
+    fn there(&self, link: &Link<D>, middle: &[f32; D], other: &Row<D>) -> Lanes {
+        let back = opposite(middle);
         match link.kind {
-            Kind::Image(t) => {
-                let t = &self.signs[t as usize];
-                let back = Vector::from_fn(|c| t[c] * d[c]);
-                Vector::from_fn(|r| t[r] * (other.closure[r] - 0.5 * other.moment[r].dot(&back)))
-            }
-            _ => Vector::from_fn(|r| other.closure[r] - 0.5 * other.moment[r].dot(d)),
+            Kind::Image(t) => other.mirrored(&self.signs[t as usize]).at(&back),
+            _ => other.at(&back),
         }
     }
 
     #[inline(never)]
     fn wall_change(&self, i: usize, link: &Link<D>, y: &[Row<D>]) -> Vector<D> {
         let a = self.wall(link);
-        let along = Vector::from_fn(|r| y[i].closure[r] + y[i].moment[r].dot(&link.offset)).dot(&a);
-        a * (link.weight * (along + y[link.other as usize].closure[0]))
+        a * (link.weight * (along(&y[i], link, &a) + y[link.other as usize].share()))
     }
 
     /// The share that belongs to an area vector of a wall entry.
@@ -295,17 +298,41 @@ impl<'a, const D: usize> Problem<'a, D> {
     /// (A W Aᵀ + ε) y in the row of a fluid particle.
     #[inline(always)]
     fn row(&self, i: usize, y: &[Row<D>]) -> Row<D> {
-        let mut row = self.soft(i, &y[i]);
-        self.links.each(i, |link| row.add(&self.change(i, link, y), &link.offset, link.reach()));
+        let (own, mut row) = (&y[i], self.soft(i, &y[i]));
+        let [near, beyond] = self.links.sorted(i);
+        for p in near {
+            let (j, middle, weight, both) = self.links.near(i, p);
+            let mut change = own.at(&middle);
+            if both {
+                add_to(&mut change, -1.0, &y[j].at(&opposite(&middle)));
+            }
+            row.add(weight, &change, &middle);
+        }
+        if beyond.is_empty() { row } else { row.plus(1.0, &self.row_beyond(i, beyond, y)) }
+    }
+
+    /// The part of it from entries that are no fluid particles.
+    #[inline(never)]
+    fn row_beyond(&self, i: usize, entries: Range<usize>, y: &[Row<D>]) -> Row<D> {
+        let mut row = Row::ZERO;
+        for p in entries {
+            let link = &self.links.at(i, p);
+            match link.kind {
+                Kind::Wall(_) => row.add(1.0, &lanes(&self.wall_change(i, link, y)), &part_of(&link.offset, 1.0)),
+                _ => {
+                    let middle = part_of(&link.offset, 0.5);
+                    row.add(link.weight as f32, &self.pair_change(&y[i], link, &middle, y), &middle);
+                }
+            }
+        }
         row
     }
 
     /// The part of it that is not of the pairs.
     #[inline(always)]
     fn soft(&self, i: usize, y: &Row<D>) -> Row<D> {
-        let (volume, tolerance) = (self.volume_freedom(i) * y.trace(), self.tolerance(i));
-        let mut row = Row { closure: Vector::ZERO, moment: y.moment.map(|m| m * tolerance) };
-        (0..D).for_each(|r| row.moment[r][r] += volume);
+        let mut row = y.slopes(self.tolerance(i));
+        row.add_to_trace(self.volume_freedom(i) * y.trace());
         row
     }
 
@@ -336,39 +363,42 @@ impl<'a, const D: usize> Problem<'a, D> {
 
     /// Defects of all conditions: of area vectors, shares and volumes as they are.
     fn defects(&self, operators: &Operators<D>) -> Vec<Row<D>> {
-        let mut all = vec![Row::ZERO; self.n_rows()];
-        let (fluid, walls) = all.split_at_mut(self.n_fluid);
-        self.sum_edges(operators, fluid, |row, s, offset| row.add(s, offset, 0.5));
-        sweep_slots(fluid, |i, row| (0..D).for_each(|r| row.moment[r][r] -= self.volume[i]));
-        for (sharers, wall) in self.sharers.iter().zip(walls) {
-            for s in sharers {
-                let link = self.link(s);
-                fluid[s.i as usize].add(&(self.wall(&link) * s.share), &link.offset, 1.0);
-            }
-            let total: f64 = sharers.iter().map(|s| s.share).sum();
-            wall.closure[0] = if sharers.is_empty() { 0.0 } else { total - 1.0 };
-        }
+        let mut all = self.sums(operators, Row::ZERO, |row, s, d| row.add(1.0, &lanes(s), &part_of(d, 1.0)));
+        sweep_slots(&mut all, |i, row| row.add_to_trace(-self.volume[i]));
+        let missing = |sharers: &Vec<Sharer>| match &sharers[..] {
+            [] => Row::ZERO,
+            all => Row::ZERO.with_share(all.iter().map(|s| s.share).sum::<f64>() - 1.0),
+        };
+        all.extend(self.sharers.iter().map(missing));
         all
     }
 
-    /// Calls `add` for every area vector of every fluid particle, with the offset of its other end.
-    fn sum_edges<T: Send>(
+    /// For every fluid particle what `add(sum, s, d)` makes of its area vectors s, which stand at the offsets d from it.
+    fn sums<T: Clone + Send>(
         &self,
         operators: &Operators<D>,
-        out: &mut [T],
+        zero: T,
         add: impl Fn(&mut T, &Vector<D>, &Vector<D>) + Sync,
-    ) {
+    ) -> Vec<T> {
+        // room for the walls too
+        let mut all = Vec::with_capacity(self.n_rows());
+        all.resize(self.n_fluid, zero);
         let (cloud, parts) = (self.cloud, operators.fluid_parts());
-        sweep_parts(parts, 1, out, &|k, out| {
+        sweep_parts(parts, 1, &mut all, &|k, out| {
             let start = parts[k].start;
             for e in operators.edges(k) {
-                let offset = cloud.x[e.j()] - cloud.x[e.i()];
-                add(&mut out[e.i() - start], &e.s, &offset);
+                let middle = (cloud.x[e.j()] - cloud.x[e.i()]) * 0.5;
+                add(&mut out[e.i() - start], &e.s, &middle);
                 if e.both() && e.seen_back() {
-                    add(&mut out[e.j() - start], &-e.s, &-offset);
+                    add(&mut out[e.j() - start], &-e.s, &-middle);
                 }
             }
         });
+        for s in self.sharers.iter().flatten() {
+            let link = self.link(s);
+            add(&mut all[s.i as usize], &(self.wall(&link) * s.share), &link.offset);
+        }
+        all
     }
 
     /// Changes area vectors by `change(i, link)`, computed at either end of a pair alike but for the sign.
@@ -439,13 +469,13 @@ impl<'a, const D: usize> Problem<'a, D> {
         self.factors = Factors::new(self.n_fluid, |i| self.own(i));
         let mut r = self.defects(operators);
         let size = |r: &Row<D>, i: usize| match i.checked_sub(self.n_fluid) {
-            Some(w) => r.closure[0] * r.closure[0] / self.shared[w],
+            Some(w) => r.share().powi(2) / self.shared[w],
             None => r.dot(&self.factors.solve(i, r)),
         };
         let goal = tolerance * tolerance * sum(self.n_rows(), |i| size(&r[i], i));
         let less = |i: usize, r: &mut Row<D>| *r = Row::ZERO.plus(-1.0, &r.plus(1.0, &self.row(i, y)));
         sweep_slots(&mut r[..self.n_fluid], less);
-        sweep_slots(&mut r[self.n_fluid..], |w, r| r.closure[0] = -r.closure[0] - self.wall_row(w, y));
+        sweep_slots(&mut r[self.n_fluid..], |w, r| *r = r.with_share(-r.share() - self.wall_row(w, y)));
         let mut cycle = Cycle::new(levels, self.n_fluid);
         let precondition = |r: &[Row<D>], z: &mut [Row<D>]| cycle.nearly_solve(self, r, z);
         let enough = |r: &[Row<D>]| sum(r.len(), |i| size(&r[i], i)) <= goal;
@@ -481,20 +511,17 @@ impl<'a, const D: usize> Problem<'a, D> {
 
     /// The sum of the sizes of all area vectors of every fluid particle.
     fn surfaces(&self, operators: &Operators<D>) -> Vec<f64> {
-        let mut all = vec![0.0; self.n_fluid];
-        self.sum_edges(operators, &mut all, |sum, s, _| *sum += s.norm());
-        for s in self.sharers.iter().flatten() {
-            all[s.i as usize] += (self.wall(&self.link(s)) * s.share).norm();
-        }
-        all
+        self.sums(operators, 0.0, |sum, s, _| *sum += s.norm())
     }
 
     fn judge(&self, operators: &Operators<D>) -> ConservativeReport {
         let (mut closure, mut square, mut largest, mut volume) = (0.0f64, 0.0, (0.0f64, 0), f64::INFINITY);
-        let (defects, surfaces) = (self.defects(operators), self.surfaces(operators));
-        for (i, defect) in defects[..self.n_fluid].iter().enumerate() {
-            closure = closure.max(defect.closure.norm() / surfaces[i].max(f64::MIN_POSITIVE));
-            let error = defect.moment.iter().map(Vector::norm_squared).sum::<f64>().sqrt() / self.volume[i].abs();
+        let (open, surfaces) = (self.open(operators), self.surfaces(operators));
+        let moments = self.sums(operators, [Vector::ZERO; D], |m, s, d| (0..D).for_each(|c| m[c] += *s * d[c]));
+        for (i, moment) in moments.iter().enumerate() {
+            closure = closure.max(open[i].norm() / surfaces[i].max(f64::MIN_POSITIVE));
+            let miss = |c: usize| moment[c] - Vector::axis(c) * self.volume[i];
+            let error = (0..D).map(|c| miss(c).norm_squared()).sum::<f64>().sqrt() / self.volume[i].abs();
             square += error * error;
             // a number that is none counts as the largest
             largest = if error <= largest.0 || largest.0.is_nan() { largest } else { (error, i) };
@@ -526,18 +553,18 @@ impl<'a, const D: usize> Problem<'a, D> {
 
     /// What row `i` makes of its own multipliers.
     fn own(&self, i: usize) -> impl Fn(&Row<D>) -> Row<D> {
-        let (mut pairs, mut walls) = (Moments::ZERO, Vec::new());
+        let (mut pairs, mut walls) = (Moments::<D>::ZERO, Vec::new());
         for (_, link) in self.links.of(i) {
             match link.kind {
                 Kind::Wall(_) => walls.push((self.wall(&link), link)),
-                _ => pairs = pairs.plus(1.0, &Moments::of(link.weight, link.offset * 0.5)),
+                _ => pairs = pairs.plus(1.0, &Moments::of(link.weight, &part_of(&link.offset, 0.5))),
             }
         }
         move |y| {
             let mut row = y.weighed(&pairs).plus(1.0, &self.soft(i, y));
             for (a, link) in &walls {
-                let own = Vector::from_fn(|r| y.closure[r] + y.moment[r].dot(&link.offset));
-                row.add(&(*a * (link.weight * own.dot(a))), &link.offset, 1.0);
+                let area = *a * (link.weight * along(y, link, a));
+                row.add(1.0, &lanes(&area), &part_of(&link.offset, 1.0));
             }
             row
         }
@@ -548,18 +575,16 @@ impl<'a, const D: usize> Problem<'a, D> {
         self.links.of(i).map(|(_, l)| l).filter(|l| !l.is_wall())
     }
 
-    /// Calls `f(row, link)` for those of them to rows of a range that a way has passed.
+    /// Calls `f(row, middle, weight)` for those of them to rows of a range that a way has passed; images of rows count as what is beyond
+    /// the range.
     #[inline(always)]
-    fn each_passed(&self, i: usize, range: &Range<usize>, way: Way, mut f: impl FnMut(usize, &Link<D>)) {
+    fn each_passed(&self, i: usize, range: &Range<usize>, way: Way, mut f: impl FnMut(usize, &[f32; D], f32)) {
         for p in self.links.range(i) {
-            let j = self.links.end(p);
-            if j < self.n_fluid && !way.has_passed(range, i, j) {
-                continue;
-            }
-            let link = self.links.at(i, p);
-            let j = link.other as usize;
-            if !link.is_wall() && link.kind != Kind::Open && way.has_passed(range, i, j) {
-                f(j, &link);
+            if way.has_passed(range, i, self.links.end(p)) {
+                let (j, middle, weight, both) = self.links.near(i, p);
+                if both {
+                    f(j, &middle, weight);
+                }
             }
         }
     }
@@ -572,6 +597,12 @@ impl<'a, const D: usize> Problem<'a, D> {
             _ => 1.0,
         }
     }
+}
+
+/// The field of `own` at the other end of an entry, along the area vector there.
+fn along<const D: usize>(own: &Row<D>, link: &Link<D>, area: &Vector<D>) -> f64 {
+    let field = own.at(&part_of(&link.offset, 1.0));
+    (0..D).map(|d| f64::from(field[d]) * area[d]).sum()
 }
 
 #[cfg(test)]

@@ -1,4 +1,7 @@
 //! Multipliers of the conditions on conservative coefficients, particle by particle.
+//!
+//! They are wanted to a hundredth, and kept in single precision. Those of a particle are an affine field, a value and a slope along each
+//! axis, each with one number a component and room for four: kernels are then plain arithmetic of four numbers at a time.
 use crate::math::Vector;
 use crate::math::conjugate;
 use crate::math::rounded::{of_upper_half, upper_half};
@@ -8,68 +11,179 @@ use crate::math::sweep::sweep_rows;
 const FLAT: f64 = 1e-12;
 /// Most conditions of a particle: three dimensions.
 const MOST: usize = 12;
+/// Elements of a lower triangle of that order.
+const MOST_ELEMENTS: usize = MOST * (MOST + 1) / 2;
+
+/// A number for each component, zeros behind.
+pub(super) type Lanes = [f32; 4];
+
+/// a ← a + s b.
+#[inline(always)]
+pub(super) fn add_to(a: &mut Lanes, s: f32, b: &Lanes) {
+    for k in 0..4 {
+        a[k] += s * b[k];
+    }
+}
+
+/// Part of an offset, in single precision.
+#[inline(always)]
+pub(super) fn part_of<const D: usize>(d: &Vector<D>, part: f64) -> [f32; D] {
+    let mut narrow = [0.0; D];
+    for k in 0..D {
+        narrow[k] = (part * d[k]) as f32;
+    }
+    narrow
+}
+
+/// The opposite offset.
+#[inline(always)]
+pub(super) fn opposite<const D: usize>(d: &[f32; D]) -> [f32; D] {
+    let mut back = [0.0; D];
+    for k in 0..D {
+        back[k] = -d[k];
+    }
+    back
+}
+
+/// A vector as numbers of components.
+#[inline(always)]
+pub(super) fn lanes<const D: usize>(v: &Vector<D>) -> Lanes {
+    let mut all = [0.0; 4];
+    for r in 0..D {
+        all[r] = v[r] as f32;
+    }
+    all
+}
+
+/// The products of the numbers of both.
+#[inline(always)]
+fn product(a: &Lanes, b: &Lanes) -> Lanes {
+    let mut q = [0.0; 4];
+    for k in 0..4 {
+        q[k] = a[k] * b[k];
+    }
+    q
+}
 
 /// Multipliers, or defects, of the conditions of one particle.
 #[derive(Clone, Copy)]
 pub(super) struct Row<const D: usize> {
     /// Of the closure; for an interface particle the first component belongs to the sum of its shares.
-    pub(super) closure: Vector<D>,
-    /// Of linear consistency.
-    pub(super) moment: [Vector<D>; D],
+    pub(super) value: Lanes,
+    /// Of linear consistency, along each axis.
+    pub(super) slope: [Lanes; D],
 }
 
 impl<const D: usize> conjugate::Row for Row<D> {
-    const ZERO: Self = Self { closure: Vector::ZERO, moment: [Vector::ZERO; D] };
+    const ZERO: Self = Self { value: [0.0; 4], slope: [[0.0; 4]; D] };
 
     #[inline(always)]
     fn dot(&self, o: &Self) -> f64 {
-        self.closure.dot(&o.closure) + (0..D).map(|r| self.moment[r].dot(&o.moment[r])).sum::<f64>()
+        let mut sum = product(&self.value, &o.value);
+        for (a, b) in self.slope.iter().zip(&o.slope) {
+            for k in 0..4 {
+                sum[k] += a[k] * b[k];
+            }
+        }
+        f64::from((sum[0] + sum[2]) + (sum[1] + sum[3]))
     }
 
     #[inline(always)]
     fn plus(&self, s: f64, o: &Self) -> Self {
-        Self {
-            closure: self.closure + o.closure * s,
-            moment: std::array::from_fn(|r| self.moment[r] + o.moment[r] * s),
+        let (mut sum, s) = (*self, s as f32);
+        add_to(&mut sum.value, s, &o.value);
+        for k in 0..D {
+            add_to(&mut sum.slope[k], s, &o.slope[k]);
         }
+        sum
     }
 }
 
 impl<const D: usize> Row<D> {
-    /// Adds what an area vector contributes, `reach` × offset from the particle.
+    /// The field at the offset `d`.
     #[inline(always)]
-    pub(super) fn add(&mut self, s: &Vector<D>, offset: &Vector<D>, reach: f64) {
-        self.closure += *s;
-        for r in 0..D {
-            self.moment[r] += *offset * (reach * s[r]);
+    pub(super) fn at(&self, d: &[f32; D]) -> Lanes {
+        let mut sum = self.value;
+        for k in 0..D {
+            add_to(&mut sum, d[k], &self.slope[k]);
+        }
+        sum
+    }
+
+    /// Adds `weight` times what an area vector contributes that stands at the offset `d`.
+    #[inline(always)]
+    pub(super) fn add(&mut self, weight: f32, s: &Lanes, d: &[f32; D]) {
+        add_to(&mut self.value, weight, s);
+        for k in 0..D {
+            add_to(&mut self.slope[k], weight * d[k], s);
         }
     }
 
-    /// The same with this multiplier, or defect, of the sum of shares.
+    /// The multiplier, or defect, of the sum of shares.
+    pub(super) fn share(&self) -> f64 {
+        f64::from(self.value[0])
+    }
+
+    /// The same with another one.
     pub(super) fn with_share(mut self, share: f64) -> Self {
-        self.closure[0] = share;
+        self.value[0] = share as f32;
         self
     }
 
+    /// The sum of the slopes of components along themselves.
     pub(super) fn trace(&self) -> f64 {
-        (0..D).map(|r| self.moment[r][r]).sum()
+        (0..D).map(|r| f64::from(self.slope[r][r])).sum()
+    }
+
+    /// Adds to all of those slopes.
+    pub(super) fn add_to_trace(&mut self, each: f64) {
+        for r in 0..D {
+            self.slope[r][r] += each as f32;
+        }
+    }
+
+    /// Its slopes times `s`, without value.
+    #[inline(always)]
+    pub(super) fn slopes(&self, s: f64) -> Self {
+        let mut row = <Self as conjugate::Row>::ZERO;
+        for k in 0..D {
+            add_to(&mut row.slope[k], s as f32, &self.slope[k]);
+        }
+        row
+    }
+
+    /// The field in a mirror: components and slopes change their signs.
+    #[inline(always)]
+    pub(super) fn mirrored(&self, sign: &Vector<D>) -> Self {
+        let seen = lanes(sign);
+        let mut row = Self { value: product(&self.value, &seen), ..<Self as conjugate::Row>::ZERO };
+        for k in 0..D {
+            add_to(&mut row.slope[k], seen[k], &product(&self.slope[k], &seen));
+        }
+        row
     }
 
     #[inline(always)]
-    pub(super) fn load(x: &[f64; MOST]) -> Self {
-        let moment = std::array::from_fn(|r| Vector::from_fn(|c| x[D + r * D + c]));
-        Self { closure: Vector::from_fn(|c| x[c]), moment }
+    fn load(x: &[f32; MOST]) -> Self {
+        let mut row = <Self as conjugate::Row>::ZERO;
+        row.value[..D].copy_from_slice(&x[..D]);
+        for k in 0..D {
+            row.slope[k][..D].copy_from_slice(&x[(k + 1) * D..(k + 2) * D]);
+        }
+        row
     }
 
     #[inline(always)]
-    pub(super) fn store(&self, x: &mut [f64; MOST]) {
-        x[..D].copy_from_slice(&self.closure.0);
-        (0..D).for_each(|r| x[D + r * D..D + (r + 1) * D].copy_from_slice(&self.moment[r].0));
+    fn store(&self, x: &mut [f32; MOST]) {
+        x[..D].copy_from_slice(&self.value[..D]);
+        for k in 0..D {
+            x[(k + 1) * D..(k + 2) * D].copy_from_slice(&self.slope[k][..D]);
+        }
     }
 }
 
-/// Blocks of conditions, one a row, factorised (Cholesky): the lower triangles row after row, diagonals inverted. They only
-/// precondition, which any factor does whose product with its transpose is near the block: each number is the upper half of one in single
+/// Blocks of conditions, one a row, by the inverses of their Cholesky factors: lower triangles row after row. They only precondition,
+/// which any triangle does whose transpose times itself is near the inverse: each number is the upper half of one in single
 /// precision, for a triangle of every particle is the largest array of all.
 #[derive(Default)]
 pub(super) struct Factors<const D: usize> {
@@ -93,9 +207,9 @@ impl<const D: usize> Factors<D> {
                 let mut column = [0.0; MOST];
                 column[c] = 1.0;
                 product(&Row::load(&column)).store(&mut column);
-                (0..m).for_each(|r| block[r * m + c] = column[r]);
+                (0..m).for_each(|r| block[r * m + c] = f64::from(column[r]));
             }
-            cholesky(&mut block, m);
+            inverse_cholesky(&mut block, m);
             let entries = (0..m).flat_map(|r| (0..=r).map(move |c| (r, c)));
             triangle.iter_mut().zip(entries).for_each(|(t, (r, c))| *t = upper_half(block[r * m + c] as f32));
         });
@@ -106,27 +220,22 @@ impl<const D: usize> Factors<D> {
     #[inline(always)]
     pub(super) fn solve(&self, i: usize, r: &Row<D>) -> Row<D> {
         let m = Self::WIDTH;
-        let l = &self.values[i * Self::TRIANGLE..(i + 1) * Self::TRIANGLE];
-        let at = |r: usize, c: usize| f64::from(of_upper_half(l[r * (r + 1) / 2 + c]));
-        let mut x = [0.0; MOST];
+        let mut l = [0.0; MOST_ELEMENTS];
+        let packed = &self.values[i * Self::TRIANGLE..(i + 1) * Self::TRIANGLE];
+        l[..Self::TRIANGLE].iter_mut().zip(packed).for_each(|(l, packed)| *l = of_upper_half(*packed));
+        let (mut x, mut z) = ([0.0; MOST], [0.0; MOST]);
         r.store(&mut x);
         for a in 0..m {
-            let s: f64 = (0..a).map(|b| at(a, b) * x[b]).sum();
-            x[a] = (x[a] - s) * at(a, a);
+            let row = &l[a * (a + 1) / 2..][..=a];
+            let y: f32 = row.iter().zip(&x).map(|(l, x)| l * x).sum();
+            z.iter_mut().zip(row).for_each(|(z, l)| *z += y * l);
         }
-        for a in (0..m).rev() {
-            x[a] *= at(a, a);
-            for b in 0..a {
-                x[b] -= at(a, b) * x[a];
-            }
-        }
-        Row::load(&x)
+        Row::load(&z)
     }
 }
 
-/// Cholesky factor in the lower triangle, the diagonal inverted; directions without
-/// stiffness are left alone.
-fn cholesky(a: &mut [f64], n: usize) {
+/// The inverse of the Cholesky factor in the lower triangle; directions without stiffness are left alone.
+fn inverse_cholesky(a: &mut [f64], n: usize) {
     for c in 0..n {
         let s: f64 = (0..c).map(|k| a[c * n + k] * a[c * n + k]).sum();
         let pivot = (a[c * n + c] - s).max(FLAT * a[c * n + c]).max(f64::MIN_POSITIVE);
@@ -135,5 +244,28 @@ fn cholesky(a: &mut [f64], n: usize) {
             let s: f64 = (0..c).map(|k| a[r * n + k] * a[c * n + k]).sum();
             a[r * n + c] = (a[r * n + c] - s) * a[c * n + c];
         }
+    }
+    // column by column: what is right of it in its row is inverted already
+    for c in (0..n).rev() {
+        for r in (c + 1..n).rev() {
+            let s: f64 = (c + 1..=r).map(|k| a[r * n + k] * a[k * n + c]).sum();
+            a[r * n + c] = -s * a[c * n + c];
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::math::conjugate::Row as _;
+
+    #[test]
+    fn blocks_are_inverted_by_their_factors() {
+        let vector = |seed: f32| Row::<3>::load(&std::array::from_fn(|k| (seed * (k + 1) as f32).sin()));
+        let [a, b, y] = [0.7, 1.9, 0.3].map(vector);
+        // a symmetric positive block
+        let product = |y: &Row<3>| y.plus(a.dot(y), &a).plus(0.5 * b.dot(y), &b);
+        let found = Factors::new(1, |_| product).solve(0, &product(&y));
+        assert!(found.plus(-1.0, &y).dot(&found.plus(-1.0, &y)) < 1e-3 * y.dot(&y));
     }
 }

@@ -120,10 +120,15 @@ impl<'a, const D: usize> Probe<'a, D> {
     }
 
     /// Weight of particle `k` at the offset `d` from it.
+    #[inline(always)]
     fn weight(&self, k: usize, d: &Vector<D>, reach: f64) -> f64 {
         let cloud = self.view.reference();
+        // most are too far away, and in layers no nearer than that
+        if d.norm_squared() >= reach * reach {
+            return 0.0;
+        }
         let Some((column, layer)) = cloud.layers.slot(k) else {
-            return (1.0 - d.norm() / reach).max(0.0).powi(2);
+            return (1.0 - d.norm() / reach).powi(2);
         };
         let stretch = (cloud.spacing[k] / cloud.layers.thickness(column, layer)).max(1.0);
         let across = d.dot(&cloud.layers.axes(column)[1]);

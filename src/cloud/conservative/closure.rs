@@ -48,19 +48,21 @@ impl<const D: usize> Problem<'_, D> {
     }
 
     /// What the area vectors of every fluid particle lack.
-    fn open(&self, operators: &Operators<D>) -> Vec<Vector<D>> {
-        let mut all = vec![Vector::ZERO; self.n_fluid];
-        self.sum_edges(operators, &mut all, |sum, s, _| *sum -= *s);
-        for s in self.sharers.iter().flatten() {
-            all[s.i as usize] -= self.wall(&self.link(s)) * s.share;
-        }
-        all
+    pub(super) fn open(&self, operators: &Operators<D>) -> Vec<Vector<D>> {
+        self.sums(operators, Vector::ZERO, |sum, s, _| *sum -= *s)
     }
 
     #[inline(always)]
     fn closure_row(&self, i: usize, y: &[Vector<D>]) -> Vector<D> {
-        let mut sum = Vector::ZERO;
-        self.links.each(i, |l| sum += self.closure_change(i, l, y));
+        let (own, mut sum) = (y[i], Vector::ZERO);
+        let [near, beyond] = self.links.sorted(i);
+        for p in near {
+            let (j, _, weight, both) = self.links.near(i, p);
+            sum += if both { own - y[j] } else { own } * f64::from(weight);
+        }
+        for p in beyond {
+            sum += self.closure_change(i, &self.links.at(i, p), y);
+        }
         sum
     }
 
@@ -86,10 +88,7 @@ impl<const D: usize> Grid<Vector<D>> for Problem<'_, D> {
     #[inline(always)]
     fn less(&self, i: usize, r: Vector<D>, range: &Range<usize>, found: &[Vector<D>], way: Way) -> Vector<D> {
         let mut r = r;
-        self.each_passed(i, range, way, |j, l| {
-            let other = &found[j - range.start];
-            r += Vector::from_fn(|d| self.sign(l, d) * other[d]) * l.weight;
-        });
+        self.each_passed(i, range, way, |j, _, weight| r += found[j - range.start] * f64::from(weight));
         r
     }
 

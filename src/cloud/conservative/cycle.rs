@@ -182,12 +182,12 @@ fn step<V: conjugate::Row, G: Grid<V>>(grid: &G, x: &mut [V], left: &mut [V], wa
 
 impl<const D: usize, V: Field<D>> Grid<V> for Signed<'_, D> {
     fn left(&self, i: usize, b: &V, x: &[V]) -> V {
-        let pull = |row: V, e: Edge<D>| row.plus(1.0, &e.pull(self.signs, &x[e.other as usize]));
-        self.level.edges(i).fold(b.plus(-1.0, &x[i].own(&self.level.own[i], self.level.soft[i])), pull)
+        let pull = |row: V, e: &Edge<D>| row.plus(1.0, &e.pull(self.signs, &x[e.other as usize]));
+        self.level.edges(i).iter().fold(b.plus(-1.0, &x[i].own(&self.level.own[i], self.level.soft[i])), pull)
     }
 
     fn less(&self, i: usize, r: V, range: &Range<usize>, found: &[V], way: Way) -> V {
-        let passed = self.level.edges(i).filter(|e| way.has_passed(range, i, e.other as usize));
+        let passed = self.level.edges(i).iter().filter(|e| way.has_passed(range, i, e.other as usize));
         passed.fold(r, |r, e| r.plus(1.0, &e.pull(self.signs, &found[e.other as usize - range.start])))
     }
 

@@ -6,7 +6,7 @@
 use super::field::{Field, Moments, STIFFNESS};
 use super::{Problem, Sharer};
 use crate::cloud::coefficient_unknowns::{ITSELF, Kind, Link};
-use crate::cloud::multipliers::{Factors, Row};
+use crate::cloud::multipliers::{Factors, Row, opposite, part_of};
 use crate::math::Vector;
 use crate::math::groups::Groups;
 use crate::math::sweep::{sweep, sweep_each};
@@ -18,12 +18,13 @@ const COARSEST: usize = 200;
 const MOST_LEVELS: usize = 12;
 
 /// What couples a group with another one.
+#[derive(Clone, Copy)]
 pub(super) struct Edge<const D: usize> {
     pub(super) other: u32,
     /// Transform under which the other is seen, or `ITSELF`.
     transform: u8,
     /// From the centre of the group to that of the other.
-    shift: Vector<D>,
+    shift: [f32; D],
     /// Middles of the pairs, from the centre of the group.
     moments: Moments<D>,
 }
@@ -32,48 +33,11 @@ impl<const D: usize> Edge<D> {
     /// What the group makes of the field of the other.
     #[inline(always)]
     pub(super) fn pull<V: Field<D>>(&self, signs: &[Vector<D>], other: &V) -> V {
-        let back = -self.shift;
+        let back = opposite(&self.shift);
         match self.transform {
             ITSELF => other.at(&back).weighed(&self.moments),
             t => other.mirrored(&signs[t as usize]).at(&back).weighed(&self.moments),
         }
-    }
-}
-
-/// The same in single precision, as levels keep it: they only precondition, and their edges are most of what they hold.
-#[derive(Clone, Copy)]
-struct Packed<const D: usize> {
-    other: u32,
-    transform: u8,
-    shift: [f32; D],
-    weight: f32,
-    first: [f32; D],
-    second: [[f32; D]; D],
-}
-
-impl<const D: usize> Packed<D> {
-    fn of(edge: &Edge<D>) -> Self {
-        let narrow = |v: &Vector<D>| v.0.map(|x| x as f32);
-        let Moments { weight, first, second } = &edge.moments;
-        Self {
-            other: edge.other,
-            transform: edge.transform,
-            shift: narrow(&edge.shift),
-            weight: *weight as f32,
-            first: narrow(first),
-            second: second.each_ref().map(narrow),
-        }
-    }
-
-    #[inline(always)]
-    fn edge(&self) -> Edge<D> {
-        let wide = |v: &[f32; D]| Vector(v.map(f64::from));
-        let moments = Moments {
-            weight: f64::from(self.weight),
-            first: wide(&self.first),
-            second: self.second.each_ref().map(wide),
-        };
-        Edge { other: self.other, transform: self.transform, shift: wide(&self.shift), moments }
     }
 }
 
@@ -94,10 +58,10 @@ pub(super) struct Level<const D: usize> {
     /// Rows of the finer version that share a field.
     pub(super) groups: Groups,
     /// Offset of each of those rows from the centre of its group.
-    pub(super) offset: Vec<Vector<D>>,
+    pub(super) offset: Vec<[f32; D]>,
     centre: Vec<Vector<D>>,
     first: Vec<u32>,
-    edges: Vec<Packed<D>>,
+    edges: Vec<Edge<D>>,
     open: Vec<Moments<D>>,
     /// All pairs of a group with others.
     pub(super) own: Vec<Moments<D>>,
@@ -139,11 +103,10 @@ impl<const D: usize> Level<D> {
             let members = groups.members(g);
             members.iter().fold(Vector::ZERO, |x, i| x + finer.centre(*i as usize)) * (1.0 / members.len() as f64)
         });
-        let mut offset = vec![Vector::ZERO; n];
-        sweep(&mut offset, |i| finer.centre(i) - centre[groups.of()[i] as usize]);
-        let mut rows: Vec<Vec<Packed<D>>> = Vec::new();
-        rows.resize_with(groups.len(), Vec::new);
-        sweep_each(&mut rows, |g| gather(finer, signs, &groups, &offset, g).iter().map(Packed::of).collect());
+        let mut offset = vec![[0.0; D]; n];
+        sweep(&mut offset, |i| part_of(&(finer.centre(i) - centre[groups.of()[i] as usize]), 1.0));
+        let mut rows = vec![Vec::new(); groups.len()];
+        sweep_each(&mut rows, |g| gather(finer, signs, &groups, &offset, g));
         let mut first = vec![0];
         first.extend(rows.iter().scan(0, |n, r| {
             *n += r.len() as u32;
@@ -151,10 +114,8 @@ impl<const D: usize> Level<D> {
         }));
         let [mut open, mut own] = [(); 2].map(|()| vec![Moments::ZERO; groups.len()]);
         let members = |g: usize| groups.members(g).iter().map(|i| *i as usize);
-        sweep(&mut open, |g| {
-            members(g).fold(Moments::ZERO, |m, i| m.plus(1.0, &finer.open(i).about_origin(&-offset[i])))
-        });
-        sweep(&mut own, |g| rows[g].iter().fold(open[g], |m, e| m.plus(1.0, &e.edge().moments)));
+        sweep(&mut open, |g| members(g).fold(Moments::ZERO, |m, i| m.plus(1.0, &finer.open(i).seen_from(&offset[i]))));
+        sweep(&mut own, |g| rows[g].iter().fold(open[g], |m, e| m.plus(1.0, &e.moments)));
         let mut soft = vec![[0.0; 2]; groups.len()];
         sweep(&mut soft, |g| members(g).map(|i| finer.soft(i)).fold([0.0; 2], |a, b| [a[0] + b[0], a[1] + b[1]]));
         let mut edges = Vec::with_capacity(rows.iter().map(Vec::len).sum());
@@ -170,8 +131,8 @@ impl<const D: usize> Level<D> {
         self.centre.len()
     }
 
-    pub(super) fn edges(&self, i: usize) -> impl Iterator<Item = Edge<D>> {
-        self.edges[self.first[i] as usize..self.first[i + 1] as usize].iter().map(Packed::edge)
+    pub(super) fn edges(&self, i: usize) -> &[Edge<D>] {
+        &self.edges[self.first[i] as usize..self.first[i + 1] as usize]
     }
 }
 
@@ -180,7 +141,7 @@ fn gather<const D: usize>(
     finer: &impl Finer<D>,
     signs: &[Vector<D>],
     groups: &Groups,
-    offset: &[Vector<D>],
+    offset: &[[f32; D]],
     g: usize,
 ) -> Vec<Edge<D>> {
     let mut all: Vec<Edge<D>> = Vec::new();
@@ -190,12 +151,14 @@ fn gather<const D: usize>(
             if other as usize == g && e.transform == ITSELF {
                 return;
             }
-            let moments = e.moments.about_origin(&-offset[i]);
+            let moments = e.moments.seen_from(&offset[i]);
             match all.iter_mut().find(|a| a.other == other && a.transform == e.transform) {
                 Some(a) => a.moments = a.moments.plus(STIFFNESS, &moments),
                 None => {
                     // the centre of the other group lies behind its member
-                    let shift = e.shift + offset[i] - seen(signs, e.transform, offset[e.other as usize]);
+                    let mut shift = e.shift;
+                    let behind = seen(signs, e.transform, &offset[e.other as usize]);
+                    (0..D).for_each(|d| shift[d] += offset[i][d] - behind[d]);
                     let moments = Moments::ZERO.plus(STIFFNESS, &moments);
                     all.push(Edge { other, transform: e.transform, shift, moments });
                 }
@@ -205,9 +168,13 @@ fn gather<const D: usize>(
     all
 }
 
-/// A vector as it is seen under a transform.
-fn seen<const D: usize>(signs: &[Vector<D>], transform: u8, v: Vector<D>) -> Vector<D> {
-    if transform == ITSELF { v } else { Vector::from_fn(|d| signs[transform as usize][d] * v[d]) }
+/// An offset as it is seen under a transform.
+fn seen<const D: usize>(signs: &[Vector<D>], transform: u8, offset: &[f32; D]) -> [f32; D] {
+    let mut seen = *offset;
+    if transform != ITSELF {
+        (0..D).for_each(|d| seen[d] *= signs[transform as usize][d] as f32);
+    }
+    seen
 }
 
 impl<const D: usize> Finer<D> for Level<D> {
@@ -220,7 +187,7 @@ impl<const D: usize> Finer<D> for Level<D> {
     }
 
     fn edges(&self, i: usize, f: &mut dyn FnMut(&Edge<D>)) {
-        Level::edges(self, i).for_each(|e| f(&e));
+        Level::edges(self, i).iter().for_each(f);
     }
 
     fn open(&self, i: usize) -> Moments<D> {
@@ -252,8 +219,11 @@ impl<'a, const D: usize> Particles<'a, D> {
     /// The edge along which a particle with entry `own` for a wall meets one that sees the wall by `other`.
     fn along_wall(&self, row: u32, transform: u8, own: &Link<D>, other: &Link<D>, weight: f64) -> Edge<D> {
         let signs = &self.problem.signs;
-        let shift = own.offset - seen(signs, transform, other.offset);
-        Edge { other: row, transform, shift, moments: Moments::of(weight, own.offset) }
+        let own = part_of(&own.offset, 1.0);
+        let behind = seen(signs, transform, &part_of(&other.offset, 1.0));
+        let mut shift = own;
+        (0..D).for_each(|d| shift[d] -= behind[d]);
+        Edge { other: row, transform, shift, moments: Moments::of(weight, &own) }
     }
 
     fn edges_along_wall(&self, i: usize, p: usize, transform: u8, f: &mut dyn FnMut(&Edge<D>)) {
@@ -298,14 +268,14 @@ impl<const D: usize> Finer<D> for Particles<'_, D> {
                     continue;
                 }
             };
-            let moments = Moments::of(link.weight, link.offset * 0.5);
-            f(&Edge { other: link.other, transform, shift: link.offset, moments });
+            let moments = Moments::of(link.weight, &part_of(&link.offset, 0.5));
+            f(&Edge { other: link.other, transform, shift: part_of(&link.offset, 1.0), moments });
         }
     }
 
     fn open(&self, i: usize) -> Moments<D> {
         let open = self.problem.passing(i).filter(|l| l.kind == Kind::Open);
-        open.fold(Moments::ZERO, |m, l| m.plus(1.0, &Moments::of(l.weight, l.offset * 0.5)))
+        open.fold(Moments::ZERO, |m, l| m.plus(1.0, &Moments::of(l.weight, &part_of(&l.offset, 0.5))))
     }
 
     fn soft(&self, i: usize) -> [f64; 2] {

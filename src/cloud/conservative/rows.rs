@@ -3,7 +3,7 @@ use std::ops::Range;
 
 use super::Problem;
 use super::cycle::{Grid, Way};
-use crate::cloud::multipliers::Row;
+use crate::cloud::multipliers::{Row, opposite};
 use crate::math::conjugate::Row as _;
 use crate::math::sweep::{sweep, sweep_slots};
 
@@ -15,8 +15,8 @@ impl<const D: usize> Grid<Row<D>> for Problem<'_, D> {
 
     #[inline(always)]
     fn less(&self, i: usize, mut r: Row<D>, range: &Range<usize>, found: &[Row<D>], way: Way) -> Row<D> {
-        self.each_passed(i, range, way, |other, link| {
-            r.add(&(self.across(link, &found[other - range.start]) * link.weight), &link.offset, 0.5);
+        self.each_passed(i, range, way, |j, middle, weight| {
+            r.add(weight, &found[j - range.start].at(&opposite(middle)), middle);
         });
         r
     }
@@ -29,7 +29,7 @@ impl<const D: usize> Grid<Row<D>> for Problem<'_, D> {
     /// Multipliers of the walls.
     fn follow(&self, b: &[Row<D>], x: &mut [Row<D>]) {
         let mut walls = vec![0.0; self.sharers.len()];
-        sweep(&mut walls, |w| (b[self.n_fluid + w].closure[0] - self.wall_row(w, x)) / self.shared[w]);
-        sweep_slots(&mut x[self.n_fluid..], |w, x| x.closure[0] += walls[w]);
+        sweep(&mut walls, |w| (b[self.n_fluid + w].share() - self.wall_row(w, x)) / self.shared[w]);
+        sweep_slots(&mut x[self.n_fluid..], |w, x| *x = x.with_share(x.share() + walls[w]));
     }
 }

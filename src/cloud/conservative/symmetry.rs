@@ -12,9 +12,6 @@ use crate::math::sweep::{sum, sweep};
 
 /// Part of the smallest spacing within which two places are the same.
 const SAME: f64 = 1e-6;
-/// Part of a right-hand side that its mirror image may miss where it counts as symmetric: lists of neighbours need not be, where two
-/// are as far away, and what they leave must still be found.
-const SYMMETRIC: f64 = 1e-5;
 /// Relative difference of spacings that are the same.
 const ALIKE: f64 = 1e-9;
 
@@ -57,7 +54,7 @@ impl Mirror {
     pub(super) fn keeps<const D: usize, V: Field<D>>(&self, field: &[V]) -> bool {
         let square = |v: V| v.dot(&v);
         let miss = sum(field.len(), |i| square(field[i].plus(-1.0, &self.image(field, i))));
-        miss <= SYMMETRIC * SYMMETRIC * sum(field.len(), |i| square(field[i]))
+        miss <= V::SYMMETRIC * V::SYMMETRIC * sum(field.len(), |i| square(field[i]))
     }
 
     /// The mean of a field and its mirror image; `other` is storage.
