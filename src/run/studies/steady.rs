@@ -7,7 +7,7 @@ use super::super::record::family;
 use super::super::record::{IterationHistory, Log};
 use super::super::stage::{Stage, Task};
 use super::super::watch::{
-    Aim, Checkpoint, Ending, Flat, GasEyes, Limit, Observer, Progress, Resting, Swinging, Told, drive, sample,
+    Aim, Checkpoint, Ending, Flat, GasEyes, Given, Limit, Observer, Progress, Resting, Swinging, Told, drive, sample,
 };
 use super::turn::{Reached, Start, Turn};
 use crate::case::{Accuracy, Steady};
@@ -26,6 +26,10 @@ const EARLY_ORDERS: f64 = 4.5;
 const SETTLING: f64 = 1.5;
 /// Iterations without a new smallest residual after which a relaxation before the last stage has given what it can.
 const PATIENCE: u32 = 20;
+/// The same where loads have changed by less than this part of the largest, on a single cloud's way to its own: the next cloud changes them
+/// by a hundred times as much.
+const PATIENCE_AT_REST: u32 = 4;
+const GIVEN: f64 = 1e-4;
 /// The same for the last stage: no later one makes up for it.
 const LAST_PATIENCE: usize = 200;
 /// The same on the last cloud of a family, where the one before serves in its place.
@@ -71,12 +75,14 @@ pub(crate) fn relax<S: HasGas<D>, const D: usize>(
         log.record.reason = (!relax.finished()).then(|| short_of_goal(&relax, steady, orders, &log.record.history));
         let loads = tell(system, &mut relax, turn, log)?;
         let enough = asked.is_some_and(|asked| family::judge(&asked, loads, log));
-        let rests = hurried && !relax.finished() && relax.resting() >= PATIENCE;
+        let resting = relax.resting();
+        let rests =
+            hurried && !relax.finished() && resting >= if asked.is_some() { PATIENCE } else { PATIENCE_AT_REST };
         if !(rests && enough) {
             if rests {
                 let orders = -relax.drop().log10();
                 log.note(&format!(
-                    "the flow has not come nearer to a steady one for {PATIENCE} iterations, at {orders:.1} orders: the run goes on from there"
+                    "the flow has not come nearer to a steady one for {resting} iterations, at {orders:.1} orders: the run goes on from there"
                 ));
             }
             break enough;
@@ -135,6 +141,10 @@ fn watched<S: HasGas<D>, const D: usize>(
     let (mut told, mut flat) = (Told, accuracy::asked(log.case).map(|asked| flat(&asked, least)));
     let mut all: Vec<&mut dyn Observer<S>> = vec![&mut progress, &mut limit, &mut told];
     all.push(if hurried { &mut resting } else { &mut swinging });
+    let mut given = Given { patience: PATIENCE_AT_REST, range: GIVEN };
+    if hurried && flat.is_none() && turn.stage().point.is_none() {
+        all.push(&mut given);
+    }
     flat.iter_mut().for_each(|flat| all.push(flat));
     all.push(&mut checkpoint);
     drive(relax, &mut all, log)

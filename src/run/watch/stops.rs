@@ -28,6 +28,29 @@ impl<S: System> Observer<S> for Resting {
     }
 }
 
+/// Ends a relaxation before another one whose residual falls no more and whose loads have come to rest: it has given what the next
+/// one begins from.
+pub(crate) struct Given {
+    /// Iterations without a new smallest residual.
+    pub(crate) patience: u32,
+    /// Range of loads over as many iterations and the last one that fell, in the largest of them, that counts as rest.
+    pub(crate) range: f64,
+}
+
+impl<S: System> Observer<S> for Given {
+    fn wish(&mut self, now: &mut Now<'_, S>, log: &Log<'_>) -> Option<Wish> {
+        let resting = now.mark().resting >= self.patience;
+        (resting && at_rest(log, self.patience as usize + 1, self.range)).then_some(Wish::GiveUp)
+    }
+}
+
+/// True where loads kept within `range`, in the largest of them, over the last `iterations`.
+fn at_rest(log: &Log<'_>, iterations: usize, range: f64) -> bool {
+    let ends = log.record.history.last_loads(iterations);
+    let largest = ends.iter().flatten().fold(0.0, |m: f64, v| m.max(v.abs()));
+    ends.iter().all(|[low, high]| high - low <= range * largest)
+}
+
 /// Ends a relaxation whose residual, over all of it, has found no new smallest value for a number of iterations: one that swings may
 /// begin anew again and again.
 pub(crate) struct Swinging {
@@ -59,10 +82,7 @@ impl<S: System> Observer<S> for Flat {
         if mark.residual > self.residual || (mark.iteration as usize) < self.iterations {
             return None;
         }
-        let ends = log.record.history.last_loads(self.iterations);
-        let largest = ends.iter().flatten().fold(0.0, |m: f64, v| m.max(v.abs()));
-        let rest = ends.iter().all(|[low, high]| high - low <= self.range * largest);
-        rest.then_some(Wish::Finish)
+        at_rest(log, self.iterations, self.range).then_some(Wish::Finish)
     }
 }
 
