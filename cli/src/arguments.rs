@@ -203,10 +203,19 @@ pub(crate) struct Completions {
     pub(crate) shell: Shell,
 }
 
+/// Greatest number of threads: starting more takes longer than what they do.
+const MOST_THREADS: usize = 256;
+
+/// A number of threads.
+fn threads(text: &str) -> Result<NonZeroUsize, String> {
+    let number = text.parse::<NonZeroUsize>().ok().filter(|n| n.get() <= MOST_THREADS);
+    number.ok_or_else(|| format!("a whole number from 1 to {MOST_THREADS}"))
+}
+
 #[derive(Clone, Copy, Debug, Default, Args)]
 pub(crate) struct Threads {
     /// Number of threads; default: one for each core. Results do not depend on it.
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = threads)]
     pub(crate) threads: Option<NonZeroUsize>,
 }
 

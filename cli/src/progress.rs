@@ -177,7 +177,11 @@ fn march_text(march: &MarchTick, tick: &Tick) -> String {
     let left = tick.eta.map_or_else(|| "–:––".to_owned(), clock);
     let mut text = format!("{left} left  ");
     match march.period {
-        Some(period) => text += &format!("period {:.2} of {:.0}", march.time / period, march.until / period),
+        Some(period) => {
+            let all = march.until / period;
+            let decimals = if (all - all.round()).abs() < 1e-6 { 0 } else { 2 };
+            text += &format!("period {:.2} of {all:.decimals$}", march.time / period);
+        }
         None => text += &format!("to t {}", short(march.until)),
     }
     text += &format!("  t {}", short(march.time));

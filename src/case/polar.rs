@@ -126,11 +126,16 @@ fn twice(draft: &mut Draft<'_>, path: &str) {
     }
 }
 
+/// What is said of commas that may be decimal ones.
+const AMBIGUOUS: &str = "`{}` is one value with a decimal comma, or several values: write decimals with a point, and a blank after each comma of a list";
+
 /// The single values that a text stands for: `-4:8:1 deg` (first:last:step), `-2, 0, 4 deg` or one alone; a unit at the end serves all.
 pub(super) fn values_of(text: &str) -> Result<Vec<String>, String> {
     let parts = |separator: char| with_last_unit(text.split(separator).map(|part| part.trim().to_owned()).collect());
     if text.contains(',') {
-        return Ok(parts(','));
+        // `2,5 deg`: two and a half degrees, or two angles
+        let dense = text.split(',').skip(1).any(|rest| !rest.starts_with(' '));
+        return if dense { Err(AMBIGUOUS.replace("{}", text)) } else { Ok(parts(',')) };
     }
     if !text.contains(':') {
         return Ok(vec![text.to_owned()]);

@@ -22,6 +22,7 @@ mod field;
 mod levels;
 mod rows;
 mod symmetry;
+mod walls;
 
 use std::cmp::Ordering;
 use std::collections::HashMap;
@@ -29,6 +30,7 @@ use std::ops::Range;
 
 use cycle::{Cycle, Levels, Way};
 use field::{Field, Moments};
+use walls::along;
 
 use super::coefficient_unknowns::{ITSELF, Kind, Link, Links};
 use super::layers::{below_first, grown_face};
@@ -283,18 +285,6 @@ impl<'a, const D: usize> Problem<'a, D> {
         }
     }
 
-    #[inline(never)]
-    fn wall_change(&self, i: usize, link: &Link<D>, y: &[Row<D>]) -> Vector<D> {
-        let a = self.wall(link);
-        a * (link.weight * (along(&y[i], link, &a) + y[link.other as usize].share()))
-    }
-
-    /// The share that belongs to an area vector of a wall entry.
-    fn share(&self, link: &Link<D>, area: &Vector<D>) -> f64 {
-        let a = self.wall(link);
-        area.dot(&a) / a.norm_squared().max(f64::MIN_POSITIVE)
-    }
-
     /// (A W Aᵀ + ε) y in the row of a fluid particle.
     #[inline(always)]
     fn row(&self, i: usize, y: &[Row<D>]) -> Row<D> {
@@ -334,15 +324,6 @@ impl<'a, const D: usize> Problem<'a, D> {
         let mut row = y.slopes(self.tolerance(i));
         row.add_to_trace(self.volume_freedom(i) * y.trace());
         row
-    }
-
-    /// The same in the row of wall `w`.
-    fn wall_row(&self, w: usize, y: &[Row<D>]) -> f64 {
-        let share = |s: &Sharer| {
-            let link = self.link(s);
-            self.share(&link, &self.wall_change(s.i as usize, &link, y))
-        };
-        self.sharers[w].iter().map(share).sum()
     }
 
     /// out = (A W Aᵀ + ε) y.
@@ -501,14 +482,6 @@ impl<'a, const D: usize> Problem<'a, D> {
         if low.is_empty() { 0 } else { self.softened.iter().filter(|s| **s).count() }
     }
 
-    /// Makes the shares of every wall sum to one exactly.
-    fn fix_shares(&mut self) {
-        for sharers in self.sharers.iter_mut().filter(|s| !s.is_empty()) {
-            let excess = (sharers.iter().map(|s| s.share).sum::<f64>() - 1.0) / sharers.len() as f64;
-            sharers.iter_mut().for_each(|s| s.share -= excess);
-        }
-    }
-
     /// The sum of the sizes of all area vectors of every fluid particle.
     fn surfaces(&self, operators: &Operators<D>) -> Vec<f64> {
         self.sums(operators, 0.0, |sum, s, _| *sum += s.norm())
@@ -538,17 +511,6 @@ impl<'a, const D: usize> Problem<'a, D> {
             softness: 0.0,
             n_softened: 0,
         }
-    }
-
-    /// The pieces of wall that bound fluid particles, in the order of their entries.
-    fn wall_faces(&self) -> Vec<WallFace<D>> {
-        let mut all: Vec<&Sharer> = self.sharers.iter().flatten().collect();
-        all.sort_unstable_by_key(|s| s.p);
-        let face = |s: &&Sharer| {
-            let area = self.wall(&self.link(s)) * s.share;
-            WallFace { i: s.i, wall: self.links.end(s.p as usize) as u32, area }
-        };
-        all.iter().map(face).collect()
     }
 
     /// What row `i` makes of its own multipliers.
@@ -597,12 +559,6 @@ impl<'a, const D: usize> Problem<'a, D> {
             _ => 1.0,
         }
     }
-}
-
-/// The field of `own` at the other end of an entry, along the area vector there.
-fn along<const D: usize>(own: &Row<D>, link: &Link<D>, area: &Vector<D>) -> f64 {
-    let field = own.at(&part_of(&link.offset, 1.0));
-    (0..D).map(|d| f64::from(field[d]) * area[d]).sum()
 }
 
 #[cfg(test)]

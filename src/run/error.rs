@@ -64,7 +64,9 @@ pub enum RunError {
         hint: &'static str,
     },
     /// A march is as long as periods of a motion that has none.
-    #[error("`[time.{table}]` counts periods of a motion that has none")]
+    #[error(
+        "`[time.{table}]` counts periods of a motion that has none\nhint: give `until` and the length of a step, or a `period` of `[motion]`"
+    )]
     NoPeriod {
         /// The table of the case.
         table: &'static str,

@@ -200,7 +200,7 @@ pub(crate) fn check_compared(case: &Case, input: &Path) -> Result<(), RunError> 
     }
     Err(RunError::Folder {
         what: format!("`[[compare]]` names files that are not there: {}", missing.join(", ")),
-        hint: format!("paths are relative to the case file, in `{}`", input.display()),
+        hint: format!("paths are relative to the case file, in `{}`", absolute(input).unwrap_or_default().display()),
     })
 }
 

@@ -11,6 +11,7 @@ use super::files::{Scene, Target, pixels, write_cloud};
 use super::folder;
 use super::look::{Mesh, load_axes};
 use super::pilot;
+use super::recipe;
 use super::setup::{self, Site, Solver, check_motion};
 use super::stage::Stage;
 use super::understood::Understood;
@@ -134,6 +135,7 @@ fn look<const D: usize>(case: &Case, input: &Path, out: Option<&Path>) -> Result
     let cloud = &fluid.discretisation.cloud;
     notes.extend(cloud.notes.iter().cloned().chain(cloud.early_ends()));
     warnings.extend(check_motion(case, cloud, &motions)?);
+    recipe::marching(case, motions.period(), D)?;
     let axes = (!cloud.interface.is_empty())
         .then(|| load_axes(case, surface.as_ref()).axes(&fluid.view(&frame, u, &mut work)));
     let (particles, period) = (cloud.n_real(), motions.period());

@@ -57,7 +57,7 @@ pub use record::trace::{Change, FirstHarmonics, LastPeriod, PeriodicLoads};
 pub use session::{Outcome, Session, Solution};
 pub use understood::{BodyBox, ReferenceValues, Understood};
 
-use record::saved::Saved;
+use record::saved::{Saved, equations_of};
 use session::Origin;
 use stage::Stage;
 
@@ -152,6 +152,13 @@ pub fn continued(out: &Path) -> Result<Session, RunError> {
     folder::check_begun(out)?;
     let held = folder::hold(out)?;
     let saved = Saved::read(out)?.trusted(&case)?;
+    if saved.equations.is_some_and(|known| known != equations_of(&case)) {
+        return Err(RunError::OtherRun {
+            what: format!("`{}/case.toml` has other equations than those that the run began with", out.display()),
+            hint: "only `[time]`, `[accuracy]`, `[adapt]`, `[output]` and what is told of the loads may change: `alula run --from` begins \
+                   another case from the last state",
+        });
+    }
     folder::reopen(out)?;
     Ok(Session::open(&case, input)?.kept_in(out, held).from(Origin::Own(Box::new(saved))))
 }

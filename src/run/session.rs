@@ -345,6 +345,7 @@ impl Run<'_> {
         self.out.map_or(Ok(()), |out| disk::check(self.case, out, cloud.n_real(), D, site.motions.period()))?;
         cloud.notes.iter().cloned().chain(cloud.early_ends()).for_each(|n| monitor.note(&n));
         check_motion(self.case, &cloud, site.motions)?.iter().for_each(|n| monitor.warn(n));
+        recipe::marching(self.case, site.motions.period(), D)?;
         Ok(cloud)
     }
 

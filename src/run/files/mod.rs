@@ -79,6 +79,10 @@ impl<const D: usize> Files<'_, D> {
         self.write_loads()?;
         strips::write_table(self.found, self.out)?;
         self.write_surface_csv()?;
+        // a cloud that was never refined has no table of refinements
+        if cycles.len() < 2 {
+            return Ok(());
+        }
         let rows = cycles.iter().enumerate().map(|(k, c)| {
             let before = if k > 0 { cycles[k - 1] } else { *c };
             let numbers = [c[0], c[1], c[2], c[3], c[4], c[2] - before[2], c[3] - before[3]];

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 use super::super::error::RunError;
 use super::super::stage::{Stage, Task};
 use super::polar::PolarRecord;
+use crate::case::Case;
 use crate::cloud::sources::Source;
 use crate::math::Vector;
 use crate::observe::checkpoint::{self, Array, Checkpoint, Field};
@@ -89,6 +90,8 @@ struct Meta {
     roaming: Option<Counts>,
     #[serde(default)]
     polar: PolarMeta,
+    #[serde(default)]
+    equations: Option<u32>,
 }
 
 /// What re-clouding did until a checkpoint, and the time at which the cloud was built.
@@ -293,6 +296,16 @@ pub(crate) struct Saved {
     pub(crate) polar: PolarRecord,
     /// The states that they leave to those to come.
     pub(crate) kept: Vec<Kept>,
+    /// What [`equations_of`] says of the case; `None` for polars, and in checkpoints of versions that did not ask.
+    pub(crate) equations: Option<u32>,
+}
+
+/// Checksum of what the equations of a case are made of. A run goes on with these alone: how long it goes on, and what it writes, may
+/// be changed.
+pub(crate) fn equations_of(case: &Case) -> u32 {
+    let air = (&case.flow, &case.boundary, &case.initial, &case.scheme);
+    let solids = (&case.bodies, &case.motion, &case.structures);
+    crc32fast::hash(format!("{air:?} {solids:?}").as_bytes())
 }
 
 /// Sources of refinement as numbers.
@@ -351,6 +364,7 @@ impl Saved {
                 kept: self.kept.iter().map(|k| (k.factor, k.point, k.state.len())).collect(),
                 sources: self.kept.iter().map(|k| k.sources.len()).collect(),
             },
+            equations: self.equations,
         };
         let meta = serde_json::to_value(meta).map_err(|e| other_version(&e))?;
         let mut fields = vec![
@@ -414,6 +428,7 @@ impl Saved {
             work: m.work,
             linear: m.linear,
             sources: part("sources")?,
+            equations: m.equations,
         })
     }
 }

@@ -1,7 +1,7 @@
 //! Checkpoints: every so many iterations or minutes, when asked for, at the end and when things go wrong.
 use super::super::error::RunError;
 use super::super::record::Log;
-use super::super::record::saved::{LagrangianCheckpoint, Position, Saved};
+use super::super::record::saved::{LagrangianCheckpoint, Position, Saved, equations_of};
 use super::drive::{Ending, Now, Observer};
 use crate::scheme::RemapLedger;
 use crate::system::System;
@@ -68,6 +68,7 @@ impl<'a, S: System> Checkpoint<'a, S> {
         let Standing { frame, state, .. } = now.standing();
         let [cpu_seconds, wall_seconds] = log.seconds();
         let record = &log.record;
+        let single = log.case.polar.is_none() && self.at.stages[self.at.stage].point.is_none();
         let saved = Saved {
             stage: self.at.stage,
             stages: self.at.stages.to_vec(),
@@ -87,6 +88,7 @@ impl<'a, S: System> Checkpoint<'a, S> {
             sources: self.at.sources.to_vec(),
             polar: record.polar.clone(),
             kept: self.at.kept.to_vec(),
+            equations: single.then(|| equations_of(log.case)),
         };
         saved.write(&journal.out)
     }

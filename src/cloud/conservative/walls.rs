@@ -1,0 +1,55 @@
+//! Walls among the conditions: their area vectors are shared out among the particles in front of them.
+use super::{Problem, Sharer};
+use crate::cloud::coefficient_unknowns::Link;
+use crate::cloud::multipliers::{Row, part_of};
+use crate::cloud::operators::WallFace;
+use crate::math::Vector;
+
+impl<const D: usize> Problem<'_, D> {
+    /// W Aᵀ λ of a wall entry of row `i`: the change of its area vector.
+    #[inline(never)]
+    pub(super) fn wall_change(&self, i: usize, link: &Link<D>, y: &[Row<D>]) -> Vector<D> {
+        let a = self.wall(link);
+        a * (link.weight * (along(&y[i], link, &a) + y[link.other as usize].share()))
+    }
+
+    /// The share that belongs to an area vector of a wall entry.
+    pub(super) fn share(&self, link: &Link<D>, area: &Vector<D>) -> f64 {
+        let a = self.wall(link);
+        area.dot(&a) / a.norm_squared().max(f64::MIN_POSITIVE)
+    }
+
+    /// (A W Aᵀ + ε) y in the row of wall `w`.
+    pub(super) fn wall_row(&self, w: usize, y: &[Row<D>]) -> f64 {
+        let share = |s: &Sharer| {
+            let link = self.link(s);
+            self.share(&link, &self.wall_change(s.i as usize, &link, y))
+        };
+        self.sharers[w].iter().map(share).sum()
+    }
+
+    /// Makes the shares of every wall sum to one exactly.
+    pub(super) fn fix_shares(&mut self) {
+        for sharers in self.sharers.iter_mut().filter(|s| !s.is_empty()) {
+            let excess = (sharers.iter().map(|s| s.share).sum::<f64>() - 1.0) / sharers.len() as f64;
+            sharers.iter_mut().for_each(|s| s.share -= excess);
+        }
+    }
+
+    /// The pieces of wall that bound fluid particles, in the order of their entries.
+    pub(super) fn wall_faces(&self) -> Vec<WallFace<D>> {
+        let mut all: Vec<&Sharer> = self.sharers.iter().flatten().collect();
+        all.sort_unstable_by_key(|s| s.p);
+        let face = |s: &&Sharer| {
+            let area = self.wall(&self.link(s)) * s.share;
+            WallFace { i: s.i, wall: self.links.end(s.p as usize) as u32, area }
+        };
+        all.iter().map(face).collect()
+    }
+}
+
+/// The field of `own` at the other end of an entry, along the area vector there.
+pub(super) fn along<const D: usize>(own: &Row<D>, link: &Link<D>, area: &Vector<D>) -> f64 {
+    let field = own.at(&part_of(&link.offset, 1.0));
+    (0..D).map(|d| f64::from(field[d]) * area[d]).sum()
+}
