@@ -37,13 +37,12 @@ const FIRST: f64 = 4.0;
 /// Greatest number of particles at the points of a polar that says nothing of accuracy: three clouds for each section, and about a
 /// second for each point.
 const POLAR_PARTICLES: usize = 20_000;
-/// Part of the particles allowed that the third cloud may have, how many times those of the second it has, the power of the spacing that
-/// their number goes with, in 2-D and 3-D; how often the spacing is corrected, and how much coarser it becomes at most.
-const ROOM: [f64; 2] = [1.0, 0.6];
-const FINER: [f64; 2] = [3.2, 6.0];
-const POWER: [f64; 2] = [1.7, 2.5];
+/// Part of the particles allowed that the third cloud in space may have, how many times those of the second it has, the power of the
+/// spacing that their number goes with, and how often the spacing is corrected.
+const ROOM: f64 = 0.6;
+const FINER: f64 = 6.0;
+const POWER: f64 = 2.5;
 const ROUNDS: usize = 4;
-const COARSEST: f64 = 4.0;
 /// Cells along the shortest side of a domain that a case gives, at least; greatest number of those between sides that must stay; by how
 /// much of a side they may miss it.
 const CELLS: f64 = 8.0;
@@ -85,7 +84,7 @@ pub(crate) fn with_cloud<'a, const D: usize>(case: &'a Case, surface: Option<&Su
     filled.cloud.far_field =
         case.cloud.far_field.or(Some(Length(FAR_FIELD[D - 2] * surface.bounds().extent().max_abs())));
     filled.cloud.layers = case.cloud.layers.or(Some(LAYERS[D - 2]));
-    filled = spaced::<D>(&filled, affordable(&filled, surface, spacing.0));
+    filled = spaced::<D>(&filled, if D == 3 { affordable(&filled, surface, spacing.0) } else { spacing.0 });
     if let Some(thin) = thin.filter(|_| D == 2) {
         let layers = WallLayers { first: Length(thin), growth: GROWTH, count: None };
         filled.cloud.wall_layers = case.cloud.wall_layers.or(Some(layers));
@@ -95,21 +94,21 @@ pub(crate) fn with_cloud<'a, const D: usize>(case: &'a Case, surface: Option<&Su
     Cow::Owned(filled)
 }
 
-/// The spacing, no finer than `spacing`, at which the third cloud of a family leaves room in the particles allowed: thin
+/// The spacing, no finer than `spacing`, at which the third cloud of a family in space leaves room in the particles allowed: thin
 /// edges and noses ask for more than the size of a body tells. Counted on the background of the second cloud.
 fn affordable<const D: usize>(case: &Case, surface: &Surface<D>, spacing: f64) -> f64 {
-    let room = ROOM[D - 2] * asked(case).unwrap_or(Accuracy::in_dimension(D)).particles as f64;
-    let (finest, mut spacing) = (spacing, spacing);
+    let room = ROOM * asked(case).unwrap_or(Accuracy::in_dimension(D)).particles as f64;
+    let mut spacing = spacing;
     for _ in 0..ROUNDS {
         let case = spaced::<D>(case, spacing);
         let Ok(cells) = count(&CloudSpec::of_case(&scaled(&case, 2.0)), Some(surface), &[]) else { break };
-        let over = FINER[D - 2] * cells as f64 / room;
+        let over = FINER * cells as f64 / room;
         if over <= 1.0 {
             break;
         }
-        spacing *= over.powf(1.0 / POWER[D - 2]);
+        spacing *= over.powf(1.0 / POWER);
     }
-    spacing.min(COARSEST * finest)
+    spacing
 }
 
 /// The case with this spacing. A domain that it gives is widened at far sides until it holds whole cells of the coarsest cloud; where
@@ -179,7 +178,7 @@ fn follows(case: &Case) -> bool {
 /// Greatest number of particles of the cloud of a family in space with `factor` times the spacing of the case; in the plane clouds of a
 /// family grow less.
 pub(crate) fn room(asked: &Accuracy, factor: f64) -> f64 {
-    asked.particles as f64 / FINER[1].powf(factor.log2().max(0.0))
+    asked.particles as f64 / FINER.powf(factor.log2().max(0.0))
 }
 
 /// The same where each cloud is adapted: in the plane it may have all that the last one leaves to its like.
