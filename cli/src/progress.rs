@@ -179,7 +179,7 @@ fn march_text(march: &MarchTick, tick: &Tick) -> String {
     match march.period {
         Some(period) => {
             let all = march.until / period;
-            let decimals = if (all - all.round()).abs() < 1e-6 { 0 } else { 2 };
+            let decimals = if (all - all.round()).abs() < 5e-3 { 0 } else { 2 };
             text += &format!("period {:.2} of {all:.decimals$}", march.time / period);
         }
         None => text += &format!("to t {}", short(march.until)),
