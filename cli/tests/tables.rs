@@ -58,6 +58,8 @@ fn every_column_of_a_steady_run_has_its_unit() {
     let air = "pressure = \"1 atm\"\ntemperature = \"15 degC\"";
     let viscous = format!("[flow]\nmach = 0.3\nreynolds = 500\n{air}\n[time.steady]\niterations = 3");
     has(&tables_of("run", &viscous), &["history.csv", "loads.csv", "surface.csv"]);
+    let adapted = format!("{viscous}\n[adapt]\ncycles = 1");
+    has(&tables_of("run", &adapted), &["history.csv", "loads.csv", "surface.csv", "adapt.csv"]);
     let polar = "[flow]\nmach = 0.4\nalpha = [\"0 deg\", \"1 deg\"]\n[accuracy]\nparticles = 100\n[time.steady]\niterations = 3";
     has(&tables_of("run", polar), &["polar.csv"]);
 }

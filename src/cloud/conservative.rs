@@ -146,7 +146,6 @@ fn find<const D: usize>(
         }
     }
     problem.recover(operators, multipliers);
-    problem.fix_shares();
     let polish_iterations = problem.close(operators, &levels);
     drop(levels);
     let report = ConservativeReport { iterations, polish_iterations, n_softened, softness, ..problem.judge(operators) };
@@ -434,14 +433,7 @@ impl<'a, const D: usize> Problem<'a, D> {
     fn recover(&mut self, operators: &mut Operators<D>, y: Vec<Row<D>>) {
         self.factors = Factors::default();
         self.alter(operators, |i, link| self.change(i, link, &y));
-        let mut sharers = std::mem::take(&mut self.sharers);
-        sweep_slots(&mut sharers, |_, all| {
-            for s in all {
-                let link = self.link(s);
-                s.share += self.share(&link, &self.wall_change(s.i as usize, &link, &y));
-            }
-        });
-        self.sharers = sharers;
+        self.share_out(&y);
         self.volume = self.volumes(&y);
     }
 

@@ -67,8 +67,9 @@ pub(super) trait Field<const D: usize>: conjugate::Row {
     /// Part of what a group finds that its members take. Fields with steps between groups are stiffer than smooth ones, by
     /// [`STIFFNESS`] for affine fields; constant ones by half.
     const STEP: f64;
-    /// Part of a right-hand side that its mirror image may miss where it counts as symmetric: what rounding leaves. Lists of neighbours
-    /// need not be symmetric, where two are as far away, and what they leave must still be found.
+    /// Part of a right-hand side that its mirror image may miss where it counts as symmetric: what rounding leaves at the end, where only
+    /// as much as the tolerance is left of the first one. Lists of neighbours need not be symmetric, where two are as far away, and what
+    /// they leave must still be found.
     const SYMMETRIC: f64;
 
     /// The field from the offset `d` on.
@@ -92,7 +93,7 @@ pub(super) trait Field<const D: usize>: conjugate::Row {
 
 impl<const D: usize> Field<D> for Row<D> {
     const STEP: f64 = 1.0;
-    const SYMMETRIC: f64 = 1e-4;
+    const SYMMETRIC: f64 = 1e-2;
 
     #[inline(always)]
     fn at(&self, d: &[f32; D]) -> Self {

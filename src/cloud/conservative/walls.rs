@@ -4,6 +4,7 @@ use crate::cloud::coefficient_unknowns::Link;
 use crate::cloud::multipliers::{Row, part_of};
 use crate::cloud::operators::WallFace;
 use crate::math::Vector;
+use crate::math::sweep::sweep_slots;
 
 impl<const D: usize> Problem<'_, D> {
     /// W Aᵀ λ of a wall entry of row `i`: the change of its area vector.
@@ -28,12 +29,19 @@ impl<const D: usize> Problem<'_, D> {
         self.sharers[w].iter().map(share).sum()
     }
 
-    /// Makes the shares of every wall sum to one exactly.
-    pub(super) fn fix_shares(&mut self) {
-        for sharers in self.sharers.iter_mut().filter(|s| !s.is_empty()) {
-            let excess = (sharers.iter().map(|s| s.share).sum::<f64>() - 1.0) / sharers.len() as f64;
-            sharers.iter_mut().for_each(|s| s.share -= excess);
-        }
+    /// Changes the shares as multipliers of the particles in `y` ask for; that of each wall is the one with which its shares sum to one.
+    pub(super) fn share_out(&mut self, y: &[Row<D>]) {
+        let mut sharers = std::mem::take(&mut self.sharers);
+        sweep_slots(&mut sharers, |_, all| {
+            let (mut missing, mut weight) = (1.0, 0.0);
+            for s in all.iter_mut() {
+                let link = self.link(s);
+                s.share += link.weight * along(&y[s.i as usize], &link, &self.wall(&link));
+                (missing, weight) = (missing - s.share, weight + link.weight);
+            }
+            all.iter_mut().for_each(|s| s.share += missing * self.link(s).weight / weight);
+        });
+        self.sharers = sharers;
     }
 
     /// The pieces of wall that bound fluid particles, in the order of their entries.
