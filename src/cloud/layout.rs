@@ -206,6 +206,13 @@ pub fn capped<const D: usize>(spec: &CloudSpec<D>, surface: &Surface<D>) -> Opti
     let finest = finest(spec);
     let radius = |e: &u32| surface.radius[*e as usize];
     let mut sharp: Vec<u32> = (0..surface.elements.len() as u32).filter(|e| radius(e) < finest).collect();
+    // outlines that run out into a cusp bend as they please within a particle of their edge
+    if D == 2 {
+        let mut edges = Vec::new();
+        surface.for_each_sharp_point(0.0, finest, |x| edges.push(*x));
+        let beside = |e: &u32| edges.iter().any(|x| (surface.corners(*e)[0] - *x).norm() < finest);
+        sharp.retain(|e| !beside(e));
+    }
     sharp.sort_by(|a, b| radius(a).total_cmp(&radius(b)));
     // in space tips taper off to a point: what is smaller than a particle is no more than that
     let (mut seen, patch) = (0.0, if D == 2 { 0.0 } else { finest.powi(D as i32 - 1) });
