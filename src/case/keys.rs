@@ -186,7 +186,7 @@ static REFERENCE: Table = Table::of(&[
     Field::optional(
         "chord",
         SIZE,
-        "extent of the bodies along x; in 3-D the mean aerodynamic chord of their planform",
+        "extent of the bodies along x, of a single section along its own axis; in 3-D the mean aerodynamic chord of their planform",
         "Length of the moment coefficient (and of CL, CD in 2-D).",
     ),
     Field::optional(
@@ -199,7 +199,7 @@ static REFERENCE: Table = Table::of(&[
         "body",
         Kind::Text,
         "all bodies",
-        "Name of the body whose planform gives the values that are not given, in 3-D: the wing of an aircraft. It counts whole, with what lies inside other bodies.",
+        "Name of the body that gives the values that are not given: the wing of an aircraft, the main part of a section. It counts whole, with what lies inside other bodies.",
     ),
     Field::optional(
         "moment_point",

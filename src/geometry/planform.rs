@@ -13,7 +13,7 @@ const QUARTER: f64 = 0.25;
 /// Reference values that follow from the shape of the bodies.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Planform {
-    /// Mean aerodynamic chord; in 2-D the extent along x.
+    /// Mean aerodynamic chord; in 2-D the extent along the chord.
     pub chord: f64,
     /// Area seen along z; in 2-D the chord.
     pub area: f64,
@@ -78,6 +78,17 @@ impl<const D: usize> Surface<D> {
         spans.iter_mut().zip(&ends).map(station).collect()
     }
 
+    /// Reference values of body number `body` of a plane, or of all, turned nose up by `angle` radians: the chord is its extent along its
+    /// own x axis.
+    pub fn section(&self, body: Option<usize>, angle: f64) -> Planform {
+        let (sin, cos) = angle.sin_cos();
+        let own = |x: &Vector<D>| Vector([cos * x[0] - sin * x[1], sin * x[0] + cos * x[1]]);
+        let points: Vec<Vector<2>> = self.corners_of(body).iter().flatten().map(own).collect();
+        let bounds = Bounds::around(&points);
+        let (chord, at) = (bounds.extent()[0], [bounds.min[0] + QUARTER * bounds.extent()[0], bounds.centre()[1]]);
+        Planform { chord, area: chord, quarter: [cos * at[0] + sin * at[1], cos * at[1] - sin * at[0]] }
+    }
+
     /// The planform of the part of the bodies `within` a box, x along the chord and y along the span; of body number `body` alone where one is
     /// given, which counts whole where others cut it.
     pub fn planform(&self, within: &Bounds<D>, body: Option<usize>) -> Planform {
@@ -85,7 +96,7 @@ impl<const D: usize> Surface<D> {
         let bounds = all.iter().fold(Bounds::EMPTY, |b: Bounds<D>, c| b.union(&Bounds::around(c)));
         let (start, length) = (bounds.min[0], bounds.extent()[0]);
         if D == 2 {
-            return Planform { chord: length, area: length, quarter: [start + QUARTER * length, 0.0] };
+            return self.section(body, 0.0);
         }
         let (low, high) = (bounds.min[1].max(within.min[1]), bounds.max[1].min(within.max[1]));
         let width = (high - low) / STATIONS as f64;
@@ -152,6 +163,18 @@ fn covered(stretches: &mut [[f64; 2]]) -> f64 {
 mod tests {
     use super::*;
     use crate::geometry::icosphere;
+
+    #[test]
+    fn a_section_keeps_its_chord_and_quarter_point_as_it_turns() {
+        let text = "[flow]\nmach = 0.5\n[[body]]\nnaca = \"0012\"\nrotate = \"30 deg\"\ntranslate = [1, 2]\n";
+        let case = crate::case::read(text, "t").unwrap();
+        let surface = crate::geometry::load_surface::<2>(&case.bodies, std::path::Path::new(".")).unwrap().0;
+        let seen = surface.section(None, 30f64.to_radians());
+        let (sin, cos) = 30f64.to_radians().sin_cos();
+        let quarter = [1.0 + 0.25 * cos, 2.0 - 0.25 * sin];
+        assert!((seen.chord - 1.0).abs() < 1e-9, "{seen:?}");
+        assert!((0..2).all(|d| (seen.quarter[d] - quarter[d]).abs() < 1e-9), "{seen:?}");
+    }
 
     fn everywhere() -> Bounds<3> {
         Bounds { min: Vector([-1e3; 3]), max: Vector([1e3; 3]) }

@@ -5,6 +5,8 @@ use crate::math::sweep::sweep_each;
 
 /// Elements that one task samples.
 const GROUP: usize = 256;
+/// Longest over shortest side beyond which a triangle is a sliver: halves across its longest side would be three for two.
+const SLIVER: f64 = 4.0;
 
 /// A smooth piece of outline: elements in order, each starting where the one before ends.
 #[derive(Clone, Debug, PartialEq)]
@@ -99,8 +101,10 @@ impl<const D: usize> Surface<D> {
         size: &dyn Fn(&Vector<D>) -> f64,
         f: &mut dyn FnMut(&Vector<D>, &Vector<D>, &Vector<D>),
     ) {
+        if let Some(bands) = Bands::along(&self.corners(e)) {
+            return bands.cut(size, &mut |weights, share| self.give(e, weights, share, f));
+        }
         let corners = self.corners(e);
-        let whole = self.element_area_vector(e);
         let identity: [[f64; D]; D] = std::array::from_fn(|r| std::array::from_fn(|c| if r == c { 1.0 } else { 0.0 }));
         let mut stack = vec![(identity, 1.0)];
         while let Some((w, share)) = stack.pop() {
@@ -125,10 +129,80 @@ impl<const D: usize> Surface<D> {
                 }
                 continue;
             }
-            let (point, normal) = self.element_point(e, &middle);
-            let nearest = super::surface::Nearest { point, normal, distance: 0.0, element: e, weights: middle };
-            let shape = self.project(&nearest);
-            f(&shape.point, &shape.normal, &(whole * share));
+            self.give(e, middle, share, f);
         }
+    }
+
+    /// Calls `f` with the point of the shape at these barycentric weights and with a share of the element.
+    fn give(&self, e: u32, weights: [f64; D], share: f64, f: &mut dyn FnMut(&Vector<D>, &Vector<D>, &Vector<D>)) {
+        let (point, normal) = self.element_point(e, &weights);
+        let shape = self.project(&super::surface::Nearest { point, normal, distance: 0.0, element: e, weights });
+        f(&shape.point, &shape.normal, &(self.element_area_vector(e) * share));
+    }
+}
+
+/// A sliver of a triangle, x(s, c) = A + s ((1 - c) (B - A) + c (C - A)) with BC its shortest side: cells of s and c stay
+/// compact where halves of triangles do not. A cell has the share (s₁² - s₀²) (c₁ - c₀) of the area.
+struct Bands<'a, const D: usize> {
+    corners: &'a [Vector<D>; D],
+    apex: usize,
+    length: f64,
+    width: f64,
+}
+
+impl<'a, const D: usize> Bands<'a, D> {
+    /// Of a triangle that is a sliver.
+    fn along(corners: &'a [Vector<D>; D]) -> Option<Self> {
+        if D != 3 {
+            return None;
+        }
+        let across = |apex: usize| (corners[(apex + 1) % D] - corners[(apex + 2) % D]).norm();
+        let apex = (0..D).fold(0, |best, k| if across(k) < across(best) { k } else { best });
+        let length = (0..D).map(across).fold(0.0, f64::max);
+        (length > SLIVER * across(apex)).then(|| Self { corners, apex, length, width: across(apex) })
+    }
+
+    fn weights(&self, s: f64, c: f64) -> [f64; D] {
+        let mut w = [0.0; D];
+        (w[self.apex], w[(self.apex + 1) % D], w[(self.apex + 2) % D]) = (1.0 - s, s * (1.0 - c), s * c);
+        w
+    }
+
+    /// Halves cells until each is no larger than `size` at its centre; gives the weights of that and the share of the area.
+    fn cut(&self, size: &dyn Fn(&Vector<D>) -> f64, f: &mut dyn FnMut([f64; D], f64)) {
+        let mut stack = vec![([0.0, 1.0], [0.0, 1.0])];
+        while let Some(([s0, s1], [c0, c1])) = stack.pop() {
+            let middle = 2.0 / 3.0 * (s0 * s0 + s0 * s1 + s1 * s1) / (s0 + s1);
+            let w = self.weights(middle, 0.5 * (c0 + c1));
+            let (along, across) = ((s1 - s0) * self.length, s1 * (c1 - c0) * self.width);
+            if along.hypot(across) <= size(&(0..D).fold(Vector::ZERO, |x, k| x + self.corners[k] * w[k])) {
+                f(w, (s1 * s1 - s0 * s0) * (c1 - c0));
+            } else if along >= across {
+                let half = 0.5 * (s0 + s1);
+                stack.extend([([s0, half], [c0, c1]), ([half, s1], [c0, c1])]);
+            } else {
+                let half = 0.5 * (c0 + c1);
+                stack.extend([([s0, s1], [c0, half]), ([s0, s1], [half, c1])]);
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn slivers_are_cut_into_pieces_that_grow_with_their_length() {
+        let corners = [Vector([0.0, 0.0, 0.0]), Vector([5.0, 1.0, 0.0]), Vector([5.0, 1.004, 0.0])];
+        let mut area = 0.0;
+        let mut centre = Vector::<3>::ZERO;
+        let mut pieces = 0;
+        Bands::along(&corners).expect("a sliver").cut(&|_| 0.01, &mut |w, share| {
+            (area, pieces) = (area + share, pieces + 1);
+            centre += (0..3).fold(Vector::ZERO, |x, k| x + corners[k] * w[k]) * share;
+        });
+        assert!((area - 1.0).abs() < 1e-12 && pieces <= 1024, "{area} {pieces}");
+        assert!((centre - (corners[0] + corners[1] + corners[2]) * (1.0 / 3.0)).norm() < 1e-12);
     }
 }

@@ -186,6 +186,18 @@ pub(crate) fn room_adapted<const D: usize>(particles: usize, factor: f64) -> f64
     particles as f64 / factor.max(1.0).powf(D as f64)
 }
 
+/// Tells that the clouds that an error bar takes have more particles than are allowed, where the case itself says how many those are.
+pub(crate) fn too_few(case: &Case, n: usize) -> Option<String> {
+    let asked = asked(case)?.particles;
+    let told = case.accuracy.is_some() && n > asked;
+    told.then(|| {
+        format!(
+            "`accuracy.particles = {asked}` is less than the {n} particles of the last of the {CLOUDS} clouds that an error bar takes: \
+             they are used nevertheless; `cloud.spacing` makes them coarser"
+        )
+    })
+}
+
 /// The stages of a family whose member with the spacing of the case has `n` fluid particles.
 pub(crate) fn family(case: &Case, asked: &Accuracy, n: usize, dimension: usize) -> Vec<Stage> {
     let particles = |factor: f64| n as f64 / factor.powi(dimension as i32);

@@ -133,7 +133,7 @@ fn look<const D: usize>(case: &Case, input: &Path, out: Option<&Path>) -> Result
         rate.iter().fold(0.0f64, |m, r| m.max(*r))
     };
     let cloud = &fluid.discretisation.cloud;
-    notes.extend(cloud.notes.iter().cloned().chain(cloud.early_ends()));
+    notes.extend(cloud.notes.iter().cloned().chain(cloud.early_ends()).chain(accuracy::too_few(case, cloud.n_fluid)));
     warnings.extend(check_motion(case, cloud, &motions)?);
     recipe::marching(case, motions.period(), D)?;
     let axes = (!cloud.interface.is_empty())

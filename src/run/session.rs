@@ -271,6 +271,7 @@ impl Run<'_> {
         let mut log = Log::open(self.case, self.out, scales, ground.saved.as_ref(), structures, monitor)?;
         if let Some(cloud) = &ground.ready {
             log.note(&describe(&stages, cloud.n_fluid));
+            accuracy::too_few(self.case, cloud.n_fluid).iter().for_each(|few| log.note(few));
             log.begin_point(true);
         }
         let (mut k, mut sources, kept) = ground.standing();

@@ -1,6 +1,6 @@
 //! Axes of loads, and the gas at one moment seen in them.
 use super::friction::add_friction;
-use super::reference::planform;
+use super::reference::{planform, turned};
 use crate::case::Case;
 use crate::geometry::{Planform, Surface};
 use crate::math::jet::Jet;
@@ -78,7 +78,7 @@ pub(crate) struct LoadFrame {
     case: Case,
     /// Corners of the smallest box around the bodies, before they move; absent without bodies.
     bodies: Option<[[f64; 3]; 2]>,
-    /// Their reference values in 3-D.
+    /// Their reference values where they are more than a box tells: in 3-D, of one body among others, of a section that is turned.
     planform: Option<Planform>,
 }
 
@@ -88,7 +88,9 @@ pub(crate) fn load_axes<const D: usize>(case: &Case, surface: Option<&Surface<D>
     LoadFrame {
         case: case.clone(),
         bodies: surface.map(|s| corners(s.bounds())),
-        planform: surface.filter(|_| D == 3).map(|s| planform(case, s)),
+        planform: surface
+            .filter(|s| D == 3 || case.reference.body.is_some() || turned(case, s).is_some())
+            .map(|s| planform(case, s)),
     }
 }
 

@@ -7,7 +7,10 @@ use crate::geometry::{Planform, Surface};
 pub(crate) fn planform<const D: usize>(case: &Case, surface: &Surface<D>) -> Planform {
     let given = &case.reference;
     let body = given.body.as_ref().and_then(|name| surface.bodies.iter().position(|b| b == name));
-    let seen = surface.planform(&CloudSpec::of_case(case).limits(), body);
+    let seen = match turned(case, surface) {
+        Some(angle) => surface.section(body, angle),
+        None => surface.planform(&CloudSpec::of_case(case).limits(), body),
+    };
     Planform { chord: given.chord.map_or(seen.chord, |c| c.0), area: given.area.unwrap_or(seen.area), ..seen }
 }
 
@@ -15,4 +18,12 @@ pub(crate) fn planform<const D: usize>(case: &Case, surface: &Surface<D>) -> Pla
 pub(crate) fn chord<const D: usize>(case: &Case, surface: Option<&Surface<D>>) -> f64 {
     let of = |surface| planform(case, surface).chord;
     case.reference.chord.map_or_else(|| surface.map_or(1.0, of), |c| c.0)
+}
+
+/// Angle by which the section of a plane that coefficients are made with is turned, nose up: the only one, or the one that is named.
+pub(crate) fn turned<const D: usize>(case: &Case, surface: &Surface<D>) -> Option<f64> {
+    let named = |name: &String| surface.bodies.iter().position(|b| b == name);
+    let only = || (surface.bodies.len() == 1).then_some(0);
+    let body = case.reference.body.as_ref().map_or_else(only, named).filter(|_| D == 2)?;
+    case.bodies.get(body)?.placement.rotate.first().map(|angle| angle.0)
 }
