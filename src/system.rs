@@ -13,6 +13,7 @@
 use std::ops::Range;
 
 use crate::math::fourier::Instances;
+use crate::math::krylov::Numbers;
 use crate::math::multilevel::Cycle;
 
 /// Unknowns of one kind: `rows` rows of `block` values each.
@@ -264,13 +265,13 @@ pub struct Shift<'a> {
     pub reach: Reach,
 }
 
-/// The right-hand side of a linear system, in single or double precision; rows scaled by `scale` where it is not empty.
+/// The right-hand side of a linear system; rows scaled by `scale` where it is not empty.
 #[derive(Clone, Copy, Debug)]
 pub enum RightHandSide<'a> {
     /// Divided by the scale of each row.
     Scaled {
         /// Values.
-        values: &'a [f32],
+        values: Numbers<'a>,
         /// Scale of each row.
         scale: &'a [f64],
     },
@@ -284,7 +285,7 @@ impl RightHandSide<'_> {
     pub fn row(&self, i: usize, at: usize, row: &mut [f32]) {
         match self {
             Self::Scaled { values, scale } => {
-                row.iter_mut().zip(&values[at..]).for_each(|(row, r)| *row = (f64::from(*r) / scale[i]) as f32);
+                values.each(at, row, |row, r| *row = (f64::from(r) / scale[i]) as f32);
             }
             Self::Plain(values) => row.iter_mut().zip(&values[at..]).for_each(|(row, r)| *row = *r as f32),
         }
@@ -294,7 +295,7 @@ impl RightHandSide<'_> {
     pub fn row_in_full(&self, i: usize, at: usize, row: &mut [f64]) {
         match self {
             Self::Scaled { values, scale } => {
-                row.iter_mut().zip(&values[at..]).for_each(|(row, r)| *row = f64::from(*r) / scale[i]);
+                values.each(at, row, |row, r| *row = f64::from(r) / scale[i]);
             }
             Self::Plain(values) => row.iter_mut().zip(&values[at..]).for_each(|(row, r)| *row = *r),
         }
@@ -304,7 +305,7 @@ impl RightHandSide<'_> {
     pub fn of<'b>(&'b self, field: &Placed) -> RightHandSide<'b> {
         match self {
             Self::Scaled { values, scale } => {
-                RightHandSide::Scaled { values: &values[field.unknowns.clone()], scale: &scale[field.rows.clone()] }
+                RightHandSide::Scaled { values: values.of(field.unknowns.clone()), scale: &scale[field.rows.clone()] }
             }
             Self::Plain(values) => RightHandSide::Plain(&values[field.unknowns.clone()]),
         }

@@ -8,7 +8,7 @@
 use std::ops::Range;
 
 use super::rounded::{of_upper_half, upper_half};
-use super::sweep::{abreast, copy, fill, norm, sum_each, sweep, sweep_chunks};
+use super::sweep::{abreast, fill, norm, sum_each, sweep, sweep_chunks};
 
 /// Unknowns beyond which basis vectors are kept to two or three digits.
 const LARGE: usize = 1 << 19;
@@ -18,8 +18,6 @@ const ENOUGH_LEFT: f64 = 0.1;
 /// Storage of GMRES, reused between calls.
 pub struct Gmres {
     basis: Vec<Stored>,
-    /// One of the vectors, in single precision.
-    vector: Vec<f32>,
     hessenberg: Vec<Vec<f64>>,
     /// What is left of the right-hand side in the turned basis, and the rotations that turn it.
     g: Vec<f64>,
@@ -64,7 +62,6 @@ impl Gmres {
     /// The same where basis vectors are like `first`.
     fn with(first: Stored, size: usize) -> Self {
         Self {
-            vector: vec![0.0; first.len()],
             basis: vec![first],
             hessenberg: vec![vec![0.0; size + 1]; size],
             g: vec![0.0; size + 1],
@@ -76,7 +73,7 @@ impl Gmres {
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        self.basis.iter().map(Stored::bytes).sum::<usize>() + 4 * self.vector.len()
+        self.basis.iter().map(Stored::bytes).sum()
     }
 
     /// Solves A x = b from x = 0 until the residual has fallen to what `goal` asks, after as many iterations as it
@@ -86,7 +83,7 @@ impl Gmres {
         b: &mut [f64],
         x: &mut [f64],
         goal: Goal,
-        system: System<impl FnMut(&[f64], &mut [f64]), impl FnMut(&[f32], &mut [f64])>,
+        system: System<impl FnMut(&[f64], &mut [f64]), impl FnMut(Numbers<'_>, &mut [f64])>,
     ) -> Solved {
         let (Goal { tolerance, most }, System { mut product, mut precondition }) = (goal, system);
         fill(x, 0.0);
@@ -101,8 +98,7 @@ impl Gmres {
         self.rotations.clear();
         let mut used = 0;
         for k in 0..size.min(most.max(1)) {
-            self.basis[k].copy_to(&mut self.vector);
-            precondition(&self.vector, x);
+            precondition(self.basis[k].numbers(), x);
             product(x, b);
             self.orthogonalise(k, b);
             self.rotate(k);
@@ -112,9 +108,7 @@ impl Gmres {
             }
         }
         self.combine(used, b);
-        let w = &*b;
-        sweep(&mut self.vector, |i| w[i] as f32);
-        precondition(&self.vector, x);
+        precondition(Numbers::Double(b), x);
         Solved { iterations: used, reduction: self.g[used].abs() / start }
     }
 
@@ -191,6 +185,38 @@ fn combine(w: &mut [f64], basis: &[Stored], y: impl Fn(usize) -> f64 + Sync) {
     });
 }
 
+/// Numbers as they are kept, read in single precision.
+#[derive(Clone, Copy, Debug)]
+pub enum Numbers<'a> {
+    /// In single precision.
+    Single(&'a [f32]),
+    /// The upper halves of numbers in single precision.
+    Halves(&'a [u16]),
+    /// In double precision.
+    Double(&'a [f64]),
+}
+
+impl Numbers<'_> {
+    /// Those of a range.
+    pub fn of(&self, range: Range<usize>) -> Numbers<'_> {
+        match self {
+            Self::Single(v) => Numbers::Single(&v[range]),
+            Self::Halves(v) => Numbers::Halves(&v[range]),
+            Self::Double(v) => Numbers::Double(&v[range]),
+        }
+    }
+
+    /// Calls `f` with each slot of `row` and the number that goes with it, the first of them number `at`.
+    #[inline(always)]
+    pub fn each<T>(&self, at: usize, row: &mut [T], f: impl Fn(&mut T, f32)) {
+        match self {
+            Self::Single(v) => row.iter_mut().zip(&v[at..]).for_each(|(r, v)| f(r, *v)),
+            Self::Halves(v) => row.iter_mut().zip(&v[at..]).for_each(|(r, v)| f(r, of_upper_half(*v))),
+            Self::Double(v) => row.iter_mut().zip(&v[at..]).for_each(|(r, v)| f(r, *v as f32)),
+        }
+    }
+}
+
 /// A basis vector.
 enum Stored {
     /// In single precision.
@@ -229,10 +255,10 @@ impl Stored {
         }
     }
 
-    fn copy_to(&self, out: &mut [f32]) {
+    fn numbers(&self) -> Numbers<'_> {
         match self {
-            Self::Single(v) => copy(v, out),
-            Self::Halves(v) => sweep(out, |i| of_upper_half(v[i])),
+            Self::Single(v) => Numbers::Single(v),
+            Self::Halves(v) => Numbers::Halves(v),
         }
     }
 
@@ -277,7 +303,7 @@ mod tests {
         let b: Vec<f64> = (0..N).map(|i| size(i) * (1.0 + (0.01 * i as f64).sin())).collect();
         for (halves, miss) in [(false, 1e-5), (true, 0.004)] {
             let (mut storage, mut x, mut out) = (b.clone(), vec![0.0; N], vec![0.0; N]);
-            let precondition = |r: &[f32], z: &mut [f64]| sweep(z, |i| f64::from(r[i]) / 2.4);
+            let precondition = |r: Numbers<'_>, z: &mut [f64]| r.each(0, z, |z, r| *z = f64::from(r) / 2.4);
             let goal = Goal { tolerance: 0.02, most: usize::MAX };
             let mut gmres = Gmres::with(Stored::new(N, halves), 60);
             let solved = gmres.solve(&mut storage, &mut x, goal, System { product, precondition });

@@ -10,7 +10,8 @@
 //!
 //! Other parts are what the end of the domain does to the loads, which is the same on all clouds; what loads from wall
 //! pressure and from momentum differ by, as far as what the latter may still change by does not explain it; what the last iterations
-//! changed; and the digits that are printed. Parts that know nothing of one another add as squares.
+//! changed; and the digits that are printed. Parts that know nothing of one another add as squares. Where theory has no drag, all that
+//! is found is an error (d'Alembert 1752).
 use serde::{Deserialize, Serialize};
 
 use super::loads::Coefficients;
@@ -54,6 +55,9 @@ pub struct CloudLoads {
     /// True where the gas is faster than sound somewhere: then there are shocks.
     #[serde(default)]
     pub supersonic: bool,
+    /// True where theory has no drag: a plane flow without viscosity, nowhere faster than sound, with nothing but the free stream around.
+    #[serde(default)]
+    pub dragless: bool,
     /// True where the flow came to rest.
     #[serde(default)]
     pub steady: bool,
@@ -76,7 +80,8 @@ pub struct LoadEstimate {
     pub order: Option<f64>,
     /// Its limit, where it has an order.
     pub limit: Option<f64>,
-    /// Half width of the error bar around the load on the finest cloud: the root of the sum of the squares of its parts.
+    /// Half width of the error bar around the load on the finest cloud: the root of the sum of the squares of its parts, and no less than
+    /// what theory says.
     pub half_width: f64,
     /// Part of the spacing.
     pub spacing: f64,
@@ -86,6 +91,17 @@ pub struct LoadEstimate {
     pub momentum: f64,
     /// Part of the last iterations, and of the loads on a finer cloud whose flow came to no rest.
     pub residual: f64,
+    /// What the load is off the one that theory knows.
+    #[serde(default)]
+    pub theory: f64,
+}
+
+impl LoadEstimate {
+    /// Half width that the clouds alone tell, whatever theory knows.
+    pub fn told_by_clouds(&self) -> f64 {
+        let parts = [self.spacing, self.far_field, self.momentum, self.residual, PRINTED];
+        parts.iter().map(|p| p * p).sum::<f64>().sqrt()
+    }
 }
 
 /// A family of clouds, and the error bars of the loads on the finest.
@@ -130,7 +146,7 @@ impl Convergence {
         let unsteady = clouds.iter().find(|finer| finer.factor < last.factor).copied();
         let clouds: Vec<CloudLoads> = clouds.iter().filter(|c| c.factor >= last.factor).copied().collect();
         let [.., a, b, c] = &clouds[..] else { return None };
-        let of = |load: fn(&CloudLoads) -> f64, part: fn(&Coefficients) -> f64| {
+        let of = |load: fn(&CloudLoads) -> f64, part: fn(&Coefficients) -> f64, theory: f64| {
             let found = estimate([load(a), load(b), load(c)], c.supersonic);
             let far_field = FAR * load(c).abs() / c.reach.powi(2);
             let through = |cloud: &CloudLoads| cloud.momentum.as_ref().map(part);
@@ -140,11 +156,11 @@ impl Convergence {
             });
             let swing = |finer: &CloudLoads| (load(finer) - load(c)).abs() + part(&finer.unsettled).abs();
             let residual = part(&c.unsettled).abs().max(unsteady.as_ref().map_or(0.0, swing));
-            let parts = [found.spacing, far_field, momentum, residual, PRINTED];
-            let half_width = parts.iter().map(|p| p * p).sum::<f64>().sqrt();
-            LoadEstimate { half_width, far_field, momentum, residual, ..found }
+            let parts = LoadEstimate { far_field, momentum, residual, theory, ..found };
+            LoadEstimate { half_width: parts.told_by_clouds().max(theory), ..parts }
         };
-        let all = [of(|l| l.cl, |m| m.cl), of(|l| l.cd, |m| m.cd), of(|l| l.cm, |m| m.cm)];
+        let drag = if c.dragless { c.cd.abs() } else { 0.0 };
+        let all = [of(|l| l.cl, |m| m.cl, 0.0), of(|l| l.cd, |m| m.cd, drag), of(|l| l.cm, |m| m.cm, 0.0)];
         let values = [c.cl, c.cd, c.cm];
         let short = |k: usize| all[k].half_width <= asked * values[k].abs().max(LEAST[k]);
         let [cl, cd, cm] = all;
@@ -242,6 +258,7 @@ mod tests {
             particles: 10,
             reach: 1e3,
             supersonic: false,
+            dragless: false,
             steady: true,
             cl,
             cd: 0.0,
@@ -264,6 +281,9 @@ mod tests {
         let approaching = [clouds[0], with(clouds[1], 0.2785), with(clouds[2], 0.2905)];
         assert!(Convergence::of(&approaching, 0.02).unwrap().cl.momentum < 1e-12);
         let unsettled = Coefficients { cl: 0.006, ..Coefficients::default() };
+        let drag = CloudLoads { dragless: true, cd: 3e-4, ..clouds[2] };
+        let found = Convergence::of(&[clouds[0], clouds[1], drag], 0.02).unwrap();
+        assert!(found.cd.half_width >= 3e-4 && found.cd.theory == 3e-4 && found.cl == c.cl, "{found:?}");
         let swinging = Convergence::of(&[clouds[0], clouds[1], CloudLoads { unsettled, ..clouds[2] }], 0.02).unwrap();
         assert!(swinging.cl.half_width > c.cl.half_width && !swinging.reached(), "{swinging:?}");
         let finer = CloudLoads { steady: false, unsettled, ..cloud(0.5, 0.32) };

@@ -40,7 +40,7 @@ fn verdict(found: &Convergence) -> String {
         "The clouds are alike, each with half the spacing of the one before; {end}. A load that approaches its limit with an order \
          has 5/4 of the way to it as part of its error bar, another one the spread of the last clouds; what the end of the domain does, \
          half of what wall pressure and momentum differ by beyond what the latter may still change by, and what the last iterations changed \
-         are the other parts, added as squares."
+         are the other parts, added as squares. A plane flow without shocks and viscosity has no drag: what is found of it is an error."
     )
 }
 
@@ -66,6 +66,9 @@ fn table(found: &Convergence) -> Table {
     rows.push(row("end of the domain", &|e| Some(e.far_field)));
     rows.push(row("wall pressure against momentum", &|e| Some(e.momentum)));
     rows.push(row("last iterations", &|e| Some(e.residual)));
+    if all.iter().any(|(_, _, e)| e.theory > 0.0) {
+        rows.push(row("theory, at least", &|e| Some(e.theory).filter(|t| *t > 0.0)));
+    }
     rows.push(row("observed order", &|e| e.order));
     Table::new(&["cloud", "particles", "CL", "CD", "CM"], rows)
 }

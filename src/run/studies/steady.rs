@@ -10,7 +10,8 @@ use super::super::watch::{
     Aim, Checkpoint, Ending, Flat, GasEyes, Given, Limit, Observer, Progress, Resting, Swinging, Told, drive, sample,
 };
 use super::turn::{Reached, Start, Turn};
-use crate::case::{Accuracy, Steady};
+use crate::case::{Accuracy, Case, Side, Steady};
+use crate::cloud::CloudSpec;
 use crate::math::Bounds;
 use crate::observe::convergence::CloudLoads;
 use crate::observe::loads::Coefficients;
@@ -186,8 +187,15 @@ fn tell<S: HasGas<D>, const D: usize>(
     }
     let (reach, unsettled) = (reach(system.gas()), unsettled(log));
     let supersonic = is_supersonic(system.gas(), system.gas_work(work));
+    let dragless = !supersonic && is_potential(system.gas(), log.case);
     let (steady, Coefficients { cl, cd, cm }) = (log.record.converged, loads);
-    Ok(CloudLoads { factor, particles, reach, supersonic, steady, cl, cd, cm, momentum, unsettled })
+    Ok(CloudLoads { factor, particles, reach, supersonic, dragless, steady, cl, cd, cm, momentum, unsettled })
+}
+
+/// True where nothing but shocks could make a drag: in the plane, without viscosity, the free stream on all sides.
+fn is_potential<const D: usize>(gas: &Fluid<D>, case: &Case) -> bool {
+    let free = |side: &Side| matches!(side, Side::FarField | Side::Symmetry);
+    D == 2 && gas.viscous_model.is_none() && CloudSpec::<D>::of_case(case).sides.iter().flatten().all(free)
 }
 
 /// True where the gas is faster than sound somewhere.

@@ -5,7 +5,7 @@
 //! Newton's method can use.
 use super::super::preconditioning::Preconditioning;
 use super::{Relax, TimeTerm};
-use crate::math::krylov::{Gmres, Goal, System as Linear};
+use crate::math::krylov::{Gmres, Goal, Numbers, System as Linear};
 use crate::math::sweep::{sum, sweep, sweep_rows};
 use crate::system::{Implicit, Instant, Reach, RightHandSide, Shift, System, placed};
 
@@ -107,7 +107,7 @@ impl<S: Implicit> Relax<'_, S> {
                 }
             });
         };
-        let precondition = |r: &[f32], z: &mut [f64]| {
+        let precondition = |r: Numbers<'_>, z: &mut [f64]| {
             preconditioning.apply(system, frame, &RightHandSide::Scaled { values: r, scale }, z);
         };
         let linear = Linear { product, precondition };
