@@ -28,7 +28,7 @@ pub(super) fn contradictions(draft: &mut Draft<'_>) {
     }
     domain(draft);
     accuracy(draft, dimension.unwrap_or(2));
-    doubtful(draft);
+    super::plausible::doubtful(draft);
     time(draft);
     super::motion_check::contradictions(draft, dimension);
     super::motion_check::viscosity(draft);
@@ -112,11 +112,20 @@ fn one_shape(draft: &mut Draft<'_>, body: &str) {
 
 /// The designation of a section can be made.
 fn naca(draft: &mut Draft<'_>, path: &str) {
-    let Some(digits) = draft.get(&format!("{path}.digits")).and_then(Value::as_str).map(str::to_owned) else { return };
+    let Some(digits) = draft.get(&format!("{path}.digits")).and_then(Value::as_str).map(without_naca) else { return };
+    if let Some(Value::Object(section)) = draft.get_mut(path) {
+        section.insert("digits".to_owned(), json!(digits));
+    }
     let place = if draft.given(&format!("{path}.digits")) { format!("{path}.digits") } else { path.to_owned() };
     if let Err(no) = (Naca { digits, trailing_edge: TrailingEdge::Closed }).design() {
         draft.fail(&place, no.what).hint(no.hint);
     }
+}
+
+/// A designation without the word NACA before it.
+fn without_naca(text: &str) -> String {
+    let rest = text.get(..4).filter(|word| word.eq_ignore_ascii_case("naca")).map(|word| &text[word.len()..]);
+    rest.map_or(text, |rest| rest.trim_start_matches([' ', '-', '_'])).to_owned()
 }
 
 fn polygon(draft: &mut Draft<'_>, path: &str) {
@@ -211,37 +220,6 @@ fn dimension(draft: &mut Draft<'_>) -> Option<usize> {
         tree.insert("dimension".to_owned(), json!(d));
     }
     agreed.then_some(d as usize)
-}
-
-/// Values that are possible, but hardly meant.
-fn doubtful(draft: &mut Draft<'_>) {
-    /// Temperature in kelvin below which a number without unit is taken for one in degrees.
-    const COLD: f64 = 100.0;
-    /// Mach number at which a circle has a drag coefficient of 0.1 without viscosity.
-    const HARDLY_MOVING: f64 = 0.005;
-    /// Reynolds number that no laminar layer on a body survives (Schlichting and Gersten, Boundary-Layer Theory, 15.1).
-    const NEVER_LAMINAR: f64 = 1e7;
-    let bare = !draft.has_unit("flow.temperature");
-    if let Some(t) = draft.number("flow.temperature").filter(|t| bare && *t < COLD) {
-        let message = format!("`flow.temperature` is {t} without a unit, which would be {t} K");
-        draft.fail("flow.temperature", message).hint(format!("write `\"{t} degC\"` or `\"{t} K\"`"));
-    }
-    let slow = draft.get("scheme.low_mach").and_then(Value::as_bool) == Some(false) && draft.given("body");
-    let steady = is(draft, "time", "steady") || draft.get("time.steady").is_some();
-    if let Some(mach) = draft.number("flow.mach").filter(|m| slow && steady && *m < HARDLY_MOVING) {
-        let message = format!("at M {mach} the scheme's own drag is larger than any of the body");
-        draft.fail("flow.mach", message).allowed(format!("at least {HARDLY_MOVING}")).hint(
-            "take M 0.1, whose loads are those of incompressible flow within 1 %, or try `scheme.low_mach = true`",
-        );
-    }
-    if let Some(re) = draft.number("flow.reynolds").filter(|re| *re > NEVER_LAMINAR && draft.given("body")) {
-        let message = format!(
-            "at a Reynolds number of {re:e} the boundary layers are turbulent, which this program cannot compute"
-        );
-        draft.fail("flow.reynolds", message).allowed(format!("at most {NEVER_LAMINAR:e}")).hint(
-            "leave `reynolds` out for a gas without viscosity, whose pressures are closer to those of so thin a layer",
-        );
-    }
 }
 
 /// `mach` or `velocity`; none or two of pressure, temperature and density.
@@ -522,7 +500,7 @@ fn one_side(draft: &mut Draft<'_>, side: &str, axis: usize, d: usize) {
     }
 }
 
-fn is(draft: &Draft<'_>, side: &str, word: &str) -> bool {
+pub(super) fn is(draft: &Draft<'_>, side: &str, word: &str) -> bool {
     draft.get(side).and_then(Value::as_str) == Some(word)
 }
 

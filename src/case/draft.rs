@@ -91,7 +91,12 @@ impl<'t> Draft<'t> {
 
     /// The value at `path`, none when it is absent or wrong.
     pub(super) fn get(&self, path: &str) -> Option<&Value> {
-        self.tree.pointer(&format!("/{}", path.replace(['.', '['], "/").replace(']', "")))
+        self.tree.pointer(&pointer(path))
+    }
+
+    /// The same, to be changed.
+    pub(super) fn get_mut(&mut self, path: &str) -> Option<&mut Value> {
+        self.tree.pointer_mut(&pointer(path))
     }
 
     /// The number at `path`.
@@ -178,6 +183,11 @@ impl<'t> Draft<'t> {
         }
         0..0
     }
+}
+
+/// Where the value at the key path `path` is in the tree.
+fn pointer(path: &str) -> String {
+    format!("/{}", path.replace(['.', '['], "/").replace(']', ""))
 }
 
 /// Name of a body that has none.

@@ -11,6 +11,10 @@ const SUTHERLAND: f64 = 110.4;
 const SEA_LEVEL: f64 = 288.15;
 /// Prandtl number of air.
 const PRANDTL: f64 = 0.72;
+/// Reynolds number that no laminar layer on a body survives (Schlichting and Gersten, Boundary-Layer Theory, 15.1).
+pub const NEVER_LAMINAR: f64 = 1e7;
+/// Free path of the molecules over the length of a body above which they hardly meet (Bird, Molecular Gas Dynamics, 1.2).
+pub const NO_CONTINUUM: f64 = 10.0;
 
 /// How viscosity depends on temperature.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -164,6 +168,11 @@ impl Flow {
     pub fn reynolds_number(&self, chord: f64) -> Option<f64> {
         let (viscous, stream) = (self.viscous(chord)?, self.reference());
         Some(stream.density * stream.speed * self.viscous_length(chord) / viscous.viscosity)
+    }
+
+    /// Free path of the molecules over the length of the Reynolds number, Kn = M/Re √(πγ/2).
+    pub fn free_path(&self, reynolds: f64, mach: f64) -> f64 {
+        mach / reynolds * (0.5 * std::f64::consts::PI * self.gamma).sqrt()
     }
 
     /// Condition on the surface of `body`.

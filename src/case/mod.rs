@@ -21,6 +21,7 @@ mod motion_check;
 mod motion_keys;
 mod naca;
 mod output;
+mod plausible;
 mod polar;
 pub mod quantity;
 mod read;
@@ -40,7 +41,7 @@ mod wing;
 mod write;
 
 pub use error::{CaseError, CaseErrors};
-pub use flow::{FreeStreamScales, Units, ViscosityLaw, Viscous, Wall};
+pub use flow::{FreeStreamScales, NEVER_LAMINAR, NO_CONTINUUM, Units, ViscosityLaw, Viscous, Wall};
 pub use gaf::{AnyMode, FlexibleMode, Gaf, Mode};
 pub use mode_file::{ModeTable, read_mode};
 pub use motion::{

@@ -231,8 +231,10 @@ impl Reader<'_> {
         if min as f64 <= x && x <= max as f64 {
             return Some(json!(x as u64));
         }
-        let message = format!("`{path}` is {}, but must be {}", self.draft.source(item.span()), kind.words());
-        self.draft.fail_at(path, item.span(), message).allowed(kind.words());
+        // where no end matters to whoever reads of the key, it does to whoever went beyond it
+        let allowed = if x > max as f64 { format!("a whole number from {min} to {max}") } else { kind.words() };
+        let message = format!("`{path}` is {}, but must be {allowed}", self.draft.source(item.span()));
+        self.draft.fail_at(path, item.span(), message).allowed(allowed);
         None
     }
 
