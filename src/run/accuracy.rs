@@ -22,7 +22,7 @@ const LAYERS: [f64; 2] = [12.0, 8.0];
 /// lift gains 0.02 %; in space what a body does falls off faster.
 const FAR_FIELD: [f64; 2] = [100.0, 30.0];
 /// First layers at walls in L/√Re, which is a fifth of a laminar boundary layer, and how layers grow.
-const ACROSS: f64 = 16.0;
+pub(crate) const ACROSS: f64 = 16.0;
 const GROWTH: f64 = 1.2;
 /// Spacing in space over that thickness: there are no layers.
 const IN_SPACE: f64 = 4.0;
@@ -85,7 +85,8 @@ pub(crate) fn with_cloud<'a, const D: usize>(case: &'a Case, surface: Option<&Su
         case.cloud.far_field.or(Some(Length(FAR_FIELD[D - 2] * surface.bounds().extent().max_abs())));
     filled.cloud.layers = case.cloud.layers.or(Some(LAYERS[D - 2]));
     filled = spaced::<D>(&filled, if D == 3 { affordable(&filled, surface, spacing.0) } else { spacing.0 });
-    if let Some(thin) = thin.filter(|_| D == 2) {
+    // slow viscous flow needs no layers: what is thin is wider than the spacing
+    if let Some(thin) = thin.filter(|thin| D == 2 && *thin < spacing.0) {
         let layers = WallLayers { first: Length(thin), growth: GROWTH, count: None };
         filled.cloud.wall_layers = case.cloud.wall_layers.or(Some(layers));
         let wake = Wake { length: Length(WAKE * shortest), spacing };

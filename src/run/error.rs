@@ -153,7 +153,7 @@ pub enum RunError {
         /// What.
         what: String,
         /// What may help.
-        hint: &'static str,
+        hint: String,
     },
     /// The case asks for something that can be written down but not yet computed.
     #[error("{what}\nhint: {hint}")]

@@ -3,6 +3,7 @@ mod bodies;
 mod motion_feasibility;
 mod refinement;
 mod sanity;
+mod scales;
 mod shock_layer;
 mod size;
 

@@ -1,8 +1,10 @@
 //! What can be written down but makes no sense: told before any particle is placed.
+use super::super::accuracy::ACROSS;
 use super::super::error::RunError;
 use super::super::look::reference::chord;
 use super::super::recipe;
-use crate::case::{Case, Temporal};
+use super::scales;
+use crate::case::{Case, NEVER_LAMINAR, NO_CONTINUUM, Temporal};
 use crate::geometry::Surface;
 use crate::motion::{MOST_PERIODS, Motions};
 
@@ -16,6 +18,12 @@ const SHORTEST_WAVE: f64 = 2.0;
 const SLOW: f64 = 0.05;
 /// Reynolds number above which no boundary layer stays laminar (Schlichting and Gersten, Boundary-Layer Theory, 15.1).
 const TURBULENT: f64 = 5e5;
+/// Mach number above which even gases of one atom are far from ideal behind a shock.
+const HYPERSONIC: f64 = 25.0;
+/// Free path of the molecules over the length of a body above which a gas is no continuum (Bird, Molecular Gas Dynamics, 1.2).
+const RAREFIED: f64 = 0.1;
+/// Thinnest layer at a wall over the spacing along it: rounding leaves ten digits of what lies across.
+const THINNEST: f64 = 1e-6;
 
 /// Refuses spacings that see no body and periods that no wave can follow; tells what is doubtful.
 pub(crate) fn sane<const D: usize>(
@@ -23,9 +31,11 @@ pub(crate) fn sane<const D: usize>(
     surface: Option<&Surface<D>>,
     motions: &Motions<D>,
 ) -> Result<Vec<String>, RunError> {
-    let Some(spacing) = case.cloud.spacing.map(|l| l.0) else { return Ok(Vec::new()) };
-    let mut notes = Vec::new();
+    laminar(case, surface)?;
     frequencies(case, motions)?;
+    let Some(spacing) = case.cloud.spacing.map(|l| l.0) else { return Ok(Vec::new()) };
+    thin_layers(case, surface, spacing)?;
+    let mut notes = Vec::new();
     let fastest = motions.frequencies().last().map(|omega| std::f64::consts::TAU / omega);
     if let Some(period) = fastest.or(motions.period()).filter(|t| *t < SHORTEST_WAVE * spacing) {
         let k = std::f64::consts::PI * chord(case, surface) / (period * case.flow.reference().mach);
@@ -35,7 +45,7 @@ pub(crate) fn sane<const D: usize>(
                 "the period {given:.3e} is so short that sound goes {:.1e} spacings in it (reduced frequency {k:.1e})",
                 period / spacing
             ),
-            hint: "check the unit of `period` or `frequency`; a wave needs tens of particles: lower `cloud.spacing` for a motion as fast",
+            hint: "check the unit of `period` or `frequency`; a wave needs tens of particles: lower `cloud.spacing` for a motion as fast".into(),
         });
     }
     for (body, name) in surface.iter().flat_map(|s| s.bodies.iter().enumerate()) {
@@ -43,7 +53,8 @@ pub(crate) fn sane<const D: usize>(
         if spacing > COARSE * length {
             return Err(RunError::Senseless {
                 what: format!("`cloud.spacing` is {spacing}, but body `{name}` is only {length} long"),
-                hint: "a hundredth of the body is usual; leave `spacing` out of a steady plane case, and it is chosen",
+                hint: "a hundredth of the body is usual; leave `spacing` out of a steady plane case, and it is chosen"
+                    .into(),
             });
         }
         if spacing > ROUGH * length {
@@ -68,7 +79,7 @@ fn frequencies<const D: usize>(case: &Case, motions: &Motions<D>) -> Result<(), 
                  {:.9} times the first)",
                 last / first
             ),
-            hint: "harmonic balance finds flows that repeat: write frequencies whose ratio is that of small whole numbers, or march",
+            hint: "harmonic balance finds flows that repeat: write frequencies whose ratio is that of small whole numbers, or march".into(),
         });
     }
     let (Some(&highest), most) = (motions.multiples().last(), recipe::most(plan)) else { return Ok(()) };
@@ -80,13 +91,55 @@ fn frequencies<const D: usize>(case: &Case, motions: &Motions<D>) -> Result<(), 
             "{most} harmonics of the common frequency are wanted, but the motion itself has the harmonic {highest}"
         ),
         hint: "the common frequency of all parts is the first harmonic: ask for as many harmonics as the fastest part has, better \
-               twice as many",
+               twice as many".into(),
     })
 }
 
-/// What of the stream is doubtful.
+/// What of the stream and of lengths is doubtful.
 fn doubtful<const D: usize>(case: &Case, surface: Option<&Surface<D>>) -> Vec<String> {
-    [slow(case), turbulent(case, surface)].into_iter().flatten().collect()
+    let stream = [slow(case), hot(case), turbulent(case, surface), rarefied(case, surface)];
+    stream.into_iter().flatten().chain(surface.iter().flat_map(|s| scales::doubtful(case, s))).collect()
+}
+
+/// Refuses viscosities of flows that are not laminar, and of gases that are no continuum.
+fn laminar<const D: usize>(case: &Case, surface: Option<&Surface<D>>) -> Result<(), RunError> {
+    let chord = chord(case, surface);
+    let Some(re) = case.flow.reynolds_number(chord).filter(|_| surface.is_some()) else { return Ok(()) };
+    let mach = case.flow.reference().mach;
+    let path = case.flow.free_path(re, mach);
+    let why = if re > NEVER_LAMINAR {
+        "the boundary layers are turbulent, which this program cannot compute".to_owned()
+    } else if path > NO_CONTINUUM && mach > 0.0 {
+        format!("molecules fly {path:.0} lengths of the body between collisions, no flow of a continuum")
+    } else {
+        return Ok(());
+    };
+    Err(RunError::Senseless {
+        what: format!("the Reynolds number is {re:.3e}, with the length {:?}: {why}", case.flow.viscous_length(chord)),
+        hint: format!(
+            "check the units of `viscosity`, pressure and temperature; laminar flows have {NEVER_LAMINAR:e} at most; without viscosity there \
+             is no such limit"
+        ),
+    })
+}
+
+/// Refuses wall layers so thin that no numbers tell them from the wall.
+fn thin_layers<const D: usize>(case: &Case, surface: Option<&Surface<D>>, spacing: f64) -> Result<(), RunError> {
+    let Some(layers) = case.cloud.wall_layers.as_ref().filter(|l| l.first.0 < THINNEST * spacing) else {
+        return Ok(());
+    };
+    let chord = chord(case, surface);
+    let usual = case.flow.reynolds_number(chord).map(|re| case.flow.viscous_length(chord) / (ACROSS * re.sqrt()));
+    let usual =
+        usual.map_or_else(String::new, |first| format!("; {first:.1e} is a fifth of a laminar layer of this flow"));
+    Err(RunError::Senseless {
+        what: format!(
+            "`cloud.wall_layers.first` is {:e}, {:.1e} times the spacing along the walls, {spacing}",
+            layers.first.0,
+            layers.first.0 / spacing
+        ),
+        hint: format!("leave `wall_layers` out, and they are chosen with the spacing, or raise `first`{usual}"),
+    })
 }
 
 /// Flow too slow for the scheme: its dissipation of velocities grows as 1/M, a circle at M 0.1 has 24 counts of drag too many, at
@@ -97,6 +150,28 @@ fn slow(case: &Case) -> Option<String> {
         format!(
             "at M {mach} the scheme adds drag: loads of incompressible flow are those of M 0.1 within 1 %, and `scheme.low_mach = true` \
              takes the drag out, but converges slowly"
+        )
+    })
+}
+
+/// Gas that is too hot at rest to be ideal.
+fn hot(case: &Case) -> Option<String> {
+    let mach = case.flow.reference().mach;
+    let times = 1.0 + 0.5 * (case.flow.gamma - 1.0) * mach * mach;
+    (mach > HYPERSONIC).then(|| {
+        format!("at M {mach:.4} the gas is {times:.0} times as hot at rest as in the stream: real gases break up, this one does not")
+    })
+}
+
+/// Gas whose molecules fly far.
+fn rarefied<const D: usize>(case: &Case, surface: Option<&Surface<D>>) -> Option<String> {
+    let re = case.flow.reynolds_number(chord(case, surface)).filter(|_| surface.is_some())?;
+    let mach = case.flow.reference().mach;
+    let path = case.flow.free_path(re, mach);
+    (path > RAREFIED).then(|| {
+        format!(
+            "at M {mach:.4} and the Reynolds number {re:.3} molecules fly {path:.2} lengths of the body between collisions: loads are those \
+             of a continuum that the gas hardly is; a lower Mach number makes it one"
         )
     })
 }
@@ -136,9 +211,30 @@ mod tests {
     }
 
     #[test]
+    fn layers_out_of_all_measure_and_hot_streams_are_told() {
+        let layers = "[flow]\nmach = 0.5\nreynolds = 5000\n[cloud]\nspacing = 0.02\nwall_layers = { first = 1e-15 }\n";
+        let thin = told(layers).unwrap_err();
+        assert!(thin.contains("is 1e-15, 5.0e-14 times the spacing") && thin.contains("8.8e-4 is a fifth"), "{thin}");
+        let hot = told("[flow]\nmach = 30\n[cloud]\nspacing = 0.02\n").unwrap();
+        assert!(hot[0].contains("181 times as hot"), "{hot:?}");
+    }
+
+    #[test]
     fn turbulent_streams_are_told() {
         let at = |re: &str| told(&format!("[flow]\nmach = 0.5\nreynolds = {re}\n[cloud]\nspacing = 0.03\n"));
         assert_eq!(at("5000"), Ok(Vec::new()));
         assert!(at("2e6").unwrap()[0].contains("2.00e6"));
+        assert!(at("1").unwrap()[0].contains("molecules fly 0.74 lengths"));
+        let air = |viscosity: &str| {
+            let stream = "velocity = \"100 m/s\"\npressure = 101325\ntemperature = \"15 degC\"";
+            told(&format!("[flow]\n{stream}\nviscosity = \"{viscosity} Pa s\"\n[cloud]\nspacing = 0.03\n"))
+        };
+        assert!(
+            air("1e-7")
+                .unwrap_err()
+                .contains("the Reynolds number is 1.225e9, with the length 1.0: the boundary layers")
+        );
+        assert!(air("1e5").unwrap_err().contains("no flow of a continuum"));
+        assert_eq!(air("0.1"), Ok(Vec::new()));
     }
 }

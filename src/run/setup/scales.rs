@@ -1,0 +1,196 @@
+//! Lengths of a case that are out of all measure beside its bodies: mostly those of another unit.
+//!
+//! Where nothing but the bodies has a length, any length will do; where something else has one, both are in one unit.
+use crate::case::{Case, Length, Shape, Side};
+use crate::cloud::CloudSpec;
+use crate::geometry::{Planform, Surface};
+use crate::math::{Bounds, Vector};
+
+/// Ratio of two lengths that no shapes explain, but units do: a metre has a thousand millimetres.
+const APART: f64 = 200.0;
+/// Lengths of the bodies in a domain beyond all far fields.
+const VAST: f64 = 1e4;
+/// Spacings along a body that no cloud needs.
+const FINE: f64 = 1e4;
+/// Greatest length of what flies or swims, in metres.
+const LONGEST: f64 = 500.0;
+/// Chords between a body and a far side below which the stream at the side is anything but free.
+const NEAR: f64 = 0.5;
+/// Sides of the domain, [axis][0: smallest, 1: largest coordinate].
+const SIDES: [[&str; 2]; 3] = [["x_min", "x_max"], ["y_min", "y_max"], ["z_min", "z_max"]];
+
+/// What is told of them.
+pub(super) fn doubtful<const D: usize>(case: &Case, surface: &Surface<D>) -> Vec<String> {
+    let spec = CloudSpec::<D>::of_case(case);
+    let named = case.reference.body.as_ref().and_then(|name| surface.bodies.iter().position(|b| b == name));
+    let seen = surface.planform(&spec.limits(), named);
+    let mut told = references::<D>(case, &seen);
+    told.extend(points(case, &surface.bounds()));
+    told.extend(bodies(case, surface));
+    told.extend(vast(case, &surface.bounds()));
+    told.extend(near_sides(case, &spec, surface, seen.chord));
+    told
+}
+
+/// Times that one length is the other where that is out of measure.
+fn apart(given: f64, seen: f64) -> Option<f64> {
+    let ratio = given / seen;
+    (ratio.is_finite() && ratio > 0.0 && !(1.0 / APART..=APART).contains(&ratio)).then_some(ratio)
+}
+
+/// Chord and area that are none of the bodies.
+fn references<const D: usize>(case: &Case, seen: &Planform) -> Vec<String> {
+    let chord = ("reference.chord", case.reference.chord.map(|c| c.0), seen.chord, "chord");
+    let area = ("reference.area", case.reference.area.filter(|_| D == 3), seen.area, "area of the planform");
+    let one = |(key, given, seen, what): (&str, Option<f64>, f64, &str)| {
+        let given = given?;
+        let ratio = apart(given, seen)?;
+        Some(format!(
+            "`{key}` is {}, {ratio:.3e} times the {what} of the bodies, {}: is it in their unit?",
+            short(given),
+            short(seen)
+        ))
+    };
+    [chord, area].into_iter().filter_map(one).collect()
+}
+
+/// Points of moments, hinges and turns that lie far from the bodies.
+fn points<const D: usize>(case: &Case, bodies: &Bounds<D>) -> Vec<String> {
+    let mut all: Vec<(String, Option<&Vec<Length>>)> = Vec::new();
+    all.push(("reference.moment_point".into(), case.reference.moment_point.as_ref()));
+    for (i, hinge) in case.hinge.iter().enumerate() {
+        all.push((format!("hinge[{i}].from"), Some(&hinge.from)));
+        all.push((format!("hinge[{i}].to"), hinge.to.as_ref()));
+    }
+    all.push(("motion.pivot".into(), case.motion.as_ref().and_then(|m| m.law.pivot.as_ref())));
+    for (i, body) in case.bodies.iter().enumerate() {
+        all.push((format!("body[{i}].motion.pivot"), body.motion.as_ref().and_then(|law| law.pivot.as_ref())));
+    }
+    let size = bodies.extent().max_abs();
+    let far = |(key, point): (String, Option<&Vec<Length>>)| {
+        let point = point?;
+        let x = Vector::<D>::from_fn(|d| point.get(d).map_or(0.0, |l| l.0));
+        let away = bodies.distance_squared(&x).sqrt() / size;
+        (away > APART)
+            .then(|| format!("`{key}` lies {away:.3e} lengths of the bodies away from them: is it in their unit?"))
+    };
+    all.into_iter().filter_map(far).collect()
+}
+
+/// Bodies whose lengths are of different units, or not of that of the stream and the spacing.
+fn bodies<const D: usize>(case: &Case, surface: &Surface<D>) -> Vec<String> {
+    let millimetres = "is it in millimetres? then `scale = \"1 mm\"`";
+    let lengths: Vec<f64> = (0..surface.bodies.len()).map(|b| surface.bounds_of(b).extent().max_abs()).collect();
+    let mut told = Vec::new();
+    let order = |a: &&usize, b: &&usize| lengths[**a].total_cmp(&lengths[**b]);
+    let all: Vec<usize> = (0..lengths.len()).collect();
+    if let (Some(&small), Some(&large)) = (all.iter().min_by(order), all.iter().max_by(order))
+        && let Some(ratio) = apart(lengths[large], lengths[small])
+    {
+        let [a, b] = [large, small].map(|k| (&surface.bodies[k], short(lengths[k])));
+        told.push(format!(
+            "body `{}` is {} long, {ratio:.0} times as long as body `{}`, {}: are both in the same unit?",
+            a.0, a.1, b.0, b.1
+        ));
+    }
+    for (name, (length, body)) in surface.bodies.iter().zip(lengths.iter().zip(&case.bodies)) {
+        let file = matches!(body.shape, Shape::Surface(_) | Shape::Airfoil(_));
+        let spacings = case.cloud.spacing.map_or(0.0, |s| length / s.0);
+        if case.flow.is_dimensional() && file && *length > LONGEST {
+            told.push(format!("body `{name}` is {} m long: {millimetres}", short(*length)));
+        } else if spacings > FINE {
+            told.push(format!(
+                "body `{name}` is {} long, {spacings:.3e} times `cloud.spacing`: {millimetres}",
+                short(*length)
+            ));
+        }
+    }
+    told
+}
+
+/// A domain beside which the bodies are points.
+fn vast<const D: usize>(case: &Case, bodies: &Bounds<D>) -> Option<String> {
+    let widths = case.cloud.domain.as_ref().map(|domain| {
+        let widths = domain.min.iter().zip(&domain.max).map(|(a, b)| b.0 - a.0);
+        ("cloud.domain", widths.fold(0.0, f64::max))
+    });
+    let (key, wide) = widths.or(case.cloud.far_field.map(|half| ("cloud.far_field", 2.0 * half.0)))?;
+    let ratio = wide / bodies.extent().max_abs();
+    (ratio > VAST).then(|| format!("`{key}` is {ratio:.3e} lengths of the bodies wide: are both in the same unit?"))
+}
+
+/// Far sides so near that the stream is not free there; supersonic streams know nothing of what is behind or beside.
+fn near_sides<const D: usize>(case: &Case, spec: &CloudSpec<D>, surface: &Surface<D>, chord: f64) -> Option<String> {
+    let bodies = surface.bounds();
+    let reach = |d: usize| spec.far_field.map(|half| half - 0.5 * bodies.extent()[d]);
+    let gap = |d: usize, end: usize| match (&spec.domain, end) {
+        (Some(domain), 0) => Some(bodies.min[d] - domain.min[d]),
+        (Some(domain), _) => Some(domain.max[d] - bodies.max[d]),
+        (None, _) => reach(d),
+    };
+    let all = (0..D).flat_map(|d| [(d, 0), (d, 1)]).filter(|(d, end)| spec.sides[*d][*end] == Side::FarField);
+    // what reaches a side ends there on purpose
+    let gaps = all.filter_map(|(d, end)| Some((gap(d, end)?, SIDES[d][end]))).filter(|(gap, _)| *gap > 0.0);
+    let (gap, side) = gaps.min_by(|a, b| a.0.total_cmp(&b.0))?;
+    let mach = case.flow.reference().mach;
+    (0.0 < mach && mach < 1.0 && gap < NEAR * chord).then(|| {
+        format!(
+            "the far side `{side}` is only {} chords from the bodies, where the stream is not free: loads need several chords; without \
+             `cloud.domain` and `cloud.far_field` they are {}",
+            short(gap / chord),
+            if D == 2 { "40" } else { "10" }
+        )
+    })
+}
+
+/// Three digits are enough to recognise a length.
+fn short(value: f64) -> String {
+    let rounded: f64 = format!("{value:.2e}").parse().unwrap_or(value);
+    if (1e-3..1e6).contains(&rounded.abs()) { format!("{rounded}") } else { format!("{rounded:e}") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::path::Path;
+
+    fn told(bodies: &str, more: &str) -> Vec<String> {
+        let case = crate::case::read(&format!("[flow]\nmach = 0.5\n{bodies}{more}"), "t").unwrap();
+        let (surface, _) = super::super::surface::<2>(&case, Path::new("")).unwrap();
+        doubtful(&case, surface.as_ref().unwrap())
+    }
+
+    #[test]
+    fn lengths_in_other_units_are_told() {
+        let body = "[[body]]\nnaca = \"0012\"\n";
+        let alone = |more: &str| told(body, more);
+        let one = |told: Vec<String>, words: &str| assert!(matches!(&told[..], [t] if t.contains(words)), "{told:?}");
+        one(alone("[reference]\nchord = 1e9\n"), "`reference.chord` is 1e9, 1.000e9 times the chord of the bodies, 1:");
+        one(alone("[reference]\nmoment_point = [250, 0]\n"), "`reference.moment_point` lies 2.490e2 lengths");
+        one(alone("[[hinge]]\nfrom = [1e6, 0]\n"), "`hinge[0].from` lies");
+        one(alone("[cloud]\nspacing = 1e-5\n"), "is 1 long, 1.000e5 times `cloud.spacing`: is it in millimetres?");
+        one(alone("[cloud]\nspacing = 0.01\nfar_field = 40000\n"), "`cloud.far_field` is 8.000e4 lengths");
+        let two = "[[body]]\ncircle = { radius = 500 }\ntranslate = [2000, 0]\n";
+        one(told(&format!("{body}{two}"), ""), "`body-2` is 1000 long, 1000 times as long as body `body-1`, 1:");
+        for good in ["[reference]\nchord = 2\nmoment_point = [0, -3]\n", "[cloud]\nspacing = 0.002\nfar_field = 100\n"]
+        {
+            assert_eq!(alone(good), Vec::<String>::new());
+        }
+    }
+
+    #[test]
+    fn far_sides_beside_the_body_are_told() {
+        let domain = |min: &str, more: &str| {
+            told(
+                "[[body]]\nnaca = \"0012\"\n",
+                &format!("{more}[cloud]\nspacing = 0.01\ndomain = {{ min = [{min}], max = [4, 4] }}\n"),
+            )
+        };
+        assert!(domain("-0.02, -4", "")[0].contains("the far side `x_min` is only 0.02 chords from the bodies"));
+        assert_eq!(domain("-0.8, -4", ""), Vec::<String>::new());
+        assert_eq!(domain("-4, 0", "[boundary]\ny_min = \"symmetry\"\n"), Vec::<String>::new());
+        assert!(
+            told("[[body]]\nnaca = \"0012\"\n", "[cloud]\nspacing = 0.01\nfar_field = 0.6\n")[0].contains("0.1 chords")
+        );
+    }
+}
