@@ -8,6 +8,7 @@ use std::ops::Range;
 
 use super::error::{CaseError, CaseErrors};
 use super::schema::one_of;
+use super::text::separator;
 
 /// Most points of a mode: the interpolation solves a full system with as many unknowns.
 const MOST_POINTS: usize = 2000;
@@ -64,15 +65,16 @@ fn expected(dimension: usize) -> impl Iterator<Item = &'static str> {
 /// Lines that say something: number, cells, extent.
 fn lines(text: &str) -> impl Iterator<Item = (usize, Vec<Cell<'_>>, Range<usize>)> {
     let mut start = 0;
+    let between = separator(text);
     let lines = text.split_inclusive('\n').enumerate().map(move |(i, line)| {
         let at = start;
         start += line.len();
         let said = line.split('#').next().unwrap_or_default();
         (i + 1, at, said)
     });
-    lines.filter(|(_, _, said)| !said.trim().is_empty()).map(|(number, at, said)| {
+    lines.filter(|(_, _, said)| !said.trim().is_empty()).map(move |(number, at, said)| {
         let mut from = at;
-        let cells = said.split(',').map(|cell| {
+        let cells = said.split(between).map(|cell| {
             let here = trimmed(cell, from);
             from += cell.len() + 1;
             here
@@ -201,6 +203,7 @@ mod tests {
         let table = read_mode(text, "bend.csv", 2).unwrap();
         assert_eq!(table.points, [[0.0, 0.5, 0.0], [1.0, 0.0, 0.0]]);
         assert_eq!(table.displacements, [[0.0, 0.1, 0.0], [0.25, -2.0, 0.0]]);
+        assert_eq!(read_mode(&text.replace(',', ";"), "bend.csv", 2).unwrap(), table);
         assert_eq!(read_mode("x,y,z,dx,dy,dz\n1,2,3,4,5,6", "b", 3).unwrap().displacements, [[4.0, 5.0, 6.0]]);
     }
 

@@ -1,4 +1,7 @@
-//! Bytes of a text file as text, whatever program saved them.
+//! Files with text and tables of numbers, whatever program saved them.
+use std::fs::File;
+use std::io::{Error, ErrorKind};
+use std::path::Path;
 
 /// Why bytes are no text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -14,16 +17,57 @@ pub enum TextError {
     Utf16,
 }
 
-/// The text in `bytes`: UTF-8, or UTF-16 that begins with its byte order mark. A mark is left out, and lines that end in `\r`
-/// alone, as old Macintosh programs wrote them, end in `\n`.
+/// Opens a file that a case names. Pipes and devices are refused: they might never end, or never begin.
+pub fn open_regular(path: &Path) -> std::io::Result<File> {
+    let kind = std::fs::metadata(path)?;
+    if kind.is_file() {
+        return File::open(path);
+    }
+    let what = if kind.is_dir() { "it is a folder" } else { "it is no regular file, but a pipe or a device" };
+    Err(Error::new(ErrorKind::InvalidInput, what))
+}
+
+/// The text in `bytes`: UTF-8, or UTF-16 that begins with its byte order mark or with characters that have one byte that is not zero.
+/// A mark is left out, and lines that end in `\r` alone, as old Macintosh programs wrote them, end in `\n`.
 pub fn text_of(bytes: &[u8]) -> Result<String, TextError> {
+    read(bytes, utf8)
+}
+
+/// The same of a file of numbers: characters of other encodings, in comments and names, do no harm.
+pub fn numbers_of(bytes: &[u8]) -> Result<String, TextError> {
+    read(bytes, |all| Ok(String::from_utf8_lossy(all).into_owned()))
+}
+
+fn read(bytes: &[u8], other: fn(&[u8]) -> Result<String, TextError>) -> Result<String, TextError> {
     let text = match bytes {
         [0xff, 0xfe, rest @ ..] => utf16(rest, u16::from_le_bytes)?,
         [0xfe, 0xff, rest @ ..] => utf16(rest, u16::from_be_bytes)?,
-        [0xef, 0xbb, 0xbf, rest @ ..] => utf8(rest)?,
-        all => utf8(all)?,
+        [1..=255, 0, 1..=255, 0, ..] => utf16(bytes, u16::from_le_bytes)?,
+        [0, 1..=255, 0, 1..=255, ..] => utf16(bytes, u16::from_be_bytes)?,
+        [0xef, 0xbb, 0xbf, rest @ ..] => other(rest)?,
+        all => other(all)?,
     };
     Ok(if text.contains('\n') { text } else { text.replace('\r', "\n") })
+}
+
+/// What stands between the columns of a table: the first of `;`, tab and comma that its header has.
+pub fn separator(table: &str) -> char {
+    let said = |line: &&str| !line.trim().is_empty() && !line.trim_start().starts_with('#');
+    let header = table.lines().find(said).unwrap_or_default();
+    [';', '\t'].into_iter().find(|c| header.trim().contains(*c)).unwrap_or(',')
+}
+
+/// The first number with a decimal comma among several words of a line.
+pub fn decimal_comma(line: &str) -> Option<&str> {
+    let number = |part: &str, more: &str| {
+        part.trim_start_matches(['-', '+']).chars().all(|c| c.is_ascii_digit() || more.contains(c))
+    };
+    let with_comma = |word: &&str| {
+        let begins = |part: &str| part.starts_with(|c: char| c.is_ascii_digit());
+        word.split_once(',').is_some_and(|(a, b)| number(a, "") && begins(b) && number(b, "eE+-"))
+    };
+    let words = || line.split(|c: char| c == ';' || c.is_whitespace()).filter(|w| !w.is_empty());
+    words().find(with_comma).filter(|_| words().count() > 1)
 }
 
 fn utf8(bytes: &[u8]) -> Result<String, TextError> {
@@ -55,11 +99,38 @@ mod tests {
             marked.as_bytes(),
             &wide(u16::to_le_bytes, [0xff, 0xfe]),
             &wide(u16::to_be_bytes, [0xfe, 0xff]),
+            &wide(u16::to_le_bytes, [0xff, 0xfe])[2..],
+            &wide(u16::to_be_bytes, [0xfe, 0xff])[2..],
             text.replace('\n', "\r").as_bytes(),
         ] {
             assert_eq!(text_of(bytes).unwrap(), text);
+            assert_eq!(numbers_of(bytes).unwrap(), text);
         }
+        assert_eq!(numbers_of(b"a \xb0\n").unwrap(), "a \u{fffd}\n");
         assert_eq!(text_of(b"a\r\nb\r\n").unwrap(), "a\r\nb\r\n");
+    }
+
+    #[test]
+    fn separators_and_decimal_commas_are_seen() {
+        assert_eq!(["# a;b\ntime,x\n", "time;x\n", "time\tx\n", "x"].map(separator), [',', ';', '\t', ',']);
+        for bad in ["0,5 1", "vertex 0 1,0e-3 2", "-0,5;2"] {
+            assert!(decimal_comma(bad).is_some(), "{bad}");
+        }
+        for good in ["0.5,1", "0,1", "0, 1", "1 2", "x,y z"] {
+            assert_eq!(decimal_comma(good), None);
+        }
+    }
+
+    #[test]
+    fn only_regular_files_are_opened() {
+        let folder = tempfile::tempdir().unwrap();
+        assert_eq!(open_regular(folder.path()).unwrap_err().to_string(), "it is a folder");
+        assert_eq!(open_regular(&folder.path().join("none")).unwrap_err().kind(), ErrorKind::NotFound);
+        std::fs::write(folder.path().join("a"), "b").unwrap();
+        assert!(open_regular(&folder.path().join("a")).is_ok());
+        if cfg!(unix) {
+            assert!(open_regular(Path::new("/dev/null")).unwrap_err().to_string().contains("a pipe or a device"));
+        }
     }
 
     #[test]

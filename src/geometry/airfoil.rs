@@ -12,7 +12,7 @@
 use super::GeometryError;
 use super::outline::{self, Mark};
 use super::shell::Shell;
-use crate::case::text_of;
+use crate::case::decimal_comma;
 use crate::math::{Bounds, Vector};
 use std::io::Read;
 
@@ -49,34 +49,20 @@ pub(super) fn read(file: &str, input: impl Read, notes: &mut Vec<String>) -> Res
     let mut bytes = Vec::new();
     let input = input.take(LONGEST).read_to_end(&mut bytes);
     input.map_err(|source| GeometryError::Open { file: file.to_string(), source })?;
-    let table = parse(file, &plain(file, &bytes)?)?;
+    let table = parse(file, &super::plain(file, &bytes)?)?;
     let marks = around(file, &table, notes)?;
     outline::airfoil(file, marks, notes)
 }
 
-/// The text of a file; lines may end in `\r` alone, as old Macintosh programs wrote them.
-fn plain(file: &str, bytes: &[u8]) -> Result<String, GeometryError> {
-    if bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]) {
-        let wrong =
-            |_| GeometryError::refused(file.to_string(), "is broken UTF-16 text", "save it as UTF-8 or ASCII text");
-        return text_of(bytes).map_err(wrong).map(|text| text.replace("\r\n", "\n"));
-    }
-    let text = String::from_utf8_lossy(bytes);
-    Ok(text.replace("\r\n", "\n").replace('\r', "\n"))
-}
-
 /// Refuses rows whose numbers have decimal commas: two values would be read as four.
 fn no_decimal_commas(file: &str, number: usize, line: &str) -> Result<(), GeometryError> {
-    let digits = |part: &str| part.trim_start_matches(['-', '+']).chars().all(|c| c.is_ascii_digit());
-    let with_comma = |word: &str| word.split_once(',').is_some_and(|(a, b)| !b.is_empty() && digits(a) && digits(b));
-    let words = || line.split(|c: char| c == ';' || c.is_whitespace()).filter(|w| !w.is_empty());
-    match words().find(|w| with_comma(w)) {
-        Some(word) if words().count() > 1 => Err(GeometryError::refused(
+    match decimal_comma(line) {
+        None => Ok(()),
+        Some(word) => Err(GeometryError::refused(
             format!("{file}, line {number}"),
             format!("`{word}` has a decimal comma"),
             "write decimals with a point, `0.5`",
         )),
-        _ => Ok(()),
     }
 }
 

@@ -5,6 +5,7 @@
 //! `tobj`.
 use super::GeometryError;
 use super::parts::UNNAMED;
+use crate::case::{decimal_comma, numbers_of};
 use crate::math::Vector;
 use std::io::{Cursor, Read};
 
@@ -12,6 +13,8 @@ use std::io::{Cursor, Read};
 const STL_HEADER: usize = 84;
 /// One triangle of a binary STL file, bytes.
 const STL_TRIANGLE: usize = 50;
+/// Bytes in which a text begins.
+const BEGINNING: usize = 256;
 /// Longest file that is read, bytes: 80 million triangles.
 const LONGEST: u64 = 4 << 30;
 
@@ -51,7 +54,7 @@ pub(super) fn read(file: &str, input: impl Read) -> Result<Soup, GeometryError> 
     let soup = if name.ends_with(".stl") {
         read_stl(file, &mut bytes)?
     } else if name.ends_with(".obj") {
-        read_obj(file, &bytes)?
+        read_obj(file, super::plain(file, &bytes)?.as_bytes())?
     } else {
         return Err(GeometryError::refused(file, "is neither `.stl` nor `.obj`", "export the surface as STL or OBJ"));
     };
@@ -65,10 +68,11 @@ pub(super) fn read(file: &str, input: impl Read) -> Result<Soup, GeometryError> 
 fn read_stl(file: &str, bytes: &mut [u8]) -> Result<Soup, GeometryError> {
     let count = bytes.get(80..STL_HEADER).map(|c| u32::from_le_bytes([c[0], c[1], c[2], c[3]]) as usize);
     let announced = count.map(|n| STL_HEADER + STL_TRIANGLE * n);
-    let text = bytes.trim_ascii_start().get(..5).is_some_and(|w| w.eq_ignore_ascii_case(b"solid"));
+    let begins = numbers_of(&bytes[..bytes.len().min(BEGINNING)]).unwrap_or_default();
+    let text = begins.trim_start().get(..5).is_some_and(|w| w.eq_ignore_ascii_case("solid"));
     match announced {
         Some(length) if length == bytes.len() || (!text && length < bytes.len()) => read_stl_binary(file, bytes),
-        _ if text => read_stl_text(file, &String::from_utf8_lossy(bytes)),
+        _ if text => read_stl_text(file, &super::plain(file, bytes)?),
         Some(length) => {
             let (n, held) = (count.unwrap_or(0), bytes.len());
             let what = format!("announces {n} triangles, {length} bytes, but holds {held} bytes: it is cut short");
@@ -113,7 +117,7 @@ fn read_stl_text(file: &str, text: &str) -> Result<Soup, GeometryError> {
             "facet" => open = true,
             "vertex" if open => match vertex(&words[1..]) {
                 Some(point) => corners.push(point),
-                None => return refused(format!("`{}` is not a vertex", line.trim()), "write `vertex x y z`"),
+                None => return refused(no_point(line, "a vertex"), "write `vertex x y z`, decimals with a point"),
             },
             "endfacet" => match corners[..] {
                 [a, b, c] => {
@@ -137,6 +141,14 @@ fn read_stl_text(file: &str, text: &str) -> Result<Soup, GeometryError> {
     Ok(soup)
 }
 
+/// Why a line is not `what` it should be.
+fn no_point(line: &str, what: &str) -> String {
+    match decimal_comma(line) {
+        Some(word) => format!("`{word}` has a decimal comma"),
+        None => format!("`{}` is not {what}", line.trim()),
+    }
+}
+
 /// Three numbers; magnitudes above 1e100 would overflow when squared.
 fn vertex(words: &[&str]) -> Option<Vector<3>> {
     let values: Vec<f64> = words.iter().filter_map(|w| w.parse().ok()).filter(|v: &f64| v.abs() < 1e100).collect();
@@ -150,7 +162,16 @@ fn read_obj(file: &str, bytes: &[u8]) -> Result<Soup, GeometryError> {
     let models = match parse_obj(bytes) {
         Ok(models) => models,
         Err(error) => {
-            let place = format!("{file}, line {}", first_bad_line(bytes));
+            let number = first_bad_line(bytes);
+            let line = bytes.split(|b| *b == b'\n').nth(number - 1).map(String::from_utf8_lossy).unwrap_or_default();
+            let place = format!("{file}, line {number}");
+            if decimal_comma(&line).is_some() {
+                return Err(GeometryError::refused(
+                    place,
+                    no_point(&line, "read"),
+                    "write `v x y z`, decimals with a point",
+                ));
+            }
             return Err(GeometryError::refused(place, error.to_string(), "export the file again, as triangles"));
         }
     };
@@ -191,4 +212,35 @@ fn first_bad_line(bytes: &[u8]) -> usize {
         })
         .collect();
     ends.partition_point(|&end| parse_obj(&bytes[..end]).is_ok()) + 1
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const STL: &str = "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0.0 0.0 0.0\nvertex 1.5 0.0 0.0\nvertex 0.0 1.0 0.0\n\
+                       endloop\nendfacet\nendsolid a\n";
+    const OBJ: &str = "v 0.0 0.0 0.0\nv 1.5 0.0 0.0\nv 0.0 1.0 0.0\nf 1 2 3\n";
+
+    #[test]
+    fn surface_files_are_read_however_they_are_saved() {
+        let wide = |text: &str| text.encode_utf16().flat_map(u16::to_le_bytes).collect::<Vec<u8>>();
+        for (file, text) in [("a.stl", STL), ("a.obj", OBJ)] {
+            let marked = [vec![0xff, 0xfe], wide(text)].concat();
+            for bytes in
+                [text.replace('\n', "\r").into_bytes(), text.replace('\n', "\r\n").into_bytes(), wide(text), marked]
+            {
+                let soup = read(file, &bytes[..]).unwrap();
+                assert_eq!(soup.triangles, [[[0.0; 3], [1.5, 0.0, 0.0], [0.0, 1.0, 0.0]].map(Vector)], "{file}");
+            }
+        }
+    }
+
+    #[test]
+    fn decimal_commas_are_named() {
+        for (file, text, line) in [("a.stl", STL, 5), ("a.obj", OBJ, 2)] {
+            let told = read(file, text.replace("1.5", "1,5").as_bytes()).unwrap_err().to_string();
+            assert!(told.contains(&format!("{file}, line {line}: `1,5` has a decimal comma")), "{told}");
+        }
+    }
 }

@@ -37,10 +37,9 @@ pub use sampling::Chain;
 pub use shell::{Edge, Exact, Shell};
 pub use surface::{Element, Nearest, Projection, Skin, Surface};
 
-use crate::case::{Body, Case, Naca, ProfileSides, Shape};
-use crate::math::Vector;
+use crate::case::{Body, Case, Naca, ProfileSides, Shape, numbers_of, open_regular};
+use crate::math::{Bounds, Vector};
 use std::f64::consts::PI;
-use std::fs::File;
 use std::io;
 use std::path::Path;
 
@@ -192,7 +191,7 @@ fn skin<const D: usize>(
 
 fn load_shell(name: &str, body: &Body, folder: &Path, notes: &mut Vec<String>) -> Result<AnyShell, GeometryError> {
     let open = |file: &str| {
-        File::open(folder.join(file)).map_err(|source| GeometryError::Open { file: file.to_string(), source })
+        open_regular(&folder.join(file)).map_err(|source| GeometryError::Open { file: file.to_string(), source })
     };
     let place = format!("body `{name}`");
     Ok(match &body.shape {
@@ -250,6 +249,12 @@ fn load_shell(name: &str, body: &Body, folder: &Path, notes: &mut Vec<String>) -
     })
 }
 
+/// The text of a file of coordinates, with `\n` at the ends of all lines.
+fn plain(file: &str, bytes: &[u8]) -> Result<String, GeometryError> {
+    let broken = |_| GeometryError::refused(file, "is broken UTF-16 text", "save it as UTF-8 or ASCII text");
+    numbers_of(bytes).map_err(broken).map(|text| text.replace("\r\n", "\n").replace('\r', "\n"))
+}
+
 fn positive(place: &str, key: &str, value: f64) -> Result<f64, GeometryError> {
     if 0.0 < value && value < 1e50 {
         return Ok(value);
@@ -271,12 +276,17 @@ fn refuse_overlap<const D: usize>(shells: &[(String, Shell<D>)]) -> Result<(), G
         two.intersection().map(|(x, _)| x)
     };
     let pairs = (0..shells.len()).flat_map(|a| (a + 1..shells.len()).map(move |b| [a, b]));
+    let boxes: Vec<Bounds<D>> = alone.iter().map(Surface::bounds).collect();
+    let near = |[a, b]: &[usize; 2]| {
+        let margin = TOUCHING * boxes[*a].extent().max_abs().max(boxes[*b].extent().max_abs());
+        boxes[*a].meets(&boxes[*b], margin)
+    };
     let meeting = |[a, b]: [usize; 2]| {
         let x = within(a, b).or_else(|| within(b, a)).or_else(|| if crossed { crossing(a, b) } else { None })?;
         let [a, b] = [a, b].map(|k| &shells[k].0);
         Some((format!("body `{a}`"), format!("overlaps or touches body `{b}` at {:?}", x.0)))
     };
-    let mut found = pairs.filter_map(meeting);
+    let mut found = pairs.filter(near).filter_map(meeting);
     let Some((place, mut what)) = found.next() else { return Ok(()) };
     found.for_each(|(place, more)| what.push_str(&format!("; {place} {more}")));
     Err(GeometryError::refused(place, what, "move the bodies apart, or unite them in one outline"))

@@ -1,7 +1,7 @@
 //! Tables of motion: times with displacements and angles.
 use std::f64::consts::PI;
 
-use crate::case::MotionTable;
+use crate::case::{MotionTable, separator};
 
 /// Columns of a table.
 #[derive(Debug, Default)]
@@ -24,17 +24,20 @@ impl Samples {
         }
     }
 
-    /// The columns of a CSV text with a header; lines that begin with `#` are comments.
+    /// The columns of a text with a header, separated by commas, semicolons or tabs; lines that begin with `#` are comments.
     pub(super) fn parse(text: &str, periodic: bool, dimension: usize) -> Result<Self, String> {
-        let mut reader =
-            csv::ReaderBuilder::new().comment(Some(b'#')).trim(csv::Trim::All).from_reader(text.as_bytes());
+        let mut reader = csv::ReaderBuilder::new()
+            .comment(Some(b'#'))
+            .delimiter(separator(text) as u8)
+            .trim(csv::Trim::All)
+            .from_reader(text.as_bytes());
         let header = reader.headers().map_err(|e| e.to_string())?.clone();
         let mut columns = vec![Vec::new(); header.len()];
         for row in reader.records() {
             let row = row.map_err(|e| e.to_string())?;
             for (column, cell) in columns.iter_mut().zip(&row) {
                 let value = cell.parse::<f64>().ok().filter(|x| x.is_finite());
-                column.push(value.ok_or_else(|| format!("`{cell}` is not a number"))?);
+                column.push(value.ok_or_else(|| no_number(cell, &row))?);
             }
         }
         let mut samples = Self::default();
@@ -69,4 +72,12 @@ impl Samples {
         }
         Ok(self)
     }
+}
+
+/// What is wrong with a cell.
+fn no_number(cell: &str, row: &csv::StringRecord) -> String {
+    let line = row.position().map_or_else(String::new, |p| format!("line {}: ", p.line()));
+    let comma = cell.replacen(',', ".", 1).parse::<f64>().is_ok();
+    let why = if comma { "has a decimal comma: write decimals with a point" } else { "is not a number" };
+    format!("{line}`{cell}` {why}")
 }

@@ -166,6 +166,8 @@ fn tables_come_from_files_too() {
     assert!(told("time,x\n0,0\n0,1\n").contains("times do not rise"));
     assert!(told("time,x\n0,0\n1,1\n").contains("last row differs"));
     assert!(told("time,x\n0,zero\n1,1\n").contains("`zero` is not a number"));
+    assert!(told("time;x\n0;0\n1;0,5\n").contains("line 3: `0,5` has a decimal comma"));
+    assert_near(build("time;x\n0;0\n1;1\n2;0\n", true).unwrap().of(0).displacement(1.0), [1.0, 0.0], 1e-14);
     assert!(told("time,w\n0,0\n1,1\n").contains("column `w` has no meaning"));
     assert!(told("time\n0\n1\n").contains("nothing moves"));
     assert!(told("x\n0\n1\n").contains("column `time`"));

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 use serde_json::Value;
 
 use super::chart::{Marks, Series};
+use crate::case::{numbers_of, separator};
 
 /// What the pictures of the film strip begin with.
 pub(super) const FILM: &str = "film";
@@ -96,14 +97,40 @@ impl RunFolder {
         let beside = [Some(self.path.as_path()), self.path.parent(), origin.as_deref()];
         let path = beside.into_iter().flatten().map(|folder| folder.join(file)).find(|path| path.is_file());
         let path = path.ok_or_else(|| format!("the reference `{file}` was not found"))?;
-        let table = Csv::parse(&read_text(&path, file)?).map_err(|e| format!("`{file}` is not a table: {e}"))?;
-        match (table.numbers("x_c"), table.numbers("cp")) {
-            (Some(x), Some(cp)) => {
-                let stations = table.numbers("eta").unwrap_or_default();
-                Ok(Reference { curve: Series::new(label, Marks::Rings, x, cp), stations })
-            }
-            _ => Err(format!("the reference `{file}` has no columns `x_c` and `Cp`")),
-        }
+        let table = reference(&path, file)?;
+        let numbers = |name: &str| table.numbers(name).unwrap_or_default();
+        Ok(Reference {
+            curve: Series::new(label, Marks::Rings, numbers("x_c"), numbers("cp")),
+            stations: numbers("eta"),
+        })
+    }
+}
+
+/// The table at `path`, which is called `file`, as a reference curve: it has the columns of one.
+fn reference(path: &Path, file: &str) -> Result<Csv, String> {
+    let table = Csv::parse(&read_text(path, file)?).map_err(|e| format!("`{file}` is not a table: {e}"))?;
+    has(&table, file, &["x_c", "Cp"]).map(|()| table)
+}
+
+/// Says what is wrong with a table that is to be the reference curve `file` of Cp, in space at stations.
+pub fn check_reference(path: &Path, file: &str, in_space: bool) -> Result<(), String> {
+    let table = reference(path, file)?;
+    if in_space { has(&table, file, &["eta"]) } else { Ok(()) }
+}
+
+/// The table has these columns, with a number in each.
+fn has(table: &Csv, file: &str, columns: &[&str]) -> Result<(), String> {
+    let quoted = |names: &mut dyn Iterator<Item = &str>| names.map(|n| format!("`{n}`")).collect::<Vec<_>>().join(", ");
+    let absent = |name: &&&str| table.position(name).is_none();
+    let missing = quoted(&mut columns.iter().filter(absent).copied());
+    if !missing.is_empty() {
+        let found = quoted(&mut table.columns.iter().map(String::as_str));
+        return Err(format!("`{file}` has no column {missing}, but {found}"));
+    }
+    let bare = |name: &&&str| !table.numbers(name).unwrap_or_default().iter().any(|x| x.is_finite());
+    match columns.iter().find(bare) {
+        Some(name) => Err(format!("`{file}` has no number in its column `{name}`")),
+        None => Ok(()),
     }
 }
 
@@ -111,6 +138,7 @@ impl Csv {
     pub(super) fn parse(text: &str) -> Result<Self, csv::Error> {
         let mut reader = csv::ReaderBuilder::new()
             .comment(Some(b'#'))
+            .delimiter(separator(text) as u8)
             .trim(csv::Trim::All)
             .flexible(true)
             .from_reader(text.as_bytes());
@@ -159,7 +187,7 @@ impl Csv {
 
 fn read_text(path: &Path, name: &str) -> Result<String, String> {
     match std::fs::read(path) {
-        Ok(bytes) => Ok(String::from_utf8_lossy(&bytes).into_owned()),
+        Ok(bytes) => numbers_of(&bytes).map_err(|e| format!("`{name}` cannot be read: {e}")),
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => Err(format!("`{name}` is not in the folder")),
         Err(error) => Err(format!("`{name}` cannot be read: {error}")),
     }

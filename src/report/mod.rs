@@ -43,6 +43,7 @@ mod words;
 pub use chart::{Axis, Chart, Marks, Series};
 pub use colour::Colormap;
 pub use compare::Comparison;
+pub use files::check_reference;
 pub use overview::write_report;
 pub use picture::{Dots, PictureStyle, Raster, Scatter, raster_png, scatter_png};
 pub use polar::write_polar;

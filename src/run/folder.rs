@@ -1,13 +1,15 @@
 //! The run folder: made before anything else, never overwritten.
 use std::fs::{self, File, TryLockError};
-use std::io::ErrorKind;
+use std::io::{ErrorKind, Read};
 use std::path::{Path, PathBuf};
 
 use super::error::RunError;
 use super::record::saved;
-use crate::case::{Case, Compare, read, text_of, write};
+use crate::case::{Case, Compare, open_regular, read, text_of, write};
+use crate::geometry::dimension;
 use crate::observe::table::UNFINISHED;
 use crate::observe::write_atomic;
+use crate::report::check_reference;
 
 /// Where the folder of the case file is noted.
 const ORIGIN: &str = "origin.txt";
@@ -15,6 +17,9 @@ const ORIGIN: &str = "origin.txt";
 const FINISHED: &str = "finished.txt";
 /// The last line of a run.
 const SUMMARY: &str = "summary.json";
+
+/// The table of `alula gaf`.
+pub(crate) const MATRICES: &str = "gaf.csv";
 
 /// Where a run reads and writes.
 #[derive(Clone, Debug)]
@@ -63,6 +68,12 @@ pub(crate) fn set_aside(out: &Path) -> Result<PathBuf, RunError> {
 /// Makes the run folder and puts the resolved case into it; true where a run was begun there before that kept nothing.
 pub(crate) fn create(case: &Case, input: &Path, out: &Path) -> Result<(bool, Hold), RunError> {
     let named = out.display();
+    if out.is_file() {
+        return Err(RunError::Folder {
+            what: format!("`{named}` is a file, but a folder is to be made"),
+            hint: "choose another name with `--out`".into(),
+        });
+    }
     let _before = hold(out)?;
     let used = out.join("case.toml").exists() || out.join(SUMMARY).exists();
     if used && !is_barely_begun(out) {
@@ -82,9 +93,20 @@ pub(crate) fn create(case: &Case, input: &Path, out: &Path) -> Result<(bool, Hol
     Ok((used, held))
 }
 
+/// The same for what is no run, has no checkpoints and is not replaced: a cloud, or matrices.
+pub(crate) fn create_once(case: &Case, input: &Path, out: &Path) -> Result<Hold, RunError> {
+    if out.join("case.toml").exists() && !is_barely_begun(out) {
+        return Err(RunError::Folder {
+            what: format!("`{}` holds earlier results", out.display()),
+            hint: "choose another folder with `--out`, or remove it".into(),
+        });
+    }
+    create(case, input, out).map(|(_, held)| held)
+}
+
 /// True where a run was stopped before it kept anything but its case.
 fn is_barely_begun(out: &Path) -> bool {
-    let kept = [saved::FILE, SUMMARY, FINISHED, "doctor.json"];
+    let kept = [saved::FILE, SUMMARY, FINISHED, "doctor.json", MATRICES];
     out.join(ORIGIN).is_file() && kept.iter().all(|name| !out.join(name).exists())
 }
 
@@ -157,6 +179,12 @@ pub(crate) fn check_begun(out: &Path) -> Result<(), RunError> {
         return Ok(());
     }
     let (named, file) = (out.display(), saved::FILE);
+    if out.join(MATRICES).exists() {
+        return Err(RunError::Folder {
+            what: format!("`{named}` holds matrices of `alula gaf`, which is not resumed"),
+            hint: "begin it again with its case file and another folder".into(),
+        });
+    }
     let force = if is_barely_begun(out) { "" } else { " --force" };
     Err(RunError::Folder {
         what: format!("there is no `{file}` in `{named}`: the run was stopped before it wrote one"),
@@ -191,16 +219,31 @@ pub(crate) fn check_input(case: &Case, input: &Path, out: &Path) -> Result<(), R
     })
 }
 
-/// Refuses a case that compares itself with files that are not there.
+/// Refuses a case that compares itself with files that are not there, or are no reference curves.
 pub(crate) fn check_compared(case: &Case, input: &Path) -> Result<(), RunError> {
     let gone = |c: &&Compare| !input.join(&c.file).is_file();
     let missing: Vec<String> = case.compare.iter().filter(gone).map(|c| format!("`{}`", c.file)).collect();
-    if missing.is_empty() {
+    if !missing.is_empty() {
+        return Err(RunError::Folder {
+            what: format!("`[[compare]]` names files that are not there: {}", missing.join(", ")),
+            hint: format!(
+                "paths are relative to the case file, in `{}`",
+                absolute(input).unwrap_or_default().display()
+            ),
+        });
+    }
+    let in_space = dimension(case) == 3;
+    let wrong = |c: &Compare| check_reference(&input.join(&c.file), &c.file, in_space).err();
+    let wrong: Vec<String> = case.compare.iter().filter_map(wrong).collect();
+    if wrong.is_empty() {
         return Ok(());
     }
+    let columns = if in_space { "`eta`, `x_c` and `Cp`" } else { "`x_c` and `Cp`" };
     Err(RunError::Folder {
-        what: format!("`[[compare]]` names files that are not there: {}", missing.join(", ")),
-        hint: format!("paths are relative to the case file, in `{}`", absolute(input).unwrap_or_default().display()),
+        what: format!("`[[compare]]` names no reference curve: {}", wrong.join("; ")),
+        hint: format!(
+            "a reference is a table with the columns {columns} in its first line, of pressure along the chord"
+        ),
     })
 }
 
@@ -211,5 +254,28 @@ pub(crate) fn text(folder: &Path, name: &str) -> std::io::Result<String> {
 
 /// Text of a file, however it is encoded.
 fn plain(path: &Path) -> std::io::Result<String> {
-    text_of(&fs::read(path)?).map_err(|e| std::io::Error::new(ErrorKind::InvalidData, e))
+    let mut bytes = Vec::new();
+    open_regular(path)?.read_to_end(&mut bytes)?;
+    text_of(&bytes).map_err(|e| std::io::Error::new(ErrorKind::InvalidData, e))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn references_without_their_columns_are_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let told = |table: &str, shape: &str| {
+            fs::write(folder.path().join("cp.csv"), table).unwrap();
+            let text = format!("[flow]\nmach = 0.3\n[[body]]\n{shape}\n[[compare]]\nfile = \"cp.csv\"\n");
+            check_compared(&read(&text, "t").unwrap(), folder.path()).map_err(|e| e.to_string())
+        };
+        let (section, sphere) = ("naca = \"0012\"", "sphere = { radius = 1 }");
+        let wrong = told("x,cp\n0,1\n", section).unwrap_err();
+        assert!(wrong.contains("`cp.csv` has no column `x_c`, but `x`, `cp`"), "{wrong}");
+        assert!(told("x_c,Cp\n0,high\n", section).unwrap_err().contains("no number in its column `Cp`"));
+        assert!(told("x_c,Cp\n0,1\n", sphere).unwrap_err().contains("no column `eta`"));
+        assert!(told("x_c;Cp\n0;1\n", section).is_ok() && told("eta,x_c,Cp\n0.5,0,1\n", sphere).is_ok());
+    }
 }
