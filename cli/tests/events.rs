@@ -106,4 +106,12 @@ fn matrices_are_the_last_event_of_gaf() {
     let last = told.last().unwrap();
     assert_eq!((&last["event"], &last["run"]), (&json!("gaf"), &json!("out")));
     assert_eq!(last["columns"].as_array().unwrap().len(), last["modes"].as_array().unwrap().len());
+    for what in ["gaf", "cloud"] {
+        let again = alula(folder.path(), &[what, "case.toml", "--out", "out"]);
+        let told = String::from_utf8_lossy(&again.stderr).into_owned();
+        assert_eq!(again.status.code(), Some(2), "{told}");
+        assert!(told.contains("`out` holds earlier results") && !told.contains("--force"), "{told}");
+    }
+    let resumed = alula(folder.path(), &["resume", "out"]);
+    assert!(String::from_utf8_lossy(&resumed.stderr).contains("`alula gaf`, which is not resumed"));
 }

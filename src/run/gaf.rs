@@ -68,7 +68,7 @@ pub fn gaf(case: &Case, places: &Places, monitor: &mut dyn Monitor) -> Result<Op
         });
     };
     setup::supported(case)?;
-    folder::create(case, &places.input, &places.out)?;
+    let _held = folder::create_once(case, &places.input, &places.out)?;
     let modes = plan.all_modes().map(|m| m.name().to_owned()).collect();
     let mut matrices = Matrices { modes, columns: Vec::new(), linearity: plan.linearity };
     for &k in &plan.reduced_frequencies {
@@ -165,7 +165,7 @@ impl Matrices {
         names.extend(self.modes.iter().flat_map(|m| [format!("q_{m}_re"), format!("q_{m}_im")]));
         names.push("nonlinearity".into());
         let names: Vec<&str> = names.iter().map(String::as_str).collect();
-        write_csv(&out.join("gaf.csv"), &names, rows)?;
+        write_csv(&out.join(folder::MATRICES), &names, rows)?;
         describe_tables(out, scale, &[])?;
         let whole = json!({
             "convention": CONVENTION,

@@ -159,7 +159,7 @@ fn look<const D: usize>(case: &Case, input: &Path, out: Option<&Path>) -> Result
         warnings,
     };
     if let Some(out) = out {
-        folder::create(case, input, out)?;
+        let _held = folder::create_once(case, input, out)?;
         write(&Target { case, out }, &solver, &mut work, surface.as_ref())?;
     }
     Ok(report)

@@ -26,7 +26,12 @@ pub(crate) fn gaf(args: &arguments::Gaf) -> Outcome {
     let matrices = match found {
         Ok(Some(matrices)) => matrices,
         Ok(None) => {
-            output::note("interrupted; matrices are kept only when all are found: begin again");
+            let kept = out.join("gaf.csv");
+            let what = match kept.exists() {
+                true => format!("interrupted; the columns found so far are in `{}`", kept.display()),
+                false => "interrupted before the first column was found".to_owned(),
+            };
+            output::note(&format!("{what}: `alula gaf` is not resumed, but begins again, in another folder"));
             return Outcome::Interrupted;
         }
         Err(problem) => return super::refuse(&problem),
