@@ -168,6 +168,9 @@ fn stepped(parts: [&str; 3]) -> Option<Result<Vec<String>, String>> {
     /// Part of a step by which the last value may be missed for round-off.
     const NEARLY: f64 = 1e-9;
     let [(first, unit), (last, second), (step, third)] = parts.map(split);
+    if let Some(k) = [first, last, step].iter().position(|text| text.parse::<f64>().is_err()) {
+        return Some(Err(format!("`{}` in `{}` does not begin with a number", parts[k], parts.join(":"))));
+    }
     if unit != second || unit != third {
         return Some(Err(format!("the parts of `{}` have different units", parts.join(":"))));
     }
@@ -247,6 +250,8 @@ mod tests {
         told("mach = 0.3\nalpha = \"-4:8:-1 deg\"", &["is no series that reaches its end"]);
         told("mach = 0.3\nalpha = \"-4:8:0 deg\"", &["is no series that reaches its end"]);
         told("mach = 0.3\nalpha = \"-4 rad:8:1 deg\"", &["different units"]);
+        told("mach = 0.3\nalpha = \"a:b:c\"", &["`a` in `a:b:c` does not begin with a number"]);
+        told("mach = 0.3\nalpha = \"0:x:1 deg\"", &["does not begin with a number"]);
         told("mach = [0.3, -1]", &["`flow.mach[1]`", "greater than 0"]);
         told("mach = [0.3, 0.3]", &["stands there twice"]);
         told("mach = []", &["`flow.mach` has no values"]);

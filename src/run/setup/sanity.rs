@@ -159,7 +159,8 @@ fn hot(case: &Case) -> Option<String> {
     let mach = case.flow.reference().mach;
     let times = 1.0 + 0.5 * (case.flow.gamma - 1.0) * mach * mach;
     (mach > HYPERSONIC).then(|| {
-        format!("at M {mach:.4} the gas is {times:.0} times as hot at rest as in the stream: real gases break up, this one does not")
+        let mach = scales::short(mach);
+        format!("at M {mach} the gas is {times:.0} times as hot at rest as in the stream: real gases break up, this one does not")
     })
 }
 
@@ -169,8 +170,9 @@ fn rarefied<const D: usize>(case: &Case, surface: Option<&Surface<D>>) -> Option
     let mach = case.flow.reference().mach;
     let path = case.flow.free_path(re, mach);
     (path > RAREFIED).then(|| {
+        let [mach, re] = [mach, re].map(scales::short);
         format!(
-            "at M {mach:.4} and the Reynolds number {re:.3} molecules fly {path:.2} lengths of the body between collisions: loads are those \
+            "at M {mach} and the Reynolds number {re} molecules fly {path:.2} lengths of the body between collisions: loads are those \
              of a continuum that the gas hardly is; a lower Mach number makes it one"
         )
     })

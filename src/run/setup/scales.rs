@@ -144,7 +144,7 @@ fn near_sides<const D: usize>(case: &Case, spec: &CloudSpec<D>, surface: &Surfac
 }
 
 /// Three digits are enough to recognise a length.
-fn short(value: f64) -> String {
+pub(super) fn short(value: f64) -> String {
     let rounded: f64 = format!("{value:.2e}").parse().unwrap_or(value);
     if (1e-3..1e6).contains(&rounded.abs()) { format!("{rounded}") } else { format!("{rounded:e}") }
 }
