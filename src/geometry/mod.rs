@@ -264,6 +264,16 @@ fn positive(place: &str, key: &str, value: f64) -> Result<f64, GeometryError> {
 
 /// Refuses bodies in the plane that overlap or touch; names all pairs that do.
 fn refuse_overlap<const D: usize>(shells: &[(String, Shell<D>)]) -> Result<(), GeometryError> {
+    let boxes: Vec<Bounds<D>> = shells.iter().map(|(_, shell)| Bounds::around(&shell.vertices)).collect();
+    let near = |[a, b]: &[usize; 2]| {
+        let margin = TOUCHING * boxes[*a].extent().max_abs().max(boxes[*b].extent().max_abs());
+        boxes[*a].meets(&boxes[*b], margin)
+    };
+    let pairs = (0..shells.len()).flat_map(|a| (a + 1..shells.len()).map(move |b| [a, b]));
+    let pairs: Vec<[usize; 2]> = pairs.filter(near).collect();
+    if pairs.is_empty() {
+        return Ok(());
+    }
     let alone: Vec<Surface<D>> = shells.iter().map(|shell| Surface::new(std::slice::from_ref(shell))).collect();
     let within = |a: usize, b: usize| {
         let (other, touching) = (&shells[a].1.vertices, TOUCHING * alone[b].bounds().extent().max_abs());
@@ -275,18 +285,12 @@ fn refuse_overlap<const D: usize>(shells: &[(String, Shell<D>)]) -> Result<(), G
         let two = Surface::new(&[shells[a].clone(), shells[b].clone()]);
         two.intersection().map(|(x, _)| x)
     };
-    let pairs = (0..shells.len()).flat_map(|a| (a + 1..shells.len()).map(move |b| [a, b]));
-    let boxes: Vec<Bounds<D>> = alone.iter().map(Surface::bounds).collect();
-    let near = |[a, b]: &[usize; 2]| {
-        let margin = TOUCHING * boxes[*a].extent().max_abs().max(boxes[*b].extent().max_abs());
-        boxes[*a].meets(&boxes[*b], margin)
-    };
     let meeting = |[a, b]: [usize; 2]| {
         let x = within(a, b).or_else(|| within(b, a)).or_else(|| if crossed { crossing(a, b) } else { None })?;
         let [a, b] = [a, b].map(|k| &shells[k].0);
         Some((format!("body `{a}`"), format!("overlaps or touches body `{b}` at {:?}", x.0)))
     };
-    let mut found = pairs.filter(near).filter_map(meeting);
+    let mut found = pairs.into_iter().filter_map(meeting);
     let Some((place, mut what)) = found.next() else { return Ok(()) };
     found.for_each(|(place, more)| what.push_str(&format!("; {place} {more}")));
     Err(GeometryError::refused(place, what, "move the bodies apart, or unite them in one outline"))

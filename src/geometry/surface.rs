@@ -80,6 +80,8 @@ pub struct Surface<const D: usize> {
     pub exact: Vec<Exact<D>>,
     tree: Tree<D>,
     bounds: Bounds<D>,
+    /// Boxes around the elements of each body.
+    boxes: Vec<Bounds<D>>,
     /// Elements, before they were cut, of bodies that are cut by others; of the others none.
     whole: Vec<Vec<[Vector<D>; D]>>,
 }
@@ -105,6 +107,7 @@ impl<const D: usize> Surface<D> {
             exact: vec![Exact::None; bodies.len()],
             tree: Tree::new(&[]),
             bounds: Bounds::EMPTY,
+            boxes: Vec::new(),
             whole: vec![Vec::new(); bodies.len()],
         };
         for skin in skins {
@@ -112,7 +115,7 @@ impl<const D: usize> Surface<D> {
         }
         let corners: Vec<_> = (0..surface.elements.len()).map(|e| surface.corners(e as u32)).collect();
         surface.tree = Tree::new(&corners);
-        surface.bounds = corners.iter().fold(Bounds::EMPTY, |b: Bounds<D>, c| b.union(&simplex::bounds(c)));
+        surface.enclose(&corners);
         surface.radius = surface.curvature.iter().map(|k| 1.0 / k.abs()).collect();
         surface
     }
@@ -149,7 +152,7 @@ impl<const D: usize> Surface<D> {
         }
         let corners: Vec<_> = (0..moved.elements.len()).map(|e| moved.corners(e as u32)).collect();
         moved.tree = Tree::new(&corners);
-        moved.bounds = corners.iter().fold(Bounds::EMPTY, |b: Bounds<D>, c| b.union(&simplex::bounds(c)));
+        moved.enclose(&corners);
         moved.exact = vec![Exact::None; self.exact.len()];
         moved
     }
@@ -180,7 +183,8 @@ impl<const D: usize> Surface<D> {
     }
 
     fn tag(&mut self, name: &str) -> u16 {
-        let found = self.tags.iter().position(|t| t == name).unwrap_or_else(|| {
+        // elements of one name follow one another: it is the last one, mostly
+        let found = self.tags.iter().rposition(|t| t == name).unwrap_or_else(|| {
             self.tags.push(name.to_string());
             self.tags.len() - 1
         });
@@ -243,8 +247,17 @@ impl<const D: usize> Surface<D> {
 
     /// Smallest box around all elements of body number `body`.
     pub fn bounds_of(&self, body: usize) -> Bounds<D> {
-        let own = (0..self.elements.len()).filter(|e| usize::from(self.elements[*e].body) == body);
-        own.fold(Bounds::EMPTY, |b, e| b.union(&Bounds::around(&self.corners(e as u32))))
+        self.boxes.get(body).copied().unwrap_or(Bounds::EMPTY)
+    }
+
+    /// Finds the boxes around all elements and around those of each body, whose corners are given.
+    fn enclose(&mut self, corners: &[[Vector<D>; D]]) {
+        self.boxes = vec![Bounds::EMPTY; self.bodies.len()];
+        for (element, corners) in self.elements.iter().zip(corners) {
+            let own = &mut self.boxes[usize::from(element.body)];
+            *own = own.union(&simplex::bounds(corners));
+        }
+        self.bounds = self.boxes.iter().fold(Bounds::EMPTY, |all, own| all.union(own));
     }
 
     /// Total area (2-D: length of the outlines).
