@@ -118,7 +118,7 @@ pub(super) static BODY: Table = Table::of(&[
 .with_one_of(&["naca", "airfoil", "polygon", "circle", "ellipse", "sphere", "box", "surface", "wing", "revolution", "ellipsoid"]);
 
 static NACA: Table = Table::of(&[
-    Field::required("digits", Kind::Matching("^[0-9].{3,}$"), "Its designation."),
+    Field::required("digits", Kind::Matching("^([Nn][Aa][Cc][Aa][ _-]?)?[0-9].{3,}$"), "Its designation."),
     Field::defaulted("trailing_edge", Kind::Words(TRAILING_EDGES), Absent::Word("closed"), "How the section ends."),
 ])
 .short("digits");
