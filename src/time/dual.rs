@@ -23,6 +23,8 @@ const HOPELESS: f64 = 0.3;
 const RUNAWAY: f64 = 0.5;
 /// Bend of the last three states over their slope above which the next one is not guessed from a parabola: after a jerk.
 const STRAIGHT: f64 = 0.5;
+/// Orders that the residual of such a guess falls at least: one that counts as solved for itself would be guessed from again and again.
+const GUESS: f64 = -0.5;
 /// Greatest ratio of successive steps of a march with fixed ones, where some were cut: BDF2 takes 2.4.
 const LENGTHEN: f64 = 2.0;
 /// Part of a fixed step down to which it is halved where Newton's method stalls.
@@ -263,7 +265,7 @@ impl<S: Implicit> Dual<'_, S> {
         self.relax.begin_step(TimeTerm { formula, rest });
         let orders = self.plan.orders;
         // of a guess through three states the residual is 9/2 times the truncation error of the difference formula
-        let guessed = if smooth { 10f64.powf(1.0 - orders) * self.relax.drop() } else { 0.0 };
+        let guessed = if smooth { 10f64.powf((1.0 - orders).min(GUESS)) * self.relax.drop() } else { 0.0 };
         self.relax.goal = 10f64.powf(-orders).max(guessed);
         if let Err(fault) = self.relax.check_frame() {
             self.go_back();
