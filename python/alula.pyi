@@ -50,7 +50,10 @@ class Result:
         """Title of the case."""
     @property
     def cl(self) -> float:
-        """Lift coefficient; of a polar that of its last point, of a march that of its end."""
+        """Lift coefficient; of a polar that of its last point, of a march that of its end.
+
+        Means and harmonics of the last period of a motion are in `summary["periodic_loads"]`.
+        """
     @property
     def cd(self) -> float:
         """Drag coefficient."""
@@ -61,8 +64,8 @@ class Result:
     def loads_error(self) -> Optional[Loads]:
         """Half widths of the error bars of the loads; None without a family of clouds."""
     @property
-    def converged(self) -> bool:
-        """True when the goal was reached."""
+    def converged(self) -> Optional[bool]:
+        """True when the goal was reached; None of a march that came to its end and was asked for nothing else."""
     @property
     def summary(self) -> dict[str, Any]:
         """Everything else that is one number: what `summary.json` holds."""
@@ -94,8 +97,8 @@ class Result:
     def polar(self) -> Optional[dict[str, Any]]:
         """Arrays over the points of a polar, NaN where a point failed; None for a single flow.
 
-        `mach`, `alpha_deg`, `cl`, `cd`, `cm`, `cl_error`, `cd_error`, `cm_error` (half widths of error bars), `converged`, and the list
-        `reason`, empty where a point converged.
+        `mach`, `alpha_deg`, `cl`, `cd`, `cm`, `cl_error`, `cd_error`, `cm_error` (half widths of error bars), `converged`, and the lists
+        `within_accuracy` (whether the bars are as short as asked for; None where there are none) and `reason`, empty where a point converged.
         """
     @property
     def folder(self) -> Optional[Path]:

@@ -23,7 +23,13 @@ const PROMISED: [&str; 13] = [
     "ledger",
 ];
 /// What it may add.
-const EXTRA: [&str; 28] = [
+const EXTRA: [&str; 34] = [
+    "alpha_deg",
+    "cloud",
+    "loads_at",
+    "mach",
+    "reference",
+    "reynolds",
     "hinge_moments",
     "root_loads",
     "span_load",

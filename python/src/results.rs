@@ -18,7 +18,8 @@ pub(crate) struct Result {
     /// Title of the case.
     #[pyo3(get)]
     title: String,
-    /// Lift coefficient; of a polar that of its last point, of a march that of its end.
+    /// Lift coefficient; of a polar that of its last point, of a march that of its end: means and harmonics of the last period are in
+    /// `summary["periodic_loads"]`.
     #[pyo3(get)]
     cl: f64,
     /// Drag coefficient.
@@ -30,9 +31,9 @@ pub(crate) struct Result {
     /// Half widths of the error bars of the loads, `{"cl": ..., "cd": ..., "cm": ...}`; None without a family of clouds.
     #[pyo3(get)]
     loads_error: Option<Py<PyDict>>,
-    /// True when the goal was reached.
+    /// True when the goal was reached; None of a march that came to its end and was asked for nothing else.
     #[pyo3(get)]
-    converged: bool,
+    converged: Option<bool>,
     /// Everything else that is one number: what `summary.json` holds.
     #[pyo3(get)]
     summary: Py<PyAny>,
@@ -55,7 +56,8 @@ pub(crate) struct Result {
     #[pyo3(get)]
     tags: Vec<String>,
     /// Arrays over the points of a polar, NaN where a point failed: `mach`, `alpha_deg`, `cl`, `cd`, `cm`, `cl_error`, `cd_error`, `cm_error`
-    /// (half widths of error bars), `converged`, and the list `reason`; None for a single flow.
+    /// (half widths of error bars), `converged`, and the lists `within_accuracy` (whether the bars are as short as asked for; None where there
+    /// are none) and `reason`; None for a single flow.
     #[pyo3(get)]
     polar: Option<Py<PyDict>>,
     /// Folder of the run; None without one.
@@ -66,7 +68,11 @@ pub(crate) struct Result {
 #[pymethods]
 impl Result {
     fn __repr__(&self) -> String {
-        let state = if self.converged { "converged" } else { "not converged" };
+        let state = match self.converged {
+            Some(true) => "converged",
+            Some(false) => "not converged",
+            None => "marched to its end",
+        };
         format!("<alula.Result of '{}': cl {:.5}, cd {:.5}, cm {:.5}, {state}>", self.title, self.cl, self.cd, self.cm)
     }
 }
@@ -145,6 +151,7 @@ fn polar(py: Python<'_>, points: &[PolarPoint]) -> PyResult<Py<PyDict>> {
     loads("cl", |c| c.cl)?;
     loads("cd", |c| c.cd)?;
     loads("cm", |c| c.cm)?;
+    table.set_item("within_accuracy", PyList::new(py, points.iter().map(|p| p.within_accuracy))?)?;
     table.set_item("converged", PyArray1::from_vec(py, points.iter().map(|p| p.converged).collect()))?;
     table.set_item("reason", PyList::new(py, points.iter().map(|p| &p.reason))?)?;
     Ok(table.unbind())

@@ -44,7 +44,7 @@ const STACK: usize = 8 << 20;
 /// Returns
 /// -------
 /// Result
-///     Loads, fields and history. `converged` tells whether the goal was reached.
+///     Loads, fields and history. `converged` tells whether the goal was reached; None of a march to its end.
 ///
 /// Raises
 /// ------

@@ -65,7 +65,7 @@ pub use text::{TextError, decimal_comma, numbers_of, open_regular, separator, te
 pub use time::{Automatic, Dual, Explicit, HarmonicCount, Harmonics, RungeKutta, Steady, SteadyMethod, Temporal};
 pub use verdict::ClaimRow;
 pub use wing::{PlanformShape, ProfileSides, Tip, Wing, WingSides};
-pub use write::write;
+pub use write::{write, write_cloud};
 
 /// Everything a run needs to know.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

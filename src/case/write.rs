@@ -41,6 +41,18 @@ pub fn write(case: &Case) -> String {
     text
 }
 
+/// A cloud as the section of a case file.
+pub fn write_cloud(cloud: &super::Cloud) -> String {
+    let field = CASE.fields.iter().find(|f| f.key == "cloud");
+    let (Some(Kind::Table(table)), Ok(Value::Object(keys))) = (field.map(|f| &f.kind), serde_json::to_value(cloud))
+    else {
+        return String::new();
+    };
+    let mut text = String::new();
+    section("[cloud]", table, &keys, &mut text);
+    text.trim_start().to_owned()
+}
+
 /// True for what stands under a header of its own, and so behind all plain keys.
 fn has_header(field: &Field, value: Option<&Value>) -> bool {
     match field.kind {
@@ -194,6 +206,14 @@ file = "a.csv"
             assert_eq!(case, again);
             assert_eq!(write(&again), written);
         }
+    }
+
+    #[test]
+    fn a_cloud_alone_is_a_section() {
+        let case = read(EVERYTHING, "case.toml").unwrap();
+        let bare = read("[flow]\nmach = 0.5\n[[body]]\nnaca = \"0012\"\n", "bare.toml").unwrap();
+        let text = format!("{}\n{}", write(&bare).split("\n[cloud]").next().unwrap(), write_cloud(&case.cloud));
+        assert_eq!(read(&text, "again.toml").unwrap_or_else(|e| panic!("{e}\n{text}")).cloud, case.cloud);
     }
 
     #[test]

@@ -1,7 +1,8 @@
 //! Harmonics of load histories.
 //!
 //! f(t) = Re Σ f_n e^{+inωt}, n = 0..N, fitted by least squares to the last periods of a history whose steps need not be
-//! equal; each sample counts with the time it stands for. A sine of amplitude A and phase φ has f_1 = −iA e^{iφ}. What a
+//! equal; each sample counts with the time it stands for. A march has its first sample one step after its start: there the end of
+//! the period stands for the beginning. A sine of amplitude A and phase φ has f_1 = −iA e^{iφ}. What a
 //! load has to do with the motion is told by ratios, in which the origin of time drops out: f_1/α_1, and for the others
 //! f_n (|α_1|/α_1)^n, which is the coefficient when time starts at the greatest angle. The work of a cycle is
 //! ∮ f dα = π Σ n Im(f_n ᾱ_n): positive when the flow feeds the motion.
@@ -99,7 +100,7 @@ impl Harmonics {
         }
         let omega = std::f64::consts::TAU / window.period;
         let rows: Vec<Vec<f64>> = time.iter().map(|t| basis(window.harmonics, omega * t)).collect();
-        let weights = durations(time);
+        let weights = durations(time, end - window.periods * window.period);
         // the mean is taken out first: it may be far larger than the rest
         let level = values.iter().sum::<f64>() / values.len() as f64;
         let mut matrix = vec![vec![0.0; unknowns + 1]; unknowns];
@@ -202,7 +203,8 @@ fn bounds(time: &[f64], window: &Window, end: f64) -> Result<(usize, usize), Har
     let start = end - window.periods * window.period;
     let slack = SLACK * window.period;
     let begin = time.first().copied().unwrap_or(f64::INFINITY);
-    if begin > start + slack {
+    let step = if let [a, b, ..] = time { b - a } else { 0.0 };
+    if begin > start + step + slack {
         let span = if time.is_empty() { 0.0 } else { (end - begin) / window.period };
         return Err(HarmonicsError::Short { span, needed: window.periods });
     }
@@ -221,10 +223,15 @@ fn basis(harmonics: usize, phase: f64) -> Vec<f64> {
     row
 }
 
-/// The time each sample stands for: half the way to its neighbours.
-fn durations(time: &[f64]) -> Vec<f64> {
+/// The time each sample stands for: half the way to its neighbours. Where the first one lies behind the `start` of the window, the
+/// last one stands for the start.
+fn durations(time: &[f64], start: f64) -> Vec<f64> {
     let n = time.len();
-    (0..n).map(|k| 0.5 * (time[(k + 1).min(n - 1)] - time[k.saturating_sub(1)])).collect()
+    let mut all: Vec<f64> = (0..n).map(|k| 0.5 * (time[(k + 1).min(n - 1)] - time[k.saturating_sub(1)])).collect();
+    let short = 0.5 * (time[0] - start).max(0.0);
+    all[0] += short;
+    all[n - 1] += short;
+    all
 }
 
 /// Solves the symmetric positive system [A | b] by elimination; `None` when it is singular.
@@ -288,6 +295,20 @@ mod tests {
     }
 
     #[test]
+    fn a_march_of_one_period_has_harmonics() {
+        let time: Vec<f64> = (1..=24).map(|k| PERIOD / 24.0 * f64::from(k)).collect();
+        let load = |t: f64| 7.0 + 2.0 * (omega() * t + 0.3).sin();
+        let values: Vec<f64> = time.iter().map(|t| load(*t)).collect();
+        let h = Harmonics::fit(&time, &values, &window(1.0, 2)).unwrap();
+        assert!((h.mean - 7.0).abs() < 1e-12 && (h.term(1).norm() - 2.0).abs() < 1e-12);
+        // of what the series leaves nothing falls on it
+        let ripple: Vec<f64> = time.iter().map(|t| load(*t) + (5.0 * omega() * t).cos()).collect();
+        let h = Harmonics::fit(&time, &ripple, &window(1.0, 2)).unwrap();
+        assert!((h.mean - 7.0).abs() < 1e-12 && h.term(2).norm() < 1e-12);
+        assert!(Harmonics::fit(&time[1..], &values[1..], &window(1.0, 2)).is_err());
+    }
+
+    #[test]
     fn loads_are_told_relative_to_the_motion() {
         let motion = fit(|t| 0.1 * (omega() * t + 1.1).sin(), 2);
         let load = fit(|t| 3.0 * (omega() * t + 1.1 - 0.25).sin() + 0.2 * (2.0 * (omega() * t + 1.1)).cos(), 2);
@@ -321,6 +342,11 @@ mod tests {
         // a period raises the mean by a hundredth
         assert!((p.mean - 0.01).abs() < 1e-3 && p.first < 1e-3, "{p:?}");
         assert!(Periodicity::of(&time[..60], &drift[..60], PERIOD).is_none());
+        // two periods from the first step on
+        let time: Vec<f64> = (1..=48).map(|k| PERIOD / 24.0 * f64::from(k)).collect();
+        let settled: Vec<f64> = time.iter().map(|t| 1.0 + (omega() * t).sin()).collect();
+        assert!(Periodicity::of(&time, &settled, PERIOD).unwrap().change() < 1e-10);
+        assert!(Periodicity::of(&time[1..], &settled[1..], PERIOD).is_none());
         assert!(Periodicity::of(&[], &[], PERIOD).is_none());
     }
 

@@ -22,7 +22,7 @@ const LEGEND_SIZE: f64 = 12.5;
 /// Height of a row of the legend.
 const LEGEND_ROW: f64 = 18.0;
 /// Letters of other fonts are wider than ours, at most about this much.
-const OTHER_FONTS: f64 = 1.15;
+pub(super) const OTHER_FONTS: f64 = 1.15;
 /// Room for the mark of an entry of the legend, and between one entry and the next.
 const LEGEND_MARK: f64 = 26.0;
 const LEGEND_GAP: f64 = 16.0;
@@ -190,6 +190,11 @@ impl Chart {
     /// Everything that a script needs beside the drawing.
     pub(super) fn data(&self, size: Size) -> ChartData<'_> {
         ChartData { chart: self, frame: self.frame(size) }
+    }
+
+    /// What the curves fill of a sheet.
+    pub(super) fn area(&self, size: Size) -> Area {
+        self.frame(size).area
     }
 
     fn frame(&self, size: Size) -> Frame {

@@ -134,6 +134,7 @@ impl Comparison {
     pub fn csv(&self) -> String {
         let mut text =
             "# harmonics f_n of f(t) = mean + Re sum f_n exp(+i n omega t), time from phase zero of the motion\n\
+             # units: loads, e and parts 1, places and fields those of the runs (`csv-metadata.json`), seconds s\n\
                         load,quantity,a,b\n"
                 .to_owned();
         for l in &self.loads {

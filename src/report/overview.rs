@@ -1,17 +1,18 @@
 //! The report: one page that opens anywhere, offline, for ever.
 //!
-//! Its top gives the loads with three measures of their error: the difference between the pressure on the surface and the
-//! balance of momentum around the bodies, the change by the last refinement, their error bar where they were found on a family of clouds, and the difference from a reference where the
-//! run knows one.
+//! Its top gives the loads, where the motion repeats as means and first harmonics of the last period. Steady loads have three measures of
+//! their error: the difference between the pressure on the surface and the balance of momentum around the bodies, the change by the last
+//! refinement, their error bar where they were found on a family of clouds, and the difference from a reference where the run knows one.
 use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 
+use super::conditions::has_no_bodies;
 use super::files::{LOADS, Load, RunFolder};
 use super::page::{Block, Card, Fact, Page, Section, Status};
 use super::sections;
 use super::words::{grouped, number};
-use super::{ReportError, grid, periodic, polar, pressure, span, structure, write_file};
+use super::{ReportError, grid, last_period, periodic, polar, pressure, span, structure, write_file};
 
 /// Writes `report.html` into a run folder from the files that are there, and gives its path.
 pub fn write_report(run: &Path) -> Result<PathBuf, ReportError> {
@@ -27,14 +28,19 @@ fn report(run: &RunFolder) -> Page {
     // a harmonic balance has none
     let none = summary.get("ledger").is_some_and(Value::is_null);
     let ledger = if none { Ok(Vec::new()) } else { sections::ledger(run) };
+    let bare = has_no_bodies(&summary);
+    let of_bodies = |chapter: fn(&RunFolder) -> Result<Vec<Block>, String>| match bare {
+        true => Ok(Vec::new()),
+        false => chapter(run),
+    };
     let sections = [
         Section::new("warnings", "Warnings", Ok(warnings(&summary))),
-        Section::new("loads", "Loads", sections::loads(run)),
+        Section::new("loads", "Loads", of_bodies(sections::loads)),
         Section::new("span", "Load along the span", Ok(span::span(run))),
         Section::new("grid", "Grid convergence", Ok(grid::grid(run))),
         Section::new("polar", "Polar", Ok(polar::polar(run))),
         Section::new("flow", "Flow", sections::pictures(run)),
-        Section::new("pressure", "Pressure on the surface", pressure::pressure(run)),
+        Section::new("pressure", "Pressure on the surface", of_bodies(pressure::pressure)),
         Section::new("motion", "Motion", Ok(periodic::motion(run))),
         Section::new("structure", "Structure", Ok(structure::structure(run))),
         Section::new("convergence", "Convergence", Ok(sections::convergence(run))),
@@ -48,7 +54,7 @@ fn report(run: &RunFolder) -> Page {
     Page {
         title: case_title(run, &summary),
         status: Some(status(&summary)),
-        cards: cards(run, &summary),
+        cards: if bare { Vec::new() } else { cards(run, &summary) },
         sections: sections.into_iter().filter(|s| !s.blocks.is_empty()).collect(),
         ..Page::default()
     }
@@ -70,17 +76,21 @@ fn case_title(run: &RunFolder, summary: &Value) -> String {
 /// One line: converged or not, particles, iterations.
 fn status(summary: &Value) -> Status {
     let get = |key: &str| summary.get(key).and_then(Value::as_f64);
-    let marched = get("time").is_some_and(|time| time > 0.0) && summary.get("harmonic_balance").is_none();
-    let (class, verdict) = match summary.get("converged").and_then(Value::as_bool) {
-        Some(true) if marched => ("good", "marched to its end"),
-        Some(false) if marched => ("bad", "not periodic, or short of its end"),
-        Some(true) => ("good", "converged"),
-        Some(false) => ("bad", "not converged"),
-        None => ("unknown", "no summary"),
+    let marched = last_period::at(summary).filter(|_| summary.get("harmonic_balance").is_none());
+    let (class, verdict) = match (summary.get("converged").and_then(Value::as_bool), &marched) {
+        (Some(true), Some(_)) => ("good", "marched until the loads repeated"),
+        (Some(false), Some(_)) => ("bad", "not periodic, or short of its end"),
+        (None, Some(_)) => ("good", "marched to its end"),
+        (Some(true), None) => ("good", "converged"),
+        (Some(false), None) => ("bad", "not converged"),
+        (None, None) => ("unknown", "no summary"),
     };
+    let missed = get("unconverged_steps").filter(|n| *n > 0.0 && marched.is_some());
     let facts = [
+        marched,
         get("particles").map(|n| format!("{} particles", grouped(n))),
         get("iterations").map(|n| format!("{} iterations", grouped(n))),
+        missed.map(|n| format!("{} steps short of the goal of their inner iterations", grouped(n))),
         get("residual_drop").filter(|d| *d > 0.0).map(|d| format!("residual down by {} orders", orders(d))),
         summary.get("run").and_then(Value::as_str).map(str::to_owned),
     ];
@@ -93,8 +103,11 @@ fn orders(drop: f64) -> String {
     format!("{:.1}", if drop < 1.0 { -drop.log10() } else { drop })
 }
 
-/// The three coefficients with their errors.
+/// The three coefficients with their errors; means and harmonics where the flow repeats.
 fn cards(run: &RunFolder, summary: &Value) -> Vec<Card> {
+    if let Some(cards) = last_period::cards(summary) {
+        return cards;
+    }
     let refinements = last_refinement(run);
     LOADS.iter().zip(refinements).map(|(load, change)| card(summary, load, change)).collect()
 }
@@ -105,12 +118,15 @@ fn card(summary: &Value, load: &Load, refinement: Option<f64>) -> Card {
     let told = |v| of("loads_error").map_or_else(|| number(v), |bar| with_bar(v, bar));
     let difference = |other: Option<f64>| value.zip(other).map(|(a, b)| a - b);
     let fact = |name: &str, change: Option<f64>| Fact::new(name, change.map_or("–".to_owned(), |c| signed(c, value)));
+    // a march that does not repeat ends at an instant
+    let at = last_period::at(summary).map_or_else(String::new, |at| format!(" {at}"));
     let facts = vec![
         fact("against momentum balance", difference(of("loads_momentum_balance"))),
         fact("change by last refinement", refinement),
         fact("against reference", difference(of("reference"))),
     ];
-    Card { name: load.name, value: value.map_or("–".to_owned(), told), facts }
+    let facts = facts.into_iter().chain(last_period::cycles(summary, load)).collect();
+    Card { name: format!("{}{at}", load.name), value: value.map_or("–".to_owned(), told), facts }
 }
 
 /// A value with its error bar, both to the second digit of the bar.

@@ -37,7 +37,7 @@ pub(super) struct Status {
 
 /// A number in large type with facts below it.
 pub(super) struct Card {
-    pub(super) name: &'static str,
+    pub(super) name: String,
     pub(super) value: String,
     pub(super) facts: Vec<Fact>,
 }
@@ -272,7 +272,7 @@ mod tests {
             title: word(),
             status: Some(Status { class: "good", verdict: word(), facts: word() }),
             lead: Some(word()),
-            cards: vec![Card { name: "<b>", value: word(), facts: vec![Fact::new(&word(), word())] }],
+            cards: vec![Card { name: "<b>".to_owned(), value: word(), facts: vec![Fact::new(&word(), word())] }],
             sections: vec![Section { id: "all", title: word(), blocks }],
         };
         let html = page.html().unwrap();

@@ -30,12 +30,16 @@ impl From<Load> for Quantity {
 pub(super) fn polar(run: &RunFolder) -> Vec<Block> {
     let Ok(points) = run.table(FILE) else { return Vec::new() };
     let failed = points.column("converged").map_or(0, |all| all.iter().filter(|c| **c != "true").count());
+    let short = points.column("within_accuracy").map_or(0, |all| all.iter().filter(|c| **c == "false").count());
     let mut text = "Vertical and horizontal bars are error bars, where the loads were found on a family of clouds. \
          The chapters below show the last point whose flow is known."
         .to_owned();
     if failed > 0 {
         text +=
             &format!(" Points that did not converge ({failed}) are left out of the curves; the table has the reasons.");
+    }
+    if short > 0 {
+        text += &format!(" At {short} of {} points the error bars are longer than asked for.", points.rows.len());
     }
     vec![
         Block::charts(charts(&points).into_iter().map(|(_, chart)| chart)),
@@ -145,11 +149,13 @@ fn table(points: &Csv) -> Table {
         "iterations",
     ]
     .map(numbers);
-    let reasons = column("reason");
+    let (reasons, within) = (column("reason"), column("within_accuracy"));
     let row = |k: usize| {
         let values = shown.iter().map(|c| c.get(k).copied().map_or("–".to_owned(), number));
-        let reason = reasons.get(k).copied().unwrap_or_default().to_owned();
-        values.chain([reason]).collect::<Vec<_>>()
+        let reason = reasons.get(k).copied().unwrap_or_default();
+        let short = within.get(k) == Some(&"false") && reason.is_empty();
+        let remark = if short { "longer error bars than asked for" } else { reason };
+        values.chain([remark.to_owned()]).collect::<Vec<_>>()
     };
     let rows = (0..reasons.len()).map(row).collect::<Vec<_>>();
     Table::new(
@@ -165,7 +171,7 @@ fn table(points: &Csv) -> Table {
             "CL by momentum",
             "CD by momentum",
             "iterations",
-            "not converged",
+            "not converged, or short of the accuracy",
         ],
         rows,
     )

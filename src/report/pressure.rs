@@ -4,11 +4,17 @@
 //! coefficient at Mach 1 in isentropic flow from the free stream, 2/(γM²) [((2 + (γ−1)M²)/(γ+1))^(γ/(γ−1)) − 1] (Anderson,
 //! *Modern Compressible Flow*, section 9.3). Shocks are where the Mach number on the wall falls through 1 steeply, stagnation
 //! points where Cp is greatest.
-use super::chart::{Axis, Chart, Marks, Series, Size};
+use std::path::Path;
+
+use super::canvas::{Area, Canvas, Pen, Text};
+use super::chart::{Axis, Chart, Marks, OTHER_FONTS, Series, Size};
+use super::colour::Colour;
+use super::conditions::conditions as of_stream;
 use super::files::{Csv, LOADS, RunFolder};
 use super::page::{Block, Fact};
-use super::stations;
+use super::surface_views::title;
 use super::words::{grouped, number};
+use super::{ReportError, font, last_period, stations, write_file};
 
 /// Cp* farther up than this, in the range of Cp, would leave no room for the curves.
 const FAR: f64 = 0.6;
@@ -22,6 +28,10 @@ const OUTLINE: f64 = 0.5;
 const GAP: f64 = 24.0;
 /// Pixels of the sheet that the curves and the outline fill, across and up.
 const ROOM: [f64; 2] = [770.0, 460.0];
+/// Size of the letters in the box of conditions, height of a line, and the air around them, in pixels.
+const BOX_TEXT: f64 = 12.5;
+const BOX_ROW: f64 = 17.0;
+const BOX_AIR: f64 = 9.0;
 
 pub(super) fn pressure(run: &RunFolder) -> Result<Vec<Block>, String> {
     let (curves, missing) = run.references();
@@ -59,24 +69,47 @@ pub(super) fn chart(run: &RunFolder, references: Vec<Series>) -> Result<Chart, S
 
 /// What the curve belongs to.
 fn conditions(run: &RunFolder) -> Vec<Fact> {
-    let case = case(run);
-    let flow = |key: &str| {
-        case.get("flow").and_then(|flow| flow.get(key)).map(|value| match value {
-            toml::Value::String(text) => text.clone(),
-            other => other.to_string(),
-        })
-    };
-    let of_flow = [("Mach number", "mach"), ("Angle of attack", "alpha"), ("Reynolds number", "reynolds")];
-    let mut facts: Vec<Fact> =
-        of_flow.into_iter().filter_map(|(name, key)| Some(Fact::new(name, flow(key)?))).collect();
     let summary = run.json("summary.json").unwrap_or_default();
+    let mut facts = of_stream(&summary);
+    let at = last_period::at(&summary).map_or_else(String::new, |at| format!(" {at}"));
     for load in LOADS {
         let told = |table: &str| summary[table][load.column].as_f64();
         let bar = told("loads_error").map_or_else(String::new, |bar| format!(" ± {bar:.1e}"));
-        facts.extend(told("loads").map(|value| Fact::new(load.name, format!("{}{bar}", number(value)))));
+        let fact = |value| Fact::new(&format!("{}{at}", load.name), format!("{}{bar}", number(value)));
+        facts.extend(told("loads").map(fact));
     }
     facts.extend(summary["particles"].as_f64().map(|n| Fact::new("Particles", grouped(n))));
     facts
+}
+
+/// Draws the chart with what it belongs to in a box, `pictures/cp-chord`.
+pub fn write_pressure(run: &Path) -> Result<(), ReportError> {
+    let folder = RunFolder::new(run);
+    let references = folder.references().0.into_iter().map(|reference| reference.curve).collect();
+    let Ok(chart) = chart(&folder, references) else { return Ok(()) };
+    let chart = Chart { title: format!("Pressure coefficient: {}", title(&folder)), ..chart };
+    let mut canvas = chart.draw(Size::TALL);
+    let lines: Vec<String> = conditions(&folder)
+        .into_iter()
+        .map(|fact| format!("{}  {}", fact.name, fact.value.replace('\u{202f}', " ")))
+        .collect();
+    boxed(&mut canvas, &chart.area(Size::TALL), &lines);
+    write_file(&run.join("pictures/cp-chord.svg"), canvas.svg()?.as_bytes())?;
+    write_file(&run.join("pictures/cp-chord.png"), &canvas.png(2.0)?)
+}
+
+/// Lines in a box in the upper right corner of `area`, where curves of Cp seldom come.
+fn boxed(canvas: &mut Canvas, area: &Area, lines: &[String]) {
+    let widest = lines.iter().map(|line| font::width(line)).fold(0.0, f64::max) * BOX_TEXT * OTHER_FONTS;
+    let (width, height) = (widest + 2.0 * BOX_AIR, lines.len() as f64 * BOX_ROW + BOX_AIR);
+    let corner = [area.x + area.width - width - BOX_AIR, area.y + BOX_AIR];
+    let frame = Area { x: corner[0], y: corner[1], width, height };
+    canvas.layer("conditions", None);
+    canvas.rectangle(frame, Some(Colour::PAPER.faded(230)), Some(Pen::new(Colour::GREY, 1.0)));
+    for (k, line) in lines.iter().enumerate() {
+        let at = [corner[0] + BOX_AIR, corner[1] + (k + 1) as f64 * BOX_ROW];
+        canvas.text(Text::new(line, at, BOX_TEXT));
+    }
 }
 
 fn case(run: &RunFolder) -> toml::Table {

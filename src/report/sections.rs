@@ -2,7 +2,9 @@
 use serde_json::Value;
 
 use super::chart::{Axis, Chart, Marks, Series};
+use super::conditions::conditions;
 use super::files::{Csv, FILM, LOADS, RunFolder};
+use super::last_period;
 use super::page::{Block, Cell, Fact, Picture, Table};
 use super::pressure;
 use super::surface_viewer::surface_viewer;
@@ -37,8 +39,13 @@ fn plain_or_number(value: f64) -> String {
 
 pub(super) fn loads(run: &RunFolder) -> Result<Vec<Block>, String> {
     let table = run.table("loads.csv").map(|table| Block::Table(run_table(&table, 2)));
-    let mut blocks = vec![table.unwrap_or_else(Block::LeftOut)];
     let summary = run.json("summary.json").unwrap_or_default();
+    let conditions = conditions(&summary);
+    let mut blocks: Vec<Block> = (!conditions.is_empty()).then_some(Block::Facts(conditions)).into_iter().collect();
+    blocks.extend(last_period::blocks(&summary));
+    let instant = last_period::at(&summary);
+    blocks.extend(instant.map(|at| Block::Heading(format!("The instant {at}"))));
+    blocks.push(table.unwrap_or_else(Block::LeftOut));
     let evaluations = [("On the surface", "loads"), ("Momentum balance around the bodies", "loads_momentum_balance")];
     let known = evaluations.into_iter().filter(|(_, key)| summary[key].is_object());
     let row = |(name, key): (&str, &str)| {
@@ -277,7 +284,12 @@ fn phases(phases: &Value) -> Vec<Vec<String>> {
 }
 
 pub(super) fn case(run: &RunFolder) -> Result<Vec<Block>, String> {
-    Ok(vec![Block::Code(run.text("case.toml")?.trim_end().to_owned())])
+    let code = |text: String| Block::Code(text.trim_end().to_owned());
+    let mut blocks = vec![code(run.text("case.toml")?)];
+    if let Ok(cloud) = run.text("cloud.toml") {
+        blocks.extend([Block::Heading("Cloud as chosen".to_owned()), code(cloud)]);
+    }
+    Ok(blocks)
 }
 
 pub(super) fn citation() -> Vec<Block> {

@@ -9,6 +9,7 @@ use super::axes::TITLE_SIZE;
 use super::canvas::{Area, Canvas, Text};
 use super::colour::{Colormap, Colour};
 use super::files::{LOADS, RunFolder};
+use super::last_period;
 use super::picture::colour_bar;
 use super::surface::{Shell, SurfaceStyle, draw_surface, seen};
 use super::surface_viewer::TOLD;
@@ -115,7 +116,9 @@ pub(super) fn conditions(run: &RunFolder) -> String {
         Some(format!("{} {}", load.name, number(value)))
     };
     let particles = summary["particles"].as_f64().map(|n| format!("{} particles", grouped(n).replace('\u{202f}', " ")));
+    // loads of a march are those of an instant
     told.filter(|words| words != "beta 0 deg")
+        .chain(last_period::at(&summary))
         .chain(LOADS.iter().filter_map(load))
         .chain(particles)
         .collect::<Vec<_>>()

@@ -10,7 +10,7 @@ const NEGATIVE_DRAG: f64 = -1e-4;
 
 /// What is to be said of the loads of a steady flow.
 pub(crate) fn of_loads(case: &Case, s: &Summary) -> Vec<String> {
-    if case.is_unsteady() || !s.converged {
+    if case.is_unsteady() || !s.succeeded() {
         return Vec::new();
     }
     let mut doubts = Vec::new();

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::error::RunError;
 use super::record::saved;
-use crate::case::{Case, Compare, open_regular, read, text_of, write};
+use crate::case::{Case, Cloud, Compare, open_regular, read, text_of, write, write_cloud};
 use crate::geometry::dimension;
 use crate::observe::table::UNFINISHED;
 use crate::observe::write_atomic;
@@ -17,6 +17,8 @@ const ORIGIN: &str = "origin.txt";
 const FINISHED: &str = "finished.txt";
 /// The last line of a run.
 const SUMMARY: &str = "summary.json";
+/// The last cloud, where the program chose it.
+const CLOUD: &str = "cloud.toml";
 
 /// The table of `alula gaf`.
 pub(crate) const MATRICES: &str = "gaf.csv";
@@ -102,6 +104,18 @@ pub(crate) fn create_once(case: &Case, input: &Path, out: &Path) -> Result<Hold,
         });
     }
     create(case, input, out).map(|(_, held)| held)
+}
+
+/// Puts a cloud that the program chose into the run folder, as the section of a case file; `refined`: the run made it finer besides.
+pub(crate) fn put_cloud(cloud: &Cloud, refined: bool, out: &Path) -> Result<(), RunError> {
+    let more = "# What the run found (`[adapt]`, detached shocks) refined it further.\n";
+    let text = format!(
+        "# The last cloud of this run, as the program chose it. In place of `[cloud]` in a case file, without `[accuracy]`, it gives\n\
+         # the same particles again.\n{}\n{}",
+        if refined { more } else { "" },
+        write_cloud(cloud)
+    );
+    Ok(write_atomic(&out.join(CLOUD), |w| w.write_all(text.as_bytes()))?)
 }
 
 /// True where a run was stopped before it kept anything but its case.

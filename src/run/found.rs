@@ -5,6 +5,7 @@ use super::recipe;
 use super::record::family;
 use super::record::summary::{Clock, FILES, FreeStream, Ledger, Reclouding, Summary};
 use super::record::{Log, Record};
+use super::understood::ReferenceValues;
 use crate::case::{Case, Initial};
 use crate::geometry::Surface;
 use crate::math::{Bounds, Vector};
@@ -140,14 +141,20 @@ impl<const D: usize> Found<'_, D> {
             run: log.journal.as_ref().map_or_else(String::new, |j| j.out.display().to_string()),
             particles: n,
             iterations: record.iteration,
-            residual_drop: if marches { 0.0 } else { -record.drop.log10() },
-            converged: record.converged_everywhere(),
+            residual_drop: (!marches && !record.began_steady).then(|| -record.drop.log10()),
+            converged: record.goal_reached(marches),
             cpu_seconds: cpu,
             wall_seconds: wall,
             peak_bytes: peak_bytes(),
             work_units: record.work.total as f64 / self.view.cloud().n_fluid as f64,
             free_stream: FreeStream { state: case.flow.reference(), gamma: case.flow.gamma },
             chord: self.axes.chord,
+            cloud: case.cloud.clone(),
+            loads_at: case.is_unsteady().then_some(record.time),
+            mach: case.flow.reference().mach,
+            alpha_deg: case.flow.alpha.degrees(),
+            reynolds: case.flow.reynolds_number(self.axes.chord),
+            reference: self.surface.map(|_| ReferenceValues::of::<D>(case, &self.axes)),
             loads,
             loads_pressure: part(&pressure),
             loads_friction: part(&friction),

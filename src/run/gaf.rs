@@ -108,7 +108,7 @@ fn column(case: &Case, swing: &Swing<'_>, input: &Path, monitor: &mut dyn Monito
         let mut session = Session::open(&case.gaf_case(plan, mode, k, factor), input)?;
         let Outcome::Finished(summary) = session.solve(monitor)? else { return Ok(None) };
         cpu_seconds += summary.cpu_seconds;
-        converged &= summary.converged;
+        converged &= summary.succeeded();
         found.push(swing.loads(&summary, factor)?);
     }
     let (whole, half) = (&found[0], &found[1]);

@@ -23,7 +23,7 @@ use super::record::{Described, IterationHistory, Log, Scales};
 use super::setup::{self, Site, Solver, check_motion};
 use super::stage::{Stage, Task};
 use super::studies::{self, Reached, Start, Turn};
-use crate::case::Case;
+use crate::case::{self, Case};
 use crate::cloud::Cloud;
 use crate::cloud::sources::Source;
 use crate::coupling::Coupled;
@@ -136,7 +136,7 @@ impl Session {
     /// Solves the case, from its start or from where it was stopped; tells how it went.
     pub fn solve(&mut self, monitor: &mut dyn Monitor) -> Result<Outcome, RunError> {
         let origin = std::mem::replace(&mut self.origin, Origin::Case);
-        let work = Run { case: &self.case, input: &self.input, out: self.out.as_deref() };
+        let work = Run { case: &self.case, given: &self.case.cloud, input: &self.input, out: self.out.as_deref() };
         let ended = match dimension(&self.case) {
             2 => work.solve::<2>(origin, monitor),
             _ => work.solve::<3>(origin, monitor),
@@ -201,6 +201,8 @@ impl Session {
 /// A case on its way through the stages.
 struct Run<'a> {
     case: &'a Case,
+    /// The cloud as the case file has it.
+    given: &'a case::Cloud,
     input: &'a Path,
     out: Option<&'a Path>,
 }
@@ -400,9 +402,13 @@ impl Run<'_> {
         let found = Found { case: self.case, view, surface, axes, names, balance, strips, span_load, wake };
         let mut summary = found.summary(log, gas.state, &Spent { clock, solved });
         doubts::of_loads(self.case, &summary).iter().for_each(|doubt| log.warn(doubt));
+        summary.cloud = accuracy::scaled(self.case, stood.stage.factor).cloud;
         summary.warnings.clone_from(&log.record.warnings);
         let (field, walls) = (field(self.case, &view), found.walls());
         if let Some(journal) = &log.journal {
+            if summary.cloud != *self.given {
+                folder::put_cloud(&summary.cloud, stood.stage.cycle > 0, &journal.out)?;
+            }
             files::write_all(&found, &mut summary, (&field, &walls), log, &journal.out)?;
             journal.describe()?;
             folder::finish(&journal.out)?;

@@ -99,7 +99,7 @@ impl Understood {
             density: stream.density,
             temperature: case.flow.is_dimensional().then(|| case.flow.kelvin()),
             reynolds: case.flow.reynolds_number(chord),
-            reference: axes.map(|axes| ReferenceValues::of::<D>(axes, stream.mach, case.reference.body.clone())),
+            reference: axes.map(|axes| ReferenceValues::of::<D>(case, axes)),
             bodies: names.map(|(body, name)| BodyBox::of(name, &bounds(body))).collect(),
             period: time(period),
             multiples: Some(motions.multiples()).filter(|m| m.iter().any(|n| *n > 1)).unwrap_or_default(),
@@ -118,16 +118,17 @@ impl Understood {
             ("speed", self.with_unit(self.speed, "m/s")),
             ("dynamic pr.", self.with_unit(self.dynamic_pressure, "Pa")),
         ];
+        // a polar has lines of its own
+        if self.points.is_none() {
+            lines.insert(1, ("alpha", format!("{} deg", short(self.alpha_deg))));
+        }
         if let Some(kelvin) = self.temperature {
             let gas = format!("{} Pa, {} K, {} kg/m3", short(self.pressure), short(kelvin), short(self.density));
             lines.push(("gas", gas));
         }
         lines.push(("Reynolds nr.", self.reynolds.map_or_else(|| "none: no viscosity".to_owned(), short)));
         if let Some(r) = &self.reference {
-            let area = r.area.map_or_else(String::new, |area| format!(", area {}", short(area)));
-            let point = list(&r.moment_point);
-            let of = r.body.as_ref().map_or_else(String::new, |body| format!(", planform of `{body}`"));
-            lines.push(("reference", format!("chord {}{area}, moments about {point}{of}", short(r.chord))));
+            lines.push(("reference", r.told()));
         }
         for body in &self.bodies {
             lines.push(("body", format!("`{}` from {} to {}", body.name, list(&body.min), list(&body.max))));
@@ -152,10 +153,19 @@ impl Understood {
 }
 
 impl ReferenceValues {
-    fn of<const D: usize>(axes: &LoadAxes, mach: f64, body: Option<String>) -> Self {
+    /// Those of loads in these axes.
+    pub(crate) fn of<const D: usize>(case: &Case, axes: &LoadAxes) -> Self {
         // the scale of forces in the units of the solver, whose speed of the stream is the Mach number
-        let area = (D == 3).then(|| axes.force_scale / (0.5 * mach.powi(2)));
+        let area = (D == 3).then(|| axes.force_scale / (0.5 * case.flow.reference().mach.powi(2)));
+        let body = case.reference.body.clone();
         Self { chord: axes.chord, area, body, moment_point: axes.moment_point[..D].to_vec() }
+    }
+
+    /// The same in words.
+    pub fn told(&self) -> String {
+        let area = self.area.map_or_else(String::new, |area| format!(", area {}", short(area)));
+        let of = self.body.as_ref().map_or_else(String::new, |body| format!(", planform of `{body}`"));
+        format!("chord {}{area}, moments about {}{of}", short(self.chord), list(&self.moment_point))
     }
 }
 
@@ -167,7 +177,7 @@ impl BodyBox {
 }
 
 /// Six digits are enough to recognise a number.
-fn short(value: f64) -> String {
+pub(crate) fn short(value: f64) -> String {
     let exponent = value.abs().log10().floor();
     if value == 0.0 || (-4.0..9.0).contains(&exponent) {
         let rounded: f64 = format!("{value:.5e}").parse().unwrap_or(value);

@@ -52,6 +52,8 @@ const SMALLEST_FRACTION: f64 = 0.05;
 const EXPLICIT_CFL: f64 = 1.5;
 /// Scaled residual that is round-off: a relative change of the density in one local time.
 const ROUND_OFF: f64 = 1e-15;
+/// Scaled first residual that is round-off of the sums over neighbours: no flow is sought from there.
+const STEADY_ALREADY: f64 = 1e-13;
 /// Courant number of Newton's method at the start of a step in time over that of a steady flow: the guess is good, and the
 /// term of time is a pseudo time of its own.
 const STEP_CFL: f64 = 1000.0;
@@ -136,9 +138,9 @@ impl<S: Implicit> Integrator<S> for Relax<'_, S> {
         Relax::advance(self)
     }
 
-    /// A state that was handed over is relaxed once at least.
+    /// A state that was handed over is relaxed once at least. Round-off falls no further.
     fn finished(&self) -> bool {
-        self.iteration > 0 && self.drop() <= self.goal
+        self.iteration > 0 && (self.drop() <= self.goal || self.began_steady() && self.norm <= STEADY_ALREADY)
     }
 
     fn mark(&self) -> Mark {
@@ -355,6 +357,11 @@ impl<'a, S: Implicit> Relax<'a, S> {
     /// Residual over its first value.
     pub fn drop(&self) -> f64 {
         self.norm / self.first_norm
+    }
+
+    /// True where the first residual is round-off: the start is a steady flow, and there is nothing to converge.
+    pub fn began_steady(&self) -> bool {
+        self.first_norm <= STEADY_ALREADY
     }
 
     /// The residual R(u) of the last accepted state.

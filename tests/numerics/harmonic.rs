@@ -290,7 +290,7 @@ fn places(root: &std::path::Path, name: &str) -> alula::run::Places {
 fn a_balance_goes_on_from_an_interruption_from_another_one_and_from_a_march() {
     let root = tempfile::tempdir().unwrap();
     let whole = summary(&section("2"), &places(root.path(), "whole"));
-    assert!(whole.converged && whole.first_harmonics[0].cl[0] > 3.0, "{whole:?}");
+    assert!(whole.succeeded() && whole.first_harmonics[0].cl[0] > 3.0, "{whole:?}");
     goes_on_to_the_same_bits(root.path(), &whole);
     goes_on_with_other_harmonics(root.path(), &whole);
     begins_with_a_march(root.path(), &whole);
@@ -312,7 +312,7 @@ fn goes_on_with_other_harmonics(root: &std::path::Path, whole: &alula::run::Summ
     let more = alula::run::run_from(&section("3"), &places(root, "more"), &from, &mut alula::run::Silent).unwrap();
     let alula::run::Outcome::Finished(more) = more else { panic!("interrupted") };
     let change = more.first_harmonics[0].cl[0] - whole.first_harmonics[0].cl[0];
-    assert!(more.converged && change.abs() < 0.01, "{change}");
+    assert!(more.succeeded() && change.abs() < 0.01, "{change}");
     let mut other = section("1");
     other.cloud.spacing = Some(alula::case::Length(0.05));
     let refused = alula::run::run_from(&other, &places(root, "x"), &from, &mut alula::run::Silent).unwrap_err();
@@ -345,7 +345,7 @@ fn begins_with_a_march(root: &std::path::Path, direct: &alula::run::Summary) {
     let marched = summary(&case, &places(root, "marched"));
     let lift = |s: &alula::run::Summary| s.first_harmonics[0].cl;
     let change = (0..2).map(|k| (lift(&marched)[k] - lift(direct)[k]).abs()).fold(0.0, f64::max);
-    assert!(marched.converged && change < 2e-3, "{change}");
+    assert!(marched.succeeded() && change < 2e-3, "{change}");
     alula::run::run(&case, &places(root, "march cut"), &mut AtMarch(false.into())).unwrap();
     alula::run::resume(&root.join("march cut"), &mut alula::run::Silent).unwrap();
     let read = |name: &str| std::fs::read(root.join(name).join("instances.csv")).unwrap();
@@ -377,7 +377,7 @@ fn a_wave_leaves_through_the_end_of_a_tube() {
     let found = summary(&crate::common::case(text), &places(root.path(), "tube"));
     // the exact simple wave: 2 · 0.1402100/γ over the displacement 0.1/2π, behind it by 90°
     let [re, im] = found.first_harmonics[0].cd;
-    assert!(found.converged && (im / -12.58523 - 1.0).abs() < 0.005 && re.abs() < 0.1, "{re} {im}");
+    assert!(found.succeeded() && (im / -12.58523 - 1.0).abs() < 0.005 && re.abs() < 0.1, "{re} {im}");
     let hot = text.replace("right = [1.0, 0.0, 0.7142857142857143]", "right = [0.9, 0.0, 0.7142857142857143]");
     let hot = hot.replace("position = 10.0", "position = 0.3");
     let told =

@@ -90,7 +90,7 @@ fn already_finished(summary: &serde_json::Value, out: &Path, verbosity: Verbosit
         true => format!("{summary}\n"),
         false => format!("the run in `{}` is finished: nothing was changed\n", out.display()),
     };
-    let lacking = (summary["converged"] != true).then(|| Shortfall {
+    let lacking = (summary["converged"] == false).then(|| Shortfall {
         what: "the run is finished, but not converged".into(),
         hint: format!("change `{}` and go on with `alula resume`", out.join("case.toml").display()),
     });
@@ -107,7 +107,7 @@ fn finished(summary: &Summary, out: &Path, verbosity: Verbosity) -> Outcome {
 
 /// Why a run did not converge; `None` where it did.
 fn shortfall(summary: &Summary, out: &Path) -> Option<Shortfall> {
-    if summary.converged {
+    if summary.succeeded() {
         return None;
     }
     if !summary.polar.is_empty() {
@@ -117,7 +117,13 @@ fn shortfall(summary: &Summary, out: &Path) -> Option<Shortfall> {
             hint: format!("the reasons stand in `{}`", out.join("polar.csv").display()),
         });
     }
-    if summary.time > 0.0 {
+    if summary.is_march() && summary.periodic_change.is_none() {
+        return Some(Shortfall {
+            what: format!("the march ended at t = {:.4}, short of its end", summary.time),
+            hint: "raise `iterations` of `[time.dual]` or `[time.explicit]`".into(),
+        });
+    }
+    if summary.is_march() {
         return Some(Shortfall {
             what: "not converged: the loads have not become periodic".into(),
             hint: "raise `periods` of `[time.dual]` or `[time.explicit]`, or loosen `periodic_tolerance` there".into(),
@@ -128,7 +134,7 @@ fn shortfall(summary: &Summary, out: &Path) -> Option<Shortfall> {
         None => ("steady", "comes to no rest"),
     };
     Some(Shortfall {
-        what: format!("not converged: the residual fell {:.1} orders", summary.residual_drop),
+        what: format!("not converged: the residual fell {:.1} orders", summary.residual_drop.unwrap_or_default()),
         hint: format!(
             "the residual in the report says why: one that still falls needs more `time.{table}.iterations`, one that swings is of a flow \
              that {swings}, which `[time.dual]` follows"
@@ -156,9 +162,10 @@ fn grid_convergence(c: &Convergence) -> String {
 }
 
 fn describe(s: &Summary, out: &Path) -> String {
-    let mut text = match (&s.polar[..], &s.periodic_loads) {
-        ([], Some(loads)) => periodic_loads(loads),
-        ([], None) => loads(s),
+    let mut text = s.conditions() + "\n";
+    text += &match (&s.polar[..], &s.periodic_loads) {
+        ([], Some(loads)) => periodic_loads(loads) + &change_of_period(s) + &instant(s),
+        ([], None) => loads(s) + &cycles(s),
         (points, _) => polar(points),
     };
     if let Some(c) = s.grid_convergence.as_ref().filter(|_| s.polar.is_empty()) {
@@ -192,11 +199,12 @@ fn describe(s: &Summary, out: &Path) -> String {
 
 /// What it took; how far the residual fell where there is one flow that it belongs to.
 fn cost(s: &Summary) -> String {
-    let marched = s.time > 0.0 && s.harmonic_balance.is_none();
-    let way = match (marched, s.polar.len()) {
-        (true, _) => format!("to t = {:.4}", s.time),
-        (false, 0) => format!("residual down {:.1} orders", s.residual_drop),
-        (false, points) => format!("{points} points"),
+    let marched = s.is_march();
+    let way = match (s.residual_drop, s.polar.len()) {
+        _ if marched => format!("to t = {:.4}{}", s.time, missed(s)),
+        (Some(drop), 0) => format!("residual down {drop:.1} orders"),
+        (None, 0) => "nothing to converge: the start is a steady flow".into(),
+        (_, points) => format!("{points} points"),
     };
     format!(
         "{} particles, {} {}, {way}; {:.2} s of processor time ({:.3} ms per particle), {:.0} bytes per particle\n",
@@ -207,6 +215,14 @@ fn cost(s: &Summary) -> String {
         s.cpu_ms_per_particle,
         s.bytes_per_particle,
     )
+}
+
+/// How many steps missed their goal; nothing where all met it.
+fn missed(s: &Summary) -> String {
+    match s.unconverged_steps {
+        0 => String::new(),
+        n => format!(", inner iterations of {n} of them short of their goal"),
+    }
 }
 
 const LOADS: &str = "                      CL         CD         CM\n";
@@ -221,7 +237,7 @@ fn loads(s: &Summary) -> String {
     if all.cl == 0.0 && all.cd == 0.0 {
         return String::new();
     }
-    let mut text = if s.time > 0.0 { format!("at t = {:.4}\n", s.time) } else { String::new() } + LOADS;
+    let mut text = s.loads_at.map_or_else(String::new, |t| format!("at t = {t:.4}\n")) + LOADS;
     text += &row("wall pressure", s.loads_pressure.as_ref().unwrap_or(all));
     if let Some(friction) = &s.loads_friction {
         text += &(row("wall friction", friction) + &row("both", all));
@@ -274,7 +290,47 @@ fn periodic_loads(p: &PeriodicLoads) -> String {
         1 => "first harmonic".to_owned(),
         n => format!("harmonic {n}"),
     };
-    head + &row("mean", &p.mean) + &row(&harmonic, &p.amplitude) + &phases
+    let per = match p.motion {
+        "angle" => "  per radian",
+        "mode" => "  per unit of the mode",
+        _ => "  per length of the motion",
+    };
+    let over = row("over the motion", &p.per_motion).trim_end().to_owned() + per + "\n";
+    head + &row("mean", &p.mean) + &row(&harmonic, &p.amplitude) + &over + &phases
+}
+
+/// How the last period of a march differs from the one before; nothing of a balance, which is periodic.
+fn change_of_period(s: &Summary) -> String {
+    if !s.is_march() {
+        return String::new();
+    }
+    match &s.periodic_change {
+        Some(c) => format!(
+            "from the period before it differs by {:.1e} (means) and {:.1e} (first harmonics) of the first harmonics\n",
+            c.mean, c.first_harmonic
+        ),
+        None => "no period before confirms it: march two or more\n".into(),
+    }
+}
+
+/// Loads at the instant that fields and pictures are of.
+fn instant(s: &Summary) -> String {
+    s.loads_at.map_or_else(String::new, |t| row(&format!("at t = {t:.4}"), &s.loads))
+}
+
+/// Cycles that the lift of a march goes through of itself.
+fn cycles(s: &Summary) -> String {
+    let Some(c) = s.lift_cycles.as_ref().filter(|_| s.is_march()) else { return String::new() };
+    format!(
+        "the last {} cycles of the lift, {:.5} in a unit of time (they differ by {:.1} %): CL {:.5} ± {:.5}, CD {:.5} ± {:.5}\n",
+        c.cycles,
+        c.frequency,
+        100.0 * c.spread,
+        c.mean_cl,
+        c.amplitude_cl,
+        c.mean_cd,
+        c.amplitude_cd
+    )
 }
 
 /// The points of a polar, one a row; bars only where there are some.
@@ -295,8 +351,17 @@ fn polar(points: &[PolarPoint]) -> String {
             text += &format!(" {value:9.5}{}", bar.map_or_else(String::new, |b| format!(" {b:8.5}")));
         }
         text += if p.converged { "" } else { "  not converged" };
+        text += if p.is_short() { "  longer bars than asked for" } else { "" };
     }
-    text + "\n"
+    let short = points.iter().filter(|p| p.is_short()).count();
+    text += "\n";
+    if short > 0 {
+        text += &format!(
+            "error bars of {short} of {} points are longer than asked for: raise `accuracy.particles`, or loosen `accuracy.loads`\n",
+            points.len()
+        );
+    }
+    text
 }
 
 /// Name of a run after its case file: the file's own, or that of its folder when the file is called `case.toml`.

@@ -8,7 +8,7 @@ use crate::geometry::Surface;
 use crate::math::{Bounds, Vector};
 use crate::physics::Primitive;
 use crate::report::{
-    Axis, Chart, Colormap, Dots, Marks, PictureStyle, Raster, Scatter, Series, raster_png, scatter_png, write_file,
+    Colormap, Dots, PictureStyle, Raster, Scatter, raster_png, scatter_png, write_file, write_pressure,
 };
 use crate::scheme::start::free_stream;
 
@@ -100,7 +100,8 @@ fn plane<const D: usize>(scene: &Scene<'_, D>) -> Result<(), RunError> {
     together(4, |k| match k {
         0 | 1 => field(&fields[k]),
         2 => cloud_picture(scene, &outlines),
-        _ => curves(scene),
+        _ if scene.surface.is_some() => Ok(write_pressure(scene.to.out)?),
+        _ => Ok(()),
     })
 }
 
@@ -140,22 +141,4 @@ fn cloud_picture<const D: usize>(scene: &Scene<'_, D>, outlines: &[Vec<Vector<2>
     let scatter = Scatter { points: &points, dots: Dots::Level(&levels), interface: &interface, outlines };
     let png = scatter_png(&scatter, window(scene, 0.12), "Particles")?;
     Ok(write_file(&scene.to.out.join("pictures/cloud.png"), &png)?)
-}
-
-/// Cp along the chord.
-fn curves<const D: usize>(scene: &Scene<'_, D>) -> Result<(), RunError> {
-    let Some(surface) = scene.surface else { return Ok(()) };
-    let cloud = scene.view.cloud();
-    let free = free_stream::<D>(scene.to.case);
-    let b = surface.bounds();
-    let mut series = Vec::new();
-    for (k, name) in surface.bodies.iter().enumerate() {
-        let own = || cloud.interface_range().zip(&cloud.interface).filter(|(_, w)| usize::from(w.body) == k);
-        let x = own().map(|(i, _)| (scene.view.reference().x[i][0] - b.min[0]) / b.extent()[0]).collect();
-        let y = own().map(|(i, _)| pressure_coefficient(&scene.view.state(i), &free)).collect();
-        series.push(Series { name: name.clone(), marks: Marks::Dots, x, y });
-    }
-    let chart = Chart { title: "Pressure on the wall".into(), x: Axis::linear("x/c"), y: Axis::reversed("Cp"), series };
-    write_file(&scene.to.out.join("pictures/cp-chord.svg"), chart.svg()?.as_bytes())?;
-    Ok(write_file(&scene.to.out.join("pictures/cp-chord.png"), &chart.png()?)?)
 }

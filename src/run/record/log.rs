@@ -42,8 +42,12 @@ pub(crate) struct Record {
     pub(crate) start_totals: Vec<f64>,
     /// Residual over its first value at the end.
     pub(crate) drop: f64,
+    /// True where the start was a steady flow already, whose residual is round-off.
+    pub(crate) began_steady: bool,
     /// True when the goal was reached.
     pub(crate) converged: bool,
+    /// True when the loads of a march settled within a tolerance that the case gives.
+    pub(crate) settled: bool,
     /// Final time, in the units of the case.
     pub(crate) time: f64,
     /// Bytes of the integrator.
@@ -113,11 +117,12 @@ impl Record {
 }
 
 impl Record {
-    /// True when the goal was reached, at all points of a polar.
-    pub(crate) fn converged_everywhere(&self) -> bool {
+    /// True when the goal was reached, at all points of a polar; `None` of a march that came to its end and was asked for no more.
+    pub(crate) fn goal_reached(&self, marches: bool) -> Option<bool> {
         match &self.polar.points[..] {
-            [] => self.converged,
-            points => points.iter().all(|p| p.converged),
+            [] if marches && self.converged && !self.settled => None,
+            [] => Some(self.converged),
+            points => Some(points.iter().all(|p| p.converged)),
         }
     }
 }

@@ -114,6 +114,11 @@ impl PolarPoint {
         }
     }
 
+    /// True where the error bars are longer than was asked for.
+    pub fn is_short(&self) -> bool {
+        self.within_accuracy == Some(false)
+    }
+
     /// The point in one line for those who watch.
     pub fn told(&self) -> String {
         let at = format!("M {}, alpha {} deg", self.mach, self.alpha_deg);
@@ -126,6 +131,7 @@ impl PolarPoint {
             let all = [load("CL", c.cl, |b| b.cl), load("CD", c.cd, |b| b.cd), load("CM", c.cm, |b| b.cm)];
             all.join(", ")
         });
+        let loads = loads.map(|l| if self.is_short() { l + " (longer error bars than asked for)" } else { l });
         let parts = [Some(at), loads, (!self.converged).then(|| format!("not converged: {}", self.reason))];
         parts.into_iter().flatten().collect::<Vec<_>>().join(": ")
     }

@@ -6,10 +6,11 @@ use serde::Serialize;
 use super::super::look::forces::GeneralisedForce;
 use super::super::look::friction::Separation;
 use super::super::look::{TipVortex, WakePlane};
+use super::super::understood::{ReferenceValues, short};
 use super::crosscheck::LoadCrosscheck;
 use super::polar::PolarPoint;
 use super::trace::{Change, FirstHarmonics, LastPeriod, PeriodicLoads};
-use crate::case::FreeStreamScales;
+use crate::case::{Cloud, FreeStreamScales};
 use crate::observe::convergence::Convergence;
 use crate::observe::hinge::HingeMoment;
 use crate::observe::induced::SpanLoad;
@@ -33,17 +34,19 @@ pub struct Summary {
     pub particles: usize,
     /// Iterations over all stages.
     pub iterations: u64,
-    /// Orders of magnitude that the residual of the last stage fell.
-    pub residual_drop: f64,
-    /// True when the goal was reached.
-    pub converged: bool,
+    /// Orders of magnitude that the residual of the last stage fell; null of a march, each of whose steps has its own, and where the
+    /// start was a steady flow already.
+    pub residual_drop: Option<f64>,
+    /// True where the goal was reached: the residual fell as far as asked, or the loads of a march settled within `periodic_tolerance`.
+    /// False too where a march did not come to its end; null where it did and was asked for nothing else.
+    pub converged: Option<bool>,
     /// Processor time.
     pub cpu_seconds: f64,
     /// Wall time.
     pub wall_seconds: f64,
     /// Greatest memory of the process; 0 where the system does not tell.
     pub peak_bytes: u64,
-    /// Loads from wall pressure and friction.
+    /// Loads from wall pressure and friction: of the steady flow, or of the instant `loads_at`.
     pub loads: Coefficients,
     /// The part of the pressure, where the gas has viscosity.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -80,6 +83,18 @@ pub struct Summary {
     pub free_stream: FreeStream,
     /// Chord of the load coefficients.
     pub chord: f64,
+    /// The cloud of the end in the words of the case file, where the run refined it by what it found without that.
+    pub cloud: Cloud,
+    /// Time of the instant that `loads`, fields and pictures are of, in the units of the case; null of steady flows.
+    pub loads_at: Option<f64>,
+    /// Mach number of the free stream.
+    pub mach: f64,
+    /// Angle of attack in degrees, nose up positive.
+    pub alpha_deg: f64,
+    /// Reynolds number of the chord; null without viscosity.
+    pub reynolds: Option<f64>,
+    /// What loads are divided by; null without bodies.
+    pub reference: Option<ReferenceValues>,
     /// What a harmonic balance found about itself.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub harmonic_balance: Option<BalanceReport>,
@@ -91,14 +106,14 @@ pub struct Summary {
     pub generalised_forces: Vec<GeneralisedForce>,
     /// Physical time at the end of a march, in the units of the case.
     pub time: f64,
-    /// Steps in time that did not reach their goal.
+    /// Steps in time whose inner iterations did not reach their goal.
     pub unconverged_steps: u32,
     /// Times a step in time was halved because its equations could not be solved.
     pub halved_steps: u32,
     /// What re-clouding did, where particles travel with the fluid.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub re_clouding: Option<Reclouding>,
-    /// How the loads of the last period differ from those of the one before, where the motion repeats.
+    /// How the loads of the last period differ from those of the one before, where the motion repeats; absent where there is none before.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub periodic_change: Option<Change>,
     /// First harmonics of the loads per motion, where that repeats.
@@ -271,6 +286,26 @@ impl Work {
 }
 
 impl Summary {
+    /// False where the goal was not reached. A march to its end has reached all that it was asked for.
+    pub fn succeeded(&self) -> bool {
+        self.converged != Some(false)
+    }
+
+    /// Stream and reference values in one line; the stream of a polar differs from point to point.
+    pub fn conditions(&self) -> String {
+        let alone = self.polar.is_empty();
+        let stream = format!("M {}, alpha {} deg", short(self.mach), short(self.alpha_deg));
+        let reynolds = self.reynolds.filter(|_| alone).map(|re| format!("Re {}", short(re)));
+        let reference = self.reference.as_ref().map(ReferenceValues::told);
+        let all = [alone.then_some(stream), reynolds, reference];
+        all.into_iter().flatten().collect::<Vec<_>>().join(", ")
+    }
+
+    /// True where the loads are those of an instant: of a march, not of a balance.
+    pub fn is_march(&self) -> bool {
+        self.loads_at.is_some() && self.harmonic_balance.is_none()
+    }
+
     /// Brings what the run cost up to date: `[processor, wall]` seconds since its beginning, the rest as the system tells it.
     pub(crate) fn spent(&mut self, [cpu, wall]: [f64; 2]) {
         let files = self.phases.iter_mut().find(|(name, _)| name == FILES);

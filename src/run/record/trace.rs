@@ -13,6 +13,8 @@ use crate::verify::Loops;
 
 /// Harmonics that are reported: more where those do not hold the motion, as of several frequencies on their common one.
 const HARMONICS: [usize; 3] = [5, 13, 31];
+/// The same where a period has too few steps for them.
+const FEWER: [usize; 3] = [3, 2, 1];
 /// Root mean square of a motion that its harmonics leave, over the largest, below which they hold it.
 const HELD: f64 = 1e-3;
 /// Harmonic of a motion over its largest above which it is there.
@@ -94,6 +96,10 @@ pub struct PeriodicLoads {
     pub amplitude: Coefficients,
     /// What that harmonic leads the motion by, degrees from -180 to 180.
     pub phase_deg: Coefficients,
+    /// Amplitudes over that of the motion: per radian, per length or per unit of the coordinate of a mode.
+    pub per_motion: Coefficients,
+    /// Amplitude of the motion in that harmonic, in radians, lengths or units of its coordinate.
+    pub motion_amplitude: f64,
     /// Number of the harmonic.
     pub harmonic: usize,
     /// Part of the motion that phases are measured against.
@@ -110,7 +116,8 @@ impl Trace {
     /// Series of the loads and of the parts of the motion that are there, from the last period.
     fn fitted(&self, period: f64) -> Option<([Harmonics; 3], Moved)> {
         let mut all = HARMONICS.into_iter().map_while(|n| self.fitted_by(period, n));
-        let first = all.next()?;
+        let few = || FEWER.into_iter().find_map(|n| self.fitted_by(period, n));
+        let first = all.next().or_else(few)?;
         let holds = |(_, h): &(&str, Harmonics)| h.remainder <= HELD * h.term(h.dominant()).norm();
         if first.1.iter().all(holds) {
             return Some(first);
@@ -157,6 +164,8 @@ impl Trace {
             mean: of(&|h| h.mean),
             amplitude: of(&|h| h.term(harmonic).norm()),
             phase_deg: of(&|h| h.per(moved, harmonic).arg().to_degrees()),
+            per_motion: of(&|h| h.per(moved, harmonic).norm()),
+            motion_amplitude: moved.term(harmonic).norm(),
             harmonic,
             motion,
         })
@@ -198,8 +207,11 @@ impl Trace {
 
     /// Number of whole periods that loops and harmonics are the mean of.
     fn whole(&self, period: f64) -> u32 {
-        let (first, last) = (self.samples.first(), self.samples.last());
-        let span = first.zip(last).map_or(0.0, |(a, b)| (b.time - a.time) / period + SLACK);
+        let span = match &self.samples[..] {
+            // the first sample lies one step after the start of the march
+            [a, next, .., b] => (b.time - 2.0 * a.time + next.time) / period + SLACK,
+            _ => 0.0,
+        };
         self.periods.min(span as u32).max(1)
     }
 

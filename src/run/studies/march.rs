@@ -111,11 +111,13 @@ fn tell<S: HasGas<D>, const D: usize>(
     marching: &Marching,
     log: &mut Log<'_>,
 ) {
-    let settled = marching.tolerance.is_none_or(|t| !unsettled(t, log));
+    let settled = marching.tolerance.map(|t| settled(t, log));
     let cost = integrator.cost();
     let record = &mut log.record;
     record.time = log.units.case_time(integrator.mark().time);
-    record.converged = matches!(ending, Ending::Finished) && settled;
+    // a tolerance that could not be tested says nothing
+    record.settled = settled == Some(Some(true));
+    record.converged = matches!(ending, Ending::Finished) && settled != Some(Some(false));
     record.linear_before += cost.linear;
     (record.bytes, record.linear) = (cost.bytes, record.linear_before);
     (record.unconverged, record.halved) = (cost.unconverged, cost.halved);
@@ -124,18 +126,18 @@ fn tell<S: HasGas<D>, const D: usize>(
     }
 }
 
-/// True, with a note, when the loads of the last period still differ from those of the period before.
-fn unsettled(tolerance: f64, log: &mut Log<'_>) -> bool {
-    let Some(period) = log.case_period() else { return false };
+/// False, with a warning, when the loads of the last period still differ from those of the period before; `None` where there are not two.
+fn settled(tolerance: f64, log: &mut Log<'_>) -> Option<bool> {
+    let period = log.case_period()?;
     let Some(change) = log.record.trace.change(period) else {
         log.warn(
-            "`periodic_tolerance` was not tested: loads are compared over the last two periods; march three or more",
+            "`periodic_tolerance` was not tested: loads are compared over the last two periods; march two or more",
         );
-        return false;
+        return None;
     };
     let largest = change.mean.max(change.first_harmonic);
     if largest < tolerance {
-        return false;
+        return Some(true);
     }
     log.warn(&format!(
         "the loads have not settled: after {:.4} periods mean and first harmonic still change by {largest:.1e} from one \
@@ -143,7 +145,7 @@ fn unsettled(tolerance: f64, log: &mut Log<'_>) -> bool {
          its own: see `lift_cycles` in `summary.json`",
         change.periods
     ));
-    true
+    Some(false)
 }
 
 /// A march on a cloud built anew.

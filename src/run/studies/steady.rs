@@ -166,6 +166,7 @@ fn tell<S: HasGas<D>, const D: usize>(
     let cost = relax.cost();
     (log.record.drop, log.record.converged) = (relax.drop(), relax.finished());
     (log.record.bytes, log.record.linear) = (cost.bytes, cost.linear);
+    log.record.began_steady = relax.began_steady();
     let Standing { frame, work, state } = relax.standing();
     let gas = GasView::of(system, frame, state);
     let loads = gas.coefficients(&log.axes, system.gas_work(work)).unwrap_or_default();
