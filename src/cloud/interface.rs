@@ -261,26 +261,33 @@ impl<const D: usize> Walk<'_, D> {
 struct Sample<const D: usize> {
     x: Vector<D>,
     normal: Vector<D>,
-    area: Vector<D>,
+    /// Part of its element.
+    share: f64,
     spacing: f64,
     element: u32,
+}
+
+impl<const D: usize> Sample<D> {
+    fn area(&self, surface: &Surface<D>) -> Vector<D> {
+        surface.element_area_vector(self.element) * self.share
+    }
 }
 
 /// 3-D: dense samples, greedy pick, Lloyd.
 fn scatter<const D: usize>(surface: &Surface<D>, tree: &Tree<D>, planes: &[Plane]) -> Placed<D> {
     let mut samples = surface.pieces(
         |x| SAMPLE_SIZE * tree.leaf_at(x).size,
-        |x, normal, area, element| {
+        |x, normal, share, element| {
             let spacing = tree.leaf_at(x).size;
             let inside = planes.iter().all(|p| p.1 * (x[p.0] - p.2) < -ON_PLANE * spacing);
-            inside.then_some(Sample { x: *x, normal: *normal, area: *area, spacing, element })
+            inside.then_some(Sample { x: *x, normal: *normal, share, spacing, element })
         },
     );
     sort_along_curve(&mut samples);
     let (mut chosen, mut owner) = pick(&samples);
     for _ in 0..LLOYD_ROUNDS {
         assign(&samples, &chosen, &mut owner);
-        recentre(&samples, &owner, &mut chosen);
+        recentre(surface, &samples, &owner, &mut chosen);
     }
     assign(&samples, &chosen, &mut owner);
     gather(surface, &samples, &chosen, &owner)
@@ -385,10 +392,10 @@ fn around<const D: usize>(samples: &[Sample<D>], chosen: &[usize]) -> Vec<Vec<u3
 }
 
 /// Moves each chosen sample to the one nearest to the centre of its set.
-fn recentre<const D: usize>(samples: &[Sample<D>], owner: &[u32], chosen: &mut [usize]) {
+fn recentre<const D: usize>(surface: &Surface<D>, samples: &[Sample<D>], owner: &[u32], chosen: &mut [usize]) {
     let mut centre = vec![(Vector::<D>::ZERO, 0.0); chosen.len()];
     for (s, o) in samples.iter().zip(owner) {
-        let w = s.area.norm();
+        let w = s.area(surface).norm();
         centre[*o as usize].0 += s.x * w;
         centre[*o as usize].1 += w;
     }
@@ -406,7 +413,7 @@ fn recentre<const D: usize>(samples: &[Sample<D>], owner: &[u32], chosen: &mut [
 fn gather<const D: usize>(surface: &Surface<D>, samples: &[Sample<D>], chosen: &[usize], owner: &[u32]) -> Placed<D> {
     let mut placed = Placed::default();
     let mut area = vec![Vector::<D>::ZERO; chosen.len()];
-    samples.iter().zip(owner).for_each(|(s, o)| area[*o as usize] += s.area);
+    samples.iter().zip(owner).for_each(|(s, o)| area[*o as usize] += s.area(surface));
     let around = around(samples, chosen);
     let mut curvature = vec![[Vector::ZERO; D]; chosen.len()];
     sweep(&mut curvature, |j| {

@@ -73,18 +73,18 @@ impl<const D: usize> Surface<D> {
         }
     }
 
-    /// What `f(x, normal, area vector, element)` makes of pieces of the surface no larger than `size(x)`, element by element.
+    /// What `f(x, normal, share of its element, element)` makes of pieces of the surface no larger than `size(x)`, element by element.
     pub fn pieces<T: Clone + Send>(
         &self,
         size: impl Fn(&Vector<D>) -> f64 + Sync,
-        f: impl Fn(&Vector<D>, &Vector<D>, &Vector<D>, u32) -> Option<T> + Sync,
+        f: impl Fn(&Vector<D>, &Vector<D>, f64, u32) -> Option<T> + Sync,
     ) -> Vec<T> {
         let n = self.elements.len();
         let mut groups = vec![Vec::new(); n.div_ceil(GROUP)];
         sweep_each(&mut groups, |g| {
             let mut found = Vec::new();
             for e in (g * GROUP) as u32..n.min((g + 1) * GROUP) as u32 {
-                self.subdivide(e, &size, &mut |x, normal, area| found.extend(f(x, normal, area, e)));
+                self.subdivide(e, &size, &mut |x, normal, share| found.extend(f(x, normal, share, e)));
             }
             found
         });
@@ -95,12 +95,7 @@ impl<const D: usize> Surface<D> {
     }
 
     /// Cuts an element in halves across its longest side until it is small enough; points lie on the shape itself.
-    fn subdivide(
-        &self,
-        e: u32,
-        size: &dyn Fn(&Vector<D>) -> f64,
-        f: &mut dyn FnMut(&Vector<D>, &Vector<D>, &Vector<D>),
-    ) {
+    fn subdivide(&self, e: u32, size: &dyn Fn(&Vector<D>) -> f64, f: &mut dyn FnMut(&Vector<D>, &Vector<D>, f64)) {
         if let Some(bands) = Bands::along(&self.corners(e)) {
             return bands.cut(size, &mut |weights, share| self.give(e, weights, share, f));
         }
@@ -134,10 +129,10 @@ impl<const D: usize> Surface<D> {
     }
 
     /// Calls `f` with the point of the shape at these barycentric weights and with a share of the element.
-    fn give(&self, e: u32, weights: [f64; D], share: f64, f: &mut dyn FnMut(&Vector<D>, &Vector<D>, &Vector<D>)) {
+    fn give(&self, e: u32, weights: [f64; D], share: f64, f: &mut dyn FnMut(&Vector<D>, &Vector<D>, f64)) {
         let (point, normal) = self.element_point(e, &weights);
         let shape = self.project(&super::surface::Nearest { point, normal, distance: 0.0, element: e, weights });
-        f(&shape.point, &shape.normal, &(self.element_area_vector(e) * share));
+        f(&shape.point, &shape.normal, share);
     }
 }
 
