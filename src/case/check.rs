@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 use super::Accuracy;
 use super::body_keys::SHAPES;
 use super::draft::{Draft, closest, default_name};
-use super::facts::is_dimensional;
+use super::facts::{is, is_dimensional};
 use super::keys::SIDES;
 use super::naca::{Naca, TrailingEdge};
 use super::schema::one_of;
@@ -498,10 +498,6 @@ fn one_side(draft: &mut Draft<'_>, side: &str, axis: usize, d: usize) {
         let hint = "give `held`, `outflow` or `periodic`, or add `mach` to `[flow]`";
         draft.fail(side, format!("`{side}` is `far_field`, but the free stream has no speed")).hint(hint);
     }
-}
-
-pub(super) fn is(draft: &Draft<'_>, side: &str, word: &str) -> bool {
-    draft.get(side).and_then(Value::as_str) == Some(word)
 }
 
 fn time(draft: &mut Draft<'_>) {

@@ -17,6 +17,11 @@ pub(super) fn is_dimensional(draft: &Draft<'_>) -> bool {
     ["pressure", "temperature", "density"].iter().filter(|k| draft.given(&format!("flow.{k}"))).count() > 1
 }
 
+/// True when the value at `path` is this word.
+pub(super) fn is(draft: &Draft<'_>, path: &str, word: &str) -> bool {
+    draft.get(path).and_then(Value::as_str) == Some(word)
+}
+
 /// True when a force on a structure has a frequency: then something repeats.
 pub(super) fn is_shaken(draft: &Draft<'_>) -> bool {
     let mut forces = (0..draft.count("structure")).map(|i| format!("structure[{i}].force"));

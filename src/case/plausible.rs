@@ -7,8 +7,8 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 use serde_json::{Value, json};
 
 use super::Flow;
-use super::check::is;
 use super::draft::Draft;
+use super::facts::is;
 use super::flow::{NEVER_LAMINAR, NO_CONTINUUM};
 use super::polar::take_out;
 
