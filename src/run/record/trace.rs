@@ -207,11 +207,8 @@ impl Trace {
 
     /// Number of whole periods that loops and harmonics are the mean of.
     fn whole(&self, period: f64) -> u32 {
-        let span = match &self.samples[..] {
-            // the first sample lies one step after the start of the march
-            [a, next, .., b] => (b.time - 2.0 * a.time + next.time) / period + SLACK,
-            _ => 0.0,
-        };
+        let (first, last) = (self.samples.first(), self.samples.last());
+        let span = first.zip(last).map_or(0.0, |(a, b)| (b.time - a.time) / period + SLACK);
         self.periods.min(span as u32).max(1)
     }
 
@@ -220,7 +217,16 @@ impl Trace {
         let end = self.samples.last().map_or(0.0, |m| m.time);
         let last = end - (end - t).rem_euclid(period);
         let count = self.whole(period);
-        let all = (0..count).map(|p| self.loads_near(last - f64::from(p) * period));
+        // the first sample lies one step after the start of the march, where the end of the period stands
+        let (first, start) = (self.samples.first().map_or(0.0, |m| m.time), end - period);
+        let near = |t: f64| {
+            if t >= first {
+                return self.loads_near(t);
+            }
+            let (part, [a, b]) = ((t - start) / (first - start), [end, first].map(|t| self.loads_near(t)));
+            std::array::from_fn(|c| a[c] + part * (b[c] - a[c]))
+        };
+        let all = (0..count).map(|p| near(last - f64::from(p) * period));
         all.fold([0.0; 3], |sum, loads| std::array::from_fn(|c| sum[c] + loads[c] / f64::from(count)))
     }
 
@@ -391,6 +397,9 @@ mod tests {
         (1..=48).for_each(|k| trace.push(sample(k)));
         let at = |trace: &Trace, t: f64| trace.loads_at(t, 1.0)[0];
         assert!((at(&trace, 0.25) - 3.0).abs() < 1e-12 && (at(&trace, 7.25) - 3.0).abs() < 1e-12);
+        let mut one = Trace::default();
+        (1..=16).for_each(|k| one.push(Sample { loads: sample(32).loads, ..sample(k) }));
+        assert!((at(&one, 0.01) - 2.0).abs() < 1e-12, "between the end of a period and its first sample");
         let two = trace.over(2);
         assert!((at(&two, 0.25) - 2.5).abs() < 1e-12 && (two.loads_at(0.6, 1.0)[1] - 1.0).abs() < 1e-12);
         assert_eq!((two.whole(1.0), two.over(9).whole(1.0)), (2, 2));
