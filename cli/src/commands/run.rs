@@ -120,7 +120,7 @@ fn shortfall(summary: &Summary, out: &Path) -> Option<Shortfall> {
     if summary.is_march() && summary.periodic_change.is_none() {
         return Some(Shortfall {
             what: format!("the march ended at t = {:.4}, short of its end", summary.time),
-            hint: "raise `iterations` of `[time.dual]` or `[time.explicit]`".into(),
+            hint: "raise `time.explicit.steps`".into(),
         });
     }
     if summary.is_march() {
@@ -210,7 +210,12 @@ fn cost(s: &Summary) -> String {
         "{} particles, {} {}, {way}; {:.2} s of processor time ({:.3} ms per particle), {:.0} bytes per particle\n",
         s.particles,
         s.iterations,
-        if marched { "steps" } else { "iterations" },
+        match (marched, s.iterations) {
+            (true, 1) => "step",
+            (true, _) => "steps",
+            (false, 1) => "iteration",
+            (false, _) => "iterations",
+        },
         s.cpu_seconds,
         s.cpu_ms_per_particle,
         s.bytes_per_particle,
