@@ -97,6 +97,11 @@ pub(crate) fn create(case: &Case, input: &Path, out: &Path) -> Result<(bool, Hol
 
 /// The same for what is no run, has no checkpoints and is not replaced: a cloud, or matrices.
 pub(crate) fn create_once(case: &Case, input: &Path, out: &Path) -> Result<Hold, RunError> {
+    // matrices are found in the same order again: those of this case that were not all found make room
+    let same = || fs::read_to_string(out.join("case.toml")).is_ok_and(|known| known == write(case));
+    if out.join(MATRICES).exists() && !out.join(FINISHED).exists() && same() {
+        fs::remove_file(out.join(MATRICES)).unwrap_or_default();
+    }
     if out.join("case.toml").exists() && !is_barely_begun(out) {
         return Err(RunError::Folder {
             what: format!("`{}` holds earlier results", out.display()),
@@ -141,7 +146,7 @@ fn occupied(out: &Path) -> RunError {
     }
 }
 
-/// Marks a run as finished: all its files are written.
+/// Marks a run or matrices as finished: all files are written.
 pub(crate) fn finish(out: &Path) -> Result<(), RunError> {
     match checksum(out) {
         Some(sum) => Ok(write_atomic(&out.join(FINISHED), |w| w.write_all(sum.as_bytes()))?),
@@ -196,7 +201,8 @@ pub(crate) fn check_begun(out: &Path) -> Result<(), RunError> {
     if out.join(MATRICES).exists() {
         return Err(RunError::Folder {
             what: format!("`{named}` holds matrices of `alula gaf`, which is not resumed"),
-            hint: "begin it again with its case file and another folder".into(),
+            hint: "begin it again with its case file: in the same folder where it was not finished, else in another"
+                .into(),
         });
     }
     let force = if is_barely_begun(out) { "" } else { " --force" };
@@ -276,6 +282,20 @@ fn plain(path: &Path) -> std::io::Result<String> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn matrices_that_were_not_all_found_are_begun_again_with_their_case_alone() {
+        let folder = tempfile::tempdir().unwrap();
+        let out = folder.path().join("out");
+        let case = |mach: f64| read(&format!("[flow]\nmach = {mach}\n[[body]]\nnaca = \"0012\"\n"), "t").unwrap();
+        let begin =
+            |mach: f64| create_once(&case(mach), folder.path(), &out).map(|_| fs::write(out.join(MATRICES), "k\n"));
+        begin(0.3).unwrap().unwrap();
+        begin(0.3).unwrap().unwrap();
+        assert!(begin(0.4).is_err_and(|e| e.to_string().contains("holds earlier results")));
+        finish(&out).unwrap();
+        assert!(begin(0.3).is_err());
+    }
 
     #[test]
     fn references_without_their_columns_are_refused() {

@@ -59,7 +59,8 @@ pub struct Matrices {
     pub linearity: f64,
 }
 
-/// Computes the matrices of the table `[gaf]` into a fresh folder; `None` when the monitor says stop.
+/// Computes the matrices of the table `[gaf]` into a fresh folder, or one where those of the same case were not all found; `None` when the
+/// monitor says stop.
 pub fn gaf(case: &Case, places: &Places, monitor: &mut dyn Monitor) -> Result<Option<Matrices>, RunError> {
     let Some(plan) = case.gaf.clone() else {
         return Err(RunError::Unsupported {
@@ -89,6 +90,7 @@ pub fn gaf(case: &Case, places: &Places, monitor: &mut dyn Monitor) -> Result<Op
             matrices.write(&plan.reduced_frequencies, scale, &places.out)?;
         }
     }
+    folder::finish(&places.out)?;
     Ok(Some(matrices))
 }
 

@@ -15,6 +15,7 @@
 use super::discretisation::CloudMotion;
 use super::reconstruct::smooth_step;
 use super::view::View;
+use crate::cloud::tree::Tree;
 use crate::math::sweep::{sweep_parts, sweep_slots};
 use crate::math::{Bounds, Vector};
 use crate::physics::{Conserved, Primitive, n_variables};
@@ -27,32 +28,45 @@ const PARTICLES: [f64; 2] = [2.0, 16.0];
 /// Differences of pressure along an edge, over its mean twice, that are no shock, and that surely are one.
 const JUMP: [f64; 2] = [0.01, 0.03];
 
+/// Part of the way to a side of the domain that a zone keeps within, so that it need not be cut, and particles that must lie on it.
+const WITHIN: f64 = 0.95;
+const ENOUGH: f64 = 6.0;
+/// Places along each axis at which cells are looked at.
+const LOOKS: usize = 9;
+
 /// The weight φ: a product of quintics of the distance from a box along each axis.
 #[derive(Clone, Copy, Debug)]
 pub struct Zone<const D: usize> {
     bodies: Bounds<D>,
-    reach: [f64; 2],
+    /// Distance within which φ = 1, and beyond which it is 0, below and above the box along each axis.
+    reach: [[[f64; 2]; 2]; D],
 }
 
 impl<const D: usize> Zone<D> {
-    /// The zone around a box with particles at the given distance on it.
-    pub fn around(bodies: Bounds<D>, spacing: f64) -> Self {
+    /// The zone around a box with particles at the given distance on it. `gaps` are its distances from the sides of the domain, below and
+    /// above along each axis, and the greatest distance of particles in between: where a side is near, the zone ends before it if there is
+    /// room for some particles; else the side cuts it.
+    pub fn around(bodies: Bounds<D>, spacing: f64, gaps: &[[[f64; 2]; 2]; D]) -> Self {
         let length = bodies.extent().max_abs();
-        let reach = [0, 1].map(|k| (ZONE[k] * length).max(PARTICLES[k] * spacing));
-        Self { bodies, reach }
+        let wanted = [0, 1].map(|k| (ZONE[k] * length).max(PARTICLES[k] * spacing));
+        let reach = |[room, apart]: [f64; 2]| {
+            let shorter = if room < ENOUGH * apart { 1.0 } else { (WITHIN * room / wanted[1]).min(1.0) };
+            wanted.map(|reach| shorter * reach)
+        };
+        Self { bodies, reach: gaps.map(|axis| axis.map(reach)) }
     }
 
     /// The box outside of which φ = 0.
     pub fn bounds(&self) -> Bounds<D> {
-        self.bodies.padded(self.reach[1])
+        let far = |side: usize| Vector::from_fn(|d| self.reach[d][side][1]);
+        Bounds { min: self.bodies.min - far(0), max: self.bodies.max + far(1) }
     }
 
     /// φ and ∇φ at `x`.
     pub fn at(&self, x: &Vector<D>) -> (f64, Vector<D>) {
-        let [near, far] = self.reach;
         let axes: [(f64, f64); D] = std::array::from_fn(|d| {
             let (below, above) = (self.bodies.min[d] - x[d], x[d] - self.bodies.max[d]);
-            let sign = if above > below { 1.0 } else { -1.0 };
+            let (sign, [near, far]) = if above > below { (1.0, self.reach[d][1]) } else { (-1.0, self.reach[d][0]) };
             let s = ((above.max(below) - near) / (far - near)).clamp(0.0, 1.0);
             let slope = -30.0 * s * s * (1.0 - s) * (1.0 - s) / (far - near);
             (1.0 - s * s * s * (10.0 - 15.0 * s + 6.0 * s * s), sign * slope)
@@ -128,8 +142,9 @@ impl<'a, const D: usize> Balance<'a, D> {
             return None;
         }
         let places: Vec<Vector<D>> = range.clone().map(|i| frame.place(i)).collect();
+        let before = Bounds::around(&view.reference().x[range.clone()]);
         let spacing = range.map(|i| frame.discretisation.cloud.spacing[i]).fold(0.0, f64::max);
-        let zone = Zone::around(Bounds::around(&places), spacing);
+        let zone = Zone::around(Bounds::around(&places), spacing, &gaps(&view.reference().tree, &before));
         Some(Self { view, free, zone })
     }
 
@@ -304,6 +319,24 @@ impl<'a, const D: usize> Balance<'a, D> {
     }
 }
 
+/// Distances of a box from the sides of the domain, below and above along each axis, and the size of the largest of the cells half way to
+/// each side.
+fn gaps<const D: usize>(tree: &Tree<D>, around: &Bounds<D>) -> [[[f64; 2]; 2]; D] {
+    let (domain, extent) = (tree.bounds(), around.extent());
+    let gap = |d: usize, [inner, outer]: [f64; 2]| {
+        let place = |k: usize| {
+            let step = |axis: usize| (k / LOOKS.pow(axis as u32) % LOOKS) as f64 / (LOOKS - 1) as f64;
+            let along = |axis: usize| around.min[axis] + step(axis) * extent[axis];
+            Vector::from_fn(|axis| if axis == d { f64::midpoint(inner, outer) } else { along(axis) })
+        };
+        (0..LOOKS.pow(D as u32)).map(|k| tree.leaf_at(&place(k)).size).fold(0.0, f64::max)
+    };
+    std::array::from_fn(|d| {
+        let (low, high) = ([around.min[d], domain.min[d]], [around.max[d], domain.max[d]]);
+        [[low[0] - low[1], gap(d, low)], [high[1] - high[0], gap(d, high)]]
+    })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -384,7 +417,12 @@ mod tests {
 
     #[test]
     fn the_slope_of_the_weight_is_its_derivative() {
-        let zone = Zone::around(Bounds { min: Vector([0.0, -0.1]), max: Vector([1.0, 0.1]) }, 0.01);
+        let body = Bounds { min: Vector([0.0, -0.1]), max: Vector([1.0, 0.1]) };
+        // a side at y = -0.4, another one too near to keep away from
+        let gaps = [[[9.0, 0.01], [0.05, 0.01]], [[0.3, 0.01], [9.0, 0.01]]];
+        let near = Zone::around(body, 0.01, &gaps).bounds();
+        assert!((near.min[1] + 0.1 + 0.95 * 0.3).abs() < 1e-12 && near.max[0] > 1.5 && near.max[1] > 0.6, "{near:?}");
+        let zone = Zone::around(body, 0.01, &[[[9.0, 0.01]; 2]; 2]);
         assert_eq!(zone.at(&Vector([0.5, 0.0])), (1.0, Vector::ZERO));
         assert_eq!(zone.at(&Vector([0.5, 0.8])).0, 0.0);
         for x in [Vector([1.3, 0.2]), Vector([-0.3, -0.45]), Vector([0.4, 0.5])] {
