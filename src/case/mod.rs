@@ -61,7 +61,7 @@ pub use structure::{
     Freedom, PerCoordinate, SpringShape, Structure, StructureFlap, StructureForce, StructureMode, StructureModel,
 };
 pub use templates::{SCHEMA_FILE, TEMPLATES, template};
-pub use text::{TextError, decimal_comma, numbers_of, open_regular, separator, text_of};
+pub use text::{TextError, decimal_comma, numbers_of, open_regular, rounded, separator, text_of};
 pub use time::{Automatic, Dual, Explicit, HarmonicCount, Harmonics, RungeKutta, Steady, SteadyMethod, Temporal};
 pub use verdict::ClaimRow;
 pub use wing::{PlanformShape, ProfileSides, Tip, Wing, WingSides};

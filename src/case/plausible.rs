@@ -11,6 +11,7 @@ use super::draft::Draft;
 use super::facts::is;
 use super::flow::{NEVER_LAMINAR, NO_CONTINUUM};
 use super::polar::take_out;
+use super::text::rounded;
 
 /// Temperature in kelvin below which a number without unit is taken for one in degrees.
 const COLD: f64 = 100.0;
@@ -141,8 +142,7 @@ fn amplitudes(draft: &mut Draft<'_>) {
 
 /// Five digits are enough to recognise a number.
 fn number(value: f64) -> String {
-    let rounded: f64 = format!("{value:.4e}").parse().unwrap_or(value);
-    if (1e-3..1e6).contains(&rounded.abs()) { format!("{rounded}") } else { format!("{rounded:e}") }
+    rounded(value, 5)
 }
 
 #[cfg(test)]

@@ -50,6 +50,12 @@ fn read(bytes: &[u8], other: fn(&[u8]) -> Result<String, TextError>) -> Result<S
     Ok(if text.contains('\n') { text } else { text.replace('\r', "\n") })
 }
 
+/// A number with so many digits at most, in powers of ten where it is very small or large.
+pub fn rounded(value: f64, digits: usize) -> String {
+    let value: f64 = format!("{value:.*e}", digits.saturating_sub(1)).parse().unwrap_or(value);
+    if (1e-3..1e6).contains(&value.abs()) { format!("{value}") } else { format!("{value:e}") }
+}
+
 /// What stands between the columns of a table: the first of `;`, tab and comma that its header has.
 pub fn separator(table: &str) -> char {
     let said = |line: &&str| !line.trim().is_empty() && !line.trim_start().starts_with('#');

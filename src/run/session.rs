@@ -272,8 +272,7 @@ impl Run<'_> {
         let points = self.case.points();
         let mut log = Log::open(self.case, self.out, scales, ground.saved.as_ref(), structures, monitor)?;
         if let Some(cloud) = &ground.ready {
-            log.note(&describe(&stages, cloud.n_fluid));
-            accuracy::too_few(self.case, cloud.n_fluid).iter().for_each(|few| log.note(few));
+            self.tell(&stages, cloud.n_fluid, &mut log);
             log.begin_point(true);
         }
         let (mut k, mut sources, kept) = ground.standing();
@@ -318,6 +317,12 @@ impl Run<'_> {
         }
         let stood = previous.map_or_else(|| last_known(&mut course, site, assemble, &mut log), Ok)?;
         Run { case: log.case, ..*self }.conclude(&stood, site.surface, &mut log, &clock).map(Ok)
+    }
+
+    /// Tells what is about to be done on a cloud of `n` particles in the gas.
+    fn tell(&self, stages: &[Stage], n: usize, log: &mut Log<'_>) {
+        log.note(&describe(stages, n));
+        accuracy::too_few(self.case, n).iter().for_each(|few| log.note(few));
     }
 
     /// The stages of a run, and what the first of them stands on.

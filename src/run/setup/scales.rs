@@ -1,7 +1,7 @@
 //! Lengths of a case that are out of all measure beside its bodies: mostly those of another unit.
 //!
 //! Where nothing but the bodies has a length, any length will do; where something else has one, both are in one unit.
-use crate::case::{Case, Length, Shape, Side};
+use crate::case::{Case, Length, Shape, Side, rounded};
 use crate::cloud::CloudSpec;
 use crate::geometry::{Planform, Surface};
 use crate::math::{Bounds, Vector};
@@ -145,8 +145,7 @@ fn near_sides<const D: usize>(case: &Case, spec: &CloudSpec<D>, surface: &Surfac
 
 /// Three digits are enough to recognise a length.
 pub(super) fn short(value: f64) -> String {
-    let rounded: f64 = format!("{value:.2e}").parse().unwrap_or(value);
-    if (1e-3..1e6).contains(&rounded.abs()) { format!("{rounded}") } else { format!("{rounded:e}") }
+    rounded(value, 3)
 }
 
 #[cfg(test)]
