@@ -30,6 +30,11 @@ const PATIENCE: u32 = 10;
 const SLOW: f64 = 0.93;
 /// Fewest iterations of sweeps alone before patience is counted.
 const SHORTEST_START: u32 = 20;
+/// Error of what the linear system foretold of the residual, over the residual before the step, below which the Courant number
+/// grows, and how much at least: a residual that rises as the pseudo time has it, near a flow that is steady but unstable, is
+/// no reason for smaller steps, with which it would only be followed in time.
+const TRUSTED: f64 = 0.5;
+const TRUSTED_GROWTH: f64 = 1.5;
 /// Courant number below which Newton's method is given up for a while.
 const LOST_CFL: f64 = 5.0;
 /// Courant number with which either phase begins.
@@ -483,7 +488,9 @@ impl<'a, S: Implicit> Relax<'a, S> {
         }
         std::mem::swap(&mut self.u, &mut self.trial);
         std::mem::swap(&mut self.residual, &mut self.trial_residual);
-        self.cfl = self.next_cfl(fraction, self.norm / norm.max(f64::MIN_POSITIVE));
+        let steady_newton = self.phase.newton && self.time.is_none();
+        let trusted = steady_newton && fraction == 1.0 && self.model_error() < TRUSTED * self.norm;
+        self.cfl = self.next_cfl(fraction, self.norm / norm.max(f64::MIN_POSITIVE), trusted);
         if !(self.norm > GOOD_FALL * norm) {
             self.give_up_preconditioner();
         }
@@ -501,10 +508,23 @@ impl<'a, S: Implicit> Relax<'a, S> {
         Some(frame)
     }
 
-    /// The Courant number after an accepted step that divided the residual by `ratio`.
-    fn next_cfl(&self, fraction: f64, ratio: f64) -> f64 {
+    /// Size of what the residual after a whole step differs by from what the linear system left of it, δu/Δτ.
+    fn model_error(&mut self) -> f64 {
+        let (residual, step, shift) = (&self.residual, &self.step, &self.shift);
+        sweep_fields(self.system, &mut self.trial, |i, at, out| {
+            for (k, out) in (at..).zip(out) {
+                *out = residual[k] - shift[i] * step[k];
+            }
+        });
+        self.norm_of(&self.trial)
+    }
+
+    /// The Courant number after an accepted step that divided the residual by `ratio`; `trusted` where the linear system
+    /// foretold the residual.
+    fn next_cfl(&self, fraction: f64, ratio: f64, trusted: bool) -> f64 {
         let growth = self.control.growth;
         let factor = match (self.phase.newton, fraction == 1.0) {
+            (true, true) if trusted => ratio.clamp(TRUSTED_GROWTH, growth),
             (true, true) => ratio.clamp(0.5, growth),
             (true, false) => ratio.clamp(0.5, 1.0),
             (false, true) => {
