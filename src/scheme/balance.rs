@@ -93,26 +93,13 @@ pub struct Part<const D: usize> {
     pub passed: [f64; 2],
 }
 
-/// The sides of the domain that cut the zone.
-#[derive(Clone, Debug)]
-pub enum Sides<const D: usize> {
-    /// None does.
-    Beyond,
-    /// Pieces that make them up, outside the bodies.
-    Open(Vec<SidePiece<D>>),
-    /// Some that are periodic.
-    Periodic,
-}
-
-/// A piece of a side of the domain.
+/// A piece of what bounds the gas where the zone is cut.
 #[derive(Clone, Copy, Debug)]
 pub struct SidePiece<const D: usize> {
     /// Its middle.
     pub x: Vector<D>,
     /// Its outward area.
     pub area: Vector<D>,
-    /// True where nothing passes it.
-    pub closed: bool,
 }
 
 impl<const D: usize> Part<D> {
@@ -149,7 +136,8 @@ impl<'a, const D: usize> Balance<'a, D> {
     }
 
     /// What the particles add, and what lies between them and the walls. `rate` is dU/dt of the fluid particles; empty in steady flow.
-    pub fn parts(&self, rate: &[f64], sides: &Sides<D>) -> Vec<Part<D>> {
+    /// `cut` are the pieces that bound the gas inside the zone, but for the walls; `None` where they are not known.
+    pub fn parts(&self, rate: &[f64], cut: Option<&[SidePiece<D>]>) -> Vec<Part<D>> {
         let (frame, cloud) = (self.view.frame, self.view.cloud());
         let spread = self.spread();
         let volume = self.view.fluid.volumes();
@@ -159,7 +147,7 @@ impl<'a, const D: usize> Balance<'a, D> {
             own.momentum - self.free.velocity * own.density + self.momentum(i) * spread.get(i).map_or(0.0, |s| s.1)
         };
         let volume = |i: usize| volume[i] * spread.get(i).map_or(1.0, |s| s.0);
-        let missing = self.missing(&volume, sides);
+        let missing = cut.map(|cut| self.missing(&volume, cut));
         let in_shocks = self.carried_through_shocks();
         let mut parts = vec![Part::BLANK; first + cloud.n_fluid];
         sweep_slots(&mut parts, |k, part| {
@@ -222,15 +210,11 @@ impl<'a, const D: usize> Balance<'a, D> {
     }
 
     /// Volume that the particles beside the walls lack, over the sum of the shares of the walls: ∫ ∇·(φ x) dV is known from the
-    /// walls and from the sides that cut the zone. `None` where those are periodic.
-    fn missing(&self, volume: &impl Fn(usize) -> f64, sides: &Sides<D>) -> Option<f64> {
+    /// walls and from the pieces that cut the zone.
+    fn missing(&self, volume: &impl Fn(usize) -> f64, cut: &[SidePiece<D>]) -> f64 {
         let (frame, cloud) = (self.view.frame, self.view.cloud());
         let middle = self.zone.bounds().centre();
-        let cut: f64 = match sides {
-            Sides::Beyond => 0.0,
-            Sides::Open(tiles) => tiles.iter().map(|t| self.zone.at(&t.x).0 * (t.x - middle).dot(&t.area)).sum(),
-            Sides::Periodic => return None,
-        };
+        let cut: f64 = cut.iter().map(|t| self.zone.at(&t.x).0 * (t.x - middle).dot(&t.area)).sum();
         let walls = cloud.interface_range().zip(&cloud.interface);
         let exact =
             walls.map(|(i, w)| -(frame.place(i) - middle).dot(&frame.to_inertial_axes(&w.area))).sum::<f64>() + cut;
@@ -241,7 +225,7 @@ impl<'a, const D: usize> Balance<'a, D> {
         };
         let found: f64 = (0..cloud.n_fluid).map(particle).sum();
         let shares: f64 = (0..cloud.interface.len()).map(|w| self.share(w)).sum();
-        Some((exact - found) / D as f64 / shares)
+        (exact - found) / D as f64 / shares
     }
 
     /// The part of interface particle `w` in volume that is missing: rows of particles are a spacing thick.
@@ -278,19 +262,44 @@ impl<'a, const D: usize> Balance<'a, D> {
         (Conserved { density: own.density - far.density, momentum, energy }, [own.density, own.energy])
     }
 
-    /// What a piece of a side of the domain adds: the state there in the axes of the case, and its outward area.
-    pub fn side(&self, x: Vector<D>, q: &Primitive<D>, area: &Vector<D>) -> Part<D> {
-        let (gas, weight) = (&self.view.fluid.gas, self.zone.at(&x).0);
-        let flow = gas.flux(q, area).plus(-1.0, &gas.flux(&self.free, area)).times(weight);
-        let momentum = (q.velocity - self.free.velocity) * (q.density * q.velocity.dot(area));
-        Part {
-            x,
-            force: (momentum + *area * (q.pressure - self.free.pressure)) * -weight,
-            carried: [Vector::ZERO; 2],
-            mass: flow.density,
-            energy: flow.energy,
-            passed: [flow.density.abs(), flow.energy.abs()],
+    /// What a piece of a plane of symmetry adds, which nothing passes: the pressure on it, beyond that of the free stream.
+    pub fn pressed(&self, piece: &SidePiece<D>, pressure: f64) -> Part<D> {
+        let push = piece.area * (pressure - self.free.pressure);
+        Part { x: piece.x, force: push * -self.zone.at(&piece.x).0, ..Part::BLANK }
+    }
+
+    /// What passes the open sides of the domain inside the zone, with the areas that it passes: the fluxes of the scheme along the edges
+    /// that end at outer particles. What outer particles hold jumps where a side is near, and the gas ends between them and the rest.
+    pub fn through_sides(&self) -> Vec<(SidePiece<D>, Part<D>)> {
+        let (frame, cloud) = (self.view.frame, self.view.cloud());
+        let (op, state, outer) = (&frame.discretisation.operators, &self.view.work.state, cloud.outer_range());
+        let mut found = Vec::new();
+        for k in 0..op.fluid_parts().len() {
+            for e in op.edges(k).iter().filter(|e| outer.contains(&cloud.source(e.j()).index)) {
+                let x = (frame.place(e.i()) + frame.place(e.j())) * 0.5;
+                let weight = self.zone.at(&x).0;
+                if weight == 0.0 {
+                    continue;
+                }
+                let area = frame.to_inertial_axes(&e.s);
+                let passing = self.view.fluid.through((frame, self.view.work), e);
+                let push = frame.to_inertial_axes(&passing.momentum) - self.free.velocity * passing.density;
+                let swept = (frame.velocity_of(e.i()) + frame.velocity_of(e.j())).dot(&area) * 0.5;
+                let ends = [e.i(), e.j()].map(|i| self.view.fluid.gas.conserved(&state[i]));
+                let whole = passing.plus(0.5 * swept, &ends[0].plus(1.0, &ends[1]));
+                let beyond = whole.minus(&self.view.fluid.gas.flux(&self.free, &area));
+                let part = Part {
+                    x,
+                    force: (push - area * self.free.pressure) * -weight,
+                    mass: weight * beyond.density,
+                    energy: weight * beyond.energy,
+                    passed: [whole.density, whole.energy].map(|f| weight * f.abs()),
+                    ..Part::BLANK
+                };
+                found.push((SidePiece { x, area }, part));
+            }
         }
+        found
     }
 
     /// Volume of each fluid particle over that before any motion, and ∇·w; empty where both are as for a body.
@@ -380,7 +389,7 @@ mod tests {
             row[1..3].copy_from_slice(&change(&frame.place(i), &frame.velocity_of(i)).0);
         }
         let balance = Balance::new(*free, View::new(fluid, &frame, &work)).unwrap();
-        let sum = balance.parts(&du, &Sides::Beyond).iter().fold(Vector::ZERO, |s, p| s + p.force);
+        let sum = balance.parts(&du, Some(&[])).iter().fold(Vector::ZERO, |s, p| s + p.force);
         let walls = frame.discretisation.cloud.interface_range();
         let n = walls.len() as f64;
         (sum, walls.map(|i| frame.place(i)).fold(Vector::ZERO, |s, x| s + x * (1.0 / n)))

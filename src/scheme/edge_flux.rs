@@ -91,9 +91,18 @@ pub fn beyond_mean<const D: usize, F: UpwindFlux<D>, L: Limit>(
     ends: [&EdgeEnd<D>; 2],
     face: &EdgeFace<D>,
 ) -> Conserved<D> {
-    let velocity = ends.map(|end| end.velocity);
-    let mean = upwind(&scheme.gas, Central, &ends.map(|end| end.state), &face.area, &velocity);
-    between(scheme, ends, face).1.minus(&mean).times(face.area.norm())
+    let mean = mean_through(&scheme.gas, &ends.map(|end| end.state), &face.area, &ends.map(|end| end.velocity));
+    between(scheme, ends, face).1.times(face.area.norm()).minus(&mean)
+}
+
+/// The mean flux of two ends through an area that moves with their mean velocity.
+pub fn mean_through<const D: usize>(
+    gas: &Gas,
+    state: &[Primitive<D>; 2],
+    area: &Vector<D>,
+    velocity: &[Vector<D>; 2],
+) -> Conserved<D> {
+    upwind(gas, Central, state, area, velocity).times(area.norm())
 }
 
 /// States on both sides of the middle of an edge, and the upwind flux between them per unit of area.

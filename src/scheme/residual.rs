@@ -20,7 +20,7 @@
 #[cfg(test)]
 mod tests;
 
-use super::edge_flux::{EdgeEnd, EdgeFace, FluxScheme, beyond_mean};
+use super::edge_flux::{EdgeEnd, EdgeFace, FluxScheme, beyond_mean, mean_through};
 use super::edges::{Particles, edge_fluxes};
 use super::fluid::{Fluid, Work};
 use super::frame::Frame;
@@ -97,6 +97,13 @@ impl<const D: usize> Fluid<D> {
                 out.chunks_exact_mut(n_variables(D)).for_each(|row| frame.momentum_to_inertial_axes(row));
             }
         });
+    }
+
+    /// What passes the area of an edge, which moves with the mean velocity of its ends, without stress and heat.
+    pub(super) fn through(&self, (frame, work): (&Frame<D>, &Work<D>), e: &Edge<D>) -> Conserved<D> {
+        let ends = [e.i(), e.j()];
+        let (state, moved) = (ends.map(|i| work.state[i]), ends.map(|i| frame.velocity_of(i)));
+        mean_through(&self.gas, &state, &e.s, &moved).plus(1.0, &self.beyond_mean((frame, work), e))
     }
 
     /// What is let through an edge beyond the mean flux of its ends.

@@ -3,7 +3,7 @@ use super::axes::{GasView, LoadFrame};
 use crate::case::{Case, Side};
 use crate::math::{Bounds, Vector};
 use crate::observe::loads::Balance as Sum;
-use crate::scheme::balance::{Balance, Part, SidePiece, Sides};
+use crate::scheme::balance::{Balance, Part, SidePiece};
 use crate::scheme::probe::Probe;
 use crate::scheme::start::free_stream;
 use crate::scheme::{View, Work};
@@ -44,25 +44,22 @@ pub(crate) fn around<const D: usize>(
         sum.passed[0] += p.passed[0];
         sum.passed[1] += p.passed[1];
     };
-    let sides = sides(case, &view, &balance.zone.bounds());
-    balance.parts(&rate, &sides).into_iter().for_each(&mut add);
+    let planes = planes(case, &view, &balance.zone.bounds());
+    let (mut cut, passing): (Vec<_>, Vec<_>) = balance.through_sides().into_iter().unzip();
+    cut.extend(planes.iter().flatten());
+    balance.parts(&rate, planes.is_some().then_some(&cut)).into_iter().chain(passing).for_each(&mut add);
     let probe = Probe::new(view, None);
-    let Sides::Open(tiles) = &sides else { return Some(sum) };
-    for SidePiece { x, area, closed } in tiles {
-        if let Some(mut q) = probe.at(x) {
-            if *closed {
-                // nothing passes, whatever lies between the particles and the side
-                q.velocity -= *area * (q.velocity.dot(area) / area.norm_squared());
-            }
-            add(balance.side(*x, &q, area));
+    for piece in planes.iter().flatten() {
+        if let Some(q) = probe.at(&piece.x) {
+            add(balance.pressed(piece, q.pressure));
         }
     }
     Some(sum)
 }
 
-/// The sides of the domain that cut the zone, in tiles outside the bodies. What passes one of two periodic sides comes back through the
-/// other.
-fn sides<const D: usize>(case: &Case, view: &View<'_, D>, zone: &Bounds<D>) -> Sides<D> {
+/// The planes of symmetry that cut the zone, in tiles outside the bodies. `None` where sides that do are periodic: what passes one of
+/// them comes back through the other.
+fn planes<const D: usize>(case: &Case, view: &View<'_, D>, zone: &Bounds<D>) -> Option<Vec<SidePiece<D>>> {
     let domain = view.reference().tree.bounds();
     let clamp = |v: &Vector<D>| Vector::from_fn(|d| v[d].clamp(domain.min[d], domain.max[d]));
     let region = Bounds { min: clamp(&zone.min), max: clamp(&zone.max) };
@@ -76,20 +73,21 @@ fn sides<const D: usize>(case: &Case, view: &View<'_, D>, zone: &Bounds<D>) -> S
             continue;
         }
         let condition = conditions[axis][usize::from(!low)];
-        if condition == Side::Periodic {
-            return Sides::Periodic;
+        match condition {
+            Side::Periodic => return None,
+            Side::Symmetry => {}
+            _ => continue,
         }
-        let closed = condition == Side::Symmetry;
         let end = if low { region.min[axis] } else { region.max[axis] };
         let rim = Rim::new(view, axis, end);
         tile(view, &region, (axis, end), &mut |x, extent| {
             rim.cut(x, extent, &mut |x, extent| {
                 let size: f64 = (0..D).map(|d| extent[d]).product();
-                tiles.push(SidePiece { x, area: Vector::axis(axis) * (sign * size), closed });
+                tiles.push(SidePiece { x, area: Vector::axis(axis) * (sign * size) });
             });
         });
     }
-    if tiles.is_empty() { Sides::Beyond } else { Sides::Open(tiles) }
+    Some(tiles)
 }
 
 /// Interface particles beside a plane across an axis: where bodies stand on it.
