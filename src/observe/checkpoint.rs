@@ -11,8 +11,8 @@
 //! | 24..24+n   | header, JSON: `{"meta": …, "fields": [{name, dtype, shape, offset, stored, encoding, crc32}]}` |
 //! | then       | the stored arrays one after another, `offset` counted from the end of the header            |
 //!
-//! All numbers are little-endian. An array is stored raw or as one LZ4 frame, whichever is shorter; its CRC-32 is
-//! that of the stored bytes. Every byte of the file is under the magic, a CRC or the check of the total length, so that
+//! All numbers are little-endian. An array is stored as one LZ4 frame where its first MiB shrinks, else raw and written from where it
+//! lies: states hardly shrink, and copies of them would be the peak of memory of a large run. Its CRC-32 is that of the stored bytes. Every byte of the file is under the magic, a CRC or the check of the total length, so that
 //! damage is reported with the name of the field it hit and never read as a number.
 use std::fs::File;
 use std::io::{self, Read, Write};
@@ -26,6 +26,9 @@ use super::table::{FileError, folder_of, write_beside};
 const MAGIC: &[u8; 8] = b"ALULACKP";
 const VERSION: u32 = 2;
 const PREAMBLE: usize = 24;
+/// Bytes of an array that tell whether it shrinks, and those that are written at a time.
+const TOLD_BY: usize = 1 << 20;
+const PIECE: usize = 1 << 16;
 
 /// The state of a run at one moment.
 #[derive(Clone, Debug, PartialEq)]
@@ -221,11 +224,29 @@ impl Array {
         }
     }
 
-    fn to_bytes(&self) -> Vec<u8> {
+    /// Bytes of the first `most` of these at least, or of all, one piece after the other.
+    fn write(&self, most: usize, w: &mut impl Write) -> io::Result<()> {
+        fn pieces<T, const N: usize>(
+            v: &[T],
+            most: usize,
+            of: impl Fn(&T) -> [u8; N],
+            w: &mut impl Write,
+        ) -> io::Result<()> {
+            let count = v.len().min(most.div_ceil(N));
+            v[..count].chunks(PIECE / N).try_for_each(|v| w.write_all(&v.iter().flat_map(&of).collect::<Vec<u8>>()))
+        }
         match self {
-            Self::F64(values) => values.iter().flat_map(|v| v.to_le_bytes()).collect(),
-            Self::U32(values) => values.iter().flat_map(|v| v.to_le_bytes()).collect(),
-            Self::U8(values) => values.clone(),
+            Self::F64(values) => pieces(values, most, |v| v.to_le_bytes(), w),
+            Self::U32(values) => pieces(values, most, |v| v.to_le_bytes(), w),
+            Self::U8(values) => w.write_all(&values[..values.len().min(most)]),
+        }
+    }
+
+    fn bytes(&self) -> usize {
+        match self {
+            Self::F64(values) => 8 * values.len(),
+            Self::U32(values) => 4 * values.len(),
+            Self::U8(values) => values.len(),
         }
     }
 
@@ -251,11 +272,8 @@ impl Dtype {
 /// Writes a checkpoint and waits until it is on the disk. The one before is called `….previous` while the new one takes
 /// its place, and is removed after; [`read`] finds it there when the machine stops in between.
 pub fn write(path: &Path, checkpoint: &Checkpoint) -> Result<(), CheckpointError> {
-    let (header, blocks) = encode(checkpoint)?;
-    let temporary = write_beside(path, |w| {
-        w.write_all(&header)?;
-        blocks.iter().try_for_each(|block| w.write_all(block))
-    })?;
+    let encoded = encode(checkpoint)?;
+    let temporary = write_beside(path, |mut w| put(checkpoint, &encoded, &mut w))?;
     temporary.as_file().sync_all().map_err(FileError::io("write", path))?;
     let previous = previous_of(path);
     let replaced = path.exists();
@@ -294,23 +312,38 @@ fn sync_folder(path: &Path) -> io::Result<()> {
     if cfg!(unix) { File::open(folder_of(path))?.sync_all() } else { Ok(()) }
 }
 
-fn encode(checkpoint: &Checkpoint) -> Result<(Vec<u8>, Vec<Vec<u8>>), CheckpointError> {
+/// The header, and of each field its packed bytes where it shrinks.
+type Encoded = (Vec<u8>, Vec<Option<Vec<u8>>>);
+
+fn put(checkpoint: &Checkpoint, (header, packed): &Encoded, w: &mut impl Write) -> io::Result<()> {
+    w.write_all(header)?;
+    checkpoint.fields.iter().zip(packed).try_for_each(|(field, packed)| match packed {
+        Some(packed) => w.write_all(packed),
+        None => field.data.write(usize::MAX, w),
+    })
+}
+
+fn encode(checkpoint: &Checkpoint) -> Result<Encoded, CheckpointError> {
     let mut entries: Vec<Entry> = Vec::with_capacity(checkpoint.fields.len());
     let mut blocks = Vec::with_capacity(checkpoint.fields.len());
     let mut offset = 0;
     for field in &checkpoint.fields {
         check_field(field, &entries)?;
-        let (encoding, block) = encode_array(field)?;
+        let (packed, crc32) = encode_array(&field.data)
+            .map_err(|e| CheckpointError::Invalid { field: field.name.clone(), reason: e.to_string() })?;
         let dtype = match field.data {
             Array::F64(_) => Dtype::F64,
             Array::U32(_) => Dtype::U32,
             Array::U8(_) => Dtype::U8,
         };
         let (name, shape) = (field.name.clone(), field.shape.clone());
-        let stored = block.len() as u64;
-        entries.push(Entry { name, dtype, shape, offset, stored, encoding, crc32: crc32fast::hash(&block) });
+        let (encoding, stored) = match &packed {
+            Some(packed) => (Encoding::Lz4, packed.len() as u64),
+            None => (Encoding::Raw, field.data.bytes() as u64),
+        };
+        entries.push(Entry { name, dtype, shape, offset, stored, encoding, crc32 });
         offset += stored;
-        blocks.push(block);
+        blocks.push(packed);
     }
     let header = Header { meta: checkpoint.meta.clone(), fields: entries };
     let json = serde_json::to_vec(&header)
@@ -334,18 +367,39 @@ fn check_field(field: &Field, before: &[Entry]) -> Result<(), CheckpointError> {
     Ok(())
 }
 
-fn encode_array(field: &Field) -> Result<(Encoding, Vec<u8>), CheckpointError> {
-    let raw = field.data.to_bytes();
-    let packed =
-        pack(&raw).map_err(|e| CheckpointError::Invalid { field: field.name.clone(), reason: e.to_string() })?;
-    Ok(if packed.len() < raw.len() { (Encoding::Lz4, packed) } else { (Encoding::Raw, raw) })
+/// The packed bytes of an array whose beginning shrinks, and the CRC-32 of what is stored.
+///
+/// Fast rather than small: flags and indices shrink in any way, and a checkpoint must not stall the run.
+fn encode_array(data: &Array) -> io::Result<(Option<Vec<u8>>, u32)> {
+    let beginning = pack(data, TOLD_BY)?;
+    if beginning.len() < data.bytes().min(TOLD_BY) {
+        let packed = if data.bytes() <= TOLD_BY { beginning } else { pack(data, usize::MAX)? };
+        let crc = crc32fast::hash(&packed);
+        return Ok((Some(packed), crc));
+    }
+    let mut sum = Checksum(crc32fast::Hasher::new());
+    data.write(usize::MAX, &mut sum)?;
+    Ok((None, sum.0.finalize()))
 }
 
-/// Fast rather than small: flow fields hardly shrink in any way, flags and indices in every way, and a checkpoint must not stall the run.
-fn pack(raw: &[u8]) -> io::Result<Vec<u8>> {
+fn pack(data: &Array, most: usize) -> io::Result<Vec<u8>> {
     let mut encoder = FrameEncoder::new(Vec::new());
-    encoder.write_all(raw)?;
+    data.write(most, &mut encoder)?;
     Ok(encoder.finish()?)
+}
+
+/// Keeps the checksum of what is written to it.
+struct Checksum(crc32fast::Hasher);
+
+impl Write for Checksum {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.0.update(bytes);
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
 }
 
 fn product(shape: &[usize]) -> Option<usize> {
@@ -472,8 +526,8 @@ mod tests {
     }
 
     fn sample_bytes() -> Vec<u8> {
-        let (mut bytes, blocks) = encode(&sample()).unwrap();
-        blocks.iter().for_each(|block| bytes.extend(block));
+        let mut bytes = Vec::new();
+        put(&sample(), &encode(&sample()).unwrap(), &mut bytes).unwrap();
         bytes
     }
 
@@ -493,6 +547,24 @@ mod tests {
         assert_eq!(back.u32("level").unwrap().len(), 300);
         let message = back.u8("state").unwrap_err().to_string();
         assert!(message.starts_with("the checkpoint has no field `state` of type u8; it has `state` (f64)"));
+    }
+
+    #[test]
+    fn large_arrays_come_back_whether_they_shrink_or_not() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("checkpoint.alula");
+        let noise: Vec<f64> = (0..200_000_u64).map(|k| f64::from_bits(k.wrapping_mul(0x9e37_79b9_7f4a_7c15))).collect();
+        let field = |name: &str, data: Array| Field { name: name.into(), shape: vec![data.len()], data };
+        let fields = vec![field("noise", Array::F64(noise)), field("same", Array::U32(vec![7; 400_000]))];
+        let checkpoint = Checkpoint { meta: serde_json::Value::Null, fields };
+        write(&path, &checkpoint).unwrap();
+        let size = std::fs::metadata(&path).unwrap().len();
+        assert!((1_600_000..1_620_000).contains(&size), "{size}");
+        let (back, bits) = (read(&path).unwrap(), |c: &Checkpoint| {
+            c.f64("noise").unwrap().iter().map(|v| v.to_bits()).collect::<Vec<_>>()
+        });
+        assert_eq!(bits(&back), bits(&checkpoint));
+        assert_eq!(back.fields[1], checkpoint.fields[1]);
     }
 
     #[test]
@@ -550,7 +622,7 @@ mod tests {
             decode(Path::new("c"), &bytes)
         };
         assert!(forged("[1]", &[0; 8], "raw").is_ok());
-        let packed = pack(&[0; 80]).unwrap();
+        let packed = pack(&Array::U8(vec![0; 80]), usize::MAX).unwrap();
         assert!(forged("[10]", &packed, "lz4").is_ok());
         for (shape, block, encoding) in [
             ("[2]", &[0; 8][..], "raw"),

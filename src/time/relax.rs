@@ -64,6 +64,10 @@ const STEADY_ALREADY: f64 = 1e-13;
 const STEP_CFL: f64 = 1000.0;
 /// Fall of the residual in an iteration of a step in time with which the preconditioner goes on to serve.
 const GOOD_FALL: f64 = 2.0;
+/// Unknowns beyond which GMRES keeps fewer basis vectors, and how many: those of large systems are the peak of memory, and a Newton
+/// step that is solved less far costs fewer products too.
+const LARGE: usize = 1 << 22;
+const LARGE_BASIS: usize = 14;
 /// Stages of the explicit method.
 const STAGES: [f64; 5] = [0.25, 1.0 / 6.0, 0.375, 0.5, 1.0];
 
@@ -178,7 +182,8 @@ impl<'a, S: Implicit> Relax<'a, S> {
         let implicit = control.method != Method::RungeKutta;
         let hierarchy = Hierarchy { group: control.group, cycle: control.cycle };
         let preconditioning = implicit.then(|| Preconditioning::new(system.preconditioner(&hierarchy, None)));
-        let basis = (control.method == Method::NewtonKrylov).then(|| Gmres::new(n, control.basis));
+        let most = if n > LARGE { control.basis.min(LARGE_BASIS) } else { control.basis };
+        let basis = (control.method == Method::NewtonKrylov).then(|| Gmres::new(n, most));
         let scale = match &resume {
             Some(r) => r.scale.clone(),
             None => rate.iter().map(|r| 1.0 / r).collect(),
