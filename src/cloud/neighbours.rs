@@ -6,6 +6,7 @@
 //! segment that crosses a surface joins nothing, an interface particle sees only what lies in front of it, and in 2-D it
 //! sees of its own kind just the two neighbours along the outline, none across a sharp edge.
 use std::cell::OnceCell;
+use std::sync::Arc;
 
 use super::Transform;
 use super::layers::Source;
@@ -43,9 +44,9 @@ const ROOM: usize = 20;
 #[derive(Clone, Debug, Default)]
 pub struct Neighbours {
     /// Start of each row, and the end of the last one.
-    pub first: Vec<u32>,
+    pub first: Arc<Vec<u32>>,
     /// Particle indices, ascending in each row.
-    pub index: Vec<u32>,
+    pub index: Arc<Vec<u32>>,
 }
 
 impl Neighbours {
@@ -150,7 +151,7 @@ impl Rows {
                 row.sort_unstable();
             }
         });
-        Neighbours { first, index }
+        Neighbours { first: Arc::new(first), index: Arc::new(index) }
     }
 }
 

@@ -6,6 +6,7 @@
 //! one size ([`BlockMatrix::assemble`]). Sweeps are Gauss-Seidel inside fixed parts of consecutive rows and Jacobi between them, so
 //! that the result does not depend on the number of threads.
 use std::ops::Range;
+use std::sync::Arc;
 
 use multiversion::multiversion;
 
@@ -25,8 +26,9 @@ const WINDOW: usize = 64;
 #[derive(Clone, Debug, Default)]
 pub struct BlockMatrix {
     block: usize,
-    first: Vec<u32>,
-    column: Vec<u32>,
+    /// Of each row its first entry; the number of all.
+    first: Arc<Vec<u32>>,
+    column: Columns,
     /// Of each row: its first entry inside its part, its first one beyond the diagonal, its first one after its part.
     cut: Vec<[u32; 3]>,
     /// Of each off-diagonal block its unit and its entries; [`LANES`] more at the end.
@@ -41,6 +43,28 @@ pub struct BlockMatrix {
     weight: Option<f32>,
     /// Sizes of the unknowns of a row: inside, each counts in its own.
     scale: Vec<f32>,
+}
+
+/// The columns of each row beside its own, in ascending order: the beginnings of lists that others may read too.
+#[derive(Clone, Debug, Default)]
+struct Columns {
+    /// Where the list of each row begins.
+    start: Arc<Vec<u32>>,
+    list: Arc<Vec<u32>>,
+}
+
+impl Columns {
+    /// Those of row `i` of a matrix with these first entries.
+    #[inline(always)]
+    fn of(&self, i: usize, first: &[u32]) -> &[u32] {
+        let start = self.start[i] as usize;
+        &self.list[start..start + (first[i + 1] - first[i]) as usize]
+    }
+
+    /// Bytes that are not those of others.
+    fn bytes(&self) -> usize {
+        if Arc::strong_count(&self.list) == 1 { 4 * self.list.len() } else { 0 }
+    }
 }
 
 /// An approximate solution of A x = b and the sums that its sweeps share.
@@ -77,37 +101,53 @@ impl Sweeps {
 }
 
 impl BlockMatrix {
-    /// A matrix with `n` rows whose row i couples to the columns `index[first[i]..first[i + 1]]` below `n`, and to itself.
+    /// A matrix with `n` rows whose row i couples to the columns `index[first[i]..first[i + 1]]` below `n`, in ascending order, and to
+    /// itself. Lists that do not hold i are kept as they are, not copied: in space they are an eighth of the matrix.
     ///
     /// `parts` are the consecutive rows that are assembled and swept together.
     ///
     /// # Panics
     ///
     /// Where no kernel serves blocks of that order, see [`super::blocks`].
-    pub fn new(block: usize, parts: &[Range<usize>], first: &[u32], index: &[u32]) -> Self {
+    pub fn new(block: usize, parts: &[Range<usize>], first: &Arc<Vec<u32>>, index: &Arc<Vec<u32>>) -> Self {
         super::blocks::assert_served(block);
         let n = parts.last().map_or(0, |p| p.end);
-        let mut own_first = vec![0u32];
-        let mut column = Vec::new();
-        for i in 0..n {
+        let row = |i: usize| {
             let row = &index[first[i] as usize..first[i + 1] as usize];
-            column.extend(row.iter().filter(|j| (**j as usize) < n && **j as usize != i));
-            own_first.push(column.len() as u32);
+            &row[..row.partition_point(|j| (*j as usize) < n)]
+        };
+        let mut ends = Vec::with_capacity(n + 1);
+        ends.push(0u32);
+        if (0..n).all(|i| row(i).binary_search(&(i as u32)).is_err()) {
+            (0..n).for_each(|i| ends.push(ends[i] + row(i).len() as u32));
+            let column = Columns { start: Arc::clone(first), list: Arc::clone(index) };
+            return Self::from_pattern(block, Arc::new(ends), column, parts.to_vec());
         }
-        column.shrink_to_fit();
-        Self::from_pattern(block, own_first, column, parts.to_vec())
+        let mut list = Vec::new();
+        for i in 0..n {
+            list.extend(row(i).iter().filter(|j| **j as usize != i));
+            ends.push(list.len() as u32);
+        }
+        Self::from_lists(block, ends, list, parts.to_vec())
     }
 
-    /// `column` holds the columns of each row beside its own, in ascending order.
-    fn from_pattern(block: usize, first: Vec<u32>, column: Vec<u32>, parts: Vec<Range<usize>>) -> Self {
+    /// `list` holds the columns of each row beside its own, in ascending order.
+    fn from_lists(block: usize, first: Vec<u32>, mut list: Vec<u32>, parts: Vec<Range<usize>>) -> Self {
+        list.shrink_to_fit();
+        let first = Arc::new(first);
+        let column = Columns { start: Arc::clone(&first), list: Arc::new(list) };
+        Self::from_pattern(block, first, column, parts)
+    }
+
+    fn from_pattern(block: usize, first: Arc<Vec<u32>>, column: Columns, parts: Vec<Range<usize>>) -> Self {
         let size = block * block;
         let value_parts = parts.iter().map(|p| first[p.start] as usize..first[p.end] as usize).collect();
         let n = first.len() - 1;
-        let cut = parts.iter().flat_map(|p| p.clone().map(|i| cut(i, p, &first, &column))).collect();
+        let cut = parts.iter().flat_map(|p| p.clone().map(|i| cut(i, p, first[i], column.of(i, &first)))).collect();
         Self {
             block,
             cut,
-            value: vec![0; column.len() * (UNIT + size) + LANES],
+            value: vec![0; first[n] as usize * (UNIT + size) + LANES],
             diagonal: vec![0.0; n * size],
             inverse: Vec::new(),
             first,
@@ -167,7 +207,8 @@ impl BlockMatrix {
     /// Bytes held.
     pub fn bytes(&self) -> usize {
         self.value.len()
-            + 4 * (self.diagonal.len() + self.inverse.len() + self.column.len() + self.first.len() + 3 * self.cut.len())
+            + self.column.bytes()
+            + 4 * (self.diagonal.len() + self.inverse.len() + self.first.len() + 3 * self.cut.len())
     }
 
     /// Parts in which rows are assembled and swept.
@@ -250,15 +291,15 @@ impl BlockMatrix {
     ) {
         let at = (i - part.start) * N;
         let (below, inside, above) = self.split_row(i);
-        let middle = self.middle(i);
+        let (middle, column) = (self.middle(i), self.columns_by_entry(i));
         let mut r = load_lanes::<N>(b, i);
         for e in below.chain(above) {
-            subtract::<N>(self.off_diagonal::<N>(e), &load::<N>(old, self.column[e] as usize), &mut r);
+            subtract::<N>(self.off_diagonal::<N>(e), &load::<N>(old, column(e)), &mut r);
         }
         let swept = if forward { inside.start..middle } else { middle..inside.end };
         let mut sum = [0.0; LANES];
         for e in swept {
-            subtract::<N>(self.off_diagonal::<N>(e), &load::<N>(x, self.column[e] as usize - part.start), &mut sum);
+            subtract::<N>(self.off_diagonal::<N>(e), &load::<N>(x, column(e) - part.start), &mut sum);
         }
         let side = &mut side[2 * at..2 * (at + N)];
         (0..N).for_each(|c| r[c] += side[c] + sum[c]);
@@ -277,10 +318,11 @@ impl BlockMatrix {
         (self.first[i] as usize..from, from..to, to..self.first[i + 1] as usize)
     }
 
-    /// Column of entry `e`.
+    /// The columns of the entries of row `i`.
     #[inline(always)]
-    pub(super) fn column(&self, e: usize) -> usize {
-        self.column[e] as usize
+    pub(super) fn columns_by_entry(&self, i: usize) -> impl Fn(usize) -> usize + Copy + '_ {
+        let (columns, first) = (self.columns(i), self.first[i] as usize);
+        move |e| columns[e - first] as usize
     }
 
     /// The entry of row `i` in column `j`.
@@ -324,10 +366,10 @@ impl BlockMatrix {
             let part = self.parts[k].clone();
             for (i, row) in part.clone().zip(out.chunks_exact_mut(N)) {
                 let (below, inside, above) = self.split_row(i);
-                let middle = self.middle(i);
+                let (middle, column) = (self.middle(i), self.columns_by_entry(i));
                 let mut sum = load_lanes::<N>(b, i);
                 for e in below.chain(inside.start..middle).chain(above) {
-                    subtract::<N>(self.off_diagonal::<N>(e), &load::<N>(x, self.column[e] as usize), &mut sum);
+                    subtract::<N>(self.off_diagonal::<N>(e), &load::<N>(x, column(e)), &mut sum);
                 }
                 // what the backward sweep summed after the diagonal still holds, as does what it found for the diagonal
                 let side = &side[2 * i * N..2 * (i + 1) * N];
@@ -343,9 +385,9 @@ impl BlockMatrix {
             let row = |i: usize| {
                 let mut sum = [0.0; N];
                 multiply::<N>(self.diagonal(i), &load::<N>(x, i), &mut sum);
-                let mut all = [0.0; LANES];
+                let (mut all, column) = ([0.0; LANES], self.columns_by_entry(i));
                 for e in self.first[i] as usize..self.first[i + 1] as usize {
-                    subtract::<N>(self.off_diagonal::<N>(e), &load::<N>(x, self.column(e)), &mut all);
+                    subtract::<N>(self.off_diagonal::<N>(e), &load::<N>(x, column(e)), &mut all);
                 }
                 (0..N).map(move |c| sum[c] - all[c])
             };
@@ -364,10 +406,10 @@ impl BlockMatrix {
             let part = self.parts[k].clone();
             for (i, row) in part.clone().zip(out.chunks_exact_mut(2 * N)) {
                 let (_, inside, _) = self.split_row(i);
-                let middle = self.middle(i);
+                let (middle, column) = (self.middle(i), self.columns_by_entry(i));
                 let mut sum = [0.0; LANES];
                 for e in middle..inside.end {
-                    subtract::<N>(self.off_diagonal::<N>(e), &load::<N>(x, self.column[e] as usize), &mut sum);
+                    subtract::<N>(self.off_diagonal::<N>(e), &load::<N>(x, column(e)), &mut sum);
                 }
                 store(&leading::<N>(&sum), row);
             }
@@ -382,19 +424,16 @@ impl BlockMatrix {
         let mut column: Vec<u32> = Vec::new();
         let mut own: Vec<u32> = Vec::new();
         for (g, rows) in members.iter().enumerate() {
-            let entries = |i: &u32| self.first[*i as usize] as usize..self.first[*i as usize + 1] as usize;
+            let columns = rows.iter().flat_map(|i| self.columns(*i as usize));
             own.clear();
-            own.extend(
-                rows.iter().flat_map(entries).map(|e| group[self.column[e] as usize]).filter(|c| *c != g as u32),
-            );
+            own.extend(columns.map(|j| group[*j as usize]).filter(|c| *c != g as u32));
             own.sort_unstable();
             own.dedup();
             column.extend_from_slice(&own);
             first.push(column.len() as u32);
         }
         let parts = parts(n_groups, (n_groups / MANY_PARTS).clamp(PART[0], PART[1]));
-        column.shrink_to_fit();
-        Self { scale: self.scale.clone(), ..Self::from_pattern(self.block, first, column, parts) }
+        Self { scale: self.scale.clone(), ..Self::from_lists(self.block, first, column, parts) }
     }
 
     /// Makes each row of this matrix the mean of rows of `fine`: `members(g)` are those of group g in ascending order, `group` says
@@ -424,22 +463,22 @@ impl BlockMatrix {
             for (g, own) in parts[k].clone().zip(diagonal.chunks_exact_mut(size)) {
                 let rows = || members(g).iter().map(|i| *i as usize);
                 let entries = || {
-                    let of = |i: usize| fine.first[i] as usize..fine.first[i + 1] as usize;
-                    rows().flat_map(move |i| of(i).map(move |e| (e, share[i])))
+                    let of = |i: usize| (fine.first[i] as usize..).zip(fine.columns(i));
+                    rows().flat_map(move |i| of(i).map(move |(e, j)| (e, group[*j as usize], share[i])))
                 };
                 own.fill(0.0);
                 for i in rows() {
                     let fine = &fine.diagonal[i * size..(i + 1) * size];
                     own.iter_mut().zip(fine).for_each(|(a, b)| *a += share[i] * b);
                 }
-                for (e, share) in entries().filter(|(e, _)| group[fine.column(*e)] as usize == g) {
+                for (e, _, share) in entries().filter(|(_, to, _)| *to as usize == g) {
                     add_block::<N>(fine.off_diagonal::<N>(e), share, own);
                 }
-                for columns in column[first[g] as usize..first[g + 1] as usize].chunks(WINDOW) {
+                for columns in column.of(g, first).chunks(WINDOW) {
                     let some = &mut some[..columns.len() * size];
                     some.fill(0.0);
-                    for (e, share) in entries() {
-                        if let Ok(k) = columns.binary_search(&group[fine.column(e)]) {
+                    for (e, to, share) in entries() {
+                        if let Ok(k) = columns.binary_search(&to) {
                             add_block::<N>(fine.off_diagonal::<N>(e), share, &mut some[k * size..][..size]);
                         }
                     }
@@ -451,7 +490,7 @@ impl BlockMatrix {
 
     /// Columns of row `i` beside its own, in ascending order.
     pub fn columns(&self, i: usize) -> &[u32] {
-        &self.column[self.first[i] as usize..self.first[i + 1] as usize]
+        self.column.of(i, &self.first)
     }
 }
 
@@ -471,17 +510,16 @@ fn relax_part<const N: usize>(
     }
 }
 
-/// Where the entries of row `i` enter its part, pass the diagonal and leave the part.
-fn cut(i: usize, part: &Range<usize>, first: &[u32], column: &[u32]) -> [u32; 3] {
-    let row = &column[first[i] as usize..first[i + 1] as usize];
-    let below = |limit: usize| first[i] + row.partition_point(|j| (*j as usize) < limit) as u32;
+/// Where the entries of row `i`, from `first` on and in the columns `row`, enter its part, pass the diagonal and leave the part.
+fn cut(i: usize, part: &Range<usize>, first: u32, row: &[u32]) -> [u32; 3] {
+    let below = |limit: usize| first + row.partition_point(|j| (*j as usize) < limit) as u32;
     [part.start, i, part.end].map(below)
 }
 
 /// Adds to the blocks of the rows of one part.
 pub struct Rows<'a> {
     first: &'a [u32],
-    column: &'a [u32],
+    column: &'a Columns,
     value: &'a mut [u8],
     diagonal: &'a mut [f32],
     start: usize,
@@ -506,9 +544,8 @@ impl Rows<'_> {
             (0..n).for_each(|c| (0..n).for_each(|r| own[c * n + r] += self.factor[c * n + r] * f(r, c) as f32));
             return;
         }
-        let row = self.first[i] as usize..self.first[i + 1] as usize;
-        let Ok(k) = self.column[row.clone()].binary_search(&(j as u32)) else { return };
-        let at = (row.start + k - self.first[self.start] as usize) * (UNIT + n * n);
+        let Ok(k) = self.column.of(i, self.first).binary_search(&(j as u32)) else { return };
+        let at = ((self.first[i] - self.first[self.start]) as usize + k) * (UNIT + n * n);
         let block = &mut self.value[at..at + UNIT + n * n];
         let unit = unit_of(block);
         let mut sum = [0.0; MOST_ENTRIES];
@@ -528,7 +565,9 @@ mod tests {
 
     /// Two rows that see one another, with unknowns of these sizes.
     fn pair(scale: [f64; 2], entry: impl Fn(usize, usize) -> f64 + Sync) -> BlockMatrix {
-        let mut matrix = BlockMatrix::new(2, std::slice::from_ref(&(0..2)), &[0, 1, 2], &[1, 0]).scaled(&scale);
+        let mut matrix =
+            BlockMatrix::new(2, std::slice::from_ref(&(0..2)), &Arc::new(vec![0, 1, 2]), &Arc::new(vec![1, 0]))
+                .scaled(&scale);
         matrix.assemble(|_, rows| {
             for i in 0..2 {
                 rows.add(i, i, |r, c| if r == c { 4.0 } else { 0.0 });

@@ -115,11 +115,11 @@ impl HarmonicSweeps {
             let part = matrix.parts()[k].clone();
             for (i, row) in part.clone().zip(out.chunks_exact_mut(N * count)) {
                 let (below, inside, above) = matrix.split_row(i);
-                let middle = matrix.middle(i);
+                let (middle, column) = (matrix.middle(i), matrix.columns_by_entry(i));
                 let mut sum = [[0.0; LANES]; MOST];
                 let sum = &mut sum[..count];
                 for e in below.chain(inside.start..middle).chain(above) {
-                    gather::<N>(matrix, e, &x[matrix.column(e) * count * N..], sum);
+                    gather::<N>(matrix, e, &x[column(e) * count * N..], sum);
                 }
                 let at = i * count;
                 for (c, sum) in sum.iter_mut().enumerate() {
@@ -149,10 +149,10 @@ impl HarmonicSweeps {
         sweep_parts(matrix.parts(), N * count, &mut self.side, &|k, out| {
             let part = matrix.parts()[k].clone();
             for (i, row) in part.clone().zip(out.chunks_exact_mut(N * count)) {
-                let (_, inside, _) = matrix.split_row(i);
+                let ((_, inside, _), column) = (matrix.split_row(i), matrix.columns_by_entry(i));
                 let mut sum = [[0.0; LANES]; MOST];
                 for e in matrix.middle(i)..inside.end {
-                    gather::<N>(matrix, e, &x[matrix.column(e) * count * N..], &mut sum[..count]);
+                    gather::<N>(matrix, e, &x[column(e) * count * N..], &mut sum[..count]);
                 }
                 row.chunks_exact_mut(N).zip(&sum).for_each(|(row, sum)| store(&leading::<N>(sum), row));
             }
@@ -199,15 +199,15 @@ fn relax_row<const N: usize, const COUNT: usize>(
     let count = if COUNT == MOST { 2 * harmonics + 1 } else { COUNT };
     let at = (i - part.start) * count * N;
     let (below, inside, above) = matrix.split_row(i);
-    let middle = matrix.middle(i);
+    let (middle, column) = (matrix.middle(i), matrix.columns_by_entry(i));
     let mut r = [[0.0; LANES]; COUNT];
     let mut sum = [[0.0; LANES]; COUNT];
     for e in below.chain(above) {
-        gather::<N>(matrix, e, &old[matrix.column(e) * count * N..], &mut r[..count]);
+        gather::<N>(matrix, e, &old[column(e) * count * N..], &mut r[..count]);
     }
     let swept = if forward { inside.start..middle } else { middle..inside.end };
     for e in swept {
-        gather::<N>(matrix, e, &x[(matrix.column(e) - part.start) * count * N..], &mut sum[..count]);
+        gather::<N>(matrix, e, &x[(column(e) - part.start) * count * N..], &mut sum[..count]);
     }
     for c in 0..count {
         for v in 0..N {

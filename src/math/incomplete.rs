@@ -85,11 +85,11 @@ fn solve_part<const N: usize>(
 ) {
     let start = part.start;
     for i in part.clone() {
-        let (_, inside, _) = matrix.split_row(i);
+        let ((_, inside, _), column) = (matrix.split_row(i), matrix.columns_by_entry(i));
         let mut r = [0.0; LANES];
         b(i, &mut r[..N]);
         for e in inside.start..matrix.middle(i) {
-            subtract::<N>(matrix.off_diagonal::<N>(e), &load::<N>(x, matrix.column(e) - start), &mut r);
+            subtract::<N>(matrix.off_diagonal::<N>(e), &load::<N>(x, column(e) - start), &mut r);
         }
         add_pivoted::<N>(inverse, i, &r, [0.0; N], &mut x[(i - start) * N..]);
     }
@@ -108,7 +108,7 @@ fn correct_part<const N: usize>(
 ) {
     let start = part.start;
     for i in part.clone() {
-        let (below, inside, above) = matrix.split_row(i);
+        let ((below, inside, above), column) = (matrix.split_row(i), matrix.columns_by_entry(i));
         let mut r = [0.0; LANES];
         b(i, &mut r[..N]);
         let own = load::<N>(solved, i);
@@ -116,11 +116,11 @@ fn correct_part<const N: usize>(
         multiply::<N>(matrix.diagonal(i), &array(|c| -own[c]), &mut turned);
         r[..N].copy_from_slice(&turned);
         for e in below.chain(matrix.middle(i)..inside.end).chain(above) {
-            subtract::<N>(matrix.off_diagonal::<N>(e), &load::<N>(solved, matrix.column(e)), &mut r);
+            subtract::<N>(matrix.off_diagonal::<N>(e), &load::<N>(solved, column(e)), &mut r);
         }
         // what is left of the right-hand side and what the forward solve takes from it, at once
         for e in inside.start..matrix.middle(i) {
-            let j = matrix.column(e);
+            let j = column(e);
             let (x, y) = (load::<N>(solved, j), load::<N>(y, j - start));
             subtract::<N>(matrix.off_diagonal::<N>(e), &array(|c| x[c] + y[c]), &mut r);
         }
@@ -133,10 +133,10 @@ fn correct_part<const N: usize>(
 #[inline(always)]
 fn backward<const N: usize>(matrix: &BlockMatrix, inverse: &[f32], part: &Range<usize>, x: &mut [f32]) {
     for i in part.clone().rev() {
-        let (_, inside, _) = matrix.split_row(i);
+        let ((_, inside, _), column) = (matrix.split_row(i), matrix.columns_by_entry(i));
         let mut r = [0.0; LANES];
         for e in matrix.middle(i)..inside.end {
-            subtract::<N>(matrix.off_diagonal::<N>(e), &load::<N>(x, matrix.column(e) - part.start), &mut r);
+            subtract::<N>(matrix.off_diagonal::<N>(e), &load::<N>(x, column(e) - part.start), &mut r);
         }
         let own = load::<N>(x, i - part.start);
         add_pivoted::<N>(inverse, i, &r, own, &mut x[(i - part.start) * N..]);
@@ -155,9 +155,9 @@ fn add_pivoted<const N: usize>(inverse: &[f32], i: usize, r: &Lanes, own: [f32; 
 fn pivot<const N: usize>(matrix: &BlockMatrix, i: usize, start: usize, before: &[f32]) -> [[f64; N]; N] {
     let own = matrix.diagonal(i);
     let mut pivot: [[f64; N]; N] = array(|c| array(|r| f64::from(own[c * N + r])));
-    let (_, inside, _) = matrix.split_row(i);
+    let ((_, inside, _), column) = (matrix.split_row(i), matrix.columns_by_entry(i));
     for e in inside.start..matrix.middle(i) {
-        let j = matrix.column(e);
+        let j = column(e);
         let Some(back) = matrix.entry(j, i) else { continue };
         let there = widen_block::<N>(matrix.off_diagonal::<N>(e));
         let back = widen_block::<N>(matrix.off_diagonal::<N>(back));
