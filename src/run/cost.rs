@@ -37,11 +37,11 @@ const STEADY: [f64; 2] = [570.0, 520.0];
 /// Growth of that number with the number of particles, in the plane and in space.
 const GROWTH: [f64; 2] = [-0.09, 0.05];
 /// Time of a pilot in the plane over a usual one beyond which a flow is hard, and growth of its residuals beyond the usual: detached
-/// shocks settle the more slowly the finer they are drawn. In supersonic streams flows are hard from less on, and pilots tell no more
-/// than that: at Mach 1.5, 2, 3 and 6 that of a circle takes 1.5, 1.35, 1.9 and 2.65 times the usual, its finest cloud 12, 10, 8 and 12 s.
-const HARD: [f64; 2] = [1.4, 1.2];
+/// shocks settle the more slowly the finer they are drawn. In supersonic streams flows are hard from less on, and how hard pilots do not
+/// tell: at Mach 1.5, 2, 3 and 6 that of a circle takes 1.65, 1.4, 2.6 and 2.9 times the usual, and all clouds 12, 10, 8 and 12 s.
+const HARD: [f64; 2] = [1.4, 1.33];
 const HARD_GROWTH: f64 = 0.4;
-const SUPERSONIC_PACE: f64 = 1.35;
+const SUPERSONIC_PACE: f64 = 1.7;
 const USUAL: f64 = 4000.0;
 /// Time of a family in space that follows detached shocks over that of one that does not and has as many particles. Of a sphere at
 /// Mach 3.
