@@ -3,14 +3,15 @@
 //! A weight φ is 1 around the bodies and falls to 0 farther out. With the momentum m = ρ(v − v∞) beyond that of the free stream,
 //! so that uniform flow adds up to nothing on any cloud, T = m v + (p − p∞)I − τ, and particles that move with w,
 //!
-//! F = Σ_i V_i [(T − m w)·∇φ − φ (dm/dt + m ∇·w)] + Σ_shocks (φ_j − φ_i) D_ij − Σ_sides φ T·A:
+//! F = Σ_i V_i [(T − m w)·∇φ − φ (dm/dt + m ∇·w)] + Σ_shocks (φ_j − φ_i) D_ij − Σ_sides φ (T − m w)·A:
 //!
 //! what passes the zone in which φ falls, less what gathers inside it. It follows from the momentum equation by parts, where on
 //! the wall (v − w)·n = 0; for moments, (v − w) × m φ is added because T is not symmetric. dm/dt is the change that a particle
 //! sees, in steady flow zero; fluxes of mass and energy are summed in the same way. D is what the scheme carries along the
 //! edges of a shock beyond the mean flux of their ends: inside a captured shock, a few particles wide, the states of particles
 //! alone do not balance, and a zone that runs along a bow shock would miss a fifth of the drag. Elsewhere they are all that is
-//! asked. Sides A of the domain count where the zone is cut by them. Volumes of particles beside a wall are not known to all
+//! asked. Sides A of the domain count where the zone is cut by them: planes of symmetry by the pressure on them, others by what the
+//! scheme lets through. Volumes of particles beside a wall are not known to all
 //! digits; what they lack together follows from the walls and goes to them by area and thickness.
 use super::discretisation::CloudMotion;
 use super::reconstruct::smooth_step;

@@ -132,8 +132,6 @@ pub struct Resume {
     pub iteration: u32,
     /// Courant number.
     pub cfl: f64,
-    /// Size of the first residual.
-    pub first_norm: f64,
     /// Linear iterations done.
     pub linear: u32,
     /// Phase of the relaxation.
@@ -214,25 +212,24 @@ impl<'a, S: Implicit> Relax<'a, S> {
             goal: 0.0,
             evaluations: 0,
         };
-        all.measure_from(origin, resume.map(|r| r.first_norm));
+        all.measure_from(origin, resume.is_some());
         all
     }
 
-    /// Finds the residual of the state and what it is measured against: `known`, or that of `origin`.
-    fn measure_from(&mut self, origin: &[f64], known: Option<f64>) {
+    /// Finds the residual of the state and that of `origin`, which it is measured against: from the time scales of the rows if it goes on,
+    /// so that nothing that was kept is to be believed.
+    fn measure_from(&mut self, origin: &[f64], goes_on: bool) {
         let system = self.system;
-        if known.is_none() {
-            system.rhs(&self.frame, origin, &mut self.work, &mut self.trial_residual);
-        }
+        system.rhs(&self.frame, origin, &mut self.work, &mut self.trial_residual);
         if self.moves() {
             system.place(&Instant::still(0.0).with(&self.u[system.placing()]), &mut self.frame);
         }
         system.rhs_with_boundary(&self.u, &mut self.work, &mut self.frame, &mut self.residual);
-        if known.is_none() {
+        if !goes_on {
             // what the free stream does to a structure says nothing of its size: each field counts in its own units
             weigh(system.fields(), &mut self.scale, &[]);
         }
-        self.first_norm = known.unwrap_or_else(|| self.norm_of(&self.trial_residual).max(f64::MIN_POSITIVE));
+        self.first_norm = self.norm_of(&self.trial_residual).max(f64::MIN_POSITIVE);
         self.norm = self.norm_of(&self.residual);
     }
 
@@ -352,7 +349,6 @@ impl<'a, S: Implicit> Relax<'a, S> {
         Resume {
             iteration: self.iteration,
             cfl: self.cfl,
-            first_norm: self.first_norm,
             linear: self.linear,
             phase: self.phase,
             scale: self.scale.clone(),

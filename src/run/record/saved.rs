@@ -69,7 +69,6 @@ struct Meta {
     stage_iteration: u32,
     time_bits: u64,
     cfl_bits: u64,
-    first_norm_bits: u64,
     linear: u32,
     newton: bool,
     phase_age: u32,
@@ -340,7 +339,6 @@ impl Saved {
             stage_iteration: relax.iteration,
             time_bits: self.time.to_bits(),
             cfl_bits: relax.cfl.to_bits(),
-            first_norm_bits: relax.first_norm.to_bits(),
             linear: self.linear,
             newton: relax.phase.newton,
             phase_age: relax.phase.age,
@@ -462,7 +460,6 @@ impl Meta {
         Resume {
             iteration: self.stage_iteration,
             cfl: f64::from_bits(self.cfl_bits),
-            first_norm: f64::from_bits(self.first_norm_bits),
             linear: self.linear,
             phase,
             scale,
@@ -498,7 +495,7 @@ fn other_version(problem: &dyn std::fmt::Display) -> RunError {
 
 /// Where a march stands, in the terms of a relaxation.
 fn bare(iteration: u32) -> Resume {
-    Resume { iteration, cfl: 0.0, first_norm: 1.0, linear: 0, phase: Phase::default(), scale: Vec::new() }
+    Resume { iteration, cfl: 0.0, linear: 0, phase: Phase::default(), scale: Vec::new() }
 }
 
 /// Nothing, or what is wrong with a checkpoint.

@@ -23,7 +23,7 @@ impl Saved {
         require(arrays.iter().all(|a| a.iter().all(|x| x.is_finite())), "a field holds what is not a finite number")?;
         require(!numbers.iter().any(|x| x.is_nan()) && self.time.is_finite(), "a number is not one")?;
         if let Memory::Relaxation(relax) = &self.memory {
-            require(relax.first_norm >= 0.0 && relax.cfl > 0.0, "its first residual or Courant number is negative")?;
+            require(relax.cfl > 0.0, "its Courant number is not positive")?;
         }
         require(self.start_totals.len() <= 5, "its totals are too many")?;
         let lost = self.lagrangian.as_ref().map_or(0, |l| if l.ledger.renewals > 0 { l.ledger.lost.len() } else { 0 });
@@ -57,7 +57,7 @@ impl Saved {
         match &self.memory {
             Memory::Relaxation(r) => {
                 arrays.push(&r.scale);
-                numbers.extend([r.cfl, r.first_norm, r.phase.best]);
+                numbers.extend([r.cfl, r.phase.best]);
             }
             Memory::March(p) => {
                 arrays.extend([p.before.as_slice(), &p.older]);
