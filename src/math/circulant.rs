@@ -275,7 +275,7 @@ mod tests {
             first.push(index.len() as u32);
         }
         let parts: Vec<_> = (0..n).step_by(7).map(|s| s..(s + 7).min(n)).collect();
-        let mut matrix = BlockMatrix::new(3, &parts, &first, &index);
+        let mut matrix = BlockMatrix::new(3, &parts, &first.into(), &index.into());
         matrix.assemble(|k, rows| {
             for i in parts[k].clone() {
                 rows.add(i, i, |r, c| if r == c { 2.5 + 0.5 * r as f64 } else { 0.25 * (r as f64 - c as f64) });

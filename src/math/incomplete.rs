@@ -184,7 +184,7 @@ mod tests {
             index.extend([i.wrapping_sub(1), i + 1].iter().filter(|j| **j < n).map(|j| *j as u32));
             first.push(index.len() as u32);
         }
-        let mut matrix = BlockMatrix::new(2, &super::super::sweep::parts(n, n), &first, &index);
+        let mut matrix = BlockMatrix::new(2, &super::super::sweep::parts(n, n), &first.into(), &index.into());
         matrix.assemble(|_, rows| {
             for i in 0..n {
                 rows.add(i, i, |r, c| if r == c { 4.0 } else { 0.25 });

@@ -292,7 +292,7 @@ mod tests {
         let volume: Vec<f64> = (0..n).map(|i| [1.0, 0.3, 4.0, 0.02][i * i % 7 % 4]).collect();
         let first: Vec<u32> = (0..=n as u32).map(|i| 2 * i).collect();
         let index: Vec<u32> = (0..n).flat_map(|i| [(i + n - 1) % n, (i + 1) % n]).map(|j| j as u32).collect();
-        let matrix = BlockMatrix::new(2, std::slice::from_ref(&(0..n)), &first, &index);
+        let matrix = BlockMatrix::new(2, std::slice::from_ref(&(0..n)), &first.into(), &index.into());
         let mut all = Multilevel::new(matrix, volume.clone(), 4, Cycle { sweeps: 1, visits: 1, levels: 3 });
         let handed = |i: usize| 1.0 + 0.5 * (i as f64).sin();
         all.finest().assemble(|_, rows| {
