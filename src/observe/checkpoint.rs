@@ -14,6 +14,7 @@
 //! All numbers are little-endian. An array is stored as one LZ4 frame where its first MiB shrinks, else raw and written from where it
 //! lies: states hardly shrink, and copies of them would be the peak of memory of a large run. Its CRC-32 is that of the stored bytes. Every byte of the file is under the magic, a CRC or the check of the total length, so that
 //! damage is reported with the name of the field it hit and never read as a number.
+use std::borrow::Cow;
 use std::fs::File;
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
@@ -32,29 +33,29 @@ const PIECE: usize = 1 << 16;
 
 /// The state of a run at one moment.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Checkpoint {
+pub struct Checkpoint<'a> {
     /// Small facts: iteration, time, cycle, Courant number, version.
     pub meta: serde_json::Value,
     /// Large arrays.
-    pub fields: Vec<Field>,
+    pub fields: Vec<Field<'a>>,
 }
 
 /// A named array.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Field {
+pub struct Field<'a> {
     /// Name, unique in a checkpoint.
     pub name: String,
     /// Extent along each axis, last axis fastest; its product is the length of `data`.
     pub shape: Vec<usize>,
     /// Values.
-    pub data: Array,
+    pub data: Array<'a>,
 }
 
 /// The values of a field.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Array {
-    /// Double precision.
-    F64(Vec<f64>),
+pub enum Array<'a> {
+    /// Double precision, where they lie or on their own.
+    F64(Cow<'a, [f64]>),
     /// Indices.
     U32(Vec<u32>),
     /// Flags and raw bytes.
@@ -165,7 +166,7 @@ enum Encoding {
     Lz4,
 }
 
-impl Checkpoint {
+impl Checkpoint<'_> {
     /// The values of a field of double precision.
     pub fn f64(&self, name: &str) -> Result<&[f64], CheckpointError> {
         match self.find(name) {
@@ -190,7 +191,7 @@ impl Checkpoint {
         }
     }
 
-    fn find(&self, name: &str) -> Option<&Array> {
+    fn find(&self, name: &str) -> Option<&Array<'_>> {
         self.fields.iter().find(|field| field.name == name).map(|field| &field.data)
     }
 
@@ -201,7 +202,7 @@ impl Checkpoint {
     }
 }
 
-impl Array {
+impl Array<'_> {
     /// Number of values.
     pub fn len(&self) -> usize {
         match self {
@@ -271,7 +272,7 @@ impl Dtype {
 
 /// Writes a checkpoint and waits until it is on the disk. The one before is called `….previous` while the new one takes
 /// its place, and is removed after; [`read`] finds it there when the machine stops in between.
-pub fn write(path: &Path, checkpoint: &Checkpoint) -> Result<(), CheckpointError> {
+pub fn write(path: &Path, checkpoint: &Checkpoint<'_>) -> Result<(), CheckpointError> {
     let encoded = encode(checkpoint)?;
     let temporary = write_beside(path, |mut w| put(checkpoint, &encoded, &mut w))?;
     temporary.as_file().sync_all().map_err(FileError::io("write", path))?;
@@ -294,7 +295,7 @@ pub fn write(path: &Path, checkpoint: &Checkpoint) -> Result<(), CheckpointError
 }
 
 /// Reads a checkpoint; falls back to `….previous` when there is no file `path`.
-pub fn read(path: &Path) -> Result<Checkpoint, CheckpointError> {
+pub fn read(path: &Path) -> Result<Checkpoint<'static>, CheckpointError> {
     let previous = previous_of(path);
     let path = if !path.exists() && previous.exists() { previous.as_path() } else { path };
     let bytes = std::fs::read(path).map_err(FileError::io("read", path))?;
@@ -315,7 +316,7 @@ fn sync_folder(path: &Path) -> io::Result<()> {
 /// The header, and of each field its packed bytes where it shrinks.
 type Encoded = (Vec<u8>, Vec<Option<Vec<u8>>>);
 
-fn put(checkpoint: &Checkpoint, (header, packed): &Encoded, w: &mut impl Write) -> io::Result<()> {
+fn put(checkpoint: &Checkpoint<'_>, (header, packed): &Encoded, w: &mut impl Write) -> io::Result<()> {
     w.write_all(header)?;
     checkpoint.fields.iter().zip(packed).try_for_each(|(field, packed)| match packed {
         Some(packed) => w.write_all(packed),
@@ -382,7 +383,7 @@ fn encode_array(data: &Array) -> io::Result<(Option<Vec<u8>>, u32)> {
     Ok((None, sum.0.finalize()))
 }
 
-fn pack(data: &Array, most: usize) -> io::Result<Vec<u8>> {
+fn pack(data: &Array<'_>, most: usize) -> io::Result<Vec<u8>> {
     let mut encoder = FrameEncoder::new(Vec::new());
     data.write(most, &mut encoder)?;
     Ok(encoder.finish()?)
@@ -418,7 +419,7 @@ fn integer<const N: usize>(bytes: &[u8], at: usize) -> [u8; N] {
     std::array::from_fn(|k| bytes.get(at + k).copied().unwrap_or(0))
 }
 
-fn decode(path: &Path, bytes: &[u8]) -> Result<Checkpoint, CheckpointError> {
+fn decode(path: &Path, bytes: &[u8]) -> Result<Checkpoint<'static>, CheckpointError> {
     let too_short = |expected: u64, part: &str| CheckpointError::Length {
         path: path.to_path_buf(),
         found: bytes.len() as u64,
@@ -472,7 +473,7 @@ fn damaged(path: &Path, entry: &Entry, reason: String) -> CheckpointError {
     CheckpointError::Field { path: path.to_path_buf(), field: entry.name.clone(), reason }
 }
 
-fn decode_field(path: &Path, entry: &Entry, data: &[u8], base: u64) -> Result<Field, CheckpointError> {
+fn decode_field(path: &Path, entry: &Entry, data: &[u8], base: u64) -> Result<Field<'static>, CheckpointError> {
     let end = entry.offset.saturating_add(entry.stored);
     let stored = usize::try_from(entry.offset).ok().zip(usize::try_from(end).ok());
     let stored = stored.and_then(|(start, end)| data.get(start..end)).ok_or_else(|| CheckpointError::Length {
@@ -512,15 +513,15 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    fn sample() -> Checkpoint {
+    fn sample() -> Checkpoint<'static> {
         let state: Vec<f64> = (0..60).map(|k| (f64::from(k) * 0.1).sin()).collect();
         Checkpoint {
             meta: serde_json::json!({"iteration": 120, "time": 0.1, "label": "π"}),
             fields: vec![
-                Field { name: "state".into(), shape: vec![15, 4], data: Array::F64(state) },
+                Field { name: "state".into(), shape: vec![15, 4], data: Array::F64(state.into()) },
                 Field { name: "level".into(), shape: vec![300], data: Array::U32(vec![3; 300]) },
                 Field { name: "flags".into(), shape: vec![3], data: Array::U8(vec![0, 255, 7]) },
-                Field { name: "nothing".into(), shape: vec![0, 4], data: Array::F64(vec![]) },
+                Field { name: "nothing".into(), shape: vec![0, 4], data: Array::F64(vec![].into()) },
             ],
         }
     }
@@ -537,7 +538,7 @@ mod tests {
         let path = folder.path().join("checkpoint.alula");
         let odd = [0.0, -0.0, f64::MIN_POSITIVE / 4.0, f64::INFINITY, f64::from_bits(0x7ff0_0000_dead_beef)];
         let mut checkpoint = sample();
-        checkpoint.fields.push(Field { name: "odd".into(), shape: vec![5], data: Array::F64(odd.to_vec()) });
+        checkpoint.fields.push(Field { name: "odd".into(), shape: vec![5], data: Array::F64(odd.to_vec().into()) });
         write(&path, &checkpoint).unwrap();
         let back = read(&path).unwrap();
         let bits = |c: &Checkpoint| c.f64("odd").unwrap().iter().map(|v| v.to_bits()).collect::<Vec<_>>();
@@ -554,8 +555,8 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("checkpoint.alula");
         let noise: Vec<f64> = (0..200_000_u64).map(|k| f64::from_bits(k.wrapping_mul(0x9e37_79b9_7f4a_7c15))).collect();
-        let field = |name: &str, data: Array| Field { name: name.into(), shape: vec![data.len()], data };
-        let fields = vec![field("noise", Array::F64(noise)), field("same", Array::U32(vec![7; 400_000]))];
+        let field = |name: &str, data: Array<'static>| Field { name: name.into(), shape: vec![data.len()], data };
+        let fields = vec![field("noise", Array::F64(noise.into())), field("same", Array::U32(vec![7; 400_000]))];
         let checkpoint = Checkpoint { meta: serde_json::Value::Null, fields };
         write(&path, &checkpoint).unwrap();
         let size = std::fs::metadata(&path).unwrap().len();

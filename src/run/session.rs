@@ -56,9 +56,9 @@ pub(crate) enum Origin {
     /// The case alone.
     Case,
     /// Its own checkpoint.
-    Own(Box<Saved>),
+    Own(Box<Saved<'static>>),
     /// The last state of another run.
-    Other(Box<Saved>),
+    Other(Box<Saved<'static>>),
 }
 
 /// A case that is solved in memory.
@@ -429,9 +429,9 @@ struct Ground<const D: usize> {
     /// The cloud of the case.
     ready: Option<Cloud<D>>,
     /// Where this run stopped.
-    saved: Option<Saved>,
+    saved: Option<Saved<'static>>,
     /// Where another run ended.
-    other: Option<Saved>,
+    other: Option<Saved<'static>>,
 }
 
 impl<const D: usize> Ground<D> {
@@ -439,7 +439,7 @@ impl<const D: usize> Ground<D> {
     fn standing(&mut self) -> (usize, Vec<Source<D>>, Vec<Kept>) {
         let sources = self.saved.as_ref().or(self.other.as_ref()).map_or_else(Vec::new, Saved::sources);
         let Some(saved) = &mut self.saved else { return (0, sources, Vec::new()) };
-        (saved.stage, sources, std::mem::take(&mut saved.kept))
+        (saved.stage, sources, std::mem::take(&mut saved.kept).into_owned())
     }
 
     /// The beginning of a stage: at the checkpoint, on the cloud of the stage before it, or on one that `build` makes.
@@ -480,14 +480,14 @@ impl<S, const D: usize> Begun<S, D> {
 
 impl<S: HasGas<D>, const D: usize> Begun<S, D> {
     /// A stage that goes on where a checkpoint stands.
-    fn resumed(mut solver: Solver<S, D>, saved: Saved) -> Result<Self, RunError> {
+    fn resumed(mut solver: Solver<S, D>, saved: Saved<'static>) -> Result<Self, RunError> {
         // particles that travel are elsewhere by now
         let travelled = saved.lagrangian.as_ref().map(|r| r.resume(solver.system.gas()));
         if let Some(fluid) = travelled.transpose()?.flatten() {
             solver.system.set_gas(fluid);
         }
         saved.fits(solver.system.fields())?;
-        Ok(Self { solver, start: Start::Resume(saved.state, saved.memory) })
+        Ok(Self { solver, start: Start::Resume(saved.state.into_owned(), saved.memory) })
     }
 }
 
@@ -512,14 +512,14 @@ fn begun<S: HasGas<D>, const D: usize>(
     solver: Solver<S, D>,
     site: &Site<'_, D>,
     (guess, before): (Option<Vec<f64>>, Option<&Stood<S, D>>),
-    other: Option<Saved>,
+    other: Option<Saved<'static>>,
 ) -> Result<Begun<S, D>, RunError> {
     let state = match (guess, before, other) {
         (Some(guess), ..) => guess,
         (None, Some(before), _) => {
             setup::transfer(&before.solver.system, &before.reached.state, &solver.system, site.surface)
         }
-        (None, None, Some(other)) => setup::taken_over(site.case, &solver.system, other.state)?,
+        (None, None, Some(other)) => setup::taken_over(site.case, &solver.system, other.state.into_owned())?,
         (None, None, None) => solver.system.start(),
     };
     Ok(Begun::fresh(solver, state))

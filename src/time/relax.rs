@@ -7,6 +7,8 @@
 //! solve replaced by the sweeps alone is the LU-SGS method; with neither it is explicit Runge-Kutta with local steps.
 mod newton;
 
+use std::sync::Arc;
+
 use newton::{put, sweep_fields};
 
 use super::control::{Control, Method, Phase};
@@ -93,7 +95,7 @@ pub struct Relax<'a, S: Implicit> {
     trial: Vec<f64>,
     trial_residual: Vec<f64>,
     /// Local time of each row, weighted so that all fields count alike.
-    scale: Vec<f64>,
+    scale: Arc<[f64]>,
     rate: Vec<f64>,
     shift: Vec<f64>,
     step: Vec<f64>,
@@ -137,7 +139,7 @@ pub struct Resume {
     /// Phase of the relaxation.
     pub phase: Phase,
     /// Time scales of the rows that the residual is measured with.
-    pub scale: Vec<f64>,
+    pub scale: Arc<[f64]>,
 }
 
 impl<S: Implicit> Integrator<S> for Relax<'_, S> {
@@ -183,7 +185,7 @@ impl<'a, S: Implicit> Relax<'a, S> {
         let most = if n > LARGE { control.basis.min(LARGE_BASIS) } else { control.basis };
         let basis = (control.method == Method::NewtonKrylov).then(|| Gmres::new(n, most));
         let scale = match &resume {
-            Some(r) => r.scale.clone(),
+            Some(r) => Arc::clone(&r.scale),
             None => rate.iter().map(|r| 1.0 / r).collect(),
         };
         let mut all = Self {
@@ -227,7 +229,7 @@ impl<'a, S: Implicit> Relax<'a, S> {
         system.rhs_with_boundary(&self.u, &mut self.work, &mut self.frame, &mut self.residual);
         if !goes_on {
             // what the free stream does to a structure says nothing of its size: each field counts in its own units
-            weigh(system.fields(), &mut self.scale, &[]);
+            weigh(system.fields(), Arc::make_mut(&mut self.scale), &[]);
         }
         self.first_norm = self.norm_of(&self.trial_residual).max(f64::MIN_POSITIVE);
         self.norm = self.norm_of(&self.residual);
@@ -323,13 +325,13 @@ impl<'a, S: Implicit> Relax<'a, S> {
         system.rhs_with_boundary(&self.u, &mut self.work, &mut self.frame, &mut self.residual);
         system.rates(&self.frame, &self.u, &mut self.work, &mut self.rate);
         let (rate, coefficient) = (&self.rate, term.rate());
-        sweep(&mut self.scale, |i| 1.0 / (rate[i] + coefficient));
+        sweep(Arc::make_mut(&mut self.scale), |i| 1.0 / (rate[i] + coefficient));
         self.evaluations += 1;
         let u = &self.u;
         sweep(&mut self.trial, |k| coefficient * u[k] + term.rest[k]);
         let trial = &self.trial;
         sweep_rows(&mut self.residual, 1, |k, r| r[0] -= trial[k]);
-        weigh(system.fields(), &mut self.scale, &[&self.trial, &self.residual]);
+        weigh(system.fields(), Arc::make_mut(&mut self.scale), &[&self.trial, &self.residual]);
         let change = self.norm_of(&self.trial);
         self.norm = self.norm_of(&self.residual);
         self.first_norm = self.norm.max(change).max(f64::MIN_POSITIVE);
@@ -344,6 +346,11 @@ impl<'a, S: Implicit> Relax<'a, S> {
         self.time = Some(term);
     }
 
+    /// Frame, storage and state at the end, without what was needed on the way.
+    pub fn into_end(self) -> (S::Frame, S::Work, Vec<f64>) {
+        (self.frame, self.work, self.u)
+    }
+
     /// What a later run needs, beside the state, to go on to the same bits.
     pub fn resume(&self) -> Resume {
         Resume {
@@ -351,7 +358,7 @@ impl<'a, S: Implicit> Relax<'a, S> {
             cfl: self.cfl,
             linear: self.linear,
             phase: self.phase,
-            scale: self.scale.clone(),
+            scale: Arc::clone(&self.scale),
         }
     }
 

@@ -1,5 +1,7 @@
 //! Checkpoints: what a stage cannot rebuild from the case.
+use std::borrow::Cow;
 use std::path::Path;
+use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
@@ -258,7 +260,7 @@ impl Settling {
 
 /// A checkpoint in memory.
 #[derive(Clone, Debug)]
-pub(crate) struct Saved {
+pub(crate) struct Saved<'a> {
     /// Index of the stage.
     pub(crate) stage: usize,
     /// All stages.
@@ -267,8 +269,8 @@ pub(crate) struct Saved {
     pub(crate) iteration: u64,
     /// Physical time, in the units of the solver.
     pub(crate) time: f64,
-    /// State.
-    pub(crate) state: Vec<f64>,
+    /// State, where it lies while it is written.
+    pub(crate) state: Cow<'a, [f64]>,
     /// What the integrator must remember.
     pub(crate) memory: Memory,
     /// What the end of a harmonic balance is told from.
@@ -294,7 +296,7 @@ pub(crate) struct Saved {
     /// The points of a polar so far.
     pub(crate) polar: PolarRecord,
     /// The states that they leave to those to come.
-    pub(crate) kept: Vec<Kept>,
+    pub(crate) kept: Cow<'a, [Kept]>,
     /// What [`equations_of`] says of the case; `None` for polars, and in checkpoints of versions that did not ask.
     pub(crate) equations: Option<u32>,
 }
@@ -318,7 +320,7 @@ pub(crate) fn raised<const D: usize>(flat: &[f64]) -> Vec<Source<D>> {
     flat.chunks_exact(D + 2).map(source).collect()
 }
 
-impl Saved {
+impl Saved<'_> {
     /// Sources of refinement of the stage.
     pub(crate) fn sources<const D: usize>(&self) -> Vec<Source<D>> {
         raised(&self.sources)
@@ -367,12 +369,15 @@ impl Saved {
         let meta = serde_json::to_value(meta).map_err(|e| other_version(&e))?;
         let mut fields = vec![
             field("state", self.state),
-            field("scale", relax.scale),
+            field("scale", &relax.scale[..]),
             field("before", past.before),
             field("older", past.older),
             field("sources", self.sources),
             field("settling", self.settling.recent.concat()),
-            field("kept", self.kept.into_iter().flat_map(|k| [k.state, k.sources].concat()).collect()),
+            field(
+                "kept",
+                self.kept.iter().flat_map(|k| [&k.state[..], &k.sources]).flatten().copied().collect::<Vec<_>>(),
+            ),
         ];
         if let Some(lagrangian) = self.lagrangian {
             let LagrangianCheckpoint { lists, places, velocity, course, .. } = lagrangian;
@@ -383,7 +388,7 @@ impl Saved {
     }
 
     /// Reads the checkpoint of a run folder.
-    pub(crate) fn read(out: &Path) -> Result<Self, RunError> {
+    pub(crate) fn read(out: &Path) -> Result<Saved<'static>, RunError> {
         let file = checkpoint::read(&out.join(FILE))?;
         let meaning = file.meta.get("meaning").and_then(serde_json::Value::as_u64).unwrap_or(1);
         if meaning != u64::from(MEANING) {
@@ -406,15 +411,15 @@ impl Saved {
         } else {
             Memory::Relaxation(m.resume(part("scale")?))
         };
-        Ok(Self {
+        Ok(Saved {
             lagrangian,
             settling: Settling::new(&m.settling, &part("settling")?),
             // checkpoints of versions without polars have none
-            kept: m.polar.kept(&part("kept").unwrap_or_default()),
+            kept: m.polar.kept(&part("kept").unwrap_or_default()).into(),
             polar: m.polar.record,
             iteration: m.iteration,
             time: f64::from_bits(m.time_bits),
-            state: part("state")?,
+            state: part("state")?.into(),
             memory,
             start_totals: m.start_totals_bits.iter().map(|b| f64::from_bits(*b)).collect(),
             stage: m.stage,
@@ -462,7 +467,7 @@ impl Meta {
             cfl: f64::from_bits(self.cfl_bits),
             linear: self.linear,
             phase,
-            scale,
+            scale: scale.into(),
         }
     }
 
@@ -485,7 +490,8 @@ impl Meta {
 }
 
 /// An array of numbers with a name.
-fn field(name: &str, data: Vec<f64>) -> Field {
+fn field<'a>(name: &str, data: impl Into<Cow<'a, [f64]>>) -> Field<'a> {
+    let data = data.into();
     Field { name: name.into(), shape: vec![data.len()], data: Array::F64(data) }
 }
 
@@ -495,7 +501,7 @@ fn other_version(problem: &dyn std::fmt::Display) -> RunError {
 
 /// Where a march stands, in the terms of a relaxation.
 fn bare(iteration: u32) -> Resume {
-    Resume { iteration, cfl: 0.0, linear: 0, phase: Phase::default(), scale: Vec::new() }
+    Resume { iteration, cfl: 0.0, linear: 0, phase: Phase::default(), scale: Arc::default() }
 }
 
 /// Nothing, or what is wrong with a checkpoint.

@@ -10,7 +10,7 @@ use crate::time::Memory;
 /// Greatest number of stages of any plan: cycles of adaptation, harmonics one by one, clouds of a family.
 const MOST_STAGES: usize = 10_000;
 
-impl Saved {
+impl Saved<'_> {
     /// Refuses numbers that no run of this case writes.
     pub(crate) fn trusted(self, case: &Case) -> Result<Self, RunError> {
         let known = self.stage < self.stages.len() && self.stages.len() <= MOST_STAGES;

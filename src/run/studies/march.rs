@@ -47,7 +47,9 @@ pub(crate) fn march<S: HasGas<D>, const D: usize>(
         let Memory::March(past) = integrator.memory() else { return Err(RunError::NoStage) };
         let Some(renewed) = renewed(system, integrator.as_mut(), &past, turn, log)? else {
             let Standing { frame, state, .. } = integrator.standing();
-            return Ok(Some(Reached::at(frame.clone(), state.to_vec())));
+            let (frame, state) = (frame.clone(), state.to_vec());
+            drop(integrator);
+            return Ok(Some(Reached::at(frame, state)));
         };
         drop(integrator);
         let Renewed { mut fluid, past, u } = renewed;

@@ -92,11 +92,11 @@ pub(crate) fn relax<S: HasGas<D>, const D: usize>(
         hurried = false;
     };
     let unsteady = !log.record.converged && relax.iteration < steady.iterations;
-    let Standing { frame, state, work } = relax.standing();
-    let mut reached = Reached { enough, unsteady, ..Reached::at(frame.clone(), state.to_vec()) };
+    let (frame, mut work, end) = relax.into_end();
+    let mut state = end.clone();
     let (gas, own) = (system.gas(), system.gas_unknowns());
-    gas.without_circulation(system.gas_frame(frame), system.gas_work(work), &mut reached.state[own]);
-    Ok(Some(reached))
+    gas.without_circulation(system.gas_frame(&frame), system.gas_work(&mut work), &mut state[own]);
+    Ok(Some(Reached { state, end: Some((frame, end)), enough, unsteady }))
 }
 
 /// Why a relaxation ended before its goal.

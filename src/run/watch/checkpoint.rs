@@ -74,7 +74,7 @@ impl<'a, S: System> Checkpoint<'a, S> {
             stages: self.at.stages.to_vec(),
             iteration: record.iteration,
             time,
-            state: state.to_vec(),
+            state: state.into(),
             memory,
             settling: record.settling.clone(),
             start_totals: record.start_totals.clone(),
@@ -87,7 +87,7 @@ impl<'a, S: System> Checkpoint<'a, S> {
             lagrangian: self.particles.and_then(|of| of(frame, &record.ledger)),
             sources: self.at.sources.to_vec(),
             polar: record.polar.clone(),
-            kept: self.at.kept.to_vec(),
+            kept: self.at.kept.into(),
             equations: single.then(|| equations_of(log.case)),
         };
         saved.write(&journal.out)
