@@ -259,10 +259,22 @@ pub enum Reach {
 /// What is added to −∂R/∂U in a linear system.
 #[derive(Clone, Copy, Debug)]
 pub struct Shift<'a> {
-    /// 1/Δτ + c of every row, c the coefficient of the state sought in the formula of ∂/∂t.
-    pub rows: &'a [f64],
+    /// How fast each row can change, 1/τ.
+    pub rates: &'a [f64],
+    /// Courant number: Δτ over τ.
+    pub cfl: f64,
+    /// Coefficient c of the state sought in the formula of ∂/∂t.
+    pub coefficient: f64,
     /// How far the system reaches.
     pub reach: Reach,
+}
+
+impl Shift<'_> {
+    /// 1/Δτ + c of row `i`.
+    #[inline(always)]
+    pub fn of(&self, i: usize) -> f64 {
+        self.rates[i] / self.cfl + self.coefficient
+    }
 }
 
 /// The right-hand side of a linear system; rows scaled by `scale` where it is not empty.

@@ -86,8 +86,7 @@ fn preconditioner<S: Implicit>(system: &S, u: &[f64]) -> (f64, f64) {
     let (frame, mut work) = (system.frame(&Instant::still(0.0), u), system.work());
     let mut rate = vec![0.0; rows(system.fields())];
     system.rates(&frame, u, &mut work, &mut rate);
-    rate.iter_mut().for_each(|r| *r *= SHIFT);
-    let shift = Shift { rows: &rate, reach: Reach::Far };
+    let shift = Shift { rates: &rate, cfl: 1.0 / SHIFT, coefficient: 0.0, reach: Reach::Far };
     let made = seconds(|| inner.update(system, (&frame, u), &mut work, &shift));
     let right: Vec<f64> = (0..u.len()).map(|k| (k as f64 * 0.1).sin()).collect();
     let mut z = vec![0.0; u.len()];

@@ -51,9 +51,9 @@ impl<const D: usize> Preconditioner<Coupled<D>> for CoupledPreconditioner {
     }
 
     fn finish(&mut self, shift: &Shift<'_>) {
-        let (gas, own) = shift.rows.split_at(self.fields[0].rows);
-        Preconditioner::<crate::scheme::Fluid<D>>::finish(&mut self.gas, &Shift { rows: gas, ..*shift });
-        self.structure.complete(own);
+        let (gas, own) = shift.rates.split_at(self.fields[0].rows);
+        Preconditioner::<crate::scheme::Fluid<D>>::finish(&mut self.gas, &Shift { rates: gas, ..*shift });
+        self.structure.complete(&Shift { rates: own, ..*shift });
     }
 
     fn apply(&mut self, coupled: &Coupled<D>, frames: &[&Frame<D>], r: &RightHandSide<'_>, z: &mut [f64]) {

@@ -10,7 +10,7 @@ use std::sync::Arc;
 
 use multiversion::multiversion;
 
-use super::blocks::{MOST_ENTRIES, invert_block, store, with_block};
+use super::blocks::{MOST_ENTRIES, array, invert_block, store, with_block};
 use super::rounded::{LANES, UNIT, add_block, leading, load, load_lanes, multiply, round_block, subtract, unit_of};
 use super::sweep::{copy, fill, parts, sweep_parts, sweep_rows, sweep_two_parts};
 
@@ -29,8 +29,9 @@ pub struct BlockMatrix {
     /// Of each row its first entry; the number of all.
     first: Arc<Vec<u32>>,
     column: Columns,
-    /// Of each row: its first entry inside its part, its first one beyond the diagonal, its first one after its part.
-    cut: Vec<[u32; 3]>,
+    /// Of each row, counted from its first entry: the first one inside its part, the first one beyond the diagonal, the first one after
+    /// its part.
+    cut: Vec<[u16; 3]>,
     /// Of each off-diagonal block its unit and its entries; [`LANES`] more at the end.
     value: Vec<u8>,
     /// Diagonal blocks as they were assembled, or their inverses once [`Self::make_sweepable`] was called.
@@ -74,23 +75,23 @@ pub struct Sweeps {
     pub b: Vec<f32>,
     /// Solution.
     pub x: Vec<f32>,
-    /// Scratch: solution before a half-sweep, or b − A x.
-    pub r: Vec<f32>,
+    /// Scratch: solution before a half-sweep.
+    old: Vec<f32>,
     /// Of each row: sums over the columns of the same part on one side of the diagonal, those that the last half-sweep went through;
-    /// and what its diagonal block made of its unknowns then.
-    side: Vec<f32>,
+    /// or b − A x.
+    pub side: Vec<f32>,
 }
 
 impl Sweeps {
     /// Storage for the rows of `matrix`.
     pub fn new(matrix: &BlockMatrix) -> Self {
         let zero = vec![0.0; matrix.n_rows() * matrix.block];
-        Self { b: zero.clone(), x: zero.clone(), side: vec![0.0; 2 * zero.len()], r: zero }
+        Self { b: zero.clone(), x: zero.clone(), old: zero.clone(), side: zero }
     }
 
     /// Bytes held.
     pub fn bytes(&self) -> usize {
-        20 * self.b.len()
+        16 * self.b.len()
     }
 
     /// Sets the solution to zero.
@@ -108,7 +109,7 @@ impl BlockMatrix {
     ///
     /// # Panics
     ///
-    /// Where no kernel serves blocks of that order, see [`super::blocks`].
+    /// Where no kernel serves blocks of that order, see [`super::blocks`], or a row couples to more than 65,535 others.
     pub fn new(block: usize, parts: &[Range<usize>], first: &Arc<Vec<u32>>, index: &Arc<Vec<u32>>) -> Self {
         super::blocks::assert_served(block);
         let n = parts.last().map_or(0, |p| p.end);
@@ -143,7 +144,7 @@ impl BlockMatrix {
         let size = block * block;
         let value_parts = parts.iter().map(|p| first[p.start] as usize..first[p.end] as usize).collect();
         let n = first.len() - 1;
-        let cut = parts.iter().flat_map(|p| p.clone().map(|i| cut(i, p, first[i], column.of(i, &first)))).collect();
+        let cut = parts.iter().flat_map(|p| p.clone().map(|i| cut(i, p, column.of(i, &first)))).collect();
         Self {
             block,
             cut,
@@ -208,7 +209,8 @@ impl BlockMatrix {
     pub fn bytes(&self) -> usize {
         self.value.len()
             + self.column.bytes()
-            + 4 * (self.diagonal.len() + self.inverse.len() + self.first.len() + 3 * self.cut.len())
+            + 4 * (self.diagonal.len() + self.inverse.len() + self.first.len())
+            + 6 * self.cut.len()
     }
 
     /// Parts in which rows are assembled and swept.
@@ -238,11 +240,12 @@ impl BlockMatrix {
         });
     }
 
-    /// Adds `shift[i]` to the diagonal of row i.
-    pub fn shift(&mut self, shift: &[f64]) {
+    /// Adds `shift(i)` to the diagonal of row i.
+    pub fn shift(&mut self, shift: impl Fn(usize) -> f64 + Sync) {
         let n = self.block;
         sweep_rows(&mut self.diagonal, n * n, |i, diagonal| {
-            (0..n).for_each(|d| diagonal[d * (n + 1)] += shift[i] as f32);
+            let shift = shift(i) as f32;
+            (0..n).for_each(|d| diagonal[d * (n + 1)] += shift);
         });
     }
 
@@ -270,10 +273,10 @@ impl BlockMatrix {
 
     fn both_sweeps<const N: usize>(&self, s: &mut Sweeps) {
         for forward in [true, false] {
-            copy(&s.x, &mut s.r);
-            let (b, old) = (&s.b, &s.r);
+            copy(&s.x, &mut s.old);
+            let (b, old) = (&s.b, &s.old);
             let (parts, x) = (self.parts.as_slice(), s.x.as_mut_slice());
-            sweep_two_parts((parts, N, x), (parts, 2 * N, &mut s.side[..]), &|k, x, side| {
+            sweep_two_parts((parts, N, x), (parts, N, &mut s.side[..]), &|k, x, side| {
                 relax_part::<N>(self, &self.parts[k], (b, old), forward, (x, side));
             });
         }
@@ -301,10 +304,9 @@ impl BlockMatrix {
         for e in swept {
             subtract::<N>(self.off_diagonal::<N>(e), &load::<N>(x, column(e) - part.start), &mut sum);
         }
-        let side = &mut side[2 * at..2 * (at + N)];
+        let side = &mut side[at..at + N];
         (0..N).for_each(|c| r[c] += side[c] + sum[c]);
         store(&leading::<N>(&sum), side);
-        store(&leading::<N>(&r), &mut side[N..]);
         let mut y = [0.0; N];
         multiply::<N>(&self.diagonal[i * N * N..(i + 1) * N * N], &leading::<N>(&r), &mut y);
         store(&y, &mut x[at..]);
@@ -313,9 +315,8 @@ impl BlockMatrix {
     /// Entries of row `i` before, in and after its part.
     #[inline(always)]
     pub(super) fn split_row(&self, i: usize) -> (Range<usize>, Range<usize>, Range<usize>) {
-        let [from, _, to] = self.cut[i];
-        let (from, to) = (from as usize, to as usize);
-        (self.first[i] as usize..from, from..to, to..self.first[i + 1] as usize)
+        let (first, [from, _, to]) = (self.first[i] as usize, self.cut[i].map(usize::from));
+        (first..first + from, first + from..first + to, first + to..self.first[i + 1] as usize)
     }
 
     /// The columns of the entries of row `i`.
@@ -333,7 +334,7 @@ impl BlockMatrix {
     /// The first entry of row `i` inside its part beyond its diagonal.
     #[inline(always)]
     pub(super) fn middle(&self, i: usize) -> usize {
-        self.cut[i][1] as usize
+        self.first[i] as usize + usize::from(self.cut[i][1])
     }
 
     /// Diagonal block of row `i`, by columns, as it was assembled: not after [`Self::make_sweepable`].
@@ -355,25 +356,27 @@ impl BlockMatrix {
         &self.value[at..at + UNIT + (N - 1) * N + LANES]
     }
 
-    /// s.r = b − A x after a sweep.
+    /// s.side = b − A x after a sweep.
+    ///
+    /// The backward half-sweep solved every row with what the others were then: what is left of it is what those that it had yet to reach,
+    /// and those of other parts, have changed by since.
     pub fn residual(&self, s: &mut Sweeps) {
         with_block!(self.block, N => self.residual_of::<N>(s))
     }
 
     fn residual_of<const N: usize>(&self, s: &mut Sweeps) {
-        let (b, x, side) = (&s.b, &s.x, &s.side);
-        sweep_parts(&self.parts, N, &mut s.r, &|k, out| {
+        let (x, old) = (&s.x, &s.old);
+        sweep_parts(&self.parts, N, &mut s.side, &|k, out| {
             let part = self.parts[k].clone();
             for (i, row) in part.clone().zip(out.chunks_exact_mut(N)) {
                 let (below, inside, above) = self.split_row(i);
                 let (middle, column) = (self.middle(i), self.columns_by_entry(i));
-                let mut sum = load_lanes::<N>(b, i);
+                let mut sum = [0.0; LANES];
                 for e in below.chain(inside.start..middle).chain(above) {
-                    subtract::<N>(self.off_diagonal::<N>(e), &load::<N>(x, column(e)), &mut sum);
+                    let (new, old) = (load::<N>(x, column(e)), load::<N>(old, column(e)));
+                    subtract::<N>(self.off_diagonal::<N>(e), &array(|c| new[c] - old[c]), &mut sum);
                 }
-                // what the backward sweep summed after the diagonal still holds, as does what it found for the diagonal
-                let side = &side[2 * i * N..2 * (i + 1) * N];
-                (0..N).for_each(|c| row[c] = sum[c] + side[c] - side[N + c]);
+                store(&leading::<N>(&sum), row);
             }
         });
     }
@@ -402,9 +405,9 @@ impl BlockMatrix {
 
     fn restart_of<const N: usize>(&self, s: &mut Sweeps) {
         let x = &s.x;
-        sweep_parts(&self.parts, 2 * N, &mut s.side, &|k, out| {
+        sweep_parts(&self.parts, N, &mut s.side, &|k, out| {
             let part = self.parts[k].clone();
-            for (i, row) in part.clone().zip(out.chunks_exact_mut(2 * N)) {
+            for (i, row) in part.clone().zip(out.chunks_exact_mut(N)) {
                 let (_, inside, _) = self.split_row(i);
                 let (middle, column) = (self.middle(i), self.columns_by_entry(i));
                 let mut sum = [0.0; LANES];
@@ -510,10 +513,10 @@ fn relax_part<const N: usize>(
     }
 }
 
-/// Where the entries of row `i`, from `first` on and in the columns `row`, enter its part, pass the diagonal and leave the part.
-fn cut(i: usize, part: &Range<usize>, first: u32, row: &[u32]) -> [u32; 3] {
-    let below = |limit: usize| first + row.partition_point(|j| (*j as usize) < limit) as u32;
-    [part.start, i, part.end].map(below)
+/// Where the entries of row `i`, in the columns `row`, enter its part, pass the diagonal and leave the part.
+fn cut(i: usize, part: &Range<usize>, row: &[u32]) -> [u16; 3] {
+    assert!(row.len() <= usize::from(u16::MAX), "a row of {} blocks", row.len());
+    [part.start, i, part.end].map(|limit| row.partition_point(|j| (*j as usize) < limit) as u16)
 }
 
 /// Adds to the blocks of the rows of one part.

@@ -100,22 +100,23 @@ impl Gmres {
         for k in 0..size.min(most.max(1)) {
             precondition(self.basis[k].numbers(), x);
             product(x, b);
-            self.orthogonalise(k, b);
+            let left = self.orthogonalise(k, b);
             self.rotate(k);
             used = k + 1;
-            if self.g[k + 1].abs() <= tolerance * start || self.hessenberg[k][k] == 0.0 {
+            if self.g[k + 1].abs() <= tolerance * start || self.hessenberg[k][k] == 0.0 || used == size {
                 break;
             }
+            self.lengthen(used, b, left);
         }
         self.combine(used, b);
         precondition(Numbers::Double(b), x);
         Solved { iterations: used, reduction: self.g[used].abs() / start }
     }
 
-    /// Gram-Schmidt of A z against the basis; once more where the first pass left little of it.
+    /// Gram-Schmidt of A z against the basis, once more where the first pass left little of it; the size of what is left.
     ///
     /// The classical form reads each chunk of the basis once for all products, the modified form once for each.
-    fn orthogonalise(&mut self, k: usize, w: &mut [f64]) {
+    fn orthogonalise(&mut self, k: usize, w: &mut [f64]) -> f64 {
         let column = &mut self.hessenberg[k];
         column[..=k].fill(0.0);
         let mut before = norm(w);
@@ -132,12 +133,16 @@ impl Gmres {
             before = after;
         }
         column[k + 1] = after;
-        let scale = if after > 0.0 { 1.0 / after } else { 0.0 };
-        if self.basis.len() == k + 1 {
+        after
+    }
+
+    /// Sets basis vector `k` to `w`, whose size this is.
+    fn lengthen(&mut self, k: usize, w: &[f64], size: f64) {
+        let scale = if size > 0.0 { 1.0 / size } else { 0.0 };
+        if self.basis.len() == k {
             self.basis.push(self.basis[0].like());
         }
-        let w = &*w;
-        self.basis[k + 1].set(|i| (w[i] * scale) as f32);
+        self.basis[k].set(|i| (w[i] * scale) as f32);
     }
 
     fn rotate(&mut self, k: usize) {

@@ -225,7 +225,7 @@ impl Level {
 
     /// What is left of the right-hand side.
     fn left(&self) -> &[f32] {
-        self.harmonic_sweeps.as_ref().map_or(&self.sweeps.r, |w| &w.r)
+        self.harmonic_sweeps.as_ref().map_or(&self.sweeps.side, |w| &w.r)
     }
 
     fn right_hand_side(&mut self) -> &mut [f32] {

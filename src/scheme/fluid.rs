@@ -65,10 +65,8 @@ pub struct Work<const D: usize> {
     pub state: Vec<Primitive<D>>,
     /// Gradients of all particles.
     pub gradient: Vec<Gradient<D>>,
-    /// How steep the pressure is at all particles, from 0 to 1: see `reconstruct`.
+    /// How steep the pressure is at all particles, from 0 to 1: see `reconstruct`. Speeds of sound while rates are found.
     pub steepness: Vec<f64>,
-    /// Speed of sound at fluid particles.
-    pub(super) sound: Vec<f64>,
 }
 
 impl<const D: usize> Fluid<D> {

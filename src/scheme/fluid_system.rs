@@ -60,8 +60,7 @@ impl<const D: usize> System for Fluid<D> {
     fn work(&self) -> Work<D> {
         let blank = Primitive { density: 1.0, velocity: Vector::ZERO, pressure: 1.0 };
         let n = self.discretisation.cloud.len();
-        let sound = vec![0.0; self.discretisation.cloud.n_fluid];
-        Work { state: vec![blank; n], gradient: vec![Gradient::ZERO; n], steepness: vec![0.0; n], sound }
+        Work { state: vec![blank; n], gradient: vec![Gradient::ZERO; n], steepness: vec![0.0; n] }
     }
 
     fn rhs(&self, frame: &Frame<D>, u: &[f64], work: &mut Work<D>, du: &mut [f64]) {

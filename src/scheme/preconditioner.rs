@@ -65,7 +65,7 @@ impl<const D: usize> Preconditioner<Fluid<D>> for FluidPreconditioner {
             self.levels.finest().end_mean();
         }
         self.reach = shift.reach;
-        self.levels.finest().shift(shift.rows);
+        self.levels.finest().shift(|i| shift.of(i));
         match self.reach {
             Reach::Near => self.factors.factor(self.levels.finest()),
             Reach::Far => self.levels.refresh(),

@@ -5,17 +5,23 @@ use super::edge_flux::half_face;
 use super::fluid::{Fluid, Work};
 use super::frame::Frame;
 use crate::math::Vector;
-use crate::math::sweep::{sweep, sweep_parts};
+use crate::math::sweep::{fill, sweep, sweep_parts};
 
 impl<const D: usize> Fluid<D> {
     /// Fills `rate` from the states of fluid particles in `work`.
     pub(super) fn fill_rates(&self, frame: &Frame<D>, work: &mut Work<D>, rate: &mut [f64]) {
+        let cloud = &frame.discretisation.cloud;
+        let Work { state, steepness: sound, .. } = work;
+        sweep(&mut sound[..cloud.n_fluid], |i| self.gas.sound_speed(&state[i]));
+        self.sum_rates((frame, &*work), rate);
+        // evaluations of second order find the steepness anew, others know of none
+        fill(&mut work.steepness[..cloud.n_fluid], 0.0);
+    }
+
+    /// Fills `rate`, where the speeds of sound are in the place of the steepness.
+    fn sum_rates(&self, (frame, work): (&Frame<D>, &Work<D>), rate: &mut [f64]) {
         let (op, cloud) = (&frame.discretisation.operators, &frame.discretisation.cloud);
-        let volume = &cloud.volume;
-        let Work { state, sound, .. } = work;
-        sweep(sound, |i| self.gas.sound_speed(&state[i]));
-        let work = &*work;
-        let sound = &work.sound;
+        let (volume, sound) = (&cloud.volume, &work.steepness);
         let past = |i: usize| work.state[i].velocity - frame.velocity_of(i);
         let speed = |i: usize, a: &Vector<D>| past(i).dot(a).abs() + sound[i] * a.norm();
         sweep_parts(op.fluid_parts(), 1, rate, &|k, out| {

@@ -45,7 +45,7 @@ impl Full {
     }
 
     /// Factors the sum of the matrix, the shift of every row and the derivative in time.
-    pub fn complete(&mut self, shift: &[f64]) {
+    pub fn complete(&mut self, shift: &Shift<'_>) {
         let count = self.period.map_or(1, |p| p.instances.count());
         let size = self.n * count;
         let mut all = vec![0.0; size * size];
@@ -53,7 +53,7 @@ impl Full {
             for n in 0..count {
                 let (row, at) = self.place(i, n, count);
                 (0..self.n).for_each(|j| all[at * size + self.place(j, n, count).1] += self.matrix[i * self.n + j]);
-                all[at * size + at] += shift[row];
+                all[at * size + at] += shift.of(row);
             }
             if let Some(period) = &self.period {
                 let derivative = period.instances.derivative(period.omega);
@@ -119,7 +119,7 @@ impl<S: System> Preconditioner<S> for Full {
     }
 
     fn finish(&mut self, shift: &Shift<'_>) {
-        self.complete(shift.rows);
+        self.complete(shift);
     }
 
     fn apply(&mut self, _: &S, _: &[&S::Frame], r: &RightHandSide<'_>, z: &mut [f64]) {

@@ -74,11 +74,11 @@ impl<P> Preconditioning<P> {
         system: &S,
         at: (&S::Frame, &[f64]),
         work: &mut S::Work,
-        shift: &[f64],
+        shift: &Shift<'_>,
     ) where
         P: Preconditioner<S>,
     {
-        self.inner.update(system, at, work, &Shift { rows: shift, reach: Reach::Near });
+        self.inner.update(system, at, work, shift);
         self.kept = true;
     }
 

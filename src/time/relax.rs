@@ -9,7 +9,7 @@ mod newton;
 
 use std::sync::Arc;
 
-use newton::{put, sweep_fields};
+use newton::{put, shift, sweep_fields};
 
 use super::control::{Control, Method, Phase};
 use super::formula::Formula;
@@ -18,7 +18,7 @@ use super::preconditioning::Preconditioning;
 use super::{Cost, Integrator, Mark, Memory, Standing, Step, TimeError};
 use crate::math::krylov::Gmres;
 use crate::math::sweep::{sweep, sweep_rows};
-use crate::system::{Fault, Hierarchy, Implicit, Instant, Reach, placed, rows};
+use crate::system::{Fault, Hierarchy, Implicit, Instant, Reach, Shift, placed, rows};
 
 /// Drop of the residual below which the flow counts as settled.
 const SETTLED: f64 = 3e-3;
@@ -97,7 +97,6 @@ pub struct Relax<'a, S: Implicit> {
     /// Local time of each row, weighted so that all fields count alike.
     scale: Arc<[f64]>,
     rate: Vec<f64>,
-    shift: Vec<f64>,
     step: Vec<f64>,
     phase: Phase,
     preconditioning: Option<Preconditioning<S::Preconditioner>>,
@@ -194,7 +193,6 @@ impl<'a, S: Implicit> Relax<'a, S> {
             frame,
             beside: None,
             work,
-            shift: vec![0.0; rate.len()],
             rate,
             scale,
             u,
@@ -292,9 +290,8 @@ impl<'a, S: Implicit> Relax<'a, S> {
         self.system.update_boundary_state(u, &mut self.work, &mut self.frame);
         self.system.rates(&self.frame, u, &mut self.work, &mut self.rate);
         let cfl = (STEP_CFL * self.control.cfl).min(self.control.cfl_max);
-        let rates = &self.rate;
-        sweep(&mut self.shift, |i| rates[i] / cfl + rate);
-        preconditioning.make_ahead(self.system, (&self.frame, u), &mut self.work, &self.shift);
+        let shift = Shift { rates: &self.rate, cfl, coefficient: rate, reach: Reach::Near };
+        preconditioning.make_ahead(self.system, (&self.frame, u), &mut self.work, &shift);
     }
 
     /// Has the next iteration make its preconditioner.
@@ -389,7 +386,7 @@ impl<'a, S: Implicit> Relax<'a, S> {
 
     /// Bytes held by the implicit machinery.
     pub fn bytes(&self) -> usize {
-        8 * (5 * self.u.len() + 3 * self.rate.len())
+        8 * (5 * self.u.len() + 2 * self.rate.len())
             + self.preconditioning.as_ref().map_or(0, Preconditioning::bytes::<S>)
             + self.gmres.as_ref().map_or(0, Gmres::bytes)
     }
@@ -518,10 +515,11 @@ impl<'a, S: Implicit> Relax<'a, S> {
 
     /// Size of what the residual after a whole step differs by from what the linear system left of it, δu/Δτ.
     fn model_error(&mut self) -> f64 {
-        let (residual, step, shift) = (&self.residual, &self.step, &self.shift);
+        let shift = shift((&self.rate, self.cfl), None, Reach::Far);
+        let (residual, step) = (&self.residual, &self.step);
         sweep_fields(self.system, &mut self.trial, |i, at, out| {
             for (k, out) in (at..).zip(out) {
-                *out = residual[k] - shift[i] * step[k];
+                *out = residual[k] - shift.of(i) * step[k];
             }
         });
         self.norm_of(&self.trial)

@@ -20,19 +20,16 @@ impl<S: Implicit> Relax<'_, S> {
         if self.time.is_some() && self.phase.newton { self.reach() } else { Reach::Far }
     }
 
-    /// Makes the preconditioner, unless that of this step in time still serves, and what is added to the diagonal of each row.
+    /// Makes the preconditioner, unless that of this step in time still serves.
     fn prepare(&mut self, preconditioning: &mut Preconditioning<S::Preconditioner>) {
         let kept = preconditioning.is_kept() && self.phase.newton;
         // a step in time begins with the rates at its guess
         if !kept && (self.time.is_none() || self.iteration > 1) {
             self.system.rates(&self.frame, &self.u, &mut self.work, &mut self.rate);
         }
-        let (rate, cfl) = (self.time.as_ref().map_or(0.0, TimeTerm::rate), self.cfl);
-        let rates = &self.rate;
-        sweep(&mut self.shift, |i| rates[i] / cfl + rate);
         if !kept {
-            let reach = self.system_reach();
-            let (shift, keep) = (Shift { rows: &self.shift, reach }, self.time.is_some());
+            let (reach, keep) = (self.system_reach(), self.time.is_some());
+            let shift = shift((&self.rate, self.cfl), self.time.as_ref(), reach);
             preconditioning.make(self.system, (&self.frame, &self.u), &mut self.work, (&shift, keep));
         }
     }
@@ -79,11 +76,12 @@ impl<S: Implicit> Relax<'_, S> {
         let moves = self.moves();
         let mut beside = moves.then(|| self.beside.take().unwrap_or_else(|| self.frame.clone()));
         let (system, frame, work, u, residual) = (self.system, &self.frame, &mut self.work, &self.u, &self.residual);
-        let (trial, scale, shift, time) = (&mut self.trial, &self.scale, &self.shift, self.time.as_ref());
+        let (trial, scale, time) = (&mut self.trial, &*self.scale, self.time.as_ref());
         // rows are scaled by the local time, so that small particles do not rule the norm
         sweep_fields(system, &mut self.trial_residual, |i, at, b| {
             b.iter_mut().zip(&residual[at..]).for_each(|(b, r)| *b = r * scale[i]);
         });
+        let shift = shift((&self.rate, self.cfl), time, reach);
         let product = |v: &[f64], out: &mut [f64]| {
             let length = (sum(v.len(), |k| v[k] * v[k]) / v.len() as f64).sqrt();
             if length == 0.0 {
@@ -103,7 +101,7 @@ impl<S: Implicit> Relax<'_, S> {
             let base = |k: usize| residual[k] + time.map_or(0.0, |t| t.rate() * u[k] + t.rest[k]);
             sweep_fields(system, out, |i, at, out| {
                 for (k, o) in (at..).zip(out) {
-                    *o = ((base(k) - *o) * inverse + shift[i] * v[k]) * scale[i];
+                    *o = ((base(k) - *o) * inverse + shift.of(i) * v[k]) * scale[i];
                 }
             });
         };
@@ -117,6 +115,11 @@ impl<S: Implicit> Relax<'_, S> {
         self.evaluations += solved.iterations as u64;
         solved.iterations
     }
+}
+
+/// What is added to the diagonal of rows with these rates.
+pub(super) fn shift<'a>((rates, cfl): (&'a [f64], f64), time: Option<&TimeTerm>, reach: Reach) -> Shift<'a> {
+    Shift { rates, cfl, coefficient: time.map_or(0.0, TimeTerm::rate), reach }
 }
 
 /// Brings a frame to where the state `u` puts it.
