@@ -7,7 +7,7 @@ use super::layout::{Layout, background, capped};
 use super::neighbours::Search;
 use super::particles::Particles;
 use super::sources::Source;
-use super::{Cloud, CloudError, CloudSpec, Outer};
+use super::{Cloud, CloudError, CloudSpec, Outer, WallDistance};
 use crate::geometry::Surface;
 use crate::math::Vector;
 
@@ -53,7 +53,7 @@ impl<const D: usize> Cloud<D> {
             outer,
             ghosts,
             transforms,
-            wall_distance: particles.wall_distance,
+            wall_distance: WallDistance::new(&particles.wall_distance),
             neighbours,
             wall_stencils,
             layers: particles.layers,

@@ -32,10 +32,11 @@ mod tests;
 pub mod travel;
 pub mod tree;
 
-use std::ops::Range;
+use std::ops::{Index, Range};
 
 use crate::case::Side;
 use crate::math::Vector;
+use crate::math::sweep::sweep;
 
 pub use layout::Layout;
 pub use neighbours::Neighbours;
@@ -138,6 +139,32 @@ pub struct Ghost {
     pub transform: u8,
 }
 
+/// Distances to the surface of the particles near it; those of all others are infinite.
+#[derive(Clone, Debug, Default)]
+pub struct WallDistance {
+    /// Particles, in ascending order.
+    near: Vec<u32>,
+    distance: Vec<f64>,
+}
+
+impl WallDistance {
+    /// Keeps the finite ones of `all`.
+    pub fn new(all: &[f64]) -> Self {
+        let near: Vec<u32> = (0..all.len()).filter(|i| all[*i].is_finite()).map(|i| i as u32).collect();
+        let mut distance = vec![0.0; near.len()];
+        sweep(&mut distance, |k| all[near[k] as usize]);
+        Self { near, distance }
+    }
+}
+
+impl Index<usize> for WallDistance {
+    type Output = f64;
+
+    fn index(&self, i: usize) -> &f64 {
+        self.near.binary_search(&(i as u32)).map_or(&f64::INFINITY, |k| &self.distance[k])
+    }
+}
+
 /// Particles and what they see.
 #[derive(Clone, Debug)]
 pub struct Cloud<const D: usize> {
@@ -158,7 +185,7 @@ pub struct Cloud<const D: usize> {
     /// Transforms that ghosts refer to.
     pub transforms: Vec<Transform<D>>,
     /// Distance to the surface, for fluid particles near it; infinite elsewhere.
-    pub wall_distance: Vec<f64>,
+    pub wall_distance: WallDistance,
     /// Clouds of fluid and interface particles.
     pub neighbours: Neighbours,
     /// Fluid particles from which the state of each interface particle is fitted.

@@ -13,6 +13,7 @@ use super::neighbours::Neighbours;
 use super::{Cloud, Ghost, Transform};
 use crate::math::Vector;
 use crate::math::least_squares::{bounded_inverse, gradient_weight, normal_inverse, normal_matrix};
+use crate::math::square::Symmetric;
 use crate::math::sweep::{parts, sweep, sweep_each, sweep_each_slot, sweep_parts, sweep_two_parts};
 
 /// Fewest and most rows in one part, in 2-D and in 3-D: large enough that few edges are visited twice (of 4,096 rows in 3-D
@@ -71,7 +72,7 @@ impl<const D: usize> Edge<D> {
 #[derive(Clone, Copy)]
 pub struct Weights<'a, const D: usize> {
     /// Of each row the matrix that makes a weight of an offset over its square, where offsets are plain differences.
-    inverse: &'a [[[f64; D]; D]],
+    inverse: &'a [Symmetric<D>],
     /// Of each edge, where they are not.
     stored: &'a [[Vector<D>; 2]],
 }
@@ -89,8 +90,8 @@ impl<'a, const D: usize> Weights<'a, D> {
             return *pair;
         }
         let back = e.both() && e.seen_back();
-        let a_j = if back { gradient_weight(&self.inverse[e.j()], &-*d) } else { Vector::ZERO };
-        [gradient_weight(&self.inverse[e.i()], d), a_j]
+        let a_j = if back { gradient_weight(&self.inverse[e.j()].full(), &-*d) } else { Vector::ZERO };
+        [gradient_weight(&self.inverse[e.i()].full(), d), a_j]
     }
 }
 
@@ -104,11 +105,11 @@ pub struct Operators<const D: usize> {
     /// Edges of each part.
     edges: Vec<Vec<Edge<D>>>,
     /// Of each row the matrix that makes weights; empty where there are layers.
-    inverse: Vec<[[f64; D]; D]>,
+    inverse: Vec<Symmetric<D>>,
     /// Weights of each edge of each part; empty where there are no layers.
     stored: Vec<Vec<[Vector<D>; 2]>>,
     /// Condition number of the normal matrix of each row, infinite where the cloud determines no gradient.
-    pub condition: Vec<f64>,
+    pub condition: Vec<f32>,
     /// True when what one particle loses another gains.
     pub conservative: bool,
     walls: Vec<WallFace<D>>,
@@ -170,7 +171,7 @@ impl<const D: usize> Operators<D> {
             sweep_each_slot(&mut self.edges, |_, edges| {
                 edges.iter_mut().for_each(|e| match e.j() < cloud.n_real() {
                     true => e.weigh(cloud, inverse),
-                    false => e.s = weights(cloud, inverse, lookup, (e.i(), e.j())).1,
+                    false => e.s = weights(cloud, |i| inverse[i].full(), lookup, (e.i(), e.j())).1,
                 });
             });
             return;
@@ -181,7 +182,7 @@ impl<const D: usize> Operators<D> {
         sweep_each_slot(&mut both, |_, (edges, stored)| {
             stored.clear();
             stored.extend(edges.iter_mut().map(|e| {
-                let (pair, s) = weights(cloud, &inverse, lookup, (e.i(), e.j()));
+                let (pair, s) = weights(cloud, |i| inverse[i], lookup, (e.i(), e.j()));
                 e.s = s;
                 pair
             }));
@@ -192,31 +193,32 @@ impl<const D: usize> Operators<D> {
     /// of an edge are opposite, and add the same to both.
     fn fit_by_edges(&mut self, cloud: &Cloud<D>) {
         let n = cloud.neighbours.len();
-        self.inverse.resize(n, [[0.0; D]; D]);
+        self.inverse.resize(n, Symmetric::ZERO);
         self.condition.resize(n, 0.0);
         let (parts, edges) = (&self.parts, &self.edges);
         let (inverse, condition) = (self.inverse.as_mut_slice(), self.condition.as_mut_slice());
         sweep_two_parts((parts, 1, inverse), (parts, 1, condition), &|k, rows, condition| {
             let start = parts[k].start;
-            rows.fill([[0.0; D]; D]);
+            rows.fill(Symmetric::ZERO);
             for e in &edges[k] {
                 let d = cloud.x[e.j()] - cloud.x[e.i()];
                 let scaled = d * (1.0 / d.norm_squared());
-                add_product(&mut rows[e.i() - start], &scaled, &d);
+                rows[e.i() - start].add_product(&scaled, &d);
                 if e.both() && e.seen_back() {
-                    add_product(&mut rows[e.j() - start], &scaled, &d);
+                    rows[e.j() - start].add_product(&scaled, &d);
                 }
             }
             for (i, (row, condition)) in parts[k].clone().zip(rows.iter_mut().zip(condition)) {
                 let count = cloud.neighbours.range(i).len();
-                (*row, *condition, _) = invert_row(cloud, i, row, count);
+                let (own, worst, _) = invert_row(cloud, i, &row.full(), count);
+                (*row, *condition) = (Symmetric::of(&own), worst as f32);
             }
         });
     }
 
     /// The same on any cloud, row by row.
     fn fit_by_rows(&mut self, cloud: &Cloud<D>) -> Vec<[[f64; D]; D]> {
-        let mut rows = vec![([[0.0; D]; D], 0.0); cloud.neighbours.len()];
+        let mut rows = vec![([[0.0; D]; D], 0.0f32); cloud.neighbours.len()];
         sweep(&mut rows, |i| fit_row(cloud, i));
         let (inverse, condition) = rows.into_iter().unzip();
         self.condition = condition;
@@ -258,7 +260,7 @@ impl<const D: usize> Operators<D> {
 
     /// Of each row the matrix that makes the gradient of Σ (d/d²)(f_j − f_i); nothing where there are layers.
     #[inline]
-    pub fn inverse(&self) -> &[[[f64; D]; D]] {
+    pub fn inverse(&self) -> &[Symmetric<D>] {
         &self.inverse
     }
 
@@ -306,8 +308,9 @@ impl<const D: usize> Operators<D> {
     /// Bytes held.
     pub fn bytes(&self) -> usize {
         let edges: usize = self.edges.iter().map(Vec::len).sum();
-        let weights = self.inverse.len() * 8 * D * D + self.stored.iter().map(Vec::len).sum::<usize>() * 16 * D;
-        self.walls.len() * size_of::<WallFace<D>>() + edges * size_of::<Edge<D>>() + weights + self.condition.len() * 8
+        let weights =
+            self.inverse.len() * size_of::<Symmetric<D>>() + self.stored.iter().map(Vec::len).sum::<usize>() * 16 * D;
+        self.walls.len() * size_of::<WallFace<D>>() + edges * size_of::<Edge<D>>() + weights + self.condition.len() * 4
     }
 }
 
@@ -315,12 +318,12 @@ impl<const D: usize> Operators<D> {
 const FOLDED: f64 = 0.05;
 
 /// Inverse normal matrix and conditioning of row `i`.
-fn fit_row<const D: usize>(cloud: &Cloud<D>, i: usize) -> ([[f64; D]; D], f64) {
+fn fit_row<const D: usize>(cloud: &Cloud<D>, i: usize) -> ([[f64; D]; D], f32) {
     let (matrix, count) = normal_matrix(cloud.neighbours.of(i).iter().map(|j| cloud.offset(i, *j as usize)));
     let (inverse, condition, exact) = invert_row(cloud, i, &matrix, count);
     match cloud.layers.in_steps(i) {
-        Some(slot) => (through_metric((cloud, slot), i, inverse, exact), condition),
-        None => (inverse, condition),
+        Some(slot) => (through_metric((cloud, slot), i, inverse, exact), condition as f32),
+        None => (inverse, condition as f32),
     }
 }
 
@@ -336,16 +339,6 @@ fn invert_row<const D: usize>(
     let inverse = inverse.filter(|_| cloud.first_order.binary_search(&(i as u32)).is_err());
     let exact = inverse.is_some();
     (inverse.unwrap_or_else(|| bounded_inverse(matrix, count)), condition.unwrap_or(f64::INFINITY), exact)
-}
-
-/// m ← m + a bᵀ.
-#[inline(always)]
-fn add_product<const D: usize>(m: &mut [[f64; D]; D], a: &Vector<D>, b: &Vector<D>) {
-    for r in 0..D {
-        for c in 0..D {
-            m[r][c] += a[r] * b[c];
-        }
-    }
 }
 
 /// Turns slopes in the space of steps into slopes in space, through the metric terms that the same weights give. Weights of
@@ -437,13 +430,13 @@ impl<const D: usize> Edge<D> {
 
     /// Sets the area vector between particles that are no images, given the inverse normal matrices of all rows.
     #[inline(always)]
-    fn weigh(&mut self, cloud: &Cloud<D>, inverse: &[[[f64; D]; D]]) {
+    fn weigh(&mut self, cloud: &Cloud<D>, inverse: &[Symmetric<D>]) {
         let (i, j) = (self.i(), self.j());
         let d = cloud.x[j] - cloud.x[i];
-        let a_i = gradient_weight(&inverse[i], &d);
+        let a_i = gradient_weight(&inverse[i].full(), &d);
         // an end without a cloud counts as the mirror image of this one
         self.s = match self.seen_back() {
-            true => a_i * cloud.volume[i] - gradient_weight(&inverse[j], &-d) * cloud.volume[j],
+            true => a_i * cloud.volume[i] - gradient_weight(&inverse[j].full(), &-d) * cloud.volume[j],
             false => a_i * (2.0 * cloud.volume[i]),
         };
     }
@@ -452,17 +445,17 @@ impl<const D: usize> Edge<D> {
 /// Weights at both ends of an edge, whatever its second end, and its area vector.
 fn weights<const D: usize>(
     cloud: &Cloud<D>,
-    inverse: &[[[f64; D]; D]],
+    inverse: impl Fn(usize) -> [[f64; D]; D],
     reverse: &Reverse<'_, D>,
     (i, j): (usize, usize),
 ) -> ([Vector<D>; 2], Vector<D>) {
-    let a_i = gradient_weight(&inverse[i], &cloud.offset(i, j));
+    let a_i = gradient_weight(&inverse(i), &cloud.offset(i, j));
     let back = reverse.position(i, j).map(|(e, transform)| match transform {
-        None => gradient_weight(&inverse[j], &cloud.offset(j, i)),
+        None => gradient_weight(&inverse(j), &cloud.offset(j, i)),
         Some(t) => {
             let source = cloud.ghosts[j - cloud.n_real()].source as usize;
             let d = cloud.offset(source, cloud.neighbours.index[e] as usize);
-            cloud.transforms[t as usize].direction(&gradient_weight(&inverse[source], &d))
+            cloud.transforms[t as usize].direction(&gradient_weight(&inverse(source), &d))
         }
     });
     // an end without a cloud counts as the mirror image of this one

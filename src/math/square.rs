@@ -24,6 +24,52 @@ pub fn determinant<const D: usize>(f: &[Vector<D>; D]) -> f64 {
     (0..D).map(|c| f[0][c] * cofactor::<D>(|i, j| f[i][j], 0, c)).sum()
 }
 
+/// A symmetric matrix of order 2 or 3.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Symmetric<const D: usize> {
+    diagonal: [f64; D],
+    /// The entries (0, 1), (0, 2) and (1, 2), as far as there are such.
+    beside: [f64; D],
+}
+
+impl<const D: usize> Symmetric<D> {
+    /// No entry but zeros.
+    pub const ZERO: Self = Self { diagonal: [0.0; D], beside: [0.0; D] };
+
+    /// The one with the upper triangle of `full`.
+    #[inline(always)]
+    pub fn of(full: &[[f64; D]; D]) -> Self {
+        let mut m = Self::ZERO;
+        for r in 0..D {
+            m.diagonal[r] = full[r][r];
+            (r + 1..D).for_each(|c| m.beside[r + c - 1] = full[r][c]);
+        }
+        m
+    }
+
+    /// All entries.
+    #[inline(always)]
+    pub fn full(&self) -> [[f64; D]; D] {
+        let mut full = [[0.0; D]; D];
+        for r in 0..D {
+            full[r][r] = self.diagonal[r];
+            for c in r + 1..D {
+                (full[r][c], full[c][r]) = (self.beside[r + c - 1], self.beside[r + c - 1]);
+            }
+        }
+        full
+    }
+
+    /// Adds a bᵀ, of two vectors of one direction.
+    #[inline(always)]
+    pub fn add_product(&mut self, a: &Vector<D>, b: &Vector<D>) {
+        for r in 0..D {
+            self.diagonal[r] += a[r] * b[r];
+            (r + 1..D).for_each(|c| self.beside[r + c - 1] += a[r] * b[c]);
+        }
+    }
+}
+
 /// F v.
 #[inline(always)]
 pub fn times<const D: usize>(f: &[Vector<D>; D], v: &Vector<D>) -> Vector<D> {
@@ -46,5 +92,14 @@ mod tests {
         }
         assert!((determinant(&f) - (1.1 * 1.05 - 0.2 * 0.5 - 0.3 * 0.3)).abs() < 1e-14);
         assert!((determinant(&g) - 1.07).abs() < 1e-14);
+    }
+
+    #[test]
+    fn a_symmetric_matrix_is_its_upper_triangle() {
+        let (space, plane) = ([[1.0, 2.0, 3.0], [2.0, 4.0, 5.0], [3.0, 5.0, 6.0]], [[1.0, 2.0], [2.0, 3.0]]);
+        assert_eq!((Symmetric::of(&space).full(), Symmetric::of(&plane).full()), (space, plane));
+        let (mut sum, v) = (Symmetric::of(&space), Vector([1.0, -2.0, 0.5]));
+        sum.add_product(&(v * 2.0), &v);
+        assert_eq!(sum.full()[2], [3.0 + 1.0, 5.0 - 2.0, 6.0 + 0.5]);
     }
 }

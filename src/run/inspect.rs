@@ -150,7 +150,7 @@ fn look<const D: usize>(case: &Case, input: &Path, out: Option<&Path>) -> Result
         outer: cloud.outer.len(),
         neighbours: NeighbourCount::of(cloud),
         spacing: SpacingRange::of(&cloud.spacing),
-        worst_condition: fluid.discretisation.operators.condition.iter().fold(0.0, |m, c| c.max(m)),
+        worst_condition: fluid.discretisation.operators.condition.iter().fold(0.0, |m, c| f64::from(*c).max(m)),
         seconds,
         cost: sized.cost(fastest),
         least: sized.least(),
@@ -194,7 +194,7 @@ fn write<const D: usize>(
     let cloud = &fluid.discretisation.cloud;
     let n = cloud.n_real();
     let points: Vec<[f64; 3]> = cloud.x[..n].iter().map(crate::math::Vector::to_3d).collect();
-    let mut condition = fluid.discretisation.operators.condition.clone();
+    let mut condition: Vec<f64> = fluid.discretisation.operators.condition.iter().map(|c| f64::from(*c)).collect();
     condition.resize(n, 1.0);
     let columns = [
         Column { name: "spacing", components: 1, values: &cloud.spacing[..n] },

@@ -36,7 +36,7 @@ impl<const D: usize> Fluid<D> {
         }
         let (then, now) = (&self.discretisation.cloud, &frame.discretisation.cloud);
         let sick = |i: usize| {
-            let well = frame.discretisation.operators.condition[i] < WORST_CONDITION;
+            let well = f64::from(frame.discretisation.operators.condition[i]) < WORST_CONDITION;
             !well && then.first_order.binary_search(&(i as u32)).is_err()
         };
         let operators = &self.discretisation.operators;

@@ -124,9 +124,10 @@ impl<const D: usize> Fluid<D> {
                     out[e.j() - start].add(&scaled, &dq);
                 }
             }
-            out.iter_mut()
-                .zip(&inverse[start..])
-                .for_each(|(g, m)| *g = g.map(|v| Vector::from_fn(|r| (0..D).map(|c| m[r][c] * v[c]).sum())));
+            out.iter_mut().zip(&inverse[start..]).for_each(|(g, m)| {
+                let m = m.full();
+                *g = g.map(|v| Vector::from_fn(|r| (0..D).map(|c| m[r][c] * v[c]).sum()));
+            });
         });
         cloud.first_order.iter().for_each(|i| rows[*i as usize] = Gradient::ZERO);
         let rows = &*rows;
