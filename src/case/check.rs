@@ -291,10 +291,6 @@ fn in_dimension(draft: &mut Draft<'_>, d: usize) {
         length(draft, &format!("cloud.box[{i}].max"), d);
         corners(draft, &format!("cloud.box[{i}]"));
     }
-    if d == 3 && draft.given("cloud.wall_layers") {
-        let hint = "remove the table: in 3-D the particles at a wall are as far apart across it as along it";
-        draft.fail_key("cloud.wall_layers", "`cloud.wall_layers` needs a 2-D case").hint(hint);
-    }
     if d == 2 && draft.number("flow.beta").is_some_and(|beta| beta != 0.0) {
         draft.fail("flow.beta", "`flow.beta` needs a 3-D case").hint("in 2-D only `alpha` turns the flow");
     }

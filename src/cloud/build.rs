@@ -93,7 +93,7 @@ fn volumes<const D: usize>(particles: &Particles<D>) -> Vec<f64> {
         volume[i] = WALL_HEIGHT * particles.spacing[i] * w.area.norm();
     }
     for (i, v) in volume.iter_mut().enumerate() {
-        *v = particles.layers.volume(i, particles.n_fluid, &particles.x).unwrap_or(*v);
+        *v = particles.layers.volume(i, &particles.interface, &particles.x).unwrap_or(*v);
     }
     volume
 }

@@ -15,11 +15,12 @@
 use super::Transform;
 use super::grid::Grid;
 use super::interface::Placed;
-use super::layers::{Column, End};
+use super::layers::{Beside, Column, End};
 use super::layout::Layout;
 use super::neighbours::NEAR;
 use super::particles::ParticleSite;
 use super::tree::{Leaf, Tree};
+use super::wall_stars::stars;
 use crate::case::{Side, WallLayers};
 use crate::geometry::Surface;
 use crate::math::{Bounds, Vector};
@@ -40,8 +41,9 @@ const ROOM: f64 = 2.0;
 const LIFT: f64 = 1e-3;
 /// Most layers.
 const MOST: usize = 1000;
-/// Half-width of the part of the background that a column takes the place of, in its spacings.
-const HALF_WIDTH: f64 = 0.55;
+/// Half-width of the part of the background that a column takes the place of, in its spacings, in 2-D and 3-D: there columns stand
+/// around triangles.
+const HALF_WIDTH: [f64; 2] = [0.55, 0.75];
 /// Height above the last layer, in spacings, up to which the background is left out.
 const ABOVE: f64 = 0.5;
 /// Smallest distance of a background particle to one in a layer, in mean spacings.
@@ -55,19 +57,24 @@ const ALONG_WALL: f64 = 0.3;
 
 /// Columns over all interface particles, before the fluid particles have numbers.
 pub(super) struct Columns<const D: usize> {
-    /// Direction along the outline and normal.
-    pub axes: Vec<[Vector<D>; 2]>,
+    /// Directions along the wall and normal.
+    pub axes: Vec<[Vector<D>; D]>,
     /// Heights of the layers, the same for all columns.
     heights: Vec<f64>,
     /// Number of layers of each column.
     counts: Vec<usize>,
     /// Why each column ends there.
     ends: Vec<End>,
-    beside: Vec<[Option<u32>; 2]>,
+    beside: Vec<Vec<Beside>>,
+    /// Whether one is missing on a side.
+    open: Vec<bool>,
     x: Vec<Vector<D>>,
-    /// Offset to the interface particle on either side, through the plane of symmetry where that is an image.
-    mirrors: Vec<Option<Transform<D>>>,
+    /// Reflections and shifts of the domain.
+    transforms: Vec<Transform<D>>,
 }
+
+/// Directions along the wall and normal of every column, what stands beside it, and whether something is missing on a side.
+pub(super) type Around<const D: usize> = (Vec<[Vector<D>; D]>, Vec<(Vec<Beside>, bool)>);
 
 /// What columns grow in.
 pub(super) struct LayerContext<'a, const D: usize> {
@@ -82,7 +89,7 @@ pub(super) struct LayerContext<'a, const D: usize> {
 }
 
 impl<const D: usize> Columns<D> {
-    /// Grows columns over the interface particles of a plane case.
+    /// Grows columns over the interface particles.
     pub(super) fn grow(placed: &Placed<D>, spec: &WallLayers, context: &LayerContext<'_, D>) -> Self {
         let mut columns = Self::start(placed, context.transforms);
         let n = placed.x.len();
@@ -119,85 +126,48 @@ impl<const D: usize> Columns<D> {
         columns
     }
 
-    /// Interface particles with their neighbours along the outline, no layers yet.
+    /// Interface particles with their neighbours along the wall, no layers yet.
     fn start(placed: &Placed<D>, transforms: &[Transform<D>]) -> Self {
         let n = placed.x.len();
-        let mut beside = vec![[None; 2]; n];
-        for (w, next) in placed.next.iter().enumerate().filter(|(_, next)| **next != u32::MAX) {
-            beside[w][1] = Some(*next);
-            beside[*next as usize][0] = Some(w as u32);
-        }
-        let mut axes = Vec::with_capacity(n);
-        for w in 0..n {
-            let normal = placed.interface[w].normal;
-            let mut along = Vector::ZERO;
-            (along[0], along[1]) = (normal[1], -normal[0]);
-            let ahead = match beside[w] {
-                [_, Some(b)] => placed.x[b as usize] - placed.x[w],
-                [Some(a), None] => placed.x[w] - placed.x[a as usize],
-                [None, None] => along,
-            };
-            axes.push([if along.dot(&ahead) >= 0.0 { along } else { -along }, normal]);
-        }
-        let mut all = Self {
+        let (axes, around) = match D {
+            2 => outline(placed, transforms),
+            _ => stars(placed, transforms),
+        };
+        let (beside, open) = around.into_iter().unzip();
+        Self {
             axes,
             heights: Vec::new(),
             counts: vec![0; n],
             ends: vec![End::Planned; n],
             beside,
+            open,
             x: placed.x.clone(),
-            mirrors: vec![None; n],
-        };
-        (0..n).for_each(|w| all.look_across_planes(w, placed.spacing[w], transforms));
-        all
-    }
-
-    /// An end of an outline at a plane of symmetry goes on with its own image.
-    fn look_across_planes(&mut self, w: usize, h: f64, transforms: &[Transform<D>]) {
-        for side in 0..2 {
-            if self.beside[w][side].is_some() || self.beside[w][1 - side].is_none() {
-                continue;
-            }
-            let sign = if side == 1 { 1.0 } else { -1.0 };
-            let [along, normal] = self.axes[w];
-            let across = |t: &&Transform<D>| {
-                let d = t.point(&self.x[w]) - self.x[w];
-                let r = d.norm();
-                t.sign != Vector::splat(1.0)
-                    && r < ACROSS_PLANE * h
-                    && d.dot(&along) * sign > 0.0
-                    && d.dot(&normal).abs() < ALONG_WALL * r
-            };
-            if let Some(t) = transforms.iter().find(across) {
-                self.beside[w][side] = Some(w as u32);
-                self.mirrors[w] = Some(*t);
-            }
+            transforms: transforms.to_vec(),
         }
     }
 
     /// The point of column `w` at a height.
     fn at(&self, w: usize, height: f64) -> Vector<D> {
-        self.x[w] + self.axes[w][1] * height
+        self.x[w] + self.axes[w][D - 1] * height
     }
 
-    /// Offset from column `w` to the adjacent one on a side, at a height.
-    fn step(&self, w: usize, side: usize, height: f64) -> Option<Vector<D>> {
-        let other = self.beside[w][side]? as usize;
-        let there = self.at(other, height);
-        let there = if other == w { self.mirrors[w].map_or(there, |t| t.point(&there)) } else { there };
-        Some(there - self.at(w, height))
+    /// Offset from column `w` to one beside it, at a height.
+    fn step(&self, w: usize, b: &Beside, height: f64) -> Vector<D> {
+        let there = self.at(b.column as usize, height);
+        let there = b.image.map_or(there, |t| self.transforms[usize::from(t)].point(&there));
+        there - self.at(w, height)
     }
 
     /// Mean distance to the adjacent columns at a height.
     fn spacing(&self, w: usize, height: f64) -> f64 {
-        let steps: Vec<f64> = (0..2).filter_map(|s| self.step(w, s, height)).map(|d| d.norm()).collect();
-        steps.iter().sum::<f64>() / steps.len().max(1) as f64
+        let steps = self.beside[w].iter().map(|b| self.step(w, b, height).norm());
+        steps.sum::<f64>() / self.beside[w].len().max(1) as f64
     }
 
     /// Whether column `w` has one beside it, and room before the next wall.
     fn may_start(&self, w: usize, surface: &Surface<D>) -> bool {
         let h = self.spacing(w, 0.0);
-        self.beside[w] != [None, None] && !surface.crosses(&self.at(w, LIFT * h), &self.at(w, ROOM * h))
+        !self.beside[w].is_empty() && !surface.crosses(&self.at(w, LIFT * h), &self.at(w, ROOM * h))
     }
 
     /// Why column `w` ends before a particle at a height; `None` when that keeps its distance from its own wall, the
@@ -205,11 +175,12 @@ impl<const D: usize> Columns<D> {
     fn end_at(&self, w: usize, (height, thickness): (f64, f64), context: &LayerContext<'_, D>) -> Option<End> {
         let x = self.at(w, height);
         let h = self.spacing(w, height);
-        let along = |d: &Vector<D>, side: usize| d.dot(&self.axes[w][0]) * if side == 1 { 1.0 } else { -1.0 };
-        let steps = (0..2).filter_map(|side| Some((side, self.step(w, side, 0.0)?, self.step(w, side, height)?)));
-        let wide = |(_, d0, d): &(usize, Vector<D>, Vector<D>)| d.norm() > WIDEST * d0.norm();
-        let tight = |(side, d0, d): &(usize, Vector<D>, Vector<D>)| along(d, *side) < TIGHTEST * along(d0, *side);
-        let steps: Vec<_> = steps.collect();
+        let along =
+            |b: &Beside, d: &Vector<D>| -> f64 { (0..D - 1).map(|a| b.step[a] * d.dot(&self.axes[w][a])).sum() };
+        let steps = |b: &Beside| (*b, self.step(w, b, 0.0), self.step(w, b, height));
+        let wide = |(_, d0, d): &(Beside, Vector<D>, Vector<D>)| d.norm() > WIDEST * d0.norm();
+        let tight = |(b, d0, d): &(Beside, Vector<D>, Vector<D>)| along(b, d) < TIGHTEST * along(b, d0);
+        let steps: Vec<_> = self.beside[w].iter().map(steps).collect();
         if thickness > ISOTROPIC * h {
             Some(End::Planned)
         } else if steps.iter().any(wide) {
@@ -242,7 +213,7 @@ impl<const D: usize> Columns<D> {
         let mut free = true;
         grid.near(&x, reach, |k| {
             let (other, y) = &taken[k as usize];
-            let related = *other as usize == w || self.beside[w].contains(&Some(*other));
+            let related = *other as usize == w || self.beside[w].iter().any(|b| b.column == *other);
             free &= related || (*y - x).norm_squared() >= reach * reach;
         });
         free
@@ -254,7 +225,8 @@ impl<const D: usize> Columns<D> {
         while changed {
             changed = false;
             for w in 0..self.counts.len() {
-                let shortest = self.beside[w].iter().flatten().map(|b| *b as usize).min_by_key(|b| self.counts[*b]);
+                let beside = self.beside[w].iter().map(|b| b.column as usize);
+                let shortest = beside.min_by_key(|b| self.counts[*b]);
                 if let Some(b) = shortest.filter(|b| self.counts[*b] + 1 < self.counts[w]) {
                     (self.counts[w], self.ends[w]) = (self.counts[b] + 1, self.ends[b]);
                     changed = true;
@@ -265,13 +237,16 @@ impl<const D: usize> Columns<D> {
 
     /// Moves the border between adjacent interface particles under layers from the outline to the middle of their chord: the
     /// faces of the layers above stand on chords, and a thin layer would not cover the sagitta. Area vectors keep their sum.
+    /// Walls in space keep theirs: the coefficients of the scheme close what is left.
     pub(super) fn straighten(&self, placed: &mut Placed<D>) {
-        for w in 0..self.counts.len() {
-            let Some(next) = self.beside[w][1].map(|b| b as usize) else { continue };
-            let Some(step) = self.step(w, 1, 0.0).filter(|_| self.counts[w] + self.counts[next] > 0) else { continue };
-            let shift = self.x[w] + step * 0.5 - placed.end[w];
-            let [along, _] = &self.axes[w];
-            let normal = self.axes[w][1];
+        for w in (0..self.counts.len()).filter(|_| D == 2) {
+            let Some(ahead) = self.beside[w].iter().find(|b| b.step[0] > 0.0) else { continue };
+            let next = ahead.column as usize;
+            if self.counts[w] + self.counts[next] == 0 {
+                continue;
+            }
+            let shift = self.x[w] + self.step(w, ahead, 0.0) * 0.5 - placed.end[w];
+            let (along, normal) = (&self.axes[w][0], self.axes[w][D - 1]);
             // a chord along the outline turned by a right angle, the way that takes `along` to the normal
             let turn = along[0] * normal[1] - along[1] * normal[0];
             let mut area = Vector::ZERO;
@@ -359,7 +334,8 @@ impl<const D: usize> Columns<D> {
         let column = |w: usize| Column {
             particles: numbers.by_ref().take(self.counts[w]).collect(),
             heights: self.heights[..self.counts[w]].to_vec(),
-            beside: self.beside[w],
+            beside: self.beside[w].clone(),
+            open: self.open[w],
             end: self.ends[w],
         };
         (0..self.counts.len()).map(column).collect()
@@ -369,7 +345,7 @@ impl<const D: usize> Columns<D> {
 /// What a particle of a column takes the place of: a box from its height up to the next.
 struct Cell<const D: usize> {
     x: Vector<D>,
-    axes: [Vector<D>; 2],
+    axes: [Vector<D>; D],
     spacing: f64,
     above: f64,
 }
@@ -388,12 +364,69 @@ enum Place {
 impl<const D: usize> Cell<D> {
     fn place(&self, leaf: &Leaf<D>) -> Place {
         let d = leaf.centre - self.x;
-        let [along, normal] = &self.axes;
-        let up = d.dot(normal);
-        if d.dot(along).abs() < HALF_WIDTH * self.spacing && 0.0 <= up && up < self.above {
+        let up = d.dot(&self.axes[D - 1]);
+        let aside = (0..D - 1).map(|a| d.dot(&self.axes[a]).powi(2)).sum::<f64>().sqrt();
+        if aside < HALF_WIDTH[D - 2] * self.spacing && 0.0 <= up && up < self.above {
             return Place::Inside;
         }
         if d.norm() < APART * 0.5 * (self.spacing + leaf.size) { Place::Near } else { Place::Clear }
+    }
+}
+
+/// Axes of the columns over an outline, and what is beside each.
+fn outline<const D: usize>(placed: &Placed<D>, transforms: &[Transform<D>]) -> Around<D> {
+    let n = placed.x.len();
+    let mut beside = vec![[None; 2]; n];
+    for (w, next) in placed.next.iter().enumerate().filter(|(_, next)| **next != u32::MAX) {
+        beside[w][1] = Some((*next, None));
+        beside[*next as usize][0] = Some((w as u32, None));
+    }
+    let mut axes = Vec::with_capacity(n);
+    for w in 0..n {
+        let normal = placed.interface[w].normal;
+        let mut along = Vector::ZERO;
+        (along[0], along[1]) = (normal[1], -normal[0]);
+        let ahead = match beside[w] {
+            [_, Some((b, _))] => placed.x[b as usize] - placed.x[w],
+            [Some((a, _)), None] => placed.x[w] - placed.x[a as usize],
+            [None, None] => along,
+        };
+        let along = if along.dot(&ahead) >= 0.0 { along } else { -along };
+        axes.push(std::array::from_fn(|a| if a + 1 < D { along } else { normal }));
+    }
+    (0..n).for_each(|w| look_across_planes(placed, &axes[w], w, transforms, &mut beside[w]));
+    let listed = |sides: [Option<(u32, Option<u8>)>; 2]| {
+        let on = |(side, step): (Option<(u32, Option<u8>)>, f64)| {
+            side.map(|(column, image)| Beside { column, image, step: [step, 0.0] })
+        };
+        (sides.into_iter().zip([-1.0, 1.0]).filter_map(on).collect(), sides.contains(&None))
+    };
+    (axes, beside.into_iter().map(listed).collect())
+}
+
+/// An end of an outline at a plane of symmetry goes on with its own image.
+fn look_across_planes<const D: usize>(
+    placed: &Placed<D>,
+    axes: &[Vector<D>; D],
+    w: usize,
+    transforms: &[Transform<D>],
+    beside: &mut [Option<(u32, Option<u8>)>; 2],
+) {
+    for side in 0..2 {
+        if beside[side].is_some() || beside[1 - side].is_none() {
+            continue;
+        }
+        let sign = if side == 1 { 1.0 } else { -1.0 };
+        let across = |t: &Transform<D>| {
+            let d = t.point(&placed.x[w]) - placed.x[w];
+            let r = d.norm();
+            t.sign != Vector::splat(1.0)
+                && r < ACROSS_PLANE * placed.spacing[w]
+                && d.dot(&axes[0]) * sign > 0.0
+                && d.dot(&axes[D - 1]).abs() < ALONG_WALL * r
+        };
+        let image = transforms.iter().position(across).map(|t| t as u8);
+        beside[side] = image.map(|t| (w as u32, Some(t)));
     }
 }
 

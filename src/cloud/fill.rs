@@ -22,7 +22,7 @@ use crate::math::{Bounds, Vector};
 
 /// Interface particles keep this distance, in spacings, from fluid particles.
 const CLEARANCE: f64 = 0.4;
-/// Dimension in which the particles next to a wall move: in 2-D `wall_layers` follow an outline.
+/// Dimension in which the particles next to a wall move; wall layers, where there are some, lie along it by themselves.
 const SETTLED: usize = 3;
 /// Bits that address a cell of the background.
 const CELL_BITS: u32 = 31;
@@ -81,7 +81,7 @@ impl<const D: usize> Particles<D> {
         let outer: Vec<_> = order.into_iter().map(|k| outer[k as usize]).collect();
         let layers = columns.map(|c| gather(c, &sites)).unwrap_or_default();
         let mut all = Self::assemble(tree, layout, (sites, placed, outer), layers);
-        if let (Some(surface), SETTLED) = (surface, D) {
+        if let (Some(surface), SETTLED, true) = (surface, D, all.layers.is_empty()) {
             smooth_near_wall(&mut all, surface, transforms);
         }
         all.shake(spec.jitter);

@@ -1,8 +1,9 @@
 //! Neighbours in the layers, and where layers meet the background.
 //!
-//! In the layers a particle sees the cross (i ± 1, k), (i, k ± 1); where the adjacent column is one layer shorter, its last
-//! particle instead. The last two layers, and every layer of a column beside a sharp edge, see the background as well:
+//! In the layers a particle sees the cross (i ± 1, k), (i, k ± 1), in space all columns beside its own; where the adjacent column is one
+//! layer shorter, its last particle instead. The last two layers, and every layer of a column beside a sharp edge, see the background as well:
 //! everything in sight within ρ (h_i + h_j)/2, which includes the last two layers of columns on other walls that face them.
+use super::layers::Beside;
 use super::neighbours::{IDENTITY, Search, Seen};
 use crate::math::Vector;
 
@@ -14,10 +15,10 @@ const WIDER: f64 = 1.5;
 const HIGHER: f64 = 0.5;
 /// Layers that a wall fit uses.
 const FIT_LAYERS: usize = 3;
-/// Columns that a wall fit uses.
-const FIT_COLUMNS: usize = 3;
+/// Columns that a wall fit uses, in 2-D, and at least in 3-D.
+const FIT_COLUMNS: [usize; 2] = [3, 5];
 /// Fewest particles of a wall fit in the layers: a quadratic one with three rows to spare.
-const FIT_LEAST: usize = 8;
+const FIT_LEAST: [usize; 2] = [8, 12];
 
 impl<const D: usize> Search<'_, D> {
     /// True when particle `i` lies in a layer, or is the interface particle under one.
@@ -57,18 +58,9 @@ impl<const D: usize> Search<'_, D> {
         }
     }
 
-    /// Particle in layer `k` of the column on a side of column `c`, or the image of its own.
-    fn member_beside(&self, c: usize, side: usize, k: usize) -> Option<Seen> {
-        let other = self.particles().layers.columns[c].beside[side]? as usize;
-        let image = if other == c { self.plane_beside(c)? } else { IDENTITY };
-        self.member(other, k).map(|i| (i as u32, image))
-    }
-
-    /// The reflection that takes the interface particle of a column to the nearest place.
-    fn plane_beside(&self, c: usize) -> Option<u8> {
-        let i = self.particles().n_fluid + c;
-        let distance = |t: &u8| (self.position(i, *t) - self.particles().x[i]).norm();
-        self.reflections().min_by(|a, b| distance(a).total_cmp(&distance(b)))
+    /// Particle in layer `k` of a column beside another, or the image of it.
+    fn member_beside(&self, other: &Beside, k: usize) -> Option<Seen> {
+        self.member(other.column as usize, k).map(|i| (i as u32, other.image.unwrap_or(IDENTITY)))
     }
 
     /// The particles beside, below and above layer `k` of a column.
@@ -79,8 +71,8 @@ impl<const D: usize> Search<'_, D> {
             .filter_map(|k| self.member(c, k))
             .map(|i| (i as u32, IDENTITY))
             .collect();
-        let beside = |side| self.member_beside(c, side, k).or_else(|| self.member_beside(c, side, k.checked_sub(1)?));
-        seen.extend((0..2).filter_map(beside));
+        let beside = |b: &Beside| self.member_beside(b, k).or_else(|| self.member_beside(b, k.checked_sub(1)?));
+        seen.extend(self.particles().layers.columns[c].beside.iter().filter_map(beside));
         seen
     }
 
@@ -110,11 +102,11 @@ impl<const D: usize> Search<'_, D> {
     fn faces(&self, i: usize, c: usize, (other, layer): (usize, usize), t: u8) -> bool {
         let layers = &self.particles().layers;
         let last = |c: usize, k: usize| k > 0 && k + 2 > layers.count(c);
-        let broken = |c: usize| layers.columns[c].beside.contains(&None);
+        let broken = |c: usize| layers.columns[c].open;
         let Some((_, own)) = layers.slot(i) else { return false };
-        let normal = self.direction(&layers.axes(other)[1], t);
+        let normal = self.direction(layers.normal(other), t);
         let (a, b) = (last(c, own), last(other, layer));
-        normal.dot(&layers.axes(c)[1]) < OTHER_WALL && (a && b || broken(c) && broken(other) && (a || b))
+        normal.dot(layers.normal(c)) < OTHER_WALL && (a && b || broken(c) && broken(other) && (a || b))
     }
 
     /// Pairs that a widened row may have: none inside the layers but those a step away.
@@ -134,19 +126,20 @@ impl<const D: usize> Search<'_, D> {
     fn column_cloud(&self, c: usize) -> Vec<Seen> {
         let layers = &self.particles().layers;
         let mut columns = vec![(c, IDENTITY)];
-        let mut ends = [Some(c), Some(c)];
-        // a column a side, more on one side beside a sharp edge
-        while columns.len() < FIT_COLUMNS && ends != [None, None] {
-            for side in 0..2 {
-                let Some(end) = ends[side].filter(|_| columns.len() < FIT_COLUMNS) else { continue };
-                ends[side] = layers.columns[end].beside[side].map(|b| b as usize).filter(|b| *b != end);
-                let image = layers.columns[end].beside[side] == Some(end as u32) && end == c;
-                match ends[side] {
-                    Some(b) => columns.push((b, IDENTITY)),
-                    None if image => columns.extend(self.plane_beside(c).map(|t| (c, t))),
-                    None => {}
+        // those around, and around them beside a sharp edge
+        let mut ring = 0..1;
+        while columns.len() < FIT_COLUMNS[D - 2] && !ring.is_empty() {
+            for k in ring.clone() {
+                let (column, image) = columns[k];
+                for b in layers.columns[column].beside.iter().filter(|_| image == IDENTITY) {
+                    let there = (b.column as usize, b.image.unwrap_or(IDENTITY));
+                    let room = D > 2 || columns.len() < FIT_COLUMNS[0];
+                    if room && !columns.contains(&there) {
+                        columns.push(there);
+                    }
                 }
             }
+            ring = ring.end..columns.len();
         }
         let of = |(c, t): &(usize, u8)| {
             let particles = &layers.columns[*c].particles;
@@ -159,7 +152,7 @@ impl<const D: usize> Search<'_, D> {
     pub(super) fn wall_cloud(&self, w: usize, list: &mut Vec<Seen>) {
         let i = w + self.particles().n_fluid;
         let layers = if self.in_layers(i) { self.column_cloud(w) } else { Vec::new() };
-        if layers.len() >= FIT_LEAST {
+        if layers.len() >= FIT_LEAST[D - 2] {
             list.extend(layers);
         } else {
             self.fluid_in_front(i, list);

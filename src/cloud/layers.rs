@@ -5,16 +5,20 @@
 //! neighbours are a cross, (i ± 1, k) and (i, k ± 1), and fits are made in the space of these numbers: slopes f_ξ, f_η by
 //! least squares over the offsets (±1, 0), (0, ±1), the metric terms x_ξ, x_η with the same weights, and then
 //! ∇f = J⁻¹ (f_ξ, f_η) with the rows x_ξ, x_η of J. That is exact for linear fields at any aspect ratio and any curvature of
-//! the wall, and |det J| is the volume. Where the layers end the neighbours come from the background as well, and fits are made
+//! the wall, and |det J| is the volume. In space the columns beside one stand around it (module `wall_stars`): for ±1 there are the
+//! ways to their feet along the wall, in mean distances, and layers of such columns are prisms. Where the layers end the neighbours come from the background as well, and fits are made
 //! in space as everywhere else: behind a sharp edge a neighbour that is many layers lower would count for the slope across the
 //! wall alone, nothing would be left of what comes along it, and gas that flows back around the edge would heap up there.
 //!
 //! References: Visbal and Gaitonde, J. Comput. Phys. 181 (2002), for metric terms that must be taken with the weights of the
 //! scheme; Pirzadeh, AIAA J. 34 (1996), for layers that advance together and stop where fronts meet.
-use super::Cloud;
+use super::{Cloud, Interface};
 use crate::math::Vector;
+use crate::math::square::determinant;
 
 const NONE: u32 = u32::MAX;
+/// Least part of a piece of surface that is left where normals converge.
+const FOLDED: f64 = 0.05;
 
 /// Why a column has no more layers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -32,6 +36,17 @@ pub enum End {
     Side,
 }
 
+/// A column that stands beside another on the wall.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Beside {
+    /// Its number.
+    pub column: u32,
+    /// The transform whose image of it that is; itself without.
+    pub image: Option<u8>,
+    /// The way to it along the wall, in the axes of the other and in mean distances: −1 and 1 along an outline.
+    pub step: [f64; 2],
+}
+
 /// The layers over one interface particle; empty where there are none.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Column {
@@ -39,8 +54,10 @@ pub struct Column {
     pub particles: Vec<u32>,
     /// Their distances from the wall, along the normal.
     pub heights: Vec<f64>,
-    /// Columns before and after it along the outline; its own number where that is its image across a plane of symmetry.
-    pub beside: [Option<u32>; 2],
+    /// Columns beside it: before and after it along the outline, around it in space.
+    pub beside: Vec<Beside>,
+    /// Whether one is missing on a side: a sharp edge.
+    pub open: bool,
     /// Why there are no more; that of the column beside it where that one cuts it short.
     pub end: End,
 }
@@ -50,7 +67,7 @@ pub struct Column {
 pub struct Layers<const D: usize> {
     /// One column an interface particle, in the same order; none at all when the case asks for no layers.
     pub columns: Vec<Column>,
-    axes: Vec<[Vector<D>; 2]>,
+    axes: Vec<[Vector<D>; D]>,
     slots: Vec<(u32, u32)>,
     /// Particles in layers whose neighbours do not all stand in the same or an adjacent column.
     mixed: Vec<bool>,
@@ -66,9 +83,9 @@ pub struct Source {
 }
 
 impl<const D: usize> Layers<D> {
-    /// Gathers columns; `axes` are the direction along the outline and the normal of each, `n_fluid` the number of fluid
+    /// Gathers columns; `axes` are the directions along the wall and the normal of each, `n_fluid` the number of fluid
     /// particles.
-    pub(super) fn new(columns: Vec<Column>, axes: Vec<[Vector<D>; 2]>, n_fluid: usize) -> Self {
+    pub(super) fn new(columns: Vec<Column>, axes: Vec<[Vector<D>; D]>, n_fluid: usize) -> Self {
         if columns.iter().all(|c| c.particles.is_empty()) {
             return Self { columns, ..Self::default() };
         }
@@ -94,9 +111,14 @@ impl<const D: usize> Layers<D> {
         (column != NONE).then_some((column as usize, layer as usize))
     }
 
-    /// Direction of the outline and normal of the column of particle `i`.
-    pub fn axes(&self, column: usize) -> &[Vector<D>; 2] {
+    /// Directions along the wall and normal of a column.
+    pub fn axes(&self, column: usize) -> &[Vector<D>; D] {
         &self.axes[column]
+    }
+
+    /// Normal of a column.
+    pub fn normal(&self, column: usize) -> &Vector<D> {
+        &self.axes[column][D - 1]
     }
 
     /// Distance from the wall of layer `k` of a column.
@@ -116,20 +138,19 @@ impl<const D: usize> Layers<D> {
         self.columns[column].particles.len()
     }
 
-    /// Steps (columns along the outline, layers outward) from particle `i` to a neighbour at offset `d`, when that is in the
+    /// Steps (along the wall, layers outward) from particle `i` to a neighbour at offset `d`, when that is in the
     /// same or in an adjacent column.
-    pub fn steps(&self, i: usize, other: Source, d: &Vector<D>) -> Option<(i32, i32)> {
+    pub fn steps(&self, i: usize, other: Source, d: &Vector<D>) -> Option<([f64; 2], i32)> {
         let ((c, k), (c2, k2)) = (self.slot(i)?, self.slot(other.index)?);
         let up = k2 as i32 - k as i32;
-        let beside = &self.columns[c].beside;
-        let is = |side: usize| beside[side] == Some(c2 as u32);
-        match (other.image, c2 == c) {
-            (false, true) => Some((0, up)),
-            (false, false) if is(1) => Some((1, up)),
-            (false, false) if is(0) => Some((-1, up)),
-            (true, true) if is(0) || is(1) => Some((if d.dot(&self.axes[c][0]) > 0.0 { 1 } else { -1 }, up)),
-            _ => None,
+        if c2 == c && !other.image {
+            return Some(([0.0; 2], up));
         }
+        let towards = |b: &Beside| (0..D - 1).map(|a| b.step[a] * d.dot(&self.axes[c][a])).sum::<f64>();
+        // of several images of one column the one on that side
+        let is = |b: &&Beside| b.column as usize == c2 && b.image.is_some() == other.image;
+        let there = self.columns[c].beside.iter().filter(is).max_by(|a, b| towards(a).total_cmp(&towards(b)))?;
+        Some((there.step, up))
     }
 
     /// Notes which rows see more than layers; `beyond(i)` tells it of a particle that stands in a layer.
@@ -148,41 +169,51 @@ impl<const D: usize> Layers<D> {
     /// wall, both in parts of `h`; `d` itself outside the layers.
     pub fn offset(&self, i: usize, h: f64, other: Source, d: &Vector<D>) -> Vector<D> {
         let Some((c, k)) = self.slot(i) else { return *d };
-        let mut steps = Vector::ZERO;
-        (steps[0], steps[1]) = match self.steps(i, other, d) {
-            Some((along, up)) => (f64::from(along) * h, f64::from(up) * h),
-            None => {
-                let [t, n] = &self.axes[c];
-                (d.dot(t), d.dot(n) * h / self.thickness(c, k))
-            }
-        };
-        steps
+        let axes = &self.axes[c];
+        match self.steps(i, other, d) {
+            Some((along, up)) => Vector::from_fn(|a| if a + 1 < D { along[a] * h } else { f64::from(up) * h }),
+            None => Vector::from_fn(|a| d.dot(&axes[a]) * if a + 1 < D { 1.0 } else { h / self.thickness(c, k) }),
+        }
     }
 
-    /// Volume of particle `i` in a layer: spacing along the wall times height. A particle at the wall stands for half of it,
+    /// Volume of particle `i` in a layer: its part of the layer times height. A particle at the wall stands for half of it,
     /// one in the last layer for the gap to the background as well.
-    pub(super) fn volume(&self, i: usize, n_fluid: usize, x: &[Vector<D>]) -> Option<f64> {
+    pub(super) fn volume(&self, i: usize, interface: &[Interface<D>], x: &[Vector<D>]) -> Option<f64> {
         let (c, k) = self.slot(i)?;
         let column = &self.columns[c];
-        let [t, n] = &self.axes[c];
-        let place = |b: u32| x[n_fluid + b as usize] + self.axes[b as usize][1] * self.height(c, k);
-        let own = x[n_fluid + c] + *n * self.height(c, k);
-        let beside = |side: usize| column.beside[side].filter(|b| *b as usize != c).map(|b| place(b) - own);
-        let (sum, sides) = (0..2).filter_map(beside).fold((0.0, 0.0), |s, d| (s.0 + d.dot(t).abs(), s.1 + 1.0));
-        let along = sum / f64::max(sides, 1.0);
+        let area = match D {
+            2 => self.length(c, k, &x[self.slots.len() - self.columns.len()..]),
+            _ => interface[c].area.norm() * swelling(&interface[c].curvature, self.height(c, k)),
+        };
+        let along = if D == 2 { area } else { area.sqrt() };
         let top = column.heights.len();
         let below = if k == 0 { 0.0 } else { self.height(c, k) - self.height(c, k - 1) };
         let above = if k == top { along.max(below) } else { self.height(c, k + 1) - self.height(c, k) };
-        Some(along * 0.5 * (below + above))
+        Some(area * 0.5 * (below + above))
+    }
+
+    /// Mean distance of layer `k` of a column from those beside it, along the wall; `feet` are the interface particles.
+    fn length(&self, c: usize, k: usize, feet: &[Vector<D>]) -> f64 {
+        let place = |b: usize| feet[b] + *self.normal(b) * self.height(c, k);
+        let beside = self.columns[c].beside.iter().filter(|b| b.column as usize != c);
+        let steps = beside.map(|b| (place(b.column as usize) - place(c)).dot(&self.axes[c][0]).abs());
+        let (sum, sides) = steps.fold((0.0, 0.0), |s, d| (s.0 + d, s.1 + 1.0));
+        sum / f64::max(sides, 1.0)
     }
 
     /// True for the last two layers of a column, and for all layers of one beside a sharp edge.
     pub(super) fn is_rim(&self, c: usize, k: usize) -> bool {
         let column = &self.columns[c];
-        let broken = column.beside.iter().any(|b| b.is_none_or(|b| self.columns[b as usize].particles.is_empty()));
+        let broken = column.open || column.beside.iter().any(|b| self.columns[b.column as usize].particles.is_empty());
         let top = column.particles.len();
         broken || k + 2 > top && k > 0
     }
+}
+
+/// Factor by which a piece of surface with this curvature tensor grows when every point of it moves by `height` along its normal.
+fn swelling<const D: usize>(curvature: &[Vector<D>; D], height: f64) -> f64 {
+    let moved: [Vector<D>; D] = std::array::from_fn(|r| Vector::axis(r) + curvature[r] * height);
+    determinant(&moved).max(FOLDED)
 }
 
 /// Volume of a cell between two particles: that of the mean spacing; in layers the harmonic mean, which the thinner decides.

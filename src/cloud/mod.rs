@@ -31,6 +31,7 @@ pub mod strain;
 mod tests;
 pub mod travel;
 pub mod tree;
+mod wall_stars;
 
 use std::ops::{Index, Range};
 

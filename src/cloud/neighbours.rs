@@ -302,12 +302,6 @@ impl<'a, const D: usize> Search<'a, D> {
         0.5 * self.radius * 3.0 * self.particles.spacing[i]
     }
 
-    /// Transforms that reflect space.
-    pub(super) fn reflections(&self) -> impl Iterator<Item = u8> + '_ {
-        let reflects = |t: &Transform<D>| t.sign != Vector::splat(1.0);
-        self.transforms.iter().zip(0..).filter(move |(t, _)| reflects(t)).map(|(_, k)| k)
-    }
-
     /// Direction `v` turned by transform `t`.
     pub(super) fn direction(&self, v: &Vector<D>, t: u8) -> Vector<D> {
         if t == IDENTITY { *v } else { self.transforms[t as usize].direction(v) }

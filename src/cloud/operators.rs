@@ -13,7 +13,7 @@ use super::neighbours::Neighbours;
 use super::{Cloud, Ghost, Transform};
 use crate::math::Vector;
 use crate::math::least_squares::{bounded_inverse, gradient_weight, normal_inverse, normal_matrix};
-use crate::math::square::Symmetric;
+use crate::math::square::{Symmetric, cofactors, determinant};
 use crate::math::sweep::{parts, sweep, sweep_each, sweep_each_slot, sweep_parts, sweep_two_parts};
 
 /// Fewest and most rows in one part, in 2-D and in 3-D: large enough that few edges are visited twice (of 4,096 rows in 3-D
@@ -356,18 +356,13 @@ fn through_metric<const D: usize>(
         let d = cloud.x[*j as usize] - cloud.x[i];
         (0..D).for_each(|c| metric[c] += d * weight[c]);
     }
-    let cross = |a: &Vector<D>, b: &Vector<D>| a[0] * b[1] - a[1] * b[0];
-    let [along, normal] = cloud.layers.axes(column);
-    let straight = [*along, *normal * (cloud.layers.thickness(column, layer) / cloud.spacing[i])];
-    let upright = cross(&metric[0], &metric[1]) / cross(&straight[0], &straight[1]) > FOLDED;
-    let [a, b] = if exact && upright { [metric[0], metric[1]] } else { straight };
-    let det = cross(&a, &b);
-    let mut turned = inverse;
-    for c in 0..D {
-        let (f, g) = (inverse[0][c], inverse[1][c]);
-        (turned[0][c], turned[1][c]) = ((f * b[1] - g * a[1]) / det, (g * a[0] - f * b[0]) / det);
-    }
-    turned
+    let mut straight = *cloud.layers.axes(column);
+    straight[D - 1] = straight[D - 1] * (cloud.layers.thickness(column, layer) / cloud.spacing[i]);
+    let upright = determinant(&metric) / determinant(&straight) > FOLDED;
+    let rows = if exact && upright { metric } else { straight };
+    let (cofactors, det) = (cofactors(&rows), determinant(&rows));
+    // J⁻¹ is the transpose of the cofactors over the determinant
+    std::array::from_fn(|r| std::array::from_fn(|c| (0..D).map(|k| cofactors[k][r] * inverse[k][c]).sum::<f64>() / det))
 }
 
 /// Finds the entry (j, i) that belongs to the entry (i, j), through images where needed.

@@ -76,9 +76,37 @@ pub fn times<const D: usize>(f: &[Vector<D>; D], v: &Vector<D>) -> Vector<D> {
     Vector::from_fn(|r| f[r].dot(v))
 }
 
+/// An orthonormal frame whose last vector is the unit vector `normal`.
+pub fn frame_of<const D: usize>(normal: &Vector<D>) -> [Vector<D>; D] {
+    let mut axes = [*normal; D];
+    if D == 2 {
+        (axes[0][0], axes[0][1]) = (-normal[1], normal[0]);
+        return axes;
+    }
+    let smallest = (0..D).fold(0, |a, d| if normal[d].abs() < normal[a].abs() { d } else { a });
+    let e = Vector::axis(smallest);
+    axes[0] = (e - *normal * e.dot(normal)).unit();
+    axes[1] = Vector::from_fn(|d| {
+        let (a, b) = ((d + 1) % D, (d + 2) % D);
+        normal[a] * axes[0][b] - normal[b] * axes[0][a]
+    });
+    axes
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_frame_is_orthonormal_and_ends_in_the_normal() {
+        let n = Vector([0.3, -0.5, 0.8]).unit();
+        let [a, b, c] = frame_of(&n);
+        assert_eq!(c, n);
+        assert!(a.dot(&b).abs() + a.dot(&c).abs() + b.dot(&c).abs() < 1e-14);
+        assert!((a.norm() - 1.0).abs() + (b.norm() - 1.0).abs() < 1e-14);
+        let [along, normal] = frame_of(&Vector([0.6, 0.8]));
+        assert_eq!((along, normal), (Vector([-0.8, 0.6]), Vector([0.6, 0.8])));
+    }
 
     #[test]
     fn a_cofactor_times_the_transpose_is_the_determinant() {

@@ -131,7 +131,7 @@ impl<'a, const D: usize> Probe<'a, D> {
             return (1.0 - d.norm() / reach).powi(2);
         };
         let stretch = (cloud.spacing[k] / cloud.layers.thickness(column, layer)).max(1.0);
-        let across = d.dot(&cloud.layers.axes(column)[1]);
+        let across = d.dot(cloud.layers.normal(column));
         let distance = (d.norm_squared() + across * across * (stretch * stretch - 1.0)).sqrt();
         (stretch * (1.0 - distance / reach).max(0.0)).powi(2)
     }

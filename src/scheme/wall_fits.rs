@@ -7,6 +7,7 @@
 use crate::cloud::Cloud;
 use crate::math::Vector;
 use crate::math::least_squares::Fit;
+use crate::math::square::frame_of;
 use crate::math::sweep::sweep;
 
 /// Sum of absolute weights above which a quadratic fit is replaced by a linear one.
@@ -59,8 +60,8 @@ impl WallFits {
 fn fit_wall<const D: usize>(cloud: &Cloud<D>, w: usize) -> (Vec<f64>, f64, bool) {
     let i = cloud.n_fluid + w;
     let (h, normal) = (cloud.spacing[i], cloud.interface[w].normal);
-    let axes = tangents(&normal);
-    let (offsets, stretch) = wall_offsets(cloud, w, &axes[0]);
+    let axes = frame_of(&normal);
+    let (offsets, stretch) = wall_offsets(cloud, w, &axes);
     let mut weights = Vec::new();
     let mut linear = false;
     let quadratic = if D == 2 { 5 } else { 9 };
@@ -81,7 +82,7 @@ fn fit_wall<const D: usize>(cloud: &Cloud<D>, w: usize) -> (Vec<f64>, f64, bool)
 
 /// Offsets to the particles of a fit, and the factor by which they are stretched across the wall: where all of them lie in
 /// layers, distances along the wall and heights above it, so that a thin layer on a curved wall stays a layer.
-fn wall_offsets<const D: usize>(cloud: &Cloud<D>, w: usize, along: &Vector<D>) -> (Vec<Vector<D>>, f64) {
+fn wall_offsets<const D: usize>(cloud: &Cloud<D>, w: usize, axes: &[Vector<D>; D]) -> (Vec<Vector<D>>, f64) {
     let (i, list) = (cloud.n_fluid + w, cloud.wall_stencils.of(w));
     let normal = &cloud.interface[w].normal;
     let layers = &cloud.layers;
@@ -99,8 +100,8 @@ fn wall_offsets<const D: usize>(cloud: &Cloud<D>, w: usize, along: &Vector<D>) -
             true => cloud.x[*k as usize] - *normal * (cloud.x[*k as usize] - cloud.x[i]).dot(normal) - cloud.x[i],
             false => cloud.x[foot] - cloud.x[i],
         };
-        let sign = if d.dot(along) < 0.0 { -1.0 } else { 1.0 };
-        *along * (sign * d.norm()) + *normal * (layers.height(column, layer) * stretch)
+        let aside = (0..D - 1).fold(Vector::ZERO, |s, a| s + axes[a] * d.dot(&axes[a]));
+        aside.unit() * d.norm() + *normal * (layers.height(column, layer) * stretch)
     };
     (list.iter().map(place).collect(), stretch)
 }
@@ -144,23 +145,6 @@ fn basis<const D: usize>(d: &Vector<D>, frame: (&Vector<D>, &[Vector<D>; D]), h:
         }
     }
     b
-}
-
-/// `D` − 1 unit vectors across the normal; the last entry is unused.
-fn tangents<const D: usize>(normal: &Vector<D>) -> [Vector<D>; D] {
-    let mut axes = [Vector::ZERO; D];
-    if D == 2 {
-        (axes[0][0], axes[0][1]) = (-normal[1], normal[0]);
-        return axes;
-    }
-    let smallest = (0..D).fold(0, |a, d| if normal[d].abs() < normal[a].abs() { d } else { a });
-    let e = Vector::axis(smallest);
-    axes[0] = (e - *normal * e.dot(normal)).unit();
-    axes[1] = Vector::from_fn(|d| {
-        let (a, b) = ((d + 1) % D, (d + 2) % D);
-        normal[a] * axes[0][b] - normal[b] * axes[0][a]
-    });
-    axes
 }
 
 /// The two particles next to the wall in the column of interface particle `w`, with their heights.
