@@ -253,7 +253,7 @@ static CLOUD: Table = Table::of(&[
         "wall_layers",
         Kind::Table(&WALL_LAYERS),
         "no layers",
-        "Layers of particles along the walls, thin across them (2-D).",
+        "Layers of particles along the walls, thin across them.",
     ),
     Field::defaulted(
         "blank",

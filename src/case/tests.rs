@@ -220,10 +220,6 @@ fn domains_and_sides_that_contradict_themselves_are_refused() {
     assert_shows(&open("[boundary]\nz_min = \"held\""), &["`boundary.z_min` needs a 3-D case"]);
     let layers = open("").replace("[cloud]", "[cloud]\nwall_layers = { first = 0.1, growth = 2 }");
     assert_shows(&layers, &["`cloud.wall_layers` needs a body", "growth"]);
-    assert_shows(
-        "flow.mach = 1\nbody = [{ sphere = { radius = 1 } }]\n[cloud]\nspacing = 1\nwall_layers.first = 0.1",
-        &["`cloud.wall_layers` needs a 2-D case"],
-    );
     assert_shows(&open("[boundary]\nx_min = \"inflow\""), &["allowed: `far_field`, `held`, `outflow`, `symmetry` or"]);
     assert_shows(&open("[boundary]\nx_min = { held = {}, outflow = {} }"), &["`boundary.x_min` has two alternatives"]);
     assert_shows(&open("").replace("max = [1, 1]", "max = [1, 0]"), &["`cloud.domain` is empty"]);

@@ -35,6 +35,8 @@ const TIGHTEST: f64 = 0.35;
 const CLEARANCE: f64 = 0.6;
 /// Distance to the nearest wall over the height in a column, below which another wall is nearer.
 const OWN_WALL: f64 = 0.8;
+/// A column that keeps this part of the distance of its foot from a plane of symmetry stands beside its image.
+const LEANING: f64 = 0.9;
 /// A column needs this many spacings between its wall and the next.
 const ROOM: f64 = 2.0;
 /// Height, in spacings, at which the look for the next wall begins.
@@ -187,21 +189,23 @@ impl<const D: usize> Columns<D> {
             Some(End::Fan)
         } else if steps.iter().any(tight) {
             Some(End::Fold)
-        } else if !self.is_inside(&x, CLEARANCE * h.min(2.0 * thickness), context) {
+        } else if !self.is_inside((&self.x[w], &x), CLEARANCE * h.min(2.0 * thickness), context) {
             Some(End::Side)
         } else {
             context.surface.nearest(&x, OWN_WALL * height).map(|_| End::Meeting)
         }
     }
 
-    /// Inside the domain, by `margin` from closed sides and by more than a cell from open ones.
-    fn is_inside(&self, x: &Vector<D>, margin: f64, context: &LayerContext<'_, D>) -> bool {
+    /// Inside the domain, by `margin` from closed sides, where the column leans to them from its foot, and by more than a cell from open
+    /// ones.
+    fn is_inside(&self, (foot, x): (&Vector<D>, &Vector<D>), margin: f64, context: &LayerContext<'_, D>) -> bool {
         let bounds = context.tree.bounds();
         let cell = 2.0 * context.tree.leaf_at(x).size;
         (0..D).all(|d| {
-            [(x[d] - bounds.min[d], 0), (bounds.max[d] - x[d], 1)].iter().all(|(gap, end)| {
-                let closed = matches!(context.layout.sides[d][*end], Side::Symmetry | Side::Periodic);
-                *gap > if closed { 0.5 * margin } else { cell }
+            let gaps = |x: &Vector<D>| [x[d] - bounds.min[d], bounds.max[d] - x[d]];
+            gaps(x).into_iter().zip(gaps(foot)).zip(context.layout.sides[d]).all(|((gap, start), side)| match side {
+                Side::Symmetry | Side::Periodic => gap > 0.5 * margin || gap > LEANING * start,
+                _ => gap > cell,
             })
         })
     }

@@ -24,12 +24,11 @@ const FAR_FIELD: [f64; 2] = [100.0, 30.0];
 /// First layers at walls in L/√Re, which is a fifth of a laminar boundary layer, and how layers grow.
 pub(crate) const ACROSS: f64 = 16.0;
 const GROWTH: f64 = 1.2;
-/// Spacing in space over that thickness: there are no layers.
-const IN_SPACE: f64 = 4.0;
 /// Greatest growth of the layers of a coarser cloud.
 const STEEPEST: f64 = 1.5;
-/// Lengths of the shortest body behind which wakes are followed.
+/// Lengths of the shortest body behind which wakes are followed, and in which spacing, in that at the walls, in 2-D and 3-D.
 const WAKE: f64 = 2.0;
+const WAKE_SPACING: [f64; 2] = [1.0, 2.0];
 /// Fewest particles per level of refinement.
 const FEWEST: f64 = 3.0;
 /// Factor on the spacing of the first cloud.
@@ -77,31 +76,32 @@ pub(crate) fn with_cloud<'a, const D: usize>(case: &'a Case, surface: Option<&Su
     let chord = reference::chord(case, Some(surface));
     let reynolds = case.flow.reynolds_number(chord);
     let whole = case.flow.viscous_length(chord);
-    // a fifth of a laminar boundary layer: across it in the plane, in space all around
+    // a fifth of a laminar boundary layer
     let thin = reynolds.map(|re| shortest / (ACROSS * (re * shortest / whole).sqrt()));
     let along = shortest / if D == 2 && thin.is_some() { ALONG_LAYERS } else { ALONG[D - 2] };
-    let spacing = Length(if D == 3 { thin.map_or(along, |thin| along.min(IN_SPACE * thin)) } else { along });
     filled.cloud.far_field =
         case.cloud.far_field.or(Some(Length(FAR_FIELD[D - 2] * surface.bounds().extent().max_abs())));
     filled.cloud.layers = case.cloud.layers.or(Some(LAYERS[D - 2]));
-    filled = spaced::<D>(&filled, if D == 3 { affordable(&filled, surface, spacing.0) } else { spacing.0 });
     // slow viscous flow needs no layers: what is thin is wider than the spacing
-    if let Some(thin) = thin.filter(|thin| D == 2 && *thin < spacing.0) {
-        let layers = WallLayers { first: Length(thin), growth: GROWTH, count: None };
-        filled.cloud.wall_layers = case.cloud.wall_layers.or(Some(layers));
-        let wake = Wake { length: Length(WAKE * shortest), spacing };
-        filled.cloud.wake = case.cloud.wake.clone().or(Some(wake));
-    }
-    Cow::Owned(filled)
+    let thin = thin.filter(|thin| *thin < along);
+    let layers = thin.map(|thin| WallLayers { first: Length(thin), growth: GROWTH, count: None });
+    filled.cloud.wall_layers = case.cloud.wall_layers.or(layers);
+    let chosen = |spacing: f64| {
+        let mut filled = spaced::<D>(&filled, spacing);
+        let wake = Wake { length: Length(WAKE * shortest), spacing: Length(WAKE_SPACING[D - 2] * spacing) };
+        filled.cloud.wake = filled.cloud.wake.or(thin.map(|_| wake));
+        filled
+    };
+    Cow::Owned(chosen(if D == 3 { affordable(&chosen, surface, along) } else { along }))
 }
 
 /// The spacing, no finer than `spacing`, at which the third cloud of a family in space leaves room in the particles allowed: thin
 /// edges and noses ask for more than the size of a body tells. Counted on the background of the second cloud.
-fn affordable<const D: usize>(case: &Case, surface: &Surface<D>, spacing: f64) -> f64 {
-    let room = ROOM * asked(case).unwrap_or(Accuracy::in_dimension(D)).particles as f64;
+fn affordable<const D: usize>(chosen: &impl Fn(f64) -> Case, surface: &Surface<D>, spacing: f64) -> f64 {
+    let room = ROOM * asked(&chosen(spacing)).unwrap_or(Accuracy::in_dimension(D)).particles as f64;
     let mut spacing = spacing;
     for _ in 0..ROUNDS {
-        let case = spaced::<D>(case, spacing);
+        let case = chosen(spacing);
         let Ok(cells) = count(&CloudSpec::of_case(&scaled(&case, 2.0)), Some(surface), &[]) else { break };
         let over = FINER * cells as f64 / room;
         if over <= 1.0 {

@@ -9,7 +9,7 @@ use alula::physics::Primitive;
 use alula::scheme::wall_fits::WallFits;
 use alula::system::{Instant, System};
 
-fn build(body: &str, rest: &str) -> Cloud<2> {
+fn build<const D: usize>(body: &str, rest: &str) -> Cloud<D> {
     let text = format!("title = \"t\"\n[flow]\nmach = 0.5\n[[body]]\n{body}\n[cloud]\nfar_field = 4\n{rest}");
     let case = alula::case::read(&text, "test").unwrap();
     let surface = load_surface(&case.bodies, std::path::Path::new(".")).unwrap().0;
@@ -23,12 +23,12 @@ const SQUARE: &str = "polygon = [[0, 0], [1, 0], [1, 1], [0, 1]]";
 const PLUS: &str = "polygon = [[1, 0], [2, 0], [2, 1], [3, 1], [3, 2], [2, 2], [2, 3], [1, 3], [1, 2], [0, 2], [0, 1], [1, 1]]\nscale = 0.4";
 
 /// Largest relative error of the slopes of linear fields over all rows that are not of first order.
-fn slope_error(cloud: &Cloud<2>, operators: &Operators<2>) -> f64 {
-    let mut slope = vec![[Vector::<2>::ZERO; 2]; cloud.n_rows()];
+fn slope_error<const D: usize>(cloud: &Cloud<D>, operators: &Operators<D>) -> f64 {
+    let mut slope = vec![[Vector::<D>::ZERO; D]; cloud.n_rows()];
     for k in 0..operators.parts.len() {
         for (e, [a_i, a_j]) in operators.weighed_edges(cloud, k) {
             let d = cloud.x[e.j()] - cloud.x[e.i()];
-            for axis in 0..2 {
+            for axis in 0..D {
                 slope[e.i()][axis] += a_i * d[axis];
                 if e.both() {
                     slope[e.j()][axis] -= a_j * d[axis];
@@ -37,11 +37,11 @@ fn slope_error(cloud: &Cloud<2>, operators: &Operators<2>) -> f64 {
         }
     }
     let exact = |i: &usize| cloud.first_order.binary_search(&(*i as u32)).is_err();
-    let error = |i: usize| (0..2).map(|a| (slope[i][a] - Vector::axis(a)).max_abs()).fold(0.0, f64::max);
+    let error = |i: usize| (0..D).map(|a| (slope[i][a] - Vector::axis(a)).max_abs()).fold(0.0, f64::max);
     (0..cloud.n_rows()).filter(exact).map(error).fold(0.0, f64::max)
 }
 
-fn aspect(cloud: &Cloud<2>) -> f64 {
+fn aspect<const D: usize>(cloud: &Cloud<D>) -> f64 {
     let ratio = |i: usize| cloud.layers.slot(i).map_or(1.0, |(c, k)| cloud.spacing[i] / cloud.layers.thickness(c, k));
     (0..cloud.n_fluid).map(ratio).fold(0.0, f64::max)
 }
@@ -100,7 +100,7 @@ fn layers_are_healthy_at_any_aspect_ratio() {
 
 #[test]
 fn linear_fields_are_exact_on_a_curved_wall_at_an_aspect_ratio_of_1000() {
-    let cloud = build(CIRCLE, "spacing = 0.03\nwall_layers = { first = 2.2e-5 }");
+    let cloud = build::<2>(CIRCLE, "spacing = 0.03\nwall_layers = { first = 2.2e-5 }");
     assert!(aspect(&cloud) > 1000.0);
     assert!(slope_error(&cloud, &Operators::new(&cloud)) < 1e-10);
     let fits = WallFits::new(&cloud);
@@ -114,13 +114,61 @@ fn linear_fields_are_exact_on_a_curved_wall_at_an_aspect_ratio_of_1000() {
     }
 }
 
+const SPHERE: &str = "sphere = { radius = 0.5 }";
+const BRICK: &str = "box = { size = [1, 0.7, 0.4] }";
+
+#[test]
+fn linear_fields_are_exact_in_prisms_at_an_aspect_ratio_of_500() {
+    for (body, spacing) in [(SPHERE, 0.1), (BRICK, 0.1)] {
+        let mut cloud =
+            build::<3>(body, &format!("spacing = {spacing}\nwall_layers = {{ first = {} }}", 1e-3 * spacing));
+        assert!(aspect(&cloud) > 400.0);
+        let mut operators = Operators::new(&cloud);
+        assert!(slope_error(&cloud, &operators) < 1e-10, "{body}: {}", slope_error(&cloud, &operators));
+        assert!(cloud.volume[..cloud.n_fluid].iter().all(|v| *v > 0.0));
+        let report = conservative(&mut cloud, &mut operators);
+        assert!(report.closure_defect < 1e-12 && report.min_volume_ratio > 0.2, "{body}: {report:?}");
+        assert!(report.linear_error_rms < 0.1, "{body}: {report:?}");
+    }
+}
+
+#[test]
+fn prisms_fill_the_shell_that_they_take_the_place_of() {
+    let cloud = build::<3>(SPHERE, "spacing = 0.1\nwall_layers = { first = 0.004, count = 6 }");
+    let top = cloud.layers.columns[0].heights[5];
+    let below = |i: &usize| cloud.layers.slot(*i).is_some_and(|(_, k)| k <= 5);
+    let volume: f64 = (0..cloud.n_fluid).filter(below).map(|i| cloud.volume[i]).sum();
+    let walls: f64 = cloud.interface_range().map(|i| cloud.volume[i]).sum();
+    // up to the middle between the fifth layer and the sixth
+    let middle = 0.5 * (top + cloud.layers.columns[0].heights[4]);
+    let shell = 4.0 / 3.0 * std::f64::consts::PI * ((0.5 + middle).powi(3) - 0.125);
+    assert!(((volume + walls) / shell - 1.0).abs() < 0.01, "{volume} {walls} {shell}");
+    // around every column of a smooth wall stand about six
+    let n = cloud.layers.columns.len();
+    let beside: usize = cloud.layers.columns.iter().map(|c| c.beside.len()).sum();
+    // Euler's formula for a triangulated sphere, less what four feet on a circle leave out
+    let all = 2 * (3 * n - 6);
+    assert!(beside <= all && beside * 10 > all * 9, "{beside} of {all}");
+    assert!(cloud.layers.columns.iter().all(|c| !c.open));
+}
+
+#[test]
+fn gas_at_rest_stays_so_between_prisms_and_beside_a_plane_of_symmetry() {
+    let rest = "spacing = 0.1\nwall_layers = { first = 0.01 }\n[boundary]\ny_min = \"symmetry\"";
+    let cloud = build::<3>(SPHERE, rest);
+    assert!(slope_error(&cloud, &Operators::new(&cloud)) < 1e-10 && cloud.notes.is_empty(), "{:?}", cloud.notes);
+    assert!(cloud.layers.columns.iter().any(|c| c.beside.iter().any(|b| b.image.is_some())));
+    assert!(cloud.layers.columns.iter().all(|c| !c.open));
+    assert!(rest_residual::<3>(SPHERE, rest) < 1e-11);
+}
+
 #[test]
 fn adjacent_columns_differ_by_one_layer_at_most() {
     for body in [NACA, SQUARE, PLUS] {
-        let cloud = build(body, "spacing = 0.02\nwall_layers = { first = 0.0005 }");
+        let cloud = build::<2>(body, "spacing = 0.02\nwall_layers = { first = 0.0005 }");
         for (w, column) in cloud.layers.columns.iter().enumerate() {
-            for other in column.beside.iter().flatten() {
-                assert!(cloud.layers.count(*other as usize).abs_diff(column.particles.len()) <= 1);
+            for other in &column.beside {
+                assert!(cloud.layers.count(other.column as usize).abs_diff(column.particles.len()) <= 1);
             }
             for (k, i) in column.particles.iter().enumerate() {
                 assert_eq!(cloud.layers.slot(*i as usize), Some((w, k + 1)));
@@ -158,7 +206,9 @@ fn layers_go_on_across_a_plane_of_symmetry() {
     let mut cloud = Cloud::build(&CloudSpec::of_case(&case), Some(&surface), &[]).unwrap();
     let mut operators = Operators::new(&cloud);
     assert!(slope_error(&cloud, &operators) < 1e-10 && cloud.notes.is_empty());
-    let nose = (0..cloud.interface.len()).find(|w| cloud.layers.columns[*w].beside.contains(&Some(*w as u32))).unwrap();
+    let nose = (0..cloud.interface.len())
+        .find(|w| cloud.layers.columns[*w].beside.iter().any(|b| b.column as usize == *w))
+        .unwrap();
     let second = cloud.layers.columns[nose].particles[1] as usize;
     assert!(cloud.x[second][0] < 0.0 && cloud.neighbours.of(second).len() == 4);
     assert!(cloud.neighbours.of(second).iter().any(|j| *j as usize >= cloud.n_real()));
@@ -167,9 +217,9 @@ fn layers_go_on_across_a_plane_of_symmetry() {
 
 #[test]
 fn a_number_of_layers_is_kept() {
-    let cloud = build(CIRCLE, "spacing = 0.03\nwall_layers = { first = 0.002, growth = 1.1, count = 5 }");
+    let cloud = build::<2>(CIRCLE, "spacing = 0.03\nwall_layers = { first = 0.002, growth = 1.1, count = 5 }");
     assert!(cloud.layers.columns.iter().all(|c| c.particles.len() == 5));
-    let none = build(CIRCLE, "spacing = 0.03");
+    let none = build::<2>(CIRCLE, "spacing = 0.03");
     assert!(none.layers.is_empty() && none.layers.columns.is_empty());
 }
 
@@ -185,13 +235,13 @@ fn notch(opening: f64, lean: f64) -> (String, f64) {
 }
 
 /// Gas at rest around a body with walls that hold it: largest change in time.
-fn rest_residual(body: &str, rest: &str) -> f64 {
+fn rest_residual<const D: usize>(body: &str, rest: &str) -> f64 {
     let text =
         format!("title = \"t\"\n[flow]\nmach = 0.3\nreynolds = 1000\n[[body]]\n{body}\n[cloud]\nfar_field = 4\n{rest}");
     let case = alula::case::read(&text, "test").unwrap();
-    let (fluid, mut u) = alula::run::build_solver::<2>(&case, std::path::Path::new(".")).unwrap();
+    let (fluid, mut u) = alula::run::build_solver::<D>(&case, std::path::Path::new(".")).unwrap();
     let still = Primitive { density: 1.0, velocity: Vector::ZERO, pressure: 1.0 / fluid.gas.gamma };
-    u.chunks_exact_mut(4).for_each(|row| fluid.gas.conserved(&still).store(row));
+    u.chunks_exact_mut(D + 2).for_each(|row| fluid.gas.conserved(&still).store(row));
     let mut frame = fluid.frame(&Instant::still(0.0), &u);
     frame.outer.fill([still; 3]);
     let (mut work, mut du) = (fluid.work(), vec![0.0; u.len()]);
@@ -233,14 +283,14 @@ fn layers_stop_before_they_meet_in_a_notch_and_the_gas_stays_at_rest() {
         assert!(diagnosis.notes.iter().any(|n| n.starts_with("wall layers end early")), "{what}: {diagnosis:?}");
         // narrower than the spacing for most of its depth, a notch has no conservative coefficients
         let scheme = if opening < 20.0 { "\n[scheme]\nconservative = false\n" } else { "" };
-        let residual = rest_residual(&body, &format!("{rest}{scheme}"));
+        let residual = rest_residual::<2>(&body, &format!("{rest}{scheme}"));
         assert!(residual < 2e-12, "{what}: {residual:e}");
     }
 }
 
 #[test]
 fn a_first_layer_beyond_the_spacing_is_told() {
-    let cloud = build(CIRCLE, "spacing = 0.03\nwall_layers = { first = 0.1 }");
+    let cloud = build::<2>(CIRCLE, "spacing = 0.03\nwall_layers = { first = 0.1 }");
     let notes = Diagnosis::of(&cloud, 0).notes;
     assert!(notes.iter().any(|n| n.starts_with("no wall layer at all: `cloud.wall_layers.first`")), "{notes:?}");
 }
@@ -248,7 +298,7 @@ fn a_first_layer_beyond_the_spacing_is_told() {
 #[test]
 fn the_end_of_columns_is_told_with_its_reason() {
     let ends = |body: &str| {
-        let cloud = build(body, "spacing = 0.02\nwall_layers = { first = 0.0005 }");
+        let cloud = build::<2>(body, "spacing = 0.02\nwall_layers = { first = 0.0005 }");
         cloud.layers.columns.iter().map(|c| c.end).collect::<Vec<_>>()
     };
     assert!(ends(CIRCLE).iter().all(|e| *e == End::Planned));
@@ -258,10 +308,10 @@ fn the_end_of_columns_is_told_with_its_reason() {
 /// Behind a sharp edge the gas may come back around it: the last column must see it as what comes along the wall.
 #[test]
 fn the_last_column_before_a_sharp_edge_looks_both_ways() {
-    let cloud = build(NACA, "spacing = 0.015625\nwall_layers = { first = 0.0003 }");
+    let cloud = build::<2>(NACA, "spacing = 0.015625\nwall_layers = { first = 0.0003 }");
     let operators = Operators::new(&cloud);
     let mut shares = Vec::new();
-    for (c, column) in cloud.layers.columns.iter().enumerate().filter(|(_, c)| c.beside.contains(&None)) {
+    for (c, column) in cloud.layers.columns.iter().enumerate().filter(|(_, c)| c.open) {
         let (i, along) = (column.particles[0] as usize, cloud.layers.axes(c)[0]);
         let edges = (0..operators.fluid_parts().len()).flat_map(|k| operators.weighed_edges(&cloud, k));
         let rows = edges.flat_map(|(e, [a_i, a_j])| {

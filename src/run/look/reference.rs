@@ -1,5 +1,5 @@
 //! Reference values: those of the case, else those of the planform of its bodies.
-use crate::case::Case;
+use crate::case::{Case, Shape};
 use crate::cloud::CloudSpec;
 use crate::geometry::{Planform, Surface};
 
@@ -11,7 +11,19 @@ pub(crate) fn planform<const D: usize>(case: &Case, surface: &Surface<D>) -> Pla
         Some(angle) => surface.section(body, angle),
         None => surface.planform(&CloudSpec::of_case(case).limits(), body),
     };
-    Planform { chord: given.chord.map_or(seen.chord, |c| c.0), area: given.area.unwrap_or(seen.area), ..seen }
+    let length = round(case, surface, body).unwrap_or(seen.chord);
+    Planform { chord: given.chord.map_or(length, |c| c.0), area: given.area.unwrap_or(seen.area), ..seen }
+}
+
+/// Length of bodies that are all spheres, ellipsoids or bodies of revolution, or of the named one: of a sphere its diameter, which Reynolds
+/// numbers are told with, not the mean chord of its shadow.
+fn round<const D: usize>(case: &Case, surface: &Surface<D>, body: Option<usize>) -> Option<f64> {
+    let is_round =
+        |shape: &Shape| matches!(shape, Shape::Sphere { .. } | Shape::Ellipsoid { .. } | Shape::Revolution { .. });
+    let counted = |k: &usize| body.is_none_or(|b| b == *k);
+    let all: Vec<usize> = (0..case.bodies.len().min(surface.bodies.len())).filter(counted).collect();
+    let round = D == 3 && !all.is_empty() && all.iter().all(|k| is_round(&case.bodies[*k].shape));
+    round.then(|| all.iter().map(|k| surface.bounds_of(*k).extent()[0]).fold(0.0, f64::max))
 }
 
 /// Reference chord: that of the case, else of its bodies; 1 without any.
