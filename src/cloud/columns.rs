@@ -43,9 +43,10 @@ const ROOM: f64 = 2.0;
 const LIFT: f64 = 1e-3;
 /// Most layers.
 const MOST: usize = 1000;
-/// Half-width of the part of the background that a column takes the place of, in its spacings, in 2-D and 3-D: there columns stand
-/// around triangles.
-const HALF_WIDTH: [f64; 2] = [0.55, 0.75];
+/// Half-width of the part of the background that a column takes the place of, in its spacings; of one amid others in space: there
+/// columns stand around triangles.
+const HALF_WIDTH: f64 = 0.55;
+const AMID: f64 = 0.75;
 /// Height above the last layer, in spacings, up to which the background is left out.
 const ABOVE: f64 = 0.5;
 /// Smallest distance of a background particle to one in a layer, in mean spacings.
@@ -329,7 +330,8 @@ impl<const D: usize> Columns<D> {
         walls.chain(self.each().map(|(w, k, x, h, _)| (w, k, x, h))).map(|(w, k, x, spacing)| {
             let height = |k: usize| if k == 0 { 0.0 } else { self.heights[k - 1] };
             let above = if k == self.counts[w] { ABOVE * spacing } else { height(k + 1) - height(k) };
-            Cell { x, axes: self.axes[w], spacing, above }
+            let width = spacing * if D == 2 || self.open[w] { HALF_WIDTH } else { AMID };
+            Cell { x, axes: self.axes[w], spacing, width, above }
         })
     }
 
@@ -351,6 +353,7 @@ struct Cell<const D: usize> {
     x: Vector<D>,
     axes: [Vector<D>; D],
     spacing: f64,
+    width: f64,
     above: f64,
 }
 
@@ -370,7 +373,7 @@ impl<const D: usize> Cell<D> {
         let d = leaf.centre - self.x;
         let up = d.dot(&self.axes[D - 1]);
         let aside = (0..D - 1).map(|a| d.dot(&self.axes[a]).powi(2)).sum::<f64>().sqrt();
-        if aside < HALF_WIDTH[D - 2] * self.spacing && 0.0 <= up && up < self.above {
+        if aside < self.width && 0.0 <= up && up < self.above {
             return Place::Inside;
         }
         if d.norm() < APART * 0.5 * (self.spacing + leaf.size) { Place::Near } else { Place::Clear }

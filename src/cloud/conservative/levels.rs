@@ -13,6 +13,9 @@ use crate::math::sweep::{sweep, sweep_each};
 
 /// Rows a group.
 const GROUP: usize = 8;
+/// Where there are thin layers, rows join groups only along pairs with at least this part of the greatest weight of a row: across the
+/// layers first, where weights are those of large faces.
+const STRONG: f64 = 0.1;
 /// Rows at which coarsening stops, and most levels.
 const COARSEST: usize = 200;
 const MOST_LEVELS: usize = 12;
@@ -73,10 +76,11 @@ pub(super) struct Level<const D: usize> {
 /// All of them, coarser and coarser.
 pub(super) fn levels<const D: usize>(problem: &Problem<'_, D>) -> Vec<Level<D>> {
     let mut all: Vec<Level<D>> = Vec::new();
+    let strong = if problem.cloud.layers.is_empty() { 0.0 } else { STRONG };
     while all.len() < MOST_LEVELS {
         let next = match all.last() {
-            Some(last) => Level::new(last, &problem.signs),
-            None => Level::new(&Particles::new(problem), &problem.signs),
+            Some(last) => Level::new(last, &problem.signs, strong),
+            None => Level::new(&Particles::new(problem), &problem.signs, strong),
         };
         match next {
             Some(level) => all.push(level),
@@ -88,12 +92,20 @@ pub(super) fn levels<const D: usize>(problem: &Problem<'_, D>) -> Vec<Level<D>> 
 
 impl<const D: usize> Level<D> {
     /// Groups of the rows of `finer`; nothing where there are few, or where they hardly see one another.
-    fn new(finer: &impl Finer<D>, signs: &[Vector<D>]) -> Option<Self> {
+    fn new(finer: &impl Finer<D>, signs: &[Vector<D>], strong: f64) -> Option<Self> {
         let n = finer.n_rows();
         if n <= COARSEST {
             return None;
         }
-        let others = |i: usize, list: &mut Vec<u32>| finer.edges(i, &mut |e| list.push(e.other));
+        let others = |i: usize, list: &mut Vec<u32>| {
+            let mut greatest = 0.0f64;
+            finer.edges(i, &mut |e| greatest = greatest.max(e.moments.weight()));
+            finer.edges(i, &mut |e| {
+                if e.moments.weight() >= strong * greatest {
+                    list.push(e.other);
+                }
+            });
+        };
         let groups = Groups::new(n, GROUP, others);
         if groups.len() * 10 > n * 9 {
             return None;
