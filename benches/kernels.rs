@@ -12,12 +12,14 @@ mod ratios;
 use std::path::Path;
 
 use alula::case::{Case, read};
+use alula::cloud::conservative::conservative;
 use alula::cloud::{Cloud, CloudSpec, Operators};
 use alula::geometry::load_surface;
 use alula::math::Vector;
+use alula::math::sweep::sweep;
 use alula::physics::Primitive;
 use alula::scheme::{Fluid, RemapLedger};
-use alula::system::{Instant, System};
+use alula::system::{Hierarchy, Implicit, Instant, Preconditioner, Reach, RightHandSide, Shift, System};
 use alula::time::control::Control;
 use alula::time::explicit::{self, Explicit};
 use alula::time::relax::Relax;
@@ -27,6 +29,10 @@ use divan::{Bencher, black_box};
 
 /// Threads in the measurements that compare them.
 const THREADS: [usize; 2] = [1, 2];
+
+/// A sphere.
+const SPHERE: &str = "title = \"bench\"\n[flow]\nmach = 0.3\n[[body]]\nsphere = { radius = 0.5 }\n\
+                      [cloud]\nspacing = 0.025\nfar_field = 10.0\nlayers = 12.0\n[time.steady]\norders = 6\n";
 
 fn main() {
     divan::main();
@@ -101,6 +107,74 @@ fn residual<const D: usize>(bencher: Bencher<'_, '_>, threads: usize) {
         .bench_local(|| pool.install(|| fluid.rhs(black_box(&frame), black_box(&u), &mut work, &mut du)));
 }
 
+/// Bandwidth: a = b + s c on arrays far beyond the caches. An item is a number, for which 24 bytes pass (32 where what is written is
+/// read before).
+#[divan::bench(args = THREADS, sample_count = 10)]
+fn triad(bencher: Bencher<'_, '_>, threads: usize) {
+    const N: usize = 1 << 25;
+    let (mut a, b, c) = (vec![0.0f64; N], vec![1.0f64; N], vec![2.0f64; N]);
+    let pool = pool(threads);
+    bencher
+        .counter(ItemsCount::new(N))
+        .bench_local(|| pool.install(|| sweep(black_box(&mut a), |i| b[i] + 3.0 * c[i])));
+}
+
+/// An empty preconditioner as Newton's method has it.
+fn empty_preconditioner<const D: usize>(fluid: &Fluid<D>) -> <Fluid<D> as Implicit>::Preconditioner {
+    let control = Control::newton(D);
+    fluid.preconditioner(&Hierarchy { group: control.group, cycle: control.cycle }, None)
+}
+
+/// Blocks of −∂R/∂U on the finest level and all coarser ones.
+#[divan::bench(consts = [2, 3], args = THREADS, sample_count = 10)]
+fn linearisation<const D: usize>(bencher: Bencher<'_, '_>, threads: usize) {
+    let (fluid, u) = solver::<D>();
+    let (frame, mut work, pool) = (fluid.frame(&Instant::still(0.0), &u), fluid.work(), pool(threads));
+    fluid.fill_states(&frame, &u, &mut work);
+    let mut preconditioner = empty_preconditioner(&fluid);
+    bencher.counter(ItemsCount::new(fluid.discretisation.cloud.n_fluid)).bench_local(|| {
+        pool.install(|| {
+            preconditioner.begin(1);
+            preconditioner.add(&fluid, black_box(&frame), &u, &mut work);
+        });
+    });
+}
+
+/// One application of the preconditioner: sweeps on all levels.
+#[divan::bench(consts = [2, 3], args = THREADS, sample_count = 10)]
+fn cycle<const D: usize>(bencher: Bencher<'_, '_>, threads: usize) {
+    let (fluid, u) = solver::<D>();
+    let (frame, mut work, pool) = (fluid.frame(&Instant::still(0.0), &u), fluid.work(), pool(threads));
+    fluid.fill_states(&frame, &u, &mut work);
+    let n = fluid.discretisation.cloud.n_fluid;
+    let (mut preconditioner, shift) = (empty_preconditioner(&fluid), vec![1.0; n]);
+    preconditioner.update(
+        &fluid,
+        (&frame, &u),
+        &mut work,
+        &Shift { rates: &shift, cfl: 1.0, coefficient: 0.0, reach: Reach::Far },
+    );
+    let mut z = vec![0.0; u.len()];
+    bencher.counter(ItemsCount::new(n)).bench_local(|| {
+        let r = RightHandSide::Plain(black_box(&u));
+        pool.install(|| preconditioner.apply(&fluid, &[&frame], &r, &mut z));
+    });
+}
+
+/// Conservative coefficients of the cloud around a sphere.
+#[divan::bench(args = THREADS, sample_count = 3, sample_size = 1)]
+fn coefficients(bencher: Bencher<'_, '_>, threads: usize) {
+    let case = read(SPHERE, "bench.toml").unwrap_or_else(|e| panic!("{e}"));
+    let surface = load_surface::<3>(&case.bodies, Path::new("")).unwrap().0;
+    let cloud = Cloud::<3>::build(&CloudSpec::of_case(&case), Some(&surface), &[]).unwrap();
+    let pool = pool(threads);
+    let start = || (cloud.clone(), Operators::new(&cloud));
+    bencher
+        .with_inputs(start)
+        .counter(ItemsCount::new(cloud.n_fluid))
+        .bench_local_values(|(mut cloud, mut operators)| pool.install(|| conservative(&mut cloud, &mut operators)));
+}
+
 /// Gradients of all primitive variables.
 #[divan::bench(consts = [2, 3])]
 fn gradient<const D: usize>(bencher: Bencher<'_, '_>) {
@@ -126,9 +200,7 @@ fn cloud<const D: usize>(bencher: Bencher<'_, '_>, threads: usize) {
 /// The same around a sphere: interface particles, lines of sight, balls near the wall.
 #[divan::bench(args = THREADS, sample_count = 5)]
 fn cloud_around_sphere(bencher: Bencher<'_, '_>, threads: usize) {
-    let text = "title = \"bench\"\n[flow]\nmach = 0.3\n[[body]]\nsphere = { radius = 0.5 }\n\
-                [cloud]\nspacing = 0.025\nfar_field = 10.0\nlayers = 12.0\n[time.steady]\norders = 6\n";
-    let case = read(text, "bench.toml").unwrap_or_else(|e| panic!("{e}"));
+    let case = read(SPHERE, "bench.toml").unwrap_or_else(|e| panic!("{e}"));
     let surface = load_surface::<3>(&case.bodies, Path::new("")).unwrap().0;
     let spec = CloudSpec::of_case(&case);
     let build = || Cloud::<3>::build(black_box(&spec), Some(&surface), &[]).unwrap();
