@@ -9,6 +9,7 @@
 //! Limits: a surface must bound a volume (thin sheets and large holes are refused), bodies in the plane must not overlap.
 //! Only [`load_surface`] opens files; all readers take any input.
 mod airfoil;
+mod cross_section;
 mod holes;
 mod loft;
 mod mesh;
@@ -31,6 +32,7 @@ mod tree;
 mod union;
 mod weld;
 
+pub use cross_section::CrossSection;
 pub use planform::{Planform, Station};
 pub use primitive::{icosphere, write_obj, write_stl};
 pub use sampling::Chain;

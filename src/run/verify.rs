@@ -397,6 +397,32 @@ mod tests {
         assert!(!fast.judge(0, &mut Silent).unwrap()[0].pass);
     }
 
+    /// Slow flow about a sphere: Cp = 1 − 9/4 sin²θ, with sin²θ = 4 (x/c) (1 − x/c) in the plane through its middle.
+    #[test]
+    fn sections_are_compared_where_their_reference_has_points() {
+        let root = tempfile::tempdir().unwrap();
+        let folder = root.path().join("sphere");
+        fs::create_dir_all(&folder).unwrap();
+        let case = "[flow]\nmach = 0.1\n[[body]]\nsphere = { radius = 0.5 }\n[cloud]\nspacing = 0.125\n\
+                    curvature_levels = 0\nfar_field = 4\n[time.steady]\norders = 3\n";
+        fs::write(folder.join("case.toml"), case).unwrap();
+        let parts = [0.05, 0.2, 0.35, 0.5];
+        let rows = ["upper", "lower"]
+            .iter()
+            .flat_map(|side| parts.map(|x| format!("0,{side},{x},{}\n", 1.0 - 9.0 * x * (1.0 - x))));
+        fs::write(folder.join("cp.csv"), format!("y,surface,x_c,Cp\n{}", rows.collect::<String>())).unwrap();
+        let claim = |more: &str| {
+            format!(
+                "[[claim]]\nmetric = \"section_cp_rms\"\nfile = \"cp.csv\"\nkind = \"at_most\"\nreference = 0.1\nsource = \"s\"\n{more}"
+            )
+        };
+        let outside = "region = { min = [-1, 2], max = [1, 3] }\n";
+        fs::write(folder.join("claim.toml"), claim("") + &claim(outside)).unwrap();
+        let rows = Walk::new(root.path(), &Selection::default()).unwrap().judge(0, &mut Silent).unwrap();
+        assert!(rows[0].pass && rows[0].value > 0.0, "{rows:?}");
+        assert!(rows[1].value.is_nan(), "{rows:?}");
+    }
+
     #[test]
     fn bad_folders_end_the_walk_before_it_begins() {
         let root = tempfile::tempdir().unwrap();

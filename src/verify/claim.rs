@@ -193,6 +193,8 @@ metrics! {
     Particles = "particles",
     /// Root mean square difference of wall Cp to `file` or `exact`.
     CpRms = "cp_rms",
+    /// Root mean square difference of wall Cp to `file` at each of its rows: `y` along the span, `surface`, `x_c` of the section there.
+    SectionCpRms = "section_cp_rms",
     /// Greatest difference of wall Cp to `file`, `exact` or the case `other`.
     CpMaxDifference = "cp_max_difference",
     /// Chordwise position of the shock on the upper side, x/c.
@@ -449,11 +451,12 @@ mod tests {
             for claim in &file.claims {
                 if let Some(curve) = &claim.file {
                     let table = crate::verify::Table::parse(&read(curve)).unwrap();
-                    let columns = match claim.metric {
-                        Metric::LiftLoopDifference => ["phase", "CL"],
-                        Metric::DragLoopDifference => ["phase", "CD"],
-                        m if m.needs_cases() => ["exact", "exact"],
-                        _ => ["x_c", "Cp"],
+                    let columns: &[&str] = match claim.metric {
+                        Metric::LiftLoopDifference => &["phase", "CL"],
+                        Metric::DragLoopDifference => &["phase", "CD"],
+                        Metric::SectionCpRms => &["y", "x_c", "Cp"],
+                        m if m.needs_cases() => &["exact"],
+                        _ => &["x_c", "Cp"],
                     };
                     let upper = table.only("surface", "upper");
                     assert!(columns.iter().all(|c| upper.column(c).is_ok()) && upper.len() > 1, "{folder:?} {curve}");

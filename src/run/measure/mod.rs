@@ -1,5 +1,6 @@
 //! What is measured of a finished run: the value of each metric of [`crate::verify`].
 mod axis;
+mod section;
 mod structure;
 
 use std::path::Path;
@@ -105,6 +106,9 @@ impl Measured {
             }
             Metric::CpRms | Metric::CpRmsOrder => {
                 metrics::root_mean_square(&self.cp_differences(claim, folder, other)?, None).ok_or_else(no_wall)
+            }
+            Metric::SectionCpRms => {
+                metrics::root_mean_square(&self.section_differences(claim, folder)?, None).ok_or_else(no_wall)
             }
             Metric::CpMaxDifference => {
                 let differences = self.cp_differences(claim, folder, other)?;
