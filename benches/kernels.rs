@@ -134,7 +134,7 @@ fn linearisation<const D: usize>(bencher: Bencher<'_, '_>, threads: usize) {
     let mut preconditioner = empty_preconditioner(&fluid);
     bencher.counter(ItemsCount::new(fluid.discretisation.cloud.n_fluid)).bench_local(|| {
         pool.install(|| {
-            preconditioner.begin(1);
+            Preconditioner::<Fluid<D>>::begin(&mut preconditioner, 1);
             preconditioner.add(&fluid, black_box(&frame), &u, &mut work);
         });
     });
