@@ -15,7 +15,7 @@
 use super::Transform;
 use super::grid::Grid;
 use super::interface::Placed;
-use super::layers::{Beside, Column, End};
+use super::layers::{Around, Beside, Column, End};
 use super::layout::Layout;
 use super::neighbours::NEAR;
 use super::particles::ParticleSite;
@@ -75,9 +75,6 @@ pub(super) struct Columns<const D: usize> {
     /// Reflections and shifts of the domain.
     transforms: Vec<Transform<D>>,
 }
-
-/// Directions along the wall and normal of every column, what stands beside it, and whether something is missing on a side.
-pub(super) type Around<const D: usize> = (Vec<[Vector<D>; D]>, Vec<(Vec<Beside>, bool)>);
 
 /// What columns grow in.
 pub(super) struct LayerContext<'a, const D: usize> {

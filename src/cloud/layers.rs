@@ -47,6 +47,9 @@ pub struct Beside {
     pub step: [f64; 2],
 }
 
+/// Directions along the wall and normal of every column, what stands beside it, and whether something is missing on a side.
+pub(super) type Around<const D: usize> = (Vec<[Vector<D>; D]>, Vec<(Vec<Beside>, bool)>);
+
 /// The layers over one interface particle; empty where there are none.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Column {

@@ -7,10 +7,9 @@
 use std::collections::BTreeMap;
 
 use super::Transform;
-use super::columns::Around;
 use super::grid::Grid;
 use super::interface::Placed;
-use super::layers::Beside;
+use super::layers::{Around, Beside};
 use crate::math::Vector;
 use crate::math::square::frame_of;
 use crate::math::sweep::sweep;
