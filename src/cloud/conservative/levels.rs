@@ -98,10 +98,12 @@ impl<const D: usize> Level<D> {
             return None;
         }
         let others = |i: usize, list: &mut Vec<u32>| {
-            let mut greatest = 0.0f64;
-            finer.edges(i, &mut |e| greatest = greatest.max(e.moments.weight()));
+            let mut least = 0.0f64;
+            if strong > 0.0 {
+                finer.edges(i, &mut |e| least = least.max(strong * e.moments.weight()));
+            }
             finer.edges(i, &mut |e| {
-                if e.moments.weight() >= strong * greatest {
+                if e.moments.weight() >= least {
                     list.push(e.other);
                 }
             });

@@ -20,10 +20,9 @@ pub(crate) fn planform<const D: usize>(case: &Case, surface: &Surface<D>) -> Pla
 fn round<const D: usize>(case: &Case, surface: &Surface<D>, body: Option<usize>) -> Option<f64> {
     let is_round =
         |shape: &Shape| matches!(shape, Shape::Sphere { .. } | Shape::Ellipsoid { .. } | Shape::Revolution { .. });
-    let counted = |k: &usize| body.is_none_or(|b| b == *k);
-    let all: Vec<usize> = (0..case.bodies.len().min(surface.bodies.len())).filter(counted).collect();
-    let round = D == 3 && !all.is_empty() && all.iter().all(|k| is_round(&case.bodies[*k].shape));
-    round.then(|| all.iter().map(|k| surface.bounds_of(*k).extent()[0]).fold(0.0, f64::max))
+    let counted = || case.bodies.iter().enumerate().filter(|(k, _)| body.is_none_or(|b| b == *k));
+    let round = D == 3 && counted().next().is_some() && counted().all(|(_, b)| is_round(&b.shape));
+    round.then(|| counted().map(|(k, _)| surface.bounds_of(k).extent()[0]).fold(0.0, f64::max))
 }
 
 /// Reference chord: that of the case, else of its bodies; 1 without any.
