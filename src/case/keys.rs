@@ -370,8 +370,8 @@ static SCHEME: Table = Table::of(&[
     Field::optional(
         "limiter_threshold",
         Kind::Number(Range::between(0.0, 1.0)),
-        "0.1 in 2-D, 0.4 in 3-D",
-        "Relative size of second differences below which the limiter leaves a field alone: more in 3-D, where clouds are coarser.",
+        "0.1 in 2-D without viscosity, 0.4 otherwise",
+        "Relative size of second differences below which the limiter leaves a field alone: more in 3-D, where clouds are coarser, and in viscous layers.",
     ),
     Field::defaulted(
         "kappa",

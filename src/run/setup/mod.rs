@@ -164,7 +164,7 @@ pub(crate) fn solver<const D: usize>(
         isentropic: case.flow.isentropic,
         flux: scheme.flux,
         limiter: scheme.limiter,
-        reconstruction: Reconstruction::of_scheme::<D>(scheme),
+        reconstruction: Reconstruction::of_scheme::<D>(scheme, case.flow.viscous(1.0).is_some()),
         conservative,
         viscous_model: viscous_model(case, surface).map(Arc::new),
         far_field: far_field(site),
