@@ -34,16 +34,21 @@ pub(crate) fn upper_half(x: f32) -> u16 {
 pub(super) fn round_block(sum: &[f32], block: &mut [u8], own: &mut [f32]) {
     // twelve and a half million: sums with it have no room for fractions
     const WHOLE: f32 = 12_582_912.0;
-    let largest = sum.iter().fold(0.0f32, |m, x| m.max(x.abs()));
+    // by their bits, which are in the order of the numbers
+    let (n, mut largest) = (sum.len(), 0);
+    for x in sum {
+        largest = x.abs().to_bits().max(largest);
+    }
     // half of the bits, rounded up
-    let half = (largest / LARGEST).to_bits().wrapping_add(0xffff) >> 16;
+    let half = (f32::from_bits(largest) / LARGEST).to_bits().wrapping_add(0xffff) >> 16;
     let unit = f32::from_bits(half << 16);
     let scale = if unit >= f32::MIN_POSITIVE { 1.0 / unit } else { 0.0 };
     block[..UNIT].copy_from_slice(&(half as u16).to_le_bytes());
-    for ((x, to), own) in sum.iter().zip(&mut block[UNIT..]).zip(own) {
-        let whole = x * scale + WHOLE;
-        *to = (whole.to_bits() as i32 - WHOLE.to_bits() as i32) as u8;
-        *own += x - (whole - WHOLE) * unit;
+    let (to, own) = (&mut block[UNIT..UNIT + n], &mut own[..n]);
+    for k in 0..n {
+        let whole = sum[k] * scale + WHOLE;
+        to[k] = (whole.to_bits() as i32 - WHOLE.to_bits() as i32) as u8;
+        own[k] += sum[k] - (whole - WHOLE) * unit;
     }
 }
 

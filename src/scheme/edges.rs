@@ -12,13 +12,9 @@ use crate::physics::riemann::UpwindFlux;
 use crate::physics::{Conserved, Gas, Newtonian, Primitive};
 
 use super::edge_flux::{FluxScheme, Passing, conservative, consistent, slowed, steep, upwind, viscous};
+use super::lanes::{LANES, Lanes, StateLanes, pair, put, take};
 use super::reconstruct::{Gradient, Limit, Reconstruction};
 use super::viscous::slopes;
-
-/// Edges that are computed together: enough to fill vectors, few enough that all of it stays in the first cache.
-const LANES: usize = 16;
-
-type Lanes = [f64; LANES];
 
 /// What particles hold.
 #[derive(Clone, Copy)]
@@ -37,58 +33,6 @@ pub struct Particles<'a, const D: usize> {
     pub velocity: &'a [Vector<D>],
     /// The outer ones: waves leave through them, which takes the whole jump of the velocity.
     pub outer: (usize, usize),
-}
-
-/// The `D` + 2 numbers of a state or a flux of every edge: density, velocity or momentum, pressure or energy.
-struct StateLanes<const D: usize> {
-    density: Lanes,
-    vector: [Lanes; D],
-    energy: Lanes,
-}
-
-impl<const D: usize> StateLanes<D> {
-    const ZERO: Self = Self { density: [0.0; LANES], vector: [[0.0; LANES]; D], energy: [0.0; LANES] };
-
-    #[inline(always)]
-    fn primitive(&self, k: usize) -> Primitive<D> {
-        Primitive { density: self.density[k], velocity: take(&self.vector, k), pressure: self.energy[k] }
-    }
-
-    #[inline(always)]
-    fn conserved(&self, k: usize) -> Conserved<D> {
-        Conserved { density: self.density[k], momentum: take(&self.vector, k), energy: self.energy[k] }
-    }
-
-    #[inline(always)]
-    fn put_primitive(&mut self, k: usize, q: &Primitive<D>) {
-        self.density[k] = q.density;
-        put(&mut self.vector, k, &q.velocity);
-        self.energy[k] = q.pressure;
-    }
-
-    #[inline(always)]
-    fn put_conserved(&mut self, k: usize, c: &Conserved<D>) {
-        self.density[k] = c.density;
-        put(&mut self.vector, k, &c.momentum);
-        self.energy[k] = c.energy;
-    }
-}
-
-#[inline(always)]
-fn take<const D: usize>(lanes: &[Lanes; D], k: usize) -> Vector<D> {
-    Vector::from_fn(|d| lanes[d][k])
-}
-
-#[inline(always)]
-fn pair<const D: usize>(lanes: &[[Lanes; D]; 2], k: usize) -> [Vector<D>; 2] {
-    [take(&lanes[0], k), take(&lanes[1], k)]
-}
-
-#[inline(always)]
-fn put<const D: usize>(lanes: &mut [Lanes; D], k: usize, v: &Vector<D>) {
-    for d in 0..D {
-        lanes[d][k] = v[d];
-    }
 }
 
 /// Some edges with what their ends hold, and what they add to V dU/dt of both.
@@ -198,7 +142,8 @@ pub fn edge_fluxes<const D: usize, F: UpwindFlux<D>, L: Limit>(
     }
 }
 
-#[inline(always)]
+#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq", "x86_64+avx2"))]
+#[allow(unsafe_code, reason = "the attribute calls the version that the processor has just been asked for")]
 fn gather<const D: usize, F, L>(
     scheme: &FluxScheme<F, L>,
     p: &Particles<'_, D>,
@@ -238,7 +183,7 @@ fn gather<const D: usize, F, L>(
 // so the same bits.
 
 /// States on both sides of the middle of every edge.
-#[multiversion(targets("x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq", "x86_64+avx2"))]
 #[allow(unsafe_code, reason = "the attribute calls the version that the processor has just been asked for")]
 fn reconstruct<const D: usize, L: Limit>(gas: Gas, limit: L, reconstruction: Reconstruction, batch: &mut Batch<D>) {
     let Batch { own, slope, middle: [left, right], .. } = batch;
@@ -252,7 +197,7 @@ fn reconstruct<const D: usize, L: Limit>(gas: Gas, limit: L, reconstruction: Rec
 }
 
 /// Scales the jump of the normal velocity with the Mach number.
-#[multiversion(targets("x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq", "x86_64+avx2"))]
 #[allow(unsafe_code, reason = "the attribute calls the version that the processor has just been asked for")]
 fn low_mach_corrections<const D: usize>(gas: Gas, batch: &mut Batch<D>) {
     let Batch { area, speed, whole, middle: [left, right], .. } = batch;
@@ -265,7 +210,7 @@ fn low_mach_corrections<const D: usize>(gas: Gas, batch: &mut Batch<D>) {
 }
 
 /// The upwind flux through the area of every edge.
-#[multiversion(targets("x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq", "x86_64+avx2"))]
 #[allow(unsafe_code, reason = "the attribute calls the version that the processor has just been asked for")]
 fn upwind_fluxes<const D: usize, F: UpwindFlux<D>>(gas: Gas, flux: F, batch: &mut Batch<D>) {
     let Batch { area, speed, middle: [left, right], upwind: through, .. } = batch;
@@ -276,7 +221,7 @@ fn upwind_fluxes<const D: usize, F: UpwindFlux<D>>(gas: Gas, flux: F, batch: &mu
 }
 
 /// Brings the upwind flux nearer to Einfeldt's between steep particles.
-#[multiversion(targets("x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq", "x86_64+avx2"))]
 #[allow(unsafe_code, reason = "the attribute calls the version that the processor has just been asked for")]
 fn steep_fluxes<const D: usize>(gas: Gas, batch: &mut Batch<D>) {
     let Batch { area, speed, steepness, middle: [left, right], upwind: through, .. } = batch;
@@ -288,7 +233,7 @@ fn steep_fluxes<const D: usize>(gas: Gas, batch: &mut Batch<D>) {
 }
 
 /// What every edge adds to V dU/dt of both ends.
-#[multiversion(targets("x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq", "x86_64+avx2"))]
 #[allow(unsafe_code, reason = "the attribute calls the version that the processor has just been asked for")]
 fn accumulate_residual<const D: usize, const MOVES: bool, const CONSERVATIVE: bool>(
     gas: Gas,
@@ -315,7 +260,7 @@ fn accumulate_residual<const D: usize, const MOVES: bool, const CONSERVATIVE: bo
 }
 
 /// What stress and heat along every edge add to V dU/dt of both ends.
-#[multiversion(targets("x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq", "x86_64+avx2"))]
 #[allow(unsafe_code, reason = "the attribute calls the version that the processor has just been asked for")]
 fn viscous_fluxes<const D: usize, const CONSERVATIVE: bool>(gas: Gas, medium: Newtonian, batch: &mut Batch<D>) {
     let Batch { own, weight, area, along, gradient, out: [out_i, out_j], .. } = batch;

@@ -3,14 +3,12 @@
 //! −∂R_i/∂U_i = Σ_j [−a_ij·A(q_i) + |s_ij|/(2V_i) |A|(q̄)], −∂R_i/∂U_j = a_ij·A(q_j) − |s_ij|/(2V_i) |A|(q̄), with A·n = ∂F·n/∂U
 //! and |A| Roe's matrix with rounded eigenvalues. A wall state follows the particle in front of it: its column is folded into
 //! the row with the mirror that removes the normal velocity.
-use multiversion::multiversion;
-
 use super::block::Block;
+use super::edge_blocks::edge_blocks;
 use super::edge_flux::half_face;
 use super::fluid::{Fluid, Work};
 use super::frame::Frame;
 use super::viscous::WallCondition;
-use crate::cloud::{Edge, Weights};
 use crate::math::Vector;
 use crate::math::block_matrix::{BlockMatrix, Rows};
 use crate::physics::riemann::rounded;
@@ -42,6 +40,15 @@ pub fn flux_jacobian<const D: usize>(gas: &Gas, q: &Primitive<D>, n: &Vector<D>)
     a
 }
 
+/// |λ| of the entropy wave, what the mean of both acoustic ones is above it, and half of their difference over the speed of sound,
+/// in a flow of the velocity `vn` across something that moves by `drift`.
+#[inline(always)]
+pub(super) fn rounded_speeds(c: f64, vn: f64, drift: f64) -> [f64; 3] {
+    let fix = |x: f64| rounded(x.abs(), ROUNDING * c);
+    let (l1, l2, l3) = (fix(vn - drift), fix(vn - drift + c), fix(vn - drift - c));
+    [l1, 0.5 * (l2 + l3) - l1, 0.5 * (l2 - l3) / c]
+}
+
 /// |A − drift| across the unit normal `n` at the state `q`, eigenvalues rounded off below a fraction of the sound speed.
 ///
 /// With |λ| of the shear and entropy waves taken out, the rest is a matrix of rank two (Turkel 1999, eq. 3.14).
@@ -50,10 +57,7 @@ pub fn dissipation_matrix<const D: usize>(gas: &Gas, q: &Primitive<D>, n: &Vecto
     let c = gas.sound_speed(q);
     let g1 = gas.gamma - 1.0;
     let (v, vn) = (&q.velocity, q.velocity.dot(n));
-    let fix = |x: f64| rounded(x.abs(), ROUNDING * c);
-    let (l1, l2, l3) = (fix(vn - drift), fix(vn - drift + c), fix(vn - drift - c));
-    let a = 0.5 * (l2 + l3) - l1;
-    let b = 0.5 * (l2 - l3) / c;
+    let [l1, a, b] = rounded_speeds(c, vn, drift);
     let (phi, h, e) = (0.5 * v.norm_squared(), gas.total_enthalpy(q), D + 1);
     // rows: pressure change / c² and normal momentum change; columns: what they carry
     let mut pressure = [0.0; 5];
@@ -104,83 +108,7 @@ pub fn assemble<const D: usize>(fluid: &Fluid<D>, frame: &Frame<D>, work: &Work<
     });
 }
 
-/// One end of an edge as the row of a matrix.
-struct End<const D: usize> {
-    row: usize,
-    /// The other end.
-    column: usize,
-    /// Coefficient of what the particle itself passes.
-    passed: Vector<D>,
-    /// Coefficient of the flux; the same but where coefficients are conservative.
-    face: Vector<D>,
-    /// Viscosity times area over volume and distance.
-    exchange: f64,
-}
-
-/// Adds the blocks of the edges of a part.
-#[multiversion(targets("x86_64+avx2"))]
-#[allow(unsafe_code, reason = "the attribute calls the version that the processor has just been asked for")]
-fn edge_blocks<const D: usize>(
-    fluid: &Fluid<D>,
-    at: (&Frame<D>, &Work<D>),
-    (edges, weights): (&[Edge<D>], Weights<'_, D>),
-    rows: &mut Rows<'_>,
-) {
-    let (frame, work) = at;
-    let (cloud, by_faces) = (&frame.discretisation.cloud, fluid.passes_by_faces());
-    let weighed = !fluid.conservative || frame.moves() && !by_faces;
-    for (n, edge) in edges.iter().enumerate() {
-        let (i, j) = (edge.i(), edge.j());
-        let (qi, qj) = (&work.state[i], &work.state[j]);
-        let size = edge.s.norm();
-        let m = edge.s * (1.0 / size.max(f64::MIN_POSITIVE));
-        let mean = Primitive::zip(qi, qj, |a, b| 0.5 * (a + b));
-        let drift = 0.5 * (frame.velocity_of(i) + frame.velocity_of(j)).dot(&m);
-        let spread = dissipation_matrix(&fluid.gas, &mean, &m, drift);
-        let weights = if weighed { weights.of(n, edge, &(cloud.x[j] - cloud.x[i])) } else { [Vector::ZERO; 2] };
-        let (exchange, layers) = fluid.viscous_edge(work, (edge, &weights), cloud);
-        let [a_i, a_j] = match fluid.conservative {
-            true => [half_face(cloud.volume[i], &edge.s), -half_face(cloud.volume[j], &edge.s)],
-            false => weights,
-        };
-        let passed = if by_faces { [a_i, a_j] } else { weights };
-        let end = End { row: i, column: j, passed: passed[0], face: a_i, exchange: exchange.0 };
-        one_sided(fluid, at, &end, (0.5 * size, &spread), (&layers[0], &layers[1]), rows);
-        if edge.both() {
-            let end = End { row: j, column: i, passed: passed[1], face: a_j, exchange: exchange.1 };
-            one_sided(fluid, at, &end, (0.5 * size, &spread), (&layers[1], &layers[0]), rows);
-        }
-    }
-}
-
-/// Adds the blocks of one end of an edge; `layers` are what viscosity exchanges, of its own state and of the other.
-#[inline(always)]
-fn one_sided<const D: usize>(
-    fluid: &Fluid<D>,
-    (frame, work): (&Frame<D>, &Work<D>),
-    end: &End<D>,
-    (half, spread): (f64, &Block),
-    layers: (&Block, &Block),
-    rows: &mut Rows<'_>,
-) {
-    let (row, column) = (end.row, end.column);
-    let scale = half / frame.discretisation.cloud.volume[row];
-    let swept = frame.velocity_of(row).dot(&end.passed);
-    let mut own = flux_jacobian(&fluid.gas, &work.state[row], &end.face);
-    let mut other = flux_jacobian(&fluid.gas, &work.state[column], &end.face);
-    for r in 0..n_variables(D) {
-        own[r][r] -= swept;
-        other[r][r] -= swept;
-        for c in 0..n_variables(D) {
-            own[r][c] = scale * spread[r][c] - own[r][c] + end.exchange * layers.0[r][c];
-            other[r][c] -= scale * spread[r][c] + end.exchange * layers.1[r][c];
-        }
-    }
-    rows.add_sized(n_variables(D), (row, row), |r, c| own[r][c]);
-    couple(fluid, rows, (frame, work), (row, column), |r, c| other[r][c]);
-}
-
-/// Adds the block of `column` to `row`, through walls and images to the particle that rules them.
+/// Adds the block of `column`, a wall, an outer particle or an image, to `row`: to the particle that rules it.
 #[inline(always)]
 pub(super) fn couple<const D: usize>(
     fluid: &Fluid<D>,
@@ -190,9 +118,7 @@ pub(super) fn couple<const D: usize>(
     coupling: impl Fn(usize, usize) -> f64,
 ) {
     let cloud = &frame.discretisation.cloud;
-    if column < cloud.n_fluid {
-        rows.add_sized(n_variables(D), (row, column), coupling);
-    } else if cloud.interface_range().contains(&column) {
+    if cloud.interface_range().contains(&column) {
         let wall = &cloud.interface[column - cloud.n_fluid];
         let slips = fluid.viscous_model.as_ref().is_none_or(|f| f.wall_condition(wall.body) == WallCondition::Slip);
         match slips {

@@ -2,6 +2,8 @@
 //!
 //! Walls follow from the fluid particles in front of them (`wall_state`), outer sides hold a state and let waves leave
 //! (`sides`), images copy their source through a reflection or shift.
+use multiversion::multiversion;
+
 use super::fluid::{Fluid, Work};
 use super::frame::Frame;
 use super::reconstruct::Gradient;
@@ -9,7 +11,9 @@ use super::viscous::WallCondition;
 use super::wall_fits::{lowest_two, parabola};
 use super::wall_state::{Wall, no_slip_wall, slip_wall};
 use crate::case::Side;
+use crate::cloud::Edge;
 use crate::math::Vector;
+use crate::math::square::Symmetric;
 use crate::math::sweep::{sweep, sweep_each, sweep_parts};
 use crate::physics::{Conserved, Primitive};
 
@@ -115,19 +119,7 @@ impl<const D: usize> Fluid<D> {
                 }
                 return;
             }
-            // both ends sum the same, and only then make gradients of it
-            for e in op.edges(k) {
-                let (d, dq) = (cloud.x[e.j()] - cloud.x[e.i()], state[e.j()].minus(&state[e.i()]));
-                let scaled = d * (1.0 / d.norm_squared());
-                out[e.i() - start].add(&scaled, &dq);
-                if e.both() && e.seen_back() {
-                    out[e.j() - start].add(&scaled, &dq);
-                }
-            }
-            out.iter_mut().zip(&inverse[start..]).for_each(|(g, m)| {
-                let m = m.full();
-                *g = g.map(|v| Vector::from_fn(|r| (0..D).map(|c| m[r][c] * v[c]).sum()));
-            });
+            shared_sums(op.edges(k), (&cloud.x, state), &inverse[start..], (start, out));
         });
         cloud.first_order.iter().for_each(|i| rows[*i as usize] = Gradient::ZERO);
         let rows = &*rows;
@@ -166,5 +158,28 @@ impl<const D: usize> Fluid<D> {
         let far = self.far_field.pressure();
         let force = cloud.interface.iter().zip(walls).fold(Vector::ZERO, |f, (w, q)| f - w.area * (q.pressure - far));
         frame.to_inertial_axes(&force)
+    }
+}
+
+/// Gradients of the rows from `start` on, where both ends of an edge sum the same and only then make gradients of it.
+#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq", "x86_64+avx2"))]
+#[allow(unsafe_code, reason = "the attribute calls the version that the processor has just been asked for")]
+fn shared_sums<const D: usize>(
+    edges: &[Edge<D>],
+    (x, state): (&[Vector<D>], &[Primitive<D>]),
+    inverse: &[Symmetric<D>],
+    (start, out): (usize, &mut [Gradient<D>]),
+) {
+    for e in edges {
+        let (d, dq) = (x[e.j()] - x[e.i()], state[e.j()].minus(&state[e.i()]));
+        let scaled = d * (1.0 / d.norm_squared());
+        out[e.i() - start].add(&scaled, &dq);
+        if e.both() && e.seen_back() {
+            out[e.j() - start].add(&scaled, &dq);
+        }
+    }
+    for (g, m) in out.iter_mut().zip(inverse) {
+        let m = m.full();
+        *g = g.map(|v| Vector::from_fn(|r| (0..D).map(|c| m[r][c] * v[c]).sum()));
     }
 }

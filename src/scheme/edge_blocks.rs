@@ -1,0 +1,267 @@
+//! What edges add to the matrix of the linearised scheme, many at a time.
+//!
+//! As in [`super::edges`]: what the ends of some edges hold is gathered, a loop without branches computes the blocks of all of them,
+//! and each is added to its row.
+use multiversion::multiversion;
+
+use super::edge_flux::half_face;
+use super::fluid::{Fluid, Work};
+use super::frame::Frame;
+use super::jacobian::{couple, rounded_speeds};
+use super::lanes::{LANES, Lanes, StateLanes, put, take};
+use crate::cloud::{Edge, Weights};
+use crate::math::Vector;
+use crate::math::block_matrix::Rows;
+use crate::math::blocks::array;
+use crate::physics::{Gas, Primitive, n_variables};
+
+/// Variables of gas in space, and as many numbers as a vector register takes.
+const MOST: usize = 5;
+const WIDE: usize = 8;
+/// Room for a block whose columns are written [`WIDE`] numbers at a time.
+const ROOM: usize = MOST * MOST + WIDE;
+
+/// Some edges, and what their blocks are made of.
+///
+/// With the vectors (1, v, H), (0, n, v·n), (−v·n, n, 0) and (∂p/∂U) of a state, ∂(F·n)/∂U is
+/// v·n + (1, v, H) ⊗ (−v·n, n, 0) + (0, n, v·n) ⊗ ∂p/∂U, and |A| is made of the same.
+struct Batch<const D: usize> {
+    own: [StateLanes<D>; 2],
+    /// Coefficient of the flux at either end.
+    face: [[Lanes; D]; 2],
+    /// What the particle at either end passes of its own state as it moves.
+    swept: [Lanes; 2],
+    /// One over the volume of either end.
+    by_volume: [Lanes; 2],
+    area: [Lanes; D],
+    /// Mean velocity of both ends through the area.
+    drift: Lanes,
+    waves: Waves<D>,
+}
+
+/// A number of every edge, single.
+type Single = [f32; LANES];
+
+/// What the blocks of some edges are made of.
+struct Waves<const D: usize> {
+    /// Velocity, enthalpy, and the derivative of the pressure by the density: of both ends and the mean of them.
+    velocity: [[Single; D]; 3],
+    enthalpy: [Single; 3],
+    push: [Single; 3],
+    /// The direction of the area and the velocity of the mean along it.
+    normal: [Single; D],
+    across: Single,
+    /// Half of the area times the parts of |A| that belong to: identity, (1, v, H) ⊗ ∂p/∂U, both mixed products,
+    /// (0, n, v·n) ⊗ (−v·n, n, 0).
+    spread: [Single; 4],
+    /// Of either end: coefficient of the flux, the velocities of itself and of the other along it, what it passes of its own
+    /// state, one over its volume.
+    face: [[Single; D]; 2],
+    through: [[Single; 2]; 2],
+    swept: [Single; 2],
+    by_volume: [Single; 2],
+}
+
+impl<const D: usize> Batch<D> {
+    const BLANK: Self = Self {
+        own: [StateLanes::ZERO; 2],
+        face: [[[0.0; LANES]; D]; 2],
+        swept: [[0.0; LANES]; 2],
+        by_volume: [[0.0; LANES]; 2],
+        area: [[0.0; LANES]; D],
+        drift: [0.0; LANES],
+        waves: Waves {
+            velocity: [[[0.0; LANES]; D]; 3],
+            enthalpy: [[0.0; LANES]; 3],
+            push: [[0.0; LANES]; 3],
+            normal: [[0.0; LANES]; D],
+            across: [0.0; LANES],
+            spread: [[0.0; LANES]; 4],
+            face: [[[0.0; LANES]; D]; 2],
+            through: [[[0.0; LANES]; 2]; 2],
+            swept: [[0.0; LANES]; 2],
+            by_volume: [[0.0; LANES]; 2],
+        },
+    };
+}
+
+/// Adds the blocks of the edges of a part.
+pub(super) fn edge_blocks<const D: usize>(
+    fluid: &Fluid<D>,
+    at: (&Frame<D>, &Work<D>),
+    (edges, weights): (&[Edge<D>], Weights<'_, D>),
+    rows: &mut Rows<'_>,
+) {
+    let mut batch = Batch::BLANK;
+    for (c, some) in edges.chunks(LANES).enumerate() {
+        gather(fluid, at, (some, c * LANES, &weights), &mut batch);
+        waves(fluid.gas, &mut batch);
+        add(fluid, at, (some, c * LANES, &weights), (&batch.waves, rows));
+    }
+}
+
+#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq", "x86_64+avx2"))]
+#[allow(unsafe_code, reason = "the attribute calls the version that the processor has just been asked for")]
+fn gather<const D: usize>(
+    fluid: &Fluid<D>,
+    (frame, work): (&Frame<D>, &Work<D>),
+    (edges, first, weights): (&[Edge<D>], usize, &Weights<'_, D>),
+    batch: &mut Batch<D>,
+) {
+    let (cloud, by_faces) = (&frame.discretisation.cloud, fluid.passes_by_faces());
+    let weighed = !fluid.conservative || frame.moves() && !by_faces;
+    for (k, e) in edges.iter().enumerate() {
+        let ends = [e.i(), e.j()];
+        let of_fit =
+            if weighed { weights.of(first + k, e, &(cloud.x[ends[1]] - cloud.x[ends[0]])) } else { [Vector::ZERO; 2] };
+        for side in 0..2 {
+            let i = ends[side];
+            batch.own[side].put_primitive(k, &work.state[i]);
+            let outward = if side == 0 { e.s } else { -e.s };
+            let face = if fluid.conservative { half_face(cloud.volume[i], &outward) } else { of_fit[side] };
+            put(&mut batch.face[side], k, &face);
+            batch.by_volume[side][k] = 1.0 / cloud.volume[i];
+            if frame.moves() {
+                let passed = if by_faces { face } else { of_fit[side] };
+                batch.swept[side][k] = frame.velocity[i].dot(&passed);
+            }
+        }
+        put(&mut batch.area, k, &e.s);
+        if frame.moves() {
+            batch.drift[k] = 0.5 * (frame.velocity[ends[0]] + frame.velocity[ends[1]]).dot(&e.s);
+        }
+    }
+}
+
+/// What the blocks of every edge are made of.
+#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq", "x86_64+avx2"))]
+#[allow(unsafe_code, reason = "the attribute calls the version that the processor has just been asked for")]
+fn waves<const D: usize>(gas: Gas, batch: &mut Batch<D>) {
+    let Batch { own, area, drift, face, swept, by_volume, waves } = batch;
+    for k in 0..LANES {
+        let (i, j, s) = (own[0].primitive(k), own[1].primitive(k), take(area, k));
+        let mean = Primitive::zip(&i, &j, |a, b| 0.5 * (a + b));
+        let size = s.norm();
+        let n = s * (1.0 / size.max(f64::MIN_POSITIVE));
+        let c = gas.sound_speed(&mean);
+        let [l1, a, b] = rounded_speeds(c, mean.velocity.dot(&n), drift[k] / size.max(f64::MIN_POSITIVE));
+        let half = 0.5 * size;
+        put_single(&mut waves.normal, k, &n);
+        waves.across[k] = mean.velocity.dot(&n) as f32;
+        waves.spread[0][k] = (half * l1) as f32;
+        waves.spread[1][k] = (half * a / (c * c)) as f32;
+        waves.spread[2][k] = (half * b) as f32;
+        waves.spread[3][k] = (half * a) as f32;
+        let states = [i, j, mean];
+        for m in 0..3 {
+            let q = &states[m];
+            put_single(&mut waves.velocity[m], k, &q.velocity);
+            waves.enthalpy[m][k] = gas.total_enthalpy(q) as f32;
+            waves.push[m][k] = (0.5 * (gas.gamma - 1.0) * q.velocity.norm_squared()) as f32;
+        }
+        for side in 0..2 {
+            let face = take(&face[side], k);
+            put_single(&mut waves.face[side], k, &face);
+            waves.through[side][0][k] = states[side].velocity.dot(&face) as f32;
+            waves.through[side][1][k] = states[1 - side].velocity.dot(&face) as f32;
+            waves.swept[side][k] = swept[side][k] as f32;
+            waves.by_volume[side][k] = by_volume[side][k] as f32;
+        }
+    }
+}
+
+#[inline(always)]
+fn put_single<const D: usize>(lanes: &mut [Single; D], k: usize, v: &Vector<D>) {
+    for d in 0..D {
+        lanes[d][k] = v[d] as f32;
+    }
+}
+
+/// A vector of the variables.
+type Column = [f32; WIDE];
+
+/// (first, v, last) of edge `k`, v multiplied by `scale`.
+#[inline(always)]
+fn column<const D: usize>(first: f32, (v, k, scale): (&[Single; D], usize, f32), last: f32) -> Column {
+    let mut out = [0.0; WIDE];
+    out[0] = first;
+    for d in 0..D {
+        out[1 + d] = v[d][k] * scale;
+    }
+    out[1 + D] = last;
+    out
+}
+
+#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq", "x86_64+avx2"))]
+#[allow(unsafe_code, reason = "the attribute calls the version that the processor has just been asked for")]
+fn add<const D: usize>(
+    fluid: &Fluid<D>,
+    at: (&Frame<D>, &Work<D>),
+    (edges, first, weights): (&[Edge<D>], usize, &Weights<'_, D>),
+    (waves, rows): (&Waves<D>, &mut Rows<'_>),
+) {
+    let (n, cloud, g1) = (n_variables(D), &at.0.discretisation.cloud, (fluid.gas.gamma - 1.0) as f32);
+    for (k, e) in edges.iter().enumerate() {
+        // (1, v, H) and ∂p/∂U
+        let state = |m: usize| {
+            let v = &waves.velocity[m];
+            (column(1.0, (v, k, 1.0), waves.enthalpy[m][k]), column(waves.push[m][k], (v, k, -g1), g1))
+        };
+        // |A| times half of the area, by columns
+        let (carried, pressure) = state(2);
+        let (along, stopped) = of_face((&waves.normal, k, 1.0), waves.across[k]);
+        let part: [f32; 4] = array(|p| waves.spread[p][k]);
+        let mut spread = [[0.0; WIDE]; MOST];
+        for c in 0..n {
+            let (x, y) = (part[1] * pressure[c] + part[2] * stopped[c], part[2] * pressure[c] + part[3] * stopped[c]);
+            for r in 0..WIDE {
+                spread[c][r] = x * carried[r] + y * along[r];
+            }
+            spread[c][c] += part[0];
+        }
+        let (of_ends, ends) = ([state(0), state(1)], [e.i(), e.j()]);
+        let served = if e.both() { 2 } else { 1 };
+        for side in 0..served {
+            let (row, beside) = (ends[side], ends[1 - side]);
+            let mut blocks = [[0.0f32; ROOM]; 2];
+            for which in 0..2 {
+                let (block, sign) = (&mut blocks[which], [-1.0, 1.0][which]);
+                let (through, share) = (sign * waves.through[side][which][k], sign * waves.by_volume[side][k]);
+                let (along, stopped) = of_face((&waves.face[side], k, sign), through);
+                let (carried, pressure) = &of_ends[side ^ which];
+                for c in 0..n {
+                    for r in 0..WIDE {
+                        block[c * n + r] = stopped[c] * carried[r] + pressure[c] * along[r] - share * spread[c][r];
+                    }
+                    block[c * n + c] += through - sign * waves.swept[side][k];
+                }
+            }
+            let [own, other] = &mut blocks;
+            if fluid.viscous_model.is_some() {
+                let of_fit = match fluid.conservative {
+                    true => [Vector::ZERO; 2],
+                    false => weights.of(first + k, e, &(cloud.x[ends[1]] - cloud.x[ends[0]])),
+                };
+                let (exchange, layers) = fluid.viscous_edge(at.1, (e, &of_fit), cloud);
+                let exchange = [exchange.0, exchange.1][side];
+                for c in 0..n {
+                    for r in 0..n {
+                        own[c * n + r] += (exchange * layers[side][r][c]) as f32;
+                        other[c * n + r] -= (exchange * layers[1 - side][r][c]) as f32;
+                    }
+                }
+            }
+            rows.add_own(n, row, own);
+            match beside < cloud.n_fluid {
+                true => rows.add_other(n, (row, beside), other),
+                false => couple(fluid, rows, at, (row, beside), |r, c| f64::from(other[c * n + r])),
+            }
+        }
+    }
+}
+
+/// (0, n, v·n) and (−v·n, n, 0).
+#[inline(always)]
+fn of_face<const D: usize>(n: (&[Single; D], usize, f32), vn: f32) -> (Column, Column) {
+    (column(0.0, n, vn), column(-vn, n, 0.0))
+}
