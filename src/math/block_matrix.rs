@@ -498,7 +498,7 @@ impl BlockMatrix {
 }
 
 /// A half-sweep over one part.
-#[multiversion(targets("x86_64+avx2"))]
+#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq", "x86_64+avx2"))]
 #[allow(unsafe_code, reason = "the attribute calls the version that the processor has just been asked for")]
 fn relax_part<const N: usize>(
     matrix: &BlockMatrix,

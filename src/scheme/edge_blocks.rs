@@ -6,15 +6,18 @@ use multiversion::multiversion;
 
 use super::edge_flux::half_face;
 use super::fluid::{Fluid, Work};
+use super::folded_columns::couple;
 use super::frame::Frame;
-use super::jacobian::{couple, rounded_speeds};
 use super::lanes::{LANES, Lanes, StateLanes, put, take};
 use crate::cloud::{Edge, Weights};
 use crate::math::Vector;
 use crate::math::block_matrix::Rows;
 use crate::math::blocks::array;
+use crate::physics::riemann::rounded;
 use crate::physics::{Gas, Primitive, n_variables};
 
+/// Fraction of the sound speed below which eigenvalues are rounded: keeps diagonal blocks invertible where the flow stops.
+const ROUNDING: f64 = 0.1;
 /// Variables of gas in space, and as many numbers as a vector register takes.
 const MOST: usize = 5;
 const WIDE: usize = 8;
@@ -83,6 +86,55 @@ impl<const D: usize> Batch<D> {
             by_volume: [[0.0; LANES]; 2],
         },
     };
+}
+
+impl<const D: usize> Waves<D> {
+    /// (1, v, H) and ∂p/∂U of an end of edge `k`, or of the mean.
+    #[inline(always)]
+    fn state(&self, m: usize, k: usize, g1: f32) -> (Column, Column) {
+        let v = &self.velocity[m];
+        (column(1.0, (v, k, 1.0), self.enthalpy[m][k]), column(self.push[m][k], (v, k, -g1), g1))
+    }
+
+    /// |A| times half of the area of edge `k`, by columns. With |λ| of the shear and entropy waves taken out, the rest is a matrix
+    /// of rank two (Turkel 1999, eq. 3.14).
+    #[inline(always)]
+    fn dissipation(&self, k: usize, g1: f32) -> [Column; MOST] {
+        let (carried, pressure) = self.state(2, k, g1);
+        let (along, stopped) = of_face((&self.normal, k, 1.0), self.across[k]);
+        let part: [f32; 4] = array(|p| self.spread[p][k]);
+        let mut out = [[0.0; WIDE]; MOST];
+        for c in 0..n_variables(D) {
+            let (x, y) = (part[1] * pressure[c] + part[2] * stopped[c], part[2] * pressure[c] + part[3] * stopped[c]);
+            for r in 0..WIDE {
+                out[c][r] = x * carried[r] + y * along[r];
+            }
+            out[c][c] += part[0];
+        }
+        out
+    }
+
+    /// Block of the row of one end of edge `k`: `SIGN` 1 for what it takes of the state of the other, -1 for its own state.
+    #[inline(always)]
+    fn block<const SIGN: i8>(
+        &self,
+        (carried, pressure): &(Column, Column),
+        side: usize,
+        k: usize,
+        spread: &[Column; MOST],
+    ) -> [f32; ROOM] {
+        let (n, sign, which) = (n_variables(D), f32::from(SIGN), usize::from(SIGN > 0));
+        let (through, share) = (sign * self.through[side][which][k], sign * self.by_volume[side][k]);
+        let (along, stopped) = of_face((&self.face[side], k, sign), through);
+        let mut block = [0.0; ROOM];
+        for c in 0..n {
+            for r in 0..WIDE {
+                block[c * n + r] = stopped[c] * carried[r] + pressure[c] * along[r] - share * spread[c][r];
+            }
+            block[c * n + c] += through - sign * self.swept[side][k];
+        }
+        block
+    }
 }
 
 /// Adds the blocks of the edges of a part.
@@ -177,6 +229,15 @@ fn put_single<const D: usize>(lanes: &mut [Single; D], k: usize, v: &Vector<D>) 
     }
 }
 
+/// |λ| of the entropy wave, what the mean of both acoustic ones is above it, and half of their difference over the speed of sound,
+/// in a flow of the velocity `vn` across something that moves by `drift`.
+#[inline(always)]
+fn rounded_speeds(c: f64, vn: f64, drift: f64) -> [f64; 3] {
+    let fix = |x: f64| rounded(x.abs(), ROUNDING * c);
+    let (l1, l2, l3) = (fix(vn - drift), fix(vn - drift + c), fix(vn - drift - c));
+    [l1, 0.5 * (l2 + l3) - l1, 0.5 * (l2 - l3) / c]
+}
+
 /// A vector of the variables.
 type Column = [f32; WIDE];
 
@@ -202,41 +263,13 @@ fn add<const D: usize>(
 ) {
     let (n, cloud, g1) = (n_variables(D), &at.0.discretisation.cloud, (fluid.gas.gamma - 1.0) as f32);
     for (k, e) in edges.iter().enumerate() {
-        // (1, v, H) and ∂p/∂U
-        let state = |m: usize| {
-            let v = &waves.velocity[m];
-            (column(1.0, (v, k, 1.0), waves.enthalpy[m][k]), column(waves.push[m][k], (v, k, -g1), g1))
-        };
-        // |A| times half of the area, by columns
-        let (carried, pressure) = state(2);
-        let (along, stopped) = of_face((&waves.normal, k, 1.0), waves.across[k]);
-        let part: [f32; 4] = array(|p| waves.spread[p][k]);
-        let mut spread = [[0.0; WIDE]; MOST];
-        for c in 0..n {
-            let (x, y) = (part[1] * pressure[c] + part[2] * stopped[c], part[2] * pressure[c] + part[3] * stopped[c]);
-            for r in 0..WIDE {
-                spread[c][r] = x * carried[r] + y * along[r];
-            }
-            spread[c][c] += part[0];
-        }
-        let (of_ends, ends) = ([state(0), state(1)], [e.i(), e.j()]);
+        let spread = waves.dissipation(k, g1);
+        let (of_ends, ends) = ([waves.state(0, k, g1), waves.state(1, k, g1)], [e.i(), e.j()]);
         let served = if e.both() { 2 } else { 1 };
         for side in 0..served {
             let (row, beside) = (ends[side], ends[1 - side]);
-            let mut blocks = [[0.0f32; ROOM]; 2];
-            for which in 0..2 {
-                let (block, sign) = (&mut blocks[which], [-1.0, 1.0][which]);
-                let (through, share) = (sign * waves.through[side][which][k], sign * waves.by_volume[side][k]);
-                let (along, stopped) = of_face((&waves.face[side], k, sign), through);
-                let (carried, pressure) = &of_ends[side ^ which];
-                for c in 0..n {
-                    for r in 0..WIDE {
-                        block[c * n + r] = stopped[c] * carried[r] + pressure[c] * along[r] - share * spread[c][r];
-                    }
-                    block[c * n + c] += through - sign * waves.swept[side][k];
-                }
-            }
-            let [own, other] = &mut blocks;
+            let mut own = waves.block::<-1>(&of_ends[side], side, k, &spread);
+            let mut other = waves.block::<1>(&of_ends[1 - side], side, k, &spread);
             if fluid.viscous_model.is_some() {
                 let of_fit = match fluid.conservative {
                     true => [Vector::ZERO; 2],
@@ -251,9 +284,9 @@ fn add<const D: usize>(
                     }
                 }
             }
-            rows.add_own(n, row, own);
+            rows.add_own(n, row, &own);
             match beside < cloud.n_fluid {
-                true => rows.add_other(n, (row, beside), other),
+                true => rows.add_other(n, (row, beside), &other),
                 false => couple(fluid, rows, at, (row, beside), |r, c| f64::from(other[c * n + r])),
             }
         }
@@ -264,4 +297,72 @@ fn add<const D: usize>(
 #[inline(always)]
 fn of_face<const D: usize>(n: (&[Single; D], usize, f32), vn: f32) -> (Column, Column) {
     (column(0.0, n, vn), column(-vn, n, 0.0))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::physics::Conserved;
+    use crate::physics::riemann::{Roe, UpwindFlux};
+
+    const AIR: Gas = Gas { gamma: 1.4 };
+    const Q: Primitive<3> = Primitive { density: 1.2, velocity: Vector([0.6, -0.5, 0.2]), pressure: 0.8 };
+    const AREA: Vector<3> = Vector([1.2, 0.0, 1.6]);
+
+    /// Edges between particles of the same state, the one at the first end of volume 2, the other of volume 4.
+    fn between_equals() -> Waves<3> {
+        let mut batch = Batch::BLANK;
+        for k in 0..LANES {
+            for (side, (volume, sign)) in [(2.0, 1.0), (4.0, -1.0)].into_iter().enumerate() {
+                batch.own[side].put_primitive(k, &Q);
+                put(&mut batch.face[side], k, &(AREA * (0.5 * sign / volume)));
+                batch.by_volume[side][k] = 1.0 / volume;
+            }
+            put(&mut batch.area, k, &AREA);
+        }
+        waves(AIR, &mut batch);
+        batch.waves
+    }
+
+    /// Derivative of `f` by variable `k` of the state `Q`.
+    fn derivative(k: usize, f: impl Fn(&Primitive<3>) -> Conserved<3>) -> [f64; 5] {
+        let h = 1e-6;
+        let at = |h: f64| {
+            let mut row = [0.0; 5];
+            AIR.conserved(&Q).store(&mut row);
+            row[k] += h;
+            f(&AIR.primitive(&Conserved::load(&row)))
+        };
+        let mut row = [0.0; 5];
+        at(h).plus(-1.0, &at(-h)).times(0.5 / h).store(&mut row);
+        row
+    }
+
+    #[test]
+    fn dissipation_is_that_of_the_roe_flux() {
+        let (found, n) = (between_equals().dissipation(3, 0.4), AREA * 0.5);
+        for c in 0..5 {
+            // the area is 2, half of it 1
+            let wanted = derivative(c, |q| Roe.across(&AIR, &Q, q, &n).plus(-0.5, &AIR.flux(q, &n)).times(-2.0));
+            (0..5).for_each(|r| assert!((f64::from(found[c][r]) - wanted[r]).abs() < 1e-5, "{r} {c}"));
+        }
+    }
+
+    #[test]
+    fn blocks_are_the_derivatives_of_what_an_edge_passes() {
+        let waves = between_equals();
+        let (state, spread) = (waves.state(0, 3, 0.4), waves.dissipation(3, 0.4));
+        for (side, face) in [AREA * 0.25, AREA * -0.125].into_iter().enumerate() {
+            let own = waves.block::<-1>(&state, side, 3, &spread);
+            let other = waves.block::<1>(&state, side, 3, &spread);
+            for c in 0..5 {
+                let flux = derivative(c, |q| AIR.flux(q, &face));
+                for r in 0..5 {
+                    let spread = f64::from(spread[c][r] * waves.by_volume[side][3]);
+                    assert!((f64::from(own[c * 5 + r]) - (spread - flux[r])).abs() < 1e-5, "{side} {r} {c}");
+                    assert!((f64::from(other[c * 5 + r]) - (flux[r] - spread)).abs() < 1e-5, "{side} {r} {c}");
+                }
+            }
+        }
+    }
 }

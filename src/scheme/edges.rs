@@ -173,7 +173,9 @@ fn gather<const D: usize, F, L>(
             }
         }
         put(&mut batch.area, k, &e.s);
-        put(&mut batch.along, k, &d);
+        if scheme.medium.is_some() {
+            put(&mut batch.along, k, &d);
+        }
         batch.steepness[k] = p.steepness[ends[0]].max(p.steepness[ends[1]]);
         batch.whole[k] = f64::from(u8::from(p.outer.0 <= ends[1] && ends[1] < p.outer.1));
     }

@@ -13,6 +13,7 @@ pub mod edge_flux;
 pub mod edges;
 pub mod fluid;
 mod fluid_system;
+mod folded_columns;
 pub mod frame;
 mod has_gas;
 mod isentropic;

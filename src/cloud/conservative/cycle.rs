@@ -6,6 +6,8 @@
 //! such sweeps, in whatever order, are those of a positive preconditioner.
 use std::ops::Range;
 
+use multiversion::multiversion;
+
 use super::Problem;
 use super::field::Field;
 use super::levels::{Edge, Level, levels};
@@ -139,7 +141,7 @@ fn visit<const D: usize, V: Field<D>, G: Grid<V>>(
         improve(grid, b, x, left, Way::Forth);
     }
     grid.follow(b, x);
-    sweep_slots(left, |i, left| *left = grid.left(i, &b[i], x));
+    sweep_chunks(left, |range, left| lefts(grid, (b, x), range, left));
     let mut next = std::mem::take(&mut below[0].b);
     let mut found = std::mem::take(&mut below[0].x);
     sweep_slots(&mut next, |g, b| {
@@ -163,34 +165,54 @@ fn visit<const D: usize, V: Field<D>, G: Grid<V>>(
 
 /// One sweep for A x = b.
 fn improve<V: conjugate::Row, G: Grid<V>>(grid: &G, b: &[V], x: &mut [V], left: &mut [V], way: Way) {
-    sweep_slots(left, |i, left| *left = grid.left(i, &b[i], x));
+    sweep_chunks(left, |range, left| lefts(grid, (b, x), range, left));
     step(grid, x, left, way);
 }
 
 /// Adds to x what a sweep finds from what is left.
 fn step<V: conjugate::Row, G: Grid<V>>(grid: &G, x: &mut [V], left: &mut [V], way: Way) {
-    sweep_chunks(left, |range, found| {
-        for k in 0..found.len() {
-            let k = if let Way::Forth = way { k } else { found.len() - 1 - k };
-            let i = range.start + k;
-            let r = grid.less(i, found[k], &range, found, way);
-            found[k] = grid.solved(i, &r);
-        }
-    });
+    sweep_chunks(left, |range, found| find(grid, range, found, way));
     sweep_slots(&mut x[..left.len()], |i, x| *x = x.plus(1.0, &left[i]));
 }
 
+// The sums of rows are compiled for wider registers too.
+
+/// b − A x in the rows of a range.
+#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq", "x86_64+avx2"))]
+#[allow(unsafe_code, reason = "the attribute calls the version that the processor has just been asked for")]
+fn lefts<V, G: Grid<V>>(grid: &G, (b, x): (&[V], &[V]), range: Range<usize>, left: &mut [V]) {
+    for (k, left) in left.iter_mut().enumerate() {
+        let i = range.start + k;
+        *left = grid.left(i, &b[i], x);
+    }
+}
+
+/// Turns what is left in the rows of a range into what a sweep finds there.
+#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq", "x86_64+avx2"))]
+#[allow(unsafe_code, reason = "the attribute calls the version that the processor has just been asked for")]
+fn find<V: conjugate::Row, G: Grid<V>>(grid: &G, range: Range<usize>, found: &mut [V], way: Way) {
+    for k in 0..found.len() {
+        let k = if let Way::Forth = way { k } else { found.len() - 1 - k };
+        let i = range.start + k;
+        let r = grid.less(i, found[k], &range, found, way);
+        found[k] = grid.solved(i, &r);
+    }
+}
+
 impl<const D: usize, V: Field<D>> Grid<V> for Signed<'_, D> {
+    #[inline(always)]
     fn left(&self, i: usize, b: &V, x: &[V]) -> V {
         let pull = |row: V, e: &Edge<D>| row.plus(1.0, &e.pull(self.signs, &x[e.other as usize]));
         self.level.edges(i).iter().fold(b.plus(-1.0, &x[i].own(&self.level.own[i], self.level.soft[i])), pull)
     }
 
+    #[inline(always)]
     fn less(&self, i: usize, r: V, range: &Range<usize>, found: &[V], way: Way) -> V {
         let passed = self.level.edges(i).iter().filter(|e| way.has_passed(range, i, e.other as usize));
         passed.fold(r, |r, e| r.plus(1.0, &e.pull(self.signs, &found[e.other as usize - range.start])))
     }
 
+    #[inline(always)]
     fn solved(&self, i: usize, r: &V) -> V {
         r.solved(&self.level.own[i], &self.level.factors, i)
     }
