@@ -16,7 +16,7 @@ use alula::cloud::conservative::conservative;
 use alula::cloud::{Cloud, CloudSpec, Operators};
 use alula::geometry::load_surface;
 use alula::math::Vector;
-use alula::math::sweep::sweep;
+use alula::math::sweep::{sweep, sweep_each};
 use alula::physics::Primitive;
 use alula::scheme::{Fluid, RemapLedger};
 use alula::system::{Hierarchy, Implicit, Instant, Preconditioner, Reach, RightHandSide, Shift, System};
@@ -26,6 +26,7 @@ use alula::time::relax::Relax;
 use alula::time::{Integrator, Past};
 use divan::counter::ItemsCount;
 use divan::{Bencher, black_box};
+use multiversion::multiversion;
 
 /// Threads in the measurements that compare them.
 const THREADS: [usize; 2] = [1, 2];
@@ -117,6 +118,33 @@ fn triad(bencher: Bencher<'_, '_>, threads: usize) {
     bencher
         .counter(ItemsCount::new(N))
         .bench_local(|| pool.install(|| sweep(black_box(&mut a), |i| b[i] + 3.0 * c[i])));
+}
+
+/// Products and sums one after the other in registers, in double precision: the most that kernels without fused operations can reach.
+/// An item is one of either.
+#[divan::bench(args = THREADS, sample_count = 10)]
+fn arithmetic(bencher: Bencher<'_, '_>, threads: usize) {
+    const ROUNDS: usize = 1 << 16;
+    const TASKS: usize = 64;
+    let (mut sums, pool) = (vec![0.0; TASKS], pool(threads));
+    bencher
+        .counter(ItemsCount::new(2 * CHAINS * ROUNDS * TASKS))
+        .bench_local(|| pool.install(|| sweep_each(black_box(&mut sums), |i| chains(1.0 + 1e-9 * i as f64, ROUNDS))));
+}
+
+/// Numbers that are worked on at once: enough to hide how long an operation takes.
+const CHAINS: usize = 128;
+
+#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq", "x86_64+avx2"))]
+#[allow(unsafe_code, reason = "the attribute calls the version that the processor has just been asked for")]
+fn chains(factor: f64, rounds: usize) -> f64 {
+    let mut x = [1.0; CHAINS];
+    for _ in 0..rounds {
+        for x in &mut x {
+            *x = *x * factor + 1e-9;
+        }
+    }
+    x.iter().sum()
 }
 
 /// An empty preconditioner as Newton's method has it.
