@@ -5,7 +5,7 @@ use super::quantity::Angle;
 use super::schema::{Absent, Field, Kind, List, Range, Table};
 
 /// Shape keys of a body with the dimension each of them fixes (0: by the number of lengths).
-pub(super) const SHAPES: [(&str, u64); 11] = [
+pub(super) const SHAPES: [(&str, u64); 12] = [
     ("naca", 2),
     ("airfoil", 2),
     ("polygon", 2),
@@ -16,6 +16,7 @@ pub(super) const SHAPES: [(&str, u64); 11] = [
     ("surface", 3),
     ("wing", 3),
     ("revolution", 3),
+    ("loft", 3),
     ("ellipsoid", 3),
 ];
 const SHAPE: &str = "another shape key";
@@ -64,6 +65,12 @@ pub(super) static BODY: Table = Table::of(&[
         Kind::Table(&REVOLUTION),
         SHAPE,
         "Body of revolution about the x axis (3-D), `revolution = [[0, 0], [1, 0.2]]` is a cone.",
+    ),
+    Field::optional(
+        "loft",
+        Kind::Table(&LOFT),
+        SHAPE,
+        "Body along the x axis with oval or boxy sections (3-D): fuselages, nacelles, inlets faired over.",
     ),
     Field::optional(
         "ellipsoid",
@@ -115,7 +122,7 @@ pub(super) static BODY: Table = Table::of(&[
          the body at rest.",
     ),
 ])
-.with_one_of(&["naca", "airfoil", "polygon", "circle", "ellipse", "sphere", "box", "surface", "wing", "revolution", "ellipsoid"]);
+.with_one_of(&["naca", "airfoil", "polygon", "circle", "ellipse", "sphere", "box", "surface", "wing", "revolution", "loft", "ellipsoid"]);
 
 static NACA: Table = Table::of(&[
     Field::required("digits", Kind::Matching("^([Nn][Aa][Cc][Aa][ _-]?)?[0-9].{3,}$"), "Its designation."),
@@ -163,6 +170,28 @@ static REVOLUTION: Table = Table::of(&[
     Field::defaulted("sides", Kind::Words(PROFILE_SIDES), Absent::Word("smooth"), "What joins the points."),
 ])
 .short("profile");
+
+static LOFT: Table = Table::of(&[
+    Field::required(
+        "stations",
+        Kind::List(&List {
+            item: Kind::List(&List { item: Kind::Number(Range::ANY), min: 3, max: 4, single: false }),
+            min: 2,
+            max: usize::MAX,
+            single: false,
+        }),
+        "Sections `[x, width, height]` or `[x, width, height, z]` from the nose to the rear, `z` the middle of the section. Where \
+         width and height are zero, at the first and the last alone, the body ends in a point or round; elsewhere a face closes it.",
+    ),
+    Field::defaulted(
+        "exponent",
+        Kind::Number(Range::between(2.0, 12.0)),
+        Absent::Number(2.0),
+        "n of the sections |2y/width|^n + |2z/height|^n = 1: 2 is an ellipse, 5 a box with round corners.",
+    ),
+    Field::defaulted("sides", Kind::Words(PROFILE_SIDES), Absent::Word("smooth"), "What joins the sections."),
+])
+.short("stations");
 
 const PROFILE_SIDES: &[(&str, &str)] = &[
     (

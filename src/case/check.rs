@@ -80,6 +80,7 @@ fn bodies(draft: &mut Draft<'_>) {
         polygon(draft, &format!("{body}.polygon"));
         wing(draft, &format!("{body}.wing"));
         profile(draft, &format!("{body}.revolution.profile"));
+        stations(draft, &format!("{body}.loft.stations"));
         let name = draft.get(&format!("{body}.name")).and_then(Value::as_str).map(str::to_owned);
         let name = name.unwrap_or_else(|| default_name(i));
         if names.contains(&name) {
@@ -183,6 +184,27 @@ fn profile(draft: &mut Draft<'_>, path: &str) {
         ("the profile has no length".to_owned(), "list points `[x, r]` from the nose to the rear")
     } else if (0..n).all(|i| at(i, 1) == 0.0) {
         ("the profile runs along the axis".to_owned(), "radii `r` of points `[x, r]` are positive")
+    } else {
+        return;
+    };
+    draft.fail(path, message).hint(hint);
+}
+
+/// Sections of a loft follow one another, and enclose something.
+fn stations(draft: &mut Draft<'_>, path: &str) {
+    let Some(stations) = draft.get(path).and_then(Value::as_array).cloned() else { return };
+    let at = |i: usize, k: usize| stations[i].get(k).and_then(Value::as_f64).unwrap_or(f64::NAN);
+    let n = stations.len();
+    let back = (1..n).find(|&i| at(i, 0) <= at(i - 1, 0));
+    let empty = |i: usize| at(i, 1) == 0.0 && at(i, 2) == 0.0;
+    let flat = (0..n).find(|&i| at(i, 1).min(at(i, 2)) <= 0.0 && !(empty(i) && (i == 0 || i + 1 == n)));
+    let (message, hint) = if let Some(i) = back {
+        (format!("station {} of the loft does not lie behind the one before", i + 1), "list stations by growing x")
+    } else if let Some(i) = flat {
+        let hint = "widths and heights are positive; only the first and the last station may have none of both";
+        (format!("station {} of the loft encloses nothing", i + 1), hint)
+    } else if (0..n).all(empty) {
+        ("the loft encloses nothing".to_owned(), "give a station with width and height between its ends")
     } else {
         return;
     };

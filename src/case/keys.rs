@@ -456,6 +456,13 @@ static OUTPUT: Table = Table::of(&[
         "the last field only",
         "Time between field files in marching runs: seconds, or lengths over sound speed without a dimensional free stream.",
     ),
+    Field::optional(
+        "field_particles",
+        COUNT,
+        "all",
+        "Fluid particles in a field file, at most: of more, every second, third and so on stays, so that what is fine stays finer; \
+         particles on walls all stay. Up to a million particles in space have cells between them.",
+    ),
     Field::defaulted(
         "loop_periods",
         COUNT,

@@ -223,6 +223,15 @@ pub enum Shape {
         /// What joins them.
         sides: ProfileSides,
     },
+    /// Body along the x axis with oval or boxy sections.
+    Loft {
+        /// Sections x, width, height and, where it is not zero, z of the middle, from the nose to the rear.
+        stations: Vec<Vec<f64>>,
+        /// n of the sections |2y/width|ⁿ + |2z/height|ⁿ = 1.
+        exponent: f64,
+        /// What joins them.
+        sides: ProfileSides,
+    },
     /// Ellipsoid centred on the origin of the shape.
     Ellipsoid {
         /// Lengths of its axes.

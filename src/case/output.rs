@@ -12,6 +12,8 @@ pub struct Output {
     pub checkpoint_time: WallTime,
     /// Time between field files in marching runs; absent: the last field only.
     pub field_interval: Option<Time>,
+    /// Most fluid particles in a field file; absent: all.
+    pub field_particles: Option<u32>,
     /// Periods at the end of a march that loops and harmonics of the loads are the mean of.
     pub loop_periods: u32,
     /// Write `report.html` and pictures.
@@ -26,6 +28,7 @@ impl Default for Output {
             checkpoint: 50,
             checkpoint_time: WallTime(600.0),
             field_interval: None,
+            field_particles: None,
             loop_periods: 1,
             report: true,
             stations: None,

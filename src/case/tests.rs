@@ -361,6 +361,9 @@ fn wings_and_profiles_that_cannot_be_are_told() {
         ("revolution = [[0, 0], [2, 0.5], [1, 0.5], [3, 0]]", "lies ahead of the one before"),
         ("revolution = [[0, 0], [1, 0.5], [1, 0.5], [3, 0]]", "are the same"),
         ("revolution = [[0, 0], [1, 0], [3, 1]]", "is not outside the axis"),
+        ("loft = [[0, 0, 0], [2, 1, 1], [1, 1, 1], [3, 0, 0]]", "station 3 of the loft does not lie behind"),
+        ("loft = [[0, 0, 0], [1, 1, 0], [3, 1, 1]]", "station 2 of the loft encloses nothing"),
+        ("loft = [[0, 0, 0], [1, 0, 0]]", "the loft encloses nothing"),
     ] {
         assert_shows(&body(shape), &[told]);
     }

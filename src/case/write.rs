@@ -189,6 +189,7 @@ conservative = false
 until = "20 ms"
 [output]
 field_interval = "1 ms"
+field_particles = 500
 [[hinge]]
 name = "flap"
 from = [0.75, 0]

@@ -1,4 +1,4 @@
-//! Wings from planform and sections, bodies of revolution from profiles.
+//! Wings from planform and sections, bodies of revolution from profiles, bodies of any section through stations.
 //!
 //! A wing is a row of stations along the span, each with the place of its leading edge, a chord, a twist and a section; between
 //! them straight lines join points at equal parts of the length of the sides. Sections stand across the span: in planes y = const,
@@ -6,8 +6,10 @@
 use std::f64::consts::PI;
 
 use super::GeometryError;
+use super::outline;
 use super::section::{Chain, Sides, clustered};
 use super::shell::{Exact, Shell};
+use super::spline::{linear, monotone};
 use crate::case::{PlanformShape, Tip, Wing, WingSides};
 use crate::math::Vector;
 
@@ -62,19 +64,49 @@ pub(super) fn wing(place: &str, wing: &Wing, sections: [&Shell<2>; 2]) -> Result
 /// A body of revolution about the x axis, of the profile `chain` from the nose to the rear; closed by a face where it does not end
 /// on the axis.
 pub(super) fn revolution(chain: &Chain) -> Shell<3> {
+    let around = |x: &Vector<2>, [c, s]: [f64; 2]| Vector([x[0], x[1] * c, x[1] * s]);
+    along_axis(chain, around)
+}
+
+/// The body through sections x, width, height and z of the middle, which are |2y/width|^n + |2z/height|^n = 1 for the `exponent` n; closed by
+/// faces where it does not end in points.
+///
+/// The root of width times height follows the curve of a profile; what widths and heights, and middles, are to it varies monotonically
+/// between the sections.
+pub(super) fn through(stations: &[Vec<f64>], exponent: f64, straight: bool) -> Shell<3> {
+    let size = |s: &[f64]| 0.5 * (s[1] * s[2]).sqrt();
+    let profile: Vec<Vector<2>> = stations.iter().map(|s| Vector([s[0], size(s)])).collect();
+    let open: Vec<&Vec<f64>> = stations.iter().filter(|s| s[1] > 0.0).collect();
+    let [of_open, of_all]: [Vec<f64>; 2] =
+        [open.iter().map(|s| s[0]).collect(), profile.iter().map(|p| p[0]).collect()];
+    let ratios: Vec<f64> = open.iter().map(|s| (s[1] / s[2]).ln()).collect();
+    let middles: Vec<f64> = stations.iter().map(|s| s.get(3).copied().unwrap_or(0.0)).collect();
+    let between = |x: &[f64], y: &[f64], at: f64| if straight { linear(x, y, at) } else { monotone(x, y, at) };
+    let bent = |x: f64| x.signum() * x.abs().powf(2.0 / exponent);
+    along_axis(&outline::profile(&profile, straight), |x, [c, s]| {
+        let stretch = (0.5 * between(&of_open, &ratios, x[0])).exp();
+        let middle = between(&of_all, &middles, x[0]);
+        Vector([x[0], x[1] * stretch * bent(c), middle + x[1] / stretch * bent(s)])
+    })
+}
+
+/// A body along the x axis: `around` gives the point at the cosine and the sine of an angle of the section at a point of the profile.
+fn along_axis(chain: &Chain, around: impl Fn(&Vector<2>, [f64; 2]) -> Vector<3>) -> Shell<3> {
     let mut skin = Skin::default();
-    let around = |x: &Vector<2>| -> Vec<Vector<3>> {
-        let angle = |k: usize| 2.0 * PI * k as f64 / TURN as f64;
-        (0..TURN).map(|k| Vector([x[0], x[1] * angle(k).cos(), x[1] * angle(k).sin()])).collect()
+    // no point beside a plane of symmetry that should lie in it
+    let turn = |k: usize| {
+        let (s, c) = (2.0 * PI * k as f64 / TURN as f64).sin_cos();
+        [c, s].map(|x| if x.abs() < 1e-15 { 0.0 } else { x })
     };
+    let ring = |x: &Vector<2>| (0..TURN).map(|k| around(x, turn(k))).collect::<Vec<_>>();
     let points = chain.resampled(PROFILE);
-    let rings: Vec<Vec<u32>> = points.iter().map(|x| skin.ring_or_point(&around(x), x[1] == 0.0)).collect();
+    let rings: Vec<Vec<u32>> = points.iter().map(|x| skin.ring_or_point(&ring(x), x[1] == 0.0)).collect();
     skin.strips(&rings, true);
     for (ring, point, last) in
         [(&rings[0], points[0], false), (&rings[rings.len() - 1], points[points.len() - 1], true)]
     {
         if point[1] > 0.0 {
-            let centre = skin.ring_or_point(&[Vector([point[0], 0.0, 0.0])], false)[0];
+            let centre = skin.ring_or_point(&[around(&Vector([point[0], 0.0]), [1.0, 0.0])], false)[0];
             let centre = vec![centre; TURN];
             skin.strips(&if last { [ring.clone(), centre] } else { [centre, ring.clone()] }, true);
         }

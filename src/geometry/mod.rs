@@ -94,6 +94,7 @@ pub fn dimension(case: &Case) -> u8 {
         | Shape::Surface(_)
         | Shape::Wing(_)
         | Shape::Revolution { .. }
+        | Shape::Loft { .. }
         | Shape::Ellipsoid { .. } => 3,
         Shape::Box { size } => {
             if size.len() == 3 {
@@ -242,6 +243,11 @@ fn load_shell(name: &str, body: &Body, folder: &Path, notes: &mut Vec<String>) -
             let points: Vec<Vector<2>> = profile.iter().map(|p| Vector(*p)).collect();
             let straight = *sides == ProfileSides::Straight;
             let shell = loft::revolution(&outline::profile(&points, straight));
+            AnyShell::Space(if straight { Shell { crease: POLYGON_CREASE, ..shell } } else { shell })
+        }
+        Shape::Loft { stations, exponent, sides } => {
+            let straight = *sides == ProfileSides::Straight;
+            let shell = loft::through(stations, *exponent, straight);
             AnyShell::Space(if straight { Shell { crease: POLYGON_CREASE, ..shell } } else { shell })
         }
         Shape::Ellipsoid { size } => {

@@ -35,7 +35,8 @@ pub(crate) fn bytes(case: &Case, particles: f64, dimension: usize, period: Optio
         Temporal::Harmonics(_) => 1.0 + 2.0 * f64::from(harmonics(case)),
     };
     // a checkpoint is written beside the one that it takes the place of
-    let each = FIELD[dimension - 2] * (1.0 + series + filmed) + 2.0 * STATE * states;
+    let held = case.output.field_particles.map_or(1.0, |most| (f64::from(most) / particles).min(1.0));
+    let each = FIELD[dimension - 2] * (1.0 + series + filmed) * held + 2.0 * STATE * states;
     let wall = if dimension == 2 { WALL[0] * particles } else { WALL[1] * particles.powf(2.0 / 3.0) };
     particles * each + wall + if case.output.report { PICTURES } else { 0.0 }
 }
@@ -63,7 +64,7 @@ fn full(out: &Path, needed: f64, free: f64) -> RunError {
             1e-9 * free,
             out.display()
         ),
-        hint: "make room, choose another disk with `--out`, or write less: a longer `output.field_interval`, a coarser cloud"
+        hint: "make room, choose another disk with `--out`, or write less: a longer `output.field_interval`, fewer `output.field_particles`"
             .into(),
     }
 }

@@ -9,7 +9,7 @@ use super::cost::{Cost, Sized};
 use super::error::RunError;
 use super::files::{Scene, Target, pixels, write_cloud};
 use super::folder;
-use super::look::{Mesh, load_axes};
+use super::look::{Held, Mesh, load_axes};
 use super::pilot;
 use super::recipe;
 use super::setup::{self, Site, Solver, check_motion};
@@ -193,15 +193,14 @@ fn write<const D: usize>(
     fluid.fill_states(&frame, &solver.system.start(), work);
     let cloud = &fluid.discretisation.cloud;
     let n = cloud.n_real();
-    let points: Vec<[f64; 3]> = cloud.x[..n].iter().map(crate::math::Vector::to_3d).collect();
+    let held = Held::of(to.case, cloud);
+    let points: Vec<[f64; 3]> = held.numbers().map(|i| cloud.x[i].to_3d()).collect();
     let mut condition: Vec<f64> = fluid.discretisation.operators.condition.iter().map(|c| f64::from(*c)).collect();
     condition.resize(n, 1.0);
-    let columns = [
-        Column { name: "spacing", components: 1, values: &cloud.spacing[..n] },
-        Column { name: "volume", components: 1, values: &cloud.volume[..n] },
-        Column { name: "condition", components: 1, values: &condition },
-    ];
-    write_cells(&to.out.join("cloud.vtu"), &points, Mesh::of(cloud).cells(), &columns)?;
+    let told = [("spacing", &cloud.spacing[..n]), ("volume", &cloud.volume[..n]), ("condition", &condition)];
+    let told = told.map(|(name, values)| (name, held.rows(1, values)));
+    let columns = told.each_ref().map(|(name, values)| Column { name, components: 1, values });
+    write_cells(&to.out.join("cloud.vtu"), &points, Mesh::of(cloud, &held).cells(), &columns)?;
     write_json(&to.out.join("doctor.json"), &Diagnosis::of(cloud, fluid.discretisation.walls.n_linear))?;
     write_cloud(&Scene { to: *to, view: View::new(fluid, &frame, work), surface, chord: 1.0, vortex: None })
 }

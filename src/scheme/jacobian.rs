@@ -1,7 +1,7 @@
 //! Linearisation of the first-order scheme.
 //!
 //! −∂R_i/∂U_i = Σ_j [−a_ij·A(q_i) + |s_ij|/(2V_i) |A|(q̄)], −∂R_i/∂U_j = a_ij·A(q_j) − |s_ij|/(2V_i) |A|(q̄), with A·n = ∂F·n/∂U
-//! and |A| Roe's matrix with rounded eigenvalues. What edges add is in [`super::edge_blocks`].
+//! and |A| Roe's matrix with rounded eigenvalues. What edges add is in `scheme::edge_blocks`.
 use super::block::Block;
 use super::edge_blocks::edge_blocks;
 use super::edge_flux::half_face;

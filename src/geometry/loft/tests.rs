@@ -89,16 +89,30 @@ fn volumes_are_those_of_the_books() {
     let can = body("revolution = [[0, 0.2], [1, 0.2]]");
     closed(&can);
     assert!((can.volume() / (PI * 0.04) - 1.0).abs() < 2e-3, "{}", can.volume());
-    let ball: Vec<String> = (0..=20)
-        .map(|k| (PI * f64::from(k) / 20.0).sin_cos())
-        .map(|(s, c)| format!("[{}, {}]", -0.5 * c, if s < 1e-9 { 0.0 } else { 0.5 * s }))
-        .collect();
+    let ball: Vec<String> = ball_profile().iter().map(|[x, r]| format!("[{x}, {r}]")).collect();
     let ball = body(&format!("revolution = [{}]", ball.join(", ")));
+    closed(&ball);
+    assert!((ball.volume() / (PI / 6.0) - 1.0).abs() < 2e-3 && ball.sharp.is_empty(), "{}", ball.volume());
+    // a cone of elliptic sections about a line that rises; a box with round corners, 4 Γ(1 + 1/n)² / Γ(1 + 2/n) times the half axes
+    let oval = body("loft = [[0, 0, 0, 0], [1, 0.6, 0.4, 0.3]]");
+    closed(&oval);
+    assert!((oval.volume() / (PI * 0.3 * 0.2 / 3.0) - 1.0).abs() < 2e-3, "{}", oval.volume());
+    let can = body("loft = { stations = [[0, 2, 1], [1, 2, 1], [3, 2, 1]], exponent = 4, sides = \"straight\" }");
+    closed(&can);
+    assert!((can.volume() / (3.0 * 4.0 * 0.5 * 0.927_04) - 1.0).abs() < 2e-3, "{}", can.volume());
+    let ball: Vec<String> = ball_profile().iter().map(|[x, r]| format!("[{x}, {}, {}]", 2.0 * r, 2.0 * r)).collect();
+    let ball = body(&format!("loft = [{}]", ball.join(", ")));
     closed(&ball);
     assert!((ball.volume() / (PI / 6.0) - 1.0).abs() < 2e-3 && ball.sharp.is_empty(), "{}", ball.volume());
     let egg = body("ellipsoid = { size = [3, 1, 2] }");
     closed(&egg);
     assert!((egg.volume() / PI - 1.0).abs() < 1e-3, "{}", egg.volume());
+}
+
+/// Points x, r of half a circle of the diameter 1.
+fn ball_profile() -> Vec<[f64; 2]> {
+    let at = |k: u32| (PI * f64::from(k) / 20.0).sin_cos();
+    (0..=20).map(at).map(|(s, c)| [-0.5 * c, if s < 1e-9 { 0.0 } else { 0.5 * s }]).collect()
 }
 
 #[test]

@@ -10,7 +10,7 @@ use std::path::Path;
 use super::error::RunError;
 use super::folder;
 use super::found::Found;
-use super::look::{GasView, Hull, Mesh, Snapshot, WallSnapshot, field};
+use super::look::{GasView, Held, Hull, Mesh, Snapshot, WallSnapshot, field};
 use super::record::summary::Summary;
 use super::record::{Log, passed};
 use crate::cloud::Diagnosis;
@@ -146,8 +146,9 @@ impl<const D: usize> Files<'_, D> {
     }
 
     fn write_fields(&self, all: &Snapshot, time: f64) -> Result<(), RunError> {
-        let mesh = Mesh::of(self.found.view.cloud());
-        write_field(&self.out.join("field.vtu"), all, &mesh)?;
+        let held = Held::of(self.found.case, self.found.view.cloud());
+        let mesh = Mesh::of(self.found.view.cloud(), &held);
+        write_field(&self.out.join("field.vtu"), &held.thinned(all), &mesh)?;
         write_collection(&self.out.join("field.pvd"), &[(time, "field.vtu")])?;
         let cloud = self.found.view.cloud();
         if cloud.interface.is_empty() {
@@ -208,7 +209,8 @@ pub(crate) fn write_series<const D: usize>(
     let view = gas.seen(work);
     let (all, time, out) = (field(to.case, &view), to.case.flow.units().case_time(view.time()), to.out);
     let name = format!("field-{:05}.vtu", passed(view.time(), interval));
-    write_field(&out.join(&name), &all, &Mesh::of(view.cloud()))?;
+    let held = Held::of(to.case, view.cloud());
+    write_field(&out.join(&name), &held.thinned(&all), &Mesh::of(view.cloud(), &held))?;
     list(out, "series.pvd", f64::NEG_INFINITY, (time, name))
 }
 
@@ -248,7 +250,8 @@ pub(crate) fn write_film_field<const D: usize>(
     all.columns.retain(|(name, ..)| FILMED.contains(name));
     let (time, period) = (units.case_time(view.time()), units.case_time(period));
     let name = format!("film-{:02}.vtu", (part - 1) % u64::from(FILM_FIELDS) + 1);
-    write_field(&to.out.join(&name), &all, &Mesh::of(view.cloud()))?;
+    let held = Held::of(to.case, view.cloud());
+    write_field(&to.out.join(&name), &held.thinned(&all), &Mesh::of(view.cloud(), &held))?;
     // one part is as long as a twelfth of the period: half of it is beyond doubt
     list(to.out, "film.pvd", time - period * (1.0 - 0.5 / f64::from(FILM_FIELDS)), (time, name))
 }

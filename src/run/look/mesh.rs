@@ -4,6 +4,7 @@
 //! triangulation. Outlines of bodies are sides of it, so that no triangle reaches through a wall, and triangles inside bodies are
 //! left out. In space they are the corners of a Delaunay tetrahedralisation without the tetrahedra that lie in bodies or reach
 //! through their walls; beyond a million particles they stay vertices, for the tetrahedra would take more memory than the solver.
+use super::held::Held;
 use crate::cloud::Cloud;
 use crate::math::Vector;
 use crate::math::tetrahedra::tetrahedralise;
@@ -32,21 +33,23 @@ pub(crate) struct Mesh {
 }
 
 impl Mesh {
-    /// The cells of a cloud.
-    pub(crate) fn of<const D: usize>(cloud: &Cloud<D>) -> Self {
+    /// The cells between those particles of a cloud that are held, in their numbers.
+    pub(crate) fn of<const D: usize>(cloud: &Cloud<D>, held: &Held) -> Self {
         match D {
-            2 => Self::of_plane(cloud),
-            3 if cloud.n_real() <= MOST => Self::of_space(cloud),
+            2 => Self::of_plane(cloud, held),
+            3 if held.len() <= MOST => Self::of_space(cloud, held),
             _ => Self::default(),
         }
     }
 
-    fn of_space<const D: usize>(cloud: &Cloud<D>) -> Self {
+    fn of_space<const D: usize>(cloud: &Cloud<D>, held: &Held) -> Self {
         let solid = |x: &Vector<D>| Vector(x.to_3d());
-        let points: Vec<Vector<3>> = cloud.x[..cloud.n_real()].iter().map(solid).collect();
+        let points: Vec<Vector<3>> = held.numbers().map(|i| solid(&cloud.x[i])).collect();
         let normals: Vec<Vector<3>> = cloud.interface.iter().map(|w| solid(&w.normal)).collect();
-        let mut tetrahedra = tetrahedralise(&points, &cloud.spacing[..cloud.n_real()]);
-        let first = cloud.n_fluid;
+        let stretch = held.stretch(D);
+        let spacing: Vec<f64> = held.numbers().map(|i| cloud.spacing[i] * stretch).collect();
+        let mut tetrahedra = tetrahedralise(&points, &spacing);
+        let first = held.n_fluid();
         let normal = |i: u32| normals.get((i as usize).checked_sub(first)?).copied();
         tetrahedra.retain(|corners| {
             let middle = corners.iter().fold(Vector::ZERO, |sum, i| sum + points[*i as usize]) * 0.25;
@@ -64,12 +67,12 @@ impl Mesh {
         Self { walls: walls(&tetrahedra, wall), tetrahedra, ..Self::default() }
     }
 
-    fn of_plane<const D: usize>(cloud: &Cloud<D>) -> Self {
+    fn of_plane<const D: usize>(cloud: &Cloud<D>, held: &Held) -> Self {
         let flat = |x: &Vector<D>| Vector([x[0], x[1]]);
-        let points: Vec<Vector<2>> = cloud.x[..cloud.n_real()].iter().map(flat).collect();
-        let first = cloud.n_fluid;
+        let points: Vec<Vector<2>> = held.numbers().map(|i| flat(&cloud.x[i])).collect();
+        let first = held.n_fluid();
         let walls = Walls {
-            places: &points[cloud.interface_range()],
+            places: &points[first..first + cloud.interface.len()],
             normals: cloud.interface.iter().map(|w| flat(&w.normal)).collect(),
             lengths: cloud.interface.iter().map(|w| w.area.norm()).collect(),
             pieces: cloud.interface.iter().map(|w| w.piece).collect(),

@@ -3,6 +3,7 @@ mod axes;
 mod field;
 pub(crate) mod forces;
 pub(crate) mod friction;
+mod held;
 mod hinge;
 mod hull;
 mod mesh;
@@ -22,6 +23,7 @@ pub use walls::WallSnapshot;
 
 pub(crate) use axes::{GasView, LoadFrame, load_axes, motion, pressure_load, totals};
 pub(crate) use field::{field, pressure_coefficient};
+pub(crate) use held::Held;
 pub(crate) use hinge::hinge_moments;
 pub(crate) use hull::Hull;
 pub(crate) use mesh::Mesh;

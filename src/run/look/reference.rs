@@ -15,11 +15,12 @@ pub(crate) fn planform<const D: usize>(case: &Case, surface: &Surface<D>) -> Pla
     Planform { chord: given.chord.map_or(length, |c| c.0), area: given.area.unwrap_or(seen.area), ..seen }
 }
 
-/// Length of bodies that are all spheres, ellipsoids or bodies of revolution, or of the named one: of a sphere its diameter, which Reynolds
+/// Length of bodies that are all spheres, ellipsoids, bodies of revolution or lofts, or of the named one: of a sphere its diameter, which Reynolds
 /// numbers are told with, not the mean chord of its shadow.
 fn round<const D: usize>(case: &Case, surface: &Surface<D>, body: Option<usize>) -> Option<f64> {
-    let is_round =
-        |shape: &Shape| matches!(shape, Shape::Sphere { .. } | Shape::Ellipsoid { .. } | Shape::Revolution { .. });
+    let is_round = |shape: &Shape| {
+        matches!(shape, Shape::Sphere { .. } | Shape::Ellipsoid { .. } | Shape::Revolution { .. } | Shape::Loft { .. })
+    };
     let counted = || case.bodies.iter().enumerate().filter(|(k, _)| body.is_none_or(|b| b == *k));
     let round = D == 3 && counted().next().is_some() && counted().all(|(_, b)| is_round(&b.shape));
     round.then(|| counted().map(|(k, _)| surface.bounds_of(k).extent()[0]).fold(0.0, f64::max))

@@ -1,11 +1,12 @@
 //! A periodic state that was found: its loads, and what is written of it.
+use std::borrow::Cow;
 use std::path::Path;
 
 use num_complex::Complex64;
 
 use super::super::error::RunError;
 use super::super::files::{FILM, Target, together, write_film};
-use super::super::look::{GasView, Mesh, motion, pressure_coefficient};
+use super::super::look::{GasView, Held, Mesh, motion, pressure_coefficient};
 use super::super::record::Log;
 use super::super::record::trace::Sample;
 use super::super::watch::{compare, sample};
@@ -246,7 +247,7 @@ impl<S: HasGas<D>, const D: usize> PeriodicState<'_, S, D> {
             })?;
         }
         let moments = self.moments(case);
-        self.write_field(&moments, out)?;
+        self.write_field(case, &moments, out)?;
         self.write_surface(&moments, out)
     }
 
@@ -283,8 +284,9 @@ impl<S: HasGas<D>, const D: usize> PeriodicState<'_, S, D> {
     }
 
     /// `field_harmonics.vtu`: mean and complex harmonics at the particles before any motion.
-    fn write_field(&self, moments: &[Vec<Vec<f64>>], out: &Path) -> Result<(), RunError> {
+    fn write_field(&self, case: &Case, moments: &[Vec<Vec<f64>>], out: &Path) -> Result<(), RunError> {
         let (cloud, coefficient) = (&self.system.gas().discretisation.cloud, self.coefficient());
+        let held = Held::of(case, cloud);
         let n = self.balance.instances().harmonics();
         let velocity = ["velocity_x", "velocity_y", "velocity_z"].into_iter().take(D);
         let shift = ["displacement_x", "displacement_y", "displacement_z"].into_iter().take(D);
@@ -300,10 +302,12 @@ impl<S: HasGas<D>, const D: usize> PeriodicState<'_, S, D> {
                 columns.push((format!("{name}_{m}_im"), column(n + m, -1.0)));
             }
         }
-        let points: Vec<[f64; 3]> = cloud.x[..cloud.n_real()].iter().map(Vector::to_3d).collect();
+        let points: Vec<[f64; 3]> = held.numbers().map(|i| cloud.x[i].to_3d()).collect();
+        let columns: Vec<(&str, Cow<'_, [f64]>)> =
+            columns.iter().map(|(name, values)| (name.as_str(), held.rows(1, values))).collect();
         let columns: Vec<Column<'_>> =
             columns.iter().map(|(name, values)| Column { name, components: 1, values }).collect();
-        Ok(write_cells(&out.join("field_harmonics.vtu"), &points, Mesh::of(cloud).cells(), &columns)?)
+        Ok(write_cells(&out.join("field_harmonics.vtu"), &points, Mesh::of(cloud, &held).cells(), &columns)?)
     }
 
     /// `surface_harmonics.csv`: the same of the pressure coefficient on the walls.
