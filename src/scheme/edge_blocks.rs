@@ -265,17 +265,19 @@ fn add<const D: usize>(
     for (k, e) in edges.iter().enumerate() {
         let spread = waves.dissipation(k, g1);
         let (of_ends, ends) = ([waves.state(0, k, g1), waves.state(1, k, g1)], [e.i(), e.j()]);
+        let viscous = fluid.viscous_model.is_some().then(|| {
+            let of_fit = match fluid.conservative {
+                true => [Vector::ZERO; 2],
+                false => weights.of(first + k, e, &(cloud.x[ends[1]] - cloud.x[ends[0]])),
+            };
+            fluid.viscous_edge(at.1, (e, &of_fit), cloud)
+        });
         let served = if e.both() { 2 } else { 1 };
         for side in 0..served {
             let (row, beside) = (ends[side], ends[1 - side]);
             let mut own = waves.block::<-1>(&of_ends[side], side, k, &spread);
             let mut other = waves.block::<1>(&of_ends[1 - side], side, k, &spread);
-            if fluid.viscous_model.is_some() {
-                let of_fit = match fluid.conservative {
-                    true => [Vector::ZERO; 2],
-                    false => weights.of(first + k, e, &(cloud.x[ends[1]] - cloud.x[ends[0]])),
-                };
-                let (exchange, layers) = fluid.viscous_edge(at.1, (e, &of_fit), cloud);
+            if let Some((exchange, layers)) = &viscous {
                 let exchange = [exchange.0, exchange.1][side];
                 for c in 0..n {
                     for r in 0..n {
