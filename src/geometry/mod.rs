@@ -241,20 +241,24 @@ fn load_shell(name: &str, body: &Body, folder: &Path, notes: &mut Vec<String>) -
         }
         Shape::Revolution { profile, sides } => {
             let points: Vec<Vector<2>> = profile.iter().map(|p| Vector(*p)).collect();
-            let straight = *sides == ProfileSides::Straight;
-            let shell = loft::revolution(&outline::profile(&points, straight));
-            AnyShell::Space(if straight { Shell { crease: POLYGON_CREASE, ..shell } } else { shell })
+            AnyShell::Space(creased(*sides, |straight| loft::revolution(&outline::profile(&points, straight))))
         }
         Shape::Loft { stations, exponent, sides } => {
-            let straight = *sides == ProfileSides::Straight;
-            let shell = loft::through(stations, *exponent, straight);
-            AnyShell::Space(if straight { Shell { crease: POLYGON_CREASE, ..shell } } else { shell })
+            AnyShell::Space(creased(*sides, |straight| loft::through(stations, *exponent, straight)))
         }
         Shape::Ellipsoid { size } => {
             let [a, b, c] = size.map(|l| positive(&place, "size", l.0));
             AnyShell::Space(loft::ellipsoid(primitive::sphere(1.0), [0.5 * a?, 0.5 * b?, 0.5 * c?]))
         }
     })
+}
+
+/// What `make` makes of whether sides are straight; every corner between straight ones is sharp.
+fn creased(sides: ProfileSides, make: impl Fn(bool) -> Shell<3>) -> Shell<3> {
+    match sides {
+        ProfileSides::Smooth => make(false),
+        ProfileSides::Straight => Shell { crease: POLYGON_CREASE, ..make(true) },
+    }
 }
 
 /// The text of a file of coordinates, with `\n` at the ends of all lines.

@@ -13,7 +13,8 @@ use super::found::Found;
 use super::look::{GasView, Held, Hull, Mesh, Snapshot, WallSnapshot, field};
 use super::record::summary::Summary;
 use super::record::{Log, passed};
-use crate::cloud::Diagnosis;
+use crate::case::Case;
+use crate::cloud::{Cloud, Diagnosis};
 use crate::geometry::Surface;
 use crate::observe::loads::together as both;
 use crate::observe::table::{Entry, write_csv, write_json};
@@ -146,9 +147,7 @@ impl<const D: usize> Files<'_, D> {
     }
 
     fn write_fields(&self, all: &Snapshot, time: f64) -> Result<(), RunError> {
-        let held = Held::of(self.found.case, self.found.view.cloud());
-        let mesh = Mesh::of(self.found.view.cloud(), &held);
-        write_field(&self.out.join("field.vtu"), &held.thinned(all), &mesh)?;
+        let mesh = write_field(&self.out.join("field.vtu"), self.found.case, self.found.view.cloud(), all)?;
         write_collection(&self.out.join("field.pvd"), &[(time, "field.vtu")])?;
         let cloud = self.found.view.cloud();
         if cloud.interface.is_empty() {
@@ -192,11 +191,15 @@ impl<const D: usize> Files<'_, D> {
     }
 }
 
-/// Writes a field with the cells between its particles; they are vertices where there are none.
-fn write_field(path: &Path, all: &Snapshot, mesh: &Mesh) -> Result<(), RunError> {
+/// Writes what the case wants held of a field, with the cells between its particles, which it returns; they are vertices where there are
+/// none.
+fn write_field<const D: usize>(path: &Path, case: &Case, cloud: &Cloud<D>, all: &Snapshot) -> Result<Mesh, RunError> {
+    let held = Held::of(case, cloud);
+    let (mesh, few) = (Mesh::of(cloud, &held), held.thinned(all));
     let columns: Vec<Column<'_>> =
-        all.columns.iter().map(|(name, components, values)| Column { name, components: *components, values }).collect();
-    Ok(write_cells(path, &all.points, mesh.cells(), &columns)?)
+        few.columns.iter().map(|(name, components, values)| Column { name, components: *components, values }).collect();
+    write_cells(path, &few.points, mesh.cells(), &columns)?;
+    Ok(mesh)
 }
 
 /// Writes the field of one moment of a march, and the list of all so far; `interval` is one of the solver.
@@ -209,8 +212,7 @@ pub(crate) fn write_series<const D: usize>(
     let view = gas.seen(work);
     let (all, time, out) = (field(to.case, &view), to.case.flow.units().case_time(view.time()), to.out);
     let name = format!("field-{:05}.vtu", passed(view.time(), interval));
-    let held = Held::of(to.case, view.cloud());
-    write_field(&out.join(&name), &held.thinned(&all), &Mesh::of(view.cloud(), &held))?;
+    write_field(&out.join(&name), to.case, view.cloud(), &all)?;
     list(out, "series.pvd", f64::NEG_INFINITY, (time, name))
 }
 
@@ -250,8 +252,7 @@ pub(crate) fn write_film_field<const D: usize>(
     all.columns.retain(|(name, ..)| FILMED.contains(name));
     let (time, period) = (units.case_time(view.time()), units.case_time(period));
     let name = format!("film-{:02}.vtu", (part - 1) % u64::from(FILM_FIELDS) + 1);
-    let held = Held::of(to.case, view.cloud());
-    write_field(&to.out.join(&name), &held.thinned(&all), &Mesh::of(view.cloud(), &held))?;
+    write_field(&to.out.join(&name), to.case, view.cloud(), &all)?;
     // one part is as long as a twelfth of the period: half of it is beyond doubt
     list(to.out, "film.pvd", time - period * (1.0 - 0.5 / f64::from(FILM_FIELDS)), (time, name))
 }
