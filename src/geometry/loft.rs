@@ -9,7 +9,7 @@ use super::GeometryError;
 use super::outline;
 use super::section::{Chain, Sides, clustered};
 use super::shell::{Exact, Shell};
-use super::spline::{linear, monotone};
+use super::spline::{End, Spline};
 use crate::case::{PlanformShape, Tip, Wing, WingSides};
 use crate::math::Vector;
 
@@ -71,22 +71,31 @@ pub(super) fn revolution(chain: &Chain) -> Shell<3> {
 /// The body through sections x, width, height and z of the middle, which are |2y/width|^n + |2z/height|^n = 1 for the `exponent` n; closed by
 /// faces where it does not end in points.
 ///
-/// The root of width times height follows the curve of a profile; what widths and heights, and middles, are to it varies monotonically
-/// between the sections.
+/// The root of width times height follows the curve of a profile; what widths are to heights, and the middles, follow splines along x.
 pub(super) fn through(stations: &[Vec<f64>], exponent: f64, straight: bool) -> Shell<3> {
     let size = |s: &[f64]| 0.5 * (s[1] * s[2]).sqrt();
     let profile: Vec<Vector<2>> = stations.iter().map(|s| Vector([s[0], size(s)])).collect();
-    let open: Vec<&Vec<f64>> = stations.iter().filter(|s| s[1] > 0.0).collect();
-    let [of_open, of_all]: [Vec<f64>; 2] =
-        [open.iter().map(|s| s[0]).collect(), profile.iter().map(|p| p[0]).collect()];
-    let ratios: Vec<f64> = open.iter().map(|s| (s[1] / s[2]).ln()).collect();
-    let middles: Vec<f64> = stations.iter().map(|s| s.get(3).copied().unwrap_or(0.0)).collect();
-    let between = |x: &[f64], y: &[f64], at: f64| if straight { linear(x, y, at) } else { monotone(x, y, at) };
+    let last = stations.len() - 1;
+    let form = |k: usize| {
+        // a point has the form of the section beside it
+        let beside = if stations[k][1] > 0.0 {
+            k
+        } else if k == 0 {
+            1
+        } else {
+            k - 1
+        };
+        Vector([(stations[beside][1] / stations[beside][2]).ln(), stations[k].get(3).copied().unwrap_or(0.0)])
+    };
+    let forms: Vec<Vector<2>> = (0..=last).map(form).collect();
+    let places = stations.iter().map(|s| s[0]).collect();
+    let curve = Spline::over(places, forms.clone(), End::Natural, End::Natural);
     let bent = |x: f64| x.signum() * x.abs().powf(2.0 / exponent);
     along_axis(&outline::profile(&profile, straight), |x, [c, s]| {
-        let stretch = (0.5 * between(&of_open, &ratios, x[0])).exp();
-        let middle = between(&of_all, &middles, x[0]);
-        Vector([x[0], x[1] * stretch * bent(c), middle + x[1] / stretch * bent(s)])
+        let (i, part) = curve.interval(x[0]);
+        let form = if straight { forms[i] * (1.0 - part) + forms[i + 1] * part } else { curve.at(i, part).0 };
+        let stretch = (0.5 * form[0]).exp();
+        Vector([x[0], x[1] * stretch * bent(c), form[1] + x[1] / stretch * bent(s)])
     })
 }
 

@@ -55,6 +55,12 @@ impl Spline {
         (point, (q - p) * (1.0 / h) - m * slope(a) + n * slope(b))
     }
 
+    /// The interval that the parameter `x` lies in, and what part of it before; held at the ends.
+    pub(super) fn interval(&self, x: f64) -> (usize, f64) {
+        let i = self.knots.partition_point(|k| *k <= x).saturating_sub(1).min(self.knots.len() - 2);
+        (i, ((x - self.knots[i]) / self.chord(i)).clamp(0.0, 1.0))
+    }
+
     /// Largest sagitta of interval `i` over its chord when it is one piece: h² max |M| / 8.
     pub(super) fn sagitta(&self, i: usize) -> f64 {
         let h = self.knots[i + 1] - self.knots[i];
@@ -102,41 +108,6 @@ fn second_derivatives(knots: &[f64], points: &[Vector<2>], start: End, finish: E
     right
 }
 
-/// The value at `at` of straight lines through points, held beyond the first and the last.
-pub(super) fn linear(x: &[f64], y: &[f64], at: f64) -> f64 {
-    let Some((i, t)) = interval(x, at) else { return y[0] };
-    y[i] + t * (y[i + 1] - y[i])
-}
-
-/// The value at `at` of a smooth curve through points that rises and falls where they do, held beyond the first and the last: cubic pieces
-/// with slopes that are harmonic means of those beside (Fritsch and Butland 1984, SIAM J. Sci. Stat. Comput. 5).
-pub(super) fn monotone(x: &[f64], y: &[f64], at: f64) -> f64 {
-    let Some((i, t)) = interval(x, at) else { return y[0] };
-    let secant = |k: usize| (y[k + 1] - y[k]) / (x[k + 1] - x[k]);
-    let slope = |k: usize| match k {
-        0 => secant(0),
-        k if k + 1 == x.len() => secant(k - 1),
-        k => {
-            let (before, after) = (secant(k - 1), secant(k));
-            let (a, b) = (x[k] - x[k - 1], x[k + 1] - x[k]);
-            match before * after > 0.0 {
-                true => 3.0 * (a + b) / ((2.0 * b + a) / before + (b + 2.0 * a) / after),
-                false => 0.0,
-            }
-        }
-    };
-    let (h, u) = (x[i + 1] - x[i], 1.0 - t);
-    let (from, to) = (y[i] * (1.0 + 2.0 * t) + h * slope(i) * t, y[i + 1] * (1.0 + 2.0 * u) - h * slope(i + 1) * u);
-    u * u * from + t * t * to
-}
-
-/// The interval that `at` lies in and which part of it lies before; none where there is one point only.
-fn interval(x: &[f64], at: f64) -> Option<(usize, f64)> {
-    let last = x.len().checked_sub(2)?;
-    let i = x.partition_point(|k| *k <= at).saturating_sub(1).min(last);
-    Some((i, ((at - x[i]) / (x[i + 1] - x[i])).clamp(0.0, 1.0)))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -163,16 +134,14 @@ mod tests {
     }
 
     #[test]
-    fn monotone_curves_do_not_overshoot() {
-        let (x, y) = ([0.0, 1.0, 3.0, 4.0, 6.0], [0.0, 1.0, 1.0, 3.0, 3.5]);
-        let at = |k: usize| monotone(&x, &y, 0.01 * k as f64);
-        assert!((1..=600).all(|k| at(k) >= at(k - 1) - 1e-15));
-        assert!(
-            (0..5)
-                .all(|k| (monotone(&x, &y, x[k]) - y[k]).abs() < 1e-15 && (linear(&x, &y, x[k]) - y[k]).abs() < 1e-15)
+    fn parameters_fall_into_their_intervals() {
+        let points = vec![Vector([1.0, 0.0]), Vector([2.0, -1.0]), Vector([0.0, 4.0])];
+        let s = Spline::over(vec![0.0, 1.0, 3.0], points.clone(), End::Natural, End::Natural);
+        assert_eq!(
+            [-1.0, 0.25, 2.0, 3.0, 9.0].map(|x| s.interval(x)),
+            [(0, 0.0), (0, 0.25), (1, 0.5), (1, 1.0), (1, 1.0)]
         );
-        assert!(monotone(&x, &y, -1.0) == 0.0 && monotone(&x, &y, 9.0) == 3.5 && monotone(&[1.0], &[2.0], 5.0) == 2.0);
-        // straight lines stay straight
-        assert!((monotone(&[0.0, 1.0, 3.0], &[0.0, 2.0, 6.0], 1.7) - 3.4).abs() < 1e-15);
+        let (i, part) = s.interval(1.0);
+        assert!((s.at(i, part).0 - points[1]).norm() < 1e-15);
     }
 }
