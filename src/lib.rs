@@ -33,6 +33,8 @@ pub mod coupling;
 
 pub mod scheme;
 
+pub mod solid;
+
 pub mod time;
 
 pub mod observe;

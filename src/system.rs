@@ -15,6 +15,7 @@ use std::ops::Range;
 use crate::math::fourier::Instances;
 use crate::math::krylov::Numbers;
 use crate::math::multilevel::Cycle;
+use crate::math::sparse::Symmetric;
 
 /// Unknowns of one kind: `rows` rows of `block` values each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -217,6 +218,51 @@ pub trait System: Sync {
     fn locate(&self, _frame: &Self::Frame, _row: usize) -> Vec<f64> {
         Vec::new()
     }
+}
+
+/// A structure at a moment.
+#[derive(Clone, Copy, Debug)]
+pub struct Moment<'a> {
+    /// Time.
+    pub time: f64,
+    /// Time since materials had their history; 0 for an instant.
+    pub step: f64,
+    /// Displacements.
+    pub displacement: &'a [f64],
+    /// Their rates.
+    pub velocity: &'a [f64],
+    /// What materials remember.
+    pub history: &'a [f64],
+}
+
+/// A system of second order, M u″ = f(t, u, u′, history): structures. Its state is displacements, as many velocities, and what
+/// materials remember, which grows with each step that is taken and not in between.
+pub trait Mechanical: System {
+    /// The stiffness at a state.
+    type Stiffness: Send;
+
+    /// Number of displacements.
+    fn displacements(&self) -> usize;
+    /// Mass that displacement number `k` moves.
+    fn mass(&self, k: usize) -> f64;
+    /// True where a support decides on displacement number `k`.
+    fn is_held(&self, k: usize) -> bool;
+    /// Puts what is held where it is to be at a time.
+    fn hold(&self, time: f64, displacement: &mut [f64]);
+    /// Forces at a moment, and what materials remember of it.
+    fn forces(&self, at: &Moment<'_>, work: &mut Self::Work, force: &mut [f64], after: &mut [f64]);
+    /// The longest step for which explicit methods are stable.
+    fn stable_step(&self, displacement: &[f64]) -> f64;
+    /// The stiffness at a moment.
+    fn linearise(&self, at: &Moment<'_>) -> Self::Stiffness;
+    /// out = K w.
+    fn stiffness(&self, stiffness: &Self::Stiffness, w: &[f64], work: &mut Self::Work, out: &mut [f64]);
+    /// `scale` K + `shift` M among what is free, one for what is held.
+    fn matrix(&self, stiffness: &Self::Stiffness, scale: f64, shift: f64) -> Symmetric;
+    /// The diagonal of K.
+    fn diagonal(&self, stiffness: &Self::Stiffness) -> Vec<f64>;
+    /// Unknowns of the largest matrix that is factored; conjugate gradients do without beyond.
+    fn largest_factored(&self) -> usize;
 }
 
 /// What an implicit method needs besides.

@@ -207,7 +207,7 @@ fn solve(
     let mut session = open(relay)?;
     match session.solve(relay)? {
         Outcome::Interrupted { .. } => Ok(None),
-        Outcome::Finished(_) | Outcome::AlreadyFinished { .. } => {
+        Outcome::Finished(_) | Outcome::Structure(_) | Outcome::AlreadyFinished { .. } => {
             let case = session.case().clone();
             Ok(session.into_solution().map(|solution| (case, solution)))
         }

@@ -3,6 +3,7 @@ use super::kinds::{ANGLE, LENGTH, PLANE_POINT, POSITIVE, SIZE};
 use super::motion_keys::{BODY_MOTION, WALL};
 use super::quantity::Angle;
 use super::schema::{Absent, Field, Kind, List, Range, Table};
+use super::solid_keys::SOLID;
 
 /// Shape keys of a body with the dimension each of them fixes (0: by the number of lengths).
 pub(super) const SHAPES: [(&str, u64); 12] = [
@@ -120,6 +121,13 @@ pub(super) static BODY: Table = Table::of(&[
         "that of `[motion]`",
         "Motion of this body in place of that of `[motion]`, whose frequency it takes when it has none; `motion = {}` keeps \
          the body at rest.",
+    ),
+    Field::optional(
+        "solid",
+        Kind::Table(&SOLID),
+        "rigid",
+        "The body is made of particles and deforms: `solid = { material = \"steel\", through = 5 }`. Where a body has this key and the case no \
+         `[flow]`, there are structures alone, without gas, in SI units.",
     ),
 ])
 .with_one_of(&["naca", "airfoil", "polygon", "circle", "ellipse", "sphere", "box", "surface", "wing", "revolution", "loft", "ellipsoid"]);

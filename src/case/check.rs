@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 use super::Accuracy;
 use super::body_keys::SHAPES;
 use super::draft::{Draft, closest, default_name};
-use super::facts::{is, is_dimensional};
+use super::facts::{has_gas, is, is_dimensional};
 use super::keys::SIDES;
 use super::naca::{Naca, TrailingEdge};
 use super::schema::one_of;
@@ -18,13 +18,17 @@ const ALONG_STREAM: f64 = 0.1;
 pub(super) fn contradictions(draft: &mut Draft<'_>) {
     bodies(draft);
     let dimension = dimension(draft);
-    free_stream(draft);
+    if has_gas(draft) {
+        free_stream(draft);
+    }
     super::polar::contradictions(draft);
     if let Some(d) = dimension {
         placements(draft, d);
         in_dimension(draft, d);
         initial(draft, d);
-        sides(draft, d);
+        if has_gas(draft) {
+            sides(draft, d);
+        }
     }
     domain(draft);
     accuracy(draft, dimension.unwrap_or(2));
@@ -33,6 +37,7 @@ pub(super) fn contradictions(draft: &mut Draft<'_>) {
     super::motion_check::contradictions(draft, dimension);
     super::motion_check::viscosity(draft);
     super::structure_check::contradictions(draft, dimension);
+    super::solid_check::contradictions(draft, dimension);
     generalised_forces(draft);
 }
 
@@ -280,9 +285,10 @@ fn free_stream(draft: &mut Draft<'_>) {
     }
 }
 
-/// Bodies and the free stream as initial field need a speed.
+/// Bodies but those made of particles, and the free stream as initial field, need a speed.
 fn needs_stream(draft: &Draft<'_>) -> bool {
-    draft.given("body") || draft.get("initial").and_then(Value::as_str) == Some("free_stream")
+    (0..draft.count("body")).any(|i| !draft.given(&format!("body[{i}].solid")))
+        || draft.get("initial").and_then(Value::as_str) == Some("free_stream")
 }
 
 /// Rotations and translations have as many components as the case has room for.
@@ -539,7 +545,7 @@ fn time(draft: &mut Draft<'_>) {
             draft.fail(path, message).hint(hint);
         }
     }
-    let marches = draft.get("time.explicit").or(draft.get("time.dual")).is_some();
+    let marches = ["explicit", "dual", "newmark"].iter().any(|march| draft.get(&format!("time.{march}")).is_some());
     if draft.given("output.field_interval") && !marches && draft.get("time").is_some() {
         let message = "`output.field_interval` needs a marching run";
         draft.fail_key("output.field_interval", message).hint("add `[time.explicit]`, or remove the key");

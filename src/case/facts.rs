@@ -12,9 +12,21 @@ pub(super) fn says_something(draft: &Draft<'_>, part: &str) -> bool {
     draft.given(part) && draft.get(part).and_then(Value::as_array).is_none_or(|list| !list.is_empty())
 }
 
-/// True when the free stream has units.
+/// True when some body is made of particles.
+pub(super) fn has_solids(draft: &Draft<'_>) -> bool {
+    (0..draft.count("body")).any(|i| draft.given(&format!("body[{i}].solid")))
+}
+
+/// False for structures alone: bodies made of particles, and neither a free stream nor a field at the start.
+pub(super) fn has_gas(draft: &Draft<'_>) -> bool {
+    let field = draft.given("initial") && !is(draft, "initial", "free_stream");
+    draft.given("flow") || field || !has_solids(draft)
+}
+
+/// True when the free stream has units; structures alone have them.
 pub(super) fn is_dimensional(draft: &Draft<'_>) -> bool {
-    ["pressure", "temperature", "density"].iter().filter(|k| draft.given(&format!("flow.{k}"))).count() > 1
+    !has_gas(draft)
+        || ["pressure", "temperature", "density"].iter().filter(|k| draft.given(&format!("flow.{k}"))).count() > 1
 }
 
 /// True when the value at `path` is this word.
@@ -28,13 +40,19 @@ pub(super) fn is_shaken(draft: &Draft<'_>) -> bool {
     forces.any(|force| FREQUENCIES.iter().any(|f| draft.given(&format!("{force}.{f}"))))
 }
 
-/// The formula `text` at `path` can be read, and knows its frequency.
+/// The formula in time `text` at `path` can be read, and knows its frequency.
 pub(super) fn formula(draft: &mut Draft<'_>, path: &str, text: &str, has_frequency: bool) {
-    match Formula::parse(text) {
+    formula_in(0, draft, path, text, has_frequency);
+}
+
+/// The same, which may name the first `coordinates` of x, y and z.
+pub(super) fn formula_in(coordinates: usize, draft: &mut Draft<'_>, path: &str, text: &str, has_frequency: bool) {
+    match Formula::parse_in(text, coordinates) {
         Err(e) => {
             let name = text.get(e.span.clone()).unwrap_or_default().to_owned();
-            let meant = closest(&name, Formula::vocabulary()).filter(|_| e.message.contains("unknown"));
-            let all = || format!("names are {}", Formula::vocabulary().collect::<Vec<_>>().join(", "));
+            let known = || ["x", "y", "z"].into_iter().take(coordinates).chain(Formula::vocabulary());
+            let meant = closest(&name, known()).filter(|_| e.message.contains("unknown"));
+            let all = || format!("names are {}", known().collect::<Vec<_>>().join(", "));
             let error = draft.fail_within(path, e.span, format!("`{path}`: {}", e.message));
             error.allowed = e.allowed;
             error.hint = match meant {

@@ -1,7 +1,7 @@
 //! Formulas in time, as a case file writes them: `0.1 * sin(omega * t)`.
 //!
 //! The grammar is that of a desk calculator: `+ - * / ^`, parentheses, functions of one or two arguments, the names `t`
-//! (time), `omega` (angular frequency of the motion), `pi`, `e` and `deg` (one degree in radians). A power binds tighter
+//! (time), `omega` (angular frequency of the motion), `pi`, `e` and `deg` (one degree in radians), of places `x`, `y` and `z`. A power binds tighter
 //! than a sign, −t² is −(t²), and groups from the right. [`Formula::parse`] only builds the tree; what evaluates it
 //! chooses the numbers, so that derivatives come from the same tree (`motion::time_function`).
 use std::ops::Range;
@@ -20,6 +20,8 @@ pub enum Formula {
     Time,
     /// Angular frequency of the motion.
     Omega,
+    /// A coordinate of the place, 0 for x: only in formulas of the place.
+    Coordinate(usize),
     /// Minus the argument.
     Negative(Box<Formula>),
     /// A function of one argument.
@@ -89,11 +91,17 @@ const FUNCTIONS: [(&str, Function); 13] = [
 ];
 const PAIRS: [(&str, Operation); 2] = [("min", Operation::Min), ("max", Operation::Max)];
 const NAMES: [&str; 5] = ["t", "omega", "pi", "e", "deg"];
+const COORDINATES: [&str; 3] = ["x", "y", "z"];
 
 impl Formula {
-    /// The formula written in `text`.
+    /// The formula in time written in `text`.
     pub fn parse(text: &str) -> Result<Self, FormulaError> {
-        let mut parser = Parser { text, at: 0, depth: 0 };
+        Self::parse_in(text, 0)
+    }
+
+    /// The formula written in `text`, which may name the first `coordinates` of x, y and z as well.
+    pub fn parse_in(text: &str, coordinates: usize) -> Result<Self, FormulaError> {
+        let mut parser = Parser { text, at: 0, depth: 0, coordinates: &COORDINATES[..coordinates.min(3)] };
         let formula = parser.sum()?;
         match parser.peek() {
             None => Ok(formula),
@@ -104,13 +112,20 @@ impl Formula {
 
     /// The number at time `t` with the angular frequency `omega`.
     pub fn value(&self, t: f64, omega: f64) -> f64 {
+        self.value_at(&[], t, omega)
+    }
+
+    /// The number at the place `x` and time `t`; coordinates that the place lacks are zero.
+    pub fn value_at(&self, x: &[f64], t: f64, omega: f64) -> f64 {
+        let inner = |a: &Self| a.value_at(x, t, omega);
         match self {
-            Self::Number(x) => *x,
+            Self::Number(number) => *number,
             Self::Time => t,
             Self::Omega => omega,
-            Self::Negative(a) => -a.value(t, omega),
-            Self::Call(function, a) => function.value(a.value(t, omega)),
-            Self::Pair(operation, a, b) => operation.value(a.value(t, omega), b.value(t, omega)),
+            Self::Coordinate(axis) => x.get(*axis).copied().unwrap_or(0.0),
+            Self::Negative(a) => -inner(a),
+            Self::Call(function, a) => function.value(inner(a)),
+            Self::Pair(operation, a, b) => operation.value(inner(a), inner(b)),
         }
     }
 
@@ -118,7 +133,7 @@ impl Formula {
     pub fn contains(&self, wanted: &Self) -> bool {
         self == wanted
             || match self {
-                Self::Number(_) | Self::Time | Self::Omega => false,
+                Self::Number(_) | Self::Time | Self::Omega | Self::Coordinate(_) => false,
                 Self::Negative(a) | Self::Call(_, a) => a.contains(wanted),
                 Self::Pair(_, a, b) => a.contains(wanted) || b.contains(wanted),
             }
@@ -177,6 +192,7 @@ struct Parser<'t> {
     text: &'t str,
     at: usize,
     depth: usize,
+    coordinates: &'static [&'static str],
 }
 
 type Parsed = Result<Formula, FormulaError>;
@@ -292,6 +308,9 @@ impl Parser<'_> {
             "deg" => return Ok(Formula::Number(DEGREE)),
             _ => {}
         }
+        if let Some(axis) = self.coordinates.iter().position(|c| *c == name) {
+            return Ok(Formula::Coordinate(axis));
+        }
         if let Some((_, function)) = FUNCTIONS.iter().find(|f| f.0 == name) {
             let (argument, _) = self.arguments(&span, false)?;
             return Ok(Formula::Call(*function, Box::new(argument)));
@@ -379,6 +398,9 @@ mod tests {
         assert_eq!(value("-t^2 + 2*omega - max(1, t)/4"), -0.25 + 6.0 - 0.25);
         assert_eq!(value("sin(omega*t) + exp(-t)*sqrt(abs(t - 1))"), 1.5f64.sin() + (-0.5f64).exp() * 0.5f64.sqrt());
         assert_eq!(value("90*deg"), std::f64::consts::FRAC_PI_2);
+        let place = Formula::parse_in("2*x^2 - y*t", 2).unwrap();
+        assert_eq!(place.value_at(&[3.0, 4.0], 0.5, 0.0), 16.0);
+        assert!(Formula::parse("x").is_err() && Formula::parse_in("z", 2).is_err());
     }
 
     #[test]

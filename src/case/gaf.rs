@@ -133,6 +133,8 @@ impl Case {
             method: SteadyMethod::NewtonKrylov,
             cfl: 10.0,
             cfl_max: 1e6,
+            frequency: None,
+            period: None,
         });
         case.output.report = false;
         case

@@ -8,6 +8,7 @@ use super::kinds::{ANGLE, COUNT, PLANE_POINT, POINT, POSITIVE, SIZE};
 use super::motion_keys::MOTION;
 use super::quantity::{Density, Pressure, Ratio, Temperature, Time, Velocity, Viscosity, WallTime};
 use super::schema::{Absent, Field, Kind, List, Range, Table, Variant};
+use super::solid_keys::CONTACT;
 use super::structure_keys::STRUCTURE;
 use super::time_keys::TIME;
 
@@ -29,7 +30,7 @@ pub(super) static CASE: Table = Table::of(&[
         Kind::Table(&FLOW),
         Absent::Filled,
         "Free stream: `mach` alone (density 1, sound speed 1) or dimensional, from two of `pressure`, `temperature`, \
-         `density` and one of `mach`, `velocity`.",
+         `density` and one of `mach`, `velocity`. Without this table a case of bodies with `solid` has no gas.",
     ),
     Field::optional(
         "motion",
@@ -46,6 +47,12 @@ pub(super) static CASE: Table = Table::of(&[
         "A body on springs, whose coordinates are unknowns beside those of the gas; `[structure]` serves where there is one. In 2-D its \
          masses, inertias, stiffnesses and forces are per unit span. Without a dimensional free stream they are in units of its density, \
          its sound speed and the unit of length.",
+    ),
+    Field::optional(
+        "contact",
+        Kind::Table(&CONTACT),
+        "bodies pass through one another",
+        "Bodies made of particles touch one another and rigid planes.",
     ),
     Field::defaulted(
         "reference",

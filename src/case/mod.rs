@@ -27,6 +27,9 @@ pub mod quantity;
 mod read;
 mod reference;
 mod schema;
+mod solid;
+mod solid_check;
+mod solid_keys;
 mod structure;
 mod structure_check;
 mod structure_keys;
@@ -49,20 +52,26 @@ pub use motion::{
     Rotation, Translation,
 };
 pub use naca::{MeanLine, Naca, NacaDesign, NoSection, SixSeries, ThicknessForm, TrailingEdge};
-pub use output::Output;
+pub use output::{Compare, Output};
 pub use polar::Polar;
 pub use quantity::{
-    Acceleration, Angle, AngularStiffness, Density, Frequency, Inertia, Length, Mass, Pressure, Rate, Ratio, Stiffness,
-    Temperature, Time, Velocity, Viscosity, WallTime,
+    Acceleration, Angle, AngularStiffness, Density, Force, Frequency, Inertia, Length, Mass, PerTime, Pressure, Rate,
+    Ratio, SpecificHeat, Stiffness, Temperature, Time, Velocity, Viscosity, WallTime,
 };
 pub use read::read;
 pub use reference::{reference_markdown, schema};
+pub use solid::{
+    Contact, ContactPlane, Everywhere, JohnsonCook, Perzyna, PlaneState, Solid, SolidAxis, SolidBox, SolidFill,
+    SolidLaw, SolidLoad, SolidMaterial, SolidPlace, SolidProbe, SolidRegion, SolidSupport,
+};
 pub use structure::{
     Freedom, PerCoordinate, SpringShape, Structure, StructureFlap, StructureForce, StructureMode, StructureModel,
 };
 pub use templates::{SCHEMA_FILE, TEMPLATES, template};
 pub use text::{TextError, decimal_comma, numbers_of, open_regular, rounded, separator, text_of};
-pub use time::{Automatic, Dual, Explicit, HarmonicCount, Harmonics, RungeKutta, Steady, SteadyMethod, Temporal};
+pub use time::{
+    Automatic, Dual, Explicit, HarmonicCount, Harmonics, Modes, Newmark, RungeKutta, Steady, SteadyMethod, Temporal,
+};
 pub use verdict::ClaimRow;
 pub use wing::{PlanformShape, ProfileSides, Tip, Wing, WingSides};
 pub use write::{write, write_cloud};
@@ -87,6 +96,9 @@ pub struct Case {
     /// Bodies on springs, whose coordinates are unknowns.
     #[serde(default, rename = "structure")]
     pub structures: Vec<Structure>,
+    /// Contact of bodies made of particles; absent: they pass through one another.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub contact: Option<Contact>,
     /// Reference lengths of the load coefficients.
     #[serde(default)]
     pub reference: Reference,
@@ -180,6 +192,9 @@ pub struct Body {
     pub wall: Option<Wall>,
     /// Motion of its own, in place of that of `[motion]`; an empty one keeps the body at rest.
     pub motion: Option<BodyMotionSpec>,
+    /// What makes it deform; absent: it is rigid, or bends in modes.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub solid: Option<Solid>,
 }
 
 /// What a body is made of. In the file this is one key of the body table.
@@ -501,15 +516,6 @@ pub enum Sensor {
     Curvature,
 }
 
-/// A reference curve of Cp against x/c.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Compare {
-    /// CSV file with columns `x_c` and `Cp`, in space `eta`, the part of the half span, relative to the case file.
-    pub file: String,
-    /// Name in the legend.
-    pub label: String,
-}
-
 /// The hinge of a control surface: what of a body lies behind it, between its ends.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Hinge {
@@ -533,7 +539,7 @@ impl Default for Placement {
 impl Body {
     /// A body of this shape, without name, at rest where the shape puts it.
     pub fn new(shape: Shape) -> Self {
-        Self { name: None, shape, placement: Placement::default(), weld: None, wall: None, motion: None }
+        Self { name: None, shape, placement: Placement::default(), weld: None, wall: None, motion: None, solid: None }
     }
 
     /// A NACA 4-digit section of unit chord with a closed trailing edge, nose at the origin.

@@ -2,7 +2,7 @@
 use serde_json::Value;
 
 use super::draft::Draft;
-use super::facts::{FREQUENCIES, formula, is_dimensional, is_shaken, says_something};
+use super::facts::{FREQUENCIES, formula, has_gas, is_dimensional, is_shaken, says_something};
 
 const PARTS: [&str; 7] = ["pitch", "plunge", "rotation", "translation", "table", "formula", "mode"];
 /// The parts that make a body turn, and where in the table.
@@ -297,7 +297,7 @@ fn in_time(draft: &mut Draft<'_>, laws: &[String]) {
             || (moving.is_some() && (has_frequency(draft, law) || has_own_frequency(draft, law)))
     });
     let repeats = repeats || is_shaken(draft);
-    if draft.get("time.harmonics").is_some() && !repeats {
+    if draft.get("time.harmonics").is_some() && !repeats && has_gas(draft) {
         let hint = "give the motion a frequency, or march with `[time.dual]`";
         draft.fail_key("time.harmonics", "`time.harmonics` needs a periodic motion").hint(hint);
     }

@@ -1,4 +1,4 @@
-//! What a run writes, and how often.
+//! What a run writes, how often, and beside what.
 use serde::{Deserialize, Serialize};
 
 use super::quantity::{Time, WallTime};
@@ -20,6 +20,15 @@ pub struct Output {
     pub report: bool,
     /// Parts of the half span at which Cp is drawn along the chord, in space; absent: those of the references, else a usual list.
     pub stations: Option<Vec<f64>>,
+}
+
+/// A reference curve of Cp against x/c.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Compare {
+    /// CSV file with columns `x_c` and `Cp`, in space `eta`, the part of the half span, relative to the case file.
+    pub file: String,
+    /// Name in the legend.
+    pub label: String,
 }
 
 impl Default for Output {

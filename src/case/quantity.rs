@@ -213,8 +213,8 @@ quantities! {
         unit("in", FOOT / 12.0), unit("ft", FOOT),
     ];
     Pressure, "a pressure", false, "35 kPa", [
-        unit("Pa", 1.0), unit("hPa", 1e2), unit("kPa", 1e3), unit("MPa", 1e6), unit("mbar", 1e2), unit("bar", 1e5),
-        unit("atm", 101_325.0), unit("psi", POUND * GRAVITY * 144.0 / (FOOT * FOOT)),
+        unit("Pa", 1.0), unit("hPa", 1e2), unit("kPa", 1e3), unit("MPa", 1e6), unit("GPa", 1e9), unit("mbar", 1e2),
+        unit("bar", 1e5), unit("atm", 101_325.0), unit("psi", POUND * GRAVITY * 144.0 / (FOOT * FOOT)),
         unit("psf", POUND * GRAVITY / (FOOT * FOOT)),
     ];
     Temperature, "a temperature", false, "288.15 K", [
@@ -263,6 +263,13 @@ quantities! {
         unit("N m/rad", 1.0), unit("N m", 1.0), unit("kN m/rad", 1e3), unit("N m/deg", 1.0 / DEGREE),
         unit("lbf ft/rad", POUND * GRAVITY * FOOT),
         unit("N/rad", 1.0), unit("N m/rad/m", 1.0), unit("N", 1.0), unit("lbf/rad", POUND * GRAVITY),
+    ];
+    Force, "a force", false, "250 N", [
+        unit("N", 1.0), unit("kN", 1e3), unit("MN", 1e6), unit("mN", 1e-3), unit("lbf", POUND * GRAVITY),
+    ];
+    PerTime, "a rate", false, "10 1/s", [unit("1/s", 1.0), unit("s-1", 1.0), unit("1/ms", 1e3), unit("1/us", 1e6)];
+    SpecificHeat, "a heat capacity", false, "900 J/kg/K", [
+        unit("J/kg/K", 1.0), unit("J/(kg K)", 1.0), unit("kJ/kg/K", 1e3), unit("kJ/(kg K)", 1e3),
     ];
 }
 

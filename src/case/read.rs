@@ -111,12 +111,24 @@ impl Reader<'_> {
             (Kind::IntegerOr(min, max, _), value) => self.whole(kind, (*min, *max), number(value), item, path),
             (Kind::Flag, DeValue::Boolean(flag)) => Some(json!(flag)),
             (Kind::Text | Kind::Matching(_), DeValue::String(text)) if !text.trim().is_empty() => Some(json!(text)),
+            (Kind::Formula, DeValue::String(text)) if !text.trim().is_empty() => Some(json!(text)),
+            (Kind::Formula, value) if number(value).is_some() => {
+                let x = self.number(number(value)?, &Range::ANY, item, path)?.as_f64()?;
+                Some(json!(format!("{x:?}")))
+            }
+            (Kind::TableOr(_, word), DeValue::String(text)) => {
+                self.word(&[word], text, item, path).map(|_| json!(word))
+            }
+            (Kind::TableOr(table, _), DeValue::Table(document)) => Some(json!(self.table(table, document, path))),
             (Kind::Words(words), DeValue::String(text)) => {
                 let names: Vec<_> = words.iter().map(|w| w.0).collect();
                 self.word(&names, text, item, path).map(|i| json!(names[i]))
             }
             (Kind::List(list), DeValue::Array(items)) => self.list(kind, list, items, item, path),
-            (Kind::List(list), _) if list.single => Some(json!([self.value(&list.item, item, path)?])),
+            (Kind::List(list), _) if list.single => {
+                self.place_formula(list, item, &format!("{path}[0]"));
+                Some(json!([self.value(&list.item, item, path)?]))
+            }
             (Kind::Table(table), DeValue::Table(document)) => Some(json!(self.table(table, document, path))),
             (Kind::Table(table), _) if table.shorthand.is_some() => self.shorthand(table, item, path),
             (Kind::Tables(table), DeValue::Array(items)) => Some(self.tables(table, items, path)),
@@ -246,14 +258,25 @@ impl Reader<'_> {
         whole: &Item<'_>,
         path: &str,
     ) -> Option<Value> {
-        let read: Vec<_> =
-            items.iter().enumerate().map(|(i, item)| self.value(&list.item, item, &format!("{path}[{i}]"))).collect();
+        let read = items.iter().enumerate().map(|(i, item)| {
+            let here = format!("{path}[{i}]");
+            self.place_formula(list, item, &here);
+            self.value(&list.item, item, &here)
+        });
+        let read: Vec<_> = read.collect();
         if (list.min..=list.max).contains(&items.len()) {
             return read.into_iter().collect::<Option<Vec<_>>>().map(Value::Array);
         }
         let message = format!("`{path}` has {} values, but must be {}", items.len(), kind.words());
         self.draft.fail_at(path, whole.span(), message).allowed(kind.words());
         None
+    }
+
+    /// Remembers where a formula in a list was written: its own places are pointed at.
+    fn place_formula(&mut self, list: &List, item: &Item<'_>, path: &str) {
+        if matches!(list.item, Kind::Formula) {
+            self.draft.place(path, item.span(), item.span());
+        }
     }
 
     fn tables(&mut self, table: &'static Table, items: &[Item<'_>], path: &str) -> Value {
@@ -441,19 +464,20 @@ fn lower(doc: &str) -> String {
     chars.next().map_or_else(String::new, |c| c.to_lowercase().chain(chars).collect())
 }
 
-/// Path of the table that has a key called `key`.
+/// Path of the table that has a key called `key`; of several the one the fewest levels down, and of those the first.
 fn home_of(key: &str, table: &'static Table, path: &str) -> Option<String> {
     if !path.is_empty() && table.field(key).is_some() {
         return Some(path.to_owned());
     }
-    table.fields.iter().find_map(|field| {
+    let homes = table.fields.iter().filter_map(|field| {
         let here = join(path, field.key);
         match &field.kind {
-            Kind::Table(inner) | Kind::Tables(inner) => home_of(key, inner, &here),
+            Kind::Table(inner) | Kind::Tables(inner) | Kind::TableOr(inner, _) => home_of(key, inner, &here),
             Kind::Choice(variants) => {
                 variants.iter().find_map(|v| v.table.and_then(|inner| home_of(key, inner, &join(&here, v.name))))
             }
             _ => None,
         }
-    })
+    });
+    homes.min_by_key(|home| home.matches('.').count())
 }

@@ -72,6 +72,8 @@ fn kind_schema(kind: &Kind) -> Value {
             json!({ "anyOf": [{ "type": "integer", "minimum": min, "maximum": max }, { "const": word }] })
         }
         Kind::Flag => json!({ "type": "boolean" }),
+        Kind::Formula => json!({ "anyOf": [{ "type": "string", "minLength": 1 }, { "type": "number" }] }),
+        Kind::TableOr(table, word) => json!({ "anyOf": [{ "const": word }, table_schema(table)] }),
         Kind::Text => json!({ "type": "string", "minLength": 1 }),
         Kind::Matching(pattern) => json!({ "type": "string", "pattern": pattern }),
         Kind::Words(words) => {
@@ -167,10 +169,10 @@ pub fn reference_markdown() -> String {
     page
 }
 
-fn dimensions() -> [&'static Dimension; 16] {
+fn dimensions() -> [&'static Dimension; 19] {
     use super::quantity::{
-        Acceleration, Angle, AngularStiffness, Density, Frequency, Inertia, Length, Mass, Pressure, Rate, Stiffness,
-        Temperature, Time, Velocity, Viscosity, WallTime,
+        Acceleration, Angle, AngularStiffness, Density, Force, Frequency, Inertia, Length, Mass, PerTime, Pressure,
+        Rate, SpecificHeat, Stiffness, Temperature, Time, Velocity, Viscosity, WallTime,
     };
     [
         Angle::DIMENSION,
@@ -188,6 +190,9 @@ fn dimensions() -> [&'static Dimension; 16] {
         Inertia::DIMENSION,
         Stiffness::DIMENSION,
         AngularStiffness::DIMENSION,
+        Force::DIMENSION,
+        PerTime::DIMENSION,
+        SpecificHeat::DIMENSION,
         WallTime::DIMENSION,
     ]
 }
@@ -196,7 +201,9 @@ fn dimensions() -> [&'static Dimension; 16] {
 /// sides of the domain, the parts of a motion) are described at the first.
 fn sections(field: &'static Field, path: &str, told: &mut Vec<&'static Table>, page: &mut String) {
     match &field.kind {
-        Kind::Table(table) => section(&format!("[{path}]"), (field.doc, table), path, told, page),
+        Kind::Table(table) | Kind::TableOr(table, _) => {
+            section(&format!("[{path}]"), (field.doc, table), path, told, page)
+        }
         Kind::Tables(table) => section(&format!("[[{path}]]"), (field.doc, table), path, told, page),
         Kind::Choice(variants) => {
             for variant in *variants {

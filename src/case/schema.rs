@@ -54,6 +54,10 @@ pub(super) enum Kind {
     Words(&'static [(&'static str, &'static str)]),
     /// A list of `min` to `max` items.
     List(&'static List),
+    /// A text that is a formula, or a number.
+    Formula,
+    /// A table, or this word.
+    TableOr(&'static Table, &'static str),
     /// A table.
     Table(&'static Table),
     /// An array of tables; a single one may be written as a plain table.
@@ -304,6 +308,8 @@ impl Kind {
             Self::Flag => "`true` or `false`".to_owned(),
             Self::Text | Self::Matching(_) => "a text in quotes".to_owned(),
             Self::Words(words) => one_of(words.iter().map(|w| w.0)),
+            Self::Formula => "a formula in quotes or a number".to_owned(),
+            Self::TableOr(_, word) => format!("a table or `\"{word}\"`"),
             Self::List(list) => list.words(),
             Self::Table(table) => match table.shorthand.and_then(|key| table.field(key)) {
                 Some(field) => format!("{} or a table", field.kind.words()),

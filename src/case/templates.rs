@@ -1,11 +1,12 @@
 //! Case files to start from.
 
 /// Names of the templates with a line about each.
-pub const TEMPLATES: [(&str, &str); 7] = [
+pub const TEMPLATES: [(&str, &str); 8] = [
     ("airfoil", "transonic flow over a NACA 0012 section (2-D)"),
     ("flutter", "a typical section on springs in a stream (2-D)"),
     ("pitching", "an airfoil that pitches about its quarter chord (2-D)"),
     ("polar", "lift, drag and moment of a section at several angles and Mach numbers (2-D)"),
+    ("solid", "a cantilever made of particles: vibrations, bending, impacts (2-D)"),
     ("sphere", "subsonic flow past a sphere (3-D)"),
     ("stl", "a body from an STL or OBJ surface file (3-D)"),
     ("travelling", "a cylinder in a stream of particles that travel with the fluid (2-D)"),
@@ -21,6 +22,7 @@ pub fn template(name: &str) -> Option<String> {
         "flutter" => include_str!("templates/flutter.toml"),
         "pitching" => include_str!("templates/pitching.toml"),
         "polar" => include_str!("templates/polar.toml"),
+        "solid" => include_str!("templates/solid.toml"),
         "sphere" => include_str!("templates/sphere.toml"),
         "stl" => include_str!("templates/stl.toml"),
         "travelling" => include_str!("templates/travelling.toml"),

@@ -1,7 +1,7 @@
 //! How a case goes on in time, as data.
 use serde::{Deserialize, Serialize};
 
-use super::{Case, Time};
+use super::{Case, Frequency, Time};
 
 /// Steady relaxation or time marching.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -15,6 +15,36 @@ pub enum Temporal {
     Dual(Dual),
     /// Find the periodic solution by harmonic balance.
     Harmonics(Harmonics),
+    /// March structures alone in time with implicit steps.
+    Newmark(Newmark),
+    /// Find free vibrations of structures alone.
+    Modes(Modes),
+}
+
+/// Implicit march of structures alone by the generalised-α method.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Newmark {
+    /// Step in time.
+    pub step: Time,
+    /// Time at which the run ends.
+    pub until: Time,
+    /// Spectral radius ρ∞ at infinite frequency, 0 to 1.
+    pub rho_infinity: f64,
+    /// Residual over the size of the forces at which a step ends.
+    pub tolerance: f64,
+    /// Greatest number of Newton iterations of a step.
+    pub iterations: u32,
+}
+
+/// Free vibrations of structures alone.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Modes {
+    /// How many.
+    pub number: u32,
+    /// The modes are the nearest above this frequency; absent: the lowest ones.
+    pub shift: Option<Frequency>,
+    /// They are about the static equilibrium under the loads, not about the stress-free shape.
+    pub preload: bool,
 }
 
 /// Harmonic balance.
@@ -46,6 +76,12 @@ pub struct Harmonics {
     pub cfl: f64,
     /// Greatest Courant number.
     pub cfl_max: f64,
+    /// Frequency of structures alone; with gas it is that of the motion.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub frequency: Option<Frequency>,
+    /// Their period instead.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub period: Option<Time>,
 }
 
 /// A number of harmonics.
@@ -79,6 +115,9 @@ pub struct Steady {
     pub cfl: f64,
     /// Greatest Courant number.
     pub cfl_max: f64,
+    /// Equal steps in which the loads of structures alone grow; absent: one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub load_steps: Option<u32>,
 }
 
 /// Method of the steady relaxation.
@@ -155,14 +194,21 @@ pub struct Dual {
 impl Case {
     /// True for cases that change in time.
     pub fn is_unsteady(&self) -> bool {
-        !matches!(self.time, Temporal::Steady(_))
+        !matches!(self.time, Temporal::Steady(_) | Temporal::Modes(_))
+    }
+
+    /// Angular frequency of a harmonic balance of structures alone.
+    pub fn balance_frequency(&self) -> Option<f64> {
+        let Temporal::Harmonics(plan) = &self.time else { return None };
+        plan.frequency.map(|f| f.0).or_else(|| Some(std::f64::consts::TAU / plan.period?.0))
     }
 
     /// Time of the solver at which a march ends; `period` is that of the motion, in the same units. `None` when it counts periods
     /// of a motion that has none, and where nothing marches.
     pub fn end(&self, period: Option<f64>) -> Option<f64> {
         let (until, periods) = match &self.time {
-            Temporal::Steady(_) | Temporal::Harmonics(_) => return None,
+            Temporal::Steady(_) | Temporal::Harmonics(_) | Temporal::Modes(_) => return None,
+            Temporal::Newmark(plan) => (Some(plan.until), None),
             Temporal::Explicit(plan) => (plan.until, plan.periods),
             Temporal::Dual(plan) => (plan.until, plan.periods),
         };
@@ -171,9 +217,13 @@ impl Case {
 
     /// Implicit step in the time of the solver, the first one when steps are adaptive; `period` as for [`Self::end`].
     pub fn step_length(&self, period: Option<f64>) -> Option<f64> {
-        let Temporal::Dual(plan) = &self.time else { return None };
-        let step = plan.step.map(|t| self.flow.units().solver_time(t.0));
-        step.or_else(|| Some(period? / f64::from(plan.steps_per_period?)))
+        let (step, steps_per_period) = match &self.time {
+            Temporal::Dual(plan) => (plan.step, plan.steps_per_period),
+            Temporal::Newmark(plan) => (Some(plan.step), None),
+            _ => return None,
+        };
+        let step = step.map(|t| self.flow.units().solver_time(t.0));
+        step.or_else(|| Some(period? / f64::from(steps_per_period?)))
     }
 }
 
@@ -185,6 +235,13 @@ impl Default for Temporal {
 
 impl Default for Steady {
     fn default() -> Self {
-        Self { method: SteadyMethod::NewtonKrylov, orders: 6.0, iterations: 2000, cfl: 10.0, cfl_max: 1e6 }
+        Self {
+            method: SteadyMethod::NewtonKrylov,
+            orders: 6.0,
+            iterations: 2000,
+            cfl: 10.0,
+            cfl_max: 1e6,
+            load_steps: None,
+        }
     }
 }

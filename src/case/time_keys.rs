@@ -1,6 +1,6 @@
 //! The keys of `[time]`.
 use super::kinds::{COUNT, POSITIVE};
-use super::quantity::Time;
+use super::quantity::{Frequency, Time};
 use super::schema::{Absent, Field, Kind, Range, Table, Variant};
 
 pub(super) const TIME: &[Variant] = &[
@@ -14,7 +14,43 @@ pub(super) const TIME: &[Variant] = &[
          tables of a march that stand beside it are left aside",
     )
     .ruling(),
+    Variant::table("newmark", &NEWMARK, "march structures alone in time with implicit steps, by the generalised-alpha method"),
+    Variant::table("modes", &MODES, "find free vibrations of structures alone"),
 ];
+
+static NEWMARK: Table = Table::of(&[
+    Field::required("step", Kind::Quantity(Time::DIMENSION, Range::POSITIVE), "Step in time."),
+    Field::required("until", Kind::Quantity(Time::DIMENSION, Range::POSITIVE), "Time at which the run ends."),
+    Field::defaulted(
+        "rho_infinity",
+        Kind::Number(Range::between(0.0, 1.0)),
+        Absent::Number(0.9),
+        "What a step leaves of vibrations too fast for it: 1 is the trapezoidal rule, 0 takes them away at once.",
+    ),
+    Field::defaulted(
+        "tolerance",
+        Kind::Number(Range { min: 0.0, max: 0.1, closed: false }),
+        Absent::Number(1e-8),
+        "Residual over the size of the forces at which a step ends.",
+    ),
+    Field::defaulted("iterations", COUNT, Absent::Integer(20), "Greatest number of Newton iterations of a step."),
+]);
+
+static MODES: Table = Table::of(&[
+    Field::defaulted("number", Kind::Integer(1, 1000), Absent::Integer(6), "Number of modes."),
+    Field::optional(
+        "shift",
+        Kind::Quantity(Frequency::DIMENSION, Range::POSITIVE),
+        "the lowest ones",
+        "The modes are the nearest above this frequency.",
+    ),
+    Field::defaulted(
+        "preload",
+        Kind::Flag,
+        Absent::Flag(false),
+        "Vibrations are about the static equilibrium under the loads, else about the body without stress.",
+    ),
+]);
 
 static HARMONICS: Table = Table::of(&[
         Field::required(
@@ -73,6 +109,18 @@ static HARMONICS: Table = Table::of(&[
         METHOD,
         CFL,
         CFL_MAX,
+        Field::optional(
+            "frequency",
+            Kind::Quantity(Frequency::DIMENSION, Range::POSITIVE),
+            "that of the motion; structures alone need this or `period`",
+            "Frequency of structures alone, `omega` in the histories of their loads.",
+        ),
+        Field::optional(
+            "period",
+            Kind::Quantity(Time::DIMENSION, Range::POSITIVE),
+            "that of the motion; structures alone need this or `frequency`",
+            "Period of structures alone instead.",
+        ),
     ]).short("number");
 
 const METHOD: Field =
@@ -87,6 +135,7 @@ static STEADY: Table = Table::of(&[
     Field::defaulted("iterations", COUNT, Absent::Integer(2000), "Greatest number of iterations."),
     CFL,
     CFL_MAX,
+    Field::optional("load_steps", COUNT, "1", "Structures alone: the loads grow in so many equal steps."),
 ]);
 
 const RELAXATIONS: &[(&str, &str)] = &[

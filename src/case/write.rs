@@ -8,10 +8,14 @@ use super::Case;
 use super::keys::CASE;
 use super::quantity::{Angle, exact_degrees};
 use super::schema::{Field, Kind, Table};
+use super::solid_check::OF_GAS;
 
 /// The case as TOML; lines that only repeat a default say so.
 pub fn write(case: &Case) -> String {
     let Ok(Value::Object(mut tree)) = serde_json::to_value(case) else { return String::new() };
+    if !case.has_gas() {
+        tree.retain(|key, _| key != "flow" && !OF_GAS.contains(&key.as_str()));
+    }
     super::polar::put_back(&mut tree);
     let mut text = String::new();
     for field in CASE.fields.iter().filter(|f| !has_header(f, tree.get(f.key))) {
@@ -93,7 +97,7 @@ fn inline(kind: &Kind, value: &Value) -> String {
         (Kind::Values(one), Value::Array(items)) => bracket(items.iter().map(|v| inline(one, v))),
         (Kind::Values(one), value) => inline(one, value),
         (Kind::List(list), Value::Array(items)) => bracket(items.iter().map(|v| inline(&list.item, v))),
-        (Kind::Table(table), Value::Object(keys)) => braces(table, keys),
+        (Kind::Table(table) | Kind::TableOr(table, _), Value::Object(keys)) => braces(table, keys),
         (Kind::Tables(table), Value::Array(items)) => {
             bracket(items.iter().filter_map(Value::as_object).map(|keys| braces(table, keys)))
         }

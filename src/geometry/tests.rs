@@ -192,7 +192,7 @@ fn polygons_are_mended_or_refused() {
 fn body(shape: Shape, rotate: Vec<f64>, translate: Vec<f64>) -> Body {
     let translate = translate.into_iter().map(Length).collect();
     let placement = Placement { scale: 1.0, rotate: rotate.into_iter().map(Angle).collect(), translate };
-    Body { name: None, shape, placement, weld: None, wall: None, motion: None }
+    Body { name: None, shape, placement, weld: None, wall: None, motion: None, solid: None }
 }
 
 fn case(bodies: Vec<Body>) -> Case {

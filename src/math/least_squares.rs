@@ -127,6 +127,11 @@ fn condition_of_two([a, b, c]: [f64; 3]) -> f64 {
     if high > 0.0 && determinant > 0.0 { high * high / determinant } else { f64::INFINITY }
 }
 
+/// Smallest eigenvalue of a small symmetric matrix.
+pub fn smallest_eigenvalue<const D: usize>(m: &[[f64; D]; D]) -> f64 {
+    eigenvalues_symmetric(m).into_iter().fold(f64::INFINITY, f64::min)
+}
+
 /// Eigenvalues of a small symmetric matrix by cyclic Jacobi rotations.
 fn eigenvalues_symmetric<const D: usize>(m: &[[f64; D]; D]) -> [f64; D] {
     let mut a = *m;

@@ -18,6 +18,13 @@ const FLAT: f64 = 1e-4;
 /// Tetrahedra between `points`, which are `spacing` apart; the last corner is on the left of the first three, so that volumes are
 /// positive. None where there are fewer than four points or a coordinate is not a number.
 pub fn tetrahedralise(points: &[Vector<3>], spacing: &[f64]) -> Vec<[u32; 4]> {
+    let mut all = delaunay(points, spacing);
+    all.retain(|corners| !is_flat(points, corners));
+    all
+}
+
+/// The same with all that are flat, so that every face inside the hull of the points belongs to two of them.
+pub fn delaunay(points: &[Vector<3>], spacing: &[f64]) -> Vec<[u32; 4]> {
     let moved = moved(points, spacing);
     if points.len() < 4 || !moved.iter().flatten().all(|x| x.is_finite()) {
         return Vec::new();
@@ -35,7 +42,7 @@ pub fn tetrahedralise(points: &[Vector<3>], spacing: &[f64]) -> Vec<[u32; 4]> {
                 Node::Infinity => return None,
             }
         }
-        turned(points, corners)
+        Some(turned(&moved, corners))
     };
     (0..all.get_nb_tetrahedra()).filter_map(corners).collect()
 }
@@ -52,14 +59,21 @@ fn moved(points: &[Vector<3>], spacing: &[f64]) -> Vec<[f64; 3]> {
     points.iter().zip(spacing).map(|(x, h)| x.0.map(|x| x + MOVED * h * part())).collect()
 }
 
-/// The corners in an order that makes the volume positive, `None` for a flat tetrahedron.
-fn turned(points: &[Vector<3>], corners: [u32; 4]) -> Option<[u32; 4]> {
+fn volume_of([a, b, c, d]: [Vector<3>; 4]) -> f64 {
+    Vector(cross(&(b - a).0, &(c - a).0)).dot(&(d - a))
+}
+
+/// The corners in an order that makes the volume positive.
+fn turned(moved: &[[f64; 3]], [a, b, c, d]: [u32; 4]) -> [u32; 4] {
+    let volume = volume_of([a, b, c, d].map(|i| Vector(moved[i as usize])));
+    if volume > 0.0 { [a, b, c, d] } else { [a, c, b, d] }
+}
+
+fn is_flat(points: &[Vector<3>], corners: &[u32; 4]) -> bool {
     let [a, b, c, d] = corners.map(|i| points[i as usize]);
-    let volume = Vector(cross(&(b - a).0, &(c - a).0)).dot(&(d - a));
     let sides = [b - a, c - a, d - a, c - b, d - b, d - c];
     let longest = sides.iter().map(Vector::norm_squared).fold(0.0, f64::max).sqrt();
-    let [a, b, c, d] = corners;
-    (volume.abs() > FLAT * longest.powi(3)).then_some(if volume > 0.0 { [a, b, c, d] } else { [a, c, b, d] })
+    !(volume_of([a, b, c, d]) > FLAT * longest.powi(3))
 }
 
 #[cfg(test)]

@@ -109,6 +109,8 @@ fn evaluate<S: Scalar>(formula: &Formula, t: S, omega: f64) -> S {
         Formula::Number(x) => S::constant(*x),
         Formula::Time => t,
         Formula::Omega => S::constant(omega),
+        // formulas in time name no place
+        Formula::Coordinate(_) => S::constant(0.0),
         Formula::Negative(a) => -evaluate(a, t, omega),
         Formula::Call(function, a) => call(*function, evaluate(a, t, omega)),
         Formula::Pair(operation, a, b) => {

@@ -2,6 +2,7 @@
 pub mod gas;
 pub mod outgoing;
 pub mod riemann;
+pub mod solid;
 pub mod viscous;
 
 pub use gas::{Conserved, Gas, Primitive};

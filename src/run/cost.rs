@@ -189,7 +189,7 @@ impl Sized<'_> {
     fn in_time(&self, n: f64, fastest: impl FnOnce() -> f64) -> f64 {
         let end = self.case.end(self.period).unwrap_or_default();
         match &self.case.time {
-            Temporal::Steady(_) => 0.0,
+            Temporal::Steady(_) | Temporal::Newmark(_) | Temporal::Modes(_) => 0.0,
             Temporal::Dual(_) => {
                 let each = STEP * (n / USUAL).powf(STEP_GROWTH);
                 self.case.step_length(self.period).map_or(0.0, |step| each * end / step)
@@ -206,7 +206,7 @@ impl Sized<'_> {
 /// Bytes that each particle of a run takes.
 pub(crate) fn bytes_each(case: &Case, dimension: usize) -> f64 {
     let plane = match &case.time {
-        Temporal::Steady(_) => STEADY_BYTES,
+        Temporal::Steady(_) | Temporal::Newmark(_) | Temporal::Modes(_) => STEADY_BYTES,
         Temporal::Dual(_) => STEADY_BYTES + STEP_BYTES,
         Temporal::Harmonics(_) => BALANCE_BYTES[0] + BALANCE_BYTES[1] * f64::from(harmonics(case)),
         Temporal::Explicit(_) => EXPLICIT_BYTES[usize::from(case.moves() && case.particles() != ParticleMotion::Rigid)],

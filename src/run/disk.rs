@@ -30,7 +30,7 @@ pub(crate) fn bytes(case: &Case, particles: f64, dimension: usize, period: Optio
     let series = case.output.field_interval.map_or(0.0, |t| (end / units.solver_time(t.0)).floor());
     let filmed = if case.moves() && period.is_some() { FILMED * f64::from(FILM_FIELDS) } else { 0.0 };
     let states = match case.time {
-        Temporal::Steady(_) | Temporal::Explicit(_) => 1.0,
+        Temporal::Steady(_) | Temporal::Explicit(_) | Temporal::Newmark(_) | Temporal::Modes(_) => 1.0,
         Temporal::Dual(_) => STEPPED,
         Temporal::Harmonics(_) => 1.0 + 2.0 * f64::from(harmonics(case)),
     };

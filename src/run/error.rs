@@ -155,6 +155,14 @@ pub enum RunError {
         /// What may help.
         hint: String,
     },
+    /// A structure of particles that cannot be made.
+    #[error("{what}\nhint: {hint}")]
+    Solid {
+        /// Why.
+        what: String,
+        /// What may help.
+        hint: String,
+    },
     /// The case asks for something that can be written down but not yet computed.
     #[error("{what}\nhint: {hint}")]
     Unsupported {
@@ -201,6 +209,7 @@ impl RunError {
             | Self::NoPeriod { .. }
             | Self::Case(_)
             | Self::Senseless { .. }
+            | Self::Solid { .. }
             | Self::Unsupported { .. } => Blame::Case,
         }
     }

@@ -7,6 +7,7 @@
 //! Rooms, each of which uses those before it only: `stage` and `recipe` (what is done, in which order), `look` (loads and fields
 //! of a flow), `build` (from a case to its equations), `record` (what a run knows about itself), `found` (what it tells at its
 //! end), `files`, `watch` (one loop that drives any integrator, and those who watch it), `studies` (what is done on a cloud),
+//! `solids` (structures of particles alone),
 //! `course` (the way through the stages, and what many flows on the same clouds leave to one another), `session`; on top of it [`gaf`] and [`verify`].
 mod accuracy;
 mod cost;
@@ -27,6 +28,7 @@ mod recipe;
 mod record;
 mod session;
 mod setup;
+mod solids;
 mod stage;
 mod studies;
 mod understood;
@@ -55,6 +57,7 @@ pub use record::polar::PolarPoint;
 pub use record::summary::{Apart, BalanceReport, Ledger, MarchingCheck, Reclouding, Summary};
 pub use record::trace::{Change, FirstHarmonics, LastPeriod, PeriodicLoads};
 pub use session::{Outcome, Session, Solution};
+pub use solids::{ModeRow, ProbeRow, SolidLedger, SolidSummary};
 pub use understood::{BodyBox, ReferenceValues, Understood};
 
 use record::saved::{Saved, equations_of};
@@ -63,7 +66,20 @@ use stage::Stage;
 
 /// Runs a case into a fresh folder.
 pub fn run(case: &Case, places: &Places, monitor: &mut dyn Monitor) -> Result<Outcome, RunError> {
+    if !case.has_gas() {
+        solids::supported(case)?;
+        let (_, _held) = folder::create(case, &places.input, &places.out)?;
+        return solids::solve(case, &places.input, Some(&places.out), false, monitor).map(structure);
+    }
     Session::open(case, &places.input)?.keep_in(&places.out, monitor)?.solve(monitor)
+}
+
+/// How a structure alone ended, as the outcome of a run.
+fn structure(ended: solids::Ended) -> Outcome {
+    match ended {
+        solids::Ended::Finished(summary) => Outcome::Structure(summary),
+        solids::Ended::Interrupted(iteration) => Outcome::Interrupted { iteration },
+    }
 }
 
 /// Runs a case into a fresh folder from the last state of another run on the same cloud: a steady flow, a march or a harmonic
@@ -112,6 +128,10 @@ pub fn set_aside(case: &Case, places: &Places) -> Result<Option<PathBuf>, RunErr
         return Ok(None);
     }
     folder::check_compared(case, &places.input)?;
+    if !case.has_gas() {
+        solids::supported(case)?;
+        return folder::set_aside(&places.out).map(Some);
+    }
     match dimension(case) {
         2 => rehearse::<2>(case, &places.input)?,
         _ => rehearse::<3>(case, &places.input)?,
@@ -136,6 +156,14 @@ pub fn resume(out: &Path, monitor: &mut dyn Monitor) -> Result<Outcome, RunError
     if let Some(summary) = folder::finished(out) {
         folder::read_case(out)?;
         return Ok(Outcome::AlreadyFinished { summary });
+    }
+    let (case, input) = folder::read_case(out)?;
+    if !case.has_gas() {
+        folder::check_input(&case, &input, out)?;
+        folder::check_begun(out)?;
+        let _held = folder::hold(out)?;
+        folder::reopen(out)?;
+        return solids::solve(&case, &input, Some(out), true, monitor).map(structure);
     }
     continued(out)?.solve(monitor)
 }

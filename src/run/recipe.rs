@@ -70,14 +70,14 @@ pub(crate) fn relaxation(case: &Case) -> Option<Steady> {
         Temporal::Steady(steady) => Some(steady.clone()),
         Temporal::Dual(dual) => Some(start_of_march(case, dual)),
         Temporal::Harmonics(plan) => Some(harmonic_prelude(plan)),
-        Temporal::Explicit(_) => None,
+        Temporal::Explicit(_) | Temporal::Newmark(_) | Temporal::Modes(_) => None,
     }
 }
 
 /// The march of a case; `None` where it does not march.
 pub(crate) fn marching(case: &Case, period: Option<f64>, dimension: usize) -> Result<Option<Marching>, RunError> {
     match &case.time {
-        Temporal::Steady(_) | Temporal::Harmonics(_) => Ok(None),
+        Temporal::Steady(_) | Temporal::Harmonics(_) | Temporal::Newmark(_) | Temporal::Modes(_) => Ok(None),
         Temporal::Explicit(plan) => {
             let until = case.end(period).ok_or(RunError::NoPeriod { table: "explicit" })?;
             let method = match plan.method {
@@ -143,7 +143,7 @@ pub(crate) fn plan_from(case: &Case, from: &Stage) -> Vec<Stage> {
 /// has.
 fn in_time(case: &Case, held: Option<usize>, least: usize) -> Vec<Task> {
     match &case.time {
-        Temporal::Steady(_) => Vec::new(),
+        Temporal::Steady(_) | Temporal::Newmark(_) | Temporal::Modes(_) => Vec::new(),
         Temporal::Explicit(_) | Temporal::Dual(_) => vec![Task::March],
         Temporal::Harmonics(plan) => {
             let (most, auto) = (most(plan), is_automatic(plan));

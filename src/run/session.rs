@@ -21,6 +21,7 @@ use super::record::saved::{Kept, Position, Saved, flatten};
 use super::record::summary::{Clock, Summary};
 use super::record::{Described, IterationHistory, Log, Scales};
 use super::setup::{self, Site, Solver, check_motion};
+use super::solids::SolidSummary;
 use super::stage::{Stage, Task};
 use super::studies::{self, Reached, Start, Turn};
 use crate::case::{self, Case};
@@ -39,6 +40,8 @@ use crate::verify::wall::Wall;
 pub enum Outcome {
     /// It ran to its end.
     Finished(Box<Summary>),
+    /// It ran to its end, a structure without a gas.
+    Structure(Box<SolidSummary>),
     /// It had run to its end before: nothing was computed or written.
     AlreadyFinished {
         /// Its `summary.json`.

@@ -9,6 +9,8 @@ mod norm;
 pub mod ordinary;
 mod preconditioning;
 pub mod relax;
+pub mod structural;
+pub mod symplectic;
 
 use crate::system::{Reach, System};
 use relax::Resume;

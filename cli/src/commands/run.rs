@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use alula::observe::convergence::{Convergence, FamilyEnd};
 use alula::observe::loads::Coefficients;
 use alula::observe::strips::Span;
-use alula::run::{self, Outcome as Ended, PeriodicLoads, Places, PolarPoint, RunError, Summary};
+use alula::run::{self, Outcome as Ended, PeriodicLoads, Places, PolarPoint, RunError, SolidSummary, Summary};
 use serde_json::json;
 
 use crate::arguments::{self, Verbosity};
@@ -47,6 +47,7 @@ pub(crate) fn tell(ended: Result<Ended, RunError>, out: &Path, watch: &mut Watch
     watch.progress().finish();
     match ended {
         Ok(Ended::Finished(summary)) => finished(&summary, out, verbosity),
+        Ok(Ended::Structure(summary)) => structure(&summary, out, verbosity),
         Ok(Ended::AlreadyFinished { summary }) => already_finished(&summary, out, verbosity),
         Ok(Ended::Interrupted { iteration }) => interrupted(out, iteration, verbosity),
         Err(problem) => super::refuse(&problem),
@@ -95,6 +96,50 @@ fn already_finished(summary: &serde_json::Value, out: &Path, verbosity: Verbosit
         hint: format!("change `{}` and go on with `alula resume`", out.join("case.toml").display()),
     });
     results(&found, lacking, verbosity)
+}
+
+/// Tells what was found of a structure alone.
+fn structure(summary: &SolidSummary, out: &Path, verbosity: Verbosity) -> Outcome {
+    let found = match verbosity.json {
+        true => serde_json::to_string(summary).unwrap_or_default() + "\n",
+        false => describe_structure(summary, out),
+    };
+    results(&found, None, verbosity)
+}
+
+/// The same in words.
+fn describe_structure(s: &SolidSummary, out: &Path) -> String {
+    let mut lines = vec![format!("{}: {} solid particles, {:.1} CPU s", s.title, s.particles, s.cpu_seconds)];
+    for (k, mode) in s.modes.iter().enumerate() {
+        lines.push(format!(
+            "mode {}: {:.6} Hz, generalised mass {:.6e}, residual {:.0e}",
+            k + 1,
+            mode.frequency,
+            mode.generalised_mass,
+            mode.residual
+        ));
+    }
+    if let Some(residual) = s.residual.filter(|_| s.study == "equilibrium") {
+        lines.push(format!("equilibrium: forces are left to {residual:.0e} of the largest"));
+    }
+    if let Some(ledger) = s.ledger.filter(|_| s.study != "modes") {
+        lines.push(format!(
+            "energy: kinetic {:.4e}, strain {:.4e}, stabilisation {:.1e}, dissipated {:.4e}, damped {:.4e}, work {:.4e}; open by {:.1e}",
+            ledger.kinetic,
+            ledger.strain,
+            ledger.stabilisation,
+            ledger.dissipated,
+            ledger.damped,
+            ledger.work,
+            ledger.open
+        ));
+    }
+    for probe in &s.probes {
+        let values: Vec<String> = probe.displacement.iter().map(|x| format!("{x:.6e}")).collect();
+        lines.push(format!("{} moved by ({})", probe.name, values.join(", ")));
+    }
+    lines.push(format!("results in {}\n", out.display()));
+    lines.join("\n")
 }
 
 fn finished(summary: &Summary, out: &Path, verbosity: Verbosity) -> Outcome {

@@ -107,18 +107,18 @@ fn bodies(draft: &mut Draft<'_>) {
             draft.fail_key(&path, message).hint("keep one, or name another body");
         }
         taken.push(body);
-        prescribed(draft, body);
+        prescribed(draft, body, "a body on springs");
     }
 }
 
-/// Nothing prescribes where a body is whose coordinates are unknowns.
-fn prescribed(draft: &mut Draft<'_>, body: usize) {
+/// Nothing prescribes where a body is whose coordinates are unknowns; `what` it is.
+pub(super) fn prescribed(draft: &mut Draft<'_>, body: usize, what: &str) {
     let own = format!("body[{body}].motion");
     let law = if draft.given(&own) { own } else { "motion".to_owned() };
     let part = PARTS.iter().map(|part| format!("{law}.{part}")).find(|part| says_something(draft, part));
     if let Some(part) = part {
         let hint = "remove one of the two; `motion = {}` in the `[[body]]` keeps `[motion]` away from it";
-        draft.fail_key(&part, "a body on springs cannot have a prescribed motion as well").hint(hint);
+        draft.fail_key(&part, format!("{what} cannot have a prescribed motion as well")).hint(hint);
     }
 }
 

@@ -1,0 +1,131 @@
+//! The largest eigenvalues of a symmetric operator by blocks of Krylov's vectors.
+//!
+//! A block of vectors, its image, the image of that and so on are made orthogonal to all before them (block Lanczos with full
+//! reorthogonalisation: Golub and Underwood 1977), and the operator is diagonalised in the space that they span. A block as large as
+//! an eigenvalue is often finds all vectors of it: a free body has six at zero. With the inverse as operator these are the smallest ones.
+use faer::{Mat, Side};
+
+use super::sweep::dot;
+
+/// Vectors in a block.
+const BLOCK: usize = 8;
+
+/// Eigenvalues, the largest first, and unit vectors.
+#[derive(Clone, Debug)]
+pub struct Pairs {
+    /// Eigenvalues.
+    pub values: Vec<f64>,
+    /// Vectors.
+    pub vectors: Vec<Vec<f64>>,
+    /// |A x − θ x|/θ of each.
+    pub left: Vec<f64>,
+}
+
+/// The `count` largest eigenvalues of the operator `apply(x)`, which replaces the columns of length `n` in `x` by their images, each
+/// to a relative `tolerance` of what is left, in a space of at most `most` vectors. `mask` sets to zero what takes no part.
+pub fn largest(
+    n: usize,
+    count: usize,
+    (tolerance, most): (f64, usize),
+    mask: impl Fn(&mut [f64]),
+    mut apply: impl FnMut(&mut [f64]),
+) -> Pairs {
+    let (mut basis, mut images): (Vec<Vec<f64>>, Vec<Vec<f64>>) = (Vec::new(), Vec::new());
+    let mut next: Vec<Vec<f64>> = (0..BLOCK.max(count.min(2 * BLOCK))).map(|k| start(n, k)).collect();
+    loop {
+        let before = basis.len();
+        for mut vector in next {
+            mask(&mut vector);
+            if basis.len() < n && orthogonal(&mut vector, &basis) {
+                basis.push(vector);
+            }
+        }
+        if basis.len() == before {
+            return ritz(&basis, &images, count);
+        }
+        let mut block = basis[before..].concat();
+        apply(&mut block);
+        images.extend(block.chunks_exact(n.max(1)).map(|image| {
+            let mut image = image.to_vec();
+            mask(&mut image);
+            image
+        }));
+        let found = ritz(&basis, &images, count);
+        let done = found.values.len() == count && found.left.iter().all(|r| *r < tolerance);
+        if done || basis.len() >= most.min(n) {
+            return found;
+        }
+        next = images[before..].to_vec();
+    }
+}
+
+/// Makes a vector orthogonal to others, and of length one; false where nothing is left of it.
+fn orthogonal(vector: &mut [f64], others: &[Vec<f64>]) -> bool {
+    let whole = dot(vector, vector).sqrt();
+    for _ in 0..2 {
+        for other in others {
+            let part = dot(vector, other);
+            vector.iter_mut().zip(other).for_each(|(v, o)| *v -= part * o);
+        }
+    }
+    let left = dot(vector, vector).sqrt();
+    if !(left > 1e-12 * whole) {
+        return false;
+    }
+    vector.iter_mut().for_each(|v| *v /= left);
+    true
+}
+
+/// Eigenvectors in the space of a basis whose images are known.
+fn ritz(basis: &[Vec<f64>], images: &[Vec<f64>], count: usize) -> Pairs {
+    let m = images.len();
+    let projected = Mat::from_fn(m, m, |i, j| dot(&basis[i], &images[j]));
+    let even = Mat::from_fn(m, m, |i, j| 0.5 * (projected[(i, j)] + projected[(j, i)]));
+    let mut pairs = Pairs { values: Vec::new(), vectors: Vec::new(), left: Vec::new() };
+    let Ok(found) = even.self_adjoint_eigen(Side::Lower) else { return pairs };
+    let combined = |of: &[Vec<f64>], k: usize| {
+        let mut x = vec![0.0; of[0].len()];
+        for (row, vector) in of.iter().enumerate().take(m) {
+            let part = found.U()[(row, k)];
+            x.iter_mut().zip(vector).for_each(|(x, v)| *x += part * v);
+        }
+        x
+    };
+    for k in (0..m).rev().take(count) {
+        let value = found.S()[k];
+        let (x, image) = (combined(basis, k), combined(images, k));
+        let left: f64 = x.iter().zip(&image).map(|(x, y)| (y - value * x).powi(2)).sum();
+        pairs.left.push(left.sqrt() / value.abs().max(f64::MIN_POSITIVE));
+        pairs.values.push(value);
+        pairs.vectors.push(x);
+    }
+    pairs
+}
+
+/// Numbers without a pattern.
+fn start(n: usize, k: usize) -> Vec<f64> {
+    let mut seed = 0x9e37_79b9_7f4a_7c15_u64.wrapping_mul(2 * k as u64 + 1);
+    let mut next = || {
+        seed ^= seed << 13;
+        seed ^= seed >> 7;
+        seed ^= seed << 17;
+        (seed >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
+    };
+    (0..n).map(|_| next()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn eigenvalues_that_come_six_times_are_all_found() {
+        let n = 200;
+        let value = |k: usize| if k < 6 { 100.0 } else { 50.0 / (k - 5) as f64 };
+        let apply = |x: &mut [f64]| x.chunks_exact_mut(n).for_each(|x| (0..n).for_each(|k| x[k] *= value(k)));
+        let found = largest(n, 9, (1e-9, 120), |_| {}, apply);
+        for (k, x) in found.values.iter().enumerate() {
+            assert!((x - value(k)).abs() < 1e-9 * x, "{k}: {x}");
+        }
+    }
+}

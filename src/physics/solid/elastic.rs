@@ -1,0 +1,244 @@
+//! Elastic laws: stress as the derivative of an energy of the deformation gradient F.
+//!
+//! P = ∂ψ/∂F with ψ per volume of the undeformed body, for three energies that agree to second order at small strain:
+//!
+//! - linear: ψ = μ ε:ε + ½ λ (tr ε)², ε = sym(F − I); for small rotations only,
+//! - Saint-Venant and Kirchhoff: the same with Green's strain E = ½(FᵀF − I); for large rotations and small strains,
+//! - neo-Hookean: ψ = ½ μ (J^(−2/3) tr(FᵀF) − 3) + ¼ K (J² − 1 − 2 ln J), J = det F; for large strains, compressible
+//!   (Simo & Hughes 1998, *Computational Inelasticity*, eq. 9.2.3, 9.2.6).
+//!
+//! All is in three dimensions: plane strain is F₃₃ = 1.
+use super::tensor::{self, Tensor};
+use crate::math::jet::Scalar;
+
+/// Elastic moduli of an isotropic solid, in units of pressure.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Moduli {
+    /// Shear modulus μ.
+    pub shear: f64,
+    /// Bulk modulus K.
+    pub bulk: f64,
+}
+
+impl Moduli {
+    /// μ = E/(2(1 + ν)) and K = E/(3(1 − 2ν)) of Young's modulus E and Poisson's ratio ν.
+    pub const fn of_young(young: f64, poisson: f64) -> Self {
+        Self { shear: 0.5 * young / (1.0 + poisson), bulk: young / (3.0 * (1.0 - 2.0 * poisson)) }
+    }
+
+    /// Lamé's first parameter λ = K − ⅔ μ.
+    #[inline(always)]
+    pub const fn lame(&self) -> f64 {
+        self.bulk - self.shear * (2.0 / 3.0)
+    }
+
+    /// Young's modulus E = 9Kμ/(3K + μ).
+    pub const fn young(&self) -> f64 {
+        9.0 * self.bulk * self.shear / (3.0 * self.bulk + self.shear)
+    }
+
+    /// Poisson's ratio ν = (3K − 2μ)/(6K + 2μ).
+    pub const fn poisson(&self) -> f64 {
+        (3.0 * self.bulk - 2.0 * self.shear) / (6.0 * self.bulk + 2.0 * self.shear)
+    }
+
+    /// Modulus of pressure waves K + 4/3 μ.
+    pub const fn pressure_wave(&self) -> f64 {
+        self.bulk + self.shear * (4.0 / 3.0)
+    }
+}
+
+/// Stress of linear elasticity, P = 2μ ε + λ tr ε I with ε = sym(F − I).
+#[inline(always)]
+pub fn linear<S: Scalar>(m: &Moduli, f: &Tensor<S>) -> Tensor<S> {
+    let strain = small_strain(f);
+    let mean = tensor::trace(&strain) * m.lame();
+    tensor::plus_identity(&tensor::times(&strain, S::constant(2.0 * m.shear)), mean)
+}
+
+/// Energy of linear elasticity per reference volume, μ ε:ε + ½ λ (tr ε)².
+#[inline(always)]
+pub fn linear_energy<S: Scalar>(m: &Moduli, f: &Tensor<S>) -> S {
+    quadratic(m, &small_strain(f))
+}
+
+/// Stress of Saint-Venant and Kirchhoff, P = F (2μ E + λ tr E I) with Green's strain E = ½(FᵀF − I).
+#[inline(always)]
+pub fn saint_venant_kirchhoff<S: Scalar>(m: &Moduli, f: &Tensor<S>) -> Tensor<S> {
+    let strain = green_strain(f);
+    let mean = tensor::trace(&strain) * m.lame();
+    tensor::product(f, &tensor::plus_identity(&tensor::times(&strain, S::constant(2.0 * m.shear)), mean))
+}
+
+/// Energy of Saint-Venant and Kirchhoff per reference volume, μ E:E + ½ λ (tr E)².
+#[inline(always)]
+pub fn saint_venant_kirchhoff_energy<S: Scalar>(m: &Moduli, f: &Tensor<S>) -> S {
+    quadratic(m, &green_strain(f))
+}
+
+/// Stress of the neo-Hookean solid, P = μ J^(−2/3) (F − ⅓ tr(FᵀF) F⁻ᵀ) + ½ K (J² − 1) F⁻ᵀ; NaN where J ≤ 0.
+#[inline(always)]
+pub fn neo_hookean<S: Scalar>(m: &Moduli, f: &Tensor<S>) -> Tensor<S> {
+    let cofactor = tensor::cofactor(f);
+    let volume = f[0][0] * cofactor[0][0] + f[0][1] * cofactor[0][1] + f[0][2] * cofactor[0][2];
+    let shear = isochoric(volume) * m.shear;
+    let square = tensor::contraction(f, f) * (1.0 / 3.0);
+    let along = ((volume * volume - 1.0) * (0.5 * m.bulk) - shear * square) / volume;
+    tensor::of(|i, j| shear * f[i][j] + along * cofactor[i][j])
+}
+
+/// Energy of the neo-Hookean solid per reference volume, ½ μ (J^(−2/3) tr(FᵀF) − 3) + ¼ K (J² − 1 − 2 ln J).
+#[inline(always)]
+pub fn neo_hookean_energy<S: Scalar>(m: &Moduli, f: &Tensor<S>) -> S {
+    let volume = tensor::determinant(f);
+    let shape = isochoric(volume) * tensor::contraction(f, f) - 3.0;
+    shape * (0.5 * m.shear) + volumetric_energy(m, volume)
+}
+
+/// Energy of a change of volume, ¼ K (J² − 1 − 2 ln J).
+#[inline(always)]
+pub(super) fn volumetric_energy<S: Scalar>(m: &Moduli, volume: S) -> S {
+    let logarithm = volume.map(|x| [x.ln(), 1.0 / x, -1.0 / (x * x)]);
+    (volume * volume - 1.0 - logarithm * 2.0) * (0.25 * m.bulk)
+}
+
+/// Strain of small displacements sym(F − I).
+#[inline(always)]
+fn small_strain<S: Scalar>(f: &Tensor<S>) -> Tensor<S> {
+    tensor::plus_identity(&tensor::symmetric(f), S::constant(-1.0))
+}
+
+/// Green's strain ½(FᵀF − I), from the gradient of displacement so that small strains keep their digits.
+#[inline(always)]
+fn green_strain<S: Scalar>(f: &Tensor<S>) -> Tensor<S> {
+    let h = tensor::plus_identity(f, S::constant(-1.0));
+    tensor::of(|i, j| (h[i][j] + h[j][i] + h[0][i] * h[0][j] + h[1][i] * h[1][j] + h[2][i] * h[2][j]) * 0.5)
+}
+
+/// μ e:e + ½ λ (tr e)².
+#[inline(always)]
+fn quadratic<S: Scalar>(m: &Moduli, e: &Tensor<S>) -> S {
+    let trace = tensor::trace(e);
+    tensor::contraction(e, e) * m.shear + trace * trace * (0.5 * m.lame())
+}
+
+/// J^(−2/3), NaN where J ≤ 0.
+#[inline(always)]
+pub(super) fn isochoric<S: Scalar>(volume: S) -> S {
+    volume.map(|j| {
+        let root = inverse_cube_root(j);
+        let value = root * root;
+        // of J^(−2/3): −2/3 J^(−5/3) and 10/9 J^(−8/3), with 1/J = root³
+        let over = value * root;
+        [value, value * over * (-2.0 / 3.0), value * over * over * (10.0 / 9.0)]
+    })
+}
+
+/// Upper word of the number whose exponent and fraction, less a third of those of x, begin x^(−1/3) within 4 %.
+const CUBE_ROOT_START: u64 = 0x553e_f0ff;
+/// A third of 2³², rounded up.
+const A_THIRD: u64 = 0x5555_5556;
+
+/// x^(−1/3) for normal positive x and NaN otherwise, of plain arithmetic so that loops over it become vector code.
+///
+/// The exponent is divided by minus three as an integer, and two steps of fourth order follow: the relative error falls from
+/// 4e-2 to 1e-5 and below rounding (Householder's method; start as in Lomont's inverse square root, 2003).
+#[inline(always)]
+fn inverse_cube_root(x: f64) -> f64 {
+    let third = ((x.to_bits() >> 32) * A_THIRD) >> 32;
+    let mut y = f64::from_bits(CUBE_ROOT_START.wrapping_sub(third) << 32);
+    for _ in 0..2 {
+        // (1 − e)^(−1/3) = 1 + e/3 + 2e²/9 + 14e³/81 + …
+        let e = 1.0 - x * y * y * y;
+        y += y * e * (1.0 / 3.0 + e * (2.0 / 9.0 + e * (14.0 / 81.0)));
+    }
+    if x > 0.0 { y } else { f64::NAN }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::dual::Dual;
+    use super::super::samples::{close, random_tensor};
+    use super::*;
+    use crate::math::jet::Jet;
+
+    type Pair = (fn(&Moduli, &Tensor<f64>) -> Tensor<f64>, fn(&Moduli, &Tensor<Jet>) -> Jet);
+    const LAWS: [Pair; 3] = [
+        (linear, linear_energy),
+        (saint_venant_kirchhoff, saint_venant_kirchhoff_energy),
+        (neo_hookean, neo_hookean_energy),
+    ];
+    const STEEL: Moduli = Moduli::of_young(2.0, 0.3);
+
+    #[test]
+    fn the_cube_root_is_exact_to_rounding() {
+        for k in -300..300 {
+            let x = 10f64.powf(f64::from(k) / 30.0) * 1.07;
+            let exact = 1.0 / x.cbrt();
+            assert!((inverse_cube_root(x) / exact - 1.0).abs() < 5e-16, "{x}");
+        }
+        assert!(
+            inverse_cube_root(-1.0).is_nan() && inverse_cube_root(0.0).is_nan() && inverse_cube_root(f64::NAN).is_nan()
+        );
+    }
+
+    #[test]
+    fn moduli_are_those_of_young_and_poisson() {
+        let m = Moduli::of_young(7.0, 0.25);
+        assert!((m.young() - 7.0).abs() < 1e-14 && (m.poisson() - 0.25).abs() < 1e-15);
+        assert!((m.lame() - 7.0 * 0.25 / (1.25 * 0.5)).abs() < 1e-14);
+        assert!((m.pressure_wave() - m.lame() - 2.0 * m.shear).abs() < 1e-14);
+    }
+
+    #[test]
+    fn stress_is_the_derivative_of_energy() {
+        for (seed, (stress, energy)) in (0..30).map(|k| (k, LAWS[k as usize % 3])) {
+            let f = tensor::plus_identity(&random_tensor(seed, 0.4), 1.0);
+            let p = stress(&STEEL, &f);
+            let slope = tensor::of(|i, j| {
+                let mut f = tensor::convert(&f, Jet::constant);
+                f[i][j].first = 1.0;
+                energy(&STEEL, &f).first
+            });
+            close(&p, &slope, 2e-14);
+            let h = 1e-5;
+            let at = |i: usize, j: usize, h: f64| {
+                let mut f = tensor::convert(&f, Jet::constant);
+                f[i][j] = f[i][j] + h;
+                energy(&STEEL, &f).value
+            };
+            close(&p, &tensor::of(|i, j| (at(i, j, h) - at(i, j, -h)) / (2.0 * h)), 1e-9);
+        }
+    }
+
+    #[test]
+    fn the_laws_agree_at_small_strain() {
+        let e = 1e-7;
+        let f = tensor::plus_identity(&random_tensor(7, e), 1.0);
+        let p = linear(&STEEL, &f);
+        // they differ by squares of the strain
+        close(&saint_venant_kirchhoff(&STEEL, &f), &p, 20.0 * e * e);
+        close(&neo_hookean(&STEEL, &f), &p, 20.0 * e * e + 1e-15);
+    }
+
+    #[test]
+    fn nearly_incompressible_rubber_keeps_its_digits() {
+        let m = Moduli::of_young(1.0, 0.4999);
+        // shape changes, volume does not: a pressure appears only through rounding
+        let f = [[2.0, 0.3, 0.0], [0.0, 0.5, 0.0], [0.0, 0.0, 1.0]];
+        let p = neo_hookean(&m, &f);
+        let tau = tensor::product_transposed(&p, &f);
+        assert!(tensor::trace(&tau).abs() < 1e-12, "{}", tensor::trace(&tau));
+        let b = tensor::product_transposed(&f, &f);
+        close(&tau, &tensor::times(&tensor::deviator(&b), m.shear), 1e-12);
+    }
+
+    #[test]
+    fn second_derivatives_of_energy_are_first_ones_of_stress() {
+        let (f, d) = (tensor::plus_identity(&random_tensor(5, 0.3), 1.0), random_tensor(6, 1.0));
+        let dual = neo_hookean(&STEEL, &tensor::of(|i, j| Dual { value: f[i][j], derivative: d[i][j] }));
+        let jet = neo_hookean_energy(&STEEL, &tensor::of(|i, j| Jet { value: f[i][j], first: d[i][j], second: 0.0 }));
+        let work = tensor::contraction(&tensor::convert(&dual, |x| x.derivative), &d);
+        assert!((jet.second - work).abs() < 1e-13 * work.abs());
+    }
+}

@@ -1,0 +1,136 @@
+//! Files of structures alone: fields, histories, modes, summary.
+use std::path::{Path, PathBuf};
+
+use super::super::error::RunError;
+use super::march::Row;
+use super::setup::Built;
+use super::summary::{SolidSummary, ledger};
+use crate::case::Case;
+use crate::observe::table::{Entry, write_csv, write_json};
+use crate::observe::vtk::{Cells, Column, write_cells, write_collection};
+use crate::physics::solid::{Tensor, tensor};
+use crate::solid::modes::Mode;
+
+/// Where files go.
+pub(super) struct Files<'a> {
+    pub(super) case: &'a Case,
+    pub(super) out: Option<&'a Path>,
+}
+
+/// A field with one or three numbers a particle.
+struct Values {
+    name: &'static str,
+    components: usize,
+    values: Vec<f64>,
+}
+
+impl Files<'_> {
+    fn path(&self, name: &str) -> Option<PathBuf> {
+        self.out.map(|out| out.join(name))
+    }
+
+    /// The structure as deformed: `<name>.vtu`.
+    pub(super) fn fields<const D: usize>(&self, name: &str, built: &Built<D>, u: &[f64]) -> Result<(), RunError> {
+        let Some(path) = self.path(&format!("{name}.vtu")) else { return Ok(()) };
+        let solid = &built.structure.solid;
+        let state = built.structure.state(0.0, u);
+        let stresses: Vec<Tensor> = (0..solid.len()).map(|i| solid.cauchy(i, &state)).collect();
+        let raised = |v: &[[f64; D]]| -> Vec<f64> {
+            v.iter().flat_map(|v| std::array::from_fn::<f64, 3, _>(|a| v.get(a).copied().unwrap_or(0.0))).collect()
+        };
+        let mises = |s: &Tensor| (1.5f64).sqrt() * tensor::norm(&tensor::deviator(s));
+        let memory = |f: &dyn Fn(&crate::physics::solid::Material, &[f64]) -> f64| -> Vec<f64> {
+            (0..solid.len()).map(|i| f(solid.material_of(i), solid.memory(i, state.history))).collect()
+        };
+        let mut all = vec![
+            Values { name: "displacement", components: 3, values: raised(state.displacement) },
+            Values { name: "velocity", components: 3, values: raised(state.velocity) },
+            Values { name: "von_mises_stress", components: 1, values: stresses.iter().map(mises).collect() },
+            Values { name: "pressure", components: 1, values: stresses.iter().map(|s| -tensor::trace(s) / 3.0).collect() },
+            Values { name: "body", components: 1, values: solid.body.iter().map(|b| f64::from(*b)).collect() },
+            Values { name: "material", components: 1, values: solid.material.iter().map(|b| f64::from(*b)).collect() },
+        ];
+        if solid.materials.iter().any(|m| m.yield_stress().is_some()) {
+            all.push(Values { name: "plastic_strain", components: 1, values: memory(&|m, h| m.plastic_strain(h)) });
+            all.push(Values { name: "temperature", components: 1, values: memory(&|m, h| m.temperature(h)) });
+        }
+        let place = |i: usize| -> [f64; 3] {
+            std::array::from_fn(|a| if a < D { solid.particles.x[i][a] + state.displacement[i][a] } else { 0.0 })
+        };
+        let points: Vec<[f64; 3]> = (0..solid.len()).map(place).collect();
+        let columns: Vec<Column<'_>> =
+            all.iter().map(|v| Column { name: v.name, components: v.components, values: &v.values }).collect();
+        Ok(write_cells(&path, &points, Cells::Vertices, &columns)?)
+    }
+
+    /// A field file of a series, and the list of all of them.
+    pub(super) fn frame<const D: usize>(
+        &self,
+        number: usize,
+        time: f64,
+        built: &Built<D>,
+        u: &[f64],
+    ) -> Result<(), RunError> {
+        let Some(list) = self.path("solid.pvd") else { return Ok(()) };
+        let name = format!("solid_{number:05}");
+        self.fields(&name, built, u)?;
+        let known = std::fs::read_to_string(&list).unwrap_or_default();
+        let mut all = crate::observe::vtk::read_collection(&known);
+        all.retain(|(_, file)| *file != format!("{name}.vtu"));
+        all.push((time, format!("{name}.vtu")));
+        let files: Vec<(f64, &str)> = all.iter().map(|(t, f)| (*t, f.as_str())).collect();
+        Ok(write_collection(&list, &files)?)
+    }
+
+    /// `history.csv`.
+    pub(super) fn history<const D: usize>(&self, built: &Built<D>, rows: &[Row]) -> Result<(), RunError> {
+        let Some(path) = self.path("history.csv") else { return Ok(()) };
+        let mut columns: Vec<String> =
+            ["step", "time", "kinetic", "strain", "stabilisation", "dissipated", "damped", "work", "open"]
+                .map(str::to_owned)
+                .to_vec();
+        let axes = &["x", "y", "z"][..D];
+        columns.extend(built.probes.iter().flat_map(|(name, ..)| axes.iter().map(move |a| format!("{name}_u{a}"))));
+        let names: Vec<&str> = columns.iter().map(String::as_str).collect();
+        let line = |row: &Row| {
+            let (e, sums) = (&row.energy, ledger(&rows[0], row));
+            let own = [row.time, e.kinetic, e.strain, e.stabilisation, e.dissipated, sums.damped, sums.work, sums.open];
+            let mut line = vec![Entry::from(f64::from(row.step))];
+            line.extend(own.map(Entry::from));
+            line.extend(row.probes.iter().flat_map(|p| p[..D].iter().map(|x| Entry::from(*x))));
+            line
+        };
+        Ok(write_csv(&path, &names, rows.iter().map(line))?)
+    }
+
+    /// A natural mode: `mode-1.vtu` on all particles, `mode-1.csv` on the surface, as `[[structure.mode]]` reads it.
+    pub(super) fn mode<const D: usize>(&self, k: usize, built: &Built<D>, mode: &Mode) -> Result<(), RunError> {
+        let Some(path) = self.path(&format!("mode-{}.vtu", k + 1)) else { return Ok(()) };
+        let particles = &built.structure.solid.particles;
+        let shape: &[[f64; D]] = mode.shape.as_chunks().0;
+        let raised = |v: &[f64]| -> [f64; 3] { std::array::from_fn(|a| v.get(a).copied().unwrap_or(0.0)) };
+        let points: Vec<[f64; 3]> = particles.x.iter().map(|x| raised(&x.0)).collect();
+        let values: Vec<f64> = shape.iter().flat_map(|v| raised(v)).collect();
+        write_cells(&path, &points, Cells::Vertices, &[Column { name: "displacement", components: 3, values: &values }])?;
+        let names = if D == 2 { &["x", "y", "dx", "dy"][..] } else { &["x", "y", "z", "dx", "dy", "dz"] };
+        let skin = (0..particles.len()).filter(|i| particles.area[*i] != crate::math::Vector::ZERO);
+        let line = |i: usize| particles.x[i].0.iter().chain(&shape[i]).map(|x| Entry::from(*x)).collect();
+        let Some(path) = self.path(&format!("mode-{}.csv", k + 1)) else { return Ok(()) };
+        Ok(write_csv(&path, names, skin.map(line))?)
+    }
+
+    /// `summary.json`, and `modes.csv` where there are modes.
+    pub(super) fn summary(&self, summary: &SolidSummary) -> Result<(), RunError> {
+        let Some(path) = self.path("summary.json") else { return Ok(()) };
+        if !summary.modes.is_empty() {
+            let Some(table) = self.path("modes.csv") else { return Ok(()) };
+            let names = ["mode", "frequency", "omega", "generalised_mass", "residual"];
+            let line = |(k, m): (usize, &super::summary::ModeRow)| {
+                [(k + 1) as f64, m.frequency, m.omega, m.generalised_mass, m.residual].map(Entry::from).to_vec()
+            };
+            write_csv(&table, &names, summary.modes.iter().enumerate().map(line))?;
+        }
+        debug_assert!(!self.case.has_gas());
+        Ok(write_json(&path, summary)?)
+    }
+}

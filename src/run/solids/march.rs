@@ -1,0 +1,322 @@
+//! Marching and equilibrium of structures alone: the loop, what is recorded on the way, and checkpoints.
+use serde_json::json;
+
+use super::super::error::RunError;
+use super::super::monitor::{MarchTick, Monitor, Tick};
+use super::super::record::saved;
+use super::files::Files;
+use super::setup::Built;
+use crate::case::{Case, Temporal};
+use crate::math::Vector;
+use crate::observe::checkpoint::{self, Array, Checkpoint, Field};
+use crate::observe::usage;
+use crate::solid::forces::{Energy, State};
+use crate::solid::Structure;
+use crate::time::structural::{Equilibrium, GeneralisedAlpha, LoadPlan, Newton, Plan};
+use crate::time::symplectic::{self, Symplectic};
+use crate::time::{Integrator, Memory, Past};
+
+/// Rows of `history.csv`, about.
+const ROWS: f64 = 1000.0;
+/// What equilibrium may leave of the largest force.
+const EQUILIBRIUM: f64 = 1e-9;
+/// Newton's iterations in a step of the load.
+const ITERATIONS: u32 = 25;
+
+/// A structure that is studied.
+pub(super) struct Study<'a, const D: usize> {
+    pub(super) case: &'a Case,
+    pub(super) built: &'a Built<D>,
+    pub(super) files: &'a Files<'a>,
+}
+
+/// Work since the start.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Work {
+    /// Of loads and gravity.
+    pub(super) loads: f64,
+    /// Of supports that move.
+    pub(super) supports: f64,
+    /// Taken by damping.
+    pub(super) damped: f64,
+}
+
+/// A row of `history.csv`.
+#[derive(Clone, Debug)]
+pub(super) struct Row {
+    pub(super) step: u32,
+    pub(super) time: f64,
+    pub(super) energy: Energy,
+    pub(super) work: Work,
+    /// Displacement of each probe.
+    pub(super) probes: Vec<[f64; 3]>,
+}
+
+/// Where a march ended.
+pub(super) struct Marched {
+    pub(super) state: Vec<f64>,
+    pub(super) time: f64,
+    pub(super) iteration: u64,
+    pub(super) rows: Vec<Row>,
+    pub(super) stopped: bool,
+    pub(super) halved: u32,
+    pub(super) residual: Option<f64>,
+}
+
+impl Marched {
+    /// A structure that stays where it is.
+    pub(super) fn at_rest<const D: usize>(_: &Built<D>, state: Vec<f64>) -> Self {
+        Self { state, time: 0.0, iteration: 0, rows: Vec::new(), stopped: false, halved: 0, residual: None }
+    }
+}
+
+/// Forces and displacements at the start of a step, for the work within it.
+struct Before<const D: usize> {
+    outside: Vec<[f64; D]>,
+    displacement: Vec<[f64; D]>,
+    damped: f64,
+}
+
+impl<const D: usize> Study<'_, D> {
+    fn structure(&self) -> &Structure<D> {
+        &self.built.structure
+    }
+
+    /// The method of the case.
+    fn integrator(&self, past: Past, u: Vec<f64>) -> Box<dyn Integrator<Structure<D>> + '_> {
+        let system = self.structure();
+        match &self.case.time {
+            Temporal::Explicit(e) => {
+                let until = e.until.map_or(0.0, |t| t.0);
+                Box::new(Symplectic::new(system, symplectic::Plan { cfl: e.cfl, until }, past, u))
+            }
+            Temporal::Newmark(n) => {
+                let newton = Newton { tolerance: n.tolerance, iterations: n.iterations };
+                let plan = Plan { step: n.step.0, until: n.until.0, radius: n.rho_infinity, newton };
+                Box::new(GeneralisedAlpha::new(system, plan, past, u))
+            }
+            other => {
+                let steps = if let Temporal::Steady(s) = other { s.load_steps.unwrap_or(1) } else { 1 };
+                let newton = Newton { tolerance: EQUILIBRIUM, iterations: ITERATIONS };
+                Box::new(Equilibrium::new(system, LoadPlan { steps, newton }, past, u))
+            }
+        }
+    }
+
+    /// Marches from the state `u`, or from where a checkpoint has it.
+    pub(super) fn march(
+        &self,
+        u: Vec<f64>,
+        saved: Option<Checkpoint<'static>>,
+        monitor: &mut dyn Monitor,
+    ) -> Result<Marched, RunError> {
+        let Restored { past, u, mut rows, mut work } = match saved {
+            Some(saved) => restored(&saved, self.built.probes.len())?,
+            None => Restored { past: Past::default(), u, rows: Vec::new(), work: Work::default() },
+        };
+        let mut integrator = self.integrator(past, u);
+        let until = self.until();
+        let mut seconds = usage::cpu_seconds();
+        if rows.is_empty() {
+            rows.push(self.row(integrator.as_mut(), &work));
+        }
+        let mut stopped = false;
+        while !integrator.finished() && !stopped {
+            let before = self.before(integrator.as_mut());
+            if let Err(problem) = integrator.advance() {
+                self.keep(integrator.as_mut(), &rows, &work)?;
+                self.files.history(self.built, &rows)?;
+                let checkpoint = self.files.out.map(|out| out.join(saved::FILE).display().to_string());
+                return Err(RunError::Time { source: Box::new(problem), reached: String::new(), checkpoint });
+            }
+            self.add_work(integrator.as_mut(), &before, &mut work);
+            let mark = integrator.mark();
+            if mark.time >= until || (mark.time / until * ROWS).floor() > ((mark.time - mark.last) / until * ROWS).floor() {
+                rows.push(self.row(integrator.as_mut(), &work));
+                let march = Some(MarchTick { time: mark.time, until, period: None, angle: None, lift_before: None });
+                monitor.tick(&Tick {
+                    iteration: u64::from(mark.iteration),
+                    goal: until,
+                    reached: mark.time,
+                    residual: mark.residual,
+                    cfl: 1.0,
+                    loads: None,
+                    particles: self.structure().solid.len(),
+                    march,
+                    point: None,
+                });
+            }
+            self.frame(integrator.as_mut(), mark.time, mark.last)?;
+            stopped = monitor.stop();
+            let now = usage::cpu_seconds();
+            if stopped || monitor.checkpoint() || now - seconds >= self.case.output.checkpoint_time.0 {
+                seconds = now;
+                self.keep(integrator.as_mut(), &rows, &work)?;
+            }
+        }
+        self.files.history(self.built, &rows)?;
+        let (mark, cost) = (integrator.mark(), integrator.cost());
+        let residual = matches!(self.case.time, Temporal::Steady(_) | Temporal::Modes(_)).then_some(mark.residual);
+        Ok(Marched {
+            state: integrator.standing().state.to_vec(),
+            time: mark.time,
+            iteration: u64::from(mark.iteration),
+            rows,
+            stopped,
+            halved: cost.halved,
+            residual,
+        })
+    }
+
+    /// Time at the end.
+    fn until(&self) -> f64 {
+        match &self.case.time {
+            Temporal::Explicit(e) => e.until.map_or(0.0, |t| t.0),
+            Temporal::Newmark(n) => n.until.0,
+            _ => 1.0,
+        }
+    }
+
+    fn state<'s>(&self, time: f64, u: &'s [f64]) -> State<'s, D> {
+        self.structure().state(time, u)
+    }
+
+    fn before(&self, integrator: &mut (dyn Integrator<Structure<D>> + '_)) -> Before<D> {
+        let time = integrator.mark().time;
+        let u = integrator.standing().state;
+        let state = self.state(time, u);
+        let solid = &self.structure().solid;
+        let mut outside = vec![[0.0; D]; solid.len()];
+        solid.outside(&state, &mut outside);
+        Before { outside, displacement: state.displacement.to_vec(), damped: solid.damped(&state) }
+    }
+
+    /// Adds the work of a step by the mean of the forces at its ends.
+    fn add_work(&self, integrator: &mut (dyn Integrator<Structure<D>> + '_), before: &Before<D>, work: &mut Work) {
+        let mark = integrator.mark();
+        let solid = &self.structure().solid;
+        let standing = integrator.standing();
+        let state = self.state(mark.time, standing.state);
+        let mut outside = vec![[0.0; D]; solid.len()];
+        solid.outside(&state, &mut outside);
+        let moved = |i: usize, a: usize| state.displacement[i][a] - before.displacement[i][a];
+        let all = (0..solid.len()).flat_map(|i| (0..D).map(move |a| (i, a)));
+        let of = |(i, a): (usize, usize)| 0.5 * (outside[i][a] + before.outside[i][a]) * moved(i, a);
+        let free = |(i, a): &(usize, usize)| !solid.is_held(*i, *a);
+        work.loads += all.filter(free).map(of).sum::<f64>();
+        if !matches!(self.case.time, Temporal::Steady(_) | Temporal::Modes(_)) {
+            work.damped += 0.5 * mark.last * (before.damped + solid.damped(&state));
+        }
+        if solid.is_moved() {
+            // what holds is what the neighbours pull, and inertia; the latter is in the kinetic energy of what is led
+            let mut storage = solid.work();
+            let mut after = vec![0.0; state.history.len()];
+            let mut force = vec![[0.0; D]; solid.len()];
+            solid.stress(&state, &mut storage, &mut after);
+            solid.forces(&state, &storage, &mut force);
+            let held = (0..solid.len()).flat_map(|i| (0..D).map(move |a| (i, a))).filter(|(i, a)| solid.is_held(*i, *a));
+            work.supports -= held.map(|(i, a)| force[i][a] * moved(i, a)).sum::<f64>();
+        }
+    }
+
+    /// What is recorded of a moment.
+    fn row(&self, integrator: &mut (dyn Integrator<Structure<D>> + '_), work: &Work) -> Row {
+        let mark = integrator.mark();
+        let state = self.state(mark.time, integrator.standing().state);
+        let solid = &self.structure().solid;
+        let probe = |(_, i, at): &(String, usize, Vector<D>)| {
+            let f = solid.deformation(*i, state.displacement);
+            let d = *at - solid.particles.x[*i];
+            std::array::from_fn(|a| match a < D {
+                true => {
+                    let slope = |b: usize| (f[a][b] - if a == b { 1.0 } else { 0.0 }) * d[b];
+                    state.displacement[*i][a] + (0..D).map(slope).sum::<f64>()
+                }
+                false => 0.0,
+            })
+        };
+        let probes = self.built.probes.iter().map(probe).collect();
+        Row { step: mark.iteration, time: mark.time, energy: solid.energy(&state), work: *work, probes }
+    }
+
+    /// A field file at times that the case asks for.
+    fn frame(
+        &self,
+        integrator: &mut (dyn Integrator<Structure<D>> + '_),
+        time: f64,
+        last: f64,
+    ) -> Result<(), RunError> {
+        let Some(interval) = self.case.output.field_interval.map(|t| t.0) else { return Ok(()) };
+        let number = (time / interval * (1.0 + 1e-12)).floor();
+        if number <= ((time - last) / interval * (1.0 + 1e-12)).floor() {
+            return Ok(());
+        }
+        self.files.frame(number as usize, time, self.built, integrator.standing().state)
+    }
+
+    /// Writes a checkpoint.
+    fn keep(
+        &self,
+        integrator: &mut (dyn Integrator<Structure<D>> + '_),
+        rows: &[Row],
+        work: &Work,
+    ) -> Result<(), RunError> {
+        let Some(out) = self.files.out else { return Ok(()) };
+        let Memory::March(past) = integrator.memory() else { return Err(RunError::NoStage) };
+        let mut flat = Vec::new();
+        for row in rows {
+            let e = &row.energy;
+            flat.extend([f64::from(row.step), row.time, e.kinetic, e.strain, e.stabilisation, e.dissipated]);
+            flat.extend([row.work.loads, row.work.supports, row.work.damped]);
+            flat.extend(row.probes.iter().flatten());
+        }
+        let field = |name: &str, values: Vec<f64>| Field {
+            name: name.to_owned(),
+            shape: vec![values.len()],
+            data: Array::F64(values.into()),
+        };
+        let kept = Checkpoint {
+            meta: json!({ "kind": "structure", "iteration": past.iteration, "halved": past.halved }),
+            fields: vec![
+                field("state", integrator.standing().state.to_vec()),
+                field("before", past.before),
+                field("clock", vec![past.time, past.last, past.next, work.loads, work.supports, work.damped]),
+                field("history", flat),
+            ],
+        };
+        Ok(checkpoint::write(&out.join(saved::FILE), &kept)?)
+    }
+}
+
+/// What a checkpoint holds.
+struct Restored {
+    past: Past,
+    u: Vec<f64>,
+    rows: Vec<Row>,
+    work: Work,
+}
+
+fn restored(saved: &Checkpoint<'_>, probes: usize) -> Result<Restored, RunError> {
+    let untrue = |problem| RunError::Untrue { file: saved::FILE, problem };
+    let clock = saved.f64("clock")?;
+    let [time, last, next, loads, supports, damped] = clock[..] else { return Err(untrue("its clock is broken")) };
+    let whole = |name: &str| saved.meta.get(name).and_then(serde_json::Value::as_u64).map(|n| n as u32);
+    let past = Past {
+        time,
+        iteration: whole("iteration").ok_or_else(|| untrue("it does not say how far it came"))?,
+        halved: whole("halved").unwrap_or(0),
+        last,
+        next,
+        before: saved.f64("before")?.to_vec(),
+        ..Past::default()
+    };
+    let width = 9 + 3 * probes;
+    let rows = saved.f64("history")?.chunks_exact(width).map(|r| Row {
+        step: r[0] as u32,
+        time: r[1],
+        energy: Energy { kinetic: r[2], strain: r[3], stabilisation: r[4], dissipated: r[5] },
+        work: Work { loads: r[6], supports: r[7], damped: r[8] },
+        probes: r[9..].as_chunks().0.to_vec(),
+    });
+    Ok(Restored { past, rows: rows.collect(), work: Work { loads, supports, damped }, u: saved.f64("state")?.to_vec() })
+}

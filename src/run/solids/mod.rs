@@ -1,0 +1,115 @@
+//! Structures of particles alone: equilibrium, marching and natural modes, without a gas.
+mod files;
+mod march;
+mod material;
+mod setup;
+mod summary;
+
+use std::path::Path;
+
+use super::error::RunError;
+use super::folder;
+use super::monitor::Monitor;
+use super::record::saved;
+use super::record::summary::Clock;
+use crate::case::{Case, Temporal};
+use crate::geometry::dimension;
+use crate::observe::checkpoint;
+use crate::solid::modes::{Mode, Wanted, modes};
+
+pub use summary::{ModeRow, ProbeRow, SolidLedger, SolidSummary};
+
+use files::Files;
+use march::{Marched, Study};
+use summary::Ending;
+
+/// How a structure alone ended.
+pub(super) enum Ended {
+    /// At its end.
+    Finished(Box<SolidSummary>),
+    /// Told to stop after so many steps.
+    Interrupted(u64),
+}
+
+/// Refuses what can be said of structures but is not computed yet.
+pub(super) fn supported(case: &Case) -> Result<(), RunError> {
+    let any = |f: fn(&crate::case::Solid) -> bool| case.solids().any(|(_, _, s)| f(s));
+    let asks = [
+        (case.has_gas() && case.solids().next().is_some(), "bodies made of particles in a gas (`[body.solid]` beside `[flow]`)"),
+        (any(|s| s.plane == crate::case::PlaneState::Axisymmetric), "axisymmetric bodies made of particles (`plane = \"axisymmetric\"`)"),
+        (any(|s| s.stiffness_damping.0 > 0.0), "damping in proportion to stiffness (`stiffness_damping`)"),
+        (!case.has_gas() && matches!(case.time, Temporal::Harmonics(_)), "harmonic balance of structures alone (`[time.harmonics]` without `[flow]`)"),
+        (case.contact.is_some(), "bodies made of particles that touch (`[contact]`)"),
+    ];
+    match asks.iter().filter(|a| a.0).map(|a| a.1).collect::<Vec<_>>()[..] {
+        [] => Ok(()),
+        ref missing => Err(RunError::Unsupported {
+            what: format!("{} cannot be computed yet", missing.join(" and ")),
+            hint: "leave it out",
+        }),
+    }
+}
+
+/// Solves a structure alone, from its start or, with `again`, from the checkpoint in the folder.
+pub(super) fn solve(
+    case: &Case,
+    input: &Path,
+    out: Option<&Path>,
+    again: bool,
+    monitor: &mut dyn Monitor,
+) -> Result<Ended, RunError> {
+    supported(case)?;
+    match dimension(case) {
+        2 => study::<2>(case, input, out, again, monitor),
+        _ => study::<3>(case, input, out, again, monitor),
+    }
+}
+
+fn study<const D: usize>(
+    case: &Case,
+    input: &Path,
+    out: Option<&Path>,
+    again: bool,
+    monitor: &mut dyn Monitor,
+) -> Result<Ended, RunError> {
+    let clock = Clock::start();
+    let built = setup::build::<D>(case, input)?;
+    built.notes.iter().for_each(|n| monitor.note(n));
+    built.warnings.iter().for_each(|w| monitor.warn(w));
+    let files = Files { case, out };
+    let saved = match out.filter(|_| again) {
+        Some(out) => Some(checkpoint::read(&out.join(saved::FILE))?),
+        None => None,
+    };
+    let start = built.structure.start(|i| built.velocity[i]);
+    let study = Study { case, built: &built, files: &files };
+    let marched = match &case.time {
+        Temporal::Modes(plan) if !plan.preload => Marched::at_rest(&built, start),
+        _ => study.march(start, saved, monitor)?,
+    };
+    if marched.stopped {
+        return Ok(Ended::Interrupted(marched.iteration));
+    }
+    let found = match &case.time {
+        Temporal::Modes(plan) => {
+            let above = plan.shift.map_or(0.0, |f| std::f64::consts::TAU * f.0);
+            let wanted = Wanted { count: plan.number as usize, above };
+            modes(&built.structure, &marched.state, &wanted)
+                .map_err(|e| RunError::Solid { what: e.to_string(), hint: "see the guide `structures`".into() })?
+        }
+        _ => Vec::new(),
+    };
+    conclude(&study, &Ending { marched: &marched, modes: &found, clock: &clock })
+}
+
+/// Writes what was found.
+fn conclude<const D: usize>(study: &Study<'_, D>, ending: &Ending<'_>) -> Result<Ended, RunError> {
+    let summary = summary::summary(study, ending);
+    let Some(out) = study.files.out else { return Ok(Ended::Finished(Box::new(summary))) };
+    study.files.fields("solid", study.built, &ending.marched.state)?;
+    let write = |(k, mode): (usize, &Mode)| study.files.mode(k, study.built, mode);
+    ending.modes.iter().enumerate().try_for_each(write)?;
+    study.files.summary(&summary)?;
+    folder::finish(out)?;
+    Ok(Ended::Finished(Box::new(summary)))
+}

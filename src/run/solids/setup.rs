@@ -1,0 +1,358 @@
+//! From a case to a structure of particles.
+use std::path::Path;
+
+use super::super::error::RunError;
+use super::material::material;
+use crate::case::formula::Formula;
+use crate::case::{Body, Case, PlaneState, Shape, Solid as Data, SolidFill, SolidPlace, Temporal};
+use crate::geometry::{Surface, load_surface};
+use crate::math::Vector;
+use crate::physics::solid::{Law, Material};
+use crate::solid::fill::{Lattice, relaxed};
+use crate::solid::particles::{Fill, Particles};
+use crate::solid::{Action, Damping, Load, Parts, Plane, Solid, Structure, Support};
+
+/// Artificial viscosity of explicit marches in which something yields or meets something.
+const SHOCKED: f64 = 0.1;
+/// Particles through the thickness below which frequencies are off by more than one per cent.
+const FEW: usize = 5;
+
+/// A structure with what is asked of it.
+pub(super) struct Built<const D: usize> {
+    /// The structure.
+    pub(super) structure: Structure<D>,
+    /// Names of the bodies.
+    pub(super) bodies: Vec<String>,
+    /// Points whose displacements are told: name, nearest particle and place.
+    pub(super) probes: Vec<(String, usize, Vector<D>)>,
+    /// Velocity of each particle at the start.
+    pub(super) velocity: Vec<[f64; D]>,
+    /// What is worth knowing.
+    pub(super) notes: Vec<String>,
+    /// What makes results doubtful.
+    pub(super) warnings: Vec<String>,
+}
+
+/// One body on its way.
+struct Part<'a, const D: usize> {
+    data: &'a Data,
+    name: String,
+    fill: Fill<D>,
+}
+
+/// The structure of a case whose bodies are made of particles.
+pub(super) fn build<const D: usize>(case: &Case, input: &Path) -> Result<Built<D>, RunError> {
+    let (mut notes, mut warnings) = (Vec::new(), Vec::new());
+    let mut parts = Vec::new();
+    for (_, body, data) in case.solids() {
+        let name = body.name.clone().unwrap_or_default();
+        let (surface, said) = load_surface::<D>(std::slice::from_ref(body), input)?;
+        notes.extend(said);
+        let fill = filled(body, data, &surface, &name)?;
+        warnings.extend(thin(&fill, &name)?);
+        parts.push(Part { data, name, fill });
+    }
+    let owner: Vec<u16> = parts.iter().zip(0..).flat_map(|(p, k)| std::iter::repeat_n(k, p.fill.x.len())).collect();
+    let particles = Particles::new(parts.iter().map(|p| p.fill.clone()).collect())
+        .map_err(|e| RunError::Solid { what: e.to_string(), hint: "take a smaller `spacing`, or `fill = \"relaxed\"`".into() })?;
+    notes.push(format!(
+        "{} solid particles with {:.1} neighbours each; the divergence theorem changed gradients by {:.1} % in {} iterations",
+        particles.len(),
+        particles.mean_neighbours(),
+        100.0 * particles.correction,
+        particles.iterations
+    ));
+    let (materials, of) = materials(&parts, &particles, &owner)?;
+    let (supports, loads) = (supports(&parts, &particles, &owner)?, loads(&parts, &particles, &owner)?);
+    let first = parts[0].data;
+    let shocked = case.contact.is_some() || materials.iter().any(|m| matches!(m.law, Law::Plastic(_)));
+    let usual = if shocked && matches!(case.time, Temporal::Explicit(_)) { SHOCKED } else { 0.0 };
+    let probes = probes(&parts, &particles, &owner);
+    let velocity = velocities(&parts, &particles, &owner);
+    let plane = if first.plane == PlaneState::Stress { Plane::Stress } else { Plane::Strain };
+    let solid = Solid::new(Parts {
+        body: owner,
+        materials,
+        material: of,
+        plane,
+        gravity: Vector::from_fn(|d| first.gravity.get(d).map_or(0.0, |g| g.0)),
+        damping: Damping {
+            stabilisation: first.stabilisation,
+            viscosity: first.viscosity.unwrap_or(usual),
+            mass: first.damping.0,
+        },
+        supports,
+        loads,
+        ramped: matches!(case.time, Temporal::Steady(_) | Temporal::Modes(_)),
+        particles,
+    });
+    let bodies = parts.iter().map(|p| p.name.clone()).collect();
+    Ok(Built { structure: Structure::new(solid), bodies, probes, velocity, notes, warnings })
+}
+
+/// The particles of one body.
+fn filled<const D: usize>(body: &Body, data: &Data, surface: &Surface<D>, name: &str) -> Result<Fill<D>, RunError> {
+    let corners = corners(body, surface);
+    let rows = match data.fill {
+        Some(SolidFill::Relaxed) => None,
+        Some(SolidFill::Lattice) if corners.is_none() => {
+            return Err(RunError::Solid {
+                what: format!("`{name}`: rows of particles fill boxes, and polygons of four corners, alone"),
+                hint: "leave `fill` out, or write `fill = \"relaxed\"`".into(),
+            });
+        }
+        Some(SolidFill::Lattice) => corners,
+        None if matches!(body.shape, Shape::Box { .. }) || D == 2 => corners,
+        None => None,
+    };
+    let shortest = shortest(surface, rows.as_deref());
+    let through = |count: u32| shortest / f64::from(count - 1);
+    let spacing = data.spacing.map(|s| s.0).or(data.through.map(through)).unwrap_or(shortest / 8.0);
+    let Some(corners) = rows else { return Ok(seen(relaxed(surface, spacing), surface)) };
+    let lattice = Lattice { jitter: data.jitter, ..Lattice::with_spacing(corners, spacing) };
+    Ok(lattice.fill())
+}
+
+/// Without neighbours that do not see one another through the body.
+fn seen<const D: usize>(fill: Fill<D>, surface: &Surface<D>) -> Fill<D> {
+    /// How far below the surface a particle on it looks from, in spacings: a chord of a hollow side leaves the body a little.
+    const BELOW: f64 = 0.3;
+    let areas = fill.areas();
+    let (x, spacing) = (fill.x.clone(), fill.spacing);
+    let eye = |i: usize| x[i] - areas[i].unit() * (BELOW * spacing);
+    fill.seen(|i, j| areas[i] != Vector::ZERO && areas[j] != Vector::ZERO && surface.crosses(&eye(i), &eye(j)))
+}
+
+/// Corners of a box or a quadrilateral as rows want them; `None` for other shapes.
+fn corners<const D: usize>(body: &Body, surface: &Surface<D>) -> Option<Vec<Vector<D>>> {
+    let v = &surface.vertices;
+    match (&body.shape, D) {
+        (Shape::Box { .. } | Shape::Polygon(_), 2) if v.len() == 4 => Some(vec![v[0], v[1], v[3], v[2]]),
+        (Shape::Box { size }, 3) => {
+            let bounds = surface.bounds();
+            let centre = bounds.centre();
+            // the three sides that meet in the first corner
+            let mut edges: Vec<Vector<D>> = v.iter().map(|x| *x - v[0]).collect();
+            edges.sort_by(|a, b| a.norm().total_cmp(&b.norm()));
+            let mut sides: Vec<Vector<D>> = Vec::new();
+            for edge in edges.into_iter().filter(|e| e.norm() > 0.0) {
+                let square = sides.iter().all(|s| s.dot(&edge).abs() < 1e-9 * s.norm() * edge.norm());
+                if square && sides.len() < size.len() {
+                    sides.push(edge);
+                }
+            }
+            // along the axes as far as they go
+            sides.sort_by_key(|s| (0..D).max_by(|a, b| s[*a].abs().total_cmp(&s[*b].abs())));
+            let low = centre - sides.iter().fold(Vector::ZERO, |sum: Vector<D>, s| sum + *s * 0.5);
+            let corner = |k: usize| (0..3).fold(low, |x, d| if k >> d & 1 == 1 { x + sides[d] } else { x });
+            Some((0..8).map(corner).collect())
+        }
+        _ => None,
+    }
+}
+
+/// The shortest side of a body.
+fn shortest<const D: usize>(surface: &Surface<D>, corners: Option<&[Vector<D>]>) -> f64 {
+    match corners {
+        Some(corners) => {
+            let side = |d: usize| {
+                let edges = (0..1usize << D).filter(move |k| k >> d & 1 == 0);
+                edges.map(|k| (corners[k | 1 << d] - corners[k]).norm()).fold(0.0, f64::max)
+            };
+            (0..D).map(side).fold(f64::INFINITY, f64::min)
+        }
+        None => {
+            let extent = surface.bounds().extent();
+            (0..D).map(|d| extent[d]).fold(f64::INFINITY, f64::min)
+        }
+    }
+}
+
+/// Refuses a body that is little more than its two skins; says where it is thin.
+fn thin<const D: usize>(fill: &Fill<D>, name: &str) -> Result<Option<String>, RunError> {
+    /// Part of the surface behind which there may be no particle inside.
+    const HOLLOW: f64 = 0.3;
+    let areas = fill.areas();
+    let skin = areas.iter().filter(|a| **a != Vector::ZERO).count();
+    let inner = fill.x.len() - skin;
+    let refuse = |what: String| RunError::Solid {
+        what,
+        hint: format!(
+            "take a smaller `spacing` (now {:.4e}), five particles through the thickness or more; for thin shells give modes instead: `[[structure]]` with `model = \"modal\"`",
+            fill.spacing
+        ),
+    };
+    if fill.x.is_empty() {
+        return Err(refuse(format!("`{name}` is too small for any particle")));
+    }
+    let whole: f64 = fill.volume.iter().sum();
+    let area: f64 = fill.facets.iter().map(|f| f.area.norm()).sum();
+    // twice volume over area is the thickness of a plate
+    let through = 2.0 * whole / (area * fill.spacing) + 1.0;
+    if through < 2.5 || (inner as f64) < (1.0 - HOLLOW) * 0.5 * skin as f64 / 2.0 && through < 3.0 {
+        return Err(refuse(format!("`{name}` has {through:.1} particles through its thickness, too few to bend")));
+    }
+    Ok((through < FEW as f64 - 0.5).then(|| {
+        format!("`{name}` has about {through:.1} particles through its thickness: frequencies are off by one to three per cent")
+    }))
+}
+
+/// Materials of all bodies and regions, and which of them each particle has.
+fn materials<const D: usize>(
+    parts: &[Part<'_, D>],
+    particles: &Particles<D>,
+    owner: &[u16],
+) -> Result<(Vec<Material>, Vec<u16>), RunError> {
+    let mut all = Vec::new();
+    let mut of = vec![0u16; particles.len()];
+    for (k, part) in parts.iter().enumerate() {
+        let own = |i: &usize| usize::from(owner[*i]) == k;
+        let number = all.len() as u16;
+        all.push(material(&part.data.material, &format!("material of `{}`", part.name))?);
+        (0..of.len()).filter(own).for_each(|i| of[i] = number);
+        for (r, region) in part.data.regions.iter().enumerate() {
+            let number = all.len() as u16;
+            all.push(material(&region.material, &format!("material of region {} of `{}`", r + 1, part.name))?);
+            let inside = |i: &usize| region.place.contains(&particles.x[*i].0, slack(particles, *i));
+            (0..of.len()).filter(own).filter(inside).for_each(|i| of[i] = number);
+        }
+    }
+    Ok((all, of))
+}
+
+/// Points this near to a side of a box are inside.
+fn slack<const D: usize>(particles: &Particles<D>, i: usize) -> f64 {
+    1e-6 * particles.spacing[i]
+}
+
+/// A place that holds no particle.
+fn empty<const D: usize>(what: &str, name: &str, particles: &Particles<D>, owner: &[u16], body: usize) -> RunError {
+    let own: Vec<Vector<D>> =
+        (0..particles.len()).filter(|i| usize::from(owner[*i]) == body).map(|i| particles.x[i]).collect();
+    let bounds = crate::math::Bounds::around(&own);
+    let side = |d: usize| format!("{} from {:.6} to {:.6}", ["x", "y", "z"][d], bounds.min[d], bounds.max[d]);
+    RunError::Solid {
+        what: format!("{what} of `{name}` is where no particle is"),
+        hint: format!("the body has {}", (0..D).map(side).collect::<Vec<_>>().join(", ")),
+    }
+}
+
+fn formula(text: &str) -> Result<Formula, RunError> {
+    Formula::parse(text).map_err(|e| RunError::Solid { what: format!("`{text}`: {e}"), hint: "write a formula in t".into() })
+}
+
+fn supports<const D: usize>(
+    parts: &[Part<'_, D>],
+    particles: &Particles<D>,
+    owner: &[u16],
+) -> Result<Vec<Support<D>>, RunError> {
+    let mut all = Vec::new();
+    for (k, part) in parts.iter().enumerate() {
+        for (number, data) in part.data.supports.iter().enumerate() {
+            let inside = |i: &usize| {
+                usize::from(owner[*i]) == k && data.place.contains(&particles.x[*i].0, slack(particles, *i))
+            };
+            let held: Vec<u32> = (0..particles.len()).filter(inside).map(|i| i as u32).collect();
+            if held.is_empty() {
+                return Err(empty(&format!("support {}", number + 1), &part.name, particles, owner, k));
+            }
+            let axes: Vec<usize> = data.axes(D).into_iter().map(|a| a.index()).collect();
+            let formulas = data.motion.iter().map(|text| formula(text)).collect::<Result<Vec<_>, _>>()?;
+            let led = axes.clone();
+            let motion = move |t: f64| {
+                let mut moved = Vector::ZERO;
+                led.iter().zip(&formulas).for_each(|(a, f)| moved[*a] = f.value(t, 0.0));
+                moved
+            };
+            all.push(Support {
+                particles: held,
+                fixed: std::array::from_fn(|d| axes.contains(&d)),
+                motion: if data.motion.is_empty() { None } else { Some(Box::new(motion)) },
+            });
+        }
+    }
+    Ok(all)
+}
+
+fn loads<const D: usize>(
+    parts: &[Part<'_, D>],
+    particles: &Particles<D>,
+    owner: &[u16],
+) -> Result<Vec<Load<D>>, RunError> {
+    let mut all = Vec::new();
+    for (k, part) in parts.iter().enumerate() {
+        for (number, data) in part.data.loads.iter().enumerate() {
+            let areas = areas(particles, owner, k, &data.place);
+            if areas.is_empty() {
+                return Err(empty(&format!("load {}", number + 1), &part.name, particles, owner, k));
+            }
+            let whole: f64 = areas.iter().map(|(_, a)| a.norm()).sum();
+            let vector = |v: &[f64]| Vector::from_fn(|d| v.get(d).copied().unwrap_or(0.0));
+            let action = match (&data.pressure, &data.traction, &data.force) {
+                (Some(p), ..) => Action::Pressure(p.0),
+                (None, Some(t), _) => Action::Traction(vector(&t.iter().map(|t| t.0).collect::<Vec<_>>())),
+                (None, None, f) => {
+                    let force: Vec<f64> = f.iter().flatten().map(|f| f.0 / (part.data.thickness.0 * whole)).collect();
+                    Action::Traction(vector(&force))
+                }
+            };
+            let history = match &data.history {
+                None => Box::new(|_: f64| 1.0) as Box<dyn Fn(f64) -> f64 + Send + Sync>,
+                Some(text) => {
+                    let formula = formula(text)?;
+                    Box::new(move |t| formula.value(t, 0.0))
+                }
+            };
+            all.push(Load { areas, action, history });
+        }
+    }
+    Ok(all)
+}
+
+/// Areas of the surface of a body in a place: of pieces that lie in it with all their corners.
+fn areas<const D: usize>(
+    particles: &Particles<D>,
+    owner: &[u16],
+    body: usize,
+    place: &SolidPlace,
+) -> Vec<(u32, Vector<D>)> {
+    let mut all = vec![Vector::ZERO; particles.len()];
+    let inside = |i: &u32| {
+        let i = *i as usize;
+        usize::from(owner[i]) == body && place.contains(&particles.x[i].0, slack(particles, i))
+    };
+    for facet in particles.facets.iter().filter(|f| f.corners().iter().all(inside)) {
+        facet.corners().iter().for_each(|i| all[*i as usize] += facet.share());
+    }
+    all.into_iter().zip(0..).filter(|(a, _)| *a != Vector::ZERO).map(|(a, i)| (i, a)).collect()
+}
+
+fn probes<const D: usize>(
+    parts: &[Part<'_, D>],
+    particles: &Particles<D>,
+    owner: &[u16],
+) -> Vec<(String, usize, Vector<D>)> {
+    let mut all = Vec::new();
+    for (k, part) in parts.iter().enumerate() {
+        for probe in &part.data.probes {
+            let at = Vector::from_fn(|d| probe.at.get(d).map_or(0.0, |x| x.0));
+            let own = (0..particles.len()).filter(|i| usize::from(owner[*i]) == k);
+            let near = |i: &usize| (particles.x[*i] - at).norm_squared();
+            let Some(i) = own.min_by(|a, b| near(a).total_cmp(&near(b))) else { continue };
+            all.push((probe.name.clone(), i, at));
+        }
+    }
+    all
+}
+
+fn velocities<const D: usize>(parts: &[Part<'_, D>], particles: &Particles<D>, owner: &[u16]) -> Vec<[f64; D]> {
+    let formulas: Vec<Vec<Formula>> = parts
+        .iter()
+        .map(|p| p.data.velocity.iter().filter_map(|text| Formula::parse_in(text, D).ok()).collect())
+        .collect();
+    let of = |i: usize| {
+        let own = &formulas[usize::from(owner[i])];
+        std::array::from_fn(|d| own.get(d).map_or(0.0, |f| f.value_at(&particles.x[i].0, 0.0, 0.0)))
+    };
+    (0..particles.len()).map(of).collect()
+}

@@ -1,0 +1,245 @@
+//! What a structure of particles is: the cloud, its materials, where it is held and what acts on it.
+use super::particles::Particles;
+use crate::math::Vector;
+use crate::math::sweep::first;
+use crate::physics::solid::tensor::determinant;
+use crate::physics::solid::{MOST_HISTORY, Material};
+use crate::system::Fault;
+
+/// What happens across a plane body.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Plane {
+    /// It cannot widen or shrink: F₃₃ = 1.
+    Strain,
+    /// Nothing holds it: P₃₃ = 0.
+    Stress,
+}
+
+/// What a function of time is.
+pub type InTime<T> = Box<dyn Fn(f64) -> T + Send + Sync>;
+
+/// Particles that are held along some axes.
+pub struct Support<const D: usize> {
+    /// Which.
+    pub particles: Vec<u32>,
+    /// True for axes along which they are held.
+    pub fixed: [bool; D],
+    /// Displacement along these axes; `None` where they stay.
+    pub motion: Option<InTime<Vector<D>>>,
+}
+
+/// What acts on particles of the surface.
+pub enum Action<const D: usize> {
+    /// A pressure against the surface, which follows it.
+    Pressure(f64),
+    /// A force per area at rest, whose direction stays.
+    Traction(Vector<D>),
+}
+
+/// A load on parts of the surface.
+pub struct Load<const D: usize> {
+    /// Area at rest that each particle has in it, as a vector.
+    pub areas: Vec<(u32, Vector<D>)>,
+    /// What acts there.
+    pub action: Action<D>,
+    /// Factor that depends on time.
+    pub history: InTime<f64>,
+}
+
+/// How much is smoothed and lost beside what the materials say.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Damping {
+    /// α of the residual's stiffness, in shear moduli.
+    pub stabilisation: f64,
+    /// β of the residual's viscosity, in ρ c h.
+    pub viscosity: f64,
+    /// Rate of decay in proportion to mass, 1/s.
+    pub mass: f64,
+}
+
+/// A structure of particles: one or several bodies, which do not see one another.
+pub struct Solid<const D: usize> {
+    /// The cloud.
+    pub particles: Particles<D>,
+    /// Body of each particle.
+    pub body: Vec<u16>,
+    /// Materials.
+    pub materials: Vec<Material>,
+    /// Material of each particle.
+    pub material: Vec<u16>,
+    /// What happens across a plane body.
+    pub plane: Plane,
+    /// Acceleration of gravity.
+    pub gravity: Vector<D>,
+    /// Damping.
+    pub damping: Damping,
+    /// Supports.
+    pub supports: Vec<Support<D>>,
+    /// Loads.
+    pub loads: Vec<Load<D>>,
+    /// Time is the part of loads, gravity and motions that acts: for equilibrium.
+    pub ramped: bool,
+    /// Mass of each particle.
+    pub(super) mass: Vec<f64>,
+    /// Axes along which each particle is held, one bit each.
+    pub(super) held: Vec<u8>,
+    /// V times the number of dimensions over the number of neighbours: weight of the residuals around each particle.
+    pub(super) weight: Vec<f64>,
+    /// Numbers of history of a particle.
+    pub(super) width: usize,
+}
+
+/// Least mass of a particle in ρ h^D: those at sharp edges hold so little that they would decide the time step.
+const LEAST_MASS: f64 = 0.25;
+
+/// All that a structure is made of.
+pub struct Parts<const D: usize> {
+    /// The cloud.
+    pub particles: Particles<D>,
+    /// Body of each particle.
+    pub body: Vec<u16>,
+    /// Materials.
+    pub materials: Vec<Material>,
+    /// Material of each particle.
+    pub material: Vec<u16>,
+    /// What happens across a plane body.
+    pub plane: Plane,
+    /// Acceleration of gravity.
+    pub gravity: Vector<D>,
+    /// Damping.
+    pub damping: Damping,
+    /// Supports.
+    pub supports: Vec<Support<D>>,
+    /// Loads.
+    pub loads: Vec<Load<D>>,
+    /// Time is the part of loads, gravity and motions that acts: for equilibrium.
+    pub ramped: bool,
+}
+
+impl<const D: usize> Solid<D> {
+    /// The structure made of `parts`.
+    pub fn new(parts: Parts<D>) -> Self {
+        let Parts { particles, body, materials, material, plane, gravity, damping, supports, loads, ramped } = parts;
+        let density = |i: usize| materials[usize::from(material[i])].density;
+        let mass = (0..particles.len()).map(|i| density(i) * particles.volume[i].max(LEAST_MASS * particles.spacing[i].powi(D as i32))).collect();
+        let share = |i: usize| particles.volume[i] * D as f64 / particles.of(i).len() as f64;
+        let weight = (0..particles.len()).map(share).collect();
+        let mut held = vec![0u8; particles.len()];
+        for support in &supports {
+            let bits = (0..D).filter(|d| support.fixed[*d]).map(|d| 1u8 << d).sum::<u8>();
+            support.particles.iter().for_each(|i| held[*i as usize] |= bits);
+        }
+        // one more for what is lost, and for the stretch across a plane body
+        let own = materials.iter().map(Material::history_len).max().unwrap_or(0);
+        let width = own + usize::from(own > 0) + usize::from(plane == Plane::Stress);
+        assert!(own <= MOST_HISTORY, "a material keeps more history than there is room for");
+        Self {
+            particles,
+            body,
+            materials,
+            material,
+            plane,
+            gravity,
+            damping,
+            supports,
+            loads,
+            ramped,
+            mass,
+            held,
+            weight,
+            width,
+        }
+    }
+
+    /// Number of particles.
+    pub fn len(&self) -> usize {
+        self.particles.len()
+    }
+
+    /// True when there are none.
+    pub fn is_empty(&self) -> bool {
+        self.particles.is_empty()
+    }
+
+    /// Material of a particle.
+    #[inline(always)]
+    pub fn material_of(&self, i: usize) -> &Material {
+        &self.materials[usize::from(self.material[i])]
+    }
+
+    /// Mass of each particle.
+    pub fn mass(&self) -> &[f64] {
+        &self.mass
+    }
+
+    /// True where a particle is held along an axis.
+    #[inline(always)]
+    pub fn is_held(&self, i: usize, axis: usize) -> bool {
+        self.held[i] >> axis & 1 == 1
+    }
+
+    /// Numbers of history of a particle.
+    pub fn history_width(&self) -> usize {
+        self.width
+    }
+
+    /// History of the virgin structure.
+    pub fn virgin(&self) -> Vec<f64> {
+        let mut history = vec![0.0; self.len() * self.width];
+        if self.width > 0 {
+            for (i, row) in history.chunks_exact_mut(self.width).enumerate() {
+                let material = self.material_of(i);
+                material.begin(&mut row[..material.history_len()]);
+                if self.plane == Plane::Stress {
+                    row[self.width - 1] = 1.0;
+                }
+            }
+        }
+        history
+    }
+
+    /// Part of what acts at time `t`.
+    pub(super) fn part(&self, t: f64) -> f64 {
+        if self.ramped { t } else { 1.0 }
+    }
+
+    /// Where in the history of a particle that is lost stands which its material has lost; `None` where none loses.
+    #[inline(always)]
+    pub(super) fn lost_at(&self) -> Option<usize> {
+        (self.width + usize::from(self.plane == Plane::Strain)).checked_sub(2)
+    }
+
+    /// Puts held particles where they are to be at time `t`.
+    pub fn hold(&self, t: f64, displacement: &mut [[f64; D]]) {
+        for support in &self.supports {
+            let moved = support.motion.as_ref().map_or(Vector::ZERO, |motion| motion(t) * self.part(t));
+            for i in &support.particles {
+                let u = &mut displacement[*i as usize];
+                (0..D).filter(|d| support.fixed[*d]).for_each(|d| u[d] = moved[d]);
+            }
+        }
+    }
+
+    /// Refuses a state in which a particle is nowhere or turned inside out.
+    pub fn check(&self, displacement: &[[f64; D]]) -> Result<(), Fault> {
+        /// Least part of its volume that a particle may keep.
+        const LEAST: f64 = 0.05;
+        let bad = |i: usize| {
+            let f = self.deformation(i, displacement);
+            !(determinant(&f) > LEAST)
+        };
+        let Some(i) = first(self.len(), bad) else { return Ok(()) };
+        let f = self.deformation(i, displacement);
+        let reason = match determinant(&f) {
+            j if j.is_finite() => format!("a particle of the solid keeps {j:.3} of its volume; at least {LEAST} is needed"),
+            _ => "a particle of the solid is nowhere: its displacement is no number".to_owned(),
+        };
+        let place = (0..D).map(|a| self.particles.x[i][a] + displacement[i][a]).collect();
+        Err(Fault { particle: i, place, reason })
+    }
+
+    /// True when a support moves.
+    pub fn is_moved(&self) -> bool {
+        self.supports.iter().any(|s| s.motion.is_some())
+    }
+}

@@ -1,0 +1,385 @@
+//! Clouds of solid particles: where they are at rest, how much of the body each holds, and how gradients are fitted among them.
+//!
+//! Gradients are the least-squares fits of the gas, ∇φ_i = Σ_j g_ij (φ_j − φ_i) with weights w = 1/|d|², over all j within
+//! [`REACH`] spacings. They are then made *variationally consistent*: of all corrections that leave the gradients of linear fields
+//! exact, the least one, in the norm of the weights, is added for which the discrete divergence theorem holds,
+//! Σ_i V_i g_ij = A_j, with the area vectors A of the surface: uniform stress then has no force inside, and the exact traction on
+//! the surface, on any cloud. Corrections that leave linear fields exact are residuals of the fit itself,
+//! R_ij(λ) = λ_j − λ_i − d_ij·∇λ_i, so that λ solves L λ = A − Σ V g once for each axis, L = Σ_i V_i Σ_j w R_ijᵀR_ij
+//! (after Chen, Hillman and Rüter 2013, doi:10.1002/nme.4512, whose test functions are corrected in like manner).
+use std::ops::Range;
+
+use crate::cloud::grid::Grid;
+use crate::math::Vector;
+use crate::math::conjugate::{Symmetric, conjugate_gradients};
+use crate::math::least_squares::{gradient_weight, normal_inverse, normal_matrix};
+use crate::math::sweep::{maximum, sum, sweep, sweep_each};
+
+/// Radius of a cloud in spacings: no diagonal of a sheared cell is lost.
+pub const REACH: f64 = 1.8;
+/// What the divergence theorem may leave of a particle's area h^(D−1).
+const CLOSED: f64 = 1e-11;
+/// Most iterations of the correction.
+const ITERATIONS: usize = 5000;
+
+/// A neighbour of a particle.
+#[derive(Clone, Copy, Debug)]
+pub struct Edge<const D: usize> {
+    /// Its number.
+    pub other: u32,
+    /// V_i g_ij of the particle at hand.
+    pub own: Vector<D>,
+    /// V_j g_ji of the neighbour.
+    pub counter: Vector<D>,
+}
+
+/// A flat piece of surface between particles, which share its area.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Facet<const D: usize> {
+    /// Particles at its corners, in order around it seen from outside; the first `count` of them.
+    corners: [u32; 4],
+    count: u8,
+    /// Area vector, pointing outwards; length in the plane.
+    pub area: Vector<D>,
+}
+
+impl<const D: usize> Facet<D> {
+    /// The facet between four particles at most.
+    pub fn new(between: &[u32], area: Vector<D>) -> Self {
+        let mut corners = [0; 4];
+        corners[..between.len()].copy_from_slice(between);
+        Self { corners, count: between.len() as u8, area }
+    }
+
+    /// Particles at its corners.
+    pub fn corners(&self) -> &[u32] {
+        &self.corners[..usize::from(self.count)]
+    }
+
+    /// The part of its area that each corner has.
+    pub fn share(&self) -> Vector<D> {
+        self.area * (1.0 / f64::from(self.count))
+    }
+
+    /// The same between particles that have other numbers.
+    fn renumbered(&self, new: &[u32]) -> Self {
+        let between: Vec<u32> = self.corners().iter().map(|i| new[*i as usize]).collect();
+        Self::new(&between, self.area)
+    }
+}
+
+/// Places, volumes and surface of particles, before gradients are known.
+#[derive(Clone, Debug, Default)]
+pub struct Fill<const D: usize> {
+    /// Places at rest; those on the surface first.
+    pub x: Vec<Vector<D>>,
+    /// Volume of each, area in the plane.
+    pub volume: Vec<f64>,
+    /// The surface.
+    pub facets: Vec<Facet<D>>,
+    /// Distance of neighbours.
+    pub spacing: f64,
+    /// Neighbours of each in the order of their numbers, where rows say who they are; empty: all within reach.
+    pub rows: Vec<Vec<u32>>,
+}
+
+impl<const D: usize> Fill<D> {
+    /// The same with all within reach as neighbours, but those for which `apart` holds.
+    pub fn seen(mut self, apart: impl Fn(usize, usize) -> bool) -> Self {
+        if self.rows.is_empty() {
+            self.rows = neighbours(&self.x, REACH * self.spacing);
+        }
+        for (i, row) in self.rows.iter_mut().enumerate() {
+            row.retain(|j| !apart(i.min(*j as usize), i.max(*j as usize)));
+        }
+        self
+    }
+
+    /// Area vectors of all particles, pointing outwards; zero inside.
+    pub fn areas(&self) -> Vec<Vector<D>> {
+        let mut areas = vec![Vector::ZERO; self.x.len()];
+        for facet in &self.facets {
+            facet.corners().iter().for_each(|i| areas[*i as usize] += facet.share());
+        }
+        areas
+    }
+
+    /// The particles `order` alone, and the facets between them.
+    pub(super) fn taken(&self, order: &[usize]) -> Self {
+        let mut new = vec![u32::MAX; self.x.len()];
+        order.iter().enumerate().for_each(|(k, i)| new[*i] = k as u32);
+        let kept = self.facets.iter().filter(|f| f.corners().iter().all(|i| new[*i as usize] != u32::MAX));
+        Self {
+            x: order.iter().map(|i| self.x[*i]).collect(),
+            volume: order.iter().map(|i| self.volume[*i]).collect(),
+            facets: kept.map(|f| f.renumbered(&new)).collect(),
+            spacing: self.spacing,
+            rows: if self.rows.is_empty() { Vec::new() } else { order.iter().map(|i| renumbered(&self.rows[*i], &new)).collect() },
+        }
+    }
+}
+
+/// Neighbours by their new numbers, without those that have none.
+fn renumbered(row: &[u32], new: &[u32]) -> Vec<u32> {
+    let mut row: Vec<u32> = row.iter().map(|j| new[*j as usize]).filter(|j| *j != u32::MAX).collect();
+    row.sort_unstable();
+    row
+}
+
+/// Particles at rest with the gradients among them.
+#[derive(Clone, Debug)]
+pub struct Particles<const D: usize> {
+    /// Places at rest.
+    pub x: Vec<Vector<D>>,
+    /// Volume of each.
+    pub volume: Vec<f64>,
+    /// Area vector of each, pointing outwards; zero inside.
+    pub area: Vec<Vector<D>>,
+    /// The surface.
+    pub facets: Vec<Facet<D>>,
+    /// Distance of neighbours of each.
+    pub spacing: Vec<f64>,
+    /// Largest part of a fit's weights that the correction changed, rms over the cloud.
+    pub correction: f64,
+    /// Iterations that the correction took.
+    pub iterations: usize,
+    first: Vec<u32>,
+    edges: Vec<Edge<D>>,
+    inverse: Vec<[[f64; D]; D]>,
+}
+
+/// Why particles make no body.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum Unfit {
+    /// A particle has too few neighbours around it.
+    #[error(
+        "the solid particle at {place:?} has {count} neighbours, which do not determine a gradient: the body is too thin there for a spacing of {spacing:.3e}"
+    )]
+    Alone {
+        /// Where.
+        place: Vec<f64>,
+        /// How many it has.
+        count: usize,
+        /// Spacing.
+        spacing: f64,
+    },
+    /// The divergence theorem cannot be had.
+    #[error(
+        "the divergence theorem stays open by {left:.1e} of a particle's area at {place:?} after {iterations} iterations: the solid particles lie too unevenly"
+    )]
+    Open {
+        /// Where.
+        place: Vec<f64>,
+        /// What is left.
+        left: f64,
+        /// Iterations.
+        iterations: usize,
+    },
+}
+
+impl<const D: usize> Particles<D> {
+    /// Fits gradients among the particles of bodies that do not see one another.
+    pub fn new(bodies: Vec<Fill<D>>) -> Result<Self, Unfit> {
+        let areas = bodies.iter().flat_map(Fill::areas).collect();
+        let (mut x, mut volume, mut facets) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut spacing, mut lists) = (Vec::new(), Vec::new());
+        for body in bodies {
+            let (n, first) = (body.x.len(), x.len() as u32);
+            let new: Vec<u32> = (first..first + n as u32).collect();
+            let rows = if body.rows.is_empty() { neighbours(&body.x, REACH * body.spacing) } else { body.rows };
+            lists.extend(rows.iter().map(|row| row.iter().map(|j| j + first).collect::<Vec<u32>>()));
+            facets.extend(body.facets.iter().map(|f| f.renumbered(&new)));
+            spacing.extend(std::iter::repeat_n(body.spacing, n));
+            x.extend(body.x);
+            volume.extend(body.volume);
+        }
+        let mut first = vec![0u32];
+        lists.iter().for_each(|l| first.push(first[first.len() - 1] + l.len() as u32));
+        let mut all = Self {
+            edges: Vec::with_capacity(first[x.len()] as usize),
+            inverse: Vec::with_capacity(x.len()),
+            correction: 0.0,
+            iterations: 0,
+            x,
+            volume,
+            area: areas,
+            facets,
+            spacing,
+            first,
+        };
+        all.fit(&lists)?;
+        all.close()?;
+        Ok(all)
+    }
+
+    /// Number of particles.
+    pub fn len(&self) -> usize {
+        self.x.len()
+    }
+
+    /// True when there are none.
+    pub fn is_empty(&self) -> bool {
+        self.x.is_empty()
+    }
+
+    /// Neighbours of a particle.
+    #[inline(always)]
+    pub fn of(&self, i: usize) -> &[Edge<D>] {
+        &self.edges[self.range(i)]
+    }
+
+    /// Places of the neighbours of a particle among all.
+    #[inline(always)]
+    pub fn range(&self, i: usize) -> Range<usize> {
+        self.first[i] as usize..self.first[i + 1] as usize
+    }
+
+    /// Inverse normal matrix of the plain fit around a particle.
+    #[inline(always)]
+    pub fn inverse(&self, i: usize) -> &[[f64; D]; D] {
+        &self.inverse[i]
+    }
+
+    /// Mean number of neighbours.
+    pub fn mean_neighbours(&self) -> f64 {
+        self.edges.len() as f64 / self.len().max(1) as f64
+    }
+
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        self.edges.len() * size_of::<Edge<D>>()
+            + self.len() * (size_of::<[[f64; D]; D]>() + 2 * size_of::<Vector<D>>() + 12)
+    }
+
+    /// Plain fits.
+    fn fit(&mut self, lists: &[Vec<u32>]) -> Result<(), Unfit> {
+        for (i, list) in lists.iter().enumerate() {
+            let offset = |j: &u32| self.x[*j as usize] - self.x[i];
+            let (normal, count) = normal_matrix(list.iter().map(offset));
+            let Some((inverse, _)) = normal_inverse(&normal) else {
+                return Err(Unfit::Alone { place: self.x[i].0.to_vec(), count, spacing: self.spacing[i] });
+            };
+            self.inverse.push(inverse);
+        }
+        for (i, list) in lists.iter().enumerate() {
+            self.edges.extend(list.iter().map(|j| {
+                let (j, d) = (*j as usize, self.x[*j as usize] - self.x[i]);
+                let own = gradient_weight(&self.inverse[i], &d) * self.volume[i];
+                let counter = gradient_weight(&self.inverse[j], &(-d)) * self.volume[j];
+                Edge { other: j as u32, own, counter }
+            }));
+        }
+        Ok(())
+    }
+
+    /// Σ_i V_i g_ij − A_j: what the divergence theorem leaves at a particle.
+    fn open(&self, j: usize) -> Vector<D> {
+        self.of(j).iter().fold(-self.area[j], |sum, e| sum + e.counter - e.own)
+    }
+
+    /// The correction.
+    fn close(&mut self) -> Result<(), Unfit> {
+        let n = self.len();
+        let size = |i: usize| self.spacing[i].powi(D as i32 - 1);
+        let (mut lambda, mut left) = (vec![Vector::ZERO; n], vec![Vector::ZERO; n]);
+        sweep(&mut left, |j| -self.open(j));
+        let mut gradient = vec![[Vector::ZERO; D]; n];
+        let mut diagonal = vec![0.0; n];
+        sweep(&mut diagonal, |i| {
+            let of = |e: &Edge<D>| {
+                (self.volume[i] + self.volume[e.other as usize]) / (self.x[e.other as usize] - self.x[i]).norm_squared()
+            };
+            self.of(i).iter().map(of).sum::<f64>()
+        });
+        self.iterations = conjugate_gradients(
+            &mut lambda,
+            &mut left,
+            ITERATIONS,
+            Symmetric {
+                enough: |r: &[Vector<D>]| maximum(n, |i| r[i].max_abs() / size(i)) <= CLOSED,
+                product: |q: &[Vector<D>], out: &mut [Vector<D>]| {
+                    sweep(&mut gradient, |i| self.raw_gradient(i, q));
+                    sweep(out, |i| self.residuals(i, q, &gradient));
+                },
+                precondition: |r: &[Vector<D>], z: &mut [Vector<D>]| sweep(z, |i| r[i] * (1.0 / diagonal[i])),
+            },
+        );
+        sweep(&mut gradient, |i| self.raw_gradient(i, &lambda));
+        let mut edges = std::mem::take(&mut self.edges);
+        let added = |i: usize, j: usize| {
+            let d = self.x[j] - self.x[i];
+            residual((&lambda, &gradient), (i, j), &d) * (self.volume[i] / d.norm_squared())
+        };
+        let (mut changed, mut whole) = (0.0, 0.0);
+        for i in 0..n {
+            for e in &mut edges[self.range(i)] {
+                let (own, counter) = (added(i, e.other as usize), added(e.other as usize, i));
+                changed += own.norm_squared();
+                whole += e.own.norm_squared();
+                (e.own, e.counter) = (e.own + own, e.counter + counter);
+            }
+        }
+        (self.edges, self.correction) = (edges, (changed / f64::max(whole, f64::MIN_POSITIVE)).sqrt());
+        let worst = (0..n).map(|j| (self.open(j).max_abs() / self.spacing[j].powi(D as i32 - 1), j)).fold((0.0, 0), |a, b| if a.0 < b.0 { b } else { a });
+        if worst.0 <= 100.0 * CLOSED {
+            return Ok(());
+        }
+        Err(Unfit::Open { place: self.x[worst.1].0.to_vec(), left: worst.0, iterations: self.iterations })
+    }
+
+    /// Gradients of all components of a field by the plain fit.
+    fn raw_gradient(&self, i: usize, q: &[Vector<D>]) -> [Vector<D>; D] {
+        let mut moments = [Vector::ZERO; D];
+        for e in self.of(i) {
+            let d = self.x[e.other as usize] - self.x[i];
+            let change = (q[e.other as usize] - q[i]) * (1.0 / d.norm_squared());
+            (0..D).for_each(|a| moments[a] = moments[a] + d * change[a]);
+        }
+        let inverse = &self.inverse[i];
+        moments.map(|m| Vector::from_fn(|r| (0..D).map(|c| inverse[r][c] * m[c]).sum()))
+    }
+
+    /// (L q)_i = Σ_j w (V_j R_ji − V_i R_ij).
+    fn residuals(&self, i: usize, q: &[Vector<D>], gradient: &[[Vector<D>; D]]) -> Vector<D> {
+        self.of(i).iter().fold(Vector::ZERO, |sum, e| {
+            let j = e.other as usize;
+            let d = self.x[j] - self.x[i];
+            let (there, here) = (residual((q, gradient), (j, i), &-d), residual((q, gradient), (i, j), &d));
+            sum + (there * self.volume[j] - here * self.volume[i]) * (1.0 / d.norm_squared())
+        })
+    }
+
+    /// Volume of all.
+    pub fn whole(&self) -> f64 {
+        sum(self.len(), |i| self.volume[i])
+    }
+}
+
+/// R_ij(q) of all components.
+#[inline(always)]
+fn residual<const D: usize>(
+    (q, gradient): (&[Vector<D>], &[[Vector<D>; D]]),
+    (i, j): (usize, usize),
+    d: &Vector<D>,
+) -> Vector<D> {
+    Vector::from_fn(|a| q[j][a] - q[i][a] - d.dot(&gradient[i][a]))
+}
+
+/// All particles within `reach` of each, in the order of their numbers.
+fn neighbours<const D: usize>(x: &[Vector<D>], reach: f64) -> Vec<Vec<u32>> {
+    let mut grid = Grid::new(reach);
+    x.iter().enumerate().for_each(|(k, x)| grid.insert(x, k as u32));
+    let mut lists = vec![Vec::new(); x.len()];
+    sweep_each(&mut lists, |i| {
+        let mut list = Vec::new();
+        grid.near(&x[i], reach, |j| {
+            let near = (x[j as usize] - x[i]).norm_squared() < reach * reach;
+            if near && j as usize != i {
+                list.push(j);
+            }
+        });
+        list.sort_unstable();
+        list
+    });
+    lists
+}

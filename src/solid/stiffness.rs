@@ -1,0 +1,142 @@
+//! The stiffness of a structure as a matrix, for those who factor it.
+//!
+//! K couples all particles that are members of one cloud: block (j, k) is Σ_m b_mj C_m b_mk / V_m with C = ∂P/∂F and the weights
+//! b of the cloud around m, and what stabilisation adds, c_m (w_j δ_jk − w_j d_j·M⁻¹d_k w_k).
+use super::body::Solid;
+use super::forces::Tangents;
+use crate::math::Vector;
+use crate::math::sparse::Symmetric;
+
+/// The members of one cloud and what they weigh.
+struct Cloud<const D: usize> {
+    members: Vec<usize>,
+    weights: Vec<Vector<D>>,
+    /// Rows of the residual's stiffness.
+    residual: Vec<Vec<f64>>,
+}
+
+impl<const D: usize> Cloud<D> {
+    fn around(solid: &Solid<D>, m: usize) -> Self {
+        let particles = &solid.particles;
+        let edges = particles.of(m);
+        let n = edges.len() + 1;
+        let members: Vec<usize> = std::iter::once(m).chain(edges.iter().map(|e| e.other as usize)).collect();
+        let own = edges.iter().fold(Vector::ZERO, |sum: Vector<D>, e| sum - e.own);
+        let weights = std::iter::once(own).chain(edges.iter().map(|e| e.own)).collect();
+        let offset = |k: usize| particles.x[members[k]] - particles.x[m];
+        let inverse = particles.inverse(m);
+        let solved: Vec<Vector<D>> = (0..n)
+            .map(|k| Vector::from_fn(|r| (0..D).map(|c| inverse[r][c] * offset(k)[c]).sum::<f64>()))
+            .collect();
+        let weight = |k: usize| 1.0 / offset(k).norm_squared();
+        let mut residual = vec![vec![0.0; n]; n];
+        for j in 1..n {
+            for k in 1..n {
+                let diagonal = if j == k { weight(j) } else { 0.0 };
+                let entry = diagonal - weight(j) * weight(k) * offset(j).dot(&solved[k]);
+                residual[j][k] += entry;
+                residual[0][k] -= entry;
+                residual[j][0] -= entry;
+                residual[0][0] += entry;
+            }
+        }
+        Self { members, weights, residual }
+    }
+}
+
+impl<const D: usize> Solid<D> {
+    /// `scale` K + `shift` M among what is free, one for what is held.
+    pub fn matrix_of(&self, tangents: &Tangents<D>, scale: f64, shift: f64) -> Symmetric {
+        let mut all = self.pattern();
+        for m in 0..self.len() {
+            self.add_cloud(m, tangents, scale, &mut all);
+        }
+        for k in 0..self.len() * D {
+            let at = all.first[k];
+            let (i, a) = (k / D, k % D);
+            if self.is_held(i, a) {
+                all.value[at] = 1.0;
+            } else {
+                all.value[at] += shift * self.mass()[i];
+            }
+        }
+        all
+    }
+
+    /// The diagonal of K.
+    pub fn diagonal_of(&self, tangents: &Tangents<D>) -> Vec<f64> {
+        let mut all = vec![0.0; self.len() * D];
+        for m in 0..self.len() {
+            let cloud = Cloud::around(self, m);
+            for (k, particle) in cloud.members.iter().enumerate() {
+                let b = &cloud.weights[k];
+                for c in 0..D {
+                    let bent: f64 = (0..D).map(|d| (0..D).map(|s| tangents.all[m][c][d][c][s] * b[s] * b[d]).sum::<f64>()).sum();
+                    all[particle * D + c] += bent / self.particles.volume[m] + tangents.stiff[m] * cloud.residual[k][k];
+                }
+            }
+        }
+        all
+    }
+
+    /// Which particles share a cloud, each with itself and later ones.
+    fn pattern(&self) -> Symmetric {
+        let mut all = Symmetric { first: vec![0], ..Symmetric::default() };
+        let (mut later, mut seen) = (Vec::new(), vec![usize::MAX; self.len()]);
+        for i in 0..self.len() {
+            later.clear();
+            let near = |i: usize| self.particles.of(i).iter().map(|e| e.other as usize);
+            for k in near(i).chain(std::iter::once(i)).flat_map(|m| near(m).chain(std::iter::once(m))) {
+                if k >= i && seen[k] != i {
+                    seen[k] = i;
+                    later.push(k);
+                }
+            }
+            later.sort_unstable();
+            for a in 0..D {
+                for k in &later {
+                    let from = if *k == i { a } else { 0 };
+                    all.row.extend((from..D).map(|c| k * D + c));
+                }
+                all.first.push(all.row.len());
+            }
+        }
+        all.value = vec![0.0; all.row.len()];
+        all
+    }
+
+    fn add_cloud(&self, m: usize, tangents: &Tangents<D>, scale: f64, all: &mut Symmetric) {
+        let cloud = Cloud::around(self, m);
+        let (per_volume, stiff) = (scale / self.particles.volume[m], scale * tangents.stiff[m]);
+        for (k, particle) in cloud.members.iter().enumerate() {
+            // C b_k: stress for a unit displacement of member k along each axis
+            let stress: [[[f64; D]; D]; D] = std::array::from_fn(|c| {
+                let mut sum = [[0.0; D]; D];
+                for d in 0..D {
+                    let (t, b) = (&tangents.all[m][c][d], cloud.weights[k][d] * per_volume);
+                    (0..D).for_each(|r| (0..D).for_each(|s| sum[r][s] += t[r][s] * b));
+                }
+                sum
+            });
+            for (j, other) in cloud.members.iter().enumerate().filter(|(_, other)| *other >= particle) {
+                let b = &cloud.weights[j];
+                let smooth = stiff * cloud.residual[j][k];
+                for c in 0..D {
+                    let column = particle * D + c;
+                    if self.is_held(*particle, c) {
+                        continue;
+                    }
+                    let from = if other == particle { c } else { 0 };
+                    let range = all.first[column]..all.first[column + 1];
+                    let start = range.start + all.row[range.clone()].partition_point(|r| *r < other * D + from);
+                    for a in from..D {
+                        let pulled: f64 = (0..D).map(|s| stress[c][a][s] * b[s]).sum();
+                        if !self.is_held(*other, a) {
+                            all.value[start + a - from] += pulled + if a == c { smooth } else { 0.0 };
+                        }
+                    }
+                }
+            }
+        }
+    }
+}

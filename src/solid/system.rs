@@ -1,0 +1,169 @@
+//! Structures of particles as systems: M u″ = f(t, u, u′, history).
+use super::body::Solid;
+use super::forces::{State, Tangents, Work};
+use crate::math::sparse::Symmetric;
+use crate::system::{Fault, Field, Instant, Mechanical, Moment, System};
+
+/// Unknowns of the largest matrix that is factored, in the plane and in space: what a few seconds and a gigabyte suffice for.
+const FACTORED: [usize; 2] = [300_000, 45_000];
+
+/// A structure as a system.
+pub struct Structure<const D: usize> {
+    /// What it is.
+    pub solid: Solid<D>,
+    fields: Vec<Field>,
+}
+
+impl<const D: usize> Structure<D> {
+    /// The structure as a system.
+    pub fn new(solid: Solid<D>) -> Self {
+        let n = solid.len();
+        let fields = vec![
+            Field::new("displacement", n, D),
+            Field::new("velocity", n, D),
+            Field::new("history", n, solid.history_width()),
+        ];
+        Self { solid, fields }
+    }
+
+    /// The state in which it is at rest, with velocities by a function of places.
+    pub fn start(&self, velocity: impl Fn(usize) -> [f64; D]) -> Vec<f64> {
+        let n = self.solid.len();
+        let mut u = vec![0.0; n * D];
+        self.solid.hold(0.0, u.as_chunks_mut().0);
+        u.extend((0..n).flat_map(|i| {
+            let v = velocity(i);
+            std::array::from_fn::<f64, D, _>(|a| if self.solid.is_held(i, a) { 0.0 } else { v[a] })
+        }));
+        u.extend(self.solid.virgin());
+        u
+    }
+
+    /// A state by its parts.
+    pub fn state<'a>(&self, time: f64, u: &'a [f64]) -> State<'a, D> {
+        let n = self.solid.len() * D;
+        moment(&Moment { time, step: 0.0, displacement: &u[..n], velocity: &u[n..2 * n], history: &u[2 * n..] })
+    }
+}
+
+fn moment<'a, const D: usize>(at: &Moment<'a>) -> State<'a, D> {
+    State {
+        time: at.time,
+        step: at.step,
+        displacement: at.displacement.as_chunks().0,
+        velocity: at.velocity.as_chunks().0,
+        history: at.history,
+    }
+}
+
+impl<const D: usize> System for Structure<D> {
+    /// Time.
+    type Frame = f64;
+    type Work = Work<D>;
+
+    fn fields(&self) -> &[Field] {
+        &self.fields
+    }
+
+    fn work(&self) -> Work<D> {
+        self.solid.work()
+    }
+
+    fn frame(&self, at: &Instant<'_>, _: &[f64]) -> f64 {
+        at.time
+    }
+
+    fn place(&self, at: &Instant<'_>, frame: &mut f64) {
+        *frame = at.time;
+    }
+
+    fn update_boundary_state(&self, _: &[f64], _: &mut Work<D>, _: &mut f64) {}
+
+    fn rhs(&self, frame: &f64, u: &[f64], work: &mut Work<D>, du: &mut [f64]) {
+        let state = self.state(*frame, u);
+        let n = self.displacements();
+        let (rates, after) = du.split_at_mut(2 * n);
+        self.solid.stress(&state, work, after);
+        // between steps materials remember what they did
+        after.fill(0.0);
+        let (velocity, acceleration) = rates.split_at_mut(n);
+        velocity.copy_from_slice(&u[n..2 * n]);
+        self.solid.forces(&state, work, acceleration.as_chunks_mut().0);
+        for k in 0..n {
+            let held = self.is_held(k);
+            acceleration[k] = if held { 0.0 } else { acceleration[k] / self.mass(k) };
+            velocity[k] = if held { 0.0 } else { velocity[k] };
+        }
+    }
+
+    fn rates(&self, _: &f64, u: &[f64], _: &mut Work<D>, rate: &mut [f64]) {
+        rate.fill(1.0 / self.stable_step(&u[..self.displacements()]));
+    }
+
+    fn largest_change(&self, _: &[f64], du: &[f64]) -> f64 {
+        let largest = du[..self.displacements()].iter().fold(0.0f64, |m, x| if x.is_finite() { m.max(x.abs()) } else { f64::INFINITY });
+        largest / self.solid.particles.spacing.iter().fold(f64::INFINITY, |a, b| a.min(*b))
+    }
+
+    fn check(&self, _: &f64, u: &[f64]) -> Result<(), Fault> {
+        let displacement: &[[f64; D]] = u[..self.displacements()].as_chunks().0;
+        self.solid.check(displacement)
+    }
+
+    fn locate(&self, _: &f64, row: usize) -> Vec<f64> {
+        let n = self.solid.len();
+        self.solid.particles.x[row % n].0.to_vec()
+    }
+}
+
+impl<const D: usize> Mechanical for Structure<D> {
+    type Stiffness = Tangents<D>;
+
+    fn displacements(&self) -> usize {
+        self.solid.len() * D
+    }
+
+    fn mass(&self, k: usize) -> f64 {
+        self.solid.mass()[k / D]
+    }
+
+    fn is_held(&self, k: usize) -> bool {
+        self.solid.is_held(k / D, k % D)
+    }
+
+    fn hold(&self, time: f64, displacement: &mut [f64]) {
+        self.solid.hold(time, displacement.as_chunks_mut().0);
+    }
+
+    fn forces(&self, at: &Moment<'_>, work: &mut Work<D>, force: &mut [f64], after: &mut [f64]) {
+        let state = moment(at);
+        self.solid.stress(&state, work, after);
+        self.solid.forces(&state, work, force.as_chunks_mut().0);
+    }
+
+    fn stable_step(&self, displacement: &[f64]) -> f64 {
+        self.solid.stable_step(displacement.as_chunks().0)
+    }
+
+    fn linearise(&self, at: &Moment<'_>) -> Tangents<D> {
+        let mut tangents = self.solid.tangents();
+        self.solid.linearise(&moment(at), &mut tangents);
+        tangents
+    }
+
+    fn stiffness(&self, stiffness: &Tangents<D>, w: &[f64], work: &mut Work<D>, out: &mut [f64]) {
+        self.solid.stiffness(stiffness, w.as_chunks().0, work, out.as_chunks_mut().0);
+    }
+
+    fn matrix(&self, stiffness: &Tangents<D>, scale: f64, shift: f64) -> Symmetric {
+        self.solid.matrix_of(stiffness, scale, shift)
+    }
+
+    fn diagonal(&self, stiffness: &Tangents<D>) -> Vec<f64> {
+        self.solid.diagonal_of(stiffness)
+    }
+
+    fn largest_factored(&self) -> usize {
+        FACTORED[D - 2]
+    }
+}

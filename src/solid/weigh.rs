@@ -1,0 +1,145 @@
+//! Volumes and area vectors of particles.
+//!
+//! Simplices between the particles are looked at once and forgotten: a simplex T inside the body gives each of its corners a share of
+//! its volume, and sides that belong to one simplex only are the surface, whose area is shared out to corners. So Σ A = 0 and
+//! Σ x ⊗ A = V I to round-off, which the divergence theorem of [`super::particles`] rests on.
+use std::collections::HashMap;
+
+use super::particles::{Facet, Fill};
+use crate::math::Vector;
+use crate::math::rotation::cross;
+use crate::math::tetrahedra::delaunay;
+use crate::math::triangulation::triangulate;
+
+/// Volumes and areas of particles in the plane: triangles between them, each with a side along `outline`, for whose middle `inside`
+/// holds. Shares are those of Voronoi's cells where no angle is obtuse (Meyer, Desbrun, Schröder and Barr 2003).
+pub(super) fn weigh_in_plane(
+    x: Vec<Vector<2>>,
+    outline: &[[u32; 2]],
+    spacing: f64,
+    inside: impl Fn(&Vector<2>) -> bool,
+) -> Fill<2> {
+    let (mut volume, mut sides) = (vec![0.0; x.len()], Sides::default());
+    for triangle in triangulate(&x, outline) {
+        let corners = triangle.map(|i| x[i as usize]);
+        if !inside(&((corners[0] + corners[1] + corners[2]) * (1.0 / 3.0))) {
+            continue;
+        }
+        let shares = shares(&corners);
+        for k in 0..3 {
+            volume[triangle[k] as usize] += shares[k];
+            sides.add([triangle[k], triangle[(k + 1) % 3]]);
+        }
+    }
+    let facet = |side: [u32; 2]| {
+        let along = x[side[1] as usize] - x[side[0] as usize];
+        Facet::new(&side, Vector([along[1], -along[0]]))
+    };
+    let facets = sides.single().into_iter().map(facet).collect();
+    Fill { x, volume, facets, spacing, rows: Vec::new() }
+}
+
+/// Sides of simplices, and how often each is there.
+struct Sides<const D: usize>(HashMap<[u32; D], ([u32; D], u32)>);
+
+impl<const D: usize> Default for Sides<D> {
+    fn default() -> Self {
+        Self(HashMap::new())
+    }
+}
+
+impl<const D: usize> Sides<D> {
+    fn add(&mut self, side: [u32; D]) {
+        let mut key = side;
+        key.sort_unstable();
+        self.0.entry(key).or_insert((side, 0)).1 += 1;
+    }
+
+    /// Those that are there once, in the order of their corners.
+    fn single(self) -> Vec<[u32; D]> {
+        let mut once: Vec<_> = self.0.into_iter().filter(|(_, (_, count))| *count == 1).collect();
+        once.sort_unstable();
+        once.into_iter().map(|(_, (side, _))| side).collect()
+    }
+}
+
+/// How the area of a triangle is shared out to its corners.
+fn shares(corners: &[Vector<2>; 3]) -> [f64; 3] {
+    let side = |k: usize| corners[(k + 2) % 3] - corners[(k + 1) % 3];
+    let along = |k: usize| side((k + 1) % 3) * -1.0;
+    let turn = |a: Vector<2>, b: Vector<2>| a[0] * b[1] - a[1] * b[0];
+    let area = 0.5 * turn(side(0), side(1)).abs();
+    // a cosine times two sides, at each corner
+    let cosine = [0, 1, 2].map(|k| along(k).dot(&side((k + 2) % 3)));
+    if let Some(obtuse) = (0..3).find(|k| cosine[*k] < 0.0) {
+        return [0, 1, 2].map(|k| if k == obtuse { 0.5 * area } else { 0.25 * area });
+    }
+    let part = |k: usize| side(k).norm_squared() * cosine[k] / (2.0 * area);
+    [0, 1, 2].map(|k| (part((k + 1) % 3) + part((k + 2) % 3)) / 8.0)
+}
+
+/// The same in space, by quarters of tetrahedra.
+pub(super) fn weigh_in_space(x: Vec<Vector<3>>, spacing: f64, inside: impl Fn(&Vector<3>) -> bool) -> Fill<3> {
+    let (mut volume, mut sides) = (vec![0.0; x.len()], Sides::default());
+    let turn = |[a, b, c]: [Vector<3>; 3]| Vector(cross(&(b - a).0, &(c - a).0)) * 0.5;
+    for tetrahedron in delaunay(&x, &vec![spacing; x.len()]) {
+        let corners = tetrahedron.map(|i| x[i as usize]);
+        if !inside(&corners.iter().fold(Vector::ZERO, |sum, c| sum + *c * 0.25)) {
+            continue;
+        }
+        let whole = turn([corners[0], corners[1], corners[2]]).dot(&(corners[3] - corners[0])) / 3.0;
+        tetrahedron.iter().for_each(|i| volume[*i as usize] += 0.25 * whole);
+        // seen from outside
+        for [a, b, c] in [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]] {
+            sides.add([tetrahedron[a], tetrahedron[b], tetrahedron[c]]);
+        }
+    }
+    let facet = |side: [u32; 3]| Facet::new(&side, turn(side.map(|i| x[i as usize])));
+    let facets = sides.single().into_iter().map(facet).collect();
+    Fill { x, volume, facets, spacing, rows: Vec::new() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn identities<const D: usize>(fill: &Fill<D>, whole: f64) {
+        let volume: f64 = fill.volume.iter().sum();
+        assert!((volume / whole - 1.0).abs() < 1e-12, "{volume}");
+        assert!(fill.volume.iter().all(|v| *v > 0.0));
+        let area = fill.areas();
+        let total = area.iter().fold(Vector::ZERO, |sum, a| sum + *a);
+        assert!(total.max_abs() < 1e-12);
+        for (r, c) in (0..D).flat_map(|r| (0..D).map(move |c| (r, c))) {
+            let moment: f64 = fill.x.iter().zip(&area).map(|(x, a)| x[r] * a[c]).sum();
+            assert!((moment - if r == c { whole } else { 0.0 }).abs() < 1e-12, "{moment}");
+        }
+    }
+
+    fn noise(k: usize) -> f64 {
+        let x = (k as f64 * 12.9898).sin() * 43758.5453;
+        x - x.floor() - 0.5
+    }
+
+    #[test]
+    fn a_square_and_a_cube_are_shared_out() {
+        let n = 7;
+        let mut points = Vec::new();
+        for k in 0..n * n {
+            let (i, j) = (k % n, k / n);
+            let inner = |i: usize| 0 < i && i < n - 1;
+            let shift = |k: usize, free: bool| if free { 0.05 * noise(k) } else { 0.0 };
+            let free = inner(i) && inner(j);
+            points.push(Vector([i as f64 / 6.0 + shift(2 * k, free), j as f64 / 6.0 + shift(2 * k + 1, free)]));
+        }
+        identities(&weigh_in_plane(points, &[], 1.0 / 6.0, |_| true), 1.0);
+        let mut points = Vec::new();
+        for k in 0..n * n * n {
+            let place = [k % n, k / n % n, k / n / n];
+            let free = place.iter().all(|i| 0 < *i && *i < n - 1);
+            let shift = |k: usize| if free { 0.05 * noise(k) } else { 0.0 };
+            points.push(Vector::from_fn(|d| place[d] as f64 / 6.0 + shift(3 * k + d)));
+        }
+        identities(&weigh_in_space(points, 1.0 / 6.0, |_| true), 1.0);
+    }
+}
