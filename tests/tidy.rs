@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// Modules by floor: each may use strictly lower floors only.
-const FLOORS: [(&str, u8); 17] = [
+const FLOORS: [(&str, u8); 18] = [
     ("math", 0),
     ("case", 0),
     ("system", 1),
@@ -21,6 +21,7 @@ const FLOORS: [(&str, u8); 17] = [
     ("cloud", 2),
     ("time", 2),
     ("scheme", 3),
+    ("solid", 3),
     ("coupling", 4),
     ("observe", 4),
     ("report", 5),
@@ -43,7 +44,7 @@ const NARROW: [(&str, &[&str]); 9] = [
 ];
 
 /// Modules whose files use one another one way only.
-const ONE_WAY: [&str; 4] = ["case", "cloud", "scheme", "run"];
+const ONE_WAY: [&str; 5] = ["case", "cloud", "scheme", "solid", "run"];
 
 /// Who may open files.
 const OPENS_FILES: [&str; 7] = [

@@ -46,6 +46,28 @@ pub struct Load<const D: usize> {
     pub history: InTime<f64>,
 }
 
+/// A rigid plane; bodies are where its unit normal points to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RigidPlane<const D: usize> {
+    /// A point of it.
+    pub point: Vector<D>,
+    /// Unit normal.
+    pub normal: Vector<D>,
+}
+
+/// What touches.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Contact<const D: usize> {
+    /// Rigid planes.
+    pub planes: Vec<RigidPlane<D>>,
+    /// Bodies touch one another.
+    pub bodies: bool,
+    /// s, the stiffness over that of a column of the body one spacing high.
+    pub stiffness: f64,
+    /// Coefficient of Coulomb's friction on planes.
+    pub friction: f64,
+}
+
 /// How much is smoothed and lost beside what the materials say.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Damping {
@@ -77,6 +99,8 @@ pub struct Solid<const D: usize> {
     pub supports: Vec<Support<D>>,
     /// Loads.
     pub loads: Vec<Load<D>>,
+    /// What touches.
+    pub contact: Option<Contact<D>>,
     /// Time is the part of loads, gravity and motions that acts: for equilibrium.
     pub ramped: bool,
     /// Mass of each particle.
@@ -112,6 +136,8 @@ pub struct Parts<const D: usize> {
     pub supports: Vec<Support<D>>,
     /// Loads.
     pub loads: Vec<Load<D>>,
+    /// What touches.
+    pub contact: Option<Contact<D>>,
     /// Time is the part of loads, gravity and motions that acts: for equilibrium.
     pub ramped: bool,
 }
@@ -119,9 +145,12 @@ pub struct Parts<const D: usize> {
 impl<const D: usize> Solid<D> {
     /// The structure made of `parts`.
     pub fn new(parts: Parts<D>) -> Self {
-        let Parts { particles, body, materials, material, plane, gravity, damping, supports, loads, ramped } = parts;
+        let Parts { particles, body, materials, material, plane, gravity, damping, supports, loads, contact, ramped } =
+            parts;
         let density = |i: usize| materials[usize::from(material[i])].density;
-        let mass = (0..particles.len()).map(|i| density(i) * particles.volume[i].max(LEAST_MASS * particles.spacing[i].powi(D as i32))).collect();
+        let mass = (0..particles.len())
+            .map(|i| density(i) * particles.volume[i].max(LEAST_MASS * particles.spacing[i].powi(D as i32)))
+            .collect();
         let share = |i: usize| particles.volume[i] * D as f64 / particles.of(i).len() as f64;
         let weight = (0..particles.len()).map(share).collect();
         let mut held = vec![0u8; particles.len()];
@@ -143,6 +172,7 @@ impl<const D: usize> Solid<D> {
             damping,
             supports,
             loads,
+            contact,
             ramped,
             mass,
             held,
@@ -231,7 +261,9 @@ impl<const D: usize> Solid<D> {
         let Some(i) = first(self.len(), bad) else { return Ok(()) };
         let f = self.deformation(i, displacement);
         let reason = match determinant(&f) {
-            j if j.is_finite() => format!("a particle of the solid keeps {j:.3} of its volume; at least {LEAST} is needed"),
+            j if j.is_finite() => {
+                format!("a particle of the solid keeps {j:.3} of its volume; at least {LEAST} is needed")
+            }
             _ => "a particle of the solid is nowhere: its displacement is no number".to_owned(),
         };
         let place = (0..D).map(|a| self.particles.x[i][a] + displacement[i][a]).collect();

@@ -1,8 +1,9 @@
 //! Filling bodies with particles.
 //!
 //! Boxes, and quadrilaterals in the plane, are filled row by row, surfaces included. Any other shape gets particles on its surface
-//! first, one spacing apart, then a lattice inside (hexagonal in the plane, body-centred in space, whose simplices are never flat),
-//! which is relaxed by repulsion while the surface stays.
+//! first, one spacing apart, then a lattice inside, of squares in the plane and body-centred in space, whose simplices are never
+//! flat. Near the surface it is relaxed by repulsion; the surface and what is deeper stay, so that most particles have the
+//! neighbours of a lattice, whichever way the reach of a cloud cuts.
 use super::particles::{Facet, Fill};
 use super::weigh::{weigh_in_plane, weigh_in_space};
 use crate::cloud::grid::Grid;
@@ -12,6 +13,8 @@ use crate::math::sweep::sweep_each;
 
 /// Particles inside begin no nearer to the surface than this, in spacings.
 const CLEAR: f64 = 0.6;
+/// Particles deeper than this stay on the lattice, in spacings.
+const DEEP: f64 = std::f64::consts::SQRT_2 + 0.6;
 /// Sweeps of the relaxation.
 const SWEEPS: usize = 40;
 /// Step of a sweep, in spacings.
@@ -53,7 +56,8 @@ impl<const D: usize> Lattice<D> {
             })
         };
         let at = |place: [f64; D]| self.at(place);
-        let mut fill = Fill { x: Vec::with_capacity(n), volume: vec![0.0; n], facets: Vec::new(), spacing: 0.0, rows: Vec::new() };
+        let mut fill =
+            Fill { x: Vec::with_capacity(n), volume: vec![0.0; n], facets: Vec::new(), spacing: 0.0, rows: Vec::new() };
         let mut seed = Noise(1);
         let spacing = self.spacing();
         for k in 0..n {
@@ -67,7 +71,7 @@ impl<const D: usize> Lattice<D> {
         self.weigh(&mut fill);
         fill.spacing = spacing;
         if self.jitter > 0.0 {
-            let weighed = weighed(&fill.x, &[], spacing, &|_| true);
+            let weighed = weighed((&fill.x, n), &[], spacing, &|_| true);
             fill.volume = weighed.volume;
         }
         surface_first(&fill)
@@ -101,9 +105,8 @@ impl<const D: usize> Lattice<D> {
 
     /// The point with these parts of the way along each axis.
     fn at(&self, part: [f64; D]) -> Vector<D> {
-        let weight = |k: usize| -> f64 {
-            (0..D).map(|d| if k >> d & 1 == 1 { part[d] } else { 1.0 - part[d] }).product()
-        };
+        let weight =
+            |k: usize| -> f64 { (0..D).map(|d| if k >> d & 1 == 1 { part[d] } else { 1.0 - part[d] }).product() };
         (0..1usize << D).fold(Vector::ZERO, |x, k| x + self.corners[k] * weight(k))
     }
 
@@ -183,18 +186,19 @@ fn shares_of_cell<const D: usize>(corners: &[Vector<D>]) -> Vec<f64> {
 
 /// Particles in any shape: in the plane around closed outlines, in space inside closed surfaces.
 pub fn relaxed<const D: usize>(surface: &Surface<D>, spacing: f64) -> Fill<D> {
-    let (skin, outline) = if D == 2 { along_outline(surface, spacing) } else { (on_surface(surface, spacing), Vec::new()) };
+    let (skin, outline) =
+        if D == 2 { along_outline(surface, spacing) } else { (on_surface(surface, spacing), Vec::new()) };
     let inner = inside(surface, spacing);
     let n = skin.len();
     let mut x = skin;
     x.extend(inner);
     relax(&mut x, n, surface, spacing);
-    kept(weighed(&x, &outline, spacing, &|p| surface.inside(p)))
+    kept(weighed((&x, n), &outline, spacing, &|p| surface.inside(p)))
 }
 
 /// Volumes and surface of particles by the simplices between them whose middle is `inside`.
 fn weighed<const D: usize>(
-    x: &[Vector<D>],
+    (x, skin): (&[Vector<D>], usize),
     outline: &[[u32; 2]],
     spacing: f64,
     inside: &dyn Fn(&Vector<D>) -> bool,
@@ -207,7 +211,7 @@ fn weighed<const D: usize>(
         }
         _ => {
             let full = x.iter().map(|x| Vector(x.to_3d())).collect();
-            raised(weigh_in_space(full, spacing, |p| inside(&p.0)))
+            raised(weigh_in_space(full, skin, spacing, |p| inside(&p.0)))
         }
     }
 }
@@ -360,10 +364,9 @@ fn repulsion<'a, const D: usize>(x: &'a [Vector<D>], spacing: f64) -> impl Fn(us
 fn inside<const D: usize>(surface: &Surface<D>, spacing: f64) -> Vec<Vector<D>> {
     let bounds = surface.bounds();
     let extent = bounds.extent();
-    let steps: [f64; D] = match D {
-        2 => std::array::from_fn(|d| if d == 0 { spacing } else { 3f64.sqrt() * spacing }),
-        _ => [2.0 / 3f64.sqrt() * spacing; D],
-    };
+    // in the plane squares, in space cubes with a particle in the middle of each as well
+    let (step, halves) = if D == 2 { (spacing, 1) } else { (2.0 / 3f64.sqrt() * spacing, 2) };
+    let steps = [step; D];
     let counts = std::array::from_fn::<_, D, _>(|d| (extent[d] / steps[d]).ceil() as usize + 1);
     let n: usize = counts.iter().product();
     let mut rows = vec![Vec::new(); n];
@@ -377,19 +380,21 @@ fn inside<const D: usize>(surface: &Surface<D>, spacing: f64) -> Vec<Vector<D>> 
         });
         let points = [0.0, 0.5].map(|half| Vector::from_fn(|d| centre[d] + (cell[d] + half) * steps[d]));
         let free = |p: &Vector<D>| surface.inside(p) && surface.nearest(p, CLEAR * spacing).is_none();
-        points.into_iter().filter(free).collect()
+        points.into_iter().take(halves).filter(free).collect()
     });
     rows.concat()
 }
 
 /// Moves particles after the first `fixed` ones apart.
 fn relax<const D: usize>(x: &mut [Vector<D>], fixed: usize, surface: &Surface<D>, spacing: f64) {
+    let near = |x: &Vector<D>| surface.nearest(x, DEEP * spacing).is_some();
+    let moves: Vec<bool> = x.iter().enumerate().map(|(i, x)| i >= fixed && near(x)).collect();
     for sweep in 0..SWEEPS {
         let mut next = x.to_vec();
         let push = repulsion(x, spacing);
         let step = STEP * spacing * (1.0 - 0.7 * sweep as f64 / SWEEPS as f64);
         sweep_each(&mut next, |i| {
-            if i < fixed {
+            if !moves[i] {
                 return x[i];
             }
             let moved = x[i] + push(i) * step;

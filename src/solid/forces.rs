@@ -43,6 +43,8 @@ pub struct Energy {
     pub strain: f64,
     /// What stabilisation holds.
     pub stabilisation: f64,
+    /// What contact holds.
+    pub contact: f64,
     /// What materials have lost so far.
     pub dissipated: f64,
 }
@@ -95,9 +97,7 @@ fn gradients<const D: usize>(solid: &Solid<D>, i: usize, q: &[[f64; D]]) -> (Mat
     }
     let per_volume = 1.0 / solid.particles.volume[i];
     let inverse = solid.particles.inverse(i);
-    let plain = std::array::from_fn(|a| {
-        std::array::from_fn(|b| (0..D).map(|c| moments[a][c] * inverse[c][b]).sum())
-    });
+    let plain = std::array::from_fn(|a| std::array::from_fn(|b| (0..D).map(|c| moments[a][c] * inverse[c][b]).sum()));
     (full.map(|row| row.map(|f| f * per_volume)), plain)
 }
 
@@ -207,10 +207,9 @@ impl<const D: usize> Solid<D> {
     /// Forces on all particles: of stresses in `work`, stabilisation, gravity and loads.
     pub fn forces(&self, state: &State<'_, D>, work: &Work<D>, force: &mut [[f64; D]]) {
         let gravity = self.gravity * self.part(state.time);
-        sweep(force, |i| {
-            (self.internal(i, (state.displacement, state.velocity), work) + gravity * self.mass[i]).0
-        });
+        sweep(force, |i| (self.internal(i, (state.displacement, state.velocity), work) + gravity * self.mass[i]).0);
         self.add_loads(state, force);
+        self.add_contact(state, force);
         if self.damping.mass > 0.0 {
             let rate = self.damping.mass;
             sweep_slots(force, |i, f| {
@@ -361,10 +360,17 @@ impl<const D: usize> Solid<D> {
         self.add_loads(state, force);
     }
 
+    /// The same with all of what acts in the end, where it grows.
+    pub fn all_outside(&self, state: &State<'_, D>, force: &mut [[f64; D]]) {
+        let time = if self.ramped { 1.0 } else { state.time };
+        self.outside(&State { time, ..*state }, force);
+    }
+
     /// Power that damping takes in a state.
     pub fn damped(&self, state: &State<'_, D>) -> f64 {
         let v = state.velocity;
         let slowed = sum(self.len(), |i| self.damping.mass * self.mass[i] * Vector(v[i]).norm_squared());
+        let slowed = slowed + self.rubbed(state);
         if self.damping.viscosity == 0.0 {
             return slowed;
         }
@@ -404,7 +410,7 @@ impl<const D: usize> Solid<D> {
         });
         let lost = |at: usize| sum(n, |i| self.particles.volume[i] * self.history_of(state.history, i)[at]);
         let dissipated = self.lost_at().map_or(0.0, lost);
-        Energy { kinetic, strain, stabilisation, dissipated }
+        Energy { kinetic, strain, stabilisation, contact: self.contact_energy(state), dissipated }
     }
 
     /// Cauchy's stress at a particle.

@@ -1,15 +1,20 @@
 //! Structures made of particles.
+//!
+//! A cloud at rest, with least-squares gradients that fulfil the divergence theorem ([`particles`]); an energy of its deformation
+//! whose derivatives are forces ([`forces`]); materials, supports and loads ([`body`]); and what integrators see of it all
+//! ([`system`]). Book page `solid-particles`.
 pub mod body;
+pub mod contact;
 pub mod fill;
 pub mod forces;
-pub mod particles;
 pub mod modes;
+pub mod particles;
 mod stiffness;
 pub mod system;
 #[cfg(test)]
 mod tests;
 mod weigh;
 
-pub use body::{Action, Damping, Load, Parts, Plane, Solid, Support};
+pub use body::{Action, Contact, Damping, Load, Parts, Plane, RigidPlane, Solid, Support};
 pub use particles::{Particles, Unfit};
 pub use system::Structure;

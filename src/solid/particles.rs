@@ -1,7 +1,7 @@
 //! Clouds of solid particles: where they are at rest, how much of the body each holds, and how gradients are fitted among them.
 //!
-//! Gradients are the least-squares fits of the gas, ∇φ_i = Σ_j g_ij (φ_j − φ_i) with weights w = 1/|d|², over all j within
-//! [`REACH`] spacings. They are then made *variationally consistent*: of all corrections that leave the gradients of linear fields
+//! Gradients are the least-squares fits of the gas, ∇φ_i = Σ_j g_ij (φ_j − φ_i) with weights w = 1/|d|², over all j around i
+//! in its rows, or within [`REACH`] spacings. They are then made *variationally consistent*: of all corrections that leave the gradients of linear fields
 //! exact, the least one, in the norm of the weights, is added for which the discrete divergence theorem holds,
 //! Σ_i V_i g_ij = A_j, with the area vectors A of the surface: uniform stress then has no force inside, and the exact traction on
 //! the surface, on any cloud. Corrections that leave linear fields exact are residuals of the fit itself,
@@ -15,8 +15,9 @@ use crate::math::conjugate::{Symmetric, conjugate_gradients};
 use crate::math::least_squares::{gradient_weight, normal_inverse, normal_matrix};
 use crate::math::sweep::{maximum, sum, sweep, sweep_each};
 
-/// Radius of a cloud in spacings: no diagonal of a sheared cell is lost.
-pub const REACH: f64 = 1.8;
+/// Radius of a cloud in spacings, in the plane and in space, where rows do not say who neighbours are: between the second and the
+/// third ring of a square and of a body-centred lattice, so that no diagonal of a sheared cell is lost.
+pub const REACH: [f64; 2] = [1.8, 1.4];
 /// What the divergence theorem may leave of a particle's area h^(D−1).
 const CLOSED: f64 = 1e-11;
 /// Most iterations of the correction.
@@ -87,7 +88,7 @@ impl<const D: usize> Fill<D> {
     /// The same with all within reach as neighbours, but those for which `apart` holds.
     pub fn seen(mut self, apart: impl Fn(usize, usize) -> bool) -> Self {
         if self.rows.is_empty() {
-            self.rows = neighbours(&self.x, REACH * self.spacing);
+            self.rows = neighbours(&self.x, REACH[D - 2] * self.spacing);
         }
         for (i, row) in self.rows.iter_mut().enumerate() {
             row.retain(|j| !apart(i.min(*j as usize), i.max(*j as usize)));
@@ -114,7 +115,11 @@ impl<const D: usize> Fill<D> {
             volume: order.iter().map(|i| self.volume[*i]).collect(),
             facets: kept.map(|f| f.renumbered(&new)).collect(),
             spacing: self.spacing,
-            rows: if self.rows.is_empty() { Vec::new() } else { order.iter().map(|i| renumbered(&self.rows[*i], &new)).collect() },
+            rows: if self.rows.is_empty() {
+                Vec::new()
+            } else {
+                order.iter().map(|i| renumbered(&self.rows[*i], &new)).collect()
+            },
         }
     }
 }
@@ -186,7 +191,7 @@ impl<const D: usize> Particles<D> {
         for body in bodies {
             let (n, first) = (body.x.len(), x.len() as u32);
             let new: Vec<u32> = (first..first + n as u32).collect();
-            let rows = if body.rows.is_empty() { neighbours(&body.x, REACH * body.spacing) } else { body.rows };
+            let rows = if body.rows.is_empty() { neighbours(&body.x, REACH[D - 2] * body.spacing) } else { body.rows };
             lists.extend(rows.iter().map(|row| row.iter().map(|j| j + first).collect::<Vec<u32>>()));
             facets.extend(body.facets.iter().map(|f| f.renumbered(&new)));
             spacing.extend(std::iter::repeat_n(body.spacing, n));
@@ -320,7 +325,9 @@ impl<const D: usize> Particles<D> {
             }
         }
         (self.edges, self.correction) = (edges, (changed / f64::max(whole, f64::MIN_POSITIVE)).sqrt());
-        let worst = (0..n).map(|j| (self.open(j).max_abs() / self.spacing[j].powi(D as i32 - 1), j)).fold((0.0, 0), |a, b| if a.0 < b.0 { b } else { a });
+        let worst = (0..n)
+            .map(|j| (self.open(j).max_abs() / self.spacing[j].powi(D as i32 - 1), j))
+            .fold((0.0, 0), |a, b| if a.0 < b.0 { b } else { a });
         if worst.0 <= 100.0 * CLOSED {
             return Ok(());
         }
@@ -333,7 +340,7 @@ impl<const D: usize> Particles<D> {
         for e in self.of(i) {
             let d = self.x[e.other as usize] - self.x[i];
             let change = (q[e.other as usize] - q[i]) * (1.0 / d.norm_squared());
-            (0..D).for_each(|a| moments[a] = moments[a] + d * change[a]);
+            (0..D).for_each(|a| moments[a] += d * change[a]);
         }
         let inverse = &self.inverse[i];
         moments.map(|m| Vector::from_fn(|r| (0..D).map(|c| inverse[r][c] * m[c]).sum()))

@@ -25,9 +25,8 @@ impl<const D: usize> Cloud<D> {
         let weights = std::iter::once(own).chain(edges.iter().map(|e| e.own)).collect();
         let offset = |k: usize| particles.x[members[k]] - particles.x[m];
         let inverse = particles.inverse(m);
-        let solved: Vec<Vector<D>> = (0..n)
-            .map(|k| Vector::from_fn(|r| (0..D).map(|c| inverse[r][c] * offset(k)[c]).sum::<f64>()))
-            .collect();
+        let solved: Vec<Vector<D>> =
+            (0..n).map(|k| Vector::from_fn(|r| (0..D).map(|c| inverse[r][c] * offset(k)[c]).sum::<f64>())).collect();
         let weight = |k: usize| 1.0 / offset(k).norm_squared();
         let mut residual = vec![vec![0.0; n]; n];
         for j in 1..n {
@@ -71,7 +70,8 @@ impl<const D: usize> Solid<D> {
             for (k, particle) in cloud.members.iter().enumerate() {
                 let b = &cloud.weights[k];
                 for c in 0..D {
-                    let bent: f64 = (0..D).map(|d| (0..D).map(|s| tangents.all[m][c][d][c][s] * b[s] * b[d]).sum::<f64>()).sum();
+                    let bent: f64 =
+                        (0..D).map(|d| (0..D).map(|s| tangents.all[m][c][d][c][s] * b[s] * b[d]).sum::<f64>()).sum();
                     all[particle * D + c] += bent / self.particles.volume[m] + tangents.stiff[m] * cloud.residual[k][k];
                 }
             }

@@ -101,7 +101,9 @@ impl<const D: usize> System for Structure<D> {
     }
 
     fn largest_change(&self, _: &[f64], du: &[f64]) -> f64 {
-        let largest = du[..self.displacements()].iter().fold(0.0f64, |m, x| if x.is_finite() { m.max(x.abs()) } else { f64::INFINITY });
+        let largest = du[..self.displacements()]
+            .iter()
+            .fold(0.0f64, |m, x| if x.is_finite() { m.max(x.abs()) } else { f64::INFINITY });
         largest / self.solid.particles.spacing.iter().fold(f64::INFINITY, |a, b| a.min(*b))
     }
 

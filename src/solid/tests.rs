@@ -1,23 +1,20 @@
-use super::body::{Damping, Parts, Plane, Solid, Support};
-use super::fill::Lattice;
+//! Structures of particles against exact solutions and invariants.
+use super::body::{Action, Contact, Damping, Load, Parts, Plane, RigidPlane, Solid, Support};
+use super::fill::{Lattice, relaxed};
 use super::forces::State;
 use super::modes::{Wanted, modes};
-use super::particles::Particles;
+use super::particles::{Facet, Particles};
 use super::system::Structure;
 use crate::math::Vector;
-use crate::physics::solid::{Law, Material, Moduli};
+use crate::physics::solid::{Law, Material, Moduli, Plasticity};
 use crate::system::{Mechanical, Moment};
 use crate::time::structural::{self, Equilibrium, GeneralisedAlpha, LoadPlan, Newton};
 use crate::time::symplectic::{self, Symplectic};
-use crate::time::{Integrator, Past};
+use crate::time::{Integrator, Memory, Past};
 
 const QUIET: Damping = Damping { stabilisation: 0.3, viscosity: 0.0, mass: 0.0 };
 
-fn solid<const D: usize>(
-    lattice: &Lattice<D>,
-    material: Material,
-    held: impl Fn(&Vector<D>) -> bool,
-) -> Solid<D> {
+fn solid<const D: usize>(lattice: &Lattice<D>, material: Material, held: impl Fn(&Vector<D>) -> bool) -> Solid<D> {
     let particles = Particles::new(vec![lattice.fill()]).unwrap();
     let n = particles.len();
     let at_rest = (0..n as u32).filter(|i| held(&particles.x[*i as usize])).collect();
@@ -30,6 +27,7 @@ fn solid<const D: usize>(
         damping: QUIET,
         supports: vec![Support { particles: at_rest, fixed: [true; D], motion: None }],
         loads: Vec::new(),
+        contact: None,
         ramped: false,
         particles,
     })
@@ -47,10 +45,12 @@ fn lattice<const D: usize>(size: [f64; D], counts: [usize; D], jitter: f64) -> L
 /// Uniform deformation has no force inside, and the traction of its stress outside, on any cloud.
 fn patch<const D: usize>(lattice: &Lattice<D>) {
     let solid = solid(lattice, rubber(), |_| false);
-    println!("correction {} in {} iterations", solid.particles.correction, solid.particles.iterations);
+    assert!(solid.particles.iterations < 300, "{}", solid.particles.iterations);
     let n = solid.len();
-    let f: [[f64; D]; D] = std::array::from_fn(|a| std::array::from_fn(|b| if a == b { 0.2 } else { 0.1 * (a as f64 - 0.7 * b as f64) }));
-    let u: Vec<[f64; D]> = solid.particles.x.iter().map(|x| std::array::from_fn(|a| (0..D).map(|b| f[a][b] * x[b]).sum())).collect();
+    let f: [[f64; D]; D] =
+        std::array::from_fn(|a| std::array::from_fn(|b| if a == b { 0.2 } else { 0.1 * (a as f64 - 0.7 * b as f64) }));
+    let u: Vec<[f64; D]> =
+        solid.particles.x.iter().map(|x| std::array::from_fn(|a| (0..D).map(|b| f[a][b] * x[b]).sum())).collect();
     let still = vec![[0.0; D]; n];
     let state = State { time: 0.0, step: 0.0, displacement: &u, velocity: &still, history: &[] };
     let mut work = solid.work();
@@ -85,14 +85,20 @@ fn the_matrix_is_the_product_and_the_product_is_the_derivative_of_forces() {
     let w: Vec<f64> = (0..n).map(|k| noise(k + 13, 1.0)).collect();
     let still = vec![0.0; n];
     let mut work = crate::system::System::work(&structure);
-    let stiffness = structure.linearise(&Moment { time: 0.0, step: 0.0, displacement: &u, velocity: &still, history: &[] });
+    let stiffness =
+        structure.linearise(&Moment { time: 0.0, step: 0.0, displacement: &u, velocity: &still, history: &[] });
     let (mut product, mut assembled) = (vec![0.0; n], vec![0.0; n]);
     structure.stiffness(&stiffness, &w, &mut work, &mut product);
     structure.matrix(&stiffness, 1.0, 0.0).product(&w, &mut assembled);
     let mut forces = [vec![0.0; n], vec![0.0; n]];
     for (side, force) in [1.0, -1.0].into_iter().zip(&mut forces) {
         u.iter_mut().zip(&w).for_each(|(u, w)| *u += side * 1e-6 * w);
-        structure.forces(&Moment { time: 0.0, step: 0.0, displacement: &u, velocity: &still, history: &[] }, &mut work, force, &mut []);
+        structure.forces(
+            &Moment { time: 0.0, step: 0.0, displacement: &u, velocity: &still, history: &[] },
+            &mut work,
+            force,
+            &mut [],
+        );
         u.iter_mut().zip(&w).for_each(|(u, w)| *u -= side * 1e-6 * w);
     }
     for k in 0..n {
@@ -102,131 +108,221 @@ fn the_matrix_is_the_product_and_the_product_is_the_derivative_of_forces() {
     }
 }
 
-// frequencies of a plate of length 0.2 m and thickness 0.02 m in plane strain, clamped at one end: quadratic elements, 160 by 16
-// (`shared notes`), within 0.01 %; Landau and Lifshitz' thin plate has 24.726 for the first
+// a plate of 0.2 m by 0.02 m in plane strain, clamped at one end: quadratic elements, 160 by 16, have these frequencies to
+// 0.01 %; the thin plate of Landau and Lifshitz (Theory of elasticity, 1986, section 25) has 24.726 for the first
 #[test]
 fn frequencies_of_a_cantilever_are_those_of_plane_elasticity() {
-    let material = Material::new(
-        1000.0,
-        Moduli::of_young(3.0 * 3.25e6 * (1.0 - 2.0 * 0.3975), 0.3975),
-        Law::NeoHookean,
-    );
-    for alpha in [0.3, 0.35, 0.4] {
-        for (through, jitter) in [(5, 0.0), (5, 0.2), (9, 0.0), (9, 0.2), (17, 0.0), (17, 0.2)] {
-            let lattice = lattice([0.2, 0.02], [10 * (through - 1) + 1, through], jitter);
-            let mut body = solid(&lattice, material, |x| x[0] < 1e-9);
-            body.damping.stabilisation = alpha;
-            let structure = Structure::new(body);
-            let start = structure.start(|_| [0.0; 2]);
-            let found = modes(&structure, &start, &Wanted { count: 3, above: 0.0 }).unwrap();
-            let errors: Vec<f64> = found.iter().zip([24.6149, 146.467, 382.05]).map(|(m, exact)| 100.0 * (m.omega / exact - 1.0)).collect();
-            println!("{alpha} {through} {jitter}: {errors:.3?} %");
+    for (through, jitter, bar) in
+        [(5, 0.0, 1.5), (5, 0.2, 1.5), (9, 0.0, 0.5), (9, 0.2, 0.5), (17, 0.0, 0.2), (17, 0.2, 0.2)]
+    {
+        let structure = cantilever(through, jitter);
+        let start = structure.start(|_| [0.0; 2]);
+        let found = modes(&structure, &start, &Wanted { count: 3, above: 0.0 }).unwrap();
+        for (mode, exact) in found.iter().zip([24.6149, 146.467, 382.05]) {
+            let error = 100.0 * (mode.omega / exact - 1.0);
+            assert!(error.abs() < bar, "{through} {jitter}: {error} %");
+            assert!(mode.left < 1e-5, "{}", mode.left);
         }
     }
 }
 
-fn settled<const D: usize>(structure: &Structure<D>, steps: u32) -> Vec<f64> {
-    let newton = Newton { tolerance: 1e-9, iterations: 20 };
-    let mut way = Equilibrium::new(structure, LoadPlan { steps, newton }, Past::default(), structure.start(|_| [0.0; D]));
+fn cantilever(through: usize, jitter: f64) -> Structure<2> {
+    let material =
+        Material::new(1000.0, Moduli::of_young(3.0 * 3.25e6 * (1.0 - 2.0 * 0.3975), 0.3975), Law::NeoHookean);
+    let lattice = lattice([0.2, 0.02], [10 * (through - 1) + 1, through], jitter);
+    Structure::new(solid(&lattice, material, |x| x[0] < 1e-9))
+}
+
+#[test]
+fn a_free_body_has_all_its_rigid_motions() {
+    let structure = Structure::new(solid(&lattice([1.0, 0.5, 0.3], [7, 5, 4], 0.1), rubber(), |_| false));
+    let start = structure.start(|_| [0.0; 3]);
+    let found = modes(&structure, &start, &Wanted { count: 8, above: 0.0 }).unwrap();
+    assert!(found[..6].iter().all(|m| m.omega == 0.0) && found[6].omega > 0.0);
+}
+
+fn settled<const D: usize>(structure: &Structure<D>) -> Vec<f64> {
+    let plan = LoadPlan { steps: 1, newton: Newton { tolerance: 1e-9, iterations: 20 } };
+    let mut way = Equilibrium::new(structure, plan, Past::default(), structure.start(|_| [0.0; D]));
     while !way.finished() {
         way.advance().unwrap();
     }
-    println!("cost {:?}", way.cost());
     way.standing().state.to_vec()
 }
 
+// Cook's membrane, 33 by 33 particles; the middle of the right side by quadratic elements, 32 by 32: 23.961 in plane stress with
+// Poisson's ratio 1/3, 18.378 in plane strain with 0.4999
 #[test]
-fn cook() {
-    for (law, plane, young, poisson, load, top, exact) in [
-        (Law::Linear, Plane::Stress, 1.0, 1.0 / 3.0, 1.0 / 16.0, false, 23.961),
-        (Law::Linear, Plane::Strain, 1.0, 0.4999, 1.0 / 16.0, false, 18.378),
-        (Law::Linear, Plane::Strain, 70.0, 1.0 / 3.0, 6.25, true, 32.27),
-    ] {
-        for alpha in [0.3, 0.4] {
-            for (n, jitter) in [(17, 0.0), (33, 0.0), (33, 0.2)] {
-                let corners = [[0.0, 0.0], [48.0, 44.0], [0.0, 44.0], [48.0, 60.0]].map(Vector).to_vec();
-                let lattice = Lattice { corners, counts: [n, n], jitter };
-                let material = Material::new(1.0, Moduli::of_young(young, poisson), law);
-                let mut body = solid(&lattice, material, |x| x[0] < 1e-9);
-                body.damping.stabilisation = alpha;
-                body.plane = plane;
-                let mut parts = vec![Vector::ZERO; body.len()];
-                let right = |f: &&super::particles::Facet<2>| f.corners().iter().all(|i| body.particles.x[*i as usize][0] > 48.0 - 1e-9);
-                for f in body.particles.facets.iter().filter(right) {
-                    f.corners().iter().for_each(|i| parts[*i as usize] += f.share());
-                }
-                let areas = parts.iter().enumerate().filter(|(_, a)| a.norm() > 0.0).map(|(i, a)| (i as u32, *a)).collect();
-                body.loads.push(super::body::Load { areas, action: super::body::Action::Traction(Vector([0.0, load])), history: Box::new(|t| t) });
-                let body = rebuilt(body);
-                let structure = Structure::new(body);
-                let u = settled(&structure, 1);
-                let at = |x: &Vector<2>| if top { (*x - Vector([48.0, 60.0])).norm() } else { (*x - Vector([48.0, 52.0])).norm() };
-                let tip = (0..structure.solid.len()).min_by(|a, b| at(&structure.solid.particles.x[*a]).total_cmp(&at(&structure.solid.particles.x[*b]))).unwrap();
-                println!("{plane:?} {poisson} alpha {alpha} n {n} {jitter}: {:.4} error {:.3} %", u[2 * tip + 1], 100.0 * (u[2 * tip + 1] / exact - 1.0));
-            }
+fn cooks_membrane_bends_as_it_should_and_does_not_lock() {
+    for (plane, poisson, exact, bar) in [(Plane::Stress, 1.0 / 3.0, 23.961, 0.5), (Plane::Strain, 0.4999, 18.378, 1.0)]
+    {
+        let corners = [[0.0, 0.0], [48.0, 44.0], [0.0, 44.0], [48.0, 60.0]].map(Vector).to_vec();
+        let lattice = Lattice { corners, counts: [33, 33], jitter: 0.0 };
+        let material = Material::new(1.0, Moduli::of_young(1.0, poisson), Law::Linear);
+        let mut body = solid(&lattice, material, |x| x[0] < 1e-9);
+        let x = body.particles.x.clone();
+        let mut parts = vec![Vector::ZERO; body.len()];
+        let right = |f: &&Facet<2>| f.corners().iter().all(|i| x[*i as usize][0] > 48.0 - 1e-9);
+        for f in body.particles.facets.iter().filter(right) {
+            f.corners().iter().for_each(|i| parts[*i as usize] += f.share());
         }
+        let areas = (0..).zip(parts).filter(|(_, a)| a.norm() > 0.0).collect();
+        let action = Action::Traction(Vector([0.0, 1.0 / 16.0]));
+        body.loads.push(Load { areas, action, history: Box::new(|t| t) });
+        body.plane = plane;
+        let structure = Structure::new(rebuilt(body));
+        let u = settled(&structure);
+        let middle = x.iter().position(|x| (*x - Vector([48.0, 52.0])).norm() < 1e-9).unwrap();
+        let error = 100.0 * (u[2 * middle + 1] / exact - 1.0);
+        assert!(error.abs() < bar, "{plane:?}: {error} %");
     }
 }
 
 /// The same with what follows from its parts found anew.
 fn rebuilt<const D: usize>(s: Solid<D>) -> Solid<D> {
-    let Solid { particles, body, materials, material, plane, gravity, damping, supports, loads, ramped, .. } = s;
-    Solid::new(Parts { particles, body, materials, material, plane, gravity, damping, supports, loads, ramped })
+    let Solid {
+        particles, body, materials, material, plane, gravity, damping, supports, loads, contact, ramped, ..
+    } = s;
+    Solid::new(Parts {
+        particles,
+        body,
+        materials,
+        material,
+        plane,
+        gravity,
+        damping,
+        supports,
+        loads,
+        contact,
+        ramped,
+    })
+}
+
+/// Energy of a structure where a march stands.
+fn energy<const D: usize>(structure: &Structure<D>, march: &mut dyn Integrator<Structure<D>>) -> f64 {
+    let time = march.mark().time;
+    let e = structure.solid.energy(&structure.state(time, march.standing().state));
+    e.kinetic + e.strain + e.stabilisation + e.contact
 }
 
 #[test]
-fn vibration() {
-    let material = Material::new(1000.0, Moduli::of_young(3.0 * 3.25e6 * (1.0 - 2.0 * 0.3975), 0.3975), Law::NeoHookean);
-    for (through, jitter) in [(5, 0.0), (9, 0.2)] {
-        let lattice = lattice([0.2, 0.02], [10 * (through - 1) + 1, through], jitter);
-        let structure = Structure::new(solid(&lattice, material, |x| x[0] < 1e-9));
-        let rest = structure.start(|_| [0.0; 2]);
-        let mode = modes(&structure, &rest, &Wanted { count: 1, above: 0.0 }).unwrap().remove(0);
-        let n = structure.displacements();
-        let period = 2.0 * std::f64::consts::PI / mode.omega;
-        let mut u = rest.clone();
-        (0..n).for_each(|k| u[n + k] = 0.002 * mode.omega * mode.shape[k]);
-        let until = 10.0 * period;
-        let mut all: [Box<dyn Integrator<Structure<2>>>; 2] = [
-            Box::new(Symplectic::new(&structure, symplectic::Plan { cfl: 0.8, until }, Past::default(), u.clone())),
-            Box::new(GeneralisedAlpha::new(&structure, structural::Plan { step: period / 100.0, until, radius: 1.0, newton: Newton { tolerance: 1e-8, iterations: 20 } }, Past::default(), u)),
-        ];
-        for march in &mut all {
-            let clock = std::time::Instant::now();
-            let energy = |m: &mut Box<dyn Integrator<Structure<2>>>| {
-                let t = m.mark().time;
-                let e = structure.solid.energy(&structure.state(t, m.standing().state));
-                e.kinetic + e.strain + e.stabilisation
-            };
-            let begin = energy(march);
-            let tip = structure.solid.particles.x.iter().position(|x| (*x - Vector([0.2, 0.0])).norm() < 1e-9).unwrap();
-            let (mut peaks, mut history) = (Vec::new(), Vec::new());
-            while !march.finished() {
-                march.advance().unwrap();
-                let (t, y) = (march.mark().time, march.standing().state[2 * tip + 1]);
-                history.push((t, y));
-                if let [.., a, b, c] = history[..] && a.1.abs() < b.1.abs() && b.1.abs() > c.1.abs() { peaks.push(b); }
+fn a_cantilever_swings_at_its_frequency_and_keeps_its_energy() {
+    let structure = cantilever(5, 0.0);
+    let n = structure.displacements();
+    let rest = structure.start(|_| [0.0; 2]);
+    let mode = modes(&structure, &rest, &Wanted { count: 1, above: 0.0 }).unwrap().remove(0);
+    let period = std::f64::consts::TAU / mode.omega;
+    let mut u = rest;
+    (0..n).for_each(|k| u[n + k] = 0.001 * mode.omega * mode.shape[k]);
+    // ten periods and a quarter: the tip is at its end
+    let until = 10.25 * period;
+    let newton = Newton { tolerance: 1e-9, iterations: 20 };
+    let implicit = structural::Plan { step: period / 200.0, until, radius: 1.0, newton };
+    let explicit = symplectic::Plan { cfl: 0.8, until };
+    let marches: [Box<dyn Integrator<Structure<2>>>; 2] = [
+        Box::new(Symplectic::new(&structure, explicit, Past::default(), u.clone())),
+        Box::new(GeneralisedAlpha::new(&structure, implicit, Past::default(), u)),
+    ];
+    for mut march in marches {
+        let begin = energy(&structure, march.as_mut());
+        let tip = mode.shape.iter().position(|x| x.abs() == 1.0).unwrap();
+        let mut largest = 0.0f64;
+        while !march.finished() {
+            march.advance().unwrap();
+            if march.mark().time > 9.9 * period {
+                largest = largest.max(march.standing().state[tip].abs());
             }
-            let end = energy(march);
-            println!("{through} {jitter}: steps {} energy {:.2e} first peak {:?} last {:?} period {} {:?}", march.mark().iteration, end / begin - 1.0, peaks[0], peaks.last().unwrap(), period, clock.elapsed());
         }
+        assert!((energy(&structure, march.as_mut()) / begin - 1.0).abs() < 1e-5);
+        assert!((largest / 0.001 - 1.0).abs() < 2e-3, "{largest}");
     }
 }
 
 #[test]
-fn a_spun_plate_keeps_its_momentum() {
-    let structure = Structure::new(solid(&lattice([1.0, 0.2], [21, 5], 0.2), Material::new(1.0, Moduli { shear: 1.0, bulk: 2.0 }, Law::NeoHookean), |_| false));
-    let spin = 0.4;
-    let x = structure.solid.particles.x.clone();
-    let u = structure.start(|i| [-spin * (x[i][1] - 0.1), spin * (x[i][0] - 0.5)]);
-    let until = 20.0 * 2.0 * std::f64::consts::PI / spin;
+fn a_spun_plate_keeps_its_momenta_over_twenty_turns() {
+    let material = Material::new(1.0, Moduli { shear: 1.0, bulk: 2.0 }, Law::NeoHookean);
+    let structure = Structure::new(solid(&lattice([1.0, 0.2], [11, 3], 0.2), material, |_| false));
+    let (spin, x) = (0.4, structure.solid.particles.x.clone());
+    let u = structure.start(|i| [0.1 - spin * (x[i][1] - 0.1), spin * (x[i][0] - 0.5)]);
+    let until = 20.0 * std::f64::consts::TAU / spin;
     let mut march = Symplectic::new(&structure, symplectic::Plan { cfl: 0.8, until }, Past::default(), u);
     let n = structure.displacements();
-    let angular = |u: &[f64]| (0..x.len()).map(|i| structure.solid.mass()[i] * ((x[i][0] + u[2 * i]) * u[n + 2 * i + 1] - (x[i][1] + u[2 * i + 1]) * u[n + 2 * i])).sum::<f64>();
-    let before = angular(march.standing().state);
+    let momenta = |u: &[f64]| {
+        (0..x.len()).fold([0.0; 3], |[a, b, c], i| {
+            let (m, v) = (structure.solid.mass()[i], [u[n + 2 * i], u[n + 2 * i + 1]]);
+            let at = [x[i][0] + u[2 * i], x[i][1] + u[2 * i + 1]];
+            [a + m * v[0], b + m * v[1], c + m * (at[0] * v[1] - at[1] * v[0])]
+        })
+    };
+    let (before, start) = (momenta(march.standing().state), energy(&structure, &mut march));
     while !march.finished() {
         march.advance().unwrap();
     }
-    let after = angular(march.standing().state);
-    println!("angular {before} {:.2e} steps {}", after / before - 1.0, march.mark().iteration);
+    let after = momenta(march.standing().state);
+    assert!((0..3).all(|k| (after[k] - before[k]).abs() < 1e-12), "{before:?} {after:?}");
+    assert!((energy(&structure, &mut march) / start - 1.0).abs() < 1e-3);
+}
+
+#[test]
+fn a_block_bounces_off_a_rigid_plane_with_what_it_brought() {
+    let material = Material::new(1.0, Moduli { shear: 1.0, bulk: 2.0 }, Law::NeoHookean);
+    let mut body = solid(&lattice([1.0, 0.5], [11, 6], 0.0), material, |_| false);
+    let plane = RigidPlane { point: Vector([-0.05, 0.0]), normal: Vector([1.0, 0.0]) };
+    body.contact = Some(Contact { planes: vec![plane], bodies: false, stiffness: 0.5, friction: 0.0 });
+    let structure = Structure::new(body);
+    let u = structure.start(|_| [-0.05, 0.0]);
+    let mut march = Symplectic::new(&structure, symplectic::Plan { cfl: 0.5, until: 4.0 }, Past::default(), u);
+    let begin = energy(&structure, &mut march);
+    while !march.finished() {
+        march.advance().unwrap();
+    }
+    assert!((energy(&structure, &mut march) / begin - 1.0).abs() < 5e-3);
+    let n = structure.displacements();
+    let away: f64 =
+        march.standing().state[n..2 * n].iter().step_by(2).zip(structure.solid.mass()).map(|(v, m)| v * m).sum();
+    assert!(away > 0.5 * 0.05 * 0.5, "{away}");
+}
+
+#[test]
+fn a_resumed_march_goes_on_to_the_same_bits() {
+    let material = Material::new(1.0, Moduli { shear: 1.0, bulk: 2.0 }, Law::Plastic(Plasticity::linear(0.02, 0.1)));
+    let body = || {
+        let mut body = solid(&lattice([1.0, 0.5], [9, 5], 0.1), material, |x| x[0] < 1e-9);
+        body.damping.viscosity = 0.1;
+        Structure::new(rebuilt(body))
+    };
+    let structure = body();
+    let start = structure.start(|_| [0.1, 0.05]);
+    let plan = symplectic::Plan { cfl: 0.8, until: 2.0 };
+    let mut whole = Symplectic::new(&structure, plan, Past::default(), start);
+    for _ in 0..7 {
+        whole.advance().unwrap();
+    }
+    let Memory::March(past) = whole.memory() else { panic!("a march remembers a march") };
+    let again = body();
+    let mut resumed = Symplectic::new(&again, plan, past, whole.standing().state.to_vec());
+    while !whole.finished() {
+        whole.advance().unwrap();
+        resumed.advance().unwrap();
+    }
+    let bits = |u: &[f64]| u.iter().map(|x| x.to_bits()).collect::<Vec<_>>();
+    assert_eq!(bits(whole.standing().state), bits(resumed.standing().state));
+    let lost = structure.solid.energy(&structure.state(2.0, whole.standing().state)).dissipated;
+    assert!(lost > 0.0);
+}
+
+#[test]
+fn a_cylinder_and_a_disc_are_filled_and_carry_uniform_stress() {
+    let case = "title = \"t\"\n[[body]]\nrevolution = [[0, 0], [0, 0.4], [2, 0.4], [2, 0]]\n";
+    let case = crate::case::read(&format!("{case}[flow]\nmach = 0.3\n"), "case").unwrap();
+    let (surface, _) = crate::geometry::load_surface::<3>(&case.bodies, std::path::Path::new("")).unwrap();
+    let fill = relaxed(&surface, 0.1);
+    let particles = Particles::new(vec![fill]).unwrap();
+    assert!((particles.whole() / surface.volume() - 1.0).abs() < 0.02);
+    assert!(
+        particles.correction < 0.5 && particles.iterations < 1000,
+        "{} {}",
+        particles.correction,
+        particles.iterations
+    );
 }

@@ -11,6 +11,10 @@ use crate::math::rotation::cross;
 use crate::math::tetrahedra::delaunay;
 use crate::math::triangulation::triangulate;
 
+/// Height in spacings below which a tetrahedron between particles of the surface is flat: its middle does not say whether it is
+/// inside. Between particles of a sphere of four spacings it is 0.03.
+const FLAT: f64 = 0.12;
+
 /// Volumes and areas of particles in the plane: triangles between them, each with a side along `outline`, for whose middle `inside`
 /// holds. Shares are those of Voronoi's cells where no angle is obtuse (Meyer, Desbrun, Schröder and Barr 2003).
 pub(super) fn weigh_in_plane(
@@ -78,25 +82,61 @@ fn shares(corners: &[Vector<2>; 3]) -> [f64; 3] {
     [0, 1, 2].map(|k| (part((k + 1) % 3) + part((k + 2) % 3)) / 8.0)
 }
 
-/// The same in space, by quarters of tetrahedra.
-pub(super) fn weigh_in_space(x: Vec<Vector<3>>, spacing: f64, inside: impl Fn(&Vector<3>) -> bool) -> Fill<3> {
-    let (mut volume, mut sides) = (vec![0.0; x.len()], Sides::default());
+/// The same in space, by quarters of tetrahedra; the first `skin` particles are on the surface.
+pub(super) fn weigh_in_space(
+    x: Vec<Vector<3>>,
+    skin: usize,
+    spacing: f64,
+    inside: impl Fn(&Vector<3>) -> bool,
+) -> Fill<3> {
     let turn = |[a, b, c]: [Vector<3>; 3]| Vector(cross(&(b - a).0, &(c - a).0)) * 0.5;
-    for tetrahedron in delaunay(&x, &vec![spacing; x.len()]) {
-        let corners = tetrahedron.map(|i| x[i as usize]);
-        if !inside(&corners.iter().fold(Vector::ZERO, |sum, c| sum + *c * 0.25)) {
-            continue;
-        }
-        let whole = turn([corners[0], corners[1], corners[2]]).dot(&(corners[3] - corners[0])) / 3.0;
-        tetrahedron.iter().for_each(|i| volume[*i as usize] += 0.25 * whole);
-        // seen from outside
-        for [a, b, c] in [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]] {
-            sides.add([tetrahedron[a], tetrahedron[b], tetrahedron[c]]);
-        }
+    let at = |t: &[u32; 4]| t.map(|i| x[i as usize]);
+    let size = |t: &[u32; 4]| {
+        let c = at(t);
+        turn([c[0], c[1], c[2]]).dot(&(c[3] - c[0])) / 3.0
+    };
+    let middle = |t: &[u32; 4]| at(t).iter().fold(Vector::ZERO, |sum, c| sum + *c * 0.25);
+    let widest = |t: &[u32; 4]| faces(t).map(|f| turn(f.map(|i| x[i as usize])).norm()).into_iter().fold(0.0, f64::max);
+    let flat = |t: &[u32; 4]| t.iter().all(|i| (*i as usize) < skin) && !(3.0 * size(t) > FLAT * spacing * widest(t));
+    let mut all = delaunay(&x, &vec![spacing; x.len()]);
+    all.retain(|t| flat(t) || inside(&middle(t)));
+    let (mut volume, mut sides) = (vec![0.0; x.len()], Sides::default());
+    for t in without_flat_skin(all, flat) {
+        t.iter().for_each(|i| volume[*i as usize] += 0.25 * size(&t));
+        faces(&t).into_iter().for_each(|face| sides.add(face));
     }
     let facet = |side: [u32; 3]| Facet::new(&side, turn(side.map(|i| x[i as usize])));
     let facets = sides.single().into_iter().map(facet).collect();
     Fill { x, volume, facets, spacing, rows: Vec::new() }
+}
+
+/// Sides of a tetrahedron, seen from outside.
+fn faces(t: &[u32; 4]) -> [[u32; 3]; 4] {
+    [[1, 2, 3], [0, 3, 2], [0, 1, 3], [0, 2, 1]].map(|face: [usize; 3]| face.map(|k| t[k]))
+}
+
+/// Takes flat tetrahedra away that lie on the surface of the others, layer by layer: inside they hold the others together.
+fn without_flat_skin(all: Vec<[u32; 4]>, flat: impl Fn(&[u32; 4]) -> bool) -> Vec<[u32; 4]> {
+    let key = |mut face: [u32; 3]| {
+        face.sort_unstable();
+        face
+    };
+    let mut of: HashMap<[u32; 3], Vec<usize>> = HashMap::new();
+    for (k, t) in all.iter().enumerate() {
+        faces(t).into_iter().for_each(|face| of.entry(key(face)).or_default().push(k));
+    }
+    let mut kept = vec![true; all.len()];
+    let mut to_see: Vec<usize> = (0..all.len()).filter(|k| flat(&all[*k])).collect();
+    while let Some(k) = to_see.pop() {
+        let single = |face: [u32; 3]| of[&key(face)].iter().filter(|o| kept[**o]).count() < 2;
+        if !kept[k] || !faces(&all[k]).into_iter().any(single) {
+            continue;
+        }
+        kept[k] = false;
+        let beside = faces(&all[k]).into_iter().flat_map(|face| of[&key(face)].iter().copied());
+        to_see.extend(beside.filter(|o| kept[*o] && flat(&all[*o])));
+    }
+    all.into_iter().zip(kept).filter(|(_, kept)| *kept).map(|(t, _)| t).collect()
 }
 
 #[cfg(test)]
@@ -140,6 +180,6 @@ mod tests {
             let shift = |k: usize| if free { 0.05 * noise(k) } else { 0.0 };
             points.push(Vector::from_fn(|d| place[d] as f64 / 6.0 + shift(3 * k + d)));
         }
-        identities(&weigh_in_space(points, 1.0 / 6.0, |_| true), 1.0);
+        identities(&weigh_in_space(points, n * n * n, 1.0 / 6.0, |_| true), 1.0);
     }
 }

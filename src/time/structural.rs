@@ -21,6 +21,8 @@ pub struct Newton {
     pub iterations: u32,
 }
 
+/// Part of the forces that round-off may leave where Newton's method gets no further.
+const ROUND_OFF: f64 = 1e-6;
 /// Iterations of conjugate gradients with factors after which these are made anew.
 const STALE: usize = 12;
 /// Iterations of conjugate gradients with a diagonal.
@@ -169,7 +171,8 @@ impl<'a, S: Mechanical> GeneralisedAlpha<'a, S> {
         if march.acceleration.is_empty() {
             let mut force = vec![0.0; n];
             let (u, rest) = march.u.split_at(n);
-            let at = Moment { time: march.past.time, step: 0.0, displacement: u, velocity: &rest[..n], history: &rest[n..] };
+            let at =
+                Moment { time: march.past.time, step: 0.0, displacement: u, velocity: &rest[..n], history: &rest[n..] };
             system.forces(&at, &mut march.work, &mut force, &mut march.after);
             march.acceleration =
                 (0..n).map(|k| if system.is_held(k) { 0.0 } else { force[k] / system.mass(k) }).collect();
@@ -191,10 +194,9 @@ impl<'a, S: Mechanical> GeneralisedAlpha<'a, S> {
         let mut u: Vec<f64> = (0..n).map(|k| u0[k] + step * v0[k] + 0.5 * step * step * a0[k]).collect();
         system.hold(end, &mut u);
         let middle = self.past.time + (1.0 - w.force) * step;
-        let (mut force, mut scale) = (vec![0.0; n], 0.0f64);
-        let acceleration = |u: &[f64], k: usize| {
-            ((u[k] - u0[k] - step * v0[k]) / (step * step) - (0.5 - w.beta) * a0[k]) / w.beta
-        };
+        let (mut force, mut scale, mut before) = (vec![0.0; n], 0.0f64, f64::INFINITY);
+        let acceleration =
+            |u: &[f64], k: usize| ((u[k] - u0[k] - step * v0[k]) / (step * step) - (0.5 - w.beta) * a0[k]) / w.beta;
         for iteration in 0..self.plan.newton.iterations {
             let within: Vec<f64> = (0..n).map(|k| (1.0 - w.force) * u[k] + w.force * u0[k]).collect();
             let velocity: Vec<f64> = (0..n)
@@ -218,7 +220,9 @@ impl<'a, S: Mechanical> GeneralisedAlpha<'a, S> {
             if size.is_nan() || !left.iter().all(|l| l.is_finite()) {
                 break;
             }
-            if iteration > 0 && size <= self.plan.newton.tolerance * scale {
+            let spent = size > 0.5 * before && size <= ROUND_OFF * scale;
+            before = size;
+            if iteration > 0 && (size <= self.plan.newton.tolerance * scale || spent) {
                 return self.accept(&u, (&v0, &a0), (step, end), w);
             }
             let stiffness = system.linearise(&at);
@@ -291,7 +295,8 @@ impl<S: Mechanical> Integrator<S> for GeneralisedAlpha<'_, S> {
         /// Times a step may be halved.
         const HALVED: u32 = 10;
         let left = self.plan.until - self.past.time;
-        let mut step = self.plan.step.min(left);
+        // what round-off leaves of the time is no step of its own
+        let mut step = if left < self.plan.step * (1.0 + 1e-9) { left } else { self.plan.step };
         for halved in 0..=HALVED {
             let end = if step == left { self.plan.until } else { self.past.time + step };
             match self.step(step, end) {
@@ -300,7 +305,13 @@ impl<S: Mechanical> Integrator<S> for GeneralisedAlpha<'_, S> {
                     self.past.iteration += 1;
                     self.system.place(&Instant::still(end), &mut self.frame);
                     let cfl = step / self.plan.step;
-                    return Ok(Step { iteration: self.past.iteration, time: end, cfl, residual: 1.0, linear: self.cost.linear });
+                    return Ok(Step {
+                        iteration: self.past.iteration,
+                        time: end,
+                        cfl,
+                        residual: 1.0,
+                        linear: self.cost.linear,
+                    });
                 }
                 Err(fault) if halved == HALVED => {
                     let hint = "lower `time.newmark.step`, or look whether the load is what it should be";
@@ -362,7 +373,7 @@ impl<'a, S: Mechanical> Equilibrium<'a, S> {
         system.hold(load, &mut u);
         let still = vec![0.0; n];
         let (mut force, mut after) = (vec![0.0; n], vec![0.0; self.u.len() - 2 * n]);
-        let (mut scale, mut best) = (0.0f64, f64::INFINITY);
+        let (mut scale, mut before) = (0.0f64, f64::INFINITY);
         let moved = maximum(n, |k| (u[k] - self.u[k]).abs()) > 0.0;
         for iteration in 0..=self.plan.newton.iterations {
             let history = &self.u[2 * n..];
@@ -375,9 +386,11 @@ impl<'a, S: Mechanical> Equilibrium<'a, S> {
                 break;
             }
             scale = scale.max(maximum(n, |k| force[k].abs()));
-            (self.residual, best) = (if scale > 0.0 { size / scale } else { 0.0 }, best.min(size));
+            self.residual = if scale > 0.0 { size / scale } else { 0.0 };
+            let spent = size > 0.5 * before && size <= ROUND_OFF * scale;
+            before = size;
             let first = iteration == 0 && moved;
-            if self.residual <= self.plan.newton.tolerance && !first {
+            if (self.residual <= self.plan.newton.tolerance || spent) && !first {
                 self.u[..n].copy_from_slice(&u);
                 self.u[2 * n..].copy_from_slice(&after);
                 return system.check(&self.frame, &self.u);
@@ -386,7 +399,9 @@ impl<'a, S: Mechanical> Equilibrium<'a, S> {
             let equations = Equations { system, stiffness: &stiffness, scale: 1.0, shift: 0.0 };
             let mut change = vec![0.0; n];
             self.solver.stale |= iteration > 0;
-            let Some(linear) = self.solver.solve(&equations, (&mut change, &mut left), &mut self.work, 1e-8) else { break };
+            let Some(linear) = self.solver.solve(&equations, (&mut change, &mut left), &mut self.work, 1e-8) else {
+                break;
+            };
             self.cost.linear += linear as u32;
             u.iter_mut().zip(&change).for_each(|(u, c)| *u += c);
         }
@@ -433,7 +448,13 @@ impl<S: Mechanical> Integrator<S> for Equilibrium<'_, S> {
                     self.past.iteration += 1;
                     self.system.place(&Instant::still(load), &mut self.frame);
                     let Self { residual, .. } = *self;
-                    return Ok(Step { iteration: self.past.iteration, time: load, cfl: 1.0, residual, linear: self.cost.linear });
+                    return Ok(Step {
+                        iteration: self.past.iteration,
+                        time: load,
+                        cfl: 1.0,
+                        residual,
+                        linear: self.cost.linear,
+                    });
                 }
                 Err(fault) if halved == HALVED => {
                     self.u = before;

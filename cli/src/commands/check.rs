@@ -19,6 +19,9 @@ pub(crate) fn check(args: &arguments::Check) -> Outcome {
         return output::data(&write(&case));
     }
     let input = args.case.parent().map_or_else(PathBuf::new, Path::to_path_buf);
+    if !case.has_gas() {
+        return structure(&case, &input, args);
+    }
     match run::inspect(&case, &input, None) {
         Ok(report) if args.json => {
             let mut fields = json!({ "file": args.case, "title": case.title });
@@ -33,6 +36,48 @@ pub(crate) fn check(args: &arguments::Check) -> Outcome {
         }
         Err(problem) => super::refuse(&problem),
     }
+}
+
+/// The same of a structure alone.
+fn structure(case: &Case, input: &Path, args: &arguments::Check) -> Outcome {
+    let report = match run::inspect_structure(case, input) {
+        Ok(report) => report,
+        Err(problem) => return super::refuse(&problem),
+    };
+    if args.json {
+        let mut fields = json!({ "file": args.case, "title": case.title });
+        if let (Some(fields), Ok(Value::Object(known))) = (fields.as_object_mut(), serde_json::to_value(&report)) {
+            fields.extend(known);
+        }
+        return output::event("check", fields);
+    }
+    report.warnings.iter().for_each(|w| output::note(&format!("warning: {w}")));
+    let title = format!("{}: no mistakes in `{}`\n", args.case.display(), case.title);
+    output::data(&(title + &describe_structure(&report)))
+}
+
+/// A structure in words.
+fn describe_structure(r: &run::SolidReport) -> String {
+    let list = |all: Vec<String>| all.join(", ");
+    let mut lines = vec![
+        format!("particles      {} with {:.1} neighbours each, {:.4e} apart", r.particles, r.neighbours, r.spacing[0]),
+        format!("bodies         {}", list(r.bodies.iter().map(|b| format!("`{b}`")).collect())),
+        format!("gradients      changed by {:.1} % for the divergence theorem", 100.0 * r.correction),
+        format!("mass           {:.6e}", r.mass),
+        format!("wave speeds    {} m/s", list(r.wave_speeds.iter().map(|c| format!("{c:.1}")).collect())),
+    ];
+    for (k, held) in r.held.iter().enumerate() {
+        lines.push(format!("support {}      holds {held} particles", k + 1));
+    }
+    for (k, area) in r.loaded.iter().enumerate() {
+        lines.push(format!("load {}         acts on {area:.6e}", k + 1));
+    }
+    lines.push(format!("force          ({}) in all", list(r.force.iter().map(|f| format!("{f:.6e}")).collect())));
+    lines.push(format!("explicit step  {:.3e} s at most", r.stable_step));
+    if let Some(steps) = r.steps {
+        lines.push(format!("steps          about {steps:.0}"));
+    }
+    lines.join("\n") + "\n"
 }
 
 /// The points of a polar; nothing for a single flow.

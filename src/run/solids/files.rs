@@ -2,6 +2,7 @@
 use std::path::{Path, PathBuf};
 
 use super::super::error::RunError;
+use super::super::folder;
 use super::march::Row;
 use super::setup::Built;
 use super::summary::{SolidSummary, ledger};
@@ -46,7 +47,11 @@ impl Files<'_> {
             Values { name: "displacement", components: 3, values: raised(state.displacement) },
             Values { name: "velocity", components: 3, values: raised(state.velocity) },
             Values { name: "von_mises_stress", components: 1, values: stresses.iter().map(mises).collect() },
-            Values { name: "pressure", components: 1, values: stresses.iter().map(|s| -tensor::trace(s) / 3.0).collect() },
+            Values {
+                name: "pressure",
+                components: 1,
+                values: stresses.iter().map(|s| -tensor::trace(s) / 3.0).collect(),
+            },
             Values { name: "body", components: 1, values: solid.body.iter().map(|b| f64::from(*b)).collect() },
             Values { name: "material", components: 1, values: solid.material.iter().map(|b| f64::from(*b)).collect() },
         ];
@@ -74,7 +79,7 @@ impl Files<'_> {
         let Some(list) = self.path("solid.pvd") else { return Ok(()) };
         let name = format!("solid_{number:05}");
         self.fields(&name, built, u)?;
-        let known = std::fs::read_to_string(&list).unwrap_or_default();
+        let known = self.out.map_or_else(String::new, |out| folder::text(out, "solid.pvd").unwrap_or_default());
         let mut all = crate::observe::vtk::read_collection(&known);
         all.retain(|(_, file)| *file != format!("{name}.vtu"));
         all.push((time, format!("{name}.vtu")));
@@ -86,7 +91,7 @@ impl Files<'_> {
     pub(super) fn history<const D: usize>(&self, built: &Built<D>, rows: &[Row]) -> Result<(), RunError> {
         let Some(path) = self.path("history.csv") else { return Ok(()) };
         let mut columns: Vec<String> =
-            ["step", "time", "kinetic", "strain", "stabilisation", "dissipated", "damped", "work", "open"]
+            ["step", "time", "kinetic", "strain", "stabilisation", "contact", "dissipated", "damped", "work", "open"]
                 .map(str::to_owned)
                 .to_vec();
         let axes = &["x", "y", "z"][..D];
@@ -94,9 +99,9 @@ impl Files<'_> {
         let names: Vec<&str> = columns.iter().map(String::as_str).collect();
         let line = |row: &Row| {
             let (e, sums) = (&row.energy, ledger(&rows[0], row));
-            let own = [row.time, e.kinetic, e.strain, e.stabilisation, e.dissipated, sums.damped, sums.work, sums.open];
+            let energies = [row.time, e.kinetic, e.strain, e.stabilisation, e.contact, e.dissipated];
             let mut line = vec![Entry::from(f64::from(row.step))];
-            line.extend(own.map(Entry::from));
+            line.extend(energies.into_iter().chain([sums.damped, sums.work, sums.open]).map(Entry::from));
             line.extend(row.probes.iter().flat_map(|p| p[..D].iter().map(|x| Entry::from(*x))));
             line
         };
@@ -111,7 +116,12 @@ impl Files<'_> {
         let raised = |v: &[f64]| -> [f64; 3] { std::array::from_fn(|a| v.get(a).copied().unwrap_or(0.0)) };
         let points: Vec<[f64; 3]> = particles.x.iter().map(|x| raised(&x.0)).collect();
         let values: Vec<f64> = shape.iter().flat_map(|v| raised(v)).collect();
-        write_cells(&path, &points, Cells::Vertices, &[Column { name: "displacement", components: 3, values: &values }])?;
+        write_cells(
+            &path,
+            &points,
+            Cells::Vertices,
+            &[Column { name: "displacement", components: 3, values: &values }],
+        )?;
         let names = if D == 2 { &["x", "y", "dx", "dy"][..] } else { &["x", "y", "z", "dx", "dy", "dz"] };
         let skin = (0..particles.len()).filter(|i| particles.area[*i] != crate::math::Vector::ZERO);
         let line = |i: usize| particles.x[i].0.iter().chain(&shape[i]).map(|x| Entry::from(*x)).collect();

@@ -10,8 +10,8 @@ use crate::case::{Case, Temporal};
 use crate::math::Vector;
 use crate::observe::checkpoint::{self, Array, Checkpoint, Field};
 use crate::observe::usage;
-use crate::solid::forces::{Energy, State};
 use crate::solid::Structure;
+use crate::solid::forces::{Energy, State};
 use crate::time::structural::{Equilibrium, GeneralisedAlpha, LoadPlan, Newton, Plan};
 use crate::time::symplectic::{self, Symplectic};
 use crate::time::{Integrator, Memory, Past};
@@ -121,17 +121,19 @@ impl<const D: usize> Study<'_, D> {
             rows.push(self.row(integrator.as_mut(), &work));
         }
         let mut stopped = false;
+        let mut before = self.before(integrator.as_mut());
         while !integrator.finished() && !stopped {
-            let before = self.before(integrator.as_mut());
             if let Err(problem) = integrator.advance() {
                 self.keep(integrator.as_mut(), &rows, &work)?;
                 self.files.history(self.built, &rows)?;
                 let checkpoint = self.files.out.map(|out| out.join(saved::FILE).display().to_string());
                 return Err(RunError::Time { source: Box::new(problem), reached: String::new(), checkpoint });
             }
-            self.add_work(integrator.as_mut(), &before, &mut work);
+            before = self.add_work(integrator.as_mut(), &before, &mut work);
             let mark = integrator.mark();
-            if mark.time >= until || (mark.time / until * ROWS).floor() > ((mark.time - mark.last) / until * ROWS).floor() {
+            if mark.time >= until
+                || (mark.time / until * ROWS).floor() > ((mark.time - mark.last) / until * ROWS).floor()
+            {
                 rows.push(self.row(integrator.as_mut(), &work));
                 let march = Some(MarchTick { time: mark.time, until, period: None, angle: None, lift_before: None });
                 monitor.tick(&Tick {
@@ -191,32 +193,38 @@ impl<const D: usize> Study<'_, D> {
         Before { outside, displacement: state.displacement.to_vec(), damped: solid.damped(&state) }
     }
 
-    /// Adds the work of a step by the mean of the forces at its ends.
-    fn add_work(&self, integrator: &mut (dyn Integrator<Structure<D>> + '_), before: &Before<D>, work: &mut Work) {
+    /// Adds the work of a step by the mean of the forces at its ends; what the next step begins with.
+    fn add_work(
+        &self,
+        integrator: &mut (dyn Integrator<Structure<D>> + '_),
+        before: &Before<D>,
+        work: &mut Work,
+    ) -> Before<D> {
         let mark = integrator.mark();
+        let after = self.before(integrator);
         let solid = &self.structure().solid;
-        let standing = integrator.standing();
-        let state = self.state(mark.time, standing.state);
-        let mut outside = vec![[0.0; D]; solid.len()];
-        solid.outside(&state, &mut outside);
+        let state = self.state(mark.time, integrator.standing().state);
+        let outside = &after.outside;
         let moved = |i: usize, a: usize| state.displacement[i][a] - before.displacement[i][a];
         let all = (0..solid.len()).flat_map(|i| (0..D).map(move |a| (i, a)));
         let of = |(i, a): (usize, usize)| 0.5 * (outside[i][a] + before.outside[i][a]) * moved(i, a);
         let free = |(i, a): &(usize, usize)| !solid.is_held(*i, *a);
         work.loads += all.filter(free).map(of).sum::<f64>();
         if !matches!(self.case.time, Temporal::Steady(_) | Temporal::Modes(_)) {
-            work.damped += 0.5 * mark.last * (before.damped + solid.damped(&state));
+            work.damped += 0.5 * mark.last * (before.damped + after.damped);
         }
         if solid.is_moved() {
             // what holds is what the neighbours pull, and inertia; the latter is in the kinetic energy of what is led
             let mut storage = solid.work();
-            let mut after = vec![0.0; state.history.len()];
+            let mut scratch = vec![0.0; state.history.len()];
             let mut force = vec![[0.0; D]; solid.len()];
-            solid.stress(&state, &mut storage, &mut after);
+            solid.stress(&state, &mut storage, &mut scratch);
             solid.forces(&state, &storage, &mut force);
-            let held = (0..solid.len()).flat_map(|i| (0..D).map(move |a| (i, a))).filter(|(i, a)| solid.is_held(*i, *a));
+            let held =
+                (0..solid.len()).flat_map(|i| (0..D).map(move |a| (i, a))).filter(|(i, a)| solid.is_held(*i, *a));
             work.supports -= held.map(|(i, a)| force[i][a] * moved(i, a)).sum::<f64>();
         }
+        after
     }
 
     /// What is recorded of a moment.
@@ -266,7 +274,7 @@ impl<const D: usize> Study<'_, D> {
         let mut flat = Vec::new();
         for row in rows {
             let e = &row.energy;
-            flat.extend([f64::from(row.step), row.time, e.kinetic, e.strain, e.stabilisation, e.dissipated]);
+            flat.extend([f64::from(row.step), row.time, e.kinetic, e.strain, e.stabilisation, e.contact, e.dissipated]);
             flat.extend([row.work.loads, row.work.supports, row.work.damped]);
             flat.extend(row.probes.iter().flatten());
         }
@@ -310,13 +318,13 @@ fn restored(saved: &Checkpoint<'_>, probes: usize) -> Result<Restored, RunError>
         before: saved.f64("before")?.to_vec(),
         ..Past::default()
     };
-    let width = 9 + 3 * probes;
+    let width = 10 + 3 * probes;
     let rows = saved.f64("history")?.chunks_exact(width).map(|r| Row {
         step: r[0] as u32,
         time: r[1],
-        energy: Energy { kinetic: r[2], strain: r[3], stabilisation: r[4], dissipated: r[5] },
-        work: Work { loads: r[6], supports: r[7], damped: r[8] },
-        probes: r[9..].as_chunks().0.to_vec(),
+        energy: Energy { kinetic: r[2], strain: r[3], stabilisation: r[4], contact: r[5], dissipated: r[6] },
+        work: Work { loads: r[7], supports: r[8], damped: r[9] },
+        probes: r[10..].as_chunks().0.to_vec(),
     });
     Ok(Restored { past, rows: rows.collect(), work: Work { loads, supports, damped }, u: saved.f64("state")?.to_vec() })
 }

@@ -12,7 +12,8 @@ pub(super) fn material(data: &SolidMaterial, place: &str) -> Result<Material, Ru
         what: format!("{place}: {what}"),
         hint: "name a `base` from the catalogue, or give the number".into(),
     };
-    let density = data.density.map(|d| d.0).or(base.map(|b| b.density)).ok_or_else(|| refuse("`density` is missing"))?;
+    let density =
+        data.density.map(|d| d.0).or(base.map(|b| b.density)).ok_or_else(|| refuse("`density` is missing"))?;
     let moduli = moduli(data).or(base.map(|b| b.moduli)).ok_or_else(|| refuse("two elastic constants are missing"))?;
     let law = match data.law() {
         None => base.map_or(Law::NeoHookean, |b| b.law),
@@ -20,7 +21,9 @@ pub(super) fn material(data: &SolidMaterial, place: &str) -> Result<Material, Ru
         Some(SolidLaw::SaintVenantKirchhoff) => Law::SaintVenantKirchhoff,
         Some(SolidLaw::NeoHookean) => Law::NeoHookean,
         Some(SolidLaw::Hypoelastic) => Law::Hypoelastic,
-        Some(SolidLaw::Plastic) => Law::Plastic(plasticity(data, base.as_ref()).ok_or_else(|| refuse("`yield` is missing"))?),
+        Some(SolidLaw::Plastic) => {
+            Law::Plastic(plasticity(data, base.as_ref()).ok_or_else(|| refuse("`yield` is missing"))?)
+        }
         Some(SolidLaw::Viscoelastic) => Law::Viscoelastic(relaxation(data, base.as_ref())),
     };
     let mut material = Material::new(density, moduli, law);
@@ -48,7 +51,9 @@ fn moduli(data: &SolidMaterial) -> Option<Moduli> {
         (Some(e), Some(nu), ..) => Some(Moduli::of_young(e, nu)),
         (Some(e), None, Some(g), _) => Some(Moduli { shear: g, bulk: e * g / (3.0 * (3.0 * g - e)) }),
         (Some(e), None, None, Some(k)) => Some(Moduli { shear: 3.0 * k * e / (9.0 * k - e), bulk: k }),
-        (None, Some(nu), Some(g), _) => Some(Moduli { shear: g, bulk: 2.0 * g * (1.0 + nu) / (3.0 * (1.0 - 2.0 * nu)) }),
+        (None, Some(nu), Some(g), _) => {
+            Some(Moduli { shear: g, bulk: 2.0 * g * (1.0 + nu) / (3.0 * (1.0 - 2.0 * nu)) })
+        }
         (None, Some(nu), None, Some(k)) => Some(Moduli { shear: 1.5 * k * (1.0 - 2.0 * nu) / (1.0 + nu), bulk: k }),
         (None, None, Some(g), Some(k)) => Some(Moduli { shear: g, bulk: k }),
         _ => None,

@@ -1,5 +1,6 @@
 //! Structures of particles alone: equilibrium, marching and natural modes, without a gas.
 mod files;
+mod inspect;
 mod march;
 mod material;
 mod setup;
@@ -17,6 +18,7 @@ use crate::geometry::dimension;
 use crate::observe::checkpoint;
 use crate::solid::modes::{Mode, Wanted, modes};
 
+pub use inspect::{SolidReport, inspect_structure};
 pub use summary::{ModeRow, ProbeRow, SolidLedger, SolidSummary};
 
 use files::Files;
@@ -35,11 +37,23 @@ pub(super) enum Ended {
 pub(super) fn supported(case: &Case) -> Result<(), RunError> {
     let any = |f: fn(&crate::case::Solid) -> bool| case.solids().any(|(_, _, s)| f(s));
     let asks = [
-        (case.has_gas() && case.solids().next().is_some(), "bodies made of particles in a gas (`[body.solid]` beside `[flow]`)"),
-        (any(|s| s.plane == crate::case::PlaneState::Axisymmetric), "axisymmetric bodies made of particles (`plane = \"axisymmetric\"`)"),
+        (
+            case.has_gas() && case.solids().next().is_some(),
+            "bodies made of particles in a gas (`[body.solid]` beside `[flow]`)",
+        ),
+        (
+            any(|s| s.plane == crate::case::PlaneState::Axisymmetric),
+            "axisymmetric bodies made of particles (`plane = \"axisymmetric\"`)",
+        ),
         (any(|s| s.stiffness_damping.0 > 0.0), "damping in proportion to stiffness (`stiffness_damping`)"),
-        (!case.has_gas() && matches!(case.time, Temporal::Harmonics(_)), "harmonic balance of structures alone (`[time.harmonics]` without `[flow]`)"),
-        (case.contact.is_some(), "bodies made of particles that touch (`[contact]`)"),
+        (
+            !case.has_gas() && matches!(case.time, Temporal::Harmonics(_)),
+            "harmonic balance of structures alone (`[time.harmonics]` without `[flow]`)",
+        ),
+        (
+            case.contact.is_some() && !matches!(case.time, Temporal::Explicit(_)),
+            "contact in other than explicit marches (`[contact]` needs `[time.explicit]`)",
+        ),
     ];
     match asks.iter().filter(|a| a.0).map(|a| a.1).collect::<Vec<_>>()[..] {
         [] => Ok(()),

@@ -10,7 +10,7 @@ use crate::math::Vector;
 use crate::physics::solid::{Law, Material};
 use crate::solid::fill::{Lattice, relaxed};
 use crate::solid::particles::{Fill, Particles};
-use crate::solid::{Action, Damping, Load, Parts, Plane, Solid, Structure, Support};
+use crate::solid::{Action, Contact, Damping, Load, Parts, Plane, RigidPlane, Solid, Structure, Support};
 
 /// Artificial viscosity of explicit marches in which something yields or meets something.
 const SHOCKED: f64 = 0.1;
@@ -53,8 +53,10 @@ pub(super) fn build<const D: usize>(case: &Case, input: &Path) -> Result<Built<D
         parts.push(Part { data, name, fill });
     }
     let owner: Vec<u16> = parts.iter().zip(0..).flat_map(|(p, k)| std::iter::repeat_n(k, p.fill.x.len())).collect();
-    let particles = Particles::new(parts.iter().map(|p| p.fill.clone()).collect())
-        .map_err(|e| RunError::Solid { what: e.to_string(), hint: "take a smaller `spacing`, or `fill = \"relaxed\"`".into() })?;
+    let particles = Particles::new(parts.iter().map(|p| p.fill.clone()).collect()).map_err(|e| RunError::Solid {
+        what: e.to_string(),
+        hint: "take a smaller `spacing`, or `fill = \"relaxed\"`".into(),
+    })?;
     notes.push(format!(
         "{} solid particles with {:.1} neighbours each; the divergence theorem changed gradients by {:.1} % in {} iterations",
         particles.len(),
@@ -83,11 +85,23 @@ pub(super) fn build<const D: usize>(case: &Case, input: &Path) -> Result<Built<D
         },
         supports,
         loads,
+        contact: contact(case),
         ramped: matches!(case.time, Temporal::Steady(_) | Temporal::Modes(_)),
         particles,
     });
     let bodies = parts.iter().map(|p| p.name.clone()).collect();
     Ok(Built { structure: Structure::new(solid), bodies, probes, velocity, notes, warnings })
+}
+
+/// What touches.
+fn contact<const D: usize>(case: &Case) -> Option<Contact<D>> {
+    let data = case.contact.as_ref()?;
+    let vector = |v: &[f64]| Vector::from_fn(|d| v.get(d).copied().unwrap_or(0.0));
+    let planes = data.planes.iter().map(|plane| RigidPlane {
+        point: vector(&plane.point.iter().map(|x| x.0).collect::<Vec<_>>()),
+        normal: vector(&plane.normal).unit(),
+    });
+    Some(Contact { planes: planes.collect(), bodies: data.bodies, stiffness: data.stiffness, friction: data.friction })
 }
 
 /// The particles of one body.
@@ -238,7 +252,8 @@ fn empty<const D: usize>(what: &str, name: &str, particles: &Particles<D>, owner
 }
 
 fn formula(text: &str) -> Result<Formula, RunError> {
-    Formula::parse(text).map_err(|e| RunError::Solid { what: format!("`{text}`: {e}"), hint: "write a formula in t".into() })
+    Formula::parse(text)
+        .map_err(|e| RunError::Solid { what: format!("`{text}`: {e}"), hint: "write a formula in t".into() })
 }
 
 fn supports<const D: usize>(

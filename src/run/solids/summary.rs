@@ -58,6 +58,8 @@ pub struct SolidLedger {
     pub strain: f64,
     /// Energy held by stabilisation.
     pub stabilisation: f64,
+    /// Energy held by contact.
+    pub contact: f64,
     /// Energy that materials lost.
     pub dissipated: f64,
     /// Energy that damping took.
@@ -146,7 +148,8 @@ pub(super) fn summary<const D: usize>(study: &Study<'_, D>, ending: &Ending<'_>)
 /// Energies between two moments.
 pub(super) fn ledger(first: &Row, last: &Row) -> SolidLedger {
     let (e, work) = (&last.energy, last.work.loads + last.work.supports);
-    let whole = |r: &Row| r.energy.kinetic + r.energy.strain + r.energy.stabilisation + r.energy.dissipated;
+    let whole =
+        |r: &Row| r.energy.kinetic + r.energy.strain + r.energy.stabilisation + r.energy.contact + r.energy.dissipated;
     let missing = whole(last) + last.work.damped - whole(first) - work;
     let terms = [first.energy.kinetic, e.kinetic, e.strain, e.dissipated, last.work.damped, work];
     let size = terms.iter().fold(0.0f64, |m, x| m.max(x.abs()));
@@ -155,6 +158,7 @@ pub(super) fn ledger(first: &Row, last: &Row) -> SolidLedger {
         kinetic: e.kinetic,
         strain: e.strain,
         stabilisation: e.stabilisation,
+        contact: e.contact,
         dissipated: e.dissipated - first.energy.dissipated,
         damped: last.work.damped,
         work,
