@@ -8,9 +8,10 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use super::error::RunError;
-use super::measure::{Measured, Value};
+use super::measure::{self, Measured, Value};
 use super::monitor::{Monitor, Tick};
 use super::session::{Outcome, Session};
+use super::solids::{self, SolidSummary};
 use crate::case::{Case, Length, read};
 use crate::observe::loads::Coefficients;
 use crate::verify::calibration::{KnownLoad, holding, median_ratio};
@@ -89,6 +90,7 @@ pub struct Walk {
     chosen: Vec<usize>,
     fast: bool,
     runs: BTreeMap<(String, u64), Result<Measured, String>>,
+    structures: BTreeMap<String, Result<SolidSummary, String>>,
 }
 
 impl Walk {
@@ -106,7 +108,7 @@ impl Walk {
             let names = folders.iter().map(|f| format!("`{}`", f.name)).collect::<Vec<_>>().join(", ");
             return Err(WalkError::NoCase { folder: root.display().to_string(), names });
         }
-        Ok(Self { folders, chosen, fast: selection.fast, runs: BTreeMap::new() })
+        Ok(Self { folders, chosen, fast: selection.fast, runs: BTreeMap::new(), structures: BTreeMap::new() })
     }
 
     /// The cases to judge.
@@ -160,6 +162,9 @@ impl Walk {
     }
 
     fn measure(&mut self, claim: &Claim, folder: &Folder, monitor: &mut dyn Monitor) -> Value {
+        if !folder.case.has_gas() {
+            return measure::solid::value(self.structure(folder, monitor)?, claim);
+        }
         if claim.metric.needs_cases() {
             return self.calibrate(claim, folder, monitor);
         }
@@ -181,6 +186,26 @@ impl Walk {
             _ => metrics::limit(&study.spacings, &values).map(|(limit, _)| limit),
         };
         found.ok_or_else(|| format!("the values {values:?} have no order or limit"))
+    }
+
+    /// Computes a structure alone unless that has been done.
+    fn structure(&mut self, folder: &Folder, monitor: &mut dyn Monitor) -> Result<&SolidSummary, String> {
+        let name = folder.name.clone();
+        if !self.structures.contains_key(&name) && !monitor.stop() {
+            monitor.note(&name);
+            let found = solids::solve(&folder.case, &folder.path, None, false, &mut Quiet { monitor });
+            let found = match found {
+                Ok(solids::Ended::Finished(summary)) => Ok(*summary),
+                Ok(solids::Ended::Interrupted(_)) => Err("the run was interrupted".into()),
+                Err(problem) => Err(reason(&problem)),
+            };
+            if let Ok(s) = &found {
+                monitor.note(&format!("{name}: {} particles, {:.1} s", s.particles, s.wall_seconds));
+            }
+            self.structures.insert(name.clone(), found);
+        }
+        let found = self.structures.get(&name).ok_or("the case did not run")?;
+        found.as_ref().map_err(Clone::clone)
     }
 
     /// Runs every case of the table of `claim`, and holds their error bars against the exact loads.

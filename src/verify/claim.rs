@@ -165,6 +165,12 @@ metrics! {
     Cl = "cl",
     /// Drag coefficient from wall pressure and friction.
     Cd = "cd",
+    /// Angular frequency of the natural mode of a structure alone whose number `coordinate` is, rad/s.
+    ModeOmega = "mode_omega",
+    /// Displacement of a probe of a structure alone at its end; `coordinate` names it and the axis, `A.y`.
+    ProbeDisplacement = "probe_displacement",
+    /// What is missing in the energies of a structure alone, over the largest of them.
+    LedgerOpen = "ledger_open",
     /// Part of the drag coefficient that is due to wall pressure, where the gas has viscosity.
     CdPressure = "cd_pressure",
     /// Part of the drag coefficient that is due to friction.

@@ -1,0 +1,26 @@
+//! What is measured of structures alone.
+use super::super::solids::SolidSummary;
+use super::Value;
+use crate::verify::{Claim, Metric};
+
+/// The metric of `claim`.
+pub(in crate::run) fn value(s: &SolidSummary, claim: &Claim) -> Value {
+    let named = claim.coordinate.as_deref().ok_or("the claim names no `coordinate`");
+    match claim.metric {
+        Metric::ModeOmega => {
+            let number = named?.parse::<usize>().ok().and_then(|k| k.checked_sub(1));
+            let mode = number.and_then(|k| s.modes.get(k)).ok_or("there is no mode with that number")?;
+            Ok(mode.omega)
+        }
+        Metric::ProbeDisplacement => {
+            let (name, axis) = named?.rsplit_once('.').ok_or("`coordinate` is a probe and an axis, `tip.y`")?;
+            let probe = s.probes.iter().find(|p| p.name == name).ok_or("there is no probe of that name")?;
+            let axis = ["x", "y", "z"].iter().position(|a| *a == axis).ok_or("axes are x, y and z")?;
+            probe.displacement.get(axis).copied().ok_or_else(|| "the probe has no such axis".into())
+        }
+        Metric::LedgerOpen => s.ledger.map(|l| l.open.abs()).ok_or_else(|| "the run kept no ledger".into()),
+        Metric::Converged => Ok(f64::from(u8::from(s.converged))),
+        Metric::Particles => Ok(s.particles as f64),
+        other => Err(format!("`{}` is not measured of structures alone", other.name())),
+    }
+}
