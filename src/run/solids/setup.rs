@@ -129,12 +129,18 @@ fn filled<const D: usize>(body: &Body, data: &Data, surface: &Surface<D>, name: 
 
 /// Without neighbours that do not see one another through the body.
 fn seen<const D: usize>(fill: Fill<D>, surface: &Surface<D>) -> Fill<D> {
-    /// How far below the surface a particle on it looks from, in spacings: a chord of a hollow side leaves the body a little.
-    const BELOW: f64 = 0.3;
+    /// How far below the surface a particle on it looks from, in spacings, the first of these that is inside: a chord of a hollow side
+    /// leaves the body a little, and a sharp edge is thin.
+    const BELOW: [f64; 3] = [0.3, 0.1, 0.03];
     let areas = fill.areas();
     let (x, spacing) = (fill.x.clone(), fill.spacing);
-    let eye = |i: usize| x[i] - areas[i].unit() * (BELOW * spacing);
-    fill.seen(|i, j| areas[i] != Vector::ZERO && areas[j] != Vector::ZERO && surface.crosses(&eye(i), &eye(j)))
+    let on = |i: usize| areas[i] != Vector::ZERO;
+    let eye = |i: usize| {
+        let below = BELOW.iter().map(|part| x[i] - areas[i].unit() * (part * spacing));
+        below.into_iter().find(|eye| surface.inside(eye)).unwrap_or(x[i])
+    };
+    let eyes: Vec<Vector<D>> = (0..x.len()).map(|i| if on(i) { eye(i) } else { x[i] }).collect();
+    fill.seen(|i, j| on(i) && on(j) && surface.crosses(&eyes[i], &eyes[j]))
 }
 
 /// Corners of a box or a quadrilateral as rows want them; `None` for other shapes.
