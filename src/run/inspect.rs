@@ -13,6 +13,7 @@ use super::look::{Held, Mesh, load_axes};
 use super::pilot;
 use super::recipe;
 use super::setup::{self, Site, Solver, check_motion};
+use super::solids;
 use super::stage::Stage;
 use super::understood::Understood;
 use crate::case::Case;
@@ -100,6 +101,7 @@ impl SpacingRange {
 /// Builds the cloud of a case, whose file names refer to the folder `input`, and judges it; writes it into the folder `out` if
 /// one is given.
 pub fn inspect(case: &Case, input: &Path, out: Option<&Path>) -> Result<CloudReport, RunError> {
+    solids::with_gas(case)?;
     match dimension(case) {
         2 => look::<2>(case, input, out),
         _ => look::<3>(case, input, out),

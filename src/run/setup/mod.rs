@@ -56,13 +56,7 @@ const LARGE: f64 = 100.0;
 
 /// Refuses what a case file can say but the solver cannot compute yet; each line goes when its solver comes.
 pub(crate) fn supported(case: &Case) -> Result<(), RunError> {
-    solids::supported(case)?;
-    if !case.has_gas() {
-        return Err(RunError::Unsupported {
-            what: "the case has no gas: a structure alone has no cloud, and no fields or loads of one".into(),
-            hint: "`alula run` computes it",
-        });
-    }
+    solids::with_gas(case)?;
     let travels = case.moves() && case.particles() == ParticleMotion::Lagrangian;
     let layered = travels && case.cloud.wall_layers.is_some();
     let bare = case.moves() && case.bodies.is_empty() && case.particles() == ParticleMotion::Deforming;

@@ -64,6 +64,18 @@ pub(super) fn supported(case: &Case) -> Result<(), RunError> {
     }
 }
 
+/// Refuses what is computed of a gas where there is none.
+pub(super) fn with_gas(case: &Case) -> Result<(), RunError> {
+    supported(case)?;
+    if case.has_gas() {
+        return Ok(());
+    }
+    Err(RunError::Unsupported {
+        what: "the case has no gas: a structure alone has no cloud, and no fields or loads of one".into(),
+        hint: "`alula run` computes it",
+    })
+}
+
 /// Solves a structure alone, from its start or, with `again`, from the checkpoint in the folder.
 pub(super) fn solve(
     case: &Case,
