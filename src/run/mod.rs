@@ -69,7 +69,8 @@ pub fn run(case: &Case, places: &Places, monitor: &mut dyn Monitor) -> Result<Ou
     if !case.has_gas() {
         solids::supported(case)?;
         let (_, _held) = folder::create(case, &places.input, &places.out)?;
-        return solids::solve(case, &places.input, Some(&places.out), false, monitor).map(structure);
+        let job = solids::Job { case, input: &places.input, out: Some(&places.out), again: false };
+        return solids::solve(&job, monitor).map(structure);
     }
     Session::open(case, &places.input)?.keep_in(&places.out, monitor)?.solve(monitor)
 }
@@ -163,7 +164,8 @@ pub fn resume(out: &Path, monitor: &mut dyn Monitor) -> Result<Outcome, RunError
         folder::check_begun(out)?;
         let _held = folder::hold(out)?;
         folder::reopen(out)?;
-        return solids::solve(&case, &input, Some(out), true, monitor).map(structure);
+        let job = solids::Job { case: &case, input: &input, out: Some(out), again: true };
+        return solids::solve(&job, monitor).map(structure);
     }
     continued(out)?.solve(monitor)
 }

@@ -193,7 +193,8 @@ impl Walk {
         let name = folder.name.clone();
         if !self.structures.contains_key(&name) && !monitor.stop() {
             monitor.note(&name);
-            let found = solids::solve(&folder.case, &folder.path, None, false, &mut Quiet { monitor });
+            let job = solids::Job { case: &folder.case, input: &folder.path, out: None, again: false };
+            let found = solids::solve(&job, &mut Quiet { monitor });
             let found = match found {
                 Ok(solids::Ended::Finished(summary)) => Ok(*summary),
                 Ok(solids::Ended::Interrupted(_)) => Err("the run was interrupted".into()),

@@ -1,4 +1,6 @@
 //! What a structure of particles is: the cloud, its materials, where it is held and what acts on it.
+use std::ops::Deref;
+
 use super::particles::Particles;
 use crate::math::Vector;
 use crate::math::sweep::first;
@@ -79,38 +81,28 @@ pub struct Damping {
     pub mass: f64,
 }
 
-/// A structure of particles: one or several bodies, which do not see one another.
+/// A structure of particles, one or several bodies, which do not see one another: its parts, and what follows from them.
 pub struct Solid<const D: usize> {
-    /// The cloud.
-    pub particles: Particles<D>,
-    /// Body of each particle.
-    pub body: Vec<u16>,
-    /// Materials.
-    pub materials: Vec<Material>,
-    /// Material of each particle.
-    pub material: Vec<u16>,
-    /// What happens across a plane body.
-    pub plane: Plane,
-    /// Acceleration of gravity.
-    pub gravity: Vector<D>,
-    /// Damping.
-    pub damping: Damping,
-    /// Supports.
-    pub supports: Vec<Support<D>>,
-    /// Loads.
-    pub loads: Vec<Load<D>>,
-    /// What touches.
-    pub contact: Option<Contact<D>>,
-    /// Time is the part of loads, gravity and motions that acts: for equilibrium.
-    pub ramped: bool,
+    parts: Parts<D>,
     /// Mass of each particle.
     pub(super) mass: Vec<f64>,
     /// Axes along which each particle is held, one bit each.
     pub(super) held: Vec<u8>,
     /// V times the number of dimensions over the number of neighbours: weight of the residuals around each particle.
     pub(super) weight: Vec<f64>,
+    /// c of the residuals of velocity, β ρ c_p h times that weight.
+    pub(super) viscous: Vec<f64>,
     /// Numbers of history of a particle.
     pub(super) width: usize,
+}
+
+impl<const D: usize> Deref for Solid<D> {
+    type Target = Parts<D>;
+
+    #[inline(always)]
+    fn deref(&self) -> &Parts<D> {
+        &self.parts
+    }
 }
 
 /// Least mass of a particle in ρ h^D: those at sharp edges hold so little that they would decide the time step.
@@ -145,39 +137,31 @@ pub struct Parts<const D: usize> {
 impl<const D: usize> Solid<D> {
     /// The structure made of `parts`.
     pub fn new(parts: Parts<D>) -> Self {
-        let Parts { particles, body, materials, material, plane, gravity, damping, supports, loads, contact, ramped } =
-            parts;
-        let density = |i: usize| materials[usize::from(material[i])].density;
-        let mass = (0..particles.len())
-            .map(|i| density(i) * particles.volume[i].max(LEAST_MASS * particles.spacing[i].powi(D as i32)))
-            .collect();
-        let share = |i: usize| particles.volume[i] * D as f64 / particles.of(i).len() as f64;
-        let weight = (0..particles.len()).map(share).collect();
-        let mut held = vec![0u8; particles.len()];
-        for support in &supports {
+        let particles = &parts.particles;
+        let (n, h) = (particles.len(), &particles.spacing);
+        let material = |i: usize| &parts.materials[usize::from(parts.material[i])];
+        let held_by = |i: usize| particles.volume[i].max(LEAST_MASS * h[i].powi(D as i32));
+        let weight: Vec<f64> = (0..n).map(|i| particles.volume[i] * D as f64 / particles.of(i).len() as f64).collect();
+        let viscous = |i: usize| {
+            let impedance = material(i).density * material(i).pressure_wave_speed();
+            parts.damping.viscosity * impedance * h[i] * weight[i]
+        };
+        let mut held = vec![0u8; n];
+        for support in &parts.supports {
             let bits = (0..D).filter(|d| support.fixed[*d]).map(|d| 1u8 << d).sum::<u8>();
             support.particles.iter().for_each(|i| held[*i as usize] |= bits);
         }
         // one more for what is lost, and for the stretch across a plane body
-        let own = materials.iter().map(Material::history_len).max().unwrap_or(0);
-        let width = own + usize::from(own > 0) + usize::from(plane == Plane::Stress);
+        let own = parts.materials.iter().map(Material::history_len).max().unwrap_or(0);
+        let width = own + usize::from(own > 0) + usize::from(parts.plane == Plane::Stress);
         assert!(own <= MOST_HISTORY, "a material keeps more history than there is room for");
         Self {
-            particles,
-            body,
-            materials,
-            material,
-            plane,
-            gravity,
-            damping,
-            supports,
-            loads,
-            contact,
-            ramped,
-            mass,
+            mass: (0..n).map(|i| material(i).density * held_by(i)).collect(),
+            viscous: (0..n).map(viscous).collect(),
             held,
             weight,
             width,
+            parts,
         }
     }
 

@@ -96,9 +96,29 @@ fn gradients<const D: usize>(solid: &Solid<D>, i: usize, q: &[[f64; D]]) -> (Mat
         }
     }
     let per_volume = 1.0 / solid.particles.volume[i];
-    let inverse = solid.particles.inverse(i);
-    let plain = std::array::from_fn(|a| std::array::from_fn(|b| (0..D).map(|c| moments[a][c] * inverse[c][b]).sum()));
+    let plain = solved(solid, i, &moments);
     (full.map(|row| row.map(|f| f * per_volume)), plain)
+}
+
+/// The gradient of the plain fit alone.
+#[inline(always)]
+fn plain_gradient<const D: usize>(solid: &Solid<D>, i: usize, q: &[[f64; D]]) -> Matrix<D> {
+    let x = &solid.particles.x;
+    let mut moments = [[0.0; D]; D];
+    for e in solid.particles.of(i) {
+        let j = e.other as usize;
+        let (d, change) = (x[j] - x[i], Vector(q[j]) - Vector(q[i]));
+        let w = 1.0 / d.norm_squared();
+        (0..D).for_each(|a| (0..D).for_each(|b| moments[a][b] += w * change[a] * d[b]));
+    }
+    solved(solid, i, &moments)
+}
+
+/// Moments of a plain fit times its inverse normal matrix.
+#[inline(always)]
+fn solved<const D: usize>(solid: &Solid<D>, i: usize, moments: &Matrix<D>) -> Matrix<D> {
+    let inverse = solid.particles.inverse(i);
+    std::array::from_fn(|a| std::array::from_fn(|b| (0..D).map(|c| moments[a][c] * inverse[c][b]).sum()))
 }
 
 /// The deformation gradient in space of a displacement gradient.
@@ -154,7 +174,9 @@ impl<const D: usize> Solid<D> {
     /// Stresses in a state, and the history that they leave in `after`.
     pub fn stress(&self, state: &State<'_, D>, work: &mut Work<D>, after: &mut [f64]) {
         let n = self.len();
-        let (viscosity, lost) = (self.damping.viscosity, self.lost_at());
+        let lost = self.lost_at();
+        let Work { stressed, stiff } = work;
+        sweep(stiff, |i| self.stiffening(i, self.material_of(i), self.history_of(state.history, i)));
         let one = |i: usize, stressed: &mut Stressed<D>, new: &mut [f64]| {
             let (gradient, plain) = gradients(self, i, state.displacement);
             let material = self.material_of(i);
@@ -163,18 +185,15 @@ impl<const D: usize> Solid<D> {
             if let Some(lost) = lost {
                 new[lost] = old[lost] + response.dissipated;
             }
-            let c = self.stiffening(i, material, old);
             stressed.stress = in_plane(&response.stress);
-            stressed.smooth = plain.map(|row| row.map(|a| a * c));
-            if viscosity > 0.0 {
-                let (_, rate) = gradients(self, i, state.velocity);
-                let b = self.viscosity(i, material);
-                (0..D).for_each(|r| (0..D).for_each(|s| stressed.smooth[r][s] += b * rate[r][s]));
+            stressed.smooth = plain.map(|row| row.map(|a| a * stiff[i]));
+            if self.is_viscous() {
+                let rate = plain_gradient(self, i, state.velocity);
+                (0..D).for_each(|r| (0..D).for_each(|s| stressed.smooth[r][s] += self.viscous[i] * rate[r][s]));
             }
         };
-        sweep(&mut work.stiff, |i| self.stiffening(i, self.material_of(i), self.history_of(state.history, i)));
         let parts = parts(n, CHUNK);
-        sweep_two_parts((&parts, 1, &mut work.stressed), (&parts, self.width, after), &|k, stressed, new| {
+        sweep_two_parts((&parts, 1, stressed), (&parts, self.width, after), &|k, stressed, new| {
             for (at, i) in parts[k].clone().enumerate() {
                 one(i, &mut stressed[at], &mut new[at * self.width..(at + 1) * self.width]);
             }
@@ -197,17 +216,16 @@ impl<const D: usize> Solid<D> {
         self.damping.stabilisation * soft.min(1.0) * shear * self.weight[i]
     }
 
-    /// c of the residuals of velocity.
-    #[inline(always)]
-    fn viscosity(&self, i: usize, material: &Material) -> f64 {
-        let impedance = material.density * material.pressure_wave_speed();
-        self.damping.viscosity * impedance * self.particles.spacing[i] * self.weight[i]
+    /// True where the residuals of velocity are damped.
+    fn is_viscous(&self) -> bool {
+        self.damping.viscosity > 0.0
     }
 
     /// Forces on all particles: of stresses in `work`, stabilisation, gravity and loads.
     pub fn forces(&self, state: &State<'_, D>, work: &Work<D>, force: &mut [[f64; D]]) {
         let gravity = self.gravity * self.part(state.time);
-        sweep(force, |i| (self.internal(i, (state.displacement, state.velocity), work) + gravity * self.mass[i]).0);
+        let velocity = self.is_viscous().then_some(state.velocity);
+        sweep(force, |i| (self.internal(i, (state.displacement, velocity), work) + gravity * self.mass[i]).0);
         self.add_loads(state, force);
         self.add_contact(state, force);
         if self.damping.mass > 0.0 {
@@ -218,21 +236,19 @@ impl<const D: usize> Solid<D> {
         }
     }
 
-    /// Forces of the neighbours on a particle.
+    /// Forces of the neighbours on a particle, for displacements, and velocities where these are damped.
     #[inline(always)]
-    fn internal(&self, i: usize, (u, v): (&[[f64; D]], &[[f64; D]]), work: &Work<D>) -> Vector<D> {
+    fn internal(&self, i: usize, (u, v): (&[[f64; D]], Option<&[[f64; D]]>), work: &Work<D>) -> Vector<D> {
         let x = &self.particles.x;
-        let (own, stiff) = (&work.stressed[i], &work.stiff);
-        let viscous = self.damping.viscosity > 0.0;
-        let here = if viscous { self.viscosity(i, self.material_of(i)) } else { 0.0 };
+        let (own, stiff, viscous) = (&work.stressed[i], &work.stiff, &self.viscous);
         let mut force = Vector::ZERO;
         for e in self.particles.of(i) {
             let j = e.other as usize;
             let (d, other) = (x[j] - x[i], &work.stressed[j]);
             let w = 1.0 / d.norm_squared();
             let mut pull = (Vector(u[j]) - Vector(u[i])) * (stiff[i] + stiff[j]);
-            if viscous {
-                pull += (Vector(v[j]) - Vector(v[i])) * (here + self.viscosity(j, self.material_of(j)));
+            if let Some(v) = v {
+                pull += (Vector(v[j]) - Vector(v[i])) * (viscous[i] + viscous[j]);
             }
             for a in 0..D {
                 let mut sum = 0.0;
@@ -302,29 +318,7 @@ impl<const D: usize> Solid<D> {
             Stressed { stress, smooth: plain.map(|row| row.map(|a| a * tangents.stiff[i])) }
         });
         work.stiff.copy_from_slice(&tangents.stiff);
-        sweep(out, |i| (-self.elastic(i, w, work)).0);
-    }
-
-    /// Forces of displacements alone.
-    fn elastic(&self, i: usize, w: &[[f64; D]], work: &Work<D>) -> Vector<D> {
-        let x = &self.particles.x;
-        let (own, stiff) = (&work.stressed[i], &work.stiff);
-        let mut force = Vector::ZERO;
-        for e in self.particles.of(i) {
-            let j = e.other as usize;
-            let (d, other) = (x[j] - x[i], &work.stressed[j]);
-            let weight = 1.0 / d.norm_squared();
-            let pull = (Vector(w[j]) - Vector(w[i])) * (stiff[i] + stiff[j]);
-            for a in 0..D {
-                let mut sum = weight * pull[a];
-                for b in 0..D {
-                    sum += own.stress[a][b] * e.own[b] - other.stress[a][b] * e.counter[b];
-                    sum -= weight * (own.smooth[a][b] + other.smooth[a][b]) * d[b];
-                }
-                force[a] += sum;
-            }
-        }
-        force
+        sweep(out, |i| (-self.internal(i, (w, None), work)).0);
     }
 
     /// Change of the stress with that of the displacement gradient.
@@ -371,14 +365,14 @@ impl<const D: usize> Solid<D> {
         let v = state.velocity;
         let slowed = sum(self.len(), |i| self.damping.mass * self.mass[i] * Vector(v[i]).norm_squared());
         let slowed = slowed + self.rubbed(state);
-        if self.damping.viscosity == 0.0 {
+        if !self.is_viscous() {
             return slowed;
         }
         slowed
             + sum(self.len(), |i| {
-                let (_, plain) = gradients(self, i, v);
+                let plain = plain_gradient(self, i, v);
                 let left = |e: &Edge<D>| self.left(i, e, v, &plain);
-                self.viscosity(i, self.material_of(i)) * self.particles.of(i).iter().map(left).sum::<f64>()
+                self.viscous[i] * self.particles.of(i).iter().map(left).sum::<f64>()
             })
     }
 
@@ -403,7 +397,7 @@ impl<const D: usize> Solid<D> {
             self.particles.volume[i] * self.respond(self.material_of(i), &f, (old, 0.0), &mut scratch).stored
         });
         let stabilisation = sum(n, |i| {
-            let (_, plain) = gradients(self, i, state.displacement);
+            let plain = plain_gradient(self, i, state.displacement);
             let c = self.stiffening(i, self.material_of(i), self.history_of(state.history, i));
             let left = |e: &Edge<D>| self.left(i, e, state.displacement, &plain);
             0.5 * c * self.particles.of(i).iter().map(left).sum::<f64>()

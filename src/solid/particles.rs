@@ -13,7 +13,7 @@ use crate::cloud::grid::Grid;
 use crate::math::Vector;
 use crate::math::conjugate::{Symmetric, conjugate_gradients};
 use crate::math::least_squares::{gradient_weight, normal_inverse, normal_matrix};
-use crate::math::sweep::{maximum, sum, sweep, sweep_each};
+use crate::math::sweep::{first, maximum, sum, sweep, sweep_each};
 
 /// Radius of a cloud in spacings, in the plane and in space, where rows do not say who neighbours are: between the second and the
 /// third ring of a square and of a body-centred lattice, so that no diagonal of a sheared cell is lost.
@@ -170,11 +170,13 @@ pub enum Unfit {
     },
     /// The divergence theorem cannot be had.
     #[error(
-        "the divergence theorem stays open by {left:.1e} of a particle's area at {place:?} after {iterations} iterations: the solid particles lie too unevenly"
+        "the divergence theorem stays open by {left:.1e} of a particle's area after {iterations} iterations: solid particles have too few neighbours, the one at {place:?} only {count}"
     )]
     Open {
-        /// Where.
+        /// Where the particle with the fewest neighbours is.
         place: Vec<f64>,
+        /// How many it has.
+        count: usize,
         /// What is left.
         left: f64,
         /// Iterations.
@@ -285,7 +287,8 @@ impl<const D: usize> Particles<D> {
     /// The correction.
     fn close(&mut self) -> Result<(), Unfit> {
         let n = self.len();
-        let size = |i: usize| self.spacing[i].powi(D as i32 - 1);
+        let spacing = self.spacing.clone();
+        let size = |i: usize| spacing[i].powi(D as i32 - 1);
         let (mut lambda, mut left) = (vec![Vector::ZERO; n], vec![Vector::ZERO; n]);
         sweep(&mut left, |j| -self.open(j));
         let mut gradient = vec![[Vector::ZERO; D]; n];
@@ -325,13 +328,13 @@ impl<const D: usize> Particles<D> {
             }
         }
         (self.edges, self.correction) = (edges, (changed / f64::max(whole, f64::MIN_POSITIVE)).sqrt());
-        let worst = (0..n)
-            .map(|j| (self.open(j).max_abs() / self.spacing[j].powi(D as i32 - 1), j))
-            .fold((0.0, 0), |a, b| if a.0 < b.0 { b } else { a });
-        if worst.0 <= 100.0 * CLOSED {
+        let left = maximum(n, |j| self.open(j).max_abs() / size(j));
+        if left <= 100.0 * CLOSED && first(n, |j| !self.open(j).is_finite()).is_none() {
             return Ok(());
         }
-        Err(Unfit::Open { place: self.x[worst.1].0.to_vec(), left: worst.0, iterations: self.iterations })
+        let fewest = (0..n).min_by_key(|i| self.of(*i).len()).unwrap_or(0);
+        let (place, count) = (self.x[fewest].0.to_vec(), self.of(fewest).len());
+        Err(Unfit::Open { place, count, left, iterations: self.iterations })
     }
 
     /// Gradients of all components of a field by the plain fit.

@@ -3,9 +3,8 @@ use std::path::{Path, PathBuf};
 
 use super::super::error::RunError;
 use super::super::folder;
-use super::march::Row;
+use super::record::{ModeRow, Row, SolidSummary, ledger};
 use super::setup::Built;
-use super::summary::{SolidSummary, ledger};
 use crate::case::Case;
 use crate::observe::table::{Entry, write_csv, write_json};
 use crate::observe::vtk::{Cells, Column, write_cells, write_collection};
@@ -135,7 +134,7 @@ impl Files<'_> {
         if !summary.modes.is_empty() {
             let Some(table) = self.path("modes.csv") else { return Ok(()) };
             let names = ["mode", "frequency", "omega", "generalised_mass", "residual"];
-            let line = |(k, m): (usize, &super::summary::ModeRow)| {
+            let line = |(k, m): (usize, &ModeRow)| {
                 [(k + 1) as f64, m.frequency, m.omega, m.generalised_mass, m.residual].map(Entry::from).to_vec()
             };
             write_csv(&table, &names, summary.modes.iter().enumerate().map(line))?;

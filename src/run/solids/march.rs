@@ -5,6 +5,7 @@ use super::super::error::RunError;
 use super::super::monitor::{MarchTick, Monitor, Tick};
 use super::super::record::saved;
 use super::files::Files;
+use super::record::{Row, Work};
 use super::setup::Built;
 use crate::case::{Case, Temporal};
 use crate::math::Vector;
@@ -14,7 +15,7 @@ use crate::solid::Structure;
 use crate::solid::forces::{Energy, State};
 use crate::time::structural::{Equilibrium, GeneralisedAlpha, LoadPlan, Newton, Plan};
 use crate::time::symplectic::{self, Symplectic};
-use crate::time::{Integrator, Memory, Past};
+use crate::time::{Integrator, Mark, Memory, Past};
 
 /// Rows of `history.csv`, about.
 const ROWS: f64 = 1000.0;
@@ -28,28 +29,6 @@ pub(super) struct Study<'a, const D: usize> {
     pub(super) case: &'a Case,
     pub(super) built: &'a Built<D>,
     pub(super) files: &'a Files<'a>,
-}
-
-/// Work since the start.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Work {
-    /// Of loads and gravity.
-    pub(super) loads: f64,
-    /// Of supports that move.
-    pub(super) supports: f64,
-    /// Taken by damping.
-    pub(super) damped: f64,
-}
-
-/// A row of `history.csv`.
-#[derive(Clone, Debug)]
-pub(super) struct Row {
-    pub(super) step: u32,
-    pub(super) time: f64,
-    pub(super) energy: Energy,
-    pub(super) work: Work,
-    /// Displacement of each probe.
-    pub(super) probes: Vec<[f64; 3]>,
 }
 
 /// Where a march ended.
@@ -115,7 +94,6 @@ impl<const D: usize> Study<'_, D> {
             None => Restored { past: Past::default(), u, rows: Vec::new(), work: Work::default() },
         };
         let mut integrator = self.integrator(past, u);
-        let until = self.until();
         let mut seconds = usage::cpu_seconds();
         if rows.is_empty() {
             rows.push(self.row(integrator.as_mut(), &work));
@@ -131,22 +109,9 @@ impl<const D: usize> Study<'_, D> {
             }
             before = self.add_work(integrator.as_mut(), &before, &mut work);
             let mark = integrator.mark();
-            if mark.time >= until
-                || (mark.time / until * ROWS).floor() > ((mark.time - mark.last) / until * ROWS).floor()
-            {
+            if self.is_recorded(&mark) {
                 rows.push(self.row(integrator.as_mut(), &work));
-                let march = Some(MarchTick { time: mark.time, until, period: None, angle: None, lift_before: None });
-                monitor.tick(&Tick {
-                    iteration: u64::from(mark.iteration),
-                    goal: until,
-                    reached: mark.time,
-                    residual: mark.residual,
-                    cfl: 1.0,
-                    loads: None,
-                    particles: self.structure().solid.len(),
-                    march,
-                    point: None,
-                });
+                monitor.tick(&self.tick(&mark));
             }
             self.frame(integrator.as_mut(), mark.time, mark.last)?;
             stopped = monitor.stop();
@@ -157,9 +122,14 @@ impl<const D: usize> Study<'_, D> {
             }
         }
         self.files.history(self.built, &rows)?;
+        Ok(self.ended(integrator.as_mut(), rows, stopped))
+    }
+
+    /// Where a march stands that is over, or stopped.
+    fn ended(&self, integrator: &mut (dyn Integrator<Structure<D>> + '_), rows: Vec<Row>, stopped: bool) -> Marched {
         let (mark, cost) = (integrator.mark(), integrator.cost());
         let residual = matches!(self.case.time, Temporal::Steady(_) | Temporal::Modes(_)).then_some(mark.residual);
-        Ok(Marched {
+        Marched {
             state: integrator.standing().state.to_vec(),
             time: mark.time,
             iteration: u64::from(mark.iteration),
@@ -167,7 +137,29 @@ impl<const D: usize> Study<'_, D> {
             stopped,
             halved: cost.halved,
             residual,
-        })
+        }
+    }
+
+    /// True after steps that make a row of `history.csv`.
+    fn is_recorded(&self, mark: &Mark) -> bool {
+        let row = |time: f64| (time / self.until() * ROWS).floor();
+        mark.time >= self.until() || row(mark.time) > row(mark.time - mark.last)
+    }
+
+    /// What is told of a step.
+    fn tick(&self, mark: &Mark) -> Tick {
+        let until = self.until();
+        Tick {
+            iteration: u64::from(mark.iteration),
+            goal: until,
+            reached: mark.time,
+            residual: mark.residual,
+            cfl: 1.0,
+            loads: None,
+            particles: self.structure().solid.len(),
+            march: Some(MarchTick { time: mark.time, until, period: None, angle: None, lift_before: None }),
+            point: None,
+        }
     }
 
     /// Time at the end.

@@ -3,6 +3,7 @@ mod files;
 mod inspect;
 mod march;
 mod material;
+mod record;
 mod setup;
 mod summary;
 
@@ -19,7 +20,7 @@ use crate::observe::checkpoint;
 use crate::solid::modes::{Mode, Wanted, modes};
 
 pub use inspect::{SolidReport, inspect_structure};
-pub use summary::{ModeRow, ProbeRow, SolidLedger, SolidSummary};
+pub use record::{ModeRow, ProbeRow, SolidLedger, SolidSummary};
 
 use files::Files;
 use march::{Marched, Study};
@@ -76,28 +77,29 @@ pub(super) fn with_gas(case: &Case) -> Result<(), RunError> {
     })
 }
 
-/// Solves a structure alone, from its start or, with `again`, from the checkpoint in the folder.
-pub(super) fn solve(
-    case: &Case,
-    input: &Path,
-    out: Option<&Path>,
-    again: bool,
-    monitor: &mut dyn Monitor,
-) -> Result<Ended, RunError> {
-    supported(case)?;
-    match dimension(case) {
-        2 => study::<2>(case, input, out, again, monitor),
-        _ => study::<3>(case, input, out, again, monitor),
+/// A structure alone that is to be computed.
+#[derive(Clone, Copy)]
+pub(super) struct Job<'a> {
+    pub(super) case: &'a Case,
+    /// Folder that file names of the case refer to.
+    pub(super) input: &'a Path,
+    /// Folder of the run; nothing is written without one.
+    pub(super) out: Option<&'a Path>,
+    /// From the checkpoint in that folder instead of its start.
+    pub(super) again: bool,
+}
+
+/// Solves a structure alone.
+pub(super) fn solve(job: &Job<'_>, monitor: &mut dyn Monitor) -> Result<Ended, RunError> {
+    supported(job.case)?;
+    match dimension(job.case) {
+        2 => study::<2>(job, monitor),
+        _ => study::<3>(job, monitor),
     }
 }
 
-fn study<const D: usize>(
-    case: &Case,
-    input: &Path,
-    out: Option<&Path>,
-    again: bool,
-    monitor: &mut dyn Monitor,
-) -> Result<Ended, RunError> {
+fn study<const D: usize>(job: &Job<'_>, monitor: &mut dyn Monitor) -> Result<Ended, RunError> {
+    let Job { case, input, out, again } = *job;
     let clock = Clock::start();
     let built = setup::build::<D>(case, input)?;
     built.notes.iter().for_each(|n| monitor.note(n));

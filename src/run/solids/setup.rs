@@ -55,7 +55,7 @@ pub(super) fn build<const D: usize>(case: &Case, input: &Path) -> Result<Built<D
     let owner: Vec<u16> = parts.iter().zip(0..).flat_map(|(p, k)| std::iter::repeat_n(k, p.fill.x.len())).collect();
     let particles = Particles::new(parts.iter().map(|p| p.fill.clone()).collect()).map_err(|e| RunError::Solid {
         what: e.to_string(),
-        hint: "take a smaller `spacing`, or `fill = \"relaxed\"`".into(),
+        hint: "take a smaller `spacing`: where a body is thin, and at its sharp edges, it decides".into(),
     })?;
     notes.push(format!(
         "{} solid particles with {:.1} neighbours each; the divergence theorem changed gradients by {:.1} % in {} iterations",
