@@ -25,8 +25,8 @@ pub struct Solid {
     pub plane: PlaneState,
     /// Thickness of plane bodies, by which their loads are told.
     pub thickness: Length,
-    /// Strength of the forces against modes that particles do not see, 0 to 1.
-    pub stabilisation: f64,
+    /// Strength of the forces against modes that particles do not see, 0 to 1; absent: 0.3 in the plane, 0.4 in space.
+    pub stabilisation: Option<f64>,
     /// Artificial viscosity of shocks, 0 to 1; absent: 0.1 in explicit marches of plastic materials, contact or gas shocks, 0 otherwise.
     pub viscosity: Option<f64>,
     /// Damping in proportion to mass.

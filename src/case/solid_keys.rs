@@ -50,10 +50,10 @@ pub(super) static SOLID: Table = Table::of(&[
         Absent::Number(1.0),
         "Thickness of a body in the plane: its masses and forces are those of so much of it.",
     ),
-    Field::defaulted(
+    Field::optional(
         "stabilisation",
         PART,
-        Absent::Number(0.3),
+        "0.3 in the plane, 0.4 in space",
         "Strength of the forces against zigzag modes, whose strains particles do not see: as a part of the modulus of the material.",
     ),
     Field::optional(

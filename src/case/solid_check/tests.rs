@@ -129,7 +129,7 @@ fn a_solid_with_every_key_reads_back_to_itself() {
 fn defaults_are_the_documented_ones() {
     let c = case(&plate("", ""));
     let (_, _, s) = c.solids().next().unwrap();
-    assert_eq!((s.jitter, s.plane, s.thickness, s.stabilisation), (0.0, PlaneState::Strain, Length(1.0), 0.3));
+    assert_eq!((s.jitter, s.plane, s.thickness, s.stabilisation), (0.0, PlaneState::Strain, Length(1.0), None));
     assert_eq!((s.fill, s.viscosity, s.material.law()), (None, None, Some(SolidLaw::NeoHookean)));
     assert!(s.velocity.is_empty() && s.gravity.is_empty() && s.supports.is_empty());
     assert_eq!((c.contact.as_ref(), &c.time), (None, &Temporal::default()));
