@@ -115,7 +115,7 @@ pub enum Rate<'a> {
     /// Everything is looked at as if it stood still: steady flow.
     Still,
     /// Part of the way through a step of an explicit method: particles go straight from where they are at its start to where
-    /// they are at its end; bodies with coordinates of their own move at the rates that these have.
+    /// they are at its end.
     Within {
         /// Time at the start of the step.
         start: f64,
@@ -123,6 +123,8 @@ pub enum Rate<'a> {
         step: f64,
         /// Part of the step that has passed, 0 to 1.
         fraction: f64,
+        /// The unknowns that place the frame at the start and at the end; empty where all motion is prescribed.
+        ends: [&'a [f64]; 2],
     },
     /// By a difference formula; its first term is that of the time at which the frame is wanted, where it has one.
     Formula(&'a [Term<'a>]),
@@ -147,7 +149,12 @@ impl<'a> Instant<'a> {
 
     /// Part `fraction` of the way through the step of length `step` that begins at `start`.
     pub fn within(start: f64, step: f64, fraction: f64) -> Self {
-        Self { time: start + step * fraction, coordinates: &[], rate: Rate::Within { start, step, fraction } }
+        Self { time: start + step * fraction, coordinates: &[], rate: Rate::Within { start, step, fraction, ends: [&[]; 2] } }
+    }
+
+    /// The same where unknowns place the frame, those at the start and at the end of the step.
+    pub fn between(start: f64, step: f64, fraction: f64, ends: [&'a [f64]; 2]) -> Self {
+        Self { time: start + step * fraction, coordinates: ends[1], rate: Rate::Within { start, step, fraction, ends } }
     }
 
     /// A time at which ∂/∂t is `formula`.

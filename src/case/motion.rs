@@ -214,7 +214,10 @@ impl Case {
 
     /// How particles follow.
     pub fn particles(&self) -> ParticleMotion {
-        self.motion.as_ref().map(|m| m.particles).unwrap_or_default()
+        match self.motion.as_ref().map(|m| m.particles).unwrap_or_default() {
+            ParticleMotion::Rigid if self.has_gas() && self.solids().next().is_some() => ParticleMotion::Deforming,
+            given => given,
+        }
     }
 
     /// Names of all files that a run reads beside the case file.
@@ -242,5 +245,6 @@ impl Case {
             || general.is_some_and(|m| m.particles == ParticleMotion::Lagrangian)
             || (0..self.bodies.len()).any(|i| self.motion_of(i).is_some())
             || !self.structures.is_empty()
+            || self.has_gas() && self.solids().next().is_some()
     }
 }

@@ -9,8 +9,12 @@
 //! In a steady flow there is no time for inertia: the coordinates go to where springs and gas are at rest with one another,
 //! dq/dτ = M⁻¹(Q + f − F(q))/ω, dq'/dτ = −ω q', with ω the highest natural frequency. Structures that are *held*, for the steady
 //! flow that a march begins with, keep the values of their start.
+//!
+//! Bodies made of particles ([`solids`]) add the displacements and velocities of these, in pairs, as coordinates of their own.
 mod bodies;
 mod preconditioner;
+mod solid_preconditioner;
+pub mod solids;
 
 pub use bodies::{Attached, body_motion};
 pub use preconditioner::CoupledPreconditioner;
@@ -19,7 +23,9 @@ use std::ops::Range;
 
 use crate::math::sweep::sweep_rows;
 use crate::scheme::{self, Exchange, Fluid, HasGas, View};
-use crate::system::{Fault, Field, Instant, Rate, System, unknowns};
+use crate::system::{Fault, Field, Instant, Rate, System};
+
+use solids::{OnCloud, Pace};
 
 /// Rate of a structure that nothing holds, in units of the case: what local times are measured with then.
 const SLOWEST: f64 = 1e-6;
@@ -28,6 +34,7 @@ const SLOWEST: f64 = 1e-6;
 pub struct Coupled<const D: usize> {
     fluid: Fluid<D>,
     bodies: Vec<Attached<D>>,
+    solids: Option<OnCloud<D>>,
     fields: Vec<Field>,
     /// Highest natural frequency of the structures.
     fastest: f64,
@@ -50,6 +57,8 @@ pub struct Work<const D: usize> {
     pub gas: scheme::Work<D>,
     /// Generalised forces of the gas on all coordinates.
     pub load: Vec<f64>,
+    /// That of bodies made of particles.
+    pub solids: Option<solids::Work<D>>,
 }
 
 impl<const D: usize> Coupled<D> {
@@ -58,7 +67,32 @@ impl<const D: usize> Coupled<D> {
         let count = bodies.iter().map(|b| b.structure.len()).sum();
         let fields = vec![fluid.fields()[0], Field::new("structure", count, 2)];
         let fastest = bodies.iter().map(Attached::fastest).fold(SLOWEST, f64::max);
-        Self { fluid, bodies, fields, fastest, held: false }
+        Self { fluid, bodies, solids: None, fields, fastest, held: false }
+    }
+
+    /// The same with bodies made of particles.
+    pub fn with_solids(mut self, solids: OnCloud<D>) -> Self {
+        self.fields.truncate(2);
+        self.fields.push(Field::new("solid", solids.solids.len(), 2 * D));
+        self.solids = Some(solids);
+        self
+    }
+
+    /// Bodies made of particles.
+    pub fn solids(&self) -> Option<&OnCloud<D>> {
+        self.solids.as_ref()
+    }
+
+    /// The unknowns of bodies on springs.
+    fn sprung(&self) -> Range<usize> {
+        let first = self.fields[0].len();
+        first..first + self.fields[1].len()
+    }
+
+    /// The unknowns of bodies made of particles.
+    pub fn solid_range(&self) -> Range<usize> {
+        let first = self.sprung().end;
+        first..first + self.fields.get(2).map_or(0, Field::len)
     }
 
     /// The gas.
@@ -83,7 +117,8 @@ impl<const D: usize> Coupled<D> {
 
     /// The state in which the gas is `gas` and the structures are where they begin.
     pub fn start_with(&self, gas: &[f64]) -> Vec<f64> {
-        gas.iter().copied().chain(self.bodies.iter().flat_map(Attached::initial)).collect()
+        let solids = self.solids.as_ref().map(|s| s.solids.initial()).unwrap_or_default();
+        gas.iter().copied().chain(self.bodies.iter().flat_map(Attached::initial)).chain(solids).collect()
     }
 
     /// Generalised forces of the walls whose states are in `work`, for coordinates with the unknowns `u` of the structures.
@@ -91,6 +126,15 @@ impl<const D: usize> Coupled<D> {
         load.fill(0.0);
         for body in &self.bodies {
             body.add_loads(&self.fluid, (frame, work), u, &mut load[body.range()]);
+        }
+    }
+
+    /// What rates are sought for.
+    fn pace(&self, frame: &Frame<D>) -> Pace {
+        match (self.held, frame.steady) {
+            (true, _) => Pace::Held,
+            (_, true) => Pace::Steady,
+            _ => Pace::Marching,
         }
     }
 
@@ -105,6 +149,12 @@ impl<const D: usize> Coupled<D> {
                 _ => body.rates(frame.gas.time, &u[own.clone()], load, &mut change[own]),
             }
         }
+        let own = self.fields[1].len()..u.len();
+        if let (Some(on), Some(storage)) = (&self.solids, &mut work.solids) {
+            on.load(&View::new(&self.fluid, &frame.gas, &work.gas), storage);
+            let at = (frame.gas.time, &frame.gas.jets[..]);
+            on.solids.rates(at, self.pace(frame), &u[own.clone()], storage, &mut change[own]);
+        }
     }
 }
 
@@ -117,11 +167,12 @@ impl<const D: usize> System for Coupled<D> {
     }
 
     fn placing(&self) -> Range<usize> {
-        self.fields[0].len()..unknowns(&self.fields)
+        self.fields[0].len()..self.solid_range().end
     }
 
     fn work(&self) -> Work<D> {
-        Work { gas: self.fluid.work(), load: vec![0.0; self.n_coordinates()] }
+        let solids = self.solids.as_ref().map(|s| s.solids.work());
+        Work { gas: self.fluid.work(), load: vec![0.0; self.n_coordinates()], solids }
     }
 
     fn frame(&self, at: &Instant<'_>, u: &[f64]) -> Frame<D> {
@@ -155,20 +206,29 @@ impl<const D: usize> System for Coupled<D> {
     fn rates(&self, frame: &Frame<D>, u: &[f64], work: &mut Work<D>, rate: &mut [f64]) {
         let (gas, own) = rate.split_at_mut(self.fields[0].rows);
         self.fluid.rates(&frame.gas, &u[self.gas_range()], &mut work.gas, gas);
-        sweep_rows(own, 1, |_, r| r[0] = self.fastest);
+        let (sprung, solid) = own.split_at_mut(self.fields[1].rows);
+        sweep_rows(sprung, 1, |_, r| r[0] = self.fastest);
+        if let Some(on) = &self.solids {
+            sweep_rows(solid, 1, |_, r| r[0] = on.solids.omega);
+        }
     }
 
     fn largest_change(&self, u: &[f64], du: &[f64]) -> f64 {
         let gas = self.gas_range();
-        let own = du[self.placing()].chunks_exact(2).zip(self.bodies.iter().flat_map(|b| &b.units));
-        let largest = own.map(|(pair, unit)| pair[0].abs() / unit);
+        let own = du[self.sprung()].chunks_exact(2).zip(self.bodies.iter().flat_map(|b| &b.units));
+        let unit = self.solids.as_ref().map_or(1.0, |s| s.solids.length);
+        let solid = du[self.solid_range()].chunks_exact(2).map(|pair| pair[0].abs() / unit);
+        let largest = own.map(|(pair, unit)| pair[0].abs() / unit).chain(solid);
         largest.fold(self.fluid.largest_change(&u[gas.clone()], &du[gas]), |m, c| {
             if c.is_finite() { m.max(c) } else { f64::INFINITY }
         })
     }
 
     fn check(&self, frame: &Frame<D>, u: &[f64]) -> Result<(), Fault> {
-        self.bodies.iter().try_for_each(|b| b.check(&u[self.placing()], self.fields[0].rows))?;
+        self.bodies.iter().try_for_each(|b| b.check(&u[self.sprung()], self.fields[0].rows))?;
+        if let Some(on) = &self.solids {
+            on.solids.check(&u[self.solid_range()], self.fields[0].rows + self.fields[1].rows)?;
+        }
         self.fluid.check(&frame.gas, &u[self.gas_range()])
     }
 
@@ -179,7 +239,11 @@ impl<const D: usize> System for Coupled<D> {
     fn locate(&self, frame: &Frame<D>, row: usize) -> Vec<f64> {
         match row < self.fields[0].rows {
             true => self.fluid.locate(&frame.gas, row),
-            false => Vec::new(),
+            false => {
+                let solid = row.checked_sub(self.fields[0].rows + self.fields[1].rows);
+                let place = |(on, i): (&OnCloud<D>, usize)| on.solids.structure.solid.particles.x[i].0.to_vec();
+                self.solids.as_ref().zip(solid).map(place).unwrap_or_default()
+            }
         }
     }
 }
@@ -215,7 +279,7 @@ impl<const D: usize> HasGas<D> for Coupled<D> {
     }
 
     fn exchange(&self, frame: &Frame<D>, u: &[f64], work: &mut Work<D>) -> Option<Exchange> {
-        let (gas, u) = (&u[self.gas_range()], &u[self.placing()]);
+        let (gas, u, solid) = (&u[self.gas_range()], &u[self.sprung()], &u[self.solid_range()]);
         self.fluid.fill_states(&frame.gas, gas, &mut work.gas);
         if self.fluid.viscous_model.is_some() {
             self.fluid.fill_gradients(&frame.gas, &mut work.gas);
@@ -228,7 +292,9 @@ impl<const D: usize> HasGas<D> for Coupled<D> {
         let power = loads.iter().enumerate().map(|(k, load)| load * moved(k)).sum();
         let cloud = &frame.gas.discretisation.cloud;
         let velocity = |w: usize| frame.gas.to_inertial_axes(&frame.gas.velocity_of(cloud.n_fluid + w));
-        let attached = |w: &usize| self.bodies.iter().any(|b| b.body == usize::from(cloud.interface[*w].body));
+        let solids = self.solids.iter().flat_map(|s| &s.solids.bodies).map(|b| b.body);
+        let carried: Vec<usize> = self.bodies.iter().map(|b| b.body).chain(solids).collect();
+        let attached = |w: &usize| carried.contains(&usize::from(cloud.interface[*w].body));
         let walls = (0..cloud.interface.len()).filter(attached);
         let view = View::new(&self.fluid, &frame.gas, &work.gas);
         let wall_power = walls.map(|w| view.wall_force(w).dot(&velocity(w))).sum();
@@ -237,6 +303,20 @@ impl<const D: usize> HasGas<D> for Coupled<D> {
             all.kinetic += energy.kinetic;
             all.potential += energy.potential;
             all.dissipation += energy.dissipation;
+        }
+        if let (Some(on), Some(work)) = (&self.solids, &mut work.solids) {
+            on.load(&view, work);
+            on.solids.split(solid, work);
+            let (energy, damped) = on.solids.energy(frame.gas.time, work);
+            all.kinetic += energy.kinetic;
+            all.potential += energy.strain + energy.stabilisation + energy.contact;
+            all.dissipation += damped;
+            all.power += on.power(&frame.gas.jets, work);
+            for [coordinate, rate, load] in on.solids.told(work) {
+                all.coordinates.push(coordinate);
+                all.rates.push(rate);
+                all.loads.push(load);
+            }
         }
         Some(all)
     }

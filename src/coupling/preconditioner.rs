@@ -2,34 +2,40 @@
 //!
 //! The gas as it would be alone, the structures by elimination; what ties them together, forces and the motion of the cloud, is
 //! a change of low rank that a few iterations of GMRES take care of.
+use std::sync::Arc;
+
 use crate::scheme::preconditioner::FluidPreconditioner;
 use crate::system::{Field, Hierarchy, Implicit, Period, Preconditioner, RightHandSide, Shift, placed};
 use crate::time::full::Full;
 
+use super::solid_preconditioner::SolidPreconditioner;
 use super::{Coupled, Frame, Work};
 
 /// The preconditioner of the gas, and the full matrix of the structures.
-pub struct CoupledPreconditioner {
+pub struct CoupledPreconditioner<const D: usize> {
     gas: FluidPreconditioner,
     structure: Full,
+    solids: Option<SolidPreconditioner<D>>,
     fields: Vec<Field>,
     matrix: Vec<f64>,
 }
 
 impl<const D: usize> Implicit for Coupled<D> {
-    type Preconditioner = CoupledPreconditioner;
+    type Preconditioner = CoupledPreconditioner<D>;
 
-    fn preconditioner(&self, plan: &Hierarchy, period: Option<Period>) -> CoupledPreconditioner {
-        let (gas, structure) = (self.fluid.preconditioner(plan, period), Full::of_fields(&self.fields[1..], period));
+    fn preconditioner(&self, plan: &Hierarchy, period: Option<Period>) -> CoupledPreconditioner<D> {
+        let (gas, structure) = (self.fluid.preconditioner(plan, period), Full::of_fields(&self.fields[1..2], period));
         let n = self.fields[1].len();
-        CoupledPreconditioner { gas, structure, fields: self.fields.clone(), matrix: vec![0.0; n * n] }
+        let solids = self.solids.as_ref().map(|s| SolidPreconditioner::new(Arc::clone(&s.solids), period));
+        CoupledPreconditioner { gas, structure, solids, fields: self.fields.clone(), matrix: vec![0.0; n * n] }
     }
 }
 
-impl<const D: usize> Preconditioner<Coupled<D>> for CoupledPreconditioner {
+impl<const D: usize> Preconditioner<Coupled<D>> for CoupledPreconditioner<D> {
     fn begin(&mut self, points: usize) {
         Preconditioner::<crate::scheme::Fluid<D>>::begin(&mut self.gas, points);
         self.structure.clear(points);
+        self.solids.iter_mut().for_each(|s| s.begin(points));
     }
 
     fn add(&mut self, coupled: &Coupled<D>, frame: &Frame<D>, u: &[f64], work: &mut Work<D>) {
@@ -48,12 +54,17 @@ impl<const D: usize> Preconditioner<Coupled<D>> for CoupledPreconditioner {
             }
         }
         self.structure.add_matrix(&self.matrix);
+        if let Some(solids) = &mut self.solids {
+            solids.add(frame.gas.time, coupled.pace(frame), &u[n..]);
+        }
     }
 
     fn finish(&mut self, shift: &Shift<'_>) {
         let (gas, own) = shift.rates.split_at(self.fields[0].rows);
         Preconditioner::<crate::scheme::Fluid<D>>::finish(&mut self.gas, &Shift { rates: gas, ..*shift });
         self.structure.complete(&Shift { rates: own, ..*shift });
+        let row = self.fields[0].rows + self.fields[1].rows;
+        self.solids.iter_mut().for_each(|s| s.finish(shift, row));
     }
 
     fn apply(&mut self, coupled: &Coupled<D>, frames: &[&Frame<D>], r: &RightHandSide<'_>, z: &mut [f64]) {
@@ -65,11 +76,17 @@ impl<const D: usize> Preconditioner<Coupled<D>> for CoupledPreconditioner {
             self.gas.apply(&coupled.fluid, &frames, &r.of(&at), gas);
         }
         if let Some(at) = fields.next() {
-            self.structure.solve(&r.of(&at), all);
+            let (sprung, solid) = all.split_at_mut(at.field.len());
+            self.structure.solve(&r.of(&at), sprung);
+            if let Some((at, solids)) = fields.next().zip(self.solids.as_mut()) {
+                solids.apply(&r.of(&at), &at, solid);
+            }
         }
     }
 
     fn bytes(&self) -> usize {
-        Preconditioner::<crate::scheme::Fluid<D>>::bytes(&self.gas) + self.structure.held()
+        Preconditioner::<crate::scheme::Fluid<D>>::bytes(&self.gas)
+            + self.structure.held()
+            + self.solids.as_ref().map_or(0, SolidPreconditioner::bytes)
     }
 }

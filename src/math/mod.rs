@@ -14,6 +14,7 @@ pub mod jet;
 pub mod krylov;
 pub mod lanczos;
 pub mod least_squares;
+pub mod moving_fit;
 pub mod multilevel;
 pub mod pencil;
 pub mod rotation;

@@ -11,6 +11,7 @@ use std::sync::Arc;
 use super::freedom::{Freedom, Role};
 use super::mode::ModeShape;
 use super::pose::RigidPose;
+use super::surface_net::{NetDisplacement, SurfaceNet};
 use super::time_function::{Repeat, TimeFunction, common, total, total_with_rates};
 use crate::math::Vector;
 use crate::math::jet::{Jet, Scalar};
@@ -31,6 +32,8 @@ pub struct BodyMotion<const D: usize> {
     attitude: Vec<TimeFunction>,
     /// How coordinates that are unknowns move the body.
     freedom: Option<Arc<Freedom<D>>>,
+    /// The surface of a body made of particles, and how far it is displaced.
+    net: Option<(Arc<SurfaceNet<D>>, NetDisplacement<D>)>,
 }
 
 /// Where a point is, how fast it moves, and how it speeds up.
@@ -63,6 +66,7 @@ impl<const D: usize> BodyMotion<D> {
             modes: Vec::new(),
             attitude: Vec::new(),
             freedom: None,
+            net: None,
         }
     }
 
@@ -75,6 +79,16 @@ impl<const D: usize> BodyMotion<D> {
         self
     }
 
+    /// A body made of particles, whose displacements are unknowns, on its surface.
+    pub fn of_particles(net: Arc<SurfaceNet<D>>) -> Self {
+        Self { net: Some((net, NetDisplacement::default())), ..Self::fixed() }
+    }
+
+    /// The surface of a body made of particles.
+    pub fn net(&self) -> Option<&Arc<SurfaceNet<D>>> {
+        self.net.as_ref().map(|(net, _)| net)
+    }
+
     /// How coordinates that are unknowns move the body, where they do.
     pub fn freedom(&self) -> Option<&Freedom<D>> {
         self.freedom.as_deref()
@@ -83,6 +97,9 @@ impl<const D: usize> BodyMotion<D> {
     /// The motion about the time `about`, at which coordinates that are unknowns, and their rates, are `jets`: position, velocity
     /// and acceleration at that time are those of the body. A prescribed motion is its own.
     pub fn momentary(&self, about: f64, jets: &[Jet]) -> Cow<'_, Self> {
+        if let Some((net, _)) = &self.net {
+            return Cow::Owned(Self { net: Some((Arc::clone(net), net.displacement(jets))), ..self.clone() });
+        }
         let Some(freedom) = &self.freedom else { return Cow::Borrowed(self) };
         let mut now = Self { freedom: None, ..self.clone() };
         let mut attitude = [Jet::constant(0.0); 3];
@@ -185,7 +202,10 @@ impl<const D: usize> BodyMotion<D> {
         let (pose, coordinates) = (self.pose(t), self.coordinates(t));
         move |x| {
             let bent = coordinates.iter().zip(self.shapes()).fold(*x, |sum, (q, shape)| sum + shape.at(x) * *q);
-            pose.point(&bent)
+            match &self.net {
+                Some((net, at)) if *at != NetDisplacement::default() => pose.point(&(bent + net.around(x).of_groups(at))),
+                _ => pose.point(&bent),
+            }
         }
     }
 
@@ -227,7 +247,7 @@ impl<const D: usize> BodyMotion<D> {
 
     /// True when the body bends.
     pub fn bends(&self) -> bool {
-        !self.modes.is_empty()
+        !self.modes.is_empty() || self.net.is_some()
     }
 
     /// Angle θ, its rate and its acceleration, nose up positive.
@@ -248,7 +268,7 @@ impl<const D: usize> BodyMotion<D> {
     /// True when nothing moves.
     pub fn is_fixed(&self) -> bool {
         let rests = self.turn.is_empty() && self.shift.is_empty() && self.attitude.is_empty();
-        rests && self.modes.is_empty() && self.freedom.is_none()
+        rests && self.modes.is_empty() && self.freedom.is_none() && self.net.is_none()
     }
 
     /// True when the body turns.

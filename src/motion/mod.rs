@@ -11,6 +11,7 @@ mod point_trajectory;
 mod pose;
 mod samples;
 mod spline;
+mod surface_net;
 #[cfg(test)]
 mod tests;
 mod time_function;
@@ -22,6 +23,7 @@ pub use mode::{Expansion, Hinge, ModeShape};
 pub use point_trajectory::PointTrajectory;
 pub use pose::RigidPose;
 pub use spline::Spline;
+pub use surface_net::{Carried, NetDisplacement, SurfaceNet, tangents};
 pub(crate) use time_function::MOST_PERIODS;
 pub use time_function::{Repeat, TimeFunction};
 

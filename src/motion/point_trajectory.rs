@@ -1,5 +1,6 @@
 //! Points that are asked for at many times: what the modes of their body do to them is found once.
 use super::law::BodyMotion;
+use super::surface_net::Carried;
 use crate::math::Vector;
 use crate::math::jet::Jet;
 use crate::math::sweep::sweep;
@@ -10,6 +11,8 @@ pub struct PointTrajectory<const D: usize> {
     law: BodyMotion<D>,
     /// φ of each mode at each point.
     shifts: Vec<Vec<Vector<D>>>,
+    /// How each point goes with the surface of a body made of particles, and whether it is on it.
+    carried: Vec<(Carried<D>, bool)>,
 }
 
 impl<const D: usize> PointTrajectory<D> {
@@ -25,7 +28,12 @@ impl<const D: usize> PointTrajectory<D> {
             sweep(&mut all, |k| if moves(k) { shape.at(&points[k]) } else { Vector::ZERO });
             all
         };
-        Self { law: law.clone(), shifts: law.shapes().map(at).collect() }
+        Self { law: law.clone(), shifts: law.shapes().map(at).collect(), carried: Vec::new() }
+    }
+
+    /// The same around and on a body made of particles, whose points go as `carried` says; true for those on the surface.
+    pub fn carried_by(self, carried: Vec<(Carried<D>, bool)>) -> Self {
+        Self { carried, ..self }
     }
 
     /// The law that the points follow.
@@ -42,7 +50,12 @@ impl<const D: usize> PointTrajectory<D> {
     pub fn with(&self, t: f64, jets: &[Jet]) -> impl Fn(usize, &Vector<D>) -> Vector<D> + Send + Sync + use<'_, D> {
         let law = self.law.momentary(t, jets);
         let (pose, coordinates) = (law.pose(t), law.coordinates(t));
+        let net = self.law.net().filter(|_| !self.carried.is_empty()).map(|net| net.displacement(jets));
         move |k, x| {
+            if let Some(at) = &net {
+                let (carried, on) = &self.carried[k];
+                return *x + if *on { carried.on(at) } else { carried.of_groups(at) };
+            }
             let bend = |sum: Vector<D>, (q, shift): (&f64, &Vec<Vector<D>>)| sum + shift[k] * *q;
             pose.point(&coordinates.iter().zip(&self.shifts).fold(*x, bend))
         }

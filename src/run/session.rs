@@ -5,6 +5,7 @@
 //! the one before by the solver's own fit, and is driven. A session opens no file but those that the case names, unless it keeps
 //! its run in a folder.
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use super::accuracy;
 use super::course::{Coarser, Course, Next};
@@ -28,6 +29,7 @@ use crate::case::{self, Case};
 use crate::cloud::Cloud;
 use crate::cloud::sources::Source;
 use crate::coupling::Coupled;
+use crate::coupling::solids::OnCloud;
 use crate::geometry::{Surface, dimension};
 use crate::observe::loads::Coefficients;
 use crate::scheme::{Fluid, HasGas};
@@ -246,16 +248,28 @@ impl Run<'_> {
         let mut motions = setup::motions(self.case, self.input, surface)?;
         setup::sane(self.case, surface, &motions)?.iter().for_each(|n| monitor.warn(n));
         let bodies = setup::bodies(self.case, self.input, surface, &mut motions)?;
+        let first = bodies.last().map_or(0, |b| b.range().end);
+        let solids = setup::solids(self.case, self.input, first, &mut motions, monitor)?;
         let site = Site { case: self.case, surface, motions: &motions };
-        if bodies.is_empty() {
+        if bodies.is_empty() && solids.is_none() {
             return self.stages(&site, |gas| gas, Vec::new(), origin, monitor);
         }
-        let described = setup::described(self.case, surface, &bodies);
+        let mut described = setup::described(self.case, surface, &bodies);
+        let solids = solids.map(|(solids, said)| {
+            described.extend(said);
+            solids
+        });
         let couple = |gas: Fluid<D>| {
             let cloud = &gas.discretisation.cloud;
             let walls = &cloud.x[cloud.interface_range()];
             let on = bodies.iter().map(|body| body.clone().on(walls)).collect();
-            Coupled::new(gas, on)
+            match &solids {
+                None => Coupled::new(gas, on),
+                Some(solids) => {
+                    let made = OnCloud::new(Arc::clone(solids), &gas);
+                    Coupled::new(gas, on).with_solids(made)
+                }
+            }
         };
         self.stages(&site, couple, described, origin, monitor)
     }

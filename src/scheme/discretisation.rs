@@ -183,8 +183,13 @@ fn jets(at: &Instant<'_>) -> Vec<Jet> {
     let mut all = positions(at.coordinates);
     match at.rate {
         Rate::Still => {}
-        Rate::Within { .. } => {
-            all.iter_mut().zip(at.coordinates.chunks_exact(2)).for_each(|(jet, pair)| jet.first = pair[1]);
+        Rate::Within { step, fraction, ends: [from, to], .. } => {
+            let pairs = from.chunks_exact(2).zip(to.chunks_exact(2));
+            for (jet, (from, to)) in all.iter_mut().zip(pairs) {
+                // straight from one end to the other, as particles go
+                jet.value = from[0] + fraction * (to[0] - from[0]);
+                jet.first = (to[0] - from[0]) / step;
+            }
         }
         Rate::Formula(terms) => {
             for (k, jet) in all.iter_mut().enumerate() {
@@ -231,8 +236,9 @@ fn place_along<const D: usize>(
                 rate.iter().map(|r| (r.coefficient, path.at(r.time, &positions(r.coordinates)))).collect();
             sweep(w, |i| terms.iter().fold(Vector::ZERO, |s, (c, place)| s + place(i, before(i)) * *c));
         }
-        Rate::Within { start, step, fraction } => {
-            let (from, to) = (path.at(start, &frame.jets), path.at(start + step, &frame.jets));
+        Rate::Within { start, step, fraction, ends } => {
+            let jets = ends.map(positions);
+            let (from, to) = (path.at(start, &jets[0]), path.at(start + step, &jets[1]));
             sweep(w, |i| (to(i, before(i)) - from(i, before(i))) * (1.0 / step));
             let w = &*w;
             sweep(x, |i| from(i, before(i)) + w[i] * (fraction * step));
@@ -257,9 +263,12 @@ fn turn_walls<const D: usize>(
     let poses: Vec<RigidPose<D>> = laws.iter().map(|l| l.pose(t)).collect();
     let rates: Vec<[Vector<D>; D]> = laws.iter().map(|l| rotation_rate(l, t)).collect();
     let body = |w: usize| usize::from(reference.interface[w].body);
+    let carried = deforming_surface.carried(&frame.jets);
     sweep_slots(&mut discretisation.cloud.interface, |w, slot| {
         *slot = reference.interface[w];
-        if let Some((pose, law)) = poses.get(body(w)).zip(laws.get(body(w))) {
+        if let Some(strain) = deforming_surface.carried_strain(w, &carried, slot) {
+            slot.deform(&strain.strain);
+        } else if let Some((pose, law)) = poses.get(body(w)).zip(laws.get(body(w))) {
             if let Some(surface_strain) = deforming_surface.surface_strain(w, law, t) {
                 slot.deform(&surface_strain.strain);
             }
@@ -270,6 +279,9 @@ fn turn_walls<const D: usize>(
     walls.resize(reference.interface.len(), WallMotion::AT_REST);
     sweep(walls, |w| {
         let Some(law) = laws.get(body(w)) else { return WallMotion::AT_REST };
+        if let Some(strain) = deforming_surface.carried_strain(w, &carried, &reference.interface[w]) {
+            return WallMotion { wall_velocity_gradient: strain.rate, acceleration: carried[w][2] };
+        }
         let x = &reference.x[reference.n_fluid + w];
         let (wall_velocity_gradient, pose) = (rates[body(w)], &poses[body(w)]);
         let Some(surface_strain) = deforming_surface.surface_strain(w, law, t) else {

@@ -9,7 +9,7 @@ use crate::cloud::Cloud;
 use crate::math::jet::Jet;
 use crate::math::sweep::sweep_slots;
 use crate::math::{Bounds, Vector};
-use crate::motion::{BodyMotion, PointTrajectory, RigidPose};
+use crate::motion::{BodyMotion, Carried, PointTrajectory, RigidPose, SurfaceNet};
 
 use super::discretisation::{Path, Places};
 
@@ -57,7 +57,12 @@ impl<const D: usize> MotionBlending<D> {
         }
         let real = &cloud.x[..cloud.n_real()];
         for (b, law) in laws.iter().enumerate() {
-            all.bodies[b].trajectory = PointTrajectory::of_those(law, real, |i| all.share[i * n + b] > 0.0);
+            let moves = |i: usize| all.share[i * n + b] > 0.0;
+            let trajectory = PointTrajectory::of_those(law, real, moves);
+            all.bodies[b].trajectory = match law.net() {
+                Some(net) => trajectory.carried_by(carried(cloud, (b, net), moves)),
+                None => trajectory,
+            };
         }
         all
     }
@@ -89,6 +94,25 @@ impl<const D: usize> Body<D> {
         let s = ((d - self.inner) / (self.outer - self.inner)).clamp(0.0, 1.0);
         1.0 - s * s * s * (10.0 - 15.0 * s + 6.0 * s * s)
     }
+}
+
+/// How the particles that move with body number `b` go with its surface.
+fn carried<const D: usize>(
+    cloud: &Cloud<D>,
+    (b, net): (usize, &SurfaceNet<D>),
+    moves: impl Fn(usize) -> bool + Sync,
+) -> Vec<(Carried<D>, bool)> {
+    let mut all = vec![(Carried::default(), false); cloud.n_real()];
+    let first = cloud.n_fluid;
+    sweep_slots(&mut all, |i, slot| {
+        let own = cloud.interface_range().contains(&i) && usize::from(cloud.interface[i - first].body) == b;
+        if own {
+            *slot = (net.on_surface(&cloud.x[i], &cloud.interface[i - first].normal), true);
+        } else if moves(i) {
+            *slot = (net.around(&cloud.x[i]), false);
+        }
+    });
+    all
 }
 
 fn body<const D: usize>(cloud: &Cloud<D>, (b, law): (usize, &BodyMotion<D>), until: f64) -> Body<D> {

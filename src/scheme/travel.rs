@@ -112,7 +112,7 @@ impl<const D: usize> Travel<D> {
             return;
         }
         let (from, to, step, fraction) = match at.rate {
-            Rate::Within { start, step, fraction } => (start, start + step, step, fraction),
+            Rate::Within { start, step, fraction, .. } => (start, start + step, step, fraction),
             Rate::Still | Rate::Formula(_) => (at.time, at.time, 1.0, 0.0),
         };
         let (from, to) = (self.poses(from), self.poses(to));

@@ -178,7 +178,7 @@ impl Look<'_, '_> {
     fn moves_by_itself(&mut self) {
         let (draft, body) = (&mut *self.draft, self.body);
         let gas = has_gas(draft);
-        if gas || draft.given(&format!("body[{body}].motion")) {
+        if !gas && draft.given(&format!("body[{body}].motion")) {
             prescribed(draft, body, "a body made of particles");
         }
         let name = draft.get(&format!("body[{body}].name")).cloned();

@@ -6,6 +6,7 @@ mod sanity;
 mod scales;
 mod shock_layer;
 mod size;
+mod solids;
 
 use std::path::Path;
 use std::sync::Arc;
@@ -14,6 +15,7 @@ pub(crate) use bodies::{bodies, described};
 pub(crate) use motion_feasibility::check as check_motion;
 pub(crate) use refinement::{adapted, behind_shocks};
 pub(crate) use sanity::sane;
+pub(crate) use self::solids::solids;
 pub(crate) use size::spec;
 
 use super::accuracy;
@@ -22,7 +24,6 @@ use super::folder;
 use super::look::forces::ForceModes;
 use super::look::reference::chord;
 use super::recipe;
-use super::solids;
 use super::stage::Stage;
 use crate::case::{Case, ParticleMotion, Temporal};
 use crate::cloud::conservative::conservative as conserve;
@@ -56,7 +57,7 @@ const LARGE: f64 = 100.0;
 
 /// Refuses what a case file can say but the solver cannot compute yet; each line goes when its solver comes.
 pub(crate) fn supported(case: &Case) -> Result<(), RunError> {
-    solids::with_gas(case)?;
+    super::solids::with_gas(case)?;
     let travels = case.moves() && case.particles() == ParticleMotion::Lagrangian;
     let layered = travels && case.cloud.wall_layers.is_some();
     let bare = case.moves() && case.bodies.is_empty() && case.particles() == ParticleMotion::Deforming;

@@ -4,7 +4,7 @@ mod inspect;
 mod march;
 mod material;
 mod record;
-mod setup;
+pub(super) mod setup;
 mod summary;
 
 use std::path::Path;
@@ -39,8 +39,8 @@ pub(super) fn supported(case: &Case) -> Result<(), RunError> {
     let any = |f: fn(&crate::case::Solid) -> bool| case.solids().any(|(_, _, s)| f(s));
     let asks = [
         (
-            case.has_gas() && case.solids().next().is_some(),
-            "bodies made of particles in a gas (`[body.solid]` beside `[flow]`)",
+            case.has_gas() && case.contact.is_some(),
+            "contact of bodies made of particles in a gas (`[contact]` beside `[flow]`)",
         ),
         (
             any(|s| s.plane == crate::case::PlaneState::Axisymmetric),

@@ -21,19 +21,19 @@ const STABILISATION: [f64; 2] = [0.3, 0.4];
 const FEW: usize = 5;
 
 /// A structure with what is asked of it.
-pub(super) struct Built<const D: usize> {
+pub(in crate::run) struct Built<const D: usize> {
     /// The structure.
-    pub(super) structure: Structure<D>,
+    pub(in crate::run) structure: Structure<D>,
     /// Names of the bodies.
-    pub(super) bodies: Vec<String>,
+    pub(in crate::run) bodies: Vec<String>,
     /// Points whose displacements are told: name, nearest particle and place.
-    pub(super) probes: Vec<(String, usize, Vector<D>)>,
+    pub(in crate::run) probes: Vec<(String, usize, Vector<D>)>,
     /// Velocity of each particle at the start.
-    pub(super) velocity: Vec<[f64; D]>,
+    pub(in crate::run) velocity: Vec<[f64; D]>,
     /// What is worth knowing.
-    pub(super) notes: Vec<String>,
+    pub(in crate::run) notes: Vec<String>,
     /// What makes results doubtful.
-    pub(super) warnings: Vec<String>,
+    pub(in crate::run) warnings: Vec<String>,
 }
 
 /// One body on its way.
@@ -41,19 +41,22 @@ struct Part<'a, const D: usize> {
     data: &'a Data,
     name: String,
     fill: Fill<D>,
+    led: bool,
 }
 
 /// The structure of a case whose bodies are made of particles.
-pub(super) fn build<const D: usize>(case: &Case, input: &Path) -> Result<Built<D>, RunError> {
+pub(in crate::run) fn build<const D: usize>(case: &Case, input: &Path) -> Result<Built<D>, RunError> {
     let (mut notes, mut warnings) = (Vec::new(), Vec::new());
     let mut parts = Vec::new();
-    for (_, body, data) in case.solids() {
-        let name = body.name.clone().unwrap_or_default();
+    for (number, body, data) in case.solids() {
+        let name = body.name.clone().unwrap_or_else(|| format!("body {}", number + 1));
         let (surface, said) = load_surface::<D>(std::slice::from_ref(body), input)?;
         notes.extend(said);
         let (fill, rows) = filled(body, data, &surface, &name)?;
         warnings.extend(thin(&fill, rows, &name)?);
-        parts.push(Part { data, name, fill });
+        // without supports a body with a prescribed motion is led as a whole
+        let led = case.motion_of(number).is_some() && data.supports.is_empty();
+        parts.push(Part { data, name, fill, led });
     }
     let owner: Vec<u16> = parts.iter().zip(0..).flat_map(|(p, k)| std::iter::repeat_n(k, p.fill.x.len())).collect();
     let particles = Particles::new(parts.iter().map(|p| p.fill.clone()).collect()).map_err(|e| RunError::Solid {
@@ -70,7 +73,8 @@ pub(super) fn build<const D: usize>(case: &Case, input: &Path) -> Result<Built<D
     let (materials, of) = materials(&parts, &particles, &owner)?;
     let (supports, loads) = (supports(&parts, &particles, &owner)?, loads(&parts, &particles, &owner)?);
     let first = parts[0].data;
-    let shocked = case.contact.is_some() || materials.iter().any(|m| matches!(m.law, Law::Plastic(_)));
+    let shocked =
+        case.has_gas() || case.contact.is_some() || materials.iter().any(|m| matches!(m.law, Law::Plastic(_)));
     let usual = if shocked && matches!(case.time, Temporal::Explicit(_)) { SHOCKED } else { 0.0 };
     let probes = probes(&parts, &particles, &owner);
     let velocity = velocities(&parts, &particles, &owner);
@@ -89,7 +93,7 @@ pub(super) fn build<const D: usize>(case: &Case, input: &Path) -> Result<Built<D
         supports,
         loads,
         contact: contact(case),
-        ramped: matches!(case.time, Temporal::Steady(_) | Temporal::Modes(_)),
+        ramped: !case.has_gas() && matches!(case.time, Temporal::Steady(_) | Temporal::Modes(_)),
         particles,
     });
     let bodies = parts.iter().map(|p| p.name.clone()).collect();
@@ -271,6 +275,10 @@ fn supports<const D: usize>(
 ) -> Result<Vec<Support<D>>, RunError> {
     let mut all = Vec::new();
     for (k, part) in parts.iter().enumerate() {
+        if part.led {
+            let particles = (0..particles.len()).filter(|i| usize::from(owner[*i]) == k).map(|i| i as u32).collect();
+            all.push(Support { particles, fixed: [true; D], motion: None });
+        }
         for (number, data) in part.data.supports.iter().enumerate() {
             let inside = |i: &usize| {
                 usize::from(owner[*i]) == k && data.place.contains(&particles.x[*i].0, slack(particles, *i))

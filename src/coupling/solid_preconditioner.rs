@@ -1,0 +1,227 @@
+//! How the linear systems of bodies made of particles are solved.
+//!
+//! In time, with s = shift + c, the pairs (u, v) obey s u − v = r_u, s v + M⁻¹K u = r_v: (K + s²M) u = M (r_v + s r_u), v = s u − r_u, by
+//! Cholesky factors. In a periodic solution the same holds for every harmonic with s = shift + ikω. On the way to rest
+//! (shift K₀ + ωK) u = K₀ r_u. Particles that are held have rates of their own.
+use super::solids::{Pace, Solids, Work};
+use std::sync::Arc;
+
+use crate::math::fourier::Matrix;
+use crate::math::sparse::{ComplexFactors, Factors, Symmetric};
+use crate::system::{Period, Placed, RightHandSide, Shift};
+
+enum Inverse {
+    /// Nothing is known yet, or no matrix could be factored.
+    Diagonal,
+    Real(Factors),
+    Rest { factors: Factors, reference: Symmetric },
+    Harmonics(Vec<ComplexFactors>),
+}
+
+/// The preconditioner of bodies made of particles.
+pub struct SolidPreconditioner<const D: usize> {
+    solids: Arc<Solids<D>>,
+    period: Option<Period>,
+    pace: Pace,
+    time: f64,
+    work: Work<D>,
+    points: f64,
+    inverse: Inverse,
+    shift: f64,
+    coefficient: f64,
+    omega: f64,
+}
+
+impl<const D: usize> SolidPreconditioner<D> {
+    pub(super) fn new(solids: Arc<Solids<D>>, period: Option<Period>) -> Self {
+        let work = solids.work();
+        let omega = solids.omega;
+        let (pace, time, points) = (Pace::Held, 0.0, 1.0);
+        Self { solids, period, pace, time, work, points, inverse: Inverse::Diagonal, shift: omega, coefficient: 0.0, omega }
+    }
+
+    pub(super) fn begin(&mut self, points: usize) {
+        self.points = points as f64;
+        self.work.displacement.fill([0.0; D]);
+        self.work.velocity.fill([0.0; D]);
+    }
+
+    /// Adds a state: the stiffness is that at the mean of all.
+    pub(super) fn add(&mut self, t: f64, pace: Pace, u: &[f64]) {
+        (self.time, self.pace) = (t, pace);
+        for (i, row) in u.chunks_exact(2 * D).enumerate() {
+            (0..D).for_each(|a| self.work.displacement[i][a] += row[2 * a] / self.points);
+        }
+    }
+
+    pub(super) fn finish(&mut self, shift: &Shift<'_>, row: usize) {
+        let solids = Arc::clone(&self.solids);
+        (self.shift, self.coefficient) = (shift.of(row), shift.coefficient);
+        let mass = solids.scales.speed * solids.scales.speed;
+        let (t, s) = (self.time, self.shift);
+        self.inverse = match (self.pace, &self.period) {
+            (Pace::Held, _) => Inverse::Diagonal,
+            (Pace::Steady, _) => {
+                let rest = solids.work();
+                let reference = solids.stiffness(&rest, t, 1.0, 0.0);
+                let mut all = solids.stiffness(&self.work, t, 1.0, 0.0);
+                all.value.iter_mut().zip(&reference.value).for_each(|(k, k0)| *k = s * k0 + self.omega * *k);
+                match all.factor() {
+                    Some(factors) => Inverse::Rest { factors, reference },
+                    None => Inverse::Diagonal,
+                }
+            }
+            (Pace::Marching, None) => {
+                match solids.stiffness(&self.work, t, 1.0, s * s * mass).factor() {
+                    Some(factors) => Inverse::Real(factors),
+                    None => Inverse::Diagonal,
+                }
+            }
+            (Pace::Marching, Some(period)) => {
+                let stiffness = solids.stiffness(&self.work, t, 1.0, 0.0);
+                let of = |k: usize| {
+                    let w = k as f64 * period.omega;
+                    let square = [mass * (s * s - w * w), 2.0 * mass * s * w];
+                    let solid = &solids.structure.solid;
+                    let entry = |(i, a): (usize, usize)| {
+                        let free = f64::from(u8::from(!solid.is_held(i, a)));
+                        square.map(|z| z * free * solid.mass()[i])
+                    };
+                    let diagonal: Vec<[f64; 2]> =
+                        (0..solids.len()).flat_map(|i| (0..D).map(move |a| (i, a))).map(entry).collect();
+                    stiffness.factor_with(&diagonal)
+                };
+                let all: Option<Vec<ComplexFactors>> = (0..=period.instances.harmonics()).map(of).collect();
+                all.map_or(Inverse::Diagonal, Inverse::Harmonics)
+            }
+        };
+    }
+
+    /// z = what solves the systems for the right-hand sides `r`, whose rows are those of `at`.
+    pub(super) fn apply(&mut self, r: &RightHandSide<'_>, at: &Placed, z: &mut [f64]) {
+        let solids = Arc::clone(&self.solids);
+        let (n, count) = (solids.len(), self.period.map_or(1, |p| p.instances.count()));
+        let b = 2 * D * count;
+        debug_assert!(z.len() == n * b && at.field.rows == n);
+        // u and v apart, all particles and components of an instance one after another
+        let mut parts = vec![vec![[0.0; 2]; n * D]; count];
+        let mut row = vec![0.0; b];
+        for i in 0..n {
+            r.row_in_full(i, i * b, &mut row);
+            for (m, part) in parts.iter_mut().enumerate() {
+                for a in 0..D {
+                    part[i * D + a] = [row[m * 2 * D + 2 * a], row[m * 2 * D + 2 * a + 1]];
+                }
+            }
+        }
+        match self.period {
+            None => self.solve(&mut parts[0]),
+            Some(period) => self.solve_harmonics(&period, &mut parts),
+        }
+        for i in 0..n {
+            for (m, part) in parts.iter().enumerate() {
+                for a in 0..D {
+                    let to = i * b + m * 2 * D + 2 * a;
+                    [z[to], z[to + 1]] = part[i * D + a];
+                }
+            }
+        }
+    }
+
+    /// Pairs (u, v) at one instance.
+    fn solve(&self, all: &mut [[f64; 2]]) {
+        let (s, solids) = (self.shift, &self.solids);
+        let solid = &solids.structure.solid;
+        let held = |k: usize| solid.is_held(k / D, k % D);
+        let mass = |k: usize| solid.mass()[k / D] * solids.scales.speed * solids.scales.speed;
+        // ∂/∂t of what is held is on both sides
+        let own = s + self.omega - self.coefficient;
+        match &self.inverse {
+            Inverse::Real(factors) => {
+                let mut x: Vec<f64> =
+                    (0..all.len()).map(|k| if held(k) { 0.0 } else { mass(k) * (all[k][1] + s * all[k][0]) }).collect();
+                factors.solve(&mut x);
+                for (k, pair) in all.iter_mut().enumerate() {
+                    *pair = if held(k) { pair.map(|r| r / own) } else { [x[k], s * x[k] - pair[0]] };
+                }
+            }
+            Inverse::Rest { factors, reference } => {
+                let right: Vec<f64> = (0..all.len()).map(|k| if held(k) { 0.0 } else { all[k][0] }).collect();
+                let mut x = vec![0.0; all.len()];
+                reference.product(&right, &mut x);
+                factors.solve(&mut x);
+                for (k, pair) in all.iter_mut().enumerate() {
+                    let u = if held(k) { pair[0] / (s + self.omega) } else { x[k] };
+                    *pair = [u, pair[1] / (s + self.omega)];
+                }
+            }
+            _ => all.iter_mut().for_each(|pair| *pair = pair.map(|r| r / (s + self.omega))),
+        }
+    }
+
+    /// The pairs of all instances, harmonic by harmonic.
+    fn solve_harmonics(&mut self, period: &Period, parts: &mut [Vec<[f64; 2]>]) {
+        let (s, solids) = (self.shift, Arc::clone(&self.solids));
+        let Inverse::Harmonics(factors) = &mut self.inverse else {
+            let part = s + self.omega;
+            parts.iter_mut().flatten().for_each(|pair| *pair = pair.map(|r| r / part));
+            return;
+        };
+        let (forward, back) = (period.instances.to_coefficients(), period.instances.to_values());
+        let (h, n) = (period.instances.harmonics(), parts[0].len());
+        let solid = &solids.structure.solid;
+        let held = |k: usize| solid.is_held(k / D, k % D);
+        let mass = |k: usize| solid.mass()[k / D] * solids.scales.speed * solids.scales.speed;
+        let sum = |matrix: &Matrix, row: usize, k: usize, which: usize, all: &[Vec<[f64; 2]>]| {
+            matrix.row(row).iter().zip(all).map(|(w, part)| w * part[k][which]).sum::<f64>()
+        };
+        let mut found = vec![vec![[0.0; 2]; n]; 2 * h + 1];
+        for (m, factors) in factors.iter_mut().enumerate() {
+            let w = m as f64 * period.omega;
+            // q = Re(q̂ exp(iωt)): q̂ = cosine − i sine
+            let complex = |k: usize, which: usize| match m {
+                0 => [sum(&forward, 0, k, which, parts), 0.0],
+                _ => [sum(&forward, m, k, which, parts), -sum(&forward, m + h, k, which, parts)],
+            };
+            let mut x = vec![[0.0; 2]; n];
+            let mut known = vec![[[0.0; 2]; 2]; n];
+            for k in 0..n {
+                let [u, v] = [complex(k, 0), complex(k, 1)];
+                known[k] = [u, v];
+                if !held(k) {
+                    // r_v + λ r_u
+                    x[k] = [mass(k) * (v[0] + s * u[0] - w * u[1]), mass(k) * (v[1] + s * u[1] + w * u[0])];
+                }
+            }
+            factors.solve(&mut x);
+            for k in 0..n {
+                let [u, v] = if held(k) {
+                    known[k].map(|r| r.map(|r| r / (s + self.omega)))
+                } else {
+                    let (u, r) = (x[k], known[k][0]);
+                    [u, [s * u[0] - w * u[1] - r[0], s * u[1] + w * u[0] - r[1]]]
+                };
+                found[m][k] = [u[0], v[0]];
+                if m > 0 {
+                    found[m + h][k] = [-u[1], -v[1]];
+                }
+            }
+        }
+        for (m, part) in parts.iter_mut().enumerate() {
+            for (k, pair) in part.iter_mut().enumerate() {
+                *pair = [sum(&back, m, k, 0, &found), sum(&back, m, k, 1, &found)];
+            }
+        }
+    }
+
+    pub(super) fn bytes(&self) -> usize {
+        let n = self.work.displacement.len();
+        let factors = match &self.inverse {
+            Inverse::Diagonal => 0,
+            Inverse::Real(f) => f.bytes(),
+            Inverse::Rest { factors, reference } => factors.bytes() + 16 * reference.value.len(),
+            Inverse::Harmonics(all) => all.iter().map(ComplexFactors::bytes).sum(),
+        };
+        factors + 8 * n * D * 6
+    }
+}

@@ -1,0 +1,108 @@
+//! Bodies made of particles in the gas of a case.
+use std::path::Path;
+use std::sync::Arc;
+
+use super::super::error::RunError;
+use super::super::monitor::Monitor;
+use super::super::record::Described;
+use super::super::solids::setup::{Built, build};
+use crate::case::{Case, Temporal};
+use crate::coupling::solids::{Scales, SolidBody, Solids};
+use crate::math::Vector;
+use crate::motion::{BodyMotion, Motions, SurfaceNet};
+use crate::observe::structure::{CoordinateName, StructureNames};
+
+/// Axes by their names.
+const AXES: [&str; 3] = ["x", "y", "z"];
+
+/// The bodies of a case that are made of particles, after `first` coordinates of others, and what is said of them; `motions` then
+/// hand these bodies over to their particles.
+pub(crate) fn solids<const D: usize>(
+    case: &Case,
+    input: &Path,
+    first: usize,
+    motions: &mut Motions<D>,
+    monitor: &mut dyn Monitor,
+) -> Result<Option<(Arc<Solids<D>>, Vec<Described>)>, RunError> {
+    if case.solids().next().is_none() {
+        return Ok(None);
+    }
+    let built = build::<D>(case, input)?;
+    built.notes.iter().for_each(|n| monitor.note(n));
+    built.warnings.iter().for_each(|w| monitor.warn(w));
+    remembers(case, &built)?;
+    let period = motions.period();
+    let mut bodies = Vec::new();
+    for (k, (number, _, _)) in case.solids().enumerate() {
+        let body = body(&built, (k, number), first, motions);
+        motions.free(number, BodyMotion::of_particles(Arc::clone(&body.net)));
+        bodies.push(body);
+    }
+    period.into_iter().for_each(|period| motions.force_with(period));
+    let described = described(case, &built, &bodies);
+    let units = case.flow.units();
+    let scales = Scales { speed: units.speed, pressure: units.pressure() };
+    let Built { structure, velocity, .. } = built;
+    let solids = Solids::new(structure, bodies, scales, first).with_velocity(&velocity);
+    if matches!(case.time, Temporal::Steady(_)) && !solids.are_held() {
+        return Err(RunError::Solid {
+            what: "no support holds a body made of particles, so that it has no equilibrium in a steady flow".into(),
+            hint: "add `[[body.solid.support]]`, or march with `[time.dual]` or `[time.explicit]`".into(),
+        });
+    }
+    Ok(Some((Arc::new(solids), described)))
+}
+
+/// Refuses materials that remember where steps are implicit.
+fn remembers<const D: usize>(case: &Case, built: &Built<D>) -> Result<(), RunError> {
+    let solid = &built.structure.solid;
+    let found = solid.materials.iter().find(|m| m.history_len() > 0);
+    match found.filter(|_| !matches!(case.time, Temporal::Explicit(_))) {
+        None => Ok(()),
+        Some(_) => Err(RunError::Solid {
+            what: "a material that remembers (plastic, viscoelastic, hypoelastic) marches in a gas with explicit steps alone".into(),
+            hint: "use `[time.explicit]`, or an elastic law: `linear`, `saint_venant_kirchhoff`, `neo_hookean`".into(),
+        }),
+    }
+}
+
+/// Body number `k` of the structure, which is body `number` of the case.
+fn body<const D: usize>(
+    built: &Built<D>,
+    (k, number): (usize, usize),
+    first: usize,
+    motions: &Motions<D>,
+) -> SolidBody<D> {
+    let particles = &built.structure.solid.particles;
+    let own = |i: &usize| usize::from(built.structure.solid.body[*i]) == k;
+    let all: Vec<usize> = (0..particles.len()).filter(own).collect();
+    let range = all.first().copied().unwrap_or(0)..all.last().map_or(0, |i| i + 1);
+    // those on the surface come first
+    let nodes = range.start..range.clone().find(|i| particles.area[*i] == Vector::ZERO).unwrap_or(range.end);
+    let (place, area) = (particles.x[nodes.clone()].to_vec(), &particles.area[nodes.clone()]);
+    let net = SurfaceNet::new(first + D * range.start, place, area, particles.spacing[range.start]);
+    let law = motions.of(number);
+    let probes = built.probes.iter().map(|p| p.1).filter(|i| range.contains(i)).collect();
+    SolidBody { body: number, particles: range, net: Arc::new(net), lead: (!law.is_fixed()).then(|| law.clone()), probes }
+}
+
+/// The bodies in words: the mean displacement of each, and those of its probes.
+fn described<const D: usize>(case: &Case, built: &Built<D>, bodies: &[SolidBody<D>]) -> Vec<Described> {
+    let one = |(k, body): (usize, &SolidBody<D>)| {
+        let along = |name: &str| AXES[..D].iter().map(|a| format!("{name}_{a}")).collect::<Vec<_>>();
+        let named = built.probes.iter().filter(|p| body.particles.contains(&p.1));
+        let names = along("mean").into_iter().chain(named.flat_map(|p| along(&p.0)));
+        let coordinates = names.map(|name| CoordinateName { name, angle: false }).collect();
+        let names = StructureNames { body: built.bodies[k].clone(), coordinates };
+        let density = case.flow.units().density;
+        let mass: f64 = body.particles.clone().map(|i| built.structure.solid.mass()[i]).sum();
+        let volume: f64 = body.particles.clone().map(|i| built.structure.solid.particles.volume[i]).sum();
+        let lines = vec![
+            format!("{} particles, {} of them on the surface", body.particles.len(), body.net.len()),
+            format!("mass {mass:.6e}, {:.4} times that of the gas it displaces", mass / (density * volume)),
+            "mean: mass-weighted mean displacement; loads are the forces of the gas".to_owned(),
+        ];
+        Described { names, lines }
+    };
+    bodies.iter().enumerate().map(one).collect()
+}
