@@ -12,11 +12,13 @@
 //!
 //! Bodies made of particles ([`solids`]) add the displacements and velocities of these, in pairs, as coordinates of their own.
 mod bodies;
+mod march;
 mod preconditioner;
 mod solid_preconditioner;
 pub mod solids;
 
 pub use bodies::{Attached, body_motion};
+pub use march::March;
 pub use preconditioner::CoupledPreconditioner;
 
 use std::ops::Range;
@@ -24,6 +26,8 @@ use std::ops::Range;
 use crate::math::sweep::sweep_rows;
 use crate::scheme::{self, Exchange, Fluid, HasGas, View};
 use crate::system::{Fault, Field, Instant, Rate, System};
+use crate::time::explicit::{Explicit, Plan};
+use crate::time::{Integrator, Past};
 
 use solids::{OnCloud, Pace};
 
@@ -49,6 +53,8 @@ pub struct Frame<const D: usize> {
     pub gas: scheme::Frame<D>,
     /// Steady flow: the structures go to their equilibrium.
     pub steady: bool,
+    /// Power of the gas on bodies made of particles in the step that has led here, where that is explicit.
+    pub taken: Option<f64>,
 }
 
 /// Storage of an evaluation.
@@ -73,7 +79,11 @@ impl<const D: usize> Coupled<D> {
     /// The same with bodies made of particles.
     pub fn with_solids(mut self, solids: OnCloud<D>) -> Self {
         self.fields.truncate(2);
-        self.fields.push(Field::new("solid", solids.solids.len(), 2 * D));
+        let solid = &solids.solids.structure.solid;
+        self.fields.push(Field::new("solid", solid.len(), 2 * D));
+        if solid.remembers() {
+            self.fields.push(Field::new("history", solid.len(), solid.history_width()));
+        }
         self.solids = Some(solids);
         self
     }
@@ -93,6 +103,12 @@ impl<const D: usize> Coupled<D> {
     pub fn solid_range(&self) -> Range<usize> {
         let first = self.sprung().end;
         first..first + self.fields.get(2).map_or(0, Field::len)
+    }
+
+    /// What their materials remember among the unknowns.
+    pub fn history_range(&self) -> Range<usize> {
+        let first = self.solid_range().end;
+        first..first + self.fields.get(3).map_or(0, Field::len)
     }
 
     /// The gas.
@@ -118,7 +134,10 @@ impl<const D: usize> Coupled<D> {
     /// The state in which the gas is `gas` and the structures are where they begin.
     pub fn start_with(&self, gas: &[f64]) -> Vec<f64> {
         let solids = self.solids.as_ref().map(|s| s.solids.initial()).unwrap_or_default();
-        gas.iter().copied().chain(self.bodies.iter().flat_map(Attached::initial)).chain(solids).collect()
+        let solid = self.solids.as_ref().map(|s| &s.solids.structure.solid).filter(|s| s.remembers());
+        let virgin = solid.map(crate::solid::Solid::virgin).unwrap_or_default();
+        let sprung = self.bodies.iter().flat_map(Attached::initial);
+        gas.iter().copied().chain(sprung).chain(solids).chain(virgin).collect()
     }
 
     /// Generalised forces of the walls whose states are in `work`, for coordinates with the unknowns `u` of the structures.
@@ -153,7 +172,9 @@ impl<const D: usize> Coupled<D> {
         if let (Some(on), Some(storage)) = (&self.solids, &mut work.solids) {
             on.load(&View::new(&self.fluid, &frame.gas, &work.gas), storage);
             let at = (frame.gas.time, &frame.gas.jets[..]);
-            on.solids.rates(at, self.pace(frame), &u[own.clone()], storage, &mut change[own]);
+            let solid = own.start..own.start + on.solids.len() * 2 * D;
+            change[own].fill(0.0);
+            on.solids.rates(at, self.pace(frame), &u[solid.clone()], storage, &mut change[solid]);
         }
     }
 }
@@ -177,7 +198,7 @@ impl<const D: usize> System for Coupled<D> {
 
     fn frame(&self, at: &Instant<'_>, u: &[f64]) -> Frame<D> {
         let gas = self.fluid.frame(at, &u[self.gas_range()]);
-        Frame { gas, steady: matches!(at.rate, Rate::Still) }
+        Frame { gas, steady: matches!(at.rate, Rate::Still), taken: None }
     }
 
     fn place(&self, at: &Instant<'_>, frame: &mut Frame<D>) {
@@ -297,7 +318,9 @@ impl<const D: usize> HasGas<D> for Coupled<D> {
         let attached = |w: &usize| carried.contains(&usize::from(cloud.interface[*w].body));
         let walls = (0..cloud.interface.len()).filter(attached);
         let view = View::new(&self.fluid, &frame.gas, &work.gas);
-        let wall_power = walls.map(|w| view.wall_force(w).dot(&velocity(w))).sum();
+        let by_state = |w: usize| view.wall_force(w).dot(&velocity(w));
+        let on_wall = |w: usize| frame.gas.taken.get(w).filter(|t| t.area > 0.0).map_or_else(|| by_state(w), |t| t.power);
+        let wall_power = walls.map(on_wall).sum();
         let mut all = Exchange { coordinates, rates, loads, power, wall_power, ..Exchange::default() };
         for energy in self.bodies.iter().map(|b| b.energy(u)) {
             all.kinetic += energy.kinetic;
@@ -311,7 +334,7 @@ impl<const D: usize> HasGas<D> for Coupled<D> {
             all.kinetic += energy.kinetic;
             all.potential += energy.strain + energy.stabilisation + energy.contact;
             all.dissipation += damped;
-            all.power += on.power(&frame.gas.jets, work);
+            all.power += frame.taken.unwrap_or_else(|| on.power(&frame.gas.jets, work));
             for [coordinate, rate, load] in on.solids.told(work) {
                 all.coordinates.push(coordinate);
                 all.rates.push(rate);
@@ -319,5 +342,26 @@ impl<const D: usize> HasGas<D> for Coupled<D> {
             }
         }
         Some(all)
+    }
+}
+
+/// A system with a gas that can march with explicit steps, in the way that suits what is beside the gas.
+pub trait Marches<const D: usize>: HasGas<D> + Sized {
+    /// A march from the state `u`.
+    fn explicit<'a>(&'a self, plan: Plan, past: Past, u: Vec<f64>) -> Box<dyn Integrator<Self> + 'a>;
+}
+
+impl<const D: usize> Marches<D> for Fluid<D> {
+    fn explicit<'a>(&'a self, plan: Plan, past: Past, u: Vec<f64>) -> Box<dyn Integrator<Self> + 'a> {
+        Box::new(Explicit::new(self, plan, past, u))
+    }
+}
+
+impl<const D: usize> Marches<D> for Coupled<D> {
+    fn explicit<'a>(&'a self, plan: Plan, past: Past, u: Vec<f64>) -> Box<dyn Integrator<Self> + 'a> {
+        match &self.solids {
+            Some(on) => Box::new(March::new(self, on, plan, past, u)),
+            None => Box::new(Explicit::new(self, plan, past, u)),
+        }
     }
 }

@@ -68,9 +68,10 @@ pub struct NetDisplacement<const D: usize> {
 
 impl<const D: usize> SurfaceNet<D> {
     /// Nodes at `place` with the areas `area`, about `spacing` apart; the displacement of the first of them begins with coordinate
-    /// number `first` of all bodies.
+    /// number `first` of all bodies. Nodes without area carry nothing.
     pub fn new(first: usize, place: Vec<Vector<D>>, area: &[Vector<D>], spacing: f64) -> Self {
-        let normal: Vec<Vector<D>> = area.iter().map(Vector::unit).collect();
+        let unit = |a: &Vector<D>| if *a == Vector::ZERO { *a } else { a.unit() };
+        let normal: Vec<Vector<D>> = area.iter().map(unit).collect();
         let bounds = Bounds::around(&place);
         let extent = bounds.extent().max_abs();
         let (mut levels, mut size, mut begin) = (Vec::<Level<D>>::new(), spacing, 0u32);
@@ -127,7 +128,7 @@ impl<const D: usize> SurfaceNet<D> {
     /// How the point `x` of the surface goes, where the normal is `normal`, with the nodes.
     pub fn on_surface(&self, x: &Vector<D>, normal: &Vector<D>) -> Carried<D> {
         let mut near: Vec<(f64, u32)> = (0..self.len())
-            .filter(|k| self.normal[*k].dot(normal) > OTHER_SIDE)
+            .filter(|k| self.normal[*k] != Vector::ZERO && self.normal[*k].dot(normal) > OTHER_SIDE)
             .map(|k| ((self.place[k] - *x).norm_squared(), k as u32))
             .collect();
         let count = NEAREST[D - 2].min(near.len());
@@ -146,14 +147,15 @@ impl<const D: usize> SurfaceNet<D> {
 
     /// How the point `x` away from the surface goes with the groups.
     pub fn around(&self, x: &Vector<D>) -> Carried<D> {
-        let nearest = self.place.iter().map(|p| (*p - *x).norm_squared()).fold(f64::INFINITY, f64::min).sqrt();
+        let carries = self.place.iter().zip(&self.normal).filter(|(_, n)| **n != Vector::ZERO);
+        let nearest = carries.map(|(p, _)| (*p - *x).norm_squared()).fold(f64::INFINITY, f64::min).sqrt();
         let reach = REACH[0] * self.spacing + REACH[1] * nearest;
         let fits = |l: &&Level<D>| l.size <= GROUP[D - 2] * reach;
         let Some(level) = self.levels.iter().rev().find(fits).or(self.levels.first()) else { return Carried::default() };
         let mut nodes = Vec::new();
         for (g, group) in (level.first..).zip(&level.groups) {
             let r = (group.place - *x).norm() / reach;
-            if r < 1.0 {
+            if r < 1.0 && group.area > 0.0 {
                 // smooth, with two derivatives at the end (Wendland 1995)
                 let weight = group.area * (1.0 - r).powi(4) * (4.0 * r + 1.0);
                 nodes.push((g, (group.place - *x) * (1.0 / reach), weight));

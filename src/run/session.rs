@@ -28,8 +28,8 @@ use super::studies::{self, Reached, Start, Turn};
 use crate::case::{self, Case};
 use crate::cloud::Cloud;
 use crate::cloud::sources::Source;
-use crate::coupling::Coupled;
 use crate::coupling::solids::OnCloud;
+use crate::coupling::{Coupled, Marches};
 use crate::geometry::{Surface, dimension};
 use crate::observe::loads::Coefficients;
 use crate::scheme::{Fluid, HasGas};
@@ -275,7 +275,7 @@ impl Run<'_> {
     }
 
     /// All stages with the system that `assemble` makes from the gas on each cloud.
-    fn stages<S: HasGas<D>, const D: usize>(
+    fn stages<S: Marches<D>, const D: usize>(
         &self,
         site: &Site<'_, D>,
         assemble: impl Fn(Fluid<D>) -> S,
@@ -375,7 +375,7 @@ impl Run<'_> {
     }
 
     /// Does what a stage is for; `None` when told to stop.
-    fn study<S: HasGas<D>, const D: usize>(
+    fn study<S: Marches<D>, const D: usize>(
         &self,
         solver: &mut Solver<S, D>,
         start: Start,

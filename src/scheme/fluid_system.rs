@@ -25,6 +25,7 @@ impl<const D: usize> System for Fluid<D> {
             discretisation: Arc::clone(&self.discretisation),
             turn: None,
             jets: Vec::new(),
+            taken: Arc::default(),
             velocity: Arc::default(),
             walls: Arc::default(),
             lagrangian_step: LagrangianStep::default(),

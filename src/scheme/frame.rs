@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use super::wall_fits::WallFits;
 use super::wall_motion::WallMotion;
+use crate::cloud::operators::WallFace;
 use crate::cloud::{Cloud, Operators};
 use crate::math::Vector;
 use crate::math::jet::Jet;
@@ -48,11 +49,60 @@ pub struct Frame<const D: usize> {
     pub lagrangian_step: LagrangianStep<D>,
     /// Coordinates of bodies that are unknowns, with rates and accelerations; empty where all motion is prescribed.
     pub jets: Vec<Jet>,
+    /// What walls that another system decides on take; empty where the state of the gas alone says it.
+    pub taken: Arc<Vec<Taken<D>>>,
     /// States that sides hold, in the axes of the case: at each outer particle, at its source and behind that.
     pub outer: Vec<[Primitive<D>; 3]>,
 }
 
+/// What an interface particle takes in a step, where a structure beside the gas has decided on it.
+#[derive(Clone, Copy, Debug)]
+pub struct Taken<const D: usize> {
+    /// Force of pressure beyond that of the far field, and friction.
+    pub force: Vector<D>,
+    /// Power of that force.
+    pub power: f64,
+    /// Area of all pieces of wall that share it; 0 where the state of the gas says what is taken.
+    pub area: f64,
+}
+
+impl<const D: usize> Taken<D> {
+    /// What the state of the gas says.
+    pub const BY_STATE: Self = Self { force: Vector::ZERO, power: 0.0, area: 0.0 };
+}
+
 impl<const D: usize> Frame<D> {
+    /// What the piece of wall `face` takes, where another system has decided on it: force and power beyond the pressure of the far field.
+    pub(super) fn taken_by(&self, face: &WallFace<D>) -> Option<(Vector<D>, f64)> {
+        if self.taken.is_empty() {
+            return None;
+        }
+        let cloud = &self.discretisation.cloud;
+        let source = cloud.source(face.wall as usize);
+        let taken = self.taken.get(source.index.checked_sub(cloud.n_fluid)?).filter(|t| t.area > 0.0)?;
+        let part = face.area.norm() / taken.area;
+        let force = match source.image {
+            false => taken.force,
+            true => {
+                let image = &cloud.ghosts[face.wall as usize - cloud.n_real()];
+                cloud.transforms[image.transform as usize].direction(&taken.force)
+            }
+        };
+        Some((force * part, taken.power * part))
+    }
+
+    /// Area of all pieces of wall that belong to each interface particle, in itself or as an image of it.
+    pub fn wall_areas(&self) -> Vec<f64> {
+        let Discretisation { cloud, operators, .. } = self.discretisation.as_ref();
+        let mut all = vec![0.0; cloud.interface.len()];
+        for face in (0..operators.n_fluid_parts).flat_map(|k| operators.wall_faces(k)) {
+            if let Some(slot) = cloud.source(face.wall as usize).index.checked_sub(cloud.n_fluid).and_then(|w| all.get_mut(w)) {
+                *slot += face.area.norm();
+            }
+        }
+        all
+    }
+
     /// Velocity of particle `i`.
     #[inline(always)]
     pub fn velocity_of(&self, i: usize) -> Vector<D> {

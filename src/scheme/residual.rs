@@ -20,6 +20,7 @@
 #[cfg(test)]
 mod tests;
 
+use super::discretisation::CloudMotion;
 use super::edge_flux::{EdgeEnd, EdgeFace, FluxScheme, beyond_mean, mean_through};
 use super::edges::{Particles, edge_fluxes};
 use super::fluid::{Fluid, Work};
@@ -63,7 +64,8 @@ impl<const D: usize> Fluid<D> {
     /// exact for linear fields, and with both of them a false flow through the layers, the difference times w, makes steps in
     /// time fail where w is large.
     pub(super) fn passes_by_faces(&self) -> bool {
-        self.conservative && !self.discretisation.cloud.layers.is_empty()
+        let deforms = matches!(self.cloud_motion, CloudMotion::Along { .. });
+        self.conservative && (deforms || !self.discretisation.cloud.layers.is_empty())
     }
 
     /// Sums the edge fluxes of every fluid particle, weighted with volumes until the end so that no edge divides by one.
@@ -156,8 +158,16 @@ impl<const D: usize> Fluid<D> {
             let (i, wall) = (face.i as usize, &work.state[face.wall as usize]);
             let own = &work.state[i];
             let moved = frame.velocity_of(face.wall as usize);
-            let push = face.area * wall.pressure;
-            let pressed = Conserved { density: 0.0, momentum: push, energy: push.dot(&moved) };
+            let pressed = match frame.taken_by(face) {
+                None => {
+                    let push = face.area * wall.pressure;
+                    Conserved { density: 0.0, momentum: push, energy: push.dot(&moved) }
+                }
+                Some((force, power)) => {
+                    let push = face.area * self.far_field.pressure();
+                    Conserved { density: 0.0, momentum: push + force, energy: push.dot(&moved) + power }
+                }
+            };
             let through = match frame.moves() {
                 true => pressed.plus(moved.dot(&face.area), &self.gas.conserved(if by_faces { own } else { wall })),
                 false => pressed,

@@ -110,6 +110,9 @@ impl<'a, const D: usize> View<'a, D> {
 
     /// Force of the gas on interface particle `w`: pressure beyond that of the far field, and friction (per unit span in 2-D).
     pub fn wall_force(&self, w: usize) -> Vector<D> {
+        if let Some(taken) = self.frame.taken.get(w).filter(|t| t.area > 0.0) {
+            return self.frame.to_inertial_axes(&taken.force);
+        }
         let cloud = self.cloud();
         let wall = &cloud.interface[w];
         let push = wall.area * (self.fluid.far_field.pressure() - self.work.state[cloud.n_fluid + w].pressure);

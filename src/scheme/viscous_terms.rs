@@ -37,7 +37,15 @@ impl<const D: usize> Fluid<D> {
         add: &mut impl FnMut(usize, &Conserved<D>),
     ) {
         let Some(viscous_model) = &self.viscous_model else { return };
-        faces.iter().for_each(|face| add(face.i as usize, &self.viscous_wall(viscous_model, at, face)));
+        for face in faces {
+            let mut through = self.viscous_wall(viscous_model, at, face);
+            if at.0.taken_by(face).is_some() {
+                // friction is part of what is taken: heat alone is left
+                through.energy -= through.momentum.dot(&at.0.velocity_of(face.wall as usize));
+                through.momentum = Vector::ZERO;
+            }
+            add(face.i as usize, &through);
+        }
     }
 
     /// Flux of stress and heat through a piece of wall.

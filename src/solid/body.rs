@@ -197,6 +197,11 @@ impl<const D: usize> Solid<D> {
         self.width
     }
 
+    /// True when a material remembers: what it does next depends on more than its deformation.
+    pub fn remembers(&self) -> bool {
+        self.materials.iter().any(|m| m.history_len() > 0)
+    }
+
     /// History of the virgin structure.
     pub fn virgin(&self) -> Vec<f64> {
         let mut history = vec![0.0; self.len() * self.width];

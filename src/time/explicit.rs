@@ -5,15 +5,19 @@ use crate::system::{Instant, System, rows};
 
 /// Coefficients in the form u_s = Σ_r α_r u_r + β Δt R(u_{s−1}): here α on the start and on the last stage only.
 #[derive(Clone, Copy, Debug)]
-struct Stage {
-    start: f64,
-    last: f64,
-    step: f64,
-    time: f64,
+pub struct Stage {
+    /// α of the start of the step.
+    pub start: f64,
+    /// α of the stage before.
+    pub last: f64,
+    /// β.
+    pub step: f64,
+    /// Part of the step that has passed where R is evaluated.
+    pub time: f64,
 }
 
 /// Three stages, third order, strong-stability-preserving (Shu and Osher 1988).
-const SSPRK3: [Stage; 3] = [
+pub const SSPRK3: [Stage; 3] = [
     Stage { start: 0.0, last: 1.0, step: 1.0, time: 0.0 },
     Stage { start: 0.75, last: 0.25, step: 0.25, time: 1.0 },
     Stage { start: 1.0 / 3.0, last: 2.0 / 3.0, step: 2.0 / 3.0, time: 0.5 },

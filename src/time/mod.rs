@@ -59,7 +59,7 @@ pub struct Past {
 
 impl Past {
     /// How far the march has come.
-    fn mark(&self) -> Mark {
+    pub fn mark(&self) -> Mark {
         Mark { iteration: self.iteration, time: self.time, last: self.last, residual: 1.0, resting: 0 }
     }
 }
@@ -133,7 +133,7 @@ pub trait Integrator<S: System> {
 }
 
 /// What may help where motion leaves a particle without a good cloud.
-const CROWDED: &str = "bodies come too close to one another or to a side of the domain, or move too far for the particles \
+pub const CROWDED: &str = "bodies come too close to one another or to a side of the domain, or move too far for the particles \
                        between them; give them more room, less motion, or `motion.particles = \"rigid\"` if there is one body";
 
 /// Why an integration stopped early.

@@ -55,11 +55,9 @@ pub(crate) fn solids<const D: usize>(
 
 /// Refuses materials that remember where steps are implicit.
 fn remembers<const D: usize>(case: &Case, built: &Built<D>) -> Result<(), RunError> {
-    let solid = &built.structure.solid;
-    let found = solid.materials.iter().find(|m| m.history_len() > 0);
-    match found.filter(|_| !matches!(case.time, Temporal::Explicit(_))) {
-        None => Ok(()),
-        Some(_) => Err(RunError::Solid {
+    match built.structure.solid.remembers() && !matches!(case.time, Temporal::Explicit(_)) {
+        false => Ok(()),
+        true => Err(RunError::Solid {
             what: "a material that remembers (plastic, viscoelastic, hypoelastic) marches in a gas with explicit steps alone".into(),
             hint: "use `[time.explicit]`, or an elastic law: `linear`, `saint_venant_kirchhoff`, `neo_hookean`".into(),
         }),
@@ -79,7 +77,7 @@ fn body<const D: usize>(
     let range = all.first().copied().unwrap_or(0)..all.last().map_or(0, |i| i + 1);
     // those on the surface come first
     let nodes = range.start..range.clone().find(|i| particles.area[*i] == Vector::ZERO).unwrap_or(range.end);
-    let (place, area) = (particles.x[nodes.clone()].to_vec(), &particles.area[nodes.clone()]);
+    let (place, area) = (particles.x[nodes.clone()].to_vec(), &built.wetted[nodes.clone()]);
     let net = SurfaceNet::new(first + D * range.start, place, area, particles.spacing[range.start]);
     let law = motions.of(number);
     let probes = built.probes.iter().map(|p| p.1).filter(|i| range.contains(i)).collect();

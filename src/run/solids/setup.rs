@@ -4,9 +4,9 @@ use std::path::Path;
 use super::super::error::RunError;
 use super::material::material;
 use crate::case::formula::Formula;
-use crate::case::{Body, Case, PlaneState, Shape, Solid as Data, SolidFill, SolidPlace, Temporal};
+use crate::case::{Domain, Side, Body, Case, PlaneState, Shape, Solid as Data, SolidFill, SolidPlace, Temporal};
 use crate::geometry::{Surface, load_surface};
-use crate::math::Vector;
+use crate::math::{Bounds, Vector};
 use crate::physics::solid::{Law, Material};
 use crate::solid::fill::{Lattice, relaxed};
 use crate::solid::particles::{Fill, Particles};
@@ -30,6 +30,8 @@ pub(in crate::run) struct Built<const D: usize> {
     pub(in crate::run) probes: Vec<(String, usize, Vector<D>)>,
     /// Velocity of each particle at the start.
     pub(in crate::run) velocity: Vec<[f64; D]>,
+    /// Area of each particle on the surface that gas may touch: not on planes of symmetry, nor outside the domain of the gas.
+    pub(in crate::run) wetted: Vec<Vector<D>>,
     /// What is worth knowing.
     pub(in crate::run) notes: Vec<String>,
     /// What makes results doubtful.
@@ -42,6 +44,7 @@ struct Part<'a, const D: usize> {
     name: String,
     fill: Fill<D>,
     led: bool,
+    cuts: Vec<Cut>,
 }
 
 /// The structure of a case whose bodies are made of particles.
@@ -52,11 +55,12 @@ pub(in crate::run) fn build<const D: usize>(case: &Case, input: &Path) -> Result
         let name = body.name.clone().unwrap_or_else(|| format!("body {}", number + 1));
         let (surface, said) = load_surface::<D>(std::slice::from_ref(body), input)?;
         notes.extend(said);
-        let (fill, rows) = filled(body, data, &surface, &name)?;
+        let cuts = cuts(case, &surface.bounds());
+        let (fill, rows) = filled((body, data), &surface, &name, &cuts)?;
         warnings.extend(thin(&fill, rows, &name)?);
         // without supports a body with a prescribed motion is led as a whole
         let led = case.motion_of(number).is_some() && data.supports.is_empty();
-        parts.push(Part { data, name, fill, led });
+        parts.push(Part { data, name, fill, led, cuts });
     }
     let owner: Vec<u16> = parts.iter().zip(0..).flat_map(|(p, k)| std::iter::repeat_n(k, p.fill.x.len())).collect();
     let particles = Particles::new(parts.iter().map(|p| p.fill.clone()).collect()).map_err(|e| RunError::Solid {
@@ -79,6 +83,7 @@ pub(in crate::run) fn build<const D: usize>(case: &Case, input: &Path) -> Result
     let probes = probes(&parts, &particles, &owner);
     let velocity = velocities(&parts, &particles, &owner);
     let plane = if first.plane == PlaneState::Stress { Plane::Stress } else { Plane::Strain };
+    let wetted = wetted(case, &parts, &particles, &owner);
     let solid = Solid::new(Parts {
         body: owner,
         materials,
@@ -97,7 +102,88 @@ pub(in crate::run) fn build<const D: usize>(case: &Case, input: &Path) -> Result
         particles,
     });
     let bodies = parts.iter().map(|p| p.name.clone()).collect();
-    Ok(Built { structure: Structure::new(solid), bodies, probes, velocity, notes, warnings })
+    Ok(Built { structure: Structure::new(solid), bodies, probes, velocity, wetted, notes, warnings })
+}
+
+/// A plane of symmetry that cuts a body.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Cut {
+    axis: usize,
+    place: f64,
+    /// The body is on the side of smaller coordinates.
+    below: bool,
+}
+
+/// The planes of symmetry at the sides of the domain of the gas that cut a body within `bounds`.
+fn cuts<const D: usize>(case: &Case, bounds: &Bounds<D>) -> Vec<Cut> {
+    let Some(domain) = case.cloud.domain.as_ref().filter(|_| case.has_gas()) else { return Vec::new() };
+    let b = &case.boundary;
+    let sides = [[b.x_min, b.x_max], [b.y_min, b.y_max], [b.z_min, b.z_max]];
+    let mut all = Vec::new();
+    for axis in 0..D {
+        for (below, list) in [(false, &domain.min), (true, &domain.max)] {
+            let Some(place) = list.get(axis).map(|l| l.0) else { continue };
+            let beyond = if below { bounds.max[axis] > place } else { bounds.min[axis] < place };
+            if sides[axis][usize::from(below)] == Side::Symmetry && beyond {
+                all.push(Cut { axis, place, below });
+            }
+        }
+    }
+    all
+}
+
+/// The corners of a box along the axes without what is beyond the cuts.
+fn cut_off<const D: usize>(corners: Vec<Vector<D>>, cuts: &[Cut], name: &str) -> Result<Vec<Vector<D>>, RunError> {
+    let bounds = Bounds::around(&corners);
+    let at_end = |x: &Vector<D>, d: usize| x[d] == bounds.min[d] || x[d] == bounds.max[d];
+    if !corners.iter().all(|x| (0..D).all(|d| at_end(x, d))) {
+        return Err(uncut(name));
+    }
+    let cut = |mut x: Vector<D>| {
+        for c in cuts {
+            x[c.axis] = if c.below { x[c.axis].min(c.place) } else { x[c.axis].max(c.place) };
+        }
+        x
+    };
+    Ok(corners.into_iter().map(cut).collect())
+}
+
+fn uncut(name: &str) -> RunError {
+    RunError::Solid {
+        what: format!("a plane of symmetry at a side of the domain cuts `{name}`: only boxes along the axes can be cut"),
+        hint: "let the body end before the side, or make it a `box`".into(),
+    }
+}
+
+/// Area of each particle that gas may touch.
+fn wetted<const D: usize>(
+    case: &Case,
+    parts: &[Part<'_, D>],
+    particles: &Particles<D>,
+    owner: &[u16],
+) -> Vec<Vector<D>> {
+    let mut all = vec![Vector::ZERO; particles.len()];
+    let domain = case.cloud.domain.as_ref();
+    let outside = |x: &Vector<D>, slack: f64| {
+        let beyond = |d: usize, domain: &Domain| {
+            let [low, high] = [&domain.min, &domain.max].map(|list| list.get(d).map(|l| l.0));
+            low.is_some_and(|low| x[d] < low - slack) || high.is_some_and(|high| x[d] > high + slack)
+        };
+        domain.is_some_and(|domain| (0..D).any(|d| beyond(d, domain)))
+    };
+    for facet in &particles.facets {
+        let corners = facet.corners();
+        let cuts = corners.first().map_or(&[][..], |i| &parts[usize::from(owner[*i as usize])].cuts);
+        let on = |cut: &Cut| {
+            let off = |i: &u32| (particles.x[*i as usize][cut.axis] - cut.place).abs() < slack(particles, *i as usize);
+            corners.iter().all(off)
+        };
+        let out = corners.iter().any(|i| outside(&particles.x[*i as usize], slack(particles, *i as usize)));
+        if !out && !cuts.iter().any(on) {
+            corners.iter().for_each(|i| all[*i as usize] += facet.share());
+        }
+    }
+    all
 }
 
 /// What touches.
@@ -113,12 +199,16 @@ fn contact<const D: usize>(case: &Case) -> Option<Contact<D>> {
 
 /// The particles of one body, and the least number of them in a row where they are in rows.
 fn filled<const D: usize>(
-    body: &Body,
-    data: &Data,
+    (body, data): (&Body, &Data),
     surface: &Surface<D>,
     name: &str,
+    cuts: &[Cut],
 ) -> Result<(Fill<D>, Option<usize>), RunError> {
-    let corners = corners(body, surface);
+    let corners = match corners(body, surface) {
+        Some(corners) if !cuts.is_empty() => Some(cut_off(corners, cuts, name)?),
+        None if !cuts.is_empty() => return Err(uncut(name)),
+        whole => whole,
+    };
     let rows = match data.fill {
         Some(SolidFill::Relaxed) => None,
         Some(SolidFill::Lattice) if corners.is_none() => {
@@ -278,6 +368,14 @@ fn supports<const D: usize>(
         if part.led {
             let particles = (0..particles.len()).filter(|i| usize::from(owner[*i]) == k).map(|i| i as u32).collect();
             all.push(Support { particles, fixed: [true; D], motion: None });
+        }
+        for cut in &part.cuts {
+            let on = |i: &usize| {
+                let off = (particles.x[*i][cut.axis] - cut.place).abs();
+                usize::from(owner[*i]) == k && off < slack(particles, *i)
+            };
+            let particles = (0..particles.len()).filter(on).map(|i| i as u32).collect();
+            all.push(Support { particles, fixed: std::array::from_fn(|d| d == cut.axis), motion: None });
         }
         for (number, data) in part.data.supports.iter().enumerate() {
             let inside = |i: &usize| {

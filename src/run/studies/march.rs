@@ -10,16 +10,16 @@ use super::super::watch::{
     Structures, Told, Worn, drive,
 };
 use super::turn::{Reached, Start, Turn};
+use crate::coupling::Marches;
 use crate::physics::n_variables;
 use crate::scheme::Reclouded;
 use crate::scheme::{Fluid, HasGas, RemapLedger};
 use crate::system::{Instant, System};
 use crate::time::dual::Dual;
-use crate::time::explicit::Explicit;
 use crate::time::{Integrator, Memory, Past, Standing};
 
 /// Marches to the end; `None` when told to stop. `solver` may end on another cloud.
-pub(crate) fn march<S: HasGas<D>, const D: usize>(
+pub(crate) fn march<S: Marches<D>, const D: usize>(
     solver: &mut Solver<S, D>,
     marching: &Marching,
     start: Start,
@@ -67,14 +67,14 @@ pub(crate) fn march<S: HasGas<D>, const D: usize>(
     }
 }
 
-fn integrator<'a, S: HasGas<D>, const D: usize>(
+fn integrator<'a, S: Marches<D>, const D: usize>(
     system: &'a S,
     marching: &Marching,
     (past, u): (Past, Vec<f64>),
 ) -> Box<dyn Integrator<S> + 'a> {
     match marching.scheme {
         Scheme::Dual(control, plan) => Box::new(Dual::new(system, control, plan, past, u)),
-        Scheme::Explicit(plan) => Box::new(Explicit::new(system, plan, past, u)),
+        Scheme::Explicit(plan) => system.explicit(plan, past, u),
     }
 }
 
