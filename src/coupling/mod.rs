@@ -25,6 +25,7 @@ use std::ops::Range;
 
 use crate::math::sweep::sweep_rows;
 use crate::scheme::{self, Exchange, Fluid, HasGas, View};
+use crate::solid::Solid;
 use crate::system::{Fault, Field, Instant, Rate, System};
 use crate::time::explicit::{Explicit, Plan};
 use crate::time::{Integrator, Past};
@@ -135,7 +136,7 @@ impl<const D: usize> Coupled<D> {
     pub fn start_with(&self, gas: &[f64]) -> Vec<f64> {
         let solids = self.solids.as_ref().map(|s| s.solids.initial()).unwrap_or_default();
         let solid = self.solids.as_ref().map(|s| &s.solids.structure.solid).filter(|s| s.remembers());
-        let virgin = solid.map(crate::solid::Solid::virgin).unwrap_or_default();
+        let virgin = solid.map(Solid::virgin).unwrap_or_default();
         let sprung = self.bodies.iter().flat_map(Attached::initial);
         gas.iter().copied().chain(sprung).chain(solids).chain(virgin).collect()
     }
@@ -204,6 +205,12 @@ impl<const D: usize> System for Coupled<D> {
     fn place(&self, at: &Instant<'_>, frame: &mut Frame<D>) {
         self.fluid.place(at, &mut frame.gas);
         frame.steady = matches!(at.rate, Rate::Still);
+    }
+
+    fn prescribe(&self, time: f64, u: &mut [f64]) {
+        if let Some(on) = self.solids.as_ref().filter(|_| !self.held) {
+            on.solids.prescribe(time, &mut u[self.solid_range()]);
+        }
     }
 
     fn update_boundary_state(&self, u: &[f64], work: &mut Work<D>, frame: &mut Frame<D>) {
@@ -330,6 +337,9 @@ impl<const D: usize> HasGas<D> for Coupled<D> {
         if let (Some(on), Some(work)) = (&self.solids, &mut work.solids) {
             on.load(&view, work);
             on.solids.split(solid, work);
+            if !frame.steady && frame.taken.is_none() {
+                on.solids.by_formula(&frame.gas.jets, work);
+            }
             let (energy, damped) = on.solids.energy(frame.gas.time, work);
             all.kinetic += energy.kinetic;
             all.potential += energy.strain + energy.stabilisation + energy.contact;
@@ -347,17 +357,49 @@ impl<const D: usize> HasGas<D> for Coupled<D> {
 
 /// A system with a gas that can march with explicit steps, in the way that suits what is beside the gas.
 pub trait Marches<const D: usize>: HasGas<D> + Sized {
+    /// Bodies made of particles in a frame at the state `u`; `None` where there are none.
+    fn solid_snapshot(&self, frame: &Self::Frame, u: &[f64]) -> Option<SolidSnapshot<'_, D>>;
     /// A march from the state `u`.
     fn explicit<'a>(&'a self, plan: Plan, past: Past, u: Vec<f64>) -> Box<dyn Integrator<Self> + 'a>;
 }
 
+/// Bodies made of particles at a moment, in the units of the case.
+#[derive(Debug)]
+pub struct SolidSnapshot<'a, const D: usize> {
+    /// The bodies.
+    pub solid: &'a Solid<D>,
+    /// Displacements.
+    pub displacement: Vec<[f64; D]>,
+    /// Velocities, by the formula that serves the state where there is one.
+    pub velocity: Vec<[f64; D]>,
+    /// What materials remember.
+    pub history: Vec<f64>,
+}
+
 impl<const D: usize> Marches<D> for Fluid<D> {
+    fn solid_snapshot(&self, _: &Self::Frame, _: &[f64]) -> Option<SolidSnapshot<'_, D>> {
+        None
+    }
+
     fn explicit<'a>(&'a self, plan: Plan, past: Past, u: Vec<f64>) -> Box<dyn Integrator<Self> + 'a> {
         Box::new(Explicit::new(self, plan, past, u))
     }
 }
 
 impl<const D: usize> Marches<D> for Coupled<D> {
+    fn solid_snapshot(&self, frame: &Frame<D>, u: &[f64]) -> Option<SolidSnapshot<'_, D>> {
+        let on = self.solids.as_ref()?;
+        let mut work = on.solids.work();
+        on.solids.split(&u[self.solid_range()], &mut work);
+        if !frame.steady && frame.taken.is_none() {
+            on.solids.by_formula(&frame.gas.jets, &mut work);
+        }
+        let own = self.history_range();
+        let history = if own.is_empty() { work.history } else { u[own].to_vec() };
+        let solid = &on.solids.structure.solid;
+        Some(SolidSnapshot { solid, displacement: work.displacement, velocity: work.velocity, history })
+    }
+
     fn explicit<'a>(&'a self, plan: Plan, past: Past, u: Vec<f64>) -> Box<dyn Integrator<Self> + 'a> {
         match &self.solids {
             Some(on) => Box::new(March::new(self, on, plan, past, u)),

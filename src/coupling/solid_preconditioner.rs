@@ -19,7 +19,7 @@ enum Inverse {
 }
 
 /// The preconditioner of bodies made of particles.
-pub struct SolidPreconditioner<const D: usize> {
+pub(super) struct SolidPreconditioner<const D: usize> {
     solids: Arc<Solids<D>>,
     period: Option<Period>,
     pace: Pace,

@@ -7,7 +7,8 @@
 //!
 //! In time u' = v and M v' = f_int(u, v) + Wᵀ F. In a steady flow there is no time for inertia: u goes to where both are at rest,
 //! u' = ω K₀⁻¹ (f_int + Wᵀ F), with the stiffness K₀ at rest and the rate ω of sound across the body. Particles that supports hold, or lead
-//! on a prescribed motion h(t), are there at any time: R = ∂u/∂t + ω (h − u) with ∂/∂t by the formula that serves the state.
+//! on a prescribed motion h(t), are there at any time: they are put there where a solve begins, and R = ∂u/∂t + ω (h − u) with ∂/∂t by the
+//! formula that serves the state keeps them.
 //!
 //! The structure keeps the units of its case; forces and times are brought to those of the gas here.
 use std::ops::Range;
@@ -22,6 +23,9 @@ use crate::scheme::{Fluid, View};
 use crate::solid::Structure;
 use crate::solid::forces::{Energy, State, Work as SolidWork};
 use crate::system::{Fault, Mechanical, Moment};
+
+/// Part of the time in which sound crosses a body over which motions of supports are differenced.
+const INSTANT: f64 = 1e-6;
 
 /// Units of a case in those of the gas.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -89,6 +93,7 @@ pub struct Work<const D: usize> {
     pub(super) velocity: Vec<[f64; D]>,
     pub(super) force: Vec<[f64; D]>,
     pub(super) led: Vec<[f64; D]>,
+    pub(super) led_velocity: Vec<[f64; D]>,
     pub(super) history: Vec<f64>,
     pub(super) after: Vec<f64>,
     /// Force of the gas on each particle, in its units.
@@ -118,7 +123,53 @@ impl<const D: usize> Solids<D> {
     /// The same with velocities at the start, in units of the case.
     pub fn with_velocity(mut self, velocity: &[[f64; D]]) -> Self {
         self.velocity = velocity.iter().map(|v| v.map(|v| v / self.scales.speed)).collect();
+        // what is held has the velocity of what holds it
+        let mut led = vec![[0.0; D]; self.len()];
+        self.hold_velocity(0.0, &mut led);
+        let solid = &self.structure.solid;
+        for i in 0..self.structure.solid.len() {
+            for a in (0..D).filter(|a| solid.is_held(i, *a)) {
+                self.velocity[i][a] = led[i][a];
+            }
+        }
         self
+    }
+
+    /// Velocities of what is held at the time `t` of the gas.
+    pub(super) fn hold_velocity(&self, t: f64, velocity: &mut [[f64; D]]) {
+        let solid = &self.structure.solid;
+        if solid.is_moved() {
+            let at = |part: f64| {
+                let mut at = vec![[0.0; D]; self.len()];
+                solid.hold((t + part / self.omega) / self.scales.speed, &mut at);
+                at
+            };
+            let [before, after] = [at(-INSTANT), at(INSTANT)];
+            for (v, (before, after)) in velocity.iter_mut().zip(before.iter().zip(&after)) {
+                *v = std::array::from_fn(|a| (after[a] - before[a]) * self.omega / (2.0 * INSTANT));
+            }
+        } else {
+            velocity.fill([0.0; D]);
+        }
+        for body in &self.bodies {
+            let Some(lead) = &body.lead else { continue };
+            for i in body.particles.clone() {
+                velocity[i] = lead.velocity(t, &solid.particles.x[i]).0;
+            }
+        }
+    }
+
+    /// Puts what is held where it is to be at the time `t`.
+    pub(super) fn prescribe(&self, t: f64, u: &mut [f64]) {
+        let solid = &self.structure.solid;
+        let [mut place, mut speed] = [(); 2].map(|()| vec![[0.0; D]; self.len()]);
+        self.hold(t, &mut place);
+        self.hold_velocity(t, &mut speed);
+        for (i, row) in u.chunks_exact_mut(2 * D).enumerate() {
+            for a in (0..D).filter(|a| solid.is_held(i, *a)) {
+                (row[2 * a], row[2 * a + 1]) = (place[i][a], speed[i][a]);
+            }
+        }
     }
 
     /// Number of particles.
@@ -140,8 +191,7 @@ impl<const D: usize> Solids<D> {
     pub(super) fn initial(&self) -> Vec<f64> {
         let mut u = vec![[0.0; D]; self.len()];
         self.hold(0.0, &mut u);
-        let solid = &self.structure.solid;
-        let pair = |(i, a): (usize, usize)| [u[i][a], if solid.is_held(i, a) { 0.0 } else { self.velocity[i][a] }];
+        let pair = |(i, a): (usize, usize)| [u[i][a], self.velocity[i][a]];
         (0..self.len()).flat_map(|i| (0..D).map(move |a| (i, a))).flat_map(pair).collect()
     }
 
@@ -171,7 +221,8 @@ impl<const D: usize> Solids<D> {
             displacement: zero.clone(),
             velocity: zero.clone(),
             force: zero.clone(),
-            led: zero,
+            led: zero.clone(),
+            led_velocity: zero,
             after: history.clone(),
             history,
             load: vec![Vector::ZERO; n],
@@ -185,6 +236,17 @@ impl<const D: usize> Solids<D> {
             for a in 0..D {
                 work.displacement[i][a] = row[2 * a];
                 work.velocity[i][a] = row[2 * a + 1] * speed;
+            }
+        }
+    }
+
+    /// Velocities, in units of the case, by the formula that serves the state.
+    pub(super) fn by_formula(&self, jets: &[Jet], work: &mut Work<D>) {
+        for (i, v) in work.velocity.iter_mut().enumerate() {
+            for (a, v) in v.iter_mut().enumerate() {
+                if let Some(jet) = jets.get(self.first + i * D + a) {
+                    *v = jet.first * self.scales.speed;
+                }
             }
         }
     }
@@ -217,7 +279,8 @@ impl<const D: usize> Solids<D> {
     /// d/dt of the unknowns `u` at the time `t` under the loads in `work`.
     pub(super) fn rates(&self, (t, jets): (f64, &[Jet]), pace: Pace, u: &[f64], work: &mut Work<D>, change: &mut [f64]) {
         self.split(u, work);
-        self.hold(t, work.led.as_mut_slice());
+        self.hold(t, &mut work.led);
+        self.hold_velocity(t, &mut work.led_velocity);
         let solid = &self.structure.solid;
         let omega = self.omega;
         if pace == Pace::Held {
@@ -225,7 +288,7 @@ impl<const D: usize> Solids<D> {
                 for a in 0..D {
                     let to = if solid.is_held(i, a) { work.led[i][a] } else { 0.0 };
                     change[2 * a] = omega * (to - row[2 * a]);
-                    change[2 * a + 1] = omega * (self.start_velocity(i, a) - row[2 * a + 1]);
+                    change[2 * a + 1] = omega * (self.velocity[i][a] - row[2 * a + 1]);
                 }
             }
             return;
@@ -243,7 +306,7 @@ impl<const D: usize> Solids<D> {
             return;
         }
         let first = self.first;
-        let (force, led) = (&work.force, &work.led);
+        let (force, led, led_velocity) = (&work.force, &work.led, &work.led_velocity);
         let per_mass = |i: usize| 1.0 / (pressure * self.mass(i));
         let jet = |k: usize| jets.get(first + k).copied().unwrap_or(Jet { value: 0.0, first: 0.0, second: 0.0 });
         for (i, (row, change)) in u.chunks_exact(2 * D).zip(change.chunks_exact_mut(2 * D)).enumerate() {
@@ -251,17 +314,13 @@ impl<const D: usize> Solids<D> {
                 if solid.is_held(i, a) {
                     let jet = jet(i * D + a);
                     change[2 * a] = jet.first + omega * (led[i][a] - row[2 * a]);
-                    change[2 * a + 1] = jet.second + omega * (jet.first - row[2 * a + 1]);
+                    change[2 * a + 1] = jet.second + omega * (led_velocity[i][a] - row[2 * a + 1]);
                 } else {
                     change[2 * a] = row[2 * a + 1];
                     change[2 * a + 1] = force[i][a] * per_mass(i);
                 }
             }
         }
-    }
-
-    fn start_velocity(&self, i: usize, a: usize) -> f64 {
-        if self.structure.solid.is_held(i, a) { 0.0 } else { self.velocity[i][a] }
     }
 
     /// u' = ω K₀⁻¹ f, v' = −ω v.

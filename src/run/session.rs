@@ -402,7 +402,7 @@ impl Run<'_> {
     }
 
     /// Looks at the end of a run, and writes it where there is a folder.
-    fn conclude<S: HasGas<D>, const D: usize>(
+    fn conclude<S: Marches<D>, const D: usize>(
         &self,
         stood: &Stood<S, D>,
         surface: Option<&Surface<D>>,
@@ -431,7 +431,8 @@ impl Run<'_> {
             if summary.cloud != *self.given {
                 folder::put_cloud(&summary.cloud, stood.stage.cycle > 0, &journal.out)?;
             }
-            files::write_all(&found, &mut summary, (&field, &walls), log, &journal.out)?;
+            let solid = stood.solver.system.solid_snapshot(frame, state);
+            files::write_all(&found, &mut summary, (&field, &walls), solid.as_ref(), log, &journal.out)?;
             journal.describe()?;
             folder::finish(&journal.out)?;
         }

@@ -150,7 +150,11 @@ impl<'a, const D: usize> View<'a, D> {
 
     /// Where the point `x` of body number `body`, as that stood before any motion, is.
     pub fn carried(&self, body: usize, x: &Vector<D>) -> Vector<D> {
-        self.fluid.cloud_motion.body(body, self.frame.time, &self.frame.jets).point(x)
+        let (motion, time, jets) = (&self.fluid.cloud_motion, self.frame.time, &self.frame.jets);
+        match motion.law_of(body).filter(|law| law.net().is_some()) {
+            Some(law) => law.momentary(time, jets).places(time)(x),
+            None => motion.body(body, time, jets).point(x),
+        }
     }
 
     /// A direction on body number `body`, as that stood before any motion.

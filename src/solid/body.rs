@@ -96,6 +96,12 @@ pub struct Solid<const D: usize> {
     pub(super) width: usize,
 }
 
+impl<const D: usize> std::fmt::Debug for Solid<D> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Solid").field("particles", &self.parts.particles.len()).finish_non_exhaustive()
+    }
+}
+
 impl<const D: usize> Deref for Solid<D> {
     type Target = Parts<D>;
 

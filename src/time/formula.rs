@@ -52,6 +52,11 @@ impl Formula {
         self
     }
 
+    /// Time at the end of the step.
+    pub fn time(&self) -> f64 {
+        self.terms[0].time
+    }
+
     /// Coefficient of term `k`; zero beyond the last.
     pub fn coefficient(&self, k: usize) -> f64 {
         self.terms.get(k).map_or(0.0, |t| t.coefficient)

@@ -219,6 +219,15 @@ impl<S: System> System for HarmonicBalance<'_, S> {
     type Frame = Vec<S::Frame>;
     type Work = Work<S>;
 
+    fn prescribe(&self, _: f64, u: &mut [f64]) {
+        let mut one = vec![0.0; self.system.len()];
+        for (n, time) in self.held.times(self.omega).into_iter().enumerate() {
+            self.instance(u, n, &mut one);
+            self.system.prescribe(time, &mut one);
+            self.set_instance(&one, n, u);
+        }
+    }
+
     fn fields(&self) -> &[Field] {
         &self.fields
     }

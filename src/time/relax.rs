@@ -318,6 +318,7 @@ impl<'a, S: Implicit> Relax<'a, S> {
     /// What [`Self::prepare_at`] made goes on to serve.
     pub fn begin_step(&mut self, term: TimeTerm) {
         let (system, placing) = (self.system, self.system.placing());
+        system.prescribe(term.formula.time(), &mut self.u);
         term.formula.at(&self.u[placing], |at| system.place(at, &mut self.frame));
         system.rhs_with_boundary(&self.u, &mut self.work, &mut self.frame, &mut self.residual);
         system.rates(&self.frame, &self.u, &mut self.work, &mut self.rate);

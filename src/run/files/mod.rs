@@ -2,6 +2,7 @@
 mod cuts;
 mod pictures;
 mod raster;
+mod solids;
 mod strips;
 mod target;
 
@@ -15,6 +16,7 @@ use super::record::summary::Summary;
 use super::record::{Log, passed};
 use crate::case::Case;
 use crate::cloud::{Cloud, Diagnosis};
+use crate::coupling::SolidSnapshot;
 use crate::geometry::Surface;
 use crate::observe::loads::together as both;
 use crate::observe::table::{Entry, write_csv, write_json};
@@ -24,6 +26,7 @@ use crate::scheme::Work;
 
 pub(crate) use pictures::{pixels, write_cloud};
 pub(crate) use raster::together;
+pub(crate) use solids::{draw_solid, write_solid};
 pub(crate) use target::{FILM, FILM_FIELDS, Scene, Target};
 
 /// Columns of the fields of a film.
@@ -34,6 +37,7 @@ pub(crate) fn write_all<const D: usize>(
     found: &Found<'_, D>,
     summary: &mut Summary,
     (all, walls): (&Snapshot, &WallSnapshot),
+    solid: Option<&SolidSnapshot<'_, D>>,
     log: &Log<'_>,
     out: &Path,
 ) -> Result<(), RunError> {
@@ -43,6 +47,12 @@ pub(crate) fn write_all<const D: usize>(
         log.record.trace.write(out, period)?;
     }
     files.write_fields(all, log.record.time)?;
+    if let Some(solid) = solid {
+        write_solid(out, "solid", solid)?;
+        if found.case.output.report {
+            draw_solid(out, solid)?;
+        }
+    }
     if found.case.output.report {
         let to = Target { case: found.case, out };
         report::write_polar(out)?;
@@ -214,6 +224,18 @@ pub(crate) fn write_series<const D: usize>(
     let name = format!("field-{:05}.vtu", passed(view.time(), interval));
     write_field(&out.join(&name), to.case, view.cloud(), &all)?;
     list(out, "series.pvd", f64::NEG_INFINITY, (time, name))
+}
+
+/// The same of bodies made of particles, at the time `time` of the solver.
+pub(crate) fn write_solid_series<const D: usize>(
+    to: &Target<'_>,
+    at: &SolidSnapshot<'_, D>,
+    (time, interval): (f64, f64),
+) -> Result<(), RunError> {
+    let name = format!("solid-{:05}", passed(time, interval));
+    write_solid(to.out, &name, at)?;
+    let time = to.case.flow.units().case_time(time);
+    list(to.out, "solid.pvd", f64::NEG_INFINITY, (time, format!("{name}.vtu")))
 }
 
 /// Adds a field to the list called `name`, in which only those after `since` stay. A run that went on from a checkpoint writes

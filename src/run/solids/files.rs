@@ -8,7 +8,9 @@ use super::setup::Built;
 use crate::case::Case;
 use crate::observe::table::{Entry, write_csv, write_json};
 use crate::observe::vtk::{Cells, Column, write_cells, write_collection};
-use crate::physics::solid::{Tensor, tensor};
+use crate::physics::solid::{Material, Tensor, tensor};
+use crate::solid::Solid;
+use crate::solid::forces::State;
 use crate::solid::modes::Mode;
 
 /// Where files go.
@@ -32,39 +34,7 @@ impl Files<'_> {
     /// The structure as deformed: `<name>.vtu`.
     pub(super) fn fields<const D: usize>(&self, name: &str, built: &Built<D>, u: &[f64]) -> Result<(), RunError> {
         let Some(path) = self.path(&format!("{name}.vtu")) else { return Ok(()) };
-        let solid = &built.structure.solid;
-        let state = built.structure.state(0.0, u);
-        let stresses: Vec<Tensor> = (0..solid.len()).map(|i| solid.cauchy(i, &state)).collect();
-        let raised = |v: &[[f64; D]]| -> Vec<f64> {
-            v.iter().flat_map(|v| std::array::from_fn::<f64, 3, _>(|a| v.get(a).copied().unwrap_or(0.0))).collect()
-        };
-        let mises = |s: &Tensor| (1.5f64).sqrt() * tensor::norm(&tensor::deviator(s));
-        let memory = |f: &dyn Fn(&crate::physics::solid::Material, &[f64]) -> f64| -> Vec<f64> {
-            (0..solid.len()).map(|i| f(solid.material_of(i), solid.memory(i, state.history))).collect()
-        };
-        let mut all = vec![
-            Values { name: "displacement", components: 3, values: raised(state.displacement) },
-            Values { name: "velocity", components: 3, values: raised(state.velocity) },
-            Values { name: "von_mises_stress", components: 1, values: stresses.iter().map(mises).collect() },
-            Values {
-                name: "pressure",
-                components: 1,
-                values: stresses.iter().map(|s| -tensor::trace(s) / 3.0).collect(),
-            },
-            Values { name: "body", components: 1, values: solid.body.iter().map(|b| f64::from(*b)).collect() },
-            Values { name: "material", components: 1, values: solid.material.iter().map(|b| f64::from(*b)).collect() },
-        ];
-        if solid.materials.iter().any(|m| m.yield_stress().is_some()) {
-            all.push(Values { name: "plastic_strain", components: 1, values: memory(&|m, h| m.plastic_strain(h)) });
-            all.push(Values { name: "temperature", components: 1, values: memory(&|m, h| m.temperature(h)) });
-        }
-        let place = |i: usize| -> [f64; 3] {
-            std::array::from_fn(|a| if a < D { solid.particles.x[i][a] + state.displacement[i][a] } else { 0.0 })
-        };
-        let points: Vec<[f64; 3]> = (0..solid.len()).map(place).collect();
-        let columns: Vec<Column<'_>> =
-            all.iter().map(|v| Column { name: v.name, components: v.components, values: &v.values }).collect();
-        Ok(write_cells(&path, &points, Cells::Vertices, &columns)?)
+        write(&path, &built.structure.solid, &built.structure.state(0.0, u))
     }
 
     /// A field file of a series, and the list of all of them.
@@ -142,4 +112,44 @@ impl Files<'_> {
         debug_assert!(!self.case.has_gas());
         Ok(write_json(&path, summary)?)
     }
+}
+
+/// Von Mises's stress at every particle.
+pub(in crate::run) fn von_mises<const D: usize>(solid: &Solid<D>, state: &State<'_, D>) -> Vec<f64> {
+    (0..solid.len()).map(|i| mises(&solid.cauchy(i, state))).collect()
+}
+
+fn mises(s: &Tensor) -> f64 {
+    (1.5f64).sqrt() * tensor::norm(&tensor::deviator(s))
+}
+
+/// Writes particles where they are, with displacement, velocity, stress and what materials remember.
+pub(in crate::run) fn write<const D: usize>(path: &Path, solid: &Solid<D>, state: &State<'_, D>) -> Result<(), RunError> {
+    let stresses: Vec<Tensor> = (0..solid.len()).map(|i| solid.cauchy(i, state)).collect();
+    let raised = |v: &[[f64; D]]| -> Vec<f64> {
+        v.iter().flat_map(|v| std::array::from_fn::<f64, 3, _>(|a| v.get(a).copied().unwrap_or(0.0))).collect()
+    };
+    let memory = |f: &dyn Fn(&Material, &[f64]) -> f64| -> Vec<f64> {
+        (0..solid.len()).map(|i| f(solid.material_of(i), solid.memory(i, state.history))).collect()
+    };
+    let pressure = stresses.iter().map(|s| -tensor::trace(s) / 3.0).collect();
+    let mut all = vec![
+        Values { name: "displacement", components: 3, values: raised(state.displacement) },
+        Values { name: "velocity", components: 3, values: raised(state.velocity) },
+        Values { name: "von_mises_stress", components: 1, values: stresses.iter().map(mises).collect() },
+        Values { name: "pressure", components: 1, values: pressure },
+        Values { name: "body", components: 1, values: solid.body.iter().map(|b| f64::from(*b)).collect() },
+        Values { name: "material", components: 1, values: solid.material.iter().map(|b| f64::from(*b)).collect() },
+    ];
+    if solid.materials.iter().any(|m| m.yield_stress().is_some()) {
+        all.push(Values { name: "plastic_strain", components: 1, values: memory(&|m, h| m.plastic_strain(h)) });
+        all.push(Values { name: "temperature", components: 1, values: memory(&|m, h| m.temperature(h)) });
+    }
+    let place = |i: usize| -> [f64; 3] {
+        std::array::from_fn(|a| if a < D { solid.particles.x[i][a] + state.displacement[i][a] } else { 0.0 })
+    };
+    let points: Vec<[f64; 3]> = (0..solid.len()).map(place).collect();
+    let columns: Vec<Column<'_>> =
+        all.iter().map(|v| Column { name: v.name, components: v.components, values: &v.values }).collect();
+    Ok(write_cells(path, &points, Cells::Vertices, &columns)?)
 }

@@ -1,5 +1,5 @@
 //! Structures of particles alone: equilibrium, marching and natural modes, without a gas.
-mod files;
+pub(super) mod files;
 mod inspect;
 mod march;
 mod material;

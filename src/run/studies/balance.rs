@@ -91,7 +91,10 @@ fn converge<S: HasGas<D>, const D: usize>(
     turn: &Turn<'_>,
     log: &mut Log<'_>,
 ) -> Result<Option<Vec<f64>>, RunError> {
-    let Seek { plan, state, resume } = seek;
+    let Seek { plan, mut state, resume } = seek;
+    if resume.is_none() {
+        balance.prescribe(0.0, &mut state);
+    }
     let last = turn.last() || is_automatic(plan);
     let orders = if last { plan.orders } else { plan.orders.min(EARLY_ORDERS) };
     let tolerance = if last { plan.tolerance } else { plan.tolerance.max(EARLY_TOLERANCE) };

@@ -79,7 +79,7 @@ fn integrator<'a, S: Marches<D>, const D: usize>(
 }
 
 /// Drives one leg under the eyes of all that watch a march.
-fn watched<S: HasGas<D>, const D: usize>(
+fn watched<S: Marches<D>, const D: usize>(
     solver: &Solver<S, D>,
     integrator: &mut (dyn Integrator<S> + '_),
     marching: &Marching,

@@ -55,6 +55,10 @@ pub(crate) fn relax<S: HasGas<D>, const D: usize>(
         Start::Resume(u, Memory::Relaxation(resume)) => (u, Some(resume)),
         other => (other.into_state(), None),
     };
+    let mut u = u;
+    if resume.is_none() {
+        system.prescribe(0.0, &mut u);
+    }
     let asked = accuracy::asked(log.case);
     let again = turn.next().is_some_and(|stage| stage.task == Task::Relax);
     let orders = match asked {

@@ -1,9 +1,10 @@
 //! Fields and pictures of a march on the way.
 use super::super::error::RunError;
-use super::super::files::{FILM, FILM_FIELDS, Target, write_film, write_film_field, write_series};
+use super::super::files::{FILM, FILM_FIELDS, Target, write_film, write_film_field, write_series, write_solid_series};
 use super::super::look::GasView;
 use super::super::record::{Log, passed};
 use super::drive::{Now, Observer};
+use crate::coupling::Marches;
 use crate::geometry::Surface;
 use crate::scheme::HasGas;
 use crate::time::{Standing, Step};
@@ -16,7 +17,7 @@ pub(crate) struct FieldSeries<'a, S, const D: usize> {
     pub(crate) interval: f64,
 }
 
-impl<S: HasGas<D>, const D: usize> Observer<S> for FieldSeries<'_, S, D> {
+impl<S: Marches<D>, const D: usize> Observer<S> for FieldSeries<'_, S, D> {
     fn step(&mut self, step: &Step, now: &mut Now<'_, S>, log: &mut Log<'_>) -> Result<(), RunError> {
         let Some(journal) = &log.journal else { return Ok(()) };
         if passed(step.time, self.interval) <= passed(now.before, self.interval) {
@@ -25,7 +26,11 @@ impl<S: HasGas<D>, const D: usize> Observer<S> for FieldSeries<'_, S, D> {
         let Standing { frame, work, state } = now.standing();
         let view = GasView::of(self.system, frame, state);
         let to = Target { case: log.case, out: &journal.out };
-        write_series(&to, &view, self.system.gas_work(work), self.interval)
+        write_series(&to, &view, self.system.gas_work(work), self.interval)?;
+        match self.system.solid_snapshot(frame, state) {
+            Some(solid) => write_solid_series(&to, &solid, (step.time, self.interval)),
+            None => Ok(()),
+        }
     }
 }
 
