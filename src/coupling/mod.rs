@@ -213,6 +213,12 @@ impl<const D: usize> System for Coupled<D> {
         }
     }
 
+    fn lead(&self, time: f64, u: &mut [f64]) {
+        if let Some(on) = &self.solids {
+            on.solids.lead(time, &mut u[self.solid_range()]);
+        }
+    }
+
     fn update_boundary_state(&self, u: &[f64], work: &mut Work<D>, frame: &mut Frame<D>) {
         self.fluid.update_boundary_state(&u[self.gas_range()], &mut work.gas, &mut frame.gas);
     }

@@ -127,9 +127,16 @@ impl<const D: usize> Solids<D> {
         let mut led = vec![[0.0; D]; self.len()];
         self.hold_velocity(0.0, &mut led);
         let solid = &self.structure.solid;
-        for i in 0..self.structure.solid.len() {
-            for a in (0..D).filter(|a| solid.is_held(i, *a)) {
-                self.velocity[i][a] = led[i][a];
+        for body in &self.bodies {
+            for i in body.particles.clone() {
+                for a in 0..D {
+                    match solid.is_held(i, a) {
+                        true => self.velocity[i][a] = led[i][a],
+                        // what is not held goes with what leads the body, and has its own velocity besides
+                        false if body.lead.is_some() => self.velocity[i][a] += led[i][a],
+                        false => {}
+                    }
+                }
             }
         }
         self
@@ -172,6 +179,24 @@ impl<const D: usize> Solids<D> {
         }
     }
 
+    /// Brings unknowns of time 0 to the time `t`: whole bodies go with what leads them, as deformed as they are.
+    pub(super) fn lead(&self, t: f64, u: &mut [f64]) {
+        for body in &self.bodies {
+            let Some(lead) = &body.lead else { continue };
+            let (from, to) = (lead.pose(0.0), lead.pose(t));
+            for i in body.particles.clone() {
+                let x = &self.structure.solid.particles.x[i];
+                let row = &mut u[2 * D * i..2 * D * (i + 1)];
+                let now = to.point(&from.inverse_point(&(*x + Vector::from_fn(|a| row[2 * a]))));
+                let speed = lead.velocity(t, x);
+                for a in 0..D {
+                    (row[2 * a], row[2 * a + 1]) = (now[a] - x[a], speed[a]);
+                }
+            }
+        }
+        self.prescribe(t, u);
+    }
+
     /// Number of particles.
     pub fn len(&self) -> usize {
         self.structure.solid.len()
@@ -190,6 +215,13 @@ impl<const D: usize> Solids<D> {
     /// Unknowns at the start.
     pub(super) fn initial(&self) -> Vec<f64> {
         let mut u = vec![[0.0; D]; self.len()];
+        for body in &self.bodies {
+            let Some(lead) = &body.lead else { continue };
+            for i in body.particles.clone() {
+                let x = &self.structure.solid.particles.x[i];
+                u[i] = (lead.kinematics(0.0, x).position - *x).0;
+            }
+        }
         self.hold(0.0, &mut u);
         let pair = |(i, a): (usize, usize)| [u[i][a], self.velocity[i][a]];
         (0..self.len()).flat_map(|i| (0..D).map(move |a| (i, a))).flat_map(pair).collect()
@@ -284,11 +316,12 @@ impl<const D: usize> Solids<D> {
         let solid = &self.structure.solid;
         let omega = self.omega;
         if pace == Pace::Held {
+            let start = self.initial();
             for (i, (row, change)) in u.chunks_exact(2 * D).zip(change.chunks_exact_mut(2 * D)).enumerate() {
                 for a in 0..D {
-                    let to = if solid.is_held(i, a) { work.led[i][a] } else { 0.0 };
-                    change[2 * a] = omega * (to - row[2 * a]);
-                    change[2 * a + 1] = omega * (self.velocity[i][a] - row[2 * a + 1]);
+                    let at = 2 * (i * D + a);
+                    change[2 * a] = omega * (start[at] - row[2 * a]);
+                    change[2 * a + 1] = omega * (start[at + 1] - row[2 * a + 1]);
                 }
             }
             return;

@@ -79,9 +79,9 @@ impl<const D: usize> BodyMotion<D> {
         self
     }
 
-    /// A body made of particles, whose displacements are unknowns, on its surface.
-    pub fn of_particles(net: Arc<SurfaceNet<D>>) -> Self {
-        Self { net: Some((net, NetDisplacement::default())), ..Self::fixed() }
+    /// The same of a body made of particles, whose displacements are unknowns, on its surface: the motion is that of its supports.
+    pub fn with_net(self, net: Arc<SurfaceNet<D>>) -> Self {
+        Self { net: Some((net, NetDisplacement::default())), ..self }
     }
 
     /// The surface of a body made of particles.
@@ -203,7 +203,7 @@ impl<const D: usize> BodyMotion<D> {
         move |x| {
             let bent = coordinates.iter().zip(self.shapes()).fold(*x, |sum, (q, shape)| sum + shape.at(x) * *q);
             match &self.net {
-                Some((net, at)) if *at != NetDisplacement::default() => pose.point(&(bent + net.around(x).of_groups(at))),
+                Some((net, at)) if *at != NetDisplacement::default() => bent + net.around(x).of_groups(at),
                 _ => pose.point(&bent),
             }
         }

@@ -74,6 +74,23 @@ impl<'a, S: System> HarmonicBalance<'a, S> {
         all
     }
 
+    /// The same, led by what is prescribed.
+    pub fn led_copies(&self, u: &[f64]) -> Vec<f64> {
+        let mut all = self.copies(u);
+        self.at_instances(&mut all, |time, one| self.system.lead(time, one));
+        all
+    }
+
+    /// Lets `f` change the state of each instance that holds the solution, at its time.
+    fn at_instances(&self, u: &mut [f64], f: impl Fn(f64, &mut [f64])) {
+        let mut one = vec![0.0; self.system.len()];
+        for (n, time) in self.held.times(self.omega).into_iter().enumerate() {
+            self.instance(u, n, &mut one);
+            f(time, &mut one);
+            self.set_instance(&one, n, u);
+        }
+    }
+
     /// The state `u`, given at the instances of `from`, at those of this one: exact interpolation, or the part it can hold.
     pub fn resampled(&self, u: &[f64], from: Instances) -> Vec<f64> {
         let (old, count) = (from.count(), self.held.count());
@@ -220,12 +237,7 @@ impl<S: System> System for HarmonicBalance<'_, S> {
     type Work = Work<S>;
 
     fn prescribe(&self, _: f64, u: &mut [f64]) {
-        let mut one = vec![0.0; self.system.len()];
-        for (n, time) in self.held.times(self.omega).into_iter().enumerate() {
-            self.instance(u, n, &mut one);
-            self.system.prescribe(time, &mut one);
-            self.set_instance(&one, n, u);
-        }
+        self.at_instances(u, |time, one| self.system.prescribe(time, one));
     }
 
     fn fields(&self) -> &[Field] {

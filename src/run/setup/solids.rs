@@ -9,7 +9,7 @@ use super::super::solids::setup::{Built, build};
 use crate::case::{Case, Temporal};
 use crate::coupling::solids::{Scales, SolidBody, Solids};
 use crate::math::Vector;
-use crate::motion::{BodyMotion, Motions, SurfaceNet};
+use crate::motion::{Motions, SurfaceNet};
 use crate::observe::structure::{CoordinateName, StructureNames};
 
 /// Axes by their names.
@@ -31,14 +31,13 @@ pub(crate) fn solids<const D: usize>(
     built.notes.iter().for_each(|n| monitor.note(n));
     built.warnings.iter().for_each(|w| monitor.warn(w));
     remembers(case, &built)?;
-    let period = motions.period();
     let mut bodies = Vec::new();
     for (k, (number, _, _)) in case.solids().enumerate() {
         let body = body(&built, (k, number), first, motions);
-        motions.free(number, BodyMotion::of_particles(Arc::clone(&body.net)));
+        let law = motions.of(number).clone();
+        motions.free(number, law.with_net(Arc::clone(&body.net)));
         bodies.push(body);
     }
-    period.into_iter().for_each(|period| motions.force_with(period));
     let described = described(case, &built, &bodies);
     let units = case.flow.units();
     let scales = Scales { speed: units.speed, pressure: units.pressure() };

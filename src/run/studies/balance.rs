@@ -69,7 +69,7 @@ fn begun<S: System>(
     log.record.settling = Settling { earlier: log.record.evaluations, ..Settling::default() };
     let (count, wanted) = (u.len() / system.len(), balance.instances().count());
     let state = match count {
-        1 => balance.copies(&u),
+        1 => balance.led_copies(&u),
         _ if count == wanted => u,
         _ => balance.resampled(&u, Instances::of_harmonics(count / 2)),
     };
