@@ -243,7 +243,8 @@ impl<const D: usize> System for Coupled<D> {
         let (sprung, solid) = own.split_at_mut(self.fields[1].rows);
         sweep_rows(sprung, 1, |_, r| r[0] = self.fastest);
         if let Some(on) = &self.solids {
-            sweep_rows(solid, 1, |_, r| r[0] = on.solids.omega);
+            let own = if self.pace(frame) == Pace::Marching { on.solids.brisk } else { on.solids.omega };
+            sweep_rows(solid, 1, |_, r| r[0] = own);
         }
     }
 

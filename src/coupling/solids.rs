@@ -61,6 +61,9 @@ pub struct Solids<const D: usize> {
     pub scales: Scales,
     /// Rate of what goes to rest, in units of the gas: that of sound across the bodies.
     pub omega: f64,
+    /// Rate of what moves in time: between that and the highest frequency of the particles, so that the first iterations for a
+    /// periodic motion leave the bodies about where they are, and later ones do not.
+    pub brisk: f64,
     /// Greatest displacement in one iteration.
     pub length: f64,
     /// Velocities at the start, in units of the gas.
@@ -117,7 +120,10 @@ impl<const D: usize> Solids<D> {
         let extent = |b: &SolidBody<D>| crate::math::Bounds::around(b.net.places()).extent().max_abs();
         let length = bodies.iter().map(extent).fold(f64::MIN_POSITIVE, f64::max);
         let velocity = vec![[0.0; D]; structure.solid.len()];
-        Self { structure, bodies, scales, omega: 1.0 / length, length, velocity, first, reference: OnceLock::new() }
+        let omega = 1.0 / length;
+        let still = vec![0.0; D * structure.solid.len()];
+        let brisk = omega.max((omega / (structure.stable_step(&still) * scales.speed)).sqrt());
+        Self { structure, bodies, scales, omega, brisk, length, velocity, first, reference: OnceLock::new() }
     }
 
     /// The same with velocities at the start, in units of the case.

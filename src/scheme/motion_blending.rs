@@ -5,6 +5,9 @@
 //! continuous. Several bodies share by inverse distance (Shepard 1968): φ_b = ψ(d_b) d_b⁻³ / Σ_c d_c⁻³. On the surface of a
 //! body its own φ is 1. All x(t) are linear in the poses, so differences of positions are exact. A body that bends takes X to
 //! P_b(t) (X + Σ_m q_m(t) φ_m(X)), with its modes φ_m continued into the field by their own interpolation.
+//!
+//! Around bodies made of particles the cloud slides along planes of symmetry: displacement across one fades to nothing as a particle
+//! is nearer to it than to the body, and these planes do not bound how far the motion reaches.
 use crate::cloud::Cloud;
 use crate::math::jet::Jet;
 use crate::math::sweep::sweep_slots;
@@ -35,6 +38,8 @@ struct Body<const D: usize> {
     points: Vec<Vector<D>>,
     inner: f64,
     outer: f64,
+    /// Made of particles.
+    soft: bool,
 }
 
 /// Motion of the bodies spread into the cloud.
@@ -42,13 +47,27 @@ pub struct MotionBlending<const D: usize> {
     bodies: Vec<Body<D>>,
     /// φ of each particle and body.
     share: Vec<f32>,
+    /// Planes of symmetry: axis and place.
+    planes: Vec<(usize, f64)>,
+    /// What is left of each component of the displacement by bodies made of particles; empty where there are none.
+    sliding: Vec<Vector<D>>,
 }
 
 impl<const D: usize> MotionBlending<D> {
     /// Spreads the motion of the bodies until `until`, one law for each.
     pub fn new(cloud: &Cloud<D>, laws: &[BodyMotion<D>], until: f64) -> Self {
         let bodies: Vec<Body<D>> = laws.iter().enumerate().map(|(b, law)| body(cloud, (b, law), until)).collect();
-        let mut all = Self { share: vec![0.0; cloud.n_real() * bodies.len()], bodies };
+        let (share, planes) = (vec![0.0; cloud.n_real() * bodies.len()], planes(cloud));
+        let mut all = Self { share, bodies, planes, sliding: Vec::new() };
+        if all.bodies.iter().any(|b| b.soft) {
+            let mut sliding = vec![Vector::from_fn(|_| 1.0); cloud.n_real()];
+            sweep_slots(&mut sliding, |i, slot| {
+                if !cloud.interface_range().contains(&i) {
+                    *slot = all.slides(&cloud.x[i]);
+                }
+            });
+            all.sliding = sliding;
+        }
         let n = all.bodies.len();
         let mut rows: Vec<Vec<f64>> = vec![Vec::new(); cloud.n_real()];
         sweep_slots(&mut rows, |i, row| *row = all.own_shares(cloud, i));
@@ -74,6 +93,17 @@ impl<const D: usize> MotionBlending<D> {
             return (0..self.bodies.len()).map(|b| f64::from(u8::from(b == own))).collect();
         }
         self.shares(&cloud.x[i])
+    }
+
+    /// What is left of each component of the displacement at `x` by bodies made of particles.
+    fn slides(&self, x: &Vector<D>) -> Vector<D> {
+        let near = self.bodies.iter().filter(|b| b.soft).map(|b| b.distance(x)).fold(f64::INFINITY, f64::min);
+        let mut left = Vector::from_fn(|_| 1.0);
+        for (axis, place) in &self.planes {
+            let s = ((x[*axis] - place).abs() / near.max(f64::MIN_POSITIVE)).min(1.0);
+            left[*axis] *= s * s * s * (10.0 - 15.0 * s + 6.0 * s * s);
+        }
+        left
     }
 
     fn shares(&self, x: &Vector<D>) -> Vec<f64> {
@@ -124,11 +154,20 @@ fn body<const D: usize>(cloud: &Cloud<D>, (b, law): (usize, &BodyMotion<D>), unt
     let length = bounds.extent().max_abs();
     // sides that cut through the body (planes of symmetry), or lie behind it, do not hold it back
     let domain = Bounds::around(&cloud.x[..cloud.n_fluid]);
-    let gaps = (0..D).flat_map(|d| [bounds.min[d] - domain.min[d], domain.max[d] - bounds.max[d]]);
+    let soft = law.net().is_some();
+    let slides = |d: usize, side: f64| {
+        let on = |(axis, place): &(usize, f64)| *axis == d && (place - side).abs() < 0.01 * length;
+        soft && planes(cloud).iter().any(on)
+    };
+    let gaps = (0..D).flat_map(|d| {
+        let all = &cloud.tree.bounds();
+        let sides = [(bounds.min[d] - domain.min[d], all.min[d]), (domain.max[d] - bounds.max[d], all.max[d])];
+        sides.into_iter().filter(move |(_, side)| !slides(d, *side)).map(|(gap, _)| gap).collect::<Vec<f64>>()
+    });
     let room = gaps.filter(|g| *g > 0.1 * length).fold(f64::INFINITY, f64::min);
     let outer = (OUTER * length.max(displacement(&bounds, law, until))).min(REACH * room);
     let points = all.into_iter().step_by(every).collect();
-    Body { trajectory: PointTrajectory::new(law, &[]), points, inner: (INNER * length).min(0.25 * outer), outer }
+    Body { trajectory: PointTrajectory::new(law, &[]), points, inner: (INNER * length).min(0.25 * outer), outer, soft }
 }
 
 /// How far the corners of the box around a body get from where they start, until `until`, and its modes from there.
@@ -141,13 +180,29 @@ fn displacement<const D: usize>(bounds: &Bounds<D>, law: &BodyMotion<D>, until: 
     (0..=TIMES).map(|k| at(until * k as f64 / TIMES as f64)).fold(0.0, f64::max)
 }
 
-/// x + Σ_b φ_b (x_b − x), where body number b takes x to x_b = `carried(b)`.
+/// x + Σ_b φ_b (x_b − x), where body number b takes x to x_b = `carried(b)`, and `left` is left of the components of that displacement.
 fn blended<const D: usize>(
     x: &Vector<D>,
     share: impl Iterator<Item = f64>,
     carried: impl Fn(usize) -> Vector<D>,
+    left: impl Fn(usize) -> Option<Vector<D>>,
 ) -> Vector<D> {
-    share.enumerate().filter(|(_, s)| *s > 0.0).fold(*x, |sum, (b, s)| sum + (carried(b) - *x) * s)
+    share.enumerate().filter(|(_, s)| *s > 0.0).fold(*x, |sum, (b, s)| {
+        let moved = (carried(b) - *x) * s;
+        sum + left(b).map_or(moved, |left| Vector::from_fn(|d| moved[d] * left[d]))
+    })
+}
+
+/// Planes of symmetry of a cloud: axis and place.
+fn planes<const D: usize>(cloud: &Cloud<D>) -> Vec<(usize, f64)> {
+    let mut all: Vec<(usize, f64)> = Vec::new();
+    for t in &cloud.transforms {
+        let mirrored: Vec<usize> = (0..D).filter(|d| t.sign[*d] < 0.0).collect();
+        if let [axis] = mirrored[..] {
+            all.push((axis, 0.5 * t.offset[axis]));
+        }
+    }
+    all
 }
 
 impl<const D: usize> Path<D> for MotionBlending<D> {
@@ -156,7 +211,8 @@ impl<const D: usize> Path<D> for MotionBlending<D> {
         let n = self.bodies.len();
         Box::new(move |i, x| {
             let share = self.share[i * n..(i + 1) * n].iter().map(|s| f64::from(*s));
-            blended(x, share, |b| trajectories[b](i, x))
+            let left = |b: usize| if self.bodies[b].soft { self.sliding.get(i).copied() } else { None };
+            blended(x, share, |b| trajectories[b](i, x), left)
         })
     }
 
@@ -165,7 +221,8 @@ impl<const D: usize> Path<D> for MotionBlending<D> {
         let places: Vec<_> = laws.iter().map(|law| law.places(t)).collect();
         let mut before = *x;
         for _ in 0..ROUNDS {
-            let miss = *x - blended(&before, self.shares(&before).into_iter(), |b| places[b](&before));
+            let left = |b: usize| self.bodies[b].soft.then(|| self.slides(&before));
+            let miss = *x - blended(&before, self.shares(&before).into_iter(), |b| places[b](&before), left);
             before += miss;
             if miss.max_abs() < 1e-12 {
                 break;
