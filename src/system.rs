@@ -149,7 +149,11 @@ impl<'a> Instant<'a> {
 
     /// Part `fraction` of the way through the step of length `step` that begins at `start`.
     pub fn within(start: f64, step: f64, fraction: f64) -> Self {
-        Self { time: start + step * fraction, coordinates: &[], rate: Rate::Within { start, step, fraction, ends: [&[]; 2] } }
+        Self {
+            time: start + step * fraction,
+            coordinates: &[],
+            rate: Rate::Within { start, step, fraction, ends: [&[]; 2] },
+        }
     }
 
     /// The same where unknowns place the frame, those at the start and at the end of the step.

@@ -127,7 +127,8 @@ pub(super) static BODY: Table = Table::of(&[
         Kind::Table(&SOLID),
         "rigid",
         "The body is made of particles and deforms: `solid = { material = \"steel\", through = 5 }`. Where a body has this key and the case no \
-         `[flow]`, there are structures alone, without gas, in SI units.",
+         `[flow]`, there are structures alone, without gas, in SI units. In a gas the body moves as pressure and friction have it; with \
+         `motion` its supports follow that, or all of it where there are none.",
     ),
 ])
 .with_one_of(&["naca", "airfoil", "polygon", "circle", "ellipse", "sphere", "box", "surface", "wing", "revolution", "loft", "ellipsoid"]);

@@ -1,8 +1,9 @@
 //! Case files to start from.
 
 /// Names of the templates with a line about each.
-pub const TEMPLATES: [(&str, &str); 8] = [
+pub const TEMPLATES: [(&str, &str); 9] = [
     ("airfoil", "transonic flow over a NACA 0012 section (2-D)"),
+    ("flexible", "a steel panel of particles that a shock bends (2-D)"),
     ("flutter", "a typical section on springs in a stream (2-D)"),
     ("pitching", "an airfoil that pitches about its quarter chord (2-D)"),
     ("polar", "lift, drag and moment of a section at several angles and Mach numbers (2-D)"),
@@ -19,6 +20,7 @@ pub const SCHEMA_FILE: &str = "alula.schema.json";
 pub fn template(name: &str) -> Option<String> {
     let text = match name {
         "airfoil" => include_str!("templates/airfoil.toml"),
+        "flexible" => include_str!("templates/flexible.toml"),
         "flutter" => include_str!("templates/flutter.toml"),
         "pitching" => include_str!("templates/pitching.toml"),
         "polar" => include_str!("templates/polar.toml"),

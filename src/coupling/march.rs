@@ -24,6 +24,8 @@ use crate::time::{CROWDED, Cost, Integrator, Mark, Memory, Past, Standing, Step,
 
 /// Part of their longest stable step that solids take.
 const SOLID_CFL: f64 = 0.8;
+/// Time before the start from which walls come, in that of sound across the bodies.
+const BEFORE: f64 = 1e-2;
 /// What conjugate gradients leave of the right-hand side, and their most iterations.
 const SOLVED: f64 = 1e-12;
 const ITERATIONS: usize = 200;
@@ -66,10 +68,15 @@ impl<'a, const D: usize> March<'a, D> {
     /// Prepares a march of `system` with its bodies made of particles from the state `u`.
     pub fn new(system: &'a Coupled<D>, on: &'a OnCloud<D>, plan: Plan, past: Past, u: Vec<f64>) -> Self {
         let (end, step, now) = (past.time, past.last, &u[system.placing()]);
-        let still = Instant::still(end).with(now);
         let frame = match past.before.get(system.placing()).filter(|_| step > 0.0) {
             Some(before) => system.frame(&Instant::between(end - step, step, 1.0, [before, now]), &u),
-            None => system.frame(&still, &u),
+            None => {
+                // walls begin with the velocity of the bodies
+                let step = BEFORE / on.solids.omega;
+                let before: Vec<f64> =
+                    now.chunks_exact(2).flat_map(|pair| [pair[0] - step * pair[1], pair[1]]).collect();
+                system.frame(&Instant::between(end - step, step, 1.0, [&before, now]), &u)
+            }
         };
         let n = on.solids.len();
         let blank = Meeting {
@@ -268,12 +275,7 @@ fn kick<const D: usize>(
 }
 
 /// Displacements by the velocities over `tau`, with what is held where it is to be at `end`.
-fn drift<const D: usize>(
-    on: &OnCloud<D>,
-    work: &mut SolidWork<D>,
-    velocity: &mut [Vector<D>],
-    (tau, end): (f64, f64),
-) {
+fn drift<const D: usize>(on: &OnCloud<D>, work: &mut SolidWork<D>, velocity: &mut [Vector<D>], (tau, end): (f64, f64)) {
     let solid = &on.solids.structure.solid;
     work.led.copy_from_slice(&work.displacement);
     on.solids.hold(end, &mut work.led);
@@ -333,7 +335,9 @@ impl<const D: usize> Integrator<Coupled<D>> for March<'_, D> {
         let crowded = self.system.check_frame(&self.frame).err();
         let hint = match crowded {
             Some(_) => CROWDED,
-            None => "lower `time.explicit.cfl`, use a stronger limiter, or look whether the structure is as stiff as it should be",
+            None => {
+                "lower `time.explicit.cfl`, use a stronger limiter, or look whether the structure is as stiff as it should be"
+            }
         };
         if let Some(fault) = crowded.or_else(|| self.system.check(&self.frame, &self.u).err()) {
             self.u.copy_from_slice(&self.start);

@@ -333,7 +333,8 @@ impl<const D: usize> HasGas<D> for Coupled<D> {
         let walls = (0..cloud.interface.len()).filter(attached);
         let view = View::new(&self.fluid, &frame.gas, &work.gas);
         let by_state = |w: usize| view.wall_force(w).dot(&velocity(w));
-        let on_wall = |w: usize| frame.gas.taken.get(w).filter(|t| t.area > 0.0).map_or_else(|| by_state(w), |t| t.power);
+        let on_wall =
+            |w: usize| frame.gas.taken.get(w).filter(|t| t.area > 0.0).map_or_else(|| by_state(w), |t| t.power);
         let wall_power = walls.map(on_wall).sum();
         let mut all = Exchange { coordinates, rates, loads, power, wall_power, ..Exchange::default() };
         for energy in self.bodies.iter().map(|b| b.energy(u)) {

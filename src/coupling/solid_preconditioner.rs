@@ -14,7 +14,10 @@ enum Inverse {
     /// Nothing is known yet, or no matrix could be factored.
     Diagonal,
     Real(Factors),
-    Rest { factors: Factors, reference: Symmetric },
+    Rest {
+        factors: Factors,
+        reference: Symmetric,
+    },
     Harmonics(Vec<ComplexFactors>),
 }
 
@@ -37,7 +40,18 @@ impl<const D: usize> SolidPreconditioner<D> {
         let work = solids.work();
         let omega = solids.omega;
         let (pace, time, points) = (Pace::Held, 0.0, 1.0);
-        Self { solids, period, pace, time, work, points, inverse: Inverse::Diagonal, shift: omega, coefficient: 0.0, omega }
+        Self {
+            solids,
+            period,
+            pace,
+            time,
+            work,
+            points,
+            inverse: Inverse::Diagonal,
+            shift: omega,
+            coefficient: 0.0,
+            omega,
+        }
     }
 
     pub(super) fn begin(&mut self, points: usize) {
@@ -71,12 +85,10 @@ impl<const D: usize> SolidPreconditioner<D> {
                     None => Inverse::Diagonal,
                 }
             }
-            (Pace::Marching, None) => {
-                match solids.stiffness(&self.work, t, 1.0, s * s * mass).factor() {
-                    Some(factors) => Inverse::Real(factors),
-                    None => Inverse::Diagonal,
-                }
-            }
+            (Pace::Marching, None) => match solids.stiffness(&self.work, t, 1.0, s * s * mass).factor() {
+                Some(factors) => Inverse::Real(factors),
+                None => Inverse::Diagonal,
+            },
             (Pace::Marching, Some(period)) => {
                 let stiffness = solids.stiffness(&self.work, t, 1.0, 0.0);
                 let of = |k: usize| {

@@ -14,10 +14,10 @@
 use std::ops::Range;
 use std::sync::{Arc, OnceLock};
 
+use crate::math::Vector;
 use crate::math::jet::Jet;
 use crate::math::sparse::Factors;
 use crate::math::sweep::sweep_slots;
-use crate::math::Vector;
 use crate::motion::{BodyMotion, SurfaceNet};
 use crate::scheme::{Fluid, View};
 use crate::solid::Structure;
@@ -315,7 +315,14 @@ impl<const D: usize> Solids<D> {
     }
 
     /// d/dt of the unknowns `u` at the time `t` under the loads in `work`.
-    pub(super) fn rates(&self, (t, jets): (f64, &[Jet]), pace: Pace, u: &[f64], work: &mut Work<D>, change: &mut [f64]) {
+    pub(super) fn rates(
+        &self,
+        (t, jets): (f64, &[Jet]),
+        pace: Pace,
+        u: &[f64],
+        work: &mut Work<D>,
+        change: &mut [f64],
+    ) {
         self.split(u, work);
         self.hold(t, &mut work.led);
         self.hold_velocity(t, &mut work.led_velocity);

@@ -58,14 +58,20 @@ mod tests {
 
     /// Powers of x at the places `x`, their value and slope at 0.3.
     fn powers(x: &[f64]) -> Vec<Basis> {
-        (0..3).map(|p| Basis { at_nodes: x.iter().map(|x| x.powi(p)).collect(), asked: vec![0.3f64.powi(p), f64::from(p) * 0.3f64.powi(p - 1)] }).collect()
+        (0..3)
+            .map(|p| Basis {
+                at_nodes: x.iter().map(|x| x.powi(p)).collect(),
+                asked: vec![0.3f64.powi(p), f64::from(p) * 0.3f64.powi(p - 1)],
+            })
+            .collect()
     }
 
     #[test]
     fn what_is_in_the_span_comes_back_and_few_nodes_span_less() {
         let x = [0.0, 0.2, 0.5, 0.6, 1.0];
         let found = weights(powers(&x), &[1.0, 3.0, 0.5, 2.0, 1.0]);
-        let of = |row: usize, f: fn(f64) -> f64| found[row * 5..][..5].iter().zip(x).map(|(w, x)| w * f(x)).sum::<f64>();
+        let of =
+            |row: usize, f: fn(f64) -> f64| found[row * 5..][..5].iter().zip(x).map(|(w, x)| w * f(x)).sum::<f64>();
         assert!((of(0, |x| 1.0 - 2.0 * x + 3.0 * x * x) - 0.67).abs() < 1e-13);
         assert!((of(1, |x| 1.0 - 2.0 * x + 3.0 * x * x) + 0.2).abs() < 1e-12);
         // two nodes know no parabola

@@ -114,7 +114,8 @@ impl<const D: usize> SurfaceNet<D> {
     /// Displacements where the coordinates of all bodies are `jets`.
     pub fn displacement(&self, jets: &[Jet]) -> NetDisplacement<D> {
         let nodes = self.of(jets, |jet| jet.value);
-        let group = |g: &Group<D>| g.members.iter().fold(Vector::ZERO, |sum, (k, part)| sum + nodes[*k as usize] * *part);
+        let group =
+            |g: &Group<D>| g.members.iter().fold(Vector::ZERO, |sum, (k, part)| sum + nodes[*k as usize] * *part);
         let groups = self.levels.iter().flat_map(|l| l.groups.iter().map(group)).collect();
         NetDisplacement { nodes, groups }
     }
@@ -151,7 +152,9 @@ impl<const D: usize> SurfaceNet<D> {
         let nearest = carries.map(|(p, _)| (*p - *x).norm_squared()).fold(f64::INFINITY, f64::min).sqrt();
         let reach = REACH[0] * self.spacing + REACH[1] * nearest;
         let fits = |l: &&Level<D>| l.size <= GROUP[D - 2] * reach;
-        let Some(level) = self.levels.iter().rev().find(fits).or(self.levels.first()) else { return Carried::default() };
+        let Some(level) = self.levels.iter().rev().find(fits).or(self.levels.first()) else {
+            return Carried::default();
+        };
         let mut nodes = Vec::new();
         for (g, group) in (level.first..).zip(&level.groups) {
             let r = (group.place - *x).norm() / reach;
@@ -230,8 +233,12 @@ fn along_surface<const D: usize>(nodes: &[(u32, Vector<D>, f64)], normal: &Vecto
     let mut all = rigid(nodes);
     if D == 2 {
         // γz²
-        all.push(field(nodes, |d| Vector::from_fn(|k| if k == 0 { d[0] * d[0] - d[1] * d[1] } else { 2.0 * d[0] * d[1] })));
-        all.push(field(nodes, |d| Vector::from_fn(|k| if k == 1 { d[0] * d[0] - d[1] * d[1] } else { -2.0 * d[0] * d[1] })));
+        all.push(field(nodes, |d| {
+            Vector::from_fn(|k| if k == 0 { d[0] * d[0] - d[1] * d[1] } else { 2.0 * d[0] * d[1] })
+        }));
+        all.push(field(nodes, |d| {
+            Vector::from_fn(|k| if k == 1 { d[0] * d[0] - d[1] * d[1] } else { -2.0 * d[0] * d[1] })
+        }));
         return all;
     }
     let [t, s] = tangents(normal);
@@ -313,7 +320,8 @@ mod tests {
 
     #[test]
     fn small_rigid_motions_carry_a_plate_in_space() {
-        let place: Vec<Vector<3>> = (0..100).map(|k| Vector([f64::from(k % 10), f64::from(k / 10), 0.0]) * 0.1).collect();
+        let place: Vec<Vector<3>> =
+            (0..100).map(|k| Vector([f64::from(k % 10), f64::from(k / 10), 0.0]) * 0.1).collect();
         let area = vec![Vector([0.0, 0.0, 0.01]); 100];
         let net = SurfaceNet::new(0, place.clone(), &area, 0.1);
         let turned = |x: &Vector<3>| Vector([0.2 * x[2] - 0.1 * x[1], 0.1 * x[0] + 0.4, 0.05 - 0.2 * x[0]]);

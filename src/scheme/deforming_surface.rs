@@ -8,9 +8,9 @@
 //! vectors, normals and curvature depend on.
 use crate::cloud::{Cloud, Interface, Strain};
 use crate::math::Vector;
-use crate::math::sweep::sweep_slots;
 use crate::math::jet::Jet;
 use crate::math::moving_fit::{Basis, weights};
+use crate::math::sweep::sweep_slots;
 use crate::motion::{BodyMotion, Carried, Expansion, tangents};
 
 /// Interface particles around one that say how the surface bends there, in the plane and in space.
@@ -101,9 +101,8 @@ impl<const D: usize> DeformingSurface<D> {
         let lifted = lifted::<D>(&along).unwrap_or(n);
         let tangents = bending.tangents;
         // F takes the tangents to what they become, and the normal to the normal
-        let map: [Vector<D>; D] = std::array::from_fn(|i| {
-            (0..D - 1).fold(n * lifted[i], |row, a| row + tangents[a] * along[a][i])
-        });
+        let map: [Vector<D>; D] =
+            std::array::from_fn(|i| (0..D - 1).fold(n * lifted[i], |row, a| row + tangents[a] * along[a][i]));
         let curved = |a: usize, b: usize| tangents[a].dot(&Vector::from_fn(|d| rest.curvature[d].dot(&tangents[b])));
         let mut second = [[Vector::ZERO; D]; D];
         for (a, b, k) in [(0, 0, 2), (0, 1, 3), (1, 0, 3), (1, 1, 4)] {
@@ -169,8 +168,7 @@ fn bending<const D: usize>(cloud: &Cloud<D>, laws: &[BodyMotion<D>], w: usize) -
         *k != w && other.body == own.body && other.piece == own.piece && other.normal.dot(&own.normal) > OTHER_SIDE
     };
     let distance = |k: usize| (place(k) - place(w)).norm_squared();
-    let mut near: Vec<(f64, u32)> =
-        (0..cloud.interface.len()).filter(like).map(|k| (distance(k), k as u32)).collect();
+    let mut near: Vec<(f64, u32)> = (0..cloud.interface.len()).filter(like).map(|k| (distance(k), k as u32)).collect();
     let count = AROUND[D - 2].min(near.len());
     if count < near.len() {
         near.select_nth_unstable_by(count, |a, b| a.0.total_cmp(&b.0).then(a.1.cmp(&b.1)));

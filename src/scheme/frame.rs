@@ -96,7 +96,9 @@ impl<const D: usize> Frame<D> {
         let Discretisation { cloud, operators, .. } = self.discretisation.as_ref();
         let mut all = vec![0.0; cloud.interface.len()];
         for face in (0..operators.n_fluid_parts).flat_map(|k| operators.wall_faces(k)) {
-            if let Some(slot) = cloud.source(face.wall as usize).index.checked_sub(cloud.n_fluid).and_then(|w| all.get_mut(w)) {
+            if let Some(slot) =
+                cloud.source(face.wall as usize).index.checked_sub(cloud.n_fluid).and_then(|w| all.get_mut(w))
+            {
                 *slot += face.area.norm();
             }
         }

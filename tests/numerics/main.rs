@@ -13,6 +13,7 @@ mod modes;
 mod motion;
 mod operators;
 mod properties;
+mod solids;
 mod steps;
 mod structure;
 mod travel;

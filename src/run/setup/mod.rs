@@ -11,11 +11,11 @@ mod solids;
 use std::path::Path;
 use std::sync::Arc;
 
+pub(crate) use self::solids::solids;
 pub(crate) use bodies::{bodies, described};
 pub(crate) use motion_feasibility::check as check_motion;
 pub(crate) use refinement::{adapted, behind_shocks};
 pub(crate) use sanity::sane;
-pub(crate) use self::solids::solids;
 pub(crate) use size::spec;
 
 use super::accuracy;
@@ -25,7 +25,7 @@ use super::look::forces::ForceModes;
 use super::look::reference::chord;
 use super::recipe;
 use super::stage::Stage;
-use crate::case::{Case, ParticleMotion, Temporal};
+use crate::case::{Case, ParticleMotion, RungeKutta, Temporal};
 use crate::cloud::conservative::conservative as conserve;
 use crate::cloud::sources::Source;
 use crate::cloud::travel::BackgroundDomain;
@@ -65,13 +65,26 @@ pub(crate) fn supported(case: &Case) -> Result<(), RunError> {
     let slow = case.scheme.low_mach && !conserves(case);
     let sprung = !case.structures.is_empty();
     let explicit = sprung && matches!(case.time, Temporal::Explicit(_));
-    let carried = sprung && case.particles() == ParticleMotion::Lagrangian;
+    let soft = case.has_gas() && case.solids().next().is_some();
+    let carried = (sprung || soft) && case.particles() == ParticleMotion::Lagrangian;
+    let march = if let Temporal::Explicit(plan) = &case.time { Some(plan) } else { None };
+    let fourth = soft && march.is_some_and(|plan| plan.method == RungeKutta::Rk4);
+    let unfaced = soft && march.is_some() && !conserves(case);
     let asks = [
         (
             explicit,
             "bodies on springs with explicit steps (`[structure]` needs `[time.steady]`, `[time.dual]` or `harmonics`)",
         ),
-        (carried, "bodies on springs among particles that travel with the fluid (`particles = \"lagrangian\"`)"),
+        (fourth, "bodies made of particles with `method = \"rk4\"` (leave it out)"),
+        (
+            unfaced,
+            "bodies made of particles with explicit steps and without conservative coefficients (take `[time.dual]`, or leave out \
+             `conservative` and `wall_layers`)",
+        ),
+        (
+            carried,
+            "bodies on springs, or made of particles, among particles that travel with the fluid (`particles = \"lagrangian\"`)",
+        ),
         (layered, "wall layers of particles that travel with the fluid (`wall_layers`, `particles = \"lagrangian\"`)"),
         (bare, "a deforming cloud without bodies (`particles = \"deforming\"`)"),
         (slow, "slow flow without conservative coefficients (`low_mach = true` needs `conservative = true`)"),

@@ -15,6 +15,9 @@ use crate::observe::structure::{CoordinateName, StructureNames};
 /// Axes by their names.
 const AXES: [&str; 3] = ["x", "y", "z"];
 
+/// Bodies made of particles, and what is said of them.
+pub(crate) type Found<const D: usize> = (Arc<Solids<D>>, Vec<Described>);
+
 /// The bodies of a case that are made of particles, after `first` coordinates of others, and what is said of them; `motions` then
 /// hand these bodies over to their particles.
 pub(crate) fn solids<const D: usize>(
@@ -23,7 +26,7 @@ pub(crate) fn solids<const D: usize>(
     first: usize,
     motions: &mut Motions<D>,
     monitor: &mut dyn Monitor,
-) -> Result<Option<(Arc<Solids<D>>, Vec<Described>)>, RunError> {
+) -> Result<Option<Found<D>>, RunError> {
     if case.solids().next().is_none() {
         return Ok(None);
     }
@@ -80,7 +83,13 @@ fn body<const D: usize>(
     let net = SurfaceNet::new(first + D * range.start, place, area, particles.spacing[range.start]);
     let law = motions.of(number);
     let probes = built.probes.iter().map(|p| p.1).filter(|i| range.contains(i)).collect();
-    SolidBody { body: number, particles: range, net: Arc::new(net), lead: (!law.is_fixed()).then(|| law.clone()), probes }
+    SolidBody {
+        body: number,
+        particles: range,
+        net: Arc::new(net),
+        lead: (!law.is_fixed()).then(|| law.clone()),
+        probes,
+    }
 }
 
 /// The bodies in words: the mean displacement of each, and those of its probes.

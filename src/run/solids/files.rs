@@ -124,7 +124,11 @@ fn mises(s: &Tensor) -> f64 {
 }
 
 /// Writes particles where they are, with displacement, velocity, stress and what materials remember.
-pub(in crate::run) fn write<const D: usize>(path: &Path, solid: &Solid<D>, state: &State<'_, D>) -> Result<(), RunError> {
+pub(in crate::run) fn write<const D: usize>(
+    path: &Path,
+    solid: &Solid<D>,
+    state: &State<'_, D>,
+) -> Result<(), RunError> {
     let stresses: Vec<Tensor> = (0..solid.len()).map(|i| solid.cauchy(i, state)).collect();
     let raised = |v: &[[f64; D]]| -> Vec<f64> {
         v.iter().flat_map(|v| std::array::from_fn::<f64, 3, _>(|a| v.get(a).copied().unwrap_or(0.0))).collect()

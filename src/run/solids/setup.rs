@@ -4,7 +4,7 @@ use std::path::Path;
 use super::super::error::RunError;
 use super::material::material;
 use crate::case::formula::Formula;
-use crate::case::{Domain, Side, Body, Case, PlaneState, Shape, Solid as Data, SolidFill, SolidPlace, Temporal};
+use crate::case::{Body, Case, Domain, PlaneState, Shape, Side, Solid as Data, SolidFill, SolidPlace, Temporal};
 use crate::geometry::{Surface, load_surface};
 use crate::math::{Bounds, Vector};
 use crate::physics::solid::{Law, Material};
@@ -150,7 +150,9 @@ fn cut_off<const D: usize>(corners: Vec<Vector<D>>, cuts: &[Cut], name: &str) ->
 
 fn uncut(name: &str) -> RunError {
     RunError::Solid {
-        what: format!("a plane of symmetry at a side of the domain cuts `{name}`: only boxes along the axes can be cut"),
+        what: format!(
+            "a plane of symmetry at a side of the domain cuts `{name}`: only boxes along the axes can be cut"
+        ),
         hint: "let the body end before the side, or make it a `box`".into(),
     }
 }
