@@ -13,6 +13,7 @@ use crate::cloud::grid::Grid;
 use crate::math::Vector;
 use crate::math::conjugate::{Symmetric, conjugate_gradients};
 use crate::math::least_squares::{gradient_weight, normal_inverse, normal_matrix};
+use crate::math::sparse;
 use crate::math::sweep::{first, maximum, sum, sweep, sweep_each};
 
 /// Radius of a cloud in spacings, in the plane and in space, where rows do not say who neighbours are: between the second and the
@@ -20,6 +21,10 @@ use crate::math::sweep::{first, maximum, sum, sweep, sweep_each};
 pub const REACH: [f64; 2] = [1.8, 1.4];
 /// What the divergence theorem may leave of a particle's area h^(D−1).
 const CLOSED: f64 = 1e-11;
+/// Particles up to which the equations of the correction are preconditioned by their factors, in the plane and in space.
+const FACTORED: [usize; 2] = [200_000, 30_000];
+/// Part of its diagonal that is added to a matrix which does not see linear fields.
+const LITTLE: f64 = 1e-10;
 /// Most iterations of the correction.
 const ITERATIONS: usize = 5000;
 
@@ -299,6 +304,8 @@ impl<const D: usize> Particles<D> {
             };
             self.of(i).iter().map(of).sum::<f64>()
         });
+        let factors = self.factored(&diagonal);
+        let mut column = vec![0.0; n];
         self.iterations = conjugate_gradients(
             &mut lambda,
             &mut left,
@@ -309,7 +316,16 @@ impl<const D: usize> Particles<D> {
                     sweep(&mut gradient, |i| self.raw_gradient(i, q));
                     sweep(out, |i| self.residuals(i, q, &gradient));
                 },
-                precondition: |r: &[Vector<D>], z: &mut [Vector<D>]| sweep(z, |i| r[i] * (1.0 / diagonal[i])),
+                precondition: |r: &[Vector<D>], z: &mut [Vector<D>]| match &factors {
+                    None => sweep(z, |i| r[i] * (1.0 / diagonal[i])),
+                    Some(factors) => {
+                        for a in 0..D {
+                            column.iter_mut().zip(r).for_each(|(c, r)| *c = r[a]);
+                            factors.solve(&mut column);
+                            z.iter_mut().zip(&column).for_each(|(z, c)| z[a] = *c);
+                        }
+                    }
+                },
             },
         );
         sweep(&mut gradient, |i| self.raw_gradient(i, &lambda));
@@ -335,6 +351,79 @@ impl<const D: usize> Particles<D> {
         let fewest = (0..n).min_by_key(|i| self.of(*i).len()).unwrap_or(0);
         let (place, count) = (self.x[fewest].0.to_vec(), self.of(fewest).len());
         Err(Unfit::Open { place, count, left, iterations: self.iterations })
+    }
+
+    /// Σ_j w R_ijᵀR_ij of the cloud around particle `m`, among itself and then its neighbours.
+    pub(super) fn residual_block(&self, m: usize) -> Vec<Vec<f64>> {
+        let edges = self.of(m);
+        let n = edges.len() + 1;
+        let offset = |k: usize| self.x[edges[k - 1].other as usize] - self.x[m];
+        let inverse = self.inverse(m);
+        let solved = |k: usize| Vector::from_fn(|r| (0..D).map(|c| inverse[r][c] * offset(k)[c]).sum::<f64>());
+        let solved: Vec<Vector<D>> = (1..n).map(solved).collect();
+        let weight = |k: usize| 1.0 / offset(k).norm_squared();
+        let mut residual = vec![vec![0.0; n]; n];
+        for j in 1..n {
+            for k in 1..n {
+                let diagonal = if j == k { weight(j) } else { 0.0 };
+                let entry = diagonal - weight(j) * weight(k) * offset(j).dot(&solved[k - 1]);
+                residual[j][k] += entry;
+                residual[0][k] -= entry;
+                residual[j][0] -= entry;
+                residual[0][0] += entry;
+            }
+        }
+        residual
+    }
+
+    /// A matrix of zeros among those that share a cloud, with `block` rows a particle: each with itself and later ones.
+    pub(super) fn pattern(&self, block: usize) -> sparse::Symmetric {
+        let mut all = sparse::Symmetric { first: vec![0], ..sparse::Symmetric::default() };
+        let (mut later, mut seen) = (Vec::new(), vec![usize::MAX; self.len()]);
+        for i in 0..self.len() {
+            later.clear();
+            let near = |i: usize| self.of(i).iter().map(|e| e.other as usize);
+            for k in near(i).chain(std::iter::once(i)).flat_map(|m| near(m).chain(std::iter::once(m))) {
+                if k >= i && seen[k] != i {
+                    seen[k] = i;
+                    later.push(k);
+                }
+            }
+            later.sort_unstable();
+            for a in 0..block {
+                for k in &later {
+                    let from = if *k == i { a } else { 0 };
+                    all.row.extend((from..block).map(|c| k * block + c));
+                }
+                all.first.push(all.row.len());
+            }
+        }
+        all.value = vec![0.0; all.row.len()];
+        all
+    }
+
+    /// Factors of L, which the linear fields that it does not see would make singular, with a little of its diagonal; `None` of
+    /// large clouds.
+    fn factored(&self, diagonal: &[f64]) -> Option<sparse::Factors> {
+        if self.len() > FACTORED[D - 2] {
+            return None;
+        }
+        let mut all = self.pattern(1);
+        for m in 0..self.len() {
+            let block = self.residual_block(m);
+            let members: Vec<usize> = std::iter::once(m).chain(self.of(m).iter().map(|e| e.other as usize)).collect();
+            for (j, row) in members.iter().enumerate() {
+                for (k, column) in members.iter().enumerate().filter(|(_, column)| **column <= *row) {
+                    let range = all.first[*column]..all.first[*column + 1];
+                    let at = range.start + all.row[range.clone()].partition_point(|r| r < row);
+                    all.value[at] += self.volume[m] * block[j][k];
+                }
+            }
+        }
+        for (k, d) in diagonal.iter().enumerate() {
+            all.value[all.first[k]] += LITTLE * d;
+        }
+        all.factor()
     }
 
     /// Gradients of all components of a field by the plain fit.

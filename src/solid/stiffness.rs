@@ -19,26 +19,10 @@ impl<const D: usize> Cloud<D> {
     fn around(solid: &Solid<D>, m: usize) -> Self {
         let particles = &solid.particles;
         let edges = particles.of(m);
-        let n = edges.len() + 1;
         let members: Vec<usize> = std::iter::once(m).chain(edges.iter().map(|e| e.other as usize)).collect();
         let own = edges.iter().fold(Vector::ZERO, |sum: Vector<D>, e| sum - e.own);
         let weights = std::iter::once(own).chain(edges.iter().map(|e| e.own)).collect();
-        let offset = |k: usize| particles.x[members[k]] - particles.x[m];
-        let inverse = particles.inverse(m);
-        let solved: Vec<Vector<D>> =
-            (0..n).map(|k| Vector::from_fn(|r| (0..D).map(|c| inverse[r][c] * offset(k)[c]).sum::<f64>())).collect();
-        let weight = |k: usize| 1.0 / offset(k).norm_squared();
-        let mut residual = vec![vec![0.0; n]; n];
-        for j in 1..n {
-            for k in 1..n {
-                let diagonal = if j == k { weight(j) } else { 0.0 };
-                let entry = diagonal - weight(j) * weight(k) * offset(j).dot(&solved[k]);
-                residual[j][k] += entry;
-                residual[0][k] -= entry;
-                residual[j][0] -= entry;
-                residual[0][0] += entry;
-            }
-        }
+        let residual = particles.residual_block(m);
         Self { members, weights, residual }
     }
 }
@@ -46,7 +30,7 @@ impl<const D: usize> Cloud<D> {
 impl<const D: usize> Solid<D> {
     /// `scale` K + `shift` M among what is free, one for what is held.
     pub fn matrix_of(&self, tangents: &Tangents<D>, scale: f64, shift: f64) -> Symmetric {
-        let mut all = self.pattern();
+        let mut all = self.particles.pattern(D);
         for m in 0..self.len() {
             self.add_cloud(m, tangents, scale, &mut all);
         }
@@ -76,32 +60,6 @@ impl<const D: usize> Solid<D> {
                 }
             }
         }
-        all
-    }
-
-    /// Which particles share a cloud, each with itself and later ones.
-    fn pattern(&self) -> Symmetric {
-        let mut all = Symmetric { first: vec![0], ..Symmetric::default() };
-        let (mut later, mut seen) = (Vec::new(), vec![usize::MAX; self.len()]);
-        for i in 0..self.len() {
-            later.clear();
-            let near = |i: usize| self.particles.of(i).iter().map(|e| e.other as usize);
-            for k in near(i).chain(std::iter::once(i)).flat_map(|m| near(m).chain(std::iter::once(m))) {
-                if k >= i && seen[k] != i {
-                    seen[k] = i;
-                    later.push(k);
-                }
-            }
-            later.sort_unstable();
-            for a in 0..D {
-                for k in &later {
-                    let from = if *k == i { a } else { 0 };
-                    all.row.extend((from..D).map(|c| k * D + c));
-                }
-                all.first.push(all.row.len());
-            }
-        }
-        all.value = vec![0.0; all.row.len()];
         all
     }
 

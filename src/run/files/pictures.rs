@@ -19,6 +19,9 @@ const FILM_PIXELS: usize = 450;
 /// Greatest Mach number in the colours of a film strip, in that of the free stream.
 const FILM_RANGE: f64 = 2.0;
 
+/// Parts of the length of a body made of particles that its outline is drawn in.
+const BENT: f64 = 60.0;
+
 /// A flow picture: file name, (title, quantity, colours, contours), value of a state.
 type Drawn<'a, const D: usize> = (&'a str, (&'a str, &'a str, Colormap, &'a [f64]), Value<'a, D>);
 type Value<'a, const D: usize> = &'a (dyn Fn(&Primitive<D>) -> f64 + Sync);
@@ -56,9 +59,17 @@ fn outlines<const D: usize>(scene: &Scene<'_, D>) -> Vec<Vec<Vector<2>>> {
     let mut all: Vec<(u16, Vec<Vector<2>>)> = Vec::new();
     for chain in surface.chains() {
         let body = surface.element(chain.elements[0]).body;
-        let points = chain.elements.iter().map(|e| {
-            let p = scene.view.carried(usize::from(body), &surface.corners(*e)[0]);
-            Vector([p[0], p[1]])
+        // long straight sides bend with what is behind them
+        let bends = scene.view.fluid.cloud_motion.law_of(usize::from(body)).is_some_and(|law| law.net().is_some());
+        let longest = surface.bounds_of(usize::from(body)).extent().max_abs() / BENT;
+        let points = chain.elements.iter().flat_map(|e| {
+            let corners = surface.corners(*e);
+            let side = corners[D - 1] - corners[0];
+            let parts = if bends { (side.norm() / longest).ceil().max(1.0) } else { 1.0 };
+            (0..parts as usize).map(move |k| {
+                let p = scene.view.carried(usize::from(body), &(corners[0] + side * (k as f64 / parts)));
+                Vector([p[0], p[1]])
+            })
         });
         match all.last_mut() {
             Some((b, line)) if *b == body => line.extend(points),
