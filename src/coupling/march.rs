@@ -16,7 +16,7 @@ use super::solids::{OnCloud, Work as SolidWork};
 use super::{Coupled, Frame, Work};
 use crate::math::Vector;
 use crate::math::conjugate::{Symmetric, conjugate_gradients};
-use crate::math::sweep::{sum, sweep, sweep_rows};
+use crate::math::sweep::{sum, sweep_rows};
 use crate::scheme::{Taken, View};
 use crate::system::{Instant, Mechanical, System, rows};
 use crate::time::explicit::{Plan, SSPRK3, Stage};
@@ -67,17 +67,7 @@ pub struct March<'a, const D: usize> {
 impl<'a, const D: usize> March<'a, D> {
     /// Prepares a march of `system` with its bodies made of particles from the state `u`.
     pub fn new(system: &'a Coupled<D>, on: &'a OnCloud<D>, plan: Plan, past: Past, u: Vec<f64>) -> Self {
-        let (end, step, now) = (past.time, past.last, &u[system.placing()]);
-        let frame = match past.before.get(system.placing()).filter(|_| step > 0.0) {
-            Some(before) => system.frame(&Instant::between(end - step, step, 1.0, [before, now]), &u),
-            None => {
-                // walls begin with the velocity of the bodies
-                let step = BEFORE / on.solids.omega;
-                let before: Vec<f64> =
-                    now.chunks_exact(2).flat_map(|pair| [pair[0] - step * pair[1], pair[1]]).collect();
-                system.frame(&Instant::between(end - step, step, 1.0, [&before, now]), &u)
-            }
-        };
+        let frame = frame_after(system, on, &past, &u);
         let n = on.solids.len();
         let blank = Meeting {
             force: Vector::ZERO,
@@ -209,6 +199,17 @@ impl<'a, const D: usize> March<'a, D> {
     }
 }
 
+/// The frame at the end of the last step; at the start, walls come with the velocity of the bodies.
+fn frame_after<const D: usize>(system: &Coupled<D>, on: &OnCloud<D>, past: &Past, u: &[f64]) -> Frame<D> {
+    let (end, step, now) = (past.time, past.last, &u[system.placing()]);
+    if let Some(before) = past.before.get(system.placing()).filter(|_| step > 0.0) {
+        return system.frame(&Instant::between(end - step, step, 1.0, [before, now]), u);
+    }
+    let step = BEFORE / on.solids.omega;
+    let before: Vec<f64> = now.chunks_exact(2).flat_map(|pair| [pair[0] - step * pair[1], pair[1]]).collect();
+    system.frame(&Instant::between(end - step, step, 1.0, [&before, now]), u)
+}
+
 /// Velocities by the forces of neighbours in `work` and those of the gas at the end of `tau`; the work of the latter on the particles.
 fn kick<const D: usize>(
     on: &OnCloud<D>,
@@ -221,35 +222,9 @@ fn kick<const D: usize>(
     let (solid, pressure) = (&solids.structure.solid, solids.scales.pressure);
     let free = |i: usize, v: Vector<D>| Vector::from_fn(|a| if solid.is_held(i, a) { 0.0 } else { v[a] });
     let mass = |i: usize| solids.mass(i);
-    // (M/τ + C) δ = f + Wᵀ (F − n Z A n·(W v − w)), C = Wᵀ n Z A nᵀ W
-    let n = velocity.len();
-    let mut right = vec![Vector::ZERO; n];
-    for (meeting, wall) in meetings.iter().zip(&on.walls) {
-        let moved = wall.of(|i| velocity[i].0).dot(&meeting.normal) - meeting.speed;
-        wall.push(&(meeting.force - meeting.normal * (meeting.impedance * moved)), &mut right);
-    }
-    sweep(&mut work.load, |i| right[i]);
     let force = &work.force;
-    sweep_rows(&mut right, 1, |i, r| r[0] = free(i, r[0] + Vector(force[i]) * (1.0 / pressure)));
-    let mut change = vec![Vector::ZERO; n];
-    let size = right.iter().map(Vector::max_abs).fold(f64::MIN_POSITIVE, f64::max);
-    conjugate_gradients(
-        &mut change,
-        &mut right,
-        ITERATIONS,
-        Symmetric {
-            enough: |r: &[Vector<D>]| r.iter().all(|r| r.max_abs() <= SOLVED * size),
-            product: |q: &[Vector<D>], out: &mut [Vector<D>]| {
-                out.fill(Vector::ZERO);
-                for (meeting, wall) in meetings.iter().zip(&on.walls) {
-                    let moved = wall.of(|i| free(i, q[i]).0).dot(&meeting.normal);
-                    wall.push(&(meeting.normal * (meeting.impedance * moved)), out);
-                }
-                sweep_rows(out, 1, |i, o| o[0] = free(i, o[0]) + q[i] * (mass(i) / tau));
-            },
-            precondition: |r: &[Vector<D>], z: &mut [Vector<D>]| sweep(z, |i| r[i] * (tau / mass(i))),
-        },
-    );
+    implicit(on, (force, velocity), meetings, (tau, &mut work.load, &mut work.change));
+    let change = &work.change;
     // the forces are those of the velocity found; what they do is exact
     work.load.fill(Vector::ZERO);
     let mut met = vec![Vector::ZERO; meetings.len()];
@@ -259,7 +234,8 @@ fn kick<const D: usize>(
         wall.push(met, &mut work.load);
     }
     let load = &work.load;
-    let before = velocity.to_vec();
+    work.before.copy_from_slice(velocity);
+    let before = &work.before;
     sweep_rows(velocity, 1, |i, v| {
         v[0] += free(i, (Vector(force[i]) * (1.0 / pressure) + load[i]) * (tau / mass(i)));
     });
@@ -271,7 +247,57 @@ fn kick<const D: usize>(
     for (case, v) in work.velocity.iter_mut().zip(&*velocity) {
         *case = v.0.map(|v| v * speed);
     }
-    sum(n, |i| work.load[i].dot(&((before[i] + velocity[i]) * (0.5 * tau))))
+    sum(velocity.len(), |i| work.load[i].dot(&((before[i] + velocity[i]) * (0.5 * tau))))
+}
+
+/// Adds to `change` the change δ of the velocity of the surface in `tau`, with the pressure that it meets at its end:
+/// (M/τ + C) δ = f + Wᵀ (F − n Z A n·(W v − w)), C = Wᵀ n Z A nᵀ W. `load` is storage.
+fn implicit<const D: usize>(
+    on: &OnCloud<D>,
+    (force, velocity): (&[[f64; D]], &[Vector<D>]),
+    meetings: &[Meeting<D>],
+    (tau, load, change): (f64, &mut [Vector<D>], &mut [Vector<D>]),
+) {
+    let (solids, surface) = (&on.solids, &on.surface);
+    let solid = &solids.structure.solid;
+    let free = |i: usize, v: Vector<D>| Vector::from_fn(|a| if solid.is_held(i, a) { 0.0 } else { v[a] });
+    let mass = |k: usize| solids.mass(surface[k] as usize);
+    load.fill(Vector::ZERO);
+    for (meeting, wall) in meetings.iter().zip(&on.walls) {
+        let moved = wall.of(|i| velocity[i].0).dot(&meeting.normal) - meeting.speed;
+        wall.push(&(meeting.force - meeting.normal * (meeting.impedance * moved)), load);
+    }
+    let per = 1.0 / solids.scales.pressure;
+    let at = |i: &u32| free(*i as usize, load[*i as usize] + Vector(force[*i as usize]) * per);
+    let mut right: Vec<Vector<D>> = surface.iter().map(at).collect();
+    let mut found = vec![Vector::ZERO; surface.len()];
+    let size = right.iter().map(Vector::max_abs).fold(f64::MIN_POSITIVE, f64::max);
+    let (spread, pushed) = (change, load);
+    conjugate_gradients(
+        &mut found,
+        &mut right,
+        ITERATIONS,
+        Symmetric {
+            enough: |r: &[Vector<D>]| r.iter().all(|r| r.max_abs() <= SOLVED * size),
+            product: |q: &[Vector<D>], out: &mut [Vector<D>]| {
+                for (q, i) in q.iter().zip(surface) {
+                    (spread[*i as usize], pushed[*i as usize]) = (free(*i as usize, *q), Vector::ZERO);
+                }
+                for (meeting, wall) in meetings.iter().zip(&on.walls) {
+                    let moved = wall.of(|i| spread[i].0).dot(&meeting.normal);
+                    wall.push(&(meeting.normal * (meeting.impedance * moved)), pushed);
+                }
+                for (k, out) in out.iter_mut().enumerate() {
+                    let i = surface[k] as usize;
+                    *out = free(i, pushed[i]) + q[k] * (mass(k) / tau);
+                }
+            },
+            precondition: |r: &[Vector<D>], z: &mut [Vector<D>]| {
+                z.iter_mut().enumerate().for_each(|(k, z)| *z = r[k] * (tau / mass(k)));
+            },
+        },
+    );
+    surface.iter().zip(found).for_each(|(i, found)| spread[*i as usize] = found);
 }
 
 /// Displacements by the velocities over `tau`, with what is held where it is to be at `end`.
@@ -326,11 +352,6 @@ impl<const D: usize> Integrator<Coupled<D>> for March<'_, D> {
         SSPRK3.iter().for_each(|s| self.stage(s, dt));
         self.place(dt, 1.0);
         self.hand_over(dt);
-        let begin = self.past.time;
-        self.past.time = if dt == left { self.plan.until } else { begin + dt };
-        (self.past.last, self.past.iteration) = (dt, self.past.iteration + 1);
-        self.past.before.clear();
-        self.past.before.extend_from_slice(&self.start);
         self.system.update_boundary_state(&self.u, &mut self.work, &mut self.frame);
         let crowded = self.system.check_frame(&self.frame).err();
         let hint = match crowded {
@@ -341,10 +362,13 @@ impl<const D: usize> Integrator<Coupled<D>> for March<'_, D> {
         };
         if let Some(fault) = crowded.or_else(|| self.system.check(&self.frame, &self.u).err()) {
             self.u.copy_from_slice(&self.start);
-            (self.past.time, self.past.iteration) = (begin, self.past.iteration - 1);
-            self.place(dt, 0.0);
+            self.frame = frame_after(self.system, self.on, &self.past, &self.u);
             return Err(TimeError::Fault { fault, iteration: self.past.iteration + 1, hint });
         }
+        self.past.time = if dt == left { self.plan.until } else { self.past.time + dt };
+        (self.past.last, self.past.iteration) = (dt, self.past.iteration + 1);
+        self.past.before.clear();
+        self.past.before.extend_from_slice(&self.start);
         let (iteration, time) = (self.past.iteration, self.past.time);
         Ok(Step { iteration, time, cfl: self.plan.cfl, residual: 1.0, linear: 0 })
     }

@@ -87,6 +87,8 @@ pub struct OnCloud<const D: usize> {
     pub solids: Arc<Solids<D>>,
     /// Their interface particles.
     pub walls: Vec<OnWall<D>>,
+    /// Particles that carry these, rising.
+    pub surface: Vec<u32>,
 }
 
 /// Storage of an evaluation.
@@ -99,6 +101,9 @@ pub struct Work<const D: usize> {
     pub(super) led_velocity: Vec<[f64; D]>,
     pub(super) history: Vec<f64>,
     pub(super) after: Vec<f64>,
+    /// Change of the velocity of each particle in part of a step, and velocity before.
+    pub(super) change: Vec<Vector<D>>,
+    pub(super) before: Vec<Vector<D>>,
     /// Force of the gas on each particle, in its units.
     pub(super) load: Vec<Vector<D>>,
 }
@@ -263,6 +268,8 @@ impl<const D: usize> Solids<D> {
             led_velocity: zero,
             after: history.clone(),
             history,
+            change: vec![Vector::ZERO; n],
+            before: vec![Vector::ZERO; n],
             load: vec![Vector::ZERO; n],
         }
     }
@@ -474,8 +481,11 @@ impl<const D: usize> OnCloud<D> {
             });
         });
         let on = |(wall, parts): (usize, Option<_>)| parts.map(|parts| OnWall { wall, parts });
-        let walls = parts.into_iter().enumerate().filter_map(on).collect();
-        Self { solids, walls }
+        let walls: Vec<OnWall<D>> = parts.into_iter().enumerate().filter_map(on).collect();
+        let mut surface: Vec<u32> = walls.iter().flat_map(|w| w.parts.iter().map(|(i, _)| *i)).collect();
+        surface.sort_unstable();
+        surface.dedup();
+        Self { solids, walls, surface }
     }
 
     /// Forces of the gas, as `view` has it, on the particles.

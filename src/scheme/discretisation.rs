@@ -8,7 +8,7 @@
 //! flow and a linear field at rest are then kept to round-off, whatever the motion.
 use std::sync::Arc;
 
-use super::deforming_surface::DeformingSurface;
+use super::deforming_surface::{DeformingSurface, SurfaceStrain};
 use super::frame::{Discretisation, Frame};
 use super::travel::Travel;
 use super::wall_fits::WallFits;
@@ -264,10 +264,15 @@ fn turn_walls<const D: usize>(
     let rates: Vec<[Vector<D>; D]> = laws.iter().map(|l| rotation_rate(l, t)).collect();
     let body = |w: usize| usize::from(reference.interface[w].body);
     let carried = deforming_surface.carried(&frame.jets);
+    let mut strains: Vec<Option<SurfaceStrain<D>>> = (0..carried.len()).map(|_| None).collect();
+    sweep_slots(&mut strains, |w, slot| {
+        *slot = deforming_surface.carried_strain(w, &carried, &reference.interface[w]);
+    });
+    let strained = |w: usize| strains.get(w).and_then(Option::as_ref);
     sweep_slots(&mut discretisation.cloud.interface, |w, slot| {
         *slot = reference.interface[w];
-        if let Some(strain) = deforming_surface.carried_strain(w, &carried, slot) {
-            slot.deform(&strain.strain);
+        if let Some(at) = strained(w) {
+            slot.deform(&at.strain);
         } else if let Some((pose, law)) = poses.get(body(w)).zip(laws.get(body(w))) {
             if let Some(surface_strain) = deforming_surface.surface_strain(w, law, t) {
                 slot.deform(&surface_strain.strain);
@@ -279,8 +284,8 @@ fn turn_walls<const D: usize>(
     walls.resize(reference.interface.len(), WallMotion::AT_REST);
     sweep(walls, |w| {
         let Some(law) = laws.get(body(w)) else { return WallMotion::AT_REST };
-        if let Some(strain) = deforming_surface.carried_strain(w, &carried, &reference.interface[w]) {
-            return WallMotion { wall_velocity_gradient: strain.rate, acceleration: carried[w][2] };
+        if let Some(at) = strained(w) {
+            return WallMotion { wall_velocity_gradient: at.rate, acceleration: carried[w][2] };
         }
         let x = &reference.x[reference.n_fluid + w];
         let (wall_velocity_gradient, pose) = (rates[body(w)], &poses[body(w)]);

@@ -343,11 +343,29 @@ impl<const D: usize> Particles<D> {
                 },
             },
         );
-        sweep(&mut gradient, |i| self.raw_gradient(i, &lambda));
+        let worst = self.correct(&lambda);
+        if self.correction > MOST {
+            let (place, count) = (self.x[worst].0.to_vec(), self.of(worst).len());
+            return Err(Unfit::Distorted { place, count, correction: self.correction });
+        }
+        let left = maximum(n, |j| self.open(j).max_abs() / size(j));
+        if left <= 100.0 * CLOSED && first(n, |j| !self.open(j).is_finite()).is_none() {
+            return Ok(());
+        }
+        let fewest = (0..n).min_by_key(|i| self.of(*i).len()).unwrap_or(0);
+        let (place, count) = (self.x[fewest].0.to_vec(), self.of(fewest).len());
+        Err(Unfit::Open { place, count, left, iterations: self.iterations })
+    }
+
+    /// Adds the residuals of `lambda` to the gradients; the particle whose weights change most.
+    fn correct(&mut self, lambda: &[Vector<D>]) -> usize {
+        let n = self.len();
+        let mut gradient = vec![[Vector::ZERO; D]; n];
+        sweep(&mut gradient, |i| self.raw_gradient(i, lambda));
         let mut edges = std::mem::take(&mut self.edges);
         let added = |i: usize, j: usize| {
             let d = self.x[j] - self.x[i];
-            residual((&lambda, &gradient), (i, j), &d) * (self.volume[i] / d.norm_squared())
+            residual((lambda, &gradient), (i, j), &d) * (self.volume[i] / d.norm_squared())
         };
         let (mut changed, mut whole, mut worst) = (0.0, 0.0, (0.0, 0));
         for i in 0..n {
@@ -363,17 +381,7 @@ impl<const D: usize> Particles<D> {
             }
         }
         (self.edges, self.correction) = (edges, (changed / f64::max(whole, f64::MIN_POSITIVE)).sqrt());
-        if self.correction > MOST {
-            let (place, count) = (self.x[worst.1].0.to_vec(), self.of(worst.1).len());
-            return Err(Unfit::Distorted { place, count, correction: self.correction });
-        }
-        let left = maximum(n, |j| self.open(j).max_abs() / size(j));
-        if left <= 100.0 * CLOSED && first(n, |j| !self.open(j).is_finite()).is_none() {
-            return Ok(());
-        }
-        let fewest = (0..n).min_by_key(|i| self.of(*i).len()).unwrap_or(0);
-        let (place, count) = (self.x[fewest].0.to_vec(), self.of(fewest).len());
-        Err(Unfit::Open { place, count, left, iterations: self.iterations })
+        worst.1
     }
 
     /// Σ_j w R_ijᵀR_ij of the cloud around particle `m`, among itself and then its neighbours.
