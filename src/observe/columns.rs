@@ -351,7 +351,7 @@ mod tests {
     #[test]
     fn a_mode_called_pitch_is_a_number() {
         let coordinates = vec![structure::CoordinateName { name: "pitch".into(), angle: false }];
-        let names = [StructureNames { body: "wing".into(), coordinates }];
+        let names = [StructureNames { body: "wing".into(), coordinates, samples: false }];
         assert_eq!(known(structure::FILE, "pitch", &names).unwrap().0, Q::Number);
     }
 

@@ -38,6 +38,8 @@ pub struct StructureNames {
     pub body: String,
     /// Its coordinates.
     pub coordinates: Vec<CoordinateName>,
+    /// True where these are samples of a body made of particles: their loads do not add up to the power that it gets.
+    pub samples: bool,
 }
 
 /// What a coordinate is called, and what it is.
@@ -347,7 +349,7 @@ impl StructureTable {
         let summary = |names: &StructureNames| {
             let (own, others) = rest.split_at(names.coordinates.len().min(rest.len()));
             rest = others;
-            self.summary(names, own, balanced)
+            self.summary(names, own, balanced, structures.len() == 1)
         };
         structures.iter().map(summary).collect()
     }
@@ -359,7 +361,13 @@ impl StructureTable {
         if all > 0.0 { lost / all } else { 0.0 }
     }
 
-    fn summary(&self, names: &StructureNames, own: &[CoordinateHistory], balanced: Option<f64>) -> StructureSummary {
+    fn summary(
+        &self,
+        names: &StructureNames,
+        own: &[CoordinateHistory],
+        balanced: Option<f64>,
+        alone: bool,
+    ) -> StructureSummary {
         let told = |(name, c): (&CoordinateName, &CoordinateHistory)| match balanced {
             Some(omega) => CoordinateSummary::periodic(name, &self.time, &c.values, omega),
             None => CoordinateSummary::of(name, &self.time, &c.values),
@@ -369,8 +377,14 @@ impl StructureTable {
         let fitted = coordinates.iter().filter_map(|c| Some([c.fit_residual?, c.frequency?]));
         let best = fitted.min_by(|a, b| a[0].total_cmp(&b[0])).map(|[_, frequency]| frequency);
         let power = |k: usize| own.iter().map(|c| c.loads[k] * c.rates[k]).sum::<f64>();
-        let power: Vec<f64> = (0..self.len()).map(power).collect();
-        let energy_per_cycle = balanced.or(best).and_then(|frequency| energy_per_cycle(&self.time, &power, frequency));
+        // samples say nothing of the power of all; that of all structures is known
+        let power: Option<Vec<f64>> = match (names.samples, alone) {
+            (false, _) => Some((0..self.len()).map(power).collect()),
+            (true, true) => Some(self.gas_power.clone()),
+            (true, false) => None,
+        };
+        let cycle = |frequency: f64| energy_per_cycle(&self.time, power.as_ref()?, frequency);
+        let energy_per_cycle = balanced.or(best).and_then(cycle);
         let lost_power = self.lost_power();
         StructureSummary {
             body: names.body.clone(),
@@ -443,7 +457,11 @@ pub(crate) mod tests {
     }
 
     pub(crate) fn section() -> StructureNames {
-        StructureNames { body: "wing".into(), coordinates: vec![named("plunge", false), named("pitch", true)] }
+        StructureNames {
+            body: "wing".into(),
+            coordinates: vec![named("plunge", false), named("pitch", true)],
+            samples: false,
+        }
     }
 
     /// A section that swings: plunge decays, pitch keeps its amplitude; walls lose a tenth of the power.
@@ -492,7 +510,7 @@ pub(crate) mod tests {
 
     #[test]
     fn names_of_bodies_stand_before_coordinates_where_there_are_more() {
-        let tail = StructureNames { body: "tail".into(), coordinates: vec![named("pitch", true)] };
+        let tail = StructureNames { body: "tail".into(), coordinates: vec![named("pitch", true)], samples: false };
         let names = columns(&[section(), tail]).join(",");
         assert!(names.starts_with("iteration,time,wing.plunge,wing.plunge_rate,wing.plunge_load,wing.pitch,"));
         assert!(names.ends_with("tail.pitch_load,kinetic,potential,dissipation,gas_power,wall_power,gas_work,ledger"));
@@ -528,7 +546,7 @@ pub(crate) mod tests {
     #[test]
     fn periods_of_a_balance_have_its_frequency_and_modes_are_no_angles() {
         let omega = 0.7;
-        let names = StructureNames { body: "wing".into(), coordinates: vec![named("pitch", false)] };
+        let names = StructureNames { body: "wing".into(), coordinates: vec![named("pitch", false)], samples: false };
         let mut table = StructureTable::of(std::slice::from_ref(&names));
         for k in 0..=256 {
             let phase = std::f64::consts::TAU * f64::from(k) / 128.0;

@@ -55,7 +55,7 @@ pub(crate) fn described<const D: usize>(
         let named =
             |k: usize| CoordinateName { name: structure.coordinates()[k].name.clone(), angle: structure.is_angle(k) };
         let coordinates = (0..structure.len()).map(named).collect();
-        let names = StructureNames { body: surface.bodies[attached.body].clone(), coordinates };
+        let names = StructureNames { body: surface.bodies[attached.body].clone(), coordinates, samples: false };
         let lines = structure.description(case, data, frame(case, surface, attached.body));
         Some(Described { names, lines })
     };

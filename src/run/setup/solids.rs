@@ -99,7 +99,7 @@ fn described<const D: usize>(case: &Case, built: &Built<D>, bodies: &[SolidBody<
         let named = built.probes.iter().filter(|p| body.particles.contains(&p.1));
         let names = along("mean").into_iter().chain(named.flat_map(|p| along(&p.0)));
         let coordinates = names.map(|name| CoordinateName { name, angle: false }).collect();
-        let names = StructureNames { body: built.bodies[k].clone(), coordinates };
+        let names = StructureNames { body: built.bodies[k].clone(), coordinates, samples: true };
         let density = case.flow.units().density;
         let mass: f64 = body.particles.clone().map(|i| built.structure.solid.mass()[i]).sum();
         let volume: f64 = body.particles.clone().map(|i| built.structure.solid.particles.volume[i]).sum();
