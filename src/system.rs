@@ -202,9 +202,10 @@ pub trait System: Sync {
     fn place(&self, at: &Instant<'_>, frame: &mut Self::Frame);
     /// Puts unknowns that are prescribed where they are to be at a time: where a solve begins.
     fn prescribe(&self, _time: f64, _u: &mut [f64]) {}
-    /// Brings a state of time 0 to another time as far as what is prescribed leads it: a guess to begin with.
-    fn lead(&self, time: f64, u: &mut [f64]) {
-        self.prescribe(time, u);
+    /// Brings a state from one time to another as far as what is prescribed leads it: a guess to begin with, whose difference from the
+    /// truth varies less than the state.
+    fn lead(&self, _from: f64, to: f64, u: &mut [f64]) {
+        self.prescribe(to, u);
     }
     /// Brings the states of the boundary that follow the state (the far field) to the state `u`.
     fn update_boundary_state(&self, u: &[f64], work: &mut Self::Work, frame: &mut Self::Frame);

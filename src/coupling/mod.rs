@@ -213,9 +213,9 @@ impl<const D: usize> System for Coupled<D> {
         }
     }
 
-    fn lead(&self, time: f64, u: &mut [f64]) {
+    fn lead(&self, from: f64, to: f64, u: &mut [f64]) {
         if let Some(on) = &self.solids {
-            on.solids.lead(time, &mut u[self.solid_range()]);
+            on.solids.lead(from, to, &mut u[self.solid_range()]);
         }
     }
 

@@ -3,11 +3,16 @@
 //! In time, with s = shift + c, the pairs (u, v) obey s u − v = r_u, s v + M⁻¹K u = r_v: (K + s²M) u = M (r_v + s r_u), v = s u − r_u, by
 //! Cholesky factors. In a periodic solution the same holds for every harmonic with s = shift + ikω. On the way to rest
 //! (shift K₀ + ωK) u = K₀ r_u. Particles that are held have rates of their own.
-use super::solids::{Pace, Solids, Work};
+//!
+//! The stiffness of a periodic solution is one for all instances. Bodies that are led turn with what leads them: their instances are
+//! turned back first, so that what is stiff along a thin body stays along it.
 use std::sync::Arc;
 
+use super::solids::{Pace, Solids, Work};
+use crate::math::Vector;
 use crate::math::fourier::Matrix;
 use crate::math::sparse::{ComplexFactors, Factors, Symmetric};
+use crate::motion::RigidPose;
 use crate::system::{Period, Placed, RightHandSide, Shift};
 
 enum Inverse {
@@ -33,11 +38,15 @@ pub(super) struct SolidPreconditioner<const D: usize> {
     shift: f64,
     coefficient: f64,
     omega: f64,
+    /// What leads each body from time 0 to each instance of a period.
+    turns: Vec<Vec<RigidPose<D>>>,
 }
 
 impl<const D: usize> SolidPreconditioner<D> {
     pub(super) fn new(solids: Arc<Solids<D>>, period: Option<Period>) -> Self {
         let work = solids.work();
+        let times = period.map_or_else(Vec::new, |p| p.instances.times(p.omega));
+        let turns = times.into_iter().map(|t| solids.bodies.iter().map(|b| b.led(t)).collect()).collect();
         let omega = solids.omega;
         let (pace, time, points) = (Pace::Held, 0.0, 1.0);
         Self {
@@ -51,6 +60,7 @@ impl<const D: usize> SolidPreconditioner<D> {
             shift: omega,
             coefficient: 0.0,
             omega,
+            turns,
         }
     }
 
@@ -63,8 +73,15 @@ impl<const D: usize> SolidPreconditioner<D> {
     /// Adds a state: the stiffness is that at the mean of all.
     pub(super) fn add(&mut self, t: f64, pace: Pace, u: &[f64]) {
         (self.time, self.pace) = (t, pace);
-        for (i, row) in u.chunks_exact(2 * D).enumerate() {
-            (0..D).for_each(|a| self.work.displacement[i][a] += row[2 * a] / self.points);
+        let solids = Arc::clone(&self.solids);
+        for body in &solids.bodies {
+            let led = if self.period.is_some() { body.led(t) } else { RigidPose::identity() };
+            for i in body.particles.clone() {
+                let x = &solids.structure.solid.particles.x[i];
+                let u = Vector::from_fn(|a| u[2 * (i * D + a)]);
+                let back = if self.period.is_some() { led.inverse_point(&(*x + u)) - *x } else { u };
+                (0..D).for_each(|a| self.work.displacement[i][a] += back[a] / self.points);
+            }
         }
     }
 
@@ -128,13 +145,29 @@ impl<const D: usize> SolidPreconditioner<D> {
         }
         match self.period {
             None => self.solve(&mut parts[0]),
-            Some(period) => self.solve_harmonics(&period, &mut parts),
+            Some(period) => {
+                self.turn(&mut parts, RigidPose::inverse_direction);
+                self.solve_harmonics(&period, &mut parts);
+                self.turn(&mut parts, RigidPose::direction);
+            }
         }
         for i in 0..n {
             for (m, part) in parts.iter().enumerate() {
                 for a in 0..D {
                     let to = i * b + m * 2 * D + 2 * a;
                     [z[to], z[to + 1]] = part[i * D + a];
+                }
+            }
+        }
+    }
+
+    /// Turns the pairs of all instances by what leads their bodies.
+    fn turn(&self, parts: &mut [Vec<[f64; 2]>], by: impl Fn(&RigidPose<D>, &Vector<D>) -> Vector<D>) {
+        for (part, turns) in parts.iter_mut().zip(&self.turns) {
+            for (body, pose) in self.solids.bodies.iter().zip(turns).filter(|(body, _)| body.lead.is_some()) {
+                for pairs in part[body.particles.start * D..body.particles.end * D].chunks_exact_mut(D) {
+                    let turned = [0, 1].map(|k| by(pose, &Vector::from_fn(|a| pairs[a][k])));
+                    pairs.iter_mut().enumerate().for_each(|(a, pair)| *pair = turned.map(|v| v[a]));
                 }
             }
         }

@@ -18,7 +18,7 @@ use crate::math::Vector;
 use crate::math::jet::Jet;
 use crate::math::sparse::Factors;
 use crate::math::sweep::sweep_slots;
-use crate::motion::{BodyMotion, SurfaceNet};
+use crate::motion::{BodyMotion, RigidPose, SurfaceNet};
 use crate::scheme::{Fluid, View};
 use crate::solid::Structure;
 use crate::solid::forces::{Energy, State, Work as SolidWork};
@@ -119,6 +119,13 @@ pub(super) enum Pace {
     Marching,
 }
 
+impl<const D: usize> SolidBody<D> {
+    /// What leads it from time 0 to the time `t`.
+    pub(super) fn led(&self, t: f64) -> RigidPose<D> {
+        self.lead.as_ref().map_or_else(RigidPose::identity, |lead| lead.pose(t).relative_to(&lead.pose(0.0)))
+    }
+}
+
 impl<const D: usize> Solids<D> {
     /// The bodies `bodies` of `structure`; `first` is the number of coordinates of other structures.
     pub fn new(structure: Structure<D>, bodies: Vec<SolidBody<D>>, scales: Scales, first: usize) -> Self {
@@ -190,22 +197,23 @@ impl<const D: usize> Solids<D> {
         }
     }
 
-    /// Brings unknowns of time 0 to the time `t`: whole bodies go with what leads them, as deformed as they are.
-    pub(super) fn lead(&self, t: f64, u: &mut [f64]) {
+    /// Brings unknowns from one time to another: whole bodies go with what leads them, as deformed and as fast against it as they are.
+    pub(super) fn lead(&self, from: f64, to: f64, u: &mut [f64]) {
         for body in &self.bodies {
             let Some(lead) = &body.lead else { continue };
-            let (from, to) = (lead.pose(0.0), lead.pose(t));
+            let (before, after) = (lead.pose(from), lead.pose(to));
             for i in body.particles.clone() {
                 let x = &self.structure.solid.particles.x[i];
                 let row = &mut u[2 * D * i..2 * D * (i + 1)];
-                let now = to.point(&from.inverse_point(&(*x + Vector::from_fn(|a| row[2 * a]))));
-                let speed = lead.velocity(t, x);
+                let now = after.point(&before.inverse_point(&(*x + Vector::from_fn(|a| row[2 * a]))));
+                let past = Vector::from_fn(|a| row[2 * a + 1]) - lead.velocity(from, x);
+                let speed = lead.velocity(to, x) + after.direction(&before.inverse_direction(&past));
                 for a in 0..D {
                     (row[2 * a], row[2 * a + 1]) = (now[a] - x[a], speed[a]);
                 }
             }
         }
-        self.prescribe(t, u);
+        self.prescribe(to, u);
     }
 
     /// Number of particles.

@@ -77,17 +77,26 @@ impl<'a, S: System> HarmonicBalance<'a, S> {
     /// The same, led by what is prescribed.
     pub fn led_copies(&self, u: &[f64]) -> Vec<f64> {
         let mut all = self.copies(u);
-        self.at_instances(&mut all, |time, one| self.system.lead(time, one));
+        self.at_instances(self.held, &mut all, |time, one| self.system.lead(0.0, time, one));
         all
     }
 
-    /// Lets `f` change the state of each instance that holds the solution, at its time.
-    fn at_instances(&self, u: &mut [f64], f: impl Fn(f64, &mut [f64])) {
+    /// The state `u`, given at the instances of `from`, at those of this one: what departs from where the state is led is interpolated.
+    pub fn led_resampled(&self, u: &[f64], from: Instances) -> Vec<f64> {
+        let mut still = u.to_vec();
+        self.at_instances(from, &mut still, |time, one| self.system.lead(time, 0.0, one));
+        let mut all = self.resampled(&still, from);
+        self.at_instances(self.held, &mut all, |time, one| self.system.lead(0.0, time, one));
+        all
+    }
+
+    /// Lets `f` change the state of each instance of `instances` that `u` holds, at its time.
+    fn at_instances(&self, instances: Instances, u: &mut [f64], f: impl Fn(f64, &mut [f64])) {
         let mut one = vec![0.0; self.system.len()];
-        for (n, time) in self.held.times(self.omega).into_iter().enumerate() {
-            self.instance(u, n, &mut one);
+        for (n, time) in instances.times(self.omega).into_iter().enumerate() {
+            self.instance_of(instances, u, n, &mut one);
             f(time, &mut one);
-            self.set_instance(&one, n, u);
+            self.rows_of(instances, u, |b, at, row| row[n * b..(n + 1) * b].copy_from_slice(&one[at..at + b]));
         }
     }
 
@@ -122,7 +131,11 @@ impl<'a, S: System> HarmonicBalance<'a, S> {
 
     /// Instance `n` of those that hold the solution, to the bit.
     pub fn instance(&self, u: &[f64], n: usize, out: &mut [f64]) {
-        let count = self.held.count();
+        self.instance_of(self.held, u, n, out);
+    }
+
+    fn instance_of(&self, instances: Instances, u: &[f64], n: usize, out: &mut [f64]) {
+        let count = instances.count();
         for at in placed(self.system.fields()) {
             let (b, all) = (at.field.block, &u[at.unknowns.start * count..at.unknowns.end * count]);
             sweep_rows(&mut out[at.unknowns], b, |i, row| {
@@ -237,7 +250,7 @@ impl<S: System> System for HarmonicBalance<'_, S> {
     type Work = Work<S>;
 
     fn prescribe(&self, _: f64, u: &mut [f64]) {
-        self.at_instances(u, |time, one| self.system.prescribe(time, one));
+        self.at_instances(self.held, u, |time, one| self.system.prescribe(time, one));
     }
 
     fn fields(&self) -> &[Field] {

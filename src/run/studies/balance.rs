@@ -71,7 +71,7 @@ fn begun<S: System>(
     let state = match count {
         1 => balance.led_copies(&u),
         _ if count == wanted => u,
-        _ => balance.resampled(&u, Instances::of_harmonics(count / 2)),
+        _ => balance.led_resampled(&u, Instances::of_harmonics(count / 2)),
     };
     (state, None)
 }
