@@ -8,6 +8,7 @@
 //! and [`ratios`] of times.
 #![allow(clippy::unwrap_used, reason = "it may stop anywhere")]
 mod ratios;
+mod solids;
 
 use std::path::Path;
 

@@ -269,6 +269,8 @@ pub trait Mechanical: System {
     fn hold(&self, time: f64, displacement: &mut [f64]);
     /// Forces at a moment, and what materials remember of it.
     fn forces(&self, at: &Moment<'_>, work: &mut Self::Work, force: &mut [f64], after: &mut [f64]);
+    /// Refuses a state whose forces were found last with `work`.
+    fn check_forces(&self, work: &Self::Work, displacement: &[f64]) -> Result<(), Fault>;
     /// The longest step for which explicit methods are stable.
     fn stable_step(&self, displacement: &[f64]) -> f64;
     /// The stiffness at a moment.

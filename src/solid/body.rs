@@ -2,11 +2,9 @@
 use std::ops::Deref;
 
 use super::particles::Particles;
+use super::rows::{Row, row};
 use crate::math::Vector;
-use crate::math::sweep::first;
-use crate::physics::solid::tensor::determinant;
 use crate::physics::solid::{MOST_HISTORY, Material};
-use crate::system::Fault;
 
 /// What happens across a plane body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -84,6 +82,8 @@ pub struct Damping {
 /// A structure of particles, one or several bodies, which do not see one another: its parts, and what follows from them.
 pub struct Solid<const D: usize> {
     parts: Parts<D>,
+    /// Places at rest.
+    pub(super) places: Vec<Row>,
     /// Mass of each particle.
     pub(super) mass: Vec<f64>,
     /// Axes along which each particle is held, one bit each.
@@ -162,6 +162,7 @@ impl<const D: usize> Solid<D> {
         let width = own + usize::from(own > 0) + usize::from(parts.plane == Plane::Stress);
         assert!(own <= MOST_HISTORY, "a material keeps more history than there is room for");
         Self {
+            places: particles.x.iter().map(|x| row(&x.0)).collect(),
             mass: (0..n).map(|i| material(i).density * held_by(i)).collect(),
             viscous: (0..n).map(viscous).collect(),
             held,
@@ -243,26 +244,6 @@ impl<const D: usize> Solid<D> {
                 (0..D).filter(|d| support.fixed[*d]).for_each(|d| u[d] = moved[d]);
             }
         }
-    }
-
-    /// Refuses a state in which a particle is nowhere or turned inside out.
-    pub fn check(&self, displacement: &[[f64; D]]) -> Result<(), Fault> {
-        /// Least part of its volume that a particle may keep.
-        const LEAST: f64 = 0.05;
-        let bad = |i: usize| {
-            let f = self.deformation(i, displacement);
-            !(determinant(&f) > LEAST)
-        };
-        let Some(i) = first(self.len(), bad) else { return Ok(()) };
-        let f = self.deformation(i, displacement);
-        let reason = match determinant(&f) {
-            j if j.is_finite() => {
-                format!("a particle of the solid keeps {j:.3} of its volume; at least {LEAST} is needed")
-            }
-            _ => "a particle of the solid is nowhere: its displacement is no number".to_owned(),
-        };
-        let place = (0..D).map(|a| self.particles.x[i][a] + displacement[i][a]).collect();
-        Err(Fault { particle: i, place, reason })
     }
 
     /// True when a support moves.

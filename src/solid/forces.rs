@@ -9,30 +9,21 @@
 //! A_i of the displacement gradient leave, c = α μ V D/n: it holds the modes that fits do not see, and is nothing for
 //! uniform deformation. As A_i makes the inner sum least, its change with A_i is no force. The same sum over velocities with
 //! c = β ρ c_p h V D/n damps these modes.
+use multiversion::multiversion;
+
 use super::body::{Action, Plane, Solid};
+use super::pairs::{self, Pulling, Stressed, gradients, plain_gradient};
 use super::particles::Edge;
+use super::rows::{Columns, columns, row};
 use crate::math::Vector;
 use crate::math::least_squares::smallest_eigenvalue;
-use crate::math::sweep::{CHUNK, maximum, parts, sum, sweep, sweep_slots, sweep_two_parts};
+use crate::math::sweep::{CHUNK, first, maximum, parts, sum, sweep, sweep_parts, sweep_slots, sweep_two_parts};
 use crate::physics::solid::tensor::{determinant, product_transposed};
 use crate::physics::solid::{Dual, MOST_HISTORY, Material, Response, Tensor, plane_stress};
+use crate::system::Fault;
 
 /// A square matrix: rows are components, columns axes of the body at rest.
 pub type Matrix<const D: usize> = [[f64; D]; D];
-
-/// What is known of a particle when its forces are summed.
-#[derive(Clone, Copy, Debug)]
-pub struct Stressed<const D: usize> {
-    /// First stress of Piola and Kirchhoff.
-    pub stress: Matrix<D>,
-    /// Σ c A of the plain fits, of displacement and of velocity.
-    pub smooth: Matrix<D>,
-}
-
-impl<const D: usize> Stressed<D> {
-    /// Nothing.
-    pub const ZERO: Self = Self { stress: [[0.0; D]; D], smooth: [[0.0; D]; D] };
-}
 
 /// Energy of a structure and where it is.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -53,8 +44,6 @@ pub struct Energy {
 pub struct Work<const D: usize> {
     /// Stresses.
     pub stressed: Vec<Stressed<D>>,
-    /// Stabilising stiffness of each particle.
-    pub stiff: Vec<f64>,
 }
 
 /// Tangents ∂P/∂F of all particles at a state: `all[i][a][b]` is what the stress gains with component ab of F.
@@ -78,71 +67,22 @@ pub struct State<'a, const D: usize> {
     pub history: &'a [f64],
 }
 
-/// Both gradients of a field around a particle: consistent, and of the plain fit.
-#[inline(always)]
-fn gradients<const D: usize>(solid: &Solid<D>, i: usize, q: &[[f64; D]]) -> (Matrix<D>, Matrix<D>) {
-    let x = &solid.particles.x;
-    let (mut full, mut moments) = ([[0.0; D]; D], [[0.0; D]; D]);
-    for e in solid.particles.of(i) {
-        let j = e.other as usize;
-        let (d, change) = (x[j] - x[i], Vector(q[j]) - Vector(q[i]));
-        let w = 1.0 / d.norm_squared();
-        for a in 0..D {
-            let weighted = w * change[a];
-            for b in 0..D {
-                full[a][b] += change[a] * e.own[b];
-                moments[a][b] += weighted * d[b];
-            }
-        }
-    }
-    let per_volume = 1.0 / solid.particles.volume[i];
-    let plain = solved(solid, i, &moments);
-    (full.map(|row| row.map(|f| f * per_volume)), plain)
-}
-
-/// The gradient of the plain fit alone.
-#[inline(always)]
-fn plain_gradient<const D: usize>(solid: &Solid<D>, i: usize, q: &[[f64; D]]) -> Matrix<D> {
-    let x = &solid.particles.x;
-    let mut moments = [[0.0; D]; D];
-    for e in solid.particles.of(i) {
-        let j = e.other as usize;
-        let (d, change) = (x[j] - x[i], Vector(q[j]) - Vector(q[i]));
-        let w = 1.0 / d.norm_squared();
-        (0..D).for_each(|a| (0..D).for_each(|b| moments[a][b] += w * change[a] * d[b]));
-    }
-    solved(solid, i, &moments)
-}
-
-/// Moments of a plain fit times its inverse normal matrix.
-#[inline(always)]
-fn solved<const D: usize>(solid: &Solid<D>, i: usize, moments: &Matrix<D>) -> Matrix<D> {
-    let inverse = solid.particles.inverse(i);
-    std::array::from_fn(|a| std::array::from_fn(|b| (0..D).map(|c| moments[a][c] * inverse[c][b]).sum()))
-}
-
 /// The deformation gradient in space of a displacement gradient.
 #[inline(always)]
-fn deformation<const D: usize>(gradient: &Matrix<D>) -> Tensor {
+fn deformation<const D: usize>(gradient: &Columns<D>) -> Tensor {
     let mut f = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
     for a in 0..D {
         for b in 0..D {
-            f[a][b] += gradient[a][b];
+            f[a][b] += gradient[b][a];
         }
     }
     f
 }
 
-/// The part of a tensor that lies in the plane.
-#[inline(always)]
-fn in_plane<const D: usize>(p: &Tensor) -> Matrix<D> {
-    std::array::from_fn(|a| std::array::from_fn(|b| p[a][b]))
-}
-
 impl<const D: usize> Solid<D> {
     /// Fresh storage.
     pub fn work(&self) -> Work<D> {
-        Work { stressed: vec![Stressed::ZERO; self.len()], stiff: vec![0.0; self.len()] }
+        Work { stressed: vec![Stressed::ZERO; self.len()] }
     }
 
     /// Storage for tangents.
@@ -173,31 +113,34 @@ impl<const D: usize> Solid<D> {
 
     /// Stresses in a state, and the history that they leave in `after`.
     pub fn stress(&self, state: &State<'_, D>, work: &mut Work<D>, after: &mut [f64]) {
-        let n = self.len();
-        let lost = self.lost_at();
-        let Work { stressed, stiff } = work;
-        sweep(stiff, |i| self.stiffening(i, self.material_of(i), self.history_of(state.history, i)));
-        let one = |i: usize, stressed: &mut Stressed<D>, new: &mut [f64]| {
-            let (gradient, plain) = gradients(self, i, state.displacement);
-            let material = self.material_of(i);
-            let old = self.history_of(state.history, i);
-            let response = self.respond(material, &deformation(&gradient), (old, state.step), new);
-            if let Some(lost) = lost {
+        let parts = parts(self.len(), CHUNK);
+        sweep_two_parts((&parts, 1, &mut work.stressed), (&parts, self.width, after), &|k, stressed, after| {
+            stresses(self, state, parts[k].start, stressed, after);
+        });
+    }
+
+    /// Stress in one particle.
+    #[inline(always)]
+    fn stress_of(&self, i: usize, state: &State<'_, D>, new: &mut [f64]) -> Stressed<D> {
+        let (gradient, plain) = gradients(self, i, |j| row(&state.displacement[j]));
+        let (material, old) = (self.material_of(i), self.history_of(state.history, i));
+        let f = deformation(&gradient);
+        let elastic = if self.width == 0 { material.elastic_stress(&f) } else { None };
+        let stress = elastic.unwrap_or_else(|| {
+            let response = self.respond(material, &f, (old, state.step), new);
+            if let Some(lost) = self.lost_at() {
                 new[lost] = old[lost] + response.dissipated;
             }
-            stressed.stress = in_plane(&response.stress);
-            stressed.smooth = plain.map(|row| row.map(|a| a * stiff[i]));
-            if self.is_viscous() {
-                let rate = plain_gradient(self, i, state.velocity);
-                (0..D).for_each(|r| (0..D).for_each(|s| stressed.smooth[r][s] += self.viscous[i] * rate[r][s]));
-            }
-        };
-        let parts = parts(n, CHUNK);
-        sweep_two_parts((&parts, 1, stressed), (&parts, self.width, after), &|k, stressed, new| {
-            for (at, i) in parts[k].clone().enumerate() {
-                one(i, &mut stressed[at], &mut new[at * self.width..(at + 1) * self.width]);
-            }
+            response.stress
         });
+        let stiff = self.stiffening(i, material, old);
+        let mut smooth = plain.map(|column| column.map(|a| a * stiff));
+        if self.is_viscous() {
+            let rate = plain_gradient(self, i, |j| row(&state.velocity[j]));
+            (0..D).for_each(|b| (0..D).for_each(|a| smooth[b][a] += self.viscous[i] * rate[b][a]));
+        }
+        let stress = std::array::from_fn(|b| row::<D>(&std::array::from_fn(|a| stress[a][b])));
+        Stressed { stress, smooth, stiff, volume: determinant(&f) }
     }
 
     /// c of the residuals of displacement: what has yielded is held less.
@@ -225,7 +168,8 @@ impl<const D: usize> Solid<D> {
     pub fn forces(&self, state: &State<'_, D>, work: &Work<D>, force: &mut [[f64; D]]) {
         let gravity = self.gravity * self.part(state.time);
         let velocity = self.is_viscous().then_some(state.velocity);
-        sweep(force, |i| (self.internal(i, (state.displacement, velocity), work) + gravity * self.mass[i]).0);
+        self.internal(Pulling { displacement: state.displacement, velocity }, work, force);
+        sweep_slots(force, |i, f| (0..D).for_each(|a| f[a] += gravity[a] * self.mass[i]));
         self.add_loads(state, force);
         self.add_contact(state, force);
         if self.damping.mass > 0.0 {
@@ -236,31 +180,12 @@ impl<const D: usize> Solid<D> {
         }
     }
 
-    /// Forces of the neighbours on a particle, for displacements, and velocities where these are damped.
-    #[inline(always)]
-    fn internal(&self, i: usize, (u, v): (&[[f64; D]], Option<&[[f64; D]]>), work: &Work<D>) -> Vector<D> {
-        let x = &self.particles.x;
-        let (own, stiff, viscous) = (&work.stressed[i], &work.stiff, &self.viscous);
-        let mut force = Vector::ZERO;
-        for e in self.particles.of(i) {
-            let j = e.other as usize;
-            let (d, other) = (x[j] - x[i], &work.stressed[j]);
-            let w = 1.0 / d.norm_squared();
-            let mut pull = (Vector(u[j]) - Vector(u[i])) * (stiff[i] + stiff[j]);
-            if let Some(v) = v {
-                pull += (Vector(v[j]) - Vector(v[i])) * (viscous[i] + viscous[j]);
-            }
-            for a in 0..D {
-                let mut sum = 0.0;
-                let mut smooth = 0.0;
-                for b in 0..D {
-                    sum += own.stress[a][b] * e.own[b] - other.stress[a][b] * e.counter[b];
-                    smooth += (own.smooth[a][b] + other.smooth[a][b]) * d[b];
-                }
-                force[a] += sum + w * (pull[a] - smooth);
-            }
-        }
-        force
+    /// Forces of neighbours on all particles.
+    fn internal(&self, pulling: Pulling<'_, D>, work: &Work<D>, force: &mut [[f64; D]]) {
+        let parts = parts(self.len(), CHUNK);
+        sweep_parts(&parts, 1, force, &|k, force| {
+            pairs::internal(self, parts[k].start, pulling, &work.stressed, force);
+        });
     }
 
     /// Loads on the surface.
@@ -280,7 +205,7 @@ impl<const D: usize> Solid<D> {
 
     /// What becomes of an area at rest where the body is deformed, J F⁻ᵀ A (Nanson).
     pub fn carried(&self, i: usize, u: &[[f64; D]], area: &Vector<D>) -> Vector<D> {
-        let f = deformation(&gradients(self, i, u).0);
+        let f = self.deformation(i, u);
         let cofactor = |a: usize, b: usize| {
             let [r, s] = [(a + 1) % 3, (a + 2) % 3];
             let [p, q] = [(b + 1) % 3, (b + 2) % 3];
@@ -292,14 +217,14 @@ impl<const D: usize> Solid<D> {
     /// What [`Self::stiffness`] needs of a state: the tangent of every particle.
     pub fn linearise(&self, state: &State<'_, D>, tangents: &mut Tangents<D>) {
         sweep_slots(&mut tangents.all, |i, t| {
-            let (gradient, _) = gradients(self, i, state.displacement);
+            let f = self.deformation(i, state.displacement);
             let material = self.material_of(i);
             let old = self.history_of(state.history, i);
             for a in 0..D {
                 for b in 0..D {
                     let mut change = [[0.0; D]; D];
                     change[a][b] = 1.0;
-                    t[a][b] = self.tangent(material, (&gradient, &change), (old, state.step));
+                    t[a][b] = self.tangent(material, (&f, &change), (old, state.step));
                 }
             }
         });
@@ -309,26 +234,26 @@ impl<const D: usize> Solid<D> {
     /// K w, what forces lose when particles are displaced by `w`; loads that follow the surface are left out.
     pub fn stiffness(&self, tangents: &Tangents<D>, w: &[[f64; D]], work: &mut Work<D>, out: &mut [[f64; D]]) {
         sweep(&mut work.stressed, |i| {
-            let (change, plain) = gradients(self, i, w);
+            let (change, plain) = gradients(self, i, |j| row(&w[j]));
             let mut stress = [[0.0; D]; D];
             for (a, b) in (0..D).flat_map(|a| (0..D).map(move |b| (a, b))) {
                 let t = &tangents.all[i][a][b];
-                (0..D).for_each(|r| (0..D).for_each(|s| stress[r][s] += t[r][s] * change[a][b]));
+                (0..D).for_each(|r| (0..D).for_each(|s| stress[r][s] += t[r][s] * change[b][a]));
             }
-            Stressed { stress, smooth: plain.map(|row| row.map(|a| a * tangents.stiff[i])) }
+            let (stiff, stress) = (tangents.stiff[i], columns(&stress));
+            Stressed { stress, smooth: plain.map(|column| column.map(|a| a * stiff)), stiff, volume: 1.0 }
         });
-        work.stiff.copy_from_slice(&tangents.stiff);
-        sweep(out, |i| (-self.internal(i, (w, None), work)).0);
+        self.internal(Pulling { displacement: w, velocity: None }, work, out);
+        sweep_slots(out, |_, f| *f = f.map(|f| -f));
     }
 
     /// Change of the stress with that of the displacement gradient.
     fn tangent(
         &self,
         material: &Material,
-        (gradient, change): (&Matrix<D>, &Matrix<D>),
+        (f, change): (&Tensor, &Matrix<D>),
         (old, step): (&[f64], f64),
     ) -> Matrix<D> {
-        let f = deformation(gradient);
         let dual: Tensor<Dual> = std::array::from_fn(|a| {
             std::array::from_fn(|b| Dual {
                 value: f[a][b],
@@ -370,19 +295,19 @@ impl<const D: usize> Solid<D> {
         }
         slowed
             + sum(self.len(), |i| {
-                let plain = plain_gradient(self, i, v);
+                let plain = plain_gradient(self, i, |j| row(&v[j]));
                 let left = |e: &Edge<D>| self.left(i, e, v, &plain);
                 self.viscous[i] * self.particles.of(i).iter().map(left).sum::<f64>()
             })
     }
 
     /// w |q_j − q_i − A d|² of a pair.
-    fn left(&self, i: usize, e: &Edge<D>, q: &[[f64; D]], plain: &Matrix<D>) -> f64 {
+    fn left(&self, i: usize, e: &Edge<D>, q: &[[f64; D]], plain: &Columns<D>) -> f64 {
         let j = e.other as usize;
         let d = self.particles.x[j] - self.particles.x[i];
         let change = Vector(q[j]) - Vector(q[i]);
-        let residual = Vector::<D>::from_fn(|a| change[a] - (0..D).map(|b| plain[a][b] * d[b]).sum::<f64>());
-        residual.norm_squared() / d.norm_squared()
+        let residual = Vector::<D>::from_fn(|a| change[a] - (0..D).map(|b| plain[b][a] * d[b]).sum::<f64>());
+        residual.norm_squared() * e.weight
     }
 
     /// Energies in a state.
@@ -390,14 +315,13 @@ impl<const D: usize> Solid<D> {
         let n = self.len();
         let kinetic = sum(n, |i| 0.5 * self.mass[i] * Vector(state.velocity[i]).norm_squared());
         let strain = sum(n, |i| {
-            let (gradient, _) = gradients(self, i, state.displacement);
             let mut scratch = [0.0; MOST_HISTORY + 2];
             let old = self.history_of(state.history, i);
-            let f = deformation(&gradient);
+            let f = self.deformation(i, state.displacement);
             self.particles.volume[i] * self.respond(self.material_of(i), &f, (old, 0.0), &mut scratch).stored
         });
         let stabilisation = sum(n, |i| {
-            let plain = plain_gradient(self, i, state.displacement);
+            let plain = plain_gradient(self, i, |j| row(&state.displacement[j]));
             let c = self.stiffening(i, self.material_of(i), self.history_of(state.history, i));
             let left = |e: &Edge<D>| self.left(i, e, state.displacement, &plain);
             0.5 * c * self.particles.of(i).iter().map(left).sum::<f64>()
@@ -409,7 +333,7 @@ impl<const D: usize> Solid<D> {
 
     /// Cauchy's stress at a particle.
     pub fn cauchy(&self, i: usize, state: &State<'_, D>) -> Tensor {
-        let mut f = deformation(&gradients(self, i, state.displacement).0);
+        let mut f = self.deformation(i, state.displacement);
         let old = self.history_of(state.history, i);
         let mut scratch = [0.0; MOST_HISTORY + 2];
         let stress = self.respond(self.material_of(i), &f, (old, 0.0), &mut scratch).stress;
@@ -427,7 +351,31 @@ impl<const D: usize> Solid<D> {
 
     /// Deformation gradient at a particle, in space.
     pub fn deformation(&self, i: usize, u: &[[f64; D]]) -> Tensor {
-        deformation(&gradients(self, i, u).0)
+        deformation(&gradients(self, i, |j| row(&u[j])).0)
+    }
+
+    /// Refuses a state in which a particle is nowhere or turned inside out.
+    pub fn check(&self, displacement: &[[f64; D]]) -> Result<(), Fault> {
+        self.check_volumes(displacement, |i| determinant(&self.deformation(i, displacement)))
+    }
+
+    /// The same where the stresses in `work` are those of the state.
+    pub fn check_stressed(&self, displacement: &[[f64; D]], work: &Work<D>) -> Result<(), Fault> {
+        self.check_volumes(displacement, |i| work.stressed[i].volume)
+    }
+
+    fn check_volumes(&self, displacement: &[[f64; D]], kept: impl Fn(usize) -> f64 + Sync) -> Result<(), Fault> {
+        /// Least part of its volume that a particle may keep.
+        const LEAST: f64 = 0.05;
+        let Some(i) = first(self.len(), |i| !(kept(i) > LEAST)) else { return Ok(()) };
+        let reason = match kept(i) {
+            j if j.is_finite() => {
+                format!("a particle of the solid keeps {j:.3} of its volume; at least {LEAST} is needed")
+            }
+            _ => "a particle of the solid is nowhere: its displacement is no number".to_owned(),
+        };
+        let place = (0..D).map(|a| self.particles.x[i][a] + displacement[i][a]).collect();
+        Err(Fault { particle: i, place, reason })
     }
 
     /// The longest stable step of symplectic marching, over its Courant number: 1.1 h/c_p, less where the body is compressed.
@@ -435,9 +383,8 @@ impl<const D: usize> Solid<D> {
         /// ω h/c of the fastest mode is 1.7 to 1.82 on lattices and perturbed clouds.
         const FASTEST: f64 = 1.1;
         let fastest = maximum(self.len(), |i| {
-            let (gradient, _) = gradients(self, i, u);
             let speed = self.material_of(i).pressure_wave_speed();
-            speed / (self.particles.spacing[i] * least_stretch(&deformation(&gradient)))
+            speed / (self.particles.spacing[i] * least_stretch(&self.deformation(i, u)))
         });
         FASTEST / fastest
     }
@@ -447,4 +394,20 @@ impl<const D: usize> Solid<D> {
 fn least_stretch(f: &Tensor) -> f64 {
     let c: Tensor = std::array::from_fn(|a| std::array::from_fn(|b| (0..3).map(|k| f[k][a] * f[k][b]).sum()));
     smallest_eigenvalue::<3>(&c).max(1e-6).sqrt().min(1.0)
+}
+
+/// Stresses of the particles from `first` on, and the histories that they leave.
+#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq", "x86_64+avx2"))]
+#[allow(unsafe_code, reason = "the attribute calls the version that the processor has just been asked for")]
+fn stresses<const D: usize>(
+    solid: &Solid<D>,
+    state: &State<'_, D>,
+    first: usize,
+    stressed: &mut [Stressed<D>],
+    after: &mut [f64],
+) {
+    let width = solid.width;
+    for (k, one) in stressed.iter_mut().enumerate() {
+        *one = solid.stress_of(first + k, state, &mut after[k * width..(k + 1) * width]);
+    }
 }

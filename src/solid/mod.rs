@@ -8,7 +8,9 @@ pub mod contact;
 pub mod fill;
 pub mod forces;
 pub mod modes;
+mod pairs;
 pub mod particles;
+mod rows;
 mod stiffness;
 pub mod system;
 #[cfg(test)]

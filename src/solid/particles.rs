@@ -35,6 +35,8 @@ const ITERATIONS: usize = 5000;
 pub struct Edge<const D: usize> {
     /// Its number.
     pub other: u32,
+    /// w, the weight of the pair in fits.
+    pub weight: f64,
     /// V_i g_ij of the particle at hand.
     pub own: Vector<D>,
     /// V_j g_ji of the neighbour.
@@ -293,7 +295,7 @@ impl<const D: usize> Particles<D> {
                 let (j, d) = (*j as usize, self.x[*j as usize] - self.x[i]);
                 let own = gradient_weight(&self.inverse[i], &d) * self.volume[i];
                 let counter = gradient_weight(&self.inverse[j], &(-d)) * self.volume[j];
-                Edge { other: j as u32, own, counter }
+                Edge { other: j as u32, weight: 1.0 / d.norm_squared(), own, counter }
             }));
         }
         Ok(())

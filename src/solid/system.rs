@@ -143,6 +143,10 @@ impl<const D: usize> Mechanical for Structure<D> {
         self.solid.forces(&state, work, force.as_chunks_mut().0);
     }
 
+    fn check_forces(&self, work: &Work<D>, displacement: &[f64]) -> Result<(), Fault> {
+        self.solid.check_stressed(displacement.as_chunks().0, work)
+    }
+
     fn stable_step(&self, displacement: &[f64]) -> f64 {
         self.solid.stable_step(displacement.as_chunks().0)
     }

@@ -134,7 +134,7 @@ impl<S: Mechanical> Integrator<S> for Symplectic<'_, S> {
         self.u[2 * n..].copy_from_slice(&self.after);
         (self.past.last, self.past.iteration) = (step, self.past.iteration + 1);
         self.system.place(&Instant::still(end), &mut self.frame);
-        if let Err(fault) = self.system.check(&self.frame, &self.u) {
+        if let Err(fault) = self.system.check_forces(&self.work, &self.u[..n]) {
             self.u.copy_from_slice(&self.last_good);
             (self.past.time, self.past.iteration) = (start, self.past.iteration - 1);
             let hint = "lower `time.explicit.cfl`, or look whether the load is what it should be";

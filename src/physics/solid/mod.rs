@@ -163,6 +163,17 @@ impl Material {
         }
     }
 
+    /// Stress at `f` where it depends on `f` alone.
+    #[inline(always)]
+    pub fn elastic_stress<S: Scalar>(&self, f: &Tensor<S>) -> Option<Tensor<S>> {
+        match &self.law {
+            Law::Linear => Some(linear(&self.moduli, f)),
+            Law::SaintVenantKirchhoff => Some(saint_venant_kirchhoff(&self.moduli, f)),
+            Law::NeoHookean => Some(neo_hookean(&self.moduli, f)),
+            Law::Hypoelastic | Law::Plastic(_) | Law::Viscoelastic(_) => None,
+        }
+    }
+
     /// Energy stored per reference volume at `f` where it depends on `f` alone.
     pub fn energy<S: Scalar>(&self, f: &Tensor<S>) -> Option<S> {
         match &self.law {
