@@ -9,6 +9,7 @@
 mod balance;
 mod coupled;
 mod march;
+mod solids;
 mod travel;
 
 use std::path::Path;
@@ -24,9 +25,11 @@ const TURNS: usize = 7;
 
 /// Runs those whose names hold one of `filters`, all when there are none.
 pub(crate) fn run(filters: &[String]) {
-    let all: [(&str, fn()); 6] = [
+    let all: [(&str, fn()); 8] = [
         ("ratios::dual_step", march::dual_step),
         ("ratios::coupled_step", coupled::coupled_step),
+        ("ratios::solid_setup", solids::solid_setup),
+        ("ratios::solid_in_gas", solids::solid_in_gas),
         ("ratios::travelling", travel::travelling),
         ("ratios::deforming", travel::deforming),
         ("ratios::balance", balance::balance),

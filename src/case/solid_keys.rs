@@ -299,7 +299,7 @@ pub(super) static CONTACT: Table = Table::of(&[
     Field::defaulted(
         "stiffness",
         Kind::Number(Range { min: 0.0, max: 10.0, closed: false }),
-        Absent::Number(0.1),
+        Absent::Number(1.0),
         "Stiffness of the contact as a part of the wave modulus times area over spacing.",
     ),
     Field::defaulted("friction", NUMBER, Absent::Number(0.0), "Coefficient of Coulomb's friction."),

@@ -164,7 +164,7 @@ impl<const D: usize> SurfaceNet<D> {
                 nodes.push((g, (group.place - *x) * (1.0 / reach), weight));
             }
         }
-        fitted(&nodes, rigid(&nodes))
+        if D == 2 { turned(&nodes) } else { fitted(&nodes, rigid(&nodes)) }
     }
 }
 
@@ -211,6 +211,22 @@ fn fitted<const D: usize>(nodes: &[(u32, Vector<D>, f64)], basis: Vec<Basis>) ->
     let (all, width) = (weights(basis, &of_values), of_values.len());
     let block = |k: usize| std::array::from_fn(|r| std::array::from_fn(|c| all[r * width + k * D + c]));
     Carried { parts: nodes.iter().enumerate().map(|(k, node)| (node.0, block(k))).collect() }
+}
+
+/// The same for α + βz in the plane, with α the mean of the values and β their covariance with z over its variance.
+fn turned<const D: usize>(nodes: &[(u32, Vector<D>, f64)]) -> Carried<D> {
+    let total: f64 = nodes.iter().map(|n| n.2).sum();
+    let mean = nodes.iter().fold(Vector::ZERO, |sum, (_, z, w)| sum + *z * (w / total));
+    let variance: f64 = nodes.iter().map(|(_, z, w)| w * (*z - mean).norm_squared()).sum();
+    let part = |(k, z, w): &(u32, Vector<D>, f64)| {
+        // w/Σw − w m conj(z − m)/S, a complex number that turns and stretches
+        let (d, over) = (*z - mean, if variance > 0.0 { w / variance } else { 0.0 });
+        let re = w / total - over * (mean[0] * d[0] + mean[1] * d[1]);
+        let im = -over * (mean[1] * d[0] - mean[0] * d[1]);
+        let block = [[re, -im], [im, re]];
+        (*k, std::array::from_fn(|r| std::array::from_fn(|c| block[r][c])))
+    };
+    Carried { parts: nodes.iter().map(part).collect() }
 }
 
 /// Values of a field at the nodes, and at the offset zero.

@@ -45,6 +45,9 @@ const EXACT: f64 = 1e-4;
 /// Size of an oscillation over the largest below which it is not told.
 const FAINT: f64 = 1e-2;
 
+/// Root mean square misfit over that of the tail with which a fit tells nothing.
+const UNEXPLAINED: f64 = 0.35;
+
 /// One oscillation; time in the unit of the history.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Oscillation {
@@ -95,6 +98,12 @@ pub enum NoFit {
     /// Drifts alone.
     #[error("what moves does not oscillate")]
     NoOscillation,
+    /// No sum of a few oscillations.
+    #[error("oscillations that grow or decay leave {:.0} % of what moves unexplained", 100.0 * .residual)]
+    Unexplained {
+        /// Root mean square of what they leave, over that of the tail.
+        residual: f64,
+    },
 }
 
 /// The last whole cycles of an oscillation.
@@ -321,11 +330,14 @@ impl Scaled {
         if terms.is_empty() {
             return Err(NoFit::Short { cycles });
         }
-        let mean_square = best.fit.misfit(self.samples()) / self.time.len() as f64;
+        let residual = (best.fit.misfit(self.samples()) / self.time.len() as f64).sqrt();
+        if residual > UNEXPLAINED {
+            return Err(NoFit::Unexplained { residual });
+        }
         Ok(DampingFit {
             modes: terms.into_iter().map(|term| self.oscillation(term)).collect(),
             constant: self.mean + self.deviation * best.fit.constant,
-            residual: mean_square.sqrt(),
+            residual,
             from: self.from,
         })
     }

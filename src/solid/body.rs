@@ -1,5 +1,6 @@
 //! What a structure of particles is: the cloud, its materials, where it is held and what acts on it.
 use std::ops::Deref;
+use std::sync::OnceLock;
 
 use super::particles::Particles;
 use super::rows::{Row, row};
@@ -94,6 +95,8 @@ pub struct Solid<const D: usize> {
     pub(super) viscous: Vec<f64>,
     /// Numbers of history of a particle.
     pub(super) width: usize,
+    /// The longest stable step over the least h/c, once it is known.
+    pub(super) factor: OnceLock<f64>,
 }
 
 impl<const D: usize> std::fmt::Debug for Solid<D> {
@@ -111,8 +114,32 @@ impl<const D: usize> Deref for Solid<D> {
     }
 }
 
-/// Least mass of a particle in ρ h^D: those at sharp edges hold so little that they would decide the time step.
+/// Mass of a particle in ρ h^D below which it takes from its neighbours: those at sharp edges hold so little that they would decide
+/// the time step.
 const LEAST_MASS: f64 = 0.25;
+
+/// Mass of each particle: that of its volume, but the lightest take what they lack from heavier neighbours, as far as these can give.
+fn masses<const D: usize>(particles: &Particles<D>, density: impl Fn(usize) -> f64) -> Vec<f64> {
+    let mut mass: Vec<f64> = (0..particles.len()).map(|i| density(i) * particles.volume[i]).collect();
+    let over: Vec<f64> = mass
+        .iter()
+        .enumerate()
+        .map(|(i, m)| m - LEAST_MASS * density(i) * particles.spacing[i].powi(D as i32))
+        .collect();
+    let near = |i: usize| particles.of(i).iter().map(|e| e.other as usize);
+    // what each light particle asks of all its neighbours over what they have to give, and what is asked of each of these
+    let ask = |i: usize| -over[i].min(0.0) / near(i).map(|j| over[j].max(0.0)).sum::<f64>().max(f64::MIN_POSITIVE);
+    let asks: Vec<f64> = (0..mass.len()).map(|i| ask(i).min(1.0)).collect();
+    let asked: Vec<f64> = (0..mass.len()).map(|j| near(j).map(|i| asks[i]).sum::<f64>()).collect();
+    for i in (0..mass.len()).filter(|i| asks[*i] > 0.0) {
+        for j in near(i) {
+            let given = over[j].max(0.0) * asks[i] / asked[j].max(1.0);
+            mass[i] += given;
+            mass[j] -= given;
+        }
+    }
+    mass
+}
 
 /// All that a structure is made of.
 pub struct Parts<const D: usize> {
@@ -146,7 +173,6 @@ impl<const D: usize> Solid<D> {
         let particles = &parts.particles;
         let (n, h) = (particles.len(), &particles.spacing);
         let material = |i: usize| &parts.materials[usize::from(parts.material[i])];
-        let held_by = |i: usize| particles.volume[i].max(LEAST_MASS * h[i].powi(D as i32));
         let weight: Vec<f64> = (0..n).map(|i| particles.volume[i] * D as f64 / particles.of(i).len() as f64).collect();
         let viscous = |i: usize| {
             let impedance = material(i).density * material(i).pressure_wave_speed();
@@ -163,11 +189,12 @@ impl<const D: usize> Solid<D> {
         assert!(own <= MOST_HISTORY, "a material keeps more history than there is room for");
         Self {
             places: particles.x.iter().map(|x| row(&x.0)).collect(),
-            mass: (0..n).map(|i| material(i).density * held_by(i)).collect(),
+            mass: masses(particles, |i| material(i).density),
             viscous: (0..n).map(viscous).collect(),
             held,
             weight,
             width,
+            factor: OnceLock::new(),
             parts,
         }
     }

@@ -20,14 +20,14 @@ struct Push<const D: usize> {
 
 impl<const D: usize> Solid<D> {
     /// Stiffness of the contact of a particle of the surface.
-    fn contact_stiffness(&self, i: usize, stiffness: f64) -> f64 {
+    pub(super) fn contact_stiffness(&self, i: usize, stiffness: f64) -> f64 {
         let h = self.particles.spacing[i];
         // a corner belongs to sides whose areas cancel in part
         let area = self.particles.area[i].norm().max(0.5 * h.powi(D as i32 - 1));
         stiffness * self.material_of(i).moduli.pressure_wave() * area / h
     }
 
-    fn is_on_surface(&self, i: usize) -> bool {
+    pub(super) fn is_on_surface(&self, i: usize) -> bool {
         self.particles.area[i] != Vector::ZERO
     }
 

@@ -36,11 +36,7 @@ pub struct Lattice<const D: usize> {
 impl<const D: usize> Lattice<D> {
     /// Rows about `spacing` apart, at least two along each axis, an even count of steps nowhere asked for.
     pub fn with_spacing(corners: Vec<Vector<D>>, spacing: f64) -> Self {
-        let side = |d: usize| {
-            let edges = (0..1usize << D).filter(|k| k >> d & 1 == 0);
-            edges.map(|k| (corners[k | 1 << d] - corners[k]).norm()).fold(0.0, f64::max)
-        };
-        let counts = std::array::from_fn(|d| ((side(d) / spacing).round() as usize).max(1) + 1);
+        let counts = std::array::from_fn(|d| ((across(&corners, d) / spacing).round() as usize).max(1) + 1);
         Self { corners, counts, jitter: 0.0 }
     }
 
@@ -95,12 +91,7 @@ impl<const D: usize> Lattice<D> {
 
     /// Greatest distance of particles along the rows.
     fn spacing(&self) -> f64 {
-        let step = |d: usize| {
-            let edges = (0..1usize << D).filter(|k| k >> d & 1 == 0);
-            let longest = edges.map(|k| (self.corners[k | 1 << d] - self.corners[k]).norm()).fold(0.0, f64::max);
-            longest / (self.counts[d] - 1) as f64
-        };
-        (0..D).map(step).fold(0.0, f64::max)
+        (0..D).map(|d| across(&self.corners, d) / (self.counts[d] - 1) as f64).fold(0.0, f64::max)
     }
 
     /// The point with these parts of the way along each axis.
@@ -136,6 +127,13 @@ impl<const D: usize> Lattice<D> {
             }
         }
     }
+}
+
+/// Greatest length of the rows of a box along axis `d`, seen along their mean: sides that slant to and fro count by what is between them.
+fn across<const D: usize>(corners: &[Vector<D>], d: usize) -> f64 {
+    let edges = || (0..1usize << D).filter(|k| k >> d & 1 == 0).map(|k| corners[k | 1 << d] - corners[k]);
+    let along = edges().fold(Vector::ZERO, |sum, e| sum + e).unit();
+    edges().map(|e| e.dot(&along)).fold(0.0, f64::max)
 }
 
 /// Corners of a side of a cell, in order seen from outside.

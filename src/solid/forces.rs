@@ -378,15 +378,13 @@ impl<const D: usize> Solid<D> {
         Err(Fault { particle: i, place, reason })
     }
 
-    /// The longest stable step of symplectic marching, over its Courant number: 1.1 h/c_p, less where the body is compressed.
+    /// The longest stable step of symplectic marching: that of the body at rest, less where it is compressed.
     pub fn stable_step(&self, u: &[[f64; D]]) -> f64 {
-        /// ω h/c of the fastest mode is 1.7 to 1.82 on lattices and perturbed clouds.
-        const FASTEST: f64 = 1.1;
         let fastest = maximum(self.len(), |i| {
             let speed = self.material_of(i).pressure_wave_speed();
             speed / (self.particles.spacing[i] * least_stretch(&self.deformation(i, u)))
         });
-        FASTEST / fastest
+        self.step_factor() / fastest
     }
 }
 

@@ -11,6 +11,7 @@ pub mod modes;
 mod pairs;
 pub mod particles;
 mod rows;
+mod stable;
 mod stiffness;
 pub mod system;
 #[cfg(test)]

@@ -118,7 +118,7 @@ fn a_solid_with_every_key_reads_back_to_itself() {
     assert!(solid.loads[1].place.contains(&[0.4, 7.0], 0.0) && !solid.loads[1].place.contains(&[0.3, 0.0], 0.05));
     assert!((c.balance_frequency().unwrap() - 10.0 * std::f64::consts::PI).abs() < 1e-12);
     let Some(Contact { bodies, stiffness, .. }) = c.contact else { panic!("{c:?}") };
-    assert_eq!((bodies, stiffness), (true, 0.1));
+    assert_eq!((bodies, stiffness), (true, 1.0));
     let written = write(&c);
     assert!(!written.contains("[flow]") && !written.contains("[cloud]"), "{written}");
     let again = read(&written, "case.toml").unwrap_or_else(|e| panic!("{e}\n{written}"));

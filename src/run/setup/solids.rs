@@ -8,7 +8,6 @@ use super::super::record::Described;
 use super::super::solids::setup::{Built, build};
 use crate::case::{Case, Temporal};
 use crate::coupling::solids::{Scales, SolidBody, Solids};
-use crate::math::Vector;
 use crate::motion::{Motions, SurfaceNet};
 use crate::observe::structure::{CoordinateName, StructureNames};
 
@@ -77,8 +76,9 @@ fn body<const D: usize>(
     let own = |i: &usize| usize::from(built.structure.solid.body[*i]) == k;
     let all: Vec<usize> = (0..particles.len()).filter(own).collect();
     let range = all.first().copied().unwrap_or(0)..all.last().map_or(0, |i| i + 1);
-    // those on the surface come first
-    let nodes = range.start..range.clone().find(|i| particles.area[*i] == Vector::ZERO).unwrap_or(range.end);
+    // those on the surface come first; the areas at the edge of a thin body may cancel
+    let corners = particles.facets.iter().flat_map(|f| f.corners()).map(|i| *i as usize);
+    let nodes = range.start..corners.filter(|i| range.contains(i)).max().map_or(range.start, |i| i + 1);
     let (place, area) = (particles.x[nodes.clone()].to_vec(), &built.wetted[nodes.clone()]);
     let net = SurfaceNet::new(first + D * range.start, place, area, particles.spacing[range.start]);
     let law = motions.of(number);

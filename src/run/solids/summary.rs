@@ -5,6 +5,10 @@ use super::record::{ModeRow, ProbeRow, SolidSummary, ledger};
 use crate::case::Temporal;
 use crate::solid::modes::Mode;
 
+/// Part of the energy that passed by which the ledger of a march may be open: beyond, results are doubtful; beyond the second, wrong.
+const DOUBTFUL: f64 = 0.01;
+const WRONG: f64 = 0.05;
+
 /// Where a study ended.
 pub(super) struct Ending<'a> {
     pub(super) marched: &'a Marched,
@@ -26,6 +30,13 @@ pub(super) fn summary<const D: usize>(study: &Study<'_, D>, ending: &Ending<'_>)
         warnings.push(format!("steps were halved {} times, where Newton's method did not get on", marched.halved));
     }
     let ledger = marched.rows.first().zip(marched.rows.last()).map(|(first, last)| ledger(first, last));
+    let open = ledger.as_ref().filter(|_| name == "march").map_or(0.0, |l| l.open.abs());
+    if open > DOUBTFUL {
+        warnings.push(format!(
+            "the ledger of energy is open by {:.1} %: the march makes or loses energy; take shorter steps (`cfl`, `step`)",
+            100.0 * open
+        ));
+    }
     let probe = |(k, (name, ..)): (usize, &(String, usize, crate::math::Vector<D>))| ProbeRow {
         name: name.clone(),
         displacement: marched.rows.last().map_or_else(Vec::new, |row| row.probes[k][..D].to_vec()),
@@ -40,7 +51,7 @@ pub(super) fn summary<const D: usize>(study: &Study<'_, D>, ending: &Ending<'_>)
         event: "summary",
         title: study.case.title.clone(),
         study: name,
-        converged: true,
+        converged: open <= WRONG,
         bodies: built.bodies.clone(),
         particles: solid.len(),
         neighbours: solid.particles.mean_neighbours(),
