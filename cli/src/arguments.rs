@@ -54,6 +54,8 @@ pub(crate) enum Command {
     Report(Report),
     /// Compute generalised aerodynamic forces: lift and moment of plunge and pitch at a list of reduced frequencies.
     Gaf(Gaf),
+    /// Seek the speeds at which a structure begins to flutter or diverges, at a list of Mach numbers.
+    Flutter(Flutter),
     /// Set two runs of a periodic flow side by side: loads, harmonics, walls, cost.
     Compare(Compare),
     /// Compare the solver with theory and experiment.
@@ -154,6 +156,19 @@ pub(crate) struct Gaf {
     /// Case file with a table `[gaf]`.
     pub(crate) case: PathBuf,
     /// Folder for the matrices and the runs.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) threads: Threads,
+    #[command(flatten)]
+    pub(crate) verbosity: Verbosity,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct Flutter {
+    /// Case file with a `[structure]` and a table `[flutter]`.
+    pub(crate) case: PathBuf,
+    /// Folder for the tables.
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
     #[command(flatten)]

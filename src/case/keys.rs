@@ -3,6 +3,7 @@
 //! Ranges that are not plain logic come from the numerics: particles nearer to the wall than 0.3 spacings spoil the
 //! conditioning of their clouds, more than 0.6 leave a gap; fewer than 3 particles a level do not fill a cloud.
 use super::body_keys::BODY;
+use super::flutter_keys::FLUTTER;
 use super::gaf_keys::GAF;
 use super::kinds::{ANGLE, COUNT, PLANE_POINT, POINT, POSITIVE, SIZE};
 use super::motion_keys::MOTION;
@@ -96,6 +97,12 @@ pub(super) static CASE: Table = Table::of(&[
         "`alula gaf` has nothing to do",
         "Generalised aerodynamic forces: the matrix of `alula gaf`. `alula run` takes the modes from it that a harmonic balance tells \
          forces on, and leaves the rest aside.",
+    ),
+    Field::optional(
+        "flutter",
+        Kind::Table(&FLUTTER),
+        "`alula flutter` has nothing to do",
+        "The flutter boundary that `alula flutter` seeks; `alula run` leaves it aside.",
     ),
 ]);
 

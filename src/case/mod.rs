@@ -10,6 +10,8 @@ mod draft;
 mod error;
 mod facts;
 mod flow;
+mod flutter;
+mod flutter_keys;
 pub mod formula;
 mod gaf;
 mod gaf_keys;
@@ -45,6 +47,7 @@ mod write;
 
 pub use error::{CaseError, CaseErrors};
 pub use flow::{FreeStreamScales, NEVER_LAMINAR, NO_CONTINUUM, Units, ViscosityLaw, Viscous, Wall};
+pub use flutter::Flutter;
 pub use gaf::{AnyMode, FlexibleMode, Gaf, Mode};
 pub use mode_file::{ModeTable, read_mode};
 pub use motion::{
@@ -132,6 +135,8 @@ pub struct Case {
     pub hinge: Vec<Hinge>,
     /// What `alula gaf` computes.
     pub gaf: Option<Gaf>,
+    /// What `alula flutter` seeks.
+    pub flutter: Option<Flutter>,
 }
 
 /// Free stream: either `mach` alone (nondimensional: density 1, sound speed 1) or dimensional values.

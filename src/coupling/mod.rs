@@ -367,6 +367,10 @@ impl<const D: usize> HasGas<D> for Coupled<D> {
 pub trait Marches<const D: usize>: HasGas<D> + Sized {
     /// Bodies made of particles in a frame at the state `u`; `None` where there are none.
     fn solid_snapshot(&self, frame: &Self::Frame, u: &[f64]) -> Option<SolidSnapshot<'_, D>>;
+    /// Bodies on springs; none for a gas alone.
+    fn attached(&self) -> &[Attached<D>] {
+        &[]
+    }
     /// A march from the state `u`.
     fn explicit<'a>(&'a self, plan: Plan, past: Past, u: Vec<f64>) -> Box<dyn Integrator<Self> + 'a>;
 }
@@ -395,6 +399,10 @@ impl<const D: usize> Marches<D> for Fluid<D> {
 }
 
 impl<const D: usize> Marches<D> for Coupled<D> {
+    fn attached(&self) -> &[Attached<D>] {
+        &self.bodies
+    }
+
     fn solid_snapshot(&self, frame: &Frame<D>, u: &[f64]) -> Option<SolidSnapshot<'_, D>> {
         let on = self.solids.as_ref()?;
         let mut work = on.solids.work();

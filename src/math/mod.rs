@@ -17,6 +17,7 @@ pub mod least_squares;
 pub mod moving_fit;
 pub mod multilevel;
 pub mod pencil;
+pub mod rational;
 pub mod rotation;
 pub(crate) mod rounded;
 pub mod singular;

@@ -16,6 +16,7 @@ mod disk;
 mod doubts;
 mod error;
 mod files;
+pub mod flutter;
 mod folder;
 mod found;
 pub mod gaf;

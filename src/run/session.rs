@@ -24,7 +24,7 @@ use super::record::{Described, IterationHistory, Log, Scales};
 use super::setup::{self, Site, Solver, check_motion};
 use super::solids::SolidSummary;
 use super::stage::{Stage, Task};
-use super::studies::{self, Reached, Start, Turn};
+use super::studies::{self, ForceSource, Reached, SmallMotion, Start, Turn};
 use crate::case::{self, Case};
 use crate::cloud::Cloud;
 use crate::cloud::sources::Source;
@@ -86,6 +86,9 @@ pub struct Session {
     solution: Option<Solution>,
 }
 
+/// What is done with a steady flow when it is found.
+pub(crate) type Then<'a> = &'a mut dyn FnMut(&mut dyn ForceSource, &mut Log<'_>) -> Result<(), RunError>;
+
 /// What a session has found.
 #[derive(Clone, Debug)]
 pub struct Solution {
@@ -140,11 +143,26 @@ impl Session {
 
     /// Solves the case, from its start or from where it was stopped; tells how it went.
     pub fn solve(&mut self, monitor: &mut dyn Monitor) -> Result<Outcome, RunError> {
+        self.solve_then(monitor, None)
+    }
+
+    /// The same; `then` gets what was found as a source of forces in small motion, before it is looked at and written.
+    pub(crate) fn solve_then(
+        &mut self,
+        monitor: &mut dyn Monitor,
+        then: Option<Then<'_>>,
+    ) -> Result<Outcome, RunError> {
         let origin = std::mem::replace(&mut self.origin, Origin::Case);
-        let work = Run { case: &self.case, given: &self.case.cloud, input: &self.input, out: self.out.as_deref() };
+        let work = Run {
+            case: &self.case,
+            given: &self.case.cloud,
+            input: &self.input,
+            out: self.out.as_deref(),
+            held: then.is_some(),
+        };
         let ended = match dimension(&self.case) {
-            2 => work.solve::<2>(origin, monitor),
-            _ => work.solve::<3>(origin, monitor),
+            2 => work.solve::<2>(origin, monitor, then),
+            _ => work.solve::<3>(origin, monitor, then),
         };
         self.held = None;
         Ok(match ended? {
@@ -210,6 +228,8 @@ struct Run<'a> {
     given: &'a case::Cloud,
     input: &'a Path,
     out: Option<&'a Path>,
+    /// Bodies on springs stay where they begin.
+    held: bool,
 }
 
 /// A stage that is over: its solver and where it ended.
@@ -230,12 +250,17 @@ type Ended = Result<Solution, u64>;
 
 impl Run<'_> {
     /// The gas alone, or with the structures of the case.
-    fn solve<const D: usize>(&self, origin: Origin, monitor: &mut dyn Monitor) -> Result<Ended, RunError> {
+    fn solve<const D: usize>(
+        &self,
+        origin: Origin,
+        monitor: &mut dyn Monitor,
+        then: Option<Then<'_>>,
+    ) -> Result<Ended, RunError> {
         let (surface, notes) = setup::surface::<D>(self.case, self.input)?;
         notes.iter().for_each(|n| monitor.note(n));
         let filled = accuracy::with_cloud(self.case, surface.as_ref());
         let run = Run { case: &filled, ..*self };
-        run.on(surface.as_ref(), origin, monitor)
+        run.on(surface.as_ref(), origin, monitor, then)
     }
 
     /// The same around the bodies, on clouds whose spacing is known.
@@ -244,6 +269,7 @@ impl Run<'_> {
         surface: Option<&Surface<D>>,
         origin: Origin,
         monitor: &mut dyn Monitor,
+        then: Option<Then<'_>>,
     ) -> Result<Ended, RunError> {
         let mut motions = setup::motions(self.case, self.input, surface)?;
         setup::sane(self.case, surface, &motions)?.iter().for_each(|n| monitor.warn(n));
@@ -252,7 +278,7 @@ impl Run<'_> {
         let solids = setup::solids(self.case, self.input, first, &mut motions, monitor)?;
         let site = Site { case: self.case, surface, motions: &motions };
         if bodies.is_empty() && solids.is_none() {
-            return self.stages(&site, |gas| gas, Vec::new(), origin, monitor);
+            return self.stages(&site, |gas| gas, Vec::new(), origin, monitor, then);
         }
         let mut described = setup::described(self.case, surface, &bodies);
         let solids = solids.map(|(solids, said)| {
@@ -271,7 +297,7 @@ impl Run<'_> {
                 }
             }
         };
-        self.stages(&site, couple, described, origin, monitor)
+        self.stages(&site, couple, described, origin, monitor, then)
     }
 
     /// All stages with the system that `assemble` makes from the gas on each cloud.
@@ -282,6 +308,7 @@ impl Run<'_> {
         structures: Vec<Described>,
         origin: Origin,
         monitor: &mut dyn Monitor,
+        then: Option<Then<'_>>,
     ) -> Result<Ended, RunError> {
         let clock = Clock::start();
         let (mut stages, mut ground) = self.opening(site, origin, monitor)?;
@@ -333,6 +360,10 @@ impl Run<'_> {
             previous = Some(Stood { stage: *stage, solver, reached });
         }
         let stood = previous.map_or_else(|| last_known(&mut course, site, assemble, &mut log), Ok)?;
+        if let Some(then) = then {
+            let (_, state) = stood.reached.end.as_ref().ok_or(RunError::NoStage)?;
+            then(&mut SmallMotion::new(&stood.solver.system, state), &mut log)?;
+        }
         Run { case: log.case, ..*self }.conclude(&stood, site.surface, &mut log, &clock).map(Ok)
     }
 
@@ -382,7 +413,7 @@ impl Run<'_> {
         turn: &Turn<'_>,
         log: &mut Log<'_>,
     ) -> Result<Option<Reached<S>>, RunError> {
-        solver.system.hold_bodies(turn.stage().task == Task::Relax && self.case.is_unsteady());
+        solver.system.hold_bodies(turn.stage().task == Task::Relax && (self.held || self.case.is_unsteady()));
         let plan = || recipe::balance(self.case).ok_or(RunError::NoStage);
         match turn.stage().task {
             Task::Relax => {

@@ -12,6 +12,7 @@
 //! has h down: h = −plunge); pitch is nose up positive (clockwise in the plane), a flap trailing edge down positive. Units are those of
 //! the solver (density and sound speed of the free stream, unit of length of the case), per unit span in the plane.
 mod describe;
+pub mod flutter;
 mod force;
 mod from_case;
 mod placement;

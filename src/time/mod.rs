@@ -5,6 +5,7 @@ pub mod explicit;
 pub mod formula;
 pub mod full;
 pub mod harmonic;
+pub mod linear;
 mod norm;
 pub mod ordinary;
 mod preconditioning;

@@ -12,6 +12,7 @@ mod check;
 mod cloud;
 mod compare;
 mod completions;
+mod flutter;
 mod gaf;
 mod geometry;
 mod new;
@@ -27,6 +28,7 @@ pub(crate) fn dispatch(cli: Cli) -> Outcome {
         Command::Run(args) => args.verbosity.json,
         Command::Resume(args) => args.verbosity.json,
         Command::Gaf(args) => args.verbosity.json,
+        Command::Flutter(args) => args.verbosity.json,
         Command::Check(args) => args.json,
         Command::Verify(args) => args.json,
         _ => false,
@@ -38,6 +40,7 @@ pub(crate) fn dispatch(cli: Cli) -> Outcome {
         Command::Cloud(args) => threaded(args.threads, || cloud::cloud(&args)),
         Command::Resume(args) => threaded(args.threads, || resume::resume(&args)),
         Command::Gaf(args) => threaded(args.threads, || gaf::gaf(&args)),
+        Command::Flutter(args) => threaded(args.threads, || flutter::flutter(&args)),
         Command::Geometry(args) => geometry::geometry(&args),
         Command::Report(args) => report::report(&args),
         Command::Compare(args) => compare::compare(&args),

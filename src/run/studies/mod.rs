@@ -2,6 +2,7 @@
 //! it, lets it be driven, and tells how far it came.
 mod balance;
 mod check;
+mod forces;
 mod lead;
 mod march;
 mod periodic;
@@ -10,6 +11,7 @@ mod steady;
 mod turn;
 
 pub(crate) use balance::balance;
+pub(crate) use forces::{ForceSource, SmallMotion};
 pub(crate) use lead::lead;
 pub(crate) use march::march;
 pub(crate) use steady::relax;

@@ -1,0 +1,56 @@
+//! Flutter boundaries: at which Mach numbers, with what accuracy, as data.
+use serde::{Deserialize, Serialize};
+
+use super::{Accuracy, Case, Motion, ParticleMotion, Steady, Temporal};
+
+/// The table `[flutter]`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Flutter {
+    /// Mach numbers; empty: that of `[flow]`.
+    #[serde(default)]
+    pub mach: Vec<f64>,
+    /// Reduced frequencies that forces are computed at first; empty: those of [`Self::first`].
+    #[serde(default)]
+    pub reduced_frequencies: Vec<f64>,
+    /// Greatest speed looked at, over that of the structure.
+    pub most: f64,
+    /// Part by which two successive interpolations may differ in a speed.
+    pub accuracy: f64,
+    /// Greatest number of frequencies.
+    pub frequencies: u32,
+}
+
+impl Flutter {
+    /// Reduced frequencies that forces are computed at first, rising: from almost steady to twice what sections flutter at.
+    pub fn first(&self) -> Vec<f64> {
+        const USUAL: [f64; 4] = [0.02, 0.08, 0.2, 0.5];
+        let mut all =
+            if self.reduced_frequencies.is_empty() { USUAL.to_vec() } else { self.reduced_frequencies.clone() };
+        all.sort_by(f64::total_cmp);
+        all.dedup();
+        all
+    }
+}
+
+impl Case {
+    /// The steady flow at one Mach number about which forces are sought; bodies stay where they begin.
+    pub fn flutter_case(&self, mach: f64) -> Self {
+        /// Orders that the residual falls by: what is left of it is a force that does not belong to the motion.
+        const ORDERS: f64 = 9.0;
+        let mut case = self.clone();
+        case.title = format!("{} at Mach {mach}", self.title);
+        case.flow.mach = Some(mach);
+        let steady = if let Temporal::Steady(steady) = &self.time { steady.clone() } else { Steady::default() };
+        case.time = Temporal::Steady(Steady { orders: ORDERS, ..steady });
+        case.accuracy = None::<Accuracy>;
+        // a rigid cloud around one rigid body turns with it; one that deforms serves any number of modes
+        let particles = ParticleMotion::Deforming;
+        case.motion = Some(Motion { particles, law: self.motion.clone().map_or_else(Default::default, |m| m.law) });
+        case.output.report = false;
+        for structure in &mut case.structures {
+            structure.initial.clear();
+            structure.modes.iter_mut().for_each(|m| (m.initial, m.initial_rate) = (0.0, 0.0));
+        }
+        case
+    }
+}

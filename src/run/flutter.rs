@@ -1,0 +1,431 @@
+//! Flutter boundaries: at each Mach number a steady flow, forces of small motions about it, and the speeds at which motions of the
+//! structure begin to grow.
+//!
+//! Forces are computed at a few frequencies and at none, and interpolated by rational functions. Where that finds a crossing, forces are
+//! computed at its frequency as well, until the speed of no crossing changes by more than is asked: that change is its error bar.
+use num_complex::Complex64;
+use serde::Serialize;
+
+use super::error::RunError;
+use super::folder::{self, Places};
+use super::look::reference::chord;
+use super::monitor::Monitor;
+use super::record::Log;
+use super::session::{Outcome, Session};
+use super::setup;
+use super::studies::ForceSource;
+use crate::case::{Case, Flutter as Plan};
+use crate::geometry::dimension;
+use crate::math::rational::Rational;
+use crate::observe::table::{Entry, write_csv, write_json};
+use crate::structure::Matrices;
+use crate::structure::flutter::{Crossing, Flutter, Kind, Point};
+
+/// The tables of `alula flutter`.
+const CROSSINGS: &str = "flutter.csv";
+const HISTORY: &str = "v-g.csv";
+const SUMMARY: &str = "flutter.json";
+/// Misfit of rational functions to the samples.
+const MISFIT: f64 = 1e-7;
+/// Frequencies that are nearer to one another than this part are one.
+const SAME: f64 = 5e-4;
+/// What files say about signs and units.
+const CONVENTIONS: &str = "speeds at constant density and Mach number; V* = U/(b omega_alpha), speed index V* / sqrt(mu), k = omega b/U, \
+                           b half of the reference chord; g = 2 zeta = 2 Re(lambda)/|lambda|; motion exp(i omega t); plunge up, pitch \
+                           nose up positive";
+
+/// A change from decay to growth, or back.
+#[derive(Clone, Debug, Serialize)]
+pub struct FlutterRow {
+    /// `flutter`, `restabilised` or `divergence`.
+    pub kind: &'static str,
+    /// Number of the mode in still air, from 1.
+    pub mode: usize,
+    /// Speed over that of the structure in the case.
+    pub speed_ratio: f64,
+    /// Speed index, where the structure has a mass ratio and a frequency of pitch.
+    pub speed_index: Option<f64>,
+    /// V*, the same times the root of the mass ratio.
+    pub reduced_speed: Option<f64>,
+    /// Speed in the units of the case.
+    pub speed: f64,
+    /// k.
+    pub reduced_frequency: f64,
+    /// Frequency in cycles per unit of time of the case.
+    pub frequency: f64,
+    /// The same over that of pitch alone, where the structure is a section.
+    pub frequency_ratio: Option<f64>,
+    /// Relative change of the speed between the last two interpolations.
+    pub error: f64,
+    /// True when k lies beyond the frequencies that forces were computed at.
+    pub extrapolated: bool,
+}
+
+/// A motion at a speed.
+#[derive(Clone, Debug, Serialize)]
+pub struct MotionRow {
+    /// Number of the mode in still air, from 1.
+    pub mode: usize,
+    /// Speed over that of the structure in the case.
+    pub speed_ratio: f64,
+    /// k.
+    pub reduced_frequency: f64,
+    /// 2 Re λ/|λ|.
+    pub damping: f64,
+    /// Cycles per unit of time of the case.
+    pub frequency: f64,
+    /// λ over the rate of the fastest natural mode: real and imaginary part.
+    pub eigenvalue: [f64; 2],
+}
+
+/// What was found at one Mach number.
+#[derive(Clone, Debug, Serialize)]
+pub struct FlutterAt {
+    /// Mach number.
+    pub mach: f64,
+    /// Every crossing, by speed.
+    pub crossings: Vec<FlutterRow>,
+    /// Motions at the speeds looked at, mode by mode.
+    #[serde(skip)]
+    pub motions: Vec<MotionRow>,
+    /// Reduced frequencies that forces were computed at, zero first.
+    pub reduced_frequencies: Vec<f64>,
+    /// Generalised forces at these, rows one after another, in units of the solver: density and sound speed one.
+    pub forces: Vec<Vec<[f64; 2]>>,
+    /// Names of the coordinates.
+    pub coordinates: Vec<String>,
+    /// Lift, drag and moment of the steady flow.
+    pub steady: [f64; 3],
+    /// Orders that its residual fell by.
+    pub orders: f64,
+    /// Particles.
+    pub particles: usize,
+    /// Linear iterations of all columns.
+    pub linear_iterations: usize,
+    /// Greatest relative residual of a column.
+    pub residual: f64,
+    /// Processor seconds.
+    pub cpu_seconds: f64,
+    /// What makes results doubtful.
+    pub warnings: Vec<String>,
+}
+
+/// The whole boundary.
+#[derive(Clone, Debug, Serialize)]
+pub struct Boundary {
+    /// What the case is called.
+    pub title: String,
+    /// Signs and units.
+    pub conventions: &'static str,
+    /// All Mach numbers.
+    pub flutter: Vec<FlutterAt>,
+}
+
+/// Numbers that turn those of the solver into those of users.
+struct Scales {
+    /// Half of the reference chord.
+    semichord: f64,
+    /// Speed of the stream, in sound speeds.
+    stream: f64,
+    /// Speed of the stream in the units of the case.
+    speed: f64,
+    /// Solver rate to cycles per unit of time of the case.
+    cycles: f64,
+    /// V* and V_f of the structure in the case.
+    reduced_speed: Option<f64>,
+    speed_index: Option<f64>,
+}
+
+/// Seeks the boundary of the table `[flutter]`, into a fresh folder; `None` when the monitor says stop.
+pub fn flutter(case: &Case, places: &Places, monitor: &mut dyn Monitor) -> Result<Option<Boundary>, RunError> {
+    let Some(plan) = case.flutter.clone() else {
+        return Err(RunError::Unsupported {
+            what: "the case has no table `[flutter]`".into(),
+            hint: "add one: `[flutter]` alone seeks the boundary at the Mach number of `[flow]`",
+        });
+    };
+    refused(case)?;
+    setup::supported(case)?;
+    let _held = folder::create_once(case, &places.input, &places.out)?;
+    let machs = if plan.mach.is_empty() { vec![case.flow.reference().mach] } else { plan.mach.clone() };
+    let mut all = Boundary { title: case.title.clone(), conventions: CONVENTIONS, flutter: Vec::new() };
+    for mach in machs {
+        let Some(found) = at_mach(case, &plan, mach, places, monitor)? else { return Ok(None) };
+        all.flutter.push(found);
+        all.write(places)?;
+    }
+    folder::finish(&places.out)?;
+    Ok(Some(all))
+}
+
+/// What nothing flutters of, or not in one go.
+fn refused(case: &Case) -> Result<(), RunError> {
+    let asks = [
+        (case.structures.is_empty(), "flutter without a `[structure]`", "add one: its coordinates are the modes"),
+        (
+            case.polar.is_some(),
+            "the flutter boundary of a polar",
+            "give one angle and one Mach number in `[flow]`, others in `[flutter]`",
+        ),
+        (
+            case.solids().next().is_some(),
+            "the flutter of bodies made of particles beside a gas",
+            "find their modes first (`[time.modes]` without `[flow]`), and give them as `[[structure.mode]]`",
+        ),
+        (
+            case.flow.velocity.is_some(),
+            "the flutter boundary of a stream that is given by `velocity`",
+            "give `mach` instead: the speed is what is sought",
+        ),
+    ];
+    match asks.into_iter().find(|a| a.0) {
+        Some((_, what, hint)) => {
+            Err(RunError::Unsupported { what: format!("this version cannot compute {what}"), hint })
+        }
+        None => Ok(()),
+    }
+}
+
+/// The boundary at one Mach number.
+fn at_mach(
+    case: &Case,
+    plan: &Plan,
+    mach: f64,
+    places: &Places,
+    monitor: &mut dyn Monitor,
+) -> Result<Option<FlutterAt>, RunError> {
+    let own = case.flutter_case(mach);
+    let chord = match dimension(case) {
+        2 => chord(case, setup::surface::<2>(case, &places.input)?.0.as_ref()),
+        _ => chord(case, setup::surface::<3>(case, &places.input)?.0.as_ref()),
+    };
+    let mut session = Session::open(&own, &places.input)?;
+    let mut found = None;
+    let mut then = |source: &mut dyn ForceSource, log: &mut Log<'_>| {
+        let scales = Scales::of(&own, chord, log);
+        found = Some(Search::new(source, &scales, plan).run(log));
+        Ok(())
+    };
+    let outcome = session.solve_then(monitor, Some(&mut then))?;
+    let (Outcome::Finished(summary), Some(mut at)) = (outcome, found) else { return Ok(None) };
+    at.mach = mach;
+    at.steady = [summary.loads.cl, summary.loads.cd, summary.loads.cm];
+    at.orders = summary.residual_drop.unwrap_or(0.0);
+    (at.particles, at.cpu_seconds) = (summary.particles, summary.cpu_seconds);
+    if !summary.succeeded() {
+        at.warnings.push("the steady flow did not converge: forces about it are doubtful".into());
+    }
+    at.warnings.iter().for_each(|w| monitor.warn(&format!("Mach {mach}: {w}")));
+    Ok(Some(at))
+}
+
+impl Scales {
+    fn of(case: &Case, chord: f64, log: &Log<'_>) -> Self {
+        let reference = case.flow.reference();
+        let structure = &case.structures[0];
+        let index = structure.speed_index;
+        let root = structure.mass_ratio.map(f64::sqrt);
+        let reduced = structure
+            .reduced_speed
+            .or(structure.reduced_velocity.map(|u| u / std::f64::consts::PI))
+            .or(index.zip(root).map(|(v, root)| v * root));
+        Self {
+            semichord: structure.semichord.map_or(0.5 * chord, |b| b.0),
+            stream: reference.mach,
+            speed: reference.speed,
+            cycles: 1.0 / (log.units.case_time(1.0) * std::f64::consts::TAU),
+            reduced_speed: reduced,
+            speed_index: index.or(reduced.zip(root).map(|(v, root)| v / root)),
+        }
+    }
+
+    fn reduced_frequency(&self, kappa: f64) -> f64 {
+        kappa * self.semichord / self.stream
+    }
+}
+
+/// The search at one Mach number.
+struct Search<'a> {
+    source: &'a mut dyn ForceSource,
+    scales: &'a Scales,
+    plan: &'a Plan,
+    matrices: Matrices,
+    samples: Vec<(f64, Vec<Complex64>)>,
+    iterations: usize,
+    residual: f64,
+}
+
+impl<'a> Search<'a> {
+    fn new(source: &'a mut dyn ForceSource, scales: &'a Scales, plan: &'a Plan) -> Self {
+        let matrices = source.matrices();
+        Self { source, scales, plan, matrices, samples: Vec::new(), iterations: 0, residual: 0.0 }
+    }
+
+    /// Computes forces at the angular frequency `omega`.
+    fn sample(&mut self, omega: f64, log: &mut Log<'_>) {
+        let (forces, ended) = self.source.forces(omega);
+        let iterations: usize = ended.iter().map(|e| e.iterations).sum();
+        let left = ended.iter().map(|e| e.left).fold(0.0, f64::max);
+        self.iterations += iterations;
+        self.residual = self.residual.max(left);
+        log.note(&format!(
+            "forces at k = {:.4}: {iterations} linear iterations for {} modes, residual {left:.0e}",
+            self.scales.reduced_frequency(omega),
+            ended.len()
+        ));
+        self.samples.push((omega, forces));
+        self.samples.sort_by(|a, b| a.0.total_cmp(&b.0));
+    }
+
+    fn run(mut self, log: &mut Log<'_>) -> FlutterAt {
+        self.sample(0.0, log);
+        for k in self.plan.first() {
+            self.sample(k * self.scales.stream / self.scales.semichord, log);
+        }
+        let mut warnings = Vec::new();
+        let (mut branches, mut crossings) = self.solved();
+        // no change is known of the first ones
+        let mut errors = vec![f64::INFINITY; crossings.len()];
+        while self.samples.len() < self.plan.frequencies as usize {
+            let new = |c: &Crossing| self.samples.iter().all(|(w, _)| (w - c.kappa).abs() > SAME * c.kappa);
+            let open = crossings.iter().zip(&errors).filter(|(c, e)| **e > self.plan.accuracy && new(c));
+            let Some(worst) = open.max_by(|a, b| a.1.total_cmp(b.1).then(b.0.x.total_cmp(&a.0.x))) else { break };
+            let kappa = worst.0.kappa;
+            self.sample(kappa, log);
+            let before = std::mem::take(&mut crossings);
+            (branches, crossings) = self.solved();
+            errors = crossings.iter().map(|c| changed(c, &before)).collect();
+        }
+        for (crossing, error) in crossings.iter().zip(&mut errors) {
+            // forces at its own frequency, and no other fit to hold it against
+            if !error.is_finite() && crossing.kind == Kind::Divergence {
+                *error = self.residual;
+            }
+            if *error > self.plan.accuracy {
+                warnings.push(format!(
+                    "the crossing at {:.4} of the speed is known to {:.1} % only: allow more `frequencies`",
+                    crossing.x,
+                    100.0 * error.min(1.0)
+                ));
+            }
+        }
+        self.told(&branches, &crossings, &errors, warnings)
+    }
+
+    /// Motions and crossings with the forces known so far.
+    fn solved(&self) -> (Vec<Vec<Point>>, Vec<Crossing>) {
+        let Some(fit) = Rational::of(&self.samples, MISFIT) else { return (Vec::new(), Vec::new()) };
+        let forces = |kappa: f64| fit.at(Complex64::new(0.0, kappa));
+        let flutter = Flutter::new(&self.matrices, &forces);
+        let branches = flutter.branches(self.plan.most);
+        let crossings = flutter.crossings(&branches, self.plan.most);
+        (branches, crossings)
+    }
+
+    fn told(
+        &self,
+        branches: &[Vec<Point>],
+        crossings: &[Crossing],
+        errors: &[f64],
+        warnings: Vec<String>,
+    ) -> FlutterAt {
+        let s = self.scales;
+        let last = self.samples.last().map_or(0.0, |x| x.0) * (1.0 + SAME);
+        // the frequency of pitch alone: what V* is measured with
+        let alone = s.reduced_speed.map(|v| s.stream / (v * s.semichord));
+        let row = |(c, error): (&Crossing, &f64)| FlutterRow {
+            kind: match c.kind {
+                Kind::Flutter => "flutter",
+                Kind::Restabilised => "restabilised",
+                Kind::Divergence => "divergence",
+            },
+            mode: c.mode + 1,
+            speed_ratio: c.x,
+            speed_index: s.speed_index.map(|v| v * c.x),
+            reduced_speed: s.reduced_speed.map(|v| v * c.x),
+            speed: s.speed * c.x,
+            reduced_frequency: s.reduced_frequency(c.kappa),
+            frequency: s.cycles * c.frequency,
+            frequency_ratio: alone.map(|w| c.frequency / w),
+            error: *error,
+            extrapolated: c.kappa > last,
+        };
+        let fastest = branches.iter().flatten().map(|p| p.lambda.norm()).fold(f64::MIN_POSITIVE, f64::max);
+        let motion = |(mode, p): (usize, &Point)| MotionRow {
+            mode: mode + 1,
+            speed_ratio: p.x,
+            reduced_frequency: s.reduced_frequency(p.lambda.im.abs() / p.x),
+            damping: 2.0 * p.lambda.re / p.lambda.norm(),
+            frequency: s.cycles * p.lambda.im.abs(),
+            eigenvalue: [p.lambda.re / fastest, p.lambda.im / fastest],
+        };
+        FlutterAt {
+            mach: s.stream,
+            crossings: crossings.iter().zip(errors).map(row).collect(),
+            motions: branches.iter().enumerate().flat_map(|(m, b)| b.iter().map(move |p| (m, p))).map(motion).collect(),
+            reduced_frequencies: self.samples.iter().map(|x| s.reduced_frequency(x.0)).collect(),
+            forces: self.samples.iter().map(|x| x.1.iter().map(|z| [z.re, z.im]).collect()).collect(),
+            coordinates: self.source.names(),
+            steady: [0.0; 3],
+            orders: 0.0,
+            particles: 0,
+            linear_iterations: self.iterations,
+            residual: self.residual,
+            cpu_seconds: 0.0,
+            warnings,
+        }
+    }
+}
+
+/// Relative change of the speed of a crossing since the interpolation before; infinite where that had none like it.
+fn changed(crossing: &Crossing, before: &[Crossing]) -> f64 {
+    let like = before.iter().filter(|b| b.kind == crossing.kind && b.mode == crossing.mode);
+    like.map(|b| (b.x - crossing.x).abs() / crossing.x).fold(f64::INFINITY, f64::min)
+}
+
+impl Boundary {
+    fn write(&self, places: &Places) -> Result<(), RunError> {
+        let number = |x: Option<f64>| Entry::from(x.unwrap_or(f64::NAN));
+        let rows = self.flutter.iter().flat_map(|at| at.crossings.iter().map(move |c| (at.mach, c)));
+        let rows = rows.map(|(mach, c)| {
+            vec![
+                Entry::from(mach),
+                Entry::from(c.kind),
+                Entry::from(c.mode as f64),
+                Entry::from(c.speed_ratio),
+                number(c.speed_index),
+                number(c.reduced_speed),
+                Entry::from(c.speed),
+                Entry::from(c.reduced_frequency),
+                Entry::from(c.frequency),
+                number(c.frequency_ratio),
+                Entry::from(c.error),
+            ]
+        });
+        let names = [
+            "mach",
+            "kind",
+            "mode",
+            "speed_ratio",
+            "speed_index",
+            "reduced_speed",
+            "speed",
+            "reduced_frequency",
+            "frequency",
+            "frequency_ratio",
+            "error",
+        ];
+        write_csv(&places.out.join(CROSSINGS), &names, rows)?;
+        let motions = self.flutter.iter().flat_map(|at| at.motions.iter().map(move |m| (at.mach, m)));
+        let motions = motions.map(|(mach, m)| {
+            let over = if m.reduced_frequency > 0.0 { 1.0 / m.reduced_frequency } else { f64::INFINITY };
+            let [re, im] = m.eigenvalue;
+            let numbers = [m.speed_ratio, m.reduced_frequency, over, m.damping, m.frequency, re, im];
+            [mach, m.mode as f64].into_iter().chain(numbers).map(Entry::from).collect::<Vec<_>>()
+        });
+        let names =
+            ["mach", "mode", "speed_ratio", "k", "1/k", "damping_g", "frequency", "eigenvalue_re", "eigenvalue_im"];
+        write_csv(&places.out.join(HISTORY), &names, motions)?;
+        Ok(write_json(&places.out.join(SUMMARY), &self)?)
+    }
+}

@@ -1,0 +1,172 @@
+//! Forces of the gas on the coordinates of bodies that move a little and periodically about a steady flow.
+//!
+//! With coordinates q = q̂ e^{iωt} the gas obeys (iω − ∂R/∂U) û = ∂R/∂q + iω ∂R/∂q' − ω² ∂R/∂q'', where places, velocities and
+//! accelerations of walls and cloud go with q, q' and q''; the generalised forces are Q = ∂F/∂U û + ∂F/∂q + iω ∂F/∂q' − ω² ∂F/∂q''.
+//! The cloud, the steady flow and the three derivatives serve all frequencies, one preconditioner all coordinates of a frequency.
+use num_complex::Complex64;
+
+use crate::coupling::Marches;
+use crate::math::sweep::norm;
+use crate::scheme::Fluid;
+use crate::structure::Matrices;
+use crate::system::{Hierarchy, Instant, Term};
+use crate::time::control::Control;
+use crate::time::linear::{Ended, Linear};
+
+/// Displacement, rate and acceleration that derivatives are differences over, in units of a coordinate.
+const STEP: f64 = 1e-5;
+/// Change of the state in derivatives of forces, over its size.
+const OF_STATE: f64 = 1e-6;
+/// Relative residual of the linear systems.
+const TOLERANCE: f64 = 1e-6;
+
+/// A steady flow that can be asked for forces.
+pub(crate) trait ForceSource {
+    /// Matrices of the structures about the coordinates of the steady flow, in units of the solver.
+    fn matrices(&self) -> Matrices;
+    /// Names of the coordinates.
+    fn names(&self) -> Vec<String>;
+    /// Generalised forces per coordinate at the angular frequency `omega`, rows one after another, and how each column was found.
+    fn forces(&mut self, omega: f64) -> (Vec<Complex64>, Vec<Ended>);
+}
+
+/// What displacement, rate and acceleration of a coordinate do to the gas and to the forces.
+struct Column {
+    gas: [Vec<f64>; 3],
+    force: [Vec<f64>; 3],
+}
+
+/// The forces of a system about a state.
+pub(crate) struct SmallMotion<'a, S: Marches<D>, const D: usize> {
+    system: &'a S,
+    frame: S::Frame,
+    work: S::Work,
+    state: Vec<f64>,
+    linear: Linear<'a, Fluid<D>>,
+    columns: Vec<Column>,
+}
+
+impl<'a, S: Marches<D>, const D: usize> SmallMotion<'a, S, D> {
+    /// `system` at the steady state `state`.
+    pub(crate) fn new(system: &'a S, state: &[f64]) -> Self {
+        let mut work = system.work();
+        let place = system.placing();
+        let mut frame = system.frame(&Instant::formula(0.0, &[]).with(&state[place]), state);
+        system.update_boundary_state(state, &mut work, &mut frame);
+        let linear = Linear::new(system.gas(), system.gas_frame(&frame).clone(), system.gas_state(state));
+        let mut all = Self { system, frame, work, state: state.to_vec(), linear, columns: Vec::new() };
+        let units: Vec<f64> = system.attached().iter().flat_map(|b| b.units.clone()).collect();
+        all.columns = units.iter().enumerate().map(|(j, unit)| all.column(j, STEP * unit)).collect();
+        all
+    }
+
+    /// What the coordinate number `j` does, by central differences over `step`.
+    fn column(&mut self, j: usize, step: f64) -> Column {
+        let place = self.system.placing();
+        let still = self.state[place].to_vec();
+        let moved = |part: usize, by: f64| {
+            let mut all = still.clone();
+            all[2 * j + part] += by;
+            all
+        };
+        // elsewhere; there with a rate; there with an acceleration
+        let displaced = [1.0, -1.0].map(|sign| self.response(&moved(0, sign * step), &[]));
+        let by_formula = |this: &mut Self, part: usize, sign: f64| {
+            let ends = [moved(part, step), moved(part, -step)];
+            let term = |k: usize, c: f64| Term { coefficient: sign * c, time: 0.0, coordinates: &ends[k] };
+            this.response(&still, &[term(0, 0.5), term(1, -0.5)])
+        };
+        let fast = [1.0, -1.0].map(|sign| by_formula(self, 0, sign));
+        let hurried = [1.0, -1.0].map(|sign| by_formula(self, 1, sign));
+        let slope = |[a, b]: &[(Vec<f64>, Vec<f64>); 2]| {
+            let of = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b) / (2.0 * step)).collect::<Vec<f64>>();
+            (of(&a.0, &b.0), of(&a.1, &b.1))
+        };
+        let [(a, fa), (b, fb), (c, fc)] = [&displaced, &fast, &hurried].map(slope);
+        Column { gas: [a, b, c], force: [fa, fb, fc] }
+    }
+
+    /// R and forces where the coordinates are `coordinates` and ∂/∂t is `terms`.
+    fn response(&mut self, coordinates: &[f64], terms: &[Term<'_>]) -> (Vec<f64>, Vec<f64>) {
+        let mut u = self.state.clone();
+        u[self.system.placing()].copy_from_slice(coordinates);
+        self.system.place(&Instant::formula(0.0, terms).with(coordinates), &mut self.frame);
+        let mut du = vec![0.0; u.len()];
+        self.system.rhs_with_boundary(&u, &mut self.work, &mut self.frame, &mut du);
+        let loads = self.system.exchange(&self.frame, &u, &mut self.work).map_or_else(Vec::new, |e| e.loads);
+        (du[self.system.gas_unknowns()].to_vec(), loads)
+    }
+
+    /// ∂F/∂U v.
+    fn force_of(&mut self, v: &[f64]) -> Vec<f64> {
+        let size = norm(v);
+        if size == 0.0 {
+            return vec![0.0; self.columns.len()];
+        }
+        let (own, step) = (self.system.gas_unknowns(), OF_STATE * norm(self.system.gas_state(&self.state)) / size);
+        let sides = [1.0, -1.0].map(|sign| {
+            let mut u = self.state.clone();
+            u[own.clone()].iter_mut().zip(v).for_each(|(u, v)| *u += sign * step * v);
+            self.system.update_boundary_state(&u, &mut self.work, &mut self.frame);
+            self.system.exchange(&self.frame, &u, &mut self.work).map_or_else(Vec::new, |e| e.loads)
+        });
+        sides[0].iter().zip(&sides[1]).map(|(a, b)| (a - b) / (2.0 * step)).collect()
+    }
+}
+
+impl<S: Marches<D>, const D: usize> ForceSource for SmallMotion<'_, S, D> {
+    fn matrices(&self) -> Matrices {
+        let n = self.columns.len();
+        let mut all = Matrices { mass: vec![0.0; n * n], damping: vec![0.0; n * n], stiffness: vec![0.0; n * n] };
+        for body in self.system.attached() {
+            let (m, first) = (body.structure.len(), body.first);
+            let q: Vec<f64> = (0..m).map(|k| self.state[self.system.placing()][2 * (first + k)]).collect();
+            let own = body.structure.matrices(&q, &vec![0.0; m]);
+            let pairs =
+                [(&mut all.mass, own.mass), (&mut all.damping, own.damping), (&mut all.stiffness, own.stiffness)];
+            for (whole, part) in pairs {
+                for (k, x) in part.iter().enumerate() {
+                    whole[(first + k / m) * n + first + k % m] = *x;
+                }
+            }
+        }
+        all
+    }
+
+    fn names(&self) -> Vec<String> {
+        let all = self.system.attached().iter().flat_map(|b| b.structure.coordinates());
+        all.map(|c| c.name.clone()).collect()
+    }
+
+    fn forces(&mut self, omega: f64) -> (Vec<Complex64>, Vec<Ended>) {
+        let n = self.columns.len();
+        let right: Vec<Vec<f64>> = self
+            .columns
+            .iter()
+            .map(|c| {
+                let [q, v, a] = &c.gas;
+                let real = q.iter().zip(a).map(|(q, a)| q - omega * omega * a);
+                real.chain(v.iter().map(|v| omega * v)).collect()
+            })
+            .collect();
+        let control = Control::newton(D);
+        let plan = Hierarchy { group: control.group, cycle: control.cycle };
+        let solved = self.linear.solve_with(omega, &right, TOLERANCE, &plan);
+        // forces are those at rest: the frame stands where the steady flow has it
+        let still = self.state[self.system.placing()].to_vec();
+        self.system.place(&Instant::formula(0.0, &[]).with(&still), &mut self.frame);
+        let mut all = vec![Complex64::new(0.0, 0.0); n * n];
+        let mut ended = Vec::new();
+        for (j, (x, end)) in solved.into_iter().enumerate() {
+            let (re, im) = x.split_at(x.len() / 2);
+            let [re, im] = [re, im].map(|part| self.force_of(part));
+            let [q, v, a] = &self.columns[j].force;
+            for i in 0..n {
+                let direct = Complex64::new(q[i] - omega * omega * a[i], omega * v[i]);
+                all[i * n + j] = Complex64::new(re[i], im[i]) + direct;
+            }
+            ended.push(end);
+        }
+        (all, ended)
+    }
+}

@@ -1,0 +1,717 @@
+//! Flutter of a structure with small motions in a stream whose speed is varied at one Mach number.
+//!
+//! With x = U/U_ref, the speed over that for which matrices and time hold, motions q e^{λt} are those of
+//!
+//! D(λ, x) q = [M λ² + C λ + K − x² Q(iκ)] q = 0, κ = Im λ/x,
+//!
+//! the p-k method (Hassig, J. Aircraft 8, 1971): forces are those of the harmonic motion with the same frequency, exact where the motion
+//! neither grows nor decays. κ = 0 is the limit of steady displacements.
+//!
+//! Branches λ(x), one for each natural mode, are followed in the coordinates of the natural modes, ΦᵀMΦ = 1: first at one low speed
+//! while damping and forces are turned on, then along x. Newton's method on D q = 0, q₀ᴴ q = 1 with q₀ the shape before, at frozen κ, is
+//! repeated by the secant method until κ is that of its root. Steps shrink where that fails or shapes turn. Roots that run into
+//! another in a conservative system leave it at right angles, |λ − λ_F| ∝ |x − x_F|^½; every branch turns right there, so that the two
+//! go apart: of two frequencies that meet the lower one, which rises, goes on to grow.
+//!
+//! Limits: a branch ends where its frequency reaches zero, and where forces leave it without a root. Modes without stiffness have no
+//! branch. Divergence is found apart, from K q = x² Q(0) q.
+use num_complex::Complex64;
+
+use super::Matrices;
+use crate::math::dense::Factors;
+use crate::math::eigenvalues::eigenvalues;
+use crate::math::singular::Singular;
+use crate::math::symmetric;
+
+/// First speed over the last.
+const FIRST: f64 = 1e-3;
+/// Steps of a branch, at least.
+const STEPS: f64 = 200.0;
+/// Steps in which forces are turned on, at least.
+const TURNED_ON: f64 = 4.0;
+/// Step, over the speed, that is not halved: there branches turn or end.
+const SMALLEST: f64 = 1e-7;
+/// Cosine squared of the angle between shapes before and after a step, at least.
+const SAME_SHAPE: f64 = 0.9;
+/// Change of a root in a step, over its size, at most.
+const SAME_ROOT: f64 = 0.2;
+/// Guesses beside a root where branches turn, over its size.
+const BESIDE: [f64; 3] = [1e-3, 1e-2, 1e-4];
+/// Newton steps, at most: round-off is reached in five unless roots are close.
+const NEWTON: usize = 40;
+/// Change of root and shape that ends them, and that which may go on to tremble.
+const CONVERGED: [f64; 2] = [1e-14, 1e-8];
+/// Secant steps for κ, at most.
+const SECANT: usize = 60;
+/// Change of the frequency, over the root, that ends them, and that which may go on to tremble.
+const MATCHED: [f64; 2] = [1e-12, 1e-10];
+/// Rate of growth over the root below which a motion counts as neutral: far above round-off.
+const NEUTRAL: f64 = 1e-9;
+/// Width of the interval of a crossing, over the speed, and rate of growth over the root there: round-off.
+const LOCATED: [f64; 2] = [1e-13, 1e-15];
+/// Imaginary over real part of an eigenvalue that counts as real.
+const REAL: f64 = 1e-8;
+/// Natural frequencies, squared, that are closer than the first are set apart by the second until forces do.
+const CLOSE: [f64; 2] = [1e-3, 1e-2];
+const ZERO: Complex64 = Complex64::new(0.0, 0.0);
+
+/// A structure and the forces of a stream on it.
+pub struct Flutter<'a> {
+    forces: &'a (dyn Fn(f64) -> Vec<Complex64> + 'a),
+    modes: Option<Modes>,
+}
+
+/// A motion on a branch.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Point {
+    /// x = U/U_ref.
+    pub x: f64,
+    /// λ: rate of growth and angular frequency.
+    pub lambda: Complex64,
+    /// Amplitudes of the coordinates; generalised mass 1, phases those of the point before.
+    pub shape: Vec<Complex64>,
+}
+
+/// What begins at a speed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// An oscillation begins to grow.
+    Flutter,
+    /// One that grew begins to decay.
+    Restabilised,
+    /// A steady displacement is in balance whatever its size.
+    Divergence,
+}
+
+/// A speed at which a motion neither grows nor decays.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Crossing {
+    /// What begins.
+    pub kind: Kind,
+    /// Natural mode, by rising frequency, whose branch crosses; at divergence that which has most of the displacement.
+    pub mode: usize,
+    /// x = U/U_ref.
+    pub x: f64,
+    /// Im λ, in the time of the reference.
+    pub frequency: f64,
+    /// Im λ/x.
+    pub kappa: f64,
+    /// Amplitudes of the coordinates; generalised mass 1.
+    pub shape: Vec<Complex64>,
+}
+
+/// Matrices in coordinates of the natural modes, whose mass matrix is 1; rows one after another.
+struct Modes {
+    n: usize,
+    /// Squares of the frequencies, rising.
+    squares: Vec<f64>,
+    /// Φ, and Φ⁻¹ = ΦᵀM.
+    basis: Vec<f64>,
+    inverse: Vec<f64>,
+    damping: Vec<Complex64>,
+    stiffness: Vec<Complex64>,
+    /// What sets apart squares that are close.
+    apart: Vec<f64>,
+}
+
+/// Speed, and share of damping and forces that are turned on.
+#[derive(Clone, Copy)]
+struct Place {
+    x: f64,
+    on: f64,
+}
+
+#[derive(Clone)]
+struct Root {
+    place: Place,
+    lambda: Complex64,
+    /// In modes, of length 1.
+    shape: Vec<Complex64>,
+    /// dλ/dx along the branch.
+    rate: Complex64,
+}
+
+impl<'a> Flutter<'a> {
+    /// With the forces Q(iκ) of displacements that `forces` gives for κ ≥ 0, rows one after another, at the speed U_ref.
+    pub fn new(matrices: &Matrices, forces: &'a (dyn Fn(f64) -> Vec<Complex64> + 'a)) -> Self {
+        Self { forces, modes: Modes::new(matrices) }
+    }
+
+    /// Branches of all natural modes, by rising frequency, from little speed to `upto`; empty for a mode that cannot be followed, none
+    /// at all when the mass matrix is not positive definite.
+    pub fn branches(&self, upto: f64) -> Vec<Vec<Point>> {
+        let (Some(modes), true) = (&self.modes, 0.0 < upto && upto.is_finite()) else { return Vec::new() };
+        (0..modes.n).map(|m| self.branch(modes, m, upto)).collect()
+    }
+
+    fn branch(&self, modes: &Modes, m: usize, upto: f64) -> Vec<Point> {
+        let square = modes.squares[m] + modes.apart[m];
+        // what round-off leaves of a mode without stiffness is no frequency
+        if !(square > f64::EPSILON.sqrt() * f64::EPSILON.sqrt() * modes.n as f64 * modes.squares[modes.n - 1]) {
+            return Vec::new();
+        }
+        let shape = (0..modes.n).map(|k| if k == m { Complex64::from(1.0) } else { ZERO }).collect();
+        let place = Place { x: FIRST * upto, on: 0.0 };
+        let natural = Root { place, lambda: Complex64::new(0.0, square.sqrt()), shape, rate: ZERO };
+        let (path, arrived) = self.follow(modes, natural, Place { on: 1.0, ..place }, TURNED_ON.recip());
+        let Some(still) = path.last().filter(|_| arrived) else { return Vec::new() };
+        let start = Root { rate: ZERO, ..still.clone() };
+        let (path, _) = self.follow(modes, start.clone(), Place { x: upto, on: 1.0 }, (upto - place.x) / STEPS);
+        let point = |root: Root| Point { x: root.place.x, lambda: root.lambda, shape: modes.coordinates(&root.shape) };
+        std::iter::once(start).chain(path).map(point).collect()
+    }
+
+    /// Where motions on `branches` begin or end to grow, and where there is divergence below `upto`; by rising speed. A motion that grows
+    /// from the start has no crossing there.
+    pub fn crossings(&self, branches: &[Vec<Point>], upto: f64) -> Vec<Crossing> {
+        let Some(modes) = &self.modes else { return Vec::new() };
+        let mut found = self.divergence(modes, upto);
+        for (mode, branch) in branches.iter().enumerate() {
+            for bracket in brackets(branch) {
+                let Some(root) = self.locate(modes, branch, &bracket) else { continue };
+                let (x, frequency) = (root.place.x, root.lambda.im);
+                let shape = modes.coordinates(&root.shape);
+                found.push(Crossing { kind: bracket.kind, mode, x, frequency, kappa: frequency / x, shape });
+            }
+        }
+        found.sort_by(|a, b| a.x.total_cmp(&b.x));
+        found
+    }
+
+    /// Singular K − x² Q(0): 1/x² are the positive eigenvalues of K⁻¹ Q(0).
+    fn divergence(&self, modes: &Modes, upto: f64) -> Vec<Crossing> {
+        let n = modes.n;
+        let stiffness: Vec<f64> = modes.stiffness.iter().map(|k| k.re).collect();
+        let Some((forces, factors)) = self.modal(modes, 0.0).zip(Factors::new(n, stiffness)) else { return Vec::new() };
+        let mut compliance = vec![0.0; n * n];
+        for j in 0..n {
+            let column: Vec<f64> = (0..n).map(|i| forces[i * n + j].re).collect();
+            let mut solved = vec![0.0; n];
+            factors.solve(&column, &mut solved);
+            (0..n).for_each(|i| compliance[i * n + j] = solved[i]);
+        }
+        let values = eigenvalues(&compliance, n).unwrap_or_default();
+        let largest = values.iter().fold(0.0f64, |most, v| most.max(v.norm()));
+        let real = values.into_iter().filter(|v| v.im.abs() <= REAL * v.re && v.re > f64::EPSILON * largest);
+        let speeds = real.map(|v| v.re.sqrt().recip()).filter(|x| *x <= upto);
+        let crossing = |x: f64| {
+            let entry = |k: usize| modes.stiffness[k].re - x * x * forces[k].re;
+            let singular = Singular::of((0..n).map(|j| (0..n).map(|i| entry(i * n + j)).collect()).collect());
+            let least = least(singular.squares().into_iter());
+            let shape: Vec<Complex64> = singular.right[least].iter().map(|v| Complex64::from(*v)).collect();
+            let mode = largest_share(&shape);
+            let shape = modes.coordinates(&shape);
+            Crossing { kind: Kind::Divergence, mode, x, frequency: 0.0, kappa: 0.0, shape }
+        };
+        speeds.map(crossing).collect()
+    }
+
+    /// Q(iκ) in modes; `None` when it is not finite.
+    fn modal(&self, modes: &Modes, kappa: f64) -> Option<Vec<Complex64>> {
+        let forces = (self.forces)(kappa);
+        (forces.len() == modes.n * modes.n && forces.iter().all(|f| f.is_finite())).then(|| modes.project(&forces))
+    }
+
+    /// The root on a branch where its rate of growth changes sign.
+    fn locate(&self, modes: &Modes, branch: &[Point], bracket: &Bracket) -> Option<Root> {
+        let [mut low, mut high] = [modes.root(branch, bracket.low)?, modes.root(branch, bracket.high)?];
+        let mut size = [growth(low.lambda), growth(high.lambda)];
+        let before = bracket.kind == Kind::Restabilised;
+        let mut last = None;
+        for _ in 0..2 * NEWTON {
+            let (a, b) = (low.place.x, high.place.x);
+            if b - a <= LOCATED[0] * b {
+                break;
+            }
+            let secant = (a * size[1] - b * size[0]) / (size[1] - size[0]);
+            let x = if bracket.simple && a < secant && secant < b { secant } else { 0.5 * (a + b) };
+            let (mut path, arrived) = self.follow(modes, low.clone(), Place { x, on: 1.0 }, b - a);
+            let root = path.pop().filter(|_| arrived)?;
+            let rate = growth(root.lambda);
+            if bracket.simple && rate.abs() <= LOCATED[1] {
+                return Some(root);
+            }
+            let below = (rate > if bracket.simple { 0.0 } else { NEUTRAL }) == before;
+            // the end that stays twice weighs half (Illinois)
+            let kept = usize::from(below);
+            if last == Some(below) {
+                size[kept] *= 0.5;
+            }
+            size[1 - kept] = rate;
+            last = Some(below);
+            *(if below { &mut low } else { &mut high }) = root;
+        }
+        // where roots run into another the frequency is smooth on the side of growth
+        Some(if before { low } else { high })
+    }
+
+    /// Roots along the line from that of `from` to the place `to`, and whether they get there, in steps of at most `longest`.
+    fn follow(&self, modes: &Modes, from: Root, to: Place, longest: f64) -> (Vec<Root>, bool) {
+        let moves = [to.x - from.place.x, to.on - from.place.on];
+        let length = moves[0] + moves[1];
+        let smallest = SMALLEST * if moves[0] > 0.0 { to.x } else { 1.0 };
+        let (mut now, mut path, mut left, mut step) = (from, Vec::new(), length, longest);
+        while left > 0.0 {
+            let place = |size: f64| {
+                let part = (size / length).min(1.0);
+                let Place { x, on } = now.place;
+                if size >= left { to } else { Place { x: x + part * moves[0], on: on + part * moves[1] } }
+            };
+            let size = step.min(left);
+            let mut taken = size;
+            let found = match self.step(modes, &now, place(size), size, now.lambda + now.rate * size) {
+                None if size > smallest => {
+                    step = 0.5 * size;
+                    continue;
+                }
+                None => {
+                    taken = left.min(4.0 * smallest);
+                    self.turn(modes, &now, place(taken), taken)
+                }
+                found => found,
+            };
+            let Some(root) = found else { return (path, false) };
+            left = if taken >= left { 0.0 } else { left - taken };
+            step = longest.min(2.0 * taken);
+            path.push(root.clone());
+            now = root;
+        }
+        (path, true)
+    }
+
+    /// The root at `place`, at a distance `size`, near `guess`; `None` when there is none or it belongs to another branch.
+    fn step(&self, modes: &Modes, from: &Root, place: Place, size: f64, guess: Complex64) -> Option<Root> {
+        let (lambda, shape) = self.root(modes, place, guess, &from.shape)?;
+        let turned = inner(&from.shape, &shape).norm_sqr();
+        let change = lambda - from.lambda;
+        let same = turned >= SAME_SHAPE && change.norm() <= SAME_ROOT * from.lambda.norm();
+        same.then(|| Root { place, lambda, shape, rate: change / size })
+    }
+
+    /// The root beyond a point where two meet: to the right of the direction in which they came.
+    fn turn(&self, modes: &Modes, from: &Root, place: Place, size: f64) -> Option<Root> {
+        let speed = from.rate.norm();
+        if !(speed > 0.0) {
+            return None;
+        }
+        let right = from.rate / speed * -Complex64::i();
+        let beside = |part: f64| {
+            let guess = from.lambda + right * part * from.lambda.norm();
+            let to_the_right = |root: &Root| (root.rate * right.conj()).re > 0.0;
+            self.step(modes, from, place, size, guess).filter(to_the_right)
+        };
+        BESIDE.into_iter().find_map(beside)
+    }
+
+    /// Root and shape at `place` near a guess, with the forces of its own frequency.
+    fn root(
+        &self,
+        modes: &Modes,
+        place: Place,
+        guess: Complex64,
+        near: &[Complex64],
+    ) -> Option<(Complex64, Vec<Complex64>)> {
+        let (mut lambda, mut shape) = (guess, near.to_vec());
+        let mut kappa = lambda.im / place.x;
+        let (mut before, mut last) = (None::<[f64; 2]>, f64::INFINITY);
+        for _ in 0..SECANT {
+            // no frequency, no root
+            if !(kappa > 0.0) {
+                return None;
+            }
+            let mut dynamic = self.modal(modes, kappa)?;
+            dynamic.iter_mut().zip(&modes.stiffness).for_each(|(q, k)| *q = k - *q * (place.on * place.x * place.x));
+            (lambda, shape) = modes.newton(&dynamic, place.on, (lambda, shape), near)?;
+            let own = lambda.im / place.x;
+            let excess = own - kappa;
+            let error = excess.abs() * place.x / lambda.norm();
+            if own > 0.0 && (error <= MATCHED[0] || (error <= MATCHED[1] && error >= last)) {
+                let size = inner(&shape, &shape).re.sqrt();
+                return Some((lambda, shape.into_iter().map(|q| q / size).collect()));
+            }
+            let secant = before.map(|[k, e]| kappa - excess * (kappa - k) / (excess - e));
+            (before, last) = (Some([kappa, excess]), error);
+            kappa = secant.filter(|k| 0.2 * own < *k && *k < 5.0 * own).unwrap_or(own);
+        }
+        None
+    }
+}
+
+impl Modes {
+    fn new(matrices: &Matrices) -> Option<Self> {
+        let n = matrices.mass.len().isqrt();
+        let square = |a: &[f64]| a.len() == n * n && a.iter().all(|x| x.is_finite());
+        if n == 0 || ![&matrices.mass, &matrices.damping, &matrices.stiffness].into_iter().all(|a| square(a)) {
+            return None;
+        }
+        let inverse = inverse_factor(&symmetric::cholesky(&matrices.mass, n)?, n);
+        // G⁻¹ K G⁻ᵀ of the symmetric part
+        let k = |i: usize, j: usize| 0.5 * (matrices.stiffness[i * n + j] + matrices.stiffness[j * n + i]);
+        let half: Vec<f64> = (0..n * n).map(|e| (0..n).map(|l| inverse[e / n * n + l] * k(l, e % n)).sum()).collect();
+        let entry = |i: usize, j: usize| (0..n).map(|l| half[i * n + l] * inverse[j * n + l]).sum::<f64>();
+        let columns: Vec<Vec<f64>> =
+            (0..n).map(|j| (0..n).map(|i| 0.5 * (entry(i, j) + entry(j, i))).collect()).collect();
+        let found = Singular::of(columns);
+        // A v = λ v, so that the left vectors are the right ones times λ
+        let quotient = |(left, right): (&Vec<f64>, &Vec<f64>)| left.iter().zip(right).map(|(l, r)| l * r).sum::<f64>();
+        let mut order: Vec<(f64, &Vec<f64>)> =
+            found.left.iter().zip(&found.right).map(|pair| (quotient(pair), pair.1)).collect();
+        order.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let squares: Vec<f64> = order.iter().map(|mode| mode.0).collect();
+        let mut basis = vec![0.0; n * n];
+        for (m, (_, v)) in order.iter().enumerate() {
+            (0..n).for_each(|i| basis[i * n + m] = (0..n).map(|l| inverse[l * n + i] * v[l]).sum());
+        }
+        let back = |e: usize| (0..n).map(|l| basis[l * n + e / n] * matrices.mass[l * n + e % n]).sum();
+        let inverse = (0..n * n).map(back).collect();
+        let apart = set_apart(&squares);
+        let mut modes = Self { n, squares, basis, inverse, damping: Vec::new(), stiffness: Vec::new(), apart };
+        let complex = |a: &[f64]| a.iter().map(|x| Complex64::from(*x)).collect::<Vec<_>>();
+        modes.damping = modes.project(&complex(&matrices.damping));
+        modes.stiffness = modes.project(&complex(&matrices.stiffness));
+        Some(modes)
+    }
+
+    /// Φᵀ A Φ.
+    fn project(&self, a: &[Complex64]) -> Vec<Complex64> {
+        let n = self.n;
+        let half = |e: usize| (0..n).map(|l| a[e / n * n + l] * self.basis[l * n + e % n]).sum::<Complex64>();
+        let half: Vec<Complex64> = (0..n * n).map(half).collect();
+        (0..n * n).map(|e| (0..n).map(|l| half[l * n + e % n] * self.basis[l * n + e / n]).sum()).collect()
+    }
+
+    /// Φ q.
+    fn coordinates(&self, shape: &[Complex64]) -> Vec<Complex64> {
+        self.basis.chunks_exact(self.n).map(|row| row.iter().zip(shape).map(|(b, q)| q * *b).sum()).collect()
+    }
+
+    /// Point `k` of a branch as a root; its rate by the difference to the point before.
+    fn root(&self, branch: &[Point], k: usize) -> Option<Root> {
+        let point = branch.get(k).filter(|point| point.shape.len() == self.n)?;
+        let modal: Vec<Complex64> = self
+            .inverse
+            .chunks_exact(self.n)
+            .map(|row| row.iter().zip(&point.shape).map(|(b, q)| q * *b).sum())
+            .collect();
+        let size = inner(&modal, &modal).re.sqrt();
+        let shape = modal.into_iter().map(|q| q / size).collect();
+        let before = k.checked_sub(1).map(|k| &branch[k]);
+        let rate = before.map_or(ZERO, |b| (point.lambda - b.lambda) / (point.x - b.x));
+        Some(Root { place: Place { x: point.x, on: 1.0 }, lambda: point.lambda, shape, rate })
+    }
+
+    /// Root and shape of λ² + `on` C λ + A, from a guess; the shape has the product 1 with `near`.
+    fn newton(
+        &self,
+        a: &[Complex64],
+        on: f64,
+        (mut lambda, mut shape): (Complex64, Vec<Complex64>),
+        near: &[Complex64],
+    ) -> Option<(Complex64, Vec<Complex64>)> {
+        let (n, width) = (self.n, self.n + 1);
+        let mut last = f64::INFINITY;
+        for _ in 0..NEWTON {
+            let (mut matrix, mut right) = (vec![ZERO; width * width], vec![ZERO; width]);
+            for i in 0..n {
+                let row = &mut matrix[i * width..][..width];
+                row[n] = 2.0 * lambda * shape[i];
+                for j in 0..n {
+                    let damping = self.damping[i * n + j] * on;
+                    let diagonal = if i == j { lambda * lambda + (1.0 - on) * self.apart[i] } else { ZERO };
+                    row[j] = a[i * n + j] + damping * lambda + diagonal;
+                    row[n] += damping * shape[j];
+                    right[i] -= row[j] * shape[j];
+                }
+            }
+            near.iter().enumerate().for_each(|(j, q)| matrix[n * width + j] = q.conj());
+            right[n] = 1.0 - inner(near, &shape);
+            solve(&mut matrix, &mut right)?;
+            lambda += right[n];
+            shape.iter_mut().zip(&right).for_each(|(q, dq)| *q += dq);
+            let turned = inner(&right[..n], &right[..n]).re.sqrt();
+            let change = turned.max(right[n].norm() / lambda.norm());
+            if change <= CONVERGED[0] || (change <= CONVERGED[1] && change >= last) {
+                return Some((lambda, shape));
+            }
+            last = change;
+        }
+        None
+    }
+}
+
+/// Points of a branch between which its rate of growth changes sign.
+struct Bracket {
+    kind: Kind,
+    low: usize,
+    high: usize,
+    /// Decay on one side, growth on the other; else the motion is neutral over some length.
+    simple: bool,
+}
+
+fn brackets(branch: &[Point]) -> Vec<Bracket> {
+    let rates: Vec<f64> = branch.iter().map(|point| growth(point.lambda)).collect();
+    let (grows, decays) = (|k: usize| rates[k] > NEUTRAL, |k: usize| rates[k] < -NEUTRAL);
+    let mut found = Vec::new();
+    for k in (1..rates.len()).filter(|k| grows(k - 1) != grows(*k)) {
+        let kind = if grows(k) { Kind::Flutter } else { Kind::Restabilised };
+        // beyond neutral points there may be decay
+        let sure = match kind {
+            Kind::Flutter => (0..k).rev().find(|j| grows(*j) || decays(*j)),
+            _ => (k..rates.len()).find(|j| grows(*j) || decays(*j)),
+        };
+        let sure = sure.filter(|j| decays(*j));
+        let (low, high) = match kind {
+            Kind::Flutter => (sure.unwrap_or(k - 1), k),
+            _ => (k - 1, sure.unwrap_or(k)),
+        };
+        found.push(Bracket { kind, low, high, simple: sure.is_some() });
+    }
+    found
+}
+
+/// Re λ/|λ|.
+fn growth(lambda: Complex64) -> f64 {
+    lambda.re / lambda.norm()
+}
+
+fn inner(a: &[Complex64], b: &[Complex64]) -> Complex64 {
+    a.iter().zip(b).map(|(a, b)| a.conj() * b).sum()
+}
+
+/// Place of the smallest value; zero when there are none.
+fn least(values: impl Iterator<Item = f64>) -> usize {
+    values.enumerate().min_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |found| found.0)
+}
+
+/// The mode with the largest share.
+fn largest_share(shape: &[Complex64]) -> usize {
+    least(shape.iter().map(|q| -q.norm()))
+}
+
+/// G⁻¹ of the lower triangle G.
+fn inverse_factor(factor: &[f64], n: usize) -> Vec<f64> {
+    let mut x = vec![0.0; n * n];
+    for i in 0..n {
+        for j in 0..=i {
+            let known: f64 = (j..i).map(|k| factor[i * n + k] * x[k * n + j]).sum();
+            x[i * n + j] = (if i == j { 1.0 } else { 0.0 } - known) / factor[i * n + i];
+        }
+    }
+    x
+}
+
+/// What to add to squares of frequencies that are close so that they are not.
+fn set_apart(squares: &[f64]) -> Vec<f64> {
+    let mut last = f64::NEG_INFINITY;
+    let apart = squares.iter().map(|square| {
+        let close = *square > 0.0 && *square < last * (1.0 + CLOSE[0]);
+        last = if close { last * (1.0 + CLOSE[1]) } else { *square };
+        last - square
+    });
+    apart.collect()
+}
+
+/// Solves A x = b in place by elimination with partial pivoting; `None` when A is singular.
+fn solve(matrix: &mut [Complex64], right: &mut [Complex64]) -> Option<()> {
+    let n = right.len();
+    for k in 0..n {
+        let pivot = k + least((k..n).map(|i| -matrix[i * n + k].norm()));
+        (0..n).for_each(|j| matrix.swap(k * n + j, pivot * n + j));
+        right.swap(k, pivot);
+        let diagonal = matrix[k * n + k];
+        if !(diagonal.norm() > 0.0 && diagonal.is_finite()) {
+            return None;
+        }
+        let (above, below) = matrix.split_at_mut((k + 1) * n);
+        let row = &above[k * n..];
+        let value = right[k];
+        for (other, rest) in below.chunks_exact_mut(n).zip(&mut right[k + 1..]) {
+            let factor = other[k] / diagonal;
+            other[k + 1..].iter_mut().zip(&row[k + 1..]).for_each(|(a, b)| *a -= factor * b);
+            *rest -= factor * value;
+        }
+    }
+    for k in (0..n).rev() {
+        let known: Complex64 = (k + 1..n).map(|j| matrix[k * n + j] * right[j]).sum();
+        right[k] = (right[k] - known) / matrix[k * n + k];
+    }
+    Some(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn matrices(mass: &[f64], damping: &[f64], stiffness: &[f64]) -> Matrices {
+        Matrices { mass: mass.to_vec(), damping: damping.to_vec(), stiffness: stiffness.to_vec() }
+    }
+
+    fn real(a: &[f64]) -> Vec<Complex64> {
+        a.iter().map(|x| Complex64::from(*x)).collect()
+    }
+
+    fn kinds(found: &[Crossing]) -> Vec<Kind> {
+        found.iter().map(|c| c.kind).collect()
+    }
+
+    /// |D q| over the size of its terms.
+    fn residual(
+        m: &Matrices,
+        forces: &dyn Fn(f64) -> Vec<Complex64>,
+        x: f64,
+        lambda: Complex64,
+        q: &[Complex64],
+    ) -> f64 {
+        let n = q.len();
+        let loads = forces(lambda.im / x);
+        let entry = |k: usize| lambda * lambda * m.mass[k] + lambda * m.damping[k] + m.stiffness[k] - x * x * loads[k];
+        let row = |i: usize| (0..n).map(|j| entry(i * n + j) * q[j]).sum::<Complex64>().norm();
+        (0..n).map(row).fold(0.0, f64::max) / lambda.norm_sqr()
+    }
+
+    #[test] // p² − (a + d) p + a d − b c = 0 with a, d = ω² − x² Q_ii has a double root where (a − d)² + 4 x⁴ Q₁₂ Q₂₁ = 0
+    fn frequencies_that_meet_flutter_where_they_do() {
+        let m = matrices(&[1.0, 0.0, 0.0, 1.0], &[0.0; 4], &[1.0, 0.0, 0.0, 4.0]);
+        let forces = |_: f64| real(&[0.0, 0.6, -0.5, 0.0]);
+        let flutter = Flutter::new(&m, &forces);
+        let branches = flutter.branches(4.0);
+        let x = (9.0f64 / (4.0 * 0.3)).powf(0.25);
+        let omega = 2.5f64.sqrt();
+        let found = flutter.crossings(&branches, 4.0);
+        assert_eq!(kinds(&found), [Kind::Flutter], "{found:?}");
+        assert!((found[0].x / x - 1.0).abs() < 1e-12, "{:e}", found[0].x / x - 1.0);
+        assert!((found[0].frequency / omega - 1.0).abs() < 1e-12 && found[0].mode == 0, "{found:?}");
+        assert!((found[0].kappa - found[0].frequency / found[0].x).abs() < 1e-15);
+        // beyond: −λ² = 5/2 ± i √(0.3 x⁴ − 9/4), one root grows, the other decays
+        let exact = (-Complex64::new(2.5, (0.3 * 256.0f64 - 2.25).sqrt())).sqrt();
+        let ends = [&branches[0], &branches[1]].map(|b| b[b.len() - 1].clone());
+        for (end, sign) in ends.iter().zip([1.0, -1.0]) {
+            let expected = Complex64::new(sign * exact.re.abs(), exact.im.abs());
+            assert!(end.x == 4.0 && (end.lambda - expected).norm() < 1e-12, "{end:?} {expected}");
+        }
+        assert!(branches.iter().all(|b| b.len() > 200));
+    }
+
+    #[test] // with |Q₁₂ Q₂₁| > 0 and Q₁₁ − Q₂₂ of the right sign frequencies meet, go apart and are free again
+    fn frequencies_that_part_are_stable_again() {
+        let m = matrices(&[1.0, 0.0, 0.0, 1.0], &[0.0; 4], &[1.0, 0.0, 0.0, 4.0]);
+        let forces = |_: f64| real(&[-1.0, 0.3, -0.3, 0.0]);
+        let flutter = Flutter::new(&m, &forces);
+        let branches = flutter.branches(3.5);
+        let found = flutter.crossings(&branches, 3.5);
+        // x² − 3 = ∓ 0.6 x²
+        let exact = [(3.0f64 / 1.6).sqrt(), (3.0f64 / 0.4).sqrt()];
+        assert_eq!(kinds(&found), [Kind::Flutter, Kind::Restabilised], "{found:?}");
+        for (crossing, x) in found.iter().zip(exact) {
+            let omega = ((5.0 + x * x) / 2.0).sqrt();
+            assert!((crossing.x / x - 1.0).abs() < 1e-11 && (crossing.frequency / omega - 1.0).abs() < 1e-11);
+        }
+        assert!(branches.iter().all(|b| b[b.len() - 1].x == 3.5));
+    }
+
+    #[test]
+    fn one_coordinate_follows_its_formula() {
+        // Q = a − iκ b: λ² + (c + x b') λ.. at the frequency of the motion
+        let m = matrices(&[2.0], &[0.1], &[8.0]);
+        let forces = |kappa: f64| vec![Complex64::new(-0.5, -0.3 * kappa)];
+        let flutter = Flutter::new(&m, &forces);
+        let branches = flutter.branches(3.0);
+        for point in &branches[0] {
+            assert!(residual(&m, &forces, point.x, point.lambda, &point.shape) < 1e-11);
+            // imaginary part: 4 σ ω + 0.1 ω + 0.3 x ω = 0
+            assert!((point.lambda.re + 0.025 + 0.075 * point.x).abs() < 1e-12);
+            assert!((point.shape[0].norm() - 0.5f64.sqrt()).abs() < 1e-14);
+        }
+        assert!(flutter.crossings(&branches, 3.0).is_empty());
+    }
+
+    #[test] // damping b(κ) = κ₁² − (κ − κ₀)² …: growth only while κ = ω/x is between two bounds
+    fn forces_that_depend_on_frequency_stabilise_again() {
+        let m = matrices(&[1.0], &[0.0], &[1.0]);
+        let forces = |kappa: f64| {
+            vec![Complex64::new(0.0, 0.01 * kappa * (kappa - 0.5) * (1.0 - kappa) / (1.0 + kappa * kappa))]
+        };
+        let flutter = Flutter::new(&m, &forces);
+        let branches = flutter.branches(4.0);
+        let found = flutter.crossings(&branches, 4.0);
+        assert_eq!(kinds(&found), [Kind::Flutter, Kind::Restabilised], "{found:?}");
+        for (crossing, x) in found.iter().zip([1.0, 2.0]) {
+            assert!((crossing.x - x).abs() < 2e-12 && (crossing.frequency - 1.0).abs() < 1e-12, "{crossing:?}");
+            assert!((crossing.kappa * x - 1.0).abs() < 1e-11 && crossing.mode == 0);
+        }
+    }
+
+    #[test]
+    fn a_real_root_diverges_and_its_branch_ends() {
+        let m = matrices(&[2.0, 0.3, 0.3, 1.0], &[0.0; 4], &[3.0, 0.0, 0.0, 5.0]);
+        let forces = |_: f64| real(&[0.0, 1.0, 0.0, 0.8]);
+        let flutter = Flutter::new(&m, &forces);
+        let found = flutter.crossings(&flutter.branches(4.0), 4.0);
+        let divergence: Vec<&Crossing> = found.iter().filter(|c| c.kind == Kind::Divergence).collect();
+        assert_eq!(divergence.len(), 1);
+        // 5 = 0.8 x², 3 q₁ = x² q₂
+        let x = 2.5;
+        assert!((divergence[0].x - x).abs() < 1e-12 && divergence[0].frequency == 0.0 && divergence[0].kappa == 0.0);
+        assert!((divergence[0].shape[0] / divergence[0].shape[1] - x * x / 3.0).norm() < 1e-12);
+        assert!(flutter.crossings(&[], 2.4).is_empty());
+        let alone = matrices(&[1.0], &[0.0], &[1.0]);
+        let forces = |_: f64| real(&[0.25]);
+        let flutter = Flutter::new(&alone, &forces);
+        let branch = flutter.branches(3.0).remove(0);
+        let last = &branch[branch.len() - 1];
+        assert!((last.x - 2.0).abs() < 1e-5 && last.lambda.im < 1e-2 && last.lambda.re == 0.0, "{last:?}");
+        assert_eq!(kinds(&flutter.crossings(&[branch], 3.0)), [Kind::Divergence]);
+    }
+
+    #[test]
+    fn many_modes_satisfy_their_equations() {
+        let n = 5;
+        let wave = |k: usize, s: f64| (s * (k * k + 1) as f64).sin();
+        let even = |k: usize, s: f64| wave(k, s) + wave(k % n * n + k / n, s);
+        let unit = |k: usize| f64::from(u8::from(k % n == k / n));
+        let mass: Vec<f64> = (0..n * n).map(|k| 2.0 * unit(k) + 0.1 * even(k, 1.3)).collect();
+        let stiffness: Vec<f64> =
+            (0..n * n).map(|k| unit(k) * ((k / n + 1) as f64).powi(2) + 0.1 * even(k, 0.7)).collect();
+        let damping: Vec<f64> = (0..n * n).map(|k| 0.02 * unit(k)).collect();
+        let m = matrices(&mass, &damping, &stiffness);
+        let forces = |kappa: f64| {
+            let lag = Complex64::new(0.0, kappa) / Complex64::new(0.3, kappa);
+            let entry =
+                |k: usize| 0.3 * wave(k, 2.1) - 0.2 * lag * wave(k, 0.4) - Complex64::new(0.0, 0.4 * kappa * unit(k));
+            (0..n * n).map(entry).collect::<Vec<_>>()
+        };
+        let branches = Flutter::new(&m, &forces).branches(3.0);
+        assert_eq!(branches.len(), n);
+        for branch in &branches {
+            assert!(branch.len() > 200 && branch[branch.len() - 1].x == 3.0, "{} {:?}", branch.len(), branch.last());
+            for pair in branch.windows(2) {
+                let point = &pair[1];
+                assert!(residual(&m, &forces, point.x, point.lambda, &point.shape) < 1e-11);
+                assert!((point.lambda - pair[0].lambda).norm() < 0.1 * point.lambda.norm());
+            }
+        }
+        // different branches have different roots
+        let ends: Vec<Complex64> = branches.iter().map(|b| b[b.len() - 1].lambda).collect();
+        assert!((0..n).all(|a| (0..a).all(|b| (ends[a] - ends[b]).norm() > 1e-3)), "{ends:?}");
+    }
+
+    #[test]
+    fn equal_frequencies_are_told_apart_by_forces() {
+        let m = matrices(&[1.0, 0.0, 0.0, 1.0], &[0.0; 4], &[1.0, 0.0, 0.0, 1.0]);
+        let forces = |kappa: f64| vec![Complex64::new(-0.3, -0.1 * kappa), (0.1).into(), (0.2).into(), (0.2).into()];
+        let branches = Flutter::new(&m, &forces).branches(1.0);
+        assert!(branches.iter().all(|b| b.last().is_some_and(|p| p.x == 1.0)));
+        let ends = [0, 1].map(|k| branches[k][branches[k].len() - 1].lambda);
+        assert!((ends[0] - ends[1]).norm() > 0.1, "{ends:?}");
+    }
+
+    #[test]
+    fn what_has_no_modes_has_no_branches() {
+        let forces = |_: f64| real(&[0.1]);
+        assert!(Flutter::new(&matrices(&[-1.0], &[0.0], &[1.0]), &forces).branches(1.0).is_empty());
+        assert!(Flutter::new(&matrices(&[1.0], &[0.0], &[1.0]), &forces).branches(f64::NAN).is_empty());
+        assert_eq!(Flutter::new(&matrices(&[1.0], &[0.0], &[0.0]), &forces).branches(1.0), [Vec::new()]);
+        let broken = |_: f64| Vec::new();
+        assert_eq!(Flutter::new(&matrices(&[1.0], &[0.0], &[1.0]), &broken).branches(1.0), [Vec::new()]);
+    }
+}

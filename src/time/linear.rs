@@ -1,0 +1,286 @@
+//! Small periodic motion about a steady state: (iω − ∂R/∂U) û = b̂.
+//!
+//! What harmonic balance tends to as the amplitude goes to nothing (Hall and Clark 1993, doi:10.2514/3.11706), without the mean and without
+//! iterations of Newton's method: one linear system for each right-hand side, real and imaginary part beside one another. Products
+//! with ∂R/∂U are central differences; the preconditioner is that of harmonic balance with one harmonic. Solves are refined: the
+//! residual is found anew in double precision until it is small.
+use num_complex::Complex64;
+
+use super::control::Control;
+use crate::math::fourier::Instances;
+use crate::math::krylov::{Gmres, Goal, Numbers};
+use crate::math::sweep::{norm, sweep_slots};
+use crate::system::{Hierarchy, Implicit, Period, Placed, Preconditioner, Reach, RightHandSide, Shift, placed};
+
+/// Change of the state in products, over its size: to both sides, and to one.
+const STEP: f64 = 1e-6;
+const HASTY: f64 = 1e-8;
+/// Reduction asked of each solve, and rounds of refinement.
+const ROUND: f64 = 1e-4;
+const ROUNDS: usize = 6;
+/// Basis vectors of a round.
+const BASIS: usize = 60;
+/// Courant number of the preconditioner.
+const FAR: f64 = 1e8;
+
+/// A system that is looked at about a steady state.
+pub struct Linear<'a, S: Implicit> {
+    system: &'a S,
+    frame: S::Frame,
+    work: S::Work,
+    state: Vec<f64>,
+    size: f64,
+    rates: Vec<f64>,
+    /// Local time of each unknown: what residuals are measured in.
+    scale: Vec<f64>,
+    gmres: Gmres,
+    moved: Vec<f64>,
+    found: [Vec<f64>; 2],
+    /// R at the state.
+    rest: Vec<f64>,
+    /// Storage of the preconditioner: parts of one harmonic, and all instances before and after it.
+    parts: Vec<f64>,
+    instances: [Vec<f64>; 2],
+}
+
+/// How a solve ended.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Ended {
+    /// Linear iterations.
+    pub iterations: usize,
+    /// Residual over right-hand side.
+    pub left: f64,
+}
+
+impl<'a, S: Implicit> Linear<'a, S> {
+    /// `system` in the frame `frame` at the state `state`.
+    pub fn new(system: &'a S, frame: S::Frame, state: &[f64]) -> Self {
+        let mut work = system.work();
+        let rows = crate::system::rows(system.fields());
+        let mut rates = vec![0.0; rows];
+        system.rates(&frame, state, &mut work, &mut rates);
+        let n = state.len();
+        let (mut frame, mut rest) = (frame, vec![0.0; n]);
+        system.rhs_with_boundary(state, &mut work, &mut frame, &mut rest);
+        let mut scale = Vec::with_capacity(n);
+        for Placed { field, rows, .. } in placed(system.fields()) {
+            scale.extend(rates[rows].iter().flat_map(|r| std::iter::repeat_n(1.0 / r, field.block)));
+        }
+        Self {
+            size: norm(state),
+            state: state.to_vec(),
+            gmres: Gmres::new(2 * n, BASIS),
+            moved: vec![0.0; n],
+            found: [vec![0.0; n], vec![0.0; n]],
+            rest,
+            parts: vec![0.0; 2 * n],
+            instances: [vec![0.0; 3 * n], vec![0.0; 3 * n]],
+            system,
+            frame,
+            work,
+            rates,
+            scale,
+        }
+    }
+
+    /// The state.
+    pub fn state(&self) -> &[f64] {
+        &self.state
+    }
+
+    /// out = ∂R/∂U v, by a difference to one side, or to both, which takes twice as long.
+    fn product(&mut self, v: &[f64], both: bool, out: &mut [f64]) {
+        let size = norm(v);
+        if size == 0.0 {
+            out.fill(0.0);
+            return;
+        }
+        let step = if both { STEP } else { HASTY } * self.size / size;
+        self.changed(v, step, 0);
+        if both {
+            self.changed(v, -step, 1);
+        }
+        let ([forth, back], rest) = (&self.found, &self.rest);
+        match both {
+            true => sweep_slots(out, |i, o| *o = (forth[i] - back[i]) / (2.0 * step)),
+            false => sweep_slots(out, |i, o| *o = (forth[i] - rest[i]) / step),
+        }
+    }
+
+    /// R at the state with `step` v.
+    fn changed(&mut self, v: &[f64], step: f64, side: usize) {
+        let state = &self.state;
+        sweep_slots(&mut self.moved, |i, u| *u = state[i] + step * v[i]);
+        self.system.rhs_with_boundary(&self.moved, &mut self.work, &mut self.frame, &mut self.found[side]);
+    }
+
+    /// out = (iω − ∂R/∂U) x, real parts before imaginary ones, in local times.
+    fn shifted(&mut self, omega: f64, (x, both): (&[f64], bool), out: &mut [f64]) {
+        let n = self.state.len();
+        let (re, im) = x.split_at(n);
+        let (out_re, out_im) = out.split_at_mut(n);
+        self.product(re, both, out_re);
+        self.product(im, both, out_im);
+        let scale = &self.scale;
+        sweep_slots(out_re, |i, o| *o = scale[i] * (-*o - omega * im[i]));
+        sweep_slots(out_im, |i, o| *o = scale[i] * (-*o + omega * re[i]));
+    }
+
+    /// Solves (iω − ∂R/∂U) x = b for each of `right`, real parts before imaginary ones, to the relative residual `tolerance`.
+    pub fn solve(&mut self, omega: f64, right: &[Vec<f64>], tolerance: f64) -> Vec<(Vec<f64>, Ended)> {
+        let control = Control::newton(2);
+        let plan = Hierarchy { group: control.group, cycle: control.cycle };
+        self.solve_with(omega, right, tolerance, &plan)
+    }
+
+    /// The same with a hierarchy for the preconditioner.
+    pub fn solve_with(
+        &mut self,
+        omega: f64,
+        right: &[Vec<f64>],
+        tolerance: f64,
+        plan: &Hierarchy,
+    ) -> Vec<(Vec<f64>, Ended)> {
+        let waves = Waves::new(omega);
+        let mut preconditioner = self.system.preconditioner(plan, Some(waves.period));
+        preconditioner.begin(1);
+        preconditioner.add(self.system, &self.frame, &self.state, &mut self.work);
+        let shift = Shift { rates: &self.rates, cfl: FAR, coefficient: 0.0, reach: Reach::Far };
+        preconditioner.finish(&shift);
+        right.iter().map(|b| self.one(omega, b, tolerance, &waves, &mut preconditioner)).collect()
+    }
+
+    fn one(
+        &mut self,
+        omega: f64,
+        b: &[f64],
+        tolerance: f64,
+        waves: &Waves,
+        preconditioner: &mut S::Preconditioner,
+    ) -> (Vec<f64>, Ended) {
+        let (n, unknowns) = (b.len(), self.state.len());
+        let scale = self.scale.clone();
+        let scaled = |i: usize| scale[i % unknowns] * b[i];
+        let (mut x, mut r, mut z) = (vec![0.0; n], (0..n).map(scaled).collect::<Vec<f64>>(), vec![0.0; n]);
+        let whole = norm(&r);
+        let mut ended = Ended { iterations: 0, left: if whole > 0.0 { 1.0 } else { 0.0 } };
+        let mut gmres = std::mem::replace(&mut self.gmres, Gmres::new(0, 0));
+        let [mut all, mut found] = std::mem::take(&mut self.instances);
+        let mut parts = std::mem::take(&mut self.parts);
+        let frame = self.frame.clone();
+        let system = self.system;
+        for _ in 0..ROUNDS {
+            if ended.left <= tolerance {
+                break;
+            }
+            let goal = Goal { tolerance: ROUND.max(0.5 * tolerance / ended.left), most: BASIS };
+            let solved = gmres.solve(
+                &mut r,
+                &mut z,
+                goal,
+                crate::math::krylov::System {
+                    product: |v: &[f64], out: &mut [f64]| self.shifted(omega, (v, false), out),
+                    precondition: |v: Numbers<'_>, out: &mut [f64]| {
+                        waves.spread(system, (&v, &scale), &mut parts, &mut all);
+                        let right = RightHandSide::Plain(&all);
+                        preconditioner.apply(system, &[&frame; 3], &right, &mut found);
+                        waves.gather(system, &found, out);
+                    },
+                },
+            );
+            ended.iterations += solved.iterations;
+            sweep_slots(&mut x, |i, x| *x += z[i]);
+            self.shifted(omega, (&x, true), &mut r);
+            sweep_slots(&mut r, |i, r| *r = scaled(i) - *r);
+            let left = norm(&r) / whole;
+            let stalled = !(left < 0.5 * ended.left);
+            ended.left = left;
+            if stalled {
+                break;
+            }
+        }
+        (self.gmres, self.parts, self.instances) = (gmres, parts, [all, found]);
+        (x, ended)
+    }
+}
+
+/// One harmonic at the instances of a period.
+struct Waves {
+    period: Period,
+    /// Cosine and sine at each instance.
+    phase: Vec<[f64; 2]>,
+}
+
+impl Waves {
+    fn new(omega: f64) -> Self {
+        let instances = Instances::of_harmonics(1);
+        let phase = instances.times(1.0).into_iter().map(|t| [t.cos(), t.sin()]).collect();
+        Self { period: Period { instances, omega }, phase }
+    }
+
+    /// What harmonic parts, given in local times, are at the instances: Re(v̂ e^{iωt}).
+    fn spread<S: Implicit>(&self, system: &S, (v, scale): (&Numbers<'_>, &[f64]), parts: &mut [f64], all: &mut [f64]) {
+        let n = system.len();
+        v.each(0, parts, |x, r| *x = f64::from(r));
+        let (re, im) = parts.split_at_mut(n);
+        for part in [&mut *re, &mut *im] {
+            part.iter_mut().zip(scale).for_each(|(p, s)| *p /= s);
+        }
+        rows(system, |at, b| {
+            let out = &mut all[at * 3..(at + b) * 3];
+            for (m, [c, s]) in self.phase.iter().enumerate() {
+                (0..b).for_each(|k| out[m * b + k] = re[at + k] * c - im[at + k] * s);
+            }
+        });
+    }
+
+    /// The harmonic parts of what is at the instances.
+    fn gather<S: Implicit>(&self, system: &S, all: &[f64], out: &mut [f64]) {
+        let (re, im) = out.split_at_mut(system.len());
+        rows(system, |at, b| {
+            for k in 0..b {
+                let sum = |part: usize| -> f64 {
+                    self.phase.iter().enumerate().map(|(m, p)| all[at * 3 + m * b + k] * p[part]).sum()
+                };
+                (re[at + k], im[at + k]) = (sum(0) * 2.0 / 3.0, -sum(1) * 2.0 / 3.0);
+            }
+        });
+    }
+}
+
+/// Calls `f(first unknown, unknowns)` for every row of all fields.
+fn rows<S: Implicit>(system: &S, mut f: impl FnMut(usize, usize)) {
+    for Placed { field, unknowns, .. } in placed(system.fields()) {
+        (0..field.rows).for_each(|i| f(unknowns.start + i * field.block, field.block));
+    }
+}
+
+/// Real and imaginary parts as complex numbers.
+pub fn complex(parts: &[f64]) -> Vec<Complex64> {
+    let (re, im) = parts.split_at(parts.len() / 2);
+    re.iter().zip(im).map(|(re, im)| Complex64::new(*re, *im)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::system::{Instant, System};
+    use crate::time::ordinary::Ordinary;
+
+    #[test]
+    fn small_motion_of_a_nonlinear_oscillator_is_that_of_its_tangent() {
+        // u' = v, v' = −sin u − 0.3 v + 0.5 about its rest at u = π/6, forced on v
+        let system = Ordinary::new(2, 2.0, |_, u: &[f64], du: &mut [f64]| {
+            (du[0], du[1]) = (u[1], -u[0].sin() - 0.3 * u[1] + 0.5);
+        });
+        let rest = [std::f64::consts::FRAC_PI_6, 0.0];
+        let mut linear = Linear::new(&system, system.frame(&Instant::still(0.0), &rest), &rest);
+        for omega in [0.0, 0.7, 3.0] {
+            let (x, ended) = linear.solve(omega, &[vec![0.0, 1.0, 0.0, -2.0]], 1e-9).remove(0);
+            let i = Complex64::new(0.0, omega);
+            let exact = Complex64::new(1.0, -2.0) / (i * i + 0.3 * i + rest[0].cos());
+            assert!(ended.left < 1e-8 && ended.iterations < 20, "{ended:?}");
+            assert!((complex(&x)[0] - exact).norm() < 1e-6 * exact.norm(), "{:?} {exact}", complex(&x));
+        }
+    }
+}
