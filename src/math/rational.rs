@@ -8,11 +8,12 @@
 //! Sci. Comput. 40, 2018; for sets of functions Lietaert, Meerbergen, Pérez and Vandereycken, IMA J. Numer. Anal. 42, 2022,
 //! doi:10.1093/imanum/drab098) takes as support points, one after another, the samples that are missed most; the weights of length one
 //! minimise Σ_m |Σ_j w_j (f(iω_m) − f_j)/(iω_m − z_j)|² over the other samples and all functions, each over its largest modulus. Here
-//! support points come in pairs ±iω with weights w and w̄ (one real weight at zero), so that the unknowns are real and r(s̄) = r̄(s)
-//! holds to the last bit.
+//! support points come in pairs ±iω with weights w and w̄, so that the unknowns are real and r(s̄) = r̄(s) holds to the last bit; the
+//! sample at zero is fitted where that is enough.
 //!
 //! Limits: nothing keeps poles out of the right half plane or off the axis where samples carry more noise than `tolerance` allows; see
-//! [`Rational::poles`]. Beyond the highest sample r tends to a constant.
+//! [`Rational::poles`]. Far beyond the highest sample r tends to a constant, or grows like s² where
+//! weights with the sum zero were found, as for forces of inertia.
 use num_complex::Complex64;
 
 use super::eigenvalues::eigenvalues;
@@ -54,8 +55,9 @@ struct Samples {
 impl Rational {
     /// Functions with the values that `samples` lists: ω ≥ 0, each once, in any order, with those of all functions at iω; at ω = 0 real
     /// parts count. Support points are added until the worst misfit at a sample, over the largest modulus of the function, is at most
-    /// `tolerance` or one sample is left; the best of these functions is returned. Two samples that no function of first order has are
-    /// met by one of second order with poles ±ω. `None` when values are missing or not finite.
+    /// `tolerance` or the other samples are too few for more weights; the best of these functions is returned. Two samples that no
+    /// function of first order has are met by one without poles on the axis; one sample is a constant, its conjugate below the real axis.
+    /// `None` when there are no samples, or values are missing or not finite.
     pub fn of(samples: &[(f64, Vec<Complex64>)], tolerance: f64) -> Option<Self> {
         let samples = Samples::new(samples)?;
         let count = samples.omegas.len();
@@ -64,8 +66,8 @@ impl Rational {
         }
         let enough = tolerance.max(ROUND_OFF);
         let (mut chosen, mut misfits, mut best) = (Vec::new(), samples.deviations(), None::<Self>);
-        while chosen.len() + 1 < count {
-            chosen.push(samples.worst(&chosen, &misfits)?);
+        while let Some(next) = samples.next(&chosen, &misfits) {
+            chosen.push(next);
             let found = samples.fit(&chosen, &samples.weights(&chosen));
             misfits = samples.misfits(&found);
             let misfit = found.misfit;
@@ -185,10 +187,23 @@ impl Samples {
         self.values.iter().map(|v| self.distance(v, &means)).collect()
     }
 
-    /// The sample that is missed most; the first that is chosen is not zero, which alone would make a constant.
-    fn worst(&self, chosen: &[usize], misfits: &[f64]) -> Option<usize> {
-        let left = (0..misfits.len()).filter(|m| !chosen.contains(m) && !(chosen.is_empty() && self.omegas[*m] == 0.0));
-        left.max_by(|a, b| misfits[*a].total_cmp(&misfits[*b]))
+    /// The sample that is missed most, while the others still determine the weights; then that at zero. Before, it is better fitted: as
+    /// a support point it ties the functions to a place where few samples follow a logarithm, as Theodorsen's function has one there.
+    fn next(&self, chosen: &[usize], misfits: &[f64]) -> Option<usize> {
+        let left: Vec<usize> = (0..misfits.len()).filter(|m| !chosen.contains(m)).collect();
+        let pairs = left.iter().filter(|m| self.omegas[**m] > 0.0).copied();
+        let worst = pairs.max_by(|a, b| misfits[*a].total_cmp(&misfits[*b]));
+        let first = chosen.is_empty();
+        let zero = left.iter().find(|m| self.omegas[**m] == 0.0).copied().filter(|_| !first);
+        worst.filter(|m| first || self.determine(chosen, *m)).or(zero.filter(|m| self.determine(chosen, *m)))
+    }
+
+    /// True when the samples other than `chosen` and `next` have as many equations as weights are free: all but a common factor.
+    fn determine(&self, chosen: &[usize], next: usize) -> bool {
+        let numbers = |m: usize| if self.omegas[m] == 0.0 { 1 } else { 2 };
+        let all: usize = (0..self.omegas.len()).map(numbers).sum();
+        let weights: usize = chosen.iter().map(|m| numbers(*m)).sum::<usize>() + numbers(next);
+        weights <= 1 + self.scales.len() * (all - weights)
     }
 
     fn misfits(&self, found: &Rational) -> Vec<f64> {
@@ -310,7 +325,7 @@ mod tests {
         for omega in log_spaced(0.02, 2.0, 60) {
             let s = Complex64::new(0.0, omega);
             let error = worst(&found.at(s), &cut(s));
-            assert!(error < 5e-5, "{omega}: {error:e}");
+            assert!(error < 1e-4 * (1.0 + omega * omega), "{omega}: {error:e}");
         }
     }
 
@@ -346,9 +361,9 @@ mod tests {
         let three = Rational::of(&sample(&other, &[0.0, 0.1, 0.4]), 1e-12).unwrap();
         assert!(three.misfit() < 0.1 && worst(&three.at(0.2 * i), &other(0.2 * i)) < 0.1, "{three:?}");
         let single = |s: Complex64| vec![(1.0 + s.sqrt()).inv()];
-        for omegas in [[0.1, 0.2, 0.4, 0.8], [0.0, 0.2, 0.4, 0.8]] {
+        for (omegas, most) in [([0.1, 0.2, 0.4, 0.8], 3e-3), ([0.0, 0.2, 0.4, 0.8], 1e-12)] {
             let four = Rational::of(&sample(&single, &omegas), 1e-12).unwrap();
-            assert!(four.misfit() < 1e-12 && worst(&four.at(0.3 * i), &single(0.3 * i)) < 0.01, "{four:?}");
+            assert!(four.misfit() < most && worst(&four.at(0.3 * i), &single(0.3 * i)) < 0.01, "{four:?}");
         }
     }
 

@@ -4,7 +4,10 @@
 //! Forces are computed at a few frequencies and at none, and interpolated by rational functions. Where that finds a crossing, forces are
 //! computed at its frequency as well, until the speed of no crossing changes by more than is asked: that change is its error bar.
 use num_complex::Complex64;
-use serde::Serialize;
+
+mod record;
+
+pub use record::{Boundary, FlutterAt, FlutterRow, MotionRow};
 
 use super::error::RunError;
 use super::folder::{self, Places};
@@ -17,110 +20,13 @@ use super::studies::ForceSource;
 use crate::case::{Case, Flutter as Plan};
 use crate::geometry::dimension;
 use crate::math::rational::Rational;
-use crate::observe::table::{Entry, write_csv, write_json};
 use crate::structure::Matrices;
 use crate::structure::flutter::{Crossing, Flutter, Kind, Point};
 
-/// The tables of `alula flutter`.
-const CROSSINGS: &str = "flutter.csv";
-const HISTORY: &str = "v-g.csv";
-const SUMMARY: &str = "flutter.json";
 /// Misfit of rational functions to the samples.
 const MISFIT: f64 = 1e-7;
 /// Frequencies that are nearer to one another than this part are one.
 const SAME: f64 = 5e-4;
-/// What files say about signs and units.
-const CONVENTIONS: &str = "speeds at constant density and Mach number; V* = U/(b omega_alpha), speed index V* / sqrt(mu), k = omega b/U, \
-                           b half of the reference chord; g = 2 zeta = 2 Re(lambda)/|lambda|; motion exp(i omega t); plunge up, pitch \
-                           nose up positive";
-
-/// A change from decay to growth, or back.
-#[derive(Clone, Debug, Serialize)]
-pub struct FlutterRow {
-    /// `flutter`, `restabilised` or `divergence`.
-    pub kind: &'static str,
-    /// Number of the mode in still air, from 1.
-    pub mode: usize,
-    /// Speed over that of the structure in the case.
-    pub speed_ratio: f64,
-    /// Speed index, where the structure has a mass ratio and a frequency of pitch.
-    pub speed_index: Option<f64>,
-    /// V*, the same times the root of the mass ratio.
-    pub reduced_speed: Option<f64>,
-    /// Speed in the units of the case.
-    pub speed: f64,
-    /// k.
-    pub reduced_frequency: f64,
-    /// Frequency in cycles per unit of time of the case.
-    pub frequency: f64,
-    /// The same over that of pitch alone, where the structure is a section.
-    pub frequency_ratio: Option<f64>,
-    /// Relative change of the speed between the last two interpolations.
-    pub error: f64,
-    /// True when k lies beyond the frequencies that forces were computed at.
-    pub extrapolated: bool,
-}
-
-/// A motion at a speed.
-#[derive(Clone, Debug, Serialize)]
-pub struct MotionRow {
-    /// Number of the mode in still air, from 1.
-    pub mode: usize,
-    /// Speed over that of the structure in the case.
-    pub speed_ratio: f64,
-    /// k.
-    pub reduced_frequency: f64,
-    /// 2 Re λ/|λ|.
-    pub damping: f64,
-    /// Cycles per unit of time of the case.
-    pub frequency: f64,
-    /// λ over the rate of the fastest natural mode: real and imaginary part.
-    pub eigenvalue: [f64; 2],
-}
-
-/// What was found at one Mach number.
-#[derive(Clone, Debug, Serialize)]
-pub struct FlutterAt {
-    /// Mach number.
-    pub mach: f64,
-    /// Every crossing, by speed.
-    pub crossings: Vec<FlutterRow>,
-    /// Motions at the speeds looked at, mode by mode.
-    #[serde(skip)]
-    pub motions: Vec<MotionRow>,
-    /// Reduced frequencies that forces were computed at, zero first.
-    pub reduced_frequencies: Vec<f64>,
-    /// Generalised forces at these, rows one after another, in units of the solver: density and sound speed one.
-    pub forces: Vec<Vec<[f64; 2]>>,
-    /// Names of the coordinates.
-    pub coordinates: Vec<String>,
-    /// Lift, drag and moment of the steady flow.
-    pub steady: [f64; 3],
-    /// Orders that its residual fell by.
-    pub orders: f64,
-    /// Particles.
-    pub particles: usize,
-    /// Linear iterations of all columns.
-    pub linear_iterations: usize,
-    /// Greatest relative residual of a column.
-    pub residual: f64,
-    /// Processor seconds.
-    pub cpu_seconds: f64,
-    /// What makes results doubtful.
-    pub warnings: Vec<String>,
-}
-
-/// The whole boundary.
-#[derive(Clone, Debug, Serialize)]
-pub struct Boundary {
-    /// What the case is called.
-    pub title: String,
-    /// Signs and units.
-    pub conventions: &'static str,
-    /// All Mach numbers.
-    pub flutter: Vec<FlutterAt>,
-}
-
 /// Numbers that turn those of the solver into those of users.
 struct Scales {
     /// Half of the reference chord.
@@ -148,11 +54,11 @@ pub fn flutter(case: &Case, places: &Places, monitor: &mut dyn Monitor) -> Resul
     setup::supported(case)?;
     let _held = folder::create_once(case, &places.input, &places.out)?;
     let machs = if plan.mach.is_empty() { vec![case.flow.reference().mach] } else { plan.mach.clone() };
-    let mut all = Boundary { title: case.title.clone(), conventions: CONVENTIONS, flutter: Vec::new() };
+    let mut all = Boundary::new(&case.title);
     for mach in machs {
         let Some(found) = at_mach(case, &plan, mach, places, monitor)? else { return Ok(None) };
         all.flutter.push(found);
-        all.write(places)?;
+        all.write(&places.out)?;
     }
     folder::finish(&places.out)?;
     Ok(Some(all))
@@ -381,51 +287,4 @@ impl<'a> Search<'a> {
 fn changed(crossing: &Crossing, before: &[Crossing]) -> f64 {
     let like = before.iter().filter(|b| b.kind == crossing.kind && b.mode == crossing.mode);
     like.map(|b| (b.x - crossing.x).abs() / crossing.x).fold(f64::INFINITY, f64::min)
-}
-
-impl Boundary {
-    fn write(&self, places: &Places) -> Result<(), RunError> {
-        let number = |x: Option<f64>| Entry::from(x.unwrap_or(f64::NAN));
-        let rows = self.flutter.iter().flat_map(|at| at.crossings.iter().map(move |c| (at.mach, c)));
-        let rows = rows.map(|(mach, c)| {
-            vec![
-                Entry::from(mach),
-                Entry::from(c.kind),
-                Entry::from(c.mode as f64),
-                Entry::from(c.speed_ratio),
-                number(c.speed_index),
-                number(c.reduced_speed),
-                Entry::from(c.speed),
-                Entry::from(c.reduced_frequency),
-                Entry::from(c.frequency),
-                number(c.frequency_ratio),
-                Entry::from(c.error),
-            ]
-        });
-        let names = [
-            "mach",
-            "kind",
-            "mode",
-            "speed_ratio",
-            "speed_index",
-            "reduced_speed",
-            "speed",
-            "reduced_frequency",
-            "frequency",
-            "frequency_ratio",
-            "error",
-        ];
-        write_csv(&places.out.join(CROSSINGS), &names, rows)?;
-        let motions = self.flutter.iter().flat_map(|at| at.motions.iter().map(move |m| (at.mach, m)));
-        let motions = motions.map(|(mach, m)| {
-            let over = if m.reduced_frequency > 0.0 { 1.0 / m.reduced_frequency } else { f64::INFINITY };
-            let [re, im] = m.eigenvalue;
-            let numbers = [m.speed_ratio, m.reduced_frequency, over, m.damping, m.frequency, re, im];
-            [mach, m.mode as f64].into_iter().chain(numbers).map(Entry::from).collect::<Vec<_>>()
-        });
-        let names =
-            ["mach", "mode", "speed_ratio", "k", "1/k", "damping_g", "frequency", "eigenvalue_re", "eigenvalue_im"];
-        write_csv(&places.out.join(HISTORY), &names, motions)?;
-        Ok(write_json(&places.out.join(SUMMARY), &self)?)
-    }
 }

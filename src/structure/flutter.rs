@@ -53,6 +53,8 @@ const LOCATED: [f64; 2] = [1e-13, 1e-15];
 const REAL: f64 = 1e-8;
 /// Natural frequencies, squared, that are closer than the first are set apart by the second until forces do.
 const CLOSE: [f64; 2] = [1e-3, 1e-2];
+/// Square of a frequency, over the largest, that is what round-off leaves of a mode without stiffness.
+const RIGID: f64 = 1e-13;
 const ZERO: Complex64 = Complex64::new(0.0, 0.0);
 
 /// A structure and the forces of a stream on it.
@@ -146,8 +148,7 @@ impl<'a> Flutter<'a> {
 
     fn branch(&self, modes: &Modes, m: usize, upto: f64) -> Vec<Point> {
         let square = modes.squares[m] + modes.apart[m];
-        // what round-off leaves of a mode without stiffness is no frequency
-        if !(square > f64::EPSILON.sqrt() * f64::EPSILON.sqrt() * modes.n as f64 * modes.squares[modes.n - 1]) {
+        if !(square > RIGID * modes.squares[modes.n - 1]) {
             return Vec::new();
         }
         let shape = (0..modes.n).map(|k| if k == m { Complex64::from(1.0) } else { ZERO }).collect();
@@ -611,7 +612,6 @@ mod tests {
 
     #[test]
     fn one_coordinate_follows_its_formula() {
-        // Q = a − iκ b: λ² + (c + x b') λ.. at the frequency of the motion
         let m = matrices(&[2.0], &[0.1], &[8.0]);
         let forces = |kappa: f64| vec![Complex64::new(-0.5, -0.3 * kappa)];
         let flutter = Flutter::new(&m, &forces);
@@ -625,7 +625,7 @@ mod tests {
         assert!(flutter.crossings(&branches, 3.0).is_empty());
     }
 
-    #[test] // damping b(κ) = κ₁² − (κ − κ₀)² …: growth only while κ = ω/x is between two bounds
+    #[test] // growth only while κ = 1/x is between 1/2 and 1
     fn forces_that_depend_on_frequency_stabilise_again() {
         let m = matrices(&[1.0], &[0.0], &[1.0]);
         let forces = |kappa: f64| {
@@ -677,7 +677,7 @@ mod tests {
         let forces = |kappa: f64| {
             let lag = Complex64::new(0.0, kappa) / Complex64::new(0.3, kappa);
             let entry =
-                |k: usize| 0.3 * wave(k, 2.1) - 0.2 * lag * wave(k, 0.4) - Complex64::new(0.0, 0.4 * kappa * unit(k));
+                |k: usize| 0.1 * wave(k, 2.1) - 0.1 * lag * wave(k, 0.4) - Complex64::new(0.0, 0.1 * kappa * unit(k));
             (0..n * n).map(entry).collect::<Vec<_>>()
         };
         let branches = Flutter::new(&m, &forces).branches(3.0);

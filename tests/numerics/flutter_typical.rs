@@ -44,7 +44,6 @@ const SECTIONS: [(Section, f64, f64); 3] = [
 fn sections_flutter_where_theodorsen_says() {
     for (section, v, omega) in SECTIONS {
         let found = first(section, 1.5 * v, &|k| forces(section, k));
-        println!("{section:?}: V* {:.8} ω {:.8} mode {}", found.x, found.frequency, found.mode);
         assert!((found.x - v).abs() < 1e-7 * v && (found.frequency - omega).abs() < 1e-7 * omega, "{found:?}");
     }
     // V*² = μ r_α²/(1 + 2a)
@@ -57,13 +56,10 @@ fn sections_flutter_where_theodorsen_says() {
 #[test]
 fn six_reduced_frequencies_are_enough() {
     for (section, v, omega) in SECTIONS {
-        for ks in [[0.0, 0.05, 0.1, 0.2, 0.4, 0.8]] {
-            let samples: Vec<_> = ks.into_iter().map(|k| (k, forces(section, k))).collect();
-            let rational = Rational::of(&samples, 1e-9).unwrap();
-            let found = first(section, 1.5 * v, &|k| rational.at(Complex64::new(0.0, k)));
-            let errors = [found.x / v - 1.0, found.frequency / omega - 1.0];
-            println!("{section:?}: misfit {:.1e} errors {errors:.2?} poles {:?}", rational.misfit(), rational.poles());
-            assert!(errors.iter().all(|e| e.abs() < 1e-4), "{errors:?}");
-        }
+        let samples = [0.0, 0.05, 0.1, 0.15, 0.25, 0.5].map(|k| (k, forces(section, k)));
+        let rational = Rational::of(&samples, 1e-9).unwrap();
+        let found = first(section, 1.5 * v, &|k| rational.at(Complex64::new(0.0, k)));
+        let errors = [found.x / v - 1.0, found.frequency / omega - 1.0];
+        assert!(rational.misfit() < 1e-9 && errors.iter().all(|e| e.abs() < 1e-4), "{section:?}: {errors:?}");
     }
 }

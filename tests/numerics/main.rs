@@ -6,6 +6,7 @@ mod common;
 mod convergence;
 mod coupled;
 mod examples;
+mod flutter_forces;
 mod flutter_typical;
 mod harmonic;
 mod invariance;

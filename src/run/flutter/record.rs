@@ -1,0 +1,218 @@
+//! What is told of a flutter boundary: rows, tables, pictures.
+use std::path::Path;
+
+use serde::Serialize;
+
+use super::super::error::RunError;
+use crate::observe::table::{Entry, write_csv, write_json};
+use crate::report::{Axis, Chart, Marks, Series, write_file};
+
+/// The tables of `alula flutter`.
+const CROSSINGS: &str = "flutter.csv";
+const HISTORY: &str = "v-g.csv";
+const SUMMARY: &str = "flutter.json";
+/// What files say about signs and units.
+const CONVENTIONS: &str = "speeds at constant density and Mach number; V* = U/(b omega_alpha), speed index V* / sqrt(mu), k = omega b/U, \
+                           b half of the reference chord; g = 2 zeta = 2 Re(lambda)/|lambda|; motion exp(i omega t); plunge up, pitch \
+                           nose up positive";
+
+/// A change from decay to growth, or back.
+#[derive(Clone, Debug, Serialize)]
+pub struct FlutterRow {
+    /// `flutter`, `restabilised` or `divergence`.
+    pub kind: &'static str,
+    /// Number of the mode in still air, from 1.
+    pub mode: usize,
+    /// Speed over that of the structure in the case.
+    pub speed_ratio: f64,
+    /// Speed index, where the structure has a mass ratio and a frequency of pitch.
+    pub speed_index: Option<f64>,
+    /// V*, the same times the root of the mass ratio.
+    pub reduced_speed: Option<f64>,
+    /// Speed in the units of the case.
+    pub speed: f64,
+    /// k.
+    pub reduced_frequency: f64,
+    /// Frequency in cycles per unit of time of the case.
+    pub frequency: f64,
+    /// The same over that of pitch alone, where the structure is a section.
+    pub frequency_ratio: Option<f64>,
+    /// Relative change of the speed between the last two interpolations.
+    pub error: f64,
+    /// True when k lies beyond the frequencies that forces were computed at.
+    pub extrapolated: bool,
+}
+
+/// A motion at a speed.
+#[derive(Clone, Debug, Serialize)]
+pub struct MotionRow {
+    /// Number of the mode in still air, from 1.
+    pub mode: usize,
+    /// Speed over that of the structure in the case.
+    pub speed_ratio: f64,
+    /// k.
+    pub reduced_frequency: f64,
+    /// 2 Re λ/|λ|.
+    pub damping: f64,
+    /// Cycles per unit of time of the case.
+    pub frequency: f64,
+    /// λ over the rate of the fastest natural mode: real and imaginary part.
+    pub eigenvalue: [f64; 2],
+}
+
+/// What was found at one Mach number.
+#[derive(Clone, Debug, Serialize)]
+pub struct FlutterAt {
+    /// Mach number.
+    pub mach: f64,
+    /// Every crossing, by speed.
+    pub crossings: Vec<FlutterRow>,
+    /// Motions at the speeds looked at, mode by mode.
+    #[serde(skip)]
+    pub motions: Vec<MotionRow>,
+    /// Reduced frequencies that forces were computed at, zero first.
+    pub reduced_frequencies: Vec<f64>,
+    /// Generalised forces at these, rows one after another, in units of the solver: density and sound speed one.
+    pub forces: Vec<Vec<[f64; 2]>>,
+    /// Names of the coordinates.
+    pub coordinates: Vec<String>,
+    /// Lift, drag and moment of the steady flow.
+    pub steady: [f64; 3],
+    /// Orders that its residual fell by.
+    pub orders: f64,
+    /// Particles.
+    pub particles: usize,
+    /// Linear iterations of all columns.
+    pub linear_iterations: usize,
+    /// Greatest relative residual of a column.
+    pub residual: f64,
+    /// Processor seconds.
+    pub cpu_seconds: f64,
+    /// What makes results doubtful.
+    pub warnings: Vec<String>,
+}
+
+/// The whole boundary.
+#[derive(Clone, Debug, Serialize)]
+pub struct Boundary {
+    /// What the case is called.
+    pub title: String,
+    /// Signs and units.
+    pub conventions: &'static str,
+    /// All Mach numbers.
+    pub flutter: Vec<FlutterAt>,
+}
+
+impl Boundary {
+    /// An empty one of a case.
+    pub(super) fn new(title: &str) -> Self {
+        Self { title: title.to_owned(), conventions: CONVENTIONS, flutter: Vec::new() }
+    }
+}
+
+impl Boundary {
+    /// Writes tables and pictures into a folder.
+    pub(super) fn write(&self, out: &Path) -> Result<(), RunError> {
+        let number = |x: Option<f64>| Entry::from(x.unwrap_or(f64::NAN));
+        let rows = self.flutter.iter().flat_map(|at| at.crossings.iter().map(move |c| (at.mach, c)));
+        let rows = rows.map(|(mach, c)| {
+            vec![
+                Entry::from(mach),
+                Entry::from(c.kind),
+                Entry::from(c.mode as f64),
+                Entry::from(c.speed_ratio),
+                number(c.speed_index),
+                number(c.reduced_speed),
+                Entry::from(c.speed),
+                Entry::from(c.reduced_frequency),
+                Entry::from(c.frequency),
+                number(c.frequency_ratio),
+                Entry::from(c.error),
+            ]
+        });
+        let names = [
+            "mach",
+            "kind",
+            "mode",
+            "speed_ratio",
+            "speed_index",
+            "reduced_speed",
+            "speed",
+            "reduced_frequency",
+            "frequency",
+            "frequency_ratio",
+            "error",
+        ];
+        write_csv(&out.join(CROSSINGS), &names, rows)?;
+        let motions = self.flutter.iter().flat_map(|at| at.motions.iter().map(move |m| (at.mach, m)));
+        let motions = motions.map(|(mach, m)| {
+            let over = if m.reduced_frequency > 0.0 { 1.0 / m.reduced_frequency } else { f64::INFINITY };
+            let [re, im] = m.eigenvalue;
+            let numbers = [m.speed_ratio, m.reduced_frequency, over, m.damping, m.frequency, re, im];
+            [mach, m.mode as f64].into_iter().chain(numbers).map(Entry::from).collect::<Vec<_>>()
+        });
+        let names =
+            ["mach", "mode", "speed_ratio", "k", "1/k", "damping_g", "frequency", "eigenvalue_re", "eigenvalue_im"];
+        write_csv(&out.join(HISTORY), &names, motions)?;
+        write_json(&out.join(SUMMARY), &self)?;
+        self.draw(out)
+    }
+
+    /// Damping and frequency against speed at each Mach number; with several of these the boundary.
+    fn draw(&self, out: &Path) -> Result<(), RunError> {
+        for at in &self.flutter {
+            let [g, f] = at.charts();
+            for (name, chart) in [("damping", g), ("frequency", f)] {
+                let file = format!("pictures/{name}-mach-{:.3}", at.mach);
+                write_file(&out.join(format!("{file}.svg")), chart.svg()?.as_bytes())?;
+                write_file(&out.join(format!("{file}.png")), &chart.png()?)?;
+            }
+        }
+        let Some(chart) = self.chart().filter(|_| self.flutter.len() > 1) else { return Ok(()) };
+        write_file(&out.join("pictures/boundary.svg"), chart.svg()?.as_bytes())?;
+        Ok(write_file(&out.join("pictures/boundary.png"), &chart.png()?)?)
+    }
+
+    /// All crossings against the Mach number; `None` where there are none.
+    fn chart(&self) -> Option<Chart> {
+        let indexed = self.flutter.iter().flat_map(|at| &at.crossings).all(|c| c.speed_index.is_some());
+        let speed = |c: &FlutterRow| if indexed { c.speed_index.unwrap_or(f64::NAN) } else { c.speed };
+        let of = |kind: &'static str, marks: Marks| {
+            let all = self.flutter.iter().flat_map(|at| at.crossings.iter().map(move |c| (at.mach, c)));
+            let (x, y): (Vec<f64>, Vec<f64>) = all.filter(|(_, c)| c.kind == kind).map(|(m, c)| (m, speed(c))).unzip();
+            Series::new(kind, marks, x, y)
+        };
+        let all = [of("flutter", Marks::Dots), of("restabilised", Marks::Rings), of("divergence", Marks::Rings)];
+        let series: Vec<Series> = all.into_iter().filter(|s| !s.x.is_empty()).collect();
+        let y = Axis::linear(if indexed { "speed index" } else { "speed" });
+        let chart = Chart { title: "Flutter boundary".into(), x: Axis::linear("Mach number"), y, series };
+        (!chart.series.is_empty()).then_some(chart)
+    }
+}
+
+impl FlutterAt {
+    /// Damping and frequency of every mode against speed.
+    fn charts(&self) -> [Chart; 2] {
+        let modes = self.motions.iter().map(|m| m.mode).max().unwrap_or(0);
+        let ratio = self.crossings.first().and_then(|c| c.speed_index.map(|v| v / c.speed_ratio));
+        let label = if ratio.is_some() { "speed index" } else { "speed over that of the case" };
+        let series = |of: fn(&MotionRow) -> f64| {
+            let one = |mode: usize| {
+                let own = self.motions.iter().filter(|m| m.mode == mode);
+                let (x, y) = own.map(|m| (m.speed_ratio * ratio.unwrap_or(1.0), of(m))).unzip();
+                Series::new(&format!("mode {mode}"), Marks::Line, x, y)
+            };
+            (1..=modes).map(one).collect::<Vec<_>>()
+        };
+        let chart = |title: &str, y: &str, series| Chart {
+            title: format!("{title}, Mach {}", self.mach),
+            x: Axis::linear(label),
+            y: Axis::linear(y),
+            series,
+        };
+        [
+            chart("Damping", "g = 2 zeta, growth positive", series(|m| m.damping)),
+            chart("Frequency", "cycles per unit of time", series(|m| m.frequency)),
+        ]
+    }
+}
