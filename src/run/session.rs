@@ -86,6 +86,9 @@ pub struct Session {
     solution: Option<Solution>,
 }
 
+/// What a run begins with, and what is done at its end.
+type Way<'a> = (Origin, Option<Then<'a>>);
+
 /// What is done with a steady flow when it is found.
 pub(crate) type Then<'a> = &'a mut dyn FnMut(&mut dyn ForceSource, &mut Log<'_>) -> Result<(), RunError>;
 
@@ -161,8 +164,8 @@ impl Session {
             held: then.is_some(),
         };
         let ended = match dimension(&self.case) {
-            2 => work.solve::<2>(origin, monitor, then),
-            _ => work.solve::<3>(origin, monitor, then),
+            2 => work.solve::<2>((origin, then), monitor),
+            _ => work.solve::<3>((origin, then), monitor),
         };
         self.held = None;
         Ok(match ended? {
@@ -250,26 +253,20 @@ type Ended = Result<Solution, u64>;
 
 impl Run<'_> {
     /// The gas alone, or with the structures of the case.
-    fn solve<const D: usize>(
-        &self,
-        origin: Origin,
-        monitor: &mut dyn Monitor,
-        then: Option<Then<'_>>,
-    ) -> Result<Ended, RunError> {
+    fn solve<const D: usize>(&self, way: Way<'_>, monitor: &mut dyn Monitor) -> Result<Ended, RunError> {
         let (surface, notes) = setup::surface::<D>(self.case, self.input)?;
         notes.iter().for_each(|n| monitor.note(n));
         let filled = accuracy::with_cloud(self.case, surface.as_ref());
         let run = Run { case: &filled, ..*self };
-        run.on(surface.as_ref(), origin, monitor, then)
+        run.on(surface.as_ref(), way, monitor)
     }
 
     /// The same around the bodies, on clouds whose spacing is known.
     fn on<const D: usize>(
         &self,
         surface: Option<&Surface<D>>,
-        origin: Origin,
+        way: Way<'_>,
         monitor: &mut dyn Monitor,
-        then: Option<Then<'_>>,
     ) -> Result<Ended, RunError> {
         let mut motions = setup::motions(self.case, self.input, surface)?;
         setup::sane(self.case, surface, &motions)?.iter().for_each(|n| monitor.warn(n));
@@ -278,7 +275,7 @@ impl Run<'_> {
         let solids = setup::solids(self.case, self.input, first, &mut motions, monitor)?;
         let site = Site { case: self.case, surface, motions: &motions };
         if bodies.is_empty() && solids.is_none() {
-            return self.stages(&site, |gas| gas, Vec::new(), origin, monitor, then);
+            return self.stages(&site, |gas| gas, Vec::new(), way, monitor);
         }
         let mut described = setup::described(self.case, surface, &bodies);
         let solids = solids.map(|(solids, said)| {
@@ -297,7 +294,7 @@ impl Run<'_> {
                 }
             }
         };
-        self.stages(&site, couple, described, origin, monitor, then)
+        self.stages(&site, couple, described, way, monitor)
     }
 
     /// All stages with the system that `assemble` makes from the gas on each cloud.
@@ -306,9 +303,8 @@ impl Run<'_> {
         site: &Site<'_, D>,
         assemble: impl Fn(Fluid<D>) -> S,
         structures: Vec<Described>,
-        origin: Origin,
+        (origin, then): Way<'_>,
         monitor: &mut dyn Monitor,
-        then: Option<Then<'_>>,
     ) -> Result<Ended, RunError> {
         let clock = Clock::start();
         let (mut stages, mut ground) = self.opening(site, origin, monitor)?;
