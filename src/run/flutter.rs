@@ -25,6 +25,8 @@ use crate::structure::flutter::{Crossing, Flutter, Kind, Point};
 
 /// Misfit of rational functions to the samples.
 const MISFIT: f64 = 1e-7;
+/// Frequency, over the highest asked for, beyond which motions are not told.
+const BEYOND: f64 = 2.0;
 /// Frequencies that are nearer to one another than this part are one.
 const SAME: f64 = 5e-4;
 /// Numbers that turn those of the solver into those of users.
@@ -223,9 +225,18 @@ impl<'a> Search<'a> {
         let Some(fit) = Rational::of(&self.samples, MISFIT) else { return (Vec::new(), Vec::new()) };
         let forces = |kappa: f64| fit.at(Complex64::new(0.0, kappa));
         let flutter = Flutter::new(&self.matrices, &forces);
-        let branches = flutter.branches(self.plan.most);
-        let crossings = flutter.crossings(&branches, self.plan.most);
+        let mut branches = flutter.branches(self.plan.most);
+        let mut crossings = flutter.crossings(&branches, self.plan.most);
+        // at the lowest speeds forces hardly act, and would be guessed
+        let highest = BEYOND * self.highest();
+        branches.iter_mut().for_each(|b| b.retain(|p| p.lambda.im.abs() <= highest * p.x));
+        crossings.retain(|c| c.kappa <= highest);
         (branches, crossings)
+    }
+
+    /// The highest angular frequency asked for.
+    fn highest(&self) -> f64 {
+        self.plan.first().last().map_or(0.0, |k| k * self.scales.stream / self.scales.semichord)
     }
 
     fn told(
