@@ -7,10 +7,10 @@ use super::{Accuracy, Case, Motion, ParticleMotion, Steady, Temporal};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Flutter {
     /// Mach numbers; empty: that of `[flow]`.
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub mach: Vec<f64>,
     /// Reduced frequencies that forces are computed at first; empty: those of [`Self::first`].
-    #[serde(default)]
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub reduced_frequencies: Vec<f64>,
     /// Greatest speed looked at, over that of the structure.
     pub most: f64,
