@@ -49,10 +49,8 @@ pub(crate) struct SmallMotion<'a, S: Marches<D>, const D: usize> {
 impl<'a, S: Marches<D>, const D: usize> SmallMotion<'a, S, D> {
     /// `system` at the steady state `state`.
     pub(crate) fn new(system: &'a S, state: &[f64]) -> Self {
-        let mut work = system.work();
-        let place = system.placing();
-        let mut frame = system.frame(&Instant::formula(0.0, &[]).with(&state[place]), state);
-        system.update_boundary_state(state, &mut work, &mut frame);
+        let (work, place) = (system.work(), system.placing());
+        let frame = system.frame(&Instant::formula(0.0, &[]).with(&state[place]), state);
         let linear = Linear::new(system.gas(), system.gas_frame(&frame).clone(), system.gas_state(state));
         let mut all = Self { system, frame, work, state: state.to_vec(), linear, columns: Vec::new() };
         let units: Vec<f64> = system.attached().iter().flat_map(|b| b.units.clone()).collect();
@@ -151,7 +149,7 @@ impl<S: Marches<D>, const D: usize> ForceSource for SmallMotion<'_, S, D> {
             .collect();
         let control = Control::newton(D);
         let plan = Hierarchy { group: control.group, cycle: control.cycle };
-        let solved = self.linear.solve_with(omega, &right, TOLERANCE, &plan);
+        let solved = self.linear.solve(omega, &right, TOLERANCE, &plan);
         // forces are those at rest: the frame stands where the steady flow has it
         let still = self.state[self.system.placing()].to_vec();
         self.system.place(&Instant::formula(0.0, &[]).with(&still), &mut self.frame);
