@@ -194,6 +194,12 @@ pub trait System: Sync {
     fn placing(&self) -> Range<usize> {
         0..0
     }
+    /// The unknowns that keep what happened before, and change at the ends of steps alone: what materials remember. A whole field.
+    fn remembered(&self) -> Range<usize> {
+        0..0
+    }
+    /// Has the unknowns that remember take in the step that has led to the state `u`, whose other unknowns are solved.
+    fn settle(&self, _frame: &Self::Frame, _work: &mut Self::Work, _u: &mut [f64]) {}
     /// Fresh storage.
     fn work(&self) -> Self::Work;
     /// The frame at an instant and at the state `u`.

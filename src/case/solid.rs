@@ -5,7 +5,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::{
-    Acceleration, Body, Case, Density, Force, Initial, Length, PerTime, Pressure, SpecificHeat, Temperature, Time,
+    Acceleration, Body, Case, Density, Force, Initial, Length, PerTime, Pressure, SpecificHeat, StructureModel,
+    Temperature, Time,
 };
 
 /// `[body.solid]`: a body that deforms.
@@ -341,14 +342,20 @@ impl SolidAxis {
 }
 
 impl Case {
-    /// Bodies made of particles, with their numbers.
+    /// Bodies made of particles that all move, with their numbers: not those of which a few modes do.
     pub fn solids(&self) -> impl Iterator<Item = (usize, &Body, &Solid)> {
+        let full = |i: usize| self.structure_of(i).is_none_or(|s| s.model != StructureModel::OwnModes);
+        self.bodies_of_particles().filter(move |(i, ..)| full(*i))
+    }
+
+    /// All bodies made of particles, with their numbers.
+    fn bodies_of_particles(&self) -> impl Iterator<Item = (usize, &Body, &Solid)> {
         self.bodies.iter().enumerate().filter_map(|(i, body)| Some((i, body, body.solid.as_ref()?)))
     }
 
     /// False for structures alone.
     pub fn has_gas(&self) -> bool {
         let stream = self.flow.mach.is_some() || self.flow.velocity.is_some() || self.polar.is_some();
-        stream || self.initial != Initial::FreeStream || self.solids().next().is_none()
+        stream || self.initial != Initial::FreeStream || self.bodies_of_particles().next().is_none()
     }
 }

@@ -7,6 +7,7 @@ use std::collections::BTreeMap;
 
 use serde::{Deserialize, Serialize};
 
+use super::mode_file::ModeTable;
 use super::{Acceleration, Case, Flow, Frequency, Inertia, Length, Mass, Time};
 
 /// Values by the name of the coordinate, for those that were given.
@@ -73,8 +74,11 @@ pub struct Structure {
     pub force: Option<StructureForce>,
     /// Acceleration of gravity.
     pub gravity: Option<Vec<Acceleration>>,
+    /// How many natural modes of the body's own particles move.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub number: Option<u32>,
     /// Modes.
-    #[serde(default, rename = "mode")]
+    #[serde(default, rename = "mode", skip_serializing_if = "are_found")]
     pub modes: Vec<StructureMode>,
 }
 
@@ -88,6 +92,8 @@ pub enum StructureModel {
     RigidBody,
     /// Modes of a flexible body.
     Modal,
+    /// Natural modes of the body's own particles.
+    OwnModes,
 }
 
 /// A coordinate.
@@ -181,6 +187,14 @@ pub struct StructureMode {
     pub initial_rate: f64,
     /// External force as a formula.
     pub force: Option<String>,
+    /// The shape of a mode that was found and has no file.
+    #[serde(skip)]
+    pub table: Option<ModeTable>,
+}
+
+/// True for modes that were found: a written case does not hold them.
+fn are_found(modes: &[StructureMode]) -> bool {
+    modes.iter().any(|mode| mode.table.is_some())
 }
 
 impl Freedom {
@@ -207,9 +221,16 @@ impl Freedom {
 }
 
 impl Structure {
+    /// The structure without modes that were found.
+    pub fn as_given(&self) -> Self {
+        let mut given = self.clone();
+        given.modes.retain(|mode| mode.table.is_none());
+        given
+    }
+
     /// Coordinates that are unknowns, in the order of the model; none for modes, which are all.
     pub fn freedoms(&self, dimension: usize) -> Vec<Freedom> {
-        if self.model == StructureModel::Modal {
+        if matches!(self.model, StructureModel::Modal | StructureModel::OwnModes) {
             return Vec::new();
         }
         let section = [Freedom::Plunge, Freedom::Pitch];

@@ -31,6 +31,12 @@ pub(super) static STRUCTURE: Table = Table::of(&[
          has `free = \"plunge\"`.",
     ),
     Field::optional(
+        "number",
+        Kind::Integer(1, 100),
+        "4",
+        "How many natural modes move (`model = \"own_modes\"`), from the slowest on.",
+    ),
+    Field::optional(
         "pivot",
         POINT,
         "`elastic_axis`, else the centre of mass",
@@ -162,6 +168,7 @@ const MODELS: &[(&str, &str)] = &[
         "a rigid body: `surge`, `plunge`, `pitch` in 2-D; `surge`, `sway`, `plunge`, `roll`, `pitch`, `yaw` in 3-D",
     ),
     ("modal", "modes of a flexible body"),
+    ("own_modes", "natural modes of a body made of particles (`[body.solid]`), found before the run"),
 ];
 
 const FREEDOMS: &[(&str, &str)] = &[

@@ -24,6 +24,8 @@ pub struct Attached<const D: usize> {
     pub shapes: Vec<Arc<ModeShape<D>>>,
     /// What is a large change of each coordinate: a radian, a length of the body.
     pub units: Vec<f64>,
+    /// Displacements in each mode at the points that are told of.
+    probes: Vec<Vec<Vector<D>>>,
     /// Displacements in each mode at the interface particles of the whole cloud; empty for rigid bodies.
     bends: Vec<Vec<Vector<D>>>,
 }
@@ -39,7 +41,27 @@ impl<const D: usize> Attached<D> {
     ) -> Self {
         let unit = |k: usize| if structure.is_angle(k) { 1.0 } else { length };
         let units = (0..structure.len()).map(unit).collect();
-        Self { structure, body, first, shapes, units, bends: Vec::new() }
+        Self { structure, body, first, shapes, units, probes: Vec::new(), bends: Vec::new() }
+    }
+
+    /// The same with points, as placed, whose displacements in the modes are told beside the coordinates.
+    pub fn with_probes(mut self, places: &[Vector<D>]) -> Self {
+        self.probes = places.iter().map(|x| self.shapes.iter().map(|shape| shape.at(x)).collect()).collect();
+        self
+    }
+
+    /// Numbers that are told beside the coordinates.
+    pub fn n_told(&self) -> usize {
+        D * self.probes.len()
+    }
+
+    /// Displacements of the points that are told of, each with its rate, for the unknowns `u` of all structures.
+    pub(super) fn told(&self, u: &[f64]) -> Vec<[f64; 2]> {
+        let sums = self.own(u);
+        let at = |(shapes, d): (&Vec<Vector<D>>, usize)| {
+            [0, 1].map(|part| shapes.iter().zip(&sums[part]).map(|(shape, q)| shape[d] * q).sum())
+        };
+        self.probes.iter().flat_map(|shapes| (0..D).map(move |d| (shapes, d))).map(at).collect()
     }
 
     /// The same on a cloud: the modes are known at its interface particles, whose places before any motion are `walls`.

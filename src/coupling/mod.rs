@@ -30,7 +30,7 @@ use crate::system::{Fault, Field, Instant, Rate, System};
 use crate::time::explicit::{Explicit, Plan};
 use crate::time::{Integrator, Past};
 
-use solids::{OnCloud, Pace};
+use solids::{Moving, OnCloud, Pace};
 
 /// Rate of a structure that nothing holds, in units of the case: what local times are measured with then.
 const SLOWEST: f64 = 1e-6;
@@ -56,6 +56,17 @@ pub struct Frame<const D: usize> {
     pub steady: bool,
     /// Power of the gas on bodies made of particles in the step that has led here, where that is explicit.
     pub taken: Option<f64>,
+    /// Length of the implicit step that ends here; 0 where there is none.
+    pub step: f64,
+}
+
+/// Length of the step that the formula of an instant ends.
+fn step_of(rate: &Rate<'_>) -> f64 {
+    match rate {
+        Rate::Formula([now, before, ..]) => (now.time - before.time).max(0.0),
+        Rate::Within { step, .. } => *step,
+        _ => 0.0,
+    }
 }
 
 /// Storage of an evaluation.
@@ -172,10 +183,14 @@ impl<const D: usize> Coupled<D> {
         let own = self.fields[1].len()..u.len();
         if let (Some(on), Some(storage)) = (&self.solids, &mut work.solids) {
             on.load(&View::new(&self.fluid, &frame.gas, &work.gas), storage);
-            let at = (frame.gas.time, &frame.gas.jets[..]);
-            let solid = own.start..own.start + on.solids.len() * 2 * D;
+            let at = Moving { time: frame.gas.time, step: frame.step, jets: &frame.gas.jets, pace: self.pace(frame) };
+            let (solid, remembered) =
+                (own.start..own.start + on.solids.len() * 2 * D, own.start + on.solids.len() * 2 * D..u.len());
             change[own].fill(0.0);
-            on.solids.rates(at, self.pace(frame), &u[solid.clone()], storage, &mut change[solid]);
+            if !remembered.is_empty() {
+                storage.history.copy_from_slice(&u[remembered]);
+            }
+            on.solids.rates(&at, &u[solid.clone()], storage, &mut change[solid]);
         }
     }
 }
@@ -199,12 +214,30 @@ impl<const D: usize> System for Coupled<D> {
 
     fn frame(&self, at: &Instant<'_>, u: &[f64]) -> Frame<D> {
         let gas = self.fluid.frame(at, &u[self.gas_range()]);
-        Frame { gas, steady: matches!(at.rate, Rate::Still), taken: None }
+        Frame { gas, steady: matches!(at.rate, Rate::Still), taken: None, step: step_of(&at.rate) }
     }
 
     fn place(&self, at: &Instant<'_>, frame: &mut Frame<D>) {
         self.fluid.place(at, &mut frame.gas);
         frame.steady = matches!(at.rate, Rate::Still);
+        frame.step = step_of(&at.rate);
+    }
+
+    fn remembered(&self) -> Range<usize> {
+        self.history_range()
+    }
+
+    fn settle(&self, frame: &Frame<D>, work: &mut Work<D>, u: &mut [f64]) {
+        let (own, Some((on, work))) = (self.history_range(), self.solids.as_ref().zip(work.solids.as_mut())) else {
+            return;
+        };
+        if own.is_empty() || self.pace(frame) != Pace::Marching {
+            return;
+        }
+        on.solids.split(&u[self.solid_range()], work);
+        work.history.copy_from_slice(&u[own.clone()]);
+        on.solids.forces(frame.gas.time, frame.step, work);
+        u[own].copy_from_slice(&work.after);
     }
 
     fn prescribe(&self, time: f64, u: &mut [f64]) {
@@ -314,17 +347,16 @@ impl<const D: usize> HasGas<D> for Coupled<D> {
     }
 
     fn exchange(&self, frame: &Frame<D>, u: &[f64], work: &mut Work<D>) -> Option<Exchange> {
+        let remembered = &u[self.history_range()];
         let (gas, u, solid) = (&u[self.gas_range()], &u[self.sprung()], &u[self.solid_range()]);
         self.fluid.fill_states(&frame.gas, gas, &mut work.gas);
         if self.fluid.viscous_model.is_some() {
             self.fluid.fill_gradients(&frame.gas, &mut work.gas);
         }
         self.loads(&frame.gas, &work.gas, u, &mut work.load);
-        let [coordinates, rates] = [0, 1].map(|part| u.chunks_exact(2).map(|pair| pair[part]).collect::<Vec<f64>>());
-        let loads = work.load.clone();
         // by the rates of the difference formula, which move the walls: what these take is what the structures get
-        let moved = |k: usize| frame.gas.jets.get(k).map_or(rates[k], |jet| jet.first);
-        let power = loads.iter().enumerate().map(|(k, load)| load * moved(k)).sum();
+        let moved = |k: usize| frame.gas.jets.get(k).map_or(u[2 * k + 1], |jet| jet.first);
+        let power = work.load.iter().enumerate().map(|(k, load)| load * moved(k)).sum();
         let cloud = &frame.gas.discretisation.cloud;
         let velocity = |w: usize| frame.gas.to_inertial_axes(&frame.gas.velocity_of(cloud.n_fluid + w));
         let solids = self.solids.iter().flat_map(|s| &s.solids.bodies).map(|b| b.body);
@@ -336,7 +368,11 @@ impl<const D: usize> HasGas<D> for Coupled<D> {
         let on_wall =
             |w: usize| frame.gas.taken.get(w).filter(|t| t.area > 0.0).map_or_else(|| by_state(w), |t| t.power);
         let wall_power = walls.map(on_wall).sum();
-        let mut all = Exchange { coordinates, rates, loads, power, wall_power, ..Exchange::default() };
+        let mut all = Exchange { power, wall_power, ..Exchange::default() };
+        for body in &self.bodies {
+            body.range().for_each(|k| all.push([u[2 * k], u[2 * k + 1], work.load[k]]));
+            body.told(u).into_iter().for_each(|[place, rate]| all.push([place, rate, 0.0]));
+        }
         for energy in self.bodies.iter().map(|b| b.energy(u)) {
             all.kinetic += energy.kinetic;
             all.potential += energy.potential;
@@ -345,6 +381,9 @@ impl<const D: usize> HasGas<D> for Coupled<D> {
         if let (Some(on), Some(work)) = (&self.solids, &mut work.solids) {
             on.load(&view, work);
             on.solids.split(solid, work);
+            if !self.history_range().is_empty() {
+                work.history.copy_from_slice(remembered);
+            }
             if !frame.steady && frame.taken.is_none() {
                 on.solids.by_formula(&frame.gas.jets, work);
             }
@@ -353,11 +392,7 @@ impl<const D: usize> HasGas<D> for Coupled<D> {
             all.potential += energy.strain + energy.stabilisation + energy.contact;
             all.dissipation += damped;
             all.power += frame.taken.unwrap_or_else(|| on.power(&frame.gas.jets, work));
-            for [coordinate, rate, load] in on.solids.told(work) {
-                all.coordinates.push(coordinate);
-                all.rates.push(rate);
-                all.loads.push(load);
-            }
+            on.solids.told(work).into_iter().for_each(|told| all.push(told));
         }
         Some(all)
     }

@@ -9,6 +9,7 @@ use crate::system::{Field, Hierarchy, Implicit, Period, Preconditioner, RightHan
 use crate::time::full::Full;
 
 use super::solid_preconditioner::SolidPreconditioner;
+use super::solids::Moving;
 use super::{Coupled, Frame, Work};
 
 /// The preconditioner of the gas, and the full matrix of the structures.
@@ -55,7 +56,9 @@ impl<const D: usize> Preconditioner<Coupled<D>> for CoupledPreconditioner<D> {
         }
         self.structure.add_matrix(&self.matrix);
         if let Some(solids) = &mut self.solids {
-            solids.add(frame.gas.time, coupled.pace(frame), &u[n..]);
+            let at = Moving { time: frame.gas.time, step: frame.step, jets: &[], pace: coupled.pace(frame) };
+            let (solid, remembered) = u[n..].split_at(self.fields[2].len());
+            solids.add(&at, solid, remembered);
         }
     }
 
@@ -79,7 +82,10 @@ impl<const D: usize> Preconditioner<Coupled<D>> for CoupledPreconditioner<D> {
             let (sprung, solid) = all.split_at_mut(at.field.len());
             self.structure.solve(&r.of(&at), sprung);
             if let Some((at, solids)) = fields.next().zip(self.solids.as_mut()) {
+                let (solid, remembered) = solid.split_at_mut(at.field.len());
                 solids.apply(&r.of(&at), &at, solid);
+                // no iteration changes what is remembered
+                remembered.fill(0.0);
             }
         }
     }

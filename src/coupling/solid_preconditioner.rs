@@ -8,7 +8,7 @@
 //! turned back first, so that what is stiff along a thin body stays along it.
 use std::sync::Arc;
 
-use super::solids::{Pace, Solids, Work};
+use super::solids::{Moving, Pace, Solids, Work};
 use crate::math::Vector;
 use crate::math::fourier::Matrix;
 use crate::math::sparse::{ComplexFactors, Factors, Symmetric};
@@ -32,6 +32,7 @@ pub(super) struct SolidPreconditioner<const D: usize> {
     period: Option<Period>,
     pace: Pace,
     time: f64,
+    step: f64,
     work: Work<D>,
     points: f64,
     inverse: Inverse,
@@ -48,12 +49,13 @@ impl<const D: usize> SolidPreconditioner<D> {
         let times = period.map_or_else(Vec::new, |p| p.instances.times(p.omega));
         let turns = times.into_iter().map(|t| solids.bodies.iter().map(|b| b.led(t)).collect()).collect();
         let omega = solids.omega;
-        let (pace, time, points) = (Pace::Held, 0.0, 1.0);
+        let (pace, time, step, points) = (Pace::Held, 0.0, 0.0, 1.0);
         Self {
             solids,
             period,
             pace,
             time,
+            step,
             work,
             points,
             inverse: Inverse::Diagonal,
@@ -70,9 +72,13 @@ impl<const D: usize> SolidPreconditioner<D> {
         self.work.velocity.fill([0.0; D]);
     }
 
-    /// Adds a state: the stiffness is that at the mean of all.
-    pub(super) fn add(&mut self, t: f64, pace: Pace, u: &[f64]) {
-        (self.time, self.pace) = (t, pace);
+    /// Adds a state and what materials remember: the stiffness is that at the mean of all.
+    pub(super) fn add(&mut self, at: &Moving<'_>, u: &[f64], remembered: &[f64]) {
+        let t = at.time;
+        (self.time, self.step, self.pace) = (t, at.step, at.pace);
+        if !remembered.is_empty() {
+            self.work.history.copy_from_slice(remembered);
+        }
         let solids = Arc::clone(&self.solids);
         for body in &solids.bodies {
             let led = if self.period.is_some() { body.led(t) } else { RigidPose::identity() };
@@ -89,25 +95,25 @@ impl<const D: usize> SolidPreconditioner<D> {
         let solids = Arc::clone(&self.solids);
         (self.shift, self.coefficient) = (shift.of(row), shift.coefficient);
         let mass = solids.scales.speed * solids.scales.speed;
-        let (t, s) = (self.time, self.shift);
+        let (t, s) = ((self.time, self.step), self.shift);
         self.inverse = match (self.pace, &self.period) {
             (Pace::Held, _) => Inverse::Diagonal,
             (Pace::Steady, _) => {
                 let rest = solids.work();
-                let reference = solids.stiffness(&rest, t, 1.0, 0.0);
-                let mut all = solids.stiffness(&self.work, t, 1.0, 0.0);
+                let reference = solids.stiffness(&rest, t, (1.0, 0.0));
+                let mut all = solids.stiffness(&self.work, t, (1.0, 0.0));
                 all.value.iter_mut().zip(&reference.value).for_each(|(k, k0)| *k = s * k0 + self.omega * *k);
                 match all.factor() {
                     Some(factors) => Inverse::Rest { factors, reference },
                     None => Inverse::Diagonal,
                 }
             }
-            (Pace::Marching, None) => match solids.stiffness(&self.work, t, 1.0, s * s * mass).factor() {
+            (Pace::Marching, None) => match solids.stiffness(&self.work, t, (1.0, s * s * mass)).factor() {
                 Some(factors) => Inverse::Real(factors),
                 None => Inverse::Diagonal,
             },
             (Pace::Marching, Some(period)) => {
-                let stiffness = solids.stiffness(&self.work, t, 1.0, 0.0);
+                let stiffness = solids.stiffness(&self.work, t, (1.0, 0.0));
                 let of = |k: usize| {
                     let w = k as f64 * period.omega;
                     let square = [mass * (s * s - w * w), 2.0 * mass * s * w];

@@ -119,6 +119,19 @@ pub(super) enum Pace {
     Marching,
 }
 
+/// The moment that rates are sought for.
+#[derive(Clone, Copy)]
+pub(super) struct Moving<'a> {
+    /// Time of the gas.
+    pub(super) time: f64,
+    /// Length of the step that ends there, and that materials take in; 0 where there is none.
+    pub(super) step: f64,
+    /// The coordinates by the formula that serves the state.
+    pub(super) jets: &'a [Jet],
+    /// What for.
+    pub(super) pace: Pace,
+}
+
 impl<const D: usize> SolidBody<D> {
     /// What leads it from time 0 to the time `t`.
     pub(super) fn led(&self, t: f64) -> RigidPose<D> {
@@ -329,15 +342,9 @@ impl<const D: usize> Solids<D> {
         solid.forces(&state, &work.solid, &mut work.force);
     }
 
-    /// d/dt of the unknowns `u` at the time `t` under the loads in `work`.
-    pub(super) fn rates(
-        &self,
-        (t, jets): (f64, &[Jet]),
-        pace: Pace,
-        u: &[f64],
-        work: &mut Work<D>,
-        change: &mut [f64],
-    ) {
+    /// d/dt of the unknowns `u` under the loads in `work`, where materials remember what stands there.
+    pub(super) fn rates(&self, at: &Moving<'_>, u: &[f64], work: &mut Work<D>, change: &mut [f64]) {
+        let Moving { time: t, step, jets, pace } = *at;
         self.split(u, work);
         self.hold(t, &mut work.led);
         self.hold_velocity(t, &mut work.led_velocity);
@@ -357,7 +364,7 @@ impl<const D: usize> Solids<D> {
         if pace == Pace::Steady {
             work.velocity.fill([0.0; D]);
         }
-        self.forces(t, 0.0, work);
+        self.forces(t, step, work);
         let pressure = self.scales.pressure;
         for (force, load) in work.force.iter_mut().zip(&work.load) {
             (0..D).for_each(|a| force[a] += pressure * load[a]);
@@ -406,7 +413,7 @@ impl<const D: usize> Solids<D> {
 
     /// Factors of the stiffness at rest; `None` where supports do not hold the bodies.
     fn reference(&self) -> Option<&Factors> {
-        self.reference.get_or_init(|| self.stiffness(&self.work(), 0.0, 1.0, 0.0).factor()).as_ref()
+        self.reference.get_or_init(|| self.stiffness(&self.work(), (0.0, 0.0), (1.0, 0.0)).factor()).as_ref()
     }
 
     /// True when supports hold the bodies.
@@ -414,11 +421,16 @@ impl<const D: usize> Solids<D> {
         self.reference().is_some()
     }
 
-    /// `scale` K + `shift` M at the state in `work`, in units of the case.
-    pub(super) fn stiffness(&self, work: &Work<D>, t: f64, scale: f64, shift: f64) -> crate::math::sparse::Symmetric {
+    /// `scale` K + `shift` M at the state in `work`, at a time and after a step of the gas, in units of the case.
+    pub(super) fn stiffness(
+        &self,
+        work: &Work<D>,
+        (time, step): (f64, f64),
+        (scale, shift): (f64, f64),
+    ) -> crate::math::sparse::Symmetric {
         let at = Moment {
-            time: t / self.scales.speed,
-            step: 0.0,
+            time: time / self.scales.speed,
+            step: step / self.scales.speed,
             displacement: work.displacement.as_flattened(),
             velocity: work.velocity.as_flattened(),
             history: &work.history,

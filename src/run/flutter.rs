@@ -16,6 +16,7 @@ use super::monitor::Monitor;
 use super::record::Log;
 use super::session::{Outcome, Session};
 use super::setup;
+use super::solids::with_own_modes;
 use super::studies::ForceSource;
 use crate::case::{Case, Flutter as Plan};
 use crate::geometry::dimension;
@@ -54,6 +55,7 @@ pub fn flutter(case: &Case, places: &Places, monitor: &mut dyn Monitor) -> Resul
     };
     refused(case)?;
     setup::supported(case)?;
+    let case = &with_own_modes(case, &places.input)?;
     let _held = folder::create_once(case, &places.input, &places.out)?;
     let machs = if plan.mach.is_empty() { vec![case.flow.reference().mach] } else { plan.mach.clone() };
     let mut all = Boundary::new(&case.title);

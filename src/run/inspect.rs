@@ -52,6 +52,9 @@ pub struct CloudReport {
     pub cost: Cost,
     /// What such a run takes at least.
     pub least: Option<Cost>,
+    /// Bodies made of particles; absent where there are none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub structure: Option<solids::SolidReport>,
     /// What `alula gaf` will take, where the case asks for it.
     pub gaf: Option<Cost>,
     /// What was repaired or assumed.
@@ -102,6 +105,7 @@ impl SpacingRange {
 /// one is given.
 pub fn inspect(case: &Case, input: &Path, out: Option<&Path>) -> Result<CloudReport, RunError> {
     solids::with_gas(case)?;
+    let case = &solids::with_own_modes(case, input)?;
     match dimension(case) {
         2 => look::<2>(case, input, out),
         _ => look::<3>(case, input, out),
@@ -137,6 +141,8 @@ fn look<const D: usize>(case: &Case, input: &Path, out: Option<&Path>) -> Result
     let cloud = &fluid.discretisation.cloud;
     notes.extend(cloud.notes.iter().cloned().chain(cloud.early_ends()).chain(accuracy::too_few(case, cloud.n_fluid)));
     warnings.extend(check_motion(case, cloud, &motions)?);
+    let structure = solids::inspect_in_gas(case, input)?;
+    warnings.extend(structure.iter().flat_map(|s| s.warnings.iter().cloned()));
     recipe::marching(case, motions.period(), D)?;
     let axes = (!cloud.interface.is_empty())
         .then(|| load_axes(case, surface.as_ref()).axes(&fluid.view(&frame, u, &mut work)));
@@ -156,6 +162,7 @@ fn look<const D: usize>(case: &Case, input: &Path, out: Option<&Path>) -> Result
         seconds,
         cost: sized.cost(fastest),
         least: sized.least(),
+        structure,
         gaf: cost_of_gaf(&sized, axes.as_ref().map(|a| a.chord)),
         notes,
         warnings,

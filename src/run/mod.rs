@@ -144,6 +144,7 @@ pub fn set_aside(case: &Case, places: &Places) -> Result<Option<PathBuf>, RunErr
 /// Refuses a case of which it is known before its cloud is built that it cannot begin.
 fn rehearse<const D: usize>(case: &Case, input: &Path) -> Result<(), RunError> {
     setup::supported(case)?;
+    let case = &solids::with_own_modes(case, input)?;
     let (surface, _) = setup::surface::<D>(case, input)?;
     let case = &*accuracy::with_cloud(case, surface.as_ref());
     let mut motions = setup::motions(case, input, surface.as_ref())?;

@@ -108,12 +108,8 @@ pub(crate) fn plan(case: &Case, n: usize, dimension: usize, least: usize) -> Vec
     let steady = |factor: f64, cycle: u32| Stage { factor, cycle, ..Stage::PLAIN };
     if relaxes {
         let limits = START[dimension - 2];
-        if n > limits[1] {
-            all.push(steady(4.0, 0));
-        }
-        if n > limits[0] {
-            all.push(steady(2.0, 0));
-        }
+        let coarser = [(limits[1], 4.0), (limits[0], 2.0)].into_iter();
+        all.extend(coarser.filter(|(most, factor)| n > *most && divides(case, *factor)).map(|(_, f)| steady(f, 0)));
     }
     if relaxes || !case.is_unsteady() {
         all.extend((0..=case.adapt.cycles).map(|cycle| steady(1.0, cycle)));
@@ -121,6 +117,17 @@ pub(crate) fn plan(case: &Case, n: usize, dimension: usize, least: usize) -> Vec
     let cycle = all.last().map_or(0, |s: &Stage| s.cycle);
     all.extend(in_time(case, None, least).into_iter().map(|task| Stage { cycle, task, ..Stage::PLAIN }));
     at_all_points(case, all)
+}
+
+/// True where a cloud with `factor` times the spacing fits into the domain: a start on one that does not is left out.
+fn divides(case: &Case, factor: f64) -> bool {
+    /// What a number of cells may be off a whole one, relative to it.
+    const MISFIT: f64 = 1e-7;
+    let Some((domain, spacing)) = case.cloud.domain.as_ref().zip(case.cloud.spacing.as_ref()) else { return true };
+    domain.min.iter().zip(&domain.max).all(|(min, max)| {
+        let cells = (max.0 - min.0) / (factor * spacing.0);
+        cells > 0.5 && (cells - cells.round()).abs() <= MISFIT * cells
+    })
 }
 
 /// The stages of one point, for every point of a polar.

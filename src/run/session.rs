@@ -22,7 +22,7 @@ use super::record::saved::{Kept, Position, Saved, flatten};
 use super::record::summary::{Clock, Summary};
 use super::record::{Described, IterationHistory, Log, Scales};
 use super::setup::{self, Site, Solver, check_motion};
-use super::solids::SolidSummary;
+use super::solids::{SolidSummary, with_own_modes};
 use super::stage::{Stage, Task};
 use super::studies::{self, ForceSource, Reached, SmallMotion, Start, Turn};
 use crate::case::{self, Case};
@@ -111,14 +111,9 @@ impl Session {
     /// Opens a case whose file names refer to the folder `input`.
     pub fn open(case: &Case, input: impl Into<PathBuf>) -> Result<Self, RunError> {
         setup::supported(case)?;
-        Ok(Self {
-            case: case.clone(),
-            input: input.into(),
-            out: None,
-            held: None,
-            origin: Origin::Case,
-            solution: None,
-        })
+        let input = input.into();
+        let case = with_own_modes(case, &input)?;
+        Ok(Self { case, input, out: None, held: None, origin: Origin::Case, solution: None })
     }
 
     /// The same with a folder for tables, checkpoints, fields and pictures, which is made and gets the resolved case. Fails where

@@ -10,7 +10,7 @@ use crate::system::{Implicit, System};
 /// What passes between a gas and the structures in it, and what these hold; in the units of the solver.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Exchange {
-    /// Coordinates of all structures.
+    /// Coordinates of all structures, each followed by what is told of its points.
     pub coordinates: Vec<f64>,
     /// Their rates.
     pub rates: Vec<f64>,
@@ -26,6 +26,15 @@ pub struct Exchange {
     pub potential: f64,
     /// Power that their dampers take.
     pub dissipation: f64,
+}
+
+impl Exchange {
+    /// Adds a coordinate with its rate and its load.
+    pub fn push(&mut self, [coordinate, rate, load]: [f64; 3]) {
+        self.coordinates.push(coordinate);
+        self.rates.push(rate);
+        self.loads.push(load);
+    }
 }
 
 /// A system of which the gas on a cloud is a part.

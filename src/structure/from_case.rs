@@ -40,7 +40,7 @@ impl<const D: usize> Structure<D> {
         let (units, stream) = (case.flow.units(), case.flow.reference().mach);
         let builder = Builder { case, data, frame, units, stream, b };
         match data.model {
-            StructureModel::Modal => builder.modes(),
+            StructureModel::Modal | StructureModel::OwnModes => builder.modes(),
             _ if D == 2 => builder.plane(),
             _ => builder.space(),
         }

@@ -260,6 +260,7 @@ impl<S: Implicit> Dual<'_, S> {
         sweep(&mut rest, |k| last * start[k] + old(k));
         let guesses = self.second_order();
         let smooth = guesses && self.begin_on_line(dt);
+        self.keep_what_is_remembered(&formula, &mut rest);
         self.relax.set_reach(self.past.reach);
         self.prepare(&formula, end, dt);
         self.relax.begin_step(TimeTerm { formula, rest });
@@ -278,7 +279,20 @@ impl<S: Implicit> Dual<'_, S> {
             let (change, size) = (sum(u.len(), |k| (u[k] - line[k]).powi(2)), sum(u.len(), |k| u[k] * u[k]));
             (change / size).sqrt() / 3.0
         };
-        Ok(if guesses { error() } else { 0.0 })
+        let error = if guesses { error() } else { 0.0 };
+        self.relax.settle();
+        Ok(error)
+    }
+
+    /// Within a step what is remembered stays as it was at its start: ∂/∂t of it is nothing.
+    fn keep_what_is_remembered(&mut self, formula: &Formula, rest: &mut [f64]) {
+        let own = self.system.remembered();
+        let start = &self.start[own.clone()];
+        self.relax.u[own.clone()].copy_from_slice(start);
+        if let Some(line) = self.line.get_mut(own.clone()) {
+            line.copy_from_slice(start);
+        }
+        rest[own].iter_mut().zip(start).for_each(|(rest, h)| *rest = -formula.coefficient(0) * h);
     }
 
     /// Starts from the parabola through the last three states where it serves, or from the line through two, or from where

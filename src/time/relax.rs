@@ -261,6 +261,11 @@ impl<'a, S: Implicit> Relax<'a, S> {
         self.system.largest_change(before, &self.trial)
     }
 
+    /// Has what is remembered take in the step that the state has come from.
+    pub fn settle(&mut self) {
+        self.system.settle(&self.frame, &mut self.work, &mut self.u);
+    }
+
     /// True when the state `u` is physical.
     pub fn is_sound(&self, u: &[f64]) -> bool {
         self.system.check(&self.frame, u).is_ok()

@@ -32,7 +32,8 @@ pub(crate) fn check(args: &arguments::Check) -> Outcome {
         }
         Ok(report) => {
             let title = format!("{}: no mistakes in `{}`\n", args.case.display(), case.title);
-            output::data(&(title + &points(&case) + &super::cloud::describe(&report)))
+            let structure = report.structure.as_ref().map(describe_structure).unwrap_or_default();
+            output::data(&(title + &points(&case) + &super::cloud::describe(&report) + &structure))
         }
         Err(problem) => super::refuse(&problem),
     }
@@ -60,7 +61,10 @@ fn structure(case: &Case, input: &Path, args: &arguments::Check) -> Outcome {
 fn describe_structure(r: &run::SolidReport) -> String {
     let list = |all: Vec<String>| all.join(", ");
     let mut lines = vec![
-        format!("particles      {} with {:.1} neighbours each, {:.4e} apart", r.particles, r.neighbours, r.spacing[0]),
+        format!(
+            "structure      {} particles with {:.1} neighbours each, {:.4e} apart",
+            r.particles, r.neighbours, r.spacing[0]
+        ),
         format!("bodies         {}", list(r.bodies.iter().map(|b| format!("`{b}`")).collect())),
         format!("gradients      changed by {:.1} % for the divergence theorem", 100.0 * r.correction),
         format!("mass           {:.6e}", r.mass),

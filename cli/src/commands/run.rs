@@ -134,7 +134,7 @@ fn describe_structure(s: &SolidSummary, out: &Path) -> String {
             ledger.open
         ));
     }
-    for probe in &s.probes {
+    for probe in s.probes.iter().filter(|p| !p.displacement.is_empty()) {
         let values: Vec<String> = probe.displacement.iter().map(|x| format!("{x:.6e}")).collect();
         lines.push(format!("{} moved by ({})", probe.name, values.join(", ")));
     }

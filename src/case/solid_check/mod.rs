@@ -184,6 +184,9 @@ impl Look<'_, '_> {
         let name = draft.get(&format!("body[{body}].name")).cloned();
         for spring in (0..draft.count("structure")).map(|k| format!("structure[{k}]")).filter(|_| gas) {
             let wanted = draft.get(&format!("{spring}.body")).cloned();
+            if draft.get(&format!("{spring}.model")).is_some_and(|m| m == "own_modes") {
+                continue;
+            }
             if wanted.is_none() && draft.count("body") == 1 || wanted.is_some() && wanted == name {
                 let hint = "remove `solid` or the structure; supports are in `[[body.solid.support]]`";
                 draft.fail_key(&spring, "a body made of particles cannot be on springs as well").hint(hint);

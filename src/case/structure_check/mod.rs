@@ -60,10 +60,15 @@ pub(super) fn contradictions(draft: &mut Draft<'_>, dimension: Option<usize>) {
         let mut look = Look { draft, path, dimension, free, section: model == "typical_section" };
         look.force();
         look.units();
-        if model == "modal" {
-            look.modes();
-        } else {
-            look.rigid();
+        match model.as_str() {
+            "own_modes" => look.own_modes(),
+            "modal" => look.modes(),
+            _ => look.rigid(),
+        }
+        if model != "own_modes" && look.given("number") {
+            let place = look.place("number");
+            let message = "`number` is that of own modes";
+            look.draft.fail_key(&place, message).hint("remove it, or say `model = \"own_modes\"`");
         }
     }
 }
@@ -127,7 +132,7 @@ fn freedoms(draft: &Draft<'_>, path: &str, model: &str, dimension: usize) -> Vec
     let listed = draft.get(&format!("{path}.free")).and_then(Value::as_array).cloned().unwrap_or_default();
     let flap = draft.given(&format!("{path}.flap"));
     let free = |f: &Freedom| match (listed.is_empty(), model) {
-        (_, "modal") => false,
+        (_, "modal" | "own_modes") => false,
         (false, _) => listed.iter().any(|word| word == f.name()),
         (true, "typical_section") => match f {
             Freedom::Plunge | Freedom::Pitch => true,

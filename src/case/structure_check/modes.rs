@@ -31,6 +31,36 @@ const RIGID: [&str; 22] = [
 ];
 
 impl Look<'_, '_> {
+    /// Own modes: of a body made of particles, and nothing else beside them.
+    pub(super) fn own_modes(&mut self) {
+        for key in RIGID.into_iter().chain(["mode"]).filter(|k| self.says(k)).collect::<Vec<_>>() {
+            let message = format!("`{key}` says nothing about own modes");
+            self.draft
+                .fail_key(&self.place(key), message)
+                .hint("remove it: `[body.solid]` has masses, stiffness, damping, velocity and gravity");
+        }
+        let wanted = self.draft.get(&self.place("body")).filter(|v| !v.is_null()).cloned();
+        let called = |b: &usize| wanted.is_none() || self.draft.get(&format!("body[{b}].name")) == wanted.as_ref();
+        let Some(body) = (0..self.draft.count("body")).find(called) else { return };
+        let solid = format!("body[{body}].solid");
+        if !self.draft.given(&solid) {
+            let message = format!("`body[{body}]` is not made of particles: it has no modes of its own");
+            let hint = "add `[body.solid]`, or give modes in files: `model = \"modal\"`";
+            self.draft.fail(&self.place("model"), message).hint(hint);
+            return;
+        }
+        let led = |k: &usize| self.draft.given(&format!("{solid}.support[{k}].motion"));
+        let led = (0..self.draft.count(&format!("{solid}.support"))).find(led);
+        let loads = (self.draft.count(&format!("{solid}.load")) > 0).then(|| format!("{solid}.load"));
+        for place in led.map(|k| format!("{solid}.support[{k}].motion")).into_iter().chain(loads) {
+            let message = format!("`{place}` does not act on a body that moves in own modes");
+            self.draft
+                .fail_key(&place, message)
+                .hint("remove it, or remove the `[structure]`: all particles then move");
+        }
+        self.deforms();
+    }
+
     /// Modes, and nothing of a rigid body beside them.
     pub(super) fn modes(&mut self) {
         for key in RIGID.into_iter().filter(|k| self.says(k)).collect::<Vec<_>>() {
@@ -43,14 +73,19 @@ impl Look<'_, '_> {
         if n == 0 {
             self.missing("no modes", "add a `[[structure.mode]]` with `name`, `file`, `mass` and `frequency`");
         }
+        self.deforms();
+        let mut names: Vec<String> = Vec::new();
+        for i in 0..n {
+            self.mode(&format!("mode[{i}]"), &mut names);
+        }
+    }
+
+    /// The cloud follows a body that bends.
+    fn deforms(&mut self) {
         let particles = self.draft.get("motion.particles").and_then(Value::as_str).unwrap_or("deforming").to_owned();
         if particles != "deforming" {
             let message = format!("a {particles} cloud cannot follow a body that bends");
             self.draft.fail(&self.place("model"), message).hint("use `particles = \"deforming\"` in `[motion]`");
-        }
-        let mut names: Vec<String> = Vec::new();
-        for i in 0..n {
-            self.mode(&format!("mode[{i}]"), &mut names);
         }
     }
 

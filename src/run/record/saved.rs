@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use super::super::error::RunError;
 use super::super::stage::{Stage, Task};
 use super::polar::PolarRecord;
-use crate::case::Case;
+use crate::case::{Case, Structure};
 use crate::cloud::sources::Source;
 use crate::math::Vector;
 use crate::observe::checkpoint::{self, Array, Checkpoint, Field};
@@ -305,7 +305,8 @@ pub(crate) struct Saved<'a> {
 /// be changed.
 pub(crate) fn equations_of(case: &Case) -> u32 {
     let air = (&case.flow, &case.boundary, &case.initial, &case.scheme);
-    let solids = (&case.bodies, &case.motion, &case.structures);
+    let structures: Vec<_> = case.structures.iter().map(Structure::as_given).collect();
+    let solids = (&case.bodies, &case.motion, &structures);
     crc32fast::hash(format!("{air:?} {solids:?}").as_bytes())
 }
 

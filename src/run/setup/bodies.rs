@@ -6,12 +6,16 @@ use super::super::error::RunError;
 use super::super::folder;
 use super::super::look::reference::chord;
 use super::super::record::Described;
-use crate::case::{Case, Temporal};
+use crate::case::{Case, SolidProbe, StructureMode, Temporal};
 use crate::coupling::{Attached, body_motion};
 use crate::geometry::Surface;
-use crate::motion::{ModeShape, Motions, mode_shape};
+use crate::math::Vector;
+use crate::motion::{ModeShape, MotionError, Motions, mode_shape};
 use crate::observe::structure::{CoordinateName, StructureNames};
 use crate::structure::{BodyFrame, Structure};
+
+/// Axes by their names.
+const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// The structures of a case, one after another; `motions` then hand their bodies over to them.
 pub(crate) fn bodies<const D: usize>(
@@ -27,11 +31,16 @@ pub(crate) fn bodies<const D: usize>(
         let frame = frame(case, surface, body);
         let structure = Structure::<D>::of_case(case, data, frame)?;
         let read = |name: &str| folder::text(input, name);
-        let shape = |file: &str| mode_shape(file, &read).map(Arc::new);
-        let shapes: Vec<Arc<ModeShape<D>>> = data.modes.iter().map(|m| shape(&m.file)).collect::<Result<_, _>>()?;
+        let shape = |mode: &StructureMode| match &mode.table {
+            Some(table) => ModeShape::new(table).ok_or_else(|| MotionError::Crowded { file: mode.name.clone() }),
+            None => mode_shape(&mode.file, &read),
+        };
+        let shapes = data.modes.iter().map(|m| shape(m).map(Arc::new)).collect::<Result<Vec<_>, _>>()?;
         let first = all.last().map_or(0, |b| b.range().end);
         motions.free(body, body_motion(&structure, first, &shapes));
-        let attached = Attached::new(structure, body, frame.chord, first, shapes);
+        let probes: Vec<_> =
+            probes(case, body).map(|p| Vector::from_fn(|d| p.at.get(d).map_or(0.0, |x| x.0))).collect();
+        let attached = Attached::new(structure, body, frame.chord, first, shapes).with_probes(&probes);
         if matches!(case.time, Temporal::Steady(_)) && !attached.is_held() {
             return Err(unheld(&surface.bodies[body]));
         }
@@ -41,6 +50,11 @@ pub(crate) fn bodies<const D: usize>(
         motions.force_with(case.flow.units().solver_time(std::f64::consts::TAU / omega));
     }
     Ok(all)
+}
+
+/// Points of a body that moves in own modes whose displacements are told.
+fn probes(case: &Case, body: usize) -> impl Iterator<Item = &SolidProbe> {
+    case.bodies[body].solid.iter().flat_map(|solid| &solid.probes)
 }
 
 /// The structures in words.
@@ -54,7 +68,9 @@ pub(crate) fn described<const D: usize>(
         let structure = &attached.structure;
         let named =
             |k: usize| CoordinateName { name: structure.coordinates()[k].name.clone(), angle: structure.is_angle(k) };
-        let coordinates = (0..structure.len()).map(named).collect();
+        let axis = |name: &str, d: usize| CoordinateName { name: format!("{name}_{}", AXES[d]), angle: false };
+        let told = probes(case, attached.body).flat_map(|p| (0..D).map(move |d| axis(&p.name, d)));
+        let coordinates = (0..structure.len()).map(named).chain(told).collect();
         let names = StructureNames { body: surface.bodies[attached.body].clone(), coordinates, samples: false };
         let lines = structure.description(case, data, frame(case, surface, attached.body));
         Some(Described { names, lines })

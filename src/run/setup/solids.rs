@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::super::error::RunError;
 use super::super::monitor::Monitor;
 use super::super::record::Described;
-use super::super::solids::setup::{Built, build};
+use super::super::solids::setup::{Built, build, remembers};
 use crate::case::{Case, Temporal};
 use crate::coupling::solids::{Scales, SolidBody, Solids};
 use crate::motion::{Motions, SurfaceNet};
@@ -52,17 +52,6 @@ pub(crate) fn solids<const D: usize>(
         });
     }
     Ok(Some((Arc::new(solids), described)))
-}
-
-/// Refuses materials that remember where steps are implicit.
-fn remembers<const D: usize>(case: &Case, built: &Built<D>) -> Result<(), RunError> {
-    match built.structure.solid.remembers() && !matches!(case.time, Temporal::Explicit(_)) {
-        false => Ok(()),
-        true => Err(RunError::Solid {
-            what: "a material that remembers (plastic, viscoelastic, hypoelastic) marches in a gas with explicit steps alone".into(),
-            hint: "use `[time.explicit]`, or an elastic law: `linear`, `saint_venant_kirchhoff`, `neo_hookean`".into(),
-        }),
-    }
 }
 
 /// Body number `k` of the structure, which is body `number` of the case.

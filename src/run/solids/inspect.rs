@@ -50,8 +50,16 @@ pub fn inspect_structure(case: &Case, input: &Path) -> Result<SolidReport, RunEr
     }
 }
 
+/// What the bodies made of particles in a gas are; `None` where there are none.
+pub(in super::super) fn inspect_in_gas(case: &Case, input: &Path) -> Result<Option<SolidReport>, RunError> {
+    case.solids().next().is_some().then(|| inspect_structure(case, input)).transpose()
+}
+
 fn report<const D: usize>(case: &Case, input: &Path) -> Result<SolidReport, RunError> {
     let built = setup::build::<D>(case, input)?;
+    if case.has_gas() {
+        setup::remembers(case, &built)?;
+    }
     let structure = &built.structure;
     let (solid, n) = (&structure.solid, structure.solid.len());
     let still = vec![[0.0; D]; n];

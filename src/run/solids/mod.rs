@@ -3,6 +3,7 @@ pub(super) mod files;
 mod inspect;
 mod march;
 mod material;
+mod own_modes;
 mod record;
 pub(super) mod setup;
 mod summary;
@@ -19,7 +20,9 @@ use crate::geometry::dimension;
 use crate::observe::checkpoint;
 use crate::solid::modes::{Mode, Wanted, modes};
 
+pub(super) use inspect::inspect_in_gas;
 pub use inspect::{SolidReport, inspect_structure};
+pub(super) use own_modes::with_own_modes;
 pub use record::{ModeRow, ProbeRow, SolidLedger, SolidSummary};
 
 use files::Files;
@@ -38,10 +41,6 @@ pub(super) enum Ended {
 pub(super) fn supported(case: &Case) -> Result<(), RunError> {
     let any = |f: fn(&crate::case::Solid) -> bool| case.solids().any(|(_, _, s)| f(s));
     let asks = [
-        (
-            case.has_gas() && case.contact.is_some(),
-            "contact of bodies made of particles in a gas (`[contact]` beside `[flow]`)",
-        ),
         (
             any(|s| s.plane == crate::case::PlaneState::Axisymmetric),
             "axisymmetric bodies made of particles (`plane = \"axisymmetric\"`)",

@@ -487,3 +487,14 @@ fn velocities<const D: usize>(parts: &[Part<'_, D>], particles: &Particles<D>, o
     };
     (0..particles.len()).map(of).collect()
 }
+/// Refuses materials that remember where a gas leaves no steps to remember.
+pub(in super::super) fn remembers<const D: usize>(case: &Case, built: &Built<D>) -> Result<(), RunError> {
+    let marches = matches!(case.time, Temporal::Explicit(_) | Temporal::Dual(_));
+    if marches || !built.structure.solid.remembers() {
+        return Ok(());
+    }
+    Err(RunError::Solid {
+        what: "a material that remembers (plastic, viscoelastic, hypoelastic) has no steady and no periodic state by itself: in a gas it marches in time".into(),
+        hint: "use `[time.dual]` or `[time.explicit]`, or an elastic law: `linear`, `saint_venant_kirchhoff`, `neo_hookean`".into(),
+    })
+}

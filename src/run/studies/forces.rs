@@ -91,8 +91,21 @@ impl<'a, S: Marches<D>, const D: usize> SmallMotion<'a, S, D> {
         self.system.place(&Instant::formula(0.0, terms).with(coordinates), &mut self.frame);
         let mut du = vec![0.0; u.len()];
         self.system.rhs_with_boundary(&u, &mut self.work, &mut self.frame, &mut du);
-        let loads = self.system.exchange(&self.frame, &u, &mut self.work).map_or_else(Vec::new, |e| e.loads);
+        let loads = self.loads(&u);
         (du[self.system.gas_unknowns()].to_vec(), loads)
+    }
+
+    /// Generalised forces on all coordinates at the state `u`.
+    fn loads(&mut self, u: &[f64]) -> Vec<f64> {
+        let all = self.system.exchange(&self.frame, u, &mut self.work).map_or_else(Vec::new, |e| e.loads);
+        let mut rest = &all[..];
+        let mut own = Vec::with_capacity(self.columns.len());
+        for body in self.system.attached() {
+            let (loads, after) = rest.split_at(body.structure.len());
+            own.extend_from_slice(loads);
+            rest = &after[body.n_told()..];
+        }
+        own
     }
 
     /// ∂F/∂U v.
@@ -106,7 +119,7 @@ impl<'a, S: Marches<D>, const D: usize> SmallMotion<'a, S, D> {
             let mut u = self.state.clone();
             u[own.clone()].iter_mut().zip(v).for_each(|(u, v)| *u += sign * step * v);
             self.system.update_boundary_state(&u, &mut self.work, &mut self.frame);
-            self.system.exchange(&self.frame, &u, &mut self.work).map_or_else(Vec::new, |e| e.loads)
+            self.loads(&u)
         });
         sides[0].iter().zip(&sides[1]).map(|(a, b)| (a - b) / (2.0 * step)).collect()
     }
