@@ -4,7 +4,7 @@ use std::path::Path;
 use serde::Serialize;
 
 use super::super::error::RunError;
-use super::{setup, supported};
+use super::{balance, setup, supported};
 use crate::case::{Case, Temporal};
 use crate::geometry::dimension;
 use crate::solid::forces::State;
@@ -52,6 +52,9 @@ pub fn inspect_structure(case: &Case, input: &Path) -> Result<SolidReport, RunEr
 
 fn report<const D: usize>(case: &Case, input: &Path) -> Result<SolidReport, RunError> {
     let built = setup::build::<D>(case, input)?;
+    if let Temporal::Harmonics(plan) = &case.time {
+        balance::possible(&built, plan)?;
+    }
     let structure = &built.structure;
     let (solid, n) = (&structure.solid, structure.solid.len());
     let still = vec![[0.0; D]; n];
