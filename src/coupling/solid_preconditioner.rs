@@ -302,12 +302,9 @@ impl<const D: usize> SolidPreconditioner<D> {
                 }
             }
             if let Some(rubbed) = rubbed {
-                for part in 0..2 {
-                    let pulled = pulled(rubbed, &held, known.iter().map(|pair| pair[0][part]));
-                    x.iter_mut().zip(&pulled).for_each(|(x, p)| x[part] += p);
-                }
                 let elastic = damped.elastic([s, w]);
-                x.iter_mut().for_each(|x| *x = quotient(*x, elastic));
+                let [re, im] = [0, 1].map(|part| pulled(rubbed, &held, known.iter().map(|pair| pair[0][part])));
+                x.iter_mut().enumerate().for_each(|(k, x)| *x = quotient([x[0] + re[k], x[1] + im[k]], elastic));
             }
             factors.solve(&mut x);
             for k in 0..n {

@@ -12,9 +12,9 @@
 //!
 //! Damping in proportion to stiffness is that of Kelvin and Voigt in the axes of the body at rest: the second stress of Piola and
 //! Kirchhoff gains β C₀ : Ė with the rate of Green's strain and the elastic moduli C₀ at rest, and the residuals of velocity
-//! c = β α μ V D/n. About the body at rest this is Rayleigh's −β K v. It is symmetric, so that angular momentum stays, does nothing to a
-//! motion without strain, and takes β Ė : C₀ : Ė ≥ 0 (Holzapfel 2000, *Nonlinear Solid Mechanics*, section 6.10; Bathe 2014,
-//! *Finite Element Procedures*, section 9.3.3).
+//! c = β α μ V D/n. About the body at rest this is Rayleigh's −β K v. The stress is symmetric, so that angular momentum stays, does nothing
+//! to a motion without strain, and takes β Ė : C₀ : Ė ≥ 0 (Holzapfel 2000, *Nonlinear Solid Mechanics*, section 6.10; Bathe 2014,
+//! *Finite Element Procedures*, section 9.3.3). What the residuals of velocity damp brakes zigzag displacements that turn, too.
 use multiversion::multiversion;
 
 use super::body::{Action, Plane, Solid};

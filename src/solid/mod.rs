@@ -16,8 +16,6 @@ mod stiffness;
 pub mod system;
 #[cfg(test)]
 mod tests;
-#[cfg(test)]
-mod vibration_tests;
 mod weigh;
 
 pub use body::{Action, Contact, Damping, Load, Parts, Plane, RigidPlane, Solid, Support};

@@ -1,4 +1,7 @@
 //! Structures of particles as systems: M u″ = f(t, u, u′, history).
+#[cfg(test)]
+mod tests;
+
 use super::body::Solid;
 use super::forces::{State, Tangents, Work};
 use crate::math::sparse::Symmetric;

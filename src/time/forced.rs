@@ -183,7 +183,7 @@ impl<'v, 'a, S: Mechanical> Forced<'v, 'a, S> {
         self.place.within += 1;
         if before.left <= NOTHING {
             self.passed();
-            return Ok(Told { residual: 0.0, taken: 1.0 });
+            return Ok(Told { residual: NOTHING, taken: 1.0 });
         }
         let mut step = vec![0.0; u.len()];
         let (vibration, mut image) = (&mut *self.vibration, vec![0.0; u.len()]);

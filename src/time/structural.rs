@@ -302,7 +302,7 @@ impl<S: Mechanical> Integrator<S> for GeneralisedAlpha<'_, S> {
         const HALVED: u32 = 10;
         let left = self.plan.until - self.past.time;
         // what round-off leaves of the time is no step of its own
-        let mut step = if left < self.plan.step * (1.0 + 1e-9) { left } else { self.plan.step };
+        let mut step = if left < self.plan.step * (1.0 + 1e-6) { left } else { self.plan.step };
         for halved in 0..=HALVED {
             let end = if step == left { self.plan.until } else { self.past.time + step };
             match self.step(step, end) {

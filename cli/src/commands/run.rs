@@ -125,7 +125,7 @@ fn describe_structure(s: &SolidSummary, out: &Path) -> String {
     if let Some(p) = &s.periodic {
         let tail = p.tail.map(|t| format!(", the last of which is {:.2} % of all", 100.0 * t)).unwrap_or_default();
         lines.push(format!(
-            "periodic motion at {:.6} Hz: {} harmonics{tail}; {} iterations, {} linear ones",
+            "periodic motion at {:.6} Hz: harmonics 1 to {}{tail}; {} iterations, {} linear ones",
             p.frequency, p.harmonics, p.iterations, p.linear
         ));
     }

@@ -26,15 +26,7 @@ pub(super) fn summary<const D: usize>(study: &Study<'_, D>, ending: &Ending<'_>)
         Temporal::Harmonics(_) => "periodic",
         _ => "march",
     };
-    let mut warnings = built.warnings.clone();
-    if marched.halved > 0 {
-        warnings.push(format!("steps were halved {} times, where Newton's method did not get on", marched.halved));
-    }
-    if let (Temporal::Harmonics(plan), Some((row, _))) = (&study.case.time, &marched.periodic)
-        && let Some(tail) = row.tail.filter(|t| *t > plan.tail)
-    {
-        warnings.push(format!("the last harmonic is {:.1} % of all: more are needed (`time.harmonics`)", 100.0 * tail));
-    }
+    let mut warnings = doubts(study, marched);
     let ledger = marched.rows.first().zip(marched.rows.last()).map(|(first, last)| ledger(first, last));
     let open = ledger.as_ref().filter(|_| ["march", "periodic"].contains(&name)).map_or(0.0, |l| l.open.abs());
     if open > DOUBTFUL {
@@ -77,4 +69,18 @@ pub(super) fn summary<const D: usize>(study: &Study<'_, D>, ending: &Ending<'_>)
         wall_seconds: ending.clock.wall_seconds(),
         warnings,
     }
+}
+
+/// What makes results doubtful, but the ledger.
+fn doubts<const D: usize>(study: &Study<'_, D>, marched: &Marched) -> Vec<String> {
+    let mut warnings = study.built.warnings.clone();
+    if marched.halved > 0 {
+        warnings.push(format!("steps were halved {} times, where Newton's method did not get on", marched.halved));
+    }
+    if let (Temporal::Harmonics(plan), Some((row, _))) = (&study.case.time, &marched.periodic)
+        && let Some(tail) = row.tail.filter(|t| *t > plan.tail)
+    {
+        warnings.push(format!("the last harmonic is {:.1} % of all: more are needed (`time.harmonics`)", 100.0 * tail));
+    }
+    warnings
 }
