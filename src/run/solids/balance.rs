@@ -6,7 +6,7 @@ use serde_json::json;
 use super::super::error::RunError;
 use super::super::monitor::{Monitor, Tick};
 use super::super::record::saved;
-use super::march::{Marched, Study};
+use super::march::{Marched, Study, Waves};
 use super::record::{PeriodicRow, ProbeHarmonic, Row, Work};
 use super::setup::Built;
 use crate::case::{HarmonicCount, Harmonics};
@@ -22,6 +22,8 @@ use crate::time::vibration::{Motion, Periodic, Vibration};
 /// Rows of `history.csv`, at least, and for each harmonic.
 const ROWS: usize = 128;
 const ROWS_OF_HARMONIC: usize = 32;
+/// Harmonics of `number = "auto"` at first.
+const FIRST: usize = 3;
 
 /// Refuses structures whose periodic motion is not found.
 pub(super) fn possible<const D: usize>(built: &Built<D>, plan: &Harmonics) -> Result<(), RunError> {
@@ -85,7 +87,8 @@ impl<'s, const D: usize> Balance<'s, '_, D> {
         let now = held.harmonics();
         let next = match self.plan.number {
             HarmonicCount::Fixed(n) => n as usize,
-            HarmonicCount::Auto(_) if now == 0 => 1,
+            // bending that stretches does so twice a period
+            HarmonicCount::Auto(_) if now == 0 => FIRST.min(self.plan.most.max(1) as usize),
             HarmonicCount::Auto(_) if tail.is_some_and(|t| t <= self.plan.tail) => now,
             HarmonicCount::Auto(_) => (now + 2).min(self.plan.most.max(1) as usize),
         };
@@ -226,12 +229,7 @@ impl<'s, const D: usize> Balance<'s, '_, D> {
     }
 
     /// Mean and harmonics of the probes.
-    fn probes(
-        &self,
-        vibration: &Vibration<'_, Structure<D>>,
-        held: Instances,
-        u: &[f64],
-    ) -> Vec<(Vec<f64>, Vec<ProbeHarmonic>)> {
+    fn probes(&self, vibration: &Vibration<'_, Structure<D>>, held: Instances, u: &[f64]) -> Vec<Waves> {
         let structure = &self.study.built.structure;
         let at = |n: usize| {
             let state = self.state(&vibration.at_phase(u, TAU * n as f64 / held.count() as f64));
@@ -334,12 +332,11 @@ impl<'s, const D: usize> Balance<'s, '_, D> {
         }
         let parts = saved.f64("parts")?;
         let [reached, sought, first] = parts[..] else { return Err(untrue("its parts are broken")) };
-        let mut lists = ["state", "last_good", "start"].map(|name| saved.f64(name).map(<[f64]>::to_vec));
-        let [u, last_good, start] = lists.each_mut().map(|list| std::mem::replace(list, Ok(Vec::new())));
+        let list = |name: &str| saved.f64(name).map(<[f64]>::to_vec);
         let place = Place {
-            u: u?,
-            last_good: last_good?,
-            start: start?,
+            u: list("state")?,
+            last_good: list("last_good")?,
+            start: list("start")?,
             reached,
             sought,
             first,

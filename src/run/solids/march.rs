@@ -31,6 +31,9 @@ pub(super) struct Study<'a, const D: usize> {
     pub(super) files: &'a Files<'a>,
 }
 
+/// Mean and harmonics of a probe.
+pub(super) type Waves = (Vec<f64>, Vec<ProbeHarmonic>);
+
 /// Where a march ended.
 pub(super) struct Marched {
     pub(super) state: Vec<f64>,
@@ -41,7 +44,7 @@ pub(super) struct Marched {
     pub(super) halved: u32,
     pub(super) residual: Option<f64>,
     /// Of a periodic motion: how it was found, and mean and harmonics of each probe.
-    pub(super) periodic: Option<(PeriodicRow, Vec<(Vec<f64>, Vec<ProbeHarmonic>)>)>,
+    pub(super) periodic: Option<(PeriodicRow, Vec<Waves>)>,
 }
 
 impl Marched {

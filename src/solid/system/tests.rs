@@ -127,7 +127,7 @@ fn load(amplitude: f64, omega: f64, particles: Vec<u32>) -> Load<2> {
     Load { areas, action: Action::Traction(Vector([0.0, amplitude])), history }
 }
 
-fn sought<'a>(structure: &'a Structure<2>, omega: f64, harmonics: usize) -> Vibration<'a, Structure<2>> {
+fn sought(structure: &Structure<2>, omega: f64, harmonics: usize) -> Vibration<'_, Structure<2>> {
     let held = Instances::of_harmonics(harmonics);
     let seen = Instances::of_harmonics(2 * harmonics);
     Vibration::new(structure, Periodic { omega, held, seen }, structure.solid.virgin())
