@@ -259,6 +259,17 @@ pub struct Moment<'a> {
     pub history: &'a [f64],
 }
 
+/// How a structure is damped: by α M + β K about the shape at rest, as far as that goes.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Damping {
+    /// α, in proportion to mass.
+    pub mass: f64,
+    /// β, in proportion to stiffness.
+    pub stiffness: f64,
+    /// False where there is none but in proportion to mass.
+    pub is_viscous: bool,
+}
+
 /// A system of second order, M u″ = f(t, u, u′, history): structures. Its state is displacements, as many velocities, and what
 /// materials remember, which grows with each step that is taken and not in between.
 pub trait Mechanical: System {
@@ -279,8 +290,10 @@ pub trait Mechanical: System {
     fn check_forces(&self, work: &Self::Work, displacement: &[f64]) -> Result<(), Fault>;
     /// The longest step for which explicit methods are stable.
     fn stable_step(&self, displacement: &[f64]) -> f64;
-    /// The stiffness at a moment.
-    fn linearise(&self, at: &Moment<'_>) -> Self::Stiffness;
+    /// `parts[0]` times the stiffness and `parts[1]` times the damping −∂f/∂u′ at a moment, without that in proportion to mass.
+    fn linearise(&self, at: &Moment<'_>, parts: [f64; 2]) -> Self::Stiffness;
+    /// How it is damped.
+    fn damping(&self) -> Damping;
     /// out = K w.
     fn stiffness(&self, stiffness: &Self::Stiffness, w: &[f64], work: &mut Self::Work, out: &mut [f64]);
     /// `scale` K + `shift` M among what is free, one for what is held.

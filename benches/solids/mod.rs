@@ -30,7 +30,7 @@ pub(crate) fn structure<const D: usize>(particles: Particles<D>, law: Law) -> St
         material: vec![0; n],
         plane: Plane::Strain,
         gravity: Vector::ZERO,
-        damping: Damping { stabilisation: 0.4, viscosity: 0.0, mass: 0.0 },
+        damping: Damping { stabilisation: 0.4, viscosity: 0.0, mass: 0.0, stiffness: 0.0 },
         supports: Vec::new(),
         loads: Vec::new(),
         contact: None,

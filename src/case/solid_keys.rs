@@ -72,7 +72,7 @@ pub(super) static SOLID: Table = Table::of(&[
         "stiffness_damping",
         Kind::Quantity(Time::DIMENSION, NOT_NEGATIVE),
         Absent::Number(0.0),
-        "Damping β in proportion to stiffness, stress β times the rate of the elastic one.",
+        "Damping β in proportion to stiffness: second Piola-Kirchhoff stress β C₀ : Ė, damping ratio βω/2 of small vibration.",
     ),
     Field::defaulted(
         "velocity",

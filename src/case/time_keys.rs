@@ -84,7 +84,8 @@ static HARMONICS: Table = Table::of(&[
             Kind::Number(Range { min: 0.0, max: 0.1, closed: false }),
             Absent::Number(1e-4),
             "Mean and harmonics of lift and moment must change by less than this part of the first harmonic: in the last \
-             iteration, or over five iterations when the residual has fallen by two orders only.",
+             iteration, or over five iterations when the residual has fallen by two orders only. Structures alone: \
+             part of the displacements that what is left may change.",
         ),
         Field::defaulted(
             "iterations",

@@ -1,7 +1,8 @@
 //! How the linear systems of bodies made of particles are solved.
 //!
 //! In time, with s = shift + c, the pairs (u, v) obey s u − v = r_u, s v + M⁻¹K u = r_v: (K + s²M) u = M (r_v + s r_u), v = s u − r_u, by
-//! Cholesky factors. In a periodic solution the same holds for every harmonic with s = shift + ikω. On the way to rest
+//! Cholesky factors. In a periodic solution the same holds for every harmonic with s = shift + ikω. With damping C = αM + βK it is
+//! ((1 + sβ)K + (s² + sα)M) u = M (r_v + (s + α) r_u) + βK r_u. On the way to rest
 //! (shift K₀ + ωK) u = K₀ r_u. Particles that are held have rates of their own.
 //!
 //! The stiffness of a periodic solution is one for all instances. Bodies that are led turn with what leads them: their instances are
@@ -13,17 +14,64 @@ use crate::math::Vector;
 use crate::math::fourier::Matrix;
 use crate::math::sparse::{ComplexFactors, Factors, Symmetric};
 use crate::motion::RigidPose;
-use crate::system::{Period, Placed, RightHandSide, Shift};
+use crate::system::{Mechanical, Period, Placed, RightHandSide, Shift};
 
 enum Inverse {
     /// Nothing is known yet, or no matrix could be factored.
     Diagonal,
-    Real(Factors),
+    Real {
+        factors: Factors,
+        rubbed: Option<Symmetric>,
+    },
     Rest {
         factors: Factors,
         reference: Symmetric,
     },
-    Harmonics(Vec<ComplexFactors>),
+    Harmonics {
+        factors: Vec<ComplexFactors>,
+        rubbed: Option<Symmetric>,
+    },
+}
+
+/// α and β of the damping of a structure, in units of the gas.
+#[derive(Clone, Copy)]
+struct Damped {
+    mass: f64,
+    stiffness: f64,
+}
+
+impl Damped {
+    fn of<const D: usize>(solids: &Solids<D>) -> Self {
+        let damping = solids.structure.damping();
+        Self { mass: damping.mass / solids.scales.speed, stiffness: damping.stiffness * solids.scales.speed }
+    }
+
+    /// βK, where there is damping in proportion to stiffness.
+    fn rubbed(self, stiffness: &Symmetric) -> Option<Symmetric> {
+        let times = |k: &f64| self.stiffness * k;
+        let all = || Symmetric { value: stiffness.value.iter().map(times).collect(), ..stiffness.clone() };
+        (self.stiffness > 0.0).then(all)
+    }
+
+    /// (s² + sα)/(1 + sβ) of a complex s.
+    fn inertia(self, s: [f64; 2]) -> [f64; 2] {
+        let square = product(s, [s[0] + self.mass, s[1]]);
+        quotient(square, self.elastic(s))
+    }
+
+    /// 1 + sβ.
+    fn elastic(self, s: [f64; 2]) -> [f64; 2] {
+        [1.0 + self.stiffness * s[0], self.stiffness * s[1]]
+    }
+}
+
+fn product(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
+    [a[0] * b[0] - a[1] * b[1], a[0] * b[1] + a[1] * b[0]]
+}
+
+fn quotient(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
+    let size = b[0] * b[0] + b[1] * b[1];
+    [(a[0] * b[0] + a[1] * b[1]) / size, (a[1] * b[0] - a[0] * b[1]) / size]
 }
 
 /// The preconditioner of bodies made of particles.
@@ -95,7 +143,7 @@ impl<const D: usize> SolidPreconditioner<D> {
         let solids = Arc::clone(&self.solids);
         (self.shift, self.coefficient) = (shift.of(row), shift.coefficient);
         let mass = solids.scales.speed * solids.scales.speed;
-        let (t, s) = ((self.time, self.step), self.shift);
+        let (t, s, damped) = ((self.time, self.step), self.shift, Damped::of(&solids));
         self.inverse = match (self.pace, &self.period) {
             (Pace::Held, _) => Inverse::Diagonal,
             (Pace::Steady, _) => {
@@ -108,15 +156,21 @@ impl<const D: usize> SolidPreconditioner<D> {
                     None => Inverse::Diagonal,
                 }
             }
-            (Pace::Marching, None) => match solids.stiffness(&self.work, t, (1.0, s * s * mass)).factor() {
-                Some(factors) => Inverse::Real(factors),
-                None => Inverse::Diagonal,
-            },
+            (Pace::Marching, None) => {
+                let [inertia, _] = damped.inertia([s, 0.0]);
+                let stiffness = solids.stiffness(&self.work, t, (1.0, inertia * mass));
+                // without that of inertia, where it is wanted
+                let elastic = || solids.stiffness(&self.work, t, (1.0, 0.0));
+                let rubbed = (damped.stiffness > 0.0).then(elastic).and_then(|k| damped.rubbed(&k));
+                match stiffness.factor() {
+                    Some(factors) => Inverse::Real { factors, rubbed },
+                    None => Inverse::Diagonal,
+                }
+            }
             (Pace::Marching, Some(period)) => {
                 let stiffness = solids.stiffness(&self.work, t, (1.0, 0.0));
                 let of = |k: usize| {
-                    let w = k as f64 * period.omega;
-                    let square = [mass * (s * s - w * w), 2.0 * mass * s * w];
+                    let square = damped.inertia([s, k as f64 * period.omega]).map(|z| mass * z);
                     let solid = &solids.structure.solid;
                     let entry = |(i, a): (usize, usize)| {
                         let free = f64::from(u8::from(!solid.is_held(i, a)));
@@ -127,7 +181,8 @@ impl<const D: usize> SolidPreconditioner<D> {
                     stiffness.factor_with(&diagonal)
                 };
                 let all: Option<Vec<ComplexFactors>> = (0..=period.instances.harmonics()).map(of).collect();
-                all.map_or(Inverse::Diagonal, Inverse::Harmonics)
+                let rubbed = damped.rubbed(&stiffness);
+                all.map_or(Inverse::Diagonal, |factors| Inverse::Harmonics { factors, rubbed })
             }
         };
     }
@@ -188,9 +243,16 @@ impl<const D: usize> SolidPreconditioner<D> {
         // ∂/∂t of what is held is on both sides
         let own = s + self.omega - self.coefficient;
         match &self.inverse {
-            Inverse::Real(factors) => {
-                let mut x: Vec<f64> =
-                    (0..all.len()).map(|k| if held(k) { 0.0 } else { mass(k) * (all[k][1] + s * all[k][0]) }).collect();
+            Inverse::Real { factors, rubbed } => {
+                let damped = Damped::of(solids);
+                let inertia = |k: usize| mass(k) * (all[k][1] + (s + damped.mass) * all[k][0]);
+                let mut x: Vec<f64> = (0..all.len()).map(|k| if held(k) { 0.0 } else { inertia(k) }).collect();
+                if let Some(rubbed) = rubbed {
+                    let pulled = pulled(rubbed, &held, all.iter().map(|pair| pair[0]));
+                    x.iter_mut().zip(&pulled).for_each(|(x, p)| *x += p);
+                }
+                let [elastic, _] = damped.elastic([s, 0.0]);
+                x.iter_mut().for_each(|x| *x /= elastic);
                 factors.solve(&mut x);
                 for (k, pair) in all.iter_mut().enumerate() {
                     *pair = if held(k) { pair.map(|r| r / own) } else { [x[k], s * x[k] - pair[0]] };
@@ -213,13 +275,13 @@ impl<const D: usize> SolidPreconditioner<D> {
     /// The pairs of all instances, harmonic by harmonic.
     fn solve_harmonics(&mut self, period: &Period, parts: &mut [Vec<[f64; 2]>]) {
         let (s, solids) = (self.shift, Arc::clone(&self.solids));
-        let Inverse::Harmonics(factors) = &mut self.inverse else {
+        let Inverse::Harmonics { factors, rubbed } = &mut self.inverse else {
             let part = s + self.omega;
             parts.iter_mut().flatten().for_each(|pair| *pair = pair.map(|r| r / part));
             return;
         };
         let (forward, back) = (period.instances.to_coefficients(), period.instances.to_values());
-        let (h, n) = (period.instances.harmonics(), parts[0].len());
+        let (h, n, damped) = (period.instances.harmonics(), parts[0].len(), Damped::of(&solids));
         let solid = &solids.structure.solid;
         let held = |k: usize| solid.is_held(k / D, k % D);
         let mass = |k: usize| solid.mass()[k / D] * solids.scales.speed * solids.scales.speed;
@@ -240,9 +302,15 @@ impl<const D: usize> SolidPreconditioner<D> {
                 let [u, v] = [complex(k, 0), complex(k, 1)];
                 known[k] = [u, v];
                 if !held(k) {
-                    // r_v + λ r_u
-                    x[k] = [mass(k) * (v[0] + s * u[0] - w * u[1]), mass(k) * (v[1] + s * u[1] + w * u[0])];
+                    // r_v + (λ + α) r_u
+                    let a = s + damped.mass;
+                    x[k] = [mass(k) * (v[0] + a * u[0] - w * u[1]), mass(k) * (v[1] + a * u[1] + w * u[0])];
                 }
+            }
+            if let Some(rubbed) = rubbed {
+                let elastic = damped.elastic([s, w]);
+                let [re, im] = [0, 1].map(|part| pulled(rubbed, &held, known.iter().map(|pair| pair[0][part])));
+                x.iter_mut().enumerate().for_each(|(k, x)| *x = quotient([x[0] + re[k], x[1] + im[k]], elastic));
             }
             factors.solve(&mut x);
             for k in 0..n {
@@ -267,12 +335,23 @@ impl<const D: usize> SolidPreconditioner<D> {
 
     pub(super) fn bytes(&self) -> usize {
         let n = self.work.displacement.len();
+        let matrix = |m: Option<&Symmetric>| m.map_or(0, |m| 16 * m.value.len());
         let factors = match &self.inverse {
             Inverse::Diagonal => 0,
-            Inverse::Real(f) => f.bytes(),
-            Inverse::Rest { factors, reference } => factors.bytes() + 16 * reference.value.len(),
-            Inverse::Harmonics(all) => all.iter().map(ComplexFactors::bytes).sum(),
+            Inverse::Real { factors, rubbed } => factors.bytes() + matrix(rubbed.as_ref()),
+            Inverse::Rest { factors, reference } => factors.bytes() + matrix(Some(reference)),
+            Inverse::Harmonics { factors, rubbed } => {
+                factors.iter().map(ComplexFactors::bytes).sum::<usize>() + matrix(rubbed.as_ref())
+            }
         };
         factors + 8 * n * D * 6
     }
+}
+
+/// βK r of what is free.
+fn pulled(rubbed: &Symmetric, held: &impl Fn(usize) -> bool, r: impl Iterator<Item = f64>) -> Vec<f64> {
+    let free: Vec<f64> = r.enumerate().map(|(k, r)| if held(k) { 0.0 } else { r }).collect();
+    let mut out = vec![0.0; free.len()];
+    rubbed.product(&free, &mut out);
+    out
 }

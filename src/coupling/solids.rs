@@ -146,8 +146,8 @@ impl<const D: usize> Solids<D> {
         let length = bodies.iter().map(extent).fold(f64::MIN_POSITIVE, f64::max);
         let velocity = vec![[0.0; D]; structure.solid.len()];
         let omega = 1.0 / length;
-        let still = vec![0.0; D * structure.solid.len()];
-        let brisk = omega.max((omega / (structure.stable_step(&still) * scales.speed)).sqrt());
+        let still = vec![[0.0; D]; structure.solid.len()];
+        let brisk = omega.max((omega / (structure.solid.undamped_step(&still) * scales.speed)).sqrt());
         Self { structure, bodies, scales, omega, brisk, length, velocity, first, reference: OnceLock::new() }
     }
 
@@ -435,7 +435,7 @@ impl<const D: usize> Solids<D> {
             velocity: work.velocity.as_flattened(),
             history: &work.history,
         };
-        self.structure.matrix(&self.structure.linearise(&at), scale, shift)
+        self.structure.matrix(&self.structure.linearise(&at, [1.0, 0.0]), scale, shift)
     }
 
     /// Energies of the state in `work`, in units of the gas.

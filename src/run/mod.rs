@@ -58,7 +58,9 @@ pub use record::polar::PolarPoint;
 pub use record::summary::{Apart, BalanceReport, Ledger, MarchingCheck, Reclouding, Summary};
 pub use record::trace::{Change, FirstHarmonics, LastPeriod, PeriodicLoads};
 pub use session::{Outcome, Session, Solution};
-pub use solids::{ModeRow, ProbeRow, SolidLedger, SolidReport, SolidSummary, inspect_structure};
+pub use solids::{
+    ModeRow, PeriodicRow, ProbeHarmonic, ProbeRow, SolidLedger, SolidReport, SolidSummary, inspect_structure,
+};
 pub use understood::{BodyBox, ReferenceValues, Understood};
 
 use record::saved::{Saved, equations_of};

@@ -78,6 +78,8 @@ pub struct Damping {
     pub viscosity: f64,
     /// Rate of decay in proportion to mass, 1/s.
     pub mass: f64,
+    /// Damping in proportion to stiffness, s: stress of the rate of strain over that of the strain.
+    pub stiffness: f64,
 }
 
 /// A structure of particles, one or several bodies, which do not see one another: its parts, and what follows from them.
@@ -91,12 +93,12 @@ pub struct Solid<const D: usize> {
     pub(super) held: Vec<u8>,
     /// V times the number of dimensions over the number of neighbours: weight of the residuals around each particle.
     pub(super) weight: Vec<f64>,
-    /// c of the residuals of velocity, β ρ c_p h times that weight.
+    /// c of the residuals of velocity, β ρ c_p h times that weight, and what is damped in proportion to stiffness.
     pub(super) viscous: Vec<f64>,
     /// Numbers of history of a particle.
     pub(super) width: usize,
-    /// The longest stable step over the least h/c, once it is known.
-    pub(super) factor: OnceLock<f64>,
+    /// The longest stable step over the least h/c, and that without damping, once they are known.
+    pub(super) factor: OnceLock<[f64; 2]>,
 }
 
 impl<const D: usize> std::fmt::Debug for Solid<D> {
@@ -176,7 +178,8 @@ impl<const D: usize> Solid<D> {
         let weight: Vec<f64> = (0..n).map(|i| particles.volume[i] * D as f64 / particles.of(i).len() as f64).collect();
         let viscous = |i: usize| {
             let impedance = material(i).density * material(i).pressure_wave_speed();
-            parts.damping.viscosity * impedance * h[i] * weight[i]
+            let stiff = parts.damping.stiffness * parts.damping.stabilisation * material(i).moduli.shear;
+            (parts.damping.viscosity * impedance * h[i] + stiff) * weight[i]
         };
         let mut held = vec![0u8; n];
         for support in &parts.supports {

@@ -9,17 +9,23 @@
 //! A_i of the displacement gradient leave, c = α μ V D/n: it holds the modes that fits do not see, and is nothing for
 //! uniform deformation. As A_i makes the inner sum least, its change with A_i is no force. The same sum over velocities with
 //! c = β ρ c_p h V D/n damps these modes.
+//!
+//! Damping in proportion to stiffness is that of Kelvin and Voigt in the axes of the body at rest: the second stress of Piola and
+//! Kirchhoff gains β C₀ : Ė with the rate of Green's strain and the elastic moduli C₀ at rest, and the residuals of velocity
+//! c = β α μ V D/n. About the body at rest this is Rayleigh's −β K v. The stress is symmetric, so that angular momentum stays, does nothing
+//! to a motion without strain, and takes β Ė : C₀ : Ė ≥ 0 (Holzapfel 2000, *Nonlinear Solid Mechanics*, section 6.10; Bathe 2014,
+//! *Finite Element Procedures*, section 9.3.3). What the residuals of velocity damp brakes zigzag displacements that turn, too.
 use multiversion::multiversion;
 
 use super::body::{Action, Plane, Solid};
 use super::pairs::{self, Pulling, Stressed, gradients, plain_gradient};
 use super::particles::Edge;
-use super::rows::{Columns, columns, row};
+use super::rows::{Columns, ZERO, columns, row};
 use crate::math::Vector;
 use crate::math::least_squares::smallest_eigenvalue;
 use crate::math::sweep::{CHUNK, first, maximum, parts, sum, sweep, sweep_parts, sweep_slots, sweep_two_parts};
 use crate::physics::solid::tensor::{determinant, product_transposed};
-use crate::physics::solid::{Dual, MOST_HISTORY, Material, Response, Tensor, plane_stress};
+use crate::physics::solid::{Dual, Law, MOST_HISTORY, Material, Moduli, Response, Tensor, plane_stress};
 use crate::system::Fault;
 
 /// A square matrix: rows are components, columns axes of the body at rest.
@@ -135,12 +141,43 @@ impl<const D: usize> Solid<D> {
         });
         let stiff = self.stiffening(i, material, old);
         let mut smooth = plain.map(|column| column.map(|a| a * stiff));
+        let mut stress: Columns<D> = std::array::from_fn(|b| row::<D>(&std::array::from_fn(|a| stress[a][b])));
         if self.is_viscous() {
-            let rate = plain_gradient(self, i, |j| row(&state.velocity[j]));
+            let (full, rate) = self.rate_of(i, state.velocity);
             (0..D).for_each(|b| (0..D).for_each(|a| smooth[b][a] += self.viscous[i] * rate[b][a]));
+            if self.damping.stiffness > 0.0 {
+                let damped = self.damping_stress(material, &f, &full);
+                (0..D).for_each(|b| (0..D).for_each(|a| stress[b][a] += damped[b][a]));
+            }
         }
-        let stress = std::array::from_fn(|b| row::<D>(&std::array::from_fn(|a| stress[a][b])));
         Stressed { stress, smooth, stiff, volume: determinant(&f) }
+    }
+
+    /// The gradients of velocities around a particle: consistent where that is asked for, and of the plain fit.
+    #[inline(always)]
+    fn rate_of(&self, i: usize, v: &[[f64; D]]) -> (Columns<D>, Columns<D>) {
+        match self.damping.stiffness > 0.0 {
+            true => gradients(self, i, |j| row(&v[j])),
+            false => ([ZERO; D], plain_gradient(self, i, |j| row(&v[j]))),
+        }
+    }
+
+    /// The first stress of Piola and Kirchhoff of damping in proportion to stiffness, F β C₀ : Ė, where the displacement gradient
+    /// changes at `rate`; materials of small strains take F = 1.
+    #[inline(always)]
+    fn damping_stress(&self, material: &Material, f: &Tensor, rate: &Columns<D>) -> Columns<D> {
+        let small = matches!(material.law, Law::Linear);
+        let f = |a: usize, b: usize| if small { f64::from(u8::from(a == b)) } else { f[a][b] };
+        let Moduli { shear, bulk } = material.moduli;
+        let lame = bulk - 2.0 / 3.0 * shear;
+        let lame = if self.plane == Plane::Stress { 2.0 * lame * shear / (lame + 2.0 * shear) } else { lame };
+        let twice = |a: usize, b: usize| (0..D).map(|k| f(k, a) * rate[b][k] + rate[a][k] * f(k, b)).sum::<f64>();
+        let strain: Matrix<D> = std::array::from_fn(|a| std::array::from_fn(|b| 0.5 * twice(a, b)));
+        let widening: f64 = (0..D).map(|a| strain[a][a]).sum();
+        let beta = self.damping.stiffness;
+        let second =
+            |a: usize, b: usize| beta * (2.0 * shear * strain[a][b] + if a == b { lame * widening } else { 0.0 });
+        std::array::from_fn(|b| row::<D>(&std::array::from_fn(|a| (0..D).map(|k| f(a, k) * second(k, b)).sum())))
     }
 
     /// c of the residuals of displacement: what has yielded is held less.
@@ -159,9 +196,9 @@ impl<const D: usize> Solid<D> {
         self.damping.stabilisation * soft.min(1.0) * shear * self.weight[i]
     }
 
-    /// True where the residuals of velocity are damped.
-    fn is_viscous(&self) -> bool {
-        self.damping.viscosity > 0.0
+    /// True where forces depend on how velocities change from place to place.
+    pub(super) fn is_viscous(&self) -> bool {
+        self.damping.viscosity > 0.0 || self.damping.stiffness > 0.0
     }
 
     /// Forces on all particles: of stresses in `work`, stabilisation, gravity and loads.
@@ -214,21 +251,29 @@ impl<const D: usize> Solid<D> {
         Vector::from_fn(|a| (0..D).map(|b| cofactor(a, b) * area[b]).sum())
     }
 
-    /// What [`Self::stiffness`] needs of a state: the tangent of every particle.
-    pub fn linearise(&self, state: &State<'_, D>, tangents: &mut Tangents<D>) {
+    /// What [`Self::stiffness`] needs of a state, the tangent of every particle: `elastic` times that of the displacement and `viscous`
+    /// times that of the velocity, where damping in proportion to mass is left out.
+    pub fn linearise(&self, state: &State<'_, D>, [elastic, viscous]: [f64; 2], tangents: &mut Tangents<D>) {
+        let damped = viscous > 0.0 && self.damping.stiffness > 0.0;
         sweep_slots(&mut tangents.all, |i, t| {
             let f = self.deformation(i, state.displacement);
             let material = self.material_of(i);
             let old = self.history_of(state.history, i);
-            for a in 0..D {
-                for b in 0..D {
-                    let mut change = [[0.0; D]; D];
-                    change[a][b] = 1.0;
-                    t[a][b] = self.tangent(material, (&f, &change), (old, state.step));
+            for (a, b) in (0..D).flat_map(|a| (0..D).map(move |b| (a, b))) {
+                let mut change = [[0.0; D]; D];
+                change[a][b] = 1.0;
+                t[a][b] = match elastic > 0.0 {
+                    true => self.tangent(material, (&f, &change), (old, state.step)).map(|r| r.map(|t| elastic * t)),
+                    false => [[0.0; D]; D],
+                };
+                if damped {
+                    let rubbed = self.damping_stress(material, &f, &columns(&change));
+                    (0..D).for_each(|r| (0..D).for_each(|s| t[a][b][r][s] += viscous * rubbed[s][r]));
                 }
             }
         });
-        sweep(&mut tangents.stiff, |i| self.stiffening(i, self.material_of(i), self.history_of(state.history, i)));
+        let stiffening = |i| self.stiffening(i, self.material_of(i), self.history_of(state.history, i));
+        sweep(&mut tangents.stiff, |i| elastic * stiffening(i) + viscous * self.viscous[i]);
     }
 
     /// K w, what forces lose when particles are displaced by `w`; loads that follow the surface are left out.
@@ -295,9 +340,17 @@ impl<const D: usize> Solid<D> {
         }
         slowed
             + sum(self.len(), |i| {
-                let plain = plain_gradient(self, i, |j| row(&v[j]));
+                let (full, plain) = self.rate_of(i, v);
                 let left = |e: &Edge<D>| self.left(i, e, v, &plain);
-                self.viscous[i] * self.particles.of(i).iter().map(left).sum::<f64>()
+                let smoothed = self.viscous[i] * self.particles.of(i).iter().map(left).sum::<f64>();
+                if self.damping.stiffness == 0.0 {
+                    return smoothed;
+                }
+                let f = self.deformation(i, state.displacement);
+                let stress = self.damping_stress(self.material_of(i), &f, &full);
+                let power = |(a, b): (usize, usize)| stress[b][a] * full[b][a];
+                let all = (0..D).flat_map(|a| (0..D).map(move |b| (a, b)));
+                smoothed + self.particles.volume[i] * all.map(power).sum::<f64>()
             })
     }
 
@@ -380,11 +433,20 @@ impl<const D: usize> Solid<D> {
 
     /// The longest stable step of symplectic marching: that of the body at rest, less where it is compressed.
     pub fn stable_step(&self, u: &[[f64; D]]) -> f64 {
-        let fastest = maximum(self.len(), |i| {
+        self.step_factors()[0] / self.fastest(u)
+    }
+
+    /// The same if nothing were damped.
+    pub fn undamped_step(&self, u: &[[f64; D]]) -> f64 {
+        self.step_factors()[1] / self.fastest(u)
+    }
+
+    /// The most distances of particles that a wave passes in a unit of time.
+    fn fastest(&self, u: &[[f64; D]]) -> f64 {
+        maximum(self.len(), |i| {
             let speed = self.material_of(i).pressure_wave_speed();
             speed / (self.particles.spacing[i] * least_stretch(&self.deformation(i, u)))
-        });
-        self.step_factor() / fastest
+        })
     }
 }
 

@@ -57,8 +57,8 @@ pub fn modes<const D: usize>(structure: &Structure<D>, u: &[f64], wanted: &Wante
         return Err(NoModes::TooLarge { unknowns: n, most: structure.largest_factored() });
     }
     let at = Moment { time: 0.0, step: 0.0, displacement: &u[..n], velocity: &u[n..2 * n], history: &u[2 * n..] };
-    let stiffness = structure.linearise(&at);
-    let fastest = 1.0 / structure.stable_step(&u[..n]);
+    let stiffness = structure.linearise(&at, [1.0, 0.0]);
+    let fastest = 1.0 / structure.solid.undamped_step(u[..n].as_chunks().0);
     let shift = SHIFT * fastest * fastest;
     let factors = structure.matrix(&stiffness, 1.0, shift).factor().ok_or(NoModes::Buckled)?;
     let root: Vec<f64> = (0..n).map(|k| structure.mass(k).sqrt()).collect();

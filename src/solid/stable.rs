@@ -4,7 +4,7 @@
 //! what is critical (Belytschko, Liu & Moran 2000, *Nonlinear Finite Elements*, section 6.6.5). ω is found by power iteration: on a
 //! lattice it is 1.7 to 1.82 c/h, but a surface particle that stands badly may vibrate twice as fast.
 use super::body::Solid;
-use super::forces::{State, Tangents};
+use super::forces::State;
 use crate::math::Vector;
 use crate::math::sweep::{maximum, sum, sweep_slots};
 
@@ -13,33 +13,30 @@ const ITERATIONS: usize = 60;
 const ABOVE: f64 = 1.03;
 
 impl<const D: usize> Solid<D> {
-    /// The longest stable step of the undeformed structure over the least h/c of its particles.
-    pub(super) fn step_factor(&self) -> f64 {
+    /// The longest stable step of the undeformed structure over the least h/c of its particles, and that without damping.
+    pub(super) fn step_factors(&self) -> [f64; 2] {
         *self.factor.get_or_init(|| {
             let wave = maximum(self.len(), |i| self.material_of(i).pressure_wave_speed() / self.particles.spacing[i]);
             let still = vec![[0.0; D]; self.len()];
             let history = self.virgin();
             let state = State { time: 0.0, step: 0.0, displacement: &still, velocity: &still, history: &history };
             let (mut tangents, mut work) = (self.tangents(), self.work());
-            self.linearise(&state, &mut tangents);
+            self.linearise(&state, [1.0, 0.0], &mut tangents);
             let elastic = self.largest(|w, out| self.stiffness(&tangents, w, &mut work, out));
-            let viscous = self.largest_viscous();
+            let viscous = self.damping.mass
+                + match self.is_viscous() {
+                    true => {
+                        self.linearise(&state, [0.0, 1.0], &mut tangents);
+                        self.largest(|w, out| self.stiffness(&tangents, w, &mut work, out))
+                    }
+                    false => 0.0,
+                };
             let omega = (ABOVE * (elastic + self.fastest_contact())).sqrt();
             let damping = 0.5 * ABOVE * viscous / omega;
-            2.0 / omega * ((1.0 + damping * damping).sqrt() - damping) * wave
+            let undamped = 2.0 / omega * wave;
+            // √(1 + ξ²) − ξ, which round-off does not take away where ξ is large
+            [undamped / ((1.0 + damping * damping).sqrt() + damping), undamped]
         })
-    }
-
-    /// Largest eigenvalue of M⁻¹C of what damps velocities.
-    fn largest_viscous(&self) -> f64 {
-        let smoothed = if self.damping.viscosity > 0.0 {
-            let mut work = self.work();
-            let free = Tangents { all: vec![[[[[0.0; D]; D]; D]; D]; self.len()], stiff: self.viscous.clone() };
-            self.largest(|w, out| self.stiffness(&free, w, &mut work, out))
-        } else {
-            0.0
-        };
-        smoothed + self.damping.mass
     }
 
     /// Largest eigenvalue of M⁻¹A of what is free, by power iteration from noise.

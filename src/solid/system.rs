@@ -1,8 +1,11 @@
 //! Structures of particles as systems: M u″ = f(t, u, u′, history).
+#[cfg(test)]
+mod tests;
+
 use super::body::Solid;
 use super::forces::{State, Tangents, Work};
 use crate::math::sparse::Symmetric;
-use crate::system::{Fault, Field, Instant, Mechanical, Moment, System};
+use crate::system::{Damping, Fault, Field, Instant, Mechanical, Moment, System};
 
 /// Unknowns of the largest matrix that is factored, in the plane and in space: what a few seconds and a gigabyte suffice for.
 const FACTORED: [usize; 2] = [300_000, 45_000];
@@ -151,10 +154,15 @@ impl<const D: usize> Mechanical for Structure<D> {
         self.solid.stable_step(displacement.as_chunks().0)
     }
 
-    fn linearise(&self, at: &Moment<'_>) -> Tangents<D> {
+    fn linearise(&self, at: &Moment<'_>, parts: [f64; 2]) -> Tangents<D> {
         let mut tangents = self.solid.tangents();
-        self.solid.linearise(&moment(at), &mut tangents);
+        self.solid.linearise(&moment(at), parts, &mut tangents);
         tangents
+    }
+
+    fn damping(&self) -> Damping {
+        let damping = self.solid.damping;
+        Damping { mass: damping.mass, stiffness: damping.stiffness, is_viscous: self.solid.is_viscous() }
     }
 
     fn stiffness(&self, stiffness: &Tangents<D>, w: &[f64], work: &mut Work<D>, out: &mut [f64]) {

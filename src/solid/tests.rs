@@ -12,9 +12,13 @@ use crate::time::structural::{self, Equilibrium, GeneralisedAlpha, LoadPlan, New
 use crate::time::symplectic::{self, Symplectic};
 use crate::time::{Integrator, Memory, Past};
 
-const QUIET: Damping = Damping { stabilisation: 0.3, viscosity: 0.0, mass: 0.0 };
+const QUIET: Damping = Damping { stabilisation: 0.3, viscosity: 0.0, mass: 0.0, stiffness: 0.0 };
 
-fn parts<const D: usize>(lattice: &Lattice<D>, material: Material, held: impl Fn(&Vector<D>) -> bool) -> Parts<D> {
+pub(super) fn parts<const D: usize>(
+    lattice: &Lattice<D>,
+    material: Material,
+    held: impl Fn(&Vector<D>) -> bool,
+) -> Parts<D> {
     let particles = Particles::new(vec![lattice.fill()]).unwrap();
     let n = particles.len();
     let at_rest = (0..n as u32).filter(|i| held(&particles.x[*i as usize])).collect();
@@ -37,11 +41,11 @@ fn solid<const D: usize>(lattice: &Lattice<D>, material: Material, held: impl Fn
     Solid::new(parts(lattice, material, held))
 }
 
-fn rubber() -> Material {
+pub(super) fn rubber() -> Material {
     Material::new(1000.0, Moduli { shear: 1.0, bulk: 2.0 }, Law::NeoHookean)
 }
 
-fn lattice<const D: usize>(size: [f64; D], counts: [usize; D], jitter: f64) -> Lattice<D> {
+pub(super) fn lattice<const D: usize>(size: [f64; D], counts: [usize; D], jitter: f64) -> Lattice<D> {
     let corners = (0..1 << D).map(|k| Vector::from_fn(|d| if k >> d & 1 == 1 { size[d] } else { 0.0 })).collect();
     Lattice { corners, counts, jitter }
 }
@@ -89,8 +93,8 @@ fn the_matrix_is_the_product_and_the_product_is_the_derivative_of_forces() {
     let w: Vec<f64> = (0..n).map(|k| noise(k + 13, 1.0)).collect();
     let still = vec![0.0; n];
     let mut work = crate::system::System::work(&structure);
-    let stiffness =
-        structure.linearise(&Moment { time: 0.0, step: 0.0, displacement: &u, velocity: &still, history: &[] });
+    let stiffness = structure
+        .linearise(&Moment { time: 0.0, step: 0.0, displacement: &u, velocity: &still, history: &[] }, [1.0, 0.0]);
     let (mut product, mut assembled) = (vec![0.0; n], vec![0.0; n]);
     structure.stiffness(&stiffness, &w, &mut work, &mut product);
     structure.matrix(&stiffness, 1.0, 0.0).product(&w, &mut assembled);
@@ -130,7 +134,7 @@ fn frequencies_of_a_cantilever_are_those_of_plane_elasticity() {
     }
 }
 
-fn cantilever(through: usize, jitter: f64) -> Structure<2> {
+pub(super) fn cantilever(through: usize, jitter: f64) -> Structure<2> {
     let material =
         Material::new(1000.0, Moduli::of_young(3.0 * 3.25e6 * (1.0 - 2.0 * 0.3975), 0.3975), Law::NeoHookean);
     let lattice = lattice([0.2, 0.02], [10 * (through - 1) + 1, through], jitter);

@@ -2,6 +2,7 @@
 pub mod control;
 pub mod dual;
 pub mod explicit;
+pub mod forced;
 pub mod formula;
 pub mod full;
 pub mod harmonic;
@@ -12,6 +13,7 @@ mod preconditioning;
 pub mod relax;
 pub mod structural;
 pub mod symplectic;
+pub mod vibration;
 
 use crate::system::{Reach, System};
 use relax::Resume;

@@ -150,6 +150,16 @@ impl Weights {
         let gamma = 0.5 - mass + force;
         Self { mass, force, beta: 0.25 * (1.0 - mass + force).powi(2), gamma }
     }
+
+    /// What velocities at the end of a step gain with displacements there.
+    fn rate(self, step: f64) -> f64 {
+        self.gamma / (self.beta * step)
+    }
+
+    /// What multiplies the mass in Newton's equations, with damping in proportion to it.
+    fn shift(self, step: f64, damping: f64) -> f64 {
+        (1.0 - self.mass) / (self.beta * step * step) + (1.0 - self.force) * self.rate(step) * damping
+    }
 }
 
 impl<'a, S: Mechanical> GeneralisedAlpha<'a, S> {
@@ -225,13 +235,9 @@ impl<'a, S: Mechanical> GeneralisedAlpha<'a, S> {
             if iteration > 0 && (size <= self.plan.newton.tolerance * scale || spent) {
                 return self.accept(&u, (&v0, &a0), (step, end), w);
             }
-            let stiffness = system.linearise(&at);
-            let equations = Equations {
-                system,
-                stiffness: &stiffness,
-                scale: 1.0 - w.force,
-                shift: (1.0 - w.mass) / (w.beta * step * step),
-            };
+            let stiffness = system.linearise(&at, [1.0, w.rate(step)]);
+            let (scale, shift) = (1.0 - w.force, w.shift(step, system.damping().mass));
+            let equations = Equations { system, stiffness: &stiffness, scale, shift };
             let mut change = vec![0.0; n];
             let solved = self.solver.solve(&equations, (&mut change, &mut left), &mut self.work, 1e-6);
             let Some(linear) = solved else { break };
@@ -296,7 +302,7 @@ impl<S: Mechanical> Integrator<S> for GeneralisedAlpha<'_, S> {
         const HALVED: u32 = 10;
         let left = self.plan.until - self.past.time;
         // what round-off leaves of the time is no step of its own
-        let mut step = if left < self.plan.step * (1.0 + 1e-9) { left } else { self.plan.step };
+        let mut step = if left < self.plan.step * (1.0 + 1e-6) { left } else { self.plan.step };
         for halved in 0..=HALVED {
             let end = if step == left { self.plan.until } else { self.past.time + step };
             match self.step(step, end) {
@@ -395,7 +401,7 @@ impl<'a, S: Mechanical> Equilibrium<'a, S> {
                 self.u[2 * n..].copy_from_slice(&after);
                 return system.check(&self.frame, &self.u);
             }
-            let stiffness = system.linearise(&at);
+            let stiffness = system.linearise(&at, [1.0, 0.0]);
             let equations = Equations { system, stiffness: &stiffness, scale: 1.0, shift: 0.0 };
             let mut change = vec![0.0; n];
             self.solver.stale |= iteration > 0;

@@ -169,6 +169,10 @@ metrics! {
     ModeOmega = "mode_omega",
     /// Displacement of a probe of a structure alone at its end; `coordinate` names it and the axis, `A.y`.
     ProbeDisplacement = "probe_displacement",
+    /// Amplitude of a harmonic of a probe of a structure alone; `coordinate` names it, the axis and, but for the first, the harmonic, `A.y.3`.
+    ProbeAmplitude = "probe_amplitude",
+    /// Phase of the same, degrees ahead of cos kωt.
+    ProbePhase = "probe_phase",
     /// What is missing in the energies of a structure alone, over the largest of them.
     LedgerOpen = "ledger_open",
     /// Part of the drag coefficient that is due to wall pressure, where the gas has viscosity.

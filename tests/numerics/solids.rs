@@ -63,7 +63,7 @@ fn piston() -> Solids<2> {
         material: vec![0; n],
         plane: Plane::Strain,
         gravity: Vector::ZERO,
-        damping: Damping { stabilisation: 0.3, viscosity: 0.1, mass: 0.0 },
+        damping: Damping { stabilisation: 0.3, viscosity: 0.1, mass: 0.0, stiffness: 0.0 },
         supports: Vec::new(),
         loads: Vec::new(),
         contact: None,

@@ -122,6 +122,13 @@ fn describe_structure(s: &SolidSummary, out: &Path) -> String {
     if let Some(residual) = s.residual.filter(|_| s.study == "equilibrium") {
         lines.push(format!("equilibrium: forces are left to {residual:.0e} of the largest"));
     }
+    if let Some(p) = &s.periodic {
+        let tail = p.tail.map(|t| format!(", the last of which is {:.2} % of all", 100.0 * t)).unwrap_or_default();
+        lines.push(format!(
+            "periodic motion at {:.6} Hz: harmonics 1 to {}{tail}; {} iterations, {} linear ones",
+            p.frequency, p.harmonics, p.iterations, p.linear
+        ));
+    }
     if let Some(ledger) = s.ledger.filter(|_| s.study != "modes") {
         lines.push(format!(
             "energy: kinetic {:.4e}, strain {:.4e}, stabilisation {:.1e}, dissipated {:.4e}, damped {:.4e}, work {:.4e}; open by {:.1e}",
@@ -136,7 +143,16 @@ fn describe_structure(s: &SolidSummary, out: &Path) -> String {
     }
     for probe in s.probes.iter().filter(|p| !p.displacement.is_empty()) {
         let values: Vec<String> = probe.displacement.iter().map(|x| format!("{x:.6e}")).collect();
-        lines.push(format!("{} moved by ({})", probe.name, values.join(", ")));
+        if probe.harmonics.is_empty() {
+            lines.push(format!("{} moved by ({})", probe.name, values.join(", ")));
+            continue;
+        }
+        let mean: Vec<String> = probe.mean.iter().map(|x| format!("{x:.6e}")).collect();
+        lines.push(format!("{}: mean ({})", probe.name, mean.join(", ")));
+        for h in &probe.harmonics {
+            let waves = h.amplitude.iter().zip(&h.phase_deg).map(|(a, p)| format!("{a:.6e} at {p:.2} deg"));
+            lines.push(format!("{}: harmonic {} ({})", probe.name, h.harmonic, waves.collect::<Vec<_>>().join(", ")));
+        }
     }
     lines.push(format!("results in {}\n", out.display()));
     lines.join("\n")

@@ -101,6 +101,12 @@ fn time(draft: &mut Draft<'_>, gas: bool) {
         let hint = "use `[time.newmark]` with `step` and `until`";
         draft.fail_key("time.dual", "structures alone: `time.dual` is for cases with a gas").hint(hint);
     }
+    for key in ["march", "check"].map(|k| format!("time.harmonics.{k}")) {
+        if draft.number(&key).is_some_and(|periods| periods > 0.0) {
+            let hint = "remove it; `[time.newmark]` of a case of its own marches";
+            draft.fail(&key, format!("structures alone: `{key}` is for cases with a gas")).hint(hint);
+        }
+    }
     let given: Vec<bool> = ["frequency", "period"].map(|k| said(draft, &format!("harmonics.{k}"))).to_vec();
     if said(draft, "harmonics") && given[0] == given[1] {
         let message =

@@ -98,9 +98,11 @@ impl Measured {
             Metric::ThinForceAmplitude => self.thin(others, Self::force).map(|c| c.norm()),
             Metric::ThinForcePhase => self.thin(others, Self::force).map(|c| c.arg().to_degrees()),
             Metric::ResidualDrop => s.residual_drop.ok_or_else(|| "a march has a residual in each step".into()),
-            Metric::ModeOmega | Metric::ProbeDisplacement | Metric::LedgerOpen => {
-                Err("the case has a gas: this is measured of structures alone".into())
-            }
+            Metric::ModeOmega
+            | Metric::ProbeDisplacement
+            | Metric::ProbeAmplitude
+            | Metric::ProbePhase
+            | Metric::LedgerOpen => Err("the case has a gas: this is measured of structures alone".into()),
             Metric::Converged => Ok(f64::from(u8::from(s.succeeded()))),
             Metric::Particles => Ok(s.particles as f64),
             Metric::MassDrift => s.ledger.map(|l| l.mass.abs()).ok_or_else(no_ledger),

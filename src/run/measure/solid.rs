@@ -18,9 +18,32 @@ pub(in crate::run) fn value(s: &SolidSummary, claim: &Claim) -> Value {
             let axis = ["x", "y", "z"].iter().position(|a| *a == axis).ok_or("axes are x, y and z")?;
             probe.displacement.get(axis).copied().ok_or_else(|| "the probe has no such axis".into())
         }
+        Metric::ProbeAmplitude => wave(s, named?).map(|w| w[0]),
+        Metric::ProbePhase => wave(s, named?).map(|w| w[1]),
         Metric::LedgerOpen => s.ledger.map(|l| l.open.abs()).ok_or_else(|| "the run kept no ledger".into()),
         Metric::Converged => Ok(f64::from(u8::from(s.converged))),
         Metric::Particles => Ok(s.particles as f64),
         other => Err(format!("`{}` is not measured of structures alone", other.name())),
+    }
+}
+
+/// Amplitude and phase of a harmonic of a probe along an axis.
+fn wave(s: &SolidSummary, named: &str) -> Result<[f64; 2], String> {
+    let mut parts: Vec<&str> = named.split('.').collect();
+    let number = match parts.last().and_then(|last| last.parse::<usize>().ok()) {
+        Some(number) => {
+            parts.pop();
+            number
+        }
+        None => 1,
+    };
+    let axis = parts.pop().and_then(|axis| ["x", "y", "z"].iter().position(|a| *a == axis));
+    let axis = axis.ok_or("`coordinate` is a probe, an axis and a harmonic, `tip.y.3`")?;
+    let name = parts.join(".");
+    let probe = s.probes.iter().find(|p| p.name == name).ok_or("there is no probe of that name")?;
+    let wave = probe.harmonics.iter().find(|h| h.harmonic == number).ok_or("the probe has no such harmonic")?;
+    match (wave.amplitude.get(axis), wave.phase_deg.get(axis)) {
+        (Some(amplitude), Some(phase)) => Ok([*amplitude, *phase]),
+        _ => Err("the probe has no such axis".into()),
     }
 }

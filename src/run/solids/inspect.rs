@@ -4,7 +4,7 @@ use std::path::Path;
 use serde::Serialize;
 
 use super::super::error::RunError;
-use super::{setup, supported};
+use super::{balance, setup, supported};
 use crate::case::{Case, Temporal};
 use crate::geometry::dimension;
 use crate::solid::forces::State;
@@ -59,6 +59,8 @@ fn report<const D: usize>(case: &Case, input: &Path) -> Result<SolidReport, RunE
     let built = setup::build::<D>(case, input)?;
     if case.has_gas() {
         setup::remembers(case, &built)?;
+    } else if let Temporal::Harmonics(plan) = &case.time {
+        balance::possible(&built, plan)?;
     }
     let structure = &built.structure;
     let (solid, n) = (&structure.solid, structure.solid.len());

@@ -5,7 +5,7 @@ use super::super::error::RunError;
 use super::super::monitor::{MarchTick, Monitor, Tick};
 use super::super::record::saved;
 use super::files::Files;
-use super::record::{Row, Work};
+use super::record::{PeriodicRow, ProbeHarmonic, Row, Work};
 use super::setup::Built;
 use crate::case::{Case, Temporal};
 use crate::math::Vector;
@@ -31,6 +31,9 @@ pub(super) struct Study<'a, const D: usize> {
     pub(super) files: &'a Files<'a>,
 }
 
+/// Mean and harmonics of a probe.
+pub(super) type Waves = (Vec<f64>, Vec<ProbeHarmonic>);
+
 /// Where a march ended.
 pub(super) struct Marched {
     pub(super) state: Vec<f64>,
@@ -40,12 +43,23 @@ pub(super) struct Marched {
     pub(super) stopped: bool,
     pub(super) halved: u32,
     pub(super) residual: Option<f64>,
+    /// Of a periodic motion: how it was found, and mean and harmonics of each probe.
+    pub(super) periodic: Option<(PeriodicRow, Vec<Waves>)>,
 }
 
 impl Marched {
     /// A structure that stays where it is.
     pub(super) fn at_rest<const D: usize>(_: &Built<D>, state: Vec<f64>) -> Self {
-        Self { state, time: 0.0, iteration: 0, rows: Vec::new(), stopped: false, halved: 0, residual: None }
+        Self {
+            state,
+            time: 0.0,
+            iteration: 0,
+            rows: Vec::new(),
+            stopped: false,
+            halved: 0,
+            residual: None,
+            periodic: None,
+        }
     }
 }
 
@@ -137,6 +151,7 @@ impl<const D: usize> Study<'_, D> {
             stopped,
             halved: cost.halved,
             residual,
+            periodic: None,
         }
     }
 
@@ -223,6 +238,12 @@ impl<const D: usize> Study<'_, D> {
     fn row(&self, integrator: &mut (dyn Integrator<Structure<D>> + '_), work: &Work) -> Row {
         let mark = integrator.mark();
         let state = self.state(mark.time, integrator.standing().state);
+        let (energy, probes) = (self.structure().solid.energy(&state), self.probes(&state));
+        Row { step: mark.iteration, time: mark.time, energy, work: *work, probes }
+    }
+
+    /// Displacements of the probes.
+    pub(super) fn probes(&self, state: &State<'_, D>) -> Vec<[f64; 3]> {
         let solid = &self.structure().solid;
         let probe = |(_, i, at): &(String, usize, Vector<D>)| {
             let f = solid.deformation(*i, state.displacement);
@@ -235,8 +256,7 @@ impl<const D: usize> Study<'_, D> {
                 false => 0.0,
             })
         };
-        let probes = self.built.probes.iter().map(probe).collect();
-        Row { step: mark.iteration, time: mark.time, energy: solid.energy(&state), work: *work, probes }
+        self.built.probes.iter().map(probe).collect()
     }
 
     /// A field file at times that the case asks for.

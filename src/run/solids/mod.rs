@@ -1,4 +1,5 @@
 //! Structures of particles alone: equilibrium, marching and natural modes, without a gas.
+mod balance;
 pub(super) mod files;
 mod inspect;
 mod march;
@@ -23,7 +24,7 @@ use crate::solid::modes::{Mode, Wanted, modes};
 pub(super) use inspect::inspect_in_gas;
 pub use inspect::{SolidReport, inspect_structure};
 pub(super) use own_modes::with_own_modes;
-pub use record::{ModeRow, ProbeRow, SolidLedger, SolidSummary};
+pub use record::{ModeRow, PeriodicRow, ProbeHarmonic, ProbeRow, SolidLedger, SolidSummary};
 
 use files::Files;
 use march::{Marched, Study};
@@ -45,11 +46,7 @@ pub(super) fn supported(case: &Case) -> Result<(), RunError> {
             any(|s| s.plane == crate::case::PlaneState::Axisymmetric),
             "axisymmetric bodies made of particles (`plane = \"axisymmetric\"`)",
         ),
-        (any(|s| s.stiffness_damping.0 > 0.0), "damping in proportion to stiffness (`stiffness_damping`)"),
-        (
-            !case.has_gas() && matches!(case.time, Temporal::Harmonics(_)),
-            "harmonic balance of structures alone (`[time.harmonics]` without `[flow]`)",
-        ),
+        (differ(case), "bodies with different `damping` or `stiffness_damping`"),
         (
             case.contact.is_some() && !matches!(case.time, Temporal::Explicit(_)),
             "contact in other than explicit marches (`[contact]` needs `[time.explicit]`)",
@@ -62,6 +59,13 @@ pub(super) fn supported(case: &Case) -> Result<(), RunError> {
             hint: "leave it out",
         }),
     }
+}
+
+/// True where one body is damped in another way than the others.
+fn differ(case: &Case) -> bool {
+    let mut all = case.solids().map(|(_, _, s)| (s.damping.0, s.stiffness_damping.0));
+    let first = all.next();
+    all.any(|d| Some(d) != first)
 }
 
 /// Refuses what is computed of a gas where there is none.
@@ -112,6 +116,7 @@ fn study<const D: usize>(job: &Job<'_>, monitor: &mut dyn Monitor) -> Result<End
     let study = Study { case, built: &built, files: &files };
     let marched = match &case.time {
         Temporal::Modes(plan) if !plan.preload => Marched::at_rest(&built, start),
+        Temporal::Harmonics(plan) => balance::solve(&study, plan, saved, monitor)?,
         _ => study.march(start, saved, monitor)?,
     };
     if marched.stopped {
@@ -119,7 +124,7 @@ fn study<const D: usize>(job: &Job<'_>, monitor: &mut dyn Monitor) -> Result<End
     }
     let found = match &case.time {
         Temporal::Modes(plan) => {
-            let above = plan.shift.map_or(0.0, |f| std::f64::consts::TAU * f.0);
+            let above = plan.shift.map_or(0.0, |f| f.0);
             let wanted = Wanted { count: plan.number as usize, above };
             modes(&built.structure, &marched.state, &wanted)
                 .map_err(|e| RunError::Solid { what: e.to_string(), hint: "see the guide `structures`".into() })?

@@ -79,7 +79,7 @@ fn as_data<const D: usize>(built: &Built<D>, points: &[usize], (k, mode): (usize
         let one = |i: usize| Vector(v(i)).dot(&Vector(shape[i])) * solid.mass()[i];
         (0..solid.len()).map(one).sum()
     };
-    let (mass, omega) = (mode.generalised_mass, mode.omega);
+    let (mass, omega, damping) = (mode.generalised_mass, mode.omega, &solid.damping);
     let weight = along(&|_| solid.gravity.0);
     let raised = |v: &[f64]| -> [f64; 3] { std::array::from_fn(|a| v.get(a).copied().unwrap_or(0.0)) };
     StructureMode {
@@ -89,7 +89,7 @@ fn as_data<const D: usize>(built: &Built<D>, points: &[usize], (k, mode): (usize
         frequency: None,
         reduced_frequency: None,
         stiffness: Some(mass * omega * omega),
-        damping_ratio: if omega > 0.0 { solid.damping.mass / (2.0 * omega) } else { 0.0 },
+        damping_ratio: if omega > 0.0 { 0.5 * (damping.mass / omega + damping.stiffness * omega) } else { 0.0 },
         cubic: 0.0,
         free_play: 0.0,
         initial: 0.0,

@@ -32,7 +32,7 @@ pub struct SolidSummary {
     pub event: &'static str,
     /// Title of the case.
     pub title: String,
-    /// `equilibrium`, `march` or `modes`.
+    /// `equilibrium`, `march`, `modes` or `periodic`.
     pub study: &'static str,
     /// True where it came to its end.
     pub converged: bool,
@@ -52,7 +52,10 @@ pub struct SolidSummary {
     pub time: f64,
     /// Largest force that equilibrium left over the largest there is; absent elsewhere.
     pub residual: Option<f64>,
-    /// Energies at the end, and what closes.
+    /// What was found of a periodic motion; absent elsewhere.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub periodic: Option<PeriodicRow>,
+    /// Energies at the end, and what closes; of a periodic motion work and damping are those of one period.
     pub ledger: Option<SolidLedger>,
     /// Displacements of probes at the end.
     pub probes: Vec<ProbeRow>,
@@ -94,8 +97,42 @@ pub struct SolidLedger {
 pub struct ProbeRow {
     /// Its name.
     pub name: String,
-    /// Its displacement.
+    /// Its displacement; that at the start of the period where the motion is periodic.
     pub displacement: Vec<f64>,
+    /// Its mean displacement where the motion is periodic.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub mean: Vec<f64>,
+    /// Its harmonics where the motion is periodic.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub harmonics: Vec<ProbeHarmonic>,
+}
+
+/// Harmonic k of the displacement of a probe: amplitude · cos(kωt + phase) along each axis.
+#[derive(Clone, Debug, Serialize)]
+pub struct ProbeHarmonic {
+    /// k.
+    pub harmonic: usize,
+    /// Amplitudes, m.
+    pub amplitude: Vec<f64>,
+    /// Phases, degrees.
+    pub phase_deg: Vec<f64>,
+}
+
+/// How a periodic motion was found.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct PeriodicRow {
+    /// Frequency, Hz.
+    pub frequency: f64,
+    /// Angular frequency, rad/s.
+    pub omega: f64,
+    /// Harmonics that are held.
+    pub harmonics: usize,
+    /// Part that the last harmonic has of all, by displacements weighed with masses; absent with a single one.
+    pub tail: Option<f64>,
+    /// Iterations of Newton's method.
+    pub iterations: u32,
+    /// Linear iterations.
+    pub linear: u32,
 }
 
 /// A natural mode.

@@ -75,7 +75,8 @@ pub(in crate::run) fn build<const D: usize>(case: &Case, input: &Path) -> Result
         particles.iterations
     ));
     let (materials, of) = materials(&parts, &particles, &owner)?;
-    let (supports, loads) = (supports(&parts, &particles, &owner)?, loads(&parts, &particles, &owner)?);
+    let omega = frequency(case);
+    let (supports, loads) = (supports(&parts, &particles, &owner, omega)?, loads(&parts, &particles, &owner, omega)?);
     let first = parts[0].data;
     let shocked =
         case.has_gas() || case.contact.is_some() || materials.iter().any(|m| matches!(m.law, Law::Plastic(_)));
@@ -94,6 +95,7 @@ pub(in crate::run) fn build<const D: usize>(case: &Case, input: &Path) -> Result
             stabilisation: first.stabilisation.unwrap_or(STABILISATION[D - 2]),
             viscosity: first.viscosity.unwrap_or(usual),
             mass: first.damping.0,
+            stiffness: first.stiffness_damping.0,
         },
         supports,
         loads,
@@ -355,15 +357,36 @@ fn empty<const D: usize>(what: &str, name: &str, particles: &Particles<D>, owner
     }
 }
 
-fn formula(text: &str) -> Result<Formula, RunError> {
-    Formula::parse(text)
-        .map_err(|e| RunError::Solid { what: format!("`{text}`: {e}"), hint: "write a formula in t".into() })
+/// A formula in time, as a function of it; `omega` is the angular frequency that it may name.
+fn formula(text: &str, omega: Option<f64>) -> Result<impl Fn(f64) -> f64 + Send + Sync + use<>, RunError> {
+    let formula = Formula::parse(text)
+        .map_err(|e| RunError::Solid { what: format!("`{text}`: {e}"), hint: "write a formula in t".into() })?;
+    if omega.is_none() && formula.contains(&Formula::Omega) {
+        return Err(RunError::Solid {
+            what: format!(
+                "`{text}` uses `omega`, but neither `[time.harmonics]` nor `[motion]` has a `frequency` or `period`"
+            ),
+            hint: "write the frequency as a number, `sin(2 * pi * 5 * t)`".into(),
+        });
+    }
+    let omega = omega.unwrap_or(0.0);
+    Ok(move |t| formula.value(t, omega))
+}
+
+/// The angular frequency that formulas in time may name.
+fn frequency(case: &Case) -> Option<f64> {
+    let of_motion = || {
+        let law = &case.motion.as_ref()?.law;
+        law.frequency.map(|f| f.0).or_else(|| Some(std::f64::consts::TAU / law.period?.0))
+    };
+    case.balance_frequency().or_else(of_motion)
 }
 
 fn supports<const D: usize>(
     parts: &[Part<'_, D>],
     particles: &Particles<D>,
     owner: &[u16],
+    omega: Option<f64>,
 ) -> Result<Vec<Support<D>>, RunError> {
     let mut all = Vec::new();
     for (k, part) in parts.iter().enumerate() {
@@ -388,11 +411,11 @@ fn supports<const D: usize>(
                 return Err(empty(&format!("support {}", number + 1), &part.name, particles, owner, k));
             }
             let axes: Vec<usize> = data.axes(D).into_iter().map(|a| a.index()).collect();
-            let formulas = data.motion.iter().map(|text| formula(text)).collect::<Result<Vec<_>, _>>()?;
+            let formulas = data.motion.iter().map(|text| formula(text, omega)).collect::<Result<Vec<_>, _>>()?;
             let led = axes.clone();
             let motion = move |t: f64| {
                 let mut moved = Vector::ZERO;
-                led.iter().zip(&formulas).for_each(|(a, f)| moved[*a] = f.value(t, 0.0));
+                led.iter().zip(&formulas).for_each(|(a, f)| moved[*a] = f(t));
                 moved
             };
             all.push(Support {
@@ -409,6 +432,7 @@ fn loads<const D: usize>(
     parts: &[Part<'_, D>],
     particles: &Particles<D>,
     owner: &[u16],
+    omega: Option<f64>,
 ) -> Result<Vec<Load<D>>, RunError> {
     let mut all = Vec::new();
     for (k, part) in parts.iter().enumerate() {
@@ -429,10 +453,7 @@ fn loads<const D: usize>(
             };
             let history = match &data.history {
                 None => Box::new(|_: f64| 1.0) as Box<dyn Fn(f64) -> f64 + Send + Sync>,
-                Some(text) => {
-                    let formula = formula(text)?;
-                    Box::new(move |t| formula.value(t, 0.0))
-                }
+                Some(text) => Box::new(formula(text, omega)?),
             };
             all.push(Load { areas, action, history });
         }

@@ -23,23 +23,24 @@ pub(super) fn summary<const D: usize>(study: &Study<'_, D>, ending: &Ending<'_>)
     let name = match study.case.time {
         Temporal::Modes(_) => "modes",
         Temporal::Steady(_) => "equilibrium",
+        Temporal::Harmonics(_) => "periodic",
         _ => "march",
     };
-    let mut warnings = built.warnings.clone();
-    if marched.halved > 0 {
-        warnings.push(format!("steps were halved {} times, where Newton's method did not get on", marched.halved));
-    }
+    let mut warnings = doubts(study, marched);
     let ledger = marched.rows.first().zip(marched.rows.last()).map(|(first, last)| ledger(first, last));
-    let open = ledger.as_ref().filter(|_| name == "march").map_or(0.0, |l| l.open.abs());
+    let open = ledger.as_ref().filter(|_| ["march", "periodic"].contains(&name)).map_or(0.0, |l| l.open.abs());
     if open > DOUBTFUL {
-        warnings.push(format!(
-            "the ledger of energy is open by {:.1} %: the march makes or loses energy; take shorter steps (`cfl`, `step`)",
-            100.0 * open
-        ));
+        let (why, what) = match name {
+            "march" => ("the march makes or loses energy", "take shorter steps (`cfl`, `step`)"),
+            _ => ("loads and damping differ over a period", "take more harmonics (`number`) or `oversample = 2`"),
+        };
+        warnings.push(format!("the ledger of energy is open by {:.1} %: {why}; {what}", 100.0 * open));
     }
-    let probe = |(k, (name, ..)): (usize, &(String, usize, crate::math::Vector<D>))| ProbeRow {
-        name: name.clone(),
-        displacement: marched.rows.last().map_or_else(Vec::new, |row| row.probes[k][..D].to_vec()),
+    let probe = |(k, (name, ..)): (usize, &(String, usize, crate::math::Vector<D>))| {
+        let periodic = marched.periodic.as_ref().map(|(_, probes)| probes[k].clone());
+        let (mean, harmonics) = periodic.unwrap_or_default();
+        let displacement = marched.rows.last().map_or_else(Vec::new, |row| row.probes[k][..D].to_vec());
+        ProbeRow { name: name.clone(), displacement, mean, harmonics }
     };
     let mode = |m: &Mode| ModeRow {
         frequency: m.omega / std::f64::consts::TAU,
@@ -60,6 +61,7 @@ pub(super) fn summary<const D: usize>(study: &Study<'_, D>, ending: &Ending<'_>)
         steps: marched.iteration,
         time: if name == "march" { marched.time } else { 0.0 },
         residual: marched.residual,
+        periodic: marched.periodic.as_ref().map(|(row, _)| *row),
         ledger,
         probes: built.probes.iter().enumerate().map(probe).collect(),
         modes: ending.modes.iter().map(mode).collect(),
@@ -67,4 +69,18 @@ pub(super) fn summary<const D: usize>(study: &Study<'_, D>, ending: &Ending<'_>)
         wall_seconds: ending.clock.wall_seconds(),
         warnings,
     }
+}
+
+/// What makes results doubtful, but the ledger.
+fn doubts<const D: usize>(study: &Study<'_, D>, marched: &Marched) -> Vec<String> {
+    let mut warnings = study.built.warnings.clone();
+    if marched.halved > 0 {
+        warnings.push(format!("steps were halved {} times, where Newton's method did not get on", marched.halved));
+    }
+    if let (Temporal::Harmonics(plan), Some((row, _))) = (&study.case.time, &marched.periodic)
+        && let Some(tail) = row.tail.filter(|t| *t > plan.tail)
+    {
+        warnings.push(format!("the last harmonic is {:.1} % of all: more are needed (`time.harmonics`)", 100.0 * tail));
+    }
+    warnings
 }
