@@ -52,8 +52,7 @@ impl<const D: usize> Lattice<D> {
             })
         };
         let at = |place: [f64; D]| self.at(place);
-        let mut fill =
-            Fill { x: Vec::with_capacity(n), volume: vec![0.0; n], facets: Vec::new(), spacing: 0.0, rows: Vec::new() };
+        let mut fill = Fill { x: Vec::with_capacity(n), volume: vec![0.0; n], ..Fill::default() };
         let mut seed = Noise(1);
         let spacing = self.spacing();
         for k in 0..n {
@@ -218,7 +217,8 @@ fn weighed<const D: usize>(
 fn raised<const E: usize, const D: usize>(fill: Fill<E>) -> Fill<D> {
     let raised = |v: &Vector<E>| Vector::from_fn(|d| v[d]);
     let facets = fill.facets.iter().map(|f| Facet::new(f.corners(), raised(&f.area))).collect();
-    Fill { x: fill.x.iter().map(raised).collect(), volume: fill.volume, facets, spacing: fill.spacing, rows: fill.rows }
+    let x = fill.x.iter().map(raised).collect();
+    Fill { x, volume: fill.volume, facets, spacing: fill.spacing, rows: fill.rows, turn: fill.turn }
 }
 
 /// Without particles that hold nothing.

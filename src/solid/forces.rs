@@ -11,6 +11,7 @@
 //! c = β ρ c_p h V D/n damps these modes.
 use multiversion::multiversion;
 
+use super::axis::{HOOP, HoopTangent};
 use super::body::{Action, Plane, Solid};
 use super::pairs::{self, Pulling, Stressed, gradients, plain_gradient};
 use super::particles::Edge;
@@ -50,6 +51,8 @@ pub struct Work<const D: usize> {
 pub struct Tangents<const D: usize> {
     pub(super) all: Vec<[[Matrix<D>; D]; D]>,
     pub(super) stiff: Vec<f64>,
+    /// Hoop parts; empty but about an axis of revolution.
+    pub(super) hoop: Vec<HoopTangent<D>>,
 }
 
 /// How a structure moves at a moment.
@@ -76,6 +79,9 @@ fn deformation<const D: usize>(gradient: &Columns<D>) -> Tensor {
             f[a][b] += gradient[b][a];
         }
     }
+    if D == 2 {
+        f[2][2] += gradient[0][HOOP];
+    }
     f
 }
 
@@ -87,7 +93,8 @@ impl<const D: usize> Solid<D> {
 
     /// Storage for tangents.
     pub fn tangents(&self) -> Tangents<D> {
-        Tangents { all: vec![[[[[0.0; D]; D]; D]; D]; self.len()], stiff: vec![0.0; self.len()] }
+        let (n, round) = (self.len(), if self.is_round() { self.len() } else { 0 });
+        Tangents { all: vec![[[[[0.0; D]; D]; D]; D]; n], stiff: vec![0.0; n], hoop: vec![HoopTangent::ZERO; round] }
     }
 
     /// History of a particle before.
@@ -101,7 +108,7 @@ impl<const D: usize> Solid<D> {
     fn respond(&self, material: &Material, f: &Tensor, (old, step): (&[f64], f64), new: &mut [f64]) -> Response<f64> {
         let own = material.history_len();
         match self.plane {
-            Plane::Strain => material.respond(f, &old[..own], step, &mut new[..own]),
+            Plane::Strain | Plane::Axisymmetric => material.respond(f, &old[..own], step, &mut new[..own]),
             Plane::Stress => {
                 let across = self.width - 1;
                 let (response, stretch) = plane_stress(material, f, old[across], &old[..own], step, &mut new[..own]);
@@ -122,7 +129,8 @@ impl<const D: usize> Solid<D> {
     /// Stress in one particle.
     #[inline(always)]
     fn stress_of(&self, i: usize, state: &State<'_, D>, new: &mut [f64]) -> Stressed<D> {
-        let (gradient, plain) = gradients(self, i, |j| row(&state.displacement[j]));
+        let (mut gradient, plain) = gradients(self, i, |j| row(&state.displacement[j]));
+        self.put_hoop(i, &mut gradient, state.displacement[i][0]);
         let (material, old) = (self.material_of(i), self.history_of(state.history, i));
         let f = deformation(&gradient);
         let elastic = if self.width == 0 { material.elastic_stress(&f) } else { None };
@@ -139,7 +147,11 @@ impl<const D: usize> Solid<D> {
             let rate = plain_gradient(self, i, |j| row(&state.velocity[j]));
             (0..D).for_each(|b| (0..D).for_each(|a| smooth[b][a] += self.viscous[i] * rate[b][a]));
         }
-        let stress = std::array::from_fn(|b| row::<D>(&std::array::from_fn(|a| stress[a][b])));
+        let hoop = stress[2][2];
+        let mut stress: Columns<D> = std::array::from_fn(|b| row::<D>(&std::array::from_fn(|a| stress[a][b])));
+        if self.is_round() {
+            stress[0][HOOP] = hoop;
+        }
         Stressed { stress, smooth, stiff, volume: determinant(&f) }
     }
 
@@ -186,6 +198,9 @@ impl<const D: usize> Solid<D> {
         sweep_parts(&parts, 1, force, &|k, force| {
             pairs::internal(self, parts[k].start, pulling, &work.stressed, force);
         });
+        if self.is_round() {
+            sweep_slots(force, |i, f| f[0] -= self.hoop_weight(i) * work.stressed[i].stress[0][HOOP]);
+        }
     }
 
     /// Loads on the surface.
@@ -216,16 +231,19 @@ impl<const D: usize> Solid<D> {
 
     /// What [`Self::stiffness`] needs of a state: the tangent of every particle.
     pub fn linearise(&self, state: &State<'_, D>, tangents: &mut Tangents<D>) {
+        let part = |t: &Tensor| -> Matrix<D> { std::array::from_fn(|a| std::array::from_fn(|b| t[a][b])) };
         sweep_slots(&mut tangents.all, |i, t| {
             let f = self.deformation(i, state.displacement);
-            let material = self.material_of(i);
-            let old = self.history_of(state.history, i);
-            for a in 0..D {
-                for b in 0..D {
-                    let mut change = [[0.0; D]; D];
-                    change[a][b] = 1.0;
-                    t[a][b] = self.tangent(material, (&f, &change), (old, state.step));
-                }
+            for (a, b) in (0..D).flat_map(|a| (0..D).map(move |b| (a, b))) {
+                t[a][b] = part(&self.tangent(i, (&f, [a, b]), state));
+            }
+        });
+        sweep_slots(&mut tangents.hoop, |i, t| {
+            let f = self.deformation(i, state.displacement);
+            let of_hoop = self.tangent(i, (&f, [2, 2]), state);
+            (t.of_strain, t.own) = (part(&of_hoop), of_hoop[2][2]);
+            for (a, b) in (0..D).flat_map(|a| (0..D).map(move |b| (a, b))) {
+                t.of_stress[a][b] = self.tangent(i, (&f, [a, b]), state)[2][2];
             }
         });
         sweep(&mut tangents.stiff, |i| self.stiffening(i, self.material_of(i), self.history_of(state.history, i)));
@@ -234,42 +252,39 @@ impl<const D: usize> Solid<D> {
     /// K w, what forces lose when particles are displaced by `w`; loads that follow the surface are left out.
     pub fn stiffness(&self, tangents: &Tangents<D>, w: &[[f64; D]], work: &mut Work<D>, out: &mut [[f64; D]]) {
         sweep(&mut work.stressed, |i| {
-            let (change, plain) = gradients(self, i, |j| row(&w[j]));
+            let (mut change, plain) = gradients(self, i, |j| row(&w[j]));
+            self.put_hoop(i, &mut change, w[i][0]);
             let mut stress = [[0.0; D]; D];
             for (a, b) in (0..D).flat_map(|a| (0..D).map(move |b| (a, b))) {
                 let t = &tangents.all[i][a][b];
                 (0..D).for_each(|r| (0..D).for_each(|s| stress[r][s] += t[r][s] * change[b][a]));
             }
-            let (stiff, stress) = (tangents.stiff[i], columns(&stress));
+            let (stiff, mut stress) = (tangents.stiff[i], columns(&stress));
+            if let Some(hoop) = tangents.hoop.get(i) {
+                hoop.add_to(&mut stress, &change);
+            }
             Stressed { stress, smooth: plain.map(|column| column.map(|a| a * stiff)), stiff, volume: 1.0 }
         });
         self.internal(Pulling { displacement: w, velocity: None }, work, out);
         sweep_slots(out, |_, f| *f = f.map(|f| -f));
     }
 
-    /// Change of the stress with that of the displacement gradient.
-    fn tangent(
-        &self,
-        material: &Material,
-        (f, change): (&Tensor, &Matrix<D>),
-        (old, step): (&[f64], f64),
-    ) -> Matrix<D> {
+    /// Change of the stress of a particle with one component of its deformation gradient.
+    fn tangent(&self, i: usize, (f, component): (&Tensor, [usize; 2]), state: &State<'_, D>) -> Tensor {
+        let (material, old, step) = (self.material_of(i), self.history_of(state.history, i), state.step);
         let dual: Tensor<Dual> = std::array::from_fn(|a| {
-            std::array::from_fn(|b| Dual {
-                value: f[a][b],
-                derivative: if a < D && b < D { change[a][b] } else { 0.0 },
-            })
+            std::array::from_fn(|b| Dual { value: f[a][b], derivative: if [a, b] == component { 1.0 } else { 0.0 } })
         });
         let zero = Dual { value: 0.0, derivative: 0.0 };
         let mut scratch = [zero; MOST_HISTORY];
         let own = material.history_len();
         let response = match self.plane {
-            Plane::Strain => material.respond(&dual, &old[..own], step, &mut scratch[..own]),
+            Plane::Strain | Plane::Axisymmetric => material.respond(&dual, &old[..own], step, &mut scratch[..own]),
             Plane::Stress => {
                 plane_stress(material, &dual, old[self.width - 1], &old[..own], step, &mut scratch[..own]).0
             }
         };
-        std::array::from_fn(|a| std::array::from_fn(|b| response.stress[a][b].derivative))
+        response.stress.map(|row| row.map(|s| s.derivative))
     }
 
     /// Forces from outside: gravity and loads.
@@ -351,7 +366,9 @@ impl<const D: usize> Solid<D> {
 
     /// Deformation gradient at a particle, in space.
     pub fn deformation(&self, i: usize, u: &[[f64; D]]) -> Tensor {
-        deformation(&gradients(self, i, |j| row(&u[j])).0)
+        let (mut gradient, _) = gradients(self, i, |j| row(&u[j]));
+        self.put_hoop(i, &mut gradient, u[i][0]);
+        deformation(&gradient)
     }
 
     /// Refuses a state in which a particle is nowhere or turned inside out.

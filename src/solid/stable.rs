@@ -34,7 +34,7 @@ impl<const D: usize> Solid<D> {
     fn largest_viscous(&self) -> f64 {
         let smoothed = if self.damping.viscosity > 0.0 {
             let mut work = self.work();
-            let free = Tangents { all: vec![[[[[0.0; D]; D]; D]; D]; self.len()], stiff: self.viscous.clone() };
+            let free = Tangents { stiff: self.viscous.clone(), ..self.tangents() };
             self.largest(|w, out| self.stiffness(&free, w, &mut work, out))
         } else {
             0.0

@@ -40,7 +40,7 @@ pub(super) fn weigh_in_plane(
         Facet::new(&side, Vector([along[1], -along[0]]))
     };
     let facets = sides.single().into_iter().map(facet).collect();
-    Fill { x, volume, facets, spacing, rows: Vec::new() }
+    Fill { x, volume, facets, spacing, rows: Vec::new(), turn: Vec::new() }
 }
 
 /// Sides of simplices, and how often each is there.
@@ -107,7 +107,7 @@ pub(super) fn weigh_in_space(
     }
     let facet = |side: [u32; 3]| Facet::new(&side, turn(side.map(|i| x[i as usize])));
     let facets = sides.single().into_iter().map(facet).collect();
-    Fill { x, volume, facets, spacing, rows: Vec::new() }
+    Fill { x, volume, facets, spacing, rows: Vec::new(), turn: Vec::new() }
 }
 
 /// Sides of a tetrahedron, seen from outside.
