@@ -99,6 +99,8 @@ pub struct Fill<const D: usize> {
     pub spacing: f64,
     /// Neighbours of each in the order of their numbers, where rows say who they are; empty: all within reach.
     pub rows: Vec<Vec<u32>>,
+    /// First moment in the plane that each stands for beyond volume times place; empty in space.
+    pub moment: Vec<Vector<D>>,
     /// 2π times the plane area of each about an axis of revolution; empty elsewhere.
     pub turn: Vec<f64>,
 }
@@ -106,13 +108,18 @@ pub struct Fill<const D: usize> {
 impl<const D: usize> Fill<D> {
     /// The same with all within reach as neighbours, but those for which `apart` holds.
     pub fn seen(mut self, apart: impl Fn(usize, usize) -> bool) -> Self {
-        if self.rows.is_empty() {
-            self.rows = neighbours(&self.x, REACH[D - 2] * self.spacing);
-        }
+        self.find_rows();
         for (i, row) in self.rows.iter_mut().enumerate() {
             row.retain(|j| !apart(i.min(*j as usize), i.max(*j as usize)));
         }
         self
+    }
+
+    /// Makes all within reach neighbours where nobody has said who they are.
+    pub(super) fn find_rows(&mut self) {
+        if self.rows.is_empty() {
+            self.rows = neighbours(&self.x, REACH[D - 2] * self.spacing);
+        }
     }
 
     /// Area vectors of all particles, pointing outwards; zero inside.
@@ -139,9 +146,15 @@ impl<const D: usize> Fill<D> {
             } else {
                 order.iter().map(|i| renumbered(&self.rows[*i], &new)).collect()
             },
-            turn: if self.turn.is_empty() { Vec::new() } else { order.iter().map(|i| self.turn[*i]).collect() },
+            moment: picked(&self.moment, order),
+            turn: picked(&self.turn, order),
         }
     }
+}
+
+/// Those of `all` that are in `order`, if there are any.
+fn picked<T: Copy>(all: &[T], order: &[usize]) -> Vec<T> {
+    order.iter().filter_map(|i| all.get(*i).copied()).collect()
 }
 
 /// Neighbours by their new numbers, without those that have none.

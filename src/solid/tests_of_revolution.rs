@@ -147,15 +147,17 @@ fn the_matrix_is_the_product_and_the_product_is_the_derivative_of_forces() {
         let flat = |v: Vec<[f64; 2]>| v.into_iter().flatten().collect::<Vec<f64>>();
         let (u, w) = (flat(shaken(&structure.solid, 0, 0.02)), flat(shaken(&structure.solid, 13, 1.0)));
         let (still, mut work) = (vec![0.0; n], structure.work());
-        let at = |displacement| Moment { time: 0.0, step: 0.0, displacement, velocity: &still, history: &[] };
-        let stiffness = structure.linearise(&at(&u));
+        fn at<'a>(displacement: &'a [f64], velocity: &'a [f64]) -> Moment<'a> {
+            Moment { time: 0.0, step: 0.0, displacement, velocity, history: &[] }
+        }
+        let stiffness = structure.linearise(&at(&u, &still));
         let (mut product, mut assembled, mut unit) = (vec![0.0; n], vec![0.0; n], vec![0.0; n]);
         structure.stiffness(&stiffness, &w, &mut work, &mut product);
         structure.matrix(&stiffness, 1.0, 0.0).product(&w, &mut assembled);
         let mut force = [vec![0.0; n], vec![0.0; n]];
         for (side, force) in [1e-6, -1e-6].into_iter().zip(&mut force) {
             let moved: Vec<f64> = u.iter().zip(&w).map(|(u, w)| u + side * w).collect();
-            structure.forces(&at(&moved), &mut work, force, &mut []);
+            structure.forces(&at(&moved, &still), &mut work, force, &mut []);
         }
         let size = product.iter().fold(0.0f64, |m, p| m.max(p.abs()));
         for k in (0..n).filter(|k| !structure.is_held(*k)) {

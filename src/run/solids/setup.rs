@@ -120,12 +120,19 @@ fn turned<const D: usize>(fill: Fill<D>, name: &str) -> Result<Fill<D>, RunError
     /// How far beyond the axis a particle may be by round-off, in spacings.
     const ROUND_OFF: f64 = 1e-9;
     let least = fill.x.iter().min_by(|a, b| a[0].total_cmp(&b[0])).filter(|x| x[0] < -ROUND_OFF * fill.spacing);
-    match least {
-        None => Ok(fill.turned()),
-        Some(x) => Err(RunError::Solid {
+    if let Some(x) = least {
+        return Err(RunError::Solid {
             what: format!("`{name}` reaches ({:.6}, {:.6}), beyond the axis of revolution x = 0", x[0], x[1]),
             hint: "x is the radius of an axisymmetric body: give the half of its section with x ≥ 0, or `translate` it"
                 .into(),
+        });
+    }
+    let fill = fill.turned();
+    match (0..fill.x.len()).find(|i| !(fill.turn[*i] > 0.0)) {
+        None => Ok(fill),
+        Some(i) => Err(RunError::Solid {
+            what: format!("a particle of `{name}` at ({:.6}, {:.6}) has no area", fill.x[i][0], fill.x[i][1]),
+            hint: "take a smaller `spacing`: at sharp edges of the section it decides".into(),
         }),
     }
 }
