@@ -14,6 +14,9 @@ pub enum Plane {
     Strain,
     /// Nothing holds it: P₃₃ = 0.
     Stress,
+    /// The y axis is an axis of revolution, x the radius: F₃₃ = 1 + u_x/x. Particles are those of a section that was
+    /// [`turned`](super::particles::Fill::turned).
+    Axisymmetric,
 }
 
 /// What a function of time is.
@@ -97,6 +100,8 @@ pub struct Solid<const D: usize> {
     pub(super) viscous: Vec<f64>,
     /// Numbers of history of a particle.
     pub(super) width: usize,
+    /// 1/x about an axis of revolution, 0 on it; empty elsewhere.
+    pub(super) per_radius: Vec<f64>,
     /// The longest stable step over the least h/c, and that without damping, once they are known.
     pub(super) factor: OnceLock<[f64; 2]>,
 }
@@ -116,7 +121,7 @@ impl<const D: usize> Deref for Solid<D> {
     }
 }
 
-/// Mass of a particle in ρ h^D below which it takes from its neighbours: those at sharp edges hold so little that they would decide
+/// Mass of a particle in ρ h^D, of a whole turn about an axis, below which it takes from its neighbours: those at sharp edges hold so little that they would decide
 /// the time step.
 const LEAST_MASS: f64 = 0.25;
 
@@ -126,7 +131,7 @@ fn masses<const D: usize>(particles: &Particles<D>, density: impl Fn(usize) -> f
     let over: Vec<f64> = mass
         .iter()
         .enumerate()
-        .map(|(i, m)| m - LEAST_MASS * density(i) * particles.spacing[i].powi(D as i32))
+        .map(|(i, m)| m - LEAST_MASS * density(i) * particles.spacing[i].powi(D as i32) * particles.around(i))
         .collect();
     let near = |i: usize| particles.of(i).iter().map(|e| e.other as usize);
     // what each light particle asks of all its neighbours over what they have to give, and what is asked of each of these
@@ -190,7 +195,11 @@ impl<const D: usize> Solid<D> {
         let own = parts.materials.iter().map(Material::history_len).max().unwrap_or(0);
         let width = own + usize::from(own > 0) + usize::from(parts.plane == Plane::Stress);
         assert!(own <= MOST_HISTORY, "a material keeps more history than there is room for");
+        let round = parts.plane == Plane::Axisymmetric;
+        assert!(round == particles.is_round(), "bodies of revolution are made of particles that were turned");
+        let per_radius = |x: &Vector<D>| if x[0] > 0.0 { 1.0 / x[0] } else { 0.0 };
         Self {
+            per_radius: if round { particles.x.iter().map(per_radius).collect() } else { Vec::new() },
             places: particles.x.iter().map(|x| row(&x.0)).collect(),
             mass: masses(particles, |i| material(i).density),
             viscous: (0..n).map(viscous).collect(),
@@ -262,7 +271,7 @@ impl<const D: usize> Solid<D> {
     /// Where in the history of a particle that is lost stands which its material has lost; `None` where none loses.
     #[inline(always)]
     pub(super) fn lost_at(&self) -> Option<usize> {
-        (self.width + usize::from(self.plane == Plane::Strain)).checked_sub(2)
+        (self.width + usize::from(self.plane != Plane::Stress)).checked_sub(2)
     }
 
     /// Puts held particles where they are to be at time `t`.

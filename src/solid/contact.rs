@@ -23,7 +23,7 @@ impl<const D: usize> Solid<D> {
     pub(super) fn contact_stiffness(&self, i: usize, stiffness: f64) -> f64 {
         let h = self.particles.spacing[i];
         // a corner belongs to sides whose areas cancel in part
-        let area = self.particles.area[i].norm().max(0.5 * h.powi(D as i32 - 1));
+        let area = self.particles.area[i].norm().max(0.5 * h.powi(D as i32 - 1) * self.particles.around(i));
         stiffness * self.material_of(i).moduli.pressure_wave() * area / h
     }
 

@@ -52,8 +52,8 @@ impl<const D: usize> Lattice<D> {
             })
         };
         let at = |place: [f64; D]| self.at(place);
-        let mut fill =
-            Fill { x: Vec::with_capacity(n), volume: vec![0.0; n], facets: Vec::new(), spacing: 0.0, rows: Vec::new() };
+        let moment = vec![Vector::ZERO; if D == 2 { n } else { 0 }];
+        let mut fill = Fill { x: Vec::with_capacity(n), volume: vec![0.0; n], moment, ..Fill::default() };
         let mut seed = Noise(1);
         let spacing = self.spacing();
         for k in 0..n {
@@ -68,7 +68,7 @@ impl<const D: usize> Lattice<D> {
         fill.spacing = spacing;
         if self.jitter > 0.0 {
             let weighed = weighed((&fill.x, n), &[], spacing, &|_| true);
-            fill.volume = weighed.volume;
+            (fill.volume, fill.moment) = (weighed.volume, weighed.moment);
         }
         surface_first(&fill)
     }
@@ -117,6 +117,10 @@ impl<const D: usize> Lattice<D> {
             let number = |k: usize| (0..D).rev().fold(0, |n, d| n * self.counts[d] + low[d] + (k >> d & 1));
             let volumes = shares_of_cell(&corners);
             (0..1usize << D).for_each(|k| fill.volume[number(k)] += volumes[k]);
+            if D == 2 {
+                let left = moment_left(&corners, &volumes);
+                (0..4).for_each(|k| fill.moment[number(k)] += left);
+            }
             for (d, end) in (0..D).flat_map(|d| [(d, 0), (d, 1)]) {
                 if low[d] + end == if end == 0 { 0 } else { cells[d] } {
                     let side = side_of_cell::<D>(d, end);
@@ -162,6 +166,17 @@ fn area_of_side<const D: usize>(at: &[Vector<D>]) -> Vector<D> {
 
 fn cross<const D: usize>(a: &Vector<D>, b: &Vector<D>) -> Vector<D> {
     Vector::from_fn(|d| a[(d + 1) % 3] * b[(d + 2) % 3] - a[(d + 2) % 3] * b[(d + 1) % 3])
+}
+
+/// What the shares of a quadrilateral leave of its first moment, a quarter of it: a part for each corner.
+fn moment_left<const D: usize>(corners: &[Vector<D>], shares: &[f64]) -> Vector<D> {
+    let turn = |a: Vector<D>, b: Vector<D>| a[0] * b[1] - a[1] * b[0];
+    let of = |[a, b, c]: [usize; 3]| {
+        let [a, b, c] = [corners[a], corners[b], corners[c]];
+        (a + b + c) * (0.5 * turn(b - a, c - a).abs() / 3.0)
+    };
+    let whole = of([0, 1, 2]) + of([3, 2, 1]);
+    corners.iter().zip(shares).fold(whole, |left, (x, share)| left - *x * *share) * 0.25
 }
 
 /// Shares of the corners in the volume of a cell: a quadrilateral in the plane, a box in space.
@@ -218,7 +233,15 @@ fn weighed<const D: usize>(
 fn raised<const E: usize, const D: usize>(fill: Fill<E>) -> Fill<D> {
     let raised = |v: &Vector<E>| Vector::from_fn(|d| v[d]);
     let facets = fill.facets.iter().map(|f| Facet::new(f.corners(), raised(&f.area))).collect();
-    Fill { x: fill.x.iter().map(raised).collect(), volume: fill.volume, facets, spacing: fill.spacing, rows: fill.rows }
+    Fill {
+        x: fill.x.iter().map(raised).collect(),
+        volume: fill.volume,
+        facets,
+        spacing: fill.spacing,
+        rows: fill.rows,
+        moment: fill.moment.iter().map(raised).collect(),
+        turn: fill.turn,
+    }
 }
 
 /// Without particles that hold nothing.

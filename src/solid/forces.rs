@@ -17,10 +17,11 @@
 //! *Finite Element Procedures*, section 9.3.3). What the residuals of velocity damp brakes zigzag displacements that turn, too.
 use multiversion::multiversion;
 
+use super::axis::{HOOP, HoopTangent};
 use super::body::{Action, Plane, Solid};
 use super::pairs::{self, Pulling, Stressed, gradients, plain_gradient};
 use super::particles::Edge;
-use super::rows::{Columns, ZERO, columns, row};
+use super::rows::{Columns, columns, row};
 use crate::math::Vector;
 use crate::math::least_squares::smallest_eigenvalue;
 use crate::math::sweep::{CHUNK, first, maximum, parts, sum, sweep, sweep_parts, sweep_slots, sweep_two_parts};
@@ -56,6 +57,8 @@ pub struct Work<const D: usize> {
 pub struct Tangents<const D: usize> {
     pub(super) all: Vec<[[Matrix<D>; D]; D]>,
     pub(super) stiff: Vec<f64>,
+    /// Hoop parts; empty but about an axis of revolution.
+    pub(super) hoop: Vec<HoopTangent<D>>,
 }
 
 /// How a structure moves at a moment.
@@ -82,6 +85,9 @@ fn deformation<const D: usize>(gradient: &Columns<D>) -> Tensor {
             f[a][b] += gradient[b][a];
         }
     }
+    if D == 2 {
+        f[2][2] += gradient[0][HOOP];
+    }
     f
 }
 
@@ -93,7 +99,8 @@ impl<const D: usize> Solid<D> {
 
     /// Storage for tangents.
     pub fn tangents(&self) -> Tangents<D> {
-        Tangents { all: vec![[[[[0.0; D]; D]; D]; D]; self.len()], stiff: vec![0.0; self.len()] }
+        let (n, round) = (self.len(), if self.is_round() { self.len() } else { 0 });
+        Tangents { all: vec![[[[[0.0; D]; D]; D]; D]; n], stiff: vec![0.0; n], hoop: vec![HoopTangent::ZERO; round] }
     }
 
     /// History of a particle before.
@@ -107,7 +114,7 @@ impl<const D: usize> Solid<D> {
     fn respond(&self, material: &Material, f: &Tensor, (old, step): (&[f64], f64), new: &mut [f64]) -> Response<f64> {
         let own = material.history_len();
         match self.plane {
-            Plane::Strain => material.respond(f, &old[..own], step, &mut new[..own]),
+            Plane::Strain | Plane::Axisymmetric => material.respond(f, &old[..own], step, &mut new[..own]),
             Plane::Stress => {
                 let across = self.width - 1;
                 let (response, stretch) = plane_stress(material, f, old[across], &old[..own], step, &mut new[..own]);
@@ -128,7 +135,8 @@ impl<const D: usize> Solid<D> {
     /// Stress in one particle.
     #[inline(always)]
     fn stress_of(&self, i: usize, state: &State<'_, D>, new: &mut [f64]) -> Stressed<D> {
-        let (gradient, plain) = gradients(self, i, |j| row(&state.displacement[j]));
+        let (mut gradient, plain) = gradients(self, i, |j| row(&state.displacement[j]));
+        self.put_hoop(i, &mut gradient, state.displacement[i][0]);
         let (material, old) = (self.material_of(i), self.history_of(state.history, i));
         let f = deformation(&gradient);
         let elastic = if self.width == 0 { material.elastic_stress(&f) } else { None };
@@ -141,43 +149,56 @@ impl<const D: usize> Solid<D> {
         });
         let stiff = self.stiffening(i, material, old);
         let mut smooth = plain.map(|column| column.map(|a| a * stiff));
-        let mut stress: Columns<D> = std::array::from_fn(|b| row::<D>(&std::array::from_fn(|a| stress[a][b])));
+        let mut stress = stress;
         if self.is_viscous() {
             let (full, rate) = self.rate_of(i, state.velocity);
             (0..D).for_each(|b| (0..D).for_each(|a| smooth[b][a] += self.viscous[i] * rate[b][a]));
             if self.damping.stiffness > 0.0 {
                 let damped = self.damping_stress(material, &f, &full);
-                (0..D).for_each(|b| (0..D).for_each(|a| stress[b][a] += damped[b][a]));
+                (0..3).for_each(|a| (0..3).for_each(|b| stress[a][b] += damped[a][b]));
             }
+        }
+        let hoop = stress[2][2];
+        let mut stress: Columns<D> = std::array::from_fn(|b| row::<D>(&std::array::from_fn(|a| stress[a][b])));
+        if self.is_round() {
+            stress[0][HOOP] = hoop;
         }
         Stressed { stress, smooth, stiff, volume: determinant(&f) }
     }
 
-    /// The gradients of velocities around a particle: consistent where that is asked for, and of the plain fit.
+    /// The gradients of velocities around a particle: consistent, in space, where that is asked for, and of the plain fit.
     #[inline(always)]
-    fn rate_of(&self, i: usize, v: &[[f64; D]]) -> (Columns<D>, Columns<D>) {
-        match self.damping.stiffness > 0.0 {
-            true => gradients(self, i, |j| row(&v[j])),
-            false => ([ZERO; D], plain_gradient(self, i, |j| row(&v[j]))),
+    fn rate_of(&self, i: usize, v: &[[f64; D]]) -> (Tensor, Columns<D>) {
+        if self.damping.stiffness == 0.0 {
+            return ([[0.0; 3]; 3], plain_gradient(self, i, |j| row(&v[j])));
         }
+        let (mut full, plain) = gradients(self, i, |j| row(&v[j]));
+        self.put_hoop(i, &mut full, v[i][0]);
+        let mut rate = deformation(&full);
+        (0..3).for_each(|a| rate[a][a] -= 1.0);
+        (rate, plain)
     }
 
     /// The first stress of Piola and Kirchhoff of damping in proportion to stiffness, F β C₀ : Ė, where the displacement gradient
     /// changes at `rate`; materials of small strains take F = 1.
     #[inline(always)]
-    fn damping_stress(&self, material: &Material, f: &Tensor, rate: &Columns<D>) -> Columns<D> {
+    fn damping_stress(&self, material: &Material, f: &Tensor, rate: &Tensor) -> Tensor {
         let small = matches!(material.law, Law::Linear);
         let f = |a: usize, b: usize| if small { f64::from(u8::from(a == b)) } else { f[a][b] };
         let Moduli { shear, bulk } = material.moduli;
         let lame = bulk - 2.0 / 3.0 * shear;
         let lame = if self.plane == Plane::Stress { 2.0 * lame * shear / (lame + 2.0 * shear) } else { lame };
-        let twice = |a: usize, b: usize| (0..D).map(|k| f(k, a) * rate[b][k] + rate[a][k] * f(k, b)).sum::<f64>();
-        let strain: Matrix<D> = std::array::from_fn(|a| std::array::from_fn(|b| 0.5 * twice(a, b)));
-        let widening: f64 = (0..D).map(|a| strain[a][a]).sum();
+        // nothing strains across a plane body
+        let n = if self.is_round() { 3 } else { D };
+        let twice = |a: usize, b: usize| (0..n).map(|k| f(k, a) * rate[k][b] + rate[k][a] * f(k, b)).sum::<f64>();
+        let mut second = [[0.0; 3]; 3];
+        (0..n).for_each(|a| (0..n).for_each(|b| second[a][b] = 0.5 * twice(a, b)));
+        let widening: f64 = (0..n).map(|a| second[a][a]).sum();
         let beta = self.damping.stiffness;
-        let second =
-            |a: usize, b: usize| beta * (2.0 * shear * strain[a][b] + if a == b { lame * widening } else { 0.0 });
-        std::array::from_fn(|b| row::<D>(&std::array::from_fn(|a| (0..D).map(|k| f(a, k) * second(k, b)).sum())))
+        for (a, b) in (0..n).flat_map(|a| (0..n).map(move |b| (a, b))) {
+            second[a][b] = beta * (2.0 * shear * second[a][b] + if a == b { lame * widening } else { 0.0 });
+        }
+        std::array::from_fn(|a| std::array::from_fn(|b| (0..n).map(|k| f(a, k) * second[k][b]).sum()))
     }
 
     /// c of the residuals of displacement: what has yielded is held less.
@@ -223,6 +244,9 @@ impl<const D: usize> Solid<D> {
         sweep_parts(&parts, 1, force, &|k, force| {
             pairs::internal(self, parts[k].start, pulling, &work.stressed, force);
         });
+        if self.is_round() {
+            sweep_slots(force, |i, f| f[0] -= self.hoop_weight(i) * work.stressed[i].stress[0][HOOP]);
+        }
     }
 
     /// Loads on the surface.
@@ -253,23 +277,21 @@ impl<const D: usize> Solid<D> {
 
     /// What [`Self::stiffness`] needs of a state, the tangent of every particle: `elastic` times that of the displacement and `viscous`
     /// times that of the velocity, where damping in proportion to mass is left out.
-    pub fn linearise(&self, state: &State<'_, D>, [elastic, viscous]: [f64; 2], tangents: &mut Tangents<D>) {
-        let damped = viscous > 0.0 && self.damping.stiffness > 0.0;
+    pub fn linearise(&self, state: &State<'_, D>, parts: [f64; 2], tangents: &mut Tangents<D>) {
+        let [elastic, viscous] = parts;
+        let part = |t: &Tensor| -> Matrix<D> { std::array::from_fn(|a| std::array::from_fn(|b| t[a][b])) };
         sweep_slots(&mut tangents.all, |i, t| {
             let f = self.deformation(i, state.displacement);
-            let material = self.material_of(i);
-            let old = self.history_of(state.history, i);
             for (a, b) in (0..D).flat_map(|a| (0..D).map(move |b| (a, b))) {
-                let mut change = [[0.0; D]; D];
-                change[a][b] = 1.0;
-                t[a][b] = match elastic > 0.0 {
-                    true => self.tangent(material, (&f, &change), (old, state.step)).map(|r| r.map(|t| elastic * t)),
-                    false => [[0.0; D]; D],
-                };
-                if damped {
-                    let rubbed = self.damping_stress(material, &f, &columns(&change));
-                    (0..D).for_each(|r| (0..D).for_each(|s| t[a][b][r][s] += viscous * rubbed[s][r]));
-                }
+                t[a][b] = part(&self.tangent(i, (&f, [a, b]), state, parts));
+            }
+        });
+        sweep_slots(&mut tangents.hoop, |i, t| {
+            let f = self.deformation(i, state.displacement);
+            let of_hoop = self.tangent(i, (&f, [2, 2]), state, parts);
+            (t.of_strain, t.own) = (part(&of_hoop), of_hoop[2][2]);
+            for (a, b) in (0..D).flat_map(|a| (0..D).map(move |b| (a, b))) {
+                t.of_stress[a][b] = self.tangent(i, (&f, [a, b]), state, parts)[2][2];
             }
         });
         let stiffening = |i| self.stiffening(i, self.material_of(i), self.history_of(state.history, i));
@@ -279,42 +301,53 @@ impl<const D: usize> Solid<D> {
     /// K w, what forces lose when particles are displaced by `w`; loads that follow the surface are left out.
     pub fn stiffness(&self, tangents: &Tangents<D>, w: &[[f64; D]], work: &mut Work<D>, out: &mut [[f64; D]]) {
         sweep(&mut work.stressed, |i| {
-            let (change, plain) = gradients(self, i, |j| row(&w[j]));
+            let (mut change, plain) = gradients(self, i, |j| row(&w[j]));
+            self.put_hoop(i, &mut change, w[i][0]);
             let mut stress = [[0.0; D]; D];
             for (a, b) in (0..D).flat_map(|a| (0..D).map(move |b| (a, b))) {
                 let t = &tangents.all[i][a][b];
                 (0..D).for_each(|r| (0..D).for_each(|s| stress[r][s] += t[r][s] * change[b][a]));
             }
-            let (stiff, stress) = (tangents.stiff[i], columns(&stress));
+            let (stiff, mut stress) = (tangents.stiff[i], columns(&stress));
+            if let Some(hoop) = tangents.hoop.get(i) {
+                hoop.add_to(&mut stress, &change);
+            }
             Stressed { stress, smooth: plain.map(|column| column.map(|a| a * stiff)), stiff, volume: 1.0 }
         });
         self.internal(Pulling { displacement: w, velocity: None }, work, out);
         sweep_slots(out, |_, f| *f = f.map(|f| -f));
     }
 
-    /// Change of the stress with that of the displacement gradient.
+    /// Change of the stress of a particle with one component of its deformation gradient: `elastic` times that of the material and
+    /// `viscous` times that of damping.
     fn tangent(
         &self,
-        material: &Material,
-        (f, change): (&Tensor, &Matrix<D>),
-        (old, step): (&[f64], f64),
-    ) -> Matrix<D> {
-        let dual: Tensor<Dual> = std::array::from_fn(|a| {
-            std::array::from_fn(|b| Dual {
-                value: f[a][b],
-                derivative: if a < D && b < D { change[a][b] } else { 0.0 },
-            })
-        });
-        let zero = Dual { value: 0.0, derivative: 0.0 };
-        let mut scratch = [zero; MOST_HISTORY];
-        let own = material.history_len();
-        let response = match self.plane {
-            Plane::Strain => material.respond(&dual, &old[..own], step, &mut scratch[..own]),
-            Plane::Stress => {
-                plane_stress(material, &dual, old[self.width - 1], &old[..own], step, &mut scratch[..own]).0
-            }
-        };
-        std::array::from_fn(|a| std::array::from_fn(|b| response.stress[a][b].derivative))
+        i: usize,
+        (f, component): (&Tensor, [usize; 2]),
+        state: &State<'_, D>,
+        [elastic, viscous]: [f64; 2],
+    ) -> Tensor {
+        let (material, old, step) = (self.material_of(i), self.history_of(state.history, i), state.step);
+        let one = |a: usize, b: usize| f64::from(u8::from([a, b] == component));
+        let mut change = [[0.0; 3]; 3];
+        if elastic > 0.0 {
+            let dual: Tensor<Dual> =
+                std::array::from_fn(|a| std::array::from_fn(|b| Dual { value: f[a][b], derivative: one(a, b) }));
+            let mut scratch = [Dual { value: 0.0, derivative: 0.0 }; MOST_HISTORY];
+            let own = material.history_len();
+            let response = match self.plane {
+                Plane::Strain | Plane::Axisymmetric => material.respond(&dual, &old[..own], step, &mut scratch[..own]),
+                Plane::Stress => {
+                    plane_stress(material, &dual, old[self.width - 1], &old[..own], step, &mut scratch[..own]).0
+                }
+            };
+            change = response.stress.map(|row| row.map(|s| elastic * s.derivative));
+        }
+        if viscous > 0.0 && self.damping.stiffness > 0.0 {
+            let rubbed = self.damping_stress(material, f, &std::array::from_fn(|a| std::array::from_fn(|b| one(a, b))));
+            (0..3).for_each(|a| (0..3).for_each(|b| change[a][b] += viscous * rubbed[a][b]));
+        }
+        change
     }
 
     /// Forces from outside: gravity and loads.
@@ -348,8 +381,8 @@ impl<const D: usize> Solid<D> {
                 }
                 let f = self.deformation(i, state.displacement);
                 let stress = self.damping_stress(self.material_of(i), &f, &full);
-                let power = |(a, b): (usize, usize)| stress[b][a] * full[b][a];
-                let all = (0..D).flat_map(|a| (0..D).map(move |b| (a, b)));
+                let power = |(a, b): (usize, usize)| stress[a][b] * full[a][b];
+                let all = (0..3).flat_map(|a| (0..3).map(move |b| (a, b)));
                 smoothed + self.particles.volume[i] * all.map(power).sum::<f64>()
             })
     }
@@ -404,7 +437,9 @@ impl<const D: usize> Solid<D> {
 
     /// Deformation gradient at a particle, in space.
     pub fn deformation(&self, i: usize, u: &[[f64; D]]) -> Tensor {
-        deformation(&gradients(self, i, |j| row(&u[j])).0)
+        let (mut gradient, _) = gradients(self, i, |j| row(&u[j]));
+        self.put_hoop(i, &mut gradient, u[i][0]);
+        deformation(&gradient)
     }
 
     /// Refuses a state in which a particle is nowhere or turned inside out.

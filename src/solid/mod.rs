@@ -2,7 +2,8 @@
 //!
 //! A cloud at rest, with least-squares gradients that fulfil the divergence theorem ([`particles`]); an energy of its deformation
 //! whose derivatives are forces ([`forces`]); materials, supports and loads ([`body`]); and what integrators see of it all
-//! ([`system`]). Book page `solid-particles`.
+//! ([`system`]). Bodies of revolution are sections that are turned ([`axis`]). Book page `solid-particles`.
+mod axis;
 pub mod body;
 pub mod contact;
 pub mod fill;
@@ -16,8 +17,11 @@ mod stiffness;
 pub mod system;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod tests_of_revolution;
 mod weigh;
 
+pub use axis::held_on_axis;
 pub use body::{Action, Contact, Damping, Load, Parts, Plane, RigidPlane, Solid, Support};
 pub use particles::{Particles, Unfit};
 pub use system::Structure;

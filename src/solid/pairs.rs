@@ -41,8 +41,10 @@ pub(super) fn gradients<const D: usize>(
             add(&mut moments[b], &weighted, d[b]);
         }
     }
-    let per_volume = 1.0 / solid.particles.volume[i];
-    (full.map(|column| times(&column, per_volume)), solved(solid, i, &moments))
+    let (volume, plain) = (solid.particles.volume[i], solved(solid, i, &moments));
+    // on an axis of revolution a particle has no volume, and no weights
+    let full = if volume > 0.0 { full.map(|column| times(&column, 1.0 / volume)) } else { plain };
+    (full, plain)
 }
 
 /// The gradient of the plain fit alone.

@@ -6,7 +6,8 @@
 //! Σ_i V_i g_ij = A_j, with the area vectors A of the surface: uniform stress then has no force inside, and the exact traction on
 //! the surface, on any cloud. Corrections that leave linear fields exact are residuals of the fit itself,
 //! R_ij(λ) = λ_j − λ_i − d_ij·∇λ_i, so that λ solves L λ = A − Σ V g once for each axis, L = Σ_i V_i Σ_j w R_ijᵀR_ij
-//! (after Chen, Hillman and Rüter 2013, doi:10.1002/nme.4512, whose test functions are corrected in like manner).
+//! (after Chen, Hillman and Rüter 2013, doi:10.1002/nme.4512, whose test functions are corrected in like manner). About an axis of
+//! revolution Σ_i V_i g_ij = A_j − 2π a_j e_r takes its place ([`super::axis`]).
 use std::ops::Range;
 
 use crate::cloud::grid::Grid;
@@ -49,6 +50,8 @@ pub struct Facet<const D: usize> {
     /// Particles at its corners, in order around it seen from outside; the first `count` of them.
     corners: [u32; 4],
     count: u8,
+    /// Part of the area that each of them has.
+    parts: [f64; 4],
     /// Area vector, pointing outwards; length in the plane.
     pub area: Vector<D>,
 }
@@ -58,7 +61,12 @@ impl<const D: usize> Facet<D> {
     pub fn new(between: &[u32], area: Vector<D>) -> Self {
         let mut corners = [0; 4];
         corners[..between.len()].copy_from_slice(between);
-        Self { corners, count: between.len() as u8, area }
+        Self { corners, count: between.len() as u8, parts: [1.0 / between.len() as f64; 4], area }
+    }
+
+    /// The same piece with another area, of which its first two corners have these parts.
+    pub(super) fn weighted(&self, area: Vector<D>, [a, b]: [f64; 2]) -> Self {
+        Self { parts: [a, b, 0.0, 0.0], area, ..*self }
     }
 
     /// Particles at its corners.
@@ -66,15 +74,15 @@ impl<const D: usize> Facet<D> {
         &self.corners[..usize::from(self.count)]
     }
 
-    /// The part of its area that each corner has.
-    pub fn share(&self) -> Vector<D> {
-        self.area * (1.0 / f64::from(self.count))
+    /// Its corners, each with the area that it has.
+    pub fn shares(&self) -> impl Iterator<Item = (usize, Vector<D>)> {
+        self.corners().iter().zip(self.parts).map(|(i, part)| (*i as usize, self.area * part))
     }
 
     /// The same between particles that have other numbers.
     fn renumbered(&self, new: &[u32]) -> Self {
         let between: Vec<u32> = self.corners().iter().map(|i| new[*i as usize]).collect();
-        Self::new(&between, self.area)
+        Self { parts: self.parts, ..Self::new(&between, self.area) }
     }
 }
 
@@ -91,25 +99,34 @@ pub struct Fill<const D: usize> {
     pub spacing: f64,
     /// Neighbours of each in the order of their numbers, where rows say who they are; empty: all within reach.
     pub rows: Vec<Vec<u32>>,
+    /// First moment in the plane that each stands for beyond volume times place; empty in space.
+    pub moment: Vec<Vector<D>>,
+    /// 2π times the plane area of each about an axis of revolution; empty elsewhere.
+    pub turn: Vec<f64>,
 }
 
 impl<const D: usize> Fill<D> {
     /// The same with all within reach as neighbours, but those for which `apart` holds.
     pub fn seen(mut self, apart: impl Fn(usize, usize) -> bool) -> Self {
-        if self.rows.is_empty() {
-            self.rows = neighbours(&self.x, REACH[D - 2] * self.spacing);
-        }
+        self.find_rows();
         for (i, row) in self.rows.iter_mut().enumerate() {
             row.retain(|j| !apart(i.min(*j as usize), i.max(*j as usize)));
         }
         self
     }
 
+    /// Makes all within reach neighbours where nobody has said who they are.
+    pub(super) fn find_rows(&mut self) {
+        if self.rows.is_empty() {
+            self.rows = neighbours(&self.x, REACH[D - 2] * self.spacing);
+        }
+    }
+
     /// Area vectors of all particles, pointing outwards; zero inside.
     pub fn areas(&self) -> Vec<Vector<D>> {
         let mut areas = vec![Vector::ZERO; self.x.len()];
         for facet in &self.facets {
-            facet.corners().iter().for_each(|i| areas[*i as usize] += facet.share());
+            facet.shares().for_each(|(i, area)| areas[i] += area);
         }
         areas
     }
@@ -129,8 +146,15 @@ impl<const D: usize> Fill<D> {
             } else {
                 order.iter().map(|i| renumbered(&self.rows[*i], &new)).collect()
             },
+            moment: picked(&self.moment, order),
+            turn: picked(&self.turn, order),
         }
     }
+}
+
+/// Those of `all` that are in `order`, if there are any.
+fn picked<T: Copy>(all: &[T], order: &[usize]) -> Vec<T> {
+    order.iter().filter_map(|i| all.get(*i).copied()).collect()
 }
 
 /// Neighbours by their new numbers, without those that have none.
@@ -160,6 +184,8 @@ pub struct Particles<const D: usize> {
     first: Vec<u32>,
     edges: Vec<Edge<D>>,
     inverse: Vec<[[f64; D]; D]>,
+    /// 2π times the plane area of each about an axis of revolution; empty elsewhere.
+    turn: Vec<f64>,
 }
 
 /// Why particles make no body.
@@ -211,7 +237,7 @@ impl<const D: usize> Particles<D> {
     pub fn new(bodies: Vec<Fill<D>>) -> Result<Self, Unfit> {
         let areas = bodies.iter().flat_map(Fill::areas).collect();
         let (mut x, mut volume, mut facets) = (Vec::new(), Vec::new(), Vec::new());
-        let (mut spacing, mut lists) = (Vec::new(), Vec::new());
+        let (mut spacing, mut lists, mut turn) = (Vec::new(), Vec::new(), Vec::new());
         for body in bodies {
             let (n, first) = (body.x.len(), x.len() as u32);
             let new: Vec<u32> = (first..first + n as u32).collect();
@@ -221,6 +247,7 @@ impl<const D: usize> Particles<D> {
             spacing.extend(std::iter::repeat_n(body.spacing, n));
             x.extend(body.x);
             volume.extend(body.volume);
+            turn.extend(body.turn);
         }
         let mut first = vec![0u32];
         lists.iter().for_each(|l| first.push(first[first.len() - 1] + l.len() as u32));
@@ -235,6 +262,7 @@ impl<const D: usize> Particles<D> {
             facets,
             spacing,
             first,
+            turn,
         };
         all.fit(&lists)?;
         all.close()?;
@@ -301,16 +329,31 @@ impl<const D: usize> Particles<D> {
         Ok(())
     }
 
-    /// Σ_i V_i g_ij − A_j: what the divergence theorem leaves at a particle.
+    /// True about an axis of revolution, where the first coordinate is the radius.
+    pub fn is_round(&self) -> bool {
+        !self.turn.is_empty()
+    }
+
+    /// 2π times the radius about an axis, half a spacing at least; 1 in the plane and in space: what h^D is taken times for the
+    /// volume around a particle.
+    pub fn around(&self, i: usize) -> f64 {
+        if self.is_round() { std::f64::consts::TAU * self.x[i][0].max(0.5 * self.spacing[i]) } else { 1.0 }
+    }
+
+    /// Σ_i V_i g_ij − A_j, and 2π a_j along the radius about an axis: what the divergence theorem leaves at a particle.
     fn open(&self, j: usize) -> Vector<D> {
-        self.of(j).iter().fold(-self.area[j], |sum, e| sum + e.counter - e.own)
+        let mut left = self.of(j).iter().fold(-self.area[j], |sum, e| sum + e.counter - e.own);
+        if let Some(turn) = self.turn.get(j) {
+            left[0] += turn;
+        }
+        left
     }
 
     /// The correction.
     fn close(&mut self) -> Result<(), Unfit> {
         let n = self.len();
-        let spacing = self.spacing.clone();
-        let size = |i: usize| spacing[i].powi(D as i32 - 1);
+        let sizes: Vec<f64> = (0..n).map(|i| self.spacing[i].powi(D as i32 - 1) * self.around(i)).collect();
+        let size = |i: usize| sizes[i];
         let (mut lambda, mut left) = (vec![Vector::ZERO; n], vec![Vector::ZERO; n]);
         sweep(&mut left, |j| -self.open(j));
         let mut gradient = vec![[Vector::ZERO; D]; n];

@@ -1,7 +1,8 @@
 //! The stiffness of a structure as a matrix, for those who factor it.
 //!
 //! K couples all particles that are members of one cloud: block (j, k) is Σ_m b_mj C_m b_mk / V_m with C = ∂P/∂F and the weights
-//! b of the cloud around m, and what stabilisation adds, c_m (w_j δ_jk − w_j d_j·M⁻¹d_k w_k).
+//! b of the cloud around m, and what stabilisation adds, c_m (w_j δ_jk − w_j d_j·M⁻¹d_k w_k). About an axis of revolution the
+//! hoop strain of m couples its displacement along the radius with all members.
 use super::body::Solid;
 use super::forces::Tangents;
 use crate::math::Vector;
@@ -31,9 +32,10 @@ impl<const D: usize> Solid<D> {
     /// `scale` K + `shift` M among what is free, one for what is held.
     pub fn matrix_of(&self, tangents: &Tangents<D>, scale: f64, shift: f64) -> Symmetric {
         let mut all = self.particles.pattern(D);
-        for m in 0..self.len() {
+        for m in self.with_volume() {
             self.add_cloud(m, tangents, scale, &mut all);
         }
+        self.add_hoops(tangents, scale, &mut all);
         for k in 0..self.len() * D {
             let at = all.first[k];
             let (i, a) = (k / D, k % D);
@@ -46,10 +48,15 @@ impl<const D: usize> Solid<D> {
         all
     }
 
+    /// Particles that hold anything: those on an axis of revolution do not.
+    fn with_volume(&self) -> impl Iterator<Item = usize> {
+        (0..self.len()).filter(|m| self.particles.volume[*m] > 0.0)
+    }
+
     /// The diagonal of K.
     pub fn diagonal_of(&self, tangents: &Tangents<D>) -> Vec<f64> {
         let mut all = vec![0.0; self.len() * D];
-        for m in 0..self.len() {
+        for m in self.with_volume() {
             let cloud = Cloud::around(self, m);
             for (k, particle) in cloud.members.iter().enumerate() {
                 let b = &cloud.weights[k];
@@ -59,8 +66,39 @@ impl<const D: usize> Solid<D> {
                     all[particle * D + c] += bent / self.particles.volume[m] + tangents.stiff[m] * cloud.residual[k][k];
                 }
             }
+            if self.is_round() {
+                all[m * D] += self.hoops(m, &cloud, tangents)[0][0];
+            }
         }
         all
+    }
+
+    /// What the hoop strain of `m` adds to K: to its own displacement along the radius, by those of all members.
+    fn hoops(&self, m: usize, cloud: &Cloud<D>, tangents: &Tangents<D>) -> Vec<[f64; D]> {
+        let (t, per_radius) = (&tangents.hoop[m], self.per_radius[m]);
+        let of =
+            |b: &Vector<D>| std::array::from_fn(|a| per_radius * (0..D).map(|s| t.of_strain[a][s] * b[s]).sum::<f64>());
+        let mut all: Vec<[f64; D]> = cloud.weights.iter().map(of).collect();
+        // its own weight is in row and column
+        all[0][0] = 2.0 * all[0][0] + t.own * per_radius * self.hoop_weight(m);
+        all
+    }
+
+    /// Adds what hoop strains and stresses are.
+    fn add_hoops(&self, tangents: &Tangents<D>, scale: f64, all: &mut Symmetric) {
+        for m in self.with_volume().filter(|m| self.is_round() && !self.is_held(*m, 0)) {
+            let cloud = Cloud::around(self, m);
+            let hoops = self.hoops(m, &cloud, tangents);
+            for (particle, hoop) in cloud.members.iter().zip(&hoops) {
+                for a in (0..D).filter(|a| !self.is_held(*particle, *a)) {
+                    let (k, own) = (particle * D + a, m * D);
+                    let (column, row) = (k.min(own), k.max(own));
+                    let range = all.first[column]..all.first[column + 1];
+                    let at = range.start + all.row[range.clone()].partition_point(|r| *r < row);
+                    all.value[at] += scale * hoop[a];
+                }
+            }
+        }
     }
 
     fn add_cloud(&self, m: usize, tangents: &Tangents<D>, scale: f64, all: &mut Symmetric) {

@@ -23,15 +23,17 @@ pub(super) fn weigh_in_plane(
     spacing: f64,
     inside: impl Fn(&Vector<2>) -> bool,
 ) -> Fill<2> {
-    let (mut volume, mut sides) = (vec![0.0; x.len()], Sides::default());
+    let (mut volume, mut moment, mut sides) = (vec![0.0; x.len()], vec![Vector::ZERO; x.len()], Sides::default());
     for triangle in triangulate(&x, outline) {
         let corners = triangle.map(|i| x[i as usize]);
         if !inside(&((corners[0] + corners[1] + corners[2]) * (1.0 / 3.0))) {
             continue;
         }
         let shares = shares(&corners);
+        let left = moment_left(&corners, &shares);
         for k in 0..3 {
             volume[triangle[k] as usize] += shares[k];
+            moment[triangle[k] as usize] += left;
             sides.add([triangle[k], triangle[(k + 1) % 3]]);
         }
     }
@@ -40,7 +42,13 @@ pub(super) fn weigh_in_plane(
         Facet::new(&side, Vector([along[1], -along[0]]))
     };
     let facets = sides.single().into_iter().map(facet).collect();
-    Fill { x, volume, facets, spacing, rows: Vec::new() }
+    Fill { x, volume, facets, spacing, moment, ..Fill::default() }
+}
+
+/// What the shares of a triangle leave of its first moment, a third of it: a part for each corner.
+fn moment_left(corners: &[Vector<2>; 3], shares: &[f64; 3]) -> Vector<2> {
+    let third = shares.iter().sum::<f64>() / 3.0;
+    corners.iter().zip(shares).fold(Vector::ZERO, |sum, (x, share)| sum + *x * ((third - share) / 3.0))
 }
 
 /// Sides of simplices, and how often each is there.
@@ -107,7 +115,7 @@ pub(super) fn weigh_in_space(
     }
     let facet = |side: [u32; 3]| Facet::new(&side, turn(side.map(|i| x[i as usize])));
     let facets = sides.single().into_iter().map(facet).collect();
-    Fill { x, volume, facets, spacing, rows: Vec::new() }
+    Fill { x, volume, facets, spacing, ..Fill::default() }
 }
 
 /// Sides of a tetrahedron, seen from outside.

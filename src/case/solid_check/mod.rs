@@ -226,6 +226,11 @@ impl Look<'_, '_> {
             let hint = "use a 3-D case, or leave `[flow]` out";
             self.draft.fail(&plane, "an axisymmetric body cannot be in the plane flow of a gas").hint(hint);
         }
+        let gravity = self.place("gravity");
+        if round && self.draft.numbers(&gravity).is_some_and(|g| g.first().is_some_and(|x| *x != 0.0)) {
+            let message = format!("`{gravity}` across the axis of an axisymmetric body");
+            self.draft.fail(&gravity, message).hint("gravity acts along the axis, `gravity = [0, \"-9.81 m/s2\"]`");
+        }
         if thick && (self.dimension == 3 || round) {
             let what = if round { "of an axisymmetric body, which is a full turn" } else { "in a 3-D case" };
             self.draft.fail(&thickness, format!("`{thickness}` {what}")).hint("remove it");

@@ -8,9 +8,10 @@ use super::{balance, setup, supported};
 use crate::case::{Case, Temporal};
 use crate::geometry::dimension;
 use crate::solid::forces::State;
+use crate::solid::{Plane, Support};
 use crate::system::Mechanical;
 
-/// A structure of particles before it is computed, in SI units; per unit depth in the plane.
+/// A structure of particles before it is computed, in SI units; per unit depth in the plane, of a whole turn about an axis.
 #[derive(Clone, Debug, Serialize)]
 pub struct SolidReport {
     /// Solid particles.
@@ -76,7 +77,9 @@ fn report<const D: usize>(case: &Case, input: &Path) -> Result<SolidReport, RunE
         _ => None,
     };
     let mut warnings = built.warnings;
-    if matches!(case.time, Temporal::Steady(_)) && solid.supports.is_empty() {
+    // a body of revolution moves as a whole along its axis alone
+    let holds = |s: &Support<D>| solid.plane != Plane::Axisymmetric || s.fixed[1];
+    if matches!(case.time, Temporal::Steady(_)) && !solid.supports.iter().any(holds) {
         warnings.push("nothing holds the structure: it has no equilibrium but where all forces cancel".into());
     }
     let spacing = &solid.particles.spacing;

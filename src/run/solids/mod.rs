@@ -16,7 +16,7 @@ use super::folder;
 use super::monitor::Monitor;
 use super::record::saved;
 use super::record::summary::Clock;
-use crate::case::{Case, Temporal};
+use crate::case::{Case, PlaneState, Temporal};
 use crate::geometry::dimension;
 use crate::observe::checkpoint;
 use crate::solid::modes::{Mode, Wanted, modes};
@@ -43,8 +43,8 @@ pub(super) fn supported(case: &Case) -> Result<(), RunError> {
     let any = |f: fn(&crate::case::Solid) -> bool| case.solids().any(|(_, _, s)| f(s));
     let asks = [
         (
-            any(|s| s.plane == crate::case::PlaneState::Axisymmetric),
-            "axisymmetric bodies made of particles (`plane = \"axisymmetric\"`)",
+            any(|s| s.plane == PlaneState::Axisymmetric) && any(|s| s.plane != PlaneState::Axisymmetric),
+            "bodies of which some only are axisymmetric (`plane = \"axisymmetric\"`)",
         ),
         (differ(case), "bodies with different `damping` or `stiffness_damping`"),
         (

@@ -44,7 +44,7 @@ pub struct SolidSummary {
     pub neighbours: f64,
     /// Rms part of the gradients' weights that the divergence theorem changed.
     pub correction: f64,
-    /// Mass of all bodies, per unit depth in the plane.
+    /// Mass of all bodies, per unit depth in the plane, of a whole turn about an axis.
     pub mass: f64,
     /// Steps taken.
     pub steps: u64,
@@ -69,7 +69,7 @@ pub struct SolidSummary {
     pub warnings: Vec<String>,
 }
 
-/// Energies of a structure, per unit depth in the plane.
+/// Energies of a structure, per unit depth in the plane, of a whole turn about an axis.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct SolidLedger {
     /// Kinetic energy at the start.

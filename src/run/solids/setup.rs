@@ -10,7 +10,7 @@ use crate::math::{Bounds, Vector};
 use crate::physics::solid::{Law, Material};
 use crate::solid::fill::{Lattice, relaxed};
 use crate::solid::particles::{Fill, Particles};
-use crate::solid::{Action, Contact, Damping, Load, Parts, Plane, RigidPlane, Solid, Structure, Support};
+use crate::solid::{Action, Contact, Damping, Load, Parts, Plane, RigidPlane, Solid, Structure, Support, held_on_axis};
 
 /// Artificial viscosity of explicit marches in which something yields or meets something.
 const SHOCKED: f64 = 0.1;
@@ -58,6 +58,7 @@ pub(in crate::run) fn build<const D: usize>(case: &Case, input: &Path) -> Result
         let cuts = cuts(case, &surface.bounds());
         let (fill, rows) = filled((body, data), &surface, &name, &cuts)?;
         warnings.extend(thin(&fill, rows, &name)?);
+        let fill = if data.plane == PlaneState::Axisymmetric { turned(fill, &name)? } else { fill };
         // without supports a body with a prescribed motion is led as a whole
         let led = case.motion_of(number).is_some() && data.supports.is_empty();
         parts.push(Part { data, name, fill, led, cuts });
@@ -76,14 +77,24 @@ pub(in crate::run) fn build<const D: usize>(case: &Case, input: &Path) -> Result
     ));
     let (materials, of) = materials(&parts, &particles, &owner)?;
     let omega = frequency(case);
-    let (supports, loads) = (supports(&parts, &particles, &owner, omega)?, loads(&parts, &particles, &owner, omega)?);
+    let (mut supports, loads) =
+        (supports(&parts, &particles, &owner, omega)?, loads(&parts, &particles, &owner, omega)?);
+    if let Some(support) = held_on_axis(&particles) {
+        let held = support.particles.len();
+        notes.push(format!("{held} particles on the axis of revolution, x = 0, are held along the radius"));
+        supports.push(support);
+    }
     let first = parts[0].data;
     let shocked =
         case.has_gas() || case.contact.is_some() || materials.iter().any(|m| matches!(m.law, Law::Plastic(_)));
     let usual = if shocked && matches!(case.time, Temporal::Explicit(_)) { SHOCKED } else { 0.0 };
     let probes = probes(&parts, &particles, &owner);
     let velocity = velocities(&parts, &particles, &owner);
-    let plane = if first.plane == PlaneState::Stress { Plane::Stress } else { Plane::Strain };
+    let plane = match first.plane {
+        PlaneState::Strain => Plane::Strain,
+        PlaneState::Stress => Plane::Stress,
+        PlaneState::Axisymmetric => Plane::Axisymmetric,
+    };
     let wetted = wetted(case, &parts, &particles, &owner);
     let solid = Solid::new(Parts {
         body: owner,
@@ -105,6 +116,28 @@ pub(in crate::run) fn build<const D: usize>(case: &Case, input: &Path) -> Result
     });
     let bodies = parts.iter().map(|p| p.name.clone()).collect();
     Ok(Built { structure: Structure::new(solid), bodies, probes, velocity, wetted, notes, warnings })
+}
+
+/// The section of a body, turned about the y axis, which it must not cross.
+fn turned<const D: usize>(fill: Fill<D>, name: &str) -> Result<Fill<D>, RunError> {
+    /// How far beyond the axis a particle may be by round-off, in spacings.
+    const ROUND_OFF: f64 = 1e-9;
+    let least = fill.x.iter().min_by(|a, b| a[0].total_cmp(&b[0])).filter(|x| x[0] < -ROUND_OFF * fill.spacing);
+    if let Some(x) = least {
+        return Err(RunError::Solid {
+            what: format!("`{name}` reaches ({:.6}, {:.6}), beyond the axis of revolution x = 0", x[0], x[1]),
+            hint: "x is the radius of an axisymmetric body: give the half of its section with x ≥ 0, or `translate` it"
+                .into(),
+        });
+    }
+    let fill = fill.turned();
+    match (0..fill.x.len()).find(|i| !(fill.turn[*i] > 0.0)) {
+        None => Ok(fill),
+        Some(i) => Err(RunError::Solid {
+            what: format!("a particle of `{name}` at ({:.6}, {:.6}) has no area", fill.x[i][0], fill.x[i][1]),
+            hint: "take a smaller `spacing`: at sharp edges of the section it decides".into(),
+        }),
+    }
 }
 
 /// A plane of symmetry that cuts a body.
@@ -184,7 +217,7 @@ fn wetted<const D: usize>(
         };
         let out = corners.iter().any(|i| outside(&particles.x[*i as usize], slack(particles, *i as usize)));
         if !out && !cuts.iter().any(on) {
-            corners.iter().for_each(|i| all[*i as usize] += facet.share());
+            facet.shares().for_each(|(i, area)| all[i] += area);
         }
     }
     all
@@ -474,7 +507,7 @@ fn areas<const D: usize>(
         usize::from(owner[i]) == body && place.contains(&particles.x[i].0, slack(particles, i))
     };
     for facet in particles.facets.iter().filter(|f| f.corners().iter().all(inside)) {
-        facet.corners().iter().for_each(|i| all[*i as usize] += facet.share());
+        facet.shares().for_each(|(i, area)| all[i] += area);
     }
     all.into_iter().zip(0..).filter(|(a, _)| *a != Vector::ZERO).map(|(a, i)| (i, a)).collect()
 }
