@@ -83,6 +83,12 @@ pub(in crate::run) fn build<const D: usize>(case: &Case, input: &Path) -> Result
         let held = support.particles.len();
         notes.push(format!("{held} particles on the axis of revolution, x = 0, are held along the radius"));
         supports.push(support);
+        if materials.iter().any(|m| matches!(m.law, Law::Plastic(_))) {
+            warnings.push(
+                "what is crushed along an axis of revolution may fold there once it has yielded: use a case in space"
+                    .into(),
+            );
+        }
     }
     let first = parts[0].data;
     let shocked =
