@@ -47,7 +47,7 @@ mod write;
 
 pub use error::{CaseError, CaseErrors};
 pub use flow::{FreeStreamScales, NEVER_LAMINAR, NO_CONTINUUM, Units, ViscosityLaw, Viscous, Wall};
-pub use flutter::Flutter;
+pub use flutter::{Flutter, Matching};
 pub use gaf::{AnyMode, FlexibleMode, Gaf, Mode};
 pub use mode_file::{ModeTable, read_mode};
 pub use motion::{
