@@ -171,6 +171,9 @@ pub(crate) struct Flutter {
     /// Folder for the tables.
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
+    /// Take the forces from `flutter.json` or `gaf.json` of a former run: the structure alone, without a flow.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) forces: Option<PathBuf>,
     #[command(flatten)]
     pub(crate) threads: Threads,
     #[command(flatten)]

@@ -12,12 +12,29 @@ pub struct Flutter {
     /// Reduced frequencies that forces are computed at first; empty: those of [`Self::first`].
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub reduced_frequencies: Vec<f64>,
-    /// Greatest speed looked at, over that of the structure.
+    /// What is varied.
+    #[serde(rename = "match")]
+    pub matching: Matching,
+    /// Greatest speed looked at, over that of the structure; in a tunnel density over that of the case.
     pub most: f64,
     /// Part by which two successive interpolations may differ in a speed.
     pub accuracy: f64,
     /// Greatest number of frequencies.
     pub frequencies: u32,
+    /// The structure in the stream is also written as a linear system of first order.
+    pub state_space: bool,
+}
+
+/// How the stream is varied at one Mach number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Matching {
+    /// Speed and sound speed, at the density of the case.
+    None,
+    /// Density, at the sound speed of the case.
+    Density,
+    /// Altitude in the standard atmosphere, and density and sound speed with it.
+    Altitude,
 }
 
 impl Flutter {

@@ -17,10 +17,17 @@ pub(super) static FLUTTER: Table = Table::of(&[
          More are added near each crossing.",
     ),
     Field::defaulted(
+        "match",
+        Kind::Words(MATCHING),
+        Absent::Word("none"),
+        "What is varied at a Mach number until a motion neither grows nor decays.",
+    ),
+    Field::defaulted(
         "most",
         Kind::Number(Range { min: 0.0, max: 1000.0, closed: false }),
         Absent::Number(4.0),
-        "Greatest speed that is looked at, over that of the structure (`reduced_speed`, `speed_index`, or the free stream).",
+        "Greatest speed that is looked at, over that of the structure (`reduced_speed`, `speed_index`, or the free stream); with \
+         `match = \"density\"` greatest density over that of the case. Altitudes are looked at from 5 km below the sea.",
     ),
     Field::defaulted(
         "accuracy",
@@ -34,4 +41,16 @@ pub(super) static FLUTTER: Table = Table::of(&[
         Absent::Integer(12),
         "Greatest number of frequencies at a Mach number.",
     ),
+    Field::defaulted(
+        "state_space",
+        Kind::Flag,
+        Absent::Flag(false),
+        "Write the structure in the stream as a linear system of first order as well, at the first crossing of each Mach number.",
+    ),
 ]);
+
+const MATCHING: &[(&str, &str)] = &[
+    ("none", "the speed, and the sound speed with it, at the density of the case"),
+    ("density", "the density, at the sound speed of the case: a wind tunnel"),
+    ("altitude", "the altitude in the standard atmosphere of 1976: speed, density and Mach number belong together"),
+];

@@ -47,7 +47,7 @@ mod write;
 
 pub use error::{CaseError, CaseErrors};
 pub use flow::{FreeStreamScales, NEVER_LAMINAR, NO_CONTINUUM, Units, ViscosityLaw, Viscous, Wall};
-pub use flutter::Flutter;
+pub use flutter::{Flutter, Matching};
 pub use gaf::{AnyMode, FlexibleMode, Gaf, Mode};
 pub use mode_file::{ModeTable, read_mode};
 pub use motion::{
@@ -70,7 +70,7 @@ pub use solid::{
 pub use structure::{
     Freedom, PerCoordinate, SpringShape, Structure, StructureFlap, StructureForce, StructureMode, StructureModel,
 };
-pub use templates::{SCHEMA_FILE, TEMPLATES, template};
+pub use templates::{SCHEMA_FILE, TEMPLATES, mode_files, template};
 pub use text::{TextError, decimal_comma, numbers_of, open_regular, rounded, separator, text_of};
 pub use time::{
     Automatic, Dual, Explicit, HarmonicCount, Harmonics, Modes, Newmark, RungeKutta, Steady, SteadyMethod, Temporal,

@@ -1,4 +1,5 @@
 //! Pointwise physics: no index, no slice, no particle.
+pub mod atmosphere;
 pub mod gas;
 pub mod outgoing;
 pub mod riemann;

@@ -2,65 +2,96 @@
 //! structure begin to grow.
 //!
 //! Forces are computed at a few frequencies and at none, and interpolated by rational functions. Where that finds a crossing, forces are
-//! computed at its frequency as well, until the speed of no crossing changes by more than is asked: that change is its error bar.
-use num_complex::Complex64;
+//! computed at its frequency as well, until the speed of no crossing changes by more than is asked: that change is its error bar. Forces
+//! that a former run left serve other structures without any flow; their error bar is the change when the nearest ones are left out.
+use std::path::Path;
 
+mod held;
 mod record;
+mod scales;
+mod search;
+mod state_space;
+mod stored;
 
+pub use held::Mark;
 pub use record::{Boundary, FlutterAt, FlutterRow, MotionRow};
+pub use state_space::StateSpaceAt;
 
+use self::held::Held;
+use self::scales::Scales;
+use self::search::Search;
+use self::stored::Stored;
 use super::error::RunError;
 use super::folder::{self, Places};
-use super::look::reference::chord;
 use super::monitor::Monitor;
 use super::record::Log;
 use super::session::{Outcome, Session};
 use super::setup;
 use super::solids::with_own_modes;
 use super::studies::ForceSource;
-use crate::case::{Case, Flutter as Plan};
-use crate::geometry::dimension;
-use crate::math::rational::Rational;
-use crate::structure::Matrices;
-use crate::structure::flutter::{Crossing, Flutter, Kind, Point};
+use crate::case::{Case, Flutter as Plan, Matching};
+use crate::physics::atmosphere;
 
-/// Misfit of rational functions to the samples.
-const MISFIT: f64 = 1e-7;
-/// Frequency, over the highest asked for, beyond which motions are not told.
-const BEYOND: f64 = 2.0;
-/// Frequencies that are nearer to one another than this part are one.
-const SAME: f64 = 5e-4;
-/// Numbers that turn those of the solver into those of users.
-struct Scales {
-    /// Half of the reference chord.
-    semichord: f64,
-    /// Speed of the stream, in sound speeds.
-    stream: f64,
-    /// Speed of the stream in the units of the case.
-    speed: f64,
-    /// Solver rate to cycles per unit of time of the case.
-    cycles: f64,
-    /// V* and V_f of the structure in the case.
-    reduced_speed: Option<f64>,
-    speed_index: Option<f64>,
-}
+/// Parts by which the gas of a case may differ from the air of the standard atmosphere.
+const AIR: f64 = 0.005;
 
 /// Seeks the boundary of the table `[flutter]`, into a fresh folder; `None` when the monitor says stop.
 pub fn flutter(case: &Case, places: &Places, monitor: &mut dyn Monitor) -> Result<Option<Boundary>, RunError> {
-    let Some(plan) = case.flutter.clone() else {
+    sought(case, places, None, monitor)
+}
+
+/// The same with the forces of a file, `flutter.json` of a former run or `gaf.json`: the boundary of the structure alone, without a flow.
+pub fn again(case: &Case, places: &Places, forces: &Path, monitor: &mut dyn Monitor) -> Result<Boundary, RunError> {
+    let found = sought(case, places, Some(forces), monitor)?;
+    Ok(found.unwrap_or_else(|| Boundary::new(&case.title)))
+}
+
+/// The same without a folder.
+pub(crate) fn in_memory(case: &Case, input: &Path, monitor: &mut dyn Monitor) -> Result<Option<Boundary>, RunError> {
+    let plan = planned(case)?;
+    let mut all = Boundary::new(&case.title);
+    for mach in plan.mach.clone() {
+        let Some(found) = at_mach(case, &plan, mach, input, monitor)? else { return Ok(None) };
+        all.flutter.push(found);
+    }
+    Ok(Some(all))
+}
+
+/// The table `[flutter]` with all its Mach numbers.
+fn planned(case: &Case) -> Result<Plan, RunError> {
+    let Some(mut plan) = case.flutter.clone() else {
         return Err(RunError::Unsupported {
             what: "the case has no table `[flutter]`".into(),
             hint: "add one: `[flutter]` alone seeks the boundary at the Mach number of `[flow]`",
         });
     };
-    refused(case)?;
+    if plan.mach.is_empty() {
+        plan.mach = vec![case.flow.reference().mach];
+    }
+    refused(case, &plan)?;
     setup::supported(case)?;
+    Ok(plan)
+}
+
+fn sought(
+    case: &Case,
+    places: &Places,
+    forces: Option<&Path>,
+    monitor: &mut dyn Monitor,
+) -> Result<Option<Boundary>, RunError> {
+    let plan = planned(case)?;
     let case = &with_own_modes(case, &places.input)?;
+    let stored = forces.map(Stored::read).transpose()?;
     let _held = folder::create_once(case, &places.input, &places.out)?;
-    let machs = if plan.mach.is_empty() { vec![case.flow.reference().mach] } else { plan.mach.clone() };
     let mut all = Boundary::new(&case.title);
-    for mach in machs {
-        let Some(found) = at_mach(case, &plan, mach, places, monitor)? else { return Ok(None) };
+    for mach in plan.mach.clone() {
+        let found = match &stored {
+            Some(stored) => Some(of_stored(case, &plan, mach, (stored, &places.input))?),
+            None => at_mach(case, &plan, mach, &places.input, monitor)?,
+        };
+        let Some(mut found) = found else { return Ok(None) };
+        found.read = forces.map(|f| f.display().to_string());
+        found.warnings.iter().for_each(|w| monitor.warn(&format!("Mach {mach}: {w}")));
         all.flutter.push(found);
         all.write(&places.out)?;
     }
@@ -69,7 +100,10 @@ pub fn flutter(case: &Case, places: &Places, monitor: &mut dyn Monitor) -> Resul
 }
 
 /// What nothing flutters of, or not in one go.
-fn refused(case: &Case) -> Result<(), RunError> {
+fn refused(case: &Case, plan: &Plan) -> Result<(), RunError> {
+    let (matching, machs, flow) = (plan.matching, plan.mach.len(), &case.flow);
+    let off = |a: f64, b: f64| (a / b - 1.0).abs() > AIR;
+    let air = !off(flow.gamma, atmosphere::GAMMA) && !off(flow.gas_constant, atmosphere::GAS_CONSTANT);
     let asks = [
         (case.structures.is_empty(), "flutter without a `[structure]`", "add one: its coordinates are the modes"),
         (
@@ -87,6 +121,21 @@ fn refused(case: &Case) -> Result<(), RunError> {
             "the flutter boundary of a stream that is given by `velocity`",
             "give `mach` instead: the speed is what is sought",
         ),
+        (
+            matching == Matching::Altitude && !flow.is_dimensional(),
+            "flutter in the standard atmosphere for a stream without units",
+            "give two of `pressure`, `temperature` and `density` in `[flow]`, and masses and frequencies with units",
+        ),
+        (
+            matching == Matching::Altitude && !air,
+            "flutter in the standard atmosphere in another gas than air",
+            "leave out `gamma` and `gas_constant`, or use `match = \"none\"` or `\"density\"`",
+        ),
+        (
+            goes_with_speed(case) && (matching == Matching::Altitude || (matching == Matching::Density && machs > 1)),
+            "matched speeds of a structure whose frequencies go with the speed of the stream",
+            "give `frequency` or `stiffness` instead of `speed_index`, `reduced_speed`, `reduced_velocity` or `reduced_frequency`",
+        ),
     ];
     match asks.into_iter().find(|a| a.0) {
         Some((_, what, hint)) => {
@@ -96,208 +145,54 @@ fn refused(case: &Case) -> Result<(), RunError> {
     }
 }
 
+/// True where the structure becomes stiffer with the speed of the stream, so that each Mach number has another one.
+fn goes_with_speed(case: &Case) -> bool {
+    case.structures.iter().any(|s| {
+        let numbers = [s.speed_index, s.reduced_speed, s.reduced_velocity];
+        numbers.iter().any(Option::is_some) || s.modes.iter().any(|m| m.reduced_frequency.is_some())
+    })
+}
+
 /// The boundary at one Mach number.
 fn at_mach(
     case: &Case,
     plan: &Plan,
     mach: f64,
-    places: &Places,
+    input: &Path,
     monitor: &mut dyn Monitor,
 ) -> Result<Option<FlutterAt>, RunError> {
     let own = case.flutter_case(mach);
-    let chord = match dimension(case) {
-        2 => chord(case, setup::surface::<2>(case, &places.input)?.0.as_ref()),
-        _ => chord(case, setup::surface::<3>(case, &places.input)?.0.as_ref()),
-    };
-    let mut session = Session::open(&own, &places.input)?;
+    let held = Held::of(&own, input)?;
+    let scales = Scales::of(&own, held.chord, plan.matching);
+    let mut session = Session::open(&own, input)?;
     let mut found = None;
     let mut then = |source: &mut dyn ForceSource, log: &mut Log<'_>| {
-        let scales = Scales::of(&own, chord, log);
-        found = Some(Search::new(source, &scales, plan).run(log));
+        found = Some(Search::new(&held, &scales, plan, Vec::new(), 0.0).run(source, log));
         Ok(())
     };
     let outcome = session.solve_then(monitor, Some(&mut then))?;
-    let (Outcome::Finished(summary), Some(mut at)) = (outcome, found) else { return Ok(None) };
-    at.mach = mach;
+    let (Outcome::Finished(summary), Some(at)) = (outcome, found) else { return Ok(None) };
+    let mut at = placed(at, &own, mach, held);
     at.steady = [summary.loads.cl, summary.loads.cd, summary.loads.cm];
     at.orders = summary.residual_drop.unwrap_or(0.0);
     (at.particles, at.cpu_seconds) = (summary.particles, summary.cpu_seconds);
     if !summary.succeeded() {
         at.warnings.push("the steady flow did not converge: forces about it are doubtful".into());
     }
-    at.warnings.iter().for_each(|w| monitor.warn(&format!("Mach {mach}: {w}")));
     Ok(Some(at))
 }
 
-impl Scales {
-    fn of(case: &Case, chord: f64, log: &Log<'_>) -> Self {
-        let reference = case.flow.reference();
-        let structure = &case.structures[0];
-        let index = structure.speed_index;
-        let root = structure.mass_ratio.map(f64::sqrt);
-        let reduced = structure
-            .reduced_speed
-            .or(structure.reduced_velocity.map(|u| u / std::f64::consts::PI))
-            .or(index.zip(root).map(|(v, root)| v * root));
-        Self {
-            semichord: structure.semichord.map_or(0.5 * chord, |b| b.0),
-            stream: reference.mach,
-            speed: reference.speed,
-            cycles: 1.0 / (log.units.case_time(1.0) * std::f64::consts::TAU),
-            reduced_speed: reduced,
-            speed_index: index.or(reduced.zip(root).map(|(v, root)| v / root)),
-        }
-    }
-
-    fn reduced_frequency(&self, kappa: f64) -> f64 {
-        kappa * self.semichord / self.stream
-    }
+/// The same from forces that are known.
+fn of_stored(case: &Case, plan: &Plan, mach: f64, (stored, input): (&Stored, &Path)) -> Result<FlutterAt, RunError> {
+    let own = case.flutter_case(mach);
+    let held = Held::of(&own, input)?;
+    let scales = Scales::of(&own, held.chord, plan.matching);
+    let samples = stored.samples(mach, own.flow.alpha.0.to_degrees(), &held)?;
+    let at = Search::new(&held, &scales, plan, samples.all, samples.residual).again();
+    Ok(placed(at, &own, mach, held))
 }
 
-/// The search at one Mach number.
-struct Search<'a> {
-    source: &'a mut dyn ForceSource,
-    scales: &'a Scales,
-    plan: &'a Plan,
-    matrices: Matrices,
-    samples: Vec<(f64, Vec<Complex64>)>,
-    iterations: usize,
-    residual: f64,
-}
-
-impl<'a> Search<'a> {
-    fn new(source: &'a mut dyn ForceSource, scales: &'a Scales, plan: &'a Plan) -> Self {
-        let matrices = source.matrices();
-        Self { source, scales, plan, matrices, samples: Vec::new(), iterations: 0, residual: 0.0 }
-    }
-
-    /// Computes forces at the angular frequency `omega`.
-    fn sample(&mut self, omega: f64, log: &mut Log<'_>) {
-        let (forces, ended) = self.source.forces(omega);
-        let iterations: usize = ended.iter().map(|e| e.iterations).sum();
-        let left = ended.iter().map(|e| e.left).fold(0.0, f64::max);
-        self.iterations += iterations;
-        self.residual = self.residual.max(left);
-        log.note(&format!(
-            "forces at k = {:.4}: {iterations} linear iterations for {} modes, residual {left:.0e}",
-            self.scales.reduced_frequency(omega),
-            ended.len()
-        ));
-        self.samples.push((omega, forces));
-        self.samples.sort_by(|a, b| a.0.total_cmp(&b.0));
-    }
-
-    fn run(mut self, log: &mut Log<'_>) -> FlutterAt {
-        self.sample(0.0, log);
-        for k in self.plan.first() {
-            self.sample(k * self.scales.stream / self.scales.semichord, log);
-        }
-        let mut warnings = Vec::new();
-        let (mut branches, mut crossings) = self.solved();
-        // no change is known of the first ones
-        let mut errors = vec![f64::INFINITY; crossings.len()];
-        while self.samples.len() < self.plan.frequencies as usize {
-            let new = |c: &Crossing| self.samples.iter().all(|(w, _)| (w - c.kappa).abs() > SAME * c.kappa);
-            let open = crossings.iter().zip(&errors).filter(|(c, e)| **e > self.plan.accuracy && new(c));
-            let Some(worst) = open.max_by(|a, b| a.1.total_cmp(b.1).then(b.0.x.total_cmp(&a.0.x))) else { break };
-            let kappa = worst.0.kappa;
-            self.sample(kappa, log);
-            let before = std::mem::take(&mut crossings);
-            (branches, crossings) = self.solved();
-            errors = crossings.iter().map(|c| changed(c, &before)).collect();
-        }
-        for (crossing, error) in crossings.iter().zip(&mut errors) {
-            // forces at its own frequency, and no other fit to hold it against
-            if !error.is_finite() && crossing.kind == Kind::Divergence {
-                *error = self.residual;
-            }
-            if *error > self.plan.accuracy {
-                warnings.push(format!(
-                    "the crossing at {:.4} of the speed is known to {:.1} % only: allow more `frequencies`",
-                    crossing.x,
-                    100.0 * error.min(1.0)
-                ));
-            }
-        }
-        self.told(&branches, &crossings, &errors, warnings)
-    }
-
-    /// Motions and crossings with the forces known so far.
-    fn solved(&self) -> (Vec<Vec<Point>>, Vec<Crossing>) {
-        let Some(fit) = Rational::of(&self.samples, MISFIT) else { return (Vec::new(), Vec::new()) };
-        let forces = |kappa: f64| fit.at(Complex64::new(0.0, kappa));
-        let flutter = Flutter::new(&self.matrices, &forces);
-        let mut branches = flutter.branches(self.plan.most);
-        let mut crossings = flutter.crossings(&branches, self.plan.most);
-        // at the lowest speeds forces hardly act, and would be guessed
-        let highest = BEYOND * self.highest();
-        branches.iter_mut().for_each(|b| b.retain(|p| p.lambda.im.abs() <= highest * p.x));
-        crossings.retain(|c| c.kappa <= highest);
-        (branches, crossings)
-    }
-
-    /// The highest angular frequency asked for.
-    fn highest(&self) -> f64 {
-        self.plan.first().last().map_or(0.0, |k| k * self.scales.stream / self.scales.semichord)
-    }
-
-    fn told(
-        &self,
-        branches: &[Vec<Point>],
-        crossings: &[Crossing],
-        errors: &[f64],
-        warnings: Vec<String>,
-    ) -> FlutterAt {
-        let s = self.scales;
-        let last = self.samples.last().map_or(0.0, |x| x.0) * (1.0 + SAME);
-        // the frequency of pitch alone: what V* is measured with
-        let alone = s.reduced_speed.map(|v| s.stream / (v * s.semichord));
-        let row = |(c, error): (&Crossing, &f64)| FlutterRow {
-            kind: match c.kind {
-                Kind::Flutter => "flutter",
-                Kind::Restabilised => "restabilised",
-                Kind::Divergence => "divergence",
-            },
-            mode: c.mode + 1,
-            speed_ratio: c.x,
-            speed_index: s.speed_index.map(|v| v * c.x),
-            reduced_speed: s.reduced_speed.map(|v| v * c.x),
-            speed: s.speed * c.x,
-            reduced_frequency: s.reduced_frequency(c.kappa),
-            frequency: s.cycles * c.frequency,
-            frequency_ratio: alone.map(|w| c.frequency / w),
-            error: *error,
-            extrapolated: c.kappa > last,
-        };
-        let fastest = branches.iter().flatten().map(|p| p.lambda.norm()).fold(f64::MIN_POSITIVE, f64::max);
-        let motion = |(mode, p): (usize, &Point)| MotionRow {
-            mode: mode + 1,
-            speed_ratio: p.x,
-            reduced_frequency: s.reduced_frequency(p.lambda.im.abs() / p.x),
-            damping: 2.0 * p.lambda.re / p.lambda.norm(),
-            frequency: s.cycles * p.lambda.im.abs(),
-            eigenvalue: [p.lambda.re / fastest, p.lambda.im / fastest],
-        };
-        FlutterAt {
-            mach: s.stream,
-            crossings: crossings.iter().zip(errors).map(row).collect(),
-            motions: branches.iter().enumerate().flat_map(|(m, b)| b.iter().map(move |p| (m, p))).map(motion).collect(),
-            reduced_frequencies: self.samples.iter().map(|x| s.reduced_frequency(x.0)).collect(),
-            forces: self.samples.iter().map(|x| x.1.iter().map(|z| [z.re, z.im]).collect()).collect(),
-            coordinates: self.source.names(),
-            steady: [0.0; 3],
-            orders: 0.0,
-            particles: 0,
-            linear_iterations: self.iterations,
-            residual: self.residual,
-            cpu_seconds: 0.0,
-            warnings,
-        }
-    }
-}
-
-/// Relative change of the speed of a crossing since the interpolation before; infinite where that had none like it.
-fn changed(crossing: &Crossing, before: &[Crossing]) -> f64 {
-    let like = before.iter().filter(|b| b.kind == crossing.kind && b.mode == crossing.mode);
-    like.map(|b| (b.x - crossing.x).abs() / crossing.x).fold(f64::INFINITY, f64::min)
+/// With what tells whether its forces serve another case.
+fn placed(at: FlutterAt, own: &Case, mach: f64, held: Held) -> FlutterAt {
+    FlutterAt { mach, chord: held.chord, moved: held.marks, alpha_deg: own.flow.alpha.0.to_degrees(), ..at }
 }

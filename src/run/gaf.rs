@@ -7,6 +7,7 @@ use serde_json::json;
 
 use super::error::RunError;
 use super::folder::{self, Places};
+use super::look::reference;
 use super::monitor::Monitor;
 use super::record::summary::Summary;
 use super::session::{Outcome, Session};
@@ -57,6 +58,25 @@ pub struct Matrices {
     pub columns: Vec<Column>,
     /// Change above which a column is told to be nonlinear.
     pub linearity: f64,
+    /// Where forces hold.
+    pub conditions: Conditions,
+}
+
+/// The flow and the lengths that forces hold for.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Conditions {
+    /// Mach number.
+    pub mach: f64,
+    /// Angle of attack.
+    pub alpha_deg: f64,
+    /// Reference chord c and area S (2-D: c).
+    pub chord: f64,
+    /// S.
+    pub area: f64,
+    /// Length L of the reduced frequencies.
+    pub reduced_length: f64,
+    /// Point about which the body pitches.
+    pub pivot: Option<Vec<f64>>,
 }
 
 /// Computes the matrices of the table `[gaf]` into a fresh folder, or one where those of the same case were not all found; `None` when the
@@ -71,7 +91,8 @@ pub fn gaf(case: &Case, places: &Places, monitor: &mut dyn Monitor) -> Result<Op
     setup::supported(case)?;
     let _held = folder::create_once(case, &places.input, &places.out)?;
     let modes = plan.all_modes().map(|m| m.name().to_owned()).collect();
-    let mut matrices = Matrices { modes, columns: Vec::new(), linearity: plan.linearity };
+    let conditions = Conditions::of(case, &plan, &places.input)?;
+    let mut matrices = Matrices { modes, columns: Vec::new(), linearity: plan.linearity, conditions };
     for &k in &plan.reduced_frequencies {
         for mode in plan.all_modes() {
             let swing = Swing { plan: &plan, mode, k };
@@ -148,6 +169,30 @@ impl Swing<'_> {
     }
 }
 
+impl Conditions {
+    fn of(case: &Case, plan: &Gaf, input: &Path) -> Result<Self, RunError> {
+        let (chord, area) = match dimension(case) {
+            2 => {
+                let chord =
+                    setup::surface::<2>(case, input)?.0.as_ref().map_or(1.0, |s| reference::chord(case, Some(s)));
+                (chord, chord)
+            }
+            _ => {
+                let seen = setup::surface::<3>(case, input)?.0.as_ref().map(|s| reference::planform(case, s));
+                seen.map_or((1.0, 1.0), |seen| (seen.chord, seen.area))
+            }
+        };
+        Ok(Self {
+            mach: case.flow.reference().mach,
+            alpha_deg: case.flow.alpha.0.to_degrees(),
+            chord,
+            area,
+            reduced_length: plan.reduced_length.map_or(0.5 * chord, |l| l.0),
+            pivot: plan.pivot.as_ref().map(|p| p.iter().map(|x| x.0).collect()),
+        })
+    }
+}
+
 impl Matrices {
     /// Writes `gaf.csv`, a row for each column of the matrices, and `gaf.json`.
     fn write(&self, frequencies: &[f64], scale: Scale, out: &Path) -> Result<(), RunError> {
@@ -169,8 +214,15 @@ impl Matrices {
         let names: Vec<&str> = names.iter().map(String::as_str).collect();
         write_csv(&out.join(folder::MATRICES), &names, rows)?;
         describe_tables(out, scale, &[])?;
+        let c = &self.conditions;
         let whole = json!({
             "convention": CONVENTION,
+            "mach": c.mach,
+            "alpha_deg": c.alpha_deg,
+            "chord": c.chord,
+            "area": c.area,
+            "reduced_length": c.reduced_length,
+            "pivot": c.pivot,
             "rows": ["cl", "cm"],
             "modes": self.modes,
             "matrices": frequencies.iter().map(|k| self.matrix(*k)).collect::<Vec<_>>(),

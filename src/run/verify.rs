@@ -8,6 +8,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 use super::error::RunError;
+use super::flutter::{self, Boundary};
 use super::measure::{self, Measured, Value};
 use super::monitor::{Monitor, Tick};
 use super::session::{Outcome, Session};
@@ -91,6 +92,7 @@ pub struct Walk {
     fast: bool,
     runs: BTreeMap<(String, u64), Result<Measured, String>>,
     structures: BTreeMap<String, Result<SolidSummary, String>>,
+    boundaries: BTreeMap<String, Result<Boundary, String>>,
 }
 
 impl Walk {
@@ -108,7 +110,8 @@ impl Walk {
             let names = folders.iter().map(|f| format!("`{}`", f.name)).collect::<Vec<_>>().join(", ");
             return Err(WalkError::NoCase { folder: root.display().to_string(), names });
         }
-        Ok(Self { folders, chosen, fast: selection.fast, runs: BTreeMap::new(), structures: BTreeMap::new() })
+        let (runs, structures, boundaries) = (BTreeMap::new(), BTreeMap::new(), BTreeMap::new());
+        Ok(Self { folders, chosen, fast: selection.fast, runs, structures, boundaries })
     }
 
     /// The cases to judge.
@@ -165,6 +168,14 @@ impl Walk {
         if !folder.case.has_gas() {
             return measure::solid::value(self.structure(folder, monitor)?, claim);
         }
+        if claim.metric.is_of_flutter() {
+            let other = claim.other.as_ref().map(|name| self.named(name, folder)).transpose()?;
+            other.as_ref().map(|other| self.boundary(other, monitor).map(|_| ())).transpose()?;
+            self.boundary(folder, monitor)?;
+            let known = |f: &Folder| self.boundaries.get(&f.name).and_then(|b| b.as_ref().ok());
+            let own = known(folder).ok_or("the case did not run")?;
+            return measure::boundary::value(own, other.as_ref().and_then(known), claim);
+        }
         if claim.metric.needs_cases() {
             return self.calibrate(claim, folder, monitor);
         }
@@ -209,6 +220,28 @@ impl Walk {
         found.as_ref().map_err(Clone::clone)
     }
 
+    /// Seeks a flutter boundary unless that has been done.
+    fn boundary(&mut self, folder: &Folder, monitor: &mut dyn Monitor) -> Result<&Boundary, String> {
+        let name = folder.name.clone();
+        if !self.boundaries.contains_key(&name) && !monitor.stop() {
+            monitor.note(&name);
+            let found = flutter::in_memory(&folder.case, &folder.path, &mut Quiet { monitor });
+            let found = match found {
+                Ok(Some(boundary)) => Ok(boundary),
+                Ok(None) => Err("the run was interrupted".into()),
+                Err(problem) => Err(reason(&problem)),
+            };
+            if let Ok(b) = &found {
+                let cpu: f64 = b.flutter.iter().map(|at| at.cpu_seconds).sum();
+                let particles = b.flutter.first().map_or(0, |at| at.particles);
+                monitor.note(&format!("{name}: {particles} particles, {cpu:.1} s of processor time"));
+            }
+            self.boundaries.insert(name.clone(), found);
+        }
+        let found = self.boundaries.get(&name).ok_or("the case did not run")?;
+        found.as_ref().map_err(Clone::clone)
+    }
+
     /// Runs every case of the table of `claim`, and holds their error bars against the exact loads.
     fn calibrate(&mut self, claim: &Claim, folder: &Folder, monitor: &mut dyn Monitor) -> Value {
         let name = claim.file.as_deref().ok_or("the claim names no `file` of loads")?;
@@ -238,17 +271,22 @@ impl Walk {
 
     /// Runs the case that a claim compares with: that of another folder, or another file of this one.
     fn other(&mut self, name: &str, here: &Folder, monitor: &mut dyn Monitor) -> Result<(String, u64), String> {
-        let folder = if name == FILES[0] {
-            Folder::read(&here.path).map_err(|e| e.to_string())?
-        } else if name.ends_with(".toml") {
-            here.beside(name).map_err(|e| e.to_string())?
-        } else {
-            let found = self.folders.iter().find(|f| f.name == name).cloned();
-            found.ok_or_else(|| format!("there is no case `{name}`"))?
-        };
+        let folder = self.named(name, here)?;
         let key = self.ensure(&folder, &folder.case, monitor);
         self.at(&key)?;
         Ok(key)
+    }
+
+    /// The case that a claim compares with: that of another folder, or another file of this one.
+    fn named(&self, name: &str, here: &Folder) -> Result<Folder, String> {
+        if name == FILES[0] {
+            Folder::read(&here.path).map_err(|e| e.to_string())
+        } else if name.ends_with(".toml") {
+            here.beside(name).map_err(|e| e.to_string())
+        } else {
+            let found = self.folders.iter().find(|f| f.name == name).cloned();
+            found.ok_or_else(|| format!("there is no case `{name}`"))
+        }
     }
 
     fn at(&self, key: &(String, u64)) -> Result<&Measured, String> {

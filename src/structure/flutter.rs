@@ -5,7 +5,8 @@
 //! D(λ, x) q = [M λ² + C λ + K − x² Q(iκ)] q = 0, κ = Im λ/x,
 //!
 //! the p-k method (Hassig, J. Aircraft 8, 1971): forces are those of the harmonic motion with the same frequency, exact where the motion
-//! neither grows nor decays. κ = 0 is the limit of steady displacements.
+//! neither grows nor decays. κ = 0 is the limit of steady displacements. Where density is varied instead, x is the dynamic pressure
+//! over that of the reference, x² Q becomes x Q, and κ = Im λ/u with the speed u that goes with it ([`Varied`]).
 //!
 //! Branches λ(x), one for each natural mode, are followed in the coordinates of the natural modes, ΦᵀMΦ = 1: first at one low speed
 //! while damping and forces are turned on, then along x. Newton's method on D q = 0, q₀ᴴ q = 1 with q₀ the shape before, at frozen κ, is
@@ -16,6 +17,9 @@
 //! Limits: a branch ends where its frequency reaches zero, and where forces leave it without a root. Modes without stiffness have no
 //! branch. Divergence is found apart, from K q = x² Q(0) q.
 use num_complex::Complex64;
+
+mod g_method;
+pub mod state_space;
 
 use super::Matrices;
 use crate::math::dense::Factors;
@@ -61,13 +65,26 @@ const ZERO: Complex64 = Complex64::new(0.0, 0.0);
 pub struct Flutter<'a> {
     forces: &'a (dyn Fn(f64) -> Vec<Complex64> + 'a),
     modes: Option<Modes>,
+    varied: Varied<'a>,
+}
+
+/// What x is: how the stream is varied at one Mach number.
+#[derive(Clone, Copy)]
+pub enum Varied<'a> {
+    /// The speed over that of the reference, at constant density.
+    Speed,
+    /// The dynamic pressure over that of the reference; the speed over that of the reference is a function of it, one where the sound
+    /// speed is constant.
+    Pressure(&'a dyn Fn(f64) -> f64),
 }
 
 /// A motion on a branch.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Point {
-    /// x = U/U_ref.
+    /// x: U/U_ref unless something else is varied.
     pub x: f64,
+    /// U/U_ref.
+    pub speed: f64,
     /// λ: rate of growth and angular frequency.
     pub lambda: Complex64,
     /// Amplitudes of the coordinates; generalised mass 1, phases those of the point before.
@@ -92,11 +109,15 @@ pub struct Crossing {
     pub kind: Kind,
     /// Natural mode, by rising frequency, whose branch crosses; at divergence that which has most of the displacement.
     pub mode: usize,
-    /// x = U/U_ref.
+    /// x: U/U_ref unless something else is varied.
     pub x: f64,
+    /// U/U_ref.
+    pub speed: f64,
+    /// Dynamic pressure over that of the reference.
+    pub pressure: f64,
     /// Im λ, in the time of the reference.
     pub frequency: f64,
-    /// Im λ/x.
+    /// Im λ/(U/U_ref).
     pub kappa: f64,
     /// Amplitudes of the coordinates; generalised mass 1.
     pub shape: Vec<Complex64>,
@@ -136,7 +157,36 @@ struct Root {
 impl<'a> Flutter<'a> {
     /// With the forces Q(iκ) of displacements that `forces` gives for κ ≥ 0, rows one after another, at the speed U_ref.
     pub fn new(matrices: &Matrices, forces: &'a (dyn Fn(f64) -> Vec<Complex64> + 'a)) -> Self {
-        Self { forces, modes: Modes::new(matrices) }
+        Self { forces, modes: Modes::new(matrices), varied: Varied::Speed }
+    }
+
+    /// The same with something else varied than the speed.
+    pub fn varying(self, varied: Varied<'a>) -> Self {
+        Self { varied, ..self }
+    }
+
+    /// U/U_ref at x.
+    fn speed(&self, x: f64) -> f64 {
+        match self.varied {
+            Varied::Speed => x,
+            Varied::Pressure(speed) => speed(x),
+        }
+    }
+
+    /// Dynamic pressure over that of the reference at x.
+    fn pressure(&self, x: f64) -> f64 {
+        match self.varied {
+            Varied::Speed => x * x,
+            Varied::Pressure(_) => x,
+        }
+    }
+
+    /// x where the dynamic pressure over that of the reference is `pressure`.
+    fn place(&self, pressure: f64) -> f64 {
+        match self.varied {
+            Varied::Speed => pressure.sqrt(),
+            Varied::Pressure(_) => pressure,
+        }
     }
 
     /// Branches of all natural modes, by rising frequency, from little speed to `upto`; empty for a mode that cannot be followed, none
@@ -158,7 +208,10 @@ impl<'a> Flutter<'a> {
         let Some(still) = path.last().filter(|_| arrived) else { return Vec::new() };
         let start = Root { rate: ZERO, ..still.clone() };
         let (path, _) = self.follow(modes, start.clone(), Place { x: upto, on: 1.0 }, (upto - place.x) / STEPS);
-        let point = |root: Root| Point { x: root.place.x, lambda: root.lambda, shape: modes.coordinates(&root.shape) };
+        let point = |root: Root| {
+            let x = root.place.x;
+            Point { x, speed: self.speed(x), lambda: root.lambda, shape: modes.coordinates(&root.shape) }
+        };
         std::iter::once(start).chain(path).map(point).collect()
     }
 
@@ -172,14 +225,16 @@ impl<'a> Flutter<'a> {
                 let Some(root) = self.locate(modes, branch, &bracket) else { continue };
                 let (x, frequency) = (root.place.x, root.lambda.im);
                 let shape = modes.coordinates(&root.shape);
-                found.push(Crossing { kind: bracket.kind, mode, x, frequency, kappa: frequency / x, shape });
+                let (speed, pressure) = (self.speed(x), self.pressure(x));
+                let kappa = frequency / speed;
+                found.push(Crossing { kind: bracket.kind, mode, x, speed, pressure, frequency, kappa, shape });
             }
         }
         found.sort_by(|a, b| a.x.total_cmp(&b.x));
         found
     }
 
-    /// Singular K − x² Q(0): 1/x² are the positive eigenvalues of K⁻¹ Q(0).
+    /// Singular K − x² Q(0), x² the dynamic pressure: 1/x² are the positive eigenvalues of K⁻¹ Q(0).
     fn divergence(&self, modes: &Modes, upto: f64) -> Vec<Crossing> {
         let n = modes.n;
         let stiffness: Vec<f64> = modes.stiffness.iter().map(|k| k.re).collect();
@@ -194,17 +249,18 @@ impl<'a> Flutter<'a> {
         let values = eigenvalues(&compliance, n).unwrap_or_default();
         let largest = values.iter().fold(0.0f64, |most, v| most.max(v.norm()));
         let real = values.into_iter().filter(|v| v.im.abs() <= REAL * v.re && v.re > f64::EPSILON * largest);
-        let speeds = real.map(|v| v.re.sqrt().recip()).filter(|x| *x <= upto);
+        let places = real.map(|v| self.place(v.re.recip())).filter(|x| *x <= upto);
         let crossing = |x: f64| {
-            let entry = |k: usize| modes.stiffness[k].re - x * x * forces[k].re;
+            let (speed, pressure) = (self.speed(x), self.pressure(x));
+            let entry = |k: usize| modes.stiffness[k].re - pressure * forces[k].re;
             let singular = Singular::of((0..n).map(|j| (0..n).map(|i| entry(i * n + j)).collect()).collect());
             let least = least(singular.squares().into_iter());
             let shape: Vec<Complex64> = singular.right[least].iter().map(|v| Complex64::from(*v)).collect();
             let mode = largest_share(&shape);
             let shape = modes.coordinates(&shape);
-            Crossing { kind: Kind::Divergence, mode, x, frequency: 0.0, kappa: 0.0, shape }
+            Crossing { kind: Kind::Divergence, mode, x, speed, pressure, frequency: 0.0, kappa: 0.0, shape }
         };
-        speeds.map(crossing).collect()
+        places.map(crossing).collect()
     }
 
     /// Q(iκ) in modes; `None` when it is not finite.
@@ -313,7 +369,8 @@ impl<'a> Flutter<'a> {
         near: &[Complex64],
     ) -> Option<(Complex64, Vec<Complex64>)> {
         let (mut lambda, mut shape) = (guess, near.to_vec());
-        let mut kappa = lambda.im / place.x;
+        let (speed, pressure) = (self.speed(place.x), place.on * self.pressure(place.x));
+        let mut kappa = lambda.im / speed;
         let (mut before, mut last) = (None::<[f64; 2]>, f64::INFINITY);
         for _ in 0..SECANT {
             // no frequency, no root
@@ -321,11 +378,11 @@ impl<'a> Flutter<'a> {
                 return None;
             }
             let mut dynamic = self.modal(modes, kappa)?;
-            dynamic.iter_mut().zip(&modes.stiffness).for_each(|(q, k)| *q = k - *q * (place.on * place.x * place.x));
+            dynamic.iter_mut().zip(&modes.stiffness).for_each(|(q, k)| *q = k - *q * pressure);
             (lambda, shape) = modes.newton(&dynamic, place.on, (lambda, shape), near)?;
-            let own = lambda.im / place.x;
+            let own = lambda.im / speed;
             let excess = own - kappa;
-            let error = excess.abs() * place.x / lambda.norm();
+            let error = excess.abs() * speed / lambda.norm();
             if own > 0.0 && (error <= MATCHED[0] || (error <= MATCHED[1] && error >= last)) {
                 let size = inner(&shape, &shape).re.sqrt();
                 return Some((lambda, shape.into_iter().map(|q| q / size).collect()));

@@ -72,6 +72,8 @@ pub struct Claim {
     pub third: Option<String>,
     /// Coordinate of the structure, where there is more than one.
     pub coordinate: Option<String>,
+    /// Mach number of a flutter boundary, where that has more than one.
+    pub mach: Option<f64>,
     /// Box of samples or wall particles the metric is restricted to: corners of smallest and largest coordinates.
     pub region: Option<[Vec<f64>; 2]>,
     /// Two pressures (over the free stream's) on either side of a wave or front.
@@ -311,6 +313,16 @@ metrics! {
     FrequencyStepOrder = "frequency_step_order",
     /// The same of the amplitude.
     AmplitudeStepOrder = "amplitude_step_order",
+    /// Speed index of the first flutter at the Mach number `mach` of a flutter boundary.
+    FlutterIndex = "flutter_index",
+    /// Speed of the same in the units of the case.
+    FlutterSpeed = "flutter_speed",
+    /// Frequency of the same over that of pitch alone.
+    FlutterFrequency = "flutter_frequency",
+    /// Error bar of the same, relative.
+    FlutterError = "flutter_error",
+    /// Relative difference of its speed to that of the case `other`.
+    FlutterDifference = "flutter_difference",
     /// Lift coefficient extrapolated to zero spacing over the study.
     ExtrapolatedCl = "extrapolated_cl",
     /// Drag coefficient extrapolated to zero spacing over the study.
@@ -325,6 +337,12 @@ impl Metric {
     /// The metric of this name.
     pub fn parse(name: &str) -> Option<Self> {
         Self::ALL.iter().copied().find(|m| m.name() == name)
+    }
+
+    /// True when the metric belongs to a flutter boundary.
+    pub fn is_of_flutter(self) -> bool {
+        use Metric::{FlutterDifference, FlutterError, FlutterFrequency, FlutterIndex, FlutterSpeed};
+        matches!(self, FlutterIndex | FlutterSpeed | FlutterFrequency | FlutterError | FlutterDifference)
     }
 
     /// True when the metric needs runs at several spacings.

@@ -60,6 +60,7 @@ fn parse_claim(table: &Table, number: usize, problems: &mut Vec<String>) -> Opti
     let label = keys.string("label");
     let (file, other, third) = (keys.string("file"), keys.string("other"), keys.string("third"));
     let (case, coordinate) = (keys.string("case"), keys.string("coordinate"));
+    let mach = keys.number("mach");
     let exact = parse_exact(&mut keys);
     let region = parse_region(&mut keys);
     let levels = keys.numbers("levels").and_then(|v| <[f64; 2]>::try_from(v).ok());
@@ -85,6 +86,7 @@ fn parse_claim(table: &Table, number: usize, problems: &mut Vec<String>) -> Opti
         other,
         third,
         coordinate,
+        mach,
         region,
         levels,
         ensemble: ensemble.map(|n| n as usize),

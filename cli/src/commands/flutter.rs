@@ -1,7 +1,8 @@
 //! `alula flutter`.
 use std::path::{Path, PathBuf};
 
-use alula::run::flutter::{Boundary, FlutterAt};
+use alula::case::Matching;
+use alula::run::flutter::{Boundary, FlutterAt, FlutterRow};
 use alula::run::{self, Places};
 use serde_json::json;
 
@@ -21,7 +22,11 @@ pub(crate) fn flutter(args: &arguments::Flutter) -> Outcome {
     let out = args.out.clone().unwrap_or_else(|| run::fresh_folder(Path::new("runs"), &format!("{name}-flutter")));
     let input = args.case.parent().map_or_else(PathBuf::new, Path::to_path_buf);
     let mut watch = Watch::new(args.verbosity);
-    let found = run::flutter::flutter(&case, &Places { input, out: out.clone() }, &mut watch);
+    let places = Places { input, out: out.clone() };
+    let found = match &args.forces {
+        Some(file) => run::flutter::again(&case, &places, file, &mut watch).map(Some),
+        None => run::flutter::flutter(&case, &places, &mut watch),
+    };
     watch.progress().finish();
     let boundary = match found {
         Ok(Some(boundary)) => boundary,
@@ -54,13 +59,25 @@ fn shortfall(boundary: &Boundary) -> Option<Shortfall> {
 
 /// All crossings, for people.
 fn table(boundary: &Boundary) -> String {
-    let mut text =
-        String::from("    Mach  what          mode   V/V_ref  speed index        k  frequency  over pitch     error\n");
+    let matched = boundary.flutter.iter().any(|at| at.matching != Matching::None);
+    let more = if matched { "     density  dynamic pressure  mass ratio  altitude" } else { "" };
+    let mut text = format!(
+        "    Mach  what          mode   V/V_ref  speed index        k  frequency  over pitch     error  g-method{more}\n"
+    );
     for at in &boundary.flutter {
         if at.crossings.is_empty() {
-            text.push_str(&format!("{:>8}  nothing begins to grow up to the greatest speed looked at\n", at.mach));
+            let end = match at.matching {
+                Matching::None => "up to the greatest speed looked at",
+                Matching::Density => "up to the greatest density looked at",
+                Matching::Altitude => "at any altitude",
+            };
+            text.push_str(&format!("{:>8}  nothing begins to grow {end}\n", at.mach));
         }
         text.push_str(&rows(at));
+    }
+    if let Some(file) = boundary.flutter.iter().find_map(|at| at.read.as_ref()) {
+        let note = "errors are changes when the nearest of them are left out, crossings cannot refine them";
+        return text + &format!("forces read from {file}: {note}\n");
     }
     let cpu: f64 = boundary.flutter.iter().map(|at| at.cpu_seconds).sum();
     text + &format!("{cpu:.1} s of processor time\n")
@@ -68,9 +85,19 @@ fn table(boundary: &Boundary) -> String {
 
 fn rows(at: &FlutterAt) -> String {
     let optional = |x: Option<f64>| x.map_or_else(|| "-".to_owned(), |x| format!("{x:.4}"));
-    let row = |c: &alula::run::flutter::FlutterRow| {
+    let matched = |c: &FlutterRow| match at.matching {
+        Matching::None => String::new(),
+        _ => format!(
+            "  {:>10.4}  {:>16.5e}  {:>10}  {:>8}",
+            c.density,
+            c.dynamic_pressure,
+            optional(c.mass_ratio),
+            c.altitude.map_or_else(|| "-".to_owned(), |z| format!("{z:.0} m"))
+        ),
+    };
+    let row = |c: &FlutterRow| {
         format!(
-            "{:>8}  {:<12} {:>5}  {:>8.4}  {:>11}  {:>7.4}  {:>9.4}  {:>10}  {:>6.2} %{}\n",
+            "{:>8}  {:<12} {:>5}  {:>8.4}  {:>11}  {:>7.4}  {:>9.4}  {:>10}  {:>6.2} %  {:>8}{}{}\n",
             at.mach,
             c.kind,
             c.mode,
@@ -80,6 +107,8 @@ fn rows(at: &FlutterAt) -> String {
             c.frequency,
             optional(c.frequency_ratio),
             100.0 * c.error,
+            c.g_method.map_or_else(|| "-".to_owned(), |g| format!("{g:+.0e}")),
+            matched(c),
             if c.extrapolated { "  beyond the frequencies computed" } else { "" }
         )
     };

@@ -3,7 +3,7 @@ use std::fs::OpenOptions;
 use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
 
-use alula::case::{SCHEMA_FILE, read, template};
+use alula::case::{SCHEMA_FILE, mode_files, read, template};
 use alula::geometry::{load_surface, write_stl};
 use alula::run::RunError;
 
@@ -45,6 +45,14 @@ pub(crate) fn new(args: &arguments::New) -> Outcome {
             Ok(()) => told += &format!("wrote {}, a wing to begin with\n", body.display()),
             Err(problem) if problem.kind() == ErrorKind::AlreadyExists => {}
             Err(problem) => return cannot_write(&body, &problem),
+        }
+    }
+    for (name, text) in mode_files(&args.template) {
+        let file = path.with_file_name(name);
+        match write(&file, text.as_bytes(), args.force) {
+            Ok(()) => told += &format!("wrote {}, the shape of a mode\n", file.display()),
+            Err(problem) if problem.kind() == ErrorKind::AlreadyExists => {}
+            Err(problem) => return cannot_write(&file, &problem),
         }
     }
     match write(&schema, super::schema::text().as_bytes(), args.force) {

@@ -4,6 +4,9 @@ use std::path::Path;
 use serde::Serialize;
 
 use super::super::error::RunError;
+use super::held::Mark;
+use super::state_space::StateSpaceAt;
+use crate::case::Matching;
 use crate::observe::table::{Entry, write_csv, write_json};
 use crate::report::{Axis, Chart, Marks, Series, write_file};
 
@@ -12,9 +15,44 @@ const CROSSINGS: &str = "flutter.csv";
 const HISTORY: &str = "v-g.csv";
 const SUMMARY: &str = "flutter.json";
 /// What files say about signs and units.
-const CONVENTIONS: &str = "speeds at constant density and Mach number; V* = U/(b omega_alpha), speed index V* / sqrt(mu), k = omega b/U, \
+const CONVENTIONS: &str = "match none: speeds at constant density and Mach number; density: densities at constant speed; altitude: standard \
+                           atmosphere of 1976, geometric altitude in metres; error and g_method: relative, of the speed at constant \
+                           density, the root of the dynamic pressure; V* = U/(b omega_alpha), speed index V* / sqrt(mu), k = omega b/U, \
                            b half of the reference chord; g = 2 zeta = 2 Re(lambda)/|lambda|; motion exp(i omega t); plunge up, pitch \
                            nose up positive";
+
+const CROSSING_COLUMNS: [&str; 16] = [
+    "mach",
+    "kind",
+    "mode",
+    "speed_ratio",
+    "speed_index",
+    "reduced_speed",
+    "speed",
+    "reduced_frequency",
+    "frequency",
+    "frequency_ratio",
+    "error",
+    "g_method",
+    "density",
+    "dynamic_pressure",
+    "mass_ratio",
+    "altitude",
+];
+const HISTORY_COLUMNS: [&str; 12] = [
+    "mach",
+    "mode",
+    "speed_ratio",
+    "k",
+    "1/k",
+    "damping_g",
+    "frequency",
+    "eigenvalue_re",
+    "eigenvalue_im",
+    "density",
+    "dynamic_pressure",
+    "altitude",
+];
 
 /// A change from decay to growth, or back.
 #[derive(Clone, Debug, Serialize)]
@@ -31,14 +69,24 @@ pub struct FlutterRow {
     pub reduced_speed: Option<f64>,
     /// Speed in the units of the case.
     pub speed: f64,
+    /// Density in the units of the case.
+    pub density: f64,
+    /// Dynamic pressure in the units of the case.
+    pub dynamic_pressure: f64,
+    /// Mass ratio at this density, where the structure is a section.
+    pub mass_ratio: Option<f64>,
+    /// Geometric altitude in metres, where that is varied.
+    pub altitude: Option<f64>,
     /// k.
     pub reduced_frequency: f64,
     /// Frequency in cycles per unit of time of the case.
     pub frequency: f64,
     /// The same over that of pitch alone, where the structure is a section.
     pub frequency_ratio: Option<f64>,
-    /// Relative change of the speed between the last two interpolations.
+    /// Relative change of the speed, of the root of the dynamic pressure, between the last two interpolations.
     pub error: f64,
+    /// What the g-method finds of the same, less one; none at divergence, and where it finds nothing.
+    pub g_method: Option<f64>,
     /// True when k lies beyond the frequencies that forces were computed at.
     pub extrapolated: bool,
 }
@@ -50,6 +98,12 @@ pub struct MotionRow {
     pub mode: usize,
     /// Speed over that of the structure in the case.
     pub speed_ratio: f64,
+    /// Dynamic pressure in the units of the case.
+    pub dynamic_pressure: f64,
+    /// Density in the units of the case.
+    pub density: f64,
+    /// Geometric altitude in metres, where that is varied.
+    pub altitude: Option<f64>,
     /// k.
     pub reduced_frequency: f64,
     /// 2 Re λ/|λ|.
@@ -65,17 +119,33 @@ pub struct MotionRow {
 pub struct FlutterAt {
     /// Mach number.
     pub mach: f64,
-    /// Every crossing, by speed.
+    /// What is varied.
+    #[serde(rename = "match")]
+    pub matching: Matching,
+    /// Every crossing, by what is varied: rising speed, rising density, falling altitude.
     pub crossings: Vec<FlutterRow>,
     /// Motions at the speeds looked at, mode by mode.
     #[serde(skip)]
     pub motions: Vec<MotionRow>,
+    /// The structure in the stream as a linear system, where that is asked for.
+    #[serde(skip)]
+    pub state_space: Option<StateSpaceAt>,
     /// Reduced frequencies that forces were computed at, zero first.
     pub reduced_frequencies: Vec<f64>,
     /// Generalised forces at these, rows one after another, in units of the solver: density and sound speed one.
     pub forces: Vec<Vec<[f64; 2]>>,
     /// Names of the coordinates.
     pub coordinates: Vec<String>,
+    /// What these move.
+    pub moved: Vec<Mark>,
+    /// Reference chord.
+    pub chord: f64,
+    /// b of the reduced frequencies.
+    pub semichord: f64,
+    /// Angle of attack.
+    pub alpha_deg: f64,
+    /// File that forces were read from; none where they were computed.
+    pub read: Option<String>,
     /// Lift, drag and moment of the steady flow.
     pub steady: [f64; 3],
     /// Orders that its residual fell by.
@@ -113,6 +183,16 @@ impl Boundary {
 impl Boundary {
     /// Writes tables and pictures into a folder.
     pub(super) fn write(&self, out: &Path) -> Result<(), RunError> {
+        self.write_crossings(&out.join(CROSSINGS))?;
+        self.write_motions(&out.join(HISTORY))?;
+        for at in &self.flutter {
+            at.state_space.iter().try_for_each(|system| system.write(at.mach, out))?;
+        }
+        write_json(&out.join(SUMMARY), &self)?;
+        self.draw(out)
+    }
+
+    fn write_crossings(&self, file: &Path) -> Result<(), RunError> {
         let number = |x: Option<f64>| Entry::from(x.unwrap_or(f64::NAN));
         let rows = self.flutter.iter().flat_map(|at| at.crossings.iter().map(move |c| (at.mach, c)));
         let rows = rows.map(|(mach, c)| {
@@ -128,34 +208,26 @@ impl Boundary {
                 Entry::from(c.frequency),
                 number(c.frequency_ratio),
                 Entry::from(c.error),
+                number(c.g_method),
+                Entry::from(c.density),
+                Entry::from(c.dynamic_pressure),
+                number(c.mass_ratio),
+                number(c.altitude),
             ]
         });
-        let names = [
-            "mach",
-            "kind",
-            "mode",
-            "speed_ratio",
-            "speed_index",
-            "reduced_speed",
-            "speed",
-            "reduced_frequency",
-            "frequency",
-            "frequency_ratio",
-            "error",
-        ];
-        write_csv(&out.join(CROSSINGS), &names, rows)?;
+        Ok(write_csv(file, &CROSSING_COLUMNS, rows)?)
+    }
+
+    fn write_motions(&self, file: &Path) -> Result<(), RunError> {
         let motions = self.flutter.iter().flat_map(|at| at.motions.iter().map(move |m| (at.mach, m)));
         let motions = motions.map(|(mach, m)| {
             let over = if m.reduced_frequency > 0.0 { 1.0 / m.reduced_frequency } else { f64::INFINITY };
             let [re, im] = m.eigenvalue;
             let numbers = [m.speed_ratio, m.reduced_frequency, over, m.damping, m.frequency, re, im];
-            [mach, m.mode as f64].into_iter().chain(numbers).map(Entry::from).collect::<Vec<_>>()
+            let stream = [m.density, m.dynamic_pressure, m.altitude.unwrap_or(f64::NAN)];
+            [mach, m.mode as f64].into_iter().chain(numbers).chain(stream).map(Entry::from).collect::<Vec<_>>()
         });
-        let names =
-            ["mach", "mode", "speed_ratio", "k", "1/k", "damping_g", "frequency", "eigenvalue_re", "eigenvalue_im"];
-        write_csv(&out.join(HISTORY), &names, motions)?;
-        write_json(&out.join(SUMMARY), &self)?;
-        self.draw(out)
+        Ok(write_csv(file, &HISTORY_COLUMNS, motions)?)
     }
 
     /// Damping and frequency against speed at each Mach number; with several of these the boundary.
@@ -175,8 +247,20 @@ impl Boundary {
 
     /// All crossings against the Mach number; `None` where there are none.
     fn chart(&self) -> Option<Chart> {
+        let matching = self.flutter.first()?.matching;
         let indexed = self.flutter.iter().flat_map(|at| &at.crossings).all(|c| c.speed_index.is_some());
-        let speed = |c: &FlutterRow| if indexed { c.speed_index.unwrap_or(f64::NAN) } else { c.speed };
+        let label = match matching {
+            Matching::None if indexed => "speed index",
+            Matching::None => "speed",
+            Matching::Density => "dynamic pressure",
+            Matching::Altitude => "altitude, m",
+        };
+        let speed = |c: &FlutterRow| match matching {
+            Matching::None if indexed => c.speed_index.unwrap_or(f64::NAN),
+            Matching::None => c.speed,
+            Matching::Density => c.dynamic_pressure,
+            Matching::Altitude => c.altitude.unwrap_or(f64::NAN),
+        };
         let of = |kind: &'static str, marks: Marks| {
             let all = self.flutter.iter().flat_map(|at| at.crossings.iter().map(move |c| (at.mach, c)));
             let (x, y): (Vec<f64>, Vec<f64>) = all.filter(|(_, c)| c.kind == kind).map(|(m, c)| (m, speed(c))).unzip();
@@ -184,7 +268,7 @@ impl Boundary {
         };
         let all = [of("flutter", Marks::Dots), of("restabilised", Marks::Rings), of("divergence", Marks::Rings)];
         let series: Vec<Series> = all.into_iter().filter(|s| !s.x.is_empty()).collect();
-        let y = Axis::linear(if indexed { "speed index" } else { "speed" });
+        let y = Axis::linear(label);
         let chart = Chart { title: "Flutter boundary".into(), x: Axis::linear("Mach number"), y, series };
         (!chart.series.is_empty()).then_some(chart)
     }
@@ -195,11 +279,21 @@ impl FlutterAt {
     fn charts(&self) -> [Chart; 2] {
         let modes = self.motions.iter().map(|m| m.mode).max().unwrap_or(0);
         let ratio = self.crossings.first().and_then(|c| c.speed_index.map(|v| v / c.speed_ratio));
-        let label = if ratio.is_some() { "speed index" } else { "speed over that of the case" };
+        let label = match self.matching {
+            Matching::None if ratio.is_some() => "speed index",
+            Matching::None => "speed over that of the case",
+            Matching::Density => "density",
+            Matching::Altitude => "altitude, m",
+        };
+        let place = |m: &MotionRow| match self.matching {
+            Matching::None => m.speed_ratio * ratio.unwrap_or(1.0),
+            Matching::Density => m.density,
+            Matching::Altitude => m.altitude.unwrap_or(f64::NAN),
+        };
         let series = |of: fn(&MotionRow) -> f64| {
             let one = |mode: usize| {
                 let own = self.motions.iter().filter(|m| m.mode == mode);
-                let (x, y) = own.map(|m| (m.speed_ratio * ratio.unwrap_or(1.0), of(m))).unzip();
+                let (x, y) = own.map(|m| (place(m), of(m))).unzip();
                 Series::new(&format!("mode {mode}"), Marks::Line, x, y)
             };
             (1..=modes).map(one).collect::<Vec<_>>()

@@ -1,5 +1,6 @@
 //! What is measured of a finished run: the value of each metric of [`crate::verify`].
 mod axis;
+pub(super) mod boundary;
 mod section;
 pub(super) mod solid;
 mod structure;
@@ -103,6 +104,11 @@ impl Measured {
             | Metric::ProbeAmplitude
             | Metric::ProbePhase
             | Metric::LedgerOpen => Err("the case has a gas: this is measured of structures alone".into()),
+            Metric::FlutterIndex
+            | Metric::FlutterSpeed
+            | Metric::FlutterFrequency
+            | Metric::FlutterError
+            | Metric::FlutterDifference => Err("this is measured of a flutter boundary, not of a run".into()),
             Metric::Converged => Ok(f64::from(u8::from(s.succeeded()))),
             Metric::Particles => Ok(s.particles as f64),
             Metric::MassDrift => s.ledger.map(|l| l.mass.abs()).ok_or_else(no_ledger),

@@ -1,0 +1,94 @@
+//! The structure of a case before there is a flow: what stored forces must fit.
+use std::path::Path;
+
+use serde::{Deserialize, Serialize};
+
+use super::super::error::RunError;
+use super::super::folder;
+use super::super::look::reference::chord;
+use super::super::setup;
+use crate::case::Case;
+use crate::coupling::Attached;
+use crate::geometry::dimension;
+use crate::motion::Motions;
+use crate::structure::{Matrices, Model};
+
+/// Part of a chord by which pivots may differ.
+const SAME: f64 = 1e-6;
+
+/// What a coordinate moves, beside its name.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Mark {
+    /// Point about which a rigid body turns.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pivot: Option<Vec<f64>>,
+    /// Checksum of the file of a shape.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub shape: Option<String>,
+}
+
+/// Structures at rest.
+pub(super) struct Held {
+    /// Reference chord.
+    pub(super) chord: f64,
+    /// Names of all coordinates.
+    pub(super) names: Vec<String>,
+    /// What they move.
+    pub(super) marks: Vec<Mark>,
+    /// Matrices about the bodies as placed, in units of the solver.
+    pub(super) matrices: Matrices,
+}
+
+impl Mark {
+    /// True where both are known and differ.
+    pub(super) fn contradicts(&self, other: &Self, chord: f64) -> bool {
+        let apart = |a: &Vec<f64>, b: &Vec<f64>| a.iter().zip(b).any(|(a, b)| (a - b).abs() > SAME * chord);
+        let pivots = self.pivot.as_ref().zip(other.pivot.as_ref()).is_some_and(|(a, b)| apart(a, b));
+        pivots || self.shape.as_ref().zip(other.shape.as_ref()).is_some_and(|(a, b)| a != b)
+    }
+}
+
+impl Held {
+    /// The structures of `case`, whose files lie in `input`.
+    pub(super) fn of(case: &Case, input: &Path) -> Result<Self, RunError> {
+        match dimension(case) {
+            2 => Self::within::<2>(case, input),
+            _ => Self::within::<3>(case, input),
+        }
+    }
+
+    fn within<const D: usize>(case: &Case, input: &Path) -> Result<Self, RunError> {
+        let surface = setup::surface::<D>(case, input)?.0;
+        let mut motions = Motions::<D>::fixed(case.bodies.len());
+        let bodies = setup::bodies(case, input, surface.as_ref(), &mut motions)?;
+        let n = bodies.last().map_or(0, |b| b.range().end);
+        let mut matrices = Matrices { mass: vec![0.0; n * n], damping: vec![0.0; n * n], stiffness: vec![0.0; n * n] };
+        let (mut names, mut marks) = (Vec::new(), Vec::new());
+        for body in &bodies {
+            let (m, still) = (body.structure.len(), vec![0.0; body.structure.len()]);
+            let own = body.structure.matrices(&still, &still);
+            let pairs = [
+                (&mut matrices.mass, own.mass),
+                (&mut matrices.damping, own.damping),
+                (&mut matrices.stiffness, own.stiffness),
+            ];
+            for (whole, part) in pairs {
+                part.iter().enumerate().for_each(|(k, x)| whole[(body.first + k / m) * n + body.first + k % m] = *x);
+            }
+            names.extend(body.structure.coordinates().iter().map(|c| c.name.clone()));
+            marks.extend((0..m).map(|k| mark(case, input, body, k)));
+        }
+        Ok(Self { chord: chord(case, surface.as_ref()), names, marks, matrices })
+    }
+}
+
+fn mark<const D: usize>(case: &Case, input: &Path, body: &Attached<D>, k: usize) -> Mark {
+    let pivot = match body.structure.model() {
+        Model::Planar(planar) => Some(planar.pivot.to_vec()),
+        Model::Spatial(rigid) => Some(rigid.pivot.to_vec()),
+        Model::Modal(_) => None,
+    };
+    let file = case.structure_of(body.body).and_then(|s| s.modes.get(k)).map(|m| &m.file);
+    let text = file.filter(|_| pivot.is_none()).and_then(|file| folder::text(input, file).ok());
+    Mark { pivot, shape: text.map(|t| format!("{:08x}", crc32fast::hash(t.as_bytes()))) }
+}
