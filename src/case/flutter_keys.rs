@@ -1,5 +1,6 @@
-//! The keys of `[flutter]`.
-use super::kinds::POSITIVE;
+//! The keys of `[flutter]` and `[lco]`.
+use super::kinds::{POSITIVE, SIZE};
+use super::quantity::Angle;
 use super::schema::{Absent, Field, Kind, List, Range, Table};
 
 pub(super) static FLUTTER: Table = Table::of(&[
@@ -53,4 +54,52 @@ const MATCHING: &[(&str, &str)] = &[
     ("none", "the speed, and the sound speed with it, at the density of the case"),
     ("density", "the density, at the sound speed of the case: a wind tunnel"),
     ("altitude", "the altitude in the standard atmosphere of 1976: speed, density and Mach number belong together"),
+];
+
+const TURN: Kind = Kind::Quantity(Angle::DIMENSION, Range::POSITIVE);
+
+pub(super) static LIMIT_CYCLES: Table = Table::of(&[
+    Field::optional("mach", POSITIVE, "that of `[flow]`", "Mach number."),
+    Field::optional(
+        "coordinate",
+        Kind::Text,
+        "`pitch`, else the first one",
+        "Coordinate whose amplitude is given: the first harmonic of it.",
+    ),
+    Field::optional(
+        "amplitude",
+        Kind::List(&List { item: TURN, min: 2, max: 2, single: false }),
+        "`displacement` must be given",
+        "Least and greatest amplitude of a coordinate that is an angle, `[\"0.25 deg\", \"4 deg\"]`.",
+    ),
+    Field::optional(
+        "displacement",
+        Kind::List(&List { item: SIZE, min: 2, max: 2, single: false }),
+        "`amplitude` must be given",
+        "Least and greatest amplitude of a coordinate that is a length, or of a mode, of which one is what its file has.",
+    ),
+    Field::defaulted("points", Kind::Integer(2, 200), Absent::Integer(6), "Number of amplitudes."),
+    Field::defaulted(
+        "harmonics",
+        Kind::Integer(1, 15),
+        Absent::Integer(5),
+        "Greatest number of harmonics; as many are taken as `accuracy` asks for.",
+    ),
+    Field::defaulted(
+        "accuracy",
+        Kind::Number(Range { min: 0.0, max: 0.2, closed: false }),
+        Absent::Number(0.005),
+        "Part by which two more harmonics may change a speed.",
+    ),
+    Field::defaulted(
+        "gas",
+        Kind::Words(GAS),
+        Absent::Word("nonlinear"),
+        "What the gas does in motions that are not small.",
+    ),
+]);
+
+const GAS: &[(&str, &str)] = &[
+    ("nonlinear", "what it does: harmonic balance at each amplitude, some of them a point"),
+    ("linear", "what it does in small motions: springs alone limit the motion"),
 ];

@@ -11,12 +11,14 @@ mod error;
 mod facts;
 mod flow;
 mod flutter;
+mod flutter_check;
 mod flutter_keys;
 pub mod formula;
 mod gaf;
 mod gaf_keys;
 mod keys;
 mod kinds;
+mod limit_cycles;
 mod mode_file;
 mod motion;
 mod motion_check;
@@ -49,6 +51,7 @@ pub use error::{CaseError, CaseErrors};
 pub use flow::{FreeStreamScales, NEVER_LAMINAR, NO_CONTINUUM, Units, ViscosityLaw, Viscous, Wall};
 pub use flutter::{Flutter, Matching};
 pub use gaf::{AnyMode, FlexibleMode, Gaf, Mode};
+pub use limit_cycles::{GasResponse, LimitCycles};
 pub use mode_file::{ModeTable, read_mode};
 pub use motion::{
     BodyMotionSpec, ModeMotion, Motion, MotionFormula, MotionTable, OwnFrequency, ParticleMotion, Pitch, Plunge,
@@ -137,6 +140,8 @@ pub struct Case {
     pub gaf: Option<Gaf>,
     /// What `alula flutter` seeks.
     pub flutter: Option<Flutter>,
+    /// The limit cycles that it seeks beside it.
+    pub lco: Option<LimitCycles>,
 }
 
 /// Free stream: either `mach` alone (nondimensional: density 1, sound speed 1) or dimensional values.

@@ -12,6 +12,7 @@
 //!
 //! Bodies made of particles ([`solids`]) add the displacements and velocities of these, in pairs, as coordinates of their own.
 mod bodies;
+pub mod led;
 mod march;
 mod preconditioner;
 mod solid_preconditioner;
@@ -402,6 +403,10 @@ impl<const D: usize> HasGas<D> for Coupled<D> {
 pub trait Marches<const D: usize>: HasGas<D> + Sized {
     /// Bodies made of particles in a frame at the state `u`; `None` where there are none.
     fn solid_snapshot(&self, frame: &Self::Frame, u: &[f64]) -> Option<SolidSnapshot<'_, D>>;
+    /// This with its structures; `None` for a gas alone.
+    fn coupled(&self) -> Option<&Coupled<D>> {
+        None
+    }
     /// Bodies on springs; none for a gas alone.
     fn attached(&self) -> &[Attached<D>] {
         &[]
@@ -434,6 +439,10 @@ impl<const D: usize> Marches<D> for Fluid<D> {
 }
 
 impl<const D: usize> Marches<D> for Coupled<D> {
+    fn coupled(&self) -> Option<&Coupled<D>> {
+        Some(self)
+    }
+
     fn attached(&self) -> &[Attached<D>] {
         &self.bodies
     }

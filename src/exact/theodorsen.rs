@@ -60,8 +60,8 @@ pub fn plate_growing(p: Complex64, a: f64, pitch: Complex64, plunge: Complex64) 
     Ok(plate_loads(p, theodorsen_growing(p)?, a, [pitch, plunge]))
 }
 
-/// Loads for the exponent p and C(p), which costs far more than all the rest.
-pub(super) fn plate_loads(p: Complex64, c: Complex64, a: f64, [pitch, plunge]: [Complex64; 2]) -> PlateLoads {
+/// Loads for the exponent p and C(p), which costs far more than all the rest: exact, or an approximation of it.
+pub fn plate_loads(p: Complex64, c: Complex64, a: f64, [pitch, plunge]: [Complex64; 2]) -> PlateLoads {
     use std::f64::consts::PI;
     let square = -p * p;
     // downwash at three quarters of the chord

@@ -7,6 +7,7 @@
 use std::path::Path;
 
 mod held;
+mod limit_cycles;
 mod record;
 mod scales;
 mod search;
@@ -14,10 +15,11 @@ mod state_space;
 mod stored;
 
 pub use held::Mark;
-pub use record::{Boundary, FlutterAt, FlutterRow, MotionRow};
+pub use record::{Boundary, FlutterAt, FlutterRow, LimitCycle, MotionRow};
 pub use state_space::StateSpaceAt;
 
 use self::held::Held;
+use self::limit_cycles::Seek;
 use self::scales::Scales;
 use self::search::Search;
 use self::stored::Stored;
@@ -29,7 +31,7 @@ use super::session::{Outcome, Session};
 use super::setup;
 use super::solids::with_own_modes;
 use super::studies::ForceSource;
-use crate::case::{Case, Flutter as Plan, Matching};
+use crate::case::{Case, Flutter as Plan, GasResponse, LimitCycles, Matching};
 use crate::physics::atmosphere;
 
 /// Parts by which the gas of a case may differ from the air of the standard atmosphere.
@@ -49,6 +51,7 @@ pub fn again(case: &Case, places: &Places, forces: &Path, monitor: &mut dyn Moni
 /// The same without a folder.
 pub(crate) fn in_memory(case: &Case, input: &Path, monitor: &mut dyn Monitor) -> Result<Option<Boundary>, RunError> {
     let plan = planned(case)?;
+    let case = &with_own_modes(case, input)?;
     let mut all = Boundary::new(&case.title);
     for mach in plan.mach.clone() {
         let Some(found) = at_mach(case, &plan, mach, input, monitor)? else { return Ok(None) };
@@ -68,6 +71,8 @@ fn planned(case: &Case) -> Result<Plan, RunError> {
     if plan.mach.is_empty() {
         plan.mach = vec![case.flow.reference().mach];
     }
+    let cycles = case.lco.as_ref().map(|lco| lco.mach.unwrap_or(case.flow.reference().mach));
+    plan.mach.extend(cycles.filter(|mach| !plan.mach.contains(mach)));
     refused(case, &plan)?;
     setup::supported(case)?;
     Ok(plan)
@@ -92,6 +97,7 @@ fn sought(
         let Some(mut found) = found else { return Ok(None) };
         found.read = forces.map(|f| f.display().to_string());
         found.warnings.iter().for_each(|w| monitor.warn(&format!("Mach {mach}: {w}")));
+        all.lco.append(&mut found.cycles);
         all.flutter.push(found);
         all.write(&places.out)?;
     }
@@ -115,6 +121,16 @@ fn refused(case: &Case, plan: &Plan) -> Result<(), RunError> {
             case.solids().next().is_some(),
             "the flutter of bodies made of particles beside a gas",
             "find their modes first (`[time.modes]` without `[flow]`), and give them as `[[structure.mode]]`",
+        ),
+        (
+            case.lco.is_some() && matching != Matching::None,
+            "limit cycles with matched density or altitude",
+            "use `match = \"none\"`: the speed goes with the amplitude at constant density",
+        ),
+        (
+            case.lco.is_some() && case.structures.iter().any(|s| s.large_angles),
+            "limit cycles of a section whose inertia is that of a rigid body at any angle",
+            "leave out `large_angles`",
         ),
         (
             case.flow.velocity.is_some(),
@@ -165,9 +181,16 @@ fn at_mach(
     let held = Held::of(&own, input)?;
     let scales = Scales::of(&own, held.chord, plan.matching);
     let mut session = Session::open(&own, input)?;
+    let lco = cycles_at(case, mach);
     let mut found = None;
     let mut then = |source: &mut dyn ForceSource, log: &mut Log<'_>| {
-        found = Some(Search::new(&held, &scales, plan, Vec::new(), 0.0).run(source, log));
+        let mut search = Search::new(&held, &scales, plan, Vec::new(), 0.0);
+        let mut at = search.run(source, log);
+        if let Some(lco) = lco {
+            let springs = source.springs();
+            at.add_cycles(Seek::new(lco, &mut search, springs)?.run(Some((source, log))));
+        }
+        found = Some(at);
         Ok(())
     };
     let outcome = session.solve_then(monitor, Some(&mut then))?;
@@ -188,8 +211,22 @@ fn of_stored(case: &Case, plan: &Plan, mach: f64, (stored, input): (&Stored, &Pa
     let held = Held::of(&own, input)?;
     let scales = Scales::of(&own, held.chord, plan.matching);
     let samples = stored.samples(mach, own.flow.alpha.0.to_degrees(), &held)?;
-    let at = Search::new(&held, &scales, plan, samples.all, samples.residual).again();
+    let mut search = Search::new(&held, &scales, plan, samples.all, samples.residual);
+    let mut at = search.again();
+    if let Some(lco) = cycles_at(case, mach) {
+        at.add_cycles(Seek::new(lco, &mut search, held.springs.clone())?.run(None));
+        if lco.gas == GasResponse::Nonlinear && !at.cycles.is_empty() {
+            at.warnings.push(
+                "forces that are read are those of small motions: so are the limit cycles (`gas = \"linear\"`)".into(),
+            );
+        }
+    }
     Ok(placed(at, &own, mach, held))
+}
+
+/// The limit cycles that are sought at a Mach number of a case.
+fn cycles_at(case: &Case, mach: f64) -> Option<&LimitCycles> {
+    case.lco.as_ref().filter(|lco| lco.mach.unwrap_or(case.flow.reference().mach) == mach)
 }
 
 /// With what tells whether its forces serve another case.

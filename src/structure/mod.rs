@@ -15,6 +15,7 @@ mod describe;
 pub mod flutter;
 mod force;
 mod from_case;
+pub mod limit_cycle;
 mod placement;
 mod planar;
 mod spatial;

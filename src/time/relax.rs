@@ -349,6 +349,11 @@ impl<'a, S: Implicit> Relax<'a, S> {
         self.time = Some(term);
     }
 
+    /// Goes on with Newton's method at once, at the Courant number that it begins with: the state is near a solution.
+    pub fn begin_with_newton(&mut self) {
+        self.phase = Phase { newton: true, ..Phase::default() };
+    }
+
     /// Frame, storage and state at the end, without what was needed on the way.
     pub fn into_end(self) -> (S::Frame, S::Work, Vec<f64>) {
         (self.frame, self.work, self.u)

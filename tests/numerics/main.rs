@@ -11,6 +11,7 @@ mod flutter_typical;
 mod harmonic;
 mod invariance;
 mod layers;
+mod limit_cycles;
 mod modes;
 mod motion;
 mod operators;

@@ -2,7 +2,7 @@
 use std::path::{Path, PathBuf};
 
 use alula::case::Matching;
-use alula::run::flutter::{Boundary, FlutterAt, FlutterRow};
+use alula::run::flutter::{Boundary, FlutterAt, FlutterRow, LimitCycle};
 use alula::run::{self, Places};
 use serde_json::json;
 
@@ -40,10 +40,15 @@ pub(crate) fn flutter(args: &arguments::Flutter) -> Outcome {
     };
     let found = match args.verbosity.json {
         true => {
-            let event = json!({ "run": out, "title": boundary.title, "flutter": boundary.flutter, "lco": [] });
+            let event =
+                json!({ "run": out, "title": boundary.title, "flutter": boundary.flutter, "lco": boundary.lco });
             output::event_line("summary", event) + "\n"
         }
-        false => table(&boundary) + &format!("tables: {} and v-g.csv\n", out.join("flutter.csv").display()),
+        false => {
+            table(&boundary)
+                + &cycles(&boundary)
+                + &format!("tables: {} and v-g.csv\n", out.join("flutter.csv").display())
+        }
     };
     results(&found, shortfall(&boundary), args.verbosity)
 }
@@ -113,4 +118,31 @@ fn rows(at: &FlutterAt) -> String {
         )
     };
     at.crossings.iter().map(row).collect()
+}
+
+/// All limit cycles, for people.
+fn cycles(boundary: &Boundary) -> String {
+    let Some(first) = boundary.lco.first() else { return String::new() };
+    let optional = |x: Option<f64>| x.map_or_else(|| "-".to_owned(), |x| format!("{x:.4}"));
+    let head = format!(
+        "limit cycles, amplitude of {}\n    Mach  branch  amplitude   V/V_ref  speed index        k  frequency            harmonics     error\n",
+        first.coordinate
+    );
+    let row = |c: &LimitCycle| {
+        format!(
+            "{:>8}  {:>6}  {:>9.4}  {:>8.4}  {:>11}  {:>7.4}  {:>9.4}  {:<8}  {:>9}  {:>6.2} %{}\n",
+            c.mach,
+            c.branch,
+            c.amplitude,
+            c.speed_ratio,
+            optional(c.speed_index),
+            c.reduced_frequency,
+            c.frequency,
+            if c.stable { "stable" } else { "unstable" },
+            c.harmonics,
+            100.0 * c.error,
+            if c.extrapolated { "  beyond the frequencies computed" } else { "" }
+        )
+    };
+    boundary.lco.iter().map(row).fold(head, |text, row| text + &row)
 }

@@ -11,7 +11,7 @@ use crate::case::Case;
 use crate::coupling::Attached;
 use crate::geometry::dimension;
 use crate::motion::Motions;
-use crate::structure::{Matrices, Model};
+use crate::structure::{Matrices, Model, Spring};
 
 /// Part of a chord by which pivots may differ.
 const SAME: f64 = 1e-6;
@@ -37,6 +37,8 @@ pub(super) struct Held {
     pub(super) marks: Vec<Mark>,
     /// Matrices about the bodies as placed, in units of the solver.
     pub(super) matrices: Matrices,
+    /// Springs of all coordinates.
+    pub(super) springs: Vec<Spring>,
 }
 
 impl Mark {
@@ -63,7 +65,7 @@ impl Held {
         let bodies = setup::bodies(case, input, surface.as_ref(), &mut motions)?;
         let n = bodies.last().map_or(0, |b| b.range().end);
         let mut matrices = Matrices { mass: vec![0.0; n * n], damping: vec![0.0; n * n], stiffness: vec![0.0; n * n] };
-        let (mut names, mut marks) = (Vec::new(), Vec::new());
+        let (mut names, mut marks, mut springs) = (Vec::new(), Vec::new(), Vec::new());
         for body in &bodies {
             let (m, still) = (body.structure.len(), vec![0.0; body.structure.len()]);
             let own = body.structure.matrices(&still, &still);
@@ -76,9 +78,10 @@ impl Held {
                 part.iter().enumerate().for_each(|(k, x)| whole[(body.first + k / m) * n + body.first + k % m] = *x);
             }
             names.extend(body.structure.coordinates().iter().map(|c| c.name.clone()));
+            springs.extend(body.structure.coordinates().iter().map(|c| c.spring));
             marks.extend((0..m).map(|k| mark(case, input, body, k)));
         }
-        Ok(Self { chord: chord(case, surface.as_ref()), names, marks, matrices })
+        Ok(Self { chord: chord(case, surface.as_ref()), names, marks, matrices, springs })
     }
 }
 

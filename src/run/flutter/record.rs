@@ -7,12 +7,14 @@ use super::super::error::RunError;
 use super::held::Mark;
 use super::state_space::StateSpaceAt;
 use crate::case::Matching;
+use crate::observe::structure::is_angle;
 use crate::observe::table::{Entry, write_csv, write_json};
 use crate::report::{Axis, Chart, Marks, Series, write_file};
 
 /// The tables of `alula flutter`.
 const CROSSINGS: &str = "flutter.csv";
 const HISTORY: &str = "v-g.csv";
+const CYCLES: &str = "lco.csv";
 const SUMMARY: &str = "flutter.json";
 /// What files say about signs and units.
 const CONVENTIONS: &str = "match none: speeds at constant density and Mach number; density: densities at constant speed; altitude: standard \
@@ -38,6 +40,23 @@ const CROSSING_COLUMNS: [&str; 16] = [
     "dynamic_pressure",
     "mass_ratio",
     "altitude",
+];
+const CYCLE_COLUMNS: [&str; 15] = [
+    "mach",
+    "branch",
+    "coordinate",
+    "amplitude",
+    "speed_ratio",
+    "speed_index",
+    "reduced_speed",
+    "speed",
+    "reduced_frequency",
+    "frequency",
+    "stability",
+    "mean",
+    "harmonics",
+    "error",
+    "balances",
 ];
 const HISTORY_COLUMNS: [&str; 12] = [
     "mach",
@@ -130,6 +149,9 @@ pub struct FlutterAt {
     /// The structure in the stream as a linear system, where that is asked for.
     #[serde(skip)]
     pub state_space: Option<StateSpaceAt>,
+    /// Limit cycles, where they are asked for.
+    #[serde(skip)]
+    pub cycles: Vec<LimitCycle>,
     /// Reduced frequencies that forces were computed at, zero first.
     pub reduced_frequencies: Vec<f64>,
     /// Generalised forces at these, rows one after another, in units of the solver: density and sound speed one.
@@ -162,6 +184,48 @@ pub struct FlutterAt {
     pub warnings: Vec<String>,
 }
 
+/// A limit cycle.
+#[derive(Clone, Debug, Serialize)]
+pub struct LimitCycle {
+    /// Mach number.
+    pub mach: f64,
+    /// Number of the branch, from 1.
+    pub branch: usize,
+    /// Coordinate whose amplitude is told.
+    pub coordinate: String,
+    /// Amplitude of its first harmonic, of angles in degrees.
+    pub amplitude: f64,
+    /// Speed over that of the structure in the case.
+    pub speed_ratio: f64,
+    /// V_f, where the structure has one.
+    pub speed_index: Option<f64>,
+    /// V*, the same times the root of the mass ratio.
+    pub reduced_speed: Option<f64>,
+    /// Speed in the units of the case.
+    pub speed: f64,
+    /// k.
+    pub reduced_frequency: f64,
+    /// Cycles per unit of time of the case.
+    pub frequency: f64,
+    /// True where smaller and larger motions go to it.
+    pub stable: bool,
+    /// Mean of the coordinate, of angles in degrees.
+    pub mean: f64,
+    /// Harmonics.
+    pub harmonics: usize,
+    /// Relative change of the speed with the last of them; infinite where none were added.
+    pub error: f64,
+    /// Harmonic balances of the gas.
+    pub balances: usize,
+    /// Amplitudes of all coordinates, harmonic by harmonic: real and imaginary part in base units.
+    pub motion: Vec<Vec<[f64; 2]>>,
+    /// True where a harmonic lies beyond the frequencies that forces were computed at.
+    pub extrapolated: bool,
+}
+
+/// Cycles, and what makes them doubtful.
+pub(super) type Found = (Vec<LimitCycle>, Vec<String>);
+
 /// The whole boundary.
 #[derive(Clone, Debug, Serialize)]
 pub struct Boundary {
@@ -171,12 +235,14 @@ pub struct Boundary {
     pub conventions: &'static str,
     /// All Mach numbers.
     pub flutter: Vec<FlutterAt>,
+    /// Limit cycles.
+    pub lco: Vec<LimitCycle>,
 }
 
 impl Boundary {
     /// An empty one of a case.
     pub(super) fn new(title: &str) -> Self {
-        Self { title: title.to_owned(), conventions: CONVENTIONS, flutter: Vec::new() }
+        Self { title: title.to_owned(), conventions: CONVENTIONS, flutter: Vec::new(), lco: Vec::new() }
     }
 }
 
@@ -187,6 +253,9 @@ impl Boundary {
         self.write_motions(&out.join(HISTORY))?;
         for at in &self.flutter {
             at.state_space.iter().try_for_each(|system| system.write(at.mach, out))?;
+        }
+        if !self.lco.is_empty() {
+            self.write_cycles(&out.join(CYCLES))?;
         }
         write_json(&out.join(SUMMARY), &self)?;
         self.draw(out)
@@ -218,6 +287,50 @@ impl Boundary {
         Ok(write_csv(file, &CROSSING_COLUMNS, rows)?)
     }
 
+    fn write_cycles(&self, file: &Path) -> Result<(), RunError> {
+        let number = |x: Option<f64>| Entry::from(x.unwrap_or(f64::NAN));
+        let rows = self.lco.iter().map(|c| {
+            vec![
+                Entry::from(c.mach),
+                Entry::from(c.branch as f64),
+                Entry::from(c.coordinate.as_str()),
+                Entry::from(c.amplitude),
+                Entry::from(c.speed_ratio),
+                number(c.speed_index),
+                number(c.reduced_speed),
+                Entry::from(c.speed),
+                Entry::from(c.reduced_frequency),
+                Entry::from(c.frequency),
+                Entry::from(if c.stable { "stable" } else { "unstable" }),
+                Entry::from(c.mean),
+                Entry::from(c.harmonics as f64),
+                Entry::from(c.error),
+                Entry::from(c.balances as f64),
+            ]
+        });
+        Ok(write_csv(file, &CYCLE_COLUMNS, rows)?)
+    }
+
+    /// Amplitude against speed: stable motions as dots, unstable ones as rings; `None` where there are none.
+    fn bifurcation(&self) -> Option<Chart> {
+        let first = self.lco.first()?;
+        let indexed = self.lco.iter().all(|c| c.speed_index.is_some());
+        let speed = |c: &LimitCycle| c.speed_index.filter(|_| indexed).unwrap_or(c.speed);
+        let of = |name: &str, marks: Marks, stable: bool| {
+            let own = self.lco.iter().filter(|c| c.stable == stable);
+            let (x, y) = own.map(|c| (speed(c), c.amplitude)).unzip();
+            Series::new(name, marks, x, y)
+        };
+        let all = [of("stable", Marks::Dots, true), of("unstable", Marks::Rings, false)];
+        let unit = if is_angle(&first.coordinate) { "degrees" } else { "length" };
+        Some(Chart {
+            title: format!("Limit cycles, Mach {}", first.mach),
+            x: Axis::linear(if indexed { "speed index" } else { "speed" }),
+            y: Axis::linear(&format!("amplitude of {}, {unit}", first.coordinate)),
+            series: all.into_iter().filter(|s| !s.x.is_empty()).collect(),
+        })
+    }
+
     fn write_motions(&self, file: &Path) -> Result<(), RunError> {
         let motions = self.flutter.iter().flat_map(|at| at.motions.iter().map(move |m| (at.mach, m)));
         let motions = motions.map(|(mach, m)| {
@@ -239,6 +352,10 @@ impl Boundary {
                 write_file(&out.join(format!("{file}.svg")), chart.svg()?.as_bytes())?;
                 write_file(&out.join(format!("{file}.png")), &chart.png()?)?;
             }
+        }
+        if let Some(chart) = self.bifurcation() {
+            write_file(&out.join("pictures/limit-cycles.svg"), chart.svg()?.as_bytes())?;
+            write_file(&out.join("pictures/limit-cycles.png"), &chart.png()?)?;
         }
         let Some(chart) = self.chart().filter(|_| self.flutter.len() > 1) else { return Ok(()) };
         write_file(&out.join("pictures/boundary.svg"), chart.svg()?.as_bytes())?;
@@ -275,6 +392,12 @@ impl Boundary {
 }
 
 impl FlutterAt {
+    /// Adds limit cycles, and what makes them doubtful.
+    pub(super) fn add_cycles(&mut self, (cycles, doubts): Found) {
+        self.cycles = cycles;
+        self.warnings.extend(doubts);
+    }
+
     /// Damping and frequency of every mode against speed.
     fn charts(&self) -> [Chart; 2] {
         let modes = self.motions.iter().map(|m| m.mode).max().unwrap_or(0);

@@ -16,6 +16,8 @@ use crate::structure::flutter::{Crossing, Flutter, Kind, Point, Varied};
 const MISFIT: f64 = 1e-7;
 /// Frequency, over the highest asked for, beyond which motions are not told.
 const BEYOND: f64 = 2.0;
+/// A frequency that forces are computed at for a harmonic, over that of the harmonic: it goes on to rise.
+const ABOVE: f64 = 1.1;
 /// Frequencies that are nearer to one another than this part are one.
 const SAME: f64 = 5e-4;
 
@@ -59,8 +61,46 @@ impl<'a> Search<'a> {
         self.samples.sort_by(|a, b| a.0.total_cmp(&b.0));
     }
 
+    /// Computes forces at the angular frequency `omega` where none are known that high.
+    pub(super) fn reach(&mut self, source: &mut dyn ForceSource, omega: f64, log: &mut Log<'_>) {
+        if self.highest_known() < omega {
+            self.sample(source, ABOVE * omega, log);
+        }
+    }
+
+    /// The highest angular frequency that forces are known at.
+    pub(super) fn highest_known(&self) -> f64 {
+        self.samples.last().map_or(0.0, |s| s.0)
+    }
+
+    /// Forces between the frequencies that are known; `None` where these are too few.
+    pub(super) fn fit(&self) -> Option<Rational> {
+        Rational::of(&self.samples, MISFIT)
+    }
+
+    pub(super) fn matrices(&self) -> &Matrices {
+        &self.matrices
+    }
+
+    pub(super) fn names(&self) -> &[String] {
+        &self.names
+    }
+
+    pub(super) fn scales(&self) -> &Scales {
+        self.scales
+    }
+
+    pub(super) fn reduced_frequency(&self, kappa: f64) -> f64 {
+        self.scales.reduced_frequency(kappa)
+    }
+
+    /// Greatest speed looked at.
+    pub(super) fn upto(&self) -> f64 {
+        self.scales.upto(self.plan.most)
+    }
+
     /// The boundary with forces of `source`, of which those near the crossings are asked for.
-    pub(super) fn run(mut self, source: &mut dyn ForceSource, log: &mut Log<'_>) -> FlutterAt {
+    pub(super) fn run(&mut self, source: &mut dyn ForceSource, log: &mut Log<'_>) -> FlutterAt {
         (self.matrices, self.names) = (source.matrices(), source.names());
         self.sample(source, 0.0, log);
         for k in self.plan.first() {
@@ -84,7 +124,7 @@ impl<'a> Search<'a> {
     }
 
     /// The boundary with the forces that there are.
-    pub(super) fn again(self) -> FlutterAt {
+    pub(super) fn again(&self) -> FlutterAt {
         let (branches, crossings) = self.solved(&self.samples);
         let mut errors: Vec<f64> = crossings.iter().map(|c| self.without_nearest(c)).collect();
         let mut warnings = self.doubts(&crossings, &mut errors, "forces that are read cannot be refined there");
@@ -149,13 +189,13 @@ impl<'a> Search<'a> {
 
     /// The highest angular frequency asked for, or known.
     fn highest(&self) -> f64 {
-        let known = self.samples.last().map_or(0.0, |s| s.0);
+        let known = self.highest_known();
         self.plan.first().last().map_or(known, |k| self.scales.angular_frequency(*k).min(known))
     }
 
     /// Where the g-method has the crossings, and the system at the first of them.
     fn checked(&self, crossings: &[Crossing]) -> (Vec<Option<f64>>, Option<StateSpaceAt>) {
-        let Some(fit) = Rational::of(&self.samples, MISFIT) else { return (vec![None; crossings.len()], None) };
+        let Some(fit) = self.fit() else { return (vec![None; crossings.len()], None) };
         let speed = |x: f64| self.scales.at(x).speed;
         let forces = |kappa: f64| fit.at(Complex64::new(0.0, kappa));
         let flutter = Flutter::new(&self.matrices, &forces).varying(self.varied(&speed));
@@ -204,6 +244,7 @@ impl<'a> Search<'a> {
             crossings: rows.map(|((c, error), check)| self.row(c, *error, *check)).collect(),
             motions: branches.iter().enumerate().flat_map(|(m, b)| b.iter().map(move |p| (m, p))).map(motion).collect(),
             state_space,
+            cycles: Vec::new(),
             reduced_frequencies: self.samples.iter().map(|x| s.reduced_frequency(x.0)).collect(),
             forces: self.samples.iter().map(|x| x.1.iter().map(|z| [z.re, z.im]).collect()).collect(),
             coordinates: self.names.clone(),

@@ -5,10 +5,12 @@
 //! The cloud, the steady flow and the three derivatives serve all frequencies, one preconditioner all coordinates of a frequency.
 use num_complex::Complex64;
 
+use super::swing::{Flow, own_loads, swing};
 use crate::coupling::Marches;
 use crate::math::sweep::norm;
 use crate::scheme::Fluid;
-use crate::structure::Matrices;
+use crate::structure::limit_cycle::Periodic;
+use crate::structure::{Matrices, Spring};
 use crate::system::{Hierarchy, Instant, Term};
 use crate::time::control::Control;
 use crate::time::linear::{Ended, Linear};
@@ -26,6 +28,11 @@ pub(crate) trait ForceSource {
     fn matrices(&self) -> Matrices;
     /// Names of the coordinates.
     fn names(&self) -> Vec<String>;
+    /// Springs of all coordinates about the same.
+    fn springs(&self) -> Vec<Spring>;
+    /// Generalised forces on all coordinates in the motion `motion` of angular frequency `omega` about the steady flow, beyond those of the latter;
+    /// else what stands in the way.
+    fn swing(&mut self, motion: &Periodic, omega: f64) -> Result<Periodic, String>;
     /// Generalised forces per coordinate at the angular frequency `omega`, rows one after another, and how each column was found.
     fn forces(&mut self, omega: f64) -> (Vec<Complex64>, Vec<Ended>);
 }
@@ -44,6 +51,9 @@ pub(crate) struct SmallMotion<'a, S: Marches<D>, const D: usize> {
     state: Vec<f64>,
     linear: Linear<'a, Fluid<D>>,
     columns: Vec<Column>,
+    /// Forces in the steady flow, and the last periodic one.
+    still: Vec<f64>,
+    flow: Option<Flow>,
 }
 
 impl<'a, S: Marches<D>, const D: usize> SmallMotion<'a, S, D> {
@@ -52,7 +62,9 @@ impl<'a, S: Marches<D>, const D: usize> SmallMotion<'a, S, D> {
         let (work, place) = (system.work(), system.placing());
         let frame = system.frame(&Instant::formula(0.0, &[]).with(&state[place]), state);
         let linear = Linear::new(system.gas(), system.gas_frame(&frame).clone(), system.gas_state(state));
-        let mut all = Self { system, frame, work, state: state.to_vec(), linear, columns: Vec::new() };
+        let (columns, still) = (Vec::new(), Vec::new());
+        let mut all = Self { system, frame, work, state: state.to_vec(), linear, columns, still, flow: None };
+        all.still = all.loads(state);
         let units: Vec<f64> = system.attached().iter().flat_map(|b| b.units.clone()).collect();
         all.columns = units.iter().enumerate().map(|(j, unit)| all.column(j, STEP * unit)).collect();
         all
@@ -98,14 +110,7 @@ impl<'a, S: Marches<D>, const D: usize> SmallMotion<'a, S, D> {
     /// Generalised forces on all coordinates at the state `u`.
     fn loads(&mut self, u: &[f64]) -> Vec<f64> {
         let all = self.system.exchange(&self.frame, u, &mut self.work).map_or_else(Vec::new, |e| e.loads);
-        let mut rest = &all[..];
-        let mut own = Vec::with_capacity(self.columns.len());
-        for body in self.system.attached() {
-            let (loads, after) = rest.split_at(body.structure.len());
-            own.extend_from_slice(loads);
-            rest = &after[body.n_told()..];
-        }
-        own
+        own_loads(self.system.attached(), &all)
     }
 
     /// ∂F/∂U v.
@@ -147,6 +152,18 @@ impl<S: Marches<D>, const D: usize> ForceSource for SmallMotion<'_, S, D> {
     fn names(&self) -> Vec<String> {
         let all = self.system.attached().iter().flat_map(|b| b.structure.coordinates());
         all.map(|c| c.name.clone()).collect()
+    }
+
+    fn springs(&self) -> Vec<Spring> {
+        self.system.attached().iter().flat_map(|b| b.structure.coordinates()).map(|c| c.spring).collect()
+    }
+
+    fn swing(&mut self, motion: &Periodic, omega: f64) -> Result<Periodic, String> {
+        let Some(coupled) = self.system.coupled() else { return Err("nothing is on springs".into()) };
+        let (flow, mut forces) = swing(coupled, &self.state, (motion, omega), self.flow.take())?;
+        self.flow = Some(flow);
+        forces.mean.iter_mut().zip(&self.still).for_each(|(f, still)| *f -= still);
+        Ok(forces)
     }
 
     fn forces(&mut self, omega: f64) -> (Vec<Complex64>, Vec<Ended>) {

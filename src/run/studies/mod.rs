@@ -8,6 +8,7 @@ mod march;
 mod periodic;
 mod settled;
 mod steady;
+mod swing;
 mod turn;
 
 pub(crate) use balance::balance;

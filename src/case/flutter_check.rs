@@ -1,0 +1,39 @@
+//! Contradictions in `[flutter]` and `[lco]`.
+use serde_json::Value;
+
+use super::draft::Draft;
+
+/// Limit cycles are beside a boundary, and of one kind of amplitude, from small to large.
+pub(super) fn contradictions(draft: &mut Draft<'_>) {
+    if draft.get("lco").is_none_or(Value::is_null) {
+        return;
+    }
+    if draft.get("flutter").is_none_or(Value::is_null) {
+        draft
+            .fail_key("lco", "`[lco]` without `[flutter]`")
+            .hint("add `[flutter]`: limit cycles begin at its crossings");
+    }
+    let given = ["amplitude", "displacement"].map(|key| draft.given(&format!("lco.{key}")));
+    match given {
+        [false, false] => {
+            draft
+                .fail_key("lco", "`[lco]` does not say how large the motion is")
+                .hint("add `amplitude = [\"0.25 deg\", \"4 deg\"]`, or `displacement` for modes and plunge");
+        }
+        [true, true] => {
+            draft.fail_key("lco.displacement", "`amplitude` and `displacement` are both given").hint("keep one");
+        }
+        _ => {}
+    }
+    for place in ["lco.amplitude", "lco.displacement"] {
+        let ends = draft.get(place).and_then(Value::as_array).cloned().unwrap_or_default();
+        let ends: Vec<f64> = ends.iter().filter_map(Value::as_f64).collect();
+        if let [first, last] = ends[..]
+            && !(first < last)
+        {
+            draft
+                .fail(place, "the greatest amplitude is not greater than the least")
+                .hint("give the smaller one first");
+        }
+    }
+}
