@@ -10,12 +10,17 @@
 //! the areas A_j = 2π ∮ N_j x n ds of hat functions N_j along the surface. Linear fields are orthogonal to what is left of it,
 //! so that the correction of [`super::particles`] exists, if Σ a_j and Σ a_j x_j are area and first moment of the section: shares of
 //! areas, which leave some of the first moment of each simplex, are changed for this: M_j, what they leave around j, goes to the
-//! particles around it by the weights of its fit, δa_i = M_j·g_ji, which is a few per cent of an area, and nothing in rows. A particle on
-//! the axis has no volume. There u_x is held, and the limit of the strain is F₃₃ = F₁₁.
+//! particles around it by the weights of its fit, δa_i = M_j·g_ji, which is a few per cent of an area, and nothing in rows.
+//!
+//! On the axis u_x is held, and the limit of the strain is F₃₃ = F₁₁: what P₃₃ does there is done by P₁₁ + P₃₃ in the place of P₁₁. A
+//! particle m there has the core of its ring, V_m = 2π a_m r/4 with the mean radius r of its neighbours, half of which is the
+//! radius of the core. Its gradient is the plain fit, without a correction, and those around it lose the core by its weights, V_j = x_j (2π a_j − Σ_m
+//! V_m g_mj·e_x), which leaves the volume of the body and the forces of constant P with P₁₁ = P₃₃ what they were.
 use super::body::{Plane, Solid, Support};
 use super::particles::{Fill, Particles};
-use super::rows::{Columns, Row};
+use super::rows::Columns;
 use crate::math::least_squares::{gradient_weight, normal_inverse, normal_matrix};
+use crate::physics::solid::Tensor;
 
 /// Where the hoop component of a gradient or a stress stands: in its first column.
 pub(super) const HOOP: usize = 2;
@@ -49,6 +54,18 @@ impl<const D: usize> HoopTangent<D> {
     }
 }
 
+/// Change of the stress that acts on the axis with one component of the gradient in the plane, where `change` is that of the stress
+/// with one of F: F₃₃ goes with F₁₁, and P₃₃ acts with P₁₁.
+pub(super) fn axis_tangent(component: [usize; 2], change: impl Fn([usize; 2]) -> Tensor) -> Tensor {
+    let mut all = change(component);
+    if component == [0, 0] {
+        let of_hoop = change([2, 2]);
+        (0..3).for_each(|a| (0..3).for_each(|b| all[a][b] += of_hoop[a][b]));
+    }
+    all[0][0] += all[2][2];
+    all
+}
+
 impl<const D: usize> Fill<D> {
     /// The section that this is, turned about the y axis: volumes and areas are those of a whole turn.
     pub fn turned(mut self) -> Self {
@@ -61,6 +78,7 @@ impl<const D: usize> Fill<D> {
             self.volume[i] = tau * self.x[i][0] * area;
         }
         self.turn = areas.into_iter().map(|area| tau * area).collect();
+        self.fill_axis();
         let radius = |i: u32| self.x[i as usize][0];
         for facet in &mut self.facets {
             let [a, b] = [0, 1].map(|k| radius(facet.corners()[k]));
@@ -70,6 +88,21 @@ impl<const D: usize> Fill<D> {
             *facet = facet.weighted(facet.area * (0.5 * tau * sum), [first, 1.0 - first]);
         }
         self
+    }
+
+    /// Gives particles on the axis their cores, which those around them lose.
+    fn fill_axis(&mut self) {
+        for m in (0..self.x.len()).filter(|m| self.x[*m][0] == 0.0) {
+            let offset = |i: &u32| self.x[*i as usize] - self.x[m];
+            let row = &self.rows[m];
+            let Some((inverse, _)) = normal_inverse(&normal_matrix(row.iter().map(offset)).0) else { continue };
+            let off: Vec<f64> = row.iter().map(|i| self.x[*i as usize][0]).filter(|x| *x > 0.0).collect();
+            let core = self.turn[m] * 0.25 * off.iter().sum::<f64>() / off.len() as f64;
+            self.volume[m] = core;
+            for i in row {
+                self.volume[*i as usize] -= core * self.x[*i as usize][0] * gradient_weight(&inverse, &offset(i))[0];
+            }
+        }
     }
 
     /// Plane areas of particles whose sum and first moment are those of the section, and of any part of it.
@@ -113,15 +146,26 @@ impl<const D: usize> Solid<D> {
         if !self.is_round() {
             return;
         }
-        if self.per_radius[i] > 0.0 {
-            gradient[0][HOOP] = along_radius * self.per_radius[i];
-        } else {
-            // on the axis there is no shear
-            let stretch = gradient[0][0];
-            gradient[0] = column(0, stretch);
-            gradient[0][HOOP] = stretch;
-            gradient[1] = column(1, gradient[1][1]);
+        gradient[0][HOOP] = if self.is_on_axis(i) { gradient[0][0] } else { along_radius * self.per_radius[i] };
+    }
+
+    /// Puts the hoop stress into a stress.
+    #[inline(always)]
+    pub(super) fn put_hoop_stress(&self, i: usize, stress: &mut Columns<D>, hoop: f64) {
+        if !self.is_round() {
+            return;
         }
+        if self.is_on_axis(i) {
+            stress[0][0] += hoop;
+        } else {
+            stress[0][HOOP] = hoop;
+        }
+    }
+
+    /// True on the axis of revolution.
+    #[inline(always)]
+    pub(super) fn is_on_axis(&self, i: usize) -> bool {
+        self.is_round() && self.per_radius[i] == 0.0
     }
 
     /// V/x, what a hoop stress is taken times for its force along the radius; 0 on the axis.
@@ -129,11 +173,4 @@ impl<const D: usize> Solid<D> {
     pub(super) fn hoop_weight(&self, i: usize) -> f64 {
         self.particles.volume[i] * self.per_radius[i]
     }
-}
-
-/// A column with one component.
-fn column(a: usize, value: f64) -> Row {
-    let mut column = [0.0; 4];
-    column[a] = value;
-    column
 }

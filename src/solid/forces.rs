@@ -17,7 +17,7 @@
 //! *Finite Element Procedures*, section 9.3.3). What the residuals of velocity damp brakes zigzag displacements that turn, too.
 use multiversion::multiversion;
 
-use super::axis::{HOOP, HoopTangent};
+use super::axis::{HOOP, HoopTangent, axis_tangent};
 use super::body::{Action, Plane, Solid};
 use super::pairs::{self, Pulling, Stressed, gradients, plain_gradient};
 use super::particles::Edge;
@@ -160,9 +160,7 @@ impl<const D: usize> Solid<D> {
         }
         let hoop = stress[2][2];
         let mut stress: Columns<D> = std::array::from_fn(|b| row::<D>(&std::array::from_fn(|a| stress[a][b])));
-        if self.is_round() {
-            stress[0][HOOP] = hoop;
-        }
+        self.put_hoop_stress(i, &mut stress, hoop);
         Stressed { stress, smooth, stiff, volume: determinant(&f) }
     }
 
@@ -279,17 +277,21 @@ impl<const D: usize> Solid<D> {
     /// times that of the velocity, where damping in proportion to mass is left out.
     pub fn linearise(&self, state: &State<'_, D>, parts: [f64; 2], tangents: &mut Tangents<D>) {
         let [elastic, viscous] = parts;
-        let part = |t: &Tensor| -> Matrix<D> { std::array::from_fn(|a| std::array::from_fn(|b| t[a][b])) };
         sweep_slots(&mut tangents.all, |i, t| {
             let f = self.deformation(i, state.displacement);
             for (a, b) in (0..D).flat_map(|a| (0..D).map(move |b| (a, b))) {
-                t[a][b] = part(&self.tangent(i, (&f, [a, b]), state, parts));
+                let change = |component: [usize; 2]| self.tangent(i, (&f, component), state, parts);
+                let on_axis = self.is_on_axis(i);
+                t[a][b] = in_plane(&if on_axis { axis_tangent([a, b], change) } else { change([a, b]) });
             }
         });
         sweep_slots(&mut tangents.hoop, |i, t| {
+            if self.is_on_axis(i) {
+                return;
+            }
             let f = self.deformation(i, state.displacement);
             let of_hoop = self.tangent(i, (&f, [2, 2]), state, parts);
-            (t.of_strain, t.own) = (part(&of_hoop), of_hoop[2][2]);
+            (t.of_strain, t.own) = (in_plane(&of_hoop), of_hoop[2][2]);
             for (a, b) in (0..D).flat_map(|a| (0..D).map(move |b| (a, b))) {
                 t.of_stress[a][b] = self.tangent(i, (&f, [a, b]), state, parts)[2][2];
             }
@@ -483,6 +485,11 @@ impl<const D: usize> Solid<D> {
             speed / (self.particles.spacing[i] * least_stretch(&self.deformation(i, u)))
         })
     }
+}
+
+/// The components of a tensor in the plane, or all in space.
+fn in_plane<const D: usize>(t: &Tensor) -> Matrix<D> {
+    std::array::from_fn(|a| std::array::from_fn(|b| t[a][b]))
 }
 
 /// A lower bound of the smallest principal stretch: that of 1 or J over the product of the others.

@@ -42,9 +42,7 @@ pub(super) fn gradients<const D: usize>(
         }
     }
     let (volume, plain) = (solid.particles.volume[i], solved(solid, i, &moments));
-    // on an axis of revolution a particle has no volume, and no weights
-    let full = if volume > 0.0 { full.map(|column| times(&column, 1.0 / volume)) } else { plain };
-    (full, plain)
+    (full.map(|column| times(&column, 1.0 / volume)), plain)
 }
 
 /// The gradient of the plain fit alone.

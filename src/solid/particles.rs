@@ -334,6 +334,18 @@ impl<const D: usize> Particles<D> {
         !self.turn.is_empty()
     }
 
+    /// Volume of a particle whose gradient may be corrected: on an axis of revolution it is the plain fit.
+    #[inline(always)]
+    fn corrected(&self, i: usize) -> f64 {
+        if self.is_round() && self.x[i][0] == 0.0 { 0.0 } else { self.volume[i] }
+    }
+
+    /// 2π times the plane area of a particle about an axis of revolution.
+    #[cfg(test)]
+    pub(super) fn turn(&self, i: usize) -> f64 {
+        self.turn[i]
+    }
+
     /// 2π times the radius about an axis, half a spacing at least; 1 in the plane and in space: what h^D is taken times for the
     /// volume around a particle.
     pub fn around(&self, i: usize) -> f64 {
@@ -360,7 +372,8 @@ impl<const D: usize> Particles<D> {
         let mut diagonal = vec![0.0; n];
         sweep(&mut diagonal, |i| {
             let of = |e: &Edge<D>| {
-                (self.volume[i] + self.volume[e.other as usize]) / (self.x[e.other as usize] - self.x[i]).norm_squared()
+                (self.corrected(i) + self.corrected(e.other as usize))
+                    / (self.x[e.other as usize] - self.x[i]).norm_squared()
             };
             self.of(i).iter().map(of).sum::<f64>()
         });
@@ -410,7 +423,7 @@ impl<const D: usize> Particles<D> {
         let mut edges = std::mem::take(&mut self.edges);
         let added = |i: usize, j: usize| {
             let d = self.x[j] - self.x[i];
-            residual((lambda, &gradient), (i, j), &d) * (self.volume[i] / d.norm_squared())
+            residual((lambda, &gradient), (i, j), &d) * (self.corrected(i) / d.norm_squared())
         };
         let (mut changed, mut whole, mut worst) = (0.0, 0.0, (0.0, 0));
         for i in 0..n {
@@ -492,7 +505,7 @@ impl<const D: usize> Particles<D> {
                 for (k, column) in members.iter().enumerate().filter(|(_, column)| **column <= *row) {
                     let range = all.first[*column]..all.first[*column + 1];
                     let at = range.start + all.row[range.clone()].partition_point(|r| r < row);
-                    all.value[at] += self.volume[m] * block[j][k];
+                    all.value[at] += self.corrected(m) * block[j][k];
                 }
             }
         }
@@ -520,7 +533,7 @@ impl<const D: usize> Particles<D> {
             let j = e.other as usize;
             let d = self.x[j] - self.x[i];
             let (there, here) = (residual((q, gradient), (j, i), &-d), residual((q, gradient), (i, j), &d));
-            sum + (there * self.volume[j] - here * self.volume[i]) * (1.0 / d.norm_squared())
+            sum + (there * self.corrected(j) - here * self.corrected(i)) * (1.0 / d.norm_squared())
         })
     }
 

@@ -2,7 +2,7 @@
 //!
 //! K couples all particles that are members of one cloud: block (j, k) is Σ_m b_mj C_m b_mk / V_m with C = ∂P/∂F and the weights
 //! b of the cloud around m, and what stabilisation adds, c_m (w_j δ_jk − w_j d_j·M⁻¹d_k w_k). About an axis of revolution the
-//! hoop strain of m couples its displacement along the radius with all members.
+//! hoop strain of m couples its displacement along the radius with all members; on the axis it is part of the strain in the plane.
 use super::body::Solid;
 use super::forces::Tangents;
 use crate::math::Vector;
@@ -32,7 +32,7 @@ impl<const D: usize> Solid<D> {
     /// `scale` K + `shift` M among what is free, one for what is held.
     pub fn matrix_of(&self, tangents: &Tangents<D>, scale: f64, shift: f64) -> Symmetric {
         let mut all = self.particles.pattern(D);
-        for m in self.with_volume() {
+        for m in 0..self.len() {
             self.add_cloud(m, tangents, scale, &mut all);
         }
         self.add_hoops(tangents, scale, &mut all);
@@ -48,15 +48,10 @@ impl<const D: usize> Solid<D> {
         all
     }
 
-    /// Particles that hold anything: those on an axis of revolution do not.
-    fn with_volume(&self) -> impl Iterator<Item = usize> {
-        (0..self.len()).filter(|m| self.particles.volume[*m] > 0.0)
-    }
-
     /// The diagonal of K.
     pub fn diagonal_of(&self, tangents: &Tangents<D>) -> Vec<f64> {
         let mut all = vec![0.0; self.len() * D];
-        for m in self.with_volume() {
+        for m in 0..self.len() {
             let cloud = Cloud::around(self, m);
             for (k, particle) in cloud.members.iter().enumerate() {
                 let b = &cloud.weights[k];
@@ -86,7 +81,7 @@ impl<const D: usize> Solid<D> {
 
     /// Adds what hoop strains and stresses are.
     fn add_hoops(&self, tangents: &Tangents<D>, scale: f64, all: &mut Symmetric) {
-        for m in self.with_volume().filter(|m| self.is_round() && !self.is_held(*m, 0)) {
+        for m in (0..self.len()).filter(|m| self.is_round() && !self.is_held(*m, 0)) {
             let cloud = Cloud::around(self, m);
             let hoops = self.hoops(m, &cloud, tangents);
             for (particle, hoop) in cloud.members.iter().zip(&hoops) {

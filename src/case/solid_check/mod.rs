@@ -107,7 +107,7 @@ fn time(draft: &mut Draft<'_>, gas: bool) {
             draft.fail(&key, format!("structures alone: `{key}` is for cases with a gas")).hint(hint);
         }
     }
-    let given: Vec<bool> = ["frequency", "period"].map(|k| said(draft, &format!("harmonics.{k}"))).to_vec();
+    let given: Vec<bool> = ["frequency", "period"].map(|k| draft.given(&format!("time.harmonics.{k}"))).to_vec();
     if said(draft, "harmonics") && given[0] == given[1] {
         let message =
             if given[0] { "`frequency` and `period` are both given" } else { "`time.harmonics` has no frequency" };

@@ -253,6 +253,9 @@ fn supports_loads_and_contact_that_cannot_be_are_refused() {
     told(&plate("", "[contact]\nplanes = { point = [0, 0], normal = [0, 0, 1] }"), &["has 3 components"]);
     told("[flow]\nmach = 0.5\n[[body]]\nnaca = \"0012\"\n[contact]\n", &["`[contact]` is of bodies made of particles"]);
     told(&plate("", "[time.harmonics]\nnumber = 2"), &["`time.harmonics` has no frequency"]);
-    told(&plate("", "[time.harmonics]\nnumber = 2\nfrequency = 1\ncheck = 3"), &["`time.harmonics.check` is for"]);
+    told(
+        &plate("", "[time.harmonics]\nnumber = 2\nfrequency = \"1 Hz\"\ncheck = 3"),
+        &["`time.harmonics.check` is for"],
+    );
     told(&plate("", "[time.harmonics]\nnumber = 2\nfrequency = \"1 Hz\"\nperiod = 1"), &["both given"]);
 }

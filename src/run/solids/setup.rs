@@ -83,12 +83,6 @@ pub(in crate::run) fn build<const D: usize>(case: &Case, input: &Path) -> Result
         let held = support.particles.len();
         notes.push(format!("{held} particles on the axis of revolution, x = 0, are held along the radius"));
         supports.push(support);
-        if materials.iter().any(|m| matches!(m.law, Law::Plastic(_))) {
-            warnings.push(
-                "what is crushed along an axis of revolution may fold there once it has yielded: use a case in space"
-                    .into(),
-            );
-        }
     }
     let first = parts[0].data;
     let shocked =
@@ -137,10 +131,10 @@ fn turned<const D: usize>(fill: Fill<D>, name: &str) -> Result<Fill<D>, RunError
         });
     }
     let fill = fill.turned();
-    match (0..fill.x.len()).find(|i| !(fill.turn[*i] > 0.0)) {
+    match (0..fill.x.len()).find(|i| !(fill.turn[*i] > 0.0 && fill.volume[*i] > 0.0)) {
         None => Ok(fill),
         Some(i) => Err(RunError::Solid {
-            what: format!("a particle of `{name}` at ({:.6}, {:.6}) has no area", fill.x[i][0], fill.x[i][1]),
+            what: format!("a particle of `{name}` at ({:.6}, {:.6}) has no volume", fill.x[i][0], fill.x[i][1]),
             hint: "take a smaller `spacing`: at sharp edges of the section it decides".into(),
         }),
     }
