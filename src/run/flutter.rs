@@ -54,7 +54,8 @@ pub(crate) fn in_memory(case: &Case, input: &Path, monitor: &mut dyn Monitor) ->
     let case = &with_own_modes(case, input)?;
     let mut all = Boundary::new(&case.title);
     for mach in plan.mach.clone() {
-        let Some(found) = at_mach(case, &plan, mach, input, monitor)? else { return Ok(None) };
+        let Some(mut found) = at_mach(case, &plan, mach, input, monitor)? else { return Ok(None) };
+        all.lco.append(&mut found.cycles);
         all.flutter.push(found);
     }
     Ok(Some(all))

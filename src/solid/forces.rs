@@ -151,11 +151,10 @@ impl<const D: usize> Solid<D> {
         let mut smooth = plain.map(|column| column.map(|a| a * stiff));
         let mut stress = stress;
         if self.is_viscous() {
-            let (full, rate) = self.rate_of(i, state.velocity);
+            let rate = plain_gradient(self, i, |j| row(&state.velocity[j]));
             (0..D).for_each(|b| (0..D).for_each(|a| smooth[b][a] += self.viscous[i] * rate[b][a]));
             if self.damping.stiffness > 0.0 {
-                let damped = self.damping_stress(material, &f, &full);
-                (0..3).for_each(|a| (0..3).for_each(|b| stress[a][b] += damped[a][b]));
+                self.add_damping(i, state.velocity, &f, &mut stress);
             }
         }
         let hoop = stress[2][2];
@@ -164,8 +163,14 @@ impl<const D: usize> Solid<D> {
         Stressed { stress, smooth, stiff, volume: determinant(&f) }
     }
 
+    /// Adds the stress of damping in proportion to stiffness at a particle; out of the way of those without it.
+    #[inline(never)]
+    fn add_damping(&self, i: usize, v: &[[f64; D]], f: &Tensor, stress: &mut Tensor) {
+        let damped = self.damping_stress(self.material_of(i), f, &self.rate_of(i, v).0);
+        (0..3).for_each(|a| (0..3).for_each(|b| stress[a][b] += damped[a][b]));
+    }
+
     /// The gradients of velocities around a particle: consistent, in space, where that is asked for, and of the plain fit.
-    #[inline(always)]
     fn rate_of(&self, i: usize, v: &[[f64; D]]) -> (Tensor, Columns<D>) {
         if self.damping.stiffness == 0.0 {
             return ([[0.0; 3]; 3], plain_gradient(self, i, |j| row(&v[j])));
@@ -179,7 +184,6 @@ impl<const D: usize> Solid<D> {
 
     /// The first stress of Piola and Kirchhoff of damping in proportion to stiffness, F β C₀ : Ė, where the displacement gradient
     /// changes at `rate`; materials of small strains take F = 1.
-    #[inline(always)]
     fn damping_stress(&self, material: &Material, f: &Tensor, rate: &Tensor) -> Tensor {
         let small = matches!(material.law, Law::Linear);
         let f = |a: usize, b: usize| if small { f64::from(u8::from(a == b)) } else { f[a][b] };

@@ -323,6 +323,10 @@ metrics! {
     FlutterError = "flutter_error",
     /// Relative difference of its speed to that of the case `other`.
     FlutterDifference = "flutter_difference",
+    /// Speed index of the limit cycle with the greatest amplitude.
+    LimitCycleIndex = "limit_cycle_index",
+    /// Relative change of its speed with its last harmonics.
+    LimitCycleError = "limit_cycle_error",
     /// Lift coefficient extrapolated to zero spacing over the study.
     ExtrapolatedCl = "extrapolated_cl",
     /// Drag coefficient extrapolated to zero spacing over the study.
@@ -342,7 +346,9 @@ impl Metric {
     /// True when the metric belongs to a flutter boundary.
     pub fn is_of_flutter(self) -> bool {
         use Metric::{FlutterDifference, FlutterError, FlutterFrequency, FlutterIndex, FlutterSpeed};
-        matches!(self, FlutterIndex | FlutterSpeed | FlutterFrequency | FlutterError | FlutterDifference)
+        use Metric::{LimitCycleError, LimitCycleIndex};
+        let cycles = matches!(self, LimitCycleIndex | LimitCycleError);
+        cycles || matches!(self, FlutterIndex | FlutterSpeed | FlutterFrequency | FlutterError | FlutterDifference)
     }
 
     /// True when the metric needs runs at several spacings.

@@ -136,3 +136,49 @@ fn a_body_without_supports_follows_its_motion_and_its_particles_have_the_velocit
     assert!((tail.amplitude.unwrap() / exact - 1.0).abs() < 0.02, "{tail:?} {exact}");
     assert!(structure.lost_power < 1e-11, "{}", structure.lost_power);
 }
+
+/// A slab clamped at its back that a shock hits, of a material and with a way of marching: how far its face has gone.
+fn slab(material: &str, time: &str) -> f64 {
+    let text = format!(
+        "title = \"slab\"\ndimension = 2\n[flow]\nmach = 1.0\n[[body]]\nname = \"slab\"\nbox = {{ size = [0.3, 0.4] }}\ntranslate = [0.15, 0.0]\n\
+         [body.solid]\nspacing = 0.015\nmaterial = {{ density = 4.0, young = 400.0, poisson = 0.3, {material} }}\n\
+         probe = [{{ name = \"face\", at = [0.0, 0.0] }}]\n[[body.solid.support]]\nwhere = {{ x_min = 0.29999 }}\n[reference]\nchord = 0.06\n\
+         [cloud]\nspacing = 0.015\ndomain = {{ min = [-0.9, -0.03], max = [0.3, 0.03] }}\n[[cloud.box]]\nmin = [-0.9, -0.03]\nmax = [0.3, 0.03]\n\
+         spacing = 0.015\n[boundary]\nx_min = \"held\"\nx_max = \"symmetry\"\ny_min = \"symmetry\"\ny_max = \"symmetry\"\n[initial.riemann]\n\
+         left = [2.818181818181819, 1.3576884666042615, 3.5714285714285716]\nright = [1.0, 0.0, 0.7142857142857143]\nposition = -0.1\n{time}\n"
+    );
+    let case = case::read(&text, "slab").unwrap_or_else(|e| panic!("{e}"));
+    let mut session = Session::open(&case, ".").unwrap_or_else(|e| panic!("{e}"));
+    session.solve(&mut Silent).unwrap_or_else(|e| panic!("{e}"));
+    let structure = &session.summary().unwrap().structure[0];
+    structure.coordinates.iter().find(|c| c.name == "face_x").unwrap().largest
+}
+
+#[test]
+fn materials_that_remember_march_in_implicit_steps_as_in_explicit_ones() {
+    let (explicit, implicit) = ("[time.explicit]\nuntil = 0.2", "[time.dual]\nstep = 0.002\nuntil = 0.2");
+    let elastic = slab("law = \"neo_hookean\"", explicit);
+    for (material, more) in [("yield = 4.0, hardening = 40.0", 1.05), ("relaxation = [[0.5, 0.02]]", 1.05)] {
+        let [a, b] = [explicit, implicit].map(|time| slab(material, time));
+        assert!((a / b - 1.0).abs() < 0.04, "{material}: {a} {b}");
+        // it gives way
+        assert!(a > more * elastic, "{material}: {a}, elastic {elastic}");
+    }
+}
+
+#[test]
+fn a_block_that_drifts_against_a_stop_comes_back() {
+    let text = tube("0.2", "[time.explicit]\nuntil = 1.0")
+        .replace("[initial.riemann]\nleft = [1.0, 0.2, 0.7142857142857143]\nright = [1.0, 0.2, 0.7142857142857143]\nposition = 10.0\n", "")
+        .replace("x_min = \"held\"\nx_max = \"held\"", "x_min = \"symmetry\"\nx_max = \"symmetry\"")
+        .replace("density = 4.0, young = 40.0", "density = 400.0, young = 4000.0")
+        .replace("[reference]", "[contact]\nplanes = [{ point = [0.175, 0.0], normal = [-1.0, 0.0] }]\n[reference]");
+    let case = case::read(&text, "stop").unwrap_or_else(|e| panic!("{e}"));
+    let mut session = Session::open(&case, ".").unwrap_or_else(|e| panic!("{e}"));
+    session.solve(&mut Silent).unwrap_or_else(|e| panic!("{e}"));
+    let structure = &session.summary().unwrap().structure[0];
+    let face = structure.coordinates.iter().find(|c| c.name == "face_x").unwrap();
+    // its face is 0.05 before the stop at first; nothing before it, it would drift by 0.2
+    assert!((0.05..0.1).contains(&face.largest), "{face:?}");
+    assert!(structure.lost_power < 1e-12, "{}", structure.lost_power);
+}

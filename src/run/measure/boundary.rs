@@ -8,6 +8,14 @@ const SAME: f64 = 1e-9;
 
 /// The metric of `claim` of a boundary, and of another one where the claim compares them.
 pub(in super::super) fn value(boundary: &Boundary, other: Option<&Boundary>, claim: &Claim) -> Value {
+    if matches!(claim.metric, Metric::LimitCycleIndex | Metric::LimitCycleError) {
+        let largest = boundary.lco.iter().max_by(|a, b| a.amplitude.total_cmp(&b.amplitude));
+        let cycle = largest.ok_or("there are no limit cycles")?;
+        return match claim.metric {
+            Metric::LimitCycleError => Ok(cycle.error),
+            _ => cycle.speed_index.ok_or_else(|| "the structure has no speed index".into()),
+        };
+    }
     let first = flutter(boundary, claim)?;
     match claim.metric {
         Metric::FlutterSpeed => Ok(first.speed),

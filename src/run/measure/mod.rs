@@ -108,7 +108,9 @@ impl Measured {
             | Metric::FlutterSpeed
             | Metric::FlutterFrequency
             | Metric::FlutterError
-            | Metric::FlutterDifference => Err("this is measured of a flutter boundary, not of a run".into()),
+            | Metric::FlutterDifference
+            | Metric::LimitCycleIndex
+            | Metric::LimitCycleError => Err("this is measured of a flutter boundary, not of a run".into()),
             Metric::Converged => Ok(f64::from(u8::from(s.succeeded()))),
             Metric::Particles => Ok(s.particles as f64),
             Metric::MassDrift => s.ledger.map(|l| l.mass.abs()).ok_or_else(no_ledger),
