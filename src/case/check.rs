@@ -39,7 +39,7 @@ pub(super) fn contradictions(draft: &mut Draft<'_>) {
     super::structure_check::contradictions(draft, dimension);
     super::solid_check::contradictions(draft, dimension);
     generalised_forces(draft);
-    super::flutter_check::contradictions(draft);
+    super::flutter::check::contradictions(draft);
 }
 
 /// Modes have what they need.

@@ -1,5 +1,11 @@
 //! Flutter boundaries: at which Mach numbers, with what accuracy, as data.
+pub(super) mod check;
+pub(super) mod keys;
+mod limit_cycles;
+
 use serde::{Deserialize, Serialize};
+
+pub use limit_cycles::{GasResponse, LimitCycles};
 
 use super::{Accuracy, Case, Motion, ParticleMotion, Steady, Temporal};
 

@@ -3,7 +3,7 @@
 //! Ranges that are not plain logic come from the numerics: particles nearer to the wall than 0.3 spacings spoil the
 //! conditioning of their clouds, more than 0.6 leave a gap; fewer than 3 particles a level do not fill a cloud.
 use super::body_keys::BODY;
-use super::flutter_keys::{FLUTTER, LIMIT_CYCLES};
+use super::flutter::keys::{FLUTTER, LIMIT_CYCLES};
 use super::gaf_keys::GAF;
 use super::kinds::{ANGLE, COUNT, PLANE_POINT, POINT, POSITIVE, SIZE};
 use super::motion_keys::MOTION;

@@ -11,14 +11,11 @@ mod error;
 mod facts;
 mod flow;
 mod flutter;
-mod flutter_check;
-mod flutter_keys;
 pub mod formula;
 mod gaf;
 mod gaf_keys;
 mod keys;
 mod kinds;
-mod limit_cycles;
 mod mode_file;
 mod motion;
 mod motion_check;
@@ -49,9 +46,8 @@ mod write;
 
 pub use error::{CaseError, CaseErrors};
 pub use flow::{FreeStreamScales, NEVER_LAMINAR, NO_CONTINUUM, Units, ViscosityLaw, Viscous, Wall};
-pub use flutter::{Flutter, Matching};
+pub use flutter::{Flutter, GasResponse, LimitCycles, Matching};
 pub use gaf::{AnyMode, FlexibleMode, Gaf, Mode};
-pub use limit_cycles::{GasResponse, LimitCycles};
 pub use mode_file::{ModeTable, read_mode};
 pub use motion::{
     BodyMotionSpec, ModeMotion, Motion, MotionFormula, MotionTable, OwnFrequency, ParticleMotion, Pitch, Plunge,

@@ -24,11 +24,11 @@ pub(super) static SOLID: Table = Table::of(&[
         Kind::Table(&MATERIAL),
         "Material where no region has another one: a name of the catalogue, `material = \"aluminium 2024-T3\"`, or its numbers.",
     ),
-    Field::optional("spacing", SIZE, "`through` must be given", "Distance of particles."),
+    Field::optional("spacing", SIZE, "from `through`", "Distance of particles."),
     Field::optional(
         "through",
         Kind::Integer(2, 100_000),
-        "`spacing` must be given",
+        "9, or from `spacing`",
         "Number of particles through the shortest side of the body instead, both surfaces counted.",
     ),
     Field::optional(

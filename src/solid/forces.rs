@@ -76,7 +76,7 @@ pub struct State<'a, const D: usize> {
     pub history: &'a [f64],
 }
 
-/// The deformation gradient in space of a displacement gradient.
+/// The deformation gradient in space of a displacement gradient; nothing happens across a plane body.
 #[inline(always)]
 fn deformation<const D: usize>(gradient: &Columns<D>) -> Tensor {
     let mut f = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
@@ -85,6 +85,13 @@ fn deformation<const D: usize>(gradient: &Columns<D>) -> Tensor {
             f[a][b] += gradient[b][a];
         }
     }
+    f
+}
+
+/// The same with the hoop strain that stands in the gradient of a body of revolution.
+#[inline(always)]
+fn deformation_with_hoop<const D: usize>(gradient: &Columns<D>) -> Tensor {
+    let mut f = deformation(gradient);
     if D == 2 {
         f[2][2] += gradient[0][HOOP];
     }
@@ -135,13 +142,40 @@ impl<const D: usize> Solid<D> {
     /// Stress in one particle.
     #[inline(always)]
     fn stress_of(&self, i: usize, state: &State<'_, D>, new: &mut [f64]) -> Stressed<D> {
-        let (mut gradient, plain) = gradients(self, i, |j| row(&state.displacement[j]));
+        let (gradient, plain) = gradients(self, i, |j| row(&state.displacement[j]));
+        match self.is_round() {
+            true => self.stress_of_ring(i, state, new, (gradient, plain)),
+            // that nothing happens across a plane body saves a fifth of the time
+            false => self.stress_at(i, state, new, (&deformation(&gradient), plain)),
+        }
+    }
+
+    /// The same in a body of revolution.
+    #[inline(never)]
+    fn stress_of_ring(
+        &self,
+        i: usize,
+        state: &State<'_, D>,
+        new: &mut [f64],
+        (mut gradient, plain): (Columns<D>, Columns<D>),
+    ) -> Stressed<D> {
         self.put_hoop(i, &mut gradient, state.displacement[i][0]);
+        self.stress_at(i, state, new, (&deformation_with_hoop(&gradient), plain))
+    }
+
+    /// Stress in a particle with the deformation gradient `f`, and the plain gradient of its displacement.
+    #[inline(always)]
+    fn stress_at(
+        &self,
+        i: usize,
+        state: &State<'_, D>,
+        new: &mut [f64],
+        (f, plain): (&Tensor, Columns<D>),
+    ) -> Stressed<D> {
         let (material, old) = (self.material_of(i), self.history_of(state.history, i));
-        let f = deformation(&gradient);
-        let elastic = if self.width == 0 { material.elastic_stress(&f) } else { None };
+        let elastic = if self.width == 0 { material.elastic_stress(f) } else { None };
         let stress = elastic.unwrap_or_else(|| {
-            let response = self.respond(material, &f, (old, state.step), new);
+            let response = self.respond(material, f, (old, state.step), new);
             if let Some(lost) = self.lost_at() {
                 new[lost] = old[lost] + response.dissipated;
             }
@@ -154,13 +188,13 @@ impl<const D: usize> Solid<D> {
             let rate = plain_gradient(self, i, |j| row(&state.velocity[j]));
             (0..D).for_each(|b| (0..D).for_each(|a| smooth[b][a] += self.viscous[i] * rate[b][a]));
             if self.damping.stiffness > 0.0 {
-                self.add_damping(i, state.velocity, &f, &mut stress);
+                self.add_damping(i, state.velocity, f, &mut stress);
             }
         }
         let hoop = stress[2][2];
         let mut stress: Columns<D> = std::array::from_fn(|b| row::<D>(&std::array::from_fn(|a| stress[a][b])));
         self.put_hoop_stress(i, &mut stress, hoop);
-        Stressed { stress, smooth, stiff, volume: determinant(&f) }
+        Stressed { stress, smooth, stiff, volume: determinant(f) }
     }
 
     /// Adds the stress of damping in proportion to stiffness at a particle; out of the way of those without it.
@@ -177,7 +211,7 @@ impl<const D: usize> Solid<D> {
         }
         let (mut full, plain) = gradients(self, i, |j| row(&v[j]));
         self.put_hoop(i, &mut full, v[i][0]);
-        let mut rate = deformation(&full);
+        let mut rate = deformation_with_hoop(&full);
         (0..3).for_each(|a| rate[a][a] -= 1.0);
         (rate, plain)
     }
@@ -445,7 +479,7 @@ impl<const D: usize> Solid<D> {
     pub fn deformation(&self, i: usize, u: &[[f64; D]]) -> Tensor {
         let (mut gradient, _) = gradients(self, i, |j| row(&u[j]));
         self.put_hoop(i, &mut gradient, u[i][0]);
-        deformation(&gradient)
+        deformation_with_hoop(&gradient)
     }
 
     /// Refuses a state in which a particle is nowhere or turned inside out.

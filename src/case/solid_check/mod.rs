@@ -10,7 +10,7 @@ use super::facts::{FREQUENCIES, formula, formula_in, has_gas, is, is_dimensional
 use super::structure_check::prescribed;
 
 /// Tables that say something of a gas, of its loads or of bodies that move in it.
-pub(super) const OF_GAS: [&str; 12] = [
+pub(super) const OF_GAS: [&str; 14] = [
     "motion",
     "structure",
     "reference",
@@ -23,6 +23,8 @@ pub(super) const OF_GAS: [&str; 12] = [
     "compare",
     "hinge",
     "gaf",
+    "flutter",
+    "lco",
 ];
 const AXES: [&str; 3] = ["x", "y", "z"];
 /// Keys of a solid that have units of mass or time, but those of materials and loads.
@@ -200,18 +202,11 @@ impl Look<'_, '_> {
         }
     }
 
-    /// One of the two keys that say how fine the particles are.
+    /// One of the two keys that say how fine the particles are, at most.
     fn particles(&mut self) {
-        match (self.given("spacing"), self.given("through")) {
-            (true, true) => {
-                let message = "`spacing` and `through` are both given";
-                self.draft.fail_key(&self.place("through"), message).hint("keep one");
-            }
-            (false, false) => {
-                let message = format!("`{}` has neither `spacing` nor `through`", self.path);
-                self.draft.fail_key(&self.path, message).hint("add `through = 5`, particles through the shortest side");
-            }
-            _ => {}
+        if self.given("spacing") && self.given("through") {
+            let message = "`spacing` and `through` are both given";
+            self.draft.fail_key(&self.place("through"), message).hint("keep one");
         }
     }
 

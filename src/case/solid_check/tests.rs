@@ -178,7 +178,6 @@ fn structures_alone_have_no_gas_and_others_do() {
 #[test]
 fn solids_that_contradict_themselves_are_refused() {
     told(&plate("spacing = 0.1", ""), &["`spacing` and `through` are both given"]);
-    told(&plate("", "").replace("through = 5\n", ""), &["has neither `spacing` nor `through`"]);
     told(&plate("velocity = [\"x\", \"z\"]", ""), &["unknown name `z`", "case.toml:6:19", "names are x, y, t"]);
     told(&plate("velocity = [1]", ""), &["has 1 components in a 2-D case"]);
     told(&plate("gravity = [0, 0, 1]", ""), &["`body-1.solid.gravity` has 3 components"]);

@@ -6,12 +6,18 @@ use super::super::folder;
 use super::record::{ModeRow, Row, SolidSummary, ledger};
 use super::setup::Built;
 use crate::case::Case;
+use crate::math::{Bounds, Vector};
 use crate::observe::table::{Entry, write_csv, write_json};
 use crate::observe::vtk::{Cells, Column, write_cells, write_collection};
 use crate::physics::solid::{Material, Tensor, tensor};
+use crate::report::{Colormap, Dots, Scatter, scatter_png, write_file};
 use crate::solid::Solid;
 use crate::solid::forces::State;
 use crate::solid::modes::Mode;
+
+/// Room around the bodies in a picture, and the greatest displacement of a mode there, in their length.
+const MARGIN: f64 = 0.1;
+const SHOWN: f64 = 0.1;
 
 /// Where files go.
 pub(super) struct Files<'a> {
@@ -91,11 +97,30 @@ impl Files<'_> {
             Cells::Vertices,
             &[Column { name: "displacement", components: 3, values: &values }],
         )?;
+        self.draw_mode(k, built, mode)?;
         let names = if D == 2 { &["x", "y", "dx", "dy"][..] } else { &["x", "y", "z", "dx", "dy", "dz"] };
         let skin = (0..particles.len()).filter(|i| particles.area[*i] != crate::math::Vector::ZERO);
         let line = |i: usize| particles.x[i].0.iter().chain(&shape[i]).map(|x| Entry::from(*x)).collect();
         let Some(path) = self.path(&format!("mode-{}.csv", k + 1)) else { return Ok(()) };
         Ok(write_csv(&path, names, skin.map(line))?)
+    }
+
+    /// The shape of a plane mode, its greatest displacement a tenth of the body: `pictures/mode-1.png`.
+    fn draw_mode<const D: usize>(&self, k: usize, built: &Built<D>, mode: &Mode) -> Result<(), RunError> {
+        let Some(out) = self.out else { return Ok(()) };
+        let solid = &built.structure.solid;
+        let size = SHOWN * Bounds::around(&solid.particles.x).extent().max_abs();
+        let shape: &[[f64; D]] = mode.shape.as_chunks().0;
+        let moved: Vec<[f64; D]> = shape.iter().map(|v| v.map(|v| size * v)).collect();
+        let values: Vec<f64> = shape.iter().map(|v| Vector(*v).norm()).collect();
+        let title = format!("Mode {}: {:.6e} Hz", k + 1, mode.omega / std::f64::consts::TAU);
+        picture((out, &format!("mode-{}", k + 1)), solid, &moved, (&title, "displacement", &values))
+    }
+
+    /// Pictures of the structure as deformed.
+    pub(super) fn pictures<const D: usize>(&self, built: &Built<D>, u: &[f64]) -> Result<(), RunError> {
+        let Some(out) = self.out else { return Ok(()) };
+        draw(out, &built.structure.solid, &built.structure.state(0.0, u))
     }
 
     /// `summary.json`, and `modes.csv` where there are modes.
@@ -114,8 +139,40 @@ impl Files<'_> {
     }
 }
 
+/// Pictures of plane bodies: the stress in them and, where they move, each component of the velocity.
+pub(in crate::run) fn draw<const D: usize>(out: &Path, solid: &Solid<D>, state: &State<'_, D>) -> Result<(), RunError> {
+    let mut all = vec![("solid", "Stress in the solid", "von Mises stress", von_mises(solid, state))];
+    if state.velocity.iter().flatten().any(|v| *v != 0.0) {
+        let along = |a: usize| state.velocity.iter().map(|v| v[a]).collect();
+        all.push(("solid-u", "Velocity of the solid along x", "u", along(0)));
+        all.push(("solid-v", "Velocity of the solid along y", "v", along(1)));
+    }
+    all.into_iter().try_for_each(|(file, title, quantity, values)| {
+        picture((out, file), solid, state.displacement, (title, quantity, &values))
+    })
+}
+
+/// A picture of plane bodies where they are displaced by `moved`, with values on their particles; nothing in space.
+fn picture<const D: usize>(
+    (out, file): (&Path, &str),
+    solid: &Solid<D>,
+    moved: &[[f64; D]],
+    (title, quantity, values): (&str, &str, &[f64]),
+) -> Result<(), RunError> {
+    if D != 2 {
+        return Ok(());
+    }
+    let place = |i: usize| Vector([0, 1].map(|a| solid.particles.x[i][a] + moved[i][a]));
+    let points: Vec<Vector<2>> = (0..solid.len()).map(place).collect();
+    let bounds = Bounds::around(&points);
+    let window = bounds.padded(MARGIN * bounds.extent().max_abs());
+    let dots = Dots::Value { values, quantity, map: Colormap::Sequential };
+    let scatter = Scatter { points: &points, dots, interface: &[], outlines: &[] };
+    Ok(write_file(&out.join(format!("pictures/{file}.png")), &scatter_png(&scatter, window, title)?)?)
+}
+
 /// Von Mises's stress at every particle.
-pub(in crate::run) fn von_mises<const D: usize>(solid: &Solid<D>, state: &State<'_, D>) -> Vec<f64> {
+fn von_mises<const D: usize>(solid: &Solid<D>, state: &State<'_, D>) -> Vec<f64> {
     (0..solid.len()).map(|i| mises(&solid.cauchy(i, state))).collect()
 }
 

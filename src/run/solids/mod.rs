@@ -139,6 +139,9 @@ fn conclude<const D: usize>(study: &Study<'_, D>, ending: &Ending<'_>) -> Result
     let summary = summary::summary(study, ending);
     let Some(out) = study.files.out else { return Ok(Ended::Finished(Box::new(summary))) };
     study.files.fields("solid", study.built, &ending.marched.state)?;
+    if ending.modes.is_empty() {
+        study.files.pictures(study.built, &ending.marched.state)?;
+    }
     let write = |(k, mode): (usize, &Mode)| study.files.mode(k, study.built, mode);
     ending.modes.iter().enumerate().try_for_each(write)?;
     study.files.summary(&summary)?;

@@ -1,9 +1,9 @@
 //! The keys of `[flutter]` and `[lco]`.
-use super::kinds::{POSITIVE, SIZE};
-use super::quantity::Angle;
-use super::schema::{Absent, Field, Kind, List, Range, Table};
+use super::super::kinds::{POSITIVE, SIZE};
+use super::super::quantity::Angle;
+use super::super::schema::{Absent, Field, Kind, List, Range, Table};
 
-pub(super) static FLUTTER: Table = Table::of(&[
+pub(in super::super) static FLUTTER: Table = Table::of(&[
     Field::optional(
         "mach",
         Kind::List(&List { item: POSITIVE, min: 1, max: 64, single: true }),
@@ -58,7 +58,7 @@ const MATCHING: &[(&str, &str)] = &[
 
 const TURN: Kind = Kind::Quantity(Angle::DIMENSION, Range::POSITIVE);
 
-pub(super) static LIMIT_CYCLES: Table = Table::of(&[
+pub(in super::super) static LIMIT_CYCLES: Table = Table::of(&[
     Field::optional("mach", POSITIVE, "that of `[flow]`", "Mach number."),
     Field::optional(
         "coordinate",

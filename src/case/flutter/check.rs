@@ -1,10 +1,10 @@
 //! Contradictions in `[flutter]` and `[lco]`.
 use serde_json::Value;
 
-use super::draft::Draft;
+use super::super::draft::Draft;
 
 /// Limit cycles are beside a boundary, and of one kind of amplitude, from small to large.
-pub(super) fn contradictions(draft: &mut Draft<'_>) {
+pub(in super::super) fn contradictions(draft: &mut Draft<'_>) {
     if draft.get("lco").is_none_or(Value::is_null) {
         return;
     }

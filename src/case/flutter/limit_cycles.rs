@@ -1,7 +1,7 @@
 //! Limit cycles: of which coordinate, how large, with what accuracy, as data.
 use serde::{Deserialize, Serialize};
 
-use super::{Angle, Length};
+use super::super::{Angle, Length};
 
 /// The table `[lco]`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
