@@ -2,7 +2,7 @@
 //!
 //! A cloud at rest, with least-squares gradients that fulfil the divergence theorem ([`particles`]); an energy of its deformation
 //! whose derivatives are forces ([`forces`]); materials, supports and loads ([`body`]); and what integrators see of it all
-//! ([`system`]). Bodies of revolution are sections that are turned ([`axis`]). Book page `solid-particles`.
+//! ([`system`]). Bodies of revolution are sections that are turned (`axis`). Book page `solid-particles`.
 mod axis;
 pub mod body;
 pub mod contact;

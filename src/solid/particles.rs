@@ -7,7 +7,7 @@
 //! the surface, on any cloud. Corrections that leave linear fields exact are residuals of the fit itself,
 //! R_ij(λ) = λ_j − λ_i − d_ij·∇λ_i, so that λ solves L λ = A − Σ V g once for each axis, L = Σ_i V_i Σ_j w R_ijᵀR_ij
 //! (after Chen, Hillman and Rüter 2013, doi:10.1002/nme.4512, whose test functions are corrected in like manner). About an axis of
-//! revolution Σ_i V_i g_ij = A_j − 2π a_j e_r takes its place ([`super::axis`]).
+//! revolution Σ_i V_i g_ij = A_j − 2π a_j e_r takes its place (`axis`).
 use std::ops::Range;
 
 use crate::cloud::grid::Grid;
