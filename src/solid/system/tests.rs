@@ -52,7 +52,7 @@ fn damping_in_proportion_to_stiffness_is_so_about_the_body_at_rest() {
 // the first mode decays with the damping ratio βω/2
 #[test]
 fn a_cantilever_decays_as_its_stiffness_damping_says() {
-    const RATIO: f64 = 0.02;
+    const RATIO: f64 = 0.004;
     let mode = first_mode(&cantilever(5, 0.0));
     let mut body = plate(Law::NeoHookean, |x| x[0] < 1e-9);
     body.damping.stiffness = 2.0 * RATIO / mode.omega;
@@ -61,7 +61,7 @@ fn a_cantilever_decays_as_its_stiffness_damping_says() {
     let mut u = structure.start(|_| [0.0; 2]);
     (0..n).for_each(|k| u[n + k] = 0.0005 * mode.omega * mode.shape[k]);
     let period = TAU / (mode.omega * (1.0 - RATIO * RATIO).sqrt());
-    let until = 4.0 * period;
+    let until = 0.5 * period;
     let newton = Newton { tolerance: 1e-9, iterations: 20 };
     let implicit = structural::Plan { step: period / 200.0, until, radius: 1.0, newton };
     let explicit = symplectic::Plan { cfl: 0.8, until };
