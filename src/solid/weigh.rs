@@ -15,6 +15,9 @@ use crate::math::triangulation::triangulate;
 /// inside. Between particles of a sphere of four spacings it is 0.03.
 const FLAT: f64 = 0.12;
 
+/// Twice the area in spacings squared of a triangle that round-off has made.
+const NOTHING: f64 = 1e-9;
+
 /// Volumes and areas of particles in the plane: triangles between them, each with a side along `outline`, for whose middle `inside`
 /// holds. Shares are those of Voronoi's cells where no angle is obtuse (Meyer, Desbrun, Schröder and Barr 2003).
 pub(super) fn weigh_in_plane(
@@ -26,6 +29,11 @@ pub(super) fn weigh_in_plane(
     let (mut volume, mut moment, mut sides) = (vec![0.0; x.len()], vec![Vector::ZERO; x.len()], Sides::default());
     for triangle in triangulate(&x, outline) {
         let corners = triangle.map(|i| x[i as usize]);
+        let [b, c] = [corners[1] - corners[0], corners[2] - corners[0]];
+        // three particles of a straight side, which would lose the one between the others
+        if (b[0] * c[1] - b[1] * c[0]).abs() < NOTHING * spacing * spacing {
+            continue;
+        }
         if !inside(&((corners[0] + corners[1] + corners[2]) * (1.0 / 3.0))) {
             continue;
         }
