@@ -9,6 +9,8 @@
 //! turned back first, so that what is stiff along a thin body stays along it.
 use std::sync::Arc;
 
+use num_complex::Complex64;
+
 use super::solids::{Moving, Pace, Solids, Work};
 use crate::math::Vector;
 use crate::math::fourier::Matrix;
@@ -53,25 +55,15 @@ impl Damped {
         (self.stiffness > 0.0).then(all)
     }
 
-    /// (s² + sα)/(1 + sβ) of a complex s.
-    fn inertia(self, s: [f64; 2]) -> [f64; 2] {
-        let square = product(s, [s[0] + self.mass, s[1]]);
-        quotient(square, self.elastic(s))
+    /// (s² + sα)/(1 + sβ).
+    fn inertia(self, s: Complex64) -> Complex64 {
+        s * (s + self.mass) / self.elastic(s)
     }
 
     /// 1 + sβ.
-    fn elastic(self, s: [f64; 2]) -> [f64; 2] {
-        [1.0 + self.stiffness * s[0], self.stiffness * s[1]]
+    fn elastic(self, s: Complex64) -> Complex64 {
+        1.0 + self.stiffness * s
     }
-}
-
-fn product(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
-    [a[0] * b[0] - a[1] * b[1], a[0] * b[1] + a[1] * b[0]]
-}
-
-fn quotient(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
-    let size = b[0] * b[0] + b[1] * b[1];
-    [(a[0] * b[0] + a[1] * b[1]) / size, (a[1] * b[0] - a[0] * b[1]) / size]
 }
 
 /// The preconditioner of bodies made of particles.
@@ -157,7 +149,7 @@ impl<const D: usize> SolidPreconditioner<D> {
                 }
             }
             (Pace::Marching, None) => {
-                let [inertia, _] = damped.inertia([s, 0.0]);
+                let inertia = damped.inertia(s.into()).re;
                 let stiffness = solids.stiffness(&self.work, t, (1.0, inertia * mass));
                 // without that of inertia, where it is wanted
                 let elastic = || solids.stiffness(&self.work, t, (1.0, 0.0));
@@ -170,7 +162,8 @@ impl<const D: usize> SolidPreconditioner<D> {
             (Pace::Marching, Some(period)) => {
                 let stiffness = solids.stiffness(&self.work, t, (1.0, 0.0));
                 let of = |k: usize| {
-                    let square = damped.inertia([s, k as f64 * period.omega]).map(|z| mass * z);
+                    let square = mass * damped.inertia(Complex64::new(s, k as f64 * period.omega));
+                    let square = [square.re, square.im];
                     let solid = &solids.structure.solid;
                     let entry = |(i, a): (usize, usize)| {
                         let free = f64::from(u8::from(!solid.is_held(i, a)));
@@ -251,7 +244,7 @@ impl<const D: usize> SolidPreconditioner<D> {
                     let pulled = pulled(rubbed, &held, all.iter().map(|pair| pair[0]));
                     x.iter_mut().zip(&pulled).for_each(|(x, p)| *x += p);
                 }
-                let [elastic, _] = damped.elastic([s, 0.0]);
+                let elastic = damped.elastic(s.into()).re;
                 x.iter_mut().for_each(|x| *x /= elastic);
                 factors.solve(&mut x);
                 for (k, pair) in all.iter_mut().enumerate() {
@@ -308,9 +301,12 @@ impl<const D: usize> SolidPreconditioner<D> {
                 }
             }
             if let Some(rubbed) = rubbed {
-                let elastic = damped.elastic([s, w]);
+                let elastic = damped.elastic(Complex64::new(s, w));
                 let [re, im] = [0, 1].map(|part| pulled(rubbed, &held, known.iter().map(|pair| pair[0][part])));
-                x.iter_mut().enumerate().for_each(|(k, x)| *x = quotient([x[0] + re[k], x[1] + im[k]], elastic));
+                for (k, x) in x.iter_mut().enumerate() {
+                    let divided = Complex64::new(x[0] + re[k], x[1] + im[k]) / elastic;
+                    *x = [divided.re, divided.im];
+                }
             }
             factors.solve(&mut x);
             for k in 0..n {

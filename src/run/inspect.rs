@@ -21,7 +21,7 @@ use crate::cloud::{Cloud, Diagnosis};
 use crate::geometry::dimension;
 use crate::observe::table::write_json;
 use crate::observe::vtk::{Column, write_cells};
-use crate::scheme::View;
+use crate::scheme::{Fluid, Frame, View};
 use crate::system::{Instant, System};
 
 /// Evaluations timed for the estimate.
@@ -124,15 +124,9 @@ fn look<const D: usize>(case: &Case, input: &Path, out: Option<&Path>) -> Result
     let solver = setup::solver(&site, &Stage::PLAIN, &[], None)?;
     let seconds = began.elapsed().as_secs_f64();
     let (fluid, u) = (&solver.system, &solver.system.start());
-    let (mut work, mut du) = (fluid.work(), vec![0.0; u.len()]);
+    let mut work = fluid.work();
     let frame = fluid.frame(&Instant::still(0.0), u);
-    // the shortest: the first one warms caches and threads up, others may be disturbed
-    let evaluation = (0..TIMED).map(|_| {
-        let timer = time::Instant::now();
-        fluid.rhs(&frame, u, &mut work, &mut du);
-        timer.elapsed().as_secs_f64()
-    });
-    let evaluation = evaluation.fold(f64::INFINITY, f64::min);
+    let evaluation = seconds_of_evaluation(fluid, &frame, u, &mut work);
     let fastest = || {
         let mut rate = vec![0.0; fluid.discretisation.cloud.n_fluid];
         fluid.rates(&frame, u, &mut fluid.work(), &mut rate);
@@ -142,6 +136,7 @@ fn look<const D: usize>(case: &Case, input: &Path, out: Option<&Path>) -> Result
     notes.extend(cloud.notes.iter().cloned().chain(cloud.early_ends()).chain(accuracy::too_few(case, cloud.n_fluid)));
     warnings.extend(check_motion(case, cloud, &motions)?);
     let structure = solids::inspect_in_gas(case, input)?;
+    notes.extend(solids::told_of_own_modes(case));
     warnings.extend(structure.iter().flat_map(|s| s.warnings.iter().cloned()));
     recipe::marching(case, motions.period(), D)?;
     let axes = (!cloud.interface.is_empty())
@@ -172,6 +167,22 @@ fn look<const D: usize>(case: &Case, input: &Path, out: Option<&Path>) -> Result
         write(&Target { case, out }, &solver, &mut work, surface.as_ref())?;
     }
     Ok(report)
+}
+
+/// Time of an evaluation: the shortest of some, as the first one warms caches and threads up and others may be disturbed.
+fn seconds_of_evaluation<const D: usize>(
+    fluid: &Fluid<D>,
+    frame: &Frame<D>,
+    u: &[f64],
+    work: &mut crate::scheme::Work<D>,
+) -> f64 {
+    let mut du = vec![0.0; u.len()];
+    let one = |_| {
+        let timer = time::Instant::now();
+        fluid.rhs(frame, u, work, &mut du);
+        timer.elapsed().as_secs_f64()
+    };
+    (0..TIMED).map(one).fold(f64::INFINITY, f64::min)
 }
 
 /// What the matrices of `[gaf]` take, where the case asks for them: two balances for each mode and frequency.

@@ -7,6 +7,8 @@
 //!
 //! The linear systems are preconditioned harmonic by harmonic, by factors of (1 + ikωβ) K + (ikωα − k²ω²) M with the mean stiffness K of all
 //! instances and damping α M + β K.
+use num_complex::Complex64;
+
 use crate::math::fourier::{Instances, Matrix};
 use crate::math::sparse::ComplexFactors;
 use crate::math::sweep::{maximum, sum, sweep};
@@ -277,12 +279,12 @@ impl<'a, S: Mechanical> Vibration<'a, S> {
 }
 
 /// 1 + iβω, of the elastic forces.
-fn elastic(damping: Damping, omega: f64) -> [f64; 2] {
-    [1.0, damping.stiffness * omega]
+fn elastic(damping: Damping, omega: f64) -> Complex64 {
+    Complex64::new(1.0, damping.stiffness * omega)
 }
 
-/// a/b of complex numbers.
-fn quotient(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
-    let size = b[0] * b[0] + b[1] * b[1];
-    [(a[0] * b[0] + a[1] * b[1]) / size, (a[1] * b[0] - a[0] * b[1]) / size]
+/// a/b.
+fn quotient(a: [f64; 2], b: Complex64) -> [f64; 2] {
+    let c = Complex64::new(a[0], a[1]) / b;
+    [c.re, c.im]
 }

@@ -22,7 +22,7 @@ pub struct Mark {
     /// Point about which a rigid body turns.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pivot: Option<Vec<f64>>,
-    /// Checksum of the file of a shape.
+    /// Checksum of the shape of a mode, or of its file.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub shape: Option<String>,
 }
@@ -91,7 +91,10 @@ fn mark<const D: usize>(case: &Case, input: &Path, body: &Attached<D>, k: usize)
         Model::Spatial(rigid) => Some(rigid.pivot.to_vec()),
         Model::Modal(_) => None,
     };
-    let file = case.structure_of(body.body).and_then(|s| s.modes.get(k)).map(|m| &m.file);
-    let text = file.filter(|_| pivot.is_none()).and_then(|file| folder::text(input, file).ok());
+    let mode = case.structure_of(body.body).and_then(|s| s.modes.get(k)).filter(|_| pivot.is_none());
+    let text = mode.and_then(|mode| match &mode.table {
+        Some(table) => Some(format!("{table:?}")),
+        None => folder::text(input, &mode.file).ok(),
+    });
     Mark { pivot, shape: text.map(|t| format!("{:08x}", crc32fast::hash(t.as_bytes()))) }
 }

@@ -23,7 +23,7 @@ use crate::solid::modes::{Mode, Wanted, modes};
 
 pub(super) use inspect::inspect_in_gas;
 pub use inspect::{SolidReport, inspect_structure};
-pub(super) use own_modes::with_own_modes;
+pub(super) use own_modes::{told_of_own_modes, with_own_modes};
 pub use record::{ModeRow, PeriodicRow, ProbeHarmonic, ProbeRow, SolidLedger, SolidSummary};
 
 use files::Files;

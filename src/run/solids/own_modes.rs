@@ -3,7 +3,7 @@ use std::path::Path;
 
 use super::super::error::RunError;
 use super::setup::{Built, build};
-use crate::case::{Case, ModeTable, StructureMode, StructureModel};
+use crate::case::{Case, ModeTable, Structure, StructureMode, StructureModel};
 use crate::geometry::dimension;
 use crate::math::Vector;
 use crate::solid::modes::{Mode, Wanted, modes};
@@ -31,6 +31,19 @@ pub(in super::super) fn with_own_modes(case: &Case, input: &Path) -> Result<Case
         place.into_iter().for_each(|k| filled.structures[k].modes.clone_from(&found));
     }
     Ok(filled)
+}
+
+/// The own modes of all bodies in words.
+pub(in super::super) fn told_of_own_modes(case: &Case) -> Vec<String> {
+    let of = |own: &Structure| {
+        let one = |m: &StructureMode| {
+            let omega = (m.stiffness.unwrap_or(0.0) / m.mass).sqrt();
+            format!("{:.5e} (generalised mass {:.4e})", omega / std::f64::consts::TAU, m.mass)
+        };
+        let all: Vec<String> = own.modes.iter().map(one).collect();
+        format!("own modes, cycles per unit of time: {}", all.join(", "))
+    };
+    case.structures.iter().filter(|s| s.model == StructureModel::OwnModes).map(of).collect()
 }
 
 /// The case with the particles of one body alone.
