@@ -7,7 +7,7 @@ use super::held::{Held, Mark};
 use super::record::{FlutterAt, FlutterRow, MotionRow};
 use super::scales::Scales;
 use super::state_space::StateSpaceAt;
-use crate::case::{Flutter as Plan, Matching};
+use crate::case::{Flutter as Plan, Matching, StreamRatio};
 use crate::math::rational::Rational;
 use crate::structure::Matrices;
 use crate::structure::flutter::{Crossing, Flutter, Kind, Point, Varied};
@@ -30,6 +30,8 @@ pub(super) struct Search<'a> {
     plan: &'a Plan,
     matrices: Matrices,
     names: Vec<String>,
+    /// Coordinates of the steady flow.
+    still: Vec<f64>,
     samples: Vec<Sample>,
     iterations: usize,
     residual: f64,
@@ -42,7 +44,7 @@ impl<'a> Search<'a> {
     /// Of the structure `held`, with the forces known already.
     pub(super) fn new(held: &Held, scales: &'a Scales, plan: &'a Plan, samples: Vec<Sample>, residual: f64) -> Self {
         let (matrices, names) = (held.matrices.clone(), held.names.clone());
-        Self { scales, plan, matrices, names, samples, iterations: 0, residual }
+        Self { scales, plan, matrices, names, still: Vec::new(), samples, iterations: 0, residual }
     }
 
     /// Computes forces at the angular frequency `omega`.
@@ -100,8 +102,9 @@ impl<'a> Search<'a> {
     }
 
     /// The boundary with forces of `source`, of which those near the crossings are asked for.
-    pub(super) fn run(&mut self, source: &mut dyn ForceSource, log: &mut Log<'_>) -> FlutterAt {
-        (self.matrices, self.names) = (source.matrices(), source.names());
+    pub(super) fn run(&mut self, (source, stream): (&mut dyn ForceSource, StreamRatio), log: &mut Log<'_>) -> FlutterAt {
+        self.matrices = of_the_case(source.matrices(), stream);
+        (self.names, self.still) = (source.names(), source.still());
         self.sample(source, 0.0, log);
         for k in self.plan.first() {
             self.sample(source, self.scales.angular_frequency(k), log);
@@ -248,6 +251,8 @@ impl<'a> Search<'a> {
             reduced_frequencies: self.samples.iter().map(|x| s.reduced_frequency(x.0)).collect(),
             forces: self.samples.iter().map(|x| x.1.iter().map(|z| [z.re, z.im]).collect()).collect(),
             coordinates: self.names.clone(),
+            still: self.still.clone(),
+            trim: None,
             moved: vec![Mark::default(); self.names.len()],
             chord: 0.0,
             semichord: s.semichord,
@@ -292,6 +297,17 @@ impl<'a> Search<'a> {
             g_method: check.map(|x| s.at(x).pressure.sqrt() / equivalent - 1.0),
             extrapolated: c.kappa > last || self.samples.first().is_none_or(|x| c.kappa < x.0 * (1.0 - SAME)),
         }
+    }
+}
+
+/// Matrices in units of the case's stream from those of another one.
+fn of_the_case(matrices: Matrices, stream: StreamRatio) -> Matrices {
+    let [stiffness, damping, mass] = stream.structural();
+    let over = |all: Vec<f64>, unit: f64| all.into_iter().map(|x| x / unit).collect();
+    Matrices {
+        mass: over(matrices.mass, mass),
+        damping: over(matrices.damping, damping),
+        stiffness: over(matrices.stiffness, stiffness),
     }
 }
 
