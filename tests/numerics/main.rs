@@ -7,6 +7,7 @@ mod convergence;
 mod coupled;
 mod examples;
 mod flutter_forces;
+mod flutter_trim;
 mod flutter_typical;
 mod harmonic;
 mod invariance;
