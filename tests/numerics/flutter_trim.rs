@@ -5,7 +5,8 @@ use alula::run::{self, Places, Session, Silent};
 
 const SECTION: &str = "title = \"section\"\n[flow]\nmach = 0.5\nalpha = \"2 deg\"\n[[body]]\nnaca = \"0012\"\n[cloud]\n\
                        spacing = 0.0625\nfar_field = 20.0\n";
-const NUMBERS: &str = "[structure]\nelastic_axis = -0.2\nmass_ratio = 30.0\nx_alpha = 0.2\nr_alpha2 = 0.25\nfrequency_ratio = 0.4\n";
+const NUMBERS: &str =
+    "[structure]\nelastic_axis = -0.2\nmass_ratio = 30.0\nx_alpha = 0.2\nr_alpha2 = 0.25\nfrequency_ratio = 0.4\n";
 
 fn read(text: &str) -> Case {
     case::read(text, "trim").unwrap_or_else(|e| panic!("{e}"))
@@ -24,12 +25,14 @@ fn standing(case: &Case) -> Vec<f64> {
     session.solve(&mut Silent).unwrap();
     let summary = session.summary().unwrap();
     let all = summary.structure.iter().flat_map(|s| &s.coordinates);
-    all.map(|c| if c.name == "pitch" { c.mean.to_radians() } else { c.mean }).collect()
+    all.map(|c| c.mean.unwrap()).collect()
 }
 
 #[test]
 fn forces_are_those_about_the_equilibrium_where_flutter_begins() {
-    let case = read(&format!("{SECTION}{NUMBERS}speed_index = 0.3\n[flutter]\ntrim = true\nreduced_frequencies = [0.1, 0.3]\n"));
+    let case = read(&format!(
+        "{SECTION}{NUMBERS}speed_index = 0.3\n[flutter]\ntrim = true\nreduced_frequencies = [0.1, 0.3]\n"
+    ));
     let at = trimmed(&case, "out");
     let (trim, first) = (at.trim.clone().unwrap(), &at.crossings[0]);
     assert!(trim.rounds > 1 && (first.speed_ratio / trim.speed_ratio - 1.0).abs() < 0.005, "{trim:?} {first:?}");
@@ -43,16 +46,14 @@ fn forces_are_those_about_the_equilibrium_where_flutter_begins() {
     let omega = 0.5 * 340.0 / (b * 0.3 * 30f64.sqrt());
     let density = 1.2;
     let gas = 340f64.powi(2) / (1.4 * 287.05);
-    let units = SECTION.replace("[flow]", &format!("[flow]\ndensity = {density}\ntemperature = \"{gas} K\""));
+    let units = SECTION.replace("[flow]", &format!("[flow]\ndensity = \"{density} kg/m3\"\ntemperature = \"{gas} K\""));
     let mass = 30.0 * std::f64::consts::PI * density * b * b;
     let wing = format!(
-        "[structure]\nelastic_axis = -0.2\nmass = {mass}\nx_alpha = 0.2\nr_alpha2 = 0.25\nfrequency = {{ plunge = {}, pitch = {omega} }}\n",
+        "[structure]\nelastic_axis = -0.2\nmass = \"{mass} kg/m\"\nx_alpha = 0.2\nr_alpha2 = 0.25\nfrequency = {{ plunge = \"{} rad/s\", pitch = \"{omega} rad/s\" }}\n",
         0.4 * omega
     );
-    let same = trimmed(
-        &read(&format!("{units}{wing}[flutter]\ntrim = true\nreduced_frequencies = [0.1, 0.3]\n")),
-        "units",
-    );
+    let same =
+        trimmed(&read(&format!("{units}{wing}[flutter]\ntrim = true\nreduced_frequencies = [0.1, 0.3]\n")), "units");
     let other = &same.crossings[0];
     assert!((other.speed_ratio / first.speed_ratio - 1.0).abs() < 1e-3, "{other:?} {first:?}");
     let pitch = same.trim.unwrap().coordinates[1];

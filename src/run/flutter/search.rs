@@ -102,7 +102,11 @@ impl<'a> Search<'a> {
     }
 
     /// The boundary with forces of `source`, of which those near the crossings are asked for.
-    pub(super) fn run(&mut self, (source, stream): (&mut dyn ForceSource, StreamRatio), log: &mut Log<'_>) -> FlutterAt {
+    pub(super) fn run(
+        &mut self,
+        (source, stream): (&mut dyn ForceSource, StreamRatio),
+        log: &mut Log<'_>,
+    ) -> FlutterAt {
         self.matrices = of_the_case(source.matrices(), stream);
         (self.names, self.still) = (source.names(), source.still());
         self.sample(source, 0.0, log);
