@@ -8,6 +8,7 @@ mod coupled;
 mod examples;
 mod flutter_forces;
 mod flutter_typical;
+mod gaf;
 mod harmonic;
 mod invariance;
 mod layers;

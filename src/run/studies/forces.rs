@@ -208,7 +208,8 @@ impl<S: Marches<D>, const D: usize> ForceSource for SmallMotion<'_, S, D> {
             .collect();
         let control = Control::newton(D);
         let plan = Hierarchy { group: control.group, cycle: control.cycle };
-        let solved = self.linear.solve(omega, &right, TOLERANCE, &plan);
+        let tol = std::env::var("GTOL").ok().and_then(|t| t.parse().ok()).unwrap_or(TOLERANCE);
+        let solved = self.linear.solve(omega, &right, tol, &plan);
         // forces are those at rest: the frame stands where the steady flow has it
         let still = self.state[self.system.placing()].to_vec();
         self.system.place(&Instant::formula(0.0, &[]).with(&still), &mut self.frame);
