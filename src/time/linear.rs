@@ -15,10 +15,12 @@ use crate::system::{Hierarchy, Implicit, Period, Placed, Preconditioner, Reach, 
 const STEP: f64 = 1e-6;
 const HASTY: f64 = 1e-8;
 /// Reduction asked of each solve, and rounds of refinement.
-const ROUND: f64 = 1e-4;
+const ROUND: f64 = 1e-5;
 const ROUNDS: usize = 6;
 /// Basis vectors of a round.
-const BASIS: usize = 60;
+const BASIS: usize = 100;
+/// Part of what is asked for that a round goes on to.
+const MARGIN: f64 = 0.7;
 /// Courant number of the preconditioner.
 const FAR: f64 = 1e8;
 
@@ -172,7 +174,7 @@ impl<'a, S: Implicit> Linear<'a, S> {
             if ended.left == 0.0 || (round > 0 && ended.left <= tolerance) {
                 break;
             }
-            let goal = Goal { tolerance: ROUND.max(0.5 * tolerance / ended.left), most: BASIS };
+            let goal = Goal { tolerance: ROUND.max(MARGIN * tolerance / ended.left), most: BASIS };
             let solved = gmres.solve(
                 &mut r,
                 &mut z,
@@ -217,7 +219,7 @@ impl Waves {
     fn new(omega: f64) -> Self {
         let instances = Instances::of_harmonics(1);
         let phase = instances.times(1.0).into_iter().map(|t| [t.cos(), t.sin()]).collect();
-        Self { period: Period { instances, omega }, phase }
+        Self { period: Period { instances, omega, mean: false }, phase }
     }
 
     /// What harmonic parts, given in local times, are at the instances: Re(v̂ e^{iωt}).
