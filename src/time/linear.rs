@@ -144,68 +144,74 @@ impl<'a, S: Implicit> Linear<'a, S> {
         preconditioner.add(self.system, &self.frame, &self.state, &mut self.work);
         let shift = Shift { rates: &self.rates, cfl: FAR, coefficient: 0.0, reach: Reach::Far };
         preconditioner.finish(&shift);
-        right.iter().map(|b| self.one(omega, b, tolerance, &waves, &mut preconditioner)).collect()
+        let mut problem = Problem { waves: &waves, preconditioner };
+        right.iter().map(|b| self.one(b, tolerance, &mut problem)).collect()
     }
 
-    fn one(
-        &mut self,
-        omega: f64,
-        b: &[f64],
-        tolerance: f64,
-        waves: &Waves,
-        preconditioner: &mut S::Preconditioner,
-    ) -> (Vec<f64>, Ended) {
-        let (n, unknowns) = (b.len(), self.state.len());
+    fn one(&mut self, b: &[f64], tolerance: f64, problem: &mut Problem<'_, S>) -> (Vec<f64>, Ended) {
+        let (n, unknowns, omega) = (b.len(), self.state.len(), problem.waves.period.omega);
         let scale = self.scale.clone();
         let scaled = |i: usize| scale[i % unknowns] * b[i];
         let (mut x, mut r, mut z) = (vec![0.0; n], (0..n).map(scaled).collect::<Vec<f64>>(), vec![0.0; n]);
         let whole = norm(&r);
-        if whole > 0.0 {
-            self.recycled.begin(omega, &scale, (&mut x, &mut r));
+        if whole == 0.0 {
+            return (x, Ended::default());
         }
-        let mut ended = Ended { iterations: 0, left: if whole > 0.0 { norm(&r) / whole } else { 0.0 } };
-        let mut gmres = std::mem::replace(&mut self.gmres, Gmres::new(0, 0));
-        let [mut all, mut found] = std::mem::take(&mut self.instances);
-        let mut parts = std::mem::take(&mut self.parts);
-        let frame = self.frame.clone();
-        let system = self.system;
+        self.recycled.begin(omega, &scale, (&mut x, &mut r));
+        let mut ended = Ended { iterations: 0, left: norm(&r) / whole };
         for round in 0..ROUNDS {
             // what is told is the residual of a product, not that of a combination
-            if ended.left == 0.0 || (round > 0 && ended.left <= tolerance) {
+            if round > 0 && ended.left <= tolerance {
                 break;
             }
-            let goal = Goal { tolerance: ROUND.max(MARGIN * tolerance / ended.left), most: BASIS };
-            let solved = gmres.solve(
-                &mut r,
-                &mut z,
-                goal,
-                crate::math::krylov::System {
-                    product: |v: &[f64], out: &mut [f64]| self.shifted(omega, (v, false), out),
-                    precondition: |v: Numbers<'_>, out: &mut [f64]| {
-                        waves.spread(system, (&v, &scale), &mut parts, &mut all);
-                        let right = RightHandSide::Plain(&all);
-                        preconditioner.apply(system, &[&frame; 3], &right, &mut found);
-                        waves.gather(system, &found, out);
-                    },
-                },
-            );
-            ended.iterations += solved.iterations;
+            let asked = if ended.left > 0.0 { (MARGIN * tolerance / ended.left).min(MARGIN) } else { MARGIN };
+            ended.iterations += self.correct(ROUND.max(asked), (&mut r, &mut z), problem);
             sweep_slots(&mut x, |i, x| *x += z[i]);
             self.shifted(omega, (&x, true), &mut r);
             sweep_slots(&mut r, |i, r| *r = scaled(i) - *r);
             let left = norm(&r) / whole;
             let stalled = !(left < 0.5 * ended.left);
             ended.left = left;
-            if stalled {
+            if stalled && round > 0 {
                 break;
             }
         }
-        (self.gmres, self.parts, self.instances) = (gmres, parts, [all, found]);
         // A x = iω x − (b − r)
         let rotated = |i: usize| if i < unknowns { -x[unknowns + i] } else { x[i - unknowns] };
         self.recycled.keep(&x, |i| omega * scale[i % unknowns] * rotated(i) - (scaled(i) - r[i]));
         (x, ended)
     }
+
+    /// Sets `z` to the solution for the right-hand side `r`, which is storage afterwards, until `tolerance` of it is left; the iterations.
+    fn correct(
+        &mut self,
+        tolerance: f64,
+        (r, z): (&mut [f64], &mut [f64]),
+        Problem { waves, preconditioner }: &mut Problem<'_, S>,
+    ) -> usize {
+        let mut gmres = std::mem::replace(&mut self.gmres, Gmres::new(0, 0));
+        let [mut all, mut found] = std::mem::take(&mut self.instances);
+        let mut parts = std::mem::take(&mut self.parts);
+        let (system, omega, scale, frame) = (self.system, waves.period.omega, self.scale.clone(), self.frame.clone());
+        let goal = Goal { tolerance, most: BASIS };
+        let linear = crate::math::krylov::System {
+            product: |v: &[f64], out: &mut [f64]| self.shifted(omega, (v, false), out),
+            precondition: |v: Numbers<'_>, out: &mut [f64]| {
+                waves.spread(system, (&v, &scale), &mut parts, &mut all);
+                preconditioner.apply(system, &[&frame; 3], &RightHandSide::Plain(&all), &mut found);
+                waves.gather(system, &found, out);
+            },
+        };
+        let solved = gmres.solve(r, z, goal, linear);
+        (self.gmres, self.parts, self.instances) = (gmres, parts, [all, found]);
+        solved.iterations
+    }
+}
+
+/// What serves all right-hand sides of one frequency.
+struct Problem<'p, S: Implicit> {
+    waves: &'p Waves,
+    preconditioner: S::Preconditioner,
 }
 
 /// One harmonic at the instances of a period.
