@@ -20,8 +20,8 @@ use crate::time::linear::{Ended, Linear};
 const STEP: f64 = 1e-5;
 /// Change of the state in derivatives of forces, over its size.
 const OF_STATE: f64 = 1e-6;
-/// Relative residual of the linear systems: forces are off by half of it or less.
-const TOLERANCE: f64 = 3e-5;
+/// Relative residual of the linear systems, which leaves forces right to a ten-thousandth.
+const TOLERANCE: f64 = 1e-5;
 /// That above which a column does not count as found.
 pub(crate) const SOLVED: f64 = 1e1 * TOLERANCE;
 /// Coefficients behind generalised forces: of lift and moment.
