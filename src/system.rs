@@ -329,6 +329,8 @@ pub struct Period {
     pub instances: Instances,
     /// Angular frequency.
     pub omega: f64,
+    /// False where what is sought has no mean over the period.
+    pub mean: bool,
 }
 
 /// How far the unknowns of a linear system feel one another.

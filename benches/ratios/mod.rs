@@ -8,6 +8,7 @@
 #![allow(clippy::print_stdout, reason = "a benchmark prints")]
 mod balance;
 mod coupled;
+mod forces;
 mod march;
 mod solids;
 mod travel;
@@ -25,7 +26,7 @@ const TURNS: usize = 7;
 
 /// Runs those whose names hold one of `filters`, all when there are none.
 pub(crate) fn run(filters: &[String]) {
-    let all: [(&str, fn()); 8] = [
+    let all: [(&str, fn()); 9] = [
         ("ratios::dual_step", march::dual_step),
         ("ratios::coupled_step", coupled::coupled_step),
         ("ratios::solid_setup", solids::solid_setup),
@@ -33,6 +34,7 @@ pub(crate) fn run(filters: &[String]) {
         ("ratios::travelling", travel::travelling),
         ("ratios::deforming", travel::deforming),
         ("ratios::balance", balance::balance),
+        ("ratios::forces", forces::forces),
         ("ratios::threads", balance::threads),
     ];
     let wanted = |name: &str| filters.is_empty() || filters.iter().any(|f| name.contains(f.as_str()));

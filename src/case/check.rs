@@ -38,39 +38,8 @@ pub(super) fn contradictions(draft: &mut Draft<'_>) {
     super::motion_check::viscosity(draft);
     super::structure_check::contradictions(draft, dimension);
     super::solid_check::contradictions(draft, dimension);
-    generalised_forces(draft);
+    super::gaf_check::contradictions(draft);
     super::flutter::check::contradictions(draft);
-}
-
-/// Modes have what they need.
-fn generalised_forces(draft: &mut Draft<'_>) {
-    if draft.get("gaf").is_none_or(Value::is_null) {
-        return;
-    }
-    if !draft.given("body") {
-        draft.fail_key("gaf", "`[gaf]` needs a body").hint("add a `[[body]]`");
-    }
-    let pitches = draft.get("gaf.modes").and_then(Value::as_array).is_some_and(|m| m.iter().any(|m| m == "pitch"));
-    if pitches && !draft.given("gaf.pivot") {
-        draft
-            .fail_key("gaf", "`[gaf]` pitches about no point")
-            .hint("add `pivot = [0.25, 0]`, or `modes = \"plunge\"`");
-    }
-    if draft.count("gaf.modes") + draft.count("gaf.mode") == 0 {
-        draft.fail("gaf.modes", "`[gaf]` has no modes").hint("name rigid ones in `modes`, or add a `[[gaf.mode]]`");
-    }
-    let mut names = vec!["plunge".to_owned(), "pitch".to_owned()];
-    for place in (0..draft.count("gaf.mode")).map(|i| format!("gaf.mode[{i}].name")) {
-        let Some(name) = draft.get(&place).and_then(Value::as_str).map(str::to_owned) else { continue };
-        if !name.chars().all(|c| c.is_ascii_alphanumeric() || "-_".contains(c)) {
-            let message = format!("`{name}` cannot be the name of a mode: it names a folder and a column");
-            draft.fail(&place, message).allowed("letters, digits, `-` and `_`");
-        }
-        if names.contains(&name) {
-            draft.fail(&place, format!("two modes are called `{name}`")).hint("give each mode a name of its own");
-        }
-        names.push(name);
-    }
 }
 
 /// Each body has one shape, a name of its own and sensible digits.

@@ -67,22 +67,27 @@ impl Case {
 
     /// The steady flow at one Mach number about which forces are sought; bodies stay where they begin unless they are trimmed.
     pub fn flutter_case(&self, mach: f64) -> Self {
-        /// Orders that the residual falls by: what is left of it is a force that does not belong to the motion.
-        const ORDERS: f64 = 9.0;
-        let mut case = self.clone();
+        // a rigid cloud around one rigid body turns with it; one that deforms serves any number of modes
+        let mut case = self.settled_case(ParticleMotion::Deforming);
         case.title = format!("{} at Mach {mach}", self.title);
         case.flow.mach = Some(mach);
-        let steady = if let Temporal::Steady(steady) = &self.time { steady.clone() } else { Steady::default() };
-        case.time = Temporal::Steady(Steady { orders: ORDERS, ..steady });
-        case.accuracy = None::<Accuracy>;
-        // a rigid cloud around one rigid body turns with it; one that deforms serves any number of modes
-        let particles = ParticleMotion::Deforming;
-        case.motion = Some(Motion { particles, law: self.motion.clone().map_or_else(Default::default, |m| m.law) });
-        case.output.report = false;
         for structure in &mut case.structures {
             structure.initial.clear();
             structure.modes.iter_mut().for_each(|m| (m.initial, m.initial_rate) = (0.0, 0.0));
         }
+        case
+    }
+
+    /// The steady flow on the cloud of the case, so far converged that small motions about it can be told; `particles` follow bodies.
+    pub(super) fn settled_case(&self, particles: ParticleMotion) -> Self {
+        /// Orders that the residual falls by: what is left of it is a force that does not belong to the motion.
+        const ORDERS: f64 = 9.0;
+        let mut case = self.clone();
+        let steady = if let Temporal::Steady(steady) = &self.time { steady.clone() } else { Steady::default() };
+        case.time = Temporal::Steady(Steady { orders: ORDERS, ..steady });
+        case.accuracy = None::<Accuracy>;
+        case.motion = Some(Motion { particles, law: self.motion.clone().map_or_else(Default::default, |m| m.law) });
+        case.output.report = false;
         case
     }
 }

@@ -4,11 +4,14 @@ use super::motion_keys::MODE_FILE;
 use super::quantity::{Angle, Length};
 use super::schema::{Absent, Field, Kind, List, Range, Table};
 
+/// Zero or more.
+const NOT_NEGATIVE: Kind = Kind::Number(Range { min: 0.0, max: f64::INFINITY, closed: true });
+
 pub(super) static GAF: Table = Table::of(&[
     Field::required(
         "reduced_frequencies",
-        Kind::List(&List { item: POSITIVE, min: 1, max: 64, single: true }),
-        "Reduced frequencies k = ωL/U∞.",
+        Kind::List(&List { item: NOT_NEGATIVE, min: 1, max: 64, single: true }),
+        "Reduced frequencies k = ωL/U∞; 0 is a displacement at rest.",
     ),
     Field::optional("reduced_length", SIZE, "half of the reference chord", "Length L of the reduced frequency."),
     Field::defaulted(
@@ -29,25 +32,32 @@ pub(super) static GAF: Table = Table::of(&[
         "must be given for `pitch`",
         "Point about which the body pitches and moments are taken.",
     ),
-    Field::defaulted(
+    Field::optional(
+        "method",
+        Kind::Words(METHODS),
+        "`linear`, or `balance` where there are `pitch`, `plunge`, `harmonics`, `linearity`, an `amplitude`, or bodies with a motion of \
+         their own",
+        "How forces are found.",
+    ),
+    Field::optional(
         "pitch",
         Kind::Quantity(Angle::DIMENSION, Range::ANY),
-        Absent::Number(0.25 * std::f64::consts::PI / 180.0),
-        "Amplitude of pitch: a quarter of a degree unless it says otherwise. It is halved once to see whether forces are linear.",
+        "a quarter of a degree",
+        "Amplitude of pitch with `method = \"balance\"`. It is halved once to see whether forces are linear.",
     ),
-    Field::defaulted("plunge", SIZE, Absent::Number(0.005), "Amplitude of plunge."),
+    Field::optional("plunge", SIZE, "0.005", "Amplitude of plunge with `method = \"balance\"`."),
     Field::defaulted(
         "particles",
         Kind::Words(FOLLOWING),
         Absent::Word("rigid"),
-        "How particles follow plunge and pitch.",
+        "How particles follow plunge and pitch. With `method = \"linear\"` and a `[[gaf.mode]]` they always deform.",
     ),
-    Field::defaulted("harmonics", Kind::Integer(1, 16), Absent::Integer(1), "Number of harmonics."),
-    Field::defaulted(
+    Field::optional("harmonics", Kind::Integer(1, 16), "1", "Number of harmonics with `method = \"balance\"`."),
+    Field::optional(
         "linearity",
         POSITIVE,
-        Absent::Number(0.005),
-        "Part by which forces may change when the amplitude is halved.",
+        "0.005",
+        "Part by which forces may change when the amplitude is halved, with `method = \"balance\"`.",
     ),
 ]);
 
@@ -58,12 +68,18 @@ static FLEXIBLE: Table = Table::of(&[
         "Name of its row and column, and of its folders: letters, digits, `-` and `_`.",
     ),
     MODE_FILE,
-    Field::required(
+    Field::optional(
         "amplitude",
         POSITIVE,
-        "Amplitude of the coordinate: displacements of half a per cent of the chord serve.",
+        "must be given for `method = \"balance\"`",
+        "Amplitude of the coordinate with `method = \"balance\"`: displacements of half a per cent of the chord serve.",
     ),
 ]);
+
+const METHODS: &[(&str, &str)] = &[
+    ("linear", "small motion about one steady flow: a linear system for each mode and frequency"),
+    ("balance", "two harmonic balances for each mode and frequency, with an amplitude and half of it"),
+];
 
 const MODES: &[(&str, &str)] =
     &[("plunge", "displacement, up positive"), ("pitch", "angle about the pivot, nose up positive")];

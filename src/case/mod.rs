@@ -13,6 +13,7 @@ mod flow;
 mod flutter;
 pub mod formula;
 mod gaf;
+mod gaf_check;
 mod gaf_keys;
 mod keys;
 mod kinds;
@@ -47,7 +48,7 @@ mod write;
 pub use error::{CaseError, CaseErrors};
 pub use flow::{FreeStreamScales, NEVER_LAMINAR, NO_CONTINUUM, Units, ViscosityLaw, Viscous, Wall};
 pub use flutter::{Flutter, GasResponse, LimitCycles, Matching, StreamRatio};
-pub use gaf::{AnyMode, FlexibleMode, Gaf, Mode};
+pub use gaf::{AnyMode, FlexibleMode, Gaf, GafMethod, Mode};
 pub use mode_file::{ModeTable, read_mode};
 pub use motion::{
     BodyMotionSpec, ModeMotion, Motion, MotionFormula, MotionTable, OwnFrequency, ParticleMotion, Pitch, Plunge,

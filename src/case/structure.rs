@@ -94,6 +94,8 @@ pub enum StructureModel {
     Modal,
     /// Natural modes of the body's own particles.
     OwnModes,
+    /// Plunge, pitch and modes together, for forces of small motions in them: a program may ask for it, a case file does not.
+    Floating,
 }
 
 /// A coordinate.
@@ -220,7 +222,62 @@ impl Freedom {
     }
 }
 
+impl StructureMode {
+    /// A mode of unit mass and stiffness, at rest.
+    pub fn unit(name: &str, file: &str) -> Self {
+        Self {
+            name: name.to_owned(),
+            file: file.to_owned(),
+            mass: 1.0,
+            frequency: None,
+            reduced_frequency: None,
+            stiffness: Some(1.0),
+            damping_ratio: 0.0,
+            cubic: 0.0,
+            free_play: 0.0,
+            initial: 0.0,
+            initial_rate: 0.0,
+            force: None,
+            table: None,
+        }
+    }
+}
+
 impl Structure {
+    /// A structure of which only the model is given.
+    pub fn of(model: StructureModel) -> Self {
+        Self {
+            body: None,
+            model,
+            free: Vec::new(),
+            pivot: None,
+            elastic_axis: None,
+            semichord: None,
+            mass: None,
+            mass_ratio: None,
+            centre_of_mass: None,
+            x_alpha: None,
+            inertia: None,
+            r_alpha2: None,
+            large_angles: false,
+            stiffness: PerCoordinate::new(),
+            frequency: PerCoordinate::new(),
+            frequency_ratio: None,
+            reduced_speed: None,
+            reduced_velocity: None,
+            speed_index: None,
+            damping_ratio: PerCoordinate::new(),
+            damping: PerCoordinate::new(),
+            flap: None,
+            springs: PerCoordinate::new(),
+            initial: PerCoordinate::new(),
+            force: None,
+            gravity: None,
+            number: None,
+            modes: Vec::new(),
+        }
+    }
+
     /// The structure without modes that were found.
     pub fn as_given(&self) -> Self {
         let mut given = self.clone();

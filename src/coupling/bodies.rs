@@ -5,7 +5,7 @@ use std::sync::Arc;
 use crate::math::{Vector, dense::Factors};
 use crate::motion::{BodyMotion, Freedom, Hinge, ModeShape, Role};
 use crate::scheme::{Fluid, Frame, View, Work};
-use crate::structure::{Energy, Model, Structure};
+use crate::structure::{Energy, Floating, Model, Structure};
 use crate::system::Fault;
 
 /// Greatest angle, in radians, and displacement, in units of a coordinate, that are believed.
@@ -211,9 +211,12 @@ pub fn body_motion<const D: usize>(
     let names: Vec<&str> = structure.coordinates().iter().map(|c| c.name.as_str()).collect();
     let (pivot, mut modes) = (pivot(structure), shapes.to_vec());
     let mut roles = Vec::new();
+    // of a body that plunges and pitches as well, modes are the last coordinates
+    let bent = |k: usize| k + shapes.len() - structure.len();
     for (k, name) in names.iter().enumerate() {
         roles.push(match (structure.model(), *name) {
             (Model::Modal(_), _) => Role::Mode(k),
+            (Model::Floating(_), name) if !Floating::RIGID.contains(&name) => Role::Mode(bent(k)),
             (_, "surge") => Role::Shift(Vector::axis(0)),
             (_, "sway") => Role::Shift(Vector::axis(1)),
             (_, "plunge") => Role::Shift(Vector::axis(D - 1)),
@@ -250,6 +253,7 @@ fn pivot<const D: usize>(structure: &Structure<D>) -> Vector<D> {
     match structure.model() {
         Model::Planar(body) => Vector::from_fn(|d| body.pivot[d]),
         Model::Spatial(body) => Vector::from_fn(|d| body.pivot[d]),
+        Model::Floating(body) => Vector::from_fn(|d| body.pivot[d]),
         Model::Modal(_) => Vector::ZERO,
     }
 }

@@ -82,9 +82,10 @@ pub struct Work<const D: usize> {
 }
 
 impl<const D: usize> Coupled<D> {
-    /// The gas `fluid`, whose bodies move as [`body_motion`] has it, with the structures `bodies` in the order of their coordinates.
+    /// The gas `fluid`, whose bodies move as [`body_motion`] has it, with the structures `bodies` in the order of their coordinates. Bodies
+    /// with the same first coordinate share one structure, and its forces are those on all of them.
     pub fn new(fluid: Fluid<D>, bodies: Vec<Attached<D>>) -> Self {
-        let count = bodies.iter().map(|b| b.structure.len()).sum();
+        let count = bodies.iter().map(|b| b.range().end).max().unwrap_or(0);
         let fields = vec![fluid.fields()[0], Field::new("structure", count, 2)];
         let fastest = bodies.iter().map(Attached::fastest).fold(SLOWEST, f64::max);
         Self { fluid, bodies, solids: None, fields, fastest, held: false }
@@ -412,6 +413,10 @@ pub trait Marches<const D: usize>: HasGas<D> + Sized {
     fn attached(&self) -> &[Attached<D>] {
         &[]
     }
+    /// Generalised forces of the gas on the coordinates of all structures, in units of the solver, at the state `u` for which the frame stands.
+    fn generalised_forces(&self, _frame: &Self::Frame, _u: &[f64], _work: &mut Self::Work) -> Vec<f64> {
+        Vec::new()
+    }
     /// A march from the state `u`.
     fn explicit<'a>(&'a self, plan: Plan, past: Past, u: Vec<f64>) -> Box<dyn Integrator<Self> + 'a>;
 }
@@ -459,6 +464,15 @@ impl<const D: usize> Marches<D> for Coupled<D> {
 
     fn attached(&self) -> &[Attached<D>] {
         &self.bodies
+    }
+
+    fn generalised_forces(&self, frame: &Frame<D>, u: &[f64], work: &mut Work<D>) -> Vec<f64> {
+        self.fluid.fill_states(&frame.gas, &u[self.gas_range()], &mut work.gas);
+        if self.fluid.viscous_model.is_some() {
+            self.fluid.fill_gradients(&frame.gas, &mut work.gas);
+        }
+        self.loads(&frame.gas, &work.gas, &u[self.sprung()], &mut work.load);
+        work.load.clone()
     }
 
     fn solid_snapshot(&self, frame: &Frame<D>, u: &[f64]) -> Option<SolidSnapshot<'_, D>> {

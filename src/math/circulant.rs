@@ -23,6 +23,8 @@ const MOST: usize = 2 * MOST_HARMONICS + 1;
 #[derive(Clone, Debug)]
 pub struct HarmonicSweeps {
     harmonics: usize,
+    /// The mean is sought as well; else it is zero and left alone.
+    mean: bool,
     omega: f32,
     /// Right-hand side.
     pub b: Vec<f32>,
@@ -36,13 +38,13 @@ pub struct HarmonicSweeps {
 }
 
 impl HarmonicSweeps {
-    /// Storage for the rows of `matrix`.
-    pub fn new(matrix: &BlockMatrix, harmonics: usize, omega: f64) -> Self {
+    /// Storage for the rows of `matrix`; without `mean` nothing but harmonics is sought.
+    pub fn new(matrix: &BlockMatrix, harmonics: usize, omega: f64, mean: bool) -> Self {
         let (n, size) = (matrix.n_rows(), matrix.block());
         let zero = vec![0.0; n * size * (2 * harmonics + 1)];
         let inverse = vec![0.0; n * size * size * 2 * harmonics];
         let omega = omega as f32;
-        Self { harmonics, omega, b: zero.clone(), x: zero.clone(), r: zero.clone(), side: zero, inverse }
+        Self { harmonics, mean, omega, b: zero.clone(), x: zero.clone(), r: zero.clone(), side: zero, inverse }
     }
 
     /// Number of coefficients in time.
@@ -81,34 +83,41 @@ impl HarmonicSweeps {
 
     /// One forward and one backward sweep, starting from `x`.
     pub fn symmetric_sweep(&mut self, matrix: &BlockMatrix) {
-        match (matrix.block(), self.count()) {
-            (4, 3) => self.both_sweeps::<4, 3>(matrix),
-            (4, 5) => self.both_sweeps::<4, 5>(matrix),
-            (4, 7) => self.both_sweeps::<4, 7>(matrix),
-            (5, 3) => self.both_sweeps::<5, 3>(matrix),
-            (5, 5) => self.both_sweeps::<5, 5>(matrix),
-            (block, _) => with_block!(block, N => self.both_sweeps::<N, MOST>(matrix)),
+        match (matrix.block(), self.count(), self.mean) {
+            (4, 3, false) => self.both_sweeps::<4, 3, 1>(matrix),
+            (5, 3, false) => self.both_sweeps::<5, 3, 1>(matrix),
+            (block, _, false) => with_block!(block, N => self.both_sweeps::<N, MOST, 1>(matrix)),
+            (4, 3, _) => self.both_sweeps::<4, 3, 0>(matrix),
+            (4, 5, _) => self.both_sweeps::<4, 5, 0>(matrix),
+            (4, 7, _) => self.both_sweeps::<4, 7, 0>(matrix),
+            (5, 3, _) => self.both_sweeps::<5, 3, 0>(matrix),
+            (5, 5, _) => self.both_sweeps::<5, 5, 0>(matrix),
+            (block, ..) => with_block!(block, N => self.both_sweeps::<N, MOST, 0>(matrix)),
         }
     }
 
-    fn both_sweeps<const N: usize, const COUNT: usize>(&mut self, matrix: &BlockMatrix) {
+    /// Of the coefficients from number `FIRST` on.
+    fn both_sweeps<const N: usize, const COUNT: usize, const FIRST: usize>(&mut self, matrix: &BlockMatrix) {
         let width = N * self.count();
         for forward in [true, false] {
             copy(&self.x, &mut self.r);
             let (known, parts) = ((&self.b[..], &self.r[..], &self.inverse[..], self.harmonics), matrix.parts());
             let outputs = ((parts, width, self.x.as_mut_slice()), (parts, width, &mut self.side[..]));
             sweep_two_parts(outputs.0, outputs.1, &|k, x, side| {
-                relax_part::<N, COUNT>(matrix, known, &parts[k], forward, (x, side));
+                relax_part::<N, COUNT, FIRST>(matrix, known, &parts[k], forward, (x, side));
             });
         }
     }
 
     /// r = b − (A + ∂/∂t) x.
     pub fn residual(&mut self, matrix: &BlockMatrix) {
-        with_block!(matrix.block(), N => self.residual_of::<N>(matrix))
+        match self.mean {
+            true => with_block!(matrix.block(), N => self.residual_of::<N, 0>(matrix)),
+            false => with_block!(matrix.block(), N => self.residual_of::<N, 1>(matrix)),
+        }
     }
 
-    fn residual_of<const N: usize>(&mut self, matrix: &BlockMatrix) {
+    fn residual_of<const N: usize, const FIRST: usize>(&mut self, matrix: &BlockMatrix) {
         let (count, omega) = (self.count(), self.omega);
         let (b, x, side) = (&self.b, &self.x, &self.side);
         sweep_parts(matrix.parts(), N * count, &mut self.r, &|k, out| {
@@ -119,10 +128,11 @@ impl HarmonicSweeps {
                 let mut sum = [[0.0; LANES]; MOST];
                 let sum = &mut sum[..count];
                 for e in below.chain(inside.start..middle).chain(above) {
-                    gather::<N>(matrix, e, &x[column(e) * count * N..], sum);
+                    gather::<N, FIRST>(matrix, e, &x[column(e) * count * N..], sum);
                 }
                 let at = i * count;
-                for (c, sum) in sum.iter_mut().enumerate() {
+                row[..FIRST * N].fill(0.0);
+                for (c, sum) in sum.iter_mut().enumerate().skip(FIRST) {
                     let mut own = [0.0; N];
                     multiply::<N>(matrix.diagonal(i), &load::<N>(x, at + c), &mut own);
                     // d/dt of a cosine feeds the sine and the other way round
@@ -152,7 +162,7 @@ impl HarmonicSweeps {
                 let ((_, inside, _), column) = (matrix.split_row(i), matrix.columns_by_entry(i));
                 let mut sum = [[0.0; LANES]; MOST];
                 for e in matrix.middle(i)..inside.end {
-                    gather::<N>(matrix, e, &x[column(e) * count * N..], &mut sum[..count]);
+                    gather::<N, 0>(matrix, e, &x[column(e) * count * N..], &mut sum[..count]);
                 }
                 row.chunks_exact_mut(N).zip(&sum).for_each(|(row, sum)| store(&leading::<N>(sum), row));
             }
@@ -160,11 +170,11 @@ impl HarmonicSweeps {
     }
 }
 
-/// sum ← sum − B x for all coefficients of one neighbour.
+/// sum ← sum − B x for the coefficients of one neighbour, from number `FIRST` on.
 #[inline(always)]
-fn gather<const N: usize>(matrix: &BlockMatrix, e: usize, x: &[f32], sum: &mut [Lanes]) {
+fn gather<const N: usize, const FIRST: usize>(matrix: &BlockMatrix, e: usize, x: &[f32], sum: &mut [Lanes]) {
     let block = widen_block::<N>(matrix.off_diagonal::<N>(e));
-    for (x, sum) in x.chunks_exact(N).zip(sum) {
+    for (x, sum) in x.chunks_exact(N).zip(sum).skip(FIRST) {
         subtract_wide::<N>(&block, x, sum);
     }
 }
@@ -172,7 +182,7 @@ fn gather<const N: usize>(matrix: &BlockMatrix, e: usize, x: &[f32], sum: &mut [
 /// A half-sweep over one part; right-hand side, solution before, inverse diagonals and number of harmonics are known.
 #[multiversion(targets("x86_64+avx2"))]
 #[allow(unsafe_code, reason = "the attribute calls the version that the processor has just been asked for")]
-fn relax_part<const N: usize, const COUNT: usize>(
+fn relax_part<const N: usize, const COUNT: usize, const FIRST: usize>(
     matrix: &BlockMatrix,
     (b, old, inverse, harmonics): (&[f32], &[f32], &[f32], usize),
     part: &Range<usize>,
@@ -182,13 +192,13 @@ fn relax_part<const N: usize, const COUNT: usize>(
     for k in 0..part.len() {
         let i = if forward { part.start + k } else { part.end - 1 - k };
         let own = (&inverse[i * 2 * harmonics * N * N..(i + 1) * 2 * harmonics * N * N], harmonics);
-        relax_row::<N, COUNT>(matrix, own, (i, part), (b, old), forward, (x, side));
+        relax_row::<N, COUNT, FIRST>(matrix, own, (i, part), (b, old), forward, (x, side));
     }
 }
 
 /// x_i = (A_ii + ∂/∂t)⁻¹ (b_i − Σ_j A_ij x_j), for `COUNT` coefficients or, with [`MOST`], any number up to that.
 #[inline(always)]
-fn relax_row<const N: usize, const COUNT: usize>(
+fn relax_row<const N: usize, const COUNT: usize, const FIRST: usize>(
     matrix: &BlockMatrix,
     (inverse, harmonics): (&[f32], usize),
     (i, part): (usize, &Range<usize>),
@@ -203,21 +213,23 @@ fn relax_row<const N: usize, const COUNT: usize>(
     let mut r = [[0.0; LANES]; COUNT];
     let mut sum = [[0.0; LANES]; COUNT];
     for e in below.chain(above) {
-        gather::<N>(matrix, e, &old[column(e) * count * N..], &mut r[..count]);
+        gather::<N, FIRST>(matrix, e, &old[column(e) * count * N..], &mut r[..count]);
     }
     let swept = if forward { inside.start..middle } else { middle..inside.end };
     for e in swept {
-        gather::<N>(matrix, e, &x[(column(e) - part.start) * count * N..], &mut sum[..count]);
+        gather::<N, FIRST>(matrix, e, &x[(column(e) - part.start) * count * N..], &mut sum[..count]);
     }
-    for c in 0..count {
+    for c in FIRST..count {
         for v in 0..N {
             r[c][v] += b[(i * count + c) * N + v] + side[at + c * N + v] + sum[c][v];
         }
         store(&leading::<N>(&sum[c]), &mut side[at + c * N..]);
     }
-    let mut y = [0.0; N];
-    multiply::<N>(matrix.inverse(i), &leading::<N>(&r[0]), &mut y);
-    store(&y, &mut x[at..]);
+    if FIRST == 0 {
+        let mut y = [0.0; N];
+        multiply::<N>(matrix.inverse(i), &leading::<N>(&r[0]), &mut y);
+        store(&y, &mut x[at..]);
+    }
     for m in 0..harmonics {
         let own = &inverse[m * 2 * N * N..(m + 1) * 2 * N * N];
         let (real, imaginary) = own.split_at(N * N);
@@ -292,7 +304,7 @@ mod tests {
     fn sweeps_solve_the_system_in_time() {
         let (n, harmonics, omega) = (23, 2, 0.7);
         let matrix = chain(n);
-        let mut harmonic_sweeps = HarmonicSweeps::new(&matrix, harmonics, omega);
+        let mut harmonic_sweeps = HarmonicSweeps::new(&matrix, harmonics, omega, true);
         harmonic_sweeps.invert(&matrix);
         harmonic_sweeps.b.iter_mut().enumerate().for_each(|(k, b)| *b = ((k * k) as f32 * 0.37).sin());
         for _ in 0..40 {
@@ -335,9 +347,26 @@ mod tests {
     }
 
     #[test]
+    fn harmonics_alone_are_those_beside_a_mean() {
+        let matrix = chain(23);
+        let [whole, alone] = [true, false].map(|mean| {
+            let mut sweeps = HarmonicSweeps::new(&matrix, 1, 0.7, mean);
+            sweeps.invert(&matrix);
+            sweeps.b.iter_mut().enumerate().for_each(|(k, b)| *b = ((k * k) as f32 * 0.37).sin());
+            (0..3).for_each(|_| sweeps.symmetric_sweep(&matrix));
+            sweeps.residual(&matrix);
+            sweeps
+        });
+        for (k, values) in [(&whole.x, &alone.x), (&whole.r, &alone.r)].into_iter().enumerate() {
+            let rows = values.0.chunks_exact(9).zip(values.1.chunks_exact(9));
+            rows.for_each(|(a, b)| assert!(a[3..] == b[3..] && b[..3] == [0.0; 3], "{k}: {a:?} {b:?}"));
+        }
+    }
+
+    #[test]
     fn restarts_hold_what_sweeps_summed() {
         let matrix = chain(20);
-        let mut harmonic_sweeps = HarmonicSweeps::new(&matrix, 1, 2.0);
+        let mut harmonic_sweeps = HarmonicSweeps::new(&matrix, 1, 2.0, true);
         harmonic_sweeps.invert(&matrix);
         harmonic_sweeps.b.fill(1.0);
         harmonic_sweeps.symmetric_sweep(&matrix);

@@ -84,10 +84,10 @@ impl Multilevel {
     }
 
     /// The same for (A + ∂/∂t) x = b at the instances of a period of frequency `omega`: vectors hold, for each row, the
-    /// unknowns of the first instance, then those of the second, and so on.
-    pub fn in_time(mut self, instances: Instances, omega: f64) -> Self {
+    /// unknowns of the first instance, then those of the second, and so on. Without `mean` what is sought has none.
+    pub fn in_time(mut self, instances: Instances, omega: f64, mean: bool) -> Self {
         for level in &mut self.levels {
-            level.harmonic_sweeps = Some(HarmonicSweeps::new(&level.matrix, instances.harmonics(), omega));
+            level.harmonic_sweeps = Some(HarmonicSweeps::new(&level.matrix, instances.harmonics(), omega, mean));
             level.sweeps = Sweeps::default();
         }
         let count = instances.count();

@@ -16,7 +16,7 @@ use super::setup::{self, Site, Solver, check_motion};
 use super::solids;
 use super::stage::Stage;
 use super::understood::Understood;
-use crate::case::Case;
+use crate::case::{Case, GafMethod};
 use crate::cloud::{Cloud, Diagnosis};
 use crate::geometry::dimension;
 use crate::observe::table::write_json;
@@ -26,6 +26,8 @@ use crate::system::{Instant, System};
 
 /// Evaluations timed for the estimate.
 const TIMED: u32 = 10;
+/// Evaluations that the linear system of one column of `[gaf]` takes the time of: measured.
+const OF_COLUMN: f64 = 600.0;
 
 /// What is known of a cloud before a run.
 #[derive(Clone, Debug, Serialize)]
@@ -185,9 +187,15 @@ fn seconds_of_evaluation<const D: usize>(
     (0..TIMED).map(one).fold(f64::INFINITY, f64::min)
 }
 
-/// What the matrices of `[gaf]` take, where the case asks for them: two balances for each mode and frequency.
+/// What the matrices of `[gaf]` take, where the case asks for them: a steady flow and linear systems about it, or two balances for each
+/// mode and frequency.
 fn cost_of_gaf(own: &Sized<'_>, chord: Option<f64>) -> Option<Cost> {
     let plan = own.case.gaf.as_ref()?;
+    if plan.method == GafMethod::Linear {
+        let steady = Sized { case: &own.case.gaf_steady_case(plan), period: None, ..*own }.cost(|| 0.0);
+        let columns = plan.reduced_frequencies.len() * plan.all_modes().count();
+        return Some(Cost { seconds: steady.seconds + columns as f64 * OF_COLUMN * own.evaluation, ..steady });
+    }
     let mut all = Cost { bytes: 0.0, seconds: 0.0, disk: 0.0 };
     for &k in &plan.reduced_frequencies {
         for mode in plan.all_modes() {

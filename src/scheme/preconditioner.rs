@@ -40,7 +40,7 @@ impl<const D: usize> Implicit for Fluid<D> {
         let volume = discretisation.cloud.volume[..discretisation.cloud.n_fluid].to_vec();
         let levels = Multilevel::new(matrix, volume, plan.group, plan.cycle);
         let levels = match period {
-            Some(period) => levels.in_time(period.instances, period.omega),
+            Some(period) => levels.in_time(period.instances, period.omega, period.mean),
             None => levels,
         };
         FluidPreconditioner { levels, factors: Incomplete::default(), reach: Reach::Far, mean: false }

@@ -55,6 +55,7 @@ impl<const D: usize> Structure<D> {
                 let masses: Vec<String> = modes.iter().map(|(name, m)| format!("{name} {}", writer.mass(*m))).collect();
                 writer.say(format!("generalised masses: {}", masses.join(", ")));
             }
+            Model::Floating(body) => writer.say(format!("pivot {}", point(&body.pivot[..D]))),
         }
         writer.springs();
         writer.frequencies();

@@ -8,7 +8,8 @@
 use std::f64::consts::PI;
 
 use super::{
-    Coordinate, Flap, ForceHistory, InertiaLaw, Model, PlanarBody, RigidBody, Spring, Structure, StructureError,
+    Coordinate, Flap, Floating, ForceHistory, InertiaLaw, Model, PlanarBody, RigidBody, Spring, Structure,
+    StructureError,
 };
 use crate::case::formula::Formula;
 use crate::case::{self, Case, Freedom, Length, SpringShape, StructureModel, Units};
@@ -41,6 +42,7 @@ impl<const D: usize> Structure<D> {
         let builder = Builder { case, data, frame, units, stream, b };
         match data.model {
             StructureModel::Modal | StructureModel::OwnModes => builder.modes(),
+            StructureModel::Floating => builder.floating(),
             _ if D == 2 => builder.plane(),
             _ => builder.space(),
         }
@@ -186,6 +188,16 @@ impl Builder<'_> {
         let frequency = self.data.force.as_ref().and_then(|f| f.angular_frequency(&self.case.flow, self.frame.chord));
         let (omega, factor) = (frequency.unwrap_or(0.0), 1.0 / self.units.pressure());
         ForceHistory::Formula { formula, omega, time: self.units.case_time(1.0), factor }
+    }
+
+    /// Plunge and pitch where they are named, then the modes.
+    fn floating<const D: usize>(&self) -> Result<Structure<D>, StructureError> {
+        let pivot = self.data.pivot.as_deref().map_or([0.0; 3], point);
+        let modes = || self.data.modes.iter().map(|mode| mode.name.clone());
+        let rigid = self.data.free.iter().map(|f| f.name().to_owned());
+        let spring = Spring { stiffness: 1.0, ..Spring::default() };
+        let unknown = |name| Coordinate { name, spring, ..Coordinate::default() };
+        Structure::new(Model::Floating(Floating::new(pivot, modes())), rigid.chain(modes()).map(unknown).collect())
     }
 
     fn modes<const D: usize>(&self) -> Result<Structure<D>, StructureError> {

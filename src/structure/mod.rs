@@ -47,6 +47,28 @@ pub enum Model {
     Spatial(RigidBody),
     /// Modes, each with its name and generalised mass.
     Modal(Vec<(String, f64)>),
+    /// A body that plunges, pitches and bends, for forces of small motions: every coordinate has unit mass, and none moves another.
+    Floating(Floating),
+}
+
+/// See [`Model::Floating`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct Floating {
+    /// Point about which the body pitches, as placed.
+    pub pivot: [f64; 3],
+    /// Names of the coordinates: [`Floating::RIGID`], then those of the modes.
+    names: Vec<String>,
+}
+
+impl Floating {
+    /// Coordinates of the body as a whole, before those of its modes.
+    pub const RIGID: [&str; 2] = ["plunge", "pitch"];
+
+    /// A body that pitches about `pivot` and bends in the modes `modes`.
+    pub fn new(pivot: [f64; 3], modes: impl IntoIterator<Item = String>) -> Self {
+        let rigid = Self::RIGID.map(str::to_owned);
+        Self { pivot, names: rigid.into_iter().chain(modes).collect() }
+    }
 }
 
 /// A coordinate that is an unknown.
@@ -151,6 +173,7 @@ impl Model {
             Self::Planar(body) => planar::NAMES[..if body.flap.is_some() { 4 } else { 3 }].to_vec(),
             Self::Spatial(_) => spatial::NAMES.to_vec(),
             Self::Modal(modes) => modes.iter().map(|(name, _)| name.as_str()).collect(),
+            Self::Floating(body) => body.names.iter().map(String::as_str).collect(),
         }
     }
 
@@ -160,6 +183,7 @@ impl Model {
             Self::Planar(_) => planar::NAMES.len(),
             Self::Spatial(_) => spatial::NAMES.len(),
             Self::Modal(modes) => modes.len(),
+            Self::Floating(body) => body.names.len(),
         }
     }
 
@@ -168,6 +192,7 @@ impl Model {
             Self::Planar(body) => body.inertial(q, v, a),
             Self::Spatial(body) => body.inertial(q, v, a),
             Self::Modal(modes) => modes.iter().zip(a).map(|((_, mass), a)| S::constant(*mass) * *a).collect(),
+            Self::Floating(_) => a.to_vec(),
         }
     }
 }
@@ -178,7 +203,7 @@ impl<const D: usize> Structure<D> {
         let wanted = match &model {
             Model::Planar(_) => 2,
             Model::Spatial(_) => 3,
-            Model::Modal(_) => D,
+            Model::Modal(_) | Model::Floating(_) => D,
         };
         if wanted != D {
             return Err(StructureError::Dimension { wanted, dimension: D });
@@ -225,7 +250,11 @@ impl<const D: usize> Structure<D> {
     /// is none.
     pub fn is_angle(&self, k: usize) -> bool {
         let turns = |name: &str| Freedom::ALL.iter().any(|f| f.turns() && f.name() == name);
-        !matches!(self.model, Model::Modal(_)) && turns(&self.coordinates[k].name)
+        match &self.model {
+            Model::Modal(_) => false,
+            Model::Floating(_) => self.coordinates[k].name == Floating::RIGID[1],
+            _ => turns(&self.coordinates[k].name),
+        }
     }
 
     /// The state [q, q'] at the start.
@@ -331,7 +360,7 @@ impl<const D: usize> Structure<D> {
         let weight = match &self.model {
             Model::Planar(body) => body.weight_energy(&self.spread(q)),
             Model::Spatial(body) => body.weight_energy(&self.spread(q)),
-            Model::Modal(_) => 0.0,
+            Model::Modal(_) | Model::Floating(_) => 0.0,
         };
         let dissipation = self.coordinates.iter().zip(v).map(|(c, v)| c.damping * v * v).sum();
         Energy { kinetic, potential: springs - at_ease + weight, dissipation }
@@ -361,6 +390,26 @@ impl<const D: usize> Structure<D> {
         };
         match &self.model {
             Model::Modal(_) => Placement { amplitudes: all, ..still },
+            Model::Floating(body) => {
+                let turned = |angle: f64, along: Option<usize>| match D {
+                    2 if along.is_none() => clockwise(angle),
+                    2 => clockwise_derivative(angle),
+                    _ => spatial_rows([0.0, angle, 0.0], along),
+                };
+                let effect = |place: &usize| match place {
+                    0 => Effect::Shift(Vector::axis(D - 1)),
+                    1 => Effect::Turn(turned(all[1], Some(1))),
+                    k => Effect::Mode(*k - Floating::RIGID.len()),
+                };
+                Placement {
+                    pivot: Vector::from_fn(|d| body.pivot[d]),
+                    rotation: turned(all[1], None),
+                    shift: Vector::axis(D - 1) * all[0],
+                    amplitudes: all[Floating::RIGID.len()..].to_vec(),
+                    effects: self.places.iter().map(effect).collect(),
+                    ..still
+                }
+            }
             Model::Planar(body) => Placement {
                 pivot: Vector::from_fn(|d| body.pivot[d]),
                 rotation: clockwise(all[2]),

@@ -377,7 +377,7 @@ impl<'a, S: Implicit> Implicit for HarmonicBalance<'a, S> {
     type Preconditioner = InTime<S::Preconditioner>;
 
     fn preconditioner(&self, plan: &Hierarchy, _: Option<Period>) -> Self::Preconditioner {
-        let period = Period { instances: self.held, omega: self.omega };
+        let period = Period { instances: self.held, omega: self.omega, mean: true };
         InTime { inner: self.system.preconditioner(plan, Some(period)), instances: self.seen.count() }
     }
 }

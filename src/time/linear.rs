@@ -1,9 +1,11 @@
 //! Small periodic motion about a steady state: (iω − ∂R/∂U) û = b̂.
 //!
 //! What harmonic balance tends to as the amplitude goes to nothing (Hall and Clark 1993, doi:10.2514/3.11706), without the mean and without
-//! iterations of Newton's method: one linear system for each right-hand side, real and imaginary part beside one another. Products
+//! iterations of Newton's method: one linear system for each right-hand side, real and imaginary part beside one another. It begins with the
+//! best combination of the solutions that are known. Products
 //! with ∂R/∂U are central differences; the preconditioner is that of harmonic balance with one harmonic. Solves are refined: the
 //! residual is found anew in double precision until it is small.
+use super::recycled::Recycled;
 use crate::math::fourier::Instances;
 use crate::math::krylov::{Gmres, Goal, Numbers};
 use crate::math::sweep::{norm, sweep_slots};
@@ -13,10 +15,12 @@ use crate::system::{Hierarchy, Implicit, Period, Placed, Preconditioner, Reach, 
 const STEP: f64 = 1e-6;
 const HASTY: f64 = 1e-8;
 /// Reduction asked of each solve, and rounds of refinement.
-const ROUND: f64 = 1e-4;
+const ROUND: f64 = 1e-5;
 const ROUNDS: usize = 6;
 /// Basis vectors of a round.
-const BASIS: usize = 60;
+const BASIS: usize = 100;
+/// Part of what is asked for that a round goes on to.
+const MARGIN: f64 = 0.7;
 /// Courant number of the preconditioner.
 const FAR: f64 = 1e8;
 
@@ -35,6 +39,7 @@ pub struct Linear<'a, S: Implicit> {
     found: [Vec<f64>; 2],
     /// R at the state.
     rest: Vec<f64>,
+    recycled: Recycled,
     /// Storage of the preconditioner: parts of one harmonic, and all instances before and after it.
     parts: Vec<f64>,
     instances: [Vec<f64>; 2],
@@ -70,6 +75,7 @@ impl<'a, S: Implicit> Linear<'a, S> {
             moved: vec![0.0; n],
             found: [vec![0.0; n], vec![0.0; n]],
             rest,
+            recycled: Recycled::default(),
             parts: vec![0.0; 2 * n],
             instances: [vec![0.0; 3 * n], vec![0.0; 3 * n]],
             system,
@@ -138,61 +144,74 @@ impl<'a, S: Implicit> Linear<'a, S> {
         preconditioner.add(self.system, &self.frame, &self.state, &mut self.work);
         let shift = Shift { rates: &self.rates, cfl: FAR, coefficient: 0.0, reach: Reach::Far };
         preconditioner.finish(&shift);
-        right.iter().map(|b| self.one(omega, b, tolerance, &waves, &mut preconditioner)).collect()
+        let mut problem = Problem { waves: &waves, preconditioner };
+        right.iter().map(|b| self.one(b, tolerance, &mut problem)).collect()
     }
 
-    fn one(
-        &mut self,
-        omega: f64,
-        b: &[f64],
-        tolerance: f64,
-        waves: &Waves,
-        preconditioner: &mut S::Preconditioner,
-    ) -> (Vec<f64>, Ended) {
-        let (n, unknowns) = (b.len(), self.state.len());
+    fn one(&mut self, b: &[f64], tolerance: f64, problem: &mut Problem<'_, S>) -> (Vec<f64>, Ended) {
+        let (n, unknowns, omega) = (b.len(), self.state.len(), problem.waves.period.omega);
         let scale = self.scale.clone();
         let scaled = |i: usize| scale[i % unknowns] * b[i];
         let (mut x, mut r, mut z) = (vec![0.0; n], (0..n).map(scaled).collect::<Vec<f64>>(), vec![0.0; n]);
         let whole = norm(&r);
-        let mut ended = Ended { iterations: 0, left: if whole > 0.0 { 1.0 } else { 0.0 } };
-        let mut gmres = std::mem::replace(&mut self.gmres, Gmres::new(0, 0));
-        let [mut all, mut found] = std::mem::take(&mut self.instances);
-        let mut parts = std::mem::take(&mut self.parts);
-        let frame = self.frame.clone();
-        let system = self.system;
-        for _ in 0..ROUNDS {
-            if ended.left <= tolerance {
+        if whole == 0.0 {
+            return (x, Ended::default());
+        }
+        self.recycled.begin(omega, &scale, (&mut x, &mut r));
+        let mut ended = Ended { iterations: 0, left: norm(&r) / whole };
+        for round in 0..ROUNDS {
+            // what is told is the residual of a product, not that of a combination
+            if round > 0 && ended.left <= tolerance {
                 break;
             }
-            let goal = Goal { tolerance: ROUND.max(0.5 * tolerance / ended.left), most: BASIS };
-            let solved = gmres.solve(
-                &mut r,
-                &mut z,
-                goal,
-                crate::math::krylov::System {
-                    product: |v: &[f64], out: &mut [f64]| self.shifted(omega, (v, false), out),
-                    precondition: |v: Numbers<'_>, out: &mut [f64]| {
-                        waves.spread(system, (&v, &scale), &mut parts, &mut all);
-                        let right = RightHandSide::Plain(&all);
-                        preconditioner.apply(system, &[&frame; 3], &right, &mut found);
-                        waves.gather(system, &found, out);
-                    },
-                },
-            );
-            ended.iterations += solved.iterations;
+            let asked = if ended.left > 0.0 { (MARGIN * tolerance / ended.left).min(MARGIN) } else { MARGIN };
+            ended.iterations += self.correct(ROUND.max(asked), (&mut r, &mut z), problem);
             sweep_slots(&mut x, |i, x| *x += z[i]);
             self.shifted(omega, (&x, true), &mut r);
             sweep_slots(&mut r, |i, r| *r = scaled(i) - *r);
             let left = norm(&r) / whole;
             let stalled = !(left < 0.5 * ended.left);
             ended.left = left;
-            if stalled {
+            if stalled && round > 0 {
                 break;
             }
         }
-        (self.gmres, self.parts, self.instances) = (gmres, parts, [all, found]);
+        // A x = iω x − (b − r)
+        let rotated = |i: usize| if i < unknowns { -x[unknowns + i] } else { x[i - unknowns] };
+        self.recycled.keep(&x, |i| omega * scale[i % unknowns] * rotated(i) - (scaled(i) - r[i]));
         (x, ended)
     }
+
+    /// Sets `z` to the solution for the right-hand side `r`, which is storage afterwards, until `tolerance` of it is left; the iterations.
+    fn correct(
+        &mut self,
+        tolerance: f64,
+        (r, z): (&mut [f64], &mut [f64]),
+        Problem { waves, preconditioner }: &mut Problem<'_, S>,
+    ) -> usize {
+        let mut gmres = std::mem::replace(&mut self.gmres, Gmres::new(0, 0));
+        let [mut all, mut found] = std::mem::take(&mut self.instances);
+        let mut parts = std::mem::take(&mut self.parts);
+        let (system, omega, scale, frame) = (self.system, waves.period.omega, self.scale.clone(), self.frame.clone());
+        let goal = Goal { tolerance, most: BASIS };
+        let linear = crate::math::krylov::System {
+            product: |v: &[f64], out: &mut [f64]| self.shifted(omega, (v, false), out),
+            precondition: |v: Numbers<'_>, out: &mut [f64]| {
+                waves.spread(system, (&v, &scale), &mut parts, &mut all);
+                preconditioner.apply(system, &[&frame; 3], &RightHandSide::Plain(&all), &mut found);
+                waves.gather(system, &found, out);
+            },
+        };
+        let solved = gmres.solve(r, z, goal, linear);
+        (self.gmres, self.parts, self.instances) = (gmres, parts, [all, found]);
+        solved.iterations
+    }
+}
+
+/// What serves all right-hand sides of one frequency.
+struct Problem<'p, S: Implicit> {
+    waves: &'p Waves,
+    preconditioner: S::Preconditioner,
 }
 
 /// One harmonic at the instances of a period.
@@ -206,7 +225,7 @@ impl Waves {
     fn new(omega: f64) -> Self {
         let instances = Instances::of_harmonics(1);
         let phase = instances.times(1.0).into_iter().map(|t| [t.cos(), t.sin()]).collect();
-        Self { period: Period { instances, omega }, phase }
+        Self { period: Period { instances, omega, mean: false }, phase }
     }
 
     /// What harmonic parts, given in local times, are at the instances: Re(v̂ e^{iωt}).

@@ -10,6 +10,7 @@ pub mod linear;
 mod norm;
 pub mod ordinary;
 mod preconditioning;
+mod recycled;
 pub mod relax;
 pub mod structural;
 pub mod symplectic;

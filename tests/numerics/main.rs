@@ -9,6 +9,7 @@ mod examples;
 mod flutter_forces;
 mod flutter_trim;
 mod flutter_typical;
+mod gaf;
 mod harmonic;
 mod invariance;
 mod layers;

@@ -1,7 +1,7 @@
 //! `alula gaf`.
 use std::path::{Path, PathBuf};
 
-use alula::run::gaf::Matrices;
+use alula::run::gaf::{Column, Matrices};
 use alula::run::{self, Places};
 use serde_json::{Value, json};
 
@@ -51,8 +51,9 @@ fn event(matrices: &Matrices, out: &Path) -> Value {
 
 /// The first column that is nonlinear, or else not converged.
 fn shortfall(matrices: &Matrices) -> Option<Shortfall> {
-    if let Some(c) = matrices.columns.iter().find(|c| c.nonlinearity > matrices.linearity) {
-        let change = 100.0 * c.nonlinearity;
+    let nonlinear = |c: &&Column| c.nonlinearity.is_some_and(|change| change > matrices.linearity);
+    if let Some(c) = matrices.columns.iter().find(nonlinear) {
+        let change = 100.0 * c.nonlinearity.unwrap_or_default();
         return Some(Shortfall {
             what: format!("k = {}, {}: halving the amplitude changes the forces by {change:.2} %", c.k, c.mode),
             hint: "lower `gaf.pitch` or `gaf.plunge`".into(),
@@ -60,24 +61,26 @@ fn shortfall(matrices: &Matrices) -> Option<Shortfall> {
     }
     matrices.columns.iter().find(|c| !c.converged).map(|c| Shortfall {
         what: format!("k = {}, {}: not converged", c.k, c.mode),
-        hint: "lower the frequency or the amplitude, or refine the cloud".into(),
+        hint: match c.solved {
+            Some(_) => "refine the cloud where the steady flow has shocks or separates".into(),
+            None => "lower the frequency or the amplitude, or refine the cloud".into(),
+        },
     })
 }
 
 /// Columns and square matrices, for people.
 fn table(matrices: &Matrices) -> String {
-    let mut text =
-        String::from("       k  mode              Cl                    Cm          halved amplitude changes\n");
+    let linear = matrices.columns.iter().any(|c| c.solved.is_some());
+    let last = if linear { "iterations, residual" } else { "halved amplitude changes" };
+    let mut text = format!("       k  mode              Cl                    Cm          {last}\n");
     for c in &matrices.columns {
+        let how = match (c.solved, c.nonlinearity) {
+            (Some(solved), _) => format!("{:>7}  {:.0e}", solved.iterations, solved.left),
+            (None, change) => format!("{:>7.2} %", 100.0 * change.unwrap_or_default()),
+        };
         text.push_str(&format!(
-            "{:>8}  {:<8} {:>9.4} {:>+9.4}i  {:>9.4} {:>+9.4}i  {:>7.2} %\n",
-            c.k,
-            c.mode,
-            c.cl[0],
-            c.cl[1],
-            c.cm[0],
-            c.cm[1],
-            100.0 * c.nonlinearity
+            "{:>8}  {:<8} {:>9.4} {:>+9.4}i  {:>9.4} {:>+9.4}i  {how}\n",
+            c.k, c.mode, c.cl[0], c.cl[1], c.cm[0], c.cm[1]
         ));
     }
     text + &squares(matrices)

@@ -89,6 +89,7 @@ fn mark<const D: usize>(case: &Case, input: &Path, body: &Attached<D>, k: usize)
     let pivot = match body.structure.model() {
         Model::Planar(planar) => Some(planar.pivot.to_vec()),
         Model::Spatial(rigid) => Some(rigid.pivot.to_vec()),
+        Model::Floating(body) => Some(body.pivot[..D].to_vec()),
         Model::Modal(_) => None,
     };
     let mode = case.structure_of(body.body).and_then(|s| s.modes.get(k)).filter(|_| pivot.is_none());

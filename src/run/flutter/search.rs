@@ -2,7 +2,7 @@
 use num_complex::Complex64;
 
 use super::super::record::Log;
-use super::super::studies::ForceSource;
+use super::super::studies::{ForceSource, Forces};
 use super::held::{Held, Mark};
 use super::record::{FlutterAt, FlutterRow, MotionRow};
 use super::scales::Scales;
@@ -49,7 +49,7 @@ impl<'a> Search<'a> {
 
     /// Computes forces at the angular frequency `omega`.
     fn sample(&mut self, source: &mut dyn ForceSource, omega: f64, log: &mut Log<'_>) {
-        let (forces, ended) = source.forces(omega);
+        let Forces { generalised, ended, .. } = source.forces(omega);
         let iterations: usize = ended.iter().map(|e| e.iterations).sum();
         let left = ended.iter().map(|e| e.left).fold(0.0, f64::max);
         self.iterations += iterations;
@@ -59,7 +59,7 @@ impl<'a> Search<'a> {
             self.scales.reduced_frequency(omega),
             ended.len()
         ));
-        self.samples.push((omega, forces));
+        self.samples.push((omega, generalised));
         self.samples.sort_by(|a, b| a.0.total_cmp(&b.0));
     }
 

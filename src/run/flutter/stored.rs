@@ -48,6 +48,15 @@ struct OfGaf {
     pivot: Option<Vec<f64>>,
     modes: Vec<String>,
     matrices: Vec<Square>,
+    #[serde(default)]
+    columns: Vec<Solved>,
+}
+
+/// How a column was found.
+#[derive(Deserialize)]
+struct Solved {
+    #[serde(default)]
+    left: f64,
 }
 
 #[derive(Deserialize)]
@@ -160,7 +169,7 @@ impl OfGaf {
             reduced_frequencies: self.matrices.iter().map(|m| m.k).collect(),
             forces: self.matrices.iter().map(forces).collect(),
             coordinates: self.modes,
-            residual: 0.0,
+            residual: self.columns.iter().map(|c| c.left).fold(0.0, f64::max),
         }
     }
 }

@@ -6,7 +6,7 @@ use super::super::error::RunError;
 use super::super::folder;
 use super::super::look::reference::chord;
 use super::super::record::Described;
-use crate::case::{Case, SolidProbe, StructureMode, Temporal};
+use crate::case::{Case, SolidProbe, StructureMode, StructureModel, Temporal};
 use crate::coupling::{Attached, body_motion};
 use crate::geometry::Surface;
 use crate::math::Vector;
@@ -36,7 +36,8 @@ pub(crate) fn bodies<const D: usize>(
             None => mode_shape(&mode.file, &read),
         };
         let shapes = data.modes.iter().map(|m| shape(m).map(Arc::new)).collect::<Result<Vec<_>, _>>()?;
-        let first = all.last().map_or(0, |b| b.range().end);
+        let shared = data.model == StructureModel::Floating;
+        let first = all.last().filter(|_| !shared).map_or(0, |b| b.range().end);
         motions.free(body, body_motion(&structure, first, &shapes));
         let probes: Vec<_> =
             probes(case, body).map(|p| Vector::from_fn(|d| p.at.get(d).map_or(0.0, |x| x.0))).collect();
@@ -75,7 +76,17 @@ pub(crate) fn described<const D: usize>(
         let lines = structure.description(case, data, frame(case, surface, attached.body));
         Some(Described { names, lines })
     };
-    bodies.iter().filter_map(one).collect()
+    // what several bodies share is told once
+    let (firsts, mut told) = (bodies.iter().map(|b| b.first), Vec::new());
+    let own = firsts
+        .map(|first| {
+            !told.contains(&first) && {
+                told.push(first);
+                true
+            }
+        })
+        .collect::<Vec<_>>();
+    bodies.iter().zip(own).filter(|(_, own)| *own).filter_map(|(body, _)| one(body)).collect()
 }
 
 /// What the numbers of flutter are measured with.

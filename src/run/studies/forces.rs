@@ -5,8 +5,9 @@
 //! The cloud, the steady flow and the three derivatives serve all frequencies, one preconditioner all coordinates of a frequency.
 use num_complex::Complex64;
 
-use super::swing::{Flow, own_loads, swing};
-use crate::coupling::Marches;
+use super::super::look::{GasView, LoadFrame};
+use super::swing::{Flow, swing};
+use crate::coupling::{Attached, Marches};
 use crate::math::sweep::norm;
 use crate::scheme::Fluid;
 use crate::structure::limit_cycle::Periodic;
@@ -19,8 +20,12 @@ use crate::time::linear::{Ended, Linear};
 const STEP: f64 = 1e-5;
 /// Change of the state in derivatives of forces, over its size.
 const OF_STATE: f64 = 1e-6;
-/// Relative residual of the linear systems.
-const TOLERANCE: f64 = 1e-6;
+/// Relative residual of the linear systems, which leaves forces right to a ten-thousandth.
+const TOLERANCE: f64 = 1e-5;
+/// That above which a column does not count as found.
+pub(crate) const SOLVED: f64 = 1e1 * TOLERANCE;
+/// Coefficients behind generalised forces: of lift and moment.
+const COEFFICIENTS: usize = 2;
 
 /// A steady flow that can be asked for forces.
 pub(crate) trait ForceSource {
@@ -35,8 +40,21 @@ pub(crate) trait ForceSource {
     /// Generalised forces on all coordinates in the motion `motion` of angular frequency `omega` about the steady flow, beyond those of the latter;
     /// else what stands in the way.
     fn swing(&mut self, motion: &Periodic, omega: f64) -> Result<Periodic, String>;
-    /// Generalised forces per coordinate at the angular frequency `omega`, rows one after another, and how each column was found.
-    fn forces(&mut self, omega: f64) -> (Vec<Complex64>, Vec<Ended>);
+    /// Forces per coordinate at the angular frequency `omega`.
+    fn forces(&mut self, omega: f64) -> Forces;
+    /// q∞ S c: free-stream dynamic pressure, reference area (in the plane chord) and chord, in units of the solver.
+    fn work_scale(&mut self) -> f64;
+}
+
+/// Forces of small motions at one frequency, in units of the solver.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Forces {
+    /// Generalised forces per coordinate, rows one after another.
+    pub(crate) generalised: Vec<Complex64>,
+    /// Lift and moment coefficients per coordinate.
+    pub(crate) coefficients: Vec<[Complex64; 2]>,
+    /// How each column was found.
+    pub(crate) ended: Vec<Ended>,
 }
 
 /// What displacement, rate and acceleration of a coordinate do to the gas and to the forces.
@@ -53,21 +71,23 @@ pub(crate) struct SmallMotion<'a, S: Marches<D>, const D: usize> {
     state: Vec<f64>,
     linear: Linear<'a, Fluid<D>>,
     columns: Vec<Column>,
-    /// Forces in the steady flow, and the last periodic one.
+    axes: LoadFrame,
+    /// Forces and coefficients in the steady flow, and the last periodic one.
     still: Vec<f64>,
     flow: Option<Flow>,
 }
 
 impl<'a, S: Marches<D>, const D: usize> SmallMotion<'a, S, D> {
-    /// `system` at the steady state `state`.
-    pub(crate) fn new(system: &'a S, state: &[f64]) -> Self {
+    /// `system` at the steady state `state`; `axes` are those of lift and moment.
+    pub(crate) fn new(system: &'a S, state: &[f64], axes: &LoadFrame) -> Self {
         let (work, place) = (system.work(), system.placing());
         let frame = system.frame(&Instant::formula(0.0, &[]).with(&state[place]), state);
         let linear = Linear::new(system.gas(), system.gas_frame(&frame).clone(), system.gas_state(state));
         let (columns, still) = (Vec::new(), Vec::new());
-        let mut all = Self { system, frame, work, state: state.to_vec(), linear, columns, still, flow: None };
+        let mut all =
+            Self { system, frame, work, state: state.to_vec(), linear, columns, axes: axes.clone(), still, flow: None };
         all.still = all.loads(state);
-        let units: Vec<f64> = system.attached().iter().flat_map(|b| b.units.clone()).collect();
+        let units = units(system.attached());
         all.columns = units.iter().enumerate().map(|(j, unit)| all.column(j, STEP * unit)).collect();
         all
     }
@@ -109,17 +129,20 @@ impl<'a, S: Marches<D>, const D: usize> SmallMotion<'a, S, D> {
         (du[self.system.gas_unknowns()].to_vec(), loads)
     }
 
-    /// Generalised forces on all coordinates at the state `u`.
+    /// Generalised forces on all coordinates at the state `u`, then the coefficients of lift and moment.
     fn loads(&mut self, u: &[f64]) -> Vec<f64> {
-        let all = self.system.exchange(&self.frame, u, &mut self.work).map_or_else(Vec::new, |e| e.loads);
-        own_loads(self.system.attached(), &all)
+        let mut all = self.system.generalised_forces(&self.frame, u, &mut self.work);
+        let view = GasView::of(self.system, &self.frame, u);
+        let coefficients = view.coefficients(&self.axes, self.system.gas_work(&mut self.work)).unwrap_or_default();
+        all.extend([coefficients.cl, coefficients.cm]);
+        all
     }
 
     /// ∂F/∂U v.
     fn force_of(&mut self, v: &[f64]) -> Vec<f64> {
         let size = norm(v);
         if size == 0.0 {
-            return vec![0.0; self.columns.len()];
+            return vec![0.0; self.columns.len() + COEFFICIENTS];
         }
         let (own, step) = (self.system.gas_unknowns(), OF_STATE * norm(self.system.gas_state(&self.state)) / size);
         let sides = [1.0, -1.0].map(|sign| {
@@ -136,7 +159,7 @@ impl<S: Marches<D>, const D: usize> ForceSource for SmallMotion<'_, S, D> {
     fn matrices(&self) -> Matrices {
         let n = self.columns.len();
         let mut all = Matrices { mass: vec![0.0; n * n], damping: vec![0.0; n * n], stiffness: vec![0.0; n * n] };
-        for body in self.system.attached() {
+        for body in distinct(self.system.attached()) {
             let (m, first) = (body.structure.len(), body.first);
             let q: Vec<f64> = (0..m).map(|k| self.state[self.system.placing()][2 * (first + k)]).collect();
             let own = body.structure.matrices(&q, &vec![0.0; m]);
@@ -152,7 +175,7 @@ impl<S: Marches<D>, const D: usize> ForceSource for SmallMotion<'_, S, D> {
     }
 
     fn names(&self) -> Vec<String> {
-        let all = self.system.attached().iter().flat_map(|b| b.structure.coordinates());
+        let all = distinct(self.system.attached()).flat_map(|b| b.structure.coordinates());
         all.map(|c| c.name.clone()).collect()
     }
 
@@ -161,7 +184,7 @@ impl<S: Marches<D>, const D: usize> ForceSource for SmallMotion<'_, S, D> {
     }
 
     fn springs(&self) -> Vec<Spring> {
-        self.system.attached().iter().flat_map(|b| b.structure.coordinates()).map(|c| c.spring).collect()
+        distinct(self.system.attached()).flat_map(|b| b.structure.coordinates()).map(|c| c.spring).collect()
     }
 
     fn swing(&mut self, motion: &Periodic, omega: f64) -> Result<Periodic, String> {
@@ -172,7 +195,13 @@ impl<S: Marches<D>, const D: usize> ForceSource for SmallMotion<'_, S, D> {
         Ok(forces)
     }
 
-    fn forces(&mut self, omega: f64) -> (Vec<Complex64>, Vec<Ended>) {
+    fn work_scale(&mut self) -> f64 {
+        let view = GasView::of(self.system, &self.frame, &self.state);
+        let axes = self.axes.axes(&view.seen(self.system.gas_work(&mut self.work)));
+        axes.force_scale * axes.chord
+    }
+
+    fn forces(&mut self, omega: f64) -> Forces {
         let n = self.columns.len();
         let right: Vec<Vec<f64>> = self
             .columns
@@ -189,18 +218,26 @@ impl<S: Marches<D>, const D: usize> ForceSource for SmallMotion<'_, S, D> {
         // forces are those at rest: the frame stands where the steady flow has it
         let still = self.state[self.system.placing()].to_vec();
         self.system.place(&Instant::formula(0.0, &[]).with(&still), &mut self.frame);
-        let mut all = vec![Complex64::new(0.0, 0.0); n * n];
-        let mut ended = Vec::new();
+        let mut all = Forces { generalised: vec![Complex64::new(0.0, 0.0); n * n], ..Forces::default() };
         for (j, (x, end)) in solved.into_iter().enumerate() {
             let (re, im) = x.split_at(x.len() / 2);
             let [re, im] = [re, im].map(|part| self.force_of(part));
             let [q, v, a] = &self.columns[j].force;
-            for i in 0..n {
-                let direct = Complex64::new(q[i] - omega * omega * a[i], omega * v[i]);
-                all[i * n + j] = Complex64::new(re[i], im[i]) + direct;
-            }
-            ended.push(end);
+            let force = |i: usize| Complex64::new(re[i] + q[i] - omega * omega * a[i], im[i] + omega * v[i]);
+            (0..n).for_each(|i| all.generalised[i * n + j] = force(i));
+            all.coefficients.push([force(n), force(n + 1)]);
+            all.ended.push(end);
         }
-        (all, ended)
+        all
     }
+}
+
+/// Bodies with coordinates of their own: the first of those that share a structure.
+fn distinct<const D: usize>(all: &[Attached<D>]) -> impl Iterator<Item = &Attached<D>> {
+    all.iter().enumerate().filter(|(k, body)| all[..*k].iter().all(|b| b.first != body.first)).map(|(_, body)| body)
+}
+
+/// What is a large change of each coordinate.
+fn units<const D: usize>(all: &[Attached<D>]) -> Vec<f64> {
+    distinct(all).flat_map(|b| b.units.clone()).collect()
 }

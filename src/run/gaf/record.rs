@@ -1,0 +1,166 @@
+//! Matrices of generalised forces as data and as files.
+use std::path::Path;
+
+use num_complex::Complex64;
+use serde::Serialize;
+use serde_json::json;
+
+use super::super::error::RunError;
+use super::super::folder;
+use super::super::look::reference;
+use super::super::setup;
+use crate::case::{Case, Gaf};
+use crate::geometry::dimension;
+use crate::observe::columns::{Scale, describe_tables};
+use crate::observe::table::{Entry, write_csv, write_json};
+
+/// What files say about signs and units.
+const CONVENTION: &str = "f(t) = Re f exp(+i omega t); Cl = lift/(q c), up positive; Cm = moment/(q c^2) about the pivot, nose up \
+                          positive; columns per plunge over the length L (up positive), per radian of pitch (nose up positive), \
+                          per unit of the coordinate of a flexible mode; Q_ij = work of the gas per unit of coordinate i, due to \
+                          coordinate j, over q S c (2-D: S = c), with the coordinates of the columns: the row of pitch is Cm, that \
+                          of plunge the upward force over q S times L/c; k = omega L/U with L as given; phase positive when the \
+                          load leads the motion";
+
+/// One column of the matrix at one frequency.
+#[derive(Clone, Debug, Serialize)]
+pub struct Column {
+    /// Reduced frequency.
+    pub k: f64,
+    /// Mode that moves.
+    pub mode: String,
+    /// Lift over motion: real and imaginary part.
+    pub cl: [f64; 2],
+    /// Moment over motion.
+    pub cm: [f64; 2],
+    /// Generalised force on every mode over motion, see [`GeneralisedForce`](super::super::GeneralisedForce).
+    pub q: Vec<[f64; 2]>,
+    /// Greatest change of lift, moment or generalised force, over the largest of them, when the amplitude is halved; absent where
+    /// motion is infinitely small.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub nonlinearity: Option<f64>,
+    /// How the linear system was solved; absent for a harmonic balance.
+    #[serde(flatten, skip_serializing_if = "Option::is_none")]
+    pub solved: Option<Solved>,
+    /// Processor seconds; of a linear system without those of the steady flow, which all columns share.
+    pub cpu_seconds: f64,
+    /// True when the equations were solved: both harmonic balances, or the linear system and the steady flow.
+    pub converged: bool,
+}
+
+/// How a linear system was solved.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct Solved {
+    /// Linear iterations.
+    pub iterations: usize,
+    /// Residual over right-hand side.
+    pub left: f64,
+}
+
+/// Matrices of all frequencies.
+#[derive(Clone, Debug)]
+pub struct Matrices {
+    /// Names of the modes, in the order of rows and columns.
+    pub modes: Vec<String>,
+    /// Columns, frequency by frequency in the order of the case.
+    pub columns: Vec<Column>,
+    /// Change above which a column is told to be nonlinear.
+    pub linearity: f64,
+    /// Where forces hold.
+    pub conditions: Conditions,
+}
+
+/// The flow and the lengths that forces hold for.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct Conditions {
+    /// Mach number.
+    pub mach: f64,
+    /// Angle of attack.
+    pub alpha_deg: f64,
+    /// Reference chord c and area S (2-D: c).
+    pub chord: f64,
+    /// S.
+    pub area: f64,
+    /// Length L of the reduced frequencies.
+    pub reduced_length: f64,
+    /// Point about which the body pitches.
+    pub pivot: Option<Vec<f64>>,
+}
+
+impl Conditions {
+    pub(super) fn of(case: &Case, plan: &Gaf, input: &Path) -> Result<Self, RunError> {
+        let (chord, area) = match dimension(case) {
+            2 => {
+                let chord =
+                    setup::surface::<2>(case, input)?.0.as_ref().map_or(1.0, |s| reference::chord(case, Some(s)));
+                (chord, chord)
+            }
+            _ => {
+                let seen = setup::surface::<3>(case, input)?.0.as_ref().map(|s| reference::planform(case, s));
+                seen.map_or((1.0, 1.0), |seen| (seen.chord, seen.area))
+            }
+        };
+        Ok(Self {
+            mach: case.flow.reference().mach,
+            alpha_deg: case.flow.alpha.0.to_degrees(),
+            chord,
+            area,
+            reduced_length: plan.reduced_length.map_or(0.5 * chord, |l| l.0),
+            pivot: plan.pivot.as_ref().map(|p| p.iter().map(|x| x.0).collect()),
+        })
+    }
+}
+
+impl Matrices {
+    /// Writes `gaf.csv`, a row for each column of the matrices, and `gaf.json`.
+    pub(super) fn write(&self, frequencies: &[f64], scale: Scale, out: &Path) -> Result<(), RunError> {
+        let rows = self.columns.iter().map(|c| {
+            let mut row = vec![Entry::from(c.k), Entry::from(c.mode.as_str())];
+            for [re, im] in [c.cl, c.cm] {
+                let value = Complex64::new(re, im);
+                row.extend([re, im, value.norm(), value.arg().to_degrees()].map(Entry::from));
+            }
+            row.extend(c.q.iter().flatten().map(|v| Entry::from(*v)));
+            row.extend(c.nonlinearity.map(Entry::from));
+            row.extend(c.solved.iter().flat_map(|s| [Entry::from(s.iterations as f64), Entry::from(s.left)]));
+            row
+        });
+        let parts = |load: &str| ["re", "im", "abs", "phase_deg"].map(|part| format!("{load}_{part}"));
+        let mut names: Vec<String> = ["k".into(), "mode".into()].into();
+        names.extend(["cl", "cm"].iter().flat_map(|load| parts(load)));
+        names.extend(self.modes.iter().flat_map(|m| [format!("q_{m}_re"), format!("q_{m}_im")]));
+        let linear = self.columns.iter().any(|c| c.solved.is_some());
+        let last: &[&str] = if linear { &["iterations", "left"] } else { &["nonlinearity"] };
+        names.extend(last.iter().map(|name| (*name).to_owned()));
+        let names: Vec<&str> = names.iter().map(String::as_str).collect();
+        write_csv(&out.join(folder::MATRICES), &names, rows)?;
+        describe_tables(out, scale, &[])?;
+        let c = &self.conditions;
+        let whole = json!({
+            "convention": CONVENTION,
+            "mach": c.mach,
+            "alpha_deg": c.alpha_deg,
+            "chord": c.chord,
+            "area": c.area,
+            "reduced_length": c.reduced_length,
+            "pivot": c.pivot,
+            "rows": ["cl", "cm"],
+            "modes": self.modes,
+            "matrices": frequencies.iter().map(|k| self.matrix(*k)).collect::<Vec<_>>(),
+            "columns": self.columns,
+        });
+        Ok(write_json(&out.join("gaf.json"), &whole)?)
+    }
+
+    /// Rows `cl` and `cm`, and the square matrix `q`: `q[i][j]` is the force on mode i that mode j makes.
+    fn matrix(&self, k: f64) -> serde_json::Value {
+        let columns: Vec<&Column> = self.columns.iter().filter(|c| c.k == k).collect();
+        let row = |i: usize| columns.iter().map(|c| c.q[i]).collect::<Vec<_>>();
+        json!({
+            "k": k,
+            "cl": columns.iter().map(|c| c.cl).collect::<Vec<_>>(),
+            "cm": columns.iter().map(|c| c.cm).collect::<Vec<_>>(),
+            "q": (0..self.modes.len()).map(row).collect::<Vec<_>>(),
+        })
+    }
+}
