@@ -8,6 +8,7 @@ use std::path::Path;
 
 mod held;
 mod limit_cycles;
+mod marched;
 mod record;
 mod scales;
 mod search;
@@ -15,7 +16,7 @@ mod state_space;
 mod stored;
 
 pub use held::Mark;
-pub use record::{Boundary, FlutterAt, FlutterRow, LimitCycle, MotionRow};
+pub use record::{Boundary, FlutterAt, FlutterRow, LimitCycle, MarchedCycle, MotionRow};
 pub use state_space::StateSpaceAt;
 
 use self::held::Held;
@@ -87,6 +88,13 @@ fn sought(
 ) -> Result<Option<Boundary>, RunError> {
     let plan = planned(case)?;
     let case = &with_own_modes(case, &places.input)?;
+    if forces.is_some() && case.lco.as_ref().is_some_and(|lco| lco.march) {
+        return Err(RunError::Unsupported {
+            what: "`lco.march` asks for a march of gas and structure, but forces that are read come without a gas"
+                .into(),
+            hint: "leave out `march`, or `--forces`",
+        });
+    }
     let stored = forces.map(Stored::read).transpose()?;
     let _held = folder::create_once(case, &places.input, &places.out)?;
     let mut all = Boundary::new(&case.title);
@@ -202,6 +210,10 @@ fn at_mach(
     (at.particles, at.cpu_seconds) = (summary.particles, summary.cpu_seconds);
     if !summary.succeeded() {
         at.warnings.push("the steady flow did not converge: forces about it are doubtful".into());
+    }
+    let marches = lco.is_some_and(|lco| lco.march) && !at.cycles.is_empty();
+    if marches && !marched::march(case, &mut at, input, monitor)? {
+        return Ok(None);
     }
     Ok(Some(at))
 }

@@ -25,6 +25,13 @@ pub(in super::super) fn contradictions(draft: &mut Draft<'_>) {
         }
         _ => {}
     }
+    if draft.get("lco.march").and_then(Value::as_bool) == Some(true)
+        && draft.get("lco.gas").and_then(Value::as_str) == Some("linear")
+    {
+        draft
+            .fail("lco.march", "a march of limit cycles with a gas that does what it does in small motions")
+            .hint("leave out `march`, or `gas = \"linear\"`: what marches is the gas as it is");
+    }
     for place in ["lco.amplitude", "lco.displacement"] {
         let ends = draft.get(place).and_then(Value::as_array).cloned().unwrap_or_default();
         let ends: Vec<f64> = ends.iter().filter_map(Value::as_f64).collect();

@@ -211,6 +211,8 @@ pub struct LimitCycle {
     pub stable: bool,
     /// Mean of the coordinate, of angles in degrees.
     pub mean: f64,
+    /// Means of all coordinates in base units.
+    pub means: Vec<f64>,
     /// Harmonics.
     pub harmonics: usize,
     /// Relative change of the speed with the last of them; infinite where none were added.
@@ -221,6 +223,28 @@ pub struct LimitCycle {
     pub motion: Vec<Vec<[f64; 2]>>,
     /// True where a harmonic lies beyond the frequencies that forces were computed at.
     pub extrapolated: bool,
+    /// What a march from it ends with, where there was one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub march: Option<MarchedCycle>,
+}
+
+/// What a march from a limit cycle ends with.
+#[derive(Clone, Debug, Serialize)]
+pub struct MarchedCycle {
+    /// Amplitude of the first harmonic of the coordinate over the last period, of angles in degrees.
+    pub amplitude: f64,
+    /// Mean over it, of angles in degrees.
+    pub mean: f64,
+    /// Frequency in cycles per unit of time of the case.
+    pub frequency: f64,
+    /// Periods that were marched.
+    pub periods: f64,
+    /// Amplitude over that of the balance, less one.
+    pub difference: f64,
+    /// Change of the amplitude in the last period, over it.
+    pub change: f64,
+    /// Processor seconds.
+    pub cpu_seconds: f64,
 }
 
 /// Cycles, and what makes them doubtful.
@@ -431,5 +455,35 @@ impl FlutterAt {
             chart("Damping", "g = 2 zeta, growth positive", series(|m| m.damping)),
             chart("Frequency", "cycles per unit of time", series(|m| m.frequency)),
         ]
+    }
+}
+
+#[cfg(test)]
+pub(super) mod tests {
+    use super::*;
+
+    /// A limit cycle of two degrees of pitch.
+    pub(in super::super) fn cycle() -> LimitCycle {
+        LimitCycle {
+            mach: 0.8,
+            branch: 1,
+            coordinate: "pitch".into(),
+            amplitude: 2.0,
+            speed_ratio: 1.2,
+            speed_index: Some(0.72),
+            reduced_speed: None,
+            speed: 0.96,
+            reduced_frequency: 0.1,
+            frequency: 0.03,
+            stable: true,
+            mean: 0.0,
+            means: vec![0.01, 0.0],
+            harmonics: 2,
+            error: 0.001,
+            balances: 5,
+            motion: vec![vec![[-0.14, 0.03], [0.035, 0.0]], vec![[1e-3, 2e-3], [-1e-3, 5e-4]]],
+            extrapolated: false,
+            march: None,
+        }
     }
 }
