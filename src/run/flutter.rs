@@ -12,17 +12,22 @@ mod marched;
 mod record;
 mod scales;
 mod search;
+mod shapes;
+mod skin;
 mod state_space;
 mod stored;
 
 pub use held::Mark;
 pub use record::{Boundary, FlutterAt, FlutterRow, LimitCycle, MarchedCycle, MotionRow};
+pub use scales::CaseReference;
+pub use shapes::{NaturalMode, Share};
 pub use state_space::StateSpaceAt;
 
 use self::held::Held;
 use self::limit_cycles::Seek;
 use self::scales::Scales;
 use self::search::Search;
+use self::skin::Skin;
 use self::stored::Stored;
 use super::error::RunError;
 use super::folder::{self, Places};
@@ -106,12 +111,23 @@ fn sought(
         let Some(mut found) = found else { return Ok(None) };
         found.read = forces.map(|f| f.display().to_string());
         found.warnings.iter().for_each(|w| monitor.warn(&format!("Mach {mach}: {w}")));
+        if case.output.report && all.skin.is_none() {
+            all.skin = Some(skin(case, mach, &places.input)?);
+        }
         all.lco.append(&mut found.cycles);
         all.flutter.push(found);
         all.write(&places.out)?;
     }
     folder::finish(&places.out)?;
     Ok(Some(all))
+}
+
+/// What draws motions of the structures.
+fn skin(case: &Case, mach: f64, input: &Path) -> Result<Skin, RunError> {
+    let own = case.flutter_case(mach);
+    let held = Held::of(&own, input)?;
+    let b = Scales::of(&own, held.chord, Matching::None).semichord;
+    Skin::of(&own, input, &held.units(b))
 }
 
 /// What nothing flutters of, or not in one go.

@@ -1,0 +1,223 @@
+//! The page of a flutter boundary, and its pictures.
+//!
+//! Everything comes from the files of `alula flutter`: `flutter.json`, `v-g.csv`, and `modes.json`, which says how far each coordinate takes
+//! the points of the surface.
+use std::path::Path;
+
+use serde_json::{Value, json};
+
+mod charts;
+mod found;
+mod tables;
+
+use self::found::{At, Crossing, Found, Share};
+use super::chart::Chart;
+use super::files::RunFolder;
+use super::page::{Block, Card, Fact, Page, Section, Status};
+use super::sections;
+use super::words::{grouped, number};
+use super::{ReportError, write_file};
+
+/// The surface and how coordinates move it.
+const MODES: &str = "modes.json";
+/// Modes with which charts stand beside one another: more have legends too long for that.
+const FEW: usize = 6;
+/// Cards at the top.
+const CARDS: usize = 6;
+
+/// True for a folder of `alula flutter`.
+pub(super) fn is_flutter(run: &RunFolder) -> bool {
+    run.path.join("flutter.json").is_file() && !run.path.join("summary.json").exists()
+}
+
+/// Draws the charts of a flutter boundary into its pictures.
+pub fn write_flutter(run: &Path) -> Result<(), ReportError> {
+    let Ok(found) = Found::of(&RunFolder::new(run)) else { return Ok(()) };
+    for (name, chart) in charts::all(&found) {
+        write_file(&run.join(format!("pictures/{name}.svg")), chart.svg()?.as_bytes())?;
+        write_file(&run.join(format!("pictures/{name}.png")), &chart.png()?)?;
+    }
+    Ok(())
+}
+
+/// The page.
+pub(super) fn page(run: &RunFolder) -> Page {
+    let found = Found::of(run);
+    let of = |chapter: fn(&Found) -> Vec<Block>| found.as_ref().map(chapter).map_err(String::clone);
+    let sections = [
+        Section::new("warnings", "Warnings", Ok(found.as_ref().map(warnings).unwrap_or_default())),
+        Section::new("crossings", "Crossings", of(crossings)),
+        Section::new("boundary", "Boundary", of(|f| charts::boundary(f).map(Block::chart).into_iter().collect())),
+        Section::new("branches", "Damping, frequencies and eigenvalues", of(branches)),
+        Section::new("modes", "Modes", found.as_ref().map(|f| modes(f, run)).map_err(String::clone)),
+        Section::new("limit-cycles", "Limit cycles", of(cycles)),
+        Section::new("conditions", "Conditions and conventions", of(conditions)),
+        Section::new("cost", "Cost", of(cost)),
+        Section::new("case", "Case", sections::case(run)),
+        Section::new("cite", "How to cite", Ok(sections::citation())),
+        Section::new("files", "Files", Ok(sections::files(run))),
+    ];
+    let known = found.as_ref().ok();
+    Page {
+        title: known.map(|f| f.title.clone()).filter(|t| !t.trim().is_empty()).unwrap_or("Flutter".to_owned()),
+        status: Some(status(known)),
+        cards: known.map(|f| f.flutter.iter().filter_map(card).take(CARDS).collect()).unwrap_or_default(),
+        sections: sections.into_iter().filter(|s| !s.blocks.is_empty()).collect(),
+        ..Page::default()
+    }
+}
+
+fn status(found: Option<&Found>) -> Status {
+    let Some(found) = found else {
+        return Status { class: "unknown", verdict: "no boundary".to_owned(), facts: String::new() };
+    };
+    let all = &found.flutter;
+    let doubtful = all.iter().any(|at| !at.warnings.is_empty());
+    let (class, verdict) = if doubtful { ("bad", "doubtful in part") } else { ("good", "found") };
+    let machs: Vec<String> = all.iter().map(|at| at.mach.to_string()).collect();
+    let marches: f64 = found.lco.iter().filter_map(|c| c.march.as_ref()).map(|m| m.cpu_seconds).sum();
+    let cpu = all.iter().map(|at| at.cpu_seconds).sum::<f64>() + marches;
+    let read = all.iter().find_map(|at| at.read.as_ref());
+    let cost = match read {
+        Some(file) => format!("forces read from {file}"),
+        None => {
+            let particles = all.iter().map(|at| at.particles).fold(0.0, f64::max);
+            format!("{} particles · {cpu:.1} s of processor time", grouped(particles))
+        }
+    };
+    let crossings: usize = all.iter().map(|at| at.crossings.len()).sum();
+    let facts = format!("{crossings} crossings · Mach {} · {cost}", machs.join(", "));
+    Status { class, verdict: verdict.to_owned(), facts }
+}
+
+/// What begins to grow first at a Mach number.
+fn card(at: &At) -> Option<Card> {
+    let c = at.first()?;
+    let what = tables::in_words(&c.kind);
+    let (name, value) = match (&at.matching[..], c.speed_index) {
+        ("altitude", _) => ("altitude, m", c.altitude.map_or(f64::NAN, f64::round)),
+        ("density", _) => ("dynamic pressure", c.dynamic_pressure),
+        (_, Some(index)) => ("speed index", index),
+        _ => ("speed", c.speed),
+    };
+    let facts = vec![
+        Fact::new(name, format!("± {}", tables::percent(c.error))),
+        Fact::new("V*", tables::optional(c.reduced_speed)),
+        Fact::new("k", number(c.reduced_frequency)),
+        Fact::new("frequency", number(c.frequency)),
+        Fact::new("of natural mode", c.mode.to_string()),
+    ];
+    Some(Card { name: format!("{what}, Mach {}", at.mach), value: number(value), facts })
+}
+
+fn warnings(found: &Found) -> Vec<Block> {
+    let told = found.flutter.iter().flat_map(|at| at.warnings.iter().map(move |w| format!("Mach {}: {w}", at.mach)));
+    told.map(Block::Text).collect()
+}
+
+fn crossings(found: &Found) -> Vec<Block> {
+    let mut blocks = Vec::new();
+    for at in found.flutter.iter().filter(|at| at.crossings.is_empty()) {
+        blocks.push(Block::Text(format!("At Mach {} nothing begins to grow as far as was looked at.", at.mach)));
+    }
+    let table = tables::crossings(found);
+    blocks.extend((!table.rows.is_empty()).then_some(Block::Table(table)));
+    if found.flutter.iter().any(|at| at.read.is_some()) {
+        blocks.push(Block::Text(
+            "Forces were read, and cannot be refined at crossings: ± is the change when the nearest frequency is left out.".to_owned(),
+        ));
+    }
+    blocks
+}
+
+/// V-g and V-f diagrams and the root locus of each Mach number.
+fn branches(found: &Found) -> Vec<Block> {
+    let own = |at: &At| -> Vec<Block> {
+        let charts: Vec<Chart> =
+            vec![charts::damping(found, at), charts::frequency(found, at), charts::locus(found, at)];
+        let heading = Block::Heading(format!("Mach {}", at.mach));
+        if found.modes(at.mach).len() <= FEW {
+            vec![heading, Block::charts(charts.into_iter())]
+        } else {
+            std::iter::once(heading).chain(charts.into_iter().map(Block::chart)).collect()
+        }
+    };
+    found.flutter.iter().filter(|at| !found.modes(at.mach).is_empty()).flat_map(own).collect()
+}
+
+/// Motions of the surface over a period.
+fn modes(found: &Found, run: &RunFolder) -> Vec<Block> {
+    let table = tables::shapes(found);
+    if table.rows.is_empty() {
+        return Vec::new();
+    }
+    let moving = match run.json(MODES) {
+        Ok(surface) => {
+            animated(found, surface).unwrap_or_else(|| Block::LeftOut(format!("the motions: `{MODES}` has no surface")))
+        }
+        Err(reason) => Block::LeftOut(reason),
+    };
+    vec![
+        moving,
+        Block::Text(
+            "Amplitude and phase of each coordinate, the largest 1 ∠ 0°: angles in radians, displacements of rigid bodies in b, modes in \
+             what their files have. Files `flutter-mode-mach-….pvd` show the same in ParaView."
+                .to_owned(),
+        ),
+        Block::Table(table),
+    ]
+}
+
+/// What the script of the page gets: the surface, and all motions to choose from.
+fn animated(found: &Found, mut surface: Value) -> Option<Block> {
+    let coordinates: Vec<String> = serde_json::from_value(surface.get("coordinates")?.clone()).ok()?;
+    let motion = |name: String, frequency: f64, shape: &[Share]| {
+        let part = |f: fn(f64) -> f64| -> Vec<f64> {
+            let one = |s: &Share| s.amplitude * f(s.phase_deg.to_radians());
+            (0..coordinates.len()).map(|k| shape.get(k).map_or(0.0, one)).collect()
+        };
+        json!({ "name": name, "frequency": number(frequency), "re": part(f64::cos), "im": part(f64::sin) })
+    };
+    let crossing = |(at, c): (&At, &Crossing)| {
+        let name =
+            format!("{}, Mach {}, {} {}", tables::in_words(&c.kind), at.mach, at.varied(), number(at.place_of(c)));
+        motion(name, c.frequency, &c.shape)
+    };
+    let crossings = found.flutter.iter().flat_map(|at| at.crossings.iter().map(move |c| (at, c))).map(crossing);
+    let natural = found.flutter.iter().take(1).flat_map(|at| &at.natural);
+    let natural = natural.map(|n| motion(format!("natural mode {}", n.mode), n.frequency, &n.shape));
+    surface["motions"] = crossings.chain(natural).collect();
+    Some(Block::Modes(serde_json::to_string(&surface).ok()?.replace('<', "\\u003c")))
+}
+
+fn cycles(found: &Found) -> Vec<Block> {
+    let Some(chart) = charts::limit_cycles(found) else { return Vec::new() };
+    let words = "Full lines join motions that smaller and larger ones go to, dashed lines those that others leave. Rings at zero are where \
+                 small motions are neutral.";
+    let mut blocks = vec![Block::chart(chart), Block::Text(words.to_owned()), Block::Table(tables::cycles(found))];
+    if found.lco.iter().any(|c| c.march.is_some()) {
+        blocks.push(Block::Text(
+            "A march begins with coordinates and rates of the limit cycle and the steady flow; what it ends with is the first harmonic of its \
+             last period."
+                .to_owned(),
+        ));
+    }
+    blocks
+}
+
+fn conditions(found: &Found) -> Vec<Block> {
+    let Some(first) = found.flutter.first() else { return Vec::new() };
+    let mut blocks = tables::facts(first);
+    blocks.extend([
+        Block::Heading("Stream and structure of the case".to_owned()),
+        Block::Table(tables::reference(found)),
+    ]);
+    blocks
+}
+
+fn cost(found: &Found) -> Vec<Block> {
+    if found.flutter.iter().all(|at| at.read.is_some()) {
+        return Vec::new();
+    }
+    vec![Block::Table(tables::cost(found))]
+}
