@@ -53,7 +53,7 @@
         im[i] *= scale;
       }
       const steady = motion.frequency === "0" || im.every((v) => v === 0) ? "" : ", parts of it out of phase";
-      caption.textContent = `${motion.name}: frequency ${motion.frequency}${steady}. The largest displacement is drawn as ${100 * SHOWN} % of the chord.`;
+      caption.textContent = `${motion.name}: frequency ${motion.frequency}${steady}. The largest displacement is drawn as ${100 * SHOWN} % of the chord${space ? "; colours tell how far points are from rest" : ""}.`;
     }
 
     // Bounds at rest with room for the motion.

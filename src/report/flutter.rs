@@ -221,3 +221,120 @@ fn cost(found: &Found) -> Vec<Block> {
     }
     vec![Block::Table(tables::cost(found))]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::overview::tests::{assert_balanced, assert_self_contained};
+    use super::super::write_report;
+    use super::*;
+
+    /// What a run of two Mach numbers with limit cycles leaves.
+    fn fill(run: &Path) {
+        let shape = json!([{"coordinate": "plunge", "amplitude": 1.0, "phase_deg": 0.0}, {"coordinate": "pitch", "amplitude": 0.4, "phase_deg": -31.5}]);
+        let crossing = |kind: &str, ratio: f64, error: Value| {
+            json!({"kind": kind, "mode": 1, "speed_ratio": ratio, "speed_index": 0.5 * ratio, "reduced_speed": 4.0, "speed": 0.75 * ratio,
+                "density": 1.0, "dynamic_pressure": 0.3, "mass_ratio": 60.0, "altitude": null, "reduced_frequency": 0.13, "frequency": 0.07,
+                "frequency_ratio": 1.16, "error": error, "g_method": -3e-13, "extrapolated": kind == "divergence", "shape": shape})
+        };
+        let at = |mach: f64, warnings: &[&str]| {
+            json!({"mach": mach, "match": "none", "crossings": [crossing("flutter", 2.0, json!(0.03)), crossing("divergence", 3.0, json!(null))],
+                "natural": [{"mode": 1, "frequency": 0.05, "shape": shape}], "reduced_frequencies": [0.0, 0.1], "coordinates": ["plunge", "pitch"],
+                "reference": {"speed": 0.75, "density": 1.0, "dynamic_pressure": 0.28, "speed_index": 0.5, "reduced_speed": null, "mass_ratio": 60.0},
+                "chord": 1.0, "semichord": 0.5, "alpha_deg": 0.0, "read": null, "steady": [0.0, 0.001, 0.0], "orders": 9.7, "particles": 3784,
+                "linear_iterations": 120, "residual": 4e-7, "cpu_seconds": 3.2, "warnings": warnings})
+        };
+        let cycle = |amplitude: f64, index: f64, stable: bool, march: Value| {
+            json!({"mach": 0.8, "branch": 1, "coordinate": "pitch", "amplitude": amplitude, "speed_index": index, "speed": index, "speed_ratio": 1.2,
+                "reduced_frequency": 0.1, "frequency": 0.03, "stable": stable, "mean": 0.0, "harmonics": 3, "error": null, "balances": 5,
+                "extrapolated": false, "march": march})
+        };
+        let march = json!({"amplitude": 2.52, "frequency": 0.031, "periods": 9.0, "difference": 0.008, "change": 0.001, "cpu_seconds": 20.0});
+        let lco =
+            [cycle(1.0, 0.9, false, json!(null)), cycle(2.0, 0.85, true, json!(null)), cycle(2.5, 0.95, true, march)];
+        let all = json!({"title": "A section <b>", "flutter": [at(0.75, &[]), at(0.8, &["known to 3.0 % only"])], "lco": lco});
+        std::fs::write(run.join("flutter.json"), all.to_string()).unwrap();
+        let motions: String = (0..2)
+            .flat_map(|m| (1..=2).map(move |mode| (m, mode)))
+            .flat_map(|(m, mode)| (1..20).map(move |k| (0.75 + 0.05 * f64::from(m), mode, 0.2 * f64::from(k))))
+            .map(|(mach, mode, x)| {
+                format!(
+                    "{mach},{mode},{x},0.1,10,{},{},{},{},1,0.3,NaN\n",
+                    x - 2.0,
+                    0.05 + 0.01 * x,
+                    0.1 * (x - 2.0),
+                    0.6
+                )
+            })
+            .collect();
+        let columns = "mach,mode,speed_ratio,k,1/k,damping_g,frequency,eigenvalue_re,eigenvalue_im,density,dynamic_pressure,altitude";
+        std::fs::write(run.join("v-g.csv"), format!("{columns}\n{motions}")).unwrap();
+        let surface = json!({"chord": 1.0, "coordinates": ["plunge", "pitch"], "points": [0, 0, 0, 1, 0, 0, 0.5, 0.1, 0], "lines": [0, 1, 1, 2, 2, 0],
+            "triangles": [], "moves": [[0, 0.5, 0, 0, 0.5, 0, 0, 0.5, 0], [0, 0.3, 0, 0, -0.7, 0, 0.1, -0.2, 0]]});
+        std::fs::write(run.join(MODES), surface.to_string()).unwrap();
+        std::fs::create_dir_all(run.join("pictures")).unwrap();
+    }
+
+    #[test]
+    fn a_boundary_becomes_one_sound_page() {
+        let folder = tempfile::tempdir().unwrap();
+        fill(folder.path());
+        let page = std::fs::read_to_string(write_report(folder.path()).unwrap()).unwrap();
+        assert_balanced(&page);
+        assert_self_contained(&page);
+        let told = [
+            "A section &#60;b&#62;",
+            "Flutter boundary",
+            "Damping, Mach 0.75",
+            "Frequency, Mach 0.8",
+            "Root locus, Mach 0.75",
+            "error bar",
+            "Limit cycles, Mach 0.8",
+            "small motions",
+            "marched: amplitude",
+            "V_f = V*/√μ",
+            "e^{+iωt}",
+            "Mach 0.8: known to 3.0 % only",
+            "iterations per column",
+            "viewer modes",
+            "natural mode 1",
+            "0.4000 ∠ −31.5°",
+            "± 3.00 %",
+            "./flutter.json",
+            "beyond the frequencies",
+        ];
+        for text in told {
+            assert!(page.contains(text), "{text}");
+        }
+        // three charts at each Mach number, boundary and branches, the surface, and the script of the page
+        assert_eq!(page.matches("</script>").count(), 2 * 3 + 2 + 1 + 1);
+        write_flutter(folder.path()).unwrap();
+        for name in ["root-locus-mach-0.750.svg", "damping-mach-0.800.png", "boundary.png", "limit-cycles.svg"] {
+            assert!(folder.path().join("pictures").join(name).is_file(), "{name}");
+        }
+    }
+
+    #[test]
+    fn the_surface_gets_amplitudes_and_phases() {
+        let folder = tempfile::tempdir().unwrap();
+        fill(folder.path());
+        let run = RunFolder::new(folder.path());
+        let Some(Block::Modes(text)) = animated(&Found::of(&run).unwrap(), run.json(MODES).unwrap()) else {
+            panic!("none")
+        };
+        let told: Value = serde_json::from_str(&text).unwrap();
+        assert_eq!(told["motions"].as_array().unwrap().len(), 2 * 2 + 1);
+        let [re, im] = ["re", "im"].map(|part| told["motions"][0][part][1].as_f64().unwrap());
+        assert!((re.hypot(im) - 0.4).abs() < 1e-12 && (im.atan2(re).to_degrees() + 31.5).abs() < 1e-9);
+    }
+
+    #[test]
+    fn what_is_missing_or_broken_becomes_words() {
+        let folder = tempfile::tempdir().unwrap();
+        for junk in ["{}", "[1", "{\"flutter\": [{\"mach\": 0.5}]}", "{\"flutter\": 7}", "{\"lco\": [{}]}"] {
+            std::fs::write(folder.path().join("flutter.json"), junk).unwrap();
+            let page = std::fs::read_to_string(write_report(folder.path()).unwrap()).unwrap();
+            assert_balanced(&page);
+            write_flutter(folder.path()).unwrap_or_else(|e| assert!(matches!(e, ReportError::Io { .. }), "{e}"));
+        }
+    }
+}

@@ -31,7 +31,7 @@ pub(super) fn march(
         at.warnings.push("no limit cycle is stable: there is none to march".into());
         return Ok(true);
     };
-    let (cycle, coordinates) = (&at.cycles[largest], &at.coordinates);
+    let cycle = &at.cycles[largest];
     let name = &cycle.coordinate;
     monitor.note(&format!(
         "a march from the limit cycle of amplitude {:.4} of {name} at {:.5} of the speed of the case",
@@ -50,7 +50,7 @@ pub(super) fn march(
             return Ok(true);
         }
     };
-    let place = coordinates.iter().position(|c| c == name);
+    let place = summary.structure.iter().flat_map(|s| &s.coordinates).position(|c| c.name == *name);
     let Some(swing) = place.and_then(|k| summary.swings.get(k).copied().flatten()) else {
         at.warnings.push(format!("{name} does not swing at the end of the march from its limit cycle"));
         return Ok(true);
@@ -123,6 +123,41 @@ mod tests {
         for (j, [value, rate]) in start(&cycle, omega).into_iter().enumerate() {
             let slope = (motion(j, 1e-5) - motion(j, -1e-5)) / 2e-5;
             assert!((value - motion(j, 0.0)).abs() < 1e-14 && (rate - slope).abs() < 1e-9, "{value} {rate} {slope}");
+        }
+    }
+
+    #[test]
+    fn a_march_has_the_structure_of_the_speed_found() {
+        use super::super::held::Held;
+        const BODY: &str = "[[body]]\nnaca = \"0012\"\n[cloud]\nspacing = 0.1\n[flutter]\n[structure]\nelastic_axis = -0.4\nmass_ratio = 60\n\
+                            x_alpha = 0.2\nr_alpha2 = 0.25\ndamping_ratio = { pitch = 0.02 }\nsprings = { pitch = { cubic = 40 } }\n";
+        let ways = [
+            ("[flow]\nmach = 0.5\n", "frequency_ratio = 0.5\nreduced_speed = 2\n"),
+            ("[flow]\nmach = 0.5\n", "stiffness = { plunge = 2.0, pitch = 3.0 }\ndamping = { plunge = 0.3 }\n"),
+            (
+                "[flow]\nmach = 0.5\ntemperature = 300\npressure = 1e5\n",
+                "frequency = { plunge = \"5 Hz\", pitch = \"9 Hz\" }\n",
+            ),
+        ];
+        let x = 1.5;
+        for (flow, keys) in ways {
+            let case = crate::case::read(&format!("{flow}{BODY}{keys}"), "case.toml").unwrap_or_else(|e| panic!("{e}"));
+            let own = case.cycle_case(0.5, x, &[[0.1, 2.0], [0.05, 3.0]], [10.0, MOST]);
+            let [before, after] = [case.flutter_case(0.5), own.clone()].map(|c| Held::of(&c, Path::new("")).unwrap());
+            let over = |a: &[f64], b: &[f64], factor: f64| {
+                a.iter().zip(b).all(|(a, b)| (a - b * factor).abs() <= 1e-12 * b.abs().max(1e-9))
+            };
+            assert!(over(&after.matrices.mass, &before.matrices.mass, 1.0), "{keys}");
+            assert!(over(&after.matrices.stiffness, &before.matrices.stiffness, 1.0 / (x * x)), "{keys}");
+            assert!(over(&after.matrices.damping, &before.matrices.damping, 1.0 / x), "{keys}");
+            let cubic = [&after, &before].map(|h| h.springs[1].cubic);
+            assert!(over(&cubic[..1], &cubic[1..], 1.0 / (x * x)), "{keys}");
+            let initial = &own.structures[0].initial;
+            assert_eq!(
+                [initial["plunge"], initial["plunge_rate"], initial["pitch"], initial["pitch_rate"]],
+                [0.1, 2.0, 0.05, 3.0]
+            );
+            assert_eq!(own.swing().map(|t| t.0), Some(10.0));
         }
     }
 

@@ -299,10 +299,12 @@ impl Boundary {
         self.skin.as_ref().map_or(Ok(()), |skin| self.picture(skin, out))
     }
 
-    /// Writes pictures and page, and motions at the first crossings.
+    /// Writes pictures and page, and the motion at the first crossing of the last Mach number.
     fn picture(&self, skin: &Skin, out: &Path) -> Result<(), RunError> {
-        skin.write(&out.join(MODES))?;
-        for at in &self.flutter {
+        if self.flutter.len() == 1 {
+            skin.write(&out.join(MODES))?;
+        }
+        if let Some(at) = self.flutter.last() {
             let first = at.crossings.iter().find(|c| c.kind == "flutter");
             if let Some(c) = first.or(at.crossings.first()) {
                 let name = format!("flutter-mode-mach-{:.3}", at.mach);

@@ -124,6 +124,8 @@ impl Alike {
     pub(crate) const CHANGE: f64 = 0.002;
     /// Periods after which that is looked at.
     const LEAST: u64 = 6;
+    /// Amplitude over the largest below which a coordinate may do as it likes.
+    const FAINT: f64 = 1e-3;
 }
 
 impl<S: System> Observer<S> for Alike {
@@ -134,8 +136,10 @@ impl<S: System> Observer<S> for Alike {
             return None;
         }
         self.seen = periods;
-        let alike = |swing: &Option<Swing>| swing.is_none_or(|s| s.change < Self::CHANGE);
-        log.swings(self.period).iter().all(alike).then_some(Wish::Finish)
+        let swings: Vec<Swing> = log.swings(self.period).into_iter().flatten().collect();
+        let least = Self::FAINT * swings.iter().map(|s| s.amplitude).fold(0.0, f64::max);
+        let alike = |s: &Swing| s.change < Self::CHANGE || s.amplitude < least;
+        (!swings.is_empty() && swings.iter().all(alike)).then_some(Wish::Finish)
     }
 }
 
