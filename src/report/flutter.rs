@@ -86,7 +86,8 @@ fn status(found: Option<&Found>) -> Status {
         }
     };
     let crossings: usize = all.iter().map(|at| at.crossings.len()).sum();
-    let facts = format!("{crossings} crossings · Mach {} · {cost}", machs.join(", "));
+    let plural = if crossings == 1 { "" } else { "s" };
+    let facts = format!("{crossings} crossing{plural} · Mach {} · {cost}", machs.join(", "));
     Status { class, verdict: verdict.to_owned(), facts }
 }
 
@@ -102,11 +103,12 @@ fn card(at: &At) -> Option<Card> {
     };
     let facts = vec![
         Fact::new(name, format!("± {}", tables::percent(c.error))),
-        Fact::new("V*", tables::optional(c.reduced_speed)),
         Fact::new("k", number(c.reduced_frequency)),
         Fact::new("frequency", number(c.frequency)),
         Fact::new("of natural mode", c.mode.to_string()),
     ];
+    let reduced = c.reduced_speed.map(|v| Fact::new("V*", number(v)));
+    let facts = facts.into_iter().chain(reduced).collect();
     Some(Card { name: format!("{what}, Mach {}", at.mach), value: number(value), facts })
 }
 
@@ -132,17 +134,22 @@ fn crossings(found: &Found) -> Vec<Block> {
 
 /// V-g and V-f diagrams and the root locus of each Mach number.
 fn branches(found: &Found) -> Vec<Block> {
-    let own = |at: &At| -> Vec<Block> {
-        let charts: Vec<Chart> =
-            vec![charts::damping(found, at), charts::frequency(found, at), charts::locus(found, at)];
-        let heading = Block::Heading(format!("Mach {}", at.mach));
-        if found.modes(at.mach).len() <= FEW {
-            vec![heading, Block::charts(charts.into_iter())]
-        } else {
-            std::iter::once(heading).chain(charts.into_iter().map(Block::chart)).collect()
+    let known: Vec<&At> = found.flutter.iter().filter(|at| !found.modes(at.mach).is_empty()).collect();
+    let few = known.iter().all(|at| found.modes(at.mach).len() <= FEW);
+    let set = |charts: Vec<Chart>| -> Vec<Block> {
+        match few {
+            true => vec![Block::charts(charts.into_iter())],
+            false => charts.into_iter().map(Block::chart).collect(),
         }
     };
-    found.flutter.iter().filter(|at| !found.modes(at.mach).is_empty()).flat_map(own).collect()
+    let against_speed = known.iter().flat_map(|at| [charts::damping(found, at), charts::frequency(found, at)]);
+    let loci = known.iter().map(|at| charts::locus(found, at));
+    let mut blocks = set(against_speed.collect());
+    blocks.push(Block::Text(
+        "Rings are where motions are neutral, and in root loci where they begin at the lowest speed.".to_owned(),
+    ));
+    blocks.extend(set(loci.collect()));
+    if known.is_empty() { Vec::new() } else { blocks }
 }
 
 /// Motions of the surface over a period.
@@ -195,12 +202,17 @@ fn cycles(found: &Found) -> Vec<Block> {
     let words = "Full lines join motions that smaller and larger ones go to, dashed lines those that others leave. Rings at zero are where \
                  small motions are neutral.";
     let mut blocks = vec![Block::chart(chart), Block::Text(words.to_owned()), Block::Table(tables::cycles(found))];
-    if found.lco.iter().any(|c| c.march.is_some()) {
-        blocks.push(Block::Text(
-            "A march begins with coordinates and rates of the limit cycle and the steady flow; what it ends with is the first harmonic of its \
-             last period."
-                .to_owned(),
-        ));
+    let marches = tables::marches(found);
+    if !marches.rows.is_empty() {
+        blocks.extend([
+            Block::Heading("Marched in time".to_owned()),
+            Block::Text(
+                "A march begins with coordinates and rates of the limit cycle and the steady flow; what it ends with is the first harmonic of \
+                 its last period."
+                    .to_owned(),
+            ),
+            Block::Table(marches),
+        ]);
     }
     blocks
 }
@@ -290,7 +302,7 @@ mod tests {
             "error bar",
             "Limit cycles, Mach 0.8",
             "small motions",
-            "marched: amplitude",
+            "Marched in time",
             "V_f = V*/√μ",
             "e^{+iωt}",
             "Mach 0.8: known to 3.0 % only",

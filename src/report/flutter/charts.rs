@@ -58,11 +58,11 @@ fn marked(mut chart: Chart, at: &At, of: fn(&Crossing) -> f64) -> Chart {
     chart
 }
 
-/// A series for each kind of crossing that there is.
+/// A series for each kind of crossing that there is; rings are seen on the lines that they mark.
 fn of_kinds<'a>(all: impl Iterator<Item = &'a Crossing> + Clone, place: impl Fn(&Crossing) -> [f64; 2]) -> Vec<Series> {
-    let one = |(kind, marks): (&str, Marks)| {
+    let one = |(kind, _): (&str, Marks)| {
         let (x, y) = all.clone().filter(|c| c.kind == kind).map(|c| place(c).into()).unzip();
-        Series::new(kind, marks, x, y)
+        Series::new(kind, Marks::Rings, x, y)
     };
     KINDS.map(one).into_iter().filter(|s| !s.x.is_empty()).collect()
 }

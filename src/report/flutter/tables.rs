@@ -20,6 +20,14 @@ pub(super) fn percent(part: Option<f64>) -> String {
     part.filter(|p| p.is_finite()).map_or_else(|| "–".to_owned(), |p| format!("{:.2} %", 100.0 * p))
 }
 
+/// A table without columns in which nothing is told.
+fn told(columns: &[&str], rows: Vec<Vec<String>>) -> Table {
+    let known = |k: &usize| rows.iter().any(|row| row.get(*k).is_some_and(|text| !text.is_empty() && text != "–"));
+    let kept: Vec<usize> = (0..columns.len()).filter(known).collect();
+    let columns: Vec<&str> = kept.iter().map(|k| columns[*k]).collect();
+    Table::new(&columns, rows.iter().map(|row| kept.iter().map(|k| row[*k].clone()).collect()))
+}
+
 /// Every crossing with its error bar and what the g-method has.
 pub(super) fn crossings(found: &Found) -> Table {
     let matched = found.flutter.iter().any(|at| at.matching != "none");
@@ -58,17 +66,16 @@ pub(super) fn crossings(found: &Found) -> Table {
         if matched {
             row.extend([number(c.density), number(c.dynamic_pressure), optional(c.mass_ratio), optional(c.altitude)]);
         }
-        row.push(if c.extrapolated { "beyond the frequencies computed".to_owned() } else { String::new() });
+        row.push(remark(c.extrapolated));
         row
     };
     let all = found.flutter.iter().flat_map(|at| at.crossings.iter().map(move |c| (at, c)));
-    Table::new(&columns, all.map(row))
+    told(&columns, all.map(row).collect())
 }
 
-/// Limit cycles, and what marches from them end with.
+/// Limit cycles.
 pub(super) fn cycles(found: &Found) -> Table {
-    let marched = found.lco.iter().any(|c| c.march.is_some());
-    let mut columns = vec![
+    let columns = [
         "M",
         "branch",
         "amplitude",
@@ -79,15 +86,12 @@ pub(super) fn cycles(found: &Found) -> Table {
         "",
         "mean",
         "harmonics",
-        "±",
+        "± (speed)",
         "balances",
+        "remark",
     ];
-    if marched {
-        columns.extend(["marched: amplitude", "difference", "frequency", "periods", "last change"]);
-    }
-    columns.push("remark");
     let row = |c: &Cycle| {
-        let mut row = vec![
+        vec![
             c.mach.to_string(),
             c.branch.to_string(),
             number(c.amplitude),
@@ -100,22 +104,47 @@ pub(super) fn cycles(found: &Found) -> Table {
             c.harmonics.to_string(),
             percent(c.error),
             c.balances.to_string(),
-        ];
-        match &c.march {
-            Some(m) => row.extend([
-                number(m.amplitude),
-                format!("{:+.2} %", 100.0 * m.difference).replace('-', "\u{2212}"),
-                number(m.frequency),
-                format!("{:.1}", m.periods),
-                percent(Some(m.change)),
-            ]),
-            None if marched => row.extend(vec![String::new(); 5]),
-            None => {}
-        }
-        row.push(if c.extrapolated { "beyond the frequencies computed".to_owned() } else { String::new() });
-        row
+            remark(c.extrapolated),
+        ]
     };
-    Table::new(&columns, found.lco.iter().map(row))
+    told(&columns, found.lco.iter().map(row).collect())
+}
+
+/// What marches from limit cycles end with; without rows where there were none.
+pub(super) fn marches(found: &Found) -> Table {
+    let columns = [
+        "M",
+        "branch",
+        "amplitude of the limit cycle",
+        "of the march",
+        "difference",
+        "frequency of the march",
+        "difference",
+        "periods",
+        "change in the last",
+        "processor time, s",
+    ];
+    let signed = |part: f64| format!("{:+.2} %", 100.0 * part).replace('-', "\u{2212}");
+    let row = |c: &Cycle| {
+        let m = c.march.as_ref()?;
+        Some(vec![
+            c.mach.to_string(),
+            c.branch.to_string(),
+            number(c.amplitude),
+            number(m.amplitude),
+            signed(m.difference),
+            number(m.frequency),
+            signed(m.frequency / c.frequency - 1.0),
+            format!("{:.1}", m.periods),
+            percent(Some(m.change)),
+            format!("{:.1}", m.cpu_seconds),
+        ])
+    };
+    Table::new(&columns, found.lco.iter().filter_map(row))
+}
+
+fn remark(extrapolated: bool) -> String {
+    (if extrapolated { "beyond the frequencies computed" } else { "" }).to_owned()
 }
 
 /// How much each coordinate takes part in the first crossing of each Mach number and in natural modes.
@@ -150,7 +179,7 @@ pub(super) fn reference(found: &Found) -> Table {
             optional(r.mass_ratio),
         ]
     };
-    Table::new(&columns, found.flutter.iter().map(row))
+    told(&columns, found.flutter.iter().map(row).collect())
 }
 
 /// Angle, lengths, what is varied.
@@ -166,8 +195,8 @@ pub(super) fn facts(at: &At) -> Vec<Block> {
             Fact::new("Reference chord", number(at.chord)),
             Fact::new("b", number(at.semichord)),
             Fact::new("Coordinates", at.coordinates.join(", ")),
-            Fact::new("Varied until a motion is neutral", varied.to_owned()),
         ]),
+        Block::Text(format!("Varied until a motion neither grows nor decays: {varied}.")),
         Block::List(
             [
                 "Displacements are positive along the axes, plunge is up (h of the literature is down: h = −plunge); pitch is nose up \
@@ -223,5 +252,5 @@ pub(super) fn cost(found: &Found) -> Table {
             if marches > 0.0 { format!("{marches:.1}") } else { "–".to_owned() },
         ]
     };
-    Table::new(&columns, found.flutter.iter().map(row))
+    told(&columns, found.flutter.iter().map(row).collect())
 }

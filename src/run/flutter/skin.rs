@@ -18,8 +18,8 @@ use crate::geometry::{Surface, dimension};
 use crate::math::Vector;
 use crate::math::rotation::cross;
 use crate::motion::Motions;
-use crate::observe::table::write_json;
 use crate::observe::vtk::{Column, Facets, write_collection, write_surface};
+use crate::observe::write_atomic;
 
 /// Largest displacement that is drawn, over the chord.
 const SHOWN: f64 = 0.1;
@@ -116,7 +116,9 @@ impl Skin {
             triangles: own.triangles.iter().flatten().copied().collect(),
             moves: own.moves.iter().map(|m| flat(m)).collect(),
         };
-        Ok(write_json(file, &told)?)
+        // on one line: a number is not worth one
+        let text = serde_json::to_vec(&told).unwrap_or_default();
+        Ok(write_atomic(file, |w| w.write_all(&text))?)
     }
 
     /// Writes a motion of the frequency `frequency` at phases of a period as a series for ParaView, `name`.pvd in `out`.
