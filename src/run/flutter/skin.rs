@@ -174,7 +174,7 @@ impl Skin {
         for t in &self.triangles {
             let [a, b, c] = t.map(|i| Vector(self.points[i as usize]));
             let area = Vector(cross(&(b - a).0, &(c - a).0));
-            t.iter().for_each(|i| normals[*i as usize] = normals[*i as usize] + area);
+            t.iter().for_each(|i| normals[*i as usize] += area);
         }
         let mut cells: BTreeMap<([i64; 3], u8), u32> = BTreeMap::new();
         let mut kept: Vec<usize> = Vec::new();
