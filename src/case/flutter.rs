@@ -2,10 +2,12 @@
 pub(super) mod check;
 pub(super) mod keys;
 mod limit_cycles;
+mod stream;
 
 use serde::{Deserialize, Serialize};
 
 pub use limit_cycles::{GasResponse, LimitCycles};
+pub use stream::StreamRatio;
 
 use super::{Accuracy, Case, Dual, Motion, ParticleMotion, Steady, Structure, Temporal, Time};
 
@@ -27,6 +29,8 @@ pub struct Flutter {
     pub accuracy: f64,
     /// Greatest number of frequencies.
     pub frequencies: u32,
+    /// Forces are those about the static equilibrium of structure and gas at the first crossing.
+    pub trim: bool,
     /// The structure in the stream is also written as a linear system of first order.
     pub state_space: bool,
 }
@@ -56,7 +60,12 @@ impl Flutter {
 }
 
 impl Case {
-    /// The steady flow at one Mach number about which forces are sought; bodies stay where they begin.
+    /// True where forces are sought about the static equilibrium of structure and gas.
+    pub fn is_trimmed(&self) -> bool {
+        self.flutter.as_ref().is_some_and(|f| f.trim)
+    }
+
+    /// The steady flow at one Mach number about which forces are sought; bodies stay where they begin unless they are trimmed.
     pub fn flutter_case(&self, mach: f64) -> Self {
         /// Orders that the residual falls by: what is left of it is a force that does not belong to the motion.
         const ORDERS: f64 = 9.0;

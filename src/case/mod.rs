@@ -46,7 +46,7 @@ mod write;
 
 pub use error::{CaseError, CaseErrors};
 pub use flow::{FreeStreamScales, NEVER_LAMINAR, NO_CONTINUUM, Units, ViscosityLaw, Viscous, Wall};
-pub use flutter::{Flutter, GasResponse, LimitCycles, Matching};
+pub use flutter::{Flutter, GasResponse, LimitCycles, Matching, StreamRatio};
 pub use gaf::{AnyMode, FlexibleMode, Gaf, Mode};
 pub use mode_file::{ModeTable, read_mode};
 pub use motion::{

@@ -27,6 +27,7 @@ use std::ops::Range;
 use crate::math::sweep::sweep_rows;
 use crate::scheme::{self, Exchange, Fluid, HasGas, View};
 use crate::solid::Solid;
+use crate::solid::forces::State;
 use crate::system::{Fault, Field, Instant, Rate, System};
 use crate::time::explicit::{Explicit, Plan};
 use crate::time::{Integrator, Past};
@@ -426,6 +427,19 @@ pub struct SolidSnapshot<'a, const D: usize> {
     pub velocity: Vec<[f64; D]>,
     /// What materials remember.
     pub history: Vec<f64>,
+}
+
+impl<const D: usize> SolidSnapshot<'_, D> {
+    /// What the stresses follow from.
+    pub fn state(&self) -> State<'_, D> {
+        State {
+            time: 0.0,
+            step: 0.0,
+            displacement: &self.displacement,
+            velocity: &self.velocity,
+            history: &self.history,
+        }
+    }
 }
 
 impl<const D: usize> Marches<D> for Fluid<D> {

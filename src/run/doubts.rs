@@ -1,6 +1,8 @@
 //! What makes the loads of a finished run doubtful.
 use super::record::summary::Summary;
+use super::solids::von_mises;
 use crate::case::Case;
+use crate::coupling::SolidSnapshot;
 use crate::observe::convergence::LEAST;
 
 /// Part of a load that its two evaluations may differ by.
@@ -40,4 +42,14 @@ pub(crate) fn of_loads(case: &Case, s: &Summary) -> Vec<String> {
         ));
     }
     doubts
+}
+/// Where a metal that is computed as elastic would have yielded.
+pub(crate) fn of_solid<const D: usize>(at: &SolidSnapshot<'_, D>) -> Option<String> {
+    let part = |(i, stress): (usize, f64)| Some((i, stress, stress / at.solid.material_of(i).elastic_limit?));
+    let all = von_mises(at.solid, &at.state()).into_iter().enumerate().filter_map(part);
+    let (i, stress, _) = all.max_by(|a, b| a.2.total_cmp(&b.2)).filter(|(.., part)| *part > 1.0)?;
+    Some(format!(
+        "the metal at {:?} would have yielded: von Mises stress {stress:.3e} of an elastic one; march with `[time.dual]`",
+        at.solid.particles.x[i].0
+    ))
 }

@@ -16,9 +16,10 @@ mod shapes;
 mod skin;
 mod state_space;
 mod stored;
+mod trim;
 
 pub use held::Mark;
-pub use record::{Boundary, FlutterAt, FlutterRow, LimitCycle, MarchedCycle, MotionRow};
+pub use record::{Boundary, FlutterAt, FlutterRow, LimitCycle, MarchedCycle, MotionRow, Trim};
 pub use scales::CaseReference;
 pub use shapes::{NaturalMode, Share};
 pub use state_space::StateSpaceAt;
@@ -37,7 +38,7 @@ use super::session::{Outcome, Session};
 use super::setup;
 use super::solids::with_own_modes;
 use super::studies::ForceSource;
-use crate::case::{Case, Flutter as Plan, GasResponse, LimitCycles, Matching};
+use crate::case::{Case, Flutter as Plan, GasResponse, LimitCycles, Matching, StreamRatio};
 use crate::physics::atmosphere;
 
 /// Parts by which the gas of a case may differ from the air of the standard atmosphere.
@@ -93,13 +94,7 @@ fn sought(
 ) -> Result<Option<Boundary>, RunError> {
     let plan = planned(case)?;
     let case = &with_own_modes(case, &places.input)?;
-    if forces.is_some() && case.lco.as_ref().is_some_and(|lco| lco.march) {
-        return Err(RunError::Unsupported {
-            what: "`lco.march` asks for a march of gas and structure, but forces that are read come without a gas"
-                .into(),
-            hint: "leave out `march`, or `--forces`",
-        });
-    }
+    forces.map_or(Ok(()), |_| refused_with_forces(case, &plan))?;
     let stored = forces.map(Stored::read).transpose()?;
     let _held = folder::create_once(case, &places.input, &places.out)?;
     let mut all = Boundary::new(&case.title);
@@ -128,6 +123,21 @@ fn skin(case: &Case, mach: f64, input: &Path) -> Result<Skin, RunError> {
     let held = Held::of(&own, input)?;
     let b = Scales::of(&own, held.chord, Matching::None).semichord;
     Skin::of(&own, input, &held.units(b))
+}
+
+/// What forces that are read do not serve.
+fn refused_with_forces(case: &Case, plan: &Plan) -> Result<(), RunError> {
+    if plan.trim {
+        return Err(RunError::Unsupported {
+            what: "this version cannot compute the static equilibrium with forces that are read".into(),
+            hint: "leave `trim` out: forces are those of the run that wrote them, about its steady flow",
+        });
+    }
+    if case.lco.as_ref().is_some_and(|lco| lco.march) {
+        let what = "`lco.march` asks for a march of gas and structure, but forces that are read come without a gas";
+        return Err(RunError::Unsupported { what: what.into(), hint: "leave out `march`, or `--forces`" });
+    }
+    Ok(())
 }
 
 /// What nothing flutters of, or not in one go.
@@ -205,33 +215,56 @@ fn at_mach(
     let own = case.flutter_case(mach);
     let held = Held::of(&own, input)?;
     let scales = Scales::of(&own, held.chord, plan.matching);
-    let mut session = Session::open(&own, input)?;
-    let lco = cycles_at(case, mach);
-    let mut found = None;
-    let mut then = |source: &mut dyn ForceSource, log: &mut Log<'_>| {
-        let mut search = Search::new(&held, &scales, plan, Vec::new(), 0.0);
-        let mut at = search.run(source, log);
-        if let Some(lco) = lco {
-            let springs = source.springs();
-            at.add_cycles(Seek::new(lco, &mut search, springs)?.run(Some((source, log))));
+    let place = Place { own: &own, held: &held, scales: &scales, plan, lco: cycles_at(case, mach), input };
+    let at = match plan.trim {
+        true => {
+            let boundary = |stream: StreamRatio, monitor: &mut dyn Monitor| place.boundary(stream, monitor);
+            trim::trimmed(&scales, plan.accuracy, &boundary, monitor)?
         }
-        found = Some(at);
-        Ok(())
+        false => place.boundary(StreamRatio::SAME, monitor)?,
     };
-    let outcome = session.solve_then(monitor, Some(&mut then))?;
-    let (Outcome::Finished(summary), Some(at)) = (outcome, found) else { return Ok(None) };
+    let Some(at) = at else { return Ok(None) };
     let mut at = placed(at, &own, mach, held);
-    at.steady = [summary.loads.cl, summary.loads.cd, summary.loads.cm];
-    at.orders = summary.residual_drop.unwrap_or(0.0);
-    (at.particles, at.cpu_seconds) = (summary.particles, summary.cpu_seconds);
-    if !summary.succeeded() {
-        at.warnings.push("the steady flow did not converge: forces about it are doubtful".into());
+    let marches = cycles_at(case, mach).is_some_and(|lco| lco.march) && !at.cycles.is_empty();
+    let whole = !marches || marched::march(case, &mut at, input, monitor)?;
+    Ok(whole.then_some(at))
+}
+
+/// What is sought at a Mach number, and of what.
+struct Place<'a> {
+    own: &'a Case,
+    held: &'a Held,
+    scales: &'a Scales,
+    plan: &'a Plan,
+    lco: Option<&'a LimitCycles>,
+    input: &'a Path,
+}
+
+impl Place<'_> {
+    /// The boundary with the forces about the steady flow in a stream of the same Mach number.
+    fn boundary(&self, stream: StreamRatio, monitor: &mut dyn Monitor) -> Result<Option<FlutterAt>, RunError> {
+        let mut session = Session::open(&self.own.in_stream(stream), self.input)?;
+        let mut found = None;
+        let mut then = |source: &mut dyn ForceSource, log: &mut Log<'_>| {
+            let mut search = Search::new(self.held, self.scales, self.plan, Vec::new(), 0.0);
+            let mut at = search.run((source, stream), log);
+            if let Some(lco) = self.lco {
+                let springs = source.springs();
+                at.add_cycles(Seek::new(lco, &mut search, springs)?.run(Some((source, log))));
+            }
+            found = Some(at);
+            Ok(())
+        };
+        let outcome = session.solve_then(monitor, Some(&mut then))?;
+        let (Outcome::Finished(summary), Some(mut at)) = (outcome, found) else { return Ok(None) };
+        at.steady = [summary.loads.cl, summary.loads.cd, summary.loads.cm];
+        at.orders = summary.residual_drop.unwrap_or(0.0);
+        (at.particles, at.cpu_seconds) = (summary.particles, summary.cpu_seconds);
+        if !summary.succeeded() {
+            at.warnings.push("the steady flow did not converge: forces about it are doubtful".into());
+        }
+        Ok(Some(at))
     }
-    let marches = lco.is_some_and(|lco| lco.march) && !at.cycles.is_empty();
-    if marches && !marched::march(case, &mut at, input, monitor)? {
-        return Ok(None);
-    }
-    Ok(Some(at))
 }
 
 /// The same from forces that are known.

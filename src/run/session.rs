@@ -156,7 +156,7 @@ impl Session {
             given: &self.case.cloud,
             input: &self.input,
             out: self.out.as_deref(),
-            held: then.is_some(),
+            held: then.is_some() && !self.case.is_trimmed(),
         };
         let ended = match dimension(&self.case) {
             2 => work.solve::<2>((origin, then), monitor),
@@ -445,7 +445,9 @@ impl Run<'_> {
         let span_load = span_load(self.case, &view, &strips, &axes);
         let found = Found { case: self.case, view, surface, axes, names, balance, strips, span_load, wake };
         let mut summary = found.summary(log, gas.state, &Spent { clock, solved });
-        doubts::of_loads(self.case, &summary).iter().for_each(|doubt| log.warn(doubt));
+        let solid = stood.solver.system.solid_snapshot(frame, state);
+        let doubts = doubts::of_loads(self.case, &summary).into_iter().chain(solid.as_ref().and_then(doubts::of_solid));
+        doubts.for_each(|doubt| log.warn(&doubt));
         summary.cloud = accuracy::scaled(self.case, stood.stage.factor).cloud;
         summary.warnings.clone_from(&log.record.warnings);
         let (field, walls) = (field(self.case, &view), found.walls());
@@ -453,7 +455,6 @@ impl Run<'_> {
             if summary.cloud != *self.given {
                 folder::put_cloud(&summary.cloud, stood.stage.cycle > 0, &journal.out)?;
             }
-            let solid = stood.solver.system.solid_snapshot(frame, state);
             files::write_all(&found, &mut summary, (&field, &walls), solid.as_ref(), log, &journal.out)?;
             journal.describe()?;
             folder::finish(&journal.out)?;

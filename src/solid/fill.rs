@@ -239,6 +239,7 @@ fn raised<const E: usize, const D: usize>(fill: Fill<E>) -> Fill<D> {
         facets,
         spacing: fill.spacing,
         rows: fill.rows,
+        ties: fill.ties,
         moment: fill.moment.iter().map(raised).collect(),
         turn: fill.turn,
     }

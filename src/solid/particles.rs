@@ -20,6 +20,8 @@ use crate::math::sweep::{first, maximum, sum, sweep, sweep_each};
 /// Radius of a cloud in spacings, in the plane and in space, where rows do not say who neighbours are: between the second and the
 /// third ring of a square and of a body-centred lattice, so that no diagonal of a sheared cell is lost.
 pub const REACH: [f64; 2] = [1.8, 1.4];
+/// Neighbours below which particles are joined to all that they share simplices with.
+const FEW: usize = 8;
 /// What the divergence theorem may leave of a particle's area h^(D−1).
 const CLOSED: f64 = 1e-11;
 /// Particles up to which the equations of the correction are preconditioned by their factors, in the plane and in space.
@@ -99,6 +101,8 @@ pub struct Fill<const D: usize> {
     pub spacing: f64,
     /// Neighbours of each in the order of their numbers, where rows say who they are; empty: all within reach.
     pub rows: Vec<Vec<u32>>,
+    /// Particles that each shares simplices with, in the order of their numbers; empty where volumes are not those of tetrahedra.
+    pub ties: Vec<Vec<u32>>,
     /// First moment in the plane that each stands for beyond volume times place; empty in space.
     pub moment: Vec<Vector<D>>,
     /// 2π times the plane area of each about an axis of revolution; empty elsewhere.
@@ -106,11 +110,19 @@ pub struct Fill<const D: usize> {
 }
 
 impl<const D: usize> Fill<D> {
-    /// The same with all within reach as neighbours, but those for which `apart` holds.
+    /// The same with all within reach as neighbours, but those for which `apart` holds and that share no simplex; particles with few
+    /// neighbours, as at sharp edges, get all that they share simplices with.
     pub fn seen(mut self, apart: impl Fn(usize, usize) -> bool) -> Self {
         self.find_rows();
+        let tied = |i: usize, j: u32| self.ties.get(i).is_some_and(|ties| ties.binary_search(&j).is_ok());
         for (i, row) in self.rows.iter_mut().enumerate() {
-            row.retain(|j| !apart(i.min(*j as usize), i.max(*j as usize)));
+            row.retain(|j| tied(i, *j) || !apart(i.min(*j as usize), i.max(*j as usize)));
+        }
+        let few: Vec<bool> = self.rows.iter().map(|row| row.len() < FEW).collect();
+        for (i, (row, ties)) in self.rows.iter_mut().zip(&self.ties).enumerate() {
+            row.extend(ties.iter().filter(|j| few[i] || few[**j as usize]));
+            row.sort_unstable();
+            row.dedup();
         }
         self
     }
@@ -141,11 +153,8 @@ impl<const D: usize> Fill<D> {
             volume: order.iter().map(|i| self.volume[*i]).collect(),
             facets: kept.map(|f| f.renumbered(&new)).collect(),
             spacing: self.spacing,
-            rows: if self.rows.is_empty() {
-                Vec::new()
-            } else {
-                order.iter().map(|i| renumbered(&self.rows[*i], &new)).collect()
-            },
+            rows: renumbered_rows(&self.rows, order, &new),
+            ties: renumbered_rows(&self.ties, order, &new),
             moment: picked(&self.moment, order),
             turn: picked(&self.turn, order),
         }
@@ -155,6 +164,11 @@ impl<const D: usize> Fill<D> {
 /// Those of `all` that are in `order`, if there are any.
 fn picked<T: Copy>(all: &[T], order: &[usize]) -> Vec<T> {
     order.iter().filter_map(|i| all.get(*i).copied()).collect()
+}
+
+/// The rows of `order` by new numbers, if there are any.
+fn renumbered_rows(rows: &[Vec<u32>], order: &[usize], new: &[u32]) -> Vec<Vec<u32>> {
+    order.iter().filter_map(|i| rows.get(*i)).map(|row| renumbered(row, new)).collect()
 }
 
 /// Neighbours by their new numbers, without those that have none.

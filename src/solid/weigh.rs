@@ -117,13 +117,30 @@ pub(super) fn weigh_in_space(
     let mut all = delaunay(&x, &vec![spacing; x.len()]);
     all.retain(|t| flat(t) || inside(&middle(t)));
     let (mut volume, mut sides) = (vec![0.0; x.len()], Sides::default());
-    for t in without_flat_skin(all, flat) {
-        t.iter().for_each(|i| volume[*i as usize] += 0.25 * size(&t));
-        faces(&t).into_iter().for_each(|face| sides.add(face));
+    let kept = without_flat_skin(all, flat);
+    for t in &kept {
+        t.iter().for_each(|i| volume[*i as usize] += 0.25 * size(t));
+        faces(t).into_iter().for_each(|face| sides.add(face));
     }
     let facet = |side: [u32; 3]| Facet::new(&side, turn(side.map(|i| x[i as usize])));
     let facets = sides.single().into_iter().map(facet).collect();
-    Fill { x, volume, facets, spacing, ..Fill::default() }
+    let ties = ties(&kept, x.len());
+    Fill { x, volume, facets, spacing, ties, ..Fill::default() }
+}
+
+/// Particles that each of `count` particles shares simplices with, in the order of their numbers.
+fn ties(all: &[[u32; 4]], count: usize) -> Vec<Vec<u32>> {
+    let mut ties = vec![Vec::new(); count];
+    for t in all {
+        for i in t {
+            ties[*i as usize].extend(t.iter().filter(|j| *j != i));
+        }
+    }
+    for row in &mut ties {
+        row.sort_unstable();
+        row.dedup();
+    }
+    ties
 }
 
 /// Sides of a tetrahedron, seen from outside.

@@ -43,6 +43,13 @@ pub(in super::super) static FLUTTER: Table = Table::of(&[
         "Greatest number of frequencies at a Mach number.",
     ),
     Field::defaulted(
+        "trim",
+        Kind::Flag,
+        Absent::Flag(false),
+        "Forces are those about the static equilibrium of structure and gas at the first crossing, which is sought with it; else about the \
+         bodies as drawn.",
+    ),
+    Field::defaulted(
         "state_space",
         Kind::Flag,
         Absent::Flag(false),

@@ -45,6 +45,7 @@ const fn metal(density: f64, young: f64, poisson: f64, heat_capacity: f64, law: 
         moduli: Moduli::of_young(young, poisson),
         law,
         thermal: Thermal { heat_capacity, heated_fraction: HEATED_FRACTION, start: ROOM_TEMPERATURE },
+        elastic_limit: None,
     }
 }
 

@@ -87,6 +87,8 @@ pub struct Material {
     pub law: Law,
     /// What plastic work does to the temperature.
     pub thermal: Thermal,
+    /// Von Mises stress up to which an elastic law stands for a metal that yields there; none where it holds anywhere.
+    pub elastic_limit: Option<f64>,
 }
 
 /// What a solid answers to a step.
@@ -119,12 +121,20 @@ impl Thermal {
 impl Material {
     /// A solid at room temperature that plastic work does not heat.
     pub const fn new(density: f64, moduli: Moduli, law: Law) -> Self {
-        Self { density, moduli, law, thermal: Thermal::ISOTHERMAL }
+        Self { density, moduli, law, thermal: Thermal::ISOTHERMAL, elastic_limit: None }
     }
 
     /// The same solid with another law.
     pub const fn with_law(self, law: Law) -> Self {
         Self { law, ..self }
+    }
+
+    /// A metal without its yield: the same below its yield stress, which is kept as the limit. Other solids are as they are.
+    pub fn as_elastic(self) -> Self {
+        match self.yield_stress() {
+            Some(limit) => Self { law: Law::NeoHookean, elastic_limit: Some(limit), ..self },
+            None => self,
+        }
     }
 
     /// Numbers of history.

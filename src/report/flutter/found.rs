@@ -35,6 +35,7 @@ pub(super) struct At {
     pub(super) semichord: f64,
     pub(super) alpha_deg: f64,
     pub(super) read: Option<String>,
+    pub(super) trim: Option<Trim>,
     pub(super) steady: [Option<f64>; 3],
     pub(super) orders: f64,
     pub(super) particles: f64,
@@ -54,6 +55,15 @@ pub(super) struct Reference {
     pub(super) speed_index: Option<f64>,
     pub(super) reduced_speed: Option<f64>,
     pub(super) mass_ratio: Option<f64>,
+}
+
+/// The static equilibrium that forces are about.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(default)]
+pub(super) struct Trim {
+    pub(super) speed_ratio: f64,
+    pub(super) dynamic_pressure: f64,
+    pub(super) coordinates: Vec<f64>,
 }
 
 /// A change from decay to growth, or back.

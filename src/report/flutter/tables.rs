@@ -25,7 +25,7 @@ fn told(columns: &[&str], rows: Vec<Vec<String>>) -> Table {
     let known = |k: &usize| rows.iter().any(|row| row.get(*k).is_some_and(|text| !text.is_empty() && text != "–"));
     let kept: Vec<usize> = (0..columns.len()).filter(known).collect();
     let columns: Vec<&str> = kept.iter().map(|k| columns[*k]).collect();
-    Table::new(&columns, rows.iter().map(|row| kept.iter().map(|k| row[*k].clone()).collect()))
+    Table::new(&columns, rows.iter().map(|row| kept.iter().map(|k| row.get(*k).cloned().unwrap_or_default()).collect()))
 }
 
 /// Every crossing with its error bar and what the g-method has.
@@ -180,6 +180,19 @@ pub(super) fn reference(found: &Found) -> Table {
         ]
     };
     told(&columns, found.flutter.iter().map(row).collect())
+}
+
+/// The static equilibria that forces are about; without rows where bodies stay as drawn.
+pub(super) fn equilibria(found: &Found) -> Table {
+    let names = found.flutter.first().map_or(&[][..], |at| &at.coordinates);
+    let mut columns = vec!["M", "V/V of the case", "dynamic pressure"];
+    columns.extend(names.iter().map(String::as_str));
+    let row = |at: &At| {
+        let trim = at.trim.as_ref()?;
+        let stream = [at.mach.to_string(), number(trim.speed_ratio), number(trim.dynamic_pressure)];
+        Some(stream.into_iter().chain(trim.coordinates.iter().map(|q| number(*q))).collect())
+    };
+    told(&columns, found.flutter.iter().filter_map(row).collect())
 }
 
 /// Angle, lengths, what is varied.

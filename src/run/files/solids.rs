@@ -4,18 +4,13 @@ use std::path::Path;
 use super::super::error::RunError;
 use super::super::solids::files::{draw, write};
 use crate::coupling::SolidSnapshot;
-use crate::solid::forces::State;
 
 /// Their fields: `<name>.vtu`.
 pub(crate) fn write_solid<const D: usize>(out: &Path, name: &str, at: &SolidSnapshot<'_, D>) -> Result<(), RunError> {
-    write(&out.join(format!("{name}.vtu")), at.solid, &state(at))
-}
-
-fn state<'a, const D: usize>(at: &'a SolidSnapshot<'_, D>) -> State<'a, D> {
-    State { time: 0.0, step: 0.0, displacement: &at.displacement, velocity: &at.velocity, history: &at.history }
+    write(&out.join(format!("{name}.vtu")), at.solid, &at.state())
 }
 
 /// A picture of plane bodies with the stress in them and, where they move, one of each component of the velocity.
 pub(crate) fn draw_solid<const D: usize>(out: &Path, at: &SolidSnapshot<'_, D>) -> Result<(), RunError> {
-    draw(out, at.solid, &state(at))
+    draw(out, at.solid, &at.state())
 }

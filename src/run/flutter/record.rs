@@ -140,6 +140,19 @@ pub struct MotionRow {
     pub eigenvalue: [f64; 2],
 }
 
+/// The equilibrium that forces are about.
+#[derive(Clone, Debug, Serialize)]
+pub struct Trim {
+    /// Speed of the stream over that of the case.
+    pub speed_ratio: f64,
+    /// Its dynamic pressure in the units of the case.
+    pub dynamic_pressure: f64,
+    /// Coordinates there, in base units.
+    pub coordinates: Vec<f64>,
+    /// Equilibria found on the way.
+    pub rounds: usize,
+}
+
 /// What was found at one Mach number.
 #[derive(Clone, Debug, Serialize)]
 pub struct FlutterAt {
@@ -171,6 +184,11 @@ pub struct FlutterAt {
     pub coordinates: Vec<String>,
     /// What these move.
     pub moved: Vec<Mark>,
+    /// Coordinates of the steady flow.
+    #[serde(skip)]
+    pub still: Vec<f64>,
+    /// The static equilibrium that forces are about; none where bodies stay as drawn.
+    pub trim: Option<Trim>,
     /// Reference chord.
     pub chord: f64,
     /// b of the reduced frequencies.

@@ -8,7 +8,7 @@ use super::record::{FlutterAt, FlutterRow, MotionRow};
 use super::scales::Scales;
 use super::shapes::{NaturalMode, shares};
 use super::state_space::StateSpaceAt;
-use crate::case::{Flutter as Plan, Matching};
+use crate::case::{Flutter as Plan, Matching, StreamRatio};
 use crate::math::rational::Rational;
 use crate::structure::Matrices;
 use crate::structure::flutter::{Crossing, Flutter, Kind, Point, Varied};
@@ -33,6 +33,8 @@ pub(super) struct Search<'a> {
     names: Vec<String>,
     /// What coordinates are counted in where shapes are told.
     units: Vec<f64>,
+    /// Coordinates of the steady flow.
+    still: Vec<f64>,
     samples: Vec<Sample>,
     iterations: usize,
     residual: f64,
@@ -45,8 +47,8 @@ impl<'a> Search<'a> {
     /// Of the structure `held`, with the forces known already.
     pub(super) fn new(held: &Held, scales: &'a Scales, plan: &'a Plan, samples: Vec<Sample>, residual: f64) -> Self {
         let (matrices, names) = (held.matrices.clone(), held.names.clone());
-        let units = held.units(scales.semichord);
-        Self { scales, plan, matrices, names, units, samples, iterations: 0, residual }
+        let (units, still) = (held.units(scales.semichord), Vec::new());
+        Self { scales, plan, matrices, names, units, still, samples, iterations: 0, residual }
     }
 
     /// Computes forces at the angular frequency `omega`.
@@ -104,8 +106,13 @@ impl<'a> Search<'a> {
     }
 
     /// The boundary with forces of `source`, of which those near the crossings are asked for.
-    pub(super) fn run(&mut self, source: &mut dyn ForceSource, log: &mut Log<'_>) -> FlutterAt {
-        (self.matrices, self.names) = (source.matrices(), source.names());
+    pub(super) fn run(
+        &mut self,
+        (source, stream): (&mut dyn ForceSource, StreamRatio),
+        log: &mut Log<'_>,
+    ) -> FlutterAt {
+        self.matrices = of_the_case(source.matrices(), stream);
+        (self.names, self.still) = (source.names(), source.still());
         self.sample(source, 0.0, log);
         for k in self.plan.first() {
             self.sample(source, self.scales.angular_frequency(k), log);
@@ -254,6 +261,8 @@ impl<'a> Search<'a> {
             reduced_frequencies: self.samples.iter().map(|x| s.reduced_frequency(x.0)).collect(),
             forces: self.samples.iter().map(|x| x.1.iter().map(|z| [z.re, z.im]).collect()).collect(),
             coordinates: self.names.clone(),
+            still: self.still.clone(),
+            trim: None,
             moved: vec![Mark::default(); self.names.len()],
             chord: 0.0,
             semichord: s.semichord,
@@ -310,6 +319,17 @@ impl<'a> Search<'a> {
             g_method: check.map(|x| s.at(x).pressure.sqrt() / equivalent - 1.0),
             extrapolated: c.kappa > last || self.samples.first().is_none_or(|x| c.kappa < x.0 * (1.0 - SAME)),
         }
+    }
+}
+
+/// Matrices in units of the case's stream from those of another one.
+fn of_the_case(matrices: Matrices, stream: StreamRatio) -> Matrices {
+    let [stiffness, damping, mass] = stream.structural();
+    let over = |all: Vec<f64>, unit: f64| all.into_iter().map(|x| x / unit).collect();
+    Matrices {
+        mass: over(matrices.mass, mass),
+        damping: over(matrices.damping, damping),
+        stiffness: over(matrices.stiffness, stiffness),
     }
 }
 

@@ -20,7 +20,7 @@ pub(in super::super) fn value(boundary: &Boundary, other: Option<&Boundary>, cla
     match claim.metric {
         Metric::FlutterSpeed => Ok(first.speed),
         Metric::FlutterIndex => first.speed_index.ok_or_else(|| "the structure has no speed index".into()),
-        Metric::FlutterFrequency => first.frequency_ratio.ok_or_else(|| "the structure has no pitch".into()),
+        Metric::FlutterFrequency => Ok(first.frequency_ratio.unwrap_or(first.frequency)),
         Metric::FlutterError => Ok(first.error),
         Metric::FlutterDifference => {
             let other = flutter(other.ok_or("the claim names no `other` case")?, claim)?;

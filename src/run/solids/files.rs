@@ -172,7 +172,7 @@ fn picture<const D: usize>(
 }
 
 /// Von Mises's stress at every particle.
-fn von_mises<const D: usize>(solid: &Solid<D>, state: &State<'_, D>) -> Vec<f64> {
+pub(in crate::run) fn von_mises<const D: usize>(solid: &Solid<D>, state: &State<'_, D>) -> Vec<f64> {
     (0..solid.len()).map(|i| mises(&solid.cauchy(i, state))).collect()
 }
 

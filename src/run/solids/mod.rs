@@ -26,6 +26,8 @@ pub use inspect::{SolidReport, inspect_structure};
 pub(super) use own_modes::{told_of_own_modes, with_own_modes};
 pub use record::{ModeRow, PeriodicRow, ProbeHarmonic, ProbeRow, SolidLedger, SolidSummary};
 
+pub(super) use files::von_mises;
+
 use files::Files;
 use march::{Marched, Study};
 use summary::Ending;

@@ -2,8 +2,8 @@
 use std::path::Path;
 
 use super::super::error::RunError;
-use super::setup::{Built, build};
-use crate::case::{Case, ModeTable, Structure, StructureMode, StructureModel};
+use super::setup::{Built, build, remembers};
+use crate::case::{Case, ModeTable, Steady, Structure, StructureMode, StructureModel, Temporal};
 use crate::geometry::dimension;
 use crate::math::Vector;
 use crate::solid::modes::{Mode, Wanted, modes};
@@ -50,6 +50,8 @@ pub(in super::super) fn told_of_own_modes(case: &Case) -> Vec<String> {
 fn alone(case: &Case, body: usize) -> Case {
     let mut alone = case.clone();
     alone.structures.clear();
+    // modes last as steady states do, whatever is computed with them
+    alone.time = Temporal::Steady(Steady::default());
     let others = alone.bodies.iter_mut().enumerate().filter(|(k, _)| *k != body);
     others.for_each(|(_, other)| other.solid = None);
     alone
@@ -58,15 +60,7 @@ fn alone(case: &Case, body: usize) -> Case {
 fn found<const D: usize>(alone: &Case, input: &Path, count: usize) -> Result<Vec<StructureMode>, RunError> {
     let built = build::<D>(alone, input)?;
     let structure = &built.structure;
-    if structure.solid.remembers() {
-        return Err(RunError::Solid {
-            what: "a material that remembers (plastic, viscoelastic, hypoelastic) has no natural modes that last"
-                .into(),
-            hint:
-                "use an elastic law: `linear`, `saint_venant_kirchhoff`, `neo_hookean`; or leave out the `[structure]`"
-                    .into(),
-        });
-    }
+    remembers(alone, &built)?;
     let still = structure.start(|_| [0.0; D]);
     let wanted = Wanted { count, above: 0.0 };
     let all = modes(structure, &still, &wanted)

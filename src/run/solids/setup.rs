@@ -77,7 +77,15 @@ pub(in crate::run) fn build<const D: usize>(case: &Case, input: &Path) -> Result
         100.0 * particles.correction,
         particles.iterations
     ));
-    let (materials, of) = materials(&parts, &particles, &owner)?;
+    let (mut materials, of) = materials(&parts, &particles, &owner)?;
+    if lasts(case) {
+        materials.iter_mut().for_each(|m| *m = m.as_elastic());
+        notes.extend(materials.iter().filter_map(|m| m.elastic_limit).map(|limit| {
+            format!(
+                "a metal is computed as elastic, which holds up to its yield stress of {limit:.4e}: only marches yield"
+            )
+        }));
+    }
     let omega = frequency(case);
     let (mut supports, loads) =
         (supports(&parts, &particles, &owner, omega)?, loads(&parts, &particles, &owner, omega)?);
@@ -353,6 +361,11 @@ fn thin<const D: usize>(fill: &Fill<D>, rows: Option<usize>, name: &str) -> Resu
 }
 
 /// Materials of all bodies and regions, and which of them each particle has.
+/// True for steady and periodic states in a gas: they last, and metals that bear them do not yield.
+fn lasts(case: &Case) -> bool {
+    case.has_gas() && !matches!(case.time, Temporal::Explicit(_) | Temporal::Dual(_))
+}
+
 fn materials<const D: usize>(
     parts: &[Part<'_, D>],
     particles: &Particles<D>,
@@ -545,12 +558,11 @@ fn velocities<const D: usize>(parts: &[Part<'_, D>], particles: &Particles<D>, o
 }
 /// Refuses materials that remember where a gas leaves no steps to remember.
 pub(in super::super) fn remembers<const D: usize>(case: &Case, built: &Built<D>) -> Result<(), RunError> {
-    let marches = matches!(case.time, Temporal::Explicit(_) | Temporal::Dual(_));
-    if marches || !built.structure.solid.remembers() {
+    if !lasts(case) || !built.structure.solid.remembers() {
         return Ok(());
     }
     Err(RunError::Solid {
-        what: "a material that remembers (plastic, viscoelastic, hypoelastic) has no steady and no periodic state by itself: in a gas it marches in time".into(),
+        what: "a material that remembers (viscoelastic, hypoelastic) has no steady and no periodic state by itself: in a gas it marches in time".into(),
         hint: "use `[time.dual]` or `[time.explicit]`, or an elastic law: `linear`, `saint_venant_kirchhoff`, `neo_hookean`".into(),
     })
 }

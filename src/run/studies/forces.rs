@@ -28,6 +28,8 @@ pub(crate) trait ForceSource {
     fn matrices(&self) -> Matrices;
     /// Names of the coordinates.
     fn names(&self) -> Vec<String>;
+    /// The coordinates of the steady flow.
+    fn still(&self) -> Vec<f64>;
     /// Springs of all coordinates about the same.
     fn springs(&self) -> Vec<Spring>;
     /// Generalised forces on all coordinates in the motion `motion` of angular frequency `omega` about the steady flow, beyond those of the latter;
@@ -152,6 +154,10 @@ impl<S: Marches<D>, const D: usize> ForceSource for SmallMotion<'_, S, D> {
     fn names(&self) -> Vec<String> {
         let all = self.system.attached().iter().flat_map(|b| b.structure.coordinates());
         all.map(|c| c.name.clone()).collect()
+    }
+
+    fn still(&self) -> Vec<f64> {
+        self.state[self.system.placing()].iter().step_by(2).copied().collect()
     }
 
     fn springs(&self) -> Vec<Spring> {

@@ -1,0 +1,70 @@
+//! A case in a stream of another pressure and temperature at the same Mach number: what matched static equilibria are sought in.
+use super::super::{Case, Density, Pressure, Structure, Temperature};
+
+/// Pressure and temperature of a stream over those of a case.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StreamRatio {
+    /// Pressure.
+    pub pressure: f64,
+    /// Temperature, the square of the sound speed.
+    pub temperature: f64,
+}
+
+impl StreamRatio {
+    /// The stream of the case.
+    pub const SAME: Self = Self { pressure: 1.0, temperature: 1.0 };
+
+    /// Density.
+    pub fn density(self) -> f64 {
+        self.pressure / self.temperature
+    }
+
+    /// Stiffness, damping and mass in units of the stream, over these in units of the case's.
+    pub fn structural(self) -> [f64; 3] {
+        [1.0 / self.pressure, self.temperature.sqrt() / self.pressure, 1.0 / self.density()]
+    }
+}
+
+impl Case {
+    /// The same structure in a stream of the same Mach number. With units the stream changes; without them, it is what all is measured in,
+    /// and the numbers of the structure change.
+    pub fn in_stream(&self, ratio: StreamRatio) -> Self {
+        let mut case = self.clone();
+        let flow = &mut case.flow;
+        if flow.is_dimensional() {
+            flow.pressure = flow.pressure.map(|p| Pressure(p.0 * ratio.pressure));
+            flow.temperature = flow.temperature.map(|t| Temperature(t.0 * ratio.temperature));
+            flow.density = flow.density.map(|d| Density(d.0 * ratio.density()));
+        }
+        let dimensional = flow.is_dimensional();
+        case.structures.iter_mut().for_each(|s| s.enter(ratio, dimensional));
+        case
+    }
+}
+
+impl Structure {
+    /// Turns its numbers into those of a stream.
+    fn enter(&mut self, ratio: StreamRatio, dimensional: bool) {
+        let faster = ratio.temperature.sqrt();
+        for number in [&mut self.reduced_speed, &mut self.reduced_velocity] {
+            *number = number.map(|v| v * faster);
+        }
+        // U/(b omega sqrt(mu)): the mass ratio goes as one over the density
+        self.speed_index = self.speed_index.map(|v| v * ratio.pressure.sqrt());
+        self.mass_ratio = self.mass_ratio.map(|m| m / ratio.density());
+        self.modes.iter_mut().for_each(|m| m.reduced_frequency = m.reduced_frequency.map(|k| k / faster));
+        if dimensional {
+            return;
+        }
+        let [stiffness, damping, mass] = ratio.structural();
+        self.stiffness.values_mut().for_each(|k| *k *= stiffness);
+        self.damping.values_mut().for_each(|c| *c *= damping);
+        self.mass.iter_mut().for_each(|m| m.0 *= mass);
+        self.inertia.iter_mut().flatten().for_each(|j| j.0 *= mass);
+        self.gravity.iter_mut().flatten().for_each(|g| g.0 /= ratio.temperature);
+        for mode in &mut self.modes {
+            mode.mass *= mass;
+            mode.stiffness = mode.stiffness.map(|k| k * stiffness);
+        }
+    }
+}
