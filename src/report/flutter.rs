@@ -220,10 +220,14 @@ fn cycles(found: &Found) -> Vec<Block> {
 fn conditions(found: &Found) -> Vec<Block> {
     let Some(first) = found.flutter.first() else { return Vec::new() };
     let mut blocks = tables::facts(first);
-    blocks.extend([
-        Block::Heading("Stream and structure of the case".to_owned()),
-        Block::Table(tables::reference(found)),
-    ]);
+    blocks.push(Block::Heading("Stream and structure of the case".to_owned()));
+    blocks.push(Block::Table(tables::reference(found)));
+    let equilibria = tables::equilibria(found);
+    if !equilibria.rows.is_empty() {
+        let words =
+            "Forces are those about the static equilibrium of structure and gas, with these coordinates in base units:";
+        blocks.extend([Block::Text(words.to_owned()), Block::Table(equilibria)]);
+    }
     blocks
 }
 
@@ -253,7 +257,7 @@ mod tests {
                 "natural": [{"mode": 1, "frequency": 0.05, "shape": shape}], "reduced_frequencies": [0.0, 0.1], "coordinates": ["plunge", "pitch"],
                 "reference": {"speed": 0.75, "density": 1.0, "dynamic_pressure": 0.28, "speed_index": 0.5, "reduced_speed": null, "mass_ratio": 60.0},
                 "chord": 1.0, "semichord": 0.5, "alpha_deg": 0.0, "read": null, "steady": [0.0, 0.001, 0.0], "orders": 9.7, "particles": 3784,
-                "linear_iterations": 120, "residual": 4e-7, "cpu_seconds": 3.2, "warnings": warnings})
+                "trim": {"speed_ratio": 1.9, "dynamic_pressure": 1.0, "coordinates": [0.25, 0.0], "rounds": 3}, "linear_iterations": 120, "residual": 4e-7, "cpu_seconds": 3.2, "warnings": warnings})
         };
         let cycle = |amplitude: f64, index: f64, stable: bool, march: Value| {
             json!({"mach": 0.8, "branch": 1, "coordinate": "pitch", "amplitude": amplitude, "speed_index": index, "speed": index, "speed_ratio": 1.2,
