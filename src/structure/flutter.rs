@@ -19,6 +19,7 @@
 use num_complex::Complex64;
 
 mod g_method;
+mod natural;
 pub mod state_space;
 
 use super::Matrices;
@@ -194,16 +195,6 @@ impl<'a> Flutter<'a> {
     pub fn branches(&self, upto: f64) -> Vec<Vec<Point>> {
         let (Some(modes), true) = (&self.modes, 0.0 < upto && upto.is_finite()) else { return Vec::new() };
         (0..modes.n).map(|m| self.branch(modes, m, upto)).collect()
-    }
-
-    /// Natural modes without damping, by rising frequency: angular frequency, and amplitudes of the coordinates for generalised mass 1.
-    pub fn natural(&self) -> Vec<(f64, Vec<Complex64>)> {
-        let Some(modes) = &self.modes else { return Vec::new() };
-        let one = |m: usize| {
-            let unit: Vec<Complex64> = (0..modes.n).map(|k| Complex64::from(f64::from(u8::from(k == m)))).collect();
-            (modes.squares[m].max(0.0).sqrt(), modes.coordinates(&unit))
-        };
-        (0..modes.n).map(one).collect()
     }
 
     fn branch(&self, modes: &Modes, m: usize, upto: f64) -> Vec<Point> {
@@ -675,19 +666,6 @@ mod tests {
             assert!((crossing.x / x - 1.0).abs() < 1e-11 && (crossing.frequency / omega - 1.0).abs() < 1e-11);
         }
         assert!(branches.iter().all(|b| b[b.len() - 1].x == 3.5));
-    }
-
-    #[test] // K q = ω² M q, qᵀ M q = 1
-    fn natural_modes_are_those_of_the_structure() {
-        let m = matrices(&[2.0, 0.5, 0.5, 1.0], &[0.0; 4], &[3.0, 0.0, 0.0, 5.0]);
-        let forces = |_: f64| real(&[0.0; 4]);
-        let found = Flutter::new(&m, &forces).natural();
-        assert!(found.len() == 2 && found[0].0 < found[1].0);
-        for (omega, q) in &found {
-            let of = |a: &[f64], i: usize| a[2 * i] * q[0].re + a[2 * i + 1] * q[1].re;
-            assert!((0..2).all(|i| (of(&m.stiffness, i) - omega * omega * of(&m.mass, i)).abs() < 1e-12));
-            assert!(((0..2).map(|i| q[i].re * of(&m.mass, i)).sum::<f64>() - 1.0).abs() < 1e-12);
-        }
     }
 
     #[test]

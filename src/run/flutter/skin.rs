@@ -9,6 +9,7 @@ use num_complex::Complex64;
 use serde::Serialize;
 
 use super::super::error::RunError;
+use super::super::folder::make_within;
 use super::super::look::reference::chord;
 use super::super::setup;
 use super::shapes::{Share, amplitudes};
@@ -132,11 +133,7 @@ impl Skin {
         let chains: Vec<Vec<u32>> = self.lines.iter().map(|l| l.to_vec()).collect();
         let facets =
             if self.triangles.is_empty() { Facets::Polylines(&chains) } else { Facets::Triangles(&self.triangles) };
-        let folder = out.join(FOLDER);
-        std::fs::create_dir_all(&folder).map_err(|e| RunError::Folder {
-            what: format!("cannot make `{}`: {e}", folder.display()),
-            hint: "check that the run folder is writable".into(),
-        })?;
+        make_within(out, FOLDER)?;
         let mut files = Vec::new();
         for k in 0..PHASES {
             let part = k as f64 / PHASES as f64;
