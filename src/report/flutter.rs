@@ -137,7 +137,8 @@ fn branches(found: &Found) -> Vec<Block> {
     let known: Vec<&At> = found.flutter.iter().filter(|at| !found.modes(at.mach).is_empty()).collect();
     let few = known.iter().all(|at| found.modes(at.mach).len() <= FEW);
     let set = |charts: Vec<Chart>| -> Vec<Block> {
-        match few {
+        // one alone has room
+        match few && charts.len() > 1 {
             true => vec![Block::charts(charts.into_iter())],
             false => charts.into_iter().map(Block::chart).collect(),
         }
