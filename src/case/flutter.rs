@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 pub use limit_cycles::{GasResponse, LimitCycles};
 pub use stream::StreamRatio;
 
-use super::{Accuracy, Case, Motion, ParticleMotion, Steady, Temporal};
+use super::{Accuracy, Case, Dual, Motion, ParticleMotion, Steady, Structure, Temporal, Time};
 
 /// The table `[flutter]`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -89,5 +89,67 @@ impl Case {
         case.motion = Some(Motion { particles, law: self.motion.clone().map_or_else(Default::default, |m| m.law) });
         case.output.report = false;
         case
+    }
+
+    /// The march of a motion of period `period` at one Mach number, and at `ratio` times the speed of the case; `start` has value and
+    /// rate of every coordinate where it begins. Dimensions stay those of the case: the structure is softer in place of a faster stream.
+    pub fn cycle_case(&self, mach: f64, ratio: f64, start: &[[f64; 2]], [period, most]: [f64; 2]) -> Self {
+        /// Steps of a period.
+        const STEPS: f64 = 64.0;
+        let mut case = self.flutter_case(mach);
+        case.title = format!("{}, limit cycle", case.title);
+        let march = Dual { swing: Some(Time(period)), ..Dual::fixed(Time(period / STEPS), Time(most * period)) };
+        case.time = Temporal::Dual(march);
+        // a rigid cloud turns with a rigid body, as in any march
+        case.motion.clone_from(&self.motion);
+        let (dimension, mut rest) = (usize::from(case.dimension.unwrap_or(2)), start);
+        for body in 0..case.bodies.len() {
+            let Some(k) = case.structure_of(body).and_then(|s| case.structures.iter().position(|o| o == s)) else {
+                continue;
+            };
+            let (structure, taken) = (&mut case.structures[k], rest);
+            structure.soften(ratio);
+            rest = &taken[structure.begin(dimension, taken).min(taken.len())..];
+        }
+        case
+    }
+
+    /// About the period of a free motion of structures that a march is to find.
+    pub fn swing(&self) -> Option<Time> {
+        match &self.time {
+            Temporal::Dual(dual) => dual.swing,
+            _ => None,
+        }
+    }
+}
+
+impl Structure {
+    /// Stiffnesses over `ratio`², dampers over `ratio`; nothing else pulls.
+    fn soften(&mut self, ratio: f64) {
+        let square = ratio * ratio;
+        self.stiffness.values_mut().for_each(|k| *k /= square);
+        self.frequency.values_mut().for_each(|w| w.0 /= ratio);
+        self.damping.values_mut().for_each(|c| *c /= ratio);
+        for speed in [&mut self.speed_index, &mut self.reduced_speed, &mut self.reduced_velocity] {
+            speed.iter_mut().for_each(|v| *v *= ratio);
+        }
+        for mode in &mut self.modes {
+            mode.frequency.iter_mut().for_each(|w| w.0 /= ratio);
+            mode.reduced_frequency.iter_mut().for_each(|k| *k /= ratio);
+            mode.stiffness.iter_mut().for_each(|k| *k /= square);
+            mode.force = None;
+        }
+        (self.force, self.gravity) = (None, None);
+    }
+
+    /// Begins with these values and rates; tells how many coordinates there are.
+    fn begin(&mut self, dimension: usize, start: &[[f64; 2]]) -> usize {
+        let free = self.freedoms(dimension);
+        for (freedom, [value, rate]) in free.iter().zip(start) {
+            self.initial.insert(freedom.name().to_owned(), *value);
+            self.initial.insert(format!("{}_rate", freedom.name()), *rate);
+        }
+        self.modes.iter_mut().zip(start).for_each(|(m, [value, rate])| (m.initial, m.initial_rate) = (*value, *rate));
+        free.len().max(self.modes.len())
     }
 }

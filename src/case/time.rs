@@ -189,6 +189,31 @@ pub struct Dual {
     pub cfl: f64,
     /// Greatest Courant number of the pseudo time.
     pub cfl_max: f64,
+    /// About the period of a free motion of structures, with whose second like period the run ends; no key asks for that.
+    #[serde(skip)]
+    pub swing: Option<Time>,
+}
+
+impl Dual {
+    /// A march with steps of one length, all else as it is without being told.
+    pub fn fixed(step: Time, until: Time) -> Self {
+        Self {
+            step: Some(step),
+            steps_per_period: None,
+            until: Some(until),
+            periods: None,
+            order: 2,
+            orders: 2.0,
+            inner_iterations: 50,
+            start_orders: None,
+            adaptive: None,
+            periodic_tolerance: None,
+            method: SteadyMethod::NewtonKrylov,
+            cfl: 10.0,
+            cfl_max: 1e6,
+            swing: None,
+        }
+    }
 }
 
 impl Case {

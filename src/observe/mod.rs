@@ -10,6 +10,7 @@ pub mod induced;
 pub mod loads;
 pub mod strips;
 pub mod structure;
+pub mod swing;
 pub mod table;
 pub mod usage;
 pub mod vtk;

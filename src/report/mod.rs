@@ -2,7 +2,8 @@
 //!
 //! Nothing here knows the solver: pictures are made of rasters, points and triangles, the page is made of the files in
 //! the run folder. [`canvas`] is a sheet that prints itself as SVG or PNG; [`chart`], [`picture`] and [`surface`] draw on
-//! it; `page` is what pages are made of, set by the templates in `templates/`; `overview` gathers everything into `report.html`; [`verification`] lists claims and whether they hold.
+//! it; `page` is what pages are made of, set by the templates in `templates/`; `overview` gathers everything into `report.html`, `flutter` does so for boundaries;
+//! [`verification`] lists claims and whether they hold.
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
@@ -18,6 +19,7 @@ mod conditions;
 mod contour;
 pub mod fields;
 mod files;
+mod flutter;
 mod font;
 mod grid;
 mod last_period;
@@ -46,6 +48,7 @@ pub use chart::{Axis, Chart, Marks, Series};
 pub use colour::Colormap;
 pub use compare::Comparison;
 pub use files::check_reference;
+pub use flutter::write_flutter;
 pub use overview::write_report;
 pub use picture::{Dots, PictureStyle, Raster, Scatter, raster_png, scatter_png};
 pub use polar::write_polar;

@@ -12,14 +12,16 @@ use super::files::{LOADS, Load, RunFolder};
 use super::page::{Block, Card, Fact, Page, Section, Status};
 use super::sections;
 use super::words::{grouped, number};
-use super::{ReportError, grid, last_period, periodic, polar, pressure, span, structure, write_file};
+use super::{ReportError, flutter, grid, last_period, periodic, polar, pressure, span, structure, write_file};
 
 /// Writes `report.html` into a run folder from the files that are there, and gives its path.
 pub fn write_report(run: &Path) -> Result<PathBuf, ReportError> {
     // The only failures: no folder to read, or no room to write. Whatever is missing in it becomes a word on the page.
     std::fs::read_dir(run).map_err(|source| ReportError::Io { action: "read", path: run.to_path_buf(), source })?;
     let path = run.join("report.html");
-    write_file(&path, report(&RunFolder::new(run)).html()?.as_bytes())?;
+    let folder = RunFolder::new(run);
+    let page = if flutter::is_flutter(&folder) { flutter::page(&folder) } else { report(&folder) };
+    write_file(&path, page.html()?.as_bytes())?;
     Ok(path)
 }
 

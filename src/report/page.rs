@@ -13,6 +13,7 @@ const STYLE: &str = include_str!("../../templates/page.css");
 const SCRIPT: &str = include_str!("../../templates/chart.js");
 const VIEWER: &str = include_str!("../../templates/viewer.js");
 const SURFACE: &str = include_str!("../../templates/surface.js");
+const MODES: &str = include_str!("../../templates/modes.js");
 
 /// A whole page.
 #[derive(Default, Template)]
@@ -77,6 +78,8 @@ pub(super) enum Block {
     Viewer(String),
     /// Walls that turn with the pointer: what the script of the page needs, as JSON.
     Surface(String),
+    /// A surface that moves in modes: what the script of the page needs, as JSON.
+    Modes(String),
     /// Text as it is.
     Code(String),
 }
@@ -131,6 +134,10 @@ impl Page {
 
     fn has_surface(&self) -> bool {
         self.sections.iter().flat_map(|s| &s.blocks).any(|block| matches!(block, Block::Surface(_)))
+    }
+
+    fn has_modes(&self) -> bool {
+        self.sections.iter().flat_map(|s| &s.blocks).any(|block| matches!(block, Block::Modes(_)))
     }
 
     /// What a terminal shows of the page: its lines and tables.

@@ -8,21 +8,27 @@ use std::path::Path;
 
 mod held;
 mod limit_cycles;
+mod marched;
 mod record;
 mod scales;
 mod search;
+mod shapes;
+mod skin;
 mod state_space;
 mod stored;
 mod trim;
 
 pub use held::Mark;
-pub use record::{Boundary, FlutterAt, FlutterRow, LimitCycle, MotionRow, Trim};
+pub use record::{Boundary, FlutterAt, FlutterRow, LimitCycle, MarchedCycle, MotionRow, Trim};
+pub use scales::CaseReference;
+pub use shapes::{NaturalMode, Share};
 pub use state_space::StateSpaceAt;
 
 use self::held::Held;
 use self::limit_cycles::Seek;
 use self::scales::Scales;
 use self::search::Search;
+use self::skin::Skin;
 use self::stored::Stored;
 use super::error::RunError;
 use super::folder::{self, Places};
@@ -88,12 +94,7 @@ fn sought(
 ) -> Result<Option<Boundary>, RunError> {
     let plan = planned(case)?;
     let case = &with_own_modes(case, &places.input)?;
-    if plan.trim && forces.is_some() {
-        return Err(RunError::Unsupported {
-            what: "this version cannot compute the static equilibrium with forces that are read".into(),
-            hint: "leave `trim` out: forces are those of the run that wrote them, about its steady flow",
-        });
-    }
+    forces.map_or(Ok(()), |_| refused_with_forces(case, &plan))?;
     let stored = forces.map(Stored::read).transpose()?;
     let _held = folder::create_once(case, &places.input, &places.out)?;
     let mut all = Boundary::new(&case.title);
@@ -105,12 +106,38 @@ fn sought(
         let Some(mut found) = found else { return Ok(None) };
         found.read = forces.map(|f| f.display().to_string());
         found.warnings.iter().for_each(|w| monitor.warn(&format!("Mach {mach}: {w}")));
+        if case.output.report && all.skin.is_none() {
+            all.skin = Some(skin(case, mach, &places.input)?);
+        }
         all.lco.append(&mut found.cycles);
         all.flutter.push(found);
         all.write(&places.out)?;
     }
     folder::finish(&places.out)?;
     Ok(Some(all))
+}
+
+/// What draws motions of the structures.
+fn skin(case: &Case, mach: f64, input: &Path) -> Result<Skin, RunError> {
+    let own = case.flutter_case(mach);
+    let held = Held::of(&own, input)?;
+    let b = Scales::of(&own, held.chord, Matching::None).semichord;
+    Skin::of(&own, input, &held.units(b))
+}
+
+/// What forces that are read do not serve.
+fn refused_with_forces(case: &Case, plan: &Plan) -> Result<(), RunError> {
+    if plan.trim {
+        return Err(RunError::Unsupported {
+            what: "this version cannot compute the static equilibrium with forces that are read".into(),
+            hint: "leave `trim` out: forces are those of the run that wrote them, about its steady flow",
+        });
+    }
+    if case.lco.as_ref().is_some_and(|lco| lco.march) {
+        let what = "`lco.march` asks for a march of gas and structure, but forces that are read come without a gas";
+        return Err(RunError::Unsupported { what: what.into(), hint: "leave out `march`, or `--forces`" });
+    }
+    Ok(())
 }
 
 /// What nothing flutters of, or not in one go.
@@ -196,7 +223,11 @@ fn at_mach(
         }
         false => place.boundary(StreamRatio::SAME, monitor)?,
     };
-    Ok(at.map(|at| placed(at, &own, mach, held)))
+    let Some(at) = at else { return Ok(None) };
+    let mut at = placed(at, &own, mach, held);
+    let marches = cycles_at(case, mach).is_some_and(|lco| lco.march) && !at.cycles.is_empty();
+    let whole = !marches || marched::march(case, &mut at, input, monitor)?;
+    Ok(whole.then_some(at))
 }
 
 /// What is sought at a Mach number, and of what.

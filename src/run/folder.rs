@@ -111,6 +111,15 @@ pub(crate) fn create_once(case: &Case, input: &Path, out: &Path) -> Result<Hold,
     create(case, input, out).map(|(_, held)| held)
 }
 
+/// Makes a folder in that of a run.
+pub(crate) fn make_within(out: &Path, name: &str) -> Result<(), RunError> {
+    let folder = out.join(name);
+    fs::create_dir_all(&folder).map_err(|e| RunError::Folder {
+        what: format!("cannot make `{}`: {e}", folder.display()),
+        hint: "check that the folder of the run is writable".into(),
+    })
+}
+
 /// Puts a cloud that the program chose into the run folder, as the section of a case file; `refined`: the run made it finer besides.
 pub(crate) fn put_cloud(cloud: &Cloud, refined: bool, out: &Path) -> Result<(), RunError> {
     let more = "# What the run found (`[adapt]`, detached shocks) refined it further.\n";

@@ -168,6 +168,7 @@ impl<const D: usize> Found<'_, D> {
             harmonic_balance: record.balance.clone(),
             generalised_forces: record.forces.clone(),
             structure: log.structure_summaries(),
+            swings: case.swing().map_or_else(Vec::new, |period| log.swings(period.0)),
             ledger,
             time: record.time,
             unconverged_steps: record.unconverged,

@@ -38,6 +38,8 @@ pub(crate) struct Marching {
     pub(crate) limit: u32,
     /// Change of the loads from period to period below which it ends as well.
     pub(crate) tolerance: Option<f64>,
+    /// About the period, in the time of the case, of structures with whose second like period it ends as well.
+    pub(crate) swing: Option<f64>,
 }
 
 /// How steps in time are taken.
@@ -85,12 +87,13 @@ pub(crate) fn marching(case: &Case, period: Option<f64>, dimension: usize) -> Re
                 RungeKutta::Rk4 => explicit::Method::Rk4,
             };
             let scheme = Scheme::Explicit(explicit::Plan { method, cfl: plan.cfl, until });
-            Ok(Some(Marching { scheme, until, limit: plan.steps, tolerance: plan.periodic_tolerance }))
+            Ok(Some(Marching { scheme, until, limit: plan.steps, tolerance: plan.periodic_tolerance, swing: None }))
         }
         Temporal::Dual(dual) => {
             let plan = implicit_plan(case, dual, period)?;
             let (until, scheme) = (plan.until, Scheme::Dual(inner_control(dual, dimension), plan));
-            Ok(Some(Marching { scheme, until, limit: u32::MAX, tolerance: dual.periodic_tolerance }))
+            let (tolerance, swing) = (dual.periodic_tolerance, dual.swing.map(|t| t.0));
+            Ok(Some(Marching { scheme, until, limit: u32::MAX, tolerance, swing }))
         }
     }
 }

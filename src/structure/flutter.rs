@@ -19,6 +19,7 @@
 use num_complex::Complex64;
 
 mod g_method;
+mod natural;
 pub mod state_space;
 
 use super::Matrices;

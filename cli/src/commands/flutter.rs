@@ -48,9 +48,16 @@ pub(crate) fn flutter(args: &arguments::Flutter) -> Outcome {
             table(&boundary)
                 + &cycles(&boundary)
                 + &format!("tables: {} and v-g.csv\n", out.join("flutter.csv").display())
+                + &page(&out)
         }
     };
     results(&found, shortfall(&boundary), args.verbosity)
+}
+
+/// Where the page is, where there is one.
+fn page(out: &Path) -> String {
+    let page = out.join("report.html");
+    if page.is_file() { format!("report: {}\n", page.display()) } else { String::new() }
 }
 
 /// The first Mach number whose result is doubtful.
@@ -144,5 +151,21 @@ fn cycles(boundary: &Boundary) -> String {
             if c.extrapolated { "  beyond the frequencies computed" } else { "" }
         )
     };
-    boundary.lco.iter().map(row).fold(head, |text, row| text + &row)
+    let marched = |c: &LimitCycle| {
+        let m = c.march.as_ref()?;
+        Some(format!(
+            "marched from {:.4}: amplitude {:.4} ({:+.2} %), frequency {:.4} ({:+.2} %) after {:.1} periods, the last of which changed it by \
+             {:.2} %; {:.1} s of processor time\n",
+            c.amplitude,
+            m.amplitude,
+            100.0 * m.difference,
+            m.frequency,
+            100.0 * (m.frequency / c.frequency - 1.0),
+            m.periods,
+            100.0 * m.change,
+            m.cpu_seconds
+        ))
+    };
+    let rows = boundary.lco.iter().map(row).chain(boundary.lco.iter().filter_map(marched));
+    rows.fold(head, |text, row| text + &row)
 }

@@ -30,6 +30,13 @@ pub(in super::super) fn contradictions(draft: &mut Draft<'_>) {
         }
         _ => {}
     }
+    if draft.get("lco.march").and_then(Value::as_bool) == Some(true)
+        && draft.get("lco.gas").and_then(Value::as_str) == Some("linear")
+    {
+        draft
+            .fail("lco.march", "a march of limit cycles with a gas that does what it does in small motions")
+            .hint("leave out `march`, or `gas = \"linear\"`: what marches is the gas as it is");
+    }
     for place in ["lco.amplitude", "lco.displacement"] {
         let ends = draft.get(place).and_then(Value::as_array).cloned().unwrap_or_default();
         let ends: Vec<f64> = ends.iter().filter_map(Value::as_f64).collect();
@@ -40,5 +47,29 @@ pub(in super::super) fn contradictions(draft: &mut Draft<'_>) {
                 .fail(place, "the greatest amplitude is not greater than the least")
                 .hint("give the smaller one first");
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::super::read;
+
+    #[test]
+    fn what_is_linear_does_not_march() {
+        let case = |keys: &str| {
+            let text = "[flow]\nmach = 0.5\n[[body]]\nnaca = \"0012\"\n[cloud]\nspacing = 0.1\n[structure]\nelastic_axis = -0.4\nmass_ratio = 60\n\
+                        x_alpha = 0.2\nr_alpha2 = 0.25\nfrequency_ratio = 0.5\nreduced_speed = 2\n[flutter]\n[lco]\n\
+                        amplitude = [\"0.5 deg\", \"2 deg\"]\n";
+            read(&format!("{text}{keys}"), "case.toml")
+        };
+        assert!(!case("").unwrap().lco.unwrap().march);
+        assert!(case("march = true\n").unwrap().lco.unwrap().march);
+        assert!(case("gas = \"linear\"\n").is_ok());
+        let refused = case("gas = \"linear\"\nmarch = true\n").unwrap_err().to_string();
+        assert!(
+            refused.contains("what it does in small motions") && refused.contains("leave out `march`"),
+            "{refused}"
+        );
+        assert!(case("march = 3\n").is_err());
     }
 }

@@ -104,6 +104,12 @@ pub(in super::super) static LIMIT_CYCLES: Table = Table::of(&[
         Absent::Word("nonlinear"),
         "What the gas does in motions that are not small.",
     ),
+    Field::defaulted(
+        "march",
+        Kind::Flag,
+        Absent::Flag(false),
+        "March in time from the largest stable motion that was found, until its amplitude settles, and tell by how much it differs.",
+    ),
 ]);
 
 const GAS: &[(&str, &str)] = &[

@@ -24,6 +24,8 @@ pub struct LimitCycles {
     pub accuracy: f64,
     /// What the gas does.
     pub gas: GasResponse,
+    /// The largest stable motion is marched in time as well.
+    pub march: bool,
 }
 
 /// How the gas answers to a motion.

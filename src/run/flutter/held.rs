@@ -11,6 +11,7 @@ use crate::case::Case;
 use crate::coupling::Attached;
 use crate::geometry::dimension;
 use crate::motion::Motions;
+use crate::observe::structure::is_angle;
 use crate::structure::{Matrices, Model, Spring};
 
 /// Part of a chord by which pivots may differ.
@@ -51,6 +52,12 @@ impl Mark {
 }
 
 impl Held {
+    /// What each coordinate is counted in where shapes are told: rigid bodies are displaced by parts of `b`.
+    pub(super) fn units(&self, b: f64) -> Vec<f64> {
+        let unit = |(name, mark): (&String, &Mark)| if mark.pivot.is_some() && !is_angle(name) { b } else { 1.0 };
+        self.names.iter().zip(&self.marks).map(unit).collect()
+    }
+
     /// The structures of `case`, whose files lie in `input`.
     pub(super) fn of(case: &Case, input: &Path) -> Result<Self, RunError> {
         match dimension(case) {

@@ -213,11 +213,13 @@ impl<'s, 'a> Seek<'s, 'a> {
             frequency: scales.cycles * cycle.omega,
             stable: rises == (kind == Kind::Flutter),
             mean: unit(cycle.motion.mean[self.coordinate]),
+            means: cycle.motion.mean.clone(),
             harmonics: cycle.motion.harmonics.len(),
             error: point.error,
             balances: if self.plan.gas == GasResponse::Nonlinear { point.balances } else { 0 },
             motion: cycle.motion.harmonics.iter().map(harmonic).collect(),
             extrapolated: point.extrapolated,
+            march: None,
             coordinate: name,
         }
     }

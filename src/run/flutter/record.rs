@@ -5,23 +5,28 @@ use serde::Serialize;
 
 use super::super::error::RunError;
 use super::held::Mark;
+use super::scales::CaseReference;
+use super::shapes::{NaturalMode, Share};
+use super::skin::Skin;
 use super::state_space::StateSpaceAt;
 use crate::case::Matching;
-use crate::observe::structure::is_angle;
 use crate::observe::table::{Entry, write_csv, write_json};
-use crate::report::{Axis, Chart, Marks, Series, write_file};
+use crate::report;
 
 /// The tables of `alula flutter`.
 const CROSSINGS: &str = "flutter.csv";
 const HISTORY: &str = "v-g.csv";
 const CYCLES: &str = "lco.csv";
 const SUMMARY: &str = "flutter.json";
+/// The surface that moves, for the page.
+const MODES: &str = "modes.json";
 /// What files say about signs and units.
 const CONVENTIONS: &str = "match none: speeds at constant density and Mach number; density: densities at constant speed; altitude: standard \
                            atmosphere of 1976, geometric altitude in metres; error and g_method: relative, of the speed at constant \
                            density, the root of the dynamic pressure; V* = U/(b omega_alpha), speed index V* / sqrt(mu), k = omega b/U, \
                            b half of the reference chord; g = 2 zeta = 2 Re(lambda)/|lambda|; motion exp(i omega t); plunge up, pitch \
-                           nose up positive";
+                           nose up positive; shapes: the largest amplitude is 1 with phase 0, angles in radians, displacements of rigid \
+                           bodies in b, modes in what their files have";
 
 const CROSSING_COLUMNS: [&str; 16] = [
     "mach",
@@ -108,6 +113,8 @@ pub struct FlutterRow {
     pub g_method: Option<f64>,
     /// True when k lies beyond the frequencies that forces were computed at.
     pub extrapolated: bool,
+    /// How much each coordinate takes part.
+    pub shape: Vec<Share>,
 }
 
 /// A motion at a speed.
@@ -156,6 +163,10 @@ pub struct FlutterAt {
     pub matching: Matching,
     /// Every crossing, by what is varied: rising speed, rising density, falling altitude.
     pub crossings: Vec<FlutterRow>,
+    /// Natural modes in still air.
+    pub natural: Vec<NaturalMode>,
+    /// What ratios refer to.
+    pub reference: CaseReference,
     /// Motions at the speeds looked at, mode by mode.
     #[serde(skip)]
     pub motions: Vec<MotionRow>,
@@ -229,6 +240,8 @@ pub struct LimitCycle {
     pub stable: bool,
     /// Mean of the coordinate, of angles in degrees.
     pub mean: f64,
+    /// Means of all coordinates in base units.
+    pub means: Vec<f64>,
     /// Harmonics.
     pub harmonics: usize,
     /// Relative change of the speed with the last of them; infinite where none were added.
@@ -239,6 +252,28 @@ pub struct LimitCycle {
     pub motion: Vec<Vec<[f64; 2]>>,
     /// True where a harmonic lies beyond the frequencies that forces were computed at.
     pub extrapolated: bool,
+    /// What a march from it ends with, where there was one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub march: Option<MarchedCycle>,
+}
+
+/// What a march from a limit cycle ends with.
+#[derive(Clone, Debug, Serialize)]
+pub struct MarchedCycle {
+    /// Amplitude of the first harmonic of the coordinate over the last period, of angles in degrees.
+    pub amplitude: f64,
+    /// Mean over it, of angles in degrees.
+    pub mean: f64,
+    /// Frequency in cycles per unit of time of the case.
+    pub frequency: f64,
+    /// Periods that were marched.
+    pub periods: f64,
+    /// Amplitude over that of the balance, less one.
+    pub difference: f64,
+    /// Change of the amplitude in the last period, over it.
+    pub change: f64,
+    /// Processor seconds.
+    pub cpu_seconds: f64,
 }
 
 /// Cycles, and what makes them doubtful.
@@ -255,12 +290,15 @@ pub struct Boundary {
     pub flutter: Vec<FlutterAt>,
     /// Limit cycles.
     pub lco: Vec<LimitCycle>,
+    /// What draws motions, where pictures are asked for.
+    #[serde(skip)]
+    pub(super) skin: Option<Skin>,
 }
 
 impl Boundary {
     /// An empty one of a case.
     pub(super) fn new(title: &str) -> Self {
-        Self { title: title.to_owned(), conventions: CONVENTIONS, flutter: Vec::new(), lco: Vec::new() }
+        Self { title: title.to_owned(), conventions: CONVENTIONS, flutter: Vec::new(), lco: Vec::new(), skin: None }
     }
 }
 
@@ -276,7 +314,24 @@ impl Boundary {
             self.write_cycles(&out.join(CYCLES))?;
         }
         write_json(&out.join(SUMMARY), &self)?;
-        self.draw(out)
+        self.skin.as_ref().map_or(Ok(()), |skin| self.picture(skin, out))
+    }
+
+    /// Writes pictures and page, and the motion at the first crossing of the last Mach number.
+    fn picture(&self, skin: &Skin, out: &Path) -> Result<(), RunError> {
+        if self.flutter.len() == 1 {
+            skin.write(&out.join(MODES))?;
+        }
+        if let Some(at) = self.flutter.last() {
+            let first = at.crossings.iter().find(|c| c.kind == "flutter");
+            if let Some(c) = first.or(at.crossings.first()) {
+                let name = format!("flutter-mode-mach-{:.3}", at.mach);
+                skin.write_series(out, &name, (&c.shape, c.frequency))?;
+            }
+        }
+        report::write_flutter(out)?;
+        report::write_report(out)?;
+        Ok(())
     }
 
     fn write_crossings(&self, file: &Path) -> Result<(), RunError> {
@@ -329,26 +384,6 @@ impl Boundary {
         Ok(write_csv(file, &CYCLE_COLUMNS, rows)?)
     }
 
-    /// Amplitude against speed: stable motions as dots, unstable ones as rings; `None` where there are none.
-    fn bifurcation(&self) -> Option<Chart> {
-        let first = self.lco.first()?;
-        let indexed = self.lco.iter().all(|c| c.speed_index.is_some());
-        let speed = |c: &LimitCycle| c.speed_index.filter(|_| indexed).unwrap_or(c.speed);
-        let of = |name: &str, marks: Marks, stable: bool| {
-            let own = self.lco.iter().filter(|c| c.stable == stable);
-            let (x, y) = own.map(|c| (speed(c), c.amplitude)).unzip();
-            Series::new(name, marks, x, y)
-        };
-        let all = [of("stable", Marks::Dots, true), of("unstable", Marks::Rings, false)];
-        let unit = if is_angle(&first.coordinate) { "degrees" } else { "length" };
-        Some(Chart {
-            title: format!("Limit cycles, Mach {}", first.mach),
-            x: Axis::linear(if indexed { "speed index" } else { "speed" }),
-            y: Axis::linear(&format!("amplitude of {}, {unit}", first.coordinate)),
-            series: all.into_iter().filter(|s| !s.x.is_empty()).collect(),
-        })
-    }
-
     fn write_motions(&self, file: &Path) -> Result<(), RunError> {
         let motions = self.flutter.iter().flat_map(|at| at.motions.iter().map(move |m| (at.mach, m)));
         let motions = motions.map(|(mach, m)| {
@@ -360,53 +395,6 @@ impl Boundary {
         });
         Ok(write_csv(file, &HISTORY_COLUMNS, motions)?)
     }
-
-    /// Damping and frequency against speed at each Mach number; with several of these the boundary.
-    fn draw(&self, out: &Path) -> Result<(), RunError> {
-        for at in &self.flutter {
-            let [g, f] = at.charts();
-            for (name, chart) in [("damping", g), ("frequency", f)] {
-                let file = format!("pictures/{name}-mach-{:.3}", at.mach);
-                write_file(&out.join(format!("{file}.svg")), chart.svg()?.as_bytes())?;
-                write_file(&out.join(format!("{file}.png")), &chart.png()?)?;
-            }
-        }
-        if let Some(chart) = self.bifurcation() {
-            write_file(&out.join("pictures/limit-cycles.svg"), chart.svg()?.as_bytes())?;
-            write_file(&out.join("pictures/limit-cycles.png"), &chart.png()?)?;
-        }
-        let Some(chart) = self.chart().filter(|_| self.flutter.len() > 1) else { return Ok(()) };
-        write_file(&out.join("pictures/boundary.svg"), chart.svg()?.as_bytes())?;
-        Ok(write_file(&out.join("pictures/boundary.png"), &chart.png()?)?)
-    }
-
-    /// All crossings against the Mach number; `None` where there are none.
-    fn chart(&self) -> Option<Chart> {
-        let matching = self.flutter.first()?.matching;
-        let indexed = self.flutter.iter().flat_map(|at| &at.crossings).all(|c| c.speed_index.is_some());
-        let label = match matching {
-            Matching::None if indexed => "speed index",
-            Matching::None => "speed",
-            Matching::Density => "dynamic pressure",
-            Matching::Altitude => "altitude, m",
-        };
-        let speed = |c: &FlutterRow| match matching {
-            Matching::None if indexed => c.speed_index.unwrap_or(f64::NAN),
-            Matching::None => c.speed,
-            Matching::Density => c.dynamic_pressure,
-            Matching::Altitude => c.altitude.unwrap_or(f64::NAN),
-        };
-        let of = |kind: &'static str, marks: Marks| {
-            let all = self.flutter.iter().flat_map(|at| at.crossings.iter().map(move |c| (at.mach, c)));
-            let (x, y): (Vec<f64>, Vec<f64>) = all.filter(|(_, c)| c.kind == kind).map(|(m, c)| (m, speed(c))).unzip();
-            Series::new(kind, marks, x, y)
-        };
-        let all = [of("flutter", Marks::Dots), of("restabilised", Marks::Rings), of("divergence", Marks::Rings)];
-        let series: Vec<Series> = all.into_iter().filter(|s| !s.x.is_empty()).collect();
-        let y = Axis::linear(label);
-        let chart = Chart { title: "Flutter boundary".into(), x: Axis::linear("Mach number"), y, series };
-        (!chart.series.is_empty()).then_some(chart)
-    }
 }
 
 impl FlutterAt {
@@ -415,39 +403,34 @@ impl FlutterAt {
         self.cycles = cycles;
         self.warnings.extend(doubts);
     }
+}
 
-    /// Damping and frequency of every mode against speed.
-    fn charts(&self) -> [Chart; 2] {
-        let modes = self.motions.iter().map(|m| m.mode).max().unwrap_or(0);
-        let ratio = self.crossings.first().and_then(|c| c.speed_index.map(|v| v / c.speed_ratio));
-        let label = match self.matching {
-            Matching::None if ratio.is_some() => "speed index",
-            Matching::None => "speed over that of the case",
-            Matching::Density => "density",
-            Matching::Altitude => "altitude, m",
-        };
-        let place = |m: &MotionRow| match self.matching {
-            Matching::None => m.speed_ratio * ratio.unwrap_or(1.0),
-            Matching::Density => m.density,
-            Matching::Altitude => m.altitude.unwrap_or(f64::NAN),
-        };
-        let series = |of: fn(&MotionRow) -> f64| {
-            let one = |mode: usize| {
-                let own = self.motions.iter().filter(|m| m.mode == mode);
-                let (x, y) = own.map(|m| (place(m), of(m))).unzip();
-                Series::new(&format!("mode {mode}"), Marks::Line, x, y)
-            };
-            (1..=modes).map(one).collect::<Vec<_>>()
-        };
-        let chart = |title: &str, y: &str, series| Chart {
-            title: format!("{title}, Mach {}", self.mach),
-            x: Axis::linear(label),
-            y: Axis::linear(y),
-            series,
-        };
-        [
-            chart("Damping", "g = 2 zeta, growth positive", series(|m| m.damping)),
-            chart("Frequency", "cycles per unit of time", series(|m| m.frequency)),
-        ]
+#[cfg(test)]
+pub(super) mod tests {
+    use super::*;
+
+    /// A limit cycle of two degrees of pitch.
+    pub(in super::super) fn cycle() -> LimitCycle {
+        LimitCycle {
+            mach: 0.8,
+            branch: 1,
+            coordinate: "pitch".into(),
+            amplitude: 2.0,
+            speed_ratio: 1.2,
+            speed_index: Some(0.72),
+            reduced_speed: None,
+            speed: 0.96,
+            reduced_frequency: 0.1,
+            frequency: 0.03,
+            stable: true,
+            mean: 0.0,
+            means: vec![0.01, 0.0],
+            harmonics: 2,
+            error: 0.001,
+            balances: 5,
+            motion: vec![vec![[-0.14, 0.03], [0.035, 0.0]], vec![[1e-3, 2e-3], [-1e-3, 5e-4]]],
+            extrapolated: false,
+            march: None,
+        }
     }
 }

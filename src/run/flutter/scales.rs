@@ -1,6 +1,8 @@
 //! Numbers that turn those of the solver into those of users, and how the stream is varied.
 use std::f64::consts::{PI, TAU};
 
+use serde::Serialize;
+
 use crate::case::{Case, FreeStreamScales, Matching, StructureModel};
 use crate::geometry::dimension;
 use crate::physics::atmosphere;
@@ -24,6 +26,23 @@ pub(super) struct Scales {
     pub(super) mass_ratio: Option<f64>,
     /// What is varied.
     pub(super) matching: Matching,
+}
+
+/// Stream and structure of the case at a Mach number, which ratios refer to.
+#[derive(Clone, Debug, Default, Serialize)]
+pub struct CaseReference {
+    /// Speed in the units of the case.
+    pub speed: f64,
+    /// Density in the units of the case.
+    pub density: f64,
+    /// Dynamic pressure in the units of the case.
+    pub dynamic_pressure: f64,
+    /// V_f, where the structure has one.
+    pub speed_index: Option<f64>,
+    /// V*, where the structure has one.
+    pub reduced_speed: Option<f64>,
+    /// Mass ratio, where the structure is a section.
+    pub mass_ratio: Option<f64>,
 }
 
 /// The stream at one value of what is varied.
@@ -62,6 +81,18 @@ impl Scales {
             speed_index: index.or(reduced.zip(root).map(|(v, root)| v / root)),
             mass_ratio,
             matching,
+        }
+    }
+
+    /// What ratios of the case refer to.
+    pub(super) fn case_reference(&self) -> CaseReference {
+        CaseReference {
+            speed: self.reference.speed,
+            density: self.reference.density,
+            dynamic_pressure: self.reference.dynamic_pressure(),
+            speed_index: self.speed_index,
+            reduced_speed: self.reduced_speed,
+            mass_ratio: self.mass_ratio,
         }
     }
 

@@ -6,6 +6,7 @@ use super::super::studies::{ForceSource, Forces};
 use super::held::{Held, Mark};
 use super::record::{FlutterAt, FlutterRow, MotionRow};
 use super::scales::Scales;
+use super::shapes::{NaturalMode, shares};
 use super::state_space::StateSpaceAt;
 use crate::case::{Flutter as Plan, Matching, StreamRatio};
 use crate::math::rational::Rational;
@@ -30,6 +31,8 @@ pub(super) struct Search<'a> {
     plan: &'a Plan,
     matrices: Matrices,
     names: Vec<String>,
+    /// What coordinates are counted in where shapes are told.
+    units: Vec<f64>,
     /// Coordinates of the steady flow.
     still: Vec<f64>,
     samples: Vec<Sample>,
@@ -44,7 +47,8 @@ impl<'a> Search<'a> {
     /// Of the structure `held`, with the forces known already.
     pub(super) fn new(held: &Held, scales: &'a Scales, plan: &'a Plan, samples: Vec<Sample>, residual: f64) -> Self {
         let (matrices, names) = (held.matrices.clone(), held.names.clone());
-        Self { scales, plan, matrices, names, still: Vec::new(), samples, iterations: 0, residual }
+        let (units, still) = (held.units(scales.semichord), Vec::new());
+        Self { scales, plan, matrices, names, units, still, samples, iterations: 0, residual }
     }
 
     /// Computes forces at the angular frequency `omega`.
@@ -249,6 +253,8 @@ impl<'a> Search<'a> {
             mach: s.stream,
             matching: s.matching,
             crossings: rows.map(|((c, error), check)| self.row(c, *error, *check)).collect(),
+            natural: self.natural(),
+            reference: s.case_reference(),
             motions: branches.iter().enumerate().flat_map(|(m, b)| b.iter().map(move |p| (m, p))).map(motion).collect(),
             state_space,
             cycles: Vec::new(),
@@ -270,6 +276,17 @@ impl<'a> Search<'a> {
             cpu_seconds: 0.0,
             warnings,
         }
+    }
+
+    fn natural(&self) -> Vec<NaturalMode> {
+        let none = |_: f64| Vec::new();
+        let all = Flutter::new(&self.matrices, &none).natural();
+        let mode = |(m, (omega, shape)): (usize, (f64, Vec<Complex64>))| NaturalMode {
+            mode: m + 1,
+            frequency: self.scales.cycles * omega,
+            shape: shares(&self.names, &self.units, &shape),
+        };
+        all.into_iter().enumerate().map(mode).collect()
     }
 
     fn row(&self, c: &Crossing, error: f64, check: Option<f64>) -> FlutterRow {
@@ -298,6 +315,7 @@ impl<'a> Search<'a> {
             frequency: s.cycles * c.frequency,
             frequency_ratio: alone.map(|w| c.frequency / w),
             error,
+            shape: shares(&self.names, &self.units, &c.shape),
             g_method: check.map(|x| s.at(x).pressure.sqrt() / equivalent - 1.0),
             extrapolated: c.kappa > last || self.samples.first().is_none_or(|x| c.kappa < x.0 * (1.0 - SAME)),
         }

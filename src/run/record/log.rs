@@ -16,6 +16,7 @@ use super::trace::Trace;
 use crate::case::{Case, Units};
 use crate::observe::convergence::CloudLoads;
 use crate::observe::structure::{CoordinateHistory, StructureNames, StructureSample, StructureSummary, StructureTable};
+use crate::observe::swing::Swing;
 use crate::scheme::RemapLedger;
 use crate::time::TimeError;
 
@@ -296,6 +297,12 @@ impl<'a> Log<'a> {
         let mut all = self.record.structures.summaries(&names, self.record.balanced);
         all.iter_mut().zip(&self.structures).for_each(|(s, d)| s.description = d.lines.clone());
         all
+    }
+
+    /// The last period of every coordinate of the structures, `period` long or about so.
+    pub(crate) fn swings(&self, period: f64) -> Vec<Option<Swing>> {
+        let table = &self.record.structures;
+        table.coordinates.iter().map(|c| Swing::of(&table.time, &c.values, period)).collect()
     }
 
     /// Keeps the loads of a moment, by both evaluations.

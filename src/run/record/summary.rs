@@ -16,6 +16,7 @@ use crate::observe::hinge::HingeMoment;
 use crate::observe::induced::SpanLoad;
 use crate::observe::loads::Coefficients;
 use crate::observe::strips::RootLoads;
+use crate::observe::swing::Swing;
 use crate::observe::usage::peak_bytes;
 
 /// The phase in which files, pictures and the report are written.
@@ -101,6 +102,9 @@ pub struct Summary {
     /// What became of bodies on springs.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub structure: Vec<crate::observe::structure::StructureSummary>,
+    /// The last period of every coordinate of the structures, where the march was to find it.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub swings: Vec<Option<Swing>>,
     /// Forces on the modes of `[gaf]`.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub generalised_forces: Vec<GeneralisedForce>,

@@ -6,8 +6,8 @@ use super::super::record::Log;
 use super::super::record::saved::LagrangianCheckpoint;
 use super::super::setup::Solver;
 use super::super::watch::{
-    Aim, Checkpoint, CrossCheck, Ending, FieldSeries, Film, GasEyes, Limit, Observer, Particles, Periodic, Progress,
-    Structures, Told, Worn, drive,
+    Aim, Alike, Checkpoint, CrossCheck, Ending, FieldSeries, Film, GasEyes, Limit, Observer, Particles, Periodic,
+    Progress, Structures, Told, Worn, drive,
 };
 use super::turn::{Reached, Start, Turn};
 use crate::coupling::Marches;
@@ -95,6 +95,7 @@ fn watched<S: Marches<D>, const D: usize>(
         log.case.output.field_interval.map(|t| FieldSeries { system, interval: log.units.solver_time(t.0) });
     let mut film = solver.film.as_ref().map(|surface| Film { system, surface });
     let mut periodic = marching.tolerance.map(|tolerance| Periodic { tolerance });
+    let mut alike = marching.swing.map(|period| Alike { period, seen: 0 });
     let (mut limit, mut worn) = (Limit { iterations: marching.limit }, Worn { system });
     let mut checkpoint = checkpoint(turn, &keep);
     let mut told = Told;
@@ -102,6 +103,7 @@ fn watched<S: Marches<D>, const D: usize>(
     all.extend(series.as_mut().map(|o| o as &mut dyn Observer<S>));
     all.extend(film.as_mut().map(|o| o as &mut dyn Observer<S>));
     all.extend(periodic.as_mut().map(|o| o as &mut dyn Observer<S>));
+    all.extend(alike.as_mut().map(|o| o as &mut dyn Observer<S>));
     all.extend([&mut limit as &mut dyn Observer<S>, &mut told, &mut worn, &mut checkpoint]);
     drive(integrator, &mut all, log)
 }

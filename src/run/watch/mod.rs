@@ -15,5 +15,5 @@ pub(crate) use crosscheck::{CrossCheck, compare};
 pub(crate) use drive::{Ending, Now, Observer, Wish, drive};
 pub(crate) use progress::{Aim, Effort, Eyes, GasEyes, Progress};
 pub(crate) use series::{FieldSeries, Film};
-pub(crate) use stops::{Flat, Given, Limit, Periodic, Resting, Swinging, Told, Worn};
+pub(crate) use stops::{Alike, Flat, Given, Limit, Periodic, Resting, Swinging, Told, Worn};
 pub(crate) use structures::{Structures, sample};

@@ -1,6 +1,7 @@
 //! When to stop.
 use super::super::record::Log;
 use super::drive::{Now, Observer, Wish};
+use crate::observe::swing::Swing;
 use crate::scheme::HasGas;
 use crate::system::System;
 
@@ -107,6 +108,38 @@ impl<S: System> Observer<S> for Periodic {
         // a checkpoint may have been written by the very step that ended the march
         let change = log.change_of_period(mark.time, now.before).filter(|_| mark.iteration > 0)?;
         (change < self.tolerance).then_some(Wish::Finish)
+    }
+}
+
+/// Ends a march whose structures move in a period as they did in the one before.
+pub(crate) struct Alike {
+    /// About the period, in the time of the case.
+    pub(crate) period: f64,
+    /// Periods that were looked at.
+    pub(crate) seen: u64,
+}
+
+impl Alike {
+    /// Change of an amplitude from one period to the next below which they are alike.
+    pub(crate) const CHANGE: f64 = 0.002;
+    /// Periods after which that is looked at.
+    const LEAST: u64 = 6;
+    /// Amplitude over the largest below which a coordinate may do as it likes.
+    const FAINT: f64 = 1e-3;
+}
+
+impl<S: System> Observer<S> for Alike {
+    fn wish(&mut self, _: &mut Now<'_, S>, log: &Log<'_>) -> Option<Wish> {
+        let time = log.record.structures.time.last()?;
+        let periods = (time / self.period * (1.0 + f64::EPSILON)) as u64;
+        if periods <= self.seen.max(Self::LEAST - 1) {
+            return None;
+        }
+        self.seen = periods;
+        let swings: Vec<Swing> = log.swings(self.period).into_iter().flatten().collect();
+        let least = Self::FAINT * swings.iter().map(|s| s.amplitude).fold(0.0, f64::max);
+        let alike = |s: &Swing| s.change < Self::CHANGE || s.amplitude < least;
+        (!swings.is_empty() && swings.iter().all(alike)).then_some(Wish::Finish)
     }
 }
 

@@ -1,0 +1,269 @@
+//! Tables of a flutter boundary.
+use super::super::page::{Block, Fact, Table};
+use super::super::words::{grouped, number};
+use super::found::{At, Crossing, Cycle, Found, Natural, Share};
+
+/// Names of what crosses, for people.
+pub(super) fn in_words(kind: &str) -> &str {
+    match kind {
+        "restabilised" => "decays again",
+        other => other,
+    }
+}
+
+pub(super) fn optional(x: Option<f64>) -> String {
+    x.map_or_else(|| "–".to_owned(), number)
+}
+
+/// A part in per cent; a dash where it is not known.
+pub(super) fn percent(part: Option<f64>) -> String {
+    part.filter(|p| p.is_finite()).map_or_else(|| "–".to_owned(), |p| format!("{:.2} %", 100.0 * p))
+}
+
+/// A table without columns in which nothing is told.
+fn told(columns: &[&str], rows: Vec<Vec<String>>) -> Table {
+    let known = |k: &usize| rows.iter().any(|row| row.get(*k).is_some_and(|text| !text.is_empty() && text != "–"));
+    let kept: Vec<usize> = (0..columns.len()).filter(known).collect();
+    let columns: Vec<&str> = kept.iter().map(|k| columns[*k]).collect();
+    Table::new(&columns, rows.iter().map(|row| kept.iter().map(|k| row.get(*k).cloned().unwrap_or_default()).collect()))
+}
+
+/// Every crossing with its error bar and what the g-method has.
+pub(super) fn crossings(found: &Found) -> Table {
+    let matched = found.flutter.iter().any(|at| at.matching != "none");
+    let mut columns = vec![
+        "M",
+        "what",
+        "mode",
+        "V/V of the case",
+        "V_f",
+        "V*",
+        "k",
+        "frequency",
+        "over pitch",
+        "± (speed)",
+        "g-method",
+    ];
+    if matched {
+        columns.extend(["density", "dynamic pressure", "mass ratio", "altitude, m"]);
+    }
+    columns.push("remark");
+    let row = |(at, c): (&At, &Crossing)| {
+        let g = c.g_method.map_or_else(|| "–".to_owned(), |g| format!("{g:+.0e}").replace('-', "\u{2212}"));
+        let mut row = vec![
+            at.mach.to_string(),
+            in_words(&c.kind).to_owned(),
+            c.mode.to_string(),
+            number(c.speed_ratio),
+            optional(c.speed_index),
+            optional(c.reduced_speed),
+            number(c.reduced_frequency),
+            number(c.frequency),
+            optional(c.frequency_ratio),
+            percent(c.error),
+            g,
+        ];
+        if matched {
+            row.extend([number(c.density), number(c.dynamic_pressure), optional(c.mass_ratio), optional(c.altitude)]);
+        }
+        row.push(remark(c.extrapolated));
+        row
+    };
+    let all = found.flutter.iter().flat_map(|at| at.crossings.iter().map(move |c| (at, c)));
+    told(&columns, all.map(row).collect())
+}
+
+/// Limit cycles.
+pub(super) fn cycles(found: &Found) -> Table {
+    let columns = [
+        "M",
+        "branch",
+        "amplitude",
+        "V/V of the case",
+        "V_f",
+        "k",
+        "frequency",
+        "",
+        "mean",
+        "harmonics",
+        "± (speed)",
+        "balances",
+        "remark",
+    ];
+    let row = |c: &Cycle| {
+        vec![
+            c.mach.to_string(),
+            c.branch.to_string(),
+            number(c.amplitude),
+            number(c.speed_ratio),
+            optional(c.speed_index),
+            number(c.reduced_frequency),
+            number(c.frequency),
+            (if c.stable { "stable" } else { "unstable" }).to_owned(),
+            number(c.mean),
+            c.harmonics.to_string(),
+            percent(c.error),
+            c.balances.to_string(),
+            remark(c.extrapolated),
+        ]
+    };
+    told(&columns, found.lco.iter().map(row).collect())
+}
+
+/// What marches from limit cycles end with; without rows where there were none.
+pub(super) fn marches(found: &Found) -> Table {
+    let columns = [
+        "M",
+        "branch",
+        "amplitude of the limit cycle",
+        "of the march",
+        "difference",
+        "frequency of the march",
+        "difference",
+        "periods",
+        "change in the last",
+        "processor time, s",
+    ];
+    let signed = |part: f64| format!("{:+.2} %", 100.0 * part).replace('-', "\u{2212}");
+    let row = |c: &Cycle| {
+        let m = c.march.as_ref()?;
+        Some(vec![
+            c.mach.to_string(),
+            c.branch.to_string(),
+            number(c.amplitude),
+            number(m.amplitude),
+            signed(m.difference),
+            number(m.frequency),
+            signed(m.frequency / c.frequency - 1.0),
+            format!("{:.1}", m.periods),
+            percent(Some(m.change)),
+            format!("{:.1}", m.cpu_seconds),
+        ])
+    };
+    Table::new(&columns, found.lco.iter().filter_map(row))
+}
+
+fn remark(extrapolated: bool) -> String {
+    (if extrapolated { "beyond the frequencies computed" } else { "" }).to_owned()
+}
+
+/// How much each coordinate takes part in the first crossing of each Mach number and in natural modes.
+pub(super) fn shapes(found: &Found) -> Table {
+    let Some(first) = found.flutter.first() else { return Table::default() };
+    let mut columns = vec!["motion", "frequency"];
+    columns.extend(first.coordinates.iter().map(String::as_str));
+    let row = |(name, frequency, shape): (String, f64, &[Share])| {
+        let share = |s: &Share| format!("{:.4} ∠ {:.1}°", s.amplitude, s.phase_deg).replace('-', "\u{2212}");
+        [name, number(frequency)].into_iter().chain(shape.iter().map(share)).collect::<Vec<String>>()
+    };
+    let crossings = found.flutter.iter().filter_map(|at| at.first().map(|c| (at, c)));
+    let crossings =
+        crossings.map(|(at, c)| (format!("{}, Mach {}", in_words(&c.kind), at.mach), c.frequency, &c.shape[..]));
+    let natural =
+        first.natural.iter().map(|n: &Natural| (format!("natural mode {}", n.mode), n.frequency, &n.shape[..]));
+    Table::new(&columns, natural.chain(crossings).map(row))
+}
+
+/// What ratios refer to.
+pub(super) fn reference(found: &Found) -> Table {
+    let columns = ["M", "speed", "density", "dynamic pressure", "V_f", "V*", "mass ratio"];
+    let row = |at: &At| {
+        let r = &at.reference;
+        vec![
+            at.mach.to_string(),
+            number(r.speed),
+            number(r.density),
+            number(r.dynamic_pressure),
+            optional(r.speed_index),
+            optional(r.reduced_speed),
+            optional(r.mass_ratio),
+        ]
+    };
+    told(&columns, found.flutter.iter().map(row).collect())
+}
+
+/// The static equilibria that forces are about; without rows where bodies stay as drawn.
+pub(super) fn equilibria(found: &Found) -> Table {
+    let names = found.flutter.first().map_or(&[][..], |at| &at.coordinates);
+    let mut columns = vec!["M", "V/V of the case", "dynamic pressure"];
+    columns.extend(names.iter().map(String::as_str));
+    let row = |at: &At| {
+        let trim = at.trim.as_ref()?;
+        let stream = [at.mach.to_string(), number(trim.speed_ratio), number(trim.dynamic_pressure)];
+        Some(stream.into_iter().chain(trim.coordinates.iter().map(|q| number(*q))).collect())
+    };
+    told(&columns, found.flutter.iter().filter_map(row).collect())
+}
+
+/// Angle, lengths, what is varied.
+pub(super) fn facts(at: &At) -> Vec<Block> {
+    let varied = match &at.matching[..] {
+        "density" => "density, at the sound speed of the case",
+        "altitude" => "altitude in the standard atmosphere of 1976",
+        _ => "speed, at the density of the case and constant Mach number",
+    };
+    vec![
+        Block::Facts(vec![
+            Fact::new("Angle of attack, degrees", number(at.alpha_deg)),
+            Fact::new("Reference chord", number(at.chord)),
+            Fact::new("b", number(at.semichord)),
+            Fact::new("Coordinates", at.coordinates.join(", ")),
+        ]),
+        Block::Text(format!("Varied until a motion neither grows nor decays: {varied}.")),
+        Block::List(
+            [
+                "Displacements are positive along the axes, plunge is up (h of the literature is down: h = −plunge); pitch is nose up \
+                 positive, a flap trailing edge down.",
+                "Motion goes as e^{+iωt}: a phase that is greater is ahead. λ is its rate, g = 2ζ = 2 Re λ/|λ|; growth is positive.",
+                "k = ωb/U; V* = U/(b ω_α); V_f = V*/√μ = U/(b ω_α √μ) with ω_α that of pitch alone and the mass ratio μ = m/(πρb²).",
+                "± is the relative change of the speed, of the root of the dynamic pressure, between the last two interpolations of the forces.",
+                "g-method: what that method (Chen 2000) finds of the same crossing, less one; anything above 1e−6 says that following or \
+                 interpolation went wrong there.",
+            ]
+            .map(str::to_owned)
+            .to_vec(),
+        ),
+    ]
+}
+
+/// What it took.
+pub(super) fn cost(found: &Found) -> Table {
+    let columns = [
+        "M",
+        "particles",
+        "steady flow, orders",
+        "CL",
+        "CD",
+        "CM",
+        "frequencies",
+        "iterations per column",
+        "residual of columns",
+        "processor time, s",
+        "of it marches",
+    ];
+    let row = |at: &At| {
+        let columns = (at.reduced_frequencies.len() * at.coordinates.len()) as f64;
+        let [cl, cd, cm] = at.steady.map(optional);
+        let marches: f64 = found
+            .lco
+            .iter()
+            .filter(|c| c.mach == at.mach)
+            .filter_map(|c| c.march.as_ref())
+            .map(|m| m.cpu_seconds)
+            .sum();
+        vec![
+            at.mach.to_string(),
+            grouped(at.particles),
+            format!("{:.1}", at.orders),
+            cl,
+            cd,
+            cm,
+            at.reduced_frequencies.len().to_string(),
+            format!("{:.1}", at.linear_iterations / columns.max(1.0)),
+            at.residual.map_or_else(|| "–".to_owned(), |r| format!("{r:.0e}").replace('-', "\u{2212}")),
+            format!("{:.1}", at.cpu_seconds + marches),
+            if marches > 0.0 { format!("{marches:.1}") } else { "–".to_owned() },
+        ]
+    };
+    told(&columns, found.flutter.iter().map(row).collect())
+}

@@ -1,0 +1,68 @@
+//! Shapes of motions in numbers for people: how much each coordinate takes part, and when.
+use num_complex::Complex64;
+use serde::Serialize;
+
+/// The part of a coordinate in a motion e^{iωt}.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Share {
+    /// Its name.
+    pub coordinate: String,
+    /// Amplitude over the largest: of angles in radians, of displacements of rigid bodies in b, of modes in what their files have.
+    pub amplitude: f64,
+    /// Phase in degrees by which it is ahead of the largest, from −180 to 180.
+    pub phase_deg: f64,
+}
+
+/// A natural mode in still air.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct NaturalMode {
+    /// Its number, from 1.
+    pub mode: usize,
+    /// Cycles per unit of time of the case.
+    pub frequency: f64,
+    /// Its shape.
+    pub shape: Vec<Share>,
+}
+
+/// A shape of coordinates `names`, whose amplitudes are counted in `units`: the largest is 1 and has the phase 0.
+pub(super) fn shares(names: &[String], units: &[f64], shape: &[Complex64]) -> Vec<Share> {
+    let own: Vec<Complex64> = shape.iter().zip(units).map(|(q, unit)| q / unit).collect();
+    let largest = own.iter().fold(Complex64::new(0.0, 0.0), |most, q| if q.norm() > most.norm() { *q } else { most });
+    let share = |(name, q): (&String, &Complex64)| {
+        let part = if largest.norm() > 0.0 { q / largest } else { *q };
+        // without the sign of a zero
+        let phase = if part.norm() > 0.0 { part.arg().to_degrees() + 0.0 } else { 0.0 };
+        Share {
+            coordinate: name.clone(),
+            amplitude: part.norm(),
+            phase_deg: if phase == -180.0 { 180.0 } else { phase },
+        }
+    };
+    names.iter().zip(&own).map(share).collect()
+}
+
+/// The amplitudes that shares stand for.
+pub(super) fn amplitudes(shares: &[Share]) -> Vec<Complex64> {
+    shares.iter().map(|s| Complex64::from_polar(s.amplitude, s.phase_deg.to_radians())).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_largest_share_is_one_and_has_no_phase() {
+        let names = ["plunge", "pitch", "flap"].map(str::to_owned);
+        let shape = [Complex64::new(0.0, 0.5), Complex64::new(0.1, 0.0), Complex64::new(0.0, 0.0)];
+        let found = shares(&names, &[0.5, 1.0, 1.0], &shape);
+        assert_eq!((found[0].amplitude, found[0].phase_deg), (1.0, 0.0));
+        assert!((found[1].amplitude - 0.1).abs() < 1e-15 && (found[1].phase_deg + 90.0).abs() < 1e-12);
+        assert_eq!((found[2].amplitude, found[2].phase_deg), (0.0, 0.0));
+        // the same times any complex number
+        let turned = shape.map(|q| q * Complex64::new(-3.0, 2.0));
+        let again = shares(&names, &[0.5, 1.0, 1.0], &turned);
+        assert!(found.iter().zip(&again).all(|(a, b)| (a.amplitude - b.amplitude).abs() < 1e-14));
+        let back = amplitudes(&found);
+        assert!((back[0] - 1.0).norm() < 1e-15 && (back[1] - Complex64::new(0.0, -0.1)).norm() < 1e-15);
+    }
+}

@@ -1,0 +1,296 @@
+//! The surface of the bodies, and how far each coordinate takes its points: what draws a motion.
+//!
+//! A point goes from X to X + Re(d e^{iωt}) with d = Σ q̂_k ∂x/∂q_k, the tangents of its place where the bodies are as placed; for motions of any
+//! size that is a picture of small ones, drawn large.
+use std::collections::BTreeMap;
+use std::path::Path;
+
+use num_complex::Complex64;
+use serde::Serialize;
+
+use super::super::error::RunError;
+use super::super::folder::make_within;
+use super::super::look::reference::chord;
+use super::super::setup;
+use super::shapes::{Share, amplitudes};
+use crate::case::Case;
+use crate::coupling::Attached;
+use crate::geometry::{Surface, dimension};
+use crate::math::Vector;
+use crate::math::rotation::cross;
+use crate::motion::Motions;
+use crate::observe::vtk::{Column, Facets, write_collection, write_surface};
+use crate::observe::write_atomic;
+
+/// Largest displacement that is drawn, over the chord.
+const SHOWN: f64 = 0.1;
+/// Phases of a period in files.
+const PHASES: usize = 16;
+/// Triangles on the page, at most.
+const MOST: usize = 5000;
+/// Factor by which the cells in which corners become one grow until few enough triangles are left.
+const COARSER: f64 = 1.3;
+/// Part of the chord that places are rounded to on the page.
+const ROUNDED: f64 = 1e-5;
+/// Folder of the files of a series.
+const FOLDER: &str = "modes";
+
+/// The surface at rest, and its displacement per unit of each coordinate.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Skin {
+    chord: f64,
+    points: Vec<[f64; 3]>,
+    lines: Vec<[u32; 2]>,
+    triangles: Vec<[u32; 3]>,
+    coordinates: Vec<String>,
+    moves: Vec<Vec<[f64; 3]>>,
+}
+
+/// What the page reads: numbers one after another.
+#[derive(Serialize)]
+struct Told<'a> {
+    chord: f64,
+    coordinates: &'a [String],
+    points: Vec<f64>,
+    lines: Vec<u32>,
+    triangles: Vec<u32>,
+    moves: Vec<Vec<f64>>,
+}
+
+impl Skin {
+    /// That of the bodies of a case, whose files lie in `input`; coordinates are counted in `units`.
+    pub(super) fn of(case: &Case, input: &Path, units: &[f64]) -> Result<Self, RunError> {
+        match dimension(case) {
+            2 => Self::within::<2>(case, input, units),
+            _ => Self::within::<3>(case, input, units),
+        }
+    }
+
+    fn within<const D: usize>(case: &Case, input: &Path, units: &[f64]) -> Result<Self, RunError> {
+        let surface = setup::surface::<D>(case, input)?.0;
+        let mut motions = Motions::<D>::fixed(case.bodies.len());
+        let bodies = setup::bodies(case, input, surface.as_ref(), &mut motions)?;
+        let Some(surface) = surface else { return Ok(Self::default()) };
+        let mut skin = Self { chord: chord(case, Some(&surface)), ..Self::default() };
+        skin.points = surface.vertices.iter().map(Vector::to_3d).collect();
+        for element in &surface.elements {
+            match element.vertices[..] {
+                [a, b] => skin.lines.push([a, b]),
+                [a, b, c] => skin.triangles.push([a, b, c]),
+                _ => {}
+            }
+        }
+        for body in &bodies {
+            skin.coordinates.extend(body.structure.coordinates().iter().map(|c| c.name.clone()));
+            skin.moves.extend(moves(&surface, body, units));
+        }
+        Ok(skin)
+    }
+
+    /// Displacements in a motion, so large that the largest over a period is that shown.
+    fn displaced(&self, shape: &[Share]) -> Vec<[Complex64; 3]> {
+        let mut all = vec![[Complex64::new(0.0, 0.0); 3]; self.points.len()];
+        for (q, own) in amplitudes(shape).iter().zip(&self.moves) {
+            for (d, unit) in all.iter_mut().zip(own) {
+                (0..3).for_each(|k| d[k] += q * unit[k]);
+            }
+        }
+        let largest = all.iter().map(greatest).fold(0.0, f64::max);
+        let scale = if largest > 0.0 { SHOWN * self.chord / largest } else { 0.0 };
+        all.iter_mut().flatten().for_each(|d| *d *= scale);
+        all
+    }
+
+    /// Writes what the page reads.
+    pub(super) fn write(&self, file: &Path) -> Result<(), RunError> {
+        let own = self.thinned(MOST);
+        let step = ROUNDED * own.chord;
+        // whole multiples of a power of ten are short in text
+        let step = 10.0f64.powf(step.log10().floor()).recip().round();
+        let round = |x: &f64| (x * step).round() / step + 0.0;
+        let flat = |all: &[[f64; 3]]| all.iter().flatten().map(round).collect::<Vec<f64>>();
+        let told = Told {
+            chord: own.chord,
+            coordinates: &own.coordinates,
+            points: flat(&own.points),
+            lines: own.lines.iter().flatten().copied().collect(),
+            triangles: own.triangles.iter().flatten().copied().collect(),
+            moves: own.moves.iter().map(|m| flat(m)).collect(),
+        };
+        // on one line: a number is not worth one
+        let text = serde_json::to_vec(&told).unwrap_or_default();
+        Ok(write_atomic(file, |w| w.write_all(&text))?)
+    }
+
+    /// Writes a motion of the frequency `frequency` at phases of a period as a series for ParaView, `name`.pvd in `out`.
+    pub(super) fn write_series(
+        &self,
+        out: &Path,
+        name: &str,
+        (shape, frequency): (&[Share], f64),
+    ) -> Result<(), RunError> {
+        let shifts = self.displaced(shape);
+        let chains: Vec<Vec<u32>> = self.lines.iter().map(|l| l.to_vec()).collect();
+        let facets =
+            if self.triangles.is_empty() { Facets::Polylines(&chains) } else { Facets::Triangles(&self.triangles) };
+        make_within(out, FOLDER)?;
+        let mut files = Vec::new();
+        for k in 0..PHASES {
+            let part = k as f64 / PHASES as f64;
+            let wave = Complex64::cis(std::f64::consts::TAU * part);
+            let shift: Vec<[f64; 3]> = shifts.iter().map(|d| d.map(|d| (d * wave).re)).collect();
+            let places: Vec<[f64; 3]> =
+                self.points.iter().zip(&shift).map(|(x, d)| [0, 1, 2].map(|k| x[k] + d[k])).collect();
+            let values: Vec<f64> = shift.into_iter().flatten().collect();
+            let file = format!("{FOLDER}/{name}-{k:02}.vtp");
+            let column = Column { name: "displacement", components: 3, values: &values };
+            write_surface(&out.join(&file), &places, facets, &[column], &[])?;
+            let time = if frequency > 0.0 { part / frequency } else { part };
+            files.push((time, file));
+        }
+        let listed: Vec<(f64, &str)> = files.iter().map(|(time, file)| (*time, file.as_str())).collect();
+        Ok(write_collection(&out.join(format!("{name}.pvd")), &listed)?)
+    }
+
+    /// With at most so many triangles: corners in a cell of a grid that look the same way become one.
+    fn thinned(&self, most: usize) -> Self {
+        let [low, high] =
+            [f64::min, f64::max].map(|f| [0, 1, 2].map(|d| self.points.iter().map(|x| x[d]).reduce(f).unwrap_or(0.0)));
+        let longest = (0..3).map(|d| high[d] - low[d]).fold(0.0, f64::max);
+        let mut cell = longest / (most as f64).sqrt();
+        let mut found = self.clone();
+        while found.triangles.len() > most {
+            found = self.clustered(low, cell);
+            cell *= COARSER;
+        }
+        found
+    }
+
+    fn clustered(&self, low: [f64; 3], cell: f64) -> Self {
+        let mut normals = vec![Vector::<3>::ZERO; self.points.len()];
+        for t in &self.triangles {
+            let [a, b, c] = t.map(|i| Vector(self.points[i as usize]));
+            let area = Vector(cross(&(b - a).0, &(c - a).0));
+            t.iter().for_each(|i| normals[*i as usize] += area);
+        }
+        let mut cells: BTreeMap<([i64; 3], u8), u32> = BTreeMap::new();
+        let mut kept: Vec<usize> = Vec::new();
+        let number: Vec<u32> = (0..self.points.len())
+            .map(|i| {
+                let at = [0, 1, 2].map(|d| ((self.points[i][d] - low[d]) / cell) as i64);
+                let side = (0..3).map(|d| u8::from(normals[i][d] > 0.0) << d).sum();
+                *cells.entry((at, side)).or_insert_with(|| {
+                    kept.push(i);
+                    kept.len() as u32 - 1
+                })
+            })
+            .collect();
+        let mut triangles: Vec<[u32; 3]> = self.triangles.iter().map(|t| t.map(|i| number[i as usize])).collect();
+        triangles.retain(|[a, b, c]| a != b && b != c && c != a);
+        let chosen = |all: &Vec<[f64; 3]>| kept.iter().map(|i| all[*i]).collect();
+        Self {
+            points: chosen(&self.points),
+            triangles,
+            moves: self.moves.iter().map(chosen).collect(),
+            lines: Vec::new(),
+            coordinates: self.coordinates.clone(),
+            chord: self.chord,
+        }
+    }
+}
+
+/// Displacements of all points of the surface per unit of each coordinate of a body.
+fn moves<const D: usize>(surface: &Surface<D>, body: &Attached<D>, units: &[f64]) -> Vec<Vec<[f64; 3]>> {
+    let n = body.structure.len();
+    let placement = body.structure.placement(&vec![0.0; n]);
+    let mut all = vec![vec![[0.0; 3]; surface.vertices.len()]; n];
+    let mut done = vec![false; surface.vertices.len()];
+    for element in surface.elements.iter().filter(|e| usize::from(e.body) == body.body) {
+        for i in element.vertices.iter().map(|i| *i as usize) {
+            if std::mem::replace(&mut done[i], true) {
+                continue;
+            }
+            let x = &surface.vertices[i];
+            let bends: Vec<Vector<D>> = body.shapes.iter().map(|shape| shape.at(x)).collect();
+            for (k, tangent) in placement.tangents(x, &bends).enumerate() {
+                all[k][i] = (tangent * units.get(body.first + k).copied().unwrap_or(1.0)).to_3d();
+            }
+        }
+    }
+    all
+}
+
+/// The greatest length of Re(d e^{iφ}) over all phases φ.
+fn greatest(d: &[Complex64; 3]) -> f64 {
+    let sum = |f: fn(&Complex64) -> f64| d.iter().map(f).sum::<f64>();
+    let (a, b, ab) = (sum(|z| z.re * z.re), sum(|z| z.im * z.im), sum(|z| z.re * z.im));
+    (0.5 * (a + b) + (0.5 * (a - b)).hypot(ab)).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::case::read;
+
+    const CASE: &str = "[flow]\nmach = 0.5\n[[body]]\nnaca = \"0012\"\n[cloud]\nspacing = 0.1\n[flutter]\n[structure]\nelastic_axis = -0.4\n\
+                        mass_ratio = 60\nx_alpha = 0.2\nr_alpha2 = 0.25\nfrequency_ratio = 0.5\nreduced_speed = 2\n";
+
+    fn share(coordinate: &str, amplitude: f64, phase_deg: f64) -> Share {
+        Share { coordinate: coordinate.into(), amplitude, phase_deg }
+    }
+
+    #[test]
+    fn a_section_turns_about_its_axis_and_goes_up() {
+        let case = read(CASE, "case.toml").unwrap();
+        let skin = Skin::of(&case, Path::new(""), &[0.5, 1.0]).unwrap();
+        assert_eq!(skin.coordinates, ["plunge", "pitch"]);
+        for (x, [up, turn]) in skin.points.iter().zip(skin.moves[0].iter().zip(&skin.moves[1]).map(|(a, b)| [a, b])) {
+            assert_eq!(*up, [0.0, 0.5, 0.0]);
+            // nose up: what lies aft of the axis at 0.3 goes down
+            assert!((turn[1] + (x[0] - 0.3)).abs() < 1e-9 && (turn[0] - x[1]).abs() < 1e-9, "{x:?} {turn:?}");
+        }
+        let shape = [share("plunge", 1.0, 0.0), share("pitch", 0.4, 90.0)];
+        let largest = skin.displaced(&shape).iter().map(greatest).fold(0.0, f64::max);
+        assert!((largest - 0.1).abs() < 1e-12, "{largest}");
+    }
+
+    #[test]
+    fn a_motion_becomes_a_series_and_a_table_for_the_page() {
+        let case = read(CASE, "case.toml").unwrap();
+        let skin = Skin::of(&case, Path::new(""), &[0.5, 1.0]).unwrap();
+        let folder = tempfile::tempdir().unwrap();
+        let shape = [share("plunge", 1.0, 0.0), share("pitch", 0.4, 90.0)];
+        skin.write_series(folder.path(), "flutter-mode-mach-0.500", (&shape, 2.0)).unwrap();
+        let text = std::fs::read_to_string(folder.path().join("flutter-mode-mach-0.500.pvd")).unwrap();
+        let listed = crate::observe::vtk::read_collection(&text);
+        assert!(listed.len() == 16 && listed[8].0 == 0.25);
+        assert!(listed.iter().all(|(_, file)| folder.path().join(file).is_file()));
+        skin.write(&folder.path().join("modes.json")).unwrap();
+        let text = std::fs::read_to_string(folder.path().join("modes.json")).unwrap();
+        let told: serde_json::Value = serde_json::from_str(&text).unwrap();
+        assert_eq!(told["points"].as_array().unwrap().len(), 3 * skin.points.len());
+        assert_eq!(told["moves"][0][1], 0.5);
+    }
+
+    #[test]
+    fn many_triangles_become_few_without_holes_between_sides() {
+        let n = 120_u32;
+        let place = |k: u32| f64::from(k) / f64::from(n - 1);
+        let mut skin = Skin { chord: 1.0, ..Skin::default() };
+        for (z, over) in [(0.01, true), (-0.01, false)] {
+            let first = skin.points.len() as u32;
+            skin.points.extend((0..n * n).map(|k| [place(k % n), place(k / n), z]));
+            for (i, j) in (0..n - 1).flat_map(|i| (0..n - 1).map(move |j| (i, j))) {
+                let [a, b, c, d] = [i + n * j, i + 1 + n * j, i + 1 + n * (j + 1), i + n * (j + 1)].map(|k| first + k);
+                let both = [[a, b, c], [a, c, d]];
+                skin.triangles.extend(both.map(|[a, b, c]| if over { [a, b, c] } else { [a, c, b] }));
+            }
+        }
+        skin.moves = vec![skin.points.clone()];
+        let found = skin.thinned(MOST);
+        assert!(found.triangles.len() <= MOST && found.triangles.len() > MOST / 4, "{}", found.triangles.len());
+        let mixed = found.triangles.iter().filter(|t| t.iter().any(|i| found.points[*i as usize][2] > 0.0));
+        assert!(mixed.clone().all(|t| t.iter().all(|i| found.points[*i as usize][2] > 0.0)));
+        assert_eq!(found.points, found.moves[0]);
+    }
+}
