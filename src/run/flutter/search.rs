@@ -162,9 +162,9 @@ impl<'a> Search<'a> {
         let mut warnings = Vec::new();
         let still = self.samples.first().is_some_and(|s| s.0 == 0.0);
         for (crossing, error) in crossings.iter().zip(errors) {
-            // forces at its own frequency, and no other fit to hold it against
-            if !error.is_finite() && crossing.kind == Kind::Divergence && still {
-                *error = self.residual;
+            // forces at its own frequency, so that no fit changes it, or there is no other fit to hold it against
+            if crossing.kind == Kind::Divergence && still {
+                *error = if error.is_finite() { error.max(self.residual) } else { self.residual };
             }
             if *error > self.plan.accuracy {
                 let part = 100.0 * error.min(1.0);
@@ -179,7 +179,10 @@ impl<'a> Search<'a> {
     fn solved(&self, samples: &[Sample]) -> Solved {
         let Some(fit) = Rational::of(samples, MISFIT) else { return (Vec::new(), Vec::new()) };
         let speed = |x: f64| self.scales.at(x).speed;
-        let forces = |kappa: f64| fit.at(Complex64::new(0.0, kappa));
+        // motions that do not oscillate, divergence among them, have the forces found at rest where these are known
+        let rest = samples.first().filter(|s| s.0 == 0.0);
+        let fitted = |kappa: f64| fit.at(Complex64::new(0.0, kappa));
+        let forces = |kappa: f64| rest.filter(|_| kappa == 0.0).map_or_else(|| fitted(kappa), |s| s.1.clone());
         let flutter = Flutter::new(&self.matrices, &forces).varying(self.varied(&speed));
         let upto = self.scales.upto(self.plan.most);
         let mut branches = flutter.branches(upto);
