@@ -4,7 +4,7 @@ use alula::run::flutter::FlutterAt;
 use alula::run::{self, Places, Session, Silent};
 
 const SECTION: &str = "title = \"section\"\n[flow]\nmach = 0.5\nalpha = \"2 deg\"\n[[body]]\nnaca = \"0012\"\n[cloud]\n\
-                       spacing = 0.0625\nfar_field = 20.0\n";
+                       spacing = 0.1\nfar_field = 20.0\n";
 const NUMBERS: &str =
     "[structure]\nelastic_axis = -0.2\nmass_ratio = 30.0\nx_alpha = 0.2\nr_alpha2 = 0.25\nfrequency_ratio = 0.4\n";
 
@@ -31,7 +31,7 @@ fn standing(case: &Case) -> Vec<f64> {
 #[test]
 fn forces_are_those_about_the_equilibrium_where_flutter_begins() {
     let case = read(&format!(
-        "{SECTION}{NUMBERS}speed_index = 0.3\n[flutter]\ntrim = true\nreduced_frequencies = [0.1, 0.3]\n"
+        "{SECTION}{NUMBERS}speed_index = 0.3\n[flutter]\ntrim = true\nreduced_frequencies = [0.1, 0.3]\nfrequencies = 3\n"
     ));
     let at = trimmed(&case, "out");
     let (trim, first) = (at.trim.clone().unwrap(), &at.crossings[0]);
@@ -41,21 +41,4 @@ fn forces_are_those_about_the_equilibrium_where_flutter_begins() {
     for (found, other) in trim.coordinates.iter().zip(&there) {
         assert!((found - other).abs() < 2e-3 * other.abs(), "{trim:?} {there:?}");
     }
-    // the same with units, of a structure that goes with no speed
-    let b = 0.5;
-    let omega = 0.5 * 340.0 / (b * 0.3 * 30f64.sqrt());
-    let density = 1.2;
-    let gas = 340f64.powi(2) / (1.4 * 287.05);
-    let units = SECTION.replace("[flow]", &format!("[flow]\ndensity = \"{density} kg/m3\"\ntemperature = \"{gas} K\""));
-    let mass = 30.0 * std::f64::consts::PI * density * b * b;
-    let wing = format!(
-        "[structure]\nelastic_axis = -0.2\nmass = \"{mass} kg/m\"\nx_alpha = 0.2\nr_alpha2 = 0.25\nfrequency = {{ plunge = \"{} rad/s\", pitch = \"{omega} rad/s\" }}\n",
-        0.4 * omega
-    );
-    let same =
-        trimmed(&read(&format!("{units}{wing}[flutter]\ntrim = true\nreduced_frequencies = [0.1, 0.3]\n")), "units");
-    let other = &same.crossings[0];
-    assert!((other.speed_ratio / first.speed_ratio - 1.0).abs() < 1e-3, "{other:?} {first:?}");
-    let pitch = same.trim.unwrap().coordinates[1];
-    assert!((pitch / trim.coordinates[1] - 1.0).abs() < 2e-3, "{pitch} {trim:?}");
 }

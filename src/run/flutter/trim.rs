@@ -75,3 +75,40 @@ fn first(at: &FlutterAt, scales: &Scales) -> Option<f64> {
         _ => row.dynamic_pressure / scales.reference.dynamic_pressure(),
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use std::f64::consts::{PI, TAU};
+    use std::path::Path;
+
+    use super::super::held::Held;
+    use super::*;
+
+    /// With units the stream changes, without them the structure: both are the same to the solver.
+    #[test]
+    fn a_structure_in_another_stream_is_the_same_with_and_without_units() {
+        const BODY: &str = "[[body]]\nnaca = \"0012\"\n[cloud]\nspacing = 0.1\n[structure]\nelastic_axis = -0.4\nx_alpha = 0.2\n\
+                            r_alpha2 = 0.25\ndamping_ratio = { pitch = 0.02 }\n";
+        let (density, sound, b, mu, speed) = (1.2, 340.0f64, 0.5, 30.0, 2.0);
+        let temperature = sound * sound / (1.4 * 287.05);
+        let pitch = 0.5 * sound / (b * speed) / TAU;
+        let mass = mu * PI * density * b * b;
+        let plain =
+            format!("[flow]\nmach = 0.5\n{BODY}mass_ratio = {mu}\nfrequency_ratio = 0.4\nreduced_speed = {speed}\n");
+        let units = format!(
+            "[flow]\nmach = 0.5\ndensity = \"{density} kg/m3\"\ntemperature = \"{temperature} K\"\ngas_constant = 287.05\n{BODY}\
+             mass = \"{mass} kg/m\"\nfrequency = {{ plunge = \"{} Hz\", pitch = \"{pitch} Hz\" }}\n",
+            0.4 * pitch
+        );
+        for stream in [StreamRatio::SAME, StreamRatio { pressure: 2.0, temperature: 1.3 }] {
+            let [a, b] = [&plain, &units].map(|text| {
+                let case = crate::case::read(text, "case.toml").unwrap_or_else(|e| panic!("{e}"));
+                Held::of(&case.in_stream(stream), Path::new("")).unwrap().matrices
+            });
+            for (a, b) in [(&a.mass, &b.mass), (&a.damping, &b.damping), (&a.stiffness, &b.stiffness)] {
+                let size = b.iter().fold(0.0f64, |m, x| m.max(x.abs()));
+                assert!(a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-6 * size), "{a:?} {b:?}");
+            }
+        }
+    }
+}
