@@ -124,21 +124,10 @@ impl Case {
 }
 
 impl Structure {
-    /// Stiffnesses over `ratio`², dampers over `ratio`; nothing else pulls.
+    /// That in a stream `ratio` times as fast at the same density, told in the units of the case; nothing else pulls.
     fn soften(&mut self, ratio: f64) {
-        let square = ratio * ratio;
-        self.stiffness.values_mut().for_each(|k| *k /= square);
-        self.frequency.values_mut().for_each(|w| w.0 /= ratio);
-        self.damping.values_mut().for_each(|c| *c /= ratio);
-        for speed in [&mut self.speed_index, &mut self.reduced_speed, &mut self.reduced_velocity] {
-            speed.iter_mut().for_each(|v| *v *= ratio);
-        }
-        for mode in &mut self.modes {
-            mode.frequency.iter_mut().for_each(|w| w.0 /= ratio);
-            mode.reduced_frequency.iter_mut().for_each(|k| *k /= ratio);
-            mode.stiffness.iter_mut().for_each(|k| *k /= square);
-            mode.force = None;
-        }
+        self.enter(StreamRatio { pressure: ratio * ratio, temperature: ratio * ratio }, false);
+        self.modes.iter_mut().for_each(|m| m.force = None);
         (self.force, self.gravity) = (None, None);
     }
 

@@ -50,6 +50,11 @@ impl<const D: usize> Attached<D> {
         self
     }
 
+    /// Bodies with coordinates of their own: the first of those that share a structure.
+    pub fn distinct(all: &[Self]) -> impl Iterator<Item = &Self> {
+        all.iter().enumerate().filter(|(k, body)| all[..*k].iter().all(|b| b.first != body.first)).map(|(_, body)| body)
+    }
+
     /// Numbers that are told beside the coordinates.
     pub fn n_told(&self) -> usize {
         D * self.probes.len()

@@ -43,8 +43,8 @@ impl Case {
 }
 
 impl Structure {
-    /// Turns its numbers into those of a stream.
-    fn enter(&mut self, ratio: StreamRatio, dimensional: bool) {
+    /// Turns its numbers into those of a stream; what is told in units stays as it is where the stream changes with them.
+    pub(super) fn enter(&mut self, ratio: StreamRatio, dimensional: bool) {
         let faster = ratio.temperature.sqrt();
         for number in [&mut self.reduced_speed, &mut self.reduced_velocity] {
             *number = number.map(|v| v * faster);
@@ -58,6 +58,7 @@ impl Structure {
         }
         let [stiffness, damping, mass] = ratio.structural();
         self.stiffness.values_mut().for_each(|k| *k *= stiffness);
+        self.frequency.values_mut().for_each(|w| w.0 /= faster);
         self.damping.values_mut().for_each(|c| *c *= damping);
         self.mass.iter_mut().for_each(|m| m.0 *= mass);
         self.inertia.iter_mut().flatten().for_each(|j| j.0 *= mass);
@@ -65,6 +66,7 @@ impl Structure {
         for mode in &mut self.modes {
             mode.mass *= mass;
             mode.stiffness = mode.stiffness.map(|k| k * stiffness);
+            mode.frequency.iter_mut().for_each(|w| w.0 /= faster);
         }
     }
 }

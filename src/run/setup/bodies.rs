@@ -76,17 +76,7 @@ pub(crate) fn described<const D: usize>(
         let lines = structure.description(case, data, frame(case, surface, attached.body));
         Some(Described { names, lines })
     };
-    // what several bodies share is told once
-    let (firsts, mut told) = (bodies.iter().map(|b| b.first), Vec::new());
-    let own = firsts
-        .map(|first| {
-            !told.contains(&first) && {
-                told.push(first);
-                true
-            }
-        })
-        .collect::<Vec<_>>();
-    bodies.iter().zip(own).filter(|(_, own)| *own).filter_map(|(body, _)| one(body)).collect()
+    Attached::distinct(bodies).filter_map(one).collect()
 }
 
 /// What the numbers of flutter are measured with.

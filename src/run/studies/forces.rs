@@ -159,7 +159,7 @@ impl<S: Marches<D>, const D: usize> ForceSource for SmallMotion<'_, S, D> {
     fn matrices(&self) -> Matrices {
         let n = self.columns.len();
         let mut all = Matrices { mass: vec![0.0; n * n], damping: vec![0.0; n * n], stiffness: vec![0.0; n * n] };
-        for body in distinct(self.system.attached()) {
+        for body in Attached::distinct(self.system.attached()) {
             let (m, first) = (body.structure.len(), body.first);
             let q: Vec<f64> = (0..m).map(|k| self.state[self.system.placing()][2 * (first + k)]).collect();
             let own = body.structure.matrices(&q, &vec![0.0; m]);
@@ -175,7 +175,7 @@ impl<S: Marches<D>, const D: usize> ForceSource for SmallMotion<'_, S, D> {
     }
 
     fn names(&self) -> Vec<String> {
-        let all = distinct(self.system.attached()).flat_map(|b| b.structure.coordinates());
+        let all = Attached::distinct(self.system.attached()).flat_map(|b| b.structure.coordinates());
         all.map(|c| c.name.clone()).collect()
     }
 
@@ -184,7 +184,7 @@ impl<S: Marches<D>, const D: usize> ForceSource for SmallMotion<'_, S, D> {
     }
 
     fn springs(&self) -> Vec<Spring> {
-        distinct(self.system.attached()).flat_map(|b| b.structure.coordinates()).map(|c| c.spring).collect()
+        Attached::distinct(self.system.attached()).flat_map(|b| b.structure.coordinates()).map(|c| c.spring).collect()
     }
 
     fn swing(&mut self, motion: &Periodic, omega: f64) -> Result<Periodic, String> {
@@ -232,12 +232,7 @@ impl<S: Marches<D>, const D: usize> ForceSource for SmallMotion<'_, S, D> {
     }
 }
 
-/// Bodies with coordinates of their own: the first of those that share a structure.
-fn distinct<const D: usize>(all: &[Attached<D>]) -> impl Iterator<Item = &Attached<D>> {
-    all.iter().enumerate().filter(|(k, body)| all[..*k].iter().all(|b| b.first != body.first)).map(|(_, body)| body)
-}
-
 /// What is a large change of each coordinate.
 fn units<const D: usize>(all: &[Attached<D>]) -> Vec<f64> {
-    distinct(all).flat_map(|b| b.units.clone()).collect()
+    Attached::distinct(all).flat_map(|b| b.units.clone()).collect()
 }
