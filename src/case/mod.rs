@@ -64,8 +64,8 @@ pub use quantity::{
 pub use read::read;
 pub use reference::{reference_markdown, schema};
 pub use solid::{
-    Contact, ContactPlane, Everywhere, JohnsonCook, Perzyna, PlaneState, Solid, SolidAxis, SolidBox, SolidFill,
-    SolidLaw, SolidLoad, SolidMaterial, SolidPlace, SolidProbe, SolidRegion, SolidSupport,
+    Contact, ContactPlane, Everywhere, JohnsonCook, Orthotropic, Perzyna, PlaneState, Solid, SolidAxis, SolidBox,
+    SolidFill, SolidLaw, SolidLoad, SolidMaterial, SolidPlace, SolidProbe, SolidRegion, SolidSupport,
 };
 pub use structure::{
     Freedom, PerCoordinate, SpringShape, Structure, StructureFlap, StructureForce, StructureMode, StructureModel,

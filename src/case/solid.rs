@@ -92,6 +92,9 @@ pub struct SolidMaterial {
     pub shear: Option<Pressure>,
     /// Bulk modulus K.
     pub bulk: Option<Pressure>,
+    /// The constants of a material with three planes of symmetry instead.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub orthotropic: Option<Orthotropic>,
     /// Yield stress.
     #[serde(rename = "yield")]
     pub yield_stress: Option<Pressure>,
@@ -127,12 +130,29 @@ pub enum SolidLaw {
     SaintVenantKirchhoff,
     /// Compressible neo-Hookean.
     NeoHookean,
+    /// As Saint-Venant and Kirchhoff's, with three planes of symmetry.
+    Orthotropic,
     /// Rate of the stress in proportion to that of the strain.
     Hypoelastic,
     /// Elastic and plastic strains.
     Plastic,
     /// Stress that relaxes.
     Viscoelastic,
+}
+
+/// `orthotropic`: elastic constants by the axes of the material.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Orthotropic {
+    /// E₁, E₂, E₃.
+    pub young: Vec<Pressure>,
+    /// ν₁₂, ν₁₃, ν₂₃.
+    pub poisson: Vec<f64>,
+    /// G₁₂, G₁₃, G₂₃.
+    pub shear: Vec<Pressure>,
+    /// Direction of the first axis; absent: x.
+    pub axis_1: Option<Vec<f64>>,
+    /// Direction to which the third axis is as near as it can be; absent: z.
+    pub axis_3: Option<Vec<f64>>,
 }
 
 /// σ = (a + b εⁿ)(1 + c ln(ε̇/rate))(1 − T*ᵐ), T* = (T − room)/(melt − room).
@@ -291,6 +311,9 @@ impl SolidMaterial {
     pub fn law(&self) -> Option<SolidLaw> {
         if self.law.is_some() {
             return self.law;
+        }
+        if self.orthotropic.is_some() {
+            return Some(SolidLaw::Orthotropic);
         }
         if self.yield_stress.is_some() || self.johnson_cook.is_some() {
             return Some(SolidLaw::Plastic);

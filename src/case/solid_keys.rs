@@ -133,6 +133,12 @@ static MATERIAL: Table = Table::of(&[
     .known_as(&["nu", "poissons_ratio"]),
     Field::optional("shear", MODULUS, TWO, "Shear modulus G.").known_as(&["g", "mu", "shear_modulus"]),
     Field::optional("bulk", MODULUS, TWO, "Bulk modulus K.").known_as(&["k", "bulk_modulus"]),
+    Field::optional(
+        "orthotropic",
+        Kind::Table(&ORTHOTROPIC),
+        "one modulus for all directions",
+        "Constants of a material with three planes of symmetry, wood or a laminate, in place of the moduli above.",
+    ),
     Field::optional("yield", MODULUS, "that of `base`, or from `johnson_cook`", "Yield stress.")
         .known_as(&["yield_stress", "yield_strength"]),
     Field::optional("hardening", STRESS, "that of `base`, or none", "Modulus of the linear isotropic hardening."),
@@ -183,10 +189,36 @@ const LAWS: &[(&str, &str)] = &[
     ("linear", "small strains"),
     ("saint_venant_kirchhoff", "large rotations, strains that stay small"),
     ("neo_hookean", "large strains"),
+    ("orthotropic", "large rotations, small strains, other constants along each of three axes"),
     ("hypoelastic", "rate of the stress by the rate of strain, in a frame that turns with the material"),
     ("plastic", "large strains, of which a part stays: metals"),
     ("viscoelastic", "large strains whose stress relaxes: rubber, polymers"),
 ];
+
+const THREE_MODULI: Kind = Kind::List(&List { item: MODULUS, min: 3, max: 3, single: false });
+const THREE: Kind = Kind::List(&List { item: ANY, min: 3, max: 3, single: false });
+
+static ORTHOTROPIC: Table = Table::of(&[
+    Field::required("young", THREE_MODULI, "Young's moduli along the axes of the material, `[E1, E2, E3]`."),
+    Field::required(
+        "poisson",
+        THREE,
+        "Poisson's ratios `[nu12, nu13, nu23]`: contraction along the second number when pulled along the first.",
+    ),
+    Field::required("shear", THREE_MODULI, "Shear moduli `[G12, G13, G23]`."),
+    Field::optional(
+        "axis_1",
+        THREE,
+        "x",
+        "Direction of the first axis, the grain or the fibres, of the body as placed.",
+    ),
+    Field::optional(
+        "axis_3",
+        THREE,
+        "z",
+        "Direction to which the third axis is as near as it can be, across the plies.",
+    ),
+]);
 
 static JOHNSON_COOK: Table = Table::of(&[
     Field::required("a", MODULUS, "Yield stress."),

@@ -192,6 +192,9 @@ pub struct StructureMode {
     /// The shape of a mode that was found and has no file.
     #[serde(skip)]
     pub table: Option<ModeTable>,
+    /// What is told of a mode that was found.
+    #[serde(skip)]
+    pub told: String,
 }
 
 /// True for modes that were found: a written case does not hold them.
@@ -239,6 +242,7 @@ impl StructureMode {
             initial_rate: 0.0,
             force: None,
             table: None,
+            told: String::new(),
         }
     }
 }

@@ -108,7 +108,8 @@ impl Columns {
         let names: Vec<String> = words.iter().map(|w| w.to_lowercase()).collect();
         let x = names.iter().position(|n| n == "x" || n.starts_with("x_") || n.starts_with("x/"))?;
         let y = x + 1;
-        let name = names.get(y)?;
+        // `x` may be a word of a title as well
+        let name = names.get(y).filter(|n| n.starts_with(['y', 'z']) || n.contains("thick"))?;
         let find = |what: &str| names.iter().position(|n| n == what);
         let scale = |n: &str| if n.contains("pct") { 0.01 } else { 1.0 };
         Some(Self {

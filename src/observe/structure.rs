@@ -409,9 +409,10 @@ impl CoordinateSummary {
         let summary = Self { name: name.name.clone(), angle: name.angle, mean, largest, ..Self::default() };
         match DampingFit::of(time, values) {
             Ok(fit) => summary.with(fit, time, values),
-            Err(reason) => {
-                Self { no_frequency: Some(reason.to_string()).filter(|_| reason != NoFit::Still), ..summary }
-            }
+            Err(reason) => Self {
+                no_frequency: Some(reason.to_string()).filter(|_| reason != NoFit::Still && time.len() > 1),
+                ..summary
+            },
         }
     }
 

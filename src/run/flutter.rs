@@ -36,7 +36,7 @@ use super::monitor::Monitor;
 use super::record::Log;
 use super::session::{Outcome, Session};
 use super::setup;
-use super::solids::with_own_modes;
+use super::solids::{told_of_own_modes, with_own_modes};
 use super::studies::ForceSource;
 use crate::case::{Case, Flutter as Plan, GasResponse, LimitCycles, Matching, StreamRatio};
 use crate::physics::atmosphere;
@@ -94,6 +94,7 @@ fn sought(
 ) -> Result<Option<Boundary>, RunError> {
     let plan = planned(case)?;
     let case = &with_own_modes(case, &places.input)?;
+    told_of_own_modes(case).iter().for_each(|told| monitor.note(told));
     forces.map_or(Ok(()), |_| refused_with_forces(case, &plan))?;
     let stored = forces.map(Stored::read).transpose()?;
     let _held = folder::create_once(case, &places.input, &places.out)?;

@@ -48,7 +48,12 @@ pub(super) fn fly<const D: usize>(case: &Case, input: &Path, surface: Option<&Su
     let mut coarse = accuracy::scaled(case.points().first()?, factor);
     (coarse.time, coarse.accuracy) = (Temporal::Steady(relaxation), None);
     (coarse.motion, coarse.gaf) = (None, None);
-    coarse.bodies.iter_mut().for_each(|b| b.motion = None);
+    // what moves in modes alone is rigid here, and not made of particles
+    let full: Vec<usize> = coarse.solids().map(|(i, ..)| i).collect();
+    for (i, body) in coarse.bodies.iter_mut().enumerate() {
+        body.motion = None;
+        body.solid = body.solid.take().filter(|_| full.contains(&i));
+    }
     coarse.structures.clear();
     coarse.compare.clear();
     coarse.adapt.cycles = 0;

@@ -25,7 +25,7 @@ use super::rows::{Columns, columns, row};
 use crate::math::Vector;
 use crate::math::least_squares::smallest_eigenvalue;
 use crate::math::sweep::{CHUNK, first, maximum, parts, sum, sweep, sweep_parts, sweep_slots, sweep_two_parts};
-use crate::physics::solid::tensor::{determinant, product_transposed};
+use crate::physics::solid::tensor::{determinant, product_transposed, times};
 use crate::physics::solid::{Dual, Law, MOST_HISTORY, Material, Moduli, Response, Tensor, plane_stress};
 use crate::system::Fault;
 
@@ -231,6 +231,10 @@ impl<const D: usize> Solid<D> {
         (0..n).for_each(|a| (0..n).for_each(|b| second[a][b] = 0.5 * twice(a, b)));
         let widening: f64 = (0..n).map(|a| second[a][a]).sum();
         let beta = self.damping.stiffness;
+        if let Law::Orthotropic(law) = &material.law {
+            second = times(&law.second(&second), beta);
+            return std::array::from_fn(|a| std::array::from_fn(|b| (0..n).map(|k| f(a, k) * second[k][b]).sum()));
+        }
         for (a, b) in (0..n).flat_map(|a| (0..n).map(move |b| (a, b))) {
             second[a][b] = beta * (2.0 * shear * second[a][b] + if a == b { lame * widening } else { 0.0 });
         }

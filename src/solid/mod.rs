@@ -2,7 +2,8 @@
 //!
 //! A cloud at rest, with least-squares gradients that fulfil the divergence theorem ([`particles`]); an energy of its deformation
 //! whose derivatives are forces ([`forces`]); materials, supports and loads ([`body`]); and what integrators see of it all
-//! ([`system`]). Bodies of revolution are sections that are turned (`axis`). Book page `solid-particles`.
+//! ([`system`]). Bodies of revolution are sections that are turned (`axis`). Natural modes of bodies in space are found without
+//! particles as well, among splines ([`splines`]). Book page `solid-particles`.
 mod axis;
 pub mod body;
 pub mod contact;
@@ -12,6 +13,7 @@ pub mod modes;
 mod pairs;
 pub mod particles;
 mod rows;
+pub mod splines;
 mod stable;
 mod stiffness;
 pub mod system;

@@ -45,6 +45,9 @@ impl Look<'_, '_> {
             self.draft.fail(path, format!("`{path}` has no density")).hint(hint);
         }
         let given: Vec<&str> = MODULI.into_iter().filter(|k| self.said(path, k)).collect();
+        if self.orthotropic(path, given.first()) {
+            return;
+        }
         let hint = "give two of `young`, `poisson`, `shear` and `bulk`";
         match given[..] {
             [] | [_] if based => {}
@@ -72,6 +75,28 @@ impl Look<'_, '_> {
                 format!("Poisson's ratio of `{path}` is {ratio}, but must be greater than -1 and less than 0.5");
             self.draft.fail(&format!("{path}.{place}"), message).hint("0.49 is nearly incompressible");
         }
+    }
+
+    /// True for a material with constants for each axis, which has no others and no other law.
+    fn orthotropic(&mut self, path: &str, given: Option<&&str>) -> bool {
+        let law = self.text(&format!("{path}.law"));
+        if !self.said(path, "orthotropic") {
+            if law.as_deref() == Some("orthotropic") {
+                let message = format!("`{path}` is orthotropic, but has no constants for each axis");
+                let hint = "add `orthotropic = { young = [E1, E2, E3], poisson = [nu12, nu13, nu23], shear = [G12, G13, G23] }`";
+                self.draft.fail(&format!("{path}.law"), message).hint(hint);
+            }
+            return law.as_deref() == Some("orthotropic");
+        }
+        if let Some(key) = given {
+            let message = format!("`{key}` of a material with `orthotropic` constants");
+            self.draft.fail_key(&format!("{path}.{key}"), message).hint("remove it, or `orthotropic`");
+        }
+        if let Some(law) = law.filter(|law| law != "orthotropic") {
+            let message = format!("`orthotropic` constants of a material whose law is `{law}`");
+            self.draft.fail(&format!("{path}.law"), message).hint("remove `law`, or `orthotropic`");
+        }
+        true
     }
 
     /// What yields is plastic, and what is plastic yields somewhere, once.

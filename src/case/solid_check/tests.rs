@@ -146,6 +146,20 @@ fn defaults_are_the_documented_ones() {
 }
 
 #[test]
+fn constants_for_each_axis_stand_for_the_moduli() {
+    const WOOD: &str = "orthotropic = { young = [12e9, 1e9, 8e8], poisson = [0.35, 0.4, 0.45], shear = [9e8, 7e8, 2e8], axis_1 = [1, 1, 0] }";
+    let c = case(&of(&format!("{{ density = 500, {WOOD} }}")));
+    let material = &c.solids().next().unwrap().2.material;
+    assert_eq!(material.law(), Some(SolidLaw::Orthotropic));
+    let constants = material.orthotropic.as_ref().unwrap();
+    assert_eq!((constants.young[2], constants.axis_3.as_ref()), (Pressure(8e8), None));
+    assert_eq!(read(&write(&c), "case.toml").unwrap(), c);
+    told(&of(&format!("{{ density = 500, young = 1e9, {WOOD} }}")), &["`young`", "orthotropic", "remove it"]);
+    told(&of(&format!("{{ density = 500, law = \"linear\", {WOOD} }}")), &["linear", "remove `law`"]);
+    told(&of("{ density = 500, law = \"orthotropic\" }"), &["no constants for each axis", "E1, E2, E3"]);
+}
+
+#[test]
 fn structures_alone_have_no_gas_and_others_do() {
     let alone = |rest: &str, piece: &str| told(&plate("", rest), &["structures alone", piece]);
     alone("[cloud]\nspacing = 0.1", "`cloud` is for cases with a gas");

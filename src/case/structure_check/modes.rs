@@ -49,6 +49,16 @@ impl Look<'_, '_> {
             self.draft.fail(&self.place("model"), message).hint(hint);
             return;
         }
+        if self.dimension == 3 {
+            let of_particles = ["through", "fill", "jitter", "stabilisation"].map(|k| format!("{solid}.{k}"));
+            for place in of_particles.into_iter().filter(|k| self.draft.given(k)).collect::<Vec<_>>() {
+                let message =
+                    format!("`{place}` is of particles: own modes in space are found among splines over the body");
+                self.draft
+                    .fail_key(&place, message)
+                    .hint("remove it; `spacing` is the length of a cell of the splines");
+            }
+        }
         let led = |k: &usize| self.draft.given(&format!("{solid}.support[{k}].motion"));
         let led = (0..self.draft.count(&format!("{solid}.support"))).find(led);
         let loads = (self.draft.count(&format!("{solid}.load")) > 0).then(|| format!("{solid}.load"));

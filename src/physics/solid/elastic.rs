@@ -110,7 +110,7 @@ fn small_strain<S: Scalar>(f: &Tensor<S>) -> Tensor<S> {
 
 /// Green's strain ½(FᵀF − I), from the gradient of displacement so that small strains keep their digits.
 #[inline(always)]
-fn green_strain<S: Scalar>(f: &Tensor<S>) -> Tensor<S> {
+pub(super) fn green_strain<S: Scalar>(f: &Tensor<S>) -> Tensor<S> {
     let h = tensor::plus_identity(f, S::constant(-1.0));
     tensor::of(|i, j| (h[i][j] + h[j][i] + h[0][i] * h[0][j] + h[1][i] * h[1][j] + h[2][i] * h[2][j]) * 0.5)
 }

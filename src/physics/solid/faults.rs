@@ -83,7 +83,7 @@ impl Material {
         faults.unless(part, "heated_fraction", heat.heated_fraction, "within 0 and 1");
         faults.positive("start", heat.start);
         match &self.law {
-            Law::Linear | Law::SaintVenantKirchhoff | Law::NeoHookean | Law::Hypoelastic => {}
+            Law::Linear | Law::SaintVenantKirchhoff | Law::NeoHookean | Law::Orthotropic(_) | Law::Hypoelastic => {}
             Law::Plastic(law) => faults.plasticity(law),
             Law::Viscoelastic(law) => faults.prony(law),
         }

@@ -9,6 +9,7 @@
 //! | law | history | source |
 //! |---|---|---|
 //! | [`Law::Linear`], [`Law::SaintVenantKirchhoff`], [`Law::NeoHookean`] | none | [`elastic`] |
+//! | [`Law::Orthotropic`] | none | [`orthotropic`] |
 //! | [`Law::Hypoelastic`] | F and Cauchy's stress | [`hypoelastic`] |
 //! | [`Law::Plastic`] | plastic metric, back stress, plastic strain, temperature, work | [`plasticity`] |
 //! | [`Law::Viscoelastic`] | C and a stress per branch | [`viscoelastic`] |
@@ -23,6 +24,7 @@ mod faults;
 pub mod flow;
 pub mod hypoelastic;
 pub mod library;
+pub mod orthotropic;
 pub mod plane_stress;
 pub mod plasticity;
 #[cfg(test)]
@@ -39,6 +41,7 @@ pub use elastic::{
 };
 pub use flow::{Hardening, JohnsonCook, Plasticity, Rate, Softening};
 pub use library::{LIBRARY, Named, named};
+pub use orthotropic::Orthotropic;
 pub use plane_stress::plane_stress;
 pub use tensor::Tensor;
 pub use viscoelastic::{Branch, Prony};
@@ -57,6 +60,8 @@ pub enum Law {
     SaintVenantKirchhoff,
     /// Compressible neo-Hookean elasticity, for large strains.
     NeoHookean,
+    /// Saint-Venant and Kirchhoff's elasticity with three planes of symmetry; the moduli are means.
+    Orthotropic(Orthotropic),
     /// Rates of stress from rates of deformation.
     Hypoelastic,
     /// Metals: neo-Hookean up to von Mises' yield condition.
@@ -140,7 +145,7 @@ impl Material {
     /// Numbers of history.
     pub fn history_len(&self) -> usize {
         match &self.law {
-            Law::Linear | Law::SaintVenantKirchhoff | Law::NeoHookean => 0,
+            Law::Linear | Law::SaintVenantKirchhoff | Law::NeoHookean | Law::Orthotropic(_) => 0,
             Law::Hypoelastic => hypoelastic::LENGTH,
             Law::Plastic(_) => plasticity::LENGTH,
             Law::Viscoelastic(prony) => prony.length(),
@@ -150,7 +155,7 @@ impl Material {
     /// Writes the history of the virgin solid.
     pub fn begin(&self, history: &mut [f64]) {
         match &self.law {
-            Law::Linear | Law::SaintVenantKirchhoff | Law::NeoHookean => {}
+            Law::Linear | Law::SaintVenantKirchhoff | Law::NeoHookean | Law::Orthotropic(_) => {}
             Law::Hypoelastic => hypoelastic::begin(history),
             Law::Plastic(_) => plasticity::begin(self.thermal.start, history),
             Law::Viscoelastic(prony) => prony.begin(history),
@@ -167,6 +172,7 @@ impl Material {
             Law::Linear => elastic(linear(m, f), linear_energy(m, f)),
             Law::SaintVenantKirchhoff => elastic(saint_venant_kirchhoff(m, f), saint_venant_kirchhoff_energy(m, f)),
             Law::NeoHookean => elastic(neo_hookean(m, f), neo_hookean_energy(m, f)),
+            Law::Orthotropic(law) => elastic(law.stress(f), law.energy(f)),
             Law::Hypoelastic => hypoelastic::respond(m, &step, new),
             Law::Plastic(law) => plasticity::respond(m, law, self.heating(), &step, new),
             Law::Viscoelastic(law) => viscoelastic::respond(m, law, &step, new),
@@ -180,6 +186,7 @@ impl Material {
             Law::Linear => Some(linear(&self.moduli, f)),
             Law::SaintVenantKirchhoff => Some(saint_venant_kirchhoff(&self.moduli, f)),
             Law::NeoHookean => Some(neo_hookean(&self.moduli, f)),
+            Law::Orthotropic(law) => Some(law.stress(f)),
             Law::Hypoelastic | Law::Plastic(_) | Law::Viscoelastic(_) => None,
         }
     }
@@ -190,6 +197,7 @@ impl Material {
             Law::Linear => Some(linear_energy(&self.moduli, f)),
             Law::SaintVenantKirchhoff => Some(saint_venant_kirchhoff_energy(&self.moduli, f)),
             Law::NeoHookean => Some(neo_hookean_energy(&self.moduli, f)),
+            Law::Orthotropic(law) => Some(law.energy(f)),
             Law::Hypoelastic | Law::Plastic(_) | Law::Viscoelastic(_) => None,
         }
     }

@@ -1,8 +1,9 @@
 //! Materials of a case.
 use super::super::error::RunError;
-use crate::case::{SolidLaw, SolidMaterial};
+use crate::case::{self, SolidLaw, SolidMaterial};
+use crate::physics::solid::orthotropic::Constants;
 use crate::physics::solid::{
-    Hardening, LIBRARY, Law, Material, Moduli, Plasticity, Prony, Rate, Softening, Thermal, named,
+    Hardening, LIBRARY, Law, Material, Moduli, Orthotropic, Plasticity, Prony, Rate, Softening, Thermal, named,
 };
 
 /// The material that a case describes; `place` names it in messages.
@@ -14,12 +15,19 @@ pub(super) fn material(data: &SolidMaterial, place: &str) -> Result<Material, Ru
     };
     let density =
         data.density.map(|d| d.0).or(base.map(|b| b.density)).ok_or_else(|| refuse("`density` is missing"))?;
-    let moduli = moduli(data).or(base.map(|b| b.moduli)).ok_or_else(|| refuse("two elastic constants are missing"))?;
+    let constants = data.orthotropic.as_ref().map(|o| {
+        let unfit = "`orthotropic`: these constants allow strains that store no energy, or its two directions are one";
+        orthotropic(o).ok_or_else(|| refuse(unfit))
+    });
+    let constants = constants.transpose()?;
+    let moduli = constants.map(|c| c.mean()).or_else(|| moduli(data)).or(base.map(|b| b.moduli));
+    let moduli = moduli.ok_or_else(|| refuse("two elastic constants are missing"))?;
     let law = match data.law() {
         None => base.map_or(Law::NeoHookean, |b| b.law),
         Some(SolidLaw::Linear) => Law::Linear,
         Some(SolidLaw::SaintVenantKirchhoff) => Law::SaintVenantKirchhoff,
         Some(SolidLaw::NeoHookean) => Law::NeoHookean,
+        Some(SolidLaw::Orthotropic) => Law::Orthotropic(constants.ok_or_else(|| refuse("`orthotropic` is missing"))?),
         Some(SolidLaw::Hypoelastic) => Law::Hypoelastic,
         Some(SolidLaw::Plastic) => {
             Law::Plastic(plasticity(data, base.as_ref()).ok_or_else(|| refuse("`yield` is missing"))?)
@@ -42,6 +50,15 @@ fn known(name: &str, place: &str) -> Result<Material, RunError> {
         what: format!("{place}: there is no material `{name}` in the catalogue"),
         hint: format!("it has {}", LIBRARY.iter().map(|n| format!("`{}`", n.name)).collect::<Vec<_>>().join(", ")),
     })
+}
+
+/// Three planes of symmetry.
+fn orthotropic(data: &case::Orthotropic) -> Option<Orthotropic> {
+    let three = |v: &[f64]| std::array::from_fn(|d| v.get(d).copied().unwrap_or(0.0));
+    let moduli = |v: &[case::Pressure]| three(&v.iter().map(|p| p.0).collect::<Vec<_>>());
+    let constants = Constants { young: moduli(&data.young), poisson: three(&data.poisson), shear: moduli(&data.shear) };
+    let axis = |given: &Option<Vec<f64>>, usual: [f64; 3]| given.as_deref().map_or(usual, three);
+    Orthotropic::new(&constants, axis(&data.axis_1, [1.0, 0.0, 0.0]), axis(&data.axis_3, [0.0, 0.0, 1.0]))
 }
 
 /// Two of E, ν, G and K say what the others are.

@@ -7,6 +7,7 @@ mod material;
 mod own_modes;
 mod record;
 pub(super) mod setup;
+mod spline_modes;
 mod summary;
 
 use std::path::Path;

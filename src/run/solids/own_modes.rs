@@ -3,6 +3,7 @@ use std::path::Path;
 
 use super::super::error::RunError;
 use super::setup::{Built, build, remembers};
+use super::spline_modes::spline_modes;
 use crate::case::{Case, ModeTable, Steady, Structure, StructureMode, StructureModel, Temporal};
 use crate::geometry::dimension;
 use crate::math::Vector;
@@ -24,8 +25,8 @@ pub(in super::super) fn with_own_modes(case: &Case, input: &Path) -> Result<Case
         let count = own.number.unwrap_or(USUAL) as usize;
         let alone = alone(case, body);
         let found = match dimension(case) {
-            2 => found::<2>(&alone, input, count)?,
-            _ => found::<3>(&alone, input, count)?,
+            2 => found(&alone, input, count)?,
+            _ => spline_modes(&alone, input, body, count)?,
         };
         let place = case.structures.iter().position(|s| std::ptr::eq(s, own));
         place.into_iter().for_each(|k| filled.structures[k].modes.clone_from(&found));
@@ -36,11 +37,7 @@ pub(in super::super) fn with_own_modes(case: &Case, input: &Path) -> Result<Case
 /// The own modes of all bodies in words.
 pub(in super::super) fn told_of_own_modes(case: &Case) -> Vec<String> {
     let of = |own: &Structure| {
-        let one = |m: &StructureMode| {
-            let omega = (m.stiffness.unwrap_or(0.0) / m.mass).sqrt();
-            format!("{:.5e} (generalised mass {:.4e})", omega / std::f64::consts::TAU, m.mass)
-        };
-        let all: Vec<String> = own.modes.iter().map(one).collect();
+        let all: Vec<&str> = own.modes.iter().map(|m| m.told.as_str()).collect();
         format!("own modes, cycles per unit of time: {}", all.join(", "))
     };
     case.structures.iter().filter(|s| s.model == StructureModel::OwnModes).map(of).collect()
@@ -57,54 +54,89 @@ fn alone(case: &Case, body: usize) -> Case {
     alone
 }
 
-fn found<const D: usize>(alone: &Case, input: &Path, count: usize) -> Result<Vec<StructureMode>, RunError> {
-    let built = build::<D>(alone, input)?;
+fn found(alone: &Case, input: &Path, count: usize) -> Result<Vec<StructureMode>, RunError> {
+    let built = build::<2>(alone, input)?;
     let structure = &built.structure;
     remembers(alone, &built)?;
-    let still = structure.start(|_| [0.0; D]);
+    let still = structure.start(|_| [0.0; 2]);
     let wanted = Wanted { count, above: 0.0 };
     let all = modes(structure, &still, &wanted)
         .map_err(|e| RunError::Solid { what: e.to_string(), hint: "see the guide `solids`".into() })?;
     let points = points(&built);
-    Ok(all.iter().enumerate().map(|(k, mode)| as_data(&built, &points, (k, mode))).collect())
+    Ok(all.iter().enumerate().map(|(k, mode)| of_particles(&built, &points, (k, mode))).collect())
 }
 
 /// Particles of the surface that carry the shapes: all, or every so many.
-fn points<const D: usize>(built: &Built<D>) -> Vec<usize> {
+fn points(built: &Built<2>) -> Vec<usize> {
     let particles = &built.structure.solid.particles;
     let skin: Vec<usize> = (0..particles.len()).filter(|i| particles.area[*i] != Vector::ZERO).collect();
     let every = skin.len().div_ceil(MOST_POINTS);
     skin.into_iter().step_by(every).collect()
 }
 
-/// A mode as the case would have it from a file. Damping in proportion to mass and stiffness is ζ = α/(2ω) + βω/2; the velocity
-/// at the start and gravity are their parts along the mode.
-fn as_data<const D: usize>(built: &Built<D>, points: &[usize], (k, mode): (usize, &Mode)) -> StructureMode {
+/// A mode of particles as the case would have it from a file.
+fn of_particles(built: &Built<2>, points: &[usize], (k, mode): (usize, &Mode)) -> StructureMode {
     let solid = &built.structure.solid;
-    let shape: &[[f64; D]] = mode.shape.as_chunks().0;
-    let along = |v: &dyn Fn(usize) -> [f64; D]| -> f64 {
+    let shape: &[[f64; 2]] = mode.shape.as_chunks().0;
+    let along = |v: &dyn Fn(usize) -> [f64; 2]| -> f64 {
         let one = |i: usize| Vector(v(i)).dot(&Vector(shape[i])) * solid.mass()[i];
         (0..solid.len()).map(one).sum()
     };
-    let (mass, omega, damping) = (mode.generalised_mass, mode.omega, &solid.damping);
-    let weight = along(&|_| solid.gravity.0);
-    let raised = |v: &[f64]| -> [f64; 3] { std::array::from_fn(|a| v.get(a).copied().unwrap_or(0.0)) };
-    StructureMode {
-        name: format!("mode-{}", k + 1),
-        file: String::new(),
-        mass,
-        frequency: None,
-        reduced_frequency: None,
-        stiffness: Some(mass * omega * omega),
-        damping_ratio: if omega > 0.0 { 0.5 * (damping.mass / omega + damping.stiffness * omega) } else { 0.0 },
-        cubic: 0.0,
-        free_play: 0.0,
-        initial: 0.0,
-        initial_rate: along(&|i| built.velocity[i]) / mass,
-        force: (weight != 0.0).then(|| format!("{weight:?}")),
-        table: Some(ModeTable {
+    let raised = |v: &[f64; 2]| [v[0], v[1], 0.0];
+    Natural {
+        omega: mode.omega,
+        mass: mode.generalised_mass,
+        weight: along(&|_| solid.gravity.0),
+        momentum: along(&|i| built.velocity[i]),
+        damping: [solid.damping.mass, solid.damping.stiffness],
+        error: None,
+        table: ModeTable {
             points: points.iter().map(|i| raised(&solid.particles.x[*i].0)).collect(),
             displacements: points.iter().map(|i| raised(&shape[*i])).collect(),
-        }),
+        },
+    }
+    .into_mode(k)
+}
+
+/// A natural mode that was found.
+pub(super) struct Natural {
+    /// Angular frequency.
+    pub(super) omega: f64,
+    /// Generalised mass.
+    pub(super) mass: f64,
+    /// Gravity's part along it.
+    pub(super) weight: f64,
+    /// Momentum at the start along it.
+    pub(super) momentum: f64,
+    /// Damping in proportion to mass and to stiffness.
+    pub(super) damping: [f64; 2],
+    /// Estimate of the relative error of the frequency.
+    pub(super) error: Option<f64>,
+    /// Shape.
+    pub(super) table: ModeTable,
+}
+
+impl Natural {
+    /// Number `k` as the case would have it from a file. Damping in proportion to mass and stiffness is ζ = α/(2ω) + βω/2; the
+    /// velocity at the start and gravity are their parts along the mode.
+    pub(super) fn into_mode(self, k: usize) -> StructureMode {
+        let (mass, omega, [alpha, beta]) = (self.mass, self.omega, self.damping);
+        let told = self.error.map(|e| format!(" ± {:.1e} %", 100.0 * e)).unwrap_or_default();
+        StructureMode {
+            name: format!("mode-{}", k + 1),
+            file: String::new(),
+            mass,
+            frequency: None,
+            reduced_frequency: None,
+            stiffness: Some(mass * omega * omega),
+            damping_ratio: if omega > 0.0 { 0.5 * (alpha / omega + beta * omega) } else { 0.0 },
+            cubic: 0.0,
+            free_play: 0.0,
+            initial: 0.0,
+            initial_rate: self.momentum / mass,
+            force: (self.weight != 0.0).then(|| format!("{:?}", self.weight)),
+            table: Some(self.table),
+            told: format!("{:.5e}{told} (generalised mass {mass:.4e})", omega / std::f64::consts::TAU),
+        }
     }
 }

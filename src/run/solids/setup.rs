@@ -5,6 +5,7 @@ use super::super::error::RunError;
 use super::material::material;
 use crate::case::formula::Formula;
 use crate::case::{Body, Case, Domain, PlaneState, Shape, Side, Solid as Data, SolidFill, SolidPlace, Temporal};
+use crate::cloud::CloudSpec;
 use crate::geometry::{Surface, load_surface};
 use crate::math::{Bounds, Vector};
 use crate::physics::solid::{Law, Material};
@@ -152,22 +153,26 @@ fn turned<const D: usize>(fill: Fill<D>, name: &str) -> Result<Fill<D>, RunError
 
 /// A plane of symmetry that cuts a body.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Cut {
-    axis: usize,
-    place: f64,
+pub(super) struct Cut {
+    /// Across which axis.
+    pub(super) axis: usize,
+    /// Its coordinate there.
+    pub(super) place: f64,
     /// The body is on the side of smaller coordinates.
-    below: bool,
+    pub(super) below: bool,
 }
 
 /// The planes of symmetry at the sides of the domain of the gas that cut a body within `bounds`.
-fn cuts<const D: usize>(case: &Case, bounds: &Bounds<D>) -> Vec<Cut> {
-    let Some(domain) = case.cloud.domain.as_ref().filter(|_| case.has_gas()) else { return Vec::new() };
+pub(super) fn cuts<const D: usize>(case: &Case, bounds: &Bounds<D>) -> Vec<Cut> {
+    if !case.has_gas() {
+        return Vec::new();
+    }
+    let limits = CloudSpec::<D>::of_case(case).limits();
     let b = &case.boundary;
     let sides = [[b.x_min, b.x_max], [b.y_min, b.y_max], [b.z_min, b.z_max]];
     let mut all = Vec::new();
     for axis in 0..D {
-        for (below, list) in [(false, &domain.min), (true, &domain.max)] {
-            let Some(place) = list.get(axis).map(|l| l.0) else { continue };
+        for (below, place) in [(false, limits.min[axis]), (true, limits.max[axis])] {
             let beyond = if below { bounds.max[axis] > place } else { bounds.min[axis] < place };
             if sides[axis][usize::from(below)] == Side::Symmetry && beyond {
                 all.push(Cut { axis, place, below });
