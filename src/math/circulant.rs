@@ -119,32 +119,9 @@ impl HarmonicSweeps {
 
     fn residual_of<const N: usize, const FIRST: usize>(&mut self, matrix: &BlockMatrix) {
         let (count, omega) = (self.count(), self.omega);
-        let (b, x, side) = (&self.b, &self.x, &self.side);
+        let known = (&self.b[..], &self.x[..], &self.side[..]);
         sweep_parts(matrix.parts(), N * count, &mut self.r, &|k, out| {
-            let part = matrix.parts()[k].clone();
-            for (i, row) in part.clone().zip(out.chunks_exact_mut(N * count)) {
-                let (below, inside, above) = matrix.split_row(i);
-                let (middle, column) = (matrix.middle(i), matrix.columns_by_entry(i));
-                let mut sum = [[0.0; LANES]; MOST];
-                let sum = &mut sum[..count];
-                for e in below.chain(inside.start..middle).chain(above) {
-                    gather::<N, FIRST>(matrix, e, &x[column(e) * count * N..], sum);
-                }
-                let at = i * count;
-                row[..FIRST * N].fill(0.0);
-                for (c, sum) in sum.iter_mut().enumerate().skip(FIRST) {
-                    let mut own = [0.0; N];
-                    multiply::<N>(matrix.diagonal(i), &load::<N>(x, at + c), &mut own);
-                    // d/dt of a cosine feeds the sine and the other way round
-                    let beta = c.div_ceil(2) as f32 * omega;
-                    let (partner, beta) = if c % 2 == 1 { (c + 1, beta) } else { (c.max(1) - 1, -beta) };
-                    let other = load::<N>(x, at + partner);
-                    for v in 0..N {
-                        let known = b[(at + c) * N + v] + sum[v] + side[(at + c) * N + v];
-                        row[c * N + v] = known - own[v] - beta * other[v];
-                    }
-                }
-            }
+            residual_of_part::<N, FIRST>(matrix, known, (&matrix.parts()[k], count, omega), out);
         });
     }
 
@@ -157,16 +134,61 @@ impl HarmonicSweeps {
         let count = self.count();
         let x = &self.x;
         sweep_parts(matrix.parts(), N * count, &mut self.side, &|k, out| {
-            let part = matrix.parts()[k].clone();
-            for (i, row) in part.clone().zip(out.chunks_exact_mut(N * count)) {
-                let ((_, inside, _), column) = (matrix.split_row(i), matrix.columns_by_entry(i));
-                let mut sum = [[0.0; LANES]; MOST];
-                for e in matrix.middle(i)..inside.end {
-                    gather::<N, 0>(matrix, e, &x[column(e) * count * N..], &mut sum[..count]);
-                }
-                row.chunks_exact_mut(N).zip(&sum).for_each(|(row, sum)| store(&leading::<N>(sum), row));
-            }
+            sums_of_part::<N>(matrix, x, (&matrix.parts()[k], count), out);
         });
+    }
+}
+
+/// b − (A + ∂/∂t) x over one part; right-hand side, solution and the sums of the last half-sweep are known.
+#[multiversion(targets("x86_64+avx2"))]
+#[allow(unsafe_code, reason = "the attribute calls the version that the processor has just been asked for")]
+fn residual_of_part<const N: usize, const FIRST: usize>(
+    matrix: &BlockMatrix,
+    (b, x, side): (&[f32], &[f32], &[f32]),
+    (part, count, omega): (&Range<usize>, usize, f32),
+    out: &mut [f32],
+) {
+    for (i, row) in part.clone().zip(out.chunks_exact_mut(N * count)) {
+        let (below, inside, above) = matrix.split_row(i);
+        let (middle, column) = (matrix.middle(i), matrix.columns_by_entry(i));
+        let mut sum = [[0.0; LANES]; MOST];
+        let sum = &mut sum[..count];
+        for e in below.chain(inside.start..middle).chain(above) {
+            gather::<N, FIRST>(matrix, e, &x[column(e) * count * N..], sum);
+        }
+        let at = i * count;
+        row[..FIRST * N].fill(0.0);
+        for (c, sum) in sum.iter_mut().enumerate().skip(FIRST) {
+            let mut own = [0.0; N];
+            multiply::<N>(matrix.diagonal(i), &load::<N>(x, at + c), &mut own);
+            // d/dt of a cosine feeds the sine and the other way round
+            let beta = c.div_ceil(2) as f32 * omega;
+            let (partner, beta) = if c % 2 == 1 { (c + 1, beta) } else { (c.max(1) - 1, -beta) };
+            let other = load::<N>(x, at + partner);
+            for v in 0..N {
+                let known = b[(at + c) * N + v] + sum[v] + side[(at + c) * N + v];
+                row[c * N + v] = known - own[v] - beta * other[v];
+            }
+        }
+    }
+}
+
+/// Sums over the columns beyond the diagonal inside one part.
+#[multiversion(targets("x86_64+avx2"))]
+#[allow(unsafe_code, reason = "the attribute calls the version that the processor has just been asked for")]
+fn sums_of_part<const N: usize>(
+    matrix: &BlockMatrix,
+    x: &[f32],
+    (part, count): (&Range<usize>, usize),
+    out: &mut [f32],
+) {
+    for (i, row) in part.clone().zip(out.chunks_exact_mut(N * count)) {
+        let ((_, inside, _), column) = (matrix.split_row(i), matrix.columns_by_entry(i));
+        let mut sum = [[0.0; LANES]; MOST];
+        for e in matrix.middle(i)..inside.end {
+            gather::<N, 0>(matrix, e, &x[column(e) * count * N..], &mut sum[..count]);
+        }
+        row.chunks_exact_mut(N).zip(&sum).for_each(|(row, sum)| store(&leading::<N>(sum), row));
     }
 }
 

@@ -18,6 +18,7 @@
 //! and the polar goes on.
 use super::error::RunError;
 use super::look::{GasView, load_axes, momentum};
+use super::recipe;
 use super::record::Log;
 use super::record::family;
 use super::record::polar::PolarPoint;
@@ -244,13 +245,13 @@ impl<'a, S: HasGas<D>, const D: usize> Course<'a, S, D> {
         log.turn_to(case, load_axes(case, surface), [point, self.points.len()]);
     }
 
-    /// A stage failed: the next stage, from the start of the case, after a cloud that only gives a start; the first stage of the same
-    /// point of a polar, from rest, or of the next one.
+    /// A stage failed: the next stage, from the start of the case, after a cloud that only gives a start, with a steady flow before any
+    /// harmonics, of which the motion has `multiples`; the first stage of the same point of a polar, from rest, or of the next one.
     pub(crate) fn failed(
         &mut self,
-        k: usize,
-        stages: &[Stage],
+        (k, stages): (usize, &mut Vec<Stage>),
         problem: RunError,
+        multiples: &[usize],
         log: &mut Log<'_>,
     ) -> Result<usize, RunError> {
         let stage = stages[k];
@@ -260,6 +261,11 @@ impl<'a, S: HasGas<D>, const D: usize> Course<'a, S, D> {
                 stage.factor,
                 first_line(&problem)
             ));
+            if stages.get(k + 1).is_some_and(|next| next.instances() > 1) {
+                // the finer clouds have no steady flow to begin a balance with
+                stages.truncate(k + 1);
+                stages.extend(recipe::balance_from_rest(&self.points[0], multiples));
+            }
             return Ok(k + 1);
         }
         let (Some(_), RunError::Time { .. }) = (stage.point, &problem) else { return Err(problem) };

@@ -25,6 +25,9 @@ const FIRST: usize = 1;
 const MORE: usize = 2;
 /// Greatest Courant number of sweeps alone.
 const SWEEPS_CFL_MAX: f64 = 100.0;
+/// Reduction asked of the linear solves of a harmonic balance: those that ask for more take longer, and shocks that move leave Newton's
+/// method no use for it (Eisenstat and Walker 1996, doi:10.1137/0917003).
+const HARMONIC_REDUCTION: f64 = 0.3;
 /// Harmonics that `number = "auto"` mostly ends with.
 const USUAL_HARMONICS: u32 = 3;
 
@@ -112,7 +115,12 @@ pub(crate) fn plan(case: &Case, n: usize, dimension: usize, least: usize) -> Vec
     if relaxes {
         let limits = START[dimension - 2];
         let coarser = [(limits[1], 4.0), (limits[0], 2.0)].into_iter();
-        all.extend(coarser.filter(|(most, factor)| n > *most && divides(case, *factor)).map(|(_, f)| steady(f, 0)));
+        let factors = coarser.filter(|(most, factor)| n > *most && divides(case, *factor)).map(|(_, f)| f);
+        let factors: Vec<f64> = factors.collect();
+        if let Some(stages) = balance_from_coarser(case, &factors, least) {
+            return stages;
+        }
+        all.extend(factors.into_iter().map(|f| steady(f, 0)));
     }
     if relaxes || !case.is_unsteady() {
         all.extend((0..=case.adapt.cycles).map(|cycle| steady(1.0, cycle)));
@@ -120,6 +128,27 @@ pub(crate) fn plan(case: &Case, n: usize, dimension: usize, least: usize) -> Vec
     let cycle = all.last().map_or(0, |s: &Stage| s.cycle);
     all.extend(in_time(case, None, least).into_iter().map(|task| Stage { cycle, task, ..Stage::PLAIN }));
     at_all_points(case, all)
+}
+
+/// The stages of a harmonic balance that begins on coarser clouds with these factors on their spacing, where it can: the steady flow and
+/// few harmonics on the coarsest, all of them there and on the others; where their number is found on the way, the first ones.
+fn balance_from_coarser(case: &Case, factors: &[f64], least: usize) -> Option<Vec<Stage>> {
+    let plan = balance(case).filter(|plan| plan.march == 0 && case.adapt.cycles == 0)?;
+    let (coarsest, finer) = factors.split_first()?;
+    let tasks = in_time(case, None, least);
+    let (early, late) = tasks.split_at(if is_automatic(plan) { 1 } else { tasks.len() });
+    let on = |factor: f64| move |task: &Task| Stage { factor, task: *task, ..Stage::PLAIN };
+    let mut all: Vec<Stage> = std::iter::once(&Task::Relax).chain(early).map(on(*coarsest)).collect();
+    all.extend(finer.iter().chain(&[1.0]).flat_map(|factor| early.last().map(on(*factor))));
+    all.extend(late.iter().map(on(1.0)));
+    Some(all)
+}
+
+/// The stages of a harmonic balance of a motion with harmonics of these numbers that no coarser cloud gives a start.
+pub(crate) fn balance_from_rest(case: &Case, multiples: &[usize]) -> Vec<Stage> {
+    let least = multiples.last().copied().unwrap_or(FIRST);
+    let tasks = std::iter::once(Task::Relax).chain(in_time(case, None, least));
+    tasks.map(|task| Stage { task, ..Stage::PLAIN }).collect()
 }
 
 /// True where a cloud with `factor` times the spacing fits into the domain: a start on one that does not is left out.
@@ -221,7 +250,7 @@ fn harmonic_prelude(plan: &Harmonics) -> Steady {
 /// Numbers of a harmonic balance.
 pub(crate) fn harmonic_control(plan: &Harmonics, dimension: usize) -> Control {
     let steady = Steady { cfl: plan.cfl, cfl_max: plan.cfl_max, ..harmonic_prelude(plan) };
-    control(&steady, dimension)
+    Control { tolerance: HARMONIC_REDUCTION, ..control(&steady, dimension) }
 }
 
 /// Numbers of an implicit march.
@@ -257,5 +286,30 @@ pub(crate) fn control(steady: &Steady, dimension: usize) -> Control {
         cfl_max: if sweeps_alone { steady.cfl_max.min(SWEEPS_CFL_MAX) } else { steady.cfl_max },
         cycle: Cycle { levels: if sweeps_alone { 1 } else { usual.cycle.levels }, ..usual.cycle },
         ..usual
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn balances_begin_on_the_coarsest_cloud() {
+        let planned = |time: &str, n: usize| -> Vec<(f64, usize)> {
+            let text = format!(
+                "title = \"t\"\n[flow]\nmach = 0.5\n[[body]]\nnaca = \"0012\"\n[motion]\nreduced_frequency = 0.3\nplunge = 0.01\n\
+                 [cloud]\nspacing = 0.01\n{time}\n"
+            );
+            let case = crate::case::read(&text, "t").unwrap();
+            plan(&case, n, 2, 1).iter().map(|s| (s.factor, s.instances() / 2)).collect()
+        };
+        assert_eq!(planned("[time]\nharmonics = 3", 10_000), [(4.0, 0), (4.0, 1), (4.0, 3), (2.0, 3), (1.0, 3)]);
+        assert_eq!(planned("[time]\nharmonics = 1", 4_000), [(2.0, 0), (2.0, 1), (1.0, 1)]);
+        assert_eq!(planned("[time]\nharmonics = 2", 1_000), [(1.0, 0), (1.0, 1), (1.0, 2)]);
+        let automatic = planned("[time]\nharmonics = \"auto\"", 4_000);
+        assert_eq!(automatic[..4], [(2.0, 0), (2.0, 1), (1.0, 1), (1.0, 3)], "{automatic:?}");
+        // a march leads to the instances of all harmonics, from a steady flow on the same cloud
+        let led = planned("[time.harmonics]\nnumber = 2\nmarch = 3", 4_000);
+        assert_eq!(led, [(2.0, 0), (1.0, 0), (1.0, 0), (1.0, 2)]);
     }
 }

@@ -327,7 +327,7 @@ impl Run<'_> {
                 Ok(None) => return Ok(Err(log.record.iteration)),
                 Err(problem) => {
                     course.shelve(stage, solver);
-                    k = course.failed(k, &stages, problem, &mut log)?;
+                    k = course.failed((k, &mut stages), problem, &site.motions.multiples(), &mut log)?;
                     continue;
                 }
             };
@@ -541,7 +541,7 @@ fn guess<S: HasGas<D>, const D: usize>(
     course: &Course<'_, S, D>,
     log: &Log<'_>,
 ) -> Option<Vec<f64>> {
-    let transfer = |s: &Stood<S, D>, u: &[f64]| setup::transfer(&s.solver.system, u, &solver.system, site.surface);
+    let transfer = |s: &Stood<S, D>, u: &[f64]| setup::transfer(&s.solver.system, u, &solver.system, site);
     let carry = |u: &[f64]| before.map_or_else(Vec::new, |s| transfer(s, u));
     let coarser = before.map(|s| Coarser { factor: s.stage.factor, state: &s.reached.state, carry: &carry });
     course.guess(stage, &solver.system, coarser.as_ref(), log)
@@ -557,9 +557,7 @@ fn begun<S: HasGas<D>, const D: usize>(
 ) -> Result<Begun<S, D>, RunError> {
     let state = match (guess, before, other) {
         (Some(guess), ..) => guess,
-        (None, Some(before), _) => {
-            setup::transfer(&before.solver.system, &before.reached.state, &solver.system, site.surface)
-        }
+        (None, Some(before), _) => setup::transfer(&before.solver.system, &before.reached.state, &solver.system, site),
         (None, None, Some(other)) => setup::taken_over(site.case, &solver.system, other.state.into_owned())?,
         (None, None, None) => solver.system.start(),
     };
@@ -587,7 +585,9 @@ fn last_known<'a, S: HasGas<D>, const D: usize>(
 
 fn describe(stages: &[Stage], n: usize) -> String {
     let first = || stages.iter().filter(|s| s.point.unwrap_or(0) == 0);
-    let coarse = first().filter(|s| s.factor > 1.0).count();
+    let mut factors: Vec<f64> = first().map(|s| s.factor).filter(|f| *f > 1.0).collect();
+    factors.dedup();
+    let coarse = factors.len();
     let cycles = (1..).take_while(|c| first().any(|s| s.factor == 1.0 && s.cycle == *c)).count();
     let points = stages.last().and_then(|s| s.point).map_or_else(String::new, |p| format!("; {} points", p + 1));
     format!("{n} fluid particles; {coarse} coarser clouds for the start, {cycles} cycles of adaptation{points}")

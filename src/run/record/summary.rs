@@ -186,7 +186,7 @@ pub struct BalanceReport {
     pub tail_density: Option<f64>,
     /// |ωD x − ẋ|/|ẋ| of the walls, root mean squares over walls and instances: what the harmonics lose of the motion.
     pub wall_velocity_error: f64,
-    /// Evaluations of the residual of one instance.
+    /// Evaluations of the residual of one instance, those on coarser clouds among them.
     pub evaluations: u64,
     /// How far a march from there ends from it, where `check` asks for one.
     pub march: Option<MarchingCheck>,

@@ -31,6 +31,7 @@ use crate::cloud::sources::Source;
 use crate::cloud::travel::BackgroundDomain;
 use crate::cloud::{Cloud, Operators};
 use crate::geometry::{GeometryError, Surface, load_surface};
+use crate::math::fourier::Instances;
 use crate::math::{Bounds, Vector};
 use crate::motion::{BodyMotion, ModeShape, Motions};
 use crate::physics::{Conserved, Gas, n_variables};
@@ -38,8 +39,9 @@ use crate::scheme::fluid::FarField;
 use crate::scheme::probe::Probe;
 use crate::scheme::reconstruct::Reconstruction;
 use crate::scheme::start::{FreeStream, Stream, initial};
-use crate::scheme::{CloudMotion, Discretisation, Fluid, HasGas, ParticleKinematics, Travel, ViscousModel};
+use crate::scheme::{CloudMotion, Discretisation, Fluid, Frame, HasGas, ParticleKinematics, Travel, ViscousModel};
 use crate::system::{Instant, System, placed};
+use crate::time::harmonic::HarmonicBalance;
 
 /// Exactly conservative coefficients unless the case says otherwise: they cost a few per cent of a run.
 const CONSERVATIVE: bool = true;
@@ -329,17 +331,39 @@ fn vortex_centre<const D: usize>(bounds: &Bounds<D>) -> Vector<D> {
     centre
 }
 
-/// The state of the previous stage on the particles of the next one, by the solver's own fit.
+/// The state of the previous stage on the particles of the next one, by the solver's own fit; that of each instance of a period where it
+/// holds more than one.
 pub(crate) fn transfer<S: HasGas<D>, const D: usize>(
     previous: &S,
     state: &[f64],
+    next: &S,
+    site: &Site<'_, D>,
+) -> Vec<f64> {
+    let count = state.len() / previous.len();
+    let Some(period) = site.motions.period().filter(|_| count > 1) else {
+        let frame = previous.gas().frame(&Instant::still(0.0), previous.gas_state(state));
+        return transfer_one(previous, (&frame, state), next, site.surface);
+    };
+    let (held, omega) = (Instances::of_harmonics(count / 2), std::f64::consts::TAU / period);
+    let (old, new) = (HarmonicBalance::new(previous, held, omega, 1.0), HarmonicBalance::new(next, held, omega, 1.0));
+    let (mut one, mut all) = (vec![0.0; previous.len()], vec![0.0; next.len() * count]);
+    for (n, frame) in old.frame(&Instant::still(0.0), state).iter().enumerate() {
+        old.instance(state, n, &mut one);
+        let found = transfer_one(previous, (previous.gas_frame(frame), &one), next, site.surface);
+        new.set_instance(&found, n, &mut all);
+    }
+    all
+}
+
+fn transfer_one<S: HasGas<D>, const D: usize>(
+    previous: &S,
+    (frame, state): (&Frame<D>, &[f64]),
     next: &S,
     surface: Option<&Surface<D>>,
 ) -> Vec<f64> {
     let (old, gas) = (previous.gas(), previous.gas_state(state));
     let mut work = old.work();
-    let frame = old.frame(&Instant::still(0.0), gas);
-    let probe = Probe::before_motion(old.view(&frame, gas, &mut work), surface);
+    let probe = Probe::before_motion(old.view(frame, gas, &mut work), surface);
     let mut u = next.gas().start();
     let cloud = &next.gas().discretisation.cloud;
     crate::math::sweep::sweep_rows(&mut u, n_variables(D), |i, row| {

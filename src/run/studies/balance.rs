@@ -17,12 +17,15 @@ use crate::math::sweep::sum;
 use crate::physics::n_variables;
 use crate::scheme::{Fluid, Frame, HasGas};
 use crate::system::System;
+use crate::time::control::Method;
 use crate::time::harmonic::HarmonicBalance;
 use crate::time::relax::{Relax, Resume};
 use crate::time::{Integrator, Memory};
 
 /// Orders by which the residual must fall with fewer harmonics than are wanted.
 const EARLY_ORDERS: f64 = 3.0;
+/// Courant number that Newton's method begins with near a solution, over that of a relaxation.
+const NEAR: f64 = 10.0;
 /// Least change of the loads that ends a relaxation with fewer harmonics than are wanted.
 const EARLY_TOLERANCE: f64 = 3e-3;
 /// Relative error of the wall velocity above which a run warns.
@@ -41,13 +44,13 @@ pub(crate) fn balance<S: HasGas<D>, const D: usize>(
     };
     let period = period_of(system, log)?;
     let balance = build(system, plan, harmonics, period);
-    let (state, resume) = begun(&balance, system, start, log);
-    let Some(state) = converge(&balance, system, Seek { plan, state, resume }, turn, log)? else { return Ok(None) };
+    let seek = begun(&balance, (system, plan), start, log);
+    let Some(state) = converge(&balance, system, seek, turn, log)? else { return Ok(None) };
     let found = PeriodicState { balance: &balance, system, state: &state, period };
     let report = report(&found, log);
     let tail = report.tail_loads.zip(report.tail_density).map(|(a, b)| a.max(b));
     let short = tail.is_some_and(|t| t <= plan.tail);
-    if turn.last() || (is_automatic(plan) && short) {
+    if turn.last() || (is_automatic(plan) && short && turn.stage().factor == 1.0) {
         return finish(&found, solver, plan, report, log);
     }
     let next = turn.at.stages.get(turn.at.stage + 1).map_or(0, |s| s.instances() / 2);
@@ -56,14 +59,16 @@ pub(crate) fn balance<S: HasGas<D>, const D: usize>(
 }
 
 /// State at all instances, from one or from another number of them, and where a relaxation stands.
-fn begun<S: System>(
+fn begun<'a, S: System>(
     balance: &HarmonicBalance<'_, S>,
-    system: &S,
+    (system, plan): (&S, &'a Harmonics),
     start: Start,
     log: &mut Log<'_>,
-) -> (Vec<f64>, Option<Resume>) {
+) -> Seek<'a> {
     let u = match start {
-        Start::Resume(u, Memory::Relaxation(resume)) => return (u, Some(resume)),
+        Start::Resume(state, Memory::Relaxation(resume)) => {
+            return Seek { plan, state, resume: Some(resume), near: false };
+        }
         other => other.into_state(),
     };
     log.record.settling = Settling { earlier: log.record.evaluations, ..Settling::default() };
@@ -73,7 +78,7 @@ fn begun<S: System>(
         _ if count == wanted => u,
         _ => balance.led_resampled(&u, Instances::of_harmonics(count / 2)),
     };
-    (state, None)
+    Seek { plan, state, resume: None, near: count > 1 && plan.march == 0 }
 }
 
 /// What a relaxation begins with.
@@ -81,6 +86,8 @@ struct Seek<'a> {
     plan: &'a Harmonics,
     state: Vec<f64>,
     resume: Option<Resume>,
+    /// The state is a periodic solution, on another cloud, of another case or with fewer harmonics.
+    near: bool,
 }
 
 /// Relaxes until the residual has fallen, or the loads no longer change.
@@ -91,15 +98,19 @@ fn converge<S: HasGas<D>, const D: usize>(
     turn: &Turn<'_>,
     log: &mut Log<'_>,
 ) -> Result<Option<Vec<f64>>, RunError> {
-    let Seek { plan, mut state, resume } = seek;
+    let Seek { plan, mut state, resume, near } = seek;
     if resume.is_none() {
         balance.prescribe(0.0, &mut state);
     }
-    let last = turn.last() || is_automatic(plan);
+    let last = turn.stage().factor == 1.0 && (turn.last() || is_automatic(plan));
     let orders = if last { plan.orders } else { plan.orders.min(EARLY_ORDERS) };
     let tolerance = if last { plan.tolerance } else { plan.tolerance.max(EARLY_TOLERANCE) };
-    let origin = balance.copies(&system.start());
-    let mut relax = Relax::new(balance, harmonic_control(plan, D), state, &origin, resume);
+    let (origin, control) = (balance.copies(&system.start()), harmonic_control(plan, D));
+    let mut relax = Relax::new(balance, control, state, &origin, resume);
+    if near && control.method == Method::NewtonKrylov {
+        relax.begin_with_newton();
+        relax.cfl = (NEAR * control.cfl).min(control.cfl_max);
+    }
     drop(origin);
     relax.evaluations = log.record.settling.evaluations;
     let eyes = &mut PeriodicEyes::new(balance, system);
@@ -118,6 +129,10 @@ fn converge<S: HasGas<D>, const D: usize>(
     (record.drop, record.converged) = (relax.drop(), matches!(ending, Ending::Finished));
     (record.bytes, record.linear) = (cost.bytes, cost.linear);
     record.evaluations = record.settling.earlier + cost.evaluations * balance.times().len() as u64;
+    if !record.converged && turn.stage().factor > 1.0 {
+        // a cloud that only gives a start gives none
+        return Err(log.failed(relax.stalled()));
+    }
     if !record.converged && settled.is_stuck(relax.iteration, &record.settling) {
         let text = Settled::told(relax.drop(), balance.instances().harmonics(), &relax.worst());
         log.warn(&text);
