@@ -28,6 +28,7 @@ pub(super) fn doubtful<const D: usize>(case: &Case, surface: &Surface<D>) -> Vec
     told.extend(points(case, &surface.bounds()));
     told.extend(bodies(case, surface));
     told.extend(vast(case, &surface.bounds()));
+    told.extend(few_levels(&spec));
     told.extend(near_sides(case, &spec, surface, seen.chord));
     told
 }
@@ -119,6 +120,25 @@ fn vast<const D: usize>(case: &Case, bodies: &Bounds<D>) -> Option<String> {
     (ratio > VAST).then(|| format!("`{key}` is {ratio:.3e} lengths of the bodies wide: are both in the same unit?"))
 }
 
+/// A domain that is no multiple of a large power of two of the spacing: nowhere can the cloud be as coarse as it could.
+fn few_levels<const D: usize>(spec: &CloudSpec<D>) -> Option<String> {
+    /// Coarsest spacings along the longest side above which particles are wasted.
+    const MANY: u64 = 48;
+    let far = spec.sides.iter().all(|ends| ends.contains(&Side::FarField));
+    let domain = spec.domain.as_ref().filter(|_| far)?;
+    let cells: [u64; D] = std::array::from_fn(|d| ((domain.max[d] - domain.min[d]) / spec.spacing).round() as u64);
+    let shift = cells.iter().map(|c| c.trailing_zeros()).min()?;
+    let longest = *cells.iter().max()?;
+    (longest >> shift > MANY && shift < 10).then(|| {
+        format!(
+            "the sides of `cloud.domain` are {} times `cloud.spacing`, which have the factor {} and no greater power of two in common: no              spacing is coarser than that many, and the cloud is larger than it need be; take {} for the longest side",
+            cells.map(|c| c.to_string()).join(" × "),
+            1u64 << shift,
+            longest.next_power_of_two()
+        )
+    })
+}
+
 /// Far sides so near that the stream is not free there; supersonic streams know nothing of what is behind or beside.
 fn near_sides<const D: usize>(case: &Case, spec: &CloudSpec<D>, surface: &Surface<D>, chord: f64) -> Option<String> {
     let bodies = surface.bounds();
@@ -175,6 +195,17 @@ mod tests {
         {
             assert_eq!(alone(good), Vec::<String>::new());
         }
+    }
+
+    #[test]
+    fn domains_that_no_power_of_two_divides_are_told() {
+        let told = |spacing: f64| {
+            let cloud = format!("[cloud]\nspacing = {spacing}\ndomain = {{ min = [-3, -3], max = [3, 3] }}\n");
+            told("[[body]]\nnaca = \"0012\"\n", &cloud)
+        };
+        assert!(told(0.01)[0].contains("600 × 600 times `cloud.spacing`, which have the factor 8"), "{:?}", told(0.01));
+        assert!(told(0.01)[0].ends_with("take 1024 for the longest side"));
+        assert_eq!(told(6.0 / 512.0), Vec::<String>::new());
     }
 
     #[test]
