@@ -118,7 +118,7 @@ static MATERIAL: Table = Table::of(&[
     Field::optional(
         "law",
         Kind::Words(LAWS),
-        "`\"plastic\"` with `yield` or `johnson_cook`, `\"viscoelastic\"` with `relaxation`, else that of `base`, else `\"neo_hookean\"`",
+        "`\"orthotropic\"` with `orthotropic`, `\"plastic\"` with `yield` or `johnson_cook`, `\"viscoelastic\"` with `relaxation`, else that of `base`, else `\"neo_hookean\"`",
         "Constitutive law.",
     ),
     Field::optional("density", Kind::Quantity(Density::DIMENSION, Range::POSITIVE), FROM_BASE, "Density."),
