@@ -34,7 +34,7 @@ mod weld;
 
 pub use cross_section::CrossSection;
 pub use planform::{Planform, Station};
-pub use primitive::{icosphere, write_obj, write_stl};
+pub use primitive::{cuboid, icosphere, write_obj, write_stl};
 pub use sampling::Chain;
 pub use shell::{Edge, Exact, Shell};
 pub use surface::{Element, Nearest, Projection, Skin, Surface};

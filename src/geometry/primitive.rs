@@ -121,8 +121,8 @@ pub(super) fn rectangle(size: [f64; 2]) -> Vec<Vector<2>> {
     vec![Vector([-a, -b]), Vector([a, -b]), Vector([a, b]), Vector([-a, b])]
 }
 
-/// A box centred on the origin.
-pub(super) fn cuboid(size: [f64; 3]) -> Shell<3> {
+/// A box centred on the origin; corner number k is on the side of greater coordinates of axis d where bit d of k is set.
+pub fn cuboid(size: [f64; 3]) -> Shell<3> {
     let corner = |i: u32| Vector::from_fn(|d| size[d] * if i >> d & 1 == 1 { 0.5 } else { -0.5 });
     let side = |axis: u32| {
         let (u, v) = (1 << ((axis + 1) % 3), 1 << ((axis + 2) % 3));

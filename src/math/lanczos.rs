@@ -102,8 +102,8 @@ fn ritz(basis: &[Vec<f64>], images: &[Vec<f64>], count: usize) -> Pairs {
     pairs
 }
 
-/// Numbers without a pattern.
-fn start(n: usize, k: usize) -> Vec<f64> {
+/// Numbers without a pattern to begin a search with, other ones for each `k`.
+pub fn start(n: usize, k: usize) -> Vec<f64> {
     let mut seed = 0x9e37_79b9_7f4a_7c15_u64.wrapping_mul(2 * k as u64 + 1);
     let mut next = || {
         seed ^= seed << 13;

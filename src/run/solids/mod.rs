@@ -4,6 +4,7 @@ pub(super) mod files;
 mod inspect;
 mod march;
 mod material;
+mod natural;
 mod own_modes;
 mod record;
 pub(super) mod setup;

@@ -3,7 +3,7 @@ use std::path::Path;
 
 use super::super::error::RunError;
 use super::material::material;
-use super::own_modes::Natural;
+use super::natural::Natural;
 use super::setup::cuts;
 use crate::case::formula::Formula;
 use crate::case::{Case, ModeTable, Solid, SolidPlace, SolidSupport, StructureMode};

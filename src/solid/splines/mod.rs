@@ -16,6 +16,7 @@ use faer::{Mat, Side};
 
 use crate::geometry::Surface;
 use crate::math::Vector;
+use crate::math::lanczos::start;
 use crate::math::sweep::dot;
 use crate::physics::solid::Material;
 use assembly::{Matrices, Space};
@@ -171,7 +172,8 @@ fn on_lattice(body: &Body<'_>, size: f64, count: usize) -> Result<Found, Unfit> 
 }
 
 /// The largest eigenvalues θ of x ↦ solve(M x), M-orthonormal vectors with them: block iteration with Rayleigh and Ritz (Bathe and
-/// Wilson 1972). `None` where it does not settle.
+/// Wilson 1972). M is no diagonal here, whose root would make the operator symmetric for [`crate::math::lanczos`]. `None` where it does
+/// not settle.
 fn lowest(
     n: usize,
     count: usize,
@@ -182,7 +184,7 @@ fn lowest(
     const TOLERANCE: [f64; 2] = [1e-11, 1e-14];
     const MOST_ITERATIONS: usize = 200;
     let m = (2 * count + 4).max(count + 8).min(n);
-    let mut x: Vec<Vec<f64>> = (0..m).map(|k| scattered(n, k)).collect();
+    let mut x: Vec<Vec<f64>> = (0..m).map(|k| start(n, k)).collect();
     let mut before = vec![0.0; m];
     for _ in 0..MOST_ITERATIONS {
         let mut images = orthonormal(&mut x, &inertia)?.concat();
@@ -235,18 +237,6 @@ fn orthonormal(x: &mut [Vec<f64>], inertia: &impl Fn(&[f64]) -> Vec<f64>) -> Opt
         images.push(image);
     }
     Some(images)
-}
-
-/// Numbers without a pattern.
-fn scattered(n: usize, k: usize) -> Vec<f64> {
-    let mut seed = 0x9e37_79b9_7f4a_7c15_u64.wrapping_mul(2 * k as u64 + 1);
-    let mut next = || {
-        seed ^= seed << 13;
-        seed ^= seed >> 7;
-        seed ^= seed << 17;
-        (seed >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
-    };
-    (0..n).map(|_| next()).collect()
 }
 
 impl Found {

@@ -1,25 +1,12 @@
 //! Frequencies against beams, motions as a whole, sharp edges and planes of symmetry.
 use super::*;
-use crate::geometry::{Exact, Shell};
+use crate::geometry::{Shell, cuboid};
 use crate::physics::solid::{Law, Moduli};
 
 /// The hull of the corners of a hexahedron, numbered by bits.
 fn hexahedron(corner: impl Fn(usize) -> [f64; 3]) -> Surface<3> {
-    let side = |axis: u32| {
-        let (u, v) = (1 << ((axis + 1) % 3), 1 << ((axis + 2) % 3));
-        let high = 1 << axis;
-        [[0, u + v, u], [0, v, u + v], [high, high + u, high + u + v], [high, high + u + v, high + v]]
-    };
-    let shell = Shell {
-        vertices: (0..8).map(|k| Vector(corner(k))).collect(),
-        elements: (0..3).flat_map(side).collect(),
-        normals: None,
-        curvature: None,
-        tags: Vec::new(),
-        tag_names: Vec::new(),
-        exact: Exact::None,
-        crease: 0.6,
-    };
+    let vertices = (0..8).map(|k| Vector(corner(k))).collect();
+    let shell = Shell { vertices, ..cuboid([1.0; 3]) };
     Surface::new(&[("body".to_string(), shell)])
 }
 
