@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 pub use limit_cycles::{GasResponse, LimitCycles};
 pub use stream::StreamRatio;
 
+use super::structure::StructureForce;
 use super::{Accuracy, Case, Dual, Motion, ParticleMotion, Steady, Structure, Temporal, Time};
 
 /// The table `[flutter]`.
@@ -93,7 +94,14 @@ impl Case {
 
     /// The march of a motion of period `period` at one Mach number, and at `ratio` times the speed of the case; `start` has value and
     /// rate of every coordinate where it begins. Dimensions stay those of the case: the structure is softer in place of a faster stream.
-    pub fn cycle_case(&self, mach: f64, ratio: f64, start: &[[f64; 2]], [period, most]: [f64; 2]) -> Self {
+    /// Structures that are not trimmed are held as drawn against `borne`, the forces of the steady flow on all coordinates in units of the
+    /// solver.
+    pub fn cycle_case(
+        &self,
+        (mach, ratio): (f64, f64),
+        (start, borne): (&[[f64; 2]], &[f64]),
+        [period, most]: [f64; 2],
+    ) -> Self {
         /// Steps of a period.
         const STEPS: f64 = 64.0;
         let mut case = self.flutter_case(mach);
@@ -102,14 +110,20 @@ impl Case {
         case.time = Temporal::Dual(march);
         // a rigid cloud turns with a rigid body, as in any march
         case.motion.clone_from(&self.motion);
-        let (dimension, mut rest) = (usize::from(case.dimension.unwrap_or(2)), start);
+        let (trimmed, pressure) = (self.is_trimmed(), case.flow.units().pressure());
+        let held: Vec<f64> = borne.iter().map(|f| if trimmed { 0.0 } else { -f * pressure }).collect();
+        let (dimension, mut rest, mut held) = (usize::from(case.dimension.unwrap_or(2)), start, &held[..]);
         for body in 0..case.bodies.len() {
             let Some(k) = case.structure_of(body).and_then(|s| case.structures.iter().position(|o| o == s)) else {
                 continue;
             };
-            let (structure, taken) = (&mut case.structures[k], rest);
-            structure.soften(ratio);
-            rest = &taken[structure.begin(dimension, taken).min(taken.len())..];
+            let structure = &mut case.structures[k];
+            structure.soften(ratio, trimmed);
+            if !trimmed {
+                structure.hold(dimension, held);
+            }
+            let own = structure.begin(dimension, rest);
+            (rest, held) = (&rest[own.min(rest.len())..], &held[own.min(held.len())..]);
         }
         case
     }
@@ -124,11 +138,24 @@ impl Case {
 }
 
 impl Structure {
-    /// That in a stream `ratio` times as fast at the same density, told in the units of the case; nothing else pulls.
-    fn soften(&mut self, ratio: f64) {
+    /// That in a stream `ratio` times as fast at the same density, told in the units of the case; nothing else pulls but, where it is
+    /// `trimmed`, gravity.
+    fn soften(&mut self, ratio: f64, trimmed: bool) {
         self.enter(StreamRatio { pressure: ratio * ratio, temperature: ratio * ratio }, false);
         self.modes.iter_mut().for_each(|m| m.force = None);
-        (self.force, self.gravity) = (None, None);
+        self.force = None;
+        self.gravity = self.gravity.take().filter(|_| trimmed);
+    }
+
+    /// Constant forces on its coordinates, in base units.
+    fn hold(&mut self, dimension: usize, forces: &[f64]) {
+        let text = |force: &f64| format!("{force:?}");
+        if self.modes.is_empty() {
+            let free = self.freedoms(dimension);
+            let formulas = free.iter().zip(forces).map(|(f, force)| (f.name().to_owned(), text(force))).collect();
+            self.force = Some(StructureForce { formulas, ..StructureForce::default() });
+        }
+        self.modes.iter_mut().zip(forces).for_each(|(m, force)| m.force = Some(text(force)));
     }
 
     /// Begins with these values and rates; tells how many coordinates there are.

@@ -8,7 +8,7 @@ use std::ops::Range as Span;
 
 use serde_json::{Map, Value, json};
 use toml::Spanned;
-use toml::de::{DeTable, DeValue};
+use toml::de::{DeString, DeTable, DeValue};
 
 use super::Case;
 use super::draft::{Draft, closest, with_point};
@@ -49,13 +49,14 @@ struct Reader<'t> {
 }
 
 type Item<'i> = Spanned<DeValue<'i>>;
+type Entry<'d, 'i> = (&'d Spanned<DeString<'i>>, &'d Item<'i>);
 
 impl Reader<'_> {
     /// The keys of one table with their defaults; `path` is empty for the document.
     fn table(&mut self, table: &'static Table, document: &DeTable<'_>, path: &str) -> Map<String, Value> {
         let mut tree = Map::new();
         let mut seen = BTreeSet::new();
-        for (key, item) in document.iter() {
+        for (key, item) in document.iter().flat_map(|entry| entries(table, entry)) {
             let Some(field) = table.field(key.get_ref()) else {
                 if let Some(meant) = self.unknown(table, key.get_ref(), key.span(), path)
                     && !document.contains_key(meant)
@@ -421,6 +422,14 @@ impl Reader<'_> {
         let message = format!("missing {what} `{}` {}", field.key, inside(path));
         let hint = format!("add `{}` ({}): {}", field.key, field.kind.words(), lower(field.doc));
         self.draft.fail(&place, message).hint(hint);
+    }
+}
+
+/// An entry of `table`, or those of the table within it that has the same keys.
+fn entries<'d, 'i>(table: &Table, (key, item): Entry<'d, 'i>) -> Vec<Entry<'d, 'i>> {
+    match item.get_ref() {
+        DeValue::Table(within) if table.within == Some(key.get_ref()) => within.iter().collect(),
+        _ => vec![(key, item)],
     }
 }
 

@@ -22,6 +22,10 @@ fn table_schema(table: &Table) -> Map<String, Value> {
             properties.insert(alias.to_owned(), field_schema(field, Some(field.key)));
         }
     }
+    if let Some(name) = table.within {
+        let within = json!({ "type": "object", "properties": properties, "additionalProperties": false });
+        properties.insert(name.to_owned(), within);
+    }
     let required = table.fields.iter().filter(|f| matches!(f.default, Absent::Required)).map(|f| f.key);
     let schema = json!({
         "type": "object",
@@ -228,6 +232,9 @@ fn section(
     told.push(table);
     page.push_str(&format!("## `{header}`\n\n{doc}\n\n"));
     key_table(table, page);
+    if let Some(name) = table.within {
+        page.push_str(&format!("These keys may stand in `[{path}.{name}]` as well.\n\n"));
+    }
     for field in table.fields {
         sections(field, &format!("{path}.{}", field.key), told, page);
     }

@@ -14,6 +14,8 @@ pub(super) struct Table {
     pub(super) shorthand: Option<&'static str>,
     /// Keys of which exactly one must be given.
     pub(super) one_of: &'static [&'static str],
+    /// Name of a table within, in which its keys may stand as well.
+    pub(super) within: Option<&'static str>,
 }
 
 /// One key of a table.
@@ -158,7 +160,7 @@ impl Range {
 impl Table {
     /// A table whose keys are `fields`.
     pub(super) const fn of(fields: &'static [Field]) -> Self {
-        Self { fields, shorthand: None, one_of: &[] }
+        Self { fields, shorthand: None, one_of: &[], within: None }
     }
 
     /// The same, which a bare value of `key` stands for.
@@ -170,6 +172,12 @@ impl Table {
     /// The same with exactly one of `keys`.
     pub(super) const fn with_one_of(mut self, keys: &'static [&'static str]) -> Self {
         self.one_of = keys;
+        self
+    }
+
+    /// The same, whose keys may stand in a table `name` within it as well.
+    pub(super) const fn or_within(mut self, name: &'static str) -> Self {
+        self.within = Some(name);
         self
     }
 

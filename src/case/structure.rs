@@ -147,7 +147,7 @@ pub struct SpringShape {
 }
 
 /// External forces as formulas in time.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct StructureForce {
     /// Frequency, `omega` of the formulas.
     pub frequency: Option<Frequency>,

@@ -113,7 +113,12 @@ pub(super) static STRUCTURE: Table = Table::of(&[
         ONE,
         "U* = U∞/(f D) instead, with D = 2b and f = ω/2π: what vortex-induced vibration is told by.",
     ),
-    Field::optional("speed_index", POSITIVE, ONE, "V_f = U∞/(b ω_α √μ) instead."),
+    Field::optional(
+        "speed_index",
+        POSITIVE,
+        "another of its alternatives; 1 with `[flutter]`, which varies the speed",
+        "V_f = U∞/(b ω_α √μ) instead.",
+    ),
     Field::optional(
         "damping_ratio",
         Kind::Table(&RATIOS),
@@ -159,7 +164,8 @@ pub(super) static STRUCTURE: Table = Table::of(&[
         Absent::Filled,
         "A mode of a flexible body (`model = \"modal\"`): every point X goes q·φ(X). Needs a deforming cloud.",
     ),
-]);
+])
+.or_within("section");
 
 const MODELS: &[(&str, &str)] = &[
     ("typical_section", "plunge and pitch of a section on springs, perhaps with a flap (2-D)"),

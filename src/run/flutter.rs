@@ -25,7 +25,7 @@ pub use shapes::{NaturalMode, Share};
 pub use state_space::StateSpaceAt;
 
 use self::held::Held;
-use self::limit_cycles::Seek;
+use self::limit_cycles::{Bears, Seek};
 use self::scales::Scales;
 use self::search::Search;
 use self::skin::Skin;
@@ -61,7 +61,7 @@ pub(crate) fn in_memory(case: &Case, input: &Path, monitor: &mut dyn Monitor) ->
     let case = &with_own_modes(case, input)?;
     let mut all = Boundary::new(&case.title);
     for mach in plan.mach.clone() {
-        let Some(mut found) = at_mach(case, &plan, mach, input, monitor)? else { return Ok(None) };
+        let Some((mut found, true)) = at_mach(case, &plan, mach, input, monitor)? else { return Ok(None) };
         all.lco.append(&mut found.cycles);
         all.flutter.push(found);
     }
@@ -101,10 +101,10 @@ fn sought(
     let mut all = Boundary::new(&case.title);
     for mach in plan.mach.clone() {
         let found = match &stored {
-            Some(stored) => Some(of_stored(case, &plan, mach, (stored, &places.input))?),
+            Some(stored) => Some((of_stored(case, &plan, mach, (stored, &places.input))?, true)),
             None => at_mach(case, &plan, mach, &places.input, monitor)?,
         };
-        let Some(mut found) = found else { return Ok(None) };
+        let Some((mut found, whole)) = found else { return Ok(None) };
         found.read = forces.map(|f| f.display().to_string());
         found.warnings.iter().for_each(|w| monitor.warn(&format!("Mach {mach}: {w}")));
         if case.output.report && all.skin.is_none() {
@@ -113,6 +113,9 @@ fn sought(
         all.lco.append(&mut found.cycles);
         all.flutter.push(found);
         all.write(&places.out)?;
+        if !whole {
+            return Ok(None);
+        }
     }
     folder::finish(&places.out)?;
     Ok(Some(all))
@@ -205,30 +208,34 @@ fn goes_with_speed(case: &Case) -> bool {
     })
 }
 
-/// The boundary at one Mach number.
+/// The boundary at one Mach number, and false where the monitor said stop in the march after it; `None` where it did before.
 fn at_mach(
     case: &Case,
     plan: &Plan,
     mach: f64,
     input: &Path,
     monitor: &mut dyn Monitor,
-) -> Result<Option<FlutterAt>, RunError> {
+) -> Result<Option<(FlutterAt, bool)>, RunError> {
     let own = case.flutter_case(mach);
     let held = Held::of(&own, input)?;
     let scales = Scales::of(&own, held.chord, plan.matching);
     let place = Place { own: &own, held: &held, scales: &scales, plan, lco: cycles_at(case, mach), input };
     let at = match plan.trim {
         true => {
-            let boundary = |stream: StreamRatio, monitor: &mut dyn Monitor| place.boundary(stream, monitor);
-            trim::trimmed(&scales, plan.accuracy, &boundary, monitor)?
+            let boundary =
+                |stream: StreamRatio, last: bool, monitor: &mut dyn Monitor| place.boundary((stream, last), monitor);
+            trim::trimmed(&scales, (plan.accuracy, place.lco.is_some()), &boundary, monitor)?
         }
-        false => place.boundary(StreamRatio::SAME, monitor)?,
+        false => place.boundary((StreamRatio::SAME, true), monitor)?,
     };
     let Some(at) = at else { return Ok(None) };
     let mut at = placed(at, &own, mach, held);
     let marches = cycles_at(case, mach).is_some_and(|lco| lco.march) && !at.cycles.is_empty();
     let whole = !marches || marched::march(case, &mut at, input, monitor)?;
-    Ok(whole.then_some(at))
+    if !whole {
+        at.warnings.push("told to stop while the limit cycle was marched: all else is whole".into());
+    }
+    Ok(Some((at, whole)))
 }
 
 /// What is sought at a Mach number, and of what.
@@ -242,16 +249,22 @@ struct Place<'a> {
 }
 
 impl Place<'_> {
-    /// The boundary with the forces about the steady flow in a stream of the same Mach number.
-    fn boundary(&self, stream: StreamRatio, monitor: &mut dyn Monitor) -> Result<Option<FlutterAt>, RunError> {
+    /// The boundary with the forces about the steady flow in a stream of the same Mach number, and with the limit cycles.
+    fn boundary(
+        &self,
+        (stream, cycles): (StreamRatio, bool),
+        monitor: &mut dyn Monitor,
+    ) -> Result<Option<FlutterAt>, RunError> {
         let mut session = Session::open(&self.own.in_stream(stream), self.input)?;
         let mut found = None;
         let mut then = |source: &mut dyn ForceSource, log: &mut Log<'_>| {
             let mut search = Search::new(self.held, self.scales, self.plan, Vec::new(), 0.0);
             let mut at = search.run((source, stream), log);
-            if let Some(lco) = self.lco {
-                let springs = source.springs();
-                at.add_cycles(Seek::new(lco, &mut search, springs)?.run(Some((source, log))));
+            at.borne = source.borne();
+            if let Some(lco) = self.lco.filter(|_| cycles) {
+                let springs = search::springs_of_the_case(source.springs(), stream);
+                let borne = self.plan.trim.then(|| Bears { forces: at.borne.clone(), x: stream.pressure.sqrt() });
+                at.add_cycles(Seek::new(lco, &mut search, (springs, borne))?.run(Some((source, log))));
             }
             found = Some(at);
             Ok(())
@@ -277,7 +290,7 @@ fn of_stored(case: &Case, plan: &Plan, mach: f64, (stored, input): (&Stored, &Pa
     let mut search = Search::new(&held, &scales, plan, samples.all, samples.residual);
     let mut at = search.again();
     if let Some(lco) = cycles_at(case, mach) {
-        at.add_cycles(Seek::new(lco, &mut search, held.springs.clone())?.run(None));
+        at.add_cycles(Seek::new(lco, &mut search, (held.springs.clone(), None))?.run(None));
         if lco.gas == GasResponse::Nonlinear && !at.cycles.is_empty() {
             at.warnings.push(
                 "forces that are read are those of small motions: so are the limit cycles (`gas = \"linear\"`)".into(),

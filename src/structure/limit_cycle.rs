@@ -5,7 +5,8 @@
 //!
 //! (−n²ω²M + inωC + K) q̂_n + f̂_n − x² (Q(inκ) q̂_n + δ̂_n) = 0, κ = ω/x,
 //!
-//! where f = s(q) − s(0) − s'(0) q is what springs do beyond the stiffness K, and δ what the gas does beyond the forces Q of small motions. The
+//! where f = s(q) − s(0) − s'(0) q is what springs do beyond the stiffness K, and δ what the gas does beyond the forces Q of small motions. A
+//! structure that bears the forces F₀ of the gas at rest at x₀ has (x² − x₀²) F₀ on the right of the means as well. The
 //! harmonics of f are those of its values at many instants of a period (Cameron and Griffin 1989, doi:10.1115/1.3176036), so that none is
 //! taken for another. Amplitude and phase of one coordinate are given, ω and x follow: where x falls while the amplitude rises a branch
 //! is traced around its fold as well. Newton's method with central differences solves.
@@ -62,6 +63,17 @@ pub struct Oscillator<'a> {
     pub forces: &'a (dyn Fn(f64) -> Vec<Complex64> + 'a),
     /// The coordinate whose amplitude is given.
     pub coordinate: usize,
+    /// What the gas does at rest, where the structure bears it; else bodies are in equilibrium as drawn, at any speed.
+    pub borne: Option<Borne<'a>>,
+}
+
+/// Forces of the gas on a structure in equilibrium with it, which motions are about.
+#[derive(Clone, Copy)]
+pub struct Borne<'a> {
+    /// Per coordinate.
+    pub forces: &'a [f64],
+    /// x at that equilibrium.
+    pub x: f64,
 }
 
 impl Periodic {
@@ -283,7 +295,9 @@ impl Problem<'_> {
                     Complex64::new(m.stiffness[k] - w * w * m.mass[k], w * m.damping[k]) - square * forces[k]
                 };
                 let sum: Complex64 = (0..n).map(|j| structure(j) * of(&cycle.motion, j)).sum();
-                let all = (sum + of(&springs, i) - square * of(&self.beyond, i)) / self.scale.force[i];
+                let rest =
+                    if h == 0 { self.own.borne.map_or(0.0, |b| (square - b.x * b.x) * b.forces[i]) } else { 0.0 };
+                let all = (sum + of(&springs, i) - square * of(&self.beyond, i) - rest) / self.scale.force[i];
                 r.push(all.re);
                 if h > 0 {
                     r.push(all.im);

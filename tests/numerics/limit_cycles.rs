@@ -1,7 +1,7 @@
 //! Limit cycles of a typical section whose pitch spring is cubic, with the forces of Wagner's function in Jones's approximation.
 use alula::exact::theodorsen::plate_loads;
 use alula::structure::flutter::Kind;
-use alula::structure::limit_cycle::{Cycle, Oscillator};
+use alula::structure::limit_cycle::{Borne, Cycle, Oscillator};
 use alula::structure::{Matrices, Spring};
 use num_complex::Complex64;
 
@@ -37,7 +37,7 @@ fn section() -> (Matrices, [Spring; 2]) {
 
 fn cycle(degrees: f64, harmonics: usize) -> Cycle {
     let (matrices, springs) = section();
-    let own = Oscillator { matrices: &matrices, springs: &springs, forces: &forces, coordinate: 1 };
+    let own = Oscillator { matrices: &matrices, springs: &springs, forces: &forces, coordinate: 1, borne: None };
     let amplitude = degrees.to_radians();
     let begins = own.begin(amplitude, UPTO);
     let (_, first) = begins.into_iter().find(|(kind, _)| *kind == Kind::Flutter).unwrap();
@@ -77,7 +77,7 @@ fn a_free_play_begins_to_swing_below_the_linear_flutter_speed() {
     let (mut loose, play) = (springs, 0.5f64.to_radians());
     loose[1] = Spring { play, ..Spring::linear(springs[1].stiffness) };
     let soft = Matrices { stiffness: vec![0.04, 0.0, 0.0, 0.0], ..matrices };
-    let own = Oscillator { matrices: &soft, springs: &loose, forces: &forces, coordinate: 1 };
+    let own = Oscillator { matrices: &soft, springs: &loose, forces: &forces, coordinate: 1, borne: None };
     let mut speeds = Vec::new();
     for part in [3.0, 6.0, 20.0] {
         let amplitude = part * play;
@@ -91,4 +91,25 @@ fn a_free_play_begins_to_swing_below_the_linear_flutter_speed() {
     }
     // the larger the swing the less the gap counts: towards 6.2851 of the spring without one
     assert!(speeds[0] < speeds[1] && speeds[1] < speeds[2] && speeds[2] < 6.2851, "{speeds:?}");
+}
+
+#[test]
+fn what_is_borne_at_rest_shifts_the_mean_alone_where_springs_are_linear() {
+    let (matrices, mut springs) = section();
+    springs[1].cubic = 0.0;
+    let amplitude = 1f64.to_radians();
+    let free = Oscillator { matrices: &matrices, springs: &springs, forces: &forces, coordinate: 1, borne: None };
+    let (_, first) = free.begin(amplitude, UPTO).into_iter().find(|(kind, _)| *kind == Kind::Flutter).unwrap();
+    let alone = free.solve(&first, amplitude, 2, None).unwrap();
+    let (lift, x) = ([2e-4, 1e-4], 5.0);
+    let bearing = Oscillator { borne: Some(Borne { forces: &lift, x }), ..free };
+    let found = bearing.solve(&first, amplitude, 2, None).unwrap();
+    assert!((found.x / alone.x - 1.0).abs() < 1e-9 && (found.omega / alone.omega - 1.0).abs() < 1e-9);
+    let (mean, still, square) = (&found.motion.mean, forces(0.0), found.x * found.x);
+    for i in 0..2 {
+        let springs: f64 =
+            (0..2).map(|j| (matrices.stiffness[2 * i + j] - square * still[2 * i + j].re) * mean[j]).sum();
+        let gas = (square - x * x) * lift[i];
+        assert!((springs - gas).abs() < 1e-9 * lift[0], "{i}: {springs} {gas}");
+    }
 }

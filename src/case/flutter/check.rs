@@ -13,11 +13,6 @@ pub(in super::super) fn contradictions(draft: &mut Draft<'_>) {
             .fail_key("lco", "`[lco]` without `[flutter]`")
             .hint("add `[flutter]`: limit cycles begin at its crossings");
     }
-    if draft.get("flutter.trim").and_then(Value::as_bool) == Some(true) {
-        draft
-            .fail_key("flutter.trim", "limit cycles about a trimmed structure are not known")
-            .hint("leave `trim` out, or `[lco]`: cycles are sought about the bodies as drawn");
-    }
     let given = ["amplitude", "displacement"].map(|key| draft.given(&format!("lco.{key}")));
     match given {
         [false, false] => {

@@ -1,6 +1,6 @@
 //! The keys of `[flutter]` and `[lco]`.
 use super::super::kinds::{POSITIVE, SIZE};
-use super::super::quantity::Angle;
+use super::super::quantity::{Angle, Ratio};
 use super::super::schema::{Absent, Field, Kind, List, Range, Table};
 
 pub(in super::super) static FLUTTER: Table = Table::of(&[
@@ -32,7 +32,7 @@ pub(in super::super) static FLUTTER: Table = Table::of(&[
     ),
     Field::defaulted(
         "accuracy",
-        Kind::Number(Range { min: 0.0, max: 0.2, closed: false }),
+        PART,
         Absent::Number(0.005),
         "Part by which a speed may change when a frequency is left out.",
     ),
@@ -63,6 +63,8 @@ const MATCHING: &[(&str, &str)] = &[
     ("altitude", "the altitude in the standard atmosphere of 1976: speed, density and Mach number belong together"),
 ];
 
+/// Part of a number.
+const PART: Kind = Kind::Quantity(Ratio::DIMENSION, Range { min: 0.0, max: 0.2, closed: false });
 const TURN: Kind = Kind::Quantity(Angle::DIMENSION, Range::POSITIVE);
 
 pub(in super::super) static LIMIT_CYCLES: Table = Table::of(&[
@@ -92,12 +94,7 @@ pub(in super::super) static LIMIT_CYCLES: Table = Table::of(&[
         Absent::Integer(5),
         "Greatest number of harmonics; as many are taken as `accuracy` asks for.",
     ),
-    Field::defaulted(
-        "accuracy",
-        Kind::Number(Range { min: 0.0, max: 0.2, closed: false }),
-        Absent::Number(0.005),
-        "Part by which two more harmonics may change a speed.",
-    ),
+    Field::defaulted("accuracy", PART, Absent::Number(0.005), "Part by which two more harmonics may change a speed."),
     Field::defaulted(
         "gas",
         Kind::Words(GAS),

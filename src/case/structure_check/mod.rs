@@ -153,6 +153,11 @@ impl Look<'_, '_> {
         self.draft.given(&self.place(key))
     }
 
+    /// Given, or filled in.
+    fn has(&self, key: &str) -> bool {
+        self.draft.get(&self.place(key)).is_some_and(|v| !v.is_null()) || self.given(key)
+    }
+
     /// Given, and neither `false` nor an empty list: a written case repeats its defaults.
     fn says(&self, key: &str) -> bool {
         let silent = |v: &Value| *v == Value::Bool(false) || v.as_array().is_some_and(Vec::is_empty);

@@ -1,5 +1,5 @@
 //! Springs, dampers and forces of structures.
-use serde_json::Value;
+use serde_json::{Value, json};
 
 use super::super::facts::{FREQUENCIES, formula};
 use super::super::structure::Freedom;
@@ -8,12 +8,13 @@ use super::{Look, SPEEDS};
 impl Look<'_, '_> {
     /// One spring for each coordinate, and what its terms need.
     pub(super) fn stiffness(&mut self) {
-        let speed = SPEEDS.into_iter().find(|s| self.given(s));
+        let leading = if self.is_free(Freedom::Pitch) { Freedom::Pitch } else { Freedom::Plunge };
+        self.varied_speed(leading);
+        let speed = SPEEDS.into_iter().find(|s| self.has(s));
         if let Some(speed) = speed.filter(|_| !self.draft.given("flow.mach") && !self.draft.given("flow.velocity")) {
             let message = format!("`{speed}` needs the speed of the free stream");
             self.draft.fail_key(&self.place(speed), message).hint("add `mach` to `[flow]`");
         }
-        let leading = if self.is_free(Freedom::Pitch) { Freedom::Pitch } else { Freedom::Plunge };
         if let Some(speed) = speed.filter(|_| !self.is_free(leading)) {
             let message = format!("`{speed}` fixes the spring of pitch or plunge, but neither is free");
             self.draft.fail_key(&self.place(speed), message).hint("use `stiffness` or `frequency`");
@@ -35,7 +36,7 @@ impl Look<'_, '_> {
                 speed.filter(|_| f == leading).map(str::to_owned),
                 ratios.iter().find(|(_, of)| *of == f).map(|(ratio, _)| (*ratio).to_owned()),
             ];
-            let given: Vec<String> = keys.into_iter().flatten().filter(|k| self.given(k)).collect();
+            let given: Vec<String> = keys.into_iter().flatten().filter(|k| self.has(k)).collect();
             match &given[..] {
                 [first, .., last] => {
                     let message = format!("the spring of `{}` is given twice, by `{first}` and by `{last}`", f.name());
@@ -44,6 +45,20 @@ impl Look<'_, '_> {
                 [] if self.section => self.no_spring(f),
                 _ => {}
             }
+        }
+    }
+
+    /// Where the speed is what is sought, a section whose springs nothing else fixes has them at a speed index of one.
+    fn varied_speed(&mut self, leading: Freedom) {
+        let of_leading = ["stiffness", "frequency"].map(|k| format!("{k}.{}", leading.name()));
+        let fixed = of_leading.iter().map(String::as_str).chain(SPEEDS).any(|k| self.given(k));
+        let over_pitch = leading == Freedom::Plunge && self.given("frequency_ratio");
+        let sought = self.draft.get("flutter").is_some_and(Value::is_object);
+        if !(sought && self.section && self.is_free(leading)) || fixed || over_pitch {
+            return;
+        }
+        if let Some(structure) = self.draft.get_mut(&self.path).and_then(Value::as_object_mut) {
+            structure.insert("speed_index".to_owned(), json!(1.0));
         }
     }
 
@@ -70,7 +85,7 @@ impl Look<'_, '_> {
             }
             let zero = self.draft.number(&self.place(&format!("stiffness.{name}"))) == Some(0.0);
             let none = !self.section && ["stiffness", "frequency"].iter().all(|k| !self.given(&format!("{k}.{name}")));
-            let led = SPEEDS.iter().any(|s| self.given(s)) && ["plunge", "pitch"].contains(&name.as_str());
+            let led = SPEEDS.iter().any(|s| self.has(s)) && ["plunge", "pitch"].contains(&name.as_str());
             if zero || (none && !led) {
                 let message = format!("a damping ratio of `{name}`, which has no spring");
                 self.draft.fail_key(&place, message).hint("use `damping`, or give it a spring");

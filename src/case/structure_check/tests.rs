@@ -50,6 +50,21 @@ fn sections_are_read_by_the_numbers_of_flutter() {
 }
 
 #[test]
+fn sections_that_may_flutter_need_no_speed() {
+    let bare = ISOGAI.replace("reduced_speed = 18.4\n", "");
+    let within =
+        |keys: &str| case(&structure("").replace("[structure]\n", &format!("[structure.section]\n{keys}[flutter]\n")));
+    let flat = case(&format!("{}[flutter]\naccuracy = \"0.5 %\"\n", structure(&bare)));
+    assert_eq!((flat.structures[0].speed_index, flat.flutter.as_ref().unwrap().accuracy), (Some(1.0), 0.005));
+    assert_eq!(within(&bare).structures, flat.structures);
+    let given = |keys: &str| within(&format!("{bare}{keys}\n")).structures[0].speed_index;
+    assert_eq!((given("speed_index = 2"), given("reduced_velocity = 5")), (Some(2.0), None));
+    assert_eq!(given("stiffness = { pitch = 0.1 }"), None);
+    let twice = structure(&format!("{ISOGAI}[structure.section]\nmass_ratio = 2\nmas = 1\n"));
+    told(&twice, &["`structure[0].mass_ratio` is given twice", "unknown key `mas`"]);
+}
+
+#[test]
 fn sections_are_read_with_their_units() {
     let air = HEAD.replace("mach = 0.3\n", AIR);
     let keys = "[[structure]]\nbody = \"wing\"\nfree = [\"plunge\", \"pitch\", \"flap\"]\npivot = [0.4, 0]\nmass = \"12 kg/m\"\n\

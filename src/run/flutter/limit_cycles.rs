@@ -16,7 +16,7 @@ use crate::case::{GasResponse, LimitCycles};
 use crate::observe::structure::is_angle;
 use crate::structure::Spring;
 use crate::structure::flutter::Kind;
-use crate::structure::limit_cycle::{Cycle, Oscillator, Periodic};
+use crate::structure::limit_cycle::{Borne, Cycle, Oscillator, Periodic};
 use num_complex::Complex64;
 
 /// Part of the accuracy by which speed and frequency may change in the last balance.
@@ -46,7 +46,14 @@ pub(super) struct Seek<'s, 'a> {
     plan: &'s LimitCycles,
     search: &'s mut Search<'a>,
     springs: Vec<Spring>,
+    borne: Option<Bears>,
     coordinate: usize,
+}
+
+/// Forces of the steady flow that the structure bears, and the speed over that of the case at which it does.
+pub(super) struct Bears {
+    pub(super) forces: Vec<f64>,
+    pub(super) x: f64,
 }
 
 impl<'s, 'a> Seek<'s, 'a> {
@@ -54,7 +61,7 @@ impl<'s, 'a> Seek<'s, 'a> {
     pub(super) fn new(
         plan: &'s LimitCycles,
         search: &'s mut Search<'a>,
-        springs: Vec<Spring>,
+        (springs, borne): (Vec<Spring>, Option<Bears>),
     ) -> Result<Self, RunError> {
         let names = search.names().to_vec();
         let refuse = |what: String, hint| RunError::Unsupported { what, hint };
@@ -74,7 +81,7 @@ impl<'s, 'a> Seek<'s, 'a> {
             };
             return Err(refuse(format!("`lco`: the coordinate `{name}` {what}"), hint));
         }
-        Ok(Self { plan, search, springs, coordinate })
+        Ok(Self { plan, search, springs, borne, coordinate })
     }
 
     /// All branches; forces beyond small motions are those of `source`, where there is one and the case asks for them.
@@ -123,7 +130,8 @@ impl<'s, 'a> Seek<'s, 'a> {
         let fit = self.search.fit()?;
         let forces = |kappa: f64| fit.at(Complex64::new(0.0, kappa));
         let (matrices, coordinate) = (self.search.matrices(), self.coordinate);
-        Some(f(&Oscillator { matrices, springs: &self.springs, forces: &forces, coordinate }))
+        let borne = self.borne.as_ref().map(|b| Borne { forces: &b.forces, x: b.x });
+        Some(f(&Oscillator { matrices, springs: &self.springs, forces: &forces, coordinate, borne }))
     }
 
     fn begins(&self, amplitude: f64) -> Vec<(Kind, Cycle)> {
@@ -201,6 +209,7 @@ impl<'s, 'a> Seek<'s, 'a> {
         let (from, to) = (&points[i.saturating_sub(1)], &points[(i + 1).min(points.len() - 1)]);
         let rises = to.cycle.x >= from.cycle.x;
         let harmonic = |h: &Vec<Complex64>| h.iter().map(|z| [z.re, z.im]).collect();
+        let means: Vec<f64> = cycle.motion.mean.iter().zip(self.search.still()).map(|(q, still)| q + still).collect();
         LimitCycle {
             mach: scales.stream,
             branch,
@@ -212,8 +221,8 @@ impl<'s, 'a> Seek<'s, 'a> {
             reduced_frequency: scales.reduced_frequency(cycle.kappa()),
             frequency: scales.cycles * cycle.omega,
             stable: rises == (kind == Kind::Flutter),
-            mean: unit(cycle.motion.mean[self.coordinate]),
-            means: cycle.motion.mean.clone(),
+            mean: unit(means[self.coordinate]),
+            means,
             harmonics: cycle.motion.harmonics.len(),
             error: point.error,
             balances: if self.plan.gas == GasResponse::Nonlinear { point.balances } else { 0 },

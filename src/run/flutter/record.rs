@@ -187,6 +187,9 @@ pub struct FlutterAt {
     /// Coordinates of the steady flow.
     #[serde(skip)]
     pub still: Vec<f64>,
+    /// Generalised forces of the steady flow, in units of the solver.
+    #[serde(skip)]
+    pub borne: Vec<f64>,
     /// The static equilibrium that forces are about; none where bodies stay as drawn.
     pub trim: Option<Trim>,
     /// Reference chord.

@@ -10,8 +10,8 @@ use super::shapes::{NaturalMode, shares};
 use super::state_space::StateSpaceAt;
 use crate::case::{Flutter as Plan, Matching, StreamRatio};
 use crate::math::rational::Rational;
-use crate::structure::Matrices;
 use crate::structure::flutter::{Crossing, Flutter, Kind, Point, Varied};
+use crate::structure::{Matrices, Spring};
 
 /// Misfit of rational functions to the samples.
 const MISFIT: f64 = 1e-7;
@@ -47,7 +47,7 @@ impl<'a> Search<'a> {
     /// Of the structure `held`, with the forces known already.
     pub(super) fn new(held: &Held, scales: &'a Scales, plan: &'a Plan, samples: Vec<Sample>, residual: f64) -> Self {
         let (matrices, names) = (held.matrices.clone(), held.names.clone());
-        let (units, still) = (held.units(scales.semichord), Vec::new());
+        let (units, still) = (held.units(scales.semichord), vec![0.0; names.len()]);
         Self { scales, plan, matrices, names, units, still, samples, iterations: 0, residual }
     }
 
@@ -86,6 +86,11 @@ impl<'a> Search<'a> {
 
     pub(super) fn matrices(&self) -> &Matrices {
         &self.matrices
+    }
+
+    /// Coordinates of the steady flow.
+    pub(super) fn still(&self) -> &[f64] {
+        &self.still
     }
 
     pub(super) fn names(&self) -> &[String] {
@@ -265,6 +270,7 @@ impl<'a> Search<'a> {
             forces: self.samples.iter().map(|x| x.1.iter().map(|z| [z.re, z.im]).collect()).collect(),
             coordinates: self.names.clone(),
             still: self.still.clone(),
+            borne: Vec::new(),
             trim: None,
             moved: vec![Mark::default(); self.names.len()],
             chord: 0.0,
@@ -334,6 +340,12 @@ fn of_the_case(matrices: Matrices, stream: StreamRatio) -> Matrices {
         damping: over(matrices.damping, damping),
         stiffness: over(matrices.stiffness, stiffness),
     }
+}
+
+/// Springs in units of the case's stream from those of another one.
+pub(super) fn springs_of_the_case(springs: Vec<Spring>, stream: StreamRatio) -> Vec<Spring> {
+    let [unit, ..] = stream.structural();
+    springs.into_iter().map(|s| Spring { stiffness: s.stiffness / unit, cubic: s.cubic / unit, ..s }).collect()
 }
 
 /// Relative change of the speed of a crossing (of the root of its dynamic pressure) since another interpolation; infinite where that had

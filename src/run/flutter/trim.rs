@@ -11,21 +11,21 @@ use crate::case::{Matching, StreamRatio};
 /// Equilibria that are sought at most.
 const ROUNDS: usize = 8;
 
-/// What is found in a stream; `None` when the monitor says stop.
-pub(super) type InStream<'a> = dyn Fn(StreamRatio, &mut dyn Monitor) -> Result<Option<FlutterAt>, RunError> + 'a;
+/// What is found in a stream, with limit cycles or without; `None` when the monitor says stop.
+pub(super) type InStream<'a> = dyn Fn(StreamRatio, bool, &mut dyn Monitor) -> Result<Option<FlutterAt>, RunError> + 'a;
 
-/// The boundary about the equilibrium at its first crossing, which may move by the part `accuracy` with the last one; `None` when the
-/// monitor says stop.
+/// The boundary about the equilibrium at its first crossing, which may move by the part `accuracy` with the last one, and the limit cycles
+/// about it where these are asked for; `None` when the monitor says stop.
 pub(super) fn trimmed(
     scales: &Scales,
-    accuracy: f64,
+    (accuracy, cycles): (f64, bool),
     boundary: &InStream<'_>,
     monitor: &mut dyn Monitor,
 ) -> Result<Option<FlutterAt>, RunError> {
     let (mut x, mut rounds, mut cost) = (1.0, 0, 0.0);
-    loop {
+    let mut at = loop {
         let stream = scales.at(x);
-        let Some(mut at) = boundary(ratio(scales, x), monitor)? else { return Ok(None) };
+        let Some(mut at) = boundary(ratio(scales, x), false, monitor)? else { return Ok(None) };
         rounds += 1;
         cost += at.cpu_seconds;
         at.cpu_seconds = cost;
@@ -47,16 +47,23 @@ pub(super) fn trimmed(
                         100.0 * moved
                     ));
                 }
-                return Ok(Some(at));
+                break at;
             }
-            _ => return Ok(Some(at)),
+            _ => break at,
         }
         let told = scales.at(x);
         monitor.note(&format!(
             "equilibrium {rounds}: first crossing at {:.4} of the speed, {:.4} of the dynamic pressure",
             told.speed, told.pressure
         ));
+    };
+    if cycles {
+        let Some(about) = boundary(ratio(scales, x), true, monitor)? else { return Ok(None) };
+        at.cpu_seconds += about.cpu_seconds;
+        (at.cycles, at.borne) = (about.cycles, about.borne);
+        at.warnings.extend(about.warnings.into_iter().filter(|w| !at.warnings.contains(w)).collect::<Vec<_>>());
     }
+    Ok(Some(at))
 }
 
 /// Pressure and temperature where x is varied.

@@ -35,7 +35,9 @@ pub(crate) trait ForceSource {
     fn names(&self) -> Vec<String>;
     /// The coordinates of the steady flow.
     fn still(&self) -> Vec<f64>;
-    /// Springs of all coordinates about the same.
+    /// Generalised forces of the steady flow on all coordinates.
+    fn borne(&self) -> Vec<f64>;
+    /// Springs of all coordinates, in displacements from the same.
     fn springs(&self) -> Vec<Spring>;
     /// Generalised forces on all coordinates in the motion `motion` of angular frequency `omega` about the steady flow, beyond those of the latter;
     /// else what stands in the way.
@@ -184,7 +186,12 @@ impl<S: Marches<D>, const D: usize> ForceSource for SmallMotion<'_, S, D> {
     }
 
     fn springs(&self) -> Vec<Spring> {
-        Attached::distinct(self.system.attached()).flat_map(|b| b.structure.coordinates()).map(|c| c.spring).collect()
+        let all = Attached::distinct(self.system.attached()).flat_map(|b| b.structure.coordinates());
+        all.zip(self.still()).map(|(c, still)| Spring { rest: c.spring.rest - still, ..c.spring }).collect()
+    }
+
+    fn borne(&self) -> Vec<f64> {
+        self.still[..self.columns.len()].to_vec()
     }
 
     fn swing(&mut self, motion: &Periodic, omega: f64) -> Result<Periodic, String> {
