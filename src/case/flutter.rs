@@ -37,10 +37,11 @@ pub struct Flutter {
 }
 
 /// How the stream is varied at one Mach number.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Matching {
     /// Speed and sound speed, at the density of the case.
+    #[default]
     None,
     /// Density, at the sound speed of the case.
     Density,

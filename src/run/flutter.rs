@@ -7,6 +7,7 @@
 use std::path::Path;
 
 mod held;
+mod kept;
 mod limit_cycles;
 mod marched;
 mod record;
@@ -25,6 +26,7 @@ pub use shapes::{NaturalMode, Share};
 pub use state_space::StateSpaceAt;
 
 use self::held::Held;
+use self::kept::Kept;
 use self::limit_cycles::{Bears, Seek};
 use self::scales::Scales;
 use self::search::Search;
@@ -53,6 +55,18 @@ pub fn flutter(case: &Case, places: &Places, monitor: &mut dyn Monitor) -> Resul
 pub fn again(case: &Case, places: &Places, forces: &Path, monitor: &mut dyn Monitor) -> Result<Boundary, RunError> {
     let found = sought(case, places, Some(forces), monitor)?;
     Ok(found.unwrap_or_else(|| Boundary::new(&case.title)))
+}
+
+/// True where `out` holds a boundary that was interrupted.
+pub fn is_interrupted(out: &Path) -> bool {
+    out.join(folder::KEPT).exists()
+}
+
+/// Goes on with a boundary that was interrupted: with the Mach numbers that are not finished. `None` when the monitor says stop.
+pub fn resume(out: &Path, monitor: &mut dyn Monitor) -> Result<Option<Boundary>, RunError> {
+    let (case, input) = folder::read_case(out)?;
+    folder::check_input(&case, &input, out)?;
+    flutter(&case, &Places { input, out: out.to_path_buf() }, monitor)
 }
 
 /// The same without a folder.
@@ -98,15 +112,25 @@ fn sought(
     forces.map_or(Ok(()), |_| refused_with_forces(case, &plan))?;
     let stored = forces.map(Stored::read).transpose()?;
     let _held = folder::create_once(case, &places.input, &places.out)?;
+    let mut kept = Kept::of(case, &places.input, &places.out);
+    kept.write(&places.out)?;
     let mut all = Boundary::new(&case.title);
     for mach in plan.mach.clone() {
-        let found = match &stored {
-            Some(stored) => Some((of_stored(case, &plan, mach, (stored, &places.input))?, true)),
-            None => at_mach(case, &plan, mach, &places.input, monitor)?,
+        let found = match (&stored, kept.at(mach)) {
+            (Some(stored), _) => Some((of_stored(case, &plan, mach, (stored, &places.input))?, true)),
+            (None, Some(before)) => {
+                monitor.note(&format!("Mach {mach} was finished before"));
+                Some((before, true))
+            }
+            (None, None) => at_mach(case, &plan, mach, &places.input, monitor)?,
         };
         let Some((mut found, whole)) = found else { return Ok(None) };
         found.read = forces.map(|f| f.display().to_string());
         found.warnings.iter().for_each(|w| monitor.warn(&format!("Mach {mach}: {w}")));
+        if whole && forces.is_none() && kept.at(mach).is_none() {
+            kept.add(&found);
+            kept.write(&places.out)?;
+        }
         if case.output.report && all.skin.is_none() {
             all.skin = Some(skin(case, mach, &places.input)?);
         }
@@ -118,6 +142,7 @@ fn sought(
         }
     }
     folder::finish(&places.out)?;
+    Kept::remove(&places.out);
     Ok(Some(all))
 }
 

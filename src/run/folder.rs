@@ -20,6 +20,12 @@ const SUMMARY: &str = "summary.json";
 /// The last cloud, where the program chose it.
 const CLOUD: &str = "cloud.toml";
 
+/// What is finished of a flutter boundary that is not.
+pub(crate) const KEPT: &str = "flutter-kept.json";
+
+/// What a flutter boundary found.
+pub(crate) const BOUNDARY: &str = "flutter.json";
+
 /// The table of `alula gaf`.
 pub(crate) const MATRICES: &str = "gaf.csv";
 
@@ -102,7 +108,8 @@ pub(crate) fn create_once(case: &Case, input: &Path, out: &Path) -> Result<Hold,
     if out.join(MATRICES).exists() && !out.join(FINISHED).exists() && same() {
         fs::remove_file(out.join(MATRICES)).unwrap_or_default();
     }
-    if out.join("case.toml").exists() && !is_barely_begun(out) {
+    let other = out.join(KEPT).exists() && !same();
+    if out.join("case.toml").exists() && (other || !is_barely_begun(out)) {
         return Err(RunError::Folder {
             what: format!("`{}` holds earlier results", out.display()),
             hint: "choose another folder with `--out`, or remove it".into(),
@@ -212,6 +219,12 @@ pub(crate) fn check_begun(out: &Path) -> Result<(), RunError> {
             what: format!("`{named}` holds matrices of `alula gaf`, which is not resumed"),
             hint: "begin it again with its case file: in the same folder where it was not finished, else in another"
                 .into(),
+        });
+    }
+    if out.join(BOUNDARY).exists() {
+        return Err(RunError::Folder {
+            what: format!("`{named}` holds a flutter boundary that is finished"),
+            hint: "begin another one: `alula flutter` with its case file and another folder".into(),
         });
     }
     let force = if is_barely_begun(out) { "" } else { " --force" };

@@ -327,6 +327,8 @@ metrics! {
     LimitCycleIndex = "limit_cycle_index",
     /// Relative change of its speed with its last harmonics.
     LimitCycleError = "limit_cycle_error",
+    /// Relative difference of the amplitude that a march from the largest stable one ends with.
+    LimitCycleMarch = "limit_cycle_march",
     /// Lift coefficient extrapolated to zero spacing over the study.
     ExtrapolatedCl = "extrapolated_cl",
     /// Drag coefficient extrapolated to zero spacing over the study.
@@ -346,8 +348,8 @@ impl Metric {
     /// True when the metric belongs to a flutter boundary.
     pub fn is_of_flutter(self) -> bool {
         use Metric::{FlutterDifference, FlutterError, FlutterFrequency, FlutterIndex, FlutterSpeed};
-        use Metric::{LimitCycleError, LimitCycleIndex};
-        let cycles = matches!(self, LimitCycleIndex | LimitCycleError);
+        use Metric::{LimitCycleError, LimitCycleIndex, LimitCycleMarch};
+        let cycles = matches!(self, LimitCycleIndex | LimitCycleError | LimitCycleMarch);
         cycles || matches!(self, FlutterIndex | FlutterSpeed | FlutterFrequency | FlutterError | FlutterDifference)
     }
 

@@ -3,11 +3,11 @@ use std::path::{Path, PathBuf};
 
 use alula::case::Matching;
 use alula::run::flutter::{Boundary, FlutterAt, FlutterRow, LimitCycle};
-use alula::run::{self, Places};
+use alula::run::{self, Places, RunError};
 use serde_json::json;
 
 use super::run::{Shortfall, results};
-use crate::arguments;
+use crate::arguments::{self, Verbosity};
 use crate::outcome::Outcome;
 use crate::output;
 use crate::watch::Watch;
@@ -27,18 +27,36 @@ pub(crate) fn flutter(args: &arguments::Flutter) -> Outcome {
         Some(file) => run::flutter::again(&case, &places, file, &mut watch).map(Some),
         None => run::flutter::flutter(&case, &places, &mut watch),
     };
+    tell(found, &out, &mut watch, args.verbosity)
+}
+
+/// Goes on with the boundary in the folder `out`.
+pub(crate) fn resume(out: &Path, verbosity: Verbosity) -> Outcome {
+    let mut watch = Watch::new(verbosity);
+    let found = run::flutter::resume(out, &mut watch);
+    tell(found, out, &mut watch, verbosity)
+}
+
+/// What was found in the folder `out`.
+fn tell(
+    found: Result<Option<Boundary>, RunError>,
+    out: &Path,
+    watch: &mut Watch,
+    verbosity: Verbosity,
+) -> Outcome {
     watch.progress().finish();
     let boundary = match found {
         Ok(Some(boundary)) => boundary,
         Ok(None) => {
-            output::note(
-                "interrupted: Mach numbers that were finished stand in `flutter.csv`; `alula flutter` begins again",
-            );
+            let out = out.display();
+            output::note(&format!(
+                "interrupted: Mach numbers that were finished stand in `flutter.csv`; go on with `alula resume {out}`"
+            ));
             return Outcome::Interrupted;
         }
         Err(problem) => return super::refuse(&problem),
     };
-    let found = match args.verbosity.json {
+    let found = match verbosity.json {
         true => {
             let event =
                 json!({ "run": out, "title": boundary.title, "flutter": boundary.flutter, "lco": boundary.lco });
@@ -48,10 +66,10 @@ pub(crate) fn flutter(args: &arguments::Flutter) -> Outcome {
             table(&boundary)
                 + &cycles(&boundary)
                 + &format!("tables: {} and v-g.csv\n", out.join("flutter.csv").display())
-                + &page(&out)
+                + &page(out)
         }
     };
-    results(&found, shortfall(&boundary), args.verbosity)
+    results(&found, shortfall(&boundary), verbosity)
 }
 
 /// Where the page is, where there is one.

@@ -1,9 +1,10 @@
 //! What is told of a flutter boundary: rows, tables, pictures.
 use std::path::Path;
 
-use serde::Serialize;
+use serde::{Deserialize, Deserializer, Serialize};
 
 use super::super::error::RunError;
+use super::super::folder::BOUNDARY;
 use super::held::Mark;
 use super::scales::CaseReference;
 use super::shapes::{NaturalMode, Share};
@@ -17,7 +18,6 @@ use crate::report;
 const CROSSINGS: &str = "flutter.csv";
 const HISTORY: &str = "v-g.csv";
 const CYCLES: &str = "lco.csv";
-const SUMMARY: &str = "flutter.json";
 /// The surface that moves, for the page.
 const MODES: &str = "modes.json";
 /// What files say about signs and units.
@@ -79,10 +79,10 @@ const HISTORY_COLUMNS: [&str; 12] = [
 ];
 
 /// A change from decay to growth, or back.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct FlutterRow {
     /// `flutter`, `restabilised` or `divergence`.
-    pub kind: &'static str,
+    pub kind: String,
     /// Number of the mode in still air, from 1.
     pub mode: usize,
     /// Speed over that of the structure in the case.
@@ -108,6 +108,7 @@ pub struct FlutterRow {
     /// The same over that of pitch alone, where the structure is a section.
     pub frequency_ratio: Option<f64>,
     /// Relative change of the speed, of the root of the dynamic pressure, between the last two interpolations.
+    #[serde(deserialize_with = "or_infinite")]
     pub error: f64,
     /// What the g-method finds of the same, less one; none at divergence, and where it finds nothing.
     pub g_method: Option<f64>,
@@ -118,7 +119,7 @@ pub struct FlutterRow {
 }
 
 /// A motion at a speed.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct MotionRow {
     /// Number of the mode in still air, from 1.
     pub mode: usize,
@@ -141,7 +142,7 @@ pub struct MotionRow {
 }
 
 /// The equilibrium that forces are about.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct Trim {
     /// Speed of the stream over that of the case.
     pub speed_ratio: f64,
@@ -154,7 +155,7 @@ pub struct Trim {
 }
 
 /// What was found at one Mach number.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct FlutterAt {
     /// Mach number.
     pub mach: f64,
@@ -217,7 +218,7 @@ pub struct FlutterAt {
 }
 
 /// A limit cycle.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct LimitCycle {
     /// Mach number.
     pub mach: f64,
@@ -248,6 +249,7 @@ pub struct LimitCycle {
     /// Harmonics.
     pub harmonics: usize,
     /// Relative change of the speed with the last of them; infinite where none were added.
+    #[serde(deserialize_with = "or_infinite")]
     pub error: f64,
     /// Harmonic balances of the gas.
     pub balances: usize,
@@ -261,7 +263,7 @@ pub struct LimitCycle {
 }
 
 /// What a march from a limit cycle ends with.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct MarchedCycle {
     /// Amplitude of the first harmonic of the coordinate over the last period, of angles in degrees.
     pub amplitude: f64,
@@ -277,6 +279,11 @@ pub struct MarchedCycle {
     pub change: f64,
     /// Processor seconds.
     pub cpu_seconds: f64,
+}
+
+/// A number that files have no word for where it is infinite.
+fn or_infinite<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
+    Option::<f64>::deserialize(from).map(|x| x.unwrap_or(f64::INFINITY))
 }
 
 /// Cycles, and what makes them doubtful.
@@ -316,7 +323,7 @@ impl Boundary {
         if !self.lco.is_empty() {
             self.write_cycles(&out.join(CYCLES))?;
         }
-        write_json(&out.join(SUMMARY), &self)?;
+        write_json(&out.join(BOUNDARY), &self)?;
         self.skin.as_ref().map_or(Ok(()), |skin| self.picture(skin, out))
     }
 
@@ -343,7 +350,7 @@ impl Boundary {
         let rows = rows.map(|(mach, c)| {
             vec![
                 Entry::from(mach),
-                Entry::from(c.kind),
+                Entry::from(c.kind.as_str()),
                 Entry::from(c.mode as f64),
                 Entry::from(c.speed_ratio),
                 number(c.speed_index),

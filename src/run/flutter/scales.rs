@@ -1,7 +1,7 @@
 //! Numbers that turn those of the solver into those of users, and how the stream is varied.
 use std::f64::consts::{PI, TAU};
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::case::{Case, FreeStreamScales, Matching, StructureModel};
 use crate::geometry::dimension;
@@ -29,7 +29,7 @@ pub(super) struct Scales {
 }
 
 /// Stream and structure of the case at a Mach number, which ratios refer to.
-#[derive(Clone, Debug, Default, Serialize)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct CaseReference {
     /// Speed in the units of the case.
     pub speed: f64,

@@ -310,7 +310,8 @@ impl<'a> Search<'a> {
                 Kind::Flutter => "flutter",
                 Kind::Restabilised => "restabilised",
                 Kind::Divergence => "divergence",
-            },
+            }
+            .to_owned(),
             mode: c.mode + 1,
             speed_ratio: c.speed,
             speed_index: s.speed_index.map(|v| v * equivalent),

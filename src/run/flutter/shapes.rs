@@ -1,9 +1,9 @@
 //! Shapes of motions in numbers for people: how much each coordinate takes part, and when.
 use num_complex::Complex64;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// The part of a coordinate in a motion e^{iωt}.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Share {
     /// Its name.
     pub coordinate: String,
@@ -14,7 +14,7 @@ pub struct Share {
 }
 
 /// A natural mode in still air.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct NaturalMode {
     /// Its number, from 1.
     pub mode: usize,

@@ -2,7 +2,7 @@
 use std::path::Path;
 
 use num_complex::Complex64;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use serde_json::json;
 
 use super::super::error::RunError;
@@ -19,10 +19,10 @@ const CONVENTIONS: &str = "x' = A x + B f, y = C x + D f in the units of the cas
                            dynamic pressure over those of the case";
 
 /// A system at one speed.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub struct StateSpaceAt {
     /// Signs and units.
-    pub conventions: &'static str,
+    pub conventions: String,
     /// Speed over that of the case.
     pub speed_ratio: f64,
     /// Speed in the units of the case.
@@ -76,7 +76,7 @@ impl StateSpaceAt {
             "lagged": roger.lagged.iter().map(|b| rows(b, n)).collect::<Vec<_>>(),
         });
         Some(Self {
-            conventions: CONVENTIONS,
+            conventions: CONVENTIONS.to_owned(),
             speed_ratio: stream.speed,
             speed: scales.reference.speed * stream.speed,
             density: scales.reference.density * stream.pressure / (stream.speed * stream.speed),

@@ -8,6 +8,10 @@ const SAME: f64 = 1e-9;
 
 /// The metric of `claim` of a boundary, and of another one where the claim compares them.
 pub(in super::super) fn value(boundary: &Boundary, other: Option<&Boundary>, claim: &Claim) -> Value {
+    if claim.metric == Metric::LimitCycleMarch {
+        let march = boundary.lco.iter().find_map(|c| c.march.as_ref()).ok_or("no limit cycle was marched")?;
+        return Ok(march.difference.abs());
+    }
     if matches!(claim.metric, Metric::LimitCycleIndex | Metric::LimitCycleError) {
         let largest = boundary.lco.iter().max_by(|a, b| a.amplitude.total_cmp(&b.amplitude));
         let cycle = largest.ok_or("there are no limit cycles")?;

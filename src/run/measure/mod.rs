@@ -110,7 +110,8 @@ impl Measured {
             | Metric::FlutterError
             | Metric::FlutterDifference
             | Metric::LimitCycleIndex
-            | Metric::LimitCycleError => Err("this is measured of a flutter boundary, not of a run".into()),
+            | Metric::LimitCycleError
+            | Metric::LimitCycleMarch => Err("this is measured of a flutter boundary, not of a run".into()),
             Metric::Converged => Ok(f64::from(u8::from(s.succeeded()))),
             Metric::Particles => Ok(s.particles as f64),
             Metric::MassDrift => s.ledger.map(|l| l.mass.abs()).ok_or_else(no_ledger),
