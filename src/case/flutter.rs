@@ -34,6 +34,8 @@ pub struct Flutter {
     pub trim: bool,
     /// The structure in the stream is also written as a linear system of first order.
     pub state_space: bool,
+    /// The limiter stays what it is in the steady flow.
+    pub frozen_limiter: bool,
 }
 
 /// How the stream is varied at one Mach number.
@@ -62,6 +64,11 @@ impl Flutter {
 }
 
 impl Case {
+    /// True where the limiter stays in small motions what it is in the steady flow.
+    pub fn freezes_limiter(&self) -> bool {
+        self.flutter.as_ref().is_some_and(|f| f.frozen_limiter) || self.gaf.as_ref().is_some_and(|g| g.frozen_limiter)
+    }
+
     /// True where forces are sought about the static equilibrium of structure and gas.
     pub fn is_trimmed(&self) -> bool {
         self.flutter.as_ref().is_some_and(|f| f.trim)

@@ -32,6 +32,9 @@ pub struct Gaf {
     pub harmonics: Option<u32>,
     /// Change of a column, when the amplitude is halved, above which it is told to be nonlinear; absent: [`Self::LINEARITY`].
     pub linearity: Option<f64>,
+    /// The limiter stays what it is in the steady flow.
+    #[serde(default)]
+    pub frozen_limiter: bool,
 }
 
 /// How forces are found.

@@ -1,5 +1,5 @@
 //! The keys of `[gaf]`.
-use super::kinds::{POSITIVE, SIZE};
+use super::kinds::{FROZEN_LIMITER, POSITIVE, SIZE};
 use super::motion_keys::MODE_FILE;
 use super::quantity::{Angle, Length};
 use super::schema::{Absent, Field, Kind, List, Range, Table};
@@ -59,6 +59,7 @@ pub(super) static GAF: Table = Table::of(&[
         "0.005",
         "Part by which forces may change when the amplitude is halved, with `method = \"balance\"`.",
     ),
+    FROZEN_LIMITER,
 ]);
 
 static FLEXIBLE: Table = Table::of(&[

@@ -353,7 +353,10 @@ impl Run<'_> {
         let stood = previous.map_or_else(|| last_known(&mut course, site, assemble, &mut log), Ok)?;
         if let Some(then) = then {
             let (_, state) = stood.reached.end.as_ref().ok_or(RunError::NoStage)?;
-            then(&mut SmallMotion::new(&stood.solver.system, state, &log.axes), &mut log)?;
+            then(
+                &mut SmallMotion::new(&stood.solver.system, state, (&log.axes, self.case.freezes_limiter())),
+                &mut log,
+            )?;
         }
         Run { case: log.case, ..*self }.conclude(&stood, site.surface, &mut log, &clock).map(Ok)
     }

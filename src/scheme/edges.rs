@@ -13,7 +13,7 @@ use crate::physics::{Conserved, Gas, Newtonian, Primitive};
 
 use super::edge_flux::{FluxScheme, Passing, conservative, consistent, slowed, steep, upwind, viscous};
 use super::lanes::{LANES, Lanes, StateLanes, pair, put, take};
-use super::reconstruct::{Gradient, Limit, Reconstruction};
+use super::reconstruct::{Factors, Gradient, Limit, Reconstruction};
 use super::viscous::slopes;
 
 /// What particles hold.
@@ -103,17 +103,21 @@ impl<const D: usize> Batch<D> {
     };
 }
 
-/// Calls `add(i, change)` with what every edge adds to V dU/dt of its ends, one edge after the other.
+/// Calls `add(i, change)` with what every edge adds to V dU/dt of its ends, one edge after the other; `frozen` is what the limiter leaves
+/// of their slopes where that is given.
 pub fn edge_fluxes<const D: usize, F: UpwindFlux<D>, L: Limit>(
     scheme: &FluxScheme<F, L>,
     particles: Particles<'_, D>,
-    (edges, weights): (&[Edge<D>], Weights<'_, D>),
+    (edges, weights, frozen): (&[Edge<D>], Weights<'_, D>, &[Factors<D>]),
     add: &mut impl FnMut(usize, &Conserved<D>),
 ) {
     let mut batch = Batch::BLANK;
     for (c, some) in edges.chunks(LANES).enumerate() {
         gather(scheme, &particles, (some, c * LANES, &weights), &mut batch);
-        reconstruct(scheme.gas, scheme.limit, scheme.reconstruction, &mut batch);
+        match frozen.get(c * LANES..) {
+            Some(own @ [_, ..]) => reconstruct_frozen(scheme.reconstruction, own, &mut batch),
+            _ => reconstruct(scheme.gas, scheme.limit, scheme.reconstruction, &mut batch),
+        }
         if scheme.reconstruction.low_mach {
             low_mach_corrections(scheme.gas, &mut batch);
         }
@@ -193,6 +197,20 @@ fn reconstruct<const D: usize, L: Limit>(gas: Gas, limit: L, reconstruction: Rec
         let (qi, qj) = (own[0].primitive(k), own[1].primitive(k));
         let slopes = (slope[0].primitive(k), slope[1].primitive(k));
         let (l, r) = reconstruction.states(&gas, limit, (&qi, &qj), (&slopes.0, &slopes.1));
+        left.put_primitive(k, &l);
+        right.put_primitive(k, &r);
+    }
+}
+
+/// The same where it is given what the limiter leaves of the slopes.
+#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq", "x86_64+avx2"))]
+#[allow(unsafe_code, reason = "the attribute calls the version that the processor has just been asked for")]
+fn reconstruct_frozen<const D: usize>(reconstruction: Reconstruction, frozen: &[Factors<D>], batch: &mut Batch<D>) {
+    let Batch { own, slope, middle: [left, right], .. } = batch;
+    for (k, factors) in frozen.iter().take(LANES).enumerate() {
+        let (qi, qj) = (own[0].primitive(k), own[1].primitive(k));
+        let slopes = (slope[0].primitive(k), slope[1].primitive(k));
+        let (l, r) = reconstruction.limited((&qi, &qj), (&slopes.0, &slopes.1), factors);
         left.put_primitive(k, &l);
         right.put_primitive(k, &r);
     }

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use super::discretisation::CloudMotion;
 use super::frame::Discretisation;
-use super::reconstruct::{Gradient, Reconstruction};
+use super::reconstruct::{Factors, Gradient, Reconstruction};
 use super::viscous::ViscousModel;
 use crate::case::{Flux, Limiter};
 use crate::cloud::Cloud;
@@ -66,6 +66,16 @@ pub struct Work<const D: usize> {
     /// Gradients of all particles.
     pub gradient: Vec<Gradient<D>>,
     /// How steep the pressure is at all particles, from 0 to 1: see `reconstruct`. Speeds of sound while rates are found.
+    pub steepness: Vec<f64>,
+    /// What the limiter and the steepness stay, where they are frozen.
+    pub frozen: Option<Frozen<D>>,
+}
+
+/// What a limiter does in one state.
+pub struct Frozen<const D: usize> {
+    /// What it leaves of the slopes at the ends of the edges of each part.
+    pub factors: Vec<Vec<Factors<D>>>,
+    /// How steep the pressure is at all particles.
     pub steepness: Vec<f64>,
 }
 

@@ -61,7 +61,7 @@ impl<const D: usize> System for Fluid<D> {
     fn work(&self) -> Work<D> {
         let blank = Primitive { density: 1.0, velocity: Vector::ZERO, pressure: 1.0 };
         let n = self.discretisation.cloud.len();
-        Work { state: vec![blank; n], gradient: vec![Gradient::ZERO; n], steepness: vec![0.0; n] }
+        Work { state: vec![blank; n], gradient: vec![Gradient::ZERO; n], steepness: vec![0.0; n], frozen: None }
     }
 
     fn rhs(&self, frame: &Frame<D>, u: &[f64], work: &mut Work<D>, du: &mut [f64]) {

@@ -182,6 +182,12 @@ pub fn low_mach_correction<const D: usize, S: Scalar>(
     (Primitive { velocity: l.velocity + half, ..l }, Primitive { velocity: r.velocity - half, ..r })
 }
 
+/// The difference beyond either end of an edge over which a variable changes by `dq`.
+#[inline(always)]
+fn upwind<S: Scalar>(slopes: [S; 2], dq: S) -> [S; 2] {
+    [slopes[0] * 2.0 - dq, slopes[1] * 2.0 - dq]
+}
+
 /// Part of the slopes that is kept between particles whose pressures are `p` and `q`: all of it up to a ratio of 2, none from 4 on.
 #[inline(always)]
 fn slope_kept<S: Scalar>(p: S, q: S) -> S {
@@ -197,6 +203,9 @@ fn kept<const D: usize, S: Scalar>(own: &Primitive<D, S>, change: &Primitive<D, 
     most / fall.max(most)
 }
 
+/// What a limiter leaves of the slopes at both ends of an edge, of every variable.
+pub type Factors<const D: usize, S = f64> = [Primitive<D, S>; 2];
+
 impl Reconstruction {
     /// States on both sides of the middle of an edge, from the states of its ends and their slopes along it.
     #[inline(always)]
@@ -205,35 +214,67 @@ impl Reconstruction {
         gas: &Gas,
         limit: L,
         ends: (&Primitive<D, S>, &Primitive<D, S>),
-        (gi, gj): (&Primitive<D, S>, &Primitive<D, S>),
+        slopes: (&Primitive<D, S>, &Primitive<D, S>),
     ) -> (Primitive<D, S>, Primitive<D, S>) {
-        let (qi, qj) = ends;
         if !self.second_order {
-            return (*qi, *qj);
+            return (*ends.0, *ends.1);
         }
+        self.limited(ends, slopes, &self.factors(gas, limit, ends, slopes))
+    }
+
+    /// What the limiter leaves of the slopes.
+    #[inline(always)]
+    pub fn factors<const D: usize, S: Scalar, L: Limit>(
+        &self,
+        gas: &Gas,
+        limit: L,
+        (qi, qj): (&Primitive<D, S>, &Primitive<D, S>),
+        (gi, gj): (&Primitive<D, S>, &Primitive<D, S>),
+    ) -> Factors<D, S> {
         let dq = qj.minus(qi);
         let (density, pressure) = ((qi.density + qj.density) * 0.5, (qi.pressure + qj.pressure) * 0.5);
         let square = (self.threshold * self.threshold).max(LEAST_SQUARE);
         let sound2 = pressure * gas.gamma / density;
         let eps = (density * square * density, sound2 * square, pressure * square * pressure);
+        let of = |slopes: [S; 2], dq: S, eps: S| limit.factors(upwind(slopes, dq), dq, eps);
         let zero = S::constant(0.0);
         let mut left = Primitive { density: zero, velocity: Vector::zero(), pressure: zero };
         let mut right = left;
-        [left.density, right.density] = self.increments(limit, [gi.density, gj.density], dq.density, eps.0);
+        [left.density, right.density] = of([gi.density, gj.density], dq.density, eps.0);
         for d in 0..D {
-            let slopes = [gi.velocity[d], gj.velocity[d]];
-            [left.velocity[d], right.velocity[d]] = self.increments(limit, slopes, dq.velocity[d], eps.1);
+            [left.velocity[d], right.velocity[d]] = of([gi.velocity[d], gj.velocity[d]], dq.velocity[d], eps.1);
         }
-        [left.pressure, right.pressure] = self.increments(limit, [gi.pressure, gj.pressure], dq.pressure, eps.2);
+        [left.pressure, right.pressure] = of([gi.pressure, gj.pressure], dq.pressure, eps.2);
+        [left, right]
+    }
+
+    /// States on both sides of the middle of an edge, of whose slopes the limiter leaves `factors`.
+    #[inline(always)]
+    pub fn limited<const D: usize, S: Scalar>(
+        &self,
+        (qi, qj): (&Primitive<D, S>, &Primitive<D, S>),
+        (gi, gj): (&Primitive<D, S>, &Primitive<D, S>),
+        [fi, fj]: &Factors<D, S>,
+    ) -> (Primitive<D, S>, Primitive<D, S>) {
+        let dq = qj.minus(qi);
+        let zero = S::constant(0.0);
+        let mut left = Primitive { density: zero, velocity: Vector::zero(), pressure: zero };
+        let mut right = left;
+        [left.density, right.density] = self.increments([gi.density, gj.density], dq.density, [fi.density, fj.density]);
+        for d in 0..D {
+            let (slopes, kept) = ([gi.velocity[d], gj.velocity[d]], [fi.velocity[d], fj.velocity[d]]);
+            [left.velocity[d], right.velocity[d]] = self.increments(slopes, dq.velocity[d], kept);
+        }
+        [left.pressure, right.pressure] =
+            self.increments([gi.pressure, gj.pressure], dq.pressure, [fi.pressure, fj.pressure]);
         let slope = slope_kept(qi.pressure, qj.pressure);
         (qi.plus(slope * kept(qi, &left, 1.0), &left), qj.plus(-(slope * kept(qj, &right, -1.0)), &right))
     }
 
     /// s/4 [(1 − κs) a + (1 + κs) b] of one variable at both ends.
     #[inline(always)]
-    fn increments<S: Scalar, L: Limit>(&self, limit: L, slopes: [S; 2], dq: S, eps: S) -> [S; 2] {
-        let a = [slopes[0] * 2.0 - dq, slopes[1] * 2.0 - dq];
-        let s = limit.factors(a, dq, eps);
+    fn increments<S: Scalar>(&self, slopes: [S; 2], dq: S, s: [S; 2]) -> [S; 2] {
+        let a = upwind(slopes, dq);
         [self.increment(a[0], dq, s[0]), self.increment(a[1], dq, s[1])]
     }
 

@@ -23,9 +23,9 @@ mod tests;
 use super::discretisation::CloudMotion;
 use super::edge_flux::{EdgeEnd, EdgeFace, FluxScheme, beyond_mean, mean_through};
 use super::edges::{Particles, edge_fluxes};
-use super::fluid::{Fluid, Work};
+use super::fluid::{Fluid, Frozen, Work};
 use super::frame::Frame;
-use super::reconstruct::{Limit, Unlimited, VanAlbada, Venkatakrishnan};
+use super::reconstruct::{Factors, Limit, Unlimited, VanAlbada, Venkatakrishnan};
 use crate::case::{Flux, Limiter};
 use crate::cloud::Edge;
 use crate::cloud::operators::WallFace;
@@ -33,6 +33,7 @@ use crate::math::Vector;
 use crate::math::sweep::sweep_parts;
 use crate::physics::riemann::{AusmPlusUp, Hllc, Roe, Rusanov, UpwindFlux};
 use crate::physics::{Conserved, n_variables};
+use crate::system::System;
 
 impl<const D: usize> Fluid<D> {
     /// Fills `du` with R from the states in `work`.
@@ -68,6 +69,35 @@ impl<const D: usize> Fluid<D> {
         self.conservative && (deforms || !self.discretisation.cloud.layers.is_empty())
     }
 
+    /// Has the limiter leave of all slopes from now on what it leaves of them in the state `u`, and shocks be where they are there.
+    pub fn freeze_limiter(&self, frame: &mut Frame<D>, u: &[f64], work: &mut Work<D>) {
+        work.frozen = None;
+        self.update_boundary_state(u, work, frame);
+        self.fill_states(frame, u, work);
+        if !self.reconstruction.second_order {
+            return;
+        }
+        self.fill_gradients(frame, work);
+        let factors = match self.limiter {
+            Limiter::None => self.factors(Unlimited, frame, work),
+            Limiter::VanAlbada => self.factors(VanAlbada, frame, work),
+            Limiter::Venkatakrishnan => self.factors(Venkatakrishnan, frame, work),
+        };
+        work.frozen = Some(Frozen { factors, steepness: work.steepness.clone() });
+    }
+
+    /// What the limiter leaves of the slopes at the ends of all edges, part by part.
+    fn factors(&self, limit: impl Limit, frame: &Frame<D>, work: &Work<D>) -> Vec<Vec<Factors<D>>> {
+        let (op, x) = (&frame.discretisation.operators, &frame.discretisation.cloud.x);
+        let of = |e: &Edge<D>| {
+            let (ends, d) = ([e.i(), e.j()], x[e.j()] - x[e.i()]);
+            let q = ends.map(|i| work.state[i]);
+            let slopes = ends.map(|i| work.gradient[i].along(&d).times(1.0 - work.steepness[i]));
+            self.reconstruction.factors(&self.gas, limit, (&q[0], &q[1]), (&slopes[0], &slopes[1]))
+        };
+        (0..op.n_fluid_parts).map(|k| op.edges(k).iter().map(of).collect()).collect()
+    }
+
     /// Sums the edge fluxes of every fluid particle, weighted with volumes until the end so that no edge divides by one.
     fn fluxes(&self, flux: impl UpwindFlux<D>, limit: impl Limit, at: (&Frame<D>, &Work<D>), du: &mut [f64]) {
         let (frame, work) = at;
@@ -86,7 +116,8 @@ impl<const D: usize> Fluid<D> {
             let start = op.parts[k].start;
             out.fill(0.0);
             let mut to = |i: usize, change: &Conserved<D>| change.add_to(&mut out[(i - start) * n_variables(D)..]);
-            edge_fluxes(&scheme, particles, (op.edges(k), op.weights(k)), &mut to);
+            let frozen = work.frozen.as_ref().map_or(&[][..], |f| &f.factors[k]);
+            edge_fluxes(&scheme, particles, (op.edges(k), op.weights(k), frozen), &mut to);
             if self.conservative {
                 self.wall_fluxes(op.wall_faces(k), at, &mut to);
                 self.viscous_walls(op.wall_faces(k), at, &mut to);

@@ -138,7 +138,10 @@ impl<const D: usize> Fluid<D> {
                 pressure: t.direction(&g.pressure),
             })
         });
-        self.fill_steepness(frame, work);
+        match &work.frozen {
+            None => self.fill_steepness(frame, work),
+            Some(frozen) => work.steepness.copy_from_slice(&frozen.steepness),
+        }
     }
 
     fn fill_steepness(&self, frame: &Frame<D>, work: &mut Work<D>) {

@@ -55,9 +55,8 @@ pub struct Ended {
 }
 
 impl<'a, S: Implicit> Linear<'a, S> {
-    /// `system` in the frame `frame` at the state `state`.
-    pub fn new(system: &'a S, frame: S::Frame, state: &[f64]) -> Self {
-        let mut work = system.work();
+    /// `system` in the frame `frame` at the state `state`, evaluated with the storage `work`.
+    pub fn new(system: &'a S, frame: S::Frame, state: &[f64], mut work: S::Work) -> Self {
         let rows = crate::system::rows(system.fields());
         let mut rates = vec![0.0; rows];
         system.rates(&frame, state, &mut work, &mut rates);
@@ -283,7 +282,7 @@ mod tests {
         let rest = [std::f64::consts::FRAC_PI_6, 0.0];
         let control = Control::newton(2);
         let plan = Hierarchy { group: control.group, cycle: control.cycle };
-        let mut linear = Linear::new(&system, system.frame(&Instant::still(0.0), &rest), &rest);
+        let mut linear = Linear::new(&system, system.frame(&Instant::still(0.0), &rest), &rest, ());
         for omega in [0.0, 0.7, 3.0] {
             let (x, ended) = linear.solve(omega, &[vec![0.0, 1.0, 0.0, -2.0]], 1e-9, &plan).remove(0);
             let i = Complex64::new(0.0, omega);

@@ -38,12 +38,7 @@ pub(crate) fn resume(out: &Path, verbosity: Verbosity) -> Outcome {
 }
 
 /// What was found in the folder `out`.
-fn tell(
-    found: Result<Option<Boundary>, RunError>,
-    out: &Path,
-    watch: &mut Watch,
-    verbosity: Verbosity,
-) -> Outcome {
+fn tell(found: Result<Option<Boundary>, RunError>, out: &Path, watch: &mut Watch, verbosity: Verbosity) -> Outcome {
     watch.progress().finish();
     let boundary = match found {
         Ok(Some(boundary)) => boundary,

@@ -5,6 +5,7 @@ use super::super::draft::Draft;
 
 /// Limit cycles are beside a boundary, and of one kind of amplitude, from small to large.
 pub(in super::super) fn contradictions(draft: &mut Draft<'_>) {
+    frozen(draft);
     if draft.get("lco").is_none_or(Value::is_null) {
         return;
     }
@@ -41,6 +42,26 @@ pub(in super::super) fn contradictions(draft: &mut Draft<'_>) {
             draft
                 .fail(place, "the greatest amplitude is not greater than the least")
                 .hint("give the smaller one first");
+        }
+    }
+}
+
+/// What is frozen is there.
+fn frozen(draft: &mut Draft<'_>) {
+    let says = |draft: &Draft<'_>, key: &str, word: &str| draft.get(key).and_then(Value::as_str) == Some(word);
+    let unlimited = says(draft, "scheme.limiter", "none") || draft.number("scheme.order") == Some(1.0);
+    for table in ["flutter", "gaf"] {
+        let place = format!("{table}.frozen_limiter");
+        if draft.get(&place).and_then(Value::as_bool) != Some(true) {
+            continue;
+        }
+        if unlimited {
+            draft.fail_key(&place, "a frozen limiter, but `[scheme]` has none").hint("leave one of the two out");
+        }
+        if table == "gaf" && says(draft, "gaf.method", "balance") {
+            draft
+                .fail_key(&place, "a frozen limiter in harmonic balances")
+                .hint("leave it out, or use `method = \"linear\"`: balances solve the equations as they are");
         }
     }
 }

@@ -1,5 +1,5 @@
 //! The keys of `[flutter]` and `[lco]`.
-use super::super::kinds::{POSITIVE, SIZE};
+use super::super::kinds::{FROZEN_LIMITER, POSITIVE, SIZE};
 use super::super::quantity::{Angle, Ratio};
 use super::super::schema::{Absent, Field, Kind, List, Range, Table};
 
@@ -55,6 +55,7 @@ pub(in super::super) static FLUTTER: Table = Table::of(&[
         Absent::Flag(false),
         "Write the structure in the stream as a linear system of first order as well, at the first crossing of each Mach number.",
     ),
+    FROZEN_LIMITER,
 ]);
 
 const MATCHING: &[(&str, &str)] = &[

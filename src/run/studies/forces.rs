@@ -12,7 +12,7 @@ use crate::math::sweep::norm;
 use crate::scheme::Fluid;
 use crate::structure::limit_cycle::Periodic;
 use crate::structure::{Matrices, Spring};
-use crate::system::{Hierarchy, Instant, Term};
+use crate::system::{Hierarchy, Instant, System, Term};
 use crate::time::control::Control;
 use crate::time::linear::{Ended, Linear};
 
@@ -80,11 +80,17 @@ pub(crate) struct SmallMotion<'a, S: Marches<D>, const D: usize> {
 }
 
 impl<'a, S: Marches<D>, const D: usize> SmallMotion<'a, S, D> {
-    /// `system` at the steady state `state`; `axes` are those of lift and moment.
-    pub(crate) fn new(system: &'a S, state: &[f64], axes: &LoadFrame) -> Self {
-        let (work, place) = (system.work(), system.placing());
+    /// `system` at the steady state `state`; `axes` are those of lift and moment. The limiter stays what it is there where it is `frozen`.
+    pub(crate) fn new(system: &'a S, state: &[f64], (axes, frozen): (&LoadFrame, bool)) -> Self {
+        let (mut work, place) = (system.work(), system.placing());
         let frame = system.frame(&Instant::formula(0.0, &[]).with(&state[place]), state);
-        let linear = Linear::new(system.gas(), system.gas_frame(&frame).clone(), system.gas_state(state));
+        let (gas, own) = (system.gas(), system.gas_state(state));
+        let (mut gas_frame, mut gas_work) = (system.gas_frame(&frame).clone(), gas.work());
+        if frozen {
+            gas.freeze_limiter(&mut gas_frame, own, system.gas_work(&mut work));
+            gas.freeze_limiter(&mut gas_frame, own, &mut gas_work);
+        }
+        let linear = Linear::new(gas, gas_frame, own, gas_work);
         let (columns, still) = (Vec::new(), Vec::new());
         let mut all =
             Self { system, frame, work, state: state.to_vec(), linear, columns, axes: axes.clone(), still, flow: None };

@@ -77,7 +77,7 @@ fn compare<const D: usize, F: UpwindFlux<D>, L: Limit>(few: &Few<D>, scheme: &Fl
         outer,
     };
     let mut found = Vec::new();
-    let edges = (few.edges.as_slice(), Weights::stored(&few.weights));
+    let edges = (few.edges.as_slice(), Weights::stored(&few.weights), &[][..]);
     edge_fluxes(scheme, particles, edges, &mut |i: usize, change: &Conserved<D>| found.push((i, *change)));
     let mut found = found.into_iter();
     for (e, [a_i, a_j]) in few.edges.iter().zip(&few.weights) {

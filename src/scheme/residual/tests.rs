@@ -106,6 +106,31 @@ fn finding_rates_leaves_no_trace() {
 }
 
 #[test]
+fn a_frozen_limiter_changes_other_states_alone() {
+    let fluid = closed(CIRCLE);
+    let u = uneven(&fluid);
+    let moved: Vec<f64> = u.iter().enumerate().map(|(k, u)| u * (1.0 + 1e-3 * (k as f64).sin())).collect();
+    let mut frame = fluid.frame(&Instant::still(0.0), &u);
+    let [mut free, mut frozen] = [fluid.work(), fluid.work()];
+    fluid.freeze_limiter(&mut frame, &u, &mut frozen);
+    // finding rates puts other numbers in the place of the steepness
+    fluid.rates(&frame, &u, &mut frozen, &mut vec![0.0; fluid.discretisation.cloud.n_fluid]);
+    let mut both = |u: &[f64]| {
+        [&mut free, &mut frozen].map(|work| {
+            let mut du = vec![0.0; u.len()];
+            fluid.rhs_with_boundary(u, work, &mut frame, &mut du);
+            du
+        })
+    };
+    let [a, b] = both(&u);
+    assert!(a == b);
+    let [a, b] = both(&moved);
+    let apart = a.iter().zip(&b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    let size = a.iter().fold(0.0f64, |m, a| m.max(a.abs()));
+    assert!(apart > 0.0 && apart < 1e-2 * size, "{apart} {size}");
+}
+
+#[test]
 fn what_one_particle_loses_another_gains() {
     let (sum, size, _) = balance(&closed(""));
     // momentum along x leaves through the planes of symmetry
