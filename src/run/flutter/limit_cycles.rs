@@ -135,7 +135,10 @@ impl<'s, 'a> Seek<'s, 'a> {
     }
 
     fn begins(&self, amplitude: f64) -> Vec<(Kind, Cycle)> {
-        self.with(|own| own.begin(amplitude, self.search.upto())).unwrap_or_default()
+        let mut all = self.with(|own| own.begin(amplitude, self.search.upto())).unwrap_or_default();
+        // where forces would be guessed
+        all.retain(|(_, cycle)| cycle.kappa() <= self.search.highest_told());
+        all
     }
 
     /// The cycle of an amplitude, with as many harmonics as it needs.

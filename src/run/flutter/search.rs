@@ -193,7 +193,7 @@ impl<'a> Search<'a> {
         let mut branches = flutter.branches(upto);
         let mut crossings = flutter.crossings(&branches, upto);
         // at the lowest speeds forces hardly act, and would be guessed
-        let highest = BEYOND * self.highest();
+        let highest = self.highest_told();
         branches.iter_mut().for_each(|b| b.retain(|p| p.lambda.im.abs() <= highest * p.speed));
         crossings.retain(|c| c.kappa <= highest);
         (branches, crossings)
@@ -204,6 +204,11 @@ impl<'a> Search<'a> {
             Matching::None => Varied::Speed,
             _ => Varied::Pressure(speed),
         }
+    }
+
+    /// The highest angular frequency of motions that are told.
+    pub(super) fn highest_told(&self) -> f64 {
+        BEYOND * self.highest()
     }
 
     /// The highest angular frequency asked for, or known.
