@@ -5,6 +5,8 @@ mod record;
 
 pub use record::{Column, Conditions, Matrices, Solved};
 
+use std::path::Path;
+
 use super::error::RunError;
 use super::folder::{self, Places};
 use super::monitor::Monitor;
@@ -16,22 +18,13 @@ use crate::observe::columns::Scale;
 /// Computes the matrices of the table `[gaf]` into a fresh folder, or one where those of the same case were not all found; `None` when the
 /// monitor says stop.
 pub fn gaf(case: &Case, places: &Places, monitor: &mut dyn Monitor) -> Result<Option<Matrices>, RunError> {
-    let Some(plan) = case.gaf.clone() else {
-        return Err(RunError::Unsupported {
-            what: "the case has no table `[gaf]`".into(),
-            hint: "add one with `reduced_frequencies`",
-        });
-    };
-    setup::supported(case)?;
+    let plan = planned(case)?;
     let _held = folder::create_once(case, &places.input, &places.out)?;
-    let modes = plan.all_modes().map(|m| m.name().to_owned()).collect();
-    let conditions = Conditions::of(case, &plan, &places.input)?;
-    let linearity = plan.linearity.unwrap_or(Gaf::LINEARITY);
-    let mut matrices = Matrices { modes, columns: Vec::new(), linearity, conditions };
+    let mut matrices = blank(case, &plan, &places.input)?;
     let scale = Scale { dimensional: case.flow.is_dimensional(), dimension: dimension(case).into() };
     let mut keep = |matrices: &Matrices| matrices.write(&plan.reduced_frequencies, scale, &places.out);
     let whole = match plan.method {
-        GafMethod::Linear => linear::columns((case, &plan), places, &mut matrices, &mut keep, monitor)?,
+        GafMethod::Linear => linear::columns((case, &plan), &places.input, &mut matrices, &mut keep, monitor)?,
         GafMethod::Balance => balance::columns((case, &plan), places, &mut matrices, &mut keep, monitor)?,
     };
     if !whole {
@@ -39,4 +32,34 @@ pub fn gaf(case: &Case, places: &Places, monitor: &mut dyn Monitor) -> Result<Op
     }
     folder::finish(&places.out)?;
     Ok(Some(matrices))
+}
+
+/// The same of small motions, without a folder.
+pub(crate) fn in_memory(case: &Case, input: &Path, monitor: &mut dyn Monitor) -> Result<Option<Matrices>, RunError> {
+    let plan = planned(case)?;
+    if plan.method == GafMethod::Balance {
+        let what = "forces by harmonic balance without a folder";
+        return Err(RunError::Unsupported { what: what.into(), hint: "use `method = \"linear\"`" });
+    }
+    let mut matrices = blank(case, &plan, input)?;
+    let whole = linear::columns((case, &plan), input, &mut matrices, &mut |_| Ok(()), monitor)?;
+    Ok(whole.then_some(matrices))
+}
+
+fn planned(case: &Case) -> Result<Gaf, RunError> {
+    let Some(plan) = case.gaf.clone() else {
+        return Err(RunError::Unsupported {
+            what: "the case has no table `[gaf]`".into(),
+            hint: "add one with `reduced_frequencies`",
+        });
+    };
+    setup::supported(case)?;
+    Ok(plan)
+}
+
+/// Matrices of which no column is known.
+fn blank(case: &Case, plan: &Gaf, input: &Path) -> Result<Matrices, RunError> {
+    let modes = plan.all_modes().map(|m| m.name().to_owned()).collect();
+    let (conditions, linearity) = (Conditions::of(case, plan, input)?, plan.linearity.unwrap_or(Gaf::LINEARITY));
+    Ok(Matrices { modes, columns: Vec::new(), linearity, conditions })
 }

@@ -9,6 +9,7 @@ use std::path::{Path, PathBuf};
 
 use super::error::RunError;
 use super::flutter::{self, Boundary};
+use super::gaf::{self, Matrices};
 use super::measure::{self, Measured, Value};
 use super::monitor::{Monitor, Tick};
 use super::session::{Outcome, Session};
@@ -93,6 +94,7 @@ pub struct Walk {
     runs: BTreeMap<(String, u64), Result<Measured, String>>,
     structures: BTreeMap<String, Result<SolidSummary, String>>,
     boundaries: BTreeMap<String, Result<Boundary, String>>,
+    forces: BTreeMap<String, Result<Matrices, String>>,
 }
 
 impl Walk {
@@ -110,8 +112,9 @@ impl Walk {
             let names = folders.iter().map(|f| format!("`{}`", f.name)).collect::<Vec<_>>().join(", ");
             return Err(WalkError::NoCase { folder: root.display().to_string(), names });
         }
-        let (runs, structures, boundaries) = (BTreeMap::new(), BTreeMap::new(), BTreeMap::new());
-        Ok(Self { folders, chosen, fast: selection.fast, runs, structures, boundaries })
+        let (runs, structures) = (BTreeMap::new(), BTreeMap::new());
+        let (boundaries, forces) = (BTreeMap::new(), BTreeMap::new());
+        Ok(Self { folders, chosen, fast: selection.fast, runs, structures, boundaries, forces })
     }
 
     /// The cases to judge.
@@ -175,6 +178,9 @@ impl Walk {
             let known = |f: &Folder| self.boundaries.get(&f.name).and_then(|b| b.as_ref().ok());
             let own = known(folder).ok_or("the case did not run")?;
             return measure::boundary::value(own, other.as_ref().and_then(known), claim);
+        }
+        if claim.metric.is_of_forces() {
+            return self.forces_of(claim, folder, monitor);
         }
         if claim.metric.needs_cases() {
             return self.calibrate(claim, folder, monitor);
@@ -240,6 +246,28 @@ impl Walk {
         }
         let found = self.boundaries.get(&name).ok_or("the case did not run")?;
         found.as_ref().map_err(Clone::clone)
+    }
+
+    /// Measures forces of small motions in the case of `folder` and in those that the claim names.
+    fn forces_of(&mut self, claim: &Claim, folder: &Folder, monitor: &mut dyn Monitor) -> Value {
+        let names = claim.other.iter().chain(&claim.third);
+        let others = names.map(|name| self.named(name, folder)).collect::<Result<Vec<_>, _>>()?;
+        let all: Vec<&Folder> = std::iter::once(folder).chain(&others).collect();
+        for one in &all {
+            if !self.forces.contains_key(&one.name) && !monitor.stop() {
+                monitor.note(&one.name);
+                let found = gaf::in_memory(&one.case, &one.path, &mut Quiet { monitor });
+                let found = found.map_err(|e| reason(&e)).and_then(|m| m.ok_or("the run was interrupted".into()));
+                self.forces.insert(one.name.clone(), found);
+            }
+        }
+        let known = |one: &&Folder| {
+            let found = self.forces.get(&one.name).ok_or("the case did not run")?;
+            found.as_ref().map_err(Clone::clone)
+        };
+        let matrices = all.iter().map(known).collect::<Result<Vec<_>, String>>()?;
+        let sections: Vec<_> = all.iter().map(|one| &one.case).zip(matrices).collect();
+        measure::forces::value(&sections, claim, &folder.path)
     }
 
     /// Runs every case of the table of `claim`, and holds their error bars against the exact loads.

@@ -329,6 +329,11 @@ metrics! {
     LimitCycleError = "limit_cycle_error",
     /// Relative difference of the amplitude that a march from the largest stable one ends with.
     LimitCycleMarch = "limit_cycle_march",
+    /// Greatest relative difference between the amplitudes of the forces of small motions (`[gaf]`) and those of the table `file`
+    /// (columns `mode`, `k`, `coefficient`, `re`, `im`), extrapolated to a section of no thickness where others are named.
+    ForceAmplitudeError = "force_amplitude_error",
+    /// The same of their phases, in degrees.
+    ForcePhaseError = "force_phase_error",
     /// Lift coefficient extrapolated to zero spacing over the study.
     ExtrapolatedCl = "extrapolated_cl",
     /// Drag coefficient extrapolated to zero spacing over the study.
@@ -351,6 +356,11 @@ impl Metric {
         use Metric::{LimitCycleError, LimitCycleIndex, LimitCycleMarch};
         let cycles = matches!(self, LimitCycleIndex | LimitCycleError | LimitCycleMarch);
         cycles || matches!(self, FlutterIndex | FlutterSpeed | FlutterFrequency | FlutterError | FlutterDifference)
+    }
+
+    /// True when the metric belongs to forces of small motions.
+    pub fn is_of_forces(self) -> bool {
+        matches!(self, Self::ForceAmplitudeError | Self::ForcePhaseError)
     }
 
     /// True when the metric needs runs at several spacings.

@@ -3,10 +3,11 @@
 //! What the columns of harmonic balances tend to as their amplitudes go to nothing: one cloud, one steady flow, and a linear system for
 //! each mode and frequency (`studies::forces`). Rigid modes are rotations and shifts, not displacement fields, so that forces of the
 //! steady flow turn with the body as they do there.
+use std::path::Path;
+
 use num_complex::Complex64;
 
 use super::super::error::RunError;
-use super::super::folder::Places;
 use super::super::monitor::Monitor;
 use super::super::record::Log;
 use super::super::record::summary::Clock;
@@ -19,12 +20,12 @@ use crate::case::{AnyMode, Case, Gaf, Mode};
 /// stop.
 pub(super) fn columns(
     (case, plan): (&Case, &Gaf),
-    places: &Places,
+    input: &Path,
     matrices: &mut Matrices,
     keep: &mut dyn FnMut(&Matrices) -> Result<(), RunError>,
     monitor: &mut dyn Monitor,
 ) -> Result<bool, RunError> {
-    let mut session = Session::open(&case.gaf_steady_case(plan), &places.input)?;
+    let mut session = Session::open(&case.gaf_steady_case(plan), input)?;
     let mut stopped = false;
     let mut then = |source: &mut dyn ForceSource, log: &mut Log<'_>| {
         for &k in &plan.reduced_frequencies {

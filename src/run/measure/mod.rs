@@ -1,6 +1,7 @@
 //! What is measured of a finished run: the value of each metric of [`crate::verify`].
 mod axis;
 pub(super) mod boundary;
+pub(super) mod forces;
 mod section;
 pub(super) mod solid;
 mod structure;
@@ -40,6 +41,24 @@ pub(super) struct Measured {
     pub(super) wall: Wall,
     /// Its loads over the last period, empty when nothing repeats.
     pub(super) loops: Loops,
+}
+
+/// Weights of values on sections of these thicknesses in the polynomial through all of them, where there is no thickness.
+fn at_no_thickness(thickness: &[f64]) -> Result<Vec<f64>, String> {
+    let weight = |k: usize| -> f64 {
+        let rest = thickness.iter().enumerate().filter(|(j, _)| *j != k);
+        rest.map(|(_, t)| t / (t - thickness[k])).product()
+    };
+    let all: Vec<f64> = (0..thickness.len()).map(weight).collect();
+    if all.iter().all(|w| w.is_finite()) { Ok(all) } else { Err("two sections are equally thick".into()) }
+}
+
+/// Thickness in parts of the chord that the designation of a NACA section says.
+fn designed_thickness(case: &Case) -> Option<f64> {
+    match &case.bodies.first()?.shape {
+        Shape::Naca(naca) => Some(naca.design().ok()?.thickness),
+        _ => None,
+    }
 }
 
 /// A value, or why there is none.
@@ -112,6 +131,9 @@ impl Measured {
             | Metric::LimitCycleIndex
             | Metric::LimitCycleError
             | Metric::LimitCycleMarch => Err("this is measured of a flutter boundary, not of a run".into()),
+            Metric::ForceAmplitudeError | Metric::ForcePhaseError => {
+                Err("this is measured of `[gaf]`, not of a run".into())
+            }
             Metric::Converged => Ok(f64::from(u8::from(s.succeeded()))),
             Metric::Particles => Ok(s.particles as f64),
             Metric::MassDrift => s.ledger.map(|l| l.mass.abs()).ok_or_else(no_ledger),
@@ -219,16 +241,8 @@ impl Measured {
         }
         let sections: Vec<&Self> = std::iter::once(self).chain(others.iter().copied()).collect();
         let thickness = sections.iter().map(|s| s.thickness()).collect::<Result<Vec<_>, _>>()?;
-        let mut value = Complex64::ZERO;
-        for (k, section) in sections.iter().enumerate() {
-            let rest = thickness.iter().enumerate().filter(|(j, _)| *j != k);
-            let weight: f64 = rest.map(|(_, t)| t / (t - thickness[k])).product();
-            if !weight.is_finite() {
-                return Err("two sections are equally thick".into());
-            }
-            value += load(section)? * weight;
-        }
-        Ok(value)
+        let weights = at_no_thickness(&thickness)?;
+        sections.iter().zip(weights).try_fold(Complex64::ZERO, |sum, (section, w)| Ok(sum + load(section)? * w))
     }
 
     /// First harmonic of the force on the first flexible mode of `[gaf]` over that of the mode that moves.
@@ -244,11 +258,7 @@ impl Measured {
 
     /// Thickness of the section in parts of the chord: of a NACA one by its designation, of others by the extent of their walls.
     fn thickness(&self) -> Result<f64, String> {
-        let designed = self.case.bodies.first().and_then(|b| match &b.shape {
-            Shape::Naca(naca) => Some(naca.design().ok()?.thickness),
-            _ => None,
-        });
-        if let Some(thickness) = designed {
+        if let Some(thickness) = designed_thickness(&self.case) {
             return Ok(thickness);
         }
         let extent = Bounds::around(&self.wall.x).extent();
