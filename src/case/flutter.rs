@@ -36,6 +36,8 @@ pub struct Flutter {
     pub state_space: bool,
     /// The limiter stays what it is in the steady flow.
     pub frozen_limiter: bool,
+    /// Crossings are sought on a coarser cloud as well.
+    pub cloud_error: bool,
 }
 
 /// How the stream is varied at one Mach number.

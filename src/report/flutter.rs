@@ -102,7 +102,7 @@ fn card(at: &At) -> Option<Card> {
         _ => ("speed", c.speed),
     };
     let facts = vec![
-        Fact::new(name, format!("± {}", tables::percent(c.error))),
+        Fact::new(name, format!("± {}", tables::percent(Some(c.bar()).filter(|b| b.is_finite())))),
         Fact::new("k", number(c.reduced_frequency)),
         Fact::new("frequency", number(c.frequency)),
         Fact::new("of natural mode", c.mode.to_string()),

@@ -6,6 +6,7 @@
 //! that a former run left serve other structures without any flow; their error bar is the change when the nearest ones are left out.
 use std::path::Path;
 
+mod coarser;
 mod held;
 mod kept;
 mod limit_cycles;
@@ -253,7 +254,10 @@ fn at_mach(
         }
         false => place.boundary((StreamRatio::SAME, true), monitor)?,
     };
-    let Some(at) = at else { return Ok(None) };
+    let Some(mut at) = at else { return Ok(None) };
+    if plan.cloud_error && !place.against_coarser(&mut at, monitor)? {
+        return Ok(None);
+    }
     let mut at = placed(at, &own, mach, held);
     let marches = cycles_at(case, mach).is_some_and(|lco| lco.march) && !at.cycles.is_empty();
     let whole = !marches || marched::march(case, &mut at, input, monitor)?;
@@ -303,6 +307,35 @@ impl Place<'_> {
             at.warnings.push("the steady flow did not converge: forces about it are doubtful".into());
         }
         Ok(Some(at))
+    }
+}
+
+impl Place<'_> {
+    /// Holds the crossings against those of a coarser cloud in the same stream, where there is one; false when the monitor says stop.
+    fn against_coarser(&self, at: &mut FlutterAt, monitor: &mut dyn Monitor) -> Result<bool, RunError> {
+        let Some(own) = coarser::coarser(self.own, at.particles).filter(|_| !at.crossings.is_empty()) else {
+            return Ok(true);
+        };
+        let stream = at.trim.as_ref().map_or(StreamRatio::SAME, |trim| StreamRatio {
+            pressure: trim.dynamic_pressure / self.scales.reference.dynamic_pressure(),
+            temperature: trim.speed_ratio * trim.speed_ratio,
+        });
+        monitor.note("the same on a coarser cloud");
+        let plan = Plan { state_space: false, ..self.plan.clone() };
+        let place = Place { own: &own, plan: &plan, ..*self };
+        match place.boundary((stream, false), monitor) {
+            Ok(Some(coarse)) => {
+                at.cpu_seconds += coarse.cpu_seconds;
+                coarser::compare(at, &coarse);
+                Ok(true)
+            }
+            Ok(None) => Ok(false),
+            // a cloud that is too coarse for the body tells nothing of the one that is not
+            Err(problem) => {
+                monitor.note(&format!("the coarser cloud tells nothing: {problem}"));
+                Ok(true)
+            }
+        }
     }
 }
 

@@ -152,7 +152,7 @@ pub(crate) fn balance_from_rest(case: &Case, multiples: &[usize]) -> Vec<Stage> 
 }
 
 /// True where a cloud with `factor` times the spacing fits into the domain: a start on one that does not is left out.
-fn divides(case: &Case, factor: f64) -> bool {
+pub(crate) fn divides(case: &Case, factor: f64) -> bool {
     /// What a number of cells may be off a whole one, relative to it.
     const MISFIT: f64 = 1e-7;
     let Some((domain, spacing)) = case.cloud.domain.as_ref().zip(case.cloud.spacing.as_ref()) else { return true };

@@ -15,7 +15,7 @@ fn forces_of_small_motions_are_those_of_harmonic_balance_and_give_a_boundary() {
     let folder = tempfile::tempdir().unwrap();
     let places = |name: &str| Places { input: folder.path().into(), out: folder.path().join(name) };
     let structure = "[structure]\nelastic_axis = -0.5\nmass_ratio = 100\nx_alpha = 0.25\nr_alpha2 = 0.25\n\
-                     frequency_ratio = 0.2\nreduced_speed = 4.0\n[flutter]\nreduced_frequencies = [0.05, 0.1, 0.2]\n";
+                     frequency_ratio = 0.2\nreduced_speed = 4.0\n[flutter]\ncloud_error = false\nreduced_frequencies = [0.05, 0.1, 0.2]\n";
     let case = case::read(&format!("{SECTION}{structure}"), "flutter").unwrap_or_else(|e| panic!("{e}"));
     let boundary = run::flutter::flutter(&case, &places("flutter"), &mut Silent).unwrap().unwrap();
     let at = &boundary.flutter[0];
@@ -92,7 +92,7 @@ fn stored_forces_serve_again(folder: &Path, structure: &str, first: &FlutterRow)
 /// The altitude of flutter is where a stream of that density and temperature makes it flutter at its own speed.
 fn in_the_atmosphere(folder: &Path) {
     let wing = "[structure]\nelastic_axis = -0.5\nmass = \"60 kg/m\"\nx_alpha = 0.25\nr_alpha2 = 0.25\n\
-                frequency = { plunge = \"2 Hz\", pitch = \"10 Hz\" }\n[flutter]\nreduced_frequencies = [0.05, 0.1, 0.2]\n";
+                frequency = { plunge = \"2 Hz\", pitch = \"10 Hz\" }\n[flutter]\ncloud_error = false\nreduced_frequencies = [0.05, 0.1, 0.2]\n";
     let stream = |pressure: f64, temperature: f64| {
         let units = format!("[flow]\npressure = {pressure:e}\ntemperature = \"{temperature} K\"");
         SECTION.replace("[flow]", &units)

@@ -31,7 +31,7 @@ fn standing(case: &Case) -> Vec<f64> {
 #[test]
 fn forces_are_those_about_the_equilibrium_where_flutter_begins() {
     let case = read(&format!(
-        "{SECTION}{NUMBERS}speed_index = 0.3\n[flutter]\ntrim = true\nreduced_frequencies = [0.1, 0.3]\nfrequencies = 3\n"
+        "{SECTION}{NUMBERS}speed_index = 0.3\n[flutter]\ncloud_error = false\ntrim = true\nreduced_frequencies = [0.1, 0.3]\nfrequencies = 3\n"
     ));
     let at = trimmed(&case, "out");
     let (trim, first) = (at.trim.clone().unwrap(), &at.crossings[0]);

@@ -87,7 +87,7 @@ fn table(boundary: &Boundary) -> String {
     let matched = boundary.flutter.iter().any(|at| at.matching != Matching::None);
     let more = if matched { "     density  dynamic pressure  mass ratio  altitude" } else { "" };
     let mut text = format!(
-        "    Mach  what          mode   V/V_ref  speed index        k  frequency  over pitch     error  g-method{more}\n"
+        "    Mach  what          mode   V/V_ref  speed index        k  frequency  over pitch     error     cloud  g-method{more}\n"
     );
     for at in &boundary.flutter {
         if at.crossings.is_empty() {
@@ -122,7 +122,7 @@ fn rows(at: &FlutterAt) -> String {
     };
     let row = |c: &FlutterRow| {
         format!(
-            "{:>8}  {:<12} {:>5}  {:>8.4}  {:>11}  {:>7.4}  {:>9.4}  {:>10}  {:>6.2} %  {:>8}{}{}\n",
+            "{:>8}  {:<12} {:>5}  {:>8.4}  {:>11}  {:>7.4}  {:>9.4}  {:>10}  {:>6.2} %  {:>8}  {:>8}{}{}\n",
             at.mach,
             c.kind,
             c.mode,
@@ -132,6 +132,7 @@ fn rows(at: &FlutterAt) -> String {
             c.frequency,
             optional(c.frequency_ratio),
             100.0 * c.error,
+            c.cloud_error.map_or_else(|| "-".to_owned(), |e| format!("{:.2} %", 100.0 * e)),
             c.g_method.map_or_else(|| "-".to_owned(), |g| format!("{g:+.0e}")),
             matched(c),
             if c.extrapolated { "  beyond the frequencies computed" } else { "" }

@@ -56,6 +56,13 @@ pub(in super::super) static FLUTTER: Table = Table::of(&[
         "Write the structure in the stream as a linear system of first order as well, at the first crossing of each Mach number.",
     ),
     FROZEN_LIMITER,
+    Field::defaulted(
+        "cloud_error",
+        Kind::Flag,
+        Absent::Flag(true),
+        "Tell by how much each speed is another on a coarser cloud: that with twice the spacing, or the one before of those that the program \
+         chooses.",
+    ),
 ]);
 
 const MATCHING: &[(&str, &str)] = &[

@@ -113,7 +113,7 @@ pub(super) fn boundary(found: &Found) -> Option<Chart> {
     let (mut x, mut y) = (Vec::new(), Vec::new());
     // an altitude is no power of the speed: its bars are not known
     for (mach, c) in crossings().filter(|_| matching != "altitude") {
-        let part = c.error.unwrap_or(f64::NAN) * if matching == "density" { 2.0 } else { 1.0 };
+        let part = c.bar() * if matching == "density" { 2.0 } else { 1.0 };
         let (at, half) = (place(c), part * place(c));
         if half.is_finite() {
             let (below, above) = (at - half, at + half);

@@ -85,9 +85,17 @@ pub(super) struct Crossing {
     pub(super) frequency_ratio: Option<f64>,
     /// Of the root of the dynamic pressure; none where nothing is known of it.
     pub(super) error: Option<f64>,
+    pub(super) cloud_error: Option<f64>,
     pub(super) g_method: Option<f64>,
     pub(super) extrapolated: bool,
     pub(super) shape: Vec<Share>,
+}
+
+impl Crossing {
+    /// Half the length of its error bar, over the speed: the greater of both errors.
+    pub(super) fn bar(&self) -> f64 {
+        self.error.into_iter().chain(self.cloud_error).reduce(f64::max).unwrap_or(f64::NAN)
+    }
 }
 
 /// A natural mode.

@@ -42,6 +42,7 @@ pub(super) fn crossings(found: &Found) -> Table {
         "frequency",
         "over pitch",
         "± (speed)",
+        "coarser cloud",
         "g-method",
     ];
     if matched {
@@ -61,6 +62,7 @@ pub(super) fn crossings(found: &Found) -> Table {
             number(c.frequency),
             optional(c.frequency_ratio),
             percent(c.error),
+            c.cloud_error.map_or_else(|| "–".to_owned(), |e| percent(Some(e))),
             g,
         ];
         if matched {

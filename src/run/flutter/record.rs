@@ -28,7 +28,7 @@ const CONVENTIONS: &str = "match none: speeds at constant density and Mach numbe
                            nose up positive; shapes: the largest amplitude is 1 with phase 0, angles in radians, displacements of rigid \
                            bodies in b, modes in what their files have";
 
-const CROSSING_COLUMNS: [&str; 16] = [
+const CROSSING_COLUMNS: [&str; 17] = [
     "mach",
     "kind",
     "mode",
@@ -40,6 +40,7 @@ const CROSSING_COLUMNS: [&str; 16] = [
     "frequency",
     "frequency_ratio",
     "error",
+    "cloud_error",
     "g_method",
     "density",
     "dynamic_pressure",
@@ -79,7 +80,7 @@ const HISTORY_COLUMNS: [&str; 12] = [
 ];
 
 /// A change from decay to growth, or back.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct FlutterRow {
     /// `flutter`, `restabilised` or `divergence`.
     pub kind: String,
@@ -110,6 +111,8 @@ pub struct FlutterRow {
     /// Relative change of the speed, of the root of the dynamic pressure, between the last two interpolations.
     #[serde(deserialize_with = "or_infinite")]
     pub error: f64,
+    /// Relative change of the same on a coarser cloud; none where there is no such cloud, or no such crossing on it.
+    pub cloud_error: Option<f64>,
     /// What the g-method finds of the same, less one; none at divergence, and where it finds nothing.
     pub g_method: Option<f64>,
     /// True when k lies beyond the frequencies that forces were computed at.
@@ -207,6 +210,8 @@ pub struct FlutterAt {
     pub orders: f64,
     /// Particles.
     pub particles: usize,
+    /// Particles of the coarser cloud; zero where there was none.
+    pub coarser_particles: usize,
     /// Linear iterations of all columns.
     pub linear_iterations: usize,
     /// Greatest relative residual of a column.
@@ -360,6 +365,7 @@ impl Boundary {
                 Entry::from(c.frequency),
                 number(c.frequency_ratio),
                 Entry::from(c.error),
+                number(c.cloud_error),
                 number(c.g_method),
                 Entry::from(c.density),
                 Entry::from(c.dynamic_pressure),
