@@ -10,7 +10,7 @@ pub use limit_cycles::{GasResponse, LimitCycles};
 pub use stream::StreamRatio;
 
 use super::structure::StructureForce;
-use super::{Accuracy, Case, Dual, Motion, ParticleMotion, Ratio, Steady, Structure, Temporal, Time};
+use super::{Case, Dual, Motion, ParticleMotion, Steady, Structure, Temporal, Time};
 
 /// The table `[flutter]`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -93,13 +93,9 @@ impl Case {
     pub(super) fn settled_case(&self, particles: ParticleMotion) -> Self {
         /// Orders that the residual falls by: what is left of it is a force that does not belong to the motion.
         const ORDERS: f64 = 9.0;
-        /// Accuracy of the steady loads on a cloud that the program chooses: forces of small motions are surer on it than drag is.
-        const LOADS: f64 = 0.05;
         let mut case = self.clone();
         let steady = if let Temporal::Steady(steady) = &self.time { steady.clone() } else { Steady::default() };
         case.time = Temporal::Steady(Steady { orders: ORDERS, ..steady });
-        let usual = Accuracy { loads: Ratio(LOADS), ..Accuracy::in_dimension(self.dimension.map_or(2, usize::from)) };
-        case.accuracy = self.accuracy.or(self.cloud.spacing.is_none().then_some(usual));
         case.motion = Some(Motion { particles, law: self.motion.clone().map_or_else(Default::default, |m| m.law) });
         case.output.report = false;
         case

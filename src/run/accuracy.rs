@@ -29,6 +29,10 @@ const STEEPEST: f64 = 1.5;
 /// Lengths of the shortest body behind which wakes are followed, and in which spacing, in that at the walls, in 2-D and 3-D.
 const WAKE: f64 = 2.0;
 const WAKE_SPACING: [f64; 2] = [1.0, 2.0];
+/// Particles per level of the cloud of small motions, and greatest number of particles that its spacing is chosen for, as if it were
+/// the third of a family.
+const FEW_LAYERS: f64 = 6.0;
+const SMALL_MOTION_PARTICLES: [usize; 2] = [50_000, 150_000];
 /// Fewest particles per level of refinement.
 const FEWEST: f64 = 3.0;
 /// Factor on the spacing of the first cloud.
@@ -93,6 +97,17 @@ pub(crate) fn with_cloud<'a, const D: usize>(case: &'a Case, surface: Option<&Su
         filled
     };
     Cow::Owned(chosen(if D == 3 { affordable(&chosen, surface, along) } else { along }))
+}
+
+/// The case on one cloud where it leaves all of it to the program: for forces of small motions, which are surer on it than drag is.
+pub(crate) fn on_one_cloud<const D: usize>(case: Case, surface: Option<&Surface<D>>) -> Case {
+    if case.cloud.spacing.is_some() || case.accuracy.is_some() || surface.is_none() {
+        return case;
+    }
+    let mut asked = case;
+    asked.cloud.layers = asked.cloud.layers.or(Some(FEW_LAYERS));
+    asked.accuracy = Some(Accuracy { particles: SMALL_MOTION_PARTICLES[D - 2], ..Accuracy::in_dimension(D) });
+    Case { accuracy: None, ..with_cloud(&asked, surface).into_owned() }
 }
 
 /// The spacing, no finer than `spacing`, at which the third cloud of a family in space leaves room in the particles allowed: thin

@@ -36,6 +36,7 @@ use self::stored::Stored;
 use super::error::RunError;
 use super::folder::{self, Places};
 use super::monitor::Monitor;
+use super::one_cloud::on_one_cloud;
 use super::record::Log;
 use super::session::{Outcome, Session};
 use super::setup;
@@ -242,7 +243,7 @@ fn at_mach(
     input: &Path,
     monitor: &mut dyn Monitor,
 ) -> Result<Option<(FlutterAt, bool)>, RunError> {
-    let own = case.flutter_case(mach);
+    let own = on_one_cloud(case.flutter_case(mach), input)?;
     let held = Held::of(&own, input)?;
     let scales = Scales::of(&own, held.chord, plan.matching);
     let place = Place { own: &own, held: &held, scales: &scales, plan, lco: cycles_at(case, mach), input };
@@ -313,7 +314,7 @@ impl Place<'_> {
 impl Place<'_> {
     /// Holds the crossings against those of a coarser cloud in the same stream, where there is one; false when the monitor says stop.
     fn against_coarser(&self, at: &mut FlutterAt, monitor: &mut dyn Monitor) -> Result<bool, RunError> {
-        let Some(own) = coarser::coarser(self.own, at.particles).filter(|_| !at.crossings.is_empty()) else {
+        let Some(own) = coarser::coarser(self.own).filter(|_| !at.crossings.is_empty()) else {
             return Ok(true);
         };
         let stream = at.trim.as_ref().map_or(StreamRatio::SAME, |trim| StreamRatio {

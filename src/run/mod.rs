@@ -24,6 +24,7 @@ mod inspect;
 mod look;
 mod measure;
 mod monitor;
+mod one_cloud;
 mod pilot;
 mod recipe;
 mod record;

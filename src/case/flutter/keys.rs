@@ -60,8 +60,7 @@ pub(in super::super) static FLUTTER: Table = Table::of(&[
         "cloud_error",
         Kind::Flag,
         Absent::Flag(true),
-        "Tell by how much each speed is another on a coarser cloud: that with twice the spacing, or the one before of those that the program \
-         chooses.",
+        "Tell by how much each speed is another on a cloud with twice the spacing.",
     ),
 ]);
 

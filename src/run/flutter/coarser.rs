@@ -3,19 +3,13 @@ use super::super::{accuracy, recipe};
 use super::record::FlutterAt;
 use crate::case::Case;
 
-/// Spacing of the coarser cloud over that of a case that gives one.
+/// Spacing of the coarser cloud over that of the case.
 const FACTOR: f64 = 2.0;
 
-/// The case `own`, whose last cloud has so many particles, on a coarser one: the one before where the program chooses clouds, else one with
-/// twice the spacing; `None` where that does not fit into the domain.
-pub(super) fn coarser(own: &Case, particles: usize) -> Option<Case> {
-    if let Some(asked) = accuracy::asked(own) {
-        let mut case = own.clone();
-        let fewer = particles.saturating_sub(1);
-        case.accuracy = Some(crate::case::Accuracy { particles: fewer, ..asked });
-        return (fewer > 0).then_some(case);
-    }
-    recipe::divides(own, FACTOR).then(|| accuracy::scaled(own, FACTOR))
+/// The case `own` with twice the spacing; `None` where that does not fit into the domain, or the case asks for a family of clouds.
+pub(super) fn coarser(own: &Case) -> Option<Case> {
+    let one = accuracy::asked(own).is_none() && own.cloud.spacing.is_some();
+    (one && recipe::divides(own, FACTOR)).then(|| accuracy::scaled(own, FACTOR))
 }
 
 /// Tells each crossing of `at` how far the one like it is on the coarser cloud.
@@ -30,6 +24,9 @@ pub(super) fn compare(at: &mut FlutterAt, coarse: &FlutterAt) {
 
 #[cfg(test)]
 mod tests {
+    use std::path::Path;
+
+    use super::super::super::setup;
     use super::super::record::FlutterRow;
     use super::*;
 
@@ -50,16 +47,20 @@ mod tests {
     }
 
     #[test]
-    fn the_coarser_cloud_has_twice_the_spacing_or_is_the_one_before() {
+    fn the_coarser_cloud_has_twice_the_spacing_of_one_that_is_known() {
         let case = |cloud: &str| {
             let text = format!("[flow]\nmach = 0.5\n[[body]]\nnaca = \"0012\"\n[flutter]\n{cloud}");
             crate::case::read(&text, "case.toml").unwrap().flutter_case(0.5)
         };
-        let given = coarser(&case("[cloud]\nspacing = 0.1\n"), 1000).unwrap();
-        assert_eq!((given.cloud.spacing.map(|h| h.0), given.accuracy.is_none()), (Some(0.2), true));
-        let chosen = coarser(&case(""), 1000).unwrap();
-        assert_eq!((chosen.cloud.spacing.is_none(), chosen.accuracy.map(|a| a.particles)), (true, Some(999)));
+        let given = coarser(&case("[cloud]\nspacing = 0.1\n")).unwrap();
+        assert_eq!(given.cloud.spacing.map(|h| h.0), Some(0.2));
+        let open = case("");
+        assert!(coarser(&open).is_none());
+        let surface = setup::surface::<2>(&open, Path::new("")).unwrap().0;
+        let chosen = coarser(&accuracy::on_one_cloud(open, surface.as_ref())).unwrap();
+        assert_eq!((chosen.cloud.spacing.map(|h| h.0), chosen.accuracy.is_none()), (Some(1.0 / 32.0), true));
         let three = "[cloud]\nspacing = 0.1\ndomain = { min = [-1.5, -1.5], max = [1.5, 1.4] }\n";
-        assert!(coarser(&case(three), 1000).is_none());
+        assert!(coarser(&case(three)).is_none());
+        assert!(coarser(&case("[accuracy]\nloads = 0.02\n")).is_none());
     }
 }

@@ -7,6 +7,7 @@ use std::path::Path;
 
 use super::super::error::RunError;
 use super::super::monitor::Monitor;
+use super::super::one_cloud::on_one_cloud;
 use super::super::session::{Outcome, Session};
 use super::super::watch::Alike;
 use super::record::{FlutterAt, LimitCycle, MarchedCycle};
@@ -37,7 +38,10 @@ pub(super) fn march(
     ));
     // at a speed x times that of the case times pass x times as fast
     let period = cycle.speed_ratio / cycle.frequency;
-    let own = case.cycle_case((at.mach, cycle.speed_ratio), (&start(cycle, TAU / period), &at.borne), [period, MOST]);
+    let own = on_one_cloud(
+        case.cycle_case((at.mach, cycle.speed_ratio), (&start(cycle, TAU / period), &at.borne), [period, MOST]),
+        input,
+    )?;
     let mut session = Session::open(&own, input)?;
     let summary = match session.solve(monitor) {
         Ok(Outcome::Finished(summary)) => summary,

@@ -9,6 +9,7 @@ use num_complex::Complex64;
 
 use super::super::error::RunError;
 use super::super::monitor::Monitor;
+use super::super::one_cloud::on_one_cloud;
 use super::super::record::Log;
 use super::super::record::summary::Clock;
 use super::super::session::{Outcome, Session};
@@ -25,7 +26,8 @@ pub(super) fn columns(
     keep: &mut dyn FnMut(&Matrices) -> Result<(), RunError>,
     monitor: &mut dyn Monitor,
 ) -> Result<bool, RunError> {
-    let mut session = Session::open(&case.gaf_steady_case(plan), input)?;
+    let steady = on_one_cloud(case.gaf_steady_case(plan), input)?;
+    let mut session = Session::open(&steady, input)?;
     let mut stopped = false;
     let mut then = |source: &mut dyn ForceSource, log: &mut Log<'_>| {
         for &k in &plan.reduced_frequencies {
