@@ -270,26 +270,16 @@ impl<'a> Search<'a> {
             reference: s.case_reference(),
             motions: branches.iter().enumerate().flat_map(|(m, b)| b.iter().map(move |p| (m, p))).map(motion).collect(),
             state_space,
-            cycles: Vec::new(),
             reduced_frequencies: self.samples.iter().map(|x| s.reduced_frequency(x.0)).collect(),
             forces: self.samples.iter().map(|x| x.1.iter().map(|z| [z.re, z.im]).collect()).collect(),
             coordinates: self.names.clone(),
             still: self.still.clone(),
-            borne: Vec::new(),
-            trim: None,
             moved: vec![Mark::default(); self.names.len()],
-            chord: 0.0,
             semichord: s.semichord,
-            alpha_deg: 0.0,
-            read: None,
-            steady: [0.0; 3],
-            orders: 0.0,
-            particles: 0,
-            coarser_particles: 0,
             linear_iterations: self.iterations,
             residual: self.residual,
-            cpu_seconds: 0.0,
             warnings,
+            ..FlutterAt::default()
         }
     }
 
