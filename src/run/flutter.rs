@@ -35,7 +35,7 @@ use self::skin::Skin;
 use self::stored::Stored;
 use super::error::RunError;
 use super::folder::{self, Places};
-use super::monitor::Monitor;
+use super::monitor::{Monitor, Quiet};
 use super::one_cloud::on_one_cloud;
 use super::record::Log;
 use super::session::{Outcome, Session};
@@ -309,9 +309,7 @@ impl Place<'_> {
         }
         Ok(Some(at))
     }
-}
 
-impl Place<'_> {
     /// Holds the crossings against those of a coarser cloud in the same stream, where there is one; false when the monitor says stop.
     fn against_coarser(&self, at: &mut FlutterAt, monitor: &mut dyn Monitor) -> Result<bool, RunError> {
         let Some(own) = coarser::coarser(self.own).filter(|_| !at.crossings.is_empty()) else {
@@ -324,7 +322,8 @@ impl Place<'_> {
         monitor.note("the same on a coarser cloud");
         let plan = Plan { state_space: false, ..self.plan.clone() };
         let place = Place { own: &own, plan: &plan, ..*self };
-        match place.boundary((stream, false), monitor) {
+        // what that cloud is too coarse for is told by the difference
+        match place.boundary((stream, false), &mut Quiet { monitor }) {
             Ok(Some(coarse)) => {
                 at.cpu_seconds += coarse.cpu_seconds;
                 coarser::compare(at, &coarse);

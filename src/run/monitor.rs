@@ -27,6 +27,21 @@ impl Monitor for Silent {
     fn note(&mut self, _: &str) {}
 }
 
+/// Passes on all but notes and warnings.
+pub(crate) struct Quiet<'a> {
+    pub(crate) monitor: &'a mut dyn Monitor,
+}
+
+impl Monitor for Quiet<'_> {
+    fn tick(&mut self, tick: &Tick) {
+        self.monitor.tick(tick);
+    }
+    fn note(&mut self, _: &str) {}
+    fn stop(&self) -> bool {
+        self.monitor.stop()
+    }
+}
+
 /// State of a run after an iteration.
 #[derive(Clone, Copy, Debug)]
 pub struct Tick {

@@ -11,7 +11,7 @@ use super::error::RunError;
 use super::flutter::{self, Boundary};
 use super::gaf::{self, Matrices};
 use super::measure::{self, Measured, Value};
-use super::monitor::{Monitor, Tick};
+use super::monitor::{Monitor, Quiet};
 use super::session::{Outcome, Session};
 use super::solids::{self, SolidSummary};
 use crate::case::{Case, Length, read};
@@ -437,21 +437,6 @@ fn reason(problem: &RunError) -> String {
     match problem {
         RunError::Time { source, .. } => source.to_string(),
         other => other.to_string(),
-    }
-}
-
-/// Passes on all but notes.
-struct Quiet<'a> {
-    monitor: &'a mut dyn Monitor,
-}
-
-impl Monitor for Quiet<'_> {
-    fn tick(&mut self, tick: &Tick) {
-        self.monitor.tick(tick);
-    }
-    fn note(&mut self, _: &str) {}
-    fn stop(&self) -> bool {
-        self.monitor.stop()
     }
 }
 
