@@ -68,7 +68,11 @@ impl Reader<'_> {
             };
             let here = join(path, field.key);
             if !seen.insert(field.key) {
-                let message = format!("`{here}` is given twice, also as `{}`", field.alias.unwrap_or(field.key));
+                let other = match (field.alias, table.within) {
+                    (None, Some(within)) => format!("in `{}`", join(path, within)),
+                    (alias, _) => format!("as `{}`", alias.unwrap_or(field.key)),
+                };
+                let message = format!("`{here}` is given twice, also {other}");
                 self.draft.fail_at(&here, key.span(), message).hint(format!("keep only `{}`", field.key));
                 continue;
             }

@@ -502,6 +502,7 @@ mod tests {
                         Metric::DragLoopDifference => &["phase", "CD"],
                         Metric::SectionCpRms => &["y", "x_c", "Cp"],
                         m if m.needs_cases() => &["exact"],
+                        m if m.is_of_forces() => &["k", "re", "im"],
                         _ => &["x_c", "Cp"],
                     };
                     let upper = table.only("surface", "upper");
