@@ -144,7 +144,7 @@ fn sought(
         }
     }
     folder::finish(&places.out)?;
-    Kept::remove(&places.out);
+    folder::forget_kept(&places.out);
     Ok(Some(all))
 }
 

@@ -170,6 +170,21 @@ pub(crate) fn finish(out: &Path) -> Result<(), RunError> {
     }
 }
 
+/// Takes what is kept of a boundary out of a folder in which all is finished.
+pub(crate) fn forget_kept(out: &Path) {
+    // a file that stays is not read where all is finished
+    let _ = fs::remove_file(out.join(KEPT));
+}
+
+/// Checksum of version, case and its files, which lie in `input`.
+pub(crate) fn identity(case: &Case, input: &Path) -> String {
+    let mut sum = crc32fast::Hasher::new();
+    sum.update(env!("CARGO_PKG_VERSION").as_bytes());
+    sum.update(write(case).as_bytes());
+    case.files().for_each(|file| sum.update(&fs::read(input.join(file)).unwrap_or_default()));
+    format!("{:08x}", sum.finalize())
+}
+
 /// Takes the mark from a run that goes on, and the files that it was writing when it was killed.
 pub(crate) fn reopen(out: &Path) -> Result<(), RunError> {
     for unfinished in unfinished_files(out) {

@@ -2,16 +2,15 @@
 //!
 //! They are independent of one another, so that those that follow have the bits that they would have had. What is kept serves the same
 //! case, with the same files and the same version, alone.
-use std::fs;
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
 
 use super::super::error::RunError;
-use super::super::folder::KEPT;
+use super::super::folder::{self, KEPT};
 use super::record::{FlutterAt, LimitCycle, MotionRow};
 use super::state_space::StateSpaceAt;
-use crate::case::{Case, write};
+use crate::case::Case;
 use crate::observe::table::write_json;
 
 /// All that is finished of one case.
@@ -36,8 +35,8 @@ struct Finished {
 impl Kept {
     /// What `out` has of `case`, whose files lie in `input`; nothing where it has none, or another one.
     pub(super) fn of(case: &Case, input: &Path, out: &Path) -> Self {
-        let key = key(case, input);
-        let read = fs::read_to_string(out.join(KEPT)).ok().and_then(|text| serde_json::from_str::<Self>(&text).ok());
+        let key = folder::identity(case, input);
+        let read = folder::text(out, KEPT).ok().and_then(|text| serde_json::from_str::<Self>(&text).ok());
         read.filter(|kept| kept.key == key).unwrap_or(Self { key, finished: Vec::new() })
     }
 
@@ -64,20 +63,6 @@ impl Kept {
     pub(super) fn write(&self, out: &Path) -> Result<(), RunError> {
         Ok(write_json(&out.join(KEPT), self)?)
     }
-
-    /// Takes it out of a folder that is finished.
-    pub(super) fn remove(out: &Path) {
-        // a file that stays is not read where all is finished
-        let _ = fs::remove_file(out.join(KEPT));
-    }
-}
-
-fn key(case: &Case, input: &Path) -> String {
-    let mut sum = crc32fast::Hasher::new();
-    sum.update(env!("CARGO_PKG_VERSION").as_bytes());
-    sum.update(write(case).as_bytes());
-    case.files().for_each(|file| sum.update(&fs::read(input.join(file)).unwrap_or_default()));
-    format!("{:08x}", sum.finalize())
 }
 
 #[cfg(test)]
@@ -107,7 +92,7 @@ mod tests {
         let again = Kept::of(&case(0.5), input, out).at(0.7).unwrap();
         assert_eq!(format!("{again:?}"), format!("{at:?}"));
         assert!(Kept::of(&case(0.6), input, out).at(0.7).is_none());
-        Kept::remove(out);
+        folder::forget_kept(out);
         assert!(Kept::of(&case(0.5), input, out).at(0.7).is_none());
     }
 }
