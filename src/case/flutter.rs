@@ -120,7 +120,7 @@ impl Case {
         // a rigid cloud turns with a rigid body, as in any march
         case.motion.clone_from(&self.motion);
         let (trimmed, pressure) = (self.is_trimmed(), case.flow.units().pressure());
-        let held: Vec<f64> = borne.iter().map(|f| if trimmed { 0.0 } else { -f * pressure }).collect();
+        let held: Vec<f64> = borne.iter().map(|f| -f * pressure).collect();
         let (dimension, mut rest, mut held) = (usize::from(case.dimension.unwrap_or(2)), start, &held[..]);
         for body in 0..case.bodies.len() {
             let Some(k) = case.structure_of(body).and_then(|s| case.structures.iter().position(|o| o == s)) else {

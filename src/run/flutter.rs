@@ -28,7 +28,7 @@ pub use state_space::StateSpaceAt;
 
 use self::held::Held;
 use self::kept::Kept;
-use self::limit_cycles::{Bears, Seek};
+use self::limit_cycles::Seek;
 use self::scales::Scales;
 use self::search::Search;
 use self::skin::Skin;
@@ -44,6 +44,7 @@ use super::solids::{told_of_own_modes, with_own_modes};
 use super::studies::ForceSource;
 use crate::case::{Case, Flutter as Plan, GasResponse, LimitCycles, Matching, StreamRatio};
 use crate::physics::atmosphere;
+use crate::structure::limit_cycle::Borne;
 
 /// Parts by which the gas of a case may differ from the air of the standard atmosphere.
 const AIR: f64 = 0.005;
@@ -293,7 +294,7 @@ impl Place<'_> {
             at.borne = source.borne();
             if let Some(lco) = self.lco.filter(|_| cycles) {
                 let springs = search::springs_of_the_case(source.springs(), stream);
-                let borne = self.plan.trim.then(|| Bears { forces: at.borne.clone(), x: stream.pressure.sqrt() });
+                let borne = self.plan.trim.then(|| Borne { forces: at.borne.clone(), x: stream.pressure.sqrt() });
                 at.add_cycles(Seek::new(lco, &mut search, (springs, borne))?.run(Some((source, log))));
             }
             found = Some(at);

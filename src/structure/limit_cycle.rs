@@ -64,14 +64,14 @@ pub struct Oscillator<'a> {
     /// The coordinate whose amplitude is given.
     pub coordinate: usize,
     /// What the gas does at rest, where the structure bears it; else bodies are in equilibrium as drawn, at any speed.
-    pub borne: Option<Borne<'a>>,
+    pub borne: Option<&'a Borne>,
 }
 
 /// Forces of the gas on a structure in equilibrium with it, which motions are about.
-#[derive(Clone, Copy)]
-pub struct Borne<'a> {
+#[derive(Clone, Debug, PartialEq)]
+pub struct Borne {
     /// Per coordinate.
-    pub forces: &'a [f64],
+    pub forces: Vec<f64>,
     /// x at that equilibrium.
     pub x: f64,
 }

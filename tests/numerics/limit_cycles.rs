@@ -102,7 +102,8 @@ fn what_is_borne_at_rest_shifts_the_mean_alone_where_springs_are_linear() {
     let (_, first) = free.begin(amplitude, UPTO).into_iter().find(|(kind, _)| *kind == Kind::Flutter).unwrap();
     let alone = free.solve(&first, amplitude, 2, None).unwrap();
     let (lift, x) = ([2e-4, 1e-4], 5.0);
-    let bearing = Oscillator { borne: Some(Borne { forces: &lift, x }), ..free };
+    let borne = Borne { forces: lift.to_vec(), x };
+    let bearing = Oscillator { borne: Some(&borne), ..free };
     let found = bearing.solve(&first, amplitude, 2, None).unwrap();
     assert!((found.x / alone.x - 1.0).abs() < 1e-9 && (found.omega / alone.omega - 1.0).abs() < 1e-9);
     let (mean, still, square) = (&found.motion.mean, forces(0.0), found.x * found.x);

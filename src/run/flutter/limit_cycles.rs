@@ -46,14 +46,8 @@ pub(super) struct Seek<'s, 'a> {
     plan: &'s LimitCycles,
     search: &'s mut Search<'a>,
     springs: Vec<Spring>,
-    borne: Option<Bears>,
+    borne: Option<Borne>,
     coordinate: usize,
-}
-
-/// Forces of the steady flow that the structure bears, and the speed over that of the case at which it does.
-pub(super) struct Bears {
-    pub(super) forces: Vec<f64>,
-    pub(super) x: f64,
 }
 
 impl<'s, 'a> Seek<'s, 'a> {
@@ -61,7 +55,7 @@ impl<'s, 'a> Seek<'s, 'a> {
     pub(super) fn new(
         plan: &'s LimitCycles,
         search: &'s mut Search<'a>,
-        (springs, borne): (Vec<Spring>, Option<Bears>),
+        (springs, borne): (Vec<Spring>, Option<Borne>),
     ) -> Result<Self, RunError> {
         let names = search.names().to_vec();
         let refuse = |what: String, hint| RunError::Unsupported { what, hint };
@@ -130,7 +124,7 @@ impl<'s, 'a> Seek<'s, 'a> {
         let fit = self.search.fit()?;
         let forces = |kappa: f64| fit.at(Complex64::new(0.0, kappa));
         let (matrices, coordinate) = (self.search.matrices(), self.coordinate);
-        let borne = self.borne.as_ref().map(|b| Borne { forces: &b.forces, x: b.x });
+        let borne = self.borne.as_ref();
         Some(f(&Oscillator { matrices, springs: &self.springs, forces: &forces, coordinate, borne }))
     }
 
