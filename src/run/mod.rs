@@ -152,7 +152,11 @@ fn rehearse<const D: usize>(case: &Case, input: &Path) -> Result<(), RunError> {
     let case = &*accuracy::with_cloud(case, surface.as_ref());
     let mut motions = setup::motions(case, input, surface.as_ref())?;
     setup::sane(case, surface.as_ref(), &motions)?;
-    setup::bodies(case, input, surface.as_ref(), &mut motions)?;
+    let bodies = setup::bodies(case, input, surface.as_ref(), &mut motions)?;
+    // small motions are about bodies as drawn, unless they are trimmed
+    if case.flutter.is_none() || case.is_trimmed() {
+        setup::check_equilibrium(case, surface.as_ref(), &bodies)?;
+    }
     count(&setup::spec(case), surface.as_ref(), &[])?;
     Ok(())
 }

@@ -266,6 +266,9 @@ impl Run<'_> {
         let mut motions = setup::motions(self.case, self.input, surface)?;
         setup::sane(self.case, surface, &motions)?.iter().for_each(|n| monitor.warn(n));
         let bodies = setup::bodies(self.case, self.input, surface, &mut motions)?;
+        if !self.held {
+            setup::check_equilibrium(self.case, surface, &bodies)?;
+        }
         let first = bodies.last().map_or(0, |b| b.range().end);
         let solids = setup::solids(self.case, self.input, first, &mut motions, monitor)?;
         let site = Site { case: self.case, surface, motions: &motions };

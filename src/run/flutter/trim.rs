@@ -1,7 +1,8 @@
 //! Static aeroelastic trim: forces about the equilibrium of structure and gas in the stream that the structure begins to flutter in.
 //!
 //! The equilibrium goes with the stream, and the first crossing with the equilibrium: both are found in turn, from the stream of the case,
-//! until the crossing stays where its equilibrium was sought.
+//! until the crossing stays where its equilibrium was sought. Springs that become much stiffer or softer under load make it leap from one side
+//! to the other: between the two the false position is taken (Illinois, Dowell and Jarratt 1971, doi:10.1007/BF01934364).
 use super::super::error::RunError;
 use super::super::monitor::Monitor;
 use super::record::{FlutterAt, Trim};
@@ -9,7 +10,7 @@ use super::scales::Scales;
 use crate::case::{Matching, StreamRatio};
 
 /// Equilibria that are sought at most.
-const ROUNDS: usize = 8;
+const ROUNDS: usize = 12;
 
 /// What is found in a stream, with limit cycles or without; `None` when the monitor says stop.
 pub(super) type InStream<'a> = dyn Fn(StreamRatio, bool, &mut dyn Monitor) -> Result<Option<FlutterAt>, RunError> + 'a;
@@ -23,6 +24,7 @@ pub(super) fn trimmed(
     monitor: &mut dyn Monitor,
 ) -> Result<Option<FlutterAt>, RunError> {
     let (mut x, mut rounds, mut cost) = (1.0, 0, 0.0);
+    let mut between = Between::default();
     let mut at = loop {
         let stream = scales.at(x);
         let Some(mut at) = boundary(ratio(scales, x), false, monitor)? else { return Ok(None) };
@@ -38,7 +40,7 @@ pub(super) fn trimmed(
             rounds,
         });
         match (next, moved) {
-            (Some(next), Some(moved)) if moved > accuracy && rounds < ROUNDS => x = next,
+            (Some(next), Some(moved)) if moved > accuracy && rounds < ROUNDS => x = between.next(x, next),
             (Some(_), Some(moved)) => {
                 at.crossings.iter_mut().take(1).for_each(|c| c.error = c.error.max(moved));
                 if moved > accuracy {
@@ -53,7 +55,7 @@ pub(super) fn trimmed(
         }
         let told = scales.at(x);
         monitor.note(&format!(
-            "equilibrium {rounds}: first crossing at {:.4} of the speed, {:.4} of the dynamic pressure",
+            "equilibrium {rounds}: the next is sought at {:.4} of the speed, {:.4} of the dynamic pressure",
             told.speed, told.pressure
         ));
     };
@@ -64,6 +66,33 @@ pub(super) fn trimmed(
         at.warnings.extend(about.warnings.into_iter().filter(|w| !at.warnings.contains(w)).collect::<Vec<_>>());
     }
     Ok(Some(at))
+}
+
+/// Where crossings were found beyond their equilibrium and before it: the logarithm of x, and how far the crossing is from it.
+#[derive(Default)]
+struct Between {
+    beyond: Option<[f64; 2]>,
+    before: Option<[f64; 2]>,
+}
+
+impl Between {
+    /// Where the next equilibrium is sought, when one at `x` has its crossing at `found`.
+    fn next(&mut self, x: f64, found: f64) -> f64 {
+        let (at, off) = (x.ln(), (found / x).ln());
+        let (own, other) = match off > 0.0 {
+            true => (&mut self.beyond, &mut self.before),
+            false => (&mut self.before, &mut self.beyond),
+        };
+        // an end that stays counts for half each time
+        if let (Some(_), Some([_, far])) = (&own, other) {
+            *far *= 0.5;
+        }
+        *own = Some([at, off]);
+        match (self.beyond, self.before) {
+            (Some([a, up]), Some([b, down])) => (a + (b - a) * up / (up - down)).exp(),
+            _ => found,
+        }
+    }
 }
 
 /// Pressure and temperature where x is varied.
@@ -90,6 +119,21 @@ mod tests {
 
     use super::super::held::Held;
     use super::*;
+
+    #[test]
+    fn equilibria_that_leap_over_their_crossing_are_found() {
+        // a spring that stiffens under load, one that softens, and a crossing that hardly moves
+        for slope in [-3.0, -1.0, -0.2, 0.7] {
+            let crossing = |x: f64| 0.8 * (x / 0.8f64).powf(slope);
+            let (mut x, mut between, mut rounds) = (2.0, Between::default(), 0);
+            while (crossing(x) / x - 1.0).abs() > 1e-3 {
+                x = between.next(x, crossing(x));
+                rounds += 1;
+                assert!(rounds <= 20, "{slope}: {x}");
+            }
+            assert!((x / 0.8 - 1.0).abs() < 5e-3, "{slope}: {x}");
+        }
+    }
 
     /// With units the stream changes, without them the structure: both are the same to the solver.
     #[test]

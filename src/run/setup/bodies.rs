@@ -42,9 +42,6 @@ pub(crate) fn bodies<const D: usize>(
         let probes: Vec<_> =
             probes(case, body).map(|p| Vector::from_fn(|d| p.at.get(d).map_or(0.0, |x| x.0))).collect();
         let attached = Attached::new(structure, body, frame.chord, first, shapes).with_probes(&probes);
-        if matches!(case.time, Temporal::Steady(_)) && !attached.is_held() {
-            return Err(unheld(&surface.bodies[body]));
-        }
         all.push(attached);
     }
     if let Some(omega) = case.force_frequency(chord(case, Some(surface))).filter(|_| !all.is_empty()) {
@@ -84,9 +81,20 @@ pub(crate) fn frame<const D: usize>(case: &Case, surface: &Surface<D>, body: usi
     BodyFrame { chord: chord(case, Some(surface)), middle: surface.bounds_of(body).centre().to_3d() }
 }
 
+/// Refuses a steady flow beside a body that no spring holds: there is no equilibrium to find.
+pub(crate) fn check_equilibrium<const D: usize>(
+    case: &Case,
+    surface: Option<&Surface<D>>,
+    bodies: &[Attached<D>],
+) -> Result<(), RunError> {
+    let loose = bodies.iter().find(|b| matches!(case.time, Temporal::Steady(_)) && !b.is_held());
+    let name = loose.zip(surface).map(|(b, surface)| &surface.bodies[b.body]);
+    name.map_or(Ok(()), |name| Err(unheld(name)))
+}
+
 fn unheld(name: &str) -> RunError {
     RunError::Motion {
         what: format!("no spring holds the body `{name}`, so that it has no equilibrium in a steady flow"),
-        hint: "give every coordinate a spring, leave it out of `free`, or march with `[time.dual]`",
+        hint: "give every coordinate a spring without free play, leave it out of `free`, or march with `[time.dual]`",
     }
 }

@@ -12,7 +12,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 pub(crate) use self::solids::solids;
-pub(crate) use bodies::{bodies, described};
+pub(crate) use bodies::{bodies, check_equilibrium, described};
 pub(crate) use motion_feasibility::check as check_motion;
 pub(crate) use refinement::{adapted, behind_shocks};
 pub(crate) use sanity::sane;
