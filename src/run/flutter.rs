@@ -252,7 +252,7 @@ fn at_mach(
         true => {
             let boundary =
                 |stream: StreamRatio, last: bool, monitor: &mut dyn Monitor| place.boundary((stream, last), monitor);
-            trim::trimmed(&scales, (plan.accuracy, place.lco.is_some()), &boundary, monitor)?
+            trim::trimmed(&scales, (plan, place.lco.is_some()), &boundary, monitor)?
         }
         false => place.boundary((StreamRatio::SAME, true), monitor)?,
     };

@@ -7,7 +7,7 @@ use super::super::error::RunError;
 use super::super::monitor::Monitor;
 use super::record::{FlutterAt, Trim};
 use super::scales::Scales;
-use crate::case::{Matching, StreamRatio};
+use crate::case::{Flutter as Plan, Matching, StreamRatio};
 
 /// Equilibria that are sought at most.
 const ROUNDS: usize = 12;
@@ -15,11 +15,11 @@ const ROUNDS: usize = 12;
 /// What is found in a stream, with limit cycles or without; `None` when the monitor says stop.
 pub(super) type InStream<'a> = dyn Fn(StreamRatio, bool, &mut dyn Monitor) -> Result<Option<FlutterAt>, RunError> + 'a;
 
-/// The boundary about the equilibrium at its first crossing, which may move by the part `accuracy` with the last one, and the limit cycles
+/// The boundary about the equilibrium at its first crossing, which may move by the part `plan.accuracy` with the last one, and the limit cycles
 /// about it where these are asked for; `None` when the monitor says stop.
 pub(super) fn trimmed(
     scales: &Scales,
-    (accuracy, cycles): (f64, bool),
+    (plan, cycles): (&Plan, bool),
     boundary: &InStream<'_>,
     monitor: &mut dyn Monitor,
 ) -> Result<Option<FlutterAt>, RunError> {
@@ -31,7 +31,8 @@ pub(super) fn trimmed(
         rounds += 1;
         cost += at.cpu_seconds;
         at.cpu_seconds = cost;
-        let next = first(&at, scales);
+        // where others had a crossing, one that has none has it beyond all that is looked at
+        let next = first(&at, scales).or((rounds > 1).then(|| scales.upto(plan.most)));
         let moved = next.map(|next| (next / x - 1.0).abs());
         at.trim = Some(Trim {
             speed_ratio: stream.speed,
@@ -40,10 +41,10 @@ pub(super) fn trimmed(
             rounds,
         });
         match (next, moved) {
-            (Some(next), Some(moved)) if moved > accuracy && rounds < ROUNDS => x = between.next(x, next),
+            (Some(next), Some(moved)) if moved > plan.accuracy && rounds < ROUNDS => x = between.next(x, next),
             (Some(_), Some(moved)) => {
                 at.crossings.iter_mut().take(1).for_each(|c| c.error = c.error.max(moved));
-                if moved > accuracy {
+                if moved > plan.accuracy {
                     at.warnings.push(format!(
                         "after {rounds} equilibria the first crossing is still {:.1} % from where the last was sought",
                         100.0 * moved
