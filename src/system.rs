@@ -16,6 +16,10 @@ use crate::math::fourier::Instances;
 use crate::math::krylov::Numbers;
 use crate::math::multilevel::Cycle;
 use crate::math::sparse::Symmetric;
+use crate::math::sweep::norm;
+
+/// Change of the state in derivatives that are differences, over its size.
+const DIFFERENCE: f64 = 1e-6;
 
 /// Unknowns of one kind: `rows` rows of `block` values each.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -226,6 +230,21 @@ pub trait System: Sync {
     fn rhs_with_boundary(&self, u: &[f64], work: &mut Self::Work, frame: &mut Self::Frame, du: &mut [f64]) {
         self.update_boundary_state(u, work, frame);
         self.rhs(frame, u, work, du);
+    }
+    /// out = ∂R/∂u v at the state `u`, the boundary following: to rounding where a system knows its derivative, else a central
+    /// difference. The frame is left at some state beside `u`.
+    fn derivative(&self, u: &[f64], v: &[f64], (work, frame): (&mut Self::Work, &mut Self::Frame), out: &mut [f64]) {
+        let size = norm(v);
+        if size == 0.0 {
+            return out.fill(0.0);
+        }
+        let step = DIFFERENCE * norm(u).max(f64::MIN_POSITIVE.sqrt()) / size;
+        let mut moved: Vec<f64> = u.iter().zip(v).map(|(u, v)| u + step * v).collect();
+        self.rhs_with_boundary(&moved, work, frame, out);
+        moved.iter_mut().zip(u.iter().zip(v)).for_each(|(m, (u, v))| *m = u - step * v);
+        let mut back = vec![0.0; out.len()];
+        self.rhs_with_boundary(&moved, work, frame, &mut back);
+        out.iter_mut().zip(&back).for_each(|(o, b)| *o = (*o - b) / (2.0 * step));
     }
     /// Largest rate of change 1/τ of each row: explicit steps need Δt · rate ≲ 1.
     fn rates(&self, frame: &Self::Frame, u: &[f64], work: &mut Self::Work, rate: &mut [f64]);

@@ -37,6 +37,7 @@ use std::ops::{Index, Range};
 
 use crate::case::Side;
 use crate::math::Vector;
+use crate::math::jet::Scalar;
 use crate::math::sweep::sweep;
 
 pub use layout::Layout;
@@ -115,8 +116,8 @@ impl<const D: usize> Transform<D> {
 
     /// Image of a direction.
     #[inline]
-    pub fn direction(&self, v: &Vector<D>) -> Vector<D> {
-        Vector::from_fn(|d| self.sign[d] * v[d])
+    pub fn direction<S: Scalar>(&self, v: &Vector<D, S>) -> Vector<D, S> {
+        Vector::from_fn(|d| v[d] * self.sign[d])
     }
 
     /// True when this transform undoes another, up to round-off.

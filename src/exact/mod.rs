@@ -41,13 +41,13 @@ pub mod vortex_far_field;
 
 /// Density, velocity and pressure of the gas at one point.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct GasState<const D: usize> {
+pub struct GasState<const D: usize, S = f64> {
     /// Density.
-    pub density: f64,
+    pub density: S,
     /// Velocity.
-    pub velocity: Vector<D>,
+    pub velocity: Vector<D, S>,
     /// Static pressure.
-    pub pressure: f64,
+    pub pressure: S,
 }
 
 impl<const D: usize> GasState<D> {

@@ -12,6 +12,7 @@
 //! equations*, AIAA Journal 24 (1986) 1074-1080.
 use super::{Error, GasState, check_gamma};
 use crate::math::Vector;
+use crate::math::jet::Scalar;
 use std::f64::consts::PI;
 
 /// Least temperature over free-stream temperature: keeps the state finite near the core, where the formula means nothing.
@@ -57,26 +58,36 @@ impl FarFieldVortex {
 
     /// Velocity at `x` less the free stream's; zero at the centre itself.
     pub fn velocity_increment(&self, x: &Vector<2>) -> Vector<2> {
+        self.increment(x, self.circulation)
+    }
+
+    fn increment<S: Scalar>(&self, x: &Vector<2>, circulation: S) -> Vector<2, S> {
         let d = *x - self.centre;
         let r2 = d.norm_squared();
         if r2 == 0.0 {
-            return Vector::ZERO;
+            return Vector::zero();
         }
         // r sin(θ − α) is the distance from the line of flight
         let across = self.direction[0] * d[1] - self.direction[1] * d[0];
         let stretched = r2 - self.mach_squared * across * across;
-        let strength = self.circulation * (1.0 - self.mach_squared).sqrt() / (2.0 * PI * stretched);
-        Vector([d[1], -d[0]]) * strength
+        let strength = circulation * ((1.0 - self.mach_squared).sqrt() / (2.0 * PI * stretched));
+        Vector([strength * d[1], strength * -d[0]])
     }
 
     /// The gas at `x`.
     pub fn state(&self, x: &Vector<2>) -> GasState<2> {
+        self.state_of(x, self.circulation)
+    }
+
+    /// The gas at `x` where the circulation is `circulation`.
+    pub fn state_of<S: Scalar>(&self, x: &Vector<2>, circulation: S) -> GasState<2, S> {
         let free = &self.free_stream;
-        let velocity = free.velocity + self.velocity_increment(x);
-        let speed_change = velocity.norm_squared() / free.velocity.norm_squared() - 1.0;
-        let temperature = (1.0 - 0.5 * (self.gamma - 1.0) * self.mach_squared * speed_change).max(LEAST_TEMPERATURE);
-        let density = free.density * temperature.powf(1.0 / (self.gamma - 1.0));
-        GasState { density, velocity, pressure: free.pressure * (density / free.density) * temperature }
+        let velocity = Vector::constant(&free.velocity) + self.increment(x, circulation);
+        let speed_change = velocity.norm_squared() * (1.0 / free.velocity.norm_squared()) - 1.0;
+        let cooling = speed_change * (0.5 * (self.gamma - 1.0) * self.mach_squared);
+        let temperature = (S::constant(1.0) - cooling).max(S::constant(LEAST_TEMPERATURE));
+        let density = temperature.powf(1.0 / (self.gamma - 1.0)) * free.density;
+        GasState { density, velocity, pressure: density * temperature * (free.pressure / free.density) }
     }
 }
 

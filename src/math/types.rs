@@ -89,6 +89,28 @@ impl<const D: usize, S: Scalar> Vector<D, S> {
         sum
     }
 
+    /// Inner product with plain numbers.
+    #[inline(always)]
+    pub fn along(&self, other: &Vector<D>) -> S {
+        let mut sum = self.0[0] * other.0[0];
+        for d in 1..D {
+            sum = sum + self.0[d] * other.0[d];
+        }
+        sum
+    }
+
+    /// A vector of constants.
+    #[inline(always)]
+    pub fn constant(v: &Vector<D>) -> Self {
+        Self::from_fn(|d| S::constant(v.0[d]))
+    }
+
+    /// The values.
+    #[inline(always)]
+    pub fn value(&self) -> Vector<D> {
+        Vector::from_fn(|d| self.0[d].value())
+    }
+
     /// Euclidean length.
     #[inline(always)]
     pub fn norm(&self) -> S {

@@ -1,5 +1,6 @@
 //! Rigid displacements x = R X + s.
 use crate::math::Vector;
+use crate::math::jet::Scalar;
 
 /// A rotation followed by a shift.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,8 +25,8 @@ impl<const D: usize> RigidPose<D> {
 
     /// Where the direction `v` points.
     #[inline]
-    pub fn direction(&self, v: &Vector<D>) -> Vector<D> {
-        Vector::from_fn(|d| self.rotation[d].dot(v))
+    pub fn direction<S: Scalar>(&self, v: &Vector<D, S>) -> Vector<D, S> {
+        Vector::from_fn(|d| v.along(&self.rotation[d]))
     }
 
     /// The point that goes to `x`.
@@ -36,10 +37,10 @@ impl<const D: usize> RigidPose<D> {
 
     /// The direction that goes to `v`.
     #[inline]
-    pub fn inverse_direction(&self, v: &Vector<D>) -> Vector<D> {
-        let mut back = Vector::ZERO;
+    pub fn inverse_direction<S: Scalar>(&self, v: &Vector<D, S>) -> Vector<D, S> {
+        let mut back = Vector::zero();
         for d in 0..D {
-            back += self.rotation[d] * v[d];
+            back += Vector::from_fn(|c| v[d] * self.rotation[d][c]);
         }
         back
     }

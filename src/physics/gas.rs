@@ -73,6 +73,19 @@ impl<const D: usize> Conserved<D> {
 }
 
 impl<const D: usize, S: Scalar> Conserved<D, S> {
+    /// All zero.
+    #[inline(always)]
+    pub fn zero() -> Self {
+        let zero = S::constant(0.0);
+        Self { density: zero, momentum: Vector::zero(), energy: zero }
+    }
+
+    /// Constants.
+    #[inline(always)]
+    pub fn constant(c: &Conserved<D>) -> Self {
+        Self { density: S::constant(c.density), momentum: Vector::constant(&c.momentum), energy: S::constant(c.energy) }
+    }
+
     /// self + s·other.
     #[inline(always)]
     pub fn plus(&self, s: S, o: &Self) -> Self {
@@ -133,6 +146,16 @@ impl<const D: usize, S: Scalar> Primitive<D, S> {
         }
     }
 
+    /// A state of constants.
+    #[inline(always)]
+    pub fn constant(q: &Primitive<D>) -> Self {
+        Self {
+            density: S::constant(q.density),
+            velocity: Vector::constant(&q.velocity),
+            pressure: S::constant(q.pressure),
+        }
+    }
+
     /// The state seen by an observer who moves with `w`.
     #[inline(always)]
     pub fn seen_from(&self, w: &Vector<D, S>) -> Self {
@@ -140,13 +163,11 @@ impl<const D: usize, S: Scalar> Primitive<D, S> {
     }
 }
 
-impl<const D: usize> Primitive<D> {
+impl<const D: usize, S: Scalar> Primitive<D, S> {
     /// True when density and pressure are positive and nothing is NaN or infinite.
     pub fn is_physical(&self) -> bool {
-        self.density > 0.0
-            && self.pressure > 0.0
-            && self.velocity.is_finite()
-            && (self.density + self.pressure).is_finite()
+        let (density, pressure) = (self.density.value(), self.pressure.value());
+        density > 0.0 && pressure > 0.0 && self.velocity.value().is_finite() && (density + pressure).is_finite()
     }
 }
 

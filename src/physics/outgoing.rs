@@ -7,6 +7,7 @@
 //! there, a part comes back, since on a cloud no edge is normal to all waves.
 use super::{Gas, Primitive};
 use crate::math::Vector;
+use crate::math::jet::Scalar;
 
 /// Part of the speed of sound over which a wave that turns from leaving to arriving is faded out.
 const FADE: f64 = 0.1;
@@ -14,45 +15,47 @@ const FADE: f64 = 0.1;
 const LEAST: f64 = 0.1;
 
 /// J₊, J₋, p/ρ^γ and the velocity along the side.
-struct Carried<const D: usize> {
-    sound: [f64; 2],
-    entropy: f64,
-    along: Vector<D>,
+struct Carried<const D: usize, S> {
+    sound: [S; 2],
+    entropy: S,
+    along: Vector<D, S>,
 }
 
-impl<const D: usize> Carried<D> {
+impl<const D: usize, S: Scalar> Carried<D, S> {
     /// Exponent of p in a.
     fn exponent(gas: &Gas) -> f64 {
         0.5 * (gas.gamma - 1.0) / gas.gamma
     }
 
-    fn of(gas: &Gas, held: &Primitive<D>, q: &Primitive<D>, n: &Vector<D>) -> Self {
+    fn of(gas: &Gas, held: &Primitive<D, S>, q: &Primitive<D, S>, n: &Vector<D, S>) -> Self {
         let across = q.velocity.dot(n);
         let a = gas.sound_speed(held) * (q.pressure / held.pressure).powf(Self::exponent(gas));
-        let up = 2.0 * a / (gas.gamma - 1.0);
+        let up = a * (2.0 / (gas.gamma - 1.0));
         Self { sound: [across + up, across - up], entropy: gas.entropy(q), along: q.velocity - *n * across }
     }
 
-    fn state(&self, gas: &Gas, held: &Primitive<D>, n: &Vector<D>) -> Primitive<D> {
+    fn state(&self, gas: &Gas, held: &Primitive<D, S>, n: &Vector<D, S>) -> Primitive<D, S> {
         let [up, down] = self.sound;
-        let a = (0.25 * (gas.gamma - 1.0) * (up - down) / gas.sound_speed(held)).max(LEAST);
+        let a = ((up - down) * (0.25 * (gas.gamma - 1.0)) / gas.sound_speed(held)).max(S::constant(LEAST));
         let pressure = held.pressure * a.powf(1.0 / Self::exponent(gas));
         let density = (pressure / self.entropy).powf(1.0 / gas.gamma);
-        Primitive { density, velocity: *n * (0.5 * (up + down)) + self.along, pressure }
+        Primitive { density, velocity: *n * ((up + down) * 0.5) + self.along, pressure }
     }
 }
 
 /// The state on a side with normal `n` that moves with `w`: what it holds, with the part of the disturbance that leaves.
 /// `inner` is the state beside the side, `beside` what would be held there.
-pub fn outgoing<const D: usize>(
+pub fn outgoing<const D: usize, S: Scalar>(
     gas: &Gas,
-    held: &Primitive<D>,
-    [inner, beside]: [&Primitive<D>; 2],
+    held: &Primitive<D, S>,
+    [inner, beside]: [&Primitive<D, S>; 2],
     (n, w): (&Vector<D>, &Vector<D>),
-) -> Primitive<D> {
+) -> Primitive<D, S> {
+    let (n, w) = (&Vector::constant(n), &Vector::constant(w));
     let c = gas.sound_speed(held);
     let through = (held.velocity - *w).dot(n);
-    let leaves = |speed: f64| 0.5 * (1.0 + speed / speed.hypot(FADE * c));
+    let fade = c * FADE;
+    let leaves = |speed: S| (speed / (speed * speed + fade * fade).sqrt() + 1.0) * 0.5;
     let [part_up, part_down, part] = [through + c, through - c, through].map(leaves);
     let [before, inside, usual] = [held, inner, beside].map(|q| Carried::of(gas, held, q, n));
     let after = Carried {
@@ -60,12 +63,12 @@ pub fn outgoing<const D: usize>(
             before.sound[0] + part_up * (inside.sound[0] - usual.sound[0]),
             before.sound[1] + part_down * (inside.sound[1] - usual.sound[1]),
         ],
-        entropy: before.entropy * (inside.entropy / usual.entropy).powf(part),
+        entropy: before.entropy * ((inside.entropy / usual.entropy).log() * part).exp(),
         along: before.along + (inside.along - usual.along) * part,
     };
     // the difference is nothing, to the bit, where nothing leaves
     let change = after.state(gas, held, n).minus(&before.state(gas, held, n));
-    held.plus(1.0, &change)
+    held.plus(S::constant(1.0), &change)
 }
 
 #[cfg(test)]

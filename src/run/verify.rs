@@ -101,7 +101,9 @@ impl Walk {
     /// Reads all cases and claims under `root`; mistakes in any of them end the walk before it begins.
     pub fn new(root: &Path, selection: &Selection) -> Result<Self, WalkError> {
         let entries = fs::read_dir(root).map_err(|e| unreadable(root, e))?;
-        let mut paths: Vec<PathBuf> = entries.filter_map(|e| Some(e.ok()?.path())).filter(|p| p.is_dir()).collect();
+        // a page of results lies in a folder too, where the walk was begun in this one
+        let is_case = |p: &PathBuf| FILES.iter().any(|name| p.join(name).exists());
+        let mut paths: Vec<PathBuf> = entries.filter_map(|e| Some(e.ok()?.path())).filter(is_case).collect();
         paths.sort();
         let folders: Vec<Folder> = paths.iter().map(|p| Folder::read(p)).collect::<Result<_, _>>()?;
         let wanted = |f: &Folder| selection.filter.as_ref().is_none_or(|text| f.name.contains(text.as_str()));

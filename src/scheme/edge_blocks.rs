@@ -191,7 +191,7 @@ fn gather<const D: usize>(
 fn waves<const D: usize>(gas: Gas, batch: &mut Batch<D>) {
     let Batch { own, area, drift, face, swept, by_volume, waves } = batch;
     for k in 0..LANES {
-        let (i, j, s) = (own[0].primitive(k), own[1].primitive(k), take(area, k));
+        let (i, j, s) = (own[0].primitive(k), own[1].primitive(k), take::<D, f64>(area, k));
         let mean = Primitive::zip(&i, &j, |a, b| 0.5 * (a + b));
         let size = s.norm();
         let n = s * (1.0 / size.max(f64::MIN_POSITIVE));

@@ -12,23 +12,23 @@ use crate::physics::riemann::UpwindFlux;
 use crate::physics::{Conserved, Gas, Newtonian, Primitive};
 
 use super::edge_flux::{FluxScheme, Passing, conservative, consistent, slowed, steep, upwind, viscous};
-use super::lanes::{LANES, Lanes, StateLanes, pair, put, take};
+use super::lanes::{LANES, Lanes, Number, StateLanes, pair, put, put_all, take, take_all};
 use super::reconstruct::{Factors, Gradient, Limit, Reconstruction};
 use super::viscous::slopes;
 
 /// What particles hold.
 #[derive(Clone, Copy)]
-pub struct Particles<'a, const D: usize> {
+pub struct Particles<'a, const D: usize, S = f64> {
     /// Places.
     pub x: &'a [Vector<D>],
     /// Volumes.
     pub volume: &'a [f64],
     /// States.
-    pub state: &'a [Primitive<D>],
+    pub state: &'a [Primitive<D, S>],
     /// Gradients.
-    pub gradient: &'a [Gradient<D>],
+    pub gradient: &'a [Gradient<D, S>],
     /// How steep the pressure is there, from 0 to 1.
-    pub steepness: &'a [f64],
+    pub steepness: &'a [S],
     /// Velocities of the particles themselves; empty when none moves.
     pub velocity: &'a [Vector<D>],
     /// The outer ones: waves leave through them, which takes the whole jump of the velocity.
@@ -36,9 +36,9 @@ pub struct Particles<'a, const D: usize> {
 }
 
 /// Some edges with what their ends hold, and what they add to V dU/dt of both.
-struct Batch<const D: usize> {
-    own: [StateLanes<D>; 2],
-    slope: [StateLanes<D>; 2],
+struct Batch<const D: usize, S: Number> {
+    own: [StateLanes<D, S>; 2],
+    slope: [StateLanes<D, S>; 2],
     /// −V a of either end, the area vector s, and the velocities of the ends.
     weight: [[Lanes; D]; 2],
     area: [Lanes; D],
@@ -46,47 +46,46 @@ struct Batch<const D: usize> {
     /// Least part of the jump of the normal velocity that counts: 1 beside outer particles.
     whole: Lanes,
     /// The greater steepness of the two ends.
-    steepness: Lanes,
+    steepness: S::Many,
     /// States on both sides of the middle, the upwind flux there per unit of area, and the result.
-    middle: [StateLanes<D>; 2],
-    upwind: StateLanes<D>,
-    out: [StateLanes<D>; 2],
+    middle: [StateLanes<D, S>; 2],
+    upwind: StateLanes<D, S>,
+    out: [StateLanes<D, S>; 2],
     /// The edge from one end to the other, and the gradients at both; for stress and heat alone.
     along: [Lanes; D],
-    gradient: [Slope<D>; 2],
+    gradient: [Slope<D, S>; 2],
 }
 
 /// Gradients of density, velocity and pressure of every edge.
-struct Slope<const D: usize> {
-    density: [Lanes; D],
-    velocity: [[Lanes; D]; D],
-    pressure: [Lanes; D],
+struct Slope<const D: usize, S: Number> {
+    density: [S::Many; D],
+    velocity: [[S::Many; D]; D],
+    pressure: [S::Many; D],
 }
 
-impl<const D: usize> Slope<D> {
-    const ZERO: Self =
-        Self { density: [[0.0; LANES]; D], velocity: [[[0.0; LANES]; D]; D], pressure: [[0.0; LANES]; D] };
+impl<const D: usize, S: Number> Slope<D, S> {
+    const ZERO: Self = Self { density: [S::NONE; D], velocity: [[S::NONE; D]; D], pressure: [S::NONE; D] };
 
     #[inline(always)]
-    fn take(&self, k: usize) -> Gradient<D> {
+    fn take(&self, k: usize) -> Gradient<D, S> {
         Gradient {
-            density: take(&self.density, k),
-            velocity: array(|c| take(&self.velocity[c], k)),
-            pressure: take(&self.pressure, k),
+            density: take_all(&self.density, k),
+            velocity: array(|c| take_all(&self.velocity[c], k)),
+            pressure: take_all(&self.pressure, k),
         }
     }
 
     #[inline(always)]
-    fn put(&mut self, k: usize, g: &Gradient<D>) {
-        put(&mut self.density, k, &g.density);
+    fn put(&mut self, k: usize, g: &Gradient<D, S>) {
+        put_all(&mut self.density, k, &g.density);
         for c in 0..D {
-            put(&mut self.velocity[c], k, &g.velocity[c]);
+            put_all(&mut self.velocity[c], k, &g.velocity[c]);
         }
-        put(&mut self.pressure, k, &g.pressure);
+        put_all(&mut self.pressure, k, &g.pressure);
     }
 }
 
-impl<const D: usize> Batch<D> {
+impl<const D: usize, S: Number> Batch<D, S> {
     const BLANK: Self = Self {
         own: [StateLanes::ZERO; 2],
         slope: [StateLanes::ZERO; 2],
@@ -94,7 +93,7 @@ impl<const D: usize> Batch<D> {
         area: [[0.0; LANES]; D],
         speed: [[[0.0; LANES]; D]; 2],
         whole: [0.0; LANES],
-        steepness: [0.0; LANES],
+        steepness: S::NONE,
         middle: [StateLanes::ZERO; 2],
         upwind: StateLanes::ZERO,
         out: [StateLanes::ZERO; 2],
@@ -105,11 +104,11 @@ impl<const D: usize> Batch<D> {
 
 /// Calls `add(i, change)` with what every edge adds to V dU/dt of its ends, one edge after the other; `frozen` is what the limiter leaves
 /// of their slopes where that is given.
-pub fn edge_fluxes<const D: usize, F: UpwindFlux<D>, L: Limit>(
+pub fn edge_fluxes<const D: usize, S: Number, F: UpwindFlux<D>, L: Limit>(
     scheme: &FluxScheme<F, L>,
-    particles: Particles<'_, D>,
+    particles: Particles<'_, D, S>,
     (edges, weights, frozen): (&[Edge<D>], Weights<'_, D>, &[Factors<D>]),
-    add: &mut impl FnMut(usize, &Conserved<D>),
+    add: &mut impl FnMut(usize, &Conserved<D, S>),
 ) {
     let mut batch = Batch::BLANK;
     for (c, some) in edges.chunks(LANES).enumerate() {
@@ -122,19 +121,19 @@ pub fn edge_fluxes<const D: usize, F: UpwindFlux<D>, L: Limit>(
             low_mach_corrections(scheme.gas, &mut batch);
         }
         upwind_fluxes(scheme.gas, scheme.flux, &mut batch);
-        if batch.steepness.iter().any(|s| *s > 0.0) {
+        if (0..LANES).any(|k| S::take(&batch.steepness, k).value() > 0.0) {
             steep_fluxes(scheme.gas, &mut batch);
         }
         match (particles.velocity.is_empty(), scheme.conservative) {
-            (true, true) => accumulate_residual::<D, false, true>(scheme.gas, scheme.by_faces, &mut batch),
-            (true, false) => accumulate_residual::<D, false, false>(scheme.gas, scheme.by_faces, &mut batch),
-            (false, true) => accumulate_residual::<D, true, true>(scheme.gas, scheme.by_faces, &mut batch),
-            (false, false) => accumulate_residual::<D, true, false>(scheme.gas, scheme.by_faces, &mut batch),
+            (true, true) => accumulate_residual::<D, S, false, true>(scheme.gas, scheme.by_faces, &mut batch),
+            (true, false) => accumulate_residual::<D, S, false, false>(scheme.gas, scheme.by_faces, &mut batch),
+            (false, true) => accumulate_residual::<D, S, true, true>(scheme.gas, scheme.by_faces, &mut batch),
+            (false, false) => accumulate_residual::<D, S, true, false>(scheme.gas, scheme.by_faces, &mut batch),
         }
         if let Some(medium) = scheme.medium {
             match scheme.conservative {
-                true => viscous_fluxes::<D, true>(scheme.gas, medium, &mut batch),
-                false => viscous_fluxes::<D, false>(scheme.gas, medium, &mut batch),
+                true => viscous_fluxes::<D, S, true>(scheme.gas, medium, &mut batch),
+                false => viscous_fluxes::<D, S, false>(scheme.gas, medium, &mut batch),
             }
         }
         for (k, e) in some.iter().enumerate() {
@@ -148,11 +147,11 @@ pub fn edge_fluxes<const D: usize, F: UpwindFlux<D>, L: Limit>(
 
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq", "x86_64+avx2"))]
 #[allow(unsafe_code, reason = "the attribute calls the version that the processor has just been asked for")]
-fn gather<const D: usize, F, L>(
+fn gather<const D: usize, S: Number, F, L>(
     scheme: &FluxScheme<F, L>,
-    p: &Particles<'_, D>,
+    p: &Particles<'_, D, S>,
     (edges, first, weights): (&[Edge<D>], usize, &Weights<'_, D>),
-    batch: &mut Batch<D>,
+    batch: &mut Batch<D, S>,
 ) {
     let weighed = !scheme.conservative || !p.velocity.is_empty();
     for (k, e) in edges.iter().enumerate() {
@@ -167,7 +166,8 @@ fn gather<const D: usize, F, L>(
                 batch.gradient[side].put(k, &p.gradient[i]);
             }
             if scheme.reconstruction.second_order {
-                batch.slope[side].put_primitive(k, &p.gradient[i].along(&d).times(1.0 - p.steepness[i]));
+                let along = p.gradient[i].along(&Vector::constant(&d));
+                batch.slope[side].put_primitive(k, &along.times(S::constant(1.0) - p.steepness[i]));
             }
             if weighed {
                 put(&mut batch.weight[side], k, &(pair[side] * -p.volume[i]));
@@ -180,7 +180,7 @@ fn gather<const D: usize, F, L>(
         if scheme.medium.is_some() {
             put(&mut batch.along, k, &d);
         }
-        batch.steepness[k] = p.steepness[ends[0]].max(p.steepness[ends[1]]);
+        p.steepness[ends[0]].max(p.steepness[ends[1]]).put(&mut batch.steepness, k);
         batch.whole[k] = f64::from(u8::from(p.outer.0 <= ends[1] && ends[1] < p.outer.1));
     }
 }
@@ -191,7 +191,12 @@ fn gather<const D: usize, F, L>(
 /// States on both sides of the middle of every edge.
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq", "x86_64+avx2"))]
 #[allow(unsafe_code, reason = "the attribute calls the version that the processor has just been asked for")]
-fn reconstruct<const D: usize, L: Limit>(gas: Gas, limit: L, reconstruction: Reconstruction, batch: &mut Batch<D>) {
+fn reconstruct<const D: usize, S: Number, L: Limit>(
+    gas: Gas,
+    limit: L,
+    reconstruction: Reconstruction,
+    batch: &mut Batch<D, S>,
+) {
     let Batch { own, slope, middle: [left, right], .. } = batch;
     for k in 0..LANES {
         let (qi, qj) = (own[0].primitive(k), own[1].primitive(k));
@@ -205,12 +210,17 @@ fn reconstruct<const D: usize, L: Limit>(gas: Gas, limit: L, reconstruction: Rec
 /// The same where it is given what the limiter leaves of the slopes.
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq", "x86_64+avx2"))]
 #[allow(unsafe_code, reason = "the attribute calls the version that the processor has just been asked for")]
-fn reconstruct_frozen<const D: usize>(reconstruction: Reconstruction, frozen: &[Factors<D>], batch: &mut Batch<D>) {
+fn reconstruct_frozen<const D: usize, S: Number>(
+    reconstruction: Reconstruction,
+    frozen: &[Factors<D>],
+    batch: &mut Batch<D, S>,
+) {
     let Batch { own, slope, middle: [left, right], .. } = batch;
     for (k, factors) in frozen.iter().take(LANES).enumerate() {
         let (qi, qj) = (own[0].primitive(k), own[1].primitive(k));
         let slopes = (slope[0].primitive(k), slope[1].primitive(k));
-        let (l, r) = reconstruction.limited((&qi, &qj), (&slopes.0, &slopes.1), factors);
+        let factors = [Primitive::constant(&factors[0]), Primitive::constant(&factors[1])];
+        let (l, r) = reconstruction.limited((&qi, &qj), (&slopes.0, &slopes.1), &factors);
         left.put_primitive(k, &l);
         right.put_primitive(k, &r);
     }
@@ -219,7 +229,7 @@ fn reconstruct_frozen<const D: usize>(reconstruction: Reconstruction, frozen: &[
 /// Scales the jump of the normal velocity with the Mach number.
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq", "x86_64+avx2"))]
 #[allow(unsafe_code, reason = "the attribute calls the version that the processor has just been asked for")]
-fn low_mach_corrections<const D: usize>(gas: Gas, batch: &mut Batch<D>) {
+fn low_mach_corrections<const D: usize, S: Number>(gas: Gas, batch: &mut Batch<D, S>) {
     let Batch { area, speed, whole, middle: [left, right], .. } = batch;
     for k in 0..LANES {
         let sides = [left.primitive(k), right.primitive(k)];
@@ -232,7 +242,7 @@ fn low_mach_corrections<const D: usize>(gas: Gas, batch: &mut Batch<D>) {
 /// The upwind flux through the area of every edge.
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq", "x86_64+avx2"))]
 #[allow(unsafe_code, reason = "the attribute calls the version that the processor has just been asked for")]
-fn upwind_fluxes<const D: usize, F: UpwindFlux<D>>(gas: Gas, flux: F, batch: &mut Batch<D>) {
+fn upwind_fluxes<const D: usize, S: Number, F: UpwindFlux<D>>(gas: Gas, flux: F, batch: &mut Batch<D, S>) {
     let Batch { area, speed, middle: [left, right], upwind: through, .. } = batch;
     for k in 0..LANES {
         let sides = [left.primitive(k), right.primitive(k)];
@@ -243,11 +253,11 @@ fn upwind_fluxes<const D: usize, F: UpwindFlux<D>>(gas: Gas, flux: F, batch: &mu
 /// Brings the upwind flux nearer to Einfeldt's between steep particles.
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq", "x86_64+avx2"))]
 #[allow(unsafe_code, reason = "the attribute calls the version that the processor has just been asked for")]
-fn steep_fluxes<const D: usize>(gas: Gas, batch: &mut Batch<D>) {
+fn steep_fluxes<const D: usize, S: Number>(gas: Gas, batch: &mut Batch<D, S>) {
     let Batch { area, speed, steepness, middle: [left, right], upwind: through, .. } = batch;
     for k in 0..LANES {
         let (sides, plain) = ([left.primitive(k), right.primitive(k)], through.conserved(k));
-        let flux = steep(&gas, (&sides, &plain), &take(area, k), &pair(speed, k), steepness[k]);
+        let flux = steep(&gas, (&sides, &plain), &take(area, k), &pair(speed, k), S::take(steepness, k));
         through.put_conserved(k, &flux);
     }
 }
@@ -255,10 +265,10 @@ fn steep_fluxes<const D: usize>(gas: Gas, batch: &mut Batch<D>) {
 /// What every edge adds to V dU/dt of both ends.
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq", "x86_64+avx2"))]
 #[allow(unsafe_code, reason = "the attribute calls the version that the processor has just been asked for")]
-fn accumulate_residual<const D: usize, const MOVES: bool, const CONSERVATIVE: bool>(
+fn accumulate_residual<const D: usize, S: Number, const MOVES: bool, const CONSERVATIVE: bool>(
     gas: Gas,
     by_faces: bool,
-    batch: &mut Batch<D>,
+    batch: &mut Batch<D, S>,
 ) {
     let Batch { own, weight, area, speed, middle, upwind, out: [out_i, out_j], .. } = batch;
     for k in 0..LANES {
@@ -271,8 +281,8 @@ fn accumulate_residual<const D: usize, const MOVES: bool, const CONSERVATIVE: bo
             upwind: upwind.conserved(k),
         };
         let [i, j] = match CONSERVATIVE {
-            true => conservative::<D, f64, MOVES>(&gas, by_faces, &edge),
-            false => consistent::<D, f64, MOVES>(&gas, &edge),
+            true => conservative::<D, S, MOVES>(&gas, by_faces, &edge),
+            false => consistent::<D, S, MOVES>(&gas, &edge),
         };
         out_i.put_conserved(k, &i);
         out_j.put_conserved(k, &j);
@@ -282,14 +292,18 @@ fn accumulate_residual<const D: usize, const MOVES: bool, const CONSERVATIVE: bo
 /// What stress and heat along every edge add to V dU/dt of both ends.
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq", "x86_64+avx2"))]
 #[allow(unsafe_code, reason = "the attribute calls the version that the processor has just been asked for")]
-fn viscous_fluxes<const D: usize, const CONSERVATIVE: bool>(gas: Gas, medium: Newtonian, batch: &mut Batch<D>) {
+fn viscous_fluxes<const D: usize, S: Number, const CONSERVATIVE: bool>(
+    gas: Gas,
+    medium: Newtonian,
+    batch: &mut Batch<D, S>,
+) {
     let Batch { own, weight, area, along, gradient, out: [out_i, out_j], .. } = batch;
     for k in 0..LANES {
         let ends = array(|side| slopes(&gas, &own[side].primitive(k), &gradient[side].take(k)));
         let weight = pair(weight, k);
         let weight = if CONSERVATIVE { None } else { Some(&weight) };
         let [i, j] = viscous(&gas, &medium, &ends, (&take(along, k), &take(area, k)), weight);
-        out_i.put_conserved(k, &out_i.conserved(k).plus(1.0, &i));
-        out_j.put_conserved(k, &out_j.conserved(k).plus(1.0, &j));
+        out_i.put_conserved(k, &out_i.conserved(k).plus(S::constant(1.0), &i));
+        out_j.put_conserved(k, &out_j.conserved(k).plus(S::constant(1.0), &j));
     }
 }

@@ -11,6 +11,7 @@ use super::viscous::ViscousModel;
 use crate::case::{Flux, Limiter};
 use crate::cloud::Cloud;
 use crate::math::Vector;
+use crate::math::jet::{Dual, Scalar};
 use crate::math::sweep::sweep_rows;
 use crate::physics::{Gas, Primitive, n_variables};
 use crate::system::Field as Unknowns;
@@ -50,6 +51,8 @@ pub struct Fluid<const D: usize> {
 pub trait FarField<const D: usize>: Send + Sync {
     /// State at `x` when the bodies feel the force `force` (per unit span in 2-D).
     fn state(&self, x: &Vector<D>, force: &Vector<D>) -> Primitive<D>;
+    /// The same with the change that goes with a change of the force.
+    fn varied(&self, x: &Vector<D>, force: &Vector<D, Dual>) -> Primitive<D, Dual>;
     /// Static pressure far away.
     fn pressure(&self) -> f64;
     /// The velocity at `x` that the circulation of the force adds around bodies that nothing gives one, as they have no edge: such
@@ -60,15 +63,25 @@ pub trait FarField<const D: usize>: Send + Sync {
 }
 
 /// Storage of an evaluation.
-pub struct Work<const D: usize> {
+pub struct Work<const D: usize, S = f64> {
     /// States of all particles, images included.
-    pub state: Vec<Primitive<D>>,
+    pub state: Vec<Primitive<D, S>>,
     /// Gradients of all particles.
-    pub gradient: Vec<Gradient<D>>,
+    pub gradient: Vec<Gradient<D, S>>,
     /// How steep the pressure is at all particles, from 0 to 1: see `reconstruct`. Speeds of sound while rates are found.
-    pub steepness: Vec<f64>,
+    pub steepness: Vec<S>,
     /// What the limiter and the steepness stay, where they are frozen.
-    pub frozen: Option<Frozen<D>>,
+    pub frozen: Option<Arc<Frozen<D>>>,
+    /// The same with the change along a direction, once derivatives have been asked for.
+    pub varied: Option<Box<Varied<D>>>,
+}
+
+/// Storage of a derivative.
+pub struct Varied<const D: usize> {
+    /// That of the evaluation.
+    pub work: Work<D, Dual>,
+    /// What sides hold, as in [`Frame::outer`](super::Frame::outer).
+    pub outer: Vec<[Primitive<D, Dual>; 3]>,
 }
 
 /// What a limiter does in one state.
@@ -77,6 +90,20 @@ pub struct Frozen<const D: usize> {
     pub factors: Vec<Vec<Factors<D>>>,
     /// How steep the pressure is at all particles.
     pub steepness: Vec<f64>,
+}
+
+impl<const D: usize, S: Scalar> Work<D, S> {
+    /// Storage for `n` particles.
+    pub fn new(n: usize) -> Self {
+        let blank = Primitive { density: 1.0, velocity: Vector::ZERO, pressure: 1.0 };
+        Self {
+            state: vec![Primitive::constant(&blank); n],
+            gradient: vec![Gradient::zero(); n],
+            steepness: vec![S::constant(0.0); n],
+            frozen: None,
+            varied: None,
+        }
+    }
 }
 
 impl<const D: usize> Fluid<D> {

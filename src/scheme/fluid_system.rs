@@ -4,10 +4,8 @@ use std::sync::Arc;
 use super::discretisation::CloudMotion;
 use super::fluid::{Fluid, Work};
 use super::frame::{Frame, LagrangianStep};
-use super::reconstruct::Gradient;
-use crate::math::Vector;
 use crate::math::sweep::{first, maximum};
-use crate::physics::{Conserved, Primitive};
+use crate::physics::Conserved;
 use crate::system::{Fault, Field as Unknowns, Instant, Rate, System};
 
 impl<const D: usize> System for Fluid<D> {
@@ -59,9 +57,7 @@ impl<const D: usize> System for Fluid<D> {
     }
 
     fn work(&self) -> Work<D> {
-        let blank = Primitive { density: 1.0, velocity: Vector::ZERO, pressure: 1.0 };
-        let n = self.discretisation.cloud.len();
-        Work { state: vec![blank; n], gradient: vec![Gradient::ZERO; n], steepness: vec![0.0; n], frozen: None }
+        Work::new(self.discretisation.cloud.len())
     }
 
     fn rhs(&self, frame: &Frame<D>, u: &[f64], work: &mut Work<D>, du: &mut [f64]) {
@@ -72,8 +68,12 @@ impl<const D: usize> System for Fluid<D> {
     fn rhs_with_boundary(&self, u: &[f64], work: &mut Work<D>, frame: &mut Frame<D>, du: &mut [f64]) {
         self.update_boundary_state(u, work, frame);
         // fluid and walls, which do not depend on the sides, are known
-        self.fill_outside(frame, work);
+        self.fill_outside(frame, &frame.outer, work);
         self.residual(frame, work, du);
+    }
+
+    fn derivative(&self, u: &[f64], v: &[f64], (work, frame): (&mut Work<D>, &mut Frame<D>), out: &mut [f64]) {
+        self.residual_change(frame, (u, v), work, out);
     }
 
     fn rates(&self, frame: &Frame<D>, u: &[f64], work: &mut Work<D>, rate: &mut [f64]) {

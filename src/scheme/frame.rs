@@ -9,7 +9,7 @@ use super::wall_motion::WallMotion;
 use crate::cloud::operators::WallFace;
 use crate::cloud::{Cloud, Operators};
 use crate::math::Vector;
-use crate::math::jet::Jet;
+use crate::math::jet::{Jet, Scalar};
 use crate::motion::RigidPose;
 use crate::physics::Primitive;
 
@@ -119,13 +119,13 @@ impl<const D: usize> Frame<D> {
 
     /// A direction in the axes of `discretisation`, seen in those of the case.
     #[inline(always)]
-    pub fn to_inertial_axes(&self, v: &Vector<D>) -> Vector<D> {
+    pub fn to_inertial_axes<S: Scalar>(&self, v: &Vector<D, S>) -> Vector<D, S> {
         self.turn.as_ref().map_or(*v, |t| t.direction(v))
     }
 
     /// A direction in the axes of the case, seen in those of `discretisation`.
     #[inline(always)]
-    pub fn to_body_axes(&self, v: &Vector<D>) -> Vector<D> {
+    pub fn to_body_axes<S: Scalar>(&self, v: &Vector<D, S>) -> Vector<D, S> {
         self.turn.as_ref().map_or(*v, |t| t.inverse_direction(v))
     }
 

@@ -10,6 +10,7 @@
 //! In smooth flow the equation of energy asks for the same, so that S_E is as small as the error of the scheme.
 use super::fluid::{Fluid, Work};
 use super::frame::Frame;
+use super::lanes::Number;
 use crate::math::Vector;
 use crate::math::block_matrix::Rows;
 use crate::math::sweep::sweep_rows;
@@ -17,21 +18,21 @@ use crate::physics::{Conserved, n_variables};
 
 impl<const D: usize> Fluid<D> {
     /// Rate c/h of particle `i`.
-    fn drawn(&self, frame: &Frame<D>, work: &Work<D>, i: usize) -> f64 {
-        self.gas.sound_speed(&work.state[i]) / frame.discretisation.cloud.spacing[i]
+    fn drawn<S: Number>(&self, frame: &Frame<D>, work: &Work<D, S>, i: usize) -> S {
+        self.gas.sound_speed(&work.state[i]) * (1.0 / frame.discretisation.cloud.spacing[i])
     }
 
     /// p∞ (ρ/ρ∞)^γ, in units in which ρ∞ = 1 and p∞ = 1/γ.
-    fn held_pressure(&self, density: f64) -> f64 {
-        density.powf(self.gas.gamma) / self.gas.gamma
+    fn held_pressure<S: Number>(&self, density: S) -> S {
+        density.powf(self.gas.gamma) * (1.0 / self.gas.gamma)
     }
 
     /// Adds S_E to the rate of change of every fluid particle.
-    pub(super) fn hold_entropy(&self, frame: &Frame<D>, work: &Work<D>, du: &mut [f64]) {
+    pub(super) fn hold_entropy<S: Number>(&self, frame: &Frame<D>, work: &Work<D, S>, du: &mut [f64]) {
         sweep_rows(du, n_variables(D), |i, row| {
             let q = &work.state[i];
-            let missing = (self.held_pressure(q.density) - q.pressure) / (self.gas.gamma - 1.0);
-            let energy = self.drawn(frame, work, i) * missing;
+            let missing = (self.held_pressure(q.density) - q.pressure) * (1.0 / (self.gas.gamma - 1.0));
+            let energy = (self.drawn(frame, work, i) * missing).told();
             Conserved { density: 0.0, momentum: Vector::<D>::ZERO, energy }.add_to(row);
         });
     }

@@ -7,6 +7,7 @@ mod block;
 mod built;
 mod circulation;
 pub mod deforming_surface;
+mod derivative;
 pub mod discretisation;
 mod edge_blocks;
 pub mod edge_flux;

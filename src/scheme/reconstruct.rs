@@ -41,29 +41,6 @@ impl<const D: usize> Gradient<D> {
     /// All zero.
     pub const ZERO: Self = Self { density: Vector::ZERO, velocity: [Vector::ZERO; D], pressure: Vector::ZERO };
 
-    /// Adds a (q_j − q_i) for one neighbour.
-    #[inline(always)]
-    pub fn add(&mut self, a: &Vector<D>, dq: &Primitive<D>) {
-        self.density += *a * dq.density;
-        for d in 0..D {
-            self.velocity[d] += *a * dq.velocity[d];
-        }
-        self.pressure += *a * dq.pressure;
-    }
-
-    /// Gradients of which each is `f` of one here.
-    #[inline(always)]
-    pub fn map(&self, f: impl Fn(&Vector<D>) -> Vector<D>) -> Self {
-        Self { density: f(&self.density), velocity: self.velocity.each_ref().map(&f), pressure: f(&self.pressure) }
-    }
-
-    /// How far the pressure `p` is from linear within a spacing `h`: 0 in smooth flow and weak shocks, 1 in strong ones.
-    #[inline(always)]
-    pub fn steepness(&self, h: f64, p: f64) -> f64 {
-        let change = h * h * self.pressure.norm_squared() / (p * p);
-        smooth_step((change - STEEP[0]) / (STEEP[1] - STEEP[0]))
-    }
-
     /// The same gradient in turned axes.
     pub fn turned(&self, turn: &impl Fn(&Vector<D>) -> Vector<D>) -> Self {
         // rows of R G Rᵀ: turn the derivative of each component, then mix the components
@@ -86,6 +63,35 @@ pub(super) fn smooth_step<S: Scalar>(t: S) -> S {
 }
 
 impl<const D: usize, S: Scalar> Gradient<D, S> {
+    /// All zero.
+    pub fn zero() -> Self {
+        Self { density: Vector::zero(), velocity: [Vector::zero(); D], pressure: Vector::zero() }
+    }
+
+    /// Adds a (q_j − q_i) for one neighbour.
+    #[inline(always)]
+    pub fn add(&mut self, a: &Vector<D>, dq: &Primitive<D, S>) {
+        let times = |q: S| Vector::from_fn(|c| q * a[c]);
+        self.density += times(dq.density);
+        for d in 0..D {
+            self.velocity[d] += times(dq.velocity[d]);
+        }
+        self.pressure += times(dq.pressure);
+    }
+
+    /// Gradients of which each is `f` of one here.
+    #[inline(always)]
+    pub fn map(&self, f: impl Fn(&Vector<D, S>) -> Vector<D, S>) -> Self {
+        Self { density: f(&self.density), velocity: self.velocity.each_ref().map(&f), pressure: f(&self.pressure) }
+    }
+
+    /// How far the pressure `p` is from linear within a spacing `h`: 0 in smooth flow and weak shocks, 1 in strong ones.
+    #[inline(always)]
+    pub fn steepness(&self, h: f64, p: S) -> S {
+        let change = self.pressure.norm_squared() * (h * h) / (p * p);
+        smooth_step((change - STEEP[0]) * (1.0 / (STEEP[1] - STEEP[0])))
+    }
+
     /// Change of the state along `d`.
     #[inline(always)]
     pub fn along(&self, d: &Vector<D, S>) -> Primitive<D, S> {

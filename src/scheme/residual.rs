@@ -20,11 +20,14 @@
 #[cfg(test)]
 mod tests;
 
+use std::sync::Arc;
+
 use super::discretisation::CloudMotion;
 use super::edge_flux::{EdgeEnd, EdgeFace, FluxScheme, beyond_mean, mean_through};
 use super::edges::{Particles, edge_fluxes};
 use super::fluid::{Fluid, Frozen, Work};
 use super::frame::Frame;
+use super::lanes::{Number, told};
 use super::reconstruct::{Factors, Limit, Unlimited, VanAlbada, Venkatakrishnan};
 use crate::case::{Flux, Limiter};
 use crate::cloud::Edge;
@@ -37,7 +40,7 @@ use crate::system::System;
 
 impl<const D: usize> Fluid<D> {
     /// Fills `du` with R from the states in `work`.
-    pub(super) fn residual(&self, frame: &Frame<D>, work: &mut Work<D>, du: &mut [f64]) {
+    pub(super) fn residual<S: Number>(&self, frame: &Frame<D>, work: &mut Work<D, S>, du: &mut [f64]) {
         if self.reconstruction.second_order || self.viscous_model.is_some() {
             self.fill_gradients(frame, work);
         }
@@ -53,7 +56,13 @@ impl<const D: usize> Fluid<D> {
         }
     }
 
-    pub(super) fn rhs_with_limiter(&self, flux: impl UpwindFlux<D>, frame: &Frame<D>, work: &Work<D>, du: &mut [f64]) {
+    pub(super) fn rhs_with_limiter<S: Number>(
+        &self,
+        flux: impl UpwindFlux<D>,
+        frame: &Frame<D>,
+        work: &Work<D, S>,
+        du: &mut [f64],
+    ) {
         match self.limiter {
             Limiter::None => self.fluxes(flux, Unlimited, (frame, work), du),
             Limiter::VanAlbada => self.fluxes(flux, VanAlbada, (frame, work), du),
@@ -83,7 +92,7 @@ impl<const D: usize> Fluid<D> {
             Limiter::VanAlbada => self.factors(VanAlbada, frame, work),
             Limiter::Venkatakrishnan => self.factors(Venkatakrishnan, frame, work),
         };
-        work.frozen = Some(Frozen { factors, steepness: work.steepness.clone() });
+        work.frozen = Some(Arc::new(Frozen { factors, steepness: work.steepness.clone() }));
     }
 
     /// What the limiter leaves of the slopes at the ends of all edges, part by part.
@@ -99,7 +108,13 @@ impl<const D: usize> Fluid<D> {
     }
 
     /// Sums the edge fluxes of every fluid particle, weighted with volumes until the end so that no edge divides by one.
-    fn fluxes(&self, flux: impl UpwindFlux<D>, limit: impl Limit, at: (&Frame<D>, &Work<D>), du: &mut [f64]) {
+    fn fluxes<S: Number>(
+        &self,
+        flux: impl UpwindFlux<D>,
+        limit: impl Limit,
+        at: (&Frame<D>, &Work<D, S>),
+        du: &mut [f64],
+    ) {
         let (frame, work) = at;
         let (op, cloud) = (&frame.discretisation.operators, &frame.discretisation.cloud);
         let scheme = self.flux_scheme(flux, limit);
@@ -115,7 +130,9 @@ impl<const D: usize> Fluid<D> {
         sweep_parts(op.fluid_parts(), n_variables(D), du, &|k, out| {
             let start = op.parts[k].start;
             out.fill(0.0);
-            let mut to = |i: usize, change: &Conserved<D>| change.add_to(&mut out[(i - start) * n_variables(D)..]);
+            let mut to = |i: usize, change: &Conserved<D, S>| {
+                told(change).add_to(&mut out[(i - start) * n_variables(D)..]);
+            };
             let frozen = work.frozen.as_ref().map_or(&[][..], |f| &f.factors[k]);
             edge_fluxes(&scheme, particles, (op.edges(k), op.weights(k), frozen), &mut to);
             if self.conservative {
@@ -178,32 +195,39 @@ impl<const D: usize> Fluid<D> {
     }
 
     /// Pressure on the pieces of wall that bound fluid particles: no mass passes, and energy only where the wall moves.
-    fn wall_fluxes(
+    fn wall_fluxes<S: Number>(
         &self,
         faces: &[WallFace<D>],
-        (frame, work): (&Frame<D>, &Work<D>),
-        add: &mut impl FnMut(usize, &Conserved<D>),
+        (frame, work): (&Frame<D>, &Work<D, S>),
+        add: &mut impl FnMut(usize, &Conserved<D, S>),
     ) {
         let by_faces = self.passes_by_faces();
         for face in faces {
             let (i, wall) = (face.i as usize, &work.state[face.wall as usize]);
             let own = &work.state[i];
-            let moved = frame.velocity_of(face.wall as usize);
+            let (moved, area) = (frame.velocity_of(face.wall as usize), Vector::constant(&face.area));
             let pressed = match frame.taken_by(face) {
                 None => {
-                    let push = face.area * wall.pressure;
-                    Conserved { density: 0.0, momentum: push, energy: push.dot(&moved) }
+                    let push = area * wall.pressure;
+                    Conserved { density: S::constant(0.0), momentum: push, energy: push.along(&moved) }
                 }
                 Some((force, power)) => {
                     let push = face.area * self.far_field.pressure();
-                    Conserved { density: 0.0, momentum: push + force, energy: push.dot(&moved) + power }
+                    Conserved::constant(&Conserved {
+                        density: 0.0,
+                        momentum: push + force,
+                        energy: push.dot(&moved) + power,
+                    })
                 }
             };
             let through = match frame.moves() {
-                true => pressed.plus(moved.dot(&face.area), &self.gas.conserved(if by_faces { own } else { wall })),
+                true => {
+                    let swept = S::constant(moved.dot(&face.area));
+                    pressed.plus(swept, &self.gas.conserved(if by_faces { own } else { wall }))
+                }
                 false => pressed,
             };
-            add(i, &self.gas.flux(own, &face.area).plus(-1.0, &through));
+            add(i, &self.gas.flux(own, &area).minus(&through));
         }
     }
 }

@@ -5,7 +5,9 @@
 //! behind it, and the part of it that moves outwards is added to what is held.
 use super::fluid::{Fluid, Work};
 use super::frame::Frame;
+use super::lanes::Number;
 use crate::case::Side;
+use crate::math::jet::Dual;
 use crate::math::sweep::sweep_each_slot;
 use crate::physics::Primitive;
 use crate::physics::outgoing::outgoing;
@@ -28,21 +30,36 @@ impl<const D: usize> Fluid<D> {
         frame.outer = outer;
     }
 
-    /// State of outer particle `k`: what its side holds, with the part of what its source differs that leaves.
-    pub(super) fn outer_state(&self, frame: &Frame<D>, k: usize, fluid: &[Primitive<D>]) -> Primitive<D> {
+    /// What sides hold, with the change that goes with the wall states in `work`; far from the bodies alone does it change.
+    pub(super) fn hold_varied(&self, frame: &Frame<D>, work: &Work<D, Dual>, outer: &mut [[Primitive<D, Dual>; 3]]) {
+        let force = self.pressure_force(frame, work);
+        let cloud = &self.discretisation.cloud;
+        sweep_each_slot(outer, |k, q| match cloud.outer[k].side {
+            Side::FarField => *q = cloud.beside(k).map(|i| self.far_field.varied(&frame.place(i), &force)),
+            _ => *q = frame.outer[k].each_ref().map(Primitive::constant),
+        });
+    }
+
+    /// State of outer particle `k`, whose side holds `held`: that, with the part of what its source differs that leaves.
+    pub(super) fn outer_state<S: Number>(
+        &self,
+        frame: &Frame<D>,
+        (k, held): (usize, &[Primitive<D, S>; 3]),
+        fluid: &[Primitive<D, S>],
+    ) -> Primitive<D, S> {
         let cloud = &frame.discretisation.cloud;
         let outer = &cloud.outer[k];
-        let [held, beside, further] =
-            frame.outer[k].map(|q| Primitive { velocity: frame.to_body_axes(&q.velocity), ..q });
+        let [held, beside, further] = held.map(|q| Primitive { velocity: frame.to_body_axes(&q.velocity), ..q });
         let Some(inner) = fluid.get(outer.source as usize) else { return held };
         if let Side::Outflow { pressure } = outer.side {
-            return Primitive { pressure: pressure.map_or(inner.pressure, |p| p / self.gas.gamma), ..*inner };
+            let given = |p: f64| S::constant(p / self.gas.gamma);
+            return Primitive { pressure: pressure.map_or(inner.pressure, given), ..*inner };
         }
         let [x, near, far] = cloud.beside(k).map(|i| &cloud.x[i]);
         let (n, moved) = (outer.normal(), frame.velocity_of(cloud.outer_range().start + k));
         let ahead = ((*x - *near).dot(&n) / (*near - *far).dot(&n)).clamp(0.0, FURTHEST);
         let change = inner.minus(&beside).minus(&fluid[outer.behind as usize].minus(&further));
-        let arriving = inner.plus(if ahead.is_finite() { ahead } else { 0.0 }, &change);
+        let arriving = inner.plus(S::constant(if ahead.is_finite() { ahead } else { 0.0 }), &change);
         let arriving = if arriving.is_physical() { arriving } else { *inner };
         outgoing(&self.gas, &held, [&arriving, &beside], (&n, &moved))
     }

@@ -7,6 +7,7 @@ use crate::exact::ringleb::Ringleb;
 use crate::exact::vortex::IsentropicVortex;
 use crate::exact::vortex_far_field::FarFieldVortex;
 use crate::math::Vector;
+use crate::math::jet::{Dual, Scalar};
 use crate::physics::Primitive;
 
 /// Why a field cannot be set up.
@@ -136,20 +137,28 @@ impl<const D: usize> Stream<D> {
         Self { free, lift: stream.axes::<D>().1, vortex, lifting }
     }
 
-    /// The vortex of a force: lift = ρ V Γ (Kutta, Joukowski).
-    fn vortex_of(&self, force: &Vector<D>) -> Option<FarFieldVortex> {
-        let circulation = force.dot(&self.lift) / (self.free.density * self.free.velocity.norm());
-        self.vortex.map(|vortex| vortex.with_circulation(circulation))
+    /// The circulation of a force: lift = ρ V Γ (Kutta, Joukowski).
+    fn circulation<S: Scalar>(&self, force: &Vector<D, S>) -> S {
+        force.along(&self.lift) * (1.0 / (self.free.density * self.free.velocity.norm()))
+    }
+
+    fn state_of<S: Scalar>(&self, x: &Vector<D>, force: &Vector<D, S>) -> Primitive<D, S> {
+        let free = || Primitive::constant(&self.free);
+        let Some(vortex) = self.vortex.filter(|_| self.lifting) else { return free() };
+        let s = vortex.state_of(&Vector([x[0], x[1]]), self.circulation(force));
+        let velocity = Vector::from_fn(|d| s.velocity[d.min(1)]);
+        let q = Primitive { density: s.density, velocity, pressure: s.pressure };
+        if q.is_physical() { q } else { free() }
     }
 }
 
 impl<const D: usize> FarField<D> for Stream<D> {
     fn state(&self, x: &Vector<D>, force: &Vector<D>) -> Primitive<D> {
-        let Some(vortex) = self.vortex_of(force).filter(|_| self.lifting) else { return self.free };
-        let s = vortex.state(&Vector([x[0], x[1]]));
-        let velocity = Vector::from_fn(|d| s.velocity[d.min(1)]);
-        let q = Primitive { density: s.density, velocity, pressure: s.pressure };
-        if q.is_physical() { q } else { self.free }
+        self.state_of(x, force)
+    }
+
+    fn varied(&self, x: &Vector<D>, force: &Vector<D, Dual>) -> Primitive<D, Dual> {
+        self.state_of(x, force)
     }
 
     fn pressure(&self) -> f64 {
@@ -157,7 +166,7 @@ impl<const D: usize> FarField<D> for Stream<D> {
     }
 
     fn stray_velocity(&self, x: &Vector<D>, force: &Vector<D>) -> Option<Vector<D>> {
-        let vortex = self.vortex_of(force).filter(|_| !self.lifting)?;
+        let vortex = self.vortex.filter(|_| !self.lifting)?.with_circulation(self.circulation(force));
         let v = vortex.velocity_increment(&Vector([x[0], x[1]]));
         Some(Vector::from_fn(|d| v[d.min(1)]))
     }

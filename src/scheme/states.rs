@@ -6,9 +6,11 @@ use multiversion::multiversion;
 
 use super::fluid::{Fluid, Work};
 use super::frame::Frame;
+use super::lanes::Number;
 use super::reconstruct::Gradient;
 use super::viscous::WallCondition;
 use super::wall_fits::{lowest_two, parabola};
+use super::wall_motion::WallMotion;
 use super::wall_state::{Wall, no_slip_wall, slip_wall};
 use crate::case::Side;
 use crate::cloud::Edge;
@@ -22,18 +24,28 @@ impl<const D: usize> Fluid<D> {
     pub fn fill_states(&self, frame: &Frame<D>, u: &[f64], work: &mut Work<D>) {
         self.fill_fluid(frame, u, work);
         self.fill_walls(frame, work);
-        self.fill_outside(frame, work);
+        self.fill_outside(frame, &frame.outer, work);
     }
 
     /// Fills the states of the evolved particles.
     pub(super) fn fill_fluid(&self, frame: &Frame<D>, u: &[f64], work: &mut Work<D>) {
-        let inward = |q: Primitive<D>| Primitive { velocity: frame.to_body_axes(&q.velocity), ..q };
+        self.fill_rows(frame, |i| Conserved::of_row(u, i), work);
+    }
+
+    /// The same, row `i` of the unknowns being `u(i)`.
+    pub(super) fn fill_rows<S: Number>(
+        &self,
+        frame: &Frame<D>,
+        u: impl Fn(usize) -> Conserved<D, S> + Sync,
+        work: &mut Work<D, S>,
+    ) {
+        let inward = |q: Primitive<D, S>| Primitive { velocity: frame.to_body_axes(&q.velocity), ..q };
         let fluid = &mut work.state[..frame.discretisation.cloud.n_fluid];
-        sweep(fluid, |i| inward(self.gas.primitive(&Conserved::of_row(u, i))));
+        sweep(fluid, |i| inward(self.gas.primitive(&u(i))));
     }
 
     /// Fills the states of interface particles from those of the fluid.
-    pub(super) fn fill_walls(&self, frame: &Frame<D>, work: &mut Work<D>) {
+    pub(super) fn fill_walls<S: Number>(&self, frame: &Frame<D>, work: &mut Work<D, S>) {
         let cloud = &frame.discretisation.cloud;
         let (fluid, rest) = work.state.split_at_mut(cloud.n_fluid);
         let fluid = &*fluid;
@@ -50,12 +62,17 @@ impl<const D: usize> Fluid<D> {
     }
 
     /// Fills the states of outer particles and images from those of the fluid and the walls, and what sides hold.
-    pub(super) fn fill_outside(&self, frame: &Frame<D>, work: &mut Work<D>) {
+    pub(super) fn fill_outside<S: Number>(
+        &self,
+        frame: &Frame<D>,
+        held: &[[Primitive<D, S>; 3]],
+        work: &mut Work<D, S>,
+    ) {
         let cloud = &frame.discretisation.cloud;
         let (inside, rest) = work.state.split_at_mut(cloud.n_rows());
         let (fluid, walls) = inside.split_at(cloud.n_fluid);
         let (outer, ghosts) = rest.split_at_mut(cloud.outer.len());
-        sweep_each(outer, |k| self.outer_state(frame, k, fluid));
+        sweep_each(outer, |k| self.outer_state(frame, (k, &held[k]), fluid));
         let outer = &*outer;
         sweep(ghosts, |k| {
             let image = &cloud.ghosts[k];
@@ -70,44 +87,49 @@ impl<const D: usize> Fluid<D> {
     }
 
     /// State of interface particle `w`, from those of the fluid particles, images included, in `q`.
-    fn wall_state(&self, frame: &Frame<D>, w: usize, q: impl Fn(usize) -> Primitive<D>) -> Primitive<D> {
+    fn wall_state<S: Number>(
+        &self,
+        frame: &Frame<D>,
+        w: usize,
+        q: impl Fn(usize) -> Primitive<D, S>,
+    ) -> Primitive<D, S> {
         let (cloud, fits) = (&frame.discretisation.cloud, &frame.discretisation.walls);
         let interface = &cloud.interface[w];
         let mut wall = Wall {
-            normal: interface.normal,
-            curvature: interface.curvature,
-            offset: fits.normal_offset(w),
-            velocity: frame.velocity_of(cloud.n_fluid + w),
-            motion: frame.walls.get(w).copied(),
+            normal: Vector::constant(&interface.normal),
+            curvature: interface.curvature.each_ref().map(Vector::constant),
+            offset: S::constant(fits.normal_offset(w)),
+            velocity: Vector::constant(&frame.velocity_of(cloud.n_fluid + w)),
+            motion: frame.walls.get(w).map(WallMotion::constant),
         };
-        let front = || fits.row(cloud, w).map(|(k, weight)| (weight, q(k)));
+        let front = || fits.row(cloud, w).map(|(k, weight)| (S::constant(weight), q(k)));
         let condition = self.viscous_model.as_ref().map_or(WallCondition::Slip, |m| m.wall_condition(interface.body));
         let temperature = match condition {
             WallCondition::Slip => return slip_wall(&self.gas, &wall, front()),
             WallCondition::Adiabatic => None,
-            WallCondition::Temperature(t) => Some(t),
+            WallCondition::Temperature(t) => Some(S::constant(t)),
         };
         let Some((particles, heights)) = lowest_two(cloud, w) else {
             return no_slip_wall(&self.gas, &wall, temperature, front());
         };
         let (weights, offset) = parabola(heights);
-        wall.offset = offset;
-        let front = weights.into_iter().zip(particles).map(|(weight, k)| (weight, q(k)));
+        wall.offset = S::constant(offset);
+        let front = weights.into_iter().zip(particles).map(|(weight, k)| (S::constant(weight), q(k)));
         no_slip_wall(&self.gas, &wall, temperature, front)
     }
 
-    fn image_state(&self, q: &Primitive<D>, transform: u8) -> Primitive<D> {
+    fn image_state<S: Number>(&self, q: &Primitive<D, S>, transform: u8) -> Primitive<D, S> {
         Primitive { velocity: self.discretisation.cloud.transforms[transform as usize].direction(&q.velocity), ..*q }
     }
 
     /// Fills `work.gradient` from `work.state`.
-    pub fn fill_gradients(&self, frame: &Frame<D>, work: &mut Work<D>) {
+    pub fn fill_gradients<S: Number>(&self, frame: &Frame<D>, work: &mut Work<D, S>) {
         let (cloud, op) = (&frame.discretisation.cloud, &frame.discretisation.operators);
         let state = &work.state;
         let (rows, rest) = work.gradient.split_at_mut(cloud.n_rows());
         sweep_parts(&op.parts, 1, rows, &|k, out| {
             let start = op.parts[k].start;
-            out.fill(Gradient::ZERO);
+            out.fill(Gradient::zero());
             let inverse = op.inverse();
             if inverse.is_empty() {
                 for (e, [a_i, a_j]) in op.weighed_edges(cloud, k) {
@@ -121,45 +143,46 @@ impl<const D: usize> Fluid<D> {
             }
             shared_sums(op.edges(k), (&cloud.x, state), &inverse[start..], (start, out));
         });
-        cloud.first_order.iter().for_each(|i| rows[*i as usize] = Gradient::ZERO);
+        cloud.first_order.iter().for_each(|i| rows[*i as usize] = Gradient::zero());
         let rows = &*rows;
         let (outer, ghosts) = rest.split_at_mut(cloud.outer.len());
         // a held state that varies along the side also varies across it: without a slope the edge flux is of first order
         sweep(outer, |k| match cloud.outer[k].side {
-            Side::Held => rows.get(cloud.outer[k].source as usize).copied().unwrap_or(Gradient::ZERO),
-            _ => Gradient::ZERO,
+            Side::Held => rows.get(cloud.outer[k].source as usize).copied().unwrap_or_else(Gradient::zero),
+            _ => Gradient::zero(),
         });
         sweep(ghosts, |k| {
             let image = &cloud.ghosts[k];
             let t = &cloud.transforms[image.transform as usize];
-            rows.get(image.source as usize).map_or(Gradient::ZERO, |g| Gradient {
+            rows.get(image.source as usize).map_or_else(Gradient::zero, |g| Gradient {
                 density: t.direction(&g.density),
-                velocity: std::array::from_fn(|c| t.direction(&g.velocity[c]) * t.sign[c]),
+                velocity: std::array::from_fn(|c| t.direction(&g.velocity[c]).times(t.sign[c])),
                 pressure: t.direction(&g.pressure),
             })
         });
         match &work.frozen {
             None => self.fill_steepness(frame, work),
-            Some(frozen) => work.steepness.copy_from_slice(&frozen.steepness),
+            Some(frozen) => sweep(&mut work.steepness, |i| S::constant(frozen.steepness[i])),
         }
     }
 
-    fn fill_steepness(&self, frame: &Frame<D>, work: &mut Work<D>) {
+    fn fill_steepness<S: Number>(&self, frame: &Frame<D>, work: &mut Work<D, S>) {
         let cloud = &frame.discretisation.cloud;
         let (state, gradient) = (&work.state, &work.gradient);
         let (rows, rest) = work.steepness.split_at_mut(cloud.n_rows());
         sweep(rows, |i| gradient[i].steepness(cloud.spacing[i], state[i].pressure));
         let rows = &*rows;
         let ghosts = &mut rest[cloud.outer.len()..];
-        sweep(ghosts, |k| rows.get(cloud.ghosts[k].source as usize).copied().unwrap_or(0.0));
+        sweep(ghosts, |k| rows.get(cloud.ghosts[k].source as usize).copied().unwrap_or(S::constant(0.0)));
     }
 
     /// Force of the pressure on all bodies in the axes of the case, from the wall states in `work`.
-    pub fn pressure_force(&self, frame: &Frame<D>, work: &Work<D>) -> Vector<D> {
+    pub fn pressure_force<S: Number>(&self, frame: &Frame<D>, work: &Work<D, S>) -> Vector<D, S> {
         let cloud = &frame.discretisation.cloud;
         let walls = &work.state[cloud.interface_range()];
         let far = self.far_field.pressure();
-        let force = cloud.interface.iter().zip(walls).fold(Vector::ZERO, |f, (w, q)| f - w.area * (q.pressure - far));
+        let push = |q: &Primitive<D, S>, area: &Vector<D>| Vector::constant(area) * (q.pressure - far);
+        let force = cloud.interface.iter().zip(walls).fold(Vector::zero(), |f, (w, q)| f - push(q, &w.area));
         frame.to_inertial_axes(&force)
     }
 }
@@ -167,11 +190,11 @@ impl<const D: usize> Fluid<D> {
 /// Gradients of the rows from `start` on, where both ends of an edge sum the same and only then make gradients of it.
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq", "x86_64+avx2"))]
 #[allow(unsafe_code, reason = "the attribute calls the version that the processor has just been asked for")]
-fn shared_sums<const D: usize>(
+fn shared_sums<const D: usize, S: Number>(
     edges: &[Edge<D>],
-    (x, state): (&[Vector<D>], &[Primitive<D>]),
+    (x, state): (&[Vector<D>], &[Primitive<D, S>]),
     inverse: &[Symmetric<D>],
-    (start, out): (usize, &mut [Gradient<D>]),
+    (start, out): (usize, &mut [Gradient<D, S>]),
 ) {
     for e in edges {
         let (d, dq) = (x[e.j()] - x[e.i()], state[e.j()].minus(&state[e.i()]));
@@ -183,6 +206,6 @@ fn shared_sums<const D: usize>(
     }
     for (g, m) in out.iter_mut().zip(inverse) {
         let m = m.full();
-        *g = g.map(|v| Vector::from_fn(|r| (0..D).map(|c| m[r][c] * v[c]).sum()));
+        *g = g.map(|v| Vector::from_fn(|r| v.along(&Vector(m[r]))));
     }
 }

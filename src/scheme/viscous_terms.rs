@@ -7,6 +7,7 @@ use super::block::Block;
 use super::edge_flux::half_face;
 use super::fluid::{Fluid, Work};
 use super::frame::Frame;
+use super::lanes::Number;
 use super::viscous::{
     ViscousModel, WallCondition, WallSlopes, at_contact, direction, reach, slope_weights, slopes, temperature_gradient,
     thin_layer,
@@ -30,53 +31,54 @@ impl<const D: usize> Fluid<D> {
     }
 
     /// Calls `add(i, change)` with what stress and heat through every piece of wall add to V dU/dt of the particle there.
-    pub(super) fn viscous_walls(
+    pub(super) fn viscous_walls<S: Number>(
         &self,
         faces: &[WallFace<D>],
-        at: (&Frame<D>, &Work<D>),
-        add: &mut impl FnMut(usize, &Conserved<D>),
+        at: (&Frame<D>, &Work<D, S>),
+        add: &mut impl FnMut(usize, &Conserved<D, S>),
     ) {
         let Some(viscous_model) = &self.viscous_model else { return };
         for face in faces {
             let mut through = self.viscous_wall(viscous_model, at, face);
             if at.0.taken_by(face).is_some() {
                 // friction is part of what is taken: heat alone is left
-                through.energy -= through.momentum.dot(&at.0.velocity_of(face.wall as usize));
-                through.momentum = Vector::ZERO;
+                through.energy = through.energy - through.momentum.along(&at.0.velocity_of(face.wall as usize));
+                through.momentum = Vector::zero();
             }
             add(face.i as usize, &through);
         }
     }
 
     /// Flux of stress and heat through a piece of wall.
-    fn viscous_wall(
+    fn viscous_wall<S: Number>(
         &self,
         viscous_model: &ViscousModel,
-        (frame, work): (&Frame<D>, &Work<D>),
+        (frame, work): (&Frame<D>, &Work<D, S>),
         face: &WallFace<D>,
-    ) -> Conserved<D> {
+    ) -> Conserved<D, S> {
         let cloud = &frame.discretisation.cloud;
         let source = cloud.source(face.wall as usize);
         let w = source.index - cloud.n_fluid;
         let Some(at) = self.at_wall(viscous_model, (cloud, work), w, frame.walls.get(w)) else {
-            return Conserved::ZERO;
+            return Conserved::zero();
         };
+        let area = Vector::constant(&face.area);
         if !source.image {
-            return viscous_model.medium.flux(&self.gas, &at, &face.area);
+            return viscous_model.medium.flux(&self.gas, &at, &area);
         }
         let transform = &cloud.transforms[cloud.ghosts[face.wall as usize - cloud.n_real()].transform as usize];
-        let through = viscous_model.medium.flux(&self.gas, &at, &transform.direction(&face.area));
+        let through = viscous_model.medium.flux(&self.gas, &at, &transform.direction(&area));
         Conserved { momentum: transform.direction(&through.momentum), ..through }
     }
 
     /// Slopes on the wall of interface particle `w` that moves with `motion`; `None` where the gas slides.
-    fn at_wall(
+    fn at_wall<S: Number>(
         &self,
         viscous_model: &ViscousModel,
-        (cloud, work): (&Cloud<D>, &Work<D>),
+        (cloud, work): (&Cloud<D>, &Work<D, S>),
         w: usize,
         motion: Option<&WallMotion<D>>,
-    ) -> Option<Slopes<D>> {
+    ) -> Option<Slopes<D, S>> {
         let wall_condition = viscous_model.wall_condition(cloud.interface[w].body);
         if wall_condition == WallCondition::Slip {
             return None;
@@ -88,17 +90,18 @@ impl<const D: usize> Fluid<D> {
             Some((particles, heights)) => {
                 let [a, b] = slope_weights(heights);
                 let [p, q] = particles.map(|k| &work.state[k]);
-                let heat = |q: &Primitive<D>| self.gas.temperature(q) - temperature;
-                let rate = (p.velocity - wall.velocity) * a + (q.velocity - wall.velocity) * b;
+                let heat = |q: &Primitive<D, S>| self.gas.temperature(q) - temperature;
+                let rate = (p.velocity - wall.velocity).times(a) + (q.velocity - wall.velocity).times(b);
                 (rate, heat(p) * a + heat(q) * b)
             }
             None => {
                 let g = &work.gradient[i];
-                let rate = Vector::from_fn(|c| g.velocity[c].dot(normal));
-                (rate, temperature_gradient(&self.gas, wall, g).dot(normal))
+                let rate = Vector::from_fn(|c| g.velocity[c].along(normal));
+                (rate, temperature_gradient(&self.gas, wall, g).along(normal))
             }
         };
-        let heating = if wall_condition == WallCondition::Adiabatic { 0.0 } else { heating };
+        let heating = if wall_condition == WallCondition::Adiabatic { S::constant(0.0) } else { heating };
+        let normal_of = |s: S| Vector::constant(normal) * s;
         Some(Slopes {
             velocity: wall.velocity,
             temperature,
@@ -106,9 +109,9 @@ impl<const D: usize> Fluid<D> {
                 let along = motion.map_or(Vector::ZERO, |m| {
                     m.wall_velocity_gradient[c] - *normal * m.wall_velocity_gradient[c].dot(normal)
                 });
-                *normal * rate[c] + along
+                normal_of(rate[c]) + Vector::constant(&along)
             }),
-            temperature_gradient: *normal * heating,
+            temperature_gradient: normal_of(heating),
         })
     }
 

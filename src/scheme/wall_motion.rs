@@ -1,5 +1,6 @@
 //! How walls move.
 use crate::math::Vector;
+use crate::math::jet::Scalar;
 use crate::motion::BodyMotion;
 
 /// How a wall moves near an interface particle, beside its velocity.
@@ -25,6 +26,16 @@ impl<const D: usize> WallMotion<D> {
         let columns: [Vector<D>; D] = std::array::from_fn(|j| turn(&times(&back(&Vector::axis(j)))));
         let wall_velocity_gradient = std::array::from_fn(|i| Vector::from_fn(|j| columns[j][i]));
         Self { wall_velocity_gradient, acceleration: turn(&self.acceleration) }
+    }
+}
+
+impl<const D: usize, S: Scalar> WallMotion<D, S> {
+    /// A motion that no state changes.
+    pub(super) fn constant(m: &WallMotion<D>) -> Self {
+        Self {
+            wall_velocity_gradient: m.wall_velocity_gradient.each_ref().map(Vector::constant),
+            acceleration: Vector::constant(&m.acceleration),
+        }
     }
 }
 

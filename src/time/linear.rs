@@ -2,17 +2,16 @@
 //!
 //! What harmonic balance tends to as the amplitude goes to nothing (Hall and Clark 1993, doi:10.2514/3.11706), without the mean and without
 //! iterations of Newton's method: one linear system for each right-hand side, real and imaginary part beside one another. It begins with the
-//! best combination of the solutions that are known. Products
-//! with ∂R/∂U are central differences; the preconditioner is that of harmonic balance with one harmonic. Solves are refined: the
-//! residual is found anew in double precision until it is small.
+//! best combination of the solutions that are known. Products with ∂R/∂U are exact ([`System::derivative`]), those that build the
+//! Krylov space hasty differences; the preconditioner is that of harmonic balance with one harmonic. Solves are refined: the residual
+//! is found anew with exact products until it is small.
 use super::recycled::Recycled;
 use crate::math::fourier::Instances;
 use crate::math::krylov::{Gmres, Goal, Numbers};
 use crate::math::sweep::{norm, sweep_slots};
 use crate::system::{Hierarchy, Implicit, Period, Placed, Preconditioner, Reach, RightHandSide, Shift, placed};
 
-/// Change of the state in products, over its size: to both sides, and to one.
-const STEP: f64 = 1e-6;
+/// Change of the state in hasty products, over its size.
 const HASTY: f64 = 1e-8;
 /// Reduction asked of each solve, and rounds of refinement.
 const ROUND: f64 = 1e-5;
@@ -36,7 +35,7 @@ pub struct Linear<'a, S: Implicit> {
     scale: Vec<f64>,
     gmres: Gmres,
     moved: Vec<f64>,
-    found: [Vec<f64>; 2],
+    found: Vec<f64>,
     /// R at the state.
     rest: Vec<f64>,
     recycled: Recycled,
@@ -72,7 +71,7 @@ impl<'a, S: Implicit> Linear<'a, S> {
             state: state.to_vec(),
             gmres: Gmres::new(2 * n, BASIS),
             moved: vec![0.0; n],
-            found: [vec![0.0; n], vec![0.0; n]],
+            found: vec![0.0; n],
             rest,
             recycled: Recycled::default(),
             parts: vec![0.0; 2 * n],
@@ -90,39 +89,29 @@ impl<'a, S: Implicit> Linear<'a, S> {
         &self.state
     }
 
-    /// out = ∂R/∂U v, by a difference to one side, or to both, which takes twice as long.
-    fn product(&mut self, v: &[f64], both: bool, out: &mut [f64]) {
+    /// out = ∂R/∂U v, exact or by a difference to one side, which takes half as long.
+    fn product(&mut self, v: &[f64], exact: bool, out: &mut [f64]) {
+        if exact {
+            return self.system.derivative(&self.state, v, (&mut self.work, &mut self.frame), out);
+        }
         let size = norm(v);
         if size == 0.0 {
-            out.fill(0.0);
-            return;
+            return out.fill(0.0);
         }
-        let step = if both { STEP } else { HASTY } * self.size / size;
-        self.changed(v, step, 0);
-        if both {
-            self.changed(v, -step, 1);
-        }
-        let ([forth, back], rest) = (&self.found, &self.rest);
-        match both {
-            true => sweep_slots(out, |i, o| *o = (forth[i] - back[i]) / (2.0 * step)),
-            false => sweep_slots(out, |i, o| *o = (forth[i] - rest[i]) / step),
-        }
-    }
-
-    /// R at the state with `step` v.
-    fn changed(&mut self, v: &[f64], step: f64, side: usize) {
-        let state = &self.state;
+        let (step, state) = (HASTY * self.size / size, &self.state);
         sweep_slots(&mut self.moved, |i, u| *u = state[i] + step * v[i]);
-        self.system.rhs_with_boundary(&self.moved, &mut self.work, &mut self.frame, &mut self.found[side]);
+        self.system.rhs_with_boundary(&self.moved, &mut self.work, &mut self.frame, &mut self.found);
+        let (there, rest) = (&self.found, &self.rest);
+        sweep_slots(out, |i, o| *o = (there[i] - rest[i]) / step);
     }
 
     /// out = (iω − ∂R/∂U) x, real parts before imaginary ones, in local times.
-    fn shifted(&mut self, omega: f64, (x, both): (&[f64], bool), out: &mut [f64]) {
+    fn shifted(&mut self, omega: f64, (x, exact): (&[f64], bool), out: &mut [f64]) {
         let n = self.state.len();
         let (re, im) = x.split_at(n);
         let (out_re, out_im) = out.split_at_mut(n);
-        self.product(re, both, out_re);
-        self.product(im, both, out_im);
+        self.product(re, exact, out_re);
+        self.product(im, exact, out_im);
         let scale = &self.scale;
         sweep_slots(out_re, |i, o| *o = scale[i] * (-*o - omega * im[i]));
         sweep_slots(out_im, |i, o| *o = scale[i] * (-*o + omega * re[i]));

@@ -5,6 +5,7 @@ use super::*;
 use crate::cloud::conservative::conservative;
 use crate::cloud::{Cloud, CloudSpec, Operators};
 use crate::math::Vector;
+use crate::math::jet::{Dual, Scalar};
 use crate::physics::{Gas, Primitive};
 use crate::scheme::fluid::{FarField, Field};
 use crate::scheme::reconstruct::Reconstruction;
@@ -15,6 +16,9 @@ struct Still;
 impl<const D: usize> FarField<D> for Still {
     fn state(&self, _: &Vector<D>, _: &Vector<D>) -> Primitive<D> {
         Primitive { density: 1.0, velocity: Vector::ZERO, pressure: 1.0 }
+    }
+    fn varied(&self, _: &Vector<D>, _: &Vector<D, Dual>) -> Primitive<D, Dual> {
+        Primitive { density: Dual::constant(1.0), velocity: Vector::zero(), pressure: Dual::constant(1.0) }
     }
     fn pressure(&self) -> f64 {
         1.0
