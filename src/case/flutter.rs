@@ -101,13 +101,13 @@ impl Case {
         case
     }
 
-    /// The march of a motion of period `period` at one Mach number, and at `ratio` times the speed of the case; `start` has value and
+    /// The march of a motion of period `period` at one Mach number, in a stream of `ratio` times the pressure and temperature of the case; `start` has value and
     /// rate of every coordinate where it begins. Dimensions stay those of the case: the structure is softer in place of a faster stream.
     /// Structures that are not trimmed are held as drawn against `borne`, the forces of the steady flow on all coordinates in units of the
     /// solver.
     pub fn cycle_case(
         &self,
-        (mach, ratio): (f64, f64),
+        (mach, ratio): (f64, StreamRatio),
         (start, borne): (&[[f64; 2]], &[f64]),
         [period, most]: [f64; 2],
     ) -> Self {
@@ -147,10 +147,9 @@ impl Case {
 }
 
 impl Structure {
-    /// That in a stream `ratio` times as fast at the same density, told in the units of the case; nothing else pulls but, where it is
-    /// `trimmed`, gravity.
-    fn soften(&mut self, ratio: f64, trimmed: bool) {
-        self.enter(StreamRatio { pressure: ratio * ratio, temperature: ratio * ratio }, false);
+    /// That in another stream, told in the units of the case; nothing else pulls but, where it is `trimmed`, gravity.
+    fn soften(&mut self, ratio: StreamRatio, trimmed: bool) {
+        self.enter(ratio, false);
         self.modes.iter_mut().for_each(|m| m.force = None);
         self.force = None;
         self.gravity = self.gravity.take().filter(|_| trimmed);

@@ -190,11 +190,6 @@ fn refused(case: &Case, plan: &Plan) -> Result<(), RunError> {
             "find their modes first (`[time.modes]` without `[flow]`), and give them as `[[structure.mode]]`",
         ),
         (
-            case.lco.is_some() && matching != Matching::None,
-            "limit cycles with matched density or altitude",
-            "use `match = \"none\"`: the speed goes with the amplitude at constant density",
-        ),
-        (
             case.lco.is_some() && case.structures.iter().any(|s| s.large_angles),
             "limit cycles of a section whose inertia is that of a rigid body at any angle",
             "leave out `large_angles`",
@@ -294,7 +289,7 @@ impl Place<'_> {
             at.borne = source.borne();
             if let Some(lco) = self.lco.filter(|_| cycles) {
                 let springs = search::springs_of_the_case(source.springs(), stream);
-                let borne = self.plan.trim.then(|| Borne { forces: at.borne.clone(), x: stream.pressure.sqrt() });
+                let borne = self.plan.trim.then(|| Borne { forces: at.borne.clone(), pressure: stream.pressure });
                 at.add_cycles(Seek::new(lco, &mut search, (springs, borne))?.run(Some((source, log))));
             }
             found = Some(at);

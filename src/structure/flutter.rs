@@ -155,6 +155,24 @@ struct Root {
     rate: Complex64,
 }
 
+impl Varied<'_> {
+    /// U/U_ref at x.
+    pub(super) fn speed(&self, x: f64) -> f64 {
+        match self {
+            Self::Speed => x,
+            Self::Pressure(speed) => speed(x),
+        }
+    }
+
+    /// Dynamic pressure over that of the reference at x.
+    pub(super) fn pressure(&self, x: f64) -> f64 {
+        match self {
+            Self::Speed => x * x,
+            Self::Pressure(_) => x,
+        }
+    }
+}
+
 impl<'a> Flutter<'a> {
     /// With the forces Q(iκ) of displacements that `forces` gives for κ ≥ 0, rows one after another, at the speed U_ref.
     pub fn new(matrices: &Matrices, forces: &'a (dyn Fn(f64) -> Vec<Complex64> + 'a)) -> Self {
@@ -168,18 +186,12 @@ impl<'a> Flutter<'a> {
 
     /// U/U_ref at x.
     fn speed(&self, x: f64) -> f64 {
-        match self.varied {
-            Varied::Speed => x,
-            Varied::Pressure(speed) => speed(x),
-        }
+        self.varied.speed(x)
     }
 
     /// Dynamic pressure over that of the reference at x.
     fn pressure(&self, x: f64) -> f64 {
-        match self.varied {
-            Varied::Speed => x * x,
-            Varied::Pressure(_) => x,
-        }
+        self.varied.pressure(x)
     }
 
     /// x where the dynamic pressure over that of the reference is `pressure`.

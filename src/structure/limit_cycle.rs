@@ -1,12 +1,13 @@
 //! Limit cycles: periodic motions of given size, with their speed and frequency as unknowns.
 //!
-//! With q(t) = q₀ + Re Σ q̂_n e^{inωt} a structure with springs s_j(q_j) in a stream at x times the reference speed obeys, harmonic by
-//! harmonic,
+//! With q(t) = q₀ + Re Σ q̂_n e^{inωt} a structure with springs s_j(q_j) in a stream of u times the speed and p times the dynamic pressure
+//! of the reference obeys, harmonic by harmonic,
 //!
-//! (−n²ω²M + inωC + K) q̂_n + f̂_n − x² (Q(inκ) q̂_n + δ̂_n) = 0, κ = ω/x,
+//! (−n²ω²M + inωC + K) q̂_n + f̂_n − p (Q(inκ) q̂_n + δ̂_n) = 0, κ = ω/u,
 //!
-//! where f = s(q) − s(0) − s'(0) q is what springs do beyond the stiffness K, and δ what the gas does beyond the forces Q of small motions. A
-//! structure that bears the forces F₀ of the gas at rest at x₀ has (x² − x₀²) F₀ on the right of the means as well. The
+//! where f = s(q) − s(0) − s'(0) q is what springs do beyond the stiffness K, and δ what the gas does beyond the forces Q of small motions.
+//! u and p go with what is varied ([`Varied`]): u = x and p = x² at constant density. A
+//! structure that bears the forces F₀ of the gas at rest at p₀ has (p − p₀) F₀ on the right of the means as well. The
 //! harmonics of f are those of its values at many instants of a period (Cameron and Griffin 1989, doi:10.1115/1.3176036), so that none is
 //! taken for another. Amplitude and phase of one coordinate are given, ω and x follow: where x falls while the amplitude rises a branch
 //! is traced around its fold as well. Newton's method with central differences solves.
@@ -15,7 +16,7 @@
 //! describing function).
 use num_complex::Complex64;
 
-use super::flutter::{Crossing, Flutter, Kind};
+use super::flutter::{Crossing, Flutter, Kind, Varied};
 use super::{Matrices, Spring};
 use crate::math::dense::Factors;
 
@@ -45,8 +46,10 @@ pub struct Periodic {
 /// A limit cycle.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cycle {
-    /// Speed over that of the reference.
+    /// x: U/U_ref unless something else is varied.
     pub x: f64,
+    /// U/U_ref.
+    pub speed: f64,
     /// Angular frequency in the time of the reference.
     pub omega: f64,
     /// The motion.
@@ -61,6 +64,8 @@ pub struct Oscillator<'a> {
     pub springs: &'a [Spring],
     /// Forces of small motions per coordinate at κ, rows one after another.
     pub forces: &'a (dyn Fn(f64) -> Vec<Complex64> + 'a),
+    /// What x is.
+    pub varied: Varied<'a>,
     /// The coordinate whose amplitude is given.
     pub coordinate: usize,
     /// What the gas does at rest, where the structure bears it; else bodies are in equilibrium as drawn, at any speed.
@@ -72,8 +77,8 @@ pub struct Oscillator<'a> {
 pub struct Borne {
     /// Per coordinate.
     pub forces: Vec<f64>,
-    /// x at that equilibrium.
-    pub x: f64,
+    /// Dynamic pressure at that equilibrium over that of the reference.
+    pub pressure: f64,
 }
 
 impl Periodic {
@@ -117,7 +122,7 @@ impl Periodic {
 impl Cycle {
     /// κ = ω/x: the frequency that forces are those of.
     pub fn kappa(&self) -> f64 {
-        self.omega / self.x
+        self.omega / self.speed
     }
 }
 
@@ -143,7 +148,7 @@ impl Oscillator<'_> {
         let more = (0..count).map(sine).sum::<f64>() / amplitude;
         let mut seen = self.matrices.clone();
         seen.stiffness[c * (n + 1)] += more;
-        let flutter = Flutter::new(&seen, self.forces);
+        let flutter = Flutter::new(&seen, self.forces).varying(self.varied);
         let crossings = flutter.crossings(&flutter.branches(upto), upto);
         let cycle = |crossing: Crossing| {
             let largest = crossing.shape.iter().map(|z| z.norm()).fold(0.0, f64::max);
@@ -152,7 +157,7 @@ impl Oscillator<'_> {
             moves.then(|| {
                 let harmonic = crossing.shape.iter().map(|z| z / own * amplitude).collect();
                 let motion = Periodic { mean: vec![0.0; n], harmonics: vec![harmonic] };
-                (crossing.kind, Cycle { x: crossing.x, omega: crossing.frequency, motion })
+                (crossing.kind, Cycle { x: crossing.x, speed: crossing.speed, omega: crossing.frequency, motion })
             })
         };
         crossings.into_iter().filter_map(cycle).collect()
@@ -270,7 +275,8 @@ impl Problem<'_> {
             mean: means.iter().zip(unit).map(|(q, u)| q * u).collect(),
             harmonics: all.chunks_exact(2 * n).map(harmonic).collect(),
         };
-        Cycle { omega: ends[0] * self.scale.omega, x: ends[1] * self.scale.x, motion }
+        let x = ends[1] * self.scale.x;
+        Cycle { omega: ends[0] * self.scale.omega, x, speed: self.own.varied.speed(x), motion }
     }
 
     /// All equations in units of their largest terms, and the greatest of them; `None` outside of what is physical.
@@ -281,7 +287,7 @@ impl Problem<'_> {
         }
         let (n, m) = (self.own.n(), self.own.matrices);
         let springs = self.springs(&cycle.motion);
-        let square = cycle.x * cycle.x;
+        let pressure = self.own.varied.pressure(cycle.x);
         let mut r = Vec::with_capacity(y.len());
         for h in 0..=self.harmonics {
             let (w, forces) = (h as f64 * cycle.omega, (self.own.forces)(h as f64 * cycle.kappa()));
@@ -292,12 +298,12 @@ impl Problem<'_> {
             for i in 0..n {
                 let structure = |j: usize| {
                     let k = i * n + j;
-                    Complex64::new(m.stiffness[k] - w * w * m.mass[k], w * m.damping[k]) - square * forces[k]
+                    Complex64::new(m.stiffness[k] - w * w * m.mass[k], w * m.damping[k]) - pressure * forces[k]
                 };
                 let sum: Complex64 = (0..n).map(|j| structure(j) * of(&cycle.motion, j)).sum();
-                let rest =
-                    if h == 0 { self.own.borne.map_or(0.0, |b| (square - b.x * b.x) * b.forces[i]) } else { 0.0 };
-                let all = (sum + of(&springs, i) - square * of(&self.beyond, i) - rest) / self.scale.force[i];
+                let more = |b: &Borne| (pressure - b.pressure) * b.forces[i];
+                let rest = if h == 0 { self.own.borne.map_or(0.0, more) } else { 0.0 };
+                let all = (sum + of(&springs, i) - pressure * of(&self.beyond, i) - rest) / self.scale.force[i];
                 r.push(all.re);
                 if h > 0 {
                     r.push(all.im);

@@ -1,6 +1,6 @@
 //! Limit cycles of a typical section whose pitch spring is cubic, with the forces of Wagner's function in Jones's approximation.
 use alula::exact::theodorsen::plate_loads;
-use alula::structure::flutter::Kind;
+use alula::structure::flutter::{Kind, Varied};
 use alula::structure::limit_cycle::{Borne, Cycle, Oscillator};
 use alula::structure::{Matrices, Spring};
 use num_complex::Complex64;
@@ -37,7 +37,14 @@ fn section() -> (Matrices, [Spring; 2]) {
 
 fn cycle(degrees: f64, harmonics: usize) -> Cycle {
     let (matrices, springs) = section();
-    let own = Oscillator { matrices: &matrices, springs: &springs, forces: &forces, coordinate: 1, borne: None };
+    let own = Oscillator {
+        matrices: &matrices,
+        springs: &springs,
+        forces: &forces,
+        varied: Varied::Speed,
+        coordinate: 1,
+        borne: None,
+    };
     let amplitude = degrees.to_radians();
     let begins = own.begin(amplitude, UPTO);
     let (_, first) = begins.into_iter().find(|(kind, _)| *kind == Kind::Flutter).unwrap();
@@ -77,7 +84,14 @@ fn a_free_play_begins_to_swing_below_the_linear_flutter_speed() {
     let (mut loose, play) = (springs, 0.5f64.to_radians());
     loose[1] = Spring { play, ..Spring::linear(springs[1].stiffness) };
     let soft = Matrices { stiffness: vec![0.04, 0.0, 0.0, 0.0], ..matrices };
-    let own = Oscillator { matrices: &soft, springs: &loose, forces: &forces, coordinate: 1, borne: None };
+    let own = Oscillator {
+        matrices: &soft,
+        springs: &loose,
+        forces: &forces,
+        varied: Varied::Speed,
+        coordinate: 1,
+        borne: None,
+    };
     let mut speeds = Vec::new();
     for part in [3.0, 6.0, 20.0] {
         let amplitude = part * play;
@@ -94,15 +108,43 @@ fn a_free_play_begins_to_swing_below_the_linear_flutter_speed() {
 }
 
 #[test]
+fn limit_cycles_of_a_denser_stream_are_those_of_a_lighter_structure() {
+    let (matrices, springs) = section();
+    let (speed, amplitude) = (|_: f64| 5.0, 4f64.to_radians());
+    let varied = Varied::Pressure(&speed);
+    let own =
+        Oscillator { matrices: &matrices, springs: &springs, forces: &forces, varied, coordinate: 1, borne: None };
+    let begins = own.begin(amplitude, UPTO * UPTO);
+    let (_, first) = begins.into_iter().find(|(kind, _)| *kind == Kind::Flutter).unwrap();
+    let found = own.solve(&first, amplitude, 3, None).unwrap();
+    // so much denser than at the same speed with nothing varied
+    let denser = found.x / 25.0;
+    let over = |all: &[f64]| all.iter().map(|x| x / denser).collect::<Vec<f64>>();
+    let light = Matrices { mass: over(&matrices.mass), stiffness: over(&matrices.stiffness), ..matrices.clone() };
+    let soft = springs.map(|s| Spring { stiffness: s.stiffness / denser, cubic: s.cubic / denser, ..s });
+    let lighter = Oscillator { matrices: &light, springs: &soft, varied: Varied::Speed, ..own };
+    let same = lighter.solve(&Cycle { x: 4.9, speed: 4.9, ..found.clone() }, amplitude, 3, None).unwrap();
+    assert!(denser > 1.2 && (same.x / 5.0 - 1.0).abs() < 1e-9, "{found:?} {same:?}");
+    assert!((same.omega / found.omega - 1.0).abs() < 1e-9 && found.speed == 5.0);
+}
+
+#[test]
 fn what_is_borne_at_rest_shifts_the_mean_alone_where_springs_are_linear() {
     let (matrices, mut springs) = section();
     springs[1].cubic = 0.0;
     let amplitude = 1f64.to_radians();
-    let free = Oscillator { matrices: &matrices, springs: &springs, forces: &forces, coordinate: 1, borne: None };
+    let free = Oscillator {
+        matrices: &matrices,
+        springs: &springs,
+        forces: &forces,
+        varied: Varied::Speed,
+        coordinate: 1,
+        borne: None,
+    };
     let (_, first) = free.begin(amplitude, UPTO).into_iter().find(|(kind, _)| *kind == Kind::Flutter).unwrap();
     let alone = free.solve(&first, amplitude, 2, None).unwrap();
     let (lift, x) = ([2e-4, 1e-4], 5.0);
-    let borne = Borne { forces: lift.to_vec(), x };
+    let borne = Borne { forces: lift.to_vec(), pressure: x * x };
     let bearing = Oscillator { borne: Some(&borne), ..free };
     let found = bearing.solve(&first, amplitude, 2, None).unwrap();
     assert!((found.x / alone.x - 1.0).abs() < 1e-9 && (found.omega / alone.omega - 1.0).abs() < 1e-9);

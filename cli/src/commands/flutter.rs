@@ -149,9 +149,14 @@ fn cycles(boundary: &Boundary) -> String {
         "limit cycles, amplitude of {}\n    Mach  branch  amplitude   V/V_ref  speed index        k  frequency            harmonics     error\n",
         first.coordinate
     );
+    let is_matched = boundary.flutter.iter().any(|at| at.matching != Matching::None);
+    let matched = |c: &LimitCycle| {
+        let altitude = c.altitude.map_or_else(String::new, |z| format!(", {z:.0} m"));
+        format!("  density {:.4}, dynamic pressure {:.5e}{altitude}", c.density, c.dynamic_pressure)
+    };
     let row = |c: &LimitCycle| {
         format!(
-            "{:>8}  {:>6}  {:>9.4}  {:>8.4}  {:>11}  {:>7.4}  {:>9.4}  {:<8}  {:>9}  {:>6.2} %{}\n",
+            "{:>8}  {:>6}  {:>9.4}  {:>8.4}  {:>11}  {:>7.4}  {:>9.4}  {:<8}  {:>9}  {:>6.2} %{}{}\n",
             c.mach,
             c.branch,
             c.amplitude,
@@ -162,6 +167,7 @@ fn cycles(boundary: &Boundary) -> String {
             if c.stable { "stable" } else { "unstable" },
             c.harmonics,
             100.0 * c.error,
+            if is_matched { matched(c) } else { String::new() },
             if c.extrapolated { "  beyond the frequencies computed" } else { "" }
         )
     };

@@ -93,17 +93,41 @@ pub(super) fn locus(found: &Found, at: &At) -> Chart {
     }
 }
 
+/// What the stream is varied in, where charts draw it.
+#[derive(Clone, Copy)]
+struct Varied<'a> {
+    matching: &'a str,
+    /// All that is drawn has a speed index.
+    indexed: bool,
+}
+
+impl Varied<'_> {
+    fn label(self) -> &'static str {
+        match self.matching {
+            "density" => "dynamic pressure",
+            "altitude" => "altitude, m",
+            _ if self.indexed => "speed index",
+            _ => "speed",
+        }
+    }
+
+    /// Where something is that has this speed index, speed, dynamic pressure and altitude.
+    fn place(self, index: Option<f64>, [speed, pressure]: [f64; 2], altitude: Option<f64>) -> f64 {
+        match self.matching {
+            "density" => pressure,
+            "altitude" => altitude.unwrap_or(f64::NAN),
+            _ => index.filter(|_| self.indexed).unwrap_or(speed),
+        }
+    }
+}
+
 /// All crossings against the Mach number; `None` with fewer than two of these, and where nothing crosses.
 pub(super) fn boundary(found: &Found) -> Option<Chart> {
     let matching = &found.flutter.first()?.matching[..];
     let crossings = || found.flutter.iter().flat_map(|at| at.crossings.iter().map(move |c| (at.mach, c)));
     let indexed = crossings().all(|(_, c)| c.speed_index.is_some());
-    let (label, place): (&str, fn(&Crossing) -> f64) = match matching {
-        "density" => ("dynamic pressure", |c| c.dynamic_pressure),
-        "altitude" => ("altitude, m", |c| c.altitude.unwrap_or(f64::NAN)),
-        _ if indexed => ("speed index", |c| c.speed_index.unwrap_or(f64::NAN)),
-        _ => ("speed", |c| c.speed),
-    };
+    let axis = Varied { matching, indexed };
+    let place = |c: &Crossing| axis.place(c.speed_index, [c.speed, c.dynamic_pressure], c.altitude);
     if found.flutter.len() < 2 || crossings().next().is_none() {
         return None;
     }
@@ -128,16 +152,17 @@ pub(super) fn boundary(found: &Found) -> Option<Chart> {
         Series::new(kind, marks, x, y)
     };
     let kinds = KINDS.map(one).into_iter().filter(|s| !s.x.is_empty());
-    let (x, y) = (Axis::linear("Mach number"), Axis::linear(label));
+    let (x, y) = (Axis::linear("Mach number"), Axis::linear(axis.label()));
     Some(Chart { title: "Flutter boundary".into(), x, y, series: kinds.chain(bars).collect() })
 }
 
-/// Amplitude against speed: branches, full where motions go to them and dashed where they leave; where they begin, and what marches end
+/// Amplitude against speed, or what is varied instead: branches, full where motions go to them and dashed where they leave; where they begin, and what marches end
 /// with. `None` without limit cycles.
 pub(super) fn limit_cycles(found: &Found) -> Option<Chart> {
     let first = found.lco.first()?;
-    let indexed = found.lco.iter().all(|c| c.speed_index.is_some());
-    let speed = |c: &Cycle| c.speed_index.filter(|_| indexed).unwrap_or(c.speed);
+    let matching = found.flutter.first().map_or("", |at| &at.matching[..]);
+    let axis = Varied { matching, indexed: found.lco.iter().all(|c| c.speed_index.is_some()) };
+    let speed = |c: &Cycle| axis.place(c.speed_index, [c.speed, c.dynamic_pressure], c.altitude);
     let lines = [("", Marks::Line, true), ("", Marks::Dashes, false)].map(|(name, marks, stable)| {
         let (mut x, mut y) = (Vec::new(), Vec::new());
         for pair in found.lco.windows(2).filter(|p| p[0].branch == p[1].branch) {
@@ -156,8 +181,8 @@ pub(super) fn limit_cycles(found: &Found) -> Option<Chart> {
     };
     let marched = found.lco.iter().filter_map(|c| Some((speed(c), c.march.as_ref()?.amplitude))).unzip();
     let own = found.flutter.iter().filter(|at| at.mach == first.mach).flat_map(|at| &at.crossings);
-    let begins =
-        own.filter(|c| c.kind != "divergence").map(|c| (c.speed_index.filter(|_| indexed).unwrap_or(c.speed), 0.0));
+    let at = |c: &Crossing| axis.place(c.speed_index, [c.speed, c.dynamic_pressure], c.altitude);
+    let begins = own.filter(|c| c.kind != "divergence").map(|c| (at(c), 0.0));
     let (x, y) = begins.unzip();
     let [full, dashed] = lines;
     let series = [
@@ -171,7 +196,7 @@ pub(super) fn limit_cycles(found: &Found) -> Option<Chart> {
     let unit = if is_angle(&first.coordinate) { "degrees" } else { "length" };
     Some(Chart {
         title: format!("Limit cycles, Mach {}", first.mach),
-        x: Axis::linear(if indexed { "speed index" } else { "speed" }),
+        x: Axis::linear(axis.label()),
         y: Axis::linear(&format!("amplitude of {}, {unit}", first.coordinate)),
         series: series.into_iter().filter(|s| !s.x.is_empty()).collect(),
     })

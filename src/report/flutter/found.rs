@@ -127,6 +127,8 @@ pub(super) struct Cycle {
     pub(super) speed_index: Option<f64>,
     pub(super) speed: f64,
     pub(super) speed_ratio: f64,
+    pub(super) dynamic_pressure: f64,
+    pub(super) altitude: Option<f64>,
     pub(super) reduced_frequency: f64,
     pub(super) frequency: f64,
     pub(super) stable: bool,

@@ -6,7 +6,7 @@
 //!
 //! A point is stable where the motion decays when it is larger than it, and grows when it is smaller: at the speed of a cycle motions of other
 //! amplitudes change as fast as that speed is off theirs. With growth beyond a speed of flutter, the branch is stable where its speed rises
-//! with the amplitude; the other way round where motions cease to grow.
+//! with the amplitude; the other way round where motions cease to grow. So it is with densities and pressures where these are varied.
 use super::super::error::RunError;
 use super::super::record::Log;
 use super::super::studies::ForceSource;
@@ -124,8 +124,10 @@ impl<'s, 'a> Seek<'s, 'a> {
         let fit = self.search.fit()?;
         let forces = |kappa: f64| fit.at(Complex64::new(0.0, kappa));
         let (matrices, coordinate) = (self.search.matrices(), self.coordinate);
-        let borne = self.borne.as_ref();
-        Some(f(&Oscillator { matrices, springs: &self.springs, forces: &forces, coordinate, borne }))
+        let (borne, scales) = (self.borne.as_ref(), self.search.scales());
+        let speed = |x: f64| scales.at(x).speed;
+        let varied = scales.varied(&speed);
+        Some(f(&Oscillator { matrices, springs: &self.springs, forces: &forces, varied, coordinate, borne }))
     }
 
     fn begins(&self, amplitude: f64) -> Vec<(Kind, Cycle)> {
@@ -178,8 +180,9 @@ impl<'s, 'a> Seek<'s, 'a> {
                 let next = solved(&cycle, Some(&own))?;
                 let moved = [next.x / cycle.x - 1.0, next.omega / cycle.omega - 1.0].map(f64::abs);
                 log.note(&format!(
-                    "{}, {n} harmonics: speed {:.5} of that of the case, k {:.5}, changed by {:.0e}",
+                    "{}, {n} harmonics: {} {:.5} of that of the case, k {:.5}, changed by {:.0e}",
                     self.told(amplitude),
+                    self.search.scales().named(),
                     next.x,
                     self.search.reduced_frequency(next.kappa()),
                     moved[0].max(moved[1])
@@ -201,6 +204,7 @@ impl<'s, 'a> Seek<'s, 'a> {
     fn row(&self, branch: usize, kind: Kind, points: &[Point], i: usize) -> LimitCycle {
         let point = &points[i];
         let (cycle, scales) = (&point.cycle, self.search.scales());
+        let stream = scales.at(cycle.x);
         let name = self.search.names()[self.coordinate].clone();
         let unit = |q: f64| if is_angle(&name) { q.to_degrees() } else { q };
         let (from, to) = (&points[i.saturating_sub(1)], &points[(i + 1).min(points.len() - 1)]);
@@ -211,10 +215,13 @@ impl<'s, 'a> Seek<'s, 'a> {
             mach: scales.stream,
             branch,
             amplitude: unit(point.amplitude),
-            speed_ratio: cycle.x,
-            speed_index: scales.speed_index.map(|v| v * cycle.x),
-            reduced_speed: scales.reduced_speed.map(|v| v * cycle.x),
-            speed: scales.reference.speed * cycle.x,
+            speed_ratio: cycle.speed,
+            speed_index: scales.speed_index.map(|v| v * stream.pressure.sqrt()),
+            reduced_speed: scales.reduced_speed.map(|v| v * cycle.speed),
+            speed: scales.reference.speed * cycle.speed,
+            density: scales.reference.density * stream.density(),
+            dynamic_pressure: scales.reference.dynamic_pressure() * stream.pressure,
+            altitude: stream.altitude,
             reduced_frequency: scales.reduced_frequency(cycle.kappa()),
             frequency: scales.cycles * cycle.omega,
             stable: rises == (kind == Kind::Flutter),
@@ -252,7 +259,7 @@ fn guessed(amplitude: f64, first: &Cycle, before: &[Point]) -> Point {
             let (a, b) = (&older.cycle, &last.cycle);
             let line = |a: f64, b: f64| (a + part * (b - a)).max(0.5 * b);
             let motion = a.motion.with_harmonics(b.motion.harmonics.len()).towards(&b.motion, part);
-            Cycle { x: line(a.x, b.x), omega: line(a.omega, b.omega), motion }
+            Cycle { x: line(a.x, b.x), speed: line(a.speed, b.speed), omega: line(a.omega, b.omega), motion }
         }
         _ => Cycle { motion: scaled(&last.cycle.motion, ratio), ..last.cycle.clone() },
     };

@@ -11,7 +11,7 @@ use super::super::one_cloud::on_one_cloud;
 use super::super::session::{Outcome, Session};
 use super::super::watch::Alike;
 use super::record::{FlutterAt, LimitCycle, MarchedCycle};
-use crate::case::Case;
+use crate::case::{Case, StreamRatio};
 use crate::observe::structure::is_angle;
 use crate::observe::swing::Swing;
 
@@ -33,13 +33,19 @@ pub(super) fn march(
     let cycle = &at.cycles[largest];
     let name = &cycle.coordinate;
     monitor.note(&format!(
-        "a march from the limit cycle of amplitude {:.4} of {name} at {:.5} of the speed of the case",
-        cycle.amplitude, cycle.speed_ratio
+        "a march from the limit cycle of amplitude {:.4} of {name} at {:.5} of the speed and {:.5} of the density of the case",
+        cycle.amplitude,
+        cycle.speed_ratio,
+        cycle.density / at.reference.density
     ));
+    let stream = StreamRatio {
+        pressure: cycle.dynamic_pressure / at.reference.dynamic_pressure,
+        temperature: cycle.speed_ratio * cycle.speed_ratio,
+    };
     // at a speed x times that of the case times pass x times as fast
     let period = cycle.speed_ratio / cycle.frequency;
     let own = on_one_cloud(
-        case.cycle_case((at.mach, cycle.speed_ratio), (&start(cycle, TAU / period), &at.borne), [period, MOST]),
+        case.cycle_case((at.mach, stream), (&start(cycle, TAU / period), &at.borne), [period, MOST]),
         input,
     )?;
     let mut session = Session::open(&own, input)?;
@@ -136,19 +142,21 @@ mod tests {
                 "frequency = { plunge = \"5 Hz\", pitch = \"9 Hz\" }\n",
             ),
         ];
-        let x = 1.5;
-        for (flow, keys) in ways {
+        let faster = StreamRatio { pressure: 1.5 * 1.5, temperature: 1.5 * 1.5 };
+        let denser = StreamRatio { pressure: 2.0, temperature: 1.0 };
+        for (stream, (flow, keys)) in ways.iter().flat_map(|way| [(faster, way), (denser, way)]) {
+            let [stiffness, damping, mass] = stream.structural();
             let case = crate::case::read(&format!("{flow}{BODY}{keys}"), "case.toml").unwrap_or_else(|e| panic!("{e}"));
-            let own = case.cycle_case((0.5, x), (&[[0.1, 2.0], [0.05, 3.0]], &[0.5, -0.25]), [10.0, MOST]);
+            let own = case.cycle_case((0.5, stream), (&[[0.1, 2.0], [0.05, 3.0]], &[0.5, -0.25]), [10.0, MOST]);
             let [before, after] = [case.flutter_case(0.5), own.clone()].map(|c| Held::of(&c, Path::new("")).unwrap());
             let over = |a: &[f64], b: &[f64], factor: f64| {
                 a.iter().zip(b).all(|(a, b)| (a - b * factor).abs() <= 1e-12 * b.abs().max(1e-9))
             };
-            assert!(over(&after.matrices.mass, &before.matrices.mass, 1.0), "{keys}");
-            assert!(over(&after.matrices.stiffness, &before.matrices.stiffness, 1.0 / (x * x)), "{keys}");
-            assert!(over(&after.matrices.damping, &before.matrices.damping, 1.0 / x), "{keys}");
+            assert!(over(&after.matrices.mass, &before.matrices.mass, mass), "{keys}");
+            assert!(over(&after.matrices.stiffness, &before.matrices.stiffness, stiffness), "{keys}");
+            assert!(over(&after.matrices.damping, &before.matrices.damping, damping), "{keys}");
             let cubic = [&after, &before].map(|h| h.springs[1].cubic);
-            assert!(over(&cubic[..1], &cubic[1..], 1.0 / (x * x)), "{keys}");
+            assert!(over(&cubic[..1], &cubic[1..], stiffness), "{keys}");
             let initial = &own.structures[0].initial;
             assert_eq!(
                 [initial["plunge"], initial["plunge_rate"], initial["pitch"], initial["pitch_rate"]],

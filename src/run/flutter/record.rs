@@ -47,7 +47,7 @@ const CROSSING_COLUMNS: [&str; 17] = [
     "mass_ratio",
     "altitude",
 ];
-const CYCLE_COLUMNS: [&str; 15] = [
+const CYCLE_COLUMNS: [&str; 18] = [
     "mach",
     "branch",
     "coordinate",
@@ -63,6 +63,9 @@ const CYCLE_COLUMNS: [&str; 15] = [
     "harmonics",
     "error",
     "balances",
+    "density",
+    "dynamic_pressure",
+    "altitude",
 ];
 const HISTORY_COLUMNS: [&str; 12] = [
     "mach",
@@ -241,6 +244,12 @@ pub struct LimitCycle {
     pub reduced_speed: Option<f64>,
     /// Speed in the units of the case.
     pub speed: f64,
+    /// Density, dynamic pressure and, where that is varied, altitude in metres.
+    pub density: f64,
+    /// See density.
+    pub dynamic_pressure: f64,
+    /// See density.
+    pub altitude: Option<f64>,
     /// k.
     pub reduced_frequency: f64,
     /// Cycles per unit of time of the case.
@@ -395,6 +404,9 @@ impl Boundary {
                 Entry::from(c.harmonics as f64),
                 Entry::from(c.error),
                 Entry::from(c.balances as f64),
+                Entry::from(c.density),
+                Entry::from(c.dynamic_pressure),
+                number(c.altitude),
             ]
         });
         Ok(write_csv(file, &CYCLE_COLUMNS, rows)?)
@@ -436,6 +448,9 @@ pub(super) mod tests {
             speed_index: Some(0.72),
             reduced_speed: None,
             speed: 0.96,
+            density: 1.0,
+            dynamic_pressure: 0.4,
+            altitude: None,
             reduced_frequency: 0.1,
             frequency: 0.03,
             stable: true,

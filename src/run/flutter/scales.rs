@@ -3,9 +3,10 @@ use std::f64::consts::{PI, TAU};
 
 use serde::{Deserialize, Serialize};
 
-use crate::case::{Case, FreeStreamScales, Matching, StructureModel};
+use crate::case::{Case, FreeStreamScales, Matching, StreamRatio, StructureModel};
 use crate::geometry::dimension;
 use crate::physics::atmosphere;
+use crate::structure::flutter::Varied;
 
 /// Scales at one Mach number.
 pub(super) struct Scales {
@@ -53,6 +54,13 @@ pub(super) struct Stream {
     pub(super) pressure: f64,
     /// Geometric altitude in metres, where that is varied.
     pub(super) altitude: Option<f64>,
+}
+
+impl Stream {
+    /// Density over that of the case.
+    pub(super) fn density(&self) -> f64 {
+        self.pressure / (self.speed * self.speed)
+    }
 }
 
 impl Scales {
@@ -117,6 +125,30 @@ impl Scales {
                 Stream { speed: sound / self.reference.sound_speed, pressure: x, altitude: Some(altitude) }
             }
         }
+    }
+
+    /// What x is to a structure; `speed` is that of [`Self::at`].
+    pub(super) fn varied<'b>(&self, speed: &'b dyn Fn(f64) -> f64) -> Varied<'b> {
+        match self.matching {
+            Matching::None => Varied::Speed,
+            _ => Varied::Pressure(speed),
+        }
+    }
+
+    /// What x is called.
+    pub(super) fn named(&self) -> &'static str {
+        match self.matching {
+            Matching::None => "speed",
+            Matching::Density => "density",
+            Matching::Altitude => "pressure",
+        }
+    }
+
+    /// Pressure and temperature at x over those of the case.
+    pub(super) fn ratio(&self, x: f64) -> StreamRatio {
+        let stream = self.at(x);
+        // the dynamic pressure goes with the pressure at constant Mach number
+        StreamRatio { pressure: stream.pressure, temperature: stream.speed * stream.speed }
     }
 
     /// Greatest x: `most`, or the pressure at the bottom of the atmosphere over that of the case.

@@ -8,9 +8,9 @@ use super::record::{FlutterAt, FlutterRow, MotionRow};
 use super::scales::Scales;
 use super::shapes::{NaturalMode, shares};
 use super::state_space::StateSpaceAt;
-use crate::case::{Flutter as Plan, Matching, StreamRatio};
+use crate::case::{Flutter as Plan, StreamRatio};
 use crate::math::rational::Rational;
-use crate::structure::flutter::{Crossing, Flutter, Kind, Point, Varied};
+use crate::structure::flutter::{Crossing, Flutter, Kind, Point};
 use crate::structure::{Matrices, Spring};
 
 /// Misfit of rational functions to the samples.
@@ -188,7 +188,7 @@ impl<'a> Search<'a> {
         let rest = samples.first().filter(|s| s.0 == 0.0);
         let fitted = |kappa: f64| fit.at(Complex64::new(0.0, kappa));
         let forces = |kappa: f64| rest.filter(|_| kappa == 0.0).map_or_else(|| fitted(kappa), |s| s.1.clone());
-        let flutter = Flutter::new(&self.matrices, &forces).varying(self.varied(&speed));
+        let flutter = Flutter::new(&self.matrices, &forces).varying(self.scales.varied(&speed));
         let upto = self.scales.upto(self.plan.most);
         let mut branches = flutter.branches(upto);
         let mut crossings = flutter.crossings(&branches, upto);
@@ -197,13 +197,6 @@ impl<'a> Search<'a> {
         branches.iter_mut().for_each(|b| b.retain(|p| p.lambda.im.abs() <= highest * p.speed));
         crossings.retain(|c| c.kappa <= highest);
         (branches, crossings)
-    }
-
-    fn varied<'b>(&self, speed: &'b dyn Fn(f64) -> f64) -> Varied<'b> {
-        match self.scales.matching {
-            Matching::None => Varied::Speed,
-            _ => Varied::Pressure(speed),
-        }
     }
 
     /// The highest angular frequency of motions that are told.
@@ -222,7 +215,7 @@ impl<'a> Search<'a> {
         let Some(fit) = self.fit() else { return (vec![None; crossings.len()], None) };
         let speed = |x: f64| self.scales.at(x).speed;
         let forces = |kappa: f64| fit.at(Complex64::new(0.0, kappa));
-        let flutter = Flutter::new(&self.matrices, &forces).varying(self.varied(&speed));
+        let flutter = Flutter::new(&self.matrices, &forces).varying(self.scales.varied(&speed));
         let found = crossings.iter().map(|c| flutter.damping_perturbation(c)).collect();
         let first = crossings.iter().find(|c| c.kind == Kind::Flutter).or(crossings.first());
         let stream = first.map_or_else(|| self.scales.at(1.0), |c| self.scales.at(c.x));
@@ -254,7 +247,7 @@ impl<'a> Search<'a> {
                 mode: mode + 1,
                 speed_ratio: p.speed,
                 dynamic_pressure: s.reference.dynamic_pressure() * stream.pressure,
-                density: s.reference.density * stream.pressure / (p.speed * p.speed),
+                density: s.reference.density * stream.density(),
                 altitude: stream.altitude,
                 reduced_frequency: s.reduced_frequency(p.lambda.im.abs() / p.speed),
                 damping: 2.0 * p.lambda.re / p.lambda.norm(),

@@ -27,7 +27,7 @@ pub(super) fn trimmed(
     let mut between = Between::default();
     let mut at = loop {
         let stream = scales.at(x);
-        let Some(mut at) = boundary(ratio(scales, x), false, monitor)? else { return Ok(None) };
+        let Some(mut at) = boundary(scales.ratio(x), false, monitor)? else { return Ok(None) };
         rounds += 1;
         cost += at.cpu_seconds;
         at.cpu_seconds = cost;
@@ -61,7 +61,7 @@ pub(super) fn trimmed(
         ));
     };
     if cycles {
-        let Some(about) = boundary(ratio(scales, x), true, monitor)? else { return Ok(None) };
+        let Some(about) = boundary(scales.ratio(x), true, monitor)? else { return Ok(None) };
         at.cpu_seconds += about.cpu_seconds;
         (at.cycles, at.borne) = (about.cycles, about.borne);
         at.warnings.extend(about.warnings.into_iter().filter(|w| !at.warnings.contains(w)).collect::<Vec<_>>());
@@ -94,14 +94,6 @@ impl Between {
             _ => found,
         }
     }
-}
-
-/// Pressure and temperature where x is varied.
-fn ratio(scales: &Scales, x: f64) -> StreamRatio {
-    let stream = scales.at(x);
-    let temperature = stream.speed * stream.speed;
-    // the dynamic pressure goes with the pressure at constant Mach number
-    StreamRatio { pressure: stream.pressure, temperature }
 }
 
 /// What is varied at the first crossing that is not one back to decay.
