@@ -3,7 +3,7 @@
 //! The residual is evaluated with numbers that carry their change along v ([`Dual`]): gradients and fits are linear, and the formulas at
 //! particles, walls, sides and edges give the derivative that belongs to their value. What states change of the boundary (the far
 //! field's circulation) is in it. Where a formula has a kink (a limiter's bound, an upwind choice), the side counts on which the state is.
-use super::fluid::{Fluid, Varied, Work};
+use super::fluid::{Changing, Fluid, Work};
 use super::frame::Frame;
 use crate::math::Vector;
 use crate::math::jet::Dual;
@@ -18,20 +18,20 @@ impl<const D: usize> Fluid<D> {
         work: &mut Work<D>,
         out: &mut [f64],
     ) {
-        let mut varied = work.varied.take().unwrap_or_else(|| Box::new(self.varied(frame)));
-        let Varied { work: changing, outer } = &mut *varied;
+        let mut storage = work.changing.take().unwrap_or_else(|| Box::new(self.changing(frame)));
+        let Changing { work: changing, outer } = &mut *storage;
         changing.frozen.clone_from(&work.frozen);
         self.fill_rows(frame, |i| along(&Conserved::of_row(u, i), &Conserved::of_row(v, i)), changing);
         self.fill_walls(frame, changing);
-        self.hold_varied(frame, changing, outer);
+        self.hold_changing(frame, changing, outer);
         self.fill_outside(frame, outer, changing);
         self.residual(frame, changing, out);
-        work.varied = Some(varied);
+        work.changing = Some(storage);
     }
 
-    fn varied(&self, frame: &Frame<D>) -> Varied<D> {
+    fn changing(&self, frame: &Frame<D>) -> Changing<D> {
         let outer = frame.outer.iter().map(|q| q.each_ref().map(Primitive::constant)).collect();
-        Varied { work: Work::new(self.discretisation.cloud.len()), outer }
+        Changing { work: Work::new(self.discretisation.cloud.len()), outer }
     }
 }
 

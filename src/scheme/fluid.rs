@@ -52,7 +52,7 @@ pub trait FarField<const D: usize>: Send + Sync {
     /// State at `x` when the bodies feel the force `force` (per unit span in 2-D).
     fn state(&self, x: &Vector<D>, force: &Vector<D>) -> Primitive<D>;
     /// The same with the change that goes with a change of the force.
-    fn varied(&self, x: &Vector<D>, force: &Vector<D, Dual>) -> Primitive<D, Dual>;
+    fn changing(&self, x: &Vector<D>, force: &Vector<D, Dual>) -> Primitive<D, Dual>;
     /// Static pressure far away.
     fn pressure(&self) -> f64;
     /// The velocity at `x` that the circulation of the force adds around bodies that nothing gives one, as they have no edge: such
@@ -73,11 +73,11 @@ pub struct Work<const D: usize, S = f64> {
     /// What the limiter and the steepness stay, where they are frozen.
     pub frozen: Option<Arc<Frozen<D>>>,
     /// The same with the change along a direction, once derivatives have been asked for.
-    pub varied: Option<Box<Varied<D>>>,
+    pub changing: Option<Box<Changing<D>>>,
 }
 
 /// Storage of a derivative.
-pub struct Varied<const D: usize> {
+pub struct Changing<const D: usize> {
     /// That of the evaluation.
     pub work: Work<D, Dual>,
     /// What sides hold, as in [`Frame::outer`](super::Frame::outer).
@@ -101,7 +101,7 @@ impl<const D: usize, S: Scalar> Work<D, S> {
             gradient: vec![Gradient::zero(); n],
             steepness: vec![S::constant(0.0); n],
             frozen: None,
-            varied: None,
+            changing: None,
         }
     }
 }

@@ -31,11 +31,11 @@ impl<const D: usize> Fluid<D> {
     }
 
     /// What sides hold, with the change that goes with the wall states in `work`; far from the bodies alone does it change.
-    pub(super) fn hold_varied(&self, frame: &Frame<D>, work: &Work<D, Dual>, outer: &mut [[Primitive<D, Dual>; 3]]) {
+    pub(super) fn hold_changing(&self, frame: &Frame<D>, work: &Work<D, Dual>, outer: &mut [[Primitive<D, Dual>; 3]]) {
         let force = self.pressure_force(frame, work);
         let cloud = &self.discretisation.cloud;
         sweep_each_slot(outer, |k, q| match cloud.outer[k].side {
-            Side::FarField => *q = cloud.beside(k).map(|i| self.far_field.varied(&frame.place(i), &force)),
+            Side::FarField => *q = cloud.beside(k).map(|i| self.far_field.changing(&frame.place(i), &force)),
             _ => *q = frame.outer[k].each_ref().map(Primitive::constant),
         });
     }

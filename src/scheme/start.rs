@@ -157,7 +157,7 @@ impl<const D: usize> FarField<D> for Stream<D> {
         self.state_of(x, force)
     }
 
-    fn varied(&self, x: &Vector<D>, force: &Vector<D, Dual>) -> Primitive<D, Dual> {
+    fn changing(&self, x: &Vector<D>, force: &Vector<D, Dual>) -> Primitive<D, Dual> {
         self.state_of(x, force)
     }
 

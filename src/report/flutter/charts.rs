@@ -95,13 +95,13 @@ pub(super) fn locus(found: &Found, at: &At) -> Chart {
 
 /// What the stream is varied in, where charts draw it.
 #[derive(Clone, Copy)]
-struct Varied<'a> {
+struct StreamAxis<'a> {
     matching: &'a str,
     /// All that is drawn has a speed index.
     indexed: bool,
 }
 
-impl Varied<'_> {
+impl StreamAxis<'_> {
     fn label(self) -> &'static str {
         match self.matching {
             "density" => "dynamic pressure",
@@ -126,7 +126,7 @@ pub(super) fn boundary(found: &Found) -> Option<Chart> {
     let matching = &found.flutter.first()?.matching[..];
     let crossings = || found.flutter.iter().flat_map(|at| at.crossings.iter().map(move |c| (at.mach, c)));
     let indexed = crossings().all(|(_, c)| c.speed_index.is_some());
-    let axis = Varied { matching, indexed };
+    let axis = StreamAxis { matching, indexed };
     let place = |c: &Crossing| axis.place(c.speed_index, [c.speed, c.dynamic_pressure], c.altitude);
     if found.flutter.len() < 2 || crossings().next().is_none() {
         return None;
@@ -161,7 +161,7 @@ pub(super) fn boundary(found: &Found) -> Option<Chart> {
 pub(super) fn limit_cycles(found: &Found) -> Option<Chart> {
     let first = found.lco.first()?;
     let matching = found.flutter.first().map_or("", |at| &at.matching[..]);
-    let axis = Varied { matching, indexed: found.lco.iter().all(|c| c.speed_index.is_some()) };
+    let axis = StreamAxis { matching, indexed: found.lco.iter().all(|c| c.speed_index.is_some()) };
     let speed = |c: &Cycle| axis.place(c.speed_index, [c.speed, c.dynamic_pressure], c.altitude);
     let lines = [("", Marks::Line, true), ("", Marks::Dashes, false)].map(|(name, marks, stable)| {
         let (mut x, mut y) = (Vec::new(), Vec::new());

@@ -17,7 +17,7 @@ impl<const D: usize> FarField<D> for Still {
     fn state(&self, _: &Vector<D>, _: &Vector<D>) -> Primitive<D> {
         Primitive { density: 1.0, velocity: Vector::ZERO, pressure: 1.0 }
     }
-    fn varied(&self, _: &Vector<D>, _: &Vector<D, Dual>) -> Primitive<D, Dual> {
+    fn changing(&self, _: &Vector<D>, _: &Vector<D, Dual>) -> Primitive<D, Dual> {
         Primitive { density: Dual::constant(1.0), velocity: Vector::zero(), pressure: Dual::constant(1.0) }
     }
     fn pressure(&self) -> f64 {
