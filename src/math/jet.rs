@@ -2,7 +2,7 @@
 //!
 //! A function written once over [`Scalar`] gives its value for `f64`, and value, first and second derivative for a [`Jet`]:
 //! x + x′ε + x″ε²/2 with ε³ = 0, so that derivatives are exact to rounding and belong to the same formula: velocity and
-//! acceleration of a motion. A [`Dual`] number stops at the first derivative, ε² = 0: the change of a flux with a state.
+//! acceleration of a motion. Where the first derivative is enough a [`Dual`](super::dual::Dual) number costs less.
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// What a formula needs of its numbers. Choices are made by values: a maximum has the derivative of the greater one.
@@ -226,107 +226,6 @@ impl Mul<f64> for Jet {
     }
 }
 
-/// A value with its first derivative.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Dual {
-    /// Value.
-    pub value: f64,
-    /// First derivative.
-    pub first: f64,
-}
-
-impl Scalar for Dual {
-    #[inline(always)]
-    fn constant(value: f64) -> Self {
-        Self { value, first: 0.0 }
-    }
-
-    #[inline(always)]
-    fn value(self) -> f64 {
-        self.value
-    }
-
-    #[inline(always)]
-    fn map(self, f: impl FnOnce(f64) -> [f64; 3]) -> Self {
-        let [value, slope, _] = f(self.value);
-        // what does not move has no derivative, even where that of `f` is infinite
-        Self { value, first: if self.first == 0.0 { 0.0 } else { slope * self.first } }
-    }
-
-    #[inline(always)]
-    fn powf(self, n: f64) -> Self {
-        let value = self.value.powf(n);
-        // no second power where the first one says it
-        let slope = if self.value == 0.0 { n * self.value.powf(n - 1.0) } else { n * value / self.value };
-        Self { value, first: if self.first == 0.0 { 0.0 } else { slope * self.first } }
-    }
-}
-
-impl Add for Dual {
-    type Output = Self;
-    #[inline(always)]
-    fn add(self, o: Self) -> Self {
-        Self { value: self.value + o.value, first: self.first + o.first }
-    }
-}
-
-impl Neg for Dual {
-    type Output = Self;
-    #[inline(always)]
-    fn neg(self) -> Self {
-        Self { value: -self.value, first: -self.first }
-    }
-}
-
-impl Sub for Dual {
-    type Output = Self;
-    #[inline(always)]
-    fn sub(self, o: Self) -> Self {
-        Self { value: self.value - o.value, first: self.first - o.first }
-    }
-}
-
-impl Mul for Dual {
-    type Output = Self;
-    #[inline(always)]
-    fn mul(self, o: Self) -> Self {
-        Self { value: self.value * o.value, first: self.first * o.value + self.value * o.first }
-    }
-}
-
-impl Div for Dual {
-    type Output = Self;
-    #[inline(always)]
-    fn div(self, o: Self) -> Self {
-        let value = self.value / o.value;
-        Self { value, first: (self.first - value * o.first) / o.value }
-    }
-}
-
-impl Add<f64> for Dual {
-    type Output = Self;
-    #[inline(always)]
-    fn add(self, o: f64) -> Self {
-        Self { value: self.value + o, ..self }
-    }
-}
-
-impl Sub<f64> for Dual {
-    type Output = Self;
-    #[inline(always)]
-    fn sub(self, o: f64) -> Self {
-        Self { value: self.value - o, ..self }
-    }
-}
-
-impl Mul<f64> for Dual {
-    type Output = Self;
-    #[inline(always)]
-    fn mul(self, o: f64) -> Self {
-        Self { value: self.value * o, first: self.first * o }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -342,18 +241,8 @@ mod tests {
             let jet = formula(Jet::variable(t));
             let (a, b, c) = (formula(t - h), formula(t), formula(t + h));
             assert_eq!(jet.value, b);
-            let dual = formula(Dual { value: t, first: 2.0 });
-            assert!(dual.value == b && (dual.first - 2.0 * jet.first).abs() < 1e-14, "{t}");
             assert!((jet.first - (c - a) / (2.0 * h)).abs() < 1e-7, "{t}");
             assert!((jet.second - (c - 2.0 * b + a) / (h * h)).abs() < 1e-6, "{t}");
-        }
-    }
-
-    #[test]
-    fn powers_of_numbers_with_derivatives_are_those_of_all_kinds() {
-        for (x, n) in [(0.7, 1.4), (2.0, -0.5), (0.0, 2.0)] {
-            let (jet, dual) = (Jet::variable(x).powf(n), Dual { value: x, first: 1.0 }.powf(n));
-            assert!(jet.value == dual.value && (jet.first - dual.first).abs() < 1e-15, "{x}^{n}");
         }
     }
 }

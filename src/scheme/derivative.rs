@@ -6,7 +6,7 @@
 use super::fluid::{Changing, Fluid, Work};
 use super::frame::Frame;
 use crate::math::Vector;
-use crate::math::jet::Dual;
+use crate::math::dual::Dual;
 use crate::physics::{Conserved, Primitive};
 
 impl<const D: usize> Fluid<D> {
@@ -37,7 +37,7 @@ impl<const D: usize> Fluid<D> {
 
 /// `u` that changes by `v`.
 fn along<const D: usize>(u: &Conserved<D>, v: &Conserved<D>) -> Conserved<D, Dual> {
-    let number = |value: f64, first: f64| Dual { value, first };
+    let number = |value: f64, derivative: f64| Dual { value, derivative };
     Conserved {
         density: number(u.density, v.density),
         momentum: Vector::from_fn(|d| number(u.momentum[d], v.momentum[d])),

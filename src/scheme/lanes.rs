@@ -1,6 +1,7 @@
 //! Numbers of many edges side by side: kernels loop over them without branches, and the compiler makes vectors of that.
 use crate::math::Vector;
-use crate::math::jet::{Dual, Scalar};
+use crate::math::dual::Dual;
+use crate::math::jet::Scalar;
 use crate::physics::{Conserved, Primitive};
 
 /// Edges that are computed together: enough to fill vectors, few enough that all of it stays in the first cache.
@@ -49,18 +50,18 @@ impl Number for Dual {
     const NONE: [Lanes; 2] = [[0.0; LANES]; 2];
 
     #[inline(always)]
-    fn take([value, first]: &[Lanes; 2], k: usize) -> Self {
-        Self { value: value[k], first: first[k] }
+    fn take([value, change]: &[Lanes; 2], k: usize) -> Self {
+        Self { value: value[k], derivative: change[k] }
     }
 
     #[inline(always)]
-    fn put(self, [value, first]: &mut [Lanes; 2], k: usize) {
-        (value[k], first[k]) = (self.value, self.first);
+    fn put(self, [value, change]: &mut [Lanes; 2], k: usize) {
+        (value[k], change[k]) = (self.value, self.derivative);
     }
 
     #[inline(always)]
     fn told(self) -> f64 {
-        self.first
+        self.derivative
     }
 }
 

@@ -7,7 +7,8 @@ use crate::exact::ringleb::Ringleb;
 use crate::exact::vortex::IsentropicVortex;
 use crate::exact::vortex_far_field::FarFieldVortex;
 use crate::math::Vector;
-use crate::math::jet::{Dual, Scalar};
+use crate::math::dual::Dual;
+use crate::math::jet::Scalar;
 use crate::physics::Primitive;
 
 /// Why a field cannot be set up.

@@ -23,10 +23,11 @@ use super::pairs::{self, Pulling, Stressed, gradients, plain_gradient};
 use super::particles::Edge;
 use super::rows::{Columns, columns, row};
 use crate::math::Vector;
+use crate::math::dual::Dual;
 use crate::math::least_squares::smallest_eigenvalue;
 use crate::math::sweep::{CHUNK, first, maximum, parts, sum, sweep, sweep_parts, sweep_slots, sweep_two_parts};
 use crate::physics::solid::tensor::{determinant, product_transposed, times};
-use crate::physics::solid::{Dual, Law, MOST_HISTORY, Material, Moduli, Response, Tensor, plane_stress};
+use crate::physics::solid::{Law, MOST_HISTORY, Material, Moduli, Response, Tensor, plane_stress};
 use crate::system::Fault;
 
 /// A square matrix: rows are components, columns axes of the body at rest.

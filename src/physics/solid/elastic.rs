@@ -157,9 +157,9 @@ fn inverse_cube_root(x: f64) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::super::dual::Dual;
     use super::super::samples::{close, random_tensor};
     use super::*;
+    use crate::math::dual::Dual;
     use crate::math::jet::Jet;
 
     type Pair = (fn(&Moduli, &Tensor<f64>) -> Tensor<f64>, fn(&Moduli, &Tensor<Jet>) -> Jet);

@@ -180,8 +180,8 @@ fn power<S: Scalar>(x: S, n: f64) -> S {
 
 #[cfg(test)]
 mod tests {
-    use super::super::dual::Dual;
     use super::*;
+    use crate::math::dual::Dual;
 
     const COPPER: JohnsonCook = JohnsonCook {
         start: 90e6,

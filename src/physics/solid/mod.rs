@@ -2,7 +2,7 @@
 //!
 //! [`Material::respond`] maps F at the end of a step, the history and the duration of the step to the first stress of Piola
 //! and Kirchhoff P (force per reference area: `p[a][b]` is the component a of the force on the reference face b), the energy
-//! stored and the energy lost. It is written once over [`Scalar`]: with [`dual::Dual`] numbers the same lines give the tangent
+//! stored and the energy lost. It is written once over [`Scalar`]: with [`Dual`] numbers the same lines give the tangent
 //! dP = (∂P/∂F):dF of the whole step, return to the yield surface included; [`tangent_product`] does that. First derivatives
 //! are exact; second derivatives of laws with a history are not.
 //!
@@ -16,9 +16,9 @@
 //!
 //! All is in three dimensions: plane strain is F₃₃ = 1, plane stress [`plane_stress()`]. Numbers are in SI units, or in any
 //! units that agree. [`library`] holds materials by name.
+use crate::math::dual::Dual;
 use crate::math::jet::Scalar;
 
-pub mod dual;
 pub mod elastic;
 mod faults;
 pub mod flow;
@@ -34,7 +34,6 @@ pub mod tensor;
 mod tests;
 pub mod viscoelastic;
 
-pub use dual::Dual;
 pub use elastic::{
     Moduli, linear, linear_energy, neo_hookean, neo_hookean_energy, saint_venant_kirchhoff,
     saint_venant_kirchhoff_energy,

@@ -2,9 +2,9 @@
 //!
 //! F₃₃ is what makes P₃₃ = 0; the other components out of the plane are those given, usually zero. Newton's steps in plain
 //! numbers find it, and one more in the numbers of the caller gives its first derivative: the tangent is the consistent one.
-use super::dual::Dual;
 use super::tensor::{self, Tensor};
 use super::{MOST_HISTORY, Material, Response};
+use crate::math::dual::Dual;
 use crate::math::jet::Scalar;
 
 /// Steps after which the search ends.

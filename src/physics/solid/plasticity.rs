@@ -16,11 +16,11 @@
 //!
 //! Δγ is found in plain numbers; one more step of Newton in the numbers of the caller gives its first derivative, so that a
 //! tangent is the consistent one.
-use super::dual::Dual;
 use super::elastic::{Moduli, isochoric, volumetric_energy};
 use super::flow::{Plasticity, Rate};
 use super::tensor::{self, Tensor};
 use super::{Response, Step};
+use crate::math::dual::Dual;
 use crate::math::jet::Scalar;
 use std::ops::Range;
 

@@ -190,9 +190,9 @@ pub fn constant<S: Scalar>(c: &[f64]) -> Tensor<S> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::dual::Dual;
     use super::super::samples::{close, random_tensor};
     use super::*;
+    use crate::math::dual::Dual;
 
     #[test]
     fn inverse_cofactor_and_determinant_belong_together() {

@@ -138,10 +138,10 @@ fn branch_energy<S: Scalar>(modulus: f64, square: &Tensor<S>, stress: &Tensor<S>
 
 #[cfg(test)]
 mod tests {
-    use super::super::dual::Dual;
     use super::super::samples::{close, random_tensor};
     use super::super::{Law, Material, neo_hookean};
     use super::*;
+    use crate::math::dual::Dual;
 
     const MODULI: Moduli = Moduli { shear: 1.0, bulk: 2.2 };
 

@@ -1,12 +1,12 @@
 //! Numbers that carry one derivative.
 //!
-//! x + x′ε with ε² = 0: what a tangent needs and no more, so that it costs about twice the formula. [`crate::math::jet::Jet`]
-//! carries the second derivative too.
-use crate::math::jet::Scalar;
+//! x + x′ε with ε² = 0: what a tangent or the change of a residual needs and no more, so that it costs about twice the formula.
+//! [`Jet`](super::jet::Jet) carries the second derivative too.
+use super::jet::Scalar;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// A value with its derivative in one direction.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Dual {
     /// Value.
     pub value: f64,
@@ -37,6 +37,14 @@ impl Scalar for Dual {
     #[inline(always)]
     fn map(self, f: impl FnOnce(f64) -> [f64; 3]) -> Self {
         let [value, slope, _] = f(self.value);
+        Self { value, derivative: if self.derivative == 0.0 { 0.0 } else { slope * self.derivative } }
+    }
+
+    /// With no second power where the first one says it.
+    #[inline(always)]
+    fn powf(self, n: f64) -> Self {
+        let value = self.value.powf(n);
+        let slope = if self.value == 0.0 { n * self.value.powf(n - 1.0) } else { n * value / self.value };
         Self { value, derivative: if self.derivative == 0.0 { 0.0 } else { slope * self.derivative } }
     }
 
@@ -129,5 +137,6 @@ mod tests {
             assert!((dual.derivative - jet.first).abs() < 1e-13 * jet.first.abs().max(1.0), "{t}");
         }
         assert_eq!(Dual::constant(0.0).powf(0.3).derivative, 0.0);
+        assert_eq!(Dual::variable(0.0).powf(2.0).derivative, 0.0);
     }
 }
