@@ -16,11 +16,14 @@
 //!
 //! Limits: a branch ends where its frequency reaches zero, and where forces leave it without a root. Modes without stiffness have no
 //! branch. Divergence is found apart, from K q = x² Q(0) q.
+pub use varied::Varied;
+
 use num_complex::Complex64;
 
 mod g_method;
 mod natural;
 pub mod state_space;
+mod varied;
 
 use super::Matrices;
 use crate::math::dense::Factors;
@@ -67,16 +70,6 @@ pub struct Flutter<'a> {
     forces: &'a (dyn Fn(f64) -> Vec<Complex64> + 'a),
     modes: Option<Modes>,
     varied: Varied<'a>,
-}
-
-/// What x is: how the stream is varied at one Mach number.
-#[derive(Clone, Copy)]
-pub enum Varied<'a> {
-    /// The speed over that of the reference, at constant density.
-    Speed,
-    /// The dynamic pressure over that of the reference; the speed over that of the reference is a function of it, one where the sound
-    /// speed is constant.
-    Pressure(&'a dyn Fn(f64) -> f64),
 }
 
 /// A motion on a branch.
@@ -155,24 +148,6 @@ struct Root {
     rate: Complex64,
 }
 
-impl Varied<'_> {
-    /// U/U_ref at x.
-    pub(super) fn speed(&self, x: f64) -> f64 {
-        match self {
-            Self::Speed => x,
-            Self::Pressure(speed) => speed(x),
-        }
-    }
-
-    /// Dynamic pressure over that of the reference at x.
-    pub(super) fn pressure(&self, x: f64) -> f64 {
-        match self {
-            Self::Speed => x * x,
-            Self::Pressure(_) => x,
-        }
-    }
-}
-
 impl<'a> Flutter<'a> {
     /// With the forces Q(iκ) of displacements that `forces` gives for κ ≥ 0, rows one after another, at the speed U_ref.
     pub fn new(matrices: &Matrices, forces: &'a (dyn Fn(f64) -> Vec<Complex64> + 'a)) -> Self {
@@ -196,10 +171,7 @@ impl<'a> Flutter<'a> {
 
     /// x where the dynamic pressure over that of the reference is `pressure`.
     fn place(&self, pressure: f64) -> f64 {
-        match self.varied {
-            Varied::Speed => pressure.sqrt(),
-            Varied::Pressure(_) => pressure,
-        }
+        self.varied.place(pressure)
     }
 
     /// Branches of all natural modes, by rising frequency, from little speed to `upto`; empty for a mode that cannot be followed, none
