@@ -51,7 +51,7 @@ impl Scalar for Dual {
     #[inline(always)]
     fn inverse(self) -> Self {
         let over = 1.0 / self.value;
-        Self { value: over, derivative: -over * over * self.derivative }
+        Self { value: over, derivative: if self.derivative == 0.0 { 0.0 } else { -over * over * self.derivative } }
     }
 }
 
@@ -137,6 +137,7 @@ mod tests {
             assert!((dual.derivative - jet.first).abs() < 1e-13 * jet.first.abs().max(1.0), "{t}");
         }
         assert_eq!(Dual::constant(0.0).powf(0.3).derivative, 0.0);
+        assert_eq!(Dual::constant(f64::MIN_POSITIVE).inverse().derivative, 0.0);
         assert_eq!(Dual::variable(0.0).powf(2.0).derivative, 0.0);
     }
 }
