@@ -26,6 +26,7 @@ fn exact_lift_lies_within_the_error_bar() {
         assert!((s.loads.cl - exact).abs() < bar.cl, "Mach {mach}: {} ± {} for {exact}", s.loads.cl, bar.cl);
         assert!(bar.cl < 0.002 * exact && s.loads.cd.abs() < 1e-4, "Mach {mach}: {bar:?}, {:?}", s.loads);
         assert_eq!(family.clouds.len(), 3);
+        assert!(family.clouds[2].particles <= 12_000);
         assert!(
             family.clouds.windows(2).all(|c| c[1].factor == 0.5 * c[0].factor && c[1].particles > 2 * c[0].particles)
         );
@@ -35,6 +36,24 @@ fn exact_lift_lies_within_the_error_bar() {
         assert!(lift > 1.8 && drag > 1.8, "Mach {mach}: order of the lift {lift}, of the drag {drag}");
         assert!(s.converged == Some(true));
     }
+}
+
+#[test]
+fn bars_in_space_take_four_clouds_within_the_particles_allowed() {
+    let text = "[flow]\nmach = 0.5\nalpha = \"4 deg\"\n[[body]]\nwing = { naca = \"0012\", span = 4, chord = 1 }\n\
+                [boundary]\ny_min = \"symmetry\"\n[accuracy]\nparticles = 12000\n";
+    let case = read(text, "wing.toml").unwrap_or_else(|e| panic!("{e}"));
+    let mut session = Session::open(&case, ".").unwrap_or_else(|e| panic!("{e}"));
+    session.solve(&mut Silent).unwrap_or_else(|e| panic!("{e}"));
+    let s = session.summary().unwrap();
+    let (bar, family) = (s.loads_error.unwrap(), s.grid_convergence.as_ref().unwrap());
+    assert_eq!(family.clouds.len(), 4);
+    let finest = family.clouds[3];
+    assert!(finest.particles <= 12_000 && finest.particles > 8000, "{}", finest.particles);
+    // Prandtl's lifting line: CL²/(π A) in an elliptic distribution
+    let induced = s.loads.cl.powi(2) / (std::f64::consts::PI * 4.0);
+    assert!((s.loads.cd - induced).abs() < bar.cd, "CD {} ± {} for {induced}", s.loads.cd, bar.cd);
+    assert!(finest.spurious_drag.unwrap() > 0.5 * (s.loads.cd - induced), "{finest:?}");
 }
 
 #[test]

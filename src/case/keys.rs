@@ -434,7 +434,7 @@ static ACCURACY: Table = Table::of(&[
         COUNT,
         Absent::Integer(50_000),
         "Greatest number of particles: the run ends on the finest cloud below it where the error bars are not short enough before \
-         (in 3-D: 400 000).",
+         (in 3-D: 250 000).",
     ),
     Field::optional(
         "time",

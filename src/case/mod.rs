@@ -584,7 +584,7 @@ impl Default for Accuracy {
 
 impl Accuracy {
     /// Greatest number of particles of cases in space that do not say.
-    pub(crate) const PARTICLES_IN_SPACE: usize = 400_000;
+    pub(crate) const PARTICLES_IN_SPACE: usize = 250_000;
 
     /// What is asked of a case that says nothing.
     pub(crate) fn in_dimension(dimension: usize) -> Self {

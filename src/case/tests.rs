@@ -187,7 +187,7 @@ fn a_case_may_leave_the_cloud_to_the_program() {
     let sphere = "[flow]\nmach = 0.3\n[[body]]\nsphere = { radius = 1 }\n";
     assert_eq!(read(sphere, "case.toml").unwrap().cloud.spacing, None);
     let asked = read(&format!("{sphere}[accuracy]\nloads = \"2 %\"\n"), "case.toml").unwrap().accuracy.unwrap();
-    assert_eq!((asked.loads.0, asked.particles), (0.02, 400_000));
+    assert_eq!((asked.loads.0, asked.particles), (0.02, 250_000));
     assert!(read(&bare.replace("mach = 0.8", "mach = 0.8\nreynolds = 1e4"), "case.toml").is_ok());
     let accuracy = "[accuracy]\nloads = 0.01\n";
     assert!(read(&format!("{bare}{accuracy}[adapt]\ncycles = 1\n"), "case.toml").is_ok());

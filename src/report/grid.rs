@@ -37,10 +37,12 @@ fn verdict(found: &Convergence) -> String {
         }
     };
     format!(
-        "The clouds are alike, each with half the spacing of the one before; {end}. A load that approaches its limit with an order \
-         has 5/4 of the way to it as part of its error bar, another one the spread of the last clouds; what the end of the domain does, \
-         half of what wall pressure and momentum differ by beyond what the latter may still change by, and what the last iterations changed \
-         are the other parts, added as squares. A plane flow without shocks and viscosity has no drag: what is found of it is an error."
+        "The clouds are alike, each finer than the one before; {end}. In the plane a load that approaches its limit with an order \
+         has 5/4 of the way to it as part of its error bar, another one the spread of the last clouds; in space that part is 5/4 of what \
+         half the spacing changed. What the end of the domain does, what wall pressure and momentum differ by (all of it where that is \
+         more than the last change, else half of it beyond what the latter may still change by), and what the last iterations changed are \
+         the other parts, added as squares. Without shocks and viscosity a plane flow has no drag, and one in space loses no total pressure: \
+         what is found of either is an error, and no bar is shorter."
     )
 }
 
@@ -49,11 +51,11 @@ fn table(found: &Convergence) -> Table {
     let (all, mut rows) = (loads(found), Vec::new());
     for cloud in &found.clouds {
         let values = all.iter().map(|(_, of, _)| number(of(cloud)));
-        let head = [format!("{} × spacing", cloud.factor), grouped(cloud.particles as f64)];
+        let head = [format!("{} × spacing", number(cloud.factor)), grouped(cloud.particles as f64)];
         rows.push(head.into_iter().chain(values).collect::<Vec<_>>());
     }
     if let Some(finer) = &found.unsteady {
-        let head = [format!("{} × spacing, not steady", finer.factor), grouped(finer.particles as f64)];
+        let head = [format!("{} × spacing, not steady", number(finer.factor)), grouped(finer.particles as f64)];
         rows.push(head.into_iter().chain(all.iter().map(|(_, of, _)| number(of(finer)))).collect());
     }
     let row = |name: &str, value: &dyn Fn(&LoadEstimate) -> Option<f64>| {

@@ -30,29 +30,35 @@ const STEEPEST: f64 = 1.5;
 const WAKE: f64 = 2.0;
 const WAKE_SPACING: [f64; 2] = [1.0, 2.0];
 /// Particles per level of the cloud of small motions, and greatest number of particles that its spacing is chosen for, as if it were
-/// the third of a family.
+/// one of a family.
 const FEW_LAYERS: f64 = 6.0;
-const SMALL_MOTION_PARTICLES: [usize; 2] = [50_000, 150_000];
+const SMALL_MOTION_PARTICLES: [usize; 2] = [50_000, 90_000];
 /// Fewest particles per level of refinement.
 const FEWEST: f64 = 3.0;
-/// Factor on the spacing of the first cloud.
-const FIRST: f64 = 4.0;
+/// Factors on the spacing of the first clouds, which are halved again and again: in space half a spacing takes six times as many
+/// particles, and 4/3 and 3/2 in turn leave whole cells in a domain.
+const FIRST: [&[f64]; 2] = [&[4.0], &[8.0 / 3.0, 2.0]];
+/// Cells of the size of the spacing that a domain which a case gives holds a whole number of.
+const COARSEST: [f64; 2] = [4.0, 8.0];
+/// Particles of a cloud over the cells of its background, at most: those on the walls come to those between them.
+const WITH_WALLS: f64 = 1.12;
+/// What the number of particles of a cloud may be off what is expected, relative to it.
+const UNSURE: f64 = 0.02;
 /// Greatest number of particles at the points of a polar that says nothing of accuracy: three clouds for each section, and about a
 /// second for each point.
 const POLAR_PARTICLES: usize = 20_000;
-/// Part of the particles allowed that the third cloud in space may have, how many times those of the second it has, the power of the
-/// spacing that their number goes with, and how often the spacing is corrected.
-const ROOM: f64 = 0.6;
+/// How many times the particles a cloud in space has at half the spacing, the power of the spacing that their number goes with, and how
+/// often a spacing is corrected.
 const FINER: f64 = 6.0;
 const POWER: f64 = 2.5;
-const ROUNDS: usize = 4;
+const ROUNDS: usize = 6;
 /// Cells along the shortest side of a domain that a case gives, at least; greatest number of those between sides that must stay; by how
 /// much of a side they may miss it.
 const CELLS: f64 = 8.0;
 const MOST_CELLS: u32 = 64;
 const WHOLE: f64 = 1e-9;
-/// Clouds that an error bar is drawn from.
-pub(crate) const CLOUDS: usize = 3;
+/// Clouds that an error bar is drawn from, in 2-D and 3-D: three tell an order, a fourth whether it is one.
+pub(crate) const CLOUDS: [usize; 2] = [3, 4];
 
 /// How well the loads are to be known; `None` where they are those of one cloud.
 pub(crate) fn asked(case: &Case) -> Option<Accuracy> {
@@ -96,7 +102,7 @@ pub(crate) fn with_cloud<'a, const D: usize>(case: &'a Case, surface: Option<&Su
         filled.cloud.wake = filled.cloud.wake.or(thin.map(|_| wake));
         filled
     };
-    Cow::Owned(chosen(if D == 3 { affordable(&chosen, surface, along) } else { along }))
+    Cow::Owned(chosen(affordable(&chosen, surface, along)))
 }
 
 /// The case on one cloud where it leaves all of it to the program: for forces of small motions, which are surer on it than drag is.
@@ -110,15 +116,16 @@ pub(crate) fn on_one_cloud<const D: usize>(case: Case, surface: Option<&Surface<
     Case { accuracy: None, ..with_cloud(&asked, surface).into_owned() }
 }
 
-/// The spacing, no finer than `spacing`, at which the third cloud of a family in space leaves room in the particles allowed: thin
-/// edges and noses ask for more than the size of a body tells. Counted on the background of the second cloud.
+/// The spacing, no finer than `spacing`, at which the last of the clouds that an error bar takes has no more particles than are allowed:
+/// thin edges and noses ask for more than the size of a body tells. Particles are more than cells of the background, by those on the
+/// walls.
 fn affordable<const D: usize>(chosen: &impl Fn(f64) -> Case, surface: &Surface<D>, spacing: f64) -> f64 {
-    let room = ROOM * asked(&chosen(spacing)).unwrap_or(Accuracy::in_dimension(D)).particles as f64;
+    let room = asked(&chosen(spacing)).unwrap_or(Accuracy::in_dimension(D)).particles as f64 / WITH_WALLS;
     let mut spacing = spacing;
     for _ in 0..ROUNDS {
         let case = chosen(spacing);
-        let Ok(cells) = count(&CloudSpec::of_case(&scaled(&case, 2.0)), Some(surface), &[]) else { break };
-        let over = FINER * cells as f64 / room;
+        let Ok(cells) = count(&CloudSpec::of_case(&case), Some(surface), &[]) else { break };
+        let over = cells as f64 / room;
         if over <= 1.0 {
             break;
         }
@@ -130,6 +137,7 @@ fn affordable<const D: usize>(chosen: &impl Fn(f64) -> Case, surface: &Surface<D
 /// The case with this spacing. A domain that it gives is widened at far sides until it holds whole cells of the coarsest cloud; where
 /// two sides of an axis must stay, the spacing is one that fits between them.
 fn spaced<const D: usize>(case: &Case, spacing: f64) -> Case {
+    let coarsest = COARSEST[D - 2];
     let mut case = case.clone();
     case.cloud.spacing = Some(Length(spacing));
     let sides = CloudSpec::<D>::of_case(&case).sides;
@@ -137,15 +145,15 @@ fn spaced<const D: usize>(case: &Case, spacing: f64) -> Case {
     let lengths: [f64; D] = std::array::from_fn(|d| max[d].0 - min[d].0);
     let shortest = lengths.into_iter().fold(f64::INFINITY, f64::min);
     // the first cloud fits as often as a power of two into cells that are small beside the domain
-    let cells = |cell: f64| (cell / (FIRST * spacing)).log2();
-    let mut cell = FIRST * spacing * 2f64.powf(cells(shortest / CELLS).floor().max(0.0));
+    let cells = |cell: f64| (cell / (coarsest * spacing)).log2();
+    let mut cell = coarsest * spacing * 2f64.powf(cells(shortest / CELLS).floor().max(0.0));
     let whole = |length: f64, cell: f64| (length / cell - (length / cell).round()).abs() < WHOLE * length / cell;
     let far = |d: usize, end: usize| sides[d][end] == Side::FarField;
     let fixed = || (0..D).filter(|d| !far(*d, 0) && !far(*d, 1)).map(|d| lengths[d]);
     if let Some(first) = fixed().reduce(f64::min) {
         let fitting = (1..=MOST_CELLS).map(|n| first / f64::from(n)).find(|c| fixed().all(|length| whole(length, *c)));
         cell = fitting.unwrap_or(first);
-        case.cloud.spacing = Some(Length(cell / (FIRST * 2f64.powf(cells(cell).round().max(0.0)))));
+        case.cloud.spacing = Some(Length(cell / (coarsest * 2f64.powf(cells(cell).round().max(0.0)))));
     }
     for d in (0..D).filter(|d| !whole(lengths[*d], cell)) {
         let more = (lengths[d] / cell).ceil() * cell - lengths[d];
@@ -206,19 +214,57 @@ pub(crate) fn room_adapted<const D: usize>(particles: usize, factor: f64) -> f64
 pub(crate) fn too_few(case: &Case, n: usize) -> Option<String> {
     let asked = asked(case)?.particles;
     let told = case.accuracy.is_some() && n > asked;
+    let clouds = CLOUDS[usize::from(crate::geometry::dimension(case)) - 2];
     told.then(|| {
         format!(
-            "`accuracy.particles = {asked}` is less than the {n} particles of the last of the {CLOUDS} clouds that an error bar takes: \
+            "`accuracy.particles = {asked}` is less than the {n} particles of the last of the {clouds} clouds that an error bar takes: \
              they are used nevertheless; `cloud.spacing` makes them coarser"
         )
     })
 }
 
-/// The stages of a family whose member with the spacing of the case has `n` fluid particles.
-pub(crate) fn family(case: &Case, asked: &Accuracy, n: usize, dimension: usize) -> Vec<Stage> {
-    let particles = |factor: f64| n as f64 / factor.powi(dimension as i32);
-    let factors = std::iter::successors(Some(FIRST), |f| Some(0.5 * f));
-    let within = factors.enumerate().take_while(|(k, f)| *k < CLOUDS || particles(*f) <= asked.particles as f64);
+/// Particles of the cloud with a factor on the spacing of the case, whose own has `n`: as many more as the background has cells.
+pub(crate) fn sizes<'a, const D: usize>(
+    case: &'a Case,
+    surface: Option<&'a Surface<D>>,
+    n: usize,
+) -> impl Fn(f64) -> f64 + 'a {
+    let cells = move |factor: f64| count(&CloudSpec::<D>::of_case(&scaled(case, factor)), surface, &[]).ok();
+    move |factor| {
+        let over = || Some(cells(factor)? as f64 / cells(1.0)? as f64);
+        let alike = || factor.powi(-(D as i32));
+        n as f64 * if factor == 1.0 { 1.0 } else { over().unwrap_or_else(alike) }
+    }
+}
+
+/// The stages of a family whose clouds have the `sizes`.
+pub(crate) fn family(case: &Case, asked: &Accuracy, sizes: &dyn Fn(f64) -> f64, dimension: usize) -> Vec<Stage> {
+    let (first, least) = (FIRST[dimension - 2], CLOUDS[dimension - 2]);
+    let factors = (0..).flat_map(|k| first.iter().map(move |factor| factor * 0.5f64.powi(k)));
+    let fits = |factor: f64| (1.0 + UNSURE) * sizes(factor) <= asked.particles as f64;
+    let within = factors.enumerate().take_while(|(k, factor)| *k < least || fits(*factor));
     let cycle = |k: usize| if follows(case) { k as u32 } else { 0 };
     within.map(|(k, factor)| Stage { factor, cycle: cycle(k), ..Stage::PLAIN }).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Factors of the family of a case with at most so many particles, whose own cloud has 10,000 in these dimensions.
+    fn factors(particles: usize, dimension: usize) -> Vec<f64> {
+        let text = "[flow]\nmach = 0.5\n[[body]]\nnaca = \"0012\"\n";
+        let case = crate::case::read(text, "t").unwrap();
+        let asked = Accuracy { particles, ..Accuracy::in_dimension(dimension) };
+        let sizes = |factor: f64| 1e4 * factor.powi(-(dimension as i32));
+        family(&case, &asked, &sizes, dimension).iter().map(|stage| stage.factor).collect()
+    }
+
+    #[test]
+    fn families_go_on_as_long_as_particles_allow() {
+        assert_eq!(factors(39_000, 2), [4.0, 2.0, 1.0]);
+        assert_eq!(factors(41_000, 2), [4.0, 2.0, 1.0, 0.5]);
+        assert_eq!(factors(20_000, 3), [8.0 / 3.0, 2.0, 4.0 / 3.0, 1.0]);
+        assert_eq!(factors(90_000, 3), [8.0 / 3.0, 2.0, 4.0 / 3.0, 1.0, 2.0 / 3.0, 0.5]);
+    }
 }

@@ -89,8 +89,8 @@ pub(crate) struct Sized<'a> {
     pub(crate) case: &'a Case,
     /// Particles of its own cloud.
     pub(crate) particles: usize,
-    /// Those of them in the gas.
-    pub(crate) fluid: usize,
+    /// Particles of the cloud with a factor on its spacing.
+    pub(crate) sizes: &'a dyn Fn(f64) -> f64,
     /// 2 or 3.
     pub(crate) dimension: usize,
     /// Period of the motion in the time of the solver.
@@ -112,7 +112,7 @@ impl Sized<'_> {
     /// What it takes where the first clouds that give an error bar are fine enough; `None` where it goes on to its last cloud anyway.
     pub(crate) fn least(&self) -> Option<Cost> {
         let sizes = self.sizes();
-        let enough = accuracy::CLOUDS;
+        let enough = accuracy::CLOUDS[self.dimension - 2];
         (accuracy::asked(self.case).is_some() && sizes.len() > enough).then(|| self.on(&sizes[..enough], || 0.0))
     }
 
@@ -148,8 +148,8 @@ impl Sized<'_> {
         let following = |cycle: u32| if cycle == 0 { 1.0 } else { self.pilot.map_or(1.0, |p| p.following) };
         match accuracy::asked(self.case) {
             Some(asked) => {
-                let family = accuracy::family(self.case, &asked, self.fluid, self.dimension);
-                let size = |stage: &Stage| following(stage.cycle) * n / stage.factor.powi(self.dimension as i32);
+                let family = accuracy::family(self.case, &asked, self.sizes, self.dimension);
+                let size = |stage: &Stage| following(stage.cycle) * (self.sizes)(stage.factor);
                 family.iter().map(size).collect()
             }
             None => (0..=self.case.adapt.cycles).map(|k| n * ADAPTED.powi(k as i32)).collect(),
@@ -227,7 +227,7 @@ mod tests {
         Sized {
             case: &case,
             particles,
-            fluid: particles,
+            sizes: &|factor| particles as f64 / factor.powi(2),
             dimension: 2,
             period: Some(10.0),
             pixels: 486e3,

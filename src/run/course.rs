@@ -205,7 +205,7 @@ impl<'a, S: HasGas<D>, const D: usize> Course<'a, S, D> {
         if !reached.unsteady || !tried || !family::has_steady_before(stage, log) {
             return None;
         }
-        let before = |s: &&Stage| s.point == stage.point && s.factor == 2.0 * stage.factor;
+        let before = |s: &&Stage| s.point == stage.point && s.factor > stage.factor;
         let back = Stage { back: true, ..*stages[..k].iter().rfind(before)? };
         let sources = raised(&self.own(&back)?.sources);
         let why = log.record.reason.clone().unwrap_or_default();

@@ -146,7 +146,8 @@ fn look<const D: usize>(case: &Case, input: &Path, out: Option<&Path>) -> Result
     let (particles, period) = (cloud.n_real(), motions.period());
     let pilot = pilot::fly(case, input, surface.as_ref(), cloud.n_fluid);
     let pixels = pixels(surface.as_ref(), &cloud.tree.bounds());
-    let sized = Sized { case, particles, fluid: cloud.n_fluid, dimension: D, period, pixels, evaluation, pilot };
+    let sizes = &accuracy::sizes(case, surface.as_ref(), particles);
+    let sized = Sized { case, particles, sizes, dimension: D, period, pixels, evaluation, pilot };
     let report = CloudReport {
         understood: Understood::of(case, surface.as_ref(), &motions, axes.as_ref()),
         particles,

@@ -101,11 +101,16 @@ pub(crate) fn marching(case: &Case, period: Option<f64>, dimension: usize) -> Re
     }
 }
 
-/// The stages of a case whose own cloud has `n` fluid particles: coarse, fine, adapted, marched, more and more harmonics.
+/// The stages of a case whose own cloud has `n` fluid particles, and others in its family the `sizes`: coarse, fine, adapted, marched, more and more harmonics.
 /// A harmonic balance has `least` harmonics or more: the motion has so many.
-pub(crate) fn plan(case: &Case, n: usize, dimension: usize, least: usize) -> Vec<Stage> {
+pub(crate) fn plan(
+    case: &Case,
+    (n, sizes): (usize, &dyn Fn(f64) -> f64),
+    dimension: usize,
+    least: usize,
+) -> Vec<Stage> {
     if let Some(asked) = accuracy::asked(case) {
-        return at_all_points(case, accuracy::family(case, &asked, n, dimension));
+        return at_all_points(case, accuracy::family(case, &asked, sizes, dimension));
     }
     let mut all = Vec::new();
     // a march from a given field starts from that field itself
@@ -301,7 +306,7 @@ mod tests {
                  [cloud]\nspacing = 0.01\n{time}\n"
             );
             let case = crate::case::read(&text, "t").unwrap();
-            plan(&case, n, 2, 1).iter().map(|s| (s.factor, s.instances() / 2)).collect()
+            plan(&case, (n, &|_| 0.0), 2, 1).iter().map(|s| (s.factor, s.instances() / 2)).collect()
         };
         assert_eq!(planned("[time]\nharmonics = 3", 10_000), [(4.0, 0), (4.0, 1), (4.0, 3), (2.0, 3), (1.0, 3)]);
         assert_eq!(planned("[time]\nharmonics = 1", 4_000), [(2.0, 0), (2.0, 1), (1.0, 1)]);

@@ -335,7 +335,7 @@ impl Run<'_> {
                 }
             };
             if let Some(next) = turn.next().filter(|next| next.cycle > stage.cycle && !reached.enough) {
-                sources = setup::adapted(&site, next, &solver.system, &reached.state);
+                sources = setup::adapted(&site, [stage, next], &solver.system, &reached.state);
             }
             course.keep(k, &stages, &reached, &flat);
             k = match course.next(k, &stages, (&solver.system, &reached), &mut log)? {
@@ -387,7 +387,11 @@ impl Run<'_> {
         let cloud = self.cloud(site, monitor)?;
         let stages = match &other {
             Some(o) => recipe::plan_from(self.case, &o.stages[o.stage]),
-            None => recipe::plan(self.case, cloud.n_fluid, D, site.motions.multiples().last().copied().unwrap_or(1)),
+            None => {
+                let sizes = accuracy::sizes(self.case, site.surface, cloud.n_real());
+                let harmonics = site.motions.multiples().last().copied().unwrap_or(1);
+                recipe::plan(self.case, (cloud.n_fluid, &sizes), D, harmonics)
+            }
         };
         Ok((stages, Ground { ready: Some(cloud), saved, other }))
     }

@@ -30,4 +30,4 @@ pub(crate) use mesh::Mesh;
 pub(crate) use span::{span_load, span_loads};
 pub(crate) use symmetry::side_of_symmetry;
 pub(crate) use tip_vortex::{CrossPlane, tip_vortex};
-pub(crate) use wake::wake_planes;
+pub(crate) use wake::{entropy_drag, wake_planes};

@@ -58,16 +58,35 @@ pub(crate) fn wake_planes<const D: usize>(
     case: &Case,
     axes: &LoadAxes,
 ) -> Vec<WakePlane> {
+    surface.map_or_else(Vec::new, |surface| planes_at(view, &surface.bounds(), case, axes, &DISTANCES))
+}
+
+/// Drag coefficient of the entropy in the nearest plane; `None` without bodies or a subsonic stream, or in the plane.
+pub(crate) fn entropy_drag<const D: usize>(view: &View<'_, D>, case: &Case, axes: &LoadAxes) -> Option<f64> {
+    let bodies = Bounds::around(view.fluid.walls_before());
+    planes_at(view, &bodies, case, axes, &DISTANCES[..1]).first().map(|plane| plane.cd_entropy)
+}
+
+/// The same in planes at these distances behind `bodies`.
+fn planes_at<const D: usize>(
+    view: &View<'_, D>,
+    bodies: &Bounds<D>,
+    case: &Case,
+    axes: &LoadAxes,
+    distances: &[f64],
+) -> Vec<WakePlane> {
     let free = &free_stream(case);
     let mach = free.velocity.norm();
-    let Some(surface) = surface.filter(|_| D == 3 && 0.0 < mach && mach < 1.0) else { return Vec::new() };
-    let (bodies, domain) = (surface.bounds(), view.reference().tree.bounds());
+    if D != 3 || view.cloud().interface.is_empty() || !(0.0 < mach && mach < 1.0) {
+        return Vec::new();
+    }
+    let domain = view.reference().tree.bounds();
     let rear = bodies.max[0];
     let near = bodies.padded(MARGIN * axes.chord);
     let middle = side_of_symmetry(case, &domain).map_or(0.0, |side| side.0);
     let wake = Wake { view, probe: Probe::new(*view, None), free, mach, axes, near, middle };
     let inside = |distance: &f64| rear + distance * axes.chord < domain.max[0];
-    DISTANCES.into_iter().filter(inside).map(|d| wake.plane(d, rear + d * axes.chord, &domain)).collect()
+    distances.iter().copied().filter(inside).map(|d| wake.plane(d, rear + d * axes.chord, &domain)).collect()
 }
 
 /// A flow whose wake is looked at.

@@ -14,9 +14,9 @@ pub(crate) fn found(case: &Case, record: &Record) -> Option<Convergence> {
     Some(if record.out_of_time { family.out_of_time() } else { family })
 }
 
-/// True where the flow came to rest on the cloud with twice the spacing of a stage that goes back to none.
+/// True where the flow came to rest on a coarser cloud of the family than that of a stage that goes back to none.
 pub(crate) fn has_steady_before(stage: &Stage, log: &Log<'_>) -> bool {
-    !stage.back && log.record.clouds.iter().any(|known| known.steady && known.factor == 2.0 * stage.factor)
+    !stage.back && log.record.clouds.iter().any(|known| known.steady && known.factor > stage.factor)
 }
 
 /// Adds the loads on one more cloud; true when they are known well enough, or when the next cloud would take too long.

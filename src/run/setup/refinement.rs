@@ -2,7 +2,7 @@
 //!
 //! A case that is adapted without error bars keeps its spacing and refines, cycle by cycle, where the sensors of
 //! [`crate::scheme::adapt`] tell. In a family of clouds all of that is scaled with the spacing: each cloud is refined by what was found
-//! on the one before, at half the distance between particles, so that the clouds stay alike and their loads have an error bar. Without
+//! on the one before, with the distance between particles scaled, so that the clouds stay alike and their loads have an error bar. Without
 //! `[adapt]` a family follows the gas behind detached shocks.
 use super::super::accuracy;
 use super::super::look::{Snapshot, field};
@@ -17,15 +17,13 @@ use crate::geometry::Surface;
 use crate::scheme::{HasGas, View, adapt};
 use crate::system::{Instant, System};
 
-/// Spacing of a cloud of a family over that of the one before.
-const HALF: f64 = 0.5;
 /// Factor on what is asked for where there would be too many particles: cells come in powers of two.
 const COARSER: f64 = 2.0;
 
-/// Sources of refinement for the next stage, from the solution of this one.
+/// Sources of refinement for the `next` stage, from the solution of `this` one.
 pub(crate) fn adapted<S: HasGas<D>, const D: usize>(
     site: &Site<'_, D>,
-    next: &Stage,
+    [this, next]: [&Stage; 2],
     system: &S,
     state: &[f64],
 ) -> Vec<Source<D>> {
@@ -37,7 +35,7 @@ pub(crate) fn adapted<S: HasGas<D>, const D: usize>(
         (Some(_), Some(surface)) if site.case.adapt.cycles == 0 => {
             behind_shocks(site.case, surface, &field(site.case, &view), next.factor)
         }
-        (Some(asked), Some(surface)) => in_family(site.case, surface, &view, (&asked, next.factor)),
+        (Some(asked), Some(surface)) => in_family(site.case, surface, &view, (&asked, [this.factor, next.factor])),
         _ => adapt::sources(&view, &site.case.adapt.sensors, finest(site.case)),
     }
 }
@@ -66,13 +64,14 @@ fn in_family<const D: usize>(
     case: &Case,
     surface: &Surface<D>,
     view: &View<'_, D>,
-    (asked, factor): (&Accuracy, f64),
+    (asked, [before, factor]): (&Accuracy, [f64; 2]),
 ) -> Vec<Source<D>> {
+    let finer = factor / before;
     let room = accuracy::room_adapted::<D>(asked.particles.min(case.adapt.particles), factor);
     let finest = factor * finest(case);
-    let all = adapt::sources(view, &case.adapt.sensors, finest / HALF);
+    let all = adapt::sources(view, &case.adapt.sensors, finest / finer);
     let at = |coarser: f64| {
-        let asks = |s: &Source<D>| Source { spacing: coarser * HALF * s.spacing, ..*s };
+        let asks = |s: &Source<D>| Source { spacing: coarser * finer * s.spacing, ..*s };
         all.iter().map(asks).collect()
     };
     affordable(case, surface, (room, factor), at)

@@ -1,7 +1,7 @@
 //! Relaxation to a steady state: the end of a steady case, or the start of another.
 use super::super::accuracy;
 use super::super::error::RunError;
-use super::super::look::{GasView, momentum};
+use super::super::look::{GasView, entropy_drag, momentum};
 use super::super::recipe::control;
 use super::super::record::family;
 use super::super::record::{IterationHistory, Log};
@@ -15,7 +15,7 @@ use crate::cloud::CloudSpec;
 use crate::math::Bounds;
 use crate::observe::convergence::CloudLoads;
 use crate::observe::loads::Coefficients;
-use crate::scheme::{Fluid, HasGas, Work};
+use crate::scheme::{Fluid, HasGas, View, Work};
 use crate::system::Implicit;
 use crate::time::relax::Relax;
 use crate::time::{Integrator, Memory, Standing};
@@ -192,15 +192,32 @@ fn tell<S: HasGas<D>, const D: usize>(
     }
     let (reach, unsettled) = (reach(system.gas()), unsettled(log));
     let supersonic = is_supersonic(system.gas(), system.gas_work(work));
-    let dragless = !supersonic && is_potential(system.gas(), log.case);
+    let lossless = !supersonic && is_lossless(system.gas(), log.case);
+    let wake = |view: View<'_, D>| entropy_drag(&view, log.case, &log.axes.axes(&view));
+    let gas = GasView::of(system, frame, state);
+    let spurious_drag = family.filter(|_| lossless).and_then(|_| wake(gas.seen(system.gas_work(work))));
     let (steady, Coefficients { cl, cd, cm }) = (log.record.converged, loads);
-    Ok(CloudLoads { factor, particles, reach, supersonic, dragless, steady, cl, cd, cm, momentum, unsettled })
+    let dragless = lossless && D == 2;
+    Ok(CloudLoads {
+        factor,
+        particles,
+        reach,
+        supersonic,
+        dragless,
+        steady,
+        cl,
+        cd,
+        cm,
+        momentum,
+        spurious_drag,
+        unsettled,
+    })
 }
 
-/// True where nothing but shocks could make a drag: in the plane, without viscosity, the free stream on all sides.
-fn is_potential<const D: usize>(gas: &Fluid<D>, case: &Case) -> bool {
+/// True where nothing but shocks could make entropy: without viscosity, the free stream on all sides.
+fn is_lossless<const D: usize>(gas: &Fluid<D>, case: &Case) -> bool {
     let free = |side: &Side| matches!(side, Side::FarField | Side::Symmetry);
-    D == 2 && gas.viscous_model.is_none() && CloudSpec::<D>::of_case(case).sides.iter().flatten().all(free)
+    gas.viscous_model.is_none() && CloudSpec::<D>::of_case(case).sides.iter().flatten().all(free)
 }
 
 /// True where the gas is faster than sound somewhere.

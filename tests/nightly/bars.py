@@ -1,0 +1,126 @@
+#!/usr/bin/env python3
+"""Holds error bars in space against loads that are known better: twelve wings and bodies, three numbers of particles, CL, CD and CM.
+
+    tests/nightly/bars.py target/release/alula [NAME ...] [--truth 1600000] [--folder bars] [--table bars.md]
+
+The truth is the extrapolation of a family whose finest cloud has at most `--truth` particles: lift and moment by the error that falls with the
+spacing and with its square through the three finest clouds; drag without shocks by what is left of the drag of the momentum once that of
+spurious entropy is taken off, where that converges sooner. Runs that are there already in `--folder` are read, not repeated: hours of two
+cores for all of them. A bar holds where it is no shorter than the error; the exit code is 1 where fewer than nine of ten do, or where the
+median of bar over error is above 5.
+"""
+import argparse
+import json
+import pathlib
+import shutil
+import statistics
+import subprocess
+import sys
+
+PARTICLES = (60_000, 120_000, 250_000)
+HALF = '[boundary]\ny_min = "symmetry"\n'
+M6 = 'wing = { airfoil = "section.csv", span = 2.3926, chord = 0.8059, taper = 0.562, sweep = "30 deg" }'
+SECTION = pathlib.Path(__file__).parents[2] / "verification" / "onera_m6_m084" / "section.csv"
+# Mach number, angle of attack, body, reference area and chord
+WINGS = {
+    "M6, subsonic": (0.5, 3.06, M6, (0.75296, 0.64607)),
+    "M6, transonic": (0.8395, 3.06, M6, (0.75296, 0.64607)),
+    "tapered": (0.6, 3, 'wing = { naca = "0012", span = 8.0, chord = 1.5, taper = 0.5, sweep = "25 deg" }', (4.5, 1.125)),
+    "elliptic": (0.3, 4, 'wing = { naca = "0012", span = 8.0, chord = 1.2732395447, planform = "elliptic", sweep_at = 0.25 }', (4.0, 1.0)),
+    "rectangular": (0.3, 2, 'wing = { naca = "0006", span = 8.0, chord = 1.0, tip = "flat" }', (4.0, 1.0)),
+    "swept": (0.7, 2, 'wing = { naca = "0010", span = 6.0, chord = 1.0, sweep = "35 deg" }', (3.0, 1.0)),
+    "delta": (0.5, 5, 'wing = { naca = "0006", span = 2.0, chord = 1.8, taper = 0.1, sweep = "58 deg" }', (0.99, 1.0)),
+    "body of revolution": (
+        0.6, 5,
+        "revolution = [[0,0],[0.2,0.18],[0.6,0.3],[1.2,0.42],[2,0.5],[3,0.5],[4,0.45],[5,0.3],[5.6,0.15],[6,0]]", (0.3927, 1.0),
+    ),
+    "wing-body": (
+        0.6, 3,
+        'ellipsoid = { size = [5.0, 0.8, 0.8] }\n[[body]]\nname = "wing"\n'
+        'wing = { naca = "0012", span = 5.0, chord = 1.0, taper = 0.6, sweep = "20 deg" }\ntranslate = [-0.6, 0, 0]', (2.0, 0.8167),
+    ),
+    "delta, supersonic": (1.6, 4, 'wing = { naca = "64A005", span = 2.0, chord = 1.5, taper = 0.2, sweep = "55 deg" }', (0.9, 1.0)),
+    "cambered": (0.4, 2, 'wing = { naca = "2412", span = 7.0, chord = 1.2, taper = 0.6, sweep = "5 deg" }', (3.36, 0.98)),
+    "capsule": (3, 6, "revolution = [[0,0],[0.05,0.3],[0.2,0.5],[0.3,0.55],[0.9,0.25],[0.95,0]]", (0.475, 1.1)),
+}
+
+
+def case(name, particles):
+    mach, alpha, body, (area, chord) = WINGS[name]
+    return (
+        f'title = "{name}"\n[flow]\nmach = {mach}\nalpha = "{alpha} deg"\n[[body]]\nname = "body"\n{body}\n{HALF}'
+        f"[reference]\narea = {area}\nchord = {chord}\nmoment_point = [0, 0, 0]\n"
+        f'[accuracy]\nloads = "0.001 %"\nparticles = {particles}\n[output]\nreport = false\n'
+    )
+
+
+def family(alula, folder, name, particles):
+    """The clouds of a run and its error bars."""
+    word = "".join(c if c.isalnum() else "-" for c in name)
+    out = folder / f"{word}-{particles // 1000}"
+    if not (out / "finished.txt").exists():
+        shutil.rmtree(out, ignore_errors=True)
+        shutil.copy(SECTION, folder / "section.csv")
+        file = folder / f"{word}-{particles // 1000}.toml"
+        file.write_text(case(name, particles))
+        run = subprocess.run([alula, "run", file, "--out", out, "--quiet"], capture_output=True, text=True, check=False)
+        # 1: not converged, which the bars tell
+        if run.returncode not in (0, 1) or not (out / "summary.json").exists():
+            sys.exit(f"{name}, {particles} particles: {run.stderr}")
+    return json.loads((out / "summary.json").read_text())["grid_convergence"]
+
+
+def limit(spacings, values):
+    """The value at no spacing of f + a h + b h² through three points."""
+    total = 0.0
+    for i, (h, f) in enumerate(zip(spacings, values)):
+        for k, other in enumerate(spacings):
+            if k != i:
+                f *= other / (other - h)
+        total += f
+    return total
+
+
+def truth(clouds, load):
+    clouds = clouds[-3:]
+    spacings = [c["factor"] for c in clouds]
+    if load == "cd" and all(c.get("spurious_drag") is not None for c in clouds):
+        left = [c["cd"] - c["spurious_drag"] for c in clouds]
+        # vortices that fade on the way to the plane are entropy too: then what is left still grows
+        if abs(left[-1] - left[-2]) < abs(clouds[-1]["cd"] - clouds[-2]["cd"]):
+            return left[-1]
+    return limit(spacings, [c[load] for c in clouds])
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("alula")
+    parser.add_argument("names", nargs="*", choices=[[], *WINGS], default=[])
+    parser.add_argument("--truth", type=int, default=1_600_000)
+    parser.add_argument("--folder", type=pathlib.Path, default=pathlib.Path("bars"))
+    parser.add_argument("--table", type=pathlib.Path)
+    options = parser.parse_args()
+    options.folder.mkdir(exist_ok=True)
+    rows, ratios = [], []
+    for name in options.names or WINGS:
+        known = family(options.alula, options.folder, name, options.truth)["clouds"]
+        for particles in PARTICLES:
+            found = family(options.alula, options.folder, name, particles)
+            cells = []
+            for load in ("cl", "cd", "cm"):
+                value, bar = found["clouds"][-1][load], found[load]["half_width"]
+                error = abs(value - truth(known, load))
+                ratios.append(bar / max(error, 1e-12))
+                cells.append(f"{value:.5f} ± {bar:.5f} ({error:.5f}{'' if error <= bar else ' **out**'})")
+            rows.append(f"| {name} | {found['clouds'][-1]['particles']:,} | " + " | ".join(cells) + " |")
+            print(rows[-1], flush=True)
+    held = sum(r >= 1.0 for r in ratios)
+    median = statistics.median(ratios)
+    print(f"{held} of {len(ratios)} bars hold; median of bar over error {median:.1f}; truth: families of {options.truth:,} particles")
+    if options.table:
+        options.table.write_text("| body | particles | CL ± bar (error) | CD | CM |\n|---|---|---|---|---|\n" + "\n".join(rows) + "\n")
+    sys.exit(0 if held >= 0.9 * len(ratios) and median <= 5.0 else 1)
+
+
+if __name__ == "__main__":
+    main()
