@@ -244,7 +244,7 @@ fn mistakes_in_a_case_are_told_with_a_caret() {
 }
 
 #[test]
-fn what_cannot_be_computed_yet_is_checked_but_not_run() {
+fn what_cannot_be_computed_yet_is_neither_checked_nor_run() {
     let desk = Desk::new(SECTION);
     let output = desk.alula(&["new", "pitching"]);
     assert_eq!(code(&output), Some(0), "{}", told(&output));
@@ -253,14 +253,16 @@ fn what_cannot_be_computed_yet_is_checked_but_not_run() {
     let text = std::fs::read_to_string(&file).unwrap();
     let text = text.replace("particles = \"deforming\"", "particles = \"lagrangian\"");
     std::fs::write(&file, format!("{text}\n[scheme]\nconservative = true\n")).unwrap();
-    let output = desk.alula(&["run", "pitching.toml"]);
-    let text = told(&output);
-    assert!(
-        code(&output) == Some(2)
-            && text.contains("conservative coefficients of particles that travel")
-            && text.contains("hint: "),
-        "{text}"
-    );
+    for command in ["run", "check"] {
+        let output = desk.alula(&[command, "pitching.toml"]);
+        let text = told(&output);
+        assert!(
+            code(&output) == Some(2)
+                && text.contains("conservative coefficients of particles that travel")
+                && text.contains("hint: "),
+            "{text}"
+        );
+    }
     assert!(!desk.path("runs").exists(), "a refused case leaves nothing behind");
 }
 

@@ -12,7 +12,7 @@ use pyo3::exceptions::{PyRuntimeError, PyTypeError, PyUserWarning, PyValueError}
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use solver::case::Case;
-use solver::run::{Monitor, Outcome, RunError, Session, Solution, Tick, continued, inspect, is_finished};
+use solver::run::{Monitor, Outcome, RunError, Session, Solution, Tick, continued, inspect, is_finished, refusals};
 
 use crate::cases::Given;
 use crate::faults;
@@ -192,7 +192,10 @@ fn computed(
 #[pyfunction]
 pub(crate) fn check(py: Python<'_>, case: &Bound<'_, PyAny>) -> PyResult<Py<PyAny>> {
     let given = Given::of(case)?;
-    let report = py.detach(|| inspect(&given.case, &given.input, None));
+    let report = py.detach(|| {
+        let refused = refusals(&given.case, &given.input).into_iter().next();
+        refused.map_or_else(|| inspect(&given.case, &given.input, None), Err)
+    });
     let report = report.map_err(|problem| faults::of_run(py, &problem))?;
     let mut told = serde_json::to_value(&report).unwrap_or_default();
     told["title"] = given.case.title.into();

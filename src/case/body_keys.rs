@@ -31,7 +31,7 @@ pub(super) static BODY: Table = Table::of(&[
         "NACA section of four or five digits, modified or not, or of the 6-series (2-D), `naca = \"0012\"`, `\"23012\"`, \
          `\"0012-64\"`, `\"63-415\"` or `\"64A010\"`.",
     ),
-    Field::optional("airfoil", Kind::Text, SHAPE, "Airfoil coordinate file (2-D) in Selig, Lednicer or CSV order.")
+    Field::optional("airfoil", Kind::File, SHAPE, "Airfoil coordinate file (2-D) in Selig, Lednicer or CSV order.")
         .known_as(&["file", "dat", "coordinates", "section", "profile"]),
     Field::optional(
         "polygon",
@@ -53,7 +53,7 @@ pub(super) static BODY: Table = Table::of(&[
         SHAPE,
         "Box centred on the origin of the shape, `box = { size = [1, 1, 1] }`.",
     ),
-    Field::optional("surface", Kind::Text, SHAPE, "STL or OBJ file (3-D), relative to the case file.")
+    Field::optional("surface", Kind::File, SHAPE, "STL or OBJ file (3-D), relative to the case file.")
         .known_as(&["stl", "obj", "mesh", "geometry"]),
     Field::optional(
         "wing",
@@ -219,9 +219,9 @@ static WING: Table = Table::of(&[
         SECTION,
         "NACA section, at the root where there is another one at the tip.",
     ),
-    Field::optional("airfoil", Kind::Text, SECTION, "Coordinate file of the section."),
+    Field::optional("airfoil", Kind::File, SECTION, "Coordinate file of the section."),
     Field::optional("tip_naca", Kind::Table(&NACA), "that of the root", "NACA section at the tip."),
-    Field::optional("tip_airfoil", Kind::Text, "that of the root", "Coordinate file of the section at the tip."),
+    Field::optional("tip_airfoil", Kind::File, "that of the root", "Coordinate file of the section at the tip."),
     Field::required("span", SIZE, "Distance from tip to tip; from root to tip where there is one side."),
     Field::optional("chord", SIZE, "from `aspect_ratio`", "Chord at the root.").alias("root_chord"),
     Field::optional("aspect_ratio", POSITIVE, "from `chord`", "Square of the span over the area."),

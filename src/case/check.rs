@@ -284,6 +284,7 @@ fn placements(draft: &mut Draft<'_>, d: usize) {
 /// Points have `d` coordinates; keys of the other dimension are absent.
 fn in_dimension(draft: &mut Draft<'_>, d: usize) {
     length(draft, "reference.moment_point", d);
+    length(draft, "gaf.pivot", d);
     for i in 0..draft.count("cloud.box") {
         length(draft, &format!("cloud.box[{i}].min"), d);
         length(draft, &format!("cloud.box[{i}].max"), d);

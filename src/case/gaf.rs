@@ -35,6 +35,8 @@ pub struct Gaf {
     /// The limiter stays what it is in the steady flow.
     #[serde(default)]
     pub frozen_limiter: bool,
+    /// The entries of the matrices have error bars, from a cloud with twice the spacing.
+    pub cloud_error: bool,
 }
 
 /// How forces are found.

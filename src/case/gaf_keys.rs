@@ -1,7 +1,7 @@
 //! The keys of `[gaf]`.
 use super::kinds::{FROZEN_LIMITER, POSITIVE, SIZE};
 use super::motion_keys::MODE_FILE;
-use super::quantity::{Angle, Length};
+use super::quantity::{Angle, Length, Ratio};
 use super::schema::{Absent, Field, Kind, List, Range, Table};
 
 /// Zero or more.
@@ -55,11 +55,17 @@ pub(super) static GAF: Table = Table::of(&[
     Field::optional("harmonics", Kind::Integer(1, 16), "1", "Number of harmonics with `method = \"balance\"`."),
     Field::optional(
         "linearity",
-        POSITIVE,
+        Kind::Quantity(Ratio::DIMENSION, Range::POSITIVE),
         "0.005",
         "Part by which forces may change when the amplitude is halved, with `method = \"balance\"`.",
     ),
     FROZEN_LIMITER,
+    Field::defaulted(
+        "cloud_error",
+        Kind::Flag,
+        Absent::Flag(true),
+        "Give every entry an error bar, from its change on a cloud with twice the spacing.",
+    ),
 ]);
 
 static FLEXIBLE: Table = Table::of(&[

@@ -514,7 +514,7 @@ static HINGE: Table = Table::of(&[
 static COMPARE: Table = Table::of(&[
     Field::required(
         "file",
-        Kind::Text,
+        Kind::File,
         "CSV file with columns `x_c` and `Cp`, in space `eta`, the part of the half span, relative to the case file.",
     ),
     Field::defaulted("label", Kind::Text, Absent::Word("reference"), "Name in the legend."),

@@ -61,7 +61,7 @@ pub use quantity::{
     Acceleration, Angle, AngularStiffness, Density, Force, Frequency, Inertia, Length, Mass, PerTime, Pressure, Rate,
     Ratio, SpecificHeat, Stiffness, Temperature, Time, Velocity, Viscosity, WallTime,
 };
-pub use read::read;
+pub use read::{read, read_in};
 pub use reference::{reference_markdown, schema};
 pub use solid::{
     Contact, ContactPlane, Everywhere, JohnsonCook, Orthotropic, Perzyna, PlaneState, Solid, SolidAxis, SolidBox,

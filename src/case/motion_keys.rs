@@ -205,7 +205,7 @@ static TIMES: List = List { item: Kind::Quantity(Time::DIMENSION, Range::ANY), m
 static TABLE_KEYS: Table = Table::of(&[
     Field::optional(
         "file",
-        Kind::Text,
+        Kind::File,
         "the lists `time`, `x`, …",
         "CSV file, relative to the case file, with columns `time` and any of `x`, `y`, `z`, `angle_deg`, `angle_rad`.",
     ),
@@ -226,7 +226,7 @@ static TABLE_KEYS: Table = Table::of(&[
 
 pub(super) const MODE_FILE: Field = Field::required(
     "file",
-    Kind::Text,
+    Kind::File,
     "CSV file of the shape, relative to the case file: columns `x`, `y` (`z`) of points of the body as placed, and `dx`, `dy` \
      (`dz`), their displacements when the coordinate is one.",
 );

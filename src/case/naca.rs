@@ -120,6 +120,9 @@ const SIX: &str = "for example `63-415`, `65(2)-215`, `66,1-212`, `64A010` or `6
 const SIX_THICKEST: f64 = 0.3;
 const MODIFIED: &str =
     "behind the dash stand the index of the nose radius, 0 to 9, and the place of greatest thickness, 2 to 6 tenths";
+/// Thickness over the chord up to which four and five digits are taken: published are 6 to 25 %, fairings of struts have up to 40 %.
+const THICKEST: f64 = 0.5;
+const TOO_THICK: &str = "the last two digits are the thickness in %: published sections have 6 to 25, and up to 50 are taken; thicker bodies are an `ellipse` or a `polygon`";
 const FIVE: &str = "plain mean lines are 210 to 250, reflexed ones 221 to 251, times the first digit over 2";
 /// Design lift coefficient that one of the first of five digits stands for.
 const LIFT: f64 = 0.15;
@@ -141,6 +144,9 @@ impl Naca {
         let thickness = 0.01 * value(thick);
         if thickness == 0.0 {
             return Err(bad(format!("NACA {text} has no thickness"), "the last two digits are the thickness in %"));
+        }
+        if thickness > THICKEST {
+            return Err(bad(format!("NACA {text} would be {thick} % thick"), TOO_THICK));
         }
         let form = match tail {
             None => ThicknessForm::Standard,

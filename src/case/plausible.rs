@@ -2,7 +2,7 @@
 //!
 //! Mach number and Reynolds number say how far the molecules of a gas fly between collisions, Kn = M/Re √(πγ/2) lengths: where that
 //! is many times the length of the body, the gas is no continuum.
-use std::f64::consts::{FRAC_PI_2, TAU};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use serde_json::{Value, json};
 
@@ -19,6 +19,8 @@ const COLD: f64 = 100.0;
 const HARDLY_MOVING: f64 = 0.005;
 /// Mach number of no gas whose γ is one number: at rest it is 2000 times as hot as in the stream.
 const FASTEST: f64 = 100.0;
+/// Greatest angle of attack, with what degrees are rounded by.
+const HALF_TURN: f64 = PI * (1.0 + 1e-12);
 
 /// Looks for such values.
 pub(super) fn doubtful(draft: &mut Draft<'_>) {
@@ -104,22 +106,23 @@ fn viscous(draft: &mut Draft<'_>, flow: &Flow) {
     }
 }
 
-/// Angles of attack beyond a quarter of a turn in radians, beyond a turn in any unit.
+/// Angles of attack beyond a quarter of a turn in radians, beyond half a turn in any unit.
 fn angles(draft: &mut Draft<'_>) {
     for path in ["flow.alpha", "flow.beta"] {
         let values = draft.values(path);
         let Some(most) = values.into_iter().max_by(|a, b| a.abs().total_cmp(&b.abs())) else { continue };
         let radians = draft.unit(path).contains("rad");
-        if most.abs() <= if radians { FRAC_PI_2 } else { TAU } {
+        if most.abs() <= if radians { FRAC_PI_2 } else { HALF_TURN } {
             continue;
         }
         let degrees = number(most.to_degrees());
         let hint = if radians {
             format!("write `\"{} deg\"`, or `\"{degrees} deg\"` where that is meant", number(most))
         } else {
-            "angles of attack are those within one turn".to_owned()
+            let same = most - TAU * (most / TAU).round();
+            format!("the same stream is `\"{} deg\"`", number(same.to_degrees()))
         };
-        draft.fail(path, format!("`{path}` is {degrees} deg")).hint(hint);
+        draft.fail(path, format!("`{path}` is {degrees} deg")).allowed("from -180 deg to 180 deg").hint(hint);
     }
 }
 
@@ -184,7 +187,12 @@ mod tests {
         let hint = ["`flow.alpha` is 114.59 deg", "write `\"2 deg\"`, or `\"114.59 deg\"`"];
         all(&told("mach = 0.3\nalpha = \"2 rad\"", ""), &hint);
         all(&told("mach = 0.3\nalpha = \"0:5:1 rad\"", ""), &["`flow.alpha` is 286.48 deg"]);
-        all(&told("mach = 0.3\nalpha = \"400 deg\"", ""), &["within one turn"]);
+        all(
+            &told("mach = 0.3\nalpha = \"400 deg\"", ""),
+            &["from -180 deg to 180 deg", "the same stream is `\"40 deg\"`"],
+        );
+        all(&told("mach = 0.3\nalpha = \"200 deg\"", ""), &["t:2:9", "is 200 deg", "`\"-160 deg\"`"]);
+        all(&told("mach = 0.3\nalpha = \"-180:200:20 deg\"", ""), &["is 200 deg"]);
         for good in ["\"0.03 rad\"", "\"114.59 deg\"", "\"-180:180:90 deg\""] {
             assert_eq!(told(&format!("mach = 0.3\nalpha = {good}"), ""), "");
         }
@@ -197,6 +205,16 @@ mod tests {
         all(&swing("\"3600 deg\""), &["is 3600 deg, 10 turns to each side", "`rotation = \"10 deg/s\"`"]);
         all(&swing("[\"1 deg\", { amplitude = \"400 deg\" }]"), &["`motion.pitch[1].amplitude` is 400 deg"]);
         assert_eq!(swing("\"360 deg\""), "");
+    }
+
+    #[test]
+    fn sections_that_are_thicker_than_any_strut_are_refused() {
+        let told =
+            |body: &str| read(&format!("[flow]\nmach = 0.3\n[[body]]\n{body}\n"), "t").map_err(|e| e.to_string());
+        for body in ["naca = \"0099\"", "naca = \"23051\"", "wing = { naca = \"0060\", span = 4, chord = 1 }"] {
+            all(&told(body).unwrap_err(), &["% thick", "published sections have 6 to 25"]);
+        }
+        assert!(told("naca = \"0040\"").is_ok() && told("naca = \"2450\"").is_ok());
     }
 
     #[test]

@@ -105,12 +105,25 @@ impl Dimension {
     }
 
     fn unit(&self, symbol: &str) -> Result<&Unit, QuantityError> {
-        self.units.iter().find(|u| u.symbol == symbol).ok_or_else(|| QuantityError::Unit {
+        let written = plain_symbol(symbol);
+        self.units.iter().find(|u| plain_symbol(u.symbol) == written).ok_or_else(|| QuantityError::Unit {
             unit: symbol.to_owned(),
             dimension: self.name,
             allowed: self.symbols(),
         })
     }
+}
+
+/// A symbol with products as blanks and powers as digits: `kg·m²`, `kg*m^2` and `kg m2` are one unit.
+pub(super) fn plain_symbol(symbol: &str) -> String {
+    let one = |c: char| match c {
+        '·' | '⋅' | '*' => Some(' '),
+        '²' => Some('2'),
+        '³' => Some('3'),
+        '^' => None,
+        other => Some(other),
+    };
+    symbol.chars().filter_map(one).collect()
 }
 
 fn finite(value: f64, text: &str) -> Result<f64, QuantityError> {
@@ -249,20 +262,35 @@ quantities! {
     ];
     Mass, "a mass", false, "3 kg/m", [
         unit("kg", 1.0), unit("g", 1e-3), unit("lb", POUND), unit("slug", POUND * GRAVITY / FOOT),
-        unit("kg/m", 1.0), unit("g/m", 1e-3), unit("lb/ft", POUND / FOOT), unit("slug/ft", POUND * GRAVITY / (FOOT * FOOT)),
+        unit("t", 1e3), unit("kg/m", 1.0), unit("g/m", 1e-3), unit("lb/ft", POUND / FOOT),
+        unit("slug/ft", POUND * GRAVITY / (FOOT * FOOT)),
     ];
     Inertia, "a moment of inertia", false, "0.2 kg m", [
-        unit("kg m2", 1.0), unit("kg m^2", 1.0), unit("slug ft2", POUND * GRAVITY * FOOT),
+        unit("kg m2", 1.0), unit("kg cm2", 1e-4), unit("lb ft2", POUND * FOOT * FOOT), unit("slug ft2", POUND * GRAVITY * FOOT),
         unit("kg m", 1.0), unit("kg m2/m", 1.0), unit("slug ft", POUND * GRAVITY), unit("slug ft2/ft", POUND * GRAVITY),
     ];
     Stiffness, "a stiffness", false, "2.8 kN/m2", [
-        unit("N/m", 1.0), unit("kN/m", 1e3), unit("lbf/ft", POUND * GRAVITY / FOOT), unit("lbf/in", 12.0 * POUND * GRAVITY / FOOT),
+        unit("N/m", 1.0), unit("kN/m", 1e3), unit("N/mm", 1e3), unit("lbf/ft", POUND * GRAVITY / FOOT), unit("lbf/in", 12.0 * POUND * GRAVITY / FOOT),
         unit("N/m2", 1.0), unit("kN/m2", 1e3), unit("N/m/m", 1.0), unit("lbf/ft2", POUND * GRAVITY / (FOOT * FOOT)),
     ];
     AngularStiffness, "a stiffness against rotation", false, "300 N m/rad", [
-        unit("N m/rad", 1.0), unit("N m", 1.0), unit("kN m/rad", 1e3), unit("N m/deg", 1.0 / DEGREE),
+        unit("N m/rad", 1.0), unit("N m", 1.0), unit("Nm/rad", 1.0), unit("Nm", 1.0), unit("kN m/rad", 1e3), unit("N m/deg", 1.0 / DEGREE),
         unit("lbf ft/rad", POUND * GRAVITY * FOOT),
         unit("N/rad", 1.0), unit("N m/rad/m", 1.0), unit("N", 1.0), unit("lbf/rad", POUND * GRAVITY),
+    ];
+    Damper, "a damper", false, "40 N s/m", [
+        unit("N s/m", 1.0), unit("kN s/m", 1e3), unit("kg/s", 1.0), unit("lbf s/ft", POUND * GRAVITY / FOOT),
+        unit("N s/m2", 1.0), unit("kN s/m2", 1e3), unit("N s/m/m", 1.0), unit("lbf s/ft2", POUND * GRAVITY / (FOOT * FOOT)),
+    ];
+    AngularDamper, "a damper of rotation", false, "2 N m s/rad", [
+        unit("N m s/rad", 1.0), unit("N m s", 1.0), unit("Nm s/rad", 1.0), unit("lbf ft s/rad", POUND * GRAVITY * FOOT),
+        unit("N s/rad", 1.0), unit("N m s/rad/m", 1.0), unit("N s", 1.0), unit("lbf s/rad", POUND * GRAVITY),
+    ];
+    PerArea, "an inverse square of a length", false, "40 1/m2", [
+        unit("1/m2", 1.0), unit("1/mm2", 1e6), unit("1/ft2", 1.0 / (FOOT * FOOT)),
+    ];
+    PerSquareAngle, "an inverse square of an angle", false, "40 1/rad2", [
+        unit("1/rad2", 1.0), unit("1/deg2", 1.0 / (DEGREE * DEGREE)),
     ];
     Force, "a force", false, "250 N", [
         unit("N", 1.0), unit("kN", 1e3), unit("MN", 1e6), unit("mN", 1e-3), unit("lbf", POUND * GRAVITY),
@@ -302,6 +330,12 @@ mod tests {
         close("2 slug ft2".parse::<Inertia>().unwrap().0, 2.0 * 1.355_817_948_331_400_4);
         close("1 lbf/in".parse::<Stiffness>().unwrap().0, 175.126_835_246_476_4);
         close("1 N m/deg".parse::<AngularStiffness>().unwrap().0, 180.0 / std::f64::consts::PI);
+        close("1 kg·m²".parse::<Inertia>().unwrap().0, 1.0);
+        close("3 kg*m^2".parse::<Inertia>().unwrap().0, 3.0);
+        close("1.2 kg/m³".parse::<Density>().unwrap().0, 1.2);
+        close("40 1/deg2".parse::<PerSquareAngle>().unwrap().0, 40.0 * (180.0 / std::f64::consts::PI).powi(2));
+        close("2 lbf s/ft".parse::<Damper>().unwrap().0, 2.0 * 14.593_902_937_206_364);
+        close("2 N m s/rad".parse::<AngularDamper>().unwrap().0, 2.0);
         close("-1 g".parse::<Acceleration>().unwrap().0, -9.80665);
         // sea level of the standard atmosphere (1976) in slug/ft3
         assert!(("0.0023769 slug/ft3".parse::<Density>().unwrap().0 - 1.225).abs() < 1e-4);

@@ -4,7 +4,9 @@
 //! passes lands in base units in a plain tree with all defaults. Contradictions between keys are looked for in that tree
 //! (`check.rs`); a tree without mistakes is what [`Case`] is deserialised from.
 use std::collections::BTreeSet;
+use std::io::ErrorKind;
 use std::ops::Range as Span;
+use std::path::Path;
 
 use serde_json::{Map, Value, json};
 use toml::Spanned;
@@ -17,11 +19,21 @@ use super::keys::CASE;
 use super::polar;
 use super::quantity::PURE;
 use super::schema::{Absent, Field, Kind, List, Range, Table, Variant, one_of};
+use super::text::open_regular;
 
 /// Reads the text of a case file; `name` is what messages call it.
 pub fn read(text: &str, name: &str) -> Result<Case, CaseErrors> {
+    read_with(text, name, None)
+}
+
+/// The same of a case whose files lie in `folder`: those that cannot be opened are mistakes of the case as well.
+pub fn read_in(text: &str, name: &str, folder: &Path) -> Result<Case, CaseErrors> {
+    read_with(text, name, Some(folder))
+}
+
+fn read_with(text: &str, name: &str, folder: Option<&Path>) -> Result<Case, CaseErrors> {
     let (document, syntax) = DeTable::parse_recoverable(text);
-    let mut reader = Reader { draft: Draft::new(text), complete: syntax.is_empty() };
+    let mut reader = Reader { draft: Draft::new(text), complete: syntax.is_empty(), folder };
     let root = reader.table(&CASE, document.get_ref(), "");
     let mut draft = reader.draft;
     draft.tree = Value::Object(root);
@@ -46,6 +58,8 @@ struct Reader<'t> {
     draft: Draft<'t>,
     /// The text is TOML throughout: what is not there is really missing.
     complete: bool,
+    /// Folder of the files that the case names, where they are looked for.
+    folder: Option<&'t Path>,
 }
 
 type Item<'i> = Spanned<DeValue<'i>>;
@@ -116,6 +130,10 @@ impl Reader<'_> {
             (Kind::IntegerOr(min, max, _), value) => self.whole(kind, (*min, *max), number(value), item, path),
             (Kind::Flag, DeValue::Boolean(flag)) => Some(json!(flag)),
             (Kind::Text | Kind::Matching(_), DeValue::String(text)) if !text.trim().is_empty() => Some(json!(text)),
+            (Kind::File, DeValue::String(text)) if !text.trim().is_empty() => {
+                self.file(text, item, path);
+                Some(json!(text))
+            }
             (Kind::Formula, DeValue::String(text)) if !text.trim().is_empty() => Some(json!(text)),
             (Kind::Formula, value) if number(value).is_some() => {
                 let x = self.number(number(value)?, &Range::ANY, item, path)?.as_f64()?;
@@ -131,7 +149,7 @@ impl Reader<'_> {
             }
             (Kind::List(list), DeValue::Array(items)) => self.list(kind, list, items, item, path),
             (Kind::List(list), _) if list.single => {
-                self.place_formula(list, item, &format!("{path}[0]"));
+                self.place_item(list, item, &format!("{path}[0]"));
                 Some(json!([self.value(&list.item, item, path)?]))
             }
             (Kind::Table(table), DeValue::Table(document)) => Some(json!(self.table(table, document, path))),
@@ -147,6 +165,21 @@ impl Reader<'_> {
             (Kind::Choice(variants), DeValue::Table(document)) => self.choose_table(variants, document, item, path),
             _ => self.wrong(kind, item, path),
         }
+    }
+
+    /// Complains of a file that cannot be opened.
+    fn file(&mut self, name: &str, item: &Item<'_>, path: &str) {
+        let Some(folder) = self.folder else { return };
+        let Err(problem) = open_regular(&folder.join(name)) else { return };
+        let message = match problem.kind() {
+            ErrorKind::NotFound => format!("`{path}`: there is no file `{}`", quote(name)),
+            _ => format!("`{path}`: cannot read the file `{}`: {problem}", quote(name)),
+        };
+        let hint = similar(&folder.join(name)).map_or_else(
+            || "names of files are relative to the folder of the case file".to_owned(),
+            |other| format!("did you mean `{other}`?"),
+        );
+        self.draft.fail_at(path, item.span(), message).hint(hint);
     }
 
     /// One value, or several.
@@ -265,7 +298,7 @@ impl Reader<'_> {
     ) -> Option<Value> {
         let read = items.iter().enumerate().map(|(i, item)| {
             let here = format!("{path}[{i}]");
-            self.place_formula(list, item, &here);
+            self.place_item(list, item, &here);
             self.value(&list.item, item, &here)
         });
         let read: Vec<_> = read.collect();
@@ -277,9 +310,9 @@ impl Reader<'_> {
         None
     }
 
-    /// Remembers where a formula in a list was written: its own places are pointed at.
-    fn place_formula(&mut self, list: &List, item: &Item<'_>, path: &str) {
-        if matches!(list.item, Kind::Formula) {
+    /// Remembers where a formula or a quantity in a list was written: its own places are pointed at, and its unit is looked at.
+    fn place_item(&mut self, list: &List, item: &Item<'_>, path: &str) {
+        if matches!(list.item, Kind::Formula | Kind::Quantity(..)) {
             self.draft.place(path, item.span(), item.span());
         }
     }
@@ -427,6 +460,17 @@ impl Reader<'_> {
         let hint = format!("add `{}` ({}): {}", field.key, field.kind.words(), lower(field.doc));
         self.draft.fail(&place, message).hint(hint);
     }
+}
+
+/// The name of a file beside `file` whose name is much like it.
+fn similar(file: &Path) -> Option<String> {
+    let wanted = file.file_name()?.to_string_lossy().into_owned();
+    let folder = file.parent().filter(|f| !f.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let beside = std::fs::read_dir(folder).ok()?.flatten().filter(|entry| entry.path().is_file());
+    let names: Vec<String> = beside.filter_map(|entry| entry.file_name().into_string().ok()).collect();
+    let extension = |name: &str| Path::new(name).extension().map(|e| e.to_ascii_lowercase());
+    let alike = names.iter().filter(|n| extension(n) == extension(&wanted)).map(String::as_str);
+    closest(&wanted, alike).map(str::to_owned)
 }
 
 /// An entry of `table`, or those of the table within it that has the same keys.

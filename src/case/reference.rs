@@ -78,7 +78,7 @@ fn kind_schema(kind: &Kind) -> Value {
         Kind::Flag => json!({ "type": "boolean" }),
         Kind::Formula => json!({ "anyOf": [{ "type": "string", "minLength": 1 }, { "type": "number" }] }),
         Kind::TableOr(table, word) => json!({ "anyOf": [{ "const": word }, table_schema(table)] }),
-        Kind::Text => json!({ "type": "string", "minLength": 1 }),
+        Kind::Text | Kind::File => json!({ "type": "string", "minLength": 1 }),
         Kind::Matching(pattern) => json!({ "type": "string", "pattern": pattern }),
         Kind::Words(words) => {
             json!({ "oneOf": words.iter().map(|w| json!({ "const": w.0, "description": w.1 })).collect::<Vec<_>>() })

@@ -50,6 +50,8 @@ pub(super) enum Kind {
     Flag,
     /// Any text but the empty one.
     Text,
+    /// Name of a file, relative to the folder of the case file.
+    File,
     /// A text that editors know to be wrong where it does not match this regular expression.
     Matching(&'static str),
     /// One of several words.
@@ -314,7 +316,7 @@ impl Kind {
             Self::Integer(min, max) => format!("a whole number from {min} to {max}"),
             Self::IntegerOr(min, max, word) => format!("a whole number from {min} to {max} or `\"{word}\"`"),
             Self::Flag => "`true` or `false`".to_owned(),
-            Self::Text | Self::Matching(_) => "a text in quotes".to_owned(),
+            Self::Text | Self::File | Self::Matching(_) => "a text in quotes".to_owned(),
             Self::Words(words) => one_of(words.iter().map(|w| w.0)),
             Self::Formula => "a formula in quotes or a number".to_owned(),
             Self::TableOr(_, word) => format!("a table or `\"{word}\"`"),

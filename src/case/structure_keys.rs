@@ -2,7 +2,8 @@
 use super::kinds::{ANGLE, LENGTH, POINT, POSITIVE, SIZE};
 use super::motion_keys::MODE_FILE;
 use super::quantity::{
-    Acceleration, AngularStiffness, Frequency, Inertia, Length, Mass, Rate, Stiffness, Time, Velocity,
+    Acceleration, AngularDamper, AngularStiffness, Damper, Frequency, Inertia, Length, Mass, PerArea, PerSquareAngle,
+    PerTime, Rate, Ratio, Stiffness, Time, Velocity,
 };
 use super::schema::{Absent, Field, Kind, List, Range, Table};
 
@@ -10,10 +11,13 @@ const ANY: Kind = Kind::Number(Range::ANY);
 /// Zero or more.
 const NOT_NEGATIVE: Kind = Kind::Number(Range { min: 0.0, max: f64::INFINITY, closed: true });
 /// Part of critical damping; beyond half of it nothing flutters.
-const RATIO: Kind = Kind::Number(Range { min: 0.0, max: f64::INFINITY, closed: true });
+const RATIO: Kind = Kind::Quantity(Ratio::DIMENSION, Range { min: 0.0, max: f64::INFINITY, closed: true });
 const HERTZ: Kind = Kind::Quantity(Frequency::DIMENSION, Range::POSITIVE);
 const SPRING: Kind = Kind::Quantity(Stiffness::DIMENSION, Range { min: 0.0, max: f64::INFINITY, closed: true });
 const TWIST: Kind = Kind::Quantity(AngularStiffness::DIMENSION, Range { min: 0.0, max: f64::INFINITY, closed: true });
+const DASHPOT: Kind = Kind::Quantity(Damper::DIMENSION, Range { min: 0.0, max: f64::INFINITY, closed: true });
+const TWIST_DASHPOT: Kind =
+    Kind::Quantity(AngularDamper::DIMENSION, Range { min: 0.0, max: f64::INFINITY, closed: true });
 const PLAY: Kind = Kind::Quantity(Length::DIMENSION, Range { min: 0.0, max: f64::INFINITY, closed: true });
 const SPEED: Kind = Kind::Quantity(Velocity::DIMENSION, Range::ANY);
 const TURN_RATE: Kind = Kind::Quantity(Rate::DIMENSION, Range::ANY);
@@ -129,7 +133,7 @@ pub(super) static STRUCTURE: Table = Table::of(&[
         "damping",
         Kind::Table(&DAMPERS),
         "no damping",
-        "Coefficients of dampers instead, force over velocity and moment over rate, in base units.",
+        "Coefficients of dampers instead, force over velocity and moment over rate, `damping = { plunge = \"40 N s/m\" }`.",
     ),
     Field::optional("flap", Kind::Table(&FLAP), "no flap", "Trailing-edge flap of a typical section."),
     Field::optional(
@@ -224,13 +228,13 @@ static RATIOS: Table = Table::of(&[
 ]);
 
 static DAMPERS: Table = Table::of(&[
-    of("surge", NOT_NEGATIVE, UNDAMPED),
-    of("sway", NOT_NEGATIVE, UNDAMPED),
-    of("plunge", NOT_NEGATIVE, UNDAMPED),
-    of("roll", NOT_NEGATIVE, UNDAMPED),
-    of("pitch", NOT_NEGATIVE, UNDAMPED),
-    of("yaw", NOT_NEGATIVE, UNDAMPED),
-    of("flap", NOT_NEGATIVE, UNDAMPED),
+    of("surge", DASHPOT, UNDAMPED),
+    of("sway", DASHPOT, UNDAMPED),
+    of("plunge", DASHPOT, UNDAMPED),
+    of("roll", TWIST_DASHPOT, UNDAMPED),
+    of("pitch", TWIST_DASHPOT, UNDAMPED),
+    of("yaw", TWIST_DASHPOT, UNDAMPED),
+    of("flap", TWIST_DASHPOT, UNDAMPED),
 ]);
 
 const fn shaped(key: &'static str, table: &'static Table) -> Field {
@@ -247,19 +251,23 @@ static SPRINGS: Table = Table::of(&[
     shaped("flap", &TURNED_SPRING),
 ]);
 
-const CUBIC: Field =
-    Field::defaulted("cubic", ANY, Absent::Number(0.0), "Over length squared in base units, or over radian squared.");
+const fn cubic(kind: Kind, doc: &'static str) -> Field {
+    Field::defaulted("cubic", kind, Absent::Number(0.0), doc)
+}
 const FREE_PLAY: &str = "Half the gap: the spring does nothing within `rest` ± this.";
 const REST: &str = "Where the spring is at ease.";
 
 static LONG_SPRING: Table = Table::of(&[
-    CUBIC,
+    cubic(Kind::Quantity(PerArea::DIMENSION, Range::ANY), "Over length squared."),
     Field::defaulted("free_play", PLAY, Absent::Number(0.0), FREE_PLAY),
     Field::defaulted("rest", LENGTH, Absent::Number(0.0), REST),
 ]);
 
 static TURNED_SPRING: Table = Table::of(&[
-    CUBIC,
+    cubic(
+        Kind::Quantity(PerSquareAngle::DIMENSION, Range::ANY),
+        "Over angle squared; a plain number is over radian squared.",
+    ),
     Field::defaulted(
         "free_play",
         Kind::Quantity(super::quantity::Angle::DIMENSION, Range { min: 0.0, max: f64::INFINITY, closed: true }),
@@ -340,17 +348,27 @@ static MODE: Table = Table::of(&[
     MODE_FILE,
     Field::required(
         "mass",
-        POSITIVE,
-        "Generalised mass ∫ φ·φ dm, in base units of mass (per span in 2-D) with the shape of the file.",
+        Kind::Quantity(Mass::DIMENSION, Range::POSITIVE),
+        "Generalised mass ∫ φ·φ dm with the shape of the file, `mass = \"10 kg\"`, in 2-D per span, `\"10 kg/m\"`.",
     ),
     Field::optional("frequency", HERTZ, ONE, "Frequency; needs a dimensional free stream."),
     Field::optional("reduced_frequency", POSITIVE, ONE, "k = ωb/U∞ instead, with b = `semichord`."),
-    Field::optional("stiffness", NOT_NEGATIVE, ONE, "Generalised stiffness instead, in base units."),
+    Field::optional(
+        "stiffness",
+        SPRING,
+        ONE,
+        "Generalised stiffness instead, of the unit of the mass over time squared.",
+    ),
     Field::defaulted("damping_ratio", RATIO, Absent::Number(0.0), "Damping ratio ζ."),
     Field::defaulted("cubic", ANY, Absent::Number(0.0), "The force of the spring is k (e + cubic e³)."),
     Field::defaulted("free_play", NOT_NEGATIVE, Absent::Number(0.0), "Half the gap of the spring."),
     Field::defaulted("initial", ANY, Absent::Number(0.0), "Coordinate at the start."),
-    Field::defaulted("initial_rate", ANY, Absent::Number(0.0), "Its rate at the start."),
+    Field::defaulted(
+        "initial_rate",
+        Kind::Quantity(PerTime::DIMENSION, Range::ANY),
+        Absent::Number(0.0),
+        "Its rate at the start.",
+    ),
     Field::optional(
         "force",
         Kind::Text,

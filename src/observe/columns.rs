@@ -149,7 +149,8 @@ const GLOSSARY: &[(&str, Quantity, &str)] = &[
 ];
 
 /// Columns whose names are made: what they end in, what they hold, and what that is of the rest of the name.
-const ENDINGS: [(&str, Quantity, &str); 5] = [
+const ENDINGS: [(&str, Quantity, &str); 6] = [
+    ("_error", Q::Number, "error bar, in gaf.csv the radius of a circle in the complex plane, of"),
     ("_phase_deg", Q::Degrees, "phase, positive when the load leads the motion, of"),
     ("_abs", Q::Number, "absolute value, per unit of the motion, of"),
     ("_mean", Q::Number, "mean in time of"),

@@ -39,9 +39,9 @@ use super::monitor::{Monitor, Quiet};
 use super::one_cloud::on_one_cloud;
 use super::record::Log;
 use super::session::{Outcome, Session};
-use super::setup;
 use super::solids::{told_of_own_modes, with_own_modes};
 use super::studies::ForceSource;
+use super::{refusals, setup};
 use crate::case::{Case, Flutter as Plan, GasResponse, LimitCycles, Matching, StreamRatio};
 use crate::physics::atmosphere;
 use crate::structure::limit_cycle::Borne;
@@ -83,6 +83,17 @@ pub(crate) fn in_memory(case: &Case, input: &Path, monitor: &mut dyn Monitor) ->
         all.flutter.push(found);
     }
     Ok(Some(all))
+}
+
+/// Refuses a boundary of which it is known before any flow that it cannot be sought.
+pub(super) fn rehearse(case: &Case, input: &Path) -> Result<(), RunError> {
+    let plan = planned(case)?;
+    // the structure is the same at all Mach numbers
+    let Some(mach) = plan.mach.first() else { return Ok(()) };
+    let own = on_one_cloud(case.flutter_case(*mach), input)?;
+    let held = Held::of(&own, input)?;
+    case.lco.as_ref().map_or(Ok(0), |lco| limit_cycles::coordinate(lco, &held.names))?;
+    refusals::rehearse(&own, input, !plan.trim)
 }
 
 /// The table `[flutter]` with all its Mach numbers.

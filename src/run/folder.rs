@@ -340,7 +340,9 @@ mod tests {
         let told = |table: &str, shape: &str| {
             fs::write(folder.path().join("cp.csv"), table).unwrap();
             let text = format!("[flow]\nmach = 0.3\n[[body]]\n{shape}\n[[compare]]\nfile = \"cp.csv\"\n");
-            check_compared(&read(&text, "t").unwrap(), folder.path()).map_err(|e| e.to_string())
+            let case = read(&text, "t").unwrap();
+            let seen = check_compared(&case, folder.path());
+            crate::run::refusals::as_checked(&case, folder.path(), seen).map_err(|e| e.to_string())
         };
         let (section, sphere) = ("naca = \"0012\"", "sphere = { radius = 1 }");
         let wrong = told("x,cp\n0,1\n", section).unwrap_err();

@@ -1,16 +1,18 @@
 //! Generalised aerodynamic forces: for each mode and reduced frequency a linear system about one steady flow, or two harmonic balances.
 mod balance;
+mod cloud_error;
 mod linear;
 mod record;
 
-pub use record::{Column, Conditions, Matrices, Solved};
+pub use record::{Column, Conditions, Errors, Matrices, Solved};
 
 use std::path::Path;
 
 use super::error::RunError;
 use super::folder::{self, Places};
 use super::monitor::Monitor;
-use super::setup;
+use super::one_cloud::on_one_cloud;
+use super::{refusals, setup};
 use crate::case::{Case, Gaf, GafMethod};
 use crate::geometry::dimension;
 use crate::observe::columns::Scale;
@@ -44,6 +46,18 @@ pub(crate) fn in_memory(case: &Case, input: &Path, monitor: &mut dyn Monitor) ->
     let mut matrices = blank(case, &plan, input)?;
     let whole = linear::columns((case, &plan), input, &mut matrices, &mut |_| Ok(()), monitor)?;
     Ok(whole.then_some(matrices))
+}
+
+/// Refuses matrices of which it is known before any flow that they cannot be computed.
+pub(super) fn rehearse(case: &Case, input: &Path) -> Result<(), RunError> {
+    let plan = planned(case)?;
+    blank(case, &plan, input)?;
+    if plan.method == GafMethod::Linear {
+        return refusals::rehearse(&on_one_cloud(case.gaf_steady_case(&plan), input)?, input, true);
+    }
+    // the fastest motion asks most of a cloud
+    let fastest = plan.reduced_frequencies.iter().copied().fold(0.0, f64::max);
+    plan.all_modes().try_for_each(|mode| refusals::rehearse(&case.gaf_case(&plan, mode, fastest, 1.0), input, true))
 }
 
 fn planned(case: &Case) -> Result<Gaf, RunError> {

@@ -15,7 +15,7 @@ use super::recipe;
 use super::setup::{self, Site, Solver, check_motion};
 use super::solids;
 use super::stage::Stage;
-use super::understood::Understood;
+use super::understood::{Aeroelastic, Understood};
 use crate::case::{Case, GafMethod};
 use crate::cloud::{Cloud, Diagnosis};
 use crate::geometry::dimension;
@@ -143,13 +143,14 @@ fn look<const D: usize>(case: &Case, input: &Path, out: Option<&Path>) -> Result
     recipe::marching(case, motions.period(), D)?;
     let axes = (!cloud.interface.is_empty())
         .then(|| load_axes(case, surface.as_ref()).axes(&fluid.view(&frame, u, &mut work)));
+    let aeroelastic = Aeroelastic::of(case, input, surface.as_ref())?;
     let (particles, period) = (cloud.n_real(), motions.period());
     let pilot = pilot::fly(case, input, surface.as_ref(), cloud.n_fluid);
     let pixels = pixels(surface.as_ref(), &cloud.tree.bounds());
     let sizes = &accuracy::sizes(case, surface.as_ref(), particles);
     let sized = Sized { case, particles, sizes, dimension: D, period, pixels, evaluation, pilot };
     let report = CloudReport {
-        understood: Understood::of(case, surface.as_ref(), &motions, axes.as_ref()),
+        understood: Understood::of(case, surface.as_ref(), &motions, axes.as_ref(), aeroelastic),
         particles,
         fluid: cloud.n_fluid,
         interface: cloud.interface.len(),

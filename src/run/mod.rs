@@ -8,7 +8,8 @@
 //! of a flow), `build` (from a case to its equations), `record` (what a run knows about itself), `found` (what it tells at its
 //! end), `files`, `watch` (one loop that drives any integrator, and those who watch it), `studies` (what is done on a cloud),
 //! `solids` (structures of particles alone),
-//! `course` (the way through the stages, and what many flows on the same clouds leave to one another), `session`; on top of it [`gaf`] and [`verify`].
+//! `course` (the way through the stages, and what many flows on the same clouds leave to one another), `session`; on top of it [`gaf`] and [`verify`], and `refusals` (what keeps a case
+//! from being computed).
 mod accuracy;
 mod cost;
 mod course;
@@ -28,6 +29,7 @@ mod one_cloud;
 mod pilot;
 mod recipe;
 mod record;
+mod refusals;
 mod session;
 mod setup;
 mod solids;
@@ -41,8 +43,7 @@ use std::path::{Path, PathBuf};
 
 use crate::case::Case;
 use crate::cloud::Cloud;
-use crate::cloud::layout::count;
-use crate::geometry::{Surface, dimension};
+use crate::geometry::Surface;
 use crate::scheme::Fluid;
 
 pub use cost::Cost;
@@ -58,11 +59,14 @@ pub use record::crosscheck::{Apart as LoadsApart, LoadCrosscheck};
 pub use record::polar::PolarPoint;
 pub use record::summary::{Apart, BalanceReport, Ledger, MarchingCheck, Reclouding, Summary};
 pub use record::trace::{Change, FirstHarmonics, LastPeriod, PeriodicLoads};
+pub use refusals::refusals;
 pub use session::{Outcome, Session, Solution};
 pub use solids::{
     ModeRow, PeriodicRow, ProbeHarmonic, ProbeRow, SolidLedger, SolidReport, SolidSummary, inspect_structure,
 };
-pub use understood::{BodyBox, ReferenceValues, Understood};
+pub use understood::{
+    Aeroelastic, BodyBox, ReferenceValues, Understood, UnderstoodFlutter, UnderstoodGaf, UnderstoodStructure,
+};
 
 use record::saved::{Saved, equations_of};
 use session::Origin;
@@ -137,28 +141,8 @@ pub fn set_aside(case: &Case, places: &Places) -> Result<Option<PathBuf>, RunErr
         solids::supported(case)?;
         return folder::set_aside(&places.out).map(Some);
     }
-    match dimension(case) {
-        2 => rehearse::<2>(case, &places.input)?,
-        _ => rehearse::<3>(case, &places.input)?,
-    }
+    refusals::rehearse(case, &places.input, case.flutter.is_some() && !case.is_trimmed())?;
     folder::set_aside(&places.out).map(Some)
-}
-
-/// Refuses a case of which it is known before its cloud is built that it cannot begin.
-fn rehearse<const D: usize>(case: &Case, input: &Path) -> Result<(), RunError> {
-    setup::supported(case)?;
-    let case = &solids::with_own_modes(case, input)?;
-    let (surface, _) = setup::surface::<D>(case, input)?;
-    let case = &*accuracy::with_cloud(case, surface.as_ref());
-    let mut motions = setup::motions(case, input, surface.as_ref())?;
-    setup::sane(case, surface.as_ref(), &motions)?;
-    let bodies = setup::bodies(case, input, surface.as_ref(), &mut motions)?;
-    // small motions are about bodies as drawn, unless they are trimmed
-    if case.flutter.is_none() || case.is_trimmed() {
-        setup::check_equilibrium(case, surface.as_ref(), &bodies)?;
-    }
-    count(&setup::spec(case), surface.as_ref(), &[])?;
-    Ok(())
 }
 
 /// Goes on with an interrupted or killed run; one that is finished stays as it is.

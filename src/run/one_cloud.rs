@@ -1,10 +1,20 @@
-//! The cloud of small motions where the case leaves it to the program.
+//! The cloud of small motions where the case leaves it to the program, and the coarser one that tells how far its forces are known.
 use std::path::Path;
 
 use super::error::RunError;
-use super::{accuracy, setup};
+use super::{accuracy, recipe, setup};
 use crate::case::Case;
 use crate::geometry::dimension;
+
+/// Spacing of the coarser cloud over that of the case.
+const COARSER: f64 = 2.0;
+
+/// The case `own`, whose spacing is known, with twice the spacing; `None` where that does not fit into the domain, and where clouds are
+/// refined by what was found on the one before.
+pub(super) fn coarser(own: &Case) -> Option<Case> {
+    let one = accuracy::asked(own).is_none() && own.cloud.spacing.is_some() && own.adapt.cycles == 0;
+    (one && recipe::divides(own, COARSER)).then(|| accuracy::scaled(own, COARSER))
+}
 
 /// The case, whose files lie in `input`, on one cloud, see [`accuracy::on_one_cloud`].
 pub(super) fn on_one_cloud(case: Case, input: &Path) -> Result<Case, RunError> {
@@ -18,4 +28,40 @@ pub(super) fn on_one_cloud(case: Case, input: &Path) -> Result<Case, RunError> {
             accuracy::on_one_cloud(case, surface.as_ref())
         }
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn cloud(body: &str, cloud: &str) -> Case {
+        let text = format!("[flow]\nmach = 0.5\n[[body]]\n{body}\n[cloud]\n{cloud}\n");
+        on_one_cloud(crate::case::read(&text, "t").unwrap(), Path::new("")).unwrap()
+    }
+
+    #[test]
+    fn sections_have_spacings_that_follow_thickness_nose_and_edges() {
+        let told = |body: &str, more: &str| {
+            let c = cloud(body, more).cloud;
+            (c.spacing.map_or(0.0, |h| 1.0 / h.0), c.edge_levels, c.curvature_levels)
+        };
+        assert_eq!(told("naca = \"0012\"", ""), (64.0, 10, 10));
+        assert_eq!(told("naca = \"0002\"", ""), (128.0, 9, 10));
+        let (spacing, edges, _) = told("naca = \"0008\"", "");
+        assert!(90.0 < spacing && spacing < 100.0 && edges == 10, "{spacing} {edges}");
+        // turned, a section is as thin as before
+        assert_eq!(told("naca = \"0002\"\nrotate = \"-30 deg\"", "").1, 9);
+        assert_eq!(told("naca = \"0002\"", "edge_levels = 3\ncurvature_levels = 1"), (128.0, 3, 1));
+        assert_eq!(told("naca = \"0002\"", "spacing = 0.1"), (10.0, 2, 3));
+        assert_eq!(told("circle = { radius = 0.5 }", ""), (64.0, 10, 10));
+        assert_eq!(told("sphere = { radius = 0.5 }", "").1, 2);
+    }
+
+    #[test]
+    fn the_coarser_cloud_has_twice_the_spacing_where_that_fits() {
+        let spacing = |case: &Case| coarser(case).and_then(|c| c.cloud.spacing.map(|h| h.0));
+        assert_eq!(spacing(&cloud("naca = \"0012\"", "")), Some(1.0 / 32.0));
+        let odd = "spacing = 0.1\ndomain = { min = [-1.5, -1.5], max = [1.5, 1.4] }";
+        assert_eq!(spacing(&cloud("naca = \"0012\"", odd)), None);
+    }
 }

@@ -1,5 +1,9 @@
 //! What the program understood of a case, in numbers: what `check` tells beside its mistakes.
+mod aeroelastic;
+
 use serde::Serialize;
+
+pub use aeroelastic::{Aeroelastic, UnderstoodFlutter, UnderstoodGaf, UnderstoodStructure};
 
 use super::look::reference::chord;
 use crate::case::Case;
@@ -48,6 +52,9 @@ pub struct Understood {
     pub until: Option<f64>,
     /// Points of a polar; absent for a single flow.
     pub points: Option<usize>,
+    /// Structures, and what is asked of their motions.
+    #[serde(flatten)]
+    pub aeroelastic: Aeroelastic,
 }
 
 /// What loads are divided by.
@@ -75,12 +82,13 @@ pub struct BodyBox {
 }
 
 impl Understood {
-    /// What a case means with these bodies and motions; `axes` are those of its loads.
+    /// What a case means with these bodies, motions and structures; `axes` are those of its loads.
     pub(crate) fn of<const D: usize>(
         case: &Case,
         surface: Option<&Surface<D>>,
         motions: &Motions<D>,
         axes: Option<&LoadAxes>,
+        aeroelastic: Aeroelastic,
     ) -> Self {
         let (stream, units, period) = (case.flow.reference(), case.flow.units(), motions.period());
         let time = |t: Option<f64>| t.map(|t| units.case_time(t));
@@ -107,6 +115,7 @@ impl Understood {
             time_step: time(case.step_length(period)),
             until: time(case.end(period).filter(|_| super::recipe::balance(case).is_none())),
             points: case.polar.as_ref().map(crate::case::Polar::len),
+            aeroelastic,
         }
     }
 
@@ -143,6 +152,7 @@ impl Understood {
         }
         lines.extend(self.time_step.map(|t| ("time step", self.with_unit(t, "s"))));
         lines.extend(self.until.map(|t| ("until", self.with_unit(t, "s"))));
+        lines.extend(self.aeroelastic.lines());
         lines
     }
 

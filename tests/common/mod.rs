@@ -46,6 +46,17 @@ pub(crate) fn oscillator(f: impl Fn(f64, f64, f64) -> f64 + Sync) -> Ordinary<im
     Ordinary::new(2, 2.0, move |t, u, du| (du[0], du[1]) = (f(u[1], u[0], t), u[0]))
 }
 
+/// What a run refuses a case for; `check` refuses it in the same words.
+pub(crate) fn refused(case: &Case) -> String {
+    let folder = tempfile::tempdir().unwrap();
+    let places = alula::run::Places { input: folder.path().to_path_buf(), out: folder.path().join("out") };
+    let told = alula::run::run(case, &places, &mut alula::run::Silent).unwrap_err().to_string();
+    let inspected = alula::run::inspect(case, folder.path(), None).err();
+    let checked = alula::run::refusals(case, folder.path()).into_iter().chain(inspected);
+    assert!(checked.map(|p| p.to_string()).any(|p| p == told), "`check` does not refuse: {told}");
+    told
+}
+
 /// Reads a case.
 pub(crate) fn case(text: &str) -> Case {
     read(text, "case.toml").unwrap_or_else(|e| panic!("{e}"))

@@ -34,6 +34,14 @@ fn forces_of_small_motions_are_those_of_a_harmonic_balance() {
         assert!(apart(found, other) < 1e-3 * size(other), "{found:?} {other:?}");
     }
     assert!(apart(a.q[0], a.cm) < 1e-9 * size(a.cm), "{a:?}");
+    // bars of both methods are those of one cloud
+    let (of_a, of_b) = (a.errors.as_ref().unwrap(), b.errors.as_ref().unwrap());
+    assert!(
+        (of_a.cl_error / of_b.cl_error - 1.0).abs() < 0.1 && of_a.cl_error < 0.05 * size(a.cl),
+        "{of_a:?} {of_b:?}"
+    );
+    let bare = matrices(folder.path(), "bare", &format!("{swing}cloud_error = false\n"));
+    assert!(bare.columns[0].errors.is_none() && bare.columns[0].cl == a.cl, "{bare:?}");
 }
 
 #[test]
@@ -67,7 +75,7 @@ fn rigid_and_flexible_modes_stand_in_one_matrix() {
     let slope = all.columns[1].cl;
     assert!((6.5..8.5).contains(&slope[0]) && slope[1].abs() < 1e-6, "{slope:?}");
     let text = std::fs::read_to_string(folder.path().join("all/gaf.csv")).unwrap();
-    assert!(text.lines().next().is_some_and(|l| l.ends_with("q_turn_im,iterations,left")), "{text}");
+    assert!(text.lines().next().is_some_and(|l| l.contains("q_turn_im,iterations,left,cl_error,")), "{text}");
 }
 
 #[test]

@@ -72,18 +72,24 @@ fn shortfall(matrices: &Matrices) -> Option<Shortfall> {
 fn table(matrices: &Matrices) -> String {
     let linear = matrices.columns.iter().any(|c| c.solved.is_some());
     let last = if linear { "iterations, residual" } else { "halved amplitude changes" };
-    let mut text = format!("       k  mode              Cl                    Cm          {last}\n");
+    let mut text =
+        format!("       k  mode              Cl                  error           Cm                  error  {last}\n");
     for c in &matrices.columns {
         let how = match (c.solved, c.nonlinearity) {
             (Some(solved), _) => format!("{:>7}  {:.0e}", solved.iterations, solved.left),
             (None, change) => format!("{:>7.2} %", 100.0 * change.unwrap_or_default()),
         };
-        text.push_str(&format!(
-            "{:>8}  {:<8} {:>9.4} {:>+9.4}i  {:>9.4} {:>+9.4}i  {how}\n",
-            c.k, c.mode, c.cl[0], c.cl[1], c.cm[0], c.cm[1]
-        ));
+        let (cl, cm) =
+            (entry(c.cl, c.errors.as_ref().map(|e| e.cl_error)), entry(c.cm, c.errors.as_ref().map(|e| e.cm_error)));
+        text.push_str(&format!("{:>8}  {:<8}{cl}{cm}  {how}\n", c.k, c.mode));
     }
     text + &squares(matrices)
+}
+
+/// A complex number with its error bar, 31 characters wide.
+fn entry([re, im]: [f64; 2], error: Option<f64>) -> String {
+    let error = error.map_or_else(|| "-".to_owned(), |e| format!("±{e:.4}"));
+    format!("{re:>10.4} {im:>+9.4}i {error:>9}")
 }
 
 /// The square matrix of generalised forces at each frequency.
@@ -92,11 +98,12 @@ fn squares(matrices: &Matrices) -> String {
     for columns in matrices.columns.chunks(matrices.modes.len()) {
         let Some(first) = columns.first() else { continue };
         text.push_str(&format!("\ngeneralised forces at k = {}, on (rows) and by (columns)\n{:<12}", first.k, ""));
-        columns.iter().for_each(|c| text.push_str(&format!("{:>20}", c.mode)));
+        columns.iter().for_each(|c| text.push_str(&format!("{:>31}", c.mode)));
         text.push('\n');
         for (i, row) in matrices.modes.iter().enumerate() {
             text.push_str(&format!("{row:<12}"));
-            columns.iter().for_each(|c| text.push_str(&format!("{:>10.4}{:>+9.4}i", c.q[i][0], c.q[i][1])));
+            let error = |c: &Column| c.errors.as_ref().map(|e| e.q_error[i]);
+            columns.iter().for_each(|c| text.push_str(&entry(c.q[i], error(c))));
             text.push('\n');
         }
     }

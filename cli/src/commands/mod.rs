@@ -1,7 +1,7 @@
 //! One file for each command.
 use std::path::Path;
 
-use alula::case::{Case, read, text_of};
+use alula::case::{Case, read_in, text_of};
 use alula::run::{Blame, RunError};
 
 use crate::arguments::{Cli, Command, Threads};
@@ -76,7 +76,7 @@ fn load(path: &Path) -> Result<Case, Outcome> {
             return Err(Outcome::BadInput);
         }
     };
-    read(&text, &name).map_err(|mistakes| {
+    read_in(&text, &name, path.parent().unwrap_or(Path::new(""))).map_err(|mistakes| {
         output::mistakes(&mistakes);
         Outcome::BadInput
     })

@@ -182,3 +182,26 @@ fn a_force_with_a_frequency_makes_periods() {
     );
     case(&format!("{text}force = {{ pitch = \"cos(omega*t)\", period = 20 }}\n"));
 }
+
+#[test]
+fn masses_springs_and_dampers_of_all_kinds_have_units() {
+    let air = |body: &str| body.replace("mach = 0.3\n", AIR);
+    let mode = |keys: &str| format!("model = \"modal\"\n[[structure.mode]]\nname = \"a\"\nfile = \"a.csv\"\n{keys}\n");
+    let one = |text: &str| case(text).structures[0].modes[0].clone();
+    let whole = one(&air(&solid(&mode(
+        "mass = \"10 kg\"\nstiffness = \"2 kN/m\"\ninitial_rate = \"3 1/s\"\ndamping_ratio = \"2 %\"",
+    ))));
+    assert_eq!((whole.mass, whole.stiffness, whole.initial_rate, whole.damping_ratio), (10.0, Some(2000.0), 3.0, 0.02));
+    let spread = one(&air(&structure(&mode("mass = \"10 kg/m\"\nfrequency = \"5 Hz\""))));
+    assert_eq!(spread.mass, 10.0);
+    told(&air(&structure(&mode("mass = \"10 kg\"\nfrequency = \"5 Hz\""))), &["per span"]);
+    told(&air(&solid(&mode("mass = \"10 kg/m\"\nfrequency = \"5 Hz\""))), &["but the case is 3-D"]);
+    told(&solid(&mode("mass = \"10 kg\"\nreduced_frequency = 0.1")), &["the free stream is nondimensional"]);
+    let free = "model = \"rigid_body\"\nfree = [\"plunge\", \"pitch\"]\npivot = [0.3, 0]\nmass = \"3 kg/m\"\ninertia = [\"0.2 kg·m\"]\n\
+                stiffness = { plunge = \"9 N/m²\" }\nsprings = { plunge = { cubic = \"40 1/m2\" } }\n";
+    let body = case(&air(&structure(&format!("{free}damping = {{ plunge = \"4 N s/m2\", pitch = \"2 N s/rad\" }}"))));
+    let s = &body.structures[0];
+    assert_eq!((s.damping["plunge"], s.damping["pitch"], s.springs["plunge"].cubic), (4.0, 2.0, 40.0));
+    told(&air(&structure(&format!("{free}damping = {{ plunge = \"4 N s/m\" }}"))), &["per span"]);
+    told(&air(&structure(&free.replace("kg·m", "kg·m²"))), &["per span"]);
+}

@@ -1,9 +1,10 @@
 //! Units of structures: of mass and time only in a stream that has them, per span in the plane.
 use super::super::facts::is_dimensional;
+use super::super::quantity::plain_symbol;
 use super::Look;
 
-/// Units of masses, inertias and stiffnesses per span: those of the plane.
-const PER_SPAN: [&str; 16] = [
+/// Units of masses, inertias, stiffnesses and dampers per span: those of the plane.
+const PER_SPAN: [&str; 24] = [
     "kg/m",
     "g/m",
     "lb/ft",
@@ -20,19 +21,38 @@ const PER_SPAN: [&str; 16] = [
     "N m/rad/m",
     "N",
     "lbf/rad",
+    "N s/m2",
+    "kN s/m2",
+    "N s/m/m",
+    "lbf s/ft2",
+    "N s/rad",
+    "N m s/rad/m",
+    "N s",
+    "lbf s/rad",
 ];
+/// What has them, and examples.
+const SPREAD: [(&str, &str); 4] = [
+    ("mass", "`kg/m`"),
+    ("inertia", "`kg m` (kg m² per metre)"),
+    ("stiffness", "`N/m2` (N/m per metre), `N/rad` (N m/rad per metre)"),
+    ("damping", "`N s/m2` (N s/m per metre), `N s/rad` (N m s/rad per metre)"),
+];
+/// Keys of a mode that may have units of mass or time.
+const OF_MODES: [&str; 4] = ["mass", "frequency", "stiffness", "initial_rate"];
 
 impl Look<'_, '_> {
     /// Units of mass and time make sense only when the free stream has units; per span in the plane.
     pub(super) fn units(&mut self) {
         let dimensional = is_dimensional(self.draft);
         let mut paths: Vec<String> =
-            ["mass", "inertia", "gravity", "force.frequency", "force.period"].map(|k| self.place(k)).into();
+            ["mass", "gravity", "force.frequency", "force.period"].map(|k| self.place(k)).into();
         paths.extend((0..6).map(|i| self.place(&format!("inertia[{i}]"))));
-        for table in ["stiffness", "frequency", "initial"] {
+        for table in ["stiffness", "frequency", "damping", "initial"] {
             paths.extend(self.inside(table).iter().map(|key| self.place(&format!("{table}.{key}"))));
         }
-        paths.extend((0..self.draft.count(&self.place("mode"))).map(|i| self.place(&format!("mode[{i}].frequency"))));
+        for i in 0..self.draft.count(&self.place("mode")) {
+            paths.extend(OF_MODES.map(|key| self.place(&format!("mode[{i}].{key}"))));
+        }
         // a length is one in any case, and so is an angle
         let plain = |path: &str| path.contains(".initial.") && !path.ends_with("_rate");
         for path in paths.into_iter().filter(|p| !plain(p) && self.draft.has_unit(p)).collect::<Vec<_>>() {
@@ -48,17 +68,13 @@ impl Look<'_, '_> {
 
     /// Masses, inertias and stiffnesses of the plane are per span, those of space are not.
     pub(super) fn per_span(&mut self, path: &str) {
-        let kind = ["mass", "inertia", "stiffness"].into_iter().find(|k| path.starts_with(&self.place(k)));
-        let Some(kind) = kind else { return };
+        let own = path.trim_start_matches(&self.path).trim_start_matches('.');
+        let own = own.split_once("].").filter(|_| own.starts_with("mode[")).map_or(own, |(_, key)| key);
+        let Some((_, example)) = SPREAD.into_iter().find(|(key, _)| own.starts_with(key)) else { return };
         let unit = self.draft.unit(path).to_owned();
-        let (plane, spread) = (self.dimension == 2, PER_SPAN.contains(&unit.as_str()));
+        let (plane, spread) = (self.dimension == 2, PER_SPAN.contains(&plain_symbol(&unit).as_str()));
         if plane && !spread {
             let message = format!("`{path}` is in {unit}, but in a 2-D case it is per span");
-            let example = match kind {
-                "mass" => "`kg/m`",
-                "inertia" => "`kg m` (kg m² per metre)",
-                _ => "`N/m2` (N/m per metre), `N/rad` (N m/rad per metre)",
-            };
             self.draft.fail(path, message).hint(format!("divide by the span and write it in {example}"));
         } else if !plane && spread {
             self.draft

@@ -50,6 +50,30 @@ pub(super) struct Seek<'s, 'a> {
     coordinate: usize,
 }
 
+/// The coordinate of `names` whose amplitude `[lco]` gives.
+pub(super) fn coordinate(plan: &LimitCycles, names: &[String]) -> Result<usize, RunError> {
+    let refuse = |what: String, hint| RunError::Unsupported { what, hint };
+    let named = |wanted: &str| names.iter().position(|n| n == wanted);
+    let coordinate = match &plan.coordinate {
+        Some(wanted) => named(wanted).ok_or_else(|| {
+            let what = format!("`lco.coordinate` is `{wanted}`, but the structure has {}", names.join(", "));
+            refuse(what, "name one of its coordinates")
+        })?,
+        None => named("pitch").unwrap_or(0),
+    };
+    let Some(name) = names.get(coordinate) else {
+        return Err(refuse("`[lco]` of a structure without coordinates".into(), "name those that are free to move"));
+    };
+    if is_angle(name) == plan.amplitude.is_empty() {
+        let (what, hint) = match is_angle(name) {
+            true => ("is an angle", "give `amplitude = [\"0.25 deg\", \"4 deg\"]`"),
+            false => ("is no angle", "give `displacement` instead of `amplitude`"),
+        };
+        return Err(refuse(format!("`lco`: the coordinate `{name}` {what}"), hint));
+    }
+    Ok(coordinate)
+}
+
 impl<'s, 'a> Seek<'s, 'a> {
     /// With the forces of small motions that `search` knows.
     pub(super) fn new(
@@ -57,24 +81,7 @@ impl<'s, 'a> Seek<'s, 'a> {
         search: &'s mut Search<'a>,
         (springs, borne): (Vec<Spring>, Option<Borne>),
     ) -> Result<Self, RunError> {
-        let names = search.names().to_vec();
-        let refuse = |what: String, hint| RunError::Unsupported { what, hint };
-        let named = |wanted: &str| names.iter().position(|n| n == wanted);
-        let coordinate = match &plan.coordinate {
-            Some(wanted) => named(wanted).ok_or_else(|| {
-                let what = format!("`lco.coordinate` is `{wanted}`, but the structure has {}", names.join(", "));
-                refuse(what, "name one of its coordinates")
-            })?,
-            None => named("pitch").unwrap_or(0),
-        };
-        let name = &names[coordinate];
-        if is_angle(name) == plan.amplitude.is_empty() {
-            let (what, hint) = match is_angle(name) {
-                true => ("is an angle", "give `amplitude = [\"0.25 deg\", \"4 deg\"]`"),
-                false => ("is no angle", "give `displacement` instead of `amplitude`"),
-            };
-            return Err(refuse(format!("`lco`: the coordinate `{name}` {what}"), hint));
-        }
+        let coordinate = coordinate(plan, search.names())?;
         Ok(Self { plan, search, springs, borne, coordinate })
     }
 

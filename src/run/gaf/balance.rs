@@ -1,20 +1,23 @@
-//! A column of the matrix by harmonic balance, with the amplitude of `[gaf]` and half of it.
+//! A column of the matrix by harmonic balance, with the amplitude of `[gaf]` and half of it, and on a cloud with twice the spacing.
 use std::path::Path;
 
 use num_complex::Complex64;
 
 use super::super::error::RunError;
 use super::super::folder::Places;
-use super::super::monitor::Monitor;
+use super::super::monitor::{Monitor, Quiet};
+use super::super::one_cloud::coarser;
 use super::super::record::summary::Summary;
 use super::super::session::{Outcome, Session};
+use super::cloud_error;
 use super::record::{Column, Matrices};
-use crate::case::{AnyMode, Case, Gaf, Mode};
+use crate::case::{AnyMode, Case, Cloud, Gaf, Mode};
 
 /// Part of the amplitude of `[gaf]` that a column is computed with once more.
 const HALF: f64 = 0.5;
 
-/// Finds the columns of all modes and frequencies of `plan`, and calls `keep` after each; false when the monitor says stop.
+/// Finds the columns of all modes and frequencies of `plan` with their error bars, and calls `keep` after each; false when the monitor
+/// says stop.
 pub(super) fn columns(
     (case, plan): (&Case, &Gaf),
     places: &Places,
@@ -22,11 +25,14 @@ pub(super) fn columns(
     keep: &mut dyn FnMut(&Matrices) -> Result<(), RunError>,
     monitor: &mut dyn Monitor,
 ) -> Result<bool, RunError> {
+    let mut coarse = Vec::new();
     for &k in &plan.reduced_frequencies {
         for mode in plan.all_modes() {
-            let Some(column) = column(case, &Swing { plan, mode, k }, &places.input, monitor)? else {
-                return Ok(false);
-            };
+            let swing = Swing { plan, mode, k };
+            let own = |factor: f64| case.gaf_case(plan, mode, k, factor);
+            let Some((whole, cloud)) = swing.solved(&own(1.0), 1.0, &places.input, monitor)? else { return Ok(false) };
+            let Some((half, _)) = swing.solved(&own(HALF), HALF, &places.input, monitor)? else { return Ok(false) };
+            let column = swing.column(&whole, Some(&half));
             monitor.note(&format!(
                 "k = {k}, {}: Cl {:+.4} {:+.4}i, Cm {:+.4} {:+.4}i, halved amplitude changes {:.2} %",
                 column.mode,
@@ -38,8 +44,15 @@ pub(super) fn columns(
             ));
             matrices.columns.push(column);
             keep(matrices)?;
+            match swing.on_coarser(&Case { cloud, accuracy: None, ..own(1.0) }, &places.input, monitor)? {
+                Asked::Stopped => return Ok(false),
+                Asked::Told(column) => coarse.push(*column),
+                Asked::Silent => {}
+            }
         }
     }
+    cloud_error::tell(&mut matrices.columns, &coarse);
+    keep(matrices)?;
     Ok(true)
 }
 
@@ -50,36 +63,73 @@ struct Swing<'a> {
     k: f64,
 }
 
-/// A column of the matrix; `None` when the monitor says stop.
-fn column(case: &Case, swing: &Swing<'_>, input: &Path, monitor: &mut dyn Monitor) -> Result<Option<Column>, RunError> {
-    let Swing { plan, mode, k } = *swing;
-    let mut found = Vec::new();
-    let (mut cpu_seconds, mut converged) = (0.0, true);
-    for factor in [1.0, HALF] {
-        let mut session = Session::open(&case.gaf_case(plan, mode, k, factor), input)?;
-        let Outcome::Finished(summary) = session.solve(monitor)? else { return Ok(None) };
-        cpu_seconds += summary.cpu_seconds;
-        converged &= summary.succeeded();
-        found.push(swing.loads(&summary, factor)?);
-    }
-    let (whole, half) = (&found[0], &found[1]);
-    let size = whole.iter().map(|c| c.norm()).fold(f64::MIN_POSITIVE, f64::max);
-    let change = whole.iter().zip(half).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max);
-    let parts: Vec<[f64; 2]> = whole.iter().map(|c| [c.re, c.im]).collect();
-    Ok(Some(Column {
-        k,
-        mode: mode.name().to_owned(),
-        cl: parts[0],
-        cm: parts[1],
-        q: parts[2..].to_vec(),
-        nonlinearity: Some(change / size),
-        solved: None,
-        cpu_seconds,
-        converged,
-    }))
+/// Loads over a motion.
+struct Swung {
+    /// Lift, moment and generalised forces per unit of the coordinate.
+    loads: Vec<Complex64>,
+    cpu_seconds: f64,
+    converged: bool,
+}
+
+/// What a coarser cloud says.
+enum Asked {
+    /// The monitor said stop.
+    Stopped,
+    /// A column.
+    Told(Box<Column>),
+    /// Nothing: it is not asked for, does not fit into the domain, or cannot be computed on.
+    Silent,
 }
 
 impl Swing<'_> {
+    /// Loads with `factor` times the amplitude of `[gaf]` and the cloud that they were found on; `None` when the monitor says stop.
+    fn solved(
+        &self,
+        own: &Case,
+        factor: f64,
+        input: &Path,
+        monitor: &mut dyn Monitor,
+    ) -> Result<Option<(Swung, Cloud)>, RunError> {
+        let mut session = Session::open(own, input)?;
+        let Outcome::Finished(summary) = session.solve(monitor)? else { return Ok(None) };
+        let (cpu_seconds, converged) = (summary.cpu_seconds, summary.succeeded());
+        let swung = Swung { loads: self.loads(&summary, factor)?, cpu_seconds, converged };
+        Ok(Some((swung, summary.cloud)))
+    }
+
+    /// A column of the matrix, with what it changes by when the amplitude is halved.
+    fn column(&self, whole: &Swung, half: Option<&Swung>) -> Column {
+        let size = whole.loads.iter().map(|c| c.norm()).fold(f64::MIN_POSITIVE, f64::max);
+        let change =
+            |half: &Swung| whole.loads.iter().zip(&half.loads).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max) / size;
+        let parts: Vec<[f64; 2]> = whole.loads.iter().map(|c| [c.re, c.im]).collect();
+        Column {
+            k: self.k,
+            mode: self.mode.name().to_owned(),
+            cl: parts[0],
+            cm: parts[1],
+            q: parts[2..].to_vec(),
+            nonlinearity: half.map(change),
+            errors: None,
+            solved: None,
+            cpu_seconds: whole.cpu_seconds + half.map_or(0.0, |h| h.cpu_seconds),
+            converged: whole.converged && half.is_none_or(|h| h.converged),
+        }
+    }
+
+    /// The column of the case `own` on a cloud with twice the spacing.
+    fn on_coarser(&self, own: &Case, input: &Path, monitor: &mut dyn Monitor) -> Result<Asked, RunError> {
+        let Some(coarse) = coarser(own).filter(|_| self.plan.cloud_error) else { return Ok(Asked::Silent) };
+        Ok(match self.solved(&coarse, 1.0, input, &mut Quiet { monitor }) {
+            Ok(Some((swung, _))) => Asked::Told(Box::new(self.column(&swung, None))),
+            Ok(None) => Asked::Stopped,
+            Err(problem) => {
+                monitor.note(&format!("the coarser cloud tells nothing: {problem}"));
+                Asked::Silent
+            }
+        })
+    }
+
     /// Lift, moment and generalised forces over the motion, which has `factor` times the amplitude of `[gaf]`.
     fn loads(&self, summary: &Summary, factor: f64) -> Result<Vec<Complex64>, RunError> {
         let Self { plan, mode, .. } = *self;

@@ -1,24 +1,25 @@
 //! All columns of the matrices as small motions about one steady flow.
 //!
 //! What the columns of harmonic balances tend to as their amplitudes go to nothing: one cloud, one steady flow, and a linear system for
-//! each mode and frequency (`studies::forces`). Rigid modes are rotations and shifts, not displacement fields, so that forces of the
+//! each mode and frequency (`studies::forces`); the same on a cloud with twice the spacing tells how far they are known. Rigid modes are rotations and shifts, not displacement fields, so that forces of the
 //! steady flow turn with the body as they do there.
 use std::path::Path;
 
 use num_complex::Complex64;
 
 use super::super::error::RunError;
-use super::super::monitor::Monitor;
-use super::super::one_cloud::on_one_cloud;
+use super::super::monitor::{Monitor, Quiet};
+use super::super::one_cloud::{coarser, on_one_cloud};
 use super::super::record::Log;
 use super::super::record::summary::Clock;
 use super::super::session::{Outcome, Session};
 use super::super::studies::{ForceSource, SOLVED};
+use super::cloud_error;
 use super::record::{Column, Matrices, Solved};
-use crate::case::{AnyMode, Case, Gaf, Mode};
+use crate::case::{AnyMode, Case, Cloud, Gaf, Mode};
 
-/// Fills in the columns of all modes and frequencies of `plan`, and calls `keep` after each frequency; false when the monitor says
-/// stop.
+/// Fills in the columns of all modes and frequencies of `plan` with their error bars, and calls `keep` after each frequency; false when
+/// the monitor says stop.
 pub(super) fn columns(
     (case, plan): (&Case, &Gaf),
     input: &Path,
@@ -27,35 +28,87 @@ pub(super) fn columns(
     monitor: &mut dyn Monitor,
 ) -> Result<bool, RunError> {
     let steady = on_one_cloud(case.gaf_steady_case(plan), input)?;
-    let mut session = Session::open(&steady, input)?;
-    let mut stopped = false;
-    let mut then = |source: &mut dyn ForceSource, log: &mut Log<'_>| {
-        for &k in &plan.reduced_frequencies {
-            stopped = stopped || log.stopped();
-            if stopped {
-                break;
-            }
-            let found = at_frequency((case, plan), k, source, matrices.conditions.reduced_length);
-            for column in &found {
-                let Some(solved) = column.solved else { continue };
-                log.note(&format!(
-                    "k = {k}, {}: Cl {:+.4} {:+.4}i, Cm {:+.4} {:+.4}i, {} linear iterations, residual {:.0e}",
-                    column.mode, column.cl[0], column.cl[1], column.cm[0], column.cm[1], solved.iterations, solved.left
-                ));
-            }
-            matrices.columns.extend(found);
-            keep(matrices)?;
-        }
-        Ok(())
+    let asked = Asked { case, plan, input, length: matrices.conditions.reduced_length };
+    let mut add = |found: Vec<Column>| {
+        matrices.columns.extend(found);
+        keep(matrices)
     };
-    let outcome = session.solve_then(monitor, Some(&mut then))?;
-    let Outcome::Finished(summary) = outcome else { return Ok(false) };
-    if !summary.succeeded() {
+    let Some((cloud, solved)) = asked.about(&steady, &mut add, monitor)? else { return Ok(false) };
+    if !solved {
         monitor.warn("the steady flow did not converge: forces about it are doubtful");
         matrices.columns.iter_mut().for_each(|c| c.converged = false);
         keep(matrices)?;
     }
-    Ok(!stopped)
+    let one = Case { cloud, accuracy: None, ..steady };
+    let Some(coarse) = coarser(&one).filter(|_| plan.cloud_error) else {
+        cloud_error::untold(plan, &one).iter().for_each(|why| monitor.note(why));
+        return Ok(true);
+    };
+    monitor.note("the same on a coarser cloud");
+    let mut other = Vec::new();
+    let mut add = |found: Vec<Column>| {
+        other.extend(found);
+        Ok(())
+    };
+    match asked.about(&coarse, &mut add, &mut Quiet { monitor }) {
+        Ok(Some((_, true))) => cloud_error::tell(&mut matrices.columns, &other),
+        Ok(Some(_)) => monitor.note("the coarser cloud tells nothing: the steady flow on it did not converge"),
+        Ok(None) => return Ok(false),
+        // a cloud that is too coarse for the body tells nothing of the one that is not
+        Err(problem) => monitor.note(&format!("the coarser cloud tells nothing: {problem}")),
+    }
+    keep(matrices)?;
+    Ok(true)
+}
+
+/// What is asked of a steady flow.
+struct Asked<'a> {
+    case: &'a Case,
+    plan: &'a Gaf,
+    input: &'a Path,
+    /// Length of reduced frequencies.
+    length: f64,
+}
+
+impl Asked<'_> {
+    /// Hands the columns about the flow of the case `steady` to `add`, frequency by frequency; the cloud that they were found on and
+    /// whether the flow converged, `None` when the monitor says stop.
+    fn about(
+        &self,
+        steady: &Case,
+        add: &mut dyn FnMut(Vec<Column>) -> Result<(), RunError>,
+        monitor: &mut dyn Monitor,
+    ) -> Result<Option<(Cloud, bool)>, RunError> {
+        let mut session = Session::open(steady, self.input)?;
+        let mut stopped = false;
+        let mut then = |source: &mut dyn ForceSource, log: &mut Log<'_>| {
+            for &k in &self.plan.reduced_frequencies {
+                stopped = stopped || log.stopped();
+                if stopped {
+                    break;
+                }
+                let found = at_frequency((self.case, self.plan), k, source, self.length);
+                for column in &found {
+                    let Some(solved) = column.solved else { continue };
+                    log.note(&format!(
+                        "k = {k}, {}: Cl {:+.4} {:+.4}i, Cm {:+.4} {:+.4}i, {} linear iterations, residual {:.0e}",
+                        column.mode,
+                        column.cl[0],
+                        column.cl[1],
+                        column.cm[0],
+                        column.cm[1],
+                        solved.iterations,
+                        solved.left
+                    ));
+                }
+                add(found)?;
+            }
+            Ok(())
+        };
+        let Outcome::Finished(summary) = session.solve_then(monitor, Some(&mut then))? else { return Ok(None) };
+        let solved = summary.succeeded();
+        Ok((!stopped).then_some((summary.cloud, solved)))
+    }
 }
 
 /// The columns at the reduced frequency `k`; `length` is that of reduced frequencies, and of the coordinate of plunge.
@@ -76,6 +129,7 @@ fn at_frequency((case, plan): (&Case, &Gaf), k: f64, source: &mut dyn ForceSourc
             cm,
             q: (0..n).map(force).collect(),
             nonlinearity: None,
+            errors: None,
             solved: Some(Solved { iterations: ended.iterations, left: ended.left }),
             cpu_seconds: clock.cpu_seconds() / n as f64,
             converged: ended.left <= SOLVED,

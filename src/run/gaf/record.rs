@@ -20,10 +20,10 @@ const CONVENTION: &str = "f(t) = Re f exp(+i omega t); Cl = lift/(q c), up posit
                           per unit of the coordinate of a flexible mode; Q_ij = work of the gas per unit of coordinate i, due to \
                           coordinate j, over q S c (2-D: S = c), with the coordinates of the columns: the row of pitch is Cm, that \
                           of plunge the upward force over q S times L/c; k = omega L/U with L as given; phase positive when the \
-                          load leads the motion";
+                          load leads the motion; errors are radii of circles in the complex plane for the spacing of the cloud";
 
 /// One column of the matrix at one frequency.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Default, Serialize)]
 pub struct Column {
     /// Reduced frequency.
     pub k: f64,
@@ -39,6 +39,9 @@ pub struct Column {
     /// motion is infinitely small.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub nonlinearity: Option<f64>,
+    /// How far the entries are known on this cloud; absent where no coarser one was asked, or had an answer.
+    #[serde(flatten, skip_serializing_if = "Option::is_none")]
+    pub errors: Option<Errors>,
     /// How the linear system was solved; absent for a harmonic balance.
     #[serde(flatten, skip_serializing_if = "Option::is_none")]
     pub solved: Option<Solved>,
@@ -46,6 +49,18 @@ pub struct Column {
     pub cpu_seconds: f64,
     /// True when the equations were solved: both harmonic balances, or the linear system and the steady flow.
     pub converged: bool,
+}
+
+/// Error bars of the entries of a column for the spacing of the cloud: radii of circles in the complex plane about each entry, in its
+/// units.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Errors {
+    /// That of lift over motion.
+    pub cl_error: f64,
+    /// That of moment over motion.
+    pub cm_error: f64,
+    /// Those of the generalised forces over motion.
+    pub q_error: Vec<f64>,
 }
 
 /// How a linear system was solved.
@@ -87,6 +102,16 @@ pub struct Conditions {
     pub pivot: Option<Vec<f64>>,
 }
 
+impl Column {
+    /// Error bars of lift, moment and generalised forces; not a number where they are not known.
+    fn bars(&self) -> Vec<f64> {
+        match &self.errors {
+            Some(e) => [e.cl_error, e.cm_error].into_iter().chain(e.q_error.iter().copied()).collect(),
+            None => vec![f64::NAN; 2 + self.q.len()],
+        }
+    }
+}
+
 impl Conditions {
     pub(super) fn of(case: &Case, plan: &Gaf, input: &Path) -> Result<Self, RunError> {
         let (chord, area) = match dimension(case) {
@@ -114,6 +139,7 @@ impl Conditions {
 impl Matrices {
     /// Writes `gaf.csv`, a row for each column of the matrices, and `gaf.json`.
     pub(super) fn write(&self, frequencies: &[f64], scale: Scale, out: &Path) -> Result<(), RunError> {
+        let bounded = self.columns.iter().any(|c| c.errors.is_some());
         let rows = self.columns.iter().map(|c| {
             let mut row = vec![Entry::from(c.k), Entry::from(c.mode.as_str())];
             for [re, im] in [c.cl, c.cm] {
@@ -123,6 +149,9 @@ impl Matrices {
             row.extend(c.q.iter().flatten().map(|v| Entry::from(*v)));
             row.extend(c.nonlinearity.map(Entry::from));
             row.extend(c.solved.iter().flat_map(|s| [Entry::from(s.iterations as f64), Entry::from(s.left)]));
+            if bounded {
+                row.extend(c.bars().into_iter().map(Entry::from));
+            }
             row
         });
         let parts = |load: &str| ["re", "im", "abs", "phase_deg"].map(|part| format!("{load}_{part}"));
@@ -132,6 +161,10 @@ impl Matrices {
         let linear = self.columns.iter().any(|c| c.solved.is_some());
         let last: &[&str] = if linear { &["iterations", "left"] } else { &["nonlinearity"] };
         names.extend(last.iter().map(|name| (*name).to_owned()));
+        if bounded {
+            names.extend(["cl_error".to_owned(), "cm_error".to_owned()]);
+            names.extend(self.modes.iter().map(|m| format!("q_{m}_error")));
+        }
         let names: Vec<&str> = names.iter().map(String::as_str).collect();
         write_csv(&out.join(folder::MATRICES), &names, rows)?;
         describe_tables(out, scale, &[])?;

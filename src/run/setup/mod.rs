@@ -99,7 +99,7 @@ pub(crate) fn supported(case: &Case) -> Result<(), RunError> {
     let what = format!("this version cannot compute {}", missing.join(", "));
     Err(RunError::Unsupported {
         what,
-        hint: "`alula check` and `alula cloud` accept the case; `alula run` does not yet",
+        hint: "`alula cloud` builds the cloud of such a case, but no flow is computed on it",
     })
 }
 
@@ -403,6 +403,7 @@ pub(crate) fn taken_over<S: System>(case: &Case, system: &S, u: Vec<f64>) -> Res
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::run::refusals::as_checked;
 
     #[test]
     fn a_crevice_without_conservative_coefficients_is_refused_with_its_place() {
@@ -413,7 +414,8 @@ mod tests {
                  edge_levels = 1\nwall_layers = {{ first = 0.008 }}\n[scheme]\n{more}"
             );
             let case = crate::case::read(&text, "t").unwrap();
-            crate::run::build_solver::<2>(&case, Path::new("")).map_err(|e| e.to_string())
+            let seen = crate::run::build_solver::<2>(&case, Path::new(""));
+            as_checked(&case, Path::new(""), seen).map_err(|e| e.to_string())
         };
         let message = built("").map(|_| ()).unwrap_err();
         assert!(message.starts_with("there are no conservative coefficients for the particles at ("), "{message}");
@@ -428,7 +430,8 @@ mod tests {
                 "title = \"t\"\n[flow]\nmach = 0.1\n[[body]]\ncircle = {{ radius = 0.5 }}\n[cloud]\nspacing = 0.1\n[scheme]\n\
                  low_mach = true\n{more}"
             );
-            supported(&crate::case::read(&text, "t").unwrap()).map_err(|e| e.to_string())
+            let case = crate::case::read(&text, "t").unwrap();
+            as_checked(&case, Path::new(""), supported(&case)).map_err(|e| e.to_string())
         };
         assert!(told("").is_ok());
         assert!(told("conservative = false").unwrap_err().contains("`low_mach = true` needs `conservative = true`"));

@@ -162,6 +162,7 @@ fn place<const D: usize>(x: &Vector<D>) -> String {
 mod tests {
     use super::*;
     use crate::case::read;
+    use crate::run::refusals::as_checked;
     use std::path::Path;
 
     /// What is told of two circles, of which the second moves by `motion`.
@@ -174,7 +175,8 @@ mod tests {
         let case = read(&text, "case.toml").unwrap_or_else(|e| panic!("{e}"));
         let (surface, cloud, _) = crate::run::build_cloud::<2>(&case, Path::new("")).unwrap();
         let motions = crate::run::setup::motions(&case, Path::new(""), surface.as_ref()).unwrap();
-        check(&case, &cloud, &motions).map_err(|e| e.to_string())
+        let seen = check(&case, &cloud, &motions);
+        as_checked(&case, Path::new(""), seen).map_err(|e| e.to_string())
     }
 
     #[test]

@@ -22,6 +22,8 @@ const TURBULENT: f64 = 5e5;
 const HYPERSONIC: f64 = 25.0;
 /// Free path of the molecules over the length of a body above which a gas is no continuum (Bird, Molecular Gas Dynamics, 1.2).
 const RAREFIED: f64 = 0.1;
+/// Angle beyond which a stream comes from behind.
+const FROM_BEHIND: f64 = std::f64::consts::FRAC_PI_2;
 /// Thinnest layer at a wall over the spacing along it: rounding leaves ten digits of what lies across.
 const THINNEST: f64 = 1e-6;
 
@@ -97,8 +99,19 @@ fn frequencies<const D: usize>(case: &Case, motions: &Motions<D>) -> Result<(), 
 
 /// What of the stream and of lengths is doubtful.
 fn doubtful<const D: usize>(case: &Case, surface: Option<&Surface<D>>) -> Vec<String> {
-    let stream = [slow(case), hot(case), turbulent(case, surface), rarefied(case, surface)];
+    let stream = [slow(case), hot(case), backward(case), turbulent(case, surface), rarefied(case, surface)];
     stream.into_iter().flatten().chain(surface.iter().flat_map(|s| scales::doubtful(case, s))).collect()
+}
+
+/// Streams that come from behind; points of a polar are meant as they are written.
+fn backward(case: &Case) -> Option<String> {
+    let angles = [("alpha", case.flow.alpha), ("beta", case.flow.beta)];
+    let (key, angle) = angles.into_iter().find(|(_, angle)| angle.0.abs() > FROM_BEHIND && case.polar.is_none())?;
+    let degrees = angle.degrees();
+    Some(format!(
+        "`flow.{key}` is {degrees} deg: the stream comes from behind the bodies, where real flows separate from rounded edges and this one \
+         may not"
+    ))
 }
 
 /// Refuses viscosities of flows that are not laminar, and of gases that are no continuum.
@@ -187,13 +200,15 @@ fn turbulent<const D: usize>(case: &Case, surface: Option<&Surface<D>>) -> Optio
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::run::refusals::as_checked;
     use std::path::Path;
 
     fn told(more: &str) -> Result<Vec<String>, String> {
         let case = crate::case::read(&format!("[[body]]\nnaca = \"0012\"\n{more}"), "t").unwrap();
         let (surface, _) = super::super::surface::<2>(&case, Path::new("")).unwrap();
         let motions = super::super::motions(&case, Path::new(""), surface.as_ref()).unwrap();
-        sane(&case, surface.as_ref(), &motions).map_err(|e| e.to_string())
+        let seen = sane(&case, surface.as_ref(), &motions);
+        as_checked(&case, Path::new(""), seen).map_err(|e| e.to_string())
     }
 
     #[test]
@@ -219,6 +234,13 @@ mod tests {
         assert!(thin.contains("is 1e-15, 5.0e-14 times the spacing") && thin.contains("8.8e-4 is a fifth"), "{thin}");
         let hot = told("[flow]\nmach = 30\n[cloud]\nspacing = 0.02\n").unwrap();
         assert!(hot[0].contains("181 times as hot"), "{hot:?}");
+    }
+
+    #[test]
+    fn streams_from_behind_are_told() {
+        let at = |alpha: &str| told(&format!("[flow]\nmach = 0.5\nalpha = \"{alpha}\"\n[cloud]\nspacing = 0.03\n"));
+        assert!(at("114.59 deg").unwrap()[0].contains("`flow.alpha` is 114.59 deg: the stream comes from behind"));
+        assert_eq!(at("-90 deg"), Ok(Vec::new()));
     }
 
     #[test]

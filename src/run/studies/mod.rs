@@ -15,5 +15,6 @@ pub(crate) use balance::balance;
 pub(crate) use forces::{ForceSource, Forces, SOLVED, SmallMotion};
 pub(crate) use lead::lead;
 pub(crate) use march::march;
+pub(crate) use periodic::check_period;
 pub(crate) use steady::relax;
 pub(crate) use turn::{Reached, Start, Turn};

@@ -16,11 +16,11 @@ use crate::geometry::Surface;
 use crate::math::Vector;
 use crate::math::fourier::{Instances, Series};
 use crate::math::jet::Jet;
-use crate::motion::positions;
+use crate::motion::{BodyMotion, Motions, positions};
 use crate::observe::loads::Coefficients;
 use crate::observe::table::{Entry, write_csv};
 use crate::observe::vtk::{Column, write_cells};
-use crate::scheme::{Exchange, Fluid, HasGas, Work};
+use crate::scheme::{Exchange, HasGas, Work};
 use crate::system::{Instant, System};
 use crate::time::harmonic::HarmonicBalance;
 
@@ -51,20 +51,28 @@ pub(super) fn build<'a, S: System>(
 
 /// The period of a motion that repeats.
 pub(super) fn period_of<S: HasGas<D>, const D: usize>(system: &S, log: &Log<'_>) -> Result<f64, RunError> {
-    let Some(period) = log.period else {
-        return Err(RunError::NotPeriodic {
-            what: "the motion does not repeat, but `[time] harmonics` finds flows that do".into(),
-            hint: "take out what drifts in `[motion]`, a translation or a formula that does not return after the period, or \
-                   march with `[time.dual]`",
-        });
-    };
-    repeats(system.gas(), period)?;
+    let period = log.period.ok_or_else(without_period)?;
+    repeats(system.gas().cloud_motion.laws().iter(), period)?;
     Ok(period)
 }
 
-/// Refuses motions that do not come back after a period.
-fn repeats<const D: usize>(fluid: &Fluid<D>, period: f64) -> Result<(), RunError> {
-    for (body, law) in fluid.cloud_motion.laws().iter().enumerate() {
+/// Refuses motions of bodies that do not come back after a period, or have none.
+pub(crate) fn check_period<const D: usize>(motions: &Motions<D>) -> Result<(), RunError> {
+    let period = motions.period().ok_or_else(without_period)?;
+    repeats((0..motions.len()).map(|body| motions.of(body)), period)
+}
+
+fn without_period() -> RunError {
+    RunError::NotPeriodic {
+        what: "the motion does not repeat, but `[time] harmonics` finds flows that do".into(),
+        hint: "take out what drifts in `[motion]`, a translation or a formula that does not return after the period, or \
+               march with `[time.dual]`",
+    }
+}
+
+/// Refuses laws that do not come back after a period.
+fn repeats<'a, const D: usize>(laws: impl Iterator<Item = &'a BodyMotion<D>>, period: f64) -> Result<(), RunError> {
+    for (body, law) in laws.enumerate() {
         for part in LOOKED_AT {
             let (a, b) = (law.pose(part * period), law.pose((part + 1.0) * period));
             let places = std::iter::once(Vector::ZERO).chain((0..D).map(Vector::axis));

@@ -1,0 +1,108 @@
+//! What keeps a case from being computed, as far as it is known before any flow: what `check` refuses as `run`, `flutter` and `gaf` do.
+//!
+//! Each look is one that a command begins with, and stops at the first thing that it does not like; the looks are independent of one
+//! another, so that mistakes in the flow, in tables of modes, in `[flutter]` and in `[gaf]` are all told at once. What only a cloud shows
+//! is told by [`inspect`](super::inspect).
+use std::path::Path;
+
+use super::error::RunError;
+use super::{accuracy, flutter, folder, gaf, setup, solids, studies};
+use crate::case::{Case, Temporal, read_mode};
+use crate::cloud::layout::count;
+use crate::geometry::dimension;
+
+/// All that the commands refuse of a case whose file names refer to the folder `input`; empty where they can begin.
+pub fn refusals(case: &Case, input: &Path) -> Vec<RunError> {
+    let mut all = Refusals::default();
+    all.look(folder::check_compared(case, input));
+    if !case.has_gas() {
+        all.look(solids::supported(case));
+        return all.found;
+    }
+    for problem in shapes(case, input) {
+        all.look::<()>(Err(problem));
+    }
+    all.look(setup::supported(case));
+    let Some(case) = all.look(solids::with_own_modes(case, input)) else { return all.found };
+    // small motions are about bodies as drawn, unless they are trimmed
+    all.look(rehearse(&case, input, case.flutter.is_some() && !case.is_trimmed()));
+    if case.flutter.is_some() {
+        all.look(flutter::rehearse(&case, input));
+    }
+    if case.gaf.is_some() {
+        all.look(gaf::rehearse(&case, input));
+    }
+    all.found
+}
+
+/// Refuses a case of which it is known before its cloud is built that it cannot begin; bodies that are `held` need no springs.
+pub(super) fn rehearse(case: &Case, input: &Path, held: bool) -> Result<(), RunError> {
+    match dimension(case) {
+        2 => within::<2>(case, input, held),
+        _ => within::<3>(case, input, held),
+    }
+}
+
+fn within<const D: usize>(case: &Case, input: &Path, held: bool) -> Result<(), RunError> {
+    setup::supported(case)?;
+    let case = &solids::with_own_modes(case, input)?;
+    let (surface, _) = setup::surface::<D>(case, input)?;
+    let case = &*accuracy::with_cloud(case, surface.as_ref());
+    let mut motions = setup::motions(case, input, surface.as_ref())?;
+    setup::sane(case, surface.as_ref(), &motions)?;
+    let bodies = setup::bodies(case, input, surface.as_ref(), &mut motions)?;
+    if !held {
+        setup::check_equilibrium(case, surface.as_ref(), &bodies)?;
+    }
+    // supports of bodies made of particles have periods as well
+    if matches!(case.time, Temporal::Harmonics(_)) && case.solids().next().is_none() {
+        studies::check_period(&motions)?;
+    }
+    count(&setup::spec(case), surface.as_ref(), &[])?;
+    Ok(())
+}
+
+/// Mistakes in the tables of all modes that a case names.
+fn shapes(case: &Case, input: &Path) -> Vec<RunError> {
+    let laws = case.bodies.iter().filter_map(|b| b.motion.as_ref()).chain(case.motion.as_ref().map(|m| &m.law));
+    let prescribed = laws.flat_map(|law| &law.modes).map(|mode| &mode.file);
+    let elastic = case.structures.iter().flat_map(|s| &s.modes).filter(|m| m.table.is_none()).map(|mode| &mode.file);
+    let flexible = case.gaf.iter().flat_map(|g| &g.flexible).map(|mode| &mode.file);
+    let mut files: Vec<&String> = prescribed.chain(elastic).chain(flexible).collect();
+    files.sort();
+    files.dedup();
+    let read = |file: &String| read_mode(&folder::text(input, file).ok()?, file, usize::from(dimension(case))).err();
+    files.into_iter().filter_map(read).map(RunError::Case).collect()
+}
+
+/// What was refused so far, each thing once.
+#[derive(Default)]
+struct Refusals {
+    found: Vec<RunError>,
+}
+
+impl Refusals {
+    fn look<T>(&mut self, seen: Result<T, RunError>) -> Option<T> {
+        match seen {
+            Ok(value) => Some(value),
+            Err(problem) => {
+                let told = problem.to_string();
+                if self.found.iter().all(|known| known.to_string() != told) {
+                    self.found.push(problem);
+                }
+                None
+            }
+        }
+    }
+}
+
+/// The same result of a command; where the case is to blame, `check` must have refused it as well.
+#[cfg(test)]
+pub(crate) fn as_checked<T>(case: &Case, input: &Path, seen: Result<T, RunError>) -> Result<T, RunError> {
+    if let Err(problem) = &seen {
+        let told = problem.to_string();
+        let checked = refusals(case, input).into_iter().chain(super::inspect(case, input, None).err());
+        assert!(checked.map(|p| p.to_string()).any(|p| p == told), "`check` does not refuse: {told}");
+    }
+    seen
+}
