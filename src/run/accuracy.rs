@@ -32,7 +32,7 @@ const WAKE_SPACING: [f64; 2] = [1.0, 2.0];
 /// Particles per level of the cloud of small motions, and greatest number of particles that its spacing is chosen for, as if it were
 /// one of a family.
 const FEW_LAYERS: f64 = 6.0;
-const SMALL_MOTION_PARTICLES: [usize; 2] = [50_000, 90_000];
+const SMALL_MOTION_PARTICLES: [usize; 2] = [50_000, 100_000];
 /// Spacings in the mean thickness of a section in small motion, 2 A/P with its area A and its outline P (0.68 of the greatest one of a
 /// NACA section), and greatest number of spacings in its length. Measured on sections of 1, 2, 4 and 12 % at M 0.5: so resolved, phases
 /// of the moment about the quarter chord at k = 0.1 are 0.2 to 1.1 degrees from those of clouds four times as fine with twice the
