@@ -45,7 +45,7 @@ pub(crate) enum Command {
     Check(Check),
     /// Fill the domain with particles and judge the cloud, without computing a flow.
     Cloud(Cloud),
-    /// Write the bodies of a case in space as one STL or OBJ file.
+    /// Write the bodies of a case, repaired and closed, as one file: STL or OBJ in space, coordinates in the plane.
     Geometry(Geometry),
     /// Go on with a run from its last checkpoint.
     #[command(after_help = EXIT_CODES)]
@@ -127,7 +127,7 @@ pub(crate) struct Cloud {
 pub(crate) struct Geometry {
     /// Case file.
     pub(crate) case: PathBuf,
-    /// File to write, `.stl` or `.obj`; default: the name of the case with `.stl`.
+    /// File to write, `.stl` or `.obj`, in the plane `.dat`; default: the name of the case with `.stl` or `.dat`.
     #[arg(long, value_name = "FILE")]
     pub(crate) out: Option<PathBuf>,
     /// Replace an existing file.

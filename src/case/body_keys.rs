@@ -53,7 +53,7 @@ pub(super) static BODY: Table = Table::of(&[
         SHAPE,
         "Box centred on the origin of the shape, `box = { size = [1, 1, 1] }`.",
     ),
-    Field::optional("surface", Kind::File, SHAPE, "STL or OBJ file (3-D), relative to the case file.")
+    Field::optional("surface", Kind::File, SHAPE, "STL, OBJ or PLY file (3-D), relative to the case file.")
         .known_as(&["stl", "obj", "mesh", "geometry"]),
     Field::optional(
         "wing",

@@ -49,7 +49,7 @@ pub use error::{CaseError, CaseErrors};
 pub use flow::{FreeStreamScales, NEVER_LAMINAR, NO_CONTINUUM, Units, ViscosityLaw, Viscous, Wall};
 pub use flutter::{Flutter, GasResponse, LimitCycles, Matching, StreamRatio};
 pub use gaf::{AnyMode, FlexibleMode, Gaf, GafMethod, Mode};
-pub use mode_file::{ModeTable, read_mode};
+pub use mode_file::{ModeFile, ModeTable, read_mode};
 pub use motion::{
     BodyMotionSpec, ModeMotion, Motion, MotionFormula, MotionTable, OwnFrequency, ParticleMotion, Pitch, Plunge,
     Rotation, Translation,
@@ -234,7 +234,7 @@ pub enum Shape {
         /// Edge lengths.
         size: Vec<Length>,
     },
-    /// STL or OBJ file, `surface = "wing.stl"`.
+    /// STL, OBJ or PLY file, `surface = "wing.stl"`.
     Surface(String),
     /// Wing, tail or fin by planform and sections.
     Wing(Box<Wing>),

@@ -1,8 +1,8 @@
 //! Mode shapes in files: points of a body and how far each goes.
 //!
 //! A header names the columns, in any order: `x`, `y` and in space `z`, the place of a point of the body as it stands before
-//! any motion; `dx`, `dy` and in space `dz`, its displacement when the coordinate of the mode is one. Values are separated by
-//! commas; `#` begins a comment. All mistakes are told at once.
+//! any motion; `dx`, `dy` and in space `dz`, its displacement when the coordinate of the mode is one. Capitals are as good, and
+//! further columns are not read. Values are separated by commas; `#` begins a comment. All mistakes are told at once.
 use std::collections::BTreeMap;
 use std::ops::Range;
 
@@ -10,8 +10,8 @@ use super::error::{CaseError, CaseErrors};
 use super::schema::one_of;
 use super::text::separator;
 
-/// Most points of a mode: the interpolation solves a full system with as many unknowns.
-const MOST_POINTS: usize = 2000;
+/// Most points of a mode: what a shape is made from takes half a gigabyte then.
+const MOST_POINTS: usize = 1_000_000;
 /// Mistakes that are told; whoever has more has made one of them many times.
 const MOST_MISTAKES: usize = 20;
 /// Columns: places, then displacements.
@@ -26,27 +26,39 @@ pub struct ModeTable {
     pub displacements: Vec<[f64; 3]>,
 }
 
+/// The table of a mode file, and where its rows stand.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ModeFile {
+    /// The points and their displacements.
+    pub table: ModeTable,
+    /// Line of each point.
+    pub lines: Vec<usize>,
+    /// What was left out.
+    pub notes: Vec<String>,
+}
+
 /// A piece of the text with its place.
 type Cell<'t> = (&'t str, Range<usize>);
 
 /// Reads the text of a mode file for a case of two or three dimensions; `name` is what messages call it.
-pub fn read_mode(text: &str, name: &str, dimension: usize) -> Result<ModeTable, CaseErrors> {
+pub fn read_mode(text: &str, name: &str, dimension: usize) -> Result<ModeFile, CaseErrors> {
     let mut reader = Reader { dimension, places: Vec::new(), errors: Vec::new() };
-    let mut table = ModeTable::default();
+    let mut file = ModeFile::default();
     let mut lines = lines(text);
     if let Some((_, cells, header)) = lines.next() {
-        reader.header(&cells, &header);
+        reader.header(&cells, &header, &mut file.notes);
         // without its columns no row can be understood
         if reader.errors.is_empty() {
             let mut seen = BTreeMap::new();
-            lines.for_each(|(number, cells, whole)| reader.row((number, &cells, &whole), &mut seen, &mut table));
-            reader.whole(&header, &table);
+            lines.for_each(|(number, cells, whole)| reader.row((number, &cells, &whole), &mut seen, &mut file));
+            reader.whole(&header, &file.table);
         }
     } else {
         reader.fail(0..0, "the file is empty").hint(header_hint(dimension));
     }
     if reader.errors.is_empty() {
-        return Ok(table);
+        file.notes.iter_mut().for_each(|note| *note = format!("{name}: {note}"));
+        return Ok(file);
     }
     reader.errors.truncate(MOST_MISTAKES);
     Err(CaseErrors::new(name, text, reader.errors))
@@ -94,8 +106,8 @@ fn trimmed(text: &str, at: usize) -> Cell<'_> {
 
 struct Reader {
     dimension: usize,
-    /// For each cell of a row, where it goes: an index into [`COLUMNS`].
-    places: Vec<usize>,
+    /// For each cell of a row, where it goes: an index into [`COLUMNS`]; nowhere for columns that are not read.
+    places: Vec<Option<usize>>,
     errors: Vec<CaseError>,
 }
 
@@ -106,30 +118,30 @@ impl Reader {
         &mut self.errors[at]
     }
 
-    /// Names of the columns: all that are needed, each once.
-    fn header(&mut self, cells: &[Cell<'_>], whole: &Range<usize>) {
+    /// Names of the columns: all that are needed, each once; others are left out.
+    fn header(&mut self, cells: &[Cell<'_>], whole: &Range<usize>, notes: &mut Vec<String>) {
         let allowed: Vec<&str> = expected(self.dimension).collect();
+        let mut unread = Vec::new();
         for (cell, span) in cells {
-            let place = COLUMNS.iter().position(|c| c == cell).filter(|p| allowed.contains(&COLUMNS[*p]));
-            let Some(place) = place else {
-                let what = if COLUMNS.contains(cell) { "is of no use in a 2-D case" } else { "has no meaning here" };
-                let hint = header_hint(self.dimension);
-                let message = format!("column `{cell}` {what}");
-                self.fail(span.clone(), message).allowed(one_of(allowed.iter().copied())).hint(hint);
-                continue;
-            };
-            if self.places.contains(&place) {
+            let name = cell.trim_matches('"').trim().to_ascii_lowercase();
+            let place = COLUMNS.iter().position(|c| *c == name).filter(|p| allowed.contains(&COLUMNS[*p]));
+            if place.is_none() {
+                unread.push(format!("`{cell}`"));
+            } else if self.places.contains(&place) {
                 self.fail(span.clone(), format!("column `{cell}` stands here twice")).hint("keep one of them");
             }
             self.places.push(place);
         }
-        let given: Vec<usize> = self.places.clone();
-        let missing: Vec<&str> = allowed.into_iter().filter(|c| !given.iter().any(|p| COLUMNS[*p] == *c)).collect();
+        let given = |name: &&str| self.places.iter().flatten().any(|p| COLUMNS[*p] == *name);
+        let missing: Vec<&str> = allowed.into_iter().filter(|c| !given(c)).collect();
         if !missing.is_empty() {
             let hint = header_hint(self.dimension);
             let verb = if missing.len() > 1 { "are" } else { "is" };
             let message = format!("{} {verb} missing", one_of(missing.into_iter()).replace(" or ", " and "));
             self.fail(whole.clone(), message).hint(hint);
+        } else if !unread.is_empty() {
+            let (which, verb) = (unread.join(", "), if unread.len() > 1 { "columns are" } else { "column is" });
+            notes.push(format!("{which}: {verb} not read"));
         }
     }
 
@@ -138,7 +150,7 @@ impl Reader {
         &mut self,
         (number, cells, whole): (usize, &[Cell<'_>], &Range<usize>),
         seen: &mut BTreeMap<[u64; 3], usize>,
-        table: &mut ModeTable,
+        file: &mut ModeFile,
     ) {
         if cells.len() != self.places.len() {
             let allowed = format!("{} values", self.places.len());
@@ -148,10 +160,11 @@ impl Reader {
         }
         let (mut values, before) = ([0.0; 6], self.errors.len());
         for (k, (cell, span)) in cells.iter().enumerate() {
-            let column = COLUMNS[self.places[k]];
+            let Some(place) = self.places[k] else { continue };
             match cell.parse::<f64>().ok().filter(|v| v.is_finite()) {
-                Some(value) => values[self.places[k]] = value,
+                Some(value) => values[place] = value,
                 None => {
+                    let column = COLUMNS[place];
                     let message = format!("`{column}` is `{cell}`, which is no finite number");
                     self.fail(span.clone(), message)
                         .allowed("a finite number, 0.25 or -1e-3")
@@ -162,15 +175,22 @@ impl Reader {
         if self.errors.len() > before {
             return;
         }
-        let point = [values[0], values[1], values[2]];
+        let (point, displacement) = ([values[0], values[1], values[2]], [values[3], values[4], values[5]]);
         // zeros of either sign are one place
         let key = point.map(|v| (v + 0.0).to_bits());
-        if let Some(first) = seen.insert(key, number) {
-            let message = format!("the point of line {first} stands here again");
+        if let Some(&first) = seen.get(&key) {
+            let before = file.lines.binary_search(&first).ok();
+            if before.is_some_and(|k| file.table.displacements[k] == displacement) {
+                file.notes.push(format!("line {number} repeats line {first} and is left out"));
+                return;
+            }
+            let message = format!("the point of line {first} stands here again, with another displacement");
             self.fail(whole.clone(), message).allowed("every point once").hint("remove one of the two rows");
         }
-        table.points.push(point);
-        table.displacements.push([values[3], values[4], values[5]]);
+        seen.insert(key, number);
+        file.lines.push(number);
+        file.table.points.push(point);
+        file.table.displacements.push(displacement);
     }
 
     /// What only the whole table shows; told at its header.
@@ -178,7 +198,7 @@ impl Reader {
         let n = table.points.len();
         if n > MOST_POINTS {
             let message = format!("the mode has {n} points");
-            let hint = "keep every second point, or fewer: the shape between points is a smooth curve or surface";
+            let hint = "keep every second point, or fewer: the shape is a smooth surface through some thousand of them";
             self.fail(header.clone(), message).allowed(format!("at most {MOST_POINTS} points")).hint(hint);
         }
         if n == 0 && self.errors.is_empty() {
@@ -200,11 +220,17 @@ mod tests {
     #[test]
     fn columns_are_found_by_their_names() {
         let text = "# bending\n dy, x,y ,dx\n\n1e-1, 0, 0.5, 0 # nose\n-2,1,0,0.25\n";
-        let table = read_mode(text, "bend.csv", 2).unwrap();
+        let table = read_mode(text, "bend.csv", 2).unwrap().table;
         assert_eq!(table.points, [[0.0, 0.5, 0.0], [1.0, 0.0, 0.0]]);
         assert_eq!(table.displacements, [[0.0, 0.1, 0.0], [0.25, -2.0, 0.0]]);
-        assert_eq!(read_mode(&text.replace(',', ";"), "bend.csv", 2).unwrap(), table);
-        assert_eq!(read_mode("x,y,z,dx,dy,dz\n1,2,3,4,5,6", "b", 3).unwrap().displacements, [[4.0, 5.0, 6.0]]);
+        assert_eq!(read_mode(&text.replace(',', ";"), "bend.csv", 2).unwrap().table, table);
+        let capitals = "Node,X,Y,Z,DX,DY,DZ,part\n17,1,2,3,4,5,6,skin of wing\n";
+        let file = read_mode(capitals, "b", 3).unwrap();
+        assert_eq!((file.table.points, file.table.displacements), (vec![[1.0, 2.0, 3.0]], vec![[4.0, 5.0, 6.0]]));
+        assert_eq!((file.lines, file.notes), (vec![2], vec!["b: `Node`, `part`: columns are not read".to_owned()]));
+        let file = read_mode("x,y,z,dx,dy,dz\n1,2,3,0,1,0\n2,2,3,0,1,0\n1,2,3,0,1,0\n", "b", 2).unwrap();
+        assert_eq!(file.lines, [2, 3]);
+        assert!(file.notes[0].contains("`z`, `dz`: columns") && file.notes[1].contains("line 4 repeats line 2"));
     }
 
     #[test]
@@ -226,12 +252,12 @@ mod tests {
         let told = |text: &str, d: usize| read_mode(text, "b", d).unwrap_err().render(false);
         assert!(told("", 2).contains("empty"));
         let shown = told("x,y,z,dx,dx,w\n1,2,oops", 2);
-        assert!(shown.contains("`z` is of no use") && shown.contains("`dx` stands here twice"), "{shown}");
-        assert!(shown.contains("`w` has no meaning") && shown.contains("`dy`") && !shown.contains("oops"), "{shown}");
+        assert!(shown.contains("`dx` stands here twice"), "{shown}");
+        assert!(shown.contains("`dy` is missing") && !shown.contains("oops"), "{shown}");
         assert!(told("x,y,dx,dy\n", 3).contains("`z` and `dz`"));
         assert!(told("x,y,dx,dy\n", 2).contains("no points"));
         assert!(told("x,y,dx,dy\n1,1,0,-0\n", 2).contains("nothing moves"));
-        let many: String = (0..=MOST_POINTS).map(|k| format!("{k},0,0,1\n")).collect();
-        assert!(told(&format!("x,y,dx,dy\n{many}"), 2).contains("2001 points"));
+        let many: String = (0..5000).map(|k| format!("{k},0,0,1\n")).collect();
+        assert_eq!(read_mode(&format!("x,y,dx,dy\n{many}"), "b", 2).unwrap().lines.len(), 5000);
     }
 }

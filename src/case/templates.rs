@@ -83,7 +83,7 @@ mod tests {
         let files = mode_files("flutter-wing");
         assert!(case.structures[0].modes.iter().zip(&files).all(|(mode, (file, _))| mode.file == *file));
         for (file, text) in files {
-            let table = crate::case::read_mode(&text, file, 3).unwrap_or_else(|e| panic!("{e}"));
+            let table = crate::case::read_mode(&text, file, 3).unwrap_or_else(|e| panic!("{e}")).table;
             let tip = table.points.iter().zip(&table.displacements).filter(|(x, _)| x[1] == 3.0);
             let greatest = tip.map(|(_, d)| d[2]).fold(f64::NEG_INFINITY, f64::max);
             assert!(table.points.len() == 54 && greatest == if file == "bending.csv" { 1.0 } else { 0.4 }, "{file}");

@@ -1,197 +1,154 @@
 //! Airfoil coordinate files.
 //!
-//! Rows of numbers, separated by blanks, commas or semicolons; `#` begins a comment. The order is detected:
+//! Rows of numbers, separated by blanks, commas or semicolons ([`table`]); `#` begins a comment. The order is detected:
 //!
-//! - Selig: once around the section from trailing edge to trailing edge, in either direction;
-//! - Lednicer: a row of two counts, then both sides from the leading edge to the trailing edge; the counts may be absent;
+//! - Selig: once around the section from trailing edge to trailing edge, in either direction, or from any other point;
+//! - Lednicer: a row of two counts, then both sides from the leading edge to the trailing edge; the counts may be absent, and both
+//!   sides may run from the trailing edge;
 //! - a header with a column `surface` whose values begin with `u` or `l`;
+//! - both sides in one row: `x`, upper, lower;
 //! - one side only: half thickness of a symmetric section; of several thickness columns the first counts.
 //!
 //! Columns of a header are recognised by name: `x…` the first coordinate, the next one the second; `pct` in a name
-//! means percent of the chord. What was assumed is reported.
+//! means percent of the chord, and so does a chord of 100 from the origin. What was assumed is reported.
+mod table;
+
 use super::GeometryError;
 use super::outline::{self, Mark};
 use super::shell::Shell;
-use crate::case::decimal_comma;
 use crate::math::{Bounds, Vector};
 use std::io::Read;
+use table::Table;
 
 /// Longest file that is read, bytes: a section with a million points.
 const LONGEST: u64 = 64 << 20;
 
-/// One row of coordinates.
-#[derive(Clone, Debug)]
-struct Row {
-    mark: Mark,
-    surface: String,
-}
+/// Length of a chord that is given in percent, and by how much it may differ from that.
+const PERCENT: [f64; 2] = [100.0, 1.0];
+/// Greatest `scale` of a body whose file is in a unit of length: an inch. With a larger one a chord of 100 is in percent.
+const LARGEST_UNIT: f64 = 0.0254;
+/// A gap between the ends of an outline is closed where it is at most so many times as long as the longer of the two sides beside it.
+const GAP: f64 = 2.5;
 
-/// Columns named by a header.
-struct Columns {
-    x: usize,
-    y: usize,
-    surface: Option<usize>,
-    section: Option<usize>,
-    scale: [f64; 2],
-    half: bool,
-    names: String,
-}
-
-/// A file as read: rows with the breaks between blocks lost, and what the header said.
-struct Table {
-    rows: Vec<Row>,
-    counts: Option<[usize; 2]>,
-    columns: Option<Columns>,
-}
-
-/// The smooth shell of the section in `input`; `file` names it in messages, `notes` says what was assumed.
-pub(super) fn read(file: &str, input: impl Read, notes: &mut Vec<String>) -> Result<Shell<2>, GeometryError> {
+/// The smooth shell of the section in `input`, which a body uses with the factor `scale`; `file` names it in messages, `notes` says
+/// what was assumed.
+pub(super) fn read(
+    file: &str,
+    input: impl Read,
+    scale: f64,
+    notes: &mut Vec<String>,
+) -> Result<Shell<2>, GeometryError> {
     let mut bytes = Vec::new();
     let input = input.take(LONGEST).read_to_end(&mut bytes);
     input.map_err(|source| GeometryError::Open { file: file.to_string(), source })?;
-    let table = parse(file, &super::plain(file, &bytes)?)?;
-    let marks = around(file, &table, notes)?;
+    let table = table::read(file, &super::plain(file, &bytes)?, notes)?;
+    let mut marks = around(file, &table, notes)?;
+    if scale > LARGEST_UNIT {
+        from_percent(file, &mut marks, notes);
+    }
     outline::airfoil(file, marks, notes)
 }
 
-/// Refuses rows whose numbers have decimal commas: two values would be read as four.
-fn no_decimal_commas(file: &str, number: usize, line: &str) -> Result<(), GeometryError> {
-    match decimal_comma(line) {
-        None => Ok(()),
-        Some(word) => Err(GeometryError::refused(
-            format!("{file}, line {number}"),
-            format!("`{word}` has a decimal comma"),
-            "write decimals with a point, `0.5`",
-        )),
+/// Scales a section that is given in percent of its chord to a chord of one.
+fn from_percent(file: &str, marks: &mut [Mark], notes: &mut Vec<String>) {
+    let bounds = Bounds::around(marks.iter().map(|m| &m.point));
+    let [chord, within] = PERCENT;
+    if bounds.min[0].abs() > within || (bounds.extent()[0] - chord).abs() > within {
+        return;
     }
+    notes.push(format!(
+        "{file}: x goes from {} to {}: coordinates are taken as percent of the chord, and the chord is 1",
+        bounds.min[0], bounds.max[0]
+    ));
+    marks.iter_mut().for_each(|m| m.point = m.point * (1.0 / chord));
 }
 
-fn parse(file: &str, text: &str) -> Result<Table, GeometryError> {
-    let mut table = Table { rows: Vec::new(), counts: None, columns: None };
-    let mut section: Option<String> = None;
-    for (i, line) in text.lines().enumerate() {
-        let line = line.split(['#', '!']).next().unwrap_or("").trim().trim_start_matches('\u{feff}');
-        let words: Vec<&str> = line.split(|c: char| c == ',' || c == ';' || c.is_whitespace()).collect();
-        let words: Vec<&str> = words.into_iter().filter(|w| !w.is_empty()).collect();
-        if words.is_empty() {
-            continue;
-        }
-        let before = table.rows.is_empty() && table.counts.is_none();
-        if before && table.columns.is_none() && words.iter().any(|w| number(w).is_none()) {
-            table.columns = Columns::of(&words);
-            continue;
-        }
-        if before && words.len() == 1 {
-            // A title that is a number, `2412`.
-            continue;
-        }
-        no_decimal_commas(file, i + 1, line)?;
-        let row = row(file, i + 1, &words, table.columns.as_ref())?;
-        if before && table.columns.is_none() && counts(&row).is_some() {
-            table.counts = counts(&row);
-            continue;
-        }
-        if let Some(k) = table.columns.as_ref().and_then(|c| c.section)
-            && section.get_or_insert_with(|| words[k].to_string()) != words[k]
-        {
-            let what = format!("a second section `{}` begins", words[k]);
-            return Err(GeometryError::refused(format!("{file}, line {}", i + 1), what, "give one section per file"));
-        }
-        table.rows.push(row);
-    }
-    Ok(table)
-}
-
-impl Columns {
-    /// Columns of a header, none when the line is a title.
-    fn of(words: &[&str]) -> Option<Self> {
-        let names: Vec<String> = words.iter().map(|w| w.to_lowercase()).collect();
-        let x = names.iter().position(|n| n == "x" || n.starts_with("x_") || n.starts_with("x/"))?;
-        let y = x + 1;
-        // `x` may be a word of a title as well
-        let name = names.get(y).filter(|n| n.starts_with(['y', 'z']) || n.contains("thick"))?;
-        let find = |what: &str| names.iter().position(|n| n == what);
-        let scale = |n: &str| if n.contains("pct") { 0.01 } else { 1.0 };
-        Some(Self {
-            x,
-            y,
-            surface: find("surface"),
-            section: find("section"),
-            scale: [scale(&names[x]), scale(name)],
-            half: name.contains("thick") || names.len() > y + 1,
-            names: format!("`{}` and `{}`", words[x], words[y]),
-        })
-    }
-}
-
-fn row(file: &str, line: usize, words: &[&str], columns: Option<&Columns>) -> Result<Row, GeometryError> {
-    let refused = |what: String, hint: &str| GeometryError::refused(format!("{file}, line {line}"), what, hint);
-    let (x, y, scale) = columns.map_or((0, 1, [1.0, 1.0]), |c| (c.x, c.y, c.scale));
-    let last = columns.map_or(y, |c| y.max(c.surface.unwrap_or(0)).max(c.section.unwrap_or(0)));
-    if words.len() <= last {
-        return Err(refused(format!("has {} values", words.len()), "every row needs two coordinates, `x y`"));
-    }
-    let value = |k: usize| {
-        number(words[k]).ok_or_else(|| refused(format!("`{}` is not a finite number", words[k]), "write rows as `x y`"))
-    };
-    let point = Vector([value(x)? * scale[0], value(y)? * scale[1]]);
-    let surface = columns.and_then(|c| c.surface).map_or(String::new(), |k| words[k].to_lowercase());
-    Ok(Row { mark: Mark { point, line }, surface })
-}
-
-/// A finite number below 1e100 in magnitude, so that squares stay finite.
-fn number(word: &str) -> Option<f64> {
-    word.parse::<f64>().ok().filter(|v| v.abs() < 1e100)
-}
-
-/// The two counts of a Lednicer file: whole numbers that cannot be coordinates of a unit chord.
-fn counts(row: &Row) -> Option<[usize; 2]> {
-    let whole = |v: f64| (2.0..=1e6).contains(&v) && v.fract() == 0.0;
-    let [a, b] = row.mark.point.0;
-    (whole(a) && whole(b)).then_some([a as usize, b as usize])
-}
-
-/// The points once around the section, from trailing edge to trailing edge, upper side first.
+/// The points once around the section, from trailing edge to trailing edge.
 fn around(file: &str, table: &Table, notes: &mut Vec<String>) -> Result<Vec<Mark>, GeometryError> {
     let marks: Vec<Mark> = table.rows.iter().map(|r| r.mark).collect();
     if marks.len() < 3 {
         let what = format!("holds {} points", marks.len());
         return Err(GeometryError::refused(file, what, "an airfoil file lists `x y` row by row"));
     }
-    if let Some(columns) = &table.columns {
-        notes.push(format!("{file}: coordinates from columns {}", columns.names));
-        if columns.surface.is_some() {
-            return by_name(file, table);
-        }
+    if table.has_surface {
+        return by_name(file, table);
     }
-    if let Some([upper, lower]) = table.counts {
-        if upper + lower != marks.len() {
-            let what = format!("announces {upper} and {lower} points but holds {}", marks.len());
-            return Err(GeometryError::refused(file, what, "correct the counts in the second line or remove it"));
-        }
-        notes.push(format!("{file}: Lednicer order, {upper} and {lower} points"));
-        return Ok(join(&marks[..upper], &marks[upper..]));
+    let lower: Vec<Mark> = table.rows.iter().filter_map(|r| r.lower).collect();
+    if !lower.is_empty() {
+        return Ok(join(&marks, &lower));
     }
-    let x: Vec<f64> = marks.iter().map(|m| m.point[0]).collect();
-    let bounds = Bounds::around(marks.iter().map(|m| &m.point));
-    let (low, range) = (bounds.min[0], bounds.extent()[0]);
-    let (front, rear) = (|v: f64| v - low < 0.25 * range, |v: f64| v - low > 0.75 * range);
-    if let Some(cut) = (1..x.len()).find(|&i| rear(x[i - 1]) && front(x[i])) {
-        notes.push(format!("{file}: Lednicer order without counts, {cut} and {} points", x.len() - cut));
+    let sides = Sides::of(&marks);
+    if let Some(([upper, lower], line)) = table.counts {
+        if upper + lower == marks.len() {
+            notes.push(format!("{file}: Lednicer order, {upper} and {lower} points"));
+            return Ok(join(&marks[..upper], &marks[upper..]));
+        }
+        let what = format!("announces {upper} and {lower} points but {} follow", marks.len());
+        let (Some(cut), place) = (sides.cut, format!("{file}, line {line}")) else {
+            let hint = "correct the counts in this line or remove it";
+            return Err(GeometryError::refused(format!("{file}, line {line}"), what, hint));
+        };
+        notes.push(format!(
+            "{place}: {what}; the sides are told apart by their places, {cut} and {}",
+            marks.len() - cut
+        ));
         return Ok(join(&marks[..cut], &marks[cut..]));
     }
-    let (first, last) = (x[0], x[x.len() - 1]);
-    if (front(first) && rear(last)) || (rear(first) && front(last)) {
+    if let Some(cut) = sides.cut {
+        let (line, count) = (marks[cut].line, marks.len() - cut);
+        let from = if sides.from_rear { "both sides from the trailing edge" } else { "Lednicer order without counts" };
+        notes.push(format!("{file}: {from}, {cut} and {count} points, the second side begins in line {line}"));
+        return Ok(join(&marks[..cut], &marks[cut..]));
+    }
+    if sides.is_single {
         return mirrored(file, marks, notes);
     }
-    if front(first) && front(last) {
-        notes.push(format!("{file}: once around from the leading edge"));
+    if !sides.ends_at_rear && is_ring(&marks) {
+        let line = marks[0].line;
+        notes.push(format!("{file}: once around from ({}, {}) in line {line}", marks[0].point[0], marks[0].point[1]));
         return Ok(from_the_rear(&marks));
     }
-    let half = table.columns.as_ref().is_some_and(|c| c.half);
-    let more = if half { "; further columns are not used" } else { "" };
-    notes.push(format!("{file}: Selig order{more}"));
+    notes.push(format!("{file}: Selig order{}", if table.has_more { "; further columns are not used" } else { "" }));
     Ok(marks)
+}
+
+/// What the first coordinates tell of the order of points.
+struct Sides {
+    /// Where a second side begins at the same edge as the first one.
+    cut: Option<usize>,
+    /// That edge is the trailing one.
+    from_rear: bool,
+    /// Points run from one edge to the other once.
+    is_single: bool,
+    /// The first and the last point are at the trailing edge.
+    ends_at_rear: bool,
+}
+
+impl Sides {
+    fn of(marks: &[Mark]) -> Self {
+        let bounds = Bounds::around(marks.iter().map(|m| &m.point));
+        let (low, range) = (bounds.min[0], bounds.extent()[0]);
+        let at = |k: usize| marks[k].point[0] - low;
+        let (front, rear) = (|k: usize| at(k) < 0.25 * range, |k: usize| at(k) > 0.75 * range);
+        let last = marks.len() - 1;
+        // sides of one point are the gap of a section that is not closed
+        let cuts = || 2..last;
+        let forward = cuts().find(|k| front(0) && rear(k - 1) && front(*k) && rear(last));
+        let backward = cuts().find(|k| rear(0) && front(k - 1) && rear(*k) && front(last));
+        Self {
+            cut: forward.or(backward),
+            from_rear: forward.is_none() && backward.is_some(),
+            is_single: (front(0) && rear(last)) || (rear(0) && front(last)),
+            ends_at_rear: rear(0) && rear(last),
+        }
+    }
+}
+
+/// True when an outline ends where it begins, or one side before that.
+fn is_ring(marks: &[Mark]) -> bool {
+    let n = marks.len();
+    let side = |a: usize, b: usize| (marks[a].point - marks[b].point).norm();
+    side(0, n - 1) <= GAP * side(0, 1).max(side(n - 2, n - 1))
 }
 
 /// Sides by the column `surface`.
@@ -241,7 +198,7 @@ fn join(upper: &[Mark], lower: &[Mark]) -> Vec<Mark> {
     marks
 }
 
-/// A closed outline that begins at the leading edge, turned to begin and end at its rearmost point.
+/// A closed outline turned to begin and end at its rearmost point.
 fn from_the_rear(marks: &[Mark]) -> Vec<Mark> {
     let rear = (0..marks.len()).fold(0, |a, i| if marks[i].point[0] > marks[a].point[0] { i } else { a });
     let mut turned = marks[rear..].to_vec();
@@ -254,6 +211,7 @@ mod tests {
     use super::super::surface::Surface;
     use super::*;
     use proptest::prelude::*;
+    use std::f64::consts::PI;
 
     const RAE_2822: &str = include_str!("testdata/rae2822_agard_ar138.csv");
     const NACA_64A010: &str = include_str!("testdata/naca64a010_bmp_design.csv");
@@ -262,7 +220,7 @@ mod tests {
 
     fn load(text: &str) -> Result<(Surface<2>, Vec<String>), GeometryError> {
         let mut notes = Vec::new();
-        let shell = read("wing.dat", text.as_bytes(), &mut notes)?;
+        let shell = read("wing.dat", text.as_bytes(), 1.0, &mut notes)?;
         Ok((Surface::new(&[("wing".into(), shell)]), notes))
     }
 
@@ -278,16 +236,16 @@ mod tests {
         assert_eq!(load(&rows.replace('\n', "\r")).is_ok(), load(rows).is_ok());
         assert!(load(&rows.replace(' ', ",")).is_ok() == load(rows).is_ok());
         let wide: Vec<u8> = [0xff, 0xfe].into_iter().chain(rows.bytes().flat_map(|b| [b, 0])).collect();
-        assert_eq!(read("wing.dat", &wide[..], &mut Vec::new()).is_ok(), load(rows).is_ok());
+        assert_eq!(read("wing.dat", &wide[..], 1.0, &mut Vec::new()).is_ok(), load(rows).is_ok());
         let broken = [&wide[..], &[0x00, 0xd8]].concat();
-        let told = read("wing.dat", &broken[..], &mut Vec::new()).map(|_| ()).unwrap_err().to_string();
+        let told = read("wing.dat", &broken[..], 1.0, &mut Vec::new()).map(|_| ()).unwrap_err().to_string();
         assert!(told.contains("broken UTF-16"), "{told}");
     }
 
     /// Greatest distance of the file's points from the surface.
     fn miss(surface: &Surface<2>, text: &str) -> f64 {
-        let table = parse("", text).unwrap();
-        let distance = |r: &Row| surface.nearest(&r.mark.point, 1.0).unwrap().distance;
+        let table = table::read("", text, &mut Vec::new()).unwrap();
+        let distance = |r: &table::Row| surface.nearest(&r.mark.point, 1.0).unwrap().distance;
         table.rows.iter().map(distance).fold(0.0, f64::max)
     }
 
@@ -296,7 +254,7 @@ mod tests {
         let (rae, notes) = load(RAE_2822).unwrap();
         assert!(rae.sharp.len() == 1 && miss(&rae, RAE_2822) < 1e-12, "{notes:?}");
         // The convex parts bulge beyond the polygon of the published points by less than a thousandth of its area.
-        let ring = around("", &parse("", RAE_2822).unwrap(), &mut Vec::new()).unwrap();
+        let ring = around("", &table::read("", RAE_2822, &mut Vec::new()).unwrap(), &mut Vec::new()).unwrap();
         let twice = |w: &[Mark]| w[0].point[0] * w[1].point[1] - w[1].point[0] * w[0].point[1];
         let polygon = 0.5 * ring.windows(2).map(twice).sum::<f64>();
         assert!((0.0..1e-3).contains(&(rae.volume() / polygon - 1.0)), "{} {polygon}", rae.volume());
@@ -366,6 +324,119 @@ mod tests {
         assert!(noted(1, "clockwise") && noted(2, "41 and 41") && noted(3, "without counts") && noted(5, "symmetric"));
     }
 
+    /// A cambered section of six digits with a sharp trailing edge: upper side from the rear to the nose, lower side back.
+    fn section(n: usize) -> (Vec<(f64, f64)>, Vec<(f64, f64)>) {
+        let digits = |v: f64| (1e6 * v).round() / 1e6 + 0.0;
+        let x = |k: usize| 0.5 + 0.5 * (PI * k as f64 / n as f64).cos();
+        let half =
+            |x: f64| 0.5 * (0.2969 * x.sqrt() - 0.1260 * x - 0.3516 * x * x + 0.2843 * x.powi(3) - 0.1036 * x.powi(4));
+        let line = |x: f64| 0.08 * x * (1.0 - x);
+        let side = |sign: f64| {
+            (0..=n).map(|k| x(k)).map(|x| (digits(x), digits(line(x) + sign * half(x)))).collect::<Vec<_>>()
+        };
+        let lower = side(-1.0).into_iter().rev().collect();
+        (side(1.0), lower)
+    }
+
+    fn area(text: &str) -> (f64, Vec<String>) {
+        let (surface, notes) = load(text).unwrap_or_else(|e| panic!("{e}\n{text}"));
+        (surface.volume(), notes)
+    }
+
+    #[test]
+    fn what_public_files_have_beside_coordinates_changes_no_outline() {
+        let (upper, lower) = section(40);
+        let ring: Vec<(f64, f64)> = upper.iter().chain(&lower[1..]).copied().collect();
+        let clean = rows(ring.iter().copied());
+        let (exact, _) = area(&clean);
+        let reversed = |side: &[(f64, f64)]| side.iter().rev().copied().collect::<Vec<_>>();
+        let turned: Vec<_> = ring[20..80].iter().chain(&ring[..=20]).copied().collect();
+        let text = |points: &[(f64, f64)]| rows(points.iter().copied());
+        let nose_first = [reversed(&upper), lower.clone()].concat();
+        let both_from_rear = text(&upper) + &text(&reversed(&lower));
+        let percent: String = ring.iter().map(|(x, y)| format!("{:.6} {:.6}\n", 100.0 * x, 100.0 * y + 7.0)).collect();
+        let pairs = |f: &dyn Fn(f64, f64, f64) -> String| -> String {
+            upper.iter().zip(reversed(&lower)).map(|(u, l)| f(u.0, u.1, l.1)).collect()
+        };
+        let numbered: String = ring.iter().zip(1..).map(|((x, y), k)| format!("{k} {x} {y}\n")).collect();
+        for (text, told) in [
+            (
+                format!("t\n{clean}\nReference: somebody 1998\n1 May 2003\n"),
+                "2 lines are text and are left out, the first is line 84",
+            ),
+            (
+                format!("t\n{}# c\nlower\n{}", text(&upper), text(&lower[1..])),
+                "line 44 is text and is left out: `lower`",
+            ),
+            (
+                format!("MYFOIL\n -1.75 2.75 -2.0 2.5\n{clean}"),
+                "line 2, `-1.75 2.75 -2.0 2.5`, is left out: limits of a grid",
+            ),
+            (format!("2412 10\n{clean}"), "line 1, two numbers far from all points, is taken as the title"),
+            (format!("2412 10\n41 41\n{}", text(&nose_first)), "Lednicer order, 41 and 41 points"),
+            (format!("t\n40 41\n{}", text(&nose_first)), "line 2: announces 40 and 41 points but 82 follow"),
+            (both_from_rear, "both sides from the trailing edge, 41 and 41 points, the second side begins in line 42"),
+            (text(&ring[..80]), "the first point is not repeated at the end: the outline is closed from"),
+            (text(&turned), "once around from (0.5"),
+            (percent.replacen("100.000000 7.000000", "100 7", 2), "coordinates are taken as percent of the chord"),
+            (clean.replacen("1 0\n", "1.000009 0\n", 1), "is closed"),
+            (clean.replacen("1 0\n", "1 1e-5\n", 1), "the trailing edge, open by 1.0e-5 chords from (1, 0) in line 81"),
+            (pairs(&|x, u, l| format!("{x} {u} {l}\n")), "columns 1 and 2 are the upper side, 1 and 3 the lower one"),
+            (
+                pairs(&|x, u, l| format!("{x} {u} {x} {l}\n")),
+                "columns 1 and 2 are the upper side, 3 and 4 the lower one",
+            ),
+            (
+                format!("x,y_upper,y_lower\n{}", pairs(&|x, u, l| format!("{x},{u},{l}\n"))),
+                "`y_lower` for the lower side",
+            ),
+            (numbered, "coordinates from columns 2 and 3 of 3"),
+            (clean.replace('\n', " 0\n"), "coordinates from columns 1 and 2 of 3"),
+            (clean.replace("-0.", "\u{2212}.").replace("0.5 ", "5.D-1 "), "Selig order"),
+        ] {
+            let (found, notes) = area(&text);
+            assert!((found / exact - 1.0).abs() < 2e-5, "{told}: {found} {exact} {notes:?}");
+            assert!(notes.iter().any(|n| n.contains(told)), "{told}: {notes:?}");
+        }
+    }
+
+    #[test]
+    fn thick_bases_and_unclosed_smooth_outlines_are_told_from_one_another() {
+        let flatback = "1 0.1099\n0.9 0.14\n0.6 0.22\n0.3 0.24\n0.1 0.16\n0.02 0.07\n0 0\n0.02 -0.07\n0.1 -0.16\n0.3 -0.24\n\
+                        0.6 -0.23\n0.9 -0.15\n1 -0.12402\n";
+        let (surface, notes) = load(flatback).unwrap();
+        assert!(surface.sharp.len() == 2 && notes.iter().any(|n| n.contains("blunt base")), "{notes:?}");
+        let angle = |i: usize| 2.0 * PI * i as f64 / 200.0;
+        let (surface, notes) =
+            load(&rows((0..200).map(|i| (0.5 + 0.5 * angle(i).cos(), 0.06 * angle(i).sin())))).unwrap();
+        assert!(
+            (surface.volume() / (0.03 * PI) - 1.0).abs() < 1e-5 && notes.iter().any(|n| n.contains("not repeated")),
+            "{notes:?}"
+        );
+        // a file that is cut short
+        let (upper, lower) = section(40);
+        let cut = rows(upper.into_iter().chain(lower.into_iter().skip(1).take(28)));
+        assert!(error(&cut).contains("along its side"), "{}", error(&cut));
+    }
+
+    #[test]
+    fn rows_that_are_damaged_are_never_left_out() {
+        let rows = "a\n1 0\n0.5 0.05\n0.1 0.03\n0 0\n0.1 -0.03\n0.5 -0.05\n1 0\n";
+        assert!(load(rows).is_ok());
+        for (damage, told) in [
+            (rows.replacen("0.5 0.05", "O.5 0.05", 1), "line 3: `O.5`"),
+            (rows.replacen("0.5 0.05", "0.5 ......", 1), "line 3: `......`"),
+            (rows.replacen("0.5 0.05", "0.5 nan", 1), "line 3: `nan`"),
+            (rows.replacen("0.5 0.05", "0.5 (0.05)", 1), "line 3: `(0.05)`"),
+            (rows.replacen("1 0\n", "1 0.o\n", 1), "line 2: `0.o`"),
+            (rows.replacen("-0.05\n1 0\n", "-0.05\n1 0.0.0\n", 1), "line 8: `0.0.0`"),
+            (rows.replacen("0.5 0.05\n", "0.5 0.05 ", 1), "line 3: has 4 numbers where the other rows have 2"),
+            (rows.replacen("0 0\n0.1 -", "0 0\n999 999\n0.1 -", 1), "line 6: another element begins after 999"),
+        ] {
+            assert!(error(&damage).contains(told), "{told}: {}", error(&damage));
+        }
+    }
+
     #[test]
     fn an_ellipse_without_corners_stays_smooth() {
         let angle = |i: usize| 2.0 * std::f64::consts::PI * i as f64 / 80.0;
@@ -392,8 +463,8 @@ mod tests {
     fn mistakes_are_refused_with_their_place() {
         assert!(error("").contains("holds 0 points"));
         assert!(error("a\n1 0\n0.5 x\n0 0").contains("wing.dat, line 3: `x` is not a finite number"));
-        assert!(error("a\n1 0\n0.5\n0 0").contains("line 3: has 1 values"));
-        assert!(error("a\n3 4\n0 0\n0.5 0.1\n1 0\n").contains("announces 3 and 4 points but holds 3"));
+        assert!(error("a\n1 0\n0.5\n0 0").contains("line 3: has 1 value"));
+        assert!(error("a\n3 4\n0 0\n0.5 0.1\n1 0\n").contains("announces 3 and 4 points but 3 follow"));
         assert!(error("0 0\n0.5 0.1\n0.7 -0.1\n1 0").contains("line 3: one side only"));
         assert!(error("1 0\n0.5 0.1\n0 0\n0.5 -0.1\n0.8 0.3\n1 0").contains("crosses itself at"));
         assert!(error("1 0\n0.8 0\n0.5 0\n0 0\n0.5 0\n1 0").contains("no area"));
@@ -404,7 +475,7 @@ mod tests {
     proptest! {
         #[test]
         fn no_bytes_panic(bytes in proptest::collection::vec(any::<u8>(), 0..400)) {
-            let _ = read("x.dat", bytes.as_slice(), &mut Vec::new());
+            let _ = read("x.dat", bytes.as_slice(), 1.0, &mut Vec::new());
         }
 
         #[test]
@@ -414,14 +485,14 @@ mod tests {
             bytes[place] = byte;
             bytes.drain(place..(place + drop).min(bytes.len()));
             bytes.truncate(cut.max(300));
-            let _ = read("x.dat", bytes.as_slice(), &mut Vec::new());
+            let _ = read("x.dat", bytes.as_slice(), 1.0, &mut Vec::new());
         }
 
         #[test]
         fn no_numbers_panic(v in proptest::collection::vec((-3..4_i32, -3..4_i32), 3..12), scale in -200..200_i32) {
             let unit = 10_f64.powi(scale);
             let text = rows(v.iter().map(|(x, y)| (f64::from(*x) * unit, f64::from(*y) * unit)));
-            let _ = read("x.dat", text.as_bytes(), &mut Vec::new());
+            let _ = read("x.dat", text.as_bytes(), 1.0, &mut Vec::new());
         }
     }
 }

@@ -1,31 +1,23 @@
 //! Holes of a surface: those whose shape leaves no doubt are closed, others are listed.
 //!
-//! Small holes are closed by a fan, flat ones (a root that is open at a plane of symmetry, a tip, a base) and narrow ones (the gap of an
-//! open trailing edge) by the triangles of least area between the vertices of their rim: dynamic programming over the polygon, G. Barequet and M. Sharir, *Filling
-//! gaps in the boundary of a polyhedron*, Computer Aided Geometric Design 12 (1995). A small part of the squares of sides prefers short ones
-//! where areas are the same.
+//! Small holes are closed by a fan, flat ones (a root that is open at a plane of symmetry, a tip, a base) by triangles in their plane, and
+//! narrow ones (the gap of an open trailing edge) by the triangles of least area between the vertices of their rim ([`super::polygon`]).
 use std::collections::BTreeMap;
 
 use super::shell::{Facet, Shell, at, facets, root, runs, unite};
-use super::simplex;
+use super::{polygon, simplex};
 use crate::math::{Bounds, Vector};
 
 /// Greatest extent of a hole that is closed, over the diagonal of the body.
 const SMALL: f64 = 0.05;
 /// Most edges of such a hole.
 const FEW: usize = 32;
-/// Most edges of a hole that is closed by triangles of least area: the work grows with their cube.
-const MANY: usize = 1000;
-/// Greatest distance of the rim of a flat hole from a plane, over its extent.
-const FLAT: f64 = 0.01;
 /// Greatest area of a narrow hole, over the square of the length of its rim: that of a disc has 0.08.
 const NARROW: f64 = 0.01;
 /// Greatest area of a narrow hole, over that of the part around it.
 const SLIT: f64 = 0.05;
 /// Greatest area of a flat hole, over that of the part around it: closing a sheet on itself bounds no volume.
 const FACE: f64 = 0.9;
-/// Weight of the squares of sides beside areas.
-const SHORT: f64 = 1e-3;
 /// Holes that are listed by place.
 const LISTED: usize = 20;
 
@@ -63,61 +55,20 @@ pub(super) fn fill(file: &str, shell: &mut Shell<3>, notes: &mut Vec<String>) {
 
 /// Closes a flat or a narrow hole in a part of this `surface`, and tells which it is; others stay open.
 fn close_large(shell: &mut Shell<3>, ring: &[(u32, u32)], surface: f64) -> Option<&'static str> {
-    if ring.len() > MANY {
-        return None;
-    }
     let rim: Vec<Vector<3>> = ring.iter().map(|(v, _)| shell.vertices[*v as usize]).collect();
-    let triangles = least_area(&rim);
-    let corners = |t: &[usize; 3]| t.map(|k| rim[k]);
-    let area: f64 = triangles.iter().map(|t| simplex::area_vector(&corners(t)).norm()).sum();
-    let sum = triangles.iter().fold(Vector::ZERO, |sum, t| sum + simplex::area_vector(&corners(t)));
-    let bounds = Bounds::around(&rim);
-    let normal = sum.unit();
-    let centre = rim.iter().fold(Vector::ZERO, |sum, x| sum + *x) * (1.0 / rim.len() as f64);
-    let depth = rim.iter().map(|x| (*x - centre).dot(&normal).abs()).fold(0.0, f64::max);
-    let flat = depth <= FLAT * bounds.extent().norm() && sum.norm() >= (1.0 - FLAT) * area;
+    let area = |triangles: &Vec<[usize; 3]>| {
+        triangles.iter().map(|t| simplex::area_vector(&t.map(|k| rim[k])).norm()).sum::<f64>()
+    };
     let length: f64 = (0..rim.len()).map(|k| (rim[k] - rim[(k + 1) % rim.len()]).norm()).sum();
-    let narrow = area <= NARROW * length * length && area <= SLIT * surface;
-    if !(narrow || flat && area <= FACE * surface) {
-        return None;
-    }
+    let is_narrow = |t: &Vec<[usize; 3]>| area(t) <= NARROW * length * length && area(t) <= SLIT * surface;
+    let flat = polygon::flat(&rim).filter(|t| area(t) <= FACE * surface).map(|t| (t, "flat"));
+    let narrow = || polygon::least_area(&rim).filter(is_narrow).map(|t| (t, "narrow"));
+    let (triangles, kind) = flat.or_else(narrow)?;
     for [a, b, c] in triangles {
         shell.elements.push([a, b, c].map(|k| ring[k].0));
         shell.tags.extend(shell.tags.get(ring[a].1 as usize).copied());
     }
-    Some(if flat { "flat" } else { "narrow" })
-}
-
-/// The triangles of least area between the vertices of a closed polygon, in its sense.
-fn least_area(rim: &[Vector<3>]) -> Vec<[usize; 3]> {
-    let n = rim.len();
-    let side = |i: usize, j: usize| (rim[i] - rim[j]).norm_squared();
-    let weight = |i: usize, m: usize, j: usize| {
-        let area = simplex::area_vector(&[rim[i], rim[m], rim[j]]).norm();
-        area + SHORT * (side(i, m) + side(m, j) + side(i, j))
-    };
-    // least weight between the vertices i and j, and the third vertex on their side
-    let mut best = vec![(0.0_f64, 0_u32); n * n];
-    for gap in 2..n {
-        for i in 0..n - gap {
-            let j = i + gap;
-            let through = |m: usize| best[i * n + m].0 + best[m * n + j].0 + weight(i, m, j);
-            let least = (i + 1..j)
-                .map(|m| (through(m), m as u32))
-                .fold((f64::INFINITY, 0), |a, b| if b.0 < a.0 { b } else { a });
-            best[i * n + j] = least;
-        }
-    }
-    let (mut triangles, mut open) = (Vec::new(), vec![(0, n - 1)]);
-    while let Some((i, j)) = open.pop() {
-        if j - i < 2 {
-            continue;
-        }
-        let m = best[i * n + j].1 as usize;
-        triangles.push([i, m, j]);
-        open.extend([(i, m), (m, j)]);
-    }
-    triangles
+    Some(kind)
 }
 
 /// Adds the triangles that close a ring of vertices, each with the element beside the edge that leaves it.

@@ -1,20 +1,17 @@
-//! Triangle files: STL (binary and text) and OBJ.
+//! Triangle files: STL (binary and text), OBJ and PLY.
 //!
-//! Both give a soup of triangles with part names; [`super::repair`] makes a surface of it. Text STL is read here in
-//! double precision, with all its solids and with line numbers in messages; binary STL goes through `stl_io`, OBJ through
-//! `tobj`.
+//! All give a soup of triangles with part names; [`super::repair`] makes a surface of it. What is written otherwise than the format says, but can
+//! be read in one way only, is read, and told; what is damaged is refused with its line, or the number of its triangle.
+mod obj;
+mod ply;
+mod stl;
+
 use super::GeometryError;
 use super::parts::UNNAMED;
-use crate::case::{decimal_comma, numbers_of};
+use crate::case::decimal_comma;
 use crate::math::Vector;
-use std::io::{Cursor, Read};
+use std::io::Read;
 
-/// Header and count of a binary STL file, bytes.
-const STL_HEADER: usize = 84;
-/// One triangle of a binary STL file, bytes.
-const STL_TRIANGLE: usize = 50;
-/// Bytes in which a text begins.
-const BEGINNING: usize = 256;
 /// Longest file that is read, bytes: 80 million triangles.
 const LONGEST: u64 = 4 << 30;
 
@@ -45,98 +42,24 @@ impl Soup {
     }
 }
 
-/// Reads a surface file; the end of the name tells the format.
-pub(super) fn read(file: &str, input: impl Read) -> Result<Soup, GeometryError> {
+/// Reads a surface file; the end of the name tells the format, `notes` says what was assumed.
+pub(super) fn read(file: &str, input: impl Read, notes: &mut Vec<String>) -> Result<Soup, GeometryError> {
     let mut bytes = Vec::new();
     let length = input.take(LONGEST).read_to_end(&mut bytes);
     length.map_err(|source| GeometryError::Open { file: file.to_string(), source })?;
     let name = file.to_lowercase();
     let soup = if name.ends_with(".stl") {
-        read_stl(file, &mut bytes)?
+        stl::read(file, &bytes, notes)?
     } else if name.ends_with(".obj") {
-        read_obj(file, super::plain(file, &bytes)?.as_bytes())?
+        obj::read(file, &super::plain(file, &bytes)?, notes)?
+    } else if name.ends_with(".ply") {
+        ply::read(file, &bytes)?
     } else {
-        return Err(GeometryError::refused(file, "is neither `.stl` nor `.obj`", "export the surface as STL or OBJ"));
+        let hint = "export the surface as STL, OBJ or PLY";
+        return Err(GeometryError::refused(file, "is neither `.stl` nor `.obj` nor `.ply`", hint));
     };
     if soup.triangles.is_empty() {
         return Err(GeometryError::refused(file, "holds no triangles", "check the export"));
-    }
-    Ok(soup)
-}
-
-/// A file whose length is what a binary header says is binary, even when it begins with `solid`.
-fn read_stl(file: &str, bytes: &mut [u8]) -> Result<Soup, GeometryError> {
-    let count = bytes.get(80..STL_HEADER).map(|c| u32::from_le_bytes([c[0], c[1], c[2], c[3]]) as usize);
-    let announced = count.map(|n| STL_HEADER + STL_TRIANGLE * n);
-    let begins = numbers_of(&bytes[..bytes.len().min(BEGINNING)]).unwrap_or_default();
-    let text = begins.trim_start().get(..5).is_some_and(|w| w.eq_ignore_ascii_case("solid"));
-    match announced {
-        Some(length) if length == bytes.len() || (!text && length < bytes.len()) => read_stl_binary(file, bytes),
-        _ if text => read_stl_text(file, &super::plain(file, bytes)?),
-        Some(length) => {
-            let (n, held) = (count.unwrap_or(0), bytes.len());
-            let what = format!("announces {n} triangles, {length} bytes, but holds {held} bytes: it is cut short");
-            Err(GeometryError::refused(file, what, "copy or export the file again"))
-        }
-        None => {
-            let what = format!("is no STL file: {} bytes, and a binary header alone has 84", bytes.len());
-            Err(GeometryError::refused(file, what, "text STL begins with `solid`"))
-        }
-    }
-}
-
-fn read_stl_binary(file: &str, bytes: &mut [u8]) -> Result<Soup, GeometryError> {
-    // The reader takes a header that begins with `solid` for text.
-    bytes[..80].fill(0);
-    let broken = |e: std::io::Error| GeometryError::refused(file, e.to_string(), "export the file again");
-    let mut cursor = Cursor::new(bytes);
-    let mut soup = Soup::default();
-    for (i, triangle) in stl_io::create_stl_reader(&mut cursor).map_err(broken)?.enumerate() {
-        let corners = triangle.map_err(broken)?.vertices.map(|v| Vector(v.0.map(f64::from)));
-        if let Some(bad) = corners.iter().find(|c| !c.is_finite()) {
-            let what = format!("triangle {} has the corner {:?}, not a finite point", i + 1, bad.0);
-            return Err(GeometryError::refused(file, what, "export the file again"));
-        }
-        soup.push(corners, 0);
-    }
-    Ok(soup)
-}
-
-fn read_stl_text(file: &str, text: &str) -> Result<Soup, GeometryError> {
-    let mut soup = Soup::default();
-    let mut corners: Vec<Vector<3>> = Vec::new();
-    let (mut tag, mut open) = (0, false);
-    for (i, line) in text.lines().enumerate() {
-        let refused =
-            |what: String, hint: &str| Err(GeometryError::refused(format!("{file}, line {}", i + 1), what, hint));
-        let words: Vec<&str> = line.split_whitespace().collect();
-        let Some(first) = words.first() else { continue };
-        match first.to_ascii_lowercase().as_str() {
-            "solid" => tag = soup.begin(&words[1..].join(" ")),
-            "facet" if open => return refused("a facet begins inside another".into(), "a line `endfacet` is missing"),
-            "facet" => open = true,
-            "vertex" if open => match vertex(&words[1..]) {
-                Some(point) => corners.push(point),
-                None => return refused(no_point(line, "a vertex"), "write `vertex x y z`, decimals with a point"),
-            },
-            "endfacet" => match corners[..] {
-                [a, b, c] => {
-                    soup.push([a, b, c], tag);
-                    corners.clear();
-                    open = false;
-                }
-                _ => return refused(format!("the facet has {} vertices", corners.len()), "triangles have 3"),
-            },
-            "outer" | "endloop" | "endsolid" => {}
-            other => return refused(format!("`{other}` is not a word of an STL file"), "export the file again"),
-        }
-    }
-    if open {
-        return Err(GeometryError::refused(
-            file,
-            "ends inside a facet: it is cut short",
-            "copy or export the file again",
-        ));
     }
     Ok(soup)
 }
@@ -149,69 +72,23 @@ fn no_point(line: &str, what: &str) -> String {
     }
 }
 
-/// Three numbers; magnitudes above 1e100 would overflow when squared.
-fn vertex(words: &[&str]) -> Option<Vector<3>> {
-    let values: Vec<f64> = words.iter().filter_map(|w| w.parse().ok()).filter(|v: &f64| v.abs() < 1e100).collect();
+/// A point of three numbers; magnitudes above 1e100 would overflow when squared.
+fn point(words: &[&str]) -> Option<Vector<3>> {
+    let value = |w: &&str| w.parse::<f64>().ok().filter(|v| v.abs() < 1e100);
+    let values: Vec<f64> = words.iter().map_while(value).collect();
     match (words.len(), &values[..]) {
         (3, &[x, y, z]) => Some(Vector([x, y, z])),
         _ => None,
     }
 }
 
-fn read_obj(file: &str, bytes: &[u8]) -> Result<Soup, GeometryError> {
-    let models = match parse_obj(bytes) {
-        Ok(models) => models,
-        Err(error) => {
-            let number = first_bad_line(bytes);
-            let line = bytes.split(|b| *b == b'\n').nth(number - 1).map(String::from_utf8_lossy).unwrap_or_default();
-            let place = format!("{file}, line {number}");
-            if decimal_comma(&line).is_some() {
-                return Err(GeometryError::refused(
-                    place,
-                    no_point(&line, "read"),
-                    "write `v x y z`, decimals with a point",
-                ));
-            }
-            return Err(GeometryError::refused(place, error.to_string(), "export the file again, as triangles"));
-        }
-    };
-    let mut soup = Soup::default();
-    for model in models {
-        let tag = soup.begin(&model.name);
-        let point = |i: &u32| {
-            let first = 3 * *i as usize;
-            model.mesh.positions.get(first..first + 3).map(|p| Vector([p[0], p[1], p[2]]))
-        };
-        for (i, corners) in model.mesh.indices.chunks_exact(3).enumerate() {
-            let corners = [point(&corners[0]), point(&corners[1]), point(&corners[2])];
-            let [Some(a), Some(b), Some(c)] = corners else { continue };
-            if [a, b, c].iter().any(|p| p.max_abs() >= 1e100 || !p.is_finite()) {
-                let what = format!("triangle {} of `{}` has a corner that is not a finite point", i + 1, model.name);
-                return Err(GeometryError::refused(file, what, "export the file again"));
-            }
-            soup.push([a, b, c], tag);
-        }
+/// Refuses the corner of a triangle, counted from one, that is no finite point.
+fn finite(file: &str, triangle: usize, corner: &Vector<3>) -> Result<(), GeometryError> {
+    if corner.is_finite() && corner.max_abs() < 1e100 {
+        return Ok(());
     }
-    Ok(soup)
-}
-
-fn parse_obj(mut bytes: &[u8]) -> Result<Vec<tobj::Model>, tobj::LoadError> {
-    let options =
-        tobj::LoadOptions { triangulate: true, ignore_points: true, ignore_lines: true, ..Default::default() };
-    // Materials are of no use here.
-    tobj::load_obj_buf(&mut bytes, &options, |_| Ok(Default::default())).map(|(models, _)| models)
-}
-
-/// The first line with which reading fails, found by bisection: the reader's errors carry no place.
-fn first_bad_line(bytes: &[u8]) -> usize {
-    let ends: Vec<usize> = bytes
-        .split_inclusive(|&b| b == b'\n')
-        .scan(0, |end, line| {
-            *end += line.len();
-            Some(*end)
-        })
-        .collect();
-    ends.partition_point(|&end| parse_obj(&bytes[..end]).is_ok()) + 1
+    let what = format!("triangle {triangle} has the corner {:?}, not a finite point", corner.0);
+    Err(GeometryError::refused(file, what, "export the file again"))
 }
 
 #[cfg(test)]
@@ -221,26 +98,169 @@ mod tests {
     const STL: &str = "solid a\nfacet normal 0 0 1\nouter loop\nvertex 0.0 0.0 0.0\nvertex 1.5 0.0 0.0\nvertex 0.0 1.0 0.0\n\
                        endloop\nendfacet\nendsolid a\n";
     const OBJ: &str = "v 0.0 0.0 0.0\nv 1.5 0.0 0.0\nv 0.0 1.0 0.0\nf 1 2 3\n";
+    const PLY: &str = "ply\nformat ascii 1.0\nelement vertex 3\nproperty double x\nproperty double y\nproperty double z\n\
+                       element face 1\nproperty list uchar int vertex_indices\nend_header\n0.0 0.0 0.0\n1.5 0.0 0.0\n0.0 1.0 0.0\n3 0 1 2\n";
+
+    fn soup(file: &str, bytes: &[u8]) -> Result<(Soup, Vec<String>), String> {
+        let mut notes = Vec::new();
+        read(file, bytes, &mut notes).map(|soup| (soup, notes)).map_err(|e| e.to_string())
+    }
+
+    fn triangle() -> Vec<[Vector<3>; 3]> {
+        vec![[[0.0; 3], [1.5, 0.0, 0.0], [0.0, 1.0, 0.0]].map(Vector)]
+    }
 
     #[test]
     fn surface_files_are_read_however_they_are_saved() {
         let wide = |text: &str| text.encode_utf16().flat_map(u16::to_le_bytes).collect::<Vec<u8>>();
-        for (file, text) in [("a.stl", STL), ("a.obj", OBJ)] {
+        for (file, text) in [("a.stl", STL), ("a.obj", OBJ), ("a.ply", PLY)] {
             let marked = [vec![0xff, 0xfe], wide(text)].concat();
-            for bytes in
-                [text.replace('\n', "\r").into_bytes(), text.replace('\n', "\r\n").into_bytes(), wide(text), marked]
-            {
-                let soup = read(file, &bytes[..]).unwrap();
-                assert_eq!(soup.triangles, [[[0.0; 3], [1.5, 0.0, 0.0], [0.0, 1.0, 0.0]].map(Vector)], "{file}");
+            let mut saved = vec![text.as_bytes().to_vec(), text.replace('\n', "\r\n").into_bytes()];
+            if file != "a.ply" {
+                saved.extend([text.replace('\n', "\r").into_bytes(), wide(text), marked]);
+            }
+            for bytes in saved {
+                assert_eq!(soup(file, &bytes).unwrap().0.triangles, triangle(), "{file}");
             }
         }
     }
 
     #[test]
     fn decimal_commas_are_named() {
-        for (file, text, line) in [("a.stl", STL, 5), ("a.obj", OBJ, 2)] {
-            let told = read(file, text.replace("1.5", "1,5").as_bytes()).unwrap_err().to_string();
+        for (file, text, line) in [("a.stl", STL, 5), ("a.obj", OBJ, 2), ("a.ply", PLY, 11)] {
+            let told = soup(file, text.replace("1.5", "1,5").as_bytes()).unwrap_err();
             assert!(told.contains(&format!("{file}, line {line}: `1,5` has a decimal comma")), "{told}");
         }
+    }
+
+    /// The triangle as a binary file with these words in its header, which says that there are `count`.
+    fn binary(header: &[u8], count: u32) -> Vec<u8> {
+        let mut bytes = header.to_vec();
+        bytes.resize(80, 0);
+        bytes.extend(count.to_le_bytes());
+        bytes.extend([0; 12]);
+        bytes.extend(triangle()[0].iter().flat_map(|x| x.0).flat_map(|v| (v as f32).to_le_bytes()));
+        bytes.extend([0, 0]);
+        bytes
+    }
+
+    #[test]
+    fn stl_files_that_differ_from_the_format_are_read_and_told() {
+        let more = |tail: &[u8]| [&binary(b"solid cube", 1)[..], tail].concat();
+        for (bytes, told) in [
+            (binary(b"solid cube", 1), None),
+            (more(b"\n"), Some("1 byte after the last triangle is left out")),
+            (more(b"some more"), Some("9 bytes after")),
+            (binary(b"exported", 0), Some("announces 0 triangles, but 1 follow")),
+            (STL.replace("endsolid", "end solid").into_bytes(), None),
+            (STL.replace("endloop\nendfacet", "end loop\nend facet").to_uppercase().into_bytes(), None),
+            (STL.replace("endloop\n", "").replace("outer loop\n", "").into_bytes(), None),
+            (STL.replace('\n', " ").replacen("solid a ", "solid a\n", 1).into_bytes(), None),
+            (format!("# exported\n\n{STL}").into_bytes(), None),
+            (STL.replacen("solid a\n", "", 1).into_bytes(), None),
+            (STL.replace("normal 0 0 1", "normal nan nan nan").into_bytes(), None),
+            (STL.replace("endfacet\n", "endfacet\ncolor 1 0 0\n").into_bytes(), None),
+        ] {
+            let (soup, notes) = soup("a.stl", &bytes).unwrap_or_else(|e| panic!("{e} {told:?}"));
+            assert_eq!(soup.triangles, triangle());
+            assert!(
+                notes.len() == usize::from(told.is_some()) && notes.iter().all(|n| n.contains(told.unwrap_or(""))),
+                "{notes:?}"
+            );
+        }
+    }
+
+    #[test]
+    fn damaged_stl_files_are_refused_with_their_place() {
+        let mut bad = binary(b"", 1);
+        bad[84 + 12 + 4..][..4].copy_from_slice(&f32::NAN.to_le_bytes());
+        let cut = &binary(b"solid", 2)[..130];
+        for (bytes, told) in [
+            (&bad[..], "triangle 1 has the corner"),
+            (cut, "announces 2 triangles, 184 bytes, but holds 130 bytes: it is cut short in triangle 1"),
+            (STL.replace("1.5 0.0 0.0", "1.5 0.0").as_bytes(), "line 5: `vertex 1.5 0.0` is not a vertex"),
+            (STL.replace("1.5 0.0 0.0", "1.5 0.0 0.0 7").as_bytes(), "line 5: `7` is not a word of an STL file"),
+            (STL.replace("vertex 1.5 0.0 0.0\n", "").as_bytes(), "line 7: the facet has 2 vertices"),
+            (
+                STL.replace("endfacet\n", "").replace("solid a", &format!("solid a\n{}", &STL[8..])).as_bytes(),
+                "a facet begins inside another",
+            ),
+            (STL.replace("facet normal", "faced normal").as_bytes(), "line 2: `faced` is not a word of an STL file"),
+            (STL.replace("endfacet\nendsolid a\n", "").as_bytes(), "line 7: ends inside a facet"),
+        ] {
+            let found = soup("a.stl", bytes).unwrap_err();
+            assert!(found.contains(told), "{told}: {found}");
+        }
+    }
+
+    #[test]
+    fn obj_files_of_all_programs_are_read() {
+        for (text, notes) in [
+            (OBJ.replace("f 1 2 3", "usemtl \nf 1 2 3"), 0),
+            (OBJ.replace("f 1 2 3", "vt 0 0\nvn 0 0 1\ns off\no part\nf 1/1 2/1 3/1"), 0),
+            (OBJ.replace("f 1 2 3", "vn 0 0 1\nf 1//1 2//1 3//1"), 0),
+            (OBJ.replace("f 1 2 3", "vt 0 0\nvn 0 0 1\nf 1/1/1 2/1/1 3/1/1"), 0),
+            (OBJ.replace("f 1 2 3", "f -3 -2 \\\n -1"), 0),
+            (OBJ.replace("1.5 0.0 0.0", "1.5 0.0 0.0 1.0"), 0),
+            (OBJ.replace("1.5 0.0 0.0", "1.5 0.0 0.0 0.5 0.5 0.5 # grey"), 0),
+            (OBJ.replace("v ", "v\t  ").to_uppercase(), 0),
+            (format!("f 1 2 3\n{}", OBJ.replace("f 1 2 3\n", "p 1\nl 1 2\n")), 0),
+            (format!("{OBJ}f 1 2\nwhatever 3\n"), 2),
+        ] {
+            let (soup, told) = soup("a.obj", text.as_bytes()).unwrap_or_else(|e| panic!("{e}\n{text}"));
+            assert_eq!((soup.triangles, told.len()), (triangle(), notes), "{text} {told:?}");
+        }
+        let square = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n";
+        assert_eq!(soup("a.obj", format!("{square}f 1 2 3 4").as_bytes()).unwrap().0.triangles.len(), 2);
+        let names = soup("a.obj", format!("{square}g a b\nf 1 2 3\ng\nf 1 3 4").as_bytes()).unwrap().0.names;
+        assert_eq!(names, ["a b", UNNAMED]);
+    }
+
+    #[test]
+    fn damaged_obj_files_are_refused_with_their_line() {
+        for (text, told) in [
+            (OBJ.replace("f 1 2 3", "f 1 2 4"), "line 4: vertex 4 of a face is not there: the file has 3"),
+            (OBJ.replace("f 1 2 3", "f -4 2 3"), "line 4: vertex -4 of a face is not there"),
+            (OBJ.replace("f 1 2 3", "f 0 1 2"), "line 4: `0` is not the number of a vertex"),
+            (OBJ.replace("f 1 2 3", "f 1 2 x"), "line 4: `x` is not the number of a vertex"),
+            (OBJ.replace("v 1.5 0.0 0.0", "v 1.5 0.0"), "line 2: `v 1.5 0.0` is not a vertex"),
+            (OBJ.replace("v 1.5 0.0 0.0", "v 1.5 nan 0.0"), "line 2: `v 1.5 nan 0.0` is not a vertex"),
+        ] {
+            let found = soup("a.obj", text.as_bytes()).unwrap_err();
+            assert!(found.contains(told), "{told}: {found}");
+        }
+    }
+
+    #[test]
+    fn ply_files_are_read_in_all_their_forms() {
+        let header = |kind: &str| {
+            let end = PLY.find("end_header\n").unwrap() + 11;
+            PLY[..end].replace("ascii", kind).replacen(
+                "property double z\n",
+                "property float z\nproperty uchar red\n",
+                1,
+            )
+        };
+        let body = |f64s: fn(f64) -> [u8; 8], f32s: fn(f32) -> [u8; 4], i32s: fn(i32) -> [u8; 4]| {
+            let point = |x: &Vector<3>| [&f64s(x[0])[..], &f64s(x[1]), &f32s(x[2] as f32), &[200]].concat();
+            let points: Vec<u8> = triangle()[0].iter().flat_map(point).collect();
+            [points, vec![3], [0, 1, 2].map(i32s).concat()].concat()
+        };
+        let little =
+            [header("binary_little_endian").as_bytes(), &body(f64::to_le_bytes, f32::to_le_bytes, i32::to_le_bytes)]
+                .concat();
+        let big = [header("binary_big_endian").as_bytes(), &body(f64::to_be_bytes, f32::to_be_bytes, i32::to_be_bytes)]
+            .concat();
+        for bytes in [little.clone(), big] {
+            assert_eq!(soup("a.ply", &bytes).unwrap().0.triangles, triangle());
+        }
+        let told = |bytes: &[u8]| soup("a.ply", bytes).unwrap_err();
+        assert!(told(&little[..little.len() - 1]).contains("face 1"), "{}", told(&little[..little.len() - 1]));
+        assert!(
+            told(PLY.replace("3 0 1 2", "3 0 1 3").as_bytes())
+                .contains("line 13: vertex 3 of a face is not there: the file has 3")
+        );
+        assert!(told(PLY.replace("property double z\n", "").as_bytes()).contains("no property `z`"));
+        assert!(told(b"solid a").contains("begins with `ply`"));
     }
 }

@@ -1,7 +1,7 @@
 //! Surfaces: from a case file's bodies to one discretised surface that everything else uses.
 //!
 //! Every input becomes a [`Shell`], segments in 2-D or triangles in 3-D with outward normals: NACA formulas, airfoil
-//! coordinate files, polygons, circles, ellipses, spheres, boxes, STL and OBJ files. Shells are placed and joined to a [`Surface`],
+//! coordinate files, polygons, circles, ellipses, spheres, boxes, STL, OBJ and PLY files. Shells are placed and joined to a [`Surface`],
 //! which answers nearest-point, crossing and inside questions through a tree of boxes.
 //!
 //! Bodies in space that overlap, and parts of one file, are clipped at their intersection and closed.
@@ -18,6 +18,7 @@ mod outline;
 mod parts;
 mod placement;
 mod planform;
+mod polygon;
 mod primitive;
 mod repair;
 mod sampling;
@@ -34,7 +35,7 @@ mod weld;
 
 pub use cross_section::CrossSection;
 pub use planform::{Planform, Station};
-pub use primitive::{cuboid, icosphere, write_obj, write_stl};
+pub use primitive::{cuboid, icosphere, write_obj, write_outlines, write_stl};
 pub use sampling::Chain;
 pub use shell::{Edge, Exact, Shell};
 pub use surface::{Element, Nearest, Projection, Skin, Surface};
@@ -199,7 +200,7 @@ fn load_shell(name: &str, body: &Body, folder: &Path, notes: &mut Vec<String>) -
     let place = format!("body `{name}`");
     Ok(match &body.shape {
         Shape::Naca(naca) => AnyShell::Plane(naca::shell(naca)?),
-        Shape::Airfoil(file) => AnyShell::Plane(airfoil::read(file, open(file)?, notes)?),
+        Shape::Airfoil(file) => AnyShell::Plane(airfoil::read(file, open(file)?, body.placement.scale, notes)?),
         Shape::Polygon(points) => {
             let points: Vec<Vector<2>> = points.iter().map(|p| Vector(*p)).collect();
             AnyShell::Plane(outline::polygon(&place, &points, POLYGON_CREASE, notes)?)
@@ -226,12 +227,13 @@ fn load_shell(name: &str, body: &Body, folder: &Path, notes: &mut Vec<String>) -
         }
         Shape::Surface(file) => {
             let within = body.weld.map(|l| l.0 / body.placement.scale);
-            AnyShell::Space(repair::shell(file, &mesh::read(file, open(file)?)?, within, notes)?)
+            let soup = mesh::read(file, open(file)?, notes)?;
+            AnyShell::Space(repair::shell(file, &soup, within, notes)?)
         }
         Shape::Wing(wing) => {
             let mut section = |naca: &Option<Naca>, file: &Option<String>| match (naca, file) {
                 (Some(naca), _) => naca::shell(naca).map(Some),
-                (_, Some(file)) => airfoil::read(file, open(file)?, notes).map(Some),
+                (_, Some(file)) => airfoil::read(file, open(file)?, 1.0, notes).map(Some),
                 _ => Ok(None),
             };
             let root = section(&wing.naca, &wing.airfoil)?;

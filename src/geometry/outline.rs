@@ -20,10 +20,14 @@ pub(super) const CORNER: f64 = 35.0 * PI / 180.0;
 const SAME: f64 = 1e-9;
 /// Outlines smaller than this are refused: squares of lengths would underflow.
 const SMALLEST: f64 = 1e-100;
-/// A trailing edge open by less than this fraction of the chord is closed: it is below the digits of coordinate files.
-const CLOSED: f64 = 1e-6;
-/// A trailing edge open by more than this fraction of the chord is a mistake: bases are below a tenth of the chord.
-const OPEN: f64 = 0.2;
+/// A trailing edge open by less than this fraction of the chord is closed: it is below the digits of coordinate files, which have five.
+const CLOSED: f64 = 2e-5;
+/// A gap along the chord of less than this fraction of it is closed at its middle: three digits of coordinates.
+const NARROW: f64 = 1e-3;
+/// A trailing edge open by more than this fraction of the chord is a mistake: bases of the thickest flatbacks have a quarter.
+const OPEN: f64 = 0.5;
+/// Where the first point is not repeated, the gap is at most so many times as long as the longer of the sides beside it.
+const NEXT: f64 = 2.5;
 /// Greatest distance of a chord from the curve, in chords.
 const SAGITTA: f64 = 5e-8;
 /// Segments are no longer than the chord over this number.
@@ -36,6 +40,9 @@ const STEEP: f64 = 0.577;
 const NOSE: f64 = 0.1;
 /// Next to a sharp nose the outline turns by less than this fraction of the turn at the nose.
 const SHARP_NOSE: f64 = 0.05;
+
+/// Most corners whose lines are told.
+const TOLD: usize = 8;
 
 /// A point of the outline with its outward normal.
 pub(super) type Sample = (Vector<2>, Vector<2>);
@@ -59,9 +66,14 @@ pub(super) fn airfoil(file: &str, marks: Vec<Mark>, notes: &mut Vec<String>) -> 
     let points: Vec<Vector<2>> = marks.iter().map(|m| m.point).collect();
     let corners = corners(&points, base);
     let chord = extent(&points);
-    let ends = if base { "with a blunt base" } else { "with a sharp trailing edge" };
-    let extra = corners.len().saturating_sub(if base { 2 } else { 1 });
-    let more = if extra > 0 { format!(" and {extra} more corners") } else { String::new() };
+    let ends = if base { "with a blunt base" } else { rear(&corners) };
+    let further = corners.iter().filter(|k| **k > 0 && !(base && **k == points.len() - 1));
+    let lines: Vec<String> = further.map(|k| marks[*k].line.to_string()).collect();
+    let more = match lines.len() {
+        0 => String::new(),
+        1 => format!(" and one more corner in line {}", lines[0]),
+        n => format!(" and {n} more corners, in lines {}", lines[..n.min(TOLD)].join(", ")),
+    };
     notes.push(format!("{file}: {} points, chord {chord:.6}, {ends}{more}", points.len()));
     notes.extend(wide_gaps(&marks, &corners, chord).into_iter().map(|gap| format!("{file}: {gap}")));
     let pieces = pieces(&points, &corners, chord);
@@ -76,6 +88,11 @@ pub(super) fn airfoil(file: &str, marks: Vec<Mark>, notes: &mut Vec<String>) -> 
         notes.push(format!("{file}: the curvature is wavy, {waves} changes of sign: the points carry few digits"));
     }
     Ok(shell)
+}
+
+/// How an outline without a base ends.
+fn rear(corners: &[usize]) -> &'static str {
+    if corners.contains(&0) { "with a sharp trailing edge" } else { "with a round trailing edge" }
 }
 
 /// A shell of straight sides between `points`; every turn above `crease` is a sharp corner.
@@ -153,50 +170,79 @@ fn closed_loop(file: &str, mut marks: Vec<Mark>, notes: &mut Vec<String>) -> Res
         let what = format!("has {} distinct points; a smooth outline needs at least 5", marks.len());
         return Err(GeometryError::refused(file, what, "use `polygon` for outlines with straight sides"));
     }
-    let (first, last) = (marks[0], marks[marks.len() - 1]);
+    let n = marks.len();
+    let (first, last) = (marks[0], marks[n - 1]);
     let gap = (first.point - last.point).norm() / chord;
+    let open = format!("from {} to {}", at(&last), at(&first));
     if gap > OPEN {
         let what = format!("the outline begins at {} and ends at {}", at(&first), at(&last));
         let hint = "both ends must be the trailing edge: check the order of the points";
         return Err(GeometryError::refused(file, what, hint));
     }
-    if gap > CLOSED {
-        has_base(file, &marks)?;
+    if gap <= SAME {
+        marks.pop();
+        return Ok((marks, false));
+    }
+    if gap > CLOSED && goes_on(&marks) {
+        notes.push(format!("{file}: the first point is not repeated at the end: the outline is closed {open}"));
+        return Ok((marks, false));
+    }
+    let across = is_across(&marks);
+    if gap <= CLOSED || (gap <= NARROW && !across) {
+        notes.push(format!("{file}: the trailing edge, open by {gap:.1e} chords {open}, is closed"));
+        marks[0].point = (first.point + last.point) * 0.5;
+        marks.pop();
+        return Ok((marks, false));
+    }
+    if across {
         return Ok((marks, true));
     }
-    if gap > SAME {
-        notes.push(format!("{file}: the trailing edge was open by {gap:.1e} chords and is closed"));
-        marks[0].point = (first.point + last.point) * 0.5;
-    }
-    marks.pop();
-    Ok((marks, false))
-}
-
-/// Refuses an open end that is no base: a base stands across the section, while a gap that points were left out of runs along it.
-fn has_base(file: &str, marks: &[Mark]) -> Result<(), GeometryError> {
-    /// Least angle between a base and the sides that end there, radians (30°).
-    const ACROSS: f64 = PI / 6.0;
-    let n = marks.len();
-    let (first, last) = (&marks[0], &marks[n - 1]);
-    let base = first.point - last.point;
-    let along = |a: &Mark, b: &Mark| {
-        let angle = simplex::angle_between(&base.unit(), &(a.point - b.point).unit());
-        angle.min(PI - angle) < ACROSS
-    };
-    if !along(first, &marks[1]) && !along(last, &marks[n - 2]) {
-        return Ok(());
-    }
-    let what = format!("the outline is open from {} to {}, along its side", at(first), at(last));
+    let what = format!("the outline is open {open}, along its side");
     let hint = "add the points that are missing at the trailing edge; a blunt base stands across the section";
     Err(GeometryError::refused(file, what, hint))
 }
 
+/// True when the line that closes an open outline continues it at one end at least, and is not longer than the sides beside it: then only
+/// the first point is not repeated.
+fn goes_on(marks: &[Mark]) -> bool {
+    let n = marks.len();
+    let side = |a: usize, b: usize| marks[b].point - marks[a].point;
+    let (before, gap, after) = (side(n - 2, n - 1), side(n - 1, 0), side(0, 1));
+    let turn = |a: &Vector<2>, b: &Vector<2>| simplex::angle_between(&a.unit(), &b.unit());
+    gap.norm() <= NEXT * before.norm().max(after.norm()) && turn(&before, &gap).min(turn(&gap, &after)) < CORNER
+}
+
+/// True when an open end is a base, which stands across the chord, while a gap that points were left out of runs along it.
+fn is_across(marks: &[Mark]) -> bool {
+    /// Least angle between a base and the chord, radians (30°).
+    const ACROSS: f64 = PI / 6.0;
+    let (first, last) = (marks[0].point, marks[marks.len() - 1].point);
+    let middle = (first + last) * 0.5;
+    let far = marks
+        .iter()
+        .map(|m| middle - m.point)
+        .fold(Vector::ZERO, |a: Vector<2>, b| if b.norm() > a.norm() { b } else { a });
+    let angle = simplex::angle_between(&(first - last).unit(), &far.unit());
+    angle.min(PI - angle) >= ACROSS
+}
+
 /// Removes points that repeat the one before.
 fn drop_repeated(file: &str, marks: &mut Vec<Mark>, size: f64, notes: &mut Vec<String>) {
-    let before = marks.len();
-    marks.dedup_by(|b, a| (b.point - a.point).norm() <= SAME * size);
-    if marks.len() < before {
-        notes.push(format!("{file}: {} repeated points are left out", before - marks.len()));
+    let mut lines = Vec::new();
+    marks.dedup_by(|b, a| {
+        let same = (b.point - a.point).norm() <= SAME * size;
+        lines.extend(same.then_some(b.line));
+        same
+    });
+    if let Some(line) = lines.first() {
+        let count = lines.len();
+        let more = if count > 1 {
+            format!("{count} points repeat the one before, the first in")
+        } else {
+            "the point of".into()
+        };
+        let end = if count > 1 { "" } else { " repeats the one before" };
+        notes.push(format!("{file}: {more} line {line}{end}: left out"));
     }
 }
 

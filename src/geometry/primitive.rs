@@ -143,14 +143,16 @@ pub fn cuboid(size: [f64; 3]) -> Shell<3> {
 
 /// Writes a surface as a binary STL file (single precision, as the format demands).
 pub fn write_stl(out: &mut impl Write, surface: &Surface<3>) -> io::Result<()> {
-    let single = |x: &Vector<3>| stl_io::Vector::new(x.0.map(|c| c as f32));
-    let triangle = |e: usize| {
-        let corners = surface.corners(e as u32);
-        let normal = single(&surface.element_area_vector(e as u32).unit());
-        stl_io::Triangle { normal, vertices: [single(&corners[0]), single(&corners[1]), single(&corners[2])] }
-    };
-    let triangles: Vec<stl_io::Triangle> = (0..surface.elements.len()).map(triangle).collect();
-    stl_io::write_stl(out, triangles.iter())
+    out.write_all(&[0; 80])?;
+    out.write_all(&(surface.elements.len() as u32).to_le_bytes())?;
+    for e in 0..surface.elements.len() as u32 {
+        let normal = surface.element_area_vector(e).unit();
+        for x in std::iter::once(&normal).chain(&surface.corners(e)) {
+            x.0.iter().try_for_each(|c| out.write_all(&(*c as f32).to_le_bytes()))?;
+        }
+        out.write_all(&[0; 2])?;
+    }
+    Ok(())
 }
 
 /// Writes a surface as an OBJ file: all digits, one group for each tag.
@@ -166,6 +168,20 @@ pub fn write_obj(out: &mut impl Write, surface: &Surface<3>) -> io::Result<()> {
         }
         let [a, b, c] = e.vertices.map(|v| v + 1);
         writeln!(out, "f {a} {b} {c}")?;
+    }
+    Ok(())
+}
+
+/// Writes the outlines of bodies in the plane as coordinates `x y` with all digits, once around each body; the line before the points of
+/// a body is its name.
+pub fn write_outlines(out: &mut impl Write, surface: &Surface<2>) -> io::Result<()> {
+    for (body, name) in surface.bodies.iter().enumerate() {
+        writeln!(out, "{name}")?;
+        let own: Vec<_> = surface.elements.iter().filter(|e| usize::from(e.body) == body).collect();
+        let closed = own.iter().chain(own.first()).map(|e| &surface.vertices[e.vertices[0] as usize]);
+        for x in closed {
+            writeln!(out, "{} {}", x[0], x[1])?;
+        }
     }
     Ok(())
 }

@@ -209,7 +209,7 @@ mod tests {
 
     fn load(file: &str, bytes: &[u8]) -> Loaded {
         let mut notes = Vec::new();
-        let shell = shell(file, &mesh::read(file, bytes)?, None, &mut notes)?;
+        let shell = shell(file, &mesh::read(file, bytes, &mut notes)?, None, &mut notes)?;
         Ok((Surface::new(&[("body".into(), shell)]), notes))
     }
 

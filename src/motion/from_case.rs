@@ -3,6 +3,7 @@
 //! Laws are in the time of the solver, the tables in that of the case: here one becomes the other, and nowhere else.
 use std::sync::Arc;
 
+use super::mode_points::{self, Flaw};
 use super::samples::Samples;
 use super::{BodyMotion, ModeShape, Motions, Spline, TimeFunction};
 use crate::case::formula::{Formula, FormulaError};
@@ -55,6 +56,26 @@ pub enum MotionError {
         /// Its name.
         file: String,
     },
+    /// Two points of a mode that are one move differently.
+    #[error(
+        "mode `{file}`, line {second}: the point is {distance:.1e} away from that of line {first}, but its displacement differs by \
+         {difference:.2e}, where the greatest of all is {greatest:.2e}\n\
+         hint: remove one of the two rows: the shape between points is smooth"
+    )]
+    Jump {
+        /// Its name.
+        file: String,
+        /// Line of one point.
+        first: usize,
+        /// Line of the other.
+        second: usize,
+        /// Distance between them.
+        distance: f64,
+        /// Difference of their displacements.
+        difference: f64,
+        /// Greatest displacement of all points.
+        greatest: f64,
+    },
     /// A formula cannot be read.
     #[error("formula `{text}`: {source}")]
     Formula {
@@ -102,7 +123,12 @@ impl<const D: usize> Motions<D> {
 pub fn mode_shape<const D: usize>(file: &str, read: ReadFile<'_>) -> Result<ModeShape<D>, MotionError> {
     let text = read(file).map_err(|source| MotionError::ModeFile { file: file.to_owned(), source })?;
     let table = read_mode(&text, file, D).map_err(|e| MotionError::Mode(Box::new(e)))?;
-    ModeShape::new(&table).ok_or_else(|| MotionError::Crowded { file: file.to_owned() })
+    mode_points::shape(file, &table).map_err(|flaw| match flaw {
+        Flaw::Crowded => MotionError::Crowded { file: file.to_owned() },
+        Flaw::Jump { lines: [first, second], distance, difference, greatest } => {
+            MotionError::Jump { file: file.to_owned(), first, second, distance, difference, greatest }
+        }
+    })
 }
 
 /// What the law of one body is made from.

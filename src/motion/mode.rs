@@ -6,7 +6,9 @@
 //!
 //! the interpolant of Duchon (1977): linear fields, and with them shifts and linearised rotations, come back to round-off,
 //! far away φ grows linearly as they do, and two derivatives are continuous. P projects on the line or plane that the points lie in,
-//! when they do (a beam, a plate): the shape then does not change across it. Else P is the identity.
+//! when they do (a beam, a plate): the shape then does not change across it. Else P is the identity. Where a file has more points than a full
+//! system can be solved for, φ passes through some of them, chosen one after another where it misses most ([`super::mode_points`]).
+use super::mode_points;
 use crate::case::ModeTable;
 use crate::math::least_squares::Fit;
 use crate::math::{Vector, dense};
@@ -14,6 +16,8 @@ use crate::math::{Vector, dense};
 /// Extent of the points across a line or plane, over their extent along it, below which they count as lying in it: chords
 /// of sections are a thousand times their camber at most.
 const FLAT: f64 = 1e-3;
+/// Most points that φ passes through: it is found from a full system with as many unknowns.
+pub(super) const MOST_KNOTS: usize = 2000;
 /// Part of the greatest displacement that a linear field may miss and be told to be exact: digits of files in double precision.
 const LINEAR: f64 = 1e-12;
 
@@ -37,6 +41,10 @@ pub struct ModeShape<const D: usize> {
     corners: [Vector<D>; 2],
     /// A part behind a hinge that moves against the rest.
     hinge: Option<Hinge<D>>,
+    /// File that the points are from, where they are from one.
+    pub(super) file: Option<String>,
+    /// What was mended of the points, and what of them is doubtful.
+    pub(super) remarks: Vec<String>,
 }
 
 /// φ = w(X) M (X − l): what lies behind a hinge at l moves linearly about it, w rising from 0 to 1 along x over the blend,
@@ -109,11 +117,13 @@ impl<const D: usize> ModeShape<D> {
         let size = shifts.iter().map(Vector::norm).fold(0.0, f64::max);
         let corners = [bounds.min, bounds.max];
         let (offset, slope) = linear(&points, &shifts, (&centre, &axes));
-        let mut shape =
-            Self { centre, offset, slope, knots: Vec::new(), weights: Vec::new(), within, size, corners, hinge: None };
+        let mut shape = Self { offset, slope, within, size, corners, ..Self::resting(centre) };
         let rest: Vec<Vector<D>> = points.iter().zip(&shifts).map(|(x, u)| *u - shape.at(x)).collect();
         if rest.iter().all(|r| r.max_abs() <= LINEAR * size) {
             return Some(shape);
+        }
+        if points.len() > MOST_KNOTS {
+            return mode_points::thinned(&shape, (&points, &shifts), &axes);
         }
         shape.interpolate(&points, &rest, &axes)?;
         Some(shape)
@@ -121,21 +131,33 @@ impl<const D: usize> ModeShape<D> {
 
     /// What lies behind a hinge moves against the rest; `size` is about how far.
     pub fn hinged(hinge: Hinge<D>, size: f64) -> Self {
+        Self { size, hinge: Some(hinge), ..Self::resting(hinge.place) }
+    }
+
+    /// Nothing moves.
+    fn resting(centre: Vector<D>) -> Self {
         Self {
-            centre: hinge.place,
+            centre,
             offset: Vector::ZERO,
             slope: [Vector::ZERO; D],
             knots: Vec::new(),
             weights: Vec::new(),
             within: std::array::from_fn(Vector::axis),
-            size,
-            corners: [hinge.place; 2],
-            hinge: Some(hinge),
+            size: 0.0,
+            corners: [centre; 2],
+            hinge: None,
+            file: None,
+            remarks: Vec::new(),
         }
     }
 
     /// Adds what takes the displacements `rest` at the points.
-    fn interpolate(&mut self, points: &[Vector<D>], rest: &[Vector<D>], axes: &[(Vector<D>, f64)]) -> Option<()> {
+    pub(super) fn interpolate(
+        &mut self,
+        points: &[Vector<D>],
+        rest: &[Vector<D>],
+        axes: &[(Vector<D>, f64)],
+    ) -> Option<()> {
         let (n, m) = (points.len(), axes.len());
         self.knots = points.iter().map(|x| self.projected(x)).collect();
         // in units of the extent of the points, so that all blocks of the matrix are of one size
@@ -208,10 +230,25 @@ impl<const D: usize> ModeShape<D> {
     pub fn corners(&self) -> [Vector<D>; 2] {
         self.corners
     }
+
+    /// The file that the points are from, where they are from one.
+    pub fn file(&self) -> Option<&str> {
+        self.file.as_deref()
+    }
+
+    /// The points that the shape passes through, where it is not a linear field.
+    pub fn knots(&self) -> &[Vector<D>] {
+        &self.knots
+    }
+
+    /// What was mended of the points of the file, and what of them is doubtful.
+    pub fn remarks(&self) -> &[String] {
+        &self.remarks
+    }
 }
 
 /// Directions in which points extend, orthonormal, with half of that extent, farthest first.
-fn axes<const D: usize>(points: &[Vector<D>], centre: &Vector<D>) -> Vec<(Vector<D>, f64)> {
+pub(super) fn axes<const D: usize>(points: &[Vector<D>], centre: &Vector<D>) -> Vec<(Vector<D>, f64)> {
     let mut axes: Vec<(Vector<D>, f64)> = Vec::new();
     let mut left: Vec<Vector<D>> = points.iter().map(|x| *x - *centre).collect();
     while axes.len() < D {

@@ -122,6 +122,9 @@ fn look<const D: usize>(case: &Case, input: &Path, out: Option<&Path>) -> Result
     let motions = setup::motions(case, input, surface.as_ref())?;
     folder::check_compared(case, input)?;
     let mut warnings = setup::sane(case, surface.as_ref(), &motions)?;
+    let told = setup::judged_modes(case, input, surface.as_ref())?;
+    notes.extend(told.notes);
+    warnings.extend(told.warnings);
     let site = Site { case, surface: surface.as_ref(), motions: &motions };
     let solver = setup::solver(&site, &Stage::PLAIN, &[], None)?;
     let seconds = began.elapsed().as_secs_f64();

@@ -266,6 +266,9 @@ impl Run<'_> {
         let mut motions = setup::motions(self.case, self.input, surface)?;
         setup::sane(self.case, surface, &motions)?.iter().for_each(|n| monitor.warn(n));
         let bodies = setup::bodies(self.case, self.input, surface, &mut motions)?;
+        let told = setup::told_of_modes(surface, &motions, &bodies);
+        told.notes.iter().for_each(|n| monitor.note(n));
+        told.warnings.iter().for_each(|w| monitor.warn(w));
         if !self.held {
             setup::check_equilibrium(self.case, surface, &bodies)?;
         }

@@ -36,6 +36,9 @@ pub(crate) fn bodies<const D: usize>(
             None => mode_shape(&mode.file, &read),
         };
         let shapes = data.modes.iter().map(|m| shape(m).map(Arc::new)).collect::<Result<Vec<_>, _>>()?;
+        // a structure of no body by name moves all
+        let alone = data.body.as_ref().map(|_| body);
+        shapes.iter().try_for_each(|shape| super::modes::lies_on(surface, alone, shape))?;
         let shared = data.model == StructureModel::Floating;
         let first = all.last().filter(|_| !shared).map_or(0, |b| b.range().end);
         motions.free(body, body_motion(&structure, first, &shapes));

@@ -1,5 +1,6 @@
 //! From case to solver: surface, stages, cloud, fluid, state at the start.
 mod bodies;
+mod modes;
 mod motion_feasibility;
 mod refinement;
 mod sanity;
@@ -13,6 +14,7 @@ use std::sync::Arc;
 
 pub(crate) use self::solids::solids;
 pub(crate) use bodies::{bodies, check_equilibrium, described};
+pub(crate) use modes::{judged as judged_modes, told_of as told_of_modes};
 pub(crate) use motion_feasibility::check as check_motion;
 pub(crate) use refinement::{adapted, behind_shocks};
 pub(crate) use sanity::sane;
@@ -33,7 +35,7 @@ use crate::cloud::{Cloud, Operators};
 use crate::geometry::{GeometryError, Surface, load_surface};
 use crate::math::fourier::Instances;
 use crate::math::{Bounds, Vector};
-use crate::motion::{BodyMotion, ModeShape, Motions};
+use crate::motion::{BodyMotion, Motions};
 use crate::physics::{Conserved, Gas, n_variables};
 use crate::scheme::fluid::FarField;
 use crate::scheme::probe::Probe;
@@ -48,14 +50,6 @@ const CONSERVATIVE: bool = true;
 
 /// Relative difference of entropy that counts as none.
 const ONE_ENTROPY: f64 = 1e-6;
-
-/// Extents of a body by which the points of a mode may lie beside it.
-const OFF: f64 = 0.5;
-/// Least extent of the points of a mode over that of the body: a scale of ten, thousand or 25.4 shows.
-const SMALL: f64 = 0.2;
-
-/// Greatest one: a mode of a whole aircraft may carry a flap.
-const LARGE: f64 = 100.0;
 
 /// Refuses what a case file can say but the solver cannot compute yet; each line goes when its solver comes.
 pub(crate) fn supported(case: &Case) -> Result<(), RunError> {
@@ -297,31 +291,12 @@ pub(crate) fn motions<const D: usize>(
     let read = |name: &str| folder::text(input, name);
     let motions = Motions::of_case(case, chord, &read)?;
     if let Some(surface) = surface {
-        for (b, name) in surface.bodies.iter().enumerate().take(motions.len()) {
-            let bounds = surface.bounds_of(b);
-            motions.of(b).shapes().try_for_each(|shape| lies_on((&format!("`{name}`"), &bounds), shape))?;
+        for b in 0..motions.len().min(surface.bodies.len()) {
+            motions.of(b).shapes().try_for_each(|shape| modes::lies_on(surface, Some(b), shape))?;
         }
-        let whole = surface.bounds();
-        motions.shapes_of_forces().iter().try_for_each(|shape| lies_on(("the bodies", &whole), shape))?;
+        motions.shapes_of_forces().iter().try_for_each(|shape| modes::lies_on(surface, None, shape))?;
     }
     Ok(motions)
-}
-
-/// Refuses a mode whose points lie off the body: those of another placement, or in other units.
-fn lies_on<const D: usize>((name, body): (&str, &Bounds<D>), shape: &ModeShape<D>) -> Result<(), RunError> {
-    let [min, max] = shape.corners();
-    let (points, reach) = (Bounds { min, max }, OFF * body.extent().max_abs());
-    let far = (0..D).any(|d| points.min[d] > body.max[d] + reach || points.max[d] < body.min[d] - reach);
-    let large = points.extent().max_abs() > LARGE * body.extent().max_abs();
-    let small = points.extent().max_abs() < SMALL * body.extent().max_abs() && points.extent().max_abs() > 0.0;
-    if !far && !small && !large {
-        return Ok(());
-    }
-    let place = |b: &Bounds<D>| format!("{:?} to {:?}", b.min.0, b.max.0);
-    Err(RunError::Motion {
-        what: format!("the points of a mode reach from {}, but {name} from {}", place(&points), place(body)),
-        hint: "points of a mode are those of the body where it is placed, in the units of the case",
-    })
 }
 
 /// Quarter chord of the bodies.
