@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 pub use limit_cycles::{GasResponse, LimitCycles};
 pub use stream::StreamRatio;
 
+use super::quantity::Velocity;
 use super::structure::StructureForce;
 use super::{Case, Dual, Motion, ParticleMotion, Steady, Structure, Temporal, Time};
 
@@ -36,8 +37,11 @@ pub struct Flutter {
     pub state_space: bool,
     /// The limiter stays what it is in the steady flow.
     pub frozen_limiter: bool,
-    /// Crossings are sought on a coarser cloud as well.
+    /// Crossings and damping are sought on a coarser cloud as well.
     pub cloud_error: bool,
+    /// V_D, an equivalent airspeed that margins are told against.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub design_speed: Option<Velocity>,
 }
 
 /// How the stream is varied at one Mach number.

@@ -85,6 +85,17 @@ impl Gmres {
         goal: Goal,
         system: System<impl FnMut(&[f64], &mut [f64]), impl FnMut(Numbers<'_>, &mut [f64])>,
     ) -> Solved {
+        self.solve_unless((b, x), goal, &|| false, system)
+    }
+
+    /// The same from `(b, x)`, which ends with what it has where `stop`, asked in every iteration, says so.
+    pub fn solve_unless(
+        &mut self,
+        (b, x): (&mut [f64], &mut [f64]),
+        goal: Goal,
+        stop: &dyn Fn() -> bool,
+        system: System<impl FnMut(&[f64], &mut [f64]), impl FnMut(Numbers<'_>, &mut [f64])>,
+    ) -> Solved {
         let (Goal { tolerance, most }, System { mut product, mut precondition }) = (goal, system);
         fill(x, 0.0);
         let size = self.hessenberg.len();
@@ -103,7 +114,7 @@ impl Gmres {
             let left = self.orthogonalise(k, b);
             self.rotate(k);
             used = k + 1;
-            if self.g[k + 1].abs() <= tolerance * start || self.hessenberg[k][k] == 0.0 || used == size {
+            if self.g[k + 1].abs() <= tolerance * start || self.hessenberg[k][k] == 0.0 || used == size || stop() {
                 break;
             }
             self.lengthen(used, b, left);

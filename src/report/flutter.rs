@@ -95,21 +95,31 @@ fn status(found: Option<&Found>) -> Status {
 fn card(at: &At) -> Option<Card> {
     let c = at.first()?;
     let what = tables::in_words(&c.kind);
-    let (name, value) = match (&at.matching[..], c.speed_index) {
-        ("altitude", _) => ("altitude, m", c.altitude.map_or(f64::NAN, f64::round)),
-        ("density", _) => ("dynamic pressure", c.dynamic_pressure),
-        (_, Some(index)) => ("speed index", index),
-        _ => ("speed", c.speed),
+    let speed = ("TAS, m/s", c.speed, c.speed_error);
+    let (name, value, bar) = match (&at.matching[..], at.dimensional, c.speed_index) {
+        ("altitude", ..) => ("altitude, m", c.altitude.map_or(f64::NAN, f64::round), c.altitude_error),
+        ("density", true, _) => ("dynamic pressure, Pa", c.dynamic_pressure, c.dynamic_pressure_error),
+        ("density", ..) => ("dynamic pressure", c.dynamic_pressure, c.dynamic_pressure_error),
+        (_, true, _) => speed,
+        (.., Some(index)) => ("speed index", index, c.speed_index_error),
+        _ => ("speed", c.speed, c.speed_error),
     };
-    let facts = vec![
-        Fact::new(name, format!("± {}", tables::percent(Some(c.bar()).filter(|b| b.is_finite())))),
-        Fact::new("k", number(c.reduced_frequency)),
-        Fact::new("frequency", number(c.frequency)),
-        Fact::new("of natural mode", c.mode.to_string()),
+    let told = |value: f64, bar: Option<f64>| Some(tables::with_bar(value, bar));
+    let unknown = bar.is_none().then(|| "± –".to_owned());
+    let frequency = if at.dimensional { "frequency, Hz" } else { "frequency" };
+    let facts = [
+        (name, unknown),
+        ("TAS, m/s", told(c.speed, c.speed_error).filter(|_| at.dimensional && name != "TAS, m/s")),
+        ("EAS, m/s", c.equivalent_airspeed.and_then(|v| told(v, c.equivalent_airspeed_error))),
+        ("k", Some(number(c.reduced_frequency))),
+        (frequency, Some(number(c.frequency))),
+        ("branch", Some(c.name())),
+        ("V*", c.reduced_speed.and_then(|v| told(v, c.reduced_speed_error))),
+        ("clearance of 15 %", at.clearance.as_ref().map(|c| (if c.passes { "pass" } else { "fail" }).to_owned())),
     ];
-    let reduced = c.reduced_speed.map(|v| Fact::new("V*", number(v)));
-    let facts = facts.into_iter().chain(reduced).collect();
-    Some(Card { name: format!("{what}, Mach {}", at.mach), value: number(value), facts })
+    let facts = facts.into_iter().filter_map(|(name, value)| Some(Fact::new(name, value?))).collect();
+    let value = format!("{} {name}", tables::with_bar(value, bar));
+    Some(Card { name: format!("{what}, Mach {}", at.mach), value, facts })
 }
 
 fn warnings(found: &Found) -> Vec<Block> {
@@ -124,6 +134,20 @@ fn crossings(found: &Found) -> Vec<Block> {
     }
     let table = tables::crossings(found);
     blocks.extend((!table.rows.is_empty()).then_some(Block::Table(table)));
+    let clearances = tables::clearances(found);
+    if !clearances.rows.is_empty() {
+        blocks.extend([Block::Heading("Clearance to the design speed".to_owned()), Block::Table(clearances)]);
+    }
+    let doubts = tables::doubts(found);
+    if !doubts.rows.is_empty() {
+        let words = "In these ranges of speed the difference to a cloud with twice the spacing decides whether a motion grows: a finer \
+                     spacing, or other Mach numbers near by, tell more.";
+        blocks.extend([
+            Block::Heading("Where the cloud decides".to_owned()),
+            Block::Text(words.to_owned()),
+            Block::Table(doubts),
+        ]);
+    }
     if found.flutter.iter().any(|at| at.read.is_some()) {
         blocks.push(Block::Text(
             "Forces were read, and cannot be refined at crossings: ± is the change when the nearest frequency is left out.".to_owned(),
@@ -134,8 +158,8 @@ fn crossings(found: &Found) -> Vec<Block> {
 
 /// V-g and V-f diagrams and the root locus of each Mach number.
 fn branches(found: &Found) -> Vec<Block> {
-    let known: Vec<&At> = found.flutter.iter().filter(|at| !found.modes(at.mach).is_empty()).collect();
-    let few = known.iter().all(|at| found.modes(at.mach).len() <= FEW);
+    let known: Vec<&At> = found.flutter.iter().filter(|at| !found.branches(at.mach).is_empty()).collect();
+    let few = known.iter().all(|at| found.branches(at.mach).len() <= FEW);
     let set = |charts: Vec<Chart>| -> Vec<Block> {
         // one alone has room
         match few && charts.len() > 1 {
@@ -249,9 +273,9 @@ mod tests {
     fn fill(run: &Path) {
         let shape = json!([{"coordinate": "plunge", "amplitude": 1.0, "phase_deg": 0.0}, {"coordinate": "pitch", "amplitude": 0.4, "phase_deg": -31.5}]);
         let crossing = |kind: &str, ratio: f64, error: Value| {
-            json!({"kind": kind, "mode": 1, "speed_ratio": ratio, "speed_index": 0.5 * ratio, "reduced_speed": 4.0, "speed": 0.75 * ratio,
+            json!({"kind": kind, "mode": (kind == "flutter").then_some(1), "speed_ratio": ratio, "speed_index": 0.5 * ratio, "reduced_speed": 4.0, "speed": 0.75 * ratio,
                 "density": 1.0, "dynamic_pressure": 0.3, "mass_ratio": 60.0, "altitude": null, "reduced_frequency": 0.13, "frequency": 0.07,
-                "frequency_ratio": 1.16, "error": error, "g_method": -3e-13, "extrapolated": kind == "divergence", "shape": shape})
+                "frequency_ratio": 1.16, "error": error, "speed_index_error": error.as_f64().map(|e| 0.5 * ratio * e), "branch": if kind == "flutter" { "mode 1" } else { "divergence 1" }, "g_method": -3e-13, "extrapolated": kind == "divergence", "shape": shape})
         };
         let at = |mach: f64, warnings: &[&str]| {
             json!({"mach": mach, "match": "none", "crossings": [crossing("flutter", 2.0, json!(0.03)), crossing("divergence", 3.0, json!(null))],
@@ -315,7 +339,8 @@ mod tests {
             "viewer modes",
             "natural mode 1",
             "0.4000 ∠ −31.5°",
-            "± 3.00 %",
+            "1.000 ± 0.030 speed index",
+            "divergence 1",
             "./flutter.json",
             "beyond the frequencies",
         ];

@@ -6,22 +6,27 @@
 //! that a former run left serve other structures without any flow; their error bar is the change when the nearest ones are left out.
 use std::path::Path;
 
+mod clearance;
 mod coarser;
+mod damping;
 mod held;
 mod kept;
 mod limit_cycles;
 mod marched;
 mod record;
+mod rows;
 mod scales;
 mod search;
 mod shapes;
 mod skin;
 mod state_space;
 mod stored;
+mod tables;
 mod trim;
 
 pub use held::Mark;
-pub use record::{Boundary, FlutterAt, FlutterRow, LimitCycle, MarchedCycle, MotionRow, Trim};
+pub use record::{Boundary, FlutterAt, LimitCycle, MarchedCycle, Trim};
+pub use rows::{Bars, Clearance, Doubt, FlutterRow, MotionRow};
 pub use scales::CaseReference;
 pub use shapes::{NaturalMode, Share};
 pub use state_space::StateSpaceAt;
@@ -221,6 +226,11 @@ fn refused(case: &Case, plan: &Plan) -> Result<(), RunError> {
             "leave out `gamma` and `gas_constant`, or use `match = \"none\"` or `\"density\"`",
         ),
         (
+            plan.design_speed.is_some() && !flow.is_dimensional(),
+            "margins against a design speed in a stream without units",
+            "give two of `pressure`, `temperature` and `density` in `[flow]`, or leave `design_speed` out",
+        ),
+        (
             goes_with_speed(case) && (matching == Matching::Altitude || (matching == Matching::Density && machs > 1)),
             "matched speeds of a structure whose frequencies go with the speed of the stream",
             "give `frequency` or `stiffness` instead of `speed_index`, `reduced_speed`, `reduced_velocity` or `reduced_frequency`",
@@ -266,7 +276,7 @@ fn at_mach(
     if plan.cloud_error && !place.against_coarser(&mut at, monitor)? {
         return Ok(None);
     }
-    let mut at = placed(at, &own, mach, held);
+    let mut at = placed(at, (&own, mach), held, (&scales, plan));
     let marches = cycles_at(case, mach).is_some_and(|lco| lco.march) && !at.cycles.is_empty();
     let whole = !marches || marched::march(case, &mut at, input, monitor)?;
     if !whole {
@@ -296,12 +306,15 @@ impl Place<'_> {
         let mut found = None;
         let mut then = |source: &mut dyn ForceSource, log: &mut Log<'_>| {
             let mut search = Search::new(self.held, self.scales, self.plan, Vec::new(), 0.0);
-            let mut at = search.run((source, stream), log);
+            let Some(mut at) = search.run((source, stream), log) else { return Ok(()) };
             at.borne = source.borne();
             if let Some(lco) = self.lco.filter(|_| cycles) {
                 let springs = search::springs_of_the_case(source.springs(), stream);
                 let borne = self.plan.trim.then(|| Borne { forces: at.borne.clone(), pressure: stream.pressure });
                 at.add_cycles(Seek::new(lco, &mut search, (springs, borne))?.run(Some((source, log))));
+                if log.stopped() {
+                    return Ok(());
+                }
             }
             found = Some(at);
             Ok(())
@@ -317,11 +330,9 @@ impl Place<'_> {
         Ok(Some(at))
     }
 
-    /// Holds the crossings against those of a coarser cloud in the same stream, where there is one; false when the monitor says stop.
+    /// Holds crossings and damping against those of a coarser cloud in the same stream, where there is one; false when the monitor says stop.
     fn against_coarser(&self, at: &mut FlutterAt, monitor: &mut dyn Monitor) -> Result<bool, RunError> {
-        let Some(own) = coarser::coarser(self.own).filter(|_| !at.crossings.is_empty()) else {
-            return Ok(true);
-        };
+        let Some(own) = coarser::coarser(self.own) else { return Ok(true) };
         let stream = at.trim.as_ref().map_or(StreamRatio::SAME, |trim| StreamRatio {
             pressure: trim.dynamic_pressure / self.scales.reference.dynamic_pressure(),
             temperature: trim.speed_ratio * trim.speed_ratio,
@@ -333,7 +344,7 @@ impl Place<'_> {
         match place.boundary((stream, false), &mut Quiet { monitor }) {
             Ok(Some(coarse)) => {
                 at.cpu_seconds += coarse.cpu_seconds;
-                coarser::compare(at, &coarse);
+                coarser::compare(at, &coarse, self.scales);
                 Ok(true)
             }
             Ok(None) => Ok(false),
@@ -362,7 +373,7 @@ fn of_stored(case: &Case, plan: &Plan, mach: f64, (stored, input): (&Stored, &Pa
             );
         }
     }
-    Ok(placed(at, &own, mach, held))
+    Ok(placed(at, (&own, mach), held, (&scales, plan)))
 }
 
 /// The limit cycles that are sought at a Mach number of a case.
@@ -370,7 +381,20 @@ fn cycles_at(case: &Case, mach: f64) -> Option<&LimitCycles> {
     case.lco.as_ref().filter(|lco| lco.mach.unwrap_or(case.flow.reference().mach) == mach)
 }
 
-/// With what tells whether its forces serve another case.
-fn placed(at: FlutterAt, own: &Case, mach: f64, held: Held) -> FlutterAt {
+/// With error bars, margins, and what tells whether its forces serve another case.
+fn placed(mut at: FlutterAt, (own, mach): (&Case, f64), held: Held, (scales, plan): (&Scales, &Plan)) -> FlutterAt {
+    let reference = at.reference.dynamic_pressure;
+    let curves = damping::curves(&at.motions, reference);
+    for c in &mut at.crossings {
+        let pressure = c.dynamic_pressure / reference;
+        c.bars = scales.bars(pressure, c.bar());
+        let curve = curves.iter().find(|curve| curve.branch == c.branch).filter(|_| c.kind == "flutter");
+        if let Some(growth) = curve.and_then(|curve| curve.growth(pressure.sqrt())) {
+            (c.growth, c.holding_damping) = (Some(growth.most), growth.holding);
+        }
+    }
+    if let Some(design) = plan.design_speed {
+        clearance::tell(&mut at, design.0, (scales, scales.upto(plan.most)));
+    }
     FlutterAt { mach, chord: held.chord, moved: held.marks, alpha_deg: own.flow.alpha.0.to_degrees(), ..at }
 }

@@ -14,8 +14,11 @@
 //! another in a conservative system leave it at right angles, |λ − λ_F| ∝ |x − x_F|^½; every branch turns right there, so that the two
 //! go apart: of two frequencies that meet the lower one, which rises, goes on to grow.
 //!
-//! Limits: a branch ends where its frequency reaches zero, and where forces leave it without a root. Modes without stiffness have no
-//! branch. Divergence is found apart, from K q = x² Q(0) q.
+//! A mode without stiffness begins with one that is turned off as forces are turned on: the stream may hold it.
+//!
+//! Limits: a branch ends where its frequency reaches zero, and where forces leave it without a root. What does not oscillate is found
+//! apart ([`StillMotions`]), divergence among it.
+pub use still::StillMotions;
 pub use varied::Varied;
 
 use num_complex::Complex64;
@@ -23,11 +26,10 @@ use num_complex::Complex64;
 mod g_method;
 mod natural;
 pub mod state_space;
+mod still;
 mod varied;
 
 use super::Matrices;
-use crate::math::dense::Factors;
-use crate::math::eigenvalues::eigenvalues;
 use crate::math::singular::Singular;
 use crate::math::symmetric;
 
@@ -96,11 +98,22 @@ pub enum Kind {
     Divergence,
 }
 
+/// Where a motion belongs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Branch {
+    /// The branch of a natural mode, by rising frequency from 0.
+    Mode(usize),
+    /// A motion that grows without oscillating, by rising speed at which it begins from 0.
+    Divergence(usize),
+}
+
 /// A speed at which a motion neither grows nor decays.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Crossing {
     /// What begins.
     pub kind: Kind,
+    /// Where it belongs.
+    pub branch: Branch,
     /// Natural mode, by rising frequency, whose branch crosses; at divergence that which has most of the displacement.
     pub mode: usize,
     /// x: U/U_ref unless something else is varied.
@@ -118,6 +131,7 @@ pub struct Crossing {
 }
 
 /// Matrices in coordinates of the natural modes, whose mass matrix is 1; rows one after another.
+#[derive(Clone)]
 struct Modes {
     n: usize,
     /// Squares of the frequencies, rising.
@@ -178,12 +192,27 @@ impl<'a> Flutter<'a> {
     /// at all when the mass matrix is not positive definite.
     pub fn branches(&self, upto: f64) -> Vec<Vec<Point>> {
         let (Some(modes), true) = (&self.modes, 0.0 < upto && upto.is_finite()) else { return Vec::new() };
-        (0..modes.n).map(|m| self.branch(modes, m, upto)).collect()
+        let Some(modes) = self.held(modes, upto) else { return vec![Vec::new(); modes.n] };
+        (0..modes.n).map(|m| self.branch(&modes, m, upto)).collect()
+    }
+
+    /// The same modes, those without stiffness set apart by what forces do at the lowest speed.
+    fn held(&self, modes: &Modes, upto: f64) -> Option<Modes> {
+        let (mut held, rigid) = (modes.clone(), modes.rigid());
+        if rigid.is_empty() {
+            return Some(held);
+        }
+        let forces = self.modal(modes, 0.0)?.iter().map(|f| f.norm()).fold(0.0, f64::max);
+        let least = self.pressure(FIRST * upto) * forces;
+        for (place, m) in rigid.enumerate() {
+            (held.squares[m], held.apart[m]) = (0.0, least * (place + 1).pow(2) as f64);
+        }
+        Some(held)
     }
 
     fn branch(&self, modes: &Modes, m: usize, upto: f64) -> Vec<Point> {
         let square = modes.squares[m] + modes.apart[m];
-        if !(square > RIGID * modes.squares[modes.n - 1]) {
+        if !(square > 0.0) {
             return Vec::new();
         }
         let shape = (0..modes.n).map(|k| if k == m { Complex64::from(1.0) } else { ZERO }).collect();
@@ -212,40 +241,12 @@ impl<'a> Flutter<'a> {
                 let shape = modes.coordinates(&root.shape);
                 let (speed, pressure) = (self.speed(x), self.pressure(x));
                 let kappa = frequency / speed;
-                found.push(Crossing { kind: bracket.kind, mode, x, speed, pressure, frequency, kappa, shape });
+                let (kind, branch) = (bracket.kind, Branch::Mode(mode));
+                found.push(Crossing { kind, branch, mode, x, speed, pressure, frequency, kappa, shape });
             }
         }
         found.sort_by(|a, b| a.x.total_cmp(&b.x));
         found
-    }
-
-    /// Singular K − x² Q(0), x² the dynamic pressure: 1/x² are the positive eigenvalues of K⁻¹ Q(0).
-    fn divergence(&self, modes: &Modes, upto: f64) -> Vec<Crossing> {
-        let n = modes.n;
-        let stiffness: Vec<f64> = modes.stiffness.iter().map(|k| k.re).collect();
-        let Some((forces, factors)) = self.modal(modes, 0.0).zip(Factors::new(n, stiffness)) else { return Vec::new() };
-        let mut compliance = vec![0.0; n * n];
-        for j in 0..n {
-            let column: Vec<f64> = (0..n).map(|i| forces[i * n + j].re).collect();
-            let mut solved = vec![0.0; n];
-            factors.solve(&column, &mut solved);
-            (0..n).for_each(|i| compliance[i * n + j] = solved[i]);
-        }
-        let values = eigenvalues(&compliance, n).unwrap_or_default();
-        let largest = values.iter().fold(0.0f64, |most, v| most.max(v.norm()));
-        let real = values.into_iter().filter(|v| v.im.abs() <= REAL * v.re && v.re > f64::EPSILON * largest);
-        let places = real.map(|v| self.place(v.re.recip())).filter(|x| *x <= upto);
-        let crossing = |x: f64| {
-            let (speed, pressure) = (self.speed(x), self.pressure(x));
-            let entry = |k: usize| modes.stiffness[k].re - pressure * forces[k].re;
-            let singular = Singular::of((0..n).map(|j| (0..n).map(|i| entry(i * n + j)).collect()).collect());
-            let least = least(singular.squares().into_iter());
-            let shape: Vec<Complex64> = singular.right[least].iter().map(|v| Complex64::from(*v)).collect();
-            let mode = largest_share(&shape);
-            let shape = modes.coordinates(&shape);
-            Crossing { kind: Kind::Divergence, mode, x, speed, pressure, frequency: 0.0, kappa: 0.0, shape }
-        };
-        places.map(crossing).collect()
     }
 
     /// Q(iκ) in modes; `None` when it is not finite.

@@ -118,32 +118,32 @@ impl<'a, S: Implicit> Linear<'a, S> {
     }
 
     /// Solves (iω − ∂R/∂U) x = b for each of `right`, real parts before imaginary ones, to the relative residual `tolerance`; `plan` is
-    /// the hierarchy of the preconditioner.
+    /// the hierarchy of the preconditioner. `None` where `stop`, which is asked in every iteration, says so before all are found.
     pub fn solve(
         &mut self,
         omega: f64,
         right: &[Vec<f64>],
         tolerance: f64,
-        plan: &Hierarchy,
-    ) -> Vec<(Vec<f64>, Ended)> {
+        (plan, stop): (&Hierarchy, &dyn Fn() -> bool),
+    ) -> Option<Vec<(Vec<f64>, Ended)>> {
         let waves = Waves::new(omega);
         let mut preconditioner = self.system.preconditioner(plan, Some(waves.period));
         preconditioner.begin(1);
         preconditioner.add(self.system, &self.frame, &self.state, &mut self.work);
         let shift = Shift { rates: &self.rates, cfl: FAR, coefficient: 0.0, reach: Reach::Far };
         preconditioner.finish(&shift);
-        let mut problem = Problem { waves: &waves, preconditioner };
+        let mut problem = Problem { waves: &waves, preconditioner, stop };
         right.iter().map(|b| self.one(b, tolerance, &mut problem)).collect()
     }
 
-    fn one(&mut self, b: &[f64], tolerance: f64, problem: &mut Problem<'_, S>) -> (Vec<f64>, Ended) {
+    fn one(&mut self, b: &[f64], tolerance: f64, problem: &mut Problem<'_, S>) -> Option<(Vec<f64>, Ended)> {
         let (n, unknowns, omega) = (b.len(), self.state.len(), problem.waves.period.omega);
         let scale = self.scale.clone();
         let scaled = |i: usize| scale[i % unknowns] * b[i];
         let (mut x, mut r, mut z) = (vec![0.0; n], (0..n).map(scaled).collect::<Vec<f64>>(), vec![0.0; n]);
         let whole = norm(&r);
         if whole == 0.0 {
-            return (x, Ended::default());
+            return Some((x, Ended::default()));
         }
         self.recycled.begin(omega, &scale, (&mut x, &mut r));
         let mut ended = Ended { iterations: 0, left: norm(&r) / whole };
@@ -154,6 +154,9 @@ impl<'a, S: Implicit> Linear<'a, S> {
             }
             let asked = if ended.left > 0.0 { (MARGIN * tolerance / ended.left).min(MARGIN) } else { MARGIN };
             ended.iterations += self.correct(ROUND.max(asked), (&mut r, &mut z), problem);
+            if (problem.stop)() {
+                return None;
+            }
             sweep_slots(&mut x, |i, x| *x += z[i]);
             self.shifted(omega, (&x, true), &mut r);
             sweep_slots(&mut r, |i, r| *r = scaled(i) - *r);
@@ -167,7 +170,7 @@ impl<'a, S: Implicit> Linear<'a, S> {
         // A x = iω x − (b − r)
         let rotated = |i: usize| if i < unknowns { -x[unknowns + i] } else { x[i - unknowns] };
         self.recycled.keep(&x, |i| omega * scale[i % unknowns] * rotated(i) - (scaled(i) - r[i]));
-        (x, ended)
+        Some((x, ended))
     }
 
     /// Sets `z` to the solution for the right-hand side `r`, which is storage afterwards, until `tolerance` of it is left; the iterations.
@@ -175,7 +178,7 @@ impl<'a, S: Implicit> Linear<'a, S> {
         &mut self,
         tolerance: f64,
         (r, z): (&mut [f64], &mut [f64]),
-        Problem { waves, preconditioner }: &mut Problem<'_, S>,
+        Problem { waves, preconditioner, stop }: &mut Problem<'_, S>,
     ) -> usize {
         let mut gmres = std::mem::replace(&mut self.gmres, Gmres::new(0, 0));
         let [mut all, mut found] = std::mem::take(&mut self.instances);
@@ -190,7 +193,7 @@ impl<'a, S: Implicit> Linear<'a, S> {
                 waves.gather(system, &found, out);
             },
         };
-        let solved = gmres.solve(r, z, goal, linear);
+        let solved = gmres.solve_unless((r, z), goal, *stop, linear);
         (self.gmres, self.parts, self.instances) = (gmres, parts, [all, found]);
         solved.iterations
     }
@@ -200,6 +203,7 @@ impl<'a, S: Implicit> Linear<'a, S> {
 struct Problem<'p, S: Implicit> {
     waves: &'p Waves,
     preconditioner: S::Preconditioner,
+    stop: &'p dyn Fn() -> bool,
 }
 
 /// One harmonic at the instances of a period.
@@ -273,7 +277,8 @@ mod tests {
         let plan = Hierarchy { group: control.group, cycle: control.cycle };
         let mut linear = Linear::new(&system, system.frame(&Instant::still(0.0), &rest), &rest, ());
         for omega in [0.0, 0.7, 3.0] {
-            let (x, ended) = linear.solve(omega, &[vec![0.0, 1.0, 0.0, -2.0]], 1e-9, &plan).remove(0);
+            let (x, ended) =
+                linear.solve(omega, &[vec![0.0, 1.0, 0.0, -2.0]], 1e-9, (&plan, &|| false)).unwrap().remove(0);
             let i = Complex64::new(0.0, omega);
             let exact = Complex64::new(1.0, -2.0) / (i * i + 0.3 * i + rest[0].cos());
             assert!(ended.left < 1e-8 && ended.iterations < 20, "{ended:?}");

@@ -2,10 +2,16 @@
 use serde_json::Value;
 
 use super::super::draft::Draft;
+use super::super::facts::is_dimensional;
 
 /// Limit cycles are beside a boundary, and of one kind of amplitude, from small to large.
 pub(in super::super) fn contradictions(draft: &mut Draft<'_>) {
     frozen(draft);
+    if draft.given("flutter.design_speed") && !is_dimensional(draft) {
+        draft
+            .fail_key("flutter.design_speed", "a design speed, but the free stream has no units")
+            .hint("give two of `pressure`, `temperature` and `density` in `[flow]`, or leave `design_speed` out");
+    }
     if draft.get("lco").is_none_or(Value::is_null) {
         return;
     }

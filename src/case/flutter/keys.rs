@@ -1,6 +1,6 @@
 //! The keys of `[flutter]` and `[lco]`.
 use super::super::kinds::{FROZEN_LIMITER, POSITIVE, SIZE};
-use super::super::quantity::{Angle, Ratio};
+use super::super::quantity::{Angle, Ratio, Velocity};
 use super::super::schema::{Absent, Field, Kind, List, Range, Table};
 
 pub(in super::super) static FLUTTER: Table = Table::of(&[
@@ -60,7 +60,13 @@ pub(in super::super) static FLUTTER: Table = Table::of(&[
         "cloud_error",
         Kind::Flag,
         Absent::Flag(true),
-        "Tell by how much each speed is another on a cloud with twice the spacing.",
+        "Tell the error that the spacing leaves in each speed, from a cloud with twice of it, and where it decides whether motions grow.",
+    ),
+    Field::optional(
+        "design_speed",
+        Kind::Quantity(Velocity::DIMENSION, Range::POSITIVE),
+        "no margins",
+        "Design speed V_D, an equivalent airspeed (EAS): margins are told against it, and whether 1.15 V_D are free of flutter and divergence.",
     ),
 ]);
 

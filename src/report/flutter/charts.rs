@@ -35,20 +35,21 @@ pub(super) fn damping(found: &Found, at: &At) -> Chart {
 
 /// Frequency of every mode, and that of crossings.
 pub(super) fn frequency(found: &Found, at: &At) -> Chart {
-    let chart = along(found, at, "Frequency", "cycles per unit of time", |m| m.frequency);
+    let unit = if at.dimensional { "Hz" } else { "cycles per unit of time" };
+    let chart = along(found, at, "Frequency", unit, |m| m.frequency);
     marked(chart, at, |c| c.frequency)
 }
 
 fn along(found: &Found, at: &At, title: &str, y: &str, of: fn(&Motion) -> f64) -> Chart {
-    let line = |(mode, all): (usize, Vec<&Motion>)| {
-        let (x, y) = all.into_iter().map(|m| (at.place(m), of(m))).unzip();
-        Series::new(&format!("mode {mode}"), Marks::Line, x, y)
+    let line = |(name, all): (&str, Vec<&Motion>)| {
+        let (x, y) = all.into_iter().filter(|m| !m.rests()).map(|m| (at.place(m), of(m))).unzip();
+        Series::new(name, Marks::Line, x, y)
     };
     Chart {
         title: format!("{title}, Mach {}", at.mach),
         x: Axis::linear(at.varied()),
         y: Axis::linear(y),
-        series: found.modes(at.mach).into_iter().map(line).collect(),
+        series: found.branches(at.mach).into_iter().map(line).filter(|s| !s.x.is_empty()).collect(),
     }
 }
 
@@ -69,10 +70,10 @@ fn of_kinds<'a>(all: impl Iterator<Item = &'a Crossing> + Clone, place: impl Fn(
 
 /// Eigenvalues of every mode along the speed: where they begin, and where they cross the axis.
 pub(super) fn locus(found: &Found, at: &At) -> Chart {
-    let modes = found.modes(at.mach);
-    let line = |(mode, all): &(usize, Vec<&Motion>)| {
+    let modes = found.branches(at.mach);
+    let line = |(name, all): &(&str, Vec<&Motion>)| {
         let (x, y) = all.iter().map(|m| m.eigenvalue.into()).unzip();
-        Series::new(&format!("mode {mode}"), Marks::Line, x, y)
+        Series::new(name, Marks::Line, x, y)
     };
     let first = modes.iter().filter_map(|(_, all)| all.first()).map(|m| m.eigenvalue.into()).unzip();
     let mut series: Vec<Series> = modes.iter().map(line).collect();
@@ -97,25 +98,30 @@ pub(super) fn locus(found: &Found, at: &At) -> Chart {
 #[derive(Clone, Copy)]
 struct StreamAxis<'a> {
     matching: &'a str,
+    /// Numbers are in SI units.
+    dimensional: bool,
     /// All that is drawn has a speed index.
     indexed: bool,
 }
 
 impl StreamAxis<'_> {
     fn label(self) -> &'static str {
-        match self.matching {
-            "density" => "dynamic pressure",
-            "altitude" => "altitude, m",
+        match (self.matching, self.dimensional) {
+            ("density", true) => "dynamic pressure, Pa",
+            ("density", false) => "dynamic pressure",
+            ("altitude", _) => "altitude, m",
+            (_, true) => "TAS, m/s",
             _ if self.indexed => "speed index",
             _ => "speed",
         }
     }
 
-    /// Where something is that has this speed index, speed, dynamic pressure and altitude.
+    /// Where something is that has this speed index, speed, dynamic pressure and altitude; so it is with their error bars.
     fn place(self, index: Option<f64>, [speed, pressure]: [f64; 2], altitude: Option<f64>) -> f64 {
-        match self.matching {
-            "density" => pressure,
-            "altitude" => altitude.unwrap_or(f64::NAN),
+        match (self.matching, self.dimensional) {
+            ("density", _) => pressure,
+            ("altitude", _) => altitude.unwrap_or(f64::NAN),
+            (_, true) => speed,
             _ => index.filter(|_| self.indexed).unwrap_or(speed),
         }
     }
@@ -126,8 +132,12 @@ pub(super) fn boundary(found: &Found) -> Option<Chart> {
     let matching = &found.flutter.first()?.matching[..];
     let crossings = || found.flutter.iter().flat_map(|at| at.crossings.iter().map(move |c| (at.mach, c)));
     let indexed = crossings().all(|(_, c)| c.speed_index.is_some());
-    let axis = StreamAxis { matching, indexed };
+    let axis = StreamAxis { matching, dimensional: found.flutter.first()?.dimensional, indexed };
     let place = |c: &Crossing| axis.place(c.speed_index, [c.speed, c.dynamic_pressure], c.altitude);
+    let bar = |c: &Crossing| {
+        let known = |error: Option<f64>| error.unwrap_or(f64::NAN);
+        axis.place(c.speed_index_error, [known(c.speed_error), known(c.dynamic_pressure_error)], c.altitude_error)
+    };
     if found.flutter.len() < 2 || crossings().next().is_none() {
         return None;
     }
@@ -135,10 +145,8 @@ pub(super) fn boundary(found: &Found) -> Option<Chart> {
     let [low, high] = [machs.clone().fold(f64::INFINITY, f64::min), machs.fold(f64::NEG_INFINITY, f64::max)];
     let cap = CAP * (high - low);
     let (mut x, mut y) = (Vec::new(), Vec::new());
-    // an altitude is no power of the speed: its bars are not known
-    for (mach, c) in crossings().filter(|_| matching != "altitude") {
-        let part = c.bar() * if matching == "density" { 2.0 } else { 1.0 };
-        let (at, half) = (place(c), part * place(c));
+    for (mach, c) in crossings() {
+        let (at, half) = (place(c), bar(c));
         if half.is_finite() {
             let (below, above) = (at - half, at + half);
             let nan = f64::NAN;
@@ -161,7 +169,8 @@ pub(super) fn boundary(found: &Found) -> Option<Chart> {
 pub(super) fn limit_cycles(found: &Found) -> Option<Chart> {
     let first = found.lco.first()?;
     let matching = found.flutter.first().map_or("", |at| &at.matching[..]);
-    let axis = StreamAxis { matching, indexed: found.lco.iter().all(|c| c.speed_index.is_some()) };
+    let dimensional = found.flutter.first().is_some_and(|at| at.dimensional);
+    let axis = StreamAxis { matching, dimensional, indexed: found.lco.iter().all(|c| c.speed_index.is_some()) };
     let speed = |c: &Cycle| axis.place(c.speed_index, [c.speed, c.dynamic_pressure], c.altitude);
     let lines = [("", Marks::Line, true), ("", Marks::Dashes, false)].map(|(name, marks, stable)| {
         let (mut x, mut y) = (Vec::new(), Vec::new());

@@ -26,7 +26,11 @@ pub(super) struct At {
     pub(super) mach: f64,
     #[serde(rename = "match")]
     pub(super) matching: String,
+    /// True where numbers are in SI units.
+    pub(super) dimensional: bool,
     pub(super) crossings: Vec<Crossing>,
+    pub(super) doubts: Vec<Doubt>,
+    pub(super) clearance: Option<Clearance>,
     pub(super) natural: Vec<Natural>,
     pub(super) reference: Reference,
     pub(super) reduced_frequencies: Vec<f64>,
@@ -71,15 +75,28 @@ pub(super) struct Trim {
 #[serde(default)]
 pub(super) struct Crossing {
     pub(super) kind: String,
-    pub(super) mode: usize,
+    pub(super) branch: String,
+    pub(super) mode: Option<usize>,
     pub(super) speed_ratio: f64,
     pub(super) speed_index: Option<f64>,
     pub(super) reduced_speed: Option<f64>,
     pub(super) speed: f64,
+    pub(super) equivalent_airspeed: Option<f64>,
     pub(super) density: f64,
     pub(super) dynamic_pressure: f64,
     pub(super) mass_ratio: Option<f64>,
     pub(super) altitude: Option<f64>,
+    pub(super) speed_ratio_error: Option<f64>,
+    pub(super) speed_index_error: Option<f64>,
+    pub(super) reduced_speed_error: Option<f64>,
+    pub(super) speed_error: Option<f64>,
+    pub(super) equivalent_airspeed_error: Option<f64>,
+    pub(super) density_error: Option<f64>,
+    pub(super) dynamic_pressure_error: Option<f64>,
+    pub(super) altitude_error: Option<f64>,
+    pub(super) growth: Option<f64>,
+    pub(super) holding_damping: Option<f64>,
+    pub(super) margin: Option<f64>,
     pub(super) reduced_frequency: f64,
     pub(super) frequency: f64,
     pub(super) frequency_ratio: Option<f64>,
@@ -92,10 +109,41 @@ pub(super) struct Crossing {
 }
 
 impl Crossing {
-    /// Half the length of its error bar, over the speed: the greater of both errors.
-    pub(super) fn bar(&self) -> f64 {
-        self.error.into_iter().chain(self.cloud_error).reduce(f64::max).unwrap_or(f64::NAN)
+    /// The motion that it belongs to; runs of former versions number it alone.
+    pub(super) fn name(&self) -> String {
+        match (self.branch.is_empty(), self.mode) {
+            (true, Some(mode)) => format!("mode {mode}"),
+            _ => self.branch.clone(),
+        }
     }
+}
+
+/// A range of speed in which the spacing of the cloud decides whether a motion grows.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(default)]
+pub(super) struct Doubt {
+    pub(super) branch: String,
+    pub(super) kind: String,
+    pub(super) speed_ratio: [f64; 2],
+    pub(super) speed: [f64; 2],
+    pub(super) equivalent_airspeed: Option<[f64; 2]>,
+    pub(super) dynamic_pressure: [f64; 2],
+    pub(super) altitude: Option<[f64; 2]>,
+    pub(super) damping: f64,
+    pub(super) damping_coarser: f64,
+}
+
+/// What is left to the design speed.
+#[derive(Clone, Debug, Default, Deserialize)]
+#[serde(default)]
+pub(super) struct Clearance {
+    pub(super) design_speed: f64,
+    pub(super) required: f64,
+    pub(super) lowest: Option<f64>,
+    pub(super) lowest_error: Option<f64>,
+    pub(super) margin: Option<f64>,
+    pub(super) passes: bool,
+    pub(super) reason: String,
 }
 
 /// A natural mode.
@@ -156,13 +204,22 @@ pub(super) struct March {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Motion {
     pub(super) mach: f64,
-    pub(super) mode: usize,
+    pub(super) branch: String,
     pub(super) speed_ratio: f64,
+    pub(super) speed: f64,
+    pub(super) equivalent_airspeed: f64,
     pub(super) damping: f64,
     pub(super) frequency: f64,
     pub(super) eigenvalue: [f64; 2],
     pub(super) density: f64,
-    pub(super) altitude: f64,
+    pub(super) dynamic_pressure: f64,
+}
+
+impl Motion {
+    /// True of a mode that decays without oscillating, whose damping says little.
+    pub(super) fn rests(&self) -> bool {
+        self.frequency == 0.0 && self.eigenvalue[0] <= 0.0
+    }
 }
 
 impl Found {
@@ -174,12 +231,16 @@ impl Found {
         Ok(found)
     }
 
-    /// Motions at a Mach number, mode by mode.
-    pub(super) fn modes(&self, mach: f64) -> Vec<(usize, Vec<&Motion>)> {
-        let own = || self.motions.iter().filter(|m| m.mach == mach);
-        let most = own().map(|m| m.mode).max().unwrap_or(0);
-        let one = |mode: usize| (mode, own().filter(|m| m.mode == mode).collect::<Vec<_>>());
-        (1..=most).map(one).filter(|(_, all)| !all.is_empty()).collect()
+    /// Motions at a Mach number, branch by branch.
+    pub(super) fn branches(&self, mach: f64) -> Vec<(&str, Vec<&Motion>)> {
+        let mut all: Vec<(&str, Vec<&Motion>)> = Vec::new();
+        for motion in self.motions.iter().filter(|m| m.mach == mach) {
+            match all.iter_mut().find(|(name, _)| *name == motion.branch) {
+                Some((_, own)) => own.push(motion),
+                None => all.push((&motion.branch, vec![motion])),
+            }
+        }
+        all
     }
 }
 
@@ -191,9 +252,11 @@ impl At {
 
     /// What is varied, as axes call it.
     pub(super) fn varied(&self) -> &'static str {
-        match &self.matching[..] {
-            "density" => "density",
-            "altitude" => "altitude, m",
+        match (&self.matching[..], self.dimensional) {
+            ("density", true) => "dynamic pressure, Pa",
+            ("density", false) => "density",
+            ("altitude", _) => "EAS, m/s",
+            (_, true) => "TAS, m/s",
             _ if self.reference.speed_index.is_some() => "speed index",
             _ => "speed over that of the case",
         }
@@ -201,34 +264,50 @@ impl At {
 
     /// Where a motion stands on that axis.
     pub(super) fn place(&self, motion: &Motion) -> f64 {
-        match &self.matching[..] {
-            "density" => motion.density,
-            "altitude" => motion.altitude,
+        match (&self.matching[..], self.dimensional) {
+            ("density", true) => motion.dynamic_pressure,
+            ("density", false) => motion.density,
+            ("altitude", _) => motion.equivalent_airspeed,
+            (_, true) => motion.speed,
             _ => motion.speed_ratio * self.reference.speed_index.unwrap_or(1.0),
         }
     }
 
     /// Where a crossing stands there.
     pub(super) fn place_of(&self, crossing: &Crossing) -> f64 {
-        match &self.matching[..] {
-            "density" => crossing.density,
-            "altitude" => crossing.altitude.unwrap_or(f64::NAN),
+        match (&self.matching[..], self.dimensional) {
+            ("density", true) => crossing.dynamic_pressure,
+            ("density", false) => crossing.density,
+            ("altitude", _) => crossing.equivalent_airspeed.unwrap_or(f64::NAN),
+            (_, true) => crossing.speed,
             _ => crossing.speed_ratio * self.reference.speed_index.unwrap_or(1.0),
         }
     }
 }
 
 fn motions(table: &Csv) -> Vec<Motion> {
-    let column = |name: &str| table.numbers(name).unwrap_or_default();
-    let names = ["mach", "mode", "speed_ratio", "damping_g", "frequency", "eigenvalue_re", "eigenvalue_im", "density"];
-    let all = names.map(column);
-    let altitude = column("altitude");
-    let at = |values: &[f64], k: usize| values.get(k).copied().unwrap_or(f64::NAN);
+    let numbers = |name: &str| table.numbers(name).unwrap_or_default();
+    let names = ["mach", "mode", "speed_ratio", "speed", "equivalent_airspeed", "damping_g", "frequency"];
+    let more = ["eigenvalue_re", "eigenvalue_im", "density", "dynamic_pressure"];
+    let (first, last) = (names.map(numbers), more.map(numbers));
+    let branches = table.column("branch").unwrap_or_default();
     let row = |k: usize| {
-        let [mach, mode, speed_ratio, damping, frequency, re, im, density] =
-            [0, 1, 2, 3, 4, 5, 6, 7].map(|c| at(&all[c], k));
-        let (mode, altitude) = (mode as usize, at(&altitude, k));
-        Motion { mach, mode, speed_ratio, damping, frequency, eigenvalue: [re, im], density, altitude }
+        let at = |values: &Vec<f64>| values.get(k).copied().unwrap_or(f64::NAN);
+        let [mach, mode, speed_ratio, speed, equivalent_airspeed, damping, frequency] = first.each_ref().map(at);
+        let [re, im, density, dynamic_pressure] = last.each_ref().map(at);
+        let branch = branches.get(k).map_or_else(|| format!("mode {mode}"), |name| (*name).to_owned());
+        Motion {
+            mach,
+            branch,
+            speed_ratio,
+            speed,
+            equivalent_airspeed,
+            damping,
+            frequency,
+            eigenvalue: [re, im],
+            density,
+            dynamic_pressure,
+        }
     };
     (0..table.rows.len()).map(row).collect()
 }

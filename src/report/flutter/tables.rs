@@ -1,7 +1,7 @@
 //! Tables of a flutter boundary.
 use super::super::page::{Block, Fact, Table};
 use super::super::words::{grouped, number};
-use super::found::{At, Crossing, Cycle, Found, Natural, Share};
+use super::found::{At, Crossing, Cycle, Doubt, Found, Natural, Share};
 
 /// Names of what crosses, for people.
 pub(super) fn in_words(kind: &str) -> &str {
@@ -28,51 +28,151 @@ fn told(columns: &[&str], rows: Vec<Vec<String>>) -> Table {
     Table::new(&columns, rows.iter().map(|row| kept.iter().map(|k| row.get(*k).cloned().unwrap_or_default()).collect()))
 }
 
-/// Every crossing with its error bar and what the g-method has.
+/// Half of an error bar that is told.
+const LEAST_BAR: f64 = 1e-6;
+
+/// A number and half its error bar, to two digits of the bar; alone where it does not vary or nothing is known.
+pub(super) fn with_bar(value: f64, bar: Option<f64>) -> String {
+    let Some(bar) = bar.filter(|bar| bar.is_finite() && *bar >= LEAST_BAR) else { return number(value) };
+    let decimals = (1.0 - bar.log10().floor()).clamp(0.0, 6.0) as usize;
+    format!("{value:.decimals$} ± {bar:.decimals$}").replace('-', "\u{2212}")
+}
+
+fn optional_with_bar(value: Option<f64>, bar: Option<f64>) -> String {
+    value.map_or_else(|| "–".to_owned(), |value| with_bar(value, bar))
+}
+
+/// Every crossing with its error bars and what the g-method has.
 pub(super) fn crossings(found: &Found) -> Table {
+    let dimensional = found.flutter.iter().any(|at| at.dimensional);
     let matched = found.flutter.iter().any(|at| at.matching != "none");
-    let mut columns = vec![
-        "M",
-        "what",
-        "mode",
-        "V/V of the case",
-        "V_f",
-        "V*",
-        "k",
-        "frequency",
+    let mut columns = vec!["M", "what", "branch"];
+    columns.extend(match dimensional {
+        true => ["TAS, m/s", "EAS, m/s", "density, kg/m³", "q, Pa", "altitude, m", "frequency, Hz"],
+        false => ["V/V of the case", "V_f", "V*", "density", "dynamic pressure", "frequency"],
+    });
+    columns.extend([
+        "mass ratio",
         "over pitch",
-        "± (speed)",
-        "coarser cloud",
+        "k",
+        "margin to V_D",
+        "interpolation, ± of √q",
+        "cloud, ± of √q",
         "g-method",
-    ];
-    if matched {
-        columns.extend(["density", "dynamic pressure", "mass ratio", "altitude, m"]);
-    }
-    columns.push("remark");
+        "remark",
+    ]);
     let row = |(at, c): (&At, &Crossing)| {
         let g = c.g_method.map_or_else(|| "–".to_owned(), |g| format!("{g:+.0e}").replace('-', "\u{2212}"));
-        let mut row = vec![
-            at.mach.to_string(),
-            in_words(&c.kind).to_owned(),
-            c.mode.to_string(),
-            number(c.speed_ratio),
-            optional(c.speed_index),
-            optional(c.reduced_speed),
-            number(c.reduced_frequency),
-            number(c.frequency),
+        let mut row = vec![at.mach.to_string(), in_words(&c.kind).to_owned(), c.name()];
+        let only_matched = |x: f64, bar: Option<f64>| if matched { with_bar(x, bar) } else { "–".to_owned() };
+        row.extend(match dimensional {
+            true => [
+                with_bar(c.speed, c.speed_error),
+                optional_with_bar(c.equivalent_airspeed, c.equivalent_airspeed_error),
+                with_bar(c.density, c.density_error),
+                with_bar(c.dynamic_pressure, c.dynamic_pressure_error),
+                optional_with_bar(c.altitude, c.altitude_error),
+                number(c.frequency),
+            ],
+            false => [
+                with_bar(c.speed_ratio, c.speed_ratio_error),
+                optional_with_bar(c.speed_index, c.speed_index_error),
+                optional_with_bar(c.reduced_speed, c.reduced_speed_error),
+                only_matched(c.density, c.density_error),
+                only_matched(c.dynamic_pressure, c.dynamic_pressure_error),
+                number(c.frequency),
+            ],
+        });
+        row.extend([
+            optional(c.mass_ratio.filter(|_| matched)),
             optional(c.frequency_ratio),
+            number(c.reduced_frequency),
+            c.margin.map_or_else(|| "–".to_owned(), |m| signed(m, 1)),
             percent(c.error),
-            c.cloud_error.map_or_else(|| "–".to_owned(), |e| percent(Some(e))),
+            percent(c.cloud_error),
             g,
-        ];
-        if matched {
-            row.extend([number(c.density), number(c.dynamic_pressure), optional(c.mass_ratio), optional(c.altitude)]);
-        }
-        row.push(remark(c.extrapolated));
+            remarks(c),
+        ]);
         row
     };
     let all = found.flutter.iter().flat_map(|at| at.crossings.iter().map(move |c| (at, c)));
     told(&columns, all.map(row).collect())
+}
+
+/// A part in per cent with its sign.
+fn signed(part: f64, decimals: usize) -> String {
+    format!("{:+.decimals$} %", 100.0 * part).replace('-', "\u{2212}")
+}
+
+fn remarks(c: &Crossing) -> String {
+    let mut all = Vec::new();
+    if c.kind == "divergence" && c.dynamic_pressure == 0.0 {
+        all.push("diverges at any speed: nothing holds it".to_owned());
+    }
+    if let (Some(growth), Some(holding)) = (c.growth, c.holding_damping) {
+        all.push(format!(
+            "shallow: g up to {growth:.4} over the next 20 % of speed, structural damping g = {holding:.4} holds it"
+        ));
+    }
+    all.extend(Some(remark(c.extrapolated)).filter(|text| !text.is_empty()));
+    all.join("; ")
+}
+
+/// Ranges of speed in which the cloud decides; without rows where there are none.
+pub(super) fn doubts(found: &Found) -> Table {
+    let dimensional = found.flutter.iter().any(|at| at.dimensional);
+    let mut columns = vec!["M", "branch", "what"];
+    columns.extend(match dimensional {
+        true => ["TAS, m/s", "EAS, m/s", "q, Pa", "altitude, m"],
+        false => ["V/V of the case", "V_f", "dynamic pressure", "–"],
+    });
+    columns.extend(["g", "g with twice the spacing"]);
+    let range = |[a, b]: [f64; 2]| format!("{} to {}", number(a), number(b));
+    let optional_range = |ends: Option<[f64; 2]>| ends.map_or_else(|| "–".to_owned(), range);
+    let row = |(at, d): (&At, &Doubt)| {
+        let what = match &d.kind[..] {
+            "coarser_cloud_only" => "grows with twice the spacing, not here",
+            "nearly" => "decays by less than both clouds differ",
+            "this_cloud_only" => "grows by less than both clouds differ",
+            _ => "decays again by less than both clouds differ",
+        };
+        let [a, b] = d.dynamic_pressure;
+        let index = at.reference.speed_index.map(|v| [a, b].map(|q| v * (q / at.reference.dynamic_pressure).sqrt()));
+        let ranges = match dimensional {
+            true => [range(d.speed), optional_range(d.equivalent_airspeed), range([a, b]), optional_range(d.altitude)],
+            false => [range(d.speed_ratio), optional_range(index), range([a, b]), "–".to_owned()],
+        };
+        let head = [at.mach.to_string(), d.branch.clone(), what.to_owned()];
+        head.into_iter().chain(ranges).chain([number(d.damping), number(d.damping_coarser)]).collect()
+    };
+    let all = found.flutter.iter().flat_map(|at| at.doubts.iter().map(move |d| (at, d)));
+    told(&columns, all.map(row).collect())
+}
+
+/// Margins to the design speed; without rows where none is given.
+pub(super) fn clearances(found: &Found) -> Table {
+    let columns = [
+        "M",
+        "V_D, m/s EAS",
+        "1.15 V_D",
+        "lowest flutter or divergence, m/s EAS",
+        "margin to V_D",
+        "clearance of 15 %",
+        "why",
+    ];
+    let row = |at: &At| {
+        let c = at.clearance.as_ref()?;
+        Some(vec![
+            at.mach.to_string(),
+            number(c.design_speed),
+            number(c.required),
+            optional_with_bar(c.lowest, c.lowest_error),
+            c.margin.map_or_else(|| "–".to_owned(), |m| signed(m, 1)),
+            (if c.passes { "pass" } else { "fail" }).to_owned(),
+            c.reason.clone(),
+        ])
+    };
+    Table::new(&columns, found.flutter.iter().filter_map(row))
 }
 
 /// Limit cycles.
@@ -128,7 +228,6 @@ pub(super) fn marches(found: &Found) -> Table {
         "change in the last",
         "processor time, s",
     ];
-    let signed = |part: f64| format!("{:+.2} %", 100.0 * part).replace('-', "\u{2212}");
     let row = |c: &Cycle| {
         let m = c.march.as_ref()?;
         Some(vec![
@@ -136,9 +235,9 @@ pub(super) fn marches(found: &Found) -> Table {
             c.branch.to_string(),
             number(c.amplitude),
             number(m.amplitude),
-            signed(m.difference),
+            signed(m.difference, 2),
             number(m.frequency),
-            signed(m.frequency / c.frequency - 1.0),
+            signed(m.frequency / c.frequency - 1.0, 2),
             format!("{:.1}", m.periods),
             percent(Some(m.change)),
             format!("{:.1}", m.cpu_seconds),
@@ -170,7 +269,10 @@ pub(super) fn shapes(found: &Found) -> Table {
 
 /// What ratios refer to.
 pub(super) fn reference(found: &Found) -> Table {
-    let columns = ["M", "speed", "density", "dynamic pressure", "V_f", "V*", "mass ratio"];
+    let columns = match found.flutter.iter().any(|at| at.dimensional) {
+        true => ["M", "speed, m/s", "density, kg/m³", "dynamic pressure, Pa", "V_f", "V*", "mass ratio"],
+        false => ["M", "speed", "density", "dynamic pressure", "V_f", "V*", "mass ratio"],
+    };
     let row = |at: &At| {
         let r = &at.reference;
         vec![
@@ -218,9 +320,12 @@ pub(super) fn facts(at: &At) -> Vec<Block> {
             [
                 "Displacements are positive along the axes, plunge is up (h of the literature is down: h = −plunge); pitch is nose up \
                  positive, a flap trailing edge down.",
-                "Motion goes as e^{+iωt}: a phase that is greater is ahead. λ is its rate, g = 2ζ = 2 Re λ/|λ|; growth is positive.",
+                "Motion goes as e^{+iωt}: a phase that is greater is ahead. λ is its rate, g = 2ζ = 2 Re λ/|λ|; growth is positive. \
+                 Motions that do not oscillate have g = 2bλ/(U ln 2), growth over a chord of the way in doublings.",
                 "k = ωb/U; V* = U/(b ω_α); V_f = V*/√μ = U/(b ω_α √μ) with ω_α that of pitch alone and the mass ratio μ = m/(πρb²).",
-                "± is the relative change of the speed, of the root of the dynamic pressure, between the last two interpolations of the forces.",
+                "± beside a number is half its error bar in its own unit, the greater of two errors of √q, the root of the dynamic pressure: its \
+                 change between the last two interpolations of the forces, and what the spacing of the cloud leaves.",
+                "EAS is √(2q/ρ₀) with ρ₀ = 1.225 kg/m³.",
                 "g-method: what that method (Chen 2000) finds of the same crossing, less one; anything above 1e−6 says that following or \
                  interpolation went wrong there.",
             ]

@@ -1,6 +1,9 @@
-//! How far crossings move on a coarser cloud: what spacing does to them, where interpolation and convergence do little.
+//! What the spacing of the cloud does to a boundary: how far crossings move on a coarser cloud, and which motions grow on one of both alone.
 use super::super::{accuracy, recipe};
+use super::damping::{Pair, SAFETY, What, curves, pairs};
 use super::record::FlutterAt;
+use super::rows::Doubt;
+use super::scales::Scales;
 use crate::case::Case;
 
 /// Spacing of the coarser cloud over that of the case.
@@ -12,14 +15,77 @@ pub(super) fn coarser(own: &Case) -> Option<Case> {
     (one && recipe::divides(own, FACTOR)).then(|| accuracy::scaled(own, FACTOR))
 }
 
-/// Tells each crossing of `at` how far the one like it is on the coarser cloud.
-pub(super) fn compare(at: &mut FlutterAt, coarse: &FlutterAt) {
+/// Tells the error that the cloud leaves in each crossing of `at`, and where the cloud decides whether motions grow.
+pub(super) fn compare(at: &mut FlutterAt, coarse: &FlutterAt, scales: &Scales) {
+    let reference = at.reference.dynamic_pressure;
+    let [fine, other] = [&*at, coarse].map(|at| curves(&at.motions, reference));
+    let both = pairs(&fine, &other);
     for crossing in &mut at.crossings {
-        let like = coarse.crossings.iter().filter(|c| c.kind == crossing.kind && c.mode == crossing.mode);
-        let apart = like.map(|c| ((c.dynamic_pressure / crossing.dynamic_pressure).sqrt() - 1.0).abs());
-        crossing.cloud_error = apart.min_by(f64::total_cmp);
+        let like = coarse.crossings.iter().filter(|c| c.kind == crossing.kind && c.branch == crossing.branch);
+        let moved = like.map(|c| apart(c.dynamic_pressure, crossing.dynamic_pressure)).min_by(f64::total_cmp);
+        let place = (crossing.dynamic_pressure / reference).sqrt();
+        let own = both.iter().find(|p| p.branch == crossing.branch);
+        let moves = own.and_then(|pair| pair.moves(place));
+        crossing.cloud_error = moved.into_iter().chain(moves).reduce(f64::max).map(|error| SAFETY * error);
     }
+    at.doubts = both.iter().flat_map(|pair| told(pair, scales)).collect();
+    at.warnings.extend(at.doubts.iter().map(|doubt| in_words(doubt, at.dimensional)));
     at.coarser_particles = coarse.particles;
+}
+
+/// Relative distance of two crossings, of the root of the dynamic pressure.
+fn apart(a: f64, b: f64) -> f64 {
+    if a == b { 0.0 } else { ((a / b).sqrt() - 1.0).abs() }
+}
+
+fn told(pair: &Pair, scales: &Scales) -> Vec<Doubt> {
+    let doubt = |region: super::damping::Region| {
+        let [a, b] = region.ends.map(|place| scales.numbers(scales.place(place * place)));
+        let ends = |of: fn(&super::scales::StreamNumbers) -> Option<f64>| Some([of(&a)?, of(&b)?]);
+        Doubt {
+            branch: pair.branch.clone(),
+            kind: region.what.name().to_owned(),
+            speed_ratio: [a.speed_ratio, b.speed_ratio],
+            speed: [a.speed, b.speed],
+            equivalent_airspeed: ends(|s| s.equivalent_airspeed),
+            dynamic_pressure: [a.dynamic_pressure, b.dynamic_pressure],
+            altitude: ends(|s| s.altitude),
+            damping: region.damping[0],
+            damping_coarser: region.damping[1],
+        }
+    };
+    pair.regions().into_iter().map(doubt).collect()
+}
+
+/// What a doubt says.
+fn in_words(doubt: &Doubt, dimensional: bool) -> String {
+    let Doubt { branch, damping: here, damping_coarser: there, .. } = doubt;
+    let [from, to] = doubt.speed_ratio;
+    let range = match (dimensional, doubt.equivalent_airspeed) {
+        (true, Some([a, b])) => format!("between {a:.1} and {b:.1} m/s EAS"),
+        _ => {
+            let [a, b] = [from, to];
+            format!("between {a:.4} and {b:.4} of the speed of the case")
+        }
+    };
+    let what = if doubt.kind == What::CoarserCloudOnly.name() {
+        format!(
+            "grows {range} on a cloud with twice the spacing (g up to {there:+.4}), but not on this one ({here:+.4})"
+        )
+    } else if doubt.kind == What::Nearly.name() {
+        format!(
+            "comes nearer to growth {range} (g up to {here:+.4}) than the damping is known: {there:+.4} on a cloud with twice the spacing"
+        )
+    } else if doubt.kind == What::ThisCloudOnly.name() {
+        format!(
+            "grows {range} by less (g up to {here:+.4}) than the damping is known: {there:+.4} on a cloud with twice the spacing"
+        )
+    } else {
+        format!(
+            "decays again {range} by less (g down to {here:+.4}) than the damping is known: {there:+.4} on a cloud with twice the spacing"
+        )
+    };
+    format!("{branch} {what}; a finer `spacing` decides whether it flutters there")
 }
 
 #[cfg(test)]
@@ -27,23 +93,83 @@ mod tests {
     use std::path::Path;
 
     use super::super::super::setup;
-    use super::super::record::FlutterRow;
+    use super::super::rows::{FlutterRow, MotionRow};
+    use super::super::scales::CaseReference;
     use super::*;
+    use crate::case::Matching;
+
+    fn case(cloud: &str) -> Case {
+        let text = format!(
+            "[flow]\nmach = 0.5\n[[body]]\nnaca = \"0012\"\n[structure]\nelastic_axis = -0.4\nmass_ratio = 30\nx_alpha = 0.2\n\
+             r_alpha2 = 0.25\nfrequency_ratio = 0.4\nspeed_index = 2.0\n[flutter]\n{cloud}"
+        );
+        crate::case::read(&text, "case.toml").unwrap().flutter_case(0.5)
+    }
+
+    fn at(crossings: Vec<FlutterRow>, motions: Vec<MotionRow>) -> FlutterAt {
+        let reference = CaseReference { dynamic_pressure: 1.0, ..CaseReference::default() };
+        FlutterAt { crossings, motions, reference, particles: 7, ..FlutterAt::default() }
+    }
 
     #[test]
     fn crossings_are_held_against_those_like_them() {
-        let row = |kind: &str, mode: usize, dynamic_pressure: f64| FlutterRow {
+        let row = |kind: &str, branch: &str, dynamic_pressure: f64| FlutterRow {
             kind: kind.into(),
-            mode,
+            branch: branch.into(),
             dynamic_pressure,
             ..FlutterRow::default()
         };
-        let all = |crossings: Vec<FlutterRow>| FlutterAt { crossings, particles: 7, ..FlutterAt::default() };
-        let mut at = all(vec![row("flutter", 1, 1.0), row("divergence", 1, 4.0), row("flutter", 2, 9.0)]);
-        compare(&mut at, &all(vec![row("flutter", 1, 1.21), row("flutter", 1, 4.0), row("divergence", 1, 3.61)]));
-        let found: Vec<Option<f64>> = at.crossings.iter().map(|c| c.cloud_error).collect();
-        assert!((found[0].unwrap() - 0.1).abs() < 1e-12 && (found[1].unwrap() - 0.05).abs() < 1e-12);
-        assert_eq!((found[2], at.coarser_particles), (None, 7));
+        let scales = Scales::of(&case(""), 1.0, Matching::None);
+        let own = ["flutter", "divergence", "flutter"].into_iter().zip(["mode 1", "divergence 1", "mode 2"]);
+        let own = own.zip([1.0, 4.0, 9.0]).map(|((kind, branch), q)| row(kind, branch, q)).collect();
+        let mut fine = at(own, Vec::new());
+        let other = vec![
+            row("flutter", "mode 1", 1.21),
+            row("flutter", "mode 1", 4.0),
+            row("divergence", "divergence 1", 3.61),
+        ];
+        compare(&mut fine, &at(other, Vec::new()), &scales);
+        let found: Vec<Option<f64>> = fine.crossings.iter().map(|c| c.cloud_error).collect();
+        let [first, second] = [0.1, 0.05].map(|moved| SAFETY * moved);
+        assert!((found[0].unwrap() - first).abs() < 1e-12 && (found[1].unwrap() - second).abs() < 1e-12);
+        assert_eq!((found[2], fine.coarser_particles), (None, 7));
+    }
+
+    /// Mode 1 with a hump of damping whose top is `top` where the speed is that of the case.
+    fn hump(top: f64) -> Vec<MotionRow> {
+        let motion = |k: i32| {
+            let place = 0.02 * f64::from(k);
+            MotionRow {
+                branch: "mode 1".into(),
+                mode: Some(1),
+                speed_ratio: place,
+                speed: place,
+                equivalent_airspeed: None,
+                dynamic_pressure: place * place,
+                density: 1.0,
+                altitude: None,
+                reduced_frequency: 0.1,
+                damping: top - (place - 1.0).powi(2),
+                frequency: 1.0,
+                eigenvalue: [0.0, 1.0],
+            }
+        };
+        (1..=100).map(motion).collect()
+    }
+
+    #[test]
+    fn flutter_on_the_other_cloud_alone_is_a_warning_with_its_range() {
+        let scales = Scales::of(&case(""), 1.0, Matching::None);
+        let mut fine = at(Vec::new(), hump(-0.014));
+        compare(&mut fine, &at(Vec::new(), hump(0.030)), &scales);
+        let [doubt] = &fine.doubts[..] else { panic!("{:?}", fine.doubts) };
+        assert_eq!((doubt.kind.as_str(), doubt.branch.as_str()), ("coarser_cloud_only", "mode 1"));
+        assert!((doubt.damping + 0.014).abs() < 1e-9 && (doubt.damping_coarser - 0.03).abs() < 1e-9);
+        assert!(doubt.speed_ratio[0] < 0.9 && doubt.speed_ratio[1] > 1.1, "{doubt:?}");
+        assert!(fine.warnings[0].contains("mode 1 grows between") && fine.warnings[0].contains("spacing"));
+        let mut sure = at(Vec::new(), hump(-0.2));
+        compare(&mut sure, &at(Vec::new(), hump(-0.19)), &scales);
+        assert!(sure.doubts.is_empty() && sure.warnings.is_empty());
     }
 
     #[test]

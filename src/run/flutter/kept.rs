@@ -8,7 +8,8 @@ use serde::{Deserialize, Serialize};
 
 use super::super::error::RunError;
 use super::super::folder::{self, KEPT};
-use super::record::{FlutterAt, LimitCycle, MotionRow};
+use super::record::{FlutterAt, LimitCycle};
+use super::rows::MotionRow;
 use super::state_space::StateSpaceAt;
 use crate::case::Case;
 use crate::observe::table::write_json;

@@ -25,6 +25,8 @@ const STILL: f64 = 0.2;
 const BALANCES: usize = 8;
 /// Harmonics that are added.
 const MORE: usize = 2;
+/// Why a branch ends when the monitor says stop.
+const STOPPED: &str = "told to stop";
 /// Greatest growth of what the gas does beyond small motions that is guessed.
 const GROWTH: f64 = 8.0;
 
@@ -157,7 +159,7 @@ impl<'s, 'a> Seek<'s, 'a> {
         let mut n = at.cycle.motion.harmonics.len().saturating_sub(MORE).clamp(1, most);
         loop {
             if let Some((source, log)) = source {
-                self.search.reach(*source, n as f64 * at.cycle.kappa(), log);
+                self.search.reach(*source, n as f64 * at.cycle.kappa(), log).ok_or(STOPPED)?;
             }
             let next = self.converged(&at, n, source)?;
             let error = if at.balances > 0 { (next.cycle.x / at.cycle.x - 1.0).abs() } else { f64::INFINITY };
@@ -182,6 +184,9 @@ impl<'s, 'a> Seek<'s, 'a> {
         let mut cycle = solved(&from.cycle, beyond.as_ref())?;
         if let (Some((source, log)), GasResponse::Nonlinear) = (source, self.plan.gas) {
             loop {
+                if log.stopped() {
+                    return Err(STOPPED.into());
+                }
                 let forces = source.swing(&cycle.motion, cycle.kappa())?;
                 let own = self.with(|own| own.beyond_small(&cycle, &forces)).unwrap_or_default();
                 let next = solved(&cycle, Some(&own))?;
@@ -226,7 +231,7 @@ impl<'s, 'a> Seek<'s, 'a> {
             speed_index: scales.speed_index.map(|v| v * stream.pressure.sqrt()),
             reduced_speed: scales.reduced_speed.map(|v| v * cycle.speed),
             speed: scales.reference.speed * cycle.speed,
-            density: scales.reference.density * stream.density(),
+            density: scales.numbers(cycle.x).density,
             dynamic_pressure: scales.reference.dynamic_pressure() * stream.pressure,
             altitude: stream.altitude,
             reduced_frequency: scales.reduced_frequency(cycle.kappa()),

@@ -1,151 +1,31 @@
-//! What is told of a flutter boundary: rows, tables, pictures.
+//! What is told of a flutter boundary: Mach numbers, limit cycles, pictures.
 use std::path::Path;
 
-use serde::{Deserialize, Deserializer, Serialize};
+use serde::{Deserialize, Serialize};
 
 use super::super::error::RunError;
 use super::super::folder::BOUNDARY;
 use super::held::Mark;
+use super::rows::{Clearance, Doubt, FlutterRow, MotionRow, or_infinite};
 use super::scales::CaseReference;
-use super::shapes::{NaturalMode, Share};
+use super::shapes::NaturalMode;
 use super::skin::Skin;
 use super::state_space::StateSpaceAt;
 use crate::case::Matching;
-use crate::observe::table::{Entry, write_csv, write_json};
+use crate::observe::table::write_json;
 use crate::report;
 
-/// The tables of `alula flutter`.
-const CROSSINGS: &str = "flutter.csv";
-const HISTORY: &str = "v-g.csv";
-const CYCLES: &str = "lco.csv";
 /// The surface that moves, for the page.
 const MODES: &str = "modes.json";
 /// What files say about signs and units.
 const CONVENTIONS: &str = "match none: speeds at constant density and Mach number; density: densities at constant speed; altitude: standard \
-                           atmosphere of 1976, geometric altitude in metres; error and g_method: relative, of the speed at constant \
-                           density, the root of the dynamic pressure; V* = U/(b omega_alpha), speed index V* / sqrt(mu), k = omega b/U, \
-                           b half of the reference chord; g = 2 zeta = 2 Re(lambda)/|lambda|; motion exp(i omega t); plunge up, pitch \
+                           atmosphere of 1976, geometric altitude in metres; error, cloud_error and g_method: relative, of the speed at constant \
+                           density, the root of the dynamic pressure; other columns that end in _error: half width of the error bar in the \
+                           unit of the column; equivalent airspeed sqrt(2 q/1.225 kg/m3); V* = U/(b omega_alpha), speed index V* / sqrt(mu), k = omega b/U, \
+                           b half of the reference chord; g = 2 zeta = 2 Re(lambda)/|lambda|, of motions that do not oscillate \
+                           2 b lambda/(U ln 2): growth over a chord of the way, in doublings; motion exp(i omega t); plunge up, pitch \
                            nose up positive; shapes: the largest amplitude is 1 with phase 0, angles in radians, displacements of rigid \
                            bodies in b, modes in what their files have";
-
-const CROSSING_COLUMNS: [&str; 17] = [
-    "mach",
-    "kind",
-    "mode",
-    "speed_ratio",
-    "speed_index",
-    "reduced_speed",
-    "speed",
-    "reduced_frequency",
-    "frequency",
-    "frequency_ratio",
-    "error",
-    "cloud_error",
-    "g_method",
-    "density",
-    "dynamic_pressure",
-    "mass_ratio",
-    "altitude",
-];
-const CYCLE_COLUMNS: [&str; 18] = [
-    "mach",
-    "branch",
-    "coordinate",
-    "amplitude",
-    "speed_ratio",
-    "speed_index",
-    "reduced_speed",
-    "speed",
-    "reduced_frequency",
-    "frequency",
-    "stability",
-    "mean",
-    "harmonics",
-    "error",
-    "balances",
-    "density",
-    "dynamic_pressure",
-    "altitude",
-];
-const HISTORY_COLUMNS: [&str; 12] = [
-    "mach",
-    "mode",
-    "speed_ratio",
-    "k",
-    "1/k",
-    "damping_g",
-    "frequency",
-    "eigenvalue_re",
-    "eigenvalue_im",
-    "density",
-    "dynamic_pressure",
-    "altitude",
-];
-
-/// A change from decay to growth, or back.
-#[derive(Clone, Debug, Default, Serialize, Deserialize)]
-pub struct FlutterRow {
-    /// `flutter`, `restabilised` or `divergence`.
-    pub kind: String,
-    /// Number of the mode in still air, from 1.
-    pub mode: usize,
-    /// Speed over that of the structure in the case.
-    pub speed_ratio: f64,
-    /// Speed index, where the structure has a mass ratio and a frequency of pitch.
-    pub speed_index: Option<f64>,
-    /// V*, the same times the root of the mass ratio.
-    pub reduced_speed: Option<f64>,
-    /// Speed in the units of the case.
-    pub speed: f64,
-    /// Density in the units of the case.
-    pub density: f64,
-    /// Dynamic pressure in the units of the case.
-    pub dynamic_pressure: f64,
-    /// Mass ratio at this density, where the structure is a section.
-    pub mass_ratio: Option<f64>,
-    /// Geometric altitude in metres, where that is varied.
-    pub altitude: Option<f64>,
-    /// k.
-    pub reduced_frequency: f64,
-    /// Frequency in cycles per unit of time of the case.
-    pub frequency: f64,
-    /// The same over that of pitch alone, where the structure is a section.
-    pub frequency_ratio: Option<f64>,
-    /// Relative change of the speed, of the root of the dynamic pressure, between the last two interpolations.
-    #[serde(deserialize_with = "or_infinite")]
-    pub error: f64,
-    /// Relative change of the same on a coarser cloud; none where there is no such cloud, or no such crossing on it.
-    pub cloud_error: Option<f64>,
-    /// What the g-method finds of the same, less one; none at divergence, and where it finds nothing.
-    pub g_method: Option<f64>,
-    /// True when k lies beyond the frequencies that forces were computed at.
-    pub extrapolated: bool,
-    /// How much each coordinate takes part.
-    pub shape: Vec<Share>,
-}
-
-/// A motion at a speed.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-pub struct MotionRow {
-    /// Number of the mode in still air, from 1.
-    pub mode: usize,
-    /// Speed over that of the structure in the case.
-    pub speed_ratio: f64,
-    /// Dynamic pressure in the units of the case.
-    pub dynamic_pressure: f64,
-    /// Density in the units of the case.
-    pub density: f64,
-    /// Geometric altitude in metres, where that is varied.
-    pub altitude: Option<f64>,
-    /// k.
-    pub reduced_frequency: f64,
-    /// 2 Re λ/|λ|.
-    pub damping: f64,
-    /// Cycles per unit of time of the case.
-    pub frequency: f64,
-    /// λ over the rate of the fastest natural mode: real and imaginary part.
-    pub eigenvalue: [f64; 2],
-}
 
 /// The equilibrium that forces are about.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -168,8 +48,23 @@ pub struct FlutterAt {
     /// What is varied.
     #[serde(rename = "match")]
     pub matching: Matching,
+    /// True where the stream of the case has units: numbers are in SI units then.
+    #[serde(default)]
+    pub dimensional: bool,
+    /// Number of space dimensions.
+    #[serde(default)]
+    pub dimension: usize,
     /// Every crossing, by what is varied: rising speed, rising density, falling altitude.
     pub crossings: Vec<FlutterRow>,
+    /// Branches that grow already where forces are known for the first time: they have no crossing there.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub growing_from_start: Vec<String>,
+    /// Ranges of speed in which the spacing of the cloud decides whether motions grow.
+    #[serde(default)]
+    pub doubts: Vec<Doubt>,
+    /// What is left to the design speed, where one is given.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub clearance: Option<Clearance>,
     /// Natural modes in still air.
     pub natural: Vec<NaturalMode>,
     /// What ratios refer to.
@@ -295,11 +190,6 @@ pub struct MarchedCycle {
     pub cpu_seconds: f64,
 }
 
-/// A number that files have no word for where it is infinite.
-fn or_infinite<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
-    Option::<f64>::deserialize(from).map(|x| x.unwrap_or(f64::INFINITY))
-}
-
 /// Cycles, and what makes them doubtful.
 pub(super) type Found = (Vec<LimitCycle>, Vec<String>);
 
@@ -329,14 +219,11 @@ impl Boundary {
 impl Boundary {
     /// Writes tables and pictures into a folder.
     pub(super) fn write(&self, out: &Path) -> Result<(), RunError> {
-        self.write_crossings(&out.join(CROSSINGS))?;
-        self.write_motions(&out.join(HISTORY))?;
+        self.write_tables(out)?;
         for at in &self.flutter {
             at.state_space.iter().try_for_each(|system| system.write(at.mach, out))?;
         }
-        if !self.lco.is_empty() {
-            self.write_cycles(&out.join(CYCLES))?;
-        }
+        self.describe_tables(out)?;
         write_json(&out.join(BOUNDARY), &self)?;
         self.skin.as_ref().map_or(Ok(()), |skin| self.picture(skin, out))
     }
@@ -356,72 +243,6 @@ impl Boundary {
         report::write_flutter(out)?;
         report::write_report(out)?;
         Ok(())
-    }
-
-    fn write_crossings(&self, file: &Path) -> Result<(), RunError> {
-        let number = |x: Option<f64>| Entry::from(x.unwrap_or(f64::NAN));
-        let rows = self.flutter.iter().flat_map(|at| at.crossings.iter().map(move |c| (at.mach, c)));
-        let rows = rows.map(|(mach, c)| {
-            vec![
-                Entry::from(mach),
-                Entry::from(c.kind.as_str()),
-                Entry::from(c.mode as f64),
-                Entry::from(c.speed_ratio),
-                number(c.speed_index),
-                number(c.reduced_speed),
-                Entry::from(c.speed),
-                Entry::from(c.reduced_frequency),
-                Entry::from(c.frequency),
-                number(c.frequency_ratio),
-                Entry::from(c.error),
-                number(c.cloud_error),
-                number(c.g_method),
-                Entry::from(c.density),
-                Entry::from(c.dynamic_pressure),
-                number(c.mass_ratio),
-                number(c.altitude),
-            ]
-        });
-        Ok(write_csv(file, &CROSSING_COLUMNS, rows)?)
-    }
-
-    fn write_cycles(&self, file: &Path) -> Result<(), RunError> {
-        let number = |x: Option<f64>| Entry::from(x.unwrap_or(f64::NAN));
-        let rows = self.lco.iter().map(|c| {
-            vec![
-                Entry::from(c.mach),
-                Entry::from(c.branch as f64),
-                Entry::from(c.coordinate.as_str()),
-                Entry::from(c.amplitude),
-                Entry::from(c.speed_ratio),
-                number(c.speed_index),
-                number(c.reduced_speed),
-                Entry::from(c.speed),
-                Entry::from(c.reduced_frequency),
-                Entry::from(c.frequency),
-                Entry::from(if c.stable { "stable" } else { "unstable" }),
-                Entry::from(c.mean),
-                Entry::from(c.harmonics as f64),
-                Entry::from(c.error),
-                Entry::from(c.balances as f64),
-                Entry::from(c.density),
-                Entry::from(c.dynamic_pressure),
-                number(c.altitude),
-            ]
-        });
-        Ok(write_csv(file, &CYCLE_COLUMNS, rows)?)
-    }
-
-    fn write_motions(&self, file: &Path) -> Result<(), RunError> {
-        let motions = self.flutter.iter().flat_map(|at| at.motions.iter().map(move |m| (at.mach, m)));
-        let motions = motions.map(|(mach, m)| {
-            let over = if m.reduced_frequency > 0.0 { 1.0 / m.reduced_frequency } else { f64::INFINITY };
-            let [re, im] = m.eigenvalue;
-            let numbers = [m.speed_ratio, m.reduced_frequency, over, m.damping, m.frequency, re, im];
-            let stream = [m.density, m.dynamic_pressure, m.altitude.unwrap_or(f64::NAN)];
-            [mach, m.mode as f64].into_iter().chain(numbers).chain(stream).map(Entry::from).collect::<Vec<_>>()
-        });
-        Ok(write_csv(file, &HISTORY_COLUMNS, motions)?)
     }
 }
 

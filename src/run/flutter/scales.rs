@@ -3,10 +3,14 @@ use std::f64::consts::{PI, TAU};
 
 use serde::{Deserialize, Serialize};
 
+use super::rows::Bars;
 use crate::case::{Case, FreeStreamScales, Matching, StreamRatio, StructureModel};
 use crate::geometry::dimension;
 use crate::physics::atmosphere;
 use crate::structure::flutter::Varied;
+
+/// Density of the standard atmosphere at sea level, kg/m³: that of equivalent airspeeds.
+const SEA_LEVEL_DENSITY: f64 = 1.225;
 
 /// Scales at one Mach number.
 pub(super) struct Scales {
@@ -27,6 +31,10 @@ pub(super) struct Scales {
     pub(super) mass_ratio: Option<f64>,
     /// What is varied.
     pub(super) matching: Matching,
+    /// True where the stream of the case has units.
+    pub(super) dimensional: bool,
+    /// Number of space dimensions.
+    pub(super) dimension: usize,
 }
 
 /// Stream and structure of the case at a Mach number, which ratios refer to.
@@ -56,11 +64,21 @@ pub(super) struct Stream {
     pub(super) altitude: Option<f64>,
 }
 
-impl Stream {
-    /// Density over that of the case.
-    pub(super) fn density(&self) -> f64 {
-        self.pressure / (self.speed * self.speed)
-    }
+/// The stream at one value of what is varied, in the units of the case.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct StreamNumbers {
+    /// Speed over that of the case.
+    pub(super) speed_ratio: f64,
+    /// Speed.
+    pub(super) speed: f64,
+    /// Equivalent airspeed in m/s, where the stream has units.
+    pub(super) equivalent_airspeed: Option<f64>,
+    /// Density.
+    pub(super) density: f64,
+    /// Dynamic pressure.
+    pub(super) dynamic_pressure: f64,
+    /// Geometric altitude in metres, where that is varied.
+    pub(super) altitude: Option<f64>,
 }
 
 impl Scales {
@@ -89,6 +107,8 @@ impl Scales {
             speed_index: index.or(reduced.zip(root).map(|(v, root)| v / root)),
             mass_ratio,
             matching,
+            dimensional: case.flow.is_dimensional(),
+            dimension: usize::from(dimension(case)),
         }
     }
 
@@ -127,6 +147,55 @@ impl Scales {
         }
     }
 
+    /// x where the dynamic pressure over that of the case is `pressure`.
+    pub(super) fn place(&self, pressure: f64) -> f64 {
+        match self.matching {
+            Matching::None => pressure.sqrt(),
+            _ => pressure,
+        }
+    }
+
+    /// The stream where x is varied, in the units of the case.
+    pub(super) fn numbers(&self, x: f64) -> StreamNumbers {
+        let (stream, reference) = (self.at(x), &self.reference);
+        let density = match self.matching {
+            Matching::None => 1.0,
+            _ => stream.pressure / (stream.speed * stream.speed),
+        };
+        let dynamic_pressure = reference.dynamic_pressure() * stream.pressure;
+        StreamNumbers {
+            speed_ratio: stream.speed,
+            speed: reference.speed * stream.speed,
+            equivalent_airspeed: self.dimensional.then(|| (2.0 * dynamic_pressure / SEA_LEVEL_DENSITY).sqrt()),
+            density: reference.density * density,
+            dynamic_pressure,
+            altitude: stream.altitude,
+        }
+    }
+
+    /// Half widths of error bars where the root of the dynamic pressure, over that of the case squared `pressure`, is known to the part `bar`.
+    pub(super) fn bars(&self, pressure: f64, bar: f64) -> Bars {
+        if !bar.is_finite() {
+            return Bars::default();
+        }
+        let [low, high] =
+            [(1.0 - bar).max(0.0), 1.0 + bar].map(|part| self.numbers(self.place(pressure * part * part)));
+        let half = |of: fn(&StreamNumbers) -> f64| 0.5 * (of(&high) - of(&low)).abs();
+        let some = |of: fn(&StreamNumbers) -> Option<f64>| Some(0.5 * (of(&high)? - of(&low)?).abs());
+        // V_f and V* go with the root of the dynamic pressure and with the speed
+        let index = self.speed_index.map(|v| v * bar * pressure.sqrt());
+        Bars {
+            speed_ratio_error: Some(half(|n| n.speed_ratio)),
+            speed_index_error: index,
+            reduced_speed_error: self.reduced_speed.map(|v| v * half(|n| n.speed_ratio)),
+            speed_error: Some(half(|n| n.speed)),
+            equivalent_airspeed_error: some(|n| n.equivalent_airspeed),
+            density_error: Some(half(|n| n.density)),
+            dynamic_pressure_error: Some(half(|n| n.dynamic_pressure)),
+            altitude_error: some(|n| n.altitude),
+        }
+    }
+
     /// What x is to a structure; `speed` is that of [`Self::at`].
     pub(super) fn varied<'b>(&self, speed: &'b dyn Fn(f64) -> f64) -> Varied<'b> {
         match self.matching {
@@ -159,5 +228,58 @@ impl Scales {
             }
             _ => most,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn scales(flow: &str, matching: Matching) -> Scales {
+        let text = format!(
+            "[flow]\nmach = 0.5\n{flow}[[body]]\nnaca = \"0012\"\n[cloud]\nspacing = 0.1\n[structure]\nelastic_axis = -0.4\n\
+             mass_ratio = 30\nx_alpha = 0.2\nr_alpha2 = 0.25\nfrequency_ratio = 0.4\nspeed_index = 2.0\n[flutter]\n"
+        );
+        Scales::of(&crate::case::read(&text, "case.toml").unwrap().flutter_case(0.5), 1.0, matching)
+    }
+
+    const AIR: &str = "pressure = \"101325 Pa\"\ntemperature = \"288.15 K\"\n";
+
+    #[test] // dp/p = −dz/(8.4 km) near the ground, and q goes with p: ± 0.51 % of its root are ± 86 m
+    fn error_bars_are_in_the_unit_of_each_number() {
+        let scales = scales(AIR, Matching::Altitude);
+        let pressure = atmosphere::at(109.0).unwrap().pressure / 101_325.0;
+        let bars = scales.bars(pressure, 0.0051);
+        let altitude = bars.altitude_error.unwrap();
+        assert!((altitude - 86.0).abs() < 1.0, "{altitude}");
+        let own = scales.numbers(scales.place(pressure));
+        assert!((own.altitude.unwrap() - 109.0).abs() < 0.1 && (own.speed - 169.93).abs() < 0.05, "{own:?}");
+        let part = |error: Option<f64>, of: f64| error.unwrap() / of;
+        assert!((part(bars.dynamic_pressure_error, own.dynamic_pressure) - 0.0102).abs() < 1e-6);
+        assert!((part(bars.equivalent_airspeed_error, own.equivalent_airspeed.unwrap()) - 0.0051).abs() < 1e-6);
+        // the sound speed falls with the altitude
+        assert!((bars.speed_error.unwrap() - 0.5 * 0.00384 * altitude).abs() < 0.01, "{bars:?}");
+    }
+
+    #[test]
+    fn what_is_not_varied_has_no_error() {
+        let tunnel = scales(AIR, Matching::Density);
+        let bars = tunnel.bars(4.0, 0.01);
+        assert_eq!((bars.speed_error, bars.altitude_error), (Some(0.0), None));
+        assert!((bars.density_error.unwrap() - 0.02 * 4.0 * tunnel.reference.density).abs() < 1e-9);
+        let plain = scales("", Matching::None);
+        let bars = plain.bars(4.0, 0.01);
+        assert!((bars.speed_index_error.unwrap() - 0.04).abs() < 1e-12 && bars.equivalent_airspeed_error.is_none());
+        assert_eq!(plain.bars(4.0, f64::INFINITY), Bars::default());
+        let still = plain.numbers(0.0);
+        assert_eq!((still.speed, still.density, still.dynamic_pressure), (0.0, 1.0, 0.0));
+    }
+
+    #[test] // EAS = TAS √(ρ/ρ₀)
+    fn equivalent_airspeeds_are_those_of_sea_level() {
+        let own = scales(AIR, Matching::None).numbers(0.6);
+        assert!((own.equivalent_airspeed.unwrap() / own.speed - 1.0).abs() < 1e-4, "{own:?}");
+        let high = scales("pressure = \"26436 Pa\"\ntemperature = \"223.15 K\"\n", Matching::None).numbers(1.0);
+        assert!((high.equivalent_airspeed.unwrap() / high.speed - (0.4127f64 / 1.225).sqrt()).abs() < 1e-3);
     }
 }

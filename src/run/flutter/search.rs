@@ -1,16 +1,19 @@
 //! The search at one Mach number.
+use std::f64::consts::LN_2;
+
 use num_complex::Complex64;
 
 use super::super::record::Log;
 use super::super::studies::{ForceSource, Forces};
 use super::held::{Held, Mark};
-use super::record::{FlutterAt, FlutterRow, MotionRow};
+use super::record::FlutterAt;
+use super::rows::{Bars, FlutterRow, MotionRow};
 use super::scales::Scales;
 use super::shapes::{NaturalMode, shares};
 use super::state_space::StateSpaceAt;
 use crate::case::{Flutter as Plan, StreamRatio};
 use crate::math::rational::Rational;
-use crate::structure::flutter::{Crossing, Flutter, Kind, Point};
+use crate::structure::flutter::{Branch, Crossing, Flutter, Kind, Point, StillMotions};
 use crate::structure::{Matrices, Spring};
 
 /// Misfit of rational functions to the samples.
@@ -19,6 +22,8 @@ const MISFIT: f64 = 1e-7;
 const BEYOND: f64 = 2.0;
 /// A frequency that forces are computed at for a harmonic, over that of the harmonic: it goes on to rise.
 const ABOVE: f64 = 1.1;
+/// Rate of growth over the root of a motion that is told where it begins.
+const GROWS: f64 = 1e-3;
 /// Frequencies that are nearer to one another than this part are one.
 const SAME: f64 = 5e-4;
 
@@ -41,7 +46,15 @@ pub(super) struct Search<'a> {
 }
 
 /// Motions and crossings.
-type Solved = (Vec<Vec<Point>>, Vec<Crossing>);
+#[derive(Default)]
+struct Solved {
+    /// Those that oscillate, mode by mode.
+    branches: Vec<Vec<Point>>,
+    still: StillMotions,
+    /// λ where nothing flows, mode by mode.
+    in_still_air: Vec<Complex64>,
+    crossings: Vec<Crossing>,
+}
 
 impl<'a> Search<'a> {
     /// Of the structure `held`, with the forces known already.
@@ -51,9 +64,9 @@ impl<'a> Search<'a> {
         Self { scales, plan, matrices, names, units, still, samples, iterations: 0, residual }
     }
 
-    /// Computes forces at the angular frequency `omega`.
-    fn sample(&mut self, source: &mut dyn ForceSource, omega: f64, log: &mut Log<'_>) {
-        let Forces { generalised, ended, .. } = source.forces(omega);
+    /// Computes forces at the angular frequency `omega`; `None` when the monitor says stop.
+    fn sample(&mut self, source: &mut dyn ForceSource, omega: f64, log: &mut Log<'_>) -> Option<()> {
+        let Forces { generalised, ended, .. } = source.forces_unless(omega, &|| log.stopped())?;
         let iterations: usize = ended.iter().map(|e| e.iterations).sum();
         let left = ended.iter().map(|e| e.left).fold(0.0, f64::max);
         self.iterations += iterations;
@@ -65,12 +78,14 @@ impl<'a> Search<'a> {
         ));
         self.samples.push((omega, generalised));
         self.samples.sort_by(|a, b| a.0.total_cmp(&b.0));
+        Some(())
     }
 
-    /// Computes forces at the angular frequency `omega` where none are known that high.
-    pub(super) fn reach(&mut self, source: &mut dyn ForceSource, omega: f64, log: &mut Log<'_>) {
-        if self.highest_known() < omega {
-            self.sample(source, ABOVE * omega, log);
+    /// Computes forces at the angular frequency `omega` where none are known that high; `None` when the monitor says stop.
+    pub(super) fn reach(&mut self, source: &mut dyn ForceSource, omega: f64, log: &mut Log<'_>) -> Option<()> {
+        match self.highest_known() < omega {
+            true => self.sample(source, ABOVE * omega, log),
+            false => Some(()),
         }
     }
 
@@ -110,44 +125,44 @@ impl<'a> Search<'a> {
         self.scales.upto(self.plan.most)
     }
 
-    /// The boundary with forces of `source`, of which those near the crossings are asked for.
+    /// The boundary with forces of `source`, of which those near the crossings are asked for; `None` when the monitor says stop.
     pub(super) fn run(
         &mut self,
         (source, stream): (&mut dyn ForceSource, StreamRatio),
         log: &mut Log<'_>,
-    ) -> FlutterAt {
+    ) -> Option<FlutterAt> {
         self.matrices = of_the_case(source.matrices(), stream);
         (self.names, self.still) = (source.names(), source.still());
-        self.sample(source, 0.0, log);
+        self.sample(source, 0.0, log)?;
         for k in self.plan.first() {
-            self.sample(source, self.scales.angular_frequency(k), log);
+            self.sample(source, self.scales.angular_frequency(k), log)?;
         }
-        let (mut branches, mut crossings) = self.solved(&self.samples);
+        let mut solved = self.solved(&self.samples);
         // no change is known of the first ones
-        let mut errors = vec![f64::INFINITY; crossings.len()];
+        let mut errors = vec![f64::INFINITY; solved.crossings.len()];
         while self.samples.len() < self.plan.frequencies as usize {
             let new = |c: &Crossing| self.samples.iter().all(|(w, _)| (w - c.kappa).abs() > SAME * c.kappa);
-            let open = crossings.iter().zip(&errors).filter(|(c, e)| **e > self.plan.accuracy && new(c));
+            let open = solved.crossings.iter().zip(&errors).filter(|(c, e)| **e > self.plan.accuracy && new(c));
             let Some(worst) = open.max_by(|a, b| a.1.total_cmp(b.1).then(b.0.x.total_cmp(&a.0.x))) else { break };
             let kappa = worst.0.kappa;
-            self.sample(source, kappa, log);
-            let before = std::mem::take(&mut crossings);
-            (branches, crossings) = self.solved(&self.samples);
-            errors = crossings.iter().map(|c| changed(c, &before)).collect();
+            self.sample(source, kappa, log)?;
+            let before = std::mem::take(&mut solved.crossings);
+            solved = self.solved(&self.samples);
+            errors = solved.crossings.iter().map(|c| changed(c, &before)).collect();
         }
-        let warnings = self.doubts(&crossings, &mut errors, "allow more `frequencies`");
-        self.told(&branches, &crossings, &errors, warnings)
+        let warnings = self.doubts(&solved.crossings, &mut errors, "allow more `frequencies`");
+        Some(self.told(&solved, &errors, warnings))
     }
 
     /// The boundary with the forces that there are.
     pub(super) fn again(&self) -> FlutterAt {
-        let (branches, crossings) = self.solved(&self.samples);
-        let mut errors: Vec<f64> = crossings.iter().map(|c| self.without_nearest(c)).collect();
-        let mut warnings = self.doubts(&crossings, &mut errors, "forces that are read cannot be refined there");
+        let solved = self.solved(&self.samples);
+        let mut errors: Vec<f64> = solved.crossings.iter().map(|c| self.without_nearest(c)).collect();
+        let mut warnings = self.doubts(&solved.crossings, &mut errors, "forces that are read cannot be refined there");
         if self.samples.first().is_none_or(|s| s.0 > 0.0) {
             warnings.push("there are no forces at rest: speeds of divergence are extrapolated".into());
         }
-        self.told(&branches, &crossings, &errors, warnings)
+        self.told(&solved, &errors, warnings)
     }
 
     /// Change of a crossing when the forces nearest to its frequency are left out.
@@ -159,7 +174,7 @@ impl<'a> Search<'a> {
             return f64::INFINITY;
         }
         let others: Vec<Sample> = self.samples.iter().filter(|s| distance(s) > nearest).cloned().collect();
-        changed(crossing, &self.solved(&others).1)
+        changed(crossing, &self.solved(&others).crossings)
     }
 
     /// What is not known well enough; sets the errors of divergence.
@@ -182,7 +197,7 @@ impl<'a> Search<'a> {
 
     /// Motions and crossings with forces at some frequencies.
     fn solved(&self, samples: &[Sample]) -> Solved {
-        let Some(fit) = Rational::of(samples, MISFIT) else { return (Vec::new(), Vec::new()) };
+        let Some(fit) = Rational::of(samples, MISFIT) else { return Solved::default() };
         let speed = |x: f64| self.scales.at(x).speed;
         // motions that do not oscillate, divergence among them, have the forces found at rest where these are known
         let rest = samples.first().filter(|s| s.0 == 0.0);
@@ -191,12 +206,12 @@ impl<'a> Search<'a> {
         let flutter = Flutter::new(&self.matrices, &forces).varying(self.scales.varied(&speed));
         let upto = self.scales.upto(self.plan.most);
         let mut branches = flutter.branches(upto);
-        let mut crossings = flutter.crossings(&branches, upto);
+        let (mut crossings, still) = (flutter.crossings(&branches, upto), flutter.still_motions(&branches, upto));
         // at the lowest speeds forces hardly act, and would be guessed
         let highest = self.highest_told();
         branches.iter_mut().for_each(|b| b.retain(|p| p.lambda.im.abs() <= highest * p.speed));
         crossings.retain(|c| c.kappa <= highest);
-        (branches, crossings)
+        Solved { branches, still, in_still_air: flutter.in_still_air(), crossings }
     }
 
     /// The highest angular frequency of motions that are told.
@@ -217,51 +232,34 @@ impl<'a> Search<'a> {
         let forces = |kappa: f64| fit.at(Complex64::new(0.0, kappa));
         let flutter = Flutter::new(&self.matrices, &forces).varying(self.scales.varied(&speed));
         let found = crossings.iter().map(|c| flutter.damping_perturbation(c)).collect();
-        let first = crossings.iter().find(|c| c.kind == Kind::Flutter).or(crossings.first());
+        let first = crossings.iter().find(|c| c.kind == Kind::Flutter).or(crossings.iter().find(|c| c.x > 0.0));
         let stream = first.map_or_else(|| self.scales.at(1.0), |c| self.scales.at(c.x));
         let last = self.samples.last().map_or(0.0, |s| s.0);
         let system = || StateSpaceAt::of((&self.matrices, &self.names), &forces, last, (&stream, self.scales));
         (found, self.plan.state_space.then(system).flatten())
     }
 
-    fn told(
-        &self,
-        branches: &[Vec<Point>],
-        crossings: &[Crossing],
-        errors: &[f64],
-        mut warnings: Vec<String>,
-    ) -> FlutterAt {
-        let s = self.scales;
-        if branches.iter().all(Vec::is_empty) {
+    fn told(&self, solved: &Solved, errors: &[f64], mut warnings: Vec<String>) -> FlutterAt {
+        let (s, crossings) = (self.scales, &solved.crossings);
+        if solved.branches.iter().all(Vec::is_empty) && solved.still.growing.is_empty() {
             warnings.push(format!(
                 "no motion has a reduced frequency below {:.3}, twice the highest known: give higher `reduced_frequencies`",
                 BEYOND * s.reduced_frequency(self.highest())
             ));
         }
+        let (growing_from_start, told) = self.grow_from_the_start(solved).into_iter().unzip();
+        warnings.extend::<Vec<String>>(told);
         let (checks, state_space) = self.checked(crossings);
         let rows = crossings.iter().zip(errors).zip(&checks);
-        let fastest = branches.iter().flatten().map(|p| p.lambda.norm()).fold(f64::MIN_POSITIVE, f64::max);
-        let motion = |(mode, p): (usize, &Point)| {
-            let stream = s.at(p.x);
-            MotionRow {
-                mode: mode + 1,
-                speed_ratio: p.speed,
-                dynamic_pressure: s.reference.dynamic_pressure() * stream.pressure,
-                density: s.reference.density * stream.density(),
-                altitude: stream.altitude,
-                reduced_frequency: s.reduced_frequency(p.lambda.im.abs() / p.speed),
-                damping: 2.0 * p.lambda.re / p.lambda.norm(),
-                frequency: s.cycles * p.lambda.im.abs(),
-                eigenvalue: [p.lambda.re / fastest, p.lambda.im / fastest],
-            }
-        };
         FlutterAt {
             mach: s.stream,
             matching: s.matching,
+            dimensional: s.dimensional,
+            dimension: s.dimension,
             crossings: rows.map(|((c, error), check)| self.row(c, *error, *check)).collect(),
             natural: self.natural(),
             reference: s.case_reference(),
-            motions: branches.iter().enumerate().flat_map(|(m, b)| b.iter().map(move |p| (m, p))).map(motion).collect(),
+            motions: self.motions(solved),
             state_space,
             reduced_frequencies: self.samples.iter().map(|x| s.reduced_frequency(x.0)).collect(),
             forces: self.samples.iter().map(|x| x.1.iter().map(|z| [z.re, z.im]).collect()).collect(),
@@ -271,8 +269,72 @@ impl<'a> Search<'a> {
             semichord: s.semichord,
             linear_iterations: self.iterations,
             residual: self.residual,
+            growing_from_start,
             warnings,
             ..FlutterAt::default()
+        }
+    }
+
+    /// What grows already where it is told for the first time, and so has no crossing: name and words.
+    fn grow_from_the_start(&self, solved: &Solved) -> Vec<(String, String)> {
+        let highest = self.highest();
+        let first = |b: &Vec<Point>| b.iter().find(|p| p.lambda.im <= highest * p.speed).cloned();
+        let grows = |(m, b): (usize, &Vec<Point>)| {
+            let point = first(b).filter(|p| p.lambda.re > GROWS * p.lambda.norm())?;
+            let crossed = solved.crossings.iter().any(|c| c.branch == Branch::Mode(m) && c.x <= point.x);
+            (!crossed).then(|| {
+                let (name, damping) = (name(Branch::Mode(m)), 2.0 * point.lambda.re / point.lambda.norm());
+                let words = format!(
+                    "{name} grows already at the lowest speed at which its forces are known, {:.4} of that of the case (g {damping:+.4}): \
+                     it has no crossing there",
+                    point.speed
+                );
+                (name, words)
+            })
+        };
+        solved.branches.iter().enumerate().filter_map(grows).collect()
+    }
+
+    /// Motions at all speeds: each mode from still air on, then those that grow without oscillating.
+    fn motions(&self, solved: &Solved) -> Vec<MotionRow> {
+        let all = || solved.branches.iter().flatten().map(|p| p.lambda.norm());
+        let fastest = all().chain(solved.in_still_air.iter().map(|z| z.norm())).fold(f64::MIN_POSITIVE, f64::max);
+        let mut rows = Vec::new();
+        for (m, lambda) in solved.in_still_air.iter().enumerate() {
+            let air = Point { x: 0.0, speed: self.scales.at(0.0).speed, lambda: *lambda, shape: Vec::new() };
+            let [moving, resting] =
+                [&solved.branches, &solved.still.resting].map(|all| all.get(m).into_iter().flatten());
+            let points = std::iter::once(&air).chain(moving).chain(resting);
+            rows.extend(points.map(|p| self.motion(Branch::Mode(m), p, fastest)));
+        }
+        for (k, branch) in solved.still.growing.iter().enumerate() {
+            rows.extend(branch.iter().map(|p| self.motion(Branch::Divergence(k), p, fastest)));
+        }
+        rows
+    }
+
+    fn motion(&self, branch: Branch, p: &Point, fastest: f64) -> MotionRow {
+        let (s, lambda, stream) = (self.scales, p.lambda, self.scales.numbers(p.x));
+        let reduced = |rate: f64| if rate > 0.0 { s.reduced_frequency(rate / p.speed) } else { 0.0 };
+        let damping = match (lambda.im != 0.0, lambda.re == 0.0) {
+            (true, _) => 2.0 * lambda.re / lambda.norm(),
+            (_, true) => 0.0,
+            // growth over a chord of the way, in doublings, which vanishes where a motion is neutral
+            _ => 2.0 * s.reduced_frequency(lambda.re / p.speed) / LN_2,
+        };
+        MotionRow {
+            branch: name(branch),
+            mode: number(branch),
+            speed_ratio: stream.speed_ratio,
+            speed: stream.speed,
+            equivalent_airspeed: stream.equivalent_airspeed,
+            dynamic_pressure: stream.dynamic_pressure,
+            density: stream.density,
+            altitude: stream.altitude,
+            reduced_frequency: reduced(lambda.im.abs()),
+            damping,
+            frequency: s.cycles * lambda.im.abs(),
+            eigenvalue: [lambda.re / fastest, lambda.im / fastest],
         }
     }
 
@@ -288,10 +350,9 @@ impl<'a> Search<'a> {
     }
 
     fn row(&self, c: &Crossing, error: f64, check: Option<f64>) -> FlutterRow {
-        let s = self.scales;
+        let (s, stream) = (self.scales, self.scales.numbers(c.x));
         let last = self.samples.last().map_or(0.0, |x| x.0) * (1.0 + SAME);
         let equivalent = c.pressure.sqrt();
-        let density = c.pressure / (c.speed * c.speed);
         // the frequency of pitch alone: what V* is measured with
         let alone = s.reduced_speed.map(|v| s.stream / (v * s.semichord));
         FlutterRow {
@@ -301,24 +362,46 @@ impl<'a> Search<'a> {
                 Kind::Divergence => "divergence",
             }
             .to_owned(),
-            mode: c.mode + 1,
-            speed_ratio: c.speed,
+            branch: name(c.branch),
+            mode: number(c.branch),
+            speed_ratio: stream.speed_ratio,
             speed_index: s.speed_index.map(|v| v * equivalent),
             reduced_speed: s.reduced_speed.map(|v| v * c.speed),
-            speed: s.reference.speed * c.speed,
-            density: s.reference.density * density,
-            dynamic_pressure: s.reference.dynamic_pressure() * c.pressure,
-            mass_ratio: s.mass_ratio.map(|mu| mu / density),
-            altitude: s.at(c.x).altitude,
+            speed: stream.speed,
+            equivalent_airspeed: stream.equivalent_airspeed,
+            density: stream.density,
+            dynamic_pressure: stream.dynamic_pressure,
+            mass_ratio: s.mass_ratio.map(|mu| mu * s.reference.density / stream.density),
+            altitude: stream.altitude,
             reduced_frequency: s.reduced_frequency(c.kappa),
             frequency: s.cycles * c.frequency,
             frequency_ratio: alone.map(|w| c.frequency / w),
             error,
             cloud_error: None,
+            bars: Bars::default(),
             shape: shares(&self.names, &self.units, &c.shape),
             g_method: check.map(|x| s.at(x).pressure.sqrt() / equivalent - 1.0),
+            growth: None,
+            holding_damping: None,
+            margin: None,
             extrapolated: c.kappa > last || self.samples.first().is_none_or(|x| c.kappa < x.0 * (1.0 - SAME)),
         }
+    }
+}
+
+/// What a branch is called.
+fn name(branch: Branch) -> String {
+    match branch {
+        Branch::Mode(m) => format!("mode {}", m + 1),
+        Branch::Divergence(k) => format!("divergence {}", k + 1),
+    }
+}
+
+/// The number of a natural mode.
+fn number(branch: Branch) -> Option<usize> {
+    match branch {
+        Branch::Mode(m) => Some(m + 1),
+        Branch::Divergence(_) => None,
     }
 }
 
@@ -342,6 +425,10 @@ pub(super) fn springs_of_the_case(springs: Vec<Spring>, stream: StreamRatio) -> 
 /// Relative change of the speed of a crossing (of the root of its dynamic pressure) since another interpolation; infinite where that had
 /// none like it.
 fn changed(crossing: &Crossing, before: &[Crossing]) -> f64 {
-    let like = before.iter().filter(|b| b.kind == crossing.kind && b.mode == crossing.mode);
-    like.map(|b| ((b.pressure / crossing.pressure).sqrt() - 1.0).abs()).fold(f64::INFINITY, f64::min)
+    let like = before.iter().filter(|b| b.kind == crossing.kind && b.branch == crossing.branch);
+    let apart = |b: &Crossing| match b.pressure == crossing.pressure {
+        true => 0.0,
+        false => ((b.pressure / crossing.pressure).sqrt() - 1.0).abs(),
+    };
+    like.map(apart).fold(f64::INFINITY, f64::min)
 }

@@ -43,7 +43,8 @@ pub(super) fn trimmed(
         match (next, moved) {
             (Some(next), Some(moved)) if moved > plan.accuracy && rounds < ROUNDS => x = between.next(x, next),
             (Some(_), Some(moved)) => {
-                at.crossings.iter_mut().take(1).for_each(|c| c.error = c.error.max(moved));
+                let first = at.crossings.iter_mut().find(|c| c.kind != "restabilised" && c.dynamic_pressure > 0.0);
+                first.into_iter().for_each(|c| c.error = c.error.max(moved));
                 if moved > plan.accuracy {
                     at.warnings.push(format!(
                         "after {rounds} equilibria the first crossing is still {:.1} % from where the last was sought",
@@ -98,7 +99,8 @@ impl Between {
 
 /// What is varied at the first crossing that is not one back to decay.
 fn first(at: &FlutterAt, scales: &Scales) -> Option<f64> {
-    let row = at.crossings.iter().find(|c| c.kind != "restabilised")?;
+    // what diverges at any speed has no equilibrium there
+    let row = at.crossings.iter().find(|c| c.kind != "restabilised" && c.dynamic_pressure > 0.0)?;
     Some(match scales.matching {
         Matching::None => row.speed_ratio,
         _ => row.dynamic_pressure / scales.reference.dynamic_pressure(),

@@ -42,8 +42,12 @@ pub(crate) trait ForceSource {
     /// Generalised forces on all coordinates in the motion `motion` of angular frequency `omega` about the steady flow, beyond those of the latter;
     /// else what stands in the way.
     fn swing(&mut self, motion: &Periodic, omega: f64) -> Result<Periodic, String>;
-    /// Forces per coordinate at the angular frequency `omega`.
-    fn forces(&mut self, omega: f64) -> Forces;
+    /// Forces per coordinate at the angular frequency `omega`; `None` where `stop` says so before all are found.
+    fn forces_unless(&mut self, omega: f64, stop: &dyn Fn() -> bool) -> Option<Forces>;
+    /// The same, whatever it takes.
+    fn forces(&mut self, omega: f64) -> Forces {
+        self.forces_unless(omega, &|| false).unwrap_or_default()
+    }
     /// q∞ S c: free-stream dynamic pressure, reference area (in the plane chord) and chord, in units of the solver.
     fn work_scale(&mut self) -> f64;
 }
@@ -214,7 +218,7 @@ impl<S: Marches<D>, const D: usize> ForceSource for SmallMotion<'_, S, D> {
         axes.force_scale * axes.chord
     }
 
-    fn forces(&mut self, omega: f64) -> Forces {
+    fn forces_unless(&mut self, omega: f64, stop: &dyn Fn() -> bool) -> Option<Forces> {
         let n = self.columns.len();
         let right: Vec<Vec<f64>> = self
             .columns
@@ -227,7 +231,7 @@ impl<S: Marches<D>, const D: usize> ForceSource for SmallMotion<'_, S, D> {
             .collect();
         let control = Control::newton(D);
         let plan = Hierarchy { group: control.group, cycle: control.cycle };
-        let solved = self.linear.solve(omega, &right, TOLERANCE, &plan);
+        let solved = self.linear.solve(omega, &right, TOLERANCE, (&plan, stop))?;
         // forces are those at rest: the frame stands where the steady flow has it
         let still = self.state[self.system.placing()].to_vec();
         self.system.place(&Instant::formula(0.0, &[]).with(&still), &mut self.frame);
@@ -241,7 +245,7 @@ impl<S: Marches<D>, const D: usize> ForceSource for SmallMotion<'_, S, D> {
             all.coefficients.push([force(n), force(n + 1)]);
             all.ended.push(end);
         }
-        all
+        Some(all)
     }
 }
 
