@@ -275,7 +275,10 @@ const PLANFORMS: &[(&str, &str)] = &[
     ("elliptic", "as that of an ellipse; `taper` has no part in it"),
 ];
 
-const TIPS: &[(&str, &str)] =
-    &[("round", "half a body of revolution of the last section"), ("flat", "the face of the last section")];
+const TIPS: &[(&str, &str)] = &[
+    ("round", "half a circle seen from ahead, inside the planform; an elliptic planform ends in a point"),
+    ("flat", "the face of the last section"),
+    ("revolved", "half a body of revolution of the last section, beyond the span, as of the ONERA M6"),
+];
 
 const WING_SIDES: &[(&str, &str)] = &[("both", "both, mirrored at y = 0"), ("one", "that of positive y, or the fin")];

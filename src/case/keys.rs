@@ -206,26 +206,27 @@ static REFERENCE: Table = Table::of(&[
     Field::optional(
         "chord",
         SIZE,
-        "extent of the bodies along x, of a single section along its own axis; in 3-D the mean aerodynamic chord of their planform",
+        "chord line of a section (1 for NACA sections and files of unit chord, times `scale`), of several their extent along x; in 3-D the mean aerodynamic \
+         chord of the largest wing as it is typed, the length of bodies of revolution and lofts, else the mean aerodynamic chord of what is seen from above",
         "Length of the moment coefficient (and of CL, CD in 2-D).",
     ),
     Field::optional(
         "area",
         POSITIVE,
-        "area of the planform, seen along z",
+        "planform of the largest wing as it is typed, else of what is seen from above, fins left out",
         "Area of the coefficients in 3-D, length squared.",
     ),
     Field::optional(
         "body",
         Kind::Text,
-        "all bodies",
+        "the largest wing, else all bodies",
         "Name of the body that gives the values that are not given: the wing of an aircraft, the main part of a section. It counts whole, with what lies inside other bodies.",
     ),
     Field::optional(
         "moment_point",
         POINT,
-        "quarter of the chord (2-D), of the mean aerodynamic chord (3-D)",
-        "Point about which moments are taken.",
+        "quarter of the chord line (2-D), of the mean aerodynamic chord (3-D), moved with the body by `scale`, `rotate` and `translate`",
+        "Point about which moments are taken; it moves with the first body.",
     ),
 ]);
 

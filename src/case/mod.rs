@@ -276,14 +276,14 @@ pub struct Placement {
 /// Reference quantities of the coefficients.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Reference {
-    /// Length of the moment coefficient (and of CL, CD in 2-D); default: extent of the bodies along x, in 3-D the mean aerodynamic chord of
-    /// their planform.
+    /// Length of the moment coefficient (and of CL, CD in 2-D); default: the chord line of the section, in 3-D the mean aerodynamic chord of
+    /// the largest wing, else of what is seen from above.
     pub chord: Option<Length>,
-    /// Area of the coefficients in 3-D (in units of length squared); default: that of the planform, seen along z.
+    /// Area of the coefficients in 3-D (in units of length squared); default: that of the planform.
     pub area: Option<f64>,
-    /// Name of the body whose planform gives what is not given, in 3-D; default: all of them.
+    /// Name of the body whose planform gives what is not given, in 3-D; default: the largest wing, else all of them.
     pub body: Option<String>,
-    /// Point about which moments are taken; default: quarter chord of the bounding box in 2-D, its centre in 3-D.
+    /// Point about which moments are taken; default: the quarter of that chord.
     pub moment_point: Option<Vec<Length>>,
 }
 

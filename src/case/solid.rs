@@ -24,7 +24,7 @@ pub struct Solid {
     pub jitter: f64,
     /// What holds across the plane.
     pub plane: PlaneState,
-    /// Thickness of plane bodies, by which their loads are told.
+    /// Thickness of plane bodies, of which masses, energies and forces are told.
     pub thickness: Length,
     /// Strength of the forces against modes that particles do not see, 0 to 1; absent: 0.3 in the plane, 0.4 in space.
     pub stabilisation: Option<f64>,

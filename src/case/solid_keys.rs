@@ -48,7 +48,7 @@ pub(super) static SOLID: Table = Table::of(&[
         "thickness",
         SIZE,
         Absent::Number(1.0),
-        "Thickness of a body in the plane: its masses and forces are those of so much of it.",
+        "Thickness of bodies in the plane: masses, energies and forces are those of so much of them; not beside a gas, which acts on one unit of length.",
     ),
     Field::optional(
         "stabilisation",

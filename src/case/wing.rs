@@ -54,8 +54,10 @@ pub enum PlanformShape {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Tip {
-    /// Half a body of revolution of the last section.
+    /// Half a circle seen from ahead, inside the planform.
     Round,
+    /// Half a body of revolution of the last section, beyond the planform.
+    Revolved,
     /// The face of the last section.
     Flat,
 }

@@ -2,11 +2,14 @@
 //!
 //! A wing is a row of stations along the span, each with the place of its leading edge, a chord, a twist and a section; between
 //! them straight lines join points at equal parts of the length of the sides. Sections stand across the span: in planes y = const,
-//! or z = const for fins. A round tip is half a body of revolution of the last section, a flat one its face.
+//! or z = const for fins. A flat tip is the face of the last section. A round one lies inside the planform: where the section at the tip is 2 δ
+//! thick, thickness falls from δ (1 − sin φ) inboard of the tip as cos φ and is none at the tip, so that seen from above the wing is what was typed,
+//! and seen from ahead its tip is half a circle. A revolved one is half a body of revolution of the last section beyond the planform.
 use std::f64::consts::PI;
 
 use super::GeometryError;
 use super::outline;
+use super::planform::{Planform, QUARTER};
 use super::section::{Chain, Sides, clustered};
 use super::shell::{Exact, Shell};
 use super::spline::{End, Spline};
@@ -19,11 +22,14 @@ const PROFILE: usize = 160;
 /// Panels along the span for each mean chord, fewest and most.
 const PER_CHORD: f64 = 10.0;
 const ALONG: [f64; 2] = [8.0, 96.0];
-/// Last chord of an elliptic planform over the first.
+/// Last chord of an elliptic planform over the first, with tips that do not end in a point.
 const LAST: f64 = 0.05;
 /// Panels of a round tip from the upper to the lower side, and of a body of revolution around it.
 const CAP: usize = 12;
 const TURN: usize = 96;
+/// Part of the half span that a round tip takes at most, and what is left beside it for the last panel.
+const DEEPEST: f64 = 0.5;
+const BESIDE: f64 = 1.5;
 /// Dihedral beyond which a wing is a fin: its sections stand in planes z = const.
 const FIN: f64 = 0.25 * PI;
 /// Part of the chord about which sections are twisted.
@@ -36,12 +42,14 @@ pub(super) fn wing(place: &str, wing: &Wing, sections: [&Shell<2>; 2]) -> Result
     let plan = Plan::of(place, wing)?;
     let sides = sections.map(|outline| Sides::of(outline, &clustered(AROUND)));
     let sharp = sides.iter().all(Sides::is_sharp);
-    let half: Vec<Vec<Vector<3>>> = plan.stations().iter().map(|s| plan.ring(s, &sides)).collect();
+    let depths = plan.depths(&sides);
+    let half = plan.rings(&sides, &depths);
+    let mut rows = plan.cap(&sides, &depths);
     let mut skin = Skin::default();
-    let right: Vec<Vec<u32>> = half.iter().map(|ring| skin.ring(ring, sharp)).collect();
-    let tip = &half[half.len() - 1];
-    let outward = plan.span * (1.0 / plan.span.norm());
-    let mut rows = plan.cap(tip, &outward);
+    let number = |skin: &mut Skin, ring: &[Vector<3>]| {
+        if ring.windows(2).all(|x| x[0] == x[1]) { skin.ring_or_point(ring, true) } else { skin.ring(ring, sharp) }
+    };
+    let right: Vec<Vec<u32>> = half.iter().map(|ring| number(&mut skin, ring)).collect();
     if !plan.both {
         skin.strips(&right, true);
         skin.cap(&right[right.len() - 1], &rows, false);
@@ -50,7 +58,7 @@ pub(super) fn wing(place: &str, wing: &Wing, sections: [&Shell<2>; 2]) -> Result
     }
     let mirrored = |x: &Vector<3>| Vector([x[0], -x[1], x[2]]);
     let left = half[1..].iter().rev().map(|ring| ring.iter().map(mirrored).collect::<Vec<_>>());
-    let mut all: Vec<Vec<u32>> = left.map(|ring| skin.ring(&ring, sharp)).collect();
+    let mut all: Vec<Vec<u32>> = left.map(|ring| number(&mut skin, &ring)).collect();
     all.extend(right);
     skin.strips(&all, true);
     skin.cap(&all[all.len() - 1], &rows, false);
@@ -61,9 +69,45 @@ pub(super) fn wing(place: &str, wing: &Wing, sections: [&Shell<2>; 2]) -> Result
     Ok(if kink { shell.kinked(|x| x[1] == 0.0) } else { shell })
 }
 
+/// Reference values of the planform of a wing as it is typed, of what of it lies within these parts of its way from the left tip, -1, to
+/// the right one, 1; in its own axes. `None` for a wing that cannot be made.
+pub(super) fn typed_planform(wing: &Wing, [low, high]: [f64; 2]) -> Option<Planform> {
+    /// Panels of Simpson's rule on a half wing, exact for straight edges.
+    const PANELS: usize = 64;
+    let plan = Plan::of("", wing).ok()?;
+    let elliptic = wing.planform == PlanformShape::Elliptic;
+    let mut sums = [0.0; 5];
+    for side in [1.0, -1.0] {
+        let (from, to) = if side > 0.0 { (low.max(0.0), high.min(1.0)) } else { ((-high).max(0.0), (-low).min(1.0)) };
+        if from >= to || (side < 0.0 && !plan.both) {
+            continue;
+        }
+        let ends = if elliptic { [from.asin(), to.asin()] } else { [from, to] };
+        let step = (ends[1] - ends[0]) / PANELS as f64;
+        for k in 0..=PANELS {
+            let angle = ends[0] + step * k as f64;
+            let (part, slope) = if elliptic { angle.sin_cos() } else { (angle, 1.0) };
+            let weight = if k == 0 || k == PANELS { 1.0 } else { 2.0 * (1 + k % 2) as f64 } * step / 3.0 * slope;
+            let Station { nose, chord } = plan.station(part);
+            let own = [1.0, chord, nose[0], side * nose[1], nose[2]];
+            sums.iter_mut().zip(own).for_each(|(sum, own)| *sum += weight * chord * own);
+        }
+    }
+    let [sum, squares, edge, y, z] = sums;
+    let across = if plan.up[2] != 0.0 { plan.span[1] } else { plan.span[2].abs() };
+    let chord = squares / sum;
+    let quarter = [edge / sum + QUARTER * chord, y / sum, z / sum];
+    (sum > 0.0).then_some(Planform { chord, area: sum * across, quarter })
+}
+
+/// Direction of the span of a wing from the root to the tip, whose length is that of a half wing; `None` for one that cannot be made.
+pub(super) fn span_of(wing: &Wing) -> Option<Vector<3>> {
+    Plan::of("", wing).ok().map(|plan| plan.span)
+}
+
 /// A body of revolution about the x axis, of the profile `chain` from the nose to the rear; closed by a face where it does not end
 /// on the axis.
-pub(super) fn revolution(chain: &Chain) -> Shell<3> {
+pub(super) fn revolution(chain: &Chain<2>) -> Shell<3> {
     let around = |x: &Vector<2>, [c, s]: [f64; 2]| Vector([x[0], x[1] * c, x[1] * s]);
     along_axis(chain, around)
 }
@@ -71,43 +115,32 @@ pub(super) fn revolution(chain: &Chain) -> Shell<3> {
 /// The body through sections x, width, height and z of the middle, which are |2y/width|^n + |2z/height|^n = 1 for the `exponent` n; closed by
 /// faces where it does not end in points.
 ///
-/// The root of width times height follows the curve of a profile; what widths are to heights, and the middles, follow splines along x.
+/// Widths and heights follow a curve in x, width and height that stays between the stations and is that of a body of revolution where both
+/// are the same; the middles follow one along x.
 pub(super) fn through(stations: &[Vec<f64>], exponent: f64, straight: bool) -> Shell<3> {
-    let size = |s: &[f64]| 0.5 * (s[1] * s[2]).sqrt();
-    let profile: Vec<Vector<2>> = stations.iter().map(|s| Vector([s[0], size(s)])).collect();
-    let last = stations.len() - 1;
-    let form = |k: usize| {
-        // a point has the form of the section beside it
-        let beside = if stations[k][1] > 0.0 {
-            k
-        } else if k == 0 {
-            1
-        } else {
-            k - 1
-        };
-        Vector([(stations[beside][1] / stations[beside][2]).ln(), stations[k].get(3).copied().unwrap_or(0.0)])
-    };
-    let forms: Vec<Vector<2>> = (0..=last).map(form).collect();
+    // measures of which a circle of radius r has the length r
+    let share = |size: f64| size / 8f64.sqrt();
+    let sections: Vec<Vector<3>> = stations.iter().map(|s| Vector([s[0], share(s[1]), share(s[2])])).collect();
+    let middles: Vec<Vector<1>> = stations.iter().map(|s| Vector([s.get(3).copied().unwrap_or(0.0)])).collect();
     let places = stations.iter().map(|s| s[0]).collect();
-    let curve = Spline::over(places, forms.clone(), End::Natural, End::Natural);
-    let bent = |x: f64| x.signum() * x.abs().powf(2.0 / exponent);
-    along_axis(&outline::profile(&profile, straight), |x, [c, s]| {
+    let curve = Spline::monotone_over(places, middles.clone(), End::Natural, End::Natural);
+    let bent = |x: f64| 2f64.sqrt() * x.signum() * x.abs().powf(2.0 / exponent);
+    along_axis(&outline::profile(&sections, straight), |x, [c, s]| {
         let (i, part) = curve.interval(x[0]);
-        let form = if straight { forms[i] * (1.0 - part) + forms[i + 1] * part } else { curve.at(i, part).0 };
-        let stretch = (0.5 * form[0]).exp();
-        Vector([x[0], x[1] * stretch * bent(c), form[1] + x[1] / stretch * bent(s)])
+        let middle = if straight { middles[i] * (1.0 - part) + middles[i + 1] * part } else { curve.at(i, part).0 };
+        Vector([x[0], x[1] * bent(c), middle[0] + x[2] * bent(s)])
     })
 }
 
 /// A body along the x axis: `around` gives the point at the cosine and the sine of an angle of the section at a point of the profile.
-fn along_axis(chain: &Chain, around: impl Fn(&Vector<2>, [f64; 2]) -> Vector<3>) -> Shell<3> {
+fn along_axis<const D: usize>(chain: &Chain<D>, around: impl Fn(&Vector<D>, [f64; 2]) -> Vector<3>) -> Shell<3> {
     let mut skin = Skin::default();
     // no point beside a plane of symmetry that should lie in it
     let turn = |k: usize| {
         let (s, c) = (2.0 * PI * k as f64 / TURN as f64).sin_cos();
         [c, s].map(|x| if x.abs() < 1e-15 { 0.0 } else { x })
     };
-    let ring = |x: &Vector<2>| (0..TURN).map(|k| around(x, turn(k))).collect::<Vec<_>>();
+    let ring = |x: &Vector<D>| (0..TURN).map(|k| around(x, turn(k))).collect::<Vec<_>>();
     let points = chain.resampled(PROFILE);
     let rings: Vec<Vec<u32>> = points.iter().map(|x| skin.ring_or_point(&ring(x), x[1] == 0.0)).collect();
     skin.strips(&rings, true);
@@ -115,7 +148,8 @@ fn along_axis(chain: &Chain, around: impl Fn(&Vector<2>, [f64; 2]) -> Vector<3>)
         [(&rings[0], points[0], false), (&rings[rings.len() - 1], points[points.len() - 1], true)]
     {
         if point[1] > 0.0 {
-            let centre = skin.ring_or_point(&[around(&Vector([point[0], 0.0]), [1.0, 0.0])], false)[0];
+            let axis = Vector::from_fn(|d| if d == 0 { point[0] } else { 0.0 });
+            let centre = skin.ring_or_point(&[around(&axis, [1.0, 0.0])], false)[0];
             let centre = vec![centre; TURN];
             skin.strips(&if last { [ring.clone(), centre] } else { [centre, ring.clone()] }, true);
         }
@@ -139,8 +173,6 @@ struct Station {
     /// Place of the leading edge.
     nose: Vector<3>,
     chord: f64,
-    /// Part of the way from the root to the tip.
-    part: f64,
 }
 
 /// What the keys of a wing say.
@@ -183,20 +215,45 @@ impl<'a> Plan<'a> {
         Ok(Self { wing, span, up, both, root_chord })
     }
 
-    fn stations(&self) -> Vec<Station> {
+    /// Parts of the way to the tip at which stations stand; round tips begin within the last panel and are `deepest` parts deep.
+    fn parts(&self, deepest: f64) -> Vec<f64> {
         let length = self.span.norm();
         let count = |mean: f64| (PER_CHORD * length / mean).ceil().clamp(ALONG[0], ALONG[1]) as usize;
-        let parts: Vec<f64> = match self.wing.planform {
+        match self.wing.planform {
             PlanformShape::Straight => {
                 let n = count(0.5 * self.root_chord * (1.0 + self.wing.taper));
-                (0..=n).map(|k| k as f64 / n as f64).collect()
+                let last = 1.0 - BESIDE * deepest;
+                let inner = (0..=n).map(|k| last * k as f64 / n as f64);
+                inner.chain((deepest > 0.0).then_some(1.0)).collect()
             }
             PlanformShape::Elliptic => {
-                let (n, last) = (count(0.25 * PI * self.root_chord), LAST.acos());
+                let last = if self.wing.tip == Tip::Round { 0.5 * PI } else { LAST.acos() };
+                let n = count(0.25 * PI * self.root_chord);
                 (0..=n).map(|k| (last * k as f64 / n as f64).sin()).collect()
             }
+        }
+    }
+
+    /// Part of the way to the tip at which the last section stands.
+    fn tip(&self) -> f64 {
+        let cut = self.wing.planform == PlanformShape::Elliptic && self.wing.tip != Tip::Round;
+        if cut { LAST.acos().sin() } else { 1.0 }
+    }
+
+    /// What part of the way to the tip a round tip is deep, at the points of a side of the section from the nose to the rear.
+    fn depths(&self, sides: &[Sides; 2]) -> Vec<f64> {
+        let round = self.wing.tip == Tip::Round && self.wing.planform == PlanformShape::Straight;
+        if !round {
+            return vec![0.0; AROUND + 1];
+        }
+        let half = |k: usize| {
+            let [upper, lower] = self.both_sides(sides, 1.0, k);
+            0.5 * (upper - lower).norm() / self.span.norm()
         };
-        parts.into_iter().map(|part| self.station(part)).collect()
+        let all: Vec<f64> = (0..=AROUND).map(half).collect();
+        let deepest = all.iter().copied().fold(0.0, f64::max);
+        let fit = if deepest > DEEPEST { DEEPEST / deepest } else { 1.0 };
+        all.into_iter().map(|depth| depth * fit).collect()
     }
 
     fn station(&self, part: f64) -> Station {
@@ -208,36 +265,49 @@ impl<'a> Plan<'a> {
         // the line at `sweep_at` is straight
         let across = if self.both { self.span[1] } else { self.span.norm() };
         let back = self.wing.sweep_at * (self.root_chord - chord) + across * part * self.wing.sweep.0.tan();
-        Station { nose: self.span * part + Vector([back, 0.0, 0.0]), chord, part }
+        Station { nose: self.span * part + Vector([back, 0.0, 0.0]), chord }
     }
 
-    /// Points around the section of a station: from the rear over the upper side to the nose, and back below.
-    fn ring(&self, station: &Station, sides: &[Sides; 2]) -> Vec<Vector<3>> {
-        let (sin, cos) = (self.wing.twist.0 * station.part).sin_cos();
-        let along = |pick: fn(&Sides) -> &Vec<Vector<2>>, k: usize| {
-            let [root, tip] = [pick(&sides[0])[k], pick(&sides[1])[k]];
-            let x = (root + (tip - root) * station.part) * station.chord;
+    /// Points of the upper and the lower side, number `k` from the nose.
+    fn both_sides(&self, sides: &[Sides; 2], part: f64, k: usize) -> [Vector<3>; 2] {
+        let station = self.station(part);
+        let (sin, cos) = (self.wing.twist.0 * part).sin_cos();
+        let point = |[root, tip]: [Vector<2>; 2]| {
+            let x = (root + (tip - root) * part) * station.chord;
             let axis = TWISTED_ABOUT * station.chord;
             let (x, z) = (axis + (x[0] - axis) * cos + x[1] * sin, x[1] * cos - (x[0] - axis) * sin);
             station.nose + Vector([x, 0.0, 0.0]) + self.up * z
         };
-        let upper = (0..=AROUND).rev().map(|k| along(|s| &s.upper, k));
-        upper.chain((1..=AROUND).map(|k| along(|s| &s.lower, k))).collect()
+        [point([0, 1].map(|end| sides[end].upper[k])), point([0, 1].map(|end| sides[end].lower[k]))]
     }
 
-    /// Rows of points between the upper and the lower side of the last section, from the rear to the nose; none of a flat tip.
-    fn cap(&self, ring: &[Vector<3>], outward: &Vector<3>) -> Vec<Vec<Vector<3>>> {
-        if self.wing.tip == Tip::Flat {
+    /// Points around the sections: from the rear over the upper side to the nose, and back below. The last ring is the edge of the tip.
+    fn rings(&self, sides: &[Sides; 2], depths: &[f64]) -> Vec<Vec<Vector<3>>> {
+        let deepest = depths.iter().copied().fold(0.0, f64::max);
+        let ring = |part: f64| {
+            let at = |k: usize| self.both_sides(sides, if part < 1.0 { part } else { 1.0 - depths[k] }, k);
+            let upper = (0..=AROUND).rev().map(|k| at(k)[0]);
+            upper.chain((1..=AROUND).map(|k| at(k)[1])).collect()
+        };
+        self.parts(deepest).into_iter().map(ring).collect()
+    }
+
+    /// Rows of points between the upper and the lower side of a round tip, from the rear to the nose; none of others.
+    fn cap(&self, sides: &[Sides; 2], depths: &[f64]) -> Vec<Vec<Vector<3>>> {
+        let revolved = self.wing.tip == Tip::Revolved;
+        if !revolved && depths.iter().all(|depth| *depth == 0.0) {
             return Vec::new();
         }
+        let (outward, tip) = (self.span.unit(), self.tip());
         let row = |j: usize| {
             let (sin, cos) = (PI * j as f64 / CAP as f64).sin_cos();
             let point = |k: usize| {
-                let (upper, lower) = (ring[k], ring[2 * AROUND - k]);
+                let [upper, lower] = self.both_sides(sides, tip - depths[k] * (1.0 - sin), k);
                 let half = (upper - lower) * 0.5;
-                (upper + lower) * 0.5 + half * cos + *outward * (half.norm() * sin)
+                let beyond = if revolved { half.norm() * sin } else { 0.0 };
+                (upper + lower) * 0.5 + half * cos + outward * beyond
             };
-            (0..=AROUND).map(point).collect()
+            (0..=AROUND).rev().map(point).collect()
         };
         (1..CAP).map(row).collect()
     }

@@ -9,6 +9,7 @@
 //! Limits: a surface must bound a volume (thin sheets and large holes are refused), bodies in the plane must not overlap.
 //! Only [`load_surface`] opens files; all readers take any input.
 mod airfoil;
+mod chord_line;
 mod cross_section;
 mod holes;
 mod loft;
@@ -20,6 +21,7 @@ mod placement;
 mod planform;
 mod polygon;
 mod primitive;
+mod reference;
 mod repair;
 mod sampling;
 mod section;
@@ -36,6 +38,7 @@ mod weld;
 pub use cross_section::CrossSection;
 pub use planform::{Planform, Station};
 pub use primitive::{cuboid, icosphere, write_obj, write_outlines, write_stl};
+pub use reference::reference;
 pub use sampling::Chain;
 pub use shell::{Edge, Exact, Shell};
 pub use surface::{Element, Nearest, Projection, Skin, Surface};
@@ -114,10 +117,14 @@ pub fn load_surface<const D: usize>(
     folder: &Path,
 ) -> Result<(Surface<D>, Vec<String>), GeometryError> {
     let mut notes = Vec::new();
-    let mut shells = Vec::new();
+    let (mut shells, mut lines) = (Vec::new(), Vec::new());
     for (i, body) in bodies.iter().enumerate() {
         let name = body.name.clone().unwrap_or_else(|| format!("body-{}", i + 1));
         let shell = load_shell(&name, body, folder, &mut notes)?;
+        let line = shell.plane().map(|plane| chord_line::chord_line(body, plane));
+        let line = line.map(|line| line.map(|x| placement::placed(&x, &body.placement)));
+        notes.extend(line.and_then(|line| chord_line::astray(&name, body, &line)));
+        lines.push(line.map(|line| line.map(|x| Vector::from_fn(|d| x.to_3d()[d]))));
         let mut shell = shell.in_dimension::<D>().ok_or_else(|| {
             let what = format!("its shape is not {D}-dimensional as the case is");
             GeometryError::refused(format!("body `{name}`"), what, "change the shape or `dimension`")
@@ -135,6 +142,7 @@ pub fn load_surface<const D: usize>(
     }
     let names: Vec<String> = shells.iter().map(|(name, _)| name.clone()).collect();
     let mut surface = Surface::of(&names, &skins);
+    surface.chord_lines = lines;
     for k in groups.iter().filter(|group| group.len() > 1).flatten() {
         surface.keep_whole(*k, &shells[*k].1);
     }
@@ -331,6 +339,11 @@ fn meeting<const D: usize>(shells: &[(String, Shell<D>)]) -> Vec<Vec<usize>> {
 }
 
 impl AnyShell {
+    /// The shell of a plane.
+    fn plane(&self) -> Option<&Shell<2>> {
+        if let Self::Plane(shell) = self { Some(shell) } else { None }
+    }
+
     /// The shell when it has `D` dimensions.
     fn in_dimension<const D: usize>(self) -> Option<Shell<D>> {
         match self {

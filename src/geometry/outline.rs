@@ -120,25 +120,29 @@ pub(super) fn polygon(
     Ok(Shell { crease, ..straight_shell(&marks) })
 }
 
-/// The pieces of a profile, `points` from the nose to the rear on one side of the axis: straight ones between all points, or smooth ones
-/// between corners, which cross the axis at a right angle where they reach it steeply, and in a point elsewhere.
-pub(super) fn profile(points: &[Vector<2>], straight: bool) -> Chain {
+/// The pieces of a profile, `points` from the nose to the rear with the place on the axis first and measures of the section after it:
+/// straight ones between all points, or smooth ones between corners, which stay between their points, cross the axis at a right angle where
+/// they reach it steeply, and in a point elsewhere.
+pub(super) fn profile<const D: usize>(points: &[Vector<D>], straight: bool) -> Chain<D> {
     let last = points.len() - 1;
     let turn =
         |i: usize| simplex::angle_between(&(points[i] - points[i - 1]).unit(), &(points[i + 1] - points[i]).unit());
     let inner = (1..last).filter(|i| straight || turn(*i) > CORNER);
     let corners: Vec<usize> = std::iter::once(0).chain(inner).chain([last]).collect();
-    let end = |i: usize, beside: usize, across: f64| {
+    let across = |x: Vector<D>| Vector::<D>::from_fn(|d| if d == 0 { 0.0 } else { x[d] });
+    let end = |i: usize, beside: usize| {
         let along = points[beside] - points[i];
-        let steep = points[i][1] == 0.0 && along[1].abs() > STEEP * along[0].abs();
-        if steep && !straight { End::Along(Vector([0.0, across])) } else { End::Natural }
+        let on_axis = across(points[i]) == Vector::ZERO;
+        let steep = on_axis && across(along).norm() > STEEP * along[0].abs();
+        let outward = across(along).unit() * if i < beside { 1.0 } else { -1.0 };
+        if steep && !straight { End::Along(outward) } else { End::Natural }
     };
     let piece = |ends: &[usize]| {
         let [from, to] = [ends[0], ends[1]];
-        let start = if from == 0 { end(0, 1, 1.0) } else { End::Natural };
-        let stop = if to == last { end(last, last - 1, -1.0) } else { End::Natural };
-        let spline = Spline::new(points[from..=to].to_vec(), start, stop);
-        let mut all: Vec<Vector<2>> = sample(&spline, extent(points)).into_iter().map(|s| s.0).collect();
+        let start = if from == 0 { end(0, 1) } else { End::Natural };
+        let stop = if to == last { end(last, last - 1) } else { End::Natural };
+        let spline = Spline::monotone(points[from..=to].to_vec(), start, stop);
+        let mut all = places(&spline, extent(points));
         let n = all.len() - 1;
         (all[0], all[n]) = (points[from], points[to]);
         all
@@ -351,19 +355,29 @@ fn pieces(points: &[Vector<2>], corners: &[usize], chord: f64) -> Vec<Vec<Sample
 }
 
 /// Points and outward normals along a spline, dense enough for [`SAGITTA`] and [`SEGMENTS`].
-fn sample(spline: &Spline, chord: f64) -> Vec<Sample> {
-    let mut samples = Vec::new();
-    let mut push = |i: usize, s: f64| {
+fn sample(spline: &Spline<2>, chord: f64) -> Vec<Sample> {
+    let sample = |(i, s)| {
         let (point, tangent) = spline.at(i, s);
-        samples.push((point, right_of(tangent)));
+        (point, right_of(tangent))
     };
+    parts(spline, chord).into_iter().map(sample).collect()
+}
+
+/// Points along a spline, as dense.
+fn places<const D: usize>(spline: &Spline<D>, chord: f64) -> Vec<Vector<D>> {
+    parts(spline, chord).into_iter().map(|(i, s)| spline.at(i, s).0).collect()
+}
+
+/// Intervals of a spline and fractions of them that are dense enough.
+fn parts<const D: usize>(spline: &Spline<D>, chord: f64) -> Vec<(usize, f64)> {
+    let mut all = Vec::new();
     for i in 0..spline.intervals() {
         let bend = (spline.sagitta(i) / (SAGITTA * chord)).sqrt();
         let parts = bend.max(spline.chord(i) * SEGMENTS / chord).ceil().clamp(1.0, PARTS);
-        (0..parts as usize).for_each(|k| push(i, k as f64 / parts));
+        all.extend((0..parts as usize).map(|k| (i, k as f64 / parts)));
     }
-    push(spline.intervals() - 1, 1.0);
-    samples
+    all.push((spline.intervals() - 1, 1.0));
+    all
 }
 
 /// Unit normal on the right of a direction: outward for counter-clockwise outlines.
@@ -372,7 +386,7 @@ fn right_of(direction: Vector<2>) -> Vector<2> {
 }
 
 /// Longest side of the box around the points.
-fn extent(points: &[Vector<2>]) -> f64 {
+fn extent<const D: usize>(points: &[Vector<D>]) -> f64 {
     if points.is_empty() { 0.0 } else { crate::math::Bounds::around(points).extent().max_abs() }
 }
 

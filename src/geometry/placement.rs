@@ -29,8 +29,7 @@ pub(super) fn place<const D: usize>(
         return Err(bad(format!("`rotate` is {angles:?}"), hint));
     }
     let turn = |x: &Vector<D>| rotated(x, &angles);
-    let shift = Vector::from_fn(|d| shift.get(d).copied().unwrap_or(0.0));
-    let moved = |x: &Vector<D>| turn(x) * scale + shift;
+    let moved = |x: &Vector<D>| placed(x, placement);
     shell.vertices.iter_mut().for_each(|v| *v = moved(v));
     for normal in shell.normals.iter_mut().flatten().flatten() {
         *normal = turn(normal);
@@ -40,6 +39,21 @@ pub(super) fn place<const D: usize>(
         (*centre, *radius) = (moved(centre), *radius * scale);
     }
     Ok(())
+}
+
+/// Where a point of a shape lies once that is placed.
+pub(super) fn placed<const D: usize>(x: &Vector<D>, placement: &Placement) -> Vector<D> {
+    turned(x, placement) * placement.scale + shift(placement)
+}
+
+/// Direction of a shape once that is placed.
+pub(super) fn turned<const D: usize>(x: &Vector<D>, placement: &Placement) -> Vector<D> {
+    rotated(x, &placement.rotate.iter().map(|a| a.0).collect::<Vec<_>>())
+}
+
+/// How far the origin of a shape is moved.
+pub(super) fn shift<const D: usize>(placement: &Placement) -> Vector<D> {
+    Vector::from_fn(|d| placement.translate.get(d).map_or(0.0, |l| l.0))
 }
 
 fn rotated<const D: usize>(x: &Vector<D>, angles: &[f64]) -> Vector<D> {

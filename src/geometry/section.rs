@@ -14,8 +14,8 @@ pub(super) struct Sides {
     pub(super) lower: Vec<Vector<2>>,
 }
 
-/// Smooth pieces of a profile, one after another from the nose to the rear.
-pub(super) struct Chain(pub(super) Vec<Vec<Vector<2>>>);
+/// Smooth pieces of a profile in the plane, or of one with two measures of the section, one after another from the nose to the rear.
+pub(super) struct Chain<const D: usize>(pub(super) Vec<Vec<Vector<D>>>);
 
 impl Sides {
     /// The sides of an outline that turns counter-clockwise, at the parts `places` of their lengths, which begin with 0 and end with 1.
@@ -48,14 +48,14 @@ impl Sides {
     }
 }
 
-impl Chain {
+impl<const D: usize> Chain<D> {
     /// Some `n` points, on each piece in proportion to its length and gathered at its ends.
-    pub(super) fn resampled(&self, n: usize) -> Vec<Vector<2>> {
+    pub(super) fn resampled(&self, n: usize) -> Vec<Vector<D>> {
         /// Fewest panels of a piece.
         const FEWEST: f64 = 8.0;
-        let length = |piece: &Vec<Vector<2>>| piece.windows(2).map(|p| (p[1] - p[0]).norm()).sum::<f64>();
+        let length = |piece: &Vec<Vector<D>>| piece.windows(2).map(|p| (p[1] - p[0]).norm()).sum::<f64>();
         let whole: f64 = self.0.iter().map(length).sum();
-        let mut points: Vec<Vector<2>> = Vec::new();
+        let mut points: Vec<Vector<D>> = Vec::new();
         for piece in &self.0 {
             let panels = (n as f64 * length(piece) / whole).ceil().max(FEWEST) as usize;
             let own = at(piece, &clustered(panels));
@@ -71,7 +71,7 @@ pub(super) fn clustered(n: usize) -> Vec<f64> {
 }
 
 /// The points of a chain at parts of its length, which begin with 0 and end with 1.
-fn at(chain: &[Vector<2>], places: &[f64]) -> Vec<Vector<2>> {
+fn at<const D: usize>(chain: &[Vector<D>], places: &[f64]) -> Vec<Vector<D>> {
     let mut lengths = vec![0.0];
     for pair in chain.windows(2) {
         lengths.push(lengths[lengths.len() - 1] + (pair[1] - pair[0]).norm());

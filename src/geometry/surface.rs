@@ -78,6 +78,8 @@ pub struct Surface<const D: usize> {
     pub sharp: Vec<Edge<D>>,
     /// Exact shape of every body where known.
     pub exact: Vec<Exact<D>>,
+    /// Leading and trailing edge of every body of a case, in the plane.
+    pub chord_lines: Vec<Option<[Vector<D>; 2]>>,
     tree: Tree<D>,
     bounds: Bounds<D>,
     /// Boxes around the elements of each body.
@@ -105,6 +107,7 @@ impl<const D: usize> Surface<D> {
             curvature: Vec::new(),
             sharp: Vec::new(),
             exact: vec![Exact::None; bodies.len()],
+            chord_lines: vec![None; bodies.len()],
             tree: Tree::new(&[]),
             bounds: Bounds::EMPTY,
             boxes: Vec::new(),

@@ -4,7 +4,8 @@
 //!
 //! L/q = π b² A_1, D/q = π b² Σ n A_n², efficiency e = A_1²/Σ n A_n²,
 //!
-//! at all Mach numbers below 1. The A_n are fitted to the lift of strips, ∫ sin nθ dy = (b/4) [sin (n−1)θ/(n−1) − sin (n+1)θ/(n+1)] over
+//! at all Mach numbers below 1, in free air on either side of one plane of symmetry at most: images in more of them change the wake, and a wing
+//! from wall to wall has no induced drag at all. The A_n are fitted to the lift of strips, ∫ sin nθ dy = (b/4) [sin (n−1)θ/(n−1) − sin (n+1)θ/(n+1)] over
 //! each of them, so that neither the width of strips nor the slope at the tips matters. Half a model has odd n alone.
 use std::f64::consts::PI;
 
@@ -21,7 +22,7 @@ const STRIPS: usize = 2;
 const POINTS: usize = 121;
 
 /// Lift and induced drag of a load along the span.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct SpanLoad {
     /// Distance from tip to tip.
     pub span: f64,
@@ -35,6 +36,9 @@ pub struct SpanLoad {
     pub cd_induced: f64,
     /// Induced drag of an elliptic load of that lift and span over it.
     pub efficiency: f64,
+    /// What of the bodies a flat wake does not know.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub left_out: Vec<String>,
 }
 
 impl SpanLoad {
@@ -101,6 +105,7 @@ pub fn induced(bodies: &[Strips], plane: Option<f64>, axes: &LoadAxes, dynamic: 
         // the terms are A_n times the dynamic pressure
         cd_induced: scale * weighted / (dynamic * axes.force_scale),
         efficiency: first * first / weighted,
+        left_out: Vec::new(),
     })
 }
 

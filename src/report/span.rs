@@ -22,8 +22,8 @@ pub(super) fn span(run: &RunFolder) -> Vec<Block> {
     let mut blocks = Vec::new();
     if let Ok(table) = run.table("strips.csv") {
         let all = bodies(&table);
-        blocks.extend(loading(&all, &summary).map(Block::chart));
         let lifting: Vec<&Body> = all.iter().filter(|b| root_loads(&summary).any(|r| r["body"] == b.name)).collect();
+        blocks.extend(loading(&all, &lifting, &summary).map(Block::chart));
         blocks.push(Block::charts(CHARTS.iter().filter_map(|(column, title)| chart(&lifting, column, title))));
     }
     blocks.extend(roots(&summary));
@@ -68,20 +68,22 @@ fn bodies(table: &Csv) -> Vec<Body> {
     all
 }
 
-/// c cl/c_ref of all that lies, and the elliptic load of the same lift and span.
-fn loading(all: &[Body], summary: &Value) -> Option<Chart> {
+/// c cl/c_ref of all that lies and of fins, and the elliptic load of the same lift and span as what lies.
+fn loading(all: &[Body], lifting: &[&Body], summary: &Value) -> Option<Chart> {
+    let fins = || lifting.iter().copied().filter(|b| !b.lying());
     let mut series: Vec<Series> = all.iter().filter(|b| b.lying()).filter_map(|b| b.curve("loading")).collect();
+    if series.is_empty() {
+        return None;
+    }
+    series.extend(fins().filter_map(|b| b.curve("loading")));
     let load = serde_json::from_value::<SpanLoad>(summary["span_load"].clone()).ok();
     series.extend(load.zip(ends(all)).map(|(load, ends)| {
         let (y, value) = load.ellipse(ends).into_iter().map(|[y, value]| (y, value)).unzip();
         Series::new("ellipse of the same lift", Marks::Dashes, y, value)
     }));
-    (!series.is_empty()).then(|| Chart {
-        title: "Load along the span".into(),
-        x: Axis::linear("y"),
-        y: Axis::linear("c cl / c_ref"),
-        series,
-    })
+    let along = if fins().next().is_some() { "y, of fins z" } else { "y" };
+    let (x, y) = (Axis::linear(along), Axis::linear("c cl / c_ref"));
+    Some(Chart { title: "Load along the span".into(), x, y, series })
 }
 
 /// From where to where strips of what lies go.
@@ -162,5 +164,8 @@ fn drags(summary: &Value) -> Vec<Block> {
         return Vec::new();
     }
     let columns = ["", "CL", "CD induced", "CD entropy", "CD"];
-    vec![Block::Heading("Drag from the wake".to_owned()), Block::Table(Table::new(&columns, rows))]
+    let left_out = load["left_out"].as_array().into_iter().flatten().filter_map(Value::as_str);
+    let mut blocks = vec![Block::Heading("Drag from the wake".to_owned()), Block::Table(Table::new(&columns, rows))];
+    blocks.extend(left_out.map(|told| Block::Text(told.to_owned())));
+    blocks
 }

@@ -10,9 +10,20 @@ const DISAGREEMENT: f64 = 0.05;
 /// Negative drag without viscosity that rounding and the cloud may leave: a count.
 const NEGATIVE_DRAG: f64 = -1e-4;
 
-/// What is to be said of the loads of a steady flow.
-pub(crate) fn of_loads(case: &Case, s: &Summary) -> Vec<String> {
-    if case.is_unsteady() || !s.succeeded() {
+/// What is to be said of the loads and of bodies made of particles; `largest` are lift and drag at their greatest in a march.
+pub(crate) fn told<const D: usize>(
+    case: &Case,
+    s: &Summary,
+    largest: [f64; 2],
+    solid: Option<&SolidSnapshot<'_, D>>,
+) -> Vec<String> {
+    of_loads(case, s, largest).into_iter().chain(solid.and_then(of_solid)).collect()
+}
+
+/// What is to be said of the loads of a steady flow, or at the end of a march.
+fn of_loads(case: &Case, s: &Summary, largest: [f64; 2]) -> Vec<String> {
+    let marched = s.is_march();
+    if (case.is_unsteady() && !marched) || !s.succeeded() {
         return Vec::new();
     }
     let mut doubts = Vec::new();
@@ -22,17 +33,25 @@ pub(crate) fn of_loads(case: &Case, s: &Summary) -> Vec<String> {
     };
     let wall = s.loads;
     if let Some(through) = s.loads_momentum_balance {
-        let pairs = [("CL", wall.cl, through.cl, LEAST[0]), ("CD", wall.cd, through.cd, LEAST[1])];
+        // a load of a march may pass through zero
+        let pairs = [
+            ("CL", wall.cl, through.cl, LEAST[0].max(largest[0])),
+            ("CD", wall.cd, through.cd, LEAST[1].max(largest[1])),
+        ];
         for (name, wall, through, least) in pairs {
             let part = (wall - through).abs() / wall.abs().max(through.abs()).max(least);
             if part >= DISAGREEMENT {
+                let of = if marched { " of the greatest" } else { "" };
                 doubts.push(format!(
-                    "{name} is {wall:.5} by wall pressure and {through:.5} by momentum, {:.0} % apart: the cloud is too coarse for it \
+                    "{name} is {wall:.5} by wall pressure and {through:.5} by momentum, {:.0} %{of} apart: the cloud is too coarse for it \
                      near the bodies or around them; {finer}",
                     100.0 * part
                 ));
             }
         }
+    }
+    if marched {
+        return doubts;
     }
     let allowed = NEGATIVE_DRAG - s.loads_error.map_or(0.0, |bar| bar.cd);
     if !case.flow.is_viscous() && wall.cd < allowed {
@@ -43,8 +62,9 @@ pub(crate) fn of_loads(case: &Case, s: &Summary) -> Vec<String> {
     }
     doubts
 }
+
 /// Where a metal that is computed as elastic would have yielded.
-pub(crate) fn of_solid<const D: usize>(at: &SolidSnapshot<'_, D>) -> Option<String> {
+fn of_solid<const D: usize>(at: &SolidSnapshot<'_, D>) -> Option<String> {
     let part = |(i, stress): (usize, f64)| Some((i, stress, stress / at.solid.material_of(i).elastic_limit?));
     let all = von_mises(at.solid, &at.state()).into_iter().enumerate().filter_map(part);
     let (i, stress, _) = all.max_by(|a, b| a.2.total_cmp(&b.2)).filter(|(.., part)| *part > 1.0)?;

@@ -57,6 +57,7 @@ pub use monitor::{MarchTick, Monitor, Silent, Tick};
 pub use record::IterationHistory;
 pub use record::crosscheck::{Apart as LoadsApart, LoadCrosscheck};
 pub use record::polar::PolarPoint;
+pub use record::solid_end::{ProbeEnd, SolidEnd};
 pub use record::summary::{Apart, BalanceReport, Ledger, MarchingCheck, Reclouding, Summary};
 pub use record::trace::{Change, FirstHarmonics, LastPeriod, PeriodicLoads};
 pub use refusals::refusals;

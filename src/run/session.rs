@@ -20,7 +20,7 @@ use super::monitor::Monitor;
 use super::recipe;
 use super::record::saved::{Kept, Position, Saved, flatten};
 use super::record::summary::{Clock, Summary};
-use super::record::{Described, IterationHistory, Log, Scales};
+use super::record::{Described, IterationHistory, Log, Scales, SolidEnd};
 use super::setup::{self, Site, Solver, check_motion};
 use super::solids::{SolidSummary, with_own_modes};
 use super::stage::{Stage, Task};
@@ -455,12 +455,12 @@ impl Run<'_> {
             false => wake_planes(&view, surface, self.case, &axes),
         };
         let strips = span_loads(self.case, &view, surface, &axes);
-        let span_load = span_load(self.case, &view, &strips, &axes);
+        let span_load = span_load(self.case, &view, surface, &strips, &axes);
         let found = Found { case: self.case, view, surface, axes, names, balance, strips, span_load, wake };
         let mut summary = found.summary(log, gas.state, &Spent { clock, solved });
         let solid = stood.solver.system.solid_snapshot(frame, state);
-        let doubts = doubts::of_loads(self.case, &summary).into_iter().chain(solid.as_ref().and_then(doubts::of_solid));
-        doubts.for_each(|doubt| log.warn(&doubt));
+        summary.solid = solid.as_ref().map(|at| SolidEnd::of(at, log));
+        doubts::told(self.case, &summary, log.record.trace.largest(), solid.as_ref()).iter().for_each(|d| log.warn(d));
         summary.cloud = accuracy::scaled(self.case, stood.stage.factor).cloud;
         summary.warnings.clone_from(&log.record.warnings);
         let (field, walls) = (field(self.case, &view), found.walls());

@@ -48,6 +48,19 @@ pub struct Energy {
     pub dissipated: f64,
 }
 
+impl Energy {
+    /// That of `thickness` units of length across the plane.
+    pub fn times(&self, thickness: f64) -> Self {
+        Self {
+            kinetic: self.kinetic * thickness,
+            strain: self.strain * thickness,
+            stabilisation: self.stabilisation * thickness,
+            contact: self.contact * thickness,
+            dissipated: self.dissipated * thickness,
+        }
+    }
+}
+
 /// Storage of an evaluation.
 pub struct Work<const D: usize> {
     /// Stresses.

@@ -223,7 +223,7 @@ fn grid_convergence(c: &Convergence) -> String {
 }
 
 fn describe(s: &Summary, out: &Path) -> String {
-    let mut text = s.conditions() + "\n";
+    let mut text = s.conditions() + "\n" + &solids(s);
     text += &match (&s.polar[..], &s.periodic_loads) {
         ([], Some(loads)) => periodic_loads(loads) + &change_of_period(s) + &instant(s),
         ([], None) => loads(s) + &cycles(s),
@@ -256,6 +256,19 @@ fn describe(s: &Summary, out: &Path) -> String {
         text += &format!("ledger: mass {:.1e}, momentum {:.1e}, energy {:.1e}\n", l.mass, l.momentum, l.energy);
     }
     text + &format!("report: {}\n", out.join("report.html").display())
+}
+
+/// What became of bodies made of particles in the units of the case: how far they moved, and the greatest stress.
+fn solids(s: &Summary) -> String {
+    let Some(end) = &s.solid else { return String::new() };
+    let list = |values: &[f64]| values.iter().map(|x| format!("{x:.4e}")).collect::<Vec<_>>().join(", ");
+    let mut text = String::new();
+    for probe in &end.probes {
+        let (name, place) = (&probe.name, list(&probe.displacement));
+        text += &format!("{name:<16}moved by ({place}), at most {:.4e}\n", probe.farthest);
+    }
+    let at = end.stress_at.iter().map(|x| format!("{x:.4}")).collect::<Vec<_>>().join(", ");
+    text + &format!("{:<16}{:.4e} at ({at}), the greatest by von Mises\n", "stress", end.stress)
 }
 
 /// What it took; how far the residual fell where there is one flow that it belongs to.
@@ -327,6 +340,7 @@ fn in_space(s: &Summary) -> String {
             "{:<16}{:9.5}  {:9.5}  induced drag of the load along the span, efficiency {:.3}\n",
             "span load", l.cl, l.cd_induced, l.efficiency
         );
+        text += &l.left_out.iter().map(|told| format!("{:<16}{told}\n", "")).collect::<String>();
     }
     if !s.root_loads.is_empty() {
         text += "at the root          shear    bending    torsion  in the units of the case; over q S and q S c\n";

@@ -51,6 +51,7 @@ pub(super) fn contradictions(draft: &mut Draft<'_>, dimension: Option<usize>) {
     }
     contact(draft, solids.is_empty(), dimension);
     probes(draft, &solids);
+    alike(draft, &solids);
     let Some(dimension) = dimension else { return };
     for body in solids {
         let path = format!("body[{body}].solid");
@@ -66,6 +67,20 @@ pub(super) fn contradictions(draft: &mut Draft<'_>, dimension: Option<usize>) {
         look.supports();
         look.loads();
         look.units();
+    }
+}
+
+/// What holds for the particles of all bodies together is said alike wherever it is said.
+fn alike(draft: &mut Draft<'_>, solids: &[usize]) {
+    const OF_ALL: [&str; 7] =
+        ["plane", "thickness", "gravity", "damping", "stiffness_damping", "stabilisation", "viscosity"];
+    let Some((first, others)) = solids.split_first() else { return };
+    for (body, key) in others.iter().flat_map(|body| OF_ALL.map(|key| (body, key))) {
+        let [here, there] = [body, first].map(|k| format!("body[{k}].solid.{key}"));
+        if draft.given(&here) && draft.get(&here) != draft.get(&there) {
+            let message = format!("`{here}` is not what `{there}` says, which holds for all bodies made of particles");
+            draft.fail_key(&here, message).hint(format!("give `{key}` at the first of them, or alike"));
+        }
     }
 }
 
@@ -229,6 +244,10 @@ impl Look<'_, '_> {
         if thick && (self.dimension == 3 || round) {
             let what = if round { "of an axisymmetric body, which is a full turn" } else { "in a 3-D case" };
             self.draft.fail(&thickness, format!("`{thickness}` {what}")).hint("remove it");
+        } else if thick && has_gas(self.draft) {
+            let message = format!("`{thickness}` beside a gas, which acts on one unit of length across the plane");
+            let hint = "remove it: masses, forces and loads are those of one unit of length; divide a `force` by the thickness";
+            self.draft.fail(&thickness, message).hint(hint);
         }
     }
 

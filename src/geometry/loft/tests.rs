@@ -25,7 +25,7 @@ fn closed(surface: &Surface<3>) {
 fn wings_are_closed_whatever_their_ends() {
     for naca in ["0012", "4412", "64A010"] {
         for end in ["closed", "blunt"] {
-            for tip in ["round", "flat"] {
+            for tip in ["round", "flat", "revolved"] {
                 for sides in ["both", "one"] {
                     let section = format!("{{ digits = \"{naca}\", trailing_edge = \"{end}\" }}");
                     let more = "span = 3, chord = 1, taper = 0.5, sweep = \"30 deg\", twist = \"-3 deg\", dihedral = \"5 deg\"";
@@ -40,7 +40,7 @@ fn wings_are_closed_whatever_their_ends() {
     let surface = body(fin);
     closed(&surface);
     let bounds = surface.bounds();
-    assert!(bounds.min[2].abs() < 1e-12 && bounds.max[2] > 2.0 && bounds.max[1] < 0.041, "{bounds:?}");
+    assert!(bounds.min[2].abs() < 1e-12 && (bounds.max[2] - 2.0).abs() < 1e-12 && bounds.max[1] < 0.041, "{bounds:?}");
 }
 
 #[test]
@@ -65,20 +65,73 @@ fn planforms_are_those_that_were_asked_for() {
     assert!((seen.quarter[0] - 0.25).abs() < 2e-3, "{seen:?}");
 }
 
+#[test] // seen from above a wing is what was typed, whatever its tips
+fn round_tips_lie_inside_the_planform() {
+    for (more, span) in [("", 8.0), (", dihedral = \"6 deg\"", 8.0), (", naca = \"2424\", twist = \"-4 deg\"", 4.0)] {
+        let naca = if more.contains("naca") { "" } else { "naca = \"0012\", " };
+        let typed = format!("{naca}span = {span}, chord = 1.5, taper = 0.5, sweep = \"25 deg\"{}", more);
+        let wing = body(&format!("wing = {{ {typed} }}"));
+        let seen = wing.planform(&everywhere(), None);
+        let bounds = wing.bounds();
+        assert!((bounds.max[1] - 0.5 * span).abs() < 1e-12 && (bounds.min[1] + 0.5 * span).abs() < 1e-12, "{bounds:?}");
+        assert!((seen.area / (1.125 * span) - 1.0).abs() < 2e-3, "{more}: {seen:?}");
+        closed(&wing);
+        let half = body(&format!("wing = {{ {typed}, sides = \"one\" }}"));
+        assert!((half.bounds().max[1] - span).abs() < 1e-12, "{:?}", half.bounds());
+    }
+    let beyond = body("wing = { naca = \"0012\", span = 8, chord = 1, tip = \"revolved\" }").bounds().max[1];
+    assert!((beyond - 4.06).abs() < 1e-4, "{beyond}");
+    // thicker than long, and to a point
+    closed(&body("wing = { naca = \"0030\", span = 0.2, chord = 1 }"));
+    let ellipse = body("wing = { naca = \"0012\", span = 6, chord = 1, planform = \"elliptic\", sweep_at = 0.25 }");
+    assert!((ellipse.bounds().max[1] - 3.0).abs() < 1e-12 && ellipse.planform(&everywhere(), None).area > 4.70);
+    closed(&body("wing = { naca = \"0012\", span = 6, chord = 1, planform = \"elliptic\", tip = \"flat\" }"));
+}
+
+#[test]
+fn bodies_do_not_swell_beyond_their_points() {
+    let widest = |shape: &str| {
+        let bounds = body(shape).bounds();
+        [bounds.max[1], bounds.max[2], -bounds.min[1], -bounds.min[2]]
+    };
+    let same = |shape: &str, radius: f64| {
+        let found = widest(shape);
+        assert!(found.iter().all(|r| *r < radius + 1e-9 && *r > 0.9999 * radius), "{shape}: {found:?}");
+    };
+    same("revolution = [[0, 0], [1, 0.5], [9, 0.5], [10, 0]]", 0.5);
+    same("revolution = [[0, 0], [0.5, 0.4], [1, 0.5], [4, 0.5]]", 0.5);
+    same("loft = { stations = [[0, 0, 0], [2, 1, 1], [8, 1, 1], [10, 0, 0]] }", 0.5);
+    same("loft = { stations = [[0, 0, 0], [2, 1, 1], [8, 1, 0.3], [10, 0.2, 0.2]] }", 0.5);
+    let inlet = "loft = { stations = [[0, 0, 0], [0.5, 0.5, 0.7], [1.2, 0.8, 0.9], [4, 0.8, 0.9, -0.05], [7, 0.3, 0.4, -0.1]], exponent = 5 }";
+    let [right, top, left, bottom] = widest(inlet);
+    assert!(
+        (right - 0.4).abs() < 1e-4 && (left - 0.4).abs() < 1e-4 && top < 0.4501 && bottom < 0.5001,
+        "{top} {bottom}"
+    );
+    // what is alike in both is the same body
+    let round = body("revolution = [[0, 0], [0.5, 0.4], [1, 0.5], [4, 0.3]]");
+    let oval = body("loft = [[0, 0, 0], [0.5, 0.8, 0.8], [1, 1, 1], [4, 0.6, 0.6]]");
+    assert!((round.volume() / oval.volume() - 1.0).abs() < 1e-12 && (round.area() / oval.area() - 1.0).abs() < 1e-12);
+}
+
 #[test]
 fn volumes_are_those_of_the_books() {
     // a section of four digits has the area 0.6822 t c², closed; its tip as a body of revolution π/2 ∫ z² dx = 0.00385 π/2 at 12 %
     let wing = body("wing = { naca = \"0012\", span = 8, chord = 1, tip = \"flat\" }");
     assert!((wing.volume() / (8.0 * 0.6822 * 0.12) - 1.0).abs() < 5e-3, "{}", wing.volume());
     let round = body("wing = { naca = \"0012\", span = 8, chord = 1 }");
-    let tips = round.volume() - wing.volume();
+    // round tips lie inside: of 2 z a depth of z each, half a circle is left
+    let lost = wing.volume() - round.volume();
     let area = |k: usize| {
         let x = (k as f64 + 0.5) / 1e4;
         let z = 0.6 * (0.2969 * x.sqrt() + x * (-0.126 + x * (-0.3516 + x * (0.2843 - 0.1036 * x))));
         PI * z * z / 1e4
     };
     let whole: f64 = (0..10_000).map(area).sum();
-    assert!((tips / whole - 1.0).abs() < 0.02, "{tips} {whole}");
+    // of a polygon
+    let part = (PI / CAP as f64).sin() * CAP as f64 / PI;
+    let cut = 2.0 * (2.0 / PI - 0.5 * part) * whole;
+    assert!((lost / cut - 1.0).abs() < 0.02, "{lost} {cut}");
     let cone = body("revolution = [[0, 0], [1, 0.2]]");
     closed(&cone);
     assert!((cone.volume() / (PI * 0.04 / 3.0) - 1.0).abs() < 2e-3, "{}", cone.volume());

@@ -130,7 +130,7 @@ const FAMILIES: [[[i32; INTERVALS + 1]; 2]; 8] = [
 #[derive(Clone, Debug)]
 pub(super) struct Six {
     /// ε and ψ of the family against φ from −π to 2π.
-    functions: Spline,
+    functions: Spline<2>,
     /// Factor of both.
     scale: f64,
     tail: Option<Tail>,
@@ -227,7 +227,7 @@ impl Six {
 }
 
 /// ε, odd about nose and end, and ψ, even: mirrored, so that the spline between them knows no end.
-fn functions(series: SixSeries) -> Spline {
+fn functions(series: SixSeries) -> Spline<2> {
     let first = if series.straight { 5 } else { 0 };
     let family = &FAMILIES[first + series.place - 3];
     let n = INTERVALS as i32;

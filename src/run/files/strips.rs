@@ -89,25 +89,29 @@ fn loading<const D: usize>(found: &Found<'_, D>, span: Span, strip: &Strip) -> f
     lift(found, span, strip) / (dynamic(found) * found.axes.chord * strip.width())
 }
 
-/// Draws the load along the span of all that lies, and the ellipse of the same lift.
+/// Draws the load along the span of all that lies or stands, and the ellipse of the same lift as what lies.
 pub(super) fn write_chart<const D: usize>(found: &Found<'_, D>, out: &Path) -> Result<(), RunError> {
-    let lying: Vec<(&Strips, Vec<&Strip>)> =
-        found.strips.iter().filter(|s| s.span == Span::Lying).map(|s| (s, s.across())).collect();
-    if lying.is_empty() {
+    // what is neither wing nor fin has strips too, and a load where it lies
+    let drawn = |s: &&Strips| s.span == Span::Lying || s.lifting;
+    let all: Vec<(&Strips, Vec<&Strip>)> = found.strips.iter().filter(drawn).map(|s| (s, s.across())).collect();
+    let lying = || all.iter().filter(|(body, _)| body.span == Span::Lying);
+    if lying().next().is_none() {
         return Ok(());
     }
     let curve = |(body, strips): &(&Strips, Vec<&Strip>)| {
         let y = strips.iter().map(|strip| loading(found, body.span, strip)).collect();
         Series::new(&body.body, Marks::Line, strips.iter().map(|strip| strip.middle()).collect(), y)
     };
-    let mut series: Vec<Series> = lying.iter().map(curve).collect();
-    let edges = lying.iter().flat_map(|(_, strips)| strips.iter().flat_map(|s| s.ends));
+    let mut series: Vec<Series> = all.iter().map(curve).collect();
+    let edges = lying().flat_map(|(_, strips)| strips.iter().flat_map(|s| s.ends));
     let ends = edges.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], s| [a.min(s), b.max(s)]);
-    series.extend(found.span_load.map(|load| {
+    let upright = lying().count() < all.len();
+    series.extend(found.span_load.as_ref().map(|load| {
         let (y, value) = load.ellipse(ends).into_iter().map(|[y, value]| (y, value)).unzip();
         Series::new("ellipse of the same lift", Marks::Dashes, y, value)
     }));
-    let (x, y) = (Axis::linear("y"), Axis::linear("c cl / c_ref"));
+    let along = if upright { "y, of fins z" } else { "y" };
+    let (x, y) = (Axis::linear(along), Axis::linear("c cl / c_ref"));
     let chart = Chart { title: "Load along the span".into(), x, y, series };
     write_file(&out.join("pictures/span-loading.svg"), chart.svg()?.as_bytes())?;
     Ok(write_file(&out.join("pictures/span-loading.png"), &chart.png()?)?)

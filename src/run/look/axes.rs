@@ -1,7 +1,8 @@
 //! Axes of loads, and the gas at one moment seen in them.
 use super::friction::add_friction;
-use super::reference::{planform, turned};
+use super::reference::planform;
 use crate::case::Case;
+use crate::cloud::CloudSpec;
 use crate::geometry::{Planform, Surface};
 use crate::math::jet::Jet;
 use crate::math::sweep::sum;
@@ -78,7 +79,7 @@ pub(crate) struct LoadFrame {
     case: Case,
     /// Corners of the smallest box around the bodies, before they move; absent without bodies.
     bodies: Option<[[f64; 3]; 2]>,
-    /// Their reference values where they are more than a box tells: in 3-D, of one body among others, of a section that is turned.
+    /// Their reference values; absent where a plane domain cuts them along the stream.
     planform: Option<Planform>,
 }
 
@@ -88,10 +89,14 @@ pub(crate) fn load_axes<const D: usize>(case: &Case, surface: Option<&Surface<D>
     LoadFrame {
         case: case.clone(),
         bodies: surface.map(|s| corners(s.bounds())),
-        planform: surface
-            .filter(|s| D == 3 || case.reference.body.is_some() || turned(case, s).is_some())
-            .map(|s| planform(case, s)),
+        planform: surface.filter(|s| D == 3 || !cut_along_x(case, &s.bounds())).map(|s| planform(case, s)),
     }
+}
+
+/// True where sides of the domain across the stream cut the bodies.
+fn cut_along_x<const D: usize>(case: &Case, bodies: &Bounds<D>) -> bool {
+    let domain = CloudSpec::<D>::of_case(case).limits();
+    bodies.min[0] < domain.min[0] || domain.max[0] < bodies.max[0]
 }
 
 impl LoadFrame {
@@ -104,10 +109,9 @@ impl LoadFrame {
         // a body of which only a face across the stream lies in the domain is as long as that face is high
         let length = if seen.extent()[0] > 0.0 { extent[0] } else { seen.extent().max_abs() };
         let chord = reference.chord.map_or(length, |c| c.0);
-        let quarter = [bounds.min[0] + 0.25 * extent[0], bounds.centre()[1]];
+        let quarter = [bounds.min[0] + 0.25 * extent[0], bounds.centre()[1], 0.0];
         let Planform { chord, area, quarter } = self.planform.unwrap_or(Planform { chord, area: chord, quarter });
-        let mut point = bounds.centre();
-        (point[0], point[1]) = (quarter[0], quarter[1]);
+        let mut point = Vector::from_fn(|d| quarter[d]);
         if let Some(p) = &reference.moment_point {
             point = Vector::from_fn(|d| p.get(d).map_or(0.0, |l| l.0));
         }

@@ -4,7 +4,7 @@
 //! from above with, as a fin. The root is at the plane of symmetry: that of the domain, else y = 0 where bodies reach it, else their
 //! middle; or at the inner end of a side that does not reach the plane. A fin has its root where its chord is longer.
 use super::symmetry::side_of_symmetry;
-use crate::case::Case;
+use crate::case::{self, Case};
 use crate::geometry::{Station, Surface};
 use crate::observe::induced::{SpanLoad, induced};
 use crate::observe::loads::LoadAxes;
@@ -36,17 +36,54 @@ pub(crate) fn span_loads<const D: usize>(
     if all.iter().any(|s| s.lifting) { all } else { Vec::new() }
 }
 
-/// Induced drag of the load along the span in a subsonic stream.
+/// Induced drag of the load along the span in a subsonic stream; `None` between walls, whose images the flat wake in free air does not have.
 pub(crate) fn span_load<const D: usize>(
     case: &Case,
     view: &View<'_, D>,
+    surface: Option<&Surface<D>>,
     bodies: &[Strips],
     axes: &LoadAxes,
 ) -> Option<SpanLoad> {
     let free = free_stream::<D>(case);
     let plane = side_of_symmetry(case, &view.reference().tree.bounds()).map(|side| side.0);
     let subsonic = D == 3 && free.velocity.norm() < 1.0;
-    if subsonic { induced(bodies, plane, axes, 0.5 * free.density * free.velocity.norm_squared()) } else { None }
+    if !subsonic || !in_free_air(case) {
+        return None;
+    }
+    let load = induced(bodies, plane, axes, 0.5 * free.density * free.velocity.norm_squared())?;
+    Some(SpanLoad { left_out: left_out(surface?, bodies), ..load })
+}
+
+/// True where at most one side along the span is a wall or an image, and none above or below.
+fn in_free_air(case: &Case) -> bool {
+    let b = &case.boundary;
+    let mirrors = |side: &case::Side| matches!(side, case::Side::Symmetry | case::Side::Periodic);
+    let both = mirrors(&b.y_min) && mirrors(&b.y_max);
+    !both && b.y_min != case::Side::Periodic && !mirrors(&b.z_min) && !mirrors(&b.z_max)
+}
+
+/// Fins and winglets, which leave the plane of the wake.
+fn left_out<const D: usize>(surface: &Surface<D>, bodies: &[Strips]) -> Vec<String> {
+    /// Height over half the span from which on a wing leaves that plane.
+    const HIGH: f64 = 0.15;
+    let told = |strips: &Strips| {
+        let name = &strips.body;
+        if strips.span == Span::Upright {
+            return strips.lifting.then(|| {
+                format!("`{name}` stands upright: its load is along z (`strips.csv`), and no part of this lift and induced drag")
+            });
+        }
+        let bounds = surface.bounds_of(surface.bodies.iter().position(|b| b == name)?);
+        let ends = strips.sides.iter().flat_map(|side| side.strips.iter().flat_map(|s| s.ends.map(f64::abs)));
+        let height = bounds.extent()[2.min(D - 1)] / ends.fold(0.0, f64::max);
+        (strips.lifting && height > HIGH).then(|| {
+            format!(
+                "`{name}` is {:.0} % of its half span high: the wake is not flat, as this induced drag has it",
+                100.0 * height
+            )
+        })
+    };
+    bodies.iter().filter_map(told).collect()
 }
 
 /// The plane of symmetry across the span, y.

@@ -9,6 +9,7 @@ use super::super::look::{TipVortex, WakePlane};
 use super::super::understood::{ReferenceValues, short};
 use super::crosscheck::LoadCrosscheck;
 use super::polar::PolarPoint;
+use super::solid_end::SolidEnd;
 use super::trace::{Change, FirstHarmonics, LastPeriod, PeriodicLoads};
 use crate::case::{Cloud, FreeStreamScales};
 use crate::observe::convergence::Convergence;
@@ -102,6 +103,9 @@ pub struct Summary {
     /// What became of bodies on springs.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub structure: Vec<crate::observe::structure::StructureSummary>,
+    /// What became of bodies made of particles.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub solid: Option<SolidEnd>,
     /// The last period of every coordinate of the structures, where the march was to find it.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub swings: Vec<Option<Swing>>,

@@ -171,6 +171,12 @@ impl Trace {
         })
     }
 
+    /// Greatest lift and drag of the march so far.
+    pub(crate) fn largest(&self) -> [f64; 2] {
+        let most = |f: fn(&Coefficients) -> f64| self.samples.iter().map(|m| f(&m.loads).abs()).fold(0.0, f64::max);
+        [most(|c| c.cl), most(|c| c.cd)]
+    }
+
     /// Lift at time `t`, where the history reaches back so far.
     pub(crate) fn lift_at(&self, t: f64) -> Option<f64> {
         self.samples.first().filter(|m| m.time <= t).map(|_| self.loads_near(t)[0])

@@ -1,6 +1,7 @@
 //! Lengths of a case that are out of all measure beside its bodies: mostly those of another unit.
 //!
 //! Where nothing but the bodies has a length, any length will do; where something else has one, both are in one unit.
+use super::super::look::reference::of_bodies;
 use crate::case::{Case, Length, Shape, Side, rounded};
 use crate::cloud::CloudSpec;
 use crate::geometry::{Planform, Surface};
@@ -22,8 +23,7 @@ const SIDES: [[&str; 2]; 3] = [["x_min", "x_max"], ["y_min", "y_max"], ["z_min",
 /// What is told of them.
 pub(super) fn doubtful<const D: usize>(case: &Case, surface: &Surface<D>) -> Vec<String> {
     let spec = CloudSpec::<D>::of_case(case);
-    let named = case.reference.body.as_ref().and_then(|name| surface.bodies.iter().position(|b| b == name));
-    let seen = surface.planform(&spec.limits(), named);
+    let seen = of_bodies(case, surface);
     let mut told = references::<D>(case, &seen);
     told.extend(points(case, &surface.bounds()));
     told.extend(bodies(case, surface));

@@ -269,7 +269,8 @@ impl<'s, const D: usize> Balance<'s, '_, D> {
             }
             before = Some(powers);
             let (energy, probes) = (structure.solid.energy(&at), self.study.probes(&at));
-            Row { step: n as u32, time: at.time, energy, work, probes }
+            let thickness = self.study.built.thickness;
+            Row { step: n as u32, time: at.time, energy: energy.times(thickness), work: work.times(thickness), probes }
         };
         (0..=count).map(one).collect()
     }

@@ -11,7 +11,7 @@ use crate::solid::forces::State;
 use crate::solid::{Plane, Support};
 use crate::system::Mechanical;
 
-/// A structure of particles before it is computed, in SI units; per unit depth in the plane, of a whole turn about an axis.
+/// A structure of particles before it is computed, in SI units; in the plane of the thickness of the case, of a whole turn about an axis.
 #[derive(Clone, Debug, Serialize)]
 pub struct SolidReport {
     /// Solid particles.
@@ -92,10 +92,14 @@ fn report<const D: usize>(case: &Case, input: &Path) -> Result<SolidReport, RunE
             spacing.iter().fold(0.0, |a: f64, b| a.max(*b)),
         ],
         bodies: built.bodies,
-        mass: solid.mass().iter().sum(),
+        mass: built.thickness * solid.mass().iter().sum::<f64>(),
         held: solid.supports.iter().map(|s| s.particles.len()).collect(),
-        loaded: solid.loads.iter().map(|l| l.areas.iter().map(|(_, a)| a.norm()).sum()).collect(),
-        force: (0..D).map(|d| force.iter().map(|f| f[d]).sum()).collect(),
+        loaded: solid
+            .loads
+            .iter()
+            .map(|l| built.thickness * l.areas.iter().map(|(_, a)| a.norm()).sum::<f64>())
+            .collect(),
+        force: (0..D).map(|d| built.thickness * force.iter().map(|f| f[d]).sum::<f64>()).collect(),
         wave_speeds: solid.materials.iter().map(|m| m.pressure_wave_speed()).collect(),
         stable_step,
         steps,

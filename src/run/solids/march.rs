@@ -239,7 +239,14 @@ impl<const D: usize> Study<'_, D> {
         let mark = integrator.mark();
         let state = self.state(mark.time, integrator.standing().state);
         let (energy, probes) = (self.structure().solid.energy(&state), self.probes(&state));
-        Row { step: mark.iteration, time: mark.time, energy, work: *work, probes }
+        let thickness = self.built.thickness;
+        Row {
+            step: mark.iteration,
+            time: mark.time,
+            energy: energy.times(thickness),
+            work: work.times(thickness),
+            probes,
+        }
     }
 
     /// Displacements of the probes.

@@ -14,7 +14,14 @@ pub(super) struct Work {
     pub(super) damped: f64,
 }
 
-/// A row of `history.csv`.
+impl Work {
+    /// That of `thickness` units of length across the plane.
+    pub(super) fn times(&self, thickness: f64) -> Self {
+        Self { loads: self.loads * thickness, supports: self.supports * thickness, damped: self.damped * thickness }
+    }
+}
+
+/// A row of `history.csv`; in the plane of the thickness of the case.
 #[derive(Clone, Debug)]
 pub(super) struct Row {
     pub(super) step: u32,
@@ -44,7 +51,7 @@ pub struct SolidSummary {
     pub neighbours: f64,
     /// Rms part of the gradients' weights that the divergence theorem changed.
     pub correction: f64,
-    /// Mass of all bodies, per unit depth in the plane, of a whole turn about an axis.
+    /// Mass of all bodies, in the plane of the thickness of the case, of a whole turn about an axis.
     pub mass: f64,
     /// Steps taken.
     pub steps: u64,
@@ -69,7 +76,7 @@ pub struct SolidSummary {
     pub warnings: Vec<String>,
 }
 
-/// Energies of a structure, per unit depth in the plane, of a whole turn about an axis.
+/// Energies of a structure, in the plane of the thickness of the case, of a whole turn about an axis.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct SolidLedger {
     /// Kinetic energy at the start.

@@ -29,6 +29,9 @@ pub(in crate::run) struct Built<const D: usize> {
     pub(in crate::run) structure: Structure<D>,
     /// Names of the bodies.
     pub(in crate::run) bodies: Vec<String>,
+    /// Thickness of plane bodies, whose equations are those of one unit of length: what is told of masses, forces and energies is of so much. One
+    /// in space and of bodies of revolution.
+    pub(in crate::run) thickness: f64,
     /// Points whose displacements are told: name, nearest particle and place.
     pub(in crate::run) probes: Vec<(String, usize, Vector<D>)>,
     /// Velocity of each particle at the start.
@@ -126,7 +129,8 @@ pub(in crate::run) fn build<const D: usize>(case: &Case, input: &Path) -> Result
         particles,
     });
     let bodies = parts.iter().map(|p| p.name.clone()).collect();
-    Ok(Built { structure: Structure::new(solid), bodies, probes, velocity, wetted, notes, warnings })
+    let thickness = first.thickness.0;
+    Ok(Built { structure: Structure::new(solid), bodies, thickness, probes, velocity, wetted, notes, warnings })
 }
 
 /// The section of a body, turned about the y axis, which it must not cross.

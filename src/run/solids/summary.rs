@@ -45,7 +45,7 @@ pub(super) fn summary<const D: usize>(study: &Study<'_, D>, ending: &Ending<'_>)
     let mode = |m: &Mode| ModeRow {
         frequency: m.omega / std::f64::consts::TAU,
         omega: m.omega,
-        generalised_mass: m.generalised_mass,
+        generalised_mass: built.thickness * m.generalised_mass,
         residual: m.left,
     };
     SolidSummary {
@@ -57,7 +57,7 @@ pub(super) fn summary<const D: usize>(study: &Study<'_, D>, ending: &Ending<'_>)
         particles: solid.len(),
         neighbours: solid.particles.mean_neighbours(),
         correction: solid.particles.correction,
-        mass: solid.mass().iter().sum(),
+        mass: built.thickness * solid.mass().iter().sum::<f64>(),
         steps: marched.iteration,
         time: if name == "march" { marched.time } else { 0.0 },
         residual: marched.residual,

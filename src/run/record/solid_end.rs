@@ -1,0 +1,64 @@
+//! How bodies made of particles in a gas ended: what their probes did, and the greatest stress.
+use serde::Serialize;
+
+use super::super::solids::von_mises;
+use super::log::Log;
+use crate::coupling::SolidSnapshot;
+
+/// Motion and stress of the bodies made of particles in a gas, in the units of the case.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SolidEnd {
+    /// Displacements of the probes; without any the mean ones of the bodies.
+    pub probes: Vec<ProbeEnd>,
+    /// Greatest von Mises stress at the end.
+    pub stress: f64,
+    /// Place of the particle that has it, before it was moved.
+    pub stress_at: Vec<f64>,
+}
+
+/// Displacement of a probe.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ProbeEnd {
+    /// Name of the probe, or of the body whose mean displacement it is.
+    pub name: String,
+    /// Displacement at the end.
+    pub displacement: Vec<f64>,
+    /// Greatest distance from where it was at rest in all of the run.
+    pub farthest: f64,
+}
+
+impl SolidEnd {
+    /// What the table of a run and its last state tell.
+    pub(crate) fn of<const D: usize>(at: &SolidSnapshot<'_, D>, log: &Log<'_>) -> Self {
+        let stresses = von_mises(at.solid, &at.state());
+        let worst = (0..stresses.len()).max_by(|a, b| stresses[*a].total_cmp(&stresses[*b]));
+        Self {
+            probes: probes::<D>(log),
+            stress: worst.map_or(0.0, |i| stresses[i]),
+            stress_at: worst.map_or_else(Vec::new, |i| at.solid.particles.x[i].0.to_vec()),
+        }
+    }
+}
+
+fn probes<const D: usize>(log: &Log<'_>) -> Vec<ProbeEnd> {
+    /// What the mean displacement of a body is called.
+    const MEAN: &str = "mean";
+    let mut columns = log.record.structures.coordinates.iter().map(|c| c.values.as_slice());
+    let (mut means, mut probes) = (Vec::new(), Vec::new());
+    for structure in &log.structures {
+        let own: Vec<&[f64]> = columns.by_ref().take(structure.names.coordinates.len()).collect();
+        let named = structure.names.coordinates.chunks(D).zip(own.chunks(D));
+        for (names, along) in named.filter(|(_, along)| structure.names.samples && along.len() == D) {
+            let name = names[0].name.trim_end_matches("_x");
+            let steps = along.iter().map(|v| v.len()).min().unwrap_or(0);
+            let distance = |k: usize| along.iter().map(|v| v[k] * v[k]).sum::<f64>().sqrt();
+            let told = |name: &str| ProbeEnd {
+                name: name.to_owned(),
+                displacement: along.iter().map(|v| v.last().copied().unwrap_or(0.0)).collect(),
+                farthest: (0..steps).map(distance).fold(0.0, f64::max),
+            };
+            if name == MEAN { means.push(told(&structure.names.body)) } else { probes.push(told(name)) }
+        }
+    }
+    if probes.is_empty() { means } else { probes }
+}
