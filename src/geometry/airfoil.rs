@@ -325,17 +325,16 @@ mod tests {
     }
 
     /// A cambered section of six digits with a sharp trailing edge: upper side from the rear to the nose, lower side back.
-    fn section(n: usize) -> (Vec<(f64, f64)>, Vec<(f64, f64)>) {
+    fn section(n: usize) -> [Vec<(f64, f64)>; 2] {
         let digits = |v: f64| (1e6 * v).round() / 1e6 + 0.0;
         let x = |k: usize| 0.5 + 0.5 * (PI * k as f64 / n as f64).cos();
         let half =
             |x: f64| 0.5 * (0.2969 * x.sqrt() - 0.1260 * x - 0.3516 * x * x + 0.2843 * x.powi(3) - 0.1036 * x.powi(4));
         let line = |x: f64| 0.08 * x * (1.0 - x);
-        let side = |sign: f64| {
-            (0..=n).map(|k| x(k)).map(|x| (digits(x), digits(line(x) + sign * half(x)))).collect::<Vec<_>>()
-        };
+        let side =
+            |sign: f64| (0..=n).map(x).map(|x| (digits(x), digits(line(x) + sign * half(x)))).collect::<Vec<_>>();
         let lower = side(-1.0).into_iter().rev().collect();
-        (side(1.0), lower)
+        [side(1.0), lower]
     }
 
     fn area(text: &str) -> (f64, Vec<String>) {
@@ -345,7 +344,7 @@ mod tests {
 
     #[test]
     fn what_public_files_have_beside_coordinates_changes_no_outline() {
-        let (upper, lower) = section(40);
+        let [upper, lower] = section(40);
         let ring: Vec<(f64, f64)> = upper.iter().chain(&lower[1..]).copied().collect();
         let clean = rows(ring.iter().copied());
         let (exact, _) = area(&clean);
@@ -414,7 +413,7 @@ mod tests {
             "{notes:?}"
         );
         // a file that is cut short
-        let (upper, lower) = section(40);
+        let [upper, lower] = section(40);
         let cut = rows(upper.into_iter().chain(lower.into_iter().skip(1).take(28)));
         assert!(error(&cut).contains("along its side"), "{}", error(&cut));
     }

@@ -141,14 +141,15 @@ fn stations_of<const D: usize>(all: &[[Vector<D>; D]], axis: usize, at: &[f64]) 
             }
         }
     }
-    let station = |((spans, [front, rear]), rims): ((&mut Vec<[f64; 2]>, &[[f64; 3]; 2]), &[Rim; 2])| {
-        let chord = covered(spans);
+    let station = |k: usize| {
+        let ([front, rear], rims) = (&ends[k], &rims[k]);
+        let chord = covered(&mut spans[k]);
         let part = if chord > 0.0 { QUARTER * chord / (rear[0] - front[0]) } else { return Station::default() };
         let quarter = std::array::from_fn(|d| front[d] + part * (rear[d] - front[d]));
         let [nose, tail] = rims.each_ref().map(Rim::middle);
         Station { chord, leading: front[0], quarter, height: nose + part * (tail - nose) }
     };
-    spans.iter_mut().zip(&ends).zip(&rims).map(station).collect()
+    (0..ends.len()).map(station).collect()
 }
 
 /// Heights of the points that are farthest in one direction.

@@ -280,7 +280,6 @@ impl Line<'_> {
 }
 
 /// The lines with coordinates, from the first row to the last, and remarks among and after them.
-#[expect(clippy::type_complexity, reason = "two lists of the same lines")]
 fn body<'l, 't>(
     file: &str,
     lines: &'l [Line<'t>],
