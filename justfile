@@ -28,11 +28,13 @@ test:
 test-long:
     cargo test --workspace -- --ignored
 
-# mutated inputs and killed runs, for the night; they print what is not survived
+# mutated inputs, killed runs, a public database of sections and odd surfaces, for the night; they print what is not survived
 night count="10000":
     cargo build --release
     tests/nightly/mutate.py target/release/alula --count {{count}} --seed $(date +%j)
     tests/nightly/kill.py target/release/alula --count 300 --seed $(date +%j)
+    tests/nightly/sections.py target/release/alula
+    tests/nightly/surfaces.py target/release/alula --plain
 
 # bring the generated pages of the book up to date
 book:

@@ -511,6 +511,9 @@ mod tests {
             let bytes = [head, &bytes].concat();
             let _ = load("x.stl", &bytes);
             let _ = load("x.obj", &bytes);
+            let header = "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
+                          element face 2\nproperty list uchar int vertex_indices\nend_header\n";
+            let _ = load("x.ply", &[header.as_bytes(), &bytes].concat());
         }
 
         #[test]

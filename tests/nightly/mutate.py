@@ -72,6 +72,14 @@ def obj():
     return "\n".join(lines + ["f " + " ".join(str(1 + points.index(p)) for p in t) for t in faces()]) + "\n"
 
 
+def ply():
+    points = sorted({p for t in faces() for p in t})
+    head = f"ply\nformat ascii 1.0\nelement vertex {len(points)}\nproperty float x\nproperty float y\nproperty float z\n"
+    head += f"element face {len(faces())}\nproperty list uchar int vertex_indices\nend_header\n"
+    rows = [f"{x} {y} {z}" for x, y, z in points] + ["3 " + " ".join(str(points.index(p)) for p in t) for t in faces()]
+    return head + "\n".join(rows) + "\n"
+
+
 SPACE = "[flow]\nmach = 0.3\n[[body]]\nsurface = \"{}\"\n[cloud]\nspacing = 0.25\nfar_field = 2.0\n"
 # few particles where the change cuts the cloud off
 AIRCRAFT = """[accuracy]
@@ -118,6 +126,7 @@ INPUTS = {
     "stl": ({"case.toml": SPACE.format("a.stl"), "a.stl": stl_text()}, "a.stl"),
     "binary stl": ({"case.toml": SPACE.format("a.stl"), "a.stl": stl_binary()}, "a.stl"),
     "obj": ({"case.toml": SPACE.format("a.obj"), "a.obj": obj()}, "a.obj"),
+    "ply": ({"case.toml": SPACE.format("a.ply"), "a.ply": ply()}, "a.ply"),
     "table": ({"case.toml": PLAIN.format('period = 4.0\ntable = { file = "t.csv" }'), "t.csv": TABLE}, "t.csv"),
     "mode": ({"case.toml": PLAIN.format('period = 4.0\nmode = [{ file = "m.csv", amplitude = 0.01 }]'), "m.csv": MODE}, "m.csv"),
     "compare": ({"case.toml": SECTION + '[[compare]]\nfile = "c.csv"\n', "c.csv": "x_c,Cp\n0,1\n0.5,-0.3\n1,0.1\n"}, "c.csv"),

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use super::super::error::RunError;
 use super::{bodies, motions};
-use crate::case::{Case, GafMethod};
+use crate::case::{Case, GafMethod, rounded};
 use crate::coupling::Attached;
 use crate::geometry::{Element, Surface};
 use crate::math::{Bounds, Vector};
@@ -178,6 +178,41 @@ fn named<const D: usize>(surface: &Surface<D>, body: Option<usize>) -> (String, 
 }
 
 fn told<const D: usize>(b: &Bounds<D>) -> String {
-    let place = |x: &Vector<D>| x.0.map(|c| crate::case::rounded(c, 4)).join(", ");
+    let one = |c: f64| if c.abs() < f64::EPSILON { "0".to_owned() } else { rounded(c, 4) };
+    let place = |x: &Vector<D>| x.0.map(one).join(", ");
     format!("({}) to ({})", place(&b.min), place(&b.max))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// What is said of a bend of eleven stations beside a section of unit chord.
+    fn said(scale: f64, shift: f64, part: f64) -> Result<Option<String>, String> {
+        let case = crate::case::read("[flow]\nmach = 0.5\n[[body]]\nnaca = \"0012\"\n", "t").unwrap();
+        let surface = super::super::surface::<2>(&case, Path::new("")).unwrap().0.unwrap();
+        let row = |x: f64, y: f64| {
+            format!("{},{},0,{}\n", scale * (part * x + shift), scale * y, scale * part * part * x * x)
+        };
+        let rows = (0..11).map(|k| 0.1 * f64::from(k)).flat_map(|x| [row(x, -0.06), row(x, 0.06)]);
+        let text = format!("x,y,dx,dy\n{}", rows.collect::<String>());
+        let shape = crate::motion::mode_shape::<2>("m.csv", &|_| Ok(text.clone())).map_err(|e| e.to_string())?;
+        assert!(shape.remarks().is_empty(), "{:?}", shape.remarks());
+        lies_on(&surface, Some(0), &shape).map_err(|e| e.to_string())?;
+        Ok(beside(&surface, Some(0), &shape))
+    }
+
+    #[test]
+    fn other_units_and_other_places_are_seen() {
+        assert_eq!(said(1.0, 0.0, 1.0), Ok(None));
+        for (scale, unit) in [(1e3, "millimetres"), (100.0, "centimetres"), (39.37, "inches"), (1e-3, "kilometres")] {
+            let told = said(scale, 0.0, 1.0).unwrap_err();
+            assert!(told.contains(&format!("they seem to be in {unit}")) && told.contains("`m.csv`"), "{told}");
+        }
+        assert!(said(3.281, 0.0, 1.0).unwrap().unwrap().contains("are they in feet?"));
+        let far = said(1.0, 50.0, 1.0).unwrap_err();
+        assert!(far.contains("reach from (50, -0.06) to (51, 0.06), but body `body-1` from (0, -0.06"), "{far}");
+        assert!(said(1.0, 0.0, 0.4).unwrap().unwrap().contains("moves walls of body `body-1` by up to"));
+        assert!(said(1.0, 0.35, 0.65).unwrap().unwrap().contains("% of the length of body `body-1` lie beyond"));
+    }
 }
