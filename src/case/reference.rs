@@ -2,7 +2,7 @@
 use serde_json::{Map, Value, json};
 
 use super::keys::CASE;
-use super::quantity::Dimension;
+use super::quantity::{Dimension, plain_symbol};
 use super::schema::{Absent, Field, Kind, Range, Table, Variant};
 
 /// JSON schema (draft 2020-12) of the case file.
@@ -113,12 +113,23 @@ fn number_schema(range: &Range) -> Value {
 }
 
 fn quantity_schema(dimension: &Dimension, range: &Range) -> Value {
-    let units: Vec<_> = dimension.units.iter().map(|u| u.symbol.replace('^', "\\^")).collect();
+    let units: Vec<_> = dimension.units.iter().map(|u| symbol_pattern(u.symbol)).collect();
     let (open, close) = if dimension.needs_unit { ("", "") } else { ("(", ")?") };
     let pattern = format!("^\\s*[+-]?[0-9.]+([eE][+-]?[0-9]+)?\\s*{open}({}){close}\\s*$", units.join("|"));
     let text = json!({ "type": "string", "pattern": pattern, "examples": [dimension.example] });
     let plain = if dimension.needs_unit { json!({ "const": 0 }) } else { number_schema(range) };
     json!({ "anyOf": [text, plain] })
+}
+
+/// A regular expression of all ways to write a unit, see [`plain_symbol`].
+fn symbol_pattern(symbol: &str) -> String {
+    let one = |c: char| match c {
+        ' ' => "[ *·⋅]".to_owned(),
+        '2' => "(\\^?2|²)".to_owned(),
+        '3' => "(\\^?3|³)".to_owned(),
+        other => other.to_string(),
+    };
+    plain_symbol(symbol).chars().map(one).collect()
 }
 
 /// A table, or the bare value that stands for it.
