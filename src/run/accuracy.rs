@@ -52,7 +52,7 @@ const FIRST: [&[f64]; 2] = [&[4.0], &[8.0 / 3.0, 2.0]];
 /// Cells of the size of the spacing that a domain which a case gives holds a whole number of.
 const COARSEST: [f64; 2] = [4.0, 8.0];
 /// Particles of a cloud over the cells of its background, at most: those on the walls come to those between them.
-const WITH_WALLS: f64 = 1.12;
+const WITH_WALLS: f64 = 1.15;
 /// What the number of particles of a cloud may be off what is expected, relative to it.
 const UNSURE: f64 = 0.02;
 /// Greatest number of particles at the points of a polar that says nothing of accuracy: three clouds for each section, and about a
