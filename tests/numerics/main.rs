@@ -12,7 +12,6 @@ mod flutter_typical;
 mod gaf;
 mod harmonic;
 mod invariance;
-mod keys;
 mod layers;
 mod limit_cycles;
 mod modes;
