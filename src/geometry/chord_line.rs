@@ -5,6 +5,7 @@
 //! axis of the shape that lies nearest to the stream.
 use std::f64::consts::{FRAC_PI_2, PI};
 
+use super::placement::placed;
 use super::shell::Shell;
 use super::simplex;
 use crate::case::{Body, Shape};
@@ -37,8 +38,7 @@ pub(super) fn chord_line(body: &Body, shell: &Shell<2>) -> [Vector<2>; 2] {
 fn of_outline(shell: &Shell<2>) -> [Vector<2>; 2] {
     let points = &shell.vertices;
     let (first, last) = (points[0], points[points.len() - 1]);
-    let blunt = shell.features().edges.iter().any(|edge| edge.ends[0] == last);
-    let tail = if blunt { (first + last) * 0.5 } else { first };
+    let tail = if is_blunt(shell) { (first + last) * 0.5 } else { first };
     let far = |x: &&Vector<2>| (**x - tail).norm_squared();
     let nose = points.iter().max_by(|a, b| far(a).total_cmp(&far(b))).copied();
     [nose.unwrap_or(tail), tail]
@@ -58,15 +58,45 @@ fn along(shell: &Shell<2>, angle: f64) -> [Vector<2>; 2] {
     [middle_of(-1.0), middle_of(1.0)]
 }
 
-/// What is told of a section of a file or a formula whose chord line, placed, does not run downstream.
-pub(super) fn astray(name: &str, body: &Body, line: &[Vector<2>; 2]) -> Option<String> {
-    let drawn = matches!(body.shape, Shape::Naca(_) | Shape::Airfoil(_));
-    let off = simplex::angle_between(&(line[1] - line[0]).unit(), &Vector([1.0, 0.0]));
-    (drawn && off > ACROSS).then(|| {
-        let way = if off > PI - ACROSS { "its trailing edge is upstream" } else { "its chord line runs across the stream" };
-        format!(
-            "body `{name}`: {way}, {:.0} deg from the x axis: a section has its nose at smaller x than its trailing edge; turn it with `rotate`",
-            off.to_degrees()
-        )
-    })
+/// What is told of a section of a file or a formula whose chord line, placed, does not run downstream; `line` is that of the shape.
+pub(super) fn astray(name: &str, body: &Body, shell: &Shell<2>, line: &[Vector<2>; 2]) -> Option<String> {
+    if !matches!(body.shape, Shape::Naca(_) | Shape::Airfoil(_)) {
+        return None;
+    }
+    let [nose, tail] = line.map(|x| placed(&x, &body.placement));
+    let off = simplex::angle_between(&(tail - nose).unit(), &Vector([1.0, 0.0]));
+    let way = if matches!(body.shape, Shape::Airfoil(_)) && is_reversed(shell, line) {
+        "it is round where its trailing edge should be, and sharp at its nose: it is drawn backwards".to_owned()
+    } else if off > PI - ACROSS {
+        format!("its trailing edge is upstream, {:.0} deg from the x axis", off.to_degrees())
+    } else if off > ACROSS {
+        format!("its chord line runs across the stream, {:.0} deg from the x axis", off.to_degrees())
+    } else {
+        return None;
+    };
+    Some(format!(
+        "body `{name}`: {way}; a section has its nose at smaller x than its trailing edge: turn it with `rotate`"
+    ))
+}
+
+/// True for a section without base that is much thicker beside its trailing edge than beside its nose.
+fn is_reversed(shell: &Shell<2>, [nose, tail]: &[Vector<2>; 2]) -> bool {
+    /// Part of the chord beside an end within which thickness is looked at, and times the other from which on it is much thicker.
+    const BESIDE: f64 = 0.02;
+    const MUCH: f64 = 2.0;
+    let (chord, along) = ((*tail - *nose).norm(), (*tail - *nose).unit());
+    let thickness = |end: &Vector<2>| {
+        let near = |x: &&Vector<2>| (**x - *end).dot(&along).abs() <= BESIDE * chord;
+        let across = |x: &Vector<2>| (*x - *end).dot(&Vector([-along[1], along[0]]));
+        let ends = shell.vertices.iter().filter(near).map(across);
+        let [low, high] = ends.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], y| [a.min(y), b.max(y)]);
+        high - low
+    };
+    !is_blunt(shell) && thickness(tail) > MUCH * thickness(nose)
+}
+
+/// True for an outline that begins and ends at the two corners of a base.
+fn is_blunt(shell: &Shell<2>) -> bool {
+    let last = shell.vertices[shell.vertices.len() - 1];
+    shell.features().edges.iter().any(|edge| edge.ends[0] == last)
 }

@@ -12,7 +12,6 @@ use super::outline;
 use super::planform::{Planform, QUARTER};
 use super::section::{Chain, Sides, clustered};
 use super::shell::{Exact, Shell};
-use super::spline::{End, Spline};
 use crate::case::{PlanformShape, Tip, Wing, WingSides};
 use crate::math::Vector;
 
@@ -96,7 +95,9 @@ pub(super) fn typed_planform(wing: &Wing, [low, high]: [f64; 2]) -> Option<Planf
     let [sum, squares, edge, y, z] = sums;
     let across = if plan.up[2] != 0.0 { plan.span[1] } else { plan.span[2].abs() };
     let chord = squares / sum;
-    let quarter = [edge / sum + QUARTER * chord, y / sum, z / sum];
+    // halves that cancel leave rounding
+    let y = if y.abs() < f64::EPSILON * sum * across { 0.0 } else { y / sum };
+    let quarter = [edge / sum + QUARTER * chord, y, z / sum];
     (sum > 0.0).then_some(Planform { chord, area: sum * across, quarter })
 }
 
@@ -115,20 +116,18 @@ pub(super) fn revolution(chain: &Chain<2>) -> Shell<3> {
 /// The body through sections x, width, height and z of the middle, which are |2y/width|^n + |2z/height|^n = 1 for the `exponent` n; closed by
 /// faces where it does not end in points.
 ///
-/// Widths and heights follow a curve in x, width and height that stays between the stations and is that of a body of revolution where both
-/// are the same; the middles follow one along x.
+/// Width, upper and lower edge follow a curve that stays between the stations and is that of a body of revolution where sections are circles
+/// about one axis.
 pub(super) fn through(stations: &[Vec<f64>], exponent: f64, straight: bool) -> Shell<3> {
     // measures of which a circle of radius r has the length r
-    let share = |size: f64| size / 8f64.sqrt();
-    let sections: Vec<Vector<3>> = stations.iter().map(|s| Vector([s[0], share(s[1]), share(s[2])])).collect();
-    let middles: Vec<Vector<1>> = stations.iter().map(|s| Vector([s.get(3).copied().unwrap_or(0.0)])).collect();
-    let places = stations.iter().map(|s| s[0]).collect();
-    let curve = Spline::monotone_over(places, middles.clone(), End::Natural, End::Natural);
-    let bent = |x: f64| 2f64.sqrt() * x.signum() * x.abs().powf(2.0 / exponent);
+    let measures = |s: &Vec<f64>| {
+        let (width, height, middle) = (s[1], s[2], s.get(3).copied().unwrap_or(0.0));
+        Vector([s[0], width / 8f64.sqrt(), 0.25 * height + 0.5 * middle, 0.25 * height - 0.5 * middle])
+    };
+    let sections: Vec<Vector<4>> = stations.iter().map(measures).collect();
+    let bent = |x: f64| x.signum() * x.abs().powf(2.0 / exponent);
     along_axis(&outline::profile(&sections, straight), |x, [c, s]| {
-        let (i, part) = curve.interval(x[0]);
-        let middle = if straight { middles[i] * (1.0 - part) + middles[i + 1] * part } else { curve.at(i, part).0 };
-        Vector([x[0], x[1] * bent(c), middle[0] + x[2] * bent(s)])
+        Vector([x[0], 2f64.sqrt() * x[1] * bent(c), x[2] - x[3] + (x[2] + x[3]) * bent(s)])
     })
 }
 
@@ -148,8 +147,8 @@ fn along_axis<const D: usize>(chain: &Chain<D>, around: impl Fn(&Vector<D>, [f64
         [(&rings[0], points[0], false), (&rings[rings.len() - 1], points[points.len() - 1], true)]
     {
         if point[1] > 0.0 {
-            let axis = Vector::from_fn(|d| if d == 0 { point[0] } else { 0.0 });
-            let centre = skin.ring_or_point(&[around(&axis, [1.0, 0.0])], false)[0];
+            let centre = (around(&point, [1.0, 0.0]) + around(&point, [-1.0, 0.0])) * 0.5;
+            let centre = skin.ring_or_point(&[centre], false)[0];
             let centre = vec![centre; TURN];
             skin.strips(&if last { [ring.clone(), centre] } else { [centre, ring.clone()] }, true);
         }

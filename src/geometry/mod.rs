@@ -121,9 +121,11 @@ pub fn load_surface<const D: usize>(
     for (i, body) in bodies.iter().enumerate() {
         let name = body.name.clone().unwrap_or_else(|| format!("body-{}", i + 1));
         let shell = load_shell(&name, body, folder, &mut notes)?;
-        let line = shell.plane().map(|plane| chord_line::chord_line(body, plane));
-        let line = line.map(|line| line.map(|x| placement::placed(&x, &body.placement)));
-        notes.extend(line.and_then(|line| chord_line::astray(&name, body, &line)));
+        let line = shell.plane().map(|plane| {
+            let line = chord_line::chord_line(body, plane);
+            notes.extend(chord_line::astray(&name, body, plane, &line));
+            line.map(|x| placement::placed(&x, &body.placement))
+        });
         lines.push(line.map(|line| line.map(|x| Vector::from_fn(|d| x.to_3d()[d]))));
         let mut shell = shell.in_dimension::<D>().ok_or_else(|| {
             let what = format!("its shape is not {D}-dimensional as the case is");

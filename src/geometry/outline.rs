@@ -132,8 +132,8 @@ pub(super) fn profile<const D: usize>(points: &[Vector<D>], straight: bool) -> C
     let across = |x: Vector<D>| Vector::<D>::from_fn(|d| if d == 0 { 0.0 } else { x[d] });
     let end = |i: usize, beside: usize| {
         let along = points[beside] - points[i];
-        let on_axis = across(points[i]) == Vector::ZERO;
-        let steep = on_axis && across(along).norm() > STEEP * along[0].abs();
+        // the first measure is a width, of the plane the radius
+        let steep = points[i][1] == 0.0 && across(along).norm() > STEEP * along[0].abs();
         let outward = across(along).unit() * if i < beside { 1.0 } else { -1.0 };
         if steep && !straight { End::Along(outward) } else { End::Natural }
     };

@@ -155,7 +155,15 @@ mod tests {
         std::fs::write(folder.path().join("own.dat"), flat).unwrap();
         let turned = "s\n0 1\n0.1 0.5\n0.07 0.1\n0 0\n-0.03 0.1\n-0.05 0.5\n0 1\n";
         std::fs::write(folder.path().join("upright.dat"), turned).unwrap();
-        let backwards = "s\n0 0\n0.5 0.04\n0.9 0.05\n1 0\n0.9 -0.03\n0.5 -0.04\n0 0\n";
+        let half = |k: u32| f64::from(k) / 20.0;
+        let at = |k: u32, side: f64| {
+            // a half ellipse behind a wedge
+            let x = half(k);
+            let y = 0.06 * if x < 0.7 { x / 0.7 } else { (1.0 - ((x - 0.7) / 0.3).powi(2)).sqrt() };
+            format!("{x} {}\n", side * y)
+        };
+        let backwards = (0..=20).map(|k| at(k, 1.0)).chain((0..20).rev().map(|k| at(k, -1.0)));
+        let backwards = "s\n".to_owned() + &backwards.collect::<String>();
         std::fs::write(folder.path().join("backwards.dat"), backwards).unwrap();
         let (surface, notes) = load_surface::<D>(&case.bodies, folder.path()).unwrap_or_else(|e| panic!("{e}"));
         let all = Bounds { min: Vector([f64::NEG_INFINITY; D]), max: Vector([f64::INFINITY; D]) };
@@ -182,7 +190,7 @@ mod tests {
         assert!(!told.iter().any(|t| t.contains("chord line")), "{told:?}");
         let told = |body: &str| of::<2>(&format!("[[body]]\n{body}\n")).1.join(" ");
         assert!(told("airfoil = \"upright.dat\"").contains("runs across the stream, 90 deg"));
-        assert!(told("airfoil = \"backwards.dat\"").contains("its trailing edge is upstream, 180 deg"));
+        assert!(told("airfoil = \"backwards.dat\"").contains("it is drawn backwards"));
         assert!(told("naca = \"2412\"\nrotate = \"180 deg\"").contains("its trailing edge is upstream"));
         // other shapes by their foremost and rearmost points
         close(&of::<2>("[[body]]\ncircle = { radius = 0.5 }\n").0, 1.0, [-0.25, 0.0, 0.0], 1e-12);
