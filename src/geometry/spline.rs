@@ -83,12 +83,6 @@ impl<const D: usize> Spline<D> {
         (point, (q - p) * (1.0 / h) - m * slope(a) + n * slope(b))
     }
 
-    /// The interval that the parameter `x` lies in, and what part of it before; held at the ends.
-    pub(super) fn interval(&self, x: f64) -> (usize, f64) {
-        let i = self.knots.partition_point(|k| *k <= x).saturating_sub(1).min(self.knots.len() - 2);
-        (i, ((x - self.knots[i]) / self.chord(i)).clamp(0.0, 1.0))
-    }
-
     /// Largest sagitta of interval `i` over its chord when it is one piece: h² max |M| / 8.
     pub(super) fn sagitta(&self, i: usize) -> f64 {
         let h = self.knots[i + 1] - self.knots[i];
@@ -275,17 +269,5 @@ mod tests {
             (0..n).map(|i| off(spline.at(i, 0.5).0)).fold(0.0, f64::max)
         };
         assert!(error(10) < 2e-3 && error(40) < 1e-5, "{} {}", error(10), error(40));
-    }
-
-    #[test]
-    fn parameters_fall_into_their_intervals() {
-        let points = vec![Vector([1.0, 0.0]), Vector([2.0, -1.0]), Vector([0.0, 4.0])];
-        let s = Spline::over(vec![0.0, 1.0, 3.0], points.clone(), End::Natural, End::Natural);
-        assert_eq!(
-            [-1.0, 0.25, 2.0, 3.0, 9.0].map(|x| s.interval(x)),
-            [(0, 0.0), (0, 0.25), (1, 0.5), (1, 1.0), (1, 1.0)]
-        );
-        let (i, part) = s.interval(1.0);
-        assert!((s.at(i, part).0 - points[1]).norm() < 1e-15);
     }
 }

@@ -21,7 +21,7 @@ pub(crate) fn check(args: &arguments::Check) -> Outcome {
     let input = args.case.parent().map_or_else(PathBuf::new, Path::to_path_buf);
     let refused = run::refusals(&case, &input);
     if !refused.is_empty() {
-        return refused.iter().map(super::refuse).last().unwrap_or(Outcome::BadInput);
+        return refused.iter().map(super::refuse).fold(Outcome::BadInput, |_, told| told);
     }
     if !case.has_gas() {
         return structure(&case, &input, args);
