@@ -332,7 +332,7 @@ impl Place<'_> {
 
     /// Holds crossings and damping against those of a coarser cloud in the same stream, where there is one; false when the monitor says stop.
     fn against_coarser(&self, at: &mut FlutterAt, monitor: &mut dyn Monitor) -> Result<bool, RunError> {
-        let Some(own) = coarser::coarser(self.own) else { return Ok(true) };
+        let Some(own) = one_cloud::coarser(self.own) else { return Ok(true) };
         let stream = at.trim.as_ref().map_or(StreamRatio::SAME, |trim| StreamRatio {
             pressure: trim.dynamic_pressure / self.scales.reference.dynamic_pressure(),
             temperature: trim.speed_ratio * trim.speed_ratio,

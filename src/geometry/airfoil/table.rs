@@ -241,7 +241,7 @@ fn with_header(
 fn without_header(file: &str, lines: &[Line<'_>], notes: &mut Vec<String>) -> Result<Table, GeometryError> {
     let mut table = Table { rows: Vec::new(), counts: None, has_more: false, has_surface: false };
     let kinds: Vec<Kind> = lines.iter().map(|l| kind(&l.words)).collect();
-    let (mut body, remarks) = body(file, lines, &kinds)?;
+    let Body { rows: mut body, remarks } = body(file, lines, &kinds)?;
     tell(file, &remarks, notes);
     let width = usual_width(&body);
     while let Some(first) = body.first().filter(|l| l.numbers().len() != width && body.len() > 3) {
@@ -279,17 +279,22 @@ impl Line<'_> {
     }
 }
 
+/// Lines of a file without a header.
+#[derive(Default)]
+struct Body<'l, 't> {
+    /// Those with coordinates.
+    rows: Vec<&'l Line<'t>>,
+    /// Those of text among and after them.
+    remarks: Vec<&'l Line<'t>>,
+}
+
 /// The lines with coordinates, from the first row to the last, and remarks among and after them.
-fn body<'l, 't>(
-    file: &str,
-    lines: &'l [Line<'t>],
-    kinds: &[Kind],
-) -> Result<(Vec<&'l Line<'t>>, Vec<&'l Line<'t>>), GeometryError> {
+fn body<'l, 't>(file: &str, lines: &'l [Line<'t>], kinds: &[Kind]) -> Result<Body<'l, 't>, GeometryError> {
     let rows = || (0..lines.len()).filter(|k| kinds[*k] == Kind::Row);
     let (Some(mut first), Some(mut last)) = (rows().next(), rows().next_back()) else {
         return match (0..lines.len()).skip(1).find(|k| kinds[*k] == Kind::Damaged) {
             Some(k) => Err(lines[k].damaged(file)),
-            None => Ok((Vec::new(), Vec::new())),
+            None => Ok(Body::default()),
         };
     };
     let follows = |k: usize| lines[k].number == lines[k - 1].number + 1;
@@ -312,7 +317,7 @@ fn body<'l, 't>(
     let is_row = |k: &usize| (first..=last).contains(k) && matches!(kinds[*k], Kind::Row | Kind::Remarked);
     let (body, remarks): (Vec<usize>, Vec<usize>) = (first..lines.len()).partition(is_row);
     let of = |all: Vec<usize>| all.into_iter().map(|k| &lines[k]).collect();
-    Ok((of(body), of(remarks)))
+    Ok(Body { rows: of(body), remarks: of(remarks) })
 }
 
 /// Tells which lines were left out as remarks.

@@ -1,19 +1,8 @@
 //! What the spacing of the cloud does to a boundary: how far crossings move on a coarser cloud, and which motions grow on one of both alone.
-use super::super::{accuracy, recipe};
 use super::damping::{Pair, SAFETY, What, curves, pairs};
 use super::record::FlutterAt;
 use super::rows::Doubt;
 use super::scales::Scales;
-use crate::case::Case;
-
-/// Spacing of the coarser cloud over that of the case.
-const FACTOR: f64 = 2.0;
-
-/// The case `own` with twice the spacing; `None` where that does not fit into the domain, or the case asks for a family of clouds.
-pub(super) fn coarser(own: &Case) -> Option<Case> {
-    let one = accuracy::asked(own).is_none() && own.cloud.spacing.is_some();
-    (one && recipe::divides(own, FACTOR)).then(|| accuracy::scaled(own, FACTOR))
-}
 
 /// Tells the error that the cloud leaves in each crossing of `at`, and where the cloud decides whether motions grow.
 pub(super) fn compare(at: &mut FlutterAt, coarse: &FlutterAt, scales: &Scales) {
@@ -90,9 +79,6 @@ fn in_words(doubt: &Doubt, dimensional: bool) -> String {
 
 #[cfg(test)]
 mod tests {
-    use std::path::Path;
-
-    use super::super::super::setup;
     use super::super::rows::{FlutterRow, MotionRow};
     use super::super::scales::CaseReference;
     use super::*;
@@ -170,23 +156,5 @@ mod tests {
         let mut sure = at(Vec::new(), hump(-0.2));
         compare(&mut sure, &at(Vec::new(), hump(-0.19)), &scales);
         assert!(sure.doubts.is_empty() && sure.warnings.is_empty());
-    }
-
-    #[test]
-    fn the_coarser_cloud_has_twice_the_spacing_of_one_that_is_known() {
-        let case = |cloud: &str| {
-            let text = format!("[flow]\nmach = 0.5\n[[body]]\nnaca = \"0012\"\n[flutter]\n{cloud}");
-            crate::case::read(&text, "case.toml").unwrap().flutter_case(0.5)
-        };
-        let given = coarser(&case("[cloud]\nspacing = 0.1\n")).unwrap();
-        assert_eq!(given.cloud.spacing.map(|h| h.0), Some(0.2));
-        let open = case("");
-        assert!(coarser(&open).is_none());
-        let surface = setup::surface::<2>(&open, Path::new("")).unwrap().0;
-        let chosen = coarser(&accuracy::on_one_cloud(open, surface.as_ref())).unwrap();
-        assert_eq!((chosen.cloud.spacing.map(|h| h.0), chosen.accuracy.is_none()), (Some(1.0 / 32.0), true));
-        let three = "[cloud]\nspacing = 0.1\ndomain = { min = [-1.5, -1.5], max = [1.5, 1.4] }\n";
-        assert!(coarser(&case(three)).is_none());
-        assert!(coarser(&case("[accuracy]\nloads = 0.02\n")).is_none());
     }
 }
