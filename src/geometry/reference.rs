@@ -159,7 +159,7 @@ mod tests {
         let at = |k: u32, side: f64| {
             // a half ellipse behind a wedge
             let x = half(k);
-            let y = 0.06 * if x < 0.7 { x / 0.7 } else { (1.0 - ((x - 0.7) / 0.3).powi(2)).sqrt() };
+            let y = 0.06 * if x < 0.7 { x / 0.7 } else { (1.0 - ((x - 0.7) / 0.3).powi(2)).max(0.0).sqrt() };
             format!("{x} {}\n", side * y)
         };
         let backwards = (0..=20).map(|k| at(k, 1.0)).chain((0..20).rev().map(|k| at(k, -1.0)));
