@@ -41,7 +41,7 @@ use self::stored::Stored;
 use super::error::RunError;
 use super::folder::{self, Places};
 use super::monitor::{Monitor, Quiet};
-use super::one_cloud::on_one_cloud;
+use super::one_cloud::{self, on_one_cloud};
 use super::record::Log;
 use super::session::{Outcome, Session};
 use super::solids::{told_of_own_modes, with_own_modes};

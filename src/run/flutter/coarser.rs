@@ -82,7 +82,7 @@ mod tests {
     use super::super::rows::{FlutterRow, MotionRow};
     use super::super::scales::CaseReference;
     use super::*;
-    use crate::case::Matching;
+    use crate::case::{Case, Matching};
 
     fn case(cloud: &str) -> Case {
         let text = format!(
