@@ -81,7 +81,7 @@ const ALL: &[Refused] = &[
             "[time]\nharmonics = 1\n[motion]\nparticles = \"deforming\"\nperiod = 9\nmode = [{ file = \"bending.csv\", amplitude = 0.1 }]\n",
         ],
         ELSEWHERE,
-        "the points of a mode reach from",
+        "the points of mode `bending.csv` reach from",
     ),
     refused(
         "run",
@@ -92,9 +92,9 @@ const ALL: &[Refused] = &[
         "hint",
     ),
     refused("run", &[SECTION, BENDING], NONE, "no file `bending.csv`"),
-    refused("run", &[SECTION, BENDING], HEADLESS, "column `u` has no meaning"),
+    refused("run", &[SECTION, BENDING], HEADLESS, "`dx` and `dy` are missing"),
     refused("flutter", &[SECTION, BENDING, "[flutter]\n"], NONE, "no file `bending.csv`"),
-    refused("flutter", &[SECTION, BENDING, "[flutter]\n"], HEADLESS, "column `u` has no meaning"),
+    refused("flutter", &[SECTION, BENDING, "[flutter]\n"], HEADLESS, "`dx` and `dy` are missing"),
     refused("flutter", &[SECTION, BENDING, "[flutter]\n"], STILL, "nothing moves"),
     refused("flutter", &[SECTION, "[flutter]\n"], NONE, "flutter without a `[structure]`"),
     refused("flutter", &[SECTION, SPRINGS, "[flutter]\nmatch = \"altitude\"\n"], NONE, "for a stream without units"),
@@ -142,9 +142,9 @@ const ALL: &[Refused] = &[
     ),
     refused("flutter", &[SECTION, SPRINGS, "[flutter]\ntrim = true\n", "[cloud.wake]\n"], NONE, "hint"),
     refused("gaf", &[SECTION, FORCES], NONE, "no file `bending.csv`"),
-    refused("gaf", &[SECTION, FORCES], HEADLESS, "column `u` has no meaning"),
-    refused("gaf", &[SECTION, FORCES, "amplitude = 0.01\n"], HEADLESS, "column `u` has no meaning"),
-    refused("gaf", &[SECTION, FORCES, "amplitude = 0.01\n"], ELSEWHERE, "the points of a mode reach from"),
+    refused("gaf", &[SECTION, FORCES], HEADLESS, "`dx` and `dy` are missing"),
+    refused("gaf", &[SECTION, FORCES, "amplitude = 0.01\n"], HEADLESS, "`dx` and `dy` are missing"),
+    refused("gaf", &[SECTION, FORCES, "amplitude = 0.01\n"], ELSEWHERE, "the points of mode `bending.csv` reach from"),
     refused(
         "gaf",
         &[SECTION, "[gaf]\nreduced_frequencies = 1e9\npivot = [0.25, 0]\nmethod = \"balance\"\n"],
@@ -235,7 +235,7 @@ fn all_that_keeps_a_case_from_being_computed_is_told_at_once() {
     let output = alula(folder.path(), &["check", "case.toml"]);
     let text = told(&output);
     assert_eq!(output.status.code(), Some(2), "{text}");
-    for word in ["column `u` has no meaning", "slow flow without", "for a stream without units"] {
+    for word in ["`dx` and `dy` are missing", "slow flow without", "for a stream without units"] {
         assert!(text.contains(word), "no `{word}` in {text}");
     }
 }

@@ -191,7 +191,7 @@ mod tests {
             &told("mach = 0.3\nalpha = \"400 deg\"", ""),
             &["from -180 deg to 180 deg", "the same stream is `\"40 deg\"`"],
         );
-        all(&told("mach = 0.3\nalpha = \"200 deg\"", ""), &["t:2:9", "is 200 deg", "`\"-160 deg\"`"]);
+        all(&told("mach = 0.3\nalpha = \"200 deg\"", ""), &["t:3:9", "is 200 deg", "`\"-160 deg\"`"]);
         all(&told("mach = 0.3\nalpha = \"-180:200:20 deg\"", ""), &["is 200 deg"]);
         for good in ["\"0.03 rad\"", "\"114.59 deg\"", "\"-180:180:90 deg\""] {
             assert_eq!(told(&format!("mach = 0.3\nalpha = {good}"), ""), "");

@@ -103,7 +103,7 @@ fn around(file: &str, table: &Table, notes: &mut Vec<String>) -> Result<Vec<Mark
     if sides.is_single {
         return mirrored(file, marks, notes);
     }
-    if !sides.ends_at_rear && is_ring(&marks) {
+    if !sides.ends_at_rear && is_ring(&marks) && !begins_at_an_edge(&marks) {
         let line = marks[0].line;
         notes.push(format!("{file}: once around from ({}, {}) in line {line}", marks[0].point[0], marks[0].point[1]));
         return Ok(from_the_rear(&marks));
@@ -149,6 +149,16 @@ fn is_ring(marks: &[Mark]) -> bool {
     let n = marks.len();
     let side = |a: usize, b: usize| (marks[a].point - marks[b].point).norm();
     side(0, n - 1) <= GAP * side(0, 1).max(side(n - 2, n - 1))
+}
+
+/// True for an outline whose first and last sides meet in a sharp edge: the trailing edge of a section that is drawn along another axis.
+fn begins_at_an_edge(marks: &[Mark]) -> bool {
+    /// Cosine of the angle between both sides from which on it is an edge: 45 deg, where noses have more than 90.
+    const EDGE: f64 = std::f64::consts::FRAC_1_SQRT_2;
+    let n = marks.len();
+    let from = |k: usize| marks[k].point - marks[0].point;
+    let last = if from(n - 1).norm() > 0.0 { from(n - 1) } else { from(n - 2) };
+    from(1).unit().dot(&last.unit()) > EDGE
 }
 
 /// Sides by the column `surface`.
@@ -200,7 +210,9 @@ fn join(upper: &[Mark], lower: &[Mark]) -> Vec<Mark> {
 
 /// A closed outline turned to begin and end at its rearmost point.
 fn from_the_rear(marks: &[Mark]) -> Vec<Mark> {
-    let rear = (0..marks.len()).fold(0, |a, i| if marks[i].point[0] > marks[a].point[0] { i } else { a });
+    let once = marks.len() - usize::from(marks[0].point == marks[marks.len() - 1].point);
+    let marks = &marks[..once];
+    let rear = (0..once).fold(0, |a, i| if marks[i].point[0] > marks[a].point[0] { i } else { a });
     let mut turned = marks[rear..].to_vec();
     turned.extend(&marks[..=rear]);
     turned

@@ -174,7 +174,7 @@ impl Convergence {
             let momentum = through(c).map_or(0.0, |value| {
                 let change = through(b).map_or(0.0, |b| to_come(through(a), [b, value], c.supersonic));
                 let apart = (load(c) - value).abs();
-                let stalled = (load(c) - load(b)).abs() < apart;
+                let stalled = found.order.is_none() && (load(c) - load(b)).abs() < apart;
                 (DISAGREEMENT * (apart - change).max(0.0)).max(if stalled { apart } else { 0.0 })
             });
             let swing = |finer: &CloudLoads| (load(finer) - load(c)).abs() + part(&finer.unsettled).abs();

@@ -63,6 +63,8 @@ const POLAR_PARTICLES: usize = 20_000;
 const FINER: f64 = 6.0;
 const POWER: f64 = 2.5;
 const ROUNDS: usize = 6;
+/// Factor by which few particles may make it coarser: eight spacings along the shortest body.
+const COARSE: f64 = 5.0;
 /// Cells along the shortest side of a domain that a case gives, at least; greatest number of those between sides that must stay; by how
 /// much of a side they may miss it.
 const CELLS: f64 = 8.0;
@@ -113,7 +115,7 @@ pub(crate) fn with_cloud<'a, const D: usize>(case: &'a Case, surface: Option<&Su
         filled.cloud.wake = filled.cloud.wake.or(thin.map(|_| wake));
         filled
     };
-    Cow::Owned(chosen(affordable(&chosen, surface, along)))
+    Cow::Owned(chosen(if D == 3 { affordable(&chosen, surface, along) } else { along }))
 }
 
 /// The case on one cloud where it leaves all of it to the program: for forces of small motions, which are surer on it than drag is.
@@ -158,12 +160,12 @@ fn of_section<const D: usize>(case: Case, surface: &Surface<D>) -> Case {
     (0..=NOSE_LEVELS.max(at_edges)).map(fewer).find(fits).unwrap_or(case)
 }
 
-/// The spacing, no finer than `spacing`, at which the last of the clouds that an error bar takes has no more particles than are allowed:
+/// The spacing in space, no finer than `spacing`, at which the last of the clouds that an error bar takes has no more particles than are allowed:
 /// thin edges and noses ask for more than the size of a body tells. Particles are more than cells of the background, by those on the
 /// walls.
 fn affordable<const D: usize>(chosen: &impl Fn(f64) -> Case, surface: &Surface<D>, spacing: f64) -> f64 {
     let room = asked(&chosen(spacing)).unwrap_or(Accuracy::in_dimension(D)).particles as f64 / WITH_WALLS;
-    let mut spacing = spacing;
+    let (mut spacing, coarsest) = (spacing, COARSE * spacing);
     for _ in 0..ROUNDS {
         let case = chosen(spacing);
         let Ok(cells) = count(&CloudSpec::of_case(&case), Some(surface), &[]) else { break };
@@ -171,7 +173,7 @@ fn affordable<const D: usize>(chosen: &impl Fn(f64) -> Case, surface: &Surface<D
         if over <= 1.0 {
             break;
         }
-        spacing *= over.powf(1.0 / POWER);
+        spacing = (spacing * over.powf(1.0 / POWER)).min(coarsest);
     }
     spacing
 }

@@ -138,7 +138,7 @@ fn look<const D: usize>(case: &Case, input: &Path, out: Option<&Path>) -> Result
         rate.iter().fold(0.0f64, |m, r| m.max(*r))
     };
     let cloud = &fluid.discretisation.cloud;
-    notes.extend(cloud.notes.iter().cloned().chain(cloud.early_ends()).chain(accuracy::too_few(case, cloud.n_fluid)));
+    notes.extend(cloud.notes.iter().cloned().chain(cloud.early_ends()).chain(accuracy::too_few(case, cloud.n_real())));
     warnings.extend(check_motion(case, cloud, &motions)?);
     let structure = solids::inspect_in_gas(case, input)?;
     notes.extend(solids::told_of_own_modes(case));

@@ -266,9 +266,7 @@ impl Run<'_> {
         let mut motions = setup::motions(self.case, self.input, surface)?;
         setup::sane(self.case, surface, &motions)?.iter().for_each(|n| monitor.warn(n));
         let bodies = setup::bodies(self.case, self.input, surface, &mut motions)?;
-        let told = setup::told_of_modes(surface, &motions, &bodies);
-        told.notes.iter().for_each(|n| monitor.note(n));
-        told.warnings.iter().for_each(|w| monitor.warn(w));
+        setup::told_of_modes(surface, &motions, &bodies).tell(monitor);
         if !self.held {
             setup::check_equilibrium(self.case, surface, &bodies)?;
         }
@@ -313,7 +311,8 @@ impl Run<'_> {
         let points = self.case.points();
         let mut log = Log::open(self.case, self.out, scales, ground.saved.as_ref(), structures, monitor)?;
         if let Some(cloud) = &ground.ready {
-            self.tell(&stages, cloud.n_fluid, &mut log);
+            log.note(&describe(&stages, cloud.n_fluid));
+            accuracy::too_few(self.case, cloud.n_real()).iter().for_each(|few| log.note(few));
             log.begin_point(true);
         }
         let (mut k, mut sources, kept) = ground.standing();
@@ -365,12 +364,6 @@ impl Run<'_> {
             )?;
         }
         Run { case: log.case, ..*self }.conclude(&stood, site.surface, &mut log, &clock).map(Ok)
-    }
-
-    /// Tells what is about to be done on a cloud of `n` particles in the gas.
-    fn tell(&self, stages: &[Stage], n: usize, log: &mut Log<'_>) {
-        log.note(&describe(stages, n));
-        accuracy::too_few(self.case, n).iter().for_each(|few| log.note(few));
     }
 
     /// The stages of a run, and what the first of them stands on.

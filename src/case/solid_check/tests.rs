@@ -196,7 +196,10 @@ fn solids_that_contradict_themselves_are_refused() {
     told(&plate("velocity = [1]", ""), &["has 1 components in a 2-D case"]);
     told(&plate("gravity = [0, 0, 1]", ""), &["`body-1.solid.gravity` has 3 components"]);
     told(&plate("plane = \"axisymmetric\"\nthickness = 2", ""), &["which is a full turn"]);
-    told(&plate("thickness = 2", "[flow]\nmach = 0.5"), &["beside a gas, which acts on one unit of length"]);
+    told(
+        &plate("thickness = 2", "[flow]\nmach = 0.5\npressure = 101325\ntemperature = \"15 degC\""),
+        &["beside a gas, which acts on one unit of length"],
+    );
     let other = "[[body]]\nbox = { size = [1, 0.1] }\ntranslate = [0, 3]\nsolid = { material = { density = 1, young = 1, poisson = 0.3 }, through = 5, gravity = [0, -1] }";
     told(&plate("gravity = [0, -2]", other), &["which holds for all bodies made of particles"]);
     told(&plate("plane = \"axisymmetric\"\ngravity = [1, 0]", ""), &["`body-1.solid.gravity` across the axis"]);

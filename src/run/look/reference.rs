@@ -6,7 +6,10 @@ use crate::geometry::{Planform, Surface, reference};
 /// Chord, area and point that coefficients are made with, but for a point of moments that the case gives.
 pub(crate) fn planform<const D: usize>(case: &Case, surface: &Surface<D>) -> Planform {
     let (given, seen) = (&case.reference, of_bodies(case, surface));
-    Planform { chord: given.chord.map_or(seen.chord, |c| c.0), area: given.area.unwrap_or(seen.area), ..seen }
+    let chord = given.chord.map_or(seen.chord, |c| c.0);
+    // forces in the plane are those of a unit of span
+    let area = if D == 2 { chord } else { seen.area };
+    Planform { chord, area: given.area.unwrap_or(area), ..seen }
 }
 
 /// The same of the bodies alone: of the one that the case names, else of those that count.

@@ -5,6 +5,7 @@
 use std::path::Path;
 
 use super::super::error::RunError;
+use super::super::monitor::Monitor;
 use super::{bodies, motions};
 use crate::case::{Case, GafMethod, rounded};
 use crate::coupling::Attached;
@@ -81,6 +82,12 @@ pub(crate) fn told_of<const D: usize>(
 }
 
 impl ToldOfModes {
+    /// Tells it to those who watch a run.
+    pub(crate) fn tell(&self, monitor: &mut dyn Monitor) {
+        self.notes.iter().for_each(|note| monitor.note(note));
+        self.warnings.iter().for_each(|warning| monitor.warn(warning));
+    }
+
     /// Adds what is not told yet.
     fn add(&mut self, notes: Vec<String>, warnings: Vec<String>) {
         for (all, more) in [(&mut self.notes, notes), (&mut self.warnings, warnings)] {
