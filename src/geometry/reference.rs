@@ -190,7 +190,7 @@ mod tests {
         assert!(!told.iter().any(|t| t.contains("chord line")), "{told:?}");
         let told = |body: &str| of::<2>(&format!("[[body]]\n{body}\n")).1.join(" ");
         assert!(told("airfoil = \"upright.dat\"").contains("runs across the stream, 90 deg"));
-        assert!(told("airfoil = \"backwards.dat\"").contains("it is drawn backwards"));
+        assert!(told("airfoil = \"backwards.dat\"").contains("its trailing edge is upstream"));
         assert!(told("naca = \"2412\"\nrotate = \"180 deg\"").contains("its trailing edge is upstream"));
         // other shapes by their foremost and rearmost points
         close(&of::<2>("[[body]]\ncircle = { radius = 0.5 }\n").0, 1.0, [-0.25, 0.0, 0.0], 1e-12);

@@ -63,8 +63,8 @@ const POLAR_PARTICLES: usize = 20_000;
 const FINER: f64 = 6.0;
 const POWER: f64 = 2.5;
 const ROUNDS: usize = 6;
-/// Factor by which few particles may make it coarser: eight spacings along the shortest body.
-const COARSE: f64 = 5.0;
+/// Factor by which few particles may make it coarser: half the shortest body, where edges and noses ask for finer ones anyway.
+const COARSE: f64 = 20.0;
 /// Cells along the shortest side of a domain that a case gives, at least; greatest number of those between sides that must stay; by how
 /// much of a side they may miss it.
 const CELLS: f64 = 8.0;
