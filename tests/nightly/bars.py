@@ -3,8 +3,8 @@
 
     tests/nightly/bars.py target/release/alula [NAME ...] [--truth 1600000] [--folder bars] [--table bars.md]
 
-The truth is the extrapolation of a family whose finest cloud has at most `--truth` particles: lift and moment by the error that falls with the
-spacing and with its square through the three finest clouds; drag without shocks by what is left of the drag of the momentum once that of
+The truth is the extrapolation of a family whose finest cloud has at most `--truth` particles: half the spacing changed a load by d, and errors fall
+with the spacing (d is left) or with its square (a third of it): the mean, since fits through more clouds follow their scatter; drag without shocks by what is left of the drag of the momentum once that of
 spurious entropy is taken off, where that converges sooner. Runs that are there already in `--folder` are read, not repeated: hours of two
 cores for all of them. A bar holds where it is no shorter than the error; the exit code is 1 where fewer than nine of ten do, or where the
 median of bar over error is above 5.
@@ -70,26 +70,17 @@ def family(alula, folder, name, particles):
     return json.loads((out / "summary.json").read_text())["grid_convergence"]
 
 
-def limit(spacings, values):
-    """The value at no spacing of f + a h + b h² through three points."""
-    total = 0.0
-    for i, (h, f) in enumerate(zip(spacings, values)):
-        for k, other in enumerate(spacings):
-            if k != i:
-                f *= other / (other - h)
-        total += f
-    return total
-
-
 def truth(clouds, load):
-    clouds = clouds[-3:]
-    spacings = [c["factor"] for c in clouds]
+    finest = clouds[-1]
+    # the cloud with twice its spacing, or the nearest to that
+    coarser = min(clouds[:-1], key=lambda c: abs(c["factor"] / finest["factor"] - 2.0))
     if load == "cd" and all(c.get("spurious_drag") is not None for c in clouds):
         left = [c["cd"] - c["spurious_drag"] for c in clouds]
         # vortices that fade on the way to the plane are entropy too: then what is left still grows
         if abs(left[-1] - left[-2]) < abs(clouds[-1]["cd"] - clouds[-2]["cd"]):
             return left[-1]
-    return limit(spacings, [c[load] for c in clouds])
+    ratio = coarser["factor"] / finest["factor"]
+    return finest[load] + (finest[load] - coarser[load]) * 0.5 * (1.0 / (ratio - 1.0) + 1.0 / (ratio * ratio - 1.0))
 
 
 def main():
