@@ -193,7 +193,7 @@ mod tests {
         assert!(told("airfoil = \"backwards.dat\"").contains("its trailing edge is upstream"));
         assert!(told("naca = \"2412\"\nrotate = \"180 deg\"").contains("its trailing edge is upstream"));
         // other shapes by their foremost and rearmost points
-        close(&of::<2>("[[body]]\ncircle = { radius = 0.5 }\n").0, 1.0, [-0.25, 0.0, 0.0], 1e-12);
+        close(&of::<2>("[[body]]\ncircle = { radius = 0.5 }\n").0, 1.0, [-0.25, 0.0, 0.0], 1e-6);
         close(
             &of::<2>("[[body]]\nbox = { size = [2, 0.1] }\nrotate = \"10 deg\"\n").0,
             2.0,
