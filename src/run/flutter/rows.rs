@@ -124,7 +124,7 @@ pub struct MotionRow {
 pub struct Doubt {
     /// Branch of the motion.
     pub branch: String,
-    /// `coarser_cloud_only`, `nearly`, `this_cloud_only` or `gap`: see [`super::damping::What`].
+    /// `coarser_cloud_only`, `nearly`, `this_cloud_only` or `gap`.
     pub kind: String,
     /// Speeds over that of the case between which it is.
     pub speed_ratio: [f64; 2],
