@@ -118,8 +118,17 @@ pub(crate) fn with_cloud<'a, const D: usize>(case: &'a Case, surface: Option<&Su
     Cow::Owned(chosen(if D == 3 { affordable(&chosen, surface, along) } else { along }))
 }
 
+/// What forces of small motions are wanted for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Forces {
+    /// A flutter boundary: a table for each of many Mach numbers, of which the balance of energy counts.
+    Boundary,
+    /// One table, of which every entry counts with its phase: thickness, nose and edges are resolved.
+    Table,
+}
+
 /// The case on one cloud where it leaves all of it to the program: for forces of small motions, which are surer on it than drag is.
-pub(crate) fn on_one_cloud<const D: usize>(case: Case, surface: Option<&Surface<D>>) -> Case {
+pub(crate) fn on_one_cloud<const D: usize>(case: Case, surface: Option<&Surface<D>>, wanted: Forces) -> Case {
     if case.cloud.spacing.is_some() || case.accuracy.is_some() || surface.is_none() {
         return case;
     }
@@ -127,7 +136,7 @@ pub(crate) fn on_one_cloud<const D: usize>(case: Case, surface: Option<&Surface<
     asked.cloud.layers = asked.cloud.layers.or(Some(FEW_LAYERS));
     asked.accuracy = Some(Accuracy { particles: SMALL_MOTION_PARTICLES[D - 2], ..Accuracy::in_dimension(D) });
     let one = Case { accuracy: None, ..with_cloud(&asked, surface).into_owned() };
-    match surface.filter(|_| D == 2 && one.cloud.wall_layers.is_none()) {
+    match surface.filter(|_| D == 2 && wanted == Forces::Table && one.cloud.wall_layers.is_none()) {
         Some(surface) => of_section(one, surface),
         None => one,
     }

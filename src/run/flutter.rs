@@ -38,6 +38,7 @@ use self::scales::Scales;
 use self::search::Search;
 use self::skin::Skin;
 use self::stored::Stored;
+use super::accuracy::Forces;
 use super::error::RunError;
 use super::folder::{self, Places};
 use super::monitor::{Monitor, Quiet};
@@ -95,7 +96,7 @@ pub(super) fn rehearse(case: &Case, input: &Path) -> Result<(), RunError> {
     let plan = planned(case)?;
     // the structure is the same at all Mach numbers
     let Some(mach) = plan.mach.first() else { return Ok(()) };
-    let own = on_one_cloud(case.flutter_case(*mach), input)?;
+    let own = on_one_cloud(case.flutter_case(*mach), input, Forces::Boundary)?;
     let held = Held::of(&own, input)?;
     case.lco.as_ref().map_or(Ok(0), |lco| limit_cycles::coordinate(lco, &held.names))?;
     refusals::rehearse(&own, input, !plan.trim)
@@ -260,7 +261,7 @@ fn at_mach(
     input: &Path,
     monitor: &mut dyn Monitor,
 ) -> Result<Option<(FlutterAt, bool)>, RunError> {
-    let own = on_one_cloud(case.flutter_case(mach), input)?;
+    let own = on_one_cloud(case.flutter_case(mach), input, Forces::Boundary)?;
     let held = Held::of(&own, input)?;
     let scales = Scales::of(&own, held.chord, plan.matching);
     let place = Place { own: &own, held: &held, scales: &scales, plan, lco: cycles_at(case, mach), input };

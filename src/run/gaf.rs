@@ -8,6 +8,7 @@ pub use record::{Column, Conditions, Errors, Matrices, Solved};
 
 use std::path::Path;
 
+use super::accuracy::Forces;
 use super::error::RunError;
 use super::folder::{self, Places};
 use super::monitor::Monitor;
@@ -53,7 +54,7 @@ pub(super) fn rehearse(case: &Case, input: &Path) -> Result<(), RunError> {
     let plan = planned(case)?;
     blank(case, &plan, input)?;
     if plan.method == GafMethod::Linear {
-        return refusals::rehearse(&on_one_cloud(case.gaf_steady_case(&plan), input)?, input, true);
+        return refusals::rehearse(&on_one_cloud(case.gaf_steady_case(&plan), input, Forces::Table)?, input, true);
     }
     // the fastest motion asks most of a cloud
     let fastest = plan.reduced_frequencies.iter().copied().fold(0.0, f64::max);

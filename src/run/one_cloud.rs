@@ -1,6 +1,7 @@
 //! The cloud of small motions where the case leaves it to the program, and the coarser one that tells how far its forces are known.
 use std::path::Path;
 
+use super::accuracy::Forces;
 use super::error::RunError;
 use super::{accuracy, recipe, setup};
 use crate::case::Case;
@@ -17,15 +18,15 @@ pub(super) fn coarser(own: &Case) -> Option<Case> {
 }
 
 /// The case, whose files lie in `input`, on one cloud, see [`accuracy::on_one_cloud`].
-pub(super) fn on_one_cloud(case: Case, input: &Path) -> Result<Case, RunError> {
+pub(super) fn on_one_cloud(case: Case, input: &Path, wanted: Forces) -> Result<Case, RunError> {
     Ok(match dimension(&case) {
         2 => {
             let surface = setup::surface::<2>(&case, input)?.0;
-            accuracy::on_one_cloud(case, surface.as_ref())
+            accuracy::on_one_cloud(case, surface.as_ref(), wanted)
         }
         _ => {
             let surface = setup::surface::<3>(&case, input)?.0;
-            accuracy::on_one_cloud(case, surface.as_ref())
+            accuracy::on_one_cloud(case, surface.as_ref(), wanted)
         }
     })
 }
@@ -36,7 +37,7 @@ mod tests {
 
     fn cloud(body: &str, cloud: &str) -> Case {
         let text = format!("[flow]\nmach = 0.5\n[[body]]\n{body}\n[cloud]\n{cloud}\n");
-        on_one_cloud(crate::case::read(&text, "t").unwrap(), Path::new("")).unwrap()
+        on_one_cloud(crate::case::read(&text, "t").unwrap(), Path::new(""), Forces::Table).unwrap()
     }
 
     #[test]

@@ -5,6 +5,7 @@
 use std::f64::consts::TAU;
 use std::path::Path;
 
+use super::super::accuracy::Forces;
 use super::super::error::RunError;
 use super::super::monitor::Monitor;
 use super::super::one_cloud::on_one_cloud;
@@ -47,6 +48,7 @@ pub(super) fn march(
     let own = on_one_cloud(
         case.cycle_case((at.mach, stream), (&start(cycle, TAU / period), &at.borne), [period, MOST]),
         input,
+        Forces::Boundary,
     )?;
     let mut session = Session::open(&own, input)?;
     let summary = match session.solve(monitor) {

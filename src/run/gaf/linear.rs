@@ -7,6 +7,7 @@ use std::path::Path;
 
 use num_complex::Complex64;
 
+use super::super::accuracy::Forces;
 use super::super::error::RunError;
 use super::super::monitor::{Monitor, Quiet};
 use super::super::one_cloud::{coarser, on_one_cloud};
@@ -27,7 +28,7 @@ pub(super) fn columns(
     keep: &mut dyn FnMut(&Matrices) -> Result<(), RunError>,
     monitor: &mut dyn Monitor,
 ) -> Result<bool, RunError> {
-    let steady = on_one_cloud(case.gaf_steady_case(plan), input)?;
+    let steady = on_one_cloud(case.gaf_steady_case(plan), input, Forces::Table)?;
     let asked = Asked { case, plan, input, length: matrices.conditions.reduced_length };
     let mut add = |found: Vec<Column>| {
         matrices.columns.extend(found);
