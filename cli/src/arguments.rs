@@ -3,6 +3,7 @@ use std::num::NonZeroUsize;
 use std::path::PathBuf;
 
 use alula::case::TEMPLATES;
+use alula::observe::usage::MOST_THREADS;
 use clap::builder::{PossibleValue, PossibleValuesParser};
 use clap::{Args, Parser, Subcommand};
 use clap_complete::Shell;
@@ -220,9 +221,6 @@ pub(crate) struct Completions {
     /// Shell to complete in.
     pub(crate) shell: Shell,
 }
-
-/// Greatest number of threads: starting more takes longer than what they do.
-const MOST_THREADS: usize = 256;
 
 /// A number of threads.
 fn threads(text: &str) -> Result<NonZeroUsize, String> {

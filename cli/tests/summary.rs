@@ -79,7 +79,7 @@ fn points_of_a_polar_that_miss_the_accuracy_are_told() {
     let folder = tempfile::tempdir().unwrap();
     let polar = SECTION.replace("\"2 deg\"", "\"0:4:4 deg\"") + "[accuracy]\nparticles = 100\nloads = \"0.01 %\"\n";
     let (told, summary) = run(folder.path(), &polar);
-    assert!(told.contains("longer bars than asked for") && told.contains("of 2 points are longer"), "{told}");
+    assert!(told.contains("longer than asked for") && told.contains("of 2 points are longer"), "{told}");
     assert!(summary["polar"].as_array().unwrap().iter().any(|p| p["within_accuracy"] == false), "{summary}");
     assert!(!told.starts_with("M 0.5"), "a point of many");
 }

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyFloat, PyMapping, PyString};
-use solver::case::{Case, read, text_of};
+use solver::case::{Case, read, read_regular, text_of};
 use toml::{Table, Value};
 
 use crate::faults;
@@ -40,7 +40,7 @@ impl Given {
 }
 
 fn text_at(py: Python<'_>, path: &Path) -> PyResult<String> {
-    let bytes = std::fs::read(path).map_err(|problem| -> PyErr {
+    let bytes = read_regular(path).map_err(|problem| -> PyErr {
         let text = format!("cannot read `{}`: {problem}", path.display());
         std::io::Error::new(problem.kind(), text).into()
     })?;

@@ -56,7 +56,8 @@ pub(crate) struct Result {
     #[pyo3(get)]
     tags: Vec<String>,
     /// Arrays over the points of a polar, NaN where a point failed: `mach`, `alpha_deg`, `cl`, `cd`, `cm`, `cl_error`, `cd_error`, `cm_error`
-    /// (half widths of error bars), `converged`, and the lists `within_accuracy` (whether the bars are as short as asked for; None where there
+    /// (half widths of error bars), `converged`, and the lists `long_bars` (names of loads whose bars are longer than asked for),
+    /// `within_accuracy` (whether all are as short as that; None where there
     /// are none) and `reason`; None for a single flow.
     #[pyo3(get)]
     polar: Option<Py<PyDict>>,
@@ -152,6 +153,7 @@ fn polar(py: Python<'_>, points: &[PolarPoint]) -> PyResult<Py<PyDict>> {
     loads("cd", |c| c.cd)?;
     loads("cm", |c| c.cm)?;
     table.set_item("within_accuracy", PyList::new(py, points.iter().map(|p| p.within_accuracy))?)?;
+    table.set_item("long_bars", PyList::new(py, points.iter().map(|p| &p.long_bars))?)?;
     table.set_item("converged", PyArray1::from_vec(py, points.iter().map(|p| p.converged).collect()))?;
     table.set_item("reason", PyList::new(py, points.iter().map(|p| &p.reason))?)?;
     Ok(table.unbind())

@@ -12,6 +12,7 @@ use pyo3::exceptions::{PyRuntimeError, PyTypeError, PyUserWarning, PyValueError}
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use solver::case::Case;
+use solver::observe::usage::threads_of_environment;
 use solver::run::{Monitor, Outcome, RunError, Session, Solution, Tick, continued, inspect, is_finished, refusals};
 
 use crate::cases::Given;
@@ -147,7 +148,8 @@ fn computed(
     out: Option<&Path>,
 ) -> PyResult<Found> {
     let Wishes { progress, threads } = wishes;
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0)).stack_size(STACK);
+    let pool =
+        rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or_else(threads_of_environment)).stack_size(STACK);
     let pool = pool.build().map_err(|problem| PyRuntimeError::new_err(format!("cannot start threads: {problem}")))?;
     let stop = AtomicBool::new(false);
     let (solved, told) = py.detach(|| {

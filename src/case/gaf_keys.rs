@@ -64,7 +64,7 @@ pub(super) static GAF: Table = Table::of(&[
         "cloud_error",
         Kind::Flag,
         Absent::Flag(true),
-        "Give every entry an error bar, from its change on a cloud with twice the spacing.",
+        "Give every entry an error bar, from its change on a cloud with twice the spacing, and with 3/2 of it where there are shocks.",
     ),
 ]);
 

@@ -441,7 +441,7 @@ static ACCURACY: Table = Table::of(&[
         "time",
         Kind::Quantity(WallTime::DIMENSION, Range::POSITIVE),
         "none",
-        "Wall-clock time: the run ends on the cloud after which the next, finer one would not end within it.",
+        "Wall-clock time, a plain number in seconds: the run ends on the cloud after which the next, finer one would not end within it.",
     ),
 ]);
 
@@ -464,12 +464,18 @@ const SENSORS: &[(&str, &str)] = &[
 ];
 
 static OUTPUT: Table = Table::of(&[
-    Field::defaulted("checkpoint", COUNT, Absent::Integer(50), "Iterations between checkpoints, at most."),
+    Field::defaulted(
+        "checkpoint",
+        COUNT,
+        Absent::Integer(50),
+        "Iterations between checkpoints, at most. Marches of structures alone, whose steps may take less time than a file, let twenty times as \
+         long pass as writing the last one took.",
+    ),
     Field::defaulted(
         "checkpoint_time",
         Kind::Quantity(WallTime::DIMENSION, Range::POSITIVE),
         Absent::Number(600.0),
-        "Wall-clock time between checkpoints, at most, in seconds without a unit: what a run that is killed loses. No result depends on it.",
+        "Wall-clock time between checkpoints, at most, a plain number in seconds: what a run that is killed loses. No result depends on it.",
     ),
     Field::optional(
         "field_interval",

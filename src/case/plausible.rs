@@ -17,6 +17,8 @@ use super::text::rounded;
 const COLD: f64 = 100.0;
 /// Mach number at which a circle has a drag coefficient of 0.1 without viscosity.
 const HARDLY_MOVING: f64 = 0.005;
+/// Mach number whose square is some times the round-off of one.
+const STILL: f64 = 1e-7;
 /// Mach number of no gas whose γ is one number: at rest it is 2000 times as hot as in the stream.
 const FASTEST: f64 = 100.0;
 /// Greatest angle of attack, with what degrees are rounded by.
@@ -26,6 +28,7 @@ const HALF_TURN: f64 = PI * (1.0 + 1e-12);
 pub(super) fn doubtful(draft: &mut Draft<'_>) {
     cold(draft);
     slow(draft);
+    still(draft);
     angles(draft);
     amplitudes(draft);
     let wrong = draft.errors.iter().any(|e| e.path.starts_with("flow"));
@@ -55,10 +58,21 @@ fn slow(draft: &mut Draft<'_>) {
     let steady = is(draft, "time", "steady") || draft.get("time.steady").is_some();
     let slowest = draft.values("flow.mach").into_iter().reduce(f64::min);
     if let Some(mach) = slowest.filter(|m| scheme && steady && *m < HARDLY_MOVING) {
-        let message = format!("at M {mach} the scheme's own drag is larger than any of the body");
+        let message = format!("at M {} the scheme's own drag is larger than any of the body", number(mach));
         draft.fail("flow.mach", message).allowed(format!("at least {HARDLY_MOVING}")).hint(
             "take M 0.1, whose loads are those of incompressible flow within 1 %, or try `scheme.low_mach = true`",
         );
+    }
+}
+
+/// Mach numbers at which round-off of the gas at rest is larger than all that the stream does, in whatever way it is computed.
+fn still(draft: &mut Draft<'_>) {
+    let slowest = draft.values("flow.mach").into_iter().reduce(f64::min);
+    let told = draft.errors.iter().any(|e| e.path == "flow.mach");
+    if let Some(mach) = slowest.filter(|m| !told && *m < STILL) {
+        let message = format!("at M {} the dynamic pressure is lost in the round-off of the pressure", number(mach));
+        let hint = "take M 0.1, whose loads are those of incompressible flow within 1 %";
+        draft.fail("flow.mach", message).allowed(format!("at least {}", number(STILL))).hint(hint);
     }
 }
 

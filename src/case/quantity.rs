@@ -246,7 +246,7 @@ quantities! {
     Time, "a time", false, "20 ms", [
         unit("s", 1.0), unit("ms", 1e-3), unit("us", 1e-6), unit("min", 60.0), unit("h", 3600.0),
     ];
-    WallTime, "a wall-clock time", true, "2 min", [unit("s", 1.0), unit("min", 60.0), unit("h", 3600.0)];
+    WallTime, "a wall-clock time", false, "2 min", [unit("s", 1.0), unit("min", 60.0), unit("h", 3600.0)];
     Frequency, "a frequency", true, "5 Hz", [
         unit("rad/s", 1.0), unit("Hz", TAU), unit("kHz", 1e3 * TAU), unit("rpm", TAU / 60.0),
     ];

@@ -129,6 +129,9 @@ impl Reader<'_> {
             (Kind::IntegerOr(_, _, word), DeValue::String(text)) if text.as_ref() == *word => Some(json!(word)),
             (Kind::IntegerOr(min, max, _), value) => self.whole(kind, (*min, *max), number(value), item, path),
             (Kind::Flag, DeValue::Boolean(flag)) => Some(json!(flag)),
+            (Kind::Text | Kind::Matching(_), DeValue::String(text)) if text.contains(char::is_control) => {
+                self.control(text, item, path)
+            }
             (Kind::Text | Kind::Matching(_), DeValue::String(text)) if !text.trim().is_empty() => Some(json!(text)),
             (Kind::File, DeValue::String(text)) if !text.trim().is_empty() => {
                 self.file(text, item, path);
@@ -165,6 +168,14 @@ impl Reader<'_> {
             (Kind::Choice(variants), DeValue::Table(document)) => self.choose_table(variants, document, item, path),
             _ => self.wrong(kind, item, path),
         }
+    }
+
+    /// Complains of a text with line breaks, escapes and their like, which terminals obey and pictures cannot hold.
+    fn control(&mut self, text: &str, item: &Item<'_>, path: &str) -> Option<Value> {
+        let found = text.chars().find(|c| c.is_control()).unwrap_or_default();
+        let message = format!("`{path}` has the control character U+{:04X} in it", u32::from(found));
+        self.draft.fail_at(path, item.span(), message).allowed("one line of characters that can be seen");
+        None
     }
 
     /// Complains of a file that cannot be opened.
@@ -249,7 +260,10 @@ impl Reader<'_> {
         let written = self.draft.source(item.span());
         let allowed = range.words().unwrap_or_else(|| "a finite number".to_owned());
         let message = format!("`{path}` is {written}, but must be {allowed}");
-        self.draft.fail_at(path, item.span(), message).allowed(allowed);
+        let error = self.draft.fail_at(path, item.span(), message).allowed(allowed);
+        if range.is_dwarfed_by(value) {
+            error.hint("check its unit and its exponent");
+        }
         None
     }
 

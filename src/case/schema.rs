@@ -124,6 +124,17 @@ pub(super) struct Range {
     pub(super) closed: bool,
 }
 
+/// Times the largest number of an interval beyond which one is hardly a matter of degree.
+const DWARFED: f64 = 10.0;
+
+/// A number as it is read best: with an exponent where that spares many zeros.
+fn short(x: f64) -> String {
+    /// Characters that an exponent must spare.
+    const SPARED: usize = 3;
+    let (plain, scientific) = (format!("{x}"), format!("{x:e}"));
+    if scientific.len() + SPARED < plain.len() { scientific } else { plain }
+}
+
 impl Range {
     /// Every finite number.
     pub(super) const ANY: Self = Self { min: f64::NEG_INFINITY, max: f64::INFINITY, closed: true };
@@ -146,15 +157,22 @@ impl Range {
         value.is_finite() && above && value <= self.max
     }
 
+    /// True for a number that is many times larger than all of an interval: of another unit, or with a slip of its exponent.
+    pub(super) fn is_dwarfed_by(&self, value: f64) -> bool {
+        let largest = self.min.abs().max(self.max.abs());
+        value.abs() > DWARFED * largest
+    }
+
     /// The interval in words, none when every number is allowed.
     pub(super) fn words(&self) -> Option<String> {
         let lower = if self.closed { "at least" } else { "greater than" };
+        let [min, max] = [self.min, self.max].map(short);
         match (self.min.is_finite(), self.max.is_finite()) {
             (false, false) => None,
-            (true, false) => Some(format!("{lower} {}", self.min)),
-            (false, true) => Some(format!("at most {}", self.max)),
-            (true, true) if self.closed => Some(format!("from {} to {}", self.min, self.max)),
-            (true, true) => Some(format!("{lower} {} and at most {}", self.min, self.max)),
+            (true, false) => Some(format!("{lower} {min}")),
+            (false, true) => Some(format!("at most {max}")),
+            (true, true) if self.closed => Some(format!("from {min} to {max}")),
+            (true, true) => Some(format!("{lower} {min} and at most {max}")),
         }
     }
 }

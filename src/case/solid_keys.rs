@@ -1,16 +1,26 @@
 //! The keys of `[body.solid]` and `[contact]`.
 use super::kinds::{LENGTH, POINT, SIZE};
-use super::quantity::{Acceleration, Density, Force, PerTime, Pressure, SpecificHeat, Temperature, Time};
+use super::quantity::{Acceleration, Density, Force, Length, PerTime, Pressure, SpecificHeat, Temperature, Time};
 use super::schema::{Absent, Field, Kind, List, Range, Table};
 
 const ANY: Kind = Kind::Number(Range::ANY);
-const NOT_NEGATIVE: Range = Range { min: 0.0, max: f64::INFINITY, closed: true };
 const PART: Kind = Kind::Number(Range::between(0.0, 1.0));
-const MODULUS: Kind = Kind::Quantity(Pressure::DIMENSION, Range::POSITIVE);
-const STRESS: Kind = Kind::Quantity(Pressure::DIMENSION, NOT_NEGATIVE);
-const STRESS_OF_ANY_SIGN: Kind = Kind::Quantity(Pressure::DIMENSION, Range::ANY);
-const KELVIN: Kind = Kind::Quantity(Temperature::DIMENSION, Range::POSITIVE);
-const NUMBER: Kind = Kind::Number(NOT_NEGATIVE);
+/// What no solid is beyond, in SI units, or those of a nondimensional stream: numbers that are larger, or smaller, are slips of a unit or
+/// of an exponent, and what is computed of them is round-off.
+const STRESSES: f64 = 1e18;
+const MODULUS: Kind = Kind::Quantity(Pressure::DIMENSION, Range::between(1e-9, STRESSES));
+const STRESS: Kind = Kind::Quantity(Pressure::DIMENSION, Range::between(0.0, STRESSES));
+const STRESS_OF_ANY_SIGN: Kind = Kind::Quantity(Pressure::DIMENSION, Range::between(-STRESSES, STRESSES));
+const DENSITY: Kind = Kind::Quantity(Density::DIMENSION, Range::between(1e-9, 1e9));
+const KELVIN: Kind = Kind::Quantity(Temperature::DIMENSION, Range { min: 0.0, max: 1e6, closed: false });
+const NUMBER: Kind = Kind::Number(Range::between(0.0, 1e6));
+const THICKNESS: Kind = Kind::Quantity(Length::DIMENSION, Range::between(1e-9, 1e6));
+const ACCELERATION: Kind = Kind::Quantity(Acceleration::DIMENSION, Range::between(-1e6, 1e6));
+const HEAT_CAPACITY: Kind = Kind::Quantity(SpecificHeat::DIMENSION, Range { min: 0.0, max: 1e9, closed: false });
+const OF_RELAXATION: Kind = Kind::Number(Range::between(1e-15, 1e12));
+const STRAIN_RATE: Kind = Kind::Quantity(PerTime::DIMENSION, Range::between(1e-12, 1e12));
+const OVERSTRESS_TIME: Kind = Kind::Quantity(Time::DIMENSION, Range::between(1e-15, 1e12));
+const FORCE: Kind = Kind::Quantity(Force::DIMENSION, Range::between(-1e18, 1e18));
 const FORMULAS: Kind = Kind::List(&List { item: Kind::Formula, min: 0, max: 3, single: false });
 const PLACE: Kind = Kind::TableOr(&PLACE_KEYS, "all");
 /// No more than a lattice bears before particles meet.
@@ -46,7 +56,7 @@ pub(super) static SOLID: Table = Table::of(&[
     Field::defaulted("plane", Kind::Words(PLANES), Absent::Word("strain"), "What holds across the plane (2-D)."),
     Field::defaulted(
         "thickness",
-        SIZE,
+        THICKNESS,
         Absent::Number(1.0),
         "Thickness of bodies in the plane: masses, energies and forces are those of so much of them; not beside a gas, which acts on one unit of length.",
     ),
@@ -64,13 +74,13 @@ pub(super) static SOLID: Table = Table::of(&[
     ),
     Field::defaulted(
         "damping",
-        Kind::Quantity(PerTime::DIMENSION, NOT_NEGATIVE),
+        Kind::Quantity(PerTime::DIMENSION, Range::between(0.0, 1e12)),
         Absent::Number(0.0),
         "Damping α in proportion to mass, force −α m v.",
     ),
     Field::defaulted(
         "stiffness_damping",
-        Kind::Quantity(Time::DIMENSION, NOT_NEGATIVE),
+        Kind::Quantity(Time::DIMENSION, Range::between(0.0, 1e6)),
         Absent::Number(0.0),
         "Damping β in proportion to stiffness: second Piola-Kirchhoff stress β C₀ : Ė, damping ratio βω/2 of small vibration.",
     ),
@@ -82,7 +92,7 @@ pub(super) static SOLID: Table = Table::of(&[
     ),
     Field::defaulted(
         "gravity",
-        Kind::List(&List { item: Kind::Quantity(Acceleration::DIMENSION, Range::ANY), min: 0, max: 3, single: false }),
+        Kind::List(&List { item: ACCELERATION, min: 0, max: 3, single: false }),
         Absent::Filled,
         "Acceleration of gravity, `[0, \"-9.81 m/s2\"]`.",
     ),
@@ -121,7 +131,7 @@ static MATERIAL: Table = Table::of(&[
         "`\"orthotropic\"` with `orthotropic`, `\"plastic\"` with `yield` or `johnson_cook`, `\"viscoelastic\"` with `relaxation`, else that of `base`, else `\"neo_hookean\"`",
         "Constitutive law.",
     ),
-    Field::optional("density", Kind::Quantity(Density::DIMENSION, Range::POSITIVE), FROM_BASE, "Density."),
+    Field::optional("density", DENSITY, FROM_BASE, "Density."),
     Field::optional("young", MODULUS, TWO, "Young's modulus E; two of `young`, `poisson`, `shear` and `bulk` are given.")
         .known_as(&["e", "youngs_modulus", "elasticity"]),
     Field::optional(
@@ -164,7 +174,7 @@ static MATERIAL: Table = Table::of(&[
     ),
     Field::optional(
         "heat_capacity",
-        Kind::Quantity(SpecificHeat::DIMENSION, Range::POSITIVE),
+        HEAT_CAPACITY,
         "that of `base`, or plastic work heats nothing",
         "Heat capacity of a unit of mass.",
     ),
@@ -173,7 +183,7 @@ static MATERIAL: Table = Table::of(&[
     Field::defaulted(
         "relaxation",
         Kind::List(&List {
-            item: Kind::List(&List { item: Kind::Number(Range::POSITIVE), min: 2, max: 2, single: false }),
+            item: Kind::List(&List { item: OF_RELAXATION, min: 2, max: 2, single: false }),
             min: 0,
             max: 32,
             single: false,
@@ -225,20 +235,15 @@ static JOHNSON_COOK: Table = Table::of(&[
     Field::required("b", STRESS, "Stress of the hardening."),
     Field::required("n", NUMBER, "Exponent of the hardening."),
     Field::defaulted("c", NUMBER, Absent::Number(0.0), "Factor of the rate of strain."),
-    Field::defaulted(
-        "rate",
-        Kind::Quantity(PerTime::DIMENSION, Range::POSITIVE),
-        Absent::Number(1.0),
-        "Rate of strain at which the others were measured.",
-    ),
+    Field::defaulted("rate", STRAIN_RATE, Absent::Number(1.0), "Rate of strain at which the others were measured."),
     Field::defaulted("m", NUMBER, Absent::Number(1.0), "Exponent of the temperature."),
     Field::optional("melt", KELVIN, "no dependence on temperature", "Temperature at which the material melts."),
     Field::defaulted("room", KELVIN, Absent::Number(293.0), "Temperature at which the others were measured."),
 ]);
 
 static PERZYNA: Table = Table::of(&[
-    Field::required("viscosity", Kind::Quantity(Time::DIMENSION, Range::POSITIVE), "A time."),
-    Field::defaulted("exponent", Kind::Number(Range::POSITIVE), Absent::Number(1.0), "Exponent."),
+    Field::required("viscosity", OVERSTRESS_TIME, "A time."),
+    Field::defaulted("exponent", Kind::Number(Range::between(1e-3, 1e3)), Absent::Number(1.0), "Exponent."),
 ]);
 
 const fn bound(key: &'static str, doc: &'static str) -> Field {
@@ -303,7 +308,7 @@ static LOAD: Table = Table::of(&[
     ),
     Field::optional(
         "force",
-        Kind::List(&List { item: Kind::Quantity(Force::DIMENSION, Range::ANY), min: 2, max: 3, single: false }),
+        Kind::List(&List { item: FORCE, min: 2, max: 3, single: false }),
         ONE_LOAD,
         "Force on the whole place, spread evenly over its area, of fixed direction.",
     ),

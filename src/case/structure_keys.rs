@@ -1,5 +1,5 @@
 //! The keys of `[structure]`.
-use super::kinds::{ANGLE, LENGTH, POINT, POSITIVE, SIZE};
+use super::kinds::ANGLE;
 use super::motion_keys::MODE_FILE;
 use super::quantity::{
     Acceleration, AngularDamper, AngularStiffness, Damper, Frequency, Inertia, Length, Mass, PerArea, PerSquareAngle,
@@ -7,20 +7,46 @@ use super::quantity::{
 };
 use super::schema::{Absent, Field, Kind, List, Range, Table};
 
-const ANY: Kind = Kind::Number(Range::ANY);
-/// Zero or more.
-const NOT_NEGATIVE: Kind = Kind::Number(Range { min: 0.0, max: f64::INFINITY, closed: true });
+/// What no structure is beyond, in SI units, or those of a nondimensional stream: numbers that are larger, or smaller, are slips of a
+/// unit or of an exponent, and what is computed of them is round-off. From grains to ships of 10¹² kg and 10⁶ m.
+const MASSES: Range = Range::between(1e-12, 1e12);
+const INERTIAS: Range = Range::between(-1e18, 1e18);
+const STIFF: Range = Range::between(0.0, 1e18);
+const FREQUENCIES: Range = Range::between(1e-9, 1e9);
+const LENGTHS: Range = Range::between(-1e6, 1e6);
+const SPEEDS: Range = Range::between(-1e6, 1e6);
+const RATES: Range = Range::between(-1e6, 1e6);
+/// Of places in semichords: a swept wing whose axis is ahead of the section has -2, an aircraft about its tail some tens.
+const SEMICHORDS: Range = Range::between(-100.0, 100.0);
+/// The square of such a length.
+const SQUARE: Range = Range::between(1e-9, 1e4);
+/// Of ratios of masses, from bubbles to bodies in hardly any air.
+const MASS_RATIOS: Range = Range::between(1e-6, 1e9);
+/// Of frequencies and speeds over one another.
+const RATIOS_OF_SPEED: Range = Range::between(1e-6, 1e6);
+/// Cubic parts of springs, over length or angle squared.
+const CUBIC: Range = Range::between(-1e15, 1e15);
+
+const SEMICHORD: Kind = Kind::Number(SEMICHORDS);
+const SPEED_RATIO: Kind = Kind::Number(RATIOS_OF_SPEED);
+const RADIUS_SQUARED: Kind = Kind::Number(SQUARE);
+const COORDINATE: Kind = Kind::Number(LENGTHS);
+const MASS: Kind = Kind::Quantity(Mass::DIMENSION, MASSES);
+const SIZE: Kind = Kind::Quantity(Length::DIMENSION, Range::between(1e-9, 1e6));
+const LENGTH: Kind = Kind::Quantity(Length::DIMENSION, LENGTHS);
+const POINT: Kind = Kind::List(&List { item: LENGTH, min: 2, max: 3, single: false });
 /// Part of critical damping; beyond half of it nothing flutters.
-const RATIO: Kind = Kind::Quantity(Ratio::DIMENSION, Range { min: 0.0, max: f64::INFINITY, closed: true });
-const HERTZ: Kind = Kind::Quantity(Frequency::DIMENSION, Range::POSITIVE);
-const SPRING: Kind = Kind::Quantity(Stiffness::DIMENSION, Range { min: 0.0, max: f64::INFINITY, closed: true });
-const TWIST: Kind = Kind::Quantity(AngularStiffness::DIMENSION, Range { min: 0.0, max: f64::INFINITY, closed: true });
-const DASHPOT: Kind = Kind::Quantity(Damper::DIMENSION, Range { min: 0.0, max: f64::INFINITY, closed: true });
-const TWIST_DASHPOT: Kind =
-    Kind::Quantity(AngularDamper::DIMENSION, Range { min: 0.0, max: f64::INFINITY, closed: true });
-const PLAY: Kind = Kind::Quantity(Length::DIMENSION, Range { min: 0.0, max: f64::INFINITY, closed: true });
-const SPEED: Kind = Kind::Quantity(Velocity::DIMENSION, Range::ANY);
-const TURN_RATE: Kind = Kind::Quantity(Rate::DIMENSION, Range::ANY);
+const RATIO: Kind = Kind::Quantity(Ratio::DIMENSION, Range::between(0.0, 100.0));
+const HERTZ: Kind = Kind::Quantity(Frequency::DIMENSION, FREQUENCIES);
+const SPRING: Kind = Kind::Quantity(Stiffness::DIMENSION, STIFF);
+const TWIST: Kind = Kind::Quantity(AngularStiffness::DIMENSION, STIFF);
+const DASHPOT: Kind = Kind::Quantity(Damper::DIMENSION, STIFF);
+const TWIST_DASHPOT: Kind = Kind::Quantity(AngularDamper::DIMENSION, STIFF);
+const PLAY: Kind = Kind::Quantity(Length::DIMENSION, Range::between(0.0, 1e6));
+const SPEED: Kind = Kind::Quantity(Velocity::DIMENSION, SPEEDS);
+const TURN_RATE: Kind = Kind::Quantity(Rate::DIMENSION, RATES);
+const ACCELERATION: Kind = Kind::Quantity(Acceleration::DIMENSION, Range::between(-1e6, 1e6));
+const PERIOD: Kind = Kind::Quantity(Time::DIMENSION, Range::between(1e-9, 1e12));
 const ONE: &str = "another of its alternatives";
 const NO_SPRING: &str = "no spring, or from another key";
 
@@ -48,7 +74,7 @@ pub(super) static STRUCTURE: Table = Table::of(&[
     ),
     Field::optional(
         "elastic_axis",
-        ANY,
+        SEMICHORD,
         "`pivot`",
         "a: the elastic axis in semichords aft of the middle of the chord (2-D); -0.5 is the quarter chord.",
     ),
@@ -58,30 +84,30 @@ pub(super) static STRUCTURE: Table = Table::of(&[
         "half of the reference chord",
         "b of all numbers of flutter; half the diameter of a cylinder.",
     ),
-    Field::optional("mass", Kind::Quantity(Mass::DIMENSION, Range::POSITIVE), "`mass_ratio`", "Mass, in 2-D per span."),
+    Field::optional("mass", MASS, "`mass_ratio`", "Mass, in 2-D per span."),
     Field::optional(
         "mass_ratio",
-        POSITIVE,
+        Kind::Number(MASS_RATIOS),
         "`mass`",
         "μ = m/(π ρ∞ b²) instead (2-D); for a cylinder of diameter D = 2b that is m* = m/(ρ∞ π D²/4).",
     ),
     Field::optional("centre_of_mass", POINT, "at the pivot", "Centre of mass, as placed."),
     Field::optional(
         "x_alpha",
-        ANY,
+        SEMICHORD,
         "`centre_of_mass`",
         "Static unbalance x_α = S_α/(m b) instead: the centre of mass in semichords aft of the elastic axis (2-D).",
     ),
     Field::optional(
         "inertia",
-        Kind::List(&List { item: Kind::Quantity(Inertia::DIMENSION, Range::ANY), min: 1, max: 6, single: true }),
+        Kind::List(&List { item: Kind::Quantity(Inertia::DIMENSION, INERTIAS), min: 1, max: 6, single: true }),
         "`r_alpha2`",
         "Moment of inertia about the pivot: one value in 2-D (per span), Jxx, Jyy, Jzz in 3-D, and Jxy, Jyz, Jzx (entries of the tensor: \
          minus the products of inertia) where they are not zero.",
     ),
     Field::optional(
         "r_alpha2",
-        POSITIVE,
+        RADIUS_SQUARED,
         "`inertia`",
         "r_α² = I_α/(m b²) instead: square of the radius of gyration about the elastic axis, in semichords (2-D).",
     ),
@@ -101,25 +127,25 @@ pub(super) static STRUCTURE: Table = Table::of(&[
     ),
     Field::optional(
         "frequency_ratio",
-        POSITIVE,
+        SPEED_RATIO,
         "`frequency` or `stiffness` of `plunge`",
         "ω_h/ω_α: the uncoupled frequency of plunge over that of pitch.",
     ),
     Field::optional(
         "reduced_speed",
-        POSITIVE,
+        SPEED_RATIO,
         ONE,
         "V* = U∞/(b ω_α), which fixes the spring of pitch; that of plunge where pitch is not free.",
     ),
     Field::optional(
         "reduced_velocity",
-        POSITIVE,
+        SPEED_RATIO,
         ONE,
         "U* = U∞/(f D) instead, with D = 2b and f = ω/2π: what vortex-induced vibration is told by.",
     ),
     Field::optional(
         "speed_index",
-        POSITIVE,
+        SPEED_RATIO,
         "another of its alternatives; 1 with `[flutter]`, which varies the speed",
         "V_f = U∞/(b ω_α √μ) instead.",
     ),
@@ -158,7 +184,7 @@ pub(super) static STRUCTURE: Table = Table::of(&[
     ),
     Field::optional(
         "gravity",
-        Kind::List(&List { item: Kind::Quantity(Acceleration::DIMENSION, Range::ANY), min: 2, max: 3, single: false }),
+        Kind::List(&List { item: ACCELERATION, min: 2, max: 3, single: false }),
         "none",
         "Acceleration of gravity, `gravity = [0, \"-9.81 m/s2\"]`.",
     ),
@@ -258,14 +284,14 @@ const FREE_PLAY: &str = "Half the gap: the spring does nothing within `rest` ± 
 const REST: &str = "Where the spring is at ease.";
 
 static LONG_SPRING: Table = Table::of(&[
-    cubic(Kind::Quantity(PerArea::DIMENSION, Range::ANY), "Over length squared."),
+    cubic(Kind::Quantity(PerArea::DIMENSION, CUBIC), "Over length squared."),
     Field::defaulted("free_play", PLAY, Absent::Number(0.0), FREE_PLAY),
     Field::defaulted("rest", LENGTH, Absent::Number(0.0), REST),
 ]);
 
 static TURNED_SPRING: Table = Table::of(&[
     cubic(
-        Kind::Quantity(PerSquareAngle::DIMENSION, Range::ANY),
+        Kind::Quantity(PerSquareAngle::DIMENSION, CUBIC),
         "Over angle squared; a plain number is over radian squared.",
     ),
     Field::defaulted(
@@ -300,12 +326,12 @@ static FORCE: Table = Table::of(&[
     Field::optional("frequency", HERTZ, ONE, "Frequency, `omega` of the formulas; needs a dimensional free stream."),
     Field::optional(
         "reduced_frequency",
-        POSITIVE,
+        SPEED_RATIO,
         ONE,
         "Reduced frequency k = ωL/U∞ instead, with L = `reduced_length`.",
     ),
     Field::optional("reduced_length", SIZE, "half of the reference chord", "Length L of the reduced frequency."),
-    Field::optional("period", Kind::Quantity(Time::DIMENSION, Range::POSITIVE), ONE, "Period 2π/ω instead."),
+    Field::optional("period", PERIOD, ONE, "Period 2π/ω instead."),
     of("surge", Kind::Text, ZERO),
     of("sway", Kind::Text, ZERO),
     of("plunge", Kind::Text, ZERO),
@@ -318,20 +344,20 @@ static FORCE: Table = Table::of(&[
 static FLAP: Table = Table::of(&[
     Field::optional(
         "hinge",
-        ANY,
+        SEMICHORD,
         "`hinge_point`",
         "c: the hinge in semichords aft of the middle of the chord; 0.6 leaves a flap of a fifth of the chord.",
     ),
     Field::optional("hinge_point", POINT, "`hinge`", "The hinge as a point instead, as placed."),
     Field::required(
         "x_beta",
-        ANY,
+        SEMICHORD,
         "x_β = S_β/(m b): static moment of the flap about its hinge, with the mass m of the whole section.",
     ),
-    Field::required("r_beta2", POSITIVE, "r_β² = I_β/(m b²), with the mass of the whole section."),
+    Field::required("r_beta2", RADIUS_SQUARED, "r_β² = I_β/(m b²), with the mass of the whole section."),
     Field::optional(
         "frequency_ratio",
-        POSITIVE,
+        SPEED_RATIO,
         "`frequency` or `stiffness` of `flap`",
         "ω_β/ω_α: the uncoupled frequency of the flap over that of pitch.",
     ),
@@ -348,11 +374,11 @@ static MODE: Table = Table::of(&[
     MODE_FILE,
     Field::required(
         "mass",
-        Kind::Quantity(Mass::DIMENSION, Range::POSITIVE),
+        MASS,
         "Generalised mass ∫ φ·φ dm with the shape of the file, `mass = \"10 kg\"`, in 2-D per span, `\"10 kg/m\"`.",
     ),
     Field::optional("frequency", HERTZ, ONE, "Frequency; needs a dimensional free stream."),
-    Field::optional("reduced_frequency", POSITIVE, ONE, "k = ωb/U∞ instead, with b = `semichord`."),
+    Field::optional("reduced_frequency", SPEED_RATIO, ONE, "k = ωb/U∞ instead, with b = `semichord`."),
     Field::optional(
         "stiffness",
         SPRING,
@@ -360,12 +386,17 @@ static MODE: Table = Table::of(&[
         "Generalised stiffness instead, of the unit of the mass over time squared.",
     ),
     Field::defaulted("damping_ratio", RATIO, Absent::Number(0.0), "Damping ratio ζ."),
-    Field::defaulted("cubic", ANY, Absent::Number(0.0), "The force of the spring is k (e + cubic e³)."),
-    Field::defaulted("free_play", NOT_NEGATIVE, Absent::Number(0.0), "Half the gap of the spring."),
-    Field::defaulted("initial", ANY, Absent::Number(0.0), "Coordinate at the start."),
+    Field::defaulted("cubic", Kind::Number(CUBIC), Absent::Number(0.0), "The force of the spring is k (e + cubic e³)."),
+    Field::defaulted(
+        "free_play",
+        Kind::Number(Range::between(0.0, 1e6)),
+        Absent::Number(0.0),
+        "Half the gap of the spring.",
+    ),
+    Field::defaulted("initial", COORDINATE, Absent::Number(0.0), "Coordinate at the start."),
     Field::defaulted(
         "initial_rate",
-        Kind::Quantity(PerTime::DIMENSION, Range::ANY),
+        Kind::Quantity(PerTime::DIMENSION, RATES),
         Absent::Number(0.0),
         "Its rate at the start.",
     ),

@@ -368,3 +368,26 @@ fn wings_and_profiles_that_cannot_be_are_told() {
         assert_shows(&body(shape), &[told]);
     }
 }
+
+#[test]
+fn wall_clock_times_are_in_seconds_where_they_have_no_unit() {
+    let of = |time: &str| {
+        let text = format!("[flow]\nmach = 0.3\n[[body]]\nnaca = \"0012\"\n[output]\ncheckpoint_time = {time}\n");
+        read(&text, "c").map(|c| c.output.checkpoint_time.0)
+    };
+    for (time, seconds) in [("5", 5.0), ("\"5 s\"", 5.0), ("\"5\"", 5.0), ("\"2 min\"", 120.0), ("0.5", 0.5)] {
+        assert_eq!(of(time).unwrap_or_else(|e| panic!("{time}: {e}")), seconds);
+    }
+    assert!(of("0").is_err() && of("\"5 fortnights\"").is_err());
+}
+
+#[test]
+fn numbers_many_times_beyond_what_is_allowed_are_told_to_be_slips() {
+    let told = |jitter: &str| {
+        let text = format!("[flow]\nmach = 0.3\n[[body]]\nnaca = \"0012\"\n[cloud]\nblank = {jitter}\n");
+        read(&text, "c").unwrap_err().to_string()
+    };
+    let slip = "hint: check its unit and its exponent";
+    assert!(told("4e3").contains(slip) && told("4e3").contains("allowed: from 0.3 to 0.6"));
+    assert!(!told("0.7").contains(slip));
+}

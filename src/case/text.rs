@@ -1,6 +1,6 @@
 //! Files with text and tables of numbers, whatever program saved them.
 use std::fs::File;
-use std::io::{Error, ErrorKind};
+use std::io::{Error, ErrorKind, Read};
 use std::path::Path;
 
 /// Why bytes are no text.
@@ -25,6 +25,13 @@ pub fn open_regular(path: &Path) -> std::io::Result<File> {
     }
     let what = if kind.is_dir() { "it is a folder" } else { "it is no regular file, but a pipe or a device" };
     Err(Error::new(ErrorKind::InvalidInput, what))
+}
+
+/// The bytes of a file, which [`open_regular`] opens.
+pub fn read_regular(path: &Path) -> std::io::Result<Vec<u8>> {
+    let mut bytes = Vec::new();
+    open_regular(path)?.read_to_end(&mut bytes)?;
+    Ok(bytes)
 }
 
 /// The text in `bytes`: UTF-8, or UTF-16 that begins with its byte order mark or with characters that have one byte that is not zero.

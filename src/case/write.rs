@@ -8,13 +8,16 @@ use super::Case;
 use super::keys::CASE;
 use super::quantity::{Angle, exact_degrees};
 use super::schema::{Field, Kind, Table};
-use super::solid_check::OF_GAS;
+use super::solid_check::{OF_GAS, OUTPUT_OF_GAS};
 
 /// The case as TOML; lines that only repeat a default say so.
 pub fn write(case: &Case) -> String {
     let Ok(Value::Object(mut tree)) = serde_json::to_value(case) else { return String::new() };
     if !case.has_gas() {
         tree.retain(|key, _| key != "flow" && !OF_GAS.contains(&key.as_str()));
+        if let Some(Value::Object(output)) = tree.get_mut("output") {
+            output.retain(|key, _| !OUTPUT_OF_GAS.contains(&key.as_str()));
+        }
     }
     super::polar::put_back(&mut tree);
     let mut text = String::new();
@@ -144,7 +147,7 @@ mod tests {
     use crate::case::{Side, TEMPLATES, read, template};
 
     const EVERYTHING: &str = r#"
-title = "say \"κ\"\\ \n twice"
+title = "say \"κ\"\\ twice"
 dimension = 2
 initial = { riemann = { left = [1, 0.1, 1], right = [0.125, 0, 0.1], axis = 1, position = 0.3 } }
 [flow]

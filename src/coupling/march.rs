@@ -327,7 +327,7 @@ impl<const D: usize> Integrator<Coupled<D>> for March<'_, D> {
     }
 
     fn standing(&mut self) -> Standing<'_, Coupled<D>> {
-        Standing { frame: &self.frame, work: &mut self.work, state: &self.u }
+        Standing { system: self.system, frame: &self.frame, work: &mut self.work, state: &self.u }
     }
 
     fn memory(&self) -> Memory {

@@ -3,9 +3,12 @@
 //! The chord line of a NACA section is the one that its formulas are written for. An outline from a file begins at its trailing edge, or at the two ends
 //! of its base; its leading edge is the point farthest from there. Of other shapes the foremost and the rearmost points count, along the
 //! axis of the shape that lies nearest to the stream.
+//!
+//! The section of a wing is made one of unit chord with its nose at x = 0, since its chord is a key of the wing.
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use super::placement::placed;
+use super::GeometryError;
+use super::placement::{placed, turned};
 use super::shell::Shell;
 use super::simplex;
 use crate::case::{Body, Shape};
@@ -19,6 +22,12 @@ const UNIT_TAIL: f64 = 0.005;
 const SAME: f64 = 1e-6;
 /// Angle between a chord line and the x axis from which on it is told, radians (60°).
 const ACROSS: f64 = PI / 3.0;
+/// Corners within this part of the chord from the trailing edge are those of a base.
+const BASE: f64 = 0.1;
+
+/// What an outline is that is much thicker beside its trailing edge than beside its nose.
+const DRAWN_BACKWARDS: &str =
+    "it is round where its trailing edge should be, and sharp at its nose: it is drawn backwards";
 
 /// Leading and trailing edge of `body`, whose outline before it is placed is `shell`.
 pub(super) fn chord_line(body: &Body, shell: &Shell<2>) -> [Vector<2>; 2] {
@@ -34,14 +43,23 @@ pub(super) fn chord_line(body: &Body, shell: &Shell<2>) -> [Vector<2>; 2] {
     }
 }
 
-/// The chord line of an outline that begins at its trailing edge.
-fn of_outline(shell: &Shell<2>) -> [Vector<2>; 2] {
+/// The chord line of an outline that begins at its trailing edge. One that ends sharply on both sides may begin at either: its nose is the end
+/// at smaller x.
+pub(super) fn of_outline(shell: &Shell<2>) -> [Vector<2>; 2] {
     let points = &shell.vertices;
     let (first, last) = (points[0], points[points.len() - 1]);
-    let tail = if is_blunt(shell) { (first + last) * 0.5 } else { first };
+    let corners = corners(shell);
+    let blunt = corners.contains(&last);
+    let tail = if blunt { (first + last) * 0.5 } else { first };
     let far = |x: &&Vector<2>| (**x - tail).norm_squared();
-    let nose = points.iter().max_by(|a, b| far(a).total_cmp(&far(b))).copied();
-    [nose.unwrap_or(tail), tail]
+    let nose = points.iter().max_by(|a, b| far(a).total_cmp(&far(b))).copied().unwrap_or(tail);
+    let sharp = !blunt && corners.contains(&nose) && corners.contains(&tail);
+    if sharp && tail[0] < nose[0] { [tail, nose] } else { [nose, tail] }
+}
+
+/// The sharp corners of an outline.
+fn corners(shell: &Shell<2>) -> Vec<Vector<2>> {
+    shell.features().edges.iter().map(|edge| edge.ends[0]).collect()
 }
 
 /// From the foremost points to the rearmost ones of a shape that is turned nose up by `angle`.
@@ -64,19 +82,83 @@ pub(super) fn astray(name: &str, body: &Body, shell: &Shell<2>, line: &[Vector<2
         return None;
     }
     let [nose, tail] = line.map(|x| placed(&x, &body.placement));
-    let off = simplex::angle_between(&(tail - nose).unit(), &Vector([1.0, 0.0]));
     let way = if matches!(body.shape, Shape::Airfoil(_)) && is_reversed(shell, line) {
-        "it is round where its trailing edge should be, and sharp at its nose: it is drawn backwards".to_owned()
-    } else if off > PI - ACROSS {
-        format!("its trailing edge is upstream, {:.0} deg from the x axis", off.to_degrees())
-    } else if off > ACROSS {
-        format!("its chord line runs across the stream, {:.0} deg from the x axis", off.to_degrees())
+        DRAWN_BACKWARDS.to_owned()
     } else {
-        return None;
+        let (edge, way) = way(&(tail - nose))?;
+        format!("its {edge} {way}")
     };
     Some(format!(
         "body `{name}`: {way}; a section has its nose at smaller x than its trailing edge: turn it with `rotate`"
     ))
+}
+
+/// What is told of a wing that is turned so that its chords do not run downstream.
+pub(super) fn wing_astray(name: &str, body: &Body) -> Option<String> {
+    if !matches!(body.shape, Shape::Wing(_)) {
+        return None;
+    }
+    let (edge, way) = way(&turned(&Vector([1.0, 0.0, 0.0]), &body.placement))?;
+    Some(format!(
+        "body `{name}`: its {edge} {way}; a wing has its leading edge at smaller x than its trailing edge: change `rotate`"
+    ))
+}
+
+/// The section of a wing, read from a file, with its nose at x = 0 and a chord of 1; one that is drawn so stays as it is.
+pub(super) fn section_of_wing(
+    file: &str,
+    mut shell: Shell<2>,
+    notes: &mut Vec<String>,
+) -> Result<Shell<2>, GeometryError> {
+    /// Part of the chord by which the ends may differ from 0 and 1: noses of cambered sections reach beyond 0, and sections are cut short or
+    /// extended by less to end bluntly or sharply.
+    const WITHIN: f64 = 0.01;
+    /// Height of the nose in chords above which the section lies off its axis: drawn from its flat lower side it is less.
+    const HIGH: f64 = 0.2;
+    let line = of_outline(&shell);
+    let [nose, tail] = line;
+    if let Some((edge, way)) = way(&(tail - nose)) {
+        let ends = line.map(|x| format!("({:.6}, {:.6})", x[0], x[1]));
+        let what = format!("the {edge} {way}: the nose is at {}, the trailing edge at {}", ends[0], ends[1]);
+        let hint = "the section of a wing has its nose at smaller x than its trailing edge: turn its coordinates, or exchange its columns";
+        return Err(GeometryError::refused(file, what, hint));
+    }
+    if is_reversed(&shell, &line) {
+        notes.push(format!("{file}: {DRAWN_BACKWARDS}; the section of a wing has its nose at smaller x"));
+    }
+    let bounds = Bounds::around(&shell.vertices);
+    let (low, high) = (bounds.min[0], bounds.max[0]);
+    let origin = if low.abs() > WITHIN * (high - low) {
+        Vector([low, nose[1]])
+    } else if nose[1].abs() > HIGH * (high - low) {
+        Vector([0.0, nose[1]])
+    } else {
+        Vector::ZERO
+    };
+    let chord = high - origin[0];
+    if origin == Vector::ZERO && (chord - 1.0).abs() <= WITHIN {
+        return Ok(shell);
+    }
+    notes.push(format!(
+        "{file}: the section of the wing goes from x = {low:.6} to {high:.6}, its nose is at y = {:.6}: it is moved to the origin, and its chord is \
+         taken as 1",
+        nose[1]
+    ));
+    shell.vertices.iter_mut().for_each(|x| *x = (*x - origin) * (1.0 / chord));
+    Ok(shell)
+}
+
+/// Which edge or line of a section is where it should not be, for a chord from nose to tail along `chord`; `None` where it runs downstream.
+fn way<const D: usize>(chord: &Vector<D>) -> Option<(&'static str, String)> {
+    let off = simplex::angle_between(&chord.unit(), &Vector::axis(0));
+    let degrees = off.to_degrees();
+    if off > PI - ACROSS {
+        Some(("trailing edge", format!("is upstream, {degrees:.0} deg from the x axis")))
+    } else if off > ACROSS {
+        Some(("chord line", format!("runs across the stream, {degrees:.0} deg from the x axis")))
+    } else {
+        None
+    }
 }
 
 /// True for a section without base that is much thicker beside its trailing edge than beside its nose.
@@ -92,11 +174,110 @@ fn is_reversed(shell: &Shell<2>, [nose, tail]: &[Vector<2>; 2]) -> bool {
         let [low, high] = ends.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], y| [a.min(y), b.max(y)]);
         high - low
     };
-    !is_blunt(shell) && thickness(tail) > MUCH * thickness(nose)
+    let rear = corners(shell).iter().filter(|x| (**x - *tail).dot(&along) > -BASE * chord).count();
+    rear < 2 && thickness(tail) > MUCH * thickness(nose)
 }
 
-/// True for an outline that begins and ends at the two corners of a base.
-fn is_blunt(shell: &Shell<2>) -> bool {
-    let last = shell.vertices[shell.vertices.len() - 1];
-    shell.features().edges.iter().any(|edge| edge.ends[0] == last)
+#[cfg(test)]
+mod tests {
+    use super::super::airfoil;
+    use super::*;
+
+    /// Points of a section 20 % thick with a base of this width: from the upper corner of it to the nose and back.
+    fn flatback(base: f64) -> Vec<[f64; 2]> {
+        let side = |sign: f64| {
+            (0..=40).map(move |k| {
+                let x = 0.5 + 0.5 * (PI * f64::from(k) / 40.0).cos();
+                let half = 0.2969 * x.sqrt() - 0.126 * x - 0.3516 * x * x + 0.2843 * x.powi(3) - 0.1036 * x.powi(4);
+                [x, sign * (half.max(0.0) + 0.5 * base * x)]
+            })
+        };
+        side(1.0).chain(side(-1.0).rev().skip(1)).collect()
+    }
+
+    fn text(points: &[[f64; 2]]) -> String {
+        points.iter().map(|[x, y]| format!("{x} {y}\n")).collect()
+    }
+
+    fn shell(points: &[[f64; 2]]) -> Shell<2> {
+        airfoil::read("s.dat", text(points).as_bytes(), 1.0, &mut Vec::new()).unwrap_or_else(|e| panic!("{e}"))
+    }
+
+    fn body() -> Body {
+        let case = crate::case::read("[flow]\nmach = 0.3\n[[body]]\nname = \"a\"\nairfoil = \"s.dat\"\n", "t");
+        case.unwrap_or_else(|e| panic!("{e}")).bodies.remove(0)
+    }
+
+    #[test]
+    fn bases_are_found_however_wide_and_however_they_are_drawn() {
+        for base in [0.01, 0.05, 0.2, 0.3] {
+            for (scale, degrees) in [(1.0, 0.0), (300.0, 0.0), (1.0, 30.0), (0.35, -20.0)] {
+                let (sin, cos) = f64::to_radians(degrees).sin_cos();
+                let turn = |[x, y]: [f64; 2]| [scale * (cos * x - sin * y), scale * (sin * x + cos * y)];
+                let open: Vec<[f64; 2]> = flatback(base).into_iter().map(turn).collect();
+                let last = open[open.len() - 1];
+                let closed = [open.clone(), vec![open[0]]].concat();
+                let from_below = [vec![last], open.clone()].concat();
+                let clockwise = closed.iter().rev().copied().collect::<Vec<_>>();
+                for points in [open, closed, from_below, clockwise] {
+                    let shell = shell(&points);
+                    let line = chord_line(&body(), &shell);
+                    let wanted = [Vector([0.0, 0.0]), Vector(turn([1.0, 0.0]))];
+                    let off = (0..2).map(|k| (line[k] - wanted[k]).norm()).fold(0.0, f64::max);
+                    assert!(off < 1e-9 * scale, "base {base}, {scale} times, {degrees} deg: {line:?}");
+                    assert_eq!(astray("a", &body(), &shell, &line), None);
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn lenses_have_their_nose_at_smaller_x_wherever_they_begin() {
+        let side = |sign: f64| (0..=40).map(move |k| f64::from(k) / 40.0).map(move |x| [x, sign * 0.2 * x * (1.0 - x)]);
+        let from_nose: Vec<[f64; 2]> = side(1.0).chain(side(-1.0).rev().skip(1)).collect();
+        let from_rear: Vec<[f64; 2]> = side(1.0).rev().chain(side(-1.0).skip(1)).collect();
+        for points in [from_nose, from_rear] {
+            let shell = shell(&points);
+            let line = chord_line(&body(), &shell);
+            assert_eq!((line, astray("a", &body(), &shell, &line)), ([Vector([0.0, 0.0]), Vector([1.0, 0.0])], None));
+        }
+    }
+
+    #[test]
+    fn sections_of_wings_that_are_drawn_right_stay_as_they_are() {
+        let camber = |[x, y]: [f64; 2]| [x, y + 0.2 * x * (1.0 - x)];
+        let flat_below = |[x, y]: [f64; 2]| [x, y + 0.06];
+        let drooped = |[x, y]: [f64; 2]| [x, y - 0.02 * x];
+        for change in [|x: [f64; 2]| x, camber, flat_below, drooped] {
+            for base in [0.0, 0.0014, 0.2] {
+                let outline = shell(&flatback(base).into_iter().map(change).collect::<Vec<_>>());
+                let mut notes = Vec::new();
+                let fitted = section_of_wing("s.dat", outline.clone(), &mut notes).unwrap();
+                assert!(fitted.vertices == outline.vertices && notes.is_empty(), "{notes:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn sections_of_wings_in_any_unit_and_place_are_those_of_unit_chord() {
+        let wanted = shell(&flatback(0.01));
+        for (scale, [x0, y0]) in [(300.0, [0.0, 0.0]), (0.35, [0.0, 0.0]), (350.0, [1200.0, 40.0]), (1.0, [-0.25, 0.0])]
+        {
+            let moved = flatback(0.01).into_iter().map(|[x, y]| [x0 + scale * x, y0 + scale * y]);
+            let outline = shell(&moved.collect::<Vec<_>>());
+            let mut notes = Vec::new();
+            let fitted = section_of_wing("s.dat", outline, &mut notes).unwrap();
+            let bounds = [&fitted, &wanted].map(|s| Bounds::around(&s.vertices));
+            let off = (bounds[0].min - bounds[1].min).norm().max((bounds[0].max - bounds[1].max).norm());
+            assert!(off < 1e-6 && notes.len() == 1 && notes[0].contains("its chord is taken as 1"), "{off} {notes:?}");
+        }
+        for (turn, told) in [
+            ((|[x, y]| [y, x]) as fn([f64; 2]) -> [f64; 2], "s.dat: the chord line runs across the stream, 90 deg"),
+            (|[x, y]| [1.0 - x, y], "s.dat: the trailing edge is upstream, 180 deg"),
+        ] {
+            let outline = shell(&flatback(0.0).into_iter().map(turn).collect::<Vec<_>>());
+            let found = section_of_wing("s.dat", outline, &mut Vec::new()).unwrap_err().to_string();
+            assert!(found.contains(told), "{found}");
+        }
+    }
 }

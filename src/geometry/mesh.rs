@@ -53,7 +53,7 @@ pub(super) fn read(file: &str, input: impl Read, notes: &mut Vec<String>) -> Res
     } else if name.ends_with(".obj") {
         obj::read(file, &super::plain(file, &bytes)?, notes)?
     } else if name.ends_with(".ply") {
-        ply::read(file, &bytes)?
+        ply::read(file, &bytes, notes)?
     } else {
         let hint = "export the surface as STL, OBJ or PLY";
         return Err(GeometryError::refused(file, "is neither `.stl` nor `.obj` nor `.ply`", hint));
@@ -152,6 +152,8 @@ mod tests {
             (more(b"\n"), Some("1 byte after the last triangle is left out")),
             (more(b"some more"), Some("9 bytes after")),
             (binary(b"exported", 0), Some("announces 0 triangles, but 1 follow")),
+            (binary(b"exported", 1)[1..].to_vec(), Some("the header has 79 bytes where the format has 80")),
+            ([b"e", &binary(b"exported", 1)[..]].concat(), Some("the header has 81 bytes where the format has 80")),
             (STL.replace("endsolid", "end solid").into_bytes(), None),
             (STL.replace("endloop\nendfacet", "end loop\nend facet").to_uppercase().into_bytes(), None),
             (STL.replace("endloop\n", "").replace("outer loop\n", "").into_bytes(), None),
@@ -253,6 +255,21 @@ mod tests {
             .concat();
         for bytes in [little.clone(), big] {
             assert_eq!(soup("a.ply", &bytes).unwrap().0.triangles, triangle());
+        }
+        // faces before vertices, and more than is announced
+        let (vertices, face) = (PLY.find("element v").unwrap(), PLY.find("element f").unwrap());
+        let (end, rows) = (PLY.find("end_header").unwrap(), PLY.find("3 0 1 2").unwrap());
+        let numbers = end + "end_header\n".len();
+        let parts = [0..vertices, face..end, vertices..face, end..numbers, rows..PLY.len(), numbers..rows];
+        let swapped: String = parts.map(|part| &PLY[part]).concat();
+        let (found, notes) = soup("a.ply", swapped.as_bytes()).unwrap();
+        assert!(found.triangles == triangle() && notes.is_empty(), "{swapped} {notes:?}");
+        for (bytes, told) in [
+            (format!("{PLY}\n3 0 1 2\n").into_bytes(), "a.ply: line 15 and what follows is left out"),
+            ([&little[..], b"more"].concat(), "a.ply: 4 bytes after the last element are left out"),
+        ] {
+            let (soup, notes) = soup("a.ply", &bytes).unwrap();
+            assert!(soup.triangles == triangle() && notes.len() == 1 && notes[0].contains(told), "{notes:?}");
         }
         let told = |bytes: &[u8]| soup("a.ply", bytes).unwrap_err();
         assert!(told(&little[..little.len() - 1]).contains("face 1"), "{}", told(&little[..little.len() - 1]));

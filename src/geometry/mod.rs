@@ -26,6 +26,7 @@ mod repair;
 mod sampling;
 mod section;
 mod shell;
+mod simple_outline;
 mod simplex;
 mod spline;
 mod surface;
@@ -46,6 +47,7 @@ pub use surface::{Element, Nearest, Projection, Skin, Surface};
 use crate::case::{Body, Case, Naca, ProfileSides, Shape, numbers_of, open_regular};
 use crate::math::{Bounds, Vector};
 use std::f64::consts::PI;
+use std::fs::File;
 use std::io;
 use std::path::Path;
 
@@ -121,6 +123,7 @@ pub fn load_surface<const D: usize>(
     for (i, body) in bodies.iter().enumerate() {
         let name = body.name.clone().unwrap_or_else(|| format!("body-{}", i + 1));
         let shell = load_shell(&name, body, folder, &mut notes)?;
+        notes.extend(chord_line::wing_astray(&name, body));
         let line = shell.plane().map(|plane| {
             let line = chord_line::chord_line(body, plane);
             notes.extend(chord_line::astray(&name, body, plane, &line));
@@ -204,13 +207,12 @@ fn skin<const D: usize>(
 }
 
 fn load_shell(name: &str, body: &Body, folder: &Path, notes: &mut Vec<String>) -> Result<AnyShell, GeometryError> {
-    let open = |file: &str| {
-        open_regular(&folder.join(file)).map_err(|source| GeometryError::Open { file: file.to_string(), source })
-    };
     let place = format!("body `{name}`");
     Ok(match &body.shape {
         Shape::Naca(naca) => AnyShell::Plane(naca::shell(naca)?),
-        Shape::Airfoil(file) => AnyShell::Plane(airfoil::read(file, open(file)?, body.placement.scale, notes)?),
+        Shape::Airfoil(file) => {
+            AnyShell::Plane(airfoil::read(file, opened(folder, file)?, body.placement.scale, notes)?)
+        }
         Shape::Polygon(points) => {
             let points: Vec<Vector<2>> = points.iter().map(|p| Vector(*p)).collect();
             AnyShell::Plane(outline::polygon(&place, &points, POLYGON_CREASE, notes)?)
@@ -237,18 +239,13 @@ fn load_shell(name: &str, body: &Body, folder: &Path, notes: &mut Vec<String>) -
         }
         Shape::Surface(file) => {
             let within = body.weld.map(|l| l.0 / body.placement.scale);
-            let soup = mesh::read(file, open(file)?, notes)?;
+            let soup = mesh::read(file, opened(folder, file)?, notes)?;
             AnyShell::Space(repair::shell(file, &soup, within, notes)?)
         }
         Shape::Wing(wing) => {
-            let mut section = |naca: &Option<Naca>, file: &Option<String>| match (naca, file) {
-                (Some(naca), _) => naca::shell(naca).map(Some),
-                (_, Some(file)) => airfoil::read(file, open(file)?, 1.0, notes).map(Some),
-                _ => Ok(None),
-            };
-            let root = section(&wing.naca, &wing.airfoil)?;
+            let root = section_of(&wing.naca, &wing.airfoil, folder, notes)?;
             let root = root.ok_or_else(|| GeometryError::refused(&place, "a wing has no section", "add `naca`"))?;
-            let tip = section(&wing.tip_naca, &wing.tip_airfoil)?;
+            let tip = section_of(&wing.tip_naca, &wing.tip_airfoil, folder, notes)?;
             AnyShell::Space(loft::wing(&place, wing, [&root, tip.as_ref().unwrap_or(&root)])?)
         }
         Shape::Revolution { profile, sides } => {
@@ -263,6 +260,28 @@ fn load_shell(name: &str, body: &Body, folder: &Path, notes: &mut Vec<String>) -
             AnyShell::Space(loft::ellipsoid(primitive::sphere(1.0), [0.5 * a?, 0.5 * b?, 0.5 * c?]))
         }
     })
+}
+
+/// The section at one end of a wing, by its digits or by its file; `None` where neither is given.
+fn section_of(
+    naca: &Option<Naca>,
+    file: &Option<String>,
+    folder: &Path,
+    notes: &mut Vec<String>,
+) -> Result<Option<Shell<2>>, GeometryError> {
+    match (naca, file) {
+        (Some(naca), _) => naca::shell(naca).map(Some),
+        (_, Some(file)) => {
+            let outline = airfoil::read(file, opened(folder, file)?, 1.0, notes)?;
+            chord_line::section_of_wing(file, outline, notes).map(Some)
+        }
+        _ => Ok(None),
+    }
+}
+
+/// A file that is looked up in `folder`.
+fn opened(folder: &Path, file: &str) -> Result<File, GeometryError> {
+    open_regular(&folder.join(file)).map_err(|source| GeometryError::Open { file: file.to_string(), source })
 }
 
 /// What `make` makes of whether sides are straight; every corner between straight ones is sharp.

@@ -8,6 +8,7 @@
 use super::GeometryError;
 use super::section::Chain;
 use super::shell::{Exact, Shell};
+use super::simple_outline::{self, Opposite};
 use super::simplex;
 use super::spline::{End, Spline};
 use super::surface::Surface;
@@ -16,8 +17,11 @@ use std::f64::consts::PI;
 
 /// Turning angle of a sharp corner of an airfoil, radians (35°).
 pub(super) const CORNER: f64 = 35.0 * PI / 180.0;
-/// Points nearer than this fraction of the chord are one point.
-const SAME: f64 = 1e-9;
+/// Points nearer than this fraction of the extent are one point.
+pub(super) const SAME: f64 = 1e-9;
+/// Points of an airfoil nearer than this fraction of the chord are one point: files have five digits or six, and the rounding of a point
+/// that is listed twice would be two corners.
+const NEAR: f64 = 1e-6;
 /// Outlines smaller than this are refused: squares of lengths would underflow.
 const SMALLEST: f64 = 1e-100;
 /// A trailing edge open by less than this fraction of the chord is closed: it is below the digits of coordinate files, which have five.
@@ -58,11 +62,14 @@ pub(super) struct Mark {
 /// Repairs are appended to `notes`; `file` names the source.
 pub(super) fn airfoil(file: &str, marks: Vec<Mark>, notes: &mut Vec<String>) -> Result<Shell<2>, GeometryError> {
     let (mut marks, base) = closed_loop(file, marks, notes)?;
-    refuse_crossing(file, &marks)?;
+    simple_outline::drop_further_rounds(file, &mut marks, 4, notes);
+    simple_outline::refuse_crossing(file, &marks)?;
     if orient(file, &mut marks, notes)? && !base {
         // The trailing edge stays first.
         marks.rotate_right(1);
     }
+    simple_outline::refuse_overlap(file, &marks, Opposite::Allowed)?;
+    let base = base || ends_with_base(&mut marks);
     let points: Vec<Vector<2>> = marks.iter().map(|m| m.point).collect();
     let corners = corners(&points, base);
     let chord = extent(&points);
@@ -76,7 +83,7 @@ pub(super) fn airfoil(file: &str, marks: Vec<Mark>, notes: &mut Vec<String>) -> 
     };
     notes.push(format!("{file}: {} points, chord {chord:.6}, {ends}{more}", points.len()));
     notes.extend(wide_gaps(&marks, &corners, chord).into_iter().map(|gap| format!("{file}: {gap}")));
-    let pieces = pieces(&points, &corners, chord);
+    let pieces = pieces(&points, &corners, base, chord);
     let shell = shell_of_pieces(&pieces, CORNER);
     let surface = Surface::new(&[(String::new(), shell.clone())]);
     if let Some((x, _)) = surface.intersection() {
@@ -107,7 +114,7 @@ pub(super) fn polygon(
         return Err(GeometryError::refused(name, format!("point {} is not finite", bad.line), "check its numbers"));
     }
     let size = extent(points);
-    drop_repeated(name, &mut marks, size, notes);
+    drop_repeated(name, &mut marks, SAME * size, notes);
     if marks.len() > 1 && (marks[0].point - marks[marks.len() - 1].point).norm() <= SAME * size {
         marks.pop();
     }
@@ -115,8 +122,10 @@ pub(super) fn polygon(
         let what = format!("has {} distinct points; an outline needs at least 3", marks.len());
         return Err(GeometryError::refused(name, what, "list the corners once around the body"));
     }
-    refuse_crossing(name, &marks)?;
+    simple_outline::drop_further_rounds(name, &mut marks, 3, notes);
+    simple_outline::refuse_crossing(name, &marks)?;
     orient(name, &mut marks, notes)?;
+    simple_outline::refuse_overlap(name, &marks, Opposite::Refused)?;
     Ok(Shell { crease, ..straight_shell(&marks) })
 }
 
@@ -169,7 +178,7 @@ pub(super) fn shell_of_pieces(pieces: &[Vec<Sample>], crease: f64) -> Shell<2> {
 /// Removes repeated points and decides how the trailing edge ends: the distinct points, and true for a blunt base.
 fn closed_loop(file: &str, mut marks: Vec<Mark>, notes: &mut Vec<String>) -> Result<(Vec<Mark>, bool), GeometryError> {
     let chord = extent(&marks.iter().map(|m| m.point).collect::<Vec<_>>());
-    drop_repeated(file, &mut marks, chord, notes);
+    drop_repeated(file, &mut marks, NEAR * chord, notes);
     if marks.len() < 5 {
         let what = format!("has {} distinct points; a smooth outline needs at least 5", marks.len());
         return Err(GeometryError::refused(file, what, "use `polygon` for outlines with straight sides"));
@@ -230,11 +239,36 @@ fn is_across(marks: &[Mark]) -> bool {
     angle.min(PI - angle) >= ACROSS
 }
 
-/// Removes points that repeat the one before.
-fn drop_repeated(file: &str, marks: &mut Vec<Mark>, size: f64, notes: &mut Vec<String>) {
+/// True when an outline that is closed ends with a base, a straight side between two corners; it is turned to begin behind that side.
+fn ends_with_base(marks: &mut [Mark]) -> bool {
+    let points: Vec<Vector<2>> = marks.iter().map(|m| m.point).collect();
+    let (corners, last) = (corners(&points, false), marks.len() - 1);
+    let is_base = |marks: &[Mark]| {
+        let width = (marks[0].point - marks[last].point).norm();
+        width <= OPEN * extent(&points) && is_across(marks)
+    };
+    if !corners.contains(&0) {
+        return false;
+    }
+    if corners.contains(&last) && is_base(marks) {
+        return true;
+    }
+    if !corners.contains(&1) {
+        return false;
+    }
+    marks.rotate_left(1);
+    let found = is_base(marks);
+    if !found {
+        marks.rotate_right(1);
+    }
+    found
+}
+
+/// Removes points that repeat the one before, from which they are no farther than `within`.
+fn drop_repeated(file: &str, marks: &mut Vec<Mark>, within: f64, notes: &mut Vec<String>) {
     let mut lines = Vec::new();
     marks.dedup_by(|b, a| {
-        let same = (b.point - a.point).norm() <= SAME * size;
+        let same = (b.point - a.point).norm() <= within;
         lines.extend(same.then_some(b.line));
         same
     });
@@ -271,19 +305,8 @@ fn orient(file: &str, marks: &mut [Mark], notes: &mut Vec<String>) -> Result<boo
     Ok(twice < 0.0)
 }
 
-fn refuse_crossing(file: &str, marks: &[Mark]) -> Result<(), GeometryError> {
-    let Some((x, [e, f])) = Surface::new(&[(String::new(), straight_shell(marks))]).intersection() else {
-        return Ok(());
-    };
-    let side = |e: u32| {
-        let (a, b) = (&marks[e as usize], &marks[(e as usize + 1) % marks.len()]);
-        format!("from {} to {}", at(a), at(b))
-    };
-    let what = format!("the outline crosses itself at ({:.6}, {:.6}): {} and {}", x[0], x[1], side(e), side(f));
-    Err(GeometryError::refused(file, what, "check the order of these points"))
-}
-
-fn straight_shell(marks: &[Mark]) -> Shell<2> {
+/// Straight sides between points, the last of which is followed by the first.
+pub(super) fn straight_shell(marks: &[Mark]) -> Shell<2> {
     let n = marks.len() as u32;
     Shell {
         vertices: marks.iter().map(|m| m.point).collect(),
@@ -338,8 +361,9 @@ fn wide_gaps(marks: &[Mark], corners: &[usize], chord: f64) -> Vec<String> {
     (0..n).filter_map(gap).collect()
 }
 
-/// Spline pieces between corners; an outline without corners is one piece whose ends share a tangent.
-fn pieces(points: &[Vector<2>], corners: &[usize], chord: f64) -> Vec<Vec<Sample>> {
+/// Spline pieces between corners; an outline without corners is one piece whose ends share a tangent, and a `base` is one straight side, the
+/// last one.
+fn pieces(points: &[Vector<2>], corners: &[usize], base: bool, chord: f64) -> Vec<Vec<Sample>> {
     let n = points.len();
     if corners.is_empty() {
         let along = End::Along((points[1] - points[n - 1]).unit());
@@ -348,6 +372,9 @@ fn pieces(points: &[Vector<2>], corners: &[usize], chord: f64) -> Vec<Vec<Sample
     }
     let piece = |(k, &start): (usize, &usize)| {
         let next = if k + 1 < corners.len() { corners[k + 1] } else { corners[0] + n };
+        if base && start == n - 1 {
+            return straight(points[start], points[0]);
+        }
         let part: Vec<Vector<2>> = (start..=next).map(|i| points[i % n]).collect();
         sample(&Spline::new(part, End::Natural, End::Natural), chord)
     };
@@ -386,10 +413,11 @@ fn right_of(direction: Vector<2>) -> Vector<2> {
 }
 
 /// Longest side of the box around the points.
-fn extent<const D: usize>(points: &[Vector<D>]) -> f64 {
+pub(super) fn extent<const D: usize>(points: &[Vector<D>]) -> f64 {
     if points.is_empty() { 0.0 } else { crate::math::Bounds::around(points).extent().max_abs() }
 }
 
-fn at(mark: &Mark) -> String {
+/// The coordinates of a point and its line.
+pub(super) fn at(mark: &Mark) -> String {
     format!("({}, {}) in line {}", mark.point[0], mark.point[1], mark.line)
 }

@@ -5,7 +5,11 @@
 use super::GeometryError;
 use super::shell::{Exact, Shell};
 use crate::case::Placement;
-use crate::math::Vector;
+use crate::math::{Bounds, Vector};
+
+/// Greatest distance of a body from the origin, in lengths of its own: beyond it, coordinates in double precision hold fewer than
+/// eight digits of its shape.
+const FARTHEST: f64 = 1e8;
 
 /// Moves `shell` where `placement` says; `body` names it in messages.
 pub(super) fn place<const D: usize>(
@@ -30,6 +34,16 @@ pub(super) fn place<const D: usize>(
     }
     let turn = |x: &Vector<D>| rotated(x, &angles);
     let moved = |x: &Vector<D>| placed(x, placement);
+    let size = scale * Bounds::around(&shell.vertices).extent().max_abs();
+    let reach = shift.iter().fold(0.0, |m: f64, v| m.max(v.abs()));
+    if reach > FARTHEST * size {
+        let what =
+            format!("`translate` is {shift:?}, too far from the origin to hold the shape of a body {size:e} long");
+        return Err(bad(
+            what,
+            &format!("allowed: from {:e} to {:e} along each axis", -FARTHEST * size, FARTHEST * size),
+        ));
+    }
     shell.vertices.iter_mut().for_each(|v| *v = moved(v));
     for normal in shell.normals.iter_mut().flatten().flatten() {
         *normal = turn(normal);
@@ -78,6 +92,23 @@ mod tests {
         assert!((nose - Vector([-0.1_f64.cos(), 0.1_f64.sin()])).norm() < 1e-15);
         let nose = rotated(&Vector([-1.0, 0.0, 0.0]), &[0.0, 0.1, 0.0]);
         assert!((nose - Vector([-0.1_f64.cos(), 0.0, 0.1_f64.sin()])).norm() < 1e-15);
+    }
+
+    #[test]
+    fn bodies_too_far_from_the_origin_are_refused() {
+        let told = |at: &str, shape: &str| {
+            let text = format!("[flow]\nmach = 0.3\n[[body]]\nname = \"a\"\n{shape}\ntranslate = {at}\n");
+            let case = crate::case::read(&text, "t").unwrap();
+            let loaded = super::super::load_surface::<2>(&case.bodies, std::path::Path::new("."));
+            loaded.map(drop).map_err(|e| e.to_string())
+        };
+        assert!(told("[1e16, 0]", "box = { size = [2, 0.5] }").unwrap_err().contains("from -2e8 to 2e8"));
+        for shape in ["box = { size = [2, 0.5] }", "circle = { radius = 1 }", "naca = \"0012\"\nscale = 2"] {
+            let far = told("[1e16, 0]", shape).unwrap_err();
+            let words = ["body `a`: `translate` is [1e16, 0.0]", "hint: allowed: from -", "e8 along each axis"];
+            words.iter().for_each(|w| assert!(far.contains(w), "{far}"));
+            assert_eq!(told("[1e6, -1e6]", shape), Ok(()));
+        }
     }
 
     #[test]

@@ -163,6 +163,19 @@ pub(super) fn intersection<const D: usize>(e: &Corners<D>, f: &Corners<D>) -> Op
     None
 }
 
+/// The middle of the stretch, longer than `slack`, along which two segments lie on one another. In 2-D alone.
+pub(super) fn overlap<const D: usize>(e: &Corners<D>, f: &Corners<D>, slack: f64) -> Option<Vector<D>> {
+    let (length, along) = ((e[1] - e[0]).norm(), (e[1] - e[0]).unit());
+    let place = |x: &Vector<D>| (*x - e[0]).dot(&along);
+    let off = |x: &Vector<D>| (*x - e[0] - along * place(x)).norm();
+    if D != 2 || off(&f[0]) > slack || off(&f[1]) > slack {
+        return None;
+    }
+    let (a, b) = (place(&f[0]), place(&f[1]));
+    let (low, high) = (a.min(b).max(0.0), a.max(b).min(length));
+    (high - low > slack).then(|| e[0] + along * (0.5 * (low + high)))
+}
+
 /// Fraction of the full angle (2-D) or solid angle (3-D; Van Oosterom and Strackee 1983) that the element fills seen
 /// from `x`; positive where the element shows its inner side. The sum over a closed surface is 1 inside and 0 outside.
 pub(super) fn winding<const D: usize>(x: &Vector<D>, c: &Corners<D>) -> f64 {

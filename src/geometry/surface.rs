@@ -317,6 +317,22 @@ impl<const D: usize> Surface<D> {
         })
     }
 
+    /// First place where two straight sides of an outline lie on one another along more than `slack`, with both sides; `counted` tells from the
+    /// product of their directions which pairs count. In 2-D alone.
+    pub(super) fn overlap(&self, slack: f64, counted: impl Fn(f64) -> bool) -> Option<(Vector<D>, [u32; 2])> {
+        (0..self.elements.len() as u32).find_map(|e| {
+            let corners = self.corners(e);
+            let mut found = None;
+            self.tree.overlapping(&simplex::bounds(&corners).padded(slack), |f, other| {
+                if f > e && counted((corners[1] - corners[0]).dot(&(other[1] - other[0]))) {
+                    found = simplex::overlap(&corners, other, slack).map(|x| (x, [e, f]));
+                }
+                found.is_some()
+            });
+            found
+        })
+    }
+
     /// First place where this surface intersects another one, elements that share a corner left out.
     pub(super) fn crossing(&self, other: &Self) -> Option<Vector<D>> {
         (0..self.elements.len() as u32).find_map(|e| {

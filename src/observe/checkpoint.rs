@@ -23,6 +23,7 @@ use lz4_flex::frame::{FrameDecoder, FrameEncoder};
 use serde::{Deserialize, Serialize};
 
 use super::table::{FileError, folder_of, write_beside};
+use crate::case::read_regular;
 
 const MAGIC: &[u8; 8] = b"ALULACKP";
 const VERSION: u32 = 2;
@@ -271,13 +272,14 @@ impl Dtype {
 }
 
 /// Writes a checkpoint and waits until it is on the disk. The one before is called `….previous` while the new one takes
-/// its place, and is removed after; [`read`] finds it there when the machine stops in between.
+/// its place, and is removed after; [`read`] finds it there when the machine stops in between. One that is there already, since a
+/// machine stopped, stays until the new one is whole.
 pub fn write(path: &Path, checkpoint: &Checkpoint<'_>) -> Result<(), CheckpointError> {
     let encoded = encode(checkpoint)?;
     let temporary = write_beside(path, |mut w| put(checkpoint, &encoded, &mut w))?;
     temporary.as_file().sync_all().map_err(FileError::io("write", path))?;
     let previous = previous_of(path);
-    let replaced = path.exists();
+    let replaced = path.exists() && !previous.exists();
     if replaced {
         std::fs::rename(path, &previous).map_err(FileError::io("rename", path))?;
     }
@@ -294,12 +296,18 @@ pub fn write(path: &Path, checkpoint: &Checkpoint<'_>) -> Result<(), CheckpointE
     Ok(())
 }
 
-/// Reads a checkpoint; falls back to `….previous` when there is no file `path`.
+/// Reads a checkpoint; falls back to `….previous` when the file `path` is missing or damaged and that one is whole.
 pub fn read(path: &Path) -> Result<Checkpoint<'static>, CheckpointError> {
-    let previous = previous_of(path);
-    let path = if !path.exists() && previous.exists() { previous.as_path() } else { path };
-    let bytes = std::fs::read(path).map_err(FileError::io("read", path))?;
-    decode(path, &bytes)
+    let from = |path: &Path| {
+        let bytes = read_regular(path).map_err(FileError::io("read", path))?;
+        decode(path, &bytes)
+    };
+    from(path).or_else(|problem| from(&previous_of(path)).map_err(|_| problem))
+}
+
+/// True where [`read`] finds a file to read.
+pub fn is_there(path: &Path) -> bool {
+    path.exists() || previous_of(path).exists()
 }
 
 fn previous_of(path: &Path) -> PathBuf {
@@ -579,6 +587,23 @@ mod tests {
         assert_eq!(read(&path).unwrap(), sample());
         write(&path, &sample()).unwrap();
         assert!(!previous_of(&path).exists());
+    }
+
+    #[test]
+    fn the_previous_file_stands_in_for_a_damaged_one_and_outlives_it() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("checkpoint.alula");
+        std::fs::write(&path, &sample_bytes()[..100]).unwrap();
+        let alone = read(&path).unwrap_err().to_string();
+        std::fs::write(previous_of(&path), sample_bytes()).unwrap();
+        assert!(is_there(&path) && read(&path).unwrap() == sample());
+        // both are damaged: the problem told is that of the file itself
+        std::fs::write(previous_of(&path), b"nothing").unwrap();
+        assert_eq!(read(&path).unwrap_err().to_string(), alone);
+        std::fs::remove_file(&path).unwrap();
+        assert!(is_there(&path));
+        write(&path, &sample()).unwrap();
+        assert!(!previous_of(&path).exists() && read(&path).unwrap() == sample());
     }
 
     #[test]

@@ -196,6 +196,17 @@ impl Convergence {
         Some(Self { clouds, unsteady, cl, cd, cm, asked, ended_by })
     }
 
+    /// Names of the loads whose error bars are longer than was asked.
+    pub fn long_bars(&self) -> Vec<String> {
+        let Some(c) = self.clouds.last() else { return Vec::new() };
+        let all = [("CL", c.cl, &self.cl), ("CD", c.cd, &self.cd), ("CM", c.cm, &self.cm)];
+        let long = all
+            .into_iter()
+            .zip(LEAST)
+            .filter(|((_, value, found), least)| found.half_width > self.asked * value.abs().max(*least));
+        long.map(|((name, ..), _)| name.to_owned()).collect()
+    }
+
     /// True when all error bars are as short as was asked.
     pub fn reached(&self) -> bool {
         self.ended_by == FamilyEnd::Accuracy

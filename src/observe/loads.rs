@@ -58,6 +58,11 @@ impl LoadAxes {
         };
     }
 
+    /// Adds a couple; in the plane there is none but about the third axis, which a vector in the plane does not hold.
+    pub fn twist(&self, load: &mut Load, couple: &[f64; 3]) {
+        load.moment += if self.dimension == 2 { 0.0 } else { couple[1] };
+    }
+
     /// Coefficients of a load; zeros when there is no stream.
     pub fn coefficients(&self, load: &Load) -> Coefficients {
         if self.force_scale == 0.0 {

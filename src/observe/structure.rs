@@ -19,6 +19,7 @@ use serde::{Deserialize, Serialize};
 
 use super::damping::{DampingFit, LastCycles, NoFit, Oscillation, energy_per_cycle};
 use super::table::{FileError, History, complete_row};
+use crate::case::read_regular;
 
 /// Name of the file in the folder of a run.
 pub const FILE: &str = "structure.csv";
@@ -263,7 +264,7 @@ impl Totals {
 impl StructureTable {
     /// The table of a file; nothing when its columns are others.
     pub fn read(path: &Path) -> Result<Option<Self>, FileError> {
-        let bytes = std::fs::read(path).map_err(FileError::io("read", path))?;
+        let bytes = read_regular(path).map_err(FileError::io("read", path))?;
         Ok(Self::parse(&String::from_utf8_lossy(&bytes)))
     }
 

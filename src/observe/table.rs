@@ -10,6 +10,8 @@ use std::path::{Path, PathBuf};
 
 use serde::Serialize;
 
+use crate::case::read_regular;
+
 /// How the name of a file begins and ends while it is being written.
 pub(crate) const UNFINISHED: (&str, &str) = (".alula-", ".tmp");
 
@@ -190,7 +192,7 @@ impl History {
         if !path.exists() {
             return Self::create(path, columns);
         }
-        let bytes = std::fs::read(path).map_err(FileError::io("read", path))?;
+        let bytes = read_regular(path).map_err(FileError::io("read", path))?;
         let text = String::from_utf8_lossy(&bytes);
         let header = columns.join(",");
         let mut lines = text.split_inclusive('\n');

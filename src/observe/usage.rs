@@ -5,6 +5,16 @@ use std::path::Path;
 /// Clock ticks per second in `/proc`: fixed on Linux.
 const TICKS: f64 = 100.0;
 
+/// Greatest number of threads: starting more takes longer than what they do.
+pub const MOST_THREADS: usize = 256;
+
+/// Threads that the environment variable `RAYON_NUM_THREADS` asks for, [`MOST_THREADS`] at most; 0, one for each core, where it asks for
+/// none.
+pub fn threads_of_environment() -> usize {
+    let asked = std::env::var("RAYON_NUM_THREADS").ok().and_then(|text| text.trim().parse::<usize>().ok());
+    asked.unwrap_or(0).min(MOST_THREADS)
+}
+
 /// Processor seconds of this process over all threads; 0 where the system does not tell.
 pub fn cpu_seconds() -> f64 {
     // fine-grained where available: nanoseconds of every thread

@@ -4,6 +4,8 @@ use std::path::Path;
 
 use flate2::read::ZlibDecoder;
 
+use crate::case::read_regular;
+
 /// What stands before the arrays.
 const MARKER: &[u8] = b"<AppendedData encoding=\"raw\">\n_";
 /// Longest array that is read, bytes: a thousand million numbers.
@@ -21,7 +23,7 @@ pub struct FieldFile {
 impl FieldFile {
     /// Opens a file; why it cannot be read otherwise.
     pub fn open(path: &Path) -> Result<Self, String> {
-        let bytes = std::fs::read(path).map_err(|e| e.to_string())?;
+        let bytes = read_regular(path).map_err(|e| e.to_string())?;
         Self::of(bytes).ok_or_else(|| "it is no field file of this program".to_owned())
     }
 

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use serde_json::Value;
 
 use super::chart::{Marks, Series};
-use crate::case::{numbers_of, separator};
+use crate::case::{numbers_of, read_regular, separator};
 
 /// What the pictures of the film strip begin with.
 pub(super) const FILM: &str = "film";
@@ -62,7 +62,7 @@ impl RunFolder {
         let names = list(&folder).into_iter().map(|(name, _)| name);
         names
             .filter(|name| name.ends_with(".png") || name.ends_with(".svg"))
-            .filter_map(|name| std::fs::read(folder.join(&name)).ok().map(|bytes| (name, bytes)))
+            .filter_map(|name| read_regular(&folder.join(&name)).ok().map(|bytes| (name, bytes)))
             .collect()
     }
 
@@ -186,7 +186,7 @@ impl Csv {
 }
 
 fn read_text(path: &Path, name: &str) -> Result<String, String> {
-    match std::fs::read(path) {
+    match read_regular(path) {
         Ok(bytes) => numbers_of(&bytes).map_err(|e| format!("`{name}` cannot be read: {e}")),
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => Err(format!("`{name}` is not in the folder")),
         Err(error) => Err(format!("`{name}` cannot be read: {error}")),

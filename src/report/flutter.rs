@@ -138,9 +138,12 @@ fn crossings(found: &Found) -> Vec<Block> {
     if !clearances.rows.is_empty() {
         blocks.extend([Block::Heading("Clearance to the design speed".to_owned()), Block::Table(clearances)]);
     }
+    for at in &found.flutter {
+        blocks.extend(at.notes.iter().map(|note| Block::Text(format!("Mach {}: {note}", at.mach))));
+    }
     let doubts = tables::doubts(found);
     if !doubts.rows.is_empty() {
-        let words = "In these ranges of speed the difference to a cloud with twice the spacing decides whether a motion grows: a finer \
+        let words = "In these ranges of speed the difference to a coarser cloud decides whether a motion grows: a finer \
                      spacing, or other Mach numbers near by, tell more.";
         blocks.extend([
             Block::Heading("Where the cloud decides".to_owned()),

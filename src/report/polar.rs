@@ -4,7 +4,7 @@ use std::path::Path;
 use super::chart::{Axis, Chart, Marks, Series};
 use super::files::{Csv, LOADS, Load, RunFolder};
 use super::page::{Block, Table};
-use super::words::number;
+use super::words::{grouped, number};
 use super::{ReportError, write_file};
 
 /// Name of the table.
@@ -39,7 +39,12 @@ pub(super) fn polar(run: &RunFolder) -> Vec<Block> {
             &format!(" Points that did not converge ({failed}) are left out of the curves; the table has the reasons.");
     }
     if short > 0 {
-        text += &format!(" At {short} of {} points the error bars are longer than asked for.", points.rows.len());
+        let long = points.column("long_bars").unwrap_or_default();
+        let of = |name: &str| long.iter().filter(|all| all.split(", ").any(|one| one == name)).count();
+        let each = ["CL", "CD", "CM"].map(|name| (name, of(name))).into_iter().filter(|(_, n)| *n > 0);
+        let each = each.map(|(name, n)| format!("{name} at {n}")).collect::<Vec<_>>().join(", ");
+        let each = if each.is_empty() { each } else { format!(" ({each})") };
+        text += &format!(" At {short} of {} points error bars are longer than asked for{each}.", points.rows.len());
     }
     vec![
         Block::charts(charts(&points).into_iter().map(|(_, chart)| chart)),
@@ -135,27 +140,22 @@ fn with_bars(name: &str, [mut x, mut y]: [Vec<f64>; 2], bars: &[Vec<f64>; 2]) ->
 fn table(points: &Csv) -> Table {
     let column = |name: &str| points.column(name).unwrap_or_default();
     let numbers = |name: &str| points.numbers(name).unwrap_or_default();
-    let shown = [
-        "mach",
-        "alpha_deg",
-        "cl",
-        "cl_error",
-        "cd",
-        "cd_error",
-        "cm",
-        "cm_error",
-        "cl_momentum",
-        "cd_momentum",
-        "iterations",
-    ]
-    .map(numbers);
-    let (reasons, within) = (column("reason"), column("within_accuracy"));
+    let shown =
+        ["mach", "alpha_deg", "cl", "cl_error", "cd", "cd_error", "cm", "cm_error", "cl_momentum", "cd_momentum"]
+            .map(numbers);
+    let iterations = numbers("iterations");
+    let (reasons, within, long) = (column("reason"), column("within_accuracy"), column("long_bars"));
     let row = |k: usize| {
         let values = shown.iter().map(|c| c.get(k).copied().map_or("–".to_owned(), number));
         let reason = reasons.get(k).copied().unwrap_or_default();
         let short = within.get(k) == Some(&"false") && reason.is_empty();
-        let remark = if short { "longer error bars than asked for" } else { reason };
-        values.chain([remark.to_owned()]).collect::<Vec<_>>()
+        let remark = match long.get(k).filter(|names| short && !names.is_empty()) {
+            Some(names) => format!("error bar of {names} longer than asked for"),
+            None if short => "longer error bars than asked for".to_owned(),
+            None => reason.to_owned(),
+        };
+        let count = iterations.get(k).copied().map_or("–".to_owned(), grouped);
+        values.chain([count, remark]).collect::<Vec<_>>()
     };
     let rows = (0..reasons.len()).map(row).collect::<Vec<_>>();
     Table::new(

@@ -304,6 +304,7 @@ impl<'a, S: HasGas<D>, const D: usize> Course<'a, S, D> {
             loads_momentum_balance: balance.map(|b| axes.coefficients(&b.load)),
             loads_error: family.as_ref().map(Convergence::half_widths),
             within_accuracy: family.as_ref().map(Convergence::reached),
+            long_bars: family.as_ref().map_or_else(Vec::new, Convergence::long_bars),
             particles: gas.fluid.discretisation.cloud.n_real(),
             residual_drop: -record.drop.log10(),
             converged: record.converged,

@@ -42,7 +42,7 @@ use super::accuracy::Forces;
 use super::error::RunError;
 use super::folder::{self, Places};
 use super::monitor::{Monitor, Quiet};
-use super::one_cloud::{self, on_one_cloud};
+use super::one_cloud::{self, BETWEEN, COARSER, on_one_cloud};
 use super::record::Log;
 use super::session::{Outcome, Session};
 use super::solids::{told_of_own_modes, with_own_modes};
@@ -147,6 +147,7 @@ fn sought(
         let Some((mut found, whole)) = found else { return Ok(None) };
         found.read = forces.map(|f| f.display().to_string());
         found.warnings.iter().for_each(|w| monitor.warn(&format!("Mach {mach}: {w}")));
+        found.notes.iter().for_each(|note| monitor.note(&format!("Mach {mach}: {note}")));
         if whole && forces.is_none() && kept.at(mach).is_none() {
             kept.add(&found);
             kept.write(&places.out)?;
@@ -286,6 +287,16 @@ fn at_mach(
     Ok(Some((at, whole)))
 }
 
+/// What a coarser cloud says.
+enum Asked {
+    /// The monitor said stop.
+    Stopped,
+    /// The boundary on it.
+    Told(Box<FlutterAt>),
+    /// Nothing: it does not fit into the domain, or cannot be computed on.
+    Silent,
+}
+
 /// What is sought at a Mach number, and of what.
 struct Place<'a> {
     own: &'a Case,
@@ -308,7 +319,7 @@ impl Place<'_> {
         let mut then = |source: &mut dyn ForceSource, log: &mut Log<'_>| {
             let mut search = Search::new(self.held, self.scales, self.plan, Vec::new(), 0.0);
             let Some(mut at) = search.run((source, stream), log) else { return Ok(()) };
-            at.borne = source.borne();
+            (at.borne, at.supersonic) = (source.borne(), source.is_supersonic());
             if let Some(lco) = self.lco.filter(|_| cycles) {
                 let springs = search::springs_of_the_case(source.springs(), stream);
                 let borne = self.plan.trim.then(|| Borne { forces: at.borne.clone(), pressure: stream.pressure });
@@ -331,30 +342,46 @@ impl Place<'_> {
         Ok(Some(at))
     }
 
-    /// Holds crossings and damping against those of a coarser cloud in the same stream, where there is one; false when the monitor says stop.
+    /// Holds crossings and damping against those of coarser clouds in the same stream, where there are such; false when the monitor says
+    /// stop.
     fn against_coarser(&self, at: &mut FlutterAt, monitor: &mut dyn Monitor) -> Result<bool, RunError> {
-        let Some(own) = one_cloud::coarser(self.own) else { return Ok(true) };
+        let mut others = Vec::new();
+        for ratio in [COARSER, BETWEEN] {
+            let shocks = at.supersonic || others.iter().any(|(_, coarse): &(f64, FlutterAt)| coarse.supersonic);
+            if ratio != COARSER && !shocks {
+                break;
+            }
+            match self.on_coarser(at, ratio, monitor)? {
+                Asked::Stopped => return Ok(false),
+                Asked::Told(coarse) => others.push((ratio, *coarse)),
+                Asked::Silent => {}
+            }
+        }
+        at.cpu_seconds += others.iter().map(|(_, coarse)| coarse.cpu_seconds).sum::<f64>();
+        coarser::compare(at, &others, self.scales);
+        Ok(true)
+    }
+
+    /// The boundary in the stream of `at` on a cloud with `ratio` times the spacing.
+    fn on_coarser(&self, at: &FlutterAt, ratio: f64, monitor: &mut dyn Monitor) -> Result<Asked, RunError> {
+        let Some(own) = one_cloud::coarser(self.own, ratio) else { return Ok(Asked::Silent) };
         let stream = at.trim.as_ref().map_or(StreamRatio::SAME, |trim| StreamRatio {
             pressure: trim.dynamic_pressure / self.scales.reference.dynamic_pressure(),
             temperature: trim.speed_ratio * trim.speed_ratio,
         });
-        monitor.note("the same on a coarser cloud");
+        monitor.note(&format!("the same on a cloud with {ratio} times the spacing"));
         let plan = Plan { state_space: false, ..self.plan.clone() };
         let place = Place { own: &own, plan: &plan, ..*self };
         // what that cloud is too coarse for is told by the difference
-        match place.boundary((stream, false), &mut Quiet { monitor }) {
-            Ok(Some(coarse)) => {
-                at.cpu_seconds += coarse.cpu_seconds;
-                coarser::compare(at, &coarse, self.scales);
-                Ok(true)
-            }
-            Ok(None) => Ok(false),
+        Ok(match place.boundary((stream, false), &mut Quiet { monitor }) {
+            Ok(Some(coarse)) => Asked::Told(Box::new(coarse)),
+            Ok(None) => Asked::Stopped,
             // a cloud that is too coarse for the body tells nothing of the one that is not
             Err(problem) => {
                 monitor.note(&format!("the coarser cloud tells nothing: {problem}"));
-                Ok(true)
+                Asked::Silent
             }
-        }
+        })
     }
 }
 

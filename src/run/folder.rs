@@ -1,12 +1,13 @@
 //! The run folder: made before anything else, never overwritten.
 use std::fs::{self, File, TryLockError};
-use std::io::{ErrorKind, Read};
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
 use super::error::RunError;
 use super::record::saved;
-use crate::case::{Case, Cloud, Compare, open_regular, read, text_of, write, write_cloud};
+use crate::case::{Case, Cloud, Compare, read, read_regular, text_of, write, write_cloud};
 use crate::geometry::dimension;
+use crate::observe::checkpoint;
 use crate::observe::table::UNFINISHED;
 use crate::observe::write_atomic;
 use crate::report::check_reference;
@@ -104,7 +105,7 @@ pub(crate) fn create(case: &Case, input: &Path, out: &Path) -> Result<(bool, Hol
 /// The same for what is no run, has no checkpoints and is not replaced: a cloud, or matrices.
 pub(crate) fn create_once(case: &Case, input: &Path, out: &Path) -> Result<Hold, RunError> {
     // matrices are found in the same order again: those of this case that were not all found make room
-    let same = || fs::read_to_string(out.join("case.toml")).is_ok_and(|known| known == write(case));
+    let same = || plain(&out.join("case.toml")).is_ok_and(|known| known == write(case));
     if out.join(MATRICES).exists() && !out.join(FINISHED).exists() && same() {
         fs::remove_file(out.join(MATRICES)).unwrap_or_default();
     }
@@ -141,8 +142,9 @@ pub(crate) fn put_cloud(cloud: &Cloud, refined: bool, out: &Path) -> Result<(), 
 
 /// True where a run was stopped before it kept anything but its case.
 fn is_barely_begun(out: &Path) -> bool {
-    let kept = [saved::FILE, SUMMARY, FINISHED, "doctor.json", MATRICES];
-    out.join(ORIGIN).is_file() && kept.iter().all(|name| !out.join(name).exists())
+    let kept = [SUMMARY, FINISHED, "doctor.json", MATRICES];
+    let begun = checkpoint::is_there(&out.join(saved::FILE));
+    out.join(ORIGIN).is_file() && !begun && kept.iter().all(|name| !out.join(name).exists())
 }
 
 /// Why a folder with an earlier run is no place for another one.
@@ -181,7 +183,7 @@ pub(crate) fn identity(case: &Case, input: &Path) -> String {
     let mut sum = crc32fast::Hasher::new();
     sum.update(env!("CARGO_PKG_VERSION").as_bytes());
     sum.update(write(case).as_bytes());
-    case.files().for_each(|file| sum.update(&fs::read(input.join(file)).unwrap_or_default()));
+    case.files().for_each(|file| sum.update(&read_regular(&input.join(file)).unwrap_or_default()));
     format!("{:08x}", sum.finalize())
 }
 
@@ -212,20 +214,20 @@ fn unfinished_files(out: &Path) -> Vec<PathBuf> {
 
 /// The summary of a run that is finished; `None` where it is not, or its case was changed since.
 pub(crate) fn finished(out: &Path) -> Option<serde_json::Value> {
-    let mark = fs::read_to_string(out.join(FINISHED)).ok()?;
-    let summary = fs::read_to_string(out.join(SUMMARY)).ok()?;
+    let mark = plain(&out.join(FINISHED)).ok()?;
+    let summary = plain(&out.join(SUMMARY)).ok()?;
     (Some(mark) == checksum(out)).then(|| serde_json::from_str(&summary).ok())?
 }
 
 /// What the mark of a finished run says of its case.
 fn checksum(out: &Path) -> Option<String> {
-    let case = fs::read(out.join("case.toml")).ok()?;
+    let case = read_regular(&out.join("case.toml")).ok()?;
     Some(format!("case.toml {:08x}\n", crc32fast::hash(&case)))
 }
 
 /// Refuses to go on where no checkpoint was written.
 pub(crate) fn check_begun(out: &Path) -> Result<(), RunError> {
-    if out.join(saved::FILE).exists() {
+    if checkpoint::is_there(&out.join(saved::FILE)) {
         return Ok(());
     }
     let (named, file) = (out.display(), saved::FILE);
@@ -245,8 +247,18 @@ pub(crate) fn check_begun(out: &Path) -> Result<(), RunError> {
     let force = if is_barely_begun(out) { "" } else { " --force" };
     Err(RunError::Folder {
         what: format!("there is no `{file}` in `{named}`: the run was stopped before it wrote one"),
-        hint: format!("begin it again: `alula run` with its case file and `--out {named}{force}`"),
+        hint: format!("begin it again: `alula {}` with its case file and `--out {named}{force}`", command_of(out)),
     })
+}
+
+/// The command that the case of a run folder is for.
+fn command_of(out: &Path) -> &'static str {
+    let case = plain(&out.join("case.toml")).ok().and_then(|text| read(&text, "case.toml").ok());
+    match case {
+        Some(case) if case.gaf.is_some() => "gaf",
+        Some(case) if case.flutter.is_some() => "flutter",
+        _ => "run",
+    }
 }
 
 /// The same place from any working folder; no name stands for the working folder itself.
@@ -259,7 +271,7 @@ pub(crate) fn read_case(out: &Path) -> Result<(Case, PathBuf), RunError> {
     let path = out.join("case.toml");
     let text = plain(&path).map_err(|source| RunError::NoRun { folder: out.display().to_string(), source })?;
     let case = read(&text, &path.display().to_string())?;
-    let origin = fs::read_to_string(out.join(ORIGIN)).unwrap_or_default();
+    let origin = plain(&out.join(ORIGIN)).unwrap_or_default();
     Ok((case, PathBuf::from(origin.trim())))
 }
 
@@ -311,9 +323,7 @@ pub(crate) fn text(folder: &Path, name: &str) -> std::io::Result<String> {
 
 /// Text of a file, however it is encoded.
 fn plain(path: &Path) -> std::io::Result<String> {
-    let mut bytes = Vec::new();
-    open_regular(path)?.read_to_end(&mut bytes)?;
-    text_of(&bytes).map_err(|e| std::io::Error::new(ErrorKind::InvalidData, e))
+    text_of(&read_regular(path)?).map_err(|e| std::io::Error::new(ErrorKind::InvalidData, e))
 }
 
 #[cfg(test)]
@@ -332,6 +342,17 @@ mod tests {
         assert!(begin(0.4).is_err_and(|e| e.to_string().contains("holds earlier results")));
         finish(&out).unwrap();
         assert!(begin(0.3).is_err());
+    }
+
+    #[test]
+    fn a_run_killed_between_two_renames_goes_on() {
+        let folder = tempfile::tempdir().unwrap();
+        let out = folder.path().join("out");
+        let case = read("[flow]\nmach = 0.3\n[[body]]\nnaca = \"0012\"\n", "t").unwrap();
+        let _held = create_once(&case, folder.path(), &out).unwrap();
+        assert!(is_barely_begun(&out) && check_begun(&out).is_err());
+        fs::write(out.join("checkpoint.alula.previous"), "x").unwrap();
+        assert!(!is_barely_begun(&out) && check_begun(&out).is_ok());
     }
 
     #[test]

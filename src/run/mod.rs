@@ -78,7 +78,7 @@ pub fn run(case: &Case, places: &Places, monitor: &mut dyn Monitor) -> Result<Ou
     if !case.has_gas() {
         solids::supported(case)?;
         let (_, _held) = folder::create(case, &places.input, &places.out)?;
-        let job = solids::Job { case, input: &places.input, out: Some(&places.out), again: false };
+        let job = solids::Job { case, input: &places.input, out: Some(&places.out), from: None };
         return solids::solve(&job, monitor).map(structure);
     }
     Session::open(case, &places.input)?.keep_in(&places.out, monitor)?.solve(monitor)
@@ -157,8 +157,9 @@ pub fn resume(out: &Path, monitor: &mut dyn Monitor) -> Result<Outcome, RunError
         folder::check_input(&case, &input, out)?;
         folder::check_begun(out)?;
         let _held = folder::hold(out)?;
+        let saved = solids::Saved::read(out, &case)?;
         folder::reopen(out)?;
-        let job = solids::Job { case: &case, input: &input, out: Some(out), again: true };
+        let job = solids::Job { case: &case, input: &input, out: Some(out), from: Some(&saved) };
         return solids::solve(&job, monitor).map(structure);
     }
     continued(out)?.solve(monitor)

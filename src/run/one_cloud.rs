@@ -1,4 +1,7 @@
-//! The cloud of small motions where the case leaves it to the program, and the coarser one that tells how far its forces are known.
+//! The cloud of small motions where the case leaves it to the program, and coarser ones that tell how far its forces are known.
+//!
+//! In smooth flow one with twice the spacing tells it. A captured shock moves by parts of a cell when the cloud changes, to either side:
+//! loads then scatter from cloud to cloud, and two of them may agree by chance. There a third one is asked, with 3/2 of the spacing.
 use std::path::Path;
 
 use super::accuracy::Forces;
@@ -7,14 +10,15 @@ use super::{accuracy, recipe, setup};
 use crate::case::Case;
 use crate::geometry::dimension;
 
-/// Spacing of the coarser cloud over that of the case.
-const COARSER: f64 = 2.0;
+/// Spacing of the coarser cloud over that of the case, and of the third one where there are shocks.
+pub(super) const COARSER: f64 = 2.0;
+pub(super) const BETWEEN: f64 = 1.5;
 
-/// The case `own`, whose spacing is known, with twice the spacing; `None` where that does not fit into the domain, and where clouds are
-/// refined by what was found on the one before.
-pub(super) fn coarser(own: &Case) -> Option<Case> {
+/// The case `own`, whose spacing is known, with `ratio` times the spacing; `None` where that does not fit into the domain, and where clouds
+/// are refined by what was found on the one before.
+pub(super) fn coarser(own: &Case, ratio: f64) -> Option<Case> {
     let one = accuracy::asked(own).is_none() && own.cloud.spacing.is_some() && own.adapt.cycles == 0;
-    (one && recipe::divides(own, COARSER)).then(|| accuracy::scaled(own, COARSER))
+    (one && recipe::divides(own, ratio)).then(|| accuracy::scaled(own, ratio))
 }
 
 /// The case, whose files lie in `input`, on one cloud, see [`accuracy::on_one_cloud`].
@@ -60,7 +64,7 @@ mod tests {
 
     #[test]
     fn the_coarser_cloud_has_twice_the_spacing_where_that_fits() {
-        let spacing = |case: &Case| coarser(case).and_then(|c| c.cloud.spacing.map(|h| h.0));
+        let spacing = |case: &Case| coarser(case, COARSER).and_then(|c| c.cloud.spacing.map(|h| h.0));
         assert_eq!(spacing(&cloud("naca = \"0012\"", "")), Some(1.0 / 32.0));
         let odd = "spacing = 0.1\ndomain = { min = [-1.5, -1.5], max = [1.5, 1.4] }";
         assert_eq!(spacing(&cloud("naca = \"0012\"", odd)), None);

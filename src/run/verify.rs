@@ -212,7 +212,7 @@ impl Walk {
         let name = folder.name.clone();
         if !self.structures.contains_key(&name) && !monitor.stop() {
             monitor.note(&name);
-            let job = solids::Job { case: &folder.case, input: &folder.path, out: None, again: false };
+            let job = solids::Job { case: &folder.case, input: &folder.path, out: None, from: None };
             let found = solids::solve(&job, &mut Quiet { monitor });
             let found = match found {
                 Ok(solids::Ended::Finished(summary)) => Ok(*summary),

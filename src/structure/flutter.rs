@@ -16,6 +16,8 @@
 //!
 //! A mode without stiffness begins with one that is turned off as forces are turned on: the stream may hold it.
 //!
+//! What grows from the start has its crossing at x = 0 where density is varied ([`Flutter::grows_from`]).
+//!
 //! Limits: a branch ends where its frequency reaches zero, and where forces leave it without a root. What does not oscillate is found
 //! apart ([`StillMotions`]), divergence among it.
 pub use still::StillMotions;
@@ -25,6 +27,7 @@ use num_complex::Complex64;
 
 mod g_method;
 mod natural;
+mod start;
 pub mod state_space;
 mod still;
 mod varied;
@@ -211,30 +214,38 @@ impl<'a> Flutter<'a> {
     }
 
     fn branch(&self, modes: &Modes, m: usize, upto: f64) -> Vec<Point> {
-        let square = modes.squares[m] + modes.apart[m];
-        if !(square > 0.0) {
-            return Vec::new();
-        }
-        let shape = (0..modes.n).map(|k| if k == m { Complex64::from(1.0) } else { ZERO }).collect();
-        let place = Place { x: FIRST * upto, on: 0.0 };
-        let natural = Root { place, lambda: Complex64::new(0.0, square.sqrt()), shape, rate: ZERO };
-        let (path, arrived) = self.follow(modes, natural, Place { on: 1.0, ..place }, TURNED_ON.recip());
-        let Some(still) = path.last().filter(|_| arrived) else { return Vec::new() };
-        let start = Root { rate: ZERO, ..still.clone() };
-        let (path, _) = self.follow(modes, start.clone(), Place { x: upto, on: 1.0 }, (upto - place.x) / STEPS);
+        let first = FIRST * upto;
+        let Some(start) = self.begin(modes, m, first) else { return Vec::new() };
+        let mut roots = self.from_below(modes, m, &start).unwrap_or_default();
+        let (path, _) = self.follow(modes, start.clone(), Place { x: upto, on: 1.0 }, (upto - first) / STEPS);
+        roots.pop();
         let point = |root: Root| {
             let x = root.place.x;
             Point { x, speed: self.speed(x), lambda: root.lambda, shape: modes.coordinates(&root.shape) }
         };
-        std::iter::once(start).chain(path).map(point).collect()
+        roots.into_iter().chain(std::iter::once(start)).chain(path).map(point).collect()
+    }
+
+    /// The root of natural mode `m` at the low value `x` of what is varied, where damping and forces are turned on.
+    fn begin(&self, modes: &Modes, m: usize, x: f64) -> Option<Root> {
+        let square = modes.squares[m] + modes.apart[m];
+        if !(square > 0.0) {
+            return None;
+        }
+        let shape = (0..modes.n).map(|k| if k == m { Complex64::from(1.0) } else { ZERO }).collect();
+        let place = Place { x, on: 0.0 };
+        let natural = Root { place, lambda: Complex64::new(0.0, square.sqrt()), shape, rate: ZERO };
+        let (mut path, arrived) = self.follow(modes, natural, Place { on: 1.0, ..place }, TURNED_ON.recip());
+        path.pop().filter(|_| arrived).map(|root| Root { rate: ZERO, ..root })
     }
 
     /// Where motions on `branches` begin or end to grow, and where there is divergence below `upto`; by rising speed. A motion that grows
-    /// from the start has no crossing there.
+    /// from the start has its crossing at zero where the density is varied, and none where the speed is.
     pub fn crossings(&self, branches: &[Vec<Point>], upto: f64) -> Vec<Crossing> {
         let Some(modes) = &self.modes else { return Vec::new() };
         let mut found = self.divergence(modes, upto);
         for (mode, branch) in branches.iter().enumerate() {
+            found.extend(self.from_the_start(modes, mode, branch));
             for bracket in brackets(branch) {
                 let Some(root) = self.locate(modes, branch, &bracket) else { continue };
                 let (x, frequency) = (root.place.x, root.lambda.im);

@@ -331,7 +331,7 @@ impl<S: Implicit> Dual<'_, S> {
 
     fn solve(&mut self) -> Result<(), TimeError> {
         self.inner = 0;
-        while self.relax.drop() > self.relax.goal && !self.relax.settled() {
+        while !(self.relax.drop() <= self.relax.goal || self.relax.settled()) {
             let over = self.inner >= self.plan.iterations;
             let tried = if over { Err(self.relax.stalled()) } else { self.relax.advance() };
             match tried {

@@ -135,7 +135,7 @@ impl<S: System> Integrator<S> for Explicit<'_, S> {
     }
 
     fn standing(&mut self) -> Standing<'_, S> {
-        Standing { frame: &self.frame, work: &mut self.work, state: &self.u }
+        Standing { system: self.system, frame: &self.frame, work: &mut self.work, state: &self.u }
     }
 
     fn memory(&self) -> Memory {

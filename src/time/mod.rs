@@ -111,6 +111,8 @@ pub struct Cost {
 
 /// Where an integrator stands, for those who watch.
 pub struct Standing<'a, S: System> {
+    /// What is integrated.
+    pub system: &'a S,
     /// Frame of the state.
     pub frame: &'a S::Frame,
     /// Storage that may be used to look at it.
@@ -134,7 +136,18 @@ pub trait Integrator<S: System> {
     fn memory(&self) -> Memory;
     /// What it has spent.
     fn cost(&self) -> Cost;
+    /// Refuses to stand at a state that is not physical: numbers that are none, densities and pressures that are not positive. Goals and
+    /// norms are compared, and a comparison with what is no number holds or fails as it happens to be written.
+    fn check(&mut self) -> Result<(), TimeError> {
+        let iteration = self.mark().iteration;
+        let Standing { system, frame, state, .. } = self.standing();
+        system.check(frame, state).map_err(|fault| TimeError::Fault { fault, iteration, hint: UNSOUND })
+    }
 }
+
+/// What may help where a state is not physical.
+const UNSOUND: &str = "where this is the start of the run, the state that it goes on from is damaged: begin it again; otherwise take \
+                       shorter steps, or refine the cloud there";
 
 /// What may help where motion leaves a particle without a good cloud.
 pub const CROWDED: &str = "bodies come too close to one another or to a side of the domain, or move too far for the particles \

@@ -156,7 +156,7 @@ impl<S: Implicit> Integrator<S> for Relax<'_, S> {
     }
 
     fn standing(&mut self) -> Standing<'_, S> {
-        Standing { frame: &self.frame, work: &mut self.work, state: &self.u }
+        Standing { system: self.system, frame: &self.frame, work: &mut self.work, state: &self.u }
     }
 
     fn memory(&self) -> Memory {

@@ -286,7 +286,7 @@ impl<S: Mechanical> Integrator<S> for GeneralisedAlpha<'_, S> {
     }
 
     fn standing(&mut self) -> Standing<'_, S> {
-        Standing { frame: &self.frame, work: &mut self.work, state: &self.u }
+        Standing { system: self.system, frame: &self.frame, work: &mut self.work, state: &self.u }
     }
 
     fn memory(&self) -> Memory {
@@ -430,7 +430,7 @@ impl<S: Mechanical> Integrator<S> for Equilibrium<'_, S> {
     }
 
     fn standing(&mut self) -> Standing<'_, S> {
-        Standing { frame: &self.frame, work: &mut self.work, state: &self.u }
+        Standing { system: self.system, frame: &self.frame, work: &mut self.work, state: &self.u }
     }
 
     fn memory(&self) -> Memory {

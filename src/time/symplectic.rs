@@ -101,7 +101,7 @@ impl<S: Mechanical> Integrator<S> for Symplectic<'_, S> {
     }
 
     fn standing(&mut self) -> Standing<'_, S> {
-        Standing { frame: &self.frame, work: &mut self.work, state: &self.u }
+        Standing { system: self.system, frame: &self.frame, work: &mut self.work, state: &self.u }
     }
 
     fn memory(&self) -> Memory {
@@ -137,6 +137,8 @@ impl<S: Mechanical> Integrator<S> for Symplectic<'_, S> {
         if let Err(fault) = self.system.check_forces(&self.work, &self.u[..n]) {
             self.u.copy_from_slice(&self.last_good);
             (self.past.time, self.past.iteration) = (start, self.past.iteration - 1);
+            // a later march goes on from the forces in the state that is kept
+            self.evaluate(0.0);
             let hint = "lower `time.explicit.cfl`, or look whether the load is what it should be";
             return Err(TimeError::Fault { fault, iteration: self.past.iteration + 1, hint });
         }

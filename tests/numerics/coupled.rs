@@ -81,7 +81,7 @@ fn a_piston_on_a_spring_radiates_sound() {
     while !march.finished() {
         let t = march.advance().unwrap().time;
         inner += march.cost().inner;
-        let Standing { frame, work, state: u } = march.standing();
+        let Standing { frame, work, state: u, .. } = march.standing();
         let x = u[system.placing().start];
         let ratio = zeta / f64::sqrt(1.0 - zeta * zeta);
         let exact = x0 * (-zeta * omega * t).exp() * ((damped * t).cos() + ratio * (damped * t).sin());

@@ -12,6 +12,7 @@ mod flutter_typical;
 mod gaf;
 mod harmonic;
 mod invariance;
+mod keys;
 mod layers;
 mod limit_cycles;
 mod modes;

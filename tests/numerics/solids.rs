@@ -102,7 +102,7 @@ fn impulse_and_work_pass_to_round_off_and_a_march_goes_on_to_the_same_bits() {
         let before = momentum(march.standing().state);
         let step = march.advance().unwrap();
         let dt = march.mark().last;
-        let Standing { frame, work, state } = march.standing();
+        let Standing { frame, work, state, .. } = march.standing();
         let exchange = system.exchange(frame, state, work).unwrap();
         let force: f64 = frame.gas.taken.iter().map(|t| t.force[0]).sum();
         let gained = momentum(state) - before;

@@ -71,7 +71,7 @@ fn march<const D: usize>((fluid, u): (Fluid<D>, Vec<f64>), (how, until, steps): 
             worn = end.fluid.is_worn(leg.standing().frame);
         }
         let Memory::March(past) = leg.memory() else { panic!("a march") };
-        let Standing { frame, work, state: u } = leg.standing();
+        let Standing { frame, work, state: u, .. } = leg.standing();
         let known = [&past.before[..], &past.older];
         let reclouded = end.fluid.reclouded(frame, (u, known), work, &mut end.ledger).unwrap().unwrap();
         drop(leg);
@@ -262,6 +262,21 @@ fn implicit_state(step: f64) -> Vec<f64> {
         march.advance().unwrap();
     }
     march.standing().state.to_vec()
+}
+
+#[test]
+fn no_march_goes_on_from_a_state_that_is_not_physical() {
+    for wrong in [f64::NAN, -0.5] {
+        let (fluid, mut u) = moving_vortex(1.25, 1.0, Straight);
+        u[40] = wrong;
+        let mut march = Dual::new(&fluid, NEWTON, implicit(0.1, 1.0, 9.0), Past::default(), u.clone());
+        let refused = march.check().unwrap_err().to_string();
+        assert!(refused.contains("last step 0"), "{refused}");
+        assert!(march.advance().is_err() && !march.finished());
+        let mut march =
+            Explicit::new(&fluid, explicit::Plan { method: Method::Ssprk3, cfl: 0.5, until: 1.0 }, Past::default(), u);
+        assert!(march.check().is_err() && march.advance().is_err());
+    }
 }
 
 /// Order seen between two steps, the second half the first, against a much shorter one.

@@ -165,6 +165,9 @@ fn remark(c: &FlutterRow) -> String {
     if c.kind == "divergence" && c.dynamic_pressure == 0.0 {
         all.push("diverges at any speed: nothing holds it".to_owned());
     }
+    if c.kind == "flutter" && c.dynamic_pressure == 0.0 {
+        all.push("grows from the start: at any density".to_owned());
+    }
     if let (Some(growth), Some(holding)) = (c.growth, c.holding_damping) {
         all.push(format!(
             "shallow: g up to {growth:.4} over the next 20 % of speed, structural damping g = {holding:.4} holds it"

@@ -1,7 +1,8 @@
 //! One file for each command.
 use std::path::Path;
 
-use alula::case::{Case, read_in, text_of};
+use alula::case::{Case, read_in, read_regular, text_of};
+use alula::observe::usage::threads_of_environment;
 use alula::run::{Blame, RunError};
 
 use crate::arguments::{Cli, Command, Threads};
@@ -41,9 +42,9 @@ pub(crate) fn dispatch(cli: Cli) -> Outcome {
         Command::Resume(args) => threaded(args.threads, || resume::resume(&args)),
         Command::Gaf(args) => threaded(args.threads, || gaf::gaf(&args)),
         Command::Flutter(args) => threaded(args.threads, || flutter::flutter(&args)),
-        Command::Geometry(args) => geometry::geometry(&args),
-        Command::Report(args) => report::report(&args),
-        Command::Compare(args) => compare::compare(&args),
+        Command::Geometry(args) => threaded(Threads::default(), || geometry::geometry(&args)),
+        Command::Report(args) => threaded(Threads::default(), || report::report(&args)),
+        Command::Compare(args) => threaded(Threads::default(), || compare::compare(&args)),
         Command::Verify(args) => threaded(args.threads, || verify::verify(&args)),
         Command::Schema(args) => schema::schema(&args),
         Command::Completions(args) => completions::completions(&args),
@@ -52,7 +53,7 @@ pub(crate) fn dispatch(cli: Cli) -> Outcome {
 
 /// Runs `command` in a pool of threads sized as asked. This thread is one of them: loops do not wait for another to wake up.
 fn threaded(threads: Threads, command: impl FnOnce() -> Outcome) -> Outcome {
-    let n = threads.threads.map_or(0, std::num::NonZero::get);
+    let n = threads.threads.map_or_else(threads_of_environment, std::num::NonZero::get);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(n).use_current_thread();
     if let Err(problem) = pool.build_global() {
         output::error(&format!("cannot start {n} threads: {problem}"), "use a smaller number with `--threads`");
@@ -64,7 +65,7 @@ fn threaded(threads: Threads, command: impl FnOnce() -> Outcome) -> Outcome {
 /// The case in the file at `path`; its mistakes are told.
 fn load(path: &Path) -> Result<Case, Outcome> {
     let name = path.display().to_string();
-    let text = match std::fs::read(path) {
+    let text = match read_regular(path) {
         Ok(bytes) => text_of(&bytes).map_err(|problem| {
             let hint = "a case file is TOML, saved as UTF-8; start from `alula new airfoil`";
             output::error_in(Some(&name), &format!("cannot read `{name}`: {problem}"), hint);

@@ -255,7 +255,10 @@ fn describe(s: &Summary, out: &Path) -> String {
     if let Some(l) = &s.ledger {
         text += &format!("ledger: mass {:.1e}, momentum {:.1e}, energy {:.1e}\n", l.mass, l.momentum, l.energy);
     }
-    text + &format!("report: {}\n", out.join("report.html").display())
+    let page = out.join("report.html");
+    let place =
+        if page.exists() { format!("report: {}", page.display()) } else { format!("results in {}", out.display()) };
+    text + &place + "\n"
 }
 
 /// What became of bodies made of particles in the units of the case: how far they moved, and the greatest stress.
@@ -431,13 +434,16 @@ fn polar(points: &[PolarPoint]) -> String {
             text += &format!(" {value:9.5}{}", bar.map_or_else(String::new, |b| format!(" {b:8.5}")));
         }
         text += if p.converged { "" } else { "  not converged" };
-        text += if p.is_short() { "  longer bars than asked for" } else { "" };
+        text += &if p.is_short() { format!("  {}", p.long_in_words()) } else { String::new() };
     }
     let short = points.iter().filter(|p| p.is_short()).count();
     text += "\n";
     if short > 0 {
+        let of = |name: &str| points.iter().filter(|p| p.long_bars.iter().any(|long| long == name)).count();
+        let each = ["CL", "CD", "CM"].map(|name| (name, of(name))).into_iter().filter(|(_, n)| *n > 0);
+        let each = each.map(|(name, n)| format!("{name} at {n}")).collect::<Vec<_>>().join(", ");
         text += &format!(
-            "error bars of {short} of {} points are longer than asked for: raise `accuracy.particles`, or loosen `accuracy.loads`\n",
+            "error bars of {short} of {} points are longer than asked for ({each}): raise `accuracy.particles`, or loosen `accuracy.loads`\n",
             points.len()
         );
     }

@@ -60,7 +60,7 @@ pub(in super::super) static FLUTTER: Table = Table::of(&[
         "cloud_error",
         Kind::Flag,
         Absent::Flag(true),
-        "Tell the error that the spacing leaves in each speed, from a cloud with twice of it, and where it decides whether motions grow.",
+        "Tell the error that the spacing leaves in each speed, from a cloud with twice of it, and with 3/2 of it where there are shocks, and where it decides whether motions grow.",
     ),
     Field::optional(
         "design_speed",

@@ -9,6 +9,8 @@ use super::draft::Draft;
 use super::facts::{FREQUENCIES, formula, formula_in, has_gas, is, is_dimensional};
 use super::structure_check::prescribed;
 
+/// Keys of `[output]` that are of a gas.
+pub(super) const OUTPUT_OF_GAS: [&str; 3] = ["field_particles", "loop_periods", "stations"];
 /// Tables that say something of a gas, of its loads or of bodies that move in it.
 pub(super) const OF_GAS: [&str; 14] = [
     "motion",
@@ -86,9 +88,11 @@ fn alike(draft: &mut Draft<'_>, solids: &[usize]) {
 
 /// Structures alone: nothing is said of a gas, and every body is made of particles.
 fn alone(draft: &mut Draft<'_>) {
-    for key in OF_GAS.into_iter().filter(|k| draft.given(k)).collect::<Vec<_>>() {
+    let outputs = OUTPUT_OF_GAS.map(|key| format!("output.{key}"));
+    let all = OF_GAS.into_iter().map(str::to_owned).chain(outputs);
+    for key in all.filter(|k| draft.given(k)).collect::<Vec<_>>() {
         let message = format!("structures alone: `{key}` is for cases with a gas");
-        draft.fail_key(key, message).hint("remove it, or add the free stream of the gas in `[flow]`");
+        draft.fail_key(&key, message).hint("remove it, or add the free stream of the gas in `[flow]`");
     }
     for body in (0..draft.count("body")).map(|i| format!("body[{i}]")).collect::<Vec<_>>() {
         if draft.get(&body).is_some_and(|b| !b.is_null()) && !draft.given(&format!("{body}.solid")) {

@@ -278,3 +278,15 @@ fn supports_loads_and_contact_that_cannot_be_are_refused() {
     );
     told(&plate("", "[time.harmonics]\nnumber = 2\nfrequency = \"1 Hz\"\nperiod = 1"), &["both given"]);
 }
+
+#[test]
+fn numbers_that_no_solid_has_are_refused_with_what_is_allowed() {
+    let no = |material: &str, piece: &str| told(&of(material), &[piece]);
+    no("{ density = 1e30, young = 1, poisson = 0.3 }", "must be from 1e-9 to 1e9");
+    no("{ density = 1, young = 1e40, poisson = 0.3 }", "must be from 1e-9 to 1e18");
+    no("{ density = 1, young = 1e-40, poisson = 0.3 }", "must be from 1e-9 to 1e18");
+    no("{ density = 1, young = 1, poisson = 0.3, yield = 1, hardening = 1e40 }", "must be from 0 to 1e18");
+    no("{ density = 1, young = 1, poisson = 0.3, temperature = 1e9 }", "greater than 0 and at most 1e6");
+    told(&plate("gravity = [0, -1e20]", ""), &["must be from -1e6 to 1e6", "check its unit and its exponent"]);
+    told(&plate("load = { where = \"all\", pressure = 1e30 }", ""), &["must be from -1e18 to 1e18"]);
+}

@@ -1,5 +1,6 @@
 //! Contradictions in `[structure]`.
 mod modes;
+mod sane;
 mod springs;
 #[cfg(test)]
 mod tests;
@@ -190,6 +191,7 @@ impl Look<'_, '_> {
         self.alternatives();
         self.points();
         self.inertia();
+        self.sane();
         self.stiffness();
         self.damping();
         self.coordinates_exist();

@@ -205,3 +205,34 @@ fn masses_springs_and_dampers_of_all_kinds_have_units() {
     told(&air(&structure(&format!("{free}damping = {{ plunge = \"4 N s/m\" }}"))), &["per span"]);
     told(&air(&structure(&free.replace("kg·m", "kg·m²"))), &["per span"]);
 }
+
+#[test]
+fn numbers_that_no_structure_has_are_refused_with_what_is_allowed() {
+    let wrong = |from: &str, to: &str, pieces: &[&str]| told(&structure(&ISOGAI.replace(from, to)), pieces);
+    wrong("x_alpha = 1.8", "x_alpha = 1e20", &["`structure[0].x_alpha` is 1e20, but must be from -100 to 100"]);
+    wrong("mass_ratio = 60", "mass_ratio = 1e-30", &["must be from 1e-6 to 1e9"]);
+    wrong("r_alpha2 = 3.48", "r_alpha2 = 1e300", &["`structure[0].r_alpha2` is 1e300, but must be from 1e-9 to 10000"]);
+    wrong("reduced_speed = 18.4", "reduced_speed = 1e12", &["`structure[0].reduced_speed` is 1e12"]);
+    wrong("elastic_axis = -2.0", "elastic_axis = -1e9", &["`structure[0].elastic_axis` is -1e9"]);
+    let shown =
+        read(&structure(&ISOGAI.replace("x_alpha = 1.8", "x_alpha = 1e20")), "case.toml").unwrap_err().render(false);
+    let words = ["case.toml:14:11", "allowed: from -100 to 100", "hint: check its unit and its exponent"];
+    words.iter().for_each(|w| assert!(shown.contains(w), "no `{w}` in {shown}"));
+    let more = |keys: &str, pieces: &[&str]| told(&structure(&format!("{ISOGAI}{keys}\n")), pieces);
+    more("initial = { pitch = \"9000 deg\" }", &["`structure[0].initial.pitch` is 9000 deg, 25 turns"]);
+    more("initial = { plunge = 1e9 }", &["`structure[0].initial.plunge` is 1e9"]);
+    more("springs = { pitch = { rest = \"10 rad\" } }", &["`structure[0].springs.pitch.rest` is 572.96 deg"]);
+    more("damping_ratio = { pitch = 1e3 }", &["must be from 0 to 100"]);
+    case(&structure(&format!("{ISOGAI}initial = {{ pitch = \"-360 deg\" }}")));
+}
+
+#[test]
+fn sections_with_more_unbalance_than_their_inertia_allows_are_refused() {
+    let heavy = ISOGAI.replace("x_alpha = 1.8", "x_alpha = -1.9");
+    told(
+        &structure(&heavy),
+        &["`x_alpha` is -1.9, but with `r_alpha2` = 3.48 no body has its centre of mass that far"],
+    );
+    let flap = "flap = { hinge = 0.6, x_beta = 0.2, r_beta2 = 0.01, frequency_ratio = 3 }";
+    told(&structure(&format!("{ISOGAI}{flap}")), &["`x_beta` is 0.2, but with `r_beta2` = 0.01"]);
+}

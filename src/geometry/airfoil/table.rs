@@ -10,6 +10,10 @@ use crate::math::{Bounds, Vector};
 
 /// Part of the extent of a section that two points next to one another are apart at most, where no order is known yet.
 const NEXT: f64 = 0.25;
+/// Height over the greatest one up to which an end of a side lies on the axis.
+const AXIS: f64 = 0.05;
+/// Distance of both sides from one another over the greatest one up to which they come together.
+const ENDS: f64 = 0.5;
 /// Letters of a line that a note repeats.
 const TOLD: usize = 60;
 
@@ -44,6 +48,8 @@ struct Line<'t> {
 /// Where the coordinates stand in a row.
 #[derive(Clone)]
 struct Columns {
+    /// Words before the names of the columns, none of a file without a header.
+    ahead: usize,
     point: [usize; 2],
     lower: Option<[usize; 2]>,
     surface: Option<usize>,
@@ -70,11 +76,36 @@ enum Kind {
 pub(super) fn read(file: &str, text: &str, notes: &mut Vec<String>) -> Result<Table, GeometryError> {
     let lines: Vec<Line<'_>> = text.lines().enumerate().filter_map(|(i, line)| Line::of(i + 1, line)).collect();
     let begins = lines.iter().position(|l| kind(&l.words) == Kind::Row).unwrap_or(lines.len());
-    let header = lines[..begins].iter().enumerate().find_map(|(k, l)| Some((k, Columns::of(l)?)));
+    let header = lines[..begins].iter().enumerate().find_map(|(k, l)| Some((k, Columns::of(l, lines.get(begins))?)));
     match header {
-        Some((k, columns)) => with_header(file, &lines[k], &columns, &lines[k + 1..], notes),
+        Some((k, columns)) => {
+            let columns = columns.in_space(&lines[k], &lines[k + 1..]);
+            with_header(file, &lines[k], &columns, &lines[k + 1..], notes)
+        }
         None => without_header(file, &lines, notes),
     }
+}
+
+/// The name of a column in small letters, without signs of a comment and words before it.
+fn name(word: &str) -> String {
+    shown(word).trim_start_matches(['%', '*', '/']).to_lowercase()
+}
+
+/// The name of a column as it stands in a header.
+fn shown(word: &str) -> &str {
+    word.rsplit('=').next().unwrap_or(word).trim_matches(['"', ' '])
+}
+
+fn is_x(name: &str) -> bool {
+    ["x", "xu", "xl"].contains(&name) || name.starts_with("x_") || name.starts_with("x/")
+}
+
+fn is_upper(name: &str) -> bool {
+    name.contains("up") || ["yu", "zu"].contains(&name) || name.ends_with("_u")
+}
+
+fn is_lower(name: &str) -> bool {
+    name.contains("low") || ["yl", "zl"].contains(&name) || name.ends_with("_l")
 }
 
 /// A finite number below 1e100 in magnitude, so that squares stay finite. Exponents of Fortran and minus signs of typesetters are read.
@@ -95,6 +126,15 @@ fn was_number(word: &str) -> bool {
     named || (small.contains('.') && digits > 0 && digits >= letters) || small.chars().all(|c| "*.-?".contains(c))
 }
 
+/// True for a row of numbers that are not there, `nan nan` or `******** 0.04`; rows of dashes are rules.
+fn is_lost(words: &[&str]) -> bool {
+    let lost = |w: &&str| {
+        let small = w.trim_start_matches(['-', '+']).to_lowercase();
+        ["nan", "inf", "infinity"].contains(&small.as_str()) || w.chars().all(|c| "*?".contains(c))
+    };
+    words.len() > 1 && words.iter().all(|w| was_number(w) || number(w).is_some()) && words.iter().any(lost)
+}
+
 fn kind(words: &[&str]) -> Kind {
     let leading = words.iter().take_while(|w| number(w).is_some()).count();
     let damaged = |k: usize| words.get(k).is_some_and(|w| was_number(w));
@@ -102,6 +142,7 @@ fn kind(words: &[&str]) -> Kind {
         n if n == words.len() && n >= 2 => Kind::Row,
         n if n >= 2 => Kind::Remarked,
         1 if words.len() <= 2 || damaged(1) => Kind::Damaged,
+        0 if is_lost(words) => Kind::Damaged,
         0 if words.len() == 2 && damaged(0) && number(words[1]).is_some() => Kind::Damaged,
         _ => Kind::Text,
     }
@@ -152,33 +193,73 @@ impl<'t> Line<'t> {
 impl Columns {
     /// Columns without a header.
     fn plain(point: [usize; 2]) -> Self {
-        Self { point, lower: None, surface: None, section: None, scale: [1.0; 2], has_more: false, between: None }
+        Self {
+            ahead: 0,
+            point,
+            lower: None,
+            surface: None,
+            section: None,
+            scale: [1.0; 2],
+            has_more: false,
+            between: None,
+        }
     }
 
-    /// Columns of a header, none when the line is a title.
-    fn of(line: &Line<'_>) -> Option<Self> {
+    /// Columns of a header, none when the line is a title; `row` is the first row of numbers after it. Where a header has more words than that
+    /// row has numbers, the first ones are no names: `VARIABLES = "X" "Y"`, `% x y`.
+    fn of(line: &Line<'_>, row: Option<&Line<'_>>) -> Option<Self> {
         let between = [';', '\t', ','].into_iter().find(|c| line.text.contains(*c));
-        let names: Vec<String> = line.cells(between).iter().map(|w| w.to_lowercase()).collect();
-        let is_x = |n: &String| n == "x" || n == "xu" || n.starts_with("x_") || n.starts_with("x/");
-        let x = names.iter().position(is_x)?;
+        let mut names: Vec<String> = line.cells(between).iter().map(|w| name(w)).collect();
+        let first = names.iter().position(|n| is_x(n))?;
+        let width = row.map_or(usize::MAX, |row| row.cells(between).len());
+        let more = names.len().saturating_sub(width);
+        // `no. x y remark` may have rows without a remark
+        let no_names = names.iter().take(more).all(|n| n.is_empty() || n == "variables");
+        let ahead = if more <= first && (no_names || first + 1 >= width) { more } else { 0 };
+        names.drain(..ahead);
+        let x = first - ahead;
         let y = x + 1;
+        let of = |side: fn(&str) -> bool| (y..names.len()).find(|k| side(&names[*k]) && !names[*k].starts_with('x'));
+        let own = |k: usize| if k > y && names[k - 1].starts_with('x') { k - 1 } else { x };
+        let sides = of(is_upper).zip(of(is_lower)).filter(|(u, l)| *u.min(l) == y);
         // `x` may be a word of a title as well
-        let name = names.get(y).filter(|n| n.starts_with(['y', 'z']) || n.contains("thick"))?;
+        let both = sides.is_some_and(|(u, l)| u.max(l) < width);
+        names.get(y).filter(|n| both || n.starts_with(['y', 'z']) || n.contains("thick"))?;
+        let point = sides.map_or([x, y], |(upper, _)| [own(upper), upper]);
         let find = |what: &str| names.iter().position(|n| n == what);
         let scale = |n: &str| if n.contains("pct") || n.contains('%') { 0.01 } else { 1.0 };
-        let is_lower = |n: &String| n.contains("low") || ["yl", "zl"].contains(&n.as_str()) || n.ends_with("_l");
-        let is_upper = name.contains("up") || ["yu", "zu"].contains(&name.as_str()) || name.ends_with("_u");
-        let side = (y + 1..names.len()).find(|k| is_lower(&names[*k]) && !names[*k].starts_with('x'));
-        let lower = side.filter(|_| is_upper).map(|k| [if names[k - 1].starts_with('x') { k - 1 } else { x }, k]);
         Some(Self {
-            point: [x, y],
-            lower,
+            ahead,
+            point,
+            lower: sides.map(|(_, lower)| [own(lower), lower]),
             surface: find("surface"),
             section: find("section"),
-            scale: [scale(&names[x]), scale(name)],
-            has_more: name.contains("thick") || names.len() > y + 1,
+            scale: point.map(|k| scale(&names[k])),
+            has_more: names[y].contains("thick") || names.len() > y + 1,
             between,
         })
+    }
+
+    /// The columns of a section in a plane of space, `x y z` of which one does not change in the rows among `lines`.
+    fn in_space(mut self, header: &Line<'_>, lines: &[Line<'_>]) -> Self {
+        let names: Vec<String> = header.cells(self.between)[self.ahead..].iter().map(|w| name(w)).collect();
+        let [x, y] = self.point;
+        let begins = |k: usize, letter: char| names.get(k).is_some_and(|n| n.starts_with(letter));
+        if self.lower.is_some() || y != x + 1 || !begins(y, 'y') || !begins(y + 1, 'z') {
+            return self;
+        }
+        let constant = |k: &usize| {
+            let values = lines.iter().filter_map(|l| number(l.cells(self.between).get(*k)?));
+            let [low, high] = values.fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], v| [a.min(v), b.max(v)]);
+            low == high
+        };
+        let changing: Vec<usize> = (x..=y + 1).filter(|k| !constant(k)).collect();
+        if let [first, second] = changing[..]
+            && [first, second] != [x, y]
+        {
+            (self.point, self.scale) = ([first, second], [self.scale[0]; 2]);
+        }
+        self
     }
 
     /// The point of a row in two of its columns.
@@ -196,7 +277,8 @@ fn with_header(
     notes: &mut Vec<String>,
 ) -> Result<Table, GeometryError> {
     let [x, y] = columns.point;
-    let names = header.cells(columns.between);
+    let names = &header.cells(columns.between)[columns.ahead..];
+    let names: Vec<&str> = names.iter().map(|w| shown(w)).collect();
     let mut table =
         Table { rows: Vec::new(), counts: None, has_more: columns.has_more, has_surface: columns.surface.is_some() };
     let mut of = format!("`{}` and `{}`", names[x], names[y]);
@@ -337,30 +419,49 @@ fn usual_width(rows: &[&Line<'_>]) -> usize {
     times.into_iter().max_by_key(|(_, n)| *n).map_or(2, |(width, _)| width)
 }
 
+/// Rows of numbers, each with its line.
+type Numbers = [(usize, Vec<f64>)];
+
+/// One of the columns of rows.
+fn column(rows: &Numbers, k: usize) -> impl Iterator<Item = f64> {
+    rows.iter().map(move |(_, values)| values[k])
+}
+
+/// True when all differences of a column from row to row are `is`.
+fn steps(rows: &Numbers, k: usize, is: impl Fn(f64) -> bool) -> bool {
+    column(rows, k).zip(column(rows, k).skip(1)).all(|(a, b)| is(b - a))
+}
+
+/// True when a column rises or falls throughout.
+fn runs(rows: &Numbers, k: usize) -> bool {
+    steps(rows, k, |d| d > 0.0) || steps(rows, k, |d| d < 0.0)
+}
+
 /// Columns of rows without a header: a column of running numbers and one that does not change are left out; further columns are the
 /// lower side where they are points of it.
-fn columns_of(file: &str, rows: &[(usize, Vec<f64>)], width: usize, notes: &mut Vec<String>) -> Columns {
+fn columns_of(file: &str, rows: &Numbers, width: usize, notes: &mut Vec<String>) -> Columns {
     if width < 3 {
         return Columns::plain([0, 1]);
     }
-    let column = |k: usize| rows.iter().map(move |(_, v)| v[k]);
-    let steps = |k: usize, is: fn(f64) -> bool| column(k).zip(column(k).skip(1)).all(|(a, b)| is(b - a));
-    let runs = |k: usize| steps(k, |d| d > 0.0) || steps(k, |d| d < 0.0);
     let mut used: Vec<usize> = (0..width).collect();
-    if steps(0, |d| d == 1.0) && column(0).next().is_some_and(|v| v == 0.0 || v == 1.0) {
+    if counts_rows(rows) || numbers_points(rows) {
         used.remove(0);
     }
     if used.len() > 2 {
-        used.retain(|k| !steps(*k, |d| d == 0.0));
+        used.retain(|k| !steps(rows, *k, |d| d == 0.0));
     }
     let mut columns = match used[..] {
         [x, y, ..] => Columns::plain([x, y]),
         _ => Columns::plain([0, 1]),
     };
-    let below = |a: usize, b: usize| column(a).zip(column(b)).all(|(a, b)| b <= a);
+    let below = |a: usize, b: usize| column(rows, a).zip(column(rows, b)).all(|(a, b)| b <= a);
+    let negative = |k: usize| column(rows, k).any(|v| v < 0.0);
     match used[..] {
-        [x, y, z] if runs(x) && below(y, z) => columns.lower = Some([x, z]),
-        [x, _, u, v] if runs(x) && runs(u) => columns.lower = Some([u, v]),
+        [x, y, z] if runs(rows, x) && below(y, z) => columns.lower = Some([x, z]),
+        [x, y, z] if runs(rows, x) && below(z, y) && negative(y) && has_two_ends(rows, [y, z]) => {
+            (columns.point, columns.lower) = ([x, z], Some([x, y]));
+        }
+        [x, _, u, v] if runs(rows, x) && runs(rows, u) => columns.lower = Some([u, v]),
         _ => {}
     }
     let [x, y] = columns.point.map(|k| k + 1);
@@ -369,6 +470,40 @@ fn columns_of(file: &str, rows: &[(usize, Vec<f64>)], width: usize, notes: &mut 
         None => format!("{file}: coordinates from columns {x} and {y} of {width}; the others are not used"),
     });
     columns
+}
+
+/// True when the first column counts the rows from 0 or 1 on.
+fn counts_rows(rows: &Numbers) -> bool {
+    steps(rows, 0, |d| d == 1.0) && column(rows, 0).next().is_some_and(|v| v == 0.0 || v == 1.0)
+}
+
+/// True when the first column has the numbers of the points in the next two: whole numbers in equal steps, which are no coordinates of a section
+/// while those are.
+fn numbers_points(rows: &Numbers) -> bool {
+    let mut values = column(rows, 0);
+    let (Some(first), Some(second), Some(last)) = (values.next(), values.next(), column(rows, 0).last()) else {
+        return false;
+    };
+    let step = second - first;
+    if step == 0.0 || column(rows, 0).any(|v| v.fract() != 0.0) || !steps(rows, 0, |d| d == step) {
+        return false;
+    }
+    // percent of the chord, with a half thickness from the nose on or with both sides
+    let (low, high) = column(rows, 1).fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(v), b.max(v)));
+    let ends = [column(rows, 1).next(), column(rows, 1).last()];
+    let from_axis = low >= 0.0 && ends.iter().flatten().any(|v| *v <= AXIS * high);
+    let is_half = (first == 0.0 || last == 0.0) && from_axis;
+    let ordered = |a: usize, b: usize| column(rows, a).zip(column(rows, b)).all(|(a, b)| b <= a);
+    let are_sides = (ordered(1, 2) || ordered(2, 1)) && has_two_ends(rows, [1, 2]);
+    let points: Vec<Mark> = rows.iter().map(|(line, v)| Mark { point: Vector([v[1], v[2]]), line: *line }).collect();
+    !is_half && !are_sides && super::is_outline(&points)
+}
+
+/// True when two columns come together at the first and at the last row, as both sides of a section do.
+fn has_two_ends(rows: &Numbers, [a, b]: [usize; 2]) -> bool {
+    let gap = |(_, values): &(usize, Vec<f64>)| (values[a] - values[b]).abs();
+    let widest = rows.iter().map(gap).fold(0.0, f64::max);
+    rows.first().is_some_and(|r| gap(r) <= ENDS * widest) && rows.last().is_some_and(|r| gap(r) <= ENDS * widest)
 }
 
 /// Takes counts of points and a title of two numbers off the beginning of the rows; `line` is the first line of the file.

@@ -205,3 +205,43 @@ fn skins_stay_on_the_flat_sides_of_a_kink_at_the_root() {
         assert!(off < 2e-5 && turn < -0.005, "{x} {y} {z}: {off} {nearest:?}");
     }
 }
+
+#[test]
+fn sections_from_files_of_any_unit_fill_the_planform_that_is_typed() {
+    let folder = tempfile::tempdir().unwrap();
+    let half = |x: f64| 0.6 * (0.2969 * x.sqrt() + x * (-0.126 + x * (-0.3516 + x * (0.2843 - 0.1036 * x))));
+    let place = |k: i32| 0.5 - 0.5 * (PI * f64::from(k) / 30.0).cos();
+    let ring = (-30..=30).map(|k: i32| (place(k), half(place(k)).max(0.0) * if k < 0 { 1.0 } else { -1.0 }));
+    let ring: Vec<(f64, f64)> = ring.collect();
+    let loaded = |at: &dyn Fn(f64, f64) -> (f64, f64), more: &str| {
+        let rows: String = ring.iter().map(|(x, y)| at(*x, *y)).map(|(x, y)| format!("{x} {y}\n")).collect();
+        std::fs::write(folder.path().join("s.dat"), rows).unwrap();
+        let wing = "wing = { airfoil = \"s.dat\", span = 4, chord = 1, tip = \"flat\" }";
+        let case = read(&format!("[flow]\nmach = 0.3\n[[body]]\n{wing}\n{more}\n"), "t").unwrap();
+        load_surface::<3>(&case.bodies, folder.path()).map_err(|e| e.to_string())
+    };
+    let clean = loaded(&|x, y| (x, y), "").unwrap().0;
+    for at in [|x: f64, y: f64| (300.0 * x, 300.0 * y), |x: f64, y: f64| (1200.0 + 350.0 * x, 40.0 + 350.0 * y)] {
+        let (surface, notes) = loaded(&at, "").unwrap();
+        let seen = surface.planform(&everywhere(), None);
+        assert!((seen.area / 4.0 - 1.0).abs() < 0.01 && (seen.chord - 1.0).abs() < 0.01, "{seen:?}");
+        assert!((surface.volume() / clean.volume() - 1.0).abs() < 1e-6, "{}", surface.volume());
+        assert!(notes.iter().any(|n| n.contains("its chord is taken as 1")), "{notes:?}");
+    }
+    for at in [|x: f64, y: f64| (y, x), |x: f64, y: f64| (1.0 - x, y)] {
+        let told = loaded(&at, "").unwrap_err();
+        assert!(told.contains("s.dat: the ") && told.contains("nose at smaller x than its trailing edge"), "{told}");
+    }
+    // turned wings are told
+    for (angles, told) in [
+        ("[0, 0, \"180 deg\"]", Some("upstream, 180 deg")),
+        ("[0, \"180 deg\", 0]", Some("upstream, 180 deg")),
+        ("[0, 0, \"90 deg\"]", Some("across the stream, 90 deg")),
+        ("[\"90 deg\", 0, 0]", None),
+        ("[0, \"20 deg\", \"10 deg\"]", None),
+    ] {
+        let notes = loaded(&|x, y| (x, y), &format!("rotate = {angles}")).unwrap().1;
+        let found = notes.iter().find(|n| n.contains("leading edge at smaller x"));
+        assert!(found.is_some() == told.is_some() && found.is_none_or(|n| n.contains(told.unwrap_or(""))), "{notes:?}");
+    }
+}

@@ -43,14 +43,14 @@ struct Numbers<'b> {
 /// What is wrong, and at which line where there are lines.
 type Bad = (Option<usize>, String);
 
-/// Reads a file.
-pub(super) fn read(file: &str, bytes: &[u8]) -> Result<Soup, GeometryError> {
+/// Reads a file; `notes` says what was left out. Faces may stand before the vertices that they name.
+pub(super) fn read(file: &str, bytes: &[u8], notes: &mut Vec<String>) -> Result<Soup, GeometryError> {
     let refused = |(line, what): Bad| {
         let place = line.map_or_else(|| file.to_owned(), |line| format!("{file}, line {line}"));
         GeometryError::refused(place, what, "export the file again")
     };
     let (elements, mut numbers) = header(bytes).map_err(refused)?;
-    let (mut vertices, mut soup) = (Vec::new(), Soup::default());
+    let (mut vertices, mut before, mut soup) = (Vec::new(), Vec::new(), Soup::default());
     for element in elements.iter().filter(|e| !e.properties.is_empty()) {
         let named = |names: &[&str]| element.properties.iter().position(|p| names.contains(&p.name.as_str()));
         let axes = ["x", "y", "z"].map(|axis| named(&[axis]));
@@ -68,11 +68,16 @@ pub(super) fn read(file: &str, bytes: &[u8]) -> Result<Soup, GeometryError> {
                         Vector(axes.map(|at| at.and_then(|at| values[at].first().copied()).unwrap_or(f64::NAN)));
                     vertices.push(vertex);
                 }
+                ("face", Some(list)) if vertices.is_empty() => before.push((line, values[list].clone())),
                 ("face", Some(list)) => face((line, &values[list]), &vertices, &mut soup).map_err(refused)?,
                 _ => {}
             }
         }
     }
+    for (line, own) in &before {
+        face((*line, own), &vertices, &mut soup).map_err(refused)?;
+    }
+    notes.extend(numbers.surplus(file));
     for (k, corners) in soup.triangles.iter().enumerate() {
         corners.iter().try_for_each(|corner| finite(file, k + 1, corner))?;
     }
@@ -167,6 +172,20 @@ impl Number {
 }
 
 impl Numbers<'_> {
+    /// What is told of what follows the last element.
+    fn surplus(&mut self, file: &str) -> Option<String> {
+        let line = self.line_of_next();
+        let more = self.rest.len();
+        match (more, line) {
+            (0, _) => None,
+            (_, Some(line)) => {
+                Some(format!("{file}: line {line} and what follows is left out: the header announces no more"))
+            }
+            (1, None) => Some(format!("{file}: 1 byte after the last element is left out")),
+            (_, None) => Some(format!("{file}: {more} bytes after the last element are left out")),
+        }
+    }
+
     /// Line of the next number of a text.
     fn line_of_next(&mut self) -> Option<usize> {
         if self.format != Format::Text {

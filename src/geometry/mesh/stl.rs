@@ -6,6 +6,10 @@ use crate::math::Vector;
 
 /// Header and count of a binary file, bytes.
 const HEADER: usize = 84;
+/// Bytes of the count.
+const COUNT: usize = 4;
+/// Least and greatest length in bytes of headers that are tried where the 80 of the format do not fit.
+const OTHERS: [usize; 2] = [76, 88];
 /// One triangle of a binary file, bytes: a normal, three corners, and two of no meaning.
 const TRIANGLE: usize = 50;
 /// Bytes of the normal.
@@ -15,12 +19,20 @@ const BEGINNING: usize = 256;
 
 /// Reads a file, binary or text. Binary headers may begin with `solid` as texts do, so that the length, and zeros, tell one from the other.
 pub(super) fn read(file: &str, bytes: &[u8], notes: &mut Vec<String>) -> Result<Soup, GeometryError> {
-    let number = |c: &[u8]| u32::from_le_bytes([c[0], c[1], c[2], c[3]]) as usize;
-    let announced = bytes.get(80..HEADER).map(number);
-    let exact = announced.is_some_and(|n| HEADER + TRIANGLE * n == bytes.len());
+    let announced = count(bytes, HEADER - COUNT);
+    let fits = |header: &usize| {
+        let n = count(bytes, *header).filter(|n| *n > 0 || *header + COUNT == HEADER);
+        n.is_some_and(|n| header + COUNT + TRIANGLE * n == bytes.len())
+    };
+    let exact = fits(&(HEADER - COUNT));
+    let other = if exact { None } else { (OTHERS[0]..=OTHERS[1]).find(fits) };
     let begins = numbers_of(&bytes[..bytes.len().min(BEGINNING)]).unwrap_or_default();
     let small = begins.to_lowercase();
     let is_text = !begins.contains('\0') && (small.trim_start().starts_with("solid") || small.contains("facet"));
+    if let Some(header) = other {
+        notes.push(format!("{file}: the header has {header} bytes where the format has {}", HEADER - COUNT));
+        return triangles(file, &bytes[header + COUNT..]);
+    }
     match announced {
         _ if is_text && !exact => text(file, &crate::geometry::plain(file, bytes)?),
         Some(announced) => binary(file, announced, bytes, notes),
@@ -29,6 +41,12 @@ pub(super) fn read(file: &str, bytes: &[u8], notes: &mut Vec<String>) -> Result<
             Err(GeometryError::refused(file, what, "text STL begins with `solid`"))
         }
     }
+}
+
+/// The count of triangles after a header of so many bytes.
+fn count(bytes: &[u8], header: usize) -> Option<usize> {
+    let counted = bytes.get(header..header + COUNT)?;
+    Some(u32::from_le_bytes([counted[0], counted[1], counted[2], counted[3]]) as usize)
 }
 
 fn binary(file: &str, announced: usize, bytes: &[u8], notes: &mut Vec<String>) -> Result<Soup, GeometryError> {
@@ -51,9 +69,14 @@ fn binary(file: &str, announced: usize, bytes: &[u8], notes: &mut Vec<String>) -
         let number = if more == 1 { String::new() } else { format!("{more} ") };
         notes.push(format!("{file}: {number}{what} left out"));
     }
+    triangles(file, &bytes[HEADER..HEADER + TRIANGLE * count])
+}
+
+/// The triangles of a binary file, one after another.
+fn triangles(file: &str, bytes: &[u8]) -> Result<Soup, GeometryError> {
     let single = |b: &[u8]| f64::from(f32::from_le_bytes([b[0], b[1], b[2], b[3]]));
     let mut soup = Soup::default();
-    for (k, triangle) in held[..count].iter().enumerate() {
+    for (k, triangle) in bytes.as_chunks::<TRIANGLE>().0.iter().enumerate() {
         let corner = |c: usize| Vector::from_fn(|d| single(&triangle[NORMAL + 12 * c + 4 * d..]));
         let corners = [corner(0), corner(1), corner(2)];
         corners.iter().try_for_each(|c| finite(file, k + 1, c))?;

@@ -87,20 +87,47 @@ pub fn neo_hookean<S: Scalar>(m: &Moduli, f: &Tensor<S>) -> Tensor<S> {
     tensor::of(|i, j| shear * f[i][j] + along * cofactor[i][j])
 }
 
-/// Energy of the neo-Hookean solid per reference volume, ½ μ (J^(−2/3) tr(FᵀF) − 3) + ¼ K (J² − 1 − 2 ln J).
+/// Energy of the neo-Hookean solid per reference volume, ½ μ (J^(−2/3) tr(FᵀF) − 3) + ¼ K (J² − 1 − 2 ln J); of small strains, whose
+/// squares are below the round-off of one, it keeps its digits.
 #[inline(always)]
 pub fn neo_hookean_energy<S: Scalar>(m: &Moduli, f: &Tensor<S>) -> S {
-    let volume = tensor::determinant(f);
-    let shape = isochoric(volume) * tensor::contraction(f, f) - 3.0;
-    shape * (0.5 * m.shear) + volumetric_energy(m, volume)
+    let excess = excess_volume(f);
+    // with tr(FᵀF) = 3 + 2 tr E
+    let less = excess.map(|e| {
+        let (j, less) = (1.0 + e, (-2.0 / 3.0 * e.ln_1p()).exp_m1());
+        let slope = -2.0 / 3.0 * (1.0 + less) / j;
+        [less, slope, -5.0 / 3.0 * slope / j]
+    });
+    let strain = tensor::trace(&green_strain(f)) * 2.0;
+    let shape = strain + less * (strain + 3.0);
+    shape * (0.5 * m.shear) + volumetric_energy(m, excess)
 }
 
-/// Energy of a change of volume, ¼ K (J² − 1 − 2 ln J).
+/// J − 1, from the gradient of displacement H = F − I: tr H + ½ ((tr H)² − tr H²) + det H.
 #[inline(always)]
-pub(super) fn volumetric_energy<S: Scalar>(m: &Moduli, volume: S) -> S {
-    let logarithm = volume.map(|x| [x.ln(), 1.0 / x, -1.0 / (x * x)]);
-    (volume * volume - 1.0 - logarithm * 2.0) * (0.25 * m.bulk)
+pub(super) fn excess_volume<S: Scalar>(f: &Tensor<S>) -> S {
+    let h = tensor::plus_identity(f, S::constant(-1.0));
+    let minor = |i: usize, j: usize| h[i][i] * h[j][j] - h[i][j] * h[j][i];
+    tensor::trace(&h) + (minor(0, 1) + minor(1, 2) + minor(2, 0)) + tensor::determinant(&h)
 }
+
+/// Energy of a change of volume, ¼ K (J² − 1 − 2 ln J), from e = J − 1.
+#[inline(always)]
+pub(super) fn volumetric_energy<S: Scalar>(m: &Moduli, excess: S) -> S {
+    let energy = excess.map(|e| {
+        // J² − 1 − 2 ln J = e² + 2 (e − ln(1 + e)); of small e the series of the second term
+        let left = match e.abs() < SMALL {
+            true => e * e * (0.5 - e * (1.0 / 3.0 - e * (0.25 - e * (0.2 - e / 6.0)))),
+            false => e - e.ln_1p(),
+        };
+        let j = 1.0 + e;
+        [e * e + 2.0 * left, 2.0 * e * (1.0 + 1.0 / j), 2.0 + 2.0 / (j * j)]
+    });
+    energy * (0.25 * m.bulk)
+}
+
+/// Change of volume below which five terms of the series of its energy are all its digits.
+const SMALL: f64 = 1e-3;
 
 /// Strain of small displacements sym(F − I).
 #[inline(always)]
@@ -188,6 +215,17 @@ mod tests {
         assert!((m.young() - 7.0).abs() < 1e-14 && (m.poisson() - 0.25).abs() < 1e-15);
         assert!((m.lame() - 7.0 * 0.25 / (1.25 * 0.5)).abs() < 1e-14);
         assert!((m.pressure_wave() - m.lame() - 2.0 * m.shear).abs() < 1e-14);
+    }
+
+    #[test] // ½ e:C:e of small strains, however small
+    fn energies_of_small_strains_keep_their_digits() {
+        for size in [1e-4, 1e-7, 1e-10] {
+            for seed in 0..5 {
+                let f = tensor::plus_identity(&tensor::times(&random_tensor(seed, 1.0), size), 1.0);
+                let [exact, found] = [linear_energy(&STEEL, &f), neo_hookean_energy(&STEEL, &f)];
+                assert!((found / exact - 1.0).abs() < 10.0 * size + 1e-5, "{size}: {found:e} for {exact:e}");
+            }
+        }
     }
 
     #[test]

@@ -16,7 +16,7 @@
 //!
 //! Δγ is found in plain numbers; one more step of Newton in the numbers of the caller gives its first derivative, so that a
 //! tangent is the consistent one.
-use super::elastic::{Moduli, isochoric, volumetric_energy};
+use super::elastic::{Moduli, excess_volume, isochoric, volumetric_energy};
 use super::flow::{Plasticity, Rate};
 use super::tensor::{self, Tensor};
 use super::{Response, Step};
@@ -128,7 +128,7 @@ pub(super) fn respond<S: Scalar>(
     }
     let pressure = (volume * volume - 1.0) * (0.5 * moduli.bulk);
     let kirchhoff = tensor::plus_identity(&tensor::times(&shape, S::constant(moduli.shear)), pressure);
-    let elastic = (mean - 1.0) * (1.5 * moduli.shear) + volumetric_energy(moduli, volume);
+    let elastic = excess_of_mean(&shape, mean) * (1.5 * moduli.shear) + volumetric_energy(moduli, excess_volume(f));
     Response {
         stress: tensor::times(&tensor::product(&kirchhoff, &cofactor), volume.inverse()),
         stored: elastic + point.back_energy(&back),
@@ -284,6 +284,14 @@ fn unimodular_mean<S: Scalar>(d: &Tensor<S>) -> S {
     }
     let x = S::constant(x);
     x - ((x * x - linear) * x + constant) * (1.0 / (3.0 * x.value() * x.value() - a))
+}
+
+/// The same less one: −⅓ (x I₂ + I₃ + e² (3 + e)) with the invariants of d, from e = x − 1, so that small strains keep their digits.
+#[inline(always)]
+fn excess_of_mean<S: Scalar>(d: &Tensor<S>, mean: S) -> S {
+    let e = mean - 1.0;
+    let second = tensor::contraction(d, d) * -0.5;
+    (mean * second + tensor::determinant(d) + e * e * (e + 3.0)) * (-1.0 / 3.0)
 }
 
 #[cfg(test)]

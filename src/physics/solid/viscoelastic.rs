@@ -7,7 +7,7 @@
 //! A step is exact where S_iso runs linearly in time: Q ← e^(−Δt/τ) Q + g (1 − e^(−Δt/τ)) τ/Δt ΔS_iso (Simo & Hughes 1998,
 //! eq. 10.3.12). The energy of a branch is taken as that of a linear spring, (CQ):(QC)/(4 g μ); what the work ½ Q:ΔC of a
 //! branch leaves beyond its change is dissipated.
-use super::elastic::{Moduli, isochoric, neo_hookean_energy, volumetric_energy};
+use super::elastic::{Moduli, excess_volume, isochoric, neo_hookean_energy, volumetric_energy};
 use super::tensor::{self, Tensor};
 use super::{Response, Step};
 use crate::math::jet::Scalar;
@@ -84,7 +84,7 @@ pub(super) fn respond<S: Scalar>(moduli: &Moduli, law: &Prony, step: &Step<'_, S
     let volumetric = (volume * volume - 1.0) * (0.5 * moduli.bulk);
     let mut second = tensor::plus(&tensor::times(&fast, S::constant(law.lasting())), volumetric, &inverse);
     let full = neo_hookean_energy(moduli, f);
-    let bulk = volumetric_energy(moduli, volume);
+    let bulk = volumetric_energy(moduli, excess_volume(f));
     let mut stored = (full - bulk) * law.lasting() + bulk;
     let mut dissipated = S::constant(0.0);
     for (k, branch) in law.used().iter().enumerate() {

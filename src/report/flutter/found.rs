@@ -47,6 +47,8 @@ pub(super) struct At {
     pub(super) residual: Option<f64>,
     pub(super) cpu_seconds: f64,
     pub(super) warnings: Vec<String>,
+    #[serde(default)]
+    pub(super) notes: Vec<String>,
 }
 
 /// Stream and structure of the case.

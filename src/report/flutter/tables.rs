@@ -109,6 +109,9 @@ fn remarks(c: &Crossing) -> String {
     if c.kind == "divergence" && c.dynamic_pressure == 0.0 {
         all.push("diverges at any speed: nothing holds it".to_owned());
     }
+    if c.kind == "flutter" && c.dynamic_pressure == 0.0 {
+        all.push("grows from the start: at any density".to_owned());
+    }
     if let (Some(growth), Some(holding)) = (c.growth, c.holding_damping) {
         all.push(format!(
             "shallow: g up to {growth:.4} over the next 20 % of speed, structural damping g = {holding:.4} holds it"
@@ -126,12 +129,12 @@ pub(super) fn doubts(found: &Found) -> Table {
         true => ["TAS, m/s", "EAS, m/s", "q, Pa", "altitude, m"],
         false => ["V/V of the case", "V_f", "dynamic pressure", "–"],
     });
-    columns.extend(["g", "g with twice the spacing"]);
+    columns.extend(["g", "g on a coarser cloud"]);
     let range = |[a, b]: [f64; 2]| format!("{} to {}", number(a), number(b));
     let optional_range = |ends: Option<[f64; 2]>| ends.map_or_else(|| "–".to_owned(), range);
     let row = |(at, d): (&At, &Doubt)| {
         let what = match &d.kind[..] {
-            "coarser_cloud_only" => "grows with twice the spacing, not here",
+            "coarser_cloud_only" => "grows on a coarser cloud, not here",
             "nearly" => "decays by less than both clouds differ",
             "this_cloud_only" => "grows by less than both clouds differ",
             _ => "decays again by less than both clouds differ",

@@ -1,11 +1,38 @@
-//! What the spacing of the cloud does to a boundary: how far crossings move on a coarser cloud, and which motions grow on one of both alone.
-use super::damping::{Pair, SAFETY, What, curves, pairs};
+//! What the spacing of the cloud does to a boundary: how far crossings move on coarser clouds, and which motions grow on one of two alone.
+use super::damping::{Pair, What, curves, pairs, safety};
 use super::record::FlutterAt;
 use super::rows::Doubt;
 use super::scales::Scales;
 
-/// Tells the error that the cloud leaves in each crossing of `at`, and where the cloud decides whether motions grow.
-pub(super) fn compare(at: &mut FlutterAt, coarse: &FlutterAt, scales: &Scales) {
+/// Tells the error that the cloud leaves in each crossing of `at`, and where the cloud decides whether motions grow, from the boundaries
+/// on coarser clouds, each with its spacing over that of `at`.
+pub(super) fn compare(at: &mut FlutterAt, others: &[(f64, FlutterAt)], scales: &Scales) {
+    let mut doubts: Vec<Doubt> = Vec::new();
+    for (ratio, coarse) in others {
+        for doubt in held_against(at, (*ratio, coarse), scales) {
+            // the same range of another cloud
+            let same = |d: &Doubt| d.branch == doubt.branch && meet(d.speed_ratio, doubt.speed_ratio);
+            let wider = |d: &Doubt| (d.damping - d.damping_coarser).abs();
+            match doubts.iter_mut().find(|d| same(d)) {
+                Some(known) if wider(known) >= wider(&doubt) => {}
+                Some(known) => *known = doubt,
+                None => doubts.push(doubt),
+            }
+        }
+        at.coarser_particles =
+            coarse.particles.min(if at.coarser_particles == 0 { usize::MAX } else { at.coarser_particles });
+    }
+    at.warnings.extend(doubts.iter().map(|doubt| in_words(doubt, at.dimensional)));
+    at.doubts = doubts;
+}
+
+/// True where two ranges have something in common.
+fn meet(a: [f64; 2], b: [f64; 2]) -> bool {
+    a[0].min(a[1]) <= b[0].max(b[1]) && b[0].min(b[1]) <= a[0].max(a[1])
+}
+
+/// The same from one cloud; what it doubts.
+fn held_against(at: &mut FlutterAt, (ratio, coarse): (f64, &FlutterAt), scales: &Scales) -> Vec<Doubt> {
     let reference = at.reference.dynamic_pressure;
     let [fine, other] = [&*at, coarse].map(|at| curves(&at.motions, reference));
     let both = pairs(&fine, &other);
@@ -15,11 +42,12 @@ pub(super) fn compare(at: &mut FlutterAt, coarse: &FlutterAt, scales: &Scales) {
         let place = (crossing.dynamic_pressure / reference).sqrt();
         let own = both.iter().find(|p| p.branch == crossing.branch);
         let moves = own.and_then(|pair| pair.moves(place));
-        crossing.cloud_error = moved.into_iter().chain(moves).reduce(f64::max).map(|error| SAFETY * error);
+        let error = moved.into_iter().chain(moves).reduce(f64::max).map(|error| safety(ratio) * error);
+        // a crossing at zero has no part of it to be off by
+        let error = error.filter(|e| e.is_finite());
+        crossing.cloud_error = crossing.cloud_error.into_iter().chain(error).reduce(f64::max);
     }
-    at.doubts = both.iter().flat_map(|pair| told(pair, scales)).collect();
-    at.warnings.extend(at.doubts.iter().map(|doubt| in_words(doubt, at.dimensional)));
-    at.coarser_particles = coarse.particles;
+    both.iter().flat_map(|pair| told(pair, ratio, scales)).collect()
 }
 
 /// Relative distance of two crossings, of the root of the dynamic pressure.
@@ -27,7 +55,7 @@ fn apart(a: f64, b: f64) -> f64 {
     if a == b { 0.0 } else { ((a / b).sqrt() - 1.0).abs() }
 }
 
-fn told(pair: &Pair, scales: &Scales) -> Vec<Doubt> {
+fn told(pair: &Pair, ratio: f64, scales: &Scales) -> Vec<Doubt> {
     let doubt = |region: super::damping::Region| {
         let [a, b] = region.ends.map(|place| scales.numbers(scales.place(place * place)));
         let ends = |of: fn(&super::scales::StreamNumbers) -> Option<f64>| Some([of(&a)?, of(&b)?]);
@@ -41,6 +69,7 @@ fn told(pair: &Pair, scales: &Scales) -> Vec<Doubt> {
             altitude: ends(|s| s.altitude),
             damping: region.damping[0],
             damping_coarser: region.damping[1],
+            spacing_ratio: ratio,
         }
     };
     pair.regions().into_iter().map(doubt).collect()
@@ -48,7 +77,7 @@ fn told(pair: &Pair, scales: &Scales) -> Vec<Doubt> {
 
 /// What a doubt says.
 fn in_words(doubt: &Doubt, dimensional: bool) -> String {
-    let Doubt { branch, damping: here, damping_coarser: there, .. } = doubt;
+    let Doubt { branch, damping: here, damping_coarser: there, spacing_ratio, .. } = doubt;
     let [from, to] = doubt.speed_ratio;
     let range = match (dimensional, doubt.equivalent_airspeed) {
         (true, Some([a, b])) => format!("between {a:.1} and {b:.1} m/s EAS"),
@@ -59,19 +88,19 @@ fn in_words(doubt: &Doubt, dimensional: bool) -> String {
     };
     let what = if doubt.kind == What::CoarserCloudOnly.name() {
         format!(
-            "grows {range} on a cloud with twice the spacing (g up to {there:+.4}), but not on this one ({here:+.4})"
+            "grows {range} on a cloud with {spacing_ratio} times the spacing (g up to {there:+.4}), but not on this one ({here:+.4})"
         )
     } else if doubt.kind == What::Nearly.name() {
         format!(
-            "comes nearer to growth {range} (g up to {here:+.4}) than the damping is known: {there:+.4} on a cloud with twice the spacing"
+            "comes nearer to growth {range} (g up to {here:+.4}) than the damping is known: {there:+.4} on a cloud with {spacing_ratio} times the spacing"
         )
     } else if doubt.kind == What::ThisCloudOnly.name() {
         format!(
-            "grows {range} by less (g up to {here:+.4}) than the damping is known: {there:+.4} on a cloud with twice the spacing"
+            "grows {range} by less (g up to {here:+.4}) than the damping is known: {there:+.4} on a cloud with {spacing_ratio} times the spacing"
         )
     } else {
         format!(
-            "decays again {range} by less (g down to {here:+.4}) than the damping is known: {there:+.4} on a cloud with twice the spacing"
+            "decays again {range} by less (g down to {here:+.4}) than the damping is known: {there:+.4} on a cloud with {spacing_ratio} times the spacing"
         )
     };
     format!("{branch} {what}; a finer `spacing` decides whether it flutters there")
@@ -114,9 +143,9 @@ mod tests {
             row("flutter", "mode 1", 4.0),
             row("divergence", "divergence 1", 3.61),
         ];
-        compare(&mut fine, &at(other, Vec::new()), &scales);
+        compare(&mut fine, &[(2.0, at(other, Vec::new()))], &scales);
         let found: Vec<Option<f64>> = fine.crossings.iter().map(|c| c.cloud_error).collect();
-        let [first, second] = [0.1, 0.05].map(|moved| SAFETY * moved);
+        let [first, second] = [0.1, 0.05].map(|moved| safety(2.0) * moved);
         assert!((found[0].unwrap() - first).abs() < 1e-12 && (found[1].unwrap() - second).abs() < 1e-12);
         assert_eq!((found[2], fine.coarser_particles), (None, 7));
     }
@@ -147,14 +176,14 @@ mod tests {
     fn flutter_on_the_other_cloud_alone_is_a_warning_with_its_range() {
         let scales = Scales::of(&case(""), 1.0, Matching::None);
         let mut fine = at(Vec::new(), hump(-0.014));
-        compare(&mut fine, &at(Vec::new(), hump(0.030)), &scales);
+        compare(&mut fine, &[(2.0, at(Vec::new(), hump(0.030))), (1.5, at(Vec::new(), hump(0.010)))], &scales);
         let [doubt] = &fine.doubts[..] else { panic!("{:?}", fine.doubts) };
         assert_eq!((doubt.kind.as_str(), doubt.branch.as_str()), ("coarser_cloud_only", "mode 1"));
         assert!((doubt.damping + 0.014).abs() < 1e-9 && (doubt.damping_coarser - 0.03).abs() < 1e-9);
         assert!(doubt.speed_ratio[0] < 0.9 && doubt.speed_ratio[1] > 1.1, "{doubt:?}");
         assert!(fine.warnings[0].contains("mode 1 grows between") && fine.warnings[0].contains("spacing"));
         let mut sure = at(Vec::new(), hump(-0.2));
-        compare(&mut sure, &at(Vec::new(), hump(-0.19)), &scales);
+        compare(&mut sure, &[(2.0, at(Vec::new(), hump(-0.19)))], &scales);
         assert!(sure.doubts.is_empty() && sure.warnings.is_empty());
     }
 }

@@ -1,13 +1,17 @@
 //! Damping along the speed: how fast motions grow beyond their crossings, and what two clouds say of it.
 //!
 //! Where a motion hardly grows, or hardly decays, the error of its damping decides whether there is flutter at all. That error is estimated
-//! by the difference to a cloud with twice the spacing. A crossing moves by the error of the damping over its slope, ΔV = Δg/|dg/dV|. Two
-//! clouds show no order of convergence, so that the error bar of a crossing has a safety factor: Roache's 3/(2ᵖ − 1) is 1 at second order and 3
-//! at the first, which shocks leave (J. Fluids Eng. 116, 1994, doi:10.1115/1.2910291).
+//! by the difference to a coarser cloud. A crossing moves by the error of the damping over its slope, ΔV = Δg/|dg/dV|. Two clouds show no
+//! order of convergence, so that the error bar of a crossing has a safety factor: Roache's 3/(rᵖ − 1) for r times the spacing, with twice of
+//! it 1 at second order and 3 at the first, which shocks leave; with a third cloud 1.25/(r − 1) (J. Fluids Eng. 116, 1994,
+//! doi:10.1115/1.2910291).
+use super::super::one_cloud::COARSER;
 use super::rows::MotionRow;
 
-/// Safety factor of a difference between two clouds: the mean of what smooth flow and flow with shocks ask for.
-pub(super) const SAFETY: f64 = 2.0;
+/// Safety factor of a difference to a cloud with twice the spacing: the mean of what smooth flow and flow with shocks ask for.
+const SAFETY: f64 = 2.0;
+/// The same, over r − 1, to a third cloud that is nearer.
+const THIRD: f64 = 1.25;
 /// Part of the speed on either side of a crossing over which the slope is taken.
 const AROUND: f64 = 0.1;
 /// Between this part of the speed of a crossing and its inverse both clouds are compared: at one speed alone they may agree by chance.
@@ -17,7 +21,7 @@ const BEYOND: f64 = 0.2;
 /// Damping g that structures usually have: flutter that grows less is shallow.
 const SHALLOW: f64 = 0.03;
 /// Damping g that is no growth: structures have more.
-const LEAST: f64 = 1e-3;
+pub(super) const LEAST: f64 = 1e-3;
 
 /// The damping of a branch along the root of the dynamic pressure over that of the case.
 #[derive(Clone, Debug, PartialEq)]
@@ -36,7 +40,7 @@ struct Sample {
 /// Why the cloud decides whether there is flutter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum What {
-    /// The motion grows on the cloud with twice the spacing, and decays on this one.
+    /// The motion grows on the coarser cloud, and decays on this one.
     CoarserCloudOnly,
     /// It decays on both, by less than both differ.
     Nearly,
@@ -81,6 +85,11 @@ pub(super) struct Growth {
     pub(super) most: f64,
     /// Damping that would hold the motion, where that grows little.
     pub(super) holding: Option<f64>,
+}
+
+/// Safety factor of a difference to a cloud with `ratio` times the spacing.
+pub(super) fn safety(ratio: f64) -> f64 {
+    if ratio < COARSER { THIRD / (ratio - 1.0) } else { SAFETY }
 }
 
 /// Curves of motions that oscillate; `reference` is the dynamic pressure of the case.

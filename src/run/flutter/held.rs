@@ -14,6 +14,10 @@ use crate::motion::Motions;
 use crate::observe::structure::is_angle;
 use crate::structure::{Matrices, Model, Spring};
 
+mod translations;
+
+pub(super) use translations::Translation;
+
 /// Part of a chord by which pivots may differ.
 const SAME: f64 = 1e-6;
 
@@ -40,6 +44,8 @@ pub(super) struct Held {
     pub(super) matrices: Matrices,
     /// Springs of all coordinates.
     pub(super) springs: Vec<Spring>,
+    /// Displacements of all bodies by the same way, which no steady force follows.
+    pub(super) translations: Vec<Translation>,
 }
 
 impl Mark {
@@ -88,7 +94,8 @@ impl Held {
             springs.extend(body.structure.coordinates().iter().map(|c| c.spring));
             marks.extend((0..m).map(|k| mark(case, input, body, k)));
         }
-        Ok(Self { chord: chord(case, surface.as_ref()), names, marks, matrices, springs })
+        let translations = surface.as_ref().map_or(Vec::new(), |s| translations::translations(case, s, (&bodies, n)));
+        Ok(Self { chord: chord(case, surface.as_ref()), names, marks, matrices, springs, translations })
     }
 }
 

@@ -90,7 +90,13 @@ impl<'s, 'a> Seek<'s, 'a> {
     /// All branches; forces beyond small motions are those of `source`, where there is one and the case asks for them.
     pub(super) fn run(mut self, mut source: Source<'_, '_>) -> Found {
         let (amplitudes, mut warnings) = (self.plan.amplitudes(), Vec::new());
-        let begins = self.begins(amplitudes[0]);
+        let mut begins = self.begins(amplitudes[0]);
+        // amplitudes follow what is varied from where forces act
+        let all = begins.len();
+        begins.retain(|(_, cycle)| cycle.x > 0.0);
+        if begins.len() < all {
+            warnings.push("a motion of the least amplitude grows in however thin a gas: no branch begins there".into());
+        }
         if begins.is_empty() {
             warnings.push("no motion of the least amplitude neither grows nor decays up to the greatest speed".into());
         }

@@ -108,7 +108,10 @@ pub struct FlutterAt {
     pub orders: f64,
     /// Particles.
     pub particles: usize,
-    /// Particles of the coarser cloud; zero where there was none.
+    /// True where the steady flow is faster than sound somewhere.
+    #[serde(default)]
+    pub supersonic: bool,
+    /// Particles of the coarsest cloud that speeds were held against; zero where there was none.
     pub coarser_particles: usize,
     /// Linear iterations of all columns.
     pub linear_iterations: usize,
@@ -118,6 +121,9 @@ pub struct FlutterAt {
     pub cpu_seconds: f64,
     /// What makes results doubtful.
     pub warnings: Vec<String>,
+    /// What is to be known of them.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub notes: Vec<String>,
 }
 
 /// A limit cycle.

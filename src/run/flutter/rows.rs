@@ -138,8 +138,11 @@ pub struct Doubt {
     pub altitude: Option<[f64; 2]>,
     /// Greatest damping g there, growth positive; in a gap the least.
     pub damping: f64,
-    /// The same on the coarser cloud.
+    /// The same on a coarser cloud.
     pub damping_coarser: f64,
+    /// Spacing of that cloud over that of this one.
+    #[serde(default)]
+    pub spacing_ratio: f64,
 }
 
 /// What is left to the design speed.

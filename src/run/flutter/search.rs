@@ -5,7 +5,7 @@ use num_complex::Complex64;
 
 use super::super::record::Log;
 use super::super::studies::{ForceSource, Forces};
-use super::held::{Held, Mark};
+use super::held::{Held, Mark, Translation};
 use super::record::FlutterAt;
 use super::rows::{Bars, FlutterRow, MotionRow};
 use super::scales::Scales;
@@ -22,8 +22,8 @@ const MISFIT: f64 = 1e-7;
 const BEYOND: f64 = 2.0;
 /// A frequency that forces are computed at for a harmonic, over that of the harmonic: it goes on to rise.
 const ABOVE: f64 = 1.1;
-/// Rate of growth over the root of a motion that is told where it begins.
-const GROWS: f64 = 1e-3;
+/// Square of the frequency that the softest spring has, over the largest: a body is free without it.
+const SOFTEST: f64 = 1e-9;
 /// Frequencies that are nearer to one another than this part are one.
 const SAME: f64 = 5e-4;
 
@@ -40,6 +40,8 @@ pub(super) struct Search<'a> {
     units: Vec<f64>,
     /// Coordinates of the steady flow.
     still: Vec<f64>,
+    /// Displacements that no steady force follows.
+    translations: Vec<Translation>,
     samples: Vec<Sample>,
     iterations: usize,
     residual: f64,
@@ -54,6 +56,10 @@ struct Solved {
     /// λ where nothing flows, mode by mode.
     in_still_air: Vec<Complex64>,
     crossings: Vec<Crossing>,
+    /// Modes that grow from where forces are known for the first time, and where their growth is beyond doubt.
+    from_start: Vec<(usize, Point)>,
+    /// Coordinates in which the body is free, and where divergence begins when the softest springs are put there.
+    free: Option<(Vec<usize>, Option<f64>)>,
 }
 
 impl<'a> Search<'a> {
@@ -61,7 +67,8 @@ impl<'a> Search<'a> {
     pub(super) fn new(held: &Held, scales: &'a Scales, plan: &'a Plan, samples: Vec<Sample>, residual: f64) -> Self {
         let (matrices, names) = (held.matrices.clone(), held.names.clone());
         let (units, still) = (held.units(scales.semichord), vec![0.0; names.len()]);
-        Self { scales, plan, matrices, names, units, still, samples, iterations: 0, residual }
+        let translations = held.translations.clone();
+        Self { scales, plan, matrices, names, units, still, translations, samples, iterations: 0, residual }
     }
 
     /// Computes forces at the angular frequency `omega`; `None` when the monitor says stop.
@@ -200,18 +207,56 @@ impl<'a> Search<'a> {
         let Some(fit) = Rational::of(samples, MISFIT) else { return Solved::default() };
         let speed = |x: f64| self.scales.at(x).speed;
         // motions that do not oscillate, divergence among them, have the forces found at rest where these are known
-        let rest = samples.first().filter(|s| s.0 == 0.0);
+        let rest = samples.first().filter(|s| s.0 == 0.0).map(|s| self.at_rest(s));
         let fitted = |kappa: f64| fit.at(Complex64::new(0.0, kappa));
-        let forces = |kappa: f64| rest.filter(|_| kappa == 0.0).map_or_else(|| fitted(kappa), |s| s.1.clone());
+        let forces = |kappa: f64| rest.clone().filter(|_| kappa == 0.0).unwrap_or_else(|| fitted(kappa));
         let flutter = Flutter::new(&self.matrices, &forces).varying(self.scales.varied(&speed));
         let upto = self.scales.upto(self.plan.most);
         let mut branches = flutter.branches(upto);
         let (mut crossings, still) = (flutter.crossings(&branches, upto), flutter.still_motions(&branches, upto));
         // at the lowest speeds forces hardly act, and would be guessed
-        let highest = self.highest_told();
+        let (highest, known) = (self.highest_told(), self.highest() * (1.0 + SAME));
         branches.iter_mut().for_each(|b| b.retain(|p| p.lambda.im.abs() <= highest * p.speed));
-        crossings.retain(|c| c.kappa <= highest);
-        Solved { branches, still, in_still_air: flutter.in_still_air(), crossings }
+        // what grows from zero on has one frequency there, at which forces are known or are not
+        let begins_at_zero = |c: &Crossing| c.kind == Kind::Flutter && c.x == 0.0;
+        crossings.retain(|c| c.kappa <= if begins_at_zero(c) { known } else { highest });
+        let of_known = |b: &Vec<Point>| b.iter().position(|p| p.lambda.im <= known * p.speed).unwrap_or(b.len());
+        let grows = |(m, b): (usize, &Vec<Point>)| {
+            let own = &b[of_known(b)..];
+            flutter.grows_from(m, own).map(|k| (m, own[k].clone()))
+        };
+        let from_start = branches.iter().enumerate().filter_map(grows).collect();
+        let free = self.free(&flutter, &forces);
+        Solved { branches, still, in_still_air: flutter.in_still_air(), crossings, from_start, free }
+    }
+
+    /// Forces of steady displacements: none where all bodies are displaced by the same way.
+    fn at_rest(&self, (_, forces): &Sample) -> Vec<Complex64> {
+        let mut forces = forces.clone();
+        self.translations.iter().for_each(|t| t.clear(&mut forces));
+        forces
+    }
+
+    /// Coordinates in which the body is free, and where divergence begins when springs hold it there, however soft; `None` where it is held.
+    fn free(&self, flutter: &Flutter<'_>, forces: &dyn Fn(f64) -> Vec<Complex64>) -> Option<(Vec<usize>, Option<f64>)> {
+        let (n, displacements) = (self.names.len(), flutter.free_displacements());
+        let largest = |shape: &Vec<Complex64>| {
+            let share = |j: &usize| shape[*j].norm() / self.units[*j];
+            (0..n).max_by(|a, b| share(a).total_cmp(&share(b)))
+        };
+        let mut coordinates: Vec<usize> = displacements.iter().filter_map(largest).collect();
+        coordinates.sort_unstable();
+        coordinates.dedup();
+        if coordinates.is_empty() {
+            return None;
+        }
+        let mut softly = self.matrices.clone();
+        let square = flutter.natural().last().map_or(0.0, |mode| mode.0 * mode.0);
+        coordinates.iter().for_each(|j| softly.stiffness[j * (n + 1)] += SOFTEST * square * softly.mass[j * (n + 1)]);
+        let speed = |x: f64| self.scales.at(x).speed;
+        let held = Flutter::new(&softly, forces).varying(self.scales.varied(&speed));
+        let first = held.crossings(&[], self.upto()).into_iter().map(|c| c.x).find(|x| *x > 0.0);
+        Some((coordinates, first))
     }
 
     /// The highest angular frequency of motions that are told.
@@ -231,8 +276,12 @@ impl<'a> Search<'a> {
         let speed = |x: f64| self.scales.at(x).speed;
         let forces = |kappa: f64| fit.at(Complex64::new(0.0, kappa));
         let flutter = Flutter::new(&self.matrices, &forces).varying(self.scales.varied(&speed));
-        let found = crossings.iter().map(|c| flutter.damping_perturbation(c)).collect();
-        let first = crossings.iter().find(|c| c.kind == Kind::Flutter).or(crossings.iter().find(|c| c.x > 0.0));
+        // nothing acts at zero
+        let acts = |c: &&Crossing| c.x > 0.0;
+        let found =
+            crossings.iter().map(|c| Some(c).filter(acts).and_then(|c| flutter.damping_perturbation(c))).collect();
+        let moving = || crossings.iter().filter(acts);
+        let first = moving().find(|c| c.kind == Kind::Flutter).or(moving().next());
         let stream = first.map_or_else(|| self.scales.at(1.0), |c| self.scales.at(c.x));
         let last = self.samples.last().map_or(0.0, |s| s.0);
         let system = || StateSpaceAt::of((&self.matrices, &self.names), &forces, last, (&stream, self.scales));
@@ -247,8 +296,10 @@ impl<'a> Search<'a> {
                 BEYOND * s.reduced_frequency(self.highest())
             ));
         }
-        let (growing_from_start, told) = self.grow_from_the_start(solved).into_iter().unzip();
+        let (names, told): (Vec<_>, Vec<_>) = self.grow_from_the_start(solved).into_iter().unzip();
+        let growing_from_start = names.into_iter().flatten().collect();
         warnings.extend::<Vec<String>>(told);
+        let notes = self.of_a_free_body(solved).into_iter().collect();
         let (checks, state_space) = self.checked(crossings);
         let rows = crossings.iter().zip(errors).zip(&checks);
         FlutterAt {
@@ -271,28 +322,62 @@ impl<'a> Search<'a> {
             residual: self.residual,
             growing_from_start,
             warnings,
+            notes,
             ..FlutterAt::default()
         }
     }
 
-    /// What grows already where it is told for the first time, and so has no crossing: name and words.
-    fn grow_from_the_start(&self, solved: &Solved) -> Vec<(String, String)> {
-        let highest = self.highest();
-        let first = |b: &Vec<Point>| b.iter().find(|p| p.lambda.im <= highest * p.speed).cloned();
-        let grows = |(m, b): (usize, &Vec<Point>)| {
-            let point = first(b).filter(|p| p.lambda.re > GROWS * p.lambda.norm())?;
-            let crossed = solved.crossings.iter().any(|c| c.branch == Branch::Mode(m) && c.x <= point.x);
-            (!crossed).then(|| {
-                let (name, damping) = (name(Branch::Mode(m)), 2.0 * point.lambda.re / point.lambda.norm());
-                let words = format!(
-                    "{name} grows already at the lowest speed at which its forces are known, {:.4} of that of the case (g {damping:+.4}): \
-                     it has no crossing there",
-                    point.speed
-                );
-                (name, words)
-            })
+    /// What grows already where it is told for the first time: its name where it has no crossing, and words.
+    fn grow_from_the_start(&self, solved: &Solved) -> Vec<(Option<String>, String)> {
+        let grows = |(m, point): &(usize, Point)| {
+            let mut own = solved.crossings.iter().filter(|c| c.branch == Branch::Mode(*m) && c.x <= point.x);
+            let (name, damping) = (name(Branch::Mode(*m)), 2.0 * point.lambda.re / point.lambda.norm());
+            match own.next() {
+                None => {
+                    let words = format!(
+                        "{name} grows already at the lowest {} at which its forces are known, {:.4} of that of the case (g {damping:+.1e}): \
+                         it has no crossing there",
+                        self.scales.named(),
+                        point.x
+                    );
+                    Some((Some(name), words))
+                }
+                Some(c) if c.x == 0.0 && c.kind == Kind::Flutter => Some((None, self.from_zero(&name, point, damping))),
+                Some(_) => None,
+            }
         };
-        solved.branches.iter().enumerate().filter_map(grows).collect()
+        solved.from_start.iter().filter_map(grows).collect()
+    }
+
+    /// Words for a motion that grows at every density.
+    fn from_zero(&self, name: &str, point: &Point, damping: f64) -> String {
+        let stream = self.scales.numbers(point.x);
+        let place = match stream.altitude {
+            Some(altitude) => format!("{:.1} km of altitude", altitude / 1000.0),
+            None => format!("{:.1e} of the density of the case", point.x),
+        };
+        format!(
+            "{name} grows in however thin a gas, already at {place} (g {damping:+.1e}): its flutter is told at the density 0; structural damping, \
+             of which there is too little for this, would move it"
+        )
+    }
+
+    /// Words for divergence of a body that is free, beside that of one that springs hold softly.
+    fn of_a_free_body(&self, solved: &Solved) -> Option<String> {
+        let (coordinates, softly) = solved.free.as_ref()?;
+        let c = solved.crossings.iter().find(|c| c.kind == Kind::Divergence && c.x > 0.0)?;
+        let names: Vec<String> = coordinates.iter().map(|j| format!("`{}`", self.names[*j])).collect();
+        let (names, varied) = (names.join(", "), self.scales.named());
+        let other = match softly {
+            Some(x) => format!("it begins at {x:.4}"),
+            None => "there is none as far as was looked at".to_owned(),
+        };
+        Some(format!(
+            "{} at {:.4} of the {varied} of the case is that of a body that is free in {names} and accelerates under its load (inertia relief): with a \
+             spring of {names}, however soft, {other}",
+            name(c.branch),
+            c.x
+        ))
     }
 
     /// Motions at all speeds: each mode from still air on, then those that grow without oscillating.
@@ -371,7 +456,7 @@ impl<'a> Search<'a> {
             equivalent_airspeed: stream.equivalent_airspeed,
             density: stream.density,
             dynamic_pressure: stream.dynamic_pressure,
-            mass_ratio: s.mass_ratio.map(|mu| mu * s.reference.density / stream.density),
+            mass_ratio: s.mass_ratio.map(|mu| mu * s.reference.density / stream.density).filter(|mu| mu.is_finite()),
             altitude: stream.altitude,
             reduced_frequency: s.reduced_frequency(c.kappa),
             frequency: s.cycles * c.frequency,
@@ -432,3 +517,6 @@ fn changed(crossing: &Crossing, before: &[Crossing]) -> f64 {
     };
     like.map(apart).fold(f64::INFINITY, f64::min)
 }
+
+#[cfg(test)]
+mod tests;

@@ -200,7 +200,7 @@ impl Skin {
 }
 
 /// Displacements of all points of the surface per unit of each coordinate of a body.
-fn moves<const D: usize>(surface: &Surface<D>, body: &Attached<D>, units: &[f64]) -> Vec<Vec<[f64; 3]>> {
+pub(super) fn moves<const D: usize>(surface: &Surface<D>, body: &Attached<D>, units: &[f64]) -> Vec<Vec<[f64; 3]>> {
     let n = body.structure.len();
     let placement = body.structure.placement(&vec![0.0; n]);
     let mut all = vec![vec![[0.0; 3]; surface.vertices.len()]; n];

@@ -188,7 +188,14 @@ mod tests {
         let matrices = Matrices { mass: vec![0.0; n], damping: vec![0.0; n], stiffness: vec![0.0; n] };
         let mark = Mark { pivot: Some(vec![0.25, 0.0]), shape: None };
         let names: Vec<String> = names.iter().map(|n| (*n).to_owned()).collect();
-        Held { chord: 1.0, marks: vec![mark; names.len()], names, matrices, springs: Vec::new() }
+        Held {
+            chord: 1.0,
+            marks: vec![mark; names.len()],
+            names,
+            matrices,
+            springs: Vec::new(),
+            translations: Vec::new(),
+        }
     }
 
     #[test]

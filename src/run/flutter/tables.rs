@@ -45,7 +45,7 @@ const CROSSING_COLUMNS: [&str; 30] = [
     "holding_damping",
     "margin",
 ];
-const DOUBT_COLUMNS: [&str; 15] = [
+const DOUBT_COLUMNS: [&str; 16] = [
     "mach",
     "branch",
     "kind",
@@ -61,6 +61,7 @@ const DOUBT_COLUMNS: [&str; 15] = [
     "dynamic_pressure_end",
     "altitude",
     "altitude_end",
+    "spacing_ratio",
 ];
 const CYCLE_COLUMNS: [&str; 18] = [
     "mach",
@@ -208,6 +209,6 @@ fn doubt(mach: f64, d: &Doubt) -> Vec<Entry> {
     let none = [f64::NAN; 2];
     let (eas, altitude) = (d.equivalent_airspeed.unwrap_or(none), d.altitude.unwrap_or(none));
     let ends = [d.speed_ratio, d.speed, eas, d.dynamic_pressure, altitude];
-    let numbers = [d.damping, d.damping_coarser].into_iter().chain(ends.into_iter().flatten());
+    let numbers = [d.damping, d.damping_coarser].into_iter().chain(ends.into_iter().flatten()).chain([d.spacing_ratio]);
     head.into_iter().chain(numbers.map(Entry::from)).collect()
 }

@@ -6,7 +6,7 @@ use num_complex::Complex64;
 use super::super::error::RunError;
 use super::super::folder::Places;
 use super::super::monitor::{Monitor, Quiet};
-use super::super::one_cloud::coarser;
+use super::super::one_cloud::{COARSER, coarser};
 use super::super::record::summary::Summary;
 use super::super::session::{Outcome, Session};
 use super::cloud_error;
@@ -42,6 +42,14 @@ pub(super) fn columns(
                 column.cm[1],
                 100.0 * column.nonlinearity.unwrap_or_default()
             ));
+            if let Some(change) = column.nonlinearity.filter(|change| *change > matrices.linearity) {
+                monitor.warn(&format!(
+                    "k = {k}, {}: halving the amplitude changes the forces by {:.2} %, more than `gaf.linearity` = {} %",
+                    column.mode,
+                    100.0 * change,
+                    100.0 * matrices.linearity
+                ));
+            }
             matrices.columns.push(column);
             keep(matrices)?;
             match swing.on_coarser(&Case { cloud, accuracy: None, ..own(1.0) }, &places.input, monitor)? {
@@ -51,7 +59,7 @@ pub(super) fn columns(
             }
         }
     }
-    cloud_error::tell(&mut matrices.columns, &coarse);
+    cloud_error::tell(&mut matrices.columns, &[(COARSER, coarse)]);
     keep(matrices)?;
     Ok(true)
 }
@@ -119,7 +127,7 @@ impl Swing<'_> {
 
     /// The column of the case `own` on a cloud with twice the spacing.
     fn on_coarser(&self, own: &Case, input: &Path, monitor: &mut dyn Monitor) -> Result<Asked, RunError> {
-        let Some(coarse) = coarser(own).filter(|_| self.plan.cloud_error) else { return Ok(Asked::Silent) };
+        let Some(coarse) = coarser(own, COARSER).filter(|_| self.plan.cloud_error) else { return Ok(Asked::Silent) };
         Ok(match self.solved(&coarse, 1.0, input, &mut Quiet { monitor }) {
             Ok(Some((swung, _))) => Asked::Told(Box::new(self.column(&swung, None))),
             Ok(None) => Asked::Stopped,

@@ -1,8 +1,8 @@
 //! All columns of the matrices as small motions about one steady flow.
 //!
 //! What the columns of harmonic balances tend to as their amplitudes go to nothing: one cloud, one steady flow, and a linear system for
-//! each mode and frequency (`studies::forces`); the same on a cloud with twice the spacing tells how far they are known. Rigid modes are rotations and shifts, not displacement fields, so that forces of the
-//! steady flow turn with the body as they do there.
+//! each mode and frequency (`studies::forces`); the same on coarser clouds tells how far they are known. Rigid
+//! modes are rotations and shifts, not displacement fields, so that forces of the steady flow turn with the body as they do there.
 use std::path::Path;
 
 use num_complex::Complex64;
@@ -10,7 +10,7 @@ use num_complex::Complex64;
 use super::super::accuracy::Forces;
 use super::super::error::RunError;
 use super::super::monitor::{Monitor, Quiet};
-use super::super::one_cloud::{coarser, on_one_cloud};
+use super::super::one_cloud::{BETWEEN, COARSER, coarser, on_one_cloud};
 use super::super::record::Log;
 use super::super::record::summary::Clock;
 use super::super::session::{Outcome, Session};
@@ -34,32 +34,51 @@ pub(super) fn columns(
         matrices.columns.extend(found);
         keep(matrices)
     };
-    let Some((cloud, solved)) = asked.about(&steady, &mut add, monitor)? else { return Ok(false) };
+    let Some(Flow { cloud, solved, mut shocks }) = asked.about(&steady, &mut add, monitor)? else { return Ok(false) };
     if !solved {
         monitor.warn("the steady flow did not converge: forces about it are doubtful");
         matrices.columns.iter_mut().for_each(|c| c.converged = false);
         keep(matrices)?;
     }
     let one = Case { cloud, accuracy: None, ..steady };
-    let Some(coarse) = coarser(&one).filter(|_| plan.cloud_error) else {
-        cloud_error::untold(plan, &one).iter().for_each(|why| monitor.note(why));
-        return Ok(true);
-    };
-    monitor.note("the same on a coarser cloud");
-    let mut other = Vec::new();
-    let mut add = |found: Vec<Column>| {
-        other.extend(found);
-        Ok(())
-    };
-    match asked.about(&coarse, &mut add, &mut Quiet { monitor }) {
-        Ok(Some((_, true))) => cloud_error::tell(&mut matrices.columns, &other),
-        Ok(Some(_)) => monitor.note("the coarser cloud tells nothing: the steady flow on it did not converge"),
-        Ok(None) => return Ok(false),
-        // a cloud that is too coarse for the body tells nothing of the one that is not
-        Err(problem) => monitor.note(&format!("the coarser cloud tells nothing: {problem}")),
+    let mut others = Vec::new();
+    for ratio in [COARSER, BETWEEN] {
+        if !plan.cloud_error || (ratio != COARSER && !shocks) {
+            break;
+        }
+        let Some(coarse) = coarser(&one, ratio) else { continue };
+        monitor.note(&format!("the same on a cloud with {ratio} times the spacing"));
+        let mut other = Vec::new();
+        let mut add = |found: Vec<Column>| {
+            other.extend(found);
+            Ok(())
+        };
+        match asked.about(&coarse, &mut add, &mut Quiet { monitor }) {
+            Ok(Some(flow)) if flow.solved => {
+                shocks |= flow.shocks;
+                others.push((ratio, other));
+            }
+            Ok(Some(_)) => monitor.note("the coarser cloud tells nothing: the steady flow on it did not converge"),
+            Ok(None) => return Ok(false),
+            // a cloud that is too coarse for the body tells nothing of the one that is not
+            Err(problem) => monitor.note(&format!("the coarser cloud tells nothing: {problem}")),
+        }
     }
+    if coarser(&one, COARSER).is_none() {
+        cloud_error::untold(plan, &one).iter().for_each(|why| monitor.note(why));
+    }
+    cloud_error::tell(&mut matrices.columns, &others);
     keep(matrices)?;
     Ok(true)
+}
+
+/// A steady flow that forces were found about.
+struct Flow {
+    cloud: Cloud,
+    /// True where it came to rest.
+    solved: bool,
+    /// True where it is faster than sound somewhere.
+    shocks: bool,
 }
 
 /// What is asked of a steady flow.
@@ -72,17 +91,18 @@ struct Asked<'a> {
 }
 
 impl Asked<'_> {
-    /// Hands the columns about the flow of the case `steady` to `add`, frequency by frequency; the cloud that they were found on and
-    /// whether the flow converged, `None` when the monitor says stop.
+    /// Hands the columns about the flow of the case `steady` to `add`, frequency by frequency; that flow, `None` when the monitor
+    /// says stop.
     fn about(
         &self,
         steady: &Case,
         add: &mut dyn FnMut(Vec<Column>) -> Result<(), RunError>,
         monitor: &mut dyn Monitor,
-    ) -> Result<Option<(Cloud, bool)>, RunError> {
+    ) -> Result<Option<Flow>, RunError> {
         let mut session = Session::open(steady, self.input)?;
-        let mut stopped = false;
+        let (mut stopped, mut shocks) = (false, false);
         let mut then = |source: &mut dyn ForceSource, log: &mut Log<'_>| {
+            shocks = source.is_supersonic();
             for &k in &self.plan.reduced_frequencies {
                 stopped = stopped || log.stopped();
                 if stopped {
@@ -108,7 +128,7 @@ impl Asked<'_> {
         };
         let Outcome::Finished(summary) = session.solve_then(monitor, Some(&mut then))? else { return Ok(None) };
         let solved = summary.succeeded();
-        Ok((!stopped).then_some((summary.cloud, solved)))
+        Ok((!stopped).then_some(Flow { cloud: summary.cloud, solved, shocks }))
     }
 }
 

@@ -39,6 +39,7 @@ pub(crate) fn around<const D: usize>(
     let mut add = |p: Part<D>| {
         axes.add(&mut sum.load, &p.x.to_3d(), &p.force.to_3d());
         axes.turn(&mut sum.load, &p.carried[0].to_3d(), &p.carried[1].to_3d());
+        axes.twist(&mut sum.load, &p.couple.to_3d());
         sum.mass += p.mass;
         sum.energy += p.energy;
         sum.passed[0] += p.passed[0];

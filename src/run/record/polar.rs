@@ -11,7 +11,7 @@ use crate::observe::table::{Entry, write_csv};
 /// Name of the table in the run folder.
 pub(crate) const FILE: &str = "polar.csv";
 /// Its columns; angles in degrees, time in seconds of the processor.
-const COLUMNS: [&str; 20] = [
+const COLUMNS: [&str; 21] = [
     "point",
     "mach",
     "alpha_deg",
@@ -32,6 +32,7 @@ const COLUMNS: [&str; 20] = [
     "cpu_seconds",
     "converged",
     "reason",
+    "long_bars",
 ];
 
 /// One point of a polar.
@@ -49,6 +50,9 @@ pub struct PolarPoint {
     pub loads_error: Option<Coefficients>,
     /// Whether they are as short as was asked for.
     pub within_accuracy: Option<bool>,
+    /// Names of the loads whose error bars are longer than was asked for.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub long_bars: Vec<String>,
     /// Particles, images left out.
     pub particles: usize,
     /// Orders of magnitude that the residual fell on the last cloud.
@@ -104,6 +108,7 @@ impl PolarPoint {
             loads_momentum_balance: None,
             loads_error: None,
             within_accuracy: None,
+            long_bars: Vec::new(),
             particles: 0,
             residual_drop: 0.0,
             iterations: 0,
@@ -119,6 +124,14 @@ impl PolarPoint {
         self.within_accuracy == Some(false)
     }
 
+    /// Which error bars are longer than was asked for, for people.
+    pub fn long_in_words(&self) -> String {
+        match &self.long_bars[..] {
+            [] => "longer error bars than asked for".to_owned(),
+            names => format!("error bar of {} longer than asked for", names.join(", ")),
+        }
+    }
+
     /// The point in one line for those who watch.
     pub fn told(&self) -> String {
         let at = format!("M {}, alpha {} deg", self.mach, self.alpha_deg);
@@ -131,7 +144,7 @@ impl PolarPoint {
             let all = [load("CL", c.cl, |b| b.cl), load("CD", c.cd, |b| b.cd), load("CM", c.cm, |b| b.cm)];
             all.join(", ")
         });
-        let loads = loads.map(|l| if self.is_short() { l + " (longer error bars than asked for)" } else { l });
+        let loads = loads.map(|l| if self.is_short() { format!("{l} ({})", self.long_in_words()) } else { l });
         let parts = [Some(at), loads, (!self.converged).then(|| format!("not converged: {}", self.reason))];
         parts.into_iter().flatten().collect::<Vec<_>>().join(": ")
     }
@@ -152,6 +165,7 @@ impl PolarPoint {
         row.push(self.cpu_seconds.into());
         row.push(flag(self.converged));
         row.push(self.reason.as_str().into());
+        row.push(self.long_bars.join(", ").as_str().into());
         row
     }
 }

@@ -307,7 +307,9 @@ pub(crate) fn equations_of(case: &Case) -> u32 {
     let air = (&case.flow, &case.boundary, &case.initial, &case.scheme);
     let structures: Vec<_> = case.structures.iter().map(Structure::as_given).collect();
     let solids = (&case.bodies, &case.motion, &structures);
-    crc32fast::hash(format!("{air:?} {solids:?}").as_bytes())
+    // without contact the same number as before it was asked for
+    let contact = case.contact.as_ref().map_or_else(String::new, |contact| format!(" {contact:?}"));
+    crc32fast::hash(format!("{air:?} {solids:?}{contact}").as_bytes())
 }
 
 /// Sources of refinement as numbers.

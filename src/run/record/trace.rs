@@ -211,10 +211,10 @@ impl Trace {
         Self { periods, ..self }
     }
 
-    /// Number of whole periods that loops and harmonics are the mean of.
+    /// Number of whole periods that loops and harmonics are the mean of. The first sample lies one step after the start of the march.
     fn whole(&self, period: f64) -> u32 {
-        let (first, last) = (self.samples.first(), self.samples.last());
-        let span = first.zip(last).map_or(0.0, |(a, b)| (b.time - a.time) / period + SLACK);
+        let [first, second, .., last] = &self.samples[..] else { return 1 };
+        let span = (last.time - first.time + (second.time - first.time)) / period + SLACK;
         self.periods.min(span as u32).max(1)
     }
 
@@ -224,7 +224,7 @@ impl Trace {
         let last = end - (end - t).rem_euclid(period);
         let count = self.whole(period);
         // the first sample lies one step after the start of the march, where the end of the period stands
-        let (first, start) = (self.samples.first().map_or(0.0, |m| m.time), end - period);
+        let (first, start) = (self.samples.first().map_or(0.0, |m| m.time), end - f64::from(count) * period);
         let near = |t: f64| {
             if t >= first {
                 return self.loads_near(t);
@@ -408,6 +408,6 @@ mod tests {
         assert!((at(&one, 0.01) - 2.0).abs() < 1e-12, "between the end of a period and its first sample");
         let two = trace.over(2);
         assert!((at(&two, 0.25) - 2.5).abs() < 1e-12 && (two.loads_at(0.6, 1.0)[1] - 1.0).abs() < 1e-12);
-        assert_eq!((two.whole(1.0), two.over(9).whole(1.0)), (2, 2));
+        assert_eq!((two.whole(1.0), two.over(9).whole(1.0)), (2, 3));
     }
 }

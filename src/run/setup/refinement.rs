@@ -36,8 +36,16 @@ pub(crate) fn adapted<S: HasGas<D>, const D: usize>(
             behind_shocks(site.case, surface, &field(site.case, &view), next.factor)
         }
         (Some(asked), Some(surface)) => in_family(site.case, surface, &view, (&asked, [this.factor, next.factor])),
+        (None, Some(surface)) => on_its_own(site.case, surface, &view),
         _ => adapt::sources(&view, &site.case.adapt.sensors, finest(site.case)),
     }
+}
+
+/// What the sensors ask of the one cloud of a case, within the particles that `[adapt]` allows.
+fn on_its_own<const D: usize>(case: &Case, surface: &Surface<D>, view: &View<'_, D>) -> Vec<Source<D>> {
+    let all = adapt::sources(view, &case.adapt.sensors, finest(case));
+    let at = |coarser: f64| all.iter().map(|s| Source { spacing: coarser * s.spacing, ..*s }).collect();
+    affordable(case, surface, (case.adapt.particles as f64, 1.0), at)
 }
 
 /// Finest spacing that adaptation may ask for.

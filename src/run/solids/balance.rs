@@ -1,18 +1,15 @@
 //! Periodic motion of structures alone: the search harmonic after harmonic, what is recorded of the period, and checkpoints.
 use std::f64::consts::TAU;
 
-use serde_json::json;
-
 use super::super::error::RunError;
 use super::super::monitor::{Monitor, Tick};
-use super::super::record::saved;
 use super::march::{Marched, Study, Waves};
+use super::pace::Pace;
 use super::record::{PeriodicRow, ProbeHarmonic, Row, Work};
+use super::saved::{Saved, Sought};
 use super::setup::Built;
 use crate::case::{HarmonicCount, Harmonics};
 use crate::math::fourier::Instances;
-use crate::observe::checkpoint::{self, Array, Checkpoint, Field};
-use crate::observe::usage;
 use crate::solid::Structure;
 use crate::solid::forces::State;
 use crate::system::Mechanical;
@@ -65,19 +62,18 @@ struct Balance<'s, 'a, const D: usize> {
     omega: f64,
     /// Iterations with fewer harmonics, linear ones, and halvings.
     before: [u32; 3],
-    seconds: f64,
 }
 
 /// Finds the periodic motion, from the equilibrium under the mean load or from where a checkpoint has it.
 pub(super) fn solve<const D: usize>(
     study: &Study<'_, D>,
     plan: &Harmonics,
-    saved: Option<Checkpoint<'static>>,
+    saved: Option<&Saved>,
     monitor: &mut dyn Monitor,
 ) -> Result<Marched, RunError> {
     possible(study.built, plan)?;
     let omega = study.case.balance_frequency().ok_or(RunError::NoStage)?;
-    let mut balance = Balance { study, plan, omega, before: [0; 3], seconds: usage::cpu_seconds() };
+    let mut balance = Balance { study, plan, omega, before: [0; 3] };
     balance.all(saved, monitor)
 }
 
@@ -107,13 +103,15 @@ impl<'s, const D: usize> Balance<'s, '_, D> {
         Vibration::new(structure, Periodic { omega: self.omega, held, seen }, structure.solid.virgin())
     }
 
-    fn all(&mut self, saved: Option<Checkpoint<'static>>, monitor: &mut dyn Monitor) -> Result<Marched, RunError> {
+    fn all(&mut self, saved: Option<&Saved>, monitor: &mut dyn Monitor) -> Result<Marched, RunError> {
         let mut held = Instances::of_harmonics(0);
         let mut u = vec![0.0; self.study.built.structure.displacements()];
-        let mut place = None;
+        let (mut place, mut pace) = (None, Pace::new(&self.study.case.output, 0));
         if let Some(saved) = saved {
-            let (instances, found) = self.restored(&saved)?;
-            (held, place) = (instances, Some(found));
+            let found = saved.sought(self.plan, self.study.built)?;
+            let iterations = found.before[0] + found.place.iterations;
+            pace = Pace::new(&self.study.case.output, u64::from(iterations));
+            (held, place, self.before) = (found.held, Some(found.place), found.before);
         }
         let stop = Stop { orders: self.plan.orders, tolerance: self.plan.tolerance, iterations: self.plan.iterations };
         loop {
@@ -125,7 +123,7 @@ impl<'s, const D: usize> Balance<'s, '_, D> {
                     Err(problem) => return Err(lost(&problem)),
                 },
             };
-            let stopped = self.search(&mut search, held, monitor)?;
+            let stopped = self.search(&mut search, held, &mut pace, monitor)?;
             let found = std::mem::take(&mut search.place);
             if stopped {
                 return Ok(self.marched(&vibration, held, &found, true));
@@ -151,6 +149,7 @@ impl<'s, const D: usize> Balance<'s, '_, D> {
         &mut self,
         search: &mut Forced<'_, '_, Structure<D>>,
         held: Instances,
+        pace: &mut Pace,
         monitor: &mut dyn Monitor,
     ) -> Result<bool, RunError> {
         while !search.finished() {
@@ -172,11 +171,9 @@ impl<'s, const D: usize> Balance<'s, '_, D> {
                 march: None,
                 point: None,
             });
-            let (stopped, now) = (monitor.stop(), usage::cpu_seconds());
-            let due = now - self.seconds >= self.study.case.output.checkpoint_time.0;
-            if (stopped || monitor.checkpoint() || due) && !search.finished() {
-                self.seconds = now;
-                self.keep(&search.place, held)?;
+            let (stopped, step) = (monitor.stop(), u64::from(self.before[0] + search.place.iterations));
+            if (stopped || monitor.checkpoint() || pace.is_due(step)) && !search.finished() {
+                pace.write(step, || self.keep(&search.place, held))?;
                 if stopped {
                     return Ok(true);
                 }
@@ -299,58 +296,7 @@ impl<'s, const D: usize> Balance<'s, '_, D> {
     /// Writes a checkpoint.
     fn keep(&self, place: &Place, held: Instances) -> Result<(), RunError> {
         let Some(out) = self.study.files.out else { return Ok(()) };
-        let field = |name: &str, values: &[f64]| Field {
-            name: name.to_owned(),
-            shape: vec![values.len()],
-            data: Array::F64(values.to_vec().into()),
-        };
-        let kept = Checkpoint {
-            meta: json!({
-                "kind": "periodic", "harmonics": held.harmonics(), "before": self.before, "within": place.within,
-                "iterations": place.iterations, "linear": place.linear, "halved": place.halved,
-            }),
-            fields: vec![
-                field("state", &place.u),
-                field("last_good", &place.last_good),
-                field("start", &place.start),
-                field("parts", &[place.reached, place.sought, place.first]),
-            ],
-        };
-        Ok(checkpoint::write(&out.join(saved::FILE), &kept)?)
-    }
-
-    /// What a checkpoint holds.
-    fn restored(&mut self, saved: &Checkpoint<'_>) -> Result<(Instances, Place), RunError> {
-        let untrue = |problem| RunError::Untrue { file: saved::FILE, problem };
-        let whole = |value: Option<&serde_json::Value>| {
-            let number = value.and_then(serde_json::Value::as_u64).map(|n| n as u32);
-            number.ok_or_else(|| untrue("it is of no periodic motion"))
-        };
-        let meta = |name: &str| whole(saved.meta.get(name));
-        let held = Instances::of_harmonics(meta("harmonics")? as usize);
-        for (k, before) in self.before.iter_mut().enumerate() {
-            *before = whole(saved.meta.get("before").and_then(|b| b.get(k)))?;
-        }
-        let parts = saved.f64("parts")?;
-        let [reached, sought, first] = parts[..] else { return Err(untrue("its parts are broken")) };
-        let list = |name: &str| saved.f64(name).map(<[f64]>::to_vec);
-        let place = Place {
-            u: list("state")?,
-            last_good: list("last_good")?,
-            start: list("start")?,
-            reached,
-            sought,
-            first,
-            within: meta("within")?,
-            iterations: meta("iterations")?,
-            linear: meta("linear")?,
-            halved: meta("halved")?,
-        };
-        let n = self.study.built.structure.displacements() * held.count();
-        match [&place.u, &place.last_good, &place.start].iter().all(|list| list.len() == n) {
-            true => Ok((held, place)),
-            false => Err(untrue("it is of another structure")),
-        }
+        Sought::write(place, (held, self.before), self.study.case, out)
     }
 }
 

@@ -105,9 +105,14 @@ impl Files<'_> {
         Ok(write_csv(&path, names, skin.map(line))?)
     }
 
+    /// The folder of a run that draws pictures.
+    fn drawn(&self) -> Option<&Path> {
+        self.out.filter(|_| self.case.output.report)
+    }
+
     /// The shape of a plane mode, its greatest displacement a tenth of the body: `pictures/mode-1.png`.
     fn draw_mode<const D: usize>(&self, k: usize, built: &Built<D>, mode: &Mode) -> Result<(), RunError> {
-        let Some(out) = self.out else { return Ok(()) };
+        let Some(out) = self.drawn() else { return Ok(()) };
         let solid = &built.structure.solid;
         let size = SHOWN * Bounds::around(&solid.particles.x).extent().max_abs();
         let shape: &[[f64; D]] = mode.shape.as_chunks().0;
@@ -119,7 +124,7 @@ impl Files<'_> {
 
     /// Pictures of the structure as deformed.
     pub(super) fn pictures<const D: usize>(&self, built: &Built<D>, u: &[f64]) -> Result<(), RunError> {
-        let Some(out) = self.out else { return Ok(()) };
+        let Some(out) = self.drawn() else { return Ok(()) };
         draw(out, &built.structure.solid, &built.structure.state(0.0, u))
     }
 

@@ -1,18 +1,16 @@
 //! Marching and equilibrium of structures alone: the loop, what is recorded on the way, and checkpoints.
-use serde_json::json;
-
 use super::super::error::RunError;
 use super::super::monitor::{MarchTick, Monitor, Tick};
-use super::super::record::saved;
+use super::super::record::saved::FILE;
 use super::files::Files;
+use super::pace::Pace;
 use super::record::{PeriodicRow, ProbeHarmonic, Row, Work};
+use super::saved::{Saved, Standing};
 use super::setup::Built;
 use crate::case::{Case, Temporal};
 use crate::math::Vector;
-use crate::observe::checkpoint::{self, Array, Checkpoint, Field};
-use crate::observe::usage;
 use crate::solid::Structure;
-use crate::solid::forces::{Energy, State};
+use crate::solid::forces::State;
 use crate::time::structural::{Equilibrium, GeneralisedAlpha, LoadPlan, Newton, Plan};
 use crate::time::symplectic::{self, Symplectic};
 use crate::time::{Integrator, Mark, Memory, Past};
@@ -100,15 +98,15 @@ impl<const D: usize> Study<'_, D> {
     pub(super) fn march(
         &self,
         u: Vec<f64>,
-        saved: Option<Checkpoint<'static>>,
+        saved: Option<&Saved>,
         monitor: &mut dyn Monitor,
     ) -> Result<Marched, RunError> {
-        let Restored { past, u, mut rows, mut work } = match saved {
-            Some(saved) => restored(&saved, self.built.probes.len())?,
-            None => Restored { past: Past::default(), u, rows: Vec::new(), work: Work::default() },
+        let Standing { past, u, mut rows, mut work } = match saved {
+            Some(saved) => saved.standing(self.case, self.built)?,
+            None => Standing { past: Past::default(), u, rows: Vec::new(), work: Work::default() },
         };
+        let mut pace = Pace::new(&self.case.output, u64::from(past.iteration));
         let mut integrator = self.integrator(past, u);
-        let mut seconds = usage::cpu_seconds();
         if rows.is_empty() {
             rows.push(self.row(integrator.as_mut(), &work));
         }
@@ -118,7 +116,7 @@ impl<const D: usize> Study<'_, D> {
             if let Err(problem) = integrator.advance() {
                 self.keep(integrator.as_mut(), &rows, &work)?;
                 self.files.history(self.built, &rows)?;
-                let checkpoint = self.files.out.map(|out| out.join(saved::FILE).display().to_string());
+                let checkpoint = self.files.out.map(|out| out.join(FILE).display().to_string());
                 return Err(RunError::Time { source: Box::new(problem), reached: String::new(), checkpoint });
             }
             before = self.add_work(integrator.as_mut(), &before, &mut work);
@@ -129,10 +127,9 @@ impl<const D: usize> Study<'_, D> {
             }
             self.frame(integrator.as_mut(), mark.time, mark.last)?;
             stopped = monitor.stop();
-            let now = usage::cpu_seconds();
-            if stopped || monitor.checkpoint() || now - seconds >= self.case.output.checkpoint_time.0 {
-                seconds = now;
-                self.keep(integrator.as_mut(), &rows, &work)?;
+            let step = u64::from(mark.iteration);
+            if stopped || monitor.checkpoint() || pace.is_due(step) {
+                pace.write(step, || self.keep(integrator.as_mut(), &rows, &work))?;
             }
         }
         self.files.history(self.built, &rows)?;
@@ -290,60 +287,6 @@ impl<const D: usize> Study<'_, D> {
     ) -> Result<(), RunError> {
         let Some(out) = self.files.out else { return Ok(()) };
         let Memory::March(past) = integrator.memory() else { return Err(RunError::NoStage) };
-        let mut flat = Vec::new();
-        for row in rows {
-            let e = &row.energy;
-            flat.extend([f64::from(row.step), row.time, e.kinetic, e.strain, e.stabilisation, e.contact, e.dissipated]);
-            flat.extend([row.work.loads, row.work.supports, row.work.damped]);
-            flat.extend(row.probes.iter().flatten());
-        }
-        let field = |name: &str, values: Vec<f64>| Field {
-            name: name.to_owned(),
-            shape: vec![values.len()],
-            data: Array::F64(values.into()),
-        };
-        let kept = Checkpoint {
-            meta: json!({ "kind": "structure", "iteration": past.iteration, "halved": past.halved }),
-            fields: vec![
-                field("state", integrator.standing().state.to_vec()),
-                field("before", past.before),
-                field("clock", vec![past.time, past.last, past.next, work.loads, work.supports, work.damped]),
-                field("history", flat),
-            ],
-        };
-        Ok(checkpoint::write(&out.join(saved::FILE), &kept)?)
+        Standing::write(past, integrator.standing().state, (rows, work), self.case, out)
     }
-}
-
-/// What a checkpoint holds.
-struct Restored {
-    past: Past,
-    u: Vec<f64>,
-    rows: Vec<Row>,
-    work: Work,
-}
-
-fn restored(saved: &Checkpoint<'_>, probes: usize) -> Result<Restored, RunError> {
-    let untrue = |problem| RunError::Untrue { file: saved::FILE, problem };
-    let clock = saved.f64("clock")?;
-    let [time, last, next, loads, supports, damped] = clock[..] else { return Err(untrue("its clock is broken")) };
-    let whole = |name: &str| saved.meta.get(name).and_then(serde_json::Value::as_u64).map(|n| n as u32);
-    let past = Past {
-        time,
-        iteration: whole("iteration").ok_or_else(|| untrue("it does not say how far it came"))?,
-        halved: whole("halved").unwrap_or(0),
-        last,
-        next,
-        before: saved.f64("before")?.to_vec(),
-        ..Past::default()
-    };
-    let width = 10 + 3 * probes;
-    let rows = saved.f64("history")?.chunks_exact(width).map(|r| Row {
-        step: r[0] as u32,
-        time: r[1],
-        energy: Energy { kinetic: r[2], strain: r[3], stabilisation: r[4], contact: r[5], dissipated: r[6] },
-        work: Work { loads: r[7], supports: r[8], damped: r[9] },
-        probes: r[10..].as_chunks().0.to_vec(),
-    });
-    Ok(Restored { past, rows: rows.collect(), work: Work { loads, supports, damped }, u: saved.f64("state")?.to_vec() })
 }

@@ -1,26 +1,32 @@
 //! Structures of particles alone: equilibrium, marching and natural modes, without a gas.
 mod balance;
+mod cut;
 pub(super) mod files;
+mod filling;
 mod inspect;
 mod march;
 mod material;
 mod natural;
 mod own_modes;
+mod pace;
+mod probes;
 mod record;
+mod saved;
 pub(super) mod setup;
+mod size;
 mod spline_modes;
 mod summary;
+#[cfg(test)]
+mod tests;
 
 use std::path::Path;
 
 use super::error::RunError;
 use super::folder;
 use super::monitor::Monitor;
-use super::record::saved;
 use super::record::summary::Clock;
 use crate::case::{Case, PlaneState, Temporal};
 use crate::geometry::dimension;
-use crate::observe::checkpoint;
 use crate::solid::modes::{Mode, Wanted, modes};
 
 pub(super) use inspect::inspect_in_gas;
@@ -29,6 +35,7 @@ pub(super) use own_modes::{told_of_own_modes, with_own_modes};
 pub use record::{ModeRow, PeriodicRow, ProbeHarmonic, ProbeRow, SolidLedger, SolidSummary};
 
 pub(super) use files::von_mises;
+pub(super) use saved::Saved;
 
 use files::Files;
 use march::{Marched, Study};
@@ -92,8 +99,8 @@ pub(super) struct Job<'a> {
     pub(super) input: &'a Path,
     /// Folder of the run; nothing is written without one.
     pub(super) out: Option<&'a Path>,
-    /// From the checkpoint in that folder instead of its start.
-    pub(super) again: bool,
+    /// The checkpoint that it goes on from; from its start without one.
+    pub(super) from: Option<&'a Saved>,
 }
 
 /// Solves a structure alone.
@@ -106,22 +113,18 @@ pub(super) fn solve(job: &Job<'_>, monitor: &mut dyn Monitor) -> Result<Ended, R
 }
 
 fn study<const D: usize>(job: &Job<'_>, monitor: &mut dyn Monitor) -> Result<Ended, RunError> {
-    let Job { case, input, out, again } = *job;
+    let Job { case, input, out, from } = *job;
     let clock = Clock::start();
     let built = setup::build::<D>(case, input)?;
     built.notes.iter().for_each(|n| monitor.note(n));
     built.warnings.iter().for_each(|w| monitor.warn(w));
     let files = Files { case, out };
-    let saved = match out.filter(|_| again) {
-        Some(out) => Some(checkpoint::read(&out.join(saved::FILE))?),
-        None => None,
-    };
     let start = built.structure.start(|i| built.velocity[i]);
     let study = Study { case, built: &built, files: &files };
     let marched = match &case.time {
         Temporal::Modes(plan) if !plan.preload => Marched::at_rest(&built, start),
-        Temporal::Harmonics(plan) => balance::solve(&study, plan, saved, monitor)?,
-        _ => study.march(start, saved, monitor)?,
+        Temporal::Harmonics(plan) => balance::solve(&study, plan, from, monitor)?,
+        _ => study.march(start, from, monitor)?,
     };
     if marched.stopped {
         return Ok(Ended::Interrupted(marched.iteration));

@@ -2,9 +2,9 @@
 use std::path::Path;
 
 use super::super::error::RunError;
+use super::cut::cuts;
 use super::material::material;
 use super::natural::Natural;
-use super::setup::cuts;
 use crate::case::formula::Formula;
 use crate::case::{Case, ModeTable, Solid, SolidPlace, SolidSupport, StructureMode};
 use crate::geometry::{Surface, load_surface};

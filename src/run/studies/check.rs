@@ -61,7 +61,7 @@ struct Loads<'a, S, const D: usize> {
 impl<S: HasGas<D>, const D: usize> Observer<S> for Loads<'_, S, D> {
     fn begin(&mut self, now: &mut Now<'_, S>, log: &mut Log<'_>) -> Result<(), RunError> {
         self.time.push(now.mark().time);
-        let Standing { frame, work, state } = now.standing();
+        let Standing { frame, work, state, .. } = now.standing();
         let view = GasView::of(self.system, frame, state);
         self.loads.push(view.coefficients(&log.axes, self.system.gas_work(work)).unwrap_or_default());
         Ok(())

@@ -6,6 +6,7 @@
 use num_complex::Complex64;
 
 use super::super::look::{GasView, LoadFrame};
+use super::steady::is_supersonic;
 use super::swing::{Flow, swing};
 use crate::coupling::{Attached, Marches};
 use crate::math::sweep::norm;
@@ -48,6 +49,8 @@ pub(crate) trait ForceSource {
     fn forces(&mut self, omega: f64) -> Forces {
         self.forces_unless(omega, &|| false).unwrap_or_default()
     }
+    /// True where the steady flow is faster than sound somewhere: then it has shocks.
+    fn is_supersonic(&mut self) -> bool;
     /// q∞ S c: free-stream dynamic pressure, reference area (in the plane chord) and chord, in units of the solver.
     fn work_scale(&mut self) -> f64;
 }
@@ -210,6 +213,12 @@ impl<S: Marches<D>, const D: usize> ForceSource for SmallMotion<'_, S, D> {
         self.flow = Some(flow);
         forces.mean.iter_mut().zip(&self.still).for_each(|(f, still)| *f -= still);
         Ok(forces)
+    }
+
+    fn is_supersonic(&mut self) -> bool {
+        let work = self.system.gas_work(&mut self.work);
+        GasView::of(self.system, &self.frame, &self.state).walls(work);
+        is_supersonic(self.system.gas(), work)
     }
 
     fn work_scale(&mut self) -> f64 {

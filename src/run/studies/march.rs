@@ -169,7 +169,7 @@ fn renewed<S: HasGas<D>, const D: usize>(
 ) -> Result<Option<Renewed<D>>, RunError> {
     let gas_before = |u: &'_ [f64]| if u.is_empty() { Vec::new() } else { system.gas_state(u).to_vec() };
     let (before, older) = (gas_before(&past.before), gas_before(&past.older));
-    let Standing { frame, work, state } = integrator.standing();
+    let Standing { frame, work, state, .. } = integrator.standing();
     let (gas, ledger) = (system.gas(), &mut log.record.ledger);
     let states = (system.gas_state(state), [&before[..], &older[..]]);
     let found = match gas.reclouded(system.gas_frame(frame), states, system.gas_work(work), ledger) {

@@ -171,7 +171,7 @@ fn tell<S: HasGas<D>, const D: usize>(
     (log.record.drop, log.record.converged) = (relax.drop(), relax.finished());
     (log.record.bytes, log.record.linear) = (cost.bytes, cost.linear);
     log.record.began_steady = relax.began_steady();
-    let Standing { frame, work, state } = relax.standing();
+    let Standing { frame, work, state, .. } = relax.standing();
     let gas = GasView::of(system, frame, state);
     let loads = gas.coefficients(&log.axes, system.gas_work(work)).unwrap_or_default();
     let family = accuracy::asked(log.case);
@@ -220,8 +220,8 @@ fn is_lossless<const D: usize>(gas: &Fluid<D>, case: &Case) -> bool {
     gas.viscous_model.is_none() && CloudSpec::<D>::of_case(case).sides.iter().flatten().all(free)
 }
 
-/// True where the gas is faster than sound somewhere.
-fn is_supersonic<const D: usize>(gas: &Fluid<D>, work: &Work<D>) -> bool {
+/// True where the gas is faster than sound somewhere, whose states `work` holds.
+pub(super) fn is_supersonic<const D: usize>(gas: &Fluid<D>, work: &Work<D>) -> bool {
     let n = gas.discretisation.cloud.n_fluid;
     work.state[..n].iter().any(|q| q.velocity.norm() > gas.gas.sound_speed(q))
 }

@@ -19,7 +19,7 @@ impl<S: HasGas<D>, const D: usize> Observer<S> for CrossCheck<'_, S, D> {
         if passed(step.time, part) <= passed(now.before, part) {
             return Ok(());
         }
-        let Standing { frame, work, state } = now.standing();
+        let Standing { frame, work, state, .. } = now.standing();
         let view = GasView::of(self.system, frame, state);
         compare(&view, self.system.gas_work(work), log.record.iteration, step.time, log)
     }

@@ -107,11 +107,15 @@ pub(crate) fn drive<S: System>(
     observers: &mut [&mut dyn Observer<S>],
     log: &mut Log<'_>,
 ) -> Result<Ending, RunError> {
+    let start = integrator.check();
     let mut now = Now::at(integrator);
     for observer in observers.iter_mut() {
         observer.begin(&mut now, log)?;
     }
     let ending = loop {
+        if let Err(problem) = start {
+            break Ending::Failed(problem);
+        }
         if now.integrator.finished() {
             break Ending::Finished;
         }
@@ -119,7 +123,7 @@ pub(crate) fn drive<S: System>(
             break wish.into();
         }
         now.before = now.mark().time;
-        let step = match now.integrator.advance() {
+        let step = match now.integrator.advance().and_then(|step| now.integrator.check().map(|()| step)) {
             Ok(step) => step,
             Err(problem) => break Ending::Failed(problem),
         };

@@ -23,7 +23,7 @@ impl<S: Marches<D>, const D: usize> Observer<S> for FieldSeries<'_, S, D> {
         if passed(step.time, self.interval) <= passed(now.before, self.interval) {
             return Ok(());
         }
-        let Standing { frame, work, state } = now.standing();
+        let Standing { frame, work, state, .. } = now.standing();
         let view = GasView::of(self.system, frame, state);
         let to = Target { case: log.case, out: &journal.out };
         write_series(&to, &view, self.system.gas_work(work), self.interval)?;
@@ -54,7 +54,7 @@ impl<S: HasGas<D>, const D: usize> Observer<S> for Film<'_, S, D> {
         if picture.is_none() && field.is_none() {
             return Ok(());
         }
-        let Standing { frame, work, state } = now.standing();
+        let Standing { frame, work, state, .. } = now.standing();
         let view = GasView::of(self.system, frame, state);
         let to = Target { case: log.case, out: &journal.out };
         let work = self.system.gas_work(work);

@@ -15,7 +15,7 @@ pub(crate) struct Structures<'a, S, const D: usize> {
 
 impl<S: HasGas<D>, const D: usize> Observer<S> for Structures<'_, S, D> {
     fn step(&mut self, step: &Step, now: &mut Now<'_, S>, log: &mut Log<'_>) -> Result<(), RunError> {
-        let Standing { frame, work, state } = now.standing();
+        let Standing { frame, work, state, .. } = now.standing();
         match self.system.exchange(frame, state, work) {
             Some(exchange) => log.structure(log.record.iteration, &sample(step.time, exchange, &log.units)),
             None => Ok(()),

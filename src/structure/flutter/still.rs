@@ -6,7 +6,8 @@
 //!
 //! A coordinate without stiffness has a ∝ p: it diverges at any speed, p = 0, or the stream holds it. What neither structure nor stream
 //! feel, as the place of a free body, stays neutral at every speed. Those displacements are taken out of A, which leaves the others
-//! as they are when the free body accelerates under its load (inertia relief; Rodden and Love 1985, doi:10.2514/3.45236).
+//! as they are when the free body accelerates under its load (inertia relief; Rodden and Love 1985, doi:10.2514/3.45236). A spring there,
+//! however soft it is, bears the load instead: the divergence of a free body is not the limit of that of a softly held one.
 use std::ops::Range;
 
 use num_complex::Complex64;
@@ -39,6 +40,8 @@ pub(super) struct Felt {
     free: usize,
     /// Displacements in modes, one after another.
     basis: Vec<Vec<f64>>,
+    /// What neither structure nor stream feel, in modes.
+    unfelt: Vec<Vec<f64>>,
     stiffness: Vec<f64>,
     forces: Vec<f64>,
     damping: Vec<f64>,
@@ -102,6 +105,12 @@ impl Flutter<'_> {
         all
     }
 
+    /// Displacements that neither structure nor stream feel, in coordinates: a free body is displaced so.
+    pub fn free_displacements(&self) -> Vec<Vec<Complex64>> {
+        let Some((modes, felt)) = self.modes.as_ref().and_then(|m| Some((m, self.felt(m)?))) else { return Vec::new() };
+        felt.unfelt.iter().map(|v| modes.coordinates(&v.iter().map(|q| (*q).into()).collect::<Vec<_>>())).collect()
+    }
+
     /// λ of each natural mode where nothing flows, by rising frequency without damping.
     pub fn in_still_air(&self) -> Vec<Complex64> {
         let Some(modes) = &self.modes else { return Vec::new() };
@@ -137,9 +146,11 @@ impl Felt {
         let size = |v: &[f64]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
         let largest = (0..n).map(|j| size(&column(j))).fold(0.0, f64::max);
         let felt = Singular::of(rigid.clone().map(column).collect());
-        let of_rigid = felt.left.iter().zip(&felt.right).filter(|(force, _)| size(force) > UNFELT * largest);
+        let pairs = felt.left.iter().zip(&felt.right);
+        let (of_rigid, unfelt): (Vec<_>, Vec<_>) = pairs.partition(|(force, _)| size(force) > UNFELT * largest);
         let in_modes = |v: &[f64]| (0..n).map(|k| if rigid.contains(&k) { v[k - rigid.start] } else { 0.0 }).collect();
-        let mut basis: Vec<Vec<f64>> = of_rigid.map(|(_, v)| in_modes(v)).collect();
+        let [mut basis, unfelt] =
+            [of_rigid, unfelt].map(|all| all.into_iter().map(|(_, v)| in_modes(v)).collect::<Vec<Vec<f64>>>());
         let free = basis.len();
         let stiff = (0..n).filter(|m| !rigid.contains(m));
         basis.extend(stiff.map(|m| (0..n).map(|k| if k == m { 1.0 } else { 0.0 }).collect()));
@@ -153,7 +164,7 @@ impl Felt {
         let stiffness = project(&|i, j| if is_rigid(i) || is_rigid(j) { 0.0 } else { modes.stiffness[i * n + j].re });
         let damping = project(&|i, j| modes.damping[i * n + j].re);
         let forces = project(&|i, j| forces[i * n + j]);
-        Self { n: basis.len(), free, basis, stiffness, forces, damping }
+        Self { n: basis.len(), free, basis, unfelt, stiffness, forces, damping }
     }
 
     /// Rows and columns `of` the forces.
@@ -342,6 +353,26 @@ mod tests {
         // place stays neutral at every speed
         let still = flutter.still_motions(&[Vec::new(), Vec::new()], 4.0);
         assert!(still.resting.iter().any(|b| !b.is_empty() && b.iter().all(|p| p.lambda == ZERO)), "{still:?}");
+    }
+
+    #[test] // K_α = p a L on a spring of plunge of any stiffness; without it the body turns about its centre of mass
+    fn a_soft_spring_of_plunge_bears_the_load_that_a_free_body_accelerates_under() {
+        let divergence = |plunge: f64| {
+            let found = first(&section(plunge, 0.1), 0.2);
+            let own: Vec<&Crossing> = found.iter().filter(|c| c.kind == Kind::Divergence).collect();
+            assert_eq!(own.len(), 1, "{plunge}: {found:?}");
+            own[0].x
+        };
+        let held = (0.1f64 / (0.05 * 0.2)).sqrt();
+        for plunge in [0.2, 0.05, 1e-3, 1e-5, 1e-8] {
+            assert!((divergence(plunge) / held - 1.0).abs() < 1e-6, "{plunge}: {} {held}", divergence(plunge));
+        }
+        assert!((divergence(0.0) / (0.1f64 / (0.05 * 0.3)).sqrt() - 1.0).abs() < 1e-9);
+        let forces = forces(0.2);
+        let of = |plunge: f64| Flutter::new(&section(plunge, 0.1), &forces).free_displacements();
+        let free = of(0.0);
+        assert!(free.len() == 1 && free[0][1].norm() < 1e-9 * free[0][0].norm(), "{free:?}");
+        assert!(of(1e-8).is_empty());
     }
 
     #[test] // without damping frequencies that have met may part on the real axis: one motion grows, the other ceases to at det A = 0
