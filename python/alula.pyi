@@ -98,7 +98,8 @@ class Result:
         """Arrays over the points of a polar, NaN where a point failed; None for a single flow.
 
         `mach`, `alpha_deg`, `cl`, `cd`, `cm`, `cl_error`, `cd_error`, `cm_error` (half widths of error bars), `converged`, and the lists
-        `within_accuracy` (whether the bars are as short as asked for; None where there are none) and `reason`, empty where a point converged.
+        `long_bars` (names of loads whose bars are longer than asked for), `within_accuracy` (whether all are as short as that; None where
+        there are none) and `reason`, empty where a point converged.
         """
     @property
     def folder(self) -> Optional[Path]:

@@ -216,7 +216,7 @@ impl<'a> Flutter<'a> {
     fn branch(&self, modes: &Modes, m: usize, upto: f64) -> Vec<Point> {
         let first = FIRST * upto;
         let Some(start) = self.begin(modes, m, first) else { return Vec::new() };
-        let mut roots = self.from_below(modes, m, &start).unwrap_or_default();
+        let mut roots = self.followed_from_below(modes, m, &start).unwrap_or_default();
         let (path, _) = self.follow(modes, start.clone(), Place { x: upto, on: 1.0 }, (upto - first) / STEPS);
         roots.pop();
         let point = |root: Root| {
@@ -245,7 +245,7 @@ impl<'a> Flutter<'a> {
         let Some(modes) = &self.modes else { return Vec::new() };
         let mut found = self.divergence(modes, upto);
         for (mode, branch) in branches.iter().enumerate() {
-            found.extend(self.from_the_start(modes, mode, branch));
+            found.extend(self.begun_at_the_start(modes, mode, branch));
             for bracket in brackets(branch) {
                 let Some(root) = self.locate(modes, branch, &bracket) else { continue };
                 let (x, frequency) = (root.place.x, root.lambda.im);

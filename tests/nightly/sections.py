@@ -147,8 +147,7 @@ def loads(alula, file, place):
     if done.returncode not in (0, 1) or not (place / "run" / "summary.json").exists():
         sys.exit(f"error: {file} does not run: {done.stderr}")
     summary = json.loads((place / "run" / "summary.json").read_text())
-    return {k: summary["coefficients"][k] for k in ("cl", "cd", "cm")} if "coefficients" in summary else {
-        k: summary[k] for k in ("cl", "cd", "cm") if k in summary}
+    return {k: summary["loads"][k] for k in ("cl", "cd", "cm")}
 
 
 def twins(alula, home, with_runs):

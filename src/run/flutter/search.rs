@@ -342,7 +342,9 @@ impl<'a> Search<'a> {
                     );
                     Some((Some(name), words))
                 }
-                Some(c) if c.x == 0.0 && c.kind == Kind::Flutter => Some((None, self.from_zero(&name, point, damping))),
+                Some(c) if c.x == 0.0 && c.kind == Kind::Flutter => {
+                    Some((None, self.words_from_zero(&name, point, damping)))
+                }
                 Some(_) => None,
             }
         };
@@ -350,7 +352,7 @@ impl<'a> Search<'a> {
     }
 
     /// Words for a motion that grows at every density.
-    fn from_zero(&self, name: &str, point: &Point, damping: f64) -> String {
+    fn words_from_zero(&self, name: &str, point: &Point, damping: f64) -> String {
         let stream = self.scales.numbers(point.x);
         let place = match stream.altitude {
             Some(altitude) => format!("{:.1} km of altitude", altitude / 1000.0),

@@ -42,7 +42,7 @@ impl Flutter<'_> {
     }
 
     /// Flutter that has begun where the branch of natural mode `mode` begins: at zero, or where growth ceases to be in doubt.
-    pub(super) fn from_the_start(&self, modes: &Modes, mode: usize, branch: &[Point]) -> Option<Crossing> {
+    pub(super) fn begun_at_the_start(&self, modes: &Modes, mode: usize, branch: &[Point]) -> Option<Crossing> {
         if let Varied::Speed = self.varied {
             return None;
         }
@@ -58,7 +58,7 @@ impl Flutter<'_> {
 
     /// The roots of natural mode `mode` from lower densities on to its first one, `start`, that one included; `None` where it does not grow
     /// there, where the speed is varied, and where they are those of another branch.
-    pub(super) fn from_below(&self, modes: &Modes, mode: usize, start: &Root) -> Option<Vec<Root>> {
+    pub(super) fn followed_from_below(&self, modes: &Modes, mode: usize, start: &Root) -> Option<Vec<Root>> {
         let varied = matches!(self.varied, Varied::Pressure(_));
         // the root of a mode without stiffness goes to zero with the pressure, and its damping to a constant part of it or to zero
         let applies = varied && growth(start.lambda) > NEUTRAL && !modes.rigid().contains(&mode);
