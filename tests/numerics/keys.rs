@@ -228,6 +228,7 @@ fn faults(base: &Base, input: &Path) -> Vec<String> {
 }
 
 #[test]
+#[ignore = "long, four hundred small runs: `.ci/run` and `cargo test -- --ignored` run it"]
 fn every_key_changes_what_is_found_or_is_refused() {
     let (bases, folder) = (bases(), tempfile::tempdir().unwrap());
     write_input(folder.path());
