@@ -15,7 +15,8 @@
 mod table;
 
 use super::GeometryError;
-use super::outline::{self, Mark};
+use super::marks::Mark;
+use super::outline;
 use super::shell::Shell;
 use crate::math::{Bounds, Vector};
 use std::io::Read;

@@ -13,6 +13,7 @@ mod chord_line;
 mod cross_section;
 mod holes;
 mod loft;
+mod marks;
 mod mesh;
 mod naca;
 mod outline;

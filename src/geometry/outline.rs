@@ -6,6 +6,7 @@
 //! nose: near the leading edge coarse points turn by more than that, but their neighbours turn too, while beside a sharp
 //! nose they hardly do.
 use super::GeometryError;
+use super::marks::{CORNER, Mark, SAME, at, extent, straight_shell};
 use super::section::Chain;
 use super::shell::{Exact, Shell};
 use super::simple_outline::{self, Opposite};
@@ -15,10 +16,6 @@ use super::surface::Surface;
 use crate::math::Vector;
 use std::f64::consts::PI;
 
-/// Turning angle of a sharp corner of an airfoil, radians (35°).
-pub(super) const CORNER: f64 = 35.0 * PI / 180.0;
-/// Points nearer than this fraction of the extent are one point.
-pub(super) const SAME: f64 = 1e-9;
 /// Points of an airfoil nearer than this fraction of the chord are one point: files have five digits or six, and the rounding of a point
 /// that is listed twice would be two corners.
 const NEAR: f64 = 1e-6;
@@ -50,13 +47,6 @@ const TOLD: usize = 8;
 
 /// A point of the outline with its outward normal.
 pub(super) type Sample = (Vector<2>, Vector<2>);
-
-/// A point of an outline and the line of the file that it stands in.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Mark {
-    pub(super) point: Vector<2>,
-    pub(super) line: usize,
-}
 
 /// The smooth shell through `marks`, which run around the section from the trailing edge to the trailing edge.
 /// Repairs are appended to `notes`; `file` names the source.
@@ -305,21 +295,6 @@ fn orient(file: &str, marks: &mut [Mark], notes: &mut Vec<String>) -> Result<boo
     Ok(twice < 0.0)
 }
 
-/// Straight sides between points, the last of which is followed by the first.
-pub(super) fn straight_shell(marks: &[Mark]) -> Shell<2> {
-    let n = marks.len() as u32;
-    Shell {
-        vertices: marks.iter().map(|m| m.point).collect(),
-        elements: (0..n).map(|i| [i, (i + 1) % n]).collect(),
-        normals: None,
-        curvature: None,
-        tags: Vec::new(),
-        tag_names: Vec::new(),
-        exact: Exact::None,
-        crease: CORNER,
-    }
-}
-
 /// Indices of the corners of a closed outline that begins at the trailing edge; with a base its two ends are corners.
 fn corners(points: &[Vector<2>], base: bool) -> Vec<usize> {
     let n = points.len();
@@ -410,14 +385,4 @@ fn parts<const D: usize>(spline: &Spline<D>, chord: f64) -> Vec<(usize, f64)> {
 /// Unit normal on the right of a direction: outward for counter-clockwise outlines.
 fn right_of(direction: Vector<2>) -> Vector<2> {
     Vector([direction[1], -direction[0]]).unit()
-}
-
-/// Longest side of the box around the points.
-pub(super) fn extent<const D: usize>(points: &[Vector<D>]) -> f64 {
-    if points.is_empty() { 0.0 } else { crate::math::Bounds::around(points).extent().max_abs() }
-}
-
-/// The coordinates of a point and its line.
-pub(super) fn at(mark: &Mark) -> String {
-    format!("({}, {}) in line {}", mark.point[0], mark.point[1], mark.line)
 }

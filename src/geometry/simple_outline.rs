@@ -4,7 +4,7 @@
 //! A list of points that goes around twice has a sum of 720 deg though its sides cross nowhere: they lie on one another. The loads on it would
 //! be twice those of the body.
 use super::GeometryError;
-use super::outline::{Mark, SAME, at, extent, straight_shell};
+use super::marks::{Mark, SAME, at, extent, straight_shell};
 use super::surface::Surface;
 use std::f64::consts::PI;
 

@@ -420,6 +420,7 @@ fn placed(mut at: FlutterAt, (own, mach): (&Case, f64), held: Held, (scales, pla
         if let Some(growth) = curve.and_then(|curve| curve.growth(pressure.sqrt())) {
             (c.growth, c.holding_damping) = (Some(growth.most), growth.holding);
         }
+        c.remarks = c.told();
     }
     if let Some(design) = plan.design_speed {
         clearance::tell(&mut at, design.0, (scales, scales.upto(plan.most)));

@@ -124,7 +124,7 @@ pub struct Standing<'a, S: System> {
 /// A method that goes on step by step until it is finished: a relaxation, a march, or a relaxation of all instances of a
 /// period. Who drives it need not know which.
 pub trait Integrator<S: System> {
-    /// One step; after an error the state is the last good one.
+    /// One step, from a state that [`check`](Self::check) lets pass to another such; after an error the state is the last good one.
     fn advance(&mut self) -> Result<Step, TimeError>;
     /// True when the goal is reached.
     fn finished(&self) -> bool;
@@ -136,8 +136,8 @@ pub trait Integrator<S: System> {
     fn memory(&self) -> Memory;
     /// What it has spent.
     fn cost(&self) -> Cost;
-    /// Refuses to stand at a state that is not physical: numbers that are none, densities and pressures that are not positive. Goals and
-    /// norms are compared, and a comparison with what is no number holds or fails as it happens to be written.
+    /// Refuses to begin at a state that is not physical: numbers that are none, densities and pressures that are not positive. Goals and
+    /// norms are compared, and a comparison with what is no number holds or fails as it happens to be written. Steps check their own ends.
     fn check(&mut self) -> Result<(), TimeError> {
         let iteration = self.mark().iteration;
         let Standing { system, frame, state, .. } = self.standing();
@@ -146,8 +146,7 @@ pub trait Integrator<S: System> {
 }
 
 /// What may help where a state is not physical.
-const UNSOUND: &str = "where this is the start of the run, the state that it goes on from is damaged: begin it again; otherwise take \
-                       shorter steps, or refine the cloud there";
+const UNSOUND: &str = "the state that this goes on from is damaged: begin the run again";
 
 /// What may help where motion leaves a particle without a good cloud.
 pub const CROWDED: &str = "bodies come too close to one another or to a side of the domain, or move too far for the particles \

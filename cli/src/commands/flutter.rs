@@ -161,18 +161,7 @@ fn rows(at: &FlutterAt) -> Vec<Vec<String>> {
 
 /// What else there is to say of a crossing.
 fn remark(c: &FlutterRow) -> String {
-    let mut all = Vec::new();
-    if c.kind == "divergence" && c.dynamic_pressure == 0.0 {
-        all.push("diverges at any speed: nothing holds it".to_owned());
-    }
-    if c.kind == "flutter" && c.dynamic_pressure == 0.0 {
-        all.push("grows from the start: at any density".to_owned());
-    }
-    if let (Some(growth), Some(holding)) = (c.growth, c.holding_damping) {
-        all.push(format!(
-            "shallow: g up to {growth:.4} over the next 20 % of speed, structural damping g = {holding:.4} holds it"
-        ));
-    }
+    let mut all = c.remarks.clone();
     if c.extrapolated {
         all.push("beyond the frequencies computed".to_owned());
     }

@@ -4,7 +4,7 @@
 //! drew or changed the section. A line is a row of coordinates when it holds numbers and nothing else, or numbers before a remark next to
 //! such rows. Lines of text are left out and told; a row that is damaged is refused, since the shape without it would be another one.
 use super::super::GeometryError;
-use super::super::outline::Mark;
+use super::super::marks::Mark;
 use crate::case::decimal_comma;
 use crate::math::{Bounds, Vector};
 

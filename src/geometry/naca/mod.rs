@@ -10,6 +10,7 @@ use std::f64::consts::PI;
 
 use self::thickness::Thickness;
 use super::GeometryError;
+use super::marks::CORNER;
 use super::outline::{self, Sample};
 use super::shell::Shell;
 use crate::case::{MeanLine, Naca, NoSection, TrailingEdge};
@@ -38,7 +39,7 @@ pub(super) fn shell(naca: &Naca) -> Result<Shell<2>, GeometryError> {
         let ends = (pieces[0][2 * SEGMENTS].0, pieces[0][0].0);
         pieces.push(outline::straight(ends.0, ends.1));
     }
-    Ok(outline::shell_of_pieces(&pieces, outline::CORNER))
+    Ok(outline::shell_of_pieces(&pieces, CORNER))
 }
 
 impl Section {

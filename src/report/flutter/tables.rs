@@ -105,18 +105,7 @@ fn signed(part: f64, decimals: usize) -> String {
 }
 
 fn remarks(c: &Crossing) -> String {
-    let mut all = Vec::new();
-    if c.kind == "divergence" && c.dynamic_pressure == 0.0 {
-        all.push("diverges at any speed: nothing holds it".to_owned());
-    }
-    if c.kind == "flutter" && c.dynamic_pressure == 0.0 {
-        all.push("grows from the start: at any density".to_owned());
-    }
-    if let (Some(growth), Some(holding)) = (c.growth, c.holding_damping) {
-        all.push(format!(
-            "shallow: g up to {growth:.4} over the next 20 % of speed, structural damping g = {holding:.4} holds it"
-        ));
-    }
+    let mut all = c.remarks.clone();
     all.extend(Some(remark(c.extrapolated)).filter(|text| !text.is_empty()));
     all.join("; ")
 }

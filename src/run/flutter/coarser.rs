@@ -19,9 +19,8 @@ pub(super) fn compare(at: &mut FlutterAt, others: &[(f64, FlutterAt)], scales: &
                 None => doubts.push(doubt),
             }
         }
-        at.coarser_particles =
-            coarse.particles.min(if at.coarser_particles == 0 { usize::MAX } else { at.coarser_particles });
     }
+    at.coarser_particles = others.iter().map(|(_, coarse)| coarse.particles).min().unwrap_or(0);
     at.warnings.extend(doubts.iter().map(|doubt| in_words(doubt, at.dimensional)));
     at.doubts = doubts;
 }

@@ -55,6 +55,9 @@ pub struct FlutterRow {
     /// Equivalent airspeed over the design speed, less one, where that is given.
     #[serde(default)]
     pub margin: Option<f64>,
+    /// What is to be said of it, for people.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub remarks: Vec<String>,
     /// True when k lies beyond the frequencies that forces were computed at.
     pub extrapolated: bool,
     /// How much each coordinate takes part.
@@ -62,6 +65,22 @@ pub struct FlutterRow {
 }
 
 impl FlutterRow {
+    /// What is to be said of how it begins and grows, for people.
+    pub(super) fn told(&self) -> Vec<String> {
+        let from_nothing = Some(self.kind.as_str()).filter(|_| self.dynamic_pressure == 0.0);
+        let begins = match from_nothing {
+            Some("divergence") => Some("diverges at any speed: nothing holds it".to_owned()),
+            Some("flutter") => Some("grows from the start: at any density".to_owned()),
+            _ => None,
+        };
+        let shallow = self.growth.zip(self.holding_damping).map(|(growth, holding)| {
+            format!(
+                "shallow: g up to {growth:.4} over the next 20 % of speed, structural damping g = {holding:.4} holds it"
+            )
+        });
+        begins.into_iter().chain(shallow).collect()
+    }
+
     /// Half length of its error bar, over the speed: the greater of both errors; infinite where nothing is known of it.
     pub fn bar(&self) -> f64 {
         self.cloud_error.map_or(self.error, |cloud| cloud.max(self.error))

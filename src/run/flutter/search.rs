@@ -471,6 +471,7 @@ impl<'a> Search<'a> {
             growth: None,
             holding_damping: None,
             margin: None,
+            remarks: Vec::new(),
             extrapolated: c.kappa > last || self.samples.first().is_none_or(|x| c.kappa < x.0 * (1.0 - SAME)),
         }
     }

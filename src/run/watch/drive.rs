@@ -123,7 +123,7 @@ pub(crate) fn drive<S: System>(
             break wish.into();
         }
         now.before = now.mark().time;
-        let step = match now.integrator.advance().and_then(|step| now.integrator.check().map(|()| step)) {
+        let step = match now.integrator.advance() {
             Ok(step) => step,
             Err(problem) => break Ending::Failed(problem),
         };
