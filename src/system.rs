@@ -16,7 +16,7 @@ use crate::math::fourier::Instances;
 use crate::math::krylov::Numbers;
 use crate::math::multilevel::Cycle;
 use crate::math::sparse::Symmetric;
-use crate::math::sweep::norm;
+use crate::math::sweep::{norm, sweep_slots};
 
 /// Change of the state in derivatives that are differences, over its size.
 const DIFFERENCE: f64 = 1e-6;
@@ -251,6 +251,14 @@ pub trait System: Sync {
     /// The largest relative change of a positive quantity (density, pressure) that the update `du` makes, or of a coordinate in
     /// its unit; infinite if NaN.
     fn largest_change(&self, u: &[f64], du: &[f64]) -> f64;
+    /// Shortens the update `du` until its [largest change](Self::largest_change) is at most `largest`. Rows whose changes are known one by
+    /// one are shortened one by one: where a shock passes, a few particles must not hold back all others. Others as a whole.
+    fn shorten(&self, u: &[f64], du: &mut [f64], largest: f64) {
+        let change = self.largest_change(u, du);
+        if change > largest && change.is_finite() {
+            sweep_slots(du, |_, du| *du *= largest / change);
+        }
+    }
     /// Refuses a state that is not physical.
     fn check(&self, frame: &Self::Frame, u: &[f64]) -> Result<(), Fault>;
     /// Refuses a frame whose particles motion has brought where the cloud no longer serves.

@@ -104,6 +104,10 @@ impl<const D: usize> System for Led<'_, D> {
         self.coupled.largest_change(u, du)
     }
 
+    fn shorten(&self, u: &[f64], du: &mut [f64], largest: f64) {
+        self.coupled.shorten(u, du, largest);
+    }
+
     fn check(&self, frame: &Frame<D>, u: &[f64]) -> Result<(), Fault> {
         self.coupled.check(frame, u)
     }

@@ -198,6 +198,17 @@ impl<const D: usize> Coupled<D> {
     }
 }
 
+impl<const D: usize> Coupled<D> {
+    /// The largest change of a coordinate of structures and solids in its unit; infinite if NaN.
+    fn largest_move(&self, du: &[f64]) -> f64 {
+        let own = du[self.sprung()].chunks_exact(2).zip(self.bodies.iter().flat_map(|b| &b.units));
+        let unit = self.solids.as_ref().map_or(1.0, |s| s.solids.length);
+        let solid = du[self.solid_range()].chunks_exact(2).map(|pair| pair[0].abs() / unit);
+        let all = own.map(|(pair, unit)| pair[0].abs() / unit).chain(solid);
+        all.fold(0.0, |m, c| if c.is_finite() { m.max(c) } else { f64::INFINITY })
+    }
+}
+
 impl<const D: usize> System for Coupled<D> {
     type Frame = Frame<D>;
     type Work = Work<D>;
@@ -286,13 +297,16 @@ impl<const D: usize> System for Coupled<D> {
 
     fn largest_change(&self, u: &[f64], du: &[f64]) -> f64 {
         let gas = self.gas_range();
-        let own = du[self.sprung()].chunks_exact(2).zip(self.bodies.iter().flat_map(|b| &b.units));
-        let unit = self.solids.as_ref().map_or(1.0, |s| s.solids.length);
-        let solid = du[self.solid_range()].chunks_exact(2).map(|pair| pair[0].abs() / unit);
-        let largest = own.map(|(pair, unit)| pair[0].abs() / unit).chain(solid);
-        largest.fold(self.fluid.largest_change(&u[gas.clone()], &du[gas]), |m, c| {
-            if c.is_finite() { m.max(c) } else { f64::INFINITY }
-        })
+        self.fluid.largest_change(&u[gas.clone()], &du[gas]).max(self.largest_move(du))
+    }
+
+    fn shorten(&self, u: &[f64], du: &mut [f64], largest: f64) {
+        let gas = self.gas_range();
+        self.fluid.shorten(&u[gas.clone()], &mut du[gas.clone()], largest);
+        let change = self.largest_move(du);
+        if change > largest && change.is_finite() {
+            du[gas.end..].iter_mut().for_each(|du| *du *= largest / change);
+        }
     }
 
     fn check(&self, frame: &Frame<D>, u: &[f64]) -> Result<(), Fault> {

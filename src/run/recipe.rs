@@ -9,8 +9,8 @@ use crate::time::control::{Control, Method};
 use crate::time::dual::Plan;
 use crate::time::explicit;
 
-/// Particles above which a steady case is started on one coarser cloud, and on two; in 2-D and 3-D.
-const START: [[usize; 2]; 2] = [[2_500, 9_000], [15_000, 80_000]];
+/// Particles above which a steady case is started on one coarser cloud, on two and so on; in 2-D and 3-D.
+const START: [&[usize]; 2] = [&[2_500, 9_000, 33_000, 120_000], &[15_000, 80_000]];
 /// Greatest number of iterations of the relaxation before a march.
 const PRELUDE_ITERATIONS: u32 = 500;
 /// Orders of magnitude of that relaxation: the motion soon moves loads by more than what is left.
@@ -118,10 +118,8 @@ pub(crate) fn plan(
     let relaxes = relaxation(case).is_some() && !case.bodies.is_empty() && !given;
     let steady = |factor: f64, cycle: u32| Stage { factor, cycle, ..Stage::PLAIN };
     if relaxes {
-        let limits = START[dimension - 2];
-        let coarser = [(limits[1], 4.0), (limits[0], 2.0)].into_iter();
-        let factors = coarser.filter(|(most, factor)| n > *most && divides(case, *factor)).map(|(_, f)| f);
-        let factors: Vec<f64> = factors.collect();
+        let coarser = START[dimension - 2].iter().filter(|most| n > **most).count() as i32;
+        let factors: Vec<f64> = (1..=coarser).rev().map(|k| 2f64.powi(k)).filter(|f| divides(case, *f)).collect();
         if let Some(stages) = balance_from_coarser(case, &factors, least) {
             return stages;
         }

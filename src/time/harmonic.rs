@@ -344,6 +344,16 @@ impl<S: System> System for HarmonicBalance<'_, S> {
         })
     }
 
+    fn shorten(&self, u: &[f64], du: &mut [f64], largest: f64) {
+        let (mut one, mut step) = (vec![0.0; self.system.len()], vec![0.0; self.system.len()]);
+        for n in 0..self.held.count() {
+            self.instance(u, n, &mut one);
+            self.instance(du, n, &mut step);
+            self.system.shorten(&one, &mut step, largest);
+            self.set_instance(&step, n, du);
+        }
+    }
+
     fn check(&self, frame: &Self::Frame, u: &[f64]) -> Result<(), Fault> {
         let mut found = Ok(());
         self.each(u, |n, one| {

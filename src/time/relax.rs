@@ -45,14 +45,21 @@ const RESTART_CFL: f64 = 20.0;
 const START_CFL_MAX: f64 = 200.0;
 /// Largest ratio of residuals of successive steps while shocks travel.
 const START_JUMP: f64 = 4.0;
-/// Largest ratio of residuals of successive Newton steps.
+/// Largest ratio of residuals of successive Newton steps within a step in time.
 const NEWTON_JUMP: f64 = 1.1;
+/// The same on the way to a steady flow. A shock that enters the next row of particles makes the residual several times as large before it
+/// falls: steps that may not pass over that are cut short at every row. Strong shocks do not come back from much larger ones.
+const SHOCK_JUMP: f64 = 2.0;
 /// Step lengths that are tried before the Courant number is lowered: 1, 1/2, 1/4.
 const SHORTER_STEPS: i32 = 3;
 /// Courant number below which the relaxation gives up.
 const SMALLEST_CFL: f64 = 1e-3;
-/// Largest relative change of density and pressure in one step.
+/// Largest relative change of density and pressure in one step that is shortened as a whole.
 const LARGEST_CHANGE: f64 = 0.3;
+/// Largest relative change of a particle in a step that is shortened row by row, and the greatest change before, beyond which the step is
+/// shortened as a whole: what a strong shock leaves of such steps fits no flow.
+const LARGEST_ROW_CHANGE: f64 = 0.5;
+const MILD_CHANGE: f64 = 1.0;
 /// Smallest fraction of a step that is worth taking.
 const SMALLEST_FRACTION: f64 = 0.05;
 /// Courant number of the explicit method.
@@ -416,8 +423,7 @@ impl<'a, S: Implicit> Relax<'a, S> {
             } else {
                 self.implicit_step()
             }
-            let change = self.system.largest_change(&self.u, &self.step);
-            let fraction = (LARGEST_CHANGE / change).min(1.0);
+            let fraction = self.fraction();
             if fraction > SMALLEST_FRACTION && self.search(fraction) {
                 break;
             }
@@ -429,6 +435,17 @@ impl<'a, S: Implicit> Relax<'a, S> {
         }
         self.choose_phase();
         Ok(Step { iteration: self.iteration, time: 0.0, cfl: self.cfl, residual: self.drop(), linear: self.linear })
+    }
+
+    /// Part of the step that changes no density and no pressure by too much. On the way to a steady flow mild steps are shortened row by row
+    /// instead.
+    fn fraction(&mut self) -> f64 {
+        let change = self.system.largest_change(&self.u, &self.step);
+        if self.time.is_some() || !(change <= MILD_CHANGE) {
+            return (LARGEST_CHANGE / change).min(1.0);
+        }
+        self.system.shorten(&self.u, &mut self.step, LARGEST_ROW_CHANGE);
+        1.0
     }
 
     fn give_up_preconditioner(&mut self) {
@@ -472,7 +489,8 @@ impl<'a, S: Implicit> Relax<'a, S> {
         if !self.phase.newton {
             return self.accept(fraction, START_JUMP);
         }
-        (0..SHORTER_STEPS).any(|k| self.accept(fraction * 0.5f64.powi(k), NEWTON_JUMP))
+        let jump = if self.time.is_none() { SHOCK_JUMP } else { NEWTON_JUMP };
+        (0..SHORTER_STEPS).any(|k| self.accept(fraction * 0.5f64.powi(k), jump))
     }
 
     /// Takes the step times `fraction` if the new residual is at most `jump` times the old one; sets the next Courant number.
@@ -540,9 +558,10 @@ impl<'a, S: Implicit> Relax<'a, S> {
     /// foretold the residual.
     fn next_cfl(&self, fraction: f64, ratio: f64, trusted: bool) -> f64 {
         let growth = self.control.growth;
+        let least = if self.time.is_none() { 1.0 } else { 0.5 };
         let factor = match (self.phase.newton, fraction == 1.0) {
             (true, true) if trusted => ratio.clamp(TRUSTED_GROWTH, growth),
-            (true, true) => ratio.clamp(0.5, growth),
+            (true, true) => ratio.clamp(least, growth),
             (true, false) => ratio.clamp(0.5, 1.0),
             (false, true) => {
                 if ratio < 1.0 {

@@ -13,6 +13,8 @@ use crate::system::{Implicit, Instant, Reach, RightHandSide, Shift, System, plac
 const SHARE: f64 = 0.6;
 /// Smallest and largest reduction asked of those solves: beyond the first, what Newton's method leaves is larger.
 const REDUCTION: [f64; 2] = [0.04, 0.5];
+/// Reduction asked of the linear solves of a steady flow while the residual does not fall: shocks are on their way, and no step is exact.
+const WANDERING: f64 = 0.3;
 
 impl<S: Implicit> Relax<'_, S> {
     /// How far the linear system at hand reaches: a step in time couples what is near.
@@ -58,7 +60,9 @@ impl<S: Implicit> Relax<'_, S> {
     /// Reduction asked of a linear solve, and the greatest number of its iterations.
     fn asked(&self, reach: Reach) -> Goal {
         if self.time.is_none() {
-            return Goal { tolerance: self.control.tolerance, most: usize::MAX };
+            let wanders = self.norm > self.phase.best;
+            let tolerance = if wanders { self.control.tolerance.max(WANDERING) } else { self.control.tolerance };
+            return Goal { tolerance, most: usize::MAX };
         }
         let tolerance = (SHARE * self.goal / self.drop()).clamp(REDUCTION[0], REDUCTION[1]);
         Goal { tolerance, most: Preconditioning::<S::Preconditioner>::most(reach) }
