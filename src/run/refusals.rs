@@ -10,6 +10,7 @@ use super::{accuracy, flutter, folder, gaf, setup, solids, studies};
 use crate::case::{Case, Temporal, read_mode};
 use crate::cloud::layout::count;
 use crate::geometry::dimension;
+use crate::motion::faulty_tables;
 
 /// All that the commands refuse of a case whose file names refer to the folder `input`; empty where they can begin.
 pub fn refusals(case: &Case, input: &Path) -> Vec<RunError> {
@@ -19,7 +20,7 @@ pub fn refusals(case: &Case, input: &Path) -> Vec<RunError> {
         all.look(solids::supported(case));
         return all.found;
     }
-    for problem in shapes(case, input) {
+    for problem in shapes(case, input).into_iter().chain(tables(case, input)) {
         all.look::<()>(Err(problem));
     }
     all.look(setup::supported(case));
@@ -62,6 +63,33 @@ fn within<const D: usize>(case: &Case, input: &Path, held: bool) -> Result<(), R
     Ok(())
 }
 
+/// What a command refuses of a case; where a file is to blame, all files of it that cannot be used together.
+pub(super) fn with_other_files(case: &Case, input: &Path, problem: RunError) -> RunError {
+    if !matches!(problem, RunError::Geometry(_) | RunError::Law(_) | RunError::Case(_)) {
+        return problem;
+    }
+    let mut all = Refusals::default();
+    let surfaces = match dimension(case) {
+        2 => setup::surface::<2>(case, input).map(|_| ()),
+        _ => setup::surface::<3>(case, input).map(|_| ()),
+    };
+    all.look(surfaces.map_err(RunError::Geometry));
+    for other in shapes(case, input).into_iter().chain(tables(case, input)) {
+        all.look::<()>(Err(other));
+    }
+    if all.found.len() < 2 { problem } else { RunError::Several(all.found) }
+}
+
+/// Mistakes in the tables of all motions that a case names.
+fn tables(case: &Case, input: &Path) -> Vec<RunError> {
+    let read = |name: &str| folder::text(input, name);
+    let found = match dimension(case) {
+        2 => faulty_tables::<2>(case, &read),
+        _ => faulty_tables::<3>(case, &read),
+    };
+    found.into_iter().map(RunError::Law).collect()
+}
+
 /// Mistakes in the tables of all modes that a case names.
 fn shapes(case: &Case, input: &Path) -> Vec<RunError> {
     let laws = case.bodies.iter().filter_map(|b| b.motion.as_ref()).chain(case.motion.as_ref().map(|m| &m.law));
@@ -86,9 +114,11 @@ impl Refusals {
         match seen {
             Ok(value) => Some(value),
             Err(problem) => {
-                let told = problem.to_string();
-                if self.found.iter().all(|known| known.to_string() != told) {
-                    self.found.push(problem);
+                for problem in problem.parts() {
+                    let told = problem.to_string();
+                    if self.found.iter().all(|known| known.to_string() != told) {
+                        self.found.push(problem);
+                    }
                 }
                 None
             }
@@ -100,9 +130,10 @@ impl Refusals {
 #[cfg(test)]
 pub(crate) fn as_checked<T>(case: &Case, input: &Path, seen: Result<T, RunError>) -> Result<T, RunError> {
     if let Err(problem) = &seen {
-        let told = problem.to_string();
+        let told = problem.messages();
         let checked = refusals(case, input).into_iter().chain(super::inspect(case, input, None).err());
-        assert!(checked.map(|p| p.to_string()).any(|p| p == told), "`check` does not refuse: {told}");
+        let checked: Vec<String> = checked.map(|p| p.to_string()).collect();
+        assert!(told.iter().all(|part| checked.contains(part)), "`check` does not refuse: {told:?}");
     }
     seen
 }
