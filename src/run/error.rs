@@ -225,8 +225,9 @@ impl RunError {
             | Self::NoRun { .. }
             | Self::LostInput { .. }
             | Self::OtherRun { .. } => Blame::Files,
-            Self::Geometry(_)
-            | Self::Several(_)
+            Self::Several(all) if all.iter().all(|one| one.blame() == Blame::Files) => Blame::Files,
+            Self::Several(_)
+            | Self::Geometry(_)
             | Self::Structure(_)
             | Self::Cloud(_)
             | Self::Start(_)

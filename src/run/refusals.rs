@@ -65,19 +65,21 @@ fn within<const D: usize>(case: &Case, input: &Path, held: bool) -> Result<(), R
 
 /// What a command refuses of a case; where a file is to blame, all files of it that cannot be used together.
 pub(super) fn with_other_files(case: &Case, input: &Path, problem: RunError) -> RunError {
-    if !matches!(problem, RunError::Geometry(_) | RunError::Law(_) | RunError::Case(_)) {
+    use RunError::{Geometry, Law, Motion, Structure};
+    if !matches!(problem, Geometry(_) | Law(_) | RunError::Case(_) | Structure(_) | Motion { .. }) {
         return problem;
     }
     let mut all = Refusals::default();
+    all.look::<()>(Err(problem));
     let surfaces = match dimension(case) {
         2 => setup::surface::<2>(case, input).map(|_| ()),
         _ => setup::surface::<3>(case, input).map(|_| ()),
     };
-    all.look(surfaces.map_err(RunError::Geometry));
+    all.look(surfaces.map_err(Geometry));
     for other in shapes(case, input).into_iter().chain(tables(case, input)) {
         all.look::<()>(Err(other));
     }
-    if all.found.len() < 2 { problem } else { RunError::Several(all.found) }
+    RunError::all(all.found).unwrap_or(RunError::NoStage)
 }
 
 /// Mistakes in the tables of all motions that a case names.
@@ -136,4 +138,33 @@ pub(crate) fn as_checked<T>(case: &Case, input: &Path, seen: Result<T, RunError>
         assert!(told.iter().all(|part| checked.contains(part)), "`check` does not refuse: {told:?}");
     }
     seen
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::run::{Outcome, Places, Silent};
+
+    #[test]
+    fn all_bad_files_of_a_case_are_told_at_once() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
+        file("one.dat", "one\n1 0\n0 0\n");
+        file("two.dat", "two\n1 zero\n");
+        file("table.csv", "time,w\n0,0\n1,1\n");
+        file("mode.csv", "x,y,dx\n0,0,1\n");
+        let text = "[flow]\nmach = 0.5\n[[body]]\nairfoil = \"one.dat\"\n[[body]]\nairfoil = \"two.dat\"\ntranslate = [3, 0]\n\
+                    motion.mode = { file = \"mode.csv\", amplitude = 0.1 }\nmotion.period = 5\n[motion]\ntable = \"table.csv\"\n\
+                    [time.dual]\nstep = 0.1\nuntil = 1\n";
+        let case = crate::case::read(text, "t").unwrap_or_else(|e| panic!("{e}"));
+        let places = Places { input: folder.path().into(), out: folder.path().join("out") };
+        let refused =
+            crate::run::run(&case, &places, &mut Silent).map(|o| matches!(o, Outcome::Finished(_))).unwrap_err();
+        let told = refused.messages();
+        for name in ["one.dat", "two.dat", "table.csv", "mode.csv"] {
+            assert_eq!(told.iter().filter(|text| text.contains(name)).count(), 1, "{name}: {told:#?}");
+        }
+        let checked: Vec<String> = refusals(&case, folder.path()).iter().map(ToString::to_string).collect();
+        assert!(told.iter().all(|text| checked.contains(text)), "{checked:#?}");
+    }
 }

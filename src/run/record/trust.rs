@@ -147,8 +147,9 @@ fn is_of_a_point(point: &PolarPoint) -> bool {
     let names = point.long_bars.iter().all(|name| ["CL", "CD", "CM"].contains(&name.as_str()));
     let judged = point.within_accuracy.is_none_or(|within| within == point.long_bars.is_empty());
     let spent = point.cpu_seconds.is_finite() && point.cpu_seconds >= 0.0 && point.residual_drop.is_finite();
-    let told = point.converged == point.reason.is_empty() && !point.reason.contains(char::is_control);
-    loads.iter().flatten().all(are_finite) && bars && names && judged && spent && told
+    let stood = point.loads.is_none() || point.particles > 0;
+    let told = !point.converged || point.reason.is_empty();
+    loads.iter().flatten().all(are_finite) && bars && names && judged && spent && stood && told
 }
 
 /// True where a plan of the case may have such a stage.
