@@ -242,17 +242,12 @@ impl Search<'_> {
         let periodic = marches && self.repeats();
         let why = ("it is of marches of a periodic motion", "remove it, or march a periodic motion");
         self.note(self.gas && !periodic, "output", &["loop_periods"], why);
-        let space = self.number("dimension") == Some(3.0);
-        let known = self.number("dimension").is_some();
+        let plane = self.number("dimension") == Some(2.0);
         let why = ("it is of wings in space, and the case is 2-D", "remove it");
-        self.note(known && !space, "output", &["stations"], why);
-        let drawn = self.flag("output.report") != Some(false);
-        let why = ("nothing is drawn (`report = false`)", "remove it, or `report = false`");
-        self.note(space && !drawn, "output", &["stations"], why);
-        self.note(!drawn, "", &["compare"], why);
+        self.note(plane, "output", &["stations"], why);
         let why = ("there is no body with a pressure along its chord", "remove it, or add a `[[body]]`");
         self.note(!self.has("body"), "output", &["stations"], why);
-        self.note(drawn && !self.has("body"), "", &["compare"], why);
+        self.note(!self.has("body"), "", &["compare"], why);
     }
 
     /// Something has a period.
