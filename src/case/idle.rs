@@ -6,6 +6,7 @@
 use serde_json::{Map, Value};
 
 use super::draft::{Draft, pointer};
+use super::error::CaseError;
 use super::facts::{FREQUENCIES, has_gas};
 use super::naca::{Naca, ThicknessForm, TrailingEdge};
 
@@ -38,7 +39,9 @@ struct Search<'a> {
 pub(super) fn refuse(draft: &mut Draft<'_>) {
     let gas = has_gas(draft);
     for Idle { path, why, hint } in search(&draft.tree, gas) {
-        if !draft.given(&path) || draft.errors.iter().any(|e| e.path == path) {
+        // what is wrong there, or around it, comes first
+        let told = |e: &CaseError| is_within(&e.path, &path) || is_within(&path, &e.path);
+        if !draft.given(&path) || draft.errors.iter().any(told) {
             continue;
         }
         let message = format!("`{path}` has no effect: {why}");
@@ -50,6 +53,11 @@ pub(super) fn refuse(draft: &mut Draft<'_>) {
         };
         error.hint(hint);
     }
+}
+
+/// True for a key path that is `outer`, or goes on from it.
+fn is_within(path: &str, outer: &str) -> bool {
+    path.strip_prefix(outer).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
 }
 
 /// Takes keys without effect out of the values of a case that is written.
