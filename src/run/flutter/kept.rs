@@ -98,7 +98,7 @@ impl Finished {
     fn is_possible(&self) -> bool {
         let at = &self.at;
         let positive = [at.mach, at.chord, at.semichord].iter().all(|x| x.is_finite() && *x >= 0.0) && at.mach > 0.0;
-        let rising = at.reduced_frequencies.windows(2).all(|k| k[0] < k[1]);
+        let rising = at.reduced_frequencies.windows(2).all(|k| k[0] <= k[1]);
         let crossings =
             at.crossings.iter().flat_map(|c| [c.speed_ratio, c.speed, c.density, c.dynamic_pressure, c.frequency]);
         let cycles = self.cycles.iter().flat_map(|c| [c.amplitude, c.speed_ratio, c.speed, c.density, c.frequency]);

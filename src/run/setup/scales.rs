@@ -12,8 +12,9 @@ use crate::math::{Bounds, Vector};
 const APART: f64 = 200.0;
 /// Ratio of a reference chord and that of the bodies beyond which they are of two units, where a unit brings them together.
 const OTHER_CHORD: f64 = 20.0;
-/// Ratio within which a unit brings them together.
+/// Ratios within which a unit brings them together, and within which it fits well.
 const TOGETHER: f64 = 10.0;
+const ALIKE: f64 = 1.3;
 /// Lengths of the bodies in a domain beyond all far fields.
 const VAST: f64 = 1e4;
 /// Spacings along a body that no cloud needs.
@@ -51,9 +52,12 @@ fn apart(given: f64, seen: f64) -> Option<f64> {
 fn other_unit<const D: usize>(case: &Case, seen: &Planform, bodies: &Bounds<D>) -> Option<String> {
     let given = case.reference.chord.as_ref()?.0;
     let apart = |length: f64| (seen.chord * length / given).ln().abs();
-    let (length, unit) = UNITS.into_iter().min_by(|a, b| apart(a.0).total_cmp(&apart(b.0)))?;
+    // one that fits well, else the first that brings them together
+    let nearest = UNITS.into_iter().min_by(|a, b| apart(a.0).total_cmp(&apart(b.0)));
+    let fits = nearest.filter(|unit| apart(unit.0) < ALIKE.ln());
+    let (length, unit) = fits.or_else(|| UNITS.into_iter().find(|unit| apart(unit.0) < TOGETHER.ln()))?;
     let file = case.bodies.iter().any(|b| matches!(b.shape, Shape::Surface(_) | Shape::Airfoil(_)));
-    (file && apart(1.0) > OTHER_CHORD.ln() && apart(length) < TOGETHER.ln()).then(|| {
+    (file && apart(1.0) > OTHER_CHORD.ln()).then(|| {
         let extents = bodies.extent().0.map(short).join(" × ");
         format!(
             "`reference.chord` is {}, but the chord of the bodies is {}, and they measure {extents}: they seem to be in {unit}, then \
