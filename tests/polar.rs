@@ -1,7 +1,9 @@
 //! Polars: what their points are, against single runs, and what becomes of points that fail.
 #![allow(clippy::unwrap_used, reason = "it may stop anywhere")]
 use alula::case::read;
-use alula::run::{PolarPoint, Session, Silent, Summary};
+use alula::observe::checkpoint;
+use alula::run::{Monitor, Outcome, Places, PolarPoint, Session, Silent, Summary, Tick, resume, run};
+use serde_json::json;
 
 const SECTION: &str =
     "[[body]]\nnaca = \"0012\"\n[cloud]\nspacing = 0.0625\nfar_field = 10\n[output]\nreport = false\n";
@@ -60,4 +62,60 @@ fn a_point_that_does_not_converge_is_told_and_the_polar_goes_on() {
         assert!(!point.converged && point.reason.contains("after all 6 iterations"), "{point:?}");
         assert!(point.loads.is_some() && point.from_rest, "{point:?}");
     }
+}
+
+/// Stops when a point is over and the next one has begun.
+#[derive(Default)]
+struct OnePoint {
+    points: usize,
+    ticks: usize,
+}
+
+impl Monitor for OnePoint {
+    fn tick(&mut self, _: &Tick) {
+        self.ticks += usize::from(self.points > 0);
+    }
+    fn note(&mut self, text: &str) {
+        self.points += usize::from(text.starts_with("point 1 of"));
+    }
+    fn stop(&self) -> bool {
+        self.ticks > 1
+    }
+}
+
+#[test]
+fn points_that_a_run_did_not_find_are_refused_however_good_the_checksum() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let text = format!("[flow]\nmach = 0.5\nalpha = [0, 2]\n{SECTION}");
+    let case = read(&text, "polar.toml").unwrap_or_else(|e| panic!("{e}"));
+    let places = Places { input: folder.path().into(), out: out.clone() };
+    let cut = run(&case, &places, &mut OnePoint::default()).unwrap_or_else(|e| panic!("{e}"));
+    assert!(matches!(cut, Outcome::Interrupted { .. }));
+    let file = out.join("checkpoint.alula");
+    let whole = checkpoint::read(&file).unwrap();
+    let forged = |change: &dyn Fn(&mut serde_json::Value)| {
+        let mut other = whole.clone();
+        change(&mut other.meta["polar"]["record"]["points"][0]);
+        assert!(other.meta != whole.meta);
+        checkpoint::write(&file, &other).unwrap();
+        resume(&out, &mut Silent).map(|_| ()).unwrap_err().to_string()
+    };
+    assert!(forged(&|point| point["loads"]["cl"] = json!(0.7)).contains("other loads than its last iteration"));
+    assert!(forged(&|point| point["alpha_deg"] = json!(1.0)).contains("at other angles or Mach numbers"));
+    assert!(forged(&|point| point["particles"] = json!(0)).contains("numbers that no point has"));
+    assert!(forged(&|point| point["iterations"] = json!(1_000_000)).contains("more iterations than the run"));
+    checkpoint::write(&file, &whole).unwrap();
+    // a table that was changed by hand
+    let history = out.join("history.csv");
+    let table = std::fs::read_to_string(&history).unwrap();
+    std::fs::write(&history, table.replacen("0,2,", "0,3,", 1)).unwrap();
+    let refused = resume(&out, &mut Silent).map(|_| ()).unwrap_err().to_string();
+    assert!(refused.contains("history.csv` was changed or removed"), "{refused}");
+    std::fs::write(&history, table).unwrap();
+    assert!(matches!(resume(&out, &mut Silent).unwrap_or_else(|e| panic!("{e}")), Outcome::Finished(_)));
+    // so is the last line of a run that is finished
+    let summary = out.join("summary.json");
+    std::fs::write(&summary, std::fs::read_to_string(&summary).unwrap().replacen("0.5", "0.6", 1)).unwrap();
+    assert!(resume(&out, &mut Silent).map(|_| ()).unwrap_err().to_string().contains("summary.json` was changed"));
 }

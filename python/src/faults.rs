@@ -45,19 +45,28 @@ pub(crate) fn of_run(py: Python<'_>, error: &RunError) -> PyErr {
     match error.blame() {
         Blame::Files => PyOSError::new_err(text),
         Blame::Computation => ComputationError::new_err(text),
-        Blame::Case => single(py, &text),
+        Blame::Case => without_place(py, &error.messages()),
     }
 }
 
 /// A mistake that has no place in a file.
 pub(crate) fn single(py: Python<'_>, text: &str) -> PyErr {
-    let (message, hint) = text.split_once("\nhint: ").map_or((text, None), |(what, hint)| (what, Some(hint)));
-    let told = || -> PyResult<PyErr> {
-        let mistakes = serde_json::json!([{
+    without_place(py, &[text.to_owned()])
+}
+
+/// Mistakes that have no place in a file.
+fn without_place(py: Python<'_>, texts: &[String]) -> PyErr {
+    let mistake = |text: &String| {
+        let (message, hint) =
+            text.split_once("\nhint: ").map_or((text.as_str(), None), |(what, hint)| (what, Some(hint)));
+        serde_json::json!({
             "key": null, "line": null, "column": null, "end_column": null,
             "message": message, "value": null, "allowed": null, "hint": hint,
-        }]);
-        let exception = CaseError::new_err(text.to_owned());
+        })
+    };
+    let told = || -> PyResult<PyErr> {
+        let mistakes = serde_json::Value::Array(texts.iter().map(mistake).collect());
+        let exception = CaseError::new_err(texts.join("\n\n"));
         exception.value(py).setattr("mistakes", python_of(py, &mistakes)?)?;
         Ok(exception)
     };

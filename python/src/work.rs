@@ -195,8 +195,12 @@ fn computed(
 pub(crate) fn check(py: Python<'_>, case: &Bound<'_, PyAny>) -> PyResult<Py<PyAny>> {
     let given = Given::of(case)?;
     let report = py.detach(|| {
-        let refused = refusals(&given.case, &given.input).into_iter().next();
-        refused.map_or_else(|| inspect(&given.case, &given.input, None), Err)
+        let mut refused = refusals(&given.case, &given.input);
+        match refused.len() {
+            0 => inspect(&given.case, &given.input, None),
+            1 => Err(refused.remove(0)),
+            _ => Err(RunError::Several(refused)),
+        }
     });
     let report = report.map_err(|problem| faults::of_run(py, &problem))?;
     let mut told = serde_json::to_value(&report).unwrap_or_default();

@@ -272,7 +272,7 @@ const UPRIGHT: f64 = 0.5 * std::f64::consts::PI;
 
 const PLANFORMS: &[(&str, &str)] = &[
     ("straight", "in proportion to the distance from the root"),
-    ("elliptic", "as that of an ellipse; `taper` has no part in it"),
+    ("elliptic", "as that of an ellipse, without `taper`"),
 ];
 
 const TIPS: &[(&str, &str)] = &[

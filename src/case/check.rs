@@ -40,6 +40,7 @@ pub(super) fn contradictions(draft: &mut Draft<'_>) {
     super::solid_check::contradictions(draft, dimension);
     super::gaf_check::contradictions(draft);
     super::flutter::check::contradictions(draft);
+    super::idle::refuse(draft);
 }
 
 /// Each body has one shape, a name of its own and sensible digits.
@@ -272,12 +273,23 @@ fn placements(draft: &mut Draft<'_>, d: usize) {
             draft.fail(&rotate, message).allowed(if d == 2 { "one angle" } else { "three angles: about x, y, z" });
         }
         length(draft, &format!("body[{i}].translate"), d);
+        chord_of_a_file(draft, &format!("body[{i}]"));
         let weld = format!("body[{i}].weld");
         if draft.given(&weld) && !draft.given(&format!("body[{i}].surface")) {
             draft
                 .fail_key(&weld, format!("`{weld}` joins vertices of a `surface`, and this body has none"))
                 .hint("remove it");
         }
+    }
+}
+
+/// The chord of a surface file is measured: what is written as one would be the length of a unit of the file.
+fn chord_of_a_file(draft: &mut Draft<'_>, body: &str) {
+    let scale = format!("{body}.scale");
+    if draft.given(&format!("{body}.surface")) && draft.is_written(&scale, "chord") {
+        draft
+            .fail_key(&scale, format!("`{body}.chord` beside a surface file, whose chord is measured"))
+            .hint("`scale = \"1 mm\"` says that the file is in millimetres; the chord of coefficients is `chord` in `[reference]`");
     }
 }
 

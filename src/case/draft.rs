@@ -75,6 +75,12 @@ impl<'t> Draft<'t> {
         self.places.contains_key(path)
     }
 
+    /// True when the key at `path` was written as `name`, one of its spellings.
+    pub(super) fn is_written(&self, path: &str, name: &str) -> bool {
+        let key = self.places.get(path).and_then(|(key, _)| self.text.get(key.clone()));
+        key.is_some_and(|key| key.trim_matches(['"', '\'']) == name)
+    }
+
     /// True when the value at `path` was written with a unit.
     pub(super) fn has_unit(&self, path: &str) -> bool {
         let written = self.places.get(path).and_then(|(_, value)| self.text.get(value.clone())).unwrap_or_default();
@@ -186,7 +192,7 @@ impl<'t> Draft<'t> {
 }
 
 /// Where the value at the key path `path` is in the tree.
-fn pointer(path: &str) -> String {
+pub(super) fn pointer(path: &str) -> String {
     format!("/{}", path.replace(['.', '['], "/").replace(']', ""))
 }
 

@@ -213,7 +213,7 @@ static REFERENCE: Table = Table::of(&[
     Field::optional(
         "area",
         POSITIVE,
-        "planform of the largest wing as it is typed, else of what is seen from above, fins left out",
+        "planform of the largest wing as it is typed, else of what is seen from above, fins left out; of what stands upright alone, a wing with its span along z, from the side",
         "Area of the coefficients in 3-D, length squared.",
     ),
     Field::optional(
@@ -241,7 +241,7 @@ static CLOUD: Table = Table::of(&[
         "far_field",
         SIZE,
         "40 chords (2-D), 10 (3-D)",
-        "Half-width of the far field around the bodies; ignored when `domain` is given.",
+        "Half-width of the far field around the bodies; not beside `domain`.",
     ),
     Field::optional(
         "domain",

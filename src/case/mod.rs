@@ -1,7 +1,7 @@
 //! The case: plain data that says what to compute. It knows no solver type.
 //!
-//! A case file is TOML; [`read()`] tells all its mistakes at once, [`write()`] is its inverse. [`Case`] is its resolved form: every default filled in, every quantity in base units. Angles are
-//! radians, lengths are in the unit of the geometry (metres when the free stream is dimensional).
+//! A case file is TOML; [`read()`] tells all its mistakes at once, [`write()`] is its inverse. [`Case`] is its resolved form: every default
+//! filled in, every quantity in base units. Angles are radians, lengths are in the unit of the geometry (metres when the free stream is dimensional).
 use serde::{Deserialize, Serialize};
 
 mod body_keys;
@@ -15,6 +15,7 @@ pub mod formula;
 mod gaf;
 mod gaf_check;
 mod gaf_keys;
+mod idle;
 mod keys;
 mod kinds;
 mod mode_file;
@@ -292,7 +293,7 @@ pub struct Reference {
 pub struct Cloud {
     /// Particle spacing at the surface; of the whole domain when there is no body. Absent: chosen from the size of the bodies.
     pub spacing: Option<Length>,
-    /// Half-width of the far field around the bodies; ignored when `domain` is given. Default 40 chords (2-D), 10 (3-D).
+    /// Half-width of the far field around the bodies; not beside `domain`. Default 40 chords (2-D), 10 (3-D).
     pub far_field: Option<Length>,
     /// Explicit domain; its sides must be whole numbers of `coarse` cells.
     pub domain: Option<Domain>,
@@ -450,8 +451,7 @@ pub struct Scheme {
     pub order: u8,
     /// Slope limiter.
     pub limiter: Limiter,
-    /// Relative size of second differences below which the limiter leaves a field alone; absent where the number of
-    /// dimensions says it.
+    /// Relative size of second differences below which the limiter leaves a field alone; absent: by the number of dimensions.
     pub limiter_threshold: Option<f64>,
     /// κ of the reconstruction: 0 for steady flow, 1/3 for waves and vortices.
     pub kappa: f64,

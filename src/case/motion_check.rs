@@ -406,22 +406,27 @@ mod tests {
     fn a_frequency_is_entered_once_and_everything_follows() {
         let omega = |c: &Case| c.angular_frequency(&c.motion.as_ref().unwrap().law, 2.0).unwrap();
         // k = ω L/U, L half the chord by default: ω = 0.1·0.5/1
-        assert!((omega(&case(HEAD, "reduced_frequency = 0.1")) - 0.05).abs() < 1e-15);
-        assert!((omega(&case(HEAD, "reduced_frequency = 0.1\nreduced_length = 2")) - 0.025).abs() < 1e-15);
-        assert!((omega(&case(HEAD, "period = 4")) - 0.5 * std::f64::consts::PI).abs() < 1e-15);
-        let hertz = case(DIMENSIONAL, "frequency = \"5 Hz\"");
+        assert!((omega(&case(HEAD, "plunge = 0.1\nreduced_frequency = 0.1")) - 0.05).abs() < 1e-15);
+        assert!(
+            (omega(&case(HEAD, "plunge = 0.1\nreduced_frequency = 0.1\nreduced_length = 2")) - 0.025).abs() < 1e-15
+        );
+        assert!((omega(&case(HEAD, "plunge = 0.1\nperiod = 4")) - 0.5 * std::f64::consts::PI).abs() < 1e-15);
+        let hertz = case(DIMENSIONAL, "plunge = 0.1\nfrequency = \"5 Hz\"");
         assert!((omega(&hertz) - 10.0 * std::f64::consts::PI).abs() < 1e-12);
-        let plain = case(DIMENSIONAL, "frequency = \"31.4 rad/s\"");
+        let plain = case(DIMENSIONAL, "plunge = 0.1\nfrequency = \"31.4 rad/s\"");
         assert_eq!(plain.motion.as_ref().unwrap().law.frequency, Some(Frequency(31.4)));
         let u = plain.flow.reference().speed;
-        assert!((omega(&case(DIMENSIONAL, "reduced_frequency = 0.1")) - 0.1 * u).abs() < 1e-12);
-        refused("frequency = \"5 Hz\"", &["the free stream is nondimensional", "reduced_frequency"]);
-        refused("period = \"2 s\"", &["the free stream is nondimensional"]);
+        assert!((omega(&case(DIMENSIONAL, "plunge = 0.1\nreduced_frequency = 0.1")) - 0.1 * u).abs() < 1e-12);
+        refused("plunge = 0.1\nfrequency = \"5 Hz\"", &["the free stream is nondimensional", "reduced_frequency"]);
+        refused("plunge = 0.1\nperiod = \"2 s\"", &["the free stream is nondimensional"]);
         refused("rotation = \"10 deg/s\"\npivot = [0, 0]", &["`motion.rotation` has a unit of time"]);
         refused("rotation = { rate = \"10 deg/s\" }\npivot = [0, 0]", &["`motion.rotation.rate` has a unit of time"]);
-        refused("reduced_frequency = 0.1\nperiod = 3", &["given twice", "keep one"]);
-        refused("reduced_length = 1\nperiod = 3", &["`reduced_length` without `reduced_frequency`"]);
-        told(&format!("{DIMENSIONAL}[motion]\nfrequency = 5\n"), &["a frequency `5` has no unit", "\"5 Hz\""]);
+        refused("plunge = 0.1\nreduced_frequency = 0.1\nperiod = 3", &["given twice", "keep one"]);
+        refused("plunge = 0.1\nreduced_length = 1\nperiod = 3", &["`reduced_length` without `reduced_frequency`"]);
+        told(
+            &format!("{DIMENSIONAL}[motion]\nplunge = 0.1\nfrequency = 5\n"),
+            &["a frequency `5` has no unit", "\"5 Hz\""],
+        );
     }
 
     #[test]

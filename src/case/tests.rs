@@ -51,7 +51,7 @@ fn conveniences_mean_what_they_say() {
     let text = "[flow]\nmach = 0.8\npressure = \"1 atm\"\ntemperature = 300\nalpha = \"1.25 deg\"\n\
                 [[body]]\nnaca = { digits = \"0012\", trailing_edge = \"blunt\" }\nchord = 2\nrotate = \"3 deg\"\ntranslate = [\"1 ft\", 2]\n[cloud]\nspacing = \"10 mm\"\n[boundary]\n\
                 x_min = \"held\"\nx_max = { outflow = { pressure = 0.9 } }\ny_max = \"outflow\"\n\
-                [time.explicit]\nuntil = \"20 ms\"\n[adapt]\nparticles = 2e6\n[[compare]]\nfile = \"a.csv\"\n";
+                [time.explicit]\nuntil = \"20 ms\"\n[output]\nfield_particles = 2e6\n[[compare]]\nfile = \"a.csv\"\n";
     let case = read(text, "dir/wing.toml").unwrap_or_else(|e| panic!("{e}"));
     assert_eq!(case.title, "wing");
     let Shape::Naca(naca) = &case.bodies[0].shape else { panic!("{:?}", case.bodies) };

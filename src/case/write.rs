@@ -20,6 +20,7 @@ pub fn write(case: &Case) -> String {
         }
     }
     super::polar::put_back(&mut tree);
+    super::idle::take_out(&mut tree, case.has_gas());
     let mut text = String::new();
     for field in CASE.fields.iter().filter(|f| !has_header(f, tree.get(f.key))) {
         line(field, tree.get(field.key), &mut text);
@@ -51,10 +52,13 @@ pub fn write(case: &Case) -> String {
 /// A cloud as the section of a case file.
 pub fn write_cloud(cloud: &super::Cloud) -> String {
     let field = CASE.fields.iter().find(|f| f.key == "cloud");
-    let (Some(Kind::Table(table)), Ok(Value::Object(keys))) = (field.map(|f| &f.kind), serde_json::to_value(cloud))
+    let (Some(Kind::Table(table)), Ok(Value::Object(mut keys))) = (field.map(|f| &f.kind), serde_json::to_value(cloud))
     else {
         return String::new();
     };
+    if cloud.domain.is_some() {
+        keys.remove("far_field");
+    }
     let mut text = String::new();
     section("[cloud]", table, &keys, &mut text);
     text.trim_start().to_owned()

@@ -79,11 +79,28 @@ pub enum GeometryError {
         /// What to do about it.
         hint: String,
     },
+    /// Several bodies or files are not usable.
+    #[error("{}", .0.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n\n"))]
+    Several(Vec<Self>),
 }
 
 impl GeometryError {
     fn refused(place: impl Into<String>, what: impl Into<String>, hint: impl Into<String>) -> Self {
         Self::Refused { place: place.into(), what: what.into(), hint: hint.into() }
+    }
+
+    /// One of several, or all of them together; `None` where there are none.
+    fn all(found: Vec<Self>) -> Option<Self> {
+        let mut flat: Vec<Self> = found.into_iter().flat_map(Self::parts).collect();
+        if flat.len() < 2 { flat.pop() } else { Some(Self::Several(flat)) }
+    }
+
+    /// The reasons one by one.
+    pub(crate) fn parts(self) -> Vec<Self> {
+        match self {
+            Self::Several(all) => all,
+            one => vec![one],
+        }
     }
 }
 
@@ -121,9 +138,8 @@ pub fn load_surface<const D: usize>(
 ) -> Result<(Surface<D>, Vec<String>), GeometryError> {
     let mut notes = Vec::new();
     let (mut shells, mut lines) = (Vec::new(), Vec::new());
-    for (i, body) in bodies.iter().enumerate() {
-        let name = body.name.clone().unwrap_or_else(|| format!("body-{}", i + 1));
-        let shell = load_shell(&name, body, folder, &mut notes)?;
+    let read = load_shells(bodies, folder, &mut notes)?;
+    for (body, (name, shell)) in bodies.iter().zip(read) {
         notes.extend(chord_line::wing_astray(&name, body));
         let line = shell.plane().map(|plane| {
             let line = chord_line::chord_line(body, plane);
@@ -153,6 +169,23 @@ pub fn load_surface<const D: usize>(
         surface.keep_whole(*k, &shells[*k].1);
     }
     Ok((surface, notes))
+}
+
+/// The shells of all bodies with their names, as drawn; every one that is not usable is told.
+fn load_shells(
+    bodies: &[Body],
+    folder: &Path,
+    notes: &mut Vec<String>,
+) -> Result<Vec<(String, AnyShell)>, GeometryError> {
+    let (mut shells, mut refused) = (Vec::new(), Vec::new());
+    for (i, body) in bodies.iter().enumerate() {
+        let name = body.name.clone().unwrap_or_else(|| format!("body-{}", i + 1));
+        match load_shell(&name, body, folder, notes) {
+            Ok(shell) => shells.push((name, shell)),
+            Err(why) => refused.push(why),
+        }
+    }
+    GeometryError::all(refused).map_or(Ok(shells), Err)
 }
 
 /// The skin of bodies that meet, or of one that meets none.
@@ -244,9 +277,15 @@ fn load_shell(name: &str, body: &Body, folder: &Path, notes: &mut Vec<String>) -
             AnyShell::Space(repair::shell(file, &soup, within, notes)?)
         }
         Shape::Wing(wing) => {
-            let root = section_of(&wing.naca, &wing.airfoil, folder, notes)?;
-            let root = root.ok_or_else(|| GeometryError::refused(&place, "a wing has no section", "add `naca`"))?;
-            let tip = section_of(&wing.tip_naca, &wing.tip_airfoil, folder, notes)?;
+            let root = section_of(&wing.naca, &wing.airfoil, folder, notes);
+            let tip = section_of(&wing.tip_naca, &wing.tip_airfoil, folder, notes);
+            let (root, tip) = match (root, tip) {
+                (Err(root), Err(tip)) => {
+                    return Err(GeometryError::all(vec![root, tip]).unwrap_or_else(no_section(&place)));
+                }
+                (root, tip) => (root?, tip?),
+            };
+            let root = root.ok_or_else(no_section(&place))?;
             AnyShell::Space(loft::wing(&place, wing, [&root, tip.as_ref().unwrap_or(&root)])?)
         }
         Shape::Revolution { profile, sides } => {
@@ -261,6 +300,11 @@ fn load_shell(name: &str, body: &Body, folder: &Path, notes: &mut Vec<String>) -
             AnyShell::Space(loft::ellipsoid(primitive::sphere(1.0), [0.5 * a?, 0.5 * b?, 0.5 * c?]))
         }
     })
+}
+
+/// Why a wing without a section cannot be made.
+fn no_section(place: &str) -> impl Fn() -> GeometryError {
+    move || GeometryError::refused(place, "a wing has no section", "add `naca`")
 }
 
 /// The section at one end of a wing, by its digits or by its file; `None` where neither is given.

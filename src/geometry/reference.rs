@@ -2,7 +2,8 @@
 //!
 //! They belong to a body as it is drawn: turning it, moving it or scaling it takes the point along and leaves chord and area what they are. A section
 //! has its chord line; a wing has the planform that is typed, whatever section, tip or twist it has. Other bodies are measured as they are
-//! seen from above, with angles below 45° taken out of their placement: larger ones bring files of other axes into those of the case.
+//! seen from above, with angles below 45° taken out of their placement: larger ones bring files of other axes into those of the case. What
+//! stands upright, as a wing does that is drawn with its span along z, is measured as it is seen from the side.
 //! Of several bodies the largest wing that lies counts; without wings all that is seen from above, but no fin.
 use super::placement::{placed, shift, turned};
 use super::planform::{Planform, QUARTER, planform_of};
@@ -24,7 +25,7 @@ pub fn reference<const D: usize>(
     match main.and_then(|k| Some((k, bodies.get(k)?))) {
         Some((k, body)) => of_body(body, k, surface, within),
         None => {
-            let seen = planform_of(&seen(surface), within);
+            let seen = planform_across(&seen(surface), within);
             let lengths = bodies.iter().enumerate().map(|(k, body)| of_body(body, k, surface, within).chord);
             let round = !bodies.is_empty() && bodies.iter().all(is_round);
             Planform { chord: if round { lengths.fold(0.0, f64::max) } else { seen.chord }, ..seen }
@@ -89,7 +90,7 @@ fn measured<const D: usize>(corners: &[[Vector<D>; D]], body: &Body, within: &Bo
     let turned = (0..D).any(|d| axes[d] != Vector::axis(d));
     let before: Vec<[Vector<D>; D]> =
         if turned { corners.iter().map(|c| c.map(|x| back(&x))).collect() } else { corners.to_vec() };
-    let seen = planform_of(&before, within);
+    let seen = planform_across(&before, within);
     let chord = if is_round(body) { Bounds::around(before.iter().flatten()).extent()[0] } else { seen.chord };
     if !turned {
         return Planform { chord, ..seen };
@@ -97,6 +98,29 @@ fn measured<const D: usize>(corners: &[[Vector<D>; D]], body: &Body, within: &Bo
     let arm = Vector::<D>::from_fn(|d| seen.quarter[d] - origin[d]);
     let quarter = (0..D).fold(origin, |x, d| x + axes[d] * arm[d]);
     Planform { chord, quarter: quarter.to_3d(), ..seen }
+}
+
+/// The planform of triangles as they are seen from above, of those that stand upright from the side.
+fn planform_across<const D: usize>(all: &[[Vector<D>; D]], within: &Bounds<D>) -> Planform {
+    if !is_upright(all.iter().copied()) {
+        return planform_of(all, within);
+    }
+    let lying = |x: &Vector<D>| Vector::from_fn(|d| x[[0, 2, 1][d]]);
+    let turned: Vec<[Vector<D>; D]> = all.iter().map(|corners| corners.map(|x| lying(&x))).collect();
+    let seen = planform_of(&turned, &Bounds { min: lying(&within.min), max: lying(&within.max) });
+    let [x, y, z] = seen.quarter;
+    Planform { quarter: [x, z, y], ..seen }
+}
+
+/// True for triangles in space that show much more of themselves to the side than upwards: fins, and wings with their span along z.
+fn is_upright<const D: usize>(all: impl Iterator<Item = [Vector<D>; D]>) -> bool {
+    let mut areas = [0.0; 2];
+    for corners in all.filter(|_| D == 3) {
+        let [a, b] = [1, 2].map(|k| (corners[k % D] - corners[0]).to_3d());
+        areas[0] += (a[2] * b[0] - a[0] * b[2]).abs();
+        areas[1] += (a[0] * b[1] - a[1] * b[0]).abs();
+    }
+    areas[0] > UPRIGHT * areas[1]
 }
 
 /// Where the axes point after the part of a turn that is left when it is undone by the nearest turn of axes into axes.
@@ -128,14 +152,8 @@ fn orders<const D: usize>() -> Vec<[usize; D]> {
 
 /// Corners of all that is seen from above, without fins beside other bodies.
 fn seen<const D: usize>(surface: &Surface<D>) -> Vec<[Vector<D>; D]> {
-    let fin = |k: usize| {
-        let mut areas = Vector::<D>::ZERO;
-        for e in (0..surface.elements.len()).filter(|e| usize::from(surface.elements[*e].body) == k) {
-            let own = surface.element_area_vector(e as u32);
-            areas += Vector::from_fn(|d| own[d].abs());
-        }
-        D == 3 && areas[1] > UPRIGHT * areas[2.min(D - 1)]
-    };
+    let of = |k: usize| (0..surface.elements.len()).filter(move |e| usize::from(surface.elements[*e].body) == k);
+    let fin = |k: usize| is_upright(of(k).map(|e| surface.corners(e as u32)));
     let fins: Vec<bool> = (0..surface.bodies.len()).map(fin).collect();
     let all = fins.iter().all(|fin| *fin);
     let counted = |e: &usize| all || !fins[usize::from(surface.elements[*e].body)];
@@ -247,6 +265,13 @@ mod tests {
         // axes of another program are brought into those of the case
         let drawn = of::<3>("[[body]]\nbox = { size = [2, 0.2, 5] }\nrotate = [\"93 deg\", 0, 0]\n").0;
         assert!((drawn.area - 10.0).abs() < 1e-6 && (drawn.chord - 2.0).abs() < 1e-9, "{drawn:?}");
+        // what stands upright has the values of what lies, as drawn and as turned
+        for upright in ["box = { size = [2, 0.2, 5] }\n", "box = { size = [2, 5, 0.2] }\nrotate = [\"90 deg\", 0, 0]\n"]
+        {
+            let upright = of::<3>(&format!("[[body]]\n{upright}")).0;
+            close(&upright, flat.chord, [-0.5, 0.0, 0.0], 1e-9);
+            assert!((upright.area - flat.area).abs() < 1e-9, "{upright:?}");
+        }
         let egg = of::<3>("[[body]]\nellipsoid = { size = [3, 1, 1] }\nrotate = [0, \"20 deg\", 0]\n").0;
         assert!((egg.chord - 3.0).abs() < 1e-3, "{egg:?}");
     }

@@ -119,6 +119,17 @@ impl<const D: usize> Motions<D> {
     }
 }
 
+/// Why tables of the motions of `case` cannot be used, one reason for each; `read` opens the files it names.
+pub fn faulty_tables<const D: usize>(case: &Case, read: ReadFile<'_>) -> Vec<MotionError> {
+    let own = case.bodies.iter().filter_map(|body| body.motion.as_ref());
+    let all = own.chain(case.motion.as_ref().map(|motion| &motion.law));
+    let fault = |motion: &BodyMotionSpec| {
+        let builder = Builder { case, chord: 1.0, units: case.flow.units(), read, motion, whose: "" };
+        builder.table::<D>(motion.table.as_ref()?, BodyMotion::fixed()).err()
+    };
+    all.filter_map(fault).collect()
+}
+
 /// The shape of a mode from its file.
 pub fn mode_shape<const D: usize>(file: &str, read: ReadFile<'_>) -> Result<ModeShape<D>, MotionError> {
     let text = read(file).map_err(|source| MotionError::ModeFile { file: file.to_owned(), source })?;

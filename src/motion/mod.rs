@@ -18,7 +18,7 @@ mod tests;
 mod time_function;
 
 pub use freedom::{Freedom, Role, positions};
-pub use from_case::{MotionError, ReadFile, mode_shape};
+pub use from_case::{MotionError, ReadFile, faulty_tables, mode_shape};
 pub use law::{BodyMotion, Kinematics};
 pub use mode::{Expansion, Hinge, ModeShape};
 pub(crate) use mode_points::WARNING;

@@ -367,7 +367,7 @@ fn convention(scale: Scale) -> String {
 
 fn first_line(path: &Path) -> std::io::Result<String> {
     let mut line = String::new();
-    std::io::BufRead::read_line(&mut std::io::BufReader::new(std::fs::File::open(path)?), &mut line)?;
+    std::io::BufRead::read_line(&mut std::io::BufReader::new(crate::case::open_regular(path)?), &mut line)?;
     Ok(line.trim_end().to_owned())
 }
 

@@ -18,7 +18,7 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use super::damping::{DampingFit, LastCycles, NoFit, Oscillation, energy_per_cycle};
-use super::table::{FileError, History, complete_row};
+use super::table::{FileError, History, TableMark, complete_row};
 use crate::case::read_regular;
 
 /// Name of the file in the folder of a run.
@@ -216,12 +216,22 @@ impl StructureHistory {
     }
 
     /// Continues a table after `iteration`, as [`History::resume`] does; the file is created when it does not exist.
-    pub fn resume(folder: &Path, structures: &[StructureNames], iteration: u64) -> Result<Self, FileError> {
+    pub fn resume(
+        folder: &Path,
+        structures: &[StructureNames],
+        iteration: u64,
+        mark: Option<&TableMark>,
+    ) -> Result<Self, FileError> {
         let (names, path) = (columns(structures), folder.join(FILE));
         let names: Vec<&str> = names.iter().map(String::as_str).collect();
-        let table = History::resume(&path, &names, iteration)?;
+        let table = History::resume(&path, &names, iteration, mark)?;
         let last = StructureTable::read(&path)?.and_then(|table| table.totals());
         Ok(Self { table, last })
+    }
+
+    /// What the table holds now.
+    pub fn mark(&self) -> Result<TableMark, FileError> {
+        self.table.mark()
     }
 
     /// Adds the row of a step.
@@ -498,14 +508,14 @@ pub(crate) mod tests {
         fill(whole.path());
         let mut history = StructureHistory::create(cut.path(), &[section()]).unwrap();
         (0..320).for_each(|k| history.push(k, &sample(k)).unwrap());
-        let mut history = StructureHistory::resume(cut.path(), &[section()], 300).unwrap();
+        let mut history = StructureHistory::resume(cut.path(), &[section()], 300, None).unwrap();
         (301..600).for_each(|k| history.push(k, &sample(k)).unwrap());
         let text = |folder: &Path| std::fs::read_to_string(folder.join(FILE)).unwrap();
         assert!(text(whole.path()) == text(cut.path()));
         assert!((history.ledger() + 0.1 * history.gas_work()).abs() < 1e-12 && history.gas_work() > 1.0);
         // a table that is not there begins
         let fresh = tempfile::tempdir().unwrap();
-        assert_eq!(StructureHistory::resume(fresh.path(), &[section()], 7).unwrap().gas_work(), 0.0);
+        assert_eq!(StructureHistory::resume(fresh.path(), &[section()], 7, None).unwrap().gas_work(), 0.0);
         let wide = StructureSample { coordinates: vec![0.0; 3], rates: vec![0.0; 3], loads: vec![0.0; 3], ..sample(0) };
         assert!(matches!(history.push(600, &wide), Err(FileError::Width { .. })));
     }

@@ -3,12 +3,12 @@
 //! [`write_atomic`] writes beside the target and renames: POSIX and Windows both replace a file in one step, so whoever
 //! opens the path sees the old content or the new one. Numbers are printed in the shortest form that reads back to the
 //! same bits. [`History`] is the exception: it grows by appended lines, one per iteration, and is cut back to an
-//! iteration when a run is resumed from an older checkpoint.
+//! iteration when a run is resumed from an older checkpoint, which says with a [`TableMark`] what the table held.
 use std::fs::{File, OpenOptions};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::case::read_regular;
 
@@ -55,6 +55,12 @@ pub enum FileError {
         found: String,
         /// First line that was asked for.
         expected: String,
+    },
+    /// A table that is not what a run wrote.
+    #[error("`{}` was changed or removed since the run wrote it: it does not begin with what the checkpoint says of it\nhint: put it back as it was, or begin the run again in another folder", path.display())]
+    Changed {
+        /// The file.
+        path: PathBuf,
     },
 }
 
@@ -163,24 +169,53 @@ pub fn print_number(value: f64) -> String {
     if plain { format!("{value}") } else { format!("{value:e}") }
 }
 
+/// What a table held when a checkpoint was written.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct TableMark {
+    /// Name of its file.
+    pub file: String,
+    /// Length in bytes.
+    pub length: u64,
+    /// CRC-32 of these bytes.
+    pub crc32: u32,
+}
+
+impl TableMark {
+    /// True for the bytes of a file that begins with what the table held.
+    fn begins(&self, bytes: &[u8]) -> bool {
+        let length = usize::try_from(self.length).unwrap_or(usize::MAX);
+        bytes.get(..length).is_some_and(|part| crc32fast::hash(part) == self.crc32)
+    }
+}
+
 /// A table that grows by one line per iteration and survives an interrupted run.
 #[derive(Debug)]
 pub struct History {
     path: PathBuf,
     columns: usize,
     file: File,
+    /// Length and checksum of all that it holds.
+    length: u64,
+    sum: crc32fast::Hasher,
 }
 
 impl History {
     /// Starts an empty history, replacing a file that may be there.
     pub fn create(path: &Path, columns: &[&str]) -> Result<Self, FileError> {
-        write_atomic(path, |w| writeln!(w, "{}", columns.join(",")))?;
-        Self::open(path, columns.len())
+        Self::begin(path, columns.len(), &format!("{}\n", columns.join(",")))
     }
 
     /// Continues a history after `iteration`: rows from the first larger `iteration` on are removed, and so is a line
-    /// that an interruption left incomplete. The file is created when it does not exist.
-    pub fn resume(path: &Path, columns: &[&str], iteration: u64) -> Result<Self, FileError> {
+    /// that an interruption left incomplete. Refuses one that does not begin with what `mark` says; without a mark the file is created when
+    /// it does not exist.
+    pub fn resume(path: &Path, columns: &[&str], iteration: u64, mark: Option<&TableMark>) -> Result<Self, FileError> {
+        if let Some(mark) = mark {
+            let bytes =
+                if path.exists() { read_regular(path).map_err(FileError::io("read", path))? } else { Vec::new() };
+            if !mark.begins(&bytes) {
+                return Err(FileError::Changed { path: path.to_path_buf() });
+            }
+        }
         match columns.iter().position(|name| *name == "iteration") {
             Some(at) => Self::resume_while(path, columns, |row| row[at] <= iteration as f64),
             None => Self::resume_while(path, columns, |_| true),
@@ -201,12 +236,16 @@ impl History {
             let found = found.chars().take(80).collect();
             return Err(FileError::Header { path: path.to_path_buf(), found, expected: header });
         }
-        let mut kept = lines.take_while(|line| complete_row(line, columns.len()).is_some_and(|row| keep(&row)));
-        write_atomic(path, |w| {
-            writeln!(w, "{header}")?;
-            kept.try_for_each(|line| writeln!(w, "{}", line.trim_end()))
-        })?;
-        Self::open(path, columns.len())
+        let kept = lines.take_while(|line| complete_row(line, columns.len()).is_some_and(|row| keep(&row)));
+        let rows: String = kept.flat_map(|line| [line.trim_end(), "\n"]).collect();
+        Self::begin(path, columns.len(), &format!("{header}\n{rows}"))
+    }
+
+    /// What the table holds now, on the disk as well.
+    pub fn mark(&self) -> Result<TableMark, FileError> {
+        self.file.sync_data().map_err(FileError::io("write", &self.path))?;
+        let file = self.path.file_name().map_or_else(String::new, |name| name.to_string_lossy().into_owned());
+        Ok(TableMark { file, length: self.length, crc32: self.sum.clone().finalize() })
     }
 
     /// Adds one row, visible to readers at once.
@@ -217,12 +256,19 @@ impl History {
         let mut line = row.iter().map(|value| print_number(*value)).collect::<Vec<_>>().join(",");
         line.push('\n');
         // One call: a line is there as a whole or, after a crash, cut short and dropped by `resume`.
-        self.file.write_all(line.as_bytes()).map_err(FileError::io("append to", &self.path))
+        self.file.write_all(line.as_bytes()).map_err(FileError::io("append to", &self.path))?;
+        self.length += line.len() as u64;
+        self.sum.update(line.as_bytes());
+        Ok(())
     }
 
-    fn open(path: &Path, columns: usize) -> Result<Self, FileError> {
+    /// A table that holds `text` so far.
+    fn begin(path: &Path, columns: usize, text: &str) -> Result<Self, FileError> {
+        write_atomic(path, |w| w.write_all(text.as_bytes()))?;
         let file = OpenOptions::new().append(true).open(path).map_err(FileError::io("append to", path))?;
-        Ok(Self { path: path.to_path_buf(), columns, file })
+        let mut sum = crc32fast::Hasher::new();
+        sum.update(text.as_bytes());
+        Ok(Self { path: path.to_path_buf(), columns, file, length: text.len() as u64, sum })
     }
 }
 
@@ -271,13 +317,36 @@ mod tests {
         (0..10).for_each(|k| history.append(&[0.0, k as f64, 1.0 / (1.0 + k as f64)]).unwrap());
         drop(history);
         OpenOptions::new().append(true).open(&path).unwrap().write_all(b"0,10,0.0").unwrap();
-        let mut history = History::resume(&path, &columns, 4).unwrap();
+        let mut history = History::resume(&path, &columns, 4, None).unwrap();
         history.append(&[0.0, 5.0, f64::NAN]).unwrap();
         let text = std::fs::read_to_string(&path).unwrap();
         assert_eq!(text.lines().count(), 7);
         assert!(text.ends_with("0,4,0.2\n0,5,NaN\n"));
         assert!(history.append(&[1.0]).is_err());
-        assert!(matches!(History::resume(&path, &["other"], 4), Err(FileError::Header { .. })));
+        assert!(matches!(History::resume(&path, &["other"], 4, None), Err(FileError::Header { .. })));
+    }
+
+    #[test]
+    fn a_history_that_was_changed_since_the_checkpoint_is_refused() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("history.csv");
+        let columns = ["iteration", "cl"];
+        let mut history = History::create(&path, &columns).unwrap();
+        history.append(&[1.0, 0.5]).unwrap();
+        history.append(&[2.0, 0.25]).unwrap();
+        let mark = history.mark().unwrap();
+        history.append(&[3.0, 0.125]).unwrap();
+        let again = |iteration| History::resume(&path, &columns, iteration, Some(&mark));
+        assert_eq!(again(2).unwrap().mark().unwrap(), mark);
+        let text = std::fs::read_to_string(&path).unwrap();
+        for forged in [text.replace("0.25", "9.25"), text.replace("2,", "1,"), "iteration,cl\n".to_owned()] {
+            std::fs::write(&path, &forged).unwrap();
+            let refused = again(2).unwrap_err().to_string();
+            assert!(refused.contains("history.csv` was changed") && refused.contains("hint: put it back"), "{refused}");
+            assert_eq!(std::fs::read_to_string(&path).unwrap(), forged, "what is refused stays as it is");
+        }
+        std::fs::remove_file(&path).unwrap();
+        assert!(matches!(again(2), Err(FileError::Changed { .. })));
     }
 
     #[test]
@@ -285,7 +354,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("history.csv");
         std::fs::write(&path, "iteration,cl\n1,0.5\n2,0.6\n3,0.").unwrap();
-        History::resume(&path, &["iteration", "cl"], u64::MAX).unwrap();
+        History::resume(&path, &["iteration", "cl"], u64::MAX, None).unwrap();
         assert_eq!(std::fs::read_to_string(&path).unwrap(), "iteration,cl\n1,0.5\n2,0.6\n");
     }
 

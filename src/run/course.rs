@@ -18,6 +18,7 @@
 //! and the polar goes on.
 use super::error::RunError;
 use super::look::{GasView, load_axes, momentum};
+use super::one_cloud::times_the_spacing;
 use super::recipe;
 use super::record::Log;
 use super::record::family;
@@ -257,8 +258,8 @@ impl<'a, S: HasGas<D>, const D: usize> Course<'a, S, D> {
         let stage = stages[k];
         if stage.factor > 1.0 && !stage.back && stage.point.is_none() && matches!(problem, RunError::Time { .. }) {
             log.note(&format!(
-                "the cloud with {} times the spacing gives no start, for {}; the next one begins without it",
-                stage.factor,
+                "the cloud with {} gives no start, for {}; the next one begins without it",
+                times_the_spacing(stage.factor),
                 first_line(&problem)
             ));
             if stages.get(k + 1).is_some_and(|next| next.instances() > 1) {

@@ -15,6 +15,9 @@ pub enum RunError {
     /// Geometry.
     #[error(transparent)]
     Geometry(#[from] GeometryError),
+    /// Several files of a case that cannot be used.
+    #[error("{}", .0.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n\n"))]
+    Several(Vec<Self>),
     /// A structure.
     #[error(transparent)]
     Structure(#[from] StructureError),
@@ -185,6 +188,29 @@ pub enum Blame {
 }
 
 impl RunError {
+    /// The reasons in words, one by one, each with its hint.
+    pub fn messages(&self) -> Vec<String> {
+        match self {
+            Self::Several(all) => all.iter().flat_map(Self::messages).collect(),
+            Self::Geometry(GeometryError::Several(all)) => all.iter().map(ToString::to_string).collect(),
+            one => vec![one.to_string()],
+        }
+    }
+
+    /// The reasons one by one.
+    pub(crate) fn parts(self) -> Vec<Self> {
+        match self {
+            Self::Several(all) => all.into_iter().flat_map(Self::parts).collect(),
+            Self::Geometry(why) => why.parts().into_iter().map(Self::Geometry).collect(),
+            one => vec![one],
+        }
+    }
+
+    /// One of several, or all of them together; `None` where there are none.
+    pub(crate) fn all(mut found: Vec<Self>) -> Option<Self> {
+        if found.len() < 2 { found.pop() } else { Some(Self::Several(found)) }
+    }
+
     /// Who has to act.
     pub fn blame(&self) -> Blame {
         match self {
@@ -199,7 +225,9 @@ impl RunError {
             | Self::NoRun { .. }
             | Self::LostInput { .. }
             | Self::OtherRun { .. } => Blame::Files,
-            Self::Geometry(_)
+            Self::Several(all) if all.iter().all(|one| one.blame() == Blame::Files) => Blame::Files,
+            Self::Several(_)
+            | Self::Geometry(_)
             | Self::Structure(_)
             | Self::Cloud(_)
             | Self::Start(_)

@@ -42,7 +42,7 @@ use super::accuracy::Forces;
 use super::error::RunError;
 use super::folder::{self, Places};
 use super::monitor::{Monitor, Quiet};
-use super::one_cloud::{self, BETWEEN, COARSER, on_one_cloud};
+use super::one_cloud::{self, BETWEEN, COARSER, on_one_cloud, times_the_spacing};
 use super::record::Log;
 use super::session::{Outcome, Session};
 use super::solids::{told_of_own_modes, with_own_modes};
@@ -57,7 +57,7 @@ const AIR: f64 = 0.005;
 
 /// Seeks the boundary of the table `[flutter]`, into a fresh folder; `None` when the monitor says stop.
 pub fn flutter(case: &Case, places: &Places, monitor: &mut dyn Monitor) -> Result<Option<Boundary>, RunError> {
-    sought(case, places, None, monitor)
+    sought(case, places, None, monitor).map_err(|problem| refusals::with_other_files(case, &places.input, problem))
 }
 
 /// The same with the forces of a file, `flutter.json` of a former run or `gaf.json`: the boundary of the structure alone, without a flow.
@@ -132,7 +132,7 @@ fn sought(
     forces.map_or(Ok(()), |_| refused_with_forces(case, &plan))?;
     let stored = forces.map(Stored::read).transpose()?;
     let _held = folder::create_once(case, &places.input, &places.out)?;
-    let mut kept = Kept::of(case, &places.input, &places.out);
+    let mut kept = Kept::of(case, &places.input, &places.out)?;
     kept.write(&places.out)?;
     let mut all = Boundary::new(&case.title);
     for mach in plan.mach.clone() {
@@ -369,7 +369,7 @@ impl Place<'_> {
             pressure: trim.dynamic_pressure / self.scales.reference.dynamic_pressure(),
             temperature: trim.speed_ratio * trim.speed_ratio,
         });
-        monitor.note(&format!("the same on a cloud with {ratio} times the spacing"));
+        monitor.note(&format!("the same on a cloud with {}", times_the_spacing(ratio)));
         let plan = Plan { state_space: false, ..self.plan.clone() };
         let place = Place { own: &own, plan: &plan, ..*self };
         // what that cloud is too coarse for is told by the difference

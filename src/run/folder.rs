@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use super::error::RunError;
 use super::record::saved;
-use crate::case::{Case, Cloud, Compare, read, read_regular, text_of, write, write_cloud};
+use crate::case::{Case, Cloud, Compare, open_regular, read, read_regular, text_of, write, write_cloud};
 use crate::geometry::dimension;
 use crate::observe::checkpoint;
 use crate::observe::table::UNFINISHED;
@@ -14,7 +14,7 @@ use crate::report::check_reference;
 
 /// Where the folder of the case file is noted.
 const ORIGIN: &str = "origin.txt";
-/// Written last: the checksum of the case that the results belong to.
+/// Written last: checksums of the case that the results belong to, and of the last line of the run.
 const FINISHED: &str = "finished.txt";
 /// The last line of a run.
 const SUMMARY: &str = "summary.json";
@@ -52,7 +52,7 @@ pub(crate) struct Hold {
 
 /// Takes a run folder; refuses one in which another run is going on.
 pub(crate) fn hold(out: &Path) -> Result<Hold, RunError> {
-    let Ok(file) = File::open(out.join(ORIGIN)) else { return Ok(Hold { _lock: None }) };
+    let Ok(file) = open_regular(&out.join(ORIGIN)) else { return Ok(Hold { _lock: None }) };
     match file.try_lock() {
         Ok(()) => Ok(Hold { _lock: Some(file) }),
         Err(TryLockError::Error(_)) => Ok(Hold { _lock: None }),
@@ -166,10 +166,8 @@ fn occupied(out: &Path) -> RunError {
 
 /// Marks a run or matrices as finished: all files are written.
 pub(crate) fn finish(out: &Path) -> Result<(), RunError> {
-    match checksum(out) {
-        Some(sum) => Ok(write_atomic(&out.join(FINISHED), |w| w.write_all(sum.as_bytes()))?),
-        None => Ok(()),
-    }
+    let sums: String = ["case.toml", SUMMARY].iter().filter_map(|file| checksum(out, file)).collect();
+    Ok(write_atomic(&out.join(FINISHED), |w| w.write_all(sums.as_bytes()))?)
 }
 
 /// Takes what is kept of a boundary out of a folder in which all is finished.
@@ -216,13 +214,28 @@ fn unfinished_files(out: &Path) -> Vec<PathBuf> {
 pub(crate) fn finished(out: &Path) -> Option<serde_json::Value> {
     let mark = plain(&out.join(FINISHED)).ok()?;
     let summary = plain(&out.join(SUMMARY)).ok()?;
-    (Some(mark) == checksum(out)).then(|| serde_json::from_str(&summary).ok())?
+    checksum(out, "case.toml").filter(|sum| mark.starts_with(sum))?;
+    serde_json::from_str(&summary).ok()
 }
 
-/// What the mark of a finished run says of its case.
-fn checksum(out: &Path) -> Option<String> {
-    let case = read_regular(&out.join("case.toml")).ok()?;
-    Some(format!("case.toml {:08x}\n", crc32fast::hash(&case)))
+/// Refuses a summary that was changed since the run that wrote it ended.
+pub(crate) fn check_summary(out: &Path) -> Result<(), RunError> {
+    let mark = plain(&out.join(FINISHED)).unwrap_or_default();
+    // versions that did not ask have no such line
+    let told = mark.lines().find(|line| line.starts_with(SUMMARY));
+    if told.is_none_or(|told| checksum(out, SUMMARY).is_some_and(|sum| sum.trim_end() == told)) {
+        return Ok(());
+    }
+    Err(RunError::Folder {
+        what: format!("`{}` was changed since the run wrote it", out.join(SUMMARY).display()),
+        hint: "put it back as it was, or begin the run again in another folder".into(),
+    })
+}
+
+/// What the mark of a finished run says of one of its files.
+fn checksum(out: &Path, file: &str) -> Option<String> {
+    let bytes = read_regular(&out.join(file)).ok()?;
+    Some(format!("{file} {:08x}\n", crc32fast::hash(&bytes)))
 }
 
 /// Refuses to go on where no checkpoint was written.

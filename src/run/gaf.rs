@@ -21,6 +21,10 @@ use crate::observe::columns::Scale;
 /// Computes the matrices of the table `[gaf]` into a fresh folder, or one where those of the same case were not all found; `None` when the
 /// monitor says stop.
 pub fn gaf(case: &Case, places: &Places, monitor: &mut dyn Monitor) -> Result<Option<Matrices>, RunError> {
+    found(case, places, monitor).map_err(|problem| refusals::with_other_files(case, &places.input, problem))
+}
+
+fn found(case: &Case, places: &Places, monitor: &mut dyn Monitor) -> Result<Option<Matrices>, RunError> {
     let plan = planned(case)?;
     let _held = folder::create_once(case, &places.input, &places.out)?;
     let mut matrices = blank(case, &plan, &places.input)?;

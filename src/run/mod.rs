@@ -75,6 +75,10 @@ use stage::Stage;
 
 /// Runs a case into a fresh folder.
 pub fn run(case: &Case, places: &Places, monitor: &mut dyn Monitor) -> Result<Outcome, RunError> {
+    solved(case, places, monitor).map_err(|problem| refusals::with_other_files(case, &places.input, problem))
+}
+
+fn solved(case: &Case, places: &Places, monitor: &mut dyn Monitor) -> Result<Outcome, RunError> {
     if !case.has_gas() {
         solids::supported(case)?;
         let (_, _held) = folder::create(case, &places.input, &places.out)?;
@@ -150,6 +154,7 @@ pub fn set_aside(case: &Case, places: &Places) -> Result<Option<PathBuf>, RunErr
 pub fn resume(out: &Path, monitor: &mut dyn Monitor) -> Result<Outcome, RunError> {
     if let Some(summary) = folder::finished(out) {
         folder::read_case(out)?;
+        folder::check_summary(out)?;
         return Ok(Outcome::AlreadyFinished { summary });
     }
     let (case, input) = folder::read_case(out)?;

@@ -14,6 +14,11 @@ use crate::geometry::dimension;
 pub(super) const COARSER: f64 = 2.0;
 pub(super) const BETWEEN: f64 = 1.5;
 
+/// How wide the spacing of a cloud is beside that of another, for people.
+pub(super) fn times_the_spacing(ratio: f64) -> String {
+    if ratio == 2.0 { "twice the spacing".to_owned() } else { format!("{ratio} times the spacing") }
+}
+
 /// The case `own`, whose spacing is known, with `ratio` times the spacing; `None` where that does not fit into the domain, and where clouds
 /// are refined by what was found on the one before.
 pub(super) fn coarser(own: &Case, ratio: f64) -> Option<Case> {
@@ -60,6 +65,11 @@ mod tests {
         assert_eq!(told("naca = \"0002\"", "spacing = 0.1"), (10.0, 2, 3));
         assert_eq!(told("circle = { radius = 0.5 }", ""), (64.0, 10, 10));
         assert_eq!(told("sphere = { radius = 0.5 }", "").1, 2);
+    }
+
+    #[test]
+    fn spacings_are_told_in_words() {
+        assert_eq!([COARSER, BETWEEN].map(times_the_spacing), ["twice the spacing", "1.5 times the spacing"]);
     }
 
     #[test]

@@ -10,6 +10,7 @@ use super::{accuracy, flutter, folder, gaf, setup, solids, studies};
 use crate::case::{Case, Temporal, read_mode};
 use crate::cloud::layout::count;
 use crate::geometry::dimension;
+use crate::motion::faulty_tables;
 
 /// All that the commands refuse of a case whose file names refer to the folder `input`; empty where they can begin.
 pub fn refusals(case: &Case, input: &Path) -> Vec<RunError> {
@@ -19,7 +20,7 @@ pub fn refusals(case: &Case, input: &Path) -> Vec<RunError> {
         all.look(solids::supported(case));
         return all.found;
     }
-    for problem in shapes(case, input) {
+    for problem in shapes(case, input).into_iter().chain(tables(case, input)) {
         all.look::<()>(Err(problem));
     }
     all.look(setup::supported(case));
@@ -62,6 +63,35 @@ fn within<const D: usize>(case: &Case, input: &Path, held: bool) -> Result<(), R
     Ok(())
 }
 
+/// What a command refuses of a case; where a file is to blame, all files of it that cannot be used together.
+pub(super) fn with_other_files(case: &Case, input: &Path, problem: RunError) -> RunError {
+    use RunError::{Geometry, Law, Motion, Structure};
+    if !matches!(problem, Geometry(_) | Law(_) | RunError::Case(_) | Structure(_) | Motion { .. }) {
+        return problem;
+    }
+    let mut all = Refusals::default();
+    all.look::<()>(Err(problem));
+    let surfaces = match dimension(case) {
+        2 => setup::surface::<2>(case, input).map(|_| ()),
+        _ => setup::surface::<3>(case, input).map(|_| ()),
+    };
+    all.look(surfaces.map_err(Geometry));
+    for other in shapes(case, input).into_iter().chain(tables(case, input)) {
+        all.look::<()>(Err(other));
+    }
+    RunError::all(all.found).unwrap_or(RunError::NoStage)
+}
+
+/// Mistakes in the tables of all motions that a case names.
+fn tables(case: &Case, input: &Path) -> Vec<RunError> {
+    let read = |name: &str| folder::text(input, name);
+    let found = match dimension(case) {
+        2 => faulty_tables::<2>(case, &read),
+        _ => faulty_tables::<3>(case, &read),
+    };
+    found.into_iter().map(RunError::Law).collect()
+}
+
 /// Mistakes in the tables of all modes that a case names.
 fn shapes(case: &Case, input: &Path) -> Vec<RunError> {
     let laws = case.bodies.iter().filter_map(|b| b.motion.as_ref()).chain(case.motion.as_ref().map(|m| &m.law));
@@ -86,9 +116,11 @@ impl Refusals {
         match seen {
             Ok(value) => Some(value),
             Err(problem) => {
-                let told = problem.to_string();
-                if self.found.iter().all(|known| known.to_string() != told) {
-                    self.found.push(problem);
+                for problem in problem.parts() {
+                    let told = problem.to_string();
+                    if self.found.iter().all(|known| known.to_string() != told) {
+                        self.found.push(problem);
+                    }
                 }
                 None
             }
@@ -100,9 +132,39 @@ impl Refusals {
 #[cfg(test)]
 pub(crate) fn as_checked<T>(case: &Case, input: &Path, seen: Result<T, RunError>) -> Result<T, RunError> {
     if let Err(problem) = &seen {
-        let told = problem.to_string();
+        let told = problem.messages();
         let checked = refusals(case, input).into_iter().chain(super::inspect(case, input, None).err());
-        assert!(checked.map(|p| p.to_string()).any(|p| p == told), "`check` does not refuse: {told}");
+        let checked: Vec<String> = checked.map(|p| p.to_string()).collect();
+        assert!(told.iter().all(|part| checked.contains(part)), "`check` does not refuse: {told:?}");
     }
     seen
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::run::{Outcome, Places, Silent};
+
+    #[test]
+    fn all_bad_files_of_a_case_are_told_at_once() {
+        let folder = tempfile::tempdir().unwrap();
+        let file = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
+        file("one.dat", "one\n1 0\n0 0\n");
+        file("two.dat", "two\n1 zero\n");
+        file("table.csv", "time,w\n0,0\n1,1\n");
+        file("mode.csv", "x,y,dx\n0,0,1\n");
+        let text = "[flow]\nmach = 0.5\n[[body]]\nairfoil = \"one.dat\"\n[[body]]\nairfoil = \"two.dat\"\ntranslate = [3, 0]\n\
+                    motion.mode = { file = \"mode.csv\", amplitude = 0.1 }\nmotion.period = 5\n[motion]\ntable = \"table.csv\"\n\
+                    [time.dual]\nstep = 0.1\nuntil = 1\n";
+        let case = crate::case::read(text, "t").unwrap_or_else(|e| panic!("{e}"));
+        let places = Places { input: folder.path().into(), out: folder.path().join("out") };
+        let refused =
+            crate::run::run(&case, &places, &mut Silent).map(|o| matches!(o, Outcome::Finished(_))).unwrap_err();
+        let told = refused.messages();
+        for name in ["one.dat", "two.dat", "table.csv", "mode.csv"] {
+            assert_eq!(told.iter().filter(|text| text.contains(name)).count(), 1, "{name}: {told:#?}");
+        }
+        let checked: Vec<String> = refusals(&case, folder.path()).iter().map(ToString::to_string).collect();
+        assert!(told.iter().all(|text| checked.contains(text)), "{checked:#?}");
+    }
 }

@@ -76,10 +76,7 @@ fn page(out: &Path) -> String {
 /// The first Mach number whose result is doubtful.
 fn shortfall(boundary: &Boundary) -> Option<Shortfall> {
     let (at, what) = boundary.flutter.iter().find_map(|at| at.warnings.first().map(|w| (at, w)))?;
-    Some(Shortfall {
-        what: format!("Mach {}: {what}", at.mach),
-        hint: "see `flutter.json`, `frequencies` of `[flutter]` and `orders` of `[time.steady]`".into(),
-    })
+    Some(Shortfall { what: format!("Mach {}: {what}", at.mach), hint: at.remedy(what).into() })
 }
 
 /// All crossings, for people.

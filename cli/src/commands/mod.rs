@@ -83,11 +83,12 @@ fn load(path: &Path) -> Result<Case, Outcome> {
     })
 }
 
-/// Tells why a case cannot be computed.
+/// Tells why a case cannot be computed: all reasons, one by one.
 fn refuse(problem: &RunError) -> Outcome {
-    let text = problem.to_string();
-    let (what, hint) = text.split_once("\nhint: ").unwrap_or((&text, ""));
-    output::error(what, hint);
+    for text in problem.messages() {
+        let (what, hint) = text.split_once("\nhint: ").unwrap_or((&text, ""));
+        output::error(what, hint);
+    }
     match problem.blame() {
         Blame::Computation => Outcome::Failed,
         Blame::Case | Blame::Files => Outcome::BadInput,

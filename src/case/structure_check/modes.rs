@@ -51,7 +51,9 @@ impl Look<'_, '_> {
         }
         if self.dimension == 3 {
             let of_particles = ["through", "fill", "jitter", "stabilisation"].map(|k| format!("{solid}.{k}"));
-            for place in of_particles.into_iter().filter(|k| self.draft.given(k)).collect::<Vec<_>>() {
+            // a written case repeats its defaults
+            let says = |k: &String| self.draft.given(k) && self.draft.number(k) != Some(0.0);
+            for place in of_particles.into_iter().filter(says).collect::<Vec<_>>() {
                 let message =
                     format!("`{place}` is of particles: own modes in space are found among splines over the body");
                 self.draft
@@ -59,7 +61,7 @@ impl Look<'_, '_> {
                     .hint("remove it; `spacing` is the length of a cell of the splines");
             }
         }
-        let led = |k: &usize| self.draft.given(&format!("{solid}.support[{k}].motion"));
+        let led = |k: &usize| self.draft.count(&format!("{solid}.support[{k}].motion")) > 0;
         let led = (0..self.draft.count(&format!("{solid}.support"))).find(led);
         let loads = (self.draft.count(&format!("{solid}.load")) > 0).then(|| format!("{solid}.load"));
         for place in led.map(|k| format!("{solid}.support[{k}].motion")).into_iter().chain(loads) {

@@ -1,4 +1,5 @@
 //! What the spacing of the cloud does to a boundary: how far crossings move on coarser clouds, and which motions grow on one of two alone.
+use super::super::one_cloud::times_the_spacing;
 use super::damping::{Pair, What, curves, pairs, safety};
 use super::record::FlutterAt;
 use super::rows::Doubt;
@@ -77,6 +78,7 @@ fn told(pair: &Pair, ratio: f64, scales: &Scales) -> Vec<Doubt> {
 /// What a doubt says.
 fn in_words(doubt: &Doubt, dimensional: bool) -> String {
     let Doubt { branch, damping: here, damping_coarser: there, spacing_ratio, .. } = doubt;
+    let spacing = times_the_spacing(*spacing_ratio);
     let [from, to] = doubt.speed_ratio;
     let range = match (dimensional, doubt.equivalent_airspeed) {
         (true, Some([a, b])) => format!("between {a:.1} and {b:.1} m/s EAS"),
@@ -86,20 +88,18 @@ fn in_words(doubt: &Doubt, dimensional: bool) -> String {
         }
     };
     let what = if doubt.kind == What::CoarserCloudOnly.name() {
-        format!(
-            "grows {range} on a cloud with {spacing_ratio} times the spacing (g up to {there:+.4}), but not on this one ({here:+.4})"
-        )
+        format!("grows {range} on a cloud with {spacing} (g up to {there:+.4}), but not on this one ({here:+.4})")
     } else if doubt.kind == What::Nearly.name() {
         format!(
-            "comes nearer to growth {range} (g up to {here:+.4}) than the damping is known: {there:+.4} on a cloud with {spacing_ratio} times the spacing"
+            "comes nearer to growth {range} (g up to {here:+.4}) than the damping is known: {there:+.4} on a cloud with {spacing}"
         )
     } else if doubt.kind == What::ThisCloudOnly.name() {
         format!(
-            "grows {range} by less (g up to {here:+.4}) than the damping is known: {there:+.4} on a cloud with {spacing_ratio} times the spacing"
+            "grows {range} by less (g up to {here:+.4}) than the damping is known: {there:+.4} on a cloud with {spacing}"
         )
     } else {
         format!(
-            "decays again {range} by less (g down to {here:+.4}) than the damping is known: {there:+.4} on a cloud with {spacing_ratio} times the spacing"
+            "decays again {range} by less (g down to {here:+.4}) than the damping is known: {there:+.4} on a cloud with {spacing}"
         )
     };
     format!("{branch} {what}; a finer `spacing` decides whether it flutters there")

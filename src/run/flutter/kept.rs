@@ -1,7 +1,7 @@
 //! Mach numbers that are finished: what a boundary that was interrupted goes on with.
 //!
 //! They are independent of one another, so that those that follow have the bits that they would have had. What is kept serves the same
-//! case, with the same files and the same version, alone.
+//! case, with the same files and the same version, alone; a checksum tells a file that was changed since.
 use std::path::Path;
 
 use serde::{Deserialize, Serialize};
@@ -15,10 +15,13 @@ use crate::case::Case;
 use crate::observe::table::write_json;
 
 /// All that is finished of one case.
-#[derive(Serialize, Deserialize)]
+#[derive(Clone, Serialize, Deserialize)]
 pub(super) struct Kept {
     /// Checksum of version, case and its files.
     key: String,
+    /// CRC-32 of what is finished.
+    #[serde(default)]
+    crc32: u32,
     finished: Vec<Finished>,
 }
 
@@ -34,11 +37,35 @@ struct Finished {
 }
 
 impl Kept {
-    /// What `out` has of `case`, whose files lie in `input`; nothing where it has none, or another one.
-    pub(super) fn of(case: &Case, input: &Path, out: &Path) -> Self {
+    /// What `out` has of `case`, whose files lie in `input`; nothing where it has none, or that of another case or version. Refuses what
+    /// was changed since a run wrote it.
+    pub(super) fn of(case: &Case, input: &Path, out: &Path) -> Result<Self, RunError> {
         let key = folder::identity(case, input);
-        let read = folder::text(out, KEPT).ok().and_then(|text| serde_json::from_str::<Self>(&text).ok());
-        read.filter(|kept| kept.key == key).unwrap_or(Self { key, finished: Vec::new() })
+        let none = |key| Self { key, crc32: 0, finished: Vec::new() };
+        let Ok(text) = folder::text(out, KEPT) else { return Ok(none(key)) };
+        let tree = serde_json::from_str::<serde_json::Value>(&text).unwrap_or_default();
+        if tree.get("key").and_then(serde_json::Value::as_str).is_some_and(|other| other != key) {
+            return Ok(none(key));
+        }
+        let kept = serde_json::from_value::<Self>(tree).ok();
+        let whole = |kept: &Self| kept.crc32 == kept.checksum() && kept.finished.iter().all(Finished::is_possible);
+        match kept.filter(whole) {
+            Some(kept) => Ok(kept),
+            None => Err(RunError::Folder {
+                what: format!(
+                    "`{}` was changed since a run wrote it: its checksum is not that of its numbers",
+                    out.join(KEPT).display()
+                ),
+                hint:
+                    "put it back as it was, or remove it: the Mach numbers that were finished are then computed again"
+                        .into(),
+            }),
+        }
+    }
+
+    /// Checksum of all that is finished, as it is written.
+    fn checksum(&self) -> u32 {
+        crc32fast::hash(&serde_json::to_vec(&self.finished).unwrap_or_default())
     }
 
     /// A Mach number that is finished.
@@ -62,7 +89,24 @@ impl Kept {
 
     /// Writes all of it into `out`.
     pub(super) fn write(&self, out: &Path) -> Result<(), RunError> {
-        Ok(write_json(&out.join(KEPT), self)?)
+        Ok(write_json(&out.join(KEPT), &Self { crc32: self.checksum(), ..self.clone() })?)
+    }
+}
+
+impl Finished {
+    /// True where no number is one that a boundary cannot have: lengths and counts are positive, no speed and no frequency is negative.
+    fn is_possible(&self) -> bool {
+        let at = &self.at;
+        let positive = [at.mach, at.chord, at.semichord].iter().all(|x| x.is_finite() && *x >= 0.0) && at.mach > 0.0;
+        let rising = at.reduced_frequencies.windows(2).all(|k| k[0] <= k[1]);
+        let crossings =
+            at.crossings.iter().flat_map(|c| [c.speed_ratio, c.speed, c.density, c.dynamic_pressure, c.frequency]);
+        let cycles = self.cycles.iter().flat_map(|c| [c.amplitude, c.speed_ratio, c.speed, c.density, c.frequency]);
+        let forces = at.forces.iter().flatten().flatten();
+        positive
+            && rising
+            && crossings.chain(cycles).all(|x| x.is_finite() && x >= 0.0)
+            && forces.chain(self.still.iter()).chain(self.borne.iter()).all(|x| x.is_finite())
     }
 }
 
@@ -86,14 +130,29 @@ mod tests {
             forces: vec![vec![[1e-300, -2.0 / 7.0]]],
             ..FlutterAt::default()
         };
-        let mut kept = Kept::of(&case(0.5), input, out);
+        let mut kept = Kept::of(&case(0.5), input, out).unwrap();
         assert!(kept.at(0.7).is_none());
         kept.add(&at);
         kept.write(out).unwrap();
-        let again = Kept::of(&case(0.5), input, out).at(0.7).unwrap();
+        let again = Kept::of(&case(0.5), input, out).unwrap().at(0.7).unwrap();
         assert_eq!(format!("{again:?}"), format!("{at:?}"));
-        assert!(Kept::of(&case(0.6), input, out).at(0.7).is_none());
+        assert!(Kept::of(&case(0.6), input, out).unwrap().at(0.7).is_none());
+        // by hand: another number, an older version without a checksum, half a file
+        let path = out.join(KEPT);
+        let text = std::fs::read_to_string(&path).unwrap();
+        let unsummed: String = text.lines().filter(|line| !line.contains("crc32")).collect();
+        for forged in
+            [text.replace("0.7", "0.9"), text.replace("1e-300", "1e-3"), unsummed, text[..text.len() / 2].to_owned()]
+        {
+            assert_ne!(forged, text);
+            std::fs::write(&path, &forged).unwrap();
+            let refused = Kept::of(&case(0.5), input, out).err().unwrap().to_string();
+            assert!(
+                refused.contains("flutter-kept.json` was changed") && refused.contains("or remove it"),
+                "{refused}"
+            );
+        }
         folder::forget_kept(out);
-        assert!(Kept::of(&case(0.5), input, out).at(0.7).is_none());
+        assert!(Kept::of(&case(0.5), input, out).unwrap().at(0.7).is_none());
     }
 }

@@ -258,11 +258,47 @@ impl FlutterAt {
         self.cycles = cycles;
         self.warnings.extend(doubts);
     }
+
+    /// What helps against a warning, or where more is told of it.
+    pub fn remedy(&self, warning: &str) -> &'static str {
+        /// What warnings say, and what helps.
+        const REMEDIES: [(&str, &str); 10] = [
+            ("did not converge", "raise `iterations`, or lower `orders`, in `[time.steady]`"),
+            ("lowest", "give higher `reduced_frequencies` in `[flutter]`: they reach lower speeds"),
+            ("however thin a gas", "give the structure its damping, `damping_ratio`"),
+            (
+                "finer `spacing`",
+                "lower `spacing` in `[cloud]`: the range of speed is that of `doubts` in `flutter.json`",
+            ),
+            ("allow more `frequencies`", "raise `frequencies` in `[flutter]`"),
+            ("allow more `harmonics`", "raise `harmonics` in `[lco]`"),
+            ("`reduced_frequencies`", "give higher `reduced_frequencies` in `[flutter]`"),
+            ("equilibria", "give the structure a speed nearer to the crossing, from which the equilibria are sought"),
+            (
+                "the march from the limit cycle",
+                "leave `march` out of `[lco]`, or compute that march with a case of its own",
+            ),
+            ("limit cycle", "see the branches in `lco.csv`; other amplitudes are given in `[lco]`"),
+        ];
+        let known = REMEDIES.iter().find(|(words, _)| warning.contains(words));
+        known.map_or("see `warnings` and the crossings in `flutter.json`", |(_, remedy)| *remedy)
+    }
 }
 
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
+
+    #[test]
+    fn warnings_have_remedies_of_their_own() {
+        let at = FlutterAt::default();
+        let doubt = "mode 1 grows between 0.9 and 1.1 of the speed of the case by less (g up to +0.01) than the damping is known: +0.02 on a \
+                     cloud with twice the spacing; a finer `spacing` decides whether it flutters there";
+        assert!(at.remedy(doubt).contains("lower `spacing` in `[cloud]`"));
+        let crossing = "the crossing at 0.9 of the speed is known to 2.0 % only: allow more `frequencies`";
+        assert!(at.remedy(crossing).contains("`frequencies` in `[flutter]`"));
+        assert!(at.remedy("something else").contains("`warnings`"));
+    }
 
     /// A limit cycle of two degrees of pitch.
     pub(in super::super) fn cycle() -> LimitCycle {

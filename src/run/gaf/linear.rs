@@ -10,7 +10,7 @@ use num_complex::Complex64;
 use super::super::accuracy::Forces;
 use super::super::error::RunError;
 use super::super::monitor::{Monitor, Quiet};
-use super::super::one_cloud::{BETWEEN, COARSER, coarser, on_one_cloud};
+use super::super::one_cloud::{BETWEEN, COARSER, coarser, on_one_cloud, times_the_spacing};
 use super::super::record::Log;
 use super::super::record::summary::Clock;
 use super::super::session::{Outcome, Session};
@@ -47,7 +47,7 @@ pub(super) fn columns(
             break;
         }
         let Some(coarse) = coarser(&one, ratio) else { continue };
-        monitor.note(&format!("the same on a cloud with {ratio} times the spacing"));
+        monitor.note(&format!("the same on a cloud with {}", times_the_spacing(ratio)));
         let mut other = Vec::new();
         let mut add = |found: Vec<Column>| {
             other.extend(found);

@@ -12,6 +12,7 @@ use crate::geometry::dimension;
 use crate::observe::History;
 use crate::observe::columns::{Scale, describe_tables};
 use crate::observe::structure::{self, StructureHistory, StructureNames, StructureSample, StructureTable};
+use crate::observe::table::TableMark;
 
 /// Name of the history in the run folder.
 const HISTORY: &str = "history.csv";
@@ -49,15 +50,16 @@ impl Journal {
         twice: bool,
         names: &[StructureNames],
     ) -> Result<(Self, Earlier), RunError> {
+        let mark = |name: &str| saved.and_then(|s| s.tables.iter().find(|mark| mark.file == name));
         let table = |name: &str, columns: &[&str]| match saved {
-            Some(s) => History::resume(&out.join(name), columns, s.iteration),
+            Some(s) => History::resume(&out.join(name), columns, s.iteration, mark(name)),
             None => History::create(&out.join(name), columns),
         };
         let rows = IterationHistory::of(case);
         let history = table(HISTORY, &rows.names)?;
         let moments = twice.then(|| table(crosscheck::FILE, &crosscheck::COLUMNS)).transpose()?;
         let structures = (!names.is_empty()).then(|| match saved {
-            Some(s) => StructureHistory::resume(out, names, s.iteration),
+            Some(s) => StructureHistory::resume(out, names, s.iteration, mark(structure::FILE)),
             None => StructureHistory::create(out, names),
         });
         let structures = structures.transpose()?;
@@ -73,6 +75,13 @@ impl Journal {
         let journal = Self { out: out.to_path_buf(), history, moments, structures, scale, names: names.to_vec() };
         journal.describe()?;
         Ok((journal, earlier))
+    }
+
+    /// What the tables hold now, for a checkpoint.
+    pub(crate) fn marks(&self) -> Result<Vec<TableMark>, RunError> {
+        let tables = std::iter::once(&self.history).chain(&self.moments).map(History::mark);
+        let structures = self.structures.iter().map(StructureHistory::mark);
+        Ok(tables.chain(structures).collect::<Result<_, _>>()?)
     }
 
     /// Tells the units of all tables of the folder.

@@ -184,6 +184,7 @@ impl<'a> Log<'a> {
         let opened = out.map(|out| Journal::open(case, out, saved, twice, &names)).transpose()?;
         let (journal, earlier) =
             opened.map_or((None, Earlier::default()), |(journal, earlier)| (Some(journal), earlier));
+        saved.map_or(Ok(()), |saved| saved.agrees(&earlier.history))?;
         let units = case.flow.units();
         let mut record = match saved {
             Some(saved) => Record::resumed(saved, earlier, &units),

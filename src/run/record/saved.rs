@@ -13,6 +13,7 @@ use crate::cloud::sources::Source;
 use crate::math::Vector;
 use crate::observe::checkpoint::{self, Array, Checkpoint, Field};
 use crate::observe::convergence::CloudLoads;
+use crate::observe::table::TableMark;
 use crate::scheme::{Fluid, Frame, ParticleKinematics, RemapLedger};
 use crate::system::Reach;
 use crate::time::control::Phase;
@@ -23,7 +24,7 @@ use crate::time::{Memory, Past};
 pub(crate) const FILE: &str = "checkpoint.alula";
 
 /// What the numbers of a checkpoint mean; another number, another meaning.
-const MEANING: u32 = 3;
+const MEANING: u32 = 4;
 
 /// Where a run stands among its stages.
 pub(crate) struct Position<'a> {
@@ -93,6 +94,7 @@ struct Meta {
     polar: PolarMeta,
     #[serde(default)]
     equations: Option<u32>,
+    tables: Vec<TableMark>,
 }
 
 /// What re-clouding did until a checkpoint, and the time at which the cloud was built.
@@ -299,6 +301,8 @@ pub(crate) struct Saved<'a> {
     pub(crate) kept: Cow<'a, [Kept]>,
     /// What [`equations_of`] says of the case; `None` for polars, and in checkpoints of versions that did not ask.
     pub(crate) equations: Option<u32>,
+    /// What the tables of the run folder held.
+    pub(crate) tables: Vec<TableMark>,
 }
 
 /// Checksum of what the equations of a case are made of. A run goes on with these alone: how long it goes on, and what it writes, may
@@ -368,6 +372,7 @@ impl Saved<'_> {
                 sources: self.kept.iter().map(|k| k.sources.len()).collect(),
             },
             equations: self.equations,
+            tables: self.tables,
         };
         let meta = serde_json::to_value(meta).map_err(|e| other_version(&e))?;
         let mut fields = vec![
@@ -435,6 +440,7 @@ impl Saved<'_> {
             linear: m.linear,
             sources: part("sources")?,
             equations: m.equations,
+            tables: m.tables,
         })
     }
 }

@@ -291,10 +291,11 @@ pub(crate) fn motions<const D: usize>(
     let read = |name: &str| folder::text(input, name);
     let motions = Motions::of_case(case, chord, &read)?;
     if let Some(surface) = surface {
-        for b in 0..motions.len().min(surface.bodies.len()) {
-            motions.of(b).shapes().try_for_each(|shape| modes::lies_on(surface, Some(b), shape))?;
-        }
-        motions.shapes_of_forces().iter().try_for_each(|shape| modes::lies_on(surface, None, shape))?;
+        let bodies = 0..motions.len().min(surface.bodies.len());
+        let led = bodies.flat_map(|b| motions.of(b).shapes().map(move |shape| (Some(b), shape)));
+        let all = led.chain(motions.shapes_of_forces().iter().map(|shape| (None, shape)));
+        let astray = all.filter_map(|(b, shape)| modes::lies_on(surface, b, shape).err()).collect();
+        RunError::all(astray).map_or(Ok(()), Err)?;
     }
     Ok(motions)
 }

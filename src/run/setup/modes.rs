@@ -34,7 +34,7 @@ const MORE: f64 = 2.0;
 /// Corners of walls that are looked at.
 const LOOKED_AT: usize = 2000;
 /// Lengths of units in metres.
-const UNITS: [(f64, &str); 5] =
+pub(super) const UNITS: [(f64, &str); 5] =
     [(1e-3, "millimetres"), (1e-2, "centimetres"), (0.0254, "inches"), (0.3048, "feet"), (1e3, "kilometres")];
 /// Extents of a body by which the ends of points in another unit may differ from its own.
 const ALIKE: f64 = 0.25;

@@ -2,6 +2,7 @@
 //!
 //! Where nothing but the bodies has a length, any length will do; where something else has one, both are in one unit.
 use super::super::look::reference::of_bodies;
+use super::modes::UNITS;
 use crate::case::{Case, Length, Shape, Side, rounded};
 use crate::cloud::CloudSpec;
 use crate::geometry::{Planform, Surface};
@@ -9,12 +10,17 @@ use crate::math::{Bounds, Vector};
 
 /// Ratio of two lengths that no shapes explain, but units do: a metre has a thousand millimetres.
 const APART: f64 = 200.0;
+/// Ratio of a reference chord and that of the bodies beyond which they are of two units, where a unit brings them together.
+const OTHER_CHORD: f64 = 20.0;
+/// Ratios within which a unit brings them together, and within which it fits well.
+const TOGETHER: f64 = 10.0;
+const ALIKE: f64 = 1.3;
 /// Lengths of the bodies in a domain beyond all far fields.
 const VAST: f64 = 1e4;
 /// Spacings along a body that no cloud needs.
 const FINE: f64 = 1e4;
-/// Greatest length of what flies or swims, in metres.
-const LONGEST: f64 = 500.0;
+/// Greatest length of what flies, in metres.
+const LONGEST: f64 = 100.0;
 /// Chords between a body and a far side below which the stream at the side is anything but free.
 const NEAR: f64 = 0.5;
 /// Sides of the domain, [axis][0: smallest, 1: largest coordinate].
@@ -24,7 +30,10 @@ const SIDES: [[&str; 2]; 3] = [["x_min", "x_max"], ["y_min", "y_max"], ["z_min",
 pub(super) fn doubtful<const D: usize>(case: &Case, surface: &Surface<D>) -> Vec<String> {
     let spec = CloudSpec::<D>::of_case(case);
     let seen = of_bodies(case, surface);
-    let mut told = references::<D>(case, &seen);
+    let mut told = match other_unit(case, &seen, &surface.bounds()) {
+        Some(unit) => vec![unit],
+        None => references::<D>(case, &seen),
+    };
     told.extend(points(case, &surface.bounds()));
     told.extend(bodies(case, surface));
     told.extend(vast(case, &surface.bounds()));
@@ -37,6 +46,33 @@ pub(super) fn doubtful<const D: usize>(case: &Case, surface: &Surface<D>) -> Vec
 fn apart(given: f64, seen: f64) -> Option<f64> {
     let ratio = given / seen;
     (ratio.is_finite() && ratio > 0.0 && !(1.0 / APART..=APART).contains(&ratio)).then_some(ratio)
+}
+
+/// A reference chord in another unit than the bodies, with the unit that they are likely to be in.
+fn other_unit<const D: usize>(case: &Case, seen: &Planform, bodies: &Bounds<D>) -> Option<String> {
+    let given = case.reference.chord.as_ref()?.0;
+    let apart = |length: f64| (seen.chord * length / given).ln().abs();
+    // one that fits well, else the first that brings them together
+    let nearest = UNITS.into_iter().min_by(|a, b| apart(a.0).total_cmp(&apart(b.0)));
+    let fits = nearest.filter(|unit| apart(unit.0) < ALIKE.ln());
+    let (length, unit) = fits.or_else(|| UNITS.into_iter().find(|unit| apart(unit.0) < TOGETHER.ln()))?;
+    let file = case.bodies.iter().any(|b| matches!(b.shape, Shape::Surface(_) | Shape::Airfoil(_)));
+    (file && apart(1.0) > OTHER_CHORD.ln()).then(|| {
+        let extents = bodies.extent().0.map(short).join(" × ");
+        format!(
+            "`reference.chord` is {}, but the chord of the bodies is {}, and they measure {extents}: they seem to be in {unit}, then \
+             `scale = \"{}\"` in `[[body]]`",
+            short(given),
+            short(seen.chord),
+            symbol(length)
+        )
+    })
+}
+
+/// One unit of this length in metres, as a case writes it.
+fn symbol(length: f64) -> String {
+    let known = [(1e-3, "1 mm"), (1e-2, "1 cm"), (0.0254, "1 in"), (0.3048, "1 ft"), (1e3, "1 km")];
+    known.into_iter().find(|(own, _)| *own == length).map_or_else(|| format!("{length} m"), |(_, text)| text.to_owned())
 }
 
 /// Chord and area that are none of the bodies.
@@ -98,7 +134,9 @@ fn bodies<const D: usize>(case: &Case, surface: &Surface<D>) -> Vec<String> {
         let file = matches!(body.shape, Shape::Surface(_) | Shape::Airfoil(_));
         let spacings = case.cloud.spacing.map_or(0.0, |s| length / s.0);
         if case.flow.is_dimensional() && file && *length > LONGEST {
-            told.push(format!("body `{name}` is {} m long: {millimetres}", short(*length)));
+            let extents =
+                surface.bounds_of(surface.bodies.iter().position(|b| b == name).unwrap_or(0)).extent().0.map(short);
+            told.push(format!("body `{name}` is {} m long ({}): {millimetres}", short(*length), extents.join(" × ")));
         } else if spacings > FINE {
             told.push(format!(
                 "body `{name}` is {} long, {spacings:.3e} times `cloud.spacing`: {millimetres}",
@@ -195,6 +233,27 @@ mod tests {
         {
             assert_eq!(alone(good), Vec::<String>::new());
         }
+    }
+
+    #[test]
+    fn a_chord_in_another_unit_than_a_surface_file_is_told() {
+        let folder = tempfile::tempdir().unwrap();
+        let wing = Surface::new(&[("w".to_owned(), crate::geometry::cuboid([150.0, 1200.0, 18.0]))]);
+        crate::geometry::write_stl(&mut std::fs::File::create(folder.path().join("w.stl")).unwrap(), &wing).unwrap();
+        let told = |reference: &str, stream: &str| {
+            let text = format!(
+                "[flow]\nmach = 0.5\n{stream}[[body]]\nsurface = \"w.stl\"\n[reference]\nchord = \"{reference}\"\n"
+            );
+            let case = crate::case::read(&text, "t").unwrap();
+            let (surface, _) = super::super::surface::<3>(&case, folder.path()).unwrap();
+            doubtful(&case, surface.as_ref().unwrap()).join("; ")
+        };
+        let metre = told("1 m", "");
+        assert!(metre.contains("they measure 150 × 1200 × 18: they seem to be in millimetres"), "{metre}");
+        assert!(metre.contains("`scale = \"1 mm\"`") && metre.contains("`reference.chord` is 1,"), "{metre}");
+        assert_eq!(told("140 m", ""), "");
+        let air = told("1 m", "pressure = 101325\ntemperature = \"15 degC\"\n");
+        assert!(air.contains("1200 m long (150 × 1200 × 18): is it in millimetres?"), "{air}");
     }
 
     #[test]

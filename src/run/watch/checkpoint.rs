@@ -89,6 +89,7 @@ impl<'a, S: System> Checkpoint<'a, S> {
             polar: record.polar.clone(),
             kept: self.at.kept.into(),
             equations: single.then(|| equations_of(log.case)),
+            tables: journal.marks()?,
         };
         saved.write(&journal.out)
     }
