@@ -96,6 +96,7 @@ const Alula = (() => {
         // Along a function the horizontal distance counts; among dots and along loops the distance.
         const weight = bars || (s.marks === "line" && s.x.every((v, i) => i === 0 || v >= s.x[i - 1])) ? 0.02 : 1;
         for (let i = 0; i < Math.min(s.x.length - bars, s.y.length); i++) {
+          if (s.marks === "points" && s.x[i] === null) break;
           if (!known(s.x[i], across) || !known(s.y[i], up)) continue;
           const at = bars ? (s.x[i] + s.x[i + 1]) / 2 : s.x[i];
           const x = X(units(across, at)), y = Y(units(up, s.y[i])), d = (x - px) ** 2 + weight * (y - py) ** 2;
@@ -115,7 +116,7 @@ const Alula = (() => {
       node(over, "circle", { cx: hit.x, cy: hit.y, r: 5, fill: "none", stroke, "stroke-width": 2 });
       tip.textContent = `${hit.at}   ${hit.s.name || data.y.label} ${show(hit.value)}`;
       const box = svg.getBoundingClientRect(), frame = figure.getBoundingClientRect(), scale = box.width / svg.viewBox.baseVal.width;
-      const left = box.left - frame.left + hit.x * scale, late = hit.x > area.x + area.width / 2;
+      const left = box.left - frame.left + figure.scrollLeft + hit.x * scale, late = hit.x > area.x + area.width / 2;
       tip.style.left = late ? "" : `${left + 12}px`;
       tip.style.right = late ? `${frame.width - left + 12}px` : "";
       tip.style.top = `${Math.max(0, box.top - frame.top + hit.y * scale - 36)}px`;

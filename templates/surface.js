@@ -263,7 +263,7 @@
       }
       Object.assign(pen, { strokeStyle: ink, fillStyle: ink, lineWidth: 1, font: "12px system-ui, sans-serif", textAlign: "left" });
       pen.strokeRect(left, top, 14, last);
-      for (const [v, text] of ticks({}, ends, 12)) {
+      for (const [v, text] of ticks({}, ends, Math.max(2, Math.min(12, last / 18)))) {
         pen.fillRect(left + 14, place(v) - 0.5, 4, 1);
         pen.fillText(text, left + 22, place(v) + 4);
       }

@@ -277,18 +277,21 @@
       told.textContent = harmonics ? `phase ${slider.value}°` : frames[+slider.value].label;
     }
 
+    // As many labels as there is room for.
+    const fitting = (room, most) => Math.max(2, Math.min(most, room));
+
     // Border, ticks and colour bar.
     function frame(ink) {
       Object.assign(pen, { strokeStyle: ink, fillStyle: ink, lineWidth: 1, font: "12px system-ui, sans-serif" });
       pen.strokeRect(LEFT, TOP, width, height);
       pen.textAlign = "center";
-      for (const [x, text] of ticks({}, across(), 8)) {
+      for (const [x, text] of ticks({}, across(), fitting(width / 60, 8))) {
         pen.fillRect(X(x) - 0.5, TOP + height, 1, 4);
         pen.fillText(text, X(x), TOP + height + 17);
       }
       pen.fillText("x", LEFT + width / 2, TOP + height + 36);
       pen.textAlign = "right";
-      for (const [y, text] of ticks({}, up(), 6)) {
+      for (const [y, text] of ticks({}, up(), fitting(height / 30, 6))) {
         pen.fillRect(LEFT - 4, Y(y) - 0.5, 4, 1);
         pen.fillText(text, LEFT - 8, Y(y) + 4);
       }
@@ -302,7 +305,7 @@
       }
       Object.assign(pen, { fillStyle: ink, textAlign: "left" });
       pen.strokeRect(x, TOP + 24, 14, last);
-      for (const [v, text] of ticks({}, ends, 12)) {
+      for (const [v, text] of ticks({}, ends, fitting(last / 18, 12))) {
         pen.fillRect(x + 14, place(v) - 0.5, 4, 1);
         pen.fillText(text, x + 22, place(v) + 4);
       }

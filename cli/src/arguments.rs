@@ -40,7 +40,7 @@ pub(crate) enum Command {
     /// Compute a case and write fields, loads and a report.
     #[command(after_help = EXIT_CODES)]
     Run(Run),
-    /// Write a commented case file to start from, with the schema beside it that editors read.
+    /// Write a commented case file to start from.
     New(New),
     /// Read a case file and tell all its mistakes at once.
     Check(Check),
@@ -94,7 +94,10 @@ pub(crate) struct New {
     pub(crate) template: String,
     /// File to write; `-` prints it. Default: the name of the template with `.toml`.
     pub(crate) path: Option<PathBuf>,
-    /// Replace an existing file, and the schema beside it.
+    /// Write the JSON schema beside it too, and the first line by which editors with Taplo or Even Better TOML complete and check the case.
+    #[arg(long)]
+    pub(crate) schema: bool,
+    /// Replace existing files.
     #[arg(long)]
     pub(crate) force: bool,
 }

@@ -6,6 +6,7 @@
 use std::io::{self, IsTerminal, Write};
 use std::time::{Duration, Instant};
 
+use alula::math::digits::fixed;
 use alula::run::MarchTick;
 use indicatif::{ProgressBar, ProgressStyle};
 use serde_json::{Value, json};
@@ -186,10 +187,10 @@ fn march_text(march: &MarchTick, tick: &Tick) -> String {
     }
     text += &format!("  t {}", short(march.time));
     if let Some(angle) = march.angle {
-        text += &format!("  α {:.2}°", angle.to_degrees());
+        text += &format!("  α {}°", fixed(angle.to_degrees(), 2));
     }
     if let Some([lift, ..]) = tick.loads {
-        text += &format!("  CL {lift:.4}");
+        text += &format!("  CL {}", fixed(lift, 4));
     }
     text + &march.lift_before.map_or_else(String::new, |lift| format!(" (before {lift:.4})"))
 }
@@ -215,7 +216,8 @@ fn line_text(tick: &Tick) -> String {
             tick.iteration, tick.residual, tick.orders, tick.cfl
         );
     if let Some([lift, drag, moment]) = tick.loads {
-        text.push_str(&format!("  CL {lift:8.5}  CD {drag:8.5}  CM {moment:8.5}"));
+        let [lift, drag, moment] = [lift, drag, moment].map(|c| fixed(c, 5));
+        text.push_str(&format!("  CL {lift:>8}  CD {drag:>8}  CM {moment:>8}"));
     }
     text + &format!("  {}", pace(tick))
 }
@@ -228,7 +230,8 @@ fn bar_text(tick: &Tick, history: &History) -> String {
     let mut text =
         point_text(tick) + &format!("{}  {sparks} {:.2e} ({orders:.1} orders)", tick.iteration, tick.residual);
     if let Some([lift, drag, moment]) = tick.loads {
-        text.push_str(&format!("  CL {lift:.4} CD {drag:.4} CM {moment:.4}"));
+        let [lift, drag, moment] = [lift, drag, moment].map(|c| fixed(c, 4));
+        text.push_str(&format!("  CL {lift} CD {drag} CM {moment}"));
     }
     text + &format!("  cfl {:.0e}  {}  {} particles", tick.cfl, pace(tick), tick.particles)
 }

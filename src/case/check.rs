@@ -394,11 +394,12 @@ fn accuracy(draft: &mut Draft<'_>, dimension: usize) {
     if !draft.given("accuracy") {
         return;
     }
-    if dimension == 3
-        && !draft.given("accuracy.particles")
-        && let Some(accuracy) = draft.tree.get_mut("accuracy").and_then(Value::as_object_mut)
-    {
-        accuracy.insert("particles".to_owned(), json!(Accuracy::PARTICLES_IN_SPACE));
+    let usual = Accuracy::usual(dimension, super::polar::is_polar(draft));
+    for (key, value) in [("loads", json!(usual.loads.0)), ("particles", json!(usual.particles))] {
+        let left_out = !draft.given(&format!("accuracy.{key}"));
+        if let Some(accuracy) = draft.tree.get_mut("accuracy").and_then(Value::as_object_mut).filter(|_| left_out) {
+            accuracy.insert(key.to_owned(), value);
+        }
     }
     let steady = draft.get("time").is_none_or(|t| t.as_str() == Some("steady") || t.get("steady").is_some());
     let refused = [

@@ -30,6 +30,7 @@ pub mod quantity;
 mod read;
 mod reference;
 mod schema;
+mod schema_text;
 mod solid;
 mod solid_check;
 mod solid_keys;
@@ -64,6 +65,7 @@ pub use quantity::{
 };
 pub use read::{read, read_in};
 pub use reference::{reference_markdown, schema};
+pub use schema_text::schema_text;
 pub use solid::{
     Contact, ContactPlane, Everywhere, JohnsonCook, Orthotropic, Perzyna, PlaneState, Solid, SolidAxis, SolidBox,
     SolidFill, SolidLaw, SolidLoad, SolidMaterial, SolidPlace, SolidProbe, SolidRegion, SolidSupport,
@@ -71,7 +73,7 @@ pub use solid::{
 pub use structure::{
     Freedom, PerCoordinate, SpringShape, Structure, StructureFlap, StructureForce, StructureMode, StructureModel,
 };
-pub use templates::{SCHEMA_FILE, TEMPLATES, mode_files, template};
+pub use templates::{SCHEMA_FILE, SCHEMA_LINE, TEMPLATES, mode_files, template};
 pub use text::{TextError, decimal_comma, numbers_of, open_regular, read_regular, rounded, separator, text_of};
 pub use time::{
     Automatic, Dual, Explicit, HarmonicCount, Harmonics, Modes, Newmark, RungeKutta, Steady, SteadyMethod, Temporal,
@@ -586,10 +588,20 @@ impl Accuracy {
     /// Greatest number of particles of cases in space that do not say.
     pub(crate) const PARTICLES_IN_SPACE: usize = 250_000;
 
+    /// Half width of the error bars over the loads that is asked of the points of a polar, in 2-D and 3-D: a step of many is judged beside
+    /// its neighbours. In the plane 5 % is 5 counts of a drag near zero.
+    pub(crate) const OF_POLARS: [f64; 2] = [0.05, 0.1];
+
     /// What is asked of a case that says nothing.
     pub(crate) fn in_dimension(dimension: usize) -> Self {
         let usual = Self::default();
         Self { particles: if dimension == 3 { Self::PARTICLES_IN_SPACE } else { usual.particles }, ..usual }
+    }
+
+    /// The same of a case with or without a polar.
+    pub(crate) fn usual(dimension: usize, polar: bool) -> Self {
+        let one = Self::in_dimension(dimension);
+        Self { loads: if polar { Ratio(Self::OF_POLARS[dimension - 2]) } else { one.loads }, ..one }
     }
 }
 

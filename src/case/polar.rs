@@ -88,6 +88,11 @@ pub(super) fn put_back(tree: &mut Map<String, Value>) {
     }
 }
 
+/// True for a case whose free stream has a list.
+pub(super) fn is_polar(draft: &Draft<'_>) -> bool {
+    LISTS.iter().any(|key| draft.get(&format!("flow.{key}")).is_some_and(Value::is_array))
+}
+
 /// The lists of a polar fit the rest of the case.
 pub(super) fn contradictions(draft: &mut Draft<'_>) {
     let lists: Vec<String> = LISTS.iter().map(|key| format!("flow.{key}")).collect();

@@ -14,10 +14,12 @@ pub const TEMPLATES: [(&str, &str); 10] = [
     ("travelling", "a cylinder in a stream of particles that travel with the fluid (2-D)"),
 ];
 
-/// Name of the schema that the first line of a template points to, beside the case.
+/// Name of the schema that [`SCHEMA_LINE`] points to, beside the case.
 pub const SCHEMA_FILE: &str = "alula.schema.json";
+/// First line of a case by which editors (Taplo, Even Better TOML) find [`SCHEMA_FILE`].
+pub const SCHEMA_LINE: &str = "#:schema ./alula.schema.json\n";
 
-/// The commented case file called `name`. Its first line tells editors (Taplo, Even Better TOML) that [`SCHEMA_FILE`] describes it.
+/// The commented case file called `name`.
 pub fn template(name: &str) -> Option<String> {
     let text = match name {
         "airfoil" => include_str!("templates/airfoil.toml"),
@@ -32,7 +34,7 @@ pub fn template(name: &str) -> Option<String> {
         "travelling" => include_str!("templates/travelling.toml"),
         _ => return None,
     };
-    Some(format!("#:schema ./{SCHEMA_FILE}\n{text}"))
+    Some(text.to_owned())
 }
 
 /// Files of modes that the template `name` refers to, with their text: clamped bending and twist about 40 % of the chord of its wing.
@@ -65,12 +67,18 @@ mod tests {
     use crate::case::read;
 
     #[test]
+    fn the_line_for_editors_names_the_file() {
+        assert_eq!(SCHEMA_LINE, format!("#:schema ./{SCHEMA_FILE}\n"));
+    }
+
+    #[test]
     fn every_template_is_a_case() {
         for (name, _) in TEMPLATES {
             let text = template(name).unwrap();
             let case = read(&text, name).unwrap_or_else(|e| panic!("{e}"));
             assert_eq!(case.bodies.len(), 1);
-            assert!(text.starts_with("#:schema ./alula.schema.json\n# "), "{name}");
+            assert!(text.starts_with("# "), "{name}");
+            assert_eq!(read(&(SCHEMA_LINE.to_owned() + &text), name).unwrap(), case, "{name}");
             assert!(text.lines().all(|line| line.len() <= 100), "{name} has long lines");
         }
         assert!(template("wing").is_none());

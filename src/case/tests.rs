@@ -188,6 +188,14 @@ fn a_case_may_leave_the_cloud_to_the_program() {
     assert_eq!(read(sphere, "case.toml").unwrap().cloud.spacing, None);
     let asked = read(&format!("{sphere}[accuracy]\nloads = \"2 %\"\n"), "case.toml").unwrap().accuracy.unwrap();
     assert_eq!((asked.loads.0, asked.particles), (0.02, 250_000));
+    // of many points less is asked, whatever else the table says
+    let polar = |more: &str| {
+        let text = format!("{}[accuracy]\n{more}", bare.replace("mach = 0.8", "mach = [0.3, 0.5]"));
+        let asked = read(&text, "case.toml").unwrap().accuracy.unwrap();
+        (asked.loads.0, asked.particles)
+    };
+    assert_eq!([polar(""), polar("particles = 9_000\n")], [(0.05, 50_000), (0.05, 9_000)]);
+    assert_eq!(polar("loads = \"1 %\"\n"), (0.01, 50_000));
     assert!(read(&bare.replace("mach = 0.8", "mach = 0.8\nreynolds = 1e4"), "case.toml").is_ok());
     let accuracy = "[accuracy]\nloads = 0.01\n";
     assert!(read(&format!("{bare}{accuracy}[adapt]\ncycles = 1\n"), "case.toml").is_ok());

@@ -32,9 +32,9 @@ impl<const D: usize> Search<'_, D> {
         let walls = Rows::new(p.interface.len(), |w, list| self.wall_cloud(w, list));
         let mut repair = Repair::of(self, &rows, &walls);
         let blind = (0..p.interface.len()).filter(|w| walls.of(*w).is_empty());
-        repair.refused.extend(
-            blind.map(|w| format!("interface particle at {:?} has no fluid in front of it", p.x[p.n_fluid + w].0)),
-        );
+        repair
+            .refused
+            .extend(blind.map(|w| format!("interface particle at {} has no fluid in front of it", p.x[p.n_fluid + w])));
         if !repair.refused.is_empty() {
             return Err(CloudError::Quality(repair.refused));
         }

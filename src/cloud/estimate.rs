@@ -8,6 +8,7 @@ use super::sources::SourceBox;
 use super::{CloudError, CloudSpec};
 use crate::geometry::Surface;
 use crate::math::Bounds;
+use crate::math::digits::short;
 
 /// Estimates are trusted to this factor: only what is larger by more than it is refused unbuilt.
 const TRUST: f64 = 3.0;
@@ -89,26 +90,27 @@ fn reason<const D: usize>(spec: &CloudSpec<D>, surface: &Surface<D>) -> String {
     let length = surface.bounds().extent().max_abs();
     if length > LONG && length > 1e3 * spec.spacing {
         return format!(
-            "the bodies are {length} long: are they in millimetres? then `scale = \"1 mm\"`; else raise `cloud.spacing` ({:?})",
-            spec.spacing
+            "the bodies are {} long: are they in millimetres? then `scale = \"1 mm\"`; else raise `cloud.spacing` ({})",
+            short(length),
+            short(spec.spacing)
         );
     }
     if spec.layers > MANY {
         return format!("lower `cloud.layers` ({}): 6 to 24 are usual", spec.layers);
     }
-    format!("raise `cloud.spacing` ({:?}): the bodies are {length} long", spec.spacing)
+    format!("raise `cloud.spacing` ({}): the bodies are {} long", short(spec.spacing), short(length))
 }
 
 /// What the `k`-th box is called in a case: those of the user, then the wake, or the domain.
 fn name_of<const D: usize>(k: usize, spec: &CloudSpec<D>, has_bodies: bool) -> String {
     if k < spec.boxes.len() {
-        return format!("raise `cloud.box[{k}].spacing` ({:?}), or make the box smaller", spec.boxes[k].spacing);
+        return format!("raise `cloud.box[{k}].spacing` ({}), or make the box smaller", short(spec.boxes[k].spacing));
     }
     match (&spec.wake, has_bodies) {
         (Some(wake), true) => {
-            format!("raise `cloud.wake.spacing` ({:?}), or shorten `cloud.wake.length`", wake.spacing.0)
+            format!("raise `cloud.wake.spacing` ({}), or shorten `cloud.wake.length`", short(wake.spacing.0))
         }
-        _ => format!("raise `cloud.spacing` ({:?}), or make `cloud.domain` smaller", spec.spacing),
+        _ => format!("raise `cloud.spacing` ({}), or make `cloud.domain` smaller", short(spec.spacing)),
     }
 }
 

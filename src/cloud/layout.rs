@@ -57,9 +57,9 @@ impl<const D: usize> Layout<D> {
             if let Some((d, _, plane)) = cut {
                 let axis = ["x", "y", "z"][d];
                 return Err(CloudError::Layout(format!(
-                    "body `{name}` from {:?} to {:?} lies across or beyond the side {axis} = {plane} of the domain\nhint: enlarge \
+                    "body `{name}` from {} to {} lies across or beyond the side {axis} = {plane} of the domain\nhint: enlarge \
                      `cloud.domain`, or move the body; only a side of symmetry may cut one",
-                    bounds.min.0, bounds.max.0
+                    bounds.min, bounds.max
                 )));
             }
         }
@@ -223,9 +223,9 @@ pub fn capped<const D: usize>(spec: &CloudSpec<D>, surface: &Surface<D>) -> Opti
     let (x, radius) = (surface.corners(found)[0], radius(&found));
     let levels = (spec.spacing / (spec.curvature * radius).max(f64::MIN_POSITIVE)).log2().ceil();
     Some(format!(
-        "near {:?} the surface is rounded with a radius of {radius:.2e}, but no spacing is finer than {finest:.2e}: \
+        "near {x} the surface is rounded with a radius of {radius:.2e}, but no spacing is finer than {finest:.2e}: \
          `cloud.curvature_levels = {levels}` follows it (now {})",
-        x.0, spec.curvature_levels
+        spec.curvature_levels
     ))
 }
 

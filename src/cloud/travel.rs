@@ -114,7 +114,7 @@ impl<const D: usize> BackgroundDomain<D> {
         let sites = self.sites(&scene, x);
         let buried = sites.iter().position(Option::is_none);
         if let Some(i) = buried {
-            let problem = format!("particle {i} at {:?} lies in a wall", x[i].0);
+            let problem = format!("particle {i} at {} lies in a wall", x[i]);
             return Err(CloudError::Quality(vec![problem]));
         }
         let (particles, order) = self.gather(&scene, sites.into_iter().flatten().collect());

@@ -376,7 +376,7 @@ fn refuse_overlap<const D: usize>(shells: &[(String, Shell<D>)]) -> Result<(), G
     let meeting = |[a, b]: [usize; 2]| {
         let x = within(a, b).or_else(|| within(b, a)).or_else(|| if crossed { crossing(a, b) } else { None })?;
         let [a, b] = [a, b].map(|k| &shells[k].0);
-        Some((format!("body `{a}`"), format!("overlaps or touches body `{b}` at {:?}", x.0)))
+        Some((format!("body `{a}`"), format!("overlaps or touches body `{b}` at {x}")))
     };
     let mut found = pairs.into_iter().filter_map(meeting);
     let Some((place, mut what)) = found.next() else { return Ok(()) };

@@ -4,6 +4,7 @@ pub mod blocks;
 pub mod circulant;
 pub mod conjugate;
 pub mod dense;
+pub mod digits;
 pub mod dual;
 pub mod eigenvalues;
 pub mod exponentials;

@@ -1,7 +1,9 @@
 //! Small fixed-size vectors: the only place where abbreviations of coordinates are allowed.
 use std::array::from_fn;
+use std::fmt;
 use std::ops::{Add, AddAssign, Index, IndexMut, Mul, Neg, Sub, SubAssign};
 
+use super::digits::short;
 use super::jet::Scalar;
 
 /// A point or a direction in `D` dimensions, of plain numbers or of numbers that carry derivatives.
@@ -52,6 +54,13 @@ impl<const D: usize> Vector<D> {
     /// The same point in three dimensions; missing coordinates are zero.
     pub fn to_3d(&self) -> [f64; 3] {
         from_fn(|d| if d < D { self.0[d] } else { 0.0 })
+    }
+}
+
+impl<const D: usize> fmt::Display for Vector<D> {
+    /// `(0.512, 0.031)`, with six digits: a place for people to look at.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "({})", self.0.map(short).join(", "))
     }
 }
 

@@ -180,9 +180,9 @@ impl Frame {
         canvas.rectangle(self.area, None, Some(ink));
         let middle = [x + 0.5 * width, y + 0.5 * height];
         let below = Text::new(x_label, [middle[0], bottom + 20.0 + TICK_SIZE + LABEL_SIZE * 0.6], LABEL_SIZE);
-        canvas.text(Text { anchor: Anchor::Middle, ..below });
+        canvas.text(Text { anchor: Anchor::Middle, ..below.within(width) });
         let beside = Text::new(y_label, [x - LABEL_ROOM, middle[1]], LABEL_SIZE);
-        canvas.text(Text { anchor: Anchor::Middle, upright: true, ..beside });
+        canvas.text(Text { anchor: Anchor::Middle, upright: true, ..beside.within(height) });
     }
 }
 

@@ -7,8 +7,8 @@ use std::fmt::Write as _;
 use askama::Template;
 use serde::Serialize;
 
-use super::ReportError;
 use super::colour::Colour;
+use super::{ReportError, font};
 
 /// Between two pieces of one path.
 pub(crate) const LIFTED: [f64; 2] = [f64::NAN; 2];
@@ -34,6 +34,47 @@ impl Area {
     }
 }
 
+/// Smallest letters that a text is set in for want of room, in pixels.
+const SMALLEST: f64 = 9.0;
+/// Pixels by which a text may be longer than its room.
+const ROUNDING: f64 = 1e-6;
+/// What stands for the rest of a text that has no room even so.
+const REST: &str = "...";
+
+/// How a line is interrupted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Dash {
+    /// Not at all.
+    None,
+    /// Dashes: theory and fits.
+    Dashes,
+    /// Long dashes.
+    Long,
+    /// Dots.
+    Dots,
+    /// Dashes and dots in turn.
+    DashDot,
+}
+
+impl Dash {
+    /// Lengths of what is drawn and of what is left out, in turn; none of a full line.
+    pub(crate) fn lengths(self) -> &'static [f32] {
+        match self {
+            Self::None => &[],
+            Self::Dashes => &[5.0, 4.0],
+            Self::Long => &[12.0, 4.0],
+            Self::Dots => &[1.5, 4.0],
+            Self::DashDot => &[9.0, 4.0, 1.5, 4.0],
+        }
+    }
+
+    /// In the words of SVG; `None` for a full line.
+    fn pattern(self) -> Option<String> {
+        let lengths: Vec<String> = self.lengths().iter().map(f32::to_string).collect();
+        (!lengths.is_empty()).then(|| lengths.join(" "))
+    }
+}
+
 /// A line on a canvas.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pen {
@@ -41,14 +82,14 @@ pub struct Pen {
     pub colour: Colour,
     /// Width in pixels.
     pub width: f64,
-    /// Drawn as dashes.
-    pub dashed: bool,
+    /// How it is interrupted.
+    pub dash: Dash,
 }
 
 impl Pen {
     /// A full line.
     pub const fn new(colour: Colour, width: f64) -> Self {
-        Self { colour, width, dashed: false }
+        Self { colour, width, dash: Dash::None }
     }
 }
 
@@ -99,6 +140,25 @@ impl Text {
         let (colour, anchor) = (Colour::INK, Anchor::Start);
         Self { text: text.into(), at, size, colour, anchor, upright: false, bold: false }
     }
+
+    /// The same, no longer than so many pixels: in smaller letters, and cut where these are too small to read.
+    pub(crate) fn within(mut self, room: f64) -> Self {
+        let length = |text: &str, size: f64| font::OTHER_FONTS * font::width(text) * size;
+        let whole = length(&self.text, self.size);
+        if whole <= room + ROUNDING {
+            return self;
+        }
+        self.size = (self.size * room / whole).clamp(SMALLEST.min(self.size), self.size);
+        if length(&self.text, self.size) > room + ROUNDING {
+            let mut letters: Vec<char> = self.text.chars().collect();
+            let told = |letters: &[char]| letters.iter().collect::<String>().trim_end().to_owned() + REST;
+            while !letters.is_empty() && length(&told(&letters), self.size) > room {
+                letters.pop();
+            }
+            self.text = told(&letters);
+        }
+        self
+    }
 }
 
 /// A picture of `width × height` pixels, first row at the top, red-green-blue-opacity.
@@ -123,10 +183,30 @@ impl Bitmap {
 /// Something drawn.
 #[derive(Clone, Debug)]
 pub(crate) enum Item {
-    Path { outline: Outline, fill: Option<Colour>, pen: Option<Pen> },
-    Discs { centres: Vec<[f64; 2]>, radius: f64, fill: Option<Colour>, pen: Option<Pen> },
+    Path {
+        outline: Outline,
+        fill: Option<Colour>,
+        pen: Option<Pen>,
+    },
+    Discs {
+        centres: Vec<[f64; 2]>,
+        radius: f64,
+        fill: Option<Colour>,
+        pen: Option<Pen>,
+    },
+    /// A line with a disc at each of its points.
+    Marked {
+        outline: Outline,
+        centres: Vec<[f64; 2]>,
+        radius: f64,
+        fill: Colour,
+        pen: Pen,
+    },
     Text(Text),
-    Picture { bitmap: Bitmap, area: Area },
+    Picture {
+        bitmap: Bitmap,
+        area: Area,
+    },
 }
 
 /// Chains of segments.
@@ -219,6 +299,18 @@ impl Canvas {
         self.draw(Item::Discs { centres, radius, fill, pen });
     }
 
+    /// An open chain of segments with equal discs at `centres`, as one item.
+    pub(crate) fn marked_line(
+        &mut self,
+        (points, centres): (Vec<[f64; 2]>, Vec<[f64; 2]>),
+        radius: f64,
+        fill: Colour,
+        pen: Pen,
+    ) {
+        let centres = centres.into_iter().filter(finite).collect();
+        self.draw(Item::Marked { outline: Outline { points, closed: false }, centres, radius, fill, pen });
+    }
+
     /// Words.
     pub fn text(&mut self, text: Text) {
         self.draw(Item::Text(text));
@@ -241,6 +333,13 @@ impl Canvas {
             Item::Discs { centres, radius, fill, pen } => {
                 Item::Discs { centres: centres.iter().map(moved).collect(), radius: *radius, fill: *fill, pen: *pen }
             }
+            Item::Marked { outline, centres, radius, fill, pen } => Item::Marked {
+                outline: Outline { points: outline.points.iter().map(moved).collect(), closed: outline.closed },
+                centres: centres.iter().map(moved).collect(),
+                radius: *radius,
+                fill: *fill,
+                pen: *pen,
+            },
             Item::Text(text) => Item::Text(Text { at: moved(&text.at), ..text.clone() }),
             Item::Picture { bitmap, area: own } => Item::Picture { bitmap: bitmap.clone(), area: area(own) },
         };
@@ -254,5 +353,21 @@ impl Canvas {
     /// The sheet as a stand-alone SVG document.
     pub fn svg(&self) -> Result<String, ReportError> {
         Ok(self.render()?)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn texts_fit_into_their_room() {
+        let length = |t: &Text| font::OTHER_FONTS * font::width(&t.text) * t.size;
+        let title = |words: usize| Text::new("wing with flap ".repeat(words), [0.0; 2], 16.0).within(300.0);
+        let (short, long, longest) = (title(1), title(3), title(40));
+        assert_eq!((short.size, long.text.len()), (16.0, 45));
+        assert!(SMALLEST < long.size && long.size < 16.0 && length(&long) < 300.1, "{long:?}");
+        assert!(longest.text.ends_with(REST) && longest.size == SMALLEST && length(&longest) < 300.0, "{longest:?}");
+        assert_eq!(Text::new("", [0.0; 2], 16.0).within(10.0).text, "");
     }
 }

@@ -6,9 +6,9 @@ use serde::Serialize;
 
 use super::ReportError;
 use super::axes::{Frame, Scale, TITLE_SIZE};
-use super::canvas::{Area, Canvas, LIFTED, Pen, Text};
+use super::canvas::{Area, Canvas, Dash, LIFTED, Pen, Text};
 use super::colour::{CURVES, Colour};
-use super::font;
+use super::font::{self, OTHER_FONTS};
 
 /// From the borders of a sheet to the plot.
 const LEFT: f64 = 82.0;
@@ -21,11 +21,14 @@ const TITLE_LINE: f64 = 28.0;
 const LEGEND_SIZE: f64 = 12.5;
 /// Height of a row of the legend.
 const LEGEND_ROW: f64 = 18.0;
-/// Letters of other fonts are wider than ours, at most about this much.
-pub(super) const OTHER_FONTS: f64 = 1.15;
 /// Room for the mark of an entry of the legend, and between one entry and the next.
 const LEGEND_MARK: f64 = 26.0;
 const LEGEND_GAP: f64 = 16.0;
+
+/// How the lines of one colour differ: the first of each colour, the second, and so on.
+const DASHES: [Dash; 4] = [Dash::None, Dash::Long, Dash::Dots, Dash::DashDot];
+/// Radius of the marks on a line.
+const MARK: f64 = 2.6;
 
 /// Where along a loop its arrows are.
 const ARROWS: [f64; 2] = [0.125, 0.625];
@@ -72,6 +75,8 @@ pub struct Axis {
 pub enum Marks {
     /// Joined by straight lines.
     Line,
+    /// Joined, with a mark at each point up to the first that is not a number; what follows that are error bars.
+    Points,
     /// Joined, with arrows that tell in which order: loops against a motion.
     Loop,
     /// Joined by dashes: theory and fits.
@@ -95,6 +100,23 @@ pub struct Series {
     pub x: Vec<f64>,
     /// Vertical positions.
     pub y: Vec<f64>,
+}
+
+/// What tells the series of a chart apart: colours first, then dashes, and marks that are full or hollow.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Style {
+    colour: Colour,
+    dash: Dash,
+    fill: Colour,
+}
+
+impl Style {
+    /// That of the series with this number.
+    fn of(number: usize) -> Self {
+        let (colour, turn) = (CURVES[number % CURVES.len()], number / CURVES.len());
+        let fill = if turn.is_multiple_of(2) { colour } else { Colour::PAPER };
+        Self { colour, dash: DASHES[turn % DASHES.len()], fill }
+    }
 }
 
 /// A chart.
@@ -145,8 +167,9 @@ impl Series {
         self
     }
 
-    fn pen(&self, colour: Colour, width: f64) -> Pen {
-        Pen { dashed: self.marks == Marks::Dashes, ..Pen::new(colour, width) }
+    fn pen(&self, style: Style, width: f64) -> Pen {
+        let dash = if self.marks == Marks::Dashes { Dash::Dashes } else { style.dash };
+        Pen { dash, ..Pen::new(style.colour, width) }
     }
 }
 
@@ -174,14 +197,14 @@ impl Chart {
     pub fn draw(&self, size: Size) -> Canvas {
         let (mut canvas, frame) = (Canvas::new(size.width, size.height), self.frame(size));
         let title = Text::new(&self.title, [LEFT, TITLE_LINE], TITLE_SIZE);
-        canvas.text(Text { bold: true, ..title });
+        canvas.text(Text { bold: true, ..title }.within(size.width - LEFT - RIGHT));
         for entry in self.legend(size) {
             entry.draw(&mut canvas);
         }
         frame.grid(&mut canvas);
         canvas.layer("curves", Some(frame.area));
-        for (series, colour) in self.series.iter().zip(CURVES.iter().cycle()) {
-            draw_series(&mut canvas, &frame, series, *colour);
+        for (k, series) in self.series.iter().enumerate() {
+            draw_series(&mut canvas, &frame, series, Style::of(k));
         }
         frame.border(&mut canvas, &self.x.label, &self.y.label);
         canvas
@@ -219,19 +242,18 @@ impl Chart {
     fn legend(&self, size: Size) -> Vec<Entry<'_>> {
         let width = |series: &Series| LEGEND_MARK + OTHER_FONTS * font::width(&series.name) * LEGEND_SIZE;
         let right = size.width - RIGHT;
-        let mut named: Vec<_> =
-            self.series.iter().zip(CURVES.iter().cycle()).filter(|(s, _)| !s.name.is_empty()).collect();
-        named.retain(|(series, _)| self.series.len() > 1 || series.name != self.y.label);
-        let all = named.iter().map(|(series, _)| width(series) + LEGEND_GAP).sum::<f64>() - LEGEND_GAP;
+        let mut named: Vec<_> = self.series.iter().enumerate().filter(|(_, s)| !s.name.is_empty()).collect();
+        named.retain(|(_, series)| self.series.len() > 1 || series.name != self.y.label);
+        let all = named.iter().map(|(_, series)| width(series) + LEGEND_GAP).sum::<f64>() - LEGEND_GAP;
         let beside = LEFT + OTHER_FONTS * font::width(&self.title) * TITLE_SIZE + LEGEND_GAP <= right - all;
         let mut next = if beside { [right - all, TITLE_LINE] } else { [LEFT, TITLE_LINE + LEGEND_ROW] };
-        let entry = |(series, colour): (_, &Colour)| {
+        let entry = |(k, series): (usize, _)| {
             if next[0] > LEFT && next[0] + width(series) > right + 1e-6 {
                 next = [LEFT, next[1] + LEGEND_ROW];
             }
             let at = next;
             next[0] += width(series) + LEGEND_GAP;
-            Entry { series, colour: *colour, at }
+            Entry { series, style: Style::of(k), at, room: right - at[0] - LEGEND_MARK }
         };
         named.into_iter().map(entry).collect()
     }
@@ -248,17 +270,23 @@ pub(super) struct ChartData<'a> {
 /// A series in the legend, from `at` to the right.
 struct Entry<'a> {
     series: &'a Series,
-    colour: Colour,
+    style: Style,
     at: [f64; 2],
+    /// Room for its name, in pixels.
+    room: f64,
 }
 
 impl Entry<'_> {
     fn draw(&self, canvas: &mut Canvas) {
-        let Self { colour, at: [x, line], .. } = *self;
-        let y = line - 4.0;
+        let Self { style, at: [x, line], .. } = *self;
+        let (y, colour) = (line - 4.0, style.colour);
         match self.series.marks {
             Marks::Line | Marks::Loop | Marks::Dashes => {
-                canvas.line(vec![[x, y], [x + 20.0, y]], self.series.pen(colour, 2.2));
+                canvas.line(vec![[x, y], [x + 20.0, y]], self.series.pen(style, 2.2));
+            }
+            Marks::Points => {
+                let line = vec![[x, y], [x + 20.0, y]];
+                canvas.marked_line((line, vec![[x + 10.0, y]]), MARK, style.fill, self.series.pen(style, 1.8));
             }
             Marks::Dots => canvas.discs(vec![[x + 12.0, y]], 3.0, Some(colour), None),
             Marks::Rings => canvas.discs(vec![[x + 12.0, y]], 3.6, None, Some(Pen::new(colour, 1.4))),
@@ -267,7 +295,7 @@ impl Entry<'_> {
                 canvas.rectangle(swatch, Some(colour), None);
             }
         }
-        canvas.text(Text::new(&self.series.name, [x + LEGEND_MARK, line], LEGEND_SIZE));
+        canvas.text(Text::new(&self.series.name, [x + LEGEND_MARK, line], LEGEND_SIZE).within(self.room));
     }
 }
 
@@ -285,15 +313,21 @@ fn arrow(line: &[[f64; 2]], at: usize) -> Option<[[f64; 2]; 4]> {
 }
 
 /// Draws a series as one item.
-fn draw_series(canvas: &mut Canvas, frame: &Frame, series: &Series, colour: Colour) {
+fn draw_series(canvas: &mut Canvas, frame: &Frame, series: &Series, style: Style) {
+    let colour = style.colour;
     let places = || series.x.iter().zip(&series.y).map(|(x, y)| frame.place(*x, *y)).collect();
     match series.marks {
-        Marks::Line | Marks::Dashes => canvas.line(places(), series.pen(colour, 1.8)),
+        Marks::Line | Marks::Dashes => canvas.line(places(), series.pen(style, 1.8)),
+        Marks::Points => {
+            let places: Vec<[f64; 2]> = places();
+            let marks = places.iter().copied().take_while(|p| p.iter().all(|c| c.is_finite())).collect();
+            canvas.marked_line((places, marks), MARK, style.fill, series.pen(style, 1.4));
+        }
         Marks::Loop => {
             let places: Vec<[f64; 2]> = places();
             let arrows = ARROWS.iter().filter_map(|part| arrow(&places, (part * places.len() as f64) as usize));
             let all = places.iter().copied().chain(arrows.flatten()).collect();
-            canvas.line(all, series.pen(colour, 1.8));
+            canvas.line(all, series.pen(style, 1.8));
         }
         Marks::Dots => canvas.discs(places(), 2.2, Some(colour), None),
         Marks::Rings => canvas.discs(places(), 3.2, None, Some(Pen::new(colour, 1.3))),
@@ -369,6 +403,30 @@ mod tests {
         };
         keep("chart-bars.png", &bars.png().unwrap());
         assert_balanced(&bars.svg().unwrap());
+    }
+
+    #[test]
+    fn thirteen_curves_are_told_apart() {
+        let all: Vec<Style> = (0..24).map(Style::of).collect();
+        for (k, style) in all.iter().enumerate() {
+            assert!(!all[..k].contains(style), "{k}");
+        }
+        let curve = |k: u32| Series::new(&format!("{k}"), Marks::Points, vec![0.0, 1.0], vec![0.0, f64::from(k)]);
+        let chart = Chart { title: "CL".repeat(60), series: (0..13).map(curve).collect(), ..Chart::default() };
+        let svg = chart.svg().unwrap();
+        assert_balanced(&svg);
+        // the same colour comes three times, each with a dash of its own; each line has its marks, and one in the legend
+        let first = CURVES[0].hex();
+        let with = |fill: &str| {
+            svg.matches(&format!(
+                "<g stroke=\"{first}\" stroke-width=\"1.4\" stroke-linejoin=\"round\" fill=\"{fill}\""
+            ))
+            .count()
+        };
+        assert_eq!([with(&first), with(&Colour::PAPER.hex())], [2, 1]);
+        assert_eq!(svg.matches("<circle").count(), 13 * 3);
+        assert!(svg.contains("...</text>"), "a title that is too long is cut where the sheet ends");
+        assert!(chart.png().is_ok());
     }
 
     #[test]

@@ -2,7 +2,7 @@
 use serde_json::Value;
 
 use super::page::Fact;
-use super::words::number_of;
+use super::words::plain;
 
 /// Mach number, angle of attack, Reynolds number, and what loads are divided by; nothing of what the summary does not tell.
 pub(super) fn conditions(summary: &Value) -> Vec<Fact> {
@@ -15,19 +15,16 @@ pub(super) fn conditions(summary: &Value) -> Vec<Fact> {
         ("Reference area", &reference["area"]),
     ];
     let known = known.into_iter().filter(|(_, value)| value.is_number());
-    let mut facts: Vec<Fact> = known.map(|(name, value)| Fact::new(name, plain(value))).collect();
+    let mut facts: Vec<Fact> = known.map(|(name, value)| Fact::new(name, told(value))).collect();
     if let Some(point) = reference["moment_point"].as_array() {
-        let told = point.iter().map(plain).collect::<Vec<_>>().join(", ");
+        let told = point.iter().map(told).collect::<Vec<_>>().join(", ");
         facts.push(Fact::new("Moments about", format!("({told})")));
     }
     facts
 }
 
-/// A number without zeros behind its last digit: what is given, not computed.
-fn plain(value: &Value) -> String {
-    let text = number_of(value);
-    let fraction = text.contains('.') && !text.contains('e');
-    if fraction { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+fn told(value: &Value) -> String {
+    value.as_f64().map_or("–".to_owned(), plain)
 }
 
 /// True of a run without bodies: its summary tells that there is nothing to refer loads to.

@@ -8,6 +8,9 @@ use super::canvas::LIFTED;
 /// Grid units to the em: text of size s pixels has capitals of 14 s / 20 pixels.
 pub(crate) const EM: f64 = 20.0;
 
+/// Letters of other fonts are wider than ours, at most about this much.
+pub(super) const OTHER_FONTS: f64 = 1.15;
+
 /// Added to every advance width: text on a screen wants air between letters.
 const TRACKING: f64 = 0.6;
 

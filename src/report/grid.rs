@@ -2,7 +2,7 @@
 use super::chart::{Axis, Chart, Marks, Series};
 use super::files::RunFolder;
 use super::page::{Block, Table};
-use super::words::{grouped, number};
+use super::words::{grouped, load, number, plain};
 use crate::observe::convergence::{CloudLoads, Convergence, FamilyEnd, LoadEstimate};
 
 /// One load of a cloud.
@@ -50,13 +50,13 @@ fn verdict(found: &Convergence) -> String {
 fn table(found: &Convergence) -> Table {
     let (all, mut rows) = (loads(found), Vec::new());
     for cloud in &found.clouds {
-        let values = all.iter().map(|(_, of, _)| number(of(cloud)));
-        let head = [format!("{} × spacing", number(cloud.factor)), grouped(cloud.particles as f64)];
+        let values = all.iter().map(|(_, of, _)| load(of(cloud)));
+        let head = [format!("{} × spacing", plain(cloud.factor)), grouped(cloud.particles as f64)];
         rows.push(head.into_iter().chain(values).collect::<Vec<_>>());
     }
     if let Some(finer) = &found.unsteady {
-        let head = [format!("{} × spacing, not steady", number(finer.factor)), grouped(finer.particles as f64)];
-        rows.push(head.into_iter().chain(all.iter().map(|(_, of, _)| number(of(finer)))).collect());
+        let head = [format!("{} × spacing, not steady", plain(finer.factor)), grouped(finer.particles as f64)];
+        rows.push(head.into_iter().chain(all.iter().map(|(_, of, _)| load(of(finer)))).collect());
     }
     let row = |name: &str, value: &dyn Fn(&LoadEstimate) -> Option<f64>| {
         let values = all.iter().map(|(_, _, e)| value(e).map_or("–".to_owned(), number));
@@ -82,10 +82,10 @@ fn charts(found: &Convergence) -> Vec<Chart> {
         let y: Vec<f64> = found.clouds.iter().map(of).collect();
         let last = y.last().copied().unwrap_or_default();
         let ends = [0.0, x.first().copied().unwrap_or_default()];
-        let line =
-            |value: f64| Series { name: String::new(), x: ends.to_vec(), y: vec![value; 2], marks: Marks::Dashes };
-        let clouds = Series { name: name.to_owned(), x: x.clone(), y: y.clone(), marks: Marks::Line };
-        let series = vec![clouds, line(last - estimate.half_width), line(last + estimate.half_width)];
+        let [low, high] = [last - estimate.half_width, last + estimate.half_width];
+        let (along, gap) = ([ends[0], ends[1], f64::NAN, ends[0], ends[1]], f64::NAN);
+        let bar = Series::new("error bar", Marks::Dashes, along.to_vec(), vec![low, low, gap, high, high]);
+        let series = vec![Series::new("clouds", Marks::Points, x.clone(), y), bar];
         Chart { title: name.to_owned(), x: Axis::linear("1/particles"), y: Axis::linear(name), series }
     };
     loads(found).into_iter().map(chart).collect()

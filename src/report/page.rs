@@ -7,6 +7,8 @@ use askama::Template;
 use super::chart::{Chart, Size};
 use super::{ReportError, data_address};
 
+/// Letters of an entry of a table that are set in one line.
+const ONE_LINE: usize = 28;
 /// More points than this are thinned out in charts: a screen has fewer pixels.
 const MAX_POINTS: usize = 6000;
 const STYLE: &str = include_str!("../../templates/page.css");
@@ -94,7 +96,7 @@ pub(super) struct Table {
 /// An entry of a table.
 pub(super) struct Cell {
     pub(super) text: String,
-    /// How it is set: `n` as a number, `good` and `bad` as a verdict.
+    /// How it is set: `n` as a number, `t` as text of several lines, `good` and `bad` as a verdict.
     pub(super) class: &'static str,
     /// Where it leads, if anywhere.
     pub(super) link: Option<String>,
@@ -200,10 +202,14 @@ impl Fact {
 }
 
 impl Table {
-    /// A table of text; entries that look like numbers are set as such.
+    /// A table of text; entries that look like numbers are set as such, and columns in which nothing is told are left out.
     pub(super) fn new(columns: &[&str], rows: impl IntoIterator<Item = Vec<String>>) -> Self {
-        let row = |row: Vec<String>| row.into_iter().map(Cell::from).collect();
-        Self { columns: columns.iter().map(|c| (*c).to_owned()).collect(), rows: rows.into_iter().map(row).collect() }
+        let rows: Vec<Vec<String>> = rows.into_iter().collect();
+        let known =
+            |k: &usize| rows.iter().any(|row| row.get(*k).is_some_and(|text| !["", "–"].contains(&text.as_str())));
+        let kept: Vec<usize> = (0..columns.len()).filter(|k| rows.is_empty() || known(k)).collect();
+        let row = |row: &Vec<String>| kept.iter().filter_map(|k| row.get(*k).cloned()).map(Cell::from).collect();
+        Self { columns: kept.iter().map(|k| columns[*k].to_owned()).collect(), rows: rows.iter().map(row).collect() }
     }
 
     /// Columns below one another, numbers and what stands above them to the right.
@@ -227,7 +233,12 @@ impl Table {
 impl From<String> for Cell {
     fn from(text: String) -> Self {
         let number = text.starts_with(|c: char| c.is_ascii_digit() || "\u{2212}-+–±".contains(c));
-        Self { text, class: if number { "n" } else { "" }, link: None }
+        let class = match number {
+            true => "n",
+            false if text.chars().count() > ONE_LINE => "t",
+            false => "",
+        };
+        Self { text, class, link: None }
     }
 }
 
@@ -287,6 +298,17 @@ mod tests {
         assert!(!html.contains("<b>") && !html.contains("& \"") && !html.contains("?b=\""));
         assert_eq!(html.matches("</script>").count(), 4, "three charts and the script of the page");
         assert!(html.contains("<code>&#60;b&#62;α"));
+    }
+
+    #[test]
+    fn tables_have_no_empty_columns_and_long_text_has_room() {
+        let row = |all: [&str; 4]| all.map(str::to_owned).to_vec();
+        let long = "error bar of CD longer than asked for";
+        let table = Table::new(&["", "a", "b", "c"], [row(["x", "–", "", "1"]), row(["", "–", "", long])]);
+        assert_eq!(table.columns, ["", "c"]);
+        let classes: Vec<Vec<&str>> = table.rows.iter().map(|row| row.iter().map(|c| c.class).collect()).collect();
+        assert_eq!(classes, [["", "n"], ["", "t"]]);
+        assert_eq!(Table::new(&["a", "b"], []).columns, ["a", "b"]);
     }
 
     #[test]

@@ -2,7 +2,7 @@
 use tiny_skia::{FillRule, LineCap, LineJoin, Mask, Paint, Path, PathBuilder, Pixmap, Stroke, StrokeDash, Transform};
 
 use super::ReportError;
-use super::canvas::{Anchor, Area, Bitmap, Canvas, Item, Outline, Pen, Text};
+use super::canvas::{Anchor, Area, Bitmap, Canvas, Dash, Item, Outline, Pen, Text};
 use super::colour::Colour;
 use super::font;
 
@@ -85,6 +85,12 @@ impl Painter {
                 let discs = centres.iter().map(|c| PathBuilder::from_circle(c[0] as f32, c[1] as f32, *radius as f32));
                 discs.flatten().for_each(|disc| self.shape(&disc, *fill, *pen));
             }
+            Item::Marked { outline, centres, radius, fill, pen } => {
+                self.path(outline, None, Some(*pen));
+                let full = Some(Pen { dash: Dash::None, ..*pen });
+                let discs = centres.iter().map(|c| PathBuilder::from_circle(c[0] as f32, c[1] as f32, *radius as f32));
+                discs.flatten().for_each(|disc| self.shape(&disc, Some(*fill), full));
+            }
             Item::Text(text) => self.text(text),
             Item::Picture { bitmap, area } => self.picture(bitmap, *area),
         }
@@ -123,7 +129,7 @@ impl Painter {
                 width: pen.width as f32,
                 line_cap: LineCap::Round,
                 line_join: LineJoin::Round,
-                dash: if pen.dashed { StrokeDash::new(vec![5.0, 4.0], 0.0) } else { None },
+                dash: StrokeDash::new(pen.dash.lengths().to_vec(), 0.0),
                 ..Stroke::default()
             };
             self.sheet.stroke_path(path, &paint(pen.colour), &stroke, transform, self.mask.as_ref());

@@ -186,7 +186,8 @@ fn sheet(window: Bounds<2>, title: &str) -> Result<(Canvas, Frame), ReportError>
     // A very slender window is stretched rather than drawn as a line.
     let area = Area { x: 82.0, y: 46.0, width: (extent[0] * scale).max(120.0), height: (extent[1] * scale).max(120.0) };
     let mut canvas = Canvas::new(area.x + area.width + 110.0, area.y + area.height + 62.0);
-    canvas.text(Text { bold: true, ..Text::new(title, [area.x, 28.0], TITLE_SIZE) });
+    let room = canvas.width - area.x;
+    canvas.text(Text { bold: true, ..Text::new(title, [area.x, 28.0], TITLE_SIZE) }.within(room));
     let scale = |d: usize| Scale { from: window.min[d], to: window.max[d], log: false };
     Ok((canvas, Frame { area, x: scale(0), y: scale(1) }))
 }

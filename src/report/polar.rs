@@ -1,14 +1,19 @@
 //! The chapter on a polar: loads at its points, as charts with error bars and as a table.
 use std::path::Path;
 
+use serde_json::Value;
+
 use super::chart::{Axis, Chart, Marks, Series};
 use super::files::{Csv, LOADS, Load, RunFolder};
 use super::page::{Block, Table};
-use super::words::{grouped, number};
+use super::words::{grouped, load, plain, with_bar};
 use super::{ReportError, write_file};
 
 /// Name of the table.
 const FILE: &str = "polar.csv";
+
+/// Curves with which charts stand beside one another.
+const FEW: usize = 6;
 
 /// A quantity of the points, and its column.
 #[derive(Clone, Copy)]
@@ -26,14 +31,37 @@ impl From<Load> for Quantity {
     }
 }
 
+/// The last point of a polar whose flow is known, which fields and loads of its run are of; `None` for a run at one point.
+pub(super) fn last_point(summary: &Value) -> Option<String> {
+    let points = summary["polar"].as_array().filter(|points| !points.is_empty())?;
+    let last = points.last()?;
+    let at = |key: &str| summary[key].as_f64().or_else(|| last[key].as_f64()).map(plain);
+    Some(format!("Mach {}, α {}°", at("mach")?, at("alpha_deg")?))
+}
+
 /// Nothing for a run at one point.
 pub(super) fn polar(run: &RunFolder) -> Vec<Block> {
     let Ok(points) = run.table(FILE) else { return Vec::new() };
+    let charts: Vec<Chart> = charts(&points).into_iter().map(|(_, chart)| chart).collect();
+    // long legends need the whole page
+    let mut blocks = match charts.iter().all(|chart| chart.series.len() <= FEW) {
+        true => vec![Block::charts(charts.into_iter())],
+        false => charts.into_iter().map(Block::chart).collect(),
+    };
+    let last = last_point(&run.json("summary.json").unwrap_or_default());
+    blocks.extend([Block::Text(words(&points, last)), Block::Table(table(&points))]);
+    blocks
+}
+
+/// What the charts show, and what is wanting at which points.
+fn words(points: &Csv, last: Option<String>) -> String {
     let failed = points.column("converged").map_or(0, |all| all.iter().filter(|c| **c != "true").count());
     let short = points.column("within_accuracy").map_or(0, |all| all.iter().filter(|c| **c == "false").count());
-    let mut text = "Vertical and horizontal bars are error bars, where the loads were found on a family of clouds. \
-         The chapters below show the last point whose flow is known."
-        .to_owned();
+    let last = last.map_or_else(String::new, |point| format!(", {point}"));
+    let mut text = format!(
+        "Vertical and horizontal bars are error bars, where the loads were found on a family of clouds. The loads at the top and the \
+         chapters below are those of the last point whose flow is known{last}."
+    );
     if failed > 0 {
         text +=
             &format!(" Points that did not converge ({failed}) are left out of the curves; the table has the reasons.");
@@ -46,11 +74,7 @@ pub(super) fn polar(run: &RunFolder) -> Vec<Block> {
         let each = if each.is_empty() { each } else { format!(" ({each})") };
         text += &format!(" At {short} of {} points error bars are longer than asked for{each}.", points.rows.len());
     }
-    vec![
-        Block::charts(charts(&points).into_iter().map(|(_, chart)| chart)),
-        Block::Text(text),
-        Block::Table(table(&points)),
-    ]
+    text
 }
 
 /// Draws the charts of the polar of a run into its pictures.
@@ -96,8 +120,8 @@ fn chart(points: &Csv, [x, y]: [Quantity; 2], parameter: Quantity) -> Chart {
     let parameters = values(points, parameter);
     let name = |value: f64| match parameter.column {
         _ if parameters.len() == 1 => String::new(),
-        "mach" => format!("M {value}"),
-        _ => format!("α {value}°"),
+        "mach" => format!("M {}", plain(value)),
+        _ => format!("α {}°", plain(value)),
     };
     let series = parameters.iter().map(|value| {
         let chosen = chosen(points, parameter, *value);
@@ -120,7 +144,7 @@ fn chosen(points: &Csv, parameter: Quantity, value: f64) -> Vec<usize> {
     (0..all.len()).filter(fits).collect()
 }
 
-/// A line through points, and a bar from end to end of each error, as one series.
+/// A line through points with their marks, and a bar from end to end of each error, as one series.
 fn with_bars(name: &str, [mut x, mut y]: [Vec<f64>; 2], bars: &[Vec<f64>; 2]) -> Series {
     for k in 0..x.len() {
         let (at, half) = ([x[k], y[k]], [bars[0][k], bars[1][k]]);
@@ -133,46 +157,99 @@ fn with_bars(name: &str, [mut x, mut y]: [Vec<f64>; 2], bars: &[Vec<f64>; 2]) ->
             }
         }
     }
-    Series::new(name, Marks::Line, x, y)
+    Series::new(name, Marks::Points, x, y)
 }
 
 /// A row for each point.
 fn table(points: &Csv) -> Table {
     let column = |name: &str| points.column(name).unwrap_or_default();
     let numbers = |name: &str| points.numbers(name).unwrap_or_default();
-    let shown =
-        ["mach", "alpha_deg", "cl", "cl_error", "cd", "cd_error", "cm", "cm_error", "cl_momentum", "cd_momentum"]
-            .map(numbers);
+    let given = ["mach", "alpha_deg"].map(numbers);
+    let loads = LOADS.map(|load| [numbers(load.column), numbers(&format!("{}_error", load.column))]);
+    let momentum = ["cl_momentum", "cd_momentum", "cm_momentum"].map(numbers);
     let iterations = numbers("iterations");
     let (reasons, within, long) = (column("reason"), column("within_accuracy"), column("long_bars"));
+    let at = |values: &Vec<f64>, k: usize| values.get(k).copied().unwrap_or(f64::NAN);
     let row = |k: usize| {
-        let values = shown.iter().map(|c| c.get(k).copied().map_or("–".to_owned(), number));
-        let reason = reasons.get(k).copied().unwrap_or_default();
-        let short = within.get(k) == Some(&"false") && reason.is_empty();
+        let told = |[value, bar]: &[Vec<f64>; 2]| match at(bar, k) {
+            bar if bar.is_finite() => with_bar(at(value, k), bar),
+            _ => load(at(value, k)),
+        };
+        let short = within.get(k) == Some(&"false") && reasons[k].is_empty();
         let remark = match long.get(k).filter(|names| short && !names.is_empty()) {
             Some(names) => format!("error bar of {names} longer than asked for"),
             None if short => "longer error bars than asked for".to_owned(),
-            None => reason.to_owned(),
+            None => reasons[k].to_owned(),
         };
-        let count = iterations.get(k).copied().map_or("–".to_owned(), grouped);
-        values.chain([count, remark]).collect::<Vec<_>>()
+        let given = given.iter().map(|c| plain(at(c, k)));
+        let loads = loads.iter().map(told).chain(momentum.iter().map(|c| load(at(c, k))));
+        let count = Some(at(&iterations, k)).filter(|n| n.is_finite()).map_or("–".to_owned(), grouped);
+        given.chain(loads).chain([count, remark]).collect::<Vec<_>>()
     };
-    let rows = (0..reasons.len()).map(row).collect::<Vec<_>>();
-    Table::new(
-        &[
-            "M",
-            "α, °",
-            "CL",
-            "±",
-            "CD",
-            "±",
-            "CM",
-            "±",
-            "CL by momentum",
-            "CD by momentum",
-            "iterations",
-            "not converged, or short of the accuracy",
-        ],
-        rows,
-    )
+    let columns =
+        ["M", "α, °", "CL", "CD", "CM", "CL by momentum", "CD by momentum", "CM by momentum", "iterations", "remark"];
+    Table::new(&columns, (0..reasons.len()).map(row))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::overview::tests::assert_balanced;
+    use crate::report::write_report;
+
+    /// What a polar of two Mach numbers and so many angles leaves; the bar of CD is too long at the last point.
+    fn fill(run: &Path, angles: u32) {
+        let mut rows = String::from(
+            "mach,alpha_deg,cl,cl_error,cd,cd_error,cm,cm_error,cl_momentum,cd_momentum,iterations,converged,within_accuracy,reason,long_bars\n",
+        );
+        for (mach, k) in [0.3, 0.5].into_iter().flat_map(|mach| (0..angles).map(move |k| (mach, k))) {
+            let last = mach == 0.5 && k + 1 == angles;
+            let (within, long) = if last { ("false", "CD") } else { ("true", "") };
+            let cl = 0.1 * f64::from(k) + 0.012_345_678;
+            rows += &format!(
+                "{mach},{k},{cl},0.00123,-8.337e-5,0.00068,-1e-9,0.00017,{cl},-1e-9,34,true,{within},,{long}\n"
+            );
+        }
+        std::fs::write(run.join(FILE), rows).unwrap();
+        let loads = serde_json::json!({ "cl": 1.297, "cd": 0.0108, "cm": -0.0034 });
+        let summary = serde_json::json!({ "mach": 0.5, "alpha_deg": f64::from(angles - 1), "converged": true, "loads": loads,
+            "reference": { "chord": 1.0 }, "polar": [{ "mach": 0.3, "alpha_deg": 0.0 }] });
+        std::fs::write(run.join("summary.json"), summary.to_string()).unwrap();
+    }
+
+    fn page(angles: u32) -> String {
+        let folder = tempfile::tempdir().unwrap();
+        fill(folder.path(), angles);
+        std::fs::read_to_string(write_report(folder.path()).unwrap()).unwrap()
+    }
+
+    #[test]
+    fn a_page_says_which_point_its_headline_is_of_and_rounds_what_it_tells() {
+        let page = page(13);
+        assert_balanced(&page);
+        for part in [
+            "<h2>CL at Mach 0.5, α 12°</h2>",
+            "Loads at Mach 0.5, α 12°",
+            "last point whose flow is known, Mach 0.5, α 12°",
+            "At 1 of 26 points error bars are longer than asked for (CD at 1)",
+            ">0.0123 ± 0.0012</td>",
+            ">0.00000</td>",
+            ">\u{2212}0.00008 ± 0.00068</td>",
+            ">34</td>",
+            ">0.3</td>",
+            "class=\"t\">error bar of CD longer than asked for</td>",
+        ] {
+            assert!(page.contains(part), "{part}");
+        }
+        assert!(!page.contains("CM by momentum"), "a column in which nothing is told");
+        assert!(!page.contains("against reference") && !page.contains("34.000"));
+        // the seventh curve has the colour of the first, and another dash
+        assert!(page.contains("α 6°") && page.contains("stroke-dasharray=\"12 4\""));
+    }
+
+    #[test]
+    fn few_curves_stand_beside_one_another() {
+        assert!(page(3).contains("<div class=\"charts\">"));
+        assert!(!page(3).contains("stroke-dasharray=\"12 4\""));
+    }
 }

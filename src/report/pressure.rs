@@ -7,13 +7,13 @@
 use std::path::Path;
 
 use super::canvas::{Area, Canvas, Pen, Text};
-use super::chart::{Axis, Chart, Marks, OTHER_FONTS, Series, Size};
+use super::chart::{Axis, Chart, Marks, Series, Size};
 use super::colour::Colour;
 use super::conditions::conditions as of_stream;
 use super::files::{Csv, LOADS, RunFolder};
 use super::page::{Block, Fact};
 use super::surface_views::title;
-use super::words::{grouped, number};
+use super::words::{grouped, number, with_bar};
 use super::{ReportError, font, last_period, stations, write_file};
 
 /// Cp* farther up than this, in the range of Cp, would leave no room for the curves.
@@ -74,8 +74,9 @@ fn conditions(run: &RunFolder) -> Vec<Fact> {
     let at = last_period::at(&summary).map_or_else(String::new, |at| format!(" {at}"));
     for load in LOADS {
         let told = |table: &str| summary[table][load.column].as_f64();
-        let bar = told("loads_error").map_or_else(String::new, |bar| format!(" ± {bar:.1e}"));
-        let fact = |value| Fact::new(&format!("{}{at}", load.name), format!("{}{bar}", number(value)));
+        let bar = told("loads_error");
+        let text = |value| bar.map_or_else(|| number(value), |bar| with_bar(value, bar));
+        let fact = |value| Fact::new(&format!("{}{at}", load.name), text(value));
         facts.extend(told("loads").map(fact));
     }
     facts.extend(summary["particles"].as_f64().map(|n| Fact::new("Particles", grouped(n))));
@@ -100,7 +101,7 @@ pub fn write_pressure(run: &Path) -> Result<(), ReportError> {
 
 /// Lines in a box in the upper right corner of `area`, where curves of Cp seldom come.
 fn boxed(canvas: &mut Canvas, area: &Area, lines: &[String]) {
-    let widest = lines.iter().map(|line| font::width(line)).fold(0.0, f64::max) * BOX_TEXT * OTHER_FONTS;
+    let widest = lines.iter().map(|line| font::width(line)).fold(0.0, f64::max) * BOX_TEXT * font::OTHER_FONTS;
     let (width, height) = (widest + 2.0 * BOX_AIR, lines.len() as f64 * BOX_ROW + BOX_AIR);
     let corner = [area.x + area.width - width - BOX_AIR, area.y + BOX_AIR];
     let frame = Area { x: corner[0], y: corner[1], width, height };

@@ -10,6 +10,7 @@ use super::pressure;
 use super::surface_viewer::surface_viewer;
 use super::viewer::viewer;
 use super::words::{grouped, number, number_of};
+use crate::math::digits::fixed;
 
 /// What pictures of the particles begin with.
 const OF_CLOUD: [&str; 3] = ["cloud", "particles", "doctor"];
@@ -168,7 +169,9 @@ pub(super) fn doctor(run: &RunFolder) -> Vec<Block> {
         Err(reason) => return std::iter::once(Block::LeftOut(reason)).chain(pictures).collect(),
     };
     let value = |value: &Value, told: fn(f64) -> String| value.as_f64().map_or("–".to_owned(), told);
-    let range = ["min", "mean", "max"].map(|key| value(&doctor["neighbours"][key], plain_or_number));
+    let (whole, mean): (fn(f64) -> String, fn(f64) -> String) = (grouped, |mean| fixed(mean, 1));
+    let range = [("min", whole), ("mean", mean), ("max", whole)];
+    let range = range.map(|(key, told)| value(&doctor["neighbours"][key], told));
     let mut blocks = vec![Block::Facts(vec![
         Fact::new("Particles", value(&doctor["particles"], grouped)),
         Fact::new("On interfaces", value(&doctor["interface"], grouped)),

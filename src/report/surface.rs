@@ -71,7 +71,8 @@ pub fn surface_png(shell: &Shell, style: &SurfaceStyle) -> Result<Vec<u8>, Repor
     };
     let range = style.range.unwrap_or_else(|| robust_range(values));
     let mut canvas = Canvas::new(PLOT.x + PLOT.width + 110.0, PLOT.y + PLOT.height + 24.0);
-    canvas.text(Text { bold: true, ..Text::new(style.title, [PLOT.x, 28.0], TITLE_SIZE) });
+    let room = canvas.width - PLOT.x;
+    canvas.text(Text { bold: true, ..Text::new(style.title, [PLOT.x, 28.0], TITLE_SIZE) }.within(room));
     draw_surface(&mut canvas, PLOT, shell, &SurfaceStyle { range: Some(range), ..*style })?;
     colour_bar(&mut canvas, PLOT, style.map, range, style.quantity);
     canvas.png(SHARPNESS)

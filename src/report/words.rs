@@ -1,6 +1,11 @@
 //! Numbers as pages tell them.
 use serde_json::Value;
 
+use crate::math::digits::fixed;
+
+/// Decimals of a load whose error nobody knows: as the terminal tells it.
+const OF_LOADS: usize = 5;
+
 /// A number for reading: five significant digits, an exponent for the very large and small.
 pub(super) fn number(value: f64) -> String {
     let size = value.abs();
@@ -22,6 +27,24 @@ pub(super) fn number_of(value: &Value) -> String {
     value.as_f64().map_or("–".to_owned(), number)
 }
 
+/// A number without zeros behind its last digit: what is given or counted, not computed.
+pub(super) fn plain(value: f64) -> String {
+    let text = number(value);
+    let fraction = text.contains('.') && !text.contains('e');
+    if fraction { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+}
+
+/// A load coefficient whose error is not known.
+pub(super) fn load(value: f64) -> String {
+    if value.is_finite() { fixed(value, OF_LOADS).replace('-', "\u{2212}") } else { "–".to_owned() }
+}
+
+/// A value with its error bar, both to the second digit of the bar.
+pub(super) fn with_bar(value: f64, bar: f64) -> String {
+    let decimals = (1.0 - bar.log10().floor()).clamp(2.0, 7.0) as usize;
+    format!("{} ± {}", fixed(value, decimals), fixed(bar, decimals)).replace('-', "\u{2212}")
+}
+
 /// A whole number with thin spaces between thousands.
 pub(super) fn grouped(value: f64) -> String {
     let digits = format!("{:.0}", value.abs());
@@ -33,4 +56,24 @@ pub(super) fn grouped(value: f64) -> String {
         text.push(digit);
     }
     text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_load_ends_with_the_second_digit_of_its_bar() {
+        assert_eq!(with_bar(0.286541, 2.245e-5), "0.286541 ± 0.000022");
+        assert_eq!(with_bar(-0.35673, 0.0031), "\u{2212}0.3567 ± 0.0031");
+        assert_eq!(with_bar(0.0, 0.0), "0.0000000 ± 0.0000000");
+        assert_eq!(with_bar(-1.2e-6, 0.0017), "0.0000 ± 0.0017");
+    }
+
+    #[test]
+    fn what_is_given_has_no_zeros_behind_it_and_no_zero_a_sign() {
+        assert_eq!([0.3, -4.0, 1.25, -0.0, 4.0].map(plain), ["0.3", "\u{2212}4", "1.25", "0", "4"]);
+        assert_eq!([0.286_514, -1e-9, -0.003].map(load), ["0.28651", "0.00000", "\u{2212}0.00300"]);
+        assert_eq!(load(f64::NAN), "–");
+    }
 }

@@ -59,9 +59,6 @@ const COARSEST: [f64; 2] = [4.0, 8.0];
 const WITH_WALLS: f64 = 1.15;
 /// What the number of particles of a cloud may be off what is expected, relative to it.
 const UNSURE: f64 = 0.02;
-/// Greatest number of particles at the points of a polar that says nothing of accuracy: three clouds for each section, and about a
-/// second for each point.
-const POLAR_PARTICLES: usize = 20_000;
 /// How many times the particles a cloud in space has at half the spacing, the power of the spacing that their number goes with, and how
 /// often a spacing is corrected.
 const FINER: f64 = 6.0;
@@ -80,11 +77,8 @@ pub(crate) const CLOUDS: [usize; 2] = [3, 4];
 /// How well the loads are to be known; `None` where they are those of one cloud.
 pub(crate) fn asked(case: &Case) -> Option<Accuracy> {
     let chosen = case.cloud.spacing.is_none() && !case.is_unsteady() && !case.bodies.is_empty();
-    let usual = match case.polar {
-        Some(_) if case.dimension != Some(3) => Accuracy { particles: POLAR_PARTICLES, ..Accuracy::default() },
-        _ => Accuracy::in_dimension(case.dimension.map_or(2, usize::from)),
-    };
-    case.accuracy.or(chosen.then_some(usual))
+    let usual = || Accuracy::usual(case.dimension.map_or(2, usize::from), case.polar.is_some());
+    case.accuracy.or_else(|| chosen.then(usual))
 }
 
 /// The case with the spacing of its cloud, and with the accuracy that is asked for where it leaves that out.

@@ -1,8 +1,10 @@
 //! What makes the loads of a finished run doubtful.
 use super::record::summary::Summary;
 use super::solids::von_mises;
+use super::{accuracy, setup};
 use crate::case::Case;
 use crate::coupling::SolidSnapshot;
+use crate::geometry::Surface;
 use crate::observe::convergence::LEAST;
 
 /// Part of a load that its two evaluations may differ by.
@@ -10,14 +12,17 @@ const DISAGREEMENT: f64 = 0.05;
 /// Negative drag without viscosity that rounding and the cloud may leave: a count.
 const NEGATIVE_DRAG: f64 = -1e-4;
 
-/// What is to be said of the loads and of bodies made of particles; `largest` are lift and drag at their greatest in a march.
+/// What is to be said of the loads on the cloud that they are told of, the last of a family where there is one, and of bodies made of
+/// particles; `largest` are lift and drag at their greatest in a march.
 pub(crate) fn told<const D: usize>(
     case: &Case,
-    s: &Summary,
+    (s, surface): (&Summary, Option<&Surface<D>>),
     largest: [f64; 2],
     solid: Option<&SolidSnapshot<'_, D>>,
 ) -> Vec<String> {
-    of_loads(case, s, largest).into_iter().chain(solid.and_then(of_solid)).collect()
+    let on = Case { cloud: s.cloud.clone(), ..case.clone() };
+    let rough = accuracy::asked(case).map_or_else(Vec::new, |_| setup::rough(&on, surface));
+    of_loads(case, s, largest).into_iter().chain(rough).chain(solid.and_then(of_solid)).collect()
 }
 
 /// What is to be said of the loads of a steady flow, or at the end of a march.
@@ -69,7 +74,7 @@ fn of_solid<const D: usize>(at: &SolidSnapshot<'_, D>) -> Option<String> {
     let all = von_mises(at.solid, &at.state()).into_iter().enumerate().filter_map(part);
     let (i, stress, _) = all.max_by(|a, b| a.2.total_cmp(&b.2)).filter(|(.., part)| *part > 1.0)?;
     Some(format!(
-        "the metal at {:?} would have yielded: von Mises stress {stress:.3e} of an elastic one; march with `[time.dual]`",
-        at.solid.particles.x[i].0
+        "the metal at {} would have yielded: von Mises stress {stress:.3e} of an elastic one; march with `[time.dual]`",
+        at.solid.particles.x[i]
     ))
 }

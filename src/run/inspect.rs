@@ -151,6 +151,9 @@ fn look<const D: usize>(case: &Case, input: &Path, out: Option<&Path>) -> Result
     let pilot = pilot::fly(case, input, surface.as_ref(), cloud.n_fluid);
     let pixels = pixels(surface.as_ref(), &cloud.tree.bounds());
     let sizes = &accuracy::sizes(case, surface.as_ref(), particles);
+    let family = accuracy::asked(case).map(|asked| accuracy::family(case, &asked, sizes, D)).unwrap_or_default();
+    let finest = family.last().map(|stage| accuracy::scaled(case, stage.factor));
+    warnings.extend(finest.iter().flat_map(|on| setup::rough(on, surface.as_ref())));
     let sized = Sized { case, particles, sizes, dimension: D, period, pixels, evaluation, pilot };
     let report = CloudReport {
         understood: Understood::of(case, surface.as_ref(), &motions, axes.as_ref(), aeroelastic),

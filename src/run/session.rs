@@ -34,8 +34,7 @@ use crate::geometry::{Surface, dimension};
 use crate::observe::loads::Coefficients;
 use crate::scheme::{Fluid, HasGas};
 use crate::system::{Instant, System};
-use crate::verify::Loops;
-use crate::verify::wall::Wall;
+use crate::verify::{Loops, wall::Wall};
 
 /// How a run ended.
 #[derive(Debug)]
@@ -453,8 +452,9 @@ impl Run<'_> {
         let mut summary = found.summary(log, gas.state, &Spent { clock, solved });
         let solid = stood.solver.system.solid_snapshot(frame, state);
         summary.solid = solid.as_ref().map(|at| SolidEnd::of(at, log));
-        doubts::told(self.case, &summary, log.record.trace.largest(), solid.as_ref()).iter().for_each(|d| log.warn(d));
         summary.cloud = accuracy::scaled(self.case, stood.stage.factor).cloud;
+        let doubts = doubts::told(self.case, (&summary, surface), log.record.trace.largest(), solid.as_ref());
+        doubts.iter().for_each(|d| log.warn(d));
         summary.warnings.clone_from(&log.record.warnings);
         let (field, walls) = (field(self.case, &view), found.walls());
         if let Some(journal) = &log.journal {

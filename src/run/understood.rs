@@ -8,6 +8,7 @@ pub use aeroelastic::{Aeroelastic, UnderstoodFlutter, UnderstoodGaf, UnderstoodS
 use super::look::reference::chord;
 use crate::case::Case;
 use crate::geometry::Surface;
+use crate::math::digits::short;
 use crate::math::{Bounds, Vector};
 use crate::motion::Motions;
 use crate::observe::loads::LoadAxes;
@@ -184,16 +185,6 @@ impl BodyBox {
         let corner = |x: &Vector<D>| x.0.to_vec();
         Self { name: name.to_owned(), min: corner(&bounds.min), max: corner(&bounds.max) }
     }
-}
-
-/// Six digits are enough to recognise a number.
-pub(crate) fn short(value: f64) -> String {
-    let exponent = value.abs().log10().floor();
-    if value == 0.0 || (-4.0..9.0).contains(&exponent) {
-        let rounded: f64 = format!("{value:.5e}").parse().unwrap_or(value);
-        return format!("{rounded}");
-    }
-    format!("{value:.5e}")
 }
 
 fn list(numbers: &[f64]) -> String {

@@ -72,7 +72,7 @@ impl<const D: usize> Transfer<'_, D> {
         let mut inserted = 0;
         for i in (0..cloud.n_fluid).filter(|i| from[*i] == NEW) {
             let value = self.fitted(&self.around_new(i), cloud.spacing[i]).ok_or_else(|| {
-                let problem = format!("nothing is near particle {i} at {:?}, which fills a hole", cloud.x[i].0);
+                let problem = format!("nothing is near particle {i} at {}, which fills a hole", cloud.x[i]);
                 CloudError::Quality(vec![problem])
             })?;
             value.store(&mut u[i * n..(i + 1) * n]);

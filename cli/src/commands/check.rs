@@ -2,6 +2,7 @@
 use std::path::{Path, PathBuf};
 
 use alula::case::{Angle, Case, write};
+use alula::math::digits::short;
 use alula::run;
 use serde_json::{Value, json};
 
@@ -107,7 +108,7 @@ fn points(case: &Case) -> String {
 fn series(values: &[f64]) -> String {
     /// Most values that are written out.
     const MOST: usize = 6;
-    let all = |part: &[f64]| part.iter().map(f64::to_string).collect::<Vec<_>>().join(", ");
+    let all = |part: &[f64]| part.iter().map(|x| short(*x)).collect::<Vec<_>>().join(", ");
     match values {
         [first @ .., last] if values.len() > MOST => format!("{}, ..., {last}", all(&first[..2])),
         _ => all(values),

@@ -1,6 +1,7 @@
 //! `alula run`.
 use std::path::{Path, PathBuf};
 
+use alula::math::digits::fixed;
 use alula::observe::convergence::{Convergence, FamilyEnd};
 use alula::observe::loads::Coefficients;
 use alula::observe::strips::Span;
@@ -310,7 +311,8 @@ fn missed(s: &Summary) -> String {
 const LOADS: &str = "                      CL         CD         CM\n";
 
 fn row(name: &str, c: &Coefficients) -> String {
-    format!("{name:<16}{:9.5}  {:9.5}  {:9.5}\n", c.cl, c.cd, c.cm)
+    let [cl, cd, cm] = [c.cl, c.cd, c.cm].map(|load| fixed(load, 5));
+    format!("{name:<16}{cl:>9}  {cd:>9}  {cm:>9}\n")
 }
 
 /// Loads of a steady state, or at the end of a march without a period; nothing without bodies.
@@ -424,14 +426,14 @@ fn polar(points: &[PolarPoint]) -> String {
         text += &format!("{name:>10}{}", if bars { "        ±" } else { "" });
     }
     for p in points {
-        text += &format!("\n{:5.3} {:8.3}", p.mach, p.alpha_deg);
+        text += &format!("\n{:5.3} {:>8}", p.mach, fixed(p.alpha_deg, 3));
         let Some(c) = &p.loads else {
             text += &format!("  {}", p.reason);
             continue;
         };
         let all = [c.cl, c.cd, c.cm].into_iter().zip(p.loads_error.map_or([None; 3], |e| [e.cl, e.cd, e.cm].map(Some)));
         for (value, bar) in all {
-            text += &format!(" {value:9.5}{}", bar.map_or_else(String::new, |b| format!(" {b:8.5}")));
+            text += &format!(" {:>9}{}", fixed(value, 5), bar.map_or_else(String::new, |b| format!(" {b:8.5}")));
         }
         text += if p.converged { "" } else { "  not converged" };
         text += &if p.is_short() { format!("  {}", p.long_in_words()) } else { String::new() };

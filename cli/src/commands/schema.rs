@@ -1,5 +1,5 @@
 //! `alula schema`.
-use alula::case::{reference_markdown, schema as case_schema};
+use alula::case::{reference_markdown, schema_text};
 
 use crate::arguments;
 use crate::outcome::Outcome;
@@ -10,10 +10,5 @@ pub(crate) fn schema(args: &arguments::Schema) -> Outcome {
     if args.markdown {
         return output::data(&reference_markdown());
     }
-    output::data(&text())
-}
-
-/// The schema as a file.
-pub(super) fn text() -> String {
-    format!("{:#}\n", case_schema())
+    output::data(&schema_text())
 }

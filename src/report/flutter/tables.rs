@@ -1,7 +1,8 @@
 //! Tables of a flutter boundary.
 use super::super::page::{Block, Fact, Table};
-use super::super::words::{grouped, number};
+use super::super::words::{grouped, load, number, plain};
 use super::found::{At, Crossing, Cycle, Doubt, Found, Natural, Share};
+use crate::math::digits::fixed;
 
 /// Names of what crosses, for people.
 pub(super) fn in_words(kind: &str) -> &str {
@@ -20,14 +21,6 @@ pub(super) fn percent(part: Option<f64>) -> String {
     part.filter(|p| p.is_finite()).map_or_else(|| "–".to_owned(), |p| format!("{:.2} %", 100.0 * p))
 }
 
-/// A table without columns in which nothing is told.
-fn told(columns: &[&str], rows: Vec<Vec<String>>) -> Table {
-    let known = |k: &usize| rows.iter().any(|row| row.get(*k).is_some_and(|text| !text.is_empty() && text != "–"));
-    let kept: Vec<usize> = (0..columns.len()).filter(known).collect();
-    let columns: Vec<&str> = kept.iter().map(|k| columns[*k]).collect();
-    Table::new(&columns, rows.iter().map(|row| kept.iter().map(|k| row.get(*k).cloned().unwrap_or_default()).collect()))
-}
-
 /// Half of an error bar that is told.
 const LEAST_BAR: f64 = 1e-6;
 
@@ -35,7 +28,7 @@ const LEAST_BAR: f64 = 1e-6;
 pub(super) fn with_bar(value: f64, bar: Option<f64>) -> String {
     let Some(bar) = bar.filter(|bar| bar.is_finite() && *bar >= LEAST_BAR) else { return number(value) };
     let decimals = (1.0 - bar.log10().floor()).clamp(0.0, 6.0) as usize;
-    format!("{value:.decimals$} ± {bar:.decimals$}").replace('-', "\u{2212}")
+    format!("{} ± {}", fixed(value, decimals), fixed(bar, decimals)).replace('-', "\u{2212}")
 }
 
 fn optional_with_bar(value: Option<f64>, bar: Option<f64>) -> String {
@@ -96,12 +89,14 @@ pub(super) fn crossings(found: &Found) -> Table {
         row
     };
     let all = found.flutter.iter().flat_map(|at| at.crossings.iter().map(move |c| (at, c)));
-    told(&columns, all.map(row).collect())
+    Table::new(&columns, all.map(row))
 }
 
 /// A part in per cent with its sign.
 fn signed(part: f64, decimals: usize) -> String {
-    format!("{:+.decimals$} %", 100.0 * part).replace('-', "\u{2212}")
+    let text = fixed(100.0 * part, decimals);
+    let sign = if text.starts_with('-') { "" } else { "+" };
+    format!("{sign}{text} %").replace('-', "\u{2212}")
 }
 
 fn remarks(c: &Crossing) -> String {
@@ -138,7 +133,7 @@ pub(super) fn doubts(found: &Found) -> Table {
         head.into_iter().chain(ranges).chain([number(d.damping), number(d.damping_coarser)]).collect()
     };
     let all = found.flutter.iter().flat_map(|at| at.doubts.iter().map(move |d| (at, d)));
-    told(&columns, all.map(row).collect())
+    Table::new(&columns, all.map(row))
 }
 
 /// Margins to the design speed; without rows where none is given.
@@ -203,7 +198,7 @@ pub(super) fn cycles(found: &Found) -> Table {
             remark(c.extrapolated),
         ]
     };
-    told(&columns, found.lco.iter().map(row).collect())
+    Table::new(&columns, found.lco.iter().map(row))
 }
 
 /// What marches from limit cycles end with; without rows where there were none.
@@ -248,7 +243,7 @@ pub(super) fn shapes(found: &Found) -> Table {
     let mut columns = vec!["motion", "frequency"];
     columns.extend(first.coordinates.iter().map(String::as_str));
     let row = |(name, frequency, shape): (String, f64, &[Share])| {
-        let share = |s: &Share| format!("{:.4} ∠ {:.1}°", s.amplitude, s.phase_deg).replace('-', "\u{2212}");
+        let share = |s: &Share| format!("{:.4} ∠ {}°", s.amplitude, fixed(s.phase_deg, 1)).replace('-', "\u{2212}");
         [name, number(frequency)].into_iter().chain(shape.iter().map(share)).collect::<Vec<String>>()
     };
     let crossings = found.flutter.iter().filter_map(|at| at.first().map(|c| (at, c)));
@@ -265,19 +260,20 @@ pub(super) fn reference(found: &Found) -> Table {
         true => ["M", "speed, m/s", "density, kg/m³", "dynamic pressure, Pa", "V_f", "V*", "mass ratio"],
         false => ["M", "speed", "density", "dynamic pressure", "V_f", "V*", "mass ratio"],
     };
+    let given = |x: Option<f64>| x.map_or_else(|| "–".to_owned(), plain);
     let row = |at: &At| {
         let r = &at.reference;
         vec![
             at.mach.to_string(),
-            number(r.speed),
-            number(r.density),
-            number(r.dynamic_pressure),
-            optional(r.speed_index),
-            optional(r.reduced_speed),
-            optional(r.mass_ratio),
+            plain(r.speed),
+            plain(r.density),
+            plain(r.dynamic_pressure),
+            given(r.speed_index),
+            given(r.reduced_speed),
+            given(r.mass_ratio),
         ]
     };
-    told(&columns, found.flutter.iter().map(row).collect())
+    Table::new(&columns, found.flutter.iter().map(row))
 }
 
 /// The static equilibria that forces are about; without rows where bodies stay as drawn.
@@ -290,7 +286,7 @@ pub(super) fn equilibria(found: &Found) -> Table {
         let stream = [at.mach.to_string(), number(trim.speed_ratio), number(trim.dynamic_pressure)];
         Some(stream.into_iter().chain(trim.coordinates.iter().map(|q| number(*q))).collect())
     };
-    told(&columns, found.flutter.iter().filter_map(row).collect())
+    Table::new(&columns, found.flutter.iter().filter_map(row))
 }
 
 /// Angle, lengths, what is varied.
@@ -302,9 +298,9 @@ pub(super) fn facts(at: &At) -> Vec<Block> {
     };
     vec![
         Block::Facts(vec![
-            Fact::new("Angle of attack, degrees", number(at.alpha_deg)),
-            Fact::new("Reference chord", number(at.chord)),
-            Fact::new("b", number(at.semichord)),
+            Fact::new("Angle of attack, degrees", plain(at.alpha_deg)),
+            Fact::new("Reference chord", plain(at.chord)),
+            Fact::new("b", plain(at.semichord)),
             Fact::new("Coordinates", at.coordinates.join(", ")),
         ]),
         Block::Text(format!("Varied until a motion neither grows nor decays: {varied}.")),
@@ -344,7 +340,7 @@ pub(super) fn cost(found: &Found) -> Table {
     ];
     let row = |at: &At| {
         let columns = (at.reduced_frequencies.len() * at.coordinates.len()) as f64;
-        let [cl, cd, cm] = at.steady.map(optional);
+        let [cl, cd, cm] = at.steady.map(|c| c.map_or_else(|| "–".to_owned(), load));
         let marches: f64 = found
             .lco
             .iter()
@@ -366,5 +362,5 @@ pub(super) fn cost(found: &Found) -> Table {
             if marches > 0.0 { format!("{marches:.1}") } else { "–".to_owned() },
         ]
     };
-    told(&columns, found.flutter.iter().map(row).collect())
+    Table::new(&columns, found.flutter.iter().map(row))
 }

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use super::super::error::RunError;
 use crate::case::Case;
+use crate::math::digits::{fixed, short};
 use crate::observe::loads::Coefficients;
 use crate::observe::table::{Entry, write_csv};
 
@@ -134,11 +135,11 @@ impl PolarPoint {
 
     /// The point in one line for those who watch.
     pub fn told(&self) -> String {
-        let at = format!("M {}, alpha {} deg", self.mach, self.alpha_deg);
+        let at = format!("M {}, alpha {} deg", short(self.mach), short(self.alpha_deg));
         let bars = self.loads_error;
         let load = |name: &str, value: f64, bar: fn(&Coefficients) -> f64| {
             let bar = bars.as_ref().map_or_else(String::new, |b| format!(" ± {:.5}", bar(b)));
-            format!("{name} {value:.5}{bar}")
+            format!("{name} {}{bar}", fixed(value, 5))
         };
         let loads = self.loads.map(|c| {
             let all = [load("CL", c.cl, |b| b.cl), load("CD", c.cd, |b| b.cd), load("CM", c.cm, |b| b.cm)];
@@ -167,5 +168,19 @@ impl PolarPoint {
         row.push(self.reason.as_str().into());
         row.push(self.long_bars.join(", ").as_str().into());
         row
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_point_is_told_without_zeros_that_have_a_sign() {
+        let case =
+            crate::case::read("[flow]\nmach = 0.5\n[[body]]\nnaca = \"0012\"\n[cloud]\nspacing = 0.1\n", "t").unwrap();
+        let loads = Coefficients { cl: -1e-9, cd: 0.02, cm: -0.3 };
+        let point = PolarPoint { alpha_deg: -0.0, loads: Some(loads), converged: true, ..PolarPoint::of(&case) };
+        assert_eq!(point.told(), "M 0.5, alpha 0 deg: CL 0.00000, CD 0.02000, CM -0.30000");
     }
 }

@@ -17,7 +17,7 @@ pub(crate) use bodies::{bodies, check_equilibrium, described};
 pub(crate) use modes::{judged as judged_modes, told_of as told_of_modes};
 pub(crate) use motion_feasibility::check as check_motion;
 pub(crate) use refinement::{adapted, behind_shocks};
-pub(crate) use sanity::sane;
+pub(crate) use sanity::{rough, sane};
 pub(crate) use size::spec;
 
 use super::accuracy;
@@ -233,8 +233,7 @@ fn at_one_entropy<const D: usize>(fluid: &Fluid<D>) -> Result<(), RunError> {
     let times = fluid.gas.gamma * fluid.gas.entropy(&(fluid.held)(x));
     Err(RunError::Unsupported {
         what: format!(
-            "the entropy p/\u{3c1}^\u{3b3} of the start is {times:.6} times that of the free stream at {:?}, but the gas is isentropic",
-            x.0
+            "the entropy p/\u{3c1}^\u{3b3} of the start is {times:.6} times that of the free stream at {x}, but the gas is isentropic"
         ),
         hint: "start with p/\u{3c1}^\u{3b3} = 1/\u{3b3}, or take out `isentropic`",
     })

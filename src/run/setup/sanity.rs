@@ -1,5 +1,5 @@
 //! What can be written down but makes no sense: told before any particle is placed.
-use super::super::accuracy::ACROSS;
+use super::super::accuracy::{ACROSS, asked};
 use super::super::error::RunError;
 use super::super::look::reference::chord;
 use super::super::recipe;
@@ -37,7 +37,6 @@ pub(crate) fn sane<const D: usize>(
     frequencies(case, motions)?;
     let Some(spacing) = case.cloud.spacing.map(|l| l.0) else { return Ok(Vec::new()) };
     thin_layers(case, surface, spacing)?;
-    let mut notes = Vec::new();
     let fastest = motions.frequencies().last().map(|omega| std::f64::consts::TAU / omega);
     if let Some(period) = fastest.or(motions.period()).filter(|t| *t < SHORTEST_WAVE * spacing) {
         let k = std::f64::consts::PI * chord(case, surface) / (period * case.flow.reference().mach);
@@ -59,15 +58,21 @@ pub(crate) fn sane<const D: usize>(
                     .into(),
             });
         }
-        if spacing > ROUGH * length {
-            notes.push(format!(
-                "body `{name}` is only {:.1} spacings long: its loads are a rough guess",
-                length / spacing
-            ));
-        }
     }
-    notes.extend(doubtful(case, surface));
-    Ok(notes)
+    // the result of a family of clouds is told on one that is not known yet
+    let rough = if asked(case).is_none() { rough(case, surface) } else { Vec::new() };
+    Ok(rough.into_iter().chain(doubtful(case, surface)).collect())
+}
+
+/// Bodies whose loads the spacing of a case leaves a rough guess.
+pub(crate) fn rough<const D: usize>(case: &Case, surface: Option<&Surface<D>>) -> Vec<String> {
+    let (Some(spacing), Some(surface)) = (case.cloud.spacing.map(|l| l.0), surface) else { return Vec::new() };
+    let lengths = (0..surface.bodies.len()).map(|body| surface.bounds_of(body).extent().max_abs() / spacing);
+    let told = |(length, name): (f64, &String)| {
+        let words = || format!("body `{name}` is only {length:.1} spacings long: its loads are a rough guess");
+        (length * ROUGH < 1.0).then(words)
+    };
+    lengths.zip(&surface.bodies).filter_map(told).collect()
 }
 
 /// Refuses frequencies that have no common one where a period is needed, and fewer harmonics of it than the motion has.
@@ -218,6 +223,8 @@ mod tests {
         let coarse = told(&format!("{stream}[cloud]\nspacing = 5\n")).unwrap_err();
         assert!(coarse.contains("`cloud.spacing` is 5, but body `body-1` is only 1 long"), "{coarse}");
         assert!(told(&format!("{stream}[cloud]\nspacing = 0.2\n")).unwrap()[0].contains("5.0 spacings long"));
+        let family = format!("{stream}[cloud]\nspacing = 0.2\n[accuracy]\n");
+        assert_eq!(told(&family), Ok(Vec::new()), "which cloud its result is told on is not known yet");
         let swing = |period: &str| {
             format!(
                 "{stream}[motion]\nplunge = 0.01\nperiod = {period}\n[time]\nharmonics = 1\n[cloud]\nspacing = 0.03\n"
