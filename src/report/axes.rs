@@ -5,6 +5,7 @@ use serde::Serialize;
 
 use super::canvas::{Anchor, Area, Canvas, Pen, Text};
 use super::colour::Colour;
+use super::font::{self, OTHER_FONTS};
 
 /// Size of tick labels in pixels.
 pub(crate) const TICK_SIZE: f64 = 12.0;
@@ -12,6 +13,10 @@ pub(crate) const TICK_SIZE: f64 = 12.0;
 pub(crate) const LABEL_SIZE: f64 = 13.5;
 /// Size of titles in pixels.
 pub(crate) const TITLE_SIZE: f64 = 16.0;
+/// Smallest size of a title that is long.
+const LEAST_TITLE: f64 = 9.0;
+/// Room beside a title.
+pub(super) const TITLE_MARGIN: f64 = 12.0;
 /// From the plot to the label beside it: room for tick labels of eight characters.
 const LABEL_ROOM: f64 = 62.0;
 /// Pixels from one tick to the next, at least: beside one another, above one another.
@@ -188,6 +193,27 @@ impl Frame {
 
 pub(crate) fn tick_text(label: String, at: [f64; 2], anchor: Anchor) -> Text {
     Text { anchor, colour: Colour::GREY, ..Text::new(label, at, TICK_SIZE) }
+}
+
+/// Draws a title from `at` on, inside the sheet: one too long begins farther left, is drawn smaller, and is cut at the very last.
+pub(super) fn draw_title(canvas: &mut Canvas, title: &str, at: [f64; 2]) {
+    let room = canvas.width - 2.0 * TITLE_MARGIN;
+    let size = (TITLE_SIZE * room / title_width(title)).clamp(LEAST_TITLE, TITLE_SIZE);
+    let wide = |text: &str| title_width(text) * size / TITLE_SIZE;
+    let mut text = title.to_owned();
+    while wide(&text) > room && text.pop().is_some() {
+        if wide(&text) <= room - wide("...") {
+            text = text.trim_end().to_owned() + "...";
+            break;
+        }
+    }
+    let left = at[0].min(canvas.width - TITLE_MARGIN - wide(&text)).max(TITLE_MARGIN);
+    canvas.text(Text { bold: true, ..Text::new(text, [left, at[1]], size) });
+}
+
+/// Width of a title, whatever the font.
+pub(super) fn title_width(title: &str) -> f64 {
+    OTHER_FONTS * TITLE_SIZE * font::width(title)
 }
 
 #[cfg(test)]

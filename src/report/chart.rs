@@ -5,10 +5,10 @@
 use serde::Serialize;
 
 use super::ReportError;
-use super::axes::{Frame, Scale, TITLE_SIZE};
+use super::axes::{Frame, Scale, draw_title, title_width};
 use super::canvas::{Area, Canvas, LIFTED, Pen, Text};
 use super::colour::{CURVES, Colour};
-use super::font;
+use super::font::{self, OTHER_FONTS};
 
 /// From the borders of a sheet to the plot.
 const LEFT: f64 = 82.0;
@@ -21,8 +21,6 @@ const TITLE_LINE: f64 = 28.0;
 const LEGEND_SIZE: f64 = 12.5;
 /// Height of a row of the legend.
 const LEGEND_ROW: f64 = 18.0;
-/// Letters of other fonts are wider than ours, at most about this much.
-pub(super) const OTHER_FONTS: f64 = 1.15;
 /// Room for the mark of an entry of the legend, and between one entry and the next.
 const LEGEND_MARK: f64 = 26.0;
 const LEGEND_GAP: f64 = 16.0;
@@ -173,8 +171,7 @@ impl Chart {
     /// The chart on a canvas; in the layer `curves`, series and items correspond.
     pub fn draw(&self, size: Size) -> Canvas {
         let (mut canvas, frame) = (Canvas::new(size.width, size.height), self.frame(size));
-        let title = Text::new(&self.title, [LEFT, TITLE_LINE], TITLE_SIZE);
-        canvas.text(Text { bold: true, ..title });
+        draw_title(&mut canvas, &self.title, [LEFT, TITLE_LINE]);
         for entry in self.legend(size) {
             entry.draw(&mut canvas);
         }
@@ -223,7 +220,7 @@ impl Chart {
             self.series.iter().zip(CURVES.iter().cycle()).filter(|(s, _)| !s.name.is_empty()).collect();
         named.retain(|(series, _)| self.series.len() > 1 || series.name != self.y.label);
         let all = named.iter().map(|(series, _)| width(series) + LEGEND_GAP).sum::<f64>() - LEGEND_GAP;
-        let beside = LEFT + OTHER_FONTS * font::width(&self.title) * TITLE_SIZE + LEGEND_GAP <= right - all;
+        let beside = LEFT + title_width(&self.title) + LEGEND_GAP <= right - all;
         let mut next = if beside { [right - all, TITLE_LINE] } else { [LEFT, TITLE_LINE + LEGEND_ROW] };
         let entry = |(series, colour): (_, &Colour)| {
             if next[0] > LEFT && next[0] + width(series) > right + 1e-6 {

@@ -135,6 +135,9 @@ const GLYPHS: &[(char, f64, &str)] = &[
 /// Drawn for a character without a glyph.
 const MISSING: (char, f64, &str) = ('\u{fffd}', 9.0, "M 1.4 0 L 1.4 14 L 7.6 14 L 7.6 0 L 1.4 0");
 
+/// Letters of other fonts are wider than ours, at most about this much.
+pub(super) const OTHER_FONTS: f64 = 1.15;
+
 /// Width of `text` in ems.
 pub(crate) fn width(text: &str) -> f64 {
     text.chars().map(|c| glyph(c).1 + TRACKING).sum::<f64>() / EM

@@ -7,10 +7,11 @@
 use std::path::Path;
 
 use super::canvas::{Area, Canvas, Pen, Text};
-use super::chart::{Axis, Chart, Marks, OTHER_FONTS, Series, Size};
+use super::chart::{Axis, Chart, Marks, Series, Size};
 use super::colour::Colour;
 use super::conditions::conditions as of_stream;
 use super::files::{Csv, LOADS, RunFolder};
+use super::font::OTHER_FONTS;
 use super::page::{Block, Fact};
 use super::surface_views::title;
 use super::words::{grouped, number};
