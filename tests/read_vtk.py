@@ -55,7 +55,7 @@ def told(data):
 
 
 def unit(array):
-    return array.GetInformation().Get(array.UNITS_LABEL())
+    return (array.GetInformation().Get(array.UNITS_LABEL()) or "").strip()
 
 
 def tells(name, data, conditions):

@@ -310,11 +310,8 @@ impl Document {
 
     fn array_with_unit(&mut self, (name, unit): (&str, Option<&str>), kind: &str, components: usize, bytes: Vec<u8>) {
         // on one line with the array, as readers of lines want it
-        let key = |unit| {
-            format!(
-                r#"<InformationKey name="UNITS_LABEL" location="vtkDataArray"><Value>{unit}</Value></InformationKey>"#
-            )
-        };
+        let key =
+            |unit| format!(r#"<InformationKey name="UNITS_LABEL" location="vtkDataArray">{unit}</InformationKey>"#);
         let _ = writeln!(
             self.xml,
             r#"<DataArray type="{kind}" Name="{}" NumberOfComponents="{components}" format="appended" offset="{}">{}</DataArray>"#,
@@ -448,7 +445,7 @@ mod tests {
         let codes = |text: &str| text.bytes().map(|b| b.to_string()).collect::<Vec<_>>().join(" ");
         assert!(text.contains(&format!(">{} 0</Array>", codes("α & <b>"))));
         assert!(text.contains(&format!("NumberOfTuples=\"1\" format=\"ascii\">{} 0</Array>", codes("pressure [Pa]"))));
-        assert_eq!(text.matches("<Value>Pa</Value>").count(), 1);
+        assert_eq!(text.matches(">Pa</InformationKey>").count(), 1);
         assert_eq!(words(&bytes, "pressure")[3], 1.0f64.to_bits());
     }
 

@@ -31,7 +31,7 @@ impl FieldFile {
         let start = bytes.windows(MARKER.len()).position(|w| w == MARKER)?;
         let xml = std::str::from_utf8(&bytes[..start]).ok()?;
         let part = |line: &str, key: &str| Some(line.split_once(&format!("{key}=\""))?.1.split_once('"')?.0.to_owned());
-        let unit = |line: &str| Some(line.split_once("<Value>")?.1.split_once("</Value>")?.0.to_owned());
+        let unit = |line: &str| Some(line.split_once("\"vtkDataArray\">")?.1.split_once("</")?.0.to_owned());
         let array = |line: &str| {
             Some((part(line, "Name")?, part(line, "offset")?.parse().ok()?, unit(line).unwrap_or_default()))
         };
