@@ -77,7 +77,7 @@ class Result:
         """Arrays over all N particles.
 
         `positions`, `velocity` (N, 2 or 3); `vorticity` (N,) in the plane, else (N, 3); `density`, `pressure`, `mach`, `cp`,
-        `temperature` (over that of the free stream), `total_pressure`, `total_pressure_loss`, `entropy`, `spacing`, `volume`, `level`,
+        `temperature` (K; without units over that of the free stream), `total_pressure`, `total_pressure_loss`, `entropy`, `spacing`, `volume`, `level`,
         `kind` (0 fluid, 1 wall, 2 outer) (N,).
         """
     @property

@@ -5,24 +5,33 @@
     python tests/read_vtk.py FILE.vtu FILE.vtp FILE.pvd ...
     python tests/read_vtk.py --plane RUN
     python tests/read_vtk.py --space RUN
+    python tests/read_vtk.py --half RUN
+    python tests/read_vtk.py --solid RUN
+    python tests/read_vtk.py --state RUN
 
 Every message of the reader counts as a failure; the exit status is 1 when any file fails. With `--plane` the field of a plane
 run is used as in ParaView: its triangles cover the domain without the bodies, a contour and a slice are cut, and the
 pressure on the wall is integrated along its lines, which must give the forces of `loads.csv`. With `--space` the same is done with
-the tetrahedra of a run in space and the triangles of its walls, and a streamline is followed past the body.
+the tetrahedra of a run in space and the triangles of its walls, and a streamline is followed past the body. With `--half` a half
+model is cut along its plane of symmetry, y = 0. With `--solid` the cells of a structure alone fill its volume. With `--state` the
+script that a run leaves for ParaView is run on a stand-in for ParaView: all that it shows is there.
 """
 import csv
+import runpy
 import sys
+import types
 import xml.etree.ElementTree as ElementTree
 from pathlib import Path
 
 from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
 from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import VTK_TETRA, VTK_TRIANGLE, vtkPlane, vtkPolyData
-from vtkmodules.vtkFiltersCore import vtkContourFilter, vtkCutter, vtkMassProperties, vtkProbeFilter
+from vtkmodules.vtkFiltersCore import vtkContourFilter, vtkCutter, vtkMassProperties, vtkProbeFilter, vtkTriangleFilter
 from vtkmodules.vtkFiltersFlowPaths import vtkStreamTracer
+from vtkmodules.vtkFiltersGeneral import vtkWarpVector
 from vtkmodules.vtkFiltersModeling import vtkSelectEnclosedPoints
 from vtkmodules.vtkFiltersSources import vtkPointSource
+from vtkmodules.vtkFiltersVerdict import vtkCellSizeFilter
 from vtkmodules.vtkIOXML import vtkXMLPolyDataReader, vtkXMLUnstructuredGridReader
 import numpy
 
@@ -36,6 +45,32 @@ def describe(label, array):
     if bad < values.size:
         line += f", {numpy.nanmin(values):.9g} .. {numpy.nanmax(values):.9g}"
     print(line + (f", {bad} not finite" if bad else ""))
+
+
+def told(data):
+    """Field data by name: numbers and texts."""
+    field = data.GetFieldData()
+    arrays = (field.GetAbstractArray(k) for k in range(field.GetNumberOfArrays()))
+    return {a.GetName(): [a.GetValue(i) for i in range(a.GetNumberOfValues())] for a in arrays}
+
+
+def unit(array):
+    return (array.GetInformation().Get(array.UNITS_LABEL()) or "").strip()
+
+
+def tells(name, data, conditions):
+    """Whether a file tells these conditions, a unit of every array twice over, and what is seen first."""
+    own, points = told(data), data.GetPointData()
+    units = dict(text.rstrip("]").split(" [", 1) for text in own.get("units", []))
+    arrays = [points.GetArray(k) for k in range(points.GetNumberOfArrays())]
+    without = [a.GetName() for a in arrays if not unit(a) or units.get(a.GetName()) != unit(a)]
+    missing = [key for key in [*conditions, "title", "unit system"] if key not in own]
+    first = points.GetScalars() and points.GetScalars().GetName()
+    print(f"  {name} tells {own}; coloured by {first}")
+    for what, names in (("has no unit of", without), ("does not tell", missing)):
+        if names:
+            print(f"  {name} {what} {', '.join(names)}")
+    return bool(first) and not without and not missing
 
 
 def read_data(path):
@@ -129,8 +164,14 @@ def off(run, wall, force):
     return errors
 
 
+# What every file of a gas tells of its case.
+CONDITIONS = ["Mach number", "alpha [deg]", "TimeValue"]
+
+
 def check_plane(run):
     field, wall = opened(run / "field.vtu"), opened(run / "surface.vtp")
+    if not all([tells("field.vtu", field, CONDITIONS), tells("surface.vtp", wall, CONDITIONS)]):
+        return False
     if field.GetCellType(0) != VTK_TRIANGLE:
         print(f"{run.name}: the cells of the field are no triangles")
         return False
@@ -175,6 +216,84 @@ def check_plane(run):
             and abs(cut - expected) < 1e-6 * expected and errors[0] < FORCE and errors[1] < PANELS)
 
 
+# Area of a slice along a plane of symmetry: triangles end at the middles of the panels next to it.
+SLICE = 0.02
+
+
+def area(polygons):
+    mass = vtkMassProperties()
+    triangles = vtkTriangleFilter()
+    triangles.SetInputData(polygons)
+    mass.SetInputConnection(triangles.GetOutputPort())
+    mass.Update()
+    return mass.GetSurfaceArea()
+
+
+def sliced(data, y):
+    plane, cutter = vtkPlane(), vtkCutter()
+    plane.SetOrigin(0.0, y, 0.0)
+    plane.SetNormal(0.0, 1.0, 0.0)
+    cutter.SetInputData(data)
+    cutter.SetCutFunction(plane)
+    cutter.Update()
+    return cutter.GetOutput()
+
+
+def check_half(run):
+    """The plane of symmetry y = 0 of a half model: as large as the plane next to it, and nothing flows through it."""
+    field, hull = opened(run / "field.vtu"), opened(run / "hull.vtp")
+    slices = [sliced(field, y) for y in (0.0, 0.02 * field.GetBounds()[3])]
+    areas = [area(cut) for cut in slices]
+    rim = sliced(hull, 0.0).GetNumberOfCells()
+    across = numpy.abs(array(slices[0], "velocity")[:, 1]).max() if areas[0] else numpy.inf
+    speed = numpy.linalg.norm(array(field, "velocity"), axis=1).max()
+    kinds = numpy.unique(array(field, "kind"))
+    print(f"{run.name}: slice y = 0 of {areas[0]:.6g}, beside it {areas[1]:.6g}, {rim} pieces of the walls; speed across it {across:.2g}")
+    return bool(areas[0] and abs(areas[0] / areas[1] - 1.0) < SLICE and rim and across < 1e-3 * speed and 3.0 in kinds)
+
+
+def check_solid(run):
+    """Cells of a structure: they fill what particles fill at rest, and are told and coloured."""
+    good = True
+    for path in sorted([*run.glob("solid*.vtu"), *run.glob("mode-*.vtu")]):
+        data = opened(path)
+        good = tells(path.name, data, []) and good
+        quality = vtkCellSizeFilter()
+        at_rest = vtkWarpVector()
+        at_rest.SetInputData(data)
+        at_rest.SetInputArrayToProcess(0, 0, 0, 0, "displacement")
+        # modes are written where the structure is at rest
+        at_rest.SetScaleFactor(-1.0 if path.name.startswith("solid") else 0.0)
+        quality.SetInputConnection(at_rest.GetOutputPort())
+        quality.Update()
+        sizes = quality.GetOutput().GetCellData()
+        filled = sum(vtk_to_numpy(sizes.GetArray(name)).sum() for name in ("Area", "Volume"))
+        kind = data.GetCellType(0)
+        if path.name == "solid.vtu":
+            whole = array(data, "volume").sum()
+            good = good and abs(filled / whole - 1.0) < 0.02
+            print(f"  cells fill {filled:.6g} of {whole:.6g}")
+        good = good and kind in (VTK_TRIANGLE, VTK_TETRA) and filled > 0.0
+    return good
+
+
+def check_state(run):
+    """The script that shows a run, on a stand-in for ParaView."""
+    stand_in = types.ModuleType("paraview.simple")
+    exec(compile((Path(__file__).parent / "paraview_stand_in.py").read_text(), "stand-in", "exec"), stand_in.__dict__)
+    package = types.ModuleType("paraview")
+    package.simple = stand_in
+    arguments, sys.argv = sys.argv, ["paraview-state.py"]
+    sys.modules.update({"paraview": package, "paraview.simple": stand_in})
+    try:
+        runpy.run_path(str(run / "paraview-state.py"), run_name="__main__")
+    finally:
+        sys.argv = arguments
+    for shown in stand_in.SHOWN:
+        print(f"  {run.name} shows {shown.name} by {shown.colour}: {shown.data.GetNumberOfCells()} cells")
+    return bool(stand_in.SHOWN) and all(shown.colour for shown in stand_in.SHOWN)
+
+
 # Part of the places in the gas that are in no tetrahedron, and of those in the body that are in one.
 PLACES = 1e-3
 # Wall forces from the triangles between wall particles, as above: a body of flat triangles is smaller than a round one.
@@ -205,6 +324,8 @@ def covered(field, wall, middle, reach, count=20000):
 
 def check_space(run):
     field, wall = opened(run / "field.vtu"), opened(run / "surface.vtp")
+    if not all([tells("field.vtu", field, CONDITIONS), tells("hull.vtp", opened(run / "hull.vtp"), CONDITIONS)]):
+        return False
     if field.GetCellType(0) != VTK_TETRA or not wall.GetNumberOfPolys():
         print(f"{run.name}: the cells of the field are no tetrahedra, or those of the walls no triangles")
         return False
@@ -273,7 +394,7 @@ def main(names):
     if not names:
         print(__doc__)
         return 2
-    checks = {"--plane": check_plane, "--space": check_space}
+    checks = {"--plane": check_plane, "--space": check_space, "--half": check_half, "--solid": check_solid, "--state": check_state}
     if names[0] in checks:
         bad = [run for run in names[1:] if not checks[names[0]](Path(run))]
         for run in bad:

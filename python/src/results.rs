@@ -41,7 +41,7 @@ pub(crate) struct Result {
     #[pyo3(get)]
     history: Py<PyDict>,
     /// Arrays over all particles: `positions` (N, 2 or 3), `velocity` and `vorticity` (N, 2 or 3; (N,) for the vorticity of a plane
-    /// flow), `density`, `pressure`, `mach`, `cp`, `temperature`, `total_pressure`, `total_pressure_loss`, `entropy`, `spacing`,
+    /// flow), `density`, `pressure`, `mach`, `cp`, `temperature` (K; without units over that of the free stream), `total_pressure`, `total_pressure_loss`, `entropy`, `spacing`,
     /// `volume`, `level`, `kind` (0 fluid, 1 wall, 2 outer) (N,).
     #[pyo3(get)]
     fields: Py<PyDict>,

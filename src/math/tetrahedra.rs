@@ -14,6 +14,8 @@ use super::rotation::cross;
 const MOVED: f64 = 1e-6;
 /// Six volumes over the cube of the longest side below which a tetrahedron is flat.
 const FLAT: f64 = 1e-4;
+/// Cosine of the angle between the normal at a point of a surface and the way to a corner beyond which that is behind the surface.
+const BEHIND: f64 = -0.5;
 
 /// Tetrahedra between `points`, which are `spacing` apart; the last corner is on the left of the first three, so that volumes are
 /// positive. None where there are fewer than four points or a coordinate is not a number.
@@ -23,7 +25,30 @@ pub fn tetrahedralise(points: &[Vector<3>], spacing: &[f64]) -> Vec<[u32; 4]> {
     all
 }
 
-/// The same with all that are flat, so that every face inside the hull of the points belongs to two of them.
+/// The same without tetrahedra on the outer side of a surface or through it: `normal` is that of a point on it, pointing inwards, and
+/// `None` for all others.
+pub fn tetrahedralise_within(
+    points: &[Vector<3>],
+    spacing: &[f64],
+    normal: impl Fn(u32) -> Option<Vector<3>>,
+) -> Vec<[u32; 4]> {
+    let mut all = tetrahedralise(points, spacing);
+    all.retain(|corners| {
+        let middle = corners.iter().fold(Vector::ZERO, |sum, i| sum + points[*i as usize]) * 0.25;
+        let on_surface = || corners.iter().filter_map(|i| Some((points[*i as usize], normal(*i)?)));
+        let beside = |i: &u32| {
+            on_surface().all(|(x, n)| {
+                let way = points[*i as usize] - x;
+                normal(*i).is_some() || way.dot(&n) >= BEHIND * way.norm()
+            })
+        };
+        let front = on_surface().map(|(x, n)| (middle - x).unit().dot(&n)).sum::<f64>();
+        (on_surface().count() < 4 || front > 0.0) && corners.iter().all(beside)
+    });
+    all
+}
+
+/// The same as [`tetrahedralise`] with all that are flat, so that every face inside the hull of the points belongs to two of them.
 pub fn delaunay(points: &[Vector<3>], spacing: &[f64]) -> Vec<[u32; 4]> {
     let moved = moved(points, spacing);
     if points.len() < 4 || !moved.iter().flatten().all(|x| x.is_finite()) {

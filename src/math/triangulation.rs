@@ -41,6 +41,25 @@ pub fn triangulate(points: &[Vector<2>], edges: &[[u32; 2]]) -> Vec<[u32; 3]> {
     built.map_or_else(|_| Vec::new(), corners)
 }
 
+/// The same without triangles on the outer side of `edges`, which bound what is to be covered: `normal` is that of a point on them,
+/// pointing inwards, and `None` for all others.
+pub fn triangulate_within(
+    points: &[Vector<2>],
+    edges: &[[u32; 2]],
+    normal: impl Fn(u32) -> Option<Vector<2>>,
+) -> Vec<[u32; 3]> {
+    let mut all = triangulate(points, edges);
+    all.retain(|corners| match corners.map(&normal) {
+        [Some(a), Some(b), Some(c)] => {
+            let at = corners.map(|i| points[i as usize]);
+            let middle = at.iter().fold(Vector::ZERO, |sum, x| sum + *x) * (1.0 / 3.0);
+            at.iter().zip([a, b, c]).map(|(x, n)| (middle - *x).unit().dot(&n)).sum::<f64>() >= 0.0
+        }
+        _ => true,
+    });
+    all
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -58,6 +77,19 @@ mod tests {
         assert_eq!(triangles.len(), 2 * 19 * 19);
         assert!(triangles.iter().all(|t| area(&points, t) > 0.0));
         assert!((triangles.iter().map(|t| area(&points, t)).sum::<f64>() - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn what_edges_bound_is_covered_and_no_more() {
+        // an L of three squares; the notch at the upper right is outside
+        let at = [[0, 0], [1, 0], [2, 0], [2, 1], [1, 1], [1, 2], [0, 2], [0, 1]];
+        let points = at.map(|[x, y]| Vector([f64::from(x), f64::from(y)]));
+        let edges: Vec<[u32; 2]> = (0..8).map(|k| [k, (k + 1) % 8]).collect();
+        let inwards = [[1, 1], [0, 1], [-1, 1], [-1, -1], [-1, -1], [-1, -1], [1, -1], [1, 0]];
+        let normal = |i: u32| Some(Vector(inwards[i as usize].map(f64::from)).unit());
+        let found = triangulate_within(&points, &edges, normal);
+        assert!((found.iter().map(|t| area(&points, t)).sum::<f64>() - 3.0).abs() < 1e-12, "{found:?}");
+        assert_eq!(triangulate_within(&points, &edges, |_| None).len(), triangulate(&points, &edges).len());
     }
 
     #[test]

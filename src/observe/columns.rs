@@ -37,7 +37,10 @@ enum Quantity {
     Frequency,
     Pressure,
     Density,
+    Temperature,
     HeatFlux,
+    /// Of a particle: an area in the plane.
+    Volume,
     Force,
     Moment,
     Energy,
@@ -214,6 +217,31 @@ const GLOSSARY: &[(&str, Quantity, &str)] = &[
     ("z", Q::Length, "place along z"),
 ];
 
+/// Arrays of field files that no table has, or that hold something else there.
+const ARRAYS: &[(&str, Quantity, &str)] = &[
+    ("area_vector", Q::Area, "area of the panel times its normal"),
+    ("body", Q::Number, "number of the body, from 0"),
+    ("condition", Q::Number, "condition number of the fit around the particle"),
+    ("cp_amplitude", Q::Number, "amplitude of the unsteady pressure coefficient in the motion as displaced"),
+    ("cp_phase_deg", Q::Degrees, "phase by which the unsteady pressure coefficient is ahead of the largest coordinate"),
+    ("cp_unsteady", Q::Number, "unsteady pressure coefficient at this phase, without that of the steady flow"),
+    ("displacement", Q::Length, "displacement from the place at rest"),
+    ("entropy", Q::Number, "p/rho^gamma over that of the free stream, less 1"),
+    ("kind", Q::Number, "0 fluid, 1 wall, 2 border of the domain, 3 on a plane of symmetry"),
+    ("level", Q::Number, "logarithm to base 2 of the spacing"),
+    ("material", Q::Number, "number of the material, from 0"),
+    ("normal", Q::Number, "unit normal, into the gas"),
+    ("plastic_strain", Q::Number, "equivalent plastic strain"),
+    ("spacing", Q::Length, "distance between particles"),
+    ("temperature", Q::Temperature, "static temperature"),
+    ("total_pressure", Q::Pressure, "p (1 + (gamma - 1)/2 M^2)^(gamma/(gamma - 1))"),
+    ("total_pressure_loss", Q::Number, "1 less total pressure over that of the free stream"),
+    ("velocity", Q::Speed, "velocity"),
+    ("volume", Q::Volume, "volume of the particle; area in the plane"),
+    ("von_mises_stress", Q::Pressure, "von Mises stress"),
+    ("vorticity", Q::Rate, "curl of the velocity, by the fits of the scheme; zero where these have no slope"),
+];
+
 /// Columns whose names are made: what they end in, what they hold, and what that is of the rest of the name.
 const ENDINGS: [(&str, Quantity, &str); 6] = [
     ("_error", Q::Number, "error bar, in gaf.csv the radius of a circle in the complex plane, of"),
@@ -226,7 +254,7 @@ const ENDINGS: [(&str, Quantity, &str); 6] = [
 
 impl Quantity {
     /// The unit as in UCUM, in a case without units in those of the solver: `L` is the unit of the geometry, `a` the sound speed and
-    /// `rho` the density of the free stream.
+    /// `rho` the density of the free stream, `T` its temperature.
     fn unit(self, scale: Scale) -> &'static str {
         let space = scale.dimension == 3;
         let pick = |plane, in_space| if space { in_space } else { plane };
@@ -254,6 +282,10 @@ impl Quantity {
             (Q::Pressure, false) => "rho.a2",
             (Q::Density, true) => "kg/m3",
             (Q::Density, false) => "rho",
+            (Q::Temperature, true) => "K",
+            (Q::Temperature, false) => "T",
+            (Q::Volume, true) => pick("m2", "m3"),
+            (Q::Volume, false) => pick("L2", "L3"),
             (Q::HeatFlux, true) => "W/m2",
             (Q::HeatFlux, false) => "rho.a3",
             (Q::Force, true) => pick("N/m", "N"),
@@ -297,6 +329,23 @@ fn known(table: &str, name: &str, structures: &[StructureNames]) -> Option<(Quan
         ending.map(|(base, quantity, about)| (quantity, format!("{about} `{base}`")))
     };
     if table == structure::FILE { exact.or_else(|| Some(coordinate(name, structures))) } else { exact.or_else(made) }
+}
+
+/// Unit of an array of a field file, of the mean, a harmonic or a component of one as well; `None` where nothing is known of it.
+pub fn unit_of_array(name: &str, scale: Scale) -> Option<&'static str> {
+    let find = |name: &str| ARRAYS.iter().chain(GLOSSARY).find(|(n, ..)| *n == name).map(|(_, q, _)| q.unit(scale));
+    let part = |name| ["_mean", "_re", "_im", "_x", "_y", "_z"].iter().find_map(|end| str::strip_suffix(name, end));
+    let mut base = name;
+    loop {
+        match (find(base), part(base)) {
+            (Some(unit), _) => return Some(unit).filter(|unit| !unit.is_empty()),
+            // `pressure_2_re`: the number of the harmonic goes with its part
+            (None, Some(shorter)) => {
+                base = shorter.trim_end_matches(|c: char| c.is_ascii_digit()).trim_end_matches('_')
+            }
+            (None, None) => return None,
+        }
+    }
 }
 
 /// A coordinate of a structure, its rate, or the force of the gas on it.
@@ -397,8 +446,16 @@ pub fn reference_markdown() -> String {
     let endings: Vec<String> =
         ENDINGS.iter().map(|(end, _, about)| format!("`…{end}` ({about} what stands before)")).collect();
     page += &endings.join(", ");
-    page + ". `structure.csv` has three columns for each coordinate: itself (`rad` or `m`; the coordinate of a mode is a number), its rate \
-            `…_rate`, and the force of the gas on it `…_load`.\n"
+    page += ". `structure.csv` has three columns for each coordinate: itself (`rad` or `m`; the coordinate of a mode is a number), its rate \
+             `…_rate`, and the force of the gas on it `…_load`.\n";
+    page += "\n## Arrays of field files\n\nThe files for ParaView follow the same convention: SI units where the free stream has units, \
+             else those of the free stream, of which `T` is the temperature. The unit of every array stands in the file, in the field data \
+             `units`. Structures alone are in SI units. Arrays that tables have too (`density`, `pressure`, `mach`, `cp`, …) are those of \
+             above.\n\n| array | what | unit | without units |\n|---|---|---|---|\n";
+    for (name, q, about) in ARRAYS {
+        page += &format!("| `{name}` | {about} | {} | {} |\n", unit(*q, true), unit(*q, false));
+    }
+    page
 }
 
 #[cfg(test)]
@@ -409,6 +466,29 @@ mod tests {
     fn names_are_sorted_and_stand_once() {
         let names: Vec<&str> = GLOSSARY.iter().map(|(name, ..)| *name).collect();
         assert!(names.windows(2).all(|pair| pair[0] < pair[1]), "{names:?}");
+        let names: Vec<&str> = ARRAYS.iter().map(|(name, ..)| *name).collect();
+        assert!(names.windows(2).all(|pair| pair[0] < pair[1]), "{names:?}");
+    }
+
+    #[test]
+    fn arrays_have_units_by_one_convention() {
+        let unit = |name: &str, dimensional: bool| unit_of_array(name, Scale { dimensional, dimension: 3 });
+        for (name, with, without) in [
+            ("temperature", "K", "T"),
+            ("pressure", "Pa", "rho.a2"),
+            ("total_pressure", "Pa", "rho.a2"),
+            ("velocity", "m/s", "a"),
+            ("vorticity", "1/s", "a/L"),
+            ("volume", "m3", "L3"),
+            ("cp", "1", "1"),
+            ("body", "1", "1"),
+            ("pressure_mean", "Pa", "rho.a2"),
+            ("velocity_y_12_im", "m/s", "a"),
+            ("displacement_x_1_re", "m", "L"),
+        ] {
+            assert_eq!((unit(name, true), unit(name, false)), (Some(with), Some(without)), "{name}");
+        }
+        assert_eq!(unit("nonsense_3_re", true), None);
     }
 
     #[test]

@@ -18,4 +18,4 @@ pub mod vtk_read;
 
 pub use checkpoint::{Array, Checkpoint, CheckpointError, Field};
 pub use table::{FileError, History, write_atomic};
-pub use vtk::{Cells, Column, Facets, VtkError};
+pub use vtk::{About, Cells, Column, Facets, VtkError};

@@ -15,6 +15,9 @@ use crate::case::read_regular;
 /// How the name of a file begins and ends while it is being written.
 pub(crate) const UNFINISHED: (&str, &str) = (".alula-", ".tmp");
 
+/// What is finished of a flutter boundary that is not: it goes away at the end, so that no page points at it.
+pub(crate) const KEPT: &str = "flutter-kept.json";
+
 /// What can go wrong with a table.
 #[derive(Debug, thiserror::Error)]
 pub enum FileError {

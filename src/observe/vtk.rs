@@ -7,6 +7,9 @@
 //! File Formats", XML formats, compressed appended data.
 //!
 //! Vectors of two components are padded with a zero, for VTK draws arrows of three components only.
+//!
+//! What is true of the whole file stands before its points as field data: conditions of the case by name and unit, and the unit of
+//! every array, which each array carries as well (`UNITS_LABEL` of VTK).
 use std::fmt::Write as _;
 use std::io::{self, Write};
 use std::path::Path;
@@ -14,6 +17,7 @@ use std::path::Path;
 use flate2::Compression;
 use flate2::write::ZlibEncoder;
 
+use super::columns::{Scale, unit_of_array};
 use super::table::{FileError, write_atomic};
 
 /// Bytes of an array that are compressed together; readers unpack piece by piece.
@@ -28,6 +32,21 @@ pub struct Column<'a> {
     pub components: usize,
     /// The numbers, point after point.
     pub values: &'a [f64],
+}
+
+/// What a file tells of its case besides its arrays.
+#[derive(Clone, Debug, Default)]
+pub struct About {
+    /// Units of the case, by which the unit of each array is told; none are told without.
+    pub scale: Option<Scale>,
+    /// Conditions of the case: name with unit, and value.
+    pub numbers: Vec<(String, f64)>,
+    /// Texts, by name.
+    pub words: Vec<(&'static str, String)>,
+    /// Array that a viewer colours by first, where the file has it.
+    pub scalars: &'static str,
+    /// Array that a viewer takes for arrows and streamlines first, where the file has it.
+    pub vectors: &'static str,
 }
 
 /// What ties points together in a `.vtu` file.
@@ -88,13 +107,14 @@ pub enum VtkError {
     },
 }
 
-/// Writes particles as a `.vtu` file, one vertex per particle.
-pub fn write_points(path: &Path, points: &[[f64; 3]], columns: &[Column]) -> Result<(), VtkError> {
-    write_cells(path, points, Cells::Vertices, columns)
-}
-
 /// Writes points joined by cells as a `.vtu` file, with columns at the points.
-pub fn write_cells(path: &Path, points: &[[f64; 3]], cells: Cells, columns: &[Column]) -> Result<(), VtkError> {
+pub fn write_cells(
+    path: &Path,
+    about: &About,
+    points: &[[f64; 3]],
+    cells: Cells,
+    columns: &[Column],
+) -> Result<(), VtkError> {
     let (kind, joined) = match cells {
         Cells::Vertices => (1_u8, Joined::vertices(points.len())),
         Cells::Lines(cells) => (3, Joined::of(cells.iter().map(|c| &c[..]))),
@@ -105,10 +125,11 @@ pub fn write_cells(path: &Path, points: &[[f64; 3]], cells: Cells, columns: &[Co
     };
     joined.check(points.len())?;
     let mut file = Document::new("UnstructuredGrid");
+    file.field_data(about, columns);
     let n_cells = joined.ends.len();
     let _ = writeln!(file.xml, r#"<Piece NumberOfPoints="{}" NumberOfCells="{n_cells}">"#, points.len());
     file.points(points);
-    file.columns("PointData", points.len(), columns)?;
+    file.columns(about, points.len(), columns)?;
     file.xml.push_str("<Cells>\n");
     file.joined(&joined);
     file.array("types", "UInt8", 1, vec![kind; n_cells]);
@@ -116,13 +137,13 @@ pub fn write_cells(path: &Path, points: &[[f64; 3]], cells: Cells, columns: &[Co
     file.write(path)
 }
 
-/// Writes a surface as a `.vtp` file, with columns at the points and at the facets.
+/// Writes a surface as a `.vtp` file, with columns at the points.
 pub fn write_surface(
     path: &Path,
+    about: &About,
     points: &[[f64; 3]],
     facets: Facets,
-    at_points: &[Column],
-    at_facets: &[Column],
+    columns: &[Column],
 ) -> Result<(), VtkError> {
     let (section, joined) = match facets {
         Facets::Vertices => ("Verts", Joined::vertices(points.len())),
@@ -131,6 +152,7 @@ pub fn write_surface(
     };
     joined.check(points.len())?;
     let mut file = Document::new("PolyData");
+    file.field_data(about, columns);
     let count = |name: &str| if name == section { joined.ends.len() } else { 0 };
     let _ = writeln!(
         file.xml,
@@ -141,8 +163,7 @@ pub fn write_surface(
         count("Polys")
     );
     file.points(points);
-    file.columns("PointData", points.len(), at_points)?;
-    file.columns("CellData", joined.ends.len(), at_facets)?;
+    file.columns(about, points.len(), columns)?;
     let _ = writeln!(file.xml, "<{section}>");
     file.joined(&joined);
     let _ = writeln!(file.xml, "</{section}>\n</Piece>\n</PolyData>");
@@ -217,6 +238,38 @@ impl Document {
         Self { xml, arrays: Vec::new(), offset: 0 }
     }
 
+    /// Conditions, texts and units, as ASCII: they are few, and people look for them in the file too.
+    fn field_data(&mut self, about: &About, columns: &[Column]) {
+        let unit = |c: &Column| Some(format!("{} [{}]", c.name, unit_of_array(c.name, about.scale?)?));
+        let units: Vec<String> = columns.iter().filter_map(unit).collect();
+        self.xml.push_str("<FieldData>\n");
+        for (name, value) in about.numbers.iter().filter(|(_, value)| value.is_finite()) {
+            let name = escape(name);
+            let _ = writeln!(
+                self.xml,
+                r#"<DataArray type="Float64" Name="{name}" NumberOfTuples="1" format="ascii">{value:?}</DataArray>"#
+            );
+        }
+        for (name, text) in &about.words {
+            self.texts(name, std::slice::from_ref(text));
+        }
+        if !units.is_empty() {
+            self.texts("units", &units);
+        }
+        self.xml.push_str("</FieldData>\n");
+    }
+
+    /// Texts as VTK writes them: their bytes as numbers, each text with a zero behind it.
+    fn texts(&mut self, name: &str, all: &[String]) {
+        let bytes = all.iter().flat_map(|text| text.bytes().filter(|b| *b != 0).chain([0]));
+        let bytes = bytes.map(|b| b.to_string()).collect::<Vec<_>>().join(" ");
+        let (name, n) = (escape(name), all.len());
+        let _ = writeln!(
+            self.xml,
+            r#"<Array type="String" Name="{name}" NumberOfTuples="{n}" format="ascii">{bytes}</Array>"#
+        );
+    }
+
     fn points(&mut self, points: &[[f64; 3]]) {
         self.xml.push_str("<Points>\n");
         self.array("Points", "Float64", 3, points.iter().flatten().flat_map(|x| x.to_le_bytes()).collect());
@@ -229,8 +282,14 @@ impl Document {
         self.array("offsets", "Int64", 1, cells.ends.iter().flat_map(|i| i.to_le_bytes()).collect());
     }
 
-    fn columns(&mut self, section: &str, items: usize, columns: &[Column]) -> Result<(), VtkError> {
-        let _ = writeln!(self.xml, "<{section}>");
+    /// The arrays at the points, and which of them are seen first.
+    fn columns(&mut self, about: &About, items: usize, columns: &[Column]) -> Result<(), VtkError> {
+        let first = |kind: &str, name: &str| match columns.iter().any(|c| c.name == name) {
+            true => format!(" {kind}=\"{}\"", escape(name)),
+            false => String::new(),
+        };
+        let seen = first("Scalars", about.scalars) + &first("Vectors", about.vectors);
+        let _ = writeln!(self.xml, "<PointData{seen}>");
         for column in columns {
             let Column { name, components, values } = *column;
             if components == 0 || items.checked_mul(components) != Some(values.len()) {
@@ -238,18 +297,27 @@ impl Document {
             }
             let padding: &[f64] = if components == 2 { &[0.0] } else { &[] };
             let bytes = values.chunks(components).flat_map(|v| v.iter().chain(padding)).flat_map(|v| v.to_le_bytes());
-            self.array(name, "Float64", components + padding.len(), bytes.collect());
+            let unit = about.scale.and_then(|scale| unit_of_array(name, scale));
+            self.array_with_unit((name, unit), "Float64", components + padding.len(), bytes.collect());
         }
-        let _ = writeln!(self.xml, "</{section}>");
+        self.xml.push_str("</PointData>\n");
         Ok(())
     }
 
     fn array(&mut self, name: &str, kind: &str, components: usize, bytes: Vec<u8>) {
+        self.array_with_unit((name, None), kind, components, bytes);
+    }
+
+    fn array_with_unit(&mut self, (name, unit): (&str, Option<&str>), kind: &str, components: usize, bytes: Vec<u8>) {
+        // on one line with the array, as readers of lines want it
+        let key =
+            |unit| format!(r#"<InformationKey name="UNITS_LABEL" location="vtkDataArray">{unit}</InformationKey>"#);
         let _ = writeln!(
             self.xml,
-            r#"<DataArray type="{kind}" Name="{}" NumberOfComponents="{components}" format="appended" offset="{}"/>"#,
+            r#"<DataArray type="{kind}" Name="{}" NumberOfComponents="{components}" format="appended" offset="{}">{}</DataArray>"#,
             escape(name),
-            self.offset
+            self.offset,
+            unit.map(key).unwrap_or_default()
         );
         let packed = pack(&bytes);
         self.offset += packed.len() as u64;
@@ -295,6 +363,10 @@ mod tests {
     use super::*;
     use std::io::Read;
 
+    fn bare() -> About {
+        About::default()
+    }
+
     const SQUARE: [[f64; 3]; 4] = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.0, 1.0, 0.0], [0.0, 1.0, 0.0]];
 
     /// The values of an array of 64-bit words, by its name.
@@ -324,7 +396,7 @@ mod tests {
         let points: Vec<[f64; 3]> = (0..40_000).map(|i| [f64::from(i), 0.5, 0.0]).collect();
         let velocity: Vec<f64> = (0..80_000).map(f64::from).collect();
         let columns = [Column { name: "u & v", components: 2, values: &velocity }];
-        write_points(&path, &points, &columns).unwrap();
+        write_cells(&path, &bare(), &points, Cells::Vertices, &columns).unwrap();
         let bytes = std::fs::read(&path).unwrap();
         let back = words(&bytes, "u &amp; v");
         assert_eq!(back.len(), 120_000, "several pieces, padded to three components");
@@ -339,7 +411,7 @@ mod tests {
         let path = folder.path().join("surface.vtp");
         let cp = Column { name: "cp", components: 1, values: &[0.0, 1.0, 2.0, 3.0] };
         let chain = vec![vec![0, 1, 2, 3, 0]];
-        write_surface(&path, &SQUARE, Facets::Polylines(&chain), &[cp], &[]).unwrap();
+        write_surface(&path, &bare(), &SQUARE, Facets::Polylines(&chain), &[cp]).unwrap();
         assert_eq!(words(&std::fs::read(&path).unwrap(), "connectivity"), [0, 1, 2, 3, 0]);
         let series = folder.path().join("field.pvd");
         write_collection(&series, &[(0.0, "field_0.vtu"), (0.5, "field_1.vtu")]).unwrap();
@@ -348,14 +420,43 @@ mod tests {
         assert_eq!(read, [(0.0, "field_0.vtu".to_owned()), (0.5, "field_1.vtu".to_owned())]);
     }
 
+    fn told() -> About {
+        About {
+            scale: Some(Scale { dimensional: true, dimension: 2 }),
+            numbers: vec![("alpha [deg]".into(), 1.25), ("Reynolds number".into(), f64::NAN)],
+            words: vec![("title", "α & <b>".into())],
+            scalars: "pressure",
+            vectors: "velocity",
+        }
+    }
+
+    #[test]
+    fn conditions_units_and_what_is_seen_first_stand_in_the_file() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("field.vtu");
+        let pressure = Column { name: "pressure", components: 1, values: &[1.0; 4] };
+        let other = Column { name: "what nobody knows", components: 1, values: &[2.0; 4] };
+        write_cells(&path, &told(), &SQUARE, Cells::Vertices, &[pressure, other]).unwrap();
+        let bytes = std::fs::read(&path).unwrap();
+        let text = String::from_utf8_lossy(&bytes);
+        assert!(text.contains("<PointData Scalars=\"pressure\">"), "no array called velocity");
+        assert!(text.contains("Name=\"alpha [deg]\" NumberOfTuples=\"1\" format=\"ascii\">1.25<"));
+        assert!(!text.contains("Reynolds"), "what is not a number is not told");
+        let codes = |text: &str| text.bytes().map(|b| b.to_string()).collect::<Vec<_>>().join(" ");
+        assert!(text.contains(&format!(">{} 0</Array>", codes("α & <b>"))));
+        assert!(text.contains(&format!("NumberOfTuples=\"1\" format=\"ascii\">{} 0</Array>", codes("pressure [Pa]"))));
+        assert_eq!(text.matches(">Pa</InformationKey>").count(), 1);
+        assert_eq!(words(&bytes, "pressure")[3], 1.0f64.to_bits());
+    }
+
     #[test]
     fn mismatched_columns_and_cells_are_refused() {
         let path = Path::new("never-written.vtu");
         let short = Column { name: "cp", components: 1, values: &[0.0] };
-        let message = write_points(path, &SQUARE, &[short]).unwrap_err().to_string();
+        let message = write_cells(&path, &bare(), &SQUARE, Cells::Vertices, &[short]).unwrap_err().to_string();
         assert_eq!(message, "column `cp` has 1 values; 4 items of 1 components need 4");
         let cells = [[0, 1, 2], [0, 2, 4]];
-        let message = write_cells(path, &SQUARE, Cells::Triangles(&cells), &[]).unwrap_err().to_string();
+        let message = write_cells(path, &bare(), &SQUARE, Cells::Triangles(&cells), &[]).unwrap_err().to_string();
         assert_eq!(message, "cell 1 refers to point 4, but there are only 4");
         assert!(!path.exists());
     }
@@ -364,27 +465,27 @@ mod tests {
     #[test]
     fn files_for_the_real_vtk() {
         let Some(folder) = std::env::var_os("ALULA_VTK_OUT") else { return };
-        let folder = Path::new(&folder);
+        let (folder, about) = (Path::new(&folder), told());
         let values: Vec<f64> = (0..50_000).map(|i| (f64::from(i) * 0.01).sin()).collect();
         let points: Vec<[f64; 3]> = (0..50_000).map(|i| [f64::from(i), f64::from(i % 7), 0.0]).collect();
         let columns = [
             Column { name: "pressure", components: 1, values: &values },
             Column { name: "velocity", components: 2, values: &[values.clone(), values.clone()].concat() },
         ];
-        write_points(&folder.join("points.vtu"), &points, &columns).unwrap();
-        write_points(&folder.join("empty.vtu"), &[], &[]).unwrap();
+        write_cells(&folder.join("points.vtu"), &bare(), &points, Cells::Vertices, &columns).unwrap();
+        write_cells(&folder.join("empty.vtu"), &bare(), &[], Cells::Vertices, &[]).unwrap();
         let cp = Column { name: "cp", components: 1, values: &[0.0, 1.0, f64::NAN, 3.0] };
-        write_cells(&folder.join("quads.vtu"), &SQUARE, Cells::Quads(&[[0, 1, 2, 3]]), &[cp]).unwrap();
-        write_cells(&folder.join("lines.vtu"), &SQUARE, Cells::Lines(&[[0, 1], [1, 2]]), &[cp]).unwrap();
+        write_cells(&folder.join("quads.vtu"), &about, &SQUARE, Cells::Quads(&[[0, 1, 2, 3]]), &[cp]).unwrap();
+        write_cells(&folder.join("lines.vtu"), &about, &SQUARE, Cells::Lines(&[[0, 1], [1, 2]]), &[cp]).unwrap();
         let cube: Vec<[f64; 3]> = (0..8).map(|k| [f64::from(k % 2), f64::from(k / 2 % 2), f64::from(k / 4)]).collect();
-        write_cells(&folder.join("tetrahedra.vtu"), &cube, Cells::Tetrahedra(&[[0, 1, 2, 4]]), &[]).unwrap();
-        write_cells(&folder.join("voxels.vtu"), &cube, Cells::Voxels(&[[0, 1, 2, 3, 4, 5, 6, 7]]), &[]).unwrap();
-        write_surface(&folder.join("chain.vtp"), &SQUARE, Facets::Polylines(&[vec![0, 1, 2, 3, 0]]), &[cp], &[])
+        write_cells(&folder.join("tetrahedra.vtu"), &about, &cube, Cells::Tetrahedra(&[[0, 1, 2, 4]]), &[]).unwrap();
+        write_cells(&folder.join("voxels.vtu"), &about, &cube, Cells::Voxels(&[[0, 1, 2, 3, 4, 5, 6, 7]]), &[])
             .unwrap();
-        let tag = Column { name: "tag", components: 1, values: &[1.0, 2.0] };
+        let chain = [vec![0, 1, 2, 3, 0]];
+        write_surface(&folder.join("chain.vtp"), &about, &SQUARE, Facets::Polylines(&chain), &[cp]).unwrap();
         let triangles = Facets::Triangles(&[[0, 1, 2], [0, 2, 3]]);
-        write_surface(&folder.join("triangles.vtp"), &SQUARE, triangles, &[cp], &[tag]).unwrap();
-        write_surface(&folder.join("vertices.vtp"), &SQUARE, Facets::Vertices, &[cp], &[]).unwrap();
+        write_surface(&folder.join("triangles.vtp"), &about, &SQUARE, triangles, &[cp]).unwrap();
+        write_surface(&folder.join("vertices.vtp"), &about, &SQUARE, Facets::Vertices, &[cp]).unwrap();
         write_collection(&folder.join("series.pvd"), &[(0.0, "points.vtu")]).unwrap();
     }
 }

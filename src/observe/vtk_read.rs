@@ -14,8 +14,8 @@ const LONGEST: u64 = 8 << 30;
 /// A field file in memory; its arrays are unpacked when they are asked for.
 pub struct FieldFile {
     bytes: Vec<u8>,
-    /// Name and offset of each array of 64-bit numbers.
-    arrays: Vec<(String, usize)>,
+    /// Name, offset and unit, empty where none is told, of each array of 64-bit numbers.
+    arrays: Vec<(String, usize, String)>,
     /// Where offsets count from.
     start: usize,
 }
@@ -31,16 +31,27 @@ impl FieldFile {
         let start = bytes.windows(MARKER.len()).position(|w| w == MARKER)?;
         let xml = std::str::from_utf8(&bytes[..start]).ok()?;
         let part = |line: &str, key: &str| Some(line.split_once(&format!("{key}=\""))?.1.split_once('"')?.0.to_owned());
-        let array = |line: &str| Some((part(line, "Name")?, part(line, "offset")?.parse().ok()?));
+        let unit = |line: &str| Some(line.split_once("\"vtkDataArray\">")?.1.split_once("</")?.0.to_owned());
+        let array = |line: &str| {
+            Some((part(line, "Name")?, part(line, "offset")?.parse().ok()?, unit(line).unwrap_or_default()))
+        };
+        // field data stand in the head itself
+        let appended = |line: &&str| line.contains("format=\"appended\"");
         let wide =
             |line: &&str| ["Float64", "Int64"].iter().any(|kind| line.contains(&format!("<DataArray type=\"{kind}\"")));
-        let arrays = xml.lines().filter(wide).map(array).collect::<Option<_>>()?;
+        let arrays = xml.lines().filter(appended).filter(wide).map(array).collect::<Option<_>>()?;
         Some(Self { arrays, start: start + MARKER.len(), bytes })
     }
 
     /// Numbers of the array called `name`.
     pub fn values(&self, name: &str) -> Option<Vec<f64>> {
         Some(self.words(name)?.into_iter().map(f64::from_bits).collect())
+    }
+
+    /// Unit of the array called `name`; `None` where the file tells none.
+    pub fn unit(&self, name: &str) -> Option<&str> {
+        let (.., unit) = self.arrays.iter().find(|(n, ..)| n == name)?;
+        (!unit.is_empty()).then_some(unit)
     }
 
     /// Corners of its cells, `None` where they are not triangles.
@@ -53,7 +64,7 @@ impl FieldFile {
     }
 
     fn words(&self, name: &str) -> Option<Vec<u64>> {
-        let (_, offset) = self.arrays.iter().find(|(n, _)| n == name)?;
+        let (_, offset, _) = self.arrays.iter().find(|(n, ..)| n == name)?;
         let block = self.bytes.get(self.start.checked_add(*offset)?..)?;
         let word = |k: usize| Some(u64::from_le_bytes(block.get(8 * k..8 * k + 8)?.try_into().ok()?) as usize);
         let pieces = word(0)?;
@@ -76,7 +87,8 @@ impl FieldFile {
 
 #[cfg(test)]
 mod tests {
-    use super::super::vtk::{Cells, Column, write_cells, write_points};
+    use super::super::columns::Scale;
+    use super::super::vtk::{About, Cells, Column, write_cells};
     use super::*;
 
     #[test]
@@ -86,14 +98,22 @@ mod tests {
         // more than a piece
         let points: Vec<[f64; 3]> = (0..40_000).map(|k| [f64::from(k), 0.5, -f64::from(k).sqrt()]).collect();
         let density: Vec<f64> = points.iter().map(|x| x[2].sin()).collect();
-        write_points(&path, &points, &[Column { name: "density", components: 1, values: &density }]).unwrap();
+        let about = About {
+            scale: Some(Scale { dimensional: false, dimension: 3 }),
+            numbers: vec![("density [rho]".into(), 1.0)],
+            words: vec![("title", "density".into())],
+            ..About::default()
+        };
+        let column = Column { name: "density", components: 1, values: &density };
+        write_cells(&path, &about, &points, Cells::Vertices, &[column]).unwrap();
         let file = FieldFile::open(&path).unwrap();
         assert_eq!(file.points().unwrap(), points);
         assert_eq!(file.values("density").unwrap(), density);
         assert!(file.values("pressure").is_none());
+        assert_eq!((file.unit("density"), file.unit("Points")), (Some("rho"), None));
         assert!(file.triangles().is_none(), "vertices");
         let triangles = folder.path().join("triangles.vtu");
-        write_cells(&triangles, &points[..4], Cells::Triangles(&[[0, 1, 2], [3, 2, 1]]), &[]).unwrap();
+        write_cells(&triangles, &about, &points[..4], Cells::Triangles(&[[0, 1, 2], [3, 2, 1]]), &[]).unwrap();
         assert_eq!(FieldFile::open(&triangles).unwrap().triangles().unwrap(), [[0, 1, 2], [3, 2, 1]]);
         let whole = std::fs::read(&path).unwrap();
         std::fs::write(&path, &whole[..whole.len() / 2]).unwrap();

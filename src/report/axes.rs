@@ -5,6 +5,7 @@ use serde::Serialize;
 
 use super::canvas::{Anchor, Area, Canvas, Pen, Text};
 use super::colour::Colour;
+use super::font::{self, OTHER_FONTS};
 
 /// Size of tick labels in pixels.
 pub(crate) const TICK_SIZE: f64 = 12.0;
@@ -12,6 +13,8 @@ pub(crate) const TICK_SIZE: f64 = 12.0;
 pub(crate) const LABEL_SIZE: f64 = 13.5;
 /// Size of titles in pixels.
 pub(crate) const TITLE_SIZE: f64 = 16.0;
+/// Room beside a title.
+pub(super) const TITLE_MARGIN: f64 = 12.0;
 /// From the plot to the label beside it: room for tick labels of eight characters.
 const LABEL_ROOM: f64 = 62.0;
 /// Pixels from one tick to the next, at least: beside one another, above one another.
@@ -188,6 +191,19 @@ impl Frame {
 
 pub(crate) fn tick_text(label: String, at: [f64; 2], anchor: Anchor) -> Text {
     Text { anchor, colour: Colour::GREY, ..Text::new(label, at, TICK_SIZE) }
+}
+
+/// Draws a title from `at` on, inside the sheet: one too long begins farther left, is drawn smaller, and is cut at the very last.
+pub(super) fn draw_title(canvas: &mut Canvas, title: &str, at: [f64; 2]) {
+    let text = Text { bold: true, ..Text::new(title, at, TITLE_SIZE) }.within(canvas.width - 2.0 * TITLE_MARGIN);
+    let wide = title_width(&text.text) * text.size / TITLE_SIZE;
+    let left = at[0].min(canvas.width - TITLE_MARGIN - wide).max(TITLE_MARGIN);
+    canvas.text(Text { at: [left, at[1]], ..text });
+}
+
+/// Width of a title, whatever the font.
+pub(super) fn title_width(title: &str) -> f64 {
+    OTHER_FONTS * TITLE_SIZE * font::width(title)
 }
 
 #[cfg(test)]

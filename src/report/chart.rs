@@ -5,7 +5,7 @@
 use serde::Serialize;
 
 use super::ReportError;
-use super::axes::{Frame, Scale, TITLE_SIZE};
+use super::axes::{Frame, Scale, draw_title, title_width};
 use super::canvas::{Area, Canvas, Dash, LIFTED, Pen, Text};
 use super::colour::{CURVES, Colour};
 use super::font::{self, OTHER_FONTS};
@@ -196,8 +196,7 @@ impl Chart {
     /// The chart on a canvas; in the layer `curves`, series and items correspond.
     pub fn draw(&self, size: Size) -> Canvas {
         let (mut canvas, frame) = (Canvas::new(size.width, size.height), self.frame(size));
-        let title = Text::new(&self.title, [LEFT, TITLE_LINE], TITLE_SIZE);
-        canvas.text(Text { bold: true, ..title }.within(size.width - LEFT - RIGHT));
+        draw_title(&mut canvas, &self.title, [LEFT, TITLE_LINE]);
         for entry in self.legend(size) {
             entry.draw(&mut canvas);
         }
@@ -245,7 +244,7 @@ impl Chart {
         let mut named: Vec<_> = self.series.iter().enumerate().filter(|(_, s)| !s.name.is_empty()).collect();
         named.retain(|(_, series)| self.series.len() > 1 || series.name != self.y.label);
         let all = named.iter().map(|(_, series)| width(series) + LEGEND_GAP).sum::<f64>() - LEGEND_GAP;
-        let beside = LEFT + OTHER_FONTS * font::width(&self.title) * TITLE_SIZE + LEGEND_GAP <= right - all;
+        let beside = LEFT + title_width(&self.title) + LEGEND_GAP <= right - all;
         let mut next = if beside { [right - all, TITLE_LINE] } else { [LEFT, TITLE_LINE + LEGEND_ROW] };
         let entry = |(k, series): (usize, _)| {
             if next[0] > LEFT && next[0] + width(series) > right + 1e-6 {

@@ -204,13 +204,13 @@ pub(super) fn period_of(harmonics: &Value) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::observe::vtk::{Column, write_collection, write_points};
+    use crate::observe::vtk::{About, Cells, Column, write_cells, write_collection};
 
     fn write(folder: &Path, name: &str, columns: &[(&str, [f64; 3])], shift: f64) {
         let points = [[0.0, 0.0, 0.0], [1.0 + shift, 0.0, 0.0], [0.0, 1.0, 0.0]];
         let columns: Vec<Column<'_>> =
             columns.iter().map(|(name, values)| Column { name, components: 1, values }).collect();
-        write_points(&folder.join(name), &points, &columns).unwrap();
+        write_cells(&folder.join(name), &About::default(), &points, Cells::Vertices, &columns).unwrap();
     }
 
     fn run(folder: &Path, time: f64, density: f64, shift: f64) -> RunFolder {

@@ -359,6 +359,18 @@ mod tests {
     }
 
     #[test]
+    fn the_page_points_at_what_stays() {
+        let folder = tempfile::tempdir().unwrap();
+        fill(folder.path());
+        std::fs::write(folder.path().join(crate::observe::table::KEPT), "{}").unwrap();
+        let page = std::fs::read_to_string(write_report(folder.path()).unwrap()).unwrap();
+        std::fs::remove_file(folder.path().join(crate::observe::table::KEPT)).unwrap();
+        let links: Vec<&str> = page.split("href=\"./").skip(1).filter_map(|rest| rest.split('"').next()).collect();
+        assert!(links.contains(&"flutter.json"));
+        links.iter().for_each(|link| assert!(folder.path().join(link).is_file(), "{link}"));
+    }
+
+    #[test]
     fn the_surface_gets_amplitudes_and_phases() {
         let folder = tempfile::tempdir().unwrap();
         fill(folder.path());

@@ -2,7 +2,7 @@
 //!
 //! Nothing here knows the solver: pictures are made of rasters, points and triangles, the page is made of the files in
 //! the run folder. [`canvas`] is a sheet that prints itself as SVG or PNG; [`chart`], [`picture`] and [`surface`] draw on
-//! it; `page` is what pages are made of, set by the templates in `templates/`; `overview` gathers everything into `report.html`, `flutter` does so for boundaries;
+//! it; `page` is what pages are made of, set by the templates in `templates/`; `overview` gathers everything into `report.html`, `flutter` does so for boundaries, `solids` for structures alone;
 //! [`verification`] lists claims and whether they hold.
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -31,6 +31,7 @@ pub mod picture;
 mod polar;
 mod pressure;
 mod sections;
+mod solids;
 mod span;
 mod stations;
 mod stream_lines;

@@ -12,7 +12,7 @@ use super::files::{LOADS, Load, RunFolder};
 use super::page::{Block, Card, Fact, Page, Section, Status};
 use super::sections;
 use super::words::{grouped, number, with_bar};
-use super::{ReportError, flutter, grid, last_period, periodic, polar, pressure, span, structure, write_file};
+use super::{ReportError, flutter, grid, last_period, periodic, polar, pressure, solids, span, structure, write_file};
 
 /// Writes `report.html` into a run folder from the files that are there, and gives its path.
 pub fn write_report(run: &Path) -> Result<PathBuf, ReportError> {
@@ -20,24 +20,28 @@ pub fn write_report(run: &Path) -> Result<PathBuf, ReportError> {
     std::fs::read_dir(run).map_err(|source| ReportError::Io { action: "read", path: run.to_path_buf(), source })?;
     let path = run.join("report.html");
     let folder = RunFolder::new(run);
-    let page = if flutter::is_flutter(&folder) { flutter::page(&folder) } else { report(&folder) };
+    let summary = folder.json("summary.json").unwrap_or_default();
+    let page = match (flutter::is_flutter(&folder), solids::is_solid(&summary)) {
+        (true, _) => flutter::page(&folder),
+        (_, true) => solids::page(&folder, &summary),
+        _ => report(&folder, &summary),
+    };
     write_file(&path, page.html()?.as_bytes())?;
     Ok(path)
 }
 
-fn report(run: &RunFolder) -> Page {
-    let summary = run.json("summary.json").unwrap_or_default();
+fn report(run: &RunFolder, summary: &Value) -> Page {
     // a harmonic balance has none
     let none = summary.get("ledger").is_some_and(Value::is_null);
     let ledger = if none { Ok(Vec::new()) } else { sections::ledger(run) };
-    let bare = has_no_bodies(&summary);
+    let bare = has_no_bodies(summary);
     let of_bodies = |chapter: fn(&RunFolder) -> Result<Vec<Block>, String>| match bare {
         true => Ok(Vec::new()),
         false => chapter(run),
     };
-    let loads = polar::last_point(&summary).map_or("Loads".to_owned(), |point| format!("Loads at {point}"));
+    let loads = polar::last_point(summary).map_or("Loads".to_owned(), |point| format!("Loads at {point}"));
     let sections = [
-        Section::new("warnings", "Warnings", Ok(warnings(&summary))),
+        Section::new("warnings", "Warnings", Ok(warnings(summary))),
         Section::new("polar", "Polar", Ok(polar::polar(run))),
         Section::new("loads", &loads, of_bodies(sections::loads)),
         Section::new("span", "Load along the span", Ok(span::span(run))),
@@ -55,21 +59,21 @@ fn report(run: &RunFolder) -> Page {
         Section::new("files", "Files", Ok(sections::files(run))),
     ];
     Page {
-        title: case_title(run, &summary),
-        status: Some(status(&summary)),
-        cards: if bare { Vec::new() } else { cards(run, &summary) },
+        title: case_title(run, summary),
+        status: Some(status(summary)),
+        cards: if bare { Vec::new() } else { cards(run, summary) },
         sections: sections.into_iter().filter(|s| !s.blocks.is_empty()).collect(),
         ..Page::default()
     }
 }
 
 /// What makes the results doubtful.
-fn warnings(summary: &Value) -> Vec<Block> {
+pub(super) fn warnings(summary: &Value) -> Vec<Block> {
     let told = summary.get("warnings").and_then(Value::as_array).into_iter().flatten();
     told.filter_map(Value::as_str).map(|text| Block::Text(text.to_owned())).collect()
 }
 
-fn case_title(run: &RunFolder, summary: &Value) -> String {
+pub(super) fn case_title(run: &RunFolder, summary: &Value) -> String {
     let case = run.text("case.toml").ok().and_then(|text| text.parse::<toml::Table>().ok());
     let title = case.as_ref().and_then(|c| c.get("title")).and_then(|t| t.as_str());
     let title = title.or_else(|| summary.get("case").and_then(Value::as_str)).filter(|t| !t.trim().is_empty());

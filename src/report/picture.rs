@@ -1,9 +1,10 @@
 //! Flow pictures: a field on a raster of pixels, and the particles themselves.
 use super::ReportError;
-use super::axes::{Frame, Scale, TITLE_SIZE, tick_text};
+use super::axes::{Frame, Scale, TITLE_MARGIN, draw_title, tick_text, title_width};
 use super::canvas::{Anchor, Area, Bitmap, Canvas, LIFTED, Pen, Text};
 use super::colour::{CURVES, Colormap, Colour};
 use super::contour;
+use super::font::{self, OTHER_FONTS};
 use super::stream_lines::Directions;
 use crate::math::{Bounds, Vector};
 
@@ -11,6 +12,10 @@ use crate::math::{Bounds, Vector};
 const LONG_SIDE: f64 = 820.0;
 /// A plot area is never higher than this.
 const TALL_SIDE: f64 = 640.0;
+/// Room for the colour bar and its numbers; from a plot to the bar, and size of the quantity above it.
+const BAR: f64 = 110.0;
+const TO_BAR: f64 = 20.0;
+const QUANTITY_SIZE: f64 = 13.0;
 const CONTOUR: Pen = Pen::new(Colour::rgb(62, 68, 78), 0.7);
 const STREAM: Pen = Pen::new(Colour::rgb(62, 68, 78), 0.8);
 /// Pixels of PNG per unit of canvas, at most.
@@ -105,7 +110,7 @@ pub fn raster_png(raster: &Raster, style: &PictureStyle) -> Result<Vec<u8>, Repo
         return Err(ReportError::Shape { what: "a raster", found: raster.values.len(), expected: expected.max(1) });
     }
     let raster = &if style.outlines.is_empty() { raster.clone() } else { bled(raster) };
-    let (mut canvas, frame) = sheet(raster.window, style.title)?;
+    let (mut canvas, frame) = sheet(raster.window, style.title, style.quantity)?;
     let range = style.range.unwrap_or_else(|| robust_range(&raster.values));
     canvas.rectangle(frame.area, Some(Colour::BODY), None);
     canvas.picture(coloured(raster, style.map, range), frame.area);
@@ -129,14 +134,14 @@ pub fn raster_png(raster: &Raster, style: &PictureStyle) -> Result<Vec<u8>, Repo
 
 /// Draws the particles inside `window`, interface particles with their normals, as PNG.
 pub fn scatter_png(scatter: &Scatter, window: Bounds<2>, title: &str) -> Result<Vec<u8>, ReportError> {
-    let found = match scatter.dots {
-        Dots::Level(levels) => levels.len(),
-        Dots::Value { values, .. } => values.len(),
+    let (found, quantity) = match scatter.dots {
+        Dots::Level(levels) => (levels.len(), ""),
+        Dots::Value { values, quantity, .. } => (values.len(), quantity),
     };
     if found != scatter.points.len() {
         return Err(ReportError::Shape { what: "the colour of particles", found, expected: scatter.points.len() });
     }
-    let (mut canvas, frame) = sheet(window, title)?;
+    let (mut canvas, frame) = sheet(window, title, quantity)?;
     let seen = Seen::of(scatter.points, window, &frame);
     canvas.layer("particles", Some(frame.area));
     draw_outlines(&mut canvas, &frame, scatter.outlines);
@@ -177,17 +182,20 @@ impl Seen {
 }
 
 /// A sheet with a title and a frame of the proportions of `window`.
-fn sheet(window: Bounds<2>, title: &str) -> Result<(Canvas, Frame), ReportError> {
+fn sheet(window: Bounds<2>, title: &str, quantity: &str) -> Result<(Canvas, Frame), ReportError> {
     let extent = window.extent();
     if !(extent[0] > 0.0 && extent[1] > 0.0 && extent.is_finite()) {
         return Err(ReportError::Window { min: window.min.0, max: window.max.0 });
     }
     let scale = (LONG_SIDE / extent[0]).min(TALL_SIDE / extent[1]);
     // A very slender window is stretched rather than drawn as a line.
-    let area = Area { x: 82.0, y: 46.0, width: (extent[0] * scale).max(120.0), height: (extent[1] * scale).max(120.0) };
-    let mut canvas = Canvas::new(area.x + area.width + 110.0, area.y + area.height + 62.0);
-    let room = canvas.width - area.x;
-    canvas.text(Text { bold: true, ..Text::new(title, [area.x, 28.0], TITLE_SIZE) }.within(room));
+    let [width, height] = [0, 1].map(|d| (extent[d] * scale).max(120.0));
+    // a title that reaches above the colour bar stands higher than what the bar is of
+    let long = title_width(title) > width;
+    let area = Area { x: 82.0, y: if long { 66.0 } else { 46.0 }, width, height };
+    let least = title_width(title).min(LONG_SIDE) + 2.0 * TITLE_MARGIN;
+    let mut canvas = Canvas::new((area.x + width + bar_room(quantity)).max(least), area.y + height + 62.0);
+    draw_title(&mut canvas, title, [area.x, 28.0]);
     let scale = |d: usize| Scale { from: window.min[d], to: window.max[d], log: false };
     Ok((canvas, Frame { area, x: scale(0), y: scale(1) }))
 }
@@ -338,10 +346,15 @@ fn draw_interface(
     canvas.discs(centres, radius.max(1.2), Some(colour), None);
 }
 
+/// Room right of a plot for a colour bar and the name of its quantity.
+pub(super) fn bar_room(quantity: &str) -> f64 {
+    BAR.max(TO_BAR + OTHER_FONTS * QUANTITY_SIZE * font::width(quantity) + TITLE_MARGIN)
+}
+
 /// A labelled colour bar to the right of `area`.
 pub(super) fn colour_bar(canvas: &mut Canvas, area: Area, map: Colormap, range: [f64; 2], quantity: &str) {
     let height = area.height.min(420.0);
-    let bar = Area { x: area.x + area.width + 20.0, y: area.y + 0.5 * (area.height - height), width: 15.0, height };
+    let bar = Area { x: area.x + area.width + TO_BAR, y: area.y + 0.5 * (area.height - height), width: 15.0, height };
     let steps = 256;
     let value = |k: usize| range[1] + (range[0] - range[1]) * (k as f64 + 0.5) / steps as f64;
     let rgba = (0..steps).map(|k| map.colour(value(k), range)).flat_map(|c| [c.r, c.g, c.b, 255]).collect();
@@ -354,7 +367,7 @@ pub(super) fn colour_bar(canvas: &mut Canvas, area: Area, map: Colormap, range: 
         canvas.line(vec![[right, y], [right + 4.0, y]], Pen::new(Colour::INK, 1.0));
         canvas.text(tick_text(tick.label, [right + 8.0, y + 4.2], Anchor::Start));
     }
-    canvas.text(Text::new(quantity, [bar.x, bar.y - 8.0], 13.0));
+    canvas.text(Text::new(quantity, [bar.x, bar.y - 8.0], QUANTITY_SIZE));
 }
 
 #[cfg(test)]

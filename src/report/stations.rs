@@ -5,7 +5,7 @@
 use std::path::Path;
 
 use super::ReportError;
-use super::axes::TITLE_SIZE;
+use super::axes::draw_title;
 use super::canvas::{Canvas, Text};
 use super::chart::{Axis, Chart, Marks, Series, Size};
 use super::colour::Colour;
@@ -48,8 +48,8 @@ pub fn write_stations(run: &Path) -> Result<(), ReportError> {
     let (size, across) = (Size::SMALL, ACROSS.min(charts.len()));
     let rows = charts.len().div_ceil(across);
     let mut canvas = Canvas::new(across as f64 * size.width, TOP + rows as f64 * size.height);
-    let (name, room) = (format!("Sections: {}", title(&folder)), canvas.width - 24.0);
-    canvas.text(Text { bold: true, ..Text::new(name, [24.0, 30.0], TITLE_SIZE) }.within(room));
+    draw_title(&mut canvas, &format!("Sections: {}", title(&folder)), [24.0, 30.0]);
+    let room = canvas.width - 24.0;
     canvas.text(Text { colour: Colour::GREY, ..Text::new(conditions(&folder), [24.0, 54.0], 13.0) }.within(room));
     for (k, chart) in charts.iter().enumerate() {
         let at = [(k % across) as f64 * size.width, TOP + (k / across) as f64 * size.height];

@@ -5,10 +5,10 @@
 //! nearest surface at every pixel, a second one averages all samples that lie on that surface: discs blend into a smooth
 //! field (surface splatting; Zwicker et al. 2001). Light comes from behind the viewer's left shoulder.
 use super::ReportError;
-use super::axes::TITLE_SIZE;
+use super::axes::draw_title;
 use super::canvas::{Area, Bitmap, Canvas, Pen, Text};
 use super::colour::{Colormap, Colour};
-use super::picture::{colour_bar, robust_range};
+use super::picture::{bar_room, colour_bar, robust_range};
 use crate::math::{Bounds, Vector};
 
 /// Plot area in pixels of the canvas.
@@ -70,9 +70,8 @@ pub fn surface_png(shell: &Shell, style: &SurfaceStyle) -> Result<Vec<u8>, Repor
         Shell::Triangles { values, .. } | Shell::Splats { values, .. } => values,
     };
     let range = style.range.unwrap_or_else(|| robust_range(values));
-    let mut canvas = Canvas::new(PLOT.x + PLOT.width + 110.0, PLOT.y + PLOT.height + 24.0);
-    let room = canvas.width - PLOT.x;
-    canvas.text(Text { bold: true, ..Text::new(style.title, [PLOT.x, 28.0], TITLE_SIZE) }.within(room));
+    let mut canvas = Canvas::new(PLOT.x + PLOT.width + bar_room(style.quantity), PLOT.y + PLOT.height + 24.0);
+    draw_title(&mut canvas, style.title, [PLOT.x, 28.0]);
     draw_surface(&mut canvas, PLOT, shell, &SurfaceStyle { range: Some(range), ..*style })?;
     colour_bar(&mut canvas, PLOT, style.map, range, style.quantity);
     canvas.png(SHARPNESS)

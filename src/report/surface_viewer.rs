@@ -98,6 +98,7 @@ fn data(walls: &Walls, thinned: bool) -> Data<'_> {
     };
     let field = |(name, values): &(&'static str, Vec<f64>)| {
         let (_, title, symbol, middle) = TOLD.into_iter().find(|(own, ..)| own == name)?;
+        let symbol = if *name == "temperature" && walls.kelvin { "T, K" } else { symbol };
         let [from, to] = Walls::range(values);
         let wide = WIDEST * (to - from);
         let low = values.iter().copied().fold(f64::INFINITY, f64::min).max(from - wide);

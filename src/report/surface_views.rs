@@ -5,7 +5,7 @@
 use std::path::Path;
 
 use super::ReportError;
-use super::axes::TITLE_SIZE;
+use super::axes::draw_title;
 use super::canvas::{Area, Canvas, Text};
 use super::colour::{Colormap, Colour};
 use super::files::{LOADS, RunFolder};
@@ -68,8 +68,8 @@ fn sheet(walls: &Walls, words: &[String; 2], views: &[usize], cell: [f64; 2]) ->
     let height = heights.iter().sum();
     let all = Area { x: MARGIN[0], y: MARGIN[1], width: across as f64 * cell[0], height };
     let mut canvas = Canvas::new(all.x + all.width + BAR, all.y + all.height + MARGIN[0]);
-    let (name, room) = (format!("{quantity}: {}", words[0]), canvas.width - all.x);
-    canvas.text(Text { bold: true, ..Text::new(name, [all.x, 30.0], TITLE_SIZE) }.within(room));
+    draw_title(&mut canvas, &format!("{quantity}: {}", words[0]), [all.x, 30.0]);
+    let room = canvas.width - all.x;
     canvas.text(Text { colour: Colour::GREY, ..Text::new(words[1].as_str(), [all.x, 54.0], 13.0) }.within(room));
     let (map, range) = (Colormap::Diverging { centre: 0.0 }, Walls::range(values));
     for (k, view) in views.iter().enumerate() {

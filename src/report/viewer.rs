@@ -305,7 +305,7 @@ fn walls(points: &[[f64; 2]], triangles: &[[u32; 3]]) -> Vec<[u32; 2]> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::observe::vtk::{Cells, Column, write_cells, write_collection};
+    use crate::observe::vtk::{About, Cells, Column, write_cells, write_collection};
     use std::path::Path;
 
     /// A square of 7 x 7 particles without the triangles of its middle.
@@ -326,7 +326,7 @@ mod tests {
         };
         let names: Vec<&'static str> = names.iter().map(|name| &*name.to_string().leak()).collect();
         let columns: Vec<Column> = names.iter().map(column).collect();
-        write_cells(path, &points, Cells::Triangles(triangles), &columns).unwrap();
+        write_cells(path, &About::default(), &points, Cells::Triangles(triangles), &columns).unwrap();
     }
 
     const STATE: [&str; 4] = ["density", "velocity", "pressure", "vorticity"];

@@ -45,6 +45,8 @@ pub(super) struct Walls {
     pub(super) bodies: Vec<String>,
     /// Planes that mirror the flow.
     pub(super) mirrors: Vec<Mirror>,
+    /// Temperatures are in kelvin, else in that of the free stream.
+    pub(super) kelvin: bool,
 }
 
 /// Fields of the walls that are shown where a run has them.
@@ -70,8 +72,8 @@ impl Walls {
         if triangles.is_empty() || fields.is_empty() || !whole || !known {
             return None;
         }
-        let mut walls =
-            Self { points, normals, triangles, fields, body, bodies: names(&case), mirrors: mirrors(&case) };
+        let (bodies, mirrors, kelvin) = (names(&case), mirrors(&case), file.unit("temperature") == Some("K"));
+        let mut walls = Self { points, normals, triangles, fields, body, bodies, mirrors, kelvin };
         walls.drop_unknown();
         (!walls.triangles.is_empty()).then_some(walls)
     }
@@ -147,6 +149,7 @@ impl Walls {
         triangles.retain(|[a, b, c]| a != b && b != c && c != a);
         let chosen = |values: &Vec<f64>| kept.iter().map(|i| values[*i]).collect();
         Self {
+            kelvin: self.kelvin,
             points: kept.iter().map(|i| self.points[*i]).collect(),
             normals: kept.iter().map(|i| self.normals[*i]).collect(),
             triangles,
@@ -200,7 +203,7 @@ fn mirrors(case: &toml::Table) -> Vec<Mirror> {
 #[cfg(test)]
 pub(super) mod tests {
     use super::*;
-    use crate::observe::vtk::{Column, Facets, write_surface};
+    use crate::observe::vtk::{About, Column, Facets, write_surface};
     use std::path::Path;
 
     /// Half a swept wing of 2 n² triangles as a run leaves it, with a plane of symmetry at y = 0.
@@ -228,7 +231,8 @@ pub(super) mod tests {
             column("cp", 1, &cp[..]),
             column("mach", 1, &cp[..]),
         ];
-        write_surface(&run.join("hull.vtp"), &points, Facets::Triangles(&triangles), &columns, &[]).unwrap();
+        write_surface(&run.join("hull.vtp"), &About::default(), &points, Facets::Triangles(&triangles), &columns)
+            .unwrap();
         let case = "dimension = 3\n[flow]\nmach = 0.8\nalpha = \"3 deg\"\n[[body]]\nname = \"wing\"\n[boundary]\ny_min = \"symmetry\"\n\
                     [[compare]]\nfile = \"cp.csv\"\nlabel = \"measured\"\n";
         std::fs::write(run.join("case.toml"), case).unwrap();

@@ -23,6 +23,7 @@ mod state_space;
 mod stored;
 mod tables;
 mod trim;
+mod wall_motion;
 
 pub use held::Mark;
 pub use record::{Boundary, FlutterAt, LimitCycle, MarchedCycle, Trim};

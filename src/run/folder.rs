@@ -21,8 +21,7 @@ const SUMMARY: &str = "summary.json";
 /// The last cloud, where the program chose it.
 const CLOUD: &str = "cloud.toml";
 
-/// What is finished of a flutter boundary that is not.
-pub(crate) const KEPT: &str = "flutter-kept.json";
+pub(crate) use crate::observe::table::KEPT;
 
 /// What a flutter boundary found.
 pub(crate) const BOUNDARY: &str = "flutter.json";

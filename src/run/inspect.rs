@@ -9,7 +9,7 @@ use super::cost::{Cost, Sized};
 use super::error::RunError;
 use super::files::{Scene, Target, pixels, write_cloud};
 use super::folder;
-use super::look::{Held, Mesh, load_axes};
+use super::look::{Held, Mesh, Rim, load_axes};
 use super::pilot;
 use super::recipe;
 use super::setup::{self, Site, Solver, check_motion};
@@ -19,6 +19,7 @@ use super::understood::{Aeroelastic, Understood};
 use crate::case::{Case, GafMethod};
 use crate::cloud::{Cloud, Diagnosis};
 use crate::geometry::dimension;
+use crate::observe::About;
 use crate::observe::table::write_json;
 use crate::observe::vtk::{Column, write_cells};
 use crate::scheme::{Fluid, Frame, View};
@@ -230,13 +231,15 @@ fn write<const D: usize>(
     let cloud = &fluid.discretisation.cloud;
     let n = cloud.n_real();
     let held = Held::of(to.case, cloud);
-    let points: Vec<[f64; 3]> = held.numbers().map(|i| cloud.x[i].to_3d()).collect();
+    let rim = Rim::of(to.case, cloud, &held);
+    let points = rim.with_places(held.numbers().map(|i| cloud.x[i].to_3d()).collect());
     let mut condition: Vec<f64> = fluid.discretisation.operators.condition.iter().map(|c| f64::from(*c)).collect();
     condition.resize(n, 1.0);
     let told = [("spacing", &cloud.spacing[..n]), ("volume", &cloud.volume[..n]), ("condition", &condition)];
-    let told = told.map(|(name, values)| (name, held.rows(1, values)));
+    let told = told.map(|(name, values)| (name, rim.with_values(name, 1, held.rows(1, values))));
     let columns = told.each_ref().map(|(name, values)| Column { name, components: 1, values });
-    write_cells(&to.out.join("cloud.vtu"), &points, Mesh::of(cloud, &held).cells(), &columns)?;
+    let about = About::gas(to.case, "spacing", None);
+    write_cells(&to.out.join("cloud.vtu"), &about, &points, Mesh::of(cloud, &held, &rim).cells(), &columns)?;
     write_json(&to.out.join("doctor.json"), &Diagnosis::of(cloud, fluid.discretisation.walls.n_linear))?;
     write_cloud(&Scene { to: *to, view: View::new(fluid, &frame, work), surface, chord: 1.0, vortex: None })
 }

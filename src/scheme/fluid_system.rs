@@ -142,7 +142,8 @@ mod tests {
 
     #[test]
     fn a_long_update_of_one_particle_holds_back_no_other() {
-        let fluid: Fluid<2> = built::fluid("[flow]\nmach = 0.5\n[[body]]\nnaca = \"0012\"\n[cloud]\nspacing = 0.125\nfar_field = 4\n");
+        let fluid: Fluid<2> =
+            built::fluid("[flow]\nmach = 0.5\n[[body]]\nnaca = \"0012\"\n[cloud]\nspacing = 0.125\nfar_field = 4\n");
         let u = fluid.start();
         let mut du: Vec<f64> = u.iter().map(|u| 0.1 * u).collect();
         du[4..8].iter_mut().zip(&u[4..8]).for_each(|(du, u)| *du = 0.9 * u);

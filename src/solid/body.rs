@@ -2,6 +2,7 @@
 use std::ops::Deref;
 use std::sync::OnceLock;
 
+use super::cells::Cells;
 use super::particles::Particles;
 use super::rows::{Row, row};
 use crate::math::Vector;
@@ -104,6 +105,8 @@ pub struct Solid<const D: usize> {
     pub(super) per_radius: Vec<f64>,
     /// The longest stable step over the least h/c, and that without damping, once they are known.
     pub(super) factor: OnceLock<[f64; 2]>,
+    /// Cells between the particles, once they are known.
+    pub(super) cells: OnceLock<Cells>,
 }
 
 impl<const D: usize> std::fmt::Debug for Solid<D> {
@@ -207,6 +210,7 @@ impl<const D: usize> Solid<D> {
             weight,
             width,
             factor: OnceLock::new(),
+            cells: OnceLock::new(),
             parts,
         }
     }

@@ -6,6 +6,7 @@
 //! particles as well, among splines ([`splines`]). Book page `solid-particles`.
 mod axis;
 pub mod body;
+mod cells;
 pub mod contact;
 pub mod fill;
 pub mod forces;
@@ -25,5 +26,6 @@ mod weigh;
 
 pub use axis::held_on_axis;
 pub use body::{Action, Contact, Damping, Load, Parts, Plane, RigidPlane, Solid, Support};
+pub use cells::Cells;
 pub use particles::{Particles, Unfit};
 pub use system::Structure;

@@ -155,7 +155,7 @@ fn describe_structure(s: &SolidSummary, out: &Path) -> String {
             lines.push(format!("{}: harmonic {} ({})", probe.name, h.harmonic, waves.collect::<Vec<_>>().join(", ")));
         }
     }
-    lines.push(format!("results in {}\n", out.display()));
+    lines.push(place(out) + "\n");
     lines.join("\n")
 }
 
@@ -256,10 +256,13 @@ fn describe(s: &Summary, out: &Path) -> String {
     if let Some(l) = &s.ledger {
         text += &format!("ledger: mass {:.1e}, momentum {:.1e}, energy {:.1e}\n", l.mass, l.momentum, l.energy);
     }
+    text + &place(out) + "\n"
+}
+
+/// Where the results are: the page, where there is one.
+fn place(out: &Path) -> String {
     let page = out.join("report.html");
-    let place =
-        if page.exists() { format!("report: {}", page.display()) } else { format!("results in {}", out.display()) };
-    text + &place + "\n"
+    if page.exists() { format!("report: {}", page.display()) } else { format!("results in {}", out.display()) }
 }
 
 /// What became of bodies made of particles in the units of the case: how far they moved, and the greatest stress.

@@ -1,23 +1,26 @@
 //! What a run leaves in its folder: tables, fields, pictures.
+mod about;
 mod cuts;
 mod pictures;
 mod raster;
 mod solids;
+mod state;
 mod strips;
 mod target;
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::error::RunError;
 use super::folder;
 use super::found::Found;
-use super::look::{GasView, Held, Hull, Mesh, Snapshot, WallSnapshot, field};
+use super::look::{GasView, Held, Hull, Mesh, Rim, SHADE, Snapshot, WallSnapshot, field, planes};
 use super::record::summary::Summary;
 use super::record::{Log, passed};
 use crate::case::Case;
 use crate::cloud::{Cloud, Diagnosis};
 use crate::coupling::SolidSnapshot;
 use crate::geometry::Surface;
+use crate::observe::About;
 use crate::observe::loads::together as both;
 use crate::observe::table::{Entry, write_csv, write_json};
 use crate::observe::vtk::{Column, Facets, read_collection, write_cells, write_collection, write_surface};
@@ -27,6 +30,7 @@ use crate::scheme::Work;
 pub(crate) use pictures::{pixels, write_cloud};
 pub(crate) use raster::together;
 pub(crate) use solids::{draw_solid, write_solid};
+pub(crate) use state::write_state_script;
 pub(crate) use target::{FILM, FILM_FIELDS, Scene, Target};
 
 /// Columns of the fields of a film.
@@ -47,8 +51,10 @@ pub(crate) fn write_all<const D: usize>(
         log.record.trace.write(out, period)?;
     }
     files.write_fields(all, log.record.time)?;
+    write_state_script(out)?;
     if let Some(solid) = solid {
-        write_solid(out, "solid", solid)?;
+        let time = found.case.flow.units().case_time(found.view.time());
+        write_solid((out, "solid"), &About::solid(found.case, Some(time)), solid)?;
         if found.case.output.report {
             draw_solid(out, solid)?;
         }
@@ -157,7 +163,8 @@ impl<const D: usize> Files<'_, D> {
     }
 
     fn write_fields(&self, all: &Snapshot, time: f64) -> Result<(), RunError> {
-        let mesh = write_field(&self.out.join("field.vtu"), self.found.case, self.found.view.cloud(), all)?;
+        let to = (self.out.join("field.vtu"), time);
+        let mesh = write_field(to, self.found.case, self.found.view.cloud(), all)?;
         write_collection(&self.out.join("field.pvd"), &[(time, "field.vtu")])?;
         let cloud = self.found.view.cloud();
         if cloud.interface.is_empty() {
@@ -182,14 +189,21 @@ impl<const D: usize> Files<'_, D> {
         let columns: Vec<Column<'_>> =
             cut.iter().map(|(name, n, values)| Column { name, components: *n, values }).collect();
         let points = &all.points[range];
-        write_surface(&self.out.join("surface.vtp"), points, mesh.facets(), &columns, &[])?;
-        self.write_hull(all)
+        let about = About::gas(self.found.case, "cp", Some(time));
+        write_surface(&self.out.join("surface.vtp"), &about, points, mesh.facets(), &columns)?;
+        self.write_hull(all, &about)
     }
 
     /// The triangles of the bodies with the flow at their corners, in space.
-    fn write_hull(&self, all: &Snapshot) -> Result<(), RunError> {
+    fn write_hull(&self, all: &Snapshot, about: &About) -> Result<(), RunError> {
         let Some(surface) = self.found.surface.filter(|_| D == 3) else { return Ok(()) };
-        let hull = Hull::of(&self.found.view, surface, (all, self.walls));
+        let mut hull = Hull::of(&self.found.view, surface, (all, self.walls));
+        // a slice along a plane of symmetry cuts triangles that reach a shade beyond it
+        let cloud = self.found.view.reference();
+        for (axis, plane, outwards) in planes(self.found.case, &cloud.tree.bounds()) {
+            let beyond = outwards * SHADE * cloud.spacing.iter().copied().fold(f64::INFINITY, f64::min);
+            hull.points.iter_mut().filter(|x| x[axis] == plane).for_each(|x| x[axis] = plane + beyond);
+        }
         let own = [
             Column { name: "normal", components: 3, values: &hull.normals },
             Column { name: "body", components: 1, values: &hull.body },
@@ -197,18 +211,24 @@ impl<const D: usize> Files<'_, D> {
         let told = hull.columns.iter().map(|(name, n, values)| Column { name, components: *n, values });
         let columns: Vec<Column<'_>> = own.into_iter().chain(told).collect();
         let facets = Facets::Triangles(&hull.triangles);
-        Ok(write_surface(&self.out.join("hull.vtp"), &hull.points, facets, &columns, &[])?)
+        Ok(write_surface(&self.out.join("hull.vtp"), about, &hull.points, facets, &columns)?)
     }
 }
 
-/// Writes what the case wants held of a field, with the cells between its particles, which it returns; they are vertices where there are
-/// none.
-fn write_field<const D: usize>(path: &Path, case: &Case, cloud: &Cloud<D>, all: &Snapshot) -> Result<Mesh, RunError> {
+/// Writes what the case wants held of a field at a time, and what it is on planes of symmetry, with the cells between, which it returns;
+/// they are vertices where there are none.
+fn write_field<const D: usize>(
+    (path, time): (PathBuf, f64),
+    case: &Case,
+    cloud: &Cloud<D>,
+    all: &Snapshot,
+) -> Result<Mesh, RunError> {
     let held = Held::of(case, cloud);
-    let (mesh, few) = (Mesh::of(cloud, &held), held.thinned(all));
+    let rim = Rim::of(case, cloud, &held);
+    let (mesh, few) = (Mesh::of(cloud, &held, &rim), rim.with_field(held.thinned(all)));
     let columns: Vec<Column<'_>> =
         few.columns.iter().map(|(name, components, values)| Column { name, components: *components, values }).collect();
-    write_cells(path, &few.points, mesh.cells(), &columns)?;
+    write_cells(&path, &About::gas(case, "mach", Some(time)), &few.points, mesh.cells(), &columns)?;
     Ok(mesh)
 }
 
@@ -222,7 +242,7 @@ pub(crate) fn write_series<const D: usize>(
     let view = gas.seen(work);
     let (all, time, out) = (field(to.case, &view), to.case.flow.units().case_time(view.time()), to.out);
     let name = format!("field-{:05}.vtu", passed(view.time(), interval));
-    write_field(&out.join(&name), to.case, view.cloud(), &all)?;
+    write_field((out.join(&name), time), to.case, view.cloud(), &all)?;
     list(out, "series.pvd", f64::NEG_INFINITY, (time, name))
 }
 
@@ -233,8 +253,8 @@ pub(crate) fn write_solid_series<const D: usize>(
     (time, interval): (f64, f64),
 ) -> Result<(), RunError> {
     let name = format!("solid-{:05}", passed(time, interval));
-    write_solid(to.out, &name, at)?;
     let time = to.case.flow.units().case_time(time);
+    write_solid((to.out, &name), &About::solid(to.case, Some(time)), at)?;
     list(to.out, "solid.pvd", f64::NEG_INFINITY, (time, format!("{name}.vtu")))
 }
 
@@ -274,7 +294,7 @@ pub(crate) fn write_film_field<const D: usize>(
     all.columns.retain(|(name, ..)| FILMED.contains(name));
     let (time, period) = (units.case_time(view.time()), units.case_time(period));
     let name = format!("film-{:02}.vtu", (part - 1) % u64::from(FILM_FIELDS) + 1);
-    write_field(&to.out.join(&name), to.case, view.cloud(), &all)?;
+    write_field((to.out.join(&name), time), to.case, view.cloud(), &all)?;
     // one part is as long as a twelfth of the period: half of it is beyond doubt
     list(to.out, "film.pvd", time - period * (1.0 - 0.5 / f64::from(FILM_FIELDS)), (time, name))
 }

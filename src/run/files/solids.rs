@@ -2,15 +2,21 @@
 use std::path::Path;
 
 use super::super::error::RunError;
-use super::super::solids::files::{draw, write};
+use super::super::solids::files::write;
+use super::super::solids::pictures::draw;
 use crate::coupling::SolidSnapshot;
+use crate::observe::About;
 
 /// Their fields: `<name>.vtu`.
-pub(crate) fn write_solid<const D: usize>(out: &Path, name: &str, at: &SolidSnapshot<'_, D>) -> Result<(), RunError> {
-    write(&out.join(format!("{name}.vtu")), at.solid, &at.state())
+pub(crate) fn write_solid<const D: usize>(
+    (out, name): (&Path, &str),
+    about: &About,
+    at: &SolidSnapshot<'_, D>,
+) -> Result<(), RunError> {
+    write(&out.join(format!("{name}.vtu")), about, at.solid, &at.state())
 }
 
-/// A picture of plane bodies with the stress in them and, where they move, one of each component of the velocity.
+/// Pictures of the bodies: displacement, stress and, where they move, each component of the velocity.
 pub(crate) fn draw_solid<const D: usize>(out: &Path, at: &SolidSnapshot<'_, D>) -> Result<(), RunError> {
     draw(out, at.solid, &at.state())
 }

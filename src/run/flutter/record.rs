@@ -4,6 +4,7 @@ use std::path::Path;
 use serde::{Deserialize, Serialize};
 
 use super::super::error::RunError;
+use super::super::files::write_state_script;
 use super::super::folder::BOUNDARY;
 use super::held::Mark;
 use super::rows::{Clearance, Doubt, FlutterRow, MotionRow, or_infinite};
@@ -12,6 +13,8 @@ use super::shapes::NaturalMode;
 use super::skin::Skin;
 use super::state_space::StateSpaceAt;
 use crate::case::Matching;
+use crate::observe::About;
+use crate::observe::columns::Scale;
 use crate::observe::table::write_json;
 use crate::report;
 
@@ -234,18 +237,27 @@ impl Boundary {
         self.skin.as_ref().map_or(Ok(()), |skin| self.picture(skin, out))
     }
 
-    /// Writes pictures and page, and the motion at the first crossing of the last Mach number.
+    /// Writes pictures and page, and the motions at which the last Mach number begins to flutter.
     fn picture(&self, skin: &Skin, out: &Path) -> Result<(), RunError> {
         if self.flutter.len() == 1 {
             skin.write(&out.join(MODES))?;
         }
         if let Some(at) = self.flutter.last() {
-            let first = at.crossings.iter().find(|c| c.kind == "flutter");
-            if let Some(c) = first.or(at.crossings.first()) {
-                let name = format!("flutter-mode-mach-{:.3}", at.mach);
-                skin.write_series(out, &name, (&c.shape, c.frequency))?;
+            let flutter = at.crossings.iter().filter(|c| c.kind == "flutter");
+            let shown: Vec<&FlutterRow> = match flutter.clone().next() {
+                Some(_) => flutter.collect(),
+                None => at.crossings.iter().take(1).collect(),
+            };
+            for (k, crossing) in shown.into_iter().enumerate() {
+                let more = if k > 0 { format!("-{}", k + 1) } else { String::new() };
+                let name = format!("flutter-mode-mach-{:.3}{more}", at.mach);
+                // one that was written with pressures before it was interrupted stays
+                if crossing.walls.is_some() || !out.join(format!("{name}.pvd")).is_file() {
+                    skin.write_series(out, (&name, &at.about(&self.title, crossing)), crossing)?;
+                }
             }
         }
+        write_state_script(out)?;
         report::write_flutter(out)?;
         report::write_report(out)?;
         Ok(())
@@ -253,6 +265,26 @@ impl Boundary {
 }
 
 impl FlutterAt {
+    /// What files of the motion at a crossing tell.
+    fn about(&self, title: &str, crossing: &FlutterRow) -> About {
+        let unit = |what: &str, si: &str, own: &str| format!("{what} [{}]", if self.dimensional { si } else { own });
+        About {
+            scale: Some(Scale { dimensional: self.dimensional, dimension: self.dimension }),
+            numbers: vec![
+                ("Mach number".to_owned(), self.mach),
+                ("alpha [deg]".to_owned(), self.alpha_deg),
+                (unit("speed", "m/s", "a"), crossing.speed),
+                (unit("density", "kg/m3", "rho"), crossing.density),
+                (unit("dynamic pressure", "Pa", "rho.a2"), crossing.dynamic_pressure),
+                (unit("frequency", "Hz", "a/L"), crossing.frequency),
+                ("reduced frequency".to_owned(), crossing.reduced_frequency),
+            ],
+            words: vec![("title", title.to_owned()), ("motion", format!("{}, {}", crossing.kind, crossing.branch))],
+            scalars: if crossing.walls.is_some() { "cp_unsteady" } else { "displacement" },
+            vectors: "displacement",
+        }
+    }
+
     /// Adds limit cycles, and what makes them doubtful.
     pub(super) fn add_cycles(&mut self, (cycles, doubts): Found) {
         self.cycles = cycles;

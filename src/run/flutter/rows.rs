@@ -2,6 +2,7 @@
 use serde::{Deserialize, Deserializer, Serialize};
 
 use super::shapes::Share;
+use super::wall_motion::WallMotion;
 
 /// A change from decay to growth, or back.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
@@ -62,6 +63,9 @@ pub struct FlutterRow {
     pub extrapolated: bool,
     /// How much each coordinate takes part.
     pub shape: Vec<Share>,
+    /// The walls in this motion with the pressure on them, where the gas was solved here.
+    #[serde(skip)]
+    pub walls: Option<WallMotion>,
 }
 
 impl FlutterRow {

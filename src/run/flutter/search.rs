@@ -11,6 +11,7 @@ use super::rows::{Bars, FlutterRow, MotionRow};
 use super::scales::Scales;
 use super::shapes::{NaturalMode, shares};
 use super::state_space::StateSpaceAt;
+use super::wall_motion::{Pressures, WallMotion};
 use crate::case::{Flutter as Plan, StreamRatio};
 use crate::math::rational::Rational;
 use crate::structure::flutter::{Branch, Crossing, Flutter, Kind, Point, StillMotions};
@@ -43,6 +44,8 @@ pub(super) struct Search<'a> {
     /// Displacements that no steady force follows.
     translations: Vec<Translation>,
     samples: Vec<Sample>,
+    /// Pressures on walls at the same frequencies, where these were computed here.
+    pressures: Vec<Pressures>,
     iterations: usize,
     residual: f64,
 }
@@ -68,12 +71,13 @@ impl<'a> Search<'a> {
         let (matrices, names) = (held.matrices.clone(), held.names.clone());
         let (units, still) = (held.units(scales.semichord), vec![0.0; names.len()]);
         let translations = held.translations.clone();
-        Self { scales, plan, matrices, names, units, still, translations, samples, iterations: 0, residual }
+        let (pressures, iterations) = (Vec::new(), 0);
+        Self { scales, plan, matrices, names, units, still, translations, samples, pressures, iterations, residual }
     }
 
     /// Computes forces at the angular frequency `omega`; `None` when the monitor says stop.
     fn sample(&mut self, source: &mut dyn ForceSource, omega: f64, log: &mut Log<'_>) -> Option<()> {
-        let Forces { generalised, ended, .. } = source.forces_unless(omega, &|| log.stopped())?;
+        let Forces { generalised, ended, pressures, .. } = source.forces_unless(omega, &|| log.stopped())?;
         let iterations: usize = ended.iter().map(|e| e.iterations).sum();
         let left = ended.iter().map(|e| e.left).fold(0.0, f64::max);
         self.iterations += iterations;
@@ -85,6 +89,8 @@ impl<'a> Search<'a> {
         ));
         self.samples.push((omega, generalised));
         self.samples.sort_by(|a, b| a.0.total_cmp(&b.0));
+        self.pressures.push((omega, pressures));
+        self.pressures.sort_by(|a, b| a.0.total_cmp(&b.0));
         Some(())
     }
 
@@ -158,7 +164,21 @@ impl<'a> Search<'a> {
             errors = solved.crossings.iter().map(|c| changed(c, &before)).collect();
         }
         let warnings = self.doubts(&solved.crossings, &mut errors, "allow more `frequencies`");
-        Some(self.told(&solved, &errors, warnings))
+        let mut found = self.told(&solved, &errors, warnings);
+        self.show(&mut found, source);
+        Some(found)
+    }
+
+    /// Adds the walls as they move at the crossings of a boundary, with the pressure on them.
+    fn show(&self, found: &mut FlutterAt, source: &dyn ForceSource) {
+        if found.crossings.is_empty() {
+            return;
+        }
+        let walls = source.walls();
+        for row in &mut found.crossings {
+            let motion = (self.scales.angular_frequency(row.reduced_frequency), self.scales.stream);
+            row.walls = WallMotion::of(&walls, (&row.shape, &self.units), &self.pressures, motion);
+        }
     }
 
     /// The boundary with the forces that there are.
@@ -467,6 +487,7 @@ impl<'a> Search<'a> {
             cloud_error: None,
             bars: Bars::default(),
             shape: shares(&self.names, &self.units, &c.shape),
+            walls: None,
             g_method: check.map(|x| s.at(x).pressure.sqrt() / equivalent - 1.0),
             growth: None,
             holding_damping: None,

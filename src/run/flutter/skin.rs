@@ -1,7 +1,8 @@
 //! The surface of the bodies, and how far each coordinate takes its points: what draws a motion.
 //!
 //! A point goes from X to X + Re(d e^{iωt}) with d = Σ q̂_k ∂x/∂q_k, the tangents of its place where the bodies are as placed; for motions of any
-//! size that is a picture of small ones, drawn large.
+//! size that is a picture of small ones, drawn large. Where the gas was solved, files for ParaView show wall particles in its place, with the
+//! unsteady pressure that belongs to the displacement drawn (`wall_motion`).
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -12,14 +13,16 @@ use super::super::error::RunError;
 use super::super::folder::make_within;
 use super::super::look::reference::chord;
 use super::super::setup;
+use super::rows::FlutterRow;
 use super::shapes::{Share, amplitudes};
+use super::wall_motion::WallMotion;
 use crate::case::Case;
 use crate::coupling::Attached;
 use crate::geometry::{Surface, dimension};
 use crate::math::Vector;
 use crate::math::rotation::cross;
 use crate::motion::Motions;
-use crate::observe::vtk::{Column, Facets, write_collection, write_surface};
+use crate::observe::vtk::{About, Column, Facets, write_collection, write_surface};
 use crate::observe::write_atomic;
 
 /// Largest displacement that is drawn, over the chord.
@@ -95,8 +98,7 @@ impl Skin {
                 (0..3).for_each(|k| d[k] += q * unit[k]);
             }
         }
-        let largest = all.iter().map(greatest).fold(0.0, f64::max);
-        let scale = if largest > 0.0 { SHOWN * self.chord / largest } else { 0.0 };
+        let scale = self.drawn(&all);
         all.iter_mut().flatten().for_each(|d| *d *= scale);
         all
     }
@@ -122,34 +124,47 @@ impl Skin {
         Ok(write_atomic(file, |w| w.write_all(&text))?)
     }
 
-    /// Writes a motion of the frequency `frequency` at phases of a period as a series for ParaView, `name`.pvd in `out`.
+    /// Writes the motion of a crossing at phases of a period as a series for ParaView, `name`.pvd in `out`: with the pressure on the walls
+    /// where that is known, else of the surface alone.
     pub(super) fn write_series(
         &self,
         out: &Path,
-        name: &str,
-        (shape, frequency): (&[Share], f64),
+        (name, about): (&str, &About),
+        crossing: &FlutterRow,
     ) -> Result<(), RunError> {
-        let shifts = self.displaced(shape);
+        let own = |shifts| Moving { points: &self.points, shifts, cp: Vec::new() };
         let chains: Vec<Vec<u32>> = self.lines.iter().map(|l| l.to_vec()).collect();
-        let facets =
-            if self.triangles.is_empty() { Facets::Polylines(&chains) } else { Facets::Triangles(&self.triangles) };
+        let (moving, lines, triangles) = match &crossing.walls {
+            Some(walls) => (self.moving(walls), &walls.lines, &walls.triangles),
+            None => (own(self.displaced(&crossing.shape)), &chains, &self.triangles),
+        };
+        let facets = if triangles.is_empty() { Facets::Polylines(lines) } else { Facets::Triangles(triangles) };
         make_within(out, FOLDER)?;
         let mut files = Vec::new();
         for k in 0..PHASES {
             let part = k as f64 / PHASES as f64;
-            let wave = Complex64::cis(std::f64::consts::TAU * part);
-            let shift: Vec<[f64; 3]> = shifts.iter().map(|d| d.map(|d| (d * wave).re)).collect();
-            let places: Vec<[f64; 3]> =
-                self.points.iter().zip(&shift).map(|(x, d)| [0, 1, 2].map(|k| x[k] + d[k])).collect();
-            let values: Vec<f64> = shift.into_iter().flatten().collect();
             let file = format!("{FOLDER}/{name}-{k:02}.vtp");
-            let column = Column { name: "displacement", components: 3, values: &values };
-            write_surface(&out.join(&file), &places, facets, &[column], &[])?;
-            let time = if frequency > 0.0 { part / frequency } else { part };
+            moving.write(&out.join(&file), about, facets, part)?;
+            let time = if crossing.frequency > 0.0 { part / crossing.frequency } else { part };
             files.push((time, file));
         }
         let listed: Vec<(f64, &str)> = files.iter().map(|(time, file)| (*time, file.as_str())).collect();
         Ok(write_collection(&out.join(format!("{name}.pvd")), &listed)?)
+    }
+
+    /// Walls in a motion, displaced as far as surfaces are, with the pressure that goes with so much.
+    fn moving<'a>(&self, walls: &'a WallMotion) -> Moving<'a> {
+        let complex = |[re, im]: [f64; 2]| Complex64::new(re, im);
+        let mut shifts: Vec<[Complex64; 3]> = walls.displacement.iter().map(|d| d.map(complex)).collect();
+        let scale = self.drawn(&shifts);
+        shifts.iter_mut().flatten().for_each(|d| *d *= scale);
+        Moving { points: &walls.points, shifts, cp: walls.cp.iter().map(|cp| scale * complex(*cp)).collect() }
+    }
+
+    /// The factor that makes displacements as large as they are drawn.
+    fn drawn(&self, shifts: &[[Complex64; 3]]) -> f64 {
+        let largest = shifts.iter().map(greatest).fold(0.0, f64::max);
+        if largest > 0.0 { SHOWN * self.chord / largest } else { 0.0 }
     }
 
     /// With at most so many triangles: corners in a cell of a grid that look the same way become one.
@@ -196,6 +211,33 @@ impl Skin {
             coordinates: self.coordinates.clone(),
             chord: self.chord,
         }
+    }
+}
+
+/// Points in a motion: where they are at rest, and complex displacements and pressure coefficients, of which the latter may be absent.
+struct Moving<'a> {
+    points: &'a [[f64; 3]],
+    shifts: Vec<[Complex64; 3]>,
+    cp: Vec<Complex64>,
+}
+
+impl Moving<'_> {
+    /// Writes them at the part `part` of the period.
+    fn write(&self, path: &Path, about: &About, facets: Facets<'_>, part: f64) -> Result<(), RunError> {
+        let wave = Complex64::cis(std::f64::consts::TAU * part);
+        let shift: Vec<[f64; 3]> = self.shifts.iter().map(|d| d.map(|d| (d * wave).re)).collect();
+        let places: Vec<[f64; 3]> =
+            self.points.iter().zip(&shift).map(|(x, d)| [0, 1, 2].map(|k| x[k] + d[k])).collect();
+        let values: Vec<f64> = shift.into_iter().flatten().collect();
+        let of_pressure = |f: &dyn Fn(&Complex64) -> f64| self.cp.iter().map(f).collect::<Vec<f64>>();
+        let now = of_pressure(&|cp| (cp * wave).re);
+        let (size, phase) = (of_pressure(&|cp| cp.norm()), of_pressure(&|cp| cp.arg().to_degrees()));
+        let mut columns = vec![Column { name: "displacement", components: 3, values: &values }];
+        if !self.cp.is_empty() {
+            let told = [("cp_unsteady", &now), ("cp_amplitude", &size), ("cp_phase_deg", &phase)];
+            columns.extend(told.map(|(name, values)| Column { name, components: 1, values }));
+        }
+        Ok(write_surface(path, about, &places, facets, &columns)?)
     }
 }
 
@@ -260,11 +302,28 @@ mod tests {
         let skin = Skin::of(&case, Path::new(""), &[0.5, 1.0]).unwrap();
         let folder = tempfile::tempdir().unwrap();
         let shape = [share("plunge", 1.0, 0.0), share("pitch", 0.4, 90.0)];
-        skin.write_series(folder.path(), "flutter-mode-mach-0.500", (&shape, 2.0)).unwrap();
+        let mut row = FlutterRow { frequency: 2.0, shape: shape.to_vec(), ..FlutterRow::default() };
+        let named = ("flutter-mode-mach-0.500", &About::gas(&case, "cp_unsteady", None));
+        skin.write_series(folder.path(), named, &row).unwrap();
         let text = std::fs::read_to_string(folder.path().join("flutter-mode-mach-0.500.pvd")).unwrap();
         let listed = crate::observe::vtk::read_collection(&text);
         assert!(listed.len() == 16 && listed[8].0 == 0.25);
         assert!(listed.iter().all(|(_, file)| folder.path().join(file).is_file()));
+        row.walls = Some(WallMotion {
+            points: vec![[0.0; 3], [1.0, 0.0, 0.0]],
+            lines: vec![vec![0, 1]],
+            displacement: vec![[[0.0; 2], [2.0, 0.0], [0.0; 2]], [[0.0; 2], [0.0, 1.0], [0.0; 2]]],
+            cp: vec![[4.0, 0.0], [0.0, -2.0]],
+            ..WallMotion::default()
+        });
+        skin.write_series(folder.path(), named, &row).unwrap();
+        let at = |k: usize| crate::observe::vtk_read::FieldFile::open(&folder.path().join(&listed[k].1)).unwrap();
+        // the largest displacement, 2, is drawn as a tenth of the chord, and pressures with it
+        assert_eq!(at(0).values("cp_unsteady").unwrap(), [0.2, 0.0]);
+        assert!((at(4).values("cp_unsteady").unwrap()[1] - 0.1).abs() < 1e-15);
+        assert_eq!(at(8).values("cp_amplitude").unwrap(), [0.2, 0.1]);
+        assert_eq!(at(0).values("displacement").unwrap()[1], 0.1);
+        assert_eq!(at(0).unit("displacement"), Some("L"));
         skin.write(&folder.path().join("modes.json")).unwrap();
         let text = std::fs::read_to_string(folder.path().join("modes.json")).unwrap();
         let told: serde_json::Value = serde_json::from_str(&text).unwrap();

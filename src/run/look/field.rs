@@ -28,8 +28,8 @@ pub(crate) fn pressure_coefficient<const D: usize>(q: &Primitive<D>, free: &Prim
 
 /// All particles without images, with everything that a field file holds; `view` has states and gradients.
 ///
-/// Temperature is in that of the free stream, entropy is (p/ρ^γ) over that of the free stream less 1, and the loss of total pressure
-/// is 1 less p₀ over that of the free stream.
+/// Temperature is in kelvin where the free stream has units, else in that of the free stream, as all else; entropy is (p/ρ^γ) over that of
+/// the free stream less 1, and the loss of total pressure is 1 less p₀ over that of the free stream.
 pub(crate) fn field<const D: usize>(case: &Case, view: &View<'_, D>) -> Snapshot {
     let (cloud, gas) = (view.cloud(), view.fluid.gas);
     let n = cloud.n_real();
@@ -42,6 +42,8 @@ pub(crate) fn field<const D: usize>(case: &Case, view: &View<'_, D>) -> Snapshot
     let level = |i: usize| (cloud.spacing[i]).log2();
     let total = |i: usize| gas.total_pressure(&state[i]);
     let free_total = gas.total_pressure(&free);
+    let kelvin = if case.flow.is_dimensional() { case.flow.kelvin() } else { 1.0 };
+    let temperature = |i: usize| kelvin * gas.temperature(&state[i]) / gas.temperature(&free);
     let vorticity = (0..n).flat_map(|i| view.vorticity(i).map(|w| w * units.speed)).collect();
     Snapshot {
         points: (0..n).map(|i| view.place(i).to_3d()).collect(),
@@ -51,7 +53,7 @@ pub(crate) fn field<const D: usize>(case: &Case, view: &View<'_, D>) -> Snapshot
             ("pressure", 1, column(&|i| state[i].pressure * units.pressure())),
             ("mach", 1, column(&|i| state[i].velocity.norm() / gas.sound_speed(&state[i]))),
             ("cp", 1, column(&|i| pressure_coefficient(&state[i], &free))),
-            ("temperature", 1, column(&|i| gas.temperature(&state[i]) / gas.temperature(&free))),
+            ("temperature", 1, column(&temperature)),
             ("total_pressure", 1, column(&|i| total(i) * units.pressure())),
             ("total_pressure_loss", 1, column(&|i| 1.0 - total(i) / free_total)),
             ("entropy", 1, column(&entropy)),

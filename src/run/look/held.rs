@@ -22,6 +22,11 @@ impl Held {
         Self { every: every.max(1), n: [cloud.n_fluid, cloud.n_real()] }
     }
 
+    /// All.
+    pub(crate) fn all<const D: usize>(cloud: &Cloud<D>) -> Self {
+        Self { every: 1, n: [cloud.n_fluid, cloud.n_real()] }
+    }
+
     /// Their numbers in the cloud, fluid particles first.
     pub(crate) fn numbers(&self) -> impl Iterator<Item = usize> + '_ {
         (0..self.n[0]).step_by(self.every).chain(self.n[0]..self.n[1])

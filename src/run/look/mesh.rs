@@ -2,13 +2,14 @@
 //!
 //! In the plane the particles, those on walls and on the border included, are the corners of a constrained Delaunay
 //! triangulation. Outlines of bodies are sides of it, so that no triangle reaches through a wall, and triangles inside bodies are
-//! left out. In space they are the corners of a Delaunay tetrahedralisation without the tetrahedra that lie in bodies or reach
+//! left out. Planes of symmetry are reached too (`rim`). In space they are the corners of a Delaunay tetrahedralisation without the tetrahedra that lie in bodies or reach
 //! through their walls; beyond a million particles they stay vertices, for the tetrahedra would take more memory than the solver.
 use super::held::Held;
+use super::rim::Rim;
 use crate::cloud::Cloud;
 use crate::math::Vector;
-use crate::math::tetrahedra::tetrahedralise;
-use crate::math::triangulation::triangulate;
+use crate::math::tetrahedra::tetrahedralise_within;
+use crate::math::triangulation::triangulate_within;
 use crate::observe::vtk::{Cells, Facets};
 
 /// Two panels meet when their ends are nearer to one another than this part of their mean length.
@@ -16,8 +17,6 @@ const MEETING: f64 = 0.5;
 
 /// Most particles between which there are tetrahedra.
 const MOST: usize = 1_000_000;
-/// Cosine of the angle between the normal of a wall particle and the way to a corner beyond which that is behind the wall.
-const BEHIND: f64 = -0.5;
 
 /// What ties particles together.
 #[derive(Clone, Debug, Default)]
@@ -33,44 +32,34 @@ pub(crate) struct Mesh {
 }
 
 impl Mesh {
-    /// The cells between those particles of a cloud that are held, in their numbers.
-    pub(crate) fn of<const D: usize>(cloud: &Cloud<D>, held: &Held) -> Self {
+    /// The cells between those particles of a cloud that are held and the points on planes of symmetry, in their numbers.
+    pub(crate) fn of<const D: usize>(cloud: &Cloud<D>, held: &Held, rim: &Rim) -> Self {
         match D {
-            2 => Self::of_plane(cloud, held),
-            3 if held.len() <= MOST => Self::of_space(cloud, held),
+            2 => Self::of_plane(cloud, held, rim),
+            3 if held.len() <= MOST => Self::of_space(cloud, held, rim),
             _ => Self::default(),
         }
     }
 
-    fn of_space<const D: usize>(cloud: &Cloud<D>, held: &Held) -> Self {
-        let solid = |x: &Vector<D>| Vector(x.to_3d());
-        let points: Vec<Vector<3>> = held.numbers().map(|i| solid(&cloud.x[i])).collect();
-        let normals: Vec<Vector<3>> = cloud.interface.iter().map(|w| solid(&w.normal)).collect();
+    fn of_space<const D: usize>(cloud: &Cloud<D>, held: &Held, rim: &Rim) -> Self {
+        let points: Vec<Vector<3>> =
+            rim.with_places(held.numbers().map(|i| cloud.x[i].to_3d()).collect()).into_iter().map(Vector).collect();
+        let normals: Vec<Vector<3>> = cloud.interface.iter().map(|w| Vector(w.normal.to_3d())).collect();
         let stretch = held.stretch(D);
-        let spacing: Vec<f64> = held.numbers().map(|i| cloud.spacing[i] * stretch).collect();
-        let mut tetrahedra = tetrahedralise(&points, &spacing);
-        let first = held.n_fluid();
-        let normal = |i: u32| normals.get((i as usize).checked_sub(first)?).copied();
-        tetrahedra.retain(|corners| {
-            let middle = corners.iter().fold(Vector::ZERO, |sum, i| sum + points[*i as usize]) * 0.25;
-            let of_walls = || corners.iter().filter_map(|i| Some((points[*i as usize], normal(*i)?)));
-            let beside = |i: &u32| {
-                of_walls().all(|(x, n)| {
-                    let way = points[*i as usize] - x;
-                    normal(*i).is_some() || way.dot(&n) >= BEHIND * way.norm()
-                })
-            };
-            let front = of_walls().map(|(x, n)| (middle - x).unit().dot(&n)).sum::<f64>();
-            (of_walls().count() < 4 || front > 0.0) && corners.iter().all(beside)
-        });
-        let wall = |i: u32| (i as usize).checked_sub(first).filter(|w| *w < normals.len()).map(|w| w as u32);
-        Self { walls: walls(&tetrahedra, wall), tetrahedra, ..Self::default() }
+        let spacing = held.numbers().map(|i| cloud.spacing[i] * stretch).collect::<Vec<f64>>();
+        let spacing = rim.with_values("spacing", 1, spacing.into());
+        let (first, n) = (held.n_fluid(), held.len());
+        let wall = |row: usize| row.checked_sub(first).filter(|w| *w < normals.len());
+        let normal = |i: u32| wall(rim.particle(i as usize, n)).map(|w| normals[w]);
+        let tetrahedra = tetrahedralise_within(&points, &spacing, normal);
+        Self { walls: walls(&tetrahedra, |i| wall(i as usize).map(|w| w as u32)), tetrahedra, ..Self::default() }
     }
 
-    fn of_plane<const D: usize>(cloud: &Cloud<D>, held: &Held) -> Self {
+    fn of_plane<const D: usize>(cloud: &Cloud<D>, held: &Held, rim: &Rim) -> Self {
         let flat = |x: &Vector<D>| Vector([x[0], x[1]]);
-        let points: Vec<Vector<2>> = held.numbers().map(|i| flat(&cloud.x[i])).collect();
-        let first = held.n_fluid();
+        let places = held.numbers().map(|i| flat(&cloud.x[i]).0).collect();
+        let points: Vec<Vector<2>> = rim.with_places(places).into_iter().map(Vector).collect();
+        let (first, n) = (held.n_fluid(), held.len());
         let walls = Walls {
             places: &points[first..first + cloud.interface.len()],
             normals: cloud.interface.iter().map(|w| flat(&w.normal)).collect(),
@@ -79,14 +68,13 @@ impl Mesh {
         };
         let outlines = walls.outlines();
         let edge = |pair: &[u32]| [pair[0], pair[1]].map(|w| w + first as u32);
-        let edges: Vec<[u32; 2]> = outlines.iter().flat_map(|line| line.windows(2).map(edge)).collect();
-        let mut triangles = triangulate(&points, &edges);
-        let last = first + cloud.interface.len();
-        let wall = |i: u32| (first..last).contains(&(i as usize)).then(|| i as usize - first);
-        triangles.retain(|corners| match corners.map(wall) {
-            [Some(a), Some(b), Some(c)] => !walls.solid([a, b, c]),
-            _ => true,
-        });
+        let wall = |i: u32| rim.particle(i as usize, n).checked_sub(first).filter(|w| *w < cloud.interface.len());
+        // an outline goes on to where it meets the plane
+        let feet = (n..points.len())
+            .map(|row| [rim.particle(row, n) as u32, row as u32])
+            .filter(|foot| wall(foot[1]).is_some());
+        let edges: Vec<[u32; 2]> = outlines.iter().flat_map(|line| line.windows(2).map(edge)).chain(feet).collect();
+        let triangles = triangulate_within(&points, &edges, |i| wall(i).map(|w| walls.normals[w]));
         Self { outlines, triangles, ..Self::default() }
     }
 
@@ -134,12 +122,6 @@ struct Walls<'a> {
 }
 
 impl Walls<'_> {
-    /// True when a triangle between three wall particles lies in a body: its middle is behind their panels.
-    fn solid(&self, corners: [usize; 3]) -> bool {
-        let middle = corners.iter().fold(Vector::ZERO, |sum, w| sum + self.places[*w]) * (1.0 / 3.0);
-        corners.iter().map(|w| (middle - self.places[*w]).unit().dot(&self.normals[*w])).sum::<f64>() < 0.0
-    }
-
     /// Pieces of outline, joined where the end of one is the beginning of another or its own.
     fn outlines(&self) -> Vec<Vec<u32>> {
         let mut pieces: Vec<Vec<u32>> = Vec::new();

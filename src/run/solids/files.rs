@@ -3,20 +3,21 @@ use std::path::{Path, PathBuf};
 
 use super::super::error::RunError;
 use super::super::folder;
+use super::pictures::{Shown, draw, picture};
 use super::record::{ModeRow, Row, SolidSummary, ledger};
 use super::setup::Built;
 use crate::case::Case;
 use crate::math::{Bounds, Vector};
+use crate::observe::About;
 use crate::observe::table::{Entry, write_csv, write_json};
 use crate::observe::vtk::{Cells, Column, write_cells, write_collection};
 use crate::physics::solid::{Material, Tensor, tensor};
-use crate::report::{Colormap, Dots, Scatter, scatter_png, write_file};
+use crate::report::write_report;
 use crate::solid::Solid;
 use crate::solid::forces::State;
 use crate::solid::modes::Mode;
 
-/// Room around the bodies in a picture, and the greatest displacement of a mode there, in their length.
-const MARGIN: f64 = 0.1;
+/// The greatest displacement of a mode in a picture, in the length of the bodies.
 const SHOWN: f64 = 0.1;
 
 /// Where files go.
@@ -37,10 +38,15 @@ impl Files<'_> {
         self.out.map(|out| out.join(name))
     }
 
-    /// The structure as deformed: `<name>.vtu`.
-    pub(super) fn fields<const D: usize>(&self, name: &str, built: &Built<D>, u: &[f64]) -> Result<(), RunError> {
+    /// The structure as deformed, at a time of those that have one: `<name>.vtu`.
+    pub(super) fn fields<const D: usize>(
+        &self,
+        (name, time): (&str, Option<f64>),
+        built: &Built<D>,
+        u: &[f64],
+    ) -> Result<(), RunError> {
         let Some(path) = self.path(&format!("{name}.vtu")) else { return Ok(()) };
-        write(&path, &built.structure.solid, &built.structure.state(0.0, u))
+        write(&path, &About::solid(self.case, time), &built.structure.solid, &built.structure.state(0.0, u))
     }
 
     /// A field file of a series, and the list of all of them.
@@ -53,7 +59,7 @@ impl Files<'_> {
     ) -> Result<(), RunError> {
         let Some(list) = self.path("solid.pvd") else { return Ok(()) };
         let name = format!("solid_{number:05}");
-        self.fields(&name, built, u)?;
+        self.fields((&name, Some(time)), built, u)?;
         let known = self.out.map_or_else(String::new, |out| folder::text(out, "solid.pvd").unwrap_or_default());
         let mut all = crate::observe::vtk::read_collection(&known);
         all.retain(|(_, file)| *file != format!("{name}.vtu"));
@@ -91,12 +97,11 @@ impl Files<'_> {
         let raised = |v: &[f64]| -> [f64; 3] { std::array::from_fn(|a| v.get(a).copied().unwrap_or(0.0)) };
         let points: Vec<[f64; 3]> = particles.x.iter().map(|x| raised(&x.0)).collect();
         let values: Vec<f64> = shape.iter().flat_map(|v| raised(v)).collect();
-        write_cells(
-            &path,
-            &points,
-            Cells::Vertices,
-            &[Column { name: "displacement", components: 3, values: &values }],
-        )?;
+        let mut about = About::solid(self.case, None);
+        about.scalars = about.vectors;
+        about.numbers.push(("frequency [Hz]".to_owned(), mode.omega / std::f64::consts::TAU));
+        let column = Column { name: "displacement", components: 3, values: &values };
+        write_cells(&path, &about, &points, cells(&built.structure.solid), &[column])?;
         self.draw_mode(k, built, mode)?;
         let names = if D == 2 { &["x", "y", "dx", "dy"][..] } else { &["x", "y", "z", "dx", "dy", "dz"] };
         let skin = (0..particles.len()).filter(|i| particles.area[*i] != crate::math::Vector::ZERO);
@@ -110,7 +115,7 @@ impl Files<'_> {
         self.out.filter(|_| self.case.output.report)
     }
 
-    /// The shape of a plane mode, its greatest displacement a tenth of the body: `pictures/mode-1.png`.
+    /// The shape of a mode, its greatest displacement a tenth of the body: `pictures/mode-1.png`.
     fn draw_mode<const D: usize>(&self, k: usize, built: &Built<D>, mode: &Mode) -> Result<(), RunError> {
         let Some(out) = self.drawn() else { return Ok(()) };
         let solid = &built.structure.solid;
@@ -118,14 +123,19 @@ impl Files<'_> {
         let shape: &[[f64; D]] = mode.shape.as_chunks().0;
         let moved: Vec<[f64; D]> = shape.iter().map(|v| v.map(|v| size * v)).collect();
         let values: Vec<f64> = shape.iter().map(|v| Vector(*v).norm()).collect();
-        let title = format!("Mode {}: {:.6e} Hz", k + 1, mode.omega / std::f64::consts::TAU);
-        picture((out, &format!("mode-{}", k + 1)), solid, &moved, (&title, "displacement", &values))
+        let title = format!("Mode {}: {} Hz", k + 1, digits(mode.omega / std::f64::consts::TAU));
+        picture((out, &format!("mode-{}", k + 1)), solid, &moved, &Shown { title, quantity: "displacement", values })
     }
 
     /// Pictures of the structure as deformed.
     pub(super) fn pictures<const D: usize>(&self, built: &Built<D>, u: &[f64]) -> Result<(), RunError> {
         let Some(out) = self.drawn() else { return Ok(()) };
         draw(out, &built.structure.solid, &built.structure.state(0.0, u))
+    }
+
+    /// `report.html`, of the files that are there.
+    pub(super) fn report(&self) -> Result<(), RunError> {
+        self.drawn().map_or(Ok(()), |out| Ok(write_report(out).map(|_| ())?))
     }
 
     /// `summary.json`, and `modes.csv` where there are modes.
@@ -144,36 +154,24 @@ impl Files<'_> {
     }
 }
 
-/// Pictures of plane bodies: the stress in them and, where they move, each component of the velocity.
-pub(in crate::run) fn draw<const D: usize>(out: &Path, solid: &Solid<D>, state: &State<'_, D>) -> Result<(), RunError> {
-    let mut all = vec![("solid", "Stress in the solid", "von Mises stress", von_mises(solid, state))];
-    if state.velocity.iter().flatten().any(|v| *v != 0.0) {
-        let along = |a: usize| state.velocity.iter().map(|v| v[a]).collect();
-        all.push(("solid-u", "Velocity of the solid along x", "u", along(0)));
-        all.push(("solid-v", "Velocity of the solid along y", "v", along(1)));
+/// A number in a title: five digits.
+fn digits(value: f64) -> String {
+    if (1e-3..1e6).contains(&value.abs()) {
+        let decimals = (4.0 - value.abs().log10().floor()).clamp(0.0, 7.0) as usize;
+        format!("{value:.decimals$}")
+    } else {
+        format!("{value:.4e}")
     }
-    all.into_iter().try_for_each(|(file, title, quantity, values)| {
-        picture((out, file), solid, state.displacement, (title, quantity, &values))
-    })
 }
 
-/// A picture of plane bodies where they are displaced by `moved`, with values on their particles; nothing in space.
-fn picture<const D: usize>(
-    (out, file): (&Path, &str),
-    solid: &Solid<D>,
-    moved: &[[f64; D]],
-    (title, quantity, values): (&str, &str, &[f64]),
-) -> Result<(), RunError> {
-    if D != 2 {
-        return Ok(());
+/// What ties the particles of bodies together in a field file.
+fn cells<const D: usize>(solid: &Solid<D>) -> Cells<'_> {
+    let cells = solid.cells();
+    match (&cells.tetrahedra[..], &cells.triangles[..]) {
+        ([], []) => Cells::Vertices,
+        ([], triangles) => Cells::Triangles(triangles),
+        (tetrahedra, _) => Cells::Tetrahedra(tetrahedra),
     }
-    let place = |i: usize| Vector([0, 1].map(|a| solid.particles.x[i][a] + moved[i][a]));
-    let points: Vec<Vector<2>> = (0..solid.len()).map(place).collect();
-    let bounds = Bounds::around(&points);
-    let window = bounds.padded(MARGIN * bounds.extent().max_abs());
-    let dots = Dots::Value { values, quantity, map: Colormap::Sequential };
-    let scatter = Scatter { points: &points, dots, interface: &[], outlines: &[] };
-    Ok(write_file(&out.join(format!("pictures/{file}.png")), &scatter_png(&scatter, window, title)?)?)
 }
 
 /// Von Mises's stress at every particle.
@@ -185,9 +183,10 @@ fn mises(s: &Tensor) -> f64 {
     (1.5f64).sqrt() * tensor::norm(&tensor::deviator(s))
 }
 
-/// Writes particles where they are, with displacement, velocity, stress and what materials remember.
+/// Writes particles where they are and the cells between them, with displacement, velocity, stress and what materials remember.
 pub(in crate::run) fn write<const D: usize>(
     path: &Path,
+    about: &About,
     solid: &Solid<D>,
     state: &State<'_, D>,
 ) -> Result<(), RunError> {
@@ -204,6 +203,7 @@ pub(in crate::run) fn write<const D: usize>(
         Values { name: "velocity", components: 3, values: raised(state.velocity) },
         Values { name: "von_mises_stress", components: 1, values: stresses.iter().map(mises).collect() },
         Values { name: "pressure", components: 1, values: pressure },
+        Values { name: "volume", components: 1, values: solid.particles.volume.clone() },
         Values { name: "body", components: 1, values: solid.body.iter().map(|b| f64::from(*b)).collect() },
         Values { name: "material", components: 1, values: solid.material.iter().map(|b| f64::from(*b)).collect() },
     ];
@@ -217,5 +217,5 @@ pub(in crate::run) fn write<const D: usize>(
     let points: Vec<[f64; 3]> = (0..solid.len()).map(place).collect();
     let columns: Vec<Column<'_>> =
         all.iter().map(|v| Column { name: v.name, components: v.components, values: &v.values }).collect();
-    Ok(write_cells(path, &points, Cells::Vertices, &columns)?)
+    Ok(write_cells(path, about, &points, cells(solid), &columns)?)
 }

@@ -9,6 +9,7 @@ mod material;
 mod natural;
 mod own_modes;
 mod pace;
+pub(super) mod pictures;
 mod probes;
 mod record;
 mod saved;
@@ -22,6 +23,7 @@ mod tests;
 use std::path::Path;
 
 use super::error::RunError;
+use super::files::write_state_script;
 use super::folder;
 use super::monitor::Monitor;
 use super::record::summary::Clock;
@@ -145,13 +147,15 @@ fn study<const D: usize>(job: &Job<'_>, monitor: &mut dyn Monitor) -> Result<End
 fn conclude<const D: usize>(study: &Study<'_, D>, ending: &Ending<'_>) -> Result<Ended, RunError> {
     let summary = summary::summary(study, ending);
     let Some(out) = study.files.out else { return Ok(Ended::Finished(Box::new(summary))) };
-    study.files.fields("solid", study.built, &ending.marched.state)?;
+    study.files.fields(("solid", Some(summary.time)), study.built, &ending.marched.state)?;
     if ending.modes.is_empty() {
         study.files.pictures(study.built, &ending.marched.state)?;
     }
     let write = |(k, mode): (usize, &Mode)| study.files.mode(k, study.built, mode);
     ending.modes.iter().enumerate().try_for_each(write)?;
     study.files.summary(&summary)?;
+    write_state_script(out)?;
+    study.files.report()?;
     folder::finish(out)?;
     Ok(Ended::Finished(Box::new(summary)))
 }

@@ -5,7 +5,7 @@
 //! The cloud, the steady flow and the three derivatives serve all frequencies, one preconditioner all coordinates of a frequency.
 use num_complex::Complex64;
 
-use super::super::look::{GasView, LoadFrame};
+use super::super::look::{GasView, Held, LoadFrame, Mesh, Rim};
 use super::steady::is_supersonic;
 use super::swing::{Flow, swing};
 use crate::coupling::{Attached, Marches};
@@ -51,6 +51,8 @@ pub(crate) trait ForceSource {
     }
     /// True where the steady flow is faster than sound somewhere: then it has shocks.
     fn is_supersonic(&mut self) -> bool;
+    /// The walls of the steady flow, and how each coordinate moves them.
+    fn walls(&self) -> MovingWalls;
     /// q∞ S c: free-stream dynamic pressure, reference area (in the plane chord) and chord, in units of the solver.
     fn work_scale(&mut self) -> f64;
 }
@@ -62,14 +64,31 @@ pub(crate) struct Forces {
     pub(crate) generalised: Vec<Complex64>,
     /// Lift and moment coefficients per coordinate.
     pub(crate) coefficients: Vec<[Complex64; 2]>,
+    /// Pressure on each wall particle, per coordinate.
+    pub(crate) pressures: Vec<Vec<Complex64>>,
     /// How each column was found.
     pub(crate) ended: Vec<Ended>,
+}
+
+/// Wall particles where the steady flow has them, and how they move.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct MovingWalls {
+    /// Places.
+    pub(crate) points: Vec<[f64; 3]>,
+    /// Outlines in the plane.
+    pub(crate) lines: Vec<Vec<u32>>,
+    /// Triangles in space.
+    pub(crate) triangles: Vec<[u32; 3]>,
+    /// Displacement of each per coordinate.
+    pub(crate) moves: Vec<Vec<[f64; 3]>>,
 }
 
 /// What displacement, rate and acceleration of a coordinate do to the gas and to the forces.
 struct Column {
     gas: [Vec<f64>; 3],
     force: [Vec<f64>; 3],
+    /// Displacements of wall particles.
+    moves: Vec<[f64; 3]>,
 }
 
 /// The forces of a system about a state.
@@ -81,7 +100,7 @@ pub(crate) struct SmallMotion<'a, S: Marches<D>, const D: usize> {
     linear: Linear<'a, Fluid<D>>,
     columns: Vec<Column>,
     axes: LoadFrame,
-    /// Forces and coefficients in the steady flow, and the last periodic one.
+    /// Forces, coefficients and pressures in the steady flow, and the last periodic one.
     still: Vec<f64>,
     flow: Option<Flow>,
 }
@@ -117,7 +136,12 @@ impl<'a, S: Marches<D>, const D: usize> SmallMotion<'a, S, D> {
             all
         };
         // elsewhere; there with a rate; there with an acceleration
-        let displaced = [1.0, -1.0].map(|sign| self.response(&moved(0, sign * step), &[]));
+        let mut places = Vec::new();
+        let displaced = [1.0, -1.0].map(|sign| {
+            let found = self.response(&moved(0, sign * step), &[]);
+            places.push(self.places());
+            found
+        });
         let by_formula = |this: &mut Self, part: usize, sign: f64| {
             let ends = [moved(part, step), moved(part, -step)];
             let term = |k: usize, c: f64| Term { coefficient: sign * c, time: 0.0, coordinates: &ends[k] };
@@ -130,7 +154,15 @@ impl<'a, S: Marches<D>, const D: usize> SmallMotion<'a, S, D> {
             (of(&a.0, &b.0), of(&a.1, &b.1))
         };
         let [(a, fa), (b, fb), (c, fc)] = [&displaced, &fast, &hurried].map(slope);
-        Column { gas: [a, b, c], force: [fa, fb, fc] }
+        let way = |(a, b): (&[f64; 3], &[f64; 3])| [0, 1, 2].map(|d| (a[d] - b[d]) / (2.0 * step));
+        let moves = places[0].iter().zip(&places[1]).map(way).collect();
+        Column { gas: [a, b, c], force: [fa, fb, fc], moves }
+    }
+
+    /// Places of the wall particles in the frame as it stands.
+    fn places(&self) -> Vec<[f64; 3]> {
+        let frame = self.system.gas_frame(&self.frame);
+        self.system.gas().discretisation.cloud.interface_range().map(|i| frame.place(i).to_3d()).collect()
     }
 
     /// R and forces where the coordinates are `coordinates` and ∂/∂t is `terms`.
@@ -144,12 +176,16 @@ impl<'a, S: Marches<D>, const D: usize> SmallMotion<'a, S, D> {
         (du[self.system.gas_unknowns()].to_vec(), loads)
     }
 
-    /// Generalised forces on all coordinates at the state `u`, then the coefficients of lift and moment.
+    /// Generalised forces on all coordinates at the state `u`, then the coefficients of lift and moment, then the pressures on all wall
+    /// particles.
     fn loads(&mut self, u: &[f64]) -> Vec<f64> {
         let mut all = self.system.generalised_forces(&self.frame, u, &mut self.work);
-        let view = GasView::of(self.system, &self.frame, u);
-        let coefficients = view.coefficients(&self.axes, self.system.gas_work(&mut self.work)).unwrap_or_default();
+        let (view, work) = (GasView::of(self.system, &self.frame, u), self.system.gas_work(&mut self.work));
+        let coefficients = view.coefficients(&self.axes, work).unwrap_or_default();
         all.extend([coefficients.cl, coefficients.cm]);
+        // those that the coefficients were found from
+        let walls = self.system.gas().discretisation.cloud.interface_range();
+        all.extend(walls.map(|i| work.state.get(i).map_or(0.0, |q| q.pressure)));
         all
     }
 
@@ -157,7 +193,7 @@ impl<'a, S: Marches<D>, const D: usize> SmallMotion<'a, S, D> {
     fn force_of(&mut self, v: &[f64]) -> Vec<f64> {
         let size = norm(v);
         if size == 0.0 {
-            return vec![0.0; self.columns.len() + COEFFICIENTS];
+            return vec![0.0; self.still.len()];
         }
         let (own, step) = (self.system.gas_unknowns(), OF_STATE * norm(self.system.gas_state(&self.state)) / size);
         let sides = [1.0, -1.0].map(|sign| {
@@ -221,6 +257,18 @@ impl<S: Marches<D>, const D: usize> ForceSource for SmallMotion<'_, S, D> {
         is_supersonic(self.system.gas(), work)
     }
 
+    fn walls(&self) -> MovingWalls {
+        let gas = self.system.gas();
+        let (cloud, held) = (&gas.discretisation.cloud, Held::all(&gas.discretisation.cloud));
+        let mesh = Mesh::of(cloud, &held, &Rim::default());
+        MovingWalls {
+            points: self.places(),
+            lines: mesh.outlines,
+            triangles: mesh.walls,
+            moves: self.columns.iter().map(|c| c.moves.clone()).collect(),
+        }
+    }
+
     fn work_scale(&mut self) -> f64 {
         let view = GasView::of(self.system, &self.frame, &self.state);
         let axes = self.axes.axes(&view.seen(self.system.gas_work(&mut self.work)));
@@ -252,6 +300,7 @@ impl<S: Marches<D>, const D: usize> ForceSource for SmallMotion<'_, S, D> {
             let force = |i: usize| Complex64::new(re[i] + q[i] - omega * omega * a[i], im[i] + omega * v[i]);
             (0..n).for_each(|i| all.generalised[i * n + j] = force(i));
             all.coefficients.push([force(n), force(n + 1)]);
+            all.pressures.push((n + COEFFICIENTS..self.still.len()).map(force).collect());
             all.ended.push(end);
         }
         Some(all)

@@ -6,7 +6,7 @@ use num_complex::Complex64;
 
 use super::super::error::RunError;
 use super::super::files::{FILM, Target, together, write_film};
-use super::super::look::{GasView, Held, Mesh, motion, pressure_coefficient};
+use super::super::look::{GasView, Held, Mesh, Rim, motion, pressure_coefficient};
 use super::super::record::Log;
 use super::super::record::trace::Sample;
 use super::super::watch::{compare, sample};
@@ -17,6 +17,7 @@ use crate::math::Vector;
 use crate::math::fourier::{Instances, Series};
 use crate::math::jet::Jet;
 use crate::motion::{BodyMotion, Motions, positions};
+use crate::observe::About;
 use crate::observe::loads::Coefficients;
 use crate::observe::table::{Entry, write_csv};
 use crate::observe::vtk::{Column, write_cells};
@@ -310,12 +311,16 @@ impl<S: HasGas<D>, const D: usize> PeriodicState<'_, S, D> {
                 columns.push((format!("{name}_{m}_im"), column(n + m, -1.0)));
             }
         }
-        let points: Vec<[f64; 3]> = held.numbers().map(|i| cloud.x[i].to_3d()).collect();
-        let columns: Vec<(&str, Cow<'_, [f64]>)> =
-            columns.iter().map(|(name, values)| (name.as_str(), held.rows(1, values))).collect();
+        let rim = Rim::of(case, cloud, &held);
+        let points = rim.with_places(held.numbers().map(|i| cloud.x[i].to_3d()).collect());
+        let columns: Vec<(&str, Cow<'_, [f64]>)> = columns
+            .iter()
+            .map(|(name, values)| (name.as_str(), rim.with_values(name, 1, held.rows(1, values))))
+            .collect();
         let columns: Vec<Column<'_>> =
             columns.iter().map(|(name, values)| Column { name, components: 1, values }).collect();
-        Ok(write_cells(&out.join("field_harmonics.vtu"), &points, Mesh::of(cloud, &held).cells(), &columns)?)
+        let (about, mesh) = (About::gas(case, "pressure_mean", None), Mesh::of(cloud, &held, &rim));
+        Ok(write_cells(&out.join("field_harmonics.vtu"), &about, &points, mesh.cells(), &columns)?)
     }
 
     /// `surface_harmonics.csv`: the same of the pressure coefficient on the walls.
