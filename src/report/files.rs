@@ -9,6 +9,9 @@ use crate::case::{numbers_of, read_regular, separator};
 /// What the pictures of the film strip begin with.
 pub(super) const FILM: &str = "film";
 
+/// What a flutter boundary keeps of finished Mach numbers until all are: no page names it, for it does not stay.
+pub const UNFINISHED_BOUNDARY: &str = "flutter-kept.json";
+
 /// A run folder. Every reader gives what is there or says, for the page, why it is not.
 pub(super) struct RunFolder {
     pub(super) path: PathBuf,
@@ -193,12 +196,13 @@ fn read_text(path: &Path, name: &str) -> Result<String, String> {
     }
 }
 
+/// The files of a folder that stay there.
 fn list(folder: &Path) -> Vec<(String, u64)> {
     let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
     let mut files: Vec<(String, u64)> = entries
         .filter_map(|entry| entry.metadata().ok().filter(|m| m.is_file()).map(|m| (entry, m.len())))
         .map(|(entry, size)| (entry.file_name().to_string_lossy().into_owned(), size))
-        .filter(|(name, _)| !name.starts_with('.'))
+        .filter(|(name, _)| !name.starts_with('.') && name != UNFINISHED_BOUNDARY)
         .collect();
     files.sort();
     files

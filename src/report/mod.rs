@@ -47,7 +47,7 @@ mod words;
 pub use chart::{Axis, Chart, Marks, Series};
 pub use colour::Colormap;
 pub use compare::Comparison;
-pub use files::check_reference;
+pub use files::{UNFINISHED_BOUNDARY, check_reference};
 pub use flutter::write_flutter;
 pub use overview::write_report;
 pub use picture::{Dots, PictureStyle, Raster, Scatter, raster_png, scatter_png};

@@ -10,7 +10,7 @@ use crate::geometry::dimension;
 use crate::observe::checkpoint;
 use crate::observe::table::UNFINISHED;
 use crate::observe::write_atomic;
-use crate::report::check_reference;
+use crate::report::{UNFINISHED_BOUNDARY, check_reference};
 
 /// Where the folder of the case file is noted.
 const ORIGIN: &str = "origin.txt";
@@ -22,7 +22,7 @@ const SUMMARY: &str = "summary.json";
 const CLOUD: &str = "cloud.toml";
 
 /// What is finished of a flutter boundary that is not.
-pub(crate) const KEPT: &str = "flutter-kept.json";
+pub(crate) const KEPT: &str = UNFINISHED_BOUNDARY;
 
 /// What a flutter boundary found.
 pub(crate) const BOUNDARY: &str = "flutter.json";

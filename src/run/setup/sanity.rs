@@ -1,5 +1,5 @@
 //! What can be written down but makes no sense: told before any particle is placed.
-use super::super::accuracy::ACROSS;
+use super::super::accuracy::{self, ACROSS};
 use super::super::error::RunError;
 use super::super::look::reference::chord;
 use super::super::recipe;
@@ -59,7 +59,8 @@ pub(crate) fn sane<const D: usize>(
                     .into(),
             });
         }
-        if spacing > ROUGH * length {
+        // where loads have error bars these say it, of the last cloud
+        if spacing > ROUGH * length && accuracy::asked(case).is_none() {
             notes.push(format!(
                 "body `{name}` is only {:.1} spacings long: its loads are a rough guess",
                 length / spacing

@@ -18,6 +18,7 @@ mod spline_modes;
 mod summary;
 #[cfg(test)]
 mod tests;
+mod trial;
 
 use std::path::Path;
 
