@@ -66,14 +66,14 @@ impl Stream {
 #[derive(Default)]
 struct Ticks {
     loads: Vec<[f64; 3]>,
-    reached: Vec<f64>,
+    times: Vec<f64>,
     notes: Vec<String>,
 }
 
 impl Monitor for Ticks {
     fn tick(&mut self, tick: &Tick) {
         self.loads.push(tick.loads.unwrap_or_default());
-        self.reached.push(tick.reached);
+        self.times.extend(tick.march.map(|march| march.time));
     }
     fn note(&mut self, text: &str) {
         self.notes.push(text.to_owned());
@@ -139,7 +139,7 @@ fn a_pitching_march_is_the_same_in_seconds() {
     let [a, b] = &runs;
     assert_eq!(a.summary.time, 3.0);
     near(b.summary.time, stream.seconds(3.0));
-    near(*b.ticks.reached.last().unwrap(), stream.seconds(3.0));
+    near(*b.ticks.times.last().unwrap(), stream.seconds(3.0));
 }
 
 #[test]

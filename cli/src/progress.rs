@@ -2,7 +2,8 @@
 //!
 //! On a terminal: one line that is drawn over, with the history of the residual as a sparkline. In a pipe: plain lines,
 //! at most one a second, and one whenever the residual has fallen by two more orders. With `--json`: one object an
-//! iteration. Text goes to stderr, JSON to stdout; a reader that goes away silences the progress, never the run.
+//! iteration. Text goes to stderr, JSON to stdout; a reader that goes away silences the progress, never the run. Lines begin with the time
+//! left of the whole run and have at most 80 columns, on narrow terminals what fits: what matters least is left out.
 use std::io::{self, IsTerminal, Write};
 use std::time::{Duration, Instant};
 
@@ -20,8 +21,24 @@ const LINE_INTERVAL: Duration = Duration::from_secs(1);
 const LINE_ORDERS: f64 = 2.0;
 /// Greatest number of values behind the sparkline, twice its width.
 const HISTORY: usize = 2 * SPARKS;
+/// How often the sign before the line turns while nothing else is told.
+const TURN: Duration = Duration::from_millis(200);
 /// Width of the sparkline.
 const SPARKS: usize = 16;
+
+/// Columns of a plain line at most, and of a terminal whose width is not known.
+const COLUMNS: usize = 80;
+/// What a terminal shows before the line: a sign that turns, and a space.
+const BEFORE: usize = 2;
+
+/// Time left of the whole run.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Left {
+    /// Seconds.
+    pub(crate) seconds: f64,
+    /// The run may end before, when the loads are known well enough.
+    pub(crate) at_most: bool,
+}
 
 /// What is known after an iteration.
 #[derive(Clone, Debug)]
@@ -40,8 +57,8 @@ pub(crate) struct Tick {
     pub(crate) rate: f64,
     /// Number of particles.
     pub(crate) particles: usize,
-    /// Seconds left, as far as one can tell.
-    pub(crate) eta: Option<f64>,
+    /// Time left, as far as one can tell.
+    pub(crate) left: Option<Left>,
     /// Where a march stands.
     pub(crate) march: Option<MarchTick>,
     /// Present point of a polar from 0, and their number.
@@ -104,7 +121,7 @@ impl Progress {
             Voice::Json(_) => self.event("iteration", fields(tick)),
             Voice::Bar(bar) => {
                 self.history.push(tick.residual);
-                bar.set_message(bar_text(tick, &self.history));
+                bar.set_message(bar_text(tick, &self.history, columns_of_terminal()));
                 bar.tick();
             }
             Voice::Lines(_) if self.throttle.due(self.started.elapsed(), tick.orders) => {
@@ -112,6 +129,22 @@ impl Progress {
                 self.say(&line_text(tick));
             }
             Voice::Lines(_) => self.untold = Some(tick.clone()),
+        }
+    }
+
+    /// Tells what begins that has no iterations.
+    pub(crate) fn doing(&mut self, what: &str, left: Option<Left>) {
+        match &self.voice {
+            Voice::Silent => {}
+            Voice::Json(_) => self.event("doing", json!({ "message": what, "eta": left.map(|l| l.seconds) })),
+            Voice::Bar(bar) => {
+                bar.set_message(fitted(&[(0, left_text(left)), (1, what.to_owned())], columns_of_terminal()));
+                bar.enable_steady_tick(TURN);
+            }
+            Voice::Lines(_) => {
+                self.untold = None;
+                self.say(&fitted(&[(0, left_text(left)), (0, what.to_owned())], COLUMNS));
+            }
         }
     }
 
@@ -169,30 +202,66 @@ fn fields(tick: &Tick) -> Value {
         "loads": tick.loads,
         "rate": tick.rate,
         "particles": tick.particles,
-        "eta": tick.eta,
+        "eta": tick.left.map(|left| left.seconds),
     })
 }
 
-/// A march in one line of at most 80 columns, what is left of it first.
-fn march_text(march: &MarchTick, tick: &Tick) -> String {
-    let left = tick.eta.map_or_else(|| "–:––".to_owned(), clock);
-    let mut text = format!("{left} left  ");
-    match march.period {
+/// The texts that fit into so many columns, in their order: those with the highest numbers are left out first.
+fn fitted(texts: &[(u8, String)], columns: usize) -> String {
+    let mut kept: Vec<&(u8, String)> = texts.iter().filter(|t| !t.1.is_empty()).collect();
+    loop {
+        let line = kept.iter().map(|t| t.1.as_str()).collect::<Vec<_>>().join("  ");
+        let least = kept.iter().enumerate().max_by_key(|(_, t)| t.0);
+        match least.filter(|(_, t)| t.0 > 0) {
+            Some((k, _)) if line.chars().count() > columns => drop(kept.remove(k)),
+            _ => return line,
+        }
+    }
+}
+
+/// Columns of the terminal that are left for a line.
+fn columns_of_terminal() -> usize {
+    let known = console::Term::stderr().size_checked().map_or(COLUMNS, |(_, columns)| usize::from(columns));
+    known.min(COLUMNS).saturating_sub(BEFORE)
+}
+
+/// What is left of the whole run.
+fn left_text(left: Option<Left>) -> String {
+    match left {
+        Some(Left { seconds, at_most }) if seconds.is_finite() && seconds >= 0.0 => {
+            format!("{}{} left", if at_most { "≤ " } else { "" }, clock(seconds))
+        }
+        _ => "–:–– left".to_owned(),
+    }
+}
+
+/// Lift, drag and moment, in the order in which they are left out from behind.
+fn loads_texts(tick: &Tick) -> Vec<(u8, String)> {
+    let Some([lift, drag, moment]) = tick.loads else { return Vec::new() };
+    vec![
+        (1, format!("CL {}", fixed(lift, 4))),
+        (3, format!("CD {}", fixed(drag, 4))),
+        (5, format!("CM {}", fixed(moment, 4))),
+    ]
+}
+
+/// A march.
+fn march_texts(march: &MarchTick, tick: &Tick) -> Vec<(u8, String)> {
+    let way = match march.period {
         Some(period) => {
             let all = march.until / period;
             let decimals = if (all - all.round()).abs() < 5e-3 { 0 } else { 2 };
-            text += &format!("period {:.2} of {all:.decimals$}", march.time / period);
+            format!("period {:.2} of {all:.decimals$}", march.time / period)
         }
-        None => text += &format!("to t {}", short(march.until)),
-    }
-    text += &format!("  t {}", short(march.time));
-    if let Some(angle) = march.angle {
-        text += &format!("  α {}°", fixed(angle.to_degrees(), 2));
-    }
+        None => format!("to t {}", short(march.until)),
+    };
+    let mut texts = vec![(0, left_text(tick.left)), (2, way), (1, format!("t {}", short(march.time)))];
+    texts.extend(march.angle.map(|angle| (4, format!("α {}°", fixed(angle.to_degrees(), 2)))));
     if let Some([lift, ..]) = tick.loads {
-        text += &format!("  CL {}", fixed(lift, 4));
+        let before = march.lift_before.map_or_else(String::new, |lift| format!(" (before {})", fixed(lift, 4)));
+        texts.push((3, format!("CL {}{before}", fixed(lift, 4))));
     }
-    text + &march.lift_before.map_or_else(String::new, |lift| format!(" (before {lift:.4})"))
+    texts
 }
 
 /// A time with four digits.
@@ -203,45 +272,42 @@ fn short(time: f64) -> String {
 
 /// Which point of a polar the line is about.
 fn point_text(tick: &Tick) -> String {
-    tick.point.map_or_else(String::new, |[point, all]| format!("point {} of {all}  ", point + 1))
+    tick.point.map_or_else(String::new, |[point, all]| format!("point {} of {all}", point + 1))
 }
 
 fn line_text(tick: &Tick) -> String {
     if let Some(march) = &tick.march {
-        return march_text(march, tick);
+        return fitted(&march_texts(march, tick), COLUMNS);
     }
-    let mut text = point_text(tick)
-        + &format!(
-            "iteration {:>6}  residual {:.3e}  orders {:5.2}  cfl {:.1e}",
-            tick.iteration, tick.residual, tick.orders, tick.cfl
-        );
-    if let Some([lift, drag, moment]) = tick.loads {
-        let [lift, drag, moment] = [lift, drag, moment].map(|c| fixed(c, 5));
-        text.push_str(&format!("  CL {lift:>8}  CD {drag:>8}  CM {moment:>8}"));
-    }
-    text + &format!("  {}", pace(tick))
+    let mut texts = vec![
+        (0, left_text(tick.left)),
+        (1, point_text(tick)),
+        (0, format!("iteration {:>5}", tick.iteration)),
+        (2, format!("residual {:.1e}", tick.residual)),
+    ];
+    texts.extend(loads_texts(tick));
+    texts.push((4, format!("cfl {:.0e}", tick.cfl)));
+    fitted(&texts, COLUMNS)
 }
 
-fn bar_text(tick: &Tick, history: &History) -> String {
+fn bar_text(tick: &Tick, history: &History, columns: usize) -> String {
     if let Some(march) = &tick.march {
-        return march_text(march, tick);
+        return fitted(&march_texts(march, tick), columns);
     }
-    let (sparks, orders) = (history.sparkline(), tick.orders);
-    let mut text =
-        point_text(tick) + &format!("{}  {sparks} {:.2e} ({orders:.1} orders)", tick.iteration, tick.residual);
-    if let Some([lift, drag, moment]) = tick.loads {
-        let [lift, drag, moment] = [lift, drag, moment].map(|c| fixed(c, 4));
-        text.push_str(&format!("  CL {lift} CD {drag} CM {moment}"));
-    }
-    text + &format!("  cfl {:.0e}  {}  {} particles", tick.cfl, pace(tick), tick.particles)
+    let mut texts = vec![
+        (0, left_text(tick.left)),
+        (1, point_text(tick)),
+        (0, tick.iteration.to_string()),
+        (4, history.sparkline()),
+        (2, format!("{:.1e}", tick.residual)),
+    ];
+    texts.extend(loads_texts(tick));
+    texts.extend([(6, rate(tick)), (7, format!("{} particles", tick.particles)), (8, format!("cfl {:.0e}", tick.cfl))]);
+    fitted(&texts, columns)
 }
 
-fn pace(tick: &Tick) -> String {
-    let rate = if tick.rate >= 10.0 { format!("{:.0}/s", tick.rate) } else { format!("{:.2}/s", tick.rate) };
-    match tick.eta.filter(|eta| eta.is_finite() && *eta >= 0.0) {
-        Some(eta) => format!("{rate}  {} left", clock(eta)),
-        None => rate,
-    }
+fn rate(tick: &Tick) -> String {
+    if tick.rate >= 10.0 { format!("{:.0}/s", tick.rate) } else { format!("{:.2}/s", tick.rate) }
 }
 
 /// Seconds as `0:42` or `1:02:03`.
@@ -349,7 +415,7 @@ mod tests {
             loads: Some([0.35, 0.022, -0.04]),
             rate: 8.1,
             particles: 20_000,
-            eta: Some(3723.0),
+            left: Some(Left { seconds: 3723.0, at_most: false }),
             march: None,
             point: None,
         }
@@ -368,8 +434,34 @@ mod tests {
         assert_eq!(told, "1:02:03 left  period 2.28 of 4  t 123.5  α -1.02°  CL 0.3500 (before -0.2861)");
         assert!(told.chars().count() <= 80, "{}", told.chars().count());
         let free = MarchTick { period: None, angle: None, lift_before: None, ..march };
-        let told = line_text(&Tick { march: Some(free), eta: None, ..tick(7, 5.0) });
+        let told = line_text(&Tick { march: Some(free), left: None, ..tick(7, 5.0) });
         assert_eq!(told, "–:–– left  to t 216.1  t 123.5  CL 0.3500");
+    }
+
+    #[test]
+    fn lines_fit_into_terminals_of_any_width_and_begin_with_the_time_left() {
+        let left = Some(Left { seconds: 36_000.0, at_most: true });
+        let polar = Tick { point: Some([121, 312]), left, iteration: 123_456, ..tick(1, 5.0) };
+        let march = MarchTick {
+            time: -1.2345e7,
+            until: 2.1610e7,
+            period: Some(54.03),
+            angle: Some(-0.5),
+            lift_before: Some(-0.28611),
+        };
+        let marched = Tick { march: Some(march), ..polar.clone() };
+        let mut history = History::default();
+        (0..100).for_each(|i| history.push(10_f64.powf(-f64::from(i) / 10.0)));
+        for columns in [78, 58, 38] {
+            for tick in [&polar, &marched] {
+                let told = bar_text(tick, &history, columns);
+                assert!(told.chars().count() <= columns && told.starts_with("≤ 10:00:00 left  "), "{columns}: {told}");
+            }
+        }
+        assert!(bar_text(&polar, &history, 58).contains("point 122 of 312  123456  "));
+        assert!([&polar, &marched].iter().all(|tick| line_text(tick).chars().count() <= COLUMNS));
+        let building = fitted(&[(0, left_text(left)), (1, "building the cloud".into())], 58);
+        assert_eq!(building, "≤ 10:00:00 left  building the cloud");
     }
 
     #[test]
@@ -401,9 +493,12 @@ mod tests {
         progress.finish();
         progress.finish();
         let text = page.text();
-        let told: Vec<&str> = text.lines().map(|l| l.split_whitespace().nth(1).unwrap()).collect();
+        let told: Vec<&str> = text.lines().map(|l| l.split_whitespace().nth(3).unwrap()).collect();
         assert_eq!(told, ["0", "20", "40", "50"]);
-        assert!(text.contains("CL  0.35000  CD  0.02200  CM -0.04000  8.10/s  1:02:03 left"), "{text}");
+        assert!(
+            text.ends_with("1:02:03 left  iteration    50  residual 1.0e-5  CL 0.3500  CD 0.0220  CM -0.0400\n"),
+            "{text}"
+        );
     }
 
     #[test]
@@ -444,6 +539,10 @@ mod tests {
         assert_eq!((sparks[0], sparks.len()), ('█', SPARKS));
         assert!(sparks.windows(2).all(|pair| pair[1] <= pair[0]));
         history.push(f64::NAN);
-        assert!(bar_text(&tick(9, 3.0), &history).contains("(3.0 orders)  CL 0.3500 CD 0.0220 CM -0.0400  cfl 1e2"));
+        let told = bar_text(&tick(9, 3.0), &history, 78);
+        assert!(
+            told.starts_with("1:02:03 left  9  █") && told.ends_with("1.0e-3  CL 0.3500  CD 0.0220  CM -0.0400"),
+            "{told}"
+        );
     }
 }

@@ -1,11 +1,11 @@
 //! Between a run and its user: progress out, signals in.
 use std::time::Instant;
 
-use alula::run::{Monitor, Tick};
+use alula::run::{Monitor, Portion, Tick, TimeLeft};
 
 use crate::arguments::Verbosity;
 use crate::interrupt::Interrupt;
-use crate::progress::{self, Progress};
+use crate::progress::{self, Left, Progress};
 
 /// Shows progress and passes signals on.
 pub(crate) struct Watch {
@@ -13,6 +13,7 @@ pub(crate) struct Watch {
     interrupt: Interrupt,
     quiet: bool,
     began: Instant,
+    time_left: TimeLeft,
     first: Option<u64>,
 }
 
@@ -24,8 +25,15 @@ impl Watch {
             interrupt: Interrupt::install().unwrap_or_default(),
             quiet: verbosity.quiet,
             began: Instant::now(),
+            time_left: TimeLeft::default(),
             first: None,
         }
+    }
+
+    /// Time left in this portion of the run.
+    fn left(&mut self, now: &Portion) -> Option<Left> {
+        let seconds = self.time_left.seconds(now)?;
+        Some(Left { seconds, at_most: now.may_end_early })
     }
 
     /// The line that shows progress, to close it and to print events.
@@ -38,9 +46,7 @@ impl Monitor for Watch {
     fn tick(&mut self, tick: &Tick) {
         let first = *self.first.get_or_insert(tick.iteration.saturating_sub(1));
         let seconds = self.began.elapsed().as_secs_f64();
-        let of_stage = (tick.reached / tick.goal).clamp(0.0, 1.0);
-        let share = tick.point.map_or(of_stage, |[point, all]| (point as f64 + of_stage) / all as f64);
-        let eta = (share > 0.02 && share < 1.0).then(|| seconds * (1.0 - share) / share);
+        let left = self.left(&tick.portion);
         self.progress.tick(&progress::Tick {
             iteration: tick.iteration,
             orders: -tick.residual.max(f64::MIN_POSITIVE).log10(),
@@ -49,10 +55,15 @@ impl Monitor for Watch {
             loads: tick.loads,
             rate: (tick.iteration - first) as f64 / seconds.max(1e-9),
             particles: tick.particles,
-            eta,
+            left,
             march: tick.march,
             point: tick.point,
         });
+    }
+
+    fn doing(&mut self, what: &str, now: &Portion) {
+        let left = self.left(now);
+        self.progress.doing(what, left);
     }
 
     fn note(&mut self, text: &str) {

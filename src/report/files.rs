@@ -5,6 +5,7 @@ use serde_json::Value;
 
 use super::chart::{Marks, Series};
 use crate::case::{numbers_of, read_regular, separator};
+use crate::observe::table::KEPT;
 
 /// What the pictures of the film strip begin with.
 pub(super) const FILM: &str = "film";
@@ -193,12 +194,13 @@ fn read_text(path: &Path, name: &str) -> Result<String, String> {
     }
 }
 
+/// The files of a folder that stay there.
 fn list(folder: &Path) -> Vec<(String, u64)> {
     let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
     let mut files: Vec<(String, u64)> = entries
         .filter_map(|entry| entry.metadata().ok().filter(|m| m.is_file()).map(|m| (entry, m.len())))
         .map(|(entry, size)| (entry.file_name().to_string_lossy().into_owned(), size))
-        .filter(|(name, _)| !name.starts_with('.'))
+        .filter(|(name, _)| !name.starts_with('.') && name != KEPT)
         .collect();
     files.sort();
     files

@@ -11,7 +11,6 @@ use super::surface_viewer::surface_viewer;
 use super::viewer::viewer;
 use super::words::{grouped, number, number_of};
 use crate::math::digits::fixed;
-use crate::observe::table::KEPT;
 
 /// What pictures of the particles begin with.
 const OF_CLOUD: [&str; 3] = ["cloud", "particles", "doctor"];
@@ -316,6 +315,6 @@ pub(super) fn files(run: &RunFolder) -> Vec<Block> {
         let link = name.replace('%', "%25").replace('#', "%23").replace('?', "%3F").replace(':', "%3A");
         vec![Cell { text: name.clone(), class: "", link: Some(format!("./{link}")) }, Cell::from(size(*bytes))]
     };
-    let rows = run.files().iter().filter(|(name, _)| name != "report.html" && name != KEPT).map(row).collect();
+    let rows = run.files().iter().filter(|(name, _)| name != "report.html").map(row).collect();
     vec![Block::Table(Table { columns: Vec::new(), rows })]
 }

@@ -289,6 +289,11 @@ pub(crate) fn sizes<'a, const D: usize>(
     }
 }
 
+/// Particles of a cloud with `factor` times the spacing over those of the one with that spacing, about.
+pub(crate) fn alike(factor: f64, dimension: usize) -> f64 {
+    factor.powf(if dimension == 2 { -2.0 } else { -POWER })
+}
+
 /// The stages of a family whose clouds have the `sizes`.
 pub(crate) fn family(case: &Case, asked: &Accuracy, sizes: &dyn Fn(f64) -> f64, dimension: usize) -> Vec<Stage> {
     let (first, least) = (FIRST[dimension - 2], CLOUDS[dimension - 2]);

@@ -11,7 +11,8 @@ use serde::Serialize;
 use super::accuracy;
 use super::disk;
 use super::recipe::harmonics;
-use super::stage::Stage;
+use super::stage::{Stage, Task};
+use super::time_left::Portion;
 use crate::case::{Case, ParticleMotion, Polar, Temporal};
 use crate::math::sweep::threads;
 
@@ -50,10 +51,16 @@ const FOLLOWING: f64 = 6.6;
 /// finer the cloud, the more cells a sound wave passes in a step.
 const STEP: f64 = 28.0;
 const STEP_GROWTH: f64 = 0.5;
+/// Residuals that a cloud takes the time of to be built, in the plane and in space.
+const BUILDING: [f64; 2] = [120.0, 230.0];
+/// Steps of a march that a harmonic balance begins from, about.
+const LEAD_STEPS: f64 = 100.0;
 /// Residuals of a harmonic balance without and with each harmonic, its start included.
 const BALANCE: [f64; 2] = [300.0, 850.0];
 /// Residuals of a step of an explicit method, part of a stable step lost included, at rest and in motion.
 const EXPLICIT: [f64; 2] = [3.5, 7.0];
+/// Residuals that the linear system of one column of forces in small motion takes the time of, in the plane and in space.
+pub(crate) const OF_COLUMN: [f64; 2] = [600.0, 250.0];
 /// Growth of a cloud in a cycle of adaptation, and work of a steady state that begins from that of the cycle before over that of
 /// one that begins anew.
 const ADAPTED: f64 = 1.4;
@@ -81,6 +88,8 @@ pub(crate) struct Pilot {
     pub(crate) seconds: f64,
     /// Particles of a cloud that follows its shocks over those of one that does not.
     pub(crate) following: f64,
+    /// Seconds of an implicit step in time on that cloud, where some were taken.
+    pub(crate) step: Option<f64>,
 }
 
 /// A case on a cloud.
@@ -175,7 +184,7 @@ impl Sized<'_> {
 
     /// Residuals of a usual steady state of `n` particles.
     fn usual(&self, n: f64) -> f64 {
-        STEADY[self.dimension - 2] * (n / USUAL).powf(GROWTH[self.dimension - 2])
+        usual(n, self.dimension)
     }
 
     /// Residuals of a steady state of `n` particles, over what a pilot has seen of it.
@@ -185,13 +194,21 @@ impl Sized<'_> {
         self.usual(n) * beyond.powf(HARD_GROWTH)
     }
 
+    /// Residuals of an implicit step in time of `n` particles: by the steps of a pilot, where it has taken some.
+    fn residuals_of_step(&self, n: f64) -> f64 {
+        let each = self.evaluation / self.particles.max(1) as f64;
+        let seen = self.pilot.and_then(|p| Some((p.particles, p.step? / (p.particles * each))));
+        let (few, residuals) = seen.unwrap_or((USUAL, STEP));
+        residuals * (n / few).powf(STEP_GROWTH)
+    }
+
     /// Residuals of what follows a steady start.
     fn in_time(&self, n: f64, fastest: impl FnOnce() -> f64) -> f64 {
         let end = self.case.end(self.period).unwrap_or_default();
         match &self.case.time {
             Temporal::Steady(_) | Temporal::Newmark(_) | Temporal::Modes(_) => 0.0,
             Temporal::Dual(_) => {
-                let each = STEP * (n / USUAL).powf(STEP_GROWTH);
+                let each = self.residuals_of_step(n);
                 self.case.step_length(self.period).map_or(0.0, |step| each * end / step)
             }
             Temporal::Harmonics(_) => {
@@ -201,6 +218,58 @@ impl Sized<'_> {
             Temporal::Explicit(plan) => EXPLICIT[usize::from(self.case.moves())] * end * fastest() / plan.cfl,
         }
     }
+}
+
+/// Residuals of a usual steady state of `n` particles.
+fn usual(n: f64, dimension: usize) -> f64 {
+    STEADY[dimension - 2] * (n / USUAL).powf(GROWTH[dimension - 2])
+}
+
+/// Stage `k` as a part of the run of a case whose own cloud has `particles`; `period` is that of the motion in the time of the solver.
+pub(crate) fn portion(
+    case: &Case,
+    (k, stages): (usize, &[Stage]),
+    particles: Option<usize>,
+    (dimension, period): (usize, Option<f64>),
+) -> Portion {
+    let n = particles.map_or(USUAL, |n| n as f64);
+    // the cloud of the case itself is built before the first stage
+    let opening = n * BUILDING[dimension - 2];
+    let work: Vec<f64> = [opening].into_iter().chain(of_stages(case, stages, n, (dimension, period))).collect();
+    let family = accuracy::asked(case).is_some();
+    Portion { may_end_early: family && k + 1 < stages.len(), ..Portion::of(k + 1, &work) }
+}
+
+/// Work of the stages, in residuals of a particle.
+fn of_stages(case: &Case, stages: &[Stage], n: f64, (dimension, period): (usize, Option<f64>)) -> Vec<f64> {
+    let adapted = accuracy::asked(case).is_none();
+    let work = |stage: &Stage| {
+        let n =
+            n * accuracy::alike(stage.factor, dimension) * if adapted { ADAPTED.powi(stage.cycle as i32) } else { 1.0 };
+        let finer = (n / USUAL).powf(STEP_GROWTH);
+        let each = match stage.task {
+            Task::Relax if stage.cycle > 0 && adapted => AGAIN * usual(n, dimension),
+            Task::Relax if stage.factor == 1.0 && stage.cycle == 0 => usual(n, dimension) - BUILDING[dimension - 2],
+            Task::Relax => usual(n, dimension),
+            Task::March => STEP * finer * steps(case, period),
+            Task::Lead => STEP * finer * LEAD_STEPS,
+            Task::Balance { harmonics } => (BALANCE[0] + BALANCE[1] * harmonics as f64) * finer,
+        };
+        n * each * if stage.point.unwrap_or(0) == 0 { 1.0 } else { NEXT_POINT }
+    };
+    stages.iter().map(work).collect()
+}
+
+/// Share of the work that a steady flow takes of that and `columns` of forces in small motion about it.
+pub(crate) fn share_of_steady(dimension: usize, columns: usize) -> f64 {
+    let steady = usual(USUAL, dimension);
+    steady / (steady + columns as f64 * OF_COLUMN[dimension - 2])
+}
+
+/// Steps of an implicit march; of an explicit one, which is no stage among others, none are counted.
+fn steps(case: &Case, period: Option<f64>) -> f64 {
+    let step = case.step_length(period).filter(|step| *step > 0.0);
+    step.zip(case.end(period)).map_or(1.0, |(step, end)| end / step)
 }
 
 /// Bytes that each particle of a run takes.
@@ -241,6 +310,25 @@ mod tests {
     fn pictures_count_where_they_are_drawn() {
         let (with, without) = (cost("[output]\nreport = true\n", 4000), cost("", 4000));
         assert!(with.bytes > without.bytes + 4e7 && with.seconds > without.seconds, "{with:?} {without:?}");
+    }
+
+    #[test]
+    fn parts_of_a_run_are_shared_out_over_clouds_points_and_time() {
+        let case = |more: &str| crate::case::read(&format!("[flow]\nmach = 0.5\n{more}"), "t").unwrap();
+        let section = "[[body]]\nnaca = \"0012\"\n";
+        let part = |case: &Case, k: usize, stages: &[Stage]| portion(case, (k, stages), Some(4111), (2, Some(10.0)));
+        let cloud = |factor: f64| Stage { factor, ..Stage::PLAIN };
+        // a cloud with half the spacing takes about four times as long, and the run may end before the last one
+        let (family, clouds) = (case(section), [cloud(4.0), cloud(2.0), cloud(1.0)]);
+        let [first, second, last] = [0, 1, 2].map(|k| part(&family, k, &clouds));
+        assert!(first.before < 0.2 && (last.before + last.own - 1.0).abs() < 1e-12, "{first:?} {last:?}");
+        assert!((2.5..4.5).contains(&(last.own / second.own)) && second.may_end_early && !last.may_end_early);
+        // of a march the start is a small part
+        let moved = "[cloud]\nspacing = 0.015625\n[motion]\nreduced_frequency = 0.3\nplunge = 0.01\n[time.dual]\nsteps_per_period = 64\n\
+                     periods = 4\n";
+        let march = Stage { task: Task::March, ..Stage::PLAIN };
+        let marched = part(&case(&format!("{section}{moved}")), 1, &[Stage::PLAIN, march]);
+        assert!(marched.own > 0.85 && !marched.may_end_early, "{marched:?}");
     }
 
     #[test] // greatest resident memory and processor seconds of the runs the numbers are fitted to

@@ -214,6 +214,11 @@ impl<'a, S: HasGas<D>, const D: usize> Course<'a, S, D> {
         Some((back, sources))
     }
 
+    /// True where the solver on the cloud of a stage is on the shelf.
+    pub(crate) fn holds(&self, stage: &Stage) -> bool {
+        stage.cycle == 0 && self.shelf.iter().any(|(factor, _)| *factor == stage.factor)
+    }
+
     /// The solver on the cloud of a stage, where it is on the shelf, in the free stream of its point.
     pub(crate) fn take(&mut self, stage: &Stage, site: &Site<'_, D>) -> Result<Option<Solver<S, D>>, RunError> {
         let found = self.shelf.iter().position(|(factor, _)| *factor == stage.factor && stage.cycle == 0);

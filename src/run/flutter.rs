@@ -39,17 +39,20 @@ use self::scales::Scales;
 use self::search::Search;
 use self::skin::Skin;
 use self::stored::Stored;
-use super::accuracy::Forces;
+use super::accuracy::{self, Forces};
+use super::cost;
 use super::error::RunError;
 use super::folder::{self, Places};
-use super::monitor::{Monitor, Quiet};
+use super::monitor::{Monitor, Quiet, Within};
 use super::one_cloud::{self, BETWEEN, COARSER, on_one_cloud, times_the_spacing};
 use super::record::Log;
 use super::session::{Outcome, Session};
 use super::solids::{told_of_own_modes, with_own_modes};
 use super::studies::ForceSource;
+use super::time_left::Portion;
 use super::{refusals, setup};
 use crate::case::{Case, Flutter as Plan, GasResponse, LimitCycles, Matching, StreamRatio};
+use crate::geometry::dimension;
 use crate::physics::atmosphere;
 use crate::structure::limit_cycle::Borne;
 
@@ -90,6 +93,11 @@ pub(crate) fn in_memory(case: &Case, input: &Path, monitor: &mut dyn Monitor) ->
         all.flutter.push(found);
     }
     Ok(Some(all))
+}
+
+/// Number of coordinates of the structures of a case whose files lie in `input`.
+pub(super) fn coordinates(case: &Case, input: &Path) -> Result<usize, RunError> {
+    Ok(Held::of(case, input)?.names.len())
 }
 
 /// Refuses a boundary of which it is known before any flow that it cannot be sought.
@@ -136,7 +144,9 @@ fn sought(
     let mut kept = Kept::of(case, &places.input, &places.out)?;
     kept.write(&places.out)?;
     let mut all = Boundary::new(&case.title);
-    for mach in plan.mach.clone() {
+    let all_machs = vec![1.0; plan.mach.len()];
+    for (k, mach) in plan.mach.clone().into_iter().enumerate() {
+        let monitor = &mut Within { outer: Portion::of(k, &all_machs), monitor: &mut *monitor };
         let found = match (&stored, kept.at(mach)) {
             (Some(stored), _) => Some((of_stored(case, &plan, mach, (stored, &places.input))?, true)),
             (None, Some(before)) => {
@@ -267,21 +277,25 @@ fn at_mach(
     let held = Held::of(&own, input)?;
     let scales = Scales::of(&own, held.chord, plan.matching);
     let place = Place { own: &own, held: &held, scales: &scales, plan, lco: cycles_at(case, mach), input };
+    let marches = cycles_at(case, mach).is_some_and(|lco| lco.march);
+    let part = |k: usize, shocks: bool| Portion::of(k, &place.parts(shocks, marches));
+    let first = &mut Within { outer: part(0, false), monitor: &mut *monitor };
     let at = match plan.trim {
         true => {
             let boundary =
                 |stream: StreamRatio, last: bool, monitor: &mut dyn Monitor| place.boundary((stream, last), monitor);
-            trim::trimmed(&scales, (plan, place.lco.is_some()), &boundary, monitor)?
+            trim::trimmed(&scales, (plan, place.lco.is_some()), &boundary, first)?
         }
-        false => place.boundary((StreamRatio::SAME, true), monitor)?,
+        false => place.boundary((StreamRatio::SAME, true), first)?,
     };
     let Some(mut at) = at else { return Ok(None) };
-    if plan.cloud_error && !place.against_coarser(&mut at, monitor)? {
+    if plan.cloud_error && !place.against_coarser(&mut at, &part, monitor)? {
         return Ok(None);
     }
+    let outer = part(3, at.supersonic);
     let mut at = placed(at, (&own, mach), held, (&scales, plan));
-    let marches = cycles_at(case, mach).is_some_and(|lco| lco.march) && !at.cycles.is_empty();
-    let whole = !marches || marched::march(case, &mut at, input, monitor)?;
+    let whole =
+        !marches || at.cycles.is_empty() || marched::march(case, &mut at, input, &mut Within { outer, monitor })?;
     if !whole {
         at.warnings.push("told to stop while the limit cycle was marched: all else is whole".into());
     }
@@ -309,6 +323,16 @@ struct Place<'a> {
 }
 
 impl Place<'_> {
+    /// Work on the cloud of the case, on coarser ones, two of them where there are `shocks`, and in the march of a limit cycle, beside one
+    /// another.
+    fn parts(&self, shocks: bool, marches: bool) -> [f64; 4] {
+        let asked = |ratio: f64, asked: bool| match asked && self.plan.cloud_error {
+            true => accuracy::alike(ratio, dimension(self.own).into()),
+            false => 0.0,
+        };
+        [1.0, asked(COARSER, true), asked(BETWEEN, shocks), f64::from(u8::from(marches))]
+    }
+
     /// The boundary with the forces about the steady flow in a stream of the same Mach number, and with the limit cycles.
     fn boundary(
         &self,
@@ -316,6 +340,7 @@ impl Place<'_> {
         monitor: &mut dyn Monitor,
     ) -> Result<Option<FlutterAt>, RunError> {
         let mut session = Session::open(&self.own.in_stream(stream), self.input)?;
+        let share = cost::share_of_steady(dimension(self.own).into(), self.held.names.len() * self.plan.expected());
         let mut found = None;
         let mut then = |source: &mut dyn ForceSource, log: &mut Log<'_>| {
             let mut search = Search::new(self.held, self.scales, self.plan, Vec::new(), 0.0);
@@ -332,7 +357,7 @@ impl Place<'_> {
             found = Some(at);
             Ok(())
         };
-        let outcome = session.solve_then(monitor, Some(&mut then))?;
+        let outcome = session.solve_then(monitor, Some((share, &mut then)))?;
         let (Outcome::Finished(summary), Some(mut at)) = (outcome, found) else { return Ok(None) };
         at.steady = [summary.loads.cl, summary.loads.cd, summary.loads.cm];
         at.orders = summary.residual_drop.unwrap_or(0.0);
@@ -345,14 +370,20 @@ impl Place<'_> {
 
     /// Holds crossings and damping against those of coarser clouds in the same stream, where there are such; false when the monitor says
     /// stop.
-    fn against_coarser(&self, at: &mut FlutterAt, monitor: &mut dyn Monitor) -> Result<bool, RunError> {
+    fn against_coarser(
+        &self,
+        at: &mut FlutterAt,
+        part: &dyn Fn(usize, bool) -> Portion,
+        monitor: &mut dyn Monitor,
+    ) -> Result<bool, RunError> {
         let mut others = Vec::new();
         for ratio in [COARSER, BETWEEN] {
             let shocks = at.supersonic || others.iter().any(|(_, coarse): &(f64, FlutterAt)| coarse.supersonic);
             if ratio != COARSER && !shocks {
                 break;
             }
-            match self.on_coarser(at, ratio, monitor)? {
+            let outer = part(if ratio == COARSER { 1 } else { 2 }, shocks);
+            match self.on_coarser(at, ratio, &mut Within { outer, monitor: &mut *monitor })? {
                 Asked::Stopped => return Ok(false),
                 Asked::Told(coarse) => others.push((ratio, *coarse)),
                 Asked::Silent => {}

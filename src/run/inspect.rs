@@ -4,10 +4,11 @@ use std::time;
 
 use serde::Serialize;
 
-use super::accuracy;
-use super::cost::{Cost, Sized};
+use super::accuracy::{self, Forces};
+use super::cost::{Cost, OF_COLUMN, Sized};
 use super::error::RunError;
 use super::files::{Scene, Target, pixels, write_cloud};
+use super::flutter;
 use super::folder;
 use super::look::{Held, Mesh, Rim, load_axes};
 use super::pilot;
@@ -17,8 +18,9 @@ use super::solids;
 use super::stage::Stage;
 use super::understood::{Aeroelastic, Understood};
 use crate::case::{Case, GafMethod};
-use crate::cloud::{Cloud, Diagnosis};
-use crate::geometry::dimension;
+use crate::cloud::layout::{capped, count};
+use crate::cloud::{Cloud, CloudSpec, Diagnosis};
+use crate::geometry::{Surface, dimension};
 use crate::observe::About;
 use crate::observe::table::write_json;
 use crate::observe::vtk::{Column, write_cells};
@@ -27,8 +29,15 @@ use crate::system::{Instant, System};
 
 /// Evaluations timed for the estimate.
 const TIMED: u32 = 10;
-/// Evaluations that the linear system of one column of `[gaf]` takes the time of: measured.
-const OF_COLUMN: f64 = 600.0;
+
+/// Particles in space beyond which `check` looks at a coarser cloud: a second or two to build.
+const QUICK: f64 = 30_000.0;
+/// Factors on the spacing of such a cloud.
+const COARSER: [f64; 4] = [4.0 / 3.0, 2.0, 8.0 / 3.0, 4.0];
+/// Work of a steady flow that small motions are about, which comes to rest by more orders than others, over that of a usual one.
+const SETTLED: f64 = 1.4;
+/// Equilibria that the static trim of a flutter boundary seeks, about.
+const TRIMS: f64 = 4.0;
 
 /// What is known of a cloud before a run.
 #[derive(Clone, Debug, Serialize)]
@@ -60,6 +69,11 @@ pub struct CloudReport {
     pub structure: Option<solids::SolidReport>,
     /// What `alula gaf` will take, where the case asks for it.
     pub gaf: Option<Cost>,
+    /// What `alula flutter` will take, where the case asks for it.
+    pub flutter: Option<Cost>,
+    /// Factor on the spacing of the cloud that neighbours and conditioning were seen on, where that is a coarser one than the case's own,
+    /// whose particles were counted on its background.
+    pub seen_on: Option<f64>,
     /// What was repaired or assumed.
     pub notes: Vec<String>,
     /// What makes the results of a run doubtful.
@@ -98,6 +112,11 @@ impl NeighbourCount {
 }
 
 impl SpacingRange {
+    /// The range of a cloud whose spacing is smaller by `factor`.
+    fn finer(self, factor: f64) -> Self {
+        Self { finest: self.finest / factor, ..self }
+    }
+
     fn of(spacing: &[f64]) -> Self {
         let widen = |s: Self, h: &f64| Self { finest: h.min(s.finest), coarsest: h.max(s.coarsest) };
         spacing.iter().fold(Self { finest: f64::INFINITY, coarsest: 0.0 }, widen)
@@ -119,6 +138,7 @@ fn look<const D: usize>(case: &Case, input: &Path, out: Option<&Path>) -> Result
     let began = time::Instant::now();
     let (surface, mut notes) = setup::surface::<D>(case, input)?;
     let filled = accuracy::with_cloud(case, surface.as_ref());
+    let given = case;
     let case = filled.as_ref();
     let motions = setup::motions(case, input, surface.as_ref())?;
     folder::check_compared(case, input)?;
@@ -127,7 +147,8 @@ fn look<const D: usize>(case: &Case, input: &Path, out: Option<&Path>) -> Result
     notes.extend(told.notes);
     warnings.extend(told.warnings);
     let site = Site { case, surface: surface.as_ref(), motions: &motions };
-    let solver = setup::solver(&site, &Stage::PLAIN, &[], None)?;
+    let seen = if out.is_none() { sample_cloud(&site) } else { SampleCloud::PLAIN };
+    let solver = setup::solver(&site, &Stage { factor: seen.factor, ..Stage::PLAIN }, &[], None)?;
     let seconds = began.elapsed().as_secs_f64();
     let (fluid, u) = (&solver.system, &solver.system.start());
     let mut work = fluid.work();
@@ -139,7 +160,11 @@ fn look<const D: usize>(case: &Case, input: &Path, out: Option<&Path>) -> Result
         rate.iter().fold(0.0f64, |m, r| m.max(*r))
     };
     let cloud = &fluid.discretisation.cloud;
-    notes.extend(cloud.notes.iter().cloned().chain(cloud.early_ends()).chain(accuracy::too_few(case, cloud.n_real())));
+    let n_fluid = (cloud.n_fluid as f64 * seen.more).round() as usize;
+    let n_wall = (cloud.interface.len() as f64 * seen.factor.powi(D as i32 - 1)).round() as usize;
+    let particles = n_fluid + n_wall + cloud.outer.len();
+    let told = if seen.factor == 1.0 { [cloud.notes.clone(), cloud.early_ends()].concat() } else { seen.told(&site) };
+    notes.extend(told.into_iter().chain(accuracy::too_few(case, particles)));
     warnings.extend(check_motion(case, cloud, &motions)?);
     let structure = solids::inspect_in_gas(case, input)?;
     notes.extend(solids::told_of_own_modes(case));
@@ -148,8 +173,9 @@ fn look<const D: usize>(case: &Case, input: &Path, out: Option<&Path>) -> Result
     let axes = (!cloud.interface.is_empty())
         .then(|| load_axes(case, surface.as_ref()).axes(&fluid.view(&frame, u, &mut work)));
     let aeroelastic = Aeroelastic::of(case, input, surface.as_ref())?;
-    let (particles, period) = (cloud.n_real(), motions.period());
-    let pilot = pilot::fly(case, input, surface.as_ref(), cloud.n_fluid);
+    let period = motions.period();
+    let pilot = pilot::fly(case, input, surface.as_ref(), n_fluid, period);
+    let evaluation = evaluation * seen.more;
     let pixels = pixels(surface.as_ref(), &cloud.tree.bounds());
     let sizes = &accuracy::sizes(case, surface.as_ref(), particles);
     let family = accuracy::asked(case).map(|asked| accuracy::family(case, &asked, sizes, D)).unwrap_or_default();
@@ -159,17 +185,19 @@ fn look<const D: usize>(case: &Case, input: &Path, out: Option<&Path>) -> Result
     let report = CloudReport {
         understood: Understood::of(case, surface.as_ref(), &motions, axes.as_ref(), aeroelastic),
         particles,
-        fluid: cloud.n_fluid,
-        interface: cloud.interface.len(),
+        fluid: n_fluid,
+        interface: n_wall,
         outer: cloud.outer.len(),
         neighbours: NeighbourCount::of(cloud),
-        spacing: SpacingRange::of(&cloud.spacing),
+        spacing: SpacingRange::of(&cloud.spacing).finer(seen.factor),
         worst_condition: fluid.discretisation.operators.condition.iter().fold(0.0, |m, c| f64::from(*c).max(m)),
         seconds,
         cost: sized.cost(fastest),
         least: sized.least(),
         structure,
-        gaf: cost_of_gaf(&sized, axes.as_ref().map(|a| a.chord)),
+        gaf: cost_of_gaf(&sized, (given, surface.as_ref()), axes.as_ref().map(|a| a.chord)),
+        flutter: cost_of_flutter(&sized, (given, surface.as_ref()), input)?,
+        seen_on: (seen.factor != 1.0).then_some(seen.factor),
         notes,
         warnings,
     };
@@ -178,6 +206,44 @@ fn look<const D: usize>(case: &Case, input: &Path, out: Option<&Path>) -> Result
         write(&Target { case, out }, &solver, &mut work, surface.as_ref())?;
     }
     Ok(report)
+}
+
+/// The cloud that is looked at.
+#[derive(Clone, Copy)]
+struct SampleCloud {
+    /// Factor on the spacing of the case.
+    factor: f64,
+    /// Particles of the cloud of the case over those of this one.
+    more: f64,
+}
+
+impl SampleCloud {
+    const PLAIN: Self = Self { factor: 1.0, more: 1.0 };
+
+    /// What is told of the cloud of the case where another one is looked at.
+    fn told<const D: usize>(&self, site: &Site<'_, D>) -> Vec<String> {
+        site.surface.and_then(|surface| capped(&CloudSpec::of_case(site.case), surface)).into_iter().collect()
+    }
+}
+
+/// The cloud of the case, or in space a coarser one of its family, where that of the case has many particles and moves nothing: its
+/// particles are counted on its background, which is a small part of the cost of the cloud.
+fn sample_cloud<const D: usize>(site: &Site<'_, D>) -> SampleCloud {
+    let cells = |factor: f64| {
+        let cells = count(&CloudSpec::<D>::of_case(&accuracy::scaled(site.case, factor)), site.surface, &[]).ok()?;
+        Some(cells as f64)
+    };
+    let case = site.case;
+    let moves = case.motion.is_some() || case.bodies.iter().any(|b| b.motion.is_some() || b.solid.is_some());
+    if D == 2 || case.bodies.is_empty() || case.is_unsteady() || moves {
+        return SampleCloud::PLAIN;
+    }
+    let Some(own) = cells(1.0).filter(|own| *own > QUICK) else { return SampleCloud::PLAIN };
+    let fits = |factor: &f64| recipe::divides(case, *factor);
+    let all = COARSER.into_iter().filter(fits).filter_map(|factor| Some((factor, cells(factor)?)));
+    let all: Vec<(f64, f64)> = all.collect();
+    let quick = all.iter().find(|(_, n)| *n <= QUICK).or(all.last());
+    quick.map_or(SampleCloud::PLAIN, |(factor, n)| SampleCloud { factor: *factor, more: own / n })
 }
 
 /// Time of an evaluation: the shortest of some, as the first one warms caches and threads up and others may be disturbed.
@@ -198,12 +264,16 @@ fn seconds_of_evaluation<const D: usize>(
 
 /// What the matrices of `[gaf]` take, where the case asks for them: a steady flow and linear systems about it, or two balances for each
 /// mode and frequency.
-fn cost_of_gaf(own: &Sized<'_>, chord: Option<f64>) -> Option<Cost> {
+fn cost_of_gaf<const D: usize>(
+    own: &Sized<'_>,
+    (given, surface): (&Case, Option<&Surface<D>>),
+    chord: Option<f64>,
+) -> Option<Cost> {
     let plan = own.case.gaf.as_ref()?;
     if plan.method == GafMethod::Linear {
-        let steady = Sized { case: &own.case.gaf_steady_case(plan), period: None, ..*own }.cost(|| 0.0);
+        let one = accuracy::on_one_cloud(given.gaf_steady_case(plan), surface, Forces::Table);
         let columns = plan.reduced_frequencies.len() * plan.all_modes().count();
-        return Some(Cost { seconds: steady.seconds + columns as f64 * OF_COLUMN * own.evaluation, ..steady });
+        return Some(of_small_motions(own, (&one, surface), (columns, plan.cloud_error)));
     }
     let mut all = Cost { bytes: 0.0, seconds: 0.0, disk: 0.0 };
     for &k in &plan.reduced_frequencies {
@@ -217,6 +287,37 @@ fn cost_of_gaf(own: &Sized<'_>, chord: Option<f64>) -> Option<Cost> {
         }
     }
     Some(all)
+}
+
+/// What a flutter boundary takes, where the case asks for one: at each Mach number a steady flow and linear systems about it.
+fn cost_of_flutter<const D: usize>(
+    own: &Sized<'_>,
+    (given, surface): (&Case, Option<&Surface<D>>),
+    input: &Path,
+) -> Result<Option<Cost>, RunError> {
+    let Some(plan) = given.flutter.as_ref() else { return Ok(None) };
+    let mach = plan.mach.first().copied().unwrap_or(given.flow.reference().mach);
+    let one = accuracy::on_one_cloud(given.flutter_case(mach), surface, Forces::Boundary);
+    let columns = plan.expected() * flutter::coordinates(&one, input)?;
+    let each = of_small_motions(own, (&one, surface), (columns, plan.cloud_error));
+    let rounds = plan.mach.len().max(1) as f64 * if plan.trim { TRIMS } else { 1.0 };
+    Ok(Some(Cost { seconds: rounds * each.seconds, ..each }))
+}
+
+/// What `columns` of forces in small motion take about the steady flow of the case `one`, which is on a cloud of its own, and the same on a
+/// coarser cloud where that is asked for an error.
+fn of_small_motions<const D: usize>(
+    own: &Sized<'_>,
+    (one, surface): (&Case, Option<&Surface<D>>),
+    (columns, cloud_error): (usize, bool),
+) -> Cost {
+    let cells = |case: &Case| count(&CloudSpec::<D>::of_case(case), surface, &[]).ok();
+    let more = cells(one).zip(cells(own.case)).map_or(1.0, |(one, own)| one as f64 / own as f64);
+    let particles = (own.particles as f64 * more).round() as usize;
+    let (evaluation, sizes) = (own.evaluation * more, accuracy::sizes(one, surface, particles));
+    let steady = Sized { case: one, particles, sizes: &sizes, period: None, evaluation, ..*own }.cost(|| 0.0);
+    let all = SETTLED * steady.seconds + columns as f64 * OF_COLUMN[D - 2] * evaluation;
+    Cost { seconds: all * if cloud_error { 1.0 + accuracy::alike(2.0, D) } else { 1.0 }, ..steady }
 }
 
 fn write<const D: usize>(

@@ -35,6 +35,7 @@ mod setup;
 mod solids;
 mod stage;
 mod studies;
+mod time_left;
 mod understood;
 pub mod verify;
 mod watch;
@@ -65,6 +66,7 @@ pub use session::{Outcome, Session, Solution};
 pub use solids::{
     ModeRow, PeriodicRow, ProbeHarmonic, ProbeRow, SolidLedger, SolidReport, SolidSummary, inspect_structure,
 };
+pub use time_left::{Portion, TimeLeft};
 pub use understood::{
     Aeroelastic, BodyBox, ReferenceValues, Understood, UnderstoodFlutter, UnderstoodGaf, UnderstoodStructure,
 };

@@ -1,9 +1,12 @@
 //! What a run tells while it goes, and what it is told.
+use super::time_left::Portion;
 
 /// What a run tells while it goes, and what it is told.
 pub trait Monitor {
     /// After every iteration.
     fn tick(&mut self, tick: &Tick);
+    /// What begins now and tells of no iterations, as building a cloud; it is over with the next thing that is told.
+    fn doing(&mut self, _: &str, _: &Portion) {}
     /// Something worth a line.
     fn note(&mut self, text: &str);
     /// Something that makes results doubtful; a note with that word unless a monitor has another way to tell it.
@@ -36,9 +39,39 @@ impl Monitor for Quiet<'_> {
     fn tick(&mut self, tick: &Tick) {
         self.monitor.tick(tick);
     }
+    fn doing(&mut self, what: &str, now: &Portion) {
+        self.monitor.doing(what, now);
+    }
     fn note(&mut self, _: &str) {}
     fn stop(&self) -> bool {
         self.monitor.stop()
+    }
+}
+
+/// Passes on all that a run tells which is the part `outer` of a larger one.
+pub(crate) struct Within<'a> {
+    pub(crate) monitor: &'a mut dyn Monitor,
+    pub(crate) outer: Portion,
+}
+
+impl Monitor for Within<'_> {
+    fn tick(&mut self, tick: &Tick) {
+        self.monitor.tick(&Tick { portion: tick.portion.within(&self.outer), ..*tick });
+    }
+    fn doing(&mut self, what: &str, now: &Portion) {
+        self.monitor.doing(what, &now.within(&self.outer));
+    }
+    fn note(&mut self, text: &str) {
+        self.monitor.note(text);
+    }
+    fn warn(&mut self, text: &str) {
+        self.monitor.warn(text);
+    }
+    fn stop(&self) -> bool {
+        self.monitor.stop()
+    }
+    fn checkpoint(&self) -> bool {
+        self.monitor.checkpoint()
     }
 }
 
@@ -47,10 +80,8 @@ impl Monitor for Quiet<'_> {
 pub struct Tick {
     /// Iterations over all stages.
     pub iteration: u64,
-    /// Orders of magnitude to go in all (steady), or the time at which a march ends, in the units of the case.
-    pub goal: f64,
-    /// Reached of `goal`.
-    pub reached: f64,
+    /// Part of the whole run that it is in, and how far that is.
+    pub portion: Portion,
     /// Residual over its first value.
     pub residual: f64,
     /// Courant number.

@@ -12,7 +12,7 @@ use super::monitor::{Monitor, Tick};
 use super::recipe;
 use super::session::Session;
 use super::setup::behind_shocks;
-use crate::case::{Case, Initial, Temporal};
+use crate::case::{Case, Initial, Temporal, Time};
 use crate::cloud::CloudSpec;
 use crate::cloud::layout::count;
 use crate::geometry::Surface;
@@ -26,20 +26,43 @@ const FACTORS: [f64; 2] = [2.0, 4.0];
 /// tells nothing.
 const LONGEST: [Duration; 2] = [Duration::from_secs(2), Duration::from_secs(10)];
 
-/// Ends a run at a moment.
-struct Bounded(Instant);
+/// Steps of a march that a pilot takes, and those of them that are timed: the first ones differ.
+const STEPS: f64 = 12.0;
+const TIMED: usize = 8;
 
-impl Monitor for Bounded {
-    fn tick(&mut self, _: &Tick) {}
-    fn note(&mut self, _: &str) {}
-    fn stop(&self) -> bool {
-        Instant::now() > self.0
+/// Ends a run at a moment; notes when the steps of a march ended.
+struct Bounded {
+    end: Instant,
+    steps: Vec<Instant>,
+}
+
+impl Bounded {
+    fn in_space(dimension: usize) -> Self {
+        Self { end: Instant::now() + LONGEST[dimension - 2], steps: Vec::new() }
     }
 }
 
-/// Solves the steady flow around the bodies of a case, whose cloud has `n` particles, on a coarser cloud. `None` where a run has no
+impl Monitor for Bounded {
+    fn tick(&mut self, tick: &Tick) {
+        if tick.march.is_some() {
+            self.steps.push(Instant::now());
+        }
+    }
+    fn note(&mut self, _: &str) {}
+    fn stop(&self) -> bool {
+        Instant::now() > self.end
+    }
+}
+
+/// Solves the steady flow around the bodies of a case, whose cloud has `n` particles, on a coarser cloud, and some steps of a march, whose motion has the `period`. `None` where a run has no
 /// such start or it counts for little, where even the coarser cloud has many particles, and where it is not solved soon.
-pub(super) fn fly<const D: usize>(case: &Case, input: &Path, surface: Option<&Surface<D>>, n: usize) -> Option<Pilot> {
+pub(super) fn fly<const D: usize>(
+    case: &Case,
+    input: &Path,
+    surface: Option<&Surface<D>>,
+    n: usize,
+    period: Option<f64>,
+) -> Option<Pilot> {
     let relaxation = recipe::relaxation(case).filter(|_| !matches!(case.time, Temporal::Harmonics(_)))?;
     if case.bodies.is_empty() || !matches!(case.initial, Initial::FreeStream) {
         return None;
@@ -58,10 +81,26 @@ pub(super) fn fly<const D: usize>(case: &Case, input: &Path, surface: Option<&Su
     coarse.compare.clear();
     coarse.adapt.cycles = 0;
     let mut session = Session::open(&coarse, input).ok()?;
-    session.solve(&mut Bounded(Instant::now() + LONGEST[D - 2])).ok()?;
+    session.solve(&mut Bounded::in_space(D)).ok()?;
     let found = session.summary()?;
     let following = followed(case, surface?, session.field()?).unwrap_or(1.0);
-    Some(Pilot { particles: found.particles as f64, seconds: found.wall_seconds, following })
+    let step = step::<D>(case, input, (factor, period));
+    Some(Pilot { particles: found.particles as f64, seconds: found.wall_seconds, following, step })
+}
+
+/// Seconds of an implicit step in time on the coarser cloud with `factor` times the spacing; `None` where there are none, or too few were
+/// taken in the time.
+fn step<const D: usize>(case: &Case, input: &Path, (factor, period): (f64, Option<f64>)) -> Option<f64> {
+    let mut coarse = accuracy::scaled(case, factor);
+    let length = case.step_length(period)?;
+    let Temporal::Dual(dual) = &mut coarse.time else { return None };
+    let until = Time(STEPS * case.flow.units().case_time(length));
+    (dual.until, dual.periods, dual.periodic_tolerance, dual.swing) = (Some(until), None, None, None);
+    coarse.compare.clear();
+    let mut watch = Bounded::in_space(D);
+    Session::open(&coarse, input).ok()?.solve(&mut watch).ok()?;
+    let last = watch.steps.get(watch.steps.len().checked_sub(TIMED + 1)?..)?;
+    Some(last[TIMED].duration_since(last[0]).as_secs_f64() / TIMED as f64)
 }
 
 /// Particles of the cloud of a case that follows the shocks in `field` over those of one that does not; `None` where it does not.

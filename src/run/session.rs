@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::accuracy;
+use super::cost;
 use super::course::{Coarser, Course, Next};
 use super::disk;
 use super::doubts;
@@ -23,8 +24,9 @@ use super::record::summary::{Clock, Summary};
 use super::record::{Described, IterationHistory, Log, Scales, SolidEnd};
 use super::setup::{self, Site, Solver, check_motion};
 use super::solids::{SolidSummary, with_own_modes};
-use super::stage::{Stage, Task};
+use super::stage::{self, Stage, Task};
 use super::studies::{self, ForceSource, Reached, SmallMotion, Start, Turn};
+use super::time_left::Portion;
 use crate::case::{self, Case};
 use crate::cloud::Cloud;
 use crate::cloud::sources::Source;
@@ -88,8 +90,8 @@ pub struct Session {
 /// What a run begins with, and what is done at its end.
 type Way<'a> = (Origin, Option<Then<'a>>);
 
-/// What is done with a steady flow when it is found.
-pub(crate) type Then<'a> = &'a mut dyn FnMut(&mut dyn ForceSource, &mut Log<'_>) -> Result<(), RunError>;
+/// Share of the work that a steady flow takes, and what is done with it when it is found.
+pub(crate) type Then<'a> = (f64, &'a mut dyn FnMut(&mut dyn ForceSource, &mut Log<'_>) -> Result<(), RunError>);
 
 /// What a session has found.
 #[derive(Clone, Debug)]
@@ -310,10 +312,12 @@ impl Run<'_> {
         let points = self.case.points();
         let mut log = Log::open(self.case, self.out, scales, ground.saved.as_ref(), structures, monitor)?;
         if let Some(cloud) = &ground.ready {
-            log.note(&describe(&stages, cloud.n_fluid));
+            log.note(&stage::described(&stages, cloud.n_fluid));
             accuracy::too_few(self.case, cloud.n_real()).iter().for_each(|few| log.note(few));
             log.begin_point(true);
         }
+        let particles = ground.ready.as_ref().map(|cloud| cloud.n_fluid);
+        let scope = Portion { own: then.as_ref().map_or(1.0, |then| then.0), ..Portion::whole(0.0) };
         let (mut k, mut sources, kept) = ground.standing();
         let mut course = Course::of(self.case, &points, kept);
         let mut previous: Option<Stood<S, D>> = None;
@@ -321,6 +325,10 @@ impl Run<'_> {
             let (stage, site) = (&stage, Site { case: course.case(&stage), ..*site });
             course.enter(stage, site.surface, &mut log);
             log.record.warnings.clear();
+            log.portion = cost::portion(self.case, (k, &stages), particles, (D, log.period)).within(&scope);
+            if !course.holds(stage) && !previous.as_ref().is_some_and(|before| stage.shares_cloud(&before.stage)) {
+                log.doing(&stage.building());
+            }
             let build = |ready| Ok(setup::solver(&site, stage, &sources, ready)?.with(&assemble));
             let Begun { mut solver, start } =
                 ground.begin((stage, &site), build, previous.take(), &mut course, &log)?;
@@ -355,7 +363,8 @@ impl Run<'_> {
             previous = Some(Stood { stage: *stage, solver, reached });
         }
         let stood = previous.map_or_else(|| last_known(&mut course, site, assemble, &mut log), Ok)?;
-        if let Some(then) = then {
+        if let Some((share, then)) = then {
+            log.portion = Portion { before: share, own: 1.0 - share, ..Portion::whole(0.0) };
             let (_, state) = stood.reached.end.as_ref().ok_or(RunError::NoStage)?;
             then(
                 &mut SmallMotion::new(&stood.solver.system, state, (&log.axes, self.case.freezes_limiter())),
@@ -393,6 +402,7 @@ impl Run<'_> {
 
     /// The cloud of the case; tells what is worth knowing of it and of the motion on it.
     fn cloud<const D: usize>(&self, site: &Site<'_, D>, monitor: &mut dyn Monitor) -> Result<Cloud<D>, RunError> {
+        monitor.doing("building the cloud of the case", &Portion::whole(0.0));
         let cloud = Cloud::build(&setup::spec(self.case), site.surface, &[])?;
         self.out.map_or(Ok(()), |out| disk::check(self.case, out, cloud.n_real(), D, site.motions.period()))?;
         cloud.notes.iter().cloned().chain(cloud.early_ends()).for_each(|n| monitor.note(&n));
@@ -587,14 +597,4 @@ fn last_known<'a, S: HasGas<D>, const D: usize>(
     };
     let frame = solver.system.frame(&Instant::still(0.0), &state);
     Ok(Stood { stage, solver, reached: Reached::at(frame, state) })
-}
-
-fn describe(stages: &[Stage], n: usize) -> String {
-    let first = || stages.iter().filter(|s| s.point.unwrap_or(0) == 0);
-    let mut factors: Vec<f64> = first().map(|s| s.factor).filter(|f| *f > 1.0).collect();
-    factors.dedup();
-    let coarse = factors.len();
-    let cycles = (1..).take_while(|c| first().any(|s| s.factor == 1.0 && s.cycle == *c)).count();
-    let points = stages.last().and_then(|s| s.point).map_or_else(String::new, |p| format!("; {} points", p + 1));
-    format!("{n} fluid particles; {coarse} coarser clouds for the start, {cycles} cycles of adaptation{points}")
 }

@@ -44,6 +44,14 @@ impl Stage {
         self.factor == other.factor && self.cycle == other.cycle && self.point == other.point
     }
 
+    /// What is told while its cloud is built.
+    pub(crate) fn building(&self) -> String {
+        let spacing =
+            if self.factor == 1.0 { String::new() } else { format!(" with {:.3} times the spacing", self.factor) };
+        let cycle = if self.cycle == 0 { String::new() } else { format!(", refined {} times", self.cycle) };
+        format!("building the cloud{spacing}{cycle}")
+    }
+
     /// Instances of a period that a state of this stage holds.
     pub(crate) fn instances(&self) -> usize {
         match self.task {
@@ -51,4 +59,15 @@ impl Stage {
             _ => 1,
         }
     }
+}
+
+/// The stages of a run whose own cloud has `n` fluid particles, in words.
+pub(crate) fn described(stages: &[Stage], n: usize) -> String {
+    let first = || stages.iter().filter(|s| s.point.unwrap_or(0) == 0);
+    let mut factors: Vec<f64> = first().map(|s| s.factor).filter(|f| *f > 1.0).collect();
+    factors.dedup();
+    let coarse = factors.len();
+    let cycles = (1..).take_while(|c| first().any(|s| s.factor == 1.0 && s.cycle == *c)).count();
+    let points = stages.last().and_then(|s| s.point).map_or_else(String::new, |p| format!("; {} points", p + 1));
+    format!("{n} fluid particles; {coarse} coarser clouds for the start, {cycles} cycles of adaptation{points}")
 }

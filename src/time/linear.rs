@@ -126,6 +126,7 @@ impl<'a, S: Implicit> Linear<'a, S> {
         tolerance: f64,
         (plan, stop): (&Hierarchy, &dyn Fn() -> bool),
     ) -> Option<Vec<(Vec<f64>, Ended)>> {
+        self.recycled.expect(right.len());
         let waves = Waves::new(omega);
         let mut preconditioner = self.system.preconditioner(plan, Some(waves.period));
         preconditioner.begin(1);

@@ -8,8 +8,8 @@ use std::ops::Range;
 use crate::math::dense::Factors;
 use crate::math::sweep::{sum_each, sweep_chunks};
 
-/// Solutions that are kept.
-const KEPT: usize = 8;
+/// Solutions that are kept at least, and at most.
+const KEPT: [usize; 2] = [8, 24];
 /// Part of a squared size that is added to it, so that solutions which depend on one another do no harm.
 const RIDGE: f64 = 1e-12;
 
@@ -24,12 +24,20 @@ struct Known {
 #[derive(Debug, Default)]
 pub(super) struct Recycled {
     all: Vec<Known>,
+    /// Right-hand sides of a frequency.
+    sides: usize,
 }
 
 impl Recycled {
+    /// From now on each frequency has so many right-hand sides: the solutions of one frequency begin those of the next.
+    pub(super) fn expect(&mut self, sides: usize) {
+        self.sides = sides;
+    }
+
     /// Keeps the solution `x` and `image`, what A makes of it, in local times.
     pub(super) fn keep(&mut self, x: &[f64], image: impl Fn(usize) -> f64) {
-        if self.all.len() == KEPT {
+        let [least, most] = KEPT;
+        if self.all.len() >= self.sides.clamp(least, most) {
             self.all.remove(0);
         }
         let single = |x: f64| x as f32;

@@ -84,7 +84,10 @@ fn describe_structure(r: &run::SolidReport) -> String {
     lines.push(format!("force          ({}) in all", list(r.force.iter().map(|f| format!("{f:.6e}")).collect())));
     lines.push(format!("explicit step  {:.3e} s at most", r.stable_step));
     if let Some(steps) = r.steps {
-        lines.push(format!("steps          about {steps:.0}"));
+        lines.push(match r.more_steps {
+            true => format!("steps          {steps:.0} or more: they become shorter where the body is squeezed"),
+            false => format!("steps          about {steps:.0}"),
+        });
     }
     lines.join("\n") + "\n"
 }

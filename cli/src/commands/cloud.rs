@@ -47,7 +47,13 @@ pub(crate) fn describe(r: &CloudReport) -> String {
     for (what, value) in r.understood.lines() {
         text += &format!("{what:<15}{value}\n");
     }
-    text += &format!("built in       {:.2} s\n", r.seconds);
+    text += &match r.seen_on {
+        None => format!("built in       {:.2} s\n", r.seconds),
+        Some(factor) => format!(
+            "looked at      a cloud with {factor:.3} times the spacing, built in {:.2} s; particles are counted on the background\n",
+            r.seconds
+        ),
+    };
     let (memory, time) = match &r.least {
         Some(least) => (
             format!("{}, at most {}", megabytes(least), megabytes(&r.cost)),
@@ -61,8 +67,9 @@ pub(crate) fn describe(r: &CloudReport) -> String {
     };
     let disk = format!("about {:.0} MB", r.cost.disk / 1e6);
     text += &format!("memory         {memory}\ntime           {time}\ndisk           {disk}\n");
-    if let Some(gaf) = &r.gaf {
-        text += &format!("`alula gaf`    {}, {}\n", megabytes(gaf), readable(gaf.seconds));
+    for (command, cost) in [("gaf", &r.gaf), ("flutter", &r.flutter)] {
+        let told = cost.as_ref().map(|cost| format!("{}, {}", megabytes(cost), readable(cost.seconds)));
+        text += &told.map_or_else(String::new, |told| format!("{:<15}{told}\n", format!("`alula {command}`")));
     }
     r.notes.iter().for_each(|n| text += &format!("note: {n}\n"));
     r.warnings.iter().for_each(|w| text += &format!("warning: {w}\n"));

@@ -43,10 +43,12 @@ fn tell(found: Result<Option<Boundary>, RunError>, out: &Path, watch: &mut Watch
     let boundary = match found {
         Ok(Some(boundary)) => boundary,
         Ok(None) => {
-            let out = out.display();
-            output::note(&format!(
-                "interrupted: Mach numbers that were finished stand in `flutter.csv`; go on with `alula resume {out}`"
-            ));
+            let table = out.join("flutter.csv");
+            let what = match table.is_file() {
+                true => format!("interrupted: Mach numbers that were finished stand in `{}`", table.display()),
+                false => "interrupted before the first Mach number was finished".to_owned(),
+            };
+            output::note(&format!("{what}; go on with `alula resume {}`", out.display()));
             return Outcome::Interrupted;
         }
         Err(problem) => return super::refuse(&problem),

@@ -4,7 +4,7 @@ use std::f64::consts::LN_2;
 use num_complex::Complex64;
 
 use super::super::record::Log;
-use super::super::studies::{ForceSource, Forces};
+use super::super::studies::{ForceSource, Forces, in_order};
 use super::held::{Held, Mark, Translation};
 use super::record::FlutterAt;
 use super::rows::{Bars, FlutterRow, MotionRow};
@@ -25,6 +25,8 @@ const BEYOND: f64 = 2.0;
 const ABOVE: f64 = 1.1;
 /// Square of the frequency that the softest spring has, over the largest: a body is free without it.
 const SOFTEST: f64 = 1e-9;
+/// Greatest part of the frequencies that counts as known while others are sought.
+const NEARLY_ALL: f64 = 0.9;
 /// Frequencies that are nearer to one another than this part are one.
 const SAME: f64 = 5e-4;
 
@@ -77,14 +79,17 @@ impl<'a> Search<'a> {
 
     /// Computes forces at the angular frequency `omega`; `None` when the monitor says stop.
     fn sample(&mut self, source: &mut dyn ForceSource, omega: f64, log: &mut Log<'_>) -> Option<()> {
+        let known = self.samples.len() as f64 / self.plan.expected() as f64;
+        log.portion = log.portion.at(known.min(NEARLY_ALL));
+        let k = self.scales.reduced_frequency(omega);
+        log.doing(&format!("forces at k = {k:.4}, {} frequencies are known", self.samples.len()));
         let Forces { generalised, ended, pressures, .. } = source.forces_unless(omega, &|| log.stopped())?;
         let iterations: usize = ended.iter().map(|e| e.iterations).sum();
         let left = ended.iter().map(|e| e.left).fold(0.0, f64::max);
         self.iterations += iterations;
         self.residual = self.residual.max(left);
         log.note(&format!(
-            "forces at k = {:.4}: {iterations} linear iterations for {} modes, residual {left:.0e}",
-            self.scales.reduced_frequency(omega),
+            "forces at k = {k:.4}: {iterations} linear iterations for {} modes, residual {left:.0e}",
             ended.len()
         ));
         self.samples.push((omega, generalised));
@@ -146,8 +151,9 @@ impl<'a> Search<'a> {
     ) -> Option<FlutterAt> {
         self.matrices = of_the_case(source.matrices(), stream);
         (self.names, self.still) = (source.names(), source.still());
-        self.sample(source, 0.0, log)?;
-        for k in self.plan.first() {
+        let mut first = vec![0.0];
+        first.extend(self.plan.first().into_iter().filter(|k| *k > 0.0));
+        for k in in_order(&first) {
             self.sample(source, self.scales.angular_frequency(k), log)?;
         }
         let mut solved = self.solved(&self.samples);

@@ -4,13 +4,16 @@
 //! until the crossing stays where its equilibrium was sought. Springs that become much stiffer or softer under load make it leap from one side
 //! to the other: between the two the false position is taken (Illinois, Dowell and Jarratt 1971, doi:10.1007/BF01934364).
 use super::super::error::RunError;
-use super::super::monitor::Monitor;
+use super::super::monitor::{Monitor, Within};
+use super::super::time_left::Portion;
 use super::record::{FlutterAt, Trim};
 use super::scales::Scales;
 use crate::case::{Flutter as Plan, Matching, StreamRatio};
 
 /// Equilibria that are sought at most.
 const ROUNDS: usize = 12;
+/// Those that it usually takes.
+const USUAL_ROUNDS: usize = 4;
 
 /// What is found in a stream, with limit cycles or without; `None` when the monitor says stop.
 pub(super) type InStream<'a> = dyn Fn(StreamRatio, bool, &mut dyn Monitor) -> Result<Option<FlutterAt>, RunError> + 'a;
@@ -27,7 +30,9 @@ pub(super) fn trimmed(
     let mut between = Between::default();
     let mut at = loop {
         let stream = scales.at(x);
-        let Some(mut at) = boundary(scales.ratio(x), false, monitor)? else { return Ok(None) };
+        let outer = Portion::of(rounds.min(USUAL_ROUNDS - 1), &[1.0; USUAL_ROUNDS]);
+        let within = &mut Within { outer, monitor: &mut *monitor };
+        let Some(mut at) = boundary(scales.ratio(x), false, within)? else { return Ok(None) };
         rounds += 1;
         cost += at.cpu_seconds;
         at.cpu_seconds = cost;

@@ -7,17 +7,20 @@ use std::path::Path;
 
 use num_complex::Complex64;
 
-use super::super::accuracy::Forces;
+use super::super::accuracy::{self, Forces};
+use super::super::cost;
 use super::super::error::RunError;
-use super::super::monitor::{Monitor, Quiet};
+use super::super::monitor::{Monitor, Quiet, Within};
 use super::super::one_cloud::{BETWEEN, COARSER, coarser, on_one_cloud, times_the_spacing};
 use super::super::record::Log;
 use super::super::record::summary::Clock;
 use super::super::session::{Outcome, Session};
-use super::super::studies::{ForceSource, SOLVED};
+use super::super::studies::{ForceSource, SOLVED, in_order};
+use super::super::time_left::Portion;
 use super::cloud_error;
 use super::record::{Column, Matrices, Solved};
 use crate::case::{AnyMode, Case, Cloud, Gaf, Mode};
+use crate::geometry::dimension;
 
 /// Fills in the columns of all modes and frequencies of `plan` with their error bars, and calls `keep` after each frequency; false when
 /// the monitor says stop.
@@ -32,9 +35,12 @@ pub(super) fn columns(
     let asked = Asked { case, plan, input, length: matrices.conditions.reduced_length };
     let mut add = |found: Vec<Column>| {
         matrices.columns.extend(found);
+        asked.sort(&mut matrices.columns);
         keep(matrices)
     };
-    let Some(Flow { cloud, solved, mut shocks }) = asked.about(&steady, &mut add, monitor)? else { return Ok(false) };
+    let part = |k: usize, shocks: bool| Portion::of(k, &asked.clouds(shocks));
+    let found = asked.about(&steady, &mut add, &mut Within { outer: part(0, false), monitor: &mut *monitor })?;
+    let Some(Flow { cloud, solved, mut shocks }) = found else { return Ok(false) };
     if !solved {
         monitor.warn("the steady flow did not converge: forces about it are doubtful");
         matrices.columns.iter_mut().for_each(|c| c.converged = false);
@@ -51,9 +57,11 @@ pub(super) fn columns(
         let mut other = Vec::new();
         let mut add = |found: Vec<Column>| {
             other.extend(found);
+            asked.sort(&mut other);
             Ok(())
         };
-        match asked.about(&coarse, &mut add, &mut Quiet { monitor }) {
+        let outer = part(if ratio == COARSER { 1 } else { 2 }, shocks);
+        match asked.about(&coarse, &mut add, &mut Within { outer, monitor: &mut Quiet { monitor } }) {
             Ok(Some(flow)) if flow.solved => {
                 shocks |= flow.shocks;
                 others.push((ratio, other));
@@ -91,6 +99,19 @@ struct Asked<'a> {
 }
 
 impl Asked<'_> {
+    /// Work on the cloud of the case and on coarser ones, two of them where there are `shocks`, beside one another.
+    fn clouds(&self, shocks: bool) -> [f64; 3] {
+        let d = dimension(self.case).into();
+        let asked = |ratio: f64, asked: bool| if asked { accuracy::alike(ratio, d) } else { 0.0 };
+        [1.0, asked(COARSER, self.plan.cloud_error), asked(BETWEEN, self.plan.cloud_error && shocks)]
+    }
+
+    /// Brings columns into the order in which the case names their frequencies.
+    fn sort(&self, columns: &mut [Column]) {
+        let place = |c: &Column| self.plan.reduced_frequencies.iter().position(|k| *k == c.k);
+        columns.sort_by_key(place);
+    }
+
     /// Hands the columns about the flow of the case `steady` to `add`, frequency by frequency; that flow, `None` when the monitor
     /// says stop.
     fn about(
@@ -101,14 +122,19 @@ impl Asked<'_> {
     ) -> Result<Option<Flow>, RunError> {
         let mut session = Session::open(steady, self.input)?;
         let (mut stopped, mut shocks) = (false, false);
+        let columns = self.plan.reduced_frequencies.len() * self.plan.all_modes().count();
+        let share = cost::share_of_steady(dimension(steady).into(), columns);
         let mut then = |source: &mut dyn ForceSource, log: &mut Log<'_>| {
             shocks = source.is_supersonic();
-            for &k in &self.plan.reduced_frequencies {
-                stopped = stopped || log.stopped();
-                if stopped {
+            let all = in_order(&self.plan.reduced_frequencies);
+            for (number, &k) in all.iter().enumerate() {
+                log.portion = log.portion.at(number as f64 / all.len() as f64);
+                log.doing(&format!("forces at k = {k}, {} of {} frequencies", number + 1, all.len()));
+                let found = at_frequency((self.case, self.plan), k, (source, &|| log.stopped()), self.length);
+                let Some(found) = found else {
+                    stopped = true;
                     break;
-                }
-                let found = at_frequency((self.case, self.plan), k, source, self.length);
+                };
                 for column in &found {
                     let Some(solved) = column.solved else { continue };
                     log.note(&format!(
@@ -126,16 +152,24 @@ impl Asked<'_> {
             }
             Ok(())
         };
-        let Outcome::Finished(summary) = session.solve_then(monitor, Some(&mut then))? else { return Ok(None) };
+        let Outcome::Finished(summary) = session.solve_then(monitor, Some((share, &mut then)))? else {
+            return Ok(None);
+        };
         let solved = summary.succeeded();
         Ok((!stopped).then_some(Flow { cloud: summary.cloud, solved, shocks }))
     }
 }
 
-/// The columns at the reduced frequency `k`; `length` is that of reduced frequencies, and of the coordinate of plunge.
-fn at_frequency((case, plan): (&Case, &Gaf), k: f64, source: &mut dyn ForceSource, length: f64) -> Vec<Column> {
+/// The columns at the reduced frequency `k`; `length` is that of reduced frequencies, and of the coordinate of plunge. `None` where `stop`
+/// says so before all are found.
+fn at_frequency(
+    (case, plan): (&Case, &Gaf),
+    k: f64,
+    (source, stop): (&mut dyn ForceSource, &dyn Fn() -> bool),
+    length: f64,
+) -> Option<Vec<Column>> {
     let clock = Clock::start();
-    let (scale, forces) = (source.work_scale(), source.forces(k * case.flow.reference().mach / length));
+    let (scale, forces) = (source.work_scale(), source.forces_unless(k * case.flow.reference().mach / length, stop)?);
     let unit = |mode: &AnyMode<'_>| if *mode == AnyMode::Rigid(Mode::Plunge) { length } else { 1.0 };
     let units: Vec<f64> = plan.all_modes().map(|mode| unit(&mode)).collect();
     let (n, parts) = (units.len(), |c: Complex64| [c.re, c.im]);
@@ -156,5 +190,5 @@ fn at_frequency((case, plan): (&Case, &Gaf), k: f64, source: &mut dyn ForceSourc
             converged: ended.left <= SOLVED,
         }
     };
-    plan.all_modes().enumerate().map(column).collect()
+    Some(plan.all_modes().enumerate().map(column).collect())
 }

@@ -5,6 +5,7 @@ use super::super::error::RunError;
 use super::super::look::LoadFrame;
 use super::super::look::forces::GeneralisedForce;
 use super::super::monitor::{Monitor, Tick};
+use super::super::time_left::Portion;
 use super::crosscheck::{Moment, Twofold};
 use super::history::IterationHistory;
 use super::interval::passed;
@@ -154,6 +155,8 @@ pub(crate) struct Log<'a> {
     pub(crate) record: Record,
     /// Present point of a polar, and their number.
     pub(crate) point: Option<[usize; 2]>,
+    /// Present part of the run: nothing of it is done.
+    pub(crate) portion: Portion,
     /// The structures.
     pub(crate) structures: Vec<Described>,
     clock: Clock,
@@ -204,6 +207,7 @@ impl<'a> Log<'a> {
             journal,
             record,
             point: None,
+            portion: Portion::whole(0.0),
             structures,
             clock: Clock::start(),
             before,
@@ -243,6 +247,11 @@ impl<'a> Log<'a> {
     pub(crate) fn warn(&mut self, text: &str) {
         self.record.warnings.push(text.to_owned());
         self.monitor.warn(text);
+    }
+
+    /// Says what begins that tells of no iterations, in the present part of the run.
+    pub(crate) fn doing(&mut self, what: &str) {
+        self.monitor.doing(what, &self.portion);
     }
 
     /// Keeps a row of the history.

@@ -3,6 +3,7 @@ use std::f64::consts::TAU;
 
 use super::super::error::RunError;
 use super::super::monitor::{Monitor, Tick};
+use super::super::time_left::Portion;
 use super::march::{Marched, Study, Waves};
 use super::pace::Pace;
 use super::record::{PeriodicRow, ProbeHarmonic, Row, Work};
@@ -162,8 +163,7 @@ impl<'s, const D: usize> Balance<'s, '_, D> {
             };
             monitor.tick(&Tick {
                 iteration: u64::from(self.before[0] + search.place.iterations),
-                goal: self.plan.orders,
-                reached: -told.residual.max(1e-16).log10(),
+                portion: Portion::whole((-told.residual.max(1e-16).log10() / self.plan.orders).clamp(0.0, 1.0)),
                 residual: told.residual,
                 cfl: told.taken,
                 loads: None,

@@ -4,7 +4,7 @@ use std::path::Path;
 use serde::Serialize;
 
 use super::super::error::RunError;
-use super::{balance, setup, supported};
+use super::{balance, setup, supported, trial};
 use crate::case::{Case, Temporal};
 use crate::geometry::dimension;
 use crate::solid::forces::State;
@@ -36,8 +36,10 @@ pub struct SolidReport {
     pub wave_speeds: Vec<f64>,
     /// Longest step of an explicit march.
     pub stable_step: f64,
-    /// Steps that the march takes, about; absent elsewhere.
+    /// Steps that the march takes, about, or at least; absent elsewhere.
     pub steps: Option<f64>,
+    /// True where `steps` are at least so many: a trial of an explicit march was not over soon.
+    pub more_steps: bool,
     /// What makes results doubtful.
     pub warnings: Vec<String>,
 }
@@ -71,10 +73,11 @@ fn report<const D: usize>(case: &Case, input: &Path) -> Result<SolidReport, RunE
     let mut force = vec![[0.0; D]; n];
     solid.all_outside(&state, &mut force);
     let stable_step = structure.stable_step(&vec![0.0; n * D]);
-    let steps = match &case.time {
-        Temporal::Explicit(e) => e.until.map(|until| until.0 / (e.cfl * stable_step)),
-        Temporal::Newmark(n) => Some(n.until.0 / n.step.0),
-        _ => None,
+    let (steps, more_steps) = match &case.time {
+        // the step of the gas is another one
+        Temporal::Explicit(e) if case.has_gas() => (e.until.map(|until| until.0 / (e.cfl * stable_step)), true),
+        Temporal::Newmark(n) => (Some(n.until.0 / n.step.0), false),
+        _ => trial::steps(case, input, &built).map_or((None, false), |s| (Some(s.number), !s.is_known)),
     };
     let mut warnings = built.warnings;
     // a body of revolution moves as a whole along its axis alone
@@ -103,6 +106,7 @@ fn report<const D: usize>(case: &Case, input: &Path) -> Result<SolidReport, RunE
         wave_speeds: solid.materials.iter().map(|m| m.pressure_wave_speed()).collect(),
         stable_step,
         steps,
+        more_steps,
         warnings,
     })
 }

@@ -2,6 +2,7 @@
 use super::super::error::RunError;
 use super::super::monitor::{MarchTick, Monitor, Tick};
 use super::super::record::saved::FILE;
+use super::super::time_left::Portion;
 use super::files::Files;
 use super::pace::Pace;
 use super::record::{PeriodicRow, ProbeHarmonic, Row, Work};
@@ -163,8 +164,7 @@ impl<const D: usize> Study<'_, D> {
         let until = self.until();
         Tick {
             iteration: u64::from(mark.iteration),
-            goal: until,
-            reached: mark.time,
+            portion: Portion::whole((mark.time / until).clamp(0.0, 1.0)),
             residual: mark.residual,
             cfl: 1.0,
             loads: None,

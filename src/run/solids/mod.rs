@@ -19,6 +19,7 @@ mod spline_modes;
 mod summary;
 #[cfg(test)]
 mod tests;
+mod trial;
 
 use std::path::Path;
 

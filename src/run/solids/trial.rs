@@ -1,0 +1,108 @@
+//! Trials of explicit marches: how many steps a march takes, seen in a second or two.
+//!
+//! The longest stable step goes with the distance of particles as the body is deformed: in an impact that squeezes its foot to a third it
+//! falls to a third, and where particles are sheared past one another to a twentieth. What a march takes is seen on the body itself where
+//! that is over soon, else on one with fewer particles, whose steps are longer by the ratio of the steps at rest.
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+use super::setup::{Built, build};
+use crate::case::{Case, Length, Temporal};
+use crate::time::symplectic::{Plan, Symplectic};
+use crate::time::{Integrator, Past};
+
+/// Factors on the distance of particles, and the longest that the trial of each of them may take.
+const FACTORS: [f64; 3] = [1.0, 2.0, 4.0];
+const LONGEST: Duration = Duration::from_millis(1500);
+
+/// Steps of a march.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Steps {
+    /// Their number.
+    pub(super) number: f64,
+    /// True where a trial came to its end, so that it is about that many; else there are at least so many.
+    pub(super) is_known: bool,
+}
+
+/// Steps of the explicit march of the structure `built` of a case whose files lie in `input`; `None` of other studies.
+pub(super) fn steps<const D: usize>(case: &Case, input: &Path, built: &Built<D>) -> Option<Steps> {
+    let Temporal::Explicit(plan) = &case.time else { return None };
+    let plan = Plan { cfl: plan.cfl, until: plan.until?.0 };
+    let at_rest = step_at_rest(built);
+    let mut least = plan.until / (plan.cfl * at_rest);
+    for factor in FACTORS {
+        let coarse = (factor > 1.0).then(|| build::<D>(&coarser(case, factor), input));
+        let body = match &coarse {
+            None => built,
+            Some(Ok(body)) => body,
+            Some(Err(_)) => break,
+        };
+        let finer = step_at_rest(body) / at_rest;
+        match march(body, plan) {
+            Ok(number) => return Some(Steps { number: finer * number, is_known: true }),
+            Err(number) => least = least.max(finer * number),
+        }
+    }
+    Some(Steps { number: least, is_known: false })
+}
+
+/// Steps of the march of a body, or, as an error, how many there are at least where it is not over soon.
+fn march<const D: usize>(body: &Built<D>, plan: Plan) -> Result<f64, f64> {
+    let (start, system) = (body.structure.start(|i| body.velocity[i]), &body.structure);
+    let (began, mut march) = (Instant::now(), Symplectic::new(system, plan, Past::default(), start));
+    while !march.finished() {
+        let mark = march.mark();
+        let to_come = if mark.last > 0.0 { (plan.until - mark.time) / mark.last } else { 0.0 };
+        if began.elapsed() > LONGEST || march.advance().is_err() {
+            return Err(f64::from(mark.iteration) + to_come);
+        }
+    }
+    Ok(f64::from(march.mark().iteration))
+}
+
+fn step_at_rest<const D: usize>(body: &Built<D>) -> f64 {
+    body.structure.solid.stable_step(&vec![[0.0; D]; body.structure.solid.len()])
+}
+
+/// The case with `factor` times the distance of particles in its solids.
+fn coarser(case: &Case, factor: f64) -> Case {
+    let mut case = case.clone();
+    for solid in case.bodies.iter_mut().filter_map(|b| b.solid.as_mut()) {
+        let fewer = |count: u32| (f64::from(count - 1) / factor).round() as u32 + 1;
+        solid.spacing = solid.spacing.map(|h| Length(factor * h.0));
+        solid.through = solid.through.map(fewer);
+    }
+    case
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn of(until: f64, through: u32, velocity: f64) -> (Steps, f64) {
+        let text = format!(
+            "[[body]]\nname = \"bar\"\nbox = {{ size = [0.02, 0.01] }}\n[body.solid]\nthrough = {through}\n\
+             material = {{ density = 8930, young = 117e9, poisson = 0.35, yield = 4e8, hardening = 1e8 }}\n\
+             velocity = [\"{velocity} * x\", \"0\"]\n[time.explicit]\nuntil = {until}\n"
+        );
+        let case = crate::case::read(&text, "t").unwrap_or_else(|e| panic!("{e}"));
+        let built = build::<2>(&case, Path::new("")).unwrap();
+        let Temporal::Explicit(plan) = &case.time else { panic!() };
+        (steps(&case, Path::new(""), &built).unwrap(), until / (plan.cfl * step_at_rest(&built)))
+    }
+
+    #[test]
+    fn steps_of_a_body_that_is_squeezed_are_those_that_it_takes() {
+        let (slow, at_rest) = of(2e-6, 5, -1.0);
+        assert!(slow.is_known && (slow.number / at_rest - 1.0).abs() < 0.2, "{slow:?} {at_rest}");
+        // squeezed to a third of its length
+        let (fast, at_rest) = of(2e-5, 5, -40_000.0);
+        assert!(fast.number > 1.2 * at_rest, "{fast:?} {at_rest}");
+    }
+
+    #[test]
+    fn a_march_without_end_has_at_least_so_many_steps() {
+        let (endless, at_rest) = of(1e3, 9, -1.0);
+        assert!(!endless.is_known && endless.number >= 0.99 * at_rest, "{endless:?} {at_rest}");
+    }
+}
