@@ -9,6 +9,7 @@
 //! Limits: a surface must bound a volume (thin sheets and large holes are refused), bodies in the plane must not overlap.
 //! Only [`load_surface`] opens files; all readers take any input.
 mod airfoil;
+mod bar;
 mod chord_line;
 mod cross_section;
 mod holes;

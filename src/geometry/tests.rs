@@ -80,6 +80,20 @@ fn queries_in_space_agree_with_brute_force() {
 }
 
 #[test]
+fn queries_around_slivers_agree_with_brute_force() {
+    queries_agree_with_brute_force(&single(double_cone(200)));
+}
+
+/// Two cones base to base, of triangles from their tips to the rim between them.
+fn double_cone(n: usize) -> Shell<3> {
+    let rim = (0..n).map(|k| 2.0 * PI * k as f64 / n as f64).map(|t| Vector([0.0, 0.5 * t.cos(), 0.5 * t.sin()]));
+    let vertices = [Vector([-0.8, 0.0, 0.0]), Vector([0.8, 0.0, 0.0])].into_iter().chain(rim).collect();
+    let at = |k: usize| (2 + k % n) as u32;
+    let elements = (0..n).flat_map(|k| [[0, at(k + 1), at(k)], [1, at(k), at(k + 1)]]).collect();
+    Shell { vertices, elements, normals: None, curvature: None, ..primitive::cuboid([1.0; 3]) }
+}
+
+#[test]
 fn points_hugging_the_wall_fall_on_the_right_side() {
     let surface = potato(4);
     let mut random = Random::new();

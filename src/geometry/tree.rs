@@ -3,6 +3,7 @@
 //! The tree is binary, split at the median along the longest side of the centroids' box, so its depth is at most
 //! log2(n) + 1 and a fixed stack suffices: queries allocate nothing. Each node also carries the dipole of its elements
 //! (Barill, Dickson, Schmidt, Levin, Jacobson, "Fast winding numbers for soups and clouds", ACM TOG 37(4), 2018).
+use super::bar::Bar;
 use super::simplex::{self, Corners};
 use crate::math::{Bounds, Vector};
 
@@ -14,6 +15,11 @@ const STACK: usize = 64;
 /// of the sum stays below 0.1 (tested), far from what would confuse 0 with 1.
 const FAR: f64 = 3.0;
 
+/// Greatest number of elements that a bar is looked for around.
+const BARRED: usize = 1024;
+/// Number of the bar of a node that has none.
+const NONE: u32 = u32::MAX;
+
 /// A node: inner (`count` = 0, children at the next index and at `right`) or leaf.
 #[derive(Clone, Debug)]
 struct Node<const D: usize> {
@@ -21,6 +27,7 @@ struct Node<const D: usize> {
     first: u32,
     count: u32,
     right: u32,
+    bar: u32,
 }
 
 /// Sum of area vectors of a node, their mean place and the largest distance of an element from it.
@@ -46,6 +53,7 @@ pub(super) struct Tree<const D: usize> {
     nodes: Vec<Node<D>>,
     dipoles: Vec<Dipole<D>>,
     discs: Vec<Disc<D>>,
+    bars: Vec<Bar<D>>,
     corners: Vec<Corners<D>>,
     order: Vec<u32>,
 }
@@ -62,8 +70,14 @@ impl<const D: usize> Tree<D> {
     pub(super) fn new(elements: &[Corners<D>]) -> Self {
         let mut items: Vec<(u32, Vector<D>)> =
             elements.iter().enumerate().map(|(e, c)| (e as u32, simplex::centroid(c))).collect();
-        let (nodes, dipoles) = (Vec::new(), Vec::new());
-        let mut tree = Self { nodes, dipoles, discs: Vec::new(), corners: Vec::new(), order: Vec::new() };
+        let mut tree = Self {
+            nodes: Vec::new(),
+            dipoles: Vec::new(),
+            discs: Vec::new(),
+            bars: Vec::new(),
+            corners: Vec::new(),
+            order: Vec::new(),
+        };
         if !items.is_empty() {
             tree.split(elements, &mut items, 0);
         }
@@ -78,7 +92,8 @@ impl<const D: usize> Tree<D> {
             items.iter().fold(Bounds::EMPTY, |b: Bounds<D>, i| b.union(&simplex::bounds(&elements[i.0 as usize])));
         let index = self.nodes.len();
         self.dipoles.push(Dipole::of(elements, items));
-        self.nodes.push(Node { bounds, first: first as u32, count: items.len() as u32, right: 0 });
+        let bar = self.bar_around(elements, items);
+        self.nodes.push(Node { bounds, first: first as u32, count: items.len() as u32, right: 0, bar });
         if items.len() <= LEAF {
             return;
         }
@@ -91,6 +106,18 @@ impl<const D: usize> Tree<D> {
         self.nodes[index].count = 0;
         self.nodes[index].right = self.nodes.len() as u32;
         self.split(elements, right, first + half);
+    }
+
+    /// Makes a bar around slivers that lie side by side and tells its number.
+    fn bar_around(&mut self, elements: &[Corners<D>], items: &[(u32, Vector<D>)]) -> u32 {
+        let own = items.iter().map(|i| elements[i.0 as usize]);
+        let Some(bar) = Some(own).filter(|_| items.len() <= BARRED).and_then(Bar::around) else { return NONE };
+        self.bars.push(bar);
+        self.bars.len() as u32 - 1
+    }
+
+    fn bar(&self, node: &Node<D>) -> Option<&Bar<D>> {
+        if node.bar == NONE { None } else { self.bars.get(node.bar as usize) }
     }
 
     /// The element nearest to `x` among those nearer than `within`.
@@ -106,6 +133,9 @@ impl<const D: usize> Tree<D> {
                 continue;
             }
             let node = &self.nodes[index as usize];
+            if self.bar(node).is_some_and(|bar| bar.distance_squared(x) >= best) {
+                continue;
+            }
             if node.count > 0 {
                 self.nearest_in_leaf(node, x, &mut best, &mut hit);
                 continue;
@@ -143,8 +173,12 @@ impl<const D: usize> Tree<D> {
     pub(super) fn crosses(&self, a: &Vector<D>, b: &Vector<D>) -> bool {
         let (middle, half) = ((*a + *b) * 0.5, (*b - *a) * 0.5);
         let mut found = false;
+        let along = |bar: &Bar<D>| {
+            let (middle, half, bounds) = bar.segment(&middle, &half);
+            segment_meets_box(&middle, &half, &bounds)
+        };
         self.visit(
-            |bounds| segment_meets_box(&middle, &half, bounds),
+            |node| segment_meets_box(&middle, &half, &node.bounds) && self.bar(node).is_none_or(along),
             |_, corners| {
                 found = simplex::crosses(a, b, corners);
                 found
@@ -180,17 +214,17 @@ impl<const D: usize> Tree<D> {
 
     /// Calls `f(element, corners)` for elements whose leaf overlaps `bounds`, until it returns true.
     pub(super) fn overlapping(&self, bounds: &Bounds<D>, f: impl FnMut(u32, &Corners<D>) -> bool) {
-        self.visit(|b| meets(b, bounds), f);
+        self.visit(|node| meets(&node.bounds, bounds), f);
     }
 
-    fn visit(&self, enter: impl Fn(&Bounds<D>) -> bool, mut f: impl FnMut(u32, &Corners<D>) -> bool) {
+    fn visit(&self, enter: impl Fn(&Node<D>) -> bool, mut f: impl FnMut(u32, &Corners<D>) -> bool) {
         let mut stack = [0_u32; STACK];
         let mut depth = usize::from(!self.nodes.is_empty());
         while depth > 0 {
             depth -= 1;
             let index = stack[depth];
             let node = &self.nodes[index as usize];
-            if !enter(&node.bounds) {
+            if !enter(node) {
                 continue;
             }
             if node.count == 0 {

@@ -1,0 +1,117 @@
+//! Boxes along slivers.
+//!
+//! Triangles of CAD files are often long and narrow: those of a cone run from its tip to its base. Boxes along the axes of coordinates
+//! around them overlap by hundreds, so that a search in a tree of such boxes visits most of the surface. A box that lies along the
+//! slivers, with axes of its own, holds little more than them (Gottschalk, Lin and Manocha, "OBBTree", SIGGRAPH 1996). It is used to
+//! pass over what cannot be met, never to choose, so that what is found stays the same.
+use super::simplex::{self, Corners};
+use crate::math::{Bounds, Vector};
+
+/// Longest side over height of a triangle from which it is a sliver, and length over width of a bar: around what is rounder, a box
+/// along the axes of coordinates does as well.
+const SLENDER: f64 = 4.0;
+/// Part of the coordinates by which a bar is larger than what it holds, for their rounding.
+const SLACK: f64 = 1e-12;
+/// What rounding leaves of unit vectors, and of angles between axes.
+const ROUNDING: f64 = 1e-12;
+
+/// A box with axes of its own around slivers that lie side by side.
+#[derive(Clone, Debug)]
+pub(super) struct Bar<const D: usize> {
+    centre: Vector<D>,
+    axes: [Vector<D>; D],
+    half: Vector<D>,
+}
+
+impl<const D: usize> Bar<D> {
+    /// The bar around triangles; `None` where they are no slivers side by side.
+    pub(super) fn around(elements: impl Iterator<Item = Corners<D>> + Clone) -> Option<Self> {
+        let axes = axes(elements.clone())?;
+        let origin = elements.clone().next()?[0];
+        let (mut low, mut high) = (Vector::splat(f64::INFINITY), Vector::splat(f64::NEG_INFINITY));
+        let mut size = 0.0_f64;
+        for x in elements.flatten() {
+            let at = Vector::from_fn(|k| (x - origin).dot(&axes[k]));
+            (low, high, size) = (low.min(&at), high.max(&at), size.max(x.max_abs()));
+        }
+        let (middle, half) = ((low + high) * 0.5, (high - low) * 0.5);
+        let slender = (1..D).all(|k| SLENDER * half[k] < half[0]);
+        let centre = (0..D).fold(origin, |x, k| x + axes[k] * middle[k]);
+        slender.then(|| Self { centre, axes, half: half + Vector::splat(SLACK * size) })
+    }
+
+    /// Square of the distance from `x`, from below.
+    #[inline]
+    pub(super) fn distance_squared(&self, x: &Vector<D>) -> f64 {
+        // axes are perpendicular but for rounding
+        const BELOW: f64 = 1.0 - 1e-9;
+        let at = self.local(&(*x - self.centre));
+        BELOW * (0..D).map(|k| (at[k].abs() - self.half[k]).max(0.0)).map(|beyond| beyond * beyond).sum::<f64>()
+    }
+
+    /// A segment (`middle` ± `half`) in the axes of the bar, and the bar in them.
+    pub(super) fn segment(&self, middle: &Vector<D>, half: &Vector<D>) -> (Vector<D>, Vector<D>, Bounds<D>) {
+        let bounds = Bounds { min: -self.half, max: self.half };
+        (self.local(&(*middle - self.centre)), self.local(half), bounds)
+    }
+
+    fn local(&self, x: &Vector<D>) -> Vector<D> {
+        Vector::from_fn(|k| x.dot(&self.axes[k]))
+    }
+}
+
+/// Axes of a bar: along the longest sides of the triangles, across them and normal to them; `None` in the plane, or where one
+/// of the triangles is no sliver.
+fn axes<const D: usize>(elements: impl Iterator<Item = Corners<D>>) -> Option<[Vector<D>; D]> {
+    if D != 3 {
+        return None;
+    }
+    let (mut along, mut area) = (Vector::ZERO, Vector::ZERO);
+    for corners in elements {
+        let (side, own) = (longest_side(&corners), simplex::area_vector(&corners));
+        if side.norm_squared() < 2.0 * SLENDER * own.norm() {
+            return None;
+        }
+        along += if along.dot(&side) < 0.0 { -side } else { side };
+        area += own;
+    }
+    let first = along.unit();
+    let normal_to_first = |v: &Vector<D>| (*v - first * v.dot(&first)).unit();
+    // twice, for what round-off leaves of the first time
+    let normal = normal_to_first(&normal_to_first(&area));
+    let across = simplex::cross(&normal, &first);
+    let unit = |v: &Vector<D>| (v.norm() - 1.0).abs() < ROUNDING;
+    (unit(&first) && unit(&normal) && unit(&across) && normal.dot(&first).abs() < ROUNDING)
+        .then(|| std::array::from_fn(|k| [first, across, normal][k.min(2)]))
+}
+
+fn longest_side<const D: usize>(corners: &Corners<D>) -> Vector<D> {
+    (0..D)
+        .map(|k| corners[(k + 1) % D] - corners[k])
+        .fold(Vector::ZERO, |longest, side| if side.norm_squared() > longest.norm_squared() { side } else { longest })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn blade(turn: f64) -> Corners<3> {
+        let at = |r: f64, t: f64| Vector([1.0 - r, 0.3 * r * t.cos(), 0.3 * r * t.sin()]);
+        [at(0.0, 0.0), at(1.0, turn), at(1.0, turn + 0.01)]
+    }
+
+    #[test]
+    fn a_bar_holds_slivers_and_is_nearer_than_they() {
+        let blades: Vec<Corners<3>> = (0..4).map(|k| blade(0.7 + 0.01 * f64::from(k))).collect();
+        let bar = Bar::around(blades.iter().copied()).expect("slivers side by side");
+        for k in 0..200 {
+            let x = Vector([0.013, 0.007, 0.011].map(|a: f64| (a * f64::from(k * k)).sin()));
+            let distance = |c: &Corners<3>| (simplex::blend(c, &simplex::closest(&x, c)) - x).norm_squared();
+            let nearest = blades.iter().map(distance).fold(f64::INFINITY, f64::min);
+            assert!(bar.distance_squared(&x) <= nearest);
+        }
+        assert!(Bar::around([blade(0.0), blade(3.0)].into_iter()).is_none());
+        let round = [Vector([0.0; 3]), Vector([1.0, 0.0, 0.0]), Vector([0.0, 1.0, 0.0])];
+        assert!(Bar::around([round].into_iter()).is_none());
+    }
+}
