@@ -27,7 +27,7 @@ import tempfile
 import time
 import zlib
 
-from kill import results
+from kill import BEAM, results
 
 MEMORY = 2 << 30
 # of the processor; and of the clock, for what waits forever
@@ -45,27 +45,6 @@ TRAVEL = ('[flow]\nmach = 0.3\n[motion]\nparticles = "lagrangian"\nperiod = 4.0\
           "circle = { radius = 0.5 }\n[cloud]\nspacing = 0.125\nfar_field = 3.0\n[time.explicit]\nuntil = 0.4\n"
           "[output]\ncheckpoint = 1\nreport = false\n")
 BALANCE = MARCH.replace("[time.dual]\nsteps_per_period = 8\nperiods = 0.5\n", "[time]\nharmonics = { number = 1, iterations = 3 }\n")
-BEAM = """[[body]]
-box = { size = [1.0, 0.2] }
-translate = [0.5, 0]
-[body.solid]
-through = 3
-gravity = [0, -9.81]
-[body.solid.material]
-density = 2700
-young = 7e10
-poisson = 0.33
-[[body.solid.support]]
-where = { x_max = 0.001 }
-fix = ["x", "y"]
-[[body.solid.load]]
-where = { x_min = 0.99 }
-force = [0, 1000]
-history = "sin(100 * t)"
-[[body.solid.probe]]
-name = "tip"
-at = [1.0, 0.0]
-"""
 SWING = BEAM + "[time.newmark]\nstep = 1e-3\nuntil = 0.05\n[output]\ncheckpoint = 1\nreport = false\n"
 IMPACT = BEAM.replace('fix = ["x", "y"]', 'fix = ["y"]') + (
     "[contact]\nplanes = [{ point = [-0.01, 0], normal = [1, 0] }]\n"
@@ -82,7 +61,7 @@ FLUTTER = STREAM.replace(' = "2 deg"', " = 0") + (
     "[structure]\nelastic_axis = -0.5\nmass_ratio = 60.0\nx_alpha = 0.2\nr_alpha2 = 0.25\nfrequency_ratio = 0.5\n"
     '[[body]]\nnaca = "0012"\n[cloud]\nspacing = 0.1\nfar_field = 3.0\n[flutter]\nmach = [0.3, 0.4, 0.5]\ncloud_error = false\n'
     "reduced_frequencies = [0.1, 0.3]\n[output]\nreport = false\n")
-SPHERE = "[flow]\nmach = 0.3\n[[body]]\nsphere = { radius = 0.5 }\n" + SMALL.replace("0.1\n", "0.25\n").replace("3.0", "2.0")
+SPHERE = "[flow]\nmach = 0.3\n[[body]]\nsphere = { radius = 0.5 }\n" + SMALL.replace("0.1\n", "0.4\nlayers = 3\n").replace("3.0", "2.0")
 STARTS = {"steady": SECTION, "march": MARCH, "travel": TRAVEL, "balance": BALANCE, "space": SPHERE, "polar": POLAR, "flutter": FLUTTER,
           "swing": SWING, "impact": IMPACT, "panel": PANEL}
 # what a run has found already, and goes on with
@@ -165,7 +144,7 @@ far_field = 8.0
 edge_levels = 0
 curvature_levels = 0
 """
-TABLE = "t,x,y,theta\n" + "".join(f"{0.5 * k},0,{0.01 * (k % 3)},0\n" for k in range(8))
+TABLE = "time,x,y,angle_deg\n" + "".join(f"{0.5 * k},0,{0.01 * (k % 3)},0\n" for k in range(7))
 MODE = "x,y,dx,dy\n" + "".join(f"{0.1 * k},0,0,{0.001 * k * k}\n" for k in range(11))
 PLAIN = MARCH.replace("plunge = 0.1", "{}").replace("period = 4.0\n", "")
 # kind: names and contents of the files, the one that is changed; the command is `check`, or that of COMMANDS
@@ -179,7 +158,7 @@ INPUTS = {
     "binary stl": ({"case.toml": SPACE.format("a.stl"), "a.stl": stl_binary()}, "a.stl"),
     "obj": ({"case.toml": SPACE.format("a.obj"), "a.obj": obj()}, "a.obj"),
     "ply": ({"case.toml": SPACE.format("a.ply"), "a.ply": ply()}, "a.ply"),
-    "table": ({"case.toml": PLAIN.format('table = { file = "t.csv" }'), "t.csv": TABLE}, "t.csv"),
+    "table": ({"case.toml": PLAIN.format('pivot = [0.25, 0]\ntable = { file = "t.csv", periodic = true }'), "t.csv": TABLE}, "t.csv"),
     "mode": ({"case.toml": PLAIN.format('period = 4.0\nmode = [{ file = "m.csv", amplitude = 0.01 }]'), "m.csv": MODE}, "m.csv"),
     "solid": ({"case.toml": SWING}, "case.toml"),
     "impact": ({"case.toml": IMPACT}, "case.toml"),
