@@ -44,9 +44,10 @@ fn completed(block: &str) -> String {
         &["[[body]]\nnaca = \"0012\"\n"]
     } else if has("[cloud.wall_layers]") {
         &["[flow]\nmach = 0.5\nreynolds = 5000\n[[body]]\nnaca = \"0012\"\n"]
+    } else if has("[motion]") && has("[[body]]") {
+        &[STREAM, CLOUD, MARCH]
     } else if has("[motion]") {
-        let bodies = if has("[[body]]") { CLOUD } else { SECTION };
-        &[STREAM, bodies, MARCH]
+        &[STREAM, SECTION, MARCH]
     } else if has("[time") {
         &[STREAM, SECTION, PITCH]
     } else {
@@ -59,13 +60,17 @@ fn completed(block: &str) -> String {
 fn blocks(page: &str, language: &str) -> Vec<(usize, String)> {
     let (mut found, mut inside) = (Vec::new(), None::<(usize, String)>);
     for (k, line) in page.lines().enumerate() {
-        match (&mut inside, line.starts_with("```")) {
-            (None, true) if line == format!("```{language}") => inside = Some((k + 2, String::new())),
-            // another kind: up to its end
-            (None, true) => inside = Some((0, String::new())),
-            (Some(_), true) => found.extend(inside.take()),
-            (Some((_, text)), false) => *text += &format!("{line}\n"),
-            (None, false) => {}
+        let fence = line.starts_with("```");
+        if let Some((_, text)) = &mut inside {
+            if fence {
+                found.extend(inside.take());
+            } else {
+                *text += &format!("{line}\n");
+            }
+        } else if fence {
+            // of another kind: up to its end
+            let first = if line == format!("```{language}") { k + 2 } else { 0 };
+            inside = Some((first, String::new()));
         }
     }
     found.retain(|(line, _)| *line > 0);
