@@ -13,7 +13,9 @@ after a forgery, with other results than those of the run that nobody touched. I
 names, and the exit code is 1.
 """
 import argparse
+import csv
 import json
+import math
 import pathlib
 import random
 import re
@@ -177,7 +179,8 @@ RUN = ["run", "case.toml", "--out", "run", "--quiet"]
 READ_FORCES = ["flutter", "case.toml", "--forces", "forces.json", "--out", "run", "--quiet"]
 COMMANDS = {"solid, run": RUN, "impact, run": RUN, "space, run": RUN, "structure": READ_FORCES, "forces": READ_FORCES}
 NUMBER = re.compile(rb"(?<![\w.])-?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?(?![\w.])")
-NOT_FINITE = re.compile(r"(?<![\w.])-?(nan|inf)(inity)?(?![\w.])", re.IGNORECASE)
+# columns that have a number in every row; others say NaN where there is nothing to tell
+ALWAYS = {"cl", "cd", "cm", "residual", "speed", "frequency", "time", "kinetic", "strain", "work"}
 
 
 def change_text(text, rng):
@@ -344,7 +347,8 @@ def forge(run, start, rng):
         file = run / RECORDS[start]
         header, body = read_checkpoint(file.read_bytes())
         tree = header["meta"]["polar"]["record"]
-        path = rng.choice(numbers_in(tree))
+        # loads are in the history as well; other columns are told by nothing else
+        path = rng.choice([p for p in numbers_in(tree) if "loads" in p])
         header["meta"]["polar"]["record"] = forged(tree, path, rng)
         file.write_bytes(write_checkpoint(file.read_bytes(), header, body))
         (run / "checkpoint.alula.previous").unlink(missing_ok=True)
@@ -399,9 +403,9 @@ def stopped(program, name, case, folder):
 
 def points(record):
     """Number of points that a polar or a flutter boundary has finished."""
-    if record.suffix == ".json":
-        return 1
     try:
+        if record.suffix == ".json":
+            return len(json.loads(record.read_text())["finished"])
         return len(read_checkpoint(record.read_bytes())[0]["meta"]["polar"]["record"]["points"])
     except (OSError, ValueError, KeyError, TypeError, struct.error):
         return 0
@@ -433,17 +437,24 @@ def prepare(program, home):
 
 def wrong_numbers(run, expected=None):
     """What results say that cannot be, where a run ended well."""
-    for file in sorted(run.glob("*.json")) + sorted(run.glob("*.csv")):
-        if NOT_FINITE.search(file.read_text(errors="replace")):
-            return f"numbers in {file.name} are not finite"
+    for file in sorted(run.glob("*.csv")):
+        with file.open(newline="") as text:
+            for row in csv.DictReader(text):
+                bad = [name for name in ALWAYS & row.keys() if not math.isfinite(float(row[name] or "nan"))]
+                if bad:
+                    return f"{', '.join(sorted(bad))} in {file.name} not finite"
+    if (run / "summary.json").exists():
+        loads = json.loads((run / "summary.json").read_text()).get("loads") or {}
+        if not all(isinstance(v, (int, float)) and math.isfinite(v) for v in loads.values()):
+            return "loads in summary.json not finite"
     found = results(run) if expected is not None else None
     differing = [] if found is None else sorted(n for n in expected.keys() & found.keys() if expected[n] != found[n])
     return f"believed: {', '.join(differing[:5])}" if differing else None
 
 
-def one(program, runs, whole, place, rng, only=None):
+def one(program, runs, whole, place, rng, kinds):
     """Makes one input in `place`; kind, and how the program ended."""
-    kind = only or rng.choice(sorted(INPUTS) + ["checkpoint"] * 4 + ["folder"] * 4 + ["forgery"] * 2)
+    kind = rng.choice(kinds)
     if kind in ("checkpoint", "folder", "forgery"):
         start = rng.choice(sorted(set(STARTS) - ({"flutter"} if kind == "checkpoint" else set())))
         shutil.copytree(runs / start, place, dirs_exist_ok=True)
@@ -475,22 +486,26 @@ def main():
     parser.add_argument("--seed", type=int, default=1)
     kinds = sorted(INPUTS) + ["checkpoint", "folder", "forgery"]
     parser.add_argument("--only", choices=kinds, help="mutate inputs of this kind alone")
+    parser.add_argument("--without", choices=kinds, nargs="*", default=[], help="leave these kinds out")
     args = parser.parse_args()
     program = str(pathlib.Path(args.alula).resolve())
     home = pathlib.Path(tempfile.mkdtemp(prefix="alula-mutate-"))
     whole = prepare(program, home / "runs")
+    chosen = [args.only] if args.only else sorted(INPUTS) + ["checkpoint"] * 4 + ["folder"] * 4 + ["forgery"] * 2
+    chosen = [kind for kind in chosen if kind not in args.without]
     bad, codes = 0, {}
     for k in range(args.count):
         place = home / f"{args.seed}-{k}"
         place.mkdir()
-        kind, (code, told) = one(program, home / "runs", whole, place, random.Random(f"{args.seed} {k}"), args.only)
+        kind, (code, told) = one(program, home / "runs", whole, place, random.Random(f"{args.seed} {k}"), chosen)
         codes[code] = codes.get(code, 0) + 1
         if code in GOOD_CODES:
             shutil.rmtree(place)
             continue
         bad += 1
         first = next((l for l in told.splitlines() if l.strip()), "")
-        print(f"{kind}: exit code {code} in {place}: {first[:200]}", flush=True)
+        how = f"exit code {code}" if isinstance(code, int) else code
+        print(f"{kind}: {how} in {place}: {first[:200]}", flush=True)
     print(f"{args.count} inputs, exit codes {dict(sorted(codes.items(), key=str))}: {bad} not survived")
     if bad == 0:
         shutil.rmtree(home)
