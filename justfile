@@ -36,6 +36,11 @@ night count="10000":
     tests/nightly/sections.py target/release/alula
     tests/nightly/surfaces.py target/release/alula --plain
 
+# pages of the book in target/book, by mdBook 0.5
+pages:
+    mdbook build book
+    python3 tests/read_book.py target/book
+
 # bring the generated pages of the book up to date
 book:
     ALULA_WRITE=1 cargo test -p alula --test tidy

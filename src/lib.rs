@@ -1,7 +1,7 @@
 //! Aeroelastic loads from a surface file, without a mesh.
 //!
 //! Data flows one way: `case → geometry → cloud → (system, frame) → rhs → integrator → snapshots → observers → files →
-//! report`. The modules below stand in reading order, lowest floor first; `ARCHITECTURE.md` says which may use which.
+//! report`. The modules below stand roughly in reading order; `ARCHITECTURE.md` says which may use which.
 //!
 //! A case file is one way in: [`run::Session`] solves it in memory, [`run::run`] into a folder. The parts serve without one:
 //!

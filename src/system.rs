@@ -1,7 +1,8 @@
 //! The seam between space and time.
 //!
 //! Space gives a semi-discrete system dU/dt = R(t, U); time integrates it without knowing what it means. The unknowns are one
-//! flat slice that is cut into *fields*: the gas, a structure's coordinates, later turbulence and solids. What depends on time
+//! flat slice that is cut into *fields*: the gas, a structure's coordinates, bodies of particles and what
+//! their materials remember. What depends on time
 //! and state but is not evolved (states held on the outer boundary, positions, velocities, normals and weights of moving
 //! particles) is one value, the *frame at (t, U)*. Marching holds one frame, harmonic balance one per time instance.
 //!

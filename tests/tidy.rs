@@ -319,12 +319,80 @@ fn the_project_has_its_papers() {
     ];
     let missing: Vec<String> = papers.iter().filter(|p| !root().join(p).is_file()).map(|p| (*p).to_string()).collect();
     assert_none(&missing, "missing papers");
-    let summary = read("book/SUMMARY.md");
-    let pages = summary.split("](").skip(1).filter_map(|s| s.split(')').next());
-    let lost: Vec<String> = pages.filter(|p| !root().join("book").join(p).is_file()).map(str::to_string).collect();
-    assert_none(&lost, "pages that book/SUMMARY.md names but do not exist");
     let version = read("Cargo.toml").lines().find_map(|l| l.strip_prefix("version = \"")).map(str::to_string).unwrap();
     assert!(read("CHANGELOG.md").contains(version.trim_end_matches('"')), "CHANGELOG.md does not name {version}");
+}
+
+/// Pages people read: README and its like, book, folders of cases.
+fn papers() -> Vec<String> {
+    let mut all =
+        vec!["README.md".to_string(), "ARCHITECTURE.md".into(), "CHANGELOG.md".into(), "python/README.md".into()];
+    all.extend(["book", "verification", "cases"].iter().flat_map(|f| files(f, ".md")));
+    all
+}
+
+/// Markdown without what stands in fences and, where `spans` are to go too, in `code`.
+fn prose(text: &str, spans: bool) -> String {
+    let outside = text.split("\n```").step_by(2).collect::<Vec<_>>().join("\n");
+    if spans { outside.split('`').step_by(2).collect::<Vec<_>>().join(" ") } else { outside }
+}
+
+/// What a heading is called in a link: letters and digits in lower case, `-` for each space.
+fn anchor(heading: &str) -> String {
+    let kept = heading.trim_start_matches('#').trim().chars().filter(|c| c.is_alphanumeric() || " -_".contains(*c));
+    kept.map(|c| if c == ' ' { '-' } else { c.to_ascii_lowercase() }).collect()
+}
+
+#[test]
+fn links_lead_somewhere() {
+    let mut lost = Vec::new();
+    for page in papers() {
+        let text = read(&page);
+        let folder = Path::new(&page).parent().unwrap();
+        let links = prose(&text, true);
+        let links = links.split("](").skip(1).filter_map(|l| l.split(')').next()).filter(|l| !l.contains("://"));
+        for link in links {
+            let (file, place) = link.split_once('#').unwrap_or((link, ""));
+            let target = if file.is_empty() { page.clone() } else { folder.join(file).to_string_lossy().into_owned() };
+            let there = root().join(&target).exists();
+            let named = || prose(&read(&target), false).lines().any(|l| l.starts_with('#') && anchor(l) == place);
+            let found = there && (place.is_empty() || named());
+            if !found {
+                lost.push(format!("{page}: {link}"));
+            }
+        }
+        for include in text.split("{{#include ").skip(1).filter_map(|i| i.split([':', '}']).next()) {
+            if !root().join(folder.join(include)).is_file() {
+                lost.push(format!("{page}: {{{{#include {include}}}}}"));
+            }
+        }
+    }
+    assert_none(&lost, "links and includes that lead nowhere");
+    assert_eq!(anchor("## What `summary.json` holds"), "what-summaryjson-holds");
+}
+
+/// mdBook makes pages of those that its summary names only, and takes links to others as they are.
+#[test]
+fn the_book_is_whole() {
+    let named = read("book/SUMMARY.md");
+    let mut problems = Vec::new();
+    for page in files("book", ".md").iter().filter(|p| *p != "book/SUMMARY.md") {
+        let inner = page.trim_start_matches("book/");
+        if !named.contains(&format!("]({inner})")) {
+            problems.push(format!("{page} is not in book/SUMMARY.md"));
+        }
+        let text = read(page);
+        if ["\\\\(", "\\(", "\\[", "$$"].iter().any(|w| prose(&text, true).contains(w)) {
+            problems.push(format!("{page} has a formula that is no code: Markdown would eat its backslashes"));
+        }
+        if text.lines().any(|l| l.contains("src=\"http") || l.contains("](http") && l.contains("![")) {
+            problems.push(format!("{page} asks for a picture from a network"));
+        }
+    }
+    assert_none(
+        &problems,
+        "the book has all its pages, formulas as code and no picture from elsewhere (book/formulas.py)",
+    );
 }
 
 #[test]

@@ -93,13 +93,15 @@ impl<'a, S: HasGas<D>, const D: usize> Course<'a, S, D> {
         coarser: Option<&Coarser<'_>>,
         log: &Log<'_>,
     ) -> Option<Vec<f64>> {
+        // what a damaged checkpoint kept of another cloud is no start
+        let on_cloud = |k: &&Kept| k.state.len() == system.len();
         if stage.back {
-            return self.own(stage).map(|k| k.state.clone());
+            return self.own(stage).filter(on_cloud).map(|k| k.state.clone());
         }
         if log.record.polar.from_rest {
             return None;
         }
-        let near = self.neighbour(stage)?;
+        let near = self.neighbour(stage).filter(on_cloud)?;
         let sound = |u: &Vec<f64>| system.check(&system.frame(&Instant::still(0.0), u), u).is_ok();
         match coarser {
             None => Some(self.along(stage, near).filter(sound).unwrap_or_else(|| near.state.clone())),
@@ -109,7 +111,8 @@ impl<'a, S: HasGas<D>, const D: usize> Course<'a, S, D> {
 
     /// The state of the coarser cloud with what the finer one changed at `near`; `None` where that is no point of the same row.
     fn corrected(&self, stage: &Stage, near: &Kept, coarser: &Coarser<'_>) -> Option<Vec<f64>> {
-        let same = |k: &&Kept| k.factor == coarser.factor && k.point == near.point;
+        let on_cloud = |k: &&Kept| k.factor == coarser.factor && k.state.len() == coarser.state.len();
+        let same = |k: &&Kept| on_cloud(k) && k.point == near.point;
         let before = self.kept.iter().find(same).filter(|_| self.in_row(stage, near))?;
         let [own, other] = [coarser.state, &before.state].map(|u| (coarser.carry)(u));
         Some(own.iter().zip(&near.state).zip(&other).map(|((own, near), other)| own + (near - other)).collect())
@@ -130,7 +133,8 @@ impl<'a, S: HasGas<D>, const D: usize> Course<'a, S, D> {
 
     /// The line through `near` and the point before it, at the angle of a stage; `None` across Mach numbers.
     fn along(&self, stage: &Stage, near: &Kept) -> Option<Vec<f64>> {
-        let line = |k: &&Kept| k.factor == stage.factor && k.point < near.point && self.in_row(stage, k);
+        let on_cloud = |k: &&Kept| k.factor == stage.factor && k.state.len() == near.state.len();
+        let line = |k: &&Kept| on_cloud(k) && k.point < near.point && self.in_row(stage, k);
         let before = self.kept.iter().filter(line).max_by_key(|k| k.point)?;
         let angle = |point: usize| self.points[point].flow.alpha.0;
         let part = (angle(stage.point?) - angle(near.point)) / (angle(near.point) - angle(before.point));

@@ -216,7 +216,7 @@ fn refused(case: &Case, plan: &Plan) -> Result<(), RunError> {
         (
             case.solids().next().is_some(),
             "the flutter of bodies made of particles beside a gas",
-            "find their modes first (`[time.modes]` without `[flow]`), and give them as `[[structure.mode]]`",
+            "add `[structure]` with `model = \"own_modes\"` and `number = 4`: its natural modes then move it",
         ),
         (
             case.lco.is_some() && case.structures.iter().any(|s| s.large_angles),

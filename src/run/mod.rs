@@ -5,7 +5,7 @@
 //! on to the same bits.
 //!
 //! Rooms, each of which uses those before it only: `stage` and `recipe` (what is done, in which order), `look` (loads and fields
-//! of a flow), `build` (from a case to its equations), `record` (what a run knows about itself), `found` (what it tells at its
+//! of a flow), `setup` (from a case to its equations), `record` (what a run knows about itself), `found` (what it tells at its
 //! end), `files`, `watch` (one loop that drives any integrator, and those who watch it), `studies` (what is done on a cloud),
 //! `solids` (structures of particles alone),
 //! `course` (the way through the stages, and what many flows on the same clouds leave to one another), `session`; on top of it [`gaf`] and [`verify`], and `refusals` (what keeps a case

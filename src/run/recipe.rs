@@ -1,5 +1,4 @@
-//! How a case integrates: the one place that tells apart steady, marched and periodic cases, and turns what the case says into
-//! what integrators want.
+//! How a case integrates: the stages of steady, marched and periodic cases, and what the case says as what integrators want.
 use super::accuracy;
 use super::error::RunError;
 use super::stage::{Stage, Task};

@@ -3,8 +3,8 @@
 
     tests/nightly/kill.py target/release/alula --count 300 --seed 1
 
-Steady, adapted, viscous, implicit, explicit, travelling, harmonic and structural runs and matrices of generalised forces are killed
-one to three times and resumed each time. Where no checkpoint was written yet the run is begun again, as the program says. A run
+Steady, adapted, viscous, implicit, explicit, travelling, harmonic and structural runs, polars, runs in space, structures of particles
+alone and in a gas, flutter boundaries and matrices of generalised forces are killed one to three times and resumed each time. Where no checkpoint was written yet the run is begun again, as the program says. A run
 that cannot go on, and a result that differs by one bit, is a failure: its folder is kept, and the exit code is 1.
 """
 import argparse
@@ -22,6 +22,27 @@ SECONDS = 300
 END = "[output]\ncheckpoint = 1\n"
 SECTION = '[[body]]\nnaca = "0012"\n[cloud]\nspacing = 0.0625\nfar_field = 6.0\n'
 STREAM = '[flow]\nmach = 0.5\nalpha = "2 deg"\n'
+BEAM = """[[body]]
+box = { size = [1.0, 0.2] }
+translate = [0.5, 0]
+[body.solid]
+through = 3
+gravity = [0, -9.81]
+[body.solid.material]
+density = 2700
+young = 7e10
+poisson = 0.33
+[[body.solid.support]]
+where = { x_max = 0.001 }
+fix = ["x", "y"]
+[[body.solid.load]]
+where = { x_min = 0.99 }
+force = [0, 1000]
+history = "sin(100 * t)"
+[[body.solid.probe]]
+name = "tip"
+at = [1.0, 0.0]
+"""
 PLUNGE = "[flow]\nmach = 0.5\n[motion]\nperiod = 8.0\nplunge = 0.05\n" + SECTION
 CASES = {
     "steady": STREAM + SECTION + END,
@@ -38,6 +59,19 @@ CASES = {
     "structure": '[flow]\nmach = 0.8\n[motion]\nparticles = "rigid"\n[structure]\nelastic_axis = -0.6\nmass_ratio = 75.0\n'
                  "x_alpha = 0.25\nr_alpha2 = 0.75\nfrequency_ratio = 0.5\nspeed_index = 0.65\ninitial = { plunge = 0.01 }\n"
                  + SECTION + "[time.dual]\nstep = 1.0\nuntil = 10.0\n" + END,
+    "polar": STREAM.replace('"2 deg"', '"0:3:1 deg"') + SECTION + END,
+    "space": "[flow]\nmach = 0.3\n[[body]]\nsphere = { radius = 0.5 }\n[cloud]\nspacing = 0.2\nfar_field = 3.0\n[time.steady]\norders = 3\n" + END,
+    "swing": BEAM + "[time.newmark]\nstep = 1e-3\nuntil = 2.0\n" + END,
+    "impact": BEAM.replace('fix = ["x", "y"]', 'fix = ["y"]').replace("gravity = ", "velocity = [-10, 0]\ngravity = ")
+              + "[contact]\nplanes = [{ point = [-0.01, 0], normal = [1, 0] }]\n[time.explicit]\nuntil = 0.05\n" + END,
+    "vibration": BEAM.replace("gravity = ", "stiffness_damping = 1e-5\ngravity = ").replace("100 * t", "omega * t")
+                 + '[time.harmonics]\nnumber = 2\nfrequency = "40 Hz"\n' + END,
+    "panel": '[flow]\nmach = 0.5\npressure = "101 kPa"\ndensity = 1.2\n[[body]]\nbox = { size = [0.1, 1.0] }\n[body.solid]\nthrough = 3\n'
+             "[body.solid.material]\ndensity = 7600\nyoung = 2.2e11\npoisson = 0.33\n[[body.solid.support]]\nwhere = { y_max = -0.4 }\n"
+             "[cloud]\nspacing = 0.05\nfar_field = 4.0\n[time.dual]\nstep = 1e-4\nuntil = 1e-3\n" + END,
+    "flutter": "[flow]\nmach = 0.5\n[structure]\nelastic_axis = -0.5\nmass_ratio = 60.0\nx_alpha = 0.2\nr_alpha2 = 0.25\n"
+               'frequency_ratio = 0.5\n[[body]]\nnaca = "0012"\n[cloud]\nspacing = 0.1\nfar_field = 3.0\n[flutter]\n'
+               "mach = [0.3, 0.4, 0.5]\ncloud_error = false\nreduced_frequencies = [0.1, 0.3]\n",
     "gaf": "[flow]\nmach = 0.5\n" + SECTION + '[gaf]\nreduced_frequencies = [0.3]\nmodes = "plunge"\n' + END,
 }
 # what tells of the machine and of time, not of the flow
@@ -68,7 +102,7 @@ def results(folder):
 
 
 def begin(program, kind, folder):
-    command = "gaf" if kind == "gaf" else "run"
+    command = kind if kind in ("gaf", "flutter") else "run"
     return start(program, [command, "case.toml", "--out", "run"], folder)
 
 
@@ -104,12 +138,12 @@ def interrupted(program, kind, folder, seconds, rng):
         if code == 101:
             return code, told
         run = folder / "run"
-        if (run / "checkpoint.alula").exists() or (run / "checkpoint.alula.previous").exists():
+        if any((run / name).exists() for name in ("checkpoint.alula", "checkpoint.alula.previous", "flutter-kept.json")):
             process = start(program, ["resume", "run"], folder)
         elif (run / "finished.txt").exists():
             return code, told
         else:
-            # gaf keeps no checkpoint: it begins again where it stood
+            # gaf keeps no checkpoint, nor flutter before its first Mach number: they begin again where they stood
             process = begin(program, kind, folder)
     return ended(process)
 

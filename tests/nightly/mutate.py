@@ -3,25 +3,38 @@
 
     tests/nightly/mutate.py target/release/alula --count 10000 --seed 1
 
-Case files, STL, OBJ and airfoil files, tables, mode shapes and checkpoints are changed at random: bytes, numbers, lines, keys.
-The checksums of checkpoints are computed anew, so that the numbers behind them are reached. Each input is looked at within 2 GiB
-of address space and 20 s. A panic (exit code 101), an abort (134 or a signal) or a timeout is a failure; its files are kept in
-the folder that the script names, and the exit code is 1.
+Case files (flow, solids, flutter, three dimensions), STL, OBJ and airfoil files, tables, mode shapes, forces of flutter, checkpoints
+and whole folders of stopped runs are changed at random: bytes, numbers, lines, keys, files. Every input is accepted before it is
+changed, or the script ends: what is refused at its first line tests nothing behind it. The checksums of checkpoints are computed
+anew, so that the numbers behind them are reached; `forgery` changes a number in the record of a stopped run, and leaves it well
+formed. Each input is looked at by one thread within 2 GiB of address space and 20 s of processor time. A panic (exit code 101), an
+abort (134 or a signal) or one that does not end is a failure, and so is an exit code of 0 with numbers that are not finite or,
+after a forgery, with other results than those of the run that nobody touched. Its files are kept in the folder that the script
+names, and the exit code is 1.
 """
 import argparse
+import csv
 import json
+import math
 import pathlib
 import random
+import re
 import resource
 import shutil
+import signal
 import struct
 import subprocess
 import sys
 import tempfile
+import time
 import zlib
 
+from kill import BEAM, results
+
 MEMORY = 2 << 30
+# of the processor; and of the clock, for what waits forever
 SECONDS = 20
+PATIENCE = 300
 GOOD_CODES = {0, 1, 2, 130}
 
 STREAM = '[flow]\nmach = 0.5\nalpha = "2 deg"\n'
@@ -34,7 +47,27 @@ TRAVEL = ('[flow]\nmach = 0.3\n[motion]\nparticles = "lagrangian"\nperiod = 4.0\
           "circle = { radius = 0.5 }\n[cloud]\nspacing = 0.125\nfar_field = 3.0\n[time.explicit]\nuntil = 0.4\n"
           "[output]\ncheckpoint = 1\nreport = false\n")
 BALANCE = MARCH.replace("[time.dual]\nsteps_per_period = 8\nperiods = 0.5\n", "[time]\nharmonics = { number = 1, iterations = 3 }\n")
-STARTS = {"steady": SECTION, "march": MARCH, "travel": TRAVEL, "balance": BALANCE}
+SWING = BEAM + "[time.newmark]\nstep = 1e-3\nuntil = 0.05\n[output]\ncheckpoint = 1\nreport = false\n"
+IMPACT = BEAM.replace('fix = ["x", "y"]', 'fix = ["y"]') + (
+    "[contact]\nplanes = [{ point = [-0.01, 0], normal = [1, 0] }]\n"
+    "[time.explicit]\nuntil = 2e-4\n[output]\ncheckpoint = 1\nreport = false\n")
+SOLID_SPACE = BEAM.replace("[1.0, 0.2]", "[1.0, 0.25, 0.25]").replace("translate = [0.5, 0]", "translate = [0.5, 0, 0]").replace(
+    "[0, -9.81]", "[0, -9.81, 0]").replace("[0, 1000]", "[0, 1000, 0]").replace("[1.0, 0.0]", "[1.0, 0.0, 0.0]").replace(
+    '["x", "y"]', '["x", "y", "z"]').replace('history = "sin(100 * t)"\n', "") + "[time.modes]\nnumber = 2\n"
+PANEL = ('[flow]\nmach = 0.5\npressure = "101 kPa"\ndensity = 1.2\n[[body]]\nbox = { size = [0.1, 1.0] }\n[body.solid]\n'
+         "through = 3\n[body.solid.material]\ndensity = 7600\nyoung = 2.2e11\npoisson = 0.33\n[[body.solid.support]]\n"
+         "where = { y_max = -0.4 }\n[cloud]\nspacing = 0.05\nfar_field = 4.0\n[time.dual]\nstep = 1e-4\nuntil = 4e-4\n"
+         "[output]\ncheckpoint = 1\nreport = false\n")
+POLAR = SECTION.replace('"2 deg"', '"0:4:1 deg"').replace("iterations = 2", "orders = 3")
+FLUTTER = STREAM.replace(' = "2 deg"', " = 0") + (
+    "[structure]\nelastic_axis = -0.5\nmass_ratio = 60.0\nx_alpha = 0.2\nr_alpha2 = 0.25\nfrequency_ratio = 0.5\n"
+    '[[body]]\nnaca = "0012"\n[cloud]\nspacing = 0.1\nfar_field = 3.0\n[flutter]\nmach = [0.3, 0.4, 0.5]\ncloud_error = false\n'
+    "reduced_frequencies = [0.1, 0.3]\n[output]\nreport = false\n")
+SPHERE = "[flow]\nmach = 0.3\n[[body]]\nsphere = { radius = 0.5 }\n" + SMALL.replace("0.1\n", "0.4\nlayers = 3\n").replace("3.0", "2.0")
+STARTS = {"steady": SECTION, "march": MARCH, "travel": TRAVEL, "balance": BALANCE, "space": SPHERE, "polar": POLAR, "flutter": FLUTTER,
+          "swing": SWING, "impact": IMPACT, "panel": PANEL}
+# what a run has found already, and goes on with
+RECORDS = {"polar": "checkpoint.alula", "flutter": "flutter-kept.json"}
 WORDS = ["0", "-1", "1e308", "1e-308", "-1e308", "nan", "inf", "1e999", "0,5", "99999999999999999999", '""', '"m"', "[]", "{}",
          "true", '"1 mm"', '"300 K"', "1000", "2", "3", "1e9", "1e-9", "\u00e4", "\x00"]
 
@@ -113,10 +146,10 @@ far_field = 8.0
 edge_levels = 0
 curvature_levels = 0
 """
-TABLE = "t,x,y,theta\n" + "".join(f"{0.5 * k},0,{0.01 * (k % 3)},0\n" for k in range(8))
+TABLE = "time,x,y,angle_deg\n" + "".join(f"{0.5 * k},0,{0.01 * (k % 3)},0\n" for k in range(7))
 MODE = "x,y,dx,dy\n" + "".join(f"{0.1 * k},0,0,{0.001 * k * k}\n" for k in range(11))
 PLAIN = MARCH.replace("plunge = 0.1", "{}").replace("period = 4.0\n", "")
-# kind: names and contents of the files, the one that is changed, the command
+# kind: names and contents of the files, the one that is changed; the command is `check`, or that of COMMANDS
 INPUTS = {
     "case": ({"case.toml": SECTION}, "case.toml"),
     "moving case": ({"case.toml": MARCH}, "case.toml"),
@@ -127,10 +160,27 @@ INPUTS = {
     "binary stl": ({"case.toml": SPACE.format("a.stl"), "a.stl": stl_binary()}, "a.stl"),
     "obj": ({"case.toml": SPACE.format("a.obj"), "a.obj": obj()}, "a.obj"),
     "ply": ({"case.toml": SPACE.format("a.ply"), "a.ply": ply()}, "a.ply"),
-    "table": ({"case.toml": PLAIN.format('period = 4.0\ntable = { file = "t.csv" }'), "t.csv": TABLE}, "t.csv"),
+    "table": ({"case.toml": PLAIN.format('pivot = [0.25, 0]\ntable = { file = "t.csv", periodic = true }'), "t.csv": TABLE}, "t.csv"),
     "mode": ({"case.toml": PLAIN.format('period = 4.0\nmode = [{ file = "m.csv", amplitude = 0.01 }]'), "m.csv": MODE}, "m.csv"),
+    "solid": ({"case.toml": SWING}, "case.toml"),
+    "impact": ({"case.toml": IMPACT}, "case.toml"),
+    "solid in space": ({"case.toml": SOLID_SPACE}, "case.toml"),
+    "solid in a gas": ({"case.toml": PANEL}, "case.toml"),
+    "solid, run": ({"case.toml": SWING}, "case.toml"),
+    "impact, run": ({"case.toml": IMPACT}, "case.toml"),
+    "flutter": ({"case.toml": FLUTTER}, "case.toml"),
+    "structure": ({"case.toml": FLUTTER}, "case.toml"),
+    "forces": ({"case.toml": FLUTTER}, "forces.json"),
+    "space": ({"case.toml": SPHERE}, "case.toml"),
+    "space, run": ({"case.toml": SPHERE}, "case.toml"),
     "compare": ({"case.toml": SECTION + '[[compare]]\nfile = "c.csv"\n', "c.csv": "x_c,Cp\n0,1\n0.5,-0.3\n1,0.1\n"}, "c.csv"),
 }
+RUN = ["run", "case.toml", "--out", "run", "--quiet"]
+READ_FORCES = ["flutter", "case.toml", "--forces", "forces.json", "--out", "run", "--quiet"]
+COMMANDS = {"solid, run": RUN, "impact, run": RUN, "space, run": RUN, "structure": READ_FORCES, "forces": READ_FORCES}
+NUMBER = re.compile(rb"(?<![\w.])-?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?(?![\w.])")
+# columns that have a number in every row; others say NaN where there is nothing to tell
+ALWAYS = {"cl", "cd", "cm", "residual", "speed", "frequency", "time", "kinetic", "strain", "work"}
 
 
 def change_text(text, rng):
@@ -248,48 +298,185 @@ def change_checkpoint(data, rng):
     return write_checkpoint(data, header, b"".join(blocks))
 
 
+def change_folder(run, others, rng):
+    """A file of a stopped run is lost, cut, spoilt, or that of another run; what was done."""
+    files = sorted(f for f in run.iterdir() if f.is_file())
+    file = rng.choice(files + [f for f in files if f.suffix in (".alula", ".previous", ".json", ".toml")] * 2)
+    what = rng.choice(["lost", "empty", "cut", "bytes", "text", "foreign", "a folder"])
+    data = file.read_bytes()
+    file.unlink()
+    if what == "empty":
+        file.write_bytes(b"")
+    elif what == "cut":
+        file.write_bytes(data[:rng.randrange(len(data) + 1)])
+    elif what == "bytes":
+        file.write_bytes(change_bytes(data, rng))
+    elif what == "text":
+        file.write_bytes(change_text(data.decode(errors="replace"), rng))
+    elif what == "foreign":
+        found = [f for f in sorted(others.glob(f"*/run/{file.name}")) if f.read_bytes() != data]
+        file.write_bytes(rng.choice(found).read_bytes() if found else b"x")
+    elif what == "a folder":
+        file.mkdir()
+    return f"{file.name} {what}"
+
+
+def numbers_in(value, path=()):
+    """Where there are numbers in a tree."""
+    if isinstance(value, bool):
+        return []
+    if isinstance(value, (int, float)):
+        return [path]
+    items = value.items() if isinstance(value, dict) else enumerate(value) if isinstance(value, list) else []
+    return [found for key, inner in items for found in numbers_in(inner, (*path, key))]
+
+
+def forged(value, path, rng):
+    """The tree with another number at one place."""
+    if not path:
+        return rng.choice([value * 1.5, value + 1, -value if value else 3, 0 if value else 1e6])
+    inner = forged(value[path[0]], path[1:], rng)
+    if isinstance(value, dict):
+        return {**value, path[0]: inner}
+    return [*value[:path[0]], inner, *value[path[0] + 1:]]
+
+
+def forge(run, start, rng):
+    """One number of what the run goes on with is another; what it is called."""
+    if start == "polar":
+        file = run / RECORDS[start]
+        header, body = read_checkpoint(file.read_bytes())
+        tree = header["meta"]["polar"]["record"]
+        # loads are in the history as well; other columns are told by nothing else
+        path = rng.choice([p for p in numbers_in(tree) if "loads" in p])
+        header["meta"]["polar"]["record"] = forged(tree, path, rng)
+        file.write_bytes(write_checkpoint(file.read_bytes(), header, body))
+        (run / "checkpoint.alula.previous").unlink(missing_ok=True)
+        return path
+    if start == "flutter":
+        file = run / RECORDS[start]
+        tree = json.loads(file.read_text())
+        path = rng.choice(numbers_in(tree))
+        file.write_text(json.dumps(forged(tree, path, rng)))
+        return path
+    file = run / "history.csv"
+    found = list(NUMBER.finditer(file.read_bytes()))
+    chosen, other = rng.choice(found), rng.choice([b"7.5", b"-3", b"1e9"])
+    data = file.read_bytes()
+    file.write_bytes(data[:chosen.start()] + other + data[chosen.end():])
+    return ("history.csv", chosen.start())
+
+
 def limited():
     resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
+    resource.setrlimit(resource.RLIMIT_CPU, (SECONDS, SECONDS + 1))
 
 
 def alula(program, args, folder):
     """Exit code, or why there is none, and what was said."""
-    command = [program, *args]
+    command = [program, *args, "--threads", "1"]
     try:
-        done = subprocess.run(command, cwd=folder, capture_output=True, timeout=SECONDS, preexec_fn=limited)
+        done = subprocess.run(command, cwd=folder, capture_output=True, timeout=PATIENCE, preexec_fn=limited, stdin=subprocess.DEVNULL)
     except subprocess.TimeoutExpired as slow:
-        return "timeout", (slow.stderr or b"").decode(errors="replace")
-    return done.returncode, done.stderr.decode(errors="replace")
+        return "waits", (slow.stderr or b"").decode(errors="replace")
+    code = "timeout" if done.returncode in (-signal.SIGXCPU, -signal.SIGKILL) else done.returncode
+    return code, done.stderr.decode(errors="replace")
 
 
-def prepare_runs(program, home):
-    """A run with a checkpoint for each kind of study, stopped before its end."""
+def stopped(program, name, case, folder):
+    """A run that has something to go on with: stopped on its way, or without the mark of its end."""
+    folder.mkdir(parents=True)
+    (folder / "case.toml").write_text(case)
+    command = "flutter" if name == "flutter" else "run"
+    process = subprocess.Popen([program, command, "case.toml", "--out", "run", "--quiet", "--threads", "1"], cwd=folder,
+                               stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+    record = folder / "run" / RECORDS.get(name, "checkpoint.alula")
+    while name in RECORDS and process.poll() is None and not (record.exists() and points(record) > 0):
+        time.sleep(0.005)
+    if name in RECORDS:
+        process.send_signal(signal.SIGINT)
+    told = process.communicate(timeout=PATIENCE)[1].decode(errors="replace")
+    if not record.exists():
+        sys.exit(f"error: the run `{name}` left no {record.name} (exit code {process.returncode}): {told}")
+    (folder / "run" / "finished.txt").unlink(missing_ok=True)
+
+
+def points(record):
+    """Number of points that a polar or a flutter boundary has finished."""
+    try:
+        if record.suffix == ".json":
+            return len(json.loads(record.read_text())["finished"])
+        return len(read_checkpoint(record.read_bytes())[0]["meta"]["polar"]["record"]["points"])
+    except (OSError, ValueError, KeyError, TypeError, struct.error):
+        return 0
+
+
+def prepare(program, home):
+    """Stopped runs, what they end with where nobody touches them, and a file of forces; every input is accepted as it is."""
+    whole = {}
     for name, case in STARTS.items():
-        folder = home / name
-        folder.mkdir(parents=True)
-        (folder / "case.toml").write_text(case)
-        code, told = alula(program, ["run", "case.toml", "--out", "run", "--quiet", "--threads", "1"], folder)
-        if not (folder / "run" / "checkpoint.alula").exists():
-            sys.exit(f"error: the run `{name}` wrote no checkpoint (exit code {code}): {told}")
-        (folder / "run" / "finished.txt").unlink(missing_ok=True)
+        stopped(program, name, case, home / name)
+        folder = home / "whole" / name
+        shutil.copytree(home / name, folder)
+        code, told = alula(program, ["resume", "run", "--quiet"], folder)
+        if code not in (0, 1):
+            sys.exit(f"error: the run `{name}` does not go on (exit code {code}): {told}")
+        whole[name] = results(folder / "run")
+    INPUTS["structure"][0]["forces.json"] = INPUTS["forces"][0]["forces.json"] = (
+        home / "whole" / "flutter" / "run" / "flutter.json").read_text()
+    for kind, (files, _) in INPUTS.items():
+        place = home / "bases" / kind
+        place.mkdir(parents=True)
+        for name, content in files.items():
+            (place / name).write_bytes(content if isinstance(content, bytes) else content.encode())
+        code, told = alula(program, COMMANDS.get(kind, ["check", "case.toml"]), place)
+        if code != 0 and not (code == 1 and kind in COMMANDS):
+            sys.exit(f"error: the input `{kind}` is refused as it is (exit code {code}): {told}")
+    return whole
 
 
-def one(program, runs, place, rng, only=None):
+def wrong_numbers(run, expected=None):
+    """What results say that cannot be, where a run ended well."""
+    for file in sorted(run.glob("*.csv")):
+        with file.open(newline="") as text:
+            for row in csv.DictReader(text):
+                bad = [name for name in ALWAYS & row.keys() if not math.isfinite(float(row[name] or "nan"))]
+                if bad:
+                    return f"{', '.join(sorted(bad))} in {file.name} not finite"
+    if (run / "summary.json").exists():
+        loads = json.loads((run / "summary.json").read_text()).get("loads") or {}
+        if not all(isinstance(v, (int, float)) and math.isfinite(v) for v in loads.values()):
+            return "loads in summary.json not finite"
+    found = results(run) if expected is not None else None
+    differing = [] if found is None else sorted(n for n in expected.keys() & found.keys() if expected[n] != found[n])
+    return f"believed: {', '.join(differing[:5])}" if differing else None
+
+
+def one(program, runs, whole, place, rng, kinds):
     """Makes one input in `place`; kind, and how the program ended."""
-    kind = only or rng.choice(sorted(INPUTS) + ["checkpoint"] * 3)
-    if kind == "checkpoint":
-        start = rng.choice(sorted(STARTS))
+    kind = rng.choice(kinds)
+    if kind in ("checkpoint", "folder", "forgery"):
+        start = rng.choice(sorted(set(STARTS) - ({"flutter"} if kind == "checkpoint" else set())))
         shutil.copytree(runs / start, place, dirs_exist_ok=True)
-        file = place / "run" / "checkpoint.alula"
-        file.write_bytes(change_checkpoint(file.read_bytes(), rng))
-        return f"checkpoint of {start}", alula(program, ["resume", "run", "--quiet", "--threads", "1"], place)
+        run = place / "run"
+        if kind == "checkpoint":
+            file, what = run / "checkpoint.alula", ""
+            file.write_bytes(change_checkpoint(file.read_bytes(), rng))
+            (run / "checkpoint.alula.previous").unlink(missing_ok=True)
+        else:
+            what = change_folder(run, runs, rng) if kind == "folder" else forge(run, start, rng)
+        code, told = alula(program, ["resume", "run", "--quiet"], place)
+        wrong = wrong_numbers(run, whole[start] if kind == "forgery" else None) if code == 0 else None
+        return f"{kind} of {start} {what}", (wrong or code, told)
     files, changed = INPUTS[kind]
     for name, content in files.items():
         data = content if isinstance(content, bytes) else content.encode()
         if name == changed:
             data = change_bytes(data, rng) if isinstance(content, bytes) else change_text(content, rng)
         (place / name).write_bytes(data)
-    return kind, alula(program, ["check", "case.toml"], place)
+    code, told = alula(program, COMMANDS.get(kind, ["check", "case.toml"]), place)
+    wrong = wrong_numbers(place / "run") if code == 0 and kind in COMMANDS else None
+    return kind, (wrong or code, told)
 
 
 def main():
@@ -297,23 +484,28 @@ def main():
     parser.add_argument("alula")
     parser.add_argument("--count", type=int, default=10_000)
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--only", choices=sorted(INPUTS), help="mutate inputs of this kind alone")
+    kinds = sorted(INPUTS) + ["checkpoint", "folder", "forgery"]
+    parser.add_argument("--only", choices=kinds, help="mutate inputs of this kind alone")
+    parser.add_argument("--without", choices=kinds, nargs="*", default=[], help="leave these kinds out")
     args = parser.parse_args()
     program = str(pathlib.Path(args.alula).resolve())
     home = pathlib.Path(tempfile.mkdtemp(prefix="alula-mutate-"))
-    prepare_runs(program, home / "runs")
+    whole = prepare(program, home / "runs")
+    chosen = [args.only] if args.only else sorted(INPUTS) + ["checkpoint"] * 4 + ["folder"] * 4 + ["forgery"] * 2
+    chosen = [kind for kind in chosen if kind not in args.without]
     bad, codes = 0, {}
     for k in range(args.count):
         place = home / f"{args.seed}-{k}"
         place.mkdir()
-        kind, (code, told) = one(program, home / "runs", place, random.Random(f"{args.seed} {k}"), args.only)
+        kind, (code, told) = one(program, home / "runs", whole, place, random.Random(f"{args.seed} {k}"), chosen)
         codes[code] = codes.get(code, 0) + 1
         if code in GOOD_CODES:
             shutil.rmtree(place)
             continue
         bad += 1
         first = next((l for l in told.splitlines() if l.strip()), "")
-        print(f"{kind}: exit code {code} in {place}: {first[:200]}", flush=True)
+        how = f"exit code {code}" if isinstance(code, int) else code
+        print(f"{kind}: {how} in {place}: {first[:200]}", flush=True)
     print(f"{args.count} inputs, exit codes {dict(sorted(codes.items(), key=str))}: {bad} not survived")
     if bad == 0:
         shutil.rmtree(home)

@@ -423,7 +423,7 @@ impl Saved<'_> {
             lagrangian,
             settling: Settling::new(&m.settling, &part("settling")?),
             // checkpoints of versions without polars have none
-            kept: m.polar.kept(&part("kept").unwrap_or_default()).into(),
+            kept: m.polar.kept(&part("kept").unwrap_or_default())?.into(),
             polar: m.polar.record,
             iteration: m.iteration,
             time: f64::from_bits(m.time_bits),
@@ -446,19 +446,23 @@ impl Saved<'_> {
 }
 
 impl PolarMeta {
-    /// The states that are kept, from all their numbers.
-    fn kept(&self, mut numbers: &[f64]) -> Vec<Kept> {
-        let mut all = Vec::new();
+    /// The states that are kept, from all their numbers; refuses more or fewer than they are said to have.
+    fn kept(&self, mut numbers: &[f64]) -> Result<Vec<Kept>, RunError> {
+        let mut lengths = self.kept.iter().map(|k| k.2).chain(self.sources.iter().copied());
+        let told = lengths.try_fold(0_usize, usize::checked_add);
+        let whole = told == Some(numbers.len()) && self.sources.len() <= self.kept.len();
+        require(whole, "the states that it keeps have other lengths than it says")?;
         let mut take = |length: usize| {
-            let (taken, rest) = numbers.split_at(length.min(numbers.len()));
+            let (taken, rest) = numbers.split_at(length);
             numbers = rest;
             taken.to_vec()
         };
+        let mut all = Vec::new();
         for (k, (factor, point, length)) in self.kept.iter().enumerate() {
             let (state, sources) = (take(*length), take(self.sources.get(k).copied().unwrap_or(0)));
             all.push(Kept { factor: *factor, point: *point, state, sources });
         }
-        all
+        Ok(all)
     }
 }
 
@@ -516,4 +520,29 @@ fn bare(iteration: u32) -> Resume {
 /// Nothing, or what is wrong with a checkpoint.
 pub(super) fn require(holds: bool, problem: &'static str) -> Result<(), RunError> {
     if holds { Ok(()) } else { Err(RunError::Untrue { file: FILE, problem }) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn states_that_are_kept_have_the_lengths_that_are_told() {
+        let meta = |lengths: &[usize], sources: &[usize]| PolarMeta {
+            kept: lengths.iter().map(|n| (1.0, 0, *n)).collect(),
+            sources: sources.to_vec(),
+            ..PolarMeta::default()
+        };
+        let kept = meta(&[2, 1], &[0, 1]).kept(&[1.0, 2.0, 3.0, 4.0]).unwrap();
+        assert_eq!(
+            (&kept[0].state[..], &kept[1].state[..], &kept[1].sources[..]),
+            (&[1.0, 2.0][..], &[3.0][..], &[4.0][..])
+        );
+        assert!(PolarMeta::default().kept(&[]).unwrap().is_empty());
+        let others: [(Vec<usize>, Vec<usize>); 4] =
+            [(vec![2], vec![]), (vec![4, 1], vec![]), (vec![usize::MAX, 5], vec![]), (vec![4], vec![0, 0])];
+        for (lengths, sources) in others {
+            assert!(meta(&lengths, &sources).kept(&[0.0; 4]).is_err(), "{lengths:?} {sources:?}");
+        }
+    }
 }

@@ -22,6 +22,9 @@ impl Saved<'_> {
         let known = self.stage < self.stages.len() && self.stages.len() <= MOST_STAGES;
         require(known, "its stage is not among its stages")?;
         require(self.stages.iter().all(|s| is_of(case, s)), "its stages are not those of the case")?;
+        let points = case.points().len();
+        let of_points = self.stages.iter().all(|s| s.point.is_none_or(|point| point < points));
+        require(of_points, "its stages are of points that the case does not have")?;
         // a state of several instants never becomes one of fewer
         let grows = self.stages.windows(2).all(|w| w[0].instances() <= w[1].instances());
         require(grows, "its stages are in another order than those of the case")?;
