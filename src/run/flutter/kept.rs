@@ -34,10 +34,11 @@ struct Finished {
 }
 
 impl Kept {
-    /// What `out` has of `case`, whose files lie in `input`; nothing where it has none, or another one.
-    pub(super) fn of(case: &Case, input: &Path, out: &Path) -> Self {
+    /// What `out` has of `case`, whose files lie in `input`; nothing where it has none, or another one, or is no folder.
+    pub(super) fn of(case: &Case, input: &Path, out: Option<&Path>) -> Self {
         let key = folder::identity(case, input);
-        let read = folder::text(out, KEPT).ok().and_then(|text| serde_json::from_str::<Self>(&text).ok());
+        let read =
+            out.and_then(|out| folder::text(out, KEPT).ok()).and_then(|text| serde_json::from_str::<Self>(&text).ok());
         read.filter(|kept| kept.key == key).unwrap_or(Self { key, finished: Vec::new() })
     }
 
@@ -60,9 +61,9 @@ impl Kept {
         });
     }
 
-    /// Writes all of it into `out`.
-    pub(super) fn write(&self, out: &Path) -> Result<(), RunError> {
-        Ok(write_json(&out.join(KEPT), self)?)
+    /// Writes all of it into `out`, where there is a folder.
+    pub(super) fn write(&self, out: Option<&Path>) -> Result<(), RunError> {
+        out.map_or(Ok(()), |out| Ok(write_json(&out.join(KEPT), self)?))
     }
 }
 
@@ -78,7 +79,7 @@ mod tests {
             let text = format!("[flow]\nmach = {mach}\n[[body]]\nnaca = \"0012\"\n[cloud]\nspacing = 0.1\n");
             crate::case::read(&text, "case.toml").unwrap()
         };
-        let (input, out) = (Path::new(""), folder.path());
+        let (input, out) = (Path::new(""), Some(folder.path()));
         let at = FlutterAt {
             mach: 0.7,
             still: vec![0.1 + 0.2, 1.0 / 3.0],
@@ -93,7 +94,7 @@ mod tests {
         let again = Kept::of(&case(0.5), input, out).at(0.7).unwrap();
         assert_eq!(format!("{again:?}"), format!("{at:?}"));
         assert!(Kept::of(&case(0.6), input, out).at(0.7).is_none());
-        folder::forget_kept(out);
+        folder::forget_kept(folder.path());
         assert!(Kept::of(&case(0.5), input, out).at(0.7).is_none());
     }
 }
