@@ -67,9 +67,10 @@ def test_damping_changes_sign_at_the_crossing(boundary):
     own = (vg["branch"] == "mode 1") & (vg["mach"] == 0.5)
     speed, damping = vg["speed"][own], vg["damping"][own]
     order = np.argsort(speed)
-    zero = np.interp(0.0, *(v[order][-2:] for v in (damping, speed))) if damping[order][-1] < 0 else None
-    grows = speed[order][damping[order] > 1e-9]
-    assert zero is None and abs(grows[0] / boundary.speeds[0] - 1) < 0.2
+    speed, damping = speed[order], damping[order]
+    k = np.flatnonzero((damping[:-1] < 0) & (damping[1:] > 0))[0]
+    between = np.interp(0.0, damping[k : k + 2], speed[k : k + 2])
+    assert abs(between / boundary.speeds[0] - 1) < 0.02
     # g = 2 Re(lambda)/|lambda|
     some = own & (vg["frequency"] > 0)
     value = vg["eigenvalue"][some]
@@ -165,7 +166,7 @@ def test_ctrl_c_is_heard(command):
     try:
         signal.setitimer(signal.ITIMER_REAL, 0.5)
         with pytest.raises(KeyboardInterrupt):
-            command({"cloud": {"spacing": 0.004, "far_field": 20.0}})
+            command({"cloud": {"spacing": 0.01, "far_field": 20.0}})
     finally:
         signal.signal(signal.SIGALRM, earlier)
 
