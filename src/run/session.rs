@@ -23,7 +23,7 @@ use super::record::summary::{Clock, Summary};
 use super::record::{Described, IterationHistory, Log, Scales, SolidEnd};
 use super::setup::{self, Site, Solver, check_motion};
 use super::solids::{SolidSummary, snapshot, with_own_modes};
-use super::stage::{Stage, Task};
+use super::stage::{Stage, Task, describe};
 use super::studies::{self, ForceSource, Reached, SmallMotion, Start, Turn};
 use crate::case::{self, Case};
 use crate::cloud::Cloud;
@@ -590,14 +590,4 @@ fn last_known<'a, S: HasGas<D>, const D: usize>(
     };
     let frame = solver.system.frame(&Instant::still(0.0), &state);
     Ok(Stood { stage, solver, reached: Reached::at(frame, state) })
-}
-
-fn describe(stages: &[Stage], n: usize) -> String {
-    let first = || stages.iter().filter(|s| s.point.unwrap_or(0) == 0);
-    let mut factors: Vec<f64> = first().map(|s| s.factor).filter(|f| *f > 1.0).collect();
-    factors.dedup();
-    let coarse = factors.len();
-    let cycles = (1..).take_while(|c| first().any(|s| s.factor == 1.0 && s.cycle == *c)).count();
-    let points = stages.last().and_then(|s| s.point).map_or_else(String::new, |p| format!("; {} points", p + 1));
-    format!("{n} fluid particles; {coarse} coarser clouds for the start, {cycles} cycles of adaptation{points}")
 }
