@@ -4,13 +4,15 @@ use std::path::{Path, PathBuf};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyFloat, PyMapping, PyString};
-use solver::case::{Case, read, read_regular, text_of};
+use solver::case::{Case, open_regular, read_in, read_regular, text_of};
 use toml::{Table, Value};
 
 use crate::faults;
 
 /// What messages call a case that is a dict.
 const DICT: &str = "case";
+/// Ends of the names of files of triangles; others hold the coordinates of a section.
+const SOLID: [&str; 3] = ["stl", "obj", "ply"];
 
 /// A case, and the folder that its file names refer to.
 pub(crate) struct Given {
@@ -23,27 +25,64 @@ impl Given {
     pub(crate) fn of(given: &Bound<'_, PyAny>) -> PyResult<Self> {
         let py = given.py();
         if let Ok(path) = given.extract::<PathBuf>() {
-            let case = read(&text_at(py, &path)?, &path.display().to_string());
+            let input = path.parent().map_or_else(PathBuf::new, Path::to_path_buf);
+            let case = read_in(&text_at(py, &path)?, &path.display().to_string(), &input);
             let case = case.map_err(|mistakes| faults::of_case(py, &mistakes, true))?;
-            return Ok(Self { case, input: path.parent().map_or_else(PathBuf::new, Path::to_path_buf) });
+            return Ok(Self { case, input });
         }
-        let Ok(dict) = given.cast::<PyMapping>() else {
-            let kind = given.get_type().name()?;
-            return Err(PyTypeError::new_err(format!(
-                "a case is the path of a case file or a dict with its keys, not a `{kind}`"
-            )));
+        Self::of_table(py, &table(mapping(given)?, "")?, PathBuf::new())
+    }
+
+    /// The same; refuses structures alone.
+    pub(crate) fn with_gas(self, py: Python<'_>) -> PyResult<Self> {
+        if self.case.has_gas() {
+            return Ok(self);
+        }
+        let text = "the case has no gas: it is a structure of particles alone\nhint: `alula.solid` computes it";
+        Err(faults::single(py, text))
+    }
+
+    /// Bodies: those of a case, of a dict that needs nothing but `body`, or that of a surface file, which is one that is not called `.toml`.
+    pub(crate) fn bodies_of(given: &Bound<'_, PyAny>) -> PyResult<Self> {
+        let py = given.py();
+        let ends = |path: &Path, end: &str| path.extension().is_some_and(|e| e.eq_ignore_ascii_case(end));
+        let (mut entries, input) = match given.extract::<PathBuf>() {
+            Ok(path) if ends(&path, "toml") => return Self::of(given),
+            Ok(path) => {
+                open_regular(&path).map_err(|problem| unreadable(&path, &problem))?;
+                let shape = if SOLID.iter().any(|end| ends(&path, end)) { "surface" } else { "airfoil" };
+                let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+                let body = Table::from_iter([(shape.to_owned(), Value::String(name))]);
+                let input = path.parent().map_or_else(PathBuf::new, Path::to_path_buf);
+                (Table::from_iter([("body".to_owned(), Value::Array(vec![Value::Table(body)]))]), input)
+            }
+            Err(_) => (table(mapping(given)?, "")?, PathBuf::new()),
         };
-        let text = table(dict, "")?.to_string();
-        let case = read(&text, DICT).map_err(|mistakes| faults::of_case(py, &mistakes, false))?;
-        Ok(Self { case, input: PathBuf::new() })
+        if ["flow", "initial", "time"].iter().all(|name| !entries.contains_key(*name)) {
+            entries.insert("flow".to_owned(), Value::Table(Table::from_iter([("mach".to_owned(), Value::Float(0.5))])));
+        }
+        Self::of_table(py, &entries, input)
+    }
+
+    fn of_table(py: Python<'_>, table: &Table, input: PathBuf) -> PyResult<Self> {
+        let case = read_in(&table.to_string(), DICT, &input);
+        Ok(Self { case: case.map_err(|mistakes| faults::of_case(py, &mistakes, false))?, input })
     }
 }
 
+fn mapping<'a, 'py>(given: &'a Bound<'py, PyAny>) -> PyResult<&'a Bound<'py, PyMapping>> {
+    given.cast::<PyMapping>().or_else(|_| {
+        let kind = given.get_type().name()?;
+        Err(PyTypeError::new_err(format!("a case is the path of a case file or a dict with its keys, not a `{kind}`")))
+    })
+}
+
+fn unreadable(path: &Path, problem: &std::io::Error) -> PyErr {
+    std::io::Error::new(problem.kind(), format!("cannot read `{}`: {problem}", path.display())).into()
+}
+
 fn text_at(py: Python<'_>, path: &Path) -> PyResult<String> {
-    let bytes = read_regular(path).map_err(|problem| -> PyErr {
-        let text = format!("cannot read `{}`: {problem}", path.display());
-        std::io::Error::new(problem.kind(), text).into()
-    })?;
+    let bytes = read_regular(path).map_err(|problem| unreadable(path, &problem))?;
     text_of(&bytes).map_err(|problem| {
         let hint = "a case file is TOML, saved as UTF-8";
         faults::single(py, &format!("cannot read `{}`: {problem}\nhint: {hint}", path.display()))

@@ -1,13 +1,15 @@
-//! Results as NumPy arrays, which own what the library found: nothing is copied.
+//! Results of flows.
 use std::path::PathBuf;
 
-use numpy::{PyArray1, PyArrayMethods};
+use numpy::PyArray1;
 use pyo3::prelude::*;
-use pyo3::types::{PyDict, PyList, PySlice};
+use pyo3::types::{PyDict, PyList};
 use solver::case::Case;
 use solver::geometry::dimension;
 use solver::observe::loads::Coefficients;
-use solver::run::{PolarPoint, Snapshot, Solution, WallSnapshot};
+use solver::run::{PolarPoint, Solution, WallSnapshot};
+
+use crate::tables::{arrays, python_of};
 
 /// What a run found.
 ///
@@ -49,6 +51,9 @@ pub(crate) struct Result {
     /// `pressure`, `cp`, `mach`, `density`, with viscosity `cf`, `heat_flux`, `y_plus`, and the indices `body` and `tag` (M,).
     #[pyo3(get)]
     surface: Py<PyDict>,
+    /// Arrays over the particles of bodies made of particles at the end, as `Solid.fields`, in the units of the case; None without such bodies.
+    #[pyo3(get)]
+    solid: Option<Py<PyDict>>,
     /// Names of bodies, which `surface["body"]` counts from 0.
     #[pyo3(get)]
     bodies: Vec<String>,
@@ -109,33 +114,13 @@ impl Result {
             history: history.unbind(),
             fields: arrays(py, found.field, d)?.unbind(),
             surface: surface.unbind(),
+            solid: found.solid.map(|on| arrays(py, on, d).map(Bound::unbind)).transpose()?,
             bodies,
             tags,
             polar: (!summary.polar.is_empty()).then(|| polar(py, &summary.polar)).transpose()?,
             folder,
         })
     }
-}
-
-/// Columns by name; vectors of a plane flow have two components, its vorticity has one.
-fn arrays<'py>(py: Python<'py>, snapshot: Snapshot, dimension: usize) -> PyResult<Bound<'py, PyDict>> {
-    let all = PyDict::new(py);
-    let (points, n) = (snapshot.points.into_flattened(), 3);
-    for (name, n, values) in std::iter::once(("positions", n, points)).chain(snapshot.columns) {
-        let flat = PyArray1::from_vec(py, values);
-        if n == 1 {
-            all.set_item(name, flat)?;
-            continue;
-        }
-        let rows = flat.reshape([flat.len()? / n, n])?;
-        let every = PySlice::full(py);
-        let view = match (dimension, name) {
-            (2, "vorticity") => rows.get_item((every, 2))?,
-            (d, _) => rows.get_item((every, PySlice::new(py, 0, d.cast_signed(), 1)))?,
-        };
-        all.set_item(name, view)?;
-    }
-    Ok(all)
 }
 
 /// The table of a polar.
@@ -157,9 +142,4 @@ fn polar(py: Python<'_>, points: &[PolarPoint]) -> PyResult<Py<PyDict>> {
     table.set_item("converged", PyArray1::from_vec(py, points.iter().map(|p| p.converged).collect()))?;
     table.set_item("reason", PyList::new(py, points.iter().map(|p| &p.reason))?)?;
     Ok(table.unbind())
-}
-
-/// A JSON value as what Python makes of it.
-pub(crate) fn python_of(py: Python<'_>, value: &serde_json::Value) -> PyResult<Py<PyAny>> {
-    Ok(py.import("json")?.call_method1("loads", (value.to_string(),))?.unbind())
 }

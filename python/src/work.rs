@@ -2,7 +2,8 @@
 //!
 //! A case is solved in threads of its own while the thread that asked waits without the interpreter lock. That thread alone
 //! meets Python: it calls the callback, hears Ctrl-C, and tells the computation to stop after its iteration.
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
 use std::thread;
@@ -13,11 +14,17 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use solver::case::Case;
 use solver::observe::usage::threads_of_environment;
-use solver::run::{Monitor, Outcome, RunError, Session, Solution, Tick, continued, inspect, is_finished, refusals};
+use solver::run::{
+    Monitor, Outcome, RunError, Session, SolidOutcome, SolidSolution, Solution, Tick, case_of, continued, flutter,
+    inspect, inspect_structure, is_finished, refusals, resume_solid,
+};
 
+use crate::aeroelastic::Flutter;
 use crate::cases::Given;
 use crate::faults;
-use crate::results::{Result as Found, python_of};
+use crate::results::Result as Found;
+use crate::solids::Solid;
+use crate::tables::python_of;
 
 /// Longest wait between two looks at signals.
 const PAUSE: Duration = Duration::from_millis(50);
@@ -69,30 +76,33 @@ pub(crate) fn run(
     threads: Option<usize>,
 ) -> PyResult<Found> {
     let wishes = Wishes::of(py, progress, threads)?;
-    let given = Given::of(case)?;
-    let open = |relay: &mut Relay<'_>| {
-        let session = Session::open(&given.case, &given.input)?;
-        match out.as_deref() {
-            Some(out) => session.keep_in(out, relay),
-            None => Ok(session),
-        }
-    };
-    computed(py, wishes, open, out.as_deref())
+    let Given { case, input } = Given::of(case)?.with_gas(py)?;
+    let folder = out.clone();
+    let (case, found) = computed(py, wishes, move |relay| {
+        let session = Session::open(&case, &input)?;
+        let session = match &folder {
+            Some(folder) => session.keep_in(folder, relay)?,
+            None => session,
+        };
+        solve(session, relay)
+    })?;
+    Found::of(py, &case, found, out)
 }
 
-/// Goes on with a run that was stopped, from its checkpoint, to the same bits as if it had not been.
+/// Goes on with what was stopped in a folder, from its checkpoint, to the same bits as if it had not been: a run, a structure alone, or a
+/// flutter boundary, of which the Mach numbers go on that were not finished.
 ///
 /// Parameters
 /// ----------
 /// out : str or os.PathLike
-///     The folder of the run.
+///     The folder.
 /// progress, threads : optional
 ///     As for `run`.
 ///
 /// Returns
 /// -------
-/// Result
-///     As of `run`; the history begins where the run began.
+/// Result, Solid or Flutter
+///     As of `run`, `solid` or `flutter`; histories begin where the run began.
 ///
 /// Raises
 /// ------
@@ -107,7 +117,7 @@ pub(crate) fn resume(
     out: PathBuf,
     progress: Option<Py<PyAny>>,
     threads: Option<usize>,
-) -> PyResult<Found> {
+) -> PyResult<Py<PyAny>> {
     let wishes = Wishes::of(py, progress, threads)?;
     if is_finished(&out) {
         let text = format!(
@@ -116,17 +126,41 @@ pub(crate) fn resume(
         );
         return Err(faults::single(py, &text));
     }
-    computed(py, wishes, |_| continued(&out), Some(&out))
+    let folder = out.clone();
+    if flutter::is_interrupted(&out) {
+        let found = computed(py, wishes, move |relay| flutter::resume(&folder, relay))?;
+        return Ok(Py::new(py, Flutter::of(py, &found, Some(out))?)?.into_any());
+    }
+    let case = case_of(&out).map_err(|problem| faults::of_run(py, &problem))?;
+    if !case.has_gas() {
+        let found = computed(py, wishes, move |relay| resume_solid(&folder, relay).map(of_solid))?;
+        return Ok(Py::new(py, Solid::of(py, &case, *found, Some(out))?)?.into_any());
+    }
+    let (case, found) = computed(py, wishes, move |relay| solve(continued(&folder)?, relay))?;
+    Ok(Py::new(py, Found::of(py, &case, found, Some(out))?)?.into_any())
+}
+
+/// What was found of a structure alone; `None` when told to stop.
+pub(crate) fn of_solid(ended: SolidOutcome) -> Option<Box<SolidSolution>> {
+    match ended {
+        SolidOutcome::Finished(found) => Some(found),
+        SolidOutcome::Interrupted(_) => None,
+    }
 }
 
 /// What a caller wants beside the result.
-struct Wishes {
+pub(crate) struct Wishes {
     progress: Option<Py<PyAny>>,
     threads: Option<usize>,
+    /// An exception waits for the end of the iteration; else what is computed is left alone and dropped at its end.
+    waits: bool,
 }
 
 impl Wishes {
-    fn of(py: Python<'_>, progress: Option<Py<PyAny>>, threads: Option<usize>) -> PyResult<Self> {
+    /// Those of what nobody can stop: clouds and surfaces.
+    pub(crate) const NONE: Self = Self { progress: None, threads: None, waits: false };
+
+    pub(crate) fn of(py: Python<'_>, progress: Option<Py<PyAny>>, threads: Option<usize>) -> PyResult<Self> {
         if let Some(other) = progress.as_ref().map(|p| p.bind(py)).filter(|p| !p.is_callable()) {
             let kind = other.get_type().name()?;
             let text = format!("`progress` is a `{kind}`; allowed: what can be called with a dict");
@@ -136,38 +170,34 @@ impl Wishes {
             let text = "`threads` is 0; allowed: 1 or more\nhint: leave it out for one for each core";
             return Err(PyValueError::new_err(text));
         }
-        Ok(Self { progress, threads })
+        Ok(Self { progress, threads, waits: true })
     }
 }
 
-/// Solves what `open` opens in threads of its own.
-fn computed(
+/// Does `work` in threads of its own; its result, `None` only when it was told to stop.
+pub(crate) fn computed<T: Send + 'static>(
     py: Python<'_>,
     wishes: Wishes,
-    open: impl FnOnce(&mut Relay<'_>) -> Result<Session, RunError> + Send,
-    out: Option<&Path>,
-) -> PyResult<Found> {
-    let Wishes { progress, threads } = wishes;
+    work: impl FnOnce(&mut Relay) -> Result<Option<T>, RunError> + Send + 'static,
+) -> PyResult<T> {
+    let Wishes { progress, threads, waits } = wishes;
     let pool =
         rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or_else(threads_of_environment)).stack_size(STACK);
     let pool = pool.build().map_err(|problem| PyRuntimeError::new_err(format!("cannot start threads: {problem}")))?;
-    let stop = AtomicBool::new(false);
-    let (solved, told) = py.detach(|| {
+    let progress = progress.as_ref();
+    let (done, told) = py.detach(move || {
         let (sender, events) = sync_channel(WAITING);
+        let stop = Arc::new(AtomicBool::new(false));
         // it ends with the computation, and with it the events
-        let mut relay = Relay { events: sender, stop: &stop, ticks: progress.is_some() };
-        thread::scope(|scope| {
-            let solving = scope.spawn(move || pool.install(|| solve(open, &mut relay)));
-            let told = attend(&events, progress.as_ref(), &stop);
-            (solving.join(), told)
-        })
+        let mut relay = Relay { events: sender, stop: Arc::clone(&stop), ticks: progress.is_some() };
+        let working = thread::spawn(move || pool.install(|| work(&mut relay)));
+        let told = attend(&events, progress, &stop, waits);
+        (if told.is_ok() || waits { Some(working.join()) } else { None }, told)
     });
-    let solved = solved.unwrap_or_else(|panic| std::panic::resume_unwind(panic));
+    let done = done.map(|done| done.unwrap_or_else(|panic| std::panic::resume_unwind(panic)));
     told?;
-    match solved.map_err(|problem| faults::of_run(py, &problem))? {
-        Some((case, solution)) => Found::of(py, &case, solution, out.map(Path::to_path_buf)),
-        None => Err(PyRuntimeError::new_err("the run was told to stop")),
-    }
+    let found = done.transpose().map_err(|problem| faults::of_run(py, &problem))?;
+    found.flatten().ok_or_else(|| PyRuntimeError::new_err("the run was told to stop"))
 }
 
 /// Reads a case, builds its cloud, and tells what it means and what a run will take; computes no flow.
@@ -183,7 +213,8 @@ fn computed(
 ///     `title`; `understood`: Mach number, sound speed, dynamic pressure, Reynolds number, reference values, boxes around the bodies,
 ///     period and steps, in SI units where `understood["dimensional"]` is true; `particles`, `fluid`, `interface`, `outer`,
 ///     `neighbours`, `spacing`, `worst_condition`; `cost` of a run in `bytes` and `seconds` on this machine, and `gaf`, that of
-///     `alula gaf` where the case asks for it; `notes` and `warnings`.
+///     `alula gaf` where the case asks for it; `notes` and `warnings`. Of a structure alone: particles, mass, spacing, held particles, forces,
+///     the longest step and the number of steps.
 ///
 /// Raises
 /// ------
@@ -191,29 +222,30 @@ fn computed(
 ///     The case has mistakes, all of which are told, or cannot be computed as it is.
 /// OSError
 ///     A file cannot be read.
+/// KeyboardInterrupt
+///     Ctrl-C.
 #[pyfunction]
 pub(crate) fn check(py: Python<'_>, case: &Bound<'_, PyAny>) -> PyResult<Py<PyAny>> {
-    let given = Given::of(case)?;
-    let report = py.detach(|| {
-        let mut refused = refusals(&given.case, &given.input);
-        match refused.len() {
-            0 => inspect(&given.case, &given.input, None),
-            1 => Err(refused.remove(0)),
-            _ => Err(RunError::Several(refused)),
+    let Given { case, input } = Given::of(case)?;
+    let title = case.title.clone();
+    let report = computed(py, Wishes::NONE, move |_| {
+        let refused = refusals(&case, &input);
+        if !refused.is_empty() {
+            return Ok(Some(Err(refused)));
         }
-    });
-    let report = report.map_err(|problem| faults::of_run(py, &problem))?;
-    let mut told = serde_json::to_value(&report).unwrap_or_default();
-    told["title"] = given.case.title.into();
+        let report = match case.has_gas() {
+            true => serde_json::to_value(inspect(&case, &input, None)?),
+            false => serde_json::to_value(inspect_structure(&case, &input)?),
+        };
+        Ok(Some(Ok(report.unwrap_or_default())))
+    })?;
+    let mut told = report.map_err(|problems| faults::of_all(py, &problems))?;
+    told["title"] = title.into();
     python_of(py, &told)
 }
 
 /// The case and what was found; `None` when told to stop.
-fn solve(
-    open: impl FnOnce(&mut Relay<'_>) -> Result<Session, RunError>,
-    relay: &mut Relay<'_>,
-) -> Result<Option<(Case, Solution)>, RunError> {
-    let mut session = open(relay)?;
+fn solve(mut session: Session, relay: &mut Relay) -> Result<Option<(Case, Solution)>, RunError> {
     match session.solve(relay)? {
         Outcome::Interrupted { .. } => Ok(None),
         Outcome::Finished(_) | Outcome::Structure(_) | Outcome::AlreadyFinished { .. } => {
@@ -231,21 +263,21 @@ enum Event {
 }
 
 /// The end of the computation.
-struct Relay<'a> {
+pub(crate) struct Relay {
     events: SyncSender<Event>,
-    stop: &'a AtomicBool,
+    stop: Arc<AtomicBool>,
     /// Somebody listens to iterations.
     ticks: bool,
 }
 
-impl Relay<'_> {
+impl Relay {
     fn send(&self, event: Event) {
         // whoever listened is gone only when all is over
         let _ = self.events.send(event);
     }
 }
 
-impl Monitor for Relay<'_> {
+impl Monitor for Relay {
     fn tick(&mut self, tick: &Tick) {
         if self.ticks {
             self.send(Event::Iteration(*tick));
@@ -265,8 +297,8 @@ impl Monitor for Relay<'_> {
     }
 }
 
-/// Passes on what happens until all is over; the first exception stops the computation and is kept.
-fn attend(events: &Receiver<Event>, progress: Option<&Py<PyAny>>, stop: &AtomicBool) -> PyResult<()> {
+/// Passes on what happens until all is over; the first exception stops the computation and is kept, or ends this where nobody `waits`.
+fn attend(events: &Receiver<Event>, progress: Option<&Py<PyAny>>, stop: &AtomicBool, waits: bool) -> PyResult<()> {
     let mut first = Ok(());
     loop {
         let event = match events.recv_timeout(PAUSE) {
@@ -282,6 +314,9 @@ fn attend(events: &Receiver<Event>, progress: Option<&Py<PyAny>>, stop: &AtomicB
             py.check_signals()
         });
         stop.store(first.is_err(), Ordering::Relaxed);
+        if first.is_err() && !waits {
+            return first;
+        }
     }
 }
 

@@ -1,5 +1,6 @@
 """The package as its users meet it, against NumPy."""
 
+import re
 import signal
 import subprocess
 import sys
@@ -277,8 +278,13 @@ def test_a_stopped_run_goes_on_to_the_same_bits(section, tmp_path):
 
 def test_stubs_name_what_there_is():
     stubs = (Path(__file__).parents[1] / "alula.pyi").read_text()
-    public = [name for name in dir(alula.Result) if not name.startswith("_")]
-    assert all(f"def {name}(self)" in stubs for name in public)
-    assert all(name in stubs for name in ["def run(", "def resume(", "def check(", "class CaseError(", "class ComputationError("])
-    for thing in [alula, alula.run, alula.resume, alula.check, alula.Result, alula.CaseError, alula.ComputationError]:
-        assert thing.__doc__
+    public = {name: getattr(alula, name) for name in dir(alula) if not name.startswith("_")}
+    public.pop("alula", None)
+    assert {"run", "flutter", "gaf", "solid", "cloud", "geometry", "check", "resume"} <= set(public)
+    for name, thing in public.items():
+        assert thing.__doc__ and re.search(rf"^(class|def) {name}\b", stubs, re.MULTILINE)
+        if isinstance(thing, type) and not issubclass(thing, Exception):
+            body = stubs.split(f"class {name}:\n")[1].split("\nclass ")[0].split("\ndef ")[0]
+            own = {own for own in dir(thing) if not own.startswith("_")}
+            assert own == {line.split("(")[0] for line in body.split("    def ")[1:]}
+            assert all(getattr(thing, attribute).__doc__ for attribute in own)

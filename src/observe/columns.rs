@@ -370,6 +370,11 @@ fn coordinate(name: &str, structures: &[StructureNames]) -> (Quantity, String) {
     }
 }
 
+/// Unit of the column `name` of `table`, as in UCUM, `1` for a pure number; `None` of text, and where nothing is known of it.
+pub fn unit_of(table: &str, name: &str, scale: Scale) -> Option<&'static str> {
+    known(table, name, &[]).map(|(quantity, _)| quantity.unit(scale)).filter(|unit| !unit.is_empty())
+}
+
 /// Writes [`FILE`], which tells meaning and unit of every column of the tables in `folder`.
 pub fn describe_tables(folder: &Path, scale: Scale, structures: &[StructureNames]) -> Result<(), FileError> {
     let listed = std::fs::read_dir(folder).map_err(FileError::io("read", folder))?;

@@ -61,12 +61,23 @@ const AIR: f64 = 0.005;
 
 /// Seeks the boundary of the table `[flutter]`, into a fresh folder; `None` when the monitor says stop.
 pub fn flutter(case: &Case, places: &Places, monitor: &mut dyn Monitor) -> Result<Option<Boundary>, RunError> {
-    sought(case, places, None, monitor).map_err(|problem| refusals::with_other_files(case, &places.input, problem))
+    let found = sought(case, (&places.input, Some(&places.out)), None, monitor);
+    found.map_err(|problem| refusals::with_other_files(case, &places.input, problem))
+}
+
+/// The same without a folder, with the forces of a file where one is given.
+pub fn in_memory(
+    case: &Case,
+    input: &Path,
+    forces: Option<&Path>,
+    monitor: &mut dyn Monitor,
+) -> Result<Option<Boundary>, RunError> {
+    sought(case, (input, None), forces, monitor)
 }
 
 /// The same with the forces of a file, `flutter.json` of a former run or `gaf.json`: the boundary of the structure alone, without a flow.
 pub fn again(case: &Case, places: &Places, forces: &Path, monitor: &mut dyn Monitor) -> Result<Boundary, RunError> {
-    let found = sought(case, places, Some(forces), monitor)?;
+    let found = sought(case, (&places.input, Some(&places.out)), Some(forces), monitor)?;
     Ok(found.unwrap_or_else(|| Boundary::new(&case.title)))
 }
 
@@ -80,19 +91,6 @@ pub fn resume(out: &Path, monitor: &mut dyn Monitor) -> Result<Option<Boundary>,
     let (case, input) = folder::read_case(out)?;
     folder::check_input(&case, &input, out)?;
     flutter(&case, &Places { input, out: out.to_path_buf() }, monitor)
-}
-
-/// The same without a folder.
-pub(crate) fn in_memory(case: &Case, input: &Path, monitor: &mut dyn Monitor) -> Result<Option<Boundary>, RunError> {
-    let plan = planned(case)?;
-    let case = &with_own_modes(case, input)?;
-    let mut all = Boundary::new(&case.title);
-    for mach in plan.mach.clone() {
-        let Some((mut found, true)) = at_mach(case, &plan, mach, input, monitor)? else { return Ok(None) };
-        all.lco.append(&mut found.cycles);
-        all.flutter.push(found);
-    }
-    Ok(Some(all))
 }
 
 /// Number of coordinates of the structures of a case whose files lie in `input`.
@@ -129,31 +127,32 @@ fn planned(case: &Case) -> Result<Plan, RunError> {
     Ok(plan)
 }
 
+/// Seeks the boundary of a case whose files lie in `input`, into the folder `out` where one is given.
 fn sought(
     case: &Case,
-    places: &Places,
+    (input, out): (&Path, Option<&Path>),
     forces: Option<&Path>,
     monitor: &mut dyn Monitor,
 ) -> Result<Option<Boundary>, RunError> {
     let plan = planned(case)?;
-    let case = &with_own_modes(case, &places.input)?;
+    let case = &with_own_modes(case, input)?;
     told_of_own_modes(case).iter().for_each(|told| monitor.note(told));
     forces.map_or(Ok(()), |_| refused_with_forces(case, &plan))?;
     let stored = forces.map(Stored::read).transpose()?;
-    let _held = folder::create_once(case, &places.input, &places.out)?;
-    let mut kept = Kept::of(case, &places.input, &places.out)?;
-    kept.write(&places.out)?;
+    let _held = out.map(|out| folder::create_once(case, input, out)).transpose()?;
+    let mut kept = Kept::of(case, input, out)?;
+    kept.write(out)?;
     let mut all = Boundary::new(&case.title);
     let all_machs = vec![1.0; plan.mach.len()];
     for (k, mach) in plan.mach.clone().into_iter().enumerate() {
         let monitor = &mut Within { outer: Portion::of(k, &all_machs), monitor: &mut *monitor };
         let found = match (&stored, kept.at(mach)) {
-            (Some(stored), _) => Some((of_stored(case, &plan, mach, (stored, &places.input))?, true)),
+            (Some(stored), _) => Some((of_stored(case, &plan, mach, (stored, input))?, true)),
             (None, Some(before)) => {
                 monitor.note(&format!("Mach {mach} was finished before"));
                 Some((before, true))
             }
-            (None, None) => at_mach(case, &plan, mach, &places.input, monitor)?,
+            (None, None) => at_mach(case, &plan, mach, input, monitor)?,
         };
         let Some((mut found, whole)) = found else { return Ok(None) };
         found.read = forces.map(|f| f.display().to_string());
@@ -161,20 +160,22 @@ fn sought(
         found.notes.iter().for_each(|note| monitor.note(&format!("Mach {mach}: {note}")));
         if whole && forces.is_none() && kept.at(mach).is_none() {
             kept.add(&found);
-            kept.write(&places.out)?;
+            kept.write(out)?;
         }
-        if case.output.report && all.skin.is_none() {
-            all.skin = Some(skin(case, mach, &places.input)?);
+        if case.output.report && out.is_some() && all.skin.is_none() {
+            all.skin = Some(skin(case, mach, input)?);
         }
         all.lco.append(&mut found.cycles);
         all.flutter.push(found);
-        all.write(&places.out)?;
+        out.map_or(Ok(()), |out| all.write(out))?;
         if !whole {
             return Ok(None);
         }
     }
-    folder::finish(&places.out)?;
-    folder::forget_kept(&places.out);
+    if let Some(out) = out {
+        folder::finish(out)?;
+        folder::forget_kept(out);
+    }
     Ok(Some(all))
 }
 

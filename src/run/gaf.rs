@@ -4,7 +4,7 @@ mod cloud_error;
 mod linear;
 mod record;
 
-pub use record::{Column, Conditions, Errors, Matrices, Solved};
+pub use record::{CONVENTION, Column, Conditions, Errors, Matrices, Solved};
 
 use std::path::Path;
 
@@ -21,36 +21,42 @@ use crate::observe::columns::Scale;
 /// Computes the matrices of the table `[gaf]` into a fresh folder, or one where those of the same case were not all found; `None` when the
 /// monitor says stop.
 pub fn gaf(case: &Case, places: &Places, monitor: &mut dyn Monitor) -> Result<Option<Matrices>, RunError> {
-    found(case, places, monitor).map_err(|problem| refusals::with_other_files(case, &places.input, problem))
+    sought(case, places, monitor).map_err(|problem| refusals::with_other_files(case, &places.input, problem))
 }
 
-fn found(case: &Case, places: &Places, monitor: &mut dyn Monitor) -> Result<Option<Matrices>, RunError> {
+fn sought(case: &Case, places: &Places, monitor: &mut dyn Monitor) -> Result<Option<Matrices>, RunError> {
     let plan = planned(case)?;
     let _held = folder::create_once(case, &places.input, &places.out)?;
     let mut matrices = blank(case, &plan, &places.input)?;
     let scale = Scale { dimensional: case.flow.is_dimensional(), dimension: dimension(case).into() };
     let mut keep = |matrices: &Matrices| matrices.write(&plan.reduced_frequencies, scale, &places.out);
-    let whole = match plan.method {
-        GafMethod::Linear => linear::columns((case, &plan), &places.input, &mut matrices, &mut keep, monitor)?,
-        GafMethod::Balance => balance::columns((case, &plan), places, &mut matrices, &mut keep, monitor)?,
-    };
-    if !whole {
+    if !found((case, &plan), &places.input, &mut matrices, &mut keep, monitor)? {
         return Ok(None);
     }
     folder::finish(&places.out)?;
     Ok(Some(matrices))
 }
 
-/// The same of small motions, without a folder.
-pub(crate) fn in_memory(case: &Case, input: &Path, monitor: &mut dyn Monitor) -> Result<Option<Matrices>, RunError> {
+/// The same without a folder.
+pub fn in_memory(case: &Case, input: &Path, monitor: &mut dyn Monitor) -> Result<Option<Matrices>, RunError> {
     let plan = planned(case)?;
-    if plan.method == GafMethod::Balance {
-        let what = "forces by harmonic balance without a folder";
-        return Err(RunError::Unsupported { what: what.into(), hint: "use `method = \"linear\"`" });
-    }
     let mut matrices = blank(case, &plan, input)?;
-    let whole = linear::columns((case, &plan), input, &mut matrices, &mut |_| Ok(()), monitor)?;
+    let whole = found((case, &plan), input, &mut matrices, &mut |_| Ok(()), monitor)?;
     Ok(whole.then_some(matrices))
+}
+
+/// Finds all columns and calls `keep` after each; false when the monitor says stop.
+fn found(
+    plan: (&Case, &Gaf),
+    input: &Path,
+    matrices: &mut Matrices,
+    keep: &mut dyn FnMut(&Matrices) -> Result<(), RunError>,
+    monitor: &mut dyn Monitor,
+) -> Result<bool, RunError> {
+    match plan.1.method {
+        GafMethod::Linear => linear::columns(plan, input, matrices, keep, monitor),
+        GafMethod::Balance => balance::columns(plan, input, matrices, keep, monitor),
+    }
 }
 
 /// Refuses matrices of which it is known before any flow that they cannot be computed.

@@ -11,6 +11,7 @@
 //! `course` (the way through the stages, and what many flows on the same clouds leave to one another), `session`; on top of it [`gaf`] and [`verify`], and `refusals` (what keeps a case
 //! from being computed).
 mod accuracy;
+mod cloud_table;
 mod cost;
 mod course;
 mod disk;
@@ -32,6 +33,7 @@ mod record;
 mod refusals;
 mod session;
 mod setup;
+mod shape;
 mod solids;
 mod stage;
 mod studies;
@@ -47,6 +49,7 @@ use crate::cloud::Cloud;
 use crate::geometry::Surface;
 use crate::scheme::Fluid;
 
+pub use cloud_table::{CloudTable, cloud_table};
 pub use cost::Cost;
 pub use error::{Blame, RunError};
 pub use folder::{Places, fresh_folder};
@@ -63,8 +66,10 @@ pub use record::summary::{Apart, BalanceReport, Ledger, MarchingCheck, Recloudin
 pub use record::trace::{Change, FirstHarmonics, LastPeriod, PeriodicLoads};
 pub use refusals::refusals;
 pub use session::{Outcome, Session, Solution};
+pub use shape::{BodyTable, Measures, body_table};
 pub use solids::{
-    ModeRow, PeriodicRow, ProbeHarmonic, ProbeRow, SolidLedger, SolidReport, SolidSummary, inspect_structure,
+    Ended as SolidOutcome, ModeRow, PeriodicRow, ProbeHarmonic, ProbeRow, SolidLedger, SolidReport, SolidSolution,
+    SolidSummary, inspect_structure,
 };
 pub use time_left::{Portion, TimeLeft};
 pub use understood::{
@@ -82,19 +87,44 @@ pub fn run(case: &Case, places: &Places, monitor: &mut dyn Monitor) -> Result<Ou
 
 fn solved(case: &Case, places: &Places, monitor: &mut dyn Monitor) -> Result<Outcome, RunError> {
     if !case.has_gas() {
-        solids::supported(case)?;
-        let (_, _held) = folder::create(case, &places.input, &places.out)?;
-        let job = solids::Job { case, input: &places.input, out: Some(&places.out), from: None };
-        return solids::solve(&job, monitor).map(structure);
+        return solid(case, &places.input, Some(&places.out), monitor).map(structure);
     }
     Session::open(case, &places.input)?.keep_in(&places.out, monitor)?.solve(monitor)
 }
 
+/// Solves a structure alone, into the fresh folder `out` where one is given.
+pub fn solid(
+    case: &Case,
+    input: &Path,
+    out: Option<&Path>,
+    monitor: &mut dyn Monitor,
+) -> Result<SolidOutcome, RunError> {
+    solids::supported(case)?;
+    let _held = out.map(|out| folder::create(case, input, out)).transpose()?;
+    solids::solve(&solids::Job { case, input, out, from: None }, monitor)
+}
+
+/// Goes on with a structure alone that was interrupted or killed, from its checkpoint.
+pub fn resume_solid(out: &Path, monitor: &mut dyn Monitor) -> Result<SolidOutcome, RunError> {
+    let (case, input) = folder::read_case(out)?;
+    folder::check_input(&case, &input, out)?;
+    folder::check_begun(out)?;
+    let _held = folder::hold(out)?;
+    let saved = solids::Saved::read(out, &case)?;
+    folder::reopen(out)?;
+    solids::solve(&solids::Job { case: &case, input: &input, out: Some(out), from: Some(&saved) }, monitor)
+}
+
+/// The case in the folder of a run.
+pub fn case_of(out: &Path) -> Result<Case, RunError> {
+    folder::read_case(out).map(|(case, _)| case)
+}
+
 /// How a structure alone ended, as the outcome of a run.
-fn structure(ended: solids::Ended) -> Outcome {
+fn structure(ended: SolidOutcome) -> Outcome {
     match ended {
-        solids::Ended::Finished(summary) => Outcome::Structure(summary),
-        solids::Ended::Interrupted(iteration) => Outcome::Interrupted { iteration },
+        SolidOutcome::Finished(found) => Outcome::Structure(Box::new(found.summary)),
+        SolidOutcome::Interrupted(iteration) => Outcome::Interrupted { iteration },
     }
 }
 
@@ -159,15 +189,8 @@ pub fn resume(out: &Path, monitor: &mut dyn Monitor) -> Result<Outcome, RunError
         folder::check_summary(out)?;
         return Ok(Outcome::AlreadyFinished { summary });
     }
-    let (case, input) = folder::read_case(out)?;
-    if !case.has_gas() {
-        folder::check_input(&case, &input, out)?;
-        folder::check_begun(out)?;
-        let _held = folder::hold(out)?;
-        let saved = solids::Saved::read(out, &case)?;
-        folder::reopen(out)?;
-        let job = solids::Job { case: &case, input: &input, out: Some(out), from: Some(&saved) };
-        return solids::solve(&job, monitor).map(structure);
+    if !case_of(out)?.has_gas() {
+        return resume_solid(out, monitor).map(structure);
     }
     continued(out)?.solve(monitor)
 }

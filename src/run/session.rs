@@ -23,8 +23,8 @@ use super::record::saved::{Kept, Position, Saved, flatten};
 use super::record::summary::{Clock, Summary};
 use super::record::{Described, IterationHistory, Log, Scales, SolidEnd};
 use super::setup::{self, Site, Solver, check_motion};
-use super::solids::{SolidSummary, with_own_modes};
-use super::stage::{self, Stage, Task};
+use super::solids::{SolidSummary, snapshot, with_own_modes};
+use super::stage::{Stage, Task, describe};
 use super::studies::{self, ForceSource, Reached, SmallMotion, Start, Turn};
 use super::time_left::Portion;
 use crate::case::{self, Case};
@@ -102,6 +102,8 @@ pub struct Solution {
     pub field: Snapshot,
     /// The solution on the walls, in the units of the case.
     pub walls: WallSnapshot,
+    /// Particles of bodies made of particles at the end, in the units of the case; `None` without such bodies.
+    pub solid: Option<Snapshot>,
     /// What every iteration left.
     pub history: IterationHistory,
     /// Loads over the last period of a motion, empty where there is none.
@@ -312,7 +314,7 @@ impl Run<'_> {
         let points = self.case.points();
         let mut log = Log::open(self.case, self.out, scales, ground.saved.as_ref(), structures, monitor)?;
         if let Some(cloud) = &ground.ready {
-            log.note(&stage::described(&stages, cloud.n_fluid));
+            log.note(&describe(&stages, cloud.n_fluid));
             accuracy::too_few(self.case, cloud.n_real()).iter().for_each(|few| log.note(few));
             log.begin_point(true);
         }
@@ -477,7 +479,8 @@ impl Run<'_> {
         }
         let loops = log.case_period().map_or_else(Loops::default, |p| log.record.trace.loops(p));
         let history = std::mem::take(&mut log.record.history);
-        Ok(Solution { summary, field, walls, history, loops })
+        let solid = solid.map(|at| snapshot(at.solid, &at.state()));
+        Ok(Solution { summary, field, walls, solid, history, loops })
     }
 }
 

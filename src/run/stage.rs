@@ -61,8 +61,8 @@ impl Stage {
     }
 }
 
-/// The stages of a run whose own cloud has `n` fluid particles, in words.
-pub(crate) fn described(stages: &[Stage], n: usize) -> String {
+/// The stages of a run in words, the last cloud of which has `n` fluid particles.
+pub(crate) fn describe(stages: &[Stage], n: usize) -> String {
     let first = || stages.iter().filter(|s| s.point.unwrap_or(0) == 0);
     let mut factors: Vec<f64> = first().map(|s| s.factor).filter(|f| *f > 1.0).collect();
     factors.dedup();

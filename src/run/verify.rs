@@ -215,7 +215,7 @@ impl Walk {
             let job = solids::Job { case: &folder.case, input: &folder.path, out: None, from: None };
             let found = solids::solve(&job, &mut Quiet { monitor });
             let found = match found {
-                Ok(solids::Ended::Finished(summary)) => Ok(*summary),
+                Ok(solids::Ended::Finished(found)) => Ok(found.summary),
                 Ok(solids::Ended::Interrupted(_)) => Err("the run was interrupted".into()),
                 Err(problem) => Err(reason(&problem)),
             };
@@ -233,7 +233,7 @@ impl Walk {
         let name = folder.name.clone();
         if !self.boundaries.contains_key(&name) && !monitor.stop() {
             monitor.note(&name);
-            let found = flutter::in_memory(&folder.case, &folder.path, &mut Quiet { monitor });
+            let found = flutter::in_memory(&folder.case, &folder.path, None, &mut Quiet { monitor });
             let found = match found {
                 Ok(Some(boundary)) => Ok(boundary),
                 Ok(None) => Err("the run was interrupted".into()),

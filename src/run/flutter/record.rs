@@ -285,6 +285,12 @@ impl FlutterAt {
         }
     }
 
+    /// The first crossing at which a motion begins to grow; `None` where none does, or where one grows from the first speed on.
+    pub fn onset(&self) -> Option<&FlutterRow> {
+        let begins = || self.crossings.iter().find(|c| c.kind != "restabilised");
+        if self.growing_from_start.is_empty() { begins() } else { None }
+    }
+
     /// Adds limit cycles, and what makes them doubtful.
     pub(super) fn add_cycles(&mut self, (cycles, doubts): Found) {
         self.cycles = cycles;

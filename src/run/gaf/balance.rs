@@ -4,7 +4,6 @@ use std::path::Path;
 use num_complex::Complex64;
 
 use super::super::error::RunError;
-use super::super::folder::Places;
 use super::super::monitor::{Monitor, Quiet};
 use super::super::one_cloud::{COARSER, coarser};
 use super::super::record::summary::Summary;
@@ -20,7 +19,7 @@ const HALF: f64 = 0.5;
 /// says stop.
 pub(super) fn columns(
     (case, plan): (&Case, &Gaf),
-    places: &Places,
+    input: &Path,
     matrices: &mut Matrices,
     keep: &mut dyn FnMut(&Matrices) -> Result<(), RunError>,
     monitor: &mut dyn Monitor,
@@ -30,8 +29,8 @@ pub(super) fn columns(
         for mode in plan.all_modes() {
             let swing = Swing { plan, mode, k };
             let own = |factor: f64| case.gaf_case(plan, mode, k, factor);
-            let Some((whole, cloud)) = swing.solved(&own(1.0), 1.0, &places.input, monitor)? else { return Ok(false) };
-            let Some((half, _)) = swing.solved(&own(HALF), HALF, &places.input, monitor)? else { return Ok(false) };
+            let Some((whole, cloud)) = swing.solved(&own(1.0), 1.0, input, monitor)? else { return Ok(false) };
+            let Some((half, _)) = swing.solved(&own(HALF), HALF, input, monitor)? else { return Ok(false) };
             let column = swing.column(&whole, Some(&half));
             monitor.note(&format!(
                 "k = {k}, {}: Cl {:+.4} {:+.4}i, Cm {:+.4} {:+.4}i, halved amplitude changes {:.2} %",
@@ -52,7 +51,7 @@ pub(super) fn columns(
             }
             matrices.columns.push(column);
             keep(matrices)?;
-            match swing.on_coarser(&Case { cloud, accuracy: None, ..own(1.0) }, &places.input, monitor)? {
+            match swing.on_coarser(&Case { cloud, accuracy: None, ..own(1.0) }, input, monitor)? {
                 Asked::Stopped => return Ok(false),
                 Asked::Told(column) => coarse.push(*column),
                 Asked::Silent => {}

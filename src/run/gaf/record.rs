@@ -14,8 +14,8 @@ use crate::geometry::dimension;
 use crate::observe::columns::{Scale, describe_tables};
 use crate::observe::table::{Entry, write_csv, write_json};
 
-/// What files say about signs and units.
-const CONVENTION: &str = "f(t) = Re f exp(+i omega t); Cl = lift/(q c), up positive; Cm = moment/(q c^2) about the pivot, nose up \
+/// Signs and units of generalised forces.
+pub const CONVENTION: &str = "f(t) = Re f exp(+i omega t); Cl = lift/(q c), up positive; Cm = moment/(q c^2) about the pivot, nose up \
                           positive; columns per plunge over the length L (up positive), per radian of pitch (nose up positive), \
                           per unit of the coordinate of a flexible mode; Q_ij = work of the gas per unit of coordinate i, due to \
                           coordinate j, over q S c (2-D: S = c), with the coordinates of the columns: the row of pitch is Cm, that \
@@ -92,6 +92,10 @@ pub struct Conditions {
     pub mach: f64,
     /// Angle of attack.
     pub alpha_deg: f64,
+    /// Speed U of the stream, in the units of the case.
+    pub speed: f64,
+    /// Its dynamic pressure q, in the units of the case.
+    pub dynamic_pressure: f64,
     /// Reference chord c and area S (2-D: c).
     pub chord: f64,
     /// S.
@@ -125,8 +129,11 @@ impl Conditions {
                 seen.map_or((1.0, 1.0), |seen| (seen.chord, seen.area))
             }
         };
+        let stream = case.flow.reference();
         Ok(Self {
-            mach: case.flow.reference().mach,
+            mach: stream.mach,
+            speed: stream.speed,
+            dynamic_pressure: stream.dynamic_pressure(),
             alpha_deg: case.flow.alpha.0.to_degrees(),
             chord,
             area,
@@ -137,6 +144,18 @@ impl Conditions {
 }
 
 impl Matrices {
+    /// Reduced frequencies, in the order of the columns.
+    pub fn reduced_frequencies(&self) -> Vec<f64> {
+        self.columns.chunks(self.modes.len().max(1)).map(|all| all[0].k).collect()
+    }
+
+    /// The same in cycles per unit of time of the case: k U/(2π L).
+    pub fn frequencies(&self) -> Vec<f64> {
+        let c = &self.conditions;
+        let scale = c.speed / (std::f64::consts::TAU * c.reduced_length);
+        self.reduced_frequencies().into_iter().map(|k| k * scale).collect()
+    }
+
     /// Writes `gaf.csv`, a row for each column of the matrices, and `gaf.json`.
     pub(super) fn write(&self, frequencies: &[f64], scale: Scale, out: &Path) -> Result<(), RunError> {
         let bounded = self.columns.iter().any(|c| c.errors.is_some());

@@ -3,15 +3,15 @@ use std::path::{Path, PathBuf};
 
 use super::super::error::RunError;
 use super::super::folder;
+use super::fields::{columns, history, places, stresses};
 use super::pictures::{Shown, draw, picture};
-use super::record::{ModeRow, Row, SolidSummary, ledger};
+use super::record::{ModeRow, Row, SolidSummary};
 use super::setup::Built;
 use crate::case::Case;
 use crate::math::{Bounds, Vector};
 use crate::observe::About;
 use crate::observe::table::{Entry, write_csv, write_json};
 use crate::observe::vtk::{Cells, Column, write_cells, write_collection};
-use crate::physics::solid::{Material, Tensor, tensor};
 use crate::report::write_report;
 use crate::solid::Solid;
 use crate::solid::forces::State;
@@ -24,13 +24,6 @@ const SHOWN: f64 = 0.1;
 pub(super) struct Files<'a> {
     pub(super) case: &'a Case,
     pub(super) out: Option<&'a Path>,
-}
-
-/// A field with one or three numbers a particle.
-struct Values {
-    name: &'static str,
-    components: usize,
-    values: Vec<f64>,
 }
 
 impl Files<'_> {
@@ -71,22 +64,10 @@ impl Files<'_> {
     /// `history.csv`.
     pub(super) fn history<const D: usize>(&self, built: &Built<D>, rows: &[Row]) -> Result<(), RunError> {
         let Some(path) = self.path("history.csv") else { return Ok(()) };
-        let mut columns: Vec<String> =
-            ["step", "time", "kinetic", "strain", "stabilisation", "contact", "dissipated", "damped", "work", "open"]
-                .map(str::to_owned)
-                .to_vec();
-        let axes = &["x", "y", "z"][..D];
-        columns.extend(built.probes.iter().flat_map(|(name, ..)| axes.iter().map(move |a| format!("{name}_u{a}"))));
-        let names: Vec<&str> = columns.iter().map(String::as_str).collect();
-        let line = |row: &Row| {
-            let (e, sums) = (&row.energy, ledger(&rows[0], row));
-            let energies = [row.time, e.kinetic, e.strain, e.stabilisation, e.contact, e.dissipated];
-            let mut line = vec![Entry::from(f64::from(row.step))];
-            line.extend(energies.into_iter().chain([sums.damped, sums.work, sums.open]).map(Entry::from));
-            line.extend(row.probes.iter().flat_map(|p| p[..D].iter().map(|x| Entry::from(*x))));
-            line
-        };
-        Ok(write_csv(&path, &names, rows.iter().map(line))?)
+        let (names, rows) = history(built, rows);
+        let names: Vec<&str> = names.iter().map(String::as_str).collect();
+        let line = |row: Vec<f64>| row.into_iter().map(Entry::from).collect();
+        Ok(write_csv(&path, &names, rows.into_iter().map(line))?)
     }
 
     /// A natural mode: `mode-1.vtu` on all particles, `mode-1.csv` on the surface, as `[[structure.mode]]` reads it.
@@ -174,15 +155,6 @@ fn cells<const D: usize>(solid: &Solid<D>) -> Cells<'_> {
     }
 }
 
-/// Von Mises's stress at every particle.
-pub(in crate::run) fn von_mises<const D: usize>(solid: &Solid<D>, state: &State<'_, D>) -> Vec<f64> {
-    (0..solid.len()).map(|i| mises(&solid.cauchy(i, state))).collect()
-}
-
-fn mises(s: &Tensor) -> f64 {
-    (1.5f64).sqrt() * tensor::norm(&tensor::deviator(s))
-}
-
 /// Writes particles where they are and the cells between them, with displacement, velocity, stress and what materials remember.
 pub(in crate::run) fn write<const D: usize>(
     path: &Path,
@@ -190,32 +162,8 @@ pub(in crate::run) fn write<const D: usize>(
     solid: &Solid<D>,
     state: &State<'_, D>,
 ) -> Result<(), RunError> {
-    let stresses: Vec<Tensor> = (0..solid.len()).map(|i| solid.cauchy(i, state)).collect();
-    let raised = |v: &[[f64; D]]| -> Vec<f64> {
-        v.iter().flat_map(|v| std::array::from_fn::<f64, 3, _>(|a| v.get(a).copied().unwrap_or(0.0))).collect()
-    };
-    let memory = |f: &dyn Fn(&Material, &[f64]) -> f64| -> Vec<f64> {
-        (0..solid.len()).map(|i| f(solid.material_of(i), solid.memory(i, state.history))).collect()
-    };
-    let pressure = stresses.iter().map(|s| -tensor::trace(s) / 3.0).collect();
-    let mut all = vec![
-        Values { name: "displacement", components: 3, values: raised(state.displacement) },
-        Values { name: "velocity", components: 3, values: raised(state.velocity) },
-        Values { name: "von_mises_stress", components: 1, values: stresses.iter().map(mises).collect() },
-        Values { name: "pressure", components: 1, values: pressure },
-        Values { name: "volume", components: 1, values: solid.particles.volume.clone() },
-        Values { name: "body", components: 1, values: solid.body.iter().map(|b| f64::from(*b)).collect() },
-        Values { name: "material", components: 1, values: solid.material.iter().map(|b| f64::from(*b)).collect() },
-    ];
-    if solid.materials.iter().any(|m| m.yield_stress().is_some()) {
-        all.push(Values { name: "plastic_strain", components: 1, values: memory(&|m, h| m.plastic_strain(h)) });
-        all.push(Values { name: "temperature", components: 1, values: memory(&|m, h| m.temperature(h)) });
-    }
-    let place = |i: usize| -> [f64; 3] {
-        std::array::from_fn(|a| if a < D { solid.particles.x[i][a] + state.displacement[i][a] } else { 0.0 })
-    };
-    let points: Vec<[f64; 3]> = (0..solid.len()).map(place).collect();
+    let (points, all) = (places(solid, state), columns(solid, state, &stresses(solid, state)));
     let columns: Vec<Column<'_>> =
-        all.iter().map(|v| Column { name: v.name, components: v.components, values: &v.values }).collect();
+        all.iter().map(|(name, components, values)| Column { name, components: *components, values }).collect();
     Ok(write_cells(path, about, &points, cells(solid), &columns)?)
 }

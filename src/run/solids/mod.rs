@@ -1,6 +1,7 @@
 //! Structures of particles alone: equilibrium, marching and natural modes, without a gas.
 mod balance;
 mod cut;
+mod fields;
 pub(super) mod files;
 mod filling;
 mod inspect;
@@ -35,9 +36,9 @@ use crate::solid::modes::{Mode, Wanted, modes};
 pub(super) use inspect::inspect_in_gas;
 pub use inspect::{SolidReport, inspect_structure};
 pub(super) use own_modes::{told_of_own_modes, with_own_modes};
-pub use record::{ModeRow, PeriodicRow, ProbeHarmonic, ProbeRow, SolidLedger, SolidSummary};
+pub use record::{ModeRow, PeriodicRow, ProbeHarmonic, ProbeRow, SolidLedger, SolidSolution, SolidSummary};
 
-pub(super) use files::von_mises;
+pub(super) use fields::{snapshot, von_mises};
 pub(super) use saved::Saved;
 
 use files::Files;
@@ -45,9 +46,9 @@ use march::{Marched, Study};
 use summary::Ending;
 
 /// How a structure alone ended.
-pub(super) enum Ended {
+pub enum Ended {
     /// At its end.
-    Finished(Box<SolidSummary>),
+    Finished(Box<SolidSolution>),
     /// Told to stop after so many steps.
     Interrupted(u64),
 }
@@ -146,17 +147,17 @@ fn study<const D: usize>(job: &Job<'_>, monitor: &mut dyn Monitor) -> Result<End
 
 /// Writes what was found.
 fn conclude<const D: usize>(study: &Study<'_, D>, ending: &Ending<'_>) -> Result<Ended, RunError> {
-    let summary = summary::summary(study, ending);
-    let Some(out) = study.files.out else { return Ok(Ended::Finished(Box::new(summary))) };
-    study.files.fields(("solid", Some(summary.time)), study.built, &ending.marched.state)?;
+    let found = Box::new(summary::solution(study, ending));
+    let Some(out) = study.files.out else { return Ok(Ended::Finished(found)) };
+    study.files.fields(("solid", Some(found.summary.time)), study.built, &ending.marched.state)?;
     if ending.modes.is_empty() {
         study.files.pictures(study.built, &ending.marched.state)?;
     }
     let write = |(k, mode): (usize, &Mode)| study.files.mode(k, study.built, mode);
     ending.modes.iter().enumerate().try_for_each(write)?;
-    study.files.summary(&summary)?;
+    study.files.summary(&found.summary)?;
     write_state_script(out)?;
     study.files.report()?;
     folder::finish(out)?;
-    Ok(Ended::Finished(Box::new(summary)))
+    Ok(Ended::Finished(found))
 }

@@ -2,7 +2,7 @@
 use std::path::Path;
 
 use super::super::error::RunError;
-use super::files::von_mises;
+use super::fields::von_mises;
 use crate::math::{Bounds, Vector};
 use crate::report::{Colormap, Dots, Scatter, Shell, SurfaceStyle, scatter_png, surface_png, write_file};
 use crate::solid::Solid;

@@ -1,6 +1,7 @@
 //! What is known of a structure alone on its way and at its end: plain data.
 use serde::Serialize;
 
+use super::super::look::Snapshot;
 use crate::solid::forces::Energy;
 
 /// Work since the start.
@@ -32,7 +33,22 @@ pub(super) struct Row {
     pub(super) probes: Vec<[f64; 3]>,
 }
 
-/// What was found of a structure alone.
+/// What was found of a structure alone, in SI units.
+#[derive(Clone, Debug)]
+pub struct SolidSolution {
+    /// All that is one number.
+    pub summary: SolidSummary,
+    /// Particles where they are at the end, at the start of the period where the motion is periodic: `displacement`, `velocity`,
+    /// `von_mises_stress`, `pressure`, `body`, `material`, of metals `plastic_strain` and `temperature`, `at_rest` (places), `stress` (Cauchy's,
+    /// nine components, rows first), `volume` and `spacing` at rest.
+    pub field: Snapshot,
+    /// Columns of `history.csv` by name.
+    pub history: Vec<(String, Vec<f64>)>,
+    /// Displacement of every particle in each natural mode, the greatest component of which is one.
+    pub shapes: Vec<Vec<[f64; 3]>>,
+}
+
+/// Numbers that were found of a structure alone.
 #[derive(Clone, Debug, Serialize)]
 pub struct SolidSummary {
     /// Always `summary`.

@@ -1,8 +1,10 @@
 //! What a structure alone tells at its end.
 use super::super::record::summary::Clock;
+use super::fields::{history, snapshot};
 use super::march::{Marched, Study};
-use super::record::{ModeRow, ProbeRow, SolidSummary, ledger};
+use super::record::{ModeRow, ProbeRow, SolidSolution, SolidSummary, ledger};
 use crate::case::Temporal;
+use crate::math::Vector;
 use crate::solid::modes::Mode;
 
 /// Part of the energy that passed by which the ledger of a march may be open: beyond, results are doubtful; beyond the second, wrong.
@@ -16,8 +18,22 @@ pub(super) struct Ending<'a> {
     pub(super) clock: &'a Clock,
 }
 
+/// What was found.
+pub(super) fn solution<const D: usize>(study: &Study<'_, D>, ending: &Ending<'_>) -> SolidSolution {
+    let (structure, marched) = (&study.built.structure, ending.marched);
+    let (names, rows) = history(study.built, &marched.rows);
+    let column = |(k, name): (usize, String)| (name, rows.iter().map(|row| row[k]).collect());
+    let raised = |v: &[f64; D]| Vector(*v).to_3d();
+    SolidSolution {
+        summary: summary(study, ending),
+        field: snapshot(&structure.solid, &structure.state(marched.time, &marched.state)),
+        history: names.into_iter().enumerate().map(column).collect(),
+        shapes: ending.modes.iter().map(|m| m.shape.as_chunks().0.iter().map(raised).collect()).collect(),
+    }
+}
+
 /// What is told at the end.
-pub(super) fn summary<const D: usize>(study: &Study<'_, D>, ending: &Ending<'_>) -> SolidSummary {
+fn summary<const D: usize>(study: &Study<'_, D>, ending: &Ending<'_>) -> SolidSummary {
     let (built, marched) = (study.built, ending.marched);
     let solid = &built.structure.solid;
     let name = match study.case.time {
@@ -36,7 +52,7 @@ pub(super) fn summary<const D: usize>(study: &Study<'_, D>, ending: &Ending<'_>)
         };
         warnings.push(format!("the ledger of energy is open by {:.1} %: {why}; {what}", 100.0 * open));
     }
-    let probe = |(k, (name, ..)): (usize, &(String, usize, crate::math::Vector<D>))| {
+    let probe = |(k, (name, ..)): (usize, &(String, usize, Vector<D>))| {
         let periodic = marched.periodic.as_ref().map(|(_, probes)| probes[k].clone());
         let (mean, harmonics) = periodic.unwrap_or_default();
         let displacement = marched.rows.last().map_or_else(Vec::new, |row| row.probes[k][..D].to_vec());

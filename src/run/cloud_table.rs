@@ -1,0 +1,138 @@
+//! The cloud of a case as plain tables: places, kinds, sizes, and what each particle on a boundary belongs to.
+use std::path::Path;
+
+use super::build_cloud;
+use super::error::RunError;
+use super::look::Snapshot;
+use super::{setup, solids};
+use crate::case::{Case, Side, Sides};
+use crate::cloud::Cloud;
+use crate::geometry::dimension;
+use crate::math::Vector;
+
+/// Names of the sides of the domain: the smallest and the largest coordinate of each axis.
+const SIDES: [[&str; 2]; 3] = [["x_min", "x_max"], ["y_min", "y_max"], ["z_min", "z_max"]];
+/// Body and boundary of particles that are on none.
+const NONE: i32 = -1;
+
+/// The cloud of a case before a run, without images of particles.
+#[derive(Clone, Debug)]
+pub struct CloudTable {
+    /// Places, with the columns `spacing`, `volume` (that a particle stands for, area in the plane), `normal` (unit: of walls into the gas, of sides
+    /// of the domain out of it, zero of fluid particles) and `area_vector` (of walls, area times normal, else zero).
+    pub on: Snapshot,
+    /// 0 fluid, 1 on a wall, 2 on a side of the domain.
+    pub kind: Vec<u8>,
+    /// Index into `bodies`; −1 of particles on no body.
+    pub body: Vec<i32>,
+    /// Index into `boundaries`; −1 of fluid particles.
+    pub boundary: Vec<i32>,
+    /// Names of the bodies.
+    pub bodies: Vec<String>,
+    /// Names of the parts of bodies (a body without parts is one), then of the sides of the domain, `x_min` to `z_max`.
+    pub boundaries: Vec<String>,
+    /// Condition of each side of the domain, in the words of the case file.
+    pub conditions: Vec<(&'static str, serde_json::Value)>,
+    /// What was repaired or assumed.
+    pub notes: Vec<String>,
+}
+
+/// Builds the cloud of a case whose file names refer to the folder `input`, without running it.
+pub fn cloud_table(case: &Case, input: &Path) -> Result<CloudTable, RunError> {
+    solids::with_gas(case)?;
+    setup::supported(case)?;
+    match dimension(case) {
+        2 => table::<2>(case, input),
+        _ => table::<3>(case, input),
+    }
+}
+
+fn table<const D: usize>(case: &Case, input: &Path) -> Result<CloudTable, RunError> {
+    let (surface, cloud, mut notes) = build_cloud::<D>(case, input)?;
+    notes.extend(cloud.notes.iter().cloned().chain(cloud.early_ends()));
+    let (bodies, parts) = surface.map_or_else(Default::default, |s| (s.bodies, s.tags));
+    let (n, fluid) = (cloud.n_real(), 0..cloud.n_fluid);
+    let walls = || cloud.interface.iter();
+    let side = |o: &crate::cloud::Outer| parts.len() + 2 * usize::from(o.outward.0) + usize::from(o.outward.1);
+    let boundary = walls().map(|w| i32::from(w.tag)).chain(cloud.outer.iter().map(|o| side(o) as i32));
+    let body = walls().map(|w| i32::from(w.body)).chain(cloud.outer.iter().map(|_| NONE));
+    let kind = |i: usize| u8::from(i >= cloud.n_fluid) + u8::from(i >= cloud.n_rows());
+    Ok(CloudTable {
+        on: snapshot(&cloud),
+        kind: (0..n).map(kind).collect(),
+        body: fluid.clone().map(|_| NONE).chain(body).collect(),
+        boundary: fluid.map(|_| NONE).chain(boundary).collect(),
+        bodies,
+        boundaries: parts
+            .iter()
+            .map(String::as_str)
+            .chain(SIDES[..D].iter().flatten().copied())
+            .map(str::to_owned)
+            .collect(),
+        conditions: conditions(&case.boundary, D),
+        notes,
+    })
+}
+
+fn snapshot<const D: usize>(cloud: &Cloud<D>) -> Snapshot {
+    let n = cloud.n_real();
+    let vectors = |on_wall: &dyn Fn(usize) -> Vector<D>, on_side: &dyn Fn(usize) -> Vector<D>| {
+        let still = std::iter::repeat_n(Vector::ZERO, cloud.n_fluid);
+        let all = still.chain((0..cloud.interface.len()).map(on_wall)).chain((0..cloud.outer.len()).map(on_side));
+        all.flat_map(|v: Vector<D>| v.to_3d()).collect::<Vec<f64>>()
+    };
+    let normal = vectors(&|w| cloud.interface[w].normal, &|k| cloud.outer[k].normal());
+    let area = vectors(&|w| cloud.interface[w].area, &|_| Vector::ZERO);
+    Snapshot {
+        points: cloud.x[..n].iter().map(Vector::to_3d).collect(),
+        columns: vec![
+            ("spacing", 1, cloud.spacing[..n].to_vec()),
+            ("volume", 1, cloud.volume[..n].to_vec()),
+            ("normal", 3, normal),
+            ("area_vector", 3, area),
+        ],
+    }
+}
+
+/// The condition of each side.
+fn conditions(b: &Sides, dimension: usize) -> Vec<(&'static str, serde_json::Value)> {
+    let all: [[Side; 2]; 3] = [[b.x_min, b.x_max], [b.y_min, b.y_max], [b.z_min, b.z_max]];
+    let sides = SIDES.iter().flatten().zip(all.iter().flatten()).take(2 * dimension);
+    sides.map(|(name, side)| (*name, serde_json::to_value(side).unwrap_or_default())).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::case::read;
+
+    #[test]
+    fn particles_on_boundaries_name_them() {
+        let text = "[flow]\nmach = 0.3\n[[body]]\nname = \"rod\"\ncircle = { radius = 0.5 }\n[boundary]\ny_min = \"symmetry\"\n\
+                    [cloud]\nspacing = 0.25\nfar_field = 4\n";
+        let table = cloud_table(&read(text, "t").unwrap(), Path::new("")).unwrap();
+        let n = table.kind.len();
+        assert!([table.on.points.len(), table.body.len(), table.boundary.len()] == [n; 3]);
+        assert_eq!(table.boundaries, ["rod", "x_min", "x_max", "y_min", "y_max"]);
+        assert_eq!((table.conditions[2].0, &table.conditions[2].1), ("y_min", &serde_json::json!("symmetry")));
+        let normal = table.on.column("normal").unwrap().as_chunks::<3>().0;
+        for i in 0..n {
+            let [x, y, _] = table.on.points[i];
+            match table.kind[i] {
+                0 => assert_eq!((table.body[i], table.boundary[i], normal[i]), (NONE, NONE, [0.0; 3])),
+                1 => {
+                    assert_eq!((table.body[i], table.boundary[i]), (0, 0));
+                    assert!(
+                        (x.hypot(y) - 0.5).abs() < 1e-9 && (x * normal[i][0] + y * normal[i][1] - 0.5).abs() < 1e-9
+                    );
+                }
+                _ => {
+                    let name = &table.boundaries[table.boundary[i] as usize];
+                    let outward = if name.starts_with('x') { normal[i][0] } else { normal[i][1] };
+                    assert_eq!((table.body[i], outward), (NONE, if name.ends_with("max") { 1.0 } else { -1.0 }));
+                }
+            }
+        }
+        assert!((0..=2).all(|kind| table.kind.contains(&kind)));
+    }
+}
