@@ -210,7 +210,7 @@ fn solve(
     relay: &mut Relay<'_>,
 ) -> Result<Option<(Case, Solution)>, RunError> {
     let mut session = open(relay)?;
-    match session.solve(relay)? {
+    match solver::run::solve(&mut session, relay)? {
         Outcome::Interrupted { .. } => Ok(None),
         Outcome::Finished(_) | Outcome::Structure(_) | Outcome::AlreadyFinished { .. } => {
             let case = session.case().clone();

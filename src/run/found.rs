@@ -187,6 +187,8 @@ impl<const D: usize> Found<'_, D> {
             error_l2_density: self.exact_error(log.units.solver_time(record.time)),
             loads_error: family.as_ref().map(Convergence::half_widths),
             grid_convergence: family,
+            // those who watch fill it in
+            error_bars: None,
             polar: record.polar.points.clone(),
             warnings: Vec::new(),
             adapt_change: last_change(&record.cycles),

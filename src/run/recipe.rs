@@ -156,6 +156,17 @@ pub(crate) fn balance_from_rest(case: &Case, multiples: &[usize]) -> Vec<Stage> 
     tasks.map(|task| Stage { task, ..Stage::PLAIN }).collect()
 }
 
+/// The stages of a run in words, whose own cloud has `n` fluid particles.
+pub(crate) fn describe(stages: &[Stage], n: usize) -> String {
+    let first = || stages.iter().filter(|s| s.point.unwrap_or(0) == 0);
+    let mut factors: Vec<f64> = first().map(|s| s.factor).filter(|f| *f > 1.0).collect();
+    factors.dedup();
+    let coarse = factors.len();
+    let cycles = (1..).take_while(|c| first().any(|s| s.factor == 1.0 && s.cycle == *c)).count();
+    let points = stages.last().and_then(|s| s.point).map_or_else(String::new, |p| format!("; {} points", p + 1));
+    format!("{n} fluid particles; {coarse} coarser clouds for the start, {cycles} cycles of adaptation{points}")
+}
+
 /// True where a cloud with `factor` times the spacing fits into the domain: a start on one that does not is left out.
 pub(crate) fn divides(case: &Case, factor: f64) -> bool {
     /// What a number of cells may be off a whole one, relative to it.

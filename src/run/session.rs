@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::accuracy;
+use super::at_end::{AtEnd, Bars, Then};
 use super::course::{Coarser, Course, Next};
 use super::disk;
 use super::doubts;
@@ -24,7 +25,7 @@ use super::record::{Described, IterationHistory, Log, Scales, SolidEnd};
 use super::setup::{self, Site, Solver, check_motion};
 use super::solids::{SolidSummary, with_own_modes};
 use super::stage::{Stage, Task};
-use super::studies::{self, ForceSource, Reached, SmallMotion, Start, Turn};
+use super::studies::{self, Reached, SmallMotion, Start, Turn};
 use crate::case::{self, Case};
 use crate::cloud::Cloud;
 use crate::cloud::sources::Source;
@@ -87,10 +88,7 @@ pub struct Session {
 }
 
 /// What a run begins with, and what is done at its end.
-type Way<'a> = (Origin, Option<Then<'a>>);
-
-/// What is done with a steady flow when it is found.
-pub(crate) type Then<'a> = &'a mut dyn FnMut(&mut dyn ForceSource, &mut Log<'_>) -> Result<(), RunError>;
+type Way<'a> = (Origin, AtEnd<'a>);
 
 /// What a session has found.
 #[derive(Clone, Debug)]
@@ -139,28 +137,30 @@ impl Session {
         Self { origin, ..self }
     }
 
-    /// Solves the case, from its start or from where it was stopped; tells how it went.
+    /// Solves the case, from its start or from where it was stopped; tells how it went. Error bars of marches and balances are found by
+    /// [`solve`](super::solve).
     pub fn solve(&mut self, monitor: &mut dyn Monitor) -> Result<Outcome, RunError> {
-        self.solve_then(monitor, None)
+        self.solve_and(monitor, AtEnd::default())
     }
 
     /// The same; `then` gets what was found as a source of forces in small motion, before it is looked at and written.
-    pub(crate) fn solve_then(
-        &mut self,
-        monitor: &mut dyn Monitor,
-        then: Option<Then<'_>>,
-    ) -> Result<Outcome, RunError> {
+    pub(crate) fn solve_then(&mut self, monitor: &mut dyn Monitor, then: Then<'_>) -> Result<Outcome, RunError> {
+        self.solve_and(monitor, AtEnd { then: Some(then), bars: None })
+    }
+
+    /// The same with what is done at its end.
+    pub(crate) fn solve_and(&mut self, monitor: &mut dyn Monitor, end: AtEnd<'_>) -> Result<Outcome, RunError> {
         let origin = std::mem::replace(&mut self.origin, Origin::Case);
         let work = Run {
             case: &self.case,
             given: &self.case.cloud,
             input: &self.input,
             out: self.out.as_deref(),
-            held: then.is_some() && !self.case.is_trimmed(),
+            held: end.then.is_some() && !self.case.is_trimmed(),
         };
         let ended = match dimension(&self.case) {
-            2 => work.solve::<2>((origin, then), monitor),
-            _ => work.solve::<3>((origin, then), monitor),
+            2 => work.solve::<2>((origin, end), monitor),
+            _ => work.solve::<3>((origin, end), monitor),
         };
         self.held = None;
         Ok(match ended? {
@@ -171,6 +171,11 @@ impl Session {
             }
             Err(iteration) => Outcome::Interrupted { iteration },
         })
+    }
+
+    /// Where its files lie, and where it is kept.
+    pub(crate) fn places(&self) -> (PathBuf, Option<PathBuf>) {
+        (self.input.clone(), self.out.clone())
     }
 
     /// The case.
@@ -302,7 +307,7 @@ impl Run<'_> {
         site: &Site<'_, D>,
         assemble: impl Fn(Fluid<D>) -> S,
         structures: Vec<Described>,
-        (origin, then): Way<'_>,
+        (origin, end): Way<'_>,
         monitor: &mut dyn Monitor,
     ) -> Result<Ended, RunError> {
         let clock = Clock::start();
@@ -311,7 +316,7 @@ impl Run<'_> {
         let points = self.case.points();
         let mut log = Log::open(self.case, self.out, scales, ground.saved.as_ref(), structures, monitor)?;
         if let Some(cloud) = &ground.ready {
-            log.note(&describe(&stages, cloud.n_fluid));
+            log.note(&recipe::describe(&stages, cloud.n_fluid));
             accuracy::too_few(self.case, cloud.n_real()).iter().for_each(|few| log.note(few));
             log.begin_point(true);
         }
@@ -356,14 +361,14 @@ impl Run<'_> {
             previous = Some(Stood { stage: *stage, solver, reached });
         }
         let stood = previous.map_or_else(|| last_known(&mut course, site, assemble, &mut log), Ok)?;
-        if let Some(then) = then {
+        if let Some(then) = end.then {
             let (_, state) = stood.reached.end.as_ref().ok_or(RunError::NoStage)?;
             then(
                 &mut SmallMotion::new(&stood.solver.system, state, (&log.axes, self.case.freezes_limiter())),
                 &mut log,
             )?;
         }
-        Run { case: log.case, ..*self }.conclude(&stood, site.surface, &mut log, &clock).map(Ok)
+        Run { case: log.case, ..*self }.conclude(&stood, site.surface, &mut log, (&clock, end.bars))
     }
 
     /// The stages of a run, and what the first of them stands on.
@@ -435,8 +440,8 @@ impl Run<'_> {
         stood: &Stood<S, D>,
         surface: Option<&Surface<D>>,
         log: &mut Log<'_>,
-        clock: &Clock,
-    ) -> Result<Solution, RunError> {
+        (clock, bars): (&Clock, Option<Bars<'_>>),
+    ) -> Result<Ended, RunError> {
         let Some((frame, state)) = &stood.reached.end else { return Err(RunError::NoStage) };
         let gas = &GasView::of(&stood.solver.system, frame, state);
         let (solved, mut work) = (clock.wall_seconds(), gas.fluid.work());
@@ -451,6 +456,11 @@ impl Run<'_> {
         let span_load = span_load(self.case, &view, surface, &strips, &axes);
         let found = Found { case: self.case, view, surface, axes, names, balance, strips, span_load, wake };
         let mut summary = found.summary(log, gas.state, &Spent { clock, solved });
+        if let Some(bars) = bars
+            && !bars(self.case, &mut summary, log)?
+        {
+            return Ok(Err(log.record.iteration));
+        }
         let solid = stood.solver.system.solid_snapshot(frame, state);
         summary.solid = solid.as_ref().map(|at| SolidEnd::of(at, log));
         doubts::told(self.case, &summary, log.record.trace.largest(), solid.as_ref()).iter().for_each(|d| log.warn(d));
@@ -467,7 +477,7 @@ impl Run<'_> {
         }
         let loops = log.case_period().map_or_else(Loops::default, |p| log.record.trace.loops(p));
         let history = std::mem::take(&mut log.record.history);
-        Ok(Solution { summary, field, walls, history, loops })
+        Ok(Ok(Solution { summary, field, walls, history, loops }))
     }
 }
 
@@ -587,14 +597,4 @@ fn last_known<'a, S: HasGas<D>, const D: usize>(
     };
     let frame = solver.system.frame(&Instant::still(0.0), &state);
     Ok(Stood { stage, solver, reached: Reached::at(frame, state) })
-}
-
-fn describe(stages: &[Stage], n: usize) -> String {
-    let first = || stages.iter().filter(|s| s.point.unwrap_or(0) == 0);
-    let mut factors: Vec<f64> = first().map(|s| s.factor).filter(|f| *f > 1.0).collect();
-    factors.dedup();
-    let coarse = factors.len();
-    let cycles = (1..).take_while(|c| first().any(|s| s.factor == 1.0 && s.cycle == *c)).count();
-    let points = stages.last().and_then(|s| s.point).map_or_else(String::new, |p| format!("; {} points", p + 1));
-    format!("{n} fluid particles; {coarse} coarser clouds for the start, {cycles} cycles of adaptation{points}")
 }
