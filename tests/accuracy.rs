@@ -145,7 +145,11 @@ fn bars_in(out: &Path) -> ErrorBars {
 }
 
 fn bar<'a>(found: &'a ErrorBars, of: &str, quantity: &str) -> &'a Bar {
-    found.bars.iter().find(|b| b.of == of && b.quantity == quantity).unwrap_or_else(|| panic!("{quantity} of {of}: {found:?}"))
+    found
+        .bars
+        .iter()
+        .find(|b| b.of == of && b.quantity == quantity)
+        .unwrap_or_else(|| panic!("{quantity} of {of}: {found:?}"))
 }
 
 #[test]

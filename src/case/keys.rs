@@ -453,8 +453,11 @@ static ACCURACY: Table = Table::of(&[
 ]);
 
 const LOAD_ERRORS: &[(&str, &str)] = &[
-    ("none", "none"),
-    ("cloud", "that of the cloud, by a run with twice the spacing: a quarter of the time more in the plane, a tenth in space"),
+    ("none", "none, without a further run"),
+    (
+        "cloud",
+        "that of the cloud, by a run with twice the spacing: a quarter of the time more in the plane, a tenth in space",
+    ),
     (
         "step",
         "that of the step in time of a march, by a run with twice the step (three quarters of the time more), of explicit steps by one with half \
@@ -462,7 +465,7 @@ const LOAD_ERRORS: &[(&str, &str)] = &[
     ),
     (
         "harmonics",
-        "that of the number of harmonics of a balance, by a run with one harmonic less, of a single one with two: three quarters of the time more",
+        "that of the number of harmonics of a balance, by a run with one harmonic less, of one or two with one more: about as much time again",
     ),
     ("all", "that of the cloud, and that of the step or of the number of harmonics"),
 ];

@@ -66,7 +66,7 @@ const NEXT_POINT: f64 = 0.5;
 const ON_COARSER: [f64; 2] = [0.25, 0.1];
 const STEPPED: f64 = 0.75;
 const STEPPED_EXPLICIT: f64 = 2.0;
-const OTHER_HARMONICS: f64 = 0.75;
+const OTHER_HARMONICS: f64 = 1.0;
 
 /// What a run takes.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]

@@ -3,8 +3,8 @@
 //!
 //! With r times the spacing or the step and order p, what a number changes by is (rᵖ − 1) times its error. Two runs show no order, so that
 //! there is a safety factor ([`ErrorBars`]). The backward difference in time has the order that the case gives it, Runge-Kutta methods have theirs; an
-//! explicit step may not be twice as long, so that the other one is half as long. A balance with one harmonic less tells at least what
-//! its own number leaves out.
+//! explicit step may not be twice as long, so that the other one is half as long. What one harmonic more adds is what a number of them
+//! leaves out; one harmonic less tells at least that, and takes less time.
 //!
 //! The further runs begin when the run has found its flow. In the folder of a run they have folders of their own, `coarser/cloud` and so
 //! on, with checkpoints: a run that is stopped while they go goes on with them, to the same bits.
@@ -26,9 +26,9 @@ use crate::observe::error_bars::{ErrorBars, Measured, NOT_PERIODIC, OtherRun, Pa
 
 /// Folder of the further runs in that of a run.
 const FOLDER: &str = "coarser";
-/// Half width over what a number changes by from twice the spacing: a quarter more than errors of first order leave, 3.75 times what those
-/// of second order do.
-const OF_CLOUD: f64 = 1.25;
+/// Half width over what a number changes by from twice the spacing: three times what errors of second order leave (Roache 1994), and twice
+/// what those of first order do, which captured shocks make.
+const OF_CLOUD: [f64; 2] = [1.0, 2.0];
 /// Safety factor of the change from another step in time, whose order is known (Roache 1994: 3 for two runs).
 const OF_STEP: f64 = 3.0;
 /// The same from a number of harmonics that is one less, and one more.
@@ -39,6 +39,8 @@ const SHORTER: f64 = 0.5;
 /// Power of the length of an adaptive step that its tolerance goes with, and greatest tolerance.
 const OF_TOLERANCE: i32 = 3;
 const LOOSEST: f64 = 0.1;
+/// Multiples of the harmonics of a motion that are told.
+const TOLD: usize = 2;
 /// Fewest steps of a period, and most harmonics, of any case.
 const FEWEST_STEPS: u32 = 4;
 const MOST_HARMONICS: usize = 16;
@@ -171,7 +173,9 @@ fn summary_of(outcome: Outcome, out: Option<&Path>) -> Option<Value> {
     match (outcome, out) {
         (Outcome::Interrupted { .. }, _) => None,
         (Outcome::AlreadyFinished { summary }, _) => Some(summary),
-        (Outcome::Finished(summary), out) => out.and_then(folder::finished).or_else(|| serde_json::to_value(&summary).ok()),
+        (Outcome::Finished(summary), out) => {
+            out.and_then(folder::finished).or_else(|| serde_json::to_value(&summary).ok())
+        }
         (Outcome::Structure(_), _) => None,
     }
 }
@@ -220,7 +224,7 @@ fn other(part: Part, case: &Case, summary: &Summary) -> Result<Other, String> {
             let why = "no cloud with twice the spacing fits into the domain, or `[adapt]` makes another cloud of each spacing";
             let case = coarser(&alike, COARSER).ok_or(why)?;
             let words = "on a cloud with twice the spacing".into();
-            Ok(Other { part, case, ratio: COARSER, factor: OF_CLOUD, words })
+            Ok(Other { part, case, ratio: COARSER, factor: OF_CLOUD[usize::from(summary.supersonic)], words })
         }
         Part::Step => {
             let (ratio, order) = stepped(&mut alike)?;
@@ -230,7 +234,8 @@ fn other(part: Part, case: &Case, summary: &Summary) -> Result<Other, String> {
         Part::Harmonics => {
             let own = summary.harmonic_balance.as_ref().map_or(1, |b| b.harmonics);
             let moved = summary.first_harmonics.iter().map(|h| h.harmonic).max().unwrap_or(1);
-            let n = if own > moved { own - 1 } else { own + 1 };
+            // the other balance has the second harmonic of the motion too, which is told
+            let n = if own > TOLD * moved { own - 1 } else { own + 1 };
             if n > MOST_HARMONICS {
                 return Err(format!("there is no balance with more than {MOST_HARMONICS} harmonics"));
             }

@@ -158,6 +158,9 @@ pub struct Summary {
     /// That family, and how the loads converge on it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub grid_convergence: Option<Convergence>,
+    /// True where the gas is faster than sound somewhere at the end; not written.
+    #[serde(skip)]
+    pub supersonic: bool,
     /// Numbers of a march or a balance with their error bars, where these are asked for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub error_bars: Option<ErrorBars>,
