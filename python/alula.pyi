@@ -66,7 +66,10 @@ class Result:
         """Moment coefficient about the reference point, nose up positive."""
     @property
     def loads_error(self) -> Optional[Loads]:
-        """Half widths of the error bars of the loads; None without a family of clouds."""
+        """Half widths of the error bars of the loads; None without a family of clouds.
+
+        Those of marches and harmonic balances (`accuracy.error`) are in `summary["error_bars"]["bars"]`.
+        """
     @property
     def converged(self) -> Optional[bool]:
         """True when the goal was reached; None of a march that came to its end and was asked for nothing else."""

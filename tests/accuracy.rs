@@ -1,6 +1,10 @@
 //! Loads with their error bars, from cases that leave the cloud to the program.
+use std::cell::Cell;
+use std::path::Path;
+
 use alula::case::read;
-use alula::run::{Session, Silent, Summary};
+use alula::observe::error_bars::{Bar, ErrorBars};
+use alula::run::{self, Monitor, Outcome, Places, Session, Silent, Summary, Tick};
 
 /// A NACA 0012 in a stream, without a cloud; at most 12,000 particles.
 fn solved(mach: f64, alpha: f64) -> Summary {
@@ -100,4 +104,92 @@ fn adapted_clouds_of_a_family_are_refined_at_the_shock_and_have_an_error_bar() {
     assert!(fine[0].particles == even[0].particles && fine[2].particles > even[2].particles, "{fine:?}");
     let apart = (plain.loads.cl - adapted.loads.cl).abs();
     assert!(apart < plain.loads_error.unwrap().cl + adapted.loads_error.unwrap().cl, "{apart}");
+}
+
+/// Stops a run some iterations after a note that begins with these words.
+struct StopsAfter {
+    words: &'static str,
+    left: Cell<Option<u32>>,
+}
+
+impl Monitor for StopsAfter {
+    fn tick(&mut self, _: &Tick) {
+        self.left.set(self.left.get().map(|n| n.saturating_sub(1)));
+    }
+
+    fn note(&mut self, text: &str) {
+        if text.starts_with(self.words) {
+            self.left.set(Some(3));
+        }
+    }
+
+    fn stop(&self) -> bool {
+        self.left.get() == Some(0)
+    }
+}
+
+/// A section that pitches, at a size for tests.
+fn pitching(time: &str, error: &str) -> alula::case::Case {
+    let text = format!(
+        "[flow]\nmach = 0.5\n[[body]]\nnaca = \"0012\"\n[cloud]\nspacing = 0.05\nedge_levels = 1\ncurvature_levels = 1\n\
+         layers = 6\nfar_field = 6.4\n[motion]\nreduced_frequency = 0.4\npivot = [0.25, 0]\npitch = \"1 deg\"\n\
+         [output]\nreport = false\n[accuracy]\nerror = \"{error}\"\n{time}\n"
+    );
+    read(&text, "pitching.toml").unwrap_or_else(|e| panic!("{e}"))
+}
+
+fn bars_in(out: &Path) -> ErrorBars {
+    let text = std::fs::read_to_string(out.join("summary.json")).unwrap();
+    let summary: serde_json::Value = serde_json::from_str(&text).unwrap();
+    serde_json::from_value(summary["error_bars"].clone()).unwrap()
+}
+
+fn bar<'a>(found: &'a ErrorBars, of: &str, quantity: &str) -> &'a Bar {
+    found
+        .bars
+        .iter()
+        .find(|b| b.of == of && b.quantity == quantity)
+        .unwrap_or_else(|| panic!("{quantity} of {of}: {found:?}"))
+}
+
+#[test]
+fn a_balance_tells_its_errors_to_the_same_bits_after_a_stop() {
+    let (folder, case) = (tempfile::tempdir().unwrap(), pitching("[time]\nharmonics = 2", "all"));
+    let places = |name: &str| Places { input: ".".into(), out: folder.path().join(name) };
+    run::run(&case, &places("whole"), &mut Silent).unwrap_or_else(|e| panic!("{e}"));
+    let whole = bars_in(&places("whole").out);
+    let lift = bar(&whole, "CL", "amplitude_1");
+    assert!(lift.cloud.unwrap() > 0.0 && lift.harmonics.unwrap() > 0.0 && lift.step.is_none(), "{lift:?}");
+    assert!(lift.half_width < 0.5 * lift.value && bar(&whole, "CL", "phase_1_deg").half_width < 30.0, "{lift:?}");
+    // the clouds of a run in memory are the same
+    let mut session = Session::open(&case, ".").unwrap_or_else(|e| panic!("{e}"));
+    run::solve(&mut session, &mut Silent).unwrap_or_else(|e| panic!("{e}"));
+    assert_eq!(session.summary().unwrap().error_bars.as_ref().unwrap().bars, whole.bars);
+    for words in ["error bars: the same on a cloud", "error bars: the same with"] {
+        let stopped = places(words);
+        let mut monitor = StopsAfter { words, left: Cell::new(None) };
+        let ended = run::run(&case, &stopped, &mut monitor).unwrap_or_else(|e| panic!("{e}"));
+        assert!(matches!(ended, Outcome::Interrupted { .. }), "{ended:?}");
+        assert!(!run::is_finished(&stopped.out));
+        run::resume(&stopped.out, &mut Silent).unwrap_or_else(|e| panic!("{e}"));
+        assert_eq!(bars_in(&stopped.out).bars, whole.bars);
+    }
+}
+
+#[test]
+fn a_march_tells_its_errors_where_it_is_periodic() {
+    let solved = |periods: u32| {
+        let time = format!("[time.dual]\nsteps_per_period = 32\nperiods = {periods}");
+        let mut session = Session::open(&pitching(&time, "all"), ".").unwrap_or_else(|e| panic!("{e}"));
+        run::solve(&mut session, &mut Silent).unwrap_or_else(|e| panic!("{e}"));
+        session.summary().unwrap().error_bars.clone().unwrap()
+    };
+    let found = solved(3);
+    let lift = bar(&found, "CL", "amplitude_1");
+    assert!([lift.cloud, lift.step, lift.transient].iter().all(|part| part.unwrap() > 0.0), "{lift:?}");
+    let all = [lift.cloud, lift.step, lift.transient].map(Option::unwrap);
+    assert!((lift.half_width - all.iter().map(|p| p * p).sum::<f64>().sqrt()).abs() < 1e-12);
+    // a single period confirms nothing
+    let one = solved(1);
+    assert!(one.bars.is_empty() && one.untold.unwrap().contains("march two or more"));
 }

@@ -246,7 +246,7 @@ pub(crate) fn check(py: Python<'_>, case: &Bound<'_, PyAny>) -> PyResult<Py<PyAn
 
 /// The case and what was found; `None` when told to stop.
 fn solve(mut session: Session, relay: &mut Relay) -> Result<Option<(Case, Solution)>, RunError> {
-    match session.solve(relay)? {
+    match solver::run::solve(&mut session, relay)? {
         Outcome::Interrupted { .. } => Ok(None),
         Outcome::Finished(_) | Outcome::Structure(_) | Outcome::AlreadyFinished { .. } => {
             let case = session.case().clone();

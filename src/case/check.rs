@@ -401,13 +401,48 @@ fn accuracy(draft: &mut Draft<'_>, dimension: usize) {
             accuracy.insert(key.to_owned(), value);
         }
     }
-    let steady = draft.get("time").is_none_or(|t| t.as_str() == Some("steady") || t.get("steady").is_some());
-    let refused = [
-        (!steady, "`[accuracy]` is for steady cases", "remove it, or `[time]`"),
-        (!draft.given("body"), "`[accuracy]` is of loads, and there is no body", "remove it"),
+    if !draft.given("body") {
+        draft.fail_key("accuracy", "`[accuracy]` is of loads, and there is no body").hint("remove it");
+    }
+    accuracy_in_time(draft);
+}
+
+/// Steady cases are told how well loads are to be known, others which errors of them are to be found.
+fn accuracy_in_time(draft: &mut Draft<'_>) {
+    let is = |kind: &str| draft.get("time").is_some_and(|t| t.as_str() == Some(kind) || t.get(kind).is_some());
+    let (steady, balance) = (draft.get("time").is_none() || is("steady"), is("harmonics"));
+    let structure = is("newmark") || is("modes");
+    let error = draft.get("accuracy.error").and_then(Value::as_str).unwrap_or("none").to_owned();
+    if steady {
+        if error != "none" {
+            let hint = "leave it out: `loads` and `particles` are for steady cases, whose error bars come from a family of clouds";
+            draft.fail("accuracy.error", "`accuracy.error` is for marches and harmonic balances").hint(hint);
+        }
+        return;
+    }
+    if !draft.given("accuracy.error") || structure {
+        let hint = "remove it, or `[time]`; `accuracy.error` tells the errors of a march or a harmonic balance";
+        draft.fail_key("accuracy", "`[accuracy]` is for steady cases").hint(hint);
+        return;
+    }
+    // a resolved case has all keys
+    let usual = Accuracy::default();
+    let particles = [usual.particles, Accuracy::PARTICLES_IN_SPACE].map(|n| n as f64);
+    let other = |key: &str, usual: &[f64]| draft.number(key).is_some_and(|value| !usual.contains(&value));
+    let of_steady = [
+        ("accuracy.loads", other("accuracy.loads", &[usual.loads.0])),
+        ("accuracy.particles", other("accuracy.particles", &particles)),
+        ("accuracy.time", draft.get("accuracy.time").is_some_and(|t| !t.is_null())),
     ];
-    for (_, message, hint) in refused.into_iter().filter(|(wrong, ..)| *wrong) {
-        draft.fail_key("accuracy", message).hint(hint);
+    for (key, _) in of_steady.into_iter().filter(|(_, given)| *given) {
+        draft.fail_key(key, format!("`{key}` is for steady cases")).hint("leave it out; `error` alone is for others");
+    }
+    let (own, theirs) = if balance { ("harmonics", "step") } else { ("step", "harmonics") };
+    if error == theirs {
+        let what =
+            if balance { "a harmonic balance has no step in time" } else { "a march has no number of harmonics" };
+        let hint = format!("write `error = \"{own}\"`, or \"all\" for that of the cloud as well");
+        draft.fail("accuracy.error", format!("`accuracy.error = \"{theirs}\"`, but {what}")).hint(hint);
     }
 }
 

@@ -66,7 +66,8 @@ pub(super) static CASE: Table = Table::of(&[
         "accuracy",
         Kind::Table(&ACCURACY),
         "1 % where `[cloud]` gives no `spacing` to a steady case, else the loads are those of one cloud",
-        "How well the loads of a steady case are to be known: finer and finer clouds until their error bars are short enough.",
+        "How well the loads of a steady case are to be known: finer and finer clouds until their error bars are short enough. Of marches and \
+         harmonic balances `error` alone: error bars of their loads by further runs.",
     ),
     Field::defaulted("boundary", Kind::Table(&BOUNDARY), Absent::Filled, "Conditions on the sides of the domain."),
     Field::defaulted("initial", Kind::Choice(INITIAL), Absent::Word("free_stream"), "Field at the start."),
@@ -444,7 +445,31 @@ static ACCURACY: Table = Table::of(&[
         "none",
         "Wall-clock time, a plain number in seconds: the run ends on the cloud after which the next, finer one would not end within it.",
     ),
+    Field::defaulted(
+        "error",
+        Kind::Words(LOAD_ERRORS),
+        Absent::Word("none"),
+        "Errors of the loads of a march or a harmonic balance that are told, each by one further run. Steady cases have a family of clouds.",
+    ),
 ]);
+
+const LOAD_ERRORS: &[(&str, &str)] = &[
+    ("none", "none, without a further run"),
+    (
+        "cloud",
+        "that of the cloud, by a run with twice the spacing: a quarter of the time more in the plane, a tenth in space",
+    ),
+    (
+        "step",
+        "that of the step in time of a march, by a run with twice the step (three quarters of the time more), of explicit steps by one with half \
+         of it (twice the time more)",
+    ),
+    (
+        "harmonics",
+        "that of the number of harmonics of a balance, by a run with one harmonic less, of one or two with one more: about as much time again",
+    ),
+    ("all", "that of the cloud, and that of the step or of the number of harmonics"),
+];
 
 static ADAPT: Table = Table::of(&[
     Field::defaulted("cycles", Kind::Integer(0, 64), Absent::Integer(0), "Number of refinements (0: none)."),

@@ -489,7 +489,7 @@ pub enum Limiter {
     Venkatakrishnan,
 }
 
-/// How well the loads of a steady case are to be known.
+/// How well the loads of a steady case are to be known, and which errors of other loads are told.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Accuracy {
     /// Half width of the error bars over the loads.
@@ -498,6 +498,26 @@ pub struct Accuracy {
     pub particles: usize,
     /// Wall-clock time within which the last cloud is to end.
     pub time: Option<WallTime>,
+    /// Which errors of the loads of a march or a harmonic balance are told.
+    #[serde(default)]
+    pub error: LoadErrors,
+}
+
+/// Errors of the loads of a march or a harmonic balance that further runs tell.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum LoadErrors {
+    /// None.
+    #[default]
+    None,
+    /// That of the cloud.
+    Cloud,
+    /// That of the step in time of a march.
+    Step,
+    /// That of the number of harmonics of a balance.
+    Harmonics,
+    /// That of the cloud, and that of the step or of the number of harmonics.
+    All,
 }
 
 /// Refinement that follows the solution.
@@ -580,7 +600,7 @@ impl Cloud {
 
 impl Default for Accuracy {
     fn default() -> Self {
-        Self { loads: Ratio(0.01), particles: 50_000, time: None }
+        Self { loads: Ratio(0.01), particles: 50_000, time: None, error: LoadErrors::None }
     }
 }
 

@@ -200,6 +200,14 @@ fn a_case_may_leave_the_cloud_to_the_program() {
     let accuracy = "[accuracy]\nloads = 0.01\n";
     assert!(read(&format!("{bare}{accuracy}[adapt]\ncycles = 1\n"), "case.toml").is_ok());
     assert_shows(&format!("{bare}{accuracy}[time.dual]\nstep = 1\nuntil = 2\n"), &["is for steady cases"]);
+    let march = "[time.dual]\nstep = 1\nuntil = 2\n";
+    let error = |error: &str| format!("{bare}[accuracy]\nerror = \"{error}\"\n");
+    let asked = read(&(error("step") + march), "case.toml").unwrap();
+    assert_eq!(asked.accuracy.unwrap().error, LoadErrors::Step);
+    assert_eq!(read(&write(&asked), "case.toml").unwrap().accuracy, asked.accuracy, "a resolved case has all keys");
+    assert_shows(&error("cloud"), &["is for marches and harmonic balances"]);
+    assert_shows(&(error("harmonics") + march), &["a march has no number of harmonics", "error = \"step\""]);
+    assert_shows(&format!("{}loads = 0.1\n{march}", error("all")), &["`accuracy.loads` is for steady cases"]);
 }
 
 #[test]

@@ -87,7 +87,7 @@ impl Harmonics {
     }
 
     /// Fits the part of the history that ends at time `end`.
-    fn fit_until(time: &[f64], values: &[f64], window: &Window, end: f64) -> Result<Self, HarmonicsError> {
+    pub fn fit_until(time: &[f64], values: &[f64], window: &Window, end: f64) -> Result<Self, HarmonicsError> {
         let (first, last) = bounds(time, window, end)?;
         let (time, values) = (&time[first..last], &values[first..last]);
         if let Some(k) = (0..time.len()).find(|&k| !values[k].is_finite() || !time[k].is_finite()) {

@@ -4,6 +4,7 @@ pub mod columns;
 pub mod convergence;
 pub mod cycles;
 pub mod damping;
+pub mod error_bars;
 pub mod harmonics;
 pub mod hinge;
 pub mod induced;

@@ -17,7 +17,10 @@ pub(super) fn cards(summary: &Value) -> Option<Vec<Card>> {
             Fact::new(&format!("degrees before {}", motion(period)), of("phase_deg")),
         ];
         facts.extend(at(summary).map(|at| Fact::new(&at, number_of(&summary["loads"][load.column]))));
-        let value = of("mean");
+        let value = match bar(summary, load, "mean") {
+            Some(bar) => format!("{} ± {}", of("mean"), number(bar)),
+            None => of("mean"),
+        };
         Card { name: format!("{}, mean of the last period", load.name), value, facts }
     };
     Some(LOADS.iter().map(card).collect())
@@ -56,6 +59,13 @@ pub(super) fn cycles(summary: &Value, load: &Load) -> Vec<Fact> {
 /// How a march without a period ended, where what follows is an instant of a run.
 pub(super) fn at(summary: &Value) -> Option<String> {
     summary["loads_at"].as_f64().map(|t| format!("at t = {}", number(t)))
+}
+
+/// Half width of the error bar of a number of a load, where there is one.
+fn bar(summary: &Value, load: &Load, quantity: &str) -> Option<f64> {
+    let bars = summary["error_bars"]["bars"].as_array()?;
+    let own = bars.iter().find(|bar| bar["of"] == load.name && bar["quantity"] == quantity)?;
+    own["half_width"].as_f64()
 }
 
 /// How far the last period repeats the one before, in a sentence.

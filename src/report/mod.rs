@@ -17,6 +17,7 @@ pub mod colour;
 pub mod compare;
 mod conditions;
 mod contour;
+mod error_bars;
 pub mod fields;
 mod files;
 mod flutter;

@@ -12,7 +12,9 @@ use super::files::{LOADS, Load, RunFolder};
 use super::page::{Block, Card, Fact, Page, Section, Status};
 use super::sections;
 use super::words::{grouped, number, with_bar};
-use super::{ReportError, flutter, grid, last_period, periodic, polar, pressure, solids, span, structure, write_file};
+use super::{
+    ReportError, error_bars, flutter, grid, last_period, periodic, polar, pressure, solids, span, structure, write_file,
+};
 
 /// Writes `report.html` into a run folder from the files that are there, and gives its path.
 pub fn write_report(run: &Path) -> Result<PathBuf, ReportError> {
@@ -46,6 +48,7 @@ fn report(run: &RunFolder, summary: &Value) -> Page {
         Section::new("loads", &loads, of_bodies(sections::loads)),
         Section::new("span", "Load along the span", Ok(span::span(run))),
         Section::new("grid", "Grid convergence", Ok(grid::grid(run))),
+        Section::new("bars", "Error bars", Ok(error_bars::error_bars(run))),
         Section::new("flow", "Flow", sections::pictures(run)),
         Section::new("pressure", "Pressure on the surface", of_bodies(pressure::pressure)),
         Section::new("motion", "Motion", Ok(periodic::motion(run))),

@@ -74,9 +74,12 @@ const WHOLE: f64 = 1e-9;
 /// Clouds that an error bar is drawn from, in 2-D and 3-D: three tell an order, a fourth whether it is one.
 pub(crate) const CLOUDS: [usize; 2] = [3, 4];
 
-/// How well the loads are to be known; `None` where they are those of one cloud.
+/// How well the loads are to be known; `None` where they are those of one cloud, as of marches and balances.
 pub(crate) fn asked(case: &Case) -> Option<Accuracy> {
-    let chosen = case.cloud.spacing.is_none() && !case.is_unsteady() && !case.bodies.is_empty();
+    if case.is_unsteady() {
+        return None;
+    }
+    let chosen = case.cloud.spacing.is_none() && !case.bodies.is_empty();
     let usual = || Accuracy::usual(case.dimension.map_or(2, usize::from), case.polar.is_some());
     case.accuracy.or_else(|| chosen.then(usual))
 }
@@ -93,7 +96,7 @@ pub(crate) fn with_cloud<'a, const D: usize>(case: &'a Case, surface: Option<&Su
     };
     let shortest = (0..surface.bodies.len()).map(length).fold(f64::INFINITY, f64::min);
     let mut filled = case.clone();
-    filled.accuracy = asked(case);
+    filled.accuracy = asked(case).or(case.accuracy);
     let chord = reference::chord(case, Some(surface));
     let reynolds = case.flow.reynolds_number(chord);
     let whole = case.flow.viscous_length(chord);

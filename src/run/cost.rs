@@ -13,7 +13,7 @@ use super::disk;
 use super::recipe::harmonics;
 use super::stage::{Stage, Task};
 use super::time_left::Portion;
-use crate::case::{Case, ParticleMotion, Polar, Temporal};
+use crate::case::{Case, LoadErrors, ParticleMotion, Polar, Temporal};
 use crate::math::sweep::threads;
 
 /// Bytes of a process that computes nothing.
@@ -67,6 +67,13 @@ const ADAPTED: f64 = 1.4;
 const AGAIN: f64 = 0.3;
 /// Work of a point of a polar after the first, which begins from the one before.
 const NEXT_POINT: f64 = 0.5;
+
+/// Time of the runs that error bars of a march or a balance take over its own: on a cloud with twice the spacing, in the plane and in space;
+/// with twice the step, with half an explicit step, with another number of harmonics.
+const ON_COARSER: [f64; 2] = [0.25, 0.1];
+const STEPPED: f64 = 0.75;
+const STEPPED_EXPLICIT: f64 = 2.0;
+const OTHER_HARMONICS: f64 = 1.0;
 
 /// What a run takes.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -136,7 +143,7 @@ impl Sized<'_> {
         let relaxed = self.pace() * points * states.sum::<f64>();
         let marched = largest * each * self.in_time(largest, fastest);
         let starts = !matches!(self.case.time, Temporal::Explicit(_) | Temporal::Harmonics(_));
-        let solved = marched + if starts { relaxed } else { 0.0 };
+        let solved = (marched + if starts { relaxed } else { 0.0 }) * (1.0 + self.further_runs());
         let bytes = PROGRAM + largest * bytes_each(self.case, self.dimension);
         let disk = disk::bytes(self.case, largest, self.dimension, self.period);
         if !self.case.output.report {
@@ -149,6 +156,23 @@ impl Sized<'_> {
         let of_space = if self.dimension == 3 { first + of_particle * largest } else { 0.0 };
         let seconds = solved + (PICTURES_SECONDS[usize::from(self.case.moves())] + of_space) / shared;
         Cost { bytes: bytes.max(pictures), seconds, disk }
+    }
+
+    /// Time that error bars of a march or a balance take, over its own.
+    fn further_runs(&self) -> f64 {
+        let error = self.case.accuracy.filter(|_| self.case.is_unsteady()).map_or(LoadErrors::None, |a| a.error);
+        let coarser = ON_COARSER[self.dimension - 2];
+        let other = match &self.case.time {
+            Temporal::Explicit(_) => STEPPED_EXPLICIT,
+            Temporal::Harmonics(_) => OTHER_HARMONICS,
+            _ => STEPPED,
+        };
+        match error {
+            LoadErrors::None => 0.0,
+            LoadErrors::Cloud => coarser,
+            LoadErrors::Step | LoadErrors::Harmonics => other,
+            LoadErrors::All => coarser + other,
+        }
     }
 
     /// Particles of the clouds of the run, one after another.

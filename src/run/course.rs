@@ -16,6 +16,7 @@
 //!
 //! A point that fails or does not converge from there is tried once from rest; one that does not from rest is told with its reason,
 //! and the polar goes on.
+use super::accuracy;
 use super::error::RunError;
 use super::look::{GasView, load_axes, momentum};
 use super::one_cloud::times_the_spacing;
@@ -158,7 +159,7 @@ impl<'a, S: HasGas<D>, const D: usize> Course<'a, S, D> {
         };
         let Some(point) = stage.point else {
             if k + 1 < stages.len() {
-                let end = reached.end.as_ref().filter(|_| self.points[0].accuracy.is_some());
+                let end = reached.end.as_ref().filter(|_| accuracy::asked(&self.points[0]).is_some());
                 self.kept = end.map(|(_, state)| kept(state)).into_iter().collect();
             }
             return;

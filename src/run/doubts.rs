@@ -32,7 +32,7 @@ fn of_loads(case: &Case, s: &Summary, largest: [f64; 2]) -> Vec<String> {
         return Vec::new();
     }
     let mut doubts = Vec::new();
-    let finer = match case.accuracy {
+    let finer = match case.accuracy.filter(|_| !marched) {
         Some(_) => "allow more `accuracy.particles`",
         None => "take a finer `spacing` or more `layers`",
     };

@@ -358,7 +358,7 @@ impl Place<'_> {
             found = Some(at);
             Ok(())
         };
-        let outcome = session.solve_then(monitor, Some((share, &mut then)))?;
+        let outcome = session.solve_then(monitor, (share, &mut then))?;
         let (Outcome::Finished(summary), Some(mut at)) = (outcome, found) else { return Ok(None) };
         at.steady = [summary.loads.cl, summary.loads.cd, summary.loads.cm];
         at.orders = summary.residual_drop.unwrap_or(0.0);

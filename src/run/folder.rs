@@ -104,7 +104,7 @@ pub(crate) fn create(case: &Case, input: &Path, out: &Path) -> Result<(bool, Hol
 /// The same for what is no run, has no checkpoints and is not replaced: a cloud, or matrices.
 pub(crate) fn create_once(case: &Case, input: &Path, out: &Path) -> Result<Hold, RunError> {
     // matrices are found in the same order again: those of this case that were not all found make room
-    let same = || plain(&out.join("case.toml")).is_ok_and(|known| known == write(case));
+    let same = || is_of(case, out);
     if out.join(MATRICES).exists() && !out.join(FINISHED).exists() && same() {
         fs::remove_file(out.join(MATRICES)).unwrap_or_default();
     }
@@ -116,6 +116,16 @@ pub(crate) fn create_once(case: &Case, input: &Path, out: &Path) -> Result<Hold,
         });
     }
     create(case, input, out).map(|(_, held)| held)
+}
+
+/// True where `out` is the folder of a run of this very case.
+pub(crate) fn is_of(case: &Case, out: &Path) -> bool {
+    plain(&out.join("case.toml")).is_ok_and(|known| known == write(case))
+}
+
+/// True where `out` is the folder of a run that has a checkpoint.
+pub(crate) fn has_begun(out: &Path) -> bool {
+    checkpoint::is_there(&out.join(saved::FILE))
 }
 
 /// Makes a folder in that of a run.
@@ -142,7 +152,7 @@ pub(crate) fn put_cloud(cloud: &Cloud, refined: bool, out: &Path) -> Result<(), 
 /// True where a run was stopped before it kept anything but its case.
 fn is_barely_begun(out: &Path) -> bool {
     let kept = [SUMMARY, FINISHED, "doctor.json", MATRICES];
-    let begun = checkpoint::is_there(&out.join(saved::FILE));
+    let begun = has_begun(out);
     out.join(ORIGIN).is_file() && !begun && kept.iter().all(|name| !out.join(name).exists())
 }
 
@@ -239,7 +249,7 @@ fn checksum(out: &Path, file: &str) -> Option<String> {
 
 /// Refuses to go on where no checkpoint was written.
 pub(crate) fn check_begun(out: &Path) -> Result<(), RunError> {
-    if checkpoint::is_there(&out.join(saved::FILE)) {
+    if has_begun(out) {
         return Ok(());
     }
     let (named, file) = (out.display(), saved::FILE);

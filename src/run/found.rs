@@ -187,11 +187,23 @@ impl<const D: usize> Found<'_, D> {
             error_l2_density: self.exact_error(log.units.solver_time(record.time)),
             loads_error: family.as_ref().map(Convergence::half_widths),
             grid_convergence: family,
+            supersonic: self.is_supersonic(),
+            // further runs tell them
+            error_bars: None,
             polar: record.polar.points.clone(),
             warnings: Vec::new(),
             adapt_change: last_change(&record.cycles),
             phases: spent.phases(),
         }
+    }
+
+    /// True where the gas is faster than sound somewhere.
+    fn is_supersonic(&self) -> bool {
+        let faster = |i: usize| {
+            let q = self.view.state(i);
+            q.velocity.norm() > self.view.fluid.gas.sound_speed(&q)
+        };
+        (0..self.view.cloud().n_fluid).any(faster)
     }
 
     /// What acts at the roots of wings and fins.

@@ -8,15 +8,17 @@
 //! of a flow), `setup` (from a case to its equations), `record` (what a run knows about itself), `found` (what it tells at its
 //! end), `files`, `watch` (one loop that drives any integrator, and those who watch it), `studies` (what is done on a cloud),
 //! `solids` (structures of particles alone),
-//! `course` (the way through the stages, and what many flows on the same clouds leave to one another), `session`; on top of it [`gaf`] and [`verify`], and `refusals` (what keeps a case
+//! `course` (the way through the stages, and what many flows on the same clouds leave to one another), `session`; on top of it `error_bars` (further runs), [`gaf`] and [`verify`], and `refusals` (what keeps a case
 //! from being computed).
 mod accuracy;
+mod at_end;
 mod cloud_table;
 mod cost;
 mod course;
 mod disk;
 mod doubts;
 mod error;
+mod error_bars;
 mod files;
 pub mod flutter;
 mod folder;
@@ -31,6 +33,7 @@ mod pilot;
 mod recipe;
 mod record;
 mod refusals;
+mod resumed;
 mod session;
 mod setup;
 mod shape;
@@ -52,6 +55,7 @@ use crate::scheme::Fluid;
 pub use cloud_table::{CloudTable, cloud_table};
 pub use cost::Cost;
 pub use error::{Blame, RunError};
+pub use error_bars::solve;
 pub use folder::{Places, fresh_folder};
 pub use inspect::{CloudReport, NeighbourCount, SpacingRange, inspect};
 pub use look::forces::GeneralisedForce;
@@ -65,6 +69,7 @@ pub use record::solid_end::{ProbeEnd, SolidEnd};
 pub use record::summary::{Apart, BalanceReport, Ledger, MarchingCheck, Reclouding, Summary};
 pub use record::trace::{Change, FirstHarmonics, LastPeriod, PeriodicLoads};
 pub use refusals::refusals;
+pub use resumed::continued;
 pub use session::{Outcome, Session, Solution};
 pub use shape::{BodyTable, Measures, body_table};
 pub use solids::{
@@ -76,7 +81,7 @@ pub use understood::{
     Aeroelastic, BodyBox, ReferenceValues, Understood, UnderstoodFlutter, UnderstoodGaf, UnderstoodStructure,
 };
 
-use record::saved::{Saved, equations_of};
+use record::saved::Saved;
 use session::Origin;
 use stage::Stage;
 
@@ -89,7 +94,7 @@ fn solved(case: &Case, places: &Places, monitor: &mut dyn Monitor) -> Result<Out
     if !case.has_gas() {
         return solid(case, &places.input, Some(&places.out), monitor).map(structure);
     }
-    Session::open(case, &places.input)?.keep_in(&places.out, monitor)?.solve(monitor)
+    solve(&mut Session::open(case, &places.input)?.keep_in(&places.out, monitor)?, monitor)
 }
 
 /// Solves a structure alone, into the fresh folder `out` where one is given.
@@ -165,7 +170,7 @@ pub fn run_from(case: &Case, places: &Places, from: &Path, monitor: &mut dyn Mon
             hint: "finish it with `alula resume`; particles that travel keep a cloud of their own",
         });
     }
-    session.keep_in(&places.out, monitor)?.from(Origin::Other(Box::new(saved))).solve(monitor)
+    solve(&mut session.keep_in(&places.out, monitor)?.from(Origin::Other(Box::new(saved))), monitor)
 }
 
 /// Makes room for a case that can begin: an earlier run in its folder is renamed; its new name, if there was one.
@@ -192,30 +197,12 @@ pub fn resume(out: &Path, monitor: &mut dyn Monitor) -> Result<Outcome, RunError
     if !case_of(out)?.has_gas() {
         return resume_solid(out, monitor).map(structure);
     }
-    continued(out)?.solve(monitor)
+    solve(&mut continued(out)?, monitor)
 }
 
 /// True where the run in `out` is over.
 pub fn is_finished(out: &Path) -> bool {
     folder::finished(out).is_some()
-}
-
-/// A session that goes on with the run in `out` from its checkpoint, to the same bits as if it had not been stopped.
-pub fn continued(out: &Path) -> Result<Session, RunError> {
-    let (case, input) = folder::read_case(out)?;
-    folder::check_input(&case, &input, out)?;
-    folder::check_begun(out)?;
-    let held = folder::hold(out)?;
-    let saved = Saved::read(out)?.trusted(&case)?;
-    if saved.equations.is_some_and(|known| known != equations_of(&case)) {
-        return Err(RunError::OtherRun {
-            what: format!("`{}/case.toml` has other equations than those that the run began with", out.display()),
-            hint: "only `[time]`, `[accuracy]`, `[adapt]`, `[output]` and what is told of the loads may change: `alula run --from` begins \
-                   another case from the last state",
-        });
-    }
-    folder::reopen(out)?;
-    Ok(Session::open(&case, input)?.kept_in(out, held).from(Origin::Own(Box::new(saved))))
 }
 
 /// Builds the cloud of a case without running it.

@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::accuracy;
+use super::at_end::{AtEnd, Bars, Then};
 use super::cost;
 use super::course::{Coarser, Course, Next};
 use super::disk;
@@ -25,7 +26,7 @@ use super::record::{Described, IterationHistory, Log, Scales, SolidEnd};
 use super::setup::{self, Site, Solver, check_motion};
 use super::solids::{SolidSummary, snapshot, with_own_modes};
 use super::stage::{Stage, Task, describe};
-use super::studies::{self, ForceSource, Reached, SmallMotion, Start, Turn};
+use super::studies::{self, Reached, SmallMotion, Start, Turn};
 use super::time_left::Portion;
 use crate::case::{self, Case};
 use crate::cloud::Cloud;
@@ -88,10 +89,7 @@ pub struct Session {
 }
 
 /// What a run begins with, and what is done at its end.
-type Way<'a> = (Origin, Option<Then<'a>>);
-
-/// Share of the work that a steady flow takes, and what is done with it when it is found.
-pub(crate) type Then<'a> = (f64, &'a mut dyn FnMut(&mut dyn ForceSource, &mut Log<'_>) -> Result<(), RunError>);
+type Way<'a> = (Origin, AtEnd<'a>);
 
 /// What a session has found.
 #[derive(Clone, Debug)]
@@ -142,28 +140,30 @@ impl Session {
         Self { origin, ..self }
     }
 
-    /// Solves the case, from its start or from where it was stopped; tells how it went.
+    /// Solves the case, from its start or from where it was stopped; tells how it went. Error bars of marches and balances are found by
+    /// [`solve`](super::solve).
     pub fn solve(&mut self, monitor: &mut dyn Monitor) -> Result<Outcome, RunError> {
-        self.solve_then(monitor, None)
+        self.solve_and(monitor, AtEnd::default())
     }
 
     /// The same; `then` gets what was found as a source of forces in small motion, before it is looked at and written.
-    pub(crate) fn solve_then(
-        &mut self,
-        monitor: &mut dyn Monitor,
-        then: Option<Then<'_>>,
-    ) -> Result<Outcome, RunError> {
+    pub(crate) fn solve_then(&mut self, monitor: &mut dyn Monitor, then: Then<'_>) -> Result<Outcome, RunError> {
+        self.solve_and(monitor, AtEnd { then: Some(then), bars: None })
+    }
+
+    /// The same with what is done at its end.
+    pub(crate) fn solve_and(&mut self, monitor: &mut dyn Monitor, end: AtEnd<'_>) -> Result<Outcome, RunError> {
         let origin = std::mem::replace(&mut self.origin, Origin::Case);
         let work = Run {
             case: &self.case,
             given: &self.case.cloud,
             input: &self.input,
             out: self.out.as_deref(),
-            held: then.is_some() && !self.case.is_trimmed(),
+            held: end.then.is_some() && !self.case.is_trimmed(),
         };
         let ended = match dimension(&self.case) {
-            2 => work.solve::<2>((origin, then), monitor),
-            _ => work.solve::<3>((origin, then), monitor),
+            2 => work.solve::<2>((origin, end), monitor),
+            _ => work.solve::<3>((origin, end), monitor),
         };
         self.held = None;
         Ok(match ended? {
@@ -174,6 +174,11 @@ impl Session {
             }
             Err(iteration) => Outcome::Interrupted { iteration },
         })
+    }
+
+    /// Where its files lie, and where it is kept.
+    pub(crate) fn places(&self) -> (PathBuf, Option<PathBuf>) {
+        (self.input.clone(), self.out.clone())
     }
 
     /// The case.
@@ -305,7 +310,7 @@ impl Run<'_> {
         site: &Site<'_, D>,
         assemble: impl Fn(Fluid<D>) -> S,
         structures: Vec<Described>,
-        (origin, then): Way<'_>,
+        (origin, end): Way<'_>,
         monitor: &mut dyn Monitor,
     ) -> Result<Ended, RunError> {
         let clock = Clock::start();
@@ -319,7 +324,7 @@ impl Run<'_> {
             log.begin_point(true);
         }
         let particles = ground.ready.as_ref().map(|cloud| cloud.n_fluid);
-        let scope = Portion { own: then.as_ref().map_or(1.0, |then| then.0), ..Portion::whole(0.0) };
+        let scope = Portion { own: end.then.as_ref().map_or(1.0, |then| then.0), ..Portion::whole(0.0) };
         let (mut k, mut sources, kept) = ground.standing();
         let mut course = Course::of(self.case, &points, kept);
         let mut previous: Option<Stood<S, D>> = None;
@@ -365,7 +370,7 @@ impl Run<'_> {
             previous = Some(Stood { stage: *stage, solver, reached });
         }
         let stood = previous.map_or_else(|| last_known(&mut course, site, assemble, &mut log), Ok)?;
-        if let Some((share, then)) = then {
+        if let Some((share, then)) = end.then {
             log.portion = Portion { before: share, own: 1.0 - share, ..Portion::whole(0.0) };
             let (_, state) = stood.reached.end.as_ref().ok_or(RunError::NoStage)?;
             then(
@@ -373,7 +378,7 @@ impl Run<'_> {
                 &mut log,
             )?;
         }
-        Run { case: log.case, ..*self }.conclude(&stood, site.surface, &mut log, &clock).map(Ok)
+        Run { case: log.case, ..*self }.conclude(&stood, site.surface, &mut log, (&clock, end.bars))
     }
 
     /// The stages of a run, and what the first of them stands on.
@@ -446,8 +451,8 @@ impl Run<'_> {
         stood: &Stood<S, D>,
         surface: Option<&Surface<D>>,
         log: &mut Log<'_>,
-        clock: &Clock,
-    ) -> Result<Solution, RunError> {
+        (clock, bars): (&Clock, Option<Bars<'_>>),
+    ) -> Result<Ended, RunError> {
         let Some((frame, state)) = &stood.reached.end else { return Err(RunError::NoStage) };
         let gas = &GasView::of(&stood.solver.system, frame, state);
         let (solved, mut work) = (clock.wall_seconds(), gas.fluid.work());
@@ -462,6 +467,11 @@ impl Run<'_> {
         let span_load = span_load(self.case, &view, surface, &strips, &axes);
         let found = Found { case: self.case, view, surface, axes, names, balance, strips, span_load, wake };
         let mut summary = found.summary(log, gas.state, &Spent { clock, solved });
+        if let Some(bars) = bars
+            && !bars(self.case, &mut summary, log)?
+        {
+            return Ok(Err(log.record.iteration));
+        }
         let solid = stood.solver.system.solid_snapshot(frame, state);
         summary.solid = solid.as_ref().map(|at| SolidEnd::of(at, log));
         summary.cloud = accuracy::scaled(self.case, stood.stage.factor).cloud;
@@ -480,7 +490,7 @@ impl Run<'_> {
         let loops = log.case_period().map_or_else(Loops::default, |p| log.record.trace.loops(p));
         let history = std::mem::take(&mut log.record.history);
         let solid = solid.map(|at| snapshot(at.solid, &at.state()));
-        Ok(Solution { summary, field, walls, solid, history, loops })
+        Ok(Ok(Solution { summary, field, walls, solid, history, loops }))
     }
 }
 

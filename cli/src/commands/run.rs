@@ -3,6 +3,7 @@ use std::path::{Path, PathBuf};
 
 use alula::math::digits::fixed;
 use alula::observe::convergence::{Convergence, FamilyEnd};
+use alula::observe::error_bars::{Bar, ErrorBars};
 use alula::observe::loads::Coefficients;
 use alula::observe::strips::Span;
 use alula::run::{self, Outcome as Ended, PeriodicLoads, Places, PolarPoint, RunError, SolidSummary, Summary};
@@ -223,6 +224,29 @@ fn grid_convergence(c: &Convergence) -> String {
     }
 }
 
+/// Every number of a march or a balance with its error bar and the parts of that; nothing where none are asked for.
+fn error_bars(found: &ErrorBars) -> String {
+    if let Some(why) = &found.untold {
+        return format!("no error bars: {why}\n");
+    }
+    type Part = (&'static str, fn(&Bar) -> Option<f64>);
+    let parts: [Part; 4] =
+        [("cloud", |b| b.cloud), ("step", |b| b.step), ("harmonics", |b| b.harmonics), ("transient", |b| b.transient)];
+    let there: Vec<&Part> = parts.iter().filter(|(_, of)| found.bars.iter().any(|b| of(b).is_some())).collect();
+    if there.is_empty() {
+        return String::new();
+    }
+    let head: String = there.iter().map(|(name, _)| format!("{name:>10}")).collect();
+    let mut text = format!("{:<28}{:>10}{:>10}{head}\n", "error bars", "value", "±");
+    for b in &found.bars {
+        let own: String =
+            there.iter().map(|(_, of)| of(b).map_or(format!("{:>10}", "-"), |p| format!("{p:10.5}"))).collect();
+        let name = format!("{} {}", b.of, b.name());
+        text += &format!("{name:<28}{:10.5}{:10.5}{own}\n", b.value, b.half_width);
+    }
+    text
+}
+
 fn describe(s: &Summary, out: &Path) -> String {
     let mut text = s.conditions() + "\n" + &solids(s);
     text += &match (&s.polar[..], &s.periodic_loads) {
@@ -233,6 +257,7 @@ fn describe(s: &Summary, out: &Path) -> String {
     if let Some(c) = s.grid_convergence.as_ref().filter(|_| s.polar.is_empty()) {
         text += &grid_convergence(c);
     }
+    text += &s.error_bars.as_ref().map_or_else(String::new, error_bars);
     if let Some(t) = &s.momentum_of_period {
         text += &format!(
             "over the last period momentum and walls differ by CL {:.1e}, CD {:.1e}, CM {:.1e} (rms at {} moments; ranges {:.3}, {:.3}, {:.3})\n",

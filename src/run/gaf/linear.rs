@@ -152,9 +152,7 @@ impl Asked<'_> {
             }
             Ok(())
         };
-        let Outcome::Finished(summary) = session.solve_then(monitor, Some((share, &mut then)))? else {
-            return Ok(None);
-        };
+        let Outcome::Finished(summary) = session.solve_then(monitor, (share, &mut then))? else { return Ok(None) };
         let solved = summary.succeeded();
         Ok((!stopped).then_some(Flow { cloud: summary.cloud, solved, shocks }))
     }

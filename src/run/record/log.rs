@@ -16,6 +16,7 @@ use super::summary::{BalanceReport, Clock, Work};
 use super::trace::Trace;
 use crate::case::{Case, Units};
 use crate::observe::convergence::CloudLoads;
+use crate::observe::error_bars::{Measure, Measured, Quantity, Window};
 use crate::observe::structure::{CoordinateHistory, StructureNames, StructureSample, StructureSummary, StructureTable};
 use crate::observe::swing::Swing;
 use crate::scheme::RemapLedger;
@@ -236,6 +237,32 @@ impl<'a> Log<'a> {
     pub(crate) fn end_point(&mut self, row: PolarPoint) -> Result<(), RunError> {
         self.record.polar.points.push(row);
         self.journal.as_ref().map_or(Ok(()), |j| self.record.polar.write(&j.out))
+    }
+
+    /// Who watches.
+    pub(crate) fn monitor(&mut self) -> &mut dyn Monitor {
+        self.monitor
+    }
+
+    /// The numbers of a march or a balance that error bars are told of.
+    pub(crate) fn measured(&self) -> Option<Measured> {
+        let mut found = self.record.trace.measured(self.case_period())?;
+        let structures = self.structure_summaries();
+        let coordinates = structures.iter().flat_map(|s| &s.coordinates);
+        for (c, known) in coordinates.zip(&self.record.structures.coordinates) {
+            // what a coordinate that swings for ever still changes by
+            let swings = found.window != Window::March && self.record.balanced.is_none();
+            let told = |value: Option<f64>, quantity: Quantity, changes: Option<f64>| {
+                let before = changes.filter(|_| swings).map(|change| [value.unwrap_or_default() + change, 0.0]);
+                value.map(|value| Measure { of: known.name.clone(), quantity, value: [value, 0.0], before })
+            };
+            let spread = c.amplitude.zip(c.amplitude_spread).map(|(size, spread)| size * spread);
+            found.values.extend(told(c.mean, Quantity::Mean, None));
+            found.values.extend(told(c.amplitude, Quantity::Amplitude, spread));
+            found.values.extend(told(c.frequency, Quantity::Frequency, None));
+            found.values.extend(told(c.damping_ratio.filter(|_| !swings), Quantity::Damping, None));
+        }
+        Some(found)
     }
 
     /// Says a line.

@@ -14,6 +14,7 @@ use super::trace::{Change, FirstHarmonics, LastPeriod, PeriodicLoads};
 use crate::case::{Cloud, FreeStreamScales};
 use crate::math::digits::short;
 use crate::observe::convergence::Convergence;
+use crate::observe::error_bars::ErrorBars;
 use crate::observe::hinge::HingeMoment;
 use crate::observe::induced::SpanLoad;
 use crate::observe::loads::Coefficients;
@@ -23,6 +24,9 @@ use crate::observe::usage::peak_bytes;
 
 /// The phase in which files, pictures and the report are written.
 pub(crate) const FILES: &str = "files and pictures";
+
+/// The phase in which error bars of marches and balances are found.
+const BARS: &str = "error bars";
 
 /// What a run found and what it took.
 #[derive(Clone, Debug, Serialize)]
@@ -155,6 +159,12 @@ pub struct Summary {
     /// That family, and how the loads converge on it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub grid_convergence: Option<Convergence>,
+    /// True where the gas is faster than sound somewhere at the end; not written.
+    #[serde(skip)]
+    pub supersonic: bool,
+    /// Numbers of a march or a balance with their error bars, where these are asked for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub error_bars: Option<ErrorBars>,
     /// The points of a polar; all else is of the last of them whose flow is known.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub polar: Vec<PolarPoint>,
@@ -313,6 +323,12 @@ impl Summary {
     /// True where the loads are those of an instant: of a march, not of a balance.
     pub fn is_march(&self) -> bool {
         self.loads_at.is_some() && self.harmonic_balance.is_none()
+    }
+
+    /// Adds what finding the error bars took to the cost; `[processor, wall]` seconds as below.
+    pub(crate) fn spent_on_bars(&mut self, [cpu, wall]: [f64; 2]) {
+        self.phases.insert(1.min(self.phases.len()), (BARS.into(), wall - self.wall_seconds));
+        (self.cpu_seconds, self.wall_seconds) = (cpu, wall);
     }
 
     /// Brings what the run cost up to date: `[processor, wall]` seconds since its beginning, the rest as the system tells it.

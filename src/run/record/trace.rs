@@ -1,4 +1,6 @@
 //! What a motion that repeats says about its loads: harmonics, loops, work of a cycle.
+mod measured;
+
 use std::path::Path;
 
 use serde::Serialize;
@@ -127,9 +129,14 @@ impl Trace {
 
     /// The same with a number of harmonics.
     fn fitted_by(&self, period: f64, harmonics: usize) -> Option<([Harmonics; 3], Moved)> {
+        self.fitted_until(self.samples.last()?.time, period, harmonics)
+    }
+
+    /// The same of the history up to the time `end`.
+    fn fitted_until(&self, end: f64, period: f64, harmonics: usize) -> Option<([Harmonics; 3], Moved)> {
         let time = self.column(|m| m.time);
         let window = Window { period, periods: f64::from(self.whole(period)), harmonics };
-        let fit = |f: &dyn Fn(&Sample) -> f64| Harmonics::fit(&time, &self.column(f), &window).ok();
+        let fit = |f: &dyn Fn(&Sample) -> f64| Harmonics::fit_until(&time, &self.column(f), &window, end).ok();
         let loads = [fit(&|m| m.loads.cl)?, fit(&|m| m.loads.cd)?, fit(&|m| m.loads.cm)?];
         let moved = |(k, name): (usize, &'static str)| Some((name, fit(&|m: &Sample| m.motion[k])?));
         let moves = |h: &Harmonics| h.term(h.dominant()).norm().max(h.remainder) > STILL;
