@@ -286,7 +286,7 @@ fn line_text(tick: &Tick) -> String {
         (2, format!("residual {:.1e}", tick.residual)),
     ];
     texts.extend(loads_texts(tick));
-    texts.push((4, format!("cfl {:.0e}", tick.cfl)));
+    texts.push((6, format!("cfl {:.0e}", tick.cfl)));
     fitted(&texts, COLUMNS)
 }
 

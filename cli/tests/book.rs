@@ -33,6 +33,8 @@ fn completed(block: &str) -> String {
         &[STREAM, SECTION, "[gaf]\nreduced_frequencies = [0.1]\npivot = [0.25, 0]\n"]
     } else if has("[gaf]") {
         &[STREAM, SECTION]
+    } else if has("error = \"all\"") {
+        &[STREAM, SECTION, PITCH, MARCH]
     } else if has("own_modes") {
         &[AIR, "[[body]]\nnaca = \"0012\"\n[body.solid]\nthrough = 5\n", CLAMPED, STEEL, CLOUD]
     } else if has("[body.solid.material]") {

@@ -15,7 +15,11 @@ pub fn short(value: f64) -> String {
         let rounded = format!("{value:.5e}").parse().unwrap_or(value) + 0.0;
         return format!("{rounded}");
     }
-    format!("{value:.5e}")
+    let text = format!("{value:.5e}");
+    match text.split_once('e') {
+        Some((digits, exponent)) => format!("{}e{exponent}", digits.trim_end_matches('0').trim_end_matches('.')),
+        None => text,
+    }
 }
 
 #[cfg(test)]
@@ -27,6 +31,6 @@ mod tests {
         let all = [(-0.0, 2), (-0.004, 2), (-0.006, 2), (0.004, 3), (-1e-9, 0), (-12.0, 0)].map(|(v, d)| fixed(v, d));
         assert_eq!(all, ["0.00", "0.00", "-0.01", "0.004", "0", "-12"]);
         assert_eq!(fixed(f64::NAN, 2), "NaN");
-        assert_eq!([-0.0, 0.1 + 0.2, -1.25, 1e12, 2e-9].map(short), ["0", "0.3", "-1.25", "1.00000e12", "2.00000e-9"]);
+        assert_eq!([-0.0, 0.1 + 0.2, -1.25, 1e12, 2e-9].map(short), ["0", "0.3", "-1.25", "1e12", "2e-9"]);
     }
 }

@@ -453,7 +453,7 @@ mod tests {
     fn mismatched_columns_and_cells_are_refused() {
         let path = Path::new("never-written.vtu");
         let short = Column { name: "cp", components: 1, values: &[0.0] };
-        let message = write_cells(&path, &bare(), &SQUARE, Cells::Vertices, &[short]).unwrap_err().to_string();
+        let message = write_cells(path, &bare(), &SQUARE, Cells::Vertices, &[short]).unwrap_err().to_string();
         assert_eq!(message, "column `cp` has 1 values; 4 items of 1 components need 4");
         let cells = [[0, 1, 2], [0, 2, 4]];
         let message = write_cells(path, &bare(), &SQUARE, Cells::Triangles(&cells), &[]).unwrap_err().to_string();

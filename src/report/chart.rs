@@ -411,7 +411,7 @@ mod tests {
             assert!(!all[..k].contains(style), "{k}");
         }
         let curve = |k: u32| Series::new(&format!("{k}"), Marks::Points, vec![0.0, 1.0], vec![0.0, f64::from(k)]);
-        let chart = Chart { title: "CL".repeat(60), series: (0..13).map(curve).collect(), ..Chart::default() };
+        let chart = Chart { title: "CL".repeat(150), series: (0..13).map(curve).collect(), ..Chart::default() };
         let svg = chart.svg().unwrap();
         assert_balanced(&svg);
         // the same colour comes three times, each with a dash of its own; each line has its marks, and one in the legend

@@ -168,9 +168,10 @@ pub(super) fn doctor(run: &RunFolder) -> Vec<Block> {
         Ok(doctor) => doctor,
         Err(reason) => return std::iter::once(Block::LeftOut(reason)).chain(pictures).collect(),
     };
-    let value = |value: &Value, told: fn(f64) -> String| value.as_f64().map_or("–".to_owned(), told);
-    let (whole, mean): (fn(f64) -> String, fn(f64) -> String) = (grouped, |mean| fixed(mean, 1));
-    let range = [("min", whole), ("mean", mean), ("max", whole)];
+    type Told = fn(f64) -> String;
+    let value = |value: &Value, told: Told| value.as_f64().map_or("–".to_owned(), told);
+    let mean: Told = |mean| fixed(mean, 1);
+    let range = [("min", grouped as Told), ("mean", mean), ("max", grouped)];
     let range = range.map(|(key, told)| value(&doctor["neighbours"][key], told));
     let mut blocks = vec![Block::Facts(vec![
         Fact::new("Particles", value(&doctor["particles"], grouped)),

@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 
-use super::at_end::AtEnd;
+use super::at_end::{AtEnd, Outcome};
 use super::error::RunError;
 use super::folder;
 use super::monitor::{Monitor, Quiet};
@@ -20,7 +20,7 @@ use super::one_cloud::{COARSER, coarser};
 use super::record::Log;
 use super::record::summary::Summary;
 use super::resumed::continued;
-use super::session::{Outcome, Session};
+use super::session::Session;
 use crate::case::{Accuracy, Case, HarmonicCount, LoadErrors, RungeKutta, Temporal};
 use crate::observe::error_bars::{ErrorBars, Measured, NOT_PERIODIC, OtherRun, Part, Window};
 
@@ -315,7 +315,7 @@ mod tests {
 
     fn case(time: &str) -> Case {
         let text = format!(
-            "[flow]\nmach = 0.5\n[[body]]\nnaca = \"0012\"\n[motion]\nreduced_frequency = 0.3\npitch = \"1 deg\"\n[cloud]\nspacing = 0.1\n\
+            "[flow]\nmach = 0.5\n[[body]]\nnaca = \"0012\"\n[motion]\nreduced_frequency = 0.3\npivot = [0.25, 0]\npitch = \"1 deg\"\n[cloud]\nspacing = 0.1\n\
              [accuracy]\nerror = \"all\"\n{time}\n"
         );
         crate::case::read(&text, "t").unwrap_or_else(|e| panic!("{e}"))

@@ -52,6 +52,7 @@ use crate::cloud::Cloud;
 use crate::geometry::Surface;
 use crate::scheme::Fluid;
 
+pub use at_end::Outcome;
 pub use cloud_table::{CloudTable, cloud_table};
 pub use cost::Cost;
 pub use error::{Blame, RunError};
@@ -70,7 +71,7 @@ pub use record::summary::{Apart, BalanceReport, Ledger, MarchingCheck, Recloudin
 pub use record::trace::{Change, FirstHarmonics, LastPeriod, PeriodicLoads};
 pub use refusals::refusals;
 pub use resumed::continued;
-pub use session::{Outcome, Session, Solution};
+pub use session::{Session, Solution};
 pub use shape::{BodyTable, Measures, body_table};
 pub use solids::{
     Ended as SolidOutcome, ModeRow, PeriodicRow, ProbeHarmonic, ProbeRow, SolidLedger, SolidReport, SolidSolution,

@@ -8,7 +8,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use super::accuracy;
-use super::at_end::{AtEnd, Bars, Then};
+use super::at_end::{AtEnd, Bars, Outcome, Then};
 use super::cost;
 use super::course::{Coarser, Course, Next};
 use super::disk;
@@ -24,7 +24,7 @@ use super::record::saved::{Kept, Position, Saved, flatten};
 use super::record::summary::{Clock, Summary};
 use super::record::{Described, IterationHistory, Log, Scales, SolidEnd};
 use super::setup::{self, Site, Solver, check_motion};
-use super::solids::{SolidSummary, snapshot, with_own_modes};
+use super::solids::{snapshot, with_own_modes};
 use super::stage::{Stage, Task, describe};
 use super::studies::{self, Reached, SmallMotion, Start, Turn};
 use super::time_left::Portion;
@@ -38,25 +38,6 @@ use crate::observe::loads::Coefficients;
 use crate::scheme::{Fluid, HasGas};
 use crate::system::{Instant, System};
 use crate::verify::{Loops, wall::Wall};
-
-/// How a run ended.
-#[derive(Debug)]
-pub enum Outcome {
-    /// It ran to its end.
-    Finished(Box<Summary>),
-    /// It ran to its end, a structure without a gas.
-    Structure(Box<SolidSummary>),
-    /// It had run to its end before: nothing was computed or written.
-    AlreadyFinished {
-        /// Its `summary.json`.
-        summary: serde_json::Value,
-    },
-    /// It was told to stop; a checkpoint is written where it has a folder.
-    Interrupted {
-        /// Iteration at which it stopped.
-        iteration: u64,
-    },
-}
 
 /// What a run begins with.
 pub(crate) enum Origin {

@@ -163,9 +163,9 @@ mod tests {
     #[test]
     fn a_run_that_goes_on_knows_its_own_pace_alone() {
         let mut left = TimeLeft::default();
-        assert_eq!(left.after(1.0, &Portion::whole(0.8)), None);
         assert_eq!(left.after(0.5, &Portion { before: 0.5, own: 0.5, ..Portion::whole(0.0) }), None);
-        // a tenth in a second
+        assert_eq!(left.after(1.0, &Portion::whole(0.8)), None);
+        // a tenth in two seconds
         let found = left.after(2.0, &Portion::whole(0.9)).unwrap();
         assert!((found - 2.0).abs() < 1e-9, "{found}");
     }

@@ -7,12 +7,13 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use super::at_end::Outcome;
 use super::error::RunError;
 use super::flutter::{self, Boundary};
 use super::gaf::{self, Matrices};
 use super::measure::{self, Measured, Value};
 use super::monitor::{Monitor, Quiet};
-use super::session::{Outcome, Session};
+use super::session::Session;
 use super::solids::{self, SolidSummary};
 use crate::case::{Case, Length, read};
 use crate::observe::loads::Coefficients;

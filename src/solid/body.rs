@@ -2,11 +2,19 @@
 use std::ops::Deref;
 use std::sync::OnceLock;
 
-use super::cells::Cells;
 use super::particles::Particles;
 use super::rows::{Row, row};
 use crate::math::Vector;
 use crate::physics::solid::{MOST_HISTORY, Material};
+
+/// Cells between particles.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Cells {
+    /// Triangles of plane bodies, counterclockwise at rest.
+    pub triangles: Vec<[u32; 3]>,
+    /// Tetrahedra of bodies in space, of positive volume at rest.
+    pub tetrahedra: Vec<[u32; 4]>,
+}
 
 /// What happens across a plane body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -3,22 +3,13 @@
 //! Triangles in the plane and tetrahedra in space between the particles of each body at rest: a constrained Delaunay triangulation
 //! whose outlines are the facets of the surface, and a Delaunay tetrahedralisation without what is outside. They are for looking
 //! alone, the solver does not know them; they stay the same as the body deforms.
-use super::body::Solid;
+use super::body::{Cells, Solid};
 use crate::math::Vector;
 use crate::math::tetrahedra::tetrahedralise_within;
 use crate::math::triangulation::triangulate_within;
 
 /// Most particles of a body in space between which there are tetrahedra: beyond, they take more memory than the solver.
 const MOST: usize = 1_000_000;
-
-/// Cells between particles.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Cells {
-    /// Triangles of plane bodies, counterclockwise at rest.
-    pub triangles: Vec<[u32; 3]>,
-    /// Tetrahedra of bodies in space, of positive volume at rest.
-    pub tetrahedra: Vec<[u32; 4]>,
-}
 
 impl<const D: usize> Solid<D> {
     /// The cells between its particles, found when they are asked for the first time.

@@ -25,7 +25,6 @@ mod tests_of_revolution;
 mod weigh;
 
 pub use axis::held_on_axis;
-pub use body::{Action, Contact, Damping, Load, Parts, Plane, RigidPlane, Solid, Support};
-pub use cells::Cells;
+pub use body::{Action, Cells, Contact, Damping, Load, Parts, Plane, RigidPlane, Solid, Support};
 pub use particles::{Particles, Unfit};
 pub use system::Structure;

@@ -147,6 +147,14 @@ impl<'a, S: Implicit> Linear<'a, S> {
             return Some((x, Ended::default()));
         }
         self.recycled.begin(omega, &scale, (&mut x, &mut r));
+        if omega == 0.0 {
+            // both parts stand alone: where one has no right-hand side, what solutions of other frequencies leave of it is an error
+            for part in [0..unknowns, unknowns..n].into_iter().filter(|part| b[part.clone()].iter().all(|b| *b == 0.0))
+            {
+                x[part.clone()].fill(0.0);
+                r[part].fill(0.0);
+            }
+        }
         let mut ended = Ended { iterations: 0, left: norm(&r) / whole };
         for round in 0..ROUNDS {
             // what is told is the residual of a product, not that of a combination

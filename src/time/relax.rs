@@ -5,11 +5,12 @@
 //! levels (Knoll and Keyes 2004). The Courant number follows the residual (Mulder and van Leer 1985). Steps that make a
 //! state unphysical or the residual jump are taken back and tried again with a smaller one. The same loop with the linear
 //! solve replaced by the sweeps alone is the LU-SGS method; with neither it is explicit Runge-Kutta with local steps.
+mod line_search;
 mod newton;
 
 use std::sync::Arc;
 
-use newton::{put, shift, sweep_fields};
+use newton::sweep_fields;
 
 use super::control::{Control, Method, Phase};
 use super::formula::Formula;
@@ -32,34 +33,14 @@ const PATIENCE: u32 = 10;
 const SLOW: f64 = 0.93;
 /// Fewest iterations of sweeps alone before patience is counted.
 const SHORTEST_START: u32 = 20;
-/// Error of what the linear system foretold of the residual, over the residual before the step, below which the Courant number
-/// grows, and how much at least: a residual that rises as the pseudo time has it, near a flow that is steady but unstable, is
-/// no reason for smaller steps, with which it would only be followed in time.
-const TRUSTED: f64 = 0.5;
-const TRUSTED_GROWTH: f64 = 1.5;
 /// Courant number below which Newton's method is given up for a while.
 const LOST_CFL: f64 = 5.0;
 /// Courant number with which either phase begins.
 const RESTART_CFL: f64 = 20.0;
 /// Greatest Courant number of sweeps alone.
 const START_CFL_MAX: f64 = 200.0;
-/// Largest ratio of residuals of successive steps while shocks travel.
-const START_JUMP: f64 = 4.0;
-/// Largest ratio of residuals of successive Newton steps within a step in time.
-const NEWTON_JUMP: f64 = 1.1;
-/// The same on the way to a steady flow. A shock that enters the next row of particles makes the residual several times as large before it
-/// falls: steps that may not pass over that are cut short at every row. Strong shocks do not come back from much larger ones.
-const SHOCK_JUMP: f64 = 2.0;
-/// Step lengths that are tried before the Courant number is lowered: 1, 1/2, 1/4.
-const SHORTER_STEPS: i32 = 3;
 /// Courant number below which the relaxation gives up.
 const SMALLEST_CFL: f64 = 1e-3;
-/// Largest relative change of density and pressure in one step that is shortened as a whole.
-const LARGEST_CHANGE: f64 = 0.3;
-/// Largest relative change of a particle in a step that is shortened row by row, and the greatest change before, beyond which the step is
-/// shortened as a whole: what a strong shock leaves of such steps fits no flow.
-const LARGEST_ROW_CHANGE: f64 = 0.5;
-const MILD_CHANGE: f64 = 1.0;
 /// Smallest fraction of a step that is worth taking.
 const SMALLEST_FRACTION: f64 = 0.05;
 /// Courant number of the explicit method.
@@ -71,8 +52,6 @@ const STEADY_ALREADY: f64 = 1e-13;
 /// Courant number of Newton's method at the start of a step in time over that of a steady flow: the guess is good, and the
 /// term of time is a pseudo time of its own.
 const STEP_CFL: f64 = 1000.0;
-/// Fall of the residual in an iteration of a step in time with which the preconditioner goes on to serve.
-const GOOD_FALL: f64 = 2.0;
 /// Unknowns beyond which GMRES keeps fewer basis vectors, and how many: those of large systems are the peak of memory, and a Newton
 /// step that is solved less far costs fewer products too.
 const LARGE: usize = 1 << 22;
@@ -437,17 +416,6 @@ impl<'a, S: Implicit> Relax<'a, S> {
         Ok(Step { iteration: self.iteration, time: 0.0, cfl: self.cfl, residual: self.drop(), linear: self.linear })
     }
 
-    /// Part of the step that changes no density and no pressure by too much. On the way to a steady flow mild steps are shortened row by row
-    /// instead.
-    fn fraction(&mut self) -> f64 {
-        let change = self.system.largest_change(&self.u, &self.step);
-        if self.time.is_some() || !(change <= MILD_CHANGE) {
-            return (LARGEST_CHANGE / change).min(1.0);
-        }
-        self.system.shorten(&self.u, &mut self.step, LARGEST_ROW_CHANGE);
-        1.0
-    }
-
     fn give_up_preconditioner(&mut self) {
         if let Some(p) = self.preconditioning.as_mut() {
             p.give_up();
@@ -482,102 +450,6 @@ impl<'a, S: Implicit> Relax<'a, S> {
             *phase = Phase { newton: !phase.newton, age: 0, best: self.norm, best_age: 0 };
             self.cfl = self.cfl.clamp(RESTART_CFL, START_CFL_MAX);
         }
-    }
-
-    /// Takes the step times `fraction`, or a shorter one when Newton's method overshoots.
-    fn search(&mut self, fraction: f64) -> bool {
-        if !self.phase.newton {
-            return self.accept(fraction, START_JUMP);
-        }
-        let jump = if self.time.is_none() { SHOCK_JUMP } else { NEWTON_JUMP };
-        (0..SHORTER_STEPS).any(|k| self.accept(fraction * 0.5f64.powi(k), jump))
-    }
-
-    /// Takes the step times `fraction` if the new residual is at most `jump` times the old one; sets the next Courant number.
-    fn accept(&mut self, fraction: f64, jump: f64) -> bool {
-        let (u, step) = (&self.u, &self.step);
-        sweep(&mut self.trial, |k| u[k] + fraction * step[k]);
-        if self.system.check(&self.frame, &self.trial).is_err() {
-            return false;
-        }
-        let mut beside = self.frame_of_trial();
-        let frame = beside.as_mut().unwrap_or(&mut self.frame);
-        self.system.rhs_with_boundary(&self.trial, &mut self.work, frame, &mut self.trial_residual);
-        self.evaluations += 1;
-        if let Some(term) = &self.time {
-            let (trial, rate) = (&self.trial, term.rate());
-            let change = |k: usize| rate * trial[k] + term.rest[k];
-            sweep_rows(&mut self.trial_residual, 1, |k, r| r[0] -= change(k));
-        }
-        let norm = self.norm_of(&self.trial_residual);
-        if !norm.is_finite() || norm > jump * self.norm {
-            match beside {
-                Some(_) => self.beside = beside,
-                None => self.system.update_boundary_state(&self.u, &mut self.work, &mut self.frame),
-            }
-            return false;
-        }
-        if let Some(frame) = beside {
-            self.beside = Some(std::mem::replace(&mut self.frame, frame));
-        }
-        std::mem::swap(&mut self.u, &mut self.trial);
-        std::mem::swap(&mut self.residual, &mut self.trial_residual);
-        let steady_newton = self.phase.newton && self.time.is_none();
-        let trusted = steady_newton && fraction == 1.0 && self.model_error() < TRUSTED * self.norm;
-        self.cfl = self.next_cfl(fraction, self.norm / norm.max(f64::MIN_POSITIVE), trusted);
-        if !(self.norm > GOOD_FALL * norm) {
-            self.give_up_preconditioner();
-        }
-        self.norm = norm;
-        true
-    }
-
-    /// The frame of the state in `trial`, where frames depend on the state.
-    fn frame_of_trial(&mut self) -> Option<S::Frame> {
-        if !self.moves() {
-            return None;
-        }
-        let mut frame = self.beside.take().unwrap_or_else(|| self.frame.clone());
-        put(self.system, self.time.as_ref(), &self.trial, &mut frame);
-        Some(frame)
-    }
-
-    /// Size of what the residual after a whole step differs by from what the linear system left of it, δu/Δτ.
-    fn model_error(&mut self) -> f64 {
-        let shift = shift((&self.rate, self.cfl), None, Reach::Far);
-        let (residual, step) = (&self.residual, &self.step);
-        sweep_fields(self.system, &mut self.trial, |i, at, out| {
-            for (k, out) in (at..).zip(out) {
-                *out = residual[k] - shift.of(i) * step[k];
-            }
-        });
-        self.norm_of(&self.trial)
-    }
-
-    /// The Courant number after an accepted step that divided the residual by `ratio`; `trusted` where the linear system
-    /// foretold the residual.
-    fn next_cfl(&self, fraction: f64, ratio: f64, trusted: bool) -> f64 {
-        let growth = self.control.growth;
-        let least = if self.time.is_none() { 1.0 } else { 0.5 };
-        let factor = match (self.phase.newton, fraction == 1.0) {
-            (true, true) if trusted => ratio.clamp(TRUSTED_GROWTH, growth),
-            (true, true) => ratio.clamp(least, growth),
-            (true, false) => ratio.clamp(0.5, 1.0),
-            (false, true) => {
-                if ratio < 1.0 {
-                    ratio.max(0.8)
-                } else {
-                    ratio.clamp(1.0 + 0.5 * (growth - 1.0), growth)
-                }
-            }
-            (false, false) => ratio.clamp(0.8, 1.0),
-        };
-        (self.cfl * factor).min(self.largest_cfl())
-    }
-
-    fn largest_cfl(&self) -> f64 {
-        let start = self.control.method == Method::NewtonKrylov && !self.phase.newton;
-        if start { self.control.cfl_max.min(START_CFL_MAX) } else { self.control.cfl_max }
     }
 
     fn explicit_step(&mut self) {

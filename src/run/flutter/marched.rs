@@ -6,10 +6,11 @@ use std::f64::consts::TAU;
 use std::path::Path;
 
 use super::super::accuracy::Forces;
+use super::super::at_end::Outcome;
 use super::super::error::RunError;
 use super::super::monitor::Monitor;
 use super::super::one_cloud::on_one_cloud;
-use super::super::session::{Outcome, Session};
+use super::super::session::Session;
 use super::super::watch::Alike;
 use super::record::{FlutterAt, LimitCycle, MarchedCycle};
 use crate::case::{Case, StreamRatio};

@@ -56,8 +56,11 @@ impl WallMotion {
     }
 }
 
+/// A frequency, and the pressures of every coordinate on the walls.
+type AtFrequency<'a> = (f64, &'a [Vec<Complex64>]);
+
 /// The nearest known frequencies on either side; the last one twice beyond it.
-fn around(known: &[Pressures], omega: f64) -> Option<[(f64, &[Vec<Complex64>]); 2]> {
+fn around(known: &[Pressures], omega: f64) -> Option<[AtFrequency<'_>; 2]> {
     let entry = |k: usize| known.get(k).map(|(w, p)| (*w, &p[..]));
     let above = known.partition_point(|(w, _)| *w < omega).min(known.len().checked_sub(1)?);
     Some([entry(above.saturating_sub(1))?, entry(above)?])

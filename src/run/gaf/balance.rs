@@ -3,11 +3,12 @@ use std::path::Path;
 
 use num_complex::Complex64;
 
+use super::super::at_end::Outcome;
 use super::super::error::RunError;
 use super::super::monitor::{Monitor, Quiet};
 use super::super::one_cloud::{COARSER, coarser};
 use super::super::record::summary::Summary;
-use super::super::session::{Outcome, Session};
+use super::super::session::Session;
 use super::cloud_error;
 use super::record::{Column, Matrices};
 use crate::case::{AnyMode, Case, Cloud, Gaf, Mode};

@@ -8,13 +8,14 @@ use std::path::Path;
 use num_complex::Complex64;
 
 use super::super::accuracy::{self, Forces};
+use super::super::at_end::Outcome;
 use super::super::cost;
 use super::super::error::RunError;
 use super::super::monitor::{Monitor, Quiet, Within};
 use super::super::one_cloud::{BETWEEN, COARSER, coarser, on_one_cloud, times_the_spacing};
 use super::super::record::Log;
 use super::super::record::summary::Clock;
-use super::super::session::{Outcome, Session};
+use super::super::session::Session;
 use super::super::studies::{ForceSource, SOLVED, in_order};
 use super::super::time_left::Portion;
 use super::cloud_error;
