@@ -102,9 +102,12 @@ def gas(view):
         half = [y for y, end in ((low[1], first[1]), (high[1], last[1])) if abs(y - end) < 0.01 * width]
         plane = Slice(Input=field)
         plane.SliceType = "Plane"
-        plane.SliceType.Origin = [0.5 * (low[0] + high[0]), half[0] if half else 0.5 * (low[1] + high[1]), 0.5 * (low[2] + high[2])]
+        middle = [0.5 * (l + h) for l, h in zip(low, high)]
+        # walls reach a shade beyond that plane
+        y = round((half[0] if half else middle[1]) / width, 5) * width
+        plane.SliceType.Origin = [middle[0], y, middle[2]]
         plane.SliceType.Normal = [0.0, 1.0, 0.0]
-        RenameSource("slice y = " + "%.6g" % plane.SliceType.Origin[1], plane)
+        RenameSource("slice y = %.6g" % (y + 0.0), plane)
         show(plane, view, FIELD)
     streamlines(field, low, high, view)
     return True

@@ -360,6 +360,7 @@ impl Clock {
 
     /// Processor seconds since the start.
     pub(crate) fn cpu_seconds(&self) -> f64 {
-        crate::observe::usage::cpu_seconds() - self.cpu
+        // threads that have ended are not counted any more
+        (crate::observe::usage::cpu_seconds() - self.cpu).max(0.0)
     }
 }
