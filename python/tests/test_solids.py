@@ -73,9 +73,11 @@ def test_a_stopped_march_goes_on(tmp_path):
         if event.get("iteration", 0) > 10:
             raise LookupError("enough")
 
+    # long enough to be stopped before it ends
+    long = BAR | {"time": {"explicit": {"until": 6.0}}}
     with pytest.raises(LookupError):
-        alula.solid(BAR, out=tmp_path / "bar", progress=weary)
-    resumed, whole = alula.resume(tmp_path / "bar"), alula.solid(BAR, threads=1)
+        alula.solid(long, out=tmp_path / "bar", progress=weary)
+    resumed, whole = alula.resume(tmp_path / "bar"), alula.solid(long, threads=1)
     assert isinstance(resumed, alula.Solid) and resumed.folder == tmp_path / "bar"
     for name, values in whole.history.items():
         np.testing.assert_array_equal(values, resumed.history[name])
