@@ -10,9 +10,6 @@ use serde::Serialize;
 use super::colour::Colour;
 use super::{ReportError, font};
 
-/// Between two pieces of one path.
-pub(crate) const LIFTED: [f64; 2] = [f64::NAN; 2];
-
 /// An axis-aligned rectangle on a canvas.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Area {

@@ -6,9 +6,9 @@ use serde::Serialize;
 
 use super::ReportError;
 use super::axes::{Frame, Scale, draw_title, title_width};
-use super::canvas::{Area, Canvas, Dash, LIFTED, Pen, Text};
+use super::canvas::{Area, Canvas, Dash, Pen, Text};
 use super::colour::{CURVES, Colour};
-use super::font::{self, OTHER_FONTS};
+use super::font::{self, LIFTED, OTHER_FONTS};
 
 /// From the borders of a sheet to the plot.
 const LEFT: f64 = 82.0;

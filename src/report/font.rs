@@ -3,7 +3,9 @@
 //! Letters live on a grid: baseline 0, x-height 10, capitals 14, descenders −4, [`EM`] units to the em. A glyph is a
 //! string of commands: `M x y` moves, `L x y` draws a line, `A cx cy rx ry from to` draws an elliptic arc between two
 //! angles in degrees (counter-clockwise when `to > from`) after a line to its start, `a …` the same without that line.
-use super::canvas::LIFTED;
+
+/// Between two pieces of one path.
+pub(crate) const LIFTED: [f64; 2] = [f64::NAN; 2];
 
 /// Grid units to the em: text of size s pixels has capitals of 14 s / 20 pixels.
 pub(crate) const EM: f64 = 20.0;

@@ -43,7 +43,7 @@ fn report(run: &RunFolder, summary: &Value) -> Page {
     };
     let loads = polar::last_point(summary).map_or("Loads".to_owned(), |point| format!("Loads at {point}"));
     let sections = [
-        Section::new("warnings", "Warnings", Ok(warnings(summary))),
+        Section::new("warnings", "Warnings", Ok(sections::warnings(summary))),
         Section::new("polar", "Polar", Ok(polar::polar(run))),
         Section::new("loads", &loads, of_bodies(sections::loads)),
         Section::new("span", "Load along the span", Ok(span::span(run))),
@@ -62,25 +62,12 @@ fn report(run: &RunFolder, summary: &Value) -> Page {
         Section::new("files", "Files", Ok(sections::files(run))),
     ];
     Page {
-        title: case_title(run, summary),
+        title: sections::case_title(run, summary),
         status: Some(status(summary)),
         cards: if bare { Vec::new() } else { cards(run, summary) },
         sections: sections.into_iter().filter(|s| !s.blocks.is_empty()).collect(),
         ..Page::default()
     }
-}
-
-/// What makes the results doubtful.
-pub(super) fn warnings(summary: &Value) -> Vec<Block> {
-    let told = summary.get("warnings").and_then(Value::as_array).into_iter().flatten();
-    told.filter_map(Value::as_str).map(|text| Block::Text(text.to_owned())).collect()
-}
-
-pub(super) fn case_title(run: &RunFolder, summary: &Value) -> String {
-    let case = run.text("case.toml").ok().and_then(|text| text.parse::<toml::Table>().ok());
-    let title = case.as_ref().and_then(|c| c.get("title")).and_then(|t| t.as_str());
-    let title = title.or_else(|| summary.get("case").and_then(Value::as_str)).filter(|t| !t.trim().is_empty());
-    title.unwrap_or("Run without a title").to_owned()
 }
 
 /// One line: converged or not, particles, iterations.

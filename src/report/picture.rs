@@ -1,10 +1,10 @@
 //! Flow pictures: a field on a raster of pixels, and the particles themselves.
 use super::ReportError;
 use super::axes::{Frame, Scale, TITLE_MARGIN, draw_title, tick_text, title_width};
-use super::canvas::{Anchor, Area, Bitmap, Canvas, LIFTED, Pen, Text};
+use super::canvas::{Anchor, Area, Bitmap, Canvas, Pen, Text};
 use super::colour::{CURVES, Colormap, Colour};
 use super::contour;
-use super::font::{self, OTHER_FONTS};
+use super::font::{self, LIFTED, OTHER_FONTS};
 use super::stream_lines::Directions;
 use crate::math::{Bounds, Vector};
 

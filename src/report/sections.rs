@@ -319,3 +319,17 @@ pub(super) fn files(run: &RunFolder) -> Vec<Block> {
     let rows = run.files().iter().filter(|(name, _)| name != "report.html").map(row).collect();
     vec![Block::Table(Table { columns: Vec::new(), rows })]
 }
+
+/// What makes the results doubtful.
+pub(super) fn warnings(summary: &Value) -> Vec<Block> {
+    let told = summary.get("warnings").and_then(Value::as_array).into_iter().flatten();
+    told.filter_map(Value::as_str).map(|text| Block::Text(text.to_owned())).collect()
+}
+
+/// Title of the case, else its name.
+pub(super) fn case_title(run: &RunFolder, summary: &Value) -> String {
+    let case = run.text("case.toml").ok().and_then(|text| text.parse::<toml::Table>().ok());
+    let title = case.as_ref().and_then(|c| c.get("title")).and_then(|t| t.as_str());
+    let title = title.or_else(|| summary.get("case").and_then(Value::as_str)).filter(|t| !t.trim().is_empty());
+    title.unwrap_or("Run without a title").to_owned()
+}

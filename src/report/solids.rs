@@ -5,7 +5,6 @@ use serde_json::Value;
 
 use super::chart::{Axis, Chart, Series};
 use super::files::{Csv, RunFolder};
-use super::overview::{case_title, warnings};
 use super::page::{Block, Card, Fact, Page, Section, Status, Table};
 use super::sections;
 use super::words::{grouped, number, number_of};
@@ -32,7 +31,7 @@ pub(super) fn is_solid(summary: &Value) -> bool {
 pub(super) fn page(run: &RunFolder, summary: &Value) -> Page {
     let history = run.table("history.csv");
     let sections = [
-        Section::new("warnings", "Warnings", Ok(warnings(summary))),
+        Section::new("warnings", "Warnings", Ok(sections::warnings(summary))),
         Section::new("found", "What was found", Ok(found(summary))),
         Section::new("deformation", "Deformation and stress", Ok(pictures(run, "solid").into_iter().collect())),
         Section::new("modes", "Natural modes", Ok(modes(run, summary))),
@@ -44,7 +43,7 @@ pub(super) fn page(run: &RunFolder, summary: &Value) -> Page {
         Section::new("files", "Files", Ok(sections::files(run))),
     ];
     Page {
-        title: case_title(run, summary),
+        title: sections::case_title(run, summary),
         status: Some(status(summary)),
         cards: cards(summary),
         sections: sections.into_iter().filter(|s| !s.blocks.is_empty()).collect(),

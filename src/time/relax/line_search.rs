@@ -36,7 +36,9 @@ impl<S: Implicit> Relax<'_, S> {
         if self.time.is_some() || !(change <= MILD_CHANGE) {
             return (LARGEST_CHANGE / change).min(1.0);
         }
-        self.system.shorten(&self.u, &mut self.step, LARGEST_ROW_CHANGE);
+        if change > LARGEST_ROW_CHANGE {
+            self.system.shorten(&self.u, &mut self.step, LARGEST_ROW_CHANGE);
+        }
         1.0
     }
 
