@@ -429,8 +429,8 @@ static ACCURACY: Table = Table::of(&[
         "loads",
         Kind::Quantity(Ratio::DIMENSION, Range { min: 0.0, max: 0.5, closed: false }),
         Absent::Number(0.01),
-        "Half width of the error bars of CL, CD and CM over their value, or over 0.1, 0.01 and 0.02 where that is smaller (of the points \
-         of a polar 5 %, in 3-D 10 %).",
+        "Half width of the error bars of CL, CD and CM over their value, or over 0.1, 0.01 and 0.02 where that is smaller. Polars: 5 %, in \
+         3-D 10 %.",
     ),
     Field::defaulted(
         "particles",

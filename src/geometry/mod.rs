@@ -281,12 +281,10 @@ fn load_shell(name: &str, body: &Body, folder: &Path, notes: &mut Vec<String>) -
             let root = section_of(&wing.naca, &wing.airfoil, folder, notes);
             let tip = section_of(&wing.tip_naca, &wing.tip_airfoil, folder, notes);
             let (root, tip) = match (root, tip) {
-                (Err(root), Err(tip)) => {
-                    return Err(GeometryError::all(vec![root, tip]).unwrap_or_else(no_section(&place)));
-                }
+                (Err(root), Err(tip)) => return Err(GeometryError::Several(vec![root, tip])),
                 (root, tip) => (root?, tip?),
             };
-            let root = root.ok_or_else(no_section(&place))?;
+            let root = root.ok_or_else(|| GeometryError::refused(&place, "a wing has no section", "add `naca`"))?;
             AnyShell::Space(loft::wing(&place, wing, [&root, tip.as_ref().unwrap_or(&root)])?)
         }
         Shape::Revolution { profile, sides } => {
@@ -301,11 +299,6 @@ fn load_shell(name: &str, body: &Body, folder: &Path, notes: &mut Vec<String>) -
             AnyShell::Space(loft::ellipsoid(primitive::sphere(1.0), [0.5 * a?, 0.5 * b?, 0.5 * c?]))
         }
     })
-}
-
-/// Why a wing without a section cannot be made.
-fn no_section(place: &str) -> impl Fn() -> GeometryError {
-    move || GeometryError::refused(place, "a wing has no section", "add `naca`")
 }
 
 /// The section at one end of a wing, by its digits or by its file; `None` where neither is given.

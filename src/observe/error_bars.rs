@@ -8,6 +8,8 @@
 use num_complex::Complex64;
 use serde::{Deserialize, Serialize};
 
+/// Names of the loads.
+pub const LOADS: [&str; 3] = ["CL", "CD", "CM"];
 /// Change of all loads from period to period, over their harmonics, above which a flow is not periodic.
 pub const NOT_PERIODIC: f64 = 0.05;
 
@@ -140,8 +142,9 @@ impl Measured {
     /// What all loads changed by from the period before to the last one, over their harmonics or amplitudes; `None` where that is not known.
     pub fn change(&self) -> Option<f64> {
         let (mut moved, mut size) = (0.0, 0.0);
-        for m in &self.values {
-            let change = m.distance(&m.before?);
+        for m in self.values.iter().filter(|m| LOADS.contains(&m.of.as_str())) {
+            let Some(before) = &m.before else { continue };
+            let change = m.distance(before);
             match m.quantity {
                 Quantity::Harmonic(_) | Quantity::Amplitude => {
                     size += m.size();

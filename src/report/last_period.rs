@@ -4,7 +4,7 @@ use serde_json::Value;
 
 use super::files::{LOADS, Load};
 use super::page::{Block, Card, Fact, Table};
-use super::words::{number, number_of};
+use super::words::{number, number_of, with_bar};
 
 /// The loads of the last period in large type; `None` of a run without one.
 pub(super) fn cards(summary: &Value) -> Option<Vec<Card>> {
@@ -17,8 +17,9 @@ pub(super) fn cards(summary: &Value) -> Option<Vec<Card>> {
             Fact::new(&format!("degrees before {}", motion(period)), of("phase_deg")),
         ];
         facts.extend(at(summary).map(|at| Fact::new(&at, number_of(&summary["loads"][load.column]))));
-        let value = match bar(summary, load, "mean") {
-            Some(bar) => format!("{} ± {}", of("mean"), number(bar)),
+        let mean = period["mean"][load.column].as_f64();
+        let value = match mean.zip(bar(summary, load, "mean")) {
+            Some((mean, bar)) => with_bar(mean, bar),
             None => of("mean"),
         };
         Card { name: format!("{}, mean of the last period", load.name), value, facts }

@@ -41,6 +41,8 @@ const OF_TOLERANCE: i32 = 3;
 const LOOSEST: f64 = 0.1;
 /// Multiples of the harmonics of a motion that are told.
 const TOLD: usize = 2;
+/// Share of the steps in time that may miss the goal of their inner iterations, as those of an abrupt start do.
+const MISSED: f64 = 0.02;
 /// Fewest steps of a period, and most harmonics, of any case.
 const FEWEST_STEPS: u32 = 4;
 const MOST_HARMONICS: usize = 16;
@@ -87,7 +89,8 @@ impl Place {
         let Some(asked) = case.accuracy.filter(|_| case.is_unsteady()) else { return Ok(true) };
         let Some(measured) = log.measured() else { return Ok(true) };
         let parts = parts(case, asked.error);
-        let (mut runs, mut untold) = (Vec::new(), why_none(summary.succeeded(), balances(case), &measured));
+        let missed = f64::from(summary.unconverged_steps) / (summary.iterations as f64).max(1.0);
+        let (mut runs, mut untold) = (Vec::new(), why_none((summary.succeeded(), missed), balances(case), &measured));
         for part in &parts {
             if untold.is_some() {
                 break;
@@ -196,9 +199,12 @@ fn balances(case: &Case) -> bool {
 }
 
 /// Why a run has no error bars, whatever others say.
-fn why_none(converged: bool, balance: bool, measured: &Measured) -> Option<String> {
+fn why_none((converged, missed): (bool, f64), balance: bool, measured: &Measured) -> Option<String> {
     if !converged {
         return Some("it has not converged".into());
+    }
+    if missed > MISSED {
+        return Some(format!("{:.0} % of its steps in time have not converged", 100.0 * missed));
     }
     if balance || measured.window != Window::LastPeriod {
         return None;
@@ -295,7 +301,9 @@ fn told(other: Other, summary: &Value, own: &Measured) -> Asked {
         return Asked::Silent(format!("the same {words} tells no numbers"));
     };
     let balance = matches!(other.part, Part::Harmonics) || balances(&other.case);
-    if let Some(why) = why_none(summary["converged"] != Value::Bool(false), balance, &found) {
+    let [steps, missed] = ["iterations", "unconverged_steps"].map(|key| summary[key].as_f64().unwrap_or_default());
+    let converged = (summary["converged"] != Value::Bool(false), missed / steps.max(1.0));
+    if let Some(why) = why_none(converged, balance, &found) {
         return Asked::Silent(format!("the same {words}: {why}"));
     }
     if found.window != own.window {

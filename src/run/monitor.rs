@@ -46,6 +46,9 @@ impl Monitor for Quiet<'_> {
     fn stop(&self) -> bool {
         self.monitor.stop()
     }
+    fn checkpoint(&self) -> bool {
+        self.monitor.checkpoint()
+    }
 }
 
 /// Passes on all that a run tells which is the part `outer` of a larger one.

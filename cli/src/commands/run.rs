@@ -1,9 +1,9 @@
 //! `alula run`.
 use std::path::{Path, PathBuf};
 
-use alula::math::digits::fixed;
+use alula::math::digits::{fixed, short};
 use alula::observe::convergence::{Convergence, FamilyEnd};
-use alula::observe::error_bars::{Bar, ErrorBars};
+use alula::observe::error_bars::{self, Bar, ErrorBars};
 use alula::observe::loads::Coefficients;
 use alula::observe::strips::Span;
 use alula::run::{self, Outcome as Ended, PeriodicLoads, Places, PolarPoint, RunError, SolidSummary, Summary};
@@ -236,13 +236,18 @@ fn error_bars(found: &ErrorBars) -> String {
     if there.is_empty() {
         return String::new();
     }
-    let head: String = there.iter().map(|(name, _)| format!("{name:>10}")).collect();
-    let mut text = format!("{:<28}{:>10}{:>10}{head}\n", "error bars", "value", "±");
+    let row = |name: &str, cells: &mut dyn Iterator<Item = String>| {
+        format!("{name:<28}{}\n", cells.map(|cell| format!("{cell:>13}")).collect::<String>())
+    };
+    let names = ["value", "±"].into_iter().chain(there.iter().map(|(name, _)| *name));
+    let mut text = row("error bars", &mut names.map(str::to_owned));
     for b in &found.bars {
-        let own: String =
-            there.iter().map(|(_, of)| of(b).map_or(format!("{:>10}", "-"), |p| format!("{p:10.5}"))).collect();
-        let name = format!("{} {}", b.of, b.name());
-        text += &format!("{name:<28}{:10.5}{:10.5}{own}\n", b.value, b.half_width);
+        // coordinates are lengths and angles of any size
+        let is_load = error_bars::LOADS.contains(&b.of.as_str());
+        let told = |value: f64| if is_load { fixed(value, 5) } else { short(value) };
+        let parts = there.iter().map(|(_, of)| of(b).map_or("-".to_owned(), told));
+        text +=
+            &row(&format!("{} {}", b.of, b.name()), &mut [b.value, b.half_width].map(told).into_iter().chain(parts));
     }
     text
 }

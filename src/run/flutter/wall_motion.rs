@@ -29,13 +29,16 @@ pub struct WallMotion {
 
 impl WallMotion {
     /// The motion of the shape `shape`, whose coordinates are counted in `units`, at the angular frequency `omega` in a stream of the
-    /// Mach number `mach`; `None` where no pressures are known.
+    /// Mach number `mach`; `None` where no pressures are known, or walls whose cloud is too large to be drawn.
     pub(super) fn of(
         walls: &MovingWalls,
         (shape, units): (&[Share], &[f64]),
         known: &[Pressures],
         (omega, mach): (f64, f64),
     ) -> Option<Self> {
+        if walls.lines.is_empty() && walls.triangles.is_empty() {
+            return None;
+        }
         let [(low, below), (high, above)] = around(known, omega)?;
         let part = if high > low { ((omega - low) / (high - low)).clamp(0.0, 1.0) } else { 0.0 };
         let q: Vec<Complex64> = amplitudes(shape).iter().zip(units).map(|(q, unit)| q * unit).collect();

@@ -3,10 +3,8 @@ use num_complex::Complex64;
 
 use super::{Harmonics, Sample, Trace};
 use crate::observe::cycles::Cycles;
-use crate::observe::error_bars::{Measure, Measured, NOT_PERIODIC, Quantity, Window};
+use crate::observe::error_bars::{LOADS, Measure, Measured, NOT_PERIODIC, Quantity, Window};
 
-/// Names of the loads.
-const LOADS: [&str; 3] = ["CL", "CD", "CM"];
 /// Multiples of the harmonic that the motion has most of.
 const TOLD: [usize; 2] = [1, 2];
 
@@ -34,13 +32,19 @@ impl Trace {
         let former = before.as_ref().and_then(|(loads, motions)| Some((loads, &motions.first()?.1)));
         let m = moved.dominant();
         let multiples = TOLD.into_iter().filter(|k| k * m <= moved.terms.len());
+        // windows of n periods a period apart share n − 1: what changes from one such window to the next is n times as much
+        let overlap = f64::from(self.whole(period));
+        let apart = |own: [f64; 2], before: [f64; 2]| [0, 1].map(|d| own[d] + overlap * (before[d] - own[d]));
         let quantities: Vec<usize> = std::iter::once(0).chain(multiples).collect();
         let of = |(load, name): (usize, &str)| {
-            let measure = |k: usize| Measure {
-                of: name.to_owned(),
-                quantity: if k == 0 { Quantity::Mean } else { Quantity::Harmonic(k * m) },
-                value: multiple(&loads[load], moved, m, k),
-                before: former.map(|(loads, moved)| multiple(&loads[load], moved, m, k)),
+            let measure = |k: usize| {
+                let value = multiple(&loads[load], moved, m, k);
+                Measure {
+                    of: name.to_owned(),
+                    quantity: if k == 0 { Quantity::Mean } else { Quantity::Harmonic(k * m) },
+                    value,
+                    before: former.map(|(loads, moved)| apart(value, multiple(&loads[load], moved, m, k))),
+                }
             };
             quantities.iter().copied().map(measure).collect::<Vec<_>>()
         };
