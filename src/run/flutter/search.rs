@@ -82,7 +82,7 @@ impl<'a> Search<'a> {
         let known = self.samples.len() as f64 / self.plan.expected() as f64;
         log.portion = log.portion.at(known.min(NEARLY_ALL));
         let k = self.scales.reduced_frequency(omega);
-        log.doing(&format!("forces at k = {k:.4}, {} frequencies are known", self.samples.len()));
+        log.doing(&format!("forces at k = {k:.4}, frequency {}", self.samples.len() + 1));
         let Forces { generalised, ended, pressures, .. } = source.forces_unless(omega, &|| log.stopped())?;
         let iterations: usize = ended.iter().map(|e| e.iterations).sum();
         let left = ended.iter().map(|e| e.left).fold(0.0, f64::max);
