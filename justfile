@@ -44,6 +44,16 @@ pages:
 # bring the generated pages of the book up to date
 book:
     ALULA_WRITE=1 cargo test -p alula --test tidy
+    ALULA_WRITE=1 cargo test -p alula-cli --test book
+
+# the table of accuracy of the book, measured again: hours; `--fast` or a name as filter are shorter
+accuracy *filter:
+    -cargo run --release -- verify --json {{filter}} > target/claims.json
+    python3 book/accuracy.py target/claims.json
+
+# the program and the Python wheel of a release, in `dist/`
+release:
+    tools/release.sh
 
 # particles a second of the kernels, one thread
 bench *filter:

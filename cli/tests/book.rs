@@ -21,14 +21,21 @@ const CLAMPED: &str = "[[body.solid.support]]\nwhere = { x_max = 0.2 }\nfix = [\
 const STEEL: &str = "[body.solid.material]\ndensity = \"7800 kg/m3\"\nyoung = \"210 GPa\"\npoisson = 0.3\n";
 const TAIL: &str = "[[body]]\nname = \"horizontal-tail\"\nwing = { naca = \"0008\", span = 5.2, chord = 1.2 }\ntranslate = [15, 0, 0]\n\
                     [cloud]\nspacing = 0.3\nfar_field = 20.0\nedge_levels = 0\ncurvature_levels = 0\n";
+/// A cloud around a wing that is made quickly.
+const COARSE: &str = "[cloud]\nspacing = 0.5\nfar_field = 30.0\nedge_levels = 0\ncurvature_levels = 0\n";
 
 /// What a fragment takes for granted, by a word that only it has; the first that fits.
 fn completed(block: &str) -> String {
     let has = |words: &str| block.contains(words);
-    let rest: &[&str] = if has("[[hinge]]") {
+    let whole = has("[flow]\n") && has("[[body]]");
+    let rest: &[&str] = if whole && has("wing = {") && !has("[cloud]") {
+        &[COARSE]
+    } else if whole {
+        &[]
+    } else if has("[[hinge]]") {
         &[STREAM, TAIL]
     } else if has("wing = {") {
-        &[STREAM, "[cloud]\nspacing = 0.5\nfar_field = 30.0\nedge_levels = 0\ncurvature_levels = 0\n"]
+        &[STREAM, COARSE]
     } else if has("design_speed") {
         &["mach = [0.5]\n", AIR, SECTION, SPRINGS]
     } else if has("[lco]") {
