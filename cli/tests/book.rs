@@ -259,7 +259,7 @@ fn mistake(arguments: &[String]) -> Option<String> {
     let folder = tempfile::tempdir().unwrap();
     let output = alula(folder.path(), &arguments.iter().map(words).collect::<Vec<_>>());
     let told = String::from_utf8_lossy(&output.stderr).into_owned();
-    told.contains("Usage:").then_some(told)
+    told.contains("try '--help'").then_some(told)
 }
 
 #[test]
