@@ -171,7 +171,7 @@ pub(super) const PURE: &Dimension =
     &Dimension { name: "a number", units: &[unit("-", 1.0)], needs_unit: false, example: "0.3" };
 
 /// One degree in radians.
-pub(crate) const DEGREE: f64 = std::f64::consts::PI / 180.0;
+pub const DEGREE: f64 = std::f64::consts::PI / 180.0;
 /// One international foot in metres.
 const FOOT: f64 = 0.3048;
 /// One avoirdupois pound in kilograms.

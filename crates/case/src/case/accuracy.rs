@@ -42,20 +42,20 @@ impl Default for Accuracy {
 
 impl Accuracy {
     /// Greatest number of particles of cases in space that do not say.
-    pub(crate) const PARTICLES_IN_SPACE: usize = 250_000;
+    pub const PARTICLES_IN_SPACE: usize = 250_000;
 
     /// Half width of the error bars over the loads that is asked of the points of a polar, in 2-D and 3-D: a step of many is judged beside
     /// its neighbours. In the plane 5 % is 5 counts of a drag near zero.
-    pub(crate) const OF_POLARS: [f64; 2] = [0.05, 0.1];
+    pub const OF_POLARS: [f64; 2] = [0.05, 0.1];
 
     /// What is asked of a case that says nothing.
-    pub(crate) fn in_dimension(dimension: usize) -> Self {
+    pub fn in_dimension(dimension: usize) -> Self {
         let usual = Self::default();
         Self { particles: if dimension == 3 { Self::PARTICLES_IN_SPACE } else { usual.particles }, ..usual }
     }
 
     /// The same of a case with or without a polar.
-    pub(crate) fn usual(dimension: usize, polar: bool) -> Self {
+    pub fn usual(dimension: usize, polar: bool) -> Self {
         let one = Self::in_dimension(dimension);
         Self { loads: if polar { Ratio(Self::OF_POLARS[dimension - 2]) } else { one.loads }, ..one }
     }

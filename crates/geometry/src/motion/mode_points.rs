@@ -14,7 +14,7 @@ use crate::case::{ModeFile, ModeTable};
 use crate::math::{Bounds, Vector};
 
 /// What a remark begins with that makes results doubtful.
-pub(crate) const WARNING: &str = "warning: ";
+pub const WARNING: &str = "warning: ";
 /// Points nearer than this part of the extent of all are one point.
 const NEAR: f64 = 1e-4;
 /// Part of the greatest displacement by which two points that are one may differ.

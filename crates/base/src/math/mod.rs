@@ -21,7 +21,7 @@ pub mod multilevel;
 pub mod pencil;
 pub mod rational;
 pub mod rotation;
-pub(crate) mod rounded;
+pub mod rounded;
 pub mod singular;
 pub mod slice;
 pub mod sparse;

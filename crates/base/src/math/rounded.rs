@@ -18,13 +18,13 @@ pub(super) fn unit_of(block: &[u8]) -> f32 {
 
 /// The number whose upper half this is.
 #[inline(always)]
-pub(crate) fn of_upper_half(half: u16) -> f32 {
+pub fn of_upper_half(half: u16) -> f32 {
     f32::from_bits(u32::from(half) << 16)
 }
 
 /// The upper half of a number, rounded.
 #[inline(always)]
-pub(crate) fn upper_half(x: f32) -> u16 {
+pub fn upper_half(x: f32) -> u16 {
     (x.to_bits().wrapping_add(0x8000) >> 16) as u16
 }
 

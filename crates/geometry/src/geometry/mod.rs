@@ -97,7 +97,7 @@ impl GeometryError {
     }
 
     /// The reasons one by one.
-    pub(crate) fn parts(self) -> Vec<Self> {
+    pub fn parts(self) -> Vec<Self> {
         match self {
             Self::Several(all) => all,
             one => vec![one],

@@ -51,7 +51,7 @@ const FROM_COARSEST: f64 = 0.5;
 /// Half of the last digit of a load that is printed.
 const PRINTED: f64 = 5e-6;
 /// Least CL, CD and CM that an error is measured by: a section at no incidence has a lift of zero, and is known well all the same.
-pub(crate) const LEAST: [f64; 3] = [0.1, 0.01, 0.02];
+pub const LEAST: [f64; 3] = [0.1, 0.01, 0.02];
 
 /// Loads on one cloud of a family.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

@@ -21,12 +21,12 @@ pub use freedom::{Freedom, Role, positions};
 pub use from_case::{MotionError, ReadFile, faulty_tables, mode_shape};
 pub use law::{BodyMotion, Kinematics};
 pub use mode::{Expansion, Hinge, ModeShape};
-pub(crate) use mode_points::WARNING;
+pub use mode_points::WARNING;
 pub use point_trajectory::PointTrajectory;
 pub use pose::RigidPose;
 pub use spline::Spline;
 pub use surface_net::{Carried, NetDisplacement, SurfaceNet, tangents};
-pub(crate) use time_function::MOST_PERIODS;
+pub use time_function::MOST_PERIODS;
 pub use time_function::{Repeat, TimeFunction};
 
 /// Relative difference of two frequencies that count as one.

@@ -13,7 +13,7 @@ const REPEATS: f64 = 1e-9;
 const SAMPLES: usize = 29;
 
 /// Most periods of a part of a motion in the common one: more are of no use to anybody.
-pub(crate) const MOST_PERIODS: u32 = 64;
+pub const MOST_PERIODS: u32 = 64;
 
 /// A scalar function of time.
 #[derive(Clone, Debug)]

@@ -13,10 +13,10 @@ use serde::{Deserialize, Serialize};
 use crate::case::read_regular;
 
 /// How the name of a file begins and ends while it is being written.
-pub(crate) const UNFINISHED: (&str, &str) = (".alula-", ".tmp");
+pub const UNFINISHED: (&str, &str) = (".alula-", ".tmp");
 
 /// What is finished of a flutter boundary that is not: it goes away at the end, so that no page points at it.
-pub(crate) const KEPT: &str = "flutter-kept.json";
+pub const KEPT: &str = "flutter-kept.json";
 
 /// What can go wrong with a table.
 #[derive(Debug, thiserror::Error)]
@@ -68,7 +68,8 @@ pub enum FileError {
 }
 
 impl FileError {
-    pub(crate) fn io(action: &'static str, path: &Path) -> impl FnOnce(io::Error) -> Self {
+    /// What turns an error of the system into this one: what was done (`write`) to which file.
+    pub fn io(action: &'static str, path: &Path) -> impl FnOnce(io::Error) -> Self {
         let path = path.to_path_buf();
         move |source| Self::Io { action, path, source }
     }
@@ -82,7 +83,7 @@ pub fn write_atomic(path: &Path, fill: impl FnOnce(&mut dyn Write) -> io::Result
 }
 
 /// The first half of [`write_atomic`]: a complete file beside `path`, not yet under its name.
-pub(crate) fn write_beside(
+pub fn write_beside(
     path: &Path,
     fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> Result<tempfile::NamedTempFile, FileError> {
@@ -103,7 +104,7 @@ fn temporary_beside(path: &Path) -> io::Result<tempfile::NamedTempFile> {
 }
 
 /// The folder that holds `path`, `.` for a bare file name.
-pub(crate) fn folder_of(path: &Path) -> &Path {
+pub fn folder_of(path: &Path) -> &Path {
     path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."))
 }
 

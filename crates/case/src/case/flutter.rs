@@ -69,7 +69,7 @@ impl Flutter {
     }
 
     /// Frequencies that forces are computed at, about: those at first, at rest, and two near a crossing.
-    pub(crate) fn expected(&self) -> usize {
+    pub fn expected(&self) -> usize {
         (self.first().len() + 3).min(self.frequencies.max(1) as usize)
     }
 }

@@ -173,7 +173,7 @@ impl Ringleb {
 mod tests {
     use super::*;
 
-    const TABLE: &str = include_str!("../../verification/ringleb/reference.csv");
+    const TABLE: &str = include_str!("../../../../verification/ringleb/reference.csv");
 
     /// Rows of the table: k, q, x, y, ρ, p, Mach number, |u|, |v|.
     fn rows() -> Vec<[f64; 9]> {
