@@ -30,8 +30,7 @@ pub(crate) fn gas(case: &Case, scalars: &'static str, time: Option<f64>) -> Abou
 pub(crate) fn solid(case: &Case, time: Option<f64>) -> About {
     let numbers = time.map(|t| (TIME.to_owned(), t)).into_iter().collect();
     let has_units = !case.has_gas() || case.flow.is_dimensional();
-    let mut about =
-        About { numbers, scalars: "von_mises_stress", vectors: "displacement", ..of(case, has_units) };
+    let mut about = About { numbers, scalars: "von_mises_stress", vectors: "displacement", ..of(case, has_units) };
     // particles of a section that is turned about an axis stand for rings
     if case.solids().any(|(_, _, solid)| solid.plane == PlaneState::Axisymmetric) {
         about.scale = about.scale.map(|scale| Scale { dimension: 3, ..scale });

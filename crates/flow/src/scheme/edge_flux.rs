@@ -11,23 +11,24 @@
 //!
 //! and what stress and heat add along d (`viscous`). The sums over the edges of a particle are its residual, see `residual`.
 //! `edges` computes the same, from the functions below, for many edges at once.
-use super::reconstruct::{Gradient, Limit, Reconstruction, low_mach_correction};
+use super::reconstruct::{Gradient, Reconstruction, Unlimited, VanAlbada, Venkatakrishnan, low_mach_correction};
 use super::viscous::{direction, middle, slopes};
+use crate::case::{Flux, Limiter};
 use crate::math::Vector;
 use crate::math::jet::Scalar;
-use crate::physics::riemann::{Central, Hlle, UpwindFlux};
+use crate::physics::riemann::{AusmPlusUp, Central, Hllc, Hlle, Roe, Rusanov, UpwindFlux};
 use crate::physics::viscous::Slopes;
 use crate::physics::{Conserved, Gas, Newtonian, Primitive};
 
 /// What the fluxes need to know of the scheme.
 #[derive(Clone, Copy, Debug)]
-pub struct FluxScheme<F, L> {
+pub struct FluxScheme {
     /// Gas.
     pub gas: Gas,
     /// Upwind flux.
-    pub flux: F,
+    pub flux: Flux,
     /// Limiter.
-    pub limit: L,
+    pub limit: Limiter,
     /// Order, κ, threshold.
     pub reconstruction: Reconstruction,
     /// Exactly conservative coefficients.
@@ -65,8 +66,8 @@ pub struct EdgeFace<const D: usize, S = f64> {
 }
 
 /// What an edge adds to V dU/dt of its two ends.
-pub fn edge_flux<const D: usize, S: Scalar, F: UpwindFlux<D>, L: Limit>(
-    scheme: &FluxScheme<F, L>,
+pub fn edge_flux<const D: usize, S: Scalar>(
+    scheme: &FluxScheme,
     ends: [&EdgeEnd<D, S>; 2],
     face: &EdgeFace<D, S>,
 ) -> [Conserved<D, S>; 2] {
@@ -86,11 +87,7 @@ pub fn edge_flux<const D: usize, S: Scalar, F: UpwindFlux<D>, L: Limit>(
 }
 
 /// What the scheme lets through an edge beyond the mean flux of its ends: its dissipation, and what is gained by reconstruction.
-pub fn beyond_mean<const D: usize, F: UpwindFlux<D>, L: Limit>(
-    scheme: &FluxScheme<F, L>,
-    ends: [&EdgeEnd<D>; 2],
-    face: &EdgeFace<D>,
-) -> Conserved<D> {
+pub fn beyond_mean<const D: usize>(scheme: &FluxScheme, ends: [&EdgeEnd<D>; 2], face: &EdgeFace<D>) -> Conserved<D> {
     let mean = mean_through(&scheme.gas, &ends.map(|end| end.state), &face.area, &ends.map(|end| end.velocity));
     between(scheme, ends, face).1.times(face.area.norm()).minus(&mean)
 }
@@ -106,21 +103,31 @@ pub fn mean_through<const D: usize>(
 }
 
 /// States on both sides of the middle of an edge, and the upwind flux between them per unit of area.
-fn between<const D: usize, S: Scalar, F: UpwindFlux<D>, L: Limit>(
-    scheme: &FluxScheme<F, L>,
+fn between<const D: usize, S: Scalar>(
+    scheme: &FluxScheme,
     ends: [&EdgeEnd<D, S>; 2],
     face: &EdgeFace<D, S>,
 ) -> ([Primitive<D, S>; 2], Conserved<D, S>) {
     let (gas, [a, b]) = (&scheme.gas, ends);
     let along = ends.map(|end| end.gradient.along(&face.along).times(S::constant(1.0) - end.steepness));
-    let sides = scheme.reconstruction.states(gas, scheme.limit, (&a.state, &b.state), (&along[0], &along[1]));
+    let (states, slopes) = ((&a.state, &b.state), (&along[0], &along[1]));
+    let sides = match scheme.limit {
+        Limiter::None => scheme.reconstruction.states(gas, Unlimited, states, slopes),
+        Limiter::VanAlbada => scheme.reconstruction.states(gas, VanAlbada, states, slopes),
+        Limiter::Venkatakrishnan => scheme.reconstruction.states(gas, Venkatakrishnan, states, slopes),
+    };
     let velocity = ends.map(|end| end.velocity);
     let sides = if scheme.reconstruction.low_mach {
         slowed(gas, [sides.0, sides.1], (&face.area, face.whole), &velocity)
     } else {
         [sides.0, sides.1]
     };
-    let upwind = upwind(gas, scheme.flux, &sides, &face.area, &velocity);
+    let upwind = match scheme.flux {
+        Flux::Hllc => upwind(gas, Hllc, &sides, &face.area, &velocity),
+        Flux::Roe => upwind(gas, Roe, &sides, &face.area, &velocity),
+        Flux::AusmPlusUp => upwind(gas, AusmPlusUp, &sides, &face.area, &velocity),
+        Flux::Rusanov => upwind(gas, Rusanov, &sides, &face.area, &velocity),
+    };
     let upwind = steep(gas, (&sides, &upwind), &face.area, &velocity, a.steepness.max(b.steepness));
     (sides, upwind)
 }

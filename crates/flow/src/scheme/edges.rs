@@ -5,15 +5,16 @@
 //! comes out is added to the rows of the part in the order of the edges. The sums are therefore those of one edge at a time.
 use multiversion::multiversion;
 
+use crate::case::{Flux, Limiter};
 use crate::cloud::{Edge, Weights};
 use crate::math::Vector;
 use crate::math::blocks::array;
-use crate::physics::riemann::UpwindFlux;
+use crate::physics::riemann::{AusmPlusUp, Hllc, Roe, Rusanov, UpwindFlux};
 use crate::physics::{Conserved, Gas, Newtonian, Primitive};
 
 use super::edge_flux::{FluxScheme, Passing, conservative, consistent, slowed, steep, upwind, viscous};
 use super::lanes::{LANES, Lanes, Number, StateLanes, pair, put, put_all, take, take_all};
-use super::reconstruct::{Factors, Gradient, Limit, Reconstruction};
+use super::reconstruct::{Factors, Gradient, Limit, Reconstruction, Unlimited, VanAlbada, Venkatakrishnan};
 use super::viscous::slopes;
 
 /// What particles hold.
@@ -104,8 +105,8 @@ impl<const D: usize, S: Number> Batch<D, S> {
 
 /// Calls `add(i, change)` with what every edge adds to V dU/dt of its ends, one edge after the other; `frozen` is what the limiter leaves
 /// of their slopes where that is given.
-pub fn edge_fluxes<const D: usize, S: Number, F: UpwindFlux<D>, L: Limit>(
-    scheme: &FluxScheme<F, L>,
+pub fn edge_fluxes<const D: usize, S: Number>(
+    scheme: &FluxScheme,
     particles: Particles<'_, D, S>,
     (edges, weights, frozen): (&[Edge<D>], Weights<'_, D>, &[Factors<D>]),
     add: &mut impl FnMut(usize, &Conserved<D, S>),
@@ -115,12 +116,21 @@ pub fn edge_fluxes<const D: usize, S: Number, F: UpwindFlux<D>, L: Limit>(
         gather(scheme, &particles, (some, c * LANES, &weights), &mut batch);
         match frozen.get(c * LANES..) {
             Some(own @ [_, ..]) => reconstruct_frozen(scheme.reconstruction, own, &mut batch),
-            _ => reconstruct(scheme.gas, scheme.limit, scheme.reconstruction, &mut batch),
+            _ => match scheme.limit {
+                Limiter::None => reconstruct(scheme.gas, Unlimited, scheme.reconstruction, &mut batch),
+                Limiter::VanAlbada => reconstruct(scheme.gas, VanAlbada, scheme.reconstruction, &mut batch),
+                Limiter::Venkatakrishnan => reconstruct(scheme.gas, Venkatakrishnan, scheme.reconstruction, &mut batch),
+            },
         }
         if scheme.reconstruction.low_mach {
             low_mach_corrections(scheme.gas, &mut batch);
         }
-        upwind_fluxes(scheme.gas, scheme.flux, &mut batch);
+        match scheme.flux {
+            Flux::Hllc => upwind_fluxes(scheme.gas, Hllc, &mut batch),
+            Flux::Roe => upwind_fluxes(scheme.gas, Roe, &mut batch),
+            Flux::AusmPlusUp => upwind_fluxes(scheme.gas, AusmPlusUp, &mut batch),
+            Flux::Rusanov => upwind_fluxes(scheme.gas, Rusanov, &mut batch),
+        }
         if (0..LANES).any(|k| S::take(&batch.steepness, k).value() > 0.0) {
             steep_fluxes(scheme.gas, &mut batch);
         }
@@ -147,8 +157,8 @@ pub fn edge_fluxes<const D: usize, S: Number, F: UpwindFlux<D>, L: Limit>(
 
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq", "x86_64+avx2"))]
 #[allow(unsafe_code, reason = "the attribute calls the version that the processor has just been asked for")]
-fn gather<const D: usize, S: Number, F, L>(
-    scheme: &FluxScheme<F, L>,
+fn gather<const D: usize, S: Number>(
+    scheme: &FluxScheme,
     p: &Particles<'_, D, S>,
     (edges, first, weights): (&[Edge<D>], usize, &Weights<'_, D>),
     batch: &mut Batch<D, S>,

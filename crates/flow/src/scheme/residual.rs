@@ -29,12 +29,11 @@ use super::fluid::{Fluid, Frozen, Work};
 use super::frame::Frame;
 use super::lanes::{Number, told};
 use super::reconstruct::{Factors, Limit, Unlimited, VanAlbada, Venkatakrishnan};
-use crate::case::{Flux, Limiter};
+use crate::case::Limiter;
 use crate::cloud::Edge;
 use crate::cloud::operators::WallFace;
 use crate::math::Vector;
 use crate::math::sweep::sweep_parts;
-use crate::physics::riemann::{AusmPlusUp, Hllc, Roe, Rusanov, UpwindFlux};
 use crate::physics::{Conserved, n_variables};
 use crate::system::System;
 
@@ -45,28 +44,9 @@ impl<const D: usize> Fluid<D> {
             self.fill_gradients(frame, work);
         }
         let work = &*work;
-        match self.flux {
-            Flux::Hllc => self.rhs_with_limiter(Hllc, frame, work, du),
-            Flux::Roe => self.rhs_with_limiter(Roe, frame, work, du),
-            Flux::AusmPlusUp => self.rhs_with_limiter(AusmPlusUp, frame, work, du),
-            Flux::Rusanov => self.rhs_with_limiter(Rusanov, frame, work, du),
-        }
+        self.fluxes((frame, work), du);
         if self.isentropic {
             self.hold_entropy(frame, work, du);
-        }
-    }
-
-    pub(super) fn rhs_with_limiter<S: Number>(
-        &self,
-        flux: impl UpwindFlux<D>,
-        frame: &Frame<D>,
-        work: &Work<D, S>,
-        du: &mut [f64],
-    ) {
-        match self.limiter {
-            Limiter::None => self.fluxes(flux, Unlimited, (frame, work), du),
-            Limiter::VanAlbada => self.fluxes(flux, VanAlbada, (frame, work), du),
-            Limiter::Venkatakrishnan => self.fluxes(flux, Venkatakrishnan, (frame, work), du),
         }
     }
 
@@ -108,16 +88,10 @@ impl<const D: usize> Fluid<D> {
     }
 
     /// Sums the edge fluxes of every fluid particle, weighted with volumes until the end so that no edge divides by one.
-    fn fluxes<S: Number>(
-        &self,
-        flux: impl UpwindFlux<D>,
-        limit: impl Limit,
-        at: (&Frame<D>, &Work<D, S>),
-        du: &mut [f64],
-    ) {
+    pub(super) fn fluxes<S: Number>(&self, at: (&Frame<D>, &Work<D, S>), du: &mut [f64]) {
         let (frame, work) = at;
         let (op, cloud) = (&frame.discretisation.operators, &frame.discretisation.cloud);
-        let scheme = self.flux_scheme(flux, limit);
+        let scheme = self.flux_scheme();
         let particles = Particles {
             x: &cloud.x,
             volume: &cloud.volume,
@@ -158,20 +132,6 @@ impl<const D: usize> Fluid<D> {
 
     /// What is let through an edge beyond the mean flux of its ends.
     pub(super) fn beyond_mean(&self, (frame, work): (&Frame<D>, &Work<D>), e: &Edge<D>) -> Conserved<D> {
-        match self.flux {
-            Flux::Hllc => self.beyond_mean_by(Hllc, (frame, work), e),
-            Flux::Roe => self.beyond_mean_by(Roe, (frame, work), e),
-            Flux::AusmPlusUp => self.beyond_mean_by(AusmPlusUp, (frame, work), e),
-            Flux::Rusanov => self.beyond_mean_by(Rusanov, (frame, work), e),
-        }
-    }
-
-    fn beyond_mean_by(
-        &self,
-        flux: impl UpwindFlux<D>,
-        (frame, work): (&Frame<D>, &Work<D>),
-        e: &Edge<D>,
-    ) -> Conserved<D> {
         let x = &frame.discretisation.cloud.x;
         let ends = [e.i(), e.j()].map(|i| EdgeEnd {
             state: work.state[i],
@@ -181,15 +141,11 @@ impl<const D: usize> Fluid<D> {
             velocity: frame.velocity_of(i),
         });
         let (ends, face) = ([&ends[0], &ends[1]], EdgeFace { along: x[e.j()] - x[e.i()], area: e.s, whole: 0.0 });
-        match self.limiter {
-            Limiter::None => beyond_mean(&self.flux_scheme(flux, Unlimited), ends, &face),
-            Limiter::VanAlbada => beyond_mean(&self.flux_scheme(flux, VanAlbada), ends, &face),
-            Limiter::Venkatakrishnan => beyond_mean(&self.flux_scheme(flux, Venkatakrishnan), ends, &face),
-        }
+        beyond_mean(&self.flux_scheme(), ends, &face)
     }
 
-    fn flux_scheme<F, L>(&self, flux: F, limit: L) -> FluxScheme<F, L> {
-        let (gas, reconstruction, conservative) = (self.gas, self.reconstruction, self.conservative);
+    fn flux_scheme(&self) -> FluxScheme {
+        let Self { gas, flux, limiter: limit, reconstruction, conservative, .. } = *self;
         let medium = self.viscous_model.as_ref().map(|f| f.medium);
         FluxScheme { gas, flux, limit, reconstruction, conservative, by_faces: self.passes_by_faces(), medium }
     }

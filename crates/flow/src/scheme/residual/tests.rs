@@ -2,6 +2,7 @@
 use std::sync::Arc;
 
 use super::*;
+use crate::case::Flux;
 use crate::cloud::conservative::conservative;
 use crate::cloud::{Cloud, CloudSpec, Operators};
 use crate::math::Vector;
@@ -170,7 +171,7 @@ fn in_layers_it_does_not_matter_who_moves() {
         }
         fluid.fill_gradients(&frame, &mut work);
         let mut du = vec![0.0; fluid.len()];
-        fluid.rhs_with_limiter(Hllc, &frame, &work, &mut du);
+        fluid.fluxes((&frame, &work), &mut du);
         du.chunks(4).map(|r| r[0]).collect::<Vec<f64>>()
     };
     let (still, moved) = (density(Vector::ZERO), density(Vector([0.3, -0.2])));
@@ -190,7 +191,7 @@ fn uniform_flow_stays_uniform_in_layers() {
         work.state.fill(Primitive { density: 1.2, velocity, pressure: 0.9 });
         let mut du = vec![0.0; fluid.len()];
         let still = fluid.frame(&Instant::still(0.0), &vec![1.0; fluid.len()]);
-        fluid.rhs_with_limiter(Hllc, &still, &work, &mut du);
+        fluid.fluxes((&still, &work), &mut du);
         // in units of pressure times surface over volume: cells are a hundred times thinner than long
         let unit = |i: usize| fluid.discretisation.cloud.volume[i] / fluid.discretisation.cloud.spacing[i];
         du.iter().enumerate().map(|(k, r): (usize, &f64)| (r * unit(k / 4)).abs()).fold(0.0, f64::max)

@@ -28,7 +28,7 @@ fn terms(fluid: &mut Fluid<2>, q: impl Fn(&Vector<2>) -> Primitive<2>) -> Vec<f6
     work.gradient[first..].fill(inner);
     let fluxes = |fluid: &Fluid<2>| {
         let mut du = vec![0.0; u.len()];
-        fluid.rhs_with_limiter(crate::physics::riemann::Hllc, &frame, &work, &mut du);
+        fluid.fluxes((&frame, &work), &mut du);
         du
     };
     let all = fluxes(fluid);
