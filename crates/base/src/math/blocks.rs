@@ -30,8 +30,10 @@ pub(super) fn not_served(block: usize) -> String {
 #[inline(always)]
 pub fn array<T: Copy, const N: usize>(mut f: impl FnMut(usize) -> T) -> [T; N] {
     let mut out = [f(0); N];
-    for (k, slot) in out.iter_mut().enumerate().skip(1) {
-        *slot = f(k);
+    let mut k = 1;
+    while k < N {
+        out[k] = f(k);
+        k += 1;
     }
     out
 }

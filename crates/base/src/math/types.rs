@@ -68,10 +68,12 @@ impl<const D: usize, S: Scalar> Vector<D, S> {
     /// The vector whose component `d` is `f(d)`.
     #[inline(always)]
     pub fn from_fn(mut f: impl FnMut(usize) -> S) -> Self {
-        // a plain loop: the compiler does not always look through array::from_fn in large kernels
+        // a plain loop: the compiler does not always look through array::from_fn in large kernels, and has less to translate
         let mut v = [S::constant(0.0); D];
-        for (d, slot) in v.iter_mut().enumerate() {
-            *slot = f(d);
+        let mut d = 0;
+        while d < D {
+            v[d] = f(d);
+            d += 1;
         }
         Self(v)
     }

@@ -1,5 +1,4 @@
 //! Tables that programs read by name, and what is told of their columns.
-#![allow(clippy::unwrap_used, reason = "it may stop anywhere")]
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::Command;

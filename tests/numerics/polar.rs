@@ -1,5 +1,4 @@
 //! Polars: what their points are, against single runs, and what becomes of points that fail.
-#![allow(clippy::unwrap_used, reason = "it may stop anywhere")]
 use alula::case::read;
 use alula::observe::checkpoint;
 use alula::run::{Monitor, Outcome, Places, PolarPoint, Session, Silent, Summary, Tick, resume, run};

@@ -1,5 +1,4 @@
 //! What the commands refuse before they compute anything, in one table: `check` refuses all of it, in the same words.
-#![allow(clippy::unwrap_used, reason = "a test may stop anywhere")]
 use std::path::Path;
 use std::process::{Command, Output};
 

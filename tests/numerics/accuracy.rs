@@ -1,5 +1,4 @@
 //! Loads with their error bars, from cases that leave the cloud to the program.
-#![allow(clippy::unwrap_used, reason = "it may stop anywhere")]
 use std::cell::Cell;
 use std::path::Path;
 

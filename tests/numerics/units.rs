@@ -2,9 +2,6 @@
 //!
 //! In air whose density and sound speed are powers of two the numbers that reach the solver are the same to the last bit, and so is
 //! what it does. Where round-off is left, differences of residuals in Newton's products make it some 1e-8 of the loads.
-#![allow(clippy::unwrap_used, reason = "a test may stop anywhere")]
-
-mod common;
 
 use alula::case::Case;
 use alula::observe::structure::StructureTable;
@@ -34,7 +31,7 @@ struct Stream {
 impl Stream {
     fn of(air: &'static str) -> Self {
         let text = format!("[flow]\nmach = 0.5\n{air}\n[[body]]\nnaca = \"0012\"\n[cloud]\nspacing = 0.1\n");
-        let r = common::case(&text).flow.reference();
+        let r = crate::common::case(&text).flow.reference();
         Self { air, mach: 0.5, density: r.density, sound: r.sound_speed }
     }
 
@@ -98,15 +95,15 @@ fn ran(case: &Case) -> Ran {
 /// A small section in both streams; `rest` is what follows `[flow]`, in numbers and in units.
 fn both(stream: &Stream, rest: [&str; 2]) -> [Ran; 2] {
     let [plain, air] = stream.tables();
-    [(plain, rest[0]), (air, rest[1])].map(|(flow, rest)| ran(&common::case(&format!("{flow}{SECTION}{rest}"))))
+    [(plain, rest[0]), (air, rest[1])].map(|(flow, rest)| ran(&crate::common::case(&format!("{flow}{SECTION}{rest}"))))
 }
 
 /// Loads of every iteration are those of the other run.
 fn same_loads([a, b]: &[Ran; 2], tolerance: f64) {
     assert_eq!(a.ticks.loads.len(), b.ticks.loads.len(), "{:?} {:?}", a.ticks.notes, b.ticks.notes);
-    let size = common::largest(a.ticks.loads.iter().flatten().copied());
+    let size = crate::common::largest(a.ticks.loads.iter().flatten().copied());
     let apart = a.ticks.loads.iter().flatten().zip(b.ticks.loads.iter().flatten()).map(|(a, b)| a - b);
-    let worst = common::largest(apart);
+    let worst = crate::common::largest(apart);
     assert!(worst <= tolerance * size, "{worst:e} of {size:e}");
 }
 
@@ -228,7 +225,7 @@ fn a_released_section_is_the_same_by_its_numbers_and_in_units() {
                 b.frequency.unwrap() / stream.sound - omega,
                 b.growth_rate.unwrap() / stream.sound - a.growth_rate.unwrap(),
             ];
-            assert!(common::largest(off) < 10.0 * tolerance * omega, "{a:?} {b:?}");
+            assert!(crate::common::largest(off) < 10.0 * tolerance * omega, "{a:?} {b:?}");
         }
         let work = b.energy_per_cycle.unwrap() / stream.force(a.energy_per_cycle.unwrap());
         assert!((work - 1.0).abs() < 100.0 * tolerance, "{a:?} {b:?}");
@@ -274,13 +271,13 @@ fn a_balance_writes_two_periods_of_its_structures_in_units_of_the_case() {
     let places = Places { input: root.path().to_path_buf(), out: root.path().join("out") };
     let [_, flow] = Stream::of(SEA_LEVEL).tables();
     let text = format!("{flow}{SECTION}{SHAKEN}").replace("report = false", "report = true");
-    let Outcome::Finished(summary) = run(&common::case(&text), &places, &mut Silent).unwrap() else { panic!() };
+    let Outcome::Finished(summary) = run(&crate::common::case(&text), &places, &mut Silent).unwrap() else { panic!() };
     let table = StructureTable::read(&places.out.join("structure.csv")).unwrap().unwrap();
     let (omega, period) = (40.0, std::f64::consts::TAU / 40.0);
     assert!(table.len() == 257 && table.marches(), "{}", table.len());
     near(*table.time.last().unwrap(), 2.0 * period);
     let [h, a] = &table.coordinates[..] else { panic!("{table:?}") };
-    let strongest = common::largest(table.gas_power.iter().copied());
+    let strongest = crate::common::largest(table.gas_power.iter().copied());
     for k in 0..table.len() {
         let springs = 0.5 * (2e5 * h.values[k].powi(2) + 2e4 * a.values[k].powi(2));
         assert!((table.potential[k] - springs).abs() < 1e-10, "{} {springs}", table.potential[k]);
@@ -292,7 +289,7 @@ fn a_balance_writes_two_periods_of_its_structures_in_units_of_the_case() {
     for (c, column) in structure.coordinates.iter().zip([h, a]) {
         near(c.frequency.unwrap(), omega);
         // the rate of one harmonic
-        let rate = common::largest(column.rates.iter().copied()) / omega;
+        let rate = crate::common::largest(column.rates.iter().copied()) / omega;
         assert!((c.amplitude.unwrap() / rate - 1.0).abs() < 2e-3, "{c:?} {rate}");
     }
     let (middle, end) = (table.gas_work[128], table.gas_work[256]);
@@ -333,7 +330,7 @@ fn interrupted_runs_in_seconds_go_on_to_the_same_tables() {
     let [_, flow] = Stream::of(SEA_LEVEL).tables();
     let march = SHAKEN.replace("[time.harmonics]\nnumber = 1", "[time.dual]\nsteps_per_period = 16\nperiods = 1");
     for (text, stop) in [(march.as_str(), 24), (SHAKEN, 14)] {
-        let case = common::case(&format!("{flow}{SECTION}{text}"));
+        let case = crate::common::case(&format!("{flow}{SECTION}{text}"));
         let root = tempfile::tempdir().unwrap();
         let places = |name: &str| Places { input: root.path().to_path_buf(), out: root.path().join(name) };
         let (whole, cut) = (places("whole"), places("cut"));
@@ -357,7 +354,7 @@ fn tables_of_a_march_are_in_seconds() {
     let motion = "[motion]\nparticles = \"rigid\"\nperiod = \"20 ms\"\nplunge = 0.01\n[time.dual]\nsteps_per_period = 24\nperiods = 2\n\
                   [output]\nfield_interval = \"10 ms\"\nreport = false\n";
     let text = format!("{flow}{SECTION}{motion}").replacen("[output]\nreport = false\n", "", 1);
-    run(&common::case(&text), &places, &mut Silent).unwrap();
+    run(&crate::common::case(&text), &places, &mut Silent).unwrap();
     let file = |name: &str| std::fs::read_to_string(places.out.join(name)).unwrap();
     let history = file("history.csv");
     let time: f64 = history.lines().last().unwrap().split(',').nth(2).unwrap().parse().unwrap();
@@ -386,7 +383,7 @@ fn an_explicit_run_ends_after_as_many_seconds() {
 fn a_shock_tube_in_pascals_has_the_error_of_that_in_numbers() {
     let stream = Stream::even();
     let tube = |flow: &str, states: [[f64; 3]; 2], until: f64| {
-        ran(&common::case(&format!(
+        ran(&crate::common::case(&format!(
             "dimension = 2\n[flow]\n{flow}\n[cloud]\nspacing = 0.02\ndomain = {{ min = [0, 0], max = [1, 0.1] }}\n[boundary]\n\
              x_min = \"held\"\nx_max = \"held\"\ny_min = \"periodic\"\ny_max = \"periodic\"\n[initial.riemann]\nleft = {:?}\n\
              right = {:?}\nposition = 0.5\n[time.explicit]\nuntil = {until:?}\n[output]\nreport = false\n",

@@ -1,5 +1,4 @@
 //! The examples of README and book are cases: `alula check` accepts every one, fragments with what they take for granted.
-#![allow(clippy::unwrap_used, reason = "it may stop anywhere")]
 use std::path::{Path, PathBuf};
 use std::process::Command;
 

@@ -1,5 +1,4 @@
 //! The command as its users meet it: files, exit codes, signals, bad days.
-#![allow(clippy::unwrap_used, reason = "it may stop anywhere")]
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};

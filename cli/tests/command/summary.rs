@@ -1,5 +1,4 @@
 //! What `summary.json` says of a run: what the loads are of, what the run understood, the cloud that it chose.
-#![allow(clippy::unwrap_used, reason = "it may stop anywhere")]
 use std::path::Path;
 use std::process::{Command, Output};
 

@@ -1,5 +1,4 @@
 //! What programs are told: events, one JSON object a line.
-#![allow(clippy::unwrap_used, reason = "it may stop anywhere")]
 use std::path::Path;
 use std::process::{Command, Output};
 

@@ -1,6 +1,5 @@
 //! Commands that seek forces in small motion obey signals within a linear iteration, and say what is there.
 #![cfg(unix)]
-#![allow(clippy::unwrap_used, reason = "it may stop anywhere")]
 use std::io::{BufRead, BufReader};
 use std::path::Path;
 use std::process::{Command, Stdio};
