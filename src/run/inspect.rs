@@ -4,6 +4,7 @@ use std::time;
 
 use serde::Serialize;
 
+use super::about;
 use super::accuracy::{self, Forces};
 use super::cost::{Cost, OF_COLUMN, Sized};
 use super::error::RunError;
@@ -21,7 +22,6 @@ use crate::case::{Case, GafMethod};
 use crate::cloud::layout::{capped, count};
 use crate::cloud::{Cloud, CloudSpec, Diagnosis};
 use crate::geometry::{Surface, dimension};
-use crate::observe::About;
 use crate::observe::table::write_json;
 use crate::observe::vtk::{Column, write_cells};
 use crate::scheme::{Fluid, Frame, View};
@@ -339,7 +339,7 @@ fn write<const D: usize>(
     let told = [("spacing", &cloud.spacing[..n]), ("volume", &cloud.volume[..n]), ("condition", &condition)];
     let told = told.map(|(name, values)| (name, rim.with_values(name, 1, held.rows(1, values))));
     let columns = told.each_ref().map(|(name, values)| Column { name, components: 1, values });
-    let about = About::gas(to.case, "spacing", None);
+    let about = about::gas(to.case, "spacing", None);
     write_cells(&to.out.join("cloud.vtu"), &about, &points, Mesh::of(cloud, &held, &rim).cells(), &columns)?;
     write_json(&to.out.join("doctor.json"), &Diagnosis::of(cloud, fluid.discretisation.walls.n_linear))?;
     write_cloud(&Scene { to: *to, view: View::new(fluid, &frame, work), surface, chord: 1.0, vortex: None })

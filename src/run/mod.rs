@@ -10,6 +10,7 @@
 //! `solids` (structures of particles alone),
 //! `course` (the way through the stages, and what many flows on the same clouds leave to one another), `session`; on top of it `error_bars` (further runs), [`gaf`] and [`verify`], and `refusals` (what keeps a case
 //! from being computed).
+mod about;
 mod accuracy;
 mod at_end;
 mod cloud_table;

@@ -1,5 +1,4 @@
 //! What a run leaves in its folder: tables, fields, pictures.
-mod about;
 mod cuts;
 mod pictures;
 mod raster;
@@ -10,6 +9,7 @@ mod target;
 
 use std::path::{Path, PathBuf};
 
+use super::about;
 use super::error::RunError;
 use super::folder;
 use super::found::Found;
@@ -54,7 +54,7 @@ pub(crate) fn write_all<const D: usize>(
     write_state_script(out)?;
     if let Some(solid) = solid {
         let time = found.case.flow.units().case_time(found.view.time());
-        write_solid((out, "solid"), &About::solid(found.case, Some(time)), solid)?;
+        write_solid((out, "solid"), &about::solid(found.case, Some(time)), solid)?;
         if found.case.output.report {
             draw_solid(out, solid)?;
         }
@@ -189,7 +189,7 @@ impl<const D: usize> Files<'_, D> {
         let columns: Vec<Column<'_>> =
             cut.iter().map(|(name, n, values)| Column { name, components: *n, values }).collect();
         let points = &all.points[range];
-        let about = About::gas(self.found.case, "cp", Some(time));
+        let about = about::gas(self.found.case, "cp", Some(time));
         write_surface(&self.out.join("surface.vtp"), &about, points, mesh.facets(), &columns)?;
         self.write_hull(all, &about)
     }
@@ -228,7 +228,7 @@ fn write_field<const D: usize>(
     let (mesh, few) = (Mesh::of(cloud, &held, &rim), rim.with_field(held.thinned(all)));
     let columns: Vec<Column<'_>> =
         few.columns.iter().map(|(name, components, values)| Column { name, components: *components, values }).collect();
-    write_cells(&path, &About::gas(case, "mach", Some(time)), &few.points, mesh.cells(), &columns)?;
+    write_cells(&path, &about::gas(case, "mach", Some(time)), &few.points, mesh.cells(), &columns)?;
     Ok(mesh)
 }
 
@@ -254,7 +254,7 @@ pub(crate) fn write_solid_series<const D: usize>(
 ) -> Result<(), RunError> {
     let name = format!("solid-{:05}", passed(time, interval));
     let time = to.case.flow.units().case_time(time);
-    write_solid((to.out, &name), &About::solid(to.case, Some(time)), at)?;
+    write_solid((to.out, &name), &about::solid(to.case, Some(time)), at)?;
     list(to.out, "solid.pvd", f64::NEG_INFINITY, (time, format!("{name}.vtu")))
 }
 

@@ -271,6 +271,7 @@ fn greatest(d: &[Complex64; 3]) -> f64 {
 
 #[cfg(test)]
 mod tests {
+    use super::super::super::about;
     use super::*;
     use crate::case::read;
 
@@ -303,7 +304,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let shape = [share("plunge", 1.0, 0.0), share("pitch", 0.4, 90.0)];
         let mut row = FlutterRow { frequency: 2.0, shape: shape.to_vec(), ..FlutterRow::default() };
-        let named = ("flutter-mode-mach-0.500", &About::gas(&case, "cp_unsteady", None));
+        let named = ("flutter-mode-mach-0.500", &about::gas(&case, "cp_unsteady", None));
         skin.write_series(folder.path(), named, &row).unwrap();
         let text = std::fs::read_to_string(folder.path().join("flutter-mode-mach-0.500.pvd")).unwrap();
         let listed = crate::observe::vtk::read_collection(&text);

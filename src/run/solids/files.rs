@@ -1,6 +1,7 @@
 //! Files of structures alone: fields, histories, modes, summary.
 use std::path::{Path, PathBuf};
 
+use super::super::about;
 use super::super::error::RunError;
 use super::super::folder;
 use super::fields::{columns, history, places, stresses};
@@ -39,7 +40,7 @@ impl Files<'_> {
         u: &[f64],
     ) -> Result<(), RunError> {
         let Some(path) = self.path(&format!("{name}.vtu")) else { return Ok(()) };
-        write(&path, &About::solid(self.case, time), &built.structure.solid, &built.structure.state(0.0, u))
+        write(&path, &about::solid(self.case, time), &built.structure.solid, &built.structure.state(0.0, u))
     }
 
     /// A field file of a series, and the list of all of them.
@@ -78,7 +79,7 @@ impl Files<'_> {
         let raised = |v: &[f64]| -> [f64; 3] { std::array::from_fn(|a| v.get(a).copied().unwrap_or(0.0)) };
         let points: Vec<[f64; 3]> = particles.x.iter().map(|x| raised(&x.0)).collect();
         let values: Vec<f64> = shape.iter().flat_map(|v| raised(v)).collect();
-        let mut about = About::solid(self.case, None);
+        let mut about = about::solid(self.case, None);
         about.scalars = about.vectors;
         about.numbers.push(("frequency [Hz]".to_owned(), mode.omega / std::f64::consts::TAU));
         let column = Column { name: "displacement", components: 3, values: &values };

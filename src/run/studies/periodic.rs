@@ -4,6 +4,7 @@ use std::path::Path;
 
 use num_complex::Complex64;
 
+use super::super::about;
 use super::super::error::RunError;
 use super::super::files::{FILM, Target, together, write_film};
 use super::super::look::{GasView, Held, Mesh, Rim, motion, pressure_coefficient};
@@ -17,7 +18,6 @@ use crate::math::Vector;
 use crate::math::fourier::{Instances, Series};
 use crate::math::jet::Jet;
 use crate::motion::{BodyMotion, Motions, positions};
-use crate::observe::About;
 use crate::observe::loads::Coefficients;
 use crate::observe::table::{Entry, write_csv};
 use crate::observe::vtk::{Column, write_cells};
@@ -319,7 +319,7 @@ impl<S: HasGas<D>, const D: usize> PeriodicState<'_, S, D> {
             .collect();
         let columns: Vec<Column<'_>> =
             columns.iter().map(|(name, values)| Column { name, components: 1, values }).collect();
-        let (about, mesh) = (About::gas(case, "pressure_mean", None), Mesh::of(cloud, &held, &rim));
+        let (about, mesh) = (about::gas(case, "pressure_mean", None), Mesh::of(cloud, &held, &rim));
         Ok(write_cells(&out.join("field_harmonics.vtu"), &about, &points, mesh.cells(), &columns)?)
     }
 

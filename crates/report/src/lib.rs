@@ -1,0 +1,6 @@
+//! What a run leaves: files, pictures and pages, made from slices and plain data.
+use alula_base::math;
+use alula_case::case;
+
+pub mod observe;
+pub mod report;
