@@ -9,12 +9,11 @@ use std::path::Path;
 mod clearance;
 mod coarser;
 mod damping;
+mod files;
 mod held;
 mod kept;
 mod limit_cycles;
 mod marched;
-mod record;
-mod rows;
 mod scales;
 mod search;
 mod shapes;
@@ -24,13 +23,6 @@ mod stored;
 mod tables;
 mod trim;
 mod wall_motion;
-
-pub use held::Mark;
-pub use record::{Boundary, FlutterAt, LimitCycle, MarchedCycle, Trim};
-pub use rows::{Bars, Clearance, Doubt, FlutterRow, MotionRow};
-pub use scales::CaseReference;
-pub use shapes::{NaturalMode, Share};
-pub use state_space::StateSpaceAt;
 
 use self::held::Held;
 use self::kept::Kept;
@@ -55,6 +47,10 @@ use super::{refusals, setup};
 use crate::case::{Case, Flutter as Plan, GasResponse, LimitCycles, Matching, StreamRatio};
 use crate::geometry::dimension;
 use crate::physics::atmosphere;
+pub use crate::record::flutter::{
+    Bars, Boundary, CaseReference, Clearance, Doubt, FlutterAt, FlutterRow, LimitCycle, MarchedCycle, Mark, MotionRow,
+    NaturalMode, Share, StateSpaceAt, Trim,
+};
 use crate::structure::limit_cycle::Borne;
 
 /// Parts by which the gas of a case may differ from the air of the standard atmosphere.
@@ -143,7 +139,7 @@ fn sought(
     let _held = out.map(|out| folder::create_once(case, input, out)).transpose()?;
     let mut kept = Kept::of(case, input, out)?;
     kept.write(out)?;
-    let mut all = Boundary::new(&case.title);
+    let (mut all, mut drawn) = (Boundary::new(&case.title), None);
     let all_machs = vec![1.0; plan.mach.len()];
     for (k, mach) in plan.mach.clone().into_iter().enumerate() {
         let monitor = &mut Within { outer: Portion::of(k, &all_machs), monitor: &mut *monitor };
@@ -163,12 +159,12 @@ fn sought(
             kept.add(&found);
             kept.write(out)?;
         }
-        if case.output.report && out.is_some() && all.skin.is_none() {
-            all.skin = Some(skin(case, mach, input)?);
+        if case.output.report && out.is_some() && drawn.is_none() {
+            drawn = Some(skin(case, mach, input)?);
         }
         all.lco.append(&mut found.cycles);
         all.flutter.push(found);
-        out.map_or(Ok(()), |out| all.write(out))?;
+        out.map_or(Ok(()), |out| files::write(&all, drawn.as_ref(), out))?;
         if !whole {
             return Ok(None);
         }

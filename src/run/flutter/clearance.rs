@@ -3,9 +3,8 @@
 //!
 //! Crossings alone do not tell it: a motion may grow from the lowest speed on that is looked at. So every motion below that speed is looked at too.
 use super::damping::LEAST;
-use super::record::FlutterAt;
-use super::rows::{Clearance, MotionRow};
 use super::scales::Scales;
+use crate::record::flutter::{Clearance, FlutterAt, MotionRow};
 
 /// Equivalent airspeed that must be free, over the design speed.
 const REQUIRED: f64 = 1.15;
@@ -60,9 +59,9 @@ fn grows_below(at: &FlutterAt, required: f64) -> Option<(f64, &MotionRow)> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::rows::{Bars, Doubt, FlutterRow};
     use super::*;
     use crate::case::Matching;
+    use crate::record::flutter::{Bars, Doubt, FlutterRow};
 
     fn scales() -> Scales {
         let text = "[flow]\nmach = 0.5\npressure = \"101325 Pa\"\ntemperature = \"288.15 K\"\n[[body]]\nnaca = \"0012\"\n\

@@ -1,9 +1,8 @@
 //! What the spacing of the cloud does to a boundary: how far crossings move on coarser clouds, and which motions grow on one of two alone.
 use super::super::one_cloud::times_the_spacing;
 use super::damping::{Pair, What, curves, pairs, safety};
-use super::record::FlutterAt;
-use super::rows::Doubt;
 use super::scales::Scales;
+use crate::record::flutter::{Doubt, FlutterAt};
 
 /// Tells the error that the cloud leaves in each crossing of `at`, and where the cloud decides whether motions grow, from the boundaries
 /// on coarser clouds, each with its spacing over that of `at`.
@@ -107,10 +106,10 @@ fn in_words(doubt: &Doubt, dimensional: bool) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::rows::{FlutterRow, MotionRow};
-    use super::super::scales::CaseReference;
     use super::*;
     use crate::case::{Case, Matching};
+    use crate::record::flutter::CaseReference;
+    use crate::record::flutter::{FlutterRow, MotionRow};
 
     fn case(cloud: &str) -> Case {
         let text = format!(

@@ -1,8 +1,6 @@
 //! The structure of a case before there is a flow: what stored forces must fit.
 use std::path::Path;
 
-use serde::{Deserialize, Serialize};
-
 use super::super::error::RunError;
 use super::super::folder;
 use super::super::look::reference::chord;
@@ -12,25 +10,12 @@ use crate::coupling::Attached;
 use crate::geometry::dimension;
 use crate::motion::Motions;
 use crate::observe::structure::is_angle;
+use crate::record::flutter::Mark;
 use crate::structure::{Matrices, Model, Spring};
 
 mod translations;
 
 pub(super) use translations::Translation;
-
-/// Part of a chord by which pivots may differ.
-const SAME: f64 = 1e-6;
-
-/// What a coordinate moves, beside its name.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Mark {
-    /// Point about which a rigid body turns.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub pivot: Option<Vec<f64>>,
-    /// Checksum of the shape of a mode, or of its file.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub shape: Option<String>,
-}
 
 /// Structures at rest.
 pub(super) struct Held {
@@ -46,15 +31,6 @@ pub(super) struct Held {
     pub(super) springs: Vec<Spring>,
     /// Displacements of all bodies by the same way, which no steady force follows.
     pub(super) translations: Vec<Translation>,
-}
-
-impl Mark {
-    /// True where both are known and differ.
-    pub(super) fn contradicts(&self, other: &Self, chord: f64) -> bool {
-        let apart = |a: &Vec<f64>, b: &Vec<f64>| a.iter().zip(b).any(|(a, b)| (a - b).abs() > SAME * chord);
-        let pivots = self.pivot.as_ref().zip(other.pivot.as_ref()).is_some_and(|(a, b)| apart(a, b));
-        pivots || self.shape.as_ref().zip(other.shape.as_ref()).is_some_and(|(a, b)| a != b)
-    }
 }
 
 impl Held {

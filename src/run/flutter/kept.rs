@@ -8,11 +8,9 @@ use serde::{Deserialize, Serialize};
 
 use super::super::error::RunError;
 use super::super::folder::{self, KEPT};
-use super::record::{FlutterAt, LimitCycle};
-use super::rows::MotionRow;
-use super::state_space::StateSpaceAt;
 use crate::case::Case;
 use crate::observe::table::write_json;
+use crate::record::flutter::{FlutterAt, LimitCycle, MotionRow, StateSpaceAt};
 
 /// All that is finished of one case.
 #[derive(Clone, Serialize, Deserialize)]
@@ -115,8 +113,8 @@ impl Finished {
 
 #[cfg(test)]
 mod tests {
-    use super::super::record::tests::cycle;
     use super::*;
+    use crate::record::flutter::cycle::tests::cycle;
 
     #[test]
     fn what_is_kept_is_the_same_again_and_of_the_same_case_alone() {

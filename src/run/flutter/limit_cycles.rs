@@ -10,10 +10,10 @@
 use super::super::error::RunError;
 use super::super::record::Log;
 use super::super::studies::ForceSource;
-use super::record::{Found, LimitCycle};
 use super::search::Search;
 use crate::case::{GasResponse, LimitCycles};
 use crate::observe::structure::is_angle;
+use crate::record::flutter::LimitCycle;
 use crate::structure::Spring;
 use crate::structure::flutter::Kind;
 use crate::structure::limit_cycle::{Borne, Cycle, Oscillator, Periodic};
@@ -88,7 +88,7 @@ impl<'s, 'a> Seek<'s, 'a> {
     }
 
     /// All branches; forces beyond small motions are those of `source`, where there is one and the case asks for them.
-    pub(super) fn run(mut self, mut source: Source<'_, '_>) -> Found {
+    pub(super) fn run(mut self, mut source: Source<'_, '_>) -> (Vec<LimitCycle>, Vec<String>) {
         let (amplitudes, mut warnings) = (self.plan.amplitudes(), Vec::new());
         let mut begins = self.begins(amplitudes[0]);
         // amplitudes follow what is varied from where forces act

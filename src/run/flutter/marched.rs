@@ -12,10 +12,10 @@ use super::super::monitor::Monitor;
 use super::super::one_cloud::on_one_cloud;
 use super::super::session::Session;
 use super::super::watch::Alike;
-use super::record::{FlutterAt, LimitCycle, MarchedCycle};
 use crate::case::{Case, StreamRatio};
 use crate::observe::structure::is_angle;
 use crate::observe::swing::Swing;
+use crate::record::flutter::{FlutterAt, LimitCycle, MarchedCycle};
 
 /// Periods, at most.
 const MOST: f64 = 30.0;
@@ -112,8 +112,8 @@ fn doubts(found: &MarchedCycle, balanced: f64) -> Vec<String> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::record::tests::cycle;
     use super::*;
+    use crate::record::flutter::cycle::tests::cycle;
 
     #[test]
     fn a_march_begins_where_the_motion_is_at_phase_zero() {

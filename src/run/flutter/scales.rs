@@ -1,12 +1,10 @@
 //! Numbers that turn those of the solver into those of users, and how the stream is varied.
 use std::f64::consts::{PI, TAU};
 
-use serde::{Deserialize, Serialize};
-
-use super::rows::Bars;
 use crate::case::{Case, FreeStreamScales, Matching, StreamRatio, StructureModel};
 use crate::geometry::dimension;
 use crate::physics::atmosphere;
+use crate::record::flutter::{Bars, CaseReference};
 use crate::structure::flutter::Varied;
 
 /// Density of the standard atmosphere at sea level, kg/m³: that of equivalent airspeeds.
@@ -35,23 +33,6 @@ pub(super) struct Scales {
     pub(super) dimensional: bool,
     /// Number of space dimensions.
     pub(super) dimension: usize,
-}
-
-/// Stream and structure of the case at a Mach number, which ratios refer to.
-#[derive(Clone, Debug, Default, Serialize, Deserialize)]
-pub struct CaseReference {
-    /// Speed in the units of the case.
-    pub speed: f64,
-    /// Density in the units of the case.
-    pub density: f64,
-    /// Dynamic pressure in the units of the case.
-    pub dynamic_pressure: f64,
-    /// V_f, where the structure has one.
-    pub speed_index: Option<f64>,
-    /// V*, where the structure has one.
-    pub reduced_speed: Option<f64>,
-    /// Mass ratio, where the structure is a section.
-    pub mass_ratio: Option<f64>,
 }
 
 /// The stream at one value of what is varied.

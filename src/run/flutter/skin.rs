@@ -13,9 +13,7 @@ use super::super::error::RunError;
 use super::super::folder::make_within;
 use super::super::look::reference::chord;
 use super::super::setup;
-use super::rows::FlutterRow;
-use super::shapes::{Share, amplitudes};
-use super::wall_motion::WallMotion;
+use super::shapes::amplitudes;
 use crate::case::Case;
 use crate::coupling::Attached;
 use crate::geometry::{Surface, dimension};
@@ -24,6 +22,7 @@ use crate::math::rotation::cross;
 use crate::motion::Motions;
 use crate::observe::vtk::{About, Column, Facets, write_collection, write_surface};
 use crate::observe::write_atomic;
+use crate::record::flutter::{FlutterRow, Share, WallMotion};
 
 /// Largest displacement that is drawn, over the chord.
 const SHOWN: f64 = 0.1;

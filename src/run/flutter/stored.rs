@@ -6,7 +6,8 @@ use serde::Deserialize;
 
 use super::super::error::RunError;
 use super::super::folder;
-use super::held::{Held, Mark};
+use super::held::Held;
+use crate::record::flutter::Mark;
 
 /// Part by which Mach numbers and chords may differ, and angles in degrees.
 const SAME: f64 = 1e-6;

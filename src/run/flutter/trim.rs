@@ -6,9 +6,9 @@
 use super::super::error::RunError;
 use super::super::monitor::{Monitor, Within};
 use super::super::time_left::Portion;
-use super::record::{FlutterAt, Trim};
 use super::scales::Scales;
 use crate::case::{Flutter as Plan, Matching, StreamRatio};
+use crate::record::flutter::{FlutterAt, Trim};
 
 /// Equilibria that are sought at most.
 const ROUNDS: usize = 12;
