@@ -39,6 +39,8 @@ pub mod time;
 
 pub mod observe;
 
+pub mod problem;
+
 pub mod record;
 
 pub mod report;

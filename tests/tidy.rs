@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// Modules by floor: each may use strictly lower floors only.
-const FLOORS: [(&str, u8); 19] = [
+const FLOORS: [(&str, u8); 20] = [
     ("math", 0),
     ("case", 0),
     ("system", 1),
@@ -24,6 +24,7 @@ const FLOORS: [(&str, u8); 19] = [
     ("solid", 3),
     ("coupling", 4),
     ("observe", 4),
+    ("problem", 5),
     ("record", 5),
     ("report", 6),
     ("verify", 6),
@@ -46,7 +47,7 @@ const NARROW: [(&str, &[&str]); 10] = [
 ];
 
 /// Modules whose files use one another one way only.
-const ONE_WAY: [&str; 5] = ["case", "cloud", "scheme", "solid", "run"];
+const ONE_WAY: [&str; 6] = ["case", "cloud", "scheme", "solid", "problem", "run"];
 
 /// Who may open files.
 const OPENS_FILES: [&str; 7] = [

@@ -1,7 +1,6 @@
 //! Files of a flutter boundary: tables, `flutter.json`, pictures and page.
 use std::path::Path;
 
-use super::super::error::RunError;
 use super::super::files::write_state_script;
 use super::super::folder::BOUNDARY;
 use super::skin::Skin;
@@ -10,6 +9,7 @@ use super::tables::{describe_tables, write_tables};
 use crate::observe::About;
 use crate::observe::columns::Scale;
 use crate::observe::table::write_json;
+use crate::problem::RunError;
 use crate::record::flutter::{Boundary, FlutterAt, FlutterRow};
 use crate::report;
 

@@ -1,9 +1,10 @@
 //! Numbers that turn those of the solver into those of users, and how the stream is varied.
 use std::f64::consts::{PI, TAU};
 
-use crate::case::{Case, FreeStreamScales, Matching, StreamRatio, StructureModel};
+use crate::case::{Case, FreeStreamScales, Matching, StructureModel};
 use crate::geometry::dimension;
 use crate::physics::atmosphere;
+use crate::problem::StreamRatio;
 use crate::record::flutter::{Bars, CaseReference};
 use crate::structure::flutter::Varied;
 
@@ -214,6 +215,7 @@ impl Scales {
 
 #[cfg(test)]
 mod tests {
+    use super::super::held::problem_of;
     use super::*;
 
     fn scales(flow: &str, matching: Matching) -> Scales {
@@ -221,7 +223,7 @@ mod tests {
             "[flow]\nmach = 0.5\n{flow}[[body]]\nnaca = \"0012\"\n[cloud]\nspacing = 0.1\n[structure]\nelastic_axis = -0.4\n\
              mass_ratio = 30\nx_alpha = 0.2\nr_alpha2 = 0.25\nfrequency_ratio = 0.4\nspeed_index = 2.0\n[flutter]\n"
         );
-        Scales::of(&crate::case::read(&text, "case.toml").unwrap().flutter_case(0.5), 1.0, matching)
+        Scales::of(problem_of(&text).about_steady_flow(0.5).unwrap().case(), 1.0, matching)
     }
 
     const AIR: &str = "pressure = \"101325 Pa\"\ntemperature = \"288.15 K\"\n";

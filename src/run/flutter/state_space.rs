@@ -4,9 +4,9 @@ use std::path::Path;
 use num_complex::Complex64;
 use serde_json::json;
 
-use super::super::error::RunError;
 use super::scales::{Scales, Stream};
 use crate::observe::table::{Entry, write_csv, write_json};
+use crate::problem::RunError;
 use crate::record::flutter::StateSpaceAt;
 use crate::structure::Matrices;
 use crate::structure::flutter::state_space::Roger;

@@ -1,9 +1,9 @@
 //! The tables of `alula flutter`, and what their columns hold.
 use std::path::Path;
 
-use super::super::error::RunError;
 use crate::observe::columns::{self, Scale};
 use crate::observe::table::{Entry, write_csv};
+use crate::problem::RunError;
 use crate::record::flutter::{Boundary, Doubt, FlutterRow, MotionRow};
 
 /// Their names.
