@@ -17,9 +17,10 @@ pub use alula_case::case;
 pub use alula_cloud::cloud;
 pub use alula_flow::scheme;
 pub use alula_geometry::{geometry, motion, structure};
-pub use alula_report::{observe, report};
+pub use alula_report::{observe, record, report};
 pub use alula_solid::solid;
 
 pub mod coupling;
+pub mod problem;
 pub mod run;
 pub mod verify;

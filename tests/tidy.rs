@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// Modules by floor: each may use strictly lower floors only.
-const FLOORS: [(&str, u8); 18] = [
+const FLOORS: [(&str, u8); 20] = [
     ("math", 0),
     ("case", 0),
     ("system", 1),
@@ -24,14 +24,16 @@ const FLOORS: [(&str, u8); 18] = [
     ("solid", 3),
     ("coupling", 4),
     ("observe", 4),
-    ("report", 5),
-    ("verify", 5),
-    ("run", 6),
-    ("lib", 7),
+    ("problem", 5),
+    ("record", 5),
+    ("report", 6),
+    ("verify", 6),
+    ("run", 7),
+    ("lib", 8),
 ];
 
 /// Modules that may use less than their floor allows.
-const NARROW: [(&str, &[&str]); 9] = [
+const NARROW: [(&str, &[&str]); 10] = [
     ("system", &["math"]),
     ("motion", &["math", "case"]),
     ("structure", &["math", "case"]),
@@ -39,12 +41,13 @@ const NARROW: [(&str, &[&str]); 9] = [
     ("exact", &["math"]),
     ("time", &["math", "system"]),
     ("observe", &["math", "case"]),
-    ("report", &["math", "case", "observe"]),
+    ("record", &["math", "case", "observe"]),
+    ("report", &["math", "case", "observe", "record"]),
     ("verify", &["math", "case", "exact"]),
 ];
 
 /// Modules whose files use one another one way only.
-const ONE_WAY: [&str; 5] = ["case", "cloud", "scheme", "solid", "run"];
+const ONE_WAY: [&str; 6] = ["case", "cloud", "scheme", "solid", "problem", "run"];
 
 /// Who may open files.
 const OPENS_FILES: [&str; 6] = [

@@ -3,4 +3,5 @@ use alula_base::math;
 use alula_case::case;
 
 pub mod observe;
+pub mod record;
 pub mod report;

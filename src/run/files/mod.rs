@@ -10,8 +10,6 @@ mod target;
 use std::path::{Path, PathBuf};
 
 use super::about;
-use super::error::RunError;
-use super::folder;
 use super::found::Found;
 use super::look::{GasView, Held, Hull, Mesh, Rim, SHADE, Snapshot, WallSnapshot, field, planes};
 use super::record::summary::Summary;
@@ -24,6 +22,8 @@ use crate::observe::About;
 use crate::observe::loads::together as both;
 use crate::observe::table::{Entry, write_csv, write_json};
 use crate::observe::vtk::{Column, Facets, read_collection, write_cells, write_collection, write_surface};
+use crate::problem::RunError;
+use crate::problem::files;
 use crate::report;
 use crate::scheme::Work;
 
@@ -261,7 +261,7 @@ pub(crate) fn write_solid_series<const D: usize>(
 /// Adds a field to the list called `name`, in which only those after `since` stay. A run that went on from a checkpoint writes
 /// the later ones again.
 fn list(out: &Path, name: &str, since: f64, (time, file): (f64, String)) -> Result<(), RunError> {
-    let mut files = read_collection(&folder::text(out, name).unwrap_or_default());
+    let mut files = read_collection(&files::text(out, name).unwrap_or_default());
     files.retain(|(t, f)| *t > since && *t < time && *f != file);
     files.push((time, file));
     let listed: Vec<(f64, &str)> = files.iter().map(|(t, f)| (*t, f.as_str())).collect();

@@ -2,17 +2,17 @@
 use std::path::{Path, PathBuf};
 
 use super::super::about;
-use super::super::error::RunError;
-use super::super::folder;
 use super::fields::{columns, history, places, stresses};
 use super::pictures::{Shown, draw, picture};
 use super::record::{ModeRow, Row, SolidSummary};
-use super::setup::Built;
 use crate::case::Case;
 use crate::math::{Bounds, Vector};
 use crate::observe::About;
 use crate::observe::table::{Entry, write_csv, write_json};
 use crate::observe::vtk::{Cells, Column, write_cells, write_collection};
+use crate::problem::RunError;
+use crate::problem::files;
+use crate::problem::solids::Built;
 use crate::report::write_report;
 use crate::solid::Solid;
 use crate::solid::forces::State;
@@ -54,7 +54,7 @@ impl Files<'_> {
         let Some(list) = self.path("solid.pvd") else { return Ok(()) };
         let name = format!("solid_{number:05}");
         self.fields((&name, Some(time)), built, u)?;
-        let known = self.out.map_or_else(String::new, |out| folder::text(out, "solid.pvd").unwrap_or_default());
+        let known = self.out.map_or_else(String::new, |out| files::text(out, "solid.pvd").unwrap_or_default());
         let mut all = crate::observe::vtk::read_collection(&known);
         all.retain(|(_, file)| *file != format!("{name}.vtu"));
         all.push((time, format!("{name}.vtu")));

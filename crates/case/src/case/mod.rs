@@ -51,7 +51,7 @@ mod write;
 pub use accuracy::{Accuracy, LoadErrors};
 pub use error::{CaseError, CaseErrors};
 pub use flow::{FreeStreamScales, NEVER_LAMINAR, NO_CONTINUUM, Units, ViscosityLaw, Viscous, Wall};
-pub use flutter::{Flutter, GasResponse, LimitCycles, Matching, StreamRatio};
+pub use flutter::{Flutter, GasResponse, LimitCycles, Matching};
 pub use gaf::{AnyMode, FlexibleMode, Gaf, GafMethod, Mode};
 pub use mode_file::{ModeFile, ModeTable, read_mode};
 pub use motion::{

@@ -10,13 +10,15 @@ mod charts;
 mod found;
 mod tables;
 
-use self::found::{At, Crossing, Found, Share};
+use self::found::{branches as branches_of, first, place_of, varied};
 use super::chart::Chart;
 use super::files::RunFolder;
 use super::page::{Block, Card, Fact, Page, Section, Status};
 use super::sections;
 use super::words::{grouped, number};
 use super::{ReportError, write_file};
+use crate::case::Matching;
+use crate::record::flutter::{Boundary, FlutterAt, FlutterRow, Share};
 
 /// The surface and how coordinates move it.
 const MODES: &str = "modes.json";
@@ -32,7 +34,7 @@ pub(super) fn is_flutter(run: &RunFolder) -> bool {
 
 /// Draws the charts of a flutter boundary into its pictures.
 pub fn write_flutter(run: &Path) -> Result<(), ReportError> {
-    let Ok(found) = Found::of(&RunFolder::new(run)) else { return Ok(()) };
+    let Ok(found) = found::read(&RunFolder::new(run)) else { return Ok(()) };
     for (name, chart) in charts::all(&found) {
         write_file(&run.join(format!("pictures/{name}.svg")), chart.svg()?.as_bytes())?;
         write_file(&run.join(format!("pictures/{name}.png")), &chart.png()?)?;
@@ -42,8 +44,8 @@ pub fn write_flutter(run: &Path) -> Result<(), ReportError> {
 
 /// The page.
 pub(super) fn page(run: &RunFolder) -> Page {
-    let found = Found::of(run);
-    let of = |chapter: fn(&Found) -> Vec<Block>| found.as_ref().map(chapter).map_err(String::clone);
+    let found = found::read(run);
+    let of = |chapter: fn(&Boundary) -> Vec<Block>| found.as_ref().map(chapter).map_err(String::clone);
     let sections = [
         Section::new("warnings", "Warnings", Ok(found.as_ref().map(warnings).unwrap_or_default())),
         Section::new("crossings", "Crossings", of(crossings)),
@@ -67,7 +69,7 @@ pub(super) fn page(run: &RunFolder) -> Page {
     }
 }
 
-fn status(found: Option<&Found>) -> Status {
+fn status(found: Option<&Boundary>) -> Status {
     let Some(found) = found else {
         return Status { class: "unknown", verdict: "no boundary".to_owned(), facts: String::new() };
     };
@@ -81,7 +83,7 @@ fn status(found: Option<&Found>) -> Status {
     let cost = match read {
         Some(file) => format!("forces read from {file}"),
         None => {
-            let particles = all.iter().map(|at| at.particles).fold(0.0, f64::max);
+            let particles = all.iter().map(|at| at.particles as f64).fold(0.0, f64::max);
             format!("{} particles · {cpu:.1} s of processor time", grouped(particles))
         }
     };
@@ -92,29 +94,29 @@ fn status(found: Option<&Found>) -> Status {
 }
 
 /// What begins to grow first at a Mach number.
-fn card(at: &At) -> Option<Card> {
-    let c = at.first()?;
+fn card(at: &FlutterAt) -> Option<Card> {
+    let c = first(at)?;
     let what = tables::in_words(&c.kind);
-    let speed = ("TAS, m/s", c.speed, c.speed_error);
-    let (name, value, bar) = match (&at.matching[..], at.dimensional, c.speed_index) {
-        ("altitude", ..) => ("altitude, m", c.altitude.map_or(f64::NAN, f64::round), c.altitude_error),
-        ("density", true, _) => ("dynamic pressure, Pa", c.dynamic_pressure, c.dynamic_pressure_error),
-        ("density", ..) => ("dynamic pressure", c.dynamic_pressure, c.dynamic_pressure_error),
+    let speed = ("TAS, m/s", c.speed, c.bars.speed_error);
+    let (name, value, bar) = match (at.matching, at.dimensional, c.speed_index) {
+        (Matching::Altitude, ..) => ("altitude, m", c.altitude.map_or(f64::NAN, f64::round), c.bars.altitude_error),
+        (Matching::Density, true, _) => ("dynamic pressure, Pa", c.dynamic_pressure, c.bars.dynamic_pressure_error),
+        (Matching::Density, ..) => ("dynamic pressure", c.dynamic_pressure, c.bars.dynamic_pressure_error),
         (_, true, _) => speed,
-        (.., Some(index)) => ("speed index", index, c.speed_index_error),
-        _ => ("speed", c.speed, c.speed_error),
+        (.., Some(index)) => ("speed index", index, c.bars.speed_index_error),
+        _ => ("speed", c.speed, c.bars.speed_error),
     };
     let told = |value: f64, bar: Option<f64>| Some(tables::with_bar(value, bar));
     let unknown = bar.is_none().then(|| "± –".to_owned());
     let frequency = if at.dimensional { "frequency, Hz" } else { "frequency" };
     let facts = [
         (name, unknown),
-        ("TAS, m/s", told(c.speed, c.speed_error).filter(|_| at.dimensional && name != "TAS, m/s")),
-        ("EAS, m/s", c.equivalent_airspeed.and_then(|v| told(v, c.equivalent_airspeed_error))),
+        ("TAS, m/s", told(c.speed, c.bars.speed_error).filter(|_| at.dimensional && name != "TAS, m/s")),
+        ("EAS, m/s", c.equivalent_airspeed.and_then(|v| told(v, c.bars.equivalent_airspeed_error))),
         ("k", Some(number(c.reduced_frequency))),
         (frequency, Some(number(c.frequency))),
         ("branch", Some(c.name())),
-        ("V*", c.reduced_speed.and_then(|v| told(v, c.reduced_speed_error))),
+        ("V*", c.reduced_speed.and_then(|v| told(v, c.bars.reduced_speed_error))),
         ("clearance of 15 %", at.clearance.as_ref().map(|c| (if c.passes { "pass" } else { "fail" }).to_owned())),
     ];
     let facts = facts.into_iter().filter_map(|(name, value)| Some(Fact::new(name, value?))).collect();
@@ -122,12 +124,12 @@ fn card(at: &At) -> Option<Card> {
     Some(Card { name: format!("{what}, Mach {}", at.mach), value, facts })
 }
 
-fn warnings(found: &Found) -> Vec<Block> {
+fn warnings(found: &Boundary) -> Vec<Block> {
     let told = found.flutter.iter().flat_map(|at| at.warnings.iter().map(move |w| format!("Mach {}: {w}", at.mach)));
     told.map(Block::Text).collect()
 }
 
-fn crossings(found: &Found) -> Vec<Block> {
+fn crossings(found: &Boundary) -> Vec<Block> {
     let mut blocks = Vec::new();
     for at in found.flutter.iter().filter(|at| at.crossings.is_empty()) {
         blocks.push(Block::Text(format!("At Mach {} nothing begins to grow as far as was looked at.", at.mach)));
@@ -160,9 +162,9 @@ fn crossings(found: &Found) -> Vec<Block> {
 }
 
 /// V-g and V-f diagrams and the root locus of each Mach number.
-fn branches(found: &Found) -> Vec<Block> {
-    let known: Vec<&At> = found.flutter.iter().filter(|at| !found.branches(at.mach).is_empty()).collect();
-    let few = known.iter().all(|at| found.branches(at.mach).len() <= FEW);
+fn branches(found: &Boundary) -> Vec<Block> {
+    let known: Vec<&FlutterAt> = found.flutter.iter().filter(|at| !branches_of(at).is_empty()).collect();
+    let few = known.iter().all(|at| branches_of(at).len() <= FEW);
     let set = |charts: Vec<Chart>| -> Vec<Block> {
         // one alone has room
         match few && charts.len() > 1 {
@@ -170,8 +172,8 @@ fn branches(found: &Found) -> Vec<Block> {
             false => charts.into_iter().map(Block::chart).collect(),
         }
     };
-    let against_speed = known.iter().flat_map(|at| [charts::damping(found, at), charts::frequency(found, at)]);
-    let loci = known.iter().map(|at| charts::locus(found, at));
+    let against_speed = known.iter().flat_map(|at| [charts::damping(at), charts::frequency(at)]);
+    let loci = known.iter().map(|at| charts::locus(at));
     let mut blocks = set(against_speed.collect());
     blocks.push(Block::Text(
         "Rings are where motions are neutral, and in root loci where they begin at the lowest speed.".to_owned(),
@@ -181,7 +183,7 @@ fn branches(found: &Found) -> Vec<Block> {
 }
 
 /// Motions of the surface over a period.
-fn modes(found: &Found, run: &RunFolder) -> Vec<Block> {
+fn modes(found: &Boundary, run: &RunFolder) -> Vec<Block> {
     let table = tables::shapes(found);
     if table.rows.is_empty() {
         return Vec::new();
@@ -204,7 +206,7 @@ fn modes(found: &Found, run: &RunFolder) -> Vec<Block> {
 }
 
 /// What the script of the page gets: the surface, and all motions to choose from.
-fn animated(found: &Found, mut surface: Value) -> Option<Block> {
+fn animated(found: &Boundary, mut surface: Value) -> Option<Block> {
     let coordinates: Vec<String> = serde_json::from_value(surface.get("coordinates")?.clone()).ok()?;
     let motion = |name: String, frequency: f64, shape: &[Share]| {
         let part = |f: fn(f64) -> f64| -> Vec<f64> {
@@ -213,9 +215,9 @@ fn animated(found: &Found, mut surface: Value) -> Option<Block> {
         };
         json!({ "name": name, "frequency": number(frequency), "re": part(f64::cos), "im": part(f64::sin) })
     };
-    let crossing = |(at, c): (&At, &Crossing)| {
+    let crossing = |(at, c): (&FlutterAt, &FlutterRow)| {
         let name =
-            format!("{}, Mach {}, {} {}", tables::in_words(&c.kind), at.mach, at.varied(), number(at.place_of(c)));
+            format!("{}, Mach {}, {} {}", tables::in_words(&c.kind), at.mach, varied(at), number(place_of(at, c)));
         motion(name, c.frequency, &c.shape)
     };
     let crossings = found.flutter.iter().flat_map(|at| at.crossings.iter().map(move |c| (at, c))).map(crossing);
@@ -225,7 +227,7 @@ fn animated(found: &Found, mut surface: Value) -> Option<Block> {
     Some(Block::Modes(serde_json::to_string(&surface).ok()?.replace('<', "\\u003c")))
 }
 
-fn cycles(found: &Found) -> Vec<Block> {
+fn cycles(found: &Boundary) -> Vec<Block> {
     let Some(chart) = charts::limit_cycles(found) else { return Vec::new() };
     let words = "Full lines join motions that smaller and larger ones go to, dashed lines those that others leave. Rings at zero are where \
                  small motions are neutral.";
@@ -245,7 +247,7 @@ fn cycles(found: &Found) -> Vec<Block> {
     blocks
 }
 
-fn conditions(found: &Found) -> Vec<Block> {
+fn conditions(found: &Boundary) -> Vec<Block> {
     let Some(first) = found.flutter.first() else { return Vec::new() };
     let mut blocks = tables::facts(first);
     blocks.push(Block::Heading("Stream and structure of the case".to_owned()));
@@ -259,7 +261,7 @@ fn conditions(found: &Found) -> Vec<Block> {
     blocks
 }
 
-fn cost(found: &Found) -> Vec<Block> {
+fn cost(found: &Boundary) -> Vec<Block> {
     if found.flutter.iter().all(|at| at.read.is_some()) {
         return Vec::new();
     }
@@ -375,7 +377,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         fill(folder.path());
         let run = RunFolder::new(folder.path());
-        let Some(Block::Modes(text)) = animated(&Found::of(&run).unwrap(), run.json(MODES).unwrap()) else {
+        let Some(Block::Modes(text)) = animated(&found::read(&run).unwrap(), run.json(MODES).unwrap()) else {
             panic!("none")
         };
         let told: Value = serde_json::from_str(&text).unwrap();

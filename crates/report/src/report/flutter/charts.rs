@@ -1,8 +1,10 @@
 //! Charts of a flutter boundary: damping, frequency and eigenvalues of every mode along the speed, all crossings against the Mach number, and
 //! limit cycles.
 use super::super::chart::{Axis, Chart, Marks, Series};
-use super::found::{At, Crossing, Cycle, Found, Motion};
+use super::found::{branches, place, place_of, varied};
+use crate::case::Matching;
 use crate::observe::structure::is_angle;
+use crate::record::flutter::{Boundary, FlutterAt, FlutterRow, LimitCycle, MotionRow};
 
 /// Kinds of crossings, and how they are drawn.
 const KINDS: [(&str, Marks); 3] =
@@ -11,11 +13,10 @@ const KINDS: [(&str, Marks); 3] =
 const CAP: f64 = 0.006;
 
 /// All charts of a run with the names of their files.
-pub(super) fn all(found: &Found) -> Vec<(String, Chart)> {
+pub(super) fn all(found: &Boundary) -> Vec<(String, Chart)> {
     let mut charts = Vec::new();
     for at in &found.flutter {
-        let own =
-            [("damping", damping(found, at)), ("frequency", frequency(found, at)), ("root-locus", locus(found, at))];
+        let own = [("damping", damping(at)), ("frequency", frequency(at)), ("root-locus", locus(at))];
         charts.extend(own.map(|(name, chart)| (format!("{name}-mach-{:.3}", at.mach), chart)));
     }
     charts.extend(limit_cycles(found).map(|chart| ("limit-cycles".to_owned(), chart)));
@@ -24,8 +25,8 @@ pub(super) fn all(found: &Found) -> Vec<(String, Chart)> {
 }
 
 /// Damping of every mode, and where it vanishes.
-pub(super) fn damping(found: &Found, at: &At) -> Chart {
-    let chart = along(found, at, "Damping", "g = 2 zeta, growth positive", |m| m.damping);
+pub(super) fn damping(at: &FlutterAt) -> Chart {
+    let chart = along(at, "Damping", "g = 2 zeta, growth positive", |m| m.damping);
     let still: Vec<f64> = chart.series.iter().flat_map(|s| &s.x).copied().collect();
     let ends = [f64::min, f64::max].map(|f| still.iter().copied().reduce(f).unwrap_or(f64::NAN));
     let neutral = Series::new("", Marks::Dashes, ends.to_vec(), vec![0.0; 2]);
@@ -34,33 +35,36 @@ pub(super) fn damping(found: &Found, at: &At) -> Chart {
 }
 
 /// Frequency of every mode, and that of crossings.
-pub(super) fn frequency(found: &Found, at: &At) -> Chart {
+pub(super) fn frequency(at: &FlutterAt) -> Chart {
     let unit = if at.dimensional { "Hz" } else { "cycles per unit of time" };
-    let chart = along(found, at, "Frequency", unit, |m| m.frequency);
+    let chart = along(at, "Frequency", unit, |m| m.frequency);
     marked(chart, at, |c| c.frequency)
 }
 
-fn along(found: &Found, at: &At, title: &str, y: &str, of: fn(&Motion) -> f64) -> Chart {
-    let line = |(name, all): (&str, Vec<&Motion>)| {
-        let (x, y) = all.into_iter().filter(|m| !m.rests()).map(|m| (at.place(m), of(m))).unzip();
+fn along(at: &FlutterAt, title: &str, y: &str, of: fn(&MotionRow) -> f64) -> Chart {
+    let line = |(name, all): (&str, Vec<&MotionRow>)| {
+        let (x, y) = all.into_iter().filter(|m| !m.rests()).map(|m| (place(at, m), of(m))).unzip();
         Series::new(name, Marks::Line, x, y)
     };
     Chart {
         title: format!("{title}, Mach {}", at.mach),
-        x: Axis::linear(at.varied()),
+        x: Axis::linear(varied(at)),
         y: Axis::linear(y),
-        series: found.branches(at.mach).into_iter().map(line).filter(|s| !s.x.is_empty()).collect(),
+        series: branches(at).into_iter().map(line).filter(|s| !s.x.is_empty()).collect(),
     }
 }
 
 /// The same with crossings at the heights `of`.
-fn marked(mut chart: Chart, at: &At, of: fn(&Crossing) -> f64) -> Chart {
-    chart.series.extend(of_kinds(at.crossings.iter(), |c| [at.place_of(c), of(c)]));
+fn marked(mut chart: Chart, at: &FlutterAt, of: fn(&FlutterRow) -> f64) -> Chart {
+    chart.series.extend(of_kinds(at.crossings.iter(), |c| [place_of(at, c), of(c)]));
     chart
 }
 
 /// A series for each kind of crossing that there is; rings are seen on the lines that they mark.
-fn of_kinds<'a>(all: impl Iterator<Item = &'a Crossing> + Clone, place: impl Fn(&Crossing) -> [f64; 2]) -> Vec<Series> {
+fn of_kinds<'a>(
+    all: impl Iterator<Item = &'a FlutterRow> + Clone,
+    place: impl Fn(&FlutterRow) -> [f64; 2],
+) -> Vec<Series> {
     let one = |(kind, _): (&str, Marks)| {
         let (x, y) = all.clone().filter(|c| c.kind == kind).map(|c| place(c).into()).unzip();
         Series::new(kind, Marks::Rings, x, y)
@@ -69,9 +73,9 @@ fn of_kinds<'a>(all: impl Iterator<Item = &'a Crossing> + Clone, place: impl Fn(
 }
 
 /// Eigenvalues of every mode along the speed: where they begin, and where they cross the axis.
-pub(super) fn locus(found: &Found, at: &At) -> Chart {
-    let modes = found.branches(at.mach);
-    let line = |(name, all): &(&str, Vec<&Motion>)| {
+pub(super) fn locus(at: &FlutterAt) -> Chart {
+    let modes = branches(at);
+    let line = |(name, all): &(&str, Vec<&MotionRow>)| {
         let (x, y) = all.iter().map(|m| m.eigenvalue.into()).unzip();
         Series::new(name, Marks::Line, x, y)
     };
@@ -96,21 +100,21 @@ pub(super) fn locus(found: &Found, at: &At) -> Chart {
 
 /// What the stream is varied in, where charts draw it.
 #[derive(Clone, Copy)]
-struct StreamAxis<'a> {
-    matching: &'a str,
+struct StreamAxis {
+    matching: Matching,
     /// Numbers are in SI units.
     dimensional: bool,
     /// All that is drawn has a speed index.
     indexed: bool,
 }
 
-impl StreamAxis<'_> {
+impl StreamAxis {
     fn label(self) -> &'static str {
         match (self.matching, self.dimensional) {
-            ("density", true) => "dynamic pressure, Pa",
-            ("density", false) => "dynamic pressure",
-            ("altitude", _) => "altitude, m",
-            (_, true) => "TAS, m/s",
+            (Matching::Density, true) => "dynamic pressure, Pa",
+            (Matching::Density, false) => "dynamic pressure",
+            (Matching::Altitude, _) => "altitude, m",
+            (Matching::None, true) => "TAS, m/s",
             _ if self.indexed => "speed index",
             _ => "speed",
         }
@@ -119,24 +123,28 @@ impl StreamAxis<'_> {
     /// Where something is that has this speed index, speed, dynamic pressure and altitude; so it is with their error bars.
     fn place(self, index: Option<f64>, [speed, pressure]: [f64; 2], altitude: Option<f64>) -> f64 {
         match (self.matching, self.dimensional) {
-            ("density", _) => pressure,
-            ("altitude", _) => altitude.unwrap_or(f64::NAN),
-            (_, true) => speed,
+            (Matching::Density, _) => pressure,
+            (Matching::Altitude, _) => altitude.unwrap_or(f64::NAN),
+            (Matching::None, true) => speed,
             _ => index.filter(|_| self.indexed).unwrap_or(speed),
         }
     }
 }
 
 /// All crossings against the Mach number; `None` with fewer than two of these, and where nothing crosses.
-pub(super) fn boundary(found: &Found) -> Option<Chart> {
-    let matching = &found.flutter.first()?.matching[..];
+pub(super) fn boundary(found: &Boundary) -> Option<Chart> {
+    let matching = found.flutter.first()?.matching;
     let crossings = || found.flutter.iter().flat_map(|at| at.crossings.iter().map(move |c| (at.mach, c)));
     let indexed = crossings().all(|(_, c)| c.speed_index.is_some());
     let axis = StreamAxis { matching, dimensional: found.flutter.first()?.dimensional, indexed };
-    let place = |c: &Crossing| axis.place(c.speed_index, [c.speed, c.dynamic_pressure], c.altitude);
-    let bar = |c: &Crossing| {
+    let place = |c: &FlutterRow| axis.place(c.speed_index, [c.speed, c.dynamic_pressure], c.altitude);
+    let bar = |c: &FlutterRow| {
         let known = |error: Option<f64>| error.unwrap_or(f64::NAN);
-        axis.place(c.speed_index_error, [known(c.speed_error), known(c.dynamic_pressure_error)], c.altitude_error)
+        axis.place(
+            c.bars.speed_index_error,
+            [known(c.bars.speed_error), known(c.bars.dynamic_pressure_error)],
+            c.bars.altitude_error,
+        )
     };
     if found.flutter.len() < 2 || crossings().next().is_none() {
         return None;
@@ -166,12 +174,12 @@ pub(super) fn boundary(found: &Found) -> Option<Chart> {
 
 /// Amplitude against speed, or what is varied instead: branches, full where motions go to them and dashed where they leave; where they begin, and what marches end
 /// with. `None` without limit cycles.
-pub(super) fn limit_cycles(found: &Found) -> Option<Chart> {
+pub(super) fn limit_cycles(found: &Boundary) -> Option<Chart> {
     let first = found.lco.first()?;
-    let matching = found.flutter.first().map_or("", |at| &at.matching[..]);
+    let matching = found.flutter.first().map_or(Matching::None, |at| at.matching);
     let dimensional = found.flutter.first().is_some_and(|at| at.dimensional);
     let axis = StreamAxis { matching, dimensional, indexed: found.lco.iter().all(|c| c.speed_index.is_some()) };
-    let speed = |c: &Cycle| axis.place(c.speed_index, [c.speed, c.dynamic_pressure], c.altitude);
+    let speed = |c: &LimitCycle| axis.place(c.speed_index, [c.speed, c.dynamic_pressure], c.altitude);
     let lines = [("", Marks::Line, true), ("", Marks::Dashes, false)].map(|(name, marks, stable)| {
         let (mut x, mut y) = (Vec::new(), Vec::new());
         for pair in found.lco.windows(2).filter(|p| p[0].branch == p[1].branch) {
@@ -190,7 +198,7 @@ pub(super) fn limit_cycles(found: &Found) -> Option<Chart> {
     };
     let marched = found.lco.iter().filter_map(|c| Some((speed(c), c.march.as_ref()?.amplitude))).unzip();
     let own = found.flutter.iter().filter(|at| at.mach == first.mach).flat_map(|at| &at.crossings);
-    let at = |c: &Crossing| axis.place(c.speed_index, [c.speed, c.dynamic_pressure], c.altitude);
+    let at = |c: &FlutterRow| axis.place(c.speed_index, [c.speed, c.dynamic_pressure], c.altitude);
     let begins = own.filter(|c| c.kind != "divergence").map(|c| (at(c), 0.0));
     let (x, y) = begins.unzip();
     let [full, dashed] = lines;

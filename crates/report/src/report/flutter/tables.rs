@@ -1,8 +1,10 @@
 //! Tables of a flutter boundary.
 use super::super::page::{Block, Fact, Table};
 use super::super::words::{grouped, load, number, plain};
-use super::found::{At, Crossing, Cycle, Doubt, Found, Natural, Share};
+use super::found::first;
+use crate::case::Matching;
 use crate::math::digits::fixed;
+use crate::record::flutter::{Boundary, Doubt, FlutterAt, FlutterRow, LimitCycle, NaturalMode, Share};
 
 /// Names of what crosses, for people.
 pub(super) fn in_words(kind: &str) -> &str {
@@ -36,9 +38,9 @@ fn optional_with_bar(value: Option<f64>, bar: Option<f64>) -> String {
 }
 
 /// Every crossing with its error bars and what the g-method has.
-pub(super) fn crossings(found: &Found) -> Table {
+pub(super) fn crossings(found: &Boundary) -> Table {
     let dimensional = found.flutter.iter().any(|at| at.dimensional);
-    let matched = found.flutter.iter().any(|at| at.matching != "none");
+    let matched = found.flutter.iter().any(|at| at.matching != Matching::None);
     let mut columns = vec!["M", "what", "branch"];
     columns.extend(match dimensional {
         true => ["TAS, m/s", "EAS, m/s", "density, kg/m³", "q, Pa", "altitude, m", "frequency, Hz"],
@@ -54,25 +56,25 @@ pub(super) fn crossings(found: &Found) -> Table {
         "g-method",
         "remark",
     ]);
-    let row = |(at, c): (&At, &Crossing)| {
+    let row = |(at, c): (&FlutterAt, &FlutterRow)| {
         let g = c.g_method.map_or_else(|| "–".to_owned(), |g| format!("{g:+.0e}").replace('-', "\u{2212}"));
         let mut row = vec![at.mach.to_string(), in_words(&c.kind).to_owned(), c.name()];
         let only_matched = |x: f64, bar: Option<f64>| if matched { with_bar(x, bar) } else { "–".to_owned() };
         row.extend(match dimensional {
             true => [
-                with_bar(c.speed, c.speed_error),
-                optional_with_bar(c.equivalent_airspeed, c.equivalent_airspeed_error),
-                with_bar(c.density, c.density_error),
-                with_bar(c.dynamic_pressure, c.dynamic_pressure_error),
-                optional_with_bar(c.altitude, c.altitude_error),
+                with_bar(c.speed, c.bars.speed_error),
+                optional_with_bar(c.equivalent_airspeed, c.bars.equivalent_airspeed_error),
+                with_bar(c.density, c.bars.density_error),
+                with_bar(c.dynamic_pressure, c.bars.dynamic_pressure_error),
+                optional_with_bar(c.altitude, c.bars.altitude_error),
                 number(c.frequency),
             ],
             false => [
-                with_bar(c.speed_ratio, c.speed_ratio_error),
-                optional_with_bar(c.speed_index, c.speed_index_error),
-                optional_with_bar(c.reduced_speed, c.reduced_speed_error),
-                only_matched(c.density, c.density_error),
-                only_matched(c.dynamic_pressure, c.dynamic_pressure_error),
+                with_bar(c.speed_ratio, c.bars.speed_ratio_error),
+                optional_with_bar(c.speed_index, c.bars.speed_index_error),
+                optional_with_bar(c.reduced_speed, c.bars.reduced_speed_error),
+                only_matched(c.density, c.bars.density_error),
+                only_matched(c.dynamic_pressure, c.bars.dynamic_pressure_error),
                 number(c.frequency),
             ],
         });
@@ -81,7 +83,7 @@ pub(super) fn crossings(found: &Found) -> Table {
             optional(c.frequency_ratio),
             number(c.reduced_frequency),
             c.margin.map_or_else(|| "–".to_owned(), |m| signed(m, 1)),
-            percent(c.error),
+            percent(Some(c.error)),
             percent(c.cloud_error),
             g,
             remarks(c),
@@ -99,14 +101,14 @@ fn signed(part: f64, decimals: usize) -> String {
     format!("{sign}{text} %").replace('-', "\u{2212}")
 }
 
-fn remarks(c: &Crossing) -> String {
+fn remarks(c: &FlutterRow) -> String {
     let mut all = c.remarks.clone();
     all.extend(Some(remark(c.extrapolated)).filter(|text| !text.is_empty()));
     all.join("; ")
 }
 
 /// Ranges of speed in which the cloud decides; without rows where there are none.
-pub(super) fn doubts(found: &Found) -> Table {
+pub(super) fn doubts(found: &Boundary) -> Table {
     let dimensional = found.flutter.iter().any(|at| at.dimensional);
     let mut columns = vec!["M", "branch", "what"];
     columns.extend(match dimensional {
@@ -116,7 +118,7 @@ pub(super) fn doubts(found: &Found) -> Table {
     columns.extend(["g", "g on a coarser cloud"]);
     let range = |[a, b]: [f64; 2]| format!("{} to {}", number(a), number(b));
     let optional_range = |ends: Option<[f64; 2]>| ends.map_or_else(|| "–".to_owned(), range);
-    let row = |(at, d): (&At, &Doubt)| {
+    let row = |(at, d): (&FlutterAt, &Doubt)| {
         let what = match &d.kind[..] {
             "coarser_cloud_only" => "grows on a coarser cloud, not here",
             "nearly" => "decays by less than both clouds differ",
@@ -137,7 +139,7 @@ pub(super) fn doubts(found: &Found) -> Table {
 }
 
 /// Margins to the design speed; without rows where none is given.
-pub(super) fn clearances(found: &Found) -> Table {
+pub(super) fn clearances(found: &Boundary) -> Table {
     let columns = [
         "M",
         "V_D, m/s EAS",
@@ -147,7 +149,7 @@ pub(super) fn clearances(found: &Found) -> Table {
         "clearance of 15 %",
         "why",
     ];
-    let row = |at: &At| {
+    let row = |at: &FlutterAt| {
         let c = at.clearance.as_ref()?;
         Some(vec![
             at.mach.to_string(),
@@ -163,7 +165,7 @@ pub(super) fn clearances(found: &Found) -> Table {
 }
 
 /// Limit cycles.
-pub(super) fn cycles(found: &Found) -> Table {
+pub(super) fn cycles(found: &Boundary) -> Table {
     let columns = [
         "M",
         "branch",
@@ -180,7 +182,7 @@ pub(super) fn cycles(found: &Found) -> Table {
         "balances",
         "remark",
     ];
-    let row = |c: &Cycle| {
+    let row = |c: &LimitCycle| {
         vec![
             c.mach.to_string(),
             c.branch.to_string(),
@@ -193,7 +195,7 @@ pub(super) fn cycles(found: &Found) -> Table {
             (if c.stable { "stable" } else { "unstable" }).to_owned(),
             number(c.mean),
             c.harmonics.to_string(),
-            percent(c.error),
+            percent(Some(c.error)),
             c.balances.to_string(),
             remark(c.extrapolated),
         ]
@@ -202,7 +204,7 @@ pub(super) fn cycles(found: &Found) -> Table {
 }
 
 /// What marches from limit cycles end with; without rows where there were none.
-pub(super) fn marches(found: &Found) -> Table {
+pub(super) fn marches(found: &Boundary) -> Table {
     let columns = [
         "M",
         "branch",
@@ -215,7 +217,7 @@ pub(super) fn marches(found: &Found) -> Table {
         "change in the last",
         "processor time, s",
     ];
-    let row = |c: &Cycle| {
+    let row = |c: &LimitCycle| {
         let m = c.march.as_ref()?;
         Some(vec![
             c.mach.to_string(),
@@ -238,30 +240,30 @@ fn remark(extrapolated: bool) -> String {
 }
 
 /// How much each coordinate takes part in the first crossing of each Mach number and in natural modes.
-pub(super) fn shapes(found: &Found) -> Table {
-    let Some(first) = found.flutter.first() else { return Table::default() };
+pub(super) fn shapes(found: &Boundary) -> Table {
+    let Some(leading) = found.flutter.first() else { return Table::default() };
     let mut columns = vec!["motion", "frequency"];
-    columns.extend(first.coordinates.iter().map(String::as_str));
+    columns.extend(leading.coordinates.iter().map(String::as_str));
     let row = |(name, frequency, shape): (String, f64, &[Share])| {
         let share = |s: &Share| format!("{:.4} ∠ {}°", s.amplitude, fixed(s.phase_deg, 1)).replace('-', "\u{2212}");
         [name, number(frequency)].into_iter().chain(shape.iter().map(share)).collect::<Vec<String>>()
     };
-    let crossings = found.flutter.iter().filter_map(|at| at.first().map(|c| (at, c)));
+    let crossings = found.flutter.iter().filter_map(|at| first(at).map(|c| (at, c)));
     let crossings =
         crossings.map(|(at, c)| (format!("{}, Mach {}", in_words(&c.kind), at.mach), c.frequency, &c.shape[..]));
     let natural =
-        first.natural.iter().map(|n: &Natural| (format!("natural mode {}", n.mode), n.frequency, &n.shape[..]));
+        leading.natural.iter().map(|n: &NaturalMode| (format!("natural mode {}", n.mode), n.frequency, &n.shape[..]));
     Table::new(&columns, natural.chain(crossings).map(row))
 }
 
 /// What ratios refer to.
-pub(super) fn reference(found: &Found) -> Table {
+pub(super) fn reference(found: &Boundary) -> Table {
     let columns = match found.flutter.iter().any(|at| at.dimensional) {
         true => ["M", "speed, m/s", "density, kg/m³", "dynamic pressure, Pa", "V_f", "V*", "mass ratio"],
         false => ["M", "speed", "density", "dynamic pressure", "V_f", "V*", "mass ratio"],
     };
     let given = |x: Option<f64>| x.map_or_else(|| "–".to_owned(), plain);
-    let row = |at: &At| {
+    let row = |at: &FlutterAt| {
         let r = &at.reference;
         vec![
             at.mach.to_string(),
@@ -277,11 +279,11 @@ pub(super) fn reference(found: &Found) -> Table {
 }
 
 /// The static equilibria that forces are about; without rows where bodies stay as drawn.
-pub(super) fn equilibria(found: &Found) -> Table {
+pub(super) fn equilibria(found: &Boundary) -> Table {
     let names = found.flutter.first().map_or(&[][..], |at| &at.coordinates);
     let mut columns = vec!["M", "V/V of the case", "dynamic pressure"];
     columns.extend(names.iter().map(String::as_str));
-    let row = |at: &At| {
+    let row = |at: &FlutterAt| {
         let trim = at.trim.as_ref()?;
         let stream = [at.mach.to_string(), number(trim.speed_ratio), number(trim.dynamic_pressure)];
         Some(stream.into_iter().chain(trim.coordinates.iter().map(|q| number(*q))).collect())
@@ -290,11 +292,11 @@ pub(super) fn equilibria(found: &Found) -> Table {
 }
 
 /// Angle, lengths, what is varied.
-pub(super) fn facts(at: &At) -> Vec<Block> {
-    let varied = match &at.matching[..] {
-        "density" => "density, at the sound speed of the case",
-        "altitude" => "altitude in the standard atmosphere of 1976",
-        _ => "speed, at the density of the case and constant Mach number",
+pub(super) fn facts(at: &FlutterAt) -> Vec<Block> {
+    let varied = match at.matching {
+        Matching::Density => "density, at the sound speed of the case",
+        Matching::Altitude => "altitude in the standard atmosphere of 1976",
+        Matching::None => "speed, at the density of the case and constant Mach number",
     };
     vec![
         Block::Facts(vec![
@@ -324,7 +326,7 @@ pub(super) fn facts(at: &At) -> Vec<Block> {
 }
 
 /// What it took.
-pub(super) fn cost(found: &Found) -> Table {
+pub(super) fn cost(found: &Boundary) -> Table {
     let columns = [
         "M",
         "particles",
@@ -338,9 +340,9 @@ pub(super) fn cost(found: &Found) -> Table {
         "processor time, s",
         "of it marches",
     ];
-    let row = |at: &At| {
+    let row = |at: &FlutterAt| {
         let columns = (at.reduced_frequencies.len() * at.coordinates.len()) as f64;
-        let [cl, cd, cm] = at.steady.map(|c| c.map_or_else(|| "–".to_owned(), load));
+        let [cl, cd, cm] = at.steady.map(|c| if c.is_nan() { "–".to_owned() } else { load(c) });
         let marches: f64 = found
             .lco
             .iter()
@@ -350,14 +352,16 @@ pub(super) fn cost(found: &Found) -> Table {
             .sum();
         vec![
             at.mach.to_string(),
-            grouped(at.particles),
+            grouped(at.particles as f64),
             format!("{:.1}", at.orders),
             cl,
             cd,
             cm,
             at.reduced_frequencies.len().to_string(),
-            format!("{:.1}", at.linear_iterations / columns.max(1.0)),
-            at.residual.map_or_else(|| "–".to_owned(), |r| format!("{r:.0e}").replace('-', "\u{2212}")),
+            format!("{:.1}", at.linear_iterations as f64 / columns.max(1.0)),
+            Some(at.residual)
+                .filter(|r| r.is_finite())
+                .map_or_else(|| "–".to_owned(), |r| format!("{r:.0e}").replace('-', "\u{2212}")),
             format!("{:.1}", at.cpu_seconds + marches),
             if marches > 0.0 { format!("{marches:.1}") } else { "–".to_owned() },
         ]

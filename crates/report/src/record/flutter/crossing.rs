@@ -1,11 +1,13 @@
-//! Rows of the tables of a flutter boundary: crossings, motions, and where the cloud decides.
-use serde::{Deserialize, Deserializer, Serialize};
+//! Rows of a flutter boundary: changes from decay to growth, motions at speeds, and where the cloud decides.
+use serde::{Deserialize, Serialize};
 
-use super::shapes::Share;
+use super::numbers::or_infinite;
+use super::shape::Share;
 use super::wall_motion::WallMotion;
 
 /// A change from decay to growth, or back.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
+#[serde(default)]
 pub struct FlutterRow {
     /// `flutter`, `restabilised` or `divergence`.
     pub kind: String,
@@ -48,16 +50,13 @@ pub struct FlutterRow {
     /// What the g-method finds of the same, less one; none at divergence, and where it finds nothing.
     pub g_method: Option<f64>,
     /// Greatest damping g, growth positive, over the next fifth of the speed; of flutter alone.
-    #[serde(default)]
     pub growth: Option<f64>,
     /// Structural damping g that holds the motion, where it grows so little that this is usual.
-    #[serde(default)]
     pub holding_damping: Option<f64>,
     /// Equivalent airspeed over the design speed, less one, where that is given.
-    #[serde(default)]
     pub margin: Option<f64>,
     /// What is to be said of it, for people.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    #[serde(skip_serializing_if = "Vec::is_empty")]
     pub remarks: Vec<String>,
     /// True when k lies beyond the frequencies that forces were computed at.
     pub extrapolated: bool,
@@ -70,7 +69,7 @@ pub struct FlutterRow {
 
 impl FlutterRow {
     /// What is to be said of how it begins and grows, for people.
-    pub(super) fn told(&self) -> Vec<String> {
+    pub fn told(&self) -> Vec<String> {
         let from_nothing = Some(self.kind.as_str()).filter(|_| self.dynamic_pressure == 0.0);
         let begins = match from_nothing {
             Some("divergence") => Some("diverges at any speed: nothing holds it".to_owned()),
@@ -83,6 +82,14 @@ impl FlutterRow {
             )
         });
         begins.into_iter().chain(shallow).collect()
+    }
+
+    /// Name of the motion that it belongs to; files of former versions number it alone.
+    pub fn name(&self) -> String {
+        match (self.branch.is_empty(), self.mode) {
+            (true, Some(mode)) => format!("mode {mode}"),
+            _ => self.branch.clone(),
+        }
     }
 
     /// Half length of its error bar, over the speed: the greater of both errors; infinite where nothing is known of it.
@@ -113,7 +120,7 @@ pub struct Bars {
 }
 
 /// A motion at a speed.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct MotionRow {
     /// `mode 1`: that of a natural mode; `divergence 1`: a motion that grows without oscillating.
     pub branch: String,
@@ -142,8 +149,16 @@ pub struct MotionRow {
     pub eigenvalue: [f64; 2],
 }
 
+impl MotionRow {
+    /// True of a mode that decays without oscillating, whose damping says little.
+    pub fn rests(&self) -> bool {
+        self.frequency == 0.0 && self.eigenvalue[0] <= 0.0
+    }
+}
+
 /// A range of speed in which the spacing of the cloud decides whether a motion grows.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
 pub struct Doubt {
     /// Branch of the motion.
     pub branch: String,
@@ -164,12 +179,12 @@ pub struct Doubt {
     /// The same on a coarser cloud.
     pub damping_coarser: f64,
     /// Spacing of that cloud over that of this one.
-    #[serde(default)]
     pub spacing_ratio: f64,
 }
 
 /// What is left to the design speed.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
 pub struct Clearance {
     /// V_D, equivalent airspeed in m/s.
     pub design_speed: f64,
@@ -185,9 +200,4 @@ pub struct Clearance {
     pub passes: bool,
     /// Why, for people.
     pub reason: String,
-}
-
-/// A number that files have no word for where it is infinite.
-pub(super) fn or_infinite<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
-    Option::<f64>::deserialize(from).map(|x| x.unwrap_or(f64::INFINITY))
 }

@@ -4,7 +4,6 @@ use crate::cloud::CloudError;
 use crate::geometry::GeometryError;
 use crate::motion::MotionError;
 use crate::observe::{CheckpointError, FileError, VtkError};
-use crate::report::ReportError;
 use crate::scheme::start::StartError;
 use crate::structure::StructureError;
 use crate::time::TimeError;
@@ -110,8 +109,8 @@ pub enum RunError {
         problem: &'static str,
     },
     /// A picture or the report could not be written.
-    #[error(transparent)]
-    Report(#[from] ReportError),
+    #[error("{0}")]
+    Report(Box<dyn std::error::Error + Send + Sync>),
     /// The run folder cannot be used.
     #[error("{what}\nhint: {hint}")]
     Folder {

@@ -226,30 +226,3 @@ fn turned<const D: usize>(fill: Fill<D>, name: &str) -> Result<Fill<D>, RunError
         }),
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use crate::case::read;
-    use crate::run::inspect_structure;
-    use std::path::Path;
-
-    #[test]
-    fn bodies_whose_particles_coordinates_do_not_tell_apart_are_refused() {
-        let told = |at: &str| {
-            let text = format!(
-                "[[body]]\nname = \"plate\"\nbox = {{ size = [1, 0.1] }}\ntranslate = {at}\n[body.solid]\nspacing = 0.02\n\
-                 material = {{ density = 1000, young = 1e6, poisson = 0.3 }}\n[time.explicit]\nuntil = 1\n"
-            );
-            let case = read(&text, "t").unwrap_or_else(|e| panic!("{e}"));
-            inspect_structure(&case, Path::new(".")).map(|r| r.particles).map_err(|e| e.to_string())
-        };
-        assert_eq!(told("[0, 0]"), told("[100, -100]"));
-        for (at, words) in [
-            ("[0, 1e7]", ["`translate` is [0.0, 10000000.0]", "at most 2.000e4 from the origin"]),
-            ("[1e16, 0]", ["`translate` is [1e16, 0.0]", "allowed: from -1e8 to 1e8"]),
-        ] {
-            let refused = told(at).unwrap_err();
-            words.iter().for_each(|w| assert!(refused.contains(w), "no `{w}` in {refused}"));
-        }
-    }
-}

@@ -3,8 +3,8 @@
 //! Interface particles are carried along the laws of motion to the times of the steps, or of [`TIMES`] parts of the march.
 //! Bodies that leave the domain or run into one another are refused with place and time; steps in which a body moves by more
 //! than its spacing are noted, with the number of steps that would do.
-use super::super::error::RunError;
-use super::super::recipe;
+use super::error::RunError;
+use super::numerics;
 use crate::case::{Case, ParticleMotion, Units};
 use crate::cloud::Cloud;
 use crate::math::{Bounds, Vector};
@@ -122,7 +122,7 @@ fn longest_way<const D: usize>(
     bodies: &[Body<'_, D>],
     (period, span): (Option<f64>, f64),
 ) -> Option<String> {
-    let recipe::FixedStep { length: dt, of_period } = recipe::fixed_step(case, period)?;
+    let numerics::FixedStep { length: dt, of_period } = numerics::fixed_step(case, period)?;
     let steps = ((span / dt).ceil() as usize).max(1);
     let looked_at = (0..steps).step_by(steps.div_ceil(TIMES)).map(|k| k as f64 * dt);
     let mut worst = (0.0, 0.0, "");
@@ -156,49 +156,4 @@ fn longest_way<const D: usize>(
 fn place<const D: usize>(x: &Vector<D>) -> String {
     let numbers: Vec<String> = x.0.iter().map(|c| format!("{c:.4}")).collect();
     format!("({})", numbers.join(", "))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::case::read;
-    use crate::run::refusals::as_checked;
-    use std::path::Path;
-
-    /// What is told of two circles, of which the second moves by `motion`.
-    fn told(motion: &str, time: &str) -> Result<Vec<String>, String> {
-        let text = format!(
-            "[flow]\nmach = 0.3\n[[body]]\nname = \"front\"\ncircle = {{ radius = 0.5 }}\n[[body]]\nname = \"rear\"\n\
-             circle = {{ radius = 0.5 }}\ntranslate = [2.0, 0.0]\n[body.motion]\n{motion}\n[cloud]\nspacing = 0.1\n\
-             domain = {{ min = [-3.2, -3.2], max = [6.4, 3.2] }}\n[time.dual]\n{time}\n"
-        );
-        let case = read(&text, "case.toml").unwrap_or_else(|e| panic!("{e}"));
-        let (surface, cloud, _) = crate::run::build_cloud::<2>(&case, Path::new("")).unwrap();
-        let motions = crate::run::setup::motions(&case, Path::new(""), surface.as_ref()).unwrap();
-        let seen = check(&case, &cloud, &motions);
-        as_checked(&case, Path::new(""), seen).map_err(|e| e.to_string())
-    }
-
-    #[test]
-    fn bodies_that_leave_or_collide_are_refused_before_the_run() {
-        let message = told("translation = [0.3, 0.0]", "step = 0.1\nuntil = 20").unwrap_err();
-        assert!(message.contains("`rear` leaves the domain at t = 13.0"), "{message}");
-        let message = told("translation = [-0.3, 0.0]", "step = 0.1\nuntil = 5").unwrap_err();
-        assert!(message.contains("`front` and `rear` run into one another at t = 3.2"), "{message}");
-        assert_eq!(told("translation = [-0.3, 0.0]", "step = 0.1\nuntil = 2"), Ok(Vec::new()));
-    }
-
-    #[test]
-    fn a_step_over_more_than_a_spacing_is_told_with_its_remedy() {
-        let swing = "period = 4\nplunge = 0.5";
-        // 0.5 sin over an eighth of a period: 0.35 in the fastest step
-        let notes = told(swing, "steps_per_period = 8\nperiods = 2").unwrap();
-        assert!(notes[0].contains("`rear` moves by") && notes[0].contains("`steps_per_period = "), "{notes:?}");
-        let remedy: f64 =
-            notes[0].split("steps_per_period = ").nth(1).unwrap().split('`').next().unwrap().parse().unwrap();
-        assert_eq!(
-            told(swing, &format!("steps_per_period = {}\nperiods = 2", (1.2 * remedy).ceil())).map(|n| n.len()),
-            Ok(0)
-        );
-    }
 }

@@ -1,9 +1,9 @@
 //! What can be written down but makes no sense: told before any particle is placed.
-use super::super::accuracy::{ACROSS, asked};
-use super::super::error::RunError;
-use super::super::look::reference::chord;
-use super::super::recipe;
+use super::error::RunError;
+use super::numerics;
+use super::reference::chord;
 use super::scales;
+use super::spacing::{ACROSS, asked};
 use crate::case::{Case, NEVER_LAMINAR, NO_CONTINUUM, Temporal};
 use crate::geometry::Surface;
 use crate::motion::{MOST_PERIODS, Motions};
@@ -89,7 +89,7 @@ fn frequencies<const D: usize>(case: &Case, motions: &Motions<D>) -> Result<(), 
             hint: "harmonic balance finds flows that repeat: write frequencies whose ratio is that of small whole numbers, or march".into(),
         });
     }
-    let (Some(&highest), most) = (motions.multiples().last(), recipe::most(plan)) else { return Ok(()) };
+    let (Some(&highest), most) = (motions.multiples().last(), numerics::most(plan)) else { return Ok(()) };
     if most >= highest {
         return Ok(());
     }
@@ -200,72 +200,4 @@ fn rarefied<const D: usize>(case: &Case, surface: Option<&Surface<D>>) -> Option
 fn turbulent<const D: usize>(case: &Case, surface: Option<&Surface<D>>) -> Option<String> {
     let re = case.flow.reynolds_number(chord(case, surface)).filter(|re| surface.is_some() && *re > TURBULENT)?;
     Some(format!("at the Reynolds number {re:.2e} boundary layers are turbulent, but the gas is computed as laminar"))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::run::refusals::as_checked;
-    use std::path::Path;
-
-    fn told(more: &str) -> Result<Vec<String>, String> {
-        let case = crate::case::read(&format!("[[body]]\nnaca = \"0012\"\n{more}"), "t").unwrap();
-        let (surface, _) = super::super::surface::<2>(&case, Path::new("")).unwrap();
-        let motions = super::super::motions(&case, Path::new(""), surface.as_ref()).unwrap();
-        let seen = sane(&case, surface.as_ref(), &motions);
-        as_checked(&case, Path::new(""), seen).map_err(|e| e.to_string())
-    }
-
-    #[test]
-    fn spacings_and_periods_out_of_all_measure_are_refused() {
-        let stream = "[flow]\nmach = 0.5\n";
-        assert_eq!(told(&format!("{stream}[cloud]\nspacing = 0.03\n")), Ok(Vec::new()));
-        let coarse = told(&format!("{stream}[cloud]\nspacing = 5\n")).unwrap_err();
-        assert!(coarse.contains("`cloud.spacing` is 5, but body `body-1` is only 1 long"), "{coarse}");
-        assert!(told(&format!("{stream}[cloud]\nspacing = 0.2\n")).unwrap()[0].contains("5.0 spacings long"));
-        let family = format!("{stream}[cloud]\nspacing = 0.2\n[accuracy]\n");
-        assert_eq!(told(&family), Ok(Vec::new()), "which cloud its result is told on is not known yet");
-        let swing = |period: &str| {
-            format!(
-                "{stream}[motion]\nplunge = 0.01\nperiod = {period}\n[time]\nharmonics = 1\n[cloud]\nspacing = 0.03\n"
-            )
-        };
-        assert!(told(&swing("1e-9")).unwrap_err().contains("the period 1.000e-9 is so short"));
-        assert_eq!(told(&swing("20")), Ok(Vec::new()));
-    }
-
-    #[test]
-    fn layers_out_of_all_measure_and_hot_streams_are_told() {
-        let layers = "[flow]\nmach = 0.5\nreynolds = 5000\n[cloud]\nspacing = 0.02\nwall_layers = { first = 1e-15 }\n";
-        let thin = told(layers).unwrap_err();
-        assert!(thin.contains("is 1e-15, 5.0e-14 times the spacing") && thin.contains("8.8e-4 is a fifth"), "{thin}");
-        let hot = told("[flow]\nmach = 30\n[cloud]\nspacing = 0.02\n").unwrap();
-        assert!(hot[0].contains("181 times as hot"), "{hot:?}");
-    }
-
-    #[test]
-    fn streams_from_behind_are_told() {
-        let at = |alpha: &str| told(&format!("[flow]\nmach = 0.5\nalpha = \"{alpha}\"\n[cloud]\nspacing = 0.03\n"));
-        assert!(at("114.59 deg").unwrap()[0].contains("`flow.alpha` is 114.59 deg: the stream comes from behind"));
-        assert_eq!(at("-90 deg"), Ok(Vec::new()));
-    }
-
-    #[test]
-    fn turbulent_streams_are_told() {
-        let at = |re: &str| told(&format!("[flow]\nmach = 0.5\nreynolds = {re}\n[cloud]\nspacing = 0.03\n"));
-        assert_eq!(at("5000"), Ok(Vec::new()));
-        assert!(at("2e6").unwrap()[0].contains("2.00e6"));
-        assert!(at("1").unwrap()[0].contains("molecules fly 0.74 lengths"));
-        let air = |viscosity: &str| {
-            let stream = "velocity = \"100 m/s\"\npressure = 101325\ntemperature = \"15 degC\"";
-            told(&format!("[flow]\n{stream}\nviscosity = \"{viscosity} Pa s\"\n[cloud]\nspacing = 0.03\n"))
-        };
-        assert!(
-            air("1e-7")
-                .unwrap_err()
-                .contains("the Reynolds number is 1.225e9, with the length 1.0: the boundary layers")
-        );
-        assert!(air("1e5").unwrap_err().contains("no flow of a continuum"));
-        assert_eq!(air("0.1"), Ok(Vec::new()));
-    }
 }

@@ -2,10 +2,10 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use super::super::error::RunError;
-use super::super::monitor::Monitor;
-use super::super::record::Described;
-use super::super::solids::setup::{Built, build, remembers};
+use super::error::RunError;
+use super::in_dimension::Remark;
+use super::solids::{Built, build, remembers};
+use super::structures::Described;
 use crate::case::{Case, Temporal};
 use crate::coupling::solids::{Scales, SolidBody, Solids};
 use crate::motion::{Motions, SurfaceNet};
@@ -14,24 +14,30 @@ use crate::observe::structure::{CoordinateName, StructureNames};
 /// Axes by their names.
 const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// Bodies made of particles, and what is said of them.
-pub(crate) type Found<const D: usize> = (Arc<Solids<D>>, Vec<Described>);
+/// Bodies made of particles.
+pub(super) struct Filled<const D: usize> {
+    /// The bodies.
+    pub(super) solids: Arc<Solids<D>>,
+    /// Each in words.
+    pub(super) described: Vec<Described>,
+    /// What is worth telling of them.
+    pub(super) remarks: Vec<Remark>,
+}
 
-/// The bodies of a case that are made of particles, after `first` coordinates of others, and what is said of them; `motions` then
+/// The bodies of a case that are made of particles, after `first` coordinates of others; `motions` then
 /// hand these bodies over to their particles.
-pub(crate) fn solids<const D: usize>(
+pub(super) fn fill<const D: usize>(
     case: &Case,
     input: &Path,
     first: usize,
     motions: &mut Motions<D>,
-    monitor: &mut dyn Monitor,
-) -> Result<Option<Found<D>>, RunError> {
+) -> Result<Option<Filled<D>>, RunError> {
     if case.solids().next().is_none() {
         return Ok(None);
     }
     let built = build::<D>(case, input)?;
-    built.notes.iter().for_each(|n| monitor.note(n));
-    built.warnings.iter().for_each(|w| monitor.warn(w));
+    let notes = built.notes.iter().cloned().map(Remark::Note);
+    let remarks = notes.chain(built.warnings.iter().cloned().map(Remark::Warning)).collect();
     remembers(case, &built)?;
     let mut bodies = Vec::new();
     for (k, (number, _, _)) in case.solids().enumerate() {
@@ -51,7 +57,7 @@ pub(crate) fn solids<const D: usize>(
             hint: "add `[[body.solid.support]]`, or march with `[time.dual]` or `[time.explicit]`".into(),
         });
     }
-    Ok(Some((Arc::new(solids), described)))
+    Ok(Some(Filled { solids: Arc::new(solids), described, remarks }))
 }
 
 /// Body number `k` of the structure, which is body `number` of the case.

@@ -2,12 +2,8 @@
 //!
 //! Points in other units than those of the case, or beside the body, make a shape as any others do, and forces that mean nothing. Where they
 //! lie, how far apart they are and what the shape becomes on the walls is held against the body.
-use std::path::Path;
-
-use super::super::error::RunError;
-use super::super::monitor::Monitor;
-use super::{bodies, motions};
-use crate::case::{Case, GafMethod, rounded};
+use super::error::RunError;
+use crate::case::rounded;
 use crate::coupling::Attached;
 use crate::geometry::{Element, Surface};
 use crate::math::{Bounds, Vector};
@@ -48,25 +44,6 @@ pub(crate) struct ToldOfModes {
     pub(crate) warnings: Vec<String>,
 }
 
-/// Judges the modes of all files that a case names, as a run, `alula gaf` and `alula flutter` do.
-pub(crate) fn judged<const D: usize>(
-    case: &Case,
-    input: &Path,
-    surface: Option<&Surface<D>>,
-) -> Result<ToldOfModes, RunError> {
-    let of = |case: &Case| {
-        let mut laws = motions(case, input, surface)?;
-        let attached = bodies(case, input, surface, &mut laws)?;
-        Ok::<_, RunError>(told_of(surface, &laws, &attached))
-    };
-    let mut told = of(case)?;
-    if let Some(plan) = case.gaf.as_ref().filter(|plan| plan.method == GafMethod::Linear && !plan.flexible.is_empty()) {
-        let more = of(&case.gaf_steady_case(plan))?;
-        told.add(more.notes, more.warnings);
-    }
-    Ok(told)
-}
-
 /// What is told of modes that move bodies.
 pub(crate) fn told_of<'a, const D: usize>(
     surface: Option<&Surface<D>>,
@@ -95,12 +72,6 @@ pub(crate) fn told_of<'a, const D: usize>(
 }
 
 impl ToldOfModes {
-    /// Tells it to those who watch a run.
-    pub(crate) fn tell(&self, monitor: &mut dyn Monitor) {
-        self.notes.iter().for_each(|note| monitor.note(note));
-        self.warnings.iter().for_each(|warning| monitor.warn(warning));
-    }
-
     /// Adds what is not told yet.
     fn add(&mut self, notes: Vec<String>, warnings: Vec<String>) {
         for (all, more) in [(&mut self.notes, notes), (&mut self.warnings, warnings)] {
@@ -260,6 +231,10 @@ fn told<const D: usize>(b: &Bounds<D>) -> String {
 
 #[cfg(test)]
 mod tests {
+    use std::path::Path;
+
+    use super::super::in_dimension::ProblemIn;
+    use super::super::open::surface;
     use super::*;
 
     /// What is said of a bend of eleven stations beside a section of unit chord.
@@ -274,7 +249,7 @@ mod tests {
     /// What is said of the rows of a file beside a section of unit chord.
     fn said_of(rows: &str) -> Result<Option<String>, String> {
         let case = crate::case::read("[flow]\nmach = 0.5\n[[body]]\nnaca = \"0012\"\n", "t").unwrap();
-        let surface = super::super::surface::<2>(&case, Path::new("")).unwrap().0.unwrap();
+        let surface = surface::<2>(&case, Path::new("")).unwrap().0.unwrap();
         let text = format!("x,y,dx,dy\n{rows}");
         let shape = crate::motion::mode_shape::<2>("m.csv", &|_| Ok(text.clone())).map_err(|e| e.to_string())?;
         assert!(shape.remarks().is_empty(), "{:?}", shape.remarks());
@@ -324,8 +299,8 @@ mod tests {
         let case = "[flow]\nmach = 0.5\n[[body]]\nnaca = \"0012\"\n[gaf]\nreduced_frequencies = 0.1\nmodes = []\n[[gaf.mode]]\n\
                     name = \"b\"\nfile = \"double.csv\"\n";
         let case = crate::case::read(case, "case.toml").unwrap_or_else(|e| panic!("{e}"));
-        let surface = super::super::surface::<2>(&case, folder.path()).unwrap().0;
-        let told = judged::<2>(&case, folder.path(), surface.as_ref()).unwrap().warnings.join("\n");
+        let problem = ProblemIn::<2>::of_case(&case, folder.path()).unwrap();
+        let told = format!("{:?}", problem.remarks_on_gaf_modes().unwrap()).replace('\\', "");
         assert!(
             told.contains("2 times as large") && told.contains("see `file = \"double.csv\"` in the case"),
             "{told}"

@@ -78,34 +78,3 @@ fn far<const D: usize>(
         ),
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use crate::case::read;
-    use crate::run::inspect_structure;
-    use std::path::Path;
-
-    fn told(at: &str) -> Result<Vec<String>, String> {
-        let text = format!(
-            "[[body]]\nname = \"plate\"\nbox = {{ size = [1, 0.1] }}\n[body.solid]\nspacing = 0.02\n\
-             material = {{ density = 1000, young = 1e6, poisson = 0.3 }}\nprobe = [{{ name = \"tip\", at = {at} }}]\n\
-             [time.explicit]\nuntil = 1\n"
-        );
-        let case = read(&text, "t").unwrap_or_else(|e| panic!("{e}"));
-        inspect_structure(&case, Path::new(".")).map(|r| r.warnings).map_err(|e| e.to_string())
-    }
-
-    #[test]
-    fn probes_outside_their_body_are_told_of_or_refused() {
-        for inside in ["[0, 0]", "[0.49, 0.049]", "[0.5, 0.05]", "[0.503, 0]"] {
-            assert_eq!(told(inside).unwrap(), Vec::<String>::new(), "{inside}");
-        }
-        let warnings = told("[0.515, 0.05]").unwrap();
-        assert!(warnings.len() == 1 && warnings[0].contains("probe `tip` is 1.500e-2 outside `plate`"), "{warnings:?}");
-        for outside in ["[0.54, 0]", "[0.9, 0]", "[0, -3]"] {
-            let text = told(outside).unwrap_err();
-            let words = ["probe `tip` at (", "is not in `plate`", "spacings", "x from -0.500000 to 0.500000"];
-            words.iter().for_each(|w| assert!(text.contains(w), "{text}"));
-        }
-    }
-}

@@ -2,8 +2,8 @@
 use std::path::Path;
 
 use super::super::error::RunError;
+use super::build::{Built, build, remembers};
 use super::natural::Natural;
-use super::setup::{Built, build, remembers};
 use super::spline_modes::spline_modes;
 use crate::case::{Case, ModeTable, Steady, Structure, StructureMode, StructureModel, Temporal};
 use crate::geometry::dimension;
@@ -16,7 +16,7 @@ const USUAL: u32 = 4;
 const MOST_POINTS: usize = 1000;
 
 /// The case with the own modes of its bodies, which are looked for where they are not there yet.
-pub(in super::super) fn with_own_modes(case: &Case, input: &Path) -> Result<Case, RunError> {
+pub(crate) fn with_own_modes(case: &Case, input: &Path) -> Result<Case, RunError> {
     let mut filled = case.clone();
     for body in 0..case.bodies.len() {
         let Some(own) = case.structure_of(body) else { continue };
@@ -36,7 +36,7 @@ pub(in super::super) fn with_own_modes(case: &Case, input: &Path) -> Result<Case
 }
 
 /// The own modes of all bodies in words.
-pub(in super::super) fn told_of_own_modes(case: &Case) -> Vec<String> {
+pub(crate) fn told_of_own_modes(case: &Case) -> Vec<String> {
     let of = |own: &Structure| {
         let all: Vec<&str> = own.modes.iter().map(|m| m.told.as_str()).collect();
         format!("own modes, cycles per unit of time: {}", all.join(", "))

@@ -110,7 +110,7 @@ mod tests {
     /// The number of particles expected over those that there are.
     fn expected<const D: usize>(shape: &str, solid: &str, expected: impl Fn(&Case) -> f64) -> f64 {
         let case = case(shape, solid);
-        let built = crate::run::solids::setup::build::<D>(&case, std::path::Path::new(".")).unwrap();
+        let built = super::super::build::<D>(&case, std::path::Path::new(".")).unwrap();
         expected(&case) / built.structure.solid.len() as f64
     }
 
@@ -144,19 +144,5 @@ mod tests {
         let endless = Size { particles: f64::INFINITY, bytes: f64::INFINITY };
         assert!(fit_into(&one(endless), None, 2).is_err_and(|e| e.to_string().contains("can be numbered")));
         assert!(fit_into(&one(endless), Some(1e9), 2).is_err());
-    }
-
-    #[test]
-    fn what_would_fill_the_machine_is_refused_before_it_is_made() {
-        for (shape, solid) in [
-            ("box = { size = [1, 1e-7] }", "through = 100000"),
-            ("box = { size = [1, 1, 1] }", "spacing = 1e-6"),
-            ("sphere = { radius = 1 }", "spacing = 1e-6"),
-            ("circle = { radius = 1 }", "spacing = 1e-9"),
-        ] {
-            let problem = crate::run::inspect_structure(&case(shape, solid), std::path::Path::new(".")).unwrap_err();
-            let text = problem.to_string();
-            assert!(text.contains("solid particles") && text.contains("take a larger `spacing`"), "{shape}: {text}");
-        }
     }
 }

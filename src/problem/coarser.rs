@@ -2,51 +2,42 @@
 //!
 //! In smooth flow one with twice the spacing tells it. A captured shock moves by parts of a cell when the cloud changes, to either side:
 //! loads then scatter from cloud to cloud, and two of them may agree by chance. There a third one is asked, with 3/2 of the spacing.
-use std::path::Path;
-
-use super::accuracy::Forces;
-use super::error::RunError;
-use super::{accuracy, recipe, setup};
+use super::numerics;
+use super::spacing::{asked, scaled};
 use crate::case::Case;
-use crate::geometry::dimension;
 
 /// Spacing of the coarser cloud over that of the case, and of the third one where there are shocks.
-pub(super) const COARSER: f64 = 2.0;
-pub(super) const BETWEEN: f64 = 1.5;
+pub(crate) const COARSER: f64 = 2.0;
+pub(crate) const BETWEEN: f64 = 1.5;
 
 /// How wide the spacing of a cloud is beside that of another, for people.
-pub(super) fn times_the_spacing(ratio: f64) -> String {
+pub(crate) fn times_the_spacing(ratio: f64) -> String {
     if ratio == 2.0 { "twice the spacing".to_owned() } else { format!("{ratio} times the spacing") }
 }
 
 /// The case `own`, whose spacing is known, with `ratio` times the spacing; `None` where that does not fit into the domain, and where clouds
 /// are refined by what was found on the one before.
-pub(super) fn coarser(own: &Case, ratio: f64) -> Option<Case> {
-    let one = accuracy::asked(own).is_none() && own.cloud.spacing.is_some() && own.adapt.cycles == 0;
-    (one && recipe::divides(own, ratio)).then(|| accuracy::scaled(own, ratio))
-}
-
-/// The case, whose files lie in `input`, on one cloud, see [`accuracy::on_one_cloud`].
-pub(super) fn on_one_cloud(case: Case, input: &Path, wanted: Forces) -> Result<Case, RunError> {
-    Ok(match dimension(&case) {
-        2 => {
-            let surface = setup::surface::<2>(&case, input)?.0;
-            accuracy::on_one_cloud(case, surface.as_ref(), wanted)
-        }
-        _ => {
-            let surface = setup::surface::<3>(&case, input)?.0;
-            accuracy::on_one_cloud(case, surface.as_ref(), wanted)
-        }
-    })
+pub(crate) fn coarser(own: &Case, ratio: f64) -> Option<Case> {
+    let one = asked(own).is_none() && own.cloud.spacing.is_some() && own.adapt.cycles == 0;
+    (one && numerics::divides(own, ratio)).then(|| scaled(own, ratio))
 }
 
 #[cfg(test)]
 mod tests {
+    use std::path::Path;
+
+    use super::super::open::surface;
+    use super::super::spacing::{Forces, on_one_cloud};
     use super::*;
+    use crate::geometry::dimension;
 
     fn cloud(body: &str, cloud: &str) -> Case {
         let text = format!("[flow]\nmach = 0.5\n[[body]]\n{body}\n[cloud]\n{cloud}\n");
-        on_one_cloud(crate::case::read(&text, "t").unwrap(), Path::new(""), Forces::Table).unwrap()
+        let case = crate::case::read(&text, "t").unwrap();
+        match dimension(&case) {
+            2 => on_one_cloud(case.clone(), surface::<2>(&case, Path::new("")).unwrap().0.as_ref(), Forces::Table),
+            _ => on_one_cloud(case.clone(), surface::<3>(&case, Path::new("")).unwrap().0.as_ref(), Forces::Table),
+        }
     }
 
     #[test]

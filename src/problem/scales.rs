@@ -1,8 +1,8 @@
 //! Lengths of a case that are out of all measure beside its bodies: mostly those of another unit.
 //!
 //! Where nothing but the bodies has a length, any length will do; where something else has one, both are in one unit.
-use super::super::look::reference::of_bodies;
 use super::modes::UNITS;
+use super::reference::of_bodies;
 use crate::case::{Case, Length, Shape, Side, rounded};
 use crate::cloud::CloudSpec;
 use crate::geometry::{Planform, Surface};
@@ -208,12 +208,13 @@ pub(super) fn short(value: f64) -> String {
 
 #[cfg(test)]
 mod tests {
+    use super::super::open::surface;
     use super::*;
     use std::path::Path;
 
     fn told(bodies: &str, more: &str) -> Vec<String> {
         let case = crate::case::read(&format!("[flow]\nmach = 0.5\n{bodies}{more}"), "t").unwrap();
-        let (surface, _) = super::super::surface::<2>(&case, Path::new("")).unwrap();
+        let (surface, _) = surface::<2>(&case, Path::new("")).unwrap();
         doubtful(&case, surface.as_ref().unwrap())
     }
 
@@ -245,7 +246,7 @@ mod tests {
                 "[flow]\nmach = 0.5\n{stream}[[body]]\nsurface = \"w.stl\"\n[reference]\nchord = \"{reference}\"\n"
             );
             let case = crate::case::read(&text, "t").unwrap();
-            let (surface, _) = super::super::surface::<3>(&case, folder.path()).unwrap();
+            let (surface, _) = surface::<3>(&case, folder.path()).unwrap();
             doubtful(&case, surface.as_ref().unwrap()).join("; ")
         };
         let metre = told("1 m", "");

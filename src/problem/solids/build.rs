@@ -22,28 +22,28 @@ const SHOCKED: f64 = 0.1;
 const STABILISATION: [f64; 2] = [0.3, 0.4];
 
 /// A structure with what is asked of it.
-pub(in crate::run) struct Built<const D: usize> {
+pub(crate) struct Built<const D: usize> {
     /// The structure.
-    pub(in crate::run) structure: Structure<D>,
+    pub(crate) structure: Structure<D>,
     /// Names of the bodies.
-    pub(in crate::run) bodies: Vec<String>,
+    pub(crate) bodies: Vec<String>,
     /// Thickness of plane bodies, whose equations are those of one unit of length: what is told of masses, forces and energies is of so much. One
     /// in space and of bodies of revolution.
-    pub(in crate::run) thickness: f64,
+    pub(crate) thickness: f64,
     /// Points whose displacements are told: name, nearest particle and place.
-    pub(in crate::run) probes: Vec<(String, usize, Vector<D>)>,
+    pub(crate) probes: Vec<(String, usize, Vector<D>)>,
     /// Velocity of each particle at the start.
-    pub(in crate::run) velocity: Vec<[f64; D]>,
+    pub(crate) velocity: Vec<[f64; D]>,
     /// Area of each particle on the surface that gas may touch: not on planes of symmetry, nor outside the domain of the gas.
-    pub(in crate::run) wetted: Vec<Vector<D>>,
+    pub(crate) wetted: Vec<Vector<D>>,
     /// What is worth knowing.
-    pub(in crate::run) notes: Vec<String>,
+    pub(crate) notes: Vec<String>,
     /// What makes results doubtful.
-    pub(in crate::run) warnings: Vec<String>,
+    pub(crate) warnings: Vec<String>,
 }
 
 /// The structure of a case whose bodies are made of particles.
-pub(in crate::run) fn build<const D: usize>(case: &Case, input: &Path) -> Result<Built<D>, RunError> {
+pub(crate) fn build<const D: usize>(case: &Case, input: &Path) -> Result<Built<D>, RunError> {
     let (mut notes, mut warnings) = (Vec::new(), Vec::new());
     let parts = parts::<D>(case, input, &mut notes, &mut warnings)?;
     let owner: Vec<u16> = parts.iter().zip(0..).flat_map(|(p, k)| std::iter::repeat_n(k, p.fill.x.len())).collect();
@@ -357,7 +357,7 @@ fn velocities<const D: usize>(parts: &[Part<'_, D>], particles: &Particles<D>, o
 }
 
 /// Refuses materials that remember where a gas leaves no steps to remember.
-pub(in super::super) fn remembers<const D: usize>(case: &Case, built: &Built<D>) -> Result<(), RunError> {
+pub(crate) fn remembers<const D: usize>(case: &Case, built: &Built<D>) -> Result<(), RunError> {
     if !lasts(case) || !built.structure.solid.remembers() {
         return Ok(());
     }

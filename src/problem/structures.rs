@@ -2,20 +2,28 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use super::super::error::RunError;
-use super::super::folder;
-use super::super::look::reference::chord;
-use super::super::record::Described;
-use crate::case::{Case, SolidProbe, StructureMode, StructureModel, Temporal};
+use super::error::RunError;
+use super::files;
+use super::reference::chord;
+use crate::case::{Case, SolidProbe, StructureMode, StructureModel, Temporal, Units};
 use crate::coupling::{Attached, body_motion};
 use crate::geometry::Surface;
 use crate::math::Vector;
 use crate::motion::{ModeShape, MotionError, Motions, mode_shape};
 use crate::observe::structure::{CoordinateName, StructureNames};
-use crate::structure::{BodyFrame, Structure};
+use crate::structure::{BodyFrame, Coordinate, ForceHistory, Structure};
 
 /// Axes by their names.
 const AXES: [&str; 3] = ["x", "y", "z"];
+
+/// A structure in words.
+#[derive(Clone, Debug)]
+pub(crate) struct Described {
+    /// Its body and coordinates.
+    pub(crate) names: StructureNames,
+    /// Its conventions, numbers and frequencies.
+    pub(crate) lines: Vec<String>,
+}
 
 /// The structures of a case, one after another; `motions` then hand their bodies over to them.
 pub(crate) fn bodies<const D: usize>(
@@ -30,7 +38,7 @@ pub(crate) fn bodies<const D: usize>(
         let Some(data) = case.structure_of(body) else { continue };
         let frame = frame(case, surface, body);
         let structure = Structure::<D>::of_case(case, data, frame)?;
-        let read = |name: &str| folder::text(input, name);
+        let read = |name: &str| files::text(input, name);
         let shape = |mode: &StructureMode| match &mode.table {
             Some(table) => ModeShape::new(table).ok_or_else(|| MotionError::Crowded { file: mode.name.clone() }),
             None => mode_shape(&mode.file, &read),
@@ -51,6 +59,30 @@ pub(crate) fn bodies<const D: usize>(
         motions.force_with(case.flow.units().solver_time(std::f64::consts::TAU / omega));
     }
     Ok(all)
+}
+
+/// The structures with the constant forces `forces` on their coordinates, one after another, in the units of the case; none where there are no
+/// forces.
+pub(super) fn with_steady_forces<const D: usize>(
+    structures: Vec<Attached<D>>,
+    forces: &[f64],
+    units: &Units,
+) -> Result<Vec<Attached<D>>, RunError> {
+    if forces.is_empty() {
+        return Ok(structures);
+    }
+    let factor = 1.0 / units.pressure();
+    let loaded = |mut attached: Attached<D>| -> Result<Attached<D>, RunError> {
+        let own = &attached.structure;
+        let on = |(k, c): (usize, &Coordinate)| match forces.get(attached.first + k) {
+            Some(force) => Coordinate { force: ForceHistory::steady(factor * force), ..c.clone() },
+            None => c.clone(),
+        };
+        let coordinates = own.coordinates().iter().enumerate().map(on).collect();
+        attached.structure = Structure::new(own.model().clone(), coordinates)?;
+        Ok(attached)
+    };
+    structures.into_iter().map(loaded).collect()
 }
 
 /// Points of a body that moves in own modes whose displacements are told.
