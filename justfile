@@ -22,11 +22,11 @@ lint:
 
 # the tests of the README
 test:
-    cargo test --workspace
+    cargo test --release --workspace
 
 # those that take long
 test-long:
-    cargo test --workspace -- --ignored
+    cargo test --release --workspace -- --ignored
 
 # mutated inputs, killed runs, a public database of sections and odd surfaces, for the night; they print what is not survived
 night count="10000":

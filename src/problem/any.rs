@@ -3,7 +3,8 @@ use std::path::Path;
 
 use super::error::RunError;
 use super::files;
-use super::in_dimension::{ProblemIn, Remark};
+use super::in_dimension::ProblemIn;
+use super::remark::Remark;
 use super::small_motion::March;
 use super::stream::StreamRatio;
 use crate::case::{self, AnyMode, Case, Cloud, FreeStreamScales, Gaf};

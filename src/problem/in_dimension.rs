@@ -4,8 +4,9 @@ use std::sync::Arc;
 
 use super::coarser::coarser;
 use super::error::RunError;
-use super::modes::{ToldOfModes, told_of};
+use super::modes::told_of;
 use super::open::{motions, surface};
+use super::remark::{Remark, remarks_on};
 use super::sanity::sane;
 use super::small_motion::{self, March};
 use super::solids::{self, with_own_modes};
@@ -19,15 +20,6 @@ use crate::coupling::Attached;
 use crate::coupling::solids::Solids;
 use crate::geometry::Surface;
 use crate::motion::Motions;
-
-/// Something that opening a problem found worth telling.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub enum Remark {
-    /// What was repaired, chosen or left out.
-    Note(String),
-    /// What makes results doubtful.
-    Warning(String),
-}
 
 /// A case in `D` dimensions with everything that it names, resolved: surface, motions, structures, stream. It is never changed; its methods
 /// give other problems, which share what stays the same.
@@ -260,9 +252,4 @@ impl<const D: usize> ProblemIn<D> {
     pub fn remarks(&self) -> &[Remark] {
         &self.remarks
     }
-}
-
-/// What is told of modes, as remarks.
-fn remarks_on(told: ToldOfModes) -> impl Iterator<Item = Remark> {
-    told.notes.into_iter().map(Remark::Note).chain(told.warnings.into_iter().map(Remark::Warning))
 }

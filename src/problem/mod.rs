@@ -10,6 +10,7 @@ mod motion_feasibility;
 pub(crate) mod numerics;
 mod open;
 pub(crate) mod reference;
+mod remark;
 mod sanity;
 mod scales;
 mod size;
@@ -24,11 +25,12 @@ mod supported;
 pub use any::Problem;
 pub(crate) use assemble::{coupled, gas, in_stream};
 pub use error::{Blame, RunError};
-pub use in_dimension::{ProblemIn, Remark};
+pub use in_dimension::ProblemIn;
 pub(crate) use motion_feasibility::check as check_motion;
 #[cfg(test)]
 pub(crate) use open::motions;
 pub(crate) use open::surface;
+pub use remark::Remark;
 pub(crate) use sanity::rough;
 #[cfg(test)]
 pub(crate) use sanity::sane;

@@ -3,7 +3,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use super::error::RunError;
-use super::in_dimension::Remark;
+use super::remark::Remark;
 use super::solids::{Built, build, remembers};
 use super::structures::Described;
 use crate::case::{Case, Temporal};
