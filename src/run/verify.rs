@@ -7,16 +7,16 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use super::at_end::Outcome;
-use super::error::RunError;
 use super::flutter::{self, Boundary};
 use super::gaf::{self, Matrices};
 use super::measure::{self, Measured, Value};
 use super::monitor::{Monitor, Quiet};
+use super::outcome::Outcome;
 use super::session::Session;
 use super::solids::{self, SolidSummary};
 use crate::case::{Case, Length, read};
 use crate::observe::loads::Coefficients;
+use crate::problem::RunError;
 use crate::verify::calibration::{KnownLoad, holding, median_ratio};
 use crate::verify::{Claim, ClaimFile, ClaimRow, Metric, Sample, Study, Table, metrics};
 
