@@ -66,7 +66,7 @@ impl Symmetric {
         let tree = Tree::of(&self.first, &self.row);
         let entries = Entries::of(&tree, self.columns(), |i| matrix.diagonal[i], &floor);
         let of = Factored::of(tree, &entries)?;
-        let mut factors = ComplexFactors { of, matrix };
+        let factors = ComplexFactors { of, matrix };
         let mut probe: Vec<Complex64> = start(self.len(), 0).into_iter().map(Complex64::from).collect();
         (factors.refined(&mut probe) < REFUSED).then_some(factors)
     }
