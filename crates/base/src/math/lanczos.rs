@@ -3,9 +3,8 @@
 //! A block of vectors, its image, the image of that and so on are made orthogonal to all before them (block Lanczos with full
 //! reorthogonalisation: Golub and Underwood 1977), and the operator is diagonalised in the space that they span. A block as large as
 //! an eigenvalue is often finds all vectors of it: a free body has six at zero. With the inverse as operator these are the smallest ones.
-use faer::{Mat, Side};
-
 use super::sweep::dot;
+use super::symmetric;
 
 /// Vectors in a block.
 const BLOCK: usize = 8;
@@ -30,7 +29,7 @@ pub fn largest(
     mask: impl Fn(&mut [f64]),
     mut apply: impl FnMut(&mut [f64]),
 ) -> Pairs {
-    let (mut basis, mut images): (Vec<Vec<f64>>, Vec<Vec<f64>>) = (Vec::new(), Vec::new());
+    let [mut basis, mut images, mut products]: [Vec<Vec<f64>>; 3] = Default::default();
     let mut next: Vec<Vec<f64>> = (0..BLOCK.max(count.min(2 * BLOCK))).map(|k| start(n, k)).collect();
     loop {
         let before = basis.len();
@@ -41,7 +40,7 @@ pub fn largest(
             }
         }
         if basis.len() == before {
-            return ritz(&basis, &images, count);
+            return ritz(&basis, &images, &products, count);
         }
         let mut block = basis[before..].concat();
         apply(&mut block);
@@ -50,7 +49,8 @@ pub fn largest(
             mask(&mut image);
             image
         }));
-        let found = ritz(&basis, &images, count);
+        project(&mut products, &basis, &images);
+        let found = ritz(&basis, &images, &products, count);
         let done = found.values.len() == count && found.left.iter().all(|r| *r < tolerance);
         if done || basis.len() >= most.min(n) {
             return found;
@@ -76,24 +76,29 @@ fn orthogonal(vector: &mut [f64], others: &[Vec<f64>]) -> bool {
     true
 }
 
-/// Eigenvectors in the space of a basis whose images are known.
-fn ritz(basis: &[Vec<f64>], images: &[Vec<f64>], count: usize) -> Pairs {
+/// Products of basis vectors with images, row after row; those known before stay.
+fn project(products: &mut Vec<Vec<f64>>, basis: &[Vec<f64>], images: &[Vec<f64>]) {
+    products.resize(basis.len(), Vec::new());
+    for (row, vector) in products.iter_mut().zip(basis) {
+        row.extend(images[row.len()..].iter().map(|image| dot(vector, image)));
+    }
+}
+
+/// Eigenvectors in the space of a basis whose images, and products with them, are known.
+fn ritz(basis: &[Vec<f64>], images: &[Vec<f64>], products: &[Vec<f64>], count: usize) -> Pairs {
     let m = images.len();
-    let projected = Mat::from_fn(m, m, |i, j| dot(&basis[i], &images[j]));
-    let even = Mat::from_fn(m, m, |i, j| 0.5 * (projected[(i, j)] + projected[(j, i)]));
+    let even: Vec<f64> = (0..m * m).map(|k| 0.5 * (products[k / m][k % m] + products[k % m][k / m])).collect();
     let mut pairs = Pairs { values: Vec::new(), vectors: Vec::new(), left: Vec::new() };
-    let Ok(found) = even.self_adjoint_eigen(Side::Lower) else { return pairs };
-    let combined = |of: &[Vec<f64>], k: usize| {
+    let Some(found) = symmetric::eigen(&even, m) else { return pairs };
+    let combined = |of: &[Vec<f64>], parts: &[f64]| {
         let mut x = vec![0.0; of[0].len()];
-        for (row, vector) in of.iter().enumerate().take(m) {
-            let part = found.U()[(row, k)];
+        for (part, vector) in parts.iter().zip(of) {
             x.iter_mut().zip(vector).for_each(|(x, v)| *x += part * v);
         }
         x
     };
-    for k in (0..m).rev().take(count) {
-        let value = found.S()[k];
-        let (x, image) = (combined(basis, k), combined(images, k));
+    for (value, parts) in found.values.into_iter().zip(&found.vectors).rev().take(count) {
+        let (x, image) = (combined(basis, parts), combined(images, parts));
         let left: f64 = x.iter().zip(&image).map(|(x, y)| (y - value * x).powi(2)).sum();
         pairs.left.push(left.sqrt() / value.abs().max(f64::MIN_POSITIVE));
         pairs.values.push(value);

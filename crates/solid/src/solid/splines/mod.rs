@@ -12,11 +12,11 @@ mod points;
 #[cfg(test)]
 mod tests;
 
-use faer::{Mat, Side};
 
 use crate::geometry::Surface;
 use crate::math::Vector;
 use crate::math::lanczos::start;
+use crate::math::symmetric;
 use crate::math::sweep::dot;
 use crate::physics::solid::Material;
 use assembly::{Matrices, Space};
@@ -191,17 +191,18 @@ fn lowest(
         solve(&mut images);
         let y: Vec<&[f64]> = images.chunks_exact(n).collect();
         let my: Vec<Vec<f64>> = y.iter().map(|y| inertia(y)).collect();
-        let projected = Mat::from_fn(m, m, |i, j| 0.5 * (dot(&x[i], &my[j]) + dot(&x[j], &my[i])));
-        let eigen = projected.self_adjoint_eigen(Side::Lower).ok()?;
+        let even = |i: usize, j: usize| 0.5 * (dot(&x[i], &my[j]) + dot(&x[j], &my[i]));
+        let projected: Vec<f64> = (0..m * m).map(|k| even(k / m, k % m)).collect();
+        let eigen = symmetric::eigen(&projected, m)?;
         let combined = |k: usize, of: &dyn Fn(usize) -> Vec<f64>| {
             let mut sum = vec![0.0; n];
             for i in 0..m {
-                let part = eigen.U()[(i, k)];
+                let part = eigen.vectors[k][i];
                 sum.iter_mut().zip(of(i)).for_each(|(s, y)| *s += part * y);
             }
             sum
         };
-        let values: Vec<f64> = (0..m).rev().map(|k| eigen.S()[k]).collect();
+        let values: Vec<f64> = eigen.values.iter().rev().copied().collect();
         let settled = values
             .iter()
             .zip(&before)
