@@ -69,6 +69,9 @@ struct Front<T> {
     rest: Vec<T>,
 }
 
+/// Fronts of some nodes, each with its number; `None` where a pivot is none.
+type Fronts<T> = Option<Vec<(usize, Front<T>)>>;
+
 /// A = L Lᵀ.
 pub(super) struct Factored<T> {
     tree: Tree,
@@ -79,7 +82,7 @@ impl<T: Number> Factored<T> {
     /// Factors of a matrix with these entries; `None` where a pivot is none.
     pub(super) fn of(tree: Tree, entries: &Entries<T>) -> Option<Self> {
         let pieces = pieces(&tree);
-        let mut found: Vec<Option<Vec<(usize, Front<T>)>>> = pieces.iter().map(|_| None).collect();
+        let mut found: Vec<Fronts<T>> = pieces.iter().map(|_| None).collect();
         sweep_each(&mut found, |k| eliminate_nodes(&tree, entries, &pieces[k], Vec::new()));
         let done: Option<Vec<_>> = found.into_iter().collect();
         let mut below = vec![true; tree.len()];
@@ -175,7 +178,7 @@ fn eliminate_nodes<T: Number>(
     entries: &Entries<T>,
     nodes: &[usize],
     mut done: Vec<(usize, Front<T>)>,
-) -> Option<Vec<(usize, Front<T>)>> {
+) -> Fronts<T> {
     let lowest = nodes.iter().copied().chain(done.iter().map(|d| d.0)).min().unwrap_or(0);
     let mut number = vec![usize::MAX; tree.len() - lowest];
     done.iter().enumerate().for_each(|(k, (s, _))| number[*s - lowest] = k);

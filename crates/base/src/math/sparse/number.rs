@@ -10,15 +10,7 @@ pub(super) const TILE: usize = 32;
 
 /// A real or complex number.
 pub(super) trait Number:
-    Copy
-    + Send
-    + Sync
-    + Add<Output = Self>
-    + AddAssign
-    + Sub<Output = Self>
-    + SubAssign
-    + Mul<Output = Self>
-    + 'static
+    Copy + Send + Sync + Add<Output = Self> + AddAssign + Sub<Output = Self> + SubAssign + Mul<Output = Self> + 'static
 {
     /// Zero.
     const ZERO: Self;

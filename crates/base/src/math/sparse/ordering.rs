@@ -276,7 +276,8 @@ mod tests {
         let mut graph = Graph { first: vec![0], near: Vec::new(), weight: vec![1; n * n] };
         for i in 0..n * n {
             let (x, y) = (i % n, i / n);
-            let sides = [(x > 0, i.wrapping_sub(1)), (x + 1 < n, i + 1), (y > 0, i.wrapping_sub(n)), (y + 1 < n, i + n)];
+            let sides =
+                [(x > 0, i.wrapping_sub(1)), (x + 1 < n, i + 1), (y > 0, i.wrapping_sub(n)), (y + 1 < n, i + n)];
             graph.near.extend(sides.iter().filter(|s| s.0).map(|s| s.1 as u32));
             graph.first.push(graph.near.len());
         }
@@ -288,11 +289,8 @@ mod tests {
         let mut order = minimum_degree(&lattice(20));
         order.sort_unstable();
         assert!(order.iter().enumerate().all(|(k, i)| k == *i as usize) && order.len() == 400);
-        let star = Graph {
-            first: vec![0, 5, 6, 7, 8, 9, 10],
-            near: vec![1, 2, 3, 4, 5, 0, 0, 0, 0, 0],
-            weight: vec![1; 6],
-        };
+        let star =
+            Graph { first: vec![0, 5, 6, 7, 8, 9, 10], near: vec![1, 2, 3, 4, 5, 0, 0, 0, 0, 0], weight: vec![1; 6] };
         assert!(minimum_degree(&star).iter().position(|i| *i == 0).unwrap() >= 4);
     }
 }

@@ -70,7 +70,9 @@ impl Tree {
 fn compressed(first: &[usize], row: &[usize]) -> (Vec<Vec<u32>>, Graph) {
     let n = first.len().saturating_sub(1);
     // sums of scattered numbers of the neighbours: two unknowns that share a sum by chance have the neighbours of both
-    let mix = |i: usize| (i as u64 + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15).rotate_left(29).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    let mix = |i: usize| {
+        (i as u64 + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15).rotate_left(29).wrapping_mul(0xbf58_476d_1ce4_e5b9)
+    };
     let mut sums: Vec<(u64, u32)> = (0..n).map(|i| (mix(i), i as u32)).collect();
     for c in 0..n {
         for r in row[first[c]..first[c + 1]].iter().copied().filter(|r| *r != c) {
@@ -101,7 +103,8 @@ fn compressed(first: &[usize], row: &[usize]) -> (Vec<Vec<u32>>, Graph) {
             }
         }
     }
-    let mut graph = Graph { first: vec![0], near: Vec::new(), weight: members.iter().map(|m| m.len() as u32).collect() };
+    let mut graph =
+        Graph { first: vec![0], near: Vec::new(), weight: members.iter().map(|m| m.len() as u32).collect() };
     for mut list in lists {
         list.sort_unstable();
         list.dedup();
@@ -175,9 +178,8 @@ fn supernodes(graph: &Graph, order: &[u32]) -> Vec<Node> {
 
 /// Nodes from the leaves up: children before parents.
 fn from_below(nodes: &[Node]) -> Vec<u32> {
-    let mut open: Vec<u32> = (0..nodes.len() as u32)
-        .filter(|s| nodes[*s as usize].parent == NONE && !nodes[*s as usize].joined)
-        .collect();
+    let mut open: Vec<u32> =
+        (0..nodes.len() as u32).filter(|s| nodes[*s as usize].parent == NONE && !nodes[*s as usize].joined).collect();
     let mut order = Vec::with_capacity(nodes.len());
     while let Some(s) = open.pop() {
         order.push(s);

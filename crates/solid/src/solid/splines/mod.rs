@@ -12,12 +12,11 @@ mod points;
 #[cfg(test)]
 mod tests;
 
-
 use crate::geometry::Surface;
 use crate::math::Vector;
 use crate::math::lanczos::start;
-use crate::math::symmetric;
 use crate::math::sweep::dot;
+use crate::math::symmetric;
 use crate::physics::solid::Material;
 use assembly::{Matrices, Space};
 
