@@ -8,7 +8,8 @@
 //! angular momentum stay. The second sum comes from E_s = ½ Σ_i c_i Σ_j w |u_j − u_i − A_i d_ij|², what the plain fits
 //! A_i of the displacement gradient leave, c = α μ V D/n: it holds the modes that fits do not see, and is nothing for
 //! uniform deformation. As A_i makes the inner sum least, its change with A_i is no force. The same sum over velocities with
-//! c = β ρ c_p h V D/n damps these modes.
+//! c = β ρ c_p h V D/n damps these modes. Where a material has flowed plastically, the stiffness is a part s = σ_y/(σ_y + 3 μ ε_p) of
+//! it, and the damping the part √s.
 //!
 //! Damping in proportion to stiffness is that of Kelvin and Voigt in the axes of the body at rest: the second stress of Piola and
 //! Kirchhoff gains β C₀ : Ė with the rate of Green's strain and the elastic moduli C₀ at rest, and the residuals of velocity
@@ -195,12 +196,12 @@ impl<const D: usize> Solid<D> {
             }
             response.stress
         });
-        let stiff = self.stiffening(i, material, old);
+        let [stiff, viscous] = self.holding(i, material, old);
         let mut smooth = plain.map(|column| column.map(|a| a * stiff));
         let mut stress = stress;
         if self.is_viscous() {
             let rate = plain_gradient(self, i, |j| row(&state.velocity[j]));
-            (0..D).for_each(|b| (0..D).for_each(|a| smooth[b][a] += self.viscous[i] * rate[b][a]));
+            (0..D).for_each(|b| (0..D).for_each(|a| smooth[b][a] += viscous * rate[b][a]));
             if self.damping.stiffness > 0.0 {
                 self.add_damping(i, state.velocity, f, &mut stress);
             }
@@ -208,7 +209,7 @@ impl<const D: usize> Solid<D> {
         let hoop = stress[2][2];
         let mut stress: Columns<D> = std::array::from_fn(|b| row::<D>(&std::array::from_fn(|a| stress[a][b])));
         self.put_hoop_stress(i, &mut stress, hoop);
-        Stressed { stress, smooth, stiff, volume: determinant(f) }
+        Stressed { stress, smooth, stiff, viscous, volume: determinant(f) }
     }
 
     /// Adds the stress of damping in proportion to stiffness at a particle; out of the way of those without it.
@@ -255,9 +256,10 @@ impl<const D: usize> Solid<D> {
         std::array::from_fn(|a| std::array::from_fn(|b| (0..n).map(|k| f(a, k) * second[k][b]).sum()))
     }
 
-    /// c of the residuals of displacement: what has yielded is held less.
+    /// c of the residuals of displacement and of velocity: what has yielded is held and damped less. The damping goes with the root of
+    /// the stiffness that it damps; the full one would do much of the work in what flows, the more the larger the spacing.
     #[inline(always)]
-    fn stiffening(&self, i: usize, material: &Material, history: &[f64]) -> f64 {
+    fn holding(&self, i: usize, material: &Material, history: &[f64]) -> [f64; 2] {
         /// What is left where nothing is stiff any more.
         const LEAST: f64 = 0.002;
         let shear = material.moduli.shear;
@@ -268,7 +270,13 @@ impl<const D: usize> Solid<D> {
             }
             None => 1.0,
         };
-        self.damping.stabilisation * soft.min(1.0) * shear * self.weight[i]
+        let soft = soft.min(1.0);
+        [self.damping.stabilisation * soft * shear * self.weight[i], self.viscous[i] * soft.sqrt()]
+    }
+
+    /// The same in a state.
+    fn holding_in(&self, i: usize, state: &State<'_, D>) -> [f64; 2] {
+        self.holding(i, self.material_of(i), self.history_of(state.history, i))
     }
 
     /// True where forces depend on how velocities change from place to place.
@@ -352,8 +360,10 @@ impl<const D: usize> Solid<D> {
                 t.of_stress[a][b] = self.tangent(i, (&f, [a, b]), state, parts)[2][2];
             }
         });
-        let stiffening = |i| self.stiffening(i, self.material_of(i), self.history_of(state.history, i));
-        sweep(&mut tangents.stiff, |i| elastic * stiffening(i) + viscous * self.viscous[i]);
+        sweep(&mut tangents.stiff, |i| {
+            let [stiffness, damping] = self.holding_in(i, state);
+            elastic * stiffness + viscous * damping
+        });
     }
 
     /// K w, what forces lose when particles are displaced by `w`; loads that follow the surface are left out.
@@ -370,7 +380,8 @@ impl<const D: usize> Solid<D> {
             if let Some(hoop) = tangents.hoop.get(i) {
                 hoop.add_to(&mut stress, &change);
             }
-            Stressed { stress, smooth: plain.map(|column| column.map(|a| a * stiff)), stiff, volume: 1.0 }
+            let smooth = plain.map(|column| column.map(|a| a * stiff));
+            Stressed { stress, smooth, stiff, viscous: 0.0, volume: 1.0 }
         });
         self.internal(Pulling { displacement: w, velocity: None }, work, out);
         sweep_slots(out, |_, f| *f = f.map(|f| -f));
@@ -433,7 +444,8 @@ impl<const D: usize> Solid<D> {
             + sum(self.len(), |i| {
                 let (full, plain) = self.rate_of(i, v);
                 let left = |e: &Edge<D>| self.left(i, e, v, &plain);
-                let smoothed = self.viscous[i] * self.particles.of(i).iter().map(left).sum::<f64>();
+                let [_, viscous] = self.holding_in(i, state);
+                let smoothed = viscous * self.particles.of(i).iter().map(left).sum::<f64>();
                 if self.damping.stiffness == 0.0 {
                     return smoothed;
                 }
@@ -466,7 +478,7 @@ impl<const D: usize> Solid<D> {
         });
         let stabilisation = sum(n, |i| {
             let plain = plain_gradient(self, i, |j| row(&state.displacement[j]));
-            let c = self.stiffening(i, self.material_of(i), self.history_of(state.history, i));
+            let [c, _] = self.holding_in(i, state);
             let left = |e: &Edge<D>| self.left(i, e, state.displacement, &plain);
             0.5 * c * self.particles.of(i).iter().map(left).sum::<f64>()
         });

@@ -14,13 +14,15 @@ pub struct Stressed<const D: usize> {
     pub(super) smooth: Columns<D>,
     /// c, its stabilising stiffness.
     pub(super) stiff: f64,
+    /// c of the residuals of its velocity.
+    pub(super) viscous: f64,
     /// J, the part of its volume that it keeps.
     pub(super) volume: f64,
 }
 
 impl<const D: usize> Stressed<D> {
     /// Nothing.
-    pub(super) const ZERO: Self = Self { stress: [ZERO; D], smooth: [ZERO; D], stiff: 0.0, volume: 1.0 };
+    pub(super) const ZERO: Self = Self { stress: [ZERO; D], smooth: [ZERO; D], stiff: 0.0, viscous: 0.0, volume: 1.0 };
 }
 
 /// The gradients of a field around a particle: consistent, and of the plain fit; column b is its change along axis b.
@@ -103,7 +105,7 @@ fn on<const D: usize>(solid: &Solid<D>, i: usize, pulling: Pulling<'_, D>, stres
         let (d, other) = (times(&less(&x[j], &x[i]), e.weight), &stressed[j]);
         add(&mut force, &less(&row(&u[j]), &here), e.weight * (own.stiff + other.stiff));
         if let Some(v) = pulling.velocity {
-            let viscous = e.weight * (solid.viscous[i] + solid.viscous[j]);
+            let viscous = e.weight * (own.viscous + other.viscous);
             add(&mut force, &less(&row(&v[j]), &row(&v[i])), viscous);
         }
         weights += e.own;

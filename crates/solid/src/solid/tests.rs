@@ -300,6 +300,36 @@ fn a_resumed_march_goes_on_to_the_same_bits() {
 }
 
 #[test]
+fn what_has_yielded_is_damped_less_by_the_root_of_what_is_left_of_its_stiffness() {
+    let (yields, strained) = (0.02, 0.5);
+    let law = Law::Plastic(Plasticity::linear(yields, 0.1));
+    let material = Material::new(1.0, Moduli { shear: 1.0, bulk: 2.0 }, law);
+    let mut body = parts(&lattice([1.0, 0.5], [9, 5], 0.1), material, |_| false);
+    body.damping.viscosity = 0.1;
+    let solid = Solid::new(body);
+    let (n, virgin) = (solid.len(), solid.virgin());
+    let width = virgin.len() / n;
+    let with = |k: usize| [&virgin[..k], &[strained], &virgin[k + 1..]].concat();
+    let at = (0..width).find(|k| material.plastic_strain(&with(*k)) == strained).expect("a plastic strain");
+    let mut flowed = virgin.clone();
+    flowed.iter_mut().skip(at).step_by(width).for_each(|strain| *strain = strained);
+    let still = vec![[0.0; 2]; n];
+    let zigzag: Vec<[f64; 2]> = (0..n).map(|i| [(i * 5 % 7) as f64, (i * 3 % 11) as f64]).collect();
+    let powers = |history: &[f64]| {
+        let state = State { time: 0.0, step: 0.0, displacement: &still, velocity: &zigzag, history };
+        let (mut work, mut after, mut force) = (solid.work(), history.to_vec(), still.clone());
+        solid.stress(&state, &mut work, &mut after);
+        solid.forces(&state, &work, &mut force);
+        let given: f64 = force.iter().flatten().zip(zigzag.iter().flatten()).map(|(f, v)| f * v).sum();
+        (-given, solid.damped(&state))
+    };
+    let (at_first, then) = (powers(&virgin), powers(&flowed));
+    let soft: f64 = yields / (yields + 3.0 * strained) + 0.002 / QUIET.stabilisation;
+    assert!((then.1 / at_first.1 / soft.sqrt() - 1.0).abs() < 1e-12, "{then:?} {at_first:?}");
+    [at_first, then].iter().for_each(|(given, taken)| assert!((given / taken - 1.0).abs() < 1e-10, "{given} {taken}"));
+}
+
+#[test]
 fn a_cylinder_and_a_disc_are_filled_and_carry_uniform_stress() {
     let case = "title = \"t\"\n[[body]]\nrevolution = [[0, 0], [0, 0.4], [2, 0.4], [2, 0]]\n";
     let case = crate::case::read(&format!("{case}[flow]\nmach = 0.3\n"), "case").unwrap();
