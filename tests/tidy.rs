@@ -47,7 +47,7 @@ const NARROW: [(&str, &[&str]); 9] = [
 const ONE_WAY: [&str; 5] = ["case", "cloud", "scheme", "solid", "run"];
 
 /// Who may open files.
-const OPENS_FILES: [&str; 7] = [
+const OPENS_FILES: [&str; 8] = [
     "src/case/",
     "src/observe/",
     "src/report/",
@@ -55,6 +55,7 @@ const OPENS_FILES: [&str; 7] = [
     "src/run/folder.rs",
     "src/run/measure/",
     "src/run/verify.rs",
+    "src/run/verify/",
 ];
 /// Who may contain `unsafe`: nobody so far.
 const UNSAFE: [&str; 0] = [];

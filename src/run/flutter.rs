@@ -27,6 +27,7 @@ mod wall_motion;
 
 pub use held::Mark;
 pub use record::{Boundary, FlutterAt, LimitCycle, MarchedCycle, Trim};
+pub(super) use rows::or_infinite;
 pub use rows::{Bars, Clearance, Doubt, FlutterRow, MotionRow};
 pub use scales::CaseReference;
 pub use shapes::{NaturalMode, Share};
@@ -56,6 +57,7 @@ use crate::case::{Case, Flutter as Plan, GasResponse, LimitCycles, Matching, Str
 use crate::geometry::dimension;
 use crate::physics::atmosphere;
 use crate::structure::limit_cycle::Borne;
+use record::remedy;
 
 /// Parts by which the gas of a case may differ from the air of the standard atmosphere.
 const AIR: f64 = 0.005;
@@ -77,9 +79,14 @@ pub fn in_memory(
 }
 
 /// The same with the forces of a file, `flutter.json` of a former run or `gaf.json`: the boundary of the structure alone, without a flow.
-pub fn again(case: &Case, places: &Places, forces: &Path, monitor: &mut dyn Monitor) -> Result<Boundary, RunError> {
-    let found = sought(case, (&places.input, Some(&places.out)), Some(forces), monitor)?;
-    Ok(found.unwrap_or_else(|| Boundary::new(&case.title)))
+/// `None` when the monitor says stop.
+pub fn again(
+    case: &Case,
+    places: &Places,
+    forces: &Path,
+    monitor: &mut dyn Monitor,
+) -> Result<Option<Boundary>, RunError> {
+    sought(case, (&places.input, Some(&places.out)), Some(forces), monitor)
 }
 
 /// True where `out` holds a boundary that was interrupted.
@@ -153,7 +160,7 @@ fn sought(
                 monitor.note(&format!("Mach {mach} was finished before"));
                 Some((before, true))
             }
-            (None, None) => at_mach(case, &plan, mach, input, monitor)?,
+            (None, None) => at_mach(case, &plan, mach, (input, case.output.report && out.is_some()), monitor)?,
         };
         let Some((mut found, whole)) = found else { return Ok(None) };
         found.read = forces.map(|f| f.display().to_string());
@@ -267,18 +274,19 @@ fn goes_with_speed(case: &Case) -> bool {
     })
 }
 
-/// The boundary at one Mach number, and false where the monitor said stop in the march after it; `None` where it did before.
+/// The boundary at one Mach number, with the motions of the walls where they are `drawn`, and false where the monitor said stop in the
+/// march after it; `None` where it did before.
 fn at_mach(
     case: &Case,
     plan: &Plan,
     mach: f64,
-    input: &Path,
+    (input, drawn): (&Path, bool),
     monitor: &mut dyn Monitor,
 ) -> Result<Option<(FlutterAt, bool)>, RunError> {
     let own = on_one_cloud(case.flutter_case(mach), input, Forces::Boundary)?;
     let held = Held::of(&own, input)?;
     let scales = Scales::of(&own, held.chord, plan.matching);
-    let place = Place { own: &own, held: &held, scales: &scales, plan, lco: cycles_at(case, mach), input };
+    let place = Place { own: &own, held: &held, scales: &scales, plan, lco: cycles_at(case, mach), input, drawn };
     let marches = cycles_at(case, mach).is_some_and(|lco| lco.march);
     let part = |k: usize, shocks: bool| Portion::of(k, &place.parts(shocks, marches));
     let first = &mut Within { outer: part(0, false), monitor: &mut *monitor };
@@ -299,7 +307,7 @@ fn at_mach(
     let whole =
         !marches || at.cycles.is_empty() || marched::march(case, &mut at, input, &mut Within { outer, monitor })?;
     if !whole {
-        at.warnings.push("told to stop while the limit cycle was marched: all else is whole".into());
+        at.warn(("told to stop while the limit cycle was marched: all else is whole".into(), remedy::CYCLES));
     }
     Ok(Some((at, whole)))
 }
@@ -322,6 +330,8 @@ struct Place<'a> {
     plan: &'a Plan,
     lco: Option<&'a LimitCycles>,
     input: &'a Path,
+    /// True where motions of the walls are drawn, which are cut out of the cloud for that.
+    drawn: bool,
 }
 
 impl Place<'_> {
@@ -347,6 +357,9 @@ impl Place<'_> {
         let mut then = |source: &mut dyn ForceSource, log: &mut Log<'_>| {
             let mut search = Search::new(self.held, self.scales, self.plan, Vec::new(), 0.0);
             let Some(mut at) = search.run((source, stream), log) else { return Ok(()) };
+            if self.drawn {
+                search.show(&mut at, source);
+            }
             (at.borne, at.supersonic) = (source.borne(), source.is_supersonic());
             if let Some(lco) = self.lco.filter(|_| cycles) {
                 let springs = search::springs_of_the_case(source.springs(), stream);
@@ -365,7 +378,7 @@ impl Place<'_> {
         at.orders = summary.residual_drop.unwrap_or(0.0);
         (at.particles, at.cpu_seconds) = (summary.particles, summary.cpu_seconds);
         if !summary.succeeded() {
-            at.warnings.push("the steady flow did not converge: forces about it are doubtful".into());
+            at.warn(("the steady flow did not converge: forces about it are doubtful".into(), remedy::STEADY));
         }
         Ok(Some(at))
     }
@@ -405,7 +418,7 @@ impl Place<'_> {
         });
         monitor.note(&format!("the same on a cloud with {}", times_the_spacing(ratio)));
         let plan = Plan { state_space: false, ..self.plan.clone() };
-        let place = Place { own: &own, plan: &plan, ..*self };
+        let place = Place { own: &own, plan: &plan, drawn: false, ..*self };
         // what that cloud is too coarse for is told by the difference
         Ok(match place.boundary((stream, false), &mut Quiet { monitor }) {
             Ok(Some(coarse)) => Asked::Told(Box::new(coarse)),
@@ -430,9 +443,8 @@ fn of_stored(case: &Case, plan: &Plan, mach: f64, (stored, input): (&Stored, &Pa
     if let Some(lco) = cycles_at(case, mach) {
         at.add_cycles(Seek::new(lco, &mut search, (held.springs.clone(), None))?.run(None));
         if lco.gas == GasResponse::Nonlinear && !at.cycles.is_empty() {
-            at.warnings.push(
-                "forces that are read are those of small motions: so are the limit cycles (`gas = \"linear\"`)".into(),
-            );
+            let what = "forces that are read are those of small motions: so are the limit cycles (`gas = \"linear\"`)";
+            at.warn((what.into(), remedy::CYCLES));
         }
     }
     Ok(placed(at, (&own, mach), held, (&scales, plan)))

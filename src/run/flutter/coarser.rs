@@ -1,7 +1,7 @@
 //! What the spacing of the cloud does to a boundary: how far crossings move on coarser clouds, and which motions grow on one of two alone.
 use super::super::one_cloud::times_the_spacing;
 use super::damping::{Pair, What, curves, pairs, safety};
-use super::record::FlutterAt;
+use super::record::{FlutterAt, remedy};
 use super::rows::Doubt;
 use super::scales::Scales;
 
@@ -22,7 +22,7 @@ pub(super) fn compare(at: &mut FlutterAt, others: &[(f64, FlutterAt)], scales: &
         }
     }
     at.coarser_particles = others.iter().map(|(_, coarse)| coarse.particles).min().unwrap_or(0);
-    at.warnings.extend(doubts.iter().map(|doubt| in_words(doubt, at.dimensional)));
+    doubts.iter().for_each(|doubt| at.warn((in_words(doubt, at.dimensional), remedy::SPACING)));
     at.doubts = doubts;
 }
 

@@ -10,7 +10,7 @@
 use super::super::error::RunError;
 use super::super::record::Log;
 use super::super::studies::ForceSource;
-use super::record::{Found, LimitCycle};
+use super::record::{Found, LimitCycle, remedy};
 use super::search::Search;
 use crate::case::{GasResponse, LimitCycles};
 use crate::observe::structure::is_angle;
@@ -95,10 +95,12 @@ impl<'s, 'a> Seek<'s, 'a> {
         let all = begins.len();
         begins.retain(|(_, cycle)| cycle.x > 0.0);
         if begins.len() < all {
-            warnings.push("a motion of the least amplitude grows in however thin a gas: no branch begins there".into());
+            let what = "a motion of the least amplitude grows in however thin a gas: no branch begins there";
+            warnings.push((what.into(), remedy::DAMPING));
         }
         if begins.is_empty() {
-            warnings.push("no motion of the least amplitude neither grows nor decays up to the greatest speed".into());
+            let what = "no motion of the least amplitude neither grows nor decays up to the greatest speed";
+            warnings.push((what.into(), remedy::SEE));
         }
         let mut all = Vec::new();
         for (number, (kind, first)) in begins.into_iter().enumerate() {
@@ -108,7 +110,8 @@ impl<'s, 'a> Seek<'s, 'a> {
                     Ok(point) => points.push(point),
                     Err(why) => {
                         let told = self.told(*amplitude);
-                        warnings.push(format!("branch {} of limit cycles ends before {told}: {why}", number + 1));
+                        let what = format!("branch {} of limit cycles ends before {told}: {why}", number + 1);
+                        warnings.push((what, remedy::CYCLES));
                         break;
                     }
                 }
@@ -118,10 +121,11 @@ impl<'s, 'a> Seek<'s, 'a> {
         let open = all.iter().find(|row: &&LimitCycle| row.error > self.plan.accuracy);
         warnings.extend(open.map(|row| {
             let part = 100.0 * row.error.min(1.0);
-            format!(
+            let what = format!(
                 "the limit cycle of amplitude {} is known to {part:.1} % only: allow more `harmonics`",
                 row.amplitude
-            )
+            );
+            (what, remedy::HARMONICS)
         }));
         (all, warnings)
     }

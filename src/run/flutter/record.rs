@@ -124,6 +124,9 @@ pub struct FlutterAt {
     pub cpu_seconds: f64,
     /// What makes results doubtful.
     pub warnings: Vec<String>,
+    /// What helps against each of the warnings, in their order.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub remedies: Vec<String>,
     /// What is to be known of them.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub notes: Vec<String>,
@@ -200,7 +203,40 @@ pub struct MarchedCycle {
 }
 
 /// Cycles, and what makes them doubtful.
-pub(super) type Found = (Vec<LimitCycle>, Vec<String>);
+pub(super) type Found = (Vec<LimitCycle>, Vec<Warning>);
+
+/// What makes a result doubtful, and what helps, one of [`remedy`].
+pub(super) type Warning = (String, &'static str);
+
+/// What helps against a warning, or where more is told of it.
+pub(super) mod remedy {
+    /// A steady flow that did not converge.
+    pub(in super::super) const STEADY: &str = "raise `iterations`, or lower `orders`, in `[time.steady]`";
+    /// Motions that grow at the lowest speed at which forces are known.
+    pub(in super::super) const LOWEST: &str =
+        "give higher `reduced_frequencies` in `[flutter]`: they reach lower speeds";
+    /// No motion within the frequencies at which forces are known.
+    pub(in super::super) const HIGHER: &str = "give higher `reduced_frequencies` in `[flutter]`";
+    /// Motions that grow at any density.
+    pub(in super::super) const DAMPING: &str = "give the structure its damping, `damping_ratio`";
+    /// What the spacing of the cloud decides.
+    pub(in super::super) const SPACING: &str =
+        "lower `spacing` in `[cloud]`: the range of speed is that of `doubts` in `flutter.json`";
+    /// Crossings that more frequencies would tell better.
+    pub(in super::super) const FREQUENCIES: &str = "raise `frequencies` in `[flutter]`";
+    /// Limit cycles that more harmonics would tell better.
+    pub(in super::super) const HARMONICS: &str = "raise `harmonics` in `[lco]`";
+    /// Equilibria that do not come to the crossing.
+    pub(in super::super) const EQUILIBRIA: &str =
+        "give the structure a speed nearer to the crossing, from which the equilibria are sought";
+    /// The march of a limit cycle.
+    pub(in super::super) const MARCH: &str =
+        "leave `march` out of `[lco]`, or compute that march with a case of its own";
+    /// Limit cycles.
+    pub(in super::super) const CYCLES: &str = "see the branches in `lco.csv`; other amplitudes are given in `[lco]`";
+    /// All else.
+    pub(in super::super) const SEE: &str = "see `warnings` and the crossings in `flutter.json`";
+}
 
 /// The whole boundary.
 #[derive(Clone, Debug, Serialize)]
@@ -294,32 +330,23 @@ impl FlutterAt {
     /// Adds limit cycles, and what makes them doubtful.
     pub(super) fn add_cycles(&mut self, (cycles, doubts): Found) {
         self.cycles = cycles;
-        self.warnings.extend(doubts);
+        doubts.into_iter().for_each(|doubt| self.warn(doubt));
     }
 
-    /// What helps against a warning, or where more is told of it.
-    pub fn remedy(&self, warning: &str) -> &'static str {
-        /// What warnings say, and what helps.
-        const REMEDIES: [(&str, &str); 10] = [
-            ("did not converge", "raise `iterations`, or lower `orders`, in `[time.steady]`"),
-            ("lowest", "give higher `reduced_frequencies` in `[flutter]`: they reach lower speeds"),
-            ("however thin a gas", "give the structure its damping, `damping_ratio`"),
-            (
-                "finer `spacing`",
-                "lower `spacing` in `[cloud]`: the range of speed is that of `doubts` in `flutter.json`",
-            ),
-            ("allow more `frequencies`", "raise `frequencies` in `[flutter]`"),
-            ("allow more `harmonics`", "raise `harmonics` in `[lco]`"),
-            ("`reduced_frequencies`", "give higher `reduced_frequencies` in `[flutter]`"),
-            ("equilibria", "give the structure a speed nearer to the crossing, from which the equilibria are sought"),
-            (
-                "the march from the limit cycle",
-                "leave `march` out of `[lco]`, or compute that march with a case of its own",
-            ),
-            ("limit cycle", "see the branches in `lco.csv`; other amplitudes are given in `[lco]`"),
-        ];
-        let known = REMEDIES.iter().find(|(words, _)| warning.contains(words));
-        known.map_or("see `warnings` and the crossings in `flutter.json`", |(_, remedy)| *remedy)
+    /// Adds a warning and what helps against it.
+    pub(super) fn warn(&mut self, (what, remedy): Warning) {
+        self.warnings.push(what);
+        self.remedies.push(remedy.to_owned());
+    }
+
+    /// Adds the warnings of another boundary of the same case that are not among these.
+    pub(super) fn warn_of(&mut self, other: &Self) {
+        for (what, remedy) in other.warnings.iter().zip(&other.remedies) {
+            if !self.warnings.contains(what) {
+                self.warnings.push(what.clone());
+                self.remedies.push(remedy.clone());
+            }
+        }
     }
 }
 
@@ -328,14 +355,15 @@ pub(super) mod tests {
     use super::*;
 
     #[test]
-    fn warnings_have_remedies_of_their_own() {
-        let at = FlutterAt::default();
-        let doubt = "mode 1 grows between 0.9 and 1.1 of the speed of the case by less (g up to +0.01) than the damping is known: +0.02 on a \
-                     cloud with twice the spacing; a finer `spacing` decides whether it flutters there";
-        assert!(at.remedy(doubt).contains("lower `spacing` in `[cloud]`"));
-        let crossing = "the crossing at 0.9 of the speed is known to 2.0 % only: allow more `frequencies`";
-        assert!(at.remedy(crossing).contains("`frequencies` in `[flutter]`"));
-        assert!(at.remedy("something else").contains("`warnings`"));
+    fn warnings_keep_their_remedies() {
+        let mut at = FlutterAt::default();
+        at.warn(("a doubt".into(), remedy::FREQUENCIES));
+        let mut other = FlutterAt::default();
+        other.warn(("a doubt".into(), remedy::SPACING));
+        other.warn(("another".into(), remedy::STEADY));
+        at.warn_of(&other);
+        assert_eq!(at.warnings, ["a doubt", "another"]);
+        assert_eq!(at.remedies, [remedy::FREQUENCIES, remedy::STEADY]);
     }
 
     /// A limit cycle of two degrees of pitch.

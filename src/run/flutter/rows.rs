@@ -188,6 +188,6 @@ pub struct Clearance {
 }
 
 /// A number that files have no word for where it is infinite.
-pub(super) fn or_infinite<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
+pub(in super::super) fn or_infinite<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
     Option::<f64>::deserialize(from).map(|x| x.unwrap_or(f64::INFINITY))
 }

@@ -6,7 +6,7 @@
 use super::super::error::RunError;
 use super::super::monitor::{Monitor, Within};
 use super::super::time_left::Portion;
-use super::record::{FlutterAt, Trim};
+use super::record::{FlutterAt, Trim, remedy};
 use super::scales::Scales;
 use crate::case::{Flutter as Plan, Matching, StreamRatio};
 
@@ -51,10 +51,11 @@ pub(super) fn trimmed(
                 let first = at.crossings.iter_mut().find(|c| c.kind != "restabilised" && c.dynamic_pressure > 0.0);
                 first.into_iter().for_each(|c| c.error = c.error.max(moved));
                 if moved > plan.accuracy {
-                    at.warnings.push(format!(
+                    let what = format!(
                         "after {rounds} equilibria the first crossing is still {:.1} % from where the last was sought",
                         100.0 * moved
-                    ));
+                    );
+                    at.warn((what, remedy::EQUILIBRIA));
                 }
                 break at;
             }
@@ -69,8 +70,8 @@ pub(super) fn trimmed(
     if cycles {
         let Some(about) = boundary(scales.ratio(x), true, monitor)? else { return Ok(None) };
         at.cpu_seconds += about.cpu_seconds;
+        at.warn_of(&about);
         (at.cycles, at.borne) = (about.cycles, about.borne);
-        at.warnings.extend(about.warnings.into_iter().filter(|w| !at.warnings.contains(w)).collect::<Vec<_>>());
     }
     Ok(Some(at))
 }
